@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: Apache-2.0
+# Warning flags of our own code (not of generated models), as a target to link privately.
+add_library(cchip_warnings INTERFACE)
+target_compile_options(cchip_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror)
+if(CCHIP_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()
