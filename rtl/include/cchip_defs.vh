@@ -89,7 +89,7 @@
 // cchip_sat_pipeline: beat in to verdict out [clock]
 `define CCHIP_PIPE_LATENCY(s) (`CCHIP_SELECT_LATENCY + 2 * (s) + `CCHIP_COMPARE_LATENCY)
 // of a lone pair: handshake of s_pair to its first beat, plus last verdict to handshake of m_result with ready = 1 [clock]
-`define CCHIP_PAIR_OVERHEAD (8)
+`define CCHIP_PAIR_OVERHEAD (7)
 // lone pair: handshake of s_pair to handshake of m_result, beats issued back to back [clock]
 `define CCHIP_PAIR_LATENCY(s, beats) (`CCHIP_PIPE_LATENCY((s)) + `CCHIP_PAIR_OVERHEAD + (beats) - 1)
 // default CONTEXTS: round trip of a one-beat pair + 4 [pair]

@@ -101,7 +101,7 @@ constexpr int compare_latency() { return 2; }
 /// cchip_sat_pipeline: beat in to verdict out [clock]
 constexpr int pipe_latency(int s) { return select_latency() + 2 * s + compare_latency(); }
 /// of a lone pair: handshake of s_pair to its first beat, plus last verdict to handshake of m_result with ready = 1 [clock]
-constexpr int pair_overhead() { return 8; }
+constexpr int pair_overhead() { return 7; }
 /// lone pair: handshake of s_pair to handshake of m_result, beats issued back to back [clock]
 constexpr int pair_latency(int s, int beats) { return pipe_latency(s) + pair_overhead() + beats - 1; }
 /// default CONTEXTS: round trip of a one-beat pair + 4 [pair]

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_mul18: signed 18x18 multiplier leaf, one multiplier block. p = a * b.
+//   latency      2 clocks (input register, output register)
+//   throughput   one product per clock, never stalls
+//   numbers      two's complement; p is exact, also for (-2^17)^2
+//   reset        none (data only): the registers can move into the block
+// Every multiplication of the chip goes through this module; a device-specific twin may replace it.
+module cchip_mul18 (
+    input  wire               clk,
+    input  wire signed [17:0] a,
+    input  wire signed [17:0] b,
+    output wire signed [35:0] p
+);
+
+  reg signed [17:0] a_q, b_q;
+  (* use_dsp = "yes" *)
+  reg signed [35:0] p_q;
+
+  always @(posedge clk) begin
+    a_q <= a;
+    b_q <= b;
+    p_q <= a_q * b_q;
+  end
+
+  assign p = p_q;
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_delay: q is d, DEPTH clocks later.
+//   latency      DEPTH clocks (0 = wire)
+//   throughput   one value per clock, never stalls
+//   cuts         d -> q if DEPTH > 0
+//   reset        RESET = 1 clears every stage (valid bits); RESET = 0 leaves data alone
+module cchip_delay #(
+    // width of the value, bit
+    parameter integer WIDTH = 1,
+    // delay, clocks, >= 0
+    parameter integer DEPTH = 1,
+    // 1: rst clears all stages; 0: rst is ignored
+    parameter integer RESET = 0
+) (
+    input  wire             clk,
+    input  wire             rst,
+    input  wire [WIDTH-1:0] d,
+    output wire [WIDTH-1:0] q
+);
+
+  generate
+    if (WIDTH < 1 || DEPTH < 0 || RESET < 0 || RESET > 1) begin : gen_illegal
+      cchip_error_delay_WIDTH_below_1_or_DEPTH_below_0_or_RESET_not_0_or_1 u_error ();
+    end
+    if (DEPTH == 0) begin : gen_wire
+      assign q = d;
+      wire unused = &{1'b0, clk, rst};
+    end else begin : gen_stages
+      // chain[WIDTH*i +: WIDTH] is d after i registers
+      reg  [WIDTH*DEPTH-1:0]     pipe_q;
+      wire [WIDTH*(DEPTH+1)-1:0] chain = {pipe_q, d};
+      if (RESET != 0) begin : gen_reset
+        always @(posedge clk)
+          if (rst) pipe_q <= {WIDTH * DEPTH{1'b0}};
+          else pipe_q <= chain[WIDTH*DEPTH-1:0];
+      end else begin : gen_no_reset
+        always @(posedge clk) pipe_q <= chain[WIDTH*DEPTH-1:0];
+        wire unused = &{1'b0, rst};
+      end
+      assign q = chain[WIDTH*DEPTH+:WIDTH];
+    end
+  endgenerate
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_skid_buffer: stream register with registered ready.
+//   latency      1 clock
+//   throughput   one beat per clock, also while m_ready toggles
+//   capacity     2 beats
+//   cuts         every path: s_ready, m_valid and m_data are flip-flops
+//   reset        empties the buffer; s_ready and m_valid are 0 while rst is 1
+module cchip_skid_buffer #(
+    // width of the payload, bit
+    parameter integer WIDTH = 8
+) (
+    input  wire             clk,
+    input  wire             rst,
+    input  wire             s_valid,
+    output wire             s_ready,
+    input  wire [WIDTH-1:0] s_data,
+    output wire             m_valid,
+    input  wire             m_ready,
+    output wire [WIDTH-1:0] m_data
+);
+
+  reg              ready_q;  // the skid register is empty
+  reg              skid_valid_q;
+  reg  [WIDTH-1:0] skid_data_q;
+  reg              valid_q;
+  reg  [WIDTH-1:0] data_q;
+
+  assign s_ready = ready_q;
+  assign m_valid = valid_q;
+  assign m_data  = data_q;
+
+  wire accept = s_valid & ready_q;
+  wire advance = m_ready | ~valid_q;
+  wire skid_valid_d = ~advance & (skid_valid_q | accept);
+
+  always @(posedge clk) begin
+    if (rst) begin
+      ready_q      <= 1'b0;
+      skid_valid_q <= 1'b0;
+      valid_q      <= 1'b0;
+    end else begin
+      ready_q      <= ~skid_valid_d;
+      skid_valid_q <= skid_valid_d;
+      if (advance) valid_q <= skid_valid_q | accept;
+    end
+    if (advance) data_q <= skid_valid_q ? skid_data_q : s_data;
+    if (ready_q) skid_data_q <= s_data;
+  end
+
+`include "cchip_assert.vh"
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_ready_means_empty, !(ready_q && skid_valid_q))
+      `CCHIP_ASSERT(a_order, !(skid_valid_q && !valid_q))
+    end
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_sat_axis: macro stage 2 of the SAT pipeline (paper, figure 7): axis = e x f (eq. 1).
+//   latency      SUBSTAGES clocks
+//   throughput   one axis per clock, never stalls
+//   numbers      points of COORD_W-bit coordinates; edges have COORD_W + 1 bits, axis components
+//                2 COORD_W + 2 bits; exact for every input
+//   cost         six wide multipliers, nine adders
+//   reset        none (data only)
+// Substages: edges, [operand register], leaf input, leaf output, [product register], adder levels of wide
+// products, difference of products, [result registers]. Those in brackets use what SUBSTAGES leaves
+// over CCHIP_AXIS_SUBSTAGES_MIN: first the product register, then the operand register, then results.
+module cchip_sat_axis #(
+    // width of a coordinate, bit
+    parameter integer COORD_W = 16,
+    // registers from input to output, clocks
+    parameter integer SUBSTAGES = 10
+) (
+    input  wire                     clk,
+    input  wire [    3*COORD_W-1:0] s_e_from,
+    input  wire [    3*COORD_W-1:0] s_e_to,
+    input  wire [    3*COORD_W-1:0] s_f_from,
+    input  wire [    3*COORD_W-1:0] s_f_to,
+    output wire [6*(COORD_W+1)-1:0] m_axis
+);
+
+`include "cchip_defs.vh"
+
+  localparam integer EDGE_W = `CCHIP_EDGE_W(COORD_W);
+  localparam integer SPARE = SUBSTAGES - `CCHIP_AXIS_SUBSTAGES_MIN(COORD_W);
+  localparam integer PRODUCT_REGS = SPARE >= 1 ? 1 : 0;
+  localparam integer OPERAND_REGS = SPARE >= 2 ? 1 : 0;
+
+  generate
+    if (SPARE < 0) begin : gen_illegal
+      cchip_error_SUBSTAGES_below_minimum_for_COORD_W u_error ();
+    end
+  endgenerate
+
+  reg [3*EDGE_W-1:0] e_q, f_q;
+
+  genvar d;
+  generate
+    for (d = 0; d < 3; d = d + 1) begin : gen_edge
+      wire signed [COORD_W-1:0] e_from = s_e_from[COORD_W*d+:COORD_W];
+      wire signed [COORD_W-1:0] e_to = s_e_to[COORD_W*d+:COORD_W];
+      wire signed [COORD_W-1:0] f_from = s_f_from[COORD_W*d+:COORD_W];
+      wire signed [COORD_W-1:0] f_to = s_f_to[COORD_W*d+:COORD_W];
+      always @(posedge clk) begin
+        e_q[EDGE_W*d+:EDGE_W] <= {e_to[COORD_W-1], e_to} - {e_from[COORD_W-1], e_from};
+        f_q[EDGE_W*d+:EDGE_W] <= {f_to[COORD_W-1], f_to} - {f_from[COORD_W-1], f_from};
+      end
+    end
+  endgenerate
+
+  cchip_cross3 #(
+      .E_W(EDGE_W),
+      .OPERAND_REGS(OPERAND_REGS),
+      .PRODUCT_REGS(PRODUCT_REGS),
+      .RESULT_REGS(SPARE - OPERAND_REGS - PRODUCT_REGS)
+  ) u_cross (
+      .clk(clk),
+      .a  (e_q),
+      .b  (f_q),
+      .q  (m_axis)
+  );
+
+endmodule
+`default_nettype wire
