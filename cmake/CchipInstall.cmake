@@ -1,1 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
+# Installed tree below the prefix:
+#   bin/cchip                     command line (if built)
+#   lib/libcchip_{ref,model}.a    with include/cchip/ and lib/cmake/collisionchip/:
+#                                 find_package(collisionchip) gives collisionchip::ref and ::model
+#   share/collisionchip/rtl       Verilog sources, include folder and file list cchip.f
+#   share/doc/collisionchip       licences
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(CCHIP_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/collisionchip)
+
+set_target_properties(cchip_ref PROPERTIES EXPORT_NAME ref)
+set_target_properties(cchip_model PROPERTIES EXPORT_NAME model)
+install(TARGETS cchip_ref cchip_model EXPORT collisionchip ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/cpp_ref/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  FILES_MATCHING PATTERN "*.hpp")
+if(CCHIP_SIMULATION)
+  install(TARGETS cchip RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/rtl DESTINATION ${CMAKE_INSTALL_DATADIR}/collisionchip)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/LICENSES DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+install(EXPORT collisionchip NAMESPACE collisionchip:: FILE collisionchipTargets.cmake
+  DESTINATION ${CCHIP_PACKAGE_DIR})
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/collisionchipConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/collisionchipConfig.cmake INSTALL_DESTINATION ${CCHIP_PACKAGE_DIR})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/collisionchipConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/collisionchipConfig.cmake ${PROJECT_BINARY_DIR}/collisionchipConfigVersion.cmake
+  DESTINATION ${CCHIP_PACKAGE_DIR})

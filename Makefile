@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: Apache-2.0
+# Thin front of CMake: every target configures and builds only what it needs. `make help` lists them.
+
+# Settings, as in: make test JOBS=4
+JOBS ?= $(shell nproc)
+PREFIX ?= /usr/local
+DESTDIR ?=
+PAIRS ?= 100000000
+SIM_ARGS ?=
+# command that provides the tools; BOOTSTRAP=true skips it
+BOOTSTRAP ?= scripts/bootstrap
+
+RELEASE := build/release
+CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
+export JOBS
+
+.DEFAULT_GOAL := help
+.PHONY: help bootstrap build sim wave test test-long test-debug test-asan lint tidy format campaign install clean
+
+help: ## list the targets
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
+	@echo "settings: JOBS=$(JOBS) PREFIX=$(PREFIX) DESTDIR=$(DESTDIR) PAIRS=$(PAIRS) SIM_ARGS=$(SIM_ARGS)"
+
+bootstrap: ## install the Debian packages that are missing (all other targets do this first)
+	@$(BOOTSTRAP)
+
+build: $(RELEASE)/build.ninja ## build everything, optimised
+	cmake --build $(RELEASE) -j $(JOBS)
+
+sim: $(RELEASE)/build.ninja ## run two meshes through the simulated hardware, check every pair, write build/waves/sim.fst
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip
+	$(RELEASE)/bin/cchip demo $(SIM_ARGS)
+
+wave: ## open the waveform of the last `make sim`
+	@test -f build/waves/sim.fst || { echo "no build/waves/sim.fst yet, run: make sim" >&2; exit 1; }
+	@command -v gtkwave > /dev/null || { echo "gtkwave is not installed, run: scripts/bootstrap --dev" >&2; exit 1; }
+	gtkwave build/waves/sim.fst build/waves/sim.gtkw
+
+test: build ## run the regression
+	$(CTEST) --test-dir $(RELEASE) -LE '^long$$'
+
+test-long: build ## run the regression and the long tests
+	$(CTEST) --test-dir $(RELEASE)
+
+test-debug: build/debug/build.ninja ## build without optimisation and run the regression
+	cmake --build build/debug -j $(JOBS)
+	$(CTEST) --test-dir build/debug -LE '^long$$'
+
+test-asan: build/asan/build.ninja ## build with AddressSanitizer and UBSan and run the regression
+	cmake --build build/asan -j $(JOBS)
+	$(CTEST) --test-dir build/asan -LE '^long$$'
+
+campaign: $(RELEASE)/build.ninja ## compare PAIRS random pairs of the bit-exact model with the exact oracle (CCHIP_SEED repeats a run)
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip_campaign
+	$(RELEASE)/bin/cchip_campaign --pairs $(PAIRS)
+
+lint: bootstrap ## static checks of RTL, C++, scripts and texts
+	scripts/lint
+
+tidy: build ## clang-tidy over our own C++ (slow)
+	run-clang-tidy -quiet -j $(JOBS) -p $(RELEASE) '^$(CURDIR)/(cpp_ref|sim|tests)/'
+
+format: ## format our own C++
+	git ls-files -z --cached --others --exclude-standard '*.cpp' '*.hpp' | xargs -0 -r clang-format -i
+
+install: $(RELEASE)/build.ninja ## install command, libraries, headers and RTL below DESTDIR/PREFIX
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip cchip_ref cchip_model
+	$(if $(DESTDIR),DESTDIR="$(abspath $(DESTDIR))") cmake --install $(RELEASE) --prefix "$(PREFIX)"
+
+clean: ## delete the build folder
+	rm -rf build
+
+# Ninja runs CMake again when a CMake file changes; this is for the first time only.
+build/%/build.ninja: | bootstrap
+	cmake --preset $*

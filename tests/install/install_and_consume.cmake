@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+# cmake -D BUILD= -D SCRATCH= -D CONSUMER= -D GENERATOR= -D CXX= -D FLAGS= -P install_and_consume.cmake
+# Installs BUILD below SCRATCH as a packager does (DESTDIR), builds CONSUMER against that and checks
+# what it prints; then runs the installed command and reads the installed Verilog file list.
+cmake_minimum_required(VERSION 3.25)
+set(stage ${SCRATCH}/stage)
+set(prefix ${stage}/usr)
+
+function(run)
+  execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY OUTPUT_VARIABLE out ECHO_OUTPUT_VARIABLE)
+  set(out "${out}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${SCRATCH})
+run(${CMAKE_COMMAND} -E env DESTDIR=${stage} ${CMAKE_COMMAND} --install ${BUILD} --prefix /usr)
+run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${SCRATCH}/consumer -G ${GENERATOR} -D CMAKE_BUILD_TYPE=Release
+  -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_CXX_FLAGS=${FLAGS} -D CMAKE_PREFIX_PATH=${prefix}
+  -D CMAKE_FIND_USE_PACKAGE_REGISTRY=OFF)
+run(${CMAKE_COMMAND} --build ${SCRATCH}/consumer)
+
+run(${SCRATCH}/consumer/consumer)
+set(expected "touch: yes\nlifted by 2^-40: no\n")
+if(NOT out STREQUAL expected)
+  message(FATAL_ERROR "the consumer printed\n${out}instead of\n${expected}")
+endif()
+
+run(${prefix}/bin/cchip --version)
+
+set(rtl ${prefix}/share/collisionchip/rtl)
+file(STRINGS ${rtl}/cchip.f names REGEX "\\.v$")
+if(NOT names)
+  message(FATAL_ERROR "${rtl}/cchip.f lists no Verilog file")
+endif()
+foreach(name IN LISTS names)
+  if(NOT EXISTS ${rtl}/${name})
+    message(FATAL_ERROR "${rtl}/cchip.f lists ${name}, which is not installed")
+  endif()
+endforeach()
