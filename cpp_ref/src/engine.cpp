@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cchip/eigen_reference.hpp>
+#include <cchip/engine.hpp>
+#include <cchip/exact_oracle.hpp>
+#include <stdexcept>
+#include <utility>
+
+namespace cchip {
+namespace {
+
+/// An engine that is a function of one pair and ignores the programme.
+class FunctionEngine : public PairEngine {
+ public:
+  using Intersects = bool (*)(const GridPair&, int coord_w);
+
+  FunctionEngine(const char* name, int coord_w, Intersects intersects)
+      : name_(name), coord_w_(coord_w), intersects_(intersects) {
+    if (coord_w < defs::coord_w_min || coord_w > defs::coord_w_max) {
+      throw std::invalid_argument(std::string("engine ") + name + ": coord_w " + std::to_string(coord_w) +
+                                  " is not in 4..20");
+    }
+  }
+
+  const char* name() const override { return name_; }
+  int coord_w() const override { return coord_w_; }
+
+  std::vector<EngineAnswer> run(const std::vector<GridPair>& pairs, PairMode) override {
+    std::vector<EngineAnswer> answers;
+    answers.reserve(pairs.size());
+    for (const GridPair& pair : pairs) {
+      answers.push_back({intersects_(pair, coord_w_), pair.eta == 0, std::nullopt});
+    }
+    return answers;
+  }
+
+ private:
+  const char* name_;
+  int coord_w_;
+  Intersects intersects_;
+};
+
+std::string component(std::uint8_t index) {
+  return index < 3 ? std::string(1, static_cast<char>('x' + index)) : std::to_string(index);
+}
+
+std::string normal_of(const char* primitive, std::uint8_t face) {
+  return face == 0 ? std::string("normal of ") + primitive : "normal " + std::to_string(face) + " of " + primitive;
+}
+
+std::string in_plane(const char* primitive, const AxisCode& axis) {
+  return "in-plane edge " + std::to_string(axis.k) + " of " + primitive + ", axis " + component(axis.l);
+}
+
+}  // namespace
+
+std::string to_words(const AxisCode& axis) {
+  switch (axis.cls) {
+    case AxisClass::none:
+      return "none";
+    case AxisClass::normal_a:
+      return normal_of("A", axis.k);
+    case AxisClass::normal_b:
+      return normal_of("B", axis.k);
+    case AxisClass::cross:
+      return "edge " + std::to_string(axis.k) + " of A x edge " + std::to_string(axis.l) + " of B";
+    case AxisClass::in_plane_a:
+      return in_plane("A", axis);
+    case AxisClass::in_plane_b:
+      return in_plane("B", axis);
+    case AxisClass::box:
+      return "box " + component(axis.l);
+    case AxisClass::illegal:
+      return "illegal request";
+  }
+  throw std::invalid_argument("axis class " + std::to_string(static_cast<int>(axis.cls)) + " is not in 0..7");
+}
+
+std::unique_ptr<PairEngine> make_eigen_engine(int coord_w) {
+  return std::make_unique<FunctionEngine>("eigen", coord_w, eigen_intersects);
+}
+
+std::unique_ptr<PairEngine> make_exact_engine(int coord_w) {
+  return std::make_unique<FunctionEngine>("exact", coord_w,
+                                          [](const GridPair& pair, int) { return exact_intersects(pair); });
+}
+
+}  // namespace cchip
