@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Clock-exact models of cchip_axis_controller and cchip_primtest_tri_tri: they predict every output
+/// on every clock.
+#ifndef CCHIP_MODEL_PRIMTEST_HPP
+#define CCHIP_MODEL_PRIMTEST_HPP
+
+#include <cchip/defs.hpp>
+#include <cchip/engine.hpp>
+#include <cchip/model/sat.hpp>
+#include <cchip/model/stream.hpp>
+#include <cstdint>
+#include <optional>
+
+namespace cchip::model {
+
+/// One beat of the stream m_result.
+struct Result {
+  std::uint16_t tag = 0;
+  bool hit = false;
+  bool grid = false;
+  bool definite = false;
+  AxisCode axis;
+  int beats = 0;
+  friend bool operator==(const Result& x, const Result& y) {
+    return x.tag == y.tag && x.hit == y.hit && x.grid == y.grid && x.definite == y.definite && x.axis == y.axis &&
+           x.beats == y.beats;
+  }
+};
+
+/// The fields of the stream s_pair that the controller sees.
+struct PairHeader {
+  std::uint16_t tag = 0;
+  int mode = 0;  ///< 0..3, reserved values included
+  int err = 0;   ///< eta, 0..15
+};
+
+/// A beat on its way through the pipeline, and the verdict that comes back for it.
+struct Beat {
+  std::size_t context = 0;
+  AxisCode code;
+};
+struct ReturnedBeat {
+  Beat beat;
+  Verdict verdict;
+};
+
+/// cchip_axis_controller.
+class AxisController {
+ public:
+  explicit AxisController(std::size_t contexts);
+
+  std::size_t load_context() const;
+  /// m_beat_*
+  const std::optional<Beat>& beat() const { return beat_; }
+  /// m_result_*
+  const std::optional<Result>& result() const { return result_; }
+  /// Internal net pair_waits.
+  bool pair_waits() const { return start_.m_valid() || beat_.has_value(); }
+
+  void clock(const std::optional<PairHeader>& pair, const std::optional<ReturnedBeat>& verdict);
+  void reset();
+
+ private:
+  struct Start {
+    std::size_t context = 0;
+    bool legal = false;
+  };
+  std::size_t contexts_;
+  std::size_t fresh_ = 0;
+  Fifo<std::size_t> free_;
+  Fifo<Start> start_;
+  std::vector<PairHeader> side_;
+  std::optional<Beat> beat_;
+  std::optional<Result> result_;
+  bool separated_ = false;
+  bool special_ = false;
+  AxisCode witness_;
+};
+
+/// cchip_primtest_tri_tri. Vertices 0..2 of the primitives are used.
+class PrimtestTriTri {
+ public:
+  struct Parameters {
+    int coord_w = defs::coord_w_default;
+    int substages = defs::substages_default;
+    int contexts = defs::contexts_default(defs::substages_default);
+  };
+  struct PairIn {
+    PairHeader header;
+    GridPrimitive a;
+    GridPrimitive b;
+  };
+
+  explicit PrimtestTriTri(const Parameters& parameters);
+
+  const Parameters& parameters() const { return parameters_; }
+  bool s_pair_ready() const { return ready_; }
+  bool m_result_valid() const { return out_.m_valid(); }
+  /// Defined while m_result_valid().
+  const Result& m_result() const { return out_.m_data(); }
+  bool idle() const { return idle_; }
+  /// For statistics: a beat leaves the controller / a pair waits for an axis slot.
+  bool beat_valid() const { return controller_.beat().has_value(); }
+  bool pair_waits() const { return controller_.pair_waits(); }
+
+  /// Rising edge. `pair` is s_pair with its valid.
+  void clock(const std::optional<PairIn>& pair, bool m_result_ready);
+  /// Rising edge with rst = 1.
+  void reset();
+
+ private:
+  struct Operands {
+    GridPrimitive a;
+    GridPrimitive b;
+  };
+  Parameters parameters_;
+  std::size_t pairs_ = 0;
+  bool ready_ = false;
+  bool idle_ = true;
+  std::optional<PairIn> load_;
+  std::vector<Operands> operands_;
+  AxisController controller_;
+  Delay<std::optional<ReturnedBeat>> pipeline_;  // operand fetch and the four macro stages
+  Fifo<Result> results_;
+  SkidBuffer<Result> out_;
+};
+
+}  // namespace cchip::model
+
+#endif

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Clock-exact models of the blocks in rtl/common. Every model is a Moore machine: its accessors show
+/// the outputs during the present clock, clock() is the rising edge that ends it.
+#ifndef CCHIP_MODEL_STREAM_HPP
+#define CCHIP_MODEL_STREAM_HPP
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace cchip::model {
+
+/// cchip_delay: output is the input `depth` clocks ago. For depth 0 use the input itself.
+template <class T>
+class Delay {
+ public:
+  /// \param depth clocks, >= 1
+  /// \param reset value of every stage after construction and reset()
+  explicit Delay(std::size_t depth, T reset = T{}) : stages_(depth, reset), reset_(std::move(reset)) {
+    if (depth == 0) throw std::invalid_argument("model::Delay: depth must be at least 1; use the input itself for 0");
+  }
+  const T& q() const { return stages_[next_]; }
+  void clock(T d) {
+    stages_[next_] = std::move(d);
+    next_ = (next_ + 1) % stages_.size();
+  }
+  /// One clock with rst = 1 (RESET = 1).
+  void reset() { stages_.assign(stages_.size(), reset_); }
+
+ private:
+  std::vector<T> stages_;
+  T reset_;
+  std::size_t next_ = 0;
+};
+
+/// cchip_fifo: capacity `depth`, visible one clock after the push; ready and valid registered.
+template <class T>
+class Fifo {
+ public:
+  explicit Fifo(std::size_t depth) : depth_(depth) {}
+  bool s_ready() const { return ready_; }
+  bool m_valid() const { return !items_.empty(); }
+  /// Defined while m_valid().
+  const T& m_data() const { return items_.front(); }
+  std::size_t size() const { return items_.size(); }
+
+  void clock(bool s_valid, const T& s_data, bool m_ready) {
+    const bool push = s_valid && ready_;
+    if (m_ready && m_valid()) items_.pop_front();
+    if (push) items_.push_back(s_data);
+    ready_ = items_.size() != depth_;
+  }
+  void reset() {
+    items_.clear();
+    ready_ = false;
+  }
+
+ private:
+  std::size_t depth_;
+  std::deque<T> items_;
+  bool ready_ = false;
+};
+
+/// cchip_skid_buffer: two beats, every output registered.
+template <class T>
+class SkidBuffer {
+ public:
+  bool s_ready() const { return ready_; }
+  bool m_valid() const { return out_.has_value(); }
+  /// Defined while m_valid().
+  const T& m_data() const { return *out_; }
+
+  void clock(bool s_valid, const T& s_data, bool m_ready) {
+    std::optional<T> in;
+    if (s_valid && ready_) in = s_data;
+    if (m_ready || !out_) {
+      out_ = skid_ ? std::exchange(skid_, std::nullopt) : std::move(in);
+    } else if (in) {
+      skid_ = std::move(in);
+    }
+    ready_ = !skid_;
+  }
+  void reset() {
+    out_.reset();
+    skid_.reset();
+    ready_ = false;
+  }
+
+ private:
+  bool ready_ = false;
+  std::optional<T> out_;
+  std::optional<T> skid_;
+};
+
+/// cchip_ram: registered read of the old word; words are undefined (nullopt) until written.
+template <class T>
+class Ram {
+ public:
+  explicit Ram(std::size_t depth) : words_(depth) {}
+  const std::optional<T>& read_data() const { return read_; }
+  void clock(bool write, std::size_t write_addr, const T& write_data, std::size_t read_addr) {
+    read_ = read_addr < words_.size() ? words_[read_addr] : std::nullopt;
+    if (write) words_.at(write_addr) = write_data;
+  }
+
+ private:
+  std::vector<std::optional<T>> words_;
+  std::optional<T> read_;
+};
+
+}  // namespace cchip::model
+
+#endif
