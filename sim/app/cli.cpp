@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+#include "csv_reader.hpp"
+#include "demo.hpp"
+#include "engines.hpp"
+#include "mesh_source.hpp"
+#include "pair_columns.hpp"
+#include "pair_runner.hpp"
+#include "pose.hpp"
+#include "progress.hpp"
+#include "usage_error.hpp"
+
+namespace cchip::app {
+namespace {
+
+/// Words of the command line and what they mean, in the order of the help text.
+template <class Value>
+using Choices = std::vector<std::pair<std::string, Value>>;
+
+const Choices<EngineKind> engines = {{"rtl", EngineKind::rtl},
+                                     {"model", EngineKind::model},
+                                     {"eigen", EngineKind::eigen},
+                                     {"exact", EngineKind::exact}};
+const Choices<EngineKind> hardware_engines = {engines[0], engines[1]};
+const Choices<PairMode> programs = {{"exhaustive", PairMode::exhaustive}, {"directed", PairMode::directed}};
+const Choices<Format> formats = {{"table", Format::table}, {"csv", Format::csv}, {"jsonl", Format::jsonl}};
+
+struct PairsOptions {
+  std::string file;
+  EngineOptions engine;
+  Format format = Format::table;
+  ColumnOptions columns;
+};
+
+struct MeshPairsOptions {
+  std::string file_a;
+  std::string file_b;
+  std::string pose;
+  std::string pose_matrix;
+  std::uint64_t limit = 0;
+  EngineOptions engine;
+  Format format = Format::table;
+};
+
+/// stdout stays machine-readable: the summary of CSV and JSON lines goes to stderr.
+int report(const Summary& summary, Format format, const Streams& streams) {
+  (format == Format::table ? streams.out : streams.err) << to_line(summary) << '\n';
+  return summary.mismatches > 0 ? exit_mismatch : exit_ok;
+}
+
+/// Part of the file that is read; negative if it has no size.
+double fraction_read(const CsvReader& reader) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(reader.name(), error);
+  return error || size == 0 ? -1.0 : static_cast<double>(reader.bytes_read()) / static_cast<double>(size);
+}
+
+void check_kind(const PairJob& job, const std::string& file, EngineKind engine) {
+  if (takes_quads(engine)) return;
+  for (const Primitive* primitive : {&job.a, &job.b}) {
+    if (primitive->kind == Kind::tri) continue;
+    throw row_error(file, job.row,
+                    fmt::format("kind_{} is quad, but engine {} answers triangles only; use --engine eigen or exact, or "
+                                "split the quad into two triangles",
+                                primitive == &job.a ? 'a' : 'b', to_name(engine)));
+  }
+}
+
+Summary answer_stream(std::istream& in, const std::string& name, const PairsOptions& options, const Streams& streams) {
+  CsvReader reader(in, name);
+  CsvRow row;
+  if (!reader.next(row)) {
+    throw row_error(name, 1, "the file is empty; write a first row with the column names a0x to b2z");
+  }
+  const PairColumns columns(row, name, options.columns);
+
+  Progress progress(streams.err, streams.progress);
+  const auto engine = make_engine(options.engine);
+  const RunOptions run{options.engine.mode, options.format, !options.columns.expect.empty()};
+  const auto locate = [&](const PairJob& job) { return fmt::format("{}:{}", name, job.row); };
+  PairRunner runner(*engine, run, columns.passed_names(), locate, streams.out, streams.err);
+  const bool has_size = &in != &streams.in;
+  while (reader.next(row)) {
+    PairJob job = columns.parse(std::move(row));
+    check_kind(job, name, options.engine.kind);
+    runner.add(std::move(job));
+    if (streams.progress && runner.pairs_taken() % 1024 == 0) {
+      progress.update(runner.pairs_taken(), has_size ? fraction_read(reader) : -1.0);
+    }
+  }
+  return runner.finish();
+}
+
+int run_pairs(const PairsOptions& options, const Streams& streams) {
+  Summary summary;
+  if (options.file == "-") {
+    summary = answer_stream(streams.in, "-", options, streams);
+  } else {
+    std::ifstream in(options.file, std::ios::binary);
+    if (!in || std::filesystem::is_directory(options.file)) {
+      throw UsageError(fmt::format("{}: the file cannot be read ({}); check its name and permissions", options.file,
+                                   in ? "is a directory" : std::strerror(errno)));
+    }
+    summary = answer_stream(in, options.file, options, streams);
+  }
+  finish_trace(options.engine);
+  return report(summary, options.format, streams);
+}
+
+Eigen::Isometry3d pose_of(const MeshPairsOptions& options) {
+  if (!options.pose_matrix.empty()) return parse_pose_matrix(options.pose_matrix);
+  return options.pose.empty() ? Eigen::Isometry3d::Identity() : parse_pose(options.pose);
+}
+
+Summary answer_meshes(const MeshPairsOptions& options, const Streams& streams) {
+  const Eigen::Isometry3d pose = pose_of(options);
+  const Mesh a = load_mesh_file(options.file_a);
+  const Mesh b = transformed(load_mesh_file(options.file_b), pose);
+  Progress progress(streams.err, streams.progress);
+  const auto engine = make_engine(options.engine);
+  const RunOptions run{options.engine.mode, options.format};
+  const auto locate = [&](const PairJob& job) {
+    return fmt::format("{} face {}, {} face {}", options.file_a, job.passed[0], options.file_b, job.passed[1]);
+  };
+  PairRunner runner(*engine, run, mesh_pair_names(), locate, streams.out, streams.err);
+  for_each_candidate(a, b, options.limit, [&](PairJob job) {
+    runner.add(std::move(job));
+    if (runner.pairs_taken() % 1024 == 0) progress.update(runner.pairs_taken(), -1.0);
+  });
+  return runner.finish();
+}
+
+int run_meshpairs(const MeshPairsOptions& options, const Streams& streams) {
+  const Summary summary = answer_meshes(options, streams);
+  finish_trace(options.engine);
+  return report(summary, options.format, streams);
+}
+
+template <class Value>
+void add_choice(CLI::App& command, const std::string& name, Value& value, const Choices<Value>& choices,
+                const std::string& description) {
+  std::vector<std::string> words;
+  for (const auto& choice : choices) words.push_back(choice.first);
+  const auto choose = [&value, &choices](const std::string& word) {
+    for (const auto& choice : choices) {
+      if (choice.first == word) value = choice.second;
+    }
+  };
+  command.add_option_function<std::string>(name, choose, description)->check(CLI::IsMember(words));
+}
+
+const std::string engine_words = "rtl: Verilated hardware (default), model: its clock-exact model, eigen: floating "
+                                 "point, exact: integers";
+const std::string seed_words = "seed of what the RTL leaves undefined at power-up (default 1)";
+
+/// Options that every command with an engine has.
+void add_engine_options(CLI::App& command, EngineOptions& engine, Format& format) {
+  add_choice(command, "--engine", engine.kind, engines, engine_words);
+  add_choice(command, "--program", engine.mode, programs, "axis programme of the hardware (default exhaustive)");
+  add_choice(command, "--format", format, formats, "output (default table)");
+  command.add_option("--trace", engine.trace_path, "write the waveform of the RTL (FST) and a .gtkw layout beside it");
+  command.add_option("--trace-clocks", engine.trace_clocks, "clocks in the waveform (default 0: all)");
+  command.add_option("--seed", engine.seed, seed_words);
+}
+
+void add_pairs(CLI::App& app, PairsOptions& options) {
+  CLI::App* command = app.add_subcommand("pairs", "Answer the pairs of primitives in a CSV file");
+  command->add_option("FILE", options.file, "CSV file with columns a0x..a2z, b0x..b2z; - reads standard input")->required();
+  add_engine_options(*command, options.engine, options.format);
+  command->add_option("--expect", options.columns.expect, "compare the answers with this column (0 or 1)");
+  command->add_flag("--all-columns", options.columns.pass_all, "pass the coordinate columns through, too");
+  command->footer(
+      "Examples:\n"
+      "  cchip pairs pairs.csv\n"
+      "  cchip pairs pairs.csv --engine exact --expect touches\n"
+      "  generate | cchip pairs - --format jsonl > answers.jsonl\n"
+      "  cchip pairs pairs.csv --trace run.fst && gtkwave run.fst run.gtkw");
+}
+
+void add_meshpairs(CLI::App& app, MeshPairsOptions& options) {
+  CLI::App* command =
+      app.add_subcommand("meshpairs", "Answer the candidate pairs of two meshes (OBJ, STL, PLY, OFF), B placed by a pose");
+  command->add_option("A", options.file_a, "mesh that stays")->required();
+  command->add_option("B", options.file_b, "mesh that is placed")->required();
+  auto* pose = command->add_option("--pose", options.pose,
+                                   "tx,ty,tz[,rx,ry,rz]: rotate B by degrees about x, then y, then z, then move it");
+  command->add_option("--pose-matrix", options.pose_matrix, "twelve numbers, the 3x4 matrix [R|t] row by row")
+      ->excludes(pose);
+  command->add_option("--limit", options.limit, "answer the first N candidate pairs only (default 0: all)");
+  add_engine_options(*command, options.engine, options.format);
+  command->footer(
+      "Examples:\n"
+      "  cchip meshpairs a.obj b.stl --pose 0.5,0,0\n"
+      "  cchip meshpairs a.off a.off --pose 0,0,1,0,0,90 --format csv > hits.csv");
+}
+
+void add_demo(CLI::App& app, DemoOptions& options) {
+  CLI::App* command = app.add_subcommand("demo", "Torus and gear in three poses through the RTL, every answer checked");
+  add_choice(*command, "--engine", options.engine.kind, hardware_engines, "rtl (default) or its model");
+  command->add_option("--waves", options.wave_folder, "folder of the waveform (default build/waves)");
+  command->add_option("--seed", options.engine.seed, seed_words);
+}
+
+int dispatch(std::vector<std::string> arguments, const Streams& streams) {
+  CLI::App app("Collision detection hardware, simulated: do these primitives touch?", "cchip");
+  const std::string version = "cchip " CCHIP_VERSION;
+  app.set_version_flag("--version", version);
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done, 1 internal error, 2 wrong input or command line, 3 answers differ.\n"
+      "Examples:\n"
+      "  cchip demo\n"
+      "  cchip pairs pairs.csv --expect touches\n"
+      "  cchip meshpairs a.obj b.stl --pose 0.5,0,0\n"
+      "\"cchip COMMAND --help\" lists the options of a command.");
+  PairsOptions pairs;
+  MeshPairsOptions meshpairs;
+  DemoOptions demo;
+  add_pairs(app, pairs);
+  add_meshpairs(app, meshpairs);
+  add_demo(app, demo);
+  app.add_subcommand("version", "Print the version");
+  try {
+    std::reverse(arguments.begin(), arguments.end());
+    app.parse(std::move(arguments));
+  } catch (const CLI::Success& request) {  // --help, --version
+    return app.exit(request, streams.out, streams.err);
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(std::string(error.what()) + "; see cchip --help");
+  }
+  if (app.got_subcommand("pairs")) return run_pairs(pairs, streams);
+  if (app.got_subcommand("meshpairs")) return run_meshpairs(meshpairs, streams);
+  if (app.got_subcommand("demo")) return run_demo(demo, streams.out);
+  streams.out << version << '\n';
+  return exit_ok;
+}
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+}  // namespace
+
+int run_cli(std::vector<std::string> arguments, const Streams& streams) {
+  try {
+    const int code = dispatch(std::move(arguments), streams);
+    streams.out.flush();
+    if (!streams.out) throw std::runtime_error("writing the output fails; check disk space and the reader of the pipe");
+    return code;
+  } catch (const UsageError& error) {
+    streams.err << "cchip: " << one_line(error.what()) << '\n';
+    return exit_usage;
+  } catch (const std::exception& error) {
+    streams.err << "cchip: internal error: " << one_line(error.what()) << '\n';
+    return exit_internal;
+  }
+}
+
+}  // namespace cchip::app

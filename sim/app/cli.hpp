@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The whole command line as one function.
+#ifndef CCHIP_APP_CLI_HPP
+#define CCHIP_APP_CLI_HPP
+
+#include <istream>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace cchip::app {
+
+struct Streams {
+  std::istream& in;
+  std::ostream& out;
+  std::ostream& err;
+  /// True if `err` is a terminal: draw a progress bar.
+  bool progress = false;
+};
+
+/// Runs `cchip` with the arguments after the program name; returns the exit code. Does not throw.
+int run_cli(std::vector<std::string> arguments, const Streams& streams);
+
+}  // namespace cchip::app
+
+#endif

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The engines by name.
+#ifndef CCHIP_APP_ENGINES_HPP
+#define CCHIP_APP_ENGINES_HPP
+
+#include <cchip/engine.hpp>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace cchip::app {
+
+enum class EngineKind { rtl, model, eigen, exact };
+
+struct EngineOptions {
+  EngineKind kind = EngineKind::rtl;
+  PairMode mode = PairMode::exhaustive;
+  /// Seed of what the RTL simulation leaves undefined at power-up.
+  std::uint64_t seed = 1;
+  /// Waveform of the RTL simulation; none if empty.
+  std::string trace_path;
+  /// Clocks in the waveform; 0: all.
+  std::uint64_t trace_clocks = 0;
+};
+
+const char* to_name(EngineKind kind);
+/// True for the engines whose answers carry beats, clocks and axes.
+bool is_hardware(EngineKind kind);
+/// True if the engine answers pairs with quads.
+bool takes_quads(EngineKind kind);
+
+/// \throws UsageError the options do not go together, or the waveform cannot be written
+std::unique_ptr<PairEngine> make_engine(const EngineOptions& options);
+
+/// Writes the GTKWave layout beside the waveform, once the engine is gone.
+void finish_trace(const EngineOptions& options);
+
+}  // namespace cchip::app
+
+#endif

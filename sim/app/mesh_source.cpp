@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_source.hpp"
+
+#include <stdexcept>
+
+#include "usage_error.hpp"
+
+namespace cchip::app {
+
+Mesh load_mesh_file(const std::string& path) {
+  try {
+    return load_mesh(path);
+  } catch (const std::runtime_error& error) {
+    throw UsageError(error.what());
+  }
+}
+
+const std::vector<std::string>& mesh_pair_names() {
+  static const std::vector<std::string> names = {"face_a", "face_b"};
+  return names;
+}
+
+void for_each_candidate(const Mesh& a, const Mesh& b, std::uint64_t limit, const std::function<void(PairJob)>& take) {
+  std::uint64_t count = 0;
+  sweep_box_pairs(a, b, [&](CandidatePair candidate) {
+    if (limit != 0 && count == limit) return;
+    PairJob job;
+    job.a = a.primitive(candidate.face_a);
+    job.b = b.primitive(candidate.face_b);
+    job.row = ++count;
+    job.passed = {std::to_string(candidate.face_a), std::to_string(candidate.face_b)};
+    take(std::move(job));
+  });
+}
+
+}  // namespace cchip::app

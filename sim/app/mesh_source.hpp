@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Candidate pairs of two posed meshes.
+#ifndef CCHIP_APP_MESH_SOURCE_HPP
+#define CCHIP_APP_MESH_SOURCE_HPP
+
+#include <cchip/mesh.hpp>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pair_job.hpp"
+
+namespace cchip::app {
+
+/// \throws UsageError the file is missing, broken or has no faces
+Mesh load_mesh_file(const std::string& path);
+
+/// Columns of the candidate pairs: the face numbers, counted from 0.
+const std::vector<std::string>& mesh_pair_names();
+
+/// Calls `take` for every pair of faces whose boxes overlap, at most `limit` times (0: no limit).
+void for_each_candidate(const Mesh& a, const Mesh& b, std::uint64_t limit, const std::function<void(PairJob)>& take);
+
+}  // namespace cchip::app
+
+#endif

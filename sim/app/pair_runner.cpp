@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pair_runner.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cchip/exact_oracle.hpp>
+#include <cchip/local_grid.hpp>
+
+#include "usage_error.hpp"
+
+namespace cchip::app {
+namespace {
+
+const std::vector<std::string> answer_names = {"hit",  "hw_hit", "hw_grid",  "hw_definite",
+                                               "axis", "beats",  "clock_in", "clock_out"};
+
+/// A passed-through column with the name of one of ours gets "input_" in front.
+std::vector<std::string> output_names(const RunOptions& options, const std::vector<std::string>& passed) {
+  std::vector<std::string> ours = answer_names;
+  if (options.compare && options.format == Format::table) ours.insert(ours.begin(), {"row", "expected"});
+  std::vector<std::string> names = passed;
+  const auto taken = [&](const std::string& name) {
+    return std::count(ours.begin(), ours.end(), name) + std::count(names.begin(), names.end(), name);
+  };
+  for (std::string& name : names) {
+    while (taken(name) > 1) name.insert(0, "input_");
+  }
+  names.insert(names.end(), ours.begin(), ours.end());
+  return names;
+}
+
+void append_hardware(std::vector<Cell>& cells, const HardwareAnswer& hardware) {
+  cells.emplace_back(std::uint64_t{hardware.hit});
+  cells.emplace_back(std::uint64_t{hardware.grid});
+  cells.emplace_back(std::uint64_t{hardware.definite});
+  cells.emplace_back(to_words(hardware.axis));
+  cells.emplace_back(static_cast<std::uint64_t>(hardware.beats));
+  cells.emplace_back(hardware.clock_in);
+  cells.emplace_back(hardware.clock_out);
+}
+
+}  // namespace
+
+std::string to_line(const Summary& s) {
+  const double mean = s.pairs == 0 ? 0.0 : static_cast<double>(s.beats) / static_cast<double>(s.pairs);
+  return fmt::format("pairs={} hits={} mismatches={} indefinite={} beats_mean={:.2f} clocks={}", s.pairs, s.hits,
+                     s.mismatches, s.indefinite, mean, s.clocks);
+}
+
+bool resolve(const EngineAnswer& answer, const Primitive& a, const Primitive& b) {
+  return answer.definite ? answer.grid : exact_intersects(a, b);
+}
+
+PairRunner::PairRunner(PairEngine& engine, const RunOptions& options, const std::vector<std::string>& passed_names,
+                       Locate locate, std::ostream& out, std::ostream& messages)
+    : engine_(engine),
+      options_(options),
+      locate_(std::move(locate)),
+      messages_(messages),
+      writer_(make_row_writer(options.format, out, output_names(options, passed_names))) {}
+
+void PairRunner::add(PairJob job) {
+  try {
+    grid_pairs_.push_back(quantise(job.a, job.b, engine_.coord_w()).pair);
+  } catch (const GridError& error) {
+    throw UsageError(locate_(job) + ": " + error.what());
+  }
+  jobs_.push_back(std::move(job));
+  if (jobs_.size() >= options_.batch) answer_batch();
+}
+
+Summary PairRunner::finish() {
+  answer_batch();
+  summary_.clocks = engine_.statistics().clocks;
+  return summary_;
+}
+
+void PairRunner::answer_batch() {
+  const std::vector<EngineAnswer> answers = engine_.run(grid_pairs_, options_.mode);
+  for (std::size_t i = 0; i < jobs_.size(); ++i) {
+    const bool hit = resolve(answers.at(i), jobs_[i].a, jobs_[i].b);
+    ++summary_.pairs;
+    summary_.hits += hit;
+    summary_.indefinite += !answers[i].definite;
+    if (answers[i].hardware) summary_.beats += static_cast<std::uint64_t>(answers[i].hardware->beats);
+    write_row(jobs_[i], answers[i], hit);
+  }
+  writer_->flush();
+  jobs_.clear();
+  grid_pairs_.clear();
+}
+
+void PairRunner::write_row(const PairJob& job, const EngineAnswer& answer, bool hit) {
+  const bool differs = job.expected && *job.expected != hit;
+  summary_.mismatches += differs;
+  const bool table_of_differences = options_.compare && options_.format == Format::table;
+  if (table_of_differences && !differs) return;
+  if (differs && !table_of_differences) {
+    messages_ << fmt::format("cchip: {}: expected hit {:d}, got {:d}\n", locate_(job), *job.expected, hit);
+  }
+  std::vector<Cell> cells(job.passed.begin(), job.passed.end());
+  if (table_of_differences) {
+    cells.emplace_back(job.row);
+    cells.emplace_back(std::uint64_t{*job.expected});
+  }
+  cells.emplace_back(std::uint64_t{hit});
+  if (answer.hardware) {
+    append_hardware(cells, *answer.hardware);
+  } else {
+    cells.resize(cells.size() + answer_names.size() - 1);
+  }
+  writer_->write(cells);
+}
+
+}  // namespace cchip::app

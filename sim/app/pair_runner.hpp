@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The way of a pair: local grid, engine, exact resolution of what the engine leaves open, output.
+#ifndef CCHIP_APP_PAIR_RUNNER_HPP
+#define CCHIP_APP_PAIR_RUNNER_HPP
+
+#include <cchip/engine.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pair_job.hpp"
+#include "row_writer.hpp"
+
+namespace cchip::app {
+
+/// Totals of a run, the last line of every command.
+struct Summary {
+  std::uint64_t pairs = 0;
+  std::uint64_t hits = 0;
+  std::uint64_t mismatches = 0;
+  std::uint64_t indefinite = 0;  ///< answers that the engine left open and the host resolved
+  std::uint64_t beats = 0;       ///< axes of all pairs
+  std::uint64_t clocks = 0;      ///< clocks that the engine simulated; 0 without hardware
+};
+
+/// "pairs=N hits=H mismatches=M indefinite=I beats_mean=B clocks=C"
+std::string to_line(const Summary& summary);
+
+struct RunOptions {
+  PairMode mode = PairMode::exhaustive;
+  Format format = Format::table;
+  /// Expected answers are compared: the table shows the differing rows only, the other formats
+  /// report them on `messages`.
+  bool compare = false;
+  /// Pairs that go to the engine together; bounds the memory.
+  std::size_t batch = 4096;
+};
+
+/// Takes pairs one by one, answers them in batches and writes one row per pair, in order.
+class PairRunner {
+ public:
+  using Locate = std::function<std::string(const PairJob&)>;
+
+  /// `locate` names the place of a pair in error messages; `passed_names` are the columns in PairJob::passed.
+  PairRunner(PairEngine& engine, const RunOptions& options, const std::vector<std::string>& passed_names, Locate locate,
+             std::ostream& out, std::ostream& messages);
+
+  /// \throws UsageError the pair fits no local grid
+  void add(PairJob job);
+  /// Answers what is left. Call once, at the end.
+  Summary finish();
+  std::uint64_t pairs_taken() const { return summary_.pairs + jobs_.size(); }
+
+ private:
+  void answer_batch();
+  void write_row(const PairJob& job, const EngineAnswer& answer, bool hit);
+
+  PairEngine& engine_;
+  RunOptions options_;
+  Locate locate_;
+  std::ostream& messages_;
+  std::unique_ptr<RowWriter> writer_;
+  std::vector<PairJob> jobs_;
+  std::vector<GridPair> grid_pairs_;
+  Summary summary_;
+};
+
+/// The answer for the doubles: the engine's if it is definite, otherwise the exact oracle's.
+bool resolve(const EngineAnswer& answer, const Primitive& a, const Primitive& b);
+
+}  // namespace cchip::app
+
+#endif

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pose.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "pair_columns.hpp"
+#include "usage_error.hpp"
+
+namespace cchip::app {
+namespace {
+
+std::vector<double> parse_numbers(const std::string& option, std::string_view text) {
+  std::vector<double> numbers;
+  while (true) {
+    const auto comma = text.find(',');
+    try {
+      numbers.push_back(parse_coordinate(text.substr(0, comma)));
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(fmt::format("{}: number {}: {}", option, numbers.size() + 1, error.what()));
+    }
+    if (comma == std::string_view::npos) return numbers;
+    text.remove_prefix(comma + 1);
+  }
+}
+
+/// Rotation in the plane of axes `from` and `to`; the quarter turns have no rounding error.
+Eigen::Matrix3d rotation(double degrees, int from, int to) {
+  int quarter = 0;
+  const double rest = std::remquo(degrees, 90.0, &quarter);
+  const double radians = rest * (std::acos(-1.0) / 180.0);
+  const double c = std::cos(radians);
+  const double s = std::sin(radians);
+  const double cosines[4] = {c, -s, -c, s};
+  const double sines[4] = {s, c, -s, -c};
+  const int turn = ((quarter % 4) + 4) % 4;
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
+  matrix(from, from) = matrix(to, to) = cosines[turn];
+  matrix(to, from) = sines[turn];
+  matrix(from, to) = -sines[turn];
+  return matrix;
+}
+
+}  // namespace
+
+Eigen::Isometry3d make_pose(const Eigen::Vector3d& translation, const Eigen::Vector3d& degrees) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = rotation(degrees.z(), 0, 1) * rotation(degrees.y(), 2, 0) * rotation(degrees.x(), 1, 2);
+  pose.translation() = translation;
+  return pose;
+}
+
+Eigen::Isometry3d parse_pose(const std::string& text) {
+  const std::vector<double> n = parse_numbers("--pose", text);
+  if (n.size() == 3) return make_pose({n[0], n[1], n[2]}, {0, 0, 0});
+  if (n.size() == 6) return make_pose({n[0], n[1], n[2]}, {n[3], n[4], n[5]});
+  throw UsageError(fmt::format("--pose: got {} numbers; write tx,ty,tz or tx,ty,tz,rx,ry,rz", n.size()));
+}
+
+Eigen::Isometry3d parse_pose_matrix(const std::string& text) {
+  const std::vector<double> n = parse_numbers("--pose-matrix", text);
+  if (n.size() != 12) {
+    throw UsageError(
+        fmt::format("--pose-matrix: got {} numbers; write the twelve of the 3x4 matrix row by row", n.size()));
+  }
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) pose(row, column) = n[static_cast<std::size_t>(4 * row + column)];
+  }
+  const Eigen::Matrix3d r = pose.linear();
+  const double error = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(error <= 1e-9) || r.determinant() <= 0) {
+    throw UsageError(
+        "--pose-matrix: the left 3x3 part is not a rotation; write an orthonormal matrix with determinant 1 (to 1e-9)");
+  }
+  return pose;
+}
+
+}  // namespace cchip::app
