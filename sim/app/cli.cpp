@@ -28,10 +28,8 @@ namespace {
 template <class Value>
 using Choices = std::vector<std::pair<std::string, Value>>;
 
-const Choices<EngineKind> engines = {{"rtl", EngineKind::rtl},
-                                     {"model", EngineKind::model},
-                                     {"eigen", EngineKind::eigen},
-                                     {"exact", EngineKind::exact}};
+const Choices<EngineKind> engines = {
+    {"rtl", EngineKind::rtl}, {"model", EngineKind::model}, {"eigen", EngineKind::eigen}, {"exact", EngineKind::exact}};
 const Choices<EngineKind> hardware_engines = {engines[0], engines[1]};
 const Choices<PairMode> programs = {{"exhaustive", PairMode::exhaustive}, {"directed", PairMode::directed}};
 const Choices<Format> formats = {{"table", Format::table}, {"csv", Format::csv}, {"jsonl", Format::jsonl}};
@@ -70,10 +68,11 @@ void check_kind(const PairJob& job, const std::string& file, EngineKind engine) 
   if (takes_quads(engine)) return;
   for (const Primitive* primitive : {&job.a, &job.b}) {
     if (primitive->kind == Kind::tri) continue;
-    throw row_error(file, job.row,
-                    fmt::format("kind_{} is quad, but engine {} answers triangles only; use --engine eigen or exact, or "
-                                "split the quad into two triangles",
-                                primitive == &job.a ? 'a' : 'b', to_name(engine)));
+    throw row_error(
+        file, job.row,
+        fmt::format("kind_{} is quad, but engine {} answers triangles only; use --engine eigen or exact, or "
+                    "split the quad into two triangles",
+                    primitive == &job.a ? 'a' : 'b', to_name(engine)));
   }
 }
 
@@ -160,8 +159,9 @@ void add_choice(CLI::App& command, const std::string& name, Value& value, const 
   command.add_option_function<std::string>(name, choose, description)->check(CLI::IsMember(words));
 }
 
-const std::string engine_words = "rtl: Verilated hardware (default), model: its clock-exact model, eigen: floating "
-                                 "point, exact: integers";
+const std::string engine_words =
+    "rtl: Verilated hardware (default), model: its clock-exact model, eigen: floating "
+    "point, exact: integers";
 const std::string seed_words = "seed of what the RTL leaves undefined at power-up (default 1)";
 
 /// Options that every command with an engine has.
@@ -176,7 +176,8 @@ void add_engine_options(CLI::App& command, EngineOptions& engine, Format& format
 
 void add_pairs(CLI::App& app, PairsOptions& options) {
   CLI::App* command = app.add_subcommand("pairs", "Answer the pairs of primitives in a CSV file");
-  command->add_option("FILE", options.file, "CSV file with columns a0x..a2z, b0x..b2z; - reads standard input")->required();
+  command->add_option("FILE", options.file, "CSV file with columns a0x..a2z, b0x..b2z; - reads standard input")
+      ->required();
   add_engine_options(*command, options.engine, options.format);
   command->add_option("--expect", options.columns.expect, "compare the answers with this column (0 or 1)");
   command->add_flag("--all-columns", options.columns.pass_all, "pass the coordinate columns through, too");
@@ -189,8 +190,8 @@ void add_pairs(CLI::App& app, PairsOptions& options) {
 }
 
 void add_meshpairs(CLI::App& app, MeshPairsOptions& options) {
-  CLI::App* command =
-      app.add_subcommand("meshpairs", "Answer the candidate pairs of two meshes (OBJ, STL, PLY, OFF), B placed by a pose");
+  CLI::App* command = app.add_subcommand(
+      "meshpairs", "Answer the candidate pairs of two meshes (OBJ, STL, PLY, OFF), B placed by a pose");
   command->add_option("A", options.file_a, "mesh that stays")->required();
   command->add_option("B", options.file_b, "mesh that is placed")->required();
   auto* pose = command->add_option("--pose", options.pose,

@@ -32,9 +32,7 @@ double greatest_z(const Mesh& mesh) {
   return z;
 }
 
-bool is_special(const GridPair& pair) {
-  return is_coplanar(pair) || is_degenerate(pair.a) || is_degenerate(pair.b);
-}
+bool is_special(const GridPair& pair) { return is_coplanar(pair) || is_degenerate(pair.a) || is_degenerate(pair.b); }
 
 /// Counts one pair. The references see only the grid pair or the doubles, never the engine's answer.
 void check(const PairJob& job, const GridPair& pair, int coord_w, const EngineAnswer& answer, DemoCounts& counts) {
@@ -58,8 +56,9 @@ double ratio(std::uint64_t count, std::uint64_t of) {
 }
 
 void print_row(std::ostream& out, const std::string& name, const DemoCounts& c) {
-  fmt::print(out, "{:<10}{:>10}{:>8}{:>12}{:>12}{:>14}{:>16}{:>10}\n", name, c.pairs, c.hits, c.mismatches, c.indefinite,
-             fmt::format("{:.2f}", ratio(c.beats, c.pairs)), fmt::format("{:.3f}", ratio(c.beats, c.clocks)), c.clocks);
+  fmt::print(out, "{:<10}{:>10}{:>8}{:>12}{:>12}{:>14}{:>16}{:>10}\n", name, c.pairs, c.hits, c.mismatches,
+             c.indefinite, fmt::format("{:.2f}", ratio(c.beats, c.pairs)),
+             fmt::format("{:.3f}", ratio(c.beats, c.clocks)), c.clocks);
 }
 
 void print_introduction(std::ostream& out, const DemoScene& scene, const PairEngine& engine) {

@@ -14,15 +14,17 @@ namespace {
 
 void check(const EngineOptions& options) {
   if (options.mode == PairMode::directed && is_hardware(options.kind)) {
-    throw UsageError(fmt::format("--program directed: not available for engine {} in this version; use --program exhaustive",
-                                 to_name(options.kind)));
+    throw UsageError(
+        fmt::format("--program directed: not available for engine {} in this version; use --program exhaustive",
+                    to_name(options.kind)));
   }
   if (options.trace_path.empty()) return;
   if (options.kind != EngineKind::rtl) {
     throw UsageError(fmt::format("--trace: engine {} has no waveform; use --engine rtl", to_name(options.kind)));
   }
   if (!std::ofstream(options.trace_path, std::ios::app)) {
-    throw UsageError(fmt::format("{}: the waveform cannot be written; check folder and permissions", options.trace_path));
+    throw UsageError(
+        fmt::format("{}: the waveform cannot be written; check folder and permissions", options.trace_path));
   }
 }
 
@@ -38,10 +40,14 @@ std::unique_ptr<PairEngine> make_rtl(const EngineOptions& options) {
 
 const char* to_name(EngineKind kind) {
   switch (kind) {
-    case EngineKind::rtl: return "rtl";
-    case EngineKind::model: return "model";
-    case EngineKind::eigen: return "eigen";
-    case EngineKind::exact: return "exact";
+    case EngineKind::rtl:
+      return "rtl";
+    case EngineKind::model:
+      return "model";
+    case EngineKind::eigen:
+      return "eigen";
+    case EngineKind::exact:
+      return "exact";
   }
   return "?";
 }
@@ -52,10 +58,14 @@ bool takes_quads(EngineKind kind) { return !is_hardware(kind); }
 std::unique_ptr<PairEngine> make_engine(const EngineOptions& options) {
   check(options);
   switch (options.kind) {
-    case EngineKind::rtl: return make_rtl(options);
-    case EngineKind::model: return make_model_engine(defs::coord_w_default);
-    case EngineKind::eigen: return make_eigen_engine(defs::coord_w_default);
-    case EngineKind::exact: return make_exact_engine(defs::coord_w_default);
+    case EngineKind::rtl:
+      return make_rtl(options);
+    case EngineKind::model:
+      return make_model_engine(defs::coord_w_default);
+    case EngineKind::eigen:
+      return make_eigen_engine(defs::coord_w_default);
+    case EngineKind::exact:
+      return make_exact_engine(defs::coord_w_default);
   }
   return nullptr;
 }

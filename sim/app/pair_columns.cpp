@@ -150,8 +150,9 @@ Kind PairColumns::parse_kind(const CsvRow& row, const PrimitiveColumns& columns)
   const std::string_view text = trimmed(row.fields[*columns.kind]);
   if (text.empty() || text == "tri") return Kind::tri;
   if (text == "quad") return Kind::quad;
-  throw row_error(file_, row.line,
-                  fmt::format("column kind_{}: {} is not a known kind; write tri or quad", columns.letter, quoted(text)));
+  throw row_error(
+      file_, row.line,
+      fmt::format("column kind_{}: {} is not a known kind; write tri or quad", columns.letter, quoted(text)));
 }
 
 bool PairColumns::parse_expected(const CsvRow& row) const {
