@@ -73,7 +73,7 @@ module cchip_fifo #(
 `include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_count, count_q <= FULL[COUNT_W-1:0])
+      `CCHIP_ASSERT(a_count, {{32 - COUNT_W{1'b0}}, count_q} <= FULL)
       `CCHIP_ASSERT(a_valid, valid_q == (count_q != {COUNT_W{1'b0}}))
     end
 

@@ -231,7 +231,7 @@ module cchip_primtest_tri_tri #(
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_result_space, !outcome_valid || queue_space)
-      `CCHIP_ASSERT(a_count, pairs_q <= CONTEXT_COUNT[COUNT_W-1:0])
+      `CCHIP_ASSERT(a_count, {{32 - COUNT_W{1'b0}}, pairs_q} <= CONTEXT_COUNT)
     end
 
 endmodule
