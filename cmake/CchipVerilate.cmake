@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-# cchip_verilate(<library> <top> [PREFIX <class>] [PARAMETERS NAME=VALUE ...] [SOURCES file ...])
-# Adds the Verilated module <top> to the static library <library> as class <PREFIX> (default
-# V<top>). Without SOURCES the file list rtl/cchip.f is used. The first library made this way keeps
-# the Verilator runtime; the others link to it, so a program holds one copy.
+# Libraries of Verilated modules.
+#   cchip_model_library(<library>)                    an empty one
+#   cchip_verilate(<library> <module> [PREFIX <class>] [PARAMETERS NAME=VALUE ...] [SOURCES file ...])
+#       adds the module as C++ class <class> (default V<module>); without SOURCES from rtl/cchip.f
+#   cchip_share_runtime(<library> <other>)            after the last cchip_verilate: takes the
+#       Verilator runtime from <other>, so that a program that links both holds one copy of it
+# include() this file in every folder that calls them.
 find_package(verilator 5.006 REQUIRED)
 set(CCHIP_RTL_DIR ${PROJECT_SOURCE_DIR}/rtl)
 file(STRINGS ${CCHIP_RTL_DIR}/cchip.f CCHIP_RTL_FILES REGEX "\\.v$")
@@ -15,7 +18,8 @@ set(CCHIP_VERILATOR_ARGS -Wall -fno-const-bit-op-tree --assert --x-assign unique
 
 function(cchip_model_library library)
   add_library(${library} STATIC)
-  target_compile_options(${library} PRIVATE -w)  # generated code and runtime
+  # -w: generated code and runtime. -O2: also in debug builds, simulation is useless without.
+  target_compile_options(${library} PRIVATE -w -O2)
   target_compile_definitions(${library} INTERFACE VM_SC=0 VM_TRACE=1 VM_TRACE_FST=1 VM_TRACE_VCD=0 VM_COVERAGE=0)
   target_link_libraries(${library} PUBLIC Threads::Threads)
 endfunction()
@@ -28,20 +32,16 @@ function(cchip_verilate library top)
   if(NOT ARG_SOURCES)
     set(ARG_SOURCES ${CCHIP_RTL_FILES})
   endif()
-  set(generics)
-  foreach(p IN LISTS ARG_PARAMETERS)
-    list(APPEND generics -G${p})
-  endforeach()
+  list(TRANSFORM ARG_PARAMETERS PREPEND -G)
   verilate(${library} TRACE_FST PREFIX ${ARG_PREFIX} TOP_MODULE ${top}
-    VERILATOR_ARGS ${CCHIP_VERILATOR_ARGS} ${generics} SOURCES ${ARG_SOURCES})
+    VERILATOR_ARGS ${CCHIP_VERILATOR_ARGS} ${ARG_PARAMETERS} SOURCES ${ARG_SOURCES})
   get_target_property(dirs ${library} INTERFACE_INCLUDE_DIRECTORIES)
   set_target_properties(${library} PROPERTIES INTERFACE_SYSTEM_INCLUDE_DIRECTORIES "${dirs}")
 endfunction()
 
-# Drops the runtime sources that verilate() added to <library> and takes them from <runtime>.
-function(cchip_share_runtime library runtime)
+function(cchip_share_runtime library other)
   get_target_property(sources ${library} SOURCES)
   list(FILTER sources EXCLUDE REGEX "/include/verilated[^/]*\\.cpp$")
   set_target_properties(${library} PROPERTIES SOURCES "${sources}")
-  target_link_libraries(${library} PUBLIC ${runtime})
+  target_link_libraries(${library} PUBLIC ${other})
 endfunction()

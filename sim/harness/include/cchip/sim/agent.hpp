@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What takes part in a simulation beside the model: drivers, monitors, sinks.
+#ifndef CCHIP_SIM_AGENT_HPP
+#define CCHIP_SIM_AGENT_HPP
+
+#include <cstdint>
+#include <string>
+
+namespace cchip::sim {
+
+struct ClockInfo {
+  std::uint64_t clock = 0;  ///< number of the clock, counted from 0 after the last reset
+  bool in_reset = false;    ///< rst is 1 on this clock: nothing is handed over
+};
+
+/// Called once per clock by Simulation::step(), see the timing diagram there.
+class Agent {
+ public:
+  virtual ~Agent() = default;
+  /// Sets inputs of the model; sees its outputs as they are after the last rising edge.
+  virtual void drive(const ClockInfo&) {}
+  /// Looks at all signals, settled, just before the rising edge; sets none.
+  virtual void sample(const ClockInfo&) {}
+  /// What this agent still waits for, for the message of a timeout; empty if nothing.
+  virtual std::string waits_for() const { return {}; }
+};
+
+}  // namespace cchip::sim
+
+#endif

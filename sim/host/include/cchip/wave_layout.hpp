@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// How GTKWave shows a waveform of the engine `rtl`.
+#ifndef CCHIP_WAVE_LAYOUT_HPP
+#define CCHIP_WAVE_LAYOUT_HPP
+
+#include <string>
+
+namespace cchip {
+
+/// Writes the GTKWave save file beside the waveform (same name, .gtkw): signals in the order in which the data
+/// flows, grouped by stream and macro stage, zoomed to the first pairs.
+/// \throws std::runtime_error the file cannot be written
+void write_gtkw(const std::string& fst_path);
+
+}  // namespace cchip
+
+#endif
