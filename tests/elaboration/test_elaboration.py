@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Illegal parameters stop elaboration with a readable name; legal corners elaborate without a word.
+
+usage: test_elaboration.py Verilator|Icarus|Yosys|Names
+
+Environment: VERILATOR, IVERILOG, YOSYS = commands (default: found on PATH)."""
+import os
+import pathlib
+import re
+import subprocess
+import unittest
+
+RTL = pathlib.Path(__file__).resolve().parents[2] / "rtl"
+FILES = [str(RTL / line) for line in (RTL / "cchip.f").read_text().split() if line.endswith(".v")]
+TOP = "cchip_primtest_tri_tri"
+
+
+def smallest_substages(coord_w):
+    """Three substages around a multiplication of coord_w + 1 by 2 coord_w + 2 bits: 2 clocks for one
+    18x18 leaf and one per level of the adder tree over 1, 2, 3 or 6 leaves."""
+    return 5 if coord_w <= 8 else 6 if coord_w <= 16 else 7 if coord_w == 17 else 8
+
+
+COORD_W = "cchip_error_COORD_W_must_be_4_to_20"
+TOO_SHORT = "cchip_error_SUBSTAGES_below_minimum_for_COORD_W"
+TOO_LONG = "cchip_error_SUBSTAGES_above_32"
+CONTEXTS = "cchip_error_CONTEXTS_must_be_1_to_256"
+PROJECTION = "cchip_error_ABSOLUTE_PROJECTION_must_be_0_or_1"
+MUL_WIDE = "cchip_error_mul_wide_A_W_and_B_W_must_be_2_to_52"
+DELAY = "cchip_error_delay_WIDTH_below_1_or_DEPTH_below_0_or_RESET_not_0_or_1"
+FIFO = "cchip_error_fifo_WIDTH_or_DEPTH_below_1"
+RAM = "cchip_error_ram_WIDTH_or_DEPTH_below_1_or_ADDR_W_too_small"
+
+# module, parameters, name in the message
+ILLEGAL = [
+    *((TOP, {"COORD_W": w, "SUBSTAGES": 12}, COORD_W) for w in (-1, 0, 1, 3, 21, 22, 32)),
+    *((TOP, {"COORD_W": w, "SUBSTAGES": smallest_substages(w) - 1}, TOO_SHORT) for w in range(4, 21)),
+    *((TOP, {"SUBSTAGES": s, "CONTEXTS": 34}, TOO_SHORT) for s in (-1, 0, 1)),
+    *((TOP, {"SUBSTAGES": s, "CONTEXTS": 34}, TOO_LONG) for s in (33, 100)),
+    *((TOP, {"CONTEXTS": n}, CONTEXTS) for n in (-1, 0, 257, 1000)),
+    *((TOP, {"ABSOLUTE_PROJECTION": n}, PROJECTION) for n in (-1, 2)),
+    ("cchip_axis_controller", {"CONTEXTS": 0}, CONTEXTS),
+    ("cchip_axis_controller", {"CONTEXTS": 257, "CONTEXT_W": 9}, CONTEXTS),
+    ("cchip_axis_controller", {"CONTEXTS": 34, "CONTEXT_W": 5}, CONTEXTS),
+    *(("cchip_sat_axis", {"COORD_W": w, "SUBSTAGES": s}, TOO_SHORT) for w, s in ((16, 3), (17, 3), (18, 5))),
+    *(("cchip_sat_project", {"COORD_W": w, "SUBSTAGES": smallest_substages(w) - 1}, TOO_SHORT)
+      for w in (8, 16, 17, 18)),
+    ("cchip_sat_project", {"ABSOLUTE_PROJECTION": 2}, PROJECTION),
+    *(("cchip_sat_pipeline", {"COORD_W": w, "SUBSTAGES": smallest_substages(w) - 1}, TOO_SHORT)
+      for w in (8, 16, 17, 18)),
+    ("cchip_sat_pipeline", {"ABSOLUTE_PROJECTION": 2}, PROJECTION),
+    *(("cchip_mul_wide", {"A_W": a, "B_W": b}, MUL_WIDE) for a, b in ((1, 18), (18, 1), (53, 18), (18, 53))),
+    ("cchip_mul_wide", {"PRODUCT_REGS": -1}, MUL_WIDE),
+    ("cchip_dot3", {"A_W": 17, "B_W": 53}, MUL_WIDE),
+    ("cchip_cross3", {"E_W": 53}, MUL_WIDE),
+    ("cchip_delay", {"WIDTH": 0}, DELAY),
+    ("cchip_delay", {"DEPTH": -1}, DELAY),
+    ("cchip_delay", {"RESET": 2}, DELAY),
+    ("cchip_fifo", {"WIDTH": 0}, FIFO),
+    ("cchip_fifo", {"DEPTH": 0}, FIFO),
+    ("cchip_ram", {"WIDTH": 0}, RAM),
+    ("cchip_ram", {"DEPTH": 0}, RAM),
+    ("cchip_ram", {"DEPTH": 17, "ADDR_W": 4}, RAM),
+]
+
+# module, parameters
+LEGAL = [
+    *((TOP, {"COORD_W": w, "SUBSTAGES": smallest_substages(w), "ABSOLUTE_PROJECTION": absolute})
+      for w in range(4, 21) for absolute in (0, 1)),
+    *((TOP, {"COORD_W": w, "SUBSTAGES": 32, "ABSOLUTE_PROJECTION": absolute}) for w in (4, 20) for absolute in (0, 1)),
+    *((TOP, {"CONTEXTS": n}) for n in (1, 2, 3, 4, 5, 255, 256)),
+    (TOP, {}),
+    ("cchip_axis_controller", {"CONTEXTS": 1, "CONTEXT_W": 1}),
+    ("cchip_axis_controller", {"CONTEXTS": 256, "CONTEXT_W": 8}),
+    ("cchip_sat_axis", {"COORD_W": 16, "SUBSTAGES": 4}),
+    ("cchip_mul_wide", {"A_W": 2, "B_W": 2}),
+    ("cchip_mul_wide", {"A_W": 52, "B_W": 52, "PRODUCT_REGS": 3}),
+    ("cchip_delay", {"DEPTH": 0, "RESET": 1}),
+    ("cchip_fifo", {"DEPTH": 1}),
+    ("cchip_fifo", {"WIDTH": 1, "DEPTH": 5}),
+    ("cchip_ram", {"WIDTH": 1, "DEPTH": 1, "ADDR_W": 1}),
+    ("cchip_skid_buffer", {"WIDTH": 1}),
+]
+LEGAL_FEW = [case for case in LEGAL if case[0] != TOP or case[1].get("COORD_W", 16) in (4, 16, 17, 20)]
+
+
+def run(variable, default, *arguments):
+    """Exit code and everything that the tool printed."""
+    result = subprocess.run([os.environ.get(variable, default), *arguments], stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, text=True, timeout=120)
+    return result.returncode, result.stdout
+
+
+class Cases:
+    legal = LEGAL
+
+    def elaborate(self, module, parameters):
+        raise NotImplementedError
+
+    def assert_named(self, name, parameters, text):
+        self.assertIn(name, text)
+
+    def test_illegal_parameters_stop_with_their_name(self):
+        for module, parameters, name in ILLEGAL:
+            with self.subTest(module=module, **parameters):
+                code, text = self.elaborate(module, parameters)
+                self.assertNotEqual(code, 0, f"accepted; printed: {text}")
+                self.assert_named(name, parameters, text)
+
+    def test_legal_corners_pass_silently(self):
+        for module, parameters in self.legal:
+            with self.subTest(module=module, **parameters):
+                self.assertEqual(self.elaborate(module, parameters), (0, ""))
+
+
+class Verilator(Cases, unittest.TestCase):
+    def elaborate(self, module, parameters):
+        return run("VERILATOR", "verilator", "--lint-only", "-Wall", f"-I{RTL}/include",
+                   f"{RTL}/lint/verilator_waiver.vlt", *(f"-G{name}={value}" for name, value in parameters.items()),
+                   "--top-module", module, *FILES)
+
+    def assert_named(self, name, parameters, text):
+        """Verilator elaborates from the leaves up and ends at the first vector without a bit: values
+        below 1 may be named by an inner module only."""
+        self.assertRegex(text, name if min(parameters.values()) >= 1 else r"\bcchip_error_\w+")
+
+
+class Icarus(Cases, unittest.TestCase):
+    def elaborate(self, module, parameters):
+        return run("IVERILOG", "iverilog", "-g2005", "-Wall", "-t", "null", "-I", f"{RTL}/include", "-s", module,
+                   *(f"-P{module}.{name}={value}" for name, value in parameters.items()), *FILES)
+
+
+class Yosys(Cases, unittest.TestCase):
+    legal = LEGAL_FEW
+
+    def elaborate(self, module, parameters):
+        values = "".join(f" -chparam {name} 32'h{value & 0xffffffff:08x}" for name, value in parameters.items())
+        return run("YOSYS", "yosys", "-q", "-p", f"read_verilog -DSYNTHESIS -I{RTL}/include {' '.join(FILES)}; "
+                   f"hierarchy -check -top {module}{values}; proc; check -assert")
+
+
+class Names(unittest.TestCase):
+    def test_every_error_name_of_the_rtl_has_an_illegal_case(self):
+        written = set()
+        for name in FILES:
+            written |= set(re.findall(r"\bcchip_error_\w+", pathlib.Path(name).read_text()))
+        self.assertEqual(written, {name for _, _, name in ILLEGAL})
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
