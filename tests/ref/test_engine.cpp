@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+#include <cchip/engine.hpp>
+#include <cchip/exact_oracle.hpp>
+
+#include "random_pairs.hpp"
+
+using namespace cchip_test;
+using cchip::AxisClass;
+using cchip::to_words;
+
+TEST_CASE("engine: eigen and exact answer batches in order", "[ref][engine]") {
+  PairSource source(-100, 100);
+  std::vector<GridPair> pairs;
+  for (int i = 0; i < 500; ++i) {
+    pairs.push_back(source.pair(PairClass::general));
+    pairs.back().eta = i % 3;
+  }
+  for (const auto& engine : {cchip::make_eigen_engine(8), cchip::make_exact_engine(8)}) {
+    INFO(engine->name());
+    CHECK(engine->coord_w() == 8);
+    CHECK(engine->run({}, cchip::PairMode::directed).empty());
+    const std::vector<cchip::EngineAnswer> answers = engine->run(pairs, cchip::PairMode::exhaustive);
+    REQUIRE(answers.size() == pairs.size());
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      INFO(describe(pairs[i]));
+      REQUIRE(answers[i].grid == cchip::exact_intersects(pairs[i]));
+      REQUIRE(answers[i].definite == (pairs[i].eta == 0));
+      REQUIRE_FALSE(answers[i].hardware.has_value());
+    }
+    CHECK(engine->statistics().clocks == 0);
+  }
+  CHECK(cchip::make_eigen_engine(8)->name() == std::string("eigen"));
+  CHECK(cchip::make_exact_engine(8)->name() == std::string("exact"));
+}
+
+TEST_CASE("engine: refuses widths outside 4..20", "[ref][engine]") {
+  CHECK_THROWS_AS(cchip::make_eigen_engine(3), std::invalid_argument);
+  CHECK_THROWS_AS(cchip::make_exact_engine(21), std::invalid_argument);
+}
+
+TEST_CASE("engine: witness axes in words", "[ref][engine]") {
+  CHECK(to_words({AxisClass::none, 0, 0}) == "none");
+  CHECK(to_words({AxisClass::normal_a, 0, 0}) == "normal of A");
+  CHECK(to_words({AxisClass::normal_b, 0, 0}) == "normal of B");
+  CHECK(to_words({AxisClass::normal_b, 3, 0}) == "normal 3 of B");
+  CHECK(to_words({AxisClass::cross, 0, 2}) == "edge 0 of A x edge 2 of B");
+  CHECK(to_words({AxisClass::in_plane_a, 1, 1}) == "in-plane edge 1 of A, axis y");
+  CHECK(to_words({AxisClass::in_plane_b, 2, 0}) == "in-plane edge 2 of B, axis x");
+  CHECK(to_words({AxisClass::box, 0, 2}) == "box z");
+  CHECK(to_words({AxisClass::illegal, 0, 0}) == "illegal request");
+}

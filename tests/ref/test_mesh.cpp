@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+#include <cchip/mesh.hpp>
+#include <map>
+#include <set>
+
+#include "random_pairs.hpp"
+
+using namespace cchip_test;
+using cchip::CandidatePair;
+using cchip::Mesh;
+using cchip::Vec3d;
+
+namespace {
+
+/// Counts directed edges: a closed, consistently oriented surface has every edge once in each direction.
+bool is_closed_and_oriented(const Mesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  for (const Mesh::Face& face : mesh.faces) {
+    for (std::size_t i = 0; i < 3; ++i) ++edges[{face.vertex[i], face.vertex[(i + 1) % 3]}];
+  }
+  for (const auto& [edge, count] : edges) {
+    const auto back = edges.find({edge.second, edge.first});
+    if (count != 1 || back == edges.end() || back->second != 1) return false;
+  }
+  return !edges.empty();
+}
+
+int euler_characteristic(const Mesh& mesh) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  std::set<std::uint32_t> used;
+  for (const Mesh::Face& face : mesh.faces) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      edges.insert(std::minmax(face.vertex[i], face.vertex[(i + 1) % 3]));
+      used.insert(face.vertex[i]);
+    }
+  }
+  CHECK(used.size() == mesh.vertices.size());
+  return static_cast<int>(used.size()) - static_cast<int>(edges.size()) + static_cast<int>(mesh.faces.size());
+}
+
+/// Signed volume: positive if the fronts face outwards.
+double volume(const Mesh& mesh) {
+  double sum = 0;
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const cchip::Primitive p = mesh.primitive(i);
+    sum += p.v[0].cross(p.v[1]).dot(p.v[2]) / 6;
+  }
+  return sum;
+}
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Random triangles, some of them with coordinates in common so that boxes touch.
+Mesh soup(PairSource& source, int faces) {
+  Mesh mesh;
+  for (int i = 0; i < faces; ++i) {
+    const Vec3i centre = source.point();
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      mesh.vertices.emplace_back((centre + source.point() / 8).cast<double>());
+    }
+    const auto first = static_cast<std::uint32_t>(3 * i);
+    mesh.faces.push_back({Kind::tri, {first, first + 1, first + 2, 0}});
+  }
+  return mesh;
+}
+
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+Pairs sweep(const Mesh& a, const Mesh& b) {
+  Pairs pairs;
+  sweep_box_pairs(a, b, [&](CandidatePair p) { pairs.emplace_back(p.face_a, p.face_b); });
+  return pairs;
+}
+
+Pairs brute_force(const Mesh& a, const Mesh& b) {
+  Pairs pairs;
+  for (std::uint32_t i = 0; i < a.faces.size(); ++i) {
+    for (std::uint32_t j = 0; j < b.faces.size(); ++j) {
+      const cchip::Primitive p = a.primitive(i);
+      const cchip::Primitive q = b.primitive(j);
+      bool apart = false;
+      for (int d = 0; d < 3; ++d) {
+        const auto [p_least, p_greatest] = std::minmax({p.v[0][d], p.v[1][d], p.v[2][d]});
+        const auto [q_least, q_greatest] = std::minmax({q.v[0][d], q.v[1][d], q.v[2][d]});
+        apart = apart || p_greatest < q_least || q_greatest < p_least;
+      }
+      if (!apart) pairs.emplace_back(i, j);
+    }
+  }
+  return pairs;
+}
+
+}  // namespace
+
+TEST_CASE("mesh: torus is closed, faces outwards, has one hole", "[ref][mesh]") {
+  const Mesh torus = cchip::make_torus(3, 1, 48, 24);
+  CHECK(torus.faces.size() == 2 * 48 * 24);
+  CHECK(is_closed_and_oriented(torus));
+  CHECK(euler_characteristic(torus) == 0);
+  CHECK(volume(torus) == Approx(2 * pi * pi * 3).epsilon(0.03));
+  for (const Vec3d& p : torus.vertices) {
+    const double from_ring = std::hypot(std::hypot(p.x(), p.y()) - 3, p.z());
+    REQUIRE(from_ring == Approx(1));
+  }
+}
+
+TEST_CASE("mesh: gear is closed, faces outwards", "[ref][mesh]") {
+  const Mesh disc = cchip::make_gear(2, 2.5, 0, 1, 12, 3);
+  CHECK(is_closed_and_oriented(disc));
+  CHECK(euler_characteristic(disc) == 2);
+  const Mesh ring = cchip::make_gear(2, 2.5, 0.8, 1, 24, 6);
+  CHECK(ring.faces.size() >= 2000);
+  CHECK(is_closed_and_oriented(ring));
+  CHECK(euler_characteristic(ring) == 0);
+  for (const Mesh* gear : {&disc, &ring}) {
+    CHECK(volume(*gear) > 0.7 * pi * (2 * 2 - 0.8 * 0.8));
+    CHECK(volume(*gear) < pi * 2.5 * 2.5);
+    double tip = 0;
+    for (const Vec3d& p : gear->vertices) {
+      tip = std::max(tip, std::hypot(p.x(), p.y()));
+      REQUIRE(std::abs(p.z()) <= 0.5);
+    }
+    CHECK(tip == Approx(2.5));
+  }
+}
+
+TEST_CASE("mesh: shapes refuse impossible sizes", "[ref][mesh]") {
+  CHECK_THROWS_AS(cchip::make_torus(1, 1, 8, 8), std::invalid_argument);
+  CHECK_THROWS_AS(cchip::make_torus(2, 0, 8, 8), std::invalid_argument);
+  CHECK_THROWS_AS(cchip::make_torus(2, 1, 2, 8), std::invalid_argument);
+  CHECK_THROWS_AS(cchip::make_gear(2, 2, 1, 1, 8, 1), std::invalid_argument);
+  CHECK_THROWS_AS(cchip::make_gear(2, 3, 2, 1, 8, 1), std::invalid_argument);
+  CHECK_THROWS_AS(cchip::make_gear(2, 3, 1, 0, 8, 1), std::invalid_argument);
+  CHECK_THROWS_AS(cchip::make_gear(2, 3, 1, 1, 2, 1), std::invalid_argument);
+  CHECK_THROWS_AS(cchip::make_gear(2, 3, 1, 1, 8, 0), std::invalid_argument);
+}
+
+TEST_CASE("mesh: a pose moves every vertex and nothing else", "[ref][mesh]") {
+  const Mesh torus = cchip::make_torus(3, 1, 6, 5);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translate(Vec3d(1, 2, 3)).rotate(Eigen::AngleAxisd(pi / 2, Vec3d::UnitZ()));
+  const Mesh moved = transformed(torus, pose);
+  REQUIRE(moved.vertices.size() == torus.vertices.size());
+  for (std::size_t i = 0; i < moved.vertices.size(); ++i) {
+    const Vec3d& p = torus.vertices[i];
+    REQUIRE((moved.vertices[i] - Vec3d(1 - p.y(), 2 + p.x(), 3 + p.z())).norm() < 1e-12);
+  }
+  REQUIRE(moved.faces.size() == torus.faces.size());
+  for (std::size_t i = 0; i < moved.faces.size(); ++i) CHECK(moved.faces[i].vertex == torus.faces[i].vertex);
+}
+
+TEST_CASE("mesh: sweep finds what brute force finds, each pair once", "[ref][mesh]") {
+  for (const int range : {8, 40, 1000}) {
+    PairSource source(-range, range, static_cast<std::uint64_t>(range));
+    for (int i = 0; i < 10; ++i) {
+      const Mesh a = soup(source, 150);
+      const Mesh b = soup(source, 20 * i);
+      const Pairs in_order = sweep(a, b);
+      CHECK(in_order == sweep(a, b));
+      Pairs found = in_order;
+      std::sort(found.begin(), found.end());
+      CHECK(found == brute_force(a, b));
+    }
+  }
+}
+
+TEST_CASE("mesh: sweep takes boxes as closed", "[ref][mesh]") {
+  Mesh a;
+  a.vertices = {{0, 0, 0}, {1, 0, 1}, {0, 1, 0}};
+  a.faces = {{Kind::tri, {0, 1, 2, 0}}};
+  Mesh b = a;
+  for (Vec3d& p : b.vertices) p += Vec3d(1, 1, 1);
+  CHECK(sweep(a, b) == Pairs{{0, 0}});
+  for (Vec3d& p : b.vertices) p.x() += 1e-9;
+  CHECK(sweep(a, b).empty());
+}
