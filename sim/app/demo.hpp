@@ -42,8 +42,9 @@ struct DemoCounts {
   /// Pairs that are coplanar or degenerate on the grid and that the hardware leaves open with "hit":
   /// only their final answer is checked.
   std::uint64_t special = 0;
-  std::uint64_t beats = 0;   ///< axes of all pairs
-  std::uint64_t clocks = 0;  ///< clocks that this pose took
+  std::uint64_t beats = 0;    ///< axes of all pairs
+  std::uint64_t clocks = 0;   ///< clocks that this pose took
+  double engine_seconds = 0;  ///< time that the engine needed, without the checks
 };
 
 /// All candidate pairs of the two meshes through the engine, every answer compared with the Eigen

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What the tests of the command line share.
+#ifndef CCHIP_TESTS_SYSTEM_SUPPORT_HPP
+#define CCHIP_TESTS_SYSTEM_SUPPORT_HPP
+
+#include <unistd.h>
+
+#include <cchip/engine.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cli.hpp"
+
+namespace cchip::test {
+
+/// A folder that goes away with the object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "cchip_test_XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder: check TMPDIR");
+    path_ = name;
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::string path(const std::string& name) const { return (path_ / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name), std::ios::binary) << text;
+    return path(name);
+  }
+  std::string read(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(path(name), std::ios::binary).rdbuf();
+    return text.str();
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct Outcome {
+  int code = -1;
+  std::string out;
+  std::string err;
+};
+
+/// The command line in this process.
+inline Outcome run_cchip(std::vector<std::string> arguments, const std::string& input = "", bool terminal = false) {
+  std::istringstream in(input);
+  std::ostringstream out;
+  std::ostringstream err;
+  const int code = app::run_cli(std::move(arguments), {in, out, err, terminal});
+  return {code, out.str(), err.str()};
+}
+
+inline std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> result;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) result.push_back(line);
+  return result;
+}
+
+inline std::string last_line(const std::string& text) {
+  const std::vector<std::string> all = lines(text);
+  return all.empty() ? "" : all.back();
+}
+
+/// Value of "name=value" in a summary line.
+inline std::uint64_t count(const std::string& summary, const std::string& name) {
+  const auto at = (" " + summary).find(" " + name + "=");
+  if (at == std::string::npos) throw std::runtime_error("no " + name + " in: " + summary);
+  return std::stoull(summary.substr(at + name.size() + 1));
+}
+
+inline const std::string header = "a0x,a0y,a0z,a1x,a1y,a1z,a2x,a2y,a2z,b0x,b0y,b0z,b1x,b1y,b1z,b2x,b2y,b2z";
+/// Triangle A of the hand-made pairs.
+inline const std::string tri_a = "0,0,0,4,0,0,0,4,0";
+/// Partners of tri_a, the answers worked out by hand.
+inline const std::string b_through = "1,1,-1,1,1,1,2,2,1";       // its edge 0 passes (1,1,0): hit
+inline const std::string b_above = "0,0,1,4,0,1,0,4,2";          // z >= 1: no, separated by A's normal
+inline const std::string b_touching = "1,1,0,1,1,3,2,1,3";       // vertex 0 lies in A: hit
+inline const std::string b_just_above = "1,1,1e-9,1,1,3,2,1,3";  // the same, lifted: no, but a hit on the grid
+inline const std::string b_coplanar = "1,1,0,2,1,0,1,2,0";       // inside A, in its plane: hit
+
+/// Engine that answers what the test tells it.
+class ScriptedEngine : public PairEngine {
+ public:
+  using Answer = EngineAnswer (*)(const GridPair&);
+  explicit ScriptedEngine(Answer answer) : answer_(answer) {}
+  const char* name() const override { return "scripted"; }
+  int coord_w() const override { return 16; }
+  std::vector<EngineAnswer> run(const std::vector<GridPair>& pairs, PairMode) override {
+    batches.push_back(pairs.size());
+    std::vector<EngineAnswer> answers;
+    for (const GridPair& pair : pairs) answers.push_back(answer_(pair));
+    return answers;
+  }
+  std::vector<std::size_t> batches;
+
+ private:
+  Answer answer_;
+};
+
+}  // namespace cchip::test
+
+#endif

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// Wrong input and wrong command lines: one line with place and remedy, nothing on stdout, exit code 2.
+#include <catch2/catch.hpp>
+
+#include "support.hpp"
+#include "usage_error.hpp"
+
+using namespace cchip::test;
+using cchip::app::exit_usage;
+
+namespace {
+
+void check_error(std::vector<std::string> arguments, const std::string& expected, const std::string& input = "") {
+  CAPTURE(arguments);
+  const Outcome outcome = run_cchip(std::move(arguments), input);
+  CHECK(outcome.err == expected + "\n");
+  CHECK(outcome.out.empty());
+  CHECK(outcome.code == exit_usage);
+}
+
+/// A good row 2, then row 3 with one field replaced.
+std::string with_field(std::size_t index, const std::string& value) {
+  std::vector<std::string> fields;
+  std::istringstream in(tri_a + "," + b_through);
+  for (std::string field; std::getline(in, field, ',');) fields.push_back(field);
+  fields.at(index) = value;
+  std::string row = fields[0];
+  for (std::size_t i = 1; i < fields.size(); ++i) row += "," + fields[i];
+  return header + "\n" + tri_a + "," + b_through + "\n" + row + "\n";
+}
+
+}  // namespace
+
+TEST_CASE("errors: files that are not there", "[system][errors]") {
+  const TemporaryFolder folder;
+  const std::string missing = folder.path("missing.csv");
+  check_error(
+      {"pairs", missing},
+      "cchip: " + missing + ": the file cannot be read (No such file or directory); check its name and permissions");
+  const std::string directory = folder.path(".");
+  check_error({"pairs", directory},
+              "cchip: " + directory + ": the file cannot be read (is a directory); check its name and permissions");
+}
+
+TEST_CASE("errors: header", "[system][errors]") {
+  const TemporaryFolder folder;
+  const std::string remedy = "; the first row must name the columns a0x,a0y,a0z to a2z and b0x,b0y,b0z to b2z";
+  const std::string empty = folder.write("empty.csv", "");
+  check_error({"pairs", empty},
+              "cchip: " + empty + ":1: the file is empty; write a first row with the column names a0x to b2z");
+  const std::string no_b2z = folder.write("f.csv", header.substr(0, header.size() - 4) + "\n");
+  check_error({"pairs", no_b2z}, "cchip: " + no_b2z + ":1: column b2z is missing" + remedy);
+  check_error({"pairs", "-"}, "cchip: -:1: column a0x is missing" + remedy, tri_a + "," + b_through + "\n");
+  check_error({"pairs", "-"}, "cchip: -:1: column a1y is there twice; rename or remove one of them", header + ",a1y\n");
+  check_error({"pairs", "-", "--expect", "touches"},
+              "cchip: -:1: column 'touches' of --expect is missing; name a column of the file that holds 0 or 1",
+              header + "\n");
+}
+
+TEST_CASE("errors: coordinates", "[system][errors]") {
+  const TemporaryFolder folder;
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"nan", "'nan' is not finite; write a finite decimal number"},
+      {"NaN", "'NaN' is not finite; write a finite decimal number"},
+      {"inf", "'inf' is not finite; write a finite decimal number"},
+      {"-Infinity", "'-Infinity' is not finite; write a finite decimal number"},
+      {"left", "'left' is not a number; write a finite decimal number"},
+      {"1.5m", "'1.5m' is not a number; write a finite decimal number"},
+      {"", "the field is empty; write a finite decimal number"},
+      {"1e999", "'1e999' is too large for a double; scale the coordinates down"}};
+  for (const auto& [text, message] : cases) {
+    for (const std::string engine : {"model", "exact"}) {
+      const std::string file = folder.write("f.csv", with_field(10, text));
+      check_error({"pairs", file, "--engine", engine}, "cchip: " + file + ":3: column b0y: " + message);
+    }
+  }
+}
+
+TEST_CASE("errors: rows", "[system][errors]") {
+  const std::string row = tri_a + "," + b_through;
+  check_error({"pairs", "-"},
+              "cchip: -:3: the row has 17 fields, but the header names 18 columns; write one field per column",
+              header + "\n" + row + "\n" + row.substr(0, row.size() - 2) + "\n");
+  check_error({"pairs", "-", "--expect", "e"}, "cchip: -:2: column e: 'yes' is not an answer; write 0 or 1",
+              header + ",e\n" + row + ",yes\n");
+  check_error({"pairs", "-"}, "cchip: -:2: column kind_a: 'hexagon' is not a known kind; write tri or quad",
+              header + ",kind_a\n" + row + ",hexagon\n");
+  check_error({"pairs", "-"}, "cchip: -:2: a quoted field is not closed; end it with a double quote",
+              header + ",note\n" + row + ",\"open\n");
+}
+
+TEST_CASE("errors: quads", "[system][errors]") {
+  const std::string quads = header + ",kind_b,b3x,b3y,b3z\n" + tri_a + "," + b_through + ",tri,,,\n" + tri_a + "," +
+                            b_above + ",quad,4,4,2\n";
+  for (const std::string engine : {"rtl", "model"}) {
+    check_error({"pairs", "-", "--engine", engine},
+                "cchip: -:3: kind_b is quad, but engine " + engine +
+                    " answers triangles only; use --engine eigen or exact, or split the quad into two triangles",
+                quads);
+  }
+  check_error({"pairs", "-", "--engine", "exact"},
+              "cchip: -:2: kind_a is quad, but column a3x is missing; add the columns a3x, a3y and a3z",
+              header + ",kind_a\n" + tri_a + "," + b_through + ",quad\n");
+}
+
+TEST_CASE("errors: magnitudes that no grid holds", "[system][errors]") {
+  const std::string far = "1e10,1e-12,0,1e10,2e-13,1e-12,1e10,0,3e-13";
+  const Outcome outcome =
+      run_cchip({"pairs", "-", "--engine", "model"}, header + "\n" + tri_a + "," + b_through + "\n" + far + "," +
+                                                         "1e10,1e-12,0,1e10,2e-13,1e-12,10000000000.000002,0,3e-13\n");
+  CHECK(outcome.code == exit_usage);
+  CHECK(outcome.out.empty());
+  CHECK(lines(outcome.err).size() == 1);
+  CHECK_THAT(outcome.err, Catch::Matchers::StartsWith("cchip: -:3: the pair is too small for its distance"));
+  CHECK_THAT(outcome.err, Catch::Matchers::Contains("move both primitives nearer to the origin"));
+}
+
+TEST_CASE("errors: meshes", "[system][errors]") {
+  const std::string models = CCHIP_TEST_MODELS;
+  const TemporaryFolder folder;
+  const std::string good = models + "/OFF/Cube.off";
+  const std::string empty = folder.write("empty.stl", "");
+  const std::string no_faces = folder.write("points.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n");
+  for (const std::string& bad : {folder.path("missing.obj"), empty, no_faces, models + "/invalid/empty.obj",
+                                 models + "/invalid/empty.off", models + "/OBJ/point_cloud.obj"}) {
+    for (const auto& files : {std::vector<std::string>{bad, good}, std::vector<std::string>{good, bad}}) {
+      CAPTURE(bad);
+      const Outcome outcome = run_cchip({"meshpairs", files[0], files[1], "--engine", "exact"});
+      CHECK(outcome.code == exit_usage);
+      CHECK(outcome.out.empty());
+      REQUIRE(lines(outcome.err).size() == 1);
+      CHECK(outcome.err.rfind("cchip: " + bad + ": ", 0) == 0);  // then what is wrong, and what to do
+    }
+  }
+}
+
+TEST_CASE("errors: command line", "[system][errors]") {
+  const std::string help = "; see cchip --help";
+  check_error({}, "cchip: A subcommand is required" + help);
+  check_error({"pairs"}, "cchip: FILE is required" + help);
+  check_error({"pairs", "f", "--engine", "abacus"}, "cchip: --engine: abacus not in {rtl,model,eigen,exact}" + help);
+  check_error({"pairs", "f", "--format", "xml"}, "cchip: --format: xml not in {table,csv,jsonl}" + help);
+  CHECK(run_cchip({"pairs", "f", "--nonsense"}).code == exit_usage);
+  CHECK(run_cchip({"nonsense"}).code == exit_usage);
+
+  const std::string input = header + "\n" + tri_a + "," + b_through + "\n";
+  for (const std::string engine : {"rtl", "model"}) {
+    check_error(
+        {"pairs", "-", "--engine", engine, "--program", "directed"},
+        "cchip: --program directed: not available for engine " + engine + " in this version; use --program exhaustive",
+        input);
+  }
+  for (const std::string engine : {"model", "eigen", "exact"}) {
+    check_error({"pairs", "-", "--engine", engine, "--trace", "x.fst"},
+                "cchip: --trace: engine " + engine + " has no waveform; use --engine rtl", input);
+  }
+  check_error({"pairs", "-", "--trace", "/no/such/folder/x.fst"},
+              "cchip: /no/such/folder/x.fst: the waveform cannot be written; check folder and permissions", input);
+  const std::string cube = std::string(CCHIP_TEST_MODELS) + "/OFF/Cube.off";
+  check_error({"meshpairs", cube, cube, "--pose", "1,2"},
+              "cchip: --pose: got 2 numbers; write tx,ty,tz or tx,ty,tz,rx,ry,rz");
+  check_error({"meshpairs", cube, cube, "--pose", "1,2,up"},
+              "cchip: --pose: number 3: 'up' is not a number; write a finite decimal number");
+  check_error(
+      {"meshpairs", cube, cube, "--pose-matrix", "2,0,0,0,0,1,0,0,0,0,1,0"},
+      "cchip: --pose-matrix: the left 3x3 part is not a rotation; write an orthonormal matrix with determinant 1 "
+      "(to 1e-9)");
+}

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+#include <cchip/exact_oracle.hpp>
+#include <cchip/local_grid.hpp>
+
+#include "csv_reader.hpp"
+#include "engines.hpp"
+#include "mesh_source.hpp"
+#include "pose.hpp"
+#include "support.hpp"
+#include "usage_error.hpp"
+
+using namespace cchip;
+using namespace cchip::app;
+using namespace cchip::test;
+
+namespace {
+
+std::string model(const std::string& path) { return std::string(CCHIP_TEST_MODELS) + "/" + path; }
+
+/// Summary of meshpairs.
+std::string summary_of(const std::string& a, const std::string& b, std::vector<std::string> options) {
+  std::vector<std::string> arguments = {"meshpairs", a, b, "--format", "csv"};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  const Outcome outcome = run_cchip(arguments);
+  CAPTURE(a, b, outcome.err);
+  REQUIRE(outcome.code == exit_ok);
+  return last_line(outcome.err);
+}
+
+bool boxes_overlap(const Primitive& p, const Primitive& q) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto low = [axis](const Primitive& t) { return std::min({t.v[0][axis], t.v[1][axis], t.v[2][axis]}); };
+    const auto high = [axis](const Primitive& t) { return std::max({t.v[0][axis], t.v[1][axis], t.v[2][axis]}); };
+    if (low(p) > high(q) || low(q) > high(p)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("meshpairs: rows are all pairs with overlapping boxes, answers exact", "[system][meshpairs]") {
+  const std::string file_a = model("OBJ/box.obj");
+  const std::string file_b = model("STL/Spider_ascii.stl");
+  const std::string pose = "0.3,0.1,0.2,10,20,30";
+  const Outcome outcome =
+      run_cchip({"meshpairs", file_a, file_b, "--pose", pose, "--engine", "model", "--format", "csv"});
+  REQUIRE(outcome.code == exit_ok);
+
+  const Mesh a = load_mesh(file_a);
+  const Mesh b = transformed(load_mesh(file_b), parse_pose(pose));
+  std::vector<std::string> expected;
+  for (std::size_t i = 0; i < a.faces.size(); ++i) {
+    for (std::size_t j = 0; j < b.faces.size(); ++j) {
+      if (!boxes_overlap(a.primitive(i), b.primitive(j))) continue;
+      const bool hit = exact_intersects(a.primitive(i), b.primitive(j));
+      expected.push_back(std::to_string(i) + "," + std::to_string(j) + "," + (hit ? "1" : "0"));
+    }
+  }
+  REQUIRE_FALSE(expected.empty());
+
+  std::istringstream in(outcome.out);
+  CsvReader reader(in, "output");
+  CsvRow row;
+  REQUIRE(reader.next(row));
+  CHECK(row.fields.at(0) == "face_a");
+  CHECK(row.fields.at(1) == "face_b");
+  CHECK(row.fields.at(2) == "hit");
+  std::vector<std::string> got;
+  while (reader.next(row)) got.push_back(row.fields.at(0) + "," + row.fields.at(1) + "," + row.fields.at(2));
+  std::sort(got.begin(), got.end());
+  std::sort(expected.begin(), expected.end());
+  CHECK(got == expected);
+}
+
+TEST_CASE("meshpairs: the engines agree on the grid of real meshes", "[system][meshpairs]") {
+  struct Case {
+    std::string a;
+    std::string b;
+    std::string pose;
+  };
+  const Case c = GENERATE(values<Case>({{"OFF/Wuson.off", "OBJ/WusonOBJ.obj", "0.5,0.25,-0.125,0,0,20"},
+                                        {"OBJ/spider.obj", "STL/Spider_binary.stl", "3,5,7,0,90,0"},
+                                        {"PLY/cube.ply", "OFF/Cube.off", "0.5,0.5,0.5"}}));
+  CAPTURE(c.a, c.b, c.pose);
+  std::vector<GridPair> pairs;
+  for_each_candidate(load_mesh_file(model(c.a)), transformed(load_mesh_file(model(c.b)), parse_pose(c.pose)), 3000,
+                     [&](PairJob job) { pairs.push_back(quantise(job.a, job.b, defs::coord_w_default).pair); });
+  REQUIRE_FALSE(pairs.empty());
+  const auto run = [&](EngineKind kind) {
+    EngineOptions options;
+    options.kind = kind;
+    return make_engine(options)->run(pairs, PairMode::exhaustive);
+  };
+  const auto rtl = run(EngineKind::rtl);
+  const auto clock_model = run(EngineKind::model);
+  const auto eigen = run(EngineKind::eigen);
+  const auto exact = run(EngineKind::exact);
+  std::size_t hits = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    CAPTURE(i);
+    REQUIRE(rtl[i].grid == clock_model[i].grid);
+    REQUIRE(rtl[i].definite == clock_model[i].definite);
+    REQUIRE(rtl[i].hardware->axis == clock_model[i].hardware->axis);
+    REQUIRE(eigen[i].grid == exact[i].grid);
+    const bool special = is_coplanar(pairs[i]) || is_degenerate(pairs[i].a) || is_degenerate(pairs[i].b);
+    if (special && rtl[i].grid) {
+      REQUIRE_FALSE(rtl[i].definite);
+    } else {
+      REQUIRE(rtl[i].grid == exact[i].grid);
+    }
+    hits += exact[i].grid;
+  }
+  CHECK(hits > 0);
+  CHECK(hits < pairs.size());
+}
+
+TEST_CASE("meshpairs: one model in four file formats", "[system][meshpairs]") {
+  const std::vector<std::string> wuson = {model("OBJ/WusonOBJ.obj"), model("STL/Wuson.stl"), model("PLY/Wuson.ply"),
+                                          model("OFF/Wuson.off")};
+  const std::string first = summary_of(wuson[0], wuson[0], {"--engine", "exact", "--pose", "0.1,0.05,-0.02,0,0,20"});
+  CHECK(count(first, "hits") > 0);
+  for (const std::string& a : wuson) {
+    for (const std::string& b : {wuson[1], wuson[3]}) {
+      CAPTURE(a, b);
+      CHECK(summary_of(a, b, {"--engine", "exact", "--pose", "0.1,0.05,-0.02,0,0,20"}) == first);
+    }
+  }
+}
+
+TEST_CASE("meshpairs: pose as numbers and as matrix", "[system][meshpairs]") {
+  const std::string cube = model("OFF/Cube.off");
+  const auto by_pose = summary_of(cube, cube, {"--engine", "exact", "--pose", "0.25,0,0.5,0,0,90"});
+  const auto by_matrix =
+      summary_of(cube, cube, {"--engine", "exact", "--pose-matrix", "0,-1,0,0.25,1,0,0,0,0,0,1,0.5"});
+  CHECK(by_pose == by_matrix);
+  CHECK(count(by_pose, "hits") > 0);
+  CHECK(by_pose != summary_of(cube, cube, {"--engine", "exact"}));
+}
+
+TEST_CASE("meshpairs: no candidates, limited candidates", "[system][meshpairs]") {
+  const std::string cube = model("OFF/Cube.off");
+  CHECK(summary_of(cube, cube, {"--engine", "model", "--pose", "1000,0,0"}) ==
+        "pairs=0 hits=0 mismatches=0 indefinite=0 beats_mean=0.00 clocks=0");
+  CHECK(count(summary_of(cube, cube, {"--engine", "exact"}), "pairs") > 7);
+  CHECK(count(summary_of(cube, cube, {"--engine", "exact", "--limit", "7"}), "pairs") == 7);
+}

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+#include <cchip/exact_oracle.hpp>
+#include <sstream>
+
+#include "pair_runner.hpp"
+#include "support.hpp"
+
+using namespace cchip;
+using namespace cchip::app;
+using cchip::test::lines;
+using cchip::test::ScriptedEngine;
+
+namespace {
+
+EngineAnswer definite_hit(const GridPair&) { return {true, true, std::nullopt}; }
+EngineAnswer open_hit(const GridPair&) { return {true, false, std::nullopt}; }
+EngineAnswer hardware_no(const GridPair&) {
+  HardwareAnswer hardware;
+  hardware.definite = true;
+  hardware.axis = {AxisClass::cross, 1, 2};
+  hardware.beats = 11;
+  hardware.clock_in = 5;
+  hardware.clock_out = 70;
+  return {false, true, hardware};
+}
+
+/// Two triangles that are `gap` apart along z.
+PairJob parallel_job(std::uint64_t row, double gap) {
+  PairJob job;
+  job.a.v = {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d::Zero()};
+  job.b.v = {Vec3d(0, 0, gap), Vec3d(1, 0, 1 + gap), Vec3d(0, 1, 1 + gap), Vec3d::Zero()};
+  job.row = row;
+  return job;
+}
+
+struct Run {
+  explicit Run(ScriptedEngine::Answer answer, RunOptions options = {}, const std::vector<std::string>& names = {})
+      : engine(answer),
+        runner(
+            engine, options, names, [](const PairJob& job) { return "f.csv:" + std::to_string(job.row); }, out, err) {}
+  ScriptedEngine engine;
+  std::ostringstream out;
+  std::ostringstream err;
+  PairRunner runner;
+};
+
+}  // namespace
+
+TEST_CASE("pair_runner: batches bound what is kept, order stays", "[system][pair_runner]") {
+  RunOptions options;
+  options.format = Format::csv;
+  options.batch = 4;
+  Run run(definite_hit, options, {"id"});
+  for (std::uint64_t i = 1; i <= 10; ++i) {
+    PairJob job = parallel_job(i, 0);
+    job.passed = {std::to_string(i)};
+    run.runner.add(std::move(job));
+  }
+  CHECK(run.engine.batches == std::vector<std::size_t>{4, 4});
+  const Summary summary = run.runner.finish();
+  CHECK(run.engine.batches == std::vector<std::size_t>{4, 4, 2});
+  CHECK(summary.pairs == 10);
+  CHECK(summary.hits == 10);
+  const auto rows = lines(run.out.str());
+  REQUIRE(rows.size() == 11);
+  for (std::size_t i = 1; i <= 10; ++i) CHECK(rows[i] == std::to_string(i) + ",1,,,,,,,");
+}
+
+TEST_CASE("pair_runner: a definite answer stands, an open one is resolved exactly", "[system][pair_runner]") {
+  Run definite(definite_hit);
+  definite.runner.add(parallel_job(2, 1e-12));  // apart, but the engine's word counts
+  CHECK(definite.runner.finish().hits == 1);
+  Run open(open_hit);
+  open.runner.add(parallel_job(2, 1e-12));
+  open.runner.add(parallel_job(3, 0));
+  const Summary summary = open.runner.finish();
+  CHECK(summary.hits == 1);
+  CHECK(summary.indefinite == 2);
+}
+
+TEST_CASE("pair_runner: what the hardware did, in every format", "[system][pair_runner]") {
+  RunOptions options;
+  options.format = Format::csv;
+  Run csv(hardware_no, options);
+  csv.runner.add(parallel_job(2, 1));
+  const Summary summary = csv.runner.finish();
+  CHECK(csv.out.str() ==
+        "hit,hw_hit,hw_grid,hw_definite,axis,beats,clock_in,clock_out\n"
+        "0,0,0,1,edge 1 of A x edge 2 of B,11,5,70\n");
+  CHECK(to_line(summary) == "pairs=1 hits=0 mismatches=0 indefinite=0 beats_mean=11.00 clocks=0");
+
+  options.format = Format::jsonl;
+  Run jsonl(hardware_no, options);
+  jsonl.runner.add(parallel_job(2, 1));
+  jsonl.runner.finish();
+  CHECK(jsonl.out.str() ==
+        "{\"hit\":0,\"hw_hit\":0,\"hw_grid\":0,\"hw_definite\":1,\"axis\":\"edge 1 of A x edge 2 of B\",\"beats\":11,"
+        "\"clock_in\":5,\"clock_out\":70}\n");
+
+  Run table(hardware_no);
+  table.runner.add(parallel_job(2, 1));
+  table.runner.finish();
+  CHECK(table.out.str() ==
+        "hit  hw_hit  hw_grid  hw_definite  axis                       beats  clock_in  clock_out\n"
+        "0    0       0        1            edge 1 of A x edge 2 of B  11     5         70\n");
+}
+
+TEST_CASE("pair_runner: columns with our names are renamed, not overwritten", "[system][pair_runner]") {
+  RunOptions options;
+  options.format = Format::csv;
+  Run run(definite_hit, options, {"hit", "note", "note", "input_hit"});
+  run.runner.finish();
+  CHECK(lines(run.out.str()).at(0) ==
+        "input_input_hit,input_note,note,input_hit,hit,hw_hit,hw_grid,hw_definite,axis,beats,clock_in,clock_out");
+}
+
+TEST_CASE("pair_runner: expected answers", "[system][pair_runner]") {
+  const auto add_both = [](Run& run) {
+    PairJob right = parallel_job(7, 0);
+    right.expected = true;
+    run.runner.add(std::move(right));
+    PairJob wrong = parallel_job(8, 0);
+    wrong.expected = false;
+    run.runner.add(std::move(wrong));
+    return run.runner.finish();
+  };
+  RunOptions options;
+  options.compare = true;
+  Run table(definite_hit, options);
+  CHECK(add_both(table).mismatches == 1);
+  const auto rows = lines(table.out.str());
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[0].substr(0, 18) == "row  expected  hit");
+  CHECK(rows[1] == "8    0         1");
+  CHECK(table.err.str().empty());
+
+  options.format = Format::csv;
+  Run csv(definite_hit, options);
+  CHECK(add_both(csv).mismatches == 1);
+  CHECK(lines(csv.out.str()).size() == 3);
+  CHECK(csv.err.str() == "cchip: f.csv:8: expected hit 0, got 1\n");
+}
+
+TEST_CASE("pair_runner: the table shows control characters harmlessly", "[system][pair_runner]") {
+  Run run(definite_hit, {}, {"note"});
+  PairJob job = parallel_job(2, 0);
+  job.passed = {"two\nlines\x1b[31m"};
+  run.runner.add(std::move(job));
+  run.runner.finish();
+  CHECK(lines(run.out.str()).at(1) == "two\\x0alines\\x1b[31m  1");
+}

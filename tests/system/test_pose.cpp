@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+#include <cchip/sim/seed.hpp>
+#include <cmath>
+#include <random>
+
+#include "pose.hpp"
+#include "support.hpp"
+#include "usage_error.hpp"
+
+using namespace cchip::app;
+using Eigen::Vector3d;
+
+TEST_CASE("pose: translation, quarter turns exactly", "[system][pose]") {
+  CHECK(parse_pose("1,2.5,-3") * Vector3d(1, 1, 1) == Vector3d(2, 3.5, -2));
+  CHECK(parse_pose("0,0,0,90,0,0") * Vector3d(1, 2, 3) == Vector3d(1, -3, 2));
+  CHECK(parse_pose("0,0,0,0,90,0") * Vector3d(1, 2, 3) == Vector3d(3, 2, -1));
+  CHECK(parse_pose("0,0,0,0,0,90") * Vector3d(1, 2, 3) == Vector3d(-2, 1, 3));
+  CHECK(parse_pose("0,0,0,0,0,-90") * Vector3d(1, 2, 3) == Vector3d(2, -1, 3));
+  CHECK(parse_pose("0,0,0,0,0,180") * Vector3d(1, 2, 3) == Vector3d(-1, -2, 3));
+  CHECK(parse_pose("0,0,0,0,0,-630") * Vector3d(1, 2, 3) == Vector3d(-2, 1, 3));
+  // x first, then y, then z, then the translation: (1,2,3) -> (1,-3,2) -> (2,-3,-1) -> (3,2,-1) -> (13,2,-1)
+  CHECK(parse_pose("10,0,0,90,90,90") * Vector3d(1, 2, 3) == Vector3d(13, 2, -1));
+}
+
+TEST_CASE("pose: any angle is a rotation about the axis by that angle", "[system][pose]") {
+  std::mt19937_64 random(cchip::sim::seed_from_environment());
+  std::uniform_real_distribution<double> degrees(-720, 720);
+  for (int i = 0; i < 1000; ++i) {
+    const Vector3d r(degrees(random), degrees(random), degrees(random));
+    const Vector3d radians = r * (std::acos(-1.0) / 180);
+    const Eigen::Matrix3d expected =
+        (Eigen::AngleAxisd(radians.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(radians.y(), Vector3d::UnitY()) *
+         Eigen::AngleAxisd(radians.x(), Vector3d::UnitX()))
+            .toRotationMatrix();
+    REQUIRE((make_pose({0, 0, 0}, r).linear() - expected).cwiseAbs().maxCoeff() < 1e-12);
+  }
+}
+
+TEST_CASE("pose: matrix row by row, rigid only", "[system][pose]") {
+  CHECK(parse_pose_matrix("0,-1,0,10, 1,0,0,20, 0,0,1,30") * Vector3d(1, 2, 3) == Vector3d(8, 21, 33));
+  CHECK_NOTHROW(parse_pose_matrix("1,0,0,0,0,1,0,0,0,0,1.0000000001,0"));
+  for (const char* text : {"1,0,0,0,0,1,0,0,0,0,1.00000001,0",  // scaled
+                           "1,0,0,0,0,1,0,0,0,0,-1,0",          // mirrored
+                           "1,0.1,0,0,0,1,0,0,0,0,1,0",         // sheared
+                           "1,0,0,0,0,1,0,0,0,0,1", "1,0,0,0,0,1,0,0,0,0,1,0,0", "1,0,0,0,0,x,0,0,0,0,1,0", ""}) {
+    CAPTURE(text);
+    CHECK_THROWS_AS(parse_pose_matrix(text), UsageError);
+  }
+  for (const char* text : {"", "1", "1,2", "1,2,3,4", "1,2,3,4,5", "1,2,3,4,5,6,7", "1,2,nan", "1,,3"}) {
+    CAPTURE(text);
+    CHECK_THROWS_AS(parse_pose(text), UsageError);
+  }
+}
