@@ -22,6 +22,8 @@ function(cchip_model_library library)
   target_compile_options(${library} PRIVATE -w -O2)
   target_compile_definitions(${library} INTERFACE VM_SC=0 VM_TRACE=1 VM_TRACE_FST=1 VM_TRACE_VCD=0 VM_COVERAGE=0)
   target_link_libraries(${library} PUBLIC Threads::Threads)
+  # one translation unit per module: the common headers cost more than the code
+  set_target_properties(${library} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
 function(cchip_verilate library top)
@@ -35,6 +37,9 @@ function(cchip_verilate library top)
   list(TRANSFORM ARG_PARAMETERS PREPEND -G)
   verilate(${library} TRACE_FST PREFIX ${ARG_PREFIX} TOP_MODULE ${top}
     VERILATOR_ARGS ${CCHIP_VERILATOR_ARGS} ${ARG_PARAMETERS} SOURCES ${ARG_SOURCES})
+  get_target_property(sources ${library} SOURCES)
+  list(FILTER sources INCLUDE REGEX "/${ARG_PREFIX}\\.dir/.*\\.cpp$")
+  set_source_files_properties(${sources} PROPERTIES UNITY_GROUP ${ARG_PREFIX})
   get_target_property(dirs ${library} INTERFACE_INCLUDE_DIRECTORIES)
   set_target_properties(${library} PROPERTIES INTERFACE_SYSTEM_INCLUDE_DIRECTORIES "${dirs}")
 endfunction()

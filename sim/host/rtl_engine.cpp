@@ -27,10 +27,12 @@ sim::SimulationOptions simulation_options(const RtlEngineOptions& options) {
 
 void check(const GridPrimitive& primitive, std::size_t index) {
   const std::string pair = "pair " + std::to_string(index);
-  if (primitive.kind != Kind::tri) throw std::invalid_argument(pair + ": engine rtl takes triangles only; use eigen or exact");
+  if (primitive.kind != Kind::tri)
+    throw std::invalid_argument(pair + ": engine rtl takes triangles only; use eigen or exact");
   for (std::size_t i = 0; i < 3; ++i) {
     if (primitive.v[i].minCoeff() < -(1 << (width - 1)) || primitive.v[i].maxCoeff() >= 1 << (width - 1)) {
-      throw std::invalid_argument(pair + ": coordinate beyond " + std::to_string(width) + " signed bits; quantise it first");
+      throw std::invalid_argument(pair + ": coordinate beyond " + std::to_string(width) +
+                                  " signed bits; quantise it first");
     }
   }
 }
@@ -45,8 +47,8 @@ GridPair sent(const GridPair& pair) {
 
 class RtlEngine : public PairEngine {
  public:
-  explicit RtlEngine(const RtlEngineOptions& options) try : simulation_(simulation_options(options)),
-                                                            port_(simulation_.top(), width) {
+  explicit RtlEngine(const RtlEngineOptions& options) try
+      : simulation_(simulation_options(options)), port_(simulation_.top(), width) {
     simulation_->s_pair_valid = 0;
     simulation_->m_result_ready = 1;
     port_.put({});
@@ -98,9 +100,9 @@ class RtlEngine : public PairEngine {
       if (accept) offer(pairs, accepted, mode);
       if (clock - progress > answer_bound) {
         throw sim::SimulationTimeout("no pair accepted and no result for " + std::to_string(answer_bound) +
-                                     " clocks, clock " + std::to_string(clock) + ", " + std::to_string(accepted) + " of " +
-                                     std::to_string(pairs.size()) + " pairs accepted, " + std::to_string(answered) +
-                                     " answered");
+                                     " clocks, clock " + std::to_string(clock) + ", " + std::to_string(accepted) +
+                                     " of " + std::to_string(pairs.size()) + " pairs accepted, " +
+                                     std::to_string(answered) + " answered");
       }
     }
     return answers;
@@ -124,8 +126,8 @@ class RtlEngine : public PairEngine {
     EngineAnswer& answer = answers[accepted - 1 - age];
     answer.grid = beat.grid;
     answer.definite = beat.definite;
-    answer.hardware = HardwareAnswer{beat.hit,   beat.grid, beat.definite, beat.axis,
-                                     beat.beats, answer.hardware->clock_in, clock};
+    answer.hardware =
+        HardwareAnswer{beat.hit, beat.grid, beat.definite, beat.axis, beat.beats, answer.hardware->clock_in, clock};
   }
 
   void count_clock() {

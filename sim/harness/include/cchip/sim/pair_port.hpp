@@ -87,12 +87,8 @@ class PairPort {
   }
   /// Payload of m_result.
   PairResultBeat result() const {
-    return {model_.m_result_tag,
-            model_.m_result_hit != 0,
-            model_.m_result_grid != 0,
-            model_.m_result_definite != 0,
-            unpack_axis(model_.m_result_axis),
-            model_.m_result_beats};
+    return {model_.m_result_tag,           model_.m_result_hit != 0,          model_.m_result_grid != 0,
+            model_.m_result_definite != 0, unpack_axis(model_.m_result_axis), model_.m_result_beats};
   }
 
   /// Agents on both streams. This object must outlive them.

@@ -22,7 +22,8 @@ class Pattern {
   }
   /// Each clock with this probability, 0..1.
   static Pattern random(double probability, std::uint64_t seed) {
-    return {"random " + std::to_string(static_cast<int>(100 * probability)) + " %", Kind::random, 0, 0, probability, seed};
+    return {
+        "random " + std::to_string(static_cast<int>(100 * probability)) + " %", Kind::random, 0, 0, probability, seed};
   }
   /// `active` clocks, then not for `idle` clocks, and again.
   static Pattern bursts(std::uint64_t active, std::uint64_t idle) {
@@ -44,7 +45,8 @@ class Pattern {
 
  private:
   enum class Kind { bursts, never_for, random };
-  Pattern(std::string name, Kind kind, std::uint64_t first, std::uint64_t second, double probability, std::uint64_t seed)
+  Pattern(std::string name, Kind kind, std::uint64_t first, std::uint64_t second, double probability,
+          std::uint64_t seed)
       : name_(std::move(name)), kind_(kind), first_(first), second_(second), probability_(probability), random_(seed) {}
 
   std::string name_;

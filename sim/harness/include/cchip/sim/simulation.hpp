@@ -12,9 +12,9 @@
 #include <cchip/sim/seed.hpp>
 #include <cstdint>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -108,7 +108,8 @@ class Simulation {
   /// One clock. \throws SimulationError or a class derived from it, with clock, seed and wave in the message
   void step() {
     try {
-      if (options_.timeout_clocks != 0 && total_ >= options_.timeout_clocks) throw timeout("the end of the test", total_);
+      if (options_.timeout_clocks != 0 && total_ >= options_.timeout_clocks)
+        throw timeout("the end of the test", total_);
       const ClockInfo now{clock_, in_reset_};
       for (Agent* agent : agents_) agent->drive(now);
       settle();
@@ -147,6 +148,7 @@ class Simulation {
   /// Second half: the rising edge. \throws AssertionFailure
   void rise() {
     Verilated::threadContextp(&context_);
+    context_.time(10 * total_ + 5);
     model_->clk = 1;
     model_->eval();
     dump(10 * total_ + 5);
@@ -169,7 +171,8 @@ class Simulation {
     if (options_.trace_path.empty()) return;
     if constexpr (detail::HasTrace<Model>::value) {
       const std::filesystem::path path(options_.trace_path);
-      if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
+      std::error_code ignored;  // isOpen() below tells
+      if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), ignored);
       trace_ = std::make_unique<VerilatedFstC>();
       trace_->set_time_unit("1ns");
       trace_->set_time_resolution("1ns");

@@ -113,7 +113,8 @@ class StreamMonitor : public Agent {
       return;
     }
     if (valid_ == 0) {
-      if (stalled_) throw StreamError(name_ + ": valid dropped before the beat " + to_text(*stalled_) + " was accepted");
+      if (stalled_)
+        throw StreamError(name_ + ": valid dropped before the beat " + to_text(*stalled_) + " was accepted");
       return;
     }
     T item = get_payload_();
