@@ -40,7 +40,7 @@ def verilog(data, names):
     for c in data["constants"]:
         lines.append(f"// {c['doc']}" + (f" [{c['unit']}]" if c["unit"] else ""))
         lines.append(f"`define CCHIP_{c['name']} {c['value']}")
-    widths = {"MODE": "MODE_W", "AXIS": "CLASS_W", "RM": "RM_ID_W"}
+    widths = {"MODE": "MODE_W", "AXIS": "CLASS_W", "RM": "RM_ID_W", "PROG": "PROG_W"}
     size = {c["name"]: c["value"] for c in data["constants"]}
     for e in data["enums"]:
         lines += ["", f"// {e['doc']}"]

@@ -5,13 +5,17 @@
 //   throughput   one value per clock, never stalls
 //   cuts         d -> q if DEPTH > 0
 //   reset        RESET = 1 clears every stage (valid bits); RESET = 0 leaves data alone
+//   MEMORY = 1   (DEPTH >= 3, RESET = 0) keeps the values in a small memory with a circulating pointer
+//                instead of flip-flops; what went in before or during rst comes out undefined
 module cchip_delay #(
     // width of the value, bit
     parameter integer WIDTH = 1,
     // delay, clocks, >= 0
     parameter integer DEPTH = 1,
-    // 1: rst clears all stages; 0: rst is ignored
-    parameter integer RESET = 0
+    // 1: rst clears all stages; 0: it does not
+    parameter integer RESET = 0,
+    // 1: distributed memory instead of a chain of registers
+    parameter integer MEMORY = 0
 ) (
     input  wire             clk,
     input  wire             rst,
@@ -23,9 +27,27 @@ module cchip_delay #(
     if (WIDTH < 1 || DEPTH < 0 || RESET < 0 || RESET > 1) begin : gen_illegal
       cchip_error_delay_WIDTH_below_1_or_DEPTH_below_0_or_RESET_not_0_or_1 u_error ();
     end
+    if (MEMORY < 0 || MEMORY > 1 || (MEMORY == 1 && (DEPTH < 3 || RESET == 1))) begin : gen_illegal_memory
+      cchip_error_delay_MEMORY_needs_DEPTH_3_and_RESET_0 u_error ();
+    end
     if (DEPTH == 0) begin : gen_wire
       assign q = d;
       wire unused = &{1'b0, clk, rst};
+    end else if (MEMORY != 0) begin : gen_memory
+      // DEPTH - 1 words and the output register
+      localparam integer PTR_W = $clog2(DEPTH - 1);
+      localparam [31:0] LAST = DEPTH - 2;
+      (* ram_style = "distributed" *)
+      reg [WIDTH-1:0] mem [0:DEPTH-2];
+      reg [PTR_W-1:0] pointer_q;
+      reg [WIDTH-1:0] q_q;
+      always @(posedge clk) begin
+        if (rst || pointer_q == LAST[PTR_W-1:0]) pointer_q <= {PTR_W{1'b0}};
+        else pointer_q <= pointer_q + {{PTR_W - 1{1'b0}}, 1'b1};
+        mem[pointer_q] <= d;
+        q_q <= mem[pointer_q];
+      end
+      assign q = q_q;
     end else begin : gen_stages
       // chain[WIDTH*i +: WIDTH] is d after i registers
       reg  [WIDTH*DEPTH-1:0]     pipe_q;

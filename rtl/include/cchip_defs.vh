@@ -39,8 +39,8 @@
 `define CCHIP_LIMB_W 17
 // input and output register of cchip_mul18 [clock]
 `define CCHIP_MUL18_LATENCY 2
-// axes of the exhaustive programme: nA, nB, nine e_k x f_l (paper, eq. 1) [beat]
-`define CCHIP_EXHAUSTIVE_BEATS_TRI_TRI 11
+// width of a programme code [bit]
+`define CCHIP_PROG_W 3
 
 // programme requested by s_pair_mode
 `define CCHIP_MODE_EXHAUSTIVE 2'd0 // the paper's schedule: every axis, back to back
@@ -48,9 +48,9 @@
 
 // class field of an axis code (the witness of a no)
 `define CCHIP_AXIS_NONE 3'd0 // no separating axis: hit
-`define CCHIP_AXIS_NORMAL_A 3'd1 // face normal k of A
-`define CCHIP_AXIS_NORMAL_B 3'd2 // face normal k of B
-`define CCHIP_AXIS_CROSS 3'd3 // e_k x f_l
+`define CCHIP_AXIS_NORMAL_A 3'd1 // normal of A (k = 0), of the face of A without vertex k - 1 (k = 1..4)
+`define CCHIP_AXIS_NORMAL_B 3'd2 // normal of B (k = 0), of the face of B without vertex k - 1 (k = 1..4)
+`define CCHIP_AXIS_CROSS 3'd3 // e_k x f_l; edges 0..3 are the sides, 4 = V0V2, 5 = V1V3
 `define CCHIP_AXIS_IN_PLANE_A 3'd4 // e_k x u_d in the plane of A, l = d
 `define CCHIP_AXIS_IN_PLANE_B 3'd5 // f_k x u_d in the plane of B, l = d
 `define CCHIP_AXIS_BOX 3'd6 // bounding boxes disjoint in component l
@@ -62,6 +62,15 @@
 `define CCHIP_RM_TRI_QUAD 8'd2 // cchip_primtest_tri_quad
 `define CCHIP_RM_QUAD_QUAD 8'd3 // cchip_primtest_quad_quad
 
+// programme of a pair in the axis controller
+`define CCHIP_PROG_NORMALS 3'd0 // directed: nA, then nB
+`define CCHIP_PROG_CROSSING 3'd1 // directed: the two axes that decide a pair in general position
+`define CCHIP_PROG_COPLANAR 3'd2 // in-plane axes of both
+`define CCHIP_PROG_DEGENERATE 3'd3 // a zero normal: boxes, e_k x f_l, e x u_d, f x u_d
+`define CCHIP_PROG_TETRAHEDRON 3'd4 // a warped quad: face normals and all edge pairs
+`define CCHIP_PROG_EXHAUSTIVE 3'd5 // every axis back to back
+`define CCHIP_PROG_ILLEGAL 3'd6 // reserved mode: one idle beat
+
 // difference of two coordinates [bit]
 `define CCHIP_EDGE_W(w) ((w) + 1)
 // component of the cross product of two edges: |.| <= 2 (2^w - 1)^2 [bit]
@@ -70,6 +79,14 @@
 `define CCHIP_PROJ_W(w) (3 * (w) + 3)
 // absolute projection [bit]
 `define CCHIP_PROJ_ABS_W(w) (3 * (w) + 2)
+// |e|_1 + |f|_1 of two edges: <= 6 (2^w - 1) [bit]
+`define CCHIP_NORM_W(w) ((w) + 3)
+// |axis|_1: <= 6 (2^w - 1)^2 [bit]
+`define CCHIP_AXIS_NORM_W(w) (2 * (w) + 3)
+// error bounds of stage compare: at most 16 (|axis|_1 + (|e|_1 + |f|_1 + 32) 2^(w+3)) [bit]
+`define CCHIP_BOUND_W(w) (2 * (w) + 11)
+// points projected for each axis, relative projection; a, b = vertices of A and of B [point]
+`define CCHIP_POINTS(a, b) ((a) + (b) - 3)
 // registered levels of an adder tree over n <= 16 terms [clock]
 `define CCHIP_LEVELS(n) ((n) <= 1 ? 0 : (n) <= 2 ? 1 : (n) <= 4 ? 2 : (n) <= 8 ? 3 : 4)
 // limbs of an n-bit signed factor, n <= 52: 17-bit unsigned limbs below an up to 18-bit signed one [limb]
@@ -78,14 +95,18 @@
 `define CCHIP_MUL_LATENCY(a, b) (`CCHIP_MUL18_LATENCY + `CCHIP_LEVELS(`CCHIP_LIMBS((a)) * `CCHIP_LIMBS((b))))
 // edges, products, difference of products [clock]
 `define CCHIP_AXIS_SUBSTAGES_MIN(w) (2 + `CCHIP_MUL_LATENCY(`CCHIP_EDGE_W((w)), `CCHIP_EDGE_W((w))))
-// point differences (or, absolute, differences of projections), products, two levels of sums [clock]
-`define CCHIP_PROJECT_SUBSTAGES_MIN(w) (3 + `CCHIP_MUL_LATENCY(`CCHIP_EDGE_W((w)), `CCHIP_AXIS_W((w))))
+// point differences (or, absolute, differences of projections), products, two levels of sums; at least the 6 of the error bounds [clock]
+`define CCHIP_PROJECT_SUBSTAGES_MIN(w) (`CCHIP_MUL_LATENCY(`CCHIP_EDGE_W((w)), `CCHIP_AXIS_W((w))) <= 3 ? 6 : 3 + `CCHIP_MUL_LATENCY(`CCHIP_EDGE_W((w)), `CCHIP_AXIS_W((w))))
 // smallest legal SUBSTAGES; the project stage is always the longer one [clock]
 `define CCHIP_SUBSTAGES_MIN(w) (`CCHIP_PROJECT_SUBSTAGES_MIN((w)))
 // macro stage 1 [clock]
 `define CCHIP_SELECT_LATENCY (1)
+// cchip_norm1 [clock]
+`define CCHIP_NORM1_LATENCY (2)
+// cchip_box_compare [clock]
+`define CCHIP_BOX_LATENCY (5)
 // macro stage 4 [clock]
-`define CCHIP_COMPARE_LATENCY (2)
+`define CCHIP_COMPARE_LATENCY (3)
 // cchip_sat_pipeline: beat in to verdict out [clock]
 `define CCHIP_PIPE_LATENCY(s) (`CCHIP_SELECT_LATENCY + 2 * (s) + `CCHIP_COMPARE_LATENCY)
 // of a lone pair: handshake of s_pair to its first beat, plus last verdict to handshake of m_result with ready = 1 [clock]
@@ -96,5 +117,7 @@
 `define CCHIP_CONTEXTS_DEFAULT(s) (`CCHIP_PAIR_LATENCY((s), 1) + 4)
 // longest time from the last accepted pair to idle = 1 with m_result_ready = 1 [clock]
 `define CCHIP_DRAIN_BOUND(s, contexts) (64 * ((contexts) > `CCHIP_PAIR_LATENCY((s), 1) ? (contexts) : `CCHIP_PAIR_LATENCY((s), 1)))
+// axes of the exhaustive programme: nA, nB, every e_k x f_l: 11, 14, 18 (paper, eq. 1) [beat]
+`define CCHIP_EXHAUSTIVE_BEATS(a, b) (2 + (a) * (b))
 
 `endif

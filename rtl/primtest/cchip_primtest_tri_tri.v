@@ -1,27 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`include "cchip_defs.vh"
 `default_nettype none
 // cchip_primtest_tri_tri: do two triangles intersect? Reconfigurable module: ports identical to the
-// other primitive tests.
-//   latency      lone pair: CCHIP_PAIR_LATENCY(SUBSTAGES, 11) clocks from handshake of s_pair to handshake of
-//                m_result with ready = 1, whatever the data
-//   throughput   one axis per clock; EXHAUSTIVE: one pair per 11 clocks (11 axes, paper eq. 1)
+// other primitive tests; the machine is cchip_primtest.
+//   latency      lone pair, EXHAUSTIVE, no special case: CCHIP_PAIR_LATENCY(SUBSTAGES, 11) clocks from handshake
+//                of s_pair to handshake of m_result with ready = 1
+//   throughput   one axis per clock; EXHAUSTIVE: one pair per 11 clocks; DIRECTED: at most 4 axes for pairs
+//                that are planar on the grid, not coplanar, not degenerate
 //   in flight    at most CONTEXTS pairs between the handshakes of s_pair and m_result
 //   cuts         every path: each output, s_pair_ready included, is a flip-flop
 //   reset        no pair accepted before is ever answered; s_pair_ready is 0 while rst is 1
-// s_pair_a, s_pair_b: vertex i in bits [3*COORD_W*i +: 3*COORD_W], x lowest; vertices 0..2 are used.
-// s_pair_mode: CCHIP_MODE_EXHAUSTIVE; all others are answered with axis class ILLEGAL, hit 1, definite 0.
-// s_pair_err: eta; the answer is definite only for eta = 0, and not for a coplanar or degenerate pair
-// that no axis separates. m_result_axis is {class, k, l} of the first separating axis, also where
-// definite = 0 turns grid = 0 into hit = 1.
+// s_pair_a: triangle, s_pair_b: triangle; vertex i in bits [3*COORD_W*i +: 3*COORD_W], x lowest. Vertices 0..2 are used.
+// s_pair_mode: CCHIP_MODE_EXHAUSTIVE or _DIRECTED; others: axis class ILLEGAL, hit 1, definite 0.
+// s_pair_err: eta (0 exact, 15 unknown). m_result_grid: exact answer for the grid; m_result_definite: proven
+// for the unrounded primitives; m_result_hit = grid or not definite. m_result_axis = {class, k, l}: the
+// separating axis (also where definite = 0 turns grid = 0 into hit = 1), class NONE if there is none.
 module cchip_primtest_tri_tri #(
     // width of a coordinate, bit, 4..20
     parameter integer COORD_W = 16,
     // registers in each of the stages axis and project, clocks, >= CCHIP_SUBSTAGES_MIN(COORD_W)
     parameter integer SUBSTAGES = 10,
     // pairs in flight, 1..256
-    parameter integer CONTEXTS = 2 * SUBSTAGES + 14,
+    parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
     // 0 relative, 1 absolute projection (see cchip_sat_project)
-    parameter integer ABSOLUTE_PROJECTION = 0
+    parameter integer ABSOLUTE_PROJECTION = 0,
+    // 1: warped quads are decided exactly; 0: they are left open (see cchip_axis_controller)
+    parameter integer WARPED_EXACT = 1
 ) (
     input  wire                   clk,
     input  wire                   rst,
@@ -44,195 +48,36 @@ module cchip_primtest_tri_tri #(
     output wire                   idle
 );
 
-`include "cchip_defs.vh"
-
-  localparam integer TRI_W = 9 * COORD_W;
-  localparam integer CONTEXT_W = CONTEXTS > 1 ? $clog2(CONTEXTS) : 1;
-  localparam integer COUNT_W = $clog2(CONTEXTS + 1);
-  localparam [31:0] CONTEXT_COUNT = CONTEXTS;
-  localparam integer RESULT_W = 16 + 3 + 9 + 6;
-
-  generate
-    if (COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX) begin : gen_illegal_coord_w
-      cchip_error_COORD_W_must_be_4_to_20 u_error ();
-    end
-    if (SUBSTAGES < `CCHIP_SUBSTAGES_MIN(COORD_W)) begin : gen_illegal_substages
-      cchip_error_SUBSTAGES_below_minimum_for_COORD_W u_error ();
-    end
-    if (SUBSTAGES > `CCHIP_SUBSTAGES_MAX) begin : gen_illegal_substages_max
-      cchip_error_SUBSTAGES_above_32 u_error ();
-    end
-    if (CONTEXTS < 1 || CONTEXTS > `CCHIP_CONTEXTS_MAX) begin : gen_illegal_contexts
-      cchip_error_CONTEXTS_must_be_1_to_256 u_error ();
-    end
-  endgenerate
-
-  assign rm_id = `CCHIP_RM_TRI_TRI;
-
-  // ---- pairs between the two handshakes: decides ready and idle
-  reg  [COUNT_W-1:0] pairs_q;
-  reg                ready_q, idle_q;
-  wire               accept = s_pair_valid & ready_q;
-  wire               answer = m_result_valid & m_result_ready;
-  wire [COUNT_W-1:0] pairs_d = accept == answer ? pairs_q
-                             : accept ? pairs_q + {{COUNT_W - 1{1'b0}}, 1'b1}
-                                      : pairs_q - {{COUNT_W - 1{1'b0}}, 1'b1};
-
-  always @(posedge clk)
-    if (rst) begin
-      pairs_q <= {COUNT_W{1'b0}};
-      ready_q <= 1'b0;
-      idle_q  <= 1'b1;
-    end else begin
-      pairs_q <= pairs_d;
-      ready_q <= pairs_d != CONTEXT_COUNT[COUNT_W-1:0];
-      idle_q  <= pairs_d == {COUNT_W{1'b0}};
-    end
-
-  assign s_pair_ready = ready_q;
-  assign idle         = idle_q;
-
-  // ---- input register and operand memory: one writer, read by the beats
-  reg              load_valid_q;
-  reg [      15:0] load_tag_q;
-  reg [       1:0] load_mode_q;
-  reg [       3:0] load_err_q;
-  reg [TRI_W-1:0]  load_a_q, load_b_q;
-
-  always @(posedge clk) begin
-    if (rst) load_valid_q <= 1'b0;
-    else load_valid_q <= accept;
-    load_tag_q  <= s_pair_tag;
-    load_mode_q <= s_pair_mode;
-    load_err_q  <= s_pair_err;
-    load_a_q    <= s_pair_a[TRI_W-1:0];
-    load_b_q    <= s_pair_b[TRI_W-1:0];
-  end
-
-  wire                 beat_valid;
-  wire [CONTEXT_W-1:0] load_context, beat_context;
-  wire [          8:0] beat_code;
-  wire [    TRI_W-1:0] operand_a, operand_b;
-
-  cchip_ram #(
-      .WIDTH (2 * TRI_W),
-      .DEPTH (CONTEXTS),
-      .ADDR_W(CONTEXT_W)
-  ) u_operands (
-      .clk       (clk),
-      .write     (load_valid_q),
-      .write_addr(load_context),
-      .write_data({load_b_q, load_a_q}),
-      .read_addr (beat_context),
-      .read_data ({operand_b, operand_a})
-  );
-
-  // ---- the beat waits one clock for its operands
-  reg                 fetch_valid_q;
-  reg [          8:0] fetch_code_q;
-  reg [CONTEXT_W-1:0] fetch_context_q;
-  always @(posedge clk) begin
-    if (rst) fetch_valid_q <= 1'b0;
-    else fetch_valid_q <= beat_valid;
-    fetch_code_q    <= beat_code;
-    fetch_context_q <= beat_context;
-  end
-
-  wire                 verdict_valid, verdict_separated, verdict_axis_zero;
-  wire [          2:0] verdict_negative, verdict_zero;
-  wire [          8:0] verdict_code;
-  wire [CONTEXT_W-1:0] verdict_context;
-  wire unused = &{1'b0, s_pair_a[12*COORD_W-1:TRI_W], s_pair_b[12*COORD_W-1:TRI_W], verdict_negative};
-
-  cchip_sat_pipeline #(
+  cchip_primtest #(
       .COORD_W            (COORD_W),
       .SUBSTAGES          (SUBSTAGES),
+      .CONTEXTS           (CONTEXTS),
       .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
-      .USER_W             (CONTEXT_W + 9)
-  ) u_pipeline (
-      .clk                (clk),
-      .rst                (rst),
-      .s_beat_valid       (fetch_valid_q),
-      .s_beat_code        (fetch_code_q),
-      .s_beat_a           (operand_a),
-      .s_beat_b           (operand_b),
-      .s_beat_user        ({fetch_context_q, fetch_code_q}),
-      .m_verdict_valid    (verdict_valid),
-      .m_verdict_separated(verdict_separated),
-      .m_verdict_axis_zero(verdict_axis_zero),
-      .m_verdict_negative (verdict_negative),
-      .m_verdict_zero     (verdict_zero),
-      .m_verdict_user     ({verdict_context, verdict_code})
+      .WARPED_EXACT       (WARPED_EXACT),
+      .VERTS_A            (3),
+      .VERTS_B            (3),
+      .RM_ID              ({24'd0, `CCHIP_RM_TRI_TRI})
+  ) u_primtest (
+      .clk              (clk),
+      .rst              (rst),
+      .s_pair_valid     (s_pair_valid),
+      .s_pair_ready     (s_pair_ready),
+      .s_pair_tag       (s_pair_tag),
+      .s_pair_mode      (s_pair_mode),
+      .s_pair_a         (s_pair_a),
+      .s_pair_b         (s_pair_b),
+      .s_pair_err       (s_pair_err),
+      .m_result_valid   (m_result_valid),
+      .m_result_ready   (m_result_ready),
+      .m_result_tag     (m_result_tag),
+      .m_result_hit     (m_result_hit),
+      .m_result_grid    (m_result_grid),
+      .m_result_definite(m_result_definite),
+      .m_result_axis    (m_result_axis),
+      .m_result_beats   (m_result_beats),
+      .rm_id            (rm_id),
+      .idle             (idle)
   );
-
-  wire                outcome_valid;
-  wire [RESULT_W-1:0] outcome;
-
-  cchip_axis_controller #(
-      .CONTEXTS (CONTEXTS),
-      .CONTEXT_W(CONTEXT_W)
-  ) u_controller (
-      .clk                (clk),
-      .rst                (rst),
-      .s_pair_valid       (load_valid_q),
-      .s_pair_tag         (load_tag_q),
-      .s_pair_mode        (load_mode_q),
-      .s_pair_err         (load_err_q),
-      .m_load_context     (load_context),
-      .m_beat_valid       (beat_valid),
-      .m_beat_context     (beat_context),
-      .m_beat_code        (beat_code),
-      .s_verdict_valid    (verdict_valid),
-      .s_verdict_context  (verdict_context),
-      .s_verdict_code     (verdict_code),
-      .s_verdict_separated(verdict_separated),
-      .s_verdict_axis_zero(verdict_axis_zero),
-      .s_verdict_zero     (verdict_zero),
-      .m_result_valid     (outcome_valid),
-      .m_result_tag       (outcome[15:0]),
-      .m_result_hit       (outcome[16]),
-      .m_result_grid      (outcome[17]),
-      .m_result_definite  (outcome[18]),
-      .m_result_axis      (outcome[27:19]),
-      .m_result_beats     (outcome[33:28])
-  );
-
-  // ---- results: the FIFO has room for every pair in flight, so verdicts never wait
-  wire                queue_valid, queue_ready, queue_space;
-  wire [RESULT_W-1:0] queue;
-
-  cchip_fifo #(
-      .WIDTH(RESULT_W),
-      .DEPTH(CONTEXTS)
-  ) u_results (
-      .clk    (clk),
-      .rst    (rst),
-      .s_valid(outcome_valid),
-      .s_ready(queue_space),
-      .s_data (outcome),
-      .m_valid(queue_valid),
-      .m_ready(queue_ready),
-      .m_data (queue)
-  );
-  cchip_skid_buffer #(
-      .WIDTH(RESULT_W)
-  ) u_out (
-      .clk    (clk),
-      .rst    (rst),
-      .s_valid(queue_valid),
-      .s_ready(queue_ready),
-      .s_data (queue),
-      .m_valid(m_result_valid),
-      .m_ready(m_result_ready),
-      .m_data ({m_result_beats, m_result_axis, m_result_definite, m_result_grid, m_result_hit, m_result_tag})
-  );
-
-`include "cchip_assert.vh"
-  always @(posedge clk)
-    if (!rst) begin
-      `CCHIP_ASSERT(a_result_space, !outcome_valid || queue_space)
-      `CCHIP_ASSERT(a_count, {{32 - COUNT_W{1'b0}}, pairs_q} <= CONTEXT_COUNT)
-    end
 
 endmodule
 `default_nettype wire

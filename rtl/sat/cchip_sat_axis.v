@@ -4,8 +4,8 @@
 //   latency      SUBSTAGES clocks
 //   throughput   one axis per clock, never stalls
 //   numbers      points of COORD_W-bit coordinates; edges have COORD_W + 1 bits, axis components
-//                2 COORD_W + 2 bits; exact for every input
-//   cost         six wide multipliers, nine adders
+//                2 COORD_W + 2 bits; exact for every input. m_edge_norm = |e|_1 + |f|_1, unsigned.
+//   cost         six wide multipliers, nine adders; the norm
 //   reset        none (data only)
 // Substages: edges, [operand register], leaf input, leaf output, [product register], adder levels of wide
 // products, difference of products, [result registers]. Those in brackets use what SUBSTAGES leaves
@@ -21,7 +21,8 @@ module cchip_sat_axis #(
     input  wire [    3*COORD_W-1:0] s_e_to,
     input  wire [    3*COORD_W-1:0] s_f_from,
     input  wire [    3*COORD_W-1:0] s_f_to,
-    output wire [6*(COORD_W+1)-1:0] m_axis
+    output wire [6*(COORD_W+1)-1:0] m_axis,
+    output wire [      COORD_W+2:0] m_edge_norm
 );
 
 `include "cchip_defs.vh"
@@ -30,6 +31,8 @@ module cchip_sat_axis #(
   localparam integer SPARE = SUBSTAGES - `CCHIP_AXIS_SUBSTAGES_MIN(COORD_W);
   localparam integer PRODUCT_REGS = SPARE >= 1 ? 1 : 0;
   localparam integer OPERAND_REGS = SPARE >= 2 ? 1 : 0;
+  // edges, norms, their sum
+  localparam integer NORM_FILL = SUBSTAGES - 2 - `CCHIP_NORM1_LATENCY;
 
   generate
     if (SPARE < 0) begin : gen_illegal
@@ -63,6 +66,33 @@ module cchip_sat_axis #(
       .a  (e_q),
       .b  (f_q),
       .q  (m_axis)
+  );
+
+  wire [EDGE_W:0] e_norm, f_norm;
+  cchip_norm1 #(
+      .V_W(EDGE_W)
+  ) u_e_norm (
+      .clk(clk),
+      .v  (e_q),
+      .q  (e_norm)
+  );
+  cchip_norm1 #(
+      .V_W(EDGE_W)
+  ) u_f_norm (
+      .clk(clk),
+      .v  (f_q),
+      .q  (f_norm)
+  );
+  reg [EDGE_W+1:0] edge_norm_q;
+  always @(posedge clk) edge_norm_q <= {1'b0, e_norm} + {1'b0, f_norm};
+  cchip_delay #(
+      .WIDTH(EDGE_W + 2),
+      .DEPTH(NORM_FILL)
+  ) u_edge_norm (
+      .clk(clk),
+      .rst(1'b0),
+      .d  (edge_norm_q),
+      .q  (m_edge_norm)
   );
 
 endmodule

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// cchip_sat_pipeline: the four macro stages of the separating axis test (paper, figure 7), triangle
-// against triangle: select -> axis -> project -> compare.
+// cchip_sat_pipeline: the four macro stages of the separating axis test (paper, figure 7):
+// select -> axis -> project -> compare; the box comparison runs beside them.
 //   latency      CCHIP_PIPE_LATENCY(SUBSTAGES) clocks, beat to verdict
 //   throughput   one axis per clock, never stalls: whoever issues a beat keeps room for its verdict
 //   cuts         every path (registered outputs; the first register is behind the multiplexers of select)
-//   reset        valid bits only
+//   reset        valid bits; data on its way is lost
 // s_beat_user travels with the beat and comes back as m_verdict_user.
 module cchip_sat_pipeline #(
     // width of a coordinate, bit
@@ -14,31 +14,46 @@ module cchip_sat_pipeline #(
     parameter integer SUBSTAGES = 10,
     // 0 relative, 1 absolute projection (see cchip_sat_project)
     parameter integer ABSOLUTE_PROJECTION = 0,
+    // vertices of A and of B: 3 3, 3 4 or 4 4
+    parameter integer VERTS_A = 3,
+    parameter integer VERTS_B = 3,
     // width of the user field, bit
     parameter integer USER_W = 8
 ) (
-    input  wire                 clk,
-    input  wire                 rst,
-    input  wire                 s_beat_valid,
-    input  wire [          8:0] s_beat_code,          // {class, k, l}
-    input  wire [9*COORD_W-1:0] s_beat_a,             // V2, V1, V0
-    input  wire [9*COORD_W-1:0] s_beat_b,             // W2, W1, W0
-    input  wire [   USER_W-1:0] s_beat_user,
-    output wire                 m_verdict_valid,
-    output wire                 m_verdict_separated,  // intervals disjoint
-    output wire                 m_verdict_axis_zero,  // the axis is the zero vector
-    output wire [          2:0] m_verdict_negative,   // sign of the projected points p0..p2
-    output wire [          2:0] m_verdict_zero,
-    output wire [   USER_W-1:0] m_verdict_user
+    input  wire                         clk,
+    input  wire                         rst,
+    input  wire                         s_beat_valid,
+    input  wire [                  8:0] s_beat_code,             // {class, k, l}
+    input  wire                         s_beat_allow_above,      // see cchip_sat_compare
+    input  wire                         s_beat_allow_below,
+    input  wire [                  2:0] s_beat_error_shift,      // eta <= 2^s_beat_error_shift, 0..4
+    input  wire [3*VERTS_A*COORD_W-1:0] s_beat_a,                // vertex 0 in the low bits
+    input  wire [3*VERTS_B*COORD_W-1:0] s_beat_b,
+    input  wire [           USER_W-1:0] s_beat_user,
+    output wire                         m_verdict_valid,
+    output wire                         m_verdict_separated,     // intervals disjoint
+    output wire                         m_verdict_certain_gap,   // for the unrounded primitives too
+    output wire [    VERTS_A+VERTS_B-4:0] m_verdict_negative,    // projected points: < 0
+    output wire [    VERTS_A+VERTS_B-4:0] m_verdict_zero,        // = 0
+    output wire [    VERTS_A+VERTS_B-4:0] m_verdict_certain,     // the sign is certain
+    output wire [                  2:0] m_verdict_axis_negative, // components of the axis: < 0
+    output wire [                  2:0] m_verdict_axis_zero,     // = 0
+    output wire [                  1:0] m_verdict_axis_largest,  // component of the largest absolute value
+    output wire                         m_verdict_box_separated, // boxes disjoint in component l of the code
+    output wire                         m_verdict_box_certain,   // by more than 2^error_shift
+    output wire [           USER_W-1:0] m_verdict_user
 );
 
 `include "cchip_defs.vh"
 
   localparam integer POINT_W = 3 * COORD_W;
+  localparam integer POINTS = `CCHIP_POINTS(VERTS_A, VERTS_B);
   localparam integer AXIS_W = `CCHIP_AXIS_W(COORD_W);
+  localparam integer NORM_W = `CCHIP_NORM_W(COORD_W);
   localparam integer PROJ_W = `CCHIP_PROJ_W(COORD_W);
+  localparam integer BOUND_W = `CCHIP_BOUND_W(COORD_W);
 
-  // ---- control beside the data: valid, user, class of the axis
+  // ---- control beside the data
   cchip_delay #(
       .WIDTH(1),
       .DEPTH(`CCHIP_PIPE_LATENCY(SUBSTAGES)),
@@ -50,30 +65,72 @@ module cchip_sat_pipeline #(
       .q  (m_verdict_valid)
   );
   cchip_delay #(
-      .WIDTH(USER_W),
-      .DEPTH(`CCHIP_PIPE_LATENCY(SUBSTAGES))
+      .WIDTH (USER_W),
+      .DEPTH (`CCHIP_PIPE_LATENCY(SUBSTAGES)),
+      .MEMORY(1)
   ) u_user (
       .clk(clk),
-      .rst(1'b0),
+      .rst(rst),
       .d  (s_beat_user),
       .q  (m_verdict_user)
   );
-  wire compare_cross;
+  wire project_allow_above, project_allow_below;
   cchip_delay #(
-      .WIDTH(1),
-      .DEPTH(`CCHIP_SELECT_LATENCY + 2 * SUBSTAGES)
-  ) u_cross (
+      .WIDTH (2),
+      .DEPTH (`CCHIP_SELECT_LATENCY + 2 * SUBSTAGES),
+      .MEMORY(1)
+  ) u_allow (
       .clk(clk),
-      .rst(1'b0),
-      .d  (s_beat_code[8:6] == `CCHIP_AXIS_CROSS),
-      .q  (compare_cross)
+      .rst(rst),
+      .d  ({s_beat_allow_above, s_beat_allow_below}),
+      .q  ({project_allow_above, project_allow_below})
+  );
+  wire [2:0] axis_error_shift;
+  cchip_delay #(
+      .WIDTH (3),
+      .DEPTH (`CCHIP_SELECT_LATENCY + SUBSTAGES),
+      .MEMORY(1)
+  ) u_error_shift (
+      .clk(clk),
+      .rst(rst),
+      .d  (s_beat_error_shift),
+      .q  (axis_error_shift)
+  );
+
+  // ---- box comparison
+  wire box_separated, box_certain;
+  cchip_box_compare #(
+      .COORD_W(COORD_W),
+      .VERTS_A(VERTS_A),
+      .VERTS_B(VERTS_B)
+  ) u_box (
+      .clk          (clk),
+      .s_a          (s_beat_a),
+      .s_b          (s_beat_b),
+      .s_component  (s_beat_code[1:0]),
+      .s_error_shift(s_beat_error_shift),
+      .m_separated  (box_separated),
+      .m_certain_gap(box_certain)
+  );
+  cchip_delay #(
+      .WIDTH (2),
+      .DEPTH (`CCHIP_PIPE_LATENCY(SUBSTAGES) - `CCHIP_BOX_LATENCY),
+      .MEMORY(1)
+  ) u_box_delay (
+      .clk(clk),
+      .rst(rst),
+      .d  ({box_separated, box_certain}),
+      .q  ({m_verdict_box_separated, m_verdict_box_certain})
   );
 
   // ---- macro stage 1: select
   wire [POINT_W-1:0] select_e_from, select_e_to, select_f_from, select_f_to;
-  wire [3*POINT_W-1:0] select_points;
+  wire [POINTS*POINT_W-1:0] select_points;
+  wire [1:0] select_own;
   cchip_sat_select #(
-      .COORD_W(COORD_W)
+      .COORD_W(COORD_W),
+      .VERTS_A(VERTS_A),
+      .VERTS_B(VERTS_B)
   ) u_select (
       .clk     (clk),
       .s_code  (s_beat_code),
@@ -83,70 +140,102 @@ module cchip_sat_pipeline #(
       .m_e_to  (select_e_to),
       .m_f_from(select_f_from),
       .m_f_to  (select_f_to),
-      .m_points(select_points)
+      .m_points(select_points),
+      .m_own   (select_own)
+  );
+  wire [1:0] project_own;
+  cchip_delay #(
+      .WIDTH (2),
+      .DEPTH (2 * SUBSTAGES),
+      .MEMORY(1)
+  ) u_own (
+      .clk(clk),
+      .rst(rst),
+      .d  (select_own),
+      .q  (project_own)
   );
 
   // ---- macro stage 2: axis; the points wait beside it
-  wire [ 3*AXIS_W-1:0] axis;
-  wire [  POINT_W-1:0] axis_reference;
-  wire [3*POINT_W-1:0] axis_points;
+  wire [        3*AXIS_W-1:0] axis;
+  wire [          NORM_W-1:0] axis_edge_norm;
+  wire [         POINT_W-1:0] axis_reference;
+  wire [  POINTS*POINT_W-1:0] axis_points;
   cchip_sat_axis #(
       .COORD_W  (COORD_W),
       .SUBSTAGES(SUBSTAGES)
   ) u_axis (
-      .clk     (clk),
-      .s_e_from(select_e_from),
-      .s_e_to  (select_e_to),
-      .s_f_from(select_f_from),
-      .s_f_to  (select_f_to),
-      .m_axis  (axis)
+      .clk        (clk),
+      .s_e_from   (select_e_from),
+      .s_e_to     (select_e_to),
+      .s_f_from   (select_f_from),
+      .s_f_to     (select_f_to),
+      .m_axis     (axis),
+      .m_edge_norm(axis_edge_norm)
   );
   cchip_delay #(
-      .WIDTH(4 * POINT_W),
-      .DEPTH(SUBSTAGES)
+      .WIDTH ((POINTS + 1) * POINT_W),
+      .DEPTH (SUBSTAGES),
+      .MEMORY(1)
   ) u_points (
       .clk(clk),
-      .rst(1'b0),
+      .rst(rst),
       .d  ({select_e_from, select_points}),
       .q  ({axis_reference, axis_points})
   );
 
   // ---- macro stage 3: project
-  wire [3*PROJ_W-1:0] projection;
-  wire                project_axis_zero;
+  wire [ POINTS*PROJ_W-1:0] projection;
+  wire [POINTS*BOUND_W-1:0] sign_bound;
+  wire [       BOUND_W-1:0] gap_bound;
+  wire [               2:0] project_axis_negative, project_axis_zero;
+  wire [               1:0] project_axis_largest;
   cchip_sat_project #(
       .COORD_W            (COORD_W),
       .SUBSTAGES          (SUBSTAGES),
       .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
-      .POINTS             (3)
+      .POINTS             (POINTS)
   ) u_project (
-      .clk         (clk),
-      .s_axis      (axis),
-      .s_reference (axis_reference),
-      .s_points    (axis_points),
-      .m_projection(projection),
-      .m_axis_zero (project_axis_zero)
+      .clk            (clk),
+      .s_axis         (axis),
+      .s_edge_norm    (axis_edge_norm),
+      .s_error_shift  (axis_error_shift),
+      .s_reference    (axis_reference),
+      .s_points       (axis_points),
+      .m_projection   (projection),
+      .m_sign_bound   (sign_bound),
+      .m_gap_bound    (gap_bound),
+      .m_axis_negative(project_axis_negative),
+      .m_axis_zero    (project_axis_zero),
+      .m_axis_largest (project_axis_largest)
   );
 
   // ---- macro stage 4: compare
   cchip_sat_compare #(
-      .PROJ_W(PROJ_W)
+      .PROJ_W (PROJ_W),
+      .BOUND_W(BOUND_W),
+      .POINTS (POINTS)
   ) u_compare (
-      .clk         (clk),
-      .s_cross     (compare_cross),
-      .s_projection(projection),
-      .m_separated (m_verdict_separated),
-      .m_negative  (m_verdict_negative),
-      .m_zero      (m_verdict_zero)
+      .clk          (clk),
+      .s_own        (project_own),
+      .s_allow_above(project_allow_above),
+      .s_allow_below(project_allow_below),
+      .s_projection (projection),
+      .s_sign_bound (sign_bound),
+      .s_gap_bound  (gap_bound),
+      .m_separated  (m_verdict_separated),
+      .m_certain_gap(m_verdict_certain_gap),
+      .m_negative   (m_verdict_negative),
+      .m_zero       (m_verdict_zero),
+      .m_certain    (m_verdict_certain)
   );
   cchip_delay #(
-      .WIDTH(1),
+      .WIDTH(8),
       .DEPTH(`CCHIP_COMPARE_LATENCY)
-  ) u_axis_zero (
+  ) u_axis_signs (
       .clk(clk),
       .rst(1'b0),
-      .d  (project_axis_zero),
-      .q  (m_verdict_axis_zero)
+      .d  ({project_axis_negative, project_axis_zero, project_axis_largest}),
+      .q  ({m_verdict_axis_negative, m_verdict_axis_zero, m_verdict_axis_largest})
   );
 
 endmodule

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 // cchip_sat_project: macro stage 3 of the SAT pipeline (paper, figure 7): projections of the points
-// onto the axis (eq. 2), relative to the projection of the reference point. m_projection[i] = (p_i - reference) . axis.
+// onto the axis (eq. 2), relative to the projection of the reference point, and what the certainty of
+// their signs needs. m_projection[i] = (p_i - reference) . axis.
 //   latency      SUBSTAGES clocks
 //   throughput   one axis per clock, never stalls
 //   numbers      points of COORD_W bits, axis components of 2 COORD_W + 2 bits, projections of
@@ -13,7 +14,7 @@
 // Substages: point differences (relative) or projection differences (absolute), [operand register], leaf
 // input, leaf output, [product register], adder levels of wide products, two levels of sums, [result
 // registers]. Those in brackets use what SUBSTAGES leaves over CCHIP_PROJECT_SUBSTAGES_MIN: first the
-// product register, then the operand register, then results.
+// product register, then the operand register, then results. The error bounds run beside (cchip_sat_bound).
 module cchip_sat_project #(
     // width of a coordinate, bit
     parameter integer COORD_W = 16,
@@ -24,12 +25,18 @@ module cchip_sat_project #(
     // points to project
     parameter integer POINTS = 3
 ) (
-    input  wire                            clk,
-    input  wire [       6*(COORD_W+1)-1:0] s_axis,
-    input  wire [           3*COORD_W-1:0] s_reference,
-    input  wire [    3*POINTS*COORD_W-1:0] s_points,     // p0 in the low bits
-    output wire [POINTS*3*(COORD_W+1)-1:0] m_projection, // p0 in the low bits
-    output wire                            m_axis_zero   // the axis is the zero vector
+    input  wire                             clk,
+    input  wire [        6*(COORD_W+1)-1:0] s_axis,
+    input  wire [              COORD_W+2:0] s_edge_norm,     // |e|_1 + |f|_1
+    input  wire [                      2:0] s_error_shift,   // eta <= 2^s_error_shift, 0..4
+    input  wire [            3*COORD_W-1:0] s_reference,
+    input  wire [     3*POINTS*COORD_W-1:0] s_points,        // p0 in the low bits
+    output wire [ POINTS*3*(COORD_W+1)-1:0] m_projection,    // p0 in the low bits
+    output wire [POINTS*(2*COORD_W+11)-1:0] m_sign_bound,    // of the error of each projection
+    output wire [           2*COORD_W+10:0] m_gap_bound,     // of the difference of two true projections
+    output wire [                      2:0] m_axis_negative, // components of the axis: < 0
+    output wire [                      2:0] m_axis_zero,     // = 0
+    output wire [                      1:0] m_axis_largest   // component of the largest absolute value
 );
 
 `include "cchip_defs.vh"
@@ -37,13 +44,13 @@ module cchip_sat_project #(
   localparam integer EDGE_W = `CCHIP_EDGE_W(COORD_W);
   localparam integer AXIS_W = `CCHIP_AXIS_W(COORD_W);
   localparam integer PROJ_W = `CCHIP_PROJ_W(COORD_W);
-  localparam integer SPARE = SUBSTAGES - `CCHIP_PROJECT_SUBSTAGES_MIN(COORD_W);
+  localparam integer SPARE = SUBSTAGES - 3 - `CCHIP_MUL_LATENCY(EDGE_W, AXIS_W);
   localparam integer PRODUCT_REGS = SPARE >= 1 ? 1 : 0;
   localparam integer OPERAND_REGS = SPARE >= 2 ? 1 : 0;
   localparam integer RESULT_REGS = SPARE - OPERAND_REGS - PRODUCT_REGS;
 
   generate
-    if (SPARE < 0) begin : gen_illegal
+    if (SUBSTAGES < `CCHIP_PROJECT_SUBSTAGES_MIN(COORD_W)) begin : gen_illegal
       cchip_error_SUBSTAGES_below_minimum_for_COORD_W u_error ();
     end
     if (ABSOLUTE_PROJECTION != 0 && ABSOLUTE_PROJECTION != 1) begin : gen_illegal_projection
@@ -51,19 +58,26 @@ module cchip_sat_project #(
     end
   endgenerate
 
+  // ---- points relative to the reference
+  reg [3*EDGE_W*POINTS-1:0] difference_q;
   genvar i, d;
+  generate
+    for (i = 0; i < POINTS; i = i + 1) begin : gen_difference
+      for (d = 0; d < 3; d = d + 1) begin : gen_component
+        wire signed [COORD_W-1:0] from = s_reference[COORD_W*d+:COORD_W];
+        wire signed [COORD_W-1:0] to = s_points[COORD_W*(3*i+d)+:COORD_W];
+        always @(posedge clk)
+          difference_q[EDGE_W*(3*i+d)+:EDGE_W] <= {to[COORD_W-1], to} - {from[COORD_W-1], from};
+      end
+    end
+  endgenerate
+
+  // ---- dot products
   generate
     if (ABSOLUTE_PROJECTION == 0) begin : gen_relative
       reg [3*AXIS_W-1:0] axis_q;
       always @(posedge clk) axis_q <= s_axis;
       for (i = 0; i < POINTS; i = i + 1) begin : gen_point
-        reg [3*EDGE_W-1:0] difference_q;
-        for (d = 0; d < 3; d = d + 1) begin : gen_component
-          wire signed [COORD_W-1:0] from = s_reference[COORD_W*d+:COORD_W];
-          wire signed [COORD_W-1:0] to = s_points[COORD_W*(3*i+d)+:COORD_W];
-          always @(posedge clk)
-            difference_q[EDGE_W*d+:EDGE_W] <= {to[COORD_W-1], to} - {from[COORD_W-1], from};
-        end
         cchip_dot3 #(
             .A_W(EDGE_W),
             .B_W(AXIS_W),
@@ -72,7 +86,7 @@ module cchip_sat_project #(
             .RESULT_REGS(RESULT_REGS)
         ) u_dot (
             .clk(clk),
-            .a  (difference_q),
+            .a  (difference_q[3*EDGE_W*i+:3*EDGE_W]),
             .b  (axis_q),
             .q  (m_projection[PROJ_W*i+:PROJ_W])
         );
@@ -96,8 +110,8 @@ module cchip_sat_project #(
           .q  (reference)
       );
       for (i = 0; i < POINTS; i = i + 1) begin : gen_point
-        wire [ DOT_W-1:0] point;
-        reg  [PROJ_W-1:0] difference_q;
+        wire [DOT_W-1:0] point;
+        reg [PROJ_W-1:0] relative_q;
         cchip_dot3 #(
             .A_W(COORD_W),
             .B_W(AXIS_W),
@@ -110,20 +124,62 @@ module cchip_sat_project #(
             .b  (s_axis),
             .q  (point)
         );
-        always @(posedge clk) difference_q <= {point[DOT_W-1], point} - {reference[DOT_W-1], reference};
-        assign m_projection[PROJ_W*i+:PROJ_W] = difference_q;
+        always @(posedge clk) relative_q <= {point[DOT_W-1], point} - {reference[DOT_W-1], reference};
+        assign m_projection[PROJ_W*i+:PROJ_W] = relative_q;
       end
     end
   endgenerate
 
+  // ---- error bounds
+  cchip_sat_bound #(
+      .COORD_W  (COORD_W),
+      .SUBSTAGES(SUBSTAGES),
+      .POINTS   (POINTS)
+  ) u_bound (
+      .clk          (clk),
+      .s_axis       (s_axis),
+      .s_edge_norm  (s_edge_norm),
+      .s_error_shift(s_error_shift),
+      .s_difference (difference_q),
+      .m_sign_bound (m_sign_bound),
+      .m_gap_bound  (m_gap_bound)
+  );
+
+  // ---- signs and largest component of the axis
+  wire [AXIS_W-1:0] x = s_axis[0+:AXIS_W];
+  wire [AXIS_W-1:0] y = s_axis[AXIS_W+:AXIS_W];
+  wire [AXIS_W-1:0] z = s_axis[2*AXIS_W+:AXIS_W];
+  reg [AXIS_W-1:0] x_q, y_q, z_q;
+  reg [2:0] negative_q, zero_q;
+  reg y_over_x_q, z_over_x_q, z_over_y_q;
+  reg [2:0] negative_q2, zero_q2;
+
+  function [AXIS_W-1:0] absolute(input [AXIS_W-1:0] v);
+    absolute = v[AXIS_W-1] ? ~v + {{AXIS_W - 1{1'b0}}, 1'b1} : v;
+  endfunction
+
+  always @(posedge clk) begin
+    x_q         <= absolute(x);
+    y_q         <= absolute(y);
+    z_q         <= absolute(z);
+    negative_q  <= {z[AXIS_W-1], y[AXIS_W-1], x[AXIS_W-1]};
+    zero_q      <= {z == {AXIS_W{1'b0}}, y == {AXIS_W{1'b0}}, x == {AXIS_W{1'b0}}};
+    y_over_x_q  <= y_q > x_q;
+    z_over_x_q  <= z_q > x_q;
+    z_over_y_q  <= z_q > y_q;
+    negative_q2 <= negative_q;
+    zero_q2     <= zero_q;
+  end
+
+  wire [1:0] largest = y_over_x_q ? (z_over_y_q ? 2'd2 : 2'd1) : (z_over_x_q ? 2'd2 : 2'd0);
   cchip_delay #(
-      .WIDTH(1),
-      .DEPTH(SUBSTAGES)
-  ) u_axis_zero (
+      .WIDTH(8),
+      .DEPTH(SUBSTAGES - 2)
+  ) u_axis (
       .clk(clk),
       .rst(1'b0),
-      .d  (s_axis == {3 * AXIS_W{1'b0}}),
-      .q  (m_axis_zero)
+      .d  ({negative_q2, zero_q2, largest}),
+      .q  ({m_axis_negative, m_axis_zero, m_axis_largest})
   );
 
 endmodule

@@ -16,9 +16,9 @@ enum class PairMode : std::uint8_t {
 /// Class field of an axis code (the witness of a no).
 enum class AxisClass : std::uint8_t {
   none = 0,  ///< no separating axis: hit
-  normal_a = 1,  ///< face normal k of A
-  normal_b = 2,  ///< face normal k of B
-  cross = 3,  ///< e_k x f_l
+  normal_a = 1,  ///< normal of A (k = 0), of the face of A without vertex k - 1 (k = 1..4)
+  normal_b = 2,  ///< normal of B (k = 0), of the face of B without vertex k - 1 (k = 1..4)
+  cross = 3,  ///< e_k x f_l; edges 0..3 are the sides, 4 = V0V2, 5 = V1V3
   in_plane_a = 4,  ///< e_k x u_d in the plane of A, l = d
   in_plane_b = 5,  ///< f_k x u_d in the plane of B, l = d
   box = 6,  ///< bounding boxes disjoint in component l
@@ -31,6 +31,17 @@ enum class ModuleId : std::uint8_t {
   tri_tri = 1,  ///< cchip_primtest_tri_tri
   tri_quad = 2,  ///< cchip_primtest_tri_quad
   quad_quad = 3,  ///< cchip_primtest_quad_quad
+};
+
+/// Programme of a pair in the axis controller.
+enum class Programme : std::uint8_t {
+  normals = 0,  ///< directed: nA, then nB
+  crossing = 1,  ///< directed: the two axes that decide a pair in general position
+  coplanar = 2,  ///< in-plane axes of both
+  degenerate = 3,  ///< a zero normal: boxes, e_k x f_l, e x u_d, f x u_d
+  tetrahedron = 4,  ///< a warped quad: face normals and all edge pairs
+  exhaustive = 5,  ///< every axis back to back
+  illegal = 6,  ///< reserved mode: one idle beat
 };
 
 namespace defs {
@@ -71,8 +82,8 @@ constexpr int rm_id_w = 8;
 constexpr int limb_w = 17;
 /// input and output register of cchip_mul18 [clock]
 constexpr int mul18_latency = 2;
-/// axes of the exhaustive programme: nA, nB, nine e_k x f_l (paper, eq. 1) [beat]
-constexpr int exhaustive_beats_tri_tri = 11;
+/// width of a programme code [bit]
+constexpr int prog_w = 3;
 
 /// difference of two coordinates [bit]
 constexpr int edge_w(int w) { return w + 1; }
@@ -82,6 +93,14 @@ constexpr int axis_w(int w) { return 2 * w + 2; }
 constexpr int proj_w(int w) { return 3 * w + 3; }
 /// absolute projection [bit]
 constexpr int proj_abs_w(int w) { return 3 * w + 2; }
+/// |e|_1 + |f|_1 of two edges: <= 6 (2^w - 1) [bit]
+constexpr int norm_w(int w) { return w + 3; }
+/// |axis|_1: <= 6 (2^w - 1)^2 [bit]
+constexpr int axis_norm_w(int w) { return 2 * w + 3; }
+/// error bounds of stage compare: at most 16 (|axis|_1 + (|e|_1 + |f|_1 + 32) 2^(w+3)) [bit]
+constexpr int bound_w(int w) { return 2 * w + 11; }
+/// points projected for each axis, relative projection; a, b = vertices of A and of B [point]
+constexpr int points(int a, int b) { return a + b - 3; }
 /// registered levels of an adder tree over n <= 16 terms [clock]
 constexpr int levels(int n) { return n <= 1 ? 0 : n <= 2 ? 1 : n <= 4 ? 2 : n <= 8 ? 3 : 4; }
 /// limbs of an n-bit signed factor, n <= 52: 17-bit unsigned limbs below an up to 18-bit signed one [limb]
@@ -90,14 +109,18 @@ constexpr int limbs(int n) { return n <= 18 ? 1 : n <= 35 ? 2 : 3; }
 constexpr int mul_latency(int a, int b) { return mul18_latency + levels(limbs(a) * limbs(b)); }
 /// edges, products, difference of products [clock]
 constexpr int axis_substages_min(int w) { return 2 + mul_latency(edge_w(w), edge_w(w)); }
-/// point differences (or, absolute, differences of projections), products, two levels of sums [clock]
-constexpr int project_substages_min(int w) { return 3 + mul_latency(edge_w(w), axis_w(w)); }
+/// point differences (or, absolute, differences of projections), products, two levels of sums; at least the 6 of the error bounds [clock]
+constexpr int project_substages_min(int w) { return mul_latency(edge_w(w), axis_w(w)) <= 3 ? 6 : 3 + mul_latency(edge_w(w), axis_w(w)); }
 /// smallest legal SUBSTAGES; the project stage is always the longer one [clock]
 constexpr int substages_min(int w) { return project_substages_min(w); }
 /// macro stage 1 [clock]
 constexpr int select_latency() { return 1; }
+/// cchip_norm1 [clock]
+constexpr int norm1_latency() { return 2; }
+/// cchip_box_compare [clock]
+constexpr int box_latency() { return 5; }
 /// macro stage 4 [clock]
-constexpr int compare_latency() { return 2; }
+constexpr int compare_latency() { return 3; }
 /// cchip_sat_pipeline: beat in to verdict out [clock]
 constexpr int pipe_latency(int s) { return select_latency() + 2 * s + compare_latency(); }
 /// of a lone pair: handshake of s_pair to its first beat, plus last verdict to handshake of m_result with ready = 1 [clock]
@@ -108,6 +131,8 @@ constexpr int pair_latency(int s, int beats) { return pipe_latency(s) + pair_ove
 constexpr int contexts_default(int s) { return pair_latency(s, 1) + 4; }
 /// longest time from the last accepted pair to idle = 1 with m_result_ready = 1 [clock]
 constexpr int drain_bound(int s, int contexts) { return 64 * (contexts > pair_latency(s, 1) ? contexts : pair_latency(s, 1)); }
+/// axes of the exhaustive programme: nA, nB, every e_k x f_l: 11, 14, 18 (paper, eq. 1) [beat]
+constexpr int exhaustive_beats(int a, int b) { return 2 + a * b; }
 
 }  // namespace defs
 }  // namespace cchip

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Clock-exact models of cchip_axis_controller and cchip_primtest_tri_tri: they predict every output
+/// Clock-exact models of cchip_axis_controller and cchip_primtest (all shapes): they predict every output
 /// on every clock.
 #ifndef CCHIP_MODEL_PRIMTEST_HPP
 #define CCHIP_MODEL_PRIMTEST_HPP
 
 #include <cchip/defs.hpp>
 #include <cchip/engine.hpp>
-#include <cchip/model/sat.hpp>
+#include <cchip/model/programme.hpp>
 #include <cchip/model/stream.hpp>
 #include <cstdint>
 #include <optional>
@@ -38,7 +38,7 @@ struct PairHeader {
 /// A beat on its way through the pipeline, and the verdict that comes back for it.
 struct Beat {
   std::size_t context = 0;
-  AxisCode code;
+  State state;
 };
 struct ReturnedBeat {
   Beat beat;
@@ -48,15 +48,15 @@ struct ReturnedBeat {
 /// cchip_axis_controller.
 class AxisController {
  public:
-  explicit AxisController(std::size_t contexts);
+  AxisController(const Options& options, std::size_t contexts);
 
   std::size_t load_context() const;
-  /// m_beat_*
+  /// m_beat_*; the axis it asks for is beat_of(beat()->state, eta).
   const std::optional<Beat>& beat() const { return beat_; }
   /// m_result_*
   const std::optional<Result>& result() const { return result_; }
   /// Internal net pair_waits.
-  bool pair_waits() const { return start_.m_valid() || beat_.has_value(); }
+  bool pair_waits() const { return start_.m_valid() || ready_.m_valid() || beat_.has_value(); }
 
   void clock(const std::optional<PairHeader>& pair, const std::optional<ReturnedBeat>& verdict);
   void reset();
@@ -64,27 +64,29 @@ class AxisController {
  private:
   struct Start {
     std::size_t context = 0;
-    bool legal = false;
+    int mode = 0;
   };
+  Options options_;
   std::size_t contexts_;
   std::size_t fresh_ = 0;
   Fifo<std::size_t> free_;
   Fifo<Start> start_;
+  Fifo<Beat> ready_;
+  std::optional<Beat> next_;
   std::vector<PairHeader> side_;
   std::optional<Beat> beat_;
   std::optional<Result> result_;
-  bool separated_ = false;
-  bool special_ = false;
-  AxisCode witness_;
+  Exhaustive found_;
 };
 
-/// cchip_primtest_tri_tri. Vertices 0..2 of the primitives are used.
-class PrimtestTriTri {
+/// cchip_primtest in any of its shapes.
+class Primtest {
  public:
   struct Parameters {
     int coord_w = defs::coord_w_default;
     int substages = defs::substages_default;
     int contexts = defs::contexts_default(defs::substages_default);
+    Options options = {};
   };
   struct PairIn {
     PairHeader header;
@@ -92,7 +94,7 @@ class PrimtestTriTri {
     GridPrimitive b;
   };
 
-  explicit PrimtestTriTri(const Parameters& parameters);
+  explicit Primtest(const Parameters& parameters);
 
   const Parameters& parameters() const { return parameters_; }
   bool s_pair_ready() const { return ready_; }
@@ -113,6 +115,7 @@ class PrimtestTriTri {
   struct Operands {
     GridPrimitive a;
     GridPrimitive b;
+    int err = 0;
   };
   Parameters parameters_;
   std::size_t pairs_ = 0;

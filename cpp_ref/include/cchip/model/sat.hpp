@@ -27,48 +27,90 @@ std::int64_t dot3(const Word3& a, const Word3& b, int a_w, int b_w);
 /// cchip_cross3: a x b, each component modulo 2^(2 e_w).
 Word3 cross3(const Word3& a, const Word3& b, int e_w);
 
-/// Outputs of macro stage 1 (cchip_sat_select), in grid steps.
+/// Vertices of A and of B that a primitive test is built for; 3 or 4 each.
+struct Shape {
+  std::size_t a = 3;
+  std::size_t b = 3;
+  /// Point slots of the pipeline: 3, 4 or 5.
+  std::size_t points() const { return a + b - 3; }
+};
+constexpr std::size_t max_points = 5;
+
+/// One axis to be tried, as it enters the pipeline.
+struct AxisBeat {
+  AxisCode code;
+  /// Sides of the axis' own primitive on which the other one may be found separated (in-plane axes are
+  /// one-sided).
+  bool allow_above = true;
+  bool allow_below = true;
+  /// eta of the pair, 0..15.
+  int err = 0;
+};
+
+/// eta is rounded up to a power of two in every bound: 2^error_shift(eta), at most 16.
+int error_shift(int eta);
+
+/// Outputs of macro stage 1 (cchip_sat_select), in grid steps. `own[i]`: slot i holds a point of the
+/// axis' own side; the points of the other primitive fill the last slots.
 struct Selection {
   Vec3i e_from, e_to, f_from, f_to;
-  std::array<Vec3i, 3> points;
+  std::array<Vec3i, max_points> points;
+  std::array<bool, 2> own = {false, false};
+};
+/// Outputs of macro stage 2 (cchip_sat_axis).
+struct Axis {
+  Word3 axis = {};
+  std::int64_t edge_norm = 0;  ///< |e|_1 + |f|_1
 };
 /// Outputs of macro stage 3 (cchip_sat_project).
 struct Projections {
-  Word3 p;
-  bool axis_zero;
+  std::array<std::int64_t, max_points> p = {};
+  /// Bound on the error of each p (docs/architecture.md, certainty).
+  std::array<std::int64_t, max_points> sign_bound = {};
+  /// Bound on the error of the difference of two projections onto this axis: 2^error_shift |axis|_1.
+  std::int64_t gap_bound = 0;
+  std::array<bool, 3> axis_negative = {};
+  std::array<bool, 3> axis_zero = {};
+  /// Component of the largest |axis|, the lowest of equals.
+  int axis_largest = 0;
 };
-/// Outputs of macro stage 4 (cchip_sat_compare) and, with axis_zero, of cchip_sat_pipeline.
-struct Verdict {
+/// Outputs of macro stage 4 (cchip_sat_compare).
+struct Comparison {
   bool separated = false;
-  bool axis_zero = false;
-  std::array<bool, 3> negative = {};
-  std::array<bool, 3> zero = {};
+  bool certain_gap = false;  ///< separated, also for the unrounded primitives
+  std::array<bool, max_points> negative = {};
+  std::array<bool, max_points> zero = {};
+  std::array<bool, max_points> certain = {};  ///< the sign is that of the unrounded determinant
+};
+/// Outputs of cchip_box_compare for one component.
+struct BoxComparison {
+  bool separated = false;
+  bool certain_gap = false;
+};
+/// Outputs of cchip_sat_pipeline.
+struct Verdict {
+  Comparison compare;
+  BoxComparison box;  ///< component l of the beat's code
+  std::array<bool, 3> axis_negative = {};
+  std::array<bool, 3> axis_zero = {};
+  int axis_largest = 0;
 };
 
-Selection sat_select(const AxisCode& code, const GridPrimitive& a, const GridPrimitive& b);
-Word3 sat_axis(const Selection& s, int coord_w);
-Projections sat_project(const Word3& axis, const Vec3i& reference, const std::array<Vec3i, 3>& points, int coord_w);
-/// Separated and signs; `axis_zero` is left false.
-Verdict sat_compare(bool cross, const Word3& p, int proj_w);
+Selection sat_select(const Shape& shape, const AxisCode& code, const GridPrimitive& a, const GridPrimitive& b);
+Axis sat_axis(const Selection& s, int coord_w);
+Projections sat_project(const Shape& shape, const Axis& axis, const Vec3i& reference,
+                        const std::array<Vec3i, max_points>& points, int error_shift, int coord_w);
+Comparison sat_compare(const Shape& shape, const AxisBeat& beat, const std::array<bool, 2>& own,
+                       const Projections& projections, int coord_w);
+BoxComparison box_compare(const Shape& shape, const GridPrimitive& a, const GridPrimitive& b, std::size_t component,
+                          int error_shift);
 /// The whole pipeline: one axis of one pair.
-Verdict sat_pipeline(const AxisCode& code, const GridPrimitive& a, const GridPrimitive& b, int coord_w);
+Verdict sat_pipeline(const Shape& shape, const AxisBeat& beat, const GridPrimitive& a, const GridPrimitive& b,
+                     int coord_w);
 
 /// Numeric form of an axis code, {class, k, l} as in `m_result_axis`.
 std::uint16_t to_bits(const AxisCode& code);
 AxisCode axis_code_from_bits(std::uint16_t bits);
-
-/// Axis `beat` (0..10) of the EXHAUSTIVE programme: nA, nB, e_k x f_l with l running first.
-AxisCode exhaustive_axis(int beat);
-
-/// What a programme finds out about a pair; beats in axes.
-struct Outcome {
-  bool grid = false;     ///< no axis separates
-  bool special = false;  ///< coplanar or degenerate: `grid` = true is not proven by these axes
-  AxisCode witness;      ///< first separating axis
-  int beats = 0;
-};
-/// The EXHAUSTIVE programme on two triangles.
-Outcome exhaustive(const GridPair& pair, int coord_w);
 
 }  // namespace cchip::model
 

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cchip/model/programme.hpp>
+#include <stdexcept>
+
+namespace cchip::model {
+namespace {
+
+AxisCode axis(AxisClass cls, std::size_t k = 0, std::size_t l = 0) {
+  return {cls, static_cast<std::uint8_t>(k), static_cast<std::uint8_t>(l)};
+}
+
+int sign_of(bool negative, bool zero) { return zero ? 0 : negative ? -1 : 1; }
+bool is_zero(const std::array<int, 3>& normal) { return normal[0] == 0 && normal[1] == 0 && normal[2] == 0; }
+
+void record_normal_a(Sides& s, const Shape& shape, const Verdict& v) {
+  const std::size_t first = shape.points() - shape.b;
+  for (std::size_t j = 0; j < shape.b; ++j) {
+    s.b[j] = sign_of(v.compare.negative[first + j], v.compare.zero[first + j]);
+    s.certain = s.certain && v.compare.certain[first + j];
+  }
+  for (std::size_t d = 0; d < 3; ++d) s.normal_a[d] = sign_of(v.axis_negative[d], v.axis_zero[d]);
+  s.largest = v.axis_largest;
+  s.warped_a = shape.a == 4 && !v.compare.zero[0];
+}
+void record_normal_b(Sides& s, const Shape& shape, const Verdict& v) {
+  const std::size_t first = shape.points() - shape.a;
+  for (std::size_t i = 0; i < shape.a; ++i) {
+    s.a[i] = sign_of(v.compare.negative[first + i], v.compare.zero[first + i]);
+    s.certain = s.certain && v.compare.certain[first + i];
+  }
+  for (std::size_t d = 0; d < 3; ++d) s.normal_b[d] = sign_of(v.axis_negative[d], v.axis_zero[d]);
+  s.warped_b = shape.b == 4 && !v.compare.zero[0];
+}
+
+/// First edge k of a primitive with n vertices that leads from the side `from` to its opposite.
+std::size_t crossing_edge(const std::array<int, 4>& side, std::size_t n, bool from_positive) {
+  bool any_negative = false;
+  for (std::size_t i = 0; i < n; ++i) any_negative = any_negative || side[i] < 0;
+  const auto positive = [&](std::size_t i) { return side[i] > 0 || (side[i] == 0 && any_negative); };
+  for (std::size_t i = 0; i < n; ++i) {
+    if (positive(i) == from_positive && positive((i + 1) % n) != from_positive) return i;
+  }
+  return 0;
+}
+
+/// The state after beats nA and nB (and, EXHAUSTIVE, all others) did not separate.
+State plan(const Options& o, const Sides& s, int beats) {
+  State next;
+  next.beats = beats;
+  next.sides = s;
+  const bool warped = s.warped_a || s.warped_b;
+  const std::size_t first_b = 0;
+  bool all_zero = true;
+  for (std::size_t j = first_b; j < o.shape.b; ++j) all_zero = all_zero && s.b[j] == 0;
+  if (warped && o.warped_exact) {
+    next.programme = Programme::tetrahedron;
+    next.code = s.warped_a ? axis(AxisClass::normal_a, 1) : axis(AxisClass::normal_b, 1);
+  } else if (is_zero(s.normal_a) || is_zero(s.normal_b)) {
+    next.programme = Programme::degenerate;
+    next.code = axis(AxisClass::cross);
+  } else if (all_zero) {
+    next.programme = Programme::coplanar;
+    next.code = axis(AxisClass::in_plane_a, 0, static_cast<std::size_t>(s.largest));
+  } else {
+    next.programme = Programme::crossing;
+    next.code = axis(AxisClass::cross, crossing_edge(s.a, o.shape.a, true), crossing_edge(s.b, o.shape.b, true));
+    next.second = axis(AxisClass::cross, crossing_edge(s.a, o.shape.a, false), crossing_edge(s.b, o.shape.b, false));
+    next.certain = s.certain && !warped;
+  }
+  return next;
+}
+
+/// Next axis of a programme; nullopt after the last.
+std::optional<AxisCode> next_code(const Options& o, const State& s) {
+  const AxisCode& c = s.code;
+  const std::size_t k = c.k, l = c.l;
+  switch (s.programme) {
+    case Programme::normals:
+      return axis(AxisClass::normal_b);
+    case Programme::exhaustive:
+      if (c.cls == AxisClass::normal_a) return axis(AxisClass::normal_b);
+      if (c.cls == AxisClass::normal_b) return axis(AxisClass::cross);
+      if (l + 1 < o.shape.b) return axis(AxisClass::cross, k, l + 1);
+      if (k + 1 < o.shape.a) return axis(AxisClass::cross, k + 1, 0);
+      return std::nullopt;
+    case Programme::crossing:
+      if (c == s.second) return std::nullopt;
+      return s.second;
+    case Programme::coplanar:
+      if (c.cls == AxisClass::in_plane_a) {
+        return k + 1 < o.shape.a ? axis(c.cls, k + 1, l) : axis(AxisClass::in_plane_b, 0, l);
+      }
+      return k + 1 < o.shape.b ? std::optional(axis(c.cls, k + 1, l)) : std::nullopt;
+    case Programme::degenerate:
+      if (c.cls == AxisClass::cross) {
+        if (l + 1 < o.shape.b) return axis(AxisClass::cross, k, l + 1);
+        if (k + 1 < o.shape.a) return axis(AxisClass::cross, k + 1, 0);
+        return axis(AxisClass::in_plane_a);
+      }
+      if (l < 2) return axis(c.cls, k, l + 1);
+      if (c.cls == AxisClass::in_plane_a) {
+        return k + 1 < o.shape.a ? axis(c.cls, k + 1, 0) : axis(AxisClass::in_plane_b);
+      }
+      return k + 1 < o.shape.b ? std::optional(axis(c.cls, k + 1, 0)) : std::nullopt;
+    case Programme::tetrahedron: {
+      const std::size_t edges_a = s.sides.warped_a ? 6 : o.shape.a;
+      const std::size_t edges_b = s.sides.warped_b ? 6 : o.shape.b;
+      if (c.cls == AxisClass::normal_a) {
+        if (k < 4) return axis(c.cls, k + 1);
+        return s.sides.warped_b ? axis(AxisClass::normal_b, 1) : axis(AxisClass::cross);
+      }
+      if (c.cls == AxisClass::normal_b) return k < 4 ? axis(c.cls, k + 1) : axis(AxisClass::cross);
+      if (l + 1 < edges_b) return axis(AxisClass::cross, k, l + 1);
+      if (k + 1 < edges_a) return axis(AxisClass::cross, k + 1, 0);
+      return std::nullopt;
+    }
+    case Programme::illegal:
+      break;
+  }
+  return std::nullopt;
+}
+
+Outcome make_outcome(const Options& o, const State& s, bool grid, const AxisCode& witness, bool certain, int err) {
+  Outcome out;
+  out.grid = grid;
+  out.witness = witness;
+  out.beats = s.beats + 1;
+  const bool open = grid && !o.warped_exact && (s.sides.warped_a || s.sides.warped_b);
+  out.definite = !open && (err == 0 || (err != defs::err_unknown && certain));
+  return out;
+}
+
+}  // namespace
+
+State first_state(int mode) {
+  State s;
+  if (mode == static_cast<int>(PairMode::exhaustive)) s.programme = Programme::exhaustive;
+  if (mode > static_cast<int>(PairMode::directed)) s.programme = Programme::illegal;
+  s.code = axis(s.programme == Programme::illegal ? AxisClass::illegal : AxisClass::normal_a);
+  return s;
+}
+
+AxisBeat beat_of(const State& s, int err) {
+  AxisBeat beat{s.code, true, true, err};
+  if (s.code.cls == AxisClass::in_plane_a || s.code.cls == AxisClass::in_plane_b) {
+    const int n = s.code.cls == AxisClass::in_plane_a ? s.sides.normal_a[s.code.l] : s.sides.normal_b[s.code.l];
+    // the own vertices lie on the side of sign(-n_d)
+    beat.allow_above = n >= 0;
+    beat.allow_below = n <= 0;
+  }
+  return beat;
+}
+
+std::optional<State> following_beat(const Options& o, const State& s) {
+  if (s.programme != Programme::exhaustive) return std::nullopt;
+  const auto code = next_code(o, s);
+  if (!code) return std::nullopt;
+  State next = s;
+  next.code = *code;
+  ++next.beats;
+  return next;
+}
+
+namespace {
+
+Step advance_exhaustive(const Options& o, const State& s, const Verdict& v, int err, Exhaustive& found) {
+  const bool certain_axis = v.compare.certain[o.shape.a - 2];
+  if (s.code.cls == AxisClass::normal_a) {
+    found = {};
+    record_normal_a(found.sides, o.shape, v);
+    found.certain = found.sides.certain;
+  } else if (s.code.cls == AxisClass::normal_b) {
+    record_normal_b(found.sides, o.shape, v);
+    found.plan = plan(o, found.sides, 0);
+    found.certain = found.plan.certain;
+  } else if (s.code == found.plan.code || s.code == found.plan.second) {
+    found.certain = found.certain && certain_axis;
+  }
+  if (v.compare.separated && !found.separated) {
+    found.separated = true;
+    found.certain_gap = v.compare.certain_gap;
+    found.witness = s.code;
+  }
+  if (following_beat(o, s)) return {};
+  if (found.separated) return {make_outcome(o, s, false, found.witness, found.certain_gap, err), std::nullopt};
+  if (found.plan.programme == Programme::crossing) {
+    State last = s;
+    last.sides = found.sides;
+    return {make_outcome(o, last, true, {}, found.certain && o.shape.points() == 3, err), std::nullopt};
+  }
+  State next = found.plan;
+  next.beats = s.beats + 1;
+  return {std::nullopt, next};
+}
+
+}  // namespace
+
+Step advance(const Options& o, const State& s, const Verdict& v, int err, Exhaustive& found) {
+  if (s.programme == Programme::exhaustive) return advance_exhaustive(o, s, v, err, found);
+  if (s.programme == Programme::illegal) {
+    Outcome out;
+    out.grid = true;
+    out.witness = axis(AxisClass::illegal);
+    return {out, std::nullopt};
+  }
+  if (s.programme == Programme::degenerate && s.code.cls == AxisClass::cross && s.code.k == 0 && v.box.separated) {
+    return {make_outcome(o, s, false, axis(AxisClass::box, 0, s.code.l), v.box.certain_gap, err), std::nullopt};
+  }
+  if (v.compare.separated) return {make_outcome(o, s, false, s.code, v.compare.certain_gap, err), std::nullopt};
+  State next = s;
+  next.beats = s.beats + 1;
+  if (s.programme == Programme::normals) {
+    if (s.code.cls == AxisClass::normal_a) {
+      record_normal_a(next.sides, o.shape, v);
+      next.code = axis(AxisClass::normal_b);
+      return {std::nullopt, next};
+    }
+    record_normal_b(next.sides, o.shape, v);
+    return {std::nullopt, plan(o, next.sides, next.beats)};
+  }
+  // t(k, l) is the projection of W_l; a hit needs t >= 0 on the first, t <= 0 on the second axis
+  if (s.programme == Programme::crossing) next.certain = s.certain && v.compare.certain[o.shape.a - 2];
+  if (const auto code = next_code(o, s)) {
+    next.code = *code;
+    return {std::nullopt, next};
+  }
+  const bool certain = s.programme == Programme::crossing && next.certain && o.shape.points() == 3;
+  return {make_outcome(o, s, true, {}, certain, err), std::nullopt};
+}
+
+Outcome run_programme(const Options& o, const GridPair& pair, int mode, int coord_w) {
+  State s = first_state(mode);
+  Exhaustive found;
+  for (;;) {
+    const Verdict v = sat_pipeline(o.shape, beat_of(s, pair.eta), pair.a, pair.b, coord_w);
+    const Step step = advance(o, s, v, pair.eta, found);
+    if (step.outcome) return *step.outcome;
+    const auto next = step.next ? step.next : following_beat(o, s);
+    s = *next;
+  }
+}
+
+}  // namespace cchip::model

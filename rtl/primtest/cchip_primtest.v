@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`include "cchip_defs.vh"
+`default_nettype none
+// cchip_primtest: the machine behind every primitive test: operand memory, axis controller, SAT
+// pipeline, result FIFO. Wrapped by cchip_primtest_tri_tri, _tri_quad and _quad_quad, whose
+// headers describe it for the user.
+//   latency      lone EXHAUSTIVE pair without special case: CCHIP_PAIR_LATENCY(SUBSTAGES, beats) clocks from
+//                handshake of s_pair to handshake of m_result with ready = 1; any other programme:
+//                beats * (CCHIP_BEAT_LATENCY(SUBSTAGES)) + CCHIP_PAIR_LATENCY(SUBSTAGES, 1) - CCHIP_BEAT_LATENCY
+//   throughput   one axis per clock
+//   in flight    at most CONTEXTS pairs between the handshakes of s_pair and m_result
+//   cuts         every path: each output, s_pair_ready included, is a flip-flop
+//   reset        no pair accepted before is ever answered; s_pair_ready is 0 while rst is 1
+module cchip_primtest #(
+    // width of a coordinate, bit, 4..20
+    parameter integer COORD_W = 16,
+    // registers in each of the stages axis and project, clocks, >= CCHIP_SUBSTAGES_MIN(COORD_W)
+    parameter integer SUBSTAGES = 10,
+    // pairs in flight, 1..256
+    parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
+    // 0 relative, 1 absolute projection (see cchip_sat_project)
+    parameter integer ABSOLUTE_PROJECTION = 0,
+    // 1: warped quads are decided exactly; 0: they are left open (see cchip_axis_controller)
+    parameter integer WARPED_EXACT = 1,
+    // vertices of A and of B: 3 3, 3 4 or 4 4
+    parameter integer VERTS_A = 3,
+    parameter integer VERTS_B = 3,
+    // value of rm_id
+    parameter integer RM_ID = 1
+) (
+    input  wire                   clk,
+    input  wire                   rst,
+    input  wire                   s_pair_valid,
+    output wire                   s_pair_ready,
+    input  wire [           15:0] s_pair_tag,
+    input  wire [            1:0] s_pair_mode,
+    input  wire [4*3*COORD_W-1:0] s_pair_a,
+    input  wire [4*3*COORD_W-1:0] s_pair_b,
+    input  wire [            3:0] s_pair_err,
+    output wire                   m_result_valid,
+    input  wire                   m_result_ready,
+    output wire [           15:0] m_result_tag,
+    output wire                   m_result_hit,
+    output wire                   m_result_grid,
+    output wire                   m_result_definite,
+    output wire [            8:0] m_result_axis,
+    output wire [            5:0] m_result_beats,
+    output wire [            7:0] rm_id,
+    output wire                   idle
+);
+
+  localparam integer A_W = 3 * VERTS_A * COORD_W;
+  localparam integer B_W = 3 * VERTS_B * COORD_W;
+  localparam [31:0] RM = RM_ID;
+  localparam integer USER_W = CONTEXT_W + 37;
+  localparam integer CONTEXT_W = CONTEXTS > 1 ? $clog2(CONTEXTS) : 1;
+  localparam integer COUNT_W = $clog2(CONTEXTS + 1);
+  localparam [31:0] CONTEXT_COUNT = CONTEXTS;
+  localparam integer RESULT_W = 16 + 3 + 9 + 6;
+
+  generate
+    if (COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX) begin : gen_illegal_coord_w
+      cchip_error_COORD_W_must_be_4_to_20 u_error ();
+    end
+    if (SUBSTAGES < `CCHIP_SUBSTAGES_MIN(COORD_W)) begin : gen_illegal_substages
+      cchip_error_SUBSTAGES_below_minimum_for_COORD_W u_error ();
+    end
+    if (SUBSTAGES > `CCHIP_SUBSTAGES_MAX) begin : gen_illegal_substages_max
+      cchip_error_SUBSTAGES_above_32 u_error ();
+    end
+    if (CONTEXTS < 1 || CONTEXTS > `CCHIP_CONTEXTS_MAX) begin : gen_illegal_contexts
+      cchip_error_CONTEXTS_must_be_1_to_256 u_error ();
+    end
+  endgenerate
+
+  assign rm_id = RM[`CCHIP_RM_ID_W-1:0];
+
+  // ---- pairs between the two handshakes: decides ready and idle
+  reg  [COUNT_W-1:0] pairs_q;
+  reg                ready_q, idle_q;
+  wire               accept = s_pair_valid & ready_q;
+  wire               answer = m_result_valid & m_result_ready;
+  wire [COUNT_W-1:0] pairs_d = accept == answer ? pairs_q
+                             : accept ? pairs_q + {{COUNT_W - 1{1'b0}}, 1'b1}
+                                      : pairs_q - {{COUNT_W - 1{1'b0}}, 1'b1};
+
+  always @(posedge clk)
+    if (rst) begin
+      pairs_q <= {COUNT_W{1'b0}};
+      ready_q <= 1'b0;
+      idle_q  <= 1'b1;
+    end else begin
+      pairs_q <= pairs_d;
+      ready_q <= pairs_d != CONTEXT_COUNT[COUNT_W-1:0];
+      idle_q  <= pairs_d == {COUNT_W{1'b0}};
+    end
+
+  assign s_pair_ready = ready_q;
+  assign idle         = idle_q;
+
+  // ---- input register and operand memory: one writer, read by the beats
+  reg              load_valid_q;
+  reg [      15:0] load_tag_q;
+  reg [       1:0] load_mode_q;
+  reg [       3:0] load_err_q;
+  reg [       2:0] load_shift_q;
+  reg [   A_W-1:0] load_a_q;
+  reg [   B_W-1:0] load_b_q;
+
+  // smallest shift with eta <= 2^shift
+  function [2:0] error_shift(input [3:0] err);
+    error_shift = err <= 4'd1 ? 3'd0 : err == 4'd2 ? 3'd1 : err <= 4'd4 ? 3'd2 : err <= 4'd8 ? 3'd3 : 3'd4;
+  endfunction
+
+  always @(posedge clk) begin
+    if (rst) load_valid_q <= 1'b0;
+    else load_valid_q <= accept;
+    load_tag_q  <= s_pair_tag;
+    load_mode_q <= s_pair_mode;
+    load_err_q  <= s_pair_err;
+    load_shift_q <= error_shift(s_pair_err);
+    load_a_q    <= s_pair_a[A_W-1:0];
+    load_b_q    <= s_pair_b[B_W-1:0];
+  end
+
+  generate
+    if (VERTS_A == 3) begin : gen_unused_a
+      wire unused = &{1'b0, s_pair_a[12*COORD_W-1:A_W]};
+    end
+    if (VERTS_B == 3) begin : gen_unused_b
+      wire unused = &{1'b0, s_pair_b[12*COORD_W-1:B_W]};
+    end
+  endgenerate
+
+  wire                 beat_valid;
+  wire [CONTEXT_W-1:0] load_context, beat_context;
+  wire [          8:0] beat_code;
+  wire                 beat_allow_above, beat_allow_below;
+  wire [   USER_W-1:0] beat_user;
+  wire [      A_W-1:0] operand_a;
+  wire [      B_W-1:0] operand_b;
+  wire [          2:0] operand_shift;
+
+  cchip_ram #(
+      .WIDTH (3 + A_W + B_W),
+      .DEPTH (CONTEXTS),
+      .ADDR_W(CONTEXT_W)
+  ) u_operands (
+      .clk       (clk),
+      .write     (load_valid_q),
+      .write_addr(load_context),
+      .write_data({load_shift_q, load_b_q, load_a_q}),
+      .read_addr (beat_context),
+      .read_data ({operand_shift, operand_b, operand_a})
+  );
+
+  // ---- the beat waits one clock for its operands
+  reg              fetch_valid_q, fetch_allow_above_q, fetch_allow_below_q;
+  reg [       8:0] fetch_code_q;
+  reg [USER_W-1:0] fetch_user_q;
+  always @(posedge clk) begin
+    if (rst) fetch_valid_q <= 1'b0;
+    else fetch_valid_q <= beat_valid;
+    fetch_code_q        <= beat_code;
+    fetch_allow_above_q <= beat_allow_above;
+    fetch_allow_below_q <= beat_allow_below;
+    fetch_user_q        <= beat_user;
+  end
+
+  localparam integer POINTS = `CCHIP_POINTS(VERTS_A, VERTS_B);
+  wire              verdict_valid, verdict_separated, verdict_certain_gap;
+  wire [POINTS-1:0] verdict_negative, verdict_zero, verdict_certain;
+  wire [       2:0] verdict_axis_negative, verdict_axis_zero;
+  wire [       1:0] verdict_axis_largest;
+  wire              verdict_box_separated, verdict_box_certain;
+  wire [USER_W-1:0] verdict_user;
+
+  cchip_sat_pipeline #(
+      .COORD_W            (COORD_W),
+      .SUBSTAGES          (SUBSTAGES),
+      .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
+      .VERTS_A            (VERTS_A),
+      .VERTS_B            (VERTS_B),
+      .USER_W             (USER_W)
+  ) u_pipeline (
+      .clk                    (clk),
+      .rst                    (rst),
+      .s_beat_valid           (fetch_valid_q),
+      .s_beat_code            (fetch_code_q),
+      .s_beat_allow_above     (fetch_allow_above_q),
+      .s_beat_allow_below     (fetch_allow_below_q),
+      .s_beat_error_shift     (operand_shift),
+      .s_beat_a               (operand_a),
+      .s_beat_b               (operand_b),
+      .s_beat_user            (fetch_user_q),
+      .m_verdict_valid        (verdict_valid),
+      .m_verdict_separated    (verdict_separated),
+      .m_verdict_certain_gap  (verdict_certain_gap),
+      .m_verdict_negative     (verdict_negative),
+      .m_verdict_zero         (verdict_zero),
+      .m_verdict_certain      (verdict_certain),
+      .m_verdict_axis_negative(verdict_axis_negative),
+      .m_verdict_axis_zero    (verdict_axis_zero),
+      .m_verdict_axis_largest (verdict_axis_largest),
+      .m_verdict_box_separated(verdict_box_separated),
+      .m_verdict_box_certain  (verdict_box_certain),
+      .m_verdict_user         (verdict_user)
+  );
+
+  wire                outcome_valid;
+  wire [RESULT_W-1:0] outcome;
+
+  cchip_axis_controller #(
+      .CONTEXTS    (CONTEXTS),
+      .CONTEXT_W   (CONTEXT_W),
+      .VERTS_A     (VERTS_A),
+      .VERTS_B     (VERTS_B),
+      .WARPED_EXACT(WARPED_EXACT)
+  ) u_controller (
+      .clk                    (clk),
+      .rst                    (rst),
+      .s_pair_valid           (load_valid_q),
+      .s_pair_tag             (load_tag_q),
+      .s_pair_mode            (load_mode_q),
+      .s_pair_err             (load_err_q),
+      .m_load_context         (load_context),
+      .m_beat_valid           (beat_valid),
+      .m_beat_context         (beat_context),
+      .m_beat_code            (beat_code),
+      .m_beat_allow_above     (beat_allow_above),
+      .m_beat_allow_below     (beat_allow_below),
+      .m_beat_user            (beat_user),
+      .s_verdict_valid        (verdict_valid),
+      .s_verdict_user         (verdict_user),
+      .s_verdict_separated    (verdict_separated),
+      .s_verdict_certain_gap  (verdict_certain_gap),
+      .s_verdict_negative     (verdict_negative),
+      .s_verdict_zero         (verdict_zero),
+      .s_verdict_certain      (verdict_certain),
+      .s_verdict_axis_negative(verdict_axis_negative),
+      .s_verdict_axis_zero    (verdict_axis_zero),
+      .s_verdict_axis_largest (verdict_axis_largest),
+      .s_verdict_box_separated(verdict_box_separated),
+      .s_verdict_box_certain  (verdict_box_certain),
+      .m_result_valid         (outcome_valid),
+      .m_result_tag           (outcome[15:0]),
+      .m_result_hit           (outcome[16]),
+      .m_result_grid          (outcome[17]),
+      .m_result_definite      (outcome[18]),
+      .m_result_axis          (outcome[27:19]),
+      .m_result_beats         (outcome[33:28])
+  );
+
+  // ---- results: the FIFO has room for every pair in flight, so verdicts never wait
+  wire                queue_valid, queue_ready, queue_space;
+  wire [RESULT_W-1:0] queue;
+
+  cchip_fifo #(
+      .WIDTH(RESULT_W),
+      .DEPTH(CONTEXTS)
+  ) u_results (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(outcome_valid),
+      .s_ready(queue_space),
+      .s_data (outcome),
+      .m_valid(queue_valid),
+      .m_ready(queue_ready),
+      .m_data (queue)
+  );
+  cchip_skid_buffer #(
+      .WIDTH(RESULT_W)
+  ) u_out (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(queue_valid),
+      .s_ready(queue_ready),
+      .s_data (queue),
+      .m_valid(m_result_valid),
+      .m_ready(m_result_ready),
+      .m_data ({m_result_beats, m_result_axis, m_result_definite, m_result_grid, m_result_hit, m_result_tag})
+  );
+
+`include "cchip_assert.vh"
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_result_space, !outcome_valid || queue_space)
+      `CCHIP_ASSERT(a_count, {{32 - COUNT_W{1'b0}}, pairs_q} <= CONTEXT_COUNT)
+    end
+
+endmodule
+`default_nettype wire
