@@ -115,7 +115,7 @@ TEST_CASE("pairs: differing answers are listed, exit code 3", "[system][pairs]")
   std::istringstream names(rows[0]);
   std::istringstream values(rows[1]);
   std::vector<std::string> shown;
-  for (std::string name, value; names >> name && values >> value;) shown.push_back(name + "=" + value);
+  for (std::string name, value; names >> name && values >> value;) shown.push_back(name.append("=").append(value));
   CHECK(shown == std::vector<std::string>{"id=4", "touches=0", "row=6", "expected=0", "hit=1"});
   CHECK(count(rows[2], "mismatches") == 1);
 
