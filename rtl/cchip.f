@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 common/cchip_delay.v
 common/cchip_skid_buffer.v
 common/cchip_fifo.v
