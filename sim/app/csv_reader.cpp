@@ -11,8 +11,8 @@
 namespace cchip::app {
 namespace {
 
-constexpr std::size_t chunk_bytes = 64 * 1024;
-constexpr std::uint64_t row_bytes_max = 1024 * 1024;
+constexpr std::size_t chunk_bytes = 65536;
+constexpr std::uint64_t row_bytes_max = 1048576;
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }

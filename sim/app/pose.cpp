@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <string_view>
 #include <vector>
@@ -34,9 +35,9 @@ Eigen::Matrix3d rotation(double degrees, int from, int to) {
   const double radians = rest * (std::acos(-1.0) / 180.0);
   const double c = std::cos(radians);
   const double s = std::sin(radians);
-  const double cosines[4] = {c, -s, -c, s};
-  const double sines[4] = {s, c, -s, -c};
-  const int turn = ((quarter % 4) + 4) % 4;
+  const std::array<double, 4> cosines = {c, -s, -c, s};
+  const std::array<double, 4> sines = {s, c, -s, -c};
+  const auto turn = static_cast<std::size_t>(((quarter % 4) + 4) % 4);
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
   matrix(from, from) = matrix(to, to) = cosines[turn];
   matrix(to, from) = sines[turn];
@@ -67,8 +68,9 @@ Eigen::Isometry3d parse_pose_matrix(const std::string& text) {
         fmt::format("--pose-matrix: got {} numbers; write the twelve of the 3x4 matrix row by row", n.size()));
   }
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  auto next = n.begin();
   for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 4; ++column) pose(row, column) = n[static_cast<std::size_t>(4 * row + column)];
+    for (int column = 0; column < 4; ++column) pose(row, column) = *next++;
   }
   const Eigen::Matrix3d r = pose.linear();
   const double error = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();

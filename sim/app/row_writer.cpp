@@ -17,7 +17,7 @@ std::string text_of(const Cell& cell) {
   return {};
 }
 
-class CsvWriter : public RowWriter {
+class CsvWriter final : public RowWriter {
  public:
   CsvWriter(std::ostream& out, const std::vector<std::string>& names) : out_(out) {
     write(std::vector<Cell>(names.begin(), names.end()));
@@ -39,7 +39,7 @@ class CsvWriter : public RowWriter {
   std::string text_;
 };
 
-class JsonlWriter : public RowWriter {
+class JsonlWriter final : public RowWriter {
  public:
   JsonlWriter(std::ostream& out, std::vector<std::string> names) : out_(out), names_(std::move(names)) {}
   void write(const std::vector<Cell>& cells) override {
@@ -65,7 +65,7 @@ class JsonlWriter : public RowWriter {
   std::string text_;
 };
 
-class TableWriter : public RowWriter {
+class TableWriter final : public RowWriter {
  public:
   TableWriter(std::ostream& out, const std::vector<std::string>& names) : out_(out) {
     write(std::vector<Cell>(names.begin(), names.end()));

@@ -21,7 +21,8 @@ class UsageError : public std::runtime_error {
 
 /// The same, placed in a row of a file: "<file>:<row>: <message>".
 inline UsageError row_error(const std::string& file, std::uint64_t row, const std::string& message) {
-  return UsageError(file + ":" + std::to_string(row) + ": " + message);
+  UsageError error(file + ":" + std::to_string(row) + ": " + message);
+  return error;
 }
 
 }  // namespace cchip::app

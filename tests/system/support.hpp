@@ -100,6 +100,7 @@ class ScriptedEngine : public PairEngine {
   std::vector<EngineAnswer> run(const std::vector<GridPair>& pairs, PairMode) override {
     batches.push_back(pairs.size());
     std::vector<EngineAnswer> answers;
+    answers.reserve(pairs.size());
     for (const GridPair& pair : pairs) answers.push_back(answer_(pair));
     return answers;
   }

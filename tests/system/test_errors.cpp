@@ -71,7 +71,9 @@ TEST_CASE("errors: coordinates", "[system][errors]") {
   for (const auto& [text, message] : cases) {
     for (const std::string engine : {"model", "exact"}) {
       const std::string file = folder.write("f.csv", with_field(10, text));
-      check_error({"pairs", file, "--engine", engine}, "cchip: " + file + ":3: column b0y: " + message);
+      std::string expected = "cchip: ";
+      expected.append(file).append(":3: column b0y: ").append(message);
+      check_error({"pairs", file, "--engine", engine}, expected);
     }
   }
 }

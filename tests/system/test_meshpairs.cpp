@@ -85,7 +85,7 @@ TEST_CASE("meshpairs: the engines agree on the grid of real meshes", "[system][m
   CAPTURE(c.a, c.b, c.pose);
   std::vector<GridPair> pairs;
   for_each_candidate(load_mesh_file(model(c.a)), transformed(load_mesh_file(model(c.b)), parse_pose(c.pose)), 3000,
-                     [&](PairJob job) { pairs.push_back(quantise(job.a, job.b, defs::coord_w_default).pair); });
+                     [&](const PairJob& job) { pairs.push_back(quantise(job.a, job.b, defs::coord_w_default).pair); });
   REQUIRE_FALSE(pairs.empty());
   const auto run = [&](EngineKind kind) {
     EngineOptions options;

@@ -73,6 +73,25 @@ TEST_CASE("pairs: what the hardware says of the hand-made pairs", "[system][pair
   }
 }
 
+TEST_CASE("pairs: no answer depends on what the RTL holds at power-up", "[system][pairs]") {
+  const auto run = [](const std::string& seed) {
+    return run_cchip({"pairs", "-", "--engine", "rtl", "--format", "csv", "--seed", seed}, hand_made());
+  };
+  const Outcome first = run("1");
+  CHECK(first.code == exit_ok);
+  for (const std::string seed : {"2", "12345"}) {
+    CHECK(run(seed).out == first.out);
+    CHECK(run(seed).err == first.err);
+  }
+}
+
+TEST_CASE("pairs: RTL and its model agree in every byte", "[system][pairs]") {
+  const Outcome rtl = run_cchip({"pairs", "-", "--engine", "rtl", "--format", "csv"}, hand_made());
+  const Outcome model = run_cchip({"pairs", "-", "--engine", "model", "--format", "csv"}, hand_made());
+  CHECK(rtl.code == exit_ok);
+  CHECK(rtl.out == model.out);
+}
+
 TEST_CASE("pairs: a file and standard input give the same bytes", "[system][pairs]") {
   const TemporaryFolder folder;
   const std::string file = folder.write("pairs.csv", hand_made());
@@ -96,7 +115,7 @@ TEST_CASE("pairs: differing answers are listed, exit code 3", "[system][pairs]")
   std::istringstream names(rows[0]);
   std::istringstream values(rows[1]);
   std::vector<std::string> shown;
-  for (std::string name, value; names >> name && values >> value;) shown.push_back(name + "=" + value);
+  for (std::string name, value; names >> name && values >> value;) shown.push_back(name.append("=").append(value));
   CHECK(shown == std::vector<std::string>{"id=4", "touches=0", "row=6", "expected=0", "hit=1"});
   CHECK(count(rows[2], "mismatches") == 1);
 

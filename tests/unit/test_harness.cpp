@@ -222,7 +222,7 @@ TEST_CASE("harness: other exceptions also leave a wave", "[unit][harness]") {
 
 TEST_CASE("harness: fields of vectors come back as written", "[unit][harness]") {
   std::mt19937_64 random(seed_from_environment());
-  VlWide<7> wide;
+  VlWide<7> wide = {};
   QData quad = 0;
   set_random(wide, 216, random);
   CHECK(wide[6] >> 24 == 0);

@@ -8,9 +8,12 @@
 
 namespace cchip {
 
-/// True if the closed primitives of the pair share a point. Brute force over a complete axis set,
-/// intervals of all vertices, no early end. Floating-point, yet exact: `double` for coord_w <= 17,
-/// `long double` above (DESIGN: |projection| < 2^(3W+2)).
+/// True if the closed primitives of the pair share a point (touching counts). Brute force over a complete
+/// axis set, intervals of all vertices, no early end; coplanar and degenerate pairs included, quads as hulls
+/// of their four vertices. Coordinates in grid steps, each of `coord_w` signed bits.
+/// Floating-point, yet exact: every product and partial sum is an integer below 2^(3 coord_w + 2), which
+/// `double` holds for coord_w <= 17 and `long double` above. eta plays no part.
+/// \throws std::invalid_argument if coord_w is not in 4..20
 bool eigen_intersects(const GridPair& pair, int coord_w);
 
 }  // namespace cchip

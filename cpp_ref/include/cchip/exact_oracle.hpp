@@ -9,10 +9,13 @@
 
 namespace cchip {
 
-/// True if the closed primitives share a point; fixed-width 128-bit integers.
+/// True if the closed primitives share a point (touching counts), for any 32-bit coordinates, in fixed-width
+/// 128-bit integers. Coplanar and degenerate primitives included, quads as hulls of their four vertices.
+/// eta plays no part.
 bool exact_intersects(const GridPair& pair);
-/// The same for any finite doubles, exact for these doubles (arbitrary precision after scaling).
-/// Throws std::invalid_argument if a coordinate is not finite.
+/// The same for any finite doubles, exact for these doubles: all coordinates are scaled by one power of two to
+/// integers of arbitrary size.
+/// \throws std::invalid_argument if a coordinate is not finite
 bool exact_intersects(const Primitive& a, const Primitive& b);
 
 }  // namespace cchip

@@ -43,9 +43,11 @@ struct GridPair {
   int eta = 0;
 };
 
-/// True if one of the triangle's edges differences spans no plane: all vertices on a line or point.
+/// True if the vertices span no plane: all on one line, or one point.
+/// Exact for coordinates of up to defs::coord_w_max bits, like is_coplanar().
 bool is_degenerate(const GridPrimitive& p);
-/// True if all vertices of both primitives lie in one plane (degenerate pairs included where so).
+/// True if some plane holds all vertices of both primitives. Degenerate primitives count like others: two
+/// segments are coplanar unless their lines are skew, and a point is coplanar with every segment and point.
 bool is_coplanar(const GridPair& pair);
 
 }  // namespace cchip

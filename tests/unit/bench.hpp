@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What the clock-exact tests of the modules share.
+#ifndef CCHIP_TESTS_UNIT_BENCH_HPP
+#define CCHIP_TESTS_UNIT_BENCH_HPP
+
+#include <catch2/catch.hpp>
+#include <cchip/model/sat.hpp>
+#include <cchip/model/stream.hpp>
+#include <cchip/sim/bits.hpp>
+#include <cchip/sim/pair_port.hpp>
+#include <cchip/sim/simulation.hpp>
+#include <cchip/sim/wave_on_failure.hpp>
+#include <cctype>
+#include <functional>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cchip::test {
+
+using Random = std::mt19937_64;
+
+/// An agent from two functions.
+class Bench : public sim::Agent {
+ public:
+  using Action = std::function<void(const sim::ClockInfo&)>;
+  Bench(Action drive, Action sample) : drive_(std::move(drive)), sample_(std::move(sample)) {}
+  void drive(const sim::ClockInfo& now) override { drive_(now); }
+  void sample(const sim::ClockInfo& now) override { sample_(now); }
+
+ private:
+  Action drive_;
+  Action sample_;
+};
+
+/// Name of the running test case as part of a file name.
+inline std::string test_name() {
+  std::string name = Catch::getResultCapture().getCurrentTestName();
+  for (char& c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  }
+  return name;
+}
+
+/// Runs the body with two seeds of what the RTL leaves undefined at power-up (and of the stimulus); a failure
+/// leaves a waveform.
+template <class Body>
+void for_two_power_ups(Body&& body) {
+  sim::SimulationOptions options;
+  sim::with_wave_on_failure(test_name(), body, options);
+  ++options.seed;
+  sim::with_wave_on_failure(test_name() + "_2", body, options);
+}
+
+/// \throws sim::SimulationError got differs from expected
+template <class Got, class Expected>
+void expect(const char* what, const Got& got, const Expected& expected) {
+  if (got == expected) return;
+  throw sim::SimulationError(std::string(what) + " is " + sim::to_text(got) + ", expected " + sim::to_text(expected));
+}
+
+inline bool chance(Random& random, int percent) { return static_cast<int>(random() % 100) < percent; }
+
+/// Signed numbers of `width` bits at which something can go wrong.
+inline std::vector<std::int64_t> extremes(int width) {
+  const std::int64_t half = std::int64_t{1} << (width - 1);
+  return {-half, -half + 1, -1, 0, 1, half - 1};
+}
+
+/// Signed number of `width` (up to 64) bits: an extreme one, a small one or any.
+inline std::int64_t random_word(Random& random, int width) {
+  switch (random() % 4) {
+    case 0: {
+      const auto list = extremes(width);
+      return list[random() % list.size()];
+    }
+    case 1:
+      return model::wrap(random() % 5 - 2, width);
+    default:
+      return model::wrap(random(), width);
+  }
+}
+inline model::Word3 random_word3(Random& random, int width) {
+  return {random_word(random, width), random_word(random, width), random_word(random, width)};
+}
+
+template <class Port>
+void set_word3(Port& port, int width, const model::Word3& value) {
+  for (int d = 0; d < 3; ++d) sim::set_signed(port, width * d, width, value[static_cast<std::size_t>(d)]);
+}
+/// Vector `index` of a row of vectors.
+template <class Port>
+model::Word3 get_word3(const Port& port, int width, int index = 0) {
+  const int lsb = 3 * width * index;
+  return {sim::get_signed(port, lsb, width), sim::get_signed(port, lsb + width, width),
+          sim::get_signed(port, lsb + 2 * width, width)};
+}
+
+inline Vec3i random_point(Random& random, int coord_w) {
+  const auto w = random_word3(random, coord_w);
+  return {static_cast<int>(w[0]), static_cast<int>(w[1]), static_cast<int>(w[2])};
+}
+inline GridPrimitive random_triangle(Random& random, int coord_w) {
+  GridPrimitive p;
+  for (std::size_t i = 0; i < 3; ++i) p.v[i] = random_point(random, coord_w);
+  return p;
+}
+template <class Port>
+void set_triangle(Port& port, const GridPrimitive& p, int coord_w) {
+  sim::set_vertices(port, p.v, 3, coord_w);
+}
+inline model::Word3 to_word3(const Vec3i& v) { return {v.x(), v.y(), v.z()}; }
+
+/// Dot product without a limit on the way.
+inline sim::Int128 wide_dot(const model::Word3& a, const model::Word3& b) {
+  sim::Int128 sum = 0;
+  for (std::size_t d = 0; d < 3; ++d) sum += sim::Int128{a[d]} * b[d];
+  return sum;
+}
+
+}  // namespace cchip::test
+
+#endif

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <models/cchip_ram.hpp>
+
+#include "bench.hpp"
+
+using namespace cchip;
+using namespace cchip::test;
+
+TEMPLATE_LIST_TEST_CASE("cchip_ram: registered read of the old word", "[unit][cchip_ram]", cchip_ram_configs) {
+  using Model = typename TestType::Model;
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    Random random(options.seed);
+    sim::Simulation<Model> simulation(options);
+    Model& top = simulation.top();
+    model::Ram<std::uint64_t> model(TestType::DEPTH);
+    int compared = 0;
+    int collisions = 0;
+    Bench bench(
+        [&](const sim::ClockInfo&) {
+          top.write = random() & 1;
+          top.write_addr = static_cast<CData>(random() % TestType::DEPTH);
+          top.read_addr = chance(random, 50) ? top.write_addr : static_cast<CData>(random() % TestType::DEPTH);
+          sim::set_random(top.write_data, TestType::WIDTH, random);
+        },
+        [&](const sim::ClockInfo&) {
+          if (model.read_data()) {
+            expect("read_data", sim::get_bits(top.read_data, 0, TestType::WIDTH), *model.read_data());
+            ++compared;
+          }
+          collisions += top.write != 0 && top.write_addr == top.read_addr ? 1 : 0;
+          model.clock(top.write != 0, top.write_addr, sim::get_bits(top.write_data, 0, TestType::WIDTH), top.read_addr);
+        });
+    simulation.add(bench);
+    simulation.steps(2000);
+    REQUIRE(compared > 1800);
+    REQUIRE(collisions > 400);
+  });
+}

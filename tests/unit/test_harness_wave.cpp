@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every signal of the GTKWave layout is in the waveform that it belongs to.
+#include <gtkwave/fstapi.h>
+
+#include <catch2/catch.hpp>
+#include <cchip/rtl_engine.hpp>
+#include <cchip/sim/wave_on_failure.hpp>
+#include <cchip/wave_layout.hpp>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+using namespace cchip;
+
+namespace {
+
+/// Full names of all signals, "TOP.module.name[7:0]".
+std::set<std::string> signals_of(const std::string& fst) {
+  std::set<std::string> names;
+  void* reader = fstReaderOpen(fst.c_str());
+  REQUIRE(reader != nullptr);
+  std::vector<std::string> scopes{""};
+  while (const fstHier* entry = fstReaderIterateHier(reader)) {
+    if (entry->htyp == FST_HT_SCOPE) scopes.push_back(scopes.back() + entry->u.scope.name + ".");
+    if (entry->htyp == FST_HT_UPSCOPE) scopes.pop_back();
+    if (entry->htyp != FST_HT_VAR) continue;
+    std::string name = entry->u.var.name;
+    const auto space = name.find(' ');  // "name [7:0]"
+    if (space != std::string::npos) name.erase(space, 1);
+    names.insert(scopes.back() + name);
+  }
+  fstReaderClose(reader);
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("harness: the layout names signals that exist", "[unit][harness]") {
+  RtlEngineOptions options;
+  options.trace_path = sim::wave_folder() + "/harness_layout.fst";
+  options.trace_clocks = 10;
+  make_rtl_engine(options);
+  write_gtkw(options.trace_path);
+  const std::set<std::string> signals = signals_of(options.trace_path);
+  REQUIRE(signals.size() > 100);
+
+  std::ifstream file(sim::wave_folder() + "/harness_layout.gtkw");
+  const std::regex signal("TOP\\.[^ ]+");
+  int named = 0;
+  std::set<std::string> groups;
+  bool dumpfile = false;
+  for (std::string line; std::getline(file, line);) {
+    dumpfile = dumpfile || line == "[dumpfile] \"" + options.trace_path + "\"";
+    if (line.front() == '-') groups.insert(line.substr(1));
+    if (line.front() != '+' && line.front() != '#') continue;
+    for (std::sregex_iterator at(line.begin(), line.end(), signal), end; at != end; ++at) {
+      INFO(line.substr(0, 80));
+      CHECK(signals.count(at->str()) == 1);
+      ++named;
+    }
+  }
+  CHECK(dumpfile);
+  CHECK(named > 100);
+  for (const char* group : {"stream s_pair", "axis controller", "macro stage 1 select", "macro stage 2 axis",
+                            "macro stage 3 project", "macro stage 4 compare", "stream m_result"}) {
+    CHECK(groups.count(group) == 1);
+  }
+}
+
+TEST_CASE("harness: a layout that cannot be written is an error", "[unit][harness]") {
+  CHECK_THROWS_WITH(write_gtkw("/dev/null/wave.fst"), Catch::Contains("cannot be written"));
+}
