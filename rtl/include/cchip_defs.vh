@@ -113,6 +113,8 @@
 `define CCHIP_PAIR_OVERHEAD (7)
 // lone pair: handshake of s_pair to handshake of m_result, beats issued back to back [clock]
 `define CCHIP_PAIR_LATENCY(s, beats) (`CCHIP_PIPE_LATENCY((s)) + `CCHIP_PAIR_OVERHEAD + (beats) - 1)
+// beat to the next beat of the same pair where the verdict decides what follows (all but EXHAUSTIVE) [clock]
+`define CCHIP_BEAT_LATENCY(s) (`CCHIP_PIPE_LATENCY((s)) + 4)
 // default CONTEXTS: round trip of a one-beat pair + 4 [pair]
 `define CCHIP_CONTEXTS_DEFAULT(s) (`CCHIP_PAIR_LATENCY((s), 1) + 4)
 // longest time from the last accepted pair to idle = 1 with m_result_ready = 1 [clock]

@@ -4,9 +4,9 @@
 // cchip_primtest: the machine behind every primitive test: operand memory, axis controller, SAT
 // pipeline, result FIFO. Wrapped by cchip_primtest_tri_tri, _tri_quad and _quad_quad, whose
 // headers describe it for the user.
-//   latency      lone EXHAUSTIVE pair without special case: CCHIP_PAIR_LATENCY(SUBSTAGES, beats) clocks from
-//                handshake of s_pair to handshake of m_result with ready = 1; any other programme:
-//                beats * (CCHIP_BEAT_LATENCY(SUBSTAGES)) + CCHIP_PAIR_LATENCY(SUBSTAGES, 1) - CCHIP_BEAT_LATENCY
+//   latency      lone pair, handshake of s_pair to handshake of m_result with ready = 1:
+//                EXHAUSTIVE without special case CCHIP_PAIR_LATENCY(SUBSTAGES, beats), whatever the data;
+//                each beat that waits for a verdict adds CCHIP_BEAT_LATENCY(SUBSTAGES)
 //   throughput   one axis per clock
 //   in flight    at most CONTEXTS pairs between the handshakes of s_pair and m_result
 //   cuts         every path: each output, s_pair_ready included, is a flip-flop

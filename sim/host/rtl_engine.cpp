@@ -133,8 +133,8 @@ class RtlEngine : public PairEngine {
   void count_clock() {
     const auto* signals = simulation_->rootp;
     ++statistics_.clocks;
-    statistics_.beats += signals->cchip_primtest_tri_tri__DOT__u_controller__DOT__beat_valid_q;
-    statistics_.waiting_clocks += signals->cchip_primtest_tri_tri__DOT__u_controller__DOT__pair_waits;
+    statistics_.beats += signals->cchip_primtest_tri_tri__DOT__u_primtest__DOT__u_controller__DOT__beat_valid_q;
+    statistics_.waiting_clocks += signals->cchip_primtest_tri_tri__DOT__u_primtest__DOT__u_controller__DOT__pair_waits;
   }
 
   sim::Simulation<Model> simulation_;

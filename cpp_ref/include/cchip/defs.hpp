@@ -127,6 +127,8 @@ constexpr int pipe_latency(int s) { return select_latency() + 2 * s + compare_la
 constexpr int pair_overhead() { return 7; }
 /// lone pair: handshake of s_pair to handshake of m_result, beats issued back to back [clock]
 constexpr int pair_latency(int s, int beats) { return pipe_latency(s) + pair_overhead() + beats - 1; }
+/// beat to the next beat of the same pair where the verdict decides what follows (all but EXHAUSTIVE) [clock]
+constexpr int beat_latency(int s) { return pipe_latency(s) + 4; }
 /// default CONTEXTS: round trip of a one-beat pair + 4 [pair]
 constexpr int contexts_default(int s) { return pair_latency(s, 1) + 4; }
 /// longest time from the last accepted pair to idle = 1 with m_result_ready = 1 [clock]

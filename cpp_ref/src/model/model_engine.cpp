@@ -22,7 +22,7 @@ class ModelEngine : public PairEngine {
     std::uint64_t limit = statistics_.clocks + static_cast<std::uint64_t>(defs::drain_bound(p.substages, p.contexts));
     for (std::size_t sent = 0, received = 0; received < pairs.size();) {
       if (statistics_.clocks > limit) throw std::runtime_error("model engine: no answer within the drain bound");
-      std::optional<model::PrimtestTriTri::PairIn> in;
+      std::optional<model::Primtest::PairIn> in;
       if (sent < pairs.size()) {
         const GridPair& pair = pairs[sent];
         if (pair.a.kind != Kind::tri || pair.b.kind != Kind::tri) {
@@ -53,12 +53,12 @@ class ModelEngine : public PairEngine {
   }
 
  private:
-  static model::PrimtestTriTri::Parameters parameters(int coord_w) {
-    model::PrimtestTriTri::Parameters p;
+  static model::Primtest::Parameters parameters(int coord_w) {
+    model::Primtest::Parameters p;
     p.coord_w = coord_w;
     return p;
   }
-  model::PrimtestTriTri machine_;
+  model::Primtest machine_;
   EngineStatistics statistics_;
 };
 
