@@ -54,7 +54,7 @@ void sweep_stream_module(MakeModel make_model) {
         simulation.add(bench);
         for (int part = 0; part < 3; ++part) {
           simulation.reset(1);
-          simulation.steps(150);
+          simulation.steps(400);
         }
         INFO("source " << source.name() << ", sink " << sink.name());
         REQUIRE(passed > 20);
