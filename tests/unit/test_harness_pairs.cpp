@@ -54,8 +54,8 @@ TEMPLATE_LIST_TEST_CASE("harness: pairs come back by tag under every pattern", "
     sink.on_item([&](const PairResultBeat& got, std::uint64_t clock) { board.got(got.tag, got, clock); });
     constexpr int pairs = 60;
     for (int i = 0; i < pairs; ++i) {
-      PairRequest request{random_pair(random, TestType::COORD_W), static_cast<std::uint16_t>(random() >> 10 << 6 | i),
-                          0};
+      PairRequest request{random_pair(random, TestType::COORD_W),
+                          static_cast<std::uint16_t>(64 * (random() % 1024) + static_cast<unsigned>(i)), 0};
       if (i % 7 == 3) request.mode = static_cast<std::uint8_t>(1 + i % 3);
       if (i % 5 == 2) request.pair.eta = static_cast<int>(random() % 16);
       driver.push(request);
@@ -126,7 +126,7 @@ TEST_CASE("harness: engine rtl answers batches in order and counts", "[unit][har
   }
   CHECK(second[0].hardware->clock_in > first[2].hardware->clock_out);
   const EngineStatistics statistics = engine->statistics();
-  CHECK(statistics.beats == 103 * defs::exhaustive_beats_tri_tri);
+  CHECK(statistics.beats == std::uint64_t{103} * defs::exhaustive_beats_tri_tri);
   CHECK(statistics.waiting_clocks >= statistics.beats);
   CHECK(statistics.clocks > second.back().hardware->clock_out);
 }
@@ -141,6 +141,7 @@ TEST_CASE("harness: a lone pair takes the generated latency", "[unit][harness]")
 TEST_CASE("harness: engine rtl answers more pairs than there are tags", "[unit][harness]") {
   const auto engine = make_rtl_engine();
   std::vector<GridPair> pairs;
+  pairs.reserve(70000);
   for (int i = 0; i < 70000; ++i) pairs.push_back(stacked(i % 3 - 1));
   const auto answers = engine->run(pairs, PairMode::exhaustive);
   for (int i = 0; i < 70000; ++i) REQUIRE(answers[static_cast<std::size_t>(i)].grid == (i % 3 == 1));

@@ -14,9 +14,9 @@
 
 namespace cchip::sim {
 
-/// For fields of 65 to 128 bits.
-__extension__ typedef __int128 Int128;
-__extension__ typedef unsigned __int128 UInt128;
+/// For fields of 65 to 128 bits. __extension__ (no warning about a type outside ISO C++) needs typedef.
+__extension__ typedef __int128 Int128;            // NOLINT(modernize-use-using)
+__extension__ typedef unsigned __int128 UInt128;  // NOLINT(modernize-use-using)
 
 namespace detail {
 

@@ -67,18 +67,18 @@ class Simulation {
  public:
   /// Afterwards clk = 0, rst = 1, all other inputs undefined (seeded): set them, then reset().
   explicit Simulation(SimulationOptions options = {}) : options_(std::move(options)) {
-    context_.randReset(2);
-    context_.randSeed(static_cast<int>(options_.seed & 0x7fffffff) | 1);
-    context_.assertOn(true);
-    context_.fatalOnError(false);
-    context_.traceEverOn(!options_.trace_path.empty());
-    model_ = std::make_unique<Model>(&context_);
+    context_->randReset(2);
+    context_->randSeed(static_cast<int>(options_.seed & 0x7fffffff) | 1);
+    context_->assertOn(true);
+    context_->fatalOnError(false);
+    context_->traceEverOn(!options_.trace_path.empty());
+    model_ = std::make_unique<Model>(context_.get());
     model_->clk = 0;
     set_reset(true);
     open_trace();
   }
   ~Simulation() {
-    Verilated::threadContextp(&context_);
+    Verilated::threadContextp(context_.get());
     model_->final();
     if (trace_) trace_->close();
     if (options_.clocks_run) *options_.clocks_run = total_;
@@ -109,7 +109,7 @@ class Simulation {
   void step() {
     try {
       if (options_.timeout_clocks != 0 && total_ >= options_.timeout_clocks)
-        throw timeout("the end of the test", total_);
+        throw SimulationTimeout(waiting("the end of the test", total_));
       const ClockInfo now{clock_, in_reset_};
       for (Agent* agent : agents_) agent->drive(now);
       settle();
@@ -130,11 +130,7 @@ class Simulation {
   template <class Done>
   void run_until(Done done, std::uint64_t max_clocks, const std::string& what) {
     for (std::uint64_t i = 0; !done(); ++i) {
-      if (i == max_clocks) {
-        SimulationTimeout error = timeout(what, max_clocks);
-        error.add_context(where());
-        throw error;
-      }
+      if (i == max_clocks) throw SimulationTimeout(waiting(what, max_clocks) + where());
       step();
     }
   }
@@ -147,12 +143,12 @@ class Simulation {
   }
   /// Second half: the rising edge. \throws AssertionFailure
   void rise() {
-    Verilated::threadContextp(&context_);
-    context_.time(10 * total_ + 5);
+    Verilated::threadContextp(context_.get());
+    context_->time(10 * total_ + 5);
     model_->clk = 1;
     model_->eval();
     dump(10 * total_ + 5);
-    if (context_.errorCount() != 0 || context_.gotError()) throw assertion_failure();
+    if (context_->errorCount() != 0 || context_->gotError()) throw assertion_failure();
     ++clock_;
     ++total_;
   }
@@ -190,21 +186,21 @@ class Simulation {
     trace_->dump(time);
   }
 
-  SimulationTimeout timeout(const std::string& what, std::uint64_t clocks) const {
+  std::string waiting(const std::string& what, std::uint64_t clocks) const {
     std::string message = "timeout after " + std::to_string(clocks) + " clocks, waited for " + what;
     for (const Agent* agent : agents_) {
       const std::string waits = agent->waits_for();
       if (!waits.empty()) message += "; " + waits;
     }
-    return SimulationTimeout(message);
+    return message;
   }
 
   AssertionFailure assertion_failure() {
-    const int count = context_.errorCount();
-    context_.errorCount(0);
-    context_.gotError(false);
-    context_.gotFinish(false);
-    return AssertionFailure(std::to_string(count) + " assertion(s) of the RTL failed (text on standard output)");
+    const int count = context_->errorCount();
+    context_->errorCount(0);
+    context_->gotError(false);
+    context_->gotFinish(false);
+    return AssertionFailure{std::to_string(count) + " assertion(s) of the RTL failed (text on standard output)"};
   }
 
   std::string where() const {
@@ -213,7 +209,7 @@ class Simulation {
   }
 
   SimulationOptions options_;
-  VerilatedContext context_;
+  std::unique_ptr<VerilatedContext> context_ = std::make_unique<VerilatedContext>();
   std::unique_ptr<Model> model_;
   std::unique_ptr<VerilatedFstC> trace_;
   std::vector<Agent*> agents_;
