@@ -23,7 +23,7 @@ module cchip_axis_controller #(
     // vertices of A and of B: 3 3, 3 4 or 4 4
     parameter integer VERTS_A = 3,
     parameter integer VERTS_B = 3,
-    // 1: warped quads are decided exactly; 0: after the directed beats they are left open (definite = 0)
+    // 1: warped quads are decided exactly; 0: what the directed beats do not decide is left open (definite = 0)
     parameter integer WARPED_EXACT = 1
 ) (
     input  wire                       clk,
@@ -48,6 +48,7 @@ module cchip_axis_controller #(
     input  wire [VERTS_A+VERTS_B-4:0] s_verdict_negative,
     input  wire [VERTS_A+VERTS_B-4:0] s_verdict_zero,
     input  wire [VERTS_A+VERTS_B-4:0] s_verdict_certain,
+    input  wire                       s_verdict_far,
     input  wire [                2:0] s_verdict_axis_negative,
     input  wire [                2:0] s_verdict_axis_zero,
     input  wire [                1:0] s_verdict_axis_largest,
@@ -231,6 +232,7 @@ module cchip_axis_controller #(
       .s_negative     (s_verdict_negative),
       .s_zero         (s_verdict_zero),
       .s_certain      (s_verdict_certain),
+      .s_far          (s_verdict_far),
       .s_axis_negative(s_verdict_axis_negative),
       .s_axis_zero    (s_verdict_axis_zero),
       .s_axis_largest (s_verdict_axis_largest),
@@ -288,7 +290,7 @@ module cchip_axis_controller #(
   assign m_result_valid    = result_valid_q;
   assign m_result_tag      = side[15:0];
   assign m_result_grid     = grid_q;
-  assign m_result_definite = ~illegal_q & ~open_q & (err_none | (certain_q & ~err_unknown));
+  assign m_result_definite = ~illegal_q & (err_none ? certain_q | ~open_q : certain_q & ~err_unknown);
   assign m_result_hit      = m_result_grid | ~m_result_definite;
   assign m_result_axis     = witness_q;
   assign m_result_beats    = beats_q;

@@ -7,15 +7,17 @@
 // A "no" is given only when the intervals of all vertices are disjoint on an axis (s_separated) or the
 // boxes are; signs choose the next axis and never decide.
 //   NORMALS      nA, nB, then
-//   TETRAHEDRON  if a quad is warped: face normals of the warped ones, cross axes over all their edges
+//   TETRAHEDRON  if a quad is warped and CROSSING cannot be certain: face normals of the warped ones, cross
+//                axes over all their edges
 //   DEGENERATE   else if a normal is zero: boxes, e_k x f_l, e_k x u_d, f_l x u_d
 //   COPLANAR     else if B lies in A's plane: in-plane axes of A, then of B
 //   CROSSING     else: zeros count as negative if the primitive has no negative vertex, else as
-//                positive; the edges of A and of B from + to -, then those from - to +
+//                positive; the edges of A and of B from + to -, then those from - to +. A warped quad
+//                is hit only if every sign is certain (docs/architecture.md), else TETRAHEDRON decides
 // State, from the top: certain (all signs used so far), open (a warped quad was not decided exactly),
 // beats issued before this one (6), info (17), code (9), programme (3). info by programme:
 //   NORMALS (nB)  {warped A, largest (2), nA zero (3), nA negative (3), W zero (4), W negative (4)}
-//   CROSSING      [3:0] {k, l} of the second axis
+//   CROSSING      [5:4] warped B, A, [3:0] {k, l} of the second axis
 //   COPLANAR      [1:0] n_d negative of B, of A
 //   DEGENERATE    [11:0] {nB zero, nB negative, nA zero, nA negative}
 //   TETRAHEDRON   [1:0] warped B, A
@@ -34,6 +36,7 @@ module cchip_axis_programme #(
     input  wire [VERTS_A+VERTS_B-4:0] s_negative,
     input  wire [VERTS_A+VERTS_B-4:0] s_zero,
     input  wire [VERTS_A+VERTS_B-4:0] s_certain,
+    input  wire                       s_far,       // on a quad's normal: warped by more than rounding
     input  wire [                2:0] s_axis_negative,
     input  wire [                2:0] s_axis_zero,
     input  wire [                1:0] s_axis_largest,
@@ -90,8 +93,9 @@ module cchip_axis_programme #(
       assign a_zero     = {1'b1, s_zero[POINTS-1-:3]};
     end
   endgenerate
-  assign b_certain = &s_certain[POINTS-1-:VERTS_B];
-  assign a_certain = &s_certain[POINTS-1-:VERTS_A];
+  // all of B's sides of A are certain / all of A's sides of B
+  assign b_certain = (&s_certain[POINTS-1-:VERTS_B]) && !(VERTS_A == 4 && s_far);
+  assign a_certain = (&s_certain[POINTS-1-:VERTS_A]) && !(VERTS_B == 4 && s_far);
 
   // on normal k = 0 of a quad slot 0 is V1: off the plane through V0 parallel to the diagonals?
   wire warped_a_now = VERTS_A == 4 && !s_zero[0];
@@ -100,7 +104,7 @@ module cchip_axis_programme #(
 
   // ---- EXHAUSTIVE: found so far
   reg  [16:0] found_a_q;        // of beat nA
-  reg         found_certain_q;  // signs of nA, then of both normals, then of the crossing axes
+  reg         found_certain_q;  // signs on nA, then on both normals, then on the crossing axes too
   reg         found_separated_q, found_gap_q;
   reg  [ 8:0] found_witness_q;
   reg  [30:0] found_plan_q;     // what the normals lead to: a state without beats
@@ -117,6 +121,10 @@ module cchip_axis_programme #(
   wire warped = warped_a | warped_b;
   wire certain_before = exhaustive ? found_certain_q : certain;
   wire certain_sides = certain_before & a_certain;
+
+  function [8:0] tetra_code(input a_is_warped);
+    tetra_code = {a_is_warped ? `CCHIP_AXIS_NORMAL_A : `CCHIP_AXIS_NORMAL_B, 3'd1, 3'd0};
+  endfunction
 
   // first edge i -> i + 1 that leads from the side from_positive to the other; 0 if there is none
   function [1:0] crossing_edge(input [3:0] negative, input [3:0] zero, input quad, input from_positive);
@@ -142,9 +150,9 @@ module cchip_axis_programme #(
   reg [8:0] plan_code;
   reg [16:0] plan_info;
   always @* begin
-    if (warped && WARPED_EXACT != 0) begin
+    if (warped && WARPED_EXACT != 0 && !certain_sides) begin
       plan_programme = `CCHIP_PROG_TETRAHEDRON;
-      plan_code      = {warped_a ? `CCHIP_AXIS_NORMAL_A : `CCHIP_AXIS_NORMAL_B, 3'd1, 3'd0};
+      plan_code      = tetra_code(warped_a);
       plan_info      = {15'd0, warped_b, warped_a};
     end else if (&na_zero || &s_axis_zero) begin
       plan_programme = `CCHIP_PROG_DEGENERATE;
@@ -157,15 +165,16 @@ module cchip_axis_programme #(
     end else begin
       plan_programme = `CCHIP_PROG_CROSSING;
       plan_code      = {`CCHIP_AXIS_CROSS, 1'b0, k_down, 1'b0, l_down};
-      plan_info      = {13'd0, k_up, l_up};
+      plan_info      = {11'd0, warped_b, warped_a, k_up, l_up};
     end
   end
   wire plan_open = warped && WARPED_EXACT == 0;
-  wire [30:0] plan = {certain_sides & ~warped, plan_open, plan_info, plan_code, plan_programme};
+  wire [30:0] plan = {certain_sides, plan_open, plan_info, plan_code, plan_programme};
 
-  // ---- CROSSING: t(k, l) is the projection of W_l
-  wire certain_crossing = certain & s_certain[VERTS_A-2];
+  // ---- CROSSING: t(k, l) is the projection of W_l; certain: t > 0 on the first, t < 0 on the second axis
   wire second = {k[1:0], l[1:0]} == info[3:0];
+  wire certain_crossing = certain & s_certain[VERTS_A-2] & s_negative[VERTS_A-2] == second;
+  wire to_tetra = WARPED_EXACT != 0 && |info[5:4] && !certain_crossing;
 
   // ---- next axis of the other programmes
   wire tetra_a = info[0];
@@ -211,11 +220,12 @@ module cchip_axis_programme #(
   wire found_gap = separated_before ? found_gap_q : s_certain_gap;
   wire exhaustive_last = axis_class == `CCHIP_AXIS_CROSS && k == LAST_K[2:0] && l == LAST_L[2:0];
   wire plan_is_crossing = found_plan_q[2:0] == `CCHIP_PROG_CROSSING;
-  wire crosses = axis_class == `CCHIP_AXIS_CROSS
-                 && (code == found_plan_q[11:3] || {k[1:0], l[1:0]} == found_plan_q[15:12]);
+  wire found_second = {k[1:0], l[1:0]} == found_plan_q[15:12];
+  wire crosses = axis_class == `CCHIP_AXIS_CROSS && (code == found_plan_q[11:3] || found_second);
+  wire found_to_tetra = WARPED_EXACT != 0 && plan_is_crossing && |found_plan_q[17:16] && !found_certain;
   wire found_certain = first ? b_certain
-                     : normal_b ? certain_sides & ~warped
-                                : found_certain_q & (~crosses | s_certain[VERTS_A-2]);
+                     : normal_b ? certain_sides
+                                : found_certain_q & (~crosses | (s_certain[VERTS_A-2] & s_negative[VERTS_A-2] == found_second));
 
   always @(posedge clk)
     if (s_valid && exhaustive) begin
@@ -231,7 +241,7 @@ module cchip_axis_programme #(
   reg [8:0] state_code;
   reg [16:0] state_info;
   reg state_certain;
-  reg take_plan, take_found_plan;
+  reg take_plan, take_found_plan, take_tetra;
 
   always @* begin
     m_outcome       = s_valid;
@@ -245,6 +255,7 @@ module cchip_axis_programme #(
     state_certain   = certain;
     take_plan       = 1'b0;
     take_found_plan = 1'b0;
+    take_tetra      = 1'b0;
     case (programme)
       `CCHIP_PROG_EXHAUSTIVE: begin
         m_witness = found_witness;
@@ -253,9 +264,10 @@ module cchip_axis_programme #(
         else if (!found_separated) begin
           m_grid          = 1'b1;
           m_open          = found_plan_q[29];
-          m_certain       = found_certain && POINTS == 3;
-          m_outcome       = s_valid && plan_is_crossing;
-          take_found_plan = 1'b1;
+          m_certain       = found_certain;
+          m_outcome       = s_valid && plan_is_crossing && !found_to_tetra;
+          take_found_plan = !found_to_tetra;
+          take_tetra      = found_to_tetra;
         end
       end
       `CCHIP_PROG_NORMALS:
@@ -268,13 +280,14 @@ module cchip_axis_programme #(
       end
       `CCHIP_PROG_CROSSING:
       if (!s_separated) begin
-        m_outcome     = s_valid && second;
+        m_outcome     = s_valid && second && !to_tetra;
         m_grid        = 1'b1;
         m_open        = open;
-        m_certain     = certain_crossing && POINTS == 3;
+        m_certain     = certain_crossing;
         m_witness     = 9'd0;
         state_code    = {`CCHIP_AXIS_CROSS, 1'b0, info[3:2], 1'b0, info[1:0]};
         state_certain = certain_crossing;
+        take_tetra    = to_tetra;
       end
       `CCHIP_PROG_ILLEGAL: begin
         m_grid    = 1'b1;
@@ -296,8 +309,10 @@ module cchip_axis_programme #(
     m_proceed = s_valid && !m_outcome && (!exhaustive || exhaustive_last);
   end
 
+  wire [1:0] tetra_flags = exhaustive ? found_plan_q[17:16] : info[5:4];
   wire [30:0] state = take_plan ? plan
                     : take_found_plan ? found_plan_q
+                    : take_tetra ? {state_certain, open, 15'd0, tetra_flags, tetra_code(tetra_flags[0]), `CCHIP_PROG_TETRAHEDRON}
                                       : {state_certain, open, state_info, state_code, programme};
   assign m_state = {state[30:29], beats + 6'd1, state[28:0]};
 

@@ -13,7 +13,7 @@ module cchip_sat_compare #(
     // width of a projection, bit
     parameter integer PROJ_W = 51,
     // width of a bound, bit
-    parameter integer BOUND_W = 43,
+    parameter integer BOUND_W = 46,
     // point slots, 3..5
     parameter integer POINTS = 3
 ) (
@@ -28,7 +28,8 @@ module cchip_sat_compare #(
     output reg                       m_certain_gap,  // separated for the unrounded primitives
     output reg  [        POINTS-1:0] m_negative,     // p_i < 0
     output reg  [        POINTS-1:0] m_zero,         // p_i = 0
-    output reg  [        POINTS-1:0] m_certain       // the sign of p_i is that of the unrounded vertices
+    output reg  [        POINTS-1:0] m_certain,      // the sign of p_i is that of the unrounded vertices
+    output reg                       m_far           // |p_0| > gap bound: a quad warped by more than rounding
 );
 
   // room for value +- bound
@@ -106,14 +107,15 @@ module cchip_sat_compare #(
   wire [POINTS-1:0] skip1 = skip | {POINTS{~own_q2[1]}};
   wire above = allow_above_q2 & (&(skip | ~(negative_q2 | zero_q2))) & (&(skip0 | above0_q2)) & (&(skip1 | above1_q2));
   wire below = allow_below_q2 & (&(skip | negative_q2)) & (&(skip0 | below0_q2)) & (&(skip1 | below1_q2));
-  wire far = (&(skip | gap_q2)) & (&(skip0 | gap0_q2)) & (&(skip1 | gap1_q2));
+  wire all_far = (&(skip | gap_q2)) & (&(skip0 | gap0_q2)) & (&(skip1 | gap1_q2));
 
   always @(posedge clk) begin
     m_separated   <= above | below;
-    m_certain_gap <= (above | below) & far;
+    m_certain_gap <= (above | below) & all_far;
     m_negative    <= negative_q2;
     m_zero        <= zero_q2;
     m_certain     <= certain_q2;
+    m_far         <= gap_q2[0];
   end
 
 endmodule

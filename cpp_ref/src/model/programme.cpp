@@ -21,6 +21,7 @@ void record_normal_a(Sides& s, const Shape& shape, const Verdict& v) {
   for (std::size_t d = 0; d < 3; ++d) s.normal_a[d] = sign_of(v.axis_negative[d], v.axis_zero[d]);
   s.largest = v.axis_largest;
   s.warped_a = shape.a == 4 && !v.compare.zero[0];
+  s.far = s.far || (shape.a == 4 && v.compare.far);
 }
 void record_normal_b(Sides& s, const Shape& shape, const Verdict& v) {
   const std::size_t first = shape.points() - shape.a;
@@ -30,6 +31,7 @@ void record_normal_b(Sides& s, const Shape& shape, const Verdict& v) {
   }
   for (std::size_t d = 0; d < 3; ++d) s.normal_b[d] = sign_of(v.axis_negative[d], v.axis_zero[d]);
   s.warped_b = shape.b == 4 && !v.compare.zero[0];
+  s.far = s.far || (shape.b == 4 && v.compare.far);
 }
 
 /// First edge k of a primitive with n vertices that leads from the side `from` to its opposite.
@@ -43,6 +45,15 @@ std::size_t crossing_edge(const std::array<int, 4>& side, std::size_t n, bool fr
   return 0;
 }
 
+State tetrahedron(const Sides& s, int beats) {
+  State next;
+  next.programme = Programme::tetrahedron;
+  next.code = s.warped_a ? axis(AxisClass::normal_a, 1) : axis(AxisClass::normal_b, 1);
+  next.beats = beats;
+  next.sides = s;
+  return next;
+}
+
 /// The state after beats nA and nB (and, EXHAUSTIVE, all others) did not separate.
 State plan(const Options& o, const Sides& s, int beats) {
   State next;
@@ -52,9 +63,8 @@ State plan(const Options& o, const Sides& s, int beats) {
   const std::size_t first_b = 0;
   bool all_zero = true;
   for (std::size_t j = first_b; j < o.shape.b; ++j) all_zero = all_zero && s.b[j] == 0;
-  if (warped && o.warped_exact) {
-    next.programme = Programme::tetrahedron;
-    next.code = s.warped_a ? axis(AxisClass::normal_a, 1) : axis(AxisClass::normal_b, 1);
+  if (warped && o.warped_exact && (s.far || !s.certain)) {
+    next = tetrahedron(s, beats);
   } else if (is_zero(s.normal_a) || is_zero(s.normal_b)) {
     next.programme = Programme::degenerate;
     next.code = axis(AxisClass::cross);
@@ -65,10 +75,19 @@ State plan(const Options& o, const Sides& s, int beats) {
     next.programme = Programme::crossing;
     next.code = axis(AxisClass::cross, crossing_edge(s.a, o.shape.a, true), crossing_edge(s.b, o.shape.b, true));
     next.second = axis(AxisClass::cross, crossing_edge(s.a, o.shape.a, false), crossing_edge(s.b, o.shape.b, false));
-    next.certain = s.certain && !warped;
+    next.certain = s.certain && !s.far;
   }
   return next;
 }
+
+/// t(k, l) is the projection of W_l; a certain hit has t > 0 on the first, t < 0 on the second crossing axis.
+bool certain_crossing(const Options& o, const Verdict& v, bool second) {
+  const std::size_t slot = o.shape.a - 2;
+  return v.compare.certain[slot] && v.compare.negative[slot] == second;
+}
+
+/// A warped quad in the CROSSING programme: if its hit is not certain, TETRAHEDRON decides.
+bool must_be_certain(const Options& o, const Sides& s) { return o.warped_exact && (s.warped_a || s.warped_b); }
 
 /// Next axis of a programme; nullopt after the last.
 std::optional<AxisCode> next_code(const Options& o, const State& s) {
@@ -125,7 +144,7 @@ Outcome make_outcome(const Options& o, const State& s, bool grid, const AxisCode
   out.grid = grid;
   out.witness = witness;
   out.beats = s.beats + 1;
-  const bool open = grid && !o.warped_exact && (s.sides.warped_a || s.sides.warped_b);
+  const bool open = grid && !certain && !o.warped_exact && (s.sides.warped_a || s.sides.warped_b);
   out.definite = !open && (err == 0 || (err != defs::err_unknown && certain));
   return out;
 }
@@ -164,7 +183,6 @@ std::optional<State> following_beat(const Options& o, const State& s) {
 namespace {
 
 Step advance_exhaustive(const Options& o, const State& s, const Verdict& v, int err, Exhaustive& found) {
-  const bool certain_axis = v.compare.certain[o.shape.a - 2];
   if (s.code.cls == AxisClass::normal_a) {
     found = {};
     record_normal_a(found.sides, o.shape, v);
@@ -174,7 +192,7 @@ Step advance_exhaustive(const Options& o, const State& s, const Verdict& v, int 
     found.plan = plan(o, found.sides, 0);
     found.certain = found.plan.certain;
   } else if (s.code == found.plan.code || s.code == found.plan.second) {
-    found.certain = found.certain && certain_axis;
+    found.certain = found.certain && certain_crossing(o, v, s.code == found.plan.second);
   }
   if (v.compare.separated && !found.separated) {
     found.separated = true;
@@ -183,11 +201,12 @@ Step advance_exhaustive(const Options& o, const State& s, const Verdict& v, int 
   }
   if (following_beat(o, s)) return {};
   if (found.separated) return {make_outcome(o, s, false, found.witness, found.certain_gap, err), std::nullopt};
-  if (found.plan.programme == Programme::crossing) {
+  if (found.plan.programme == Programme::crossing && (found.certain || !must_be_certain(o, found.sides))) {
     State last = s;
     last.sides = found.sides;
-    return {make_outcome(o, last, true, {}, found.certain && o.shape.points() == 3, err), std::nullopt};
+    return {make_outcome(o, last, true, {}, found.certain, err), std::nullopt};
   }
+  if (found.plan.programme == Programme::crossing) return {std::nullopt, tetrahedron(found.sides, s.beats + 1)};
   State next = found.plan;
   next.beats = s.beats + 1;
   return {std::nullopt, next};
@@ -218,13 +237,16 @@ Step advance(const Options& o, const State& s, const Verdict& v, int err, Exhaus
     record_normal_b(next.sides, o.shape, v);
     return {std::nullopt, plan(o, next.sides, next.beats)};
   }
-  // t(k, l) is the projection of W_l; a hit needs t >= 0 on the first, t <= 0 on the second axis
-  if (s.programme == Programme::crossing) next.certain = s.certain && v.compare.certain[o.shape.a - 2];
+  if (s.programme == Programme::crossing) {
+    next.certain = s.certain && certain_crossing(o, v, s.code == s.second);
+    // a warped quad hits here only if it is certain
+    if (must_be_certain(o, s.sides) && !next.certain) return {std::nullopt, tetrahedron(s.sides, next.beats)};
+  }
   if (const auto code = next_code(o, s)) {
     next.code = *code;
     return {std::nullopt, next};
   }
-  const bool certain = s.programme == Programme::crossing && next.certain && o.shape.points() == 3;
+  const bool certain = s.programme == Programme::crossing && next.certain;
   return {make_outcome(o, s, true, {}, certain, err), std::nullopt};
 }
 

@@ -104,6 +104,7 @@ Selection sat_select(const Shape& shape, const AxisCode& code, const GridPrimiti
     return s;
   }
   s.own[0] = true;
+  s.slab = true;
   if (code.k == 0) {
     s.e_from = own.v[0];
     s.e_to = own.v[2];
@@ -133,17 +134,20 @@ Axis sat_axis(const Selection& s, int coord_w) {
   return {cross3(e, f, defs::edge_w(coord_w)), norm1(e) + norm1(f)};
 }
 
-Projections sat_project(const Shape& shape, const Axis& axis, const Vec3i& reference,
-                        const std::array<Vec3i, max_points>& points, int error_shift, int coord_w) {
+Projections sat_project(const Shape& shape, const Axis& axis, const Selection& selection, int error_shift,
+                        int coord_w) {
   Projections out;
+  const bool quads = shape.b == 4;
+  const int shift = quads ? error_shift + 1 : error_shift;
   const std::int64_t axis_norm = norm1(axis.axis);
-  const std::int64_t twice_error = std::int64_t{2} << error_shift;
+  const std::int64_t twice_error = std::int64_t{2} << shift;
+  const std::int64_t slab_norm = selection.slab ? norm1(difference(selection.points[0], selection.e_from)) : 0;
   out.gap_bound = axis_norm << error_shift;
   for (std::size_t i = 0; i < shape.points(); ++i) {
-    const Word3 c = difference(points[i], reference);
+    const Word3 c = difference(selection.points[i], selection.e_from);
     out.p[i] = dot3(c, axis.axis, defs::edge_w(coord_w), defs::axis_w(coord_w));
-    out.sign_bound[i] = (axis_norm + ((axis.edge_norm + twice_error) << ceil_log2(norm1(c) + twice_error)))
-                        << error_shift;
+    const int n = ceil_log2(norm1(c) + slab_norm + twice_error);
+    out.sign_bound[i] = ((quads ? 2 * axis_norm : axis_norm) + ((axis.edge_norm + twice_error) << n)) << shift;
   }
   for (std::size_t d = 0; d < 3; ++d) {
     out.axis_negative[d] = axis.axis[d] < 0;
@@ -171,6 +175,7 @@ Comparison sat_compare(const Shape& shape, const AxisBeat& beat, const std::arra
     out.negative[i] = in.p[i] < 0;
     out.zero[i] = in.p[i] == 0;
     out.certain[i] = in.p[i] > in.sign_bound[i] || in.p[i] < -in.sign_bound[i];
+    if (i == 0) out.far = in.p[0] > in.gap_bound || in.p[0] < -in.gap_bound;
     if (i < 2 && own[i]) continue;
     require(in.p[i]);
     if (own[0]) require(wrap(bits(in.p[i]) - bits(in.p[0]), proj_w));
@@ -202,7 +207,7 @@ Verdict sat_pipeline(const Shape& shape, const AxisBeat& beat, const GridPrimiti
                      int coord_w) {
   const int shift = error_shift(beat.err);
   const Selection s = sat_select(shape, beat.code, a, b);
-  const Projections projections = sat_project(shape, sat_axis(s, coord_w), s.e_from, s.points, shift, coord_w);
+  const Projections projections = sat_project(shape, sat_axis(s, coord_w), s, shift, coord_w);
   Verdict v;
   v.compare = sat_compare(shape, beat, s.own, projections, coord_w);
   const unsigned component = beat.code.l & 3U;  // the hardware looks at two bits
