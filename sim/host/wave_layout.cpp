@@ -52,7 +52,7 @@ class SaveFile {
   void axis_code(const Vector& vector) { this->vector("axis (class k l)", vector, Radix::octal); }
 
  private:
-  static constexpr const char* module = "TOP.cchip_primtest_tri_tri.";
+  static constexpr const char* module = "TOP.cchip_primtest_tri_tri.u_primtest.";
   static std::string range(const Vector& vector) { return "[" + std::to_string(vector.width - 1) + ":0]"; }
   void flags(Radix radix) { out_ << '@' << static_cast<unsigned>(radix) << '\n'; }
   void signal(const std::string& label, const std::string& name, Radix radix) {
@@ -66,6 +66,9 @@ class SaveFile {
 constexpr int w = defs::coord_w_default;
 constexpr int substages = defs::substages_default;
 constexpr int context_w = 6;
+/// State of a pair's programme that travels with a beat: context above 37 bits of cchip_axis_programme, of
+/// which the lowest are {code, programme}.
+constexpr int user_w = context_w + 37;
 static_assert(defs::contexts_default(substages) > 1 << (context_w - 1) &&
               defs::contexts_default(substages) <= 1 << context_w);
 
@@ -97,6 +100,7 @@ void axis_controller(SaveFile& file) {
   file.bit("pair waits", "u_controller.pair_waits");
   file.bit("beat valid", "u_controller.m_beat_valid");
   file.vector("context", {"u_controller.m_beat_context", context_w}, Radix::decimal);
+  file.field("programme", {"u_controller.m_beat_user", user_w}, 0, defs::prog_w, Radix::decimal);
   file.axis_code({"u_controller.m_beat_code", defs::axis_code_w});
   file.close_group(title);
 }
@@ -124,13 +128,13 @@ void macro_stages(SaveFile& file) {
     file.field("p" + std::to_string(point), {"u_pipeline.projection", 3 * defs::proj_w(w)}, point * defs::proj_w(w),
                defs::proj_w(w), Radix::signed_decimal);
   }
-  file.bit("axis is zero", "u_pipeline.project_axis_zero");
+  file.vector("axis components = 0", {"u_pipeline.project_axis_zero", 3}, Radix::binary);
   file.close_group("macro stage 3 project");
 
   file.open_group("macro stage 4 compare");
   file.bit("valid", "verdict_valid");
-  file.vector("context", {"verdict_context", context_w}, Radix::decimal);
-  file.axis_code({"verdict_code", defs::axis_code_w});
+  file.field("context", {"verdict_user", user_w}, user_w - context_w, context_w, Radix::decimal);
+  file.field("axis (class k l)", {"verdict_user", user_w}, defs::prog_w, defs::axis_code_w, Radix::octal);
   file.bit("separated", "verdict_separated");
   file.close_group("macro stage 4 compare");
 }
