@@ -154,10 +154,11 @@ TEST_CASE("harness: engine rtl answers more pairs than there are tags", "[unit][
 
 TEST_CASE("harness: engine rtl refuses what it cannot answer", "[unit][harness]") {
   const auto engine = make_rtl_engine();
-  GridPair quad = stacked(0);
-  quad.b.kind = Kind::quad;
-  CHECK_THROWS_WITH(engine->run({stacked(0), quad}, PairMode::exhaustive),
-                    Catch::Contains("pair 1") && Catch::Contains("triangles"));
+  GridPair vague = stacked(0);
+  vague.eta = 16;
+  CHECK_THROWS_WITH(engine->run({stacked(0), vague}, PairMode::exhaustive),
+                    Catch::Contains("pair 1") && Catch::Contains("eta"));
+  CHECK_THROWS_AS(engine->run({stacked(0)}, std::vector<PairMode>{}), std::invalid_argument);
   for (const int z : {32768, -32769}) {
     GridPair far = stacked(0);
     far.a.v[1].z() = z;
