@@ -14,7 +14,8 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CCHIP_RTL_DIR}/
 
 # -fno-const-bit-op-tree: 5.006 miscompiles some XOR/AND trees otherwise (upstream issue 4832).
 set(CCHIP_VERILATOR_ARGS -Wall -fno-const-bit-op-tree --assert --x-assign unique --x-initial unique
-    -I${CCHIP_RTL_DIR}/include ${CCHIP_RTL_DIR}/lint/verilator_waiver.vlt)
+    -I${CCHIP_RTL_DIR}/include)
+set(CCHIP_VERILATOR_WAIVER ${CCHIP_RTL_DIR}/lint/verilator_waiver.vlt)
 
 function(cchip_model_library library)
   add_library(${library} STATIC)
@@ -31,12 +32,15 @@ function(cchip_verilate library top)
   if(NOT ARG_PREFIX)
     set(ARG_PREFIX V${top})
   endif()
+  # Verilator reads the file list itself: a new line in it must not need a new configuration first
+  set(files)
   if(NOT ARG_SOURCES)
-    set(ARG_SOURCES ${CCHIP_RTL_FILES})
+    set(files -F ${CCHIP_RTL_DIR}/cchip.f)
   endif()
   list(TRANSFORM ARG_PARAMETERS PREPEND -G)
   verilate(${library} TRACE_FST PREFIX ${ARG_PREFIX} TOP_MODULE ${top}
-    VERILATOR_ARGS ${CCHIP_VERILATOR_ARGS} ${ARG_PARAMETERS} SOURCES ${ARG_SOURCES})
+    VERILATOR_ARGS ${CCHIP_VERILATOR_ARGS} ${ARG_PARAMETERS} ${files}
+    SOURCES ${CCHIP_VERILATOR_WAIVER} ${ARG_SOURCES})
   get_target_property(sources ${library} SOURCES)
   list(FILTER sources INCLUDE REGEX "/${ARG_PREFIX}\\.dir/.*\\.cpp$")
   set_source_files_properties(${sources} PROPERTIES UNITY_GROUP ${ARG_PREFIX})

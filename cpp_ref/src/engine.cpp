@@ -25,7 +25,8 @@ class FunctionEngine : public PairEngine {
   const char* name() const override { return name_; }
   int coord_w() const override { return coord_w_; }
 
-  std::vector<EngineAnswer> run(const std::vector<GridPair>& pairs, PairMode) override {
+  using PairEngine::run;
+  std::vector<EngineAnswer> run(const std::vector<GridPair>& pairs, const std::vector<PairMode>&) override {
     std::vector<EngineAnswer> answers;
     answers.reserve(pairs.size());
     for (const GridPair& pair : pairs) {
@@ -44,12 +45,20 @@ std::string component(std::uint8_t index) {
   return index < 3 ? std::string(1, static_cast<char>('x' + index)) : std::to_string(index);
 }
 
-std::string normal_of(const char* primitive, std::uint8_t face) {
-  return face == 0 ? std::string("normal of ") + primitive : "normal " + std::to_string(face) + " of " + primitive;
+std::string normal_of(const char* primitive, std::uint8_t k) {
+  if (k == 0) return std::string("normal of ") + primitive;
+  return "normal of face " + std::to_string(k - 1) + " of " + primitive;
+}
+
+std::string edge_of(const char* primitive, std::uint8_t k) {
+  const std::string of = std::string(" of ") + primitive;
+  if (k == 4) return "diagonal V0V2" + of;
+  if (k == 5) return "diagonal V1V3" + of;
+  return "edge " + std::to_string(k) + of;
 }
 
 std::string in_plane(const char* primitive, const AxisCode& axis) {
-  return "in-plane edge " + std::to_string(axis.k) + " of " + primitive + ", axis " + component(axis.l);
+  return edge_of(primitive, axis.k) + " x direction " + component(axis.l);
 }
 
 }  // namespace
@@ -63,7 +72,7 @@ std::string to_words(const AxisCode& axis) {
     case AxisClass::normal_b:
       return normal_of("B", axis.k);
     case AxisClass::cross:
-      return "edge " + std::to_string(axis.k) + " of A x edge " + std::to_string(axis.l) + " of B";
+      return edge_of("A", axis.k) + " x " + edge_of("B", axis.l);
     case AxisClass::in_plane_a:
       return in_plane("A", axis);
     case AxisClass::in_plane_b:

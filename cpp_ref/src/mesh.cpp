@@ -26,10 +26,14 @@ void add_triangle(Mesh& mesh, std::uint32_t i, std::uint32_t j, std::uint32_t k)
 /// Closed loop of vertex numbers.
 using Ring = std::vector<std::uint32_t>;
 
-/// Band of triangles between two rings of equal length; its front normal is (along `from`) x (`from` to `to`).
-void add_band(Mesh& mesh, const Ring& from, const Ring& to) {
+/// Band of faces between two rings of equal length; its front normal is (along `from`) x (`from` to `to`).
+void add_band(Mesh& mesh, const Ring& from, const Ring& to, Kind kind = Kind::tri) {
   for (std::size_t i = 0; i < from.size(); ++i) {
     const std::size_t n = (i + 1) % from.size();
+    if (kind == Kind::quad) {
+      mesh.faces.push_back({Kind::quad, {from[i], from[n], to[n], to[i]}});
+      continue;
+    }
     add_triangle(mesh, from[i], from[n], to[n]);
     add_triangle(mesh, from[i], to[n], to[i]);
   }
@@ -159,7 +163,7 @@ Primitive Mesh::primitive(std::size_t face) const {
   return p;
 }
 
-Mesh make_torus(double major_radius, double minor_radius, int around, int across) {
+Mesh make_torus(double major_radius, double minor_radius, int around, int across, Kind kind) {
   require(minor_radius > 0 && major_radius > minor_radius, "torus: radii must satisfy major > minor > 0");
   require(around >= 3 && across >= 3, "torus: around and across must be at least 3");
   Mesh mesh;
@@ -175,7 +179,7 @@ Mesh make_torus(double major_radius, double minor_radius, int around, int across
     }
     rings.push_back(ring);
   }
-  for (std::size_t i = 0; i < rings.size(); ++i) add_band(mesh, rings[(i + 1) % rings.size()], rings[i]);
+  for (std::size_t i = 0; i < rings.size(); ++i) add_band(mesh, rings[(i + 1) % rings.size()], rings[i], kind);
   return mesh;
 }
 

@@ -64,18 +64,6 @@ double fraction_read(const CsvReader& reader) {
   return error || size == 0 ? -1.0 : static_cast<double>(reader.bytes_read()) / static_cast<double>(size);
 }
 
-void check_kind(const PairJob& job, const std::string& file, EngineKind engine) {
-  if (takes_quads(engine)) return;
-  for (const Primitive* primitive : {&job.a, &job.b}) {
-    if (primitive->kind == Kind::tri) continue;
-    throw row_error(
-        file, job.row,
-        fmt::format("kind_{} is quad, but engine {} answers triangles only; use --engine eigen or exact, or "
-                    "split the quad into two triangles",
-                    primitive == &job.a ? 'a' : 'b', to_name(engine)));
-  }
-}
-
 Summary answer_stream(std::istream& in, const std::string& name, const PairsOptions& options, const Streams& streams) {
   CsvReader reader(in, name);
   CsvRow row;
@@ -91,9 +79,7 @@ Summary answer_stream(std::istream& in, const std::string& name, const PairsOpti
   PairRunner runner(*engine, run, columns.passed_names(), locate, streams.out, streams.err);
   const bool has_size = &in != &streams.in;
   while (reader.next(row)) {
-    PairJob job = columns.parse(std::move(row));
-    check_kind(job, name, options.engine.kind);
-    runner.add(std::move(job));
+    runner.add(columns.parse(std::move(row)));
     if (streams.progress && runner.pairs_taken() % 1024 == 0) {
       progress.update(runner.pairs_taken(), has_size ? fraction_read(reader) : -1.0);
     }
@@ -113,7 +99,6 @@ int run_pairs(const PairsOptions& options, const Streams& streams) {
     }
     summary = answer_stream(in, options.file, options, streams);
   }
-  finish_trace(options.engine);
   return report(summary, options.format, streams);
 }
 
@@ -124,8 +109,8 @@ Eigen::Isometry3d pose_of(const MeshPairsOptions& options) {
 
 Summary answer_meshes(const MeshPairsOptions& options, const Streams& streams) {
   const Eigen::Isometry3d pose = pose_of(options);
-  const Mesh a = load_mesh_file(options.file_a);
-  const Mesh b = transformed(load_mesh_file(options.file_b), pose);
+  const Mesh a = load_mesh_file(options.file_a, streams.err);
+  const Mesh b = transformed(load_mesh_file(options.file_b, streams.err), pose);
   Progress progress(streams.err, streams.progress);
   const auto engine = make_engine(options.engine);
   const RunOptions run{options.engine.mode, options.format};
@@ -142,7 +127,6 @@ Summary answer_meshes(const MeshPairsOptions& options, const Streams& streams) {
 
 int run_meshpairs(const MeshPairsOptions& options, const Streams& streams) {
   const Summary summary = answer_meshes(options, streams);
-  finish_trace(options.engine);
   return report(summary, options.format, streams);
 }
 
@@ -207,7 +191,8 @@ void add_meshpairs(CLI::App& app, MeshPairsOptions& options) {
 }
 
 void add_demo(CLI::App& app, DemoOptions& options) {
-  CLI::App* command = app.add_subcommand("demo", "Torus and gear in three poses through the RTL, every answer checked");
+  CLI::App* command =
+      app.add_subcommand("demo", "Torus and gear, of triangles and of quads, through the RTL, every answer checked");
   add_choice(*command, "--engine", options.engine.kind, hardware_engines, "rtl (default) or its model");
   command->add_option("--waves", options.wave_folder, "folder of the waveform (default build/waves)");
   command->add_option("--seed", options.engine.seed, seed_words);

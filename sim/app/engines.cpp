@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <cchip/rtl_engine.hpp>
-#include <cchip/wave_layout.hpp>
 #include <fstream>
 
 #include "usage_error.hpp"
@@ -13,11 +12,6 @@ namespace cchip::app {
 namespace {
 
 void check(const EngineOptions& options) {
-  if (options.mode == PairMode::directed && is_hardware(options.kind)) {
-    throw UsageError(
-        fmt::format("--program directed: not available for engine {} in this version; use --program exhaustive",
-                    to_name(options.kind)));
-  }
   if (options.trace_path.empty()) return;
   if (options.kind != EngineKind::rtl) {
     throw UsageError(fmt::format("--trace: engine {} has no waveform; use --engine rtl", to_name(options.kind)));
@@ -53,7 +47,6 @@ const char* to_name(EngineKind kind) {
 }
 
 bool is_hardware(EngineKind kind) { return kind == EngineKind::rtl || kind == EngineKind::model; }
-bool takes_quads(EngineKind kind) { return !is_hardware(kind); }
 
 std::unique_ptr<PairEngine> make_engine(const EngineOptions& options) {
   check(options);
@@ -68,10 +61,6 @@ std::unique_ptr<PairEngine> make_engine(const EngineOptions& options) {
       return make_exact_engine(defs::coord_w_default);
   }
   return nullptr;
-}
-
-void finish_trace(const EngineOptions& options) {
-  if (!options.trace_path.empty()) write_gtkw(options.trace_path);
 }
 
 }  // namespace cchip::app

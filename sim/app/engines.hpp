@@ -18,7 +18,7 @@ struct EngineOptions {
   PairMode mode = PairMode::exhaustive;
   /// Seed of what the RTL simulation leaves undefined at power-up.
   std::uint64_t seed = 1;
-  /// Waveform of the RTL simulation; none if empty.
+  /// Waveform of the RTL simulation, none if empty; see RtlEngineOptions.
   std::string trace_path;
   /// Clocks in the waveform; 0: all.
   std::uint64_t trace_clocks = 0;
@@ -27,14 +27,9 @@ struct EngineOptions {
 const char* to_name(EngineKind kind);
 /// True for the engines whose answers carry beats, clocks and axes.
 bool is_hardware(EngineKind kind);
-/// True if the engine answers pairs with quads.
-bool takes_quads(EngineKind kind);
 
 /// \throws UsageError the options do not go together, or the waveform cannot be written
 std::unique_ptr<PairEngine> make_engine(const EngineOptions& options);
-
-/// Writes the GTKWave layout beside the waveform, once the engine is gone.
-void finish_trace(const EngineOptions& options);
 
 }  // namespace cchip::app
 

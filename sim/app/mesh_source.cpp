@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh_source.hpp"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 
 #include "usage_error.hpp"
 
 namespace cchip::app {
 
-Mesh load_mesh_file(const std::string& path) {
+Mesh load_mesh_file(const std::string& path, std::ostream& notices) {
   try {
-    return load_mesh(path);
+    Mesh mesh = load_mesh(path, FaceKinds::triangles_and_quads);
+    if (mesh.polygons_cut > 0) {
+      notices << fmt::format("cchip: {}: {} faces with more than four corners or a dent were cut into triangles\n",
+                             path, mesh.polygons_cut);
+    }
+    return mesh;
   } catch (const std::runtime_error& error) {
     throw UsageError(error.what());
   }

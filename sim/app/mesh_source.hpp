@@ -7,6 +7,7 @@
 #include <cchip/mesh.hpp>
 #include <cstdint>
 #include <functional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,9 @@
 
 namespace cchip::app {
 
+/// Triangles and quads of a file; a line on `notices` if other faces had to be cut.
 /// \throws UsageError the file is missing, broken or has no faces
-Mesh load_mesh_file(const std::string& path);
+Mesh load_mesh_file(const std::string& path, std::ostream& notices);
 
 /// Columns of the candidate pairs: the face numbers, counted from 0.
 const std::vector<std::string>& mesh_pair_names();

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cchip/exact_oracle.hpp>
 #include <cchip/local_grid.hpp>
+#include <cchip/resolve.hpp>
 
 #include "usage_error.hpp"
 
@@ -48,10 +48,6 @@ std::string to_line(const Summary& s) {
                      s.mismatches, s.indefinite, mean, s.clocks);
 }
 
-bool resolve(const EngineAnswer& answer, const Primitive& a, const Primitive& b) {
-  return answer.definite ? answer.grid : exact_intersects(a, b);
-}
-
 PairRunner::PairRunner(PairEngine& engine, const RunOptions& options, const std::vector<std::string>& passed_names,
                        Locate locate, std::ostream& out, std::ostream& messages)
     : engine_(engine),
@@ -79,7 +75,7 @@ Summary PairRunner::finish() {
 void PairRunner::answer_batch() {
   const std::vector<EngineAnswer> answers = engine_.run(grid_pairs_, options_.mode);
   for (std::size_t i = 0; i < jobs_.size(); ++i) {
-    const bool hit = resolve(answers.at(i), jobs_[i].a, jobs_[i].b);
+    const bool hit = resolve(jobs_[i].a, jobs_[i].b, answers.at(i));
     ++summary_.pairs;
     summary_.hits += hit;
     summary_.indefinite += !answers[i].definite;

@@ -69,9 +69,6 @@ class PairRunner {
   Summary summary_;
 };
 
-/// The answer for the doubles: the engine's if it is definite, otherwise the exact oracle's.
-bool resolve(const EngineAnswer& answer, const Primitive& a, const Primitive& b);
-
 }  // namespace cchip::app
 
 #endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cchip/defs.hpp>
+#include <cchip/primtest_engine.hpp>
 #include <cchip/wave_layout.hpp>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +9,13 @@
 
 namespace cchip {
 namespace {
+
+constexpr int w = defs::coord_w_default;
+constexpr int substages = defs::substages_default;
+constexpr int context_w = 6;
+static_assert(defs::contexts_default(substages) > 1 << (context_w - 1) &&
+              defs::contexts_default(substages) <= 1 << context_w);
+constexpr int user_w = context_w + 37;
 
 /// Flags of a trace in a GTKWave save file (right-justified).
 enum class Radix : unsigned { hexadecimal = 0x22, decimal = 0x24, binary = 0x28, octal = 0x30, signed_decimal = 0x420 };
@@ -18,9 +26,23 @@ struct Vector {
   int width;
 };
 
+/// Full name of the module whose signals a file shows, and the vertices of its primitives.
+struct Module {
+  explicit Module(ModuleId id)
+      : name(std::string("cchip_primtest_") + to_name(id)),
+        verts_a(id == ModuleId::quad_quad ? 4 : 3),
+        verts_b(id == ModuleId::tri_tri ? 3 : 4) {}
+  int points() const { return defs::points(verts_a, verts_b); }
+  std::string name;
+  int verts_a;
+  int verts_b;
+};
+
 class SaveFile {
  public:
-  explicit SaveFile(std::ostream& out) : out_(out) { out_ << std::hex; }
+  SaveFile(std::ostream& out, const Module& module) : out_(out), prefix_("TOP." + module.name + ".") {
+    out_ << std::hex;
+  }
 
   void line(const std::string& text) { out_ << text << '\n'; }
   void open_group(const std::string& title) { line("@800200\n-" + title); }
@@ -38,7 +60,7 @@ class SaveFile {
     flags(radix);
     out_ << "#{" << label << '}';
     for (int bit = lsb + width - 1; bit >= lsb; --bit) {
-      out_ << " (" << std::dec << vector.width - 1 - bit << std::hex << ')' << module << vector.name << range(vector);
+      out_ << " (" << std::dec << vector.width - 1 - bit << std::hex << ')' << prefix_ << vector.name << range(vector);
     }
     out_ << '\n';
   }
@@ -50,32 +72,40 @@ class SaveFile {
   }
   /// {class, k, l} of an axis code: its three octal digits.
   void axis_code(const Vector& vector) { this->vector("axis (class k l)", vector, Radix::octal); }
+  /// The programme state that travels with a beat (header of cchip_axis_programme), the context above it.
+  void state(const Vector& vector) {
+    field("context", vector, 37, context_w, Radix::decimal);
+    field("programme", vector, 0, defs::prog_w, Radix::decimal);
+    field("axis (class k l)", vector, 3, defs::axis_code_w, Radix::octal);
+    field("beats before", vector, 29, defs::beats_w, Radix::decimal);
+    field("info", vector, 12, 17, Radix::binary);
+    field("open", vector, 35, 1, Radix::binary);
+    field("certain so far", vector, 36, 1, Radix::binary);
+  }
 
  private:
-  static constexpr const char* module = "TOP.cchip_primtest_tri_tri.";
   static std::string range(const Vector& vector) { return "[" + std::to_string(vector.width - 1) + ":0]"; }
   void flags(Radix radix) { out_ << '@' << static_cast<unsigned>(radix) << '\n'; }
   void signal(const std::string& label, const std::string& name, Radix radix) {
     flags(radix);
-    out_ << "+{" << label << "} " << module << name << '\n';
+    out_ << "+{" << label << "} " << prefix_ << name << '\n';
   }
 
   std::ostream& out_;
+  std::string prefix_;
 };
-
-constexpr int w = defs::coord_w_default;
-constexpr int substages = defs::substages_default;
-constexpr int context_w = 6;
-static_assert(defs::contexts_default(substages) > 1 << (context_w - 1) &&
-              defs::contexts_default(substages) <= 1 << context_w);
 
 /// valid of the pipeline after `clocks` of its registers.
 void pipeline_valid(SaveFile& file, int clocks) {
-  const Vector chain{"u_pipeline.u_valid.gen_stages.chain", defs::pipe_latency(substages) + 1};
+  const Vector chain{"u_primtest.u_pipeline.u_valid.gen_stages.chain", defs::pipe_latency(substages) + 1};
   file.field("valid", chain, clocks, 1, Radix::binary);
 }
 
-void stream_s_pair(SaveFile& file) {
+void points(SaveFile& file, const std::string& label, int count, const Vector& vector) {
+  for (int i = 0; i < count; ++i) file.point(label + std::to_string(i), vector, i, w);
+}
+
+void stream_s_pair(SaveFile& file, const Module& module) {
   const std::string title = "stream s_pair";
   file.open_group(title);
   file.bit("valid", "s_pair_valid");
@@ -84,55 +114,91 @@ void stream_s_pair(SaveFile& file) {
   file.vector("mode", {"s_pair_mode", defs::mode_w}, Radix::decimal);
   file.vector("err", {"s_pair_err", defs::err_w}, Radix::decimal);
   file.open_folded("coordinates");
-  for (int i = 0; i < 3; ++i) file.point("V" + std::to_string(i), {"s_pair_a", 3 * defs::vertices * w}, i, w);
-  for (int i = 0; i < 3; ++i) file.point("W" + std::to_string(i), {"s_pair_b", 3 * defs::vertices * w}, i, w);
+  points(file, "V", module.verts_a, {"s_pair_a", 3 * defs::vertices * w});
+  points(file, "W", module.verts_b, {"s_pair_b", 3 * defs::vertices * w});
   file.close_folded("coordinates");
-  file.vector("pairs inside", {"pairs_q", context_w}, Radix::decimal);
+  file.vector("pairs inside", {"u_primtest.pairs_q", context_w}, Radix::decimal);
   file.close_group(title);
 }
 
 void axis_controller(SaveFile& file) {
   const std::string title = "axis controller";
   file.open_group(title);
-  file.bit("pair waits", "u_controller.pair_waits");
-  file.bit("beat valid", "u_controller.m_beat_valid");
-  file.vector("context", {"u_controller.m_beat_context", context_w}, Radix::decimal);
-  file.axis_code({"u_controller.m_beat_code", defs::axis_code_w});
+  file.bit("pair waits", "u_primtest.u_controller.pair_waits");
+  file.bit("pair starts", "u_primtest.u_controller.start_valid");
+  file.bit("pair goes on", "u_primtest.u_controller.ready_valid");
+  file.bit("beat valid", "u_primtest.beat_valid");
+  file.open_folded("programme state of the beat");
+  file.state({"u_primtest.beat_user", user_w});
+  file.close_folded("programme state of the beat");
+  file.axis_code({"u_primtest.beat_code", defs::axis_code_w});
+  file.bit("allow above", "u_primtest.beat_allow_above");
+  file.bit("allow below", "u_primtest.beat_allow_below");
   file.close_group(title);
 }
 
-void macro_stages(SaveFile& file) {
-  file.open_group("macro stage 1 select");
+void stage_select(SaveFile& file, const Module& module) {
+  const std::string title = "macro stage 1 select";
+  file.open_group(title);
   pipeline_valid(file, defs::select_latency());
   file.open_folded("edges and points");
-  file.point("e from", {"u_pipeline.select_e_from", 3 * w}, 0, w);
-  file.point("e to", {"u_pipeline.select_e_to", 3 * w}, 0, w);
-  file.point("f from", {"u_pipeline.select_f_from", 3 * w}, 0, w);
-  file.point("f to", {"u_pipeline.select_f_to", 3 * w}, 0, w);
-  for (int i = 0; i < 3; ++i) file.point("point " + std::to_string(i), {"u_pipeline.select_points", 9 * w}, i, w);
+  file.point("e from", {"u_primtest.u_pipeline.select_e_from", 3 * w}, 0, w);
+  file.point("e to", {"u_primtest.u_pipeline.select_e_to", 3 * w}, 0, w);
+  file.point("f from", {"u_primtest.u_pipeline.select_f_from", 3 * w}, 0, w);
+  file.point("f to", {"u_primtest.u_pipeline.select_f_to", 3 * w}, 0, w);
+  points(file, "point ", module.points(), {"u_primtest.u_pipeline.select_points", 3 * w * module.points()});
   file.close_folded("edges and points");
-  file.close_group("macro stage 1 select");
+  file.vector("own points", {"u_primtest.u_pipeline.select_own", 2}, Radix::binary);
+  file.close_group(title);
+}
 
-  file.open_group("macro stage 2 axis");
+void stage_axis(SaveFile& file) {
+  const std::string title = "macro stage 2 axis";
+  file.open_group(title);
   pipeline_valid(file, defs::select_latency() + substages);
-  file.point("axis", {"u_pipeline.axis", 3 * defs::axis_w(w)}, 0, defs::axis_w(w));
-  file.close_group("macro stage 2 axis");
+  file.point("axis", {"u_primtest.u_pipeline.axis", 3 * defs::axis_w(w)}, 0, defs::axis_w(w));
+  file.vector("|e| + |f|", {"u_primtest.u_pipeline.axis_edge_norm", defs::norm_w(w)}, Radix::decimal);
+  file.close_group(title);
+}
 
-  file.open_group("macro stage 3 project");
+void stage_project(SaveFile& file, const Module& module) {
+  const std::string title = "macro stage 3 project";
+  const std::string pipeline = "u_primtest.u_pipeline.";
+  const auto slices = [&](const std::string& label, const std::string& name, int width, Radix radix) {
+    for (int i = 0; i < module.points(); ++i) {
+      file.field(label + std::to_string(i), {pipeline + name, width * module.points()}, i * width, width, radix);
+    }
+  };
+  file.open_group(title);
   pipeline_valid(file, defs::select_latency() + 2 * substages);
-  for (int point = 0; point < 3; ++point) {
-    file.field("p" + std::to_string(point), {"u_pipeline.projection", 3 * defs::proj_w(w)}, point * defs::proj_w(w),
-               defs::proj_w(w), Radix::signed_decimal);
-  }
-  file.bit("axis is zero", "u_pipeline.project_axis_zero");
-  file.close_group("macro stage 3 project");
+  slices("p", "projection", defs::proj_w(w), Radix::signed_decimal);
+  file.open_folded("error bounds");
+  slices("sign bound ", "sign_bound", defs::bound_w(w), Radix::decimal);
+  file.vector("gap bound", {pipeline + "gap_bound", defs::bound_w(w)}, Radix::decimal);
+  file.close_folded("error bounds");
+  file.vector("axis < 0 (zyx)", {pipeline + "project_axis_negative", 3}, Radix::binary);
+  file.vector("axis = 0 (zyx)", {pipeline + "project_axis_zero", 3}, Radix::binary);
+  file.vector("largest component", {pipeline + "project_axis_largest", 2}, Radix::decimal);
+  file.close_group(title);
+}
 
-  file.open_group("macro stage 4 compare");
-  file.bit("valid", "verdict_valid");
-  file.vector("context", {"verdict_context", context_w}, Radix::decimal);
-  file.axis_code({"verdict_code", defs::axis_code_w});
-  file.bit("separated", "verdict_separated");
-  file.close_group("macro stage 4 compare");
+void stage_compare(SaveFile& file, const Module& module) {
+  const std::string title = "macro stage 4 compare";
+  const Vector user{"u_primtest.verdict_user", user_w};
+  file.open_group(title);
+  file.bit("valid", "u_primtest.verdict_valid");
+  file.open_folded("programme state of the verdict");
+  file.state(user);
+  file.close_folded("programme state of the verdict");
+  file.field("axis (class k l)", user, 3, defs::axis_code_w, Radix::octal);
+  file.bit("separated", "u_primtest.verdict_separated");
+  file.bit("certain gap", "u_primtest.verdict_certain_gap");
+  file.vector("points < 0", {"u_primtest.verdict_negative", module.points()}, Radix::binary);
+  file.vector("points = 0", {"u_primtest.verdict_zero", module.points()}, Radix::binary);
+  file.vector("sign certain", {"u_primtest.verdict_certain", module.points()}, Radix::binary);
+  file.bit("boxes separated", "u_primtest.verdict_box_separated");
+  file.bit("boxes certain", "u_primtest.verdict_box_certain");
+  file.close_group(title);
 }
 
 void stream_m_result(SaveFile& file) {
@@ -152,12 +218,13 @@ void stream_m_result(SaveFile& file) {
 
 }  // namespace
 
-void write_gtkw(const std::string& fst_path) {
+void write_gtkw(const std::string& fst_path, ModuleId id) {
+  const Module module(id);
   const std::filesystem::path fst(fst_path);
   const std::filesystem::path path = std::filesystem::path(fst).replace_extension(".gtkw");
   std::ofstream out(path);
-  SaveFile file(out);
-  file.line("[*] Signals of cchip_primtest_tri_tri along the way of a pair");
+  SaveFile file(out, module);
+  file.line("[*] Signals of " + module.name + " along the way of a pair");
   file.line("[dumpfile] \"" + std::filesystem::absolute(fst).lexically_normal().string() + "\"");
   file.line("[timestart] 0");
   file.line("[size] 1920 1080");
@@ -167,9 +234,12 @@ void write_gtkw(const std::string& fst_path) {
   file.line("[signals_width] 230");
   file.bit("clk", "clk");
   file.bit("rst", "rst");
-  stream_s_pair(file);
+  stream_s_pair(file, module);
   axis_controller(file);
-  macro_stages(file);
+  stage_select(file, module);
+  stage_axis(file);
+  stage_project(file, module);
+  stage_compare(file, module);
   stream_m_result(file);
   out.close();
   if (!out) throw std::runtime_error(path.string() + ": cannot be written; check folder and permissions");

@@ -45,9 +45,9 @@ TEMPLATE_LIST_TEST_CASE("harness: pairs come back by tag under every pattern", "
     auto sink = port.sink(back_pressure);
     std::mt19937_64 random(options.seed);
     TagScoreboard<PairRequest, PairResultBeat> board("pairs", [](const PairRequest& sent, const PairResultBeat& got) {
-      const bool legal = sent.mode == 0;
-      return (got.axis.cls == AxisClass::illegal) == !legal && got.beats == (legal ? 11 : 0) &&
-             got.hit == (got.grid || !got.definite) && !(got.definite && sent.pair.eta != 0);
+      const bool reserved = sent.mode > 1;
+      return (got.axis.cls == AxisClass::illegal) == reserved && (got.beats == 0) == reserved &&
+             got.hit == (got.grid || !got.definite) && !(got.definite && sent.pair.eta == defs::err_unknown);
     });
     driver.when_idle([&] { port.scramble(random); });
     driver.on_accept([&](const PairRequest& sent, std::uint64_t clock) { board.expect(sent.tag, sent, clock); });
@@ -122,11 +122,16 @@ TEST_CASE("harness: engine rtl answers batches in order and counts", "[unit][har
   for (const EngineAnswer& answer : second) CHECK_FALSE(answer.grid);
   for (const EngineAnswer& answer : first) {
     CHECK(answer.hardware->clock_out - answer.hardware->clock_in >=
-          static_cast<std::uint64_t>(defs::pair_latency(defs::substages_default, defs::exhaustive_beats_tri_tri)));
+          static_cast<std::uint64_t>(defs::pair_latency(defs::substages_default, defs::exhaustive_beats(3, 3))));
   }
   CHECK(second[0].hardware->clock_in > first[2].hardware->clock_out);
   const EngineStatistics statistics = engine->statistics();
-  CHECK(statistics.beats == std::uint64_t{103} * defs::exhaustive_beats_tri_tri);
+  std::uint64_t beats = 0;
+  for (const auto* batch : {&first, &second}) {
+    for (const EngineAnswer& answer : *batch) beats += static_cast<std::uint64_t>(answer.hardware->beats);
+  }
+  CHECK(statistics.beats == beats);
+  CHECK(second[0].hardware->beats == defs::exhaustive_beats(3, 3));
   CHECK(statistics.waiting_clocks >= statistics.beats);
   CHECK(statistics.clocks > second.back().hardware->clock_out);
 }
@@ -135,7 +140,7 @@ TEST_CASE("harness: a lone pair takes the generated latency", "[unit][harness]")
   const auto engine = make_rtl_engine();
   const HardwareAnswer answer = *engine->run({stacked(1)}, PairMode::exhaustive).front().hardware;
   CHECK(answer.clock_out - answer.clock_in ==
-        static_cast<std::uint64_t>(defs::pair_latency(defs::substages_default, defs::exhaustive_beats_tri_tri)));
+        static_cast<std::uint64_t>(defs::pair_latency(defs::substages_default, defs::exhaustive_beats(3, 3))));
 }
 
 TEST_CASE("harness: engine rtl answers more pairs than there are tags", "[unit][harness]") {
@@ -149,10 +154,11 @@ TEST_CASE("harness: engine rtl answers more pairs than there are tags", "[unit][
 
 TEST_CASE("harness: engine rtl refuses what it cannot answer", "[unit][harness]") {
   const auto engine = make_rtl_engine();
-  GridPair quad = stacked(0);
-  quad.b.kind = Kind::quad;
-  CHECK_THROWS_WITH(engine->run({stacked(0), quad}, PairMode::exhaustive),
-                    Catch::Contains("pair 1") && Catch::Contains("triangles"));
+  GridPair vague = stacked(0);
+  vague.eta = 16;
+  CHECK_THROWS_WITH(engine->run({stacked(0), vague}, PairMode::exhaustive),
+                    Catch::Contains("pair 1") && Catch::Contains("eta"));
+  CHECK_THROWS_AS(engine->run({stacked(0)}, std::vector<PairMode>{}), std::invalid_argument);
   for (const int z : {32768, -32769}) {
     GridPair far = stacked(0);
     far.a.v[1].z() = z;

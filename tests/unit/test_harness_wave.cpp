@@ -3,9 +3,11 @@
 #include <gtkwave/fstapi.h>
 
 #include <catch2/catch.hpp>
+#include <cchip/primtest_engine.hpp>
 #include <cchip/rtl_engine.hpp>
 #include <cchip/sim/wave_on_failure.hpp>
 #include <cchip/wave_layout.hpp>
+#include <filesystem>
 #include <fstream>
 #include <regex>
 #include <set>
@@ -38,15 +40,19 @@ std::set<std::string> signals_of(const std::string& fst) {
 }  // namespace
 
 TEST_CASE("harness: the layout names signals that exist", "[unit][harness]") {
+  const ModuleId id = GENERATE(ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad);
+  CAPTURE(to_name(id));
   RtlEngineOptions options;
-  options.trace_path = sim::wave_folder() + "/harness_layout.fst";
+  options.trace_path = sim::wave_folder() + "/harness_layout_" + to_name(id) + ".fst";
   options.trace_clocks = 10;
-  make_rtl_engine(options);
-  write_gtkw(options.trace_path);
+  GridPair pair;
+  pair.a.kind = id == ModuleId::quad_quad ? Kind::quad : Kind::tri;
+  pair.b.kind = id == ModuleId::tri_tri ? Kind::tri : Kind::quad;
+  make_rtl_engine(options)->run({pair}, PairMode::directed);
   const std::set<std::string> signals = signals_of(options.trace_path);
   REQUIRE(signals.size() > 100);
 
-  std::ifstream file(sim::wave_folder() + "/harness_layout.gtkw");
+  std::ifstream file(sim::wave_folder() + "/harness_layout_" + to_name(id) + ".gtkw");
   const std::regex signal("TOP\\.[^ ]+");
   int named = 0;
   std::set<std::string> groups;
@@ -69,6 +75,23 @@ TEST_CASE("harness: the layout names signals that exist", "[unit][harness]") {
   }
 }
 
+TEST_CASE("harness: each module of an engine has its waveform", "[unit][harness]") {
+  RtlEngineOptions options;
+  options.trace_path = sim::wave_folder() + "/harness_modules.fst";
+  options.trace_clocks = 10;
+  std::vector<GridPair> pairs(3);
+  pairs[0].b.kind = pairs[1].a.kind = pairs[2].a.kind = pairs[2].b.kind = Kind::quad;
+  const auto path = [](const std::string& end) { return sim::wave_folder() + "/harness_modules" + end; };
+  for (const char* end : {".fst", "_tri_tri.fst", "_tri_quad.fst", "_quad_quad.fst"})
+    std::filesystem::remove(path(end));
+  make_rtl_engine(options)->run(pairs, PairMode::directed);
+  CHECK(std::filesystem::exists(path(".fst")));  // of tri_quad, the first that was needed
+  CHECK(std::filesystem::exists(path("_quad_quad.fst")));
+  CHECK(std::filesystem::exists(path("_quad_quad.gtkw")));
+  CHECK_FALSE(std::filesystem::exists(path("_tri_quad.fst")));
+  CHECK_FALSE(std::filesystem::exists(path("_tri_tri.fst")));
+}
+
 TEST_CASE("harness: a layout that cannot be written is an error", "[unit][harness]") {
-  CHECK_THROWS_WITH(write_gtkw("/dev/null/wave.fst"), Catch::Contains("cannot be written"));
+  CHECK_THROWS_WITH(write_gtkw("/dev/null/wave.fst", ModuleId::tri_tri), Catch::Contains("cannot be written"));
 }

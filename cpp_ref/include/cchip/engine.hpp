@@ -20,12 +20,12 @@ struct AxisCode {
   AxisClass cls = AxisClass::none;
   std::uint8_t k = 0;
   std::uint8_t l = 0;
-  friend bool operator==(const AxisCode& x, const AxisCode& y) {
-    return x.cls == y.cls && x.k == y.k && x.l == y.l;
-  }
+  friend bool operator==(const AxisCode& x, const AxisCode& y) { return x.cls == y.cls && x.k == y.k && x.l == y.l; }
 };
 
-/// The witness in words: "none", "normal of A", "normal of B", "edge 0 of A x edge 2 of B", ...
+/// The witness in words: "none", "normal of A", "normal of face 2 of B" (a warped quad's face without vertex 2),
+/// "edge 0 of A x edge 2 of B", "diagonal V0V2 of A x edge 1 of B", "edge 1 of A x direction z" (an axis in A's
+/// plane), "box x", ...
 std::string to_words(const AxisCode& axis);
 
 /// What the hardware (or its model) said about one pair; the fields of stream `m_result`.
@@ -53,12 +53,12 @@ struct EngineAnswer {
 
 /// Totals since construction; all zero for engines without a clock.
 struct EngineStatistics {
-  std::uint64_t clocks = 0;         ///< clocks simulated after reset
-  std::uint64_t beats = 0;          ///< axes that entered the SAT pipeline
-  std::uint64_t waiting_clocks = 0; ///< clocks on which at least one pair waited for an axis slot
+  std::uint64_t clocks = 0;          ///< clocks simulated after reset
+  std::uint64_t beats = 0;           ///< axes that entered the SAT pipeline
+  std::uint64_t waiting_clocks = 0;  ///< clocks on which at least one pair waited for an axis slot
 };
 
-/// Answers batches of pairs in order. Not thread-safe.
+/// Answers batches of pairs in order; triangles and quads in any mix. Not thread-safe.
 class PairEngine {
  public:
   virtual ~PairEngine() = default;
@@ -67,7 +67,12 @@ class PairEngine {
   virtual int coord_w() const = 0;
   /// Answers every pair of the batch, answers in the order of the pairs. Any batch size; memory is
   /// proportional to it. Throws std::runtime_error if the engine does not answer within its bound.
-  virtual std::vector<EngineAnswer> run(const std::vector<GridPair>& pairs, PairMode mode) = 0;
+  /// Engines without programmes ignore the mode.
+  std::vector<EngineAnswer> run(const std::vector<GridPair>& pairs, PairMode mode) {
+    return run(pairs, std::vector<PairMode>(pairs.size(), mode));
+  }
+  /// The same with a mode for each pair: modes.size() = pairs.size().
+  virtual std::vector<EngineAnswer> run(const std::vector<GridPair>& pairs, const std::vector<PairMode>& modes) = 0;
   virtual EngineStatistics statistics() const { return {}; }
 };
 

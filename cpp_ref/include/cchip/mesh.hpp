@@ -13,7 +13,7 @@
 
 namespace cchip {
 
-/// Faces as tuples of indices into the vertex positions. Everything here makes triangles only.
+/// Faces as tuples of indices into the vertex positions.
 struct Mesh {
   std::string name;  ///< path of the file, or name of the shape
   std::vector<Vec3d> vertices;
@@ -22,20 +22,29 @@ struct Mesh {
     std::array<std::uint32_t, 4> vertex = {0, 0, 0, 0};
   };
   std::vector<Face> faces;
+  /// Faces of the file that load_mesh() cut into triangles.
+  std::size_t polygons_cut = 0;
   /// Face number `face` (less than faces.size()) with its vertex positions.
   Primitive primitive(std::size_t face) const;
 };
 
+/// What load_mesh() keeps as it is; other polygons are cut into triangles.
+enum class FaceKinds {
+  triangles,
+  /// and convex quads. A quad whose outline has a dent is cut: as a primitive it would be the hull of its vertices.
+  triangles_and_quads
+};
+
 /// Reads OBJ, STL, PLY or OFF (and what else assimp reads): all sub-meshes with the transforms of their nodes,
-/// polygons triangulated, points and lines dropped, in the order of the file. Positions are in the file's unit,
-/// as assimp holds them: rounded to single precision.
+/// points and lines dropped, in the order of the file. Positions are in the file's unit, as assimp holds them:
+/// rounded to single precision.
 /// \throws std::runtime_error one line: file, what is wrong, what to do (missing file, parse error, no faces,
 ///         vertex that is not finite, face with unknown vertices)
-Mesh load_mesh(const std::string& path);
+Mesh load_mesh(const std::string& path, FaceKinds kinds = FaceKinds::triangles);
 
-/// Torus around the z axis, closed, fronts outside: `around` x `across` rectangles, each cut into two triangles.
+/// Torus around the z axis, closed, fronts outside: `around` x `across` quads, or twice as many triangles.
 /// \throws std::invalid_argument unless major_radius > minor_radius > 0, around >= 3, across >= 3
-Mesh make_torus(double major_radius, double minor_radius, int around, int across);
+Mesh make_torus(double major_radius, double minor_radius, int around, int across, Kind kind = Kind::tri);
 /// Spur gear around the z axis from z = -thickness / 2 to thickness / 2, closed, fronts outside. The outline has
 /// four points per tooth; walls have `layers` bands: 16 teeth (layers + 1) triangles with a bore, so 24 teeth in
 /// 6 layers make 2,688; 8 teeth (layers + 1) with bore_radius 0, which makes no bore.

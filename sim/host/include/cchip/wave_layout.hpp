@@ -4,14 +4,15 @@
 #ifndef CCHIP_WAVE_LAYOUT_HPP
 #define CCHIP_WAVE_LAYOUT_HPP
 
+#include <cchip/defs.hpp>
 #include <string>
 
 namespace cchip {
 
-/// Writes the GTKWave save file beside the waveform (same name, .gtkw): signals in the order in which the data
-/// flows, grouped by stream and macro stage, zoomed to the first pairs.
+/// Writes the GTKWave save file beside the waveform of this module (same name, .gtkw): signals in the order in which
+/// the data flows, grouped by stream and macro stage, zoomed to the first pairs. The waveform need not exist yet.
 /// \throws std::runtime_error the file cannot be written
-void write_gtkw(const std::string& fst_path);
+void write_gtkw(const std::string& fst_path, ModuleId module);
 
 }  // namespace cchip
 
