@@ -1,200 +1,83 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the bit-exact model of the EXHAUSTIVE programme with the exact oracle on random pairs.
-#include <fmt/format.h>
-#include <unistd.h>
-
+// Long comparisons of RTL and model with the exact oracle.
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <cchip/exact_oracle.hpp>
-#include <cchip/model/sat.hpp>
-#include <chrono>
-#include <cstdio>
-#include <map>
-#include <mutex>
-#include <string>
-#include <thread>
-#include <vector>
+#include <functional>
 
-#include "pair_source.hpp"
+#include "commands.hpp"
 
 namespace cchip::campaign {
 namespace {
 
-struct Options {
-  std::uint64_t pairs = 1000000;
-  std::uint64_t seed = 1;
-  int coord_w = defs::coord_w_default;
-  unsigned threads = 2;
-};
-
-/// What was seen of one class.
-struct Counts {
-  std::uint64_t pairs = 0;
-  std::uint64_t hits = 0;        ///< by the oracle
-  std::uint64_t special = 0;     ///< coplanar or degenerate, by the model
-  std::uint64_t open = 0;        ///< special, not separated by the model, yet disjoint: a later programme's task
-  std::uint64_t mismatches = 0;  ///< model wrong where it must be right, false no included
-  std::uint64_t false_no = 0;    ///< model separated, oracle hit
-
-  Counts& operator+=(const Counts& x) {
-    pairs += x.pairs;
-    hits += x.hits;
-    special += x.special;
-    open += x.open;
-    mismatches += x.mismatches;
-    false_no += x.false_no;
-    return *this;
-  }
-};
-using Table = std::array<Counts, pair_classes.size()>;
-
-/// A model that separates must be right; so must every answer of a pair that is not special; and special must
-/// be what geometry calls coplanar or degenerate.
-Counts judge(const GridPair& pair, int coord_w) {
-  const model::Outcome model = model::exhaustive(pair, coord_w);
-  const bool hit = exact_intersects(pair);
-  const bool special = is_degenerate(pair.a) || is_degenerate(pair.b) || is_coplanar(pair);
-  const bool wrong = model.grid != hit && (!special || !model.grid);
-  Counts c;
-  c.pairs = 1;
-  c.hits = hit;
-  c.special = model.special;
-  c.open = special && model.grid && !hit;
-  c.mismatches = wrong || model.special != special;
-  c.false_no = !model.grid && hit;
-  return c;
+void add_common(CLI::App& command, CommonOptions& options) {
+  command.add_option("--seed", options.seed, "repeats a run")->envname("CCHIP_SEED")->capture_default_str();
+  command.add_option("--threads", options.threads, "threads; the outcome does not depend on it")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  command.add_option("--shape", options.shape, "kinds of the primitives")
+      ->check(CLI::IsMember({"all", "tri-tri", "tri-quad", "quad-quad"}))
+      ->capture_default_str();
 }
 
-std::string to_text(const GridPair& pair) {
-  std::string text;
-  for (const GridPrimitive* p : {&pair.a, &pair.b}) {
-    text += p == &pair.a ? "A" : "  B";
-    for (std::size_t i = 0; i < 3; ++i) {
-      text += fmt::format(" ({}, {}, {})", p->v[i].x(), p->v[i].y(), p->v[i].z());
-    }
-  }
-  return text;
+void add_coord_w(CLI::App& command, int& coord_w) {
+  command.add_option("--coord-w", coord_w, "bits of a coordinate")
+      ->check(CLI::Range(defs::coord_w_min, defs::coord_w_max))
+      ->capture_default_str();
 }
 
-/// Progress in one line of a terminal; silent elsewhere.
-class Progress {
- public:
-  explicit Progress(std::uint64_t total) : total_(total), on_(isatty(STDERR_FILENO) == 1) {}
-  ~Progress() {
-    if (on_) std::fputs("\r\033[K", stderr);
-  }
-  void show(std::uint64_t done) const {
-    if (on_) fmt::print(stderr, "\r{} of {} pairs, {} %", done, total_, 100 * done / total_);
-  }
-
- private:
-  std::uint64_t total_;
-  bool on_;
-};
-
-/// The pairs are cut into chunks, each with its own source, so that the outcome depends neither on the number
-/// of threads nor on who takes which chunk.
-class Campaign {
- public:
-  explicit Campaign(const Options& options) : options_(options), progress_(options.pairs) {}
-
-  void run() {
-    std::vector<std::thread> threads;
-    for (unsigned i = 0; i < options_.threads; ++i) threads.emplace_back([this] { work(); });
-    for (std::thread& t : threads) t.join();
-  }
-
-  const Table& table() const { return table_; }
-  /// The first mismatches, by chunk.
-  const std::map<std::uint64_t, std::string>& examples() const { return examples_; }
-
- private:
-  static constexpr std::uint64_t chunk_pairs = 1 << 16;
-  static constexpr std::size_t examples_max = 10;
-
-  void work() {
-    while (true) {
-      const std::uint64_t chunk = next_chunk_++;
-      const std::uint64_t first = chunk * chunk_pairs;
-      if (first >= options_.pairs) return;
-      std::string example;
-      const Table counted = run_chunk(chunk, std::min(chunk_pairs, options_.pairs - first), example);
-      const std::lock_guard<std::mutex> lock(mutex_);
-      for (std::size_t c = 0; c < counted.size(); ++c) {
-        table_[c] += counted[c];
-        done_ += counted[c].pairs;
-      }
-      if (!example.empty()) examples_[chunk] = example;
-      if (examples_.size() > examples_max) examples_.erase(std::prev(examples_.end()));
-      progress_.show(done_);
-    }
-  }
-
-  Table run_chunk(std::uint64_t chunk, std::uint64_t pairs, std::string& example) const {
-    PairSource source(options_.coord_w, options_.seed * 0x9e3779b97f4a7c15U + chunk);
-    Table table;
-    for (std::uint64_t i = 0; i < pairs; ++i) {
-      const std::size_t c = source.draw_class();
-      const GridPair pair = source.draw(pair_classes[c].value);
-      const Counts one = judge(pair, options_.coord_w);
-      if (one.mismatches != 0 && example.empty()) example = fmt::format("{}: {}", pair_classes[c].name, to_text(pair));
-      table[c] += one;
-    }
-    return table;
-  }
-
-  Options options_;
-  Progress progress_;
-  std::atomic<std::uint64_t> next_chunk_{0};
-  std::mutex mutex_;
-  Table table_;
-  std::uint64_t done_ = 0;
-  std::map<std::uint64_t, std::string> examples_;
-};
-
-Counts print(const Table& table) {
-  constexpr const char* row = "{:<20} {:>11} {:>11} {:>11} {:>11} {:>11} {:>9}\n";
-  fmt::print(row, "class", "pairs", "hits", "special", "open", "mismatches", "false_no");
-  Counts sum;
-  for (std::size_t c = 0; c < table.size(); ++c) {
-    const Counts& t = table[c];
-    fmt::print(row, pair_classes[c].name, t.pairs, t.hits, t.special, t.open, t.mismatches, t.false_no);
-    sum += t;
-  }
-  fmt::print(row, "all", sum.pairs, sum.hits, sum.special, sum.open, sum.mismatches, sum.false_no);
-  return sum;
+void add_pairs(CLI::App& command, std::uint64_t& pairs, const char* what) {
+  command.add_option("--pairs", pairs, what)->capture_default_str();
 }
 
-int run(const Options& options) {
-  const auto start = std::chrono::steady_clock::now();
-  fmt::print("seed={} coord_w={}\n", options.seed, options.coord_w);
-  Campaign campaign(options);
-  campaign.run();
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  const Counts sum = print(campaign.table());
-  for (const auto& [chunk, text] : campaign.examples()) fmt::print("mismatch in chunk {}: {}\n", chunk, text);
-  fmt::print("pairs={} special={} mismatches={} false_no={} seconds={:.1f} seed={}\n", sum.pairs, sum.special,
-             sum.mismatches, sum.false_no, seconds.count(), options.seed);
-  return sum.mismatches == 0 ? 0 : 3;
+/// The subcommand that was given is left in `chosen`.
+void add_commands(CLI::App& app, std::function<int()>& chosen) {
+  const auto add = [&](const char* name, const char* what, auto options, int (*run)(const decltype(options)&)) {
+    CLI::App* command = app.add_subcommand(name, what);
+    const auto shared = std::make_shared<decltype(options)>(options);
+    add_common(*command, *shared);
+    command->callback([&chosen, shared, run] { chosen = [shared, run] { return run(*shared); }; });
+    return std::pair(command, shared);
+  };
+  const auto [random, r] = add("random", "both programmes of the model against the exact oracle, random pairs",
+                               RandomOptions{}, run_random);
+  add_pairs(*random, r->pairs, "pairs per shape");
+  add_coord_w(*random, r->coord_w);
+  const auto [grid, g] = add("grid", "the same on the grid -1..1: all triangle pairs up to symmetry, samples with quads",
+                             GridOptions{}, run_grid);
+  add_pairs(*grid, g->pairs, "pairs per shape; 0: all of triangles, none with quads");
+  grid->add_option("--rtl", g->rtl, "pairs per shape that also go through the RTL, in both programmes")
+      ->capture_default_str();
+  const auto [classes, c] = add("classes", "RTL against model and exact oracle, class by class, with throughput",
+                                ClassesOptions{}, run_classes);
+  add_pairs(*classes, c->pairs, "pairs per class and shape");
+  const auto [certainty, e] = add("certainty", "definite answers against exact ones of primitives off the grid",
+                                  CertaintyOptions{}, run_certainty);
+  add_pairs(*certainty, e->pairs, "pairs in all");
+  certainty->add_option("--bounds", e->bounds, "cases for the bounds alone")->capture_default_str();
+  certainty->add_option("--offset", e->offset, "offsets, as a multiple of what eta allows: over 1 must fail")
+      ->check(CLI::Range(0.0, 4.0))
+      ->capture_default_str();
+  add_coord_w(*certainty, e->coord_w);
+  const auto [leaves, l] = add("leaves", "leaf pairs of two meshes whose 24-DOPs overlap", LeavesOptions{}, run_leaves);
+  leaves->add_option("meshes", l->meshes, "mesh files, each against itself; none: built-in torus, gear, quad torus");
+  leaves->add_option("--poses", l->poses, "poses of the second mesh")->check(CLI::Range(1, 1000))->capture_default_str();
+  leaves->add_option("--pairs", l->pairs_max, "most leaf pairs per mesh and pose")->capture_default_str();
 }
 
 }  // namespace
 }  // namespace cchip::campaign
 
 int main(int argc, char** argv) {
-  cchip::campaign::Options options;
   CLI::App app{
-      "Compares the bit-exact model of the triangle-triangle module with the exact oracle on random pairs.\n"
-      "special: coplanar or degenerate; open: special, disjoint, and separated by none of the eleven axes.\n"
-      "Exit codes: 0 no mismatch, 3 mismatches, others: wrong arguments."};
-  app.add_option("--pairs", options.pairs, "number of pairs")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--seed", options.seed, "repeats a run")->envname("CCHIP_SEED")->capture_default_str();
-  app.add_option("--coord-w", options.coord_w, "bits of a coordinate")
-      ->check(CLI::Range(cchip::defs::coord_w_min, cchip::defs::coord_w_max))
-      ->capture_default_str();
-  app.add_option("--threads", options.threads, "threads; the outcome does not depend on it")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
+      "Campaigns: long comparisons of RTL and model with the exact oracle.\n"
+      "Exit codes: 0 nothing wrong, 3 wrong results, 2 the run could not be made, others: wrong arguments."};
+  app.require_subcommand(1);
+  std::function<int()> chosen;
+  cchip::campaign::add_commands(app, chosen);
   CLI11_PARSE(app, argc, argv);
-  return cchip::campaign::run(options);
+  try {
+    return chosen();
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "cchip_campaign: {}\n", error.what());
+    return 2;
+  }
 }

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The subcommands of cchip_campaign. Each prints its tables and a last line key=value, and returns the exit code:
+/// 0, or wrong_result.
+#ifndef CCHIP_CAMPAIGN_COMMANDS_HPP
+#define CCHIP_CAMPAIGN_COMMANDS_HPP
+
+#include <cchip/defs.hpp>
+
+#include "campaign.hpp"
+
+namespace cchip::campaign {
+
+struct RandomOptions : CommonOptions {
+  std::uint64_t pairs = 1000000;  ///< per shape
+  int coord_w = defs::coord_w_default;
+};
+/// Random pairs of all classes: both programmes of the model against the exact oracle.
+int run_random(const RandomOptions& options);
+
+struct GridOptions : CommonOptions {
+  std::uint64_t pairs = 0;  ///< with a quad, per shape; triangles: 0 all pairs, else a sample
+  std::uint64_t rtl = 0;    ///< pairs that also go through the RTL, per shape
+};
+/// Primitives of the grid -1..1: all pairs of triangles up to symmetry, samples of pairs with quads.
+int run_grid(const GridOptions& options);
+
+struct ClassesOptions : CommonOptions {
+  std::uint64_t pairs = 100000;  ///< per class, shape and programme
+};
+/// RTL against model and exact oracle, class by class.
+int run_classes(const ClassesOptions& options);
+
+struct CertaintyOptions : CommonOptions {
+  std::uint64_t pairs = 10000000;  ///< in all
+  std::uint64_t bounds = 1000000;  ///< cases of the bounds alone
+  int coord_w = defs::coord_w_default;
+  double offset = 1;  ///< offsets as a multiple of what eta allows; over 1 must fail
+};
+/// Primitives between the grid points: no definite answer may contradict the exact one.
+int run_certainty(const CertaintyOptions& options);
+
+struct LeavesOptions : CommonOptions {
+  std::vector<std::string> meshes;  ///< files; none: the built-in ones
+  int poses = 6;
+  std::uint64_t pairs_max = 200000;  ///< leaf pairs per mesh and pose
+};
+/// Leaf pairs of two meshes whose 24-DOPs overlap.
+int run_leaves(const LeavesOptions& options);
+
+}  // namespace cchip::campaign
+
+#endif

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Streams pairs through a Verilated primitive test; every pair with its own programme.
+#ifndef CCHIP_CAMPAIGN_RTL_STREAM_HPP
+#define CCHIP_CAMPAIGN_RTL_STREAM_HPP
+
+#include <cchip/sim/pair_port.hpp>
+#include <memory>
+
+#include "campaign.hpp"
+
+namespace cchip::campaign {
+
+/// What the machine did, from the first offered pair to the last result.
+struct RtlCounts {
+  std::uint64_t clocks = 0;
+  std::uint64_t beats = 0;           ///< axes accepted by the pipeline
+  std::uint64_t waiting_clocks = 0;  ///< clocks on which a pair waited for an axis slot
+  RtlCounts& operator+=(const RtlCounts& x) {
+    clocks += x.clocks;
+    beats += x.beats;
+    waiting_clocks += x.waiting_clocks;
+    return *this;
+  }
+};
+
+/// One module with default parameters, sources and sinks always ready.
+class RtlStream {
+ public:
+  struct Request {
+    GridPair pair;
+    int mode = 0;
+  };
+  struct Run {
+    std::vector<sim::PairResultBeat> results;  ///< in the order of the pairs, with the tags that were sent
+    RtlCounts counts;
+  };
+  virtual ~RtlStream() = default;
+  /// \throws sim::SimulationError no answer, an answer nobody asked for, a failed assertion
+  virtual Run run(const std::vector<Request>& requests) = 0;
+  /// The tag of request number `index`.
+  static std::uint16_t tag(std::size_t index) { return static_cast<std::uint16_t>(40503U * index); }
+};
+
+/// \param seed of everything the RTL leaves undefined at power-up, and of the vertex slots of triangles that do
+/// not matter
+std::unique_ptr<RtlStream> make_rtl_stream(const ShapeInfo& shape, std::uint64_t seed);
+
+/// The result that the model predicts, with this tag.
+sim::PairResultBeat predicted(const ShapeInfo& shape, const RtlStream::Request& request, std::uint16_t tag);
+
+/// Results that differ in any bit from the model's, or in the grid answer from the exact one (reserved modes are
+/// not asked for it).
+struct RtlJudgement {
+  std::uint64_t pairs = 0;
+  std::uint64_t hits = 0;
+  std::uint64_t definite = 0;
+  std::uint64_t not_as_model = 0;
+  std::uint64_t wrong = 0;
+  std::uint64_t too_many_beats = 0;
+  Spread beats;
+  RtlCounts counts;
+  RtlJudgement& operator+=(const RtlJudgement& x) {
+    pairs += x.pairs;
+    hits += x.hits;
+    definite += x.definite;
+    not_as_model += x.not_as_model;
+    wrong += x.wrong;
+    too_many_beats += x.too_many_beats;
+    beats += x.beats;
+    counts += x.counts;
+    return *this;
+  }
+  bool failed() const { return not_as_model + wrong + too_many_beats != 0; }
+};
+
+/// Runs the requests and judges them. `exact[i]` is the exact answer of request i.
+RtlJudgement judge_rtl(const ShapeInfo& shape, const std::vector<RtlStream::Request>& requests,
+                       const std::vector<bool>& exact, std::uint64_t seed, std::uint64_t part, Examples& examples);
+
+}  // namespace cchip::campaign
+
+#endif
