@@ -43,10 +43,11 @@ TEST_CASE("engine: witness axes in words", "[ref][engine]") {
   CHECK(to_words({AxisClass::none, 0, 0}) == "none");
   CHECK(to_words({AxisClass::normal_a, 0, 0}) == "normal of A");
   CHECK(to_words({AxisClass::normal_b, 0, 0}) == "normal of B");
-  CHECK(to_words({AxisClass::normal_b, 3, 0}) == "normal 3 of B");
+  CHECK(to_words({AxisClass::normal_b, 3, 0}) == "normal of face 2 of B");  // the face without vertex 2
   CHECK(to_words({AxisClass::cross, 0, 2}) == "edge 0 of A x edge 2 of B");
-  CHECK(to_words({AxisClass::in_plane_a, 1, 1}) == "in-plane edge 1 of A, axis y");
-  CHECK(to_words({AxisClass::in_plane_b, 2, 0}) == "in-plane edge 2 of B, axis x");
+  CHECK(to_words({AxisClass::cross, 4, 5}) == "diagonal V0V2 of A x diagonal V1V3 of B");
+  CHECK(to_words({AxisClass::in_plane_a, 1, 1}) == "edge 1 of A x direction y");
+  CHECK(to_words({AxisClass::in_plane_b, 2, 0}) == "edge 2 of B x direction x");
   CHECK(to_words({AxisClass::box, 0, 2}) == "box z");
   CHECK(to_words({AxisClass::illegal, 0, 0}) == "illegal request");
 }
