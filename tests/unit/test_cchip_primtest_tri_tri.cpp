@@ -538,6 +538,13 @@ TEMPLATE_LIST_TEST_CASE("cchip_primtest_tri_tri: no old tag after reset, wheneve
   for_two_power_ups([](const sim::SimulationOptions& options) {
     RequestSource requests(TestType::COORD_W, options.seed);
     ModuleBench<TestType> bench(options);
+    // a sender that is not in reset itself: what it offers on these clocks is not accepted
+    Bench careless(
+        [&](const sim::ClockInfo& now) {
+          if (now.in_reset) bench.simulation->s_pair_valid = 1;
+        },
+        [](const sim::ClockInfo&) {});
+    bench.simulation.add(careless);
     bench.simulation.reset();
     for (std::uint64_t moment = 1; moment < 90; ++moment) {  // a pair or several at every place of the machine
       for (int i = 0; i < 8; ++i) bench.driver.push(requests.draw());
