@@ -9,7 +9,7 @@
 namespace cchip::campaign {
 namespace {
 
-/// Least share of the clocks on which a pair waits that an axis is accepted on.
+/// Least share of the clocks on which a pair waits at the input that the pipeline accepts an axis on.
 constexpr double least_axes_per_clock = 0.99;
 
 /// Programmes of a stream: one for all pairs, or pair by pair with a reserved mode now and then.
@@ -39,7 +39,7 @@ Table<RtlJudgement> stream_class(const ShapeInfo& shape, PairClass c, std::size_
 }
 
 double axes_per_clock(const RtlJudgement& r) {
-  return static_cast<double>(r.counts.beats) / static_cast<double>(r.counts.waiting_clocks);
+  return static_cast<double>(r.counts.beats) / static_cast<double>(r.counts.offered_clocks);
 }
 
 void print_row(const std::string& name, const char* mix, const RtlJudgement& r) {

@@ -2,7 +2,6 @@
 // The grid -1..1: 27 points, 27^3 ordered triangles.
 #include <cchip/canonical.hpp>
 #include <random>
-#include <stdexcept>
 
 #include "commands.hpp"
 #include "judge.hpp"
@@ -33,7 +32,10 @@ std::vector<std::array<int, points>> symmetries() {
       for (int i = 0; i < points; ++i) {
         const Vec3i p = point(i);
         Vec3i q;
-        for (int d = 0; d < 3; ++d) q[d] = (mirror >> d & 1) != 0 ? -p[axis[static_cast<std::size_t>(d)]] : p[axis[static_cast<std::size_t>(d)]];
+        for (int d = 0; d < 3; ++d) {
+          const int c = p[axis[static_cast<std::size_t>(d)]];
+          q[d] = (mirror >> d & 1) != 0 ? -c : c;
+        }
         image[static_cast<std::size_t>(i)] = number_of(q);
       }
       result.push_back(image);
@@ -42,7 +44,8 @@ std::vector<std::array<int, points>> symmetries() {
   return result;
 }
 
-/// One triangle, the smallest, of every class under symmetries of the cube and orders of the vertices.
+/// One ordered triangle, the smallest, of every class under the symmetries of the cube. Orders of the vertices are
+/// kept: the programmes depend on them.
 std::vector<int> first_triangles() {
   const auto images = symmetries();
   std::vector<int> result;
@@ -50,10 +53,8 @@ std::vector<int> first_triangles() {
     const std::array<int, 3> v = {t % points, t / points % points, t / (points * points)};
     bool least = true;
     for (const auto& image : images) {
-      std::array<int, 3> w = {image[static_cast<std::size_t>(v[0])], image[static_cast<std::size_t>(v[1])],
-                              image[static_cast<std::size_t>(v[2])]};
-      std::sort(w.begin(), w.end(), std::greater<>());  // the order with the smallest number
-      least = least && w[0] + points * (w[1] + points * w[2]) >= t;
+      const auto to = [&image](int p) { return image[static_cast<std::size_t>(p)]; };
+      least = least && to(v[0]) + points * (to(v[1]) + points * to(v[2])) >= t;
     }
     if (least) result.push_back(t);
   }

@@ -14,12 +14,12 @@ namespace cchip::campaign {
 /// What the machine did, from the first offered pair to the last result.
 struct RtlCounts {
   std::uint64_t clocks = 0;
-  std::uint64_t beats = 0;           ///< axes accepted by the pipeline
-  std::uint64_t waiting_clocks = 0;  ///< clocks on which a pair waited for an axis slot
+  std::uint64_t offered_clocks = 0;  ///< clocks on which a pair waits on s_pair
+  std::uint64_t beats = 0;           ///< axes that the pipeline accepted on these clocks
   RtlCounts& operator+=(const RtlCounts& x) {
     clocks += x.clocks;
+    offered_clocks += x.offered_clocks;
     beats += x.beats;
-    waiting_clocks += x.waiting_clocks;
     return *this;
   }
 };
