@@ -59,6 +59,11 @@ bool is_convex_quad(const aiMesh& part, const aiFace& face) {
   return true;
 }
 
+std::size_t count_polygons(const aiMesh& part) {
+  return static_cast<std::size_t>(std::count_if(part.mFaces, part.mFaces + part.mNumFaces,
+                                                [](const aiFace& face) { return face.mNumIndices > 3; }));
+}
+
 /// The faces of one sub-mesh that triangulation would cut although they are to be kept. They leave a point in
 /// their place, which triangulation does not touch.
 struct KeptQuads {
@@ -75,13 +80,11 @@ KeptQuads take_quads(aiMesh& part) {
     const unsigned* v = face.mIndices;
     kept.behind_point.push_back(std::array<std::uint32_t, 4>{v[0], v[1], v[2], v[3]});
     face.mNumIndices = 1;
+    part.mPrimitiveTypes |= aiPrimitiveType_POINT;
   }
+  // triangulation stops the program where it expects polygons and finds none
+  if (count_polygons(part) == 0) part.mPrimitiveTypes &= ~static_cast<unsigned>(aiPrimitiveType_POLYGON);
   return kept;
-}
-
-std::size_t count_polygons(const aiMesh& part) {
-  return static_cast<std::size_t>(std::count_if(part.mFaces, part.mFaces + part.mNumFaces,
-                                                [](const aiFace& face) { return face.mNumIndices > 3; }));
 }
 
 /// Appends the faces of one sub-mesh; its points and lines are dropped.

@@ -107,6 +107,19 @@ TEST_CASE("mesh: torus is closed, faces outwards, has one hole", "[ref][mesh]") 
   }
 }
 
+TEST_CASE("mesh: a torus of quads is the torus of triangles before the cut", "[ref][mesh]") {
+  const Mesh quads = cchip::make_torus(3, 1, 12, 8, cchip::Kind::quad);
+  const Mesh triangles = cchip::make_torus(3, 1, 12, 8);
+  CHECK(quads.vertices == triangles.vertices);
+  REQUIRE(quads.faces.size() == 12 * 8);
+  for (std::size_t i = 0; i < quads.faces.size(); ++i) {
+    const auto& q = quads.faces[i].vertex;
+    REQUIRE(quads.faces[i].kind == cchip::Kind::quad);
+    REQUIRE(triangles.faces[2 * i].vertex == std::array<std::uint32_t, 4>{q[0], q[1], q[2], 0});
+    REQUIRE(triangles.faces[2 * i + 1].vertex == std::array<std::uint32_t, 4>{q[0], q[2], q[3], 0});
+  }
+}
+
 TEST_CASE("mesh: gear is closed, faces outwards", "[ref][mesh]") {
   const Mesh disc = cchip::make_gear(2, 2.5, 0, 1, 12, 3);
   CHECK(disc.faces.size() == 8 * 12 * (3 + 1));

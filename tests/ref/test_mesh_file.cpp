@@ -122,6 +122,50 @@ TEST_CASE("mesh file: polygons are cut into triangles, lines and points dropped"
   CHECK(area == Approx(16 + 4));
 }
 
+TEST_CASE("mesh file: quads are kept if asked for, other polygons cut", "[ref][mesh_file]") {
+  using cchip::FaceKinds;
+  using cchip::Kind;
+  const TemporaryFolder folder;
+  // In this order: point, quad, triangle, line, pentagon, quad with a dent, quad.
+  const std::string file = folder.write("mixed.obj",
+                                        "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 2 6 0\nv 3 3 0\nv 0 0 4\nv 4 0 4\n"
+                                        "p 2\nf 1 2 3 4\nf 4 3 5\nl 1 5\nf 1 2 3 5 4\nf 2 3 4 6\nf 1 2 8 7\n");
+  const Mesh mesh = load_mesh(file, FaceKinds::triangles_and_quads);
+  CHECK(mesh.polygons_cut == 2);
+  REQUIRE(mesh.faces.size() == 2 + 1 + 3 + 2);
+  std::vector<std::vector<Vec3d>> quads;
+  double area = 0;
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const cchip::Primitive p = mesh.primitive(i);
+    if (p.kind == Kind::quad) quads.emplace_back(p.v.begin(), p.v.end());
+    if (p.kind == Kind::tri) area += (p.v[1] - p.v[0]).cross(p.v[2] - p.v[0]).norm() / 2;
+  }
+  REQUIRE(quads.size() == 2);
+  CHECK(quads[0] == std::vector<Vec3d>{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
+  CHECK(quads[1] == std::vector<Vec3d>{{0, 0, 0}, {4, 0, 0}, {4, 0, 4}, {0, 0, 4}});
+  CHECK(area == Approx(4 + 20 + 4));  // the dent is left out
+
+  const Mesh triangles = load_mesh(file);
+  CHECK(triangles.polygons_cut == 4);
+  CHECK(triangles.faces.size() == 2 + 1 + 3 + 2 + 2);
+  for (const Mesh::Face& face : triangles.faces) CHECK(face.kind == Kind::tri);
+}
+
+TEST_CASE("mesh file: a box of quads that somebody else made", "[ref][mesh_file]") {
+  const Mesh box = load_mesh(models + "OBJ/box.obj", cchip::FaceKinds::triangles_and_quads);
+  REQUIRE(box.faces.size() == 6);
+  CHECK(box.polygons_cut == 0);
+  double area = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const cchip::Primitive p = box.primitive(i);
+    REQUIRE(p.kind == cchip::Kind::quad);
+    area += (p.v[2] - p.v[0]).cross(p.v[3] - p.v[1]).norm() / 2;
+  }
+  const Vec3d size = extent(box).greatest - extent(box).least;
+  CHECK(area == Approx(2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x())));
+  CHECK(load_mesh(models + "OBJ/box.obj").faces.size() == 12);
+}
+
 TEST_CASE("mesh file: transformations of nodes are applied", "[ref][mesh_file]") {
   const TemporaryFolder folder;
   const std::string triangle =

@@ -90,6 +90,30 @@ inline const std::string b_touching = "1,1,0,1,1,3,2,1,3";       // vertex 0 lie
 inline const std::string b_just_above = "1,1,1e-9,1,1,3,2,1,3";  // the same, lifted: no, but a hit on the grid
 inline const std::string b_coplanar = "1,1,0,2,1,0,1,2,0";       // inside A, in its plane: hit
 
+/// Pairs of all kinds in one file, the answers worked out by hand.
+inline const std::string mixed_header = "note," + header + ",kind_a,a3x,a3y,a3z,kind_b,b3x,b3y,b3z,touches";
+inline const std::vector<std::string> mixed_rows = {
+    "triangle through triangle," + tri_a + "," + b_through + ",tri,,,,tri,,,,1",
+    "triangle in the square's second half,1,3,-1,1,3,1,1,4,1,0,0,0,4,0,0,4,4,0,tri,,,,quad,0,4,0,1",
+    "the square's second half is not there,1,3,-1,1,3,1,1,4,1,0,0,0,4,0,0,4,4,0,tri,,,,tri,,,,0",
+    "square and triangle beside it,0,0,0,4,0,0,4,4,0,5,3,-1,5,3,1,5,4,1,quad,0,4,0,tri,,,,0",
+    "square through square,0,0,0,4,0,0,4,4,0,1,1,-1,3,1,-1,3,1,1,quad,0,4,0,quad,1,1,1,1",
+    "square above square,0,0,0,4,0,0,4,4,0,0,0,1,4,0,1,4,4,1,quad,0,4,0,quad,0,4,1,0",
+    "outline that crosses itself,0,0,0,4,4,0,4,0,0,2,1,-1,2,1,1,3,1,1,quad,0,4,0,tri,,,,1",
+    "outline that crosses itself; beside it,0,0,0,4,4,0,4,0,0,5,1,-1,5,1,1,6,1,1,quad,0,4,0,tri,,,,0",
+    "vertex inside the others,0,0,0,9,0,0,2,2,0,3,3,-1,3,3,1,4,3,1,quad,0,9,0,tri,,,,1",
+    "tetrahedron holds the triangle,0,0,0,9,0,0,0,9,0,1,1,1,2,1,1,1,2,1,quad,0,0,9,tri,,,,1",
+    "tetrahedron and triangle in front of its slope,0,0,0,9,0,0,0,9,0,5,5,1,5,5,2,6,5,1,quad,0,0,9,tri,,,,0",
+    "tetrahedron touches tetrahedron,0,0,0,9,0,0,0,9,0,3,3,3,9,9,9,9,9,3,quad,0,0,9,quad,9,3,9,1",
+    "segment crosses segment,0,0,0,4,4,0,2,2,0,4,0,0,0,4,0,1,3,0,quad,1,1,0,tri,,,,1",
+    "segment beside segment,0,0,0,4,4,0,2,2,0,5,0,0,5,4,0,5,3,0,quad,1,1,0,quad,5,1,0,0",
+};
+inline std::string mixed_file() {
+  std::string text = mixed_header + "\n";
+  for (const std::string& row : mixed_rows) text += row + "\n";
+  return text;
+}
+
 /// Engine that answers what the test tells it.
 class ScriptedEngine : public PairEngine {
  public:
@@ -97,7 +121,8 @@ class ScriptedEngine : public PairEngine {
   explicit ScriptedEngine(Answer answer) : answer_(answer) {}
   const char* name() const override { return "scripted"; }
   int coord_w() const override { return 16; }
-  std::vector<EngineAnswer> run(const std::vector<GridPair>& pairs, PairMode) override {
+  using PairEngine::run;
+  std::vector<EngineAnswer> run(const std::vector<GridPair>& pairs, const std::vector<PairMode>&) override {
     batches.push_back(pairs.size());
     std::vector<EngineAnswer> answers;
     answers.reserve(pairs.size());

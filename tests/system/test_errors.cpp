@@ -92,17 +92,17 @@ TEST_CASE("errors: rows", "[system][errors]") {
 }
 
 TEST_CASE("errors: quads", "[system][errors]") {
-  const std::string quads = header + ",kind_b,b3x,b3y,b3z\n" + tri_a + "," + b_through + ",tri,,,\n" + tri_a + "," +
-                            b_above + ",quad,4,4,2\n";
-  for (const std::string engine : {"rtl", "model"}) {
+  const std::string start =
+      header + ",kind_b,b3x,b3y,b3z\n" + tri_a + "," + b_through + ",tri,,,\n" + tri_a + "," + b_above;
+  for (const std::string engine : {"rtl", "model", "eigen", "exact"}) {
     check_error({"pairs", "-", "--engine", engine},
-                "cchip: -:3: kind_b is quad, but engine " + engine +
-                    " answers triangles only; use --engine eigen or exact, or split the quad into two triangles",
-                quads);
+                "cchip: -:3: column kind_b: 'Quad' is not a known kind; write tri or quad", start + ",Quad,4,4,2\n");
+    check_error({"pairs", "-", "--engine", engine},
+                "cchip: -:3: column b3y: the field is empty; write a finite decimal number", start + ",quad,4,,2\n");
+    check_error({"pairs", "-", "--engine", engine},
+                "cchip: -:2: kind_a is quad, but column a3x is missing; add the columns a3x, a3y and a3z",
+                header + ",kind_a\n" + tri_a + "," + b_through + ",quad\n");
   }
-  check_error({"pairs", "-", "--engine", "exact"},
-              "cchip: -:2: kind_a is quad, but column a3x is missing; add the columns a3x, a3y and a3z",
-              header + ",kind_a\n" + tri_a + "," + b_through + ",quad\n");
 }
 
 TEST_CASE("errors: magnitudes that no grid holds", "[system][errors]") {
@@ -146,12 +146,8 @@ TEST_CASE("errors: command line", "[system][errors]") {
   CHECK(run_cchip({"nonsense"}).code == exit_usage);
 
   const std::string input = header + "\n" + tri_a + "," + b_through + "\n";
-  for (const std::string engine : {"rtl", "model"}) {
-    check_error(
-        {"pairs", "-", "--engine", engine, "--program", "directed"},
-        "cchip: --program directed: not available for engine " + engine + " in this version; use --program exhaustive",
-        input);
-  }
+  check_error({"pairs", "-", "--program", "clever"}, "cchip: --program: clever not in {exhaustive,directed}" + help,
+              input);
   for (const std::string engine : {"model", "eigen", "exact"}) {
     check_error({"pairs", "-", "--engine", engine, "--trace", "x.fst"},
                 "cchip: --trace: engine " + engine + " has no waveform; use --engine rtl", input);

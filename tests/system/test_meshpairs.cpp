@@ -30,8 +30,13 @@ std::string summary_of(const std::string& a, const std::string& b, std::vector<s
 
 bool boxes_overlap(const Primitive& p, const Primitive& q) {
   for (int axis = 0; axis < 3; ++axis) {
-    const auto low = [axis](const Primitive& t) { return std::min({t.v[0][axis], t.v[1][axis], t.v[2][axis]}); };
-    const auto high = [axis](const Primitive& t) { return std::max({t.v[0][axis], t.v[1][axis], t.v[2][axis]}); };
+    const auto less = [axis](const Vec3d& v, const Vec3d& w) { return v[axis] < w[axis]; };
+    const auto low = [&](const Primitive& t) {
+      return (*std::min_element(t.v.data(), t.v.data() + t.vertex_count(), less))[axis];
+    };
+    const auto high = [&](const Primitive& t) {
+      return (*std::max_element(t.v.data(), t.v.data() + t.vertex_count(), less))[axis];
+    };
     if (low(p) > high(q) || low(q) > high(p)) return false;
   }
   return true;
@@ -40,14 +45,16 @@ bool boxes_overlap(const Primitive& p, const Primitive& q) {
 }  // namespace
 
 TEST_CASE("meshpairs: rows are all pairs with overlapping boxes, answers exact", "[system][meshpairs]") {
-  const std::string file_a = model("OBJ/box.obj");
+  const std::string file_a = model("OBJ/box.obj");  // of quads
   const std::string file_b = model("STL/Spider_ascii.stl");
   const std::string pose = "0.3,0.1,0.2,10,20,30";
-  const Outcome outcome =
-      run_cchip({"meshpairs", file_a, file_b, "--pose", pose, "--engine", "model", "--format", "csv"});
+  const std::string program = GENERATE("exhaustive", "directed");
+  const Outcome outcome = run_cchip(
+      {"meshpairs", file_a, file_b, "--pose", pose, "--engine", "model", "--program", program, "--format", "csv"});
   REQUIRE(outcome.code == exit_ok);
+  CHECK(lines(outcome.err).size() == 1);
 
-  const Mesh a = load_mesh(file_a);
+  const Mesh a = load_mesh(file_a, FaceKinds::triangles_and_quads);
   const Mesh b = transformed(load_mesh(file_b), parse_pose(pose));
   std::vector<std::string> expected;
   for (std::size_t i = 0; i < a.faces.size(); ++i) {
@@ -81,16 +88,22 @@ TEST_CASE("meshpairs: the engines agree on the grid of real meshes", "[system][m
   };
   const Case c = GENERATE(values<Case>({{"OFF/Wuson.off", "OBJ/WusonOBJ.obj", "0.5,0.25,-0.125,0,0,20"},
                                         {"OBJ/spider.obj", "STL/Spider_binary.stl", "3,5,7,0,90,0"},
-                                        {"PLY/cube.ply", "OFF/Cube.off", "0.5,0.5,0.5"}}));
+                                        {"PLY/cube.ply", "OFF/Cube.off", "0.5,0.4,0.3,20,30,40"},
+                                        {"OBJ/box.obj", "OBJ/box.obj", "0.3,0.1,0.2,10,20,30"},
+                                        {"OBJ/WusonOBJ.obj", "OBJ/box.obj", "0,1,0,40,50,60"}}));
+  const PairMode mode = GENERATE(PairMode::exhaustive, PairMode::directed);
   CAPTURE(c.a, c.b, c.pose);
   std::vector<GridPair> pairs;
-  for_each_candidate(load_mesh_file(model(c.a)), transformed(load_mesh_file(model(c.b)), parse_pose(c.pose)), 3000,
+  std::ostringstream notices;
+  const Mesh mesh_a = load_mesh_file(model(c.a), notices);
+  const Mesh mesh_b = transformed(load_mesh_file(model(c.b), notices), parse_pose(c.pose));
+  for_each_candidate(mesh_a, mesh_b, 3000,
                      [&](const PairJob& job) { pairs.push_back(quantise(job.a, job.b, defs::coord_w_default).pair); });
   REQUIRE_FALSE(pairs.empty());
   const auto run = [&](EngineKind kind) {
     EngineOptions options;
     options.kind = kind;
-    return make_engine(options)->run(pairs, PairMode::exhaustive);
+    return make_engine(options)->run(pairs, mode);
   };
   const auto rtl = run(EngineKind::rtl);
   const auto clock_model = run(EngineKind::model);
@@ -102,13 +115,10 @@ TEST_CASE("meshpairs: the engines agree on the grid of real meshes", "[system][m
     REQUIRE(rtl[i].grid == clock_model[i].grid);
     REQUIRE(rtl[i].definite == clock_model[i].definite);
     REQUIRE(rtl[i].hardware->axis == clock_model[i].hardware->axis);
+    REQUIRE(rtl[i].hardware->beats == clock_model[i].hardware->beats);
+    REQUIRE(rtl[i].hardware->clock_out == clock_model[i].hardware->clock_out);
     REQUIRE(eigen[i].grid == exact[i].grid);
-    const bool special = is_coplanar(pairs[i]) || is_degenerate(pairs[i].a) || is_degenerate(pairs[i].b);
-    if (special && rtl[i].grid) {
-      REQUIRE_FALSE(rtl[i].definite);
-    } else {
-      REQUIRE(rtl[i].grid == exact[i].grid);
-    }
+    REQUIRE(rtl[i].grid == exact[i].grid);
     hits += exact[i].grid;
   }
   CHECK(hits > 0);
@@ -126,6 +136,27 @@ TEST_CASE("meshpairs: one model in four file formats", "[system][meshpairs]") {
       CHECK(summary_of(a, b, {"--engine", "exact", "--pose", "0.1,0.05,-0.02,0,0,20"}) == first);
     }
   }
+}
+
+TEST_CASE("meshpairs: polygons with more corners are cut, with a notice", "[system][meshpairs]") {
+  const TemporaryFolder folder;
+  const std::string prism = folder.write("prism.obj",
+                                         "v 2 0 0\nv 4 0 0\nv 5 2 0\nv 3 4 0\nv 1 2 0\n"
+                                         "v 2 0 3\nv 4 0 3\nv 5 2 3\nv 3 4 3\nv 1 2 3\n"
+                                         "f 5 4 3 2 1\nf 6 7 8 9 10\nf 1 2 7 6\nf 2 3 8 7\nf 3 4 9 8\nf 4 5 10 9\n"
+                                         "f 5 1 6 10\n");
+  const Outcome outcome = run_cchip(
+      {"meshpairs", prism, prism, "--pose", "0,0,3", "--engine", "model", "--program", "directed", "--format", "csv"});
+  CHECK(outcome.code == exit_ok);
+  const auto messages = lines(outcome.err);
+  REQUIRE(messages.size() == 3);  // one for A, one for B, the summary
+  CHECK(messages[0] == "cchip: " + prism + ": 2 faces with more than four corners or a dent were cut into triangles");
+  CHECK(messages[1] == messages[0]);
+  const std::string exact = summary_of(prism, prism, {"--pose", "0,0,3", "--engine", "exact"});
+  for (const char* number : {"pairs", "hits", "mismatches"}) CHECK(count(messages[2], number) == count(exact, number));
+  CHECK(count(exact, "hits") > 10);
+  const std::string box = model("OBJ/box.obj");
+  CHECK(count(summary_of(box, box, {"--engine", "exact"}), "pairs") == 36 - 3 * 2);  // all but opposite faces
 }
 
 TEST_CASE("meshpairs: pose as numbers and as matrix", "[system][meshpairs]") {

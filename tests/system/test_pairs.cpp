@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -86,10 +87,16 @@ TEST_CASE("pairs: no answer depends on what the RTL holds at power-up", "[system
 }
 
 TEST_CASE("pairs: RTL and its model agree in every byte", "[system][pairs]") {
-  const Outcome rtl = run_cchip({"pairs", "-", "--engine", "rtl", "--format", "csv"}, hand_made());
-  const Outcome model = run_cchip({"pairs", "-", "--engine", "model", "--format", "csv"}, hand_made());
+  const std::string program = GENERATE("exhaustive", "directed");
+  const std::string input = GENERATE(hand_made(), mixed_file());
+  const auto run = [&](const std::string& engine) {
+    return run_cchip({"pairs", "-", "--engine", engine, "--program", program, "--format", "csv"}, input);
+  };
+  const Outcome rtl = run("rtl");
   CHECK(rtl.code == exit_ok);
-  CHECK(rtl.out == model.out);
+  CHECK(lines(rtl.out).size() > 5);
+  CHECK(rtl.out == run("model").out);
+  CHECK(rtl.err == run("model").err);
 }
 
 TEST_CASE("pairs: a file and standard input give the same bytes", "[system][pairs]") {
@@ -176,16 +183,68 @@ TEST_CASE("pairs: the tool answers its own output", "[system][pairs]") {
   CHECK(count(last_line(second.out), "hits") == 3);
 }
 
-TEST_CASE("pairs: quads on the engines that take them", "[system][pairs]") {
-  const std::string engine = GENERATE("eigen", "exact");
-  // A square in z = 0 against triangles over its two halves.
-  const std::string input =
-      header + ",kind_a,a3x,a3y,a3z,kind_b,touches\n" + "0,0,0,4,0,0,4,4,0,1,3,-1,1,3,1,1,4,1,quad,0,4,0,tri,1\n" +
-      "0,0,0,4,0,0,4,4,0,1,3,-1,1,3,1,1,4,1,tri,,,,,0\n" + "0,0,0,4,0,0,4,4,0,5,3,-1,5,3,1,5,4,1,quad,0,4,0,tri,0\n";
-  const Outcome outcome = run_cchip({"pairs", "-", "--engine", engine, "--expect", "touches"}, input);
-  CAPTURE(outcome.out, outcome.err);
+TEST_CASE("pairs: all kinds in one file, on every engine and programme", "[system][pairs]") {
+  const std::string engine = GENERATE("rtl", "model", "eigen", "exact");
+  const std::string program = GENERATE("exhaustive", "directed");
+  const Outcome outcome =
+      run_cchip({"pairs", "-", "--engine", engine, "--program", program, "--expect", "touches"}, mixed_file());
+  CAPTURE(engine, program, outcome.out, outcome.err);
   CHECK(outcome.code == exit_ok);
-  CHECK(count(last_line(outcome.out), "hits") == 1);
+  CHECK(count(last_line(outcome.out), "pairs") == mixed_rows.size());
+  CHECK(count(last_line(outcome.out), "mismatches") == 0);
+  CHECK(count(last_line(outcome.out), "indefinite") == 0);  // whole numbers
+}
+
+TEST_CASE("pairs: A and B exchanged", "[system][pairs]") {
+  std::string text = mixed_file();
+  // a and b change their meaning in the header
+  const auto end = text.find('\n');
+  for (std::size_t i = text.find(",a0x"); i < end; ++i) {
+    const bool name = text[i - 1] == ',' || text[i - 1] == '_';
+    if (name && (text[i] == 'a' || text[i] == 'b')) text[i] = text[i] == 'a' ? 'b' : 'a';
+  }
+  const std::string engine = GENERATE("model", "rtl");
+  const std::string program = GENERATE("exhaustive", "directed");
+  const Outcome outcome =
+      run_cchip({"pairs", "-", "--engine", engine, "--program", program, "--expect", "touches"}, text);
+  CAPTURE(engine, program, outcome.out, outcome.err);
+  CHECK(outcome.code == exit_ok);
+  CHECK(count(last_line(outcome.out), "mismatches") == 0);
+}
+
+TEST_CASE("pairs: what the hardware says of quads", "[system][pairs]") {
+  const std::string engine = GENERATE("rtl", "model");
+  const std::vector<CsvRow> rows = parse_csv(
+      run_cchip({"pairs", "-", "--engine", engine, "--program", "directed", "--format", "csv"}, mixed_file()).out);
+  REQUIRE(rows.size() == mixed_rows.size() + 1);
+  // hit, axis, beats by the columns' names
+  const auto answer = [&](const std::string& note) {
+    const auto column = [&](const std::string& name) {
+      return static_cast<std::size_t>(std::find(rows[0].fields.begin(), rows[0].fields.end(), name) -
+                                      rows[0].fields.begin());
+    };
+    for (const CsvRow& row : rows) {
+      if (row.fields.at(0) != note) continue;
+      return std::vector<std::string>{row.fields.at(column("hit")), row.fields.at(column("axis")),
+                                      row.fields.at(column("beats"))};
+    }
+    return std::vector<std::string>{};
+  };
+  using Fields = std::vector<std::string>;
+  CHECK(answer("triangle in the square's second half") == Fields{"1", "none", "4"});
+  CHECK(answer("square above square") == Fields{"0", "normal of A", "1"});
+  CHECK(answer("square and triangle beside it") == Fields{"0", "normal of B", "1"});  // sent as A
+}
+
+TEST_CASE("pairs: directed needs fewer axes for the same answers", "[system][pairs]") {
+  const auto summary = [](const std::string& program) {
+    return last_line(
+        run_cchip({"pairs", "-", "--engine", "model", "--program", program, "--format", "csv"}, mixed_file()).err);
+  };
+  CHECK(count(summary("directed"), "hits") == count(summary("exhaustive"), "hits"));
+  CHECK(count(summary("directed"), "beats_mean") < count(summary("exhaustive"), "beats_mean"));
+  CHECK(run_cchip({"pairs", "-", "--engine", "model"}, mixed_file()).out ==
+        run_cchip({"pairs", "-", "--engine", "model", "--program", "exhaustive"}, mixed_file()).out);
 }
 
 TEST_CASE("pairs: a header alone is no pair and no error", "[system][pairs]") {
