@@ -32,10 +32,12 @@ function(cchip_verilate library top)
   if(NOT ARG_PREFIX)
     set(ARG_PREFIX V${top})
   endif()
-  # Verilator reads the file list itself: a new line in it must not need a new configuration first
+  # Verilator reads the file list itself: a new line in it must not need a new configuration first. The define
+  # makes a new configuration forget what it knew of an older list, as after a file has gone.
   set(files)
   if(NOT ARG_SOURCES)
-    set(files -F ${CCHIP_RTL_DIR}/cchip.f)
+    file(MD5 ${CCHIP_RTL_DIR}/cchip.f list)
+    set(files -F ${CCHIP_RTL_DIR}/cchip.f -DCCHIP_FILE_LIST_${list})
   endif()
   list(TRANSFORM ARG_PARAMETERS PREPEND -G)
   verilate(${library} TRACE_FST PREFIX ${ARG_PREFIX} TOP_MODULE ${top}
