@@ -88,8 +88,8 @@ void print_explanation(std::ostream& out, const DemoCounts& total) {
   fmt::print(out,
              "\npairs: candidate pairs; hits: faces that share a point; axes/pair: axes tested in the pipeline.\n"
              "indefinite: answers that the hardware leaves open because rounding to its grid could have changed them;\n"
-             "the host decided them exactly. Most quads are warped by the rounding and become tetrahedra, which need\n"
-             "more axes, and a hit of a quad that was rounded is always left open.\n"
+             "the host decided them exactly. A rounded quad is seldom flat: as a thin tetrahedron it needs more axes,\n"
+             "and its hits are seldom certain.\n"
              "Simulated {} clocks in {:.2f} s: {:.0f} clocks per second.\n",
              total.clocks, total.engine_seconds, static_cast<double>(total.clocks) / total.engine_seconds);
 }
