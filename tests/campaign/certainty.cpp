@@ -95,14 +95,14 @@ GridPair true_pair(const GridPair& pair, std::size_t kind, int reach, bool grid_
 }
 
 /// A quad in any order, or (rarely) with a vertex inside the triangle of the others: what hosts make canonical.
-GridPrimitive any_order(GridPrimitive p, Random& random) {
+GridPrimitive any_order(GridPrimitive p, int coord_w, Random& random) {
   if (p.kind != Kind::quad || uniform(random, 0, 3) != 0) return p;
   if (uniform(random, 0, 3) == 0) {
     const Vec3i e = p.v[1] - p.v[0];
     const Vec3i f = p.v[2] - p.v[0];
     const GridPrimitive dented{Kind::quad, {p.v[0], Vec3i(p.v[0] + 4 * e), Vec3i(p.v[0] + 4 * f), Vec3i(p.v[0] + e + f)}};
-    const bool fits = std::all_of(dented.v.begin(), dented.v.end(), [](const Vec3i& v) {
-      return v.cwiseAbs().maxCoeff() < 1 << (defs::coord_w_min - 1);
+    const bool fits = std::all_of(dented.v.begin(), dented.v.end(), [coord_w](const Vec3i& v) {
+      return v.cwiseAbs().maxCoeff() < 1 << (coord_w - 1);
     });
     if (fits) p = dented;
   }
@@ -167,14 +167,16 @@ Row judge(const ShapeInfo& shape, const GridPair& grid, bool grid_hit, const Gri
 Table<Row> run_part(const ShapeInfo& shape, const CertaintyOptions& options, std::uint64_t pairs, std::uint64_t part,
                     std::uint64_t seed) {
   Random random(seed);
-  PairSource source(options.coord_w, random(), shape.a, shape.b);
+  // from part to part another size, because what is definite depends on it
+  const int size_w = uniform(random, std::min(defs::coord_w_min + 1, options.coord_w), options.coord_w);
+  PairSource source(size_w, random(), shape.a, shape.b);
   const auto classes = classes_of(shape.a, shape.b);
   std::discrete_distribution<std::size_t> group({4, 50, 42, 4});
   Table<Row> table(rows_per_shape);
   for (std::uint64_t i = 0; i < pairs_of_part(pairs, part); ++i) {
     GridPair raw = source.draw(classes[source.draw_class()].value);
-    raw.a = any_order(raw.a, random);
-    raw.b = any_order(raw.b, random);
+    raw.a = any_order(raw.a, options.coord_w, random);
+    raw.b = any_order(raw.b, options.coord_w, random);
     const std::size_t g = group(random);
     const std::size_t kind = static_cast<std::size_t>(uniform(random, 0, 2));
     const GridPair grid{canonical_quad(raw.a), canonical_quad(raw.b), draw_eta(g, random)};

@@ -44,6 +44,7 @@ struct LeavesOptions : CommonOptions {
   std::vector<std::string> meshes;  ///< files; none: the built-in ones
   int poses = 6;
   std::uint64_t pairs_max = 200000;  ///< leaf pairs per mesh and pose
+  bool quads = false;                ///< keep the quads of the files
 };
 /// Leaf pairs of two meshes whose 24-DOPs overlap.
 int run_leaves(const LeavesOptions& options);

@@ -61,6 +61,7 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
   leaves->add_option("meshes", l->meshes, "mesh files, each against itself; none: built-in torus, gear, quad torus");
   leaves->add_option("--poses", l->poses, "poses of the second mesh")->check(CLI::Range(1, 1000))->capture_default_str();
   leaves->add_option("--pairs", l->pairs_max, "most leaf pairs per mesh and pose")->capture_default_str();
+  leaves->add_flag("--quads", l->quads, "keep the quads of the files");
 }
 
 }  // namespace
