@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cchip/dop24.hpp>
 #include <cchip/exact_oracle.hpp>
