@@ -7,13 +7,18 @@ usage: datasheet.py                        measure everything, rewrite the gener
        datasheet.py --check                run no tool; exit 1 if a module of rtl/cchip.f has no datasheet, or one
                                            whose parameters, ports or markers do not agree with the RTL
        datasheet.py --latency MODULE       clocks from an input to the output it changes (Icarus Verilog)
-       datasheet.py --stream [NAME=VALUE...]   cchip_primtest_tri_tri: latency, clocks per pair, drain (Icarus Verilog)
+       datasheet.py --stream [NAME=VALUE...]   a primitive test: latency, clocks per pair, drain (Icarus Verilog);
+                                           NAME: a parameter of scripts/datasheet_stream.v, as VERTS_B=4
        datasheet.py --widths               widths and smallest SUBSTAGES for every COORD_W (Icarus Verilog)
-       datasheet.py --leaves               18x18 multipliers for every COORD_W, both projections (Yosys)
+       datasheet.py --leaves               18x18 multipliers for every COORD_W, shape and projection (Yosys)
+       datasheet.py --bounds               two bounds on the error of a sign, mean over random triples of edges
+       datasheet.py readme                 the generated table of README.md
 
 Tables are written between the lines `<!-- generated: begin NAME -->` and `<!-- generated: end -->` (a datasheet
 has one, without NAME). Tools: Debian's yosys 0.23 and iverilog 11; default parameters unless a table says otherwise."""
+import functools
 import pathlib
+import random
 import re
 import subprocess
 import sys
@@ -22,6 +27,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RTL = ROOT / "rtl"
 MODULES = ROOT / "docs" / "modules"
+README = ROOT / "README.md"
 ARCHITECTURE = ROOT / "docs" / "architecture.md"
 BLOCK = r"(<!-- generated: begin{} -->\n).*?(<!-- generated: end -->)"
 
@@ -35,13 +41,22 @@ STIMULI = {
     "cchip_mul_wide": ("", "a = 1; b = 1;", "p"),
     "cchip_dot3": ("", "a = 1; b = 1;", "q"),
     "cchip_cross3": ("", "a = 1; b = 1 << dut.E_W;", "q"),
+    "cchip_norm1": ("", "v = 1;", "q"),
     "cchip_sat_select": ("", "s_a = 1;", "m_e_from"),
     "cchip_sat_axis": ("", "s_e_to = 1; s_f_to = 1 << dut.COORD_W;", "m_axis"),
+    "cchip_sat_bound": ("", "s_axis = 1;", "m_gap_bound"),
     "cchip_sat_project": ("", "s_axis = 1; s_points = 1;", "m_projection"),
     "cchip_sat_compare": ("", "s_projection = ~s_projection;", "m_separated"),
+    "cchip_box_compare": (
+        "", "s_a = 1 | 1 << 3 * dut.COORD_W | 1 << 6 * dut.COORD_W;", "m_separated"),
+    "cchip_axis_programme": ("s_state = `CCHIP_PROG_ILLEGAL;", "s_valid = 1;", "m_outcome"),
     "cchip_sat_pipeline": ("", "s_beat_valid = 1;", "m_verdict_valid"),
     "cchip_axis_controller": ("", "s_pair_valid = 1;", "m_beat_valid"),
 }
+
+# Vertices of A and of B.
+SHAPES = {"tri_tri": (3, 3), "tri_quad": (3, 4), "quad_quad": (4, 4)}
+PRIMTESTS = {"cchip_primtest": (3, 3), **{f"cchip_primtest_{name}": verts for name, verts in SHAPES.items()}}
 
 
 def fail(message):
@@ -73,17 +88,19 @@ def parse(module):
     head = re.search(rf"\bmodule\s+{module}\b(.*?)\);", text, re.S)
     if not head:
         fail(f"{rtl_files()[module]}: no module {module}")
-    parameters = re.findall(r"\bparameter\s+integer\s+(\w+)\s*=\s*([^,\n)]+)", head.group(1))
+    parameters = re.findall(r"\bparameter\s+integer\s+(\w+)\s*=\s*([^,\n]+)", head.group(1))
     ports = re.findall(r"\b(input|output)\s+(?:wire|reg)\s+(?:signed\s+)?(?:\[([^\]]*):0\])?\s*(\w+)", head.group(1))
     widths = [(name, direction, width_of(squeeze(top))) for direction, top, name in ports]
-    return [(name, squeeze(value)) for name, value in parameters], widths
+    return [(name, squeeze(value).replace("`", "")) for name, value in parameters], widths
 
 
 def width_of(top):
     """Width of the range [top:0]."""
     if not top:
         return "1"
-    return str(int(top) + 1) if top.isdigit() else re.sub(r"-1$", "", top)
+    base, offset = re.fullmatch(r"(.*?)([+-]?\d+)?", top).groups() if re.search(r"(^|[+-])\d+$", top) else (top, "0")
+    width = int(offset) + 1
+    return str(width) if not base else base if width == 0 else f"{base}{width:+d}"
 
 
 # ---- measurements
@@ -105,7 +122,8 @@ def latency(module):
     # Ports are generous 1024-bit registers and wires: connections cut or extend them.
     declarations = "".join(f"  {'reg' if d == 'input' else 'wire'} [1023:0] {n};\n" for n, d, _ in ports if n != "clk")
     zero = "".join(f"    {n} = 0;\n" for n, d, _ in ports if d == "input")
-    bench = f"""`default_nettype none
+    bench = f"""`include "cchip_defs.vh"
+`default_nettype none
 module bench;
   reg clk;
 {declarations}  {module} dut ({", ".join(f".{n}({n})" for n in names)});
@@ -130,8 +148,9 @@ endmodule
         return int(simulate(str(path)).split()[-1])
 
 
+@functools.lru_cache(None)
 def stream(*settings):
-    """Lines `key value...` printed by the bench of cchip_primtest_tri_tri."""
+    """Lines `key value...` printed by the bench of cchip_primtest."""
     return simulate("scripts/datasheet_stream.v", *(f"-Pbench.{s}" for s in settings))
 
 
@@ -144,18 +163,53 @@ def yosys(script):
     return f'yosys -p "read_verilog -Iinclude $(grep \'[.]v$\' cchip.f | tr \'\\n\' \' \'); {script}"'
 
 
+@functools.lru_cache(None)
+def leaf_count(width, shape, absolute):
+    """$mul cells of cchip_sat_pipeline, each one in a cchip_mul18."""
+    verts_a, verts_b = SHAPES[shape]
+    out = run("sh", "-c", yosys(
+        f"hierarchy -top cchip_sat_pipeline -chparam COORD_W {width} -chparam ABSOLUTE_PROJECTION {absolute}"
+        f" -chparam VERTS_A {verts_a} -chparam VERTS_B {verts_b};"
+        " proc; flatten; select -count t:$mul".replace("$", "\\$")), cwd=RTL)
+    return re.findall(r"(\d+) objects", out)[-1]
+
+
 def leaves():
-    """Lines `COORD_W relative absolute`: $mul cells of cchip_sat_pipeline, each one in a cchip_mul18."""
-    text = "COORD_W relative absolute\n"
+    """Lines `COORD_W` and the leaves of every shape with relative and with absolute projection."""
+    text = "COORD_W " + " ".join(f"{shape},_{kind}" for shape in SHAPES for kind in ("relative", "absolute")) + "\n"
     for width in range(4, 21):
-        counts = []
-        for absolute in (0, 1):
-            out = run("sh", "-c", yosys(
-                f"hierarchy -top cchip_sat_pipeline -chparam COORD_W {width} -chparam ABSOLUTE_PROJECTION {absolute};"
-                " proc; flatten; select -count t:$mul".replace("$", "\\$")), cwd=RTL)
-            counts.append(re.findall(r"(\d+) objects", out)[-1])
-        text += f"{width} {' '.join(counts)}\n"
+        text += f"{width} {' '.join(leaf_count(width, shape, absolute) for shape in SHAPES for absolute in (0, 1))}\n"
     return text
+
+
+def power_above(n):
+    """Smallest power of two >= n."""
+    return 1 << (n - 1).bit_length() if n > 0 else 0
+
+
+def bounds():
+    """Mean of two bounds on the error of det(a, b, c), divided by the error bound without rounding (eta = 1).
+
+    `one` is the hardware's, `products` bounds each product of norms for itself: min of 1-norms and of 1-norm and
+    infinity norm, each rounded up to a power of two."""
+    draw = random.Random(1)
+    lines = "COORD_W one products\n"
+    for width in (8, 12, 16, 20):
+        sums = [0.0, 0.0]
+        samples = 20000
+        for _ in range(samples):
+            size = draw.randint(2, width)
+            a, b, c = ([draw.randint(-(1 << size) + 1, (1 << size) - 1) for _ in range(3)] for _ in range(3))
+            cross = sum(abs(a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2]) for i in range(3))
+            n1 = [sum(map(abs, v)) for v in (a, b, c)]
+            top = [max(map(abs, v)) for v in (a, b, c)]
+            product = lambda x, y: min(power_above(n1[x]) * power_above(n1[y]), 2 * power_above(top[x]) * power_above(n1[y]),
+                                       2 * power_above(n1[x]) * power_above(top[y]))
+            exact = cross + (n1[0] + n1[1] + 2) * (n1[2] + 2)
+            sums[0] += (cross + (n1[0] + n1[1] + 2) * power_above(n1[2] + 2)) / exact
+            sums[1] += (cross + product(1, 2) + product(2, 0) + 2 * sum(n1) + 6) / exact
+        lines += f"{width} {sums[0] / samples:.3f} {sums[1] / samples:.3f}\n"
+    return lines
 
 
 TARGETS = {
@@ -189,24 +243,37 @@ def text_table(text):
 
 
 def values(text):
-    return {line.split()[0]: line.split()[1:] for line in text.strip().splitlines() if line and not line.startswith("clock ")}
+    return {line.split()[0]: line.split()[1:] for line in text.strip().splitlines()
+            if line and not line.startswith(("clock ", "pair "))}
 
 
-def speed_rows(module):
-    if module != "cchip_primtest_tri_tri":
-        yield "latency, clocks", latency(module), f"`scripts/datasheet.py --latency {module}`"
-        return
-    found = values(stream())
-    command = "`scripts/datasheet.py --stream`"
-    yield "latency of a lone pair, clocks", found["latency"][0], command
-    yield "latency of a lone illegal request, clocks", found["illegal_latency"][0], command
-    yield "clocks per pair, min / mean / max", " / ".join(found["clocks_per_pair"]), command
-    yield "drain after CONTEXTS pairs, clocks", found["drain"][0], command
-    yield "drain bound, clocks", found["drain_bound"][0], command
+def pairs(text):
+    """[name, mode, beats, latency, least, mean, greatest, busy, drain] of every line `pair ...`."""
+    return [line.split()[1:] for line in text.splitlines() if line.startswith("pair ")]
+
+
+def shape_settings(shape):
+    return f"VERTS_A={shape[0]}", f"VERTS_B={shape[1]}"
+
+
+def speed(module):
+    if module == "cchip_primtest_blank":
+        return "No latency and no throughput: every output is a constant.\n"
+    if module not in PRIMTESTS:
+        return table(["quantity", "value", "command"],
+                     [["latency, clocks", latency(module), f"`scripts/datasheet.py --latency {module}`"]])
+    settings = shape_settings(PRIMTESTS[module])
+    text = stream(*settings)
+    rows = [[name.replace("_", " "), mode, beats, lone, f"{least} / {mean} / {greatest}", busy, drain]
+            for name, mode, beats, lone, least, mean, greatest, busy, drain in pairs(text)]
+    return (f"Clocks, printed by `scripts/datasheet.py --stream {' '.join(settings)}`:\n\n" +
+            table(["pair", "mode", "beats", "latency of a lone pair", "clocks per pair, min / mean / max",
+                   "beats per 100 clocks while pairs wait", "drain after `CONTEXTS` pairs"], rows) +
+            f"\nDrain bound, `CCHIP_DRAIN_BOUND`: {values(text)['drain_bound'][0]} clocks.\n")
 
 
 def datasheet_block(module):
-    text = table(["quantity", "value", "command"], speed_rows(module))
+    text = speed(module)
     text += "\nFmax: not measured: no place and route in this version.\n\n"
     kinds = list(next(iter(TARGETS.values()))[1])
     rows = []
@@ -225,22 +292,36 @@ def throughput():
              ["ABSOLUTE_PROJECTION=1"]]
     body = []
     for settings in rows:
-        found = values(stream(*settings))
-        body.append([f"`{' '.join(settings)}`", found["latency"][0], " / ".join(found["clocks_per_pair"]),
-                     found["drain"][0], found["drain_bound"][0], " + ".join(found["axis_registers"]),
-                     " + ".join(found["project_registers"])])
-    return table(["`scripts/datasheet.py --stream` with", "latency of a lone pair", "clocks per pair, min / mean / max",
-                  "drain measured", "drain bound", "optional registers of axis: operand + product + result",
-                  "the same of project"], body)
+        text = stream("BRIEF=1", *settings)
+        found = values(text)
+        exhaustive, directed = pairs(text)[:2]
+        body.append([f"`{' '.join(settings)}`", exhaustive[3], " / ".join(exhaustive[4:7]), " / ".join(directed[4:7]),
+                     " + ".join(found["axis_registers"]), " + ".join(found["project_registers"])])
+    return table(["`scripts/datasheet.py --stream BRIEF=1` with", "latency of a lone pair, EXHAUSTIVE",
+                  "clocks per pair, EXHAUSTIVE, min / mean / max", "the same, DIRECTED",
+                  "optional registers of axis: operand + product + result", "the same of project"], body)
+
+
+def configurations():
+    """One row per configuration; the table of README.md."""
+    rows = []
+    for width, substages, absolute in ((16, 10, 0), (16, 10, 1), (16, 6, 0), (8, 6, 0), (20, 12, 0)):
+        for shape, verts in SHAPES.items():
+            settings = (*shape_settings(verts), f"COORD_W={width}", f"SUBSTAGES={substages}", f"ABSOLUTE_PROJECTION={absolute}")
+            exhaustive = pairs(stream("BRIEF=1", *settings))[0]
+            rows.append([shape, width, substages, "absolute" if absolute else "relative", leaf_count(width, shape, absolute),
+                         exhaustive[3], exhaustive[5], f"`--stream BRIEF=1 {' '.join(settings)}`"])
+    return table(["`cchip_primtest_`", "`COORD_W`", "`SUBSTAGES`", "projection", "18x18 multipliers",
+                  "latency, clocks", "clocks per pair", "`scripts/datasheet.py --leaves` and"], rows)
 
 
 def clock_table():
-    rows = [line.split(" ", 2)[1:] for line in stream().splitlines() if line.startswith("clock ")]
+    rows = [line.split(" ", 2)[1:] for line in stream("VERTS_A=3", "VERTS_B=3").splitlines() if line.startswith("clock ")]
     return table(["clock", "what is valid"], rows)
 
 
-BLOCKS = {"widths": lambda: text_table(widths()), "leaves": lambda: text_table(leaves()), "throughput": throughput,
-          "clocks": clock_table}
+BLOCKS = {"widths": lambda: text_table(widths()), "leaves": lambda: text_table(leaves()), "bounds": lambda: text_table(bounds()),
+          "throughput": throughput, "clocks": clock_table}
 
 
 def rewrite(path, name, block):
@@ -288,7 +369,10 @@ def check():
     for path in sorted(MODULES.glob("*.md")):
         if path.stem not in rtl_files():
             found.append(f"{path.relative_to(ROOT)}: no such module in rtl/cchip.f")
-    for path in [ARCHITECTURE, ROOT / "docs" / "README.md", *sorted(MODULES.glob("*.md"))]:
+    for path in [ARCHITECTURE, README, ROOT / "docs" / "README.md", *sorted(MODULES.glob("*.md"))]:
+        for name in re.findall(r"`(tests/[\w/]+\.cpp)`", path.read_text()):
+            if not (ROOT / name).exists():
+                found.append(f"{path.relative_to(ROOT)}: names {name}, which does not exist")
         for link in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", path.read_text()):
             if not (path.parent / link).exists():
                 found.append(f"{path.relative_to(ROOT)}: link to {link}, which does not exist")
@@ -311,12 +395,16 @@ def main():
         print(widths(), end="")
     elif option == "--leaves" and len(arguments) == 1:
         print(leaves(), end="")
-    elif option or not set(arguments) <= {*rtl_files(), "architecture"}:
+    elif option == "--bounds" and len(arguments) == 1:
+        print(bounds(), end="")
+    elif option or not set(arguments) <= {*rtl_files(), "architecture", "readme"}:
         print(__doc__, file=sys.stderr)
         return 2
     else:
-        for page in arguments or [*rtl_files(), "architecture"]:
-            if page == "architecture":
+        for page in arguments or [*rtl_files(), "architecture", "readme"]:
+            if page == "readme":
+                rewrite(README, "configurations", configurations())
+            elif page == "architecture":
                 for name, block in BLOCKS.items():
                     rewrite(ARCHITECTURE, name, block())
             else:
