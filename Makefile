@@ -7,6 +7,11 @@ PREFIX ?= /usr/local
 DESTDIR ?=
 PAIRS ?= 100000000
 SIM_ARGS ?=
+# meshes of campaign-leaves, each against itself (Debian: assimp-testmodels)
+MODELS ?= /usr/share/assimp/models
+LEAVES ?= $(addprefix $(MODELS)/,OBJ/WusonOBJ.obj OBJ/spider.obj STL/Spider_binary.stl COB/dwarf.cob Collada/duck.dae \
+  Collada/teapots.DAE BLEND/Suzanne_248.blend MD2/sydney.md2 MD2/faerie.md2)
+QUAD_LEAVES ?= $(MODELS)/BLEND/Suzanne_248.blend
 # command that provides the tools; BOOTSTRAP=true skips it
 BOOTSTRAP ?= scripts/bootstrap
 
@@ -15,10 +20,11 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap build sim wave test test-long test-debug test-asan lint tidy format campaign install clean
+.PHONY: help bootstrap build sim wave test test-long test-debug test-asan lint tidy format campaign campaign-build \
+  campaign-grid campaign-classes campaign-certainty campaign-leaves install clean
 
 help: ## list the targets
-	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
 	@echo "settings: JOBS=$(JOBS) PREFIX=$(PREFIX) DESTDIR=$(DESTDIR) PAIRS=$(PAIRS) SIM_ARGS=$(SIM_ARGS)"
 
 bootstrap: ## install the Debian packages that are missing (all other targets do this first)
@@ -50,9 +56,28 @@ test-asan: build/asan/build.ninja ## build with AddressSanitizer and UBSan and r
 	cmake --build build/asan -j $(JOBS)
 	$(CTEST) --test-dir build/asan -LE '^long$$'
 
-campaign: $(RELEASE)/build.ninja ## compare PAIRS random pairs of the bit-exact model with the exact oracle (CCHIP_SEED repeats a run)
+CAMPAIGN := $(RELEASE)/bin/cchip_campaign
+campaign-build: $(RELEASE)/build.ninja
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_campaign
-	$(RELEASE)/bin/cchip_campaign --pairs $(PAIRS)
+
+campaign: campaign-build ## compare PAIRS random triangle pairs of the bit-exact model with the exact oracle (CCHIP_SEED repeats a run)
+	$(CAMPAIGN) random --shape tri-tri --pairs $(PAIRS)
+
+campaign-grid: campaign-build ## all triangle pairs of the grid -1..1, 10^7 with quads; 10^6 and 10^5 of them through the RTL
+	$(CAMPAIGN) grid --shape tri-tri --rtl 1000000
+	$(CAMPAIGN) grid --shape tri-quad --pairs 10000000 --rtl 100000
+	$(CAMPAIGN) grid --shape quad-quad --pairs 10000000 --rtl 100000
+
+campaign-classes: campaign-build ## RTL against model and exact oracle, 10^5 pairs per class, with beats and throughput
+	$(CAMPAIGN) classes
+
+campaign-certainty: campaign-build ## definite answers against exact ones of 10^7 pairs off the grid
+	$(CAMPAIGN) certainty
+
+campaign-leaves: campaign-build ## leaf pairs of meshes: beats and share of indefinite answers
+	$(CAMPAIGN) leaves
+	$(CAMPAIGN) leaves $(LEAVES)
+	$(CAMPAIGN) leaves --quads $(QUAD_LEAVES)
 
 lint: bootstrap ## static checks of RTL, C++, scripts and texts
 	scripts/lint

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The campaign's table depends on the seed, not on the number of threads.
 function(table out seed threads)
-  execute_process(COMMAND ${CAMPAIGN} --pairs 200000 --seed ${seed} --threads ${threads}
+  execute_process(COMMAND ${CAMPAIGN} random --shape tri-quad --pairs 200000 --seed ${seed} --threads ${threads}
     OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY)
   string(REGEX REPLACE "seconds=[0-9.]+" "" text "${text}")
   set(${out} "${text}" PARENT_SCOPE)

@@ -33,13 +33,15 @@ Primitive random_primitive(std::mt19937_64& random, double range, const Vec3d& c
 TEST_CASE("dop24: every vertex is inside, also where the sums round", "[ref]") {
   std::mt19937_64 random(seed());
   std::uniform_int_distribution<int> bits(1, 53);
+  std::uniform_int_distribution<int> shift(0, 8);
   int rounded = 0;
   for (int n = 0; n < 20000; ++n) {
     Primitive p;
     std::array<std::array<std::int64_t, 3>, 3> exact{};
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t d = 0; d < 3; ++d) {
-        const std::int64_t c = static_cast<std::int64_t>(random() >> (64 - bits(random))) * (random() % 2 == 0 ? 1 : -1);
+        const auto mantissa = static_cast<std::int64_t>(random() >> (64 - bits(random)));
+        const std::int64_t c = (random() % 2 == 0 ? mantissa : -mantissa) * (std::int64_t{1} << shift(random));
         exact[i][d] = c;
         p.v[i][static_cast<Eigen::Index>(d)] = static_cast<double>(c);
       }
