@@ -78,7 +78,8 @@ KeptQuads take_quads(aiMesh& part) {
     if (face.mNumIndices == 1) kept.behind_point.emplace_back();
     if (!is_convex_quad(part, face)) continue;
     const unsigned* v = face.mIndices;
-    kept.behind_point.push_back(std::array<std::uint32_t, 4>{v[0], v[1], v[2], v[3]});
+    const std::array<std::uint32_t, 4> quad = {v[0], v[1], v[2], v[3]};
+    kept.behind_point.emplace_back(quad);
     face.mNumIndices = 1;
     part.mPrimitiveTypes |= aiPrimitiveType_POINT;
   }

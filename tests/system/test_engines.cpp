@@ -184,6 +184,7 @@ TEST_CASE("engines: RTL and its model agree in every field, batch after batch", 
 TEST_CASE("engines: statistics are sums over the modules", "[system][engines]") {
   Source source(3);
   std::vector<GridPair> pairs;
+  pairs.reserve(3000);
   for (int i = 0; i < 3000; ++i) pairs.push_back(source.pair());
   const auto engine = engine_of(EngineKind::model);
   const auto answers = engine->run(pairs, PairMode::directed);
