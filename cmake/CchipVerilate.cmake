@@ -21,6 +21,9 @@ function(cchip_model_library library)
   add_library(${library} STATIC)
   # -w: generated code and runtime. -O2: also in debug builds, simulation is useless without.
   target_compile_options(${library} PRIVATE -w -O2)
+  if(CCHIP_SANITIZE)  # the FST writer of the runtime stores to unaligned addresses
+    target_compile_options(${library} PRIVATE -fno-sanitize=undefined)
+  endif()
   target_compile_definitions(${library} INTERFACE VM_SC=0 VM_TRACE=1 VM_TRACE_FST=1 VM_TRACE_VCD=0 VM_COVERAGE=0)
   target_link_libraries(${library} PUBLIC Threads::Threads)
   # one translation unit per module: the common headers cost more than the code

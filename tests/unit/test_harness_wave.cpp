@@ -9,8 +9,8 @@
 #include <cchip/wave_layout.hpp>
 #include <filesystem>
 #include <fstream>
-#include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -53,7 +53,6 @@ TEST_CASE("harness: the layout names signals that exist", "[unit][harness]") {
   REQUIRE(signals.size() > 100);
 
   std::ifstream file(sim::wave_folder() + "/harness_layout_" + to_name(id) + ".gtkw");
-  const std::regex signal("TOP\\.[^ ]+");
   int named = 0;
   std::set<std::string> groups;
   bool dumpfile = false;
@@ -61,9 +60,12 @@ TEST_CASE("harness: the layout names signals that exist", "[unit][harness]") {
     dumpfile = dumpfile || line == "[dumpfile] \"" + options.trace_path + "\"";
     if (line.front() == '-') groups.insert(line.substr(1));
     if (line.front() != '+' && line.front() != '#') continue;
-    for (std::sregex_iterator at(line.begin(), line.end(), signal), end; at != end; ++at) {
+    std::istringstream words(line);
+    for (std::string word; words >> word;) {  // "(3)TOP.name[7:0]"
+      const auto at = word.find("TOP.");
+      if (at == std::string::npos) continue;
       INFO(line.substr(0, 80));
-      CHECK(signals.count(at->str()) == 1);
+      CHECK(signals.count(word.substr(at)) == 1);
       ++named;
     }
   }
