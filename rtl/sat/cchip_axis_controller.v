@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 // cchip_axis_controller: sequences the axes of many pairs through one SAT pipeline (paper, figure 6).
-//   pair in      never stalls: the owner accepts at most CONTEXTS pairs that have no accepted result
-//   beats        one per clock while a pair waits: beats of an EXHAUSTIVE pair leave back to back, then
-//                pairs that continue go before pairs that start
+//   pair in      never stalls, from the second clock after rst: the owner accepts at most CONTEXTS pairs
+//                that have no accepted result
+//   beats        one per clock while a pair waits: beats of an EXHAUSTIVE pair leave back to back;
+//                otherwise pairs that start and pairs that continue take turns
 //   latency      s_pair to its first beat 2 clocks; verdict to the next beat of its pair 3 clocks, to
 //                m_result 1 clock
 //   cuts         every path
@@ -183,16 +184,20 @@ module cchip_axis_controller #(
 
   // a pair waits for an axis slot (read by monitors)
   wire pair_waits /* verilator public_flat_rd */ = start_valid | ready_valid | beat_valid_q;
-  assign ready_ready = ~keep;
-  assign start_ready = ~keep & ~ready_valid;
+  reg  started_q;  // a pair that started had the last turn
+  wire take_start = start_valid & (~ready_valid | ~started_q);
+  assign ready_ready = ~keep & ~take_start;
+  assign start_ready = ~keep & take_start;
 
   always @(posedge clk) begin
     if (rst) beat_valid_q <= 1'b0;
     else beat_valid_q <= keep | ready_valid | start_valid;
+    if (rst) started_q <= 1'b0;
+    else if (!keep) started_q <= take_start;
     if (keep) begin
       beat_q[11:3]  <= keep_code;
       beat_q[34:29] <= beat_count + 6'd1;
-    end else beat_q <= ready_valid ? ready_state : {start_context, start_state};
+    end else beat_q <= take_start ? {start_context, start_state} : ready_state;
   end
 
   assign m_beat_valid   = beat_valid_q;

@@ -9,8 +9,8 @@
 //   NORMALS      nA, nB, then
 //   TETRAHEDRON  if a quad is warped and CROSSING cannot be certain: face normals of the warped ones, cross
 //                axes over all their edges
-//   DEGENERATE   else if a normal is zero: boxes, e_k x f_l, e_k x u_d, f_l x u_d
-//   COPLANAR     else if B lies in A's plane: in-plane axes of A, then of B
+//   DEGENERATE   else if none is warped and a normal is zero: boxes, e_k x f_l, e_k x u_d, f_l x u_d
+//   COPLANAR     else if none is warped and B lies in A's plane: in-plane axes of A, then of B
 //   CROSSING     else: zeros count as negative if the primitive has no negative vertex, else as
 //                positive; the edges of A and of B from + to -, then those from - to +. A warped quad
 //                is hit only if every sign is certain (docs/architecture.md), else TETRAHEDRON decides
@@ -154,11 +154,11 @@ module cchip_axis_programme #(
       plan_programme = `CCHIP_PROG_TETRAHEDRON;
       plan_code      = tetra_code(warped_a);
       plan_info      = {15'd0, warped_b, warped_a};
-    end else if (&na_zero || &s_axis_zero) begin
+    end else if (!warped && (&na_zero || &s_axis_zero)) begin
       plan_programme = `CCHIP_PROG_DEGENERATE;
       plan_code      = {`CCHIP_AXIS_CROSS, 6'd0};
       plan_info      = {5'd0, s_axis_zero, s_axis_negative, na_zero, na_negative};
-    end else if (&side_b_zero) begin
+    end else if (!warped && &side_b_zero) begin
       plan_programme = `CCHIP_PROG_COPLANAR;
       plan_code      = {`CCHIP_AXIS_IN_PLANE_A, 3'd0, 1'b0, largest};
       plan_info      = {15'd0, |(s_axis_negative & largest_mask), |(na_negative & largest_mask)};

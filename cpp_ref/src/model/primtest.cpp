@@ -23,16 +23,18 @@ void AxisController::clock(const std::optional<PairHeader>& pair, const std::opt
     if (const auto& o = step.outcome) result_ = Result{header.tag, o->hit(), o->grid, o->definite, o->witness, o->beats};
   }
 
-  // the next beat: the present EXHAUSTIVE pair, a pair that continues, a pair that starts
+  // the next beat: the present EXHAUSTIVE pair; otherwise pairs that start and pairs that continue take turns
   const auto following = beat_ ? following_beat(options_, beat_->state) : std::nullopt;
-  const bool ready_pop = !following;
-  const bool start_pop = !following && !ready_.m_valid();
+  const bool take_start = start_.m_valid() && (!ready_.m_valid() || !started_);
+  const bool ready_pop = !following && !take_start;
+  const bool start_pop = !following && take_start;
+  if (!following) started_ = take_start;
   if (following) {
     beat_->state = *following;
+  } else if (take_start) {
+    beat_ = Beat{start_.m_data().context, first_state(start_.m_data().mode)};
   } else if (ready_.m_valid()) {
     beat_ = ready_.m_data();
-  } else if (start_.m_valid()) {
-    beat_ = Beat{start_.m_data().context, first_state(start_.m_data().mode)};
   } else {
     beat_.reset();
   }
@@ -54,6 +56,7 @@ void AxisController::reset() {
   start_.reset();
   ready_.reset();
   next_.reset();
+  started_ = false;
   beat_.reset();
   result_.reset();
 }

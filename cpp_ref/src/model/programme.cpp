@@ -60,15 +60,14 @@ State plan(const Options& o, const Sides& s, int beats) {
   next.beats = beats;
   next.sides = s;
   const bool warped = s.warped_a || s.warped_b;
-  const std::size_t first_b = 0;
   bool all_zero = true;
-  for (std::size_t j = first_b; j < o.shape.b; ++j) all_zero = all_zero && s.b[j] == 0;
+  for (std::size_t j = 0; j < o.shape.b; ++j) all_zero = all_zero && s.b[j] == 0;
   if (warped && o.warped_exact && (s.far || !s.certain)) {
     next = tetrahedron(s, beats);
-  } else if (is_zero(s.normal_a) || is_zero(s.normal_b)) {
+  } else if (!warped && (is_zero(s.normal_a) || is_zero(s.normal_b))) {
     next.programme = Programme::degenerate;
     next.code = axis(AxisClass::cross);
-  } else if (all_zero) {
+  } else if (!warped && all_zero) {
     next.programme = Programme::coplanar;
     next.code = axis(AxisClass::in_plane_a, 0, static_cast<std::size_t>(s.largest));
   } else {

@@ -73,6 +73,7 @@ class AxisController {
   Fifo<Start> start_;
   Fifo<Beat> ready_;
   std::optional<Beat> next_;
+  bool started_ = false;
   std::vector<PairHeader> side_;
   std::optional<Beat> beat_;
   std::optional<Result> result_;
