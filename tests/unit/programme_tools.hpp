@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Made-up verdicts for the tests of the programme logic.
+#ifndef CCHIP_TESTS_UNIT_PROGRAMME_TOOLS_HPP
+#define CCHIP_TESTS_UNIT_PROGRAMME_TOOLS_HPP
+
+#include <cchip/model/programme.hpp>
+
+#include "bench.hpp"
+
+namespace cchip::test {
+
+/// Any verdict the pipeline can give, whatever the axis: a zero has no sign, what is certain is not zero, a
+/// certain gap is a gap.
+/// \param zero_axes components that are zero in both normals of the pair, bit mask 0..6: where the programme looks
+/// at a component of both, it is the largest of one and they are parallel
+inline model::Verdict random_verdict(Random& random, int separated_percent, unsigned zero_axes) {
+  model::Verdict v;
+  v.compare.separated = chance(random, separated_percent);
+  v.compare.certain_gap = v.compare.separated && chance(random, 50);
+  v.box.separated = chance(random, separated_percent);
+  v.box.certain_gap = v.box.separated && chance(random, 50);
+  const int zeros = chance(random, 15) ? 100 : chance(random, 50) ? 0 : 30;
+  const int certains = chance(random, 60) ? 100 : 70;
+  for (std::size_t i = 0; i < model::max_points; ++i) {
+    v.compare.zero[i] = chance(random, zeros);
+    v.compare.negative[i] = !v.compare.zero[i] && chance(random, 50);
+    v.compare.certain[i] = !v.compare.zero[i] && chance(random, certains);
+  }
+  v.compare.far = !v.compare.zero[0] && chance(random, 30);
+  const bool no_normal = chance(random, 10);
+  for (std::size_t d = 0; d < 3; ++d) {
+    v.axis_zero[d] = no_normal || (zero_axes >> d & 1U) != 0;
+    v.axis_negative[d] = !v.axis_zero[d] && chance(random, 50);
+  }
+  do {
+    v.axis_largest = static_cast<int>(random() % 3);
+  } while ((zero_axes >> v.axis_largest & 1U) != 0);
+  return v;
+}
+
+/// For random_verdict(): mostly no component.
+inline unsigned random_zero_axes(Random& random) { return chance(random, 60) ? 0 : static_cast<unsigned>(random() % 7); }
+
+/// Writes a verdict to the pins <PREFIX>separated, ..., of which the first `points` slots exist.
+#define CCHIP_PUT_VERDICT(top, PREFIX, v, points)                                           \
+  do {                                                                                      \
+    (top).PREFIX##separated = (v).compare.separated ? 1 : 0;                                \
+    (top).PREFIX##certain_gap = (v).compare.certain_gap ? 1 : 0;                            \
+    (top).PREFIX##negative = static_cast<CData>(bit_vector((v).compare.negative, (points))); \
+    (top).PREFIX##zero = static_cast<CData>(bit_vector((v).compare.zero, (points)));        \
+    (top).PREFIX##certain = static_cast<CData>(bit_vector((v).compare.certain, (points)));  \
+    (top).PREFIX##far = (v).compare.far ? 1 : 0;                                            \
+    (top).PREFIX##axis_negative = static_cast<CData>(bit_vector((v).axis_negative, 3));     \
+    (top).PREFIX##axis_zero = static_cast<CData>(bit_vector((v).axis_zero, 3));             \
+    (top).PREFIX##axis_largest = static_cast<CData>((v).axis_largest);                      \
+    (top).PREFIX##box_separated = (v).box.separated ? 1 : 0;                                \
+    (top).PREFIX##box_certain = (v).box.certain_gap ? 1 : 0;                                \
+  } while (false)
+
+/// The first n flags, number 0 in bit 0.
+template <std::size_t N>
+unsigned bit_vector(const std::array<bool, N>& flags, std::size_t n) {
+  unsigned bits = 0;
+  for (std::size_t i = 0; i < n; ++i) bits |= flags.at(i) ? 1U << i : 0U;
+  return bits;
+}
+
+}  // namespace cchip::test
+
+#endif

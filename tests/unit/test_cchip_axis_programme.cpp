@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <map>
+#include <models/cchip_axis_programme.hpp>
+
+#include "programme_tools.hpp"
+
+using namespace cchip;
+using namespace cchip::test;
+
+namespace {
+
+// state: {certain, open, beats (6), info (17), code (9), programme (3)}
+constexpr std::uint64_t code_mask = 0x1ffULL << 3;
+constexpr std::uint64_t beats_mask = 0x3fULL << 29;
+
+std::uint64_t with_code(std::uint64_t state, const model::State& s) {
+  return (state & ~code_mask & ~beats_mask) | std::uint64_t{model::to_bits(s.code)} << 3 |
+         static_cast<std::uint64_t>(s.beats) << 29;
+}
+
+/// The state with which the controller starts a pair: certain, nothing known.
+std::uint64_t start_bits(const model::State& s) {
+  return with_code(1ULL << 36 | static_cast<std::uint64_t>(s.programme), s);
+}
+
+/// Walks whole programmes with made-up verdicts, the RTL's states beside the model's.
+template <class Config>
+class Walk {
+ public:
+  explicit Walk(const sim::SimulationOptions& options) : random_(options.seed), simulation_(options) {
+    simulation_->s_valid = 0;
+  }
+
+  std::map<Programme, int> outcomes;  ///< by the programme that gave it
+  int hits = 0;
+  int open = 0;
+  int most_beats = 0;
+
+  void pair(int mode) {
+    auto& top = simulation_.top();
+    const int separated_percent = chance(random_, 50) ? 1 : 10;
+    const unsigned zero_axes = random_zero_axes(random_);
+    model::State state = model::first_state(mode);
+    std::uint64_t bits = start_bits(state);
+    while (true) {
+      const int err = chance(random_, 50) ? 0 : static_cast<int>(random_() % 16);
+      const model::Verdict v = random_verdict(random_, separated_percent, zero_axes);
+      top.s_state = bits;
+      CCHIP_PUT_VERDICT(top, s_, v, static_cast<std::size_t>(defs::points(Config::VERTS_A, Config::VERTS_B)));
+      // without valid nothing happens, whatever the verdict
+      top.s_valid = 0;
+      simulation_.settle();
+      REQUIRE(top.m_outcome == 0);
+      REQUIRE(top.m_proceed == 0);
+      if (chance(random_, 30)) simulation_.rise();
+      top.s_valid = 1;
+      simulation_.settle();
+      const model::Step step = model::advance(options_, state, v, err, found_);
+      INFO("programme " << static_cast<int>(state.programme) << ", axis " << to_words(state.code) << ", beats "
+                        << state.beats << ", eta " << err);
+      REQUIRE((top.m_outcome != 0) == step.outcome.has_value());
+      REQUIRE((top.m_proceed != 0) == step.next.has_value());
+      if (step.outcome) return judge(state, *step.outcome, err);
+      if (step.next) {
+        bits = top.m_state;
+        state = *step.next;
+        REQUIRE((bits & 7) == static_cast<std::uint64_t>(state.programme));
+        REQUIRE((bits & code_mask) >> 3 == model::to_bits(state.code));
+        REQUIRE((bits & beats_mask) >> 29 == static_cast<std::uint64_t>(state.beats));
+      } else {
+        state = model::following_beat(options_, state).value();
+        bits = with_code(bits, state);
+      }
+      simulation_.rise();
+    }
+  }
+
+ private:
+  void judge(const model::State& state, const model::Outcome& o, int err) {
+    auto& top = simulation_.top();
+    const bool illegal = state.programme == Programme::illegal;
+    REQUIRE((top.m_illegal != 0) == illegal);
+    REQUIRE((top.m_grid != 0) == o.grid);
+    REQUIRE(top.m_witness == model::to_bits(o.witness));
+    REQUIRE(int{top.m_beats} == o.beats);
+    const bool certain = top.m_certain != 0;
+    const bool definite = err == 0 ? certain || top.m_open == 0 : certain && err != defs::err_unknown;
+    REQUIRE((definite && !illegal) == o.definite);
+    simulation_.rise();
+    ++outcomes[state.programme];
+    hits += o.grid ? 1 : 0;
+    open += top.m_open != 0 ? 1 : 0;
+    most_beats = std::max(most_beats, o.beats);
+  }
+
+  Random random_;
+  sim::Simulation<typename Config::Model> simulation_;
+  model::Options options_{{Config::VERTS_A, Config::VERTS_B}, Config::WARPED_EXACT != 0};
+  model::Exhaustive found_;
+};
+
+}  // namespace
+
+TEMPLATE_LIST_TEST_CASE("cchip_axis_programme: outcome and next axis of every programme are the model's",
+                        "[unit][cchip_axis_programme]", cchip_axis_programme_configs) {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    Walk<TestType> walk(options);
+    Random random(options.seed);
+    for (int i = 0; i < 8000; ++i) {
+      const auto choice = static_cast<int>(random() % 100);
+      walk.pair(choice < 49 ? 0 : choice < 98 ? 1 : choice < 99 ? 2 : 3);
+    }
+    constexpr bool tetra = TestType::VERTS_B == 4 && TestType::WARPED_EXACT != 0;
+    for (const Programme p : {Programme::normals, Programme::crossing, Programme::coplanar, Programme::degenerate,
+                              Programme::exhaustive, Programme::illegal}) {
+      INFO("programme " << static_cast<int>(p));
+      REQUIRE(walk.outcomes[p] > 30);
+    }
+    REQUIRE((walk.outcomes[Programme::tetrahedron] > 30) == tetra);
+    REQUIRE((walk.open > 30) == (TestType::WARPED_EXACT == 0));
+    REQUIRE(walk.hits > 1000);
+    // EXHAUSTIVE to its end, then the longest programme to its end: six edges instead of a warped quad's four
+    constexpr int exhaustive = defs::exhaustive_beats(TestType::VERTS_A, TestType::VERTS_B);
+    constexpr int a = TestType::VERTS_A, b = TestType::VERTS_B;
+    constexpr int degenerate = a * b + 3 * (a + b);
+    constexpr int tetrahedron = tetra ? (a == 4 ? 4 + 4 + 36 : 4 + 6 * a) : 0;
+    REQUIRE(walk.most_beats == exhaustive + std::max(degenerate, tetrahedron));
+  });
+}
