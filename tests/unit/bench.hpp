@@ -103,14 +103,15 @@ inline Vec3i random_point(Random& random, int coord_w) {
   const auto w = random_word3(random, coord_w);
   return {static_cast<int>(w[0]), static_cast<int>(w[1]), static_cast<int>(w[2])};
 }
-inline GridPrimitive random_triangle(Random& random, int coord_w) {
+inline GridPrimitive random_primitive(Random& random, std::size_t vertices, int coord_w) {
   GridPrimitive p;
-  for (std::size_t i = 0; i < 3; ++i) p.v[i] = random_point(random, coord_w);
+  p.kind = vertices == 4 ? Kind::quad : Kind::tri;
+  for (std::size_t i = 0; i < vertices; ++i) p.v[i] = random_point(random, coord_w);
   return p;
 }
 template <class Port>
-void set_triangle(Port& port, const GridPrimitive& p, int coord_w) {
-  sim::set_vertices(port, p.v, 3, coord_w);
+void set_primitive(Port& port, const GridPrimitive& p, int coord_w) {
+  sim::set_vertices(port, p.v, static_cast<int>(p.vertex_count()), coord_w);
 }
 inline model::Word3 to_word3(const Vec3i& v) { return {v.x(), v.y(), v.z()}; }
 

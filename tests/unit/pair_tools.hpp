@@ -1,92 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Pairs of triangles for the tests: text, witness checked by hand, pairs that one axis alone separates.
+/// Axis codes of a shape, and pairs that one axis alone separates.
 #ifndef CCHIP_TESTS_UNIT_PAIR_TOOLS_HPP
 #define CCHIP_TESTS_UNIT_PAIR_TOOLS_HPP
 
-#include <algorithm>
-#include <array>
 #include <cchip/exact_oracle.hpp>
-#include <stdexcept>
 
-#include "bench.hpp"
+#include "../campaign/pair_source.hpp"
+#include "witness.hpp"
 
 namespace cchip::test {
 
-inline std::string describe(const GridPair& pair) {
-  std::string text;
-  for (const GridPrimitive* p : {&pair.a, &pair.b}) {
-    text += p == &pair.a ? "A" : "  B";
-    for (std::size_t i = 0; i < 3; ++i) {
-      text += " (" + std::to_string(p->v[i].x()) + ", " + std::to_string(p->v[i].y()) + ", " +
-              std::to_string(p->v[i].z()) + ")";
-    }
+inline AxisCode axis_code(AxisClass cls, std::size_t k, std::size_t l) {
+  return {cls, static_cast<std::uint8_t>(k), static_cast<std::uint8_t>(l)};
+}
+inline Kind kind_of(std::size_t vertices) { return vertices == 4 ? Kind::quad : Kind::tri; }
+
+/// Every code of a projected axis that exists for the shape.
+inline std::vector<AxisCode> axis_codes(const model::Shape& shape) {
+  const auto edges = [](std::size_t n) { return std::size_t{n == 4 ? 6U : 3U}; };
+  const auto normals = [](std::size_t n) { return std::size_t{n == 4 ? 5U : 1U}; };
+  std::vector<AxisCode> codes;
+  for (std::size_t k = 0; k < normals(shape.a); ++k) codes.push_back(axis_code(AxisClass::normal_a, k, 0));
+  for (std::size_t k = 0; k < normals(shape.b); ++k) codes.push_back(axis_code(AxisClass::normal_b, k, 0));
+  for (std::size_t k = 0; k < edges(shape.a); ++k) {
+    for (std::size_t l = 0; l < edges(shape.b); ++l) codes.push_back(axis_code(AxisClass::cross, k, l));
   }
-  return text;
-}
-
-/// By the definitions in DESIGN section 3.1, written out: the axis vector of a code.
-inline std::array<sim::Int128, 3> axis_vector(const AxisCode& code, const GridPair& pair) {
-  const auto edge = [](const GridPrimitive& p, std::size_t from, std::size_t to) {
-    const Vec3i d = p.v[to % 3] - p.v[from];
-    return std::array<sim::Int128, 3>{d.x(), d.y(), d.z()};
-  };
-  std::array<sim::Int128, 3> e{};
-  std::array<sim::Int128, 3> f{};
-  switch (code.cls) {
-    case AxisClass::normal_a:
-      e = edge(pair.a, 0, 1);
-      f = edge(pair.a, 0, 2);
-      break;
-    case AxisClass::normal_b:
-      e = edge(pair.b, 0, 1);
-      f = edge(pair.b, 0, 2);
-      break;
-    case AxisClass::cross:
-      if (code.k > 2 || code.l > 2) throw std::invalid_argument("axis_vector: a triangle has no edge 3");
-      e = edge(pair.a, code.k, code.k + 1U);
-      f = edge(pair.b, code.l, code.l + 1U);
-      break;
-    default:
-      throw std::invalid_argument("axis_vector: class " + std::to_string(static_cast<int>(code.cls)));
+  for (std::size_t d = 0; d < 3; ++d) {
+    for (std::size_t k = 0; k < shape.a; ++k) codes.push_back(axis_code(AxisClass::in_plane_a, k, d));
+    for (std::size_t k = 0; k < shape.b; ++k) codes.push_back(axis_code(AxisClass::in_plane_b, k, d));
   }
-  return {e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]};
+  return codes;
 }
 
-/// True if the projections of all three vertices of A and all three of B onto the axis are disjoint intervals.
-inline bool axis_separates(const AxisCode& code, const GridPair& pair) {
-  const auto axis = axis_vector(code, pair);
-  const auto interval = [&](const GridPrimitive& p) {
-    std::array<sim::Int128, 3> s{};
-    for (std::size_t i = 0; i < 3; ++i) s[i] = axis[0] * p.v[i].x() + axis[1] * p.v[i].y() + axis[2] * p.v[i].z();
-    return std::pair(*std::min_element(s.begin(), s.end()), *std::max_element(s.begin(), s.end()));
-  };
-  const auto a = interval(pair.a);
-  const auto b = interval(pair.b);
-  return a.second < b.first || b.second < a.first;
-}
-
-inline bool is_special(const GridPair& pair) {
-  return is_degenerate(pair.a) || is_degenerate(pair.b) || is_coplanar(pair);
-}
-
-/// A pair, not coplanar nor degenerate, that this axis of the EXHAUSTIVE programme separates and no other does.
-inline GridPair pair_separated_only_by(const AxisCode& code, int coord_w, std::uint64_t seed) {
-  Random random(seed);
-  const int range = 1 << (coord_w - 1);
-  std::uniform_int_distribution<int> coordinate(-range, range - 1);
-  while (true) {
-    GridPair pair;
-    for (GridPrimitive* p : {&pair.a, &pair.b}) {
-      for (std::size_t i = 0; i < 3; ++i) p->v[i] = {coordinate(random), coordinate(random), coordinate(random)};
-    }
-    if (!axis_separates(code, pair) || is_special(pair)) continue;
-    int separating = 0;
-    for (int beat = 0; beat < defs::exhaustive_beats_tri_tri; ++beat) {
-      separating += axis_separates(model::exhaustive_axis(beat), pair) ? 1 : 0;
-    }
-    if (separating == 1) return pair;
+/// nA, nB and every e_k x f_l of the sides (eq. 1 of the paper).
+inline std::vector<AxisCode> exhaustive_codes(const model::Shape& shape) {
+  std::vector<AxisCode> codes = {{AxisClass::normal_a, 0, 0}, {AxisClass::normal_b, 0, 0}};
+  for (std::size_t k = 0; k < shape.a; ++k) {
+    for (std::size_t l = 0; l < shape.b; ++l) codes.push_back(axis_code(AxisClass::cross, k, l));
   }
+  return codes;
+}
+
+/// For each axis of exhaustive_codes() a pair, not coplanar nor degenerate, that it separates and no other does.
+inline std::vector<GridPair> pairs_separated_by_one(const model::Shape& shape, int coord_w, std::uint64_t seed) {
+  const std::vector<AxisCode> codes = exhaustive_codes(shape);
+  campaign::PairSource source(coord_w, seed, kind_of(shape.a), kind_of(shape.b));
+  std::vector<std::optional<GridPair>> found(codes.size());
+  for (std::size_t missing = codes.size(); missing > 0;) {
+    const GridPair pair =
+        source.draw(source.coin() ? campaign::PairClass::general_full : campaign::PairClass::near_edge);
+    if (is_degenerate(pair.a) || is_degenerate(pair.b) || is_coplanar(pair)) continue;
+    std::size_t separating = 0;
+    std::size_t last = 0;
+    for (std::size_t i = 0; i < codes.size() && separating < 2; ++i) {
+      if (!witness_separates(codes[i], pair)) continue;
+      ++separating;
+      last = i;
+    }
+    if (separating != 1 || found[last]) continue;
+    found[last] = pair;
+    --missing;
+  }
+  std::vector<GridPair> pairs;
+  for (const auto& pair : found) pairs.push_back(*pair);
+  return pairs;
 }
 
 }  // namespace cchip::test
