@@ -83,8 +83,8 @@
 `define CCHIP_NORM_W(w) ((w) + 3)
 // |axis|_1: <= 6 (2^w - 1)^2 [bit]
 `define CCHIP_AXIS_NORM_W(w) (2 * (w) + 3)
-// error bounds of stage compare: at most 32 (2 |axis|_1 + (|e|_1 + |f|_1 + 64) 2^(w+4)), w >= 4 [bit]
-`define CCHIP_BOUND_W(w) (2 * (w) + 14)
+// error bounds of stage compare: at most 16 (|axis|_1 + (|e|_1 + |f|_1 + 32) 2^(w+3)) [bit]
+`define CCHIP_BOUND_W(w) (2 * (w) + 11)
 // points projected for each axis, relative projection; a, b = vertices of A and of B [point]
 `define CCHIP_POINTS(a, b) ((a) + (b) - 3)
 // registered levels of an adder tree over n <= 16 terms [clock]

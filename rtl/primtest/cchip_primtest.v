@@ -172,7 +172,7 @@ module cchip_primtest #(
   wire [POINTS-1:0] verdict_negative, verdict_zero, verdict_certain;
   wire [       2:0] verdict_axis_negative, verdict_axis_zero;
   wire [       1:0] verdict_axis_largest;
-  wire              verdict_far;
+  wire              verdict_clear;
   wire              verdict_box_separated, verdict_box_certain;
   wire [USER_W-1:0] verdict_user;
 
@@ -200,7 +200,7 @@ module cchip_primtest #(
       .m_verdict_negative     (verdict_negative),
       .m_verdict_zero         (verdict_zero),
       .m_verdict_certain      (verdict_certain),
-      .m_verdict_far          (verdict_far),
+      .m_verdict_clear          (verdict_clear),
       .m_verdict_axis_negative(verdict_axis_negative),
       .m_verdict_axis_zero    (verdict_axis_zero),
       .m_verdict_axis_largest (verdict_axis_largest),
@@ -239,7 +239,7 @@ module cchip_primtest #(
       .s_verdict_negative     (verdict_negative),
       .s_verdict_zero         (verdict_zero),
       .s_verdict_certain      (verdict_certain),
-      .s_verdict_far          (verdict_far),
+      .s_verdict_clear          (verdict_clear),
       .s_verdict_axis_negative(verdict_axis_negative),
       .s_verdict_axis_zero    (verdict_axis_zero),
       .s_verdict_axis_largest (verdict_axis_largest),

@@ -36,7 +36,7 @@ module cchip_axis_programme #(
     input  wire [VERTS_A+VERTS_B-4:0] s_negative,
     input  wire [VERTS_A+VERTS_B-4:0] s_zero,
     input  wire [VERTS_A+VERTS_B-4:0] s_certain,
-    input  wire                       s_far,       // on a quad's normal: warped by more than rounding
+    input  wire                       s_clear,     // see cchip_sat_compare: on a normal, all sides are certain
     input  wire [                2:0] s_axis_negative,
     input  wire [                2:0] s_axis_zero,
     input  wire [                1:0] s_axis_largest,
@@ -76,7 +76,6 @@ module cchip_axis_programme #(
 
   // ---- sides: signs of the other primitive's vertices on a normal; vertex 3 of a triangle as zero
   wire [3:0] b_negative, b_zero, a_negative, a_zero;
-  wire b_certain, a_certain;
   generate
     if (VERTS_B == 4) begin : gen_b_quad
       assign b_negative = s_negative[POINTS-1-:4];
@@ -93,9 +92,6 @@ module cchip_axis_programme #(
       assign a_zero     = {1'b1, s_zero[POINTS-1-:3]};
     end
   endgenerate
-  // all of B's sides of A are certain / all of A's sides of B
-  assign b_certain = (&s_certain[POINTS-1-:VERTS_B]) && !(VERTS_A == 4 && s_far);
-  assign a_certain = (&s_certain[POINTS-1-:VERTS_A]) && !(VERTS_B == 4 && s_far);
 
   // on normal k = 0 of a quad slot 0 is V1: off the plane through V0 parallel to the diagonals?
   wire warped_a_now = VERTS_A == 4 && !s_zero[0];
@@ -120,7 +116,7 @@ module cchip_axis_programme #(
   wire warped_b = warped_b_now;
   wire warped = warped_a | warped_b;
   wire certain_before = exhaustive ? found_certain_q : certain;
-  wire certain_sides = certain_before & a_certain;
+  wire certain_sides = certain_before & s_clear;
 
   function [8:0] tetra_code(input a_is_warped);
     tetra_code = {a_is_warped ? `CCHIP_AXIS_NORMAL_A : `CCHIP_AXIS_NORMAL_B, 3'd1, 3'd0};
@@ -223,7 +219,7 @@ module cchip_axis_programme #(
   wire found_second = {k[1:0], l[1:0]} == found_plan_q[15:12];
   wire crosses = axis_class == `CCHIP_AXIS_CROSS && (code == found_plan_q[11:3] || found_second);
   wire found_to_tetra = WARPED_EXACT != 0 && plan_is_crossing && |found_plan_q[17:16] && !found_certain;
-  wire found_certain = first ? b_certain
+  wire found_certain = first ? s_clear
                      : normal_b ? certain_sides
                                 : found_certain_q & (~crosses | (s_certain[VERTS_A-2] & s_negative[VERTS_A-2] == found_second));
 
@@ -276,7 +272,7 @@ module cchip_axis_programme #(
         take_plan     = normal_b;
         state_code    = {`CCHIP_AXIS_NORMAL_B, 6'd0};
         state_info    = normal_a_info;
-        state_certain = b_certain;
+        state_certain = s_clear;
       end
       `CCHIP_PROG_CROSSING:
       if (!s_separated) begin
@@ -316,7 +312,7 @@ module cchip_axis_programme #(
                                       : {state_certain, open, state_info, state_code, programme};
   assign m_state = {state[30:29], beats + 6'd1, state[28:0]};
 
-  wire unused = &{1'b0, s_negative};
+  wire unused = &{1'b0, s_negative, s_certain};
 
 endmodule
 `default_nettype wire

@@ -4,11 +4,8 @@
 // Part of macro stage 3; shifts and adds, no multiplier. a, b are the edges whose cross product is the
 // axis, c_i the points relative to the reference (docs/architecture.md, certainty):
 //   m_gap_bound     = E |axis|_1, E = 2^s_error_shift >= eta
-//   m_sign_bound[i] = F (A + (|a|_1 + |b|_1 + 2 F) 2^n), n smallest with 2^n >= |c_i|_1 + S + 2 F
-// Triangles (POINTS = 3): F = E, A = |axis|_1, S = 0. With quads F = 2 E, A = 2 |axis|_1, so that the
-// bound also covers flattening a quad that rounding has warped; s_slab (the normal of a quad):
-// S = |c_0|_1, so that it holds relative to both planes of the quad's vertices.
-//   latency      SUBSTAGES clocks from s_axis, s_edge_norm, s_error_shift, s_slab; one less from s_difference
+//   m_sign_bound[i] = E (|axis|_1 + (|a|_1 + |b|_1 + 2 E) 2^n), n smallest with 2^n >= |c_i|_1 + 2 E
+//   latency      SUBSTAGES clocks from s_axis, s_edge_norm, s_error_shift; one less from s_difference
 //   throughput   one axis per clock, never stalls
 //   numbers      unsigned, CCHIP_BOUND_W(COORD_W) bits, no overflow
 //   reset        none (data only)
@@ -24,10 +21,9 @@ module cchip_sat_bound #(
     input  wire [        6*(COORD_W+1)-1:0] s_axis,
     input  wire [              COORD_W+2:0] s_edge_norm,
     input  wire [                      2:0] s_error_shift,
-    input  wire                             s_slab,
     input  wire [ 3*POINTS*(COORD_W+1)-1:0] s_difference,  // one clock after s_axis
-    output wire [POINTS*(2*COORD_W+14)-1:0] m_sign_bound,
-    output wire [           2*COORD_W+13:0] m_gap_bound
+    output wire [POINTS*(2*COORD_W+11)-1:0] m_sign_bound,
+    output wire [           2*COORD_W+10:0] m_gap_bound
 );
 
 `include "cchip_defs.vh"
@@ -37,13 +33,12 @@ module cchip_sat_bound #(
   localparam integer NORM_W = `CCHIP_NORM_W(COORD_W);
   localparam integer AXIS_NORM_W = `CCHIP_AXIS_NORM_W(COORD_W);
   localparam integer BOUND_W = `CCHIP_BOUND_W(COORD_W);
-  localparam integer QUADS = POINTS > 3 ? 1 : 0;
-  // |c|_1 + S + 2 F - 1 <= 6 (2^COORD_W - 1) + 63 < 2^U_W
-  localparam integer U_W = COORD_W + 4;
+  // |c|_1 + 2 E - 1 <= 3 (2^COORD_W - 1) + 31 < 2^U_W
+  localparam integer U_W = COORD_W + 3;
   localparam integer LOG_W = $clog2(U_W + 1);
-  // |a|_1 + |b|_1 + 2 F <= 6 (2^COORD_W - 1) + 64 < 2^(NORM_W + 1)
+  // |a|_1 + |b|_1 + 2 E <= 6 (2^COORD_W - 1) + 32 < 2^(NORM_W + 1)
   localparam integer FACTOR_W = NORM_W + 1;
-  localparam integer PRODUCT_W = BOUND_W - 5;
+  localparam integer PRODUCT_W = BOUND_W - 4;
   // substages used: difference, norm (2), sum, product, bound. The first one to spare separates logarithm
   // and product, the second one sum and logarithm, the rest follow the logarithm.
   localparam integer SPARE = SUBSTAGES - 6;
@@ -76,8 +71,6 @@ module cchip_sat_bound #(
       .q  (shift_bound)
   );
 
-  wire [POINTS*(EDGE_W+1)-1:0] norms;  // |c_i|_1
-
   // ---- |axis|_1, needed by the last substage
   wire [AXIS_NORM_W-1:0] axis_norm_early, axis_norm;
   cchip_norm1 #(
@@ -100,8 +93,8 @@ module cchip_sat_bound #(
   // ---- |a|_1 + |b|_1 + 2 E, needed by the substage before
   wire [FACTOR_W-1:0] factor;
   reg [FACTOR_W-1:0] factor_q;
-  wire [6:0] twice_error = (QUADS != 0 ? 7'd4 : 7'd2) << s_error_shift;
-  always @(posedge clk) factor_q <= {1'b0, s_edge_norm} + {{FACTOR_W - 7{1'b0}}, twice_error};
+  wire [5:0] twice_error = 6'd2 << s_error_shift;
+  always @(posedge clk) factor_q <= {1'b0, s_edge_norm} + {{FACTOR_W - 6{1'b0}}, twice_error};
   cchip_delay #(
       .WIDTH(FACTOR_W),
       .DEPTH(SUBSTAGES - 3)
@@ -116,22 +109,7 @@ module cchip_sat_bound #(
   always @(posedge clk) gap_q <= {{BOUND_W - AXIS_NORM_W{1'b0}}, axis_norm} << shift_bound;
   assign m_gap_bound = gap_q;
 
-  // ---- S
-  wire slab_sum;
-  wire [EDGE_W:0] slab_norm;
-  cchip_delay #(
-      .WIDTH(1),
-      .DEPTH(1 + `CCHIP_NORM1_LATENCY)
-  ) u_slab (
-      .clk(clk),
-      .rst(1'b0),
-      .d  (s_slab),
-      .q  (slab_sum)
-  );
-  assign slab_norm = QUADS != 0 && slab_sum ? norms[0+:EDGE_W+1] : {EDGE_W + 1{1'b0}};
-  wire [6:0] twice_error_less_1 = ((QUADS != 0 ? 7'd4 : 7'd2) << shift_sum) - 7'd1;
-  // A
-  wire [AXIS_NORM_W:0] axis_term = QUADS != 0 ? {axis_norm, 1'b0} : {1'b0, axis_norm};
+  wire [5:0] twice_error_less_1 = (6'd2 << shift_sum) - 6'd1;
 
   // position of the highest one, plus 1: smallest n with 2^n >= u + 1
   function [LOG_W-1:0] length(input [U_W-1:0] u);
@@ -145,6 +123,7 @@ module cchip_sat_bound #(
   genvar i;
   generate
     for (i = 0; i < POINTS; i = i + 1) begin : gen_point
+      wire [   EDGE_W:0] norm;
       reg  [    U_W-1:0] sum_q;
       wire [    U_W-1:0] sum;
       wire [  LOG_W-1:0] log;
@@ -155,10 +134,10 @@ module cchip_sat_bound #(
       ) u_norm (
           .clk(clk),
           .v  (s_difference[3*EDGE_W*i+:3*EDGE_W]),
-          .q  (norms[(EDGE_W+1)*i+:EDGE_W+1])
+          .q  (norm)
       );
       always @(posedge clk)
-        sum_q <= {2'b00, norms[(EDGE_W+1)*i+:EDGE_W+1]} + {2'b00, slab_norm} + {{U_W - 7{1'b0}}, twice_error_less_1};
+        sum_q <= {1'b0, norm} + {{U_W - 6{1'b0}}, twice_error_less_1};
       cchip_delay #(
           .WIDTH(U_W),
           .DEPTH(SUM_REGS)
@@ -179,7 +158,7 @@ module cchip_sat_bound #(
       );
       always @(posedge clk) begin
         product_q <= {{PRODUCT_W - FACTOR_W{1'b0}}, factor} << log;
-        bound_q   <= (({5'd0, product_q} + {{BOUND_W - AXIS_NORM_W - 1{1'b0}}, axis_term}) << shift_bound) << QUADS;
+        bound_q   <= ({4'd0, product_q} + {{BOUND_W - AXIS_NORM_W{1'b0}}, axis_norm}) << shift_bound;
       end
       assign m_sign_bound[BOUND_W*i+:BOUND_W] = bound_q;
     end

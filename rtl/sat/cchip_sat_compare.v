@@ -8,12 +8,13 @@
 //   reset        none (data only)
 // Own set of the axis: {0} and the slots marked s_own; other set: the other slots. Closed sets:
 // separated only if every difference between the two sets is strictly of one sign that is allowed.
-// Certain: |value| > bound, strictly.
+// Certain: |value| > bound, strictly. m_clear: every difference between the sets exceeds the gap bound, and each
+// point of the other set is on one side of the whole own set.
 module cchip_sat_compare #(
     // width of a projection, bit
     parameter integer PROJ_W = 51,
     // width of a bound, bit
-    parameter integer BOUND_W = 46,
+    parameter integer BOUND_W = 43,
     // point slots, 3..5
     parameter integer POINTS = 3
 ) (
@@ -29,7 +30,8 @@ module cchip_sat_compare #(
     output reg  [        POINTS-1:0] m_negative,     // p_i < 0
     output reg  [        POINTS-1:0] m_zero,         // p_i = 0
     output reg  [        POINTS-1:0] m_certain,      // the sign of p_i is that of the unrounded vertices
-    output reg                       m_far           // |p_0| > gap bound: a quad warped by more than rounding
+    output reg                       m_clear         // every other point lies certainly beyond all own points,
+                                                     // on either side
 );
 
   // room for value +- bound
@@ -107,6 +109,9 @@ module cchip_sat_compare #(
   wire [POINTS-1:0] skip1 = skip | {POINTS{~own_q2[1]}};
   wire above = allow_above_q2 & (&(skip | ~(negative_q2 | zero_q2))) & (&(skip0 | above0_q2)) & (&(skip1 | above1_q2));
   wire below = allow_below_q2 & (&(skip | negative_q2)) & (&(skip0 | below0_q2)) & (&(skip1 | below1_q2));
+  // on the same side of the own points in slots 0 and 1 as of the reference
+  wire [POINTS-1:0] same0 = below0_q2 ~^ negative_q2;
+  wire [POINTS-1:0] same1 = below1_q2 ~^ negative_q2;
   wire all_far = (&(skip | gap_q2)) & (&(skip0 | gap0_q2)) & (&(skip1 | gap1_q2));
 
   always @(posedge clk) begin
@@ -115,7 +120,7 @@ module cchip_sat_compare #(
     m_negative    <= negative_q2;
     m_zero        <= zero_q2;
     m_certain     <= certain_q2;
-    m_far         <= gap_q2[0];
+    m_clear       <= all_far & (&(skip0 | same0)) & (&(skip1 | same1));
   end
 
 endmodule

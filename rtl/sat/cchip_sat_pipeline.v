@@ -36,7 +36,7 @@ module cchip_sat_pipeline #(
     output wire [    VERTS_A+VERTS_B-4:0] m_verdict_negative,    // projected points: < 0
     output wire [    VERTS_A+VERTS_B-4:0] m_verdict_zero,        // = 0
     output wire [    VERTS_A+VERTS_B-4:0] m_verdict_certain,     // the sign is certain
-    output wire                         m_verdict_far,           // see cchip_sat_compare
+    output wire                         m_verdict_clear,           // see cchip_sat_compare
     output wire [                  2:0] m_verdict_axis_negative, // components of the axis: < 0
     output wire [                  2:0] m_verdict_axis_zero,     // = 0
     output wire [                  1:0] m_verdict_axis_largest,  // component of the largest absolute value
@@ -128,7 +128,6 @@ module cchip_sat_pipeline #(
   wire [POINT_W-1:0] select_e_from, select_e_to, select_f_from, select_f_to;
   wire [POINTS*POINT_W-1:0] select_points;
   wire [1:0] select_own;
-  wire select_slab;
   cchip_sat_select #(
       .COORD_W(COORD_W),
       .VERTS_A(VERTS_A),
@@ -143,8 +142,7 @@ module cchip_sat_pipeline #(
       .m_f_from(select_f_from),
       .m_f_to  (select_f_to),
       .m_points(select_points),
-      .m_own   (select_own),
-      .m_slab  (select_slab)
+      .m_own   (select_own)
   );
   wire [1:0] project_own;
   cchip_delay #(
@@ -163,7 +161,6 @@ module cchip_sat_pipeline #(
   wire [          NORM_W-1:0] axis_edge_norm;
   wire [         POINT_W-1:0] axis_reference;
   wire [  POINTS*POINT_W-1:0] axis_points;
-  wire                        axis_slab;
   cchip_sat_axis #(
       .COORD_W  (COORD_W),
       .SUBSTAGES(SUBSTAGES)
@@ -177,14 +174,14 @@ module cchip_sat_pipeline #(
       .m_edge_norm(axis_edge_norm)
   );
   cchip_delay #(
-      .WIDTH ((POINTS + 1) * POINT_W + 1),
+      .WIDTH ((POINTS + 1) * POINT_W),
       .DEPTH (SUBSTAGES),
       .MEMORY(1)
   ) u_points (
       .clk(clk),
       .rst(rst),
-      .d  ({select_slab, select_e_from, select_points}),
-      .q  ({axis_slab, axis_reference, axis_points})
+      .d  ({select_e_from, select_points}),
+      .q  ({axis_reference, axis_points})
   );
 
   // ---- macro stage 3: project
@@ -205,7 +202,6 @@ module cchip_sat_pipeline #(
       .s_error_shift  (axis_error_shift),
       .s_reference    (axis_reference),
       .s_points       (axis_points),
-      .s_slab         (axis_slab),
       .m_projection   (projection),
       .m_sign_bound   (sign_bound),
       .m_gap_bound    (gap_bound),
@@ -232,7 +228,7 @@ module cchip_sat_pipeline #(
       .m_negative   (m_verdict_negative),
       .m_zero       (m_verdict_zero),
       .m_certain    (m_verdict_certain),
-      .m_far        (m_verdict_far)
+      .m_clear      (m_verdict_clear)
   );
   cchip_delay #(
       .WIDTH(8),

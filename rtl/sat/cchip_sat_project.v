@@ -31,10 +31,9 @@ module cchip_sat_project #(
     input  wire [                      2:0] s_error_shift,   // eta <= 2^s_error_shift, 0..4
     input  wire [            3*COORD_W-1:0] s_reference,
     input  wire [     3*POINTS*COORD_W-1:0] s_points,        // p0 in the low bits
-    input  wire                             s_slab,          // see cchip_sat_bound
     output wire [ POINTS*3*(COORD_W+1)-1:0] m_projection,    // p0 in the low bits
-    output wire [POINTS*(2*COORD_W+14)-1:0] m_sign_bound,    // of the error of each projection
-    output wire [           2*COORD_W+13:0] m_gap_bound,     // of the difference of two true projections
+    output wire [POINTS*(2*COORD_W+11)-1:0] m_sign_bound,    // of the error of each projection
+    output wire [           2*COORD_W+10:0] m_gap_bound,     // of the difference of two true projections
     output wire [                      2:0] m_axis_negative, // components of the axis: < 0
     output wire [                      2:0] m_axis_zero,     // = 0
     output wire [                      1:0] m_axis_largest   // component of the largest absolute value
@@ -142,7 +141,6 @@ module cchip_sat_project #(
       .s_edge_norm  (s_edge_norm),
       .s_error_shift(s_error_shift),
       .s_difference (difference_q),
-      .s_slab       (s_slab),
       .m_sign_bound (m_sign_bound),
       .m_gap_bound  (m_gap_bound)
   );

@@ -33,8 +33,7 @@ module cchip_sat_select #(
     output reg  [                    3*COORD_W-1:0] m_f_from,
     output reg  [                    3*COORD_W-1:0] m_f_to,
     output reg  [3*(VERTS_A+VERTS_B-3)*COORD_W-1:0] m_points,  // p0 in the low bits
-    output reg  [                              1:0] m_own,     // slot 0, 1 holds an own point
-    output reg                                      m_slab     // normal of a quad: own points on two planes
+    output reg  [                              1:0] m_own      // slot 0, 1 holds an own point
 );
 
 `include "cchip_defs.vh"
@@ -156,7 +155,6 @@ module cchip_sat_select #(
     m_points <= points;
     m_own[0] <= is_cross || (!is_in_plane && own_quad);
     m_own[1] <= is_cross && VERTS_A == 4;
-    m_slab   <= !is_cross && !is_in_plane && own_quad;
   end
 
 endmodule

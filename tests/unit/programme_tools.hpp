@@ -27,7 +27,7 @@ inline model::Verdict random_verdict(Random& random, int separated_percent, unsi
     v.compare.negative[i] = !v.compare.zero[i] && chance(random, 50);
     v.compare.certain[i] = !v.compare.zero[i] && chance(random, certains);
   }
-  v.compare.far = !v.compare.zero[0] && chance(random, 30);
+  v.compare.clear = chance(random, 60);
   const bool no_normal = chance(random, 10);
   for (std::size_t d = 0; d < 3; ++d) {
     v.axis_zero[d] = no_normal || (zero_axes >> d & 1U) != 0;
@@ -50,7 +50,7 @@ inline unsigned random_zero_axes(Random& random) { return chance(random, 60) ? 0
     (top).PREFIX##negative = static_cast<CData>(bit_vector((v).compare.negative, (points))); \
     (top).PREFIX##zero = static_cast<CData>(bit_vector((v).compare.zero, (points)));        \
     (top).PREFIX##certain = static_cast<CData>(bit_vector((v).compare.certain, (points)));  \
-    (top).PREFIX##far = (v).compare.far ? 1 : 0;                                            \
+    (top).PREFIX##clear = (v).compare.clear ? 1 : 0;                                        \
     (top).PREFIX##axis_negative = static_cast<CData>(bit_vector((v).axis_negative, 3));     \
     (top).PREFIX##axis_zero = static_cast<CData>(bit_vector((v).axis_zero, 3));             \
     (top).PREFIX##axis_largest = static_cast<CData>((v).axis_largest);                      \

@@ -97,8 +97,8 @@ constexpr int proj_abs_w(int w) { return 3 * w + 2; }
 constexpr int norm_w(int w) { return w + 3; }
 /// |axis|_1: <= 6 (2^w - 1)^2 [bit]
 constexpr int axis_norm_w(int w) { return 2 * w + 3; }
-/// error bounds of stage compare: at most 32 (2 |axis|_1 + (|e|_1 + |f|_1 + 64) 2^(w+4)), w >= 4 [bit]
-constexpr int bound_w(int w) { return 2 * w + 14; }
+/// error bounds of stage compare: at most 16 (|axis|_1 + (|e|_1 + |f|_1 + 32) 2^(w+3)) [bit]
+constexpr int bound_w(int w) { return 2 * w + 11; }
 /// points projected for each axis, relative projection; a, b = vertices of A and of B [point]
 constexpr int points(int a, int b) { return a + b - 3; }
 /// registered levels of an adder tree over n <= 16 terms [clock]

@@ -16,22 +16,20 @@ void record_normal_a(Sides& s, const Shape& shape, const Verdict& v) {
   const std::size_t first = shape.points() - shape.b;
   for (std::size_t j = 0; j < shape.b; ++j) {
     s.b[j] = sign_of(v.compare.negative[first + j], v.compare.zero[first + j]);
-    s.certain = s.certain && v.compare.certain[first + j];
   }
+  s.certain = s.certain && v.compare.clear;
   for (std::size_t d = 0; d < 3; ++d) s.normal_a[d] = sign_of(v.axis_negative[d], v.axis_zero[d]);
   s.largest = v.axis_largest;
   s.warped_a = shape.a == 4 && !v.compare.zero[0];
-  s.far = s.far || (shape.a == 4 && v.compare.far);
 }
 void record_normal_b(Sides& s, const Shape& shape, const Verdict& v) {
   const std::size_t first = shape.points() - shape.a;
   for (std::size_t i = 0; i < shape.a; ++i) {
     s.a[i] = sign_of(v.compare.negative[first + i], v.compare.zero[first + i]);
-    s.certain = s.certain && v.compare.certain[first + i];
   }
+  s.certain = s.certain && v.compare.clear;
   for (std::size_t d = 0; d < 3; ++d) s.normal_b[d] = sign_of(v.axis_negative[d], v.axis_zero[d]);
   s.warped_b = shape.b == 4 && !v.compare.zero[0];
-  s.far = s.far || (shape.b == 4 && v.compare.far);
 }
 
 /// First edge k of a primitive with n vertices that leads from the side `from` to its opposite.
@@ -62,7 +60,7 @@ State plan(const Options& o, const Sides& s, int beats) {
   const bool warped = s.warped_a || s.warped_b;
   bool all_zero = true;
   for (std::size_t j = 0; j < o.shape.b; ++j) all_zero = all_zero && s.b[j] == 0;
-  if (warped && o.warped_exact && (s.far || !s.certain)) {
+  if (warped && o.warped_exact && !s.certain) {
     next = tetrahedron(s, beats);
   } else if (!warped && (is_zero(s.normal_a) || is_zero(s.normal_b))) {
     next.programme = Programme::degenerate;
@@ -74,7 +72,7 @@ State plan(const Options& o, const Sides& s, int beats) {
     next.programme = Programme::crossing;
     next.code = axis(AxisClass::cross, crossing_edge(s.a, o.shape.a, true), crossing_edge(s.b, o.shape.b, true));
     next.second = axis(AxisClass::cross, crossing_edge(s.a, o.shape.a, false), crossing_edge(s.b, o.shape.b, false));
-    next.certain = s.certain && !s.far;
+    next.certain = s.certain;
   }
   return next;
 }

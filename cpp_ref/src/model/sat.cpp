@@ -104,7 +104,6 @@ Selection sat_select(const Shape& shape, const AxisCode& code, const GridPrimiti
     return s;
   }
   s.own[0] = true;
-  s.slab = true;
   if (code.k == 0) {
     s.e_from = own.v[0];
     s.e_to = own.v[2];
@@ -137,17 +136,14 @@ Axis sat_axis(const Selection& s, int coord_w) {
 Projections sat_project(const Shape& shape, const Axis& axis, const Selection& selection, int error_shift,
                         int coord_w) {
   Projections out;
-  const bool quads = shape.b == 4;
-  const int shift = quads ? error_shift + 1 : error_shift;
   const std::int64_t axis_norm = norm1(axis.axis);
-  const std::int64_t twice_error = std::int64_t{2} << shift;
-  const std::int64_t slab_norm = selection.slab ? norm1(difference(selection.points[0], selection.e_from)) : 0;
+  const std::int64_t twice_error = std::int64_t{2} << error_shift;
   out.gap_bound = axis_norm << error_shift;
   for (std::size_t i = 0; i < shape.points(); ++i) {
     const Word3 c = difference(selection.points[i], selection.e_from);
     out.p[i] = dot3(c, axis.axis, defs::edge_w(coord_w), defs::axis_w(coord_w));
-    const int n = ceil_log2(norm1(c) + slab_norm + twice_error);
-    out.sign_bound[i] = ((quads ? 2 * axis_norm : axis_norm) + ((axis.edge_norm + twice_error) << n)) << shift;
+    const int n = ceil_log2(norm1(c) + twice_error);
+    out.sign_bound[i] = (axis_norm + ((axis.edge_norm + twice_error) << n)) << error_shift;
   }
   for (std::size_t d = 0; d < 3; ++d) {
     out.axis_negative[d] = axis.axis[d] < 0;
@@ -164,7 +160,9 @@ Comparison sat_compare(const Shape& shape, const AxisBeat& beat, const std::arra
   const int proj_w = defs::proj_w(coord_w);
   bool above = beat.allow_above, below = beat.allow_below;
   bool certain_above = above, certain_below = below;
-  const auto require = [&](std::int64_t d) {
+  bool clear = true;
+  const auto require = [&](std::int64_t d, bool negative) {
+    clear = clear && (negative ? d < -in.gap_bound : d > in.gap_bound);
     above = above && d > 0;
     below = below && d < 0;
     certain_above = certain_above && d > in.gap_bound;
@@ -175,14 +173,14 @@ Comparison sat_compare(const Shape& shape, const AxisBeat& beat, const std::arra
     out.negative[i] = in.p[i] < 0;
     out.zero[i] = in.p[i] == 0;
     out.certain[i] = in.p[i] > in.sign_bound[i] || in.p[i] < -in.sign_bound[i];
-    if (i == 0) out.far = in.p[0] > in.gap_bound || in.p[0] < -in.gap_bound;
     if (i < 2 && own[i]) continue;
-    require(in.p[i]);
-    if (own[0]) require(wrap(bits(in.p[i]) - bits(in.p[0]), proj_w));
-    if (own[1]) require(wrap(bits(in.p[i]) - bits(in.p[1]), proj_w));
+    require(in.p[i], in.p[i] < 0);
+    if (own[0]) require(wrap(bits(in.p[i]) - bits(in.p[0]), proj_w), in.p[i] < 0);
+    if (own[1]) require(wrap(bits(in.p[i]) - bits(in.p[1]), proj_w), in.p[i] < 0);
   }
   out.separated = above || below;
   out.certain_gap = certain_above || certain_below;
+  out.clear = clear;
   return out;
 }
 

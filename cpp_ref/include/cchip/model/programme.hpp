@@ -18,8 +18,7 @@ struct Sides {
   int largest = 0;  ///< component of the largest |nA|
   bool warped_a = false;
   bool warped_b = false;
-  bool far = false;     ///< a warped quad lies further off its plane than rounding explains
-  bool certain = true;  ///< every sign above is that of the unrounded vertices
+  bool certain = true;  ///< every side holds for the unrounded vertices, too
 };
 
 /// State of a pair's programme; travels with its beat.

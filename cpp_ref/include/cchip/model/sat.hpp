@@ -56,8 +56,6 @@ struct Selection {
   Vec3i e_from, e_to, f_from, f_to;
   std::array<Vec3i, max_points> points;
   std::array<bool, 2> own = {false, false};
-  /// A normal of a quad: its vertices lie on two parallel planes, through the reference and through slot 0.
-  bool slab = false;
 };
 /// Outputs of macro stage 2 (cchip_sat_axis).
 struct Axis {
@@ -83,7 +81,8 @@ struct Comparison {
   std::array<bool, max_points> negative = {};
   std::array<bool, max_points> zero = {};
   std::array<bool, max_points> certain = {};  ///< the sign is that of the unrounded determinant
-  bool far = false;  ///< |p[0]| > gap_bound; on a quad's normal: warped by more than rounding explains
+  /// Every other point lies beyond all own points by more than the gap bound, on either side.
+  bool clear = false;
 };
 /// Outputs of cchip_box_compare for one component.
 struct BoxComparison {
@@ -101,7 +100,8 @@ struct Verdict {
 
 Selection sat_select(const Shape& shape, const AxisCode& code, const GridPrimitive& a, const GridPrimitive& b);
 Axis sat_axis(const Selection& s, int coord_w);
-Projections sat_project(const Shape& shape, const Axis& axis, const Selection& selection, int error_shift, int coord_w);
+Projections sat_project(const Shape& shape, const Axis& axis, const Selection& selection, int error_shift,
+                        int coord_w);
 Comparison sat_compare(const Shape& shape, const AxisBeat& beat, const std::array<bool, 2>& own,
                        const Projections& projections, int coord_w);
 BoxComparison box_compare(const Shape& shape, const GridPrimitive& a, const GridPrimitive& b, std::size_t component,
