@@ -203,8 +203,8 @@ def bounds():
             cross = sum(abs(a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2]) for i in range(3))
             n1 = [sum(map(abs, v)) for v in (a, b, c)]
             top = [max(map(abs, v)) for v in (a, b, c)]
-            product = lambda x, y: min(power_above(n1[x]) * power_above(n1[y]), 2 * power_above(top[x]) * power_above(n1[y]),
-                                       2 * power_above(n1[x]) * power_above(top[y]))
+            n1_up, top_up = [list(map(power_above, norms)) for norms in (n1, top)]
+            product = lambda x, y: min(n1_up[x] * n1_up[y], 2 * top_up[x] * n1_up[y], 2 * n1_up[x] * top_up[y])
             exact = cross + (n1[0] + n1[1] + 2) * (n1[2] + 2)
             sums[0] += (cross + (n1[0] + n1[1] + 2) * power_above(n1[2] + 2)) / exact
             sums[1] += (cross + product(1, 2) + product(2, 0) + 2 * sum(n1) + 6) / exact
@@ -307,21 +307,23 @@ def configurations():
     rows = []
     for width, substages, absolute in ((16, 10, 0), (16, 10, 1), (16, 6, 0), (8, 6, 0), (20, 12, 0)):
         for shape, verts in SHAPES.items():
-            settings = (*shape_settings(verts), f"COORD_W={width}", f"SUBSTAGES={substages}", f"ABSOLUTE_PROJECTION={absolute}")
+            settings = (*shape_settings(verts), f"COORD_W={width}", f"SUBSTAGES={substages}",
+                        f"ABSOLUTE_PROJECTION={absolute}")
             exhaustive = pairs(stream("BRIEF=1", *settings))[0]
-            rows.append([shape, width, substages, "absolute" if absolute else "relative", leaf_count(width, shape, absolute),
-                         exhaustive[3], exhaustive[5], f"`--stream BRIEF=1 {' '.join(settings)}`"])
+            rows.append([shape, width, substages, "absolute" if absolute else "relative",
+                         leaf_count(width, shape, absolute), exhaustive[3], exhaustive[5], f"`--stream BRIEF=1 {' '.join(settings)}`"])
     return table(["`cchip_primtest_`", "`COORD_W`", "`SUBSTAGES`", "projection", "18x18 multipliers",
                   "latency, clocks", "clocks per pair", "`scripts/datasheet.py --leaves` and"], rows)
 
 
 def clock_table():
-    rows = [line.split(" ", 2)[1:] for line in stream("VERTS_A=3", "VERTS_B=3").splitlines() if line.startswith("clock ")]
+    lines = stream("VERTS_A=3", "VERTS_B=3").splitlines()
+    rows = [line.split(" ", 2)[1:] for line in lines if line.startswith("clock ")]
     return table(["clock", "what is valid"], rows)
 
 
-BLOCKS = {"widths": lambda: text_table(widths()), "leaves": lambda: text_table(leaves()), "bounds": lambda: text_table(bounds()),
-          "throughput": throughput, "clocks": clock_table}
+BLOCKS = {"widths": lambda: text_table(widths()), "leaves": lambda: text_table(leaves()),
+          "bounds": lambda: text_table(bounds()), "throughput": throughput, "clocks": clock_table}
 
 
 def rewrite(path, name, block):
