@@ -288,7 +288,7 @@ def datasheet_block(module):
 def throughput():
     rows = [[f"SUBSTAGES={n}"] for n in (6, 8, 10, 12)]
     rows += [[f"CONTEXTS={n}"] for n in (1, 2, 3, 4, 5, 8)]
-    rows += [["COORD_W=8", "SUBSTAGES=5"], ["COORD_W=18", "SUBSTAGES=8"], ["COORD_W=20", "SUBSTAGES=12"],
+    rows += [["COORD_W=8", "SUBSTAGES=6"], ["COORD_W=18", "SUBSTAGES=8"], ["COORD_W=20", "SUBSTAGES=12"],
              ["ABSOLUTE_PROJECTION=1"]]
     body = []
     for settings in rows:
