@@ -10,71 +10,181 @@ using namespace cchip::test;
 namespace {
 
 struct Task {
-  bool cross = false;
-  model::Word3 p{};
+  unsigned own = 0;  ///< bit i: slot i holds a point of the axis' own primitive
+  bool allow_above = true;
+  bool allow_below = true;
+  model::Projections in;
 };
 
-/// Eq. 3 of the paper, word for word: closed intervals, disjoint if one ends before the other begins.
-bool intervals_disjoint(const Task& task) {
-  const auto [p0, p1, p2] = task.p;
-  const auto a = task.cross ? std::minmax({std::int64_t{0}, p0}) : std::pair<std::int64_t, std::int64_t>(0, 0);
-  const auto b = task.cross ? std::minmax({p1, p2}) : std::minmax({p0, p1, p2});
-  return a.second < b.first || b.second < a.first;
+/// Eq. 3 of the paper, word for word: closed intervals, each `margin` away from the other, on an allowed side.
+bool apart(const Task& task, int points, std::int64_t margin) {
+  std::pair<std::int64_t, std::int64_t> own(0, 0);  // the reference
+  std::optional<std::pair<std::int64_t, std::int64_t>> other;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(points); ++i) {
+    const std::int64_t p = task.in.p[i];
+    if (i < 2 && (task.own >> i & 1U) != 0) {
+      own = {std::min(own.first, p), std::max(own.second, p)};
+    } else if (other) {
+      other = {std::min(other->first, p), std::max(other->second, p)};
+    } else {
+      other = {p, p};
+    }
+  }
+  return (task.allow_above && other->first - own.second > margin) ||
+         (task.allow_below && own.first - other->second > margin);
 }
 
-/// Every small case (touching by zero, missing by one), then numbers as large as differences allow.
-std::vector<Task> tasks(Random& random, int proj_w) {
-  std::vector<Task> list;
-  for (const bool cross : {false, true}) {
-    for (int i = 0; i < 125; ++i) list.push_back({cross, {i / 25 - 2, i / 5 % 5 - 2, i % 5 - 2}});
+/// Each point of the other set lies beyond all own points by more than the gap bound, above or below.
+bool clear(const Task& task, int points) {
+  std::vector<std::int64_t> own = {0};
+  for (std::size_t i = 0; i < 2; ++i) {
+    if ((task.own >> i & 1U) != 0) own.push_back(task.in.p[i]);
   }
-  for (int i = 0; i < 20000; ++i) list.push_back({chance(random, 50), random_word3(random, proj_w - 1)});
-  const auto large = extremes(proj_w - 1);
-  for (const std::int64_t p : large) {  // sets that touch or miss by one step far from 0
-    for (const int q : {-1, 0, 1}) {
-      list.push_back({true, {p, model::wrap(static_cast<std::uint64_t>(p + q), proj_w - 1), p}});
-      list.push_back({true, {p, p, model::wrap(static_cast<std::uint64_t>(p + q), proj_w - 1)}});
+  const auto [low, high] = std::minmax_element(own.begin(), own.end());
+  for (std::size_t i = 0; i < static_cast<std::size_t>(points); ++i) {
+    if (i < 2 && (task.own >> i & 1U) != 0) continue;
+    if (task.in.p[i] - *high <= task.in.gap_bound && *low - task.in.p[i] <= task.in.gap_bound) return false;
+  }
+  return true;
+}
+
+/// |value| > bound without overflow.
+bool exceeds(std::int64_t value, std::int64_t bound) { return value > bound || value < -bound; }
+
+/// Every small case (touching by zero, missing by one), then large ones at and beside their bounds.
+std::vector<Task> tasks(Random& random, int proj_w, int bound_w, int points) {
+  std::vector<Task> list;
+  const auto n = static_cast<std::size_t>(points);
+  const auto flags = [&](Task& task) {
+    task.own = static_cast<unsigned>(random() % 4);
+    const auto allowed = random() % 6;
+    task.allow_above = allowed != 0;
+    task.allow_below = allowed != 1;
+    if (allowed == 2) task.allow_above = task.allow_below = chance(random, 50);
+  };
+  int cases = 1;
+  for (int i = 0; i < points; ++i) cases *= 5;
+  for (unsigned own = 0; own < 4; ++own) {  // each coordinate -2..2, every set of own points
+    for (int c = 0; c < cases; ++c) {
+      Task task;
+      flags(task);
+      task.own = own;
+      int rest = c;
+      for (std::size_t i = 0; i < n; ++i) {
+        task.in.p[i] = rest % 5 - 2;
+        rest /= 5;
+        task.in.sign_bound[i] = static_cast<std::int64_t>(random() % 4);
+      }
+      task.in.gap_bound = static_cast<std::int64_t>(random() % 4);
+      list.push_back(task);
     }
+  }
+  const std::int64_t bound_max = (std::int64_t{1} << bound_w) - 1;
+  for (int c = 0; c < 20000; ++c) {  // differences of two projections fit
+    Task task;
+    flags(task);
+    const bool one_side = chance(random, 60);
+    const bool near_bound = chance(random, 70);
+    const std::int64_t sign = chance(random, 50) ? 1 : -1;
+    task.in.gap_bound = static_cast<std::int64_t>(random()) & (bound_max >> random() % static_cast<unsigned>(bound_w));
+    if (chance(random, 5)) task.in.gap_bound = bound_max;
+    for (std::size_t i = 0; i < n; ++i) {
+      std::int64_t p = random_word(random, proj_w - 1);
+      if (one_side) p = sign * (p < 0 ? -(p + 1) : p);
+      if (one_side && i < 2 && (task.own >> i & 1U) != 0) p = -p;
+      const std::int64_t base = i >= 2 && (task.own & 2U) != 0   ? task.in.p[1]
+                                : i >= 1 && (task.own & 1U) != 0 ? task.in.p[0]
+                                                                 : 0;
+      if (near_bound && task.in.gap_bound < std::int64_t{1} << (proj_w - 4)) {
+        p = base + sign * (task.in.gap_bound + static_cast<std::int64_t>(random() % 3) - 1);
+        if (p != model::wrap(static_cast<std::uint64_t>(p), proj_w - 1)) p = 0;
+      }
+      task.in.p[i] = p;
+      const std::int64_t size = p < 0 ? -p : p;
+      const std::int64_t beside = size + static_cast<std::int64_t>(random() % 3) - 1;
+      task.in.sign_bound[i] = std::clamp<std::int64_t>(beside, 0, bound_max);
+      if (chance(random, 20)) task.in.sign_bound[i] = static_cast<std::int64_t>(random()) & bound_max;
+    }
+    list.push_back(task);
   }
   return list;
 }
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("cchip_sat_compare: verdict and signs after the generated latency", "[unit][cchip_sat_compare]",
-                        cchip_sat_compare_configs) {
+TEMPLATE_LIST_TEST_CASE("cchip_sat_compare: verdict, signs and their certainty after the generated latency",
+                        "[unit][cchip_sat_compare]", cchip_sat_compare_configs) {
   using Model = typename TestType::Model;
-  for_two_power_ups([](const sim::SimulationOptions& options) {
+  constexpr int points = TestType::POINTS;
+  constexpr int proj_w = TestType::PROJ_W;
+  constexpr int coord_w = proj_w / 3 - 1;
+  static_assert(defs::proj_w(coord_w) == proj_w && defs::bound_w(coord_w) == TestType::BOUND_W,
+                "widths of one COORD_W");
+  const model::Shape shape = points == 3 ? model::Shape{3, 3} : points == 4 ? model::Shape{3, 4} : model::Shape{4, 4};
+  for_two_power_ups([&](const sim::SimulationOptions& options) {
     Random random(options.seed);
-    const std::vector<Task> list = tasks(random, TestType::PROJ_W);
+    const std::vector<Task> list = tasks(random, proj_w, TestType::BOUND_W, points);
     sim::Simulation<Model> simulation(options);
     Model& top = simulation.top();
     model::Delay<std::optional<Task>> delay(static_cast<std::size_t>(defs::compare_latency()));
     std::size_t next = 0;
-    int separated = 0;
+    std::size_t compared = 0;
+    int certain_gaps = 0, clear_on_both_sides = 0, only_separated = 0, at_gap_bound = 0, at_sign_bound = 0, beyond_sign_bound = 0;
     Bench bench(
         [&](const sim::ClockInfo&) {
           const Task& task = list[std::min(next, list.size() - 1)];
-          top.s_cross = task.cross ? 1 : 0;
-          set_word3(top.s_projection, TestType::PROJ_W, task.p);
+          top.s_own = static_cast<CData>(task.own);
+          top.s_allow_above = task.allow_above ? 1 : 0;
+          top.s_allow_below = task.allow_below ? 1 : 0;
+          for (int i = 0; i < points; ++i) {
+            const auto slot = static_cast<std::size_t>(i);
+            sim::set_signed(top.s_projection, proj_w * i, proj_w, task.in.p[slot]);
+            sim::set_bits(top.s_sign_bound, TestType::BOUND_W * i, TestType::BOUND_W,
+                          static_cast<std::uint64_t>(task.in.sign_bound[slot]));
+          }
+          sim::set_bits(top.s_gap_bound, 0, TestType::BOUND_W, static_cast<std::uint64_t>(task.in.gap_bound));
         },
         [&](const sim::ClockInfo&) {
           if (const auto& task = delay.q()) {
-            const model::Verdict v = model::sat_compare(task->cross, task->p, TestType::PROJ_W);
-            expect("m_separated", top.m_separated != 0, v.separated);
-            expect("m_separated", top.m_separated != 0, intervals_disjoint(*task));
-            for (unsigned i = 0; i < 3; ++i) {
+            model::AxisBeat beat;
+            beat.allow_above = task->allow_above;
+            beat.allow_below = task->allow_below;
+            const model::Comparison v =
+                model::sat_compare(shape, beat, {(task->own & 1U) != 0, (task->own & 2U) != 0}, task->in, coord_w);
+            const bool separated = top.m_separated != 0;
+            const bool certain_gap = top.m_certain_gap != 0;
+            expect("m_separated", separated, v.separated);
+            expect("m_certain_gap", certain_gap, v.certain_gap);
+            expect("m_clear", top.m_clear != 0, v.clear);
+            expect("m_separated, intervals", separated, apart(*task, points, 0));
+            expect("m_certain_gap, intervals", certain_gap, apart(*task, points, task->in.gap_bound));
+            expect("m_clear, intervals", top.m_clear != 0, clear(*task, points));
+            for (unsigned i = 0; i < static_cast<unsigned>(points); ++i) {
+              const std::int64_t p = task->in.p[i];
+              const std::int64_t bound = task->in.sign_bound[i];
               expect("m_negative", (top.m_negative >> i & 1) != 0, v.negative[i]);
-              expect("m_negative", (top.m_negative >> i & 1) != 0, task->p[i] < 0);
               expect("m_zero", (top.m_zero >> i & 1) != 0, v.zero[i]);
-              expect("m_zero", (top.m_zero >> i & 1) != 0, task->p[i] == 0);
+              expect("m_certain", (top.m_certain >> i & 1) != 0, v.certain[i]);
+              expect("m_negative, p", (top.m_negative >> i & 1) != 0, p < 0);
+              expect("m_zero, p", (top.m_zero >> i & 1) != 0, p == 0);
+              expect("m_certain, p", (top.m_certain >> i & 1) != 0, exceeds(p, bound));
+              at_sign_bound += p == bound || p == -bound ? 1 : 0;
+              beyond_sign_bound += p == bound + 1 || p == -bound - 1 ? 1 : 0;
             }
-            separated += top.m_separated;
+            certain_gaps += certain_gap ? 1 : 0;
+            clear_on_both_sides += top.m_clear != 0 && !certain_gap && task->allow_above && task->allow_below ? 1 : 0;
+            only_separated += separated && !certain_gap ? 1 : 0;
+            const std::int64_t gap = task->in.gap_bound;
+            at_gap_bound += gap > 0 && apart(*task, points, gap - 1) && !apart(*task, points, gap) ? 1 : 0;
+            ++compared;
           }
           delay.clock(list[std::min(next++, list.size() - 1)]);
         });
     simulation.add(bench);
     simulation.steps(list.size() + static_cast<std::size_t>(defs::compare_latency()));
-    REQUIRE(separated > 1000);
+    REQUIRE(compared == list.size());
+    for (const int count : {certain_gaps, clear_on_both_sides, only_separated, at_gap_bound, at_sign_bound, beyond_sign_bound}) {
+      REQUIRE(count > 100);
+    }
   });
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <models/cchip_sat_pipeline.hpp>
 
-#include "../campaign/pair_source.hpp"
 #include "pair_tools.hpp"
 
 using namespace cchip;
@@ -12,15 +11,70 @@ namespace {
 /// What goes in on one clock; nothing on clocks without a valid beat.
 struct BeatIn {
   std::uint64_t user = 0;
-  AxisCode code;
+  model::AxisBeat beat;
   GridPair pair;
 };
+
+bool in_plane(const AxisCode& code) {
+  return code.cls == AxisClass::in_plane_a || code.cls == AxisClass::in_plane_b;
+}
+
+sim::Int128 along(const WideVector& axis, const Vec3i& to, const Vec3i& from) {
+  return axis[0] * (to.x() - from.x()) + axis[1] * (to.y() - from.y()) + axis[2] * (to.z() - from.z());
+}
+
+/// By definition: all vertices of the other primitive above or below all own ones (or, in-plane, the start of the
+/// edge) by more than `margin` times the axis' 1-norm, on an allowed side.
+bool apart(const BeatIn& in, int margin) {
+  const AxisCode& code = in.beat.code;
+  const bool own_b = code.cls == AxisClass::normal_b || code.cls == AxisClass::in_plane_b;
+  const GridPrimitive& own = own_b ? in.pair.b : in.pair.a;
+  const GridPrimitive& other = own_b ? in.pair.a : in.pair.b;
+  const WideVector axis = axis_of(code, in.pair);
+  sim::Int128 least_gap = 0;
+  for (const sim::Int128 x : axis) least_gap += (x < 0 ? -x : x) * margin;
+  bool above = in.beat.allow_above;
+  bool below = in.beat.allow_below;
+  for (std::size_t i = 0; i < own.vertex_count(); ++i) {
+    if (in_plane(code) && i != code.k) continue;
+    for (std::size_t j = 0; j < other.vertex_count(); ++j) {
+      const sim::Int128 gap = along(axis, other.v[j], own.v[i]);
+      above = above && gap > least_gap;
+      below = below && -gap > least_gap;
+    }
+  }
+  return above || below;
+}
+
+/// By definition: each vertex of the other primitive certainly on one side of all own ones.
+bool clear(const BeatIn& in) {
+  const bool own_b = in.beat.code.cls == AxisClass::normal_b || in.beat.code.cls == AxisClass::in_plane_b;
+  const GridPrimitive& other = own_b ? in.pair.a : in.pair.b;
+  const WideVector axis = axis_of(in.beat.code, in.pair);
+  const GridPrimitive& own = own_b ? in.pair.b : in.pair.a;
+  sim::Int128 least_gap = 0;
+  for (const sim::Int128 x : axis) least_gap += (x < 0 ? -x : x) << model::error_shift(in.beat.err);
+  for (std::size_t j = 0; j < other.vertex_count(); ++j) {
+    bool above = true;
+    bool below = true;
+    for (std::size_t i = 0; i < own.vertex_count(); ++i) {
+      if (in_plane(in.beat.code) && i != in.beat.code.k) continue;
+      const sim::Int128 gap = along(axis, other.v[j], own.v[i]);
+      above = above && gap > least_gap;
+      below = below && -gap > least_gap;
+    }
+    if (!above && !below) return false;
+  }
+  return true;
+}
 
 template <class Config>
 class PipelineBench {
  public:
   using Model = typename Config::Model;
   static constexpr int w = Config::COORD_W;
+  static constexpr int points = defs::points(Config::VERTS_A, Config::VERTS_B);
+  static constexpr model::Shape shape{Config::VERTS_A, Config::VERTS_B};
 
   explicit PipelineBench(const sim::SimulationOptions& options)
       : random_(options.seed),
@@ -34,7 +88,7 @@ class PipelineBench {
   /// Beats to send, one on every clock that has its turn.
   std::function<std::optional<BeatIn>()> source;
   /// Called for each verdict after it was compared.
-  std::function<void(const BeatIn&, bool separated)> on_verdict = [](const BeatIn&, bool) {};
+  std::function<void(const BeatIn&, const model::Verdict&)> on_verdict = [](const BeatIn&, const model::Verdict&) {};
 
  private:
   void drive() {
@@ -42,14 +96,20 @@ class PipelineBench {
     in_ = source();
     top.s_beat_valid = in_ ? 1 : 0;
     sim::set_random(top.s_beat_code, defs::axis_code_w, random_);
+    sim::set_random(top.s_beat_allow_above, 1, random_);
+    sim::set_random(top.s_beat_allow_below, 1, random_);
+    sim::set_random(top.s_beat_error_shift, 3, random_);
     sim::set_random(top.s_beat_user, Config::USER_W, random_);
-    sim::set_random(top.s_beat_a, 9 * w, random_);
-    sim::set_random(top.s_beat_b, 9 * w, random_);
+    sim::set_random(top.s_beat_a, 3 * Config::VERTS_A * w, random_);
+    sim::set_random(top.s_beat_b, 3 * Config::VERTS_B * w, random_);
     if (!in_) return;
     in_->user = sim::get_bits(top.s_beat_user, 0, Config::USER_W);
-    top.s_beat_code = model::to_bits(in_->code);
-    set_triangle(top.s_beat_a, in_->pair.a, w);
-    set_triangle(top.s_beat_b, in_->pair.b, w);
+    top.s_beat_code = model::to_bits(in_->beat.code);
+    top.s_beat_allow_above = in_->beat.allow_above ? 1 : 0;
+    top.s_beat_allow_below = in_->beat.allow_below ? 1 : 0;
+    top.s_beat_error_shift = static_cast<CData>(model::error_shift(in_->beat.err));
+    set_primitive(top.s_beat_a, in_->pair.a, w);
+    set_primitive(top.s_beat_b, in_->pair.b, w);
   }
 
   void sample(const sim::ClockInfo& now) {
@@ -66,20 +126,35 @@ class PipelineBench {
     }
   }
 
-  void compare(const BeatIn& beat) {
+  void compare(const BeatIn& in) {
     Model& top = simulation_.top();
-    const model::Verdict v = model::sat_pipeline(beat.code, beat.pair.a, beat.pair.b, w);
-    expect("m_verdict_user", sim::get_bits(top.m_verdict_user, 0, Config::USER_W), beat.user);
-    expect("m_verdict_separated", top.m_verdict_separated != 0, v.separated);
-    expect("m_verdict_axis_zero", top.m_verdict_axis_zero != 0, v.axis_zero);
-    for (unsigned i = 0; i < 3; ++i) {
-      expect("m_verdict_negative", (top.m_verdict_negative >> i & 1) != 0, v.negative[i]);
-      expect("m_verdict_zero", (top.m_verdict_zero >> i & 1) != 0, v.zero[i]);
+    const model::Verdict v = model::sat_pipeline(shape, in.beat, in.pair.a, in.pair.b, w);
+    expect("m_verdict_user", sim::get_bits(top.m_verdict_user, 0, Config::USER_W), in.user);
+    expect("m_verdict_separated", top.m_verdict_separated != 0, v.compare.separated);
+    expect("m_verdict_certain_gap", top.m_verdict_certain_gap != 0, v.compare.certain_gap);
+    for (unsigned i = 0; i < static_cast<unsigned>(points); ++i) {
+      expect("m_verdict_negative", (top.m_verdict_negative >> i & 1) != 0, v.compare.negative[i]);
+      expect("m_verdict_zero", (top.m_verdict_zero >> i & 1) != 0, v.compare.zero[i]);
+      expect("m_verdict_certain", (top.m_verdict_certain >> i & 1) != 0, v.compare.certain[i]);
     }
-    sim::require(
-        (top.m_verdict_separated != 0) == axis_separates(beat.code, beat.pair),
-        to_words(beat.code) + ": verdict is not that of the projections of all vertices, " + describe(beat.pair));
-    on_verdict(beat, top.m_verdict_separated != 0);
+    expect("m_verdict_clear", top.m_verdict_clear != 0, v.compare.clear);
+    for (unsigned d = 0; d < 3; ++d) {
+      expect("m_verdict_axis_negative", (top.m_verdict_axis_negative >> d & 1) != 0, v.axis_negative[d]);
+      expect("m_verdict_axis_zero", (top.m_verdict_axis_zero >> d & 1) != 0, v.axis_zero[d]);
+    }
+    expect("m_verdict_axis_largest", int{top.m_verdict_axis_largest}, v.axis_largest);
+    expect("m_verdict_box_separated", top.m_verdict_box_separated != 0, v.box.separated);
+    expect("m_verdict_box_certain", top.m_verdict_box_certain != 0, v.box.certain_gap);
+
+    const std::string text = to_words(in.beat.code) + ", " + to_text(in.pair);
+    const bool separated = top.m_verdict_separated != 0;
+    sim::require(separated == apart(in, 0), "verdict is not that of the projections of all vertices: " + text);
+    sim::require((top.m_verdict_certain_gap != 0) == apart(in, 1 << model::error_shift(in.beat.err)),
+                 "certain gap is not that of the projections of all vertices: " + text);
+    sim::require((top.m_verdict_clear != 0) == clear(in), "clear is not that of the projections: " + text);
+    sim::require(!separated || in_plane(in.beat.code) || witness_separates(in.beat.code, in.pair),
+                 "separated by an axis that is no witness: " + text);
+    on_verdict(in, v);
   }
 
   Random random_;
@@ -96,54 +171,67 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_pipeline: every verdict on its clock, through
                         "[unit][cchip_sat_pipeline]", cchip_sat_pipeline_configs) {
   for_two_power_ups([](const sim::SimulationOptions& options) {
     PipelineBench<TestType> bench(options);
-    campaign::PairSource pairs(TestType::COORD_W, options.seed);
+    const model::Shape& shape = bench.shape;
+    const std::vector<AxisCode> codes = axis_codes(shape);
+    const auto classes = campaign::classes_of(kind_of(shape.a), kind_of(shape.b));
+    campaign::PairSource pairs(TestType::COORD_W, options.seed, kind_of(shape.a), kind_of(shape.b));
     Random random(options.seed);
-    int verdicts = 0;
-    int separated = 0;
+    int verdicts = 0, separated = 0, certain_gaps = 0, box_separated = 0, box_certain = 0;
     bench.source = [&]() -> std::optional<BeatIn> {
       if (chance(random, 20)) return std::nullopt;
-      const auto c = campaign::pair_classes[pairs.draw_class()].value;
-      return BeatIn{0, model::exhaustive_axis(static_cast<int>(random() % 11)), pairs.draw(c)};
+      BeatIn in;
+      in.beat.code = codes[random() % codes.size()];
+      in.beat.allow_above = chance(random, 80);
+      in.beat.allow_below = chance(random, 80);
+      in.beat.err = static_cast<int>(random() % (defs::err_unknown + 1));
+      in.pair = pairs.draw(classes[pairs.draw_class()].value);
+      return in;
     };
-    bench.on_verdict = [&](const BeatIn&, bool s) {
+    bench.on_verdict = [&](const BeatIn&, const model::Verdict& v) {
       ++verdicts;
-      separated += s ? 1 : 0;
+      separated += v.compare.separated ? 1 : 0;
+      certain_gaps += v.compare.certain_gap ? 1 : 0;
+      box_separated += v.box.separated ? 1 : 0;
+      box_certain += v.box.certain_gap ? 1 : 0;
     };
     for (int part = 0; part < 4; ++part) {
       bench.simulation().reset(1);
       bench.simulation().steps(3000);
     }
     REQUIRE(verdicts > 8000);
-    REQUIRE(separated > 500);
     REQUIRE(separated < verdicts - 500);
+    REQUIRE(certain_gaps > 50);
+    REQUIRE(separated > certain_gaps + 300);
+    REQUIRE(box_certain > 50);
+    REQUIRE(box_separated > box_certain + 100);
   });
 }
 
-TEMPLATE_LIST_TEST_CASE("cchip_sat_pipeline: each of the eleven axes is the only one that separates some pair",
+TEMPLATE_LIST_TEST_CASE("cchip_sat_pipeline: each axis of the paper is the only one that separates some pair",
                         "[unit][cchip_sat_pipeline]", cchip_sat_pipeline_configs) {
-  const std::uint64_t seed = sim::seed_from_environment();
-  std::vector<GridPair> pairs;
-  for (int beat = 0; beat < defs::exhaustive_beats_tri_tri; ++beat) {
-    pairs.push_back(pair_separated_only_by(model::exhaustive_axis(beat), TestType::COORD_W, seed));
-  }
+  const model::Shape shape{TestType::VERTS_A, TestType::VERTS_B};
+  const std::vector<AxisCode> codes = exhaustive_codes(shape);
+  const std::vector<GridPair> pairs = pairs_separated_by_one(shape, TestType::COORD_W, sim::seed_from_environment());
+  REQUIRE(static_cast<int>(codes.size()) == defs::exhaustive_beats(TestType::VERTS_A, TestType::VERTS_B));
   for_two_power_ups([&](const sim::SimulationOptions& options) {
     PipelineBench<TestType> bench(options);
     std::size_t next = 0;
     bench.source = [&]() -> std::optional<BeatIn> {
-      if (next == 11 * pairs.size()) return std::nullopt;
+      if (next == codes.size() * pairs.size()) return std::nullopt;
       const std::size_t i = next++;
-      return BeatIn{0, model::exhaustive_axis(static_cast<int>(i % 11)), pairs[i / 11]};
+      BeatIn in;
+      in.beat.code = codes[i % codes.size()];
+      in.pair = pairs[i / codes.size()];
+      return in;
     };
     std::vector<AxisCode> separating;
-    bench.on_verdict = [&](const BeatIn& beat, bool separated) {
-      if (separated) separating.push_back(beat.code);
+    bench.on_verdict = [&](const BeatIn& in, const model::Verdict& v) {
+      if (v.compare.separated) separating.push_back(in.beat.code);
     };
     bench.simulation().reset();
     next = 0;
-    bench.simulation().steps(11 * pairs.size() + 40);
-    REQUIRE(separating.size() == pairs.size());
-    for (std::size_t i = 0; i < separating.size(); ++i) {
-      REQUIRE(separating[i] == model::exhaustive_axis(static_cast<int>(i)));
-    }
+    bench.simulation().steps(codes.size() * pairs.size() +
+                             static_cast<std::size_t>(defs::pipe_latency(TestType::SUBSTAGES)));
+    REQUIRE(separating == codes);
   });
 }

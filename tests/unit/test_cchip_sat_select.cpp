@@ -1,78 +1,140 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <models/cchip_sat_select.hpp>
 
-#include "bench.hpp"
+#include "pair_tools.hpp"
 
 using namespace cchip;
 using namespace cchip::test;
 
-TEMPLATE_LIST_TEST_CASE("cchip_sat_select: edges and points of every axis code", "[unit][cchip_sat_select]",
+namespace {
+
+constexpr int max_slots = static_cast<int>(model::max_points);
+
+/// The outputs of the stage.
+struct Selected {
+  model::Word3 e_from, e_to, f_from, f_to;
+  std::vector<model::Word3> points;
+  unsigned own = 0;
+};
+
+template <class Config>
+Selected read(const typename Config::Model& top) {
+  constexpr int w = Config::COORD_W;
+  Selected s{get_word3(top.m_e_from, w), get_word3(top.m_e_to, w), get_word3(top.m_f_from, w),
+             get_word3(top.m_f_to, w),   {},                       top.m_own};
+  for (int i = 0; i < defs::points(Config::VERTS_A, Config::VERTS_B); ++i) {
+    s.points.push_back(get_word3(top.m_points, w, i));
+  }
+  return s;
+}
+
+void compare_with_model(const Selected& s, const model::Selection& expected, const std::string& code) {
+  sim::require(s.e_from == to_word3(expected.e_from) && s.e_to == to_word3(expected.e_to) &&
+                   s.f_from == to_word3(expected.f_from) && s.f_to == to_word3(expected.f_to),
+               "wrong edge for " + code);
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    sim::require(s.points[i] == to_word3(expected.points[i]), "wrong point " + std::to_string(i) + " for " + code);
+  }
+  sim::require(s.own == ((expected.own[0] ? 1U : 0U) | (expected.own[1] ? 2U : 0U)), "wrong m_own for " + code);
+}
+
+WideVector difference(const model::Word3& to, const model::Word3& from) {
+  return {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+}
+sim::Int128 along(const WideVector& axis, const model::Word3& p) {
+  return axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2];
+}
+
+/// Least and greatest projection; starts with one point.
+struct Interval {
+  sim::Int128 low, high;
+  explicit Interval(sim::Int128 x) : low(x), high(x) {}
+  void add(sim::Int128 x) {
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+  friend bool operator==(const Interval& x, const Interval& y) { return x.low == y.low && x.high == y.high; }
+};
+Interval interval_of(const WideVector& axis, const GridPrimitive& p) {
+  Interval all(along(axis, to_word3(p.v[0])));
+  for (std::size_t i = 1; i < p.vertex_count(); ++i) all.add(along(axis, to_word3(p.v[i])));
+  return all;
+}
+
+/// Without the model: e x f is the axis by its definition, and the intervals of what is projected are those of all
+/// vertices (of an in-plane axis the own ones need no projection).
+void check_by_definition(const Selected& s, const AxisCode& code, const GridPair& pair) {
+  const std::string text = to_words(code);
+  const bool own_b = code.cls == AxisClass::normal_b || code.cls == AxisClass::in_plane_b;
+  const bool in_plane = code.cls == AxisClass::in_plane_a || code.cls == AxisClass::in_plane_b;
+  const GridPrimitive& own = own_b ? pair.b : pair.a;
+  const WideVector axis = detail::cross(difference(s.e_to, s.e_from), difference(s.f_to, s.f_from));
+  sim::require(axis == axis_of(code, pair), "axis is not that of " + text);
+
+  Interval own_interval(along(axis, s.e_from));
+  std::optional<Interval> other_interval;
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    const sim::Int128 x = along(axis, s.points[i]);
+    if (i < 2 && (s.own >> i & 1U) != 0) {
+      own_interval.add(x);
+    } else if (other_interval) {
+      other_interval->add(x);
+    } else {
+      other_interval = Interval(x);
+    }
+  }
+  sim::require(other_interval && *other_interval == interval_of(axis, own_b ? pair.a : pair.b),
+               "interval of the other primitive, " + text);
+  if (in_plane) {
+    sim::require(s.e_from == to_word3(own.v[code.k]), "reference of " + text);
+    expect("m_own of an in-plane axis", s.own, 0U);
+  } else {
+    sim::require(own_interval == interval_of(axis, own), "interval of the own primitive, " + text);
+  }
+}
+
+}  // namespace
+
+TEMPLATE_LIST_TEST_CASE("cchip_sat_select: edges, points and flags of every axis code", "[unit][cchip_sat_select]",
                         cchip_sat_select_configs) {
   using Model = typename TestType::Model;
   constexpr int w = TestType::COORD_W;
-  for_two_power_ups([](const sim::SimulationOptions& options) {
+  const model::Shape shape{TestType::VERTS_A, TestType::VERTS_B};
+  const std::vector<AxisCode> codes = axis_codes(shape);
+  static_assert(defs::points(TestType::VERTS_A, TestType::VERTS_B) <= max_slots, "more slots than the model has");
+  for_two_power_ups([&](const sim::SimulationOptions& options) {
     Random random(options.seed);
     sim::Simulation<Model> simulation(options);
     Model& top = simulation.top();
-    model::Delay<std::optional<model::Selection>> delay(static_cast<std::size_t>(defs::select_latency()));
-    GridPrimitive a, b;
-    unsigned next_code = 0;
-    int compared = 0;
+    struct Task {
+      AxisCode code;
+      GridPair pair;
+    };
+    model::Delay<std::optional<Task>> delay(static_cast<std::size_t>(defs::select_latency()));
+    Task in;
+    std::size_t next = 0;
+    std::size_t compared = 0;
     Bench bench(
         [&](const sim::ClockInfo&) {
-          a = random_triangle(random, w);
-          b = random_triangle(random, w);
-          set_triangle(top.s_a, a, w);
-          set_triangle(top.s_b, b, w);
-          top.s_code = static_cast<SData>(next_code++ & 0x1ff);
+          in.code = codes[next++ % codes.size()];
+          in.pair.a = random_primitive(random, shape.a, w);
+          in.pair.b = random_primitive(random, shape.b, w);
+          set_primitive(top.s_a, in.pair.a, w);
+          set_primitive(top.s_b, in.pair.b, w);
+          top.s_code = model::to_bits(in.code);
         },
         [&](const sim::ClockInfo&) {
-          if (const auto expected = delay.q()) {
-            const bool edges = get_word3(top.m_e_from, w) == to_word3(expected->e_from) &&
-                               get_word3(top.m_e_to, w) == to_word3(expected->e_to) &&
-                               get_word3(top.m_f_from, w) == to_word3(expected->f_from) &&
-                               get_word3(top.m_f_to, w) == to_word3(expected->f_to);
-            sim::require(edges, "wrong edge for the code of the clock before " + std::to_string(top.s_code));
-            for (int i = 0; i < 3; ++i) {
-              sim::require(get_word3(top.m_points, w, i) == to_word3(expected->points[static_cast<std::size_t>(i)]),
-                           "wrong point for the code of the clock before " + std::to_string(top.s_code));
-            }
+          if (const auto& task = delay.q()) {
+            const Selected s = read<TestType>(top);
+            compare_with_model(s, model::sat_select(shape, task->code, task->pair.a, task->pair.b),
+                               to_words(task->code));
+            check_by_definition(s, task->code, task->pair);
             ++compared;
           }
-          const AxisCode code = model::axis_code_from_bits(top.s_code);
-          // triangles have edges 0..2; others are not asked for
-          const bool exists = code.cls != AxisClass::cross || (code.k < 3 && code.l < 3);
-          delay.clock(exists ? std::optional(model::sat_select(code, a, b)) : std::nullopt);
+          delay.clock(in);
         });
     simulation.add(bench);
-    simulation.steps(5 * 512);
-    REQUIRE(compared > 4 * 448);
+    simulation.steps(100 * codes.size());
+    REQUIRE(compared == 100 * codes.size() - static_cast<std::size_t>(defs::select_latency()));
   });
-}
-
-TEST_CASE("cchip_sat_select: the points leave out only what the reference stands for", "[unit][cchip_sat_select]") {
-  // Every vertex is a start or end of an edge of its axis or a projected point.
-  sim::Simulation<Vcchip_sat_select> simulation;
-  Vcchip_sat_select& top = simulation.top();
-  constexpr int w = 16;
-  GridPrimitive a, b;
-  for (int i = 0; i < 3; ++i) {
-    a.v[static_cast<std::size_t>(i)] = Vec3i::Constant(i);
-    b.v[static_cast<std::size_t>(i)] = Vec3i::Constant(3 + i);
-  }
-  set_triangle(top.s_a, a, w);
-  set_triangle(top.s_b, b, w);
-  for (int beat = 0; beat < defs::exhaustive_beats_tri_tri; ++beat) {
-    top.s_code = model::to_bits(model::exhaustive_axis(beat));
-    simulation.step();
-    unsigned seen = 0;
-    const auto see = [&](const model::Word3& v) { seen |= 1U << v[0]; };
-    see(get_word3(top.m_e_from, w));
-    see(get_word3(top.m_e_to, w));
-    see(get_word3(top.m_f_from, w));
-    see(get_word3(top.m_f_to, w));
-    for (int i = 0; i < 3; ++i) see(get_word3(top.m_points, w, i));
-    INFO("beat " << beat);
-    CHECK(seen == 0x3f);
-  }
 }
