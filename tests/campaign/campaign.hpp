@@ -160,9 +160,7 @@ inline std::uint64_t pairs_of_part(std::uint64_t pairs, std::uint64_t part) {
 
 class StopWatch {
  public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -34,7 +34,7 @@ constexpr std::array<const char*, 3> offset_kinds = {"anywhere", "at the limit",
 std::vector<Vec3d> edges(const GridPrimitive& p) {
   std::vector<Vec3d> result;
   for (std::size_t i = 0; i < p.vertex_count(); ++i) {
-    for (std::size_t k = i + 1; k < p.vertex_count(); ++k) result.push_back(to_doubles(p.v[k]) - to_doubles(p.v[i]));
+    for (std::size_t k = i + 1; k < p.vertex_count(); ++k) result.emplace_back(to_doubles(p.v[k]) - to_doubles(p.v[i]));
   }
   return result;
 }
@@ -100,10 +100,10 @@ GridPrimitive any_order(GridPrimitive p, int coord_w, Random& random) {
   if (uniform(random, 0, 3) == 0) {
     const Vec3i e = p.v[1] - p.v[0];
     const Vec3i f = p.v[2] - p.v[0];
-    const GridPrimitive dented{Kind::quad, {p.v[0], Vec3i(p.v[0] + 4 * e), Vec3i(p.v[0] + 4 * f), Vec3i(p.v[0] + e + f)}};
-    const bool fits = std::all_of(dented.v.begin(), dented.v.end(), [coord_w](const Vec3i& v) {
-      return v.cwiseAbs().maxCoeff() < 1 << (coord_w - 1);
-    });
+    const GridPrimitive dented{Kind::quad,
+                               {p.v[0], Vec3i(p.v[0] + 4 * e), Vec3i(p.v[0] + 4 * f), Vec3i(p.v[0] + e + f)}};
+    const bool fits = std::all_of(dented.v.begin(), dented.v.end(),
+                                  [coord_w](const Vec3i& v) { return v.cwiseAbs().maxCoeff() < 1 << (coord_w - 1); });
     if (fits) p = dented;
   }
   std::shuffle(p.v.begin(), p.v.end(), random);
@@ -178,14 +178,15 @@ Table<Row> run_part(const ShapeInfo& shape, const CertaintyOptions& options, std
     raw.a = any_order(raw.a, options.coord_w, random);
     raw.b = any_order(raw.b, options.coord_w, random);
     const std::size_t g = group(random);
-    const std::size_t kind = static_cast<std::size_t>(uniform(random, 0, 2));
+    const auto kind = static_cast<std::size_t>(uniform(random, 0, 2));
     const GridPair grid{canonical_quad(raw.a), canonical_quad(raw.b), draw_eta(g, random)};
     const bool grid_hit = exact_intersects(grid);
     const int reach = static_cast<int>(options.offset * grid.eta * fine / 2);
     const GridPair truth = true_pair(raw, kind, reach, grid_hit, random);
     const Row one = judge(shape, grid, grid_hit, truth, options.coord_w);
     if (one.failed()) {
-      table.examples.add(part, fmt::format("{}: {}, true vertices times {}: {}", shape.name, to_text(grid), fine, to_text(truth)));
+      table.examples.add(
+          part, fmt::format("{}: {}, true vertices times {}: {}", shape.name, to_text(grid), fine, to_text(truth)));
     }
     table.rows[g * offset_kinds.size() + kind] += one;
   }
@@ -222,12 +223,12 @@ Int128 determinant(const Vec3l& a, const Vec3l& b, const Vec3l& c) {
   return Int128(n[0]) * c[0] + Int128(n[1]) * c[1] + Int128(n[2]) * c[2];
 }
 
-/// Each component -eta, 0 or eta; or all of them against the sign of `direction`, which changes a . direction most.
-Vec3l change(const Vec3l& direction, int eta, Random& random, bool extremal) {
+/// Each component -error, 0 or error; or all of them against the sign of `direction`, which changes a . direction most.
+Vec3l change(const Vec3l& direction, std::int64_t error, Random& random, bool extremal) {
   Vec3l result;
   for (Eigen::Index d = 0; d < 3; ++d) {
     const int sign = extremal && direction[d] != 0 ? (direction[d] > 0 ? 1 : -1) : uniform(random, -1, 1);
-    result[d] = std::int64_t{eta} * sign;
+    result[d] = error * sign;
   }
   return result;
 }
@@ -245,25 +246,23 @@ BoundRow bound_case(int coord_w, Random& random) {
   const Vec3l a = vector();
   const Vec3l b = vector();
   const Vec3l c = vector();
-  const int eta = uniform(random, 1, 14);
-  const bool quads = uniform(random, 0, 1) == 0;  // their bounds are for twice the error
-  const int error = quads ? 2 * eta : eta;
+  const std::int64_t error = uniform(random, 1, 14);
   const bool extremal = uniform(random, 0, 1) == 0;
   const Vec3l dc = change(a.cross(b), error, random, extremal);
   const Vec3l da = change(b.cross(c + dc), error, random, extremal);
   const Vec3l db = change((c + dc).cross(a + da), error, random, extremal);
   const Int128 changed = abs(determinant(a + da, b + db, c + dc) - determinant(a, b, c));
-  const Int128 bound = Int128(error) * (Int128(a.cross(b).lpNorm<1>()) +
-                                        Int128(a.lpNorm<1>() + b.lpNorm<1>() + 2 * error) * (c.lpNorm<1>() + 2 * error));
+  const Int128 bound =
+      Int128(error) * (Int128(a.cross(b).lpNorm<1>()) +
+                       Int128(a.lpNorm<1>() + b.lpNorm<1>() + 2 * error) * (c.lpNorm<1>() + 2 * error));
   // the hardware's bound: stages 2 and 3 of the model, with the vertices 0, a, b and the point c
   model::Selection s;
   s.e_from = s.f_from = Vec3i::Zero();
   s.e_to = a.cast<std::int32_t>();
   s.f_to = b.cast<std::int32_t>();
   s.points.fill(c.cast<std::int32_t>());
-  const model::Shape shape = quads ? model::Shape{4, 4} : model::Shape{3, 3};
   const model::Projections p =
-      model::sat_project(shape, model::sat_axis(s, coord_w), s, model::error_shift(eta), coord_w);
+      model::sat_project({3, 3}, model::sat_axis(s, coord_w), s, model::error_shift(static_cast<int>(error)), coord_w);
   const auto ratio = [&changed](const Int128& of) { return static_cast<double>(changed) / static_cast<double>(of); };
   return {1, changed > bound || bound > p.sign_bound[0] ? 1U : 0U, ratio(bound), ratio(Int128(p.sign_bound[0]))};
 }
@@ -282,7 +281,7 @@ BoundRow run_bounds(const CertaintyOptions& options) {
 int run_certainty(const CertaintyOptions& options) {
   const StopWatch watch;
   const auto shapes = options.shapes();
-  const std::uint64_t pairs = options.pairs / shapes.size();
+  const std::uint64_t pairs = (options.pairs + shapes.size() - 1) / shapes.size();
   const std::uint64_t parts = part_count(pairs);
   const auto table = sum_of_parts<Table<Row>>(parts * shapes.size(), options.threads, [&](std::uint64_t job) {
     const std::size_t shape = job / parts;
@@ -310,7 +309,8 @@ int run_certainty(const CertaintyOptions& options) {
   fmt::print("\nbounds: {} cases, {} violations, largest change {:.4f} of the exact bound, {:.4f} of the hardware's\n",
              bounds.cases, bounds.violations, bounds.tightest, bounds.rounded);
   fmt::print(
-      "pairs={} contradictions={} false_no={} other_wrong={} bound_cases={} bound_violations={} seconds={:.1f} seed={}\n",
+      "pairs={} contradictions={} false_no={} other_wrong={} bound_cases={} bound_violations={} seconds={:.1f} "
+      "seed={}\n",
       sum.pairs, sum.contradictions, sum.false_no, sum.other, bounds.cases, bounds.violations, watch.seconds(),
       options.seed);
   return sum.failed() || bounds.violations != 0 ? wrong_result : 0;

@@ -82,9 +82,11 @@ int run_classes(const ClassesOptions& options) {
   const bool slow = least < least_axes_per_clock;
   if (slow) fmt::print("axes per waiting clock fall below {}\n", least_axes_per_clock);
   fmt::print(
-      "pairs={} not_as_model={} wrong={} too_many_beats={} least_axes_per_waiting_clock={:.4f} clocks={} seconds={:.1f} "
+      "pairs={} not_as_model={} wrong={} too_many_beats={} least_axes_per_waiting_clock={:.4f} clocks={} "
+      "seconds={:.1f} "
       "seed={}\n",
-      all.pairs, all.not_as_model, all.wrong, all.too_many_beats, least, all.counts.clocks, watch.seconds(), options.seed);
+      all.pairs, all.not_as_model, all.wrong, all.too_many_beats, least, all.counts.clocks, watch.seconds(),
+      options.seed);
   return all.failed() || slow ? wrong_result : 0;
 }
 

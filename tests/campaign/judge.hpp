@@ -22,11 +22,11 @@ inline bool is_general_position(const GridPair& pair) {
 /// What was seen of one class of pairs with eta = 0.
 struct Judgement {
   std::uint64_t pairs = 0;
-  std::uint64_t hits = 0;              ///< by the oracle
-  std::uint64_t special = 0;           ///< coplanar, degenerate or warped
+  std::uint64_t hits = 0;                   ///< by the oracle
+  std::uint64_t special = 0;                ///< coplanar, degenerate or warped
   std::array<std::uint64_t, 2> wrong = {};  ///< grid answer differs, or is not definite
-  std::uint64_t false_no = 0;          ///< wrong "no", both programmes
-  std::uint64_t too_many_beats = 0;    ///< DIRECTED, general position
+  std::uint64_t false_no = 0;               ///< wrong "no", both programmes
+  std::uint64_t too_many_beats = 0;         ///< DIRECTED, general position
   std::array<Spread, 2> beats;
 
   Judgement& operator+=(const Judgement& x) {

@@ -146,8 +146,8 @@ double thickness(const Primitive& p) {
     for (std::size_t k = 0; k < i; ++k) longest = std::max(longest, (p.v[i] - p.v[k]).norm());
   }
   const std::size_t last = p.vertex_count() - 1;
-  const Vec3d normal = p.kind == Kind::tri ? (p.v[1] - p.v[0]).cross(p.v[2] - p.v[0])
-                                           : (p.v[2] - p.v[0]).cross(p.v[last] - p.v[1]);
+  const Vec3d normal =
+      p.kind == Kind::tri ? (p.v[1] - p.v[0]).cross(p.v[2] - p.v[0]) : (p.v[2] - p.v[0]).cross(p.v[last] - p.v[1]);
   return longest == 0 ? 0 : normal.norm() / longest;
 }
 
@@ -202,10 +202,12 @@ void print(const std::string& name, const ShapeInfo& shape, const Measured& m) {
   for (std::size_t w = 0; w < widths.size(); ++w) {
     const WidthRow& r = m.width[w];
     const auto open = [&r](std::size_t mode) { return r.open_no[mode] + r.open_hit[mode]; };
-    fmt::print("{:<20} {:<10} {:>5} {:>9} {:>6.2f} {:>8.2f} {:>8.2f} {:>7.3f} {:>7.3f} {:>8.3f} {:>8.3f} {:>8.3f} {:>8.3f} {:>6}\n",
-               name, shape.name, widths[w], r.pairs, percent(r.hits, r.pairs), percent(r.warped, r.pairs),
-               percent(r.grid_differs, r.pairs), r.beats[0].mean(), r.beats[1].mean(), percent(open(0), r.pairs),
-               percent(open(1), r.pairs), percent(r.open_no[1], r.pairs), percent(r.open_hit[1], r.pairs), r.wrong);
+    fmt::print(
+        "{:<20} {:<10} {:>5} {:>9} {:>6.2f} {:>8.2f} {:>8.2f} {:>7.3f} {:>7.3f} {:>8.3f} {:>8.3f} {:>8.3f} {:>8.3f} "
+        "{:>6}\n",
+        name, shape.name, widths[w], r.pairs, percent(r.hits, r.pairs), percent(r.warped, r.pairs),
+        percent(r.grid_differs, r.pairs), r.beats[0].mean(), r.beats[1].mean(), percent(open(0), r.pairs),
+        percent(open(1), r.pairs), percent(r.open_no[1], r.pairs), percent(r.open_hit[1], r.pairs), r.wrong);
   }
 }
 
@@ -221,9 +223,11 @@ void print_thickness(const Measured& m) {
     const ThicknessRow& t = m.thickness[i];
     if (t.pairs == 0) continue;
     const bool last = i + 1 == m.thickness.size();
-    fmt::print("    {:<9} {:>8.3f} % of the pairs, {:>8.3f} % of the indefinite ones, {:>8.3f} % of these pairs are indefinite\n",
-               last ? "more" : fmt::format("< {:.0f}", thickness_limits[i]), percent(t.pairs, pairs),
-               percent(t.open, open), percent(t.open, t.pairs));
+    fmt::print(
+        "    {:<9} {:>8.3f} % of the pairs, {:>8.3f} % of the indefinite ones, {:>8.3f} % of these pairs are "
+        "indefinite\n",
+        last ? "more" : fmt::format("< {:.0f}", thickness_limits[i]), percent(t.pairs, pairs), percent(t.open, open),
+        percent(t.open, t.pairs));
   }
 }
 
@@ -266,9 +270,10 @@ int run_leaves(const LeavesOptions& options) {
     for (const WidthRow& w : all[s].width) wrong += w.wrong;
   }
   const WidthRow& triangles = all[0].width[default_width];
-  fmt::print("pairs={} wrong={} tri_tri_beats_directed={:.3f} tri_tri_indefinite_percent={:.3f} seconds={:.1f} seed={}\n",
-             pairs, wrong, triangles.beats[1].mean(), percent(triangles.open_no[1] + triangles.open_hit[1], triangles.pairs),
-             watch.seconds(), options.seed);
+  fmt::print(
+      "pairs={} wrong={} tri_tri_beats_directed={:.3f} tri_tri_indefinite_percent={:.3f} seconds={:.1f} seed={}\n",
+      pairs, wrong, triangles.beats[1].mean(), percent(triangles.open_no[1] + triangles.open_hit[1], triangles.pairs),
+      watch.seconds(), options.seed);
   return wrong == 0 ? 0 : wrong_result;
 }
 

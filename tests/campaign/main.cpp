@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Long comparisons of RTL and model with the exact oracle.
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <functional>
+#include <memory>
 
 #include "commands.hpp"
 
@@ -37,12 +39,13 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
     command->callback([&chosen, shared, run] { chosen = [shared, run] { return run(*shared); }; });
     return std::pair(command, shared);
   };
-  const auto [random, r] = add("random", "both programmes of the model against the exact oracle, random pairs",
-                               RandomOptions{}, run_random);
+  const auto [random, r] =
+      add("random", "both programmes of the model against the exact oracle, random pairs", RandomOptions{}, run_random);
   add_pairs(*random, r->pairs, "pairs per shape");
   add_coord_w(*random, r->coord_w);
-  const auto [grid, g] = add("grid", "the same on the grid -1..1: all triangle pairs up to symmetry, samples with quads",
-                             GridOptions{}, run_grid);
+  const auto [grid, g] =
+      add("grid", "the same on the grid -1..1: all triangle pairs up to symmetry, samples with quads", GridOptions{},
+          run_grid);
   add_pairs(*grid, g->pairs, "pairs per shape; 0: all of triangles, none with quads");
   grid->add_option("--rtl", g->rtl, "pairs per shape that also go through the RTL, in both programmes")
       ->capture_default_str();
@@ -59,7 +62,9 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
   add_coord_w(*certainty, e->coord_w);
   const auto [leaves, l] = add("leaves", "leaf pairs of two meshes whose 24-DOPs overlap", LeavesOptions{}, run_leaves);
   leaves->add_option("meshes", l->meshes, "mesh files, each against itself; none: built-in torus, gear, quad torus");
-  leaves->add_option("--poses", l->poses, "poses of the second mesh")->check(CLI::Range(1, 1000))->capture_default_str();
+  leaves->add_option("--poses", l->poses, "poses of the second mesh")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   leaves->add_option("--pairs", l->pairs_max, "most leaf pairs per mesh and pose")->capture_default_str();
   leaves->add_flag("--quads", l->quads, "keep the quads of the files");
 }
@@ -67,7 +72,7 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
 }  // namespace
 }  // namespace cchip::campaign
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app{
       "Campaigns: long comparisons of RTL and model with the exact oracle.\n"
       "Exit codes: 0 nothing wrong, 3 wrong results, 2 the run could not be made, others: wrong arguments."};
@@ -75,10 +80,8 @@ int main(int argc, char** argv) {
   std::function<int()> chosen;
   cchip::campaign::add_commands(app, chosen);
   CLI11_PARSE(app, argc, argv);
-  try {
-    return chosen();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "cchip_campaign: {}\n", error.what());
-    return 2;
-  }
+  return chosen();
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "cchip_campaign: %s\n", error.what());
+  return 2;
 }

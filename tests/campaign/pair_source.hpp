@@ -124,6 +124,7 @@ constexpr int lattice_size_max = 4;
 
 inline std::discrete_distribution<std::size_t> by_weight(const std::vector<PairClassInfo>& classes) {
   std::vector<int> weights;
+  weights.reserve(classes.size());
   for (const PairClassInfo& c : classes) weights.push_back(c.weight);
   return {weights.begin(), weights.end()};
 }
@@ -153,7 +154,7 @@ inline bool PairSource::fits(const GridPair& pair) const {
 
 inline GridPair PairSource::draw(PairClass c) {
   while (true) {
-    const GridPair pair = candidate(c);
+    GridPair pair = candidate(c);
     if (fits(pair)) return pair;
   }
 }
@@ -238,7 +239,8 @@ inline GridPrimitive PairSource::on_lattice(Kind kind, const Lattice& l, int siz
 inline GridPrimitive PairSource::primitive(Kind kind, int range) {
   GridPrimitive p;
   p.kind = kind;
-  if (kind == Kind::quad && std::min(range, greatest_) > 8) return on_lattice(kind, lattice(range), lattice_size(range));
+  if (kind == Kind::quad && std::min(range, greatest_) > 8)
+    return on_lattice(kind, lattice(range), lattice_size(range));
   do {  // planar quads are frequent enough in small ranges
     for (std::size_t i = 0; i < p.vertex_count(); ++i) p.v[i] = point(range);
   } while (is_warped(p));
@@ -370,8 +372,8 @@ inline GridPair PairSource::with_collapsed(int range) {
 }
 
 inline GridPair PairSource::warped() {
-  constexpr std::array<PairClass, 7> bases = {PairClass::general_5,     PairClass::general_100, PairClass::general_full,
-                                              PairClass::near_face,     PairClass::near_edge,   PairClass::shared_vertex,
+  constexpr std::array<PairClass, 7> bases = {PairClass::general_5, PairClass::general_100, PairClass::general_full,
+                                              PairClass::near_face, PairClass::near_edge,   PairClass::shared_vertex,
                                               PairClass::parallel};
   const PairClass base = bases[static_cast<std::size_t>(integer(0, static_cast<int>(bases.size()) - 1))];
   while (true) {

@@ -11,19 +11,21 @@ int run_random(const RandomOptions& options) {
   Judgement all;
   for (const ShapeInfo& shape : options.shapes()) {
     const auto classes = classes_of(shape.a, shape.b);
-    const auto table = sum_of_parts<Table<Judgement>>(part_count(options.pairs), options.threads, [&](std::uint64_t part) {
-      PairSource source(options.coord_w, options.seed_of(part), shape.a, shape.b);
-      Table<Judgement> counted(classes.size());
-      for (std::uint64_t i = 0; i < pairs_of_part(options.pairs, part); ++i) {
-        const std::size_t c = source.draw_class();
-        const GridPair pair = source.draw(classes[c].value);
-        const Judgement one = judge(shape, pair, options.coord_w);
-        if (one.failed()) counted.examples.add(part, fmt::format("{}: {}", classes[c].name, to_text(pair)));
-        counted.rows[c] += one;
-      }
-      return counted;
-    });
+    const auto table =
+        sum_of_parts<Table<Judgement>>(part_count(options.pairs), options.threads, [&](std::uint64_t part) {
+          PairSource source(options.coord_w, options.seed_of(part), shape.a, shape.b);
+          Table<Judgement> counted(classes.size());
+          for (std::uint64_t i = 0; i < pairs_of_part(options.pairs, part); ++i) {
+            const std::size_t c = source.draw_class();
+            const GridPair pair = source.draw(classes[c].value);
+            const Judgement one = judge(shape, pair, options.coord_w);
+            if (one.failed()) counted.examples.add(part, fmt::format("{}: {}", classes[c].name, to_text(pair)));
+            counted.rows[c] += one;
+          }
+          return counted;
+        });
     std::vector<std::string> names;
+    names.reserve(classes.size());
     for (const PairClassInfo& c : classes) names.emplace_back(c.name);
     fmt::print("\n{}\n", shape.name);
     all += print(names, table);

@@ -41,7 +41,8 @@ sim::SimulationOptions simulation_options(std::uint64_t seed) {
 template <class Model>
 class Stream : public RtlStream {
  public:
-  explicit Stream(std::uint64_t seed) : random_(seed), simulation_(simulation_options(seed)), port_(simulation_.top(), width) {
+  explicit Stream(std::uint64_t seed)
+      : random_(seed), simulation_(simulation_options(seed)), port_(simulation_.top(), width) {
     simulation_->s_pair_valid = 0;
     simulation_->m_result_ready = 1;
     port_.put({});
@@ -144,8 +145,8 @@ RtlJudgement judge_rtl(const ShapeInfo& shape, const std::vector<RtlStream::Requ
     if (legal) one.beats.add(got.beats);
     if (one.failed()) {
       std::ostringstream text;
-      text << to_text(request.pair) << ", mode " << request.mode << ": RTL " << got << ", model " << expected << ", exact "
-           << exact[i];
+      text << to_text(request.pair) << ", mode " << request.mode << ": RTL " << got << ", model " << expected
+           << ", exact " << exact[i];
       examples.add(part, text.str());
     }
     sum += one;
