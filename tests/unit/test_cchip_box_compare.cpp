@@ -102,9 +102,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_box_compare: touching is not separated, a gap of 
         },
         [&](const sim::ClockInfo&) {
           if (const auto& task = delay.q()) {
-            const model::BoxComparison expected =
-                model::box_compare(shape, task->pair.a, task->pair.b, static_cast<std::size_t>(task->axis()),
-                                   task->error_shift);
+            const model::BoxComparison expected = model::box_compare(
+                shape, task->pair.a, task->pair.b, static_cast<std::size_t>(task->axis()), task->error_shift);
             expect("m_separated", top.m_separated != 0, expected.separated);
             expect("m_certain_gap", top.m_certain_gap != 0, expected.certain_gap);
             const int error = 1 << task->error_shift;

@@ -113,8 +113,8 @@ void stream(const sim::SimulationOptions& options, std::size_t count, Draw draw,
         if (const auto& task = delay.q()) {
           std::vector<std::int64_t> bounds;
           for (int i = 0; i < Config::POINTS; ++i) {
-            bounds.push_back(static_cast<std::int64_t>(
-                sim::get_bits(top.m_sign_bound, defs::bound_w(w) * i, defs::bound_w(w))));
+            bounds.push_back(
+                static_cast<std::int64_t>(sim::get_bits(top.m_sign_bound, defs::bound_w(w) * i, defs::bound_w(w))));
           }
           check(*task, bounds, static_cast<std::int64_t>(sim::get_bits(top.m_gap_bound, 0, defs::bound_w(w))));
           ++compared;

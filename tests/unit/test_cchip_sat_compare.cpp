@@ -129,7 +129,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_compare: verdict, signs and their certainty a
     model::Delay<std::optional<Task>> delay(static_cast<std::size_t>(defs::compare_latency()));
     std::size_t next = 0;
     std::size_t compared = 0;
-    int certain_gaps = 0, clear_on_both_sides = 0, only_separated = 0, at_gap_bound = 0, at_sign_bound = 0, beyond_sign_bound = 0;
+    int certain_gaps = 0, clear_on_both_sides = 0, only_separated = 0, at_gap_bound = 0, at_sign_bound = 0,
+        beyond_sign_bound = 0;
     Bench bench(
         [&](const sim::ClockInfo&) {
           const Task& task = list[std::min(next, list.size() - 1)];
@@ -172,7 +173,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_compare: verdict, signs and their certainty a
               beyond_sign_bound += p == bound + 1 || p == -bound - 1 ? 1 : 0;
             }
             certain_gaps += certain_gap ? 1 : 0;
-            clear_on_both_sides += top.m_clear != 0 && !certain_gap && task->allow_above && task->allow_below ? 1 : 0;
+            const bool allowed = task->allow_above && task->allow_below;
+            clear_on_both_sides += top.m_clear != 0 && !certain_gap && allowed ? 1 : 0;
             only_separated += separated && !certain_gap ? 1 : 0;
             const std::int64_t gap = task->in.gap_bound;
             at_gap_bound += gap > 0 && apart(*task, points, gap - 1) && !apart(*task, points, gap) ? 1 : 0;
@@ -183,7 +185,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_compare: verdict, signs and their certainty a
     simulation.add(bench);
     simulation.steps(list.size() + static_cast<std::size_t>(defs::compare_latency()));
     REQUIRE(compared == list.size());
-    for (const int count : {certain_gaps, clear_on_both_sides, only_separated, at_gap_bound, at_sign_bound, beyond_sign_bound}) {
+    for (const int count :
+         {certain_gaps, clear_on_both_sides, only_separated, at_gap_bound, at_sign_bound, beyond_sign_bound}) {
       REQUIRE(count > 100);
     }
   });

@@ -15,9 +15,7 @@ struct BeatIn {
   GridPair pair;
 };
 
-bool in_plane(const AxisCode& code) {
-  return code.cls == AxisClass::in_plane_a || code.cls == AxisClass::in_plane_b;
-}
+bool in_plane(const AxisCode& code) { return code.cls == AxisClass::in_plane_a || code.cls == AxisClass::in_plane_b; }
 
 sim::Int128 along(const WideVector& axis, const Vec3i& to, const Vec3i& from) {
   return axis[0] * (to.x() - from.x()) + axis[1] * (to.y() - from.y()) + axis[2] * (to.z() - from.z());

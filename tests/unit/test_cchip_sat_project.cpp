@@ -139,10 +139,9 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_project: projections, bounds and signs after 
   });
 }
 
-using RelativeAndAbsolute =
-    std::tuple<std::pair<cchip_sat_project, cchip_sat_project_abs>,
-               std::pair<cchip_sat_project_p4, cchip_sat_project_p4_abs>,
-               std::pair<cchip_sat_project_p5, cchip_sat_project_p5_abs>>;
+using RelativeAndAbsolute = std::tuple<std::pair<cchip_sat_project, cchip_sat_project_abs>,
+                                       std::pair<cchip_sat_project_p4, cchip_sat_project_p4_abs>,
+                                       std::pair<cchip_sat_project_p5, cchip_sat_project_p5_abs>>;
 
 TEMPLATE_LIST_TEST_CASE("cchip_sat_project: relative and absolute give identical outputs", "[unit][cchip_sat_project]",
                         RelativeAndAbsolute) {

@@ -20,8 +20,12 @@ struct Selected {
 template <class Config>
 Selected read(const typename Config::Model& top) {
   constexpr int w = Config::COORD_W;
-  Selected s{get_word3(top.m_e_from, w), get_word3(top.m_e_to, w), get_word3(top.m_f_from, w),
-             get_word3(top.m_f_to, w),   {},                       top.m_own};
+  Selected s{get_word3(top.m_e_from, w),
+             get_word3(top.m_e_to, w),
+             get_word3(top.m_f_from, w),
+             get_word3(top.m_f_to, w),
+             {},
+             top.m_own};
   for (int i = 0; i < defs::points(Config::VERTS_A, Config::VERTS_B); ++i) {
     s.points.push_back(get_word3(top.m_points, w, i));
   }
