@@ -88,8 +88,7 @@ void print_explanation(std::ostream& out, const DemoCounts& total) {
   fmt::print(out,
              "\npairs: candidate pairs; hits: faces that share a point; axes/pair: axes tested in the pipeline.\n"
              "indefinite: answers that the hardware leaves open because rounding to its grid could have changed them;\n"
-             "the host decided them exactly. A rounded quad is seldom flat: as a thin tetrahedron it needs more axes,\n"
-             "and its hits are seldom certain.\n"
+             "the host decided them exactly.\n"
              "Simulated {} clocks in {:.2f} s: {:.0f} clocks per second.\n",
              total.clocks, total.engine_seconds, static_cast<double>(total.clocks) / total.engine_seconds);
 }
