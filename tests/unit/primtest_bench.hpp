@@ -70,15 +70,15 @@ struct Watch {
   static bool beat(const typename Config::Model&) { throw std::logic_error("Watch: use CCHIP_WATCH"); }
   static bool waits(const typename Config::Model&) { throw std::logic_error("Watch: use CCHIP_WATCH"); }
 };
-#define CCHIP_WATCH(module, name)                                                                                 \
-  template <>                                                                                                     \
-  struct cchip::test::Watch<cchip::test::name> {                                                                  \
-    static bool beat(const V##name& top) {                                                                        \
-      return top.rootp->module##__DOT__u_primtest__DOT__u_controller__DOT__beat_valid_q != 0;                     \
-    }                                                                                                             \
-    static bool waits(const V##name& top) {                                                                       \
-      return top.rootp->module##__DOT__u_primtest__DOT__u_controller__DOT__pair_waits != 0;                       \
-    }                                                                                                             \
+#define CCHIP_WATCH(module, name)                                                             \
+  template <>                                                                                 \
+  struct cchip::test::Watch<cchip::test::name> {                                              \
+    static bool beat(const V##name& top) {                                                    \
+      return top.rootp->module##__DOT__u_primtest__DOT__u_controller__DOT__beat_valid_q != 0; \
+    }                                                                                         \
+    static bool waits(const V##name& top) {                                                   \
+      return top.rootp->module##__DOT__u_primtest__DOT__u_controller__DOT__pair_waits != 0;   \
+    }                                                                                         \
   }
 
 template <class Config>

@@ -40,22 +40,24 @@ inline model::Verdict random_verdict(Random& random, int separated_percent, unsi
 }
 
 /// For random_verdict(): mostly no component.
-inline unsigned random_zero_axes(Random& random) { return chance(random, 60) ? 0 : static_cast<unsigned>(random() % 7); }
+inline unsigned random_zero_axes(Random& random) {
+  return chance(random, 60) ? 0 : static_cast<unsigned>(random() % 7);
+}
 
 /// Writes a verdict to the pins <PREFIX>separated, ..., of which the first `points` slots exist.
-#define CCHIP_PUT_VERDICT(top, PREFIX, v, points)                                           \
-  do {                                                                                      \
-    (top).PREFIX##separated = (v).compare.separated ? 1 : 0;                                \
-    (top).PREFIX##certain_gap = (v).compare.certain_gap ? 1 : 0;                            \
+#define CCHIP_PUT_VERDICT(top, PREFIX, v, points)                                            \
+  do {                                                                                       \
+    (top).PREFIX##separated = (v).compare.separated ? 1 : 0;                                 \
+    (top).PREFIX##certain_gap = (v).compare.certain_gap ? 1 : 0;                             \
     (top).PREFIX##negative = static_cast<CData>(bit_vector((v).compare.negative, (points))); \
-    (top).PREFIX##zero = static_cast<CData>(bit_vector((v).compare.zero, (points)));        \
-    (top).PREFIX##certain = static_cast<CData>(bit_vector((v).compare.certain, (points)));  \
-    (top).PREFIX##clear = (v).compare.clear ? 1 : 0;                                        \
-    (top).PREFIX##axis_negative = static_cast<CData>(bit_vector((v).axis_negative, 3));     \
-    (top).PREFIX##axis_zero = static_cast<CData>(bit_vector((v).axis_zero, 3));             \
-    (top).PREFIX##axis_largest = static_cast<CData>((v).axis_largest);                      \
-    (top).PREFIX##box_separated = (v).box.separated ? 1 : 0;                                \
-    (top).PREFIX##box_certain = (v).box.certain_gap ? 1 : 0;                                \
+    (top).PREFIX##zero = static_cast<CData>(bit_vector((v).compare.zero, (points)));         \
+    (top).PREFIX##certain = static_cast<CData>(bit_vector((v).compare.certain, (points)));   \
+    (top).PREFIX##clear = (v).compare.clear ? 1 : 0;                                         \
+    (top).PREFIX##axis_negative = static_cast<CData>(bit_vector((v).axis_negative, 3));      \
+    (top).PREFIX##axis_zero = static_cast<CData>(bit_vector((v).axis_zero, 3));              \
+    (top).PREFIX##axis_largest = static_cast<CData>((v).axis_largest);                       \
+    (top).PREFIX##box_separated = (v).box.separated ? 1 : 0;                                 \
+    (top).PREFIX##box_certain = (v).box.certain_gap ? 1 : 0;                                 \
   } while (false)
 
 /// The first n flags, number 0 in bit 0.

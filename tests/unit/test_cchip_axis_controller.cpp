@@ -134,7 +134,8 @@ class ControllerBench {
     const auto found = in_flight_.find(returned.beat.context);
     sim::require(found != in_flight_.end() && !found->second.outcome, "a beat too many");
     Pair& pair = found->second;
-    sim::require(returned.beat.state.code == pair.state.code, "beat out of order: " + to_words(returned.beat.state.code));
+    sim::require(returned.beat.state.code == pair.state.code,
+                 "beat out of order: " + to_words(returned.beat.state.code));
     const model::Step step = model::advance(options_, pair.state, returned.verdict, pair.header.err, pair.found);
     if (step.outcome) {
       pair.outcome = step.outcome;

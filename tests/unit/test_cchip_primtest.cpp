@@ -45,7 +45,9 @@ class RequestSource {
   PairRequest draw_legal(int mode) {
     PairRequest request;
     const auto choice = random_() % 100;
-    request.pair = choice < 15 ? through_one_point() : choice < 25 ? anywhere() : pairs_.draw(classes_[pairs_.draw_class()].value);
+    request.pair = choice < 15   ? through_one_point()
+                   : choice < 25 ? anywhere()
+                                 : pairs_.draw(classes_[pairs_.draw_class()].value);
     for (GridPrimitive* p : {&request.pair.a, &request.pair.b}) {
       if (p->kind == Kind::tri) p->v[3] = random_point(random_, config_.coord_w);
     }
@@ -75,7 +77,9 @@ class RequestSource {
     pair.b = around(config_.kind_b, centre, reach);
     return pair;
   }
-  Vec3i inside(int range) { return {pairs_.integer(-range, range), pairs_.integer(-range, range), pairs_.integer(-range, range)}; }
+  Vec3i inside(int range) {
+    return {pairs_.integer(-range, range), pairs_.integer(-range, range), pairs_.integer(-range, range)};
+  }
   GridPrimitive around(Kind kind, const Vec3i& centre, int reach) {
     const Vec3i u = inside(reach);
     const Vec3i v = inside(reach);
@@ -104,7 +108,8 @@ PairResultBeat answer(const PrimtestConfig& config, const PairRequest& request) 
   const model::Outcome o = model::run_programme(config.options(), request.pair, request.mode, config.coord_w);
   const PairResultBeat r{request.tag, o.hit(), o.grid, o.definite, o.witness, o.beats};
   const auto rule = [&](bool holds, const char* text) {
-    sim::require(holds, std::string(text) + ": " + to_text(request.pair) + " mode " + std::to_string(request.mode) + ", model " + sim::to_text(r));
+    sim::require(holds, std::string(text) + ": " + to_text(request.pair) + " mode " + std::to_string(request.mode) +
+                            ", model " + sim::to_text(r));
   };
   const bool exact = exact_intersects(request.pair);
   const bool exactly_decided = config.warped_exact || (request.pair.eta == 0 && r.definite);
@@ -227,10 +232,12 @@ class ModuleBench {
               sim::Pattern source = sim::Pattern::always(), sim::Pattern back_pressure = sim::Pattern::always())
       : pins_owner_(config.simulate(options)),
         pins(*pins_owner_),
-        driver("s_pair", pins.s_pair_valid(), pins.s_pair_ready(), [this](const PairRequest& r) { pins.put(r); },
-               std::move(source)),
-        sink("m_result", pins.m_result_valid(), pins.m_result_ready(), [this] { return pins.outputs().result; },
-             std::move(back_pressure)),
+        driver(
+            "s_pair", pins.s_pair_valid(), pins.s_pair_ready(), [this](const PairRequest& r) { pins.put(r); },
+            std::move(source)),
+        sink(
+            "m_result", pins.m_result_valid(), pins.m_result_ready(), [this] { return pins.outputs().result; },
+            std::move(back_pressure)),
         rules(config, pins, driver, sink),
         exact(config, pins),
         bound_(static_cast<std::uint64_t>(defs::drain_bound(config.substages, config.contexts))),
@@ -383,7 +390,8 @@ void check_extreme_coordinates(const PrimtestConfig& config) {
 void check_only_witness(const PrimtestConfig& config) {
   std::vector<AxisCode> codes = {{AxisClass::normal_a, 0, 0}, {AxisClass::normal_b, 0, 0}};
   for (std::uint8_t k = 0; k < static_cast<std::uint8_t>(config.kind_a); ++k) {
-    for (std::uint8_t l = 0; l < static_cast<std::uint8_t>(config.kind_b); ++l) codes.push_back({AxisClass::cross, k, l});
+    for (std::uint8_t l = 0; l < static_cast<std::uint8_t>(config.kind_b); ++l)
+      codes.push_back({AxisClass::cross, k, l});
   }
   REQUIRE(static_cast<int>(codes.size()) == config.exhaustive_beats());
   std::vector<GridPair> pairs;
@@ -488,7 +496,8 @@ void check_registered_outputs(const PrimtestConfig& config) {
   for_two_power_ups([&](const sim::SimulationOptions& options) {
     RequestSource requests(config, options.seed);
     Random random(options.seed);
-    ModuleBench bench(config, options, sim::Pattern::random(0.3, options.seed), sim::Pattern::random(0.3, options.seed));
+    ModuleBench bench(config, options, sim::Pattern::random(0.3, options.seed),
+                      sim::Pattern::random(0.3, options.seed));
     PrimtestPins& pins = bench.pins;
     int seen_valid = 0;
     // after driver and sink have set the inputs of a clock: other inputs, then theirs again

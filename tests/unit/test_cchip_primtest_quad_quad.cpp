@@ -10,7 +10,7 @@ CCHIP_WATCH(cchip_primtest_quad_quad, qq_w16_s10_rel);
 using namespace cchip;
 using namespace cchip::test;
 
-#define CCHIP_CASE(name, check)                                                                 \
+#define CCHIP_CASE(name, check)                                                                  \
   TEMPLATE_LIST_TEST_CASE("cchip_primtest_quad_quad: " name, "[unit][cchip_primtest_quad_quad]", \
                           cchip_primtest_quad_quad_configs) {                                    \
     check(primtest_config<TestType>(ModuleId::quad_quad));                                       \

@@ -10,10 +10,10 @@ CCHIP_WATCH(cchip_primtest_tri_quad, tq_w16_s10_rel);
 using namespace cchip;
 using namespace cchip::test;
 
-#define CCHIP_CASE(name, check)                                                                 \
+#define CCHIP_CASE(name, check)                                                                \
   TEMPLATE_LIST_TEST_CASE("cchip_primtest_tri_quad: " name, "[unit][cchip_primtest_tri_quad]", \
-                          cchip_primtest_tri_quad_configs) {                                    \
-    check(primtest_config<TestType>(ModuleId::tri_quad));                                       \
+                          cchip_primtest_tri_quad_configs) {                                   \
+    check(primtest_config<TestType>(ModuleId::tri_quad));                                      \
   }
 
 CCHIP_CASE("every output on every clock is the model's", check_every_clock)

@@ -15,10 +15,10 @@ CCHIP_WATCH(cchip_primtest_tri_tri, tt_w16_s12_abs);
 using namespace cchip;
 using namespace cchip::test;
 
-#define CCHIP_CASE(name, check)                                                                 \
+#define CCHIP_CASE(name, check)                                                              \
   TEMPLATE_LIST_TEST_CASE("cchip_primtest_tri_tri: " name, "[unit][cchip_primtest_tri_tri]", \
-                          cchip_primtest_tri_tri_configs) {                                    \
-    check(primtest_config<TestType>(ModuleId::tri_tri));                                       \
+                          cchip_primtest_tri_tri_configs) {                                  \
+    check(primtest_config<TestType>(ModuleId::tri_tri));                                     \
   }
 
 CCHIP_CASE("every output on every clock is the model's", check_every_clock)

@@ -20,7 +20,8 @@ void AxisController::clock(const std::optional<PairHeader>& pair, const std::opt
     const PairHeader& header = side_.at(context);
     const Step step = advance(options_, verdict->beat.state, verdict->verdict, header.err, found_);
     if (step.next) proceeding = Beat{context, *step.next};
-    if (const auto& o = step.outcome) result_ = Result{header.tag, o->hit(), o->grid, o->definite, o->witness, o->beats};
+    if (const auto& o = step.outcome)
+      result_ = Result{header.tag, o->hit(), o->grid, o->definite, o->witness, o->beats};
   }
 
   // the next beat: the present EXHAUSTIVE pair; otherwise pairs that start and pairs that continue take turns
@@ -79,8 +80,8 @@ void Primtest::clock(const std::optional<PairIn>& pair, bool m_result_ready) {
   std::optional<ReturnedBeat> entering;
   if (const auto& beat = controller_.beat()) {
     const Operands& o = operands_.at(beat->context);
-    entering = ReturnedBeat{*beat, sat_pipeline(parameters_.options.shape, beat_of(beat->state, o.err), o.a, o.b,
-                                                parameters_.coord_w)};
+    entering = ReturnedBeat{
+        *beat, sat_pipeline(parameters_.options.shape, beat_of(beat->state, o.err), o.a, o.b, parameters_.coord_w)};
   }
   if (load_) operands_.at(controller_.load_context()) = {load_->a, load_->b, load_->header.err};
   controller_.clock(load_ ? std::optional<PairHeader>(load_->header) : std::nullopt, pipeline_.q());

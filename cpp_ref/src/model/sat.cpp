@@ -155,8 +155,8 @@ Projections sat_project(const Shape& shape, const Axis& axis, const Selection& s
   return out;
 }
 
-Comparison sat_compare(const Shape& shape, const AxisBeat& beat, const std::array<bool, 2>& own,
-                       const Projections& in, int coord_w) {
+Comparison sat_compare(const Shape& shape, const AxisBeat& beat, const std::array<bool, 2>& own, const Projections& in,
+                       int coord_w) {
   const int proj_w = defs::proj_w(coord_w);
   bool above = beat.allow_above, below = beat.allow_below;
   bool certain_above = above, certain_below = below;

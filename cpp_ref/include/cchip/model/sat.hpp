@@ -100,8 +100,7 @@ struct Verdict {
 
 Selection sat_select(const Shape& shape, const AxisCode& code, const GridPrimitive& a, const GridPrimitive& b);
 Axis sat_axis(const Selection& s, int coord_w);
-Projections sat_project(const Shape& shape, const Axis& axis, const Selection& selection, int error_shift,
-                        int coord_w);
+Projections sat_project(const Shape& shape, const Axis& axis, const Selection& selection, int error_shift, int coord_w);
 Comparison sat_compare(const Shape& shape, const AxisBeat& beat, const std::array<bool, 2>& own,
                        const Projections& projections, int coord_w);
 BoxComparison box_compare(const Shape& shape, const GridPrimitive& a, const GridPrimitive& b, std::size_t component,
