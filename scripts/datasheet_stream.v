@@ -19,8 +19,8 @@ module bench;
   parameter integer WARPED_EXACT = 1;
   parameter integer VERTS_A = 3;
   parameter integer VERTS_B = 3;
-  // results measured, after twice CONTEXTS results that are not
-  parameter integer PAIRS = 100;
+  // results measured, after twice CONTEXTS results that are not; pairs of equal length end in groups of CONTEXTS
+  parameter integer PAIRS = 3 * CONTEXTS;
   // 1: random pairs only
   parameter integer BRIEF = 0;
 
