@@ -20,7 +20,7 @@ module bench;
   parameter integer VERTS_A = 3;
   parameter integer VERTS_B = 3;
   // results measured, after twice CONTEXTS results that are not; pairs of equal length end in groups of CONTEXTS
-  parameter integer PAIRS = 3 * CONTEXTS;
+  parameter integer PAIRS = CONTEXTS * (1 + 100 / CONTEXTS);
   // 1: random pairs only
   parameter integer BRIEF = 0;
 
