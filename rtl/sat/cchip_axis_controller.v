@@ -237,7 +237,7 @@ module cchip_axis_controller #(
       .s_negative     (s_verdict_negative),
       .s_zero         (s_verdict_zero),
       .s_certain      (s_verdict_certain),
-      .s_clear          (s_verdict_clear),
+      .s_clear        (s_verdict_clear),
       .s_axis_negative(s_verdict_axis_negative),
       .s_axis_zero    (s_verdict_axis_zero),
       .s_axis_largest (s_verdict_axis_largest),

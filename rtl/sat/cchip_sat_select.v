@@ -131,7 +131,6 @@ module cchip_sat_select #(
 
   // ---- points
   reg [POINTS*POINT_W-1:0] points;
-  integer i;
   always @* begin
     points = {POINTS * POINT_W{1'b0}};
     if (is_cross) begin
@@ -142,8 +141,8 @@ module cchip_sat_select #(
       if (VERTS_B == 4) points[(POINTS-1)*POINT_W+:POINT_W] = pick(b, b_edge[7:6]);
     end else begin
       points[0+:POINT_W] = is_in_plane ? other[0+:POINT_W] : pick(own, normal[9:8]);
-      if (own_b) for (i = 0; i < VERTS_A; i = i + 1) points[(POINTS-VERTS_A+i)*POINT_W+:POINT_W] = a[i*POINT_W+:POINT_W];
-      else for (i = 0; i < VERTS_B; i = i + 1) points[(POINTS-VERTS_B+i)*POINT_W+:POINT_W] = b[i*POINT_W+:POINT_W];
+      if (own_b) points[(POINTS-VERTS_A)*POINT_W+:VERTS_A*POINT_W] = a[0+:VERTS_A*POINT_W];
+      else points[(POINTS-VERTS_B)*POINT_W+:VERTS_B*POINT_W] = b[0+:VERTS_B*POINT_W];
     end
   end
 
