@@ -34,6 +34,7 @@ MUL_WIDE = "cchip_error_mul_wide_A_W_and_B_W_must_be_2_to_52"
 DELAY = "cchip_error_delay_WIDTH_below_1_or_DEPTH_below_0_or_RESET_not_0_or_1"
 MEMORY = "cchip_error_delay_MEMORY_needs_DEPTH_3_and_RESET_0"
 FIFO = "cchip_error_fifo_WIDTH_or_DEPTH_below_1"
+RM_ID = "cchip_error_RM_ID_must_be_0_to_3"
 RAM = "cchip_error_ram_WIDTH_or_DEPTH_below_1_or_ADDR_W_too_small"
 
 # module, parameters, name in the message
@@ -72,6 +73,7 @@ ILLEGAL = [
     ("cchip_ram", {"WIDTH": 0}, RAM),
     ("cchip_ram", {"DEPTH": 0}, RAM),
     ("cchip_ram", {"DEPTH": 17, "ADDR_W": 4}, RAM),
+    *(("cchip_pr_region", {"RM_ID": n}, RM_ID) for n in (-1, 4)),
 ]
 
 # module, parameters
@@ -96,6 +98,7 @@ LEGAL = [
     ("cchip_fifo", {"WIDTH": 1, "DEPTH": 5}),
     ("cchip_ram", {"WIDTH": 1, "DEPTH": 1, "ADDR_W": 1}),
     ("cchip_skid_buffer", {"WIDTH": 1}),
+    *(("cchip_pr_region", {"RM_ID": n, "COORD_W": 4, "SUBSTAGES": smallest_substages(4)}) for n in range(4)),
 ]
 # the tool that takes seconds for a whole module
 LEGAL_FEW = [case for case in LEGAL if "primtest" not in case[0] or case[1].get("COORD_W", 16) == 4 or not case[1]]

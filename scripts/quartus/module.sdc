@@ -1,0 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
+# Clock of a module that is compiled alone: 200 MHz.
+create_clock -name clk -period 5.000 [get_ports clk]
+derive_clock_uncertainty

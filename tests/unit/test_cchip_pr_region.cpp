@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// The partition with each of its personas: it is the module that its RM_ID names, on every clock.
+#include <models/cchip_pr_region.hpp>
+
+#include "../campaign/pair_source.hpp"
+#include "primtest_bench.hpp"
+
+using namespace cchip;
+using namespace cchip::test;
+
+namespace {
+
+/// A handful of pairs of every class, every answer checked with the exact oracle, every clock with the model.
+template <class Config>
+void check_persona(ModuleId id) {
+  REQUIRE(Config::RM_ID == static_cast<int>(id));
+  const PrimtestConfig config = primtest_config<Config>(id);
+  campaign::PairSource source(config.coord_w, sim::seed_from_environment(), config.kind_a, config.kind_b);
+  std::vector<GridPair> pairs;
+  for (const campaign::PairClassInfo& info : campaign::classes_of(config.kind_a, config.kind_b)) {
+    for (int i = 0; i < 3; ++i) pairs.push_back(source.draw(info.value));
+  }
+  REQUIRE(pairs.size() >= 10);
+  for (const PairMode mode : {PairMode::exhaustive, PairMode::directed}) exact_answers(config, pairs, mode);
+}
+
+}  // namespace
+
+TEST_CASE("cchip_pr_region: RM_ID 1 is the triangle-triangle test", "[unit][cchip_pr_region]") {
+  check_persona<region_tri_tri>(ModuleId::tri_tri);
+}
+
+TEST_CASE("cchip_pr_region: RM_ID 2 is the triangle-quad test", "[unit][cchip_pr_region]") {
+  check_persona<region_tri_quad>(ModuleId::tri_quad);
+}
+
+TEST_CASE("cchip_pr_region: RM_ID 3 is the quad-quad test", "[unit][cchip_pr_region]") {
+  check_persona<region_quad_quad>(ModuleId::quad_quad);
+}
+
+TEST_CASE("cchip_pr_region: RM_ID 0 is blank: never ready, never valid", "[unit][cchip_pr_region]") {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    Random random(options.seed);
+    sim::Simulation<region_blank::Model> simulation(options);
+    sim::PairPort<region_blank::Model> port(simulation.top(), region_blank::COORD_W);
+    region_blank::Model& top = simulation.top();
+    for (int clock = 0; clock < 100; ++clock) {
+      port.scramble(random);
+      top.rst = random() & 1;
+      top.s_pair_valid = random() & 1;
+      top.m_result_ready = random() & 1;
+      simulation.settle();
+      REQUIRE(top.s_pair_ready == 0);
+      REQUIRE(top.m_result_valid == 0);
+      REQUIRE(top.idle == 1);
+      REQUIRE(int{top.rm_id} == static_cast<int>(ModuleId::blank));
+      REQUIRE(port.result() == sim::PairResultBeat{});
+      simulation.rise();
+    }
+  });
+}
