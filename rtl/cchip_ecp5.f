@@ -21,4 +21,5 @@ primtest/cchip_primtest.v
 primtest/cchip_primtest_tri_tri.v
 primtest/cchip_primtest_tri_quad.v
 primtest/cchip_primtest_quad_quad.v
+primtest/cchip_primtest_array.v
 primtest/cchip_primtest_blank.v

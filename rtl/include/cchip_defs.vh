@@ -15,6 +15,8 @@
 `define CCHIP_SUBSTAGES_MAX 32
 // largest legal CONTEXTS [pair]
 `define CCHIP_CONTEXTS_MAX 256
+// largest legal LANES [lane]
+`define CCHIP_LANES_MAX 16
 // vertex slots of a primitive in the stream s_pair; triangles use 0..2 [vertex]
 `define CCHIP_VERTICES 4
 // width of s_pair_tag [bit]
@@ -119,6 +121,14 @@
 `define CCHIP_CONTEXTS_DEFAULT(s) (`CCHIP_PAIR_LATENCY((s), 1) + 4)
 // longest time from the last accepted pair to idle = 1 with m_result_ready = 1 [clock]
 `define CCHIP_DRAIN_BOUND(s, contexts) (64 * ((contexts) > `CCHIP_PAIR_LATENCY((s), 1) ? (contexts) : `CCHIP_PAIR_LATENCY((s), 1)))
+// cchip_primtest_array: added to the latency of a pair; two registers from lane to lane [clock]
+`define CCHIP_ARRAY_LATENCY(lanes) (2 * (lanes) + 2)
+// cchip_primtest_array: handshake of m_result to the first possible handshake of s_pair in the same place [clock]
+`define CCHIP_ARRAY_PLACE_LATENCY (3)
+// cchip_primtest_array: most results that leave between a result's arrival at the head of its lane and its own handshake [result]
+`define CCHIP_ARRAY_WAIT_BOUND(lanes) (16 * (lanes))
+// DRAIN_BOUND of cchip_primtest_array [clock]
+`define CCHIP_ARRAY_DRAIN_BOUND(s, contexts, lanes) (`CCHIP_DRAIN_BOUND((s), (contexts)) + `CCHIP_ARRAY_LATENCY((lanes)) + (lanes) * (contexts))
 // axes of the exhaustive programme: nA, nB, every e_k x f_l: 11, 14, 18 (paper, eq. 1) [beat]
 `define CCHIP_EXHAUSTIVE_BEATS(a, b) (2 + (a) * (b))
 

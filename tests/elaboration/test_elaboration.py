@@ -14,6 +14,7 @@ import unittest
 RTL = pathlib.Path(__file__).resolve().parents[2] / "rtl"
 FILES = [str(RTL / line) for line in (RTL / "cchip.f").read_text().split() if line.endswith(".v")]
 TOP = "cchip_primtest_tri_tri"
+ARRAY = "cchip_primtest_array"
 QUADS = ("cchip_primtest_tri_quad", "cchip_primtest_quad_quad")
 
 
@@ -29,6 +30,7 @@ TOO_LONG = "cchip_error_SUBSTAGES_above_32"
 CONTEXTS = "cchip_error_CONTEXTS_must_be_1_to_256"
 PROJECTION = "cchip_error_ABSOLUTE_PROJECTION_must_be_0_or_1"
 WARPED = "cchip_error_WARPED_EXACT_must_be_0_or_1"
+LANES = "cchip_error_LANES_must_be_1_to_16"
 VERTS = "cchip_error_VERTS_must_be_3_3_or_3_4_or_4_4"
 MUL_WIDE = "cchip_error_mul_wide_A_W_and_B_W_must_be_2_to_52"
 DELAY = "cchip_error_delay_WIDTH_below_1_or_DEPTH_below_0_or_RESET_not_0_or_1"
@@ -48,6 +50,9 @@ ILLEGAL = [
     *((TOP, {"ABSOLUTE_PROJECTION": n}, PROJECTION) for n in (-1, 2)),
     *((module, {"WARPED_EXACT": n}, WARPED) for module in QUADS for n in (-1, 2)),
     ("cchip_primtest", {"VERTS_A": 4, "VERTS_B": 3}, VERTS),
+    *((ARRAY, {"LANES": n}, LANES) for n in (-1, 0, 17)),
+    (ARRAY, {"LANES": 2, "VERTS_A": 4, "VERTS_B": 3}, VERTS),
+    *((ARRAY, {"LANES": 2, "CONTEXTS": n}, CONTEXTS) for n in (0, 257)),
     *(("cchip_sat_select", {"VERTS_A": a, "VERTS_B": b}, VERTS) for a, b in ((4, 3), (3, 5), (2, 3))),
     ("cchip_axis_controller", {"CONTEXTS": 0}, CONTEXTS),
     ("cchip_axis_controller", {"CONTEXTS": 257, "CONTEXT_W": 9}, CONTEXTS),
@@ -86,6 +91,9 @@ LEGAL = [
     (QUADS[1], {"COORD_W": 4, "SUBSTAGES": 32, "ABSOLUTE_PROJECTION": 1}),
     *((TOP, {"CONTEXTS": n}) for n in (1, 2, 5, 256)),
     *((module, {}) for module in (TOP, *QUADS, "cchip_primtest_blank")),
+    *((ARRAY, {"LANES": lanes, "CONTEXTS": contexts, "COORD_W": 4, "SUBSTAGES": smallest_substages(4)})
+      for lanes, contexts in ((1, 1), (2, 5), (16, 256))),
+    (ARRAY, {"LANES": 3, "VERTS_A": 4, "VERTS_B": 4, "ABSOLUTE_PROJECTION": 1, "WARPED_EXACT": 0}),
     *((f"cchip_axis_{part}", {"VERTS_A": a, "VERTS_B": b, "WARPED_EXACT": exact})
       for part in ("programme", "controller") for a, b, exact in ((3, 3, 1), (3, 4, 0), (4, 4, 1))),
     ("cchip_axis_controller", {"CONTEXTS": 1, "CONTEXT_W": 1}),

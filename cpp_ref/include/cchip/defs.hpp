@@ -58,6 +58,8 @@ constexpr int substages_default = 10;
 constexpr int substages_max = 32;
 /// largest legal CONTEXTS [pair]
 constexpr int contexts_max = 256;
+/// largest legal LANES [lane]
+constexpr int lanes_max = 16;
 /// vertex slots of a primitive in the stream s_pair; triangles use 0..2 [vertex]
 constexpr int vertices = 4;
 /// width of s_pair_tag [bit]
@@ -133,6 +135,14 @@ constexpr int beat_latency(int s) { return pipe_latency(s) + 4; }
 constexpr int contexts_default(int s) { return pair_latency(s, 1) + 4; }
 /// longest time from the last accepted pair to idle = 1 with m_result_ready = 1 [clock]
 constexpr int drain_bound(int s, int contexts) { return 64 * (contexts > pair_latency(s, 1) ? contexts : pair_latency(s, 1)); }
+/// cchip_primtest_array: added to the latency of a pair; two registers from lane to lane [clock]
+constexpr int array_latency(int lanes) { return 2 * lanes + 2; }
+/// cchip_primtest_array: handshake of m_result to the first possible handshake of s_pair in the same place [clock]
+constexpr int array_place_latency() { return 3; }
+/// cchip_primtest_array: most results that leave between a result's arrival at the head of its lane and its own handshake [result]
+constexpr int array_wait_bound(int lanes) { return 16 * lanes; }
+/// DRAIN_BOUND of cchip_primtest_array [clock]
+constexpr int array_drain_bound(int s, int contexts, int lanes) { return drain_bound(s, contexts) + array_latency(lanes) + lanes * contexts; }
 /// axes of the exhaustive programme: nA, nB, every e_k x f_l: 11, 14, 18 (paper, eq. 1) [beat]
 constexpr int exhaustive_beats(int a, int b) { return 2 + a * b; }
 
