@@ -20,7 +20,7 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap build sim wave test test-long test-debug test-asan lint tidy format campaign campaign-build \
+.PHONY: help bootstrap venv build sim wave test test-long test-debug test-asan lint tidy format campaign campaign-build \
   campaign-grid campaign-classes campaign-certainty campaign-leaves install clean
 
 help: ## list the targets
@@ -29,6 +29,13 @@ help: ## list the targets
 
 bootstrap: ## install the Debian packages that are missing (all other targets do this first)
 	@$(BOOTSTRAP)
+
+venv: build/venv/requirements.txt ## install the tools from PyPI that make lint and make fpga use, below build/venv
+
+build/venv/requirements.txt: scripts/requirements.txt
+	python3 -m venv build/venv || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	build/venv/bin/pip install --quiet --disable-pip-version-check --requirement $<
+	cp $< $@
 
 build: $(RELEASE)/build.ninja ## build everything, optimised
 	cmake --build $(RELEASE) -j $(JOBS)
