@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+`include "cchip_defs.vh"
+`default_nettype none
+// bench_static: two pairs through the serial port of cchip_pr_static, one of them while the region is decoupled.
+// Prints PASS or FAIL.
+module bench_static;
+
+  localparam integer W = `CCHIP_COORD_W_DEFAULT;
+  localparam integer SIDE_W = 4 * 3 * W;
+  localparam integer PAIR_W = `CCHIP_ERR_W + `CCHIP_MODE_W + 2 * SIDE_W + `CCHIP_TAG_W;
+  localparam integer RESULT_W = `CCHIP_BEATS_W + `CCHIP_AXIS_CODE_W + 3 + `CCHIP_TAG_W;
+  localparam integer STATUS_W = 1 + `CCHIP_RM_ID_W + 1 + RESULT_W;
+
+  reg clk, rst, decouple, region_rst, in_bit, in_shift, in_send, out_take, out_shift;
+  wire in_ready, out_bit;
+  reg failed;
+
+  cchip_pr_static dut (
+      .clk       (clk),
+      .rst       (rst),
+      .decouple  (decouple),
+      .region_rst(region_rst),
+      .in_bit    (in_bit),
+      .in_shift  (in_shift),
+      .in_send   (in_send),
+      .in_ready  (in_ready),
+      .out_take  (out_take),
+      .out_shift (out_shift),
+      .out_bit   (out_bit)
+  );
+
+  task tick;
+    begin
+      #5 clk = 1;
+      #5 clk = 0;
+    end
+  endtask
+
+  function [3*W-1:0] point(input integer x, input integer y, input integer z);
+    point = {z[W-1:0], y[W-1:0], x[W-1:0]};
+  endfunction
+
+  // A: triangle in the plane z = 0; B: the same one, its apex `low` and its base 10 high
+  integer i;
+  reg [PAIR_W-1:0] word;
+  task send(input [15:0] tag, input integer low);
+    begin
+      word = {
+        4'd0,
+        `CCHIP_MODE_DIRECTED,
+        {point(0, 0, 0), point(4, 4, low), point(20, 8, 10), point(-8, 20, 10)},
+        {point(0, 0, 0), point(0, 20, 0), point(20, 0, 0), point(-20, -20, 0)},
+        tag
+      };
+      for (i = 0; i < PAIR_W; i = i + 1) begin
+        in_bit   = word[i];
+        in_shift = 1;
+        tick;
+      end
+      in_shift = 0;
+      tick;
+      in_send = 1;
+      tick;
+      in_send = 0;
+      repeat (400) tick;
+    end
+  endtask
+
+  reg [STATUS_W-1:0] status;
+  task take;
+    begin
+      out_take = 1;
+      tick;
+      out_take = 0;
+      tick;
+      tick;
+      for (i = 0; i < STATUS_W; i = i + 1) begin
+        status[i] = out_bit;
+        out_shift = 1;
+        tick;
+        out_shift = 0;
+        tick;
+        tick;
+      end
+    end
+  endtask
+
+  task expect_status(input idle, input [7:0] rm_id, input valid, input hit, input [15:0] tag);
+    begin
+      if (status[STATUS_W-1] !== idle || status[STATUS_W-2-:8] !== rm_id || status[RESULT_W] !== valid
+          || valid && {status[16], status[15:0]} !== {hit, tag}) begin
+        failed = 1;
+        $display("FAIL status %b, expected idle %0d rm_id %0d valid %0d hit %0d tag %0d", status, idle, rm_id, valid, hit,
+                 tag);
+      end
+    end
+  endtask
+
+  initial begin
+    {clk, decouple, region_rst, in_bit, in_shift, in_send, out_take, out_shift, failed} = 0;
+    rst = 1;
+    repeat (5) tick;
+    rst = 0;
+    repeat (5) tick;
+
+    send(16'h1234, -3);
+    take;
+    expect_status(1, `CCHIP_RM_TRI_TRI, 1, 1, 16'h1234);
+    take;
+    expect_status(1, `CCHIP_RM_TRI_TRI, 0, 0, 0);
+
+    decouple = 1;
+    send(16'h4321, 3);
+    take;
+    expect_status(0, 0, 0, 0, 0);
+    region_rst = 1;
+    tick;
+    tick;
+    region_rst = 0;
+    tick;
+    decouple = 0;
+    repeat (400) tick;
+    take;
+    expect_status(1, `CCHIP_RM_TRI_TRI, 1, 0, 16'h4321);
+
+    if (!failed) $display("PASS");
+    $finish;
+  end
+
+endmodule
+`default_nettype wire

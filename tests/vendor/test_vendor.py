@@ -1,0 +1,341 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The scripts for Vivado and Quartus against stand-ins of their commands, the ports of everything that takes turns in
+the partition, and the static side in simulation. Broken copies of the scripts must fail.
+
+usage: test_vendor.py [Ports|Static|Vivado|Quartus|Mutations]...
+
+Environment: TCLSH, YOSYS, IVERILOG, VVP = commands (default: found on PATH)."""
+import functools
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+HERE = pathlib.Path(__file__).resolve().parent
+REGION = "cchip_pr_region"
+STATIC = "scripts/vendor/cchip_pr_static.v"
+VIVADO = "scripts/vivado/dfx.tcl"
+QUARTUS = "scripts/quartus/pr.tcl"
+
+
+def run(variable, default, *arguments, **options):
+    """Exit code and everything that the tool printed."""
+    result = subprocess.run([os.environ.get(variable, default), *map(str, arguments)], stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, text=True, timeout=300, **options)
+    return result.returncode, result.stdout
+
+
+def files(root=ROOT):
+    lines = (root / "rtl/cchip.f").read_text().splitlines()
+    return [root / "rtl" / line.strip() for line in lines if line.strip().endswith(".v")]
+
+
+def personas(root=ROOT):
+    """Name -> RM_ID, from the shared definitions."""
+    values = json.loads((root / "scripts/definitions.json").read_text())["enums"]
+    found = next(e["values"] for e in values if e["prefix"] == "RM")
+    return {v["name"].lower(): v["value"] for v in found}
+
+
+def ports(top, root=ROOT, parameters=(), define=""):
+    """[(name, direction, width)] of a module, by Yosys."""
+    values = "".join(f" -chparam {name} {value}" for name, value in parameters)
+    sources = " ".join(str(name) for name in [*files(root), root / STATIC])
+    with tempfile.TemporaryDirectory() as folder:
+        out = f"{folder}/ports.json"
+        code, text = run("YOSYS", "yosys", "-q", "-p", f"read_verilog -DSYNTHESIS {define} -I{root}/rtl/include {sources};"
+                         f" hierarchy -check -top {top}{values}; delete p:*; write_json {out}")
+        if code:
+            raise AssertionError(text)
+        modules = json.loads(pathlib.Path(out).read_text())["modules"]
+    found = [(name, p["direction"], len(p["bits"])) for name, p in modules[top]["ports"].items()]
+    assert found, f"{top} has no ports"
+    return found
+
+
+def check_ports(root=ROOT):
+    """Personas, black box and the modules behind them have the same ports."""
+    for parameters in ((), (("COORD_W", 8),)):
+        expected = ports("cchip_primtest_tri_tri", root, parameters)
+        for name, rm_id in personas(root).items():
+            for top, extra in ((f"cchip_primtest_{name}", ()), (REGION, (("RM_ID", rm_id),))):
+                found = ports(top, root, (*parameters, *extra))
+                assert found == expected, f"{top} {extra}: {sorted(set(found) ^ set(expected))}"
+        assert ports(REGION, root, parameters, "-DCCHIP_PR_BLACK_BOX") == expected, "black box"
+
+
+@functools.lru_cache(None)
+def port_names():
+    tops = ("cchip_pr_static", "cchip_pr_region", "cchip_primtest_tri_tri")
+    return " ".join(f"{top} {{{' '.join(name for name, _, _ in ports(top))}}}" for top in tops)
+
+
+def tcl(stubs, script, *settings, root=ROOT, incompatible=""):
+    """Runs a script against stand-ins. Returns its calls [[command, argument...]] and the names of the files written."""
+    with tempfile.TemporaryDirectory() as folder:
+        log = pathlib.Path(folder) / "log"
+        environment = {**os.environ, "VENDOR_LOG": str(log), "VENDOR_PORTS": port_names(),
+                       "VENDOR_INCOMPATIBLE": incompatible}
+        code, text = run("TCLSH", "tclsh", HERE / stubs, root / script, f"out={folder}/out", *settings, env=environment,
+                         cwd=folder)
+        if code:
+            raise AssertionError(text)
+        calls = [line.split("\t") for line in log.read_text().splitlines()]
+        return calls, {str(p.relative_to(f"{folder}/out")): p.read_text()
+                       for p in pathlib.Path(f"{folder}/out").rglob("*") if p.is_file()}
+
+
+def after(call, option):
+    return call[call.index(option) + 1]
+
+
+def named(calls, *names):
+    return [call for call in calls if call[0] in names]
+
+
+def check_vivado(root=ROOT, initial="quad_quad"):
+    calls, written = tcl("vivado_stubs.tcl", VIVADO, f"initial={initial}", root=root)
+    all_personas = personas(root)
+    others = [name for name in all_personas if name != initial] + ["greybox"]
+
+    synthesised = [after(call, "-generic") for call in named(calls, "synth_design") if "-generic" in call]
+    assert sorted(synthesised) == sorted(f"RM_ID={n}" for n in all_personas.values()), synthesised
+    verified = named(calls, "pr_verify")
+    assert len(verified) == 1, verified
+    assert pathlib.Path(after(verified[0], "-initial")).stem == f"config_{initial}", verified
+    compared = [pathlib.Path(name).stem for name in after(verified[0], "-additional").split()]
+    assert sorted(compared) == sorted(f"config_{name}" for name in others), compared
+
+    # each configuration holds what its name says, full and partial, as .bit and as .bin
+    for name in [initial, *others]:
+        content = f"persona_{all_personas[name]}" if name in all_personas else "greybox"
+        for kind in ("full", "partial"):
+            for ending in ("bit", "bin"):
+                assert written[f"{kind}_{name}.{ending}"] == content, f"{kind}_{name}.{ending}"
+        for report in ("timing", "utilization"):
+            assert f"config_{name}_{report}.rpt" in written, f"{report} of {name}"
+    partial = [call for call in named(calls, "write_bitstream") if "-cell" in call]
+    assert len(partial) == len(others) + 1 and all(after(call, "-cell") == "u_region" for call in partial), partial
+
+    # the order that the manual asks for
+    order = [call[0] for call in calls]
+    sequence = ["synth_design", "open_checkpoint", "read_checkpoint", "set_property", "create_pblock", "opt_design",
+                "place_design", "route_design", "write_checkpoint", "update_design", "lock_design", "write_checkpoint",
+                "read_checkpoint", "pr_verify", "write_bitstream"]
+    position = -1
+    for command in sequence:
+        assert command in order[position + 1:], f"{command} is missing or too early"
+        position = order.index(command, position + 1)
+    assert order.index("write_bitstream") > order.index("pr_verify")
+    # one lock for all: the static side is routed once
+    assert order.count("lock_design") == 1
+    properties = [call[1] for call in named(calls, "set_property")]
+    for name in ("HD.RECONFIGURABLE", "SNAPPING_MODE", "RESET_AFTER_RECONFIG"):
+        assert properties.count(name) == 1, f"{name} is set {properties.count(name)} times"
+
+
+def check_quartus(root=ROOT, initial="quad_quad"):
+    calls, written = tcl("quartus_stubs.tcl", QUARTUS, f"initial={initial}", root=root)
+    compiled = [re.search(r"-c (\w+)", call[1]).group(1) for call in named(calls, "qexec")]
+    expected = ["cchip_pr"] + [f"cchip_pr_{name}" for name in personas(root)]
+    assert compiled == expected, compiled
+    assert written["output_files/cchip_pr.pr_region.rbf"] == f"RM_ID={personas(root)[initial]}"
+    for name, rm_id in personas(root).items():
+        assert written[f"output_files/cchip_pr_{name}.pr_region.rbf"] == f"RM_ID={rm_id}", name
+    sources = [pathlib.Path(call[-1]) for call in named(calls, "set_global_assignment") if "VERILOG_FILE" in call]
+    assert sources == [*files(root), root / STATIC], sources
+
+
+class Ports(unittest.TestCase):
+    def test_all_personas_have_the_same_ports(self):
+        check_ports()
+
+    def test_shared_personas_are_those_of_the_region(self):
+        self.assertEqual(sorted(personas().values()), [0, 1, 2, 3])
+
+
+class Static(unittest.TestCase):
+    def test_static_side_sends_answers_and_holds(self):
+        with tempfile.TemporaryDirectory() as folder:
+            sources = [*files(), ROOT / STATIC, HERE / "bench_static.v"]
+            self.assertEqual(run("IVERILOG", "iverilog", "-g2005", "-Wall", "-I", ROOT / "rtl/include", "-s",
+                                 "bench_static", "-o", f"{folder}/bench", *sources), (0, ""))
+            self.assertEqual(run("VVP", "vvp", "-n", f"{folder}/bench"), (0, "PASS\n"))
+
+    def test_static_side_is_clean_around_an_empty_cell(self):
+        sources = " ".join(str(name) for name in [*files(), ROOT / STATIC])
+        self.assertEqual(run("YOSYS", "yosys", "-q", "-p",
+                             f"read_verilog -DSYNTHESIS -DCCHIP_PR_BLACK_BOX -I{ROOT}/rtl/include {sources};"
+                             " hierarchy -check -top cchip_pr_static; proc; check -assert; select -assert-none t:$dlatch;"
+                             f" select -assert-count 1 t:{REGION}"), (0, ""))
+
+
+class Vivado(unittest.TestCase):
+    def test_every_configuration_whatever_comes_first(self):
+        for initial in personas():
+            with self.subTest(initial=initial):
+                check_vivado(initial=initial)
+
+    def test_later_families_snap_and_reset_by_themselves(self):
+        calls, _ = tcl("vivado_stubs.tcl", VIVADO, "part=xcku5p-ffvb676-2-e", "regions=X1Y0")
+        self.assertFalse({"SNAPPING_MODE", "RESET_AFTER_RECONFIG"} & {call[1] for call in named(calls, "set_property")})
+        ranges = [after(call, "-add") for call in named(calls, "resize_pblock")]
+        self.assertEqual(ranges[:2], ["SLICE_X10Y0:SLICE_X19Y49", "DSP48E2_X1Y0:DSP48E2_X1Y19"])
+
+    def test_an_incompatible_configuration_gives_no_bitstream(self):
+        with self.assertRaisesRegex(AssertionError, "pr_verify calls 3 of 4 configurations compatible"):
+            tcl("vivado_stubs.tcl", VIVADO, incompatible="config_blank.dcp")
+
+    def test_pins_of_a_board(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pins = pathlib.Path(folder) / "pins.xdc"
+            pins.write_text("create_clock -period 10 [get_ports clk]\n")
+            calls, _ = tcl("vivado_stubs.tcl", VIVADO, f"pins={pins}")
+            self.assertIn(["read_xdc", str(pins)], calls)
+            self.assertNotIn("SEVERITY", [call[1] for call in named(calls, "set_property")])
+        with self.assertRaisesRegex(AssertionError, "no such file"):
+            tcl("vivado_stubs.tcl", VIVADO, f"pins={pins}")
+
+    def test_wrong_settings_are_named(self):
+        for setting in ("initial=hexagon", "colour=red", "part"):
+            with self.assertRaisesRegex(AssertionError, "expected"):
+                tcl("vivado_stubs.tcl", VIVADO, setting)
+
+    def test_one_module_alone(self):
+        calls, written = tcl("vivado_stubs.tcl", "scripts/vivado/synth.tcl", "parameters=COORD_W=18,SUBSTAGES=12")
+        self.assertEqual([call[0] for call in calls if call[0].endswith("_design")],
+                         ["synth_design", "opt_design", "place_design", "phys_opt_design", "route_design"])
+        self.assertEqual(re.findall(r"\t-generic\t(\S+)", "\t".join(named(calls, "synth_design")[0])),
+                         ["COORD_W=18", "SUBSTAGES=12"])
+        self.assertEqual(set(written), {f"cchip_primtest_tri_tri{end}" for end in
+                                        (".dcp", "_utilization.rpt", "_timing.rpt")})
+
+
+class Quartus(unittest.TestCase):
+    def test_every_persona_whatever_the_base(self):
+        for initial in personas():
+            with self.subTest(initial=initial):
+                check_quartus(initial=initial)
+
+    def test_wrong_settings_are_named(self):
+        for setting in ("initial=hexagon", "colour=red", "place=100 60 149 139"):
+            with self.assertRaisesRegex(AssertionError, "expected"):
+                tcl("quartus_stubs.tcl", QUARTUS, setting)
+
+    def test_one_module_alone(self):
+        calls, _ = tcl("quartus_stubs.tcl", "scripts/quartus/synth.tcl", "parameters=COORD_W=18,SUBSTAGES=12")
+        self.assertEqual(len(named(calls, "qexec")), 1)
+        self.assertEqual([call[1:] for call in named(calls, "set_parameter")],
+                         [["-name", "COORD_W", "18"], ["-name", "SUBSTAGES", "12"]])
+
+
+# file, what is there once, what is written instead; None: the file is renamed
+EDITS = [
+    (VIVADO, "read_xdc [cchip::path scripts/vivado/static.xdc]", "read_xdc [cchip::path scripts/vivado/statik.xdc]"),
+    (VIVADO, "  place_design\n  phys_opt_design\n  route_design", "  route_design\n  phys_opt_design\n  place_design"),
+    (VIVADO, "  opt_design\n  place_design", "  place_design\n  opt_design"),
+    (VIVADO, "  update_design -cells $::cell -black_box\n  lock_design -level routing",
+     "  lock_design -level routing\n  update_design -cells $::cell -black_box"),
+    (VIVADO, "lock_design -level routing", "lock_design -level placement"),
+    (VIVADO, "  lock_design -level routing\n", ""),
+    (VIVADO, "  set_property HD.RECONFIGURABLE true [get_cells $::cell]\n", ""),
+    (VIVADO, "    set_property RESET_AFTER_RECONFIG true [get_pblocks pblock_region]\n", ""),
+    (VIVADO, "  floorplan\n", ""),
+    (VIVADO, "{SLICE DSP48 DSP48E2 RAMB18 RAMB36}", "{SLICE RAMB18 RAMB36}"),
+    (VIVADO, "-mode out_of_context -flatten_hierarchy", "-flatten_hierarchy"),
+    (VIVADO, "-generic RM_ID=$id", "-generic RM_ID=1"),
+    (VIVADO, " -verilog_define CCHIP_PR_BLACK_BOX", ""),
+    (VIVADO, "pr_verify -full_check", "pr_verify -check"),
+    (VIVADO, "  foreach name $others {", "  foreach name [lrange $others 1 end] {"),
+    (VIVADO, "    implement_further $name\n    lappend", "    lappend"),
+    (VIVADO, "    implement_further $name\n    lappend further $name", "    implement_further $name"),
+    (VIVADO, "implement_greybox\nlappend", "lappend"),
+    (VIVADO, "verify $initial $further\n", ""),
+    (VIVADO, "verify $initial $further\n", "verify $initial [lrange $further 1 end]\n"),
+    (VIVADO, "-bin_file -cell", "-cell"),
+    (VIVADO, "  write_bitstream -force -bin_file -cell $::cell [in_out partial_$name.bit]\n", ""),
+    (VIVADO, "update_design -cells $::cell -buffer_ports", "update_design -cells $::cell -buffer_port"),
+    ("scripts/vivado/static.xdc", "[get_ports clk]", "[get_ports clock]"),
+    ("scripts/vivado/static.xdc", "", None),
+    ("scripts/vivado/module.xdc", "", None),
+    (STATIC, "", None),
+    ("scripts/vendor/common.tcl", "", None),
+    ("rtl/reconfig/cchip_pr_region.v", "", None),
+    ("rtl/sat/cchip_sat_axis.v", "", None),
+    (QUARTUS, "compile $project\n", ""),
+    (QUARTUS, "foreach name [dict keys $personas] {\n  compile", "foreach name {tri_tri} {\n  compile"),
+    (QUARTUS, "  set_global_assignment -name REVISION_TYPE PR_IMPL\n", ""),
+    (QUARTUS, "-name QDB_FILE_PARTITION", "-name QDB_FILE"),
+    (QUARTUS, "assign_region PARTIAL_RECONFIGURATION_PARTITION ON\n", ""),
+    (QUARTUS, "assign_region ROUTE_REGION [widened $place 1]", "assign_region ROUTE_REGION $place"),
+    (QUARTUS, "  assign_region ENTITY_REBINDING cchip_pr_region\n", ""),
+    (QUARTUS, "  assign_persona $name\n", ""),
+    (QUARTUS, "set_global_assignment -name GENERATE_PR_RBF_FILE ON\n", ""),
+    (QUARTUS, "  export_assignments\n", ""),
+    (QUARTUS, "-to $::instance\n}\n\n# Persona", "-to u_regoin\n}\n\n# Persona"),
+    ("scripts/quartus/static.sdc", "rst decouple", "reset decouple"),
+    ("scripts/quartus/static.sdc", "", None),
+]
+
+# file, what is there once, what is written instead: the ports differ
+PORT_EDITS = [
+    ("rtl/primtest/cchip_primtest_quad_quad.v", "output wire [            5:0] m_result_beats",
+     "output wire [            6:0] m_result_beats"),
+    ("rtl/primtest/cchip_primtest_blank.v", "    output wire                   idle\n",
+     "    output wire                   idle,\n    input  wire                   scan\n"),
+    ("rtl/reconfig/cchip_pr_region.v", "output wire [            7:0] rm_id", "output wire [            6:0] rm_id"),
+]
+
+
+class Mutations(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.root = pathlib.Path(self.folder.name) / "copy"
+        for part in ("rtl", "scripts/vendor", "scripts/vivado", "scripts/quartus"):
+            shutil.copytree(ROOT / part, self.root / part)
+        shutil.copy(ROOT / "scripts/definitions.json", self.root / "scripts")
+
+    def edit(self, name, old, new):
+        path = self.root / name
+        before = path.read_text()
+        if new is None:
+            path.rename(path.with_name("renamed_" + path.name))
+        else:
+            self.assertEqual(before.count(old), 1, f"{name}: '{old}' must be there once")
+            path.write_text(before.replace(old, new))
+        return lambda: (path.with_name("renamed_" + path.name).unlink(missing_ok=True), path.write_text(before))
+
+    def test_the_copy_passes(self):
+        check_vivado(self.root)
+        check_quartus(self.root)
+        check_ports(self.root)
+
+    def test_broken_flows_are_noticed(self):
+        for name, old, new in EDITS:
+            with self.subTest(file=name, old=old, new=new):
+                restore = self.edit(name, old, new)
+                checks = {VIVADO: [check_vivado], QUARTUS: [check_quartus]}.get(name)
+                if not checks:
+                    checks = [check for check, folder in ((check_vivado, "vivado"), (check_quartus, "quartus"))
+                              if folder in name] or [check_vivado, check_quartus]
+                for check in checks:
+                    self.assertRaises((AssertionError, KeyError), check, self.root)
+                restore()
+
+    def test_different_ports_are_noticed(self):
+        for name, old, new in PORT_EDITS:
+            with self.subTest(file=name):
+                restore = self.edit(name, old, new)
+                self.assertRaises(AssertionError, check_ports, self.root)
+                restore()
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
