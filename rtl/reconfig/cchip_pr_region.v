@@ -46,8 +46,10 @@ module cchip_pr_region #(
 );
 
 `ifndef CCHIP_PR_BLACK_BOX
+  localparam [31:0] RM = RM_ID;
+
   generate
-    if (RM_ID == {24'd0, `CCHIP_RM_BLANK}) begin : gen_blank
+    if (RM == {24'd0, `CCHIP_RM_BLANK}) begin : gen_blank
       cchip_primtest_blank #(
           .COORD_W(COORD_W)
       ) u_persona (
@@ -71,7 +73,7 @@ module cchip_pr_region #(
           .rm_id            (rm_id),
           .idle             (idle)
       );
-    end else if (RM_ID == {24'd0, `CCHIP_RM_TRI_TRI}) begin : gen_tri_tri
+    end else if (RM == {24'd0, `CCHIP_RM_TRI_TRI}) begin : gen_tri_tri
       cchip_primtest_tri_tri #(
           .COORD_W            (COORD_W),
           .SUBSTAGES          (SUBSTAGES),
@@ -99,7 +101,7 @@ module cchip_pr_region #(
           .rm_id            (rm_id),
           .idle             (idle)
       );
-    end else if (RM_ID == {24'd0, `CCHIP_RM_TRI_QUAD}) begin : gen_tri_quad
+    end else if (RM == {24'd0, `CCHIP_RM_TRI_QUAD}) begin : gen_tri_quad
       cchip_primtest_tri_quad #(
           .COORD_W            (COORD_W),
           .SUBSTAGES          (SUBSTAGES),
@@ -127,7 +129,7 @@ module cchip_pr_region #(
           .rm_id            (rm_id),
           .idle             (idle)
       );
-    end else if (RM_ID == {24'd0, `CCHIP_RM_QUAD_QUAD}) begin : gen_quad_quad
+    end else if (RM == {24'd0, `CCHIP_RM_QUAD_QUAD}) begin : gen_quad_quad
       cchip_primtest_quad_quad #(
           .COORD_W            (COORD_W),
           .SUBSTAGES          (SUBSTAGES),
