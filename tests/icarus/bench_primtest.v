@@ -66,7 +66,7 @@ module bench_primtest;
   reg [VECTOR_W-1:0] vector;
   reg [8*256-1:0] vectors_file, lines_file;
   reg [7:0] expected_rm_id;
-  integer pairs, lines, clock, reset_left, next, results, inside, quiet, silent;
+  integer pairs, lines, clock, reset_left, next, results, held, quiet, silent;
   reg [31:0] random;
   reg steady, offer, ready, accepted, done, failed;
 
@@ -129,8 +129,8 @@ module bench_primtest;
       silent = silent + 1;
       if (rst) begin
         stalled = 0;
-        if (inside > 0) for (i = 0; i < TAGS; i = i + 1) waiting[i] = 0;
-        inside = 0;
+        if (held > 0) for (i = 0; i < TAGS; i = i + 1) waiting[i] = 0;
+        held = 0;
       end else begin
         if (^{s_pair_ready, m_result_valid, idle, rm_id} === 1'bx) fail("unknown value on an output");
         if (rm_id !== expected_rm_id) fail("rm_id is not that of the vectors");
@@ -156,7 +156,7 @@ module bench_primtest;
       else if (result[RESULT_W+15:16] !== expected[m_result_tag]) fail_by_tag("wrong result");
       if (idle !== 1'b0) fail("idle with a pair inside");
       waiting[m_result_tag] = 0;
-      inside  = inside - 1;
+      held    = held - 1;
       results = results + 1;
       silent  = 0;
     end
@@ -168,7 +168,7 @@ module bench_primtest;
       if (waiting[s_pair_tag]) fail("two pairs with one tag in the vectors");
       expected[s_pair_tag] = vector[PAIR_W+:RESULT_W];
       waiting[s_pair_tag] = 1;
-      inside = inside + 1;
+      held = held + 1;
       next = next + 1;
       accepted = 1;
       silent = 0;
@@ -199,7 +199,7 @@ module bench_primtest;
       reset_left = 4;
       next = 0;
       results = 0;
-      inside = 0;
+      held = 0;
       quiet = 0;
       silent = 0;
       stalled = 0;
@@ -219,7 +219,7 @@ module bench_primtest;
       #4;
       clock = clock + 1;
       // the end: everything sent and answered, and quiet for a while
-      quiet = next == pairs && inside == 0 ? quiet + 1 : 0;
+      quiet = next == pairs && held == 0 ? quiet + 1 : 0;
       if (quiet == 100) begin
         if (idle !== 1'b1 && !rst) fail("not idle at the end");
         done = 1;
