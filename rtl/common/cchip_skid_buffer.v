@@ -7,7 +7,7 @@
 //   cuts         every path: s_ready, m_valid and m_data are flip-flops
 //   reset        empties the buffer; s_ready and m_valid are 0 while rst is 1
 module cchip_skid_buffer #(
-    // width of the payload, bit
+    // width of the payload, bit, >= 1
     parameter integer WIDTH = 8
 ) (
     input  wire             clk,
@@ -19,6 +19,12 @@ module cchip_skid_buffer #(
     input  wire             m_ready,
     output wire [WIDTH-1:0] m_data
 );
+
+  generate
+    if (WIDTH < 1) begin : gen_illegal
+      cchip_error_skid_buffer_WIDTH_below_1 u_error ();
+    end
+  endgenerate
 
   reg              ready_q;  // the skid register is empty
   reg              skid_valid_q;

@@ -36,6 +36,7 @@ MUL_WIDE = "cchip_error_mul_wide_A_W_and_B_W_must_be_2_to_52"
 DELAY = "cchip_error_delay_WIDTH_below_1_or_DEPTH_below_0_or_RESET_not_0_or_1"
 MEMORY = "cchip_error_delay_MEMORY_needs_DEPTH_3_and_RESET_0"
 FIFO = "cchip_error_fifo_WIDTH_or_DEPTH_below_1"
+SKID = "cchip_error_skid_buffer_WIDTH_below_1"
 RM_ID = "cchip_error_RM_ID_must_be_0_to_3"
 RAM = "cchip_error_ram_WIDTH_or_DEPTH_below_1_or_ADDR_W_too_small"
 
@@ -75,6 +76,7 @@ ILLEGAL = [
     ("cchip_delay", {"MEMORY": 2, "DEPTH": 5}, MEMORY),
     ("cchip_fifo", {"WIDTH": 0}, FIFO),
     ("cchip_fifo", {"DEPTH": 0}, FIFO),
+    *(("cchip_skid_buffer", {"WIDTH": n}, SKID) for n in (-1, 0)),
     ("cchip_ram", {"WIDTH": 0}, RAM),
     ("cchip_ram", {"DEPTH": 0}, RAM),
     ("cchip_ram", {"DEPTH": 17, "ADDR_W": 4}, RAM),
