@@ -23,3 +23,4 @@ primtest/cchip_primtest_tri_quad.v
 primtest/cchip_primtest_quad_quad.v
 primtest/cchip_primtest_array.v
 primtest/cchip_primtest_blank.v
+reconfig/cchip_pr_region.v
