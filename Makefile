@@ -7,6 +7,8 @@ PREFIX ?= /usr/local
 DESTDIR ?=
 PAIRS ?= 100000000
 SIM_ARGS ?=
+# as in: make export EXPORT_ARGS="--mhz 200 cchip_primtest_tri_tri"
+EXPORT_ARGS ?=
 # meshes of campaign-leaves, each against itself (Debian: assimp-testmodels)
 MODELS ?= /usr/share/assimp/models
 LEAVES ?= $(addprefix $(MODELS)/,OBJ/WusonOBJ.obj OBJ/spider.obj STL/Spider_binary.stl COB/dwarf.cob Collada/duck.dae \
@@ -21,7 +23,7 @@ export JOBS
 
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv build sim wave test test-long test-debug test-asan lint tidy format campaign campaign-build \
-  campaign-grid campaign-classes campaign-certainty campaign-leaves install clean
+  campaign-grid campaign-classes campaign-certainty campaign-leaves export install clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
@@ -94,6 +96,10 @@ tidy: build ## clang-tidy over our own C++ (slow)
 
 format: ## format our own C++
 	git ls-files -z --cached --others --exclude-standard '*.cpp' '*.hpp' ':!cpp_ref/include/cchip/defs.hpp' | xargs -0 -r clang-format -i
+
+export: $(RELEASE)/build.ninja ## one Verilog file per top with constraints, datasheet and bench in build/export (EXPORT_ARGS=--help)
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip_pair_vectors
+	scripts/export.py $(EXPORT_ARGS)
 
 install: $(RELEASE)/build.ninja ## install command, libraries, headers and RTL below DESTDIR/PREFIX
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip cchip_ref cchip_model

@@ -16,7 +16,7 @@ using namespace cchip;
 using campaign::ShapeInfo;
 
 /// Pairs that follow each other in one mix of programmes.
-constexpr int run_length = 250;
+constexpr int run_length = 100;
 constexpr int tags = 1 << defs::tag_w;
 
 const ShapeInfo& find_shape(std::string kind) {

@@ -1,0 +1,255 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Writes folders to hand to an FPGA project: one self-contained Verilog file per top module and all that goes with it.
+
+usage: export.py [--out FOLDER] [--vectors PROGRAM] [--pairs N] [--seed N] [--mhz F] [TOP...]
+  --out FOLDER       default build/export; FOLDER/TOP is deleted and written anew
+  --vectors PROGRAM  cchip_pair_vectors, default build/release/bin/cchip_pair_vectors
+  --pairs N          vectors of the bench, default 2000
+  --seed N           of the vectors, default 1
+  --mhz F            clock of the constraint templates, default 150
+  TOP                default: every primitive test of rtl/cchip.f, the array and the blank module
+
+FOLDER/TOP holds TOP.v, with every list rtl/cchip_DEVICE.f a variant TOP_DEVICE.v with the multiplier leaf of that
+device, file lists, constraints, datasheets, licences, vectors, a self-checking bench and README.md. Modules are found
+by name: one module per file, named like it. Exit codes: 0 done, 1 something is missing."""
+import argparse
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+RTL = ROOT / "rtl"
+INCLUDES = ("cchip_defs.vh", "cchip_assert.vh")
+BLANK = "cchip_primtest_blank"
+# Pairs of the vectors: the default parameters of each top.
+KINDS = {"cchip_primtest_tri_tri": "tri_tri", "cchip_primtest_tri_quad": "tri_quad",
+         "cchip_primtest_quad_quad": "quad_quad", "cchip_primtest_array": "tri_tri"}
+PAGES = ("architecture.md", "definitions.md")
+
+
+class ExportError(Exception):
+    pass
+
+
+# ---- sources
+
+
+def read_list(path):
+    """Files of a list by module name, in its order."""
+    lines = [line.strip() for line in path.read_text().splitlines()]
+    return {pathlib.Path(line).stem: RTL / line for line in lines if line.endswith(".v")}
+
+
+def without_comments(text):
+    return re.sub(r"//[^\n]*|/\*.*?\*/", "", text, flags=re.S)
+
+
+def closure(top, files):
+    """Modules that `top` needs, itself included, in the order of the list."""
+    needed, found = [top], set()
+    while needed:
+        name = needed.pop()
+        if name not in found:
+            found.add(name)
+            words = set(re.findall(r"\w+", without_comments(files[name].read_text())))
+            needed += words & files.keys()
+    return [name for name in files if name in found]
+
+
+def version():
+    """Version of the project, and the commit where git knows it."""
+    number = re.search(r"project\(collisionchip VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
+    try:
+        commit = subprocess.run(["git", f"--git-dir={ROOT}/.git", f"--work-tree={ROOT}", "describe", "--always", "--dirty", "--tags"],
+                                stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout.strip()
+    except OSError:
+        commit = ""
+    return f"{number} ({commit})" if commit else number
+
+
+def body(path):
+    """A source without licence line and without the include files, which stand at the top of the one file."""
+    lines = path.read_text().splitlines()
+    includes = [f'`include "{name}"' for name in INCLUDES]
+    kept = [line for line in lines if "SPDX-License-Identifier" not in line and line.strip() not in includes]
+    left = [line for line in kept if line.strip().startswith("`include")]
+    if left:
+        raise ExportError(f"{path.relative_to(ROOT)}: {left[0].strip()}: only {' and '.join(INCLUDES)} can be inlined")
+    return "\n".join(kept) + "\n"
+
+
+def one_file(top, files, list_name):
+    """Verilog of a top and everything below it. Each module is guarded: two exported files fit into one project."""
+    names = closure(top, files)
+    text = f"""// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+// {top}, collisionchip {version()}: one file with all its modules, plain Verilog-2005.
+// Written by scripts/export.py from rtl/{list_name}. Do not edit.
+/* verilator lint_off DECLFILENAME */ // many modules in one file
+"""
+    for name in INCLUDES:
+        text += f"\n// ---- rtl/include/{name}\n{body(RTL / 'include' / name)}"
+    for name in names:
+        guard = f"CCHIP_EXPORT_{name.upper()}"
+        text += f"\n// ---- {files[name].relative_to(ROOT)}\n`ifndef {guard}\n`define {guard}\n{body(files[name])}`endif\n"
+    return text + "/* verilator lint_on DECLFILENAME */\n"
+
+
+def variants(top):
+    """(suffix, text) of the one file and of its variants for devices."""
+    portable = one_file(top, read_list(RTL / "cchip.f"), "cchip.f")
+    result = [("", portable)]
+    names = closure(top, read_list(RTL / "cchip.f"))
+    for path in sorted(RTL.glob("cchip_*.f")):
+        files = read_list(path)
+        missing = [name for name in names if name not in files]
+        if missing:
+            raise ExportError(f"rtl/{path.name}: {missing[0]} is missing, which {top} needs; add its line from rtl/cchip.f")
+        if any(files[name] != read_list(RTL / "cchip.f")[name] for name in names):
+            result.append((path.stem[len("cchip"):], one_file(top, files, path.name)))
+    return result
+
+
+# ---- constraints: templates
+
+
+def constraints(top, mhz):
+    period = f"{1000 / mhz:.3f}"
+    head = f"""# SPDX-License-Identifier: Apache-2.0
+# {top}: template. It constrains the one clock, {mhz:g} MHz: change that to yours. All ports belong to this clock,
+# rst included (synchronous): no path is false. Inside a larger design the clock comes from there: leave this file out.
+"""
+    lpf = head + f"""# Lattice ECP5 (Diamond, nextpnr-ecp5). The ports are more than a package has pins: build the module inside your design,
+# and replace "clk" by the name of the clock there. nextpnr: FREQUENCY PORT for a pin, FREQUENCY NET for a clock of a PLL.
+FREQUENCY PORT "clk" {mhz:g} MHZ;
+# LOCATE COMP "clk" SITE "...";
+# IOBUF PORT "clk" IO_TYPE=LVCMOS33;
+"""
+    xdc = head + f"""# AMD (Vivado), for the module on its own: synth_design -mode out_of_context -top {top}.
+create_clock -name clk -period {period} [get_ports clk]
+# A clock buffer of your design, so that timing counts its delay:
+# set_property HD.CLK_SRC BUFGCTRL_X0Y0 [get_ports clk]
+# Ports that leave the device (out of context none do): values of your board.
+# set_input_delay -clock clk 0.000 [get_ports -filter {{DIRECTION == IN && NAME != clk}}]
+# set_output_delay -clock clk 0.000 [get_ports -filter {{DIRECTION == OUT}}]
+"""
+    sdc = head + f"""# Intel (Quartus) and others that read SDC. On its own in Quartus make the ports virtual, they are more than a package has
+# pins: in the .qsf, set_instance_assignment -name VIRTUAL_PIN ON -to *, and OFF for clk.
+create_clock -name clk -period {period} [get_ports clk]
+# Quartus only:
+# derive_clock_uncertainty
+# Ports that leave the device: values of your board.
+# set_input_delay -clock clk 0.000 [remove_from_collection [all_inputs] [get_ports clk]]
+# set_output_delay -clock clk 0.000 [all_outputs]
+"""
+    return {"lpf": lpf, "xdc": xdc, "sdc": sdc}
+
+
+# ---- pages
+
+
+def page(path, exported):
+    """A page of docs/; links to what is not exported become text. `exported`: names of pages below docs/."""
+    def keep(match):
+        target = match.group(2).split("#")[0]
+        name = os.path.relpath((path.parent / target).resolve(), ROOT / "docs") if target else ""
+        return match.group(0) if not target or ":" in target or name in exported else match.group(1)
+    return re.sub(r"\[([^\]]*)\]\(([^)]*)\)", keep, path.read_text())
+
+
+def write_pages(folder, names):
+    pages = [*PAGES, *(f"modules/{name}.md" for name in names)]
+    (folder / "docs" / "modules").mkdir(parents=True)
+    for name in pages:
+        if not (ROOT / "docs" / name).exists():
+            raise ExportError(f"docs/{name} is missing: every module has a datasheet")
+        (folder / "docs" / name).write_text(page(ROOT / "docs" / name, pages))
+
+
+def readme(top, suffixes, pairs, mhz):
+    device = "".join(f"- `{top}{s}.v` instead on {s[1:].upper()}: the same with that device's multiplier block, whose registers "
+                     "synthesis does not find otherwise.\n" for s in suffixes if s)
+    if top == BLANK:
+        bench, run = "bench_blank", "vvp -n bench.vvp"
+        compiled = f"iverilog -g2005 -s bench_blank -o bench.vvp bench_blank.v {top}.v"
+    else:
+        bench, run = "bench_primtest", f"vvp -n bench.vvp +vectors=vectors.hex +pairs={pairs}"
+        compiled = f"iverilog -g2005 -DCCHIP_BENCH_TOP={top} -s bench_primtest -o bench.vvp bench_primtest.v {top}.v"
+    return f"""<!-- SPDX-License-Identifier: Apache-2.0 -->
+# {top}, collisionchip {version()}
+
+- `{top}.v`: the whole RTL in one file, no include folder, top `{top}`; `.f`: as a file list.
+{device}- [Datasheet](docs/modules/{top}.md): ports, parameters, timing, area.
+- `constraints/`: templates for ECP5 (LPF), Vivado (XDC), Quartus and others (SDC), clock {mhz:g} MHz; each says what to change.
+- Licence of the RTL: [Solderpad 2.1](LICENSES/SHL-2.1.txt), or take it as [Apache-2.0](LICENSES/Apache-2.0.txt) like all the rest.
+- Check with Icarus; other simulators take the same macro and plusargs, `{bench}.v` explains them. It must print `PASS`:
+
+      {compiled}
+      {run}
+"""
+
+
+# ---- all of it
+
+
+def write_vectors(program, kind, path, pairs, seed):
+    try:
+        result = subprocess.run([program, kind, path, str(pairs), str(seed)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                text=True)
+    except OSError:
+        raise ExportError(f"{program} is missing: make export builds it")
+    if result.returncode:
+        raise ExportError(result.stdout.strip())
+
+
+def export(top, options):
+    folder = pathlib.Path(options.out) / top
+    shutil.rmtree(folder, ignore_errors=True)
+    (folder / "constraints").mkdir(parents=True)
+    files = variants(top)
+    for suffix, text in files:
+        (folder / f"{top}{suffix}.v").write_text(text)
+        (folder / f"{top}{suffix}.f").write_text(
+            f"// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1\n{top}{suffix}.v\n")
+    for kind, text in constraints(top, options.mhz).items():
+        (folder / "constraints" / f"{top}.{kind}").write_text(text)
+    write_pages(folder, closure(top, read_list(RTL / "cchip.f")))
+    shutil.copytree(ROOT / "LICENSES", folder / "LICENSES")
+    bench = "bench_blank.v" if top == BLANK else "bench_primtest.v"
+    shutil.copy(ROOT / "tests" / "icarus" / bench, folder)
+    if top != BLANK:
+        write_vectors(options.vectors, KINDS[top], folder / "vectors.hex", options.pairs, options.seed)
+    (folder / "README.md").write_text(readme(top, [suffix for suffix, _ in files], options.pairs, options.mhz))
+    print(f"wrote {os.path.relpath(folder)}")
+
+
+def main():
+    listed = read_list(RTL / "cchip.f")
+    tops = [top for top in (*KINDS, BLANK) if top in listed]
+    if {"-h", "--help"} & set(sys.argv[1:]):
+        print(__doc__)
+        return 0
+    parser = argparse.ArgumentParser(usage=re.search("usage: (.*)", __doc__).group(1), add_help=False)
+    parser.add_argument("--out", default=ROOT / "build" / "export")
+    parser.add_argument("--vectors", default=ROOT / "build" / "release" / "bin" / "cchip_pair_vectors")
+    parser.add_argument("--pairs", default=2000, type=int)
+    parser.add_argument("--seed", default=1, type=int)
+    parser.add_argument("--mhz", default=150.0, type=float)
+    parser.add_argument("tops", nargs="*")
+    options = parser.parse_args()
+    try:
+        for top in options.tops or tops:
+            if top not in tops:
+                raise ExportError(f"{top} cannot be exported, one of: {' '.join(tops)}")
+            export(top, options)
+    except ExportError as error:
+        print(f"export.py: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

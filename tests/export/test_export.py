@@ -1,0 +1,172 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""An exported folder alone, far from the repository: its files are clean for three tools, its README's commands work.
+
+usage: test_export.py TOP VECTORS_PROGRAM SCRATCH
+
+Environment: VERILATOR, IVERILOG, YOSYS = commands (default: found on PATH)."""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+TOP, VECTORS, SCRATCH = "", "", ""
+BLANK = "cchip_primtest_blank"
+
+
+def run(*command, cwd):
+    result = subprocess.run(command, cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    return result.returncode, result.stdout
+
+
+def export(top, out):
+    code, text = run(sys.executable, "-B", str(ROOT / "scripts" / "export.py"), "--vectors", VECTORS, "--out", out,
+                     "--pairs", "500", top, cwd=out)
+    assert code == 0, text
+
+
+class Export(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        pathlib.Path(SCRATCH).mkdir(parents=True, exist_ok=True)
+        export(TOP, SCRATCH)
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name) / "alone"
+        shutil.copytree(pathlib.Path(SCRATCH) / TOP, cls.folder)
+        cls.file = f"{TOP}.v"
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def clean(self, *command):
+        """The command succeeds and says nothing."""
+        self.assertEqual(run(*command, cwd=self.folder), (0, ""), " ".join(command))
+
+    def sections(self, name):
+        """Text of an exported Verilog file by the source it comes from."""
+        parts = re.split(r"^// ---- (\S+)$", (self.folder / name).read_text(), flags=re.M)
+        return dict(zip(parts[1::2], parts[2::2]))
+
+    def yosys(self, file, *more):
+        checks = f"hierarchy -check -top {TOP}; proc; check -assert; select -assert-none t:$dlatch"
+        self.clean(os.environ.get("YOSYS", "yosys"), "-q", "-p", "; ".join([f"read_verilog {file}", checks, *more]))
+
+    def test_one_file_is_self_contained(self):
+        for path in self.folder.glob("*.v"):
+            text = path.read_text()
+            self.assertNotIn("`include", re.sub(r"//.*", "", text), path.name)
+            self.assertIn("SPDX-License-Identifier: Apache-2.0", text.splitlines()[0])
+        version = re.search(r"^project\(\S+ VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text(), re.M).group(1)
+        self.assertIn(f"{TOP}, collisionchip {version}", (self.folder / self.file).read_text().splitlines()[1])
+
+    def test_verilator(self):
+        self.clean(os.environ.get("VERILATOR", "verilator"), "--lint-only", "-Wall", "--top-module", TOP, self.file)
+
+    def test_icarus(self):
+        self.clean(os.environ.get("IVERILOG", "iverilog"), "-g2005", "-Wall", "-t", "null", "-s", TOP, self.file)
+
+    def test_yosys(self):
+        self.yosys(self.file)
+
+    def test_only_what_the_top_needs(self):
+        modules = re.findall(r"^module (\w+)", (self.folder / self.file).read_text(), re.M)
+        self.assertEqual(len(modules), len(set(modules)))
+        self.assertIn(TOP, modules)
+        code, text = run(os.environ.get("YOSYS", "yosys"), "-p", f"read_verilog {self.file}; hierarchy -check -top {TOP}",
+                         cwd=self.folder)
+        self.assertEqual(code, 0, text)
+        # yosys names the modules that stay: as they are, or derived from one with parameters
+        used = set(re.findall(r"(?:Top|Used) module: +\\?(?:\$paramod(?:\$[0-9a-f]+)?\\)?(\w+)", text))
+        self.assertEqual(set(modules), used)
+
+    def test_device_variants_differ_in_their_leaf_only(self):
+        self.assertEqual((self.folder / f"{TOP}_ecp5.v").exists(), TOP != BLANK)
+        if TOP == BLANK:
+            return
+        portable, device = self.sections(self.file), self.sections(f"{TOP}_ecp5.v")
+        self.assertEqual(set(portable) ^ set(device), {"rtl/arith/cchip_mul18.v", "rtl/vendor/ecp5/cchip_mul18.v"})
+        self.assertEqual([name for name in set(portable) & set(device) if portable[name] != device[name]], [])
+        self.yosys(f"-lib +/ecp5/cells_bb.v; read_verilog {TOP}_ecp5.v", "select -assert-any t:MULT18X18D")
+
+    def test_file_lists(self):
+        lists = sorted(self.folder.glob("*.f"))
+        self.assertEqual([path.stem for path in lists], sorted(path.stem for path in self.folder.glob(f"{TOP}*.v")))
+        for path in lists:
+            for line in path.read_text().splitlines()[1:]:
+                self.assertTrue((self.folder / line).is_file(), line)
+
+    def test_constraints(self):
+        """The Tcl ones run and set one clock on one port; all three agree about it."""
+        found = {"lpf": re.findall(r'^FREQUENCY PORT "(\w+)" ([\d.]+) MHZ;$', self.constraints("lpf"), re.M)}
+        for kind in ("xdc", "sdc"):
+            commands = ("proc get_ports {name} {return $name}\n"
+                        "proc create_clock {args} {puts \"[lindex $args end] [dict get [lrange $args 0 end-1] -period]\"}\n")
+            code, text = run("tclsh", self.written("run.tcl", commands + self.constraints(kind)), cwd=self.folder)
+            self.assertEqual(code, 0, text)
+            found[kind] = [(line.split()[0], f"{1000 / float(line.split()[1]):.0f}") for line in text.splitlines()]
+        self.assertEqual(list(found.values()), [[("clk", "150")]] * 3)
+
+    def constraints(self, kind):
+        return (self.folder / "constraints" / f"{TOP}.{kind}").read_text()
+
+    def written(self, name, text):
+        path = pathlib.Path(self.temporary.name) / name
+        path.write_text(text)
+        return str(path)
+
+    def test_links_of_the_pages(self):
+        pages = list(self.folder.rglob("*.md"))
+        self.assertIn(self.folder / "docs" / "modules" / f"{TOP}.md", pages)
+        for path in pages:
+            for link in re.findall(r"\]\(([^)#]+)", path.read_text()):
+                self.assertTrue((path.parent / link).exists(), f"{path.relative_to(self.folder)}: {link}")
+
+    def bench(self):
+        """Output of the commands of README.md."""
+        commands = re.findall(r"^ {6}(\S.*)$", (self.folder / "README.md").read_text(), re.M)
+        self.assertEqual(len(commands), 2)
+        code, text = run("sh", "-e", "-c", "\n".join(commands), cwd=self.folder)
+        self.assertEqual(code, 0, text)
+        return text
+
+    def test_readme_is_short(self):
+        self.assertLessEqual(len((self.folder / "README.md").read_text().splitlines()), 14)
+
+    def test_bench_passes(self):
+        self.assertRegex(self.bench(), r"\APASS [^\n]*\n\Z")
+
+    def test_bench_can_fail(self):
+        """A multiplier, or the blank module's constant, that is wrong in one bit."""
+        path = self.folder / self.file
+        text = path.read_text()
+        old, new = (r"(idle *=) 1'b1", r"\1 1'b0") if TOP == BLANK else (r"(a_q \* b_q)", r"\1 ^ 36'd1")
+        broken, count = re.subn(old, new, text)
+        self.assertEqual(count, 1)
+        path.write_text(broken)
+        try:
+            self.assertRegex(self.bench(), r"(?m)^FAIL clock ")
+        finally:
+            path.write_text(text)
+
+
+class TwoTops(unittest.TestCase):
+    def test_two_exported_files_in_one_project(self):
+        """Both hold the same modules below their tops."""
+        other = "cchip_primtest_tri_quad" if TOP != "cchip_primtest_tri_quad" else "cchip_primtest_tri_tri"
+        with tempfile.TemporaryDirectory() as folder:
+            for top in (TOP, other):
+                export(top, folder)
+            files = [f"{top}/{top}.v" for top in (TOP, other)]
+            self.assertEqual(run(os.environ.get("IVERILOG", "iverilog"), "-g2005", "-Wall", "-t", "null", "-s", TOP, "-s", other,
+                                 *files, cwd=folder), (0, ""))
+
+
+if __name__ == "__main__":
+    TOP, VECTORS, SCRATCH = sys.argv[1:4]
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])
