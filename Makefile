@@ -16,8 +16,16 @@ LEAVES ?= $(addprefix $(MODELS)/,OBJ/WusonOBJ.obj OBJ/spider.obj STL/Spider_bina
 QUAD_LEAVES ?= $(MODELS)/BLEND/Suzanne_248.blend
 # command that provides the tools; BOOTSTRAP=true skips it
 BOOTSTRAP ?= scripts/bootstrap
+# another command verilator than the one on PATH, as in: make test VERILATOR=/opt/verilator/bin/verilator
+VERILATOR ?=
 
-RELEASE := build/release
+# The models of another Verilator are built in folders of their own.
+ifneq ($(VERILATOR),)
+  export VERILATOR
+  VERILATOR_PATH := $(abspath $(or $(shell command -v '$(VERILATOR)'),$(VERILATOR)))
+  OTHER := -verilator-$(firstword $(shell printf %s '$(VERILATOR_PATH)' | cksum))
+endif
+RELEASE := build/release$(OTHER)
 CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
@@ -27,7 +35,7 @@ export JOBS
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
-	@echo "settings: JOBS=$(JOBS) PREFIX=$(PREFIX) DESTDIR=$(DESTDIR) PAIRS=$(PAIRS) SIM_ARGS=$(SIM_ARGS)"
+	@echo "settings: JOBS=$(JOBS) PREFIX=$(PREFIX) DESTDIR=$(DESTDIR) PAIRS=$(PAIRS) SIM_ARGS=$(SIM_ARGS) VERILATOR=$(VERILATOR)"
 
 bootstrap: ## install the Debian packages that are missing (all other targets do this first)
 	@$(BOOTSTRAP)
@@ -57,13 +65,13 @@ test: build ## run the regression
 test-long: build ## run the regression and the long tests
 	$(CTEST) --test-dir $(RELEASE)
 
-test-debug: build/debug/build.ninja ## build without optimisation and run the regression
-	cmake --build build/debug -j $(JOBS)
-	$(CTEST) --test-dir build/debug -LE '^long$$'
+test-debug: build/debug$(OTHER)/build.ninja ## build without optimisation and run the regression
+	cmake --build build/debug$(OTHER) -j $(JOBS)
+	$(CTEST) --test-dir build/debug$(OTHER) -LE '^long$$'
 
-test-asan: build/asan/build.ninja ## build with AddressSanitizer and UBSan and run the regression
-	cmake --build build/asan -j $(JOBS)
-	$(CTEST) --test-dir build/asan -LE '^long$$'
+test-asan: build/asan$(OTHER)/build.ninja ## build with AddressSanitizer and UBSan and run the regression
+	cmake --build build/asan$(OTHER) -j $(JOBS)
+	$(CTEST) --test-dir build/asan$(OTHER) -LE '^long$$'
 
 CAMPAIGN := $(RELEASE)/bin/cchip_campaign
 campaign-build: $(RELEASE)/build.ninja
@@ -109,5 +117,5 @@ clean: ## delete the build folder
 	rm -rf build
 
 # Ninja runs CMake again when a CMake file changes; this is for the first time only.
-build/%/build.ninja: | bootstrap
-	cmake --preset $*
+build/%$(OTHER)/build.ninja: | bootstrap
+	cmake --preset $* -B build/$*$(OTHER) $(if $(OTHER),-D CCHIP_VERILATOR:FILEPATH='$(VERILATOR_PATH)')

