@@ -7,6 +7,8 @@ PREFIX ?= /usr/local
 DESTDIR ?=
 PAIRS ?= 100000000
 SIM_ARGS ?=
+# places and routes of each configuration in make fpga
+SEEDS ?= 5
 # as in: make export EXPORT_ARGS="--mhz 200 cchip_primtest_tri_tri"
 EXPORT_ARGS ?=
 # meshes of campaign-leaves, each against itself (Debian: assimp-testmodels)
@@ -31,7 +33,7 @@ export JOBS
 
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv build sim wave test test-long test-debug test-asan lint tidy format campaign campaign-build \
-  campaign-grid campaign-classes campaign-certainty campaign-leaves export install clean
+  campaign-grid campaign-classes campaign-certainty campaign-leaves export fpga fpga-quick install clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
@@ -95,6 +97,12 @@ campaign-leaves: campaign-build ## leaf pairs of meshes: beats and share of inde
 	$(CAMPAIGN) leaves
 	$(CAMPAIGN) leaves $(LEAVES)
 	$(CAMPAIGN) leaves --quads $(QUAD_LEAVES)
+
+fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEEDS places and routes each (hours), into docs/fpga.md
+	scripts/fpga.py --seeds $(SEEDS) --jobs $(JOBS) --campaign $(CAMPAIGN) --write
+
+fpga-quick: bootstrap venv ## area and clock of the triangle test, one place and route
+	scripts/fpga.py tri_tri --seeds 1 --jobs $(JOBS) --campaign $(CAMPAIGN)
 
 lint: bootstrap ## static checks of RTL, C++, scripts and texts
 	scripts/lint
