@@ -4,8 +4,8 @@
 // are known by their tags and may come in any order. Verilog-2005, no package.
 //   CCHIP_BENCH_TOP  macro: the module under test, as in -DCCHIP_BENCH_TOP=cchip_primtest_tri_tri
 //   +vectors=FILE    one pair per line, hexadecimal: {rm_id, beats, axis, definite, grid, hit, err, mode, tag, b, a},
-//                    the first six of them expected of the module; tags differ
-//   +pairs=N         lines of that file, at most 65536
+//                    the first six of them expected of the module; tags differ within 65536 lines
+//   +pairs=N         so many of its lines
 //   +start=S         state of the generator of idle clocks, back-pressure and resets, not 0 (default 1)
 //   +steady          pairs always offered, results always taken, reset at the start only: every pair is answered
 //   +lines=FILE      written, if given: "in CLOCK TAG IDLE" and "out CLOCK TAG HIT GRID DEFINITE AXIS BEATS IDLE" for
@@ -62,11 +62,9 @@ module bench_primtest;
   );
 
   // ---- stimulus
-  reg [VECTOR_W-1:0] vectors[0:TAGS-1];
-  reg [VECTOR_W-1:0] vector;
+  reg [VECTOR_W-1:0] vector;  // the next one
   reg [8*256-1:0] vectors_file, lines_file;
-  reg [7:0] expected_rm_id;
-  integer pairs, lines, clock, reset_left, next, results, held, quiet, silent;
+  integer pairs, vectors, lines, clock, reset_left, next, results, held, quiet, silent;
   reg [31:0] random;
   reg steady, offer, ready, accepted, done, failed;
 
@@ -102,7 +100,7 @@ module bench_primtest;
       random = random ^ (random >> 17);
       random = random ^ (random << 5);
       if (reset_left > 0) reset_left = reset_left - 1;
-      else if (random[31:22] == 10'd0 && !steady) reset_left = 1 + random[21:20];
+      else if (random[31:22] == 10'd0 && !steady) reset_left = 1 + {30'd0, random[21:20]};
       rst = reset_left > 0;
       offer = 1;
       ready = 1;
@@ -115,7 +113,6 @@ module bench_primtest;
         endcase
       m_result_ready = ready;
       if (!s_pair_valid && offer && next < pairs) begin
-        vector = vectors[next];
         s_pair_valid = 1;
         {s_pair_err, s_pair_mode, s_pair_tag, s_pair_b, s_pair_a} = vector[PAIR_W-1:0];
       end
@@ -133,7 +130,7 @@ module bench_primtest;
         held = 0;
       end else begin
         if (^{s_pair_ready, m_result_valid, idle, rm_id} === 1'bx) fail("unknown value on an output");
-        if (rm_id !== expected_rm_id) fail("rm_id is not that of the vectors");
+        if (rm_id !== vector[VECTOR_W-1-:8]) fail("rm_id is not that of the vectors");
         if (stalled && !m_result_valid) fail("m_result_valid dropped");
         if (m_result_valid) begin
           if (^result === 1'bx) fail("unknown value on a valid result");
@@ -170,9 +167,14 @@ module bench_primtest;
       waiting[s_pair_tag] = 1;
       held = held + 1;
       next = next + 1;
+      if (next < pairs) fetch;
       accepted = 1;
       silent = 0;
     end
+  endtask
+
+  task fetch;
+    if ($fscanf(vectors, "%h", vector) != 1) fail("fewer vectors than pairs");
   endtask
 
   task prepare;
@@ -185,11 +187,10 @@ module bench_primtest;
       random = 1;
       if (!$value$plusargs("vectors=%s", vectors_file) || !$value$plusargs("pairs=%d", pairs))
         fail("usage: +vectors=FILE +pairs=N [+start=S] [+steady] [+lines=FILE]");
-      else if (pairs < 1 || pairs > TAGS) fail("pairs must be 1 to 65536");
       else begin
-        $readmemh(vectors_file, vectors, 0, pairs - 1);
-        expected_rm_id = vectors[0] >> (PAIR_W + RESULT_W);
-        if (^vectors[pairs-1] === 1'bx) fail("fewer vectors than pairs");
+        vectors = $fopen(vectors_file, "r");
+        if (vectors == 0) fail("the file of vectors cannot be read");
+        else fetch;
       end
       if ($value$plusargs("start=%d", random) && random == 0) fail("start must not be 0");
       steady = $test$plusargs("steady");
