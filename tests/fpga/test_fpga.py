@@ -1,0 +1,197 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""scripts/fpga.py: reading of reports, cache of tool runs, harness.
+
+report.json and stat.json are recorded: one run of nextpnr-ecp5 0.11.1 without the unused kinds of block, and the
+statistics of Yosys 0.23 of a design in the harness. Environment: VERILATOR, IVERILOG, YOSYS."""
+import copy
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+sys.path.insert(0, str(ROOT / "scripts"))
+import datasheet  # noqa: E402
+import fpga  # noqa: E402
+
+
+class Reports(unittest.TestCase):
+    def setUp(self):
+        self.report = json.loads((HERE / "report.json").read_text())
+        self.stat = (HERE / "stat.json").read_text()
+
+    def figures(self, clocks, row=None):
+        """Figures of a row whose seeds 1, 2.. reached these clocks."""
+        reports = {}
+        for seed, clock in enumerate(clocks, 1):
+            reports[seed] = copy.deepcopy(self.report)
+            for domain in reports[seed]["fmax"].values():
+                domain["achieved"] = clock
+        beats = {fpga.TYPICAL: {"exhaustive": 10.0, "directed": 2.5}}
+        return fpga.figures(row or fpga.rows()["tri_tri"], HERE, reports, beats)
+
+    def test_delays_of_the_critical_path_add_up_to_the_period(self):
+        period = sum(part["delay"] for part in fpga.critical_path(self.report))
+        self.assertAlmostEqual(period, 1e3 / fpga.fmax(self.report), places=2)
+
+    def test_the_slowest_clock_counts(self):
+        self.report["fmax"]["slow"] = {"achieved": 12.5, "constraint": 250}
+        self.assertEqual(fpga.fmax(self.report), 12.5)
+
+    def test_paths_from_and_to_pins_do_not_count(self):
+        for path in self.report["critical_paths"]:
+            if "<async>" in (path["from"], path["to"]):
+                path["path"][0]["delay"] = 1000
+        self.assertLess(sum(part["delay"] for part in fpga.critical_path(self.report)), 1000)
+
+    def test_critical_path_in_words(self):
+        words = fpga.in_words(fpga.critical_path(self.report))
+        ends = re.match(r"register `(\S+)` -> register `(\S+)`: ", words)
+        self.assertEqual(ends.group(1), "u_pipeline.u_user.genblk3.gen_memory.q_q")
+        self.assertEqual(ends.group(2), "u_controller.u_free.valid_q")
+        logic, routing = map(float, re.search(r"; ([\d.]+) ns logic, ([\d.]+) ns routing$", words).groups())
+        self.assertAlmostEqual(logic + routing, 1e3 / fpga.fmax(self.report), delta=0.11)
+
+    def test_ends_of_a_path(self):
+        for port, kind in (("Q", "register"), ("DI", "register"), ("CE", "register"), ("P17", "multiplier"),
+                           ("A3", "multiplier"), ("DOA5", "block RAM"), ("ADB11", "block RAM"), ("WD2", "distributed RAM")):
+            self.assertEqual(fpga.block_of(port), kind, port)
+        for cell, name in (("u_dut.u_primtest.u_pipeline.u_axis.q_TRELLIS_FF_Q_3", "u_pipeline.u_axis.q"),
+                           ("u_dut.u_primtest.u_operands.mem.0.4", "u_operands.mem.0.4"),
+                           ("u_dut.gen_lane[2].u_lane.u_primtest.q_TRELLIS_FF_Q", "gen_lane[2].u_lane.u_primtest.q"),
+                           ("out_r_TRELLIS_FF_Q_7", "harness: out_r")):
+            self.assertEqual(fpga.name_of(cell), name)
+
+    def test_cells_are_those_of_the_module_alone(self):
+        module, harness = fpga.module_cells(fpga.cells(self.stat))
+        design = json.loads(self.stat)["design"]["num_cells_by_type"]
+        for cell in ("LUT4", "TRELLIS_FF", "CCU2C", "MULT18X18D"):
+            self.assertEqual(module[cell] + harness.get(cell, 0), design[cell], cell)
+        self.assertGreater(harness["TRELLIS_FF"], 0)
+        self.assertNotIn("MULT18X18D", harness)
+
+    def test_median_and_rates(self):
+        row = self.figures([100.0, 300.0, 200.0])
+        self.assertEqual((row["fmax_min"], row["fmax_median"], row["fmax_max"]), (100.0, 200.0, 300.0))
+        self.assertEqual(row["pairs_per_s"][fpga.TYPICAL], {"exhaustive": 20e6, "directed": 80e6})
+        self.assertEqual(self.figures([100.0, 300.0])["fmax_median"], 200.0)
+        array = self.figures([100.0], fpga.rows()["array6"])
+        self.assertEqual(array["pairs_per_s"][fpga.TYPICAL]["exhaustive"], 60e6)
+
+    def test_last_line(self):
+        line = fpga.last_line(self.figures([99.96]))
+        self.assertRegex(line, r"^tri_tri w=16 lut=\d+ ff=\d+ dsp=24 ram=\d+ fmax_mhz=100\.0 seeds=1$")
+        self.assertRegex(fpga.last_line(self.figures([80.0] * 3, fpga.rows()["tri_tri_w18"])), r"^tri_tri w=18 .* seeds=3$")
+
+    def test_tables_have_a_row_for_each_row(self):
+        row = self.figures([100.0])
+        row["families"] = {family: {**{c: 1 for c in columns}, "packed": 1} for family, (_, columns) in fpga.FAMILIES.items()}
+        found = {"tri_tri": row, "tri_quad": row}
+        self.assertEqual(fpga.area_table(found).count("\n"), 2 + 2)
+        self.assertEqual(fpga.classes_table(found).count("\n"), 2 + 2)
+        self.assertEqual(fpga.families_table(found).count("\n"), 2 + 2 * len(fpga.FAMILIES))
+
+    def test_page_has_a_place_for_every_table(self):
+        for name in fpga.TABLES:
+            self.assertRegex(fpga.PAGE.read_text(), re.compile(datasheet.BLOCK.format(f" {name}"), re.S))
+
+
+class Steps(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.root, self.build = fpga.ROOT, fpga.BUILD
+        fpga.ROOT = pathlib.Path(self.folder.name)
+        fpga.BUILD = fpga.ROOT / "build"
+        self.addCleanup(self.restore)
+
+    def restore(self):
+        fpga.ROOT, fpga.BUILD = self.root, self.build
+
+    def run_step(self, depends, script="echo run >> count; cat {}/in > {}/out"):
+        return fpga.step("name", ["sh", "-c", script], {"in": "text"}, depends, "out")
+
+    def runs(self):
+        return (fpga.ROOT / "count").read_text().count("run")
+
+    def test_a_step_runs_again_only_for_other_inputs(self):
+        first = self.run_step([1])
+        self.assertEqual((first / "out").read_text(), "text")
+        self.assertEqual(self.run_step([1]), first)
+        self.assertEqual(self.runs(), 1)
+        self.assertNotEqual(self.run_step([2]), first)
+        self.assertEqual(self.runs(), 2)
+
+    def test_a_failing_tool_is_one_line_with_its_log(self):
+        with self.assertRaises(fpga.ToolError) as caught:
+            self.run_step([1], "echo 'ERROR: no such thing'; exit 3")
+        message = str(caught.exception)
+        self.assertNotIn("\n", message)
+        self.assertIn("ERROR: no such thing", message)
+        log = re.search(r"see (\S+?):", message).group(1)
+        self.assertIn("no such thing", (fpga.ROOT / log).read_text())
+
+    def test_without_its_product_a_tool_has_failed(self):
+        with self.assertRaises(fpga.ToolError):
+            self.run_step([1], "true")
+        self.run_step([1])  # and is run again
+
+    def test_a_row_that_fails_leaves_the_others(self):
+        failures = []
+        self.assertIsNone(fpga.attempt(failures, self.run_step, [1], "exit 1"))
+        self.assertEqual(len(failures), 1)
+
+
+class Harness(unittest.TestCase):
+    ROWS = {"tri_tri": (), "tri_tri_w18": (), "quad_quad": (), "array6": (("LANES", 2),)}
+
+    def each_row(self):
+        for name, parameters in self.ROWS.items():
+            row = fpga.rows()[name]
+            row = fpga.dataclasses.replace(row, files="cchip.f", parameters=parameters or row.parameters)
+            files = [file for file in fpga.sources(row) if file.endswith(".v")]
+            yield row, files
+
+    def clean(self, *command):
+        result = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.assertEqual((result.returncode, result.stdout), (0, ""), " ".join(command))
+
+    def test_verilator(self):
+        for row, files in self.each_row():
+            self.clean(os.environ.get("VERILATOR", "verilator"), "--lint-only", "-Wall", "-Irtl/include", *row.macros(),
+                       "rtl/lint/verilator_waiver.vlt", *files, "--top-module", "fpga_harness")
+
+    def test_icarus(self):
+        for row, files in self.each_row():
+            self.clean(os.environ.get("IVERILOG", "iverilog"), "-g2005", "-Wall", "-t", "null", "-Irtl/include",
+                       *row.macros(), "-s", "fpga_harness", *files)
+
+    def test_yosys(self):
+        for row, files in self.each_row():
+            self.clean(os.environ.get("YOSYS", "yosys"), "-q", "-p", fpga.read_verilog(files, *row.macros()) +
+                       "hierarchy -check -top fpga_harness; proc; check -assert; select -assert-none t:$dlatch")
+
+    def test_synthesis_keeps_a_register_for_every_port(self):
+        row = fpga.rows()["tri_tri"]
+        _, ports = datasheet.parse(row.top)
+        bits = {direction: sum(eval(width, {"COORD_W": row.coord_w}) for name, d, width in ports
+                               if d == direction and name != "clk") for direction in ("input", "output")}
+        expected, fold = 2 * bits["input"] + bits["output"], bits["output"]
+        while fold > 1:
+            fold = -(-fold // 5)
+            expected += fold
+        files = [file for file in fpga.sources(row) if file.endswith(".v") and file != fpga.HARNESS]
+        out = subprocess.run([os.environ.get("YOSYS", "yosys"), "-p", fpga.read_verilog(files, "-lib") +
+                              fpga.read_verilog([fpga.HARNESS], *row.macros()) + "synth -top fpga_harness; "
+                              "select -count t:*DFF*"], cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout
+        self.assertEqual(int(re.findall(r"^(\d+) objects\.$", out, re.M)[-1]), expected)
+
+
+if __name__ == "__main__":
+    unittest.main()
