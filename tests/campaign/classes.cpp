@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fstream>
 #include <random>
 
 #include "commands.hpp"
@@ -49,11 +50,39 @@ void print_row(const std::string& name, const char* mix, const RtlJudgement& r) 
              r.too_many_beats != 0 ? fmt::format("  {} pairs took too many beats", r.too_many_beats) : "");
 }
 
+/// The mean beats for other programs: one line per class and programme behind one of names.
+class BeatsFile {
+ public:
+  /// name: empty for no file.
+  explicit BeatsFile(const std::string& name) : name_(name) {
+    if (name_.empty()) return;
+    out_.open(name_);
+    out_ << "shape,class,programme,pairs,beats_least,beats_mean,beats_greatest,axes_per_clock\n";
+    check();
+  }
+  void add(const ShapeInfo& shape, const std::string& name, const char* mix, const RtlJudgement& r) {
+    if (name_.empty()) return;
+    out_ << fmt::format("{},\"{}\",{},{},{},{:.4f},{},{:.4f}\n", shape.name, name, mix, r.pairs, r.beats.least,
+                        r.beats.mean(), r.beats.greatest, axes_per_clock(r));
+  }
+  /// Throws if the file could not be written.
+  void check() {
+    if (name_.empty()) return;
+    out_.flush();
+    if (!out_) throw std::runtime_error(fmt::format("{}: cannot be written; is the folder there?", name_));
+  }
+
+ private:
+  std::string name_;
+  std::ofstream out_;
+};
+
 }  // namespace
 
 int run_classes(const ClassesOptions& options) {
   const StopWatch watch;
   fmt::print("seed={} coord_w={}\n", options.seed, defs::coord_w_default);
+  BeatsFile beats(options.csv);
   RtlJudgement all;
   double least = 1;
   std::uint64_t first_part = 0;
@@ -74,11 +103,13 @@ int run_classes(const ClassesOptions& options) {
     for (std::uint64_t job = 0; job < jobs; ++job) {
       const RtlJudgement& r = table.rows[job];
       print_row(classes[job / mixes.size()].name, mixes[job % mixes.size()], r);
+      beats.add(shape, classes[job / mixes.size()].name, mixes[job % mixes.size()], r);
       least = std::min(least, axes_per_clock(r));
     }
     table.examples.print();
     all += table.sum();
   }
+  beats.check();
   const bool slow = least < least_axes_per_clock;
   if (slow) fmt::print("axes per waiting clock fall below {}\n", least_axes_per_clock);
   fmt::print(

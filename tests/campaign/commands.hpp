@@ -27,6 +27,7 @@ int run_grid(const GridOptions& options);
 
 struct ClassesOptions : CommonOptions {
   std::uint64_t pairs = 100000;  ///< per class, shape and programme
+  std::string csv;               ///< file for the mean beats; empty: none
 };
 /// RTL against model and exact oracle, class by class.
 int run_classes(const ClassesOptions& options);

@@ -52,6 +52,7 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
   const auto [classes, c] = add("classes", "RTL against model and exact oracle, class by class, with throughput",
                                 ClassesOptions{}, run_classes);
   add_pairs(*classes, c->pairs, "pairs per class and shape");
+  classes->add_option("--csv", c->csv, "file for the beats of every class and programme");
   const auto [certainty, e] = add("certainty", "definite answers against exact ones of primitives off the grid",
                                   CertaintyOptions{}, run_certainty);
   add_pairs(*certainty, e->pairs, "pairs in all");
