@@ -275,7 +275,7 @@ def speed(module):
 
 def datasheet_block(module):
     text = speed(module)
-    text += "\nFmax: not measured: no place and route in this version.\n\n"
+    text += "\nFmax: whole primitive tests are placed and routed, see [fpga.md](../fpga.md).\n\n"
     kinds = list(next(iter(TARGETS.values()))[1])
     rows = []
     for target, (script, patterns) in TARGETS.items():

@@ -3,7 +3,8 @@
 """scripts/fpga.py: reading of reports, cache of tool runs, harness.
 
 report.json and stat.json are recorded: one run of nextpnr-ecp5 0.11.1 without the unused kinds of block, and the
-statistics of Yosys 0.23 of a design in the harness. Environment: VERILATOR, IVERILOG, YOSYS."""
+statistics of Yosys 0.23 of a design in the harness. Environment: VERILATOR, IVERILOG, YOSYS, CAMPAIGN
+(cchip_campaign)."""
 import copy
 import json
 import os
@@ -102,7 +103,9 @@ class Reports(unittest.TestCase):
             self.assertRegex(fpga.PAGE.read_text(), re.compile(datasheet.BLOCK.format(f" {name}"), re.S))
 
 
-class Steps(unittest.TestCase):
+class OwnFolder(unittest.TestCase):
+    """fpga.py works in a folder of its own."""
+
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
@@ -114,6 +117,8 @@ class Steps(unittest.TestCase):
     def restore(self):
         fpga.ROOT, fpga.BUILD = self.root, self.build
 
+
+class Steps(OwnFolder):
     def run_step(self, depends, script="echo run >> count; cat {}/in > {}/out"):
         return fpga.step("name", ["sh", "-c", script], {"in": "text"}, depends, "out")
 
@@ -146,6 +151,19 @@ class Steps(unittest.TestCase):
         failures = []
         self.assertIsNone(fpga.attempt(failures, self.run_step, [1], "exit 1"))
         self.assertEqual(len(failures), 1)
+
+
+class Beats(OwnFolder):
+    def beats(self, campaign):
+        return fpga.mean_beats("tri-tri", fpga.argparse.Namespace(campaign=campaign, pairs=500))
+
+    def test_general_pairs_take_every_axis_or_at_most_four(self):
+        means = self.beats(os.environ["CAMPAIGN"])[fpga.TYPICAL]
+        self.assertEqual(means["exhaustive"], 2 + 3 * 3)
+        self.assertTrue(1 < means["directed"] < 4, means)
+
+    def test_without_the_campaign_there_are_none(self):
+        self.assertEqual(self.beats("no/such/program"), {})
 
 
 class Harness(unittest.TestCase):
