@@ -136,10 +136,11 @@ module cchip_primtest_array #(
 
   assign idle = idle_q;
 
-  // ---- the lanes. way, way_back: word i enters station i, word i + 1 leaves it
+  // ---- the lanes. way of the pairs, way back of the results: word i enters station i, word i + 1 leaves it
   wire [  PAIR_W*(LANES+1)-1:0] way;
   wire [               LANES:0] back_valid, back_ready;
   wire [RESULT_W*(LANES+1)-1:0] back;
+  wire [             LANES-1:0] own_valid, own_ready;  // results of a lane itself
   wire [            LANE_W-1:0] answer_lane;
 
   assign way[PAIR_W-1:0] = {
@@ -190,7 +191,7 @@ module cchip_primtest_array #(
       assign way[PAIR_W*(lane+1)+:PAIR_W] = pair;
 
       wire                pair_valid = pair[PAIR_W-LANES+lane];
-      wire                pair_ready, own_valid, own_ready;
+      wire                pair_ready;
       wire [ANSWER_W-1:0] own;
       wire [         7:0] lane_rm_id;
       wire                lane_idle;
@@ -213,8 +214,8 @@ module cchip_primtest_array #(
           .s_pair_a         (pair[0+:VERTEX_W]),
           .s_pair_b         (pair[VERTEX_W+:VERTEX_W]),
           .s_pair_err       (pair[2*VERTEX_W+:4]),
-          .m_result_valid   (own_valid),
-          .m_result_ready   (own_ready),
+          .m_result_valid   (own_valid[lane]),
+          .m_result_ready   (own_ready[lane]),
           .m_result_tag     (own[15:0]),
           .m_result_hit     (own[16]),
           .m_result_grid    (own[17]),
@@ -229,11 +230,11 @@ module cchip_primtest_array #(
       // results of this lane and of the `lane` lanes before: one of its own for at most `lane` of theirs
       reg  [LANE_W-1:0] theirs_q;  // of theirs that may still pass first
       wire              merged_ready;
-      wire              own_next = own_valid & (~back_valid[lane] | theirs_q == {LANE_W{1'b0}});
-      assign own_ready        = merged_ready & own_next;
+      wire              own_next = own_valid[lane] & (~back_valid[lane] | theirs_q == {LANE_W{1'b0}});
+      assign own_ready[lane]  = merged_ready & own_next;
       assign back_ready[lane] = merged_ready & ~own_next;
       always @(posedge clk)
-        if (lane_rst | own_ready) theirs_q <= LANE[LANE_W-1:0];
+        if (lane_rst | own_ready[lane]) theirs_q <= LANE[LANE_W-1:0];
         else if (back_valid[lane] & merged_ready & theirs_q != {LANE_W{1'b0}})
           theirs_q <= theirs_q - {{LANE_W - 1{1'b0}}, 1'b1};
 
@@ -245,7 +246,7 @@ module cchip_primtest_array #(
       ) u_merged (
           .clk    (clk),
           .rst    (lane_rst),
-          .s_valid(own_valid | back_valid[lane]),
+          .s_valid(own_valid[lane] | back_valid[lane]),
           .s_ready(merged_ready),
           .s_data (own_next ? {LANE[LANE_W-1:0], own} : back[RESULT_W*lane+:RESULT_W]),
           .m_valid(half_valid),
