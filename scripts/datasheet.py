@@ -52,6 +52,7 @@ STIMULI = {
     "cchip_axis_programme": ("s_state = `CCHIP_PROG_ILLEGAL;", "s_valid = 1;", "m_outcome"),
     "cchip_sat_pipeline": ("", "s_beat_valid = 1;", "m_verdict_valid"),
     "cchip_axis_controller": ("", "s_pair_valid = 1;", "m_beat_valid"),
+    "cchip_primtest_array": ("m_result_ready = 1; s_pair_mode = 2;", "s_pair_valid = 1;", "m_result_valid"),
     "cchip_pr_region": ("", "s_pair_valid = 1; s_pair_mode = 2;", "m_result_valid"),
 }
 
