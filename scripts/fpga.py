@@ -245,11 +245,12 @@ def critical_path(report):
     return max(clocked, key=lambda path: sum(part["delay"] for part in path["path"]))["path"]
 
 
-def block_of(port):
-    """Kind of the block at an end of a path, by the port of it."""
+def block_of(cell, port):
+    """Kind of the block at an end of a path, by its port, and for distributed RAM by the name nextpnr gives it."""
+    if re.search(r"\$(DPRAM_COMB|RAMW)", cell):
+        return "distributed RAM"
     for pattern, kind in ((r"P\d+|[AB]\d+|SIGNED\w", "multiplier"),
-                          (r"(DO|DI|AD)[AB]\d+|(WE|CE|OCE)[AB]", "block RAM"),
-                          (r"W[DRC]\w*|RAD\d", "distributed RAM")):
+                          (r"(DO|DI|AD)[AB]\d+|(WE|CE|OCE)[AB]", "block RAM")):
         if re.fullmatch(pattern, port):
             return kind
     return "register"
@@ -265,7 +266,7 @@ def name_of(cell):
 
 def in_words(path):
     """`register a -> multiplier b: 3 LUTs, 12 carries; 2.1 ns logic, 1.9 ns routing`"""
-    ends = [(path[0]["from"], block_of(path[0]["from"]["port"])), (path[-1]["to"], block_of(path[-1]["to"]["port"]))]
+    ends = path[0]["from"], path[-1]["to"]
     logic = [part for part in path if part["type"] == "logic"]
     carries = sum(part["to"]["port"] in ("COUT", "FCO") for part in logic)
     wide = sum(part["from"]["port"] in ("F0", "F1", "FXA", "FXB", "M") for part in logic)
@@ -273,7 +274,7 @@ def in_words(path):
                                            (carries, "carries")) if n]
     routing = sum(part["delay"] for part in path if part["type"] == "routing")
     rest = sum(part["delay"] for part in path) - routing
-    return (" -> ".join(f"{kind} `{name_of(end['cell'])}`" for end, kind in ends) +
+    return (" -> ".join(f"{block_of(end['cell'], end['port'])} `{name_of(end['cell'])}`" for end in ends) +
             f": {', '.join(counts) or 'no LUT'}; {rest:.1f} ns logic, {routing:.1f} ns routing")
 
 

@@ -61,8 +61,9 @@ class Reports(unittest.TestCase):
 
     def test_ends_of_a_path(self):
         for port, kind in (("Q", "register"), ("DI", "register"), ("CE", "register"), ("P17", "multiplier"),
-                           ("A3", "multiplier"), ("DOA5", "block RAM"), ("ADB11", "block RAM"), ("WD2", "distributed RAM")):
-            self.assertEqual(fpga.block_of(port), kind, port)
+                           ("A3", "multiplier"), ("DOA5", "block RAM"), ("ADB11", "block RAM")):
+            self.assertEqual(fpga.block_of("u_dut.u_x.q", port), kind, port)
+        self.assertEqual(fpga.block_of("u_dut.u_x.mem.0.7$DPRAM_COMB3", "WRE"), "distributed RAM")
         for cell, name in (("u_dut.u_primtest.u_pipeline.u_axis.q_TRELLIS_FF_Q_3", "u_pipeline.u_axis.q"),
                            ("u_dut.u_primtest.u_operands.mem.0.4", "u_operands.mem.0.4"),
                            ("u_dut.gen_lane[2].u_lane.u_primtest.q_TRELLIS_FF_Q", "gen_lane[2].u_lane.u_primtest.q"),
