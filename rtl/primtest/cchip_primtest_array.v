@@ -62,6 +62,7 @@ module cchip_primtest_array #(
   localparam integer COUNT_W = $clog2(LANES * CONTEXTS + 1);
   localparam integer SHUT_W = $clog2(`CCHIP_ARRAY_LATENCY(LANES) + 1);
   localparam [31:0] PLACES = CONTEXTS;
+  localparam [31:0] COUNT = LANES * CONTEXTS;
   localparam [31:0] SHUT = `CCHIP_ARRAY_LATENCY(LANES);
   localparam [7:0] RM = VERTS_A == 4 ? `CCHIP_RM_QUAD_QUAD : VERTS_B == 4 ? `CCHIP_RM_TRI_QUAD : `CCHIP_RM_TRI_TRI;
 
@@ -281,7 +282,7 @@ module cchip_primtest_array #(
 
   always @(posedge clk)
     if (!shut) begin
-      `CCHIP_ASSERT(a_count, {{32 - COUNT_W{1'b0}}, pairs_q} <= LANES * CONTEXTS)
+      `CCHIP_ASSERT(a_count, {{32 - COUNT_W{1'b0}}, pairs_q} <= COUNT)
       `CCHIP_ASSERT(a_choice, choice_q != {LANES{1'b0}} && (choice_q & (choice_q - {{LANES - 1{1'b0}}, 1'b1})) == {LANES{1'b0}})
     end
 
