@@ -5,7 +5,7 @@ the partition, and the static side in simulation. Broken copies of the scripts m
 
 usage: test_vendor.py [Ports|Static|Vivado|Quartus|Mutations]...
 
-Environment: TCLSH, YOSYS, IVERILOG, VVP = commands (default: found on PATH)."""
+Environment: TCLSH, VERILATOR, YOSYS, IVERILOG, VVP = commands (default: found on PATH)."""
 import functools
 import json
 import os
@@ -167,6 +167,11 @@ class Static(unittest.TestCase):
             self.assertEqual(run("IVERILOG", "iverilog", "-g2005", "-Wall", "-I", ROOT / "rtl/include", "-s",
                                  "bench_static", "-o", f"{folder}/bench", *sources), (0, ""))
             self.assertEqual(run("VVP", "vvp", "-n", f"{folder}/bench"), (0, "PASS\n"))
+
+    def test_static_side_is_clean(self):
+        self.assertEqual(run("VERILATOR", "verilator", "--lint-only", "-Wall", f"-I{ROOT}/rtl/include",
+                             ROOT / "rtl/lint/verilator_waiver.vlt", *files(), ROOT / STATIC, "--top-module",
+                             "cchip_pr_static"), (0, ""))
 
     def test_static_side_is_clean_around_an_empty_cell(self):
         sources = " ".join(str(name) for name in [*files(), ROOT / STATIC])
