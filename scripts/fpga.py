@@ -123,6 +123,7 @@ def step(name, command, files, depends, product):
         code = subprocess.run([place_in(part) for part in command], cwd=ROOT, stdout=log,
                               stderr=subprocess.STDOUT).returncode
     if code == 0 and (partial / product).exists():
+        shutil.rmtree(folder, ignore_errors=True)
         partial.rename(folder)
         return folder
     failed = BUILD / f"{name}.failed"
@@ -173,7 +174,7 @@ def synthesise(row, options):
     return yosys(f"{row.name}.synth", script, text, "netlist.json")
 
 
-# script, then {column: cells counted}; a dictionary of parameters demands values of them
+# command of Yosys, and the cells that each column counts
 FAMILIES = {
     "Xilinx 7": ("synth_xilinx -family xc7 -flatten", {
         "LUT": r"LUT[1-6]", "carry": r"CARRY4", "FF": r"FD[RSCP]E", "DSP": r"DSP48E1", "block RAM": r"RAMB\w+",
@@ -195,8 +196,9 @@ def count_family(row, family):
     script = read_verilog(text) + settings + f"{command} -top {row.top}\nwrite_json {{}}/netlist.json\n"
     folder = yosys(f"{row.name}.{family.split()[0].lower()}", script, text, "netlist.json")
     modules = json.loads((folder / "netlist.json").read_text())["modules"]
-    found = [cell for cell in modules[row.top]["cells"].values()]
-    counts = {name: sum(bool(re.fullmatch(pattern, cell["type"])) for cell in found) for name, pattern in columns.items()}
+    found = modules[row.top]["cells"].values()
+    counts = {name: sum(bool(re.fullmatch(pattern, cell["type"])) for cell in found)
+              for name, pattern in columns.items()}
     used = lambda cell, name: int(cell["parameters"].get(name, "0"), 2) > 0
     counts["packed"] = sum(cell["type"] == "DSP48E1" and all(used(cell, r) for r in ("AREG", "BREG", "MREG", "PREG"))
                            for cell in found)
@@ -259,9 +261,9 @@ def block_of(cell, port):
 def name_of(cell):
     """What a cell of the netlist is called in the RTL: its instances and signal, without what Yosys appended."""
     inside = re.sub(r"^u_dut\.(u_primtest\.)?", "", cell)
-    found = re.match(r"(.*?)(_[A-Z0-9]+)*_(TRELLIS_FF|LUT4|PFUMX|CCU2C|L6MUX21|MULT18X18D|TRELLIS_DPR16X4|DP16KD|TRELLIS_\w+)(_|$)",
-                     inside)
-    return ("" if cell.startswith("u_dut.") else "harness: ") + re.sub(r"\$.*$", "", found.group(1) if found else inside)
+    found = re.match(r"(.*?)(_[A-Z0-9]+)*_(LUT4|PFUMX|CCU2C|L6MUX21|MULT18X18D|DP16KD|TRELLIS_\w+?)(_|$)", inside)
+    name = re.sub(r"\$.*$", "", found.group(1) if found else inside)
+    return name if cell.startswith("u_dut.") else f"harness: {name}"
 
 
 def in_words(path):
@@ -281,8 +283,8 @@ def in_words(path):
 def cells(stat):
     """Cells {type: count} of every module, from `stat -json`; counts of the instances of modules are left out."""
     modules = json.loads(stat)["modules"]
-    return {name.lstrip("\\"): {cell: n for cell, n in module["num_cells_by_type"].items() if re.fullmatch(r"\w+", cell)}
-            for name, module in modules.items()}
+    return {name.lstrip("\\"): {cell: n for cell, n in module["num_cells_by_type"].items()
+                               if re.fullmatch(r"\w+", cell)} for name, module in modules.items()}
 
 
 def module_cells(modules):
@@ -349,11 +351,11 @@ def choices_table(found):
     """What the paper's own choices cost: projection, depth of the pipeline, programme."""
     names = ("tri_tri", "tri_tri_absolute", *(name for name in found if "substages" in name))
     body = []
-    for row in sorted((found[name] for name in names), key=lambda r: ("ABSOLUTE_PROJECTION" in r["parameters"], r["substages"])):
+    absolute = lambda row: row["parameters"].get("ABSOLUTE_PROJECTION", 0)
+    for row in sorted((found[name] for name in names), key=lambda r: (absolute(r), r["substages"])):
         settings = [f"{name}={value}" for name, value in row["parameters"].items()]
         clocks = int(datasheet.pairs(datasheet.stream("BRIEF=1", *settings))[0][3])
-        absolute = row["parameters"].get("ABSOLUTE_PROJECTION", 0)
-        body.append(["absolute" if absolute else "relative", row["substages"], row["lut4"], row["ff"], row["dsp"],
+        body.append(["absolute" if absolute(row) else "relative", row["substages"], row["lut4"], row["ff"], row["dsp"],
                      clocks_of(row), f"{clocks} / {1e3 * clocks / row['fmax_median']:.0f}",
                      millions(row, TYPICAL, "exhaustive"), millions(row, TYPICAL, "directed")])
     return datasheet.table(["projection", "`SUBSTAGES`", "LUT4, logic", "FF", "DSP", "Fmax, MHz: min / median / max",
@@ -366,8 +368,9 @@ def classes_table(found):
     body = []
     for row in (found[name] for name in ("tri_tri", "tri_quad", "quad_quad") if name in found):
         for name, means in row["mean_beats"].items():
-            body.append([row["label"], name] + [text for programme in ("exhaustive", "directed")
-                                                for text in (f"{means[programme]:.3f}", millions(row, name, programme))])
+            columns = [(f"{means[programme]:.3f}", millions(row, name, programme))
+                       for programme in ("exhaustive", "directed")]
+            body.append([f"`{row['label']}`", name, *columns[0], *columns[1]])
     return datasheet.table(["row", "class", "EXHAUSTIVE: mean beats", "10^6 pairs/s", "DIRECTED: mean beats",
                             "10^6 pairs/s"], body)
 

@@ -89,11 +89,13 @@ class Reports(unittest.TestCase):
     def test_last_line(self):
         line = fpga.last_line(self.figures([99.96]))
         self.assertRegex(line, r"^tri_tri w=16 lut=\d+ ff=\d+ dsp=24 ram=\d+ fmax_mhz=100\.0 seeds=1$")
-        self.assertRegex(fpga.last_line(self.figures([80.0] * 3, fpga.rows()["tri_tri_w18"])), r"^tri_tri w=18 .* seeds=3$")
+        line = fpga.last_line(self.figures([80.0] * 3, fpga.rows()["tri_tri_w18"]))
+        self.assertRegex(line, r"^tri_tri w=18 .* seeds=3$")
 
     def test_tables_have_a_row_for_each_row(self):
         row = self.figures([100.0])
-        row["families"] = {family: {**{c: 1 for c in columns}, "packed": 1} for family, (_, columns) in fpga.FAMILIES.items()}
+        row["families"] = {family: {**{column: 1 for column in columns}, "packed": 1}
+                           for family, (_, columns) in fpga.FAMILIES.items()}
         found = {"tri_tri": row, "tri_quad": row}
         self.assertEqual(fpga.area_table(found).count("\n"), 2 + 2)
         self.assertEqual(fpga.classes_table(found).count("\n"), 2 + 2)
