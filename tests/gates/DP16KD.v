@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+`default_nettype none
+// Simulation model of Lattice ECP5's block RAM, for netlists, in the one mode that synthesis takes for the memories
+// here: 512 words of 36 bits (FPGA-TN-02204), written through port A, read through port B one clock after the address.
+//   write   port A: CEA and WEA; byte i of 9 bits if ADA<i>; word ADA5..13; data {DIB, DIA}
+//   read    port B: CEB; word ADB5..13; data {DOB, DOA}
+//   both at one word on one clock: undefined here (Yosys counts on nothing)
+// Other widths, output registers, resets, inverted clocks and initial contents other than 0 are refused.
+/* verilator lint_off DECLFILENAME */
+module DP16KD #(
+    parameter integer DATA_WIDTH_A = 18,
+    parameter integer DATA_WIDTH_B = 18,
+    parameter REGMODE_A = "NOREG",
+    parameter REGMODE_B = "NOREG",
+    parameter RESETMODE = "SYNC",
+    parameter ASYNC_RESET_RELEASE = "SYNC",
+    parameter CSDECODE_A = "0b000",
+    parameter CSDECODE_B = "0b000",
+    parameter WRITEMODE_A = "NORMAL",
+    parameter WRITEMODE_B = "NORMAL",
+    parameter CLKAMUX = "CLKA",
+    parameter CLKBMUX = "CLKB",
+    parameter GSR = "ENABLED",
+    parameter [319:0] INITVAL_00 = 320'd0,
+    parameter [319:0] INITVAL_01 = 320'd0,
+    parameter [319:0] INITVAL_02 = 320'd0,
+    parameter [319:0] INITVAL_03 = 320'd0,
+    parameter [319:0] INITVAL_04 = 320'd0,
+    parameter [319:0] INITVAL_05 = 320'd0,
+    parameter [319:0] INITVAL_06 = 320'd0,
+    parameter [319:0] INITVAL_07 = 320'd0,
+    parameter [319:0] INITVAL_08 = 320'd0,
+    parameter [319:0] INITVAL_09 = 320'd0,
+    parameter [319:0] INITVAL_0A = 320'd0,
+    parameter [319:0] INITVAL_0B = 320'd0,
+    parameter [319:0] INITVAL_0C = 320'd0,
+    parameter [319:0] INITVAL_0D = 320'd0,
+    parameter [319:0] INITVAL_0E = 320'd0,
+    parameter [319:0] INITVAL_0F = 320'd0,
+    parameter [319:0] INITVAL_10 = 320'd0,
+    parameter [319:0] INITVAL_11 = 320'd0,
+    parameter [319:0] INITVAL_12 = 320'd0,
+    parameter [319:0] INITVAL_13 = 320'd0,
+    parameter [319:0] INITVAL_14 = 320'd0,
+    parameter [319:0] INITVAL_15 = 320'd0,
+    parameter [319:0] INITVAL_16 = 320'd0,
+    parameter [319:0] INITVAL_17 = 320'd0,
+    parameter [319:0] INITVAL_18 = 320'd0,
+    parameter [319:0] INITVAL_19 = 320'd0,
+    parameter [319:0] INITVAL_1A = 320'd0,
+    parameter [319:0] INITVAL_1B = 320'd0,
+    parameter [319:0] INITVAL_1C = 320'd0,
+    parameter [319:0] INITVAL_1D = 320'd0,
+    parameter [319:0] INITVAL_1E = 320'd0,
+    parameter [319:0] INITVAL_1F = 320'd0,
+    parameter [319:0] INITVAL_20 = 320'd0,
+    parameter [319:0] INITVAL_21 = 320'd0,
+    parameter [319:0] INITVAL_22 = 320'd0,
+    parameter [319:0] INITVAL_23 = 320'd0,
+    parameter [319:0] INITVAL_24 = 320'd0,
+    parameter [319:0] INITVAL_25 = 320'd0,
+    parameter [319:0] INITVAL_26 = 320'd0,
+    parameter [319:0] INITVAL_27 = 320'd0,
+    parameter [319:0] INITVAL_28 = 320'd0,
+    parameter [319:0] INITVAL_29 = 320'd0,
+    parameter [319:0] INITVAL_2A = 320'd0,
+    parameter [319:0] INITVAL_2B = 320'd0,
+    parameter [319:0] INITVAL_2C = 320'd0,
+    parameter [319:0] INITVAL_2D = 320'd0,
+    parameter [319:0] INITVAL_2E = 320'd0,
+    parameter [319:0] INITVAL_2F = 320'd0,
+    parameter [319:0] INITVAL_30 = 320'd0,
+    parameter [319:0] INITVAL_31 = 320'd0,
+    parameter [319:0] INITVAL_32 = 320'd0,
+    parameter [319:0] INITVAL_33 = 320'd0,
+    parameter [319:0] INITVAL_34 = 320'd0,
+    parameter [319:0] INITVAL_35 = 320'd0,
+    parameter [319:0] INITVAL_36 = 320'd0,
+    parameter [319:0] INITVAL_37 = 320'd0,
+    parameter [319:0] INITVAL_38 = 320'd0,
+    parameter [319:0] INITVAL_39 = 320'd0,
+    parameter [319:0] INITVAL_3A = 320'd0,
+    parameter [319:0] INITVAL_3B = 320'd0,
+    parameter [319:0] INITVAL_3C = 320'd0,
+    parameter [319:0] INITVAL_3D = 320'd0,
+    parameter [319:0] INITVAL_3E = 320'd0,
+    parameter [319:0] INITVAL_3F = 320'd0
+) (
+    input  wire DIA0, DIA1, DIA2, DIA3, DIA4, DIA5, DIA6, DIA7, DIA8, DIA9, DIA10, DIA11, DIA12, DIA13,
+                DIA14, DIA15, DIA16, DIA17,
+    input  wire DIB0, DIB1, DIB2, DIB3, DIB4, DIB5, DIB6, DIB7, DIB8, DIB9, DIB10, DIB11, DIB12, DIB13,
+                DIB14, DIB15, DIB16, DIB17,
+    input  wire ADA0, ADA1, ADA2, ADA3, ADA4, ADA5, ADA6, ADA7, ADA8, ADA9, ADA10, ADA11, ADA12, ADA13,
+    input  wire ADB0, ADB1, ADB2, ADB3, ADB4, ADB5, ADB6, ADB7, ADB8, ADB9, ADB10, ADB11, ADB12, ADB13,
+    input  wire CEA, OCEA, CLKA, WEA, RSTA, CSA0, CSA1, CSA2, CEB, OCEB, CLKB, WEB, RSTB, CSB0, CSB1, CSB2,
+    output wire DOA0, DOA1, DOA2, DOA3, DOA4, DOA5, DOA6, DOA7, DOA8, DOA9, DOA10, DOA11, DOA12, DOA13,
+                DOA14, DOA15, DOA16, DOA17,
+    output wire DOB0, DOB1, DOB2, DOB3, DOB4, DOB5, DOB6, DOB7, DOB8, DOB9, DOB10, DOB11, DOB12, DOB13,
+                DOB14, DOB15, DOB16, DOB17
+);
+
+  generate
+    if (DATA_WIDTH_A != 36 || DATA_WIDTH_B != 36) begin : gen_width
+      dp16kd_model_knows_512_words_of_36_bits_only u_error ();
+    end
+    if (REGMODE_A != "NOREG" || REGMODE_B != "NOREG" || CSDECODE_A != "0b000" || CSDECODE_B != "0b000"
+        || CLKAMUX != "CLKA" || CLKBMUX != "CLKB") begin : gen_mode
+      dp16kd_model_knows_neither_output_registers_nor_selects_nor_inverted_clocks u_error ();
+    end
+    if ({INITVAL_3F, INITVAL_3E, INITVAL_3D, INITVAL_3C, INITVAL_3B, INITVAL_3A, INITVAL_39, INITVAL_38,
+      INITVAL_37, INITVAL_36, INITVAL_35, INITVAL_34, INITVAL_33, INITVAL_32, INITVAL_31, INITVAL_30,
+      INITVAL_2F, INITVAL_2E, INITVAL_2D, INITVAL_2C, INITVAL_2B, INITVAL_2A, INITVAL_29, INITVAL_28,
+      INITVAL_27, INITVAL_26, INITVAL_25, INITVAL_24, INITVAL_23, INITVAL_22, INITVAL_21, INITVAL_20,
+      INITVAL_1F, INITVAL_1E, INITVAL_1D, INITVAL_1C, INITVAL_1B, INITVAL_1A, INITVAL_19, INITVAL_18,
+      INITVAL_17, INITVAL_16, INITVAL_15, INITVAL_14, INITVAL_13, INITVAL_12, INITVAL_11, INITVAL_10,
+      INITVAL_0F, INITVAL_0E, INITVAL_0D, INITVAL_0C, INITVAL_0B, INITVAL_0A, INITVAL_09, INITVAL_08,
+      INITVAL_07, INITVAL_06, INITVAL_05, INITVAL_04, INITVAL_03, INITVAL_02, INITVAL_01, INITVAL_00}
+        != {64 * 320{1'b0}}) begin : gen_init
+      dp16kd_model_knows_no_initial_contents u_error ();
+    end
+  endgenerate
+
+  wire [8:0] write_word = {ADA13, ADA12, ADA11, ADA10, ADA9, ADA8, ADA7, ADA6, ADA5};
+  wire [8:0] read_word = {ADB13, ADB12, ADB11, ADB10, ADB9, ADB8, ADB7, ADB6, ADB5};
+  wire [3:0] bytes = {ADA3, ADA2, ADA1, ADA0} & {4{CEA & WEA}};
+  wire [35:0] write_data = {DIB17, DIB16, DIB15, DIB14, DIB13, DIB12, DIB11, DIB10, DIB9, DIB8, DIB7, DIB6, DIB5, DIB4,
+      DIB3, DIB2, DIB1, DIB0, DIA17, DIA16, DIA15, DIA14, DIA13, DIA12, DIA11, DIA10, DIA9, DIA8,
+      DIA7, DIA6, DIA5, DIA4, DIA3, DIA2, DIA1, DIA0};
+
+  reg [35:0] mem[0:511];
+  reg [35:0] read_data;
+  integer i;
+  initial for (i = 0; i < 512; i = i + 1) mem[i] = 36'd0;
+
+  always @(posedge CLKA) begin
+    if (bytes[0]) mem[write_word][8:0] <= write_data[8:0];
+    if (bytes[1]) mem[write_word][17:9] <= write_data[17:9];
+    if (bytes[2]) mem[write_word][26:18] <= write_data[26:18];
+    if (bytes[3]) mem[write_word][35:27] <= write_data[35:27];
+  end
+  always @(posedge CLKB) if (CEB) read_data <= |bytes && write_word == read_word ? 36'bx : mem[read_word];
+
+  assign {DOB17, DOB16, DOB15, DOB14, DOB13, DOB12, DOB11, DOB10, DOB9, DOB8, DOB7, DOB6, DOB5, DOB4,
+      DOB3, DOB2, DOB1, DOB0, DOA17, DOA16, DOA15, DOA14, DOA13, DOA12, DOA11, DOA10, DOA9, DOA8,
+      DOA7, DOA6, DOA5, DOA4, DOA3, DOA2, DOA1, DOA0} = read_data;
+
+`ifndef YOSYS
+  always @*
+    if (RSTA || RSTB || WEB || CSA0 || CSA1 || CSA2 || CSB0 || CSB1 || CSB2 || !OCEB) begin
+      $display("DP16KD %m: this model has no resets and no selects, writes through A and reads through B");
+      $finish;
+    end
+`endif
+
+  wire unused = &{1'b0, OCEA, ADA4, ADB0, ADB1, ADB2, ADB3, ADB4};
+
+endmodule
+`default_nettype wire
