@@ -115,6 +115,7 @@ def step(name, command, files, depends, product):
     if (folder / product).exists():
         return folder
     partial = BUILD / f"{name}-{key}.{os.getpid()}"
+    shutil.rmtree(partial, ignore_errors=True)
     partial.mkdir(parents=True)
     place_in = lambda text: text.replace("{}", str(partial.relative_to(ROOT)))
     for file, text in files.items():
