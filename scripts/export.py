@@ -28,6 +28,8 @@ BLANK = "cchip_primtest_blank"
 # Pairs of the vectors: the default parameters of each top.
 KINDS = {"cchip_primtest_tri_tri": "tri_tri", "cchip_primtest_tri_quad": "tri_quad",
          "cchip_primtest_quad_quad": "quad_quad", "cchip_primtest_array": "tri_tri"}
+# Simulation models of the blocks that a device's leaf instantiates.
+CELLS = {"_ecp5": "tests/gates/MULT18X18D.v"}
 PAGES = ("architecture.md", "definitions.md")
 
 
@@ -119,8 +121,9 @@ def variants(top):
 def constraints(top, mhz):
     period = f"{1000 / mhz:.3f}"
     head = f"""# SPDX-License-Identifier: Apache-2.0
-# {top}: template. It constrains the one clock, {mhz:g} MHz: change that to yours. All ports belong to this clock,
-# rst included (synchronous): no path is false. Inside a larger design the clock comes from there: leave this file out.
+# {top}: template. It constrains the one clock, {mhz:g} MHz: change that to yours.
+# All ports belong to this clock, rst included (synchronous): no path is false. Where the clock comes from your design
+# and is constrained there, leave this file out.
 """
     lpf = head + f"""# Lattice ECP5 (Diamond, nextpnr-ecp5). The ports are more than a package has pins: build the module inside your design,
 # and replace "clk" by the name of the clock there. nextpnr: FREQUENCY PORT for a pin, FREQUENCY NET for a clock of a PLL.
@@ -170,8 +173,9 @@ def write_pages(folder, names):
 
 
 def readme(top, suffixes, pairs, mhz):
-    device = "".join(f"- `{top}{s}.v` instead on {s[1:].upper()}: the same with that device's multiplier block, whose registers "
-                     "synthesis does not find otherwise.\n" for s in suffixes if s)
+    device = "".join(f"- `{top}{s}.v` instead on {s[1:].upper()}: with that device's multiplier block, whose registers synthesis does "
+                     f"not find otherwise. Simulate it with `{pathlib.Path(CELLS[s]).name}`, a model of the block.\n"
+                     for s in suffixes if s)
     if top == BLANK:
         bench, run = "bench_blank", "vvp -n bench.vvp"
         compiled = f"iverilog -g2005 -s bench_blank -o bench.vvp bench_blank.v {top}.v"
@@ -214,6 +218,8 @@ def export(top, options):
         (folder / f"{top}{suffix}.v").write_text(text)
         (folder / f"{top}{suffix}.f").write_text(
             f"// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1\n{top}{suffix}.v\n")
+        if suffix:
+            shutil.copy(ROOT / CELLS[suffix], folder)
     for kind, text in constraints(top, options.mhz).items():
         (folder / "constraints" / f"{top}.{kind}").write_text(text)
     write_pages(folder, closure(top, read_list(RTL / "cchip.f")))

@@ -17,6 +17,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TOP, VECTORS, SCRATCH = "", "", ""
 BLANK = "cchip_primtest_blank"
+PASS = r"\APASS [^\n]*\n\Z"  # and nothing else
 
 
 def run(*command, cwd):
@@ -39,6 +40,8 @@ class Export(unittest.TestCase):
         cls.folder = pathlib.Path(cls.temporary.name) / "alone"
         shutil.copytree(pathlib.Path(SCRATCH) / TOP, cls.folder)
         cls.file = f"{TOP}.v"
+        cls.verilator = (os.environ.get("VERILATOR", "verilator"), "--lint-only", "-Wall", "--top-module", TOP)
+        cls.icarus = (os.environ.get("IVERILOG", "iverilog"), "-g2005", "-Wall", "-t", "null", "-s", TOP)
 
     @classmethod
     def tearDownClass(cls):
@@ -68,10 +71,10 @@ class Export(unittest.TestCase):
         self.assertIn(f"{TOP}, collisionchip {version}", (self.folder / self.file).read_text().splitlines()[1])
 
     def test_verilator(self):
-        self.clean(os.environ.get("VERILATOR", "verilator"), "--lint-only", "-Wall", "--top-module", TOP, self.file)
+        self.clean(*self.verilator, self.file)
 
     def test_icarus(self):
-        self.clean(os.environ.get("IVERILOG", "iverilog"), "-g2005", "-Wall", "-t", "null", "-s", TOP, self.file)
+        self.clean(*self.icarus, self.file)
 
     def test_yosys(self):
         self.yosys(self.file)
@@ -95,6 +98,9 @@ class Export(unittest.TestCase):
         self.assertEqual(set(portable) ^ set(device), {"rtl/arith/cchip_mul18.v", "rtl/vendor/ecp5/cchip_mul18.v"})
         self.assertEqual([name for name in set(portable) & set(device) if portable[name] != device[name]], [])
         self.yosys(f"-lib +/ecp5/cells_bb.v; read_verilog {TOP}_ecp5.v", "select -assert-any t:MULT18X18D")
+        self.clean(*self.icarus, f"{TOP}_ecp5.v", "MULT18X18D.v")
+        commands = [line.replace(self.file, f"{TOP}_ecp5.v MULT18X18D.v") for line in self.commands()]
+        self.assertRegex(self.bench(commands[0], commands[1].replace("+pairs=500", "+pairs=100")), PASS)
 
     def test_file_lists(self):
         lists = sorted(self.folder.glob("*.f"))
@@ -129,10 +135,14 @@ class Export(unittest.TestCase):
             for link in re.findall(r"\]\(([^)#]+)", path.read_text()):
                 self.assertTrue((path.parent / link).exists(), f"{path.relative_to(self.folder)}: {link}")
 
-    def bench(self):
-        """Output of the commands of README.md."""
-        commands = re.findall(r"^ {6}(\S.*)$", (self.folder / "README.md").read_text(), re.M)
-        self.assertEqual(len(commands), 2)
+    def commands(self):
+        """Of README.md."""
+        found = re.findall(r"^ {6}(\S.*)$", (self.folder / "README.md").read_text(), re.M)
+        self.assertEqual(len(found), 2)
+        return found
+
+    def bench(self, *commands):
+        """Output of the two commands."""
         code, text = run("sh", "-e", "-c", "\n".join(commands), cwd=self.folder)
         self.assertEqual(code, 0, text)
         return text
@@ -141,7 +151,7 @@ class Export(unittest.TestCase):
         self.assertLessEqual(len((self.folder / "README.md").read_text().splitlines()), 14)
 
     def test_bench_passes(self):
-        self.assertRegex(self.bench(), r"\APASS [^\n]*\n\Z")
+        self.assertRegex(self.bench(*self.commands()), PASS)
 
     def test_bench_can_fail(self):
         """A multiplier, or the blank module's constant, that is wrong in one bit."""
@@ -152,7 +162,7 @@ class Export(unittest.TestCase):
         self.assertEqual(count, 1)
         path.write_text(broken)
         try:
-            self.assertRegex(self.bench(), r"(?m)^FAIL clock ")
+            self.assertRegex(self.bench(*self.commands()), r"(?m)^FAIL clock ")
         finally:
             path.write_text(text)
 
