@@ -246,11 +246,11 @@ def equivalent(technology, build, folder, module, parameters, netlist):
     yosys(folder / f"{netlist}.proof.log",
           f"read_verilog -DSYNTHESIS -I{ROOT / 'rtl' / 'include'} {files(technology.sources())}\n"
           f"hierarchy -check -top {module} {settings}\nrename -top gold\n{low}\nwrite_rtlil {folder}/gold.il\n"
-          f"design -reset\nread_verilog {files(models)}\nread_verilog {folder}/{netlist}.v\n"
+          f"design -reset\nread_verilog -defer {files(models)}\nread_verilog {folder}/{netlist}.v\n"
           f"hierarchy -check -top gate\n{low}\nwrite_rtlil {folder}/gate.il\n"
           f"design -reset\nread_rtlil {folder}/gold.il\nread_rtlil {folder}/gate.il\n"
           f"miter -equiv -flatten gold gate both\nhierarchy -top both\nasync2sync\n{settle(source)}"
-          "techmap; opt; dffunmap\nsetundef -init -zero\nsetundef -undriven -zero\naigmap\nstat\n"
+          "techmap; opt_expr; opt_clean; dffunmap\nsetundef -init -zero\nsetundef -undriven -zero\naigmap\nstat\n"
           f"write_aiger -zinit {miter}\n")
     log = folder / f"{netlist}.abc.log"
     verdict = run(log, "yosys-abc", "-c", f"read {miter}; print_stats; strash; scorr; dprove")
