@@ -160,20 +160,22 @@ module cchip_primtest_array #(
     for (lane = 0; lane < LANES; lane = lane + 1) begin : gen_lanes
       localparam [31:0] LANE = lane;
 
-      // places that are neither chosen nor in flight
+      // places that are neither chosen nor in flight; the count sees a choice one clock late
       reg  [PLACES_W-1:0] places_q;
-      reg                 room_q, give_q;
-      wire                several = |(places_q >> 1);
+      reg                 room_q, give_q, take_q;
+      wire [PLACES_W-1:0] places = places_q - {{PLACES_W - 1{1'b0}}, take_q};
+      wire                several = |(places >> 1);
       always @(posedge clk)
         if (shut) begin
           give_q   <= 1'b0;
+          take_q   <= 1'b0;
           places_q <= PLACES[PLACES_W-1:0];
           room_q   <= 1'b1;
         end else begin
-          give_q <= answer & answer_lane == LANE[LANE_W-1:0];
-          if (take[lane] != give_q)
-            places_q <= take[lane] ? places_q - {{PLACES_W - 1{1'b0}}, 1'b1} : places_q + {{PLACES_W - 1{1'b0}}, 1'b1};
-          room_q <= give_q | (take[lane] ? several : room_q);
+          give_q   <= answer & answer_lane == LANE[LANE_W-1:0];
+          take_q   <= take[lane];
+          places_q <= places + {{PLACES_W - 1{1'b0}}, give_q};
+          room_q   <= give_q | (take[lane] ? several : room_q);
         end
       assign room[lane] = room_q;
 
@@ -273,8 +275,8 @@ module cchip_primtest_array #(
           `CCHIP_ASSERT(a_place, !pair_valid || pair_ready)
         end
         if (!shut) begin
-          `CCHIP_ASSERT(a_room, room_q == (places_q != {PLACES_W{1'b0}}))
-          `CCHIP_ASSERT(a_places, {{32 - PLACES_W{1'b0}}, places_q} <= PLACES)
+          `CCHIP_ASSERT(a_room, room_q == (places != {PLACES_W{1'b0}}))
+          `CCHIP_ASSERT(a_places, {{32 - PLACES_W{1'b0}}, places} <= PLACES)
         end
       end
     end
