@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 // cchip_norm1: sum of the absolute values of three components. q = |v.x| + |v.y| + |v.z|.
-//   latency      CCHIP_NORM1_LATENCY = 2 clocks
+//   latency      CCHIP_NORM1_LATENCY = 3 clocks
 //   throughput   one result per clock, never stalls
-//   numbers      components two's complement of V_W bits, x in the low bits; q unsigned, V_W + 1 bits, exact
+//   numbers      v two's complement, x in the low bits; q unsigned, exact
 //   reset        none (data only)
 module cchip_norm1 #(
     // width of a component, bit, >= 2
@@ -14,21 +14,36 @@ module cchip_norm1 #(
     output wire [    V_W:0] q
 );
 
-  reg [3*V_W-1:0] absolute_q;
-  reg [V_W:0] sum_q;
-
+  // ---- clock 1: |v| of what is not negative, |v| - 1 of what is
+  reg [3*(V_W-1)-1:0] size_q;
+  reg x_negative_q;
+  reg [1:0] rest_q;  // y and z: how many are negative
   genvar d;
   generate
     for (d = 0; d < 3; d = d + 1) begin : gen_component
-      wire [V_W-1:0] x = v[V_W*d+:V_W];
-      always @(posedge clk) absolute_q[V_W*d+:V_W] <= x[V_W-1] ? ~x + {{V_W - 1{1'b0}}, 1'b1} : x;
+      always @(posedge clk) size_q[(V_W-1)*d+:V_W-1] <= v[V_W*d+:V_W-1] ^ {V_W - 1{v[V_W*d+V_W-1]}};
     end
   endgenerate
+  always @(posedge clk) begin
+    x_negative_q <= v[V_W-1];
+    rest_q       <= {v[2*V_W-1] & v[3*V_W-1], v[2*V_W-1] ^ v[3*V_W-1]};
+  end
 
-  always @(posedge clk)
-    sum_q <= {1'b0, absolute_q[0+:V_W]} + {1'b0, absolute_q[V_W+:V_W]} + {1'b0, absolute_q[2*V_W+:V_W]};
+  // ---- clock 2: the missing ones go in as carries
+  wire [V_W:0] xy = {1'b0, size_q[0+:V_W-1], x_negative_q} + {1'b0, size_q[V_W-1+:V_W-1], x_negative_q};
+  wire [V_W:0] rest = {{V_W - 1{1'b0}}, rest_q};
+  reg [V_W-1:0] xy_q, z_q;
+  always @(posedge clk) begin
+    xy_q <= xy[V_W:1];
+    z_q  <= {1'b0, size_q[2*(V_W-1)+:V_W-1]} + rest[V_W-1:0];
+  end
+
+  // ---- clock 3
+  reg [V_W:0] sum_q;
+  always @(posedge clk) sum_q <= {1'b0, xy_q} + {1'b0, z_q};
 
   assign q = sum_q;
+  wire unused = &{1'b0, xy[0], rest[V_W]};
 
 endmodule
 `default_nettype wire

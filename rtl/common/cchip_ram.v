@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 // cchip_ram: memory with one write port and one registered read port.
-//   latency      read data 1 clock after the address
+//   latency      read data CCHIP_RAM_LATENCY = 3 clocks after the address; write data come 1 clock after write
+//                and its address: what fans out to all blocks starts from registers
 //   throughput   one write and one read per clock
-//   collision    a read of the address written on the same clock returns the old word
+//   collision    an address one clock after that of the write, on the clock of its data, reads the new word;
+//                an earlier one the old word
 //   reset        none; words are undefined until written
 module cchip_ram #(
     // width of a word, bit
@@ -16,7 +18,7 @@ module cchip_ram #(
     input  wire              clk,
     input  wire              write,
     input  wire [ADDR_W-1:0] write_addr,
-    input  wire [ WIDTH-1:0] write_data,
+    input  wire [ WIDTH-1:0] write_data,  // one clock after write, write_addr
     input  wire [ADDR_W-1:0] read_addr,
     output reg  [ WIDTH-1:0] read_data
 );
@@ -27,11 +29,46 @@ module cchip_ram #(
     end
   endgenerate
 
-  reg [WIDTH-1:0] mem[0:DEPTH-1];
+  // banks of 16 words, the smallest memory of LUTs. A register on both sides of the memory: the choice of the bank
+  // comes behind it.
+  localparam integer BANKS = (DEPTH + 15) / 16;
+  localparam integer WORD_W = ADDR_W > 4 ? 4 : ADDR_W;
 
+  reg [WORD_W-1:0] write_word_q;
+  reg [ADDR_W-1:0] read_addr_q, read_addr_q2;
+  reg [WIDTH*BANKS-1:0] words_q2;
+  always @(posedge clk) write_word_q <= write_addr[WORD_W-1:0];
+
+  genvar b;
+  generate
+    for (b = 0; b < BANKS; b = b + 1) begin : gen_bank
+      localparam [31:0] B = b;
+      (* ram_style = "distributed" *)
+      reg [WIDTH-1:0] mem [0:(1<<WORD_W)-1];
+      reg write_q;
+      if (BANKS == 1) begin : gen_one
+        always @(posedge clk) write_q <= write;
+      end else begin : gen_decode
+        always @(posedge clk) write_q <= write & write_addr[ADDR_W-1:4] == B[ADDR_W-5:0];
+      end
+      always @(posedge clk) begin
+        if (write_q) mem[write_word_q] <= write_data;
+        words_q2[WIDTH*b+:WIDTH] <= mem[read_addr_q[WORD_W-1:0]];
+      end
+    end
+  endgenerate
+
+  function [WIDTH-1:0] choose(input [WIDTH*BANKS-1:0] from, input [ADDR_W-1:0] address);
+    integer j;
+    begin
+      choose = from[0+:WIDTH];
+      for (j = 1; j < BANKS; j = j + 1) if ({{32 - ADDR_W{1'b0}}, address} >> 4 == j) choose = from[WIDTH*j+:WIDTH];
+    end
+  endfunction
   always @(posedge clk) begin
-    if (write) mem[write_addr] <= write_data;
-    read_data <= mem[read_addr];
+    read_addr_q  <= read_addr;
+    read_addr_q2 <= read_addr_q;
+    read_data    <= choose(words_q2, read_addr_q2);
   end
 
 endmodule

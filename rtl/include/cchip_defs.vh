@@ -43,6 +43,8 @@
 `define CCHIP_MUL18_LATENCY 2
 // width of a programme code [bit]
 `define CCHIP_PROG_W 3
+// state of a pair's programme that travels with its beat (cchip_axis_programme) [bit]
+`define CCHIP_STATE_W 34
 
 // programme requested by s_pair_mode
 `define CCHIP_MODE_EXHAUSTIVE 2'd0 // the paper's schedule: every axis, back to back
@@ -97,26 +99,32 @@
 `define CCHIP_MUL_LATENCY(a, b) (`CCHIP_MUL18_LATENCY + `CCHIP_LEVELS(`CCHIP_LIMBS((a)) * `CCHIP_LIMBS((b))))
 // edges, products, difference of products [clock]
 `define CCHIP_AXIS_SUBSTAGES_MIN(w) (2 + `CCHIP_MUL_LATENCY(`CCHIP_EDGE_W((w)), `CCHIP_EDGE_W((w))))
-// point differences (or, absolute, differences of projections), products, two levels of sums; at least the 6 of the error bounds [clock]
-`define CCHIP_PROJECT_SUBSTAGES_MIN(w) (`CCHIP_MUL_LATENCY(`CCHIP_EDGE_W((w)), `CCHIP_AXIS_W((w))) <= 3 ? 6 : 3 + `CCHIP_MUL_LATENCY(`CCHIP_EDGE_W((w)), `CCHIP_AXIS_W((w))))
+// point differences (or, absolute, differences of projections), products, two levels of sums [clock]
+`define CCHIP_PROJECT_SUBSTAGES_MIN(w) (3 + `CCHIP_MUL_LATENCY(`CCHIP_EDGE_W((w)), `CCHIP_AXIS_W((w))))
 // smallest legal SUBSTAGES; the project stage is always the longer one [clock]
 `define CCHIP_SUBSTAGES_MIN(w) (`CCHIP_PROJECT_SUBSTAGES_MIN((w)))
-// macro stage 1 [clock]
-`define CCHIP_SELECT_LATENCY (1)
+// cchip_ram: address to data; a beat to its operands [clock]
+`define CCHIP_RAM_LATENCY (3)
+// macro stage 1, from the axis code; 1 from the vertices [clock]
+`define CCHIP_SELECT_LATENCY (`CCHIP_RAM_LATENCY + 1)
 // cchip_norm1 [clock]
-`define CCHIP_NORM1_LATENCY (2)
+`define CCHIP_NORM1_LATENCY (3)
 // cchip_box_compare [clock]
-`define CCHIP_BOX_LATENCY (5)
+`define CCHIP_BOX_LATENCY (8)
 // macro stage 4 [clock]
-`define CCHIP_COMPARE_LATENCY (3)
+`define CCHIP_COMPARE_LATENCY (4)
+// the error bounds leave macro stage 3 and enter stage 4 this long after their projections [clock]
+`define CCHIP_BOUND_LAG (2)
+// cchip_axis_programme: verdict to outcome or next axis [clock]
+`define CCHIP_PROGRAMME_LATENCY (4)
 // cchip_sat_pipeline: beat in to verdict out [clock]
 `define CCHIP_PIPE_LATENCY(s) (`CCHIP_SELECT_LATENCY + 2 * (s) + `CCHIP_COMPARE_LATENCY)
 // of a lone pair: handshake of s_pair to its first beat, plus last verdict to handshake of m_result with ready = 1 [clock]
-`define CCHIP_PAIR_OVERHEAD (7)
+`define CCHIP_PAIR_OVERHEAD (6 + `CCHIP_PROGRAMME_LATENCY)
 // lone pair: handshake of s_pair to handshake of m_result, beats issued back to back [clock]
 `define CCHIP_PAIR_LATENCY(s, beats) (`CCHIP_PIPE_LATENCY((s)) + `CCHIP_PAIR_OVERHEAD + (beats) - 1)
 // beat to the next beat of the same pair where the verdict decides what follows (all but EXHAUSTIVE) [clock]
-`define CCHIP_BEAT_LATENCY(s) (`CCHIP_PIPE_LATENCY((s)) + 4)
+`define CCHIP_BEAT_LATENCY(s) (`CCHIP_PIPE_LATENCY((s)) + `CCHIP_PROGRAMME_LATENCY + 3)
 // default CONTEXTS: round trip of a one-beat pair + 4 [pair]
 `define CCHIP_CONTEXTS_DEFAULT(s) (`CCHIP_PAIR_LATENCY((s), 1) + 4)
 // longest time from the last accepted pair to idle = 1 with m_result_ready = 1 [clock]

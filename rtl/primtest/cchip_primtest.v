@@ -52,10 +52,12 @@ module cchip_primtest #(
   localparam integer A_W = 3 * VERTS_A * COORD_W;
   localparam integer B_W = 3 * VERTS_B * COORD_W;
   localparam [31:0] RM = RM_ID;
-  localparam integer USER_W = CONTEXT_W + 37;
   localparam integer CONTEXT_W = CONTEXTS > 1 ? $clog2(CONTEXTS) : 1;
+  localparam integer USER_W = CONTEXT_W + `CCHIP_STATE_W;
   localparam integer COUNT_W = $clog2(CONTEXTS + 1);
-  localparam [31:0] CONTEXT_COUNT = CONTEXTS;
+  localparam [31:0] FULL = CONTEXTS;
+  localparam [31:0] LAST = CONTEXTS - 1;
+  localparam [31:0] ONE = 1;
   localparam integer RESULT_W = 16 + 3 + 9 + 6;
 
   generate
@@ -78,30 +80,31 @@ module cchip_primtest #(
   // ---- pairs between the two handshakes: decides ready and idle
   reg  [COUNT_W-1:0] pairs_q;
   reg                ready_q, idle_q;
+  reg                awake_q;
   wire               accept = s_pair_valid & ready_q;
   wire               answer = m_result_valid & m_result_ready;
-  wire [COUNT_W-1:0] pairs_d = accept == answer ? pairs_q
-                             : accept ? pairs_q + {{COUNT_W - 1{1'b0}}, 1'b1}
-                                      : pairs_q - {{COUNT_W - 1{1'b0}}, 1'b1};
+  wire               up = accept & ~answer;
+  wire               down = answer & ~accept;
 
+  // sums and comparisons start from registers: the handshakes only choose
   always @(posedge clk)
     if (rst) begin
       pairs_q <= {COUNT_W{1'b0}};
       ready_q <= 1'b0;
       idle_q  <= 1'b1;
+      awake_q <= 1'b0;
     end else begin
-      pairs_q <= pairs_d;
-      ready_q <= pairs_d != CONTEXT_COUNT[COUNT_W-1:0];
-      idle_q  <= pairs_d == {COUNT_W{1'b0}};
+      awake_q <= 1'b1;  // the first context stands ready two clocks after rst
+      pairs_q <= up ? pairs_q + ONE[COUNT_W-1:0] : down ? pairs_q - ONE[COUNT_W-1:0] : pairs_q;
+      ready_q <= awake_q && (up ? pairs_q != LAST[COUNT_W-1:0] : down || pairs_q != FULL[COUNT_W-1:0]);
+      idle_q  <= ~up && (down ? pairs_q == ONE[COUNT_W-1:0] : pairs_q == {COUNT_W{1'b0}});
     end
 
   assign s_pair_ready = ready_q;
   assign idle         = idle_q;
 
   // ---- input register and operand memory: one writer, read by the beats
-  reg              load_valid_q;
   reg [      15:0] load_tag_q;
-  reg [       1:0] load_mode_q;
   reg [       3:0] load_err_q;
   reg [       2:0] load_shift_q;
   reg [   A_W-1:0] load_a_q;
@@ -113,10 +116,7 @@ module cchip_primtest #(
   endfunction
 
   always @(posedge clk) begin
-    if (rst) load_valid_q <= 1'b0;
-    else load_valid_q <= accept;
     load_tag_q  <= s_pair_tag;
-    load_mode_q <= s_pair_mode;
     load_err_q  <= s_pair_err;
     load_shift_q <= error_shift(s_pair_err);
     load_a_q    <= s_pair_a[A_W-1:0];
@@ -147,32 +147,20 @@ module cchip_primtest #(
       .ADDR_W(CONTEXT_W)
   ) u_operands (
       .clk       (clk),
-      .write     (load_valid_q),
+      .write     (accept),
       .write_addr(load_context),
       .write_data({load_shift_q, load_b_q, load_a_q}),
       .read_addr (beat_context),
       .read_data ({operand_shift, operand_b, operand_a})
   );
 
-  // ---- the beat waits one clock for its operands
-  reg              fetch_valid_q, fetch_allow_above_q, fetch_allow_below_q;
-  reg [       8:0] fetch_code_q;
-  reg [USER_W-1:0] fetch_user_q;
-  always @(posedge clk) begin
-    if (rst) fetch_valid_q <= 1'b0;
-    else fetch_valid_q <= beat_valid;
-    fetch_code_q        <= beat_code;
-    fetch_allow_above_q <= beat_allow_above;
-    fetch_allow_below_q <= beat_allow_below;
-    fetch_user_q        <= beat_user;
-  end
-
+  // ---- pipeline: the operands come out of the memory CCHIP_RAM_LATENCY clocks after the beat
   localparam integer POINTS = `CCHIP_POINTS(VERTS_A, VERTS_B);
   wire              verdict_valid, verdict_separated, verdict_certain_gap;
-  wire [POINTS-1:0] verdict_negative, verdict_zero, verdict_certain;
+  wire [POINTS-1:0] verdict_negative, verdict_zero;
   wire [       2:0] verdict_axis_negative, verdict_axis_zero;
   wire [       1:0] verdict_axis_largest;
-  wire              verdict_clear;
+  wire              verdict_certain, verdict_clear;
   wire              verdict_box_separated, verdict_box_certain;
   wire [USER_W-1:0] verdict_user;
 
@@ -186,21 +174,21 @@ module cchip_primtest #(
   ) u_pipeline (
       .clk                    (clk),
       .rst                    (rst),
-      .s_beat_valid           (fetch_valid_q),
-      .s_beat_code            (fetch_code_q),
-      .s_beat_allow_above     (fetch_allow_above_q),
-      .s_beat_allow_below     (fetch_allow_below_q),
-      .s_beat_error_shift     (operand_shift),
-      .s_beat_a               (operand_a),
-      .s_beat_b               (operand_b),
-      .s_beat_user            (fetch_user_q),
+      .s_beat_valid           (beat_valid),
+      .s_beat_code            (beat_code),
+      .s_beat_allow_above     (beat_allow_above),
+      .s_beat_allow_below     (beat_allow_below),
+      .s_beat_user            (beat_user),
+      .s_operand_error_shift  (operand_shift),
+      .s_operand_a            (operand_a),
+      .s_operand_b            (operand_b),
       .m_verdict_valid        (verdict_valid),
       .m_verdict_separated    (verdict_separated),
       .m_verdict_certain_gap  (verdict_certain_gap),
       .m_verdict_negative     (verdict_negative),
       .m_verdict_zero         (verdict_zero),
       .m_verdict_certain      (verdict_certain),
-      .m_verdict_clear          (verdict_clear),
+      .m_verdict_clear        (verdict_clear),
       .m_verdict_axis_negative(verdict_axis_negative),
       .m_verdict_axis_zero    (verdict_axis_zero),
       .m_verdict_axis_largest (verdict_axis_largest),
@@ -221,9 +209,9 @@ module cchip_primtest #(
   ) u_controller (
       .clk                    (clk),
       .rst                    (rst),
-      .s_pair_valid           (load_valid_q),
+      .s_pair_valid           (accept),
       .s_pair_tag             (load_tag_q),
-      .s_pair_mode            (load_mode_q),
+      .s_pair_mode            (s_pair_mode),
       .s_pair_err             (load_err_q),
       .m_load_context         (load_context),
       .m_beat_valid           (beat_valid),
@@ -239,7 +227,7 @@ module cchip_primtest #(
       .s_verdict_negative     (verdict_negative),
       .s_verdict_zero         (verdict_zero),
       .s_verdict_certain      (verdict_certain),
-      .s_verdict_clear          (verdict_clear),
+      .s_verdict_clear        (verdict_clear),
       .s_verdict_axis_negative(verdict_axis_negative),
       .s_verdict_axis_zero    (verdict_axis_zero),
       .s_verdict_axis_largest (verdict_axis_largest),
@@ -255,8 +243,7 @@ module cchip_primtest #(
   );
 
   // ---- results: the FIFO has room for every pair in flight, so verdicts never wait
-  wire                queue_valid, queue_ready, queue_space;
-  wire [RESULT_W-1:0] queue;
+  wire queue_space;
 
   cchip_fifo #(
       .WIDTH(RESULT_W),
@@ -267,18 +254,6 @@ module cchip_primtest #(
       .s_valid(outcome_valid),
       .s_ready(queue_space),
       .s_data (outcome),
-      .m_valid(queue_valid),
-      .m_ready(queue_ready),
-      .m_data (queue)
-  );
-  cchip_skid_buffer #(
-      .WIDTH(RESULT_W)
-  ) u_out (
-      .clk    (clk),
-      .rst    (rst),
-      .s_valid(queue_valid),
-      .s_ready(queue_ready),
-      .s_data (queue),
       .m_valid(m_result_valid),
       .m_ready(m_result_ready),
       .m_data ({m_result_beats, m_result_axis, m_result_definite, m_result_grid, m_result_hit, m_result_tag})
@@ -288,7 +263,7 @@ module cchip_primtest #(
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_result_space, !outcome_valid || queue_space)
-      `CCHIP_ASSERT(a_count, {{32 - COUNT_W{1'b0}}, pairs_q} <= CONTEXT_COUNT)
+      `CCHIP_ASSERT(a_count, {{32 - COUNT_W{1'b0}}, pairs_q} <= FULL)
     end
 
 endmodule

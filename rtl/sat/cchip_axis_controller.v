@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_defs.vh"
 // cchip_axis_controller: sequences the axes of many pairs through one SAT pipeline (paper, figure 6).
-//   pair in      never stalls, from the second clock after rst: the owner accepts at most CONTEXTS pairs
-//                that have no accepted result
+//   pair in      never stalls, from the third clock after rst: the owner accepts at most CONTEXTS pairs
+//                whose result has not left at least three clocks ago
 //   beats        one per clock while a pair waits: beats of an EXHAUSTIVE pair leave back to back;
 //                otherwise pairs that start and pairs that continue take turns
-//   latency      s_pair to its first beat 2 clocks; verdict to the next beat of its pair 3 clocks, to
-//                m_result 1 clock
+//   latency      s_pair to its first beat 4 clocks; verdict to m_result CCHIP_PROGRAMME_LATENCY clocks, to the
+//                next beat of its pair 3 more
 //   cuts         every path
 //   reset        empties everything; no pair of before is ever answered
-// A pair gets a context: its slot in the operand memory. The owner stores the operands on the clock of
-// s_pair under m_load_context and feeds each beat's operands to the pipeline 1 clock after the beat.
+// A pair gets a context: its slot in the operand memory. The owner stores the operands of s_pair under
+// m_load_context; each beat's operands reach the pipeline CCHIP_RAM_LATENCY clocks after the beat.
 // The programme state {context, programme, code, beats, ...} travels with the beat (m_beat_user) and
 // comes back with the verdict; which axis follows is decided by cchip_axis_programme.
 // EXHAUSTIVE: nA, nB, all e_k x f_l (l runs first) whatever they find, the first separating axis is
@@ -31,24 +32,24 @@ module cchip_axis_controller #(
     input  wire                       rst,
     // pairs
     input  wire                       s_pair_valid,
-    input  wire [               15:0] s_pair_tag,
     input  wire [                1:0] s_pair_mode,
-    input  wire [                3:0] s_pair_err,
+    input  wire [               15:0] s_pair_tag,   // one clock after s_pair_valid
+    input  wire [                3:0] s_pair_err,   // one clock after s_pair_valid
     output wire [      CONTEXT_W-1:0] m_load_context,
     // beats to the pipeline and what comes back
     output wire                       m_beat_valid,
     output wire [      CONTEXT_W-1:0] m_beat_context,
     output wire [                8:0] m_beat_code,
-    output wire                       m_beat_allow_above,
+    output wire                       m_beat_allow_above,  // one clock after the beat
     output wire                       m_beat_allow_below,
-    output wire [     CONTEXT_W+36:0] m_beat_user,
+    output wire [CONTEXT_W+`CCHIP_STATE_W-1:0] m_beat_user,
     input  wire                       s_verdict_valid,
-    input  wire [     CONTEXT_W+36:0] s_verdict_user,
+    input  wire [CONTEXT_W+`CCHIP_STATE_W-1:0] s_verdict_user,
     input  wire                       s_verdict_separated,
     input  wire                       s_verdict_certain_gap,
     input  wire [VERTS_A+VERTS_B-4:0] s_verdict_negative,
     input  wire [VERTS_A+VERTS_B-4:0] s_verdict_zero,
-    input  wire [VERTS_A+VERTS_B-4:0] s_verdict_certain,
+    input  wire                       s_verdict_certain,
     input  wire                       s_verdict_clear,
     input  wire [                2:0] s_verdict_axis_negative,
     input  wire [                2:0] s_verdict_axis_zero,
@@ -65,12 +66,9 @@ module cchip_axis_controller #(
     output wire [                5:0] m_result_beats
 );
 
-`include "cchip_defs.vh"
-
-  localparam [31:0] CONTEXT_COUNT = CONTEXTS;
-  localparam integer FRESH_W = CONTEXT_W + 1;
+  localparam [31:0] CONTEXT_LAST = CONTEXTS - 1;
   // programme state: {certain, open, beats, info, code, programme}, see cchip_axis_programme
-  localparam integer STATE_W = 37;
+  localparam integer STATE_W = `CCHIP_STATE_W;
   localparam [8:0] CODE_FIRST = {`CCHIP_AXIS_NORMAL_A, 6'd0};
   localparam [8:0] CODE_ILLEGAL = {`CCHIP_AXIS_ILLEGAL, 6'd0};
   localparam [31:0] LAST_K = VERTS_A - 1;
@@ -86,18 +84,40 @@ module cchip_axis_controller #(
   endgenerate
 
   // ---- contexts: each number is handed out once after reset, then from the list of those given back
-  wire                 outcome;  // the verdict ends its pair
+  wire                 outcome;  // a verdict ended its pair
   wire [CONTEXT_W-1:0] verdict_context = s_verdict_user[STATE_W+:CONTEXT_W];
-  reg  [  FRESH_W-1:0] fresh_q;
-  wire                 fresh_left = fresh_q != CONTEXT_COUNT[FRESH_W-1:0];
-  wire                 free_valid, free_ready;
+  wire [CONTEXT_W-1:0] side_context, outcome_context;  // beside the clocks of the programme
+  cchip_delay #(
+      .WIDTH(CONTEXT_W),
+      .DEPTH(`CCHIP_PROGRAMME_LATENCY - `CCHIP_RAM_LATENCY)
+  ) u_side_context (
+      .clk(clk),
+      .rst(1'b0),
+      .d  (verdict_context),
+      .q  (side_context)
+  );
+  cchip_delay #(
+      .WIDTH(CONTEXT_W),
+      .DEPTH(`CCHIP_RAM_LATENCY)
+  ) u_outcome_context (
+      .clk(clk),
+      .rst(1'b0),
+      .d  (side_context),
+      .q  (outcome_context)
+  );
+
+  reg  [CONTEXT_W-1:0] fresh_q;
+  reg                  fresh_left_q;
+  wire                 free_valid, free_ready, hand_ready;
   wire [CONTEXT_W-1:0] free_context;
-
-  assign m_load_context = fresh_left ? fresh_q[CONTEXT_W-1:0] : free_context;
-
   always @(posedge clk)
-    if (rst) fresh_q <= {FRESH_W{1'b0}};
-    else if (s_pair_valid && fresh_left) fresh_q <= fresh_q + {{FRESH_W - 1{1'b0}}, 1'b1};
+    if (rst) begin
+      fresh_q      <= {CONTEXT_W{1'b0}};
+      fresh_left_q <= 1'b1;
+    end else if (hand_ready & fresh_left_q) begin
+      fresh_q      <= fresh_q + {{CONTEXT_W - 1{1'b0}}, 1'b1};
+      fresh_left_q <= fresh_q != CONTEXT_LAST[CONTEXT_W-1:0];
+    end
 
   cchip_fifo #(
       .WIDTH(CONTEXT_W),
@@ -107,13 +127,36 @@ module cchip_axis_controller #(
       .rst    (rst),
       .s_valid(outcome),
       .s_ready(free_ready),
-      .s_data (verdict_context),
+      .s_data (outcome_context),
       .m_valid(free_valid),
-      .m_ready(s_pair_valid & ~fresh_left),
+      .m_ready(hand_ready & ~fresh_left_q),
       .m_data (free_context)
+  );
+  // the next one to hand out: s_pair_valid drives nothing but this
+  wire hand_valid;
+  cchip_skid_buffer #(
+      .WIDTH(CONTEXT_W)
+  ) u_hand_out (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(fresh_left_q | free_valid),
+      .s_ready(hand_ready),
+      .s_data (fresh_left_q ? fresh_q : free_context),
+      .m_valid(hand_valid),
+      .m_ready(s_pair_valid),
+      .m_data (m_load_context)
   );
 
   // ---- pairs that wait for their first beat
+  reg                  load_valid_q;
+  reg  [CONTEXT_W-1:0] load_context_q;
+  reg  [          1:0] load_mode_q;
+  always @(posedge clk) begin
+    if (rst) load_valid_q <= 1'b0;
+    else load_valid_q <= s_pair_valid;
+    load_context_q <= m_load_context;
+    load_mode_q    <= s_pair_mode;
+  end
   wire                 start_valid, start_ready, start_space;
   wire [CONTEXT_W-1:0] start_context;
   wire [          1:0] start_mode;
@@ -124,9 +167,9 @@ module cchip_axis_controller #(
   ) u_start (
       .clk    (clk),
       .rst    (rst),
-      .s_valid(s_pair_valid),
+      .s_valid(load_valid_q),
       .s_ready(start_space),
-      .s_data ({m_load_context, s_pair_mode}),
+      .s_data ({load_context_q, load_mode_q}),
       .m_valid(start_valid),
       .m_ready(start_ready),
       .m_data ({start_context, start_mode})
@@ -136,11 +179,11 @@ module cchip_axis_controller #(
                              : start_mode == `CCHIP_MODE_DIRECTED ? `CCHIP_PROG_NORMALS
                                                                   : `CCHIP_PROG_ILLEGAL;
   wire [8:0] start_code = start_mode[1] ? CODE_ILLEGAL : CODE_FIRST;
-  wire [STATE_W-1:0] start_state = {1'b1, 1'b0, 6'd0, 17'd0, start_code, start_programme};
+  wire [STATE_W-1:0] start_state = {1'b1, 1'b0, 6'd0, 14'd0, start_code, start_programme};
 
   // ---- pairs that wait for their next beat
-  reg                          next_valid_q;
-  reg  [CONTEXT_W+STATE_W-1:0] next_q;
+  wire                         proceed;
+  wire [STATE_W-1:0]           next_state;
   wire                         ready_valid, ready_space, ready_ready;
   wire [CONTEXT_W+STATE_W-1:0] ready_state;
 
@@ -150,9 +193,9 @@ module cchip_axis_controller #(
   ) u_ready (
       .clk    (clk),
       .rst    (rst),
-      .s_valid(next_valid_q),
+      .s_valid(proceed),
       .s_ready(ready_space),
-      .s_data (next_q),
+      .s_data ({outcome_context, next_state}),
       .m_valid(ready_valid),
       .m_ready(ready_ready),
       .m_data (ready_state)
@@ -165,38 +208,36 @@ module cchip_axis_controller #(
   wire [2:0] beat_programme = beat_q[2:0];
   wire [8:0] beat_code = beat_q[11:3];
   wire [11:0] beat_info = beat_q[23:12];
-  wire [5:0] beat_count = beat_q[34:29];
+  wire [5:0] beat_count = beat_q[31:26];
 
   // an EXHAUSTIVE pair keeps the pipeline until its last axis
-  function last_exhaustive(input [8:0] code);
-    last_exhaustive = code == {`CCHIP_AXIS_CROSS, LAST_K[2:0], LAST_L[2:0]};
-  endfunction
-  wire keep = beat_valid_q && beat_programme == `CCHIP_PROG_EXHAUSTIVE && !last_exhaustive(beat_code);
-  reg [8:0] keep_code;
-  always @*
-    case (beat_code[8:6])
-      `CCHIP_AXIS_NORMAL_A: keep_code = {`CCHIP_AXIS_NORMAL_B, 6'd0};
-      `CCHIP_AXIS_NORMAL_B: keep_code = {`CCHIP_AXIS_CROSS, 6'd0};
-      default:
-      keep_code = beat_code[2:0] == LAST_L[2:0] ? {beat_code[8:6], beat_code[5:3] + 3'd1, 3'd0}
-                                                : {beat_code[8:3], beat_code[2:0] + 3'd1};
-    endcase
+  reg keep_q;
+  reg [8:0] keep_code_q;  // its next axis
+  wire [2:0] keep_k = keep_code_q[5:3];
+  wire [2:0] keep_l = keep_code_q[2:0];
+  wire keep_last = keep_code_q == {`CCHIP_AXIS_CROSS, LAST_K[2:0], LAST_L[2:0]};
 
   // a pair waits for an axis slot (read by monitors)
   wire pair_waits /* verilator public_flat_rd */ = start_valid | ready_valid | beat_valid_q;
   reg  started_q;  // a pair that started had the last turn
   wire take_start = start_valid & (~ready_valid | ~started_q);
-  assign ready_ready = ~keep & ~take_start;
-  assign start_ready = ~keep & take_start;
+  assign ready_ready = ~keep_q & ~take_start;
+  assign start_ready = ~keep_q & take_start;
 
   always @(posedge clk) begin
     if (rst) beat_valid_q <= 1'b0;
-    else beat_valid_q <= keep | ready_valid | start_valid;
+    else beat_valid_q <= keep_q | ready_valid | start_valid;
+    if (rst) keep_q <= 1'b0;
+    else keep_q <= keep_q ? ~keep_last : take_start & start_mode == `CCHIP_MODE_EXHAUSTIVE;
     if (rst) started_q <= 1'b0;
-    else if (!keep) started_q <= take_start;
-    if (keep) begin
-      beat_q[11:3]  <= keep_code;
-      beat_q[34:29] <= beat_count + 6'd1;
+    else if (!keep_q) started_q <= take_start;
+    if (!keep_q) keep_code_q <= {`CCHIP_AXIS_NORMAL_B, 6'd0};
+    else if (keep_code_q[8:6] == `CCHIP_AXIS_NORMAL_B) keep_code_q <= {`CCHIP_AXIS_CROSS, 6'd0};
+    else if (keep_l == LAST_L[2:0]) keep_code_q <= {`CCHIP_AXIS_CROSS, keep_k + 3'd1, 3'd0};
+    else keep_code_q <= {`CCHIP_AXIS_CROSS, keep_k, keep_l + 3'd1};
+    if (keep_q) begin
+      beat_q[11:3]  <= keep_code_q;
+      beat_q[31:26] <= beat_count + 6'd1;
     end else beat_q <= take_start ? {start_context, start_state} : ready_state;
   end
 
@@ -205,24 +246,28 @@ module cchip_axis_controller #(
   assign m_beat_code    = beat_code;
   assign m_beat_user    = beat_q;
 
-  // in-plane axes are one-sided: the own vertices lie on the side of sign(-n_d), d = l
+  // in-plane axes are one-sided: the own vertices lie on the side of sign(-n_d), d = l; told one clock after the beat
   //   info of DEGENERATE: signs of both normals; of COPLANAR: whether n_d is negative
-  wire in_plane_a = beat_code[8:6] == `CCHIP_AXIS_IN_PLANE_A;
-  wire in_plane_b = beat_code[8:6] == `CCHIP_AXIS_IN_PLANE_B;
-  wire [2:0] normal_negative = in_plane_a ? beat_info[2:0] : beat_info[8:6];
-  wire [2:0] normal_zero = in_plane_a ? beat_info[5:3] : beat_info[11:9];
-  wire coplanar = beat_programme == `CCHIP_PROG_COPLANAR;
-  wire n_negative = coplanar ? (in_plane_a ? beat_info[0] : beat_info[1]) : |(normal_negative & (3'd1 << beat_code[1:0]));
-  wire n_zero = ~coplanar & (|(normal_zero & (3'd1 << beat_code[1:0])));
-  wire one_sided = in_plane_a | in_plane_b;
+  reg in_plane_a_q, in_plane_b_q, coplanar_q;
+  reg [2:0] component_q;
+  reg [11:0] info_q;
+  always @(posedge clk) begin
+    in_plane_a_q <= beat_code[8:6] == `CCHIP_AXIS_IN_PLANE_A;
+    in_plane_b_q <= beat_code[8:6] == `CCHIP_AXIS_IN_PLANE_B;
+    coplanar_q   <= beat_programme == `CCHIP_PROG_COPLANAR;
+    component_q  <= 3'd1 << beat_code[1:0];
+    info_q       <= beat_info;
+  end
+  wire [2:0] normal_negative = in_plane_a_q ? info_q[2:0] : info_q[8:6];
+  wire [2:0] normal_zero = in_plane_a_q ? info_q[5:3] : info_q[11:9];
+  wire n_negative = coplanar_q ? (in_plane_a_q ? info_q[0] : info_q[1]) : |(normal_negative & component_q);
+  wire n_zero = ~coplanar_q & (|(normal_zero & component_q));
+  wire one_sided = in_plane_a_q | in_plane_b_q;
   assign m_beat_allow_above = ~one_sided | n_zero | ~n_negative;
   assign m_beat_allow_below = ~one_sided | n_zero | n_negative;
 
   // ---- what follows from the verdict
-  wire [STATE_W-1:0] next_state;
-  wire               outcome_grid, outcome_certain, outcome_open, outcome_illegal, proceed;
-  wire [        8:0] outcome_witness;
-  wire [        5:0] outcome_beats;
+  wire outcome_certain, outcome_open, outcome_illegal;
 
   cchip_axis_programme #(
       .VERTS_A     (VERTS_A),
@@ -230,6 +275,7 @@ module cchip_axis_controller #(
       .WARPED_EXACT(WARPED_EXACT)
   ) u_programme (
       .clk            (clk),
+      .rst            (rst),
       .s_valid        (s_verdict_valid),
       .s_state        (s_verdict_user[STATE_W-1:0]),
       .s_separated    (s_verdict_separated),
@@ -244,23 +290,17 @@ module cchip_axis_controller #(
       .s_box_separated(s_verdict_box_separated),
       .s_box_certain  (s_verdict_box_certain),
       .m_outcome      (outcome),
-      .m_grid         (outcome_grid),
+      .m_grid         (m_result_grid),
       .m_certain      (outcome_certain),
       .m_open         (outcome_open),
       .m_illegal      (outcome_illegal),
-      .m_witness      (outcome_witness),
-      .m_beats        (outcome_beats),
+      .m_witness      (m_result_axis),
+      .m_beats        (m_result_beats),
       .m_proceed      (proceed),
       .m_state        (next_state)
   );
 
-  always @(posedge clk) begin
-    if (rst) next_valid_q <= 1'b0;
-    else next_valid_q <= proceed;
-    next_q <= {verdict_context, next_state};
-  end
-
-  // ---- result: tag and eta of the context arrive with the registered outcome
+  // ---- result: tag and eta of the context arrive with the outcome
   wire [19:0] side;
   cchip_ram #(
       .WIDTH (20),
@@ -271,42 +311,25 @@ module cchip_axis_controller #(
       .write     (s_pair_valid),
       .write_addr(m_load_context),
       .write_data({s_pair_err, s_pair_tag}),
-      .read_addr (verdict_context),
+      .read_addr (side_context),
       .read_data (side)
   );
-
-  reg result_valid_q, grid_q, certain_q, open_q, illegal_q;
-  reg [8:0] witness_q;
-  reg [5:0] beats_q;
-  always @(posedge clk) begin
-    if (rst) result_valid_q <= 1'b0;
-    else result_valid_q <= outcome;
-    grid_q    <= outcome_grid;
-    certain_q <= outcome_certain;
-    open_q    <= outcome_open;
-    illegal_q <= outcome_illegal;
-    witness_q <= outcome_witness;
-    beats_q   <= outcome_beats;
-  end
 
   wire err_none = side[19:16] == 4'd0;
   wire err_unknown = &side[19:16];
 
-  assign m_result_valid    = result_valid_q;
+  assign m_result_valid    = outcome;
   assign m_result_tag      = side[15:0];
-  assign m_result_grid     = grid_q;
-  assign m_result_definite = ~illegal_q & (err_none ? certain_q | ~open_q : certain_q & ~err_unknown);
+  assign m_result_definite = ~outcome_illegal & (err_none ? outcome_certain | ~outcome_open : outcome_certain & ~err_unknown);
   assign m_result_hit      = m_result_grid | ~m_result_definite;
-  assign m_result_axis     = witness_q;
-  assign m_result_beats    = beats_q;
 
 `include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_context_free, !s_pair_valid || fresh_left || free_valid)
-      `CCHIP_ASSERT(a_start_space, !s_pair_valid || start_space)
+      `CCHIP_ASSERT(a_context_free, !s_pair_valid || hand_valid)
+      `CCHIP_ASSERT(a_start_space, !load_valid_q || start_space)
       `CCHIP_ASSERT(a_free_space, !outcome || free_ready)
-      `CCHIP_ASSERT(a_ready_space, !next_valid_q || ready_space)
+      `CCHIP_ASSERT(a_ready_space, !proceed || ready_space)
       `CCHIP_ASSERT(a_verdict_ends_or_proceeds, !(outcome && proceed))
     end
 

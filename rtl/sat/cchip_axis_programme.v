@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_defs.vh"
 // cchip_axis_programme: what follows a verdict: the outcome of the pair, or its next axis.
-//   latency      combinational from s_* to m_*; what an EXHAUSTIVE pair has found so far is registered
+//   latency      CCHIP_PROGRAMME_LATENCY = 4 clocks: what the verdict and the state say; the plan; the
+//                outcome, with what was found before; the next state
 //   throughput   one verdict per clock
-//   reset        none: the registers are rewritten by the first verdicts of every EXHAUSTIVE pair
+//   reset        none but s_valid = 0: what an EXHAUSTIVE pair has found so far is rewritten by the first
+//                verdicts of the next one
 // A "no" is given only when the intervals of all vertices are disjoint on an axis (s_separated) or the
 // boxes are; signs choose the next axis and never decide.
 //   NORMALS      nA, nB, then
@@ -15,12 +18,14 @@
 //                positive; the edges of A and of B from + to -, then those from - to +. A warped quad
 //                is hit only if every sign is certain (docs/architecture.md), else TETRAHEDRON decides
 // State, from the top: certain (all signs used so far), open (a warped quad was not decided exactly),
-// beats issued before this one (6), info (17), code (9), programme (3). info by programme:
-//   NORMALS (nB)  {warped A, largest (2), nA zero (3), nA negative (3), W zero (4), W negative (4)}
+// beats issued before this one (6), info (14), code (9), programme (3). info by programme:
+//   NORMALS (nB)  {warped A, largest (2), nA zero (3), nA negative (3), all W on A's plane, edge of B from - to +
+//                 (2), from + to - (2)}
 //   CROSSING      [5:4] warped B, A, [3:0] {k, l} of the second axis
 //   COPLANAR      [1:0] n_d negative of B, of A
 //   DEGENERATE    [11:0] {nB zero, nB negative, nA zero, nA negative}
 //   TETRAHEDRON   [1:0] warped B, A
+// The verdicts of an EXHAUSTIVE pair come on consecutive clocks.
 module cchip_axis_programme #(
     // vertices of A and of B: 3 3, 3 4 or 4 4
     parameter integer VERTS_A = 3,
@@ -29,50 +34,50 @@ module cchip_axis_programme #(
     parameter integer WARPED_EXACT = 1
 ) (
     input  wire                       clk,
+    input  wire                       rst,
     input  wire                       s_valid,
-    input  wire [               36:0] s_state,
+    input  wire [   `CCHIP_STATE_W-1:0] s_state,
     input  wire                       s_separated,
     input  wire                       s_certain_gap,
     input  wire [VERTS_A+VERTS_B-4:0] s_negative,
     input  wire [VERTS_A+VERTS_B-4:0] s_zero,
-    input  wire [VERTS_A+VERTS_B-4:0] s_certain,
-    input  wire                       s_clear,     // see cchip_sat_compare: on a normal, all sides are certain
+    input  wire                       s_certain,        // the sign of point VERTS_A - 2
+    input  wire                       s_clear,          // see cchip_sat_compare: on a normal, all sides are certain
     input  wire [                2:0] s_axis_negative,
     input  wire [                2:0] s_axis_zero,
     input  wire [                1:0] s_axis_largest,
     input  wire                       s_box_separated,
     input  wire                       s_box_certain,
-    output reg                        m_outcome,   // the pair is decided
-    output reg                        m_grid,      // no axis separates
-    output reg                        m_certain,   // holds for the unrounded primitives
-    output reg                        m_open,      // left undecided (WARPED_EXACT = 0)
+    output reg                        m_outcome,        // the pair is decided
+    output reg                        m_grid,           // no axis separates
+    output reg                        m_certain,        // holds for the unrounded primitives
+    output reg                        m_open,           // left undecided (WARPED_EXACT = 0)
     output reg                        m_illegal,
     output reg  [                8:0] m_witness,
-    output wire [                5:0] m_beats,
-    output reg                        m_proceed,   // m_state goes on
-    output wire [               36:0] m_state
+    output reg  [                5:0] m_beats,
+    output reg                        m_proceed,        // m_state goes on
+    output reg  [   `CCHIP_STATE_W-1:0] m_state
 );
-
-`include "cchip_defs.vh"
 
   localparam integer POINTS = `CCHIP_POINTS(VERTS_A, VERTS_B);
   localparam [31:0] LAST_K = VERTS_A - 1;
   localparam [31:0] LAST_L = VERTS_B - 1;
+  // {certain, open, info, code, programme}: a state without beats
+  localparam integer PLAN_W = `CCHIP_STATE_W - 6;
+  // warped quads may have to go through TETRAHEDRON
+  localparam integer TETRA = VERTS_B == 4 && WARPED_EXACT != 0 ? 1 : 0;
 
+  // ================ clock 1: what the verdict and the state say
   wire [2:0] programme = s_state[2:0];
   wire [8:0] code = s_state[11:3];
   wire [2:0] axis_class = code[8:6];
   wire [2:0] k = code[5:3];
   wire [2:0] l = code[2:0];
-  wire [16:0] info = s_state[28:12];
-  wire [5:0] beats = s_state[34:29];
-  wire open = s_state[35];
-  wire certain = s_state[36];
+  wire [13:0] info = s_state[25:12];
+  wire [5:0] beats = s_state[31:26];
   wire exhaustive = programme == `CCHIP_PROG_EXHAUSTIVE;
-  wire normal_a = axis_class == `CCHIP_AXIS_NORMAL_A;
-  wire normal_b = axis_class == `CCHIP_AXIS_NORMAL_B;
-
-  assign m_beats = m_illegal ? 6'd0 : beats + 6'd1;
+  wire tetra = programme == `CCHIP_PROG_TETRAHEDRON;
+  wire degenerate = programme == `CCHIP_PROG_DEGENERATE;
 
   // ---- sides: signs of the other primitive's vertices on a normal; vertex 3 of a triangle as zero
   wire [3:0] b_negative, b_zero, a_negative, a_zero;
@@ -93,35 +98,6 @@ module cchip_axis_programme #(
     end
   endgenerate
 
-  // on normal k = 0 of a quad slot 0 is V1: off the plane through V0 parallel to the diagonals?
-  wire warped_a_now = VERTS_A == 4 && !s_zero[0];
-  wire warped_b_now = VERTS_B == 4 && !s_zero[0];
-  wire [16:0] normal_a_info = {warped_a_now, s_axis_largest, s_axis_zero, s_axis_negative, b_zero, b_negative};
-
-  // ---- EXHAUSTIVE: found so far
-  reg  [16:0] found_a_q;        // of beat nA
-  reg         found_certain_q;  // signs on nA, then on both normals, then on the crossing axes too
-  reg         found_separated_q, found_gap_q;
-  reg  [ 8:0] found_witness_q;
-  reg  [30:0] found_plan_q;     // what the normals lead to: a state without beats
-
-  // ---- plan: the state after both normals, when nB's verdict is here
-  wire [16:0] about_a = exhaustive ? found_a_q : info;
-  wire [3:0] side_b_negative = about_a[3:0];
-  wire [3:0] side_b_zero = about_a[7:4];
-  wire [2:0] na_negative = about_a[10:8];
-  wire [2:0] na_zero = about_a[13:11];
-  wire [1:0] largest = about_a[15:14];
-  wire warped_a = about_a[16];
-  wire warped_b = warped_b_now;
-  wire warped = warped_a | warped_b;
-  wire certain_before = exhaustive ? found_certain_q : certain;
-  wire certain_sides = certain_before & s_clear;
-
-  function [8:0] tetra_code(input a_is_warped);
-    tetra_code = {a_is_warped ? `CCHIP_AXIS_NORMAL_A : `CCHIP_AXIS_NORMAL_B, 3'd1, 3'd0};
-  endfunction
-
   // first edge i -> i + 1 that leads from the side from_positive to the other; 0 if there is none
   function [1:0] crossing_edge(input [3:0] negative, input [3:0] zero, input quad, input from_positive);
     reg [3:0] side, follow;
@@ -136,183 +112,295 @@ module cchip_axis_programme #(
     end
   endfunction
 
-  wire [1:0] k_down = crossing_edge(a_negative, a_zero, VERTS_A == 4, 1'b1);
-  wire [1:0] k_up = crossing_edge(a_negative, a_zero, VERTS_A == 4, 1'b0);
-  wire [1:0] l_down = crossing_edge(side_b_negative, side_b_zero, VERTS_B == 4, 1'b1);
-  wire [1:0] l_up = crossing_edge(side_b_negative, side_b_zero, VERTS_B == 4, 1'b0);
+  // on normal k = 0 of a quad slot 0 is V1: off the plane through V0 parallel to the diagonals?
+  wire warped_a_now = VERTS_A == 4 && !s_zero[0];
+  wire warped_b_now = VERTS_B == 4 && !s_zero[0];
+
+  // ---- the ends of k and l in the programmes that visit all of a kind
+  wire is_cross = axis_class == `CCHIP_AXIS_CROSS;
+  wire is_in_plane_a = axis_class == `CCHIP_AXIS_IN_PLANE_A;
+  wire is_in_plane_b = axis_class == `CCHIP_AXIS_IN_PLANE_B;
+  wire [2:0] last_k = is_cross ? (TETRA != 0 && tetra && info[0] ? 3'd5 : LAST_K[2:0])
+                    : is_in_plane_a ? LAST_K[2:0] : is_in_plane_b ? LAST_L[2:0] : 3'd4;
+  wire [2:0] last_l = !is_cross ? 3'd2 : TETRA != 0 && tetra && info[1] ? 3'd5 : LAST_L[2:0];
+
+  reg valid_q, exhaustive_q, normals_q, crossing_q, illegal_q;
+  reg normal_a_q, normal_b_q, cross_q, in_plane_a_q, exhaustive_last_q, second_q, box_q, box_certain_q;
+  reg tetra_q, degenerate_q, k_ends_q, l_ends_q;
+  reg separated_q, certain_gap_q, clear_q, sign_certain_q, sign_negative_q, certain_q, open_q, certain_before_q;
+  reg [2:0] programme_q, axis_negative_q, axis_zero_q;
+  reg [8:0] code_q;
+  reg [2:0] k_next_q, l_next_q;
+  reg [13:0] info_q, normal_a_info_q, about_a_q;
+  reg [5:0] beats_q;
+  reg [1:0] k_down_q, k_up_q;
+  reg warped_b_q, no_normal_q;
+  wire [13:0] normal_a_info = {
+    warped_a_now,
+    s_axis_largest,
+    s_axis_zero,
+    s_axis_negative,
+    &b_zero,
+    crossing_edge(b_negative, b_zero, VERTS_B == 4, 1'b0),
+    crossing_edge(b_negative, b_zero, VERTS_B == 4, 1'b1)
+  };
+
+  always @(posedge clk) begin
+    if (rst) valid_q <= 1'b0;
+    else valid_q <= s_valid;
+    programme_q       <= programme;
+    exhaustive_q      <= exhaustive;
+    normals_q         <= programme == `CCHIP_PROG_NORMALS;
+    crossing_q        <= programme == `CCHIP_PROG_CROSSING;
+    illegal_q         <= programme == `CCHIP_PROG_ILLEGAL;
+    code_q            <= code;
+    info_q            <= info;
+    beats_q           <= beats + 6'd1;
+    open_q            <= s_state[32];
+    certain_q         <= s_state[33];
+    normal_a_q        <= axis_class == `CCHIP_AXIS_NORMAL_A;
+    normal_b_q        <= axis_class == `CCHIP_AXIS_NORMAL_B;
+    cross_q           <= is_cross;
+    in_plane_a_q      <= is_in_plane_a;
+    exhaustive_last_q <= is_cross && k == LAST_K[2:0] && l == LAST_L[2:0];
+    tetra_q           <= tetra;
+    degenerate_q      <= degenerate;
+    k_ends_q          <= k == last_k;
+    l_ends_q          <= l == last_l;
+    k_next_q          <= k + 3'd1;
+    l_next_q          <= l + 3'd1;
+    second_q          <= {k[1:0], l[1:0]} == info[3:0];
+    box_q             <= degenerate && is_cross && k == 3'd0 && s_box_separated;
+    box_certain_q     <= s_box_certain;
+    separated_q       <= s_separated;
+    certain_gap_q     <= s_certain_gap;
+    clear_q           <= s_clear;
+    sign_certain_q    <= s_certain;
+    sign_negative_q   <= s_negative[VERTS_A-2];
+    axis_negative_q   <= s_axis_negative;
+    axis_zero_q       <= s_axis_zero;
+    normal_a_info_q   <= normal_a_info;
+    // nB of an EXHAUSTIVE pair follows its nA at once
+    about_a_q         <= exhaustive ? normal_a_info_q : info;
+    certain_before_q  <= exhaustive ? clear_q : s_state[33];
+    no_normal_q       <= (exhaustive ? &normal_a_info_q[10:8] : &info[10:8]) || &s_axis_zero;
+    k_down_q          <= crossing_edge(a_negative, a_zero, VERTS_A == 4, 1'b1);
+    k_up_q            <= crossing_edge(a_negative, a_zero, VERTS_A == 4, 1'b0);
+    warped_b_q        <= warped_b_now;
+  end
+
+  // ================ clock 2: the plan when nB's verdict is here
+  wire [1:0] l_down = about_a_q[1:0];
+  wire [1:0] l_up = about_a_q[3:2];
+  wire b_on_plane = about_a_q[4];
+  wire [2:0] na_negative = about_a_q[7:5];
+  wire [2:0] na_zero = about_a_q[10:8];
+  wire [1:0] largest = about_a_q[12:11];
+  wire warped_a = about_a_q[13];
+  wire warped = warped_a | warped_b_q;
+  wire certain_sides = certain_before_q & clear_q;
   wire [2:0] largest_mask = 3'd1 << largest;
+
+  function [8:0] tetra_code(input a_is_warped);
+    tetra_code = {a_is_warped ? `CCHIP_AXIS_NORMAL_A : `CCHIP_AXIS_NORMAL_B, 3'd1, 3'd0};
+  endfunction
 
   reg [2:0] plan_programme;
   reg [8:0] plan_code;
-  reg [16:0] plan_info;
+  reg [13:0] plan_info;
   always @* begin
-    if (warped && WARPED_EXACT != 0 && !certain_sides) begin
+    if (TETRA != 0 && warped && !certain_sides) begin
       plan_programme = `CCHIP_PROG_TETRAHEDRON;
       plan_code      = tetra_code(warped_a);
-      plan_info      = {15'd0, warped_b, warped_a};
-    end else if (!warped && (&na_zero || &s_axis_zero)) begin
+      plan_info      = {12'd0, warped_b_q, warped_a};
+    end else if (!warped && no_normal_q) begin
       plan_programme = `CCHIP_PROG_DEGENERATE;
       plan_code      = {`CCHIP_AXIS_CROSS, 6'd0};
-      plan_info      = {5'd0, s_axis_zero, s_axis_negative, na_zero, na_negative};
-    end else if (!warped && &side_b_zero) begin
+      plan_info      = {2'd0, axis_zero_q, axis_negative_q, na_zero, na_negative};
+    end else if (!warped && b_on_plane) begin
       plan_programme = `CCHIP_PROG_COPLANAR;
       plan_code      = {`CCHIP_AXIS_IN_PLANE_A, 3'd0, 1'b0, largest};
-      plan_info      = {15'd0, |(s_axis_negative & largest_mask), |(na_negative & largest_mask)};
+      plan_info      = {12'd0, |(axis_negative_q & largest_mask), |(na_negative & largest_mask)};
     end else begin
       plan_programme = `CCHIP_PROG_CROSSING;
-      plan_code      = {`CCHIP_AXIS_CROSS, 1'b0, k_down, 1'b0, l_down};
-      plan_info      = {11'd0, warped_b, warped_a, k_up, l_up};
+      plan_code      = {`CCHIP_AXIS_CROSS, 1'b0, k_down_q, 1'b0, l_down};
+      plan_info      = {8'd0, warped_b_q, warped_a, k_up_q, l_up};
     end
   end
   wire plan_open = warped && WARPED_EXACT == 0;
-  wire [30:0] plan = {certain_sides, plan_open, plan_info, plan_code, plan_programme};
+  wire [PLAN_W-1:0] plan = {certain_sides, plan_open, plan_info, plan_code, plan_programme};
 
   // ---- CROSSING: t(k, l) is the projection of W_l; certain: t > 0 on the first, t < 0 on the second axis
-  wire second = {k[1:0], l[1:0]} == info[3:0];
-  wire certain_crossing = certain & s_certain[VERTS_A-2] & s_negative[VERTS_A-2] == second;
-  wire to_tetra = WARPED_EXACT != 0 && |info[5:4] && !certain_crossing;
+  wire certain_crossing = certain_q & sign_certain_q & sign_negative_q == second_q;
+  wire to_tetra = TETRA != 0 && |info_q[5:4] && !certain_crossing;
 
-  // ---- next axis of the other programmes
-  wire tetra_a = info[0];
-  wire tetra_b = info[1];
-  wire tetra = programme == `CCHIP_PROG_TETRAHEDRON;
-  wire degenerate = programme == `CCHIP_PROG_DEGENERATE;
-  wire [2:0] last_k = tetra && tetra_a ? 3'd5 : LAST_K[2:0];
-  wire [2:0] last_l = tetra && tetra_b ? 3'd5 : LAST_L[2:0];
-  reg [8:0] next_code;
-  reg last_axis;
+  // ---- EXHAUSTIVE: the same for the crossing axes of its plan
+  reg [PLAN_W-1:0] found_plan_q;  // what the normals lead to
+  always @(posedge clk) if (valid_q && exhaustive_q && normal_b_q) found_plan_q <= plan;
+  wire [5:0] found_info = found_plan_q[17:12];
+  wire found_second = {code_q[4:3], code_q[1:0]} == found_info[3:0];
+  wire found_first = {code_q[4:3], code_q[1:0]} == {found_plan_q[7:6], found_plan_q[4:3]};
+
+  // ---- next axis of the programmes that visit all of a kind: the next l, the next k, the next kind
+  wire loops_l = cross_q | degenerate_q;
+  wire [2:0] l_first = loops_l ? 3'd0 : code_q[2:0];
+  reg [8:0] next_kind;
+  always @*
+    if (normal_a_q && info_q[1]) next_kind = {`CCHIP_AXIS_NORMAL_B, 6'o10};
+    else if (normal_a_q || normal_b_q) next_kind = {`CCHIP_AXIS_CROSS, 6'd0};
+    else next_kind = {cross_q ? `CCHIP_AXIS_IN_PLANE_A : `CCHIP_AXIS_IN_PLANE_B, 3'd0, l_first};
+  wire [8:0] next_code = loops_l && !l_ends_q ? {code_q[8:3], l_next_q}
+                       : !k_ends_q ? {code_q[8:6], k_next_q, l_first}
+                                   : next_kind;
+  wire last_kind = tetra_q ? cross_q : ~cross_q & ~in_plane_a_q;
+  wire last_axis = last_kind & k_ends_q & (l_ends_q | ~loops_l);
+
+  // ---- outcome and next state but for what EXHAUSTIVE has found
+  reg outcome, grid, certain, open, illegal;
+  reg take_plan, take_tetra;
+  reg state_certain;
+  reg [8:0] witness, state_code;
+  reg [13:0] state_info;
   always @* begin
-    next_code = {axis_class, k + 3'd1, l};
-    last_axis = 1'b0;
-    case (axis_class)
-      `CCHIP_AXIS_NORMAL_A: if (k == 3'd4) next_code = tetra_b ? {`CCHIP_AXIS_NORMAL_B, 6'o10} : {`CCHIP_AXIS_CROSS, 6'd0};
-      `CCHIP_AXIS_NORMAL_B: if (k == 3'd4) next_code = {`CCHIP_AXIS_CROSS, 6'd0};
-      `CCHIP_AXIS_CROSS:
-      if (l != last_l) next_code = {axis_class, k, l + 3'd1};
-      else if (k != last_k) next_code = {axis_class, k + 3'd1, 3'd0};
-      else begin
-        next_code = {`CCHIP_AXIS_IN_PLANE_A, 6'd0};
-        last_axis = tetra;
+    outcome       = 1'b1;
+    grid          = 1'b0;
+    certain       = certain_gap_q;
+    open          = 1'b0;
+    illegal       = 1'b0;
+    witness       = code_q;
+    state_code    = next_code;
+    state_info    = info_q;
+    state_certain = certain_q;
+    take_plan     = 1'b0;
+    take_tetra    = 1'b0;
+    if (illegal_q) begin
+      grid    = 1'b1;
+      illegal = 1'b1;
+      witness = {`CCHIP_AXIS_ILLEGAL, 6'd0};
+    end else if (box_q) begin
+      witness = {`CCHIP_AXIS_BOX, 3'd0, code_q[2:0]};
+      certain = box_certain_q;
+    end else if (!separated_q) begin
+      if (normals_q) begin
+        outcome       = 1'b0;
+        take_plan     = normal_b_q;
+        state_code    = {`CCHIP_AXIS_NORMAL_B, 6'd0};
+        state_info    = normal_a_info_q;
+        state_certain = clear_q;
+      end else begin
+        outcome = crossing_q ? second_q && !to_tetra : last_axis;
+        grid    = 1'b1;
+        open    = open_q;
+        certain = crossing_q & certain_crossing;
+        witness = 9'd0;
+        if (crossing_q) begin
+          state_code    = {`CCHIP_AXIS_CROSS, 1'b0, info_q[3:2], 1'b0, info_q[1:0]};
+          state_certain = certain_crossing;
+          take_tetra    = to_tetra;
+        end
       end
-      `CCHIP_AXIS_IN_PLANE_A:
-      if (degenerate && l != 3'd2) next_code = {axis_class, k, l + 3'd1};
-      else if (k != LAST_K[2:0]) next_code = {axis_class, k + 3'd1, degenerate ? 3'd0 : l};
-      else next_code = {`CCHIP_AXIS_IN_PLANE_B, 3'd0, degenerate ? 3'd0 : l};
-      default: begin
-        if (degenerate && l != 3'd2) next_code = {axis_class, k, l + 3'd1};
-        else if (k != LAST_L[2:0]) next_code = {axis_class, k + 3'd1, degenerate ? 3'd0 : l};
-        else last_axis = 1'b1;
-      end
-    endcase
+    end
   end
 
-  wire box = degenerate && axis_class == `CCHIP_AXIS_CROSS && k == 3'd0 && s_box_separated;
+  reg valid_q2, exhaustive_q2, exhaustive_last_q2, normal_a_q2, normal_q2;
+  reg separated_q2, certain_gap_q2, certain_sides_q2, still_certain_q2;
+  reg outcome_q2, grid_q2, certain_q2, open_q2, illegal_q2, take_plan_q2, take_tetra_q2;
+  reg [8:0] code_q2, witness_q2;
+  reg [5:0] beats_q2;
+  reg [1:0] warped_q2;
+  reg [PLAN_W-1:0] plan_q2, state_q2;
+  always @(posedge clk) begin
+    if (rst) valid_q2 <= 1'b0;
+    else valid_q2 <= valid_q;
+    exhaustive_q2      <= exhaustive_q;
+    exhaustive_last_q2 <= exhaustive_last_q;
+    normal_a_q2        <= normal_a_q;
+    normal_q2          <= normal_a_q | normal_b_q;
+    separated_q2       <= separated_q;
+    certain_gap_q2     <= certain_gap_q;
+    certain_sides_q2   <= normal_a_q | certain_sides;  // after nA: nB tells for both
+    still_certain_q2   <= ~(found_first | found_second) | (sign_certain_q & sign_negative_q == found_second);
+    outcome_q2         <= outcome;
+    grid_q2            <= grid;
+    certain_q2         <= certain;
+    open_q2            <= open;
+    illegal_q2         <= illegal;
+    code_q2            <= code_q;
+    witness_q2         <= witness;
+    beats_q2           <= beats_q;
+    take_plan_q2       <= take_plan;
+    take_tetra_q2      <= take_tetra;
+    warped_q2          <= info_q[5:4];
+    plan_q2            <= plan;
+    state_q2           <= {state_certain, open_q, state_info, state_code, programme_q};
+  end
 
-  // ---- EXHAUSTIVE
-  wire first = normal_a;  // k = 0: the first axis
-  wire separated_before = ~first & found_separated_q;
-  wire found_separated = separated_before | s_separated;
-  wire [8:0] found_witness = separated_before ? found_witness_q : s_separated ? code : 9'd0;
-  wire found_gap = separated_before ? found_gap_q : s_certain_gap;
-  wire exhaustive_last = axis_class == `CCHIP_AXIS_CROSS && k == LAST_K[2:0] && l == LAST_L[2:0];
+  // ================ clock 3: what an EXHAUSTIVE pair has found so far
+  reg found_certain_q;  // signs on both normals, then on the crossing axes too
+  reg found_separated_q, found_gap_q;
+  reg [8:0] found_witness_q;
+  wire separated_before = ~normal_a_q2 & found_separated_q;  // nA is the first axis
+  wire found_separated = separated_before | separated_q2;
+  wire [8:0] found_witness = separated_before ? found_witness_q : separated_q2 ? code_q2 : 9'd0;
+  wire found_gap = separated_before ? found_gap_q : certain_gap_q2;
+  wire found_certain = normal_q2 ? certain_sides_q2 : found_certain_q & still_certain_q2;
   wire plan_is_crossing = found_plan_q[2:0] == `CCHIP_PROG_CROSSING;
-  wire found_second = {k[1:0], l[1:0]} == found_plan_q[15:12];
-  wire crosses = axis_class == `CCHIP_AXIS_CROSS && (code == found_plan_q[11:3] || found_second);
-  wire found_to_tetra = WARPED_EXACT != 0 && plan_is_crossing && |found_plan_q[17:16] && !found_certain;
-  wire found_certain = first ? s_clear
-                     : normal_b ? certain_sides
-                                : found_certain_q & (~crosses | (s_certain[VERTS_A-2] & s_negative[VERTS_A-2] == found_second));
+  wire found_to_tetra = TETRA != 0 && plan_is_crossing && |found_info[5:4] && !found_certain;
 
   always @(posedge clk)
-    if (s_valid && exhaustive) begin
-      if (normal_a) found_a_q <= normal_a_info;
-      if (normal_b) found_plan_q <= plan;
+    if (valid_q2 && exhaustive_q2) begin
       found_certain_q   <= found_certain;
       found_separated_q <= found_separated;
       found_witness_q   <= found_witness;
       found_gap_q       <= found_gap;
     end
 
-  // ---- outcome or next state
-  reg [8:0] state_code;
-  reg [16:0] state_info;
-  reg state_certain;
-  reg take_plan, take_found_plan, take_tetra;
+  wire found_outcome = exhaustive_last_q2 & (found_separated | (plan_is_crossing & ~found_to_tetra));
+  wire found_proceed = exhaustive_last_q2 & ~found_separated & (~plan_is_crossing | found_to_tetra);
 
-  always @* begin
-    m_outcome       = s_valid;
-    m_grid          = 1'b0;
-    m_certain       = s_certain_gap;
-    m_open          = 1'b0;
-    m_illegal       = 1'b0;
-    m_witness       = code;
-    state_code      = next_code;
-    state_info      = info;
-    state_certain   = certain;
-    take_plan       = 1'b0;
-    take_found_plan = 1'b0;
-    take_tetra      = 1'b0;
-    case (programme)
-      `CCHIP_PROG_EXHAUSTIVE: begin
-        m_witness = found_witness;
-        m_certain = found_gap;
-        if (!exhaustive_last) m_outcome = 1'b0;
-        else if (!found_separated) begin
-          m_grid          = 1'b1;
-          m_open          = found_plan_q[29];
-          m_certain       = found_certain;
-          m_outcome       = s_valid && plan_is_crossing && !found_to_tetra;
-          take_found_plan = !found_to_tetra;
-          take_tetra      = found_to_tetra;
-        end
-      end
-      `CCHIP_PROG_NORMALS:
-      if (!s_separated) begin
-        m_outcome     = 1'b0;
-        take_plan     = normal_b;
-        state_code    = {`CCHIP_AXIS_NORMAL_B, 6'd0};
-        state_info    = normal_a_info;
-        state_certain = s_clear;
-      end
-      `CCHIP_PROG_CROSSING:
-      if (!s_separated) begin
-        m_outcome     = s_valid && second && !to_tetra;
-        m_grid        = 1'b1;
-        m_open        = open;
-        m_certain     = certain_crossing;
-        m_witness     = 9'd0;
-        state_code    = {`CCHIP_AXIS_CROSS, 1'b0, info[3:2], 1'b0, info[1:0]};
-        state_certain = certain_crossing;
-        take_tetra    = to_tetra;
-      end
-      `CCHIP_PROG_ILLEGAL: begin
-        m_grid    = 1'b1;
-        m_illegal = 1'b1;
-        m_witness = {`CCHIP_AXIS_ILLEGAL, 6'd0};
-      end
-      default:
-      if (box) begin
-        m_witness = {`CCHIP_AXIS_BOX, 3'd0, l};
-        m_certain = s_box_certain;
-      end else if (!s_separated) begin
-        m_outcome = s_valid && last_axis;
-        m_grid    = 1'b1;
-        m_open    = open;
-        m_certain = 1'b0;
-        m_witness = 9'd0;
-      end
-    endcase
-    m_proceed = s_valid && !m_outcome && (!exhaustive || exhaustive_last);
+  reg outcome_q3, proceed_q3, grid_q3, certain_q3, open_q3, illegal_q3;
+  reg take_plan_q3, take_found_q3, take_tetra_q3;
+  reg [8:0] witness_q3;
+  reg [5:0] beats_q3;
+  reg [1:0] warped_q3;
+  reg [PLAN_W-1:0] plan_q3, state_q3;
+  always @(posedge clk) begin
+    if (rst) outcome_q3 <= 1'b0;
+    else outcome_q3 <= valid_q2 & (exhaustive_q2 ? found_outcome : outcome_q2);
+    if (rst) proceed_q3 <= 1'b0;
+    else proceed_q3 <= valid_q2 & (exhaustive_q2 ? found_proceed : ~outcome_q2);
+    grid_q3       <= exhaustive_q2 ? ~found_separated : grid_q2;
+    certain_q3    <= exhaustive_q2 ? (found_separated ? found_gap : found_certain) : certain_q2;
+    open_q3       <= exhaustive_q2 ? found_plan_q[26] & ~found_separated : open_q2;
+    illegal_q3    <= illegal_q2;
+    witness_q3    <= exhaustive_q2 ? found_witness : witness_q2;
+    beats_q3      <= beats_q2;
+    take_plan_q3  <= take_plan_q2;
+    take_found_q3 <= exhaustive_q2;
+    take_tetra_q3 <= exhaustive_q2 ? found_to_tetra : take_tetra_q2;
+    warped_q3     <= exhaustive_q2 ? found_info[5:4] : warped_q2;
+    plan_q3       <= plan_q2;
+    state_q3      <= state_q2;
   end
 
-  wire [1:0] tetra_flags = exhaustive ? found_plan_q[17:16] : info[5:4];
-  wire [30:0] state = take_plan ? plan
-                    : take_found_plan ? found_plan_q
-                    : take_tetra ? {state_certain, open, 15'd0, tetra_flags, tetra_code(tetra_flags[0]), `CCHIP_PROG_TETRAHEDRON}
-                                      : {state_certain, open, state_info, state_code, programme};
-  assign m_state = {state[30:29], beats + 6'd1, state[28:0]};
+  // ================ clock 4
+  wire [PLAN_W-1:0] state = take_plan_q3 ? plan_q3 : take_found_q3 ? found_plan_q : state_q3;
+  always @(posedge clk) begin
+    if (rst) m_outcome <= 1'b0;
+    else m_outcome <= outcome_q3;
+    if (rst) m_proceed <= 1'b0;
+    else m_proceed <= proceed_q3;
+    m_grid    <= grid_q3;
+    m_certain <= certain_q3;
+    m_open    <= open_q3;
+    m_illegal <= illegal_q3;
+    m_witness <= witness_q3;
+    m_beats   <= illegal_q3 ? 6'd0 : beats_q3;
+    m_state   <= {state[PLAN_W-1-:2], beats_q3,
+                  take_tetra_q3 ? {12'd0, warped_q3, tetra_code(warped_q3[0]), `CCHIP_PROG_TETRAHEDRON} : state[PLAN_W-3:0]};
+  end
 
-  wire unused = &{1'b0, s_negative, s_certain};
+  wire unused = &{1'b0, s_negative};
 
 endmodule
 `default_nettype wire

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 // cchip_box_compare: are the bounding boxes of the two primitives disjoint in one component?
-//   latency      CCHIP_BOX_LATENCY = 5 clocks
+//   latency      CCHIP_BOX_LATENCY = 8 clocks
 //   throughput   one comparison per clock, never stalls
 //   numbers      signed COORD_W-bit coordinates; no multiplier
 //   reset        none (data only)
@@ -40,63 +40,96 @@ module cchip_box_compare #(
     end
   endgenerate
 
-  function [COORD_W-1:0] low(input signed [COORD_W-1:0] x, input signed [COORD_W-1:0] y);
-    low = x < y ? x : y;
-  endfunction
-  function [COORD_W-1:0] high(input signed [COORD_W-1:0] x, input signed [COORD_W-1:0] y);
-    high = x < y ? y : x;
+  // x < y
+  function less(input [COORD_W-1:0] x, input [COORD_W-1:0] y);
+    reg [COORD_W:0] difference;
+    begin
+      difference = {x[COORD_W-1], x} - {y[COORD_W-1], y};
+      less = difference[COORD_W];
+    end
   endfunction
 
-  // ---- clocks 2 and 3: minimum and maximum of vertices 0, 1 and of the last two, then of all
-  localparam integer A_LAST = COORD_W * (VERTS_A - 1);
+  // ---- clocks 2 and 3: vertices 0 and 1, and the last two, of A and of B: {higher, lower} of each pair.
+  // ---- clocks 4 and 5: {higher, lower} of all
+  localparam integer PAIR_W = 2 * COORD_W;
+  localparam integer A_LAST = COORD_W * (VERTS_A - 2);
   localparam integer B_FIRST = COORD_W * VERTS_A;
-  localparam integer B_LAST = COORD_W * (VERTS - 1);
-  reg [COORD_W-1:0] low_a0_q2, low_a1_q2, high_a0_q2, high_a1_q2, low_b0_q2, low_b1_q2, high_b0_q2, high_b1_q2;
-  reg [COORD_W-1:0] low_a_q3, high_a_q3, low_b_q3, high_b_q3;
-  always @(posedge clk) begin
-    low_a0_q2  <= low(x_q[0+:COORD_W], x_q[COORD_W+:COORD_W]);
-    high_a0_q2 <= high(x_q[0+:COORD_W], x_q[COORD_W+:COORD_W]);
-    low_a1_q2  <= low(x_q[A_LAST-COORD_W+:COORD_W], x_q[A_LAST+:COORD_W]);
-    high_a1_q2 <= high(x_q[A_LAST-COORD_W+:COORD_W], x_q[A_LAST+:COORD_W]);
-    low_b0_q2  <= low(x_q[B_FIRST+:COORD_W], x_q[B_FIRST+COORD_W+:COORD_W]);
-    high_b0_q2 <= high(x_q[B_FIRST+:COORD_W], x_q[B_FIRST+COORD_W+:COORD_W]);
-    low_b1_q2  <= low(x_q[B_LAST-COORD_W+:COORD_W], x_q[B_LAST+:COORD_W]);
-    high_b1_q2 <= high(x_q[B_LAST-COORD_W+:COORD_W], x_q[B_LAST+:COORD_W]);
-    low_a_q3   <= low(low_a0_q2, low_a1_q2);
-    high_a_q3  <= high(high_a0_q2, high_a1_q2);
-    low_b_q3   <= low(low_b0_q2, low_b1_q2);
-    high_b_q3  <= high(high_b0_q2, high_b1_q2);
-  end
+  localparam integer B_LAST = COORD_W * (VERTS - 2);
+  wire [4*PAIR_W-1:0] couple = {x_q[B_LAST+:PAIR_W], x_q[B_FIRST+:PAIR_W], x_q[A_LAST+:PAIR_W], x_q[0+:PAIR_W]};
+  reg [4*PAIR_W-1:0] couple_q2, sorted_q3;
+  reg [3:0] rising_q2;
+  reg [2*PAIR_W-1:0] low_q4, high_q4, range_q5;
+  reg [1:0] low_rising_q4, high_rising_q4;
+  generate
+    for (i = 0; i < 4; i = i + 1) begin : gen_couple
+      wire [COORD_W-1:0] first = couple_q2[PAIR_W*i+:COORD_W];
+      wire [COORD_W-1:0] second = couple_q2[PAIR_W*i+COORD_W+:COORD_W];
+      always @(posedge clk) begin
+        couple_q2[PAIR_W*i+:PAIR_W] <= couple[PAIR_W*i+:PAIR_W];
+        rising_q2[i] <= less(couple[PAIR_W*i+:COORD_W], couple[PAIR_W*i+COORD_W+:COORD_W]);
+        sorted_q3[PAIR_W*i+:PAIR_W] <= rising_q2[i] ? {second, first} : {first, second};
+      end
+    end
+    for (i = 0; i < 2; i = i + 1) begin : gen_primitive
+      wire [COORD_W-1:0] low0 = sorted_q3[2*PAIR_W*i+:COORD_W];
+      wire [COORD_W-1:0] low1 = sorted_q3[2*PAIR_W*i+PAIR_W+:COORD_W];
+      wire [COORD_W-1:0] high0 = sorted_q3[2*PAIR_W*i+COORD_W+:COORD_W];
+      wire [COORD_W-1:0] high1 = sorted_q3[2*PAIR_W*i+PAIR_W+COORD_W+:COORD_W];
+      always @(posedge clk) begin
+        low_q4[PAIR_W*i+:PAIR_W]  <= {low1, low0};
+        high_q4[PAIR_W*i+:PAIR_W] <= {high1, high0};
+        low_rising_q4[i]          <= less(low0, low1);
+        high_rising_q4[i]         <= less(high0, high1);
+        range_q5[PAIR_W*i+:COORD_W] <= low_rising_q4[i] ? low_q4[PAIR_W*i+:COORD_W] : low_q4[PAIR_W*i+COORD_W+:COORD_W];
+        range_q5[PAIR_W*i+COORD_W+:COORD_W] <= high_rising_q4[i] ? high_q4[PAIR_W*i+COORD_W+:COORD_W]
+                                                                 : high_q4[PAIR_W*i+:COORD_W];
+      end
+    end
+  endgenerate
+  wire [COORD_W-1:0] low_a = range_q5[0+:COORD_W];
+  wire [COORD_W-1:0] high_a = range_q5[COORD_W+:COORD_W];
+  wire [COORD_W-1:0] low_b = range_q5[PAIR_W+:COORD_W];
+  wire [COORD_W-1:0] high_b = range_q5[PAIR_W+COORD_W+:COORD_W];
 
-  // ---- clock 4: gaps on both sides, less 1, so that the sign tells whether there is one
+  // ---- clock 6: gaps on both sides, less 1, so that the sign tells whether there is one
   function [GAP_W-1:0] gap(input [COORD_W-1:0] from, input [COORD_W-1:0] to);
     gap = {to[COORD_W-1], to} + ~{from[COORD_W-1], from};
   endfunction
-  reg [GAP_W-1:0] a_above_q4, b_above_q4;
+  reg [GAP_W-1:0] a_above_q6, b_above_q6;
   always @(posedge clk) begin
-    a_above_q4 <= gap(high_b_q3, low_a_q3);
-    b_above_q4 <= gap(high_a_q3, low_b_q3);
+    a_above_q6 <= gap(high_b, low_a);
+    b_above_q6 <= gap(high_a, low_b);
   end
 
-  // ---- clock 5
+  // ---- clock 7: gap - 1 - 2^shift
   wire [2:0] error_shift;
   cchip_delay #(
       .WIDTH(3),
-      .DEPTH(4)
+      .DEPTH(5)
   ) u_error_shift (
       .clk(clk),
       .rst(1'b0),
       .d  (s_error_shift),
       .q  (error_shift)
   );
-  // gap - 1 >= 2^shift
-  function exceeds(input [GAP_W-1:0] gap_less_1, input [2:0] shift);
-    exceeds = ~gap_less_1[GAP_W-1] & ({1'b0, gap_less_1} >= ({{GAP_W{1'b0}}, 1'b1} << shift));
-  endfunction
+  reg [GAP_W:0] error_q6;
+  reg a_above_q7, b_above_q7, a_near_q7, b_near_q7;
+  wire [GAP_W:0] a_left = {a_above_q6[GAP_W-1], a_above_q6} - error_q6;
+  wire [GAP_W:0] b_left = {b_above_q6[GAP_W-1], b_above_q6} - error_q6;
   always @(posedge clk) begin
-    m_separated   <= ~a_above_q4[GAP_W-1] | ~b_above_q4[GAP_W-1];
-    m_certain_gap <= exceeds(a_above_q4, error_shift) | exceeds(b_above_q4, error_shift);
+    error_q6   <= {{GAP_W{1'b0}}, 1'b1} << error_shift;
+    a_above_q7 <= ~a_above_q6[GAP_W-1];
+    b_above_q7 <= ~b_above_q6[GAP_W-1];
+    a_near_q7  <= a_left[GAP_W];
+    b_near_q7  <= b_left[GAP_W];
   end
+
+  // ---- clock 8
+  always @(posedge clk) begin
+    m_separated   <= a_above_q7 | b_above_q7;
+    m_certain_gap <= ~(a_near_q7 & b_near_q7);
+  end
+  wire unused = &{1'b0, a_left, b_left};
 
 endmodule
 `default_nettype wire

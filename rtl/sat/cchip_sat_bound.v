@@ -2,28 +2,27 @@
 `default_nettype none
 // cchip_sat_bound: how far the projections of the unrounded vertices can lie from those of the grid.
 // Part of macro stage 3; shifts and adds, no multiplier. a, b are the edges whose cross product is the
-// axis, c_i the points relative to the reference (docs/architecture.md, certainty):
-//   m_gap_bound     = E |axis|_1, E = 2^s_error_shift >= eta
-//   m_sign_bound[i] = E (|axis|_1 + (|a|_1 + |b|_1 + 2 E) 2^n), n smallest with 2^n >= |c_i|_1 + 2 E
-//   latency      SUBSTAGES clocks from s_axis, s_edge_norm, s_error_shift; one less from s_difference
+// axis, c the point whose sign is asked, relative to the reference (docs/architecture.md, certainty):
+//   m_gap_bound  = E |axis|_1, E = 2^s_error_shift >= eta
+//   m_sign_bound = E (|axis|_1 + (|a|_1 + |b|_1 + 2 E) 2^n), n smallest with 2^n >= |c|_1 + 2 E
+//   latency      SUBSTAGES + CCHIP_BOUND_LAG clocks from s_axis, s_edge_norm, s_error_shift; one less
+//                from s_difference
 //   throughput   one axis per clock, never stalls
 //   numbers      unsigned, CCHIP_BOUND_W(COORD_W) bits, no overflow
 //   reset        none (data only)
 module cchip_sat_bound #(
     // width of a coordinate, bit
     parameter integer COORD_W = 16,
-    // registers from s_axis to the outputs, clocks, >= 6
-    parameter integer SUBSTAGES = 10,
-    // points to project
-    parameter integer POINTS = 3
+    // registers of the projections beside this, clocks, >= 5
+    parameter integer SUBSTAGES = 10
 ) (
-    input  wire                             clk,
-    input  wire [        6*(COORD_W+1)-1:0] s_axis,
-    input  wire [              COORD_W+2:0] s_edge_norm,
-    input  wire [                      2:0] s_error_shift,
-    input  wire [ 3*POINTS*(COORD_W+1)-1:0] s_difference,  // one clock after s_axis
-    output wire [POINTS*(2*COORD_W+11)-1:0] m_sign_bound,
-    output wire [           2*COORD_W+10:0] m_gap_bound
+    input  wire                     clk,
+    input  wire [6*(COORD_W+1)-1:0] s_axis,
+    input  wire [      COORD_W+2:0] s_edge_norm,
+    input  wire [              2:0] s_error_shift,
+    input  wire [3*(COORD_W+1)-1:0] s_difference,  // c, one clock after s_axis
+    output wire [   2*COORD_W+10:0] m_sign_bound,
+    output wire [   2*COORD_W+10:0] m_gap_bound
 );
 
 `include "cchip_defs.vh"
@@ -33,16 +32,18 @@ module cchip_sat_bound #(
   localparam integer NORM_W = `CCHIP_NORM_W(COORD_W);
   localparam integer AXIS_NORM_W = `CCHIP_AXIS_NORM_W(COORD_W);
   localparam integer BOUND_W = `CCHIP_BOUND_W(COORD_W);
+  localparam integer LATENCY = SUBSTAGES + `CCHIP_BOUND_LAG;
   // |c|_1 + 2 E - 1 <= 3 (2^COORD_W - 1) + 31 < 2^U_W
   localparam integer U_W = COORD_W + 3;
-  localparam integer LOG_W = $clog2(U_W + 1);
-  // |a|_1 + |b|_1 + 2 E <= 6 (2^COORD_W - 1) + 32 < 2^(NORM_W + 1)
-  localparam integer FACTOR_W = NORM_W + 1;
-  localparam integer PRODUCT_W = BOUND_W - 4;
-  // substages used: difference, norm (2), sum, product, bound. The first one to spare separates logarithm
-  // and product, the second one sum and logarithm, the rest follow the logarithm.
-  localparam integer SPARE = SUBSTAGES - 6;
-  localparam integer SUM_REGS = SPARE >= 2 ? 1 : 0;
+  localparam integer GROUPS = (U_W + 3) / 4;
+  // E (|a|_1 + |b|_1 + 2 E) <= 16 (6 (2^COORD_W - 1) + 32) < 2^(NORM_W + 5)
+  localparam integer FACTOR_W = NORM_W + 5;
+  // clocks used: difference, norm, sum, product, bound. What is left over goes, in this order, behind the
+  // logarithm, between the two shifts of the product, into the logarithm, behind the logarithm again.
+  localparam integer SPARE = LATENCY - 4 - `CCHIP_NORM1_LATENCY;
+  localparam integer SHIFT_REGS = SPARE >= 2 ? 1 : 0;
+  localparam integer GROUP_REGS = SPARE >= 3 ? 1 : 0;
+  localparam integer LOG_REGS = SPARE - SHIFT_REGS - GROUP_REGS;
 
   generate
     if (SPARE < 0) begin : gen_illegal
@@ -50,54 +51,72 @@ module cchip_sat_bound #(
     end
   endgenerate
 
-  // s_error_shift beside the sums and beside the last substage
-  wire [2:0] shift_sum, shift_bound;
+  // ---- gap bound, one clock before it leaves: the sum needs it
+  wire [2:0] shift_norm;
+  wire four_gap;
   cchip_delay #(
       .WIDTH(3),
-      .DEPTH(1 + `CCHIP_NORM1_LATENCY)
-  ) u_shift_sum (
+      .DEPTH(`CCHIP_NORM1_LATENCY)
+  ) u_shift_norm (
       .clk(clk),
       .rst(1'b0),
       .d  (s_error_shift),
-      .q  (shift_sum)
+      .q  (shift_norm)
   );
   cchip_delay #(
-      .WIDTH(3),
-      .DEPTH(SUBSTAGES - 1 - 1 - `CCHIP_NORM1_LATENCY)
-  ) u_shift_bound (
+      .WIDTH(1),
+      .DEPTH(LATENCY - 2 - `CCHIP_NORM1_LATENCY)
+  ) u_four_gap (
       .clk(clk),
       .rst(1'b0),
-      .d  (shift_sum),
-      .q  (shift_bound)
+      .d  (shift_norm[2]),
+      .q  (four_gap)
   );
-
-  // ---- |axis|_1, needed by the last substage
-  wire [AXIS_NORM_W-1:0] axis_norm_early, axis_norm;
+  wire [AXIS_NORM_W-1:0] axis_norm;
+  reg [AXIS_NORM_W+2:0] gap_low_q;  // shifted by 0..3
+  wire [AXIS_NORM_W+2:0] gap_low;
   cchip_norm1 #(
       .V_W(AXIS_W)
   ) u_axis_norm (
       .clk(clk),
       .v  (s_axis),
-      .q  (axis_norm_early)
-  );
-  cchip_delay #(
-      .WIDTH(AXIS_NORM_W),
-      .DEPTH(SUBSTAGES - 1 - `CCHIP_NORM1_LATENCY)
-  ) u_axis_norm_delay (
-      .clk(clk),
-      .rst(1'b0),
-      .d  (axis_norm_early),
       .q  (axis_norm)
   );
+  always @(posedge clk) gap_low_q <= {3'd0, axis_norm} << shift_norm[1:0];
+  cchip_delay #(
+      .WIDTH(AXIS_NORM_W + 3),
+      .DEPTH(LATENCY - 3 - `CCHIP_NORM1_LATENCY)
+  ) u_gap_low (
+      .clk(clk),
+      .rst(1'b0),
+      .d  (gap_low_q),
+      .q  (gap_low)
+  );
+  reg [BOUND_W-1:0] gap_q, gap_q2;
+  always @(posedge clk) begin
+    gap_q  <= {{BOUND_W - AXIS_NORM_W - 3{1'b0}}, gap_low} << {four_gap, 2'd0};
+    gap_q2 <= gap_q;
+  end
+  assign m_gap_bound = gap_q2;
 
-  // ---- |a|_1 + |b|_1 + 2 E, needed by the substage before
-  wire [FACTOR_W-1:0] factor;
+  // ---- E (|a|_1 + |b|_1 + 2 E)
+  reg [NORM_W-1:0] edge_norm_q;
+  reg [NORM_W:0] edges_q2;
+  reg [5:0] twice_error_q;
+  reg [2:0] shift_q, shift_q2;
   reg [FACTOR_W-1:0] factor_q;
-  wire [5:0] twice_error = 6'd2 << s_error_shift;
-  always @(posedge clk) factor_q <= {1'b0, s_edge_norm} + {{FACTOR_W - 6{1'b0}}, twice_error};
+  always @(posedge clk) begin
+    edge_norm_q   <= s_edge_norm;
+    twice_error_q <= 6'd2 << s_error_shift;
+    shift_q       <= s_error_shift;
+    edges_q2      <= {1'b0, edge_norm_q} + {{NORM_W - 5{1'b0}}, twice_error_q};
+    shift_q2      <= shift_q;
+    factor_q      <= {4'd0, edges_q2} << shift_q2;
+  end
+  wire [FACTOR_W-1:0] factor;
   cchip_delay #(
       .WIDTH(FACTOR_W),
-      .DEPTH(SUBSTAGES - 3)
+      .DEPTH(LATENCY - 5 - SHIFT_REGS)
   ) u_factor (
       .clk(clk),
       .rst(1'b0),
@@ -105,64 +124,76 @@ module cchip_sat_bound #(
       .q  (factor)
   );
 
-  reg [BOUND_W-1:0] gap_q;
-  always @(posedge clk) gap_q <= {{BOUND_W - AXIS_NORM_W{1'b0}}, axis_norm} << shift_bound;
-  assign m_gap_bound = gap_q;
+  // ---- n: position of the highest one of |c|_1 + 2 E - 1, plus 1
+  wire [EDGE_W:0] norm;
+  cchip_norm1 #(
+      .V_W(EDGE_W)
+  ) u_norm (
+      .clk(clk),
+      .v  (s_difference),
+      .q  (norm)
+  );
+  reg [4:0] twice_error_less_1_q;
+  reg [U_W-1:0] sum_q;
+  always @(posedge clk) begin
+    twice_error_less_1_q <= {shift_norm >= 3'd4, shift_norm >= 3'd3, shift_norm >= 3'd2, shift_norm >= 3'd1, 1'b1};
+    sum_q <= {1'b0, norm} + {{U_W - 5{1'b0}}, twice_error_less_1_q};
+  end
 
-  wire [5:0] twice_error_less_1 = (6'd2 << shift_sum) - 6'd1;
-
-  // position of the highest one, plus 1: smallest n with 2^n >= u + 1
-  function [LOG_W-1:0] length(input [U_W-1:0] u);
-    integer j;
-    begin
-      length = {LOG_W{1'b0}};
-      for (j = 0; j < U_W; j = j + 1) if (u[j]) length = j[LOG_W-1:0] + {{LOG_W - 1{1'b0}}, 1'b1};
-    end
-  endfunction
-
-  genvar i;
+  // by groups of four: the highest group with a one, the position of the highest one in it (the sum is not 0)
+  wire [4*GROUPS-1:0] u = {{4 * GROUPS - U_W{1'b0}}, sum_q};
+  wire [3*GROUPS-1:0] found, group;  // {any, position} of each
+  genvar g;
   generate
-    for (i = 0; i < POINTS; i = i + 1) begin : gen_point
-      wire [   EDGE_W:0] norm;
-      reg  [    U_W-1:0] sum_q;
-      wire [    U_W-1:0] sum;
-      wire [  LOG_W-1:0] log;
-      reg  [PRODUCT_W-1:0] product_q;
-      reg  [BOUND_W-1:0] bound_q;
-      cchip_norm1 #(
-          .V_W(EDGE_W)
-      ) u_norm (
-          .clk(clk),
-          .v  (s_difference[3*EDGE_W*i+:3*EDGE_W]),
-          .q  (norm)
-      );
-      always @(posedge clk)
-        sum_q <= {1'b0, norm} + {{U_W - 6{1'b0}}, twice_error_less_1};
-      cchip_delay #(
-          .WIDTH(U_W),
-          .DEPTH(SUM_REGS)
-      ) u_sum (
-          .clk(clk),
-          .rst(1'b0),
-          .d  (sum_q),
-          .q  (sum)
-      );
-      cchip_delay #(
-          .WIDTH(LOG_W),
-          .DEPTH(SPARE - SUM_REGS)
-      ) u_log (
-          .clk(clk),
-          .rst(1'b0),
-          .d  (length(sum)),
-          .q  (log)
-      );
-      always @(posedge clk) begin
-        product_q <= {{PRODUCT_W - FACTOR_W{1'b0}}, factor} << log;
-        bound_q   <= ({4'd0, product_q} + {{BOUND_W - AXIS_NORM_W{1'b0}}, axis_norm}) << shift_bound;
-      end
-      assign m_sign_bound[BOUND_W*i+:BOUND_W] = bound_q;
+    for (g = 0; g < GROUPS; g = g + 1) begin : gen_group
+      assign found[3*g+:3] = {|u[4*g+:4], |u[4*g+2+:2], u[4*g+3] | (u[4*g+1] & ~u[4*g+2])};
     end
   endgenerate
+  cchip_delay #(
+      .WIDTH(3 * GROUPS),
+      .DEPTH(GROUP_REGS)
+  ) u_group (
+      .clk(clk),
+      .rst(1'b0),
+      .d  (found),
+      .q  (group)
+  );
+  function [4:0] highest(input [3*GROUPS-1:0] groups);
+    integer j;
+    begin
+      highest = 5'd0;
+      for (j = 0; j < GROUPS; j = j + 1) if (groups[3*j+2]) highest = {j[2:0], groups[3*j+:2]};
+    end
+  endfunction
+  wire [4:0] log;  // n - 1
+  cchip_delay #(
+      .WIDTH(5),
+      .DEPTH(LOG_REGS)
+  ) u_log (
+      .clk(clk),
+      .rst(1'b0),
+      .d  (highest(group)),
+      .q  (log)
+  );
+
+  // ---- product and bound: shifts by 1..4, then by multiples of four
+  wire [FACTOR_W+3:0] product_low;
+  wire [2:0] log_high;
+  cchip_delay #(
+      .WIDTH(FACTOR_W + 4 + 3),
+      .DEPTH(SHIFT_REGS)
+  ) u_shift (
+      .clk(clk),
+      .rst(1'b0),
+      .d  ({{3'd0, factor, 1'b0} << log[1:0], log[4:2]}),
+      .q  ({product_low, log_high})
+  );
+  reg [BOUND_W-1:0] product_q, bound_q;
+  always @(posedge clk) begin
+    product_q <= {{BOUND_W - FACTOR_W - 4{1'b0}}, product_low} << {log_high, 2'd0};
+    bound_q   <= product_q + gap_q;
+  end
+  assign m_sign_bound = bound_q;
 
 endmodule
 `default_nettype wire

@@ -2,9 +2,10 @@
 `default_nettype none
 // cchip_sat_pipeline: the four macro stages of the separating axis test (paper, figure 7):
 // select -> axis -> project -> compare; the box comparison runs beside them.
-//   latency      CCHIP_PIPE_LATENCY(SUBSTAGES) clocks, beat to verdict
+//   latency      CCHIP_PIPE_LATENCY(SUBSTAGES) clocks, beat to verdict; the operands of a beat come
+//                CCHIP_RAM_LATENCY clocks after it, from the memory that its context addresses
 //   throughput   one axis per clock, never stalls: whoever issues a beat keeps room for its verdict
-//   cuts         every path (registered outputs; the first register is behind the multiplexers of select)
+//   cuts         every path (registered outputs; the first register of a vertex is behind the multiplexers of select)
 //   reset        valid bits; data on its way is lost
 // s_beat_user travels with the beat and comes back as m_verdict_user.
 module cchip_sat_pipeline #(
@@ -24,19 +25,19 @@ module cchip_sat_pipeline #(
     input  wire                         rst,
     input  wire                         s_beat_valid,
     input  wire [                  8:0] s_beat_code,             // {class, k, l}
-    input  wire                         s_beat_allow_above,      // see cchip_sat_compare
+    input  wire                         s_beat_allow_above,      // one clock after the beat; see cchip_sat_compare
     input  wire                         s_beat_allow_below,
-    input  wire [                  2:0] s_beat_error_shift,      // eta <= 2^s_beat_error_shift, 0..4
-    input  wire [3*VERTS_A*COORD_W-1:0] s_beat_a,                // vertex 0 in the low bits
-    input  wire [3*VERTS_B*COORD_W-1:0] s_beat_b,
     input  wire [           USER_W-1:0] s_beat_user,
+    input  wire [                  2:0] s_operand_error_shift,   // after the beat by CCHIP_RAM_LATENCY: eta <= 2^this, 0..4
+    input  wire [3*VERTS_A*COORD_W-1:0] s_operand_a,             // vertex 0 in the low bits
+    input  wire [3*VERTS_B*COORD_W-1:0] s_operand_b,
     output wire                         m_verdict_valid,
     output wire                         m_verdict_separated,     // intervals disjoint
     output wire                         m_verdict_certain_gap,   // for the unrounded primitives too
-    output wire [    VERTS_A+VERTS_B-4:0] m_verdict_negative,    // projected points: < 0
-    output wire [    VERTS_A+VERTS_B-4:0] m_verdict_zero,        // = 0
-    output wire [    VERTS_A+VERTS_B-4:0] m_verdict_certain,     // the sign is certain
-    output wire                         m_verdict_clear,           // see cchip_sat_compare
+    output wire [VERTS_A+VERTS_B-4:0]   m_verdict_negative,      // projected points: < 0
+    output wire [VERTS_A+VERTS_B-4:0]   m_verdict_zero,          // = 0
+    output wire                         m_verdict_certain,       // the sign of point VERTS_A - 2 is certain
+    output wire                         m_verdict_clear,         // see cchip_sat_compare
     output wire [                  2:0] m_verdict_axis_negative, // components of the axis: < 0
     output wire [                  2:0] m_verdict_axis_zero,     // = 0
     output wire [                  1:0] m_verdict_axis_largest,  // component of the largest absolute value
@@ -75,47 +76,59 @@ module cchip_sat_pipeline #(
       .d  (s_beat_user),
       .q  (m_verdict_user)
   );
+  reg [1:0] allow_q;
+  always @(posedge clk) allow_q <= {s_beat_allow_above, s_beat_allow_below};
   wire project_allow_above, project_allow_below;
   cchip_delay #(
       .WIDTH (2),
-      .DEPTH (`CCHIP_SELECT_LATENCY + 2 * SUBSTAGES),
+      .DEPTH (`CCHIP_SELECT_LATENCY - 2 + 2 * SUBSTAGES),
       .MEMORY(1)
   ) u_allow (
       .clk(clk),
       .rst(rst),
-      .d  ({s_beat_allow_above, s_beat_allow_below}),
+      .d  (allow_q),
       .q  ({project_allow_above, project_allow_below})
   );
   wire [2:0] axis_error_shift;
   cchip_delay #(
       .WIDTH (3),
-      .DEPTH (`CCHIP_SELECT_LATENCY + SUBSTAGES),
+      .DEPTH (`CCHIP_SELECT_LATENCY - `CCHIP_RAM_LATENCY + SUBSTAGES),
       .MEMORY(1)
   ) u_error_shift (
       .clk(clk),
       .rst(rst),
-      .d  (s_beat_error_shift),
+      .d  (s_operand_error_shift),
       .q  (axis_error_shift)
   );
 
   // ---- box comparison
   wire box_separated, box_certain;
+  wire [1:0] box_component;
+  cchip_delay #(
+      .WIDTH(2),
+      .DEPTH(`CCHIP_RAM_LATENCY)
+  ) u_box_component (
+      .clk(clk),
+      .rst(1'b0),
+      .d  (s_beat_code[1:0]),
+      .q  (box_component)
+  );
   cchip_box_compare #(
       .COORD_W(COORD_W),
       .VERTS_A(VERTS_A),
       .VERTS_B(VERTS_B)
   ) u_box (
       .clk          (clk),
-      .s_a          (s_beat_a),
-      .s_b          (s_beat_b),
-      .s_component  (s_beat_code[1:0]),
-      .s_error_shift(s_beat_error_shift),
+      .s_a          (s_operand_a),
+      .s_b          (s_operand_b),
+      .s_component  (box_component),
+      .s_error_shift(s_operand_error_shift),
       .m_separated  (box_separated),
       .m_certain_gap(box_certain)
   );
   cchip_delay #(
       .WIDTH (2),
-      .DEPTH (`CCHIP_PIPE_LATENCY(SUBSTAGES) - `CCHIP_BOX_LATENCY),
+      .DEPTH (`CCHIP_PIPE_LATENCY(SUBSTAGES) - `CCHIP_RAM_LATENCY - `CCHIP_BOX_LATENCY),
       .MEMORY(1)
   ) u_box_delay (
       .clk(clk),
@@ -135,8 +148,8 @@ module cchip_sat_pipeline #(
   ) u_select (
       .clk     (clk),
       .s_code  (s_beat_code),
-      .s_a     (s_beat_a),
-      .s_b     (s_beat_b),
+      .s_a     (s_operand_a),
+      .s_b     (s_operand_b),
       .m_e_from(select_e_from),
       .m_e_to  (select_e_to),
       .m_f_from(select_f_from),
@@ -185,16 +198,16 @@ module cchip_sat_pipeline #(
   );
 
   // ---- macro stage 3: project
-  wire [ POINTS*PROJ_W-1:0] projection;
-  wire [POINTS*BOUND_W-1:0] sign_bound;
-  wire [       BOUND_W-1:0] gap_bound;
-  wire [               2:0] project_axis_negative, project_axis_zero;
-  wire [               1:0] project_axis_largest;
+  wire [POINTS*PROJ_W-1:0] projection;
+  wire [BOUND_W-1:0] sign_bound, gap_bound;
+  wire [2:0] project_axis_negative, project_axis_zero;
+  wire [1:0] project_axis_largest;
   cchip_sat_project #(
       .COORD_W            (COORD_W),
       .SUBSTAGES          (SUBSTAGES),
       .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
-      .POINTS             (POINTS)
+      .POINTS             (POINTS),
+      .SIGN               (VERTS_A - 2)
   ) u_project (
       .clk            (clk),
       .s_axis         (axis),
@@ -214,7 +227,8 @@ module cchip_sat_pipeline #(
   cchip_sat_compare #(
       .PROJ_W (PROJ_W),
       .BOUND_W(BOUND_W),
-      .POINTS (POINTS)
+      .POINTS (POINTS),
+      .OWN    (VERTS_A - 2)
   ) u_compare (
       .clk          (clk),
       .s_own        (project_own),

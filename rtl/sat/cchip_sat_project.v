@@ -3,7 +3,7 @@
 // cchip_sat_project: macro stage 3 of the SAT pipeline (paper, figure 7): projections of the points
 // onto the axis (eq. 2), relative to the projection of the reference point, and what the certainty of
 // their signs needs. m_projection[i] = (p_i - reference) . axis.
-//   latency      SUBSTAGES clocks
+//   latency      SUBSTAGES clocks; bounds CCHIP_BOUND_LAG more
 //   throughput   one axis per clock, never stalls
 //   numbers      points of COORD_W bits, axis components of 2 COORD_W + 2 bits, projections of
 //                3 COORD_W + 3 bits, exact for every axis that is a cross product of two edges of the pair
@@ -23,20 +23,22 @@ module cchip_sat_project #(
     // 0: relative to the reference before, 1: after the multiplication
     parameter integer ABSOLUTE_PROJECTION = 0,
     // points to project
-    parameter integer POINTS = 3
+    parameter integer POINTS = 3,
+    // the one whose sign may have to be certain
+    parameter integer SIGN = 1
 ) (
-    input  wire                             clk,
-    input  wire [        6*(COORD_W+1)-1:0] s_axis,
-    input  wire [              COORD_W+2:0] s_edge_norm,     // |e|_1 + |f|_1
-    input  wire [                      2:0] s_error_shift,   // eta <= 2^s_error_shift, 0..4
-    input  wire [            3*COORD_W-1:0] s_reference,
-    input  wire [     3*POINTS*COORD_W-1:0] s_points,        // p0 in the low bits
-    output wire [ POINTS*3*(COORD_W+1)-1:0] m_projection,    // p0 in the low bits
-    output wire [POINTS*(2*COORD_W+11)-1:0] m_sign_bound,    // of the error of each projection
-    output wire [           2*COORD_W+10:0] m_gap_bound,     // of the difference of two true projections
-    output wire [                      2:0] m_axis_negative, // components of the axis: < 0
-    output wire [                      2:0] m_axis_zero,     // = 0
-    output wire [                      1:0] m_axis_largest   // component of the largest absolute value
+    input  wire                            clk,
+    input  wire [       6*(COORD_W+1)-1:0] s_axis,
+    input  wire [             COORD_W+2:0] s_edge_norm,      // |e|_1 + |f|_1
+    input  wire [                     2:0] s_error_shift,    // eta <= 2^s_error_shift, 0..4
+    input  wire [           3*COORD_W-1:0] s_reference,
+    input  wire [    3*POINTS*COORD_W-1:0] s_points,         // p0 in the low bits
+    output wire [POINTS*3*(COORD_W+1)-1:0] m_projection,     // p0 in the low bits
+    output wire [          2*COORD_W+10:0] m_sign_bound,     // of the error of projection SIGN
+    output wire [          2*COORD_W+10:0] m_gap_bound,      // of the difference of two true projections
+    output wire [                     2:0] m_axis_negative,  // components of the axis: < 0
+    output wire [                     2:0] m_axis_zero,      // = 0
+    output wire [                     1:0] m_axis_largest    // component of the largest absolute value
 );
 
 `include "cchip_defs.vh"
@@ -52,6 +54,9 @@ module cchip_sat_project #(
   generate
     if (SUBSTAGES < `CCHIP_PROJECT_SUBSTAGES_MIN(COORD_W)) begin : gen_illegal
       cchip_error_SUBSTAGES_below_minimum_for_COORD_W u_error ();
+    end
+    if (SIGN < 0 || SIGN >= POINTS) begin : gen_illegal_sign
+      cchip_error_SIGN_must_be_below_POINTS u_error ();
     end
     if (ABSOLUTE_PROJECTION != 0 && ABSOLUTE_PROJECTION != 1) begin : gen_illegal_projection
       cchip_error_ABSOLUTE_PROJECTION_must_be_0_or_1 u_error ();
@@ -92,6 +97,7 @@ module cchip_sat_project #(
         );
       end
     end else begin : gen_absolute
+      wire unused = &{1'b0, difference_q};  // but for point SIGN
       // width of a dot product with W-bit coordinates: CCHIP_PROJ_ABS_W
       localparam integer DOT_W = COORD_W + AXIS_W;
       // latency of cchip_dot3 may differ from the relative one (narrower factor): the rest is delay
@@ -133,52 +139,82 @@ module cchip_sat_project #(
   // ---- error bounds
   cchip_sat_bound #(
       .COORD_W  (COORD_W),
-      .SUBSTAGES(SUBSTAGES),
-      .POINTS   (POINTS)
+      .SUBSTAGES(SUBSTAGES)
   ) u_bound (
       .clk          (clk),
       .s_axis       (s_axis),
       .s_edge_norm  (s_edge_norm),
       .s_error_shift(s_error_shift),
-      .s_difference (difference_q),
+      .s_difference (difference_q[3*EDGE_W*SIGN+:3*EDGE_W]),
       .m_sign_bound (m_sign_bound),
       .m_gap_bound  (m_gap_bound)
   );
 
-  // ---- signs and largest component of the axis
-  wire [AXIS_W-1:0] x = s_axis[0+:AXIS_W];
-  wire [AXIS_W-1:0] y = s_axis[AXIS_W+:AXIS_W];
-  wire [AXIS_W-1:0] z = s_axis[2*AXIS_W+:AXIS_W];
-  reg [AXIS_W-1:0] x_q, y_q, z_q;
-  reg [2:0] negative_q, zero_q;
-  reg y_over_x_q, z_over_x_q, z_over_y_q;
-  reg [2:0] negative_q2, zero_q2;
+  // ---- signs and largest component of the axis: |.| in two clocks, then two levels of comparisons
+  reg [3*(AXIS_W-1)-1:0] size_q;
+  reg [3*AXIS_W-1:0] absolute_q2;
+  localparam integer PARTS = (AXIS_W + 8) / 9;
+  reg [2:0] negative_q, zero_q2;
+  reg y_over_x_q3, z_over_x_q3, z_over_y_q3;
+  wire [2:0] negative_q3, zero_q3;
+  genvar g;
+  generate
+    for (d = 0; d < 3; d = d + 1) begin : gen_axis
+      wire [AXIS_W-1:0] v = s_axis[AXIS_W*d+:AXIS_W];
+      // zero is found in two steps
+      wire [9*PARTS-1:0] parts = {{9 * PARTS - AXIS_W{1'b0}}, v};
+      reg [PARTS-1:0] some_q;
+      for (g = 0; g < PARTS; g = g + 1) begin : gen_part
+        always @(posedge clk) some_q[g] <= |parts[9*g+:9];
+      end
+      always @(posedge clk) begin
+        zero_q2[d]    <= ~|some_q;
+        negative_q[d] <= v[AXIS_W-1];
+        size_q[(AXIS_W-1)*d+:AXIS_W-1] <= v[AXIS_W-2:0] ^ {AXIS_W - 1{v[AXIS_W-1]}};
+        absolute_q2[AXIS_W*d+:AXIS_W] <= {1'b0, size_q[(AXIS_W-1)*d+:AXIS_W-1]} + {{AXIS_W - 1{1'b0}}, negative_q[d]};
+      end
+    end
+  endgenerate
 
-  function [AXIS_W-1:0] absolute(input [AXIS_W-1:0] v);
-    absolute = v[AXIS_W-1] ? ~v + {{AXIS_W - 1{1'b0}}, 1'b1} : v;
+  // x < y
+  function less(input [AXIS_W-1:0] x, input [AXIS_W-1:0] y);
+    reg [AXIS_W:0] difference;
+    begin
+      difference = {1'b0, x} - {1'b0, y};
+      less = difference[AXIS_W];
+    end
   endfunction
-
   always @(posedge clk) begin
-    x_q         <= absolute(x);
-    y_q         <= absolute(y);
-    z_q         <= absolute(z);
-    negative_q  <= {z[AXIS_W-1], y[AXIS_W-1], x[AXIS_W-1]};
-    zero_q      <= {z == {AXIS_W{1'b0}}, y == {AXIS_W{1'b0}}, x == {AXIS_W{1'b0}}};
-    y_over_x_q  <= y_q > x_q;
-    z_over_x_q  <= z_q > x_q;
-    z_over_y_q  <= z_q > y_q;
-    negative_q2 <= negative_q;
-    zero_q2     <= zero_q;
+    y_over_x_q3 <= less(absolute_q2[0+:AXIS_W], absolute_q2[AXIS_W+:AXIS_W]);
+    z_over_x_q3 <= less(absolute_q2[0+:AXIS_W], absolute_q2[2*AXIS_W+:AXIS_W]);
+    z_over_y_q3 <= less(absolute_q2[AXIS_W+:AXIS_W], absolute_q2[2*AXIS_W+:AXIS_W]);
   end
+  cchip_delay #(
+      .WIDTH(3),
+      .DEPTH(2)
+  ) u_negative (
+      .clk(clk),
+      .rst(1'b0),
+      .d  (negative_q),
+      .q  (negative_q3)
+  );
+  cchip_delay #(
+      .WIDTH(3)
+  ) u_zero (
+      .clk(clk),
+      .rst(1'b0),
+      .d  (zero_q2),
+      .q  (zero_q3)
+  );
 
-  wire [1:0] largest = y_over_x_q ? (z_over_y_q ? 2'd2 : 2'd1) : (z_over_x_q ? 2'd2 : 2'd0);
+  wire [1:0] largest = y_over_x_q3 ? (z_over_y_q3 ? 2'd2 : 2'd1) : (z_over_x_q3 ? 2'd2 : 2'd0);
   cchip_delay #(
       .WIDTH(8),
-      .DEPTH(SUBSTAGES - 2)
+      .DEPTH(SUBSTAGES - 3)
   ) u_axis (
       .clk(clk),
       .rst(1'b0),
-      .d  ({negative_q2, zero_q2, largest}),
+      .d  ({negative_q3, zero_q3, largest}),
       .q  ({m_axis_negative, m_axis_zero, m_axis_largest})
   );
 

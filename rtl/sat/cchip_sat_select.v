@@ -2,7 +2,8 @@
 `default_nettype none
 // cchip_sat_select: macro stage 1 of the SAT pipeline (paper, figure 7). Chooses the two edges e, f whose
 // cross product is the axis (or a constant unit vector for f), and the points to project.
-//   latency      CCHIP_SELECT_LATENCY = 1 clock
+//   latency      CCHIP_SELECT_LATENCY clocks from s_code, 1 from s_a and s_b, which come CCHIP_RAM_LATENCY = 3
+//                clocks after it
 //   throughput   one axis per clock, never stalls
 //   numbers      points of three signed COORD_W-bit coordinates, x in the low bits
 //   reset        none (data only)
@@ -26,7 +27,7 @@ module cchip_sat_select #(
 ) (
     input  wire                                     clk,
     input  wire [                              8:0] s_code,    // {class, k, l}
-    input  wire [            3*VERTS_A*COORD_W-1:0] s_a,       // vertex 0 in the low bits
+    input  wire [            3*VERTS_A*COORD_W-1:0] s_a,       // CCHIP_RAM_LATENCY clocks after s_code; vertex 0 in the low bits
     input  wire [            3*VERTS_B*COORD_W-1:0] s_b,
     output reg  [                    3*COORD_W-1:0] m_e_from,
     output reg  [                    3*COORD_W-1:0] m_e_to,
@@ -47,36 +48,27 @@ module cchip_sat_select #(
     end
   endgenerate
 
-  wire [`CCHIP_CLASS_W-1:0] axis_class = s_code[8:6];
-  wire [2:0] k = s_code[5:3];
-  wire [2:0] l = s_code[2:0];
-  wire is_cross = axis_class == `CCHIP_AXIS_CROSS;
-  wire is_in_plane = axis_class == `CCHIP_AXIS_IN_PLANE_A || axis_class == `CCHIP_AXIS_IN_PLANE_B;
-  wire own_b = axis_class == `CCHIP_AXIS_NORMAL_B || axis_class == `CCHIP_AXIS_IN_PLANE_B;
-
-  // four vertices each; vertex 3 of a triangle is never selected
-  wire [4*POINT_W-1:0] a, b;
-  generate
-    if (VERTS_A == 4) begin : gen_a_quad
-      assign a = s_a;
-    end else begin : gen_a_triangle
-      assign a = {s_a[0+:POINT_W], s_a};
-    end
-    if (VERTS_B == 4) begin : gen_b_quad
-      assign b = s_b;
-    end else begin : gen_b_triangle
-      assign b = {s_b[0+:POINT_W], s_b};
-    end
-  endgenerate
-
-  function [POINT_W-1:0] pick(input [4*POINT_W-1:0] v, input [1:0] i);
-    case (i)
-      2'd0: pick = v[0+:POINT_W];
-      2'd1: pick = v[POINT_W+:POINT_W];
-      2'd2: pick = v[2*POINT_W+:POINT_W];
-      default: pick = v[3*POINT_W+:POINT_W];
-    endcase
-  endfunction
+  // ---- what the code says, two clocks before the vertices
+  wire [8:0] code;
+  cchip_delay #(
+      .WIDTH(9),
+      .DEPTH(`CCHIP_RAM_LATENCY - 2)
+  ) u_code (
+      .clk(clk),
+      .rst(1'b0),
+      .d  (s_code),
+      .q  (code)
+  );
+  wire [`CCHIP_CLASS_W-1:0] axis_class = code[8:6];
+  reg is_cross_q, is_in_plane_q, own_b_q;
+  reg [2:0] k_q, l_q;
+  always @(posedge clk) begin
+    is_cross_q    <= axis_class == `CCHIP_AXIS_CROSS;
+    is_in_plane_q <= axis_class == `CCHIP_AXIS_IN_PLANE_A || axis_class == `CCHIP_AXIS_IN_PLANE_B;
+    own_b_q       <= axis_class == `CCHIP_AXIS_NORMAL_B || axis_class == `CCHIP_AXIS_IN_PLANE_B;
+    k_q           <= code[5:3];
+    l_q           <= code[2:0];
+  end
 
   // i + offset among the vertices of a triangle or quad
   function [1:0] around(input quad, input [1:0] i, input [1:0] offset);
@@ -89,13 +81,10 @@ module cchip_sat_select #(
 
   // {to, from} of edge k, {other 1, other 0}: the vertices off it
   function [7:0] edge_of(input quad, input [2:0] index);
-    case (index)
-      3'd4: edge_of = {2'd3, 2'd1, 2'd2, 2'd0};
-      3'd5: edge_of = {2'd2, 2'd0, 2'd3, 2'd1};
-      default:
-      edge_of = {around(quad, index[1:0], 2'd3), around(quad, index[1:0], 2'd2),
-                 around(quad, index[1:0], 2'd1), index[1:0]};
-    endcase
+    if (quad && index == 3'd4) edge_of = {2'd3, 2'd1, 2'd2, 2'd0};
+    else if (quad && index == 3'd5) edge_of = {2'd2, 2'd0, 2'd3, 2'd1};
+    else edge_of = {around(quad, index[1:0], 2'd3), around(quad, index[1:0], 2'd2),
+                    around(quad, index[1:0], 2'd1), index[1:0]};
   endfunction
 
   // normals: {own point, f to, f from, e to, e from}
@@ -111,49 +100,111 @@ module cchip_sat_select #(
       endcase
   endfunction
 
-  wire own_quad = own_b ? VERTS_B == 4 : VERTS_A == 4;
-  wire [4*POINT_W-1:0] own = own_b ? b : a;
-  wire [4*POINT_W-1:0] other = own_b ? a : b;
-  wire [7:0] own_edge = edge_of(own_quad, k);
-  wire [7:0] b_edge = edge_of(VERTS_B == 4, l);
-  wire [9:0] normal = normal_of(own_quad, k);
-  wire unused = &{1'b0, b_edge[7:6], own_edge[7:6], other};
+  // ---- one clock before: which vertex each end and slot takes: one bit for each vertex of A, then of B
+  wire own_quad = own_b_q ? VERTS_B == 4 : VERTS_A == 4;
+  wire [7:0] own_edge = edge_of(own_quad, k_q);
+  wire [7:0] b_edge = edge_of(VERTS_B == 4, l_q);
+  wire [9:0] normal = normal_of(own_quad, k_q);
+  wire is_edge = is_cross_q || is_in_plane_q;
 
-  // f of an in-plane axis: from the origin to unit vector l
+  function [7:0] choose(input of_b, input [1:0] vertex);
+    choose = of_b ? 8'h10 << vertex : 8'h01 << vertex;
+  endfunction
+
+  reg [7:0] e_from_q, e_to_q, f_from_q, f_to_q;
+  reg [2:0] unit_q;
+  reg [1:0] own_q;
+  always @(posedge clk) begin
+    e_from_q <= choose(own_b_q, is_edge ? own_edge[1:0] : normal[1:0]);
+    e_to_q   <= choose(own_b_q, is_edge ? own_edge[3:2] : normal[3:2]);
+    // f of an in-plane axis: from the origin to unit vector l
+    f_from_q <= is_in_plane_q ? 8'd0 : is_cross_q ? choose(1'b1, b_edge[1:0]) : choose(own_b_q, normal[5:4]);
+    f_to_q   <= is_in_plane_q ? 8'd0 : is_cross_q ? choose(1'b1, b_edge[3:2]) : choose(own_b_q, normal[7:6]);
+    unit_q   <= {is_in_plane_q && l_q == 3'd2, is_in_plane_q && l_q == 3'd1, is_in_plane_q && l_q == 3'd0};
+    own_q    <= {is_cross_q && VERTS_A == 4, is_cross_q || (!is_in_plane_q && own_quad)};
+  end
+
+  wire [8:0] of_b_edge = {1'b1, b_edge[7:6], 1'b1, b_edge[5:4], 1'b1, b_edge[1:0]};
+  wire [14:0] cross_points;
+  generate
+    if (VERTS_A == 4) begin : gen_cross_quad
+      assign cross_points = {of_b_edge, 1'b0, own_edge[7:6], 1'b0, own_edge[5:4]};
+    end else begin : gen_cross_triangle
+      assign cross_points = {3'd0, of_b_edge, 1'b0, own_edge[5:4]};
+    end
+  endgenerate
+
+  reg [8*POINTS-1:0] point_q;
+  genvar p;
+  generate
+    for (p = 0; p < POINTS; p = p + 1) begin : gen_choice
+      localparam [31:0] IN_A = p - (POINTS - VERTS_A);
+      localparam [31:0] IN_B = p - (POINTS - VERTS_B);
+      wire [2:0] of_own = is_in_plane_q ? {~own_b_q, 2'd0} : {own_b_q, normal[9:8]};
+      wire [2:0] of_a = p < POINTS - VERTS_A ? of_own : {1'b0, IN_A[1:0]};
+      wire [2:0] of_b = p < POINTS - VERTS_B ? of_own : {1'b1, IN_B[1:0]};
+      wire [2:0] vertex = is_cross_q ? cross_points[3*p+:3] : own_b_q ? of_a : of_b;
+      always @(posedge clk) point_q[8*p+:8] <= choose(vertex[2], vertex[1:0]);
+    end
+  endgenerate
+
+  wire unused = &{1'b0, b_edge[7:6], own_edge[7:6], cross_points};
+
+  // ---- the vertices. Vertices that an end or slot never takes are masked.
+  wire [8*POINT_W-1:0] vertices;
+  generate
+    if (VERTS_A == 4) begin : gen_a_quad
+      assign vertices[0+:4*POINT_W] = s_a;
+    end else begin : gen_a_triangle
+      assign vertices[0+:4*POINT_W] = {{POINT_W{1'b0}}, s_a};
+    end
+    if (VERTS_B == 4) begin : gen_b_quad
+      assign vertices[4*POINT_W+:4*POINT_W] = s_b;
+    end else begin : gen_b_triangle
+      assign vertices[4*POINT_W+:4*POINT_W] = {{POINT_W{1'b0}}, s_b};
+    end
+  endgenerate
+
+  function [POINT_W-1:0] pick(input [8*POINT_W-1:0] from, input [7:0] choice);
+    integer j;
+    begin
+      pick = {POINT_W{1'b0}};
+      for (j = 0; j < 8; j = j + 1) pick = pick | (from[POINT_W*j+:POINT_W] & {POINT_W{choice[j]}});
+    end
+  endfunction
+
+  localparam [3:0] ALL_A = VERTS_A == 4 ? 4'hf : 4'h7;
+  localparam [3:0] ALL_B = VERTS_B == 4 ? 4'hf : 4'h7;
+  localparam [7:0] ALL = {ALL_B, ALL_A};
+  // f on a normal of a triangle A: from vertex 0 to vertex 2
+  localparam [7:0] F_FROM = {ALL_B, VERTS_A == 4 ? 4'hf : 4'h1};
+  localparam [7:0] F_TO = {ALL_B, VERTS_A == 4 ? 4'hf : 4'h4};
+
+  generate
+    for (p = 0; p < POINTS; p = p + 1) begin : gen_point
+      localparam integer IN_A = p < POINTS - VERTS_A ? 0 : p - (POINTS - VERTS_A);
+      localparam integer IN_B = p < POINTS - VERTS_B ? 0 : p - (POINTS - VERTS_B);
+      localparam [3:0] OF_A = p < VERTS_A - 2 ? ALL_A : 4'd1 << IN_A;
+      localparam [3:0] OF_B = p >= VERTS_A - 2 || (p == 0 && VERTS_B == 4) ? ALL_B : 4'd1 << IN_B;
+      localparam [7:0] MASK = {OF_B, OF_A};
+      always @(posedge clk) m_points[POINT_W*p+:POINT_W] <= pick(vertices, point_q[8*p+:8] & MASK);
+    end
+  endgenerate
+
   wire [POINT_W-1:0] unit;
   genvar d;
   generate
     for (d = 0; d < 3; d = d + 1) begin : gen_unit
-      localparam [2:0] D = d;
-      assign unit[COORD_W*d+:COORD_W] = {{COORD_W - 1{1'b0}}, l == D};
+      assign unit[COORD_W*d+:COORD_W] = {{COORD_W - 1{1'b0}}, unit_q[d]};
     end
   endgenerate
 
-  // ---- points
-  reg [POINTS*POINT_W-1:0] points;
-  always @* begin
-    points = {POINTS * POINT_W{1'b0}};
-    if (is_cross) begin
-      points[0+:POINT_W] = pick(a, own_edge[5:4]);
-      if (VERTS_A == 4) points[(VERTS_A-3)*POINT_W+:POINT_W] = pick(a, own_edge[7:6]);
-      points[(VERTS_A-2)*POINT_W+:POINT_W] = pick(b, b_edge[1:0]);
-      points[(VERTS_A-1)*POINT_W+:POINT_W] = pick(b, b_edge[5:4]);
-      if (VERTS_B == 4) points[(POINTS-1)*POINT_W+:POINT_W] = pick(b, b_edge[7:6]);
-    end else begin
-      points[0+:POINT_W] = is_in_plane ? other[0+:POINT_W] : pick(own, normal[9:8]);
-      if (own_b) points[(POINTS-VERTS_A)*POINT_W+:VERTS_A*POINT_W] = a[0+:VERTS_A*POINT_W];
-      else points[(POINTS-VERTS_B)*POINT_W+:VERTS_B*POINT_W] = b[0+:VERTS_B*POINT_W];
-    end
-  end
-
   always @(posedge clk) begin
-    m_e_from <= pick(own, is_cross || is_in_plane ? own_edge[1:0] : normal[1:0]);
-    m_e_to   <= pick(own, is_cross || is_in_plane ? own_edge[3:2] : normal[3:2]);
-    m_f_from <= is_in_plane ? {POINT_W{1'b0}} : is_cross ? pick(b, b_edge[1:0]) : pick(own, normal[5:4]);
-    m_f_to   <= is_in_plane ? unit : is_cross ? pick(b, b_edge[3:2]) : pick(own, normal[7:6]);
-    m_points <= points;
-    m_own[0] <= is_cross || (!is_in_plane && own_quad);
-    m_own[1] <= is_cross && VERTS_A == 4;
+    m_e_from <= pick(vertices, e_from_q & ALL);
+    m_e_to   <= pick(vertices, e_to_q & ALL);
+    m_f_from <= pick(vertices, f_from_q & F_FROM);
+    m_f_to   <= pick(vertices, f_to_q & F_TO) | unit;
+    m_own    <= own_q;
   end
 
 endmodule

@@ -15,7 +15,7 @@ constexpr int substages = defs::substages_default;
 constexpr int context_w = 6;
 static_assert(defs::contexts_default(substages) > 1 << (context_w - 1) &&
               defs::contexts_default(substages) <= 1 << context_w);
-constexpr int user_w = context_w + 37;
+constexpr int user_w = context_w + defs::state_w;
 
 /// Flags of a trace in a GTKWave save file (right-justified).
 enum class Radix : unsigned { hexadecimal = 0x22, decimal = 0x24, binary = 0x28, octal = 0x30, signed_decimal = 0x420 };
@@ -74,13 +74,13 @@ class SaveFile {
   void axis_code(const Vector& vector) { this->vector("axis (class k l)", vector, Radix::octal); }
   /// The programme state that travels with a beat (header of cchip_axis_programme), the context above it.
   void state(const Vector& vector) {
-    field("context", vector, 37, context_w, Radix::decimal);
+    field("context", vector, defs::state_w, context_w, Radix::decimal);
     field("programme", vector, 0, defs::prog_w, Radix::decimal);
     field("axis (class k l)", vector, 3, defs::axis_code_w, Radix::octal);
-    field("beats before", vector, 29, defs::beats_w, Radix::decimal);
-    field("info", vector, 12, 17, Radix::binary);
-    field("open", vector, 35, 1, Radix::binary);
-    field("certain so far", vector, 36, 1, Radix::binary);
+    field("info", vector, 12, defs::state_w - 20, Radix::binary);
+    field("beats before", vector, defs::state_w - 8, defs::beats_w, Radix::decimal);
+    field("open", vector, defs::state_w - 2, 1, Radix::binary);
+    field("certain so far", vector, defs::state_w - 1, 1, Radix::binary);
   }
 
  private:
@@ -132,8 +132,8 @@ void axis_controller(SaveFile& file) {
   file.state({"u_primtest.beat_user", user_w});
   file.close_folded("programme state of the beat");
   file.axis_code({"u_primtest.beat_code", defs::axis_code_w});
-  file.bit("allow above", "u_primtest.beat_allow_above");
-  file.bit("allow below", "u_primtest.beat_allow_below");
+  file.bit("allow above, a clock later", "u_primtest.beat_allow_above");
+  file.bit("allow below, a clock later", "u_primtest.beat_allow_below");
   file.close_group(title);
 }
 
@@ -172,10 +172,10 @@ void stage_project(SaveFile& file, const Module& module) {
   file.open_group(title);
   pipeline_valid(file, defs::select_latency() + 2 * substages);
   slices("p", "projection", defs::proj_w(w), Radix::signed_decimal);
-  file.open_folded("error bounds");
-  slices("sign bound ", "sign_bound", defs::bound_w(w), Radix::decimal);
+  file.open_folded("error bounds, two clocks later");
+  file.vector("sign bound", {pipeline + "sign_bound", defs::bound_w(w)}, Radix::decimal);
   file.vector("gap bound", {pipeline + "gap_bound", defs::bound_w(w)}, Radix::decimal);
-  file.close_folded("error bounds");
+  file.close_folded("error bounds, two clocks later");
   file.vector("axis < 0 (zyx)", {pipeline + "project_axis_negative", 3}, Radix::binary);
   file.vector("axis = 0 (zyx)", {pipeline + "project_axis_zero", 3}, Radix::binary);
   file.vector("largest component", {pipeline + "project_axis_largest", 2}, Radix::decimal);
@@ -195,7 +195,7 @@ void stage_compare(SaveFile& file, const Module& module) {
   file.bit("certain gap", "u_primtest.verdict_certain_gap");
   file.vector("points < 0", {"u_primtest.verdict_negative", module.points()}, Radix::binary);
   file.vector("points = 0", {"u_primtest.verdict_zero", module.points()}, Radix::binary);
-  file.vector("sign certain", {"u_primtest.verdict_certain", module.points()}, Radix::binary);
+  file.bit("sign certain", "u_primtest.verdict_certain");
   file.bit("boxes separated", "u_primtest.verdict_box_separated");
   file.bit("boxes certain", "u_primtest.verdict_box_certain");
   file.close_group(title);

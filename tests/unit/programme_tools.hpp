@@ -21,12 +21,12 @@ inline model::Verdict random_verdict(Random& random, int separated_percent, unsi
   v.box.separated = chance(random, separated_percent);
   v.box.certain_gap = v.box.separated && chance(random, 50);
   const int zeros = chance(random, 15) ? 100 : chance(random, 50) ? 0 : 30;
-  const int certains = chance(random, 60) ? 100 : 70;
+  const int certains = chance(random, 60) ? 95 : 60;
   for (std::size_t i = 0; i < model::max_points; ++i) {
     v.compare.zero[i] = chance(random, zeros);
     v.compare.negative[i] = !v.compare.zero[i] && chance(random, 50);
-    v.compare.certain[i] = !v.compare.zero[i] && chance(random, certains);
   }
+  v.compare.certain = chance(random, certains);
   v.compare.clear = chance(random, 60);
   const bool no_normal = chance(random, 10);
   for (std::size_t d = 0; d < 3; ++d) {
@@ -51,7 +51,7 @@ inline unsigned random_zero_axes(Random& random) {
     (top).PREFIX##certain_gap = (v).compare.certain_gap ? 1 : 0;                             \
     (top).PREFIX##negative = static_cast<CData>(bit_vector((v).compare.negative, (points))); \
     (top).PREFIX##zero = static_cast<CData>(bit_vector((v).compare.zero, (points)));         \
-    (top).PREFIX##certain = static_cast<CData>(bit_vector((v).compare.certain, (points)));   \
+    (top).PREFIX##certain = (v).compare.certain ? 1 : 0;                                     \
     (top).PREFIX##clear = (v).compare.clear ? 1 : 0;                                         \
     (top).PREFIX##axis_negative = static_cast<CData>(bit_vector((v).axis_negative, 3));      \
     (top).PREFIX##axis_zero = static_cast<CData>(bit_vector((v).axis_zero, 3));              \

@@ -58,24 +58,26 @@ class ControllerBench {
     const auto mode = chance(random_, reserved_percent)     ? 2 + random_() % 2
                       : chance(random_, exhaustive_percent) ? 0
                                                             : 1;
+    top.s_pair_tag = header_.tag;  // of the pair before
+    top.s_pair_err = static_cast<CData>(header_.err);
     header_ = {static_cast<std::uint16_t>(random_()), static_cast<int>(mode),
                static_cast<int>(chance(random_, 50) ? 0 : random_() % 16)};
-    // an owner with a registered ready sends nothing on the first clock after reset
-    const bool may_send = !now.in_reset && now.clock > 0;
-    const bool room = in_flight_.size() < static_cast<std::size_t>(Config::CONTEXTS);
+    // the first context stands ready on the third clock after reset
+    const bool may_send = !now.in_reset && now.clock > 1;
+    const bool room = in_flight_.size() + (left_before_ + left_earlier_) < static_cast<std::size_t>(Config::CONTEXTS);
     top.s_pair_valid = pattern_.next() && room && may_send ? 1 : 0;
-    top.s_pair_tag = header_.tag;
     top.s_pair_mode = static_cast<CData>(header_.mode);
-    top.s_pair_err = static_cast<CData>(header_.err);
     const auto& flying = pipeline_.q();
     top.s_verdict_valid = flying ? 1 : 0;
     const model::Verdict v = flying ? flying->model.verdict : random_verdict(random_, 50, 0);
     CCHIP_PUT_VERDICT(top, s_verdict_, v, points);
-    top.s_verdict_user = flying ? flying->user : random_() & ((std::uint64_t{1} << (Config::CONTEXT_W + 37)) - 1);
+    top.s_verdict_user = flying ? flying->user : random_() & ((std::uint64_t{1} << (Config::CONTEXT_W + defs::state_w)) - 1);
   }
 
   void sample(const sim::ClockInfo& now) {
     auto& top = simulation_.top();
+    left_earlier_ = left_before_;
+    left_before_ = 0;
     if (defined_) compare(now);
     if (now.in_reset) {
       model_.reset();
@@ -112,9 +114,12 @@ class ControllerBench {
       const AxisBeat expected = model::beat_of(beat->state, 0);
       expect("m_beat_context", std::size_t{top.m_beat_context}, beat->context);
       expect("m_beat_code", std::uint16_t{top.m_beat_code}, model::to_bits(expected.code));
-      expect("m_beat_allow_above", top.m_beat_allow_above != 0, expected.allow_above);
-      expect("m_beat_allow_below", top.m_beat_allow_below != 0, expected.allow_below);
     }
+    if (allowed_) {  // by the beat of the clock before
+      expect("m_beat_allow_above", top.m_beat_allow_above != 0, allowed_->allow_above);
+      expect("m_beat_allow_below", top.m_beat_allow_below != 0, allowed_->allow_below);
+    }
+    allowed_ = model_.beat() ? std::optional(model::beat_of(model_.beat()->state, 0)) : std::nullopt;
     if (top.s_pair_valid != 0) expect("m_load_context", std::size_t{top.m_load_context}, model_.load_context());
     expect("m_result_valid", top.m_result_valid != 0, model_.result().has_value());
     if (!model_.result()) return;
@@ -139,9 +144,8 @@ class ControllerBench {
     const model::Step step = model::advance(options_, pair.state, returned.verdict, pair.header.err, pair.found);
     if (step.outcome) {
       pair.outcome = step.outcome;
-      done_.push_back(pair);
-      for (const auto& [context, other] : in_flight_) overtaken += other.number < pair.number ? 1 : 0;
-      in_flight_.erase(found);
+      done_.push_back(found->first);
+      for (const auto& [context, other] : in_flight_) overtaken += other.number < pair.number && !other.outcome ? 1 : 0;
     } else {
       pair.state = step.next ? *step.next : model::following_beat(options_, pair.state).value();
     }
@@ -149,7 +153,9 @@ class ControllerBench {
 
   void judge(const model::Result& r) {
     sim::require(!done_.empty(), "a result without its verdict");
-    const Pair pair = done_.front();
+    const Pair pair = in_flight_.at(done_.front());
+    in_flight_.erase(done_.front());
+    left_before_ = 1;
     done_.pop_front();
     ++results;
     const model::Outcome& o = *pair.outcome;
@@ -176,10 +182,13 @@ class ControllerBench {
   sim::Pattern pattern_;
   Bench bench_;
   model::PairHeader header_;
-  std::map<std::size_t, Pair> in_flight_;  ///< by context
-  std::deque<Pair> done_;
+  std::map<std::size_t, Pair> in_flight_;  ///< by context, until its result
+  std::deque<std::size_t> done_;           ///< contexts decided, their results under way
   std::map<std::size_t, int> used_;
   std::uint64_t sent_ = 0;
+  std::optional<AxisBeat> allowed_;
+  std::size_t left_before_ = 0;   ///< results that left on the clock before: their context is not free yet
+  std::size_t left_earlier_ = 0;  ///< and on the clock before that
   bool defined_ = false;
 };
 

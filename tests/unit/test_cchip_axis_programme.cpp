@@ -9,18 +9,19 @@ using namespace cchip::test;
 
 namespace {
 
-// state: {certain, open, beats (6), info (17), code (9), programme (3)}
+// state: {certain, open, beats (6), info, code (9), programme (3)}
+constexpr int beats_at = defs::state_w - 8;
 constexpr std::uint64_t code_mask = 0x1ffULL << 3;
-constexpr std::uint64_t beats_mask = 0x3fULL << 29;
+constexpr std::uint64_t beats_mask = 0x3fULL << beats_at;
 
 std::uint64_t with_code(std::uint64_t state, const model::State& s) {
   return (state & ~code_mask & ~beats_mask) | std::uint64_t{model::to_bits(s.code)} << 3 |
-         static_cast<std::uint64_t>(s.beats) << 29;
+         static_cast<std::uint64_t>(s.beats) << beats_at;
 }
 
 /// The state with which the controller starts a pair: certain, nothing known.
 std::uint64_t start_bits(const model::State& s) {
-  return with_code(1ULL << 36 | static_cast<std::uint64_t>(s.programme), s);
+  return with_code(1ULL << (defs::state_w - 1) | static_cast<std::uint64_t>(s.programme), s);
 }
 
 /// Walks whole programmes with made-up verdicts, the RTL's states beside the model's.
@@ -29,6 +30,7 @@ class Walk {
  public:
   explicit Walk(const sim::SimulationOptions& options) : random_(options.seed), simulation_(options) {
     simulation_->s_valid = 0;
+    simulation_.reset(1);
   }
 
   std::map<Programme, int> outcomes;  ///< by the programme that gave it
@@ -45,37 +47,49 @@ class Walk {
     while (true) {
       const int err = chance(random_, 50) ? 0 : static_cast<int>(random_() % 16);
       const model::Verdict v = random_verdict(random_, separated_percent, zero_axes);
-      top.s_state = bits;
-      CCHIP_PUT_VERDICT(top, s_, v, static_cast<std::size_t>(defs::points(Config::VERTS_A, Config::VERTS_B)));
-      // without valid nothing happens, whatever the verdict
-      top.s_valid = 0;
-      simulation_.settle();
-      REQUIRE(top.m_outcome == 0);
-      REQUIRE(top.m_proceed == 0);
-      if (chance(random_, 30)) simulation_.rise();
-      top.s_valid = 1;
-      simulation_.settle();
+      present(v, bits, true);
       const model::Step step = model::advance(options_, state, v, err, found_);
+      if (!step.outcome && !step.next) {  // EXHAUSTIVE: the next verdict comes at once
+        state = model::following_beat(options_, state).value();
+        bits = with_code(bits, state);
+        continue;
+      }
+      // without valid nothing happens, whatever the verdict
+      for (int clock = 1; clock < defs::programme_latency(); ++clock) {
+        present(random_verdict(random_, 50, 0), random_() & ((1ULL << defs::state_w) - 1), false);
+      }
       INFO("programme " << static_cast<int>(state.programme) << ", axis " << to_words(state.code) << ", beats "
                         << state.beats << ", eta " << err);
       REQUIRE((top.m_outcome != 0) == step.outcome.has_value());
       REQUIRE((top.m_proceed != 0) == step.next.has_value());
       if (step.outcome) return judge(state, *step.outcome, err);
-      if (step.next) {
-        bits = top.m_state;
-        state = *step.next;
-        REQUIRE((bits & 7) == static_cast<std::uint64_t>(state.programme));
-        REQUIRE((bits & code_mask) >> 3 == model::to_bits(state.code));
-        REQUIRE((bits & beats_mask) >> 29 == static_cast<std::uint64_t>(state.beats));
-      } else {
-        state = model::following_beat(options_, state).value();
-        bits = with_code(bits, state);
-      }
-      simulation_.rise();
+      bits = top.m_state;
+      state = *step.next;
+      REQUIRE((bits & 7) == static_cast<std::uint64_t>(state.programme));
+      REQUIRE((bits & code_mask) >> 3 == model::to_bits(state.code));
+      REQUIRE((bits & beats_mask) >> beats_at == static_cast<std::uint64_t>(state.beats));
+      idle();
     }
   }
 
  private:
+  /// One clock with this verdict; the one before it has nothing to say any more.
+  void present(const model::Verdict& v, std::uint64_t bits, bool valid) {
+    auto& top = simulation_.top();
+    REQUIRE(top.m_outcome == 0);
+    REQUIRE(top.m_proceed == 0);
+    top.s_valid = valid ? 1 : 0;
+    top.s_state = bits;
+    CCHIP_PUT_VERDICT(top, s_, v, static_cast<std::size_t>(defs::points(Config::VERTS_A, Config::VERTS_B)));
+    simulation_.settle();
+    simulation_.rise();
+  }
+  void idle() {
+    simulation_->s_valid = 0;
+    simulation_.settle();
+    simulation_.rise();
+  }
+
   void judge(const model::State& state, const model::Outcome& o, int err) {
     auto& top = simulation_.top();
     const bool illegal = state.programme == Programme::illegal;
@@ -86,10 +100,10 @@ class Walk {
     const bool certain = top.m_certain != 0;
     const bool definite = err == 0 ? certain || top.m_open == 0 : certain && err != defs::err_unknown;
     REQUIRE((definite && !illegal) == o.definite);
-    simulation_.rise();
     ++outcomes[state.programme];
     hits += o.grid ? 1 : 0;
     open += top.m_open != 0 ? 1 : 0;
+    idle();
     most_beats = std::max(most_beats, o.beats);
   }
 

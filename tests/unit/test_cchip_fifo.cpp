@@ -16,7 +16,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_fifo: throughput, DEPTH beats of room, no path th
                         cchip_fifo_configs) {
   using Model = typename TestType::Model;
   for_two_power_ups([](const sim::SimulationOptions& options) {
-    const std::uint64_t expected = TestType::DEPTH == 1 ? 100 : 199;
+    // two clocks to the other side; a single place is free again a clock after that
+    const std::uint64_t expected = TestType::DEPTH == 1 ? 66 : 198;
     REQUIRE(beats_passed<Model>(options, sim::Pattern::always(), 200) == expected);
     REQUIRE(beats_until_full<Model>(options) == TestType::DEPTH);
     require_registered_outputs<Model, TestType::WIDTH>(options);

@@ -13,6 +13,11 @@ TEMPLATE_LIST_TEST_CASE("cchip_ram: registered read of the old word", "[unit][cc
     sim::Simulation<Model> simulation(options);
     Model& top = simulation.top();
     model::Ram<std::uint64_t> model(TestType::DEPTH);
+    // the model gets the address one clock late and reads at once
+    model::Delay<std::optional<std::uint64_t>> out(static_cast<std::size_t>(defs::ram_latency() - 1));
+    bool write = false;  // on the clock before: its data come now
+    std::size_t write_addr = 0;
+    std::size_t read_addr = 0;  // on the clock before
     int compared = 0;
     int collisions = 0;
     Bench bench(
@@ -23,12 +28,16 @@ TEMPLATE_LIST_TEST_CASE("cchip_ram: registered read of the old word", "[unit][cc
           sim::set_random(top.write_data, TestType::WIDTH, random);
         },
         [&](const sim::ClockInfo&) {
-          if (model.read_data()) {
-            expect("read_data", sim::get_bits(top.read_data, 0, TestType::WIDTH), *model.read_data());
+          if (const auto& expected = out.q()) {
+            expect("read_data", sim::get_bits(top.read_data, 0, TestType::WIDTH), *expected);
             ++compared;
           }
-          collisions += top.write != 0 && top.write_addr == top.read_addr ? 1 : 0;
-          model.clock(top.write != 0, top.write_addr, sim::get_bits(top.write_data, 0, TestType::WIDTH), top.read_addr);
+          collisions += write && write_addr == read_addr ? 1 : 0;
+          model.clock(write, write_addr, sim::get_bits(top.write_data, 0, TestType::WIDTH), read_addr);
+          read_addr = top.read_addr;
+          out.clock(model.read_data());
+          write = top.write != 0;
+          write_addr = top.write_addr;
         });
     simulation.add(bench);
     simulation.steps(2000);

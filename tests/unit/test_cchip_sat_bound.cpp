@@ -14,6 +14,8 @@ struct Task {
   int error_shift = 0;
 };
 
+constexpr model::Shape shape{3, 3};
+
 model::Word3 difference(const Vec3i& to, const Vec3i& from) {
   return {std::int64_t{to.x()} - from.x(), std::int64_t{to.y()} - from.y(), std::int64_t{to.z()} - from.z()};
 }
@@ -33,30 +35,25 @@ Vec3i draw_point(Random& random, int coord_w, std::uint64_t kind) {
   }
   return p;
 }
-Task draw_task(Random& random, int coord_w, int points) {
+Task draw_task(Random& random, int coord_w) {
   Task task;
   const std::uint64_t kind = random() % 4;
   model::Selection& s = task.selection;
   for (Vec3i* p : {&s.e_from, &s.e_to, &s.f_from, &s.f_to}) *p = draw_point(random, coord_w, kind);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(points); ++i) s.points[i] = draw_point(random, coord_w, kind);
+  s.points[model::sign_slot(shape)] = draw_point(random, coord_w, kind);
   task.error_shift = static_cast<int>(random() % 5);
   return task;
 }
 
-/// The shape that has this many points to project.
-model::Shape shape_of(int points) {
-  return points == 3 ? model::Shape{3, 3} : points == 4 ? model::Shape{3, 4} : model::Shape{4, 4};
-}
-
 /// The formula of the datasheet, written out.
-sim::Int128 sign_bound(const Task& task, std::size_t i) {
+sim::Int128 sign_bound(const Task& task) {
   const model::Selection& s = task.selection;
   const model::Word3 a = difference(s.e_to, s.e_from);
   const model::Word3 b = difference(s.f_to, s.f_from);
   sim::Int128 axis_norm = 0;
   for (const sim::Int128 x : detail::cross({a[0], a[1], a[2]}, {b[0], b[1], b[2]})) axis_norm += x < 0 ? -x : x;
   const sim::Int128 error = sim::Int128{1} << task.error_shift;
-  const sim::Int128 length = norm1(difference(s.points[i], s.e_from)) + 2 * error;
+  const sim::Int128 length = norm1(difference(s.points[model::sign_slot(shape)], s.e_from)) + 2 * error;
   sim::Int128 power = 1;
   while (power < length) power *= 2;
   return error * (axis_norm + (norm1(a) + norm1(b) + 2 * error) * power);
@@ -87,9 +84,10 @@ sim::Int128 greatest_error(const model::Word3& a, const model::Word3& b, const m
 template <class Config, class Draw, class Check>
 void stream(const sim::SimulationOptions& options, std::size_t count, Draw draw, Check check) {
   constexpr int w = Config::COORD_W;
+  constexpr std::size_t latency = Config::SUBSTAGES + defs::bound_lag();
   sim::Simulation<typename Config::Model> simulation(options);
   auto& top = simulation.top();
-  model::Delay<std::optional<Task>> delay(Config::SUBSTAGES);
+  model::Delay<std::optional<Task>> delay(latency);
   std::optional<Task> before;  // its differences come one clock after its axis
   Task in;
   std::size_t compared = 0;
@@ -100,76 +98,61 @@ void stream(const sim::SimulationOptions& options, std::size_t count, Draw draw,
         set_word3(top.s_axis, defs::axis_w(w), axis.axis);
         sim::set_bits(top.s_edge_norm, 0, defs::norm_w(w), static_cast<std::uint64_t>(axis.edge_norm));
         top.s_error_shift = static_cast<CData>(in.error_shift);
-        for (int i = 0; before && i < Config::POINTS; ++i) {
+        if (before) {
           const model::Selection& s = before->selection;
-          const model::Word3 c = difference(s.points[static_cast<std::size_t>(i)], s.e_from);
-          for (int d = 0; d < 3; ++d) {
-            sim::set_signed(top.s_difference, defs::edge_w(w) * (3 * i + d), defs::edge_w(w),
-                            c[static_cast<std::size_t>(d)]);
-          }
+          set_word3(top.s_difference, defs::edge_w(w), difference(s.points[model::sign_slot(shape)], s.e_from));
         }
       },
       [&](const sim::ClockInfo&) {
         if (const auto& task = delay.q()) {
-          std::vector<std::int64_t> bounds;
-          for (int i = 0; i < Config::POINTS; ++i) {
-            bounds.push_back(
-                static_cast<std::int64_t>(sim::get_bits(top.m_sign_bound, defs::bound_w(w) * i, defs::bound_w(w))));
-          }
-          check(*task, bounds, static_cast<std::int64_t>(sim::get_bits(top.m_gap_bound, 0, defs::bound_w(w))));
+          check(*task, static_cast<std::int64_t>(sim::get_bits(top.m_sign_bound, 0, defs::bound_w(w))),
+                static_cast<std::int64_t>(sim::get_bits(top.m_gap_bound, 0, defs::bound_w(w))));
           ++compared;
         }
         delay.clock(in);
         before = in;
       });
   simulation.add(bench);
-  simulation.steps(count + Config::SUBSTAGES);
+  simulation.steps(count + latency);
   REQUIRE(compared == count);
 }
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("cchip_sat_bound: bounds of the model and of the formula after SUBSTAGES clocks",
+TEMPLATE_LIST_TEST_CASE("cchip_sat_bound: bounds of the model and of the formula two clocks after the projections",
                         "[unit][cchip_sat_bound]", cchip_sat_bound_configs) {
   constexpr int w = TestType::COORD_W;
-  constexpr int points = TestType::POINTS;
   for_two_power_ups([](const sim::SimulationOptions& options) {
     Random random(options.seed);
     stream<TestType>(
-        options, 10000, [&] { return draw_task(random, w, points); },
-        [](const Task& task, const std::vector<std::int64_t>& bounds, std::int64_t gap_bound) {
+        options, 10000, [&] { return draw_task(random, w); },
+        [](const Task& task, std::int64_t bound, std::int64_t gap_bound) {
           const model::Axis axis = model::sat_axis(task.selection, w);
-          const model::Projections expected =
-              model::sat_project(shape_of(points), axis, task.selection, task.error_shift, w);
+          const model::Projections expected = model::sat_project(shape, axis, task.selection, task.error_shift, w);
           expect("m_gap_bound", gap_bound, expected.gap_bound);
           sim::require(gap_bound == norm1(axis.axis) << task.error_shift, "m_gap_bound is not E |axis|_1");
-          for (std::size_t i = 0; i < bounds.size(); ++i) {
-            expect("m_sign_bound", bounds[i], expected.sign_bound[i]);
-            sim::require(bounds[i] == sign_bound(task, i), "m_sign_bound is not that of the formula");
-          }
+          expect("m_sign_bound", bound, expected.sign_bound);
+          sim::require(bound == sign_bound(task), "m_sign_bound is not that of the formula");
         });
   });
 }
 
 TEMPLATE_LIST_TEST_CASE("cchip_sat_bound: never below the exact greatest error", "[unit][cchip_sat_bound]",
                         cchip_sat_bound_configs) {
-  constexpr int points = TestType::POINTS;
   const sim::SimulationOptions options;
   Random random(options.seed);
   sim::Int128 most_used = 0;  // per cent of a bound
   stream<TestType>(
-      options, 1500, [&] { return draw_task(random, TestType::COORD_W, points); },
-      [&](const Task& task, const std::vector<std::int64_t>& bounds, std::int64_t gap_bound) {
+      options, 4000, [&] { return draw_task(random, TestType::COORD_W); },
+      [&](const Task& task, std::int64_t bound, std::int64_t gap_bound) {
         const model::Selection& s = task.selection;
         const model::Word3 a = difference(s.e_to, s.e_from);
         const model::Word3 b = difference(s.f_to, s.f_from);
         const int error = 1 << task.error_shift;
-        for (std::size_t i = 0; i < bounds.size(); ++i) {
-          const model::Word3 c = difference(s.points[i], s.e_from);
-          const sim::Int128 greatest = greatest_error(a, b, c, error);
-          sim::require(greatest <= bounds[i], "a sign bound is smaller than an error");
-          if (bounds[i] > 0) most_used = std::max(most_used, greatest * 100 / bounds[i]);
-        }
+        const model::Word3 c = difference(s.points[model::sign_slot(shape)], s.e_from);
+        const sim::Int128 greatest = greatest_error(a, b, c, error);
+        sim::require(greatest <= bound, "a sign bound is smaller than an error");
+        if (bound > 0) most_used = std::max(most_used, greatest * 100 / bound);
         // the axis is fixed, only the difference of two points errs: by E in each component
         const WideVector axis = detail::cross({a[0], a[1], a[2]}, {b[0], b[1], b[2]});
         sim::Int128 farthest = 0;

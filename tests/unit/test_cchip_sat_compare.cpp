@@ -52,11 +52,13 @@ bool clear(const Task& task, int points) {
 bool exceeds(std::int64_t value, std::int64_t bound) { return value > bound || value < -bound; }
 
 /// Every small case (touching by zero, missing by one), then large ones at and beside their bounds.
-std::vector<Task> tasks(Random& random, int proj_w, int bound_w, int points) {
+std::vector<Task> tasks(Random& random, int proj_w, int bound_w, int points, unsigned own_slots) {
+  // sets of own points: none, slot 0, both
+  const auto draw_own = [&] { return own_slots == 2 && chance(random, 33) ? 3U : static_cast<unsigned>(random() % 2); };
   std::vector<Task> list;
   const auto n = static_cast<std::size_t>(points);
   const auto flags = [&](Task& task) {
-    task.own = static_cast<unsigned>(random() % 4);
+    task.own = draw_own();
     const auto allowed = random() % 6;
     task.allow_above = allowed != 0;
     task.allow_below = allowed != 1;
@@ -64,7 +66,8 @@ std::vector<Task> tasks(Random& random, int proj_w, int bound_w, int points) {
   };
   int cases = 1;
   for (int i = 0; i < points; ++i) cases *= 5;
-  for (unsigned own = 0; own < 4; ++own) {  // each coordinate -2..2, every set of own points
+  for (const unsigned own : {0U, 1U, 3U}) {  // each coordinate -2..2, every set of own points
+    if (own == 3 && own_slots < 2) continue;
     for (int c = 0; c < cases; ++c) {
       Task task;
       flags(task);
@@ -73,8 +76,8 @@ std::vector<Task> tasks(Random& random, int proj_w, int bound_w, int points) {
       for (std::size_t i = 0; i < n; ++i) {
         task.in.p[i] = rest % 5 - 2;
         rest /= 5;
-        task.in.sign_bound[i] = static_cast<std::int64_t>(random() % 4);
       }
+      task.in.sign_bound = static_cast<std::int64_t>(random() % 4);
       task.in.gap_bound = static_cast<std::int64_t>(random() % 4);
       list.push_back(task);
     }
@@ -102,9 +105,9 @@ std::vector<Task> tasks(Random& random, int proj_w, int bound_w, int points) {
       task.in.p[i] = p;
       const std::int64_t size = p < 0 ? -p : p;
       const std::int64_t beside = size + static_cast<std::int64_t>(random() % 3) - 1;
-      task.in.sign_bound[i] = std::clamp<std::int64_t>(beside, 0, bound_max);
-      if (chance(random, 20)) task.in.sign_bound[i] = static_cast<std::int64_t>(random()) & bound_max;
+      if (i == own_slots) task.in.sign_bound = std::clamp<std::int64_t>(beside, 0, bound_max);
     }
+    if (chance(random, 20)) task.in.sign_bound = static_cast<std::int64_t>(random()) & bound_max;
     list.push_back(task);
   }
   return list;
@@ -120,13 +123,14 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_compare: verdict, signs and their certainty a
   constexpr int coord_w = proj_w / 3 - 1;
   static_assert(defs::proj_w(coord_w) == proj_w && defs::bound_w(coord_w) == TestType::BOUND_W,
                 "widths of one COORD_W");
-  const model::Shape shape = points == 3 ? model::Shape{3, 3} : points == 4 ? model::Shape{3, 4} : model::Shape{4, 4};
+  const model::Shape shape{2 + TestType::OWN, points + 1 - TestType::OWN};
   for_two_power_ups([&](const sim::SimulationOptions& options) {
     Random random(options.seed);
-    const std::vector<Task> list = tasks(random, proj_w, TestType::BOUND_W, points);
+    const std::vector<Task> list = tasks(random, proj_w, TestType::BOUND_W, points, TestType::OWN);
     sim::Simulation<Model> simulation(options);
     Model& top = simulation.top();
     model::Delay<std::optional<Task>> delay(static_cast<std::size_t>(defs::compare_latency()));
+    model::Delay<std::optional<Task>> bounds(static_cast<std::size_t>(defs::bound_lag()));
     std::size_t next = 0;
     std::size_t compared = 0;
     int certain_gaps = 0, clear_on_both_sides = 0, only_separated = 0, at_gap_bound = 0, at_sign_bound = 0,
@@ -140,10 +144,11 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_compare: verdict, signs and their certainty a
           for (int i = 0; i < points; ++i) {
             const auto slot = static_cast<std::size_t>(i);
             sim::set_signed(top.s_projection, proj_w * i, proj_w, task.in.p[slot]);
-            sim::set_bits(top.s_sign_bound, TestType::BOUND_W * i, TestType::BOUND_W,
-                          static_cast<std::uint64_t>(task.in.sign_bound[slot]));
           }
-          sim::set_bits(top.s_gap_bound, 0, TestType::BOUND_W, static_cast<std::uint64_t>(task.in.gap_bound));
+          if (const auto& before = bounds.q()) {
+            sim::set_bits(top.s_sign_bound, 0, TestType::BOUND_W, static_cast<std::uint64_t>(before->in.sign_bound));
+            sim::set_bits(top.s_gap_bound, 0, TestType::BOUND_W, static_cast<std::uint64_t>(before->in.gap_bound));
+          }
         },
         [&](const sim::ClockInfo&) {
           if (const auto& task = delay.q()) {
@@ -162,16 +167,17 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_compare: verdict, signs and their certainty a
             expect("m_clear, intervals", top.m_clear != 0, clear(*task, points));
             for (unsigned i = 0; i < static_cast<unsigned>(points); ++i) {
               const std::int64_t p = task->in.p[i];
-              const std::int64_t bound = task->in.sign_bound[i];
               expect("m_negative", (top.m_negative >> i & 1) != 0, v.negative[i]);
               expect("m_zero", (top.m_zero >> i & 1) != 0, v.zero[i]);
-              expect("m_certain", (top.m_certain >> i & 1) != 0, v.certain[i]);
               expect("m_negative, p", (top.m_negative >> i & 1) != 0, p < 0);
               expect("m_zero, p", (top.m_zero >> i & 1) != 0, p == 0);
-              expect("m_certain, p", (top.m_certain >> i & 1) != 0, exceeds(p, bound));
-              at_sign_bound += p == bound || p == -bound ? 1 : 0;
-              beyond_sign_bound += p == bound + 1 || p == -bound - 1 ? 1 : 0;
             }
+            const std::int64_t p = task->in.p[TestType::OWN];
+            const std::int64_t bound = task->in.sign_bound;
+            expect("m_certain", top.m_certain != 0, v.certain);
+            expect("m_certain, p", top.m_certain != 0, exceeds(p, bound));
+            at_sign_bound += p == bound || p == -bound ? 1 : 0;
+            beyond_sign_bound += p == bound + 1 || p == -bound - 1 ? 1 : 0;
             certain_gaps += certain_gap ? 1 : 0;
             const bool allowed = task->allow_above && task->allow_below;
             clear_on_both_sides += top.m_clear != 0 && !certain_gap && allowed ? 1 : 0;
@@ -180,7 +186,9 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_compare: verdict, signs and their certainty a
             at_gap_bound += gap > 0 && apart(*task, points, gap - 1) && !apart(*task, points, gap) ? 1 : 0;
             ++compared;
           }
-          delay.clock(list[std::min(next++, list.size() - 1)]);
+          const Task& sent = list[std::min(next++, list.size() - 1)];
+          delay.clock(sent);
+          bounds.clock(sent);
         });
     simulation.add(bench);
     simulation.steps(list.size() + static_cast<std::size_t>(defs::compare_latency()));

@@ -115,16 +115,19 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_select: edges, points and flags of every axis
       GridPair pair;
     };
     model::Delay<std::optional<Task>> delay(static_cast<std::size_t>(defs::select_latency()));
+    model::Delay<std::optional<Task>> vertices(static_cast<std::size_t>(defs::ram_latency()));
     Task in;
     std::size_t next = 0;
     std::size_t compared = 0;
     Bench bench(
         [&](const sim::ClockInfo&) {
+          if (const auto& before = vertices.q()) {  // its vertices come now
+            set_primitive(top.s_a, before->pair.a, w);
+            set_primitive(top.s_b, before->pair.b, w);
+          }
           in.code = codes[next++ % codes.size()];
           in.pair.a = random_primitive(random, shape.a, w);
           in.pair.b = random_primitive(random, shape.b, w);
-          set_primitive(top.s_a, in.pair.a, w);
-          set_primitive(top.s_b, in.pair.b, w);
           top.s_code = model::to_bits(in.code);
         },
         [&](const sim::ClockInfo&) {
@@ -136,6 +139,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_select: edges, points and flags of every axis
             ++compared;
           }
           delay.clock(in);
+          vertices.clock(in);
         });
     simulation.add(bench);
     simulation.steps(100 * codes.size());

@@ -86,6 +86,8 @@ constexpr int limb_w = 17;
 constexpr int mul18_latency = 2;
 /// width of a programme code [bit]
 constexpr int prog_w = 3;
+/// state of a pair's programme that travels with its beat (cchip_axis_programme) [bit]
+constexpr int state_w = 34;
 
 /// difference of two coordinates [bit]
 constexpr int edge_w(int w) { return w + 1; }
@@ -111,26 +113,32 @@ constexpr int limbs(int n) { return n <= 18 ? 1 : n <= 35 ? 2 : 3; }
 constexpr int mul_latency(int a, int b) { return mul18_latency + levels(limbs(a) * limbs(b)); }
 /// edges, products, difference of products [clock]
 constexpr int axis_substages_min(int w) { return 2 + mul_latency(edge_w(w), edge_w(w)); }
-/// point differences (or, absolute, differences of projections), products, two levels of sums; at least the 6 of the error bounds [clock]
-constexpr int project_substages_min(int w) { return mul_latency(edge_w(w), axis_w(w)) <= 3 ? 6 : 3 + mul_latency(edge_w(w), axis_w(w)); }
+/// point differences (or, absolute, differences of projections), products, two levels of sums [clock]
+constexpr int project_substages_min(int w) { return 3 + mul_latency(edge_w(w), axis_w(w)); }
 /// smallest legal SUBSTAGES; the project stage is always the longer one [clock]
 constexpr int substages_min(int w) { return project_substages_min(w); }
-/// macro stage 1 [clock]
-constexpr int select_latency() { return 1; }
+/// cchip_ram: address to data; a beat to its operands [clock]
+constexpr int ram_latency() { return 3; }
+/// macro stage 1, from the axis code; 1 from the vertices [clock]
+constexpr int select_latency() { return ram_latency() + 1; }
 /// cchip_norm1 [clock]
-constexpr int norm1_latency() { return 2; }
+constexpr int norm1_latency() { return 3; }
 /// cchip_box_compare [clock]
-constexpr int box_latency() { return 5; }
+constexpr int box_latency() { return 8; }
 /// macro stage 4 [clock]
-constexpr int compare_latency() { return 3; }
+constexpr int compare_latency() { return 4; }
+/// the error bounds leave macro stage 3 and enter stage 4 this long after their projections [clock]
+constexpr int bound_lag() { return 2; }
+/// cchip_axis_programme: verdict to outcome or next axis [clock]
+constexpr int programme_latency() { return 4; }
 /// cchip_sat_pipeline: beat in to verdict out [clock]
 constexpr int pipe_latency(int s) { return select_latency() + 2 * s + compare_latency(); }
 /// of a lone pair: handshake of s_pair to its first beat, plus last verdict to handshake of m_result with ready = 1 [clock]
-constexpr int pair_overhead() { return 7; }
+constexpr int pair_overhead() { return 6 + programme_latency(); }
 /// lone pair: handshake of s_pair to handshake of m_result, beats issued back to back [clock]
 constexpr int pair_latency(int s, int beats) { return pipe_latency(s) + pair_overhead() + beats - 1; }
 /// beat to the next beat of the same pair where the verdict decides what follows (all but EXHAUSTIVE) [clock]
-constexpr int beat_latency(int s) { return pipe_latency(s) + 4; }
+constexpr int beat_latency(int s) { return pipe_latency(s) + programme_latency() + 3; }
 /// default CONTEXTS: round trip of a one-beat pair + 4 [pair]
 constexpr int contexts_default(int s) { return pair_latency(s, 1) + 4; }
 /// longest time from the last accepted pair to idle = 1 with m_result_ready = 1 [clock]

@@ -79,8 +79,7 @@ State plan(const Options& o, const Sides& s, int beats) {
 
 /// t(k, l) is the projection of W_l; a certain hit has t > 0 on the first, t < 0 on the second crossing axis.
 bool certain_crossing(const Options& o, const Verdict& v, bool second) {
-  const std::size_t slot = o.shape.a - 2;
-  return v.compare.certain[slot] && v.compare.negative[slot] == second;
+  return v.compare.certain && v.compare.negative[sign_slot(o.shape)] == second;
 }
 
 /// A warped quad in the CROSSING programme: if its hit is not certain, TETRAHEDRON decides.

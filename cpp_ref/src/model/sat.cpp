@@ -142,8 +142,10 @@ Projections sat_project(const Shape& shape, const Axis& axis, const Selection& s
   for (std::size_t i = 0; i < shape.points(); ++i) {
     const Word3 c = difference(selection.points[i], selection.e_from);
     out.p[i] = dot3(c, axis.axis, defs::edge_w(coord_w), defs::axis_w(coord_w));
-    const int n = ceil_log2(norm1(c) + twice_error);
-    out.sign_bound[i] = (axis_norm + ((axis.edge_norm + twice_error) << n)) << error_shift;
+    if (i == sign_slot(shape)) {
+      const int n = ceil_log2(norm1(c) + twice_error);
+      out.sign_bound = (axis_norm + ((axis.edge_norm + twice_error) << n)) << error_shift;
+    }
   }
   for (std::size_t d = 0; d < 3; ++d) {
     out.axis_negative[d] = axis.axis[d] < 0;
@@ -172,12 +174,13 @@ Comparison sat_compare(const Shape& shape, const AxisBeat& beat, const std::arra
   for (std::size_t i = 0; i < shape.points(); ++i) {
     out.negative[i] = in.p[i] < 0;
     out.zero[i] = in.p[i] == 0;
-    out.certain[i] = in.p[i] > in.sign_bound[i] || in.p[i] < -in.sign_bound[i];
     if (i < 2 && own[i]) continue;
     require(in.p[i], in.p[i] < 0);
     if (own[0]) require(wrap(bits(in.p[i]) - bits(in.p[0]), proj_w), in.p[i] < 0);
     if (own[1]) require(wrap(bits(in.p[i]) - bits(in.p[1]), proj_w), in.p[i] < 0);
   }
+  const std::int64_t signed_one = in.p[sign_slot(shape)];
+  out.certain = signed_one > in.sign_bound || signed_one < -in.sign_bound;
   out.separated = above || below;
   out.certain_gap = certain_above || certain_below;
   out.clear = clear;

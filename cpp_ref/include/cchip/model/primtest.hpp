@@ -70,13 +70,17 @@ class AxisController {
   std::size_t contexts_;
   std::size_t fresh_ = 0;
   Fifo<std::size_t> free_;
+  SkidBuffer<std::size_t> hand_out_;
+  std::optional<Start> load_;
   Fifo<Start> start_;
   Fifo<Beat> ready_;
   std::optional<Beat> next_;
   bool started_ = false;
   std::vector<PairHeader> side_;
+  Delay<std::optional<ReturnedBeat>> programme_;  // cchip_axis_programme but for its last register
   std::optional<Beat> beat_;
   std::optional<Result> result_;
+  std::size_t leaving_ = 0;  // context of result_
   Exhaustive found_;
 };
 
@@ -99,9 +103,9 @@ class Primtest {
 
   const Parameters& parameters() const { return parameters_; }
   bool s_pair_ready() const { return ready_; }
-  bool m_result_valid() const { return out_.m_valid(); }
+  bool m_result_valid() const { return results_.m_valid(); }
   /// Defined while m_result_valid().
-  const Result& m_result() const { return out_.m_data(); }
+  const Result& m_result() const { return results_.m_data(); }
   bool idle() const { return idle_; }
   /// For statistics: a beat leaves the controller / a pair waits for an axis slot.
   bool beat_valid() const { return controller_.beat().has_value(); }
@@ -121,13 +125,12 @@ class Primtest {
   Parameters parameters_;
   std::size_t pairs_ = 0;
   bool ready_ = false;
+  bool awake_ = false;  // a context stands ready
   bool idle_ = true;
-  std::optional<PairIn> load_;
   std::vector<Operands> operands_;
   AxisController controller_;
-  Delay<std::optional<ReturnedBeat>> pipeline_;  // operand fetch and the four macro stages
+  Delay<std::optional<ReturnedBeat>> pipeline_;  // the four macro stages
   Fifo<Result> results_;
-  SkidBuffer<Result> out_;
 };
 
 }  // namespace cchip::model

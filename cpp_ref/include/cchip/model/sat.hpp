@@ -35,6 +35,8 @@ struct Shape {
   std::size_t points() const { return a + b - 3; }
 };
 constexpr std::size_t max_points = 5;
+/// The slot whose sign may have to be certain: W_l on a cross axis.
+constexpr std::size_t sign_slot(const Shape& shape) { return shape.a - 2; }
 
 /// One axis to be tried, as it enters the pipeline.
 struct AxisBeat {
@@ -65,8 +67,8 @@ struct Axis {
 /// Outputs of macro stage 3 (cchip_sat_project).
 struct Projections {
   std::array<std::int64_t, max_points> p = {};
-  /// Bound on the error of each p (docs/architecture.md, certainty).
-  std::array<std::int64_t, max_points> sign_bound = {};
+  /// Bound on the error of p[sign_slot(shape)] (docs/architecture.md, certainty).
+  std::int64_t sign_bound = 0;
   /// Bound on the error of the difference of two projections onto this axis: 2^error_shift |axis|_1.
   std::int64_t gap_bound = 0;
   std::array<bool, 3> axis_negative = {};
@@ -80,7 +82,7 @@ struct Comparison {
   bool certain_gap = false;  ///< separated, also for the unrounded primitives
   std::array<bool, max_points> negative = {};
   std::array<bool, max_points> zero = {};
-  std::array<bool, max_points> certain = {};  ///< the sign is that of the unrounded determinant
+  bool certain = false;  ///< the sign of p[sign_slot(shape)] is that of the unrounded determinant
   /// Every other point lies beyond all own points by more than the gap bound, on either side.
   bool clear = false;
 };

@@ -37,31 +37,37 @@ class Delay {
   std::size_t next_ = 0;
 };
 
-/// cchip_fifo: capacity `depth`, visible one clock after the push; ready and valid registered.
+/// cchip_fifo: capacity `depth`, visible two clocks after the push; every output registered.
 template <class T>
 class Fifo {
  public:
   explicit Fifo(std::size_t depth) : depth_(depth) {}
   bool s_ready() const { return ready_; }
-  bool m_valid() const { return !items_.empty(); }
+  bool m_valid() const { return out_.has_value(); }
   /// Defined while m_valid().
-  const T& m_data() const { return items_.front(); }
-  std::size_t size() const { return items_.size(); }
+  const T& m_data() const { return *out_; }
+  std::size_t size() const { return items_.size() + (out_ ? 1 : 0); }
 
   void clock(bool s_valid, const T& s_data, bool m_ready) {
     const bool push = s_valid && ready_;
-    if (m_ready && m_valid()) items_.pop_front();
+    if (m_ready) out_.reset();
+    if (!out_ && !items_.empty()) {
+      out_ = std::move(items_.front());
+      items_.pop_front();
+    }
     if (push) items_.push_back(s_data);
-    ready_ = items_.size() != depth_;
+    ready_ = size() != depth_;
   }
   void reset() {
     items_.clear();
+    out_.reset();
     ready_ = false;
   }
 
  private:
   std::size_t depth_;
   std::deque<T> items_;
+  std::optional<T> out_;
   bool ready_ = false;
 };
 
