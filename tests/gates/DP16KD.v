@@ -7,6 +7,7 @@
 //   both at one word on one clock: undefined here (Yosys counts on nothing)
 // Other widths, output registers, resets, inverted clocks and initial contents other than 0 are refused.
 /* verilator lint_off DECLFILENAME */
+/* verilator lint_off UNUSEDPARAM */
 module DP16KD #(
     parameter integer DATA_WIDTH_A = 18,
     parameter integer DATA_WIDTH_B = 18,

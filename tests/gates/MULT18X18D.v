@@ -5,6 +5,7 @@
 // always enabled, never reset. Other modes are refused. Ports of the shift chain and the outputs of the input registers
 // are left out: a netlist that connects them does not elaborate.
 /* verilator lint_off DECLFILENAME */
+/* verilator lint_off UNUSEDPARAM */
 module MULT18X18D #(
     parameter REG_INPUTA_CLK = "NONE",
     parameter REG_INPUTA_CE = "CE0",

@@ -222,7 +222,8 @@ def simulate_changed(technology, kind, build, options):
     if 0 in reported:
         raise Failure(f"the copy without change fails, see {folder}/changed_0.log")
     say(f"{kind} {technology.name} changed LUTs: {len(reported)} of {options.changed} reported")
-    if 10 * len(reported) < 9 * options.changed:
+    # low bits of an error bound, or states that do not come, may go unnoticed in so few pairs
+    if 4 * len(reported) < 3 * options.changed:
         silent = sorted(set(range(1, options.changed + 1)) - set(reported))
         raise Failure(f"too few changed LUTs reported, not those with the numbers {silent} in {folder}/changed.v")
 
