@@ -92,7 +92,7 @@ def parse(module):
         fail(f"{rtl_files()[module]}: no module {module}")
     parameters = re.findall(r"\bparameter\s+integer\s+(\w+)\s*=\s*([^,\n]+)", head.group(1))
     ports = re.findall(r"\b(input|output)\s+(?:wire|reg)\s+(?:signed\s+)?(?:\[([^\]]*):0\])?\s*(\w+)", head.group(1))
-    widths = [(name, direction, width_of(squeeze(top))) for direction, top, name in ports]
+    widths = [(name, direction, width_of(squeeze(top).replace("`", ""))) for direction, top, name in ports]
     return [(name, squeeze(value).replace("`", "")) for name, value in parameters], widths
 
 

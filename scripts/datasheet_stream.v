@@ -123,16 +123,13 @@ module bench;
   task watch;
     begin
       if (pair_valid && pair_ready) event_line("handshake of `s_pair`");
-      if (dut.load_valid_q) event_line("`load_*_q`: the input register; its context is chosen");
+      if (dut.u_controller.load_valid_q) event_line("`load_*_q`: the input register; its context is chosen");
       if (dut.u_controller.start_valid) event_line("`start_*`: pair at the head of the start FIFO");
-      if (dut.beat_valid && dut.beat_code == FIRST) event_line("`beat_q`: first beat, reads the operands");
-      if (dut.beat_valid && dut.beat_code == LAST) event_line("`beat_q`: last beat");
-      if (dut.fetch_valid_q && dut.fetch_code_q == FIRST) event_line("`fetch_*_q`: first beat enters `cchip_sat_pipeline`");
-      if (dut.fetch_valid_q && dut.fetch_code_q == LAST) event_line("`fetch_*_q`: last beat enters");
+      if (dut.beat_valid && dut.beat_code == FIRST) event_line("`beat_q`: first beat, enters `cchip_sat_pipeline`");
+      if (dut.beat_valid && dut.beat_code == LAST) event_line("`beat_q`: last beat enters");
       if (dut.verdict_valid && dut.verdict_user[11:3] == FIRST) event_line("`verdict_*`: first verdict");
-      if (dut.verdict_valid && dut.verdict_user[11:3] == LAST) event_line("`verdict_*`: last verdict; the context is free");
-      if (dut.outcome_valid) event_line("`outcome`: result leaves the controller");
-      if (dut.queue_valid) event_line("`queue`: result at the head of the result FIFO");
+      if (dut.verdict_valid && dut.verdict_user[11:3] == LAST) event_line("`verdict_*`: last verdict");
+      if (dut.outcome_valid) event_line("`outcome`: result leaves the controller, then its context is free");
       if (result_valid) event_line("handshake of `m_result`");
     end
   endtask

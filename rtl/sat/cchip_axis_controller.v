@@ -19,7 +19,7 @@
 // back too, so one accumulator serves all. Reserved modes: one idle beat, then axis class ILLEGAL.
 module cchip_axis_controller #(
     // pairs in flight
-    parameter integer CONTEXTS = 35,
+    parameter integer CONTEXTS = 42,
     // width of a context number, bit: at least $clog2(CONTEXTS), at least 1
     parameter integer CONTEXT_W = 6,
     // vertices of A and of B: 3 3, 3 4 or 4 4

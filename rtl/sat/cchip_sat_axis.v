@@ -35,7 +35,7 @@ module cchip_sat_axis #(
   localparam integer NORM_FILL = SUBSTAGES - 2 - `CCHIP_NORM1_LATENCY;
 
   generate
-    if (SPARE < 0) begin : gen_illegal
+    if (SPARE < 0 || NORM_FILL < 0) begin : gen_illegal
       cchip_error_SUBSTAGES_below_minimum_for_COORD_W u_error ();
     end
   endgenerate

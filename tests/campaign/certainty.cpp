@@ -264,7 +264,7 @@ BoundRow bound_case(int coord_w, Random& random) {
   const model::Projections p =
       model::sat_project({3, 3}, model::sat_axis(s, coord_w), s, model::error_shift(static_cast<int>(error)), coord_w);
   const auto ratio = [&changed](const Int128& of) { return static_cast<double>(changed) / static_cast<double>(of); };
-  return {1, changed > bound || bound > p.sign_bound[0] ? 1U : 0U, ratio(bound), ratio(Int128(p.sign_bound[0]))};
+  return {1, changed > bound || bound > p.sign_bound ? 1U : 0U, ratio(bound), ratio(Int128(p.sign_bound))};
 }
 
 BoundRow run_bounds(const CertaintyOptions& options) {

@@ -20,8 +20,8 @@ QUADS = ("cchip_primtest_tri_quad", "cchip_primtest_quad_quad")
 
 def smallest_substages(coord_w):
     """Three substages around a multiplication of coord_w + 1 by 2 coord_w + 2 bits: 2 clocks for one
-    18x18 leaf and one per level of the adder tree over 1, 2, 3 or 6 leaves. The error bounds need 6."""
-    return 6 if coord_w <= 16 else 7 if coord_w == 17 else 8
+    18x18 leaf and one per level of the adder tree over 1, 2, 3 or 6 leaves."""
+    return 5 if coord_w <= 8 else 6 if coord_w <= 16 else 7 if coord_w == 17 else 8
 
 
 COORD_W = "cchip_error_COORD_W_must_be_4_to_20"
@@ -38,6 +38,8 @@ MEMORY = "cchip_error_delay_MEMORY_needs_DEPTH_3_and_RESET_0"
 FIFO = "cchip_error_fifo_WIDTH_or_DEPTH_below_1"
 SKID = "cchip_error_skid_buffer_WIDTH_below_1"
 RM_ID = "cchip_error_RM_ID_must_be_0_to_3"
+SIGN = "cchip_error_SIGN_must_be_below_POINTS"
+COMPARE = "cchip_error_compare_POINTS_must_be_3_to_5_and_OWN_1_or_2"
 RAM = "cchip_error_ram_WIDTH_or_DEPTH_below_1_or_ADDR_W_too_small"
 
 # module, parameters, name in the message
@@ -59,9 +61,13 @@ ILLEGAL = [
     ("cchip_axis_controller", {"CONTEXTS": 257, "CONTEXT_W": 9}, CONTEXTS),
     ("cchip_axis_controller", {"CONTEXTS": 34, "CONTEXT_W": 5}, CONTEXTS),
     ("cchip_axis_controller", {"WARPED_EXACT": 2}, WARPED),
-    *(("cchip_sat_axis", {"COORD_W": w, "SUBSTAGES": s}, TOO_SHORT) for w, s in ((16, 3), (18, 5))),
+    *(("cchip_sat_axis", {"COORD_W": w, "SUBSTAGES": s}, TOO_SHORT) for w, s in ((8, 4), (16, 4), (18, 5))),
     *(("cchip_sat_project", {"COORD_W": w, "SUBSTAGES": smallest_substages(w) - 1}, TOO_SHORT) for w in (8, 17)),
     ("cchip_sat_project", {"ABSOLUTE_PROJECTION": 2}, PROJECTION),
+    *(("cchip_sat_project", {"POINTS": 3, "SIGN": n}, SIGN) for n in (-1, 3)),
+    ("cchip_sat_bound", {"SUBSTAGES": 4}, TOO_SHORT),
+    *(("cchip_sat_compare", {"POINTS": n}, COMPARE) for n in (2, 6)),
+    *(("cchip_sat_compare", {"OWN": n}, COMPARE) for n in (0, 3)),
     ("cchip_sat_pipeline", {"COORD_W": 16, "SUBSTAGES": 5}, TOO_SHORT),
     ("cchip_sat_pipeline", {"ABSOLUTE_PROJECTION": 2}, PROJECTION),
     *(("cchip_mul_wide", {"A_W": a, "B_W": b}, MUL_WIDE) for a, b in ((1, 18), (18, 1), (53, 18), (18, 53))),

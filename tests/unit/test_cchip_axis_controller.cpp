@@ -71,7 +71,8 @@ class ControllerBench {
     top.s_verdict_valid = flying ? 1 : 0;
     const model::Verdict v = flying ? flying->model.verdict : random_verdict(random_, 50, 0);
     CCHIP_PUT_VERDICT(top, s_verdict_, v, points);
-    top.s_verdict_user = flying ? flying->user : random_() & ((std::uint64_t{1} << (Config::CONTEXT_W + defs::state_w)) - 1);
+    top.s_verdict_user =
+        flying ? flying->user : random_() & ((std::uint64_t{1} << (Config::CONTEXT_W + defs::state_w)) - 1);
   }
 
   void sample(const sim::ClockInfo& now) {
@@ -242,7 +243,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_axis_controller: a beat on every clock while pair
       bench.simulation().reset();
       bench.simulation().steps(2100);
       REQUIRE(bench.results > 5);
-      if (TestType::CONTEXTS == 35) REQUIRE(beats >= 1990);
+      if (TestType::CONTEXTS == 42) REQUIRE(beats >= 1990);
       if (TestType::CONTEXTS == 1) REQUIRE(beats < 1600);
     }
   });

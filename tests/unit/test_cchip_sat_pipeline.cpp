@@ -92,7 +92,7 @@ class PipelineBench {
   void drive() {
     Model& top = simulation_.top();
     const std::optional<BeatIn> before = operands_.q();  // its operands come now
-    const std::optional<BeatIn> last = in_;  // its sides come now
+    const std::optional<BeatIn> last = in_;              // its sides come now
     in_ = source();
     top.s_beat_valid = in_ ? 1 : 0;
     sim::set_random(top.s_beat_code, defs::axis_code_w, random_);

@@ -4,7 +4,12 @@
 namespace cchip::model {
 
 AxisController::AxisController(const Options& options, std::size_t contexts)
-    : options_(options), contexts_(contexts), free_(contexts), start_(contexts), ready_(contexts), side_(contexts),
+    : options_(options),
+      contexts_(contexts),
+      free_(contexts),
+      start_(contexts),
+      ready_(contexts),
+      side_(contexts),
       programme_(static_cast<std::size_t>(defs::programme_latency() - 1)) {}
 
 std::size_t AxisController::load_context() const { return hand_out_.m_valid() ? hand_out_.m_data() : 0; }
