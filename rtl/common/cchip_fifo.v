@@ -81,7 +81,10 @@ module cchip_fifo #(
 
   function [BANKS-1:0] bank_of(input [PTR_W-1:0] pointer);
     integer j;
-    for (j = 0; j < BANKS; j = j + 1) bank_of[j] = {{32 - PTR_W{1'b0}}, pointer} >> 4 == j;
+    begin
+      bank_of = {BANKS{1'b0}};
+      for (j = 0; j < BANKS; j = j + 1) bank_of[j] = {{32 - PTR_W{1'b0}}, pointer} >> 4 == j[31:0];
+    end
   endfunction
   wire [PTR_W-1:0] write_next = next(write_q);
   wire [PTR_W-1:0] read_next = next(read_q);

@@ -62,7 +62,7 @@ module cchip_ram #(
     integer j;
     begin
       choose = from[0+:WIDTH];
-      for (j = 1; j < BANKS; j = j + 1) if ({{32 - ADDR_W{1'b0}}, address} >> 4 == j) choose = from[WIDTH*j+:WIDTH];
+      for (j = 1; j < BANKS; j = j + 1) if ({{32 - ADDR_W{1'b0}}, address} >> 4 == j[31:0]) choose = from[WIDTH*j+:WIDTH];
     end
   endfunction
   always @(posedge clk) begin

@@ -49,11 +49,11 @@ module cchip_sat_compare #(
   // zero is found in two steps
   localparam integer PARTS = (PROJ_W + 15) / 16;
 
-  // |v| <= bound: size + negative < bound + 1
-  function no_more(input negative, input [SIZE_W-1:0] size, input [BOUND_W-1:0] bound);
+  // |v| <= bound: size + minus < bound + 1
+  function no_more(input minus, input [SIZE_W-1:0] size, input [BOUND_W-1:0] bound);
     reg [LEFT_W:0] left;
     begin
-      left = {{LEFT_W - SIZE_W{1'b0}}, size, negative} - {{LEFT_W - BOUND_W{1'b0}}, bound, 1'b1};
+      left = {{LEFT_W - SIZE_W{1'b0}}, size, minus} - {{LEFT_W - BOUND_W{1'b0}}, bound, 1'b1};
       no_more = left[LEFT_W];
     end
   endfunction
