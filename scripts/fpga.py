@@ -12,7 +12,7 @@ usage: fpga.py [ROW...] [options]     without ROW all rows; `fpga.py --list` nam
                     `make campaign-build`); without it there are no pairs per second
   --pairs N         pairs of each class for the mean beats (default 20000)
   --families        count the blocks of Xilinx 7 and of Intel Cyclone V, too
-  --write           rewrite the generated tables of docs/fpga.md with the rows of this run and their families
+  --write           rewrite the generated tables of docs/fpga.md with the rows of this run; all rows: the families, too
   --list            print the rows
 
 Device: Lattice LFE5U-85F, speed grade 6 (the slowest), CABGA756, synthesised by Debian's Yosys 0.23 within
@@ -444,7 +444,7 @@ def arguments():
         parser.error(f"no row {unknown[0]}, one of: {' '.join(rows())}")
     if options.seeds < 1 or options.jobs < 1 or options.pairs < 1:
         parser.error("--seeds, --jobs and --pairs are at least 1")
-    options.families |= options.write
+    options.families |= options.write and not options.rows
     return options
 
 
@@ -474,7 +474,8 @@ def main():
         print(families_table(found))
     if options.write and not failures:
         for name, make in TABLES.items():
-            datasheet.rewrite(PAGE, name, make(found))
+            if name != "families" or options.families:
+                datasheet.rewrite(PAGE, name, make(found))
     for failure in failures:
         say(f"fpga.py: {failure}")
     for row in found.values():
