@@ -21,7 +21,7 @@ Yosys has only the ports, are those of this folder. The netlist is simulated wit
 nothing else is done to it. Lines: `KIND TECHNOLOGY pairs=N mismatches=0 clocks=C`.
 
 prove: RTL and netlist are read back into Yosys, the cells replaced by their models. Both start with every flip-flop
-and memory 0 where the netlist does not say otherwise, get four clocks (of reset, where there is one) with unknown
+and memory 0 where the netlist does not say otherwise, get 8 clocks (of reset, where there is one) with unknown
 inputs (0 stands for what is then unknown), and from there their outputs are proved equal on every clock for all inputs
 (yosys-abc: scorr, dprove; induction, no bound on the clocks). A netlist with one LUT changed must not be proved.
 Lines: `MODULE PARAMETERS TECHNOLOGY equivalent flipflops=N changed=reported`.
@@ -39,6 +39,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 HERE = ROOT / "tests" / "gates"
+SETTLE = 8  # clocks before a comparison
 KINDS = ("tri_tri", "tri_quad", "quad_quad")
 YOSYS_CELLS = pathlib.Path(shutil.which("yosys") or "/usr/bin/yosys").resolve().parent.parent / "share" / "yosys"
 
@@ -56,10 +57,10 @@ MODULES = [
     ("cchip_sat_select", "COORD_W=16 VERTS_A=3 VERTS_B=3"),
     ("cchip_sat_select", "COORD_W=8 VERTS_A=3 VERTS_B=4"),
     ("cchip_sat_select", "COORD_W=8 VERTS_A=4 VERTS_B=4"),
-    ("cchip_sat_compare", "PROJ_W=51 BOUND_W=43 POINTS=3"),
-    ("cchip_sat_compare", "PROJ_W=27 BOUND_W=27 POINTS=5"),
-    ("cchip_sat_bound", "COORD_W=4 SUBSTAGES=6 POINTS=3"),
-    ("cchip_sat_bound", "COORD_W=8 SUBSTAGES=10 POINTS=3"),
+    ("cchip_sat_compare", "PROJ_W=51 BOUND_W=43 POINTS=3 OWN=1"),
+    ("cchip_sat_compare", "PROJ_W=27 BOUND_W=27 POINTS=5 OWN=2"),
+    ("cchip_sat_bound", "COORD_W=4 SUBSTAGES=6"),
+    ("cchip_sat_bound", "COORD_W=8 SUBSTAGES=10"),
     ("cchip_box_compare", "COORD_W=16 VERTS_A=3 VERTS_B=3"),
     ("cchip_box_compare", "COORD_W=8 VERTS_A=4 VERTS_B=4"),
     ("cchip_axis_programme", "VERTS_A=3 VERTS_B=3 WARPED_EXACT=1"),
@@ -104,7 +105,10 @@ class Technology:
 TECHNOLOGIES = {
     "ecp5": Technology("ecp5", "cchip_ecp5.f", "synth_ecp5 -abc9", ("LUT4", "ABCD", "Z"),
                        YOSYS_CELLS / "ecp5" / "cells_sim.v", ["MULT18X18D.v", "DP16KD.v"], ["DP16KD"]),
-    "xc7": Technology("xc7", "cchip.f", "synth_xilinx -family xc7 -flatten", ("LUT4", ["I0", "I1", "I2", "I3"], "O"),
+    # Without keep_hierarchy xilinx_dsp of Yosys 0.23 packs registers of products wrongly whose width it had reduced.
+    "xc7": Technology("xc7", "cchip.f",
+                      "setattr -mod -set keep_hierarchy 1 cchip_mul18\nsynth_xilinx -family xc7 -flatten",
+                      ("LUT4", ["I0", "I1", "I2", "I3"], "O"),
                       YOSYS_CELLS / "xilinx" / "cells_sim.v", [], ["RAMB18E1", "RAMB36E1"]),
 }
 
@@ -169,7 +173,7 @@ def verilate(technology, build, folder, netlist, verilator):
     """The bench with a netlist as a program. Without optimisation: compiling would cost more than it saves."""
     out = folder / f"{netlist}.dir"
     run(folder / f"{netlist}.verilator.log", verilator, "--cc", "--exe", "--main", "--timing",
-        "--language", "1364-2005", "-Wno-fatal", "-Wno-lint", "-Wno-style", "-O3", "-fno-const-bit-op-tree",
+        "-Wno-fatal", "-Wno-lint", "-Wno-style", "-O3", "-fno-const-bit-op-tree",
         "--x-assign", "unique", "--x-initial", "unique", "--output-split", "0", "--output-split-cfuncs", "0",
         "-DCCHIP_BENCH_TOP=gate", "--top-module", "bench_primtest", "--Mdir", out, *technology.models(build),
         ROOT / "tests/icarus/bench_primtest.v", folder / f"{netlist}.v")
@@ -232,9 +236,9 @@ def simulate_changed(technology, kind, build, options):
 
 
 def settle(top):
-    """Four clocks before the comparison, of reset if the module has one."""
-    reset = "-reset in_rst -rstlen 4" if re.search(r"^ *input +wire +rst\b", top.read_text(), re.M) else ""
-    return f"sim -clock in_clk {reset} -n 4 -zinit -w both\n"
+    """Clocks before the comparison, of reset if the module has one."""
+    reset = f"-reset in_rst -rstlen {SETTLE}" if re.search(r"^ *input +wire +rst\b", top.read_text(), re.M) else ""
+    return f"sim -clock in_clk {reset} -n {SETTLE} -zinit -w both\n"
 
 
 def equivalent(technology, build, folder, module, parameters, netlist):
