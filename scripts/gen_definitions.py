@@ -39,8 +39,9 @@ def verilog(data, names):
     lines = ["// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1", f"// {NOTE}", "`ifndef CCHIP_DEFS_VH", "`define CCHIP_DEFS_VH", ""]
     for c in data["constants"]:
         lines.append(f"// {c['doc']}" + (f" [{c['unit']}]" if c["unit"] else ""))
-        lines.append(f"`define CCHIP_{c['name']} {c['value']}")
-    widths = {"MODE": "MODE_W", "AXIS": "CLASS_W", "RM": "RM_ID_W", "PROG": "PROG_W"}
+        value = str(c["value"]).replace("0x", "32'h")
+        lines.append(f"`define CCHIP_{c['name']} {value}")
+    widths = {"MODE": "MODE_W", "AXIS": "CLASS_W", "RM": "RM_ID_W", "PROG": "PROG_W", "PHASE": "PHASE_W", "SWAP": "SWAP_W"}
     size = {c["name"]: c["value"] for c in data["constants"]}
     for e in data["enums"]:
         lines += ["", f"// {e['doc']}"]
@@ -66,7 +67,8 @@ def cpp(data, names):
     lines += ["namespace defs {", ""]
     for c in data["constants"]:
         lines.append(f"/// {c['doc']}" + (f" [{c['unit']}]" if c["unit"] else ""))
-        lines.append(f"constexpr int {c['name'].lower()} = {c['value']};")
+        kind = "std::uint32_t" if isinstance(c["value"], str) else "int"
+        lines.append(f"constexpr {kind} {c['name'].lower()} = {c['value']};")
     lines.append("")
     for f in data["functions"]:
         lines.append(f"/// {f['doc']} [{f['unit']}]")

@@ -43,6 +43,26 @@
 `define CCHIP_MUL18_LATENCY 2
 // width of a programme code [bit]
 `define CCHIP_PROG_W 3
+// width of a swap's phase [bit]
+`define CCHIP_PHASE_W 4
+// width of a swap's code [bit]
+`define CCHIP_SWAP_W 4
+// word 0 of a bitstream's header
+`define CCHIP_BITSTREAM_MAGIC 32'h43434250
+// first word of a virtual bitstream's payload
+`define CCHIP_BITSTREAM_SYNC 32'hAA995566
+// header in front of a bitstream's payload; it does not pass the configuration port [byte]
+`define CCHIP_BITSTREAM_HEADER 16
+// least payload of a bitstream [byte]
+`define CCHIP_BITSTREAM_PAYLOAD_MIN 16
+// address of a bitstream in memory is a multiple of this [byte]
+`define CCHIP_BITSTREAM_ALIGN 64
+// default reset after a configuration (paper, listing 3.3) [clock]
+`define CCHIP_ROC_CLOCKS_DEFAULT 2
+// longest wait for the pairs inside a slot, unless a register says otherwise [clock]
+`define CCHIP_SHUTDOWN_LIMIT_DEFAULT 65536
+// longest wait for a beat of the bitstream's memory, unless a register says otherwise [clock]
+`define CCHIP_MEMORY_LIMIT_DEFAULT 4096
 // state of a pair's programme that travels with its beat (cchip_axis_programme) [bit]
 `define CCHIP_STATE_W 34
 
@@ -65,6 +85,35 @@
 `define CCHIP_RM_TRI_TRI 8'd1 // cchip_primtest_tri_tri
 `define CCHIP_RM_TRI_QUAD 8'd2 // cchip_primtest_tri_quad
 `define CCHIP_RM_QUAD_QUAD 8'd3 // cchip_primtest_quad_quad
+
+// phase of a swap (cchip_config_controller)
+`define CCHIP_PHASE_IDLE 4'd0 // no swap
+`define CCHIP_PHASE_HEADER 4'd1 // header of the bitstream is fetched and checked; the slot works on
+`define CCHIP_PHASE_SHUTDOWN 4'd2 // no new pairs; wait until the pairs inside have been answered
+`define CCHIP_PHASE_DECOUPLE 4'd3 // outputs of the region become constants
+`define CCHIP_PHASE_RESET 4'd4 // the region is held in reset
+`define CCHIP_PHASE_TRANSFER 4'd5 // payload passes the configuration port
+`define CCHIP_PHASE_CHECK 4'd6 // length, CRC-32 and the device's own error
+`define CCHIP_PHASE_ROC 4'd7 // reset on configuration is clocked in, module compared
+`define CCHIP_PHASE_RECOUPLE 4'd8 // outputs of the region are connected again
+`define CCHIP_PHASE_REPORT 4'd9 // the report is given
+
+// outcome of a swap (cchip_config_controller)
+`define CCHIP_SWAP_OK 4'd0 // the module asked for works
+`define CCHIP_SWAP_SAME 4'd1 // the slot held the module already: nothing done
+`define CCHIP_SWAP_BUSY 4'd2 // a swap was under way: request refused
+`define CCHIP_SWAP_REQUEST 4'd3 // no such slot or module, no bitstream for it, or its address is not aligned: request refused
+`define CCHIP_SWAP_MAGIC 4'd4 // not a bitstream; the slot works on with its former module
+`define CCHIP_SWAP_SLOT 4'd5 // bitstream for another slot; the slot works on
+`define CCHIP_SWAP_MODULE 4'd6 // bitstream of another module; the slot works on
+`define CCHIP_SWAP_LENGTH 4'd7 // length in the header does not fit the size of the file or the port; the slot works on
+`define CCHIP_SWAP_CRC 4'd8 // CRC-32 of the payload is wrong: slot decoupled, in reset
+`define CCHIP_SWAP_DEVICE 4'd9 // the configuration port reported an error: slot decoupled, in reset
+`define CCHIP_SWAP_WRONG_MODULE 4'd10 // the new module has another rm_id: slot decoupled, in reset
+`define CCHIP_SWAP_BUS 4'd11 // error response or wrong burst length from memory: decoupled if the transfer had begun
+`define CCHIP_SWAP_MEMORY 4'd12 // memory did not answer in time, or still owes beats of an earlier read
+`define CCHIP_SWAP_SHUTDOWN 4'd13 // pairs inside were not answered in time; the slot works on with its former module
+`define CCHIP_SWAP_ABORTED 4'd14 // aborted: the slot works on if it was not decoupled yet, else decoupled, in reset
 
 // programme of a pair in the axis controller
 `define CCHIP_PROG_NORMALS 3'd0 // directed: nA, then nB

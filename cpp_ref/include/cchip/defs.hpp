@@ -33,6 +33,39 @@ enum class ModuleId : std::uint8_t {
   quad_quad = 3,  ///< cchip_primtest_quad_quad
 };
 
+/// Phase of a swap (cchip_config_controller).
+enum class SwapPhase : std::uint8_t {
+  idle = 0,  ///< no swap
+  header = 1,  ///< header of the bitstream is fetched and checked; the slot works on
+  shutdown = 2,  ///< no new pairs; wait until the pairs inside have been answered
+  decouple = 3,  ///< outputs of the region become constants
+  reset = 4,  ///< the region is held in reset
+  transfer = 5,  ///< payload passes the configuration port
+  check = 6,  ///< length, CRC-32 and the device's own error
+  roc = 7,  ///< reset on configuration is clocked in, module compared
+  recouple = 8,  ///< outputs of the region are connected again
+  report = 9,  ///< the report is given
+};
+
+/// Outcome of a swap (cchip_config_controller).
+enum class SwapCode : std::uint8_t {
+  ok = 0,  ///< the module asked for works
+  same = 1,  ///< the slot held the module already: nothing done
+  busy = 2,  ///< a swap was under way: request refused
+  request = 3,  ///< no such slot or module, no bitstream for it, or its address is not aligned: request refused
+  magic = 4,  ///< not a bitstream; the slot works on with its former module
+  slot = 5,  ///< bitstream for another slot; the slot works on
+  module = 6,  ///< bitstream of another module; the slot works on
+  length = 7,  ///< length in the header does not fit the size of the file or the port; the slot works on
+  crc = 8,  ///< CRC-32 of the payload is wrong: slot decoupled, in reset
+  device = 9,  ///< the configuration port reported an error: slot decoupled, in reset
+  wrong_module = 10,  ///< the new module has another rm_id: slot decoupled, in reset
+  bus = 11,  ///< error response or wrong burst length from memory: decoupled if the transfer had begun
+  memory = 12,  ///< memory did not answer in time, or still owes beats of an earlier read
+  shutdown = 13,  ///< pairs inside were not answered in time; the slot works on with its former module
+  aborted = 14,  ///< aborted: the slot works on if it was not decoupled yet, else decoupled, in reset
+};
+
 /// Programme of a pair in the axis controller.
 enum class Programme : std::uint8_t {
   normals = 0,  ///< directed: nA, then nB
@@ -86,6 +119,26 @@ constexpr int limb_w = 17;
 constexpr int mul18_latency = 2;
 /// width of a programme code [bit]
 constexpr int prog_w = 3;
+/// width of a swap's phase [bit]
+constexpr int phase_w = 4;
+/// width of a swap's code [bit]
+constexpr int swap_w = 4;
+/// word 0 of a bitstream's header
+constexpr std::uint32_t bitstream_magic = 0x43434250;
+/// first word of a virtual bitstream's payload
+constexpr std::uint32_t bitstream_sync = 0xAA995566;
+/// header in front of a bitstream's payload; it does not pass the configuration port [byte]
+constexpr int bitstream_header = 16;
+/// least payload of a bitstream [byte]
+constexpr int bitstream_payload_min = 16;
+/// address of a bitstream in memory is a multiple of this [byte]
+constexpr int bitstream_align = 64;
+/// default reset after a configuration (paper, listing 3.3) [clock]
+constexpr int roc_clocks_default = 2;
+/// longest wait for the pairs inside a slot, unless a register says otherwise [clock]
+constexpr int shutdown_limit_default = 65536;
+/// longest wait for a beat of the bitstream's memory, unless a register says otherwise [clock]
+constexpr int memory_limit_default = 4096;
 /// state of a pair's programme that travels with its beat (cchip_axis_programme) [bit]
 constexpr int state_w = 34;
 
