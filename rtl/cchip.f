@@ -24,3 +24,4 @@ primtest/cchip_primtest_quad_quad.v
 primtest/cchip_primtest_array.v
 primtest/cchip_primtest_blank.v
 reconfig/cchip_pr_region.v
+regs/cchip_subsystem_regs.v
