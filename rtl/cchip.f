@@ -24,4 +24,10 @@ primtest/cchip_primtest_quad_quad.v
 primtest/cchip_primtest_array.v
 primtest/cchip_primtest_blank.v
 reconfig/cchip_pr_region.v
+reconfig/cchip_roc_generator.v
+reconfig/cchip_pr_gate.v
+reconfig/cchip_pr_decoupler.v
+reconfig/cchip_pr_config_memory.v
+reconfig/cchip_pr_virtual.v
+reconfig/cchip_pr_slot.v
 regs/cchip_subsystem_regs.v

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_pr_gate: stream register that can be closed: one direction of cchip_pr_decoupler.
+//   latency      1 clock
+//   throughput   one beat per clock, also while m_ready toggles
+//   capacity     2 beats
+//   cuts         every path: s_ready, m_valid and m_data are flip-flops
+//   stop         no further beat is accepted: s_ready is 0 from the next clock on; beats inside leave as usual
+//   close        empties the gate like a reset, and m_data is 0, too; a beat of the clock on which close rises is lost
+module cchip_pr_gate #(
+    // width of the payload, bit, >= 1
+    parameter integer WIDTH = 8
+) (
+    input  wire             clk,
+    input  wire             close,
+    input  wire             stop,
+    input  wire             s_valid,
+    output wire             s_ready,
+    input  wire [WIDTH-1:0] s_data,
+    output wire             m_valid,
+    input  wire             m_ready,
+    output wire [WIDTH-1:0] m_data
+);
+
+  generate
+    if (WIDTH < 1) begin : gen_illegal
+      cchip_error_pr_gate_WIDTH_below_1 u_error ();
+    end
+  endgenerate
+
+  reg              ready_q;
+  reg              skid_valid_q;
+  reg  [WIDTH-1:0] skid_data_q;
+  reg              valid_q;
+  reg  [WIDTH-1:0] data_q;
+
+  assign s_ready = ready_q;
+  assign m_valid = valid_q;
+  assign m_data  = data_q;
+
+  wire accept = s_valid & ready_q;
+  wire advance = m_ready | ~valid_q;
+  wire skid_valid_d = ~advance & (skid_valid_q | accept);
+
+  always @(posedge clk) begin
+    if (close) begin
+      ready_q      <= 1'b0;
+      skid_valid_q <= 1'b0;
+      valid_q      <= 1'b0;
+      data_q       <= {WIDTH{1'b0}};
+    end else begin
+      ready_q      <= ~stop & ~skid_valid_d;
+      skid_valid_q <= skid_valid_d;
+      if (advance) valid_q <= skid_valid_q | accept;
+      if (advance) data_q <= skid_valid_q ? skid_data_q : s_data;
+    end
+    if (ready_q) skid_data_q <= s_data;
+  end
+
+`include "cchip_assert.vh"
+  always @(posedge clk)
+    if (!close) begin
+      `CCHIP_ASSERT(a_ready_means_empty, !(ready_q && skid_valid_q))
+      `CCHIP_ASSERT(a_order, !(skid_valid_q && !valid_q))
+    end
+
+endmodule
+`default_nettype wire

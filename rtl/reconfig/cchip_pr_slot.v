@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`include "cchip_defs.vh"
+`default_nettype none
+// cchip_pr_slot: one reconfigurable module behind its decoupler and reset generator, with what a controller needs to
+// exchange it: stop, quiet, decouple, reset, the module's number.
+//   latency      that of the module + 2 clocks
+//   throughput   that of the module
+//   cuts         every path: every output is a flip-flop
+//   stop         s_pair_ready is 0 from the next clock on; quiet rises when every accepted pair has been answered
+//   decouple     see cchip_pr_decoupler; pairs inside are counted in lost as decoupled rises
+//   hold_reset   level, reset of the module one clock later; roc_start: pulse, a reset of ROC_CYCLES clocks; roc_busy is
+//                1 from the next clock to the last clock of that reset. Reset an uncoupled module only
+//   reset        resets streams and module (for ROC_CYCLES clocks more); nothing old comes out. A configuration survives
+// SIMULATION = 0: one cchip_pr_region, the partition of FPGA tools. SIMULATION = 1: all four modules, exchanged by the
+// words that pass the configuration port (cchip_pr_virtual).
+module cchip_pr_slot #(
+    // see cchip_pr_region
+    parameter integer COORD_W = 16,
+    parameter integer SUBSTAGES = 10,
+    parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
+    parameter integer ABSOLUTE_PROJECTION = 0,
+    parameter integer WARPED_EXACT = 1,
+    // number of this slot, 0..255
+    parameter integer SLOT_ID = 0,
+    // module at power-up, CCHIP_RM_BLANK .. CCHIP_RM_QUAD_QUAD, 0..3
+    parameter integer RM_ID = 0,
+    // reset on configuration, clocks, 1..32
+    parameter integer ROC_CYCLES = `CCHIP_ROC_CLOCKS_DEFAULT,
+    // width of the configuration port, bit, 8 or 32
+    parameter integer CFG_W = 8,
+    // 0 partition, 1 simulated reconfiguration
+    parameter integer SIMULATION = 0,
+    // start of the random numbers of a simulated reconfiguration, any
+    parameter integer SEED = 1
+) (
+    input  wire                   clk,
+    input  wire                   rst,
+    // control
+    input  wire                   stop,
+    output wire                   quiet,
+    output wire [           15:0] outstanding,
+    input  wire                   decouple,
+    output wire                   decoupled,
+    output wire [           15:0] lost,
+    input  wire                   hold_reset,
+    input  wire                   roc_start,
+    output wire                   roc_busy,
+    output wire [            7:0] region_rm_id,
+    // configuration port of the device
+    input  wire                   cfg_valid,
+    input  wire [      CFG_W-1:0] cfg_data,
+    // ports of a primitive test
+    input  wire                   s_pair_valid,
+    output wire                   s_pair_ready,
+    input  wire [           15:0] s_pair_tag,
+    input  wire [            1:0] s_pair_mode,
+    input  wire [4*3*COORD_W-1:0] s_pair_a,
+    input  wire [4*3*COORD_W-1:0] s_pair_b,
+    input  wire [            3:0] s_pair_err,
+    output wire                   m_result_valid,
+    input  wire                   m_result_ready,
+    output wire [           15:0] m_result_tag,
+    output wire                   m_result_hit,
+    output wire                   m_result_grid,
+    output wire                   m_result_definite,
+    output wire [            8:0] m_result_axis,
+    output wire [            5:0] m_result_beats,
+    output wire [            7:0] rm_id,
+    output wire                   idle
+);
+
+  // ---- reset of the module
+  wire roc;
+  reg region_rst_q;
+  reg roc_busy_q;
+  reg [7:0] region_rm_id_q;
+  initial region_rst_q = 1'b1;
+
+  cchip_roc_generator #(
+      .CYCLES(ROC_CYCLES)
+  ) u_roc (
+      .clk       (clk),
+      .rst       (rst),
+      .configured(roc_start),
+      .roc       (roc)
+  );
+
+  wire [7:0] r_rm_id;
+  always @(posedge clk) begin
+    region_rst_q   <= rst | hold_reset | roc;
+    roc_busy_q     <= rst | roc_start | roc;
+    region_rm_id_q <= r_rm_id;
+  end
+  assign roc_busy     = roc_busy_q;
+  assign region_rm_id = region_rm_id_q;
+
+  // ---- pairs inside, counted on the static side: a handshake of the region proves nothing
+  reg [15:0] outstanding_q;
+  reg [15:0] lost_q;
+  reg stopped_q;
+  reg quiet_q;
+
+  wire accept = s_pair_valid & s_pair_ready;
+  wire answer = m_result_valid & m_result_ready;
+  wire [15:0] outstanding_d = accept & ~answer ? outstanding_q + 16'd1 :
+      answer & ~accept & (outstanding_q != 16'd0) ? outstanding_q - 16'd1 : outstanding_q;
+
+  always @(posedge clk) begin
+    if (rst) begin
+      outstanding_q <= 16'd0;
+      lost_q        <= 16'd0;
+      stopped_q     <= 1'b0;
+      quiet_q       <= 1'b0;
+    end else begin
+      outstanding_q <= decouple ? 16'd0 : outstanding_d;
+      if (decouple & ~decoupled) lost_q <= outstanding_d;
+      stopped_q <= stop;
+      quiet_q   <= stop & stopped_q & (outstanding_q == 16'd0);
+    end
+  end
+  assign outstanding = outstanding_q;
+  assign lost        = lost_q;
+  assign quiet       = quiet_q;
+
+  // ---- boundary
+  wire r_pair_valid, r_pair_ready, r_result_valid, r_result_ready, r_result_hit, r_result_grid, r_result_definite;
+  wire [15:0] r_pair_tag, r_result_tag;
+  wire [1:0] r_pair_mode;
+  wire [12*COORD_W-1:0] r_pair_a, r_pair_b;
+  wire [3:0] r_pair_err;
+  wire [8:0] r_result_axis;
+  wire [5:0] r_result_beats;
+  wire r_idle;
+
+  cchip_pr_decoupler #(
+      .COORD_W(COORD_W)
+  ) u_decoupler (
+      .clk              (clk),
+      .rst              (rst),
+      .stop             (stop),
+      .decouple         (decouple),
+      .decoupled        (decoupled),
+      .s_pair_valid     (s_pair_valid),
+      .s_pair_ready     (s_pair_ready),
+      .s_pair_tag       (s_pair_tag),
+      .s_pair_mode      (s_pair_mode),
+      .s_pair_a         (s_pair_a),
+      .s_pair_b         (s_pair_b),
+      .s_pair_err       (s_pair_err),
+      .m_result_valid   (m_result_valid),
+      .m_result_ready   (m_result_ready),
+      .m_result_tag     (m_result_tag),
+      .m_result_hit     (m_result_hit),
+      .m_result_grid    (m_result_grid),
+      .m_result_definite(m_result_definite),
+      .m_result_axis    (m_result_axis),
+      .m_result_beats   (m_result_beats),
+      .rm_id            (rm_id),
+      .idle             (idle),
+      .r_pair_valid     (r_pair_valid),
+      .r_pair_ready     (r_pair_ready),
+      .r_pair_tag       (r_pair_tag),
+      .r_pair_mode      (r_pair_mode),
+      .r_pair_a         (r_pair_a),
+      .r_pair_b         (r_pair_b),
+      .r_pair_err       (r_pair_err),
+      .r_result_valid   (r_result_valid),
+      .r_result_ready   (r_result_ready),
+      .r_result_tag     (r_result_tag),
+      .r_result_hit     (r_result_hit),
+      .r_result_grid    (r_result_grid),
+      .r_result_definite(r_result_definite),
+      .r_result_axis    (r_result_axis),
+      .r_result_beats   (r_result_beats),
+      .r_rm_id          (r_rm_id),
+      .r_idle           (r_idle)
+  );
+
+  // ---- region
+  generate
+    if (SIMULATION == 0) begin : gen_partition
+      cchip_pr_region #(
+          .RM_ID              (RM_ID),
+          .COORD_W            (COORD_W),
+          .SUBSTAGES          (SUBSTAGES),
+          .CONTEXTS           (CONTEXTS),
+          .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
+          .WARPED_EXACT       (WARPED_EXACT)
+      ) u_region (
+          .clk              (clk),
+          .rst              (region_rst_q),
+          .s_pair_valid     (r_pair_valid),
+          .s_pair_ready     (r_pair_ready),
+          .s_pair_tag       (r_pair_tag),
+          .s_pair_mode      (r_pair_mode),
+          .s_pair_a         (r_pair_a),
+          .s_pair_b         (r_pair_b),
+          .s_pair_err       (r_pair_err),
+          .m_result_valid   (r_result_valid),
+          .m_result_ready   (r_result_ready),
+          .m_result_tag     (r_result_tag),
+          .m_result_hit     (r_result_hit),
+          .m_result_grid    (r_result_grid),
+          .m_result_definite(r_result_definite),
+          .m_result_axis    (r_result_axis),
+          .m_result_beats   (r_result_beats),
+          .rm_id            (r_rm_id),
+          .idle             (r_idle)
+      );
+      wire unused = &{1'b0, cfg_valid, cfg_data};
+    end else if (SIMULATION == 1) begin : gen_simulation
+      cchip_pr_virtual #(
+          .SLOT_ID            (SLOT_ID),
+          .RM_ID              (RM_ID),
+          .CFG_W              (CFG_W),
+          .SEED               (SEED),
+          .COORD_W            (COORD_W),
+          .SUBSTAGES          (SUBSTAGES),
+          .CONTEXTS           (CONTEXTS),
+          .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
+          .WARPED_EXACT       (WARPED_EXACT)
+      ) u_virtual (
+          .clk              (clk),
+          .rst              (region_rst_q),
+          .cfg_valid        (cfg_valid),
+          .cfg_data         (cfg_data),
+          .s_pair_valid     (r_pair_valid),
+          .s_pair_ready     (r_pair_ready),
+          .s_pair_tag       (r_pair_tag),
+          .s_pair_mode      (r_pair_mode),
+          .s_pair_a         (r_pair_a),
+          .s_pair_b         (r_pair_b),
+          .s_pair_err       (r_pair_err),
+          .m_result_valid   (r_result_valid),
+          .m_result_ready   (r_result_ready),
+          .m_result_tag     (r_result_tag),
+          .m_result_hit     (r_result_hit),
+          .m_result_grid    (r_result_grid),
+          .m_result_definite(r_result_definite),
+          .m_result_axis    (r_result_axis),
+          .m_result_beats   (r_result_beats),
+          .rm_id            (r_rm_id),
+          .idle             (r_idle)
+      );
+    end else begin : gen_illegal
+      cchip_error_SIMULATION_must_be_0_or_1 u_error ();
+    end
+    if (CFG_W != 8 && CFG_W != 32) begin : gen_illegal_port
+      cchip_error_CFG_W_must_be_8_or_32 u_error ();
+    end
+    if (SLOT_ID < 0 || SLOT_ID > 255) begin : gen_illegal_slot
+      cchip_error_SLOT_ID_must_be_0_to_255 u_error ();
+    end
+  endgenerate
+
+`include "cchip_assert.vh"
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_quiet, !quiet_q || (outstanding_q == 16'd0 && !s_pair_ready))
+    end
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`include "cchip_defs.vh"
+`default_nettype none
+// cchip_pr_virtual: a reconfigurable region for simulations: all four modules and a selector that the words of the
+// configuration port move (cchip_pr_config_memory). Same ports as cchip_pr_region and the configuration port.
+//   garbage      from the word of a payload that names the slot to its last one, and for ever after a bad payload, every
+//                output of the region is random on every clock, and all modules are fed random pairs without reset: who
+//                forgets to decouple sees garbage, who forgets the reset afterwards sees answers to pairs nobody sent
+//   otherwise    the selected module, nothing added; rst resets all of them
+module cchip_pr_virtual #(
+    // number of this slot, 0..255
+    parameter integer SLOT_ID = 0,
+    // module in the slot at power-up, CCHIP_RM_BLANK .. CCHIP_RM_QUAD_QUAD, 0..3
+    parameter integer RM_ID = 0,
+    // width of the configuration port, bit, 8 or 32
+    parameter integer CFG_W = 8,
+    // start of the random numbers, any
+    parameter integer SEED = 1,
+    // see cchip_pr_region
+    parameter integer COORD_W = 16,
+    parameter integer SUBSTAGES = 10,
+    parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
+    parameter integer ABSOLUTE_PROJECTION = 0,
+    parameter integer WARPED_EXACT = 1
+) (
+    input  wire                   clk,
+    input  wire                   rst,
+    input  wire                   cfg_valid,
+    input  wire [      CFG_W-1:0] cfg_data,
+    input  wire                   s_pair_valid,
+    output wire                   s_pair_ready,
+    input  wire [           15:0] s_pair_tag,
+    input  wire [            1:0] s_pair_mode,
+    input  wire [4*3*COORD_W-1:0] s_pair_a,
+    input  wire [4*3*COORD_W-1:0] s_pair_b,
+    input  wire [            3:0] s_pair_err,
+    output wire                   m_result_valid,
+    input  wire                   m_result_ready,
+    output wire [           15:0] m_result_tag,
+    output wire                   m_result_hit,
+    output wire                   m_result_grid,
+    output wire                   m_result_definite,
+    output wire [            8:0] m_result_axis,
+    output wire [            5:0] m_result_beats,
+    output wire [            7:0] rm_id,
+    output wire                   idle
+);
+
+  localparam integer PAIR_W = 16 + 2 + 4 + 24 * COORD_W;
+  // ready, valid, tag, hit, grid, definite, axis, beats, rm_id, idle
+  localparam integer OUT_W = 1 + 1 + 16 + 1 + 1 + 1 + 9 + 6 + 8 + 1;
+  localparam [31:0] STEP = OUT_W;
+  localparam [31:0] SLOT = SLOT_ID;
+  localparam [31:0] START = SEED;
+
+  wire garbage;
+  wire [7:0] select;
+  cchip_pr_config_memory #(
+      .SLOT_ID(SLOT_ID),
+      .RM_ID  (RM_ID),
+      .CFG_W  (CFG_W)
+  ) u_memory (
+      .clk      (clk),
+      .cfg_valid(cfg_valid),
+      .cfg_data (cfg_data),
+      .garbage  (garbage),
+      .select   (select)
+  );
+
+  // ---- random numbers: xorshift of 64 bits; the pair is the last of them
+  reg [63:0] random_q;
+  reg [PAIR_W+63:0] pair_q;
+  initial random_q = {START, SLOT ^ 32'h9E3779B9};
+  initial pair_q = {PAIR_W + 64{1'b0}};
+
+  function [63:0] xorshift(input [63:0] from);
+    begin
+      xorshift = from ^ {from[50:0], 13'd0};
+      xorshift = xorshift ^ {7'd0, xorshift[63:7]};
+      xorshift = xorshift ^ {xorshift[46:0], 17'd0};
+    end
+  endfunction
+
+  always @(posedge clk)
+    if (garbage) begin
+      random_q <= xorshift(random_q);
+      pair_q   <= {pair_q[PAIR_W-1:0], random_q};
+    end
+
+  // ---- the modules
+  wire [PAIR_W-1:0] pair = garbage ? pair_q[PAIR_W-1:0] :
+      {s_pair_tag, s_pair_mode, s_pair_err, s_pair_a, s_pair_b};
+  wire [4*OUT_W-1:0] outs;
+  genvar i;
+  generate
+    for (i = 0; i < 4; i = i + 1) begin : gen_module
+      localparam [7:0] ID = i;
+      wire here = select == ID;
+      wire [OUT_W-1:0] out;
+      cchip_pr_region #(
+          .RM_ID              (i),
+          .COORD_W            (COORD_W),
+          .SUBSTAGES          (SUBSTAGES),
+          .CONTEXTS           (CONTEXTS),
+          .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
+          .WARPED_EXACT       (WARPED_EXACT)
+      ) u_region (
+          .clk              (clk),
+          .rst              (rst & ~garbage),
+          .s_pair_valid     (garbage | (here & s_pair_valid)),
+          .s_pair_ready     (out[OUT_W-1]),
+          .s_pair_tag       (pair[PAIR_W-1-:16]),
+          .s_pair_mode      (pair[PAIR_W-17-:2]),
+          .s_pair_a         (pair[24*COORD_W-1-:12*COORD_W]),
+          .s_pair_b         (pair[12*COORD_W-1-:12*COORD_W]),
+          .s_pair_err       (pair[PAIR_W-19-:4]),
+          .m_result_valid   (out[OUT_W-2]),
+          .m_result_ready   (garbage ? random_q[63] : here & m_result_ready),
+          .m_result_tag     (out[OUT_W-3-:16]),
+          .m_result_hit     (out[26]),
+          .m_result_grid    (out[25]),
+          .m_result_definite(out[24]),
+          .m_result_axis    (out[23:15]),
+          .m_result_beats   (out[14:9]),
+          .rm_id            (out[8:1]),
+          .idle             (out[0])
+      );
+      assign outs[OUT_W*i+:OUT_W] = out;
+    end
+  endgenerate
+
+  assign {s_pair_ready, m_result_valid, m_result_tag, m_result_hit, m_result_grid, m_result_definite, m_result_axis,
+          m_result_beats, rm_id, idle} = garbage ? random_q[OUT_W-1:0] : outs[STEP*{30'd0, select[1:0]}+:OUT_W];
+
+  wire unused = &{1'b0, select[7:2], pair_q[PAIR_W+63:PAIR_W]};
+
+endmodule
+`default_nettype wire

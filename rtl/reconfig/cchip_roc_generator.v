@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_roc_generator: reset on configuration (paper, listing 3.3 and figure 8) for a module that has none of its own.
+//   rule         roc = 1 on the CYCLES clocks after every clock on which configured or rst is 1, else 0: a pulse makes
+//                exactly CYCLES clocks, a level itself one clock later and CYCLES - 1 clocks longer
+//   latency      1 clock
+//   cuts         every path: roc is a flip-flop
+//   reset        rst counts as a configuration; so does power-up: roc is 1 for CYCLES clocks then
+module cchip_roc_generator #(
+    // length of the reset, clocks, 1..32
+    parameter integer CYCLES = 2
+) (
+    input  wire clk,
+    input  wire rst,
+    input  wire configured,
+    output wire roc
+);
+
+  generate
+    if (CYCLES < 1 || CYCLES > 32) begin : gen_illegal
+      cchip_error_ROC_CYCLES_must_be_1_to_32 u_error ();
+    end
+  endgenerate
+
+  reg [CYCLES-1:0] left_q;  // ones: clocks to come
+  initial left_q = {CYCLES{1'b1}};
+
+  assign roc = left_q[CYCLES-1];
+
+  always @(posedge clk) left_q <= rst | configured ? {CYCLES{1'b1}} : left_q << 1;
+
+endmodule
+`default_nettype wire
