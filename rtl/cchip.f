@@ -3,6 +3,7 @@ common/cchip_delay.v
 common/cchip_skid_buffer.v
 common/cchip_fifo.v
 common/cchip_ram.v
+common/cchip_crc32.v
 arith/cchip_mul18.v
 arith/cchip_mul_wide.v
 arith/cchip_dot3.v
@@ -30,4 +31,10 @@ reconfig/cchip_pr_decoupler.v
 reconfig/cchip_pr_config_memory.v
 reconfig/cchip_pr_virtual.v
 reconfig/cchip_pr_slot.v
+reconfig/cchip_bitstream_fetch.v
+reconfig/cchip_bitstream_header.v
+reconfig/cchip_config_port.v
+reconfig/cchip_swap_counters.v
+reconfig/cchip_swap_sequencer.v
+reconfig/cchip_config_controller.v
 regs/cchip_subsystem_regs.v

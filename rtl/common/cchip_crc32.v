@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_crc32: CRC-32 of IEEE 802.3 (that of zlib) over a row of words, first byte lowest.
+//   latency      1 clock from a word to the CRC of all words up to it
+//   throughput   one word per clock
+//   numbers      reflected polynomial EDB88320, starts with all ones, result inverted
+//   cuts         every path: crc is inverted flip-flops
+//   reset        clear = 1: crc is that of no words, 0; it wins over valid
+module cchip_crc32 #(
+    // width of a word, bit, a multiple of 8
+    parameter integer DATA_W = 8
+) (
+    input  wire              clk,
+    input  wire              clear,
+    input  wire              valid,
+    input  wire [DATA_W-1:0] data,
+    output wire [      31:0] crc
+);
+
+  generate
+    if (DATA_W < 8 || DATA_W % 8 != 0) begin : gen_illegal
+      cchip_error_crc32_DATA_W_must_be_a_multiple_of_8 u_error ();
+    end
+  endgenerate
+
+  reg [31:0] crc_q;
+  assign crc = ~crc_q;
+
+  function [31:0] next(input [31:0] from, input [DATA_W-1:0] word);
+    integer i;
+    begin
+      next = from;
+      for (i = 0; i < DATA_W; i = i + 1) next = {1'b0, next[31:1]} ^ (next[0] ^ word[i] ? 32'hEDB88320 : 32'd0);
+    end
+  endfunction
+
+  always @(posedge clk)
+    if (clear) crc_q <= 32'hFFFFFFFF;
+    else if (valid) crc_q <= next(crc_q, data);
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_bitstream_fetch: AXI4 read master that brings a row of words from memory into a FIFO.
+// run = 1 starts; address and words are taken on its first clock. run = 0 empties the FIFO; beats that memory still owes
+// are swallowed (owes = 1 until then), and run must stay 0 as long.
+//   latency      m_valid 6 clocks after run plus the memory's, counted from arvalid = 1, arready = 1 to rvalid = 1
+//   throughput   one word per clock if a read takes less than 13 clocks
+//   bursts       INCR, up to 16 beats, within 64 bytes (never across 4 KiB); two outstanding; only what the FIFO has room for
+//   cuts         every path but m_ready to the FIFO's: each output is a flip-flop; m_axi_rready is always 1
+//   errors       bus_error: rresp other than OKAY, rlast too early or too late, a beat nobody asked for; timeout: `limit`
+//                clocks without an address taken or a beat. Both stay 1 until run = 0; nothing enters the FIFO any more.
+//                RLAST ends a burst, whatever the count says.
+//   reset        that of the bus too: nothing is owed after it
+module cchip_bitstream_fetch #(
+    // capacity of the FIFO, words, >= 32
+    parameter integer FIFO_DEPTH = 32
+) (
+    input  wire        clk,
+    input  wire        rst,
+    input  wire        run,
+    input  wire [31:0] address,  // byte, multiple of 4
+    input  wire [29:0] words,
+    input  wire [31:0] limit,    // clocks, > 0
+    output wire        m_valid,
+    input  wire        m_ready,
+    output wire [31:0] m_data,
+    output wire        bus_error,
+    output wire        timeout,
+    output wire        owes,
+    output wire        m_axi_arvalid,
+    input  wire        m_axi_arready,
+    output wire [31:0] m_axi_araddr,
+    output wire [ 7:0] m_axi_arlen,
+    output wire [ 2:0] m_axi_arsize,
+    output wire [ 1:0] m_axi_arburst,
+    output wire [ 3:0] m_axi_arcache,
+    output wire [ 2:0] m_axi_arprot,
+    input  wire        m_axi_rvalid,
+    output wire        m_axi_rready,
+    input  wire [31:0] m_axi_rdata,
+    input  wire [ 1:0] m_axi_rresp,
+    input  wire        m_axi_rlast
+);
+
+  localparam integer COUNT_W = $clog2(FIFO_DEPTH + 1);
+  localparam [31:0] ROOM = FIFO_DEPTH - 16;
+
+  generate
+    if (FIFO_DEPTH < 32) begin : gen_illegal
+      cchip_error_bitstream_fetch_FIFO_DEPTH_below_32 u_error ();
+    end
+  endgenerate
+
+  reg run_q;
+  reg error_q, timeout_q;
+  wire working = run & run_q & ~error_q & ~timeout_q;
+
+  // ---- addresses: length of the next burst, then the burst
+  reg [31:0] addr_q;
+  reg [29:0] left_q;  // words not yet asked for
+  reg planned_q;  // beats_q is the length of the burst at addr_q
+  reg [4:0] beats_q;
+  reg arvalid_q;
+  reg [1:0] bursts_q;  // addresses taken, last beat not yet here
+  reg [COUNT_W-1:0] reserved_q;  // words asked for and not yet taken from the FIFO
+
+  wire [4:0] to_edge = 5'd16 - {1'b0, addr_q[5:2]};
+  wire fits = left_q >= {25'd0, to_edge};
+  wire room = {{32 - COUNT_W{1'b0}}, reserved_q} <= ROOM;
+  wire issue = working & planned_q & ~arvalid_q & ~bursts_q[1] & room;
+  wire taken = arvalid_q & m_axi_arready;
+  wire pop = m_valid & m_ready;
+
+  always @(posedge clk) begin
+    if (run & ~run_q) begin
+      addr_q <= address;
+      left_q <= words;
+    end else if (taken) begin
+      addr_q <= addr_q + {25'd0, beats_q, 2'd0};
+      left_q <= left_q - {25'd0, beats_q};
+    end
+    if (~planned_q) beats_q <= fits ? to_edge : left_q[4:0];
+    if (rst) begin
+      run_q      <= 1'b0;
+      planned_q  <= 1'b0;
+      arvalid_q  <= 1'b0;
+      reserved_q <= {COUNT_W{1'b0}};
+    end else begin
+      run_q <= run;
+      planned_q <= ~taken & (planned_q ? arvalid_q | working : working & left_q != 30'd0);
+      arvalid_q <= issue | (arvalid_q & ~m_axi_arready);
+      if (~run_q) reserved_q <= {COUNT_W{1'b0}};
+      else
+        reserved_q <= reserved_q + (issue ? {{COUNT_W - 5{1'b0}}, beats_q} : {COUNT_W{1'b0}})
+                      - {{COUNT_W - 1{1'b0}}, pop};
+    end
+  end
+
+  assign m_axi_arvalid = arvalid_q;
+  assign m_axi_araddr  = addr_q;
+  assign m_axi_arlen   = {3'd0, beats_q} - 8'd1;
+  assign m_axi_arsize  = 3'b010;
+  assign m_axi_arburst = 2'b01;
+  assign m_axi_arcache = 4'b0011;
+  assign m_axi_arprot  = 3'b000;
+
+  // ---- beats: RLAST ends a burst, the count only checks it
+  reg rready_q;
+  reg [4:0] first_q, second_q;  // beats to come of the oldest burst, of the one behind it
+  wire beat = m_axi_rvalid & rready_q;
+  wire owed = bursts_q != 2'd0;
+  wire last = beat & m_axi_rlast & owed;
+  wire good = owed & m_axi_rresp == 2'b00 & first_q != 5'd0 & m_axi_rlast == (first_q == 5'd1);
+  wire push = beat & working & good;
+
+  always @(posedge clk) begin
+    if (taken & (bursts_q == 2'd0 | (bursts_q == 2'd1 & last))) first_q <= beats_q;
+    else if (last) first_q <= second_q;
+    else if (beat & first_q != 5'd0) first_q <= first_q - 5'd1;
+    if (taken) second_q <= beats_q;
+    if (rst) begin
+      rready_q <= 1'b0;
+      bursts_q <= 2'd0;
+      error_q  <= 1'b0;
+    end else begin
+      rready_q <= 1'b1;
+      bursts_q <= bursts_q + {1'b0, taken} - {1'b0, last};
+      error_q  <= run & (error_q | (beat & working & ~good));
+    end
+  end
+
+  assign m_axi_rready = rready_q;
+  assign bus_error = error_q;
+  assign owes = arvalid_q | owed;
+
+  // ---- clocks without an address taken or a beat
+  reg [31:0] wait_q;
+  always @(posedge clk) begin
+    wait_q <= taken | beat | ~owes ? 32'd1 : wait_q + 32'd1;
+    if (rst) timeout_q <= 1'b0;
+    else timeout_q <= run & (timeout_q | (working & owes & ~taken & ~beat & wait_q == limit));
+  end
+  assign timeout = timeout_q;
+
+  wire fifo_ready;
+  cchip_fifo #(
+      .WIDTH(32),
+      .DEPTH(FIFO_DEPTH)
+  ) u_fifo (
+      .clk    (clk),
+      .rst    (rst | ~run_q),
+      .s_valid(push),
+      .s_ready(fifo_ready),
+      .s_data (m_axi_rdata),
+      .m_valid(m_valid),
+      .m_ready(m_ready),
+      .m_data (m_data)
+  );
+
+  wire unused = &{1'b0, fifo_ready};
+`include "cchip_assert.vh"
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_room, !push || fifo_ready)
+      `CCHIP_ASSERT(a_bursts, bursts_q != 2'd3)
+      `CCHIP_ASSERT(a_start, !run || run_q || !owes)
+    end
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`include "cchip_defs.vh"
+`default_nettype none
+// cchip_config_controller: exchanges the module of a slot: fetches a bitstream, streams it into the configuration port and
+// sequences the slot. Phases CCHIP_PHASE_*, outcomes CCHIP_SWAP_*.
+//   order        HEADER, SHUTDOWN, DECOUPLE, RESET, TRANSFER, CHECK, ROC, RECOUPLE, REPORT; a bad header or a shutdown that
+//                fails leaves the slot at work; whatever fails from DECOUPLE on leaves it stopped, decoupled and in reset
+//   time         payload: CFG_DIVIDER clocks per port word (the paper's eq. 4) while memory keeps up; see the datasheet for
+//                the rest; every wait has a bound: shutdown_limit for the pairs, memory_limit for each beat
+//   busy         a request during a swap is taken and answered BUSY; every request is answered by exactly one report
+//   cuts         every path: each output is a flip-flop
+//   reset        no swap, slots at work, except one whose transfer had begun and not ended well: `half_q` outlives rst and
+//                keeps it stopped, decoupled and in reset until a good transfer
+module cchip_config_controller #(
+    // slots, 1 or 2
+    parameter integer SLOTS = 1,
+    // width of the configuration port, bit: 8 or 32
+    parameter integer CFG_W = 8,
+    // clocks per word of the port, >= 1; at 100 MHz: 2 for 8 bit at 50 MHz, 1 for 32 bit at 100 MHz
+    parameter integer CFG_DIVIDER = 2,
+    // longest wait for a slot to decouple, to end its ROC, to recouple, clocks, >= 16
+    parameter integer SLOT_LIMIT = 4096
+) (
+    input  wire                clk,
+    input  wire                rst,
+    input  wire                s_swap_valid,
+    output wire                s_swap_ready,
+    input  wire [         7:0] s_swap_slot,
+    input  wire [         7:0] s_swap_module,
+    input  wire [        31:0] s_swap_address,    // of the header, byte
+    input  wire [        31:0] s_swap_size,       // header and payload, byte
+    input  wire                s_swap_force,      // 1: pairs not answered in time are given up
+    output wire                m_report_valid,    // 1 clock, no ready
+    output wire [         7:0] m_report_slot,
+    output wire [         7:0] m_report_module,
+    output wire [         3:0] m_report_code,
+    output wire [        15:0] m_report_lost,
+    input  wire                abort_swap,
+    input  wire                clear,             // counters
+    input  wire [        31:0] shutdown_limit,    // clocks; 0: default
+    input  wire [        31:0] memory_limit,      // clocks; 0: default
+    output wire [   SLOTS-1:0] stop,
+    output wire [   SLOTS-1:0] decouple,
+    output wire [   SLOTS-1:0] hold_reset,
+    output wire [   SLOTS-1:0] roc_start,
+    input  wire [   SLOTS-1:0] quiet,
+    input  wire [   SLOTS-1:0] decoupled,
+    input  wire [   SLOTS-1:0] roc_busy,
+    input  wire [ 8*SLOTS-1:0] region_rm_id,
+    input  wire [16*SLOTS-1:0] lost,
+    output wire                busy,
+    output wire [         3:0] phase,
+    output wire [         7:0] phase_slot,
+    output wire                m_axi_arvalid,
+    input  wire                m_axi_arready,
+    output wire [        31:0] m_axi_araddr,
+    output wire [         7:0] m_axi_arlen,
+    output wire [         2:0] m_axi_arsize,
+    output wire [         1:0] m_axi_arburst,
+    output wire [         3:0] m_axi_arcache,
+    output wire [         2:0] m_axi_arprot,
+    input  wire                m_axi_rvalid,
+    output wire                m_axi_rready,
+    input  wire [        31:0] m_axi_rdata,
+    input  wire [         1:0] m_axi_rresp,
+    input  wire                m_axi_rlast,
+    output wire                cfg_valid,
+    output wire [   CFG_W-1:0] cfg_data,
+    input  wire                cfg_error,
+    output wire [        31:0] swaps,
+    output wire [        31:0] rejected,
+    output wire [        31:0] stalls,
+    output wire [    9*32-1:0] phase_clocks
+);
+
+  wire [7:0] slot, module_id;
+  wire [31:0] address, size, limit;
+  wire run, owes, bus_error, timeout;
+  wire header_done, header_ok;
+  wire [3:0] header_code;
+  wire fetch_valid, port_ready, transfer_done, stall;
+  wire [31:0] length, payload_crc, fetch_data, crc;
+  reg crc_ok_q;
+  always @(posedge clk) crc_ok_q <= crc == payload_crc;
+
+  cchip_swap_sequencer #(
+      .SLOTS     (SLOTS),
+      .SLOT_LIMIT(SLOT_LIMIT)
+  ) u_sequencer (
+      .clk           (clk),
+      .rst           (rst),
+      .s_swap_valid  (s_swap_valid),
+      .s_swap_ready  (s_swap_ready),
+      .s_swap_slot   (s_swap_slot),
+      .s_swap_module (s_swap_module),
+      .s_swap_address(s_swap_address),
+      .s_swap_size   (s_swap_size),
+      .s_swap_force  (s_swap_force),
+      .m_report_valid(m_report_valid),
+      .m_report_slot (m_report_slot),
+      .m_report_module(m_report_module),
+      .m_report_code (m_report_code),
+      .m_report_lost (m_report_lost),
+      .abort_swap    (abort_swap),
+      .shutdown_limit(shutdown_limit),
+      .memory_limit  (memory_limit),
+      .stop          (stop),
+      .decouple      (decouple),
+      .hold_reset    (hold_reset),
+      .roc_start     (roc_start),
+      .quiet         (quiet),
+      .decoupled     (decoupled),
+      .roc_busy      (roc_busy),
+      .region_rm_id  (region_rm_id),
+      .lost          (lost),
+      .phase         (phase),
+      .slot          (slot),
+      .module_id     (module_id),
+      .address       (address),
+      .size          (size),
+      .limit         (limit),
+      .run           (run),
+      .header_done   (header_done),
+      .header_ok     (header_ok),
+      .header_code   (header_code),
+      .owes          (owes),
+      .bus_error     (bus_error),
+      .timeout       (timeout),
+      .transfer_done (transfer_done),
+      .crc_ok        (crc_ok_q),
+      .cfg_error     (cfg_error)
+  );
+
+  // ---- memory to header or port
+  wire in_header = phase == `CCHIP_PHASE_HEADER;
+  wire in_transfer = phase == `CCHIP_PHASE_TRANSFER;
+  reg [31:0] fetch_address_q;
+  reg [29:0] fetch_words_q;
+  always @(posedge clk) begin
+    fetch_address_q <= address + (in_header ? 32'd0 : `CCHIP_BITSTREAM_HEADER);
+    fetch_words_q   <= in_header ? 30'd4 : length[31:2] + {29'd0, length[1:0] != 2'd0};
+  end
+
+  cchip_bitstream_fetch u_fetch (
+      .clk          (clk),
+      .rst          (rst),
+      .run          (run),
+      .address      (fetch_address_q),
+      .words        (fetch_words_q),
+      .limit        (limit),
+      .m_valid      (fetch_valid),
+      .m_ready      (in_header | port_ready),
+      .m_data       (fetch_data),
+      .bus_error    (bus_error),
+      .timeout      (timeout),
+      .owes         (owes),
+      .m_axi_arvalid(m_axi_arvalid),
+      .m_axi_arready(m_axi_arready),
+      .m_axi_araddr (m_axi_araddr),
+      .m_axi_arlen  (m_axi_arlen),
+      .m_axi_arsize (m_axi_arsize),
+      .m_axi_arburst(m_axi_arburst),
+      .m_axi_arcache(m_axi_arcache),
+      .m_axi_arprot (m_axi_arprot),
+      .m_axi_rvalid (m_axi_rvalid),
+      .m_axi_rready (m_axi_rready),
+      .m_axi_rdata  (m_axi_rdata),
+      .m_axi_rresp  (m_axi_rresp),
+      .m_axi_rlast  (m_axi_rlast)
+  );
+
+  cchip_bitstream_header #(
+      .CFG_W(CFG_W)
+  ) u_header (
+      .clk           (clk),
+      .clear         (~busy),
+      .s_valid       (in_header & fetch_valid),
+      .s_data        (fetch_data),
+      .slot          (slot),
+      .module_id     (module_id),
+      .size          (size),
+      .done          (header_done),
+      .ok            (header_ok),
+      .code          (header_code),
+      .payload_length(length),
+      .payload_crc   (payload_crc)
+  );
+
+  cchip_config_port #(
+      .CFG_W      (CFG_W),
+      .CFG_DIVIDER(CFG_DIVIDER)
+  ) u_port (
+      .clk      (clk),
+      .rst      (rst),
+      .run      (in_transfer),
+      .length   (length),
+      .s_valid  (fetch_valid),
+      .s_ready  (port_ready),
+      .s_data   (fetch_data),
+      .cfg_valid(cfg_valid),
+      .cfg_data (cfg_data),
+      .done     (transfer_done),
+      .crc      (crc),
+      .stall    (stall)
+  );
+
+  cchip_swap_counters u_counters (
+      .clk         (clk),
+      .rst         (rst),
+      .clear       (clear),
+      .phase       (phase),
+      .report_valid(m_report_valid),
+      .report_code (m_report_code),
+      .stall       (stall),
+      .swaps       (swaps),
+      .rejected    (rejected),
+      .stalls      (stalls),
+      .phase_clocks(phase_clocks)
+  );
+
+  assign busy = phase != `CCHIP_PHASE_IDLE;
+  assign phase_slot = slot;
+
+`include "cchip_assert.vh"
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_transfer, !cfg_valid || (hold_reset & decouple & stop) != {SLOTS{1'b0}})
+    end
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_config_port: payload of a bitstream from a stream of 32-bit words to the configuration port, low byte first, with
+// its CRC-32. A slot of CFG_DIVIDER clocks is a clock of the port; the first slot begins with the first word that is there.
+//   latency      transfer = 1 + CFG_DIVIDER * (port words + slots without data) clocks from s_valid and run to done
+//   throughput   one port word per slot, while s_valid = 1
+//   cuts         every path but s_ready: each output is a flip-flop
+//   reset        run = 0 ends a transfer and prepares the next: it must be 0 for a clock between two; length is read then
+//   numbers      a last word is used as far as length goes; length is a multiple of 4 for CFG_W = 32
+module cchip_config_port #(
+    // width of the configuration port, bit: 8 or 32
+    parameter integer CFG_W = 8,
+    // clocks per word of the port, >= 1
+    parameter integer CFG_DIVIDER = 2
+) (
+    input  wire             clk,
+    input  wire             rst,
+    input  wire             run,
+    input  wire [     31:0] length,     // of the payload, byte, > 0
+    input  wire             s_valid,
+    output wire             s_ready,
+    input  wire [     31:0] s_data,
+    output wire             cfg_valid,
+    output wire [CFG_W-1:0] cfg_data,
+    output wire             done,       // every word has passed
+    output wire [     31:0] crc,        // of the words that have passed, two clocks after them
+    output wire             stall       // a slot passes without data
+);
+
+  localparam integer SLOT_W = CFG_DIVIDER > 1 ? $clog2(CFG_DIVIDER) : 1;
+  localparam [31:0] SLOT = CFG_DIVIDER - 1;
+  localparam [SLOT_W-1:0] ONE = 1;
+
+  generate
+    if ((CFG_W != 8 && CFG_W != 32) || CFG_DIVIDER < 1) begin : gen_illegal
+      cchip_error_config_port_CFG_W_must_be_8_or_32_and_CFG_DIVIDER_above_0 u_error ();
+    end
+  endgenerate
+
+  reg ticking_q, done_q, stall_q;
+  reg [SLOT_W-1:0] slot_q;  // clocks left in this slot
+  reg [31:0] left_q;  // port words
+  reg valid_q;
+  reg [CFG_W-1:0] data_q;
+
+  wire tick = ticking_q & slot_q == {SLOT_W{1'b0}} & ~done_q;
+  wire emit = tick & s_valid;
+  wire last = left_q == 32'd1;
+  wire [CFG_W-1:0] piece;
+
+  generate
+    if (CFG_W == 32) begin : gen_word
+      assign piece   = s_data;
+      assign s_ready = emit;
+      wire [31:0] words = {2'b00, length[31:2]};
+      wire unused = &{1'b0, length[1:0]};
+      always @(posedge clk) left_q <= ~run ? words : emit ? left_q - 32'd1 : left_q;
+    end else begin : gen_byte
+      reg [1:0] lane_q;
+      assign piece   = s_data[{lane_q, 3'd0}+:8];
+      assign s_ready = emit & (lane_q == 2'd3 | last);
+      always @(posedge clk) begin
+        left_q <= ~run ? length : emit ? left_q - 32'd1 : left_q;
+        lane_q <= ~run ? 2'd0 : emit ? lane_q + 2'd1 : lane_q;
+      end
+    end
+  endgenerate
+
+  always @(posedge clk) begin
+    slot_q <= ~ticking_q | slot_q == {SLOT_W{1'b0}} ? SLOT[SLOT_W-1:0] : slot_q - ONE;
+    if (emit) data_q <= piece;
+    if (rst | ~run) begin
+      ticking_q <= 1'b0;
+      done_q    <= 1'b0;
+      valid_q   <= 1'b0;
+      stall_q   <= 1'b0;
+    end else begin
+      ticking_q <= ticking_q | s_valid;
+      done_q    <= done_q | (emit & last);
+      valid_q   <= emit;
+      stall_q   <= tick & ~s_valid;
+    end
+  end
+
+  assign cfg_valid = valid_q;
+  assign cfg_data = data_q;
+  assign done = done_q;
+  assign stall = stall_q;
+
+  // the CRC is read after the transfer: it is cleared when the next begins
+  cchip_crc32 #(
+      .DATA_W(CFG_W)
+  ) u_crc (
+      .clk  (clk),
+      .clear(run & ~ticking_q),
+      .valid(valid_q),
+      .data (data_q),
+      .crc  (crc)
+  );
+
+endmodule
+`default_nettype wire

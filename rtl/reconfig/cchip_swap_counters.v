@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`include "cchip_defs.vh"
+`default_nettype none
+// cchip_swap_counters: what the configuration controller has done.
+//   latency      1 clock
+//   numbers      32 bit, wrap around; phase_clocks[32*(p-1) +: 32] = clocks of phase p in the last swap, 0 if it had none
+//   cuts         every path: each output is a flip-flop
+//   reset        rst or clear: 0
+module cchip_swap_counters (
+    input  wire                      clk,
+    input  wire                      rst,
+    input  wire                      clear,
+    input  wire [`CCHIP_PHASE_W-1:0] phase,
+    input  wire                      report_valid,
+    input  wire [ `CCHIP_SWAP_W-1:0] report_code,
+    input  wire                      stall,
+    output reg  [              31:0] swaps,
+    output reg  [              31:0] rejected,
+    output reg  [              31:0] stalls,
+    output reg  [          9*32-1:0] phase_clocks
+);
+
+  wire ok = report_code == `CCHIP_SWAP_OK;
+  wire none = report_code == `CCHIP_SWAP_SAME;
+
+  reg [`CCHIP_PHASE_W-1:0] phase_q;
+  reg [31:0] clocks_q;
+  wire [31:0] clocks = phase == phase_q ? clocks_q + 32'd1 : 32'd1;
+  wire first = phase_q == `CCHIP_PHASE_IDLE & phase != `CCHIP_PHASE_IDLE;
+  integer p;
+
+  always @(posedge clk) begin
+    phase_q  <= phase;
+    clocks_q <= clocks;
+    for (p = 1; p < 10; p = p + 1)
+      if (phase == p[`CCHIP_PHASE_W-1:0]) phase_clocks[32*(p-1)+:32] <= clocks;
+      else if (first) phase_clocks[32*(p-1)+:32] <= 32'd0;
+    if (report_valid & ok) swaps <= swaps + 32'd1;
+    if (report_valid & ~ok & ~none) rejected <= rejected + 32'd1;
+    if (stall) stalls <= stalls + 32'd1;
+    if (rst | clear) begin
+      swaps <= 32'd0;
+      rejected <= 32'd0;
+      stalls <= 32'd0;
+      phase_clocks <= {9 * 32{1'b0}};
+    end
+    if (rst) phase_q <= `CCHIP_PHASE_IDLE;
+  end
+
+endmodule
+`default_nettype wire
