@@ -38,3 +38,7 @@ reconfig/cchip_swap_counters.v
 reconfig/cchip_swap_sequencer.v
 reconfig/cchip_config_controller.v
 regs/cchip_subsystem_regs.v
+reconfig/cchip_pair_queue.v
+reconfig/cchip_pair_dispatcher.v
+reconfig/cchip_result_merge.v
+reconfig/cchip_swap_scheduler.v

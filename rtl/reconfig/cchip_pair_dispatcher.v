@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_pair_dispatcher: gives the pairs that wait at the heads of three queues, one queue per kind, to the slots that
+// work on their kind; pairs of a kind that nobody provides go to `refused`, tag and kind only.
+//   latency      0 clocks: queues and slots are registered on their side
+//   throughput   one pair per clock for each queue, if a slot takes it
+//   offers       m_pair_valid of a slot is 1 only on clocks on which its m_pair_ready is 1, so a pair is never offered to
+//                a slot that is being shut down, nor taken back. m_pair_ready must therefore not wait for m_pair_valid.
+//   fair         two slots of one kind get the pairs of its queue in turn while both are ready; the queues and the
+//                illegal pairs are refused in turn
+//   cuts         nothing: m_pair_valid and s_ready follow m_pair_ready and s_valid through two levels of logic
+//   reset        `serves` is registered: no pair is given on the first clock after rst
+module cchip_pair_dispatcher #(
+    // slots, 1 or 2
+    parameter integer SLOTS = 2,
+    // width of a pair, tag in bits 15:0, bit
+    parameter integer WIDTH = 406
+) (
+    input  wire                   clk,
+    input  wire                   rst,
+    // module that works in each slot, ModuleId; 0: none, or no new pairs
+    input  wire [    2*SLOTS-1:0] serves,
+    // bit k - 1: no slot and no bitstream provides kind k
+    input  wire [            2:0] no_provider,
+    // heads of the queues, kind k at bit and word k - 1
+    input  wire [            2:0] s_valid,
+    output wire [            2:0] s_ready,
+    input  wire [    3*WIDTH-1:0] s_data,
+    // pairs of an illegal kind
+    input  wire                   s_illegal_valid,
+    output wire                   s_illegal_ready,
+    input  wire [           15:0] s_illegal_tag,
+    // slots
+    output wire [      SLOTS-1:0] m_pair_valid,
+    input  wire [      SLOTS-1:0] m_pair_ready,
+    output wire [SLOTS*WIDTH-1:0] m_pair_data,
+    // pairs to be answered without a test; kind 0: illegal
+    output wire                   m_refused_valid,
+    input  wire                   m_refused_ready,
+    output wire [           15:0] m_refused_tag,
+    output wire [            1:0] m_refused_kind
+);
+
+  generate
+    if (SLOTS < 1 || SLOTS > 2) begin : gen_illegal
+      cchip_error_SLOTS_must_be_1_or_2 u_error ();
+    end
+  endgenerate
+
+  // ---- slots. choice: one-hot, the queue of each slot
+  reg  [3*SLOTS-1:0] choice_q;
+  wire [3*SLOTS-1:0] give;  // the slot takes a pair of this queue if it has one
+  genvar slot, kind;
+  generate
+    for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_slots
+      wire [1:0] serve = serves[2*slot+:2];
+      always @(posedge clk) choice_q[3*slot+:3] <= rst ? 3'd0 : {serve == 2'd3, serve == 2'd2, serve == 2'd1};
+      assign m_pair_valid[slot] = |(give[3*slot+:3] & s_valid);
+      assign m_pair_data[WIDTH*slot+:WIDTH] = (s_data[0+:WIDTH] & {WIDTH{choice_q[3*slot]}})
+          | (s_data[WIDTH+:WIDTH] & {WIDTH{choice_q[3*slot+1]}})
+          | (s_data[2*WIDTH+:WIDTH] & {WIDTH{choice_q[3*slot+2]}});
+    end
+    if (SLOTS == 1) begin : gen_one
+      assign give = choice_q & {3{m_pair_ready[0]}};
+    end else begin : gen_two
+      reg turn_q;  // the slot that goes first where both are ready for one queue
+      wire [2:0] ready0 = choice_q[2:0] & {3{m_pair_ready[0]}};
+      wire [2:0] ready1 = choice_q[5:3] & {3{m_pair_ready[1]}};
+      assign give[2:0] = ready0 & ~(ready1 & {3{turn_q}});
+      assign give[5:3] = ready1 & ~(ready0 & {3{~turn_q}});
+      always @(posedge clk)
+        if (rst) turn_q <= 1'b0;
+        else if (|m_pair_valid) turn_q <= m_pair_valid[0];
+    end
+  endgenerate
+
+  // ---- refused pairs: illegal ones and those of the queues without a provider, in turn
+  reg  [2:0] refuse_q;
+  wire [2:0] served;  // a slot works on the kind: never refused
+  always @(posedge clk) refuse_q <= rst ? 3'd0 : no_provider & ~served;
+
+  wire [3:0] waits = {s_valid & refuse_q, s_illegal_valid};
+  reg  [3:0] after_q;  // one-hot: the one refused last
+  wire [3:0] turn = {after_q[2:0], after_q[3]};
+  wire [7:0] first = {waits, waits} & ~({waits, waits} - {4'd0, turn});
+  wire [3:0] next = first[3:0] | first[7:4];
+  always @(posedge clk)
+    if (rst) after_q <= 4'b1000;
+    else if (m_refused_valid & m_refused_ready) after_q <= next;
+
+  assign m_refused_valid = |waits;
+  assign m_refused_kind  = {next[3] | next[2], next[3] | next[1]};
+  assign m_refused_tag = (s_illegal_tag & {16{next[0]}}) | (s_data[0+:16] & {16{next[1]}})
+      | (s_data[WIDTH+:16] & {16{next[2]}}) | (s_data[2*WIDTH+:16] & {16{next[3]}});
+  assign s_illegal_ready = m_refused_ready & next[0];
+
+  generate
+    for (kind = 0; kind < 3; kind = kind + 1) begin : gen_kinds
+      localparam [31:0] KIND = kind + 1;
+      wire [SLOTS-1:0] taken, works;
+      for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_taken
+        assign taken[slot] = give[3*slot+kind];
+        assign works[slot] = choice_q[3*slot+kind] | serves[2*slot+:2] == KIND[1:0];
+      end
+      assign served[kind]  = |works;
+      assign s_ready[kind] = |taken | (m_refused_ready & next[kind+1]);
+
+`include "cchip_assert.vh"
+      always @(posedge clk)
+        if (!rst) begin
+          `CCHIP_ASSERT(a_once, (taken & (taken - {{SLOTS - 1{1'b0}}, 1'b1})) == {SLOTS{1'b0}})
+          `CCHIP_ASSERT(a_one_way, !(|taken && s_valid[kind] && m_refused_ready && next[kind+1]))
+        end
+    end
+  endgenerate
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_result_merge: several streams into one, in turn.
+//   latency      1 clock
+//   throughput   one beat per clock
+//   fair         a beat that is offered lets at most SOURCES - 1 others leave before it
+//   cuts         m_valid and m_data are flip-flops; s_ready follows s_valid of the sources, not m_ready
+//   reset        empty; s_ready = 0 while rst is 1 and one clock longer
+//   errors       none. A source may take an offer back: what was not accepted does not appear.
+module cchip_result_merge #(
+    // streams, 2..8
+    parameter integer SOURCES = 3,
+    // width of the payload, bit
+    parameter integer WIDTH = 36
+) (
+    input  wire                     clk,
+    input  wire                     rst,
+    input  wire [      SOURCES-1:0] s_valid,
+    output wire [      SOURCES-1:0] s_ready,
+    input  wire [SOURCES*WIDTH-1:0] s_data,   // source i in bits [WIDTH*i +: WIDTH]
+    output wire                     m_valid,
+    input  wire                     m_ready,
+    output wire [        WIDTH-1:0] m_data
+);
+
+  generate
+    if (SOURCES < 2 || SOURCES > 8 || WIDTH < 1) begin : gen_illegal
+      cchip_error_result_merge_SOURCES_not_2_to_8_or_WIDTH_below_1 u_error ();
+    end
+  endgenerate
+
+  // the first source with a beat behind the one that was last: the lowest bit not below `turn`
+  reg  [  SOURCES-1:0] last_q;  // one-hot
+  wire [  SOURCES-1:0] turn = (last_q << 1) | (last_q >> (SOURCES - 1));
+  wire [2*SOURCES-1:0] twice = {s_valid, s_valid};
+  wire [2*SOURCES-1:0] first = twice & ~(twice - {{SOURCES{1'b0}}, turn});
+  wire [  SOURCES-1:0] next = first[SOURCES-1:0] | first[SOURCES+:SOURCES];
+  wire                 ready;
+
+  assign s_ready = next & {SOURCES{ready}};
+
+  function [WIDTH-1:0] choose(input [SOURCES*WIDTH-1:0] from, input [SOURCES-1:0] source);
+    integer i;
+    begin
+      choose = {WIDTH{1'b0}};
+      for (i = 0; i < SOURCES; i = i + 1) choose = choose | (from[WIDTH*i+:WIDTH] & {WIDTH{source[i]}});
+    end
+  endfunction
+
+  always @(posedge clk)
+    if (rst) last_q <= {1'b1, {SOURCES - 1{1'b0}}};
+    else if (|s_valid & ready) last_q <= next;
+
+  cchip_skid_buffer #(
+      .WIDTH(WIDTH)
+  ) u_out (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(|s_valid),
+      .s_ready(ready),
+      .s_data (choose(s_data, next)),
+      .m_valid(m_valid),
+      .m_ready(m_ready),
+      .m_data (m_data)
+  );
+
+`include "cchip_assert.vh"
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_one, (next & (next - {{SOURCES - 1{1'b0}}, 1'b1})) == {SOURCES{1'b0}})
+      `CCHIP_ASSERT(a_some, (next == {SOURCES{1'b0}}) == (s_valid == {SOURCES{1'b0}}))
+    end
+
+endmodule
+`default_nettype wire
