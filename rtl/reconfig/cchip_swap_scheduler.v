@@ -26,7 +26,7 @@ module cchip_swap_scheduler #(
     input  wire                  rst,
     // registers
     input  wire                  enable,
-    input  wire [          15:0] min_batch,
+    input  wire [          31:0] min_batch,
     input  wire [          31:0] max_age,
     // bitstreams: entry 4 * slot + module
     input  wire [   4*SLOTS-1:0] table_valid,
@@ -47,14 +47,14 @@ module cchip_swap_scheduler #(
     // to the configuration controller
     output reg                   m_swap_valid,
     input  wire                  m_swap_ready,
-    output reg                   m_swap_slot,
+    output wire [           7:0] m_swap_slot,
     output reg  [           7:0] m_swap_module,
     output reg  [          31:0] m_swap_address,
     output reg  [          31:0] m_swap_size,
     output reg                   m_swap_force,
     // its report, one clock
     input  wire                  s_report_valid,
-    input  wire                  s_report_slot,
+    input  wire [           7:0] s_report_slot,
     input  wire [           7:0] s_report_module,
     input  wire [           3:0] s_report_code,
     input  wire [          15:0] s_report_lost,
@@ -115,7 +115,7 @@ module cchip_swap_scheduler #(
         else if (~&age) age_q[32*kind+:32] <= age + 32'd1;
         open_q[kind]   <= unserved & ~restart[kind];
         over_q[kind]   <= age >= max_age;
-        enough_q[kind] <= {{16 - COUNT_W{1'b0}}, waiting[COUNT_W*kind+:COUNT_W]} >= min_batch;
+        enough_q[kind] <= {{32 - COUNT_W{1'b0}}, waiting[COUNT_W*kind+:COUNT_W]} >= min_batch;
       end
 
       // 16 clocks bridge what the table and the slots show late
@@ -142,7 +142,7 @@ module cchip_swap_scheduler #(
       wire [ 1:0] module_id = slot_module[2*slot+:2];
       wire [ 3:0] work = {some, 1'b0};
       always @(posedge clk) begin
-        if (rst | module_id == 2'd0 | (s_report_valid & s_report_slot == SLOT[0])) begin
+        if (rst | module_id == 2'd0 | (s_report_valid & s_report_slot == SLOT[7:0])) begin
           taken_q  <= 16'd0;
           clocks_q <= 32'd0;
         end else begin
@@ -150,7 +150,7 @@ module cchip_swap_scheduler #(
           if (~&clocks_q) clocks_q <= clocks_q + 32'd1;
         end
         idle_q[slot] <= ~work[module_id];
-        settled_q[slot] <= (taken_q != 16'd0 & taken_q >= min_batch) | (clocks_q[31:10] != 22'd0 & clocks_q >= max_age);
+        settled_q[slot] <= (taken_q != 16'd0 & {16'd0, taken_q} >= min_batch) | (clocks_q[31:10] != 22'd0 & clocks_q >= max_age);
       end
     end
   endgenerate
@@ -208,6 +208,8 @@ module cchip_swap_scheduler #(
   end
 
   // ---- requests
+  reg slot_of_swap_q;
+  assign m_swap_slot = {7'd0, slot_of_swap_q};
   wire command_known = {24'd0, command_slot} < SLOT_COUNT & command_module[7:2] == 6'd0;
   wire [2:0] command_entry = {command_slot[0], command_module[1:0]};
   wire command_ok = command_known & valid_of[command_entry];
@@ -217,7 +219,7 @@ module cchip_swap_scheduler #(
 
   always @(posedge clk) begin
     if (take_command | take_best) begin
-      m_swap_slot    <= entry[2];
+      slot_of_swap_q <= entry[2];
       m_swap_module  <= {6'd0, entry[1:0]};
       m_swap_address <= address_of[32*entry+:32];
       m_swap_size    <= size_of[32*entry+:32];
@@ -230,7 +232,7 @@ module cchip_swap_scheduler #(
     end else begin
       m_swap_valid <= take_command | take_best | (m_swap_valid & ~m_swap_ready);
       swapping_q   <= (m_swap_valid & m_swap_ready) | (swapping_q & ~s_report_valid);
-      if (m_swap_valid & m_swap_ready) last_slot_q <= m_swap_slot;
+      if (m_swap_valid & m_swap_ready) last_slot_q <= slot_of_swap_q;
     end
   end
 
@@ -248,7 +250,7 @@ module cchip_swap_scheduler #(
       refused_module_q <= command_module;
       refused_code_q   <= asked ? `CCHIP_SWAP_BUSY : `CCHIP_SWAP_REQUEST;
     end
-    m_report_slot   <= s_report_valid ? {7'd0, s_report_slot} : refused_slot_q;
+    m_report_slot   <= s_report_valid ? s_report_slot : refused_slot_q;
     m_report_module <= s_report_valid ? s_report_module : refused_module_q;
     m_report_code   <= s_report_valid ? s_report_code : refused_code_q;
     m_report_lost   <= s_report_valid ? s_report_lost : 16'd0;
@@ -256,7 +258,7 @@ module cchip_swap_scheduler #(
     m_report_valid  <= ~rst & (s_report_valid | refused_q);
     for (i = 0; i < 4 * SLOTS; i = i + 1)
       table_invalidate[i] <= ~rst & s_report_valid & reject & s_report_module[7:2] == 6'd0
-          & {s_report_slot, s_report_module[1:0]} == i[2:0];
+          & {s_report_slot[0], s_report_module[1:0]} == i[2:0];
   end
 
 `include "cchip_assert.vh"

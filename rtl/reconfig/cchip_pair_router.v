@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`include "cchip_defs.vh"
+`default_nettype none
+// cchip_pair_router: the streams of the reconfigurable subsystem. Sorts pairs by kind into three queues, gives them to
+// the slots that work on their kind, collects the answers in turn and answers itself what nobody can test: pairs of
+// kind 0 and of kinds without a provider get axis class CCHIP_AXIS_ILLEGAL, hit 1, grid 1, definite 0, beats 0.
+//   latency      5 clocks to the slot (skid buffer, queue), 1 clock back
+//   throughput   one pair and one answer per clock
+//   in flight    2 + 3 * QUEUE_DEPTH pairs at most wait here; a full queue stops the other kinds too
+//   fair         slots and own answers leave in turn
+//   cuts         s_pair_ready, m_result_valid and m_result_*, all status: flip-flops; between slots and queues see
+//                cchip_pair_dispatcher, cchip_result_merge
+//   reset        all streams empty
+module cchip_pair_router #(
+    // width of a coordinate, bit, 4..20
+    parameter integer COORD_W = 16,
+    // slots, 1 or 2
+    parameter integer SLOTS = 2,
+    // pairs in each queue, 16..1024
+    parameter integer QUEUE_DEPTH = 256
+) (
+    input  wire                                clk,
+    input  wire                                rst,
+    // pairs of any kind, ModuleId of the test
+    input  wire                                s_pair_valid,
+    output wire                                s_pair_ready,
+    input  wire [                         1:0] s_pair_kind,
+    input  wire [                        15:0] s_pair_tag,
+    input  wire [                         1:0] s_pair_mode,
+    input  wire [             4*3*COORD_W-1:0] s_pair_a,
+    input  wire [             4*3*COORD_W-1:0] s_pair_b,
+    input  wire [                         3:0] s_pair_err,
+    output wire                                m_result_valid,
+    input  wire                                m_result_ready,
+    output wire [                         1:0] m_result_kind,
+    output wire [                        15:0] m_result_tag,
+    output wire                                m_result_hit,
+    output wire                                m_result_grid,
+    output wire                                m_result_definite,
+    output wire [                         8:0] m_result_axis,
+    output wire [                         5:0] m_result_beats,
+    // slots: {mode; err; b; a; tag} and {beats; axis; definite; grid; hit; tag}
+    output wire [                   SLOTS-1:0] m_slot_valid,
+    input  wire [                   SLOTS-1:0] m_slot_ready,
+    output wire [SLOTS*(22+2*4*3*COORD_W)-1:0] m_slot_data,
+    input  wire [                   SLOTS-1:0] s_slot_valid,
+    output wire [                   SLOTS-1:0] s_slot_ready,
+    input  wire [                SLOTS*34-1:0] s_slot_data,
+    // module of each slot's answers; module that takes pairs (0: none)
+    input  wire [                 2*SLOTS-1:0] slot_module,
+    input  wire [                 2*SLOTS-1:0] serves,
+    input  wire [                         2:0] no_provider,
+    // kind k at place k - 1
+    output wire [   3*$clog2(QUEUE_DEPTH+1)-1:0] waiting,
+    // a pair was answered: by a slot with this module, or 0: by the router, because of its kind or for want of a provider
+    output reg                                 answered,
+    output reg  [                         1:0] answered_module,
+    output reg                                 refused_kind,
+    output reg                                 refused_provider
+);
+
+  localparam integer VERTEX_W = 4 * 3 * COORD_W;
+  localparam integer PAIR_W = 22 + 2 * VERTEX_W;
+  localparam integer ANSWER_W = 34;
+  localparam integer RESULT_W = ANSWER_W + 2;
+  localparam integer COUNT_W = $clog2(QUEUE_DEPTH + 1);
+
+  // ---- sort
+  wire in_valid;
+  wire [1:0] in_kind;
+  wire [PAIR_W-1:0] in_pair;
+  wire [2:0] queue_ready;
+  wire illegal_ready;
+  wire [3:0] in_ready_of = {queue_ready, illegal_ready};
+
+  cchip_skid_buffer #(
+      .WIDTH(PAIR_W + 2)
+  ) u_in (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(s_pair_valid),
+      .s_ready(s_pair_ready),
+      .s_data ({s_pair_kind, s_pair_mode, s_pair_err, s_pair_b, s_pair_a, s_pair_tag}),
+      .m_valid(in_valid),
+      .m_ready(in_ready_of[in_kind]),
+      .m_data ({in_kind, in_pair})
+  );
+
+  // ---- queues
+  wire [2:0] head_valid, head_ready;
+  wire [3*PAIR_W-1:0] head;
+  genvar kind, slot;
+  generate
+    for (kind = 0; kind < 3; kind = kind + 1) begin : gen_kinds
+      localparam [31:0] KIND = kind + 1;
+      cchip_pair_queue #(
+          .WIDTH(PAIR_W),
+          .DEPTH(QUEUE_DEPTH)
+      ) u_queue (
+          .clk    (clk),
+          .rst    (rst),
+          .s_valid(in_valid & in_kind == KIND[1:0]),
+          .s_ready(queue_ready[kind]),
+          .s_data (in_pair),
+          .m_valid(head_valid[kind]),
+          .m_ready(head_ready[kind]),
+          .m_data (head[PAIR_W*kind+:PAIR_W]),
+          .count  (waiting[COUNT_W*kind+:COUNT_W])
+      );
+    end
+  endgenerate
+
+  // ---- to the slots
+  wire refused_valid, refused_ready;
+  wire [15:0] refused_tag;
+  wire [1:0] kind_of_refused;
+
+  cchip_pair_dispatcher #(
+      .SLOTS(SLOTS),
+      .WIDTH(PAIR_W)
+  ) u_dispatcher (
+      .clk            (clk),
+      .rst            (rst),
+      .serves         (serves),
+      .no_provider    (no_provider),
+      .s_valid        (head_valid),
+      .s_ready        (head_ready),
+      .s_data         (head),
+      .s_illegal_valid(in_valid & in_kind == 2'd0),
+      .s_illegal_ready(illegal_ready),
+      .s_illegal_tag  (in_pair[15:0]),
+      .m_pair_valid   (m_slot_valid),
+      .m_pair_ready   (m_slot_ready),
+      .m_pair_data    (m_slot_data),
+      .m_refused_valid(refused_valid),
+      .m_refused_ready(refused_ready),
+      .m_refused_tag  (refused_tag),
+      .m_refused_kind (kind_of_refused)
+  );
+
+  // ---- answers: the slots' and, last, our own
+  wire [(SLOTS+1)*RESULT_W-1:0] answers;
+  generate
+    for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_slots
+      assign answers[RESULT_W*slot+:RESULT_W] = {slot_module[2*slot+:2], s_slot_data[ANSWER_W*slot+:ANSWER_W]};
+    end
+  endgenerate
+  assign answers[RESULT_W*SLOTS+:RESULT_W] = {kind_of_refused, 6'd0, `CCHIP_AXIS_ILLEGAL, 6'd0, 1'b0, 1'b1, 1'b1, refused_tag};
+
+  cchip_result_merge #(
+      .SOURCES(SLOTS + 1),
+      .WIDTH  (RESULT_W)
+  ) u_merge (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid({refused_valid, s_slot_valid}),
+      .s_ready({refused_ready, s_slot_ready}),
+      .s_data (answers),
+      .m_valid(m_result_valid),
+      .m_ready(m_result_ready),
+      .m_data ({
+        m_result_kind,
+        m_result_beats,
+        m_result_axis,
+        m_result_definite,
+        m_result_grid,
+        m_result_hit,
+        m_result_tag
+      })
+  );
+
+  // ---- status: at most one answer passes the merge per clock
+  wire [SLOTS-1:0] passed = s_slot_valid & s_slot_ready;
+  wire refused = refused_valid & refused_ready;
+  function [1:0] module_of(input [SLOTS-1:0] from, input [2*SLOTS-1:0] modules);
+    integer i;
+    begin
+      module_of = 2'd0;
+      for (i = 0; i < SLOTS; i = i + 1) module_of = module_of | (modules[2*i+:2] & {2{from[i]}});
+    end
+  endfunction
+
+  always @(posedge clk) begin
+    answered         <= ~rst & (|passed | refused);
+    answered_module  <= module_of(passed, slot_module);
+    refused_kind     <= ~rst & refused & kind_of_refused == 2'd0;
+    refused_provider <= ~rst & refused & kind_of_refused != 2'd0;
+  end
+
+`include "cchip_assert.vh"
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_module, !(|passed) || module_of(passed, slot_module) != 2'd0)
+    end
+
+endmodule
+`default_nettype wire

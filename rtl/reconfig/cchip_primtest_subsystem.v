@@ -1,0 +1,449 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`include "cchip_defs.vh"
+`default_nettype none
+// cchip_primtest_subsystem: primitive tests of three kinds in one or two slots that are exchanged at run time. Pairs of
+// any kind in, answers out, the exchange of modules done by itself or by software.
+//   latency      that of the test + 8 clocks while its module is in a slot; a swap longer otherwise
+//   throughput   one pair per clock and slot at most, that of the tests
+//   in flight    3 * QUEUE_DEPTH pairs in the queues, those in the slots
+//   order        answers in any order; tag and kind of the pair come back with each exactly once, except the pairs that a
+//                swap by force gave up: these are counted and reported
+//   cuts         every path: each output is a flip-flop
+//   reset        forgets all pairs and registers; a slot whose rewriting was cut off stays decoupled until a good swap
+//   errors       codes CCHIP_SWAP_* in the register report, interrupt; see docs/registers.md
+// Streams: cchip_pair_router; modules: cchip_swap_scheduler, cchip_config_controller; slots: cchip_pr_slot.
+module cchip_primtest_subsystem #(
+    // width of a coordinate, bit, 4..20
+    parameter integer COORD_W = 16,
+    // see cchip_pr_region
+    parameter integer SUBSTAGES = 10,
+    parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
+    parameter integer ABSOLUTE_PROJECTION = 0,
+    parameter integer WARPED_EXACT = 1,
+    // slots, 1 or 2
+    parameter integer SLOTS = 2,
+    // pairs in each of the three queues, 16..1024
+    parameter integer QUEUE_DEPTH = 256,
+    // width of the configuration port, bit, 8 or 32
+    parameter integer CFG_W = 8,
+    // clocks per word of the port
+    parameter integer CFG_DIVIDER = 2,
+    // reset on configuration, clocks
+    parameter integer ROC_CYCLES = `CCHIP_ROC_CLOCKS_DEFAULT,
+    // modules at power-up, CCHIP_RM_BLANK .. CCHIP_RM_QUAD_QUAD, 0..3
+    parameter integer SLOT0_RM_ID = 1,
+    parameter integer SLOT1_RM_ID = 3,
+    // 0: partitions of an FPGA; 1: simulated reconfiguration (see cchip_pr_slot)
+    parameter integer SIMULATION = 0,
+    // start of the random numbers of a simulated reconfiguration, any
+    parameter integer SEED = 1
+) (
+    input  wire                   clk,
+    input  wire                   rst,
+    // pairs; kind = ModuleId of the test: 1 tri-tri, 2 tri-quad, 3 quad-quad
+    input  wire                   s_pair_valid,
+    output wire                   s_pair_ready,
+    input  wire [            1:0] s_pair_kind,
+    input  wire [           15:0] s_pair_tag,
+    input  wire [            1:0] s_pair_mode,
+    input  wire [4*3*COORD_W-1:0] s_pair_a,
+    input  wire [4*3*COORD_W-1:0] s_pair_b,
+    input  wire [            3:0] s_pair_err,
+    output wire                   m_result_valid,
+    input  wire                   m_result_ready,
+    output wire [            1:0] m_result_kind,
+    output wire [           15:0] m_result_tag,
+    output wire                   m_result_hit,
+    output wire                   m_result_grid,
+    output wire                   m_result_definite,
+    output wire [            8:0] m_result_axis,
+    output wire [            5:0] m_result_beats,
+    // registers, AXI4-Lite
+    input  wire                   s_axil_awvalid,
+    output wire                   s_axil_awready,
+    input  wire [           11:0] s_axil_awaddr,
+    input  wire [            2:0] s_axil_awprot,
+    input  wire                   s_axil_wvalid,
+    output wire                   s_axil_wready,
+    input  wire [           31:0] s_axil_wdata,
+    input  wire [            3:0] s_axil_wstrb,
+    output wire                   s_axil_bvalid,
+    input  wire                   s_axil_bready,
+    output wire [            1:0] s_axil_bresp,
+    input  wire                   s_axil_arvalid,
+    output wire                   s_axil_arready,
+    input  wire [           11:0] s_axil_araddr,
+    input  wire [            2:0] s_axil_arprot,
+    output wire                   s_axil_rvalid,
+    input  wire                   s_axil_rready,
+    output wire [           31:0] s_axil_rdata,
+    output wire [            1:0] s_axil_rresp,
+    output reg                    irq,
+    // memory of the bitstreams, AXI4, read only
+    output wire                   m_axi_arvalid,
+    input  wire                   m_axi_arready,
+    output wire [           31:0] m_axi_araddr,
+    output wire [            7:0] m_axi_arlen,
+    output wire [            2:0] m_axi_arsize,
+    output wire [            1:0] m_axi_arburst,
+    output wire [            3:0] m_axi_arcache,
+    output wire [            2:0] m_axi_arprot,
+    input  wire                   m_axi_rvalid,
+    output wire                   m_axi_rready,
+    input  wire [           31:0] m_axi_rdata,
+    input  wire [            1:0] m_axi_rresp,
+    input  wire                   m_axi_rlast,
+    // configuration port of the device
+    output wire                   cfg_valid,
+    output wire [      CFG_W-1:0] cfg_data,
+    input  wire                   cfg_error
+);
+
+  localparam integer VERTEX_W = 4 * 3 * COORD_W;
+  localparam integer PAIR_W = 22 + 2 * VERTEX_W;
+  localparam integer COUNT_W = $clog2(QUEUE_DEPTH + 1);
+  localparam [31:0] SLOT_COUNT = SLOTS;
+  localparam [31:0] PORT_W = CFG_W;
+  localparam [31:0] GRID_W = COORD_W;
+  localparam [31:0] DEPTH = QUEUE_DEPTH;
+
+  generate
+    if (SLOTS < 1 || SLOTS > 2) begin : gen_illegal
+      cchip_error_SLOTS_must_be_1_or_2 u_error ();
+    end
+  endgenerate
+
+  // ---- streams
+  wire [SLOTS-1:0] pair_valid, pair_ready, result_valid, result_ready;
+  wire [SLOTS*PAIR_W-1:0] pair;
+  wire [SLOTS*34-1:0] result;
+  wire [2*SLOTS-1:0] slot_module, serves;
+  wire [2:0] no_provider;
+  wire [3*COUNT_W-1:0] waiting;
+  wire answered, refused_kind, refused_provider;
+  wire [1:0] answered_module;
+
+  cchip_pair_router #(
+      .COORD_W    (COORD_W),
+      .SLOTS      (SLOTS),
+      .QUEUE_DEPTH(QUEUE_DEPTH)
+  ) u_router (
+      .clk              (clk),
+      .rst              (rst),
+      .s_pair_valid     (s_pair_valid),
+      .s_pair_ready     (s_pair_ready),
+      .s_pair_kind      (s_pair_kind),
+      .s_pair_tag       (s_pair_tag),
+      .s_pair_mode      (s_pair_mode),
+      .s_pair_a         (s_pair_a),
+      .s_pair_b         (s_pair_b),
+      .s_pair_err       (s_pair_err),
+      .m_result_valid   (m_result_valid),
+      .m_result_ready   (m_result_ready),
+      .m_result_kind    (m_result_kind),
+      .m_result_tag     (m_result_tag),
+      .m_result_hit     (m_result_hit),
+      .m_result_grid    (m_result_grid),
+      .m_result_definite(m_result_definite),
+      .m_result_axis    (m_result_axis),
+      .m_result_beats   (m_result_beats),
+      .m_slot_valid     (pair_valid),
+      .m_slot_ready     (pair_ready),
+      .m_slot_data      (pair),
+      .s_slot_valid     (result_valid),
+      .s_slot_ready     (result_ready),
+      .s_slot_data      (result),
+      .slot_module      (slot_module),
+      .serves           (serves),
+      .no_provider      (no_provider),
+      .waiting          (waiting),
+      .answered         (answered),
+      .answered_module  (answered_module),
+      .refused_kind     (refused_kind),
+      .refused_provider (refused_provider)
+  );
+
+  // ---- slots
+  wire [SLOTS-1:0] stop, quiet, decouple, decoupled, hold_reset, roc_start, roc_busy, slot_idle;
+  wire [8*SLOTS-1:0] region_rm_id, rm_id;
+  wire [16*SLOTS-1:0] outstanding, slot_lost;
+  genvar slot;
+  generate
+    for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_slots
+      cchip_pr_slot #(
+          .COORD_W            (COORD_W),
+          .SUBSTAGES          (SUBSTAGES),
+          .CONTEXTS           (CONTEXTS),
+          .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
+          .WARPED_EXACT       (WARPED_EXACT),
+          .SLOT_ID            (slot),
+          .RM_ID              (slot == 0 ? SLOT0_RM_ID : SLOT1_RM_ID),
+          .ROC_CYCLES         (ROC_CYCLES),
+          .CFG_W              (CFG_W),
+          .SIMULATION         (SIMULATION),
+          .SEED               (SEED)
+      ) u_slot (
+          .clk              (clk),
+          .rst              (rst),
+          .stop             (stop[slot]),
+          .quiet            (quiet[slot]),
+          .outstanding      (outstanding[16*slot+:16]),
+          .decouple         (decouple[slot]),
+          .decoupled        (decoupled[slot]),
+          .lost             (slot_lost[16*slot+:16]),
+          .hold_reset       (hold_reset[slot]),
+          .roc_start        (roc_start[slot]),
+          .roc_busy         (roc_busy[slot]),
+          .region_rm_id     (region_rm_id[8*slot+:8]),
+          .cfg_valid        (cfg_valid),
+          .cfg_data         (cfg_data),
+          .s_pair_valid     (pair_valid[slot]),
+          .s_pair_ready     (pair_ready[slot]),
+          .s_pair_tag       (pair[PAIR_W*slot+:16]),
+          .s_pair_a         (pair[PAIR_W*slot+16+:VERTEX_W]),
+          .s_pair_b         (pair[PAIR_W*slot+16+VERTEX_W+:VERTEX_W]),
+          .s_pair_err       (pair[PAIR_W*slot+16+2*VERTEX_W+:4]),
+          .s_pair_mode      (pair[PAIR_W*slot+20+2*VERTEX_W+:2]),
+          .m_result_valid   (result_valid[slot]),
+          .m_result_ready   (result_ready[slot]),
+          .m_result_tag     (result[34*slot+:16]),
+          .m_result_hit     (result[34*slot+16]),
+          .m_result_grid    (result[34*slot+17]),
+          .m_result_definite(result[34*slot+18]),
+          .m_result_axis    (result[34*slot+19+:9]),
+          .m_result_beats   (result[34*slot+28+:6]),
+          .rm_id            (rm_id[8*slot+:8]),
+          .idle             (slot_idle[slot])
+      );
+      // what the slot holds, and whether it takes pairs
+      assign slot_module[2*slot+:2] = rm_id[8*slot+2+:6] == 6'd0 ? rm_id[8*slot+:2] : 2'd0;
+      assign serves[2*slot+:2] = stop[slot] ? 2'd0 : slot_module[2*slot+:2];
+    end
+  endgenerate
+
+  // ---- registers
+  wire clear, abort_swap, enable, go, force_swap;
+  wire [7:0] command_module, command_slot;
+  wire [31:0] shutdown_limit, memory_limit, minimum_batch, maximum_age;
+  wire [7:0] table_valid;
+  wire [8*32-1:0] table_address, table_size;
+  wire [4*SLOTS-1:0] invalidate;
+  wire report_valid;
+  wire [7:0] report_slot, report_module;
+  wire [3:0] report_code;
+  wire [15:0] report_lost;
+  wire [4:0] status, status_enable;
+  wire [31:0] lost, swaps, rejected, stalls;
+  wire [9*32-1:0] phase_clocks;
+  wire [4*64-1:0] pairs;
+  wire [3:0] phase;
+  wire [7:0] phase_slot, last_slot, last_module;
+  wire [3:0] last_code;
+  wire [15:0] last_lost;
+  wire [2:0] swap_events;  // {lost, error, done}
+  wire [16+15:0] outstanding_of = {{16 * (2 - SLOTS) {1'b0}}, outstanding};
+  wire [8+7:0] rm_id_of = {{8 * (2 - SLOTS) {1'b0}}, rm_id};
+  wire busy;
+
+  cchip_subsystem_status u_status (
+      .clk            (clk),
+      .rst            (rst),
+      .clear          (clear),
+      .report_valid   (report_valid),
+      .report_slot    (report_slot),
+      .report_module  (report_module),
+      .report_code    (report_code),
+      .report_lost    (report_lost),
+      .answered       (answered),
+      .answered_module(answered_module),
+      .last_slot      (last_slot),
+      .last_module    (last_module),
+      .last_code      (last_code),
+      .last_lost      (last_lost),
+      .swap_events    (swap_events),
+      .lost           (lost),
+      .pairs          (pairs)
+  );
+
+  cchip_subsystem_regs u_regs (
+      .clk                                         (clk),
+      .rst                                         (rst),
+      .s_axil_awvalid                              (s_axil_awvalid),
+      .s_axil_awready                              (s_axil_awready),
+      .s_axil_awaddr                               (s_axil_awaddr),
+      .s_axil_awprot                               (s_axil_awprot),
+      .s_axil_wvalid                               (s_axil_wvalid),
+      .s_axil_wready                               (s_axil_wready),
+      .s_axil_wdata                                (s_axil_wdata),
+      .s_axil_wstrb                                (s_axil_wstrb),
+      .s_axil_bvalid                               (s_axil_bvalid),
+      .s_axil_bready                               (s_axil_bready),
+      .s_axil_bresp                                (s_axil_bresp),
+      .s_axil_arvalid                              (s_axil_arvalid),
+      .s_axil_arready                              (s_axil_arready),
+      .s_axil_araddr                               (s_axil_araddr),
+      .s_axil_arprot                               (s_axil_arprot),
+      .s_axil_rvalid                               (s_axil_rvalid),
+      .s_axil_rready                               (s_axil_rready),
+      .s_axil_rdata                                (s_axil_rdata),
+      .s_axil_rresp                                (s_axil_rresp),
+      .hwif_in_capabilities_coord_w                (GRID_W[7:0]),
+      .hwif_in_capabilities_cfg_w                  (PORT_W[7:0]),
+      .hwif_in_capabilities_slots                  (SLOT_COUNT[7:0]),
+      .hwif_in_queue_depth_pairs                   (DEPTH),
+      .hwif_out_control_clear                      (clear),
+      .hwif_out_control_abort                      (abort_swap),
+      .hwif_out_control_scheduler_enable           (enable),
+      .hwif_out_command_go                         (go),
+      .hwif_out_command_force                      (force_swap),
+      .hwif_out_command_module_id                  (command_module),
+      .hwif_out_command_slot                       (command_slot),
+      .hwif_in_report_module_id                    (last_module),
+      .hwif_in_report_slot                         (last_slot),
+      .hwif_in_report_code                         (last_code),
+      .hwif_in_report_lost_pairs                   (last_lost),
+      .hwif_out_interrupt_status_illegal_kind      (status[4]),
+      .hwif_in_interrupt_status_illegal_kind_hwset (refused_kind),
+      .hwif_out_interrupt_status_no_provider       (status[3]),
+      .hwif_in_interrupt_status_no_provider_hwset  (refused_provider),
+      .hwif_out_interrupt_status_lost              (status[2]),
+      .hwif_in_interrupt_status_lost_hwset         (swap_events[2]),
+      .hwif_out_interrupt_status_error             (status[1]),
+      .hwif_in_interrupt_status_error_hwset        (swap_events[1]),
+      .hwif_out_interrupt_status_done              (status[0]),
+      .hwif_in_interrupt_status_done_hwset         (swap_events[0]),
+      .hwif_out_interrupt_enable_illegal_kind      (status_enable[4]),
+      .hwif_out_interrupt_enable_no_provider       (status_enable[3]),
+      .hwif_out_interrupt_enable_lost              (status_enable[2]),
+      .hwif_out_interrupt_enable_error             (status_enable[1]),
+      .hwif_out_interrupt_enable_done              (status_enable[0]),
+      .hwif_out_shutdown_limit_clocks              (shutdown_limit),
+      .hwif_out_memory_limit_clocks                (memory_limit),
+      .hwif_out_minimum_batch_pairs                (minimum_batch),
+      .hwif_out_maximum_age_clocks                 (maximum_age),
+      .hwif_in_slot_status_outstanding             (outstanding_of),
+      .hwif_in_slot_status_decoupled               ({{2 - SLOTS{1'b0}}, decoupled}),
+      .hwif_in_slot_status_phase                   ({phase & {4{phase_slot == 8'd1}}, phase & {4{phase_slot == 8'd0}}}),
+      .hwif_in_slot_status_module_id               (rm_id_of),
+      .hwif_in_swaps_value                         (swaps),
+      .hwif_in_rejected_value                      (rejected),
+      .hwif_in_stalls_value                        (stalls),
+      .hwif_in_lost_value                          (lost),
+      .hwif_in_phase_clocks_value                  (phase_clocks),
+      .hwif_in_pairs_value                         (pairs),
+      .hwif_out_bitstream_address_value            (table_address),
+      .hwif_out_bitstream_size_value               (table_size),
+      .hwif_out_bitstream_valid_value              (table_valid),
+      .hwif_in_bitstream_valid_value_hwclr         ({{4 * (2 - SLOTS) {1'b0}}, invalidate})
+  );
+
+  always @(posedge clk) irq <= ~rst & |(status & status_enable);
+
+  // ---- which slot gets which module when, and how
+  wire swap_valid, swap_ready, swap_force, swap_report;
+  wire [7:0] swap_slot, swap_module, swap_report_slot, swap_report_module;
+  wire [31:0] swap_address, swap_size;
+  wire [3:0] swap_report_code;
+  wire [15:0] swap_report_lost;
+
+  cchip_swap_scheduler #(
+      .SLOTS  (SLOTS),
+      .COUNT_W(COUNT_W)
+  ) u_scheduler (
+      .clk             (clk),
+      .rst             (rst),
+      .enable          (enable),
+      .min_batch       (minimum_batch),
+      .max_age         (maximum_age),
+      .table_valid     (table_valid[4*SLOTS-1:0]),
+      .table_address   (table_address[4*32*SLOTS-1:0]),
+      .table_size      (table_size[4*32*SLOTS-1:0]),
+      .table_invalidate(invalidate),
+      .waiting         (waiting),
+      .no_provider     (no_provider),
+      .slot_module     (slot_module),
+      .slot_taken      (pair_valid & pair_ready),
+      .command_valid   (go),
+      .command_slot    (command_slot),
+      .command_module  (command_module),
+      .command_force   (force_swap),
+      .m_swap_valid    (swap_valid),
+      .m_swap_ready    (swap_ready),
+      .m_swap_slot     (swap_slot),
+      .m_swap_module   (swap_module),
+      .m_swap_address  (swap_address),
+      .m_swap_size     (swap_size),
+      .m_swap_force    (swap_force),
+      .s_report_valid  (swap_report),
+      .s_report_slot   (swap_report_slot),
+      .s_report_module (swap_report_module),
+      .s_report_code   (swap_report_code),
+      .s_report_lost   (swap_report_lost),
+      .m_report_valid  (report_valid),
+      .m_report_slot   (report_slot),
+      .m_report_module (report_module),
+      .m_report_code   (report_code),
+      .m_report_lost   (report_lost)
+  );
+
+  cchip_config_controller #(
+      .SLOTS      (SLOTS),
+      .CFG_W      (CFG_W),
+      .CFG_DIVIDER(CFG_DIVIDER)
+  ) u_controller (
+      .clk            (clk),
+      .rst            (rst),
+      .s_swap_valid   (swap_valid),
+      .s_swap_ready   (swap_ready),
+      .s_swap_slot    (swap_slot),
+      .s_swap_module  (swap_module),
+      .s_swap_address (swap_address),
+      .s_swap_size    (swap_size),
+      .s_swap_force   (swap_force),
+      .m_report_valid (swap_report),
+      .m_report_slot  (swap_report_slot),
+      .m_report_module(swap_report_module),
+      .m_report_code  (swap_report_code),
+      .m_report_lost  (swap_report_lost),
+      .abort_swap     (abort_swap),
+      .clear          (clear),
+      .shutdown_limit (shutdown_limit),
+      .memory_limit   (memory_limit),
+      .stop           (stop),
+      .decouple       (decouple),
+      .hold_reset     (hold_reset),
+      .roc_start      (roc_start),
+      .quiet          (quiet),
+      .decoupled      (decoupled),
+      .roc_busy       (roc_busy),
+      .region_rm_id   (region_rm_id),
+      .lost           (slot_lost),
+      .busy           (busy),
+      .phase          (phase),
+      .phase_slot     (phase_slot),
+      .m_axi_arvalid  (m_axi_arvalid),
+      .m_axi_arready  (m_axi_arready),
+      .m_axi_araddr   (m_axi_araddr),
+      .m_axi_arlen    (m_axi_arlen),
+      .m_axi_arsize   (m_axi_arsize),
+      .m_axi_arburst  (m_axi_arburst),
+      .m_axi_arcache  (m_axi_arcache),
+      .m_axi_arprot   (m_axi_arprot),
+      .m_axi_rvalid   (m_axi_rvalid),
+      .m_axi_rready   (m_axi_rready),
+      .m_axi_rdata    (m_axi_rdata),
+      .m_axi_rresp    (m_axi_rresp),
+      .m_axi_rlast    (m_axi_rlast),
+      .cfg_valid      (cfg_valid),
+      .cfg_data       (cfg_data),
+      .cfg_error      (cfg_error),
+      .swaps          (swaps),
+      .rejected       (rejected),
+      .stalls         (stalls),
+      .phase_clocks   (phase_clocks)
+  );
+
+  wire unused = &{1'b0, table_valid, table_address, table_size, slot_idle, busy};
+
+endmodule
+`default_nettype wire
