@@ -40,7 +40,8 @@ module cchip_config_port #(
   reg ticking_q, done_q, stall_q;
   reg [SLOT_W-1:0] slot_q;  // clocks left in this slot
   reg [31:0] left_q;  // port words
-  reg valid_q;
+  reg valid_q;  // 0 from power-up on: nothing enters the device before rst
+  initial valid_q = 1'b0;
   reg [CFG_W-1:0] data_q;
 
   wire tick = ticking_q & slot_q == {SLOT_W{1'b0}} & ~done_q;

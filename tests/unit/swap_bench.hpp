@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Bench of cchip_config_controller: memory, slots that behave as told, watchers of the sequence.
+#ifndef CCHIP_TESTS_UNIT_SWAP_BENCH_HPP
+#define CCHIP_TESTS_UNIT_SWAP_BENCH_HPP
+
+#include <cchip/bitstream.hpp>
+#include <cchip/sim/axi_memory.hpp>
+#include <deque>
+
+#include "bench.hpp"
+
+namespace cchip::test {
+
+/// One beat of s_swap.
+struct SwapRequest {
+  int slot = 0;
+  int module_id = 0;
+  std::uint32_t address = 0;
+  std::uint32_t size = 0;
+  bool force = false;
+};
+
+/// One clock of m_report.
+struct SwapReport {
+  int slot = 0;
+  int module_id = 0;
+  SwapCode code = SwapCode::ok;
+  int lost = 0;
+  std::uint64_t clock = 0;
+};
+
+/// How a slot behaves; outputs of the slot are flip-flops.
+struct SlotBehaviour {
+  int drain = 3;        ///< clocks from stop to quiet, < 0: never
+  int inside = 7;       ///< pairs lost by decoupling it before it is quiet
+  bool follows = true;  ///< decoupled follows decouple
+  int roc_clocks = 2;   ///< < 0: roc_busy never falls
+  int becomes = -1;     ///< module after a complete payload; < 0: the one it names
+};
+
+/// Slots and watchers. Throws where the sequence breaks a rule.
+template <class Config>
+class SwapBench : public sim::Agent {
+ public:
+  using Model = typename Config::Model;
+  static constexpr int slots = Config::SLOTS;
+  static constexpr int port_bytes = Config::CFG_W / 8;
+
+  explicit SwapBench(const sim::SimulationOptions& options)
+      : simulation_(options), memory_(simulation_.top()), random_(options.seed) {
+    Model& top = simulation_.top();
+    top.s_swap_valid = 0;
+    top.abort_swap = 0;
+    top.clear = 0;
+    top.cfg_error = 0;
+    top.shutdown_limit = 40;
+    top.memory_limit = 50;
+    simulation_.add(*this);
+    simulation_.add(memory_);
+    simulation_.reset();
+  }
+
+  sim::Simulation<Model>& simulation() { return simulation_; }
+  sim::AxiMemory<Model>& memory() { return memory_; }
+  Model& top() { return simulation_.top(); }
+  SlotBehaviour& behaviour(int slot = 0) { return state_[at(slot)].behaviour; }
+  int region(int slot = 0) const { return state_[at(slot)].region; }
+  /// Bytes that passed the configuration port since the last request.
+  const Bytes& passed() const { return passed_; }
+  /// Phases since the last request, each once.
+  const std::vector<SwapPhase>& phases() const { return phases_; }
+  const std::vector<SwapReport>& reports() const { return reports_; }
+  SwapPhase phase() { return static_cast<SwapPhase>(top().phase); }
+  /// Clock on which the last request was accepted.
+  std::uint64_t accepted() const { return accepted_; }
+  std::uint64_t phase_clocks(SwapPhase phase) {
+    return sim::get_bits(top().phase_clocks, 32 * (static_cast<int>(phase) - 1), 32);
+  }
+
+  /// Writes a good bitstream to memory; the request for it.
+  SwapRequest load(int slot, ModuleId module_id, std::size_t payload_bytes, std::uint32_t address = 0x1000) {
+    payload_ =
+        make_payload(static_cast<std::uint8_t>(slot), module_id, payload_bytes, static_cast<std::uint32_t>(random_()));
+    return load(make_bitstream(static_cast<std::uint8_t>(slot), module_id, payload_), slot, module_id, address);
+  }
+  /// Writes any bytes.
+  SwapRequest load(const Bytes& bytes, int slot, ModuleId module_id, std::uint32_t address = 0x1000) {
+    memory_.clear();
+    memory_.write(address, bytes);
+    return {slot, static_cast<int>(module_id), address, static_cast<std::uint32_t>(bytes.size()), false};
+  }
+  const Bytes& payload() const { return payload_; }
+
+  /// Sends a request, does not wait.
+  void start(const SwapRequest& request) {
+    if (phase() == SwapPhase::idle) {
+      passed_.clear();
+      phases_.clear();
+    }
+    requests_.push_back(request);
+    simulation_.run_until([&] { return requests_.empty(); }, 10, "a request to be taken");
+  }
+  /// Waits for its report.
+  SwapReport finish(std::uint64_t max_clocks = 5000) {
+    const std::size_t before = reports_.size();
+    simulation_.run_until([&] { return reports_.size() > before; }, max_clocks, "a report");
+    return reports_.back();
+  }
+  SwapReport swap(const SwapRequest& request) {
+    start(request);
+    return finish();
+  }
+  /// A good swap must work, whatever was before.
+  void require_good_swap(int slot, ModuleId module_id, std::size_t bytes = 64) {
+    const SwapRequest request = load(slot, module_id, bytes);
+    behaviour(slot) = SlotBehaviour{};
+    expect("code of a good swap", static_cast<int>(swap(request).code), static_cast<int>(SwapCode::ok));
+    expect("bytes passed", passed_ == payload_, true);
+    require_at_work(slot, module_id);
+  }
+  void require_at_work(int slot, ModuleId module_id) {
+    simulation_.steps(4);
+    expect("module", region(slot), static_cast<int>(module_id));
+    expect("stop", bit(top().stop, slot), false);
+    expect("decouple", bit(top().decouple, slot), false);
+    expect("hold_reset", bit(top().hold_reset, slot), false);
+  }
+  void require_shut(int slot) {
+    simulation_.steps(4);
+    expect("stop", bit(top().stop, slot), true);
+    expect("decouple", bit(top().decouple, slot), true);
+    expect("hold_reset", bit(top().hold_reset, slot), true);
+  }
+  /// Reset in the middle of anything.
+  void reset() {
+    requests_.clear();
+    simulation_.reset(1);
+  }
+
+  void drive(const sim::ClockInfo& now) override {
+    Model& m = top();
+    if (now.in_reset) requests_.clear();
+    m.s_swap_valid = requests_.empty() ? 0 : 1;
+    if (!requests_.empty()) {
+      const SwapRequest& r = requests_.front();
+      m.s_swap_slot = static_cast<CData>(r.slot);
+      m.s_swap_module = static_cast<CData>(r.module_id);
+      m.s_swap_address = r.address;
+      m.s_swap_size = r.size;
+      m.s_swap_force = r.force ? 1 : 0;
+    }
+    for (int i = 0; i < slots; ++i) {
+      State& s = state_[at(i)];
+      sim::set_bits(m.quiet, i, 1, s.quiet ? 1 : 0);
+      sim::set_bits(m.decoupled, i, 1, s.decoupled ? 1 : 0);
+      sim::set_bits(m.roc_busy, i, 1, s.roc_left != 0 ? 1 : 0);
+      const auto shown =
+          s.region < 0 ? static_cast<std::uint64_t>(random_() & 255U) : static_cast<std::uint64_t>(s.region);
+      sim::set_bits(m.region_rm_id, 8 * i, 8, shown);
+      sim::set_bits(m.lost, 16 * i, 16, static_cast<std::uint64_t>(s.lost));
+    }
+  }
+
+  void sample(const sim::ClockInfo& now) override {
+    Model& m = top();
+    ++clock_;
+    if (m.s_swap_valid != 0 && m.s_swap_ready != 0 && !now.in_reset) {
+      requests_.pop_front();
+      if (phase() == SwapPhase::idle) accepted_ = clock_;
+    }
+    if (m.phase != 0 && !now.in_reset && (phases_.empty() || phases_.back() != phase())) phases_.push_back(phase());
+    if (m.m_report_valid != 0 && !now.in_reset) {
+      reports_.push_back(
+          {m.m_report_slot, m.m_report_module, static_cast<SwapCode>(m.m_report_code), m.m_report_lost, clock_});
+    }
+    if (m.cfg_valid != 0) pass(m);
+    for (int i = 0; i < slots; ++i) step(i, now.in_reset);
+  }
+
+ private:
+  struct State {
+    SlotBehaviour behaviour;
+    int region = 0;  ///< < 0: garbage
+    bool quiet = false;
+    bool decoupled = false;
+    int roc_left = 0;
+    int lost = 0;
+    int stopped = 0;           ///< clocks since stop rose
+    bool transferred = false;  ///< a complete payload has passed since it was decoupled
+    int reset_since = 0;       ///< clocks in reset since the last word
+    bool was_decoupled = false;
+  };
+
+  static std::size_t at(int slot) { return static_cast<std::size_t>(slot); }
+  template <class Port>
+  static bool bit(const Port& port, int i) {
+    return sim::get_bits(port, i, 1) != 0;
+  }
+
+  /// A word passes the port: only while its slot is shut.
+  void pass(Model& m) {
+    sim::require(passed_.empty() || clock_ - last_word_ >= static_cast<std::uint64_t>(Config::CFG_DIVIDER),
+                 "the port is faster than its clock");
+    last_word_ = clock_;
+    State& s = state_[at(m.phase_slot)];
+    sim::require(bit(m.stop, m.phase_slot) && s.decoupled && bit(m.hold_reset, m.phase_slot),
+                 "a word passes the port while the slot is not stopped, decoupled and in reset");
+    for (int i = 0; i < port_bytes; ++i) {
+      passed_.push_back(static_cast<std::uint8_t>(sim::get_bits(m.cfg_data, 8 * i, 8)));
+    }
+    s.region = -1;
+    s.reset_since = 0;
+    s.transferred = passed_ == payload_;
+    if (s.transferred) s.region = s.behaviour.becomes < 0 ? payload_[5] : s.behaviour.becomes;
+  }
+
+  void step(int i, bool in_reset) {
+    Model& m = top();
+    State& s = state_[at(i)];
+    const bool stop = bit(m.stop, i);
+    const bool decouple = bit(m.decouple, i);
+    const bool hold = bit(m.hold_reset, i);
+    if (!in_reset) {
+      sim::require(!hold || decouple, "reset without decoupling");
+      sim::require(!decouple || stop, "decoupled without stop");
+      sim::require(!bit(m.roc_start, i) || (hold && s.transferred), "ROC without reset or without a complete payload");
+      if (hold) ++s.reset_since;
+      if (s.was_decoupled && !decouple) {
+        sim::require(s.region >= 0, "garbage recoupled");
+        sim::require(!hold && (s.reset_since == 0 || s.reset_since >= s.behaviour.roc_clocks),
+                     "recoupled without a reset");
+        sim::require(s.roc_left == 0, "recoupled during ROC");
+      }
+      sim::require(s.region >= 0 || decouple, "garbage is not decoupled");
+    }
+    s.was_decoupled = decouple;
+    // the slot
+    s.stopped = stop ? s.stopped + 1 : 0;
+    s.quiet = stop && (s.decoupled || (s.behaviour.drain >= 0 && s.stopped >= s.behaviour.drain));
+    const bool follows = decouple && s.behaviour.follows;
+    if (follows && !s.decoupled) s.lost = s.quiet ? 0 : s.behaviour.inside;
+    if (s.behaviour.follows) s.decoupled = decouple;
+    if (bit(m.roc_start, i))
+      s.roc_left = s.behaviour.roc_clocks;
+    else if (s.roc_left > 0)
+      --s.roc_left;
+    if (in_reset) s.roc_left = 0;
+  }
+
+  sim::Simulation<Model> simulation_;
+  sim::AxiMemory<Model> memory_;
+  Random random_;
+  std::array<State, 2> state_;
+  std::deque<SwapRequest> requests_;
+  std::vector<SwapReport> reports_;
+  std::vector<SwapPhase> phases_;
+  Bytes passed_;
+  Bytes payload_;
+  std::uint64_t clock_ = 0;
+  std::uint64_t accepted_ = 0;
+  std::uint64_t last_word_ = 0;
+};
+
+}  // namespace cchip::test
+
+#endif
