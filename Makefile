@@ -32,7 +32,7 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv build sim wave test test-long test-gates test-debug test-asan lint tidy format campaign campaign-build \
+.PHONY: help bootstrap venv build sim wave test test-long formal test-gates test-debug test-asan lint tidy format campaign campaign-build \
   campaign-grid campaign-classes campaign-certainty campaign-leaves export fpga fpga-quick install clean
 
 help: ## list the targets
@@ -66,6 +66,9 @@ test: build ## run the regression
 
 test-long: build ## run the regression and the long tests
 	$(CTEST) --test-dir $(RELEASE)
+
+formal: bootstrap venv ## proofs of streams, decoupler, slot and reset on configuration (tests/formal)
+	tests/formal/run.py --jobs $(JOBS)
 
 test-gates: $(RELEASE)/build.ninja ## netlists for Lattice ECP5 and Xilinx 7: proved equal to the RTL, or simulated on 10^4 pairs
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_pair_vectors

@@ -54,7 +54,17 @@ STIMULI = {
     "cchip_axis_controller": ("", "s_pair_valid = 1;", "m_beat_valid"),
     "cchip_primtest_array": ("m_result_ready = 1; s_pair_mode = 2;", "s_pair_valid = 1;", "m_result_valid"),
     "cchip_pr_region": ("", "s_pair_valid = 1; s_pair_mode = 2;", "m_result_valid"),
+    "cchip_roc_generator": ("", "configured = 1;", "roc"),
+    "cchip_pr_gate": ("close = 1; tick; close = 0;", "s_valid = 1;", "m_valid"),
+    "cchip_pr_decoupler": ("", "s_pair_valid = 1;", "r_pair_valid"),
+    "cchip_pr_config_memory": (
+        "cfg_valid = 1; cfg_data = 'h66; tick; cfg_data = 'h55; tick; cfg_data = 'h99; tick; cfg_data = 'haa; tick; "
+        "cfg_data = 0; repeat (3) tick; cfg_valid = 0;", "cfg_valid = 1;", "garbage"),
+    "cchip_pr_virtual": ("", "s_pair_valid = 1; s_pair_mode = 2;", "m_result_valid"),
+    "cchip_pr_slot": ("", "s_pair_valid = 1; s_pair_mode = 2;", "m_result_valid"),
 }
+
+SIMULATION_ONLY = ("cchip_pr_config_memory", "cchip_pr_virtual")
 
 # Vertices of A and of B.
 SHAPES = {"tri_tri": (3, 3), "tri_quad": (3, 4), "quad_quad": (4, 4)}
@@ -276,6 +286,8 @@ def speed(module):
 
 def datasheet_block(module):
     text = speed(module)
+    if module in SIMULATION_ONLY:
+        return text + "\nNo area, no clock: for simulations only.\n"
     text += "\nFmax: whole primitive tests are placed and routed, see [fpga.md](../fpga.md).\n\n"
     kinds = list(next(iter(TARGETS.values()))[1])
     rows = []

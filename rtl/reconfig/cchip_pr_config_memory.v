@@ -15,7 +15,7 @@ module cchip_pr_config_memory #(
     // number of this slot, 0..255
     parameter integer SLOT_ID = 0,
     // module in the slot at power-up, CCHIP_RM_BLANK .. CCHIP_RM_QUAD_QUAD, 0..3
-    parameter integer RM_ID = 0,
+    parameter integer RM_ID = 1,
     // width of the configuration port, bit, 8 or 32
     parameter integer CFG_W = 8
 ) (
@@ -29,6 +29,7 @@ module cchip_pr_config_memory #(
   localparam [31:0] SLOT = SLOT_ID;
   localparam [31:0] RM = RM_ID;
   localparam [31:0] CFG_BYTES = CFG_W / 8;
+  localparam [31:0] SYNC = `CCHIP_BITSTREAM_SYNC;
   localparam [31:0] RESIDUE = 32'hDEBB20E3;  // CRC-32 register after a message and its CRC
 
   function [31:0] crc_byte(input [31:0] crc, input [7:0] data);
@@ -45,6 +46,7 @@ module cchip_pr_config_memory #(
   reg [31:0] crc_q;
   reg [4:0] count_q;  // bytes of this payload, up to 16; 0: none
   reg ours_q;  // payload for this slot
+  reg [1:0] next_q;  // bytes of the next synchronisation word after its end
   reg legal_q;  // its module exists, its unused bits are 0
   reg [7:0] module_q;
   reg garbage_q;
@@ -59,6 +61,7 @@ module cchip_pr_config_memory #(
 
   wire [31:0] word;  // the last four bytes
   wire [31:0] crc_next;
+  wire next;  // perhaps the beginning of the next payload
   generate
     if (CFG_W == 8) begin : gen_bytes
       reg [23:0] last_q;  // the last three bytes
@@ -66,9 +69,11 @@ module cchip_pr_config_memory #(
       always @(posedge clk) if (cfg_valid) last_q <= word[31:8];
       assign word = {cfg_data, last_q};
       assign crc_next = crc_byte(crc_q, cfg_data);
+      assign next = cfg_data == SYNC[8*next_q+:8];
     end else if (CFG_W == 32) begin : gen_words
       assign word = cfg_data;
       assign crc_next = crc_word(crc_q, cfg_data);
+      assign next = 1'b0;
     end else begin : gen_illegal
       cchip_error_CFG_W_must_be_8_or_32 u_error ();
     end
@@ -80,7 +85,7 @@ module cchip_pr_config_memory #(
     end
   endgenerate
 
-  wire sync = word == `CCHIP_BITSTREAM_SYNC;
+  wire sync = word == SYNC;
   wire [4:0] count_d = sync ? 5'd4 : count_q == 5'd0 || count_q == 5'd16 ? count_q : count_q + CFG_BYTES[4:0];
   wire named = count_d == 5'd8;  // word is {0, module, slot}
   wire here = word[7:0] == SLOT[7:0];
@@ -88,7 +93,7 @@ module cchip_pr_config_memory #(
 
   always @(posedge clk)
     if (cfg_valid) begin
-      crc_q   <= sync ? crc_word(32'hFFFFFFFF, `CCHIP_BITSTREAM_SYNC) : crc_next;
+      crc_q   <= sync ? crc_word(32'hFFFFFFFF, SYNC) : crc_next;
       count_q <= count_d;
       if (sync) begin
         ours_q <= 1'b0;
@@ -98,7 +103,8 @@ module cchip_pr_config_memory #(
         legal_q  <= word[31:16] == 16'd0 && word[15:8] <= `CCHIP_RM_QUAD_QUAD;
         if (here) garbage_q <= 1'b1;
       end else if (ours_q) begin
-        garbage_q <= ~complete;
+        garbage_q <= ~complete & (garbage_q | ~next);
+        next_q    <= complete ? 2'd0 : next_q + 2'd1;
         if (complete) select_q <= module_q;
       end
     end

@@ -9,6 +9,7 @@
 //                both sides, rm_id CCHIP_RM_BLANK, idle 1. Beats inside, and one handed over on the clock on which
 //                decouple rises, are lost: stop first, wait for the answers, then decouple
 //   stop         s_pair_ready is 0 from the next clock on; pairs inside and answers pass
+//   blank        no pair is accepted while r_rm_id is CCHIP_RM_BLANK: nobody would take it out again
 //   reset        empties both streams; has no effect on decoupled
 module cchip_pr_decoupler #(
     // width of a coordinate, bit
@@ -61,13 +62,14 @@ module cchip_pr_decoupler #(
   localparam integer RESULT_W = 16 + 1 + 1 + 1 + 9 + 6;
 
   wire close = rst | decouple;
+  wire blank = r_rm_id == `CCHIP_RM_BLANK;
 
   cchip_pr_gate #(
       .WIDTH(PAIR_W)
   ) u_pair (
       .clk    (clk),
       .close  (close),
-      .stop   (stop),
+      .stop   (stop | blank),
       .s_valid(s_pair_valid),
       .s_ready(s_pair_ready),
       .s_data ({s_pair_tag, s_pair_mode, s_pair_err, s_pair_a, s_pair_b}),

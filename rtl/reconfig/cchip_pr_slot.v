@@ -23,7 +23,7 @@ module cchip_pr_slot #(
     // number of this slot, 0..255
     parameter integer SLOT_ID = 0,
     // module at power-up, CCHIP_RM_BLANK .. CCHIP_RM_QUAD_QUAD, 0..3
-    parameter integer RM_ID = 0,
+    parameter integer RM_ID = 1,
     // reset on configuration, clocks, 1..32
     parameter integer ROC_CYCLES = `CCHIP_ROC_CLOCKS_DEFAULT,
     // width of the configuration port, bit, 8 or 32

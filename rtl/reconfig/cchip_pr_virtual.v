@@ -11,7 +11,7 @@ module cchip_pr_virtual #(
     // number of this slot, 0..255
     parameter integer SLOT_ID = 0,
     // module in the slot at power-up, CCHIP_RM_BLANK .. CCHIP_RM_QUAD_QUAD, 0..3
-    parameter integer RM_ID = 0,
+    parameter integer RM_ID = 1,
     // width of the configuration port, bit, 8 or 32
     parameter integer CFG_W = 8,
     // start of the random numbers, any

