@@ -455,9 +455,9 @@ def verilog(name, registers):
     for g, members in sorted(groups.items()):
         group_lines.append("    case (raddr_q[2:0])")
         for low, value in members:
-            label = "default" if low == 7 else f"3'd{low}"
+            label = "default" if low == 7 and len(members) == 8 else f"3'd{low}"
             group_lines.append(f"      {label}: group{g}_q <= {{1'b1, {value}}};")
-        group_lines += ([] if members[-1][0] == 7 else [f"      default: group{g}_q <= 33'd0;"]) + ["    endcase"]
+        group_lines += ([] if len(members) == 8 else [f"      default: group{g}_q <= 33'd0;"]) + ["    endcase"]
     latch_text = "  always @(posedge clk) begin\n" + "\n".join(latches) + "\n  end\n\n" if latches else ""
     return FRAME.format(
         note=NOTE, module=f"{name}_regs", ports=",\n".join(port_lines), top=ADDR_W - 3, addr_top=ADDR_W - 1,

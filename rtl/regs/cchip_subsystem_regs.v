@@ -346,7 +346,8 @@ module cchip_subsystem_regs (
       3'd4: group1_q <= {1'b1, shutdown_limit_clocks_q};
       3'd5: group1_q <= {1'b1, memory_limit_clocks_q};
       3'd6: group1_q <= {1'b1, minimum_batch_pairs_q};
-      default: group1_q <= {1'b1, maximum_age_clocks_q};
+      3'd7: group1_q <= {1'b1, maximum_age_clocks_q};
+      default: group1_q <= 33'd0;
     endcase
     case (raddr_q[2:0])
       3'd0: group2_q <= {1'b1, {hwif_in_slot_status_outstanding[0+:16], 3'd0, hwif_in_slot_status_decoupled[0], hwif_in_slot_status_phase[0+:4], hwif_in_slot_status_module_id[0+:8]}};
@@ -367,7 +368,8 @@ module cchip_subsystem_regs (
       3'd4: group6_q <= {1'b1, hwif_in_phase_clocks_value[96+:32]};
       3'd5: group6_q <= {1'b1, hwif_in_phase_clocks_value[128+:32]};
       3'd6: group6_q <= {1'b1, hwif_in_phase_clocks_value[160+:32]};
-      default: group6_q <= {1'b1, hwif_in_phase_clocks_value[192+:32]};
+      3'd7: group6_q <= {1'b1, hwif_in_phase_clocks_value[192+:32]};
+      default: group6_q <= 33'd0;
     endcase
     case (raddr_q[2:0])
       3'd0: group7_q <= {1'b1, hwif_in_phase_clocks_value[224+:32]};

@@ -4,6 +4,8 @@
 #ifndef CCHIP_SIM_AXI_LITE_HPP
 #define CCHIP_SIM_AXI_LITE_HPP
 
+#include <verilated.h>
+
 #include <cchip/sim/agent.hpp>
 #include <cchip/sim/errors.hpp>
 #include <cchip/sim/pattern.hpp>

@@ -4,6 +4,8 @@
 #ifndef CCHIP_SIM_AXI_MEMORY_HPP
 #define CCHIP_SIM_AXI_MEMORY_HPP
 
+#include <verilated.h>
+
 #include <algorithm>
 #include <cchip/sim/agent.hpp>
 #include <cchip/sim/errors.hpp>
