@@ -228,7 +228,8 @@ TARGETS = {
     "Lattice ECP5": ("synth_ecp5", {
         "LUT": r"LUT4", "carry": r"CCU2C", "FF": r"TRELLIS_FF", "multiplier blocks": r"MULT18X18D",
         "block RAM": r"DP16KD", "distributed RAM": r"TRELLIS_DPR16X4", "shift register": r"(?!)"}),
-    "Xilinx 7": ("synth_xilinx -family xc7 -flatten", {
+    # the attribute: see "Netlists" in docs/README.md
+    "Xilinx 7": ("setattr -mod -set keep_hierarchy 1 cchip_mul18; synth_xilinx -family xc7 -flatten", {
         "LUT": r"LUT[1-6]", "carry": r"CARRY4", "FF": r"FD[RSCP]E", "multiplier blocks": r"DSP48E1",
         "block RAM": r"RAMB\w+", "distributed RAM": r"RAM\d+\w+", "shift register": r"SRL\w+"}),
 }

@@ -177,7 +177,8 @@ def synthesise(row, options):
 
 # command of Yosys, and the cells that each column counts
 FAMILIES = {
-    "Xilinx 7": ("synth_xilinx -family xc7 -flatten", {
+    # the attribute: see "Netlists" in docs/README.md
+    "Xilinx 7": ("setattr -mod -set keep_hierarchy 1 cchip_mul18\nsynth_xilinx -family xc7 -flatten", {
         "LUT": r"LUT[1-6]", "carry": r"CARRY4", "FF": r"FD[RSCP]E", "DSP": r"DSP48E1", "block RAM": r"RAMB\w+",
         "distributed RAM": r"RAM\d+\w+", "shift register": r"SRL\w+"}),
     "Intel Cyclone V": ("synth_intel_alm -family cyclonev", {
@@ -194,7 +195,8 @@ def count_family(row, family):
     del text[HARNESS]
     command, columns = FAMILIES[family]
     settings = "".join(f"chparam -set {name} {value} {row.top}\n" for name, value in row.parameters)
-    script = read_verilog(text) + settings + f"{command} -top {row.top}\nwrite_json {{}}/netlist.json\n"
+    script = read_verilog(text) + settings + (f"{command} -top {row.top}\nsetattr -mod -unset keep_hierarchy *\n"
+                                              "flatten\nopt_clean\nwrite_json {}/netlist.json\n")
     folder = yosys(f"{row.name}.{family.split()[0].lower()}", script, text, "netlist.json")
     modules = json.loads((folder / "netlist.json").read_text())["modules"]
     found = modules[row.top]["cells"].values()

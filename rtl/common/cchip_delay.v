@@ -6,7 +6,7 @@
 //   cuts         d -> q if DEPTH > 0
 //   reset        RESET = 1 clears every stage (valid bits); RESET = 0 leaves data alone
 //   MEMORY = 1   (DEPTH >= 3, RESET = 0) keeps the values in a small memory with a circulating pointer
-//                instead of flip-flops; what went in before or during rst comes out undefined
+//                instead of flip-flops
 module cchip_delay #(
     // width of the value, bit
     parameter integer WIDTH = 1,
@@ -41,8 +41,11 @@ module cchip_delay #(
       reg [WIDTH-1:0] mem [0:DEPTH-2];
       reg [PTR_W-1:0] pointer_q;
       reg [WIDTH-1:0] q_q;
+      // any value finds into the circle: no reset
+      initial pointer_q = {PTR_W{1'b0}};
+      wire unused = &{1'b0, rst};
       always @(posedge clk) begin
-        if (rst || pointer_q == LAST[PTR_W-1:0]) pointer_q <= {PTR_W{1'b0}};
+        if (pointer_q >= LAST[PTR_W-1:0]) pointer_q <= {PTR_W{1'b0}};
         else pointer_q <= pointer_q + {{PTR_W - 1{1'b0}}, 1'b1};
         mem[pointer_q] <= d;
         q_q <= mem[pointer_q];

@@ -10,7 +10,9 @@ module cchip_fifo #(
     // width of the payload, bit
     parameter integer WIDTH = 8,
     // capacity, beats
-    parameter integer DEPTH = 16
+    parameter integer DEPTH = 16,
+    // 1: the sender sees to it that s_valid finds s_ready = 1; saves the logic between them
+    parameter integer ROOM_KNOWN = 0
 ) (
     input  wire             clk,
     input  wire             rst,
@@ -22,9 +24,9 @@ module cchip_fifo #(
     output wire [WIDTH-1:0] m_data
 );
 
-  // banks of 16 words, the smallest memory of LUTs: each write enable starts from registers
+  // banks of 16 words, the smallest memory of LUTs, that take turns: pointers run round by themselves, nothing is
+  // compared. Each bank is read with a pointer of its own: short ways.
   localparam integer BANKS = (DEPTH + 15) / 16;
-  localparam integer PTR_W = DEPTH > 16 ? $clog2(DEPTH) : 4;
   localparam integer COUNT_W = $clog2(DEPTH + 1);
   localparam [31:0] LAST = DEPTH - 1;
   localparam [31:0] FULL = DEPTH;
@@ -37,8 +39,8 @@ module cchip_fifo #(
     end
   endgenerate
 
-  reg [PTR_W-1:0] write_q, read_q;
-  reg [BANKS-1:0] write_bank_q, read_bank_q;  // their banks, one-hot
+  reg [BANKS-1:0] write_bank_q, read_bank_q;  // one-hot
+  reg [3:0] write_q;  // word, of all banks
   reg [COUNT_W-1:0] count_q; // beats in memory and output register
   reg ready_q, some_q, more_q;  // count_q < DEPTH, >= 1, >= 2
   reg valid_q;
@@ -48,7 +50,7 @@ module cchip_fifo #(
   assign m_valid = valid_q;
   assign m_data  = data_q;
 
-  wire push = s_valid & ready_q;
+  wire push = s_valid & (ready_q | ROOM_KNOWN != 0);
   wire pop = valid_q & m_ready;
   wire up = push & ~pop;
   wire down = pop & ~push;
@@ -61,53 +63,47 @@ module cchip_fifo #(
     for (b = 0; b < BANKS; b = b + 1) begin : gen_bank
       (* ram_style = "distributed" *)
       reg [WIDTH-1:0] mem [0:15];
-      always @(posedge clk) if (s_valid & ready_q & write_bank_q[b]) mem[write_q[3:0]] <= s_data;
-      assign words[WIDTH*b+:WIDTH] = mem[read_q[3:0]];
+      reg [3:0] read_q;
+      always @(posedge clk) begin
+        if (push & write_bank_q[b]) mem[write_q] <= s_data;
+        if (rst) read_q <= 4'd0;
+        else if (load & read_bank_q[b]) read_q <= read_q + 4'd1;
+      end
+      assign words[WIDTH*b+:WIDTH] = mem[read_q];
     end
   endgenerate
 
   function [WIDTH-1:0] choose(input [WIDTH*BANKS-1:0] from, input [BANKS-1:0] bank);
     integer j;
     begin
-      choose = {WIDTH{1'b0}};
-      for (j = 0; j < BANKS; j = j + 1) choose = choose | (from[WIDTH*j+:WIDTH] & {WIDTH{bank[j]}});
+      choose = from[0+:WIDTH];
+      for (j = 1; j < BANKS; j = j + 1) if (bank[j]) choose = from[WIDTH*j+:WIDTH];
     end
   endfunction
   wire [WIDTH-1:0] word = choose(words, read_bank_q);
 
-  function [PTR_W-1:0] next(input [PTR_W-1:0] pointer);
-    next = pointer == LAST[PTR_W-1:0] ? {PTR_W{1'b0}} : pointer + ONE[PTR_W-1:0];
-  endfunction
+  // the bank after this one
+  wire [BANKS-1:0] write_bank_next = (write_bank_q << 1) | (write_bank_q >> (BANKS - 1));
+  wire [BANKS-1:0] read_bank_next = (read_bank_q << 1) | (read_bank_q >> (BANKS - 1));
 
-  function [BANKS-1:0] bank_of(input [PTR_W-1:0] pointer);
-    integer j;
-    begin
-      bank_of = {BANKS{1'b0}};
-      for (j = 0; j < BANKS; j = j + 1) bank_of[j] = {{32 - PTR_W{1'b0}}, pointer} >> 4 == j[31:0];
-    end
-  endfunction
-  wire [PTR_W-1:0] write_next = next(write_q);
-  wire [PTR_W-1:0] read_next = next(read_q);
-
-  // sums and comparisons start from registers: push and pop only choose
+  // sums and comparisons start from registers: push and pop only choose (both sums, so ~(~n + 1) for n - 1: Yosys makes
+  // one of a sum and a difference, behind the choice)
   always @(posedge clk) begin
     if (load) data_q <= word;
     if (rst) begin
-      write_q <= {PTR_W{1'b0}};
+      write_q <= 4'd0;
       write_bank_q <= ONE[BANKS-1:0];
       read_bank_q <= ONE[BANKS-1:0];
-      read_q  <= {PTR_W{1'b0}};
       count_q <= {COUNT_W{1'b0}};
       ready_q <= 1'b0;
       some_q  <= 1'b0;
       more_q  <= 1'b0;
       valid_q <= 1'b0;
     end else begin
-      if (push) write_q <= write_next;
-      if (push) write_bank_q <= bank_of(write_next);
-      if (load) read_q <= read_next;
-      if (load) read_bank_q <= bank_of(read_next);
-      count_q <= up ? count_q + ONE[COUNT_W-1:0] : down ? count_q - ONE[COUNT_W-1:0] : count_q;
+      if (push & write_bank_q[BANKS-1]) write_q <= write_q + 4'd1;
+      if (push) write_bank_q <= write_bank_next;
+      if (load) read_bank_q <= read_bank_next;
+      count_q <= up ? count_q + ONE[COUNT_W-1:0] : down ? ~(~count_q + ONE[COUNT_W-1:0]) : count_q;
       ready_q <= up ? count_q != LAST[COUNT_W-1:0] : pop || count_q != FULL[COUNT_W-1:0];
       some_q  <= up || (down ? more_q : some_q);
       more_q  <= up ? some_q : down ? more_q && {{32 - COUNT_W{1'b0}}, count_q} != TWO : more_q;
@@ -118,6 +114,7 @@ module cchip_fifo #(
 `include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
+      `CCHIP_ASSERT(a_room, ROOM_KNOWN == 0 || !s_valid || ready_q)
       `CCHIP_ASSERT(a_count, {{32 - COUNT_W{1'b0}}, count_q} <= FULL)
       `CCHIP_ASSERT(a_some, some_q == (count_q != {COUNT_W{1'b0}}))
       `CCHIP_ASSERT(a_more, more_q == ({{32 - COUNT_W{1'b0}}, count_q} >= TWO))

@@ -120,8 +120,9 @@ module cchip_axis_controller #(
     end
 
   cchip_fifo #(
-      .WIDTH(CONTEXT_W),
-      .DEPTH(CONTEXTS)
+      .WIDTH     (CONTEXT_W),
+      .DEPTH     (CONTEXTS),
+      .ROOM_KNOWN(1)
   ) u_free (
       .clk    (clk),
       .rst    (rst),
@@ -162,8 +163,9 @@ module cchip_axis_controller #(
   wire [          1:0] start_mode;
 
   cchip_fifo #(
-      .WIDTH(CONTEXT_W + 2),
-      .DEPTH(CONTEXTS)
+      .WIDTH     (CONTEXT_W + 2),
+      .DEPTH     (CONTEXTS),
+      .ROOM_KNOWN(1)
   ) u_start (
       .clk    (clk),
       .rst    (rst),
@@ -188,8 +190,9 @@ module cchip_axis_controller #(
   wire [CONTEXT_W+STATE_W-1:0] ready_state;
 
   cchip_fifo #(
-      .WIDTH(CONTEXT_W + STATE_W),
-      .DEPTH(CONTEXTS)
+      .WIDTH     (CONTEXT_W + STATE_W),
+      .DEPTH     (CONTEXTS),
+      .ROOM_KNOWN(1)
   ) u_ready (
       .clk    (clk),
       .rst    (rst),

@@ -255,24 +255,16 @@ module cchip_axis_programme #(
   wire last_kind = tetra_q ? cross_q : ~cross_q & ~in_plane_a_q;
   wire last_axis = last_kind & k_ends_q & (l_ends_q | ~loops_l);
 
-  // ---- outcome and next state but for what EXHAUSTIVE has found
+  // ---- outcome but for what EXHAUSTIVE has found
   reg outcome, grid, certain, open, illegal;
-  reg take_plan, take_tetra;
-  reg state_certain;
-  reg [8:0] witness, state_code;
-  reg [13:0] state_info;
+  reg [8:0] witness;
   always @* begin
-    outcome       = 1'b1;
-    grid          = 1'b0;
-    certain       = certain_gap_q;
-    open          = 1'b0;
-    illegal       = 1'b0;
-    witness       = code_q;
-    state_code    = next_code;
-    state_info    = info_q;
-    state_certain = certain_q;
-    take_plan     = 1'b0;
-    take_tetra    = 1'b0;
+    outcome = 1'b1;
+    grid    = 1'b0;
+    certain = certain_gap_q;
+    open    = 1'b0;
+    illegal = 1'b0;
+    witness = code_q;
     if (illegal_q) begin
       grid    = 1'b1;
       illegal = 1'b1;
@@ -281,26 +273,25 @@ module cchip_axis_programme #(
       witness = {`CCHIP_AXIS_BOX, 3'd0, code_q[2:0]};
       certain = box_certain_q;
     end else if (!separated_q) begin
-      if (normals_q) begin
-        outcome       = 1'b0;
-        take_plan     = normal_b_q;
-        state_code    = {`CCHIP_AXIS_NORMAL_B, 6'd0};
-        state_info    = normal_a_info_q;
-        state_certain = clear_q;
-      end else begin
+      if (normals_q) outcome = 1'b0;
+      else begin
         outcome = crossing_q ? second_q && !to_tetra : last_axis;
         grid    = 1'b1;
         open    = open_q;
         certain = crossing_q & certain_crossing;
         witness = 9'd0;
-        if (crossing_q) begin
-          state_code    = {`CCHIP_AXIS_CROSS, 1'b0, info_q[3:2], 1'b0, info_q[1:0]};
-          state_certain = certain_crossing;
-          take_tetra    = to_tetra;
-        end
       end
     end
   end
+
+  // ---- next state, should there be one
+  wire take_plan = normals_q & normal_b_q;
+  wire take_tetra = crossing_q & to_tetra;
+  wire state_certain = normals_q ? clear_q : crossing_q ? certain_crossing : certain_q;
+  wire [13:0] state_info = normals_q ? normal_a_info_q : info_q;
+  wire [8:0] state_code = normals_q ? {`CCHIP_AXIS_NORMAL_B, 6'd0}
+                        : crossing_q ? {`CCHIP_AXIS_CROSS, 1'b0, info_q[3:2], 1'b0, info_q[1:0]}
+                                     : next_code;
 
   reg valid_q2, exhaustive_q2, exhaustive_last_q2, normal_a_q2, normal_q2;
   reg separated_q2, certain_gap_q2, certain_sides_q2, still_certain_q2;

@@ -84,8 +84,9 @@ module cchip_sat_bound #(
   );
   always @(posedge clk) gap_low_q <= {3'd0, axis_norm} << shift_norm[1:0];
   cchip_delay #(
-      .WIDTH(AXIS_NORM_W + 3),
-      .DEPTH(LATENCY - 3 - `CCHIP_NORM1_LATENCY)
+      .WIDTH (AXIS_NORM_W + 3),
+      .DEPTH (LATENCY - 3 - `CCHIP_NORM1_LATENCY),
+      .MEMORY(LATENCY - 3 - `CCHIP_NORM1_LATENCY >= 3 ? 1 : 0)
   ) u_gap_low (
       .clk(clk),
       .rst(1'b0),
@@ -115,8 +116,9 @@ module cchip_sat_bound #(
   end
   wire [FACTOR_W-1:0] factor;
   cchip_delay #(
-      .WIDTH(FACTOR_W),
-      .DEPTH(LATENCY - 5 - SHIFT_REGS)
+      .WIDTH (FACTOR_W),
+      .DEPTH (LATENCY - 5 - SHIFT_REGS),
+      .MEMORY(LATENCY - 5 - SHIFT_REGS >= 3 ? 1 : 0)
   ) u_factor (
       .clk(clk),
       .rst(1'b0),

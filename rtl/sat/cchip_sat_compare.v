@@ -44,17 +44,17 @@ module cchip_sat_compare #(
 
   // size of a value: |v|, or |v| - 1 of a negative one
   localparam integer SIZE_W = PROJ_W - 1;
-  // room for size - bound
-  localparam integer LEFT_W = (SIZE_W > BOUND_W ? SIZE_W : BOUND_W) + 1;
+  // what is compared with a bound: as many bits as it has; one more stands for all above them
+  localparam integer LOW_W = SIZE_W > BOUND_W ? BOUND_W : SIZE_W;
   // zero is found in two steps
   localparam integer PARTS = (PROJ_W + 15) / 16;
 
   // |v| <= bound: size + minus < bound + 1
-  function no_more(input minus, input [SIZE_W-1:0] size, input [BOUND_W-1:0] bound);
-    reg [LEFT_W:0] left;
+  function no_more(input minus, input [LOW_W:0] size, input [BOUND_W-1:0] bound);
+    reg [BOUND_W+2:0] left;
     begin
-      left = {{LEFT_W - SIZE_W{1'b0}}, size, minus} - {{LEFT_W - BOUND_W{1'b0}}, bound, 1'b1};
-      no_more = left[LEFT_W];
+      left = {{BOUND_W + 1 - LOW_W{1'b0}}, size, minus} - {2'b00, bound, 1'b1};
+      no_more = left[BOUND_W+2];
     end
   endfunction
 
@@ -96,7 +96,7 @@ module cchip_sat_compare #(
         end
         // clock 2
         reg negative_q2;
-        reg [SIZE_W-1:0] size_q2;
+        reg [LOW_W:0] size_q2;
         reg [PARTS-1:0] some_q2;
         wire [16*PARTS-1:0] v = {{16 * PARTS - PROJ_W{1'b0}}, v_q};
         for (g = 0; g < PARTS; g = g + 1) begin : gen_part
@@ -104,7 +104,8 @@ module cchip_sat_compare #(
         end
         always @(posedge clk) begin
           negative_q2 <= v_q[PROJ_W-1];
-          size_q2     <= v_q[SIZE_W-1:0] ^ {SIZE_W{v_q[PROJ_W-1]}};
+          size_q2     <= {|(v_q[PROJ_W-1:LOW_W] ^ {PROJ_W - LOW_W{v_q[PROJ_W-1]}}),
+                          v_q[LOW_W-1:0] ^ {LOW_W{v_q[PROJ_W-1]}}};
         end
         // clock 3
         reg negative_q3, zero_q3, near_q3;

@@ -48,26 +48,16 @@ module cchip_sat_select #(
     end
   endgenerate
 
-  // ---- what the code says, two clocks before the vertices
-  wire [8:0] code;
-  cchip_delay #(
-      .WIDTH(9),
-      .DEPTH(`CCHIP_RAM_LATENCY - 2)
-  ) u_code (
-      .clk(clk),
-      .rst(1'b0),
-      .d  (s_code),
-      .q  (code)
-  );
-  wire [`CCHIP_CLASS_W-1:0] axis_class = code[8:6];
+  // ---- clock 1: what the code says
+  wire [`CCHIP_CLASS_W-1:0] axis_class = s_code[8:6];
   reg is_cross_q, is_in_plane_q, own_b_q;
   reg [2:0] k_q, l_q;
   always @(posedge clk) begin
     is_cross_q    <= axis_class == `CCHIP_AXIS_CROSS;
     is_in_plane_q <= axis_class == `CCHIP_AXIS_IN_PLANE_A || axis_class == `CCHIP_AXIS_IN_PLANE_B;
     own_b_q       <= axis_class == `CCHIP_AXIS_NORMAL_B || axis_class == `CCHIP_AXIS_IN_PLANE_B;
-    k_q           <= code[5:3];
-    l_q           <= code[2:0];
+    k_q           <= s_code[5:3];
+    l_q           <= s_code[2:0];
   end
 
   // i + offset among the vertices of a triangle or quad
@@ -100,28 +90,23 @@ module cchip_sat_select #(
       endcase
   endfunction
 
-  // ---- one clock before: which vertex each end and slot takes: one bit for each vertex of A, then of B
+  // ---- clock 2: the vertex {of B, index} that each end and slot takes
   wire own_quad = own_b_q ? VERTS_B == 4 : VERTS_A == 4;
   wire [7:0] own_edge = edge_of(own_quad, k_q);
   wire [7:0] b_edge = edge_of(VERTS_B == 4, l_q);
   wire [9:0] normal = normal_of(own_quad, k_q);
   wire is_edge = is_cross_q || is_in_plane_q;
 
-  function [7:0] choose(input of_b, input [1:0] vertex);
-    choose = of_b ? 8'h10 << vertex : 8'h01 << vertex;
-  endfunction
-
-  reg [7:0] e_from_q, e_to_q, f_from_q, f_to_q;
-  reg [2:0] unit_q;
-  reg [1:0] own_q;
+  reg [2:0] e_from_q2, e_to_q2, f_from_q2, f_to_q2;
+  reg [2:0] unit_q2;
+  reg [1:0] own_q2;
   always @(posedge clk) begin
-    e_from_q <= choose(own_b_q, is_edge ? own_edge[1:0] : normal[1:0]);
-    e_to_q   <= choose(own_b_q, is_edge ? own_edge[3:2] : normal[3:2]);
-    // f of an in-plane axis: from the origin to unit vector l
-    f_from_q <= is_in_plane_q ? 8'd0 : is_cross_q ? choose(1'b1, b_edge[1:0]) : choose(own_b_q, normal[5:4]);
-    f_to_q   <= is_in_plane_q ? 8'd0 : is_cross_q ? choose(1'b1, b_edge[3:2]) : choose(own_b_q, normal[7:6]);
-    unit_q   <= {is_in_plane_q && l_q == 3'd2, is_in_plane_q && l_q == 3'd1, is_in_plane_q && l_q == 3'd0};
-    own_q    <= {is_cross_q && VERTS_A == 4, is_cross_q || (!is_in_plane_q && own_quad)};
+    e_from_q2 <= {own_b_q, is_edge ? own_edge[1:0] : normal[1:0]};
+    e_to_q2   <= {own_b_q, is_edge ? own_edge[3:2] : normal[3:2]};
+    f_from_q2 <= is_cross_q ? {1'b1, b_edge[1:0]} : {own_b_q, normal[5:4]};
+    f_to_q2   <= is_cross_q ? {1'b1, b_edge[3:2]} : {own_b_q, normal[7:6]};
+    unit_q2   <= {is_in_plane_q && l_q == 3'd2, is_in_plane_q && l_q == 3'd1, is_in_plane_q && l_q == 3'd0};
+    own_q2    <= {is_cross_q && VERTS_A == 4, is_cross_q || (!is_in_plane_q && own_quad)};
   end
 
   wire [8:0] of_b_edge = {1'b1, b_edge[7:6], 1'b1, b_edge[5:4], 1'b1, b_edge[1:0]};
@@ -134,7 +119,7 @@ module cchip_sat_select #(
     end
   endgenerate
 
-  reg [8*POINTS-1:0] point_q;
+  reg [3*POINTS-1:0] point_q2;
   genvar p;
   generate
     for (p = 0; p < POINTS; p = p + 1) begin : gen_choice
@@ -143,14 +128,32 @@ module cchip_sat_select #(
       wire [2:0] of_own = is_in_plane_q ? {~own_b_q, 2'd0} : {own_b_q, normal[9:8]};
       wire [2:0] of_a = p < POINTS - VERTS_A ? of_own : {1'b0, IN_A[1:0]};
       wire [2:0] of_b = p < POINTS - VERTS_B ? of_own : {1'b1, IN_B[1:0]};
-      wire [2:0] vertex = is_cross_q ? cross_points[3*p+:3] : own_b_q ? of_a : of_b;
-      always @(posedge clk) point_q[8*p+:8] <= choose(vertex[2], vertex[1:0]);
+      always @(posedge clk) point_q2[3*p+:3] <= is_cross_q ? cross_points[3*p+:3] : own_b_q ? of_a : of_b;
     end
   endgenerate
 
   wire unused = &{1'b0, b_edge[7:6], own_edge[7:6], cross_points};
 
-  // ---- the vertices. Vertices that an end or slot never takes are masked.
+  // ---- clock 3: one bit for each vertex of A, then of B. f of an in-plane axis: from the origin to unit vector l.
+  reg [7:0] e_from_q3, e_to_q3, f_from_q3, f_to_q3;
+  reg [8*POINTS-1:0] point_q3;
+  reg [2:0] unit_q3;
+  reg [1:0] own_q3;
+  always @(posedge clk) begin
+    e_from_q3 <= 8'd1 << e_from_q2;
+    e_to_q3   <= 8'd1 << e_to_q2;
+    f_from_q3 <= |unit_q2 ? 8'd0 : 8'd1 << f_from_q2;
+    f_to_q3   <= |unit_q2 ? 8'd0 : 8'd1 << f_to_q2;
+    unit_q3   <= unit_q2;
+    own_q3    <= own_q2;
+  end
+  generate
+    for (p = 0; p < POINTS; p = p + 1) begin : gen_one_hot
+      always @(posedge clk) point_q3[8*p+:8] <= 8'd1 << point_q2[3*p+:3];
+    end
+  endgenerate
+
+  // ---- clock 4: the vertices. Vertices that an end or slot never takes are masked.
   wire [8*POINT_W-1:0] vertices;
   generate
     if (VERTS_A == 4) begin : gen_a_quad
@@ -187,7 +190,7 @@ module cchip_sat_select #(
       localparam [3:0] OF_A = p < VERTS_A - 2 ? ALL_A : 4'd1 << IN_A;
       localparam [3:0] OF_B = p >= VERTS_A - 2 || (p == 0 && VERTS_B == 4) ? ALL_B : 4'd1 << IN_B;
       localparam [7:0] MASK = {OF_B, OF_A};
-      always @(posedge clk) m_points[POINT_W*p+:POINT_W] <= pick(vertices, point_q[8*p+:8] & MASK);
+      always @(posedge clk) m_points[POINT_W*p+:POINT_W] <= pick(vertices, point_q3[8*p+:8] & MASK);
     end
   endgenerate
 
@@ -195,16 +198,16 @@ module cchip_sat_select #(
   genvar d;
   generate
     for (d = 0; d < 3; d = d + 1) begin : gen_unit
-      assign unit[COORD_W*d+:COORD_W] = {{COORD_W - 1{1'b0}}, unit_q[d]};
+      assign unit[COORD_W*d+:COORD_W] = {{COORD_W - 1{1'b0}}, unit_q3[d]};
     end
   endgenerate
 
   always @(posedge clk) begin
-    m_e_from <= pick(vertices, e_from_q & ALL);
-    m_e_to   <= pick(vertices, e_to_q & ALL);
-    m_f_from <= pick(vertices, f_from_q & F_FROM);
-    m_f_to   <= pick(vertices, f_to_q & F_TO) | unit;
-    m_own    <= own_q;
+    m_e_from <= pick(vertices, e_from_q3 & ALL);
+    m_e_to   <= pick(vertices, e_to_q3 & ALL);
+    m_f_from <= pick(vertices, f_from_q3 & F_FROM);
+    m_f_to   <= pick(vertices, f_to_q3 & F_TO) | unit;
+    m_own    <= own_q3;
   end
 
 endmodule
