@@ -3,7 +3,8 @@
 """Area and clock of the primitive tests on FPGAs, with open tools: nothing here needs a board or a vendor's tool.
 
 usage: fpga.py [ROW...] [options]     without ROW all rows; `fpga.py --list` names them
-  --seeds N         place and route with the seeds 1..N (default 5)
+  --seeds N         place and route with the seeds 1..N (default 5); rows that only serve comparison, and array6, with 3
+                    at most
   --jobs N          tools at the same time (default 2; one place and route takes about 1 GB)
   --freq MHZ        clock that place and route is asked for (default 250)
   --synth OPTIONS   options of synth_ecp5, as --synth=-abc2 (default -abc9)
@@ -55,6 +56,7 @@ class Row:
     families: bool = False  # counted for other families, too
     shape: str = "tri-tri"  # as cchip_campaign names it
     label: str = ""  # in the last lines, if not the name
+    seeds: int = 99  # at most: of rows that only serve comparison
 
     @property
     def coord_w(self):
@@ -81,9 +83,9 @@ def rows():
              for name in ("tri_tri", "tri_quad", "quad_quad")]
     table += [Row("tri_tri_absolute", tri_tri, (("ABSOLUTE_PROJECTION", 1),), families=True),
               Row("tri_tri_w18", tri_tri, (("COORD_W", 18),), families=True, label="tri_tri")]
-    table += [Row(f"tri_tri_substages{n}", tri_tri, (("SUBSTAGES", n),)) for n in (6, 8, 12)]
-    table += [Row("tri_tri_portable", tri_tri, files="cchip.f"),
-              Row("array6", "cchip_primtest_array", (("LANES", 6),))]
+    table += [Row(f"tri_tri_substages{n}", tri_tri, (("SUBSTAGES", n),), seeds=3) for n in (6, 8, 12)]
+    table += [Row("tri_tri_portable", tri_tri, files="cchip.f", seeds=3),
+              Row("array6", "cchip_primtest_array", (("LANES", 6),), seeds=3)]
     return {row.name: row for row in table}
 
 
@@ -146,11 +148,17 @@ def version(tool, option):
 
 
 def sources(row):
-    """Text of every file that synthesis of the row reads, by name."""
+    """Text of every file that synthesis of the row reads, by name: those of the file list that the harness needs."""
     listed = (ROOT / "rtl" / row.files).read_text().splitlines()
-    names = [f"rtl/{line.strip()}" for line in listed if line.strip().endswith(".v")]
-    return {name: (ROOT / name).read_text() for name in [*names, HARNESS, "rtl/include/cchip_defs.vh",
-                                                          "rtl/include/cchip_assert.vh"]}
+    modules = {pathlib.Path(line).stem: f"rtl/{line.strip()}" for line in listed if line.strip().endswith(".v")}
+    text, wanted = {HARNESS: (ROOT / HARNESS).read_text()}, [row.top]
+    while wanted:
+        name = modules[wanted.pop()]
+        if name not in text:
+            text[name] = (ROOT / name).read_text()
+            wanted += [word for word in re.findall(r"^ *(cchip_\w+) (?:#\(|u_)", text[name], re.M) if word in modules]
+    return text | {name: (ROOT / name).read_text() for name in ("rtl/include/cchip_defs.vh",
+                                                                "rtl/include/cchip_assert.vh")}
 
 
 def read_verilog(text, *macros):
@@ -414,7 +422,7 @@ def measure(chosen, options):
                   for row in chosen if options.families and row.families for family in FAMILIES}
         syntheses = {row: submit(synthesise, row, options) for row in chosen}
         placed = {row: {seed: submit(place, row, synthesis.result(), seed, options)
-                        for seed in range(1, options.seeds + 1)}
+                        for seed in range(1, min(options.seeds, row.seeds) + 1)}
                   for row, synthesis in syntheses.items() if synthesis.result()}
         found = {}
         for row, jobs in placed.items():
