@@ -43,6 +43,7 @@ import datasheet
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build" / "fpga"
 HARNESS = "scripts/fpga_harness.v"
+SUBSYSTEM = "scripts/fpga_subsystem.v"
 DEVICE = ("--85k", "--speed", "6", "--package", "CABGA756")
 PAGE = ROOT / "docs" / "fpga.md"
 
@@ -68,7 +69,7 @@ class Row:
 
     @property
     def lanes(self):
-        return dict(self.parameters).get("LANES", 1)
+        return dict(self.parameters).get("LANES", dict(self.parameters).get("SLOTS", 1))
 
     def macros(self):
         """Macros of the harness for this row."""
@@ -86,6 +87,9 @@ def rows():
     table += [Row(f"tri_tri_substages{n}", tri_tri, (("SUBSTAGES", n),), seeds=3) for n in (6, 8, 12)]
     table += [Row("tri_tri_portable", tri_tri, files="cchip.f", seeds=3),
               Row("array6", "cchip_primtest_array", (("LANES", 6),), seeds=3)]
+    # each slot is a partition for the largest module
+    table += [Row(f"subsystem{n}", "fpga_subsystem", (("SLOTS", n), ("RM_ID", 3)), shape="quad-quad", seeds=3)
+              for n in (1, 2)]
     return {row.name: row for row in table}
 
 
@@ -151,6 +155,7 @@ def sources(row):
     """Text of every file that synthesis of the row reads, by name: those of the file list that the harness needs."""
     listed = (ROOT / "rtl" / row.files).read_text().splitlines()
     modules = {pathlib.Path(line).stem: f"rtl/{line.strip()}" for line in listed if line.strip().endswith(".v")}
+    modules["fpga_subsystem"] = SUBSYSTEM
     text, wanted = {HARNESS: (ROOT / HARNESS).read_text()}, [row.top]
     while wanted:
         name = modules[wanted.pop()]
@@ -300,11 +305,10 @@ def cells(stat):
 
 def module_cells(modules):
     """(cells of the module, cells of the harness) of a row's statistics."""
-    module = collections.Counter()
+    module, harness = collections.Counter(), collections.Counter()
     for name, found in modules.items():
-        if name != "fpga_harness":
-            module.update(found)
-    return module, modules["fpga_harness"]
+        (harness if "fpga_" in name else module).update(found)
+    return module, harness
 
 
 def figures(row, synthesis, reports, beats):
@@ -397,7 +401,24 @@ def families_table(found):
     return datasheet.table(["row", "family", *columns], body)
 
 
-TABLES = {"ecp5": area_table, "choices": choices_table, "classes": classes_table, "families": families_table}
+def bill_table(found):
+    """What reconfiguration costs: three static modules, one slot, two slots."""
+    if not {"tri_tri", "tri_quad", "quad_quad", "subsystem1", "subsystem2"} <= set(found):
+        return ""
+    columns = ("lut4", "comb", "ff", "dsp", "bram", "dram")
+    take = lambda name: [found[name][column] for column in columns]
+    add = lambda *rows: [sum(cells) for cells in zip(*rows)]
+    less = lambda row, other, n: [a - n * b for a, b in zip(row, other)]
+    static = add(*map(take, ("tri_tri", "tri_quad", "quad_quad")))
+    body = [["three static modules", *static]]
+    for slots, name in ((1, "one slot"), (2, "two slots")):
+        row = take(f"subsystem{slots}")
+        body.append([name, *row])
+        body.append([f"of which not in the {'modules' if slots > 1 else 'module'}", *less(row, take("quad_quad"), slots)])
+    return datasheet.table(["", "LUT4, logic", "LUT4, all", "FF", "DSP", "block RAM", "distributed RAM"], body)
+
+
+TABLES = {"bill": bill_table, "ecp5": area_table, "choices": choices_table, "classes": classes_table, "families": families_table}
 
 
 # ---- command line
