@@ -166,7 +166,7 @@ def main():
         return 0
     missing = [tool for tool in TOOLS if not find(tool)]
     if missing:
-        print(f"run.py: {missing[0]} is not installed: make venv (yowasp), scripts/bootstrap (yosys), apt-get install z3")
+        print(f"run.py: {missing[0]} is not installed: make venv, or scripts/bootstrap --dev for yosys-abc and z3")
         return 77
     build = options.build.resolve()
     write_abc(build)

@@ -10,10 +10,9 @@ using namespace cchip::test;
 
 namespace {
 
-using Config = virtual_8;
-
 /// Outputs of the region as one number.
-std::uint64_t outputs(const Config::Model& top) {
+template <class Model>
+std::uint64_t outputs(const Model& top) {
   return std::uint64_t{top.m_result_tag} | std::uint64_t{top.m_result_axis} << 16 |
          std::uint64_t{top.m_result_beats} << 25 | std::uint64_t{top.rm_id} << 31 | std::uint64_t{top.idle} << 39 |
          std::uint64_t{top.s_pair_ready} << 40 | std::uint64_t{top.m_result_valid} << 41 |
@@ -22,7 +21,10 @@ std::uint64_t outputs(const Config::Model& top) {
 }
 constexpr int output_bits = 45;
 
+template <class Config>
 class Region {
+  using Model = typename Config::Model;
+
  public:
   explicit Region(const sim::SimulationOptions& options)
       : random(options.seed), simulation(options), top(simulation.top()), port(top, Config::COORD_W) {
@@ -42,17 +44,28 @@ class Region {
   }
 
   Random random;
-  sim::Simulation<Config::Model> simulation;
-  Config::Model& top;
-  sim::PairPort<Config::Model> port;
+  sim::Simulation<Model> simulation;
+  Model& top;
+  sim::PairPort<Model> port;
 };
+
+/// What leaves the region during the second half of a transfer.
+template <class Config>
+std::vector<std::uint64_t> garbage(const sim::SimulationOptions& options) {
+  Region<Config> region(options);
+  std::vector<std::uint64_t> seen;
+  for (const std::uint8_t byte : make_payload(Config::SLOT_ID, 2, 200, region.random))
+    seen.push_back(region.write(byte));
+  return {seen.begin() + 100, seen.end() - 1};
+}
 
 }  // namespace
 
 TEST_CASE("cchip_pr_virtual: every output is random from the name of the slot to the last byte, no clock longer",
           "[unit][cchip_pr_virtual]") {
   for_two_power_ups([](const sim::SimulationOptions& options) {
-    Region region(options);
+    using Config = virtual_8;
+    Region<Config> region(options);
     for (const int module : {3, 0, 2, 1, 1}) {
       const auto before = region.top.rm_id;
       const Bytes bytes = make_payload(Config::SLOT_ID, module, 1000, region.random);
@@ -80,9 +93,10 @@ TEST_CASE("cchip_pr_virtual: every output is random from the name of the slot to
 TEST_CASE("cchip_pr_virtual: the modules' state is scrambled even while rst is 1; afterwards rst clears it",
           "[unit][cchip_pr_virtual]") {
   for_two_power_ups([](const sim::SimulationOptions& options) {
+    using Config = virtual_8;
     for (const int module : {1, 2, 3}) {
       for (const bool reset_after : {false, true}) {
-        Region region(options);
+        Region<Config> region(options);
         region.top.rst = 1;
         for (const std::uint8_t byte : make_payload(Config::SLOT_ID, module, 100, region.random)) region.write(byte);
         if (reset_after) region.simulation.steps(2);
@@ -97,4 +111,17 @@ TEST_CASE("cchip_pr_virtual: the modules' state is scrambled even while rst is 1
       }
     }
   });
+}
+
+TEST_CASE("cchip_pr_virtual: SEED chooses the garbage, whatever the flip-flops held at power-up",
+          "[unit][cchip_pr_virtual]") {
+  sim::SimulationOptions options;
+  const auto first = garbage<virtual_8>(options);
+  const auto other = garbage<virtual_seed>(options);
+  ++options.seed;
+  REQUIRE(garbage<virtual_8>(options) == first);
+  REQUIRE(garbage<virtual_seed>(options) == other);
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) same += first[i] == other[i] ? 1 : 0;
+  REQUIRE(same < 3);
 }
