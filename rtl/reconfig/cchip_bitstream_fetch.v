@@ -3,7 +3,7 @@
 // cchip_bitstream_fetch: AXI4 read master that brings a row of words from memory into a FIFO.
 // run = 1 starts; address and words are taken on its first clock. run = 0 empties the FIFO; beats that memory still owes
 // are swallowed (owes = 1 until then), and run must stay 0 as long.
-//   latency      m_valid 6 clocks after run plus the memory's, counted from arvalid = 1, arready = 1 to rvalid = 1
+//   latency      m_valid 5 clocks after run plus the memory's, counted from arvalid = 1, arready = 1 to rvalid = 1
 //   throughput   one word per clock if a read takes less than 13 clocks
 //   bursts       INCR, up to 16 beats, within 64 bytes (never across 4 KiB); two outstanding; only what the FIFO has room for
 //   cuts         every path but m_ready to the FIFO's: each output is a flip-flop; m_axi_rready is always 1

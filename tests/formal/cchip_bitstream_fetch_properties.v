@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// Proved of cchip_bitstream_fetch, whatever memory does (also against its own rules):
+//   addresses are stable until taken, bursts lie within 64 bytes, two are under way at most, never more words than the FIFO
+//   holds are asked for, the FIFO is never pushed when full (assertion a_room of the RTL); no word appears after run = 0;
+//   after `limit` clocks without progress there is a timeout; an error or a timeout lasts until run = 0.
+module cchip_bitstream_fetch_properties (
+    input wire        clk,
+    input wire        rst,
+    input wire        run,
+    input wire [31:0] address,
+    input wire [29:0] words,
+    input wire        m_ready,
+    input wire        m_axi_arready,
+    input wire        m_axi_rvalid,
+    input wire [31:0] m_axi_rdata,
+    input wire [ 1:0] m_axi_rresp,
+    input wire        m_axi_rlast
+);
+  localparam [31:0] LIMIT = 32'd4;
+  wire m_valid, bus_error, timeout, owes, m_axi_arvalid, m_axi_rready;
+  wire [31:0] m_data, m_axi_araddr;
+  wire [7:0] m_axi_arlen;
+  wire [2:0] m_axi_arsize, m_axi_arprot;
+  wire [1:0] m_axi_arburst;
+  wire [3:0] m_axi_arcache;
+  cchip_bitstream_fetch dut (
+      .clk          (clk),
+      .rst          (rst),
+      .run          (run),
+      .address      (address),
+      .words        (words),
+      .limit        (LIMIT),
+      .m_valid      (m_valid),
+      .m_ready      (m_ready),
+      .m_data       (m_data),
+      .bus_error    (bus_error),
+      .timeout      (timeout),
+      .owes         (owes),
+      .m_axi_arvalid(m_axi_arvalid),
+      .m_axi_arready(m_axi_arready),
+      .m_axi_araddr (m_axi_araddr),
+      .m_axi_arlen  (m_axi_arlen),
+      .m_axi_arsize (m_axi_arsize),
+      .m_axi_arburst(m_axi_arburst),
+      .m_axi_arcache(m_axi_arcache),
+      .m_axi_arprot (m_axi_arprot),
+      .m_axi_rvalid (m_axi_rvalid),
+      .m_axi_rready (m_axi_rready),
+      .m_axi_rdata  (m_axi_rdata),
+      .m_axi_rresp  (m_axi_rresp),
+      .m_axi_rlast  (m_axi_rlast)
+  );
+
+  reg started_q = 1'b0;
+  reg rst_q = 1'b1;
+  reg run_q = 1'b0, run_q2 = 1'b0;
+  reg asked_q = 1'b0, failed_q = 1'b0;
+  reg [31:0] araddr_q;
+  reg [7:0] arlen_q;
+  reg [1:0] bursts_q = 2'd0;
+  reg [2:0] idle_q = 3'd0;  // clocks without progress while a beat is owed
+  wire taken = m_axi_arvalid & m_axi_arready;
+  wire beat = m_axi_rvalid & m_axi_rready;
+  wire ended = beat & m_axi_rlast & bursts_q != 2'd0;
+  wire busy = m_axi_arvalid | bursts_q != 2'd0;
+
+  always @(posedge clk) begin
+    started_q <= 1'b1;
+    rst_q <= rst;
+    run_q <= run & ~rst;
+    run_q2 <= run_q & ~rst;
+    asked_q <= m_axi_arvalid & ~m_axi_arready & ~rst;
+    failed_q <= (bus_error | timeout) & run & ~rst;
+    araddr_q <= m_axi_araddr;
+    arlen_q <= m_axi_arlen;
+    bursts_q <= rst ? 2'd0 : bursts_q + {1'b0, taken} - {1'b0, ended};
+    idle_q <= rst | ~run | ~run_q | ~busy | taken | beat ? 3'd0 : idle_q == 3'd7 ? 3'd7 : idle_q + 3'd1;
+  end
+
+  always @(*) begin
+    assume (started_q || rst);
+    assume (!run || run_q || !owes);
+    assume (address[1:0] == 2'b00);
+    if (started_q && !rst_q) begin
+      stable: assert (!asked_q || (m_axi_arvalid && m_axi_araddr == araddr_q && m_axi_arlen == arlen_q));
+      within_64: assert (!m_axi_arvalid || {4'd0, m_axi_araddr[5:2]} + m_axi_arlen <= 8'd15);
+      kind: assert (m_axi_arsize == 3'b010 && m_axi_arburst == 2'b01 && m_axi_araddr[1:0] == 2'b00 || !m_axi_arvalid);
+      two: assert (bursts_q != 2'd3 && !(bursts_q == 2'd2 && m_axi_arvalid));
+      debt: assert (owes == busy);
+      empty: assert (run_q || run_q2 || !m_valid);
+      late: assert (idle_q <= LIMIT[2:0] || bus_error || timeout);
+      sticky: assert (!failed_q || bus_error || timeout || !run_q);
+      awake: assert (m_axi_rready);
+    end
+  end
+  always @(posedge clk) begin
+    second: cover (bursts_q == 2'd2 && !bus_error);
+    word: cover (m_valid && m_ready);
+    swallowed: cover (!run && !rst && ended);
+    late_cover: cover (timeout);
+  end
+endmodule
+`default_nettype wire

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`include "cchip_defs.vh"
+`default_nettype none
+// Proved of cchip_swap_sequencer, two slots, whatever slots, memory and device do:
+//   phases follow their order; during TRANSFER the slot is stopped, seen decoupled and in reset; decouple falls only in
+//   RECOUPLE, after a good check, with reset for at least RESET_MIN clocks since the transfer and no reset any more; the
+//   other slot is left alone; every request gets exactly one report and no report comes unasked; every phase is bounded, if
+//   the fetch ends header and transfer by an event of its own. reset, decoupled, stopped imply each other (RTL assertions).
+module cchip_swap_sequencer_properties (
+    input wire        clk,
+    input wire        rst,
+    input wire        s_swap_valid,
+    input wire [ 7:0] s_swap_slot,
+    input wire [ 7:0] s_swap_module,
+    input wire [31:0] s_swap_address,
+    input wire [31:0] s_swap_size,
+    input wire        s_swap_force,
+    input wire        abort_swap,
+    input wire [ 1:0] quiet,
+    input wire [ 1:0] decoupled,
+    input wire [ 1:0] roc_busy,
+    input wire [15:0] region_rm_id,
+    input wire [31:0] lost,
+    input wire        header_done,
+    input wire        header_ok,
+    input wire [ 3:0] header_code,
+    input wire        owes,
+    input wire        bus_error,
+    input wire        timeout,
+    input wire        transfer_done,
+    input wire        crc_ok,
+    input wire        cfg_error
+);
+  localparam [7:0] RESET_MIN = 8'd8;
+  localparam [31:0] LIMIT = 32'd5;
+  localparam [7:0] SLOT_LIMIT = 8'd16;
+  wire s_swap_ready, m_report_valid, run;
+  wire [7:0] m_report_slot, m_report_module, slot, module_id;
+  wire [3:0] m_report_code, phase;
+  wire [15:0] m_report_lost;
+  wire [1:0] stop, decouple, hold_reset, roc_start;
+  wire [31:0] address, size, limit;
+  cchip_swap_sequencer #(
+      .SLOTS     (2),
+      .SLOT_LIMIT(16)
+  ) dut (
+      .clk            (clk),
+      .rst            (rst),
+      .s_swap_valid   (s_swap_valid),
+      .s_swap_ready   (s_swap_ready),
+      .s_swap_slot    (s_swap_slot),
+      .s_swap_module  (s_swap_module),
+      .s_swap_address (s_swap_address),
+      .s_swap_size    (s_swap_size),
+      .s_swap_force   (s_swap_force),
+      .m_report_valid (m_report_valid),
+      .m_report_slot  (m_report_slot),
+      .m_report_module(m_report_module),
+      .m_report_code  (m_report_code),
+      .m_report_lost  (m_report_lost),
+      .abort_swap     (abort_swap),
+      .shutdown_limit (LIMIT),
+      .memory_limit   (32'd0),
+      .stop           (stop),
+      .decouple       (decouple),
+      .hold_reset     (hold_reset),
+      .roc_start      (roc_start),
+      .quiet          (quiet),
+      .decoupled      (decoupled),
+      .roc_busy       (roc_busy),
+      .region_rm_id   (region_rm_id),
+      .lost           (lost),
+      .phase          (phase),
+      .slot           (slot),
+      .module_id      (module_id),
+      .address        (address),
+      .size           (size),
+      .limit          (limit),
+      .run            (run),
+      .header_done    (header_done),
+      .header_ok      (header_ok),
+      .header_code    (header_code),
+      .owes           (owes),
+      .bus_error      (bus_error),
+      .timeout        (timeout),
+      .transfer_done  (transfer_done),
+      .crc_ok         (crc_ok),
+      .cfg_error      (cfg_error)
+  );
+
+  reg started_q = 1'b0;
+  reg rst_q = 1'b1;
+  reg [3:0] phase_q = 4'd0;
+  reg [1:0] decouple_q, stop_q, hold_q, good_q = 2'b00;
+  reg [1:0] seen_q, seen_q2;  // decoupled a clock ago
+  reg [7:0] reset_q = 8'd0;  // clocks in reset since the transfer, of the slot at work
+  reg [7:0] clocks_q = 8'd0;  // in this phase
+  reg [1:0] open_q = 2'd0;  // requests without report
+  reg crc_ok_q;
+  wire [1:0] mine = slot == 8'd0 ? 2'b01 : slot == 8'd1 ? 2'b10 : 2'b00;
+  wire accept = s_swap_valid & s_swap_ready;
+  wire ends = header_done | bus_error | timeout;
+  wire fetches = phase == `CCHIP_PHASE_HEADER || phase == `CCHIP_PHASE_TRANSFER;
+
+  always @(posedge clk) begin
+    started_q <= 1'b1;
+    rst_q <= rst;
+    phase_q <= rst ? `CCHIP_PHASE_IDLE : phase;
+    decouple_q <= decouple;
+    stop_q <= stop;
+    hold_q <= hold_reset;
+    seen_q <= decoupled;
+    seen_q2 <= seen_q;
+    crc_ok_q <= crc_ok;
+    if (phase == `CCHIP_PHASE_TRANSFER) good_q <= good_q & ~mine;
+    else if (phase == `CCHIP_PHASE_ROC && phase_q == `CCHIP_PHASE_CHECK && crc_ok_q) good_q <= good_q | mine;
+    if (phase == `CCHIP_PHASE_TRANSFER) reset_q <= 8'd0;
+    else if ((hold_reset & mine) != 2'b00) reset_q <= reset_q == 8'd255 ? reset_q : reset_q + 8'd1;
+    clocks_q <= rst || phase != phase_q ? 8'd1 : clocks_q == 8'd255 ? clocks_q : clocks_q + 8'd1;
+    open_q <= rst ? 2'd0 : open_q + {1'b0, accept} - {1'b0, m_report_valid};
+  end
+
+  wire changed = phase != phase_q;
+  wire [1:0] fell = decouple_q & ~decouple;
+  always @(*) begin
+    assume (started_q || rst);
+    // header and transfer: the fetch ends them within 8 clocks
+    assume (!fetches || changed || clocks_q < 8'd8 || (phase == `CCHIP_PHASE_HEADER ? ends : transfer_done | bus_error | timeout));
+    if (started_q && !rst_q) begin
+      order: assert (!changed || phase == phase_q + 4'd1 || phase == `CCHIP_PHASE_REPORT
+                     || (phase == `CCHIP_PHASE_IDLE && phase_q == `CCHIP_PHASE_REPORT));
+      known: assert (phase <= `CCHIP_PHASE_REPORT);
+      shut: assert (phase < `CCHIP_PHASE_TRANSFER || phase > `CCHIP_PHASE_ROC
+                    || (mine != 2'b00 && (stop & decouple & hold_reset & mine) == mine));
+      seen: assert (phase != `CCHIP_PHASE_RESET || !changed || (seen_q2 & mine) == mine);
+      checked: assert ((fell & ~good_q) == 2'b00);
+      long_reset: assert (fell == 2'b00 || (reset_q >= RESET_MIN && (hold_reset & fell) == 2'b00));
+      in_recouple: assert (fell == 2'b00 || (phase == `CCHIP_PHASE_RECOUPLE && fell == mine));
+      reset_first: assert ((hold_q & ~hold_reset) == 2'b00 || (phase == `CCHIP_PHASE_RECOUPLE && decouple == decouple_q));
+      roc: assert (roc_start == 2'b00 || (phase == `CCHIP_PHASE_ROC && changed && roc_start == mine));
+      other: assert (((stop ^ stop_q) & ~mine) == 2'b00 && ((decouple ^ decouple_q) & ~mine) == 2'b00
+                     && ((hold_reset ^ hold_q) & ~mine) == 2'b00);
+      at_work: assert (phase != `CCHIP_PHASE_IDLE || stop == decouple);
+      fetch: assert (!run || fetches);
+      asked: assert (!m_report_valid || open_q != 2'd0);
+      answered: assert (open_q != 2'd3 && (phase != `CCHIP_PHASE_IDLE || open_q <= 2'd1));
+      bounded: assert (phase == `CCHIP_PHASE_IDLE || changed || clocks_q <= SLOT_LIMIT + 8'd4);
+    end
+  end
+  always @(posedge clk) begin
+    works: cover (m_report_valid && m_report_code == `CCHIP_SWAP_OK);
+    loses: cover (m_report_valid && m_report_code == `CCHIP_SWAP_OK && m_report_lost != 16'd0);
+  end
+endmodule
+`default_nettype wire
