@@ -13,7 +13,8 @@
 //                abort, busy and same module leave it. A kind that no slot holds, no valid bitstream brings and no
 //                swap is bringing for 16 clocks has `no_provider` = 1.
 //   command      refused with BUSY while a swap is under way, with REQUEST where the table has no valid bitstream
-//   latency      a scan of all slots and kinds takes 3 * SLOTS + 2 clocks, a request leaves at its end
+//   latency      a scan of all slots and kinds takes 3 * SLOTS + 2 clocks, a request leaves at its end; 15 clocks of rest
+//                after a report
 //   cuts         every path but rst: all outputs are flip-flops
 //   reset        no request, no report, ages 0
 module cchip_swap_scheduler #(
@@ -87,6 +88,9 @@ module cchip_swap_scheduler #(
   reg  swapping_q;
   wire asked = swapping_q | m_swap_valid;
 
+  // ---- what the scan sees of kinds and slots stands still meanwhile
+  wire look;
+
   // ---- kinds
   wire [  2:0] provided;  // a slot holds the kind
   wire [  2:0] bitstream;  // a slot could get it
@@ -113,9 +117,11 @@ module cchip_swap_scheduler #(
       always @(posedge clk) begin
         if (rst | ~unserved | restart[kind]) age_q[32*kind+:32] <= 32'd0;
         else if (~&age) age_q[32*kind+:32] <= age + 32'd1;
-        open_q[kind]   <= unserved & ~restart[kind];
-        over_q[kind]   <= age >= max_age;
-        enough_q[kind] <= {{32 - COUNT_W{1'b0}}, waiting[COUNT_W*kind+:COUNT_W]} >= min_batch;
+        if (look) begin
+          open_q[kind]   <= unserved & ~restart[kind];
+          over_q[kind]   <= age >= max_age;
+          enough_q[kind] <= {{32 - COUNT_W{1'b0}}, waiting[COUNT_W*kind+:COUNT_W]} >= min_batch;
+        end
       end
 
       // 16 clocks bridge what the table and the slots show late
@@ -149,8 +155,11 @@ module cchip_swap_scheduler #(
           if (slot_taken[slot] & ~&taken_q) taken_q <= taken_q + 16'd1;
           if (~&clocks_q) clocks_q <= clocks_q + 32'd1;
         end
-        idle_q[slot] <= ~work[module_id];
-        settled_q[slot] <= (taken_q != 16'd0 & {16'd0, taken_q} >= min_batch) | (clocks_q[31:10] != 22'd0 & clocks_q >= max_age);
+        if (look) begin
+          idle_q[slot] <= ~work[module_id];
+          settled_q[slot] <= (taken_q != 16'd0 & {16'd0, taken_q} >= min_batch)
+              | (clocks_q[31:10] != 22'd0 & clocks_q >= max_age);
+        end
       end
     end
   endgenerate
@@ -165,8 +174,12 @@ module cchip_swap_scheduler #(
   reg  [ 1:0] kind_q, best_kind_q;
   reg  [34:0] merit_q, best_q;  // {too old, age or pairs, idle, not exchanged last}
   reg         found_q;
-  wire        better = legal_q & (~found_q | merit_q > best_q);
-  wire        scanning = enable & ~asked & ~command_valid;
+  // ages grow during the scan: they only compare different kinds
+  wire        better = legal_q & (~found_q |
+      (kind_q == best_kind_q ? merit_q[1:0] > best_q[1:0] : merit_q[34:2] > best_q[34:2]));
+  reg  [ 3:0] pause_q;  // after a report slots and table are seen late
+  wire        scanning = enable & ~asked & ~command_valid & pause_q == 4'd0;
+  assign look = ~scanning | scan_end_q;
 
   wire [ 1:0] scan_kind_d = scan_kind_q + {1'b0, SLOTS == 1 | scan_slot_q};
   wire        scan_old = over_q[scan_kind_q];
@@ -189,7 +202,8 @@ module cchip_swap_scheduler #(
       best_kind_q <= kind_q;
     end
     scan_end_q <= end_q;
-    if (rst | ~scanning | scan_end_q) begin
+    pause_q    <= rst | s_report_valid ? 4'd15 : pause_q - {3'd0, pause_q != 4'd0};
+    if (rst | look) begin
       scan_q      <= 3'd0;
       scan_slot_q <= 1'b0;
       scan_kind_q <= 2'd0;
