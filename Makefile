@@ -32,8 +32,8 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv build sim wave test test-long formal test-gates test-debug test-asan lint tidy format campaign campaign-build \
-  campaign-grid campaign-classes campaign-certainty campaign-leaves export fpga fpga-quick install clean
+.PHONY: help bootstrap venv build sim sim-reconfig wave test test-long formal test-gates test-debug test-asan lint tidy format campaign campaign-build \
+  campaign-grid campaign-classes campaign-certainty campaign-leaves campaign-swaps export fpga fpga-quick install clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
@@ -55,6 +55,10 @@ build: $(RELEASE)/build.ninja ## build everything, optimised
 sim: $(RELEASE)/build.ninja ## run two meshes through the simulated hardware, check every pair, write build/waves/sim.fst
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip
 	$(RELEASE)/bin/cchip demo $(SIM_ARGS)
+
+sim-reconfig: $(RELEASE)/build.ninja ## run mixed meshes through two slots with real swaps, check every pair, write build/waves/sim-reconfig.fst
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip
+	$(RELEASE)/bin/cchip reconfig $(SIM_ARGS)
 
 wave: ## open the waveform of the last `make sim`
 	@test -f build/waves/sim.fst || { echo "no build/waves/sim.fst yet, run: make sim" >&2; exit 1; }
@@ -105,6 +109,11 @@ campaign-leaves: campaign-build ## leaf pairs of meshes: beats and share of inde
 	$(CAMPAIGN) leaves
 	$(CAMPAIGN) leaves $(LEAVES)
 	$(CAMPAIGN) leaves --quads $(QUAD_LEAVES)
+
+SWAPS ?= 10000
+campaign-swaps: $(RELEASE)/build.ninja ## SWAPS exchanges of modules under random traffic with faults (CCHIP_SEED repeats a run)
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip_swaps
+	$(RELEASE)/bin/cchip_swaps --swaps $(SWAPS) --threads $(JOBS)
 
 fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEEDS places and routes each (hours), into docs/fpga.md
 	scripts/fpga.py --seeds $(SEEDS) --jobs $(JOBS) --campaign $(CAMPAIGN) --write

@@ -1,0 +1,459 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// cchip_primtest_subsystem with everything around it: pairs of three kinds, a sink, memory with bitstreams, registers.
+/// What tests, campaign and command share is the account of the pairs: every tag once, with the right answer.
+#ifndef CCHIP_TESTS_SUBSYSTEM_BENCH_HPP
+#define CCHIP_TESTS_SUBSYSTEM_BENCH_HPP
+
+#include <verilated.h>
+
+#include <array>
+#include <cchip/bitstream.hpp>
+#include <cchip/exact_oracle.hpp>
+#include <cchip/model/programme.hpp>
+#include <cchip/primtest_engine.hpp>
+#include <cchip/registers.hpp>
+#include <cchip/sim/axi_lite.hpp>
+#include <cchip/sim/axi_memory.hpp>
+#include <cchip/sim/pair_port.hpp>
+#include <cchip/sim/simulation.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <random>
+#include <set>
+
+#include "../campaign/pair_source.hpp"
+#include "models.hpp"
+
+namespace cchip::subsystem {
+
+namespace regs = cchip::registers;
+using Random = std::mt19937_64;
+inline bool chance(Random& random, int percent) { return static_cast<int>(random() % 100) < percent; }
+
+/// One beat of s_pair; kind is the ModuleId of the test, 0 is illegal.
+struct KindRequest {
+  sim::PairRequest request;
+  int kind = 0;
+};
+
+/// One beat of m_result.
+struct KindResult {
+  sim::PairResultBeat beat;
+  int kind = 0;
+  friend bool operator==(const KindResult& x, const KindResult& y) { return x.kind == y.kind && x.beat == y.beat; }
+  friend std::ostream& operator<<(std::ostream& out, const KindResult& x) {
+    return out << "kind " << x.kind << ' ' << x.beat;
+  }
+};
+
+constexpr std::array<Kind, 4> kind_a = {Kind::tri, Kind::tri, Kind::tri, Kind::quad};
+constexpr std::array<Kind, 4> kind_b = {Kind::tri, Kind::tri, Kind::quad, Kind::quad};
+
+/// What the subsystem says about a pair that nobody tests.
+inline KindResult refused_answer(const KindRequest& r) {
+  return {{r.request.tag, true, true, false, {AxisClass::illegal, 0, 0}, 0}, r.kind};
+}
+
+/// What the test of its kind says; the grid answer is the exact oracle's.
+inline KindResult tested_answer(const KindRequest& r, int coord_w) {
+  if (r.kind == 0 || r.request.mode > 1) return refused_answer(r);
+  const auto kind = static_cast<std::size_t>(r.kind);
+  const model::Options options{
+      {static_cast<std::size_t>(kind_a[kind]), static_cast<std::size_t>(kind_b[kind])}, true};
+  const model::Outcome o = model::run_programme(options, r.request.pair, r.request.mode, coord_w);
+  const bool exact = exact_intersects(r.request.pair);
+  sim::require(o.grid == exact, "the model is wrong");
+  return {{r.request.tag, o.hit(), exact, o.definite, o.witness, o.beats}, r.kind};
+}
+
+/// Pairs of every kind and class.
+class KindSource {
+ public:
+  KindSource(int coord_w, std::uint64_t seed) : coord_w_(coord_w), random_(seed) {
+    for (std::size_t kind = 1; kind < 4; ++kind) {
+      sources_.emplace_back(coord_w, seed + kind, kind_a[kind], kind_b[kind]);
+    }
+  }
+  /// \param kind 0: illegal, what is in the payload does not matter
+  KindRequest draw(int kind) {
+    const std::size_t shape = kind == 0 ? 1 : static_cast<std::size_t>(kind);
+    campaign::PairSource& source = sources_[shape - 1];
+    KindRequest r;
+    r.kind = kind;
+    r.request.pair = source.draw(campaign::classes_of(kind_a[shape], kind_b[shape])[source.draw_class()].value);
+    const int half = 1 << (coord_w_ - 1);
+    for (GridPrimitive* p : {&r.request.pair.a, &r.request.pair.b}) {  // slot 3 of a triangle must not matter
+      if (p->kind == Kind::tri) p->v[3].setConstant(static_cast<int>(random_() % static_cast<unsigned>(half)));
+    }
+    r.request.pair.eta = static_cast<int>(random_() % 16);
+    r.request.mode = static_cast<std::uint8_t>(chance(random_, 5) ? 2 + random_() % 2 : chance(random_, 25) ? 0 : 1);
+    return r;
+  }
+
+ private:
+  int coord_w_;
+  Random random_;
+  std::vector<campaign::PairSource> sources_;
+};
+
+/// Ways to spoil a bitstream.
+enum class Spoilt {
+  no,
+  magic,         ///< not a bitstream
+  slot,          ///< for another slot
+  module_id,     ///< of another module
+  length,        ///< header and size of the file differ
+  crc,           ///< a bit of the payload is wrong
+  truncated,     ///< the end is missing, header and size say so: complete to the controller
+  too_long,      ///< bytes behind the end, header and size say so
+  content,       ///< the device's own check fails
+  other_module,  ///< the payload is another module's
+  last
+};
+
+/// Bytes of a bitstream for this slot and module, spoilt in this way.
+inline Bytes spoilt_bitstream(Spoilt how, int slot, int module_id, std::size_t payload_bytes, Random& random) {
+  const auto id = static_cast<ModuleId>(module_id);
+  const auto other = static_cast<ModuleId>((module_id + 1 + static_cast<int>(random() % 3)) % 4);
+  const auto place = static_cast<std::uint8_t>(slot);
+  const auto seed = static_cast<std::uint32_t>(random());
+  Bytes payload = make_payload(place, how == Spoilt::other_module ? other : id, payload_bytes, seed);
+  BitstreamHeader header{defs::bitstream_magic, place, id, static_cast<std::uint32_t>(payload.size()), crc32(payload)};
+  if (how == Spoilt::magic) header.magic ^= 1U << random() % 32;
+  if (how == Spoilt::slot) header.slot = static_cast<std::uint8_t>(place + 1 + random() % 254);
+  if (how == Spoilt::module_id) header.module_id = other;
+  if (how == Spoilt::length) header.length += 4;
+  if (how == Spoilt::crc) payload[random() % payload.size()] ^= static_cast<std::uint8_t>(1U << random() % 8);
+  if (how == Spoilt::content) payload[8 + random() % (payload.size() - 8)] ^= 0x10;
+  if (how == Spoilt::truncated) payload.resize(payload.size() - 4);
+  if (how == Spoilt::too_long) payload.insert(payload.end(), 4, std::uint8_t{0});
+  if (how == Spoilt::truncated || how == Spoilt::too_long || how == Spoilt::content) return make_bitstream(place, id, payload);
+  return join_bitstream(header, payload);
+}
+
+/// A swap as its report told.
+struct Report {
+  std::uint64_t clock = 0;
+  int slot = 0;
+  int module_id = 0;
+  SwapCode code = SwapCode::ok;
+  unsigned lost = 0;
+};
+
+/// Nets of the subsystem that the account needs.
+template <class Model>
+struct Nets;
+#define CCHIP_SUBSYSTEM_NET(name) t.rootp->cchip_primtest_subsystem__DOT__##name
+#define CCHIP_SLOT_NET(slot, name) CCHIP_SUBSYSTEM_NET(gen_slots__BRA__##slot##__KET____DOT__u_slot__DOT__##name)
+#define CCHIP_SUBSYSTEM_NETS(model, modules, coupled)                                                          \
+  template <>                                                                                                  \
+  struct Nets<model> {                                                                                         \
+    static bool report_valid(model& t) { return CCHIP_SUBSYSTEM_NET(report_valid) != 0; }                      \
+    static Report report(model& t) {                                                                           \
+      return {0, CCHIP_SUBSYSTEM_NET(report_slot), CCHIP_SUBSYSTEM_NET(report_module),                         \
+              static_cast<SwapCode>(CCHIP_SUBSYSTEM_NET(report_code)), CCHIP_SUBSYSTEM_NET(report_lost)};      \
+    }                                                                                                          \
+    static unsigned slot_module(model& t) { return modules; }                                                  \
+    static unsigned decoupled(model& t) { return coupled; }                                                    \
+    static unsigned phase(model& t) { return CCHIP_SUBSYSTEM_NET(u_controller__DOT__u_sequencer__DOT__phase_q); } \
+    static unsigned bitstreams(model& t) { return CCHIP_SUBSYSTEM_NET(u_regs__DOT__bitstream_valid_value_q); } \
+  }
+#define CCHIP_MODULE(slot) (CCHIP_SLOT_NET(slot, u_decoupler__DOT__rm_id_q) & 3U) << (2 * (slot))
+#define CCHIP_DECOUPLED(slot) (CCHIP_SLOT_NET(slot, u_decoupler__DOT__decoupled_q) & 1U) << (slot)
+CCHIP_SUBSYSTEM_NETS(Vsubsystem_s1, CCHIP_MODULE(0), CCHIP_DECOUPLED(0));
+CCHIP_SUBSYSTEM_NETS(Vsubsystem_s2, CCHIP_MODULE(0) | CCHIP_MODULE(1), CCHIP_DECOUPLED(0) | CCHIP_DECOUPLED(1));
+#undef CCHIP_DECOUPLED
+#undef CCHIP_MODULE
+#undef CCHIP_SUBSYSTEM_NETS
+#undef CCHIP_SLOT_NET
+#undef CCHIP_SUBSYSTEM_NET
+
+/// What went wrong; the first one in words.
+struct Account {
+  std::uint64_t pairs = 0;       ///< answered
+  std::uint64_t refused = 0;     ///< of them without a test
+  std::uint64_t given_up = 0;    ///< by swaps with force, reported
+  std::uint64_t lost = 0;        ///< not answered and not reported
+  std::uint64_t duplicated = 0;
+  std::uint64_t wrong = 0;
+  std::string first;
+  bool clean() const { return lost + duplicated + wrong == 0; }
+};
+
+template <class Config>
+class SubsystemBench {
+ public:
+  using Model = typename Config::Model;
+  static constexpr int slots = Config::SLOTS;
+  static constexpr std::uint32_t stride = 0x1000;  ///< of the bitstreams in memory
+
+  explicit SubsystemBench(sim::SimulationOptions options)
+      : simulation(without_end(options)),
+        memory(simulation.top()),
+        port_(simulation.top(), Config::COORD_W),
+        source(Config::COORD_W, options.seed),
+        driver("s_pair", top().s_pair_valid, top().s_pair_ready, [this](const KindRequest& r) { put(r); }),
+        sink("m_result", top().m_result_valid, top().m_result_ready, [this] { return result(); }),
+        random_(options.seed) {
+    top().cfg_error = 0;
+    driver.on_accept([this](const KindRequest& r, std::uint64_t) { accept(r); });
+    driver.when_idle([this] {
+      port_.scramble(random_);
+      top().s_pair_kind = static_cast<CData>(random_() & 3U);
+    });
+    sink.on_item([this](const KindResult& r, std::uint64_t) { take(r); });
+    master_ = std::make_unique<sim::AxiLiteMaster<Model>>(top());
+    for (sim::Agent* agent : std::initializer_list<sim::Agent*>{&driver, &sink, &memory, &registers_, &watch_}) {
+      simulation.add(*agent);
+    }
+  }
+
+  Model& top() { return simulation.top(); }
+  Random& random() { return random_; }
+  void step() { simulation.step(); }
+  void steps(std::uint64_t clocks) { simulation.steps(clocks); }
+
+  /// Forgets all pairs: none of their tags may come back.
+  void reset(int clocks = 2) {
+    driver.clear();
+    queued_.clear();
+    posted_ = 0;
+    master_ = std::make_unique<sim::AxiLiteMaster<Model>>(top());
+    simulation.reset(clocks);
+    open_.clear();
+    given_up_ = 0;
+    absent_.fill(0);
+  }
+
+  // ---- registers
+  bool idle_bus() const { return master_->done(); }
+  /// Until all posted writes are answered.
+  void settle_bus() {
+    simulation.run_until([&] { return master_->done(); }, 4000, "the registers");
+    collect();
+  }
+  void write(std::uint32_t offset, std::uint32_t value) {
+    settle_bus();
+    sim::require(master_->write(simulation, offset, value), "a register refuses a write");
+  }
+  std::uint32_t read(std::uint32_t offset) {
+    settle_bus();
+    const sim::AxiLiteWord word = master_->read(simulation, offset);
+    sim::require(word.ok, "a register refuses a read");
+    return word.data;
+  }
+  /// Collects what the posted writes were answered.
+  void collect() {
+    while (posted_ > 0) {
+      master_->next_write();
+      --posted_;
+    }
+  }
+  void post_write(std::uint32_t offset, std::uint32_t value) {
+    master_->push_write(offset, value);
+    ++posted_;
+  }
+  static std::uint32_t entry(int slot, int module_id) { return static_cast<std::uint32_t>(4 * slot + module_id); }
+  static std::uint32_t address(int slot, int module_id) { return stride * (1 + entry(slot, module_id)); }
+
+  /// Puts a bitstream into memory and, by posted writes, into the table.
+  void provide(int slot, int module_id, const Bytes& file) {
+    const std::uint32_t e = entry(slot, module_id);
+    memory.write(address(slot, module_id), file);
+    post_write(regs::bitstream_address::offset(e), address(slot, module_id));
+    post_write(regs::bitstream_size::offset(e), static_cast<std::uint32_t>(file.size()));
+    post_write(regs::bitstream_valid::offset(e), 1);
+  }
+  Bytes good(int slot, int module_id, std::size_t payload_bytes = 32) {
+    return spoilt_bitstream(Spoilt::no, slot, module_id, payload_bytes, random_);
+  }
+  /// Registers of a working system: good bitstreams for all slots and modules, scheduler on.
+  void set_up(std::uint32_t batch = 4, std::uint32_t age = 500) {
+    for (int slot = 0; slot < slots; ++slot) {
+      for (int m = 0; m < 4; ++m) provide(slot, m, good(slot, m));
+    }
+    post_write(regs::minimum_batch::offset, batch);
+    post_write(regs::maximum_age::offset, age);
+    post_write(regs::interrupt_enable::offset, 0x1F);
+    post_write(regs::control::offset, regs::control::scheduler_enable_mask);
+    settle_bus();
+  }
+  void command(int slot, int module_id, bool force) {
+    post_write(regs::command::offset, regs::command::go_mask | (force ? regs::command::force_mask : 0) |
+                                          static_cast<std::uint32_t>(module_id) << regs::command::module_id_shift |
+                                          static_cast<std::uint32_t>(slot));
+  }
+
+  // ---- pairs
+  void push(int kind) {
+    KindRequest r = source.draw(kind);
+    push(r);
+  }
+  void push(KindRequest r) {
+    while (open_.count(next_tag_) != 0 || queued_.count(next_tag_) != 0) ++next_tag_;
+    r.request.tag = next_tag_++;
+    queued_.insert(r.request.tag);
+    driver.push(r);
+  }
+  std::size_t in_flight() const { return open_.size(); }
+  /// Until every pair is answered or reported as given up; then all the rest is an error.
+  /// \returns false if that does not happen: a hang
+  bool drain(std::uint64_t most_clocks) {
+    std::uint64_t clocks = 0;
+    while (driver.waiting() != 0 || open_.size() > given_up_) {
+      if (clocks++ == most_clocks) return false;
+      simulation.step();
+    }
+    simulation.steps(300);  // nothing comes after the last answer
+    if (open_.size() != given_up_) {
+      account.lost += open_.size() > given_up_ ? open_.size() - given_up_ : 0;
+      if (open_.size() < given_up_) fail(account.wrong, "more pairs were answered than the reports of lost ones allow");
+    }
+    open_.clear();
+    given_up_ = 0;
+    return true;
+  }
+  /// \throws SimulationError
+  void finish(std::uint64_t most_clocks = 200000) {
+    if (!drain(most_clocks)) {
+      throw sim::SimulationTimeout("hang: " + std::to_string(open_.size()) + " pairs without an answer after " +
+                                   std::to_string(most_clocks) + " clocks");
+    }
+    sim::require(account.clean(), account.first.empty() ? "pairs were lost" : account.first);
+  }
+
+  // ---- swaps
+  std::vector<Report> reports;  ///< since construction
+  std::size_t count(SwapCode code) const {
+    return static_cast<std::size_t>(
+        std::count_if(reports.begin(), reports.end(), [&](const Report& r) { return r.code == code; }));
+  }
+  /// Steps until one more report came. \throws SimulationTimeout
+  Report next_report(std::uint64_t most_clocks = 20000) {
+    const std::size_t before = reports.size();
+    simulation.run_until([&] { return reports.size() > before; }, most_clocks, "a report");
+    return reports.back();
+  }
+  SwapPhase phase() { return static_cast<SwapPhase>(Nets<Model>::phase(top())); }
+  int module_in(int slot) { return static_cast<int>(Nets<Model>::slot_module(top()) >> (2 * slot) & 3U); }
+  bool decoupled(int slot) { return (Nets<Model>::decoupled(top()) >> slot & 1U) != 0; }
+  std::uint64_t last_progress() const { return progress_; }
+
+  sim::Simulation<Model> simulation;
+  sim::AxiMemory<Model> memory;
+
+ private:
+  sim::PairPort<Model> port_;
+
+ public:
+  KindSource source;
+  sim::StreamDriver<KindRequest> driver;
+  sim::StreamSink<KindResult> sink;
+  Account account;
+
+ private:
+  struct Open {
+    KindResult tested;
+    KindResult refused;
+    std::uint64_t clock;
+  };
+  /// Passes to whoever is the master at the time.
+  class Registers : public sim::Agent {
+   public:
+    explicit Registers(std::unique_ptr<sim::AxiLiteMaster<Model>>& master) : master_(master) {}
+    void drive(const sim::ClockInfo& now) override { master_->drive(now); }
+    void sample(const sim::ClockInfo& now) override { master_->sample(now); }
+
+   private:
+    std::unique_ptr<sim::AxiLiteMaster<Model>>& master_;
+  };
+  class Watch : public sim::Agent {
+   public:
+    explicit Watch(SubsystemBench& bench) : bench_(bench) {}
+    void sample(const sim::ClockInfo& now) override { bench_.watch(now); }
+
+   private:
+    SubsystemBench& bench_;
+  };
+
+  static sim::SimulationOptions without_end(sim::SimulationOptions options) {
+    options.timeout_clocks = 0;
+    return options;
+  }
+  void put(const KindRequest& r) {
+    port_.put(r.request);
+    top().s_pair_kind = static_cast<CData>(r.kind);
+  }
+  KindResult result() { return {port_.result(), top().m_result_kind}; }
+
+  void accept(const KindRequest& r) {
+    queued_.erase(r.request.tag);
+    answered_.erase(r.request.tag);
+    open_[r.request.tag] = {tested_answer(r, Config::COORD_W), refused_answer(r), simulation.total_clocks()};
+    progress_ = simulation.total_clocks();
+  }
+  void fail(std::uint64_t& counter, const std::string& what) {
+    ++counter;
+    if (account.first.empty()) account.first = "clock " + std::to_string(simulation.clock()) + ": " + what;
+  }
+  void take(const KindResult& got) {
+    progress_ = simulation.total_clocks();
+    const auto entry = open_.find(got.beat.tag);
+    if (entry == open_.end()) {
+      if (answered_.count(got.beat.tag) != 0) {
+        fail(account.duplicated, "answered twice: " + sim::to_text(got));
+      } else {
+        fail(account.wrong, "an answer that nobody asked for: " + sim::to_text(got));
+      }
+      return;
+    }
+    const Open& open = entry->second;
+    ++account.pairs;
+    if (!(got == open.tested)) {
+      const bool legal = got.kind != 0 && absent_[static_cast<std::size_t>(got.kind)] >= open.clock;
+      if (!(got == open.refused) || !legal) {
+        fail(account.wrong, "got " + sim::to_text(got) + ", expected " + sim::to_text(open.tested));
+      }
+      ++account.refused;
+    }
+    answered_.insert(got.beat.tag);
+    open_.erase(entry);
+  }
+  void watch(const sim::ClockInfo& now) {
+    if (now.in_reset) return;
+    if (Nets<Model>::report_valid(top())) {
+      Report r = Nets<Model>::report(top());
+      r.clock = now.clock;
+      given_up_ += r.lost;
+      account.given_up += r.lost;
+      reports.push_back(r);
+    }
+    const unsigned modules = Nets<Model>::slot_module(top());
+    const unsigned valid = Nets<Model>::bitstreams(top());
+    for (unsigned kind = 1; kind < 4; ++kind) {
+      bool provided = false;
+      for (unsigned slot = 0; slot < static_cast<unsigned>(slots); ++slot) {
+        provided = provided || (modules >> (2 * slot) & 3U) == kind || (valid >> (4 * slot + kind) & 1U) != 0;
+      }
+      if (!provided) absent_[kind] = simulation.total_clocks();
+    }
+  }
+
+  std::map<std::uint16_t, Open> open_;
+  std::set<std::uint16_t> queued_, answered_;
+  std::uint16_t next_tag_ = 1;
+  std::uint64_t given_up_ = 0;  // reported, not yet known which
+  std::array<std::uint64_t, 4> absent_{};  // last clock without a provider
+  std::uint64_t progress_ = 0;
+  std::unique_ptr<sim::AxiLiteMaster<Model>> master_;
+  Registers registers_{master_};
+  Watch watch_{*this};
+  std::size_t posted_ = 0;
+  Random random_;
+};
+
+}  // namespace cchip::subsystem
+
+#endif

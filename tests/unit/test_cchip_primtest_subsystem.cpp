@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: Apache-2.0
+// The subsystem as a whole: every tag is answered once and right, whatever happens to the swaps; each fault has its code
+// and leaves the slot as documented. Answers come from the exact oracle and the model of the tests.
+#include <catch2/catch.hpp>
+#include <cchip/sim/wave_on_failure.hpp>
+
+#include "../subsystem/bench.hpp"
+
+using namespace cchip;
+using namespace cchip::subsystem;
+
+namespace {
+
+using Configs = std::tuple<OneSlot, TwoSlots>;
+#define CCHIP_CASE(name) \
+  TEMPLATE_LIST_TEST_CASE("cchip_primtest_subsystem: " name, "[unit][cchip_primtest_subsystem]", Configs)
+
+template <class Body>
+void with_wave(Body&& body) {
+  std::string name = Catch::getResultCapture().getCurrentTestName();
+  for (char& c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  }
+  sim::with_wave_on_failure(name, body);
+}
+
+/// A system after reset with all bitstreams; the scheduler is off unless said otherwise.
+template <class Config>
+struct System : SubsystemBench<Config> {
+  explicit System(const sim::SimulationOptions& options, bool scheduler = false) : SubsystemBench<Config>(options) {
+    this->reset();
+    this->set_up();
+    if (!scheduler) this->write(regs::control::offset, 0);
+    this->write(regs::shutdown_limit::offset, 4000);  // longer than the longest pair
+    this->write(regs::memory_limit::offset, 100);
+  }
+  void push_some(int pairs) {
+    for (int i = 0; i < pairs; ++i) this->push(1 + static_cast<int>(this->random()() % 3));
+  }
+  /// A swap by software.
+  Report swap(int slot, int module_id, bool force = false) {
+    this->command(slot, module_id, force);
+    const Report r = this->next_report();
+    this->settle_bus();
+    return r;
+  }
+  /// Everything works: a pair of each kind is tested.
+  void works() {
+    this->memory.resume();
+    this->memory.set_fault({});
+    this->sink.set_pattern(sim::Pattern::always());
+    this->set_up();
+    const std::uint64_t refused = this->account.refused;
+    for (int kind = 1; kind < 4; ++kind) {
+      for (int i = 0; i < 3; ++i) this->push(kind);
+    }
+    this->finish();
+    REQUIRE(this->account.refused == refused);
+  }
+  bool irq() { return this->top().irq != 0; }
+};
+
+}  // namespace
+
+CCHIP_CASE("mixed kinds by real swaps, counters and interrupt") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<TestType> s(options, true);
+    REQUIRE(s.read(regs::id::offset) == regs::id::value_reset);
+    REQUIRE(s.read(regs::capabilities::offset) ==
+            static_cast<std::uint32_t>(TestType::COORD_W << 16 | TestType::CFG_W << 8 | TestType::SLOTS));
+    REQUIRE(s.read(regs::queue_depth::offset) == TestType::QUEUE_DEPTH);
+    std::array<std::uint32_t, 4> sent{};
+    for (int i = 0; i < 400; ++i) {
+      const int kind = static_cast<int>(s.random()() % 4);
+      ++sent[static_cast<std::size_t>(kind)];
+      s.push(kind);
+    }
+    s.finish();
+    REQUIRE(s.account.pairs == 400);
+    REQUIRE(s.account.refused == 0);
+    for (std::uint32_t m = 0; m < 4; ++m) {
+      REQUIRE(s.read(regs::pairs::offset(m)) == sent[m]);
+      REQUIRE(s.read(regs::pairs::offset(m) + 4) == 0);
+    }
+    for (const Report& r : s.reports) {
+      CAPTURE(r.clock, r.slot, r.module_id, static_cast<int>(r.code), r.lost);
+      REQUIRE(r.code == SwapCode::ok);
+    }
+    REQUIRE(s.count(SwapCode::ok) >= 3);
+    REQUIRE(s.read(regs::swaps::offset) == s.reports.size());
+    REQUIRE(s.read(regs::rejected::offset) == 0);
+    REQUIRE(s.read(regs::lost::offset) == 0);
+    REQUIRE(s.irq());
+    REQUIRE(s.read(regs::interrupt_status::offset) ==
+            (regs::interrupt_status::done_mask | regs::interrupt_status::illegal_kind_mask));
+    s.write(regs::interrupt_status::offset, 0x1F);
+    s.steps(2);
+    REQUIRE(!s.irq());
+    s.write(regs::control::offset, regs::control::clear_mask);
+    REQUIRE(s.read(regs::pairs::offset(1)) == 0);
+    REQUIRE(s.read(regs::swaps::offset) == 0);
+  });
+}
+
+CCHIP_CASE("all patterns of senders and receivers") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<TestType> s(options, true);
+    for (const sim::Pattern& source : sim::standard_patterns(options.seed)) {
+      for (const sim::Pattern& back_pressure : sim::standard_patterns(options.seed + 100)) {
+        INFO("s_pair " << source.name() << ", m_result " << back_pressure.name());
+        s.driver.set_pattern(source);
+        s.sink.set_pattern(back_pressure);
+        s.push_some(20);
+        s.finish();
+      }
+    }
+    REQUIRE(s.count(SwapCode::ok) > 40);
+    REQUIRE(s.account.refused == 0);
+  });
+}
+
+CCHIP_CASE("spoilt bitstreams: code, slot at work or decoupled, valid bit gone, interrupt; then a good one") {
+  const std::map<Spoilt, SwapCode> codes = {
+      {Spoilt::magic, SwapCode::magic},           {Spoilt::slot, SwapCode::slot},
+      {Spoilt::module_id, SwapCode::module},      {Spoilt::length, SwapCode::length},
+      {Spoilt::crc, SwapCode::crc},               {Spoilt::truncated, SwapCode::wrong_module},
+      {Spoilt::too_long, SwapCode::wrong_module}, {Spoilt::content, SwapCode::wrong_module},
+      {Spoilt::other_module, SwapCode::wrong_module}};
+  REQUIRE(codes.size() + 1 == static_cast<std::size_t>(Spoilt::last));
+  with_wave([&](const sim::SimulationOptions& options) {
+    System<TestType> s(options);
+    for (const auto& [how, code] : codes) {
+      for (int slot = 0; slot < TestType::SLOTS; ++slot) {
+        INFO("spoilt " << static_cast<int>(how) << ", slot " << slot);
+        s.write(regs::control::offset, 0);
+        const int before = s.module_in(slot);
+        const int module_id = before == 2 ? 3 : 2;
+        s.push(before == 0 ? 1 : before);
+        s.provide(slot, module_id, spoilt_bitstream(how, slot, module_id, 48, s.random()));
+        s.settle_bus();
+        s.write(regs::interrupt_status::offset, 0x1F);
+        const Report r = s.swap(slot, module_id);
+        REQUIRE(static_cast<int>(r.code) == static_cast<int>(code));
+        REQUIRE(r.lost == 0);
+        const bool at_work = code == SwapCode::magic || code == SwapCode::slot || code == SwapCode::module || code == SwapCode::length;
+        s.steps(4);
+        REQUIRE(s.decoupled(slot) == !at_work);
+        REQUIRE(s.module_in(slot) == (at_work ? before : 0));
+        REQUIRE(s.read(regs::bitstream_valid::offset(s.entry(slot, module_id))) == 0);
+        REQUIRE((s.read(regs::interrupt_status::offset) & regs::interrupt_status::error_mask) != 0);
+        REQUIRE(s.irq());
+        const std::uint32_t report = s.read(regs::report::offset);
+        REQUIRE((report & regs::report::code_mask) == static_cast<std::uint32_t>(code));
+        REQUIRE((report & regs::report::slot_mask) >> regs::report::slot_shift == static_cast<std::uint32_t>(slot));
+        REQUIRE((report & regs::report::module_id_mask) >> regs::report::module_id_shift ==
+                static_cast<std::uint32_t>(module_id));
+        REQUIRE(s.swap(slot, module_id).code == SwapCode::request);  // its bitstream is forgotten
+        s.works();
+      }
+    }
+  });
+}
+
+CCHIP_CASE("memory: an error, an address without memory, no answer") {
+  with_wave([](const sim::SimulationOptions& options) {
+    for (const int moment : {0, 1}) {  // in the header, in the payload
+      for (const int what : {0, 1, 2}) {
+        INFO("moment " << moment << ", fault " << what);
+        System<TestType> s(options);
+        const int before = s.module_in(0);
+        s.provide(0, 2, s.good(0, 2, 400));
+        s.push(1);
+        if (what == 0) {
+          s.memory.set_fault([moment, bursts = 0](std::vector<sim::AxiBeat>& burst) mutable {
+            if (++bursts > 2 * moment) burst.back().response = sim::AxiResponse::slave_error;
+          });
+        } else if (what == 1) {
+          s.memory.stop_after(moment == 0 ? 1 : 50);
+        } else if (moment == 0) {
+          s.settle_bus();
+          s.write(regs::bitstream_address::offset(2), 0x100000);
+        } else {
+          continue;
+        }
+        const Report r = s.swap(0, 2);
+        REQUIRE(r.code == (what == 1 ? SwapCode::memory : SwapCode::bus));
+        s.steps(4);
+        if (moment == 0) REQUIRE(s.module_in(0) == before);
+        if (moment == 1) REQUIRE(s.decoupled(0));
+        s.works();  // beats that come late are nobody's
+      }
+    }
+  });
+}
+
+CCHIP_CASE("an error of the device leaves the slot decoupled") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<TestType> s(options);
+    s.command(0, 2, false);
+    s.simulation.run_until([&] { return s.phase() == SwapPhase::transfer; }, 2000, "the transfer");
+    s.steps(5);
+    s.top().cfg_error = 1;
+    s.step();
+    s.top().cfg_error = 0;
+    REQUIRE(s.next_report().code == SwapCode::device);
+    s.steps(4);
+    REQUIRE(s.decoupled(0));
+    s.collect();
+    s.works();
+  });
+}
+
+CCHIP_CASE("busy, the same module again, no such slot or module") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<TestType> s(options);
+    s.command(0, 2, false);
+    s.simulation.run_until([&] { return s.phase() == SwapPhase::transfer; }, 2000, "the transfer");
+    s.command(0, 3, false);
+    const Report busy = s.next_report();
+    REQUIRE(busy.code == SwapCode::busy);
+    REQUIRE(busy.module_id == 3);
+    const Report done = s.next_report();
+    REQUIRE(done.code == SwapCode::ok);
+    REQUIRE(done.module_id == 2);
+    s.settle_bus();
+    REQUIRE(s.swap(0, 2).code == SwapCode::same);
+    REQUIRE(s.read(regs::bitstream_valid::offset(2)) == 1);
+    REQUIRE(s.swap(TestType::SLOTS, 2).code == SwapCode::request);
+    REQUIRE(s.swap(0, 4).code == SwapCode::request);
+    REQUIRE(s.read(regs::swaps::offset) == 1);
+    s.works();
+  });
+}
+
+CCHIP_CASE("abort in each phase: at work with the former module, decoupled, or too late") {
+  with_wave([](const sim::SimulationOptions& options) {
+    for (const SwapPhase phase : {SwapPhase::header, SwapPhase::shutdown, SwapPhase::decouple, SwapPhase::reset,
+                                  SwapPhase::transfer, SwapPhase::check, SwapPhase::roc, SwapPhase::recouple}) {
+      INFO("phase " << static_cast<int>(phase));
+      System<TestType> s(options);
+      s.push_some(4);
+      s.steps(5);
+      s.command(0, 2, false);
+      // an abort takes some clocks through the bus: it is written so that it arrives in the phase asked for
+      std::optional<Report> report;
+      for (int delay = 0; delay < 4000 && !report; ++delay) {
+        const bool arrived = s.phase() == phase;
+        if (arrived) {
+          s.post_write(regs::control::offset, regs::control::abort_mask);
+          report = s.next_report();
+        } else {
+          s.step();
+        }
+      }
+      REQUIRE(report);
+      REQUIRE((report->code == SwapCode::aborted || report->code == SwapCode::ok));
+      if (phase <= SwapPhase::shutdown || phase == SwapPhase::transfer) REQUIRE(report->code == SwapCode::aborted);
+      if (phase == SwapPhase::recouple) REQUIRE(report->code == SwapCode::ok);
+      s.steps(10);
+      s.collect();
+      REQUIRE(s.module_in(0) == (report->code == SwapCode::ok ? 2 : s.decoupled(0) ? 0 : 1));
+      if (report->code == SwapCode::aborted) {
+        REQUIRE(s.read(regs::bitstream_valid::offset(2)) == 1);  // nothing wrong with it
+      }
+      s.works();
+    }
+  });
+}
+
+CCHIP_CASE("a receiver that is gone: shut-down times out and the slot goes on; by force pairs are given up and reported") {
+  with_wave([](const sim::SimulationOptions& options) {
+    for (const bool force : {false, true}) {
+      System<TestType> s(options);
+      s.write(regs::shutdown_limit::offset, 300);
+      s.sink.set_pattern(sim::Pattern::never_for(~std::uint64_t{0}));
+      for (int i = 0; i < 12; ++i) s.push(1);
+      s.steps(400);
+      const Report r = s.swap(0, 2, force);
+      REQUIRE(r.code == (force ? SwapCode::ok : SwapCode::shutdown));
+      if (force) {
+        REQUIRE(r.lost > 0);
+        REQUIRE(s.read(regs::lost::offset) == r.lost);
+        REQUIRE(s.read(regs::report_lost::offset) == r.lost);
+        REQUIRE((s.read(regs::interrupt_status::offset) & regs::interrupt_status::lost_mask) != 0);
+      } else {
+        REQUIRE(r.lost == 0);
+        REQUIRE(s.module_in(0) == 1);
+        REQUIRE(s.read(regs::bitstream_valid::offset(2)) == 1);
+      }
+      s.works();
+      REQUIRE(s.account.given_up == r.lost);
+      REQUIRE(s.account.pairs == 12 + 9 - r.lost);
+    }
+  });
+}
+
+CCHIP_CASE("blank slots asked to work: pairs wait for a bitstream, or are answered without a test and reported") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<TestType> s(options);
+    for (int slot = 0; slot < TestType::SLOTS; ++slot) REQUIRE(s.swap(slot, 0).code == SwapCode::ok);
+    REQUIRE(s.swap(0, 0).code == SwapCode::same);
+    s.write(regs::interrupt_status::offset, 0x1F);
+    s.push_some(10);
+    s.steps(2000);
+    REQUIRE(s.account.pairs == 0);  // the scheduler is off, bitstreams are there
+    for (int slot = 0; slot < TestType::SLOTS; ++slot) {
+      for (int m = 1; m < 4; ++m) s.write(regs::bitstream_valid::offset(s.entry(slot, m)), 0);
+    }
+    s.finish();
+    REQUIRE(s.account.pairs == 10);
+    REQUIRE(s.account.refused > 0);
+    REQUIRE(s.read(regs::pairs::offset(0)) == 10);
+    REQUIRE((s.read(regs::interrupt_status::offset) & regs::interrupt_status::no_provider_mask) != 0);
+    REQUIRE(s.irq());
+    s.works();
+  });
+}
+
+CCHIP_CASE("a kind that no bitstream brings is answered without a test, the others are tested") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<TestType> s(options, true);
+    for (int slot = 0; slot < TestType::SLOTS; ++slot) s.write(regs::bitstream_valid::offset(s.entry(slot, 2)), 0);
+    s.push_some(100);
+    s.finish();
+    REQUIRE(s.account.refused > 10);
+    REQUIRE(s.read(regs::pairs::offset(2)) == 0);
+    REQUIRE(s.read(regs::pairs::offset(1)) > 10);
+    REQUIRE(s.read(regs::pairs::offset(3)) > 10);
+    s.works();
+  });
+}
+
+CCHIP_CASE("transfer takes eq. (4) and a fixed number of clocks") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<TestType> s(options);
+    std::set<std::uint64_t> extra;
+    for (const std::size_t bytes : {16U, 64U, 100U, 1024U, 3000U}) {
+      const int module_id = s.module_in(0) == 2 ? 1 : 2;
+      s.provide(0, module_id, s.good(0, module_id, bytes));
+      s.settle_bus();
+      REQUIRE(s.swap(0, module_id).code == SwapCode::ok);
+      const std::uint64_t clocks = s.read(regs::phase_clocks::offset(static_cast<std::uint32_t>(SwapPhase::transfer) - 1));
+      const std::uint64_t eq4 = transfer_clocks(bytes, TestType::CFG_W, TestType::CFG_DIVIDER);
+      CAPTURE(bytes, clocks, eq4);
+      REQUIRE(clocks >= eq4);
+      extra.insert(clocks - eq4);
+    }
+    REQUIRE(extra.size() == 1);
+    REQUIRE(*extra.begin() < 64);
+    REQUIRE(s.read(regs::stalls::offset) == 0);
+  });
+}
+
+CCHIP_CASE("reset at every clock of a swap") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<TestType> s(options);
+    std::uint64_t length = 1;  // of a swap, clocks
+    int cut_off = 0;           // resets that left the slot decoupled
+    for (std::uint64_t moment = 0; moment <= length; ++moment) {
+      INFO("clock " << moment << " of " << length);
+      s.write(regs::control::offset, 0);
+      const int module_id = s.module_in(0) == 3 ? 2 : 3;
+      s.push_some(3);
+      s.provide(0, module_id, s.good(0, module_id, 16));
+      s.settle_bus();
+      s.command(0, module_id, false);
+      s.simulation.run_until([&] { return s.phase() != SwapPhase::idle; }, 100, "the swap");
+      if (moment == 0) {
+        const std::uint64_t start = s.simulation.clock();
+        s.next_report();
+        length = s.simulation.clock() - start + 2;
+      } else {
+        s.steps(moment);
+      }
+      s.reset(moment % 3 == 0 ? 1 : 2);
+      s.steps(20);
+      cut_off += s.decoupled(0) ? 1 : 0;
+      REQUIRE(s.phase() == SwapPhase::idle);
+      s.works();
+    }
+    REQUIRE(length > 60);
+    REQUIRE(cut_off > 10);
+  });
+}
