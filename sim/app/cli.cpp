@@ -19,6 +19,7 @@
 #include "pair_runner.hpp"
 #include "pose.hpp"
 #include "progress.hpp"
+#include "reconfig.hpp"
 #include "usage_error.hpp"
 
 namespace cchip::app {
@@ -198,6 +199,16 @@ void add_demo(CLI::App& app, DemoOptions& options) {
   command->add_option("--seed", options.engine.seed, seed_words);
 }
 
+void add_reconfig(CLI::App& app, ReconfigJobOptions& options) {
+  CLI::App* command = app.add_subcommand("reconfig", "Meshes through two slots whose modules are exchanged at run time");
+  command->add_option("--bitstream-bits", options.bitstream_bits,
+                      "payload of each bitstream (default 16384; the paper's: 5504088, takes minutes)");
+  command->add_option("--pairs", options.pairs, "pairs of each kind, at most (default 500)")->check(CLI::PositiveNumber);
+  add_choice(*command, "--program", options.mode, programs, "axis programme (default exhaustive)");
+  command->add_option("--waves", options.wave_folder, "folder for sim-reconfig.fst (default build/waves)");
+  command->add_option("--seed", options.seed, seed_words);
+}
+
 int dispatch(std::vector<std::string> arguments, const Streams& streams) {
   CLI::App app("Collision detection hardware, simulated: do these primitives touch?", "cchip");
   const std::string version = "cchip " CCHIP_VERSION;
@@ -216,6 +227,8 @@ int dispatch(std::vector<std::string> arguments, const Streams& streams) {
   add_pairs(app, pairs);
   add_meshpairs(app, meshpairs);
   add_demo(app, demo);
+  ReconfigJobOptions reconfig;
+  add_reconfig(app, reconfig);
   app.add_subcommand("version", "Print the version");
   try {
     std::reverse(arguments.begin(), arguments.end());
@@ -228,6 +241,7 @@ int dispatch(std::vector<std::string> arguments, const Streams& streams) {
   if (app.got_subcommand("pairs")) return run_pairs(pairs, streams);
   if (app.got_subcommand("meshpairs")) return run_meshpairs(meshpairs, streams);
   if (app.got_subcommand("demo")) return run_demo(demo, streams.out);
+  if (app.got_subcommand("reconfig")) return run_reconfig_job(reconfig, streams.out);
   streams.out << version << '\n';
   return exit_ok;
 }

@@ -2,6 +2,7 @@
 #include <cchip/defs.hpp>
 #include <cchip/primtest_engine.hpp>
 #include <cchip/wave_layout.hpp>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <ostream>
@@ -16,6 +17,7 @@ constexpr int context_w = 6;
 static_assert(defs::contexts_default(substages) > 1 << (context_w - 1) &&
               defs::contexts_default(substages) <= 1 << context_w);
 constexpr int user_w = context_w + defs::state_w;
+constexpr int queue_count_w = 9;  ///< of QUEUE_DEPTH = 256
 
 /// Flags of a trace in a GTKWave save file (right-justified).
 enum class Radix : unsigned { hexadecimal = 0x22, decimal = 0x24, binary = 0x28, octal = 0x30, signed_decimal = 0x420 };
@@ -40,7 +42,7 @@ struct Module {
 
 class SaveFile {
  public:
-  SaveFile(std::ostream& out, const Module& module) : out_(out), prefix_("TOP." + module.name + ".") {
+  SaveFile(std::ostream& out, const std::string& module) : out_(out), prefix_("TOP." + module + ".") {
     out_ << std::hex;
   }
 
@@ -216,24 +218,109 @@ void stream_m_result(SaveFile& file) {
   file.close_group(title);
 }
 
-}  // namespace
+// ---- the reconfigurable subsystem
 
-void write_gtkw(const std::string& fst_path, ModuleId id) {
-  const Module module(id);
-  const std::filesystem::path fst(fst_path);
-  const std::filesystem::path path = std::filesystem::path(fst).replace_extension(".gtkw");
-  std::ofstream out(path);
-  SaveFile file(out, module);
-  file.line("[*] Signals of " + module.name + " along the way of a pair");
-  file.line("[dumpfile] \"" + std::filesystem::absolute(fst).lexically_normal().string() + "\"");
-  file.line("[timestart] 0");
+void pair_streams(SaveFile& file) {
+  const std::string title = "pairs and answers";
+  file.open_group(title);
+  file.bit("pair valid", "s_pair_valid");
+  file.bit("pair ready", "s_pair_ready");
+  file.vector("pair kind", {"s_pair_kind", 2}, Radix::decimal);
+  file.vector("pair tag", {"s_pair_tag", defs::tag_w}, Radix::hexadecimal);
+  for (int kind = 1; kind < 4; ++kind) {
+    const Vector waiting{"waiting", 3 * queue_count_w};
+    file.field("waiting, kind " + std::to_string(kind), waiting, queue_count_w * (kind - 1), queue_count_w, Radix::decimal);
+  }
+  file.bit("answer valid", "m_result_valid");
+  file.bit("answer ready", "m_result_ready");
+  file.vector("answer kind", {"m_result_kind", 2}, Radix::decimal);
+  file.vector("answer tag", {"m_result_tag", defs::tag_w}, Radix::hexadecimal);
+  file.close_group(title);
+}
+
+void scheduler(SaveFile& file) {
+  const std::string title = "scheduler";
+  file.open_group(title);
+  file.bit("request", "swap_valid");
+  file.vector("slot", {"swap_slot", 8}, Radix::decimal);
+  file.vector("module", {"swap_module", 8}, Radix::decimal);
+  file.bit("report", "report_valid");
+  file.vector("code", {"report_code", defs::swap_w}, Radix::decimal);
+  file.bit("interrupt", "irq");
+  file.close_group(title);
+}
+
+void config_controller(SaveFile& file) {
+  const std::string title = "configuration controller";
+  file.open_group(title);
+  file.vector("phase", {"phase", defs::phase_w}, Radix::decimal);
+  file.bit("memory: address", "m_axi_arvalid");
+  file.bit("memory: data", "m_axi_rvalid");
+  file.bit("memory: ready", "m_axi_rready");
+  file.bit("port: write", "cfg_valid");
+  file.vector("port: byte", {"cfg_data", 8}, Radix::hexadecimal);
+  file.close_group(title);
+}
+
+void slot(SaveFile& file, int number) {
+  const std::string title = "slot " + std::to_string(number);
+  const std::string scope = "gen_slots[" + std::to_string(number) + "].u_slot.";
+  file.open_group(title);
+  file.vector("module", {scope + "rm_id", 8}, Radix::decimal);
+  file.vector("pairs inside", {scope + "outstanding", 16}, Radix::decimal);
+  for (const char* name : {"stop", "quiet", "decouple", "decoupled", "hold_reset", "roc_start", "roc_busy"}) {
+    file.bit(name, scope + name);
+  }
+  file.vector("region: module", {scope + "r_rm_id", 8}, Radix::hexadecimal);
+  file.bit("region: ready", scope + "r_pair_ready");
+  file.bit("region: answer", scope + "r_result_valid");
+  file.bit("pair accepted", scope + "accept");
+  file.bit("answer given", scope + "answer");
+  file.close_group(title);
+}
+
+// ---- files
+
+constexpr int wave_pixels = 1500;  ///< of a window of 1920, less the names
+
+/// What the window shows first: start, time units, and GTKWave's zoom: -log2 of the time units per pixel.
+struct View {
+  std::uint64_t start;
+  double zoom;
+};
+
+std::filesystem::path layout_path(const std::string& fst_path) {
+  return std::filesystem::path(fst_path).replace_extension(".gtkw");
+}
+
+void begin(SaveFile& file, const std::string& title, const std::string& fst_path, const View& view) {
+  file.line("[*] " + title);
+  file.line("[dumpfile] \"" + std::filesystem::absolute(fst_path).lexically_normal().string() + "\"");
+  file.line("[timestart] " + std::to_string(view.start));
   file.line("[size] 1920 1080");
   file.line("[pos] -1 -1");
-  file.line("*-5.9 0 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1 -1");
+  std::string zoom = "*" + std::to_string(view.zoom) + " " + std::to_string(view.start);
+  for (int i = 0; i < 26; ++i) zoom += " -1";
+  file.line(zoom);
   file.line("[sst_expanded] 0");
   file.line("[signals_width] 230");
   file.bit("clk", "clk");
   file.bit("rst", "rst");
+}
+
+void end(std::ofstream& out, const std::filesystem::path& path) {
+  out.close();
+  if (!out) throw std::runtime_error(path.string() + ": cannot be written; check folder and permissions");
+}
+
+}  // namespace
+
+void write_gtkw(const std::string& fst_path, ModuleId id) {
+  const Module module(id);
+  const std::filesystem::path path = layout_path(fst_path);
+  std::ofstream out(path);
+  SaveFile file(out, module.name);
+  begin(file, "Signals of " + module.name + " along the way of a pair", fst_path, {0, -5.9});
   stream_s_pair(file, module);
   axis_controller(file);
   stage_select(file, module);
@@ -241,8 +328,23 @@ void write_gtkw(const std::string& fst_path, ModuleId id) {
   stage_project(file, module);
   stage_compare(file, module);
   stream_m_result(file);
-  out.close();
-  if (!out) throw std::runtime_error(path.string() + ": cannot be written; check folder and permissions");
+  end(out, path);
+}
+
+void write_swap_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to) {
+  const std::filesystem::path path = layout_path(fst_path);
+  std::ofstream out(path);
+  SaveFile file(out, "cchip_primtest_subsystem");
+  const std::uint64_t margin = (to - from) / 20;
+  const std::uint64_t first = from > margin ? from - margin : 0;
+  const double per_pixel = static_cast<double>(to + margin - first) / wave_pixels;
+  begin(file, "A swap of the reconfigurable subsystem", fst_path, {first, -std::log2(per_pixel)});
+  pair_streams(file);
+  scheduler(file);
+  config_controller(file);
+  slot(file, 0);
+  slot(file, 1);
+  end(out, path);
 }
 
 }  // namespace cchip

@@ -5,6 +5,7 @@
 #define CCHIP_WAVE_LAYOUT_HPP
 
 #include <cchip/defs.hpp>
+#include <cstdint>
 #include <string>
 
 namespace cchip {
@@ -13,6 +14,12 @@ namespace cchip {
 /// the data flows, grouped by stream and macro stage, zoomed to the first pairs. The waveform need not exist yet.
 /// \throws std::runtime_error the file cannot be written
 void write_gtkw(const std::string& fst_path, ModuleId module);
+
+/// The same for a waveform of cchip_primtest_subsystem with two slots: streams, scheduler, configuration controller and
+/// slots, zoomed to a swap.
+/// \param from,to time units of the waveform
+/// \throws std::runtime_error the file cannot be written
+void write_swap_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to);
 
 }  // namespace cchip
 

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reconfig.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <cchip/canonical.hpp>
+#include <cchip/exact_oracle.hpp>
+#include <cchip/local_grid.hpp>
+#include <cchip/primtest_engine.hpp>
+#include <cchip/reconfig_run.hpp>
+#include <chrono>
+#include <filesystem>
+#include <random>
+
+#include "demo.hpp"
+#include "mesh_source.hpp"
+#include "pair_runner.hpp"
+#include "usage_error.hpp"
+
+namespace cchip::app {
+namespace {
+
+constexpr std::array<const char*, 4> kind_names = {"", "tri-tri", "tri-quad", "quad-quad"};
+constexpr std::array<const char*, 9> phase_names = {"header", "shut down", "decouple", "reset",   "transfer",
+                                                    "check",  "ROC",       "recouple", "report"};
+
+/// Candidate pairs of the demo's meshes by module, at most `limit` of each.
+std::array<std::vector<ReconfigPair>, 4> mesh_pairs(std::uint64_t limit, PairMode mode) {
+  std::array<std::vector<ReconfigPair>, 4> pairs;
+  for (const DemoRun& run : make_demo_runs()) {
+    if (run.pose != "deep" || run.mode != mode) continue;
+    for_each_candidate(run.a, run.b, limit, [&](const PairJob& job) {
+      GridPair pair = quantise(job.a, job.b, defs::coord_w_default).pair;
+      if (pair.a.kind == Kind::quad && pair.b.kind == Kind::tri) std::swap(pair.a, pair.b);
+      pair.a = canonical_quad(pair.a);
+      pair.b = canonical_quad(pair.b);
+      pairs[static_cast<std::size_t>(module_of(pair))].push_back({pair, mode});
+    });
+  }
+  return pairs;
+}
+
+/// All pairs in bursts of one kind, as a traversal of mixed meshes would send them.
+std::vector<ReconfigPair> mixed(std::array<std::vector<ReconfigPair>, 4> of_kind, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::vector<ReconfigPair> all;
+  const auto some_left = [&] {
+    return std::any_of(of_kind.begin(), of_kind.end(), [](const auto& pairs) { return !pairs.empty(); });
+  };
+  while (some_left()) {
+    auto& pairs = of_kind[1 + random() % 3];
+    for (std::uint64_t burst = 1 + random() % 16; burst > 0 && !pairs.empty(); --burst) {
+      all.push_back(pairs.back());
+      pairs.pop_back();
+    }
+  }
+  return all;
+}
+
+struct Counts {
+  std::array<std::uint64_t, 4> pairs{}, hits{};
+  std::uint64_t mismatches = 0, lost = 0, duplicated = 0;
+};
+
+/// Answers against the exact oracle: on the grid, of the right module, tested, once.
+Counts judge(const std::vector<ReconfigPair>& pairs, const ReconfigResult& result) {
+  Counts c;
+  c.duplicated = result.foreign_answers;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const ReconfigAnswer& answer = result.answers[i];
+    const auto kind = static_cast<std::size_t>(module_of(pairs[i].pair));
+    const bool exact = exact_intersects(pairs[i].pair);
+    ++c.pairs[kind];
+    c.hits[kind] += exact ? 1 : 0;
+    c.lost += answer.answers == 0 ? 1 : 0;
+    c.duplicated += answer.answers > 1 ? answer.answers - 1 : 0;
+    const bool right = answer.tested && answer.grid == exact && (answer.hit || !exact) &&
+                       answer.module_id == module_of(pairs[i].pair);
+    c.mismatches += answer.answers > 0 && !right ? 1 : 0;
+  }
+  return c;
+}
+
+void print_phases(std::ostream& out, const ReconfigResult& result) {
+  fmt::print(out, "{:<12}{:>12}{:>12}{:>12}  clocks of all swaps that ended well\n", "phase", "least", "mean", "most");
+  for (std::size_t p = 0; p < phase_names.size(); ++p) {
+    std::uint64_t least = ~std::uint64_t{0}, most = 0, sum = 0, count = 0;
+    for (const ReconfigSwap& swap : result.swaps) {
+      if (swap.code != SwapCode::ok) continue;
+      least = std::min(least, swap.phases[p]);
+      most = std::max(most, swap.phases[p]);
+      sum += swap.phases[p];
+      ++count;
+    }
+    if (count == 0) continue;
+    fmt::print(out, "{:<12}{:>12}{:>12.1f}{:>12}{}\n", phase_names[p], least,
+               static_cast<double>(sum) / static_cast<double>(count), most,
+               static_cast<SwapPhase>(p + 1) == SwapPhase::transfer ? fmt::format("  eq. (4): {}", result.equation_4)
+                                                                    : std::string());
+  }
+}
+
+/// The waveform's path, its folder made.
+std::string prepare_wave(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw UsageError(fmt::format("{}: the folder cannot be made ({}); give another with --waves", folder, error.message()));
+  }
+  return (std::filesystem::path(folder) / "sim-reconfig.fst").string();
+}
+
+}  // namespace
+
+int run_reconfig_job(const ReconfigJobOptions& options, std::ostream& out) {
+  ReconfigOptions reconfig;
+  reconfig.payload_bytes = static_cast<std::size_t>((options.bitstream_bits + 7) / 8);
+  if (reconfig.payload_bytes < defs::bitstream_payload_min) {
+    throw UsageError(fmt::format("--bitstream-bits {}: a bitstream has at least {} bits", options.bitstream_bits,
+                                 8 * defs::bitstream_payload_min));
+  }
+  reconfig.seed = options.seed;
+  reconfig.trace_path = prepare_wave(options.wave_folder);
+  const std::vector<ReconfigPair> pairs = mixed(mesh_pairs(options.pairs, options.mode), options.seed);
+  fmt::print(out,
+             "Pairs of triangles and quads through two slots; three kinds of test take turns in them. Every swap passes\n"
+             "its bitstream of {} bits through the 8-bit configuration port, two clocks per byte (100 MHz and 50 MHz).\n\n",
+             8 * reconfig.payload_bytes);
+  out.flush();
+  const auto start = std::chrono::steady_clock::now();
+  const ReconfigResult result = run_reconfig(pairs, reconfig);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const Counts c = judge(pairs, result);
+  fmt::print(out, "{:<12}{:>12}{:>12}\n", "kind", "pairs", "hits");
+  for (std::size_t kind = 1; kind < 4; ++kind) {
+    fmt::print(out, "{:<12}{:>12}{:>12}\n", kind_names[kind], c.pairs[kind], c.hits[kind]);
+  }
+  out << '\n';
+  print_phases(out, result);
+  const auto swaps = static_cast<std::uint64_t>(std::count_if(
+      result.swaps.begin(), result.swaps.end(), [](const ReconfigSwap& swap) { return swap.code == SwapCode::ok; }));
+  const double hidden = result.transfer_clocks == 0 ? 0
+                                                    : 100.0 * static_cast<double>(result.hidden_clocks) /
+                                                          static_cast<double>(result.transfer_clocks);
+  fmt::print(out,
+             "\nhidden: {} of {} transfer clocks with pairs at work in the other slot.\n"
+             "Simulated {} clocks in {:.2f} s.\n"
+             "Look at the first swap, signals grouped by block:\n  gtkwave {} {}\n",
+             result.hidden_clocks, result.transfer_clocks, result.clocks, seconds, reconfig.trace_path,
+             std::filesystem::path(reconfig.trace_path).replace_extension(".gtkw").string());
+  fmt::print(out, "pairs={} swaps={} mismatches={} lost={} duplicated={} hidden_percent={:.1f}\n", pairs.size(), swaps,
+             c.mismatches, c.lost, c.duplicated, hidden);
+  return c.mismatches + c.lost + c.duplicated > 0 ? exit_mismatch : exit_ok;
+}
+
+}  // namespace cchip::app
