@@ -61,6 +61,7 @@ module cchip_pr_config_memory #(
 
   wire [31:0] word;  // the last four bytes
   wire [31:0] crc_next;
+  wire match;  // goes on with it
   wire next;  // perhaps the beginning of the next payload
   generate
     if (CFG_W == 8) begin : gen_bytes
@@ -69,10 +70,12 @@ module cchip_pr_config_memory #(
       always @(posedge clk) if (cfg_valid) last_q <= word[31:8];
       assign word = {cfg_data, last_q};
       assign crc_next = crc_byte(crc_q, cfg_data);
-      assign next = cfg_data == SYNC[8*next_q+:8];
+      assign match = cfg_data == SYNC[8*next_q+:8];
+      assign next = match | cfg_data == SYNC[7:0];
     end else if (CFG_W == 32) begin : gen_words
       assign word = cfg_data;
       assign crc_next = crc_word(crc_q, cfg_data);
+      assign match = 1'b0;
       assign next = 1'b0;
     end else begin : gen_illegal
       cchip_error_CFG_W_must_be_8_or_32 u_error ();
@@ -104,7 +107,7 @@ module cchip_pr_config_memory #(
         if (here) garbage_q <= 1'b1;
       end else if (ours_q) begin
         garbage_q <= ~complete & (garbage_q | ~next);
-        next_q    <= complete ? 2'd0 : next_q + 2'd1;
+        next_q    <= complete ? 2'd0 : match ? next_q + 2'd1 : 2'd1;
         if (complete) select_q <= module_q;
       end
     end

@@ -164,6 +164,7 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
         }
         bench.taken = 0;
       }
+      bench.steps(4);  // until it has seen all that
       const std::uint64_t now = bench.simulation.clock();
       // what the rules say
       std::optional<std::tuple<bool, std::uint64_t>> best;  // of the kinds: too old, then age or pairs
