@@ -70,7 +70,7 @@ module cchip_pr_config_memory #(
       always @(posedge clk) if (cfg_valid) last_q <= word[31:8];
       assign word = {cfg_data, last_q};
       assign crc_next = crc_byte(crc_q, cfg_data);
-      assign match = cfg_data == SYNC[8*next_q+:8];
+      assign match = cfg_data == (next_q[1] ? (next_q[0] ? SYNC[31:24] : SYNC[23:16]) : next_q[0] ? SYNC[15:8] : SYNC[7:0]);
       assign next = match | cfg_data == SYNC[7:0];
     end else if (CFG_W == 32) begin : gen_words
       assign word = cfg_data;

@@ -71,8 +71,9 @@ class ConfigMemoryModel {
     if (n >= 4 && word_at(bytes_, n - 4) == defs::bitstream_sync) bytes_.erase(bytes_.begin(), bytes_.end() - 4);
     if (bytes_.size() < 8 || word_at(bytes_, 0) != defs::bitstream_sync || bytes_[4] != slot_) return;
     garbage_ = true;
-    // complete, perhaps with some bytes of the next synchronisation word behind it
-    for (std::size_t more = 0; more < 4 && garbage_; more += static_cast<std::size_t>(port_bytes_)) {
+    // complete, perhaps with the first bytes of synchronisation words behind it, cut off or not yet whole
+    const std::size_t most = port_bytes_ == 1 ? std::min<std::size_t>(bytes_.size() - 8, 64) : 0;
+    for (std::size_t more = 0; more <= most && garbage_; ++more) {
       garbage_ = !(complete(bytes_.size() - more) && begins_sync(more));
     }
     if (!garbage_) select_ = bytes_[5];
@@ -80,8 +81,11 @@ class ConfigMemoryModel {
 
  private:
   bool begins_sync(std::size_t count) const {
-    for (std::size_t i = 0; i < count; ++i) {
-      if (bytes_[bytes_.size() - count + i] != (defs::bitstream_sync >> (8 * i) & 255)) return false;
+    unsigned byte = 0;  // of the word
+    for (auto it = bytes_.end() - static_cast<std::ptrdiff_t>(count); it != bytes_.end(); ++it) {
+      if (*it != (defs::bitstream_sync >> (8 * byte) & 255)) byte = 0;
+      if (*it != (defs::bitstream_sync >> (8 * byte) & 255)) return false;
+      ++byte;
     }
     return true;
   }
@@ -98,8 +102,8 @@ class ConfigMemoryModel {
 };
 
 /// Ways to spoil a payload.
-enum class Fault { none, crc, truncated, overlong, module, unused_bits, other_slot, too_short, filler };
-constexpr int faults = 9;
+enum class Fault { none, crc, truncated, overlong, module, unused_bits, other_slot, too_short, filler, cut_sync };
+constexpr int faults = 10;
 
 /// \param slot the slot it would be for
 inline Bytes spoil(Bytes bytes, Fault fault, int slot, Random& random) {
@@ -117,6 +121,9 @@ inline Bytes spoil(Bytes bytes, Fault fault, int slot, Random& random) {
       break;
     case Fault::overlong:
       put_word(bytes, static_cast<std::uint32_t>(random()) & 0x7FFFFFFF);
+      break;
+    case Fault::cut_sync:  // of a transfer to any slot
+      bytes.resize(1 + random() % 3);
       break;
     case Fault::module:
       bytes.at(5) = static_cast<std::uint8_t>(4 + random() % 252);
