@@ -153,6 +153,8 @@ module cchip_swap_sequencer #(
   reg [31:0] clocks_q;  // in this phase
   reg [3:0] step_q;  // the same, up to 15
   reg expired_q, error_q, forced_q, abort_q;
+  reg [3:0] alike_q;  // clocks on which the region showed the module asked for: garbage may show it on one by chance
+  wire roc_over = phase_q == `CCHIP_PHASE_ROC & step_q >= ROC_SEEN & ~roc_busy_q;
   reg [3:0] phase_d, code_d;
   wire past = phase_q >= `CCHIP_PHASE_DECOUPLE;  // the slot is no longer at work
   wire abortable = ~idle & phase_q <= `CCHIP_PHASE_ROC;
@@ -198,10 +200,10 @@ module cchip_swap_sequencer #(
         code_d  = error_q ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_CRC;
       end
       `CCHIP_PHASE_ROC:
-      if (step_q >= ROC_SEEN & ~roc_busy_q) begin
+      if (roc_over & (rm_id_q != module_q | alike_q == 4'd15)) begin
         phase_d = rm_id_q == module_q ? `CCHIP_PHASE_RECOUPLE : `CCHIP_PHASE_REPORT;
         code_d  = `CCHIP_SWAP_WRONG_MODULE;
-      end else if (expired_q) begin
+      end else if (expired_q & roc_busy_q) begin
         phase_d = `CCHIP_PHASE_REPORT;
         code_d  = `CCHIP_SWAP_DEVICE;
       end
@@ -264,6 +266,7 @@ module cchip_swap_sequencer #(
     error_q <= cfg_error & (phase_q == `CCHIP_PHASE_TRANSFER | phase_q == `CCHIP_PHASE_CHECK);
     abort_q <= ~idle & ~reports & (abort_q | abort_swap);
     forced_q <= ~idle & (forced_q | (phase_q == `CCHIP_PHASE_SHUTDOWN & expired_q & ~quiet_q));
+    alike_q <= roc_over ? alike_q + 4'd1 : 4'd0;
     lost_q <= begins ? 16'd0 : lost_d;
     if (reports | refuse_q) begin
       report_slot_q   <= reports ? slot_q : refuse_slot_q;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// Proved of cchip_bitstream_fetch, whatever memory does (also against its own rules):
+// Proved of cchip_bitstream_fetch, for 38 clocks from reset, whatever memory does (also against its own rules):
 //   addresses are stable until taken, bursts lie within 64 bytes, two are under way at most, never more words than the FIFO
 //   holds are asked for, the FIFO is never pushed when full (assertion a_room of the RTL); no word appears after run = 0;
 //   after `limit` clocks without progress there is a timeout; an error or a timeout lasts until run = 0.
@@ -93,12 +93,6 @@ module cchip_bitstream_fetch_properties (
       sticky: assert (!failed_q || bus_error || timeout || !run_q);
       awake: assert (m_axi_rready);
     end
-  end
-  always @(posedge clk) begin
-    second: cover (bursts_q == 2'd2 && !bus_error);
-    word: cover (m_valid && m_ready);
-    swallowed: cover (!run && !rst && ended);
-    late_cover: cover (timeout);
   end
 endmodule
 `default_nettype wire

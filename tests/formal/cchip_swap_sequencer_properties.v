@@ -31,7 +31,7 @@ module cchip_swap_sequencer_properties (
     input wire        crc_ok,
     input wire        cfg_error
 );
-  localparam [7:0] RESET_MIN = 8'd8;
+  localparam [7:0] RESET_MIN = 8'd24;
   localparam [31:0] LIMIT = 32'd5;
   localparam [7:0] SLOT_LIMIT = 8'd16;
   wire s_swap_ready, m_report_valid, run;
@@ -144,12 +144,8 @@ module cchip_swap_sequencer_properties (
       fetch: assert (!run || fetches);
       asked: assert (!m_report_valid || open_q != 2'd0);
       answered: assert (open_q != 2'd3 && (phase != `CCHIP_PHASE_IDLE || open_q <= 2'd1));
-      bounded: assert (phase == `CCHIP_PHASE_IDLE || changed || clocks_q <= SLOT_LIMIT + 8'd4);
+      bounded: assert (phase == `CCHIP_PHASE_IDLE || changed || clocks_q <= SLOT_LIMIT + 8'd20);
     end
-  end
-  always @(posedge clk) begin
-    works: cover (m_report_valid && m_report_code == `CCHIP_SWAP_OK);
-    loses: cover (m_report_valid && m_report_code == `CCHIP_SWAP_OK && m_report_lost != 16'd0);
   end
 endmodule
 `default_nettype wire

@@ -32,6 +32,8 @@ ROC = "rtl/reconfig/cchip_roc_generator.v"
 GATE = "rtl/reconfig/cchip_pr_gate.v"
 DECOUPLER = "rtl/reconfig/cchip_pr_decoupler.v"
 SLOT = "rtl/reconfig/cchip_pr_slot.v"
+SEQUENCER = "rtl/reconfig/cchip_swap_sequencer.v"
+FETCH = "rtl/reconfig/cchip_bitstream_fetch.v"
 # (task that has to fail, file, text, what takes its place); the text occurs once
 MUTANTS = [
     ("cchip_skid_buffer prove", SKID, "if (ready_q) skid_data_q <= s_data;", "skid_data_q <= s_data;"),
@@ -60,6 +62,18 @@ MUTANTS = [
     ("cchip_pr_slot prove", SLOT, "rst | hold_reset | roc;", "rst | hold_reset;"),
     ("cchip_pr_slot prove", SLOT, "rst | roc_start | roc;", "rst | roc_start;"),
     ("cchip_pr_slot prove", SLOT, "accept & ~answer ?", "accept ?"),
+    # a bad check recouples; reset ends with the transfer; both slots are told; no bound; decoupling is not awaited
+    ("cchip_swap_sequencer prove", SEQUENCER, "error_q | ~crc_ok ? `CCHIP_PHASE_REPORT", "error_q ? `CCHIP_PHASE_REPORT"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "phase_d = `CCHIP_PHASE_CHECK;", "phase_d = `CCHIP_PHASE_RECOUPLE;"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "hold_reset_q <= hold_reset_q | mine_q;", "hold_reset_q <= {SLOTS{1'b1}};"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "else if (expired_q) begin\n        phase_d = `CCHIP_PHASE_REPORT;\n        code_d  = `CCHIP_SWAP_SHUTDOWN;",
+     "else if (abort_q) begin\n        phase_d = `CCHIP_PHASE_REPORT;\n        code_d  = `CCHIP_SWAP_SHUTDOWN;"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "if (decoupled_q) phase_d = `CCHIP_PHASE_RESET;", "if (quiet_q) phase_d = `CCHIP_PHASE_RESET;"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "wire refuses = refuse_q & ~reports;", "wire refuses = refuse_q;"),
+    ("cchip_bitstream_fetch bounded", FETCH, "wire [4:0] to_edge = 5'd16 - {1'b0, addr_q[5:2]};", "wire [4:0] to_edge = 5'd16;"),
+    ("cchip_bitstream_fetch bounded", FETCH, "~arvalid_q & ~bursts_q[1] & room;", "~arvalid_q & room;"),
+    ("cchip_bitstream_fetch bounded", FETCH, "issue | (arvalid_q & ~m_axi_arready);", "issue | (arvalid_q & ~m_axi_arready & run);"),
+    ("cchip_bitstream_fetch bounded", FETCH, "timeout_q <= run & (timeout_q |", "timeout_q <= run & (1'b0 |"),
 ]
 
 

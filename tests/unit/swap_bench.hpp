@@ -36,6 +36,7 @@ struct SlotBehaviour {
   int inside = 7;       ///< pairs lost by decoupling it before it is quiet
   bool follows = true;  ///< decoupled follows decouple
   int roc_clocks = 2;   ///< < 0: roc_busy never falls
+  bool spoilt = false;  ///< the region stays garbage
   int becomes = -1;     ///< module after a complete payload; < 0: the one it names
 };
 
@@ -212,7 +213,7 @@ class SwapBench : public sim::Agent {
     s.region = -1;
     s.reset_since = 0;
     s.transferred = passed_ == payload_;
-    if (s.transferred) s.region = s.behaviour.becomes < 0 ? payload_[5] : s.behaviour.becomes;
+    if (s.transferred && !s.behaviour.spoilt) s.region = s.behaviour.becomes < 0 ? payload_[5] : s.behaviour.becomes;
   }
 
   void step(int i, bool in_reset) {
