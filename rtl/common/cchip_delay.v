@@ -41,11 +41,11 @@ module cchip_delay #(
       reg [WIDTH-1:0] mem [0:DEPTH-2];
       reg [PTR_W-1:0] pointer_q;
       reg [WIDTH-1:0] q_q;
-      // any value finds into the circle: no reset
+      // any value finds into the circle, over 0: no reset
       initial pointer_q = {PTR_W{1'b0}};
       wire unused = &{1'b0, rst};
       always @(posedge clk) begin
-        if (pointer_q >= LAST[PTR_W-1:0]) pointer_q <= {PTR_W{1'b0}};
+        if (pointer_q == LAST[PTR_W-1:0]) pointer_q <= {PTR_W{1'b0}};
         else pointer_q <= pointer_q + {{PTR_W - 1{1'b0}}, 1'b1};
         mem[pointer_q] <= d;
         q_q <= mem[pointer_q];

@@ -303,23 +303,23 @@ module cchip_axis_controller #(
       .m_state        (next_state)
   );
 
-  // ---- result: tag and eta of the context arrive with the outcome
-  wire [19:0] side;
+  // ---- result: tag and what there is to know of eta arrive with the outcome
+  wire [17:0] side;
   cchip_ram #(
-      .WIDTH (20),
+      .WIDTH (18),
       .DEPTH (CONTEXTS),
       .ADDR_W(CONTEXT_W)
   ) u_side (
       .clk       (clk),
       .write     (s_pair_valid),
       .write_addr(m_load_context),
-      .write_data({s_pair_err, s_pair_tag}),
+      .write_data({s_pair_err == 4'd0, s_pair_err == `CCHIP_ERR_UNKNOWN, s_pair_tag}),
       .read_addr (side_context),
       .read_data (side)
   );
 
-  wire err_none = side[19:16] == 4'd0;
-  wire err_unknown = &side[19:16];
+  wire err_none = side[17];
+  wire err_unknown = side[16];
 
   assign m_result_valid    = outcome;
   assign m_result_tag      = side[15:0];
