@@ -113,6 +113,10 @@ enum class Spoilt {
   last
 };
 
+/// The payload's words before this byte, synchronisation and name of the slot, stay as they are: a device that is told
+/// to rewrite another slot does so, nobody outside can know.
+constexpr std::size_t name_end = 8;
+
 /// Bytes of a bitstream for this slot and module, spoilt in this way.
 inline Bytes spoilt_bitstream(Spoilt how, int slot, int module_id, std::size_t payload_bytes, Random& random) {
   const auto id = static_cast<ModuleId>(module_id);
@@ -125,8 +129,8 @@ inline Bytes spoilt_bitstream(Spoilt how, int slot, int module_id, std::size_t p
   if (how == Spoilt::slot) header.slot = static_cast<std::uint8_t>(place + 1 + random() % 254);
   if (how == Spoilt::module_id) header.module_id = other;
   if (how == Spoilt::length) header.length += 4;
-  if (how == Spoilt::crc) payload[random() % payload.size()] ^= static_cast<std::uint8_t>(1U << random() % 8);
-  if (how == Spoilt::content) payload[8 + random() % (payload.size() - 8)] ^= 0x10;
+  if (how == Spoilt::crc) payload[name_end + random() % (payload.size() - name_end)] ^= static_cast<std::uint8_t>(1U << random() % 8);
+  if (how == Spoilt::content) payload[name_end + random() % (payload.size() - name_end)] ^= 0x10;
   if (how == Spoilt::truncated) payload.resize(payload.size() - 4);
   if (how == Spoilt::too_long) payload.insert(payload.end(), 4, std::uint8_t{0});
   if (how == Spoilt::truncated || how == Spoilt::too_long || how == Spoilt::content) return make_bitstream(place, id, payload);
@@ -256,6 +260,8 @@ class SubsystemBench {
     ++posted_;
   }
   static std::uint32_t entry(int slot, int module_id) { return static_cast<std::uint32_t>(4 * slot + module_id); }
+  /// Is this address in front of name_end of a payload?
+  static bool in_name(std::uint32_t byte) { return byte % stride < defs::bitstream_header + name_end; }
   static std::uint32_t address(int slot, int module_id) { return stride * (1 + entry(slot, module_id)); }
 
   /// Puts a bitstream into memory and, by posted writes, into the table.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cchip/sim/wave_on_failure.hpp>
 #include <cstdio>
 
 #include "../campaign/campaign.hpp"
@@ -50,7 +51,7 @@ struct Totals {
 template <class Config>
 class Part {
  public:
-  explicit Part(std::uint64_t seed) : random_(seed), bench_(options(seed)) {}
+  explicit Part(const sim::SimulationOptions& options) : random_(options.seed), bench_(options) {}
 
   Totals run(std::uint64_t swaps) {
     bench_.reset();
@@ -77,11 +78,6 @@ class Part {
   const std::string& first() const { return bench_.account.first.empty() ? hang_ : bench_.account.first; }
 
  private:
-  static sim::SimulationOptions options(std::uint64_t seed) {
-    sim::SimulationOptions o;
-    o.seed = seed;
-    return o;
-  }
   bool chance_in(std::uint64_t n) { return random_() % n == 0; }
   int pick(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)); }
   void hang(const std::string& what) {
@@ -213,7 +209,7 @@ class Part {
         bench_.memory.set_fault([this, beat = random_(), kind = pick(2)](std::vector<sim::AxiBeat>& burst) {
           sim::AxiBeat& b = burst[beat % burst.size()];
           if (kind == 0) b.response = sim::AxiResponse::slave_error;
-          if (kind == 1) b.data ^= 1U << beat % 32;
+          if (kind == 1 && !SubsystemBench<Config>::in_name(b.address)) b.data ^= 1U << beat % 32;
           bench_.memory.set_fault({});
         });
         break;
@@ -258,18 +254,27 @@ class Part {
   std::uint64_t resume_at_ = 0;
 };
 
+/// A part that fails leaves a waveform.
 template <class Config>
 Totals run_part(std::uint64_t number, std::uint64_t seed, std::uint64_t swaps) {
-  Part<Config> part(seed);
   Totals t;
+  sim::SimulationOptions options;
+  options.seed = seed;
   try {
-    t = part.run(swaps);
-    if (!t.account.clean() || t.hangs != 0) t.first[number] = part.first();
+    sim::with_wave_on_failure(
+        "swaps_part_" + std::to_string(number),
+        [&](const sim::SimulationOptions& o) {
+          Part<Config> part(o);
+          t = {};
+          t = part.run(swaps);
+          sim::require(t.account.clean() && t.hangs == 0, part.first());
+        },
+        options);
   } catch (const sim::SimulationTimeout& error) {
     t.hangs = 1;
     t.first[number] = error.what();
   } catch (const sim::SimulationError& error) {
-    t.account.wrong = 1;
+    if (t.account.clean() && t.hangs == 0) t.account.wrong = 1;
     t.first[number] = error.what();
   }
   return t;
