@@ -8,7 +8,8 @@ usage: export.py [--out FOLDER] [--vectors PROGRAM] [--pairs N] [--seed N] [--mh
   --pairs N          vectors of the bench, default 2000
   --seed N           of the vectors, default 1
   --mhz F            clock of the constraint templates, default 150
-  TOP                default: every primitive test of rtl/cchip.f, the array and the blank module
+  TOP                default: every primitive test of rtl/cchip.f, the array, the reconfigurable
+                     subsystem and the blank module
 
 FOLDER/TOP holds TOP.v, with every list rtl/cchip_DEVICE.f a variant TOP_DEVICE.v with the multiplier leaf of that
 device, file lists, constraints, datasheets, licences, vectors, a self-checking bench and README.md. Modules are found
@@ -25,9 +26,11 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 RTL = ROOT / "rtl"
 INCLUDES = ("cchip_defs.vh", "cchip_assert.vh")
 BLANK = "cchip_primtest_blank"
+SUBSYSTEM = "cchip_primtest_subsystem"
 # Pairs of the vectors: the default parameters of each top.
 KINDS = {"cchip_primtest_tri_tri": "tri_tri", "cchip_primtest_tri_quad": "tri_quad",
-         "cchip_primtest_quad_quad": "quad_quad", "cchip_primtest_array": "tri_tri"}
+         "cchip_primtest_quad_quad": "quad_quad", "cchip_primtest_array": "tri_tri",
+         SUBSYSTEM: "tri_tri"}
 # Simulation models of the blocks that a device's leaf instantiates.
 CELLS = {"_ecp5": "tests/gates/MULT18X18D.v"}
 PAGES = ("architecture.md", "definitions.md")
@@ -165,6 +168,8 @@ def page(path, exported):
 
 def write_pages(folder, names):
     pages = [*PAGES, *(f"modules/{name}.md" for name in names)]
+    if SUBSYSTEM in names:
+        pages.append("registers.md")
     (folder / "docs" / "modules").mkdir(parents=True)
     for name in pages:
         if not (ROOT / "docs" / name).exists():
@@ -181,12 +186,16 @@ def readme(top, suffixes, pairs, mhz):
         compiled = f"iverilog -g2005 -s bench_blank -o bench.vvp bench_blank.v {top}.v"
     else:
         bench, run = "bench_primtest", f"vvp -n bench.vvp +vectors=vectors.hex +pairs={pairs}"
-        compiled = f"iverilog -g2005 -DCCHIP_BENCH_TOP={top} -s bench_primtest -o bench.vvp bench_primtest.v {top}.v"
+        wrapped = "bench_subsystem" if top == SUBSYSTEM else top
+        compiled = (f"iverilog -g2005 -DCCHIP_BENCH_TOP={wrapped} -s bench_primtest -o bench.vvp bench_primtest.v "
+                    f"{'bench_subsystem.v ' if top == SUBSYSTEM else ''}{top}.v")
+    more = """- [Registers](docs/registers.md), for C++ `registers.hpp`. Parameter `SIMULATION` = 1: a slot holds all modules, bitstreams exchange them.
+""" if top == SUBSYSTEM else ""
     return f"""<!-- SPDX-License-Identifier: Apache-2.0 -->
 # {top}, collisionchip {version()}
 
 - `{top}.v`: the whole RTL in one file, no include folder, top `{top}`; `.f`: as a file list.
-{device}- [Datasheet](docs/modules/{top}.md): ports, parameters, timing, area.
+{device}{more}- [Datasheet](docs/modules/{top}.md): ports, parameters, timing, area.
 - `constraints/`: templates for ECP5 (LPF), Vivado (XDC), Quartus and others (SDC), clock {mhz:g} MHz; each says what to change.
 - Licence of the RTL: [Solderpad 2.1](LICENSES/SHL-2.1.txt), or take it as [Apache-2.0](LICENSES/Apache-2.0.txt) like all the rest.
 - Check with Icarus; other simulators take the same macro and plusargs, `{bench}.v` explains them. It must print `PASS`:
@@ -226,6 +235,9 @@ def export(top, options):
     shutil.copytree(ROOT / "LICENSES", folder / "LICENSES")
     bench = "bench_blank.v" if top == BLANK else "bench_primtest.v"
     shutil.copy(ROOT / "tests" / "icarus" / bench, folder)
+    if top == SUBSYSTEM:
+        shutil.copy(ROOT / "tests" / "icarus" / "bench_subsystem.v", folder)
+        shutil.copy(ROOT / "cpp_ref" / "include" / "cchip" / "registers.hpp", folder)
     if top != BLANK:
         write_vectors(options.vectors, KINDS[top], folder / "vectors.hex", options.pairs, options.seed)
     (folder / "README.md").write_text(readme(top, [suffix for suffix, _ in files], options.pairs, options.mhz))

@@ -17,6 +17,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TOP, VECTORS, SCRATCH = "", "", ""
 BLANK = "cchip_primtest_blank"
+SUBSYSTEM = "cchip_primtest_subsystem"
 PASS = r"\APASS [^\n]*\n\Z"  # and nothing else
 
 
@@ -83,11 +84,13 @@ class Export(unittest.TestCase):
         modules = re.findall(r"^module (\w+)", (self.folder / self.file).read_text(), re.M)
         self.assertEqual(len(modules), len(set(modules)))
         self.assertIn(TOP, modules)
-        code, text = run(os.environ.get("YOSYS", "yosys"), "-p", f"read_verilog {self.file}; hierarchy -check -top {TOP}",
-                         cwd=self.folder)
-        self.assertEqual(code, 0, text)
-        # yosys names the modules that stay: as they are, or derived from one with parameters
-        used = set(re.findall(r"(?:Top|Used) module: +\\?(?:\$paramod(?:\$[0-9a-f]+)?\\)?(\w+)", text))
+        used = set()
+        for parameters in ("", "-chparam SIMULATION 1") if TOP == SUBSYSTEM else ("",):
+            code, text = run(os.environ.get("YOSYS", "yosys"), "-p",
+                             f"read_verilog {self.file}; hierarchy -check -top {TOP} {parameters}", cwd=self.folder)
+            self.assertEqual(code, 0, text)
+            # yosys names the modules that stay: as they are, or derived from one with parameters
+            used |= set(re.findall(r"(?:Top|Used) module: +\\?(?:\$paramod(?:\$[0-9a-f]+)?\\)?(\w+)", text))
         self.assertEqual(set(modules), used)
 
     def test_device_variants_differ_in_their_leaf_only(self):
