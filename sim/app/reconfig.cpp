@@ -23,7 +23,7 @@ namespace cchip::app {
 namespace {
 
 constexpr std::array<const char*, 4> kind_names = {"", "tri-tri", "tri-quad", "quad-quad"};
-constexpr std::array<const char*, 9> phase_names = {"header", "shut down", "decouple", "reset",   "transfer",
+constexpr std::array<const char*, 9> phase_names = {"header", "shut down", "decouple", "reset", "transfer",
                                                     "check",  "ROC",       "recouple", "report"};
 
 /// Candidate pairs of the demo's meshes by module, at most `limit` of each.
@@ -76,8 +76,8 @@ Counts judge(const std::vector<ReconfigPair>& pairs, const ReconfigResult& resul
     c.hits[kind] += exact ? 1 : 0;
     c.lost += answer.answers == 0 ? 1 : 0;
     c.duplicated += answer.answers > 1 ? answer.answers - 1 : 0;
-    const bool right = answer.tested && answer.grid == exact && (answer.hit || !exact) &&
-                       answer.module_id == module_of(pairs[i].pair);
+    const bool right =
+        answer.tested && answer.grid == exact && (answer.hit || !exact) && answer.module_id == module_of(pairs[i].pair);
     c.mismatches += answer.answers > 0 && !right ? 1 : 0;
   }
   return c;
@@ -107,7 +107,8 @@ std::string prepare_wave(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
-    throw UsageError(fmt::format("{}: the folder cannot be made ({}); give another with --waves", folder, error.message()));
+    throw UsageError(
+        fmt::format("{}: the folder cannot be made ({}); give another with --waves", folder, error.message()));
   }
   return (std::filesystem::path(folder) / "sim-reconfig.fst").string();
 }
@@ -124,10 +125,11 @@ int run_reconfig_job(const ReconfigJobOptions& options, std::ostream& out) {
   reconfig.seed = options.seed;
   reconfig.trace_path = prepare_wave(options.wave_folder);
   const std::vector<ReconfigPair> pairs = mixed(mesh_pairs(options.pairs, options.mode), options.seed);
-  fmt::print(out,
-             "Pairs of triangles and quads through two slots; three kinds of test take turns in them. Every swap passes\n"
-             "its bitstream of {} bits through the 8-bit configuration port, two clocks per byte (100 MHz and 50 MHz).\n\n",
-             8 * reconfig.payload_bytes);
+  fmt::print(
+      out,
+      "Pairs of triangles and quads through two slots; three kinds of test take turns in them. Every swap passes\n"
+      "its bitstream of {} bits through the 8-bit configuration port, two clocks per byte (100 MHz and 50 MHz).\n\n",
+      8 * reconfig.payload_bytes);
   out.flush();
   const auto start = std::chrono::steady_clock::now();
   const ReconfigResult result = run_reconfig(pairs, reconfig);

@@ -143,7 +143,11 @@ class System : public sim::Agent {
       return;
     }
     ReconfigAnswer& answer = result_.answers[index];
-    answer = {beat.hit, beat.grid, beat.definite, beat.axis.cls != AxisClass::illegal, 1,
+    answer = {beat.hit,
+              beat.grid,
+              beat.definite,
+              beat.axis.cls != AxisClass::illegal,
+              1,
               static_cast<ModuleId>(simulation_->m_result_kind)};
     in_flight_[beat.tag] = nobody;
     last_with_[beat.tag] = index + 1;

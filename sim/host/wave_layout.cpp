@@ -229,7 +229,8 @@ void pair_streams(SaveFile& file) {
   file.vector("pair tag", {"s_pair_tag", defs::tag_w}, Radix::hexadecimal);
   for (int kind = 1; kind < 4; ++kind) {
     const Vector waiting{"waiting", 3 * queue_count_w};
-    file.field("waiting, kind " + std::to_string(kind), waiting, queue_count_w * (kind - 1), queue_count_w, Radix::decimal);
+    file.field("waiting, kind " + std::to_string(kind), waiting, queue_count_w * (kind - 1), queue_count_w,
+               Radix::decimal);
   }
   file.bit("answer valid", "m_result_valid");
   file.bit("answer ready", "m_result_ready");

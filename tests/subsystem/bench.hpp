@@ -60,8 +60,7 @@ inline KindResult refused_answer(const KindRequest& r) {
 inline KindResult tested_answer(const KindRequest& r, int coord_w) {
   if (r.kind == 0 || r.request.mode > 1) return refused_answer(r);
   const auto kind = static_cast<std::size_t>(r.kind);
-  const model::Options options{
-      {static_cast<std::size_t>(kind_a[kind]), static_cast<std::size_t>(kind_b[kind])}, true};
+  const model::Options options{{static_cast<std::size_t>(kind_a[kind]), static_cast<std::size_t>(kind_b[kind])}, true};
   const model::Outcome o = model::run_programme(options, r.request.pair, r.request.mode, coord_w);
   const bool exact = exact_intersects(r.request.pair);
   sim::require(o.grid == exact, "the model is wrong");
@@ -129,11 +128,13 @@ inline Bytes spoilt_bitstream(Spoilt how, int slot, int module_id, std::size_t p
   if (how == Spoilt::slot) header.slot = static_cast<std::uint8_t>(place + 1 + random() % 254);
   if (how == Spoilt::module_id) header.module_id = other;
   if (how == Spoilt::length) header.length += 4;
-  if (how == Spoilt::crc) payload[name_end + random() % (payload.size() - name_end)] ^= static_cast<std::uint8_t>(1U << random() % 8);
+  if (how == Spoilt::crc)
+    payload[name_end + random() % (payload.size() - name_end)] ^= static_cast<std::uint8_t>(1U << random() % 8);
   if (how == Spoilt::content) payload[name_end + random() % (payload.size() - name_end)] ^= 0x10;
   if (how == Spoilt::truncated) payload.resize(payload.size() - 4);
   if (how == Spoilt::too_long) payload.insert(payload.end(), 4, std::uint8_t{0});
-  if (how == Spoilt::truncated || how == Spoilt::too_long || how == Spoilt::content) return make_bitstream(place, id, payload);
+  if (how == Spoilt::truncated || how == Spoilt::too_long || how == Spoilt::content)
+    return make_bitstream(place, id, payload);
   return join_bitstream(header, payload);
 }
 
@@ -151,18 +152,18 @@ template <class Model>
 struct Nets;
 #define CCHIP_SUBSYSTEM_NET(name) t.rootp->cchip_primtest_subsystem__DOT__##name
 #define CCHIP_SLOT_NET(slot, name) CCHIP_SUBSYSTEM_NET(gen_slots__BRA__##slot##__KET____DOT__u_slot__DOT__##name)
-#define CCHIP_SUBSYSTEM_NETS(model, modules, coupled)                                                          \
-  template <>                                                                                                  \
-  struct Nets<model> {                                                                                         \
-    static bool report_valid(model& t) { return CCHIP_SUBSYSTEM_NET(report_valid) != 0; }                      \
-    static Report report(model& t) {                                                                           \
-      return {0, CCHIP_SUBSYSTEM_NET(report_slot), CCHIP_SUBSYSTEM_NET(report_module),                         \
-              static_cast<SwapCode>(CCHIP_SUBSYSTEM_NET(report_code)), CCHIP_SUBSYSTEM_NET(report_lost)};      \
-    }                                                                                                          \
-    static unsigned slot_module(model& t) { return modules; }                                                  \
-    static unsigned decoupled(model& t) { return coupled; }                                                    \
+#define CCHIP_SUBSYSTEM_NETS(model, modules, coupled)                                                             \
+  template <>                                                                                                     \
+  struct Nets<model> {                                                                                            \
+    static bool report_valid(model& t) { return CCHIP_SUBSYSTEM_NET(report_valid) != 0; }                         \
+    static Report report(model& t) {                                                                              \
+      return {0, CCHIP_SUBSYSTEM_NET(report_slot), CCHIP_SUBSYSTEM_NET(report_module),                            \
+              static_cast<SwapCode>(CCHIP_SUBSYSTEM_NET(report_code)), CCHIP_SUBSYSTEM_NET(report_lost)};         \
+    }                                                                                                             \
+    static unsigned slot_module(model& t) { return modules; }                                                     \
+    static unsigned decoupled(model& t) { return coupled; }                                                       \
     static unsigned phase(model& t) { return CCHIP_SUBSYSTEM_NET(u_controller__DOT__u_sequencer__DOT__phase_q); } \
-    static unsigned bitstreams(model& t) { return CCHIP_SUBSYSTEM_NET(u_regs__DOT__bitstream_valid_value_q); } \
+    static unsigned bitstreams(model& t) { return CCHIP_SUBSYSTEM_NET(u_regs__DOT__bitstream_valid_value_q); }    \
   }
 #define CCHIP_MODULE(slot) (CCHIP_SLOT_NET(slot, u_decoupler__DOT__rm_id_q) & 3U) << (2 * (slot))
 #define CCHIP_DECOUPLED(slot) (CCHIP_SLOT_NET(slot, u_decoupler__DOT__decoupled_q) & 1U) << (slot)
@@ -176,10 +177,10 @@ CCHIP_SUBSYSTEM_NETS(Vsubsystem_s2, CCHIP_MODULE(0) | CCHIP_MODULE(1), CCHIP_DEC
 
 /// What went wrong; the first one in words.
 struct Account {
-  std::uint64_t pairs = 0;       ///< answered
-  std::uint64_t refused = 0;     ///< of them without a test
-  std::uint64_t given_up = 0;    ///< by swaps with force, reported
-  std::uint64_t lost = 0;        ///< not answered and not reported
+  std::uint64_t pairs = 0;     ///< answered
+  std::uint64_t refused = 0;   ///< of them without a test
+  std::uint64_t given_up = 0;  ///< by swaps with force, reported
+  std::uint64_t lost = 0;      ///< not answered and not reported
   std::uint64_t duplicated = 0;
   std::uint64_t wrong = 0;
   std::string first;
@@ -450,7 +451,7 @@ class SubsystemBench {
   std::map<std::uint16_t, Open> open_;
   std::set<std::uint16_t> queued_, answered_;
   std::uint16_t next_tag_ = 1;
-  std::uint64_t given_up_ = 0;  // reported, not yet known which
+  std::uint64_t given_up_ = 0;             // reported, not yet known which
   std::array<std::uint64_t, 4> absent_{};  // last clock without a provider
   std::uint64_t progress_ = 0;
   std::unique_ptr<sim::AxiLiteMaster<Model>> master_;

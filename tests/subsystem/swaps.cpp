@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Campaign: swaps under random traffic with random back-pressure and faults: in bitstreams, memory, configuration port,
-// commands, by abort and reset. Every pair must be answered once and right, or be reported as given up; nothing may hang.
+// commands, by abort and reset. Every pair must be answered once and right, or be reported as given up; nothing may
+// hang.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -88,7 +89,7 @@ class Part {
 
   void set_up() {
     bench_.post_write(regs::shutdown_limit::offset, 4000);  // longer than the longest pair
-    bench_.post_write(regs::memory_limit::offset, 200);
+    bench_.post_write(regs::memory_limit::offset, 300);
     bench_.set_up(1 + static_cast<std::uint32_t>(pick(12)), 50 + static_cast<std::uint32_t>(pick(1500)));
     new_patterns();
   }
@@ -112,7 +113,7 @@ class Part {
       bench_.collect();
       if (chance_in(30)) software();
     }
-    if (chance_in(400)) memory_fault();
+    if (chance_in(1500)) memory_fault();
     if (resume_at_ != 0 && bench_.simulation.total_clocks() >= resume_at_) {
       bench_.memory.resume();
       resume_at_ = 0;
@@ -289,8 +290,9 @@ int run(const Options& o) {
     const bool one = o.slots == 1 || (o.slots == 0 && part % 2 == 1);
     return one ? run_part<OneSlot>(part, seed, o.per_part) : run_part<TwoSlots>(part, seed, o.per_part);
   });
-  constexpr std::array<const char*, 15> names = {"OK",  "SAME",   "BUSY",         "REQUEST", "MAGIC",  "SLOT",     "MODULE", "LENGTH",
-                                                 "CRC", "DEVICE", "WRONG_MODULE", "BUS",     "MEMORY", "SHUTDOWN", "ABORTED"};
+  constexpr std::array<const char*, 15> names = {"OK",           "SAME",   "BUSY",   "REQUEST",  "MAGIC",
+                                                 "SLOT",         "MODULE", "LENGTH", "CRC",      "DEVICE",
+                                                 "WRONG_MODULE", "BUS",    "MEMORY", "SHUTDOWN", "ABORTED"};
   fmt::print("reports:");
   for (std::size_t i = 0; i < names.size(); ++i) fmt::print(" {} {}", names[i], t.codes[i]);
   fmt::print("\nclocks {}, resets {}, pairs answered without a test {}, given up by force and reported {}\n", t.clocks,
@@ -318,7 +320,9 @@ int main(int argc, char** argv) try {
   app.add_option("--threads", o.threads, "threads; the outcome does not depend on it")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
-  app.add_option("--per-part", o.per_part, "swaps of one simulation")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--per-part", o.per_part, "swaps of one simulation")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--slots", o.slots, "slots; 0: systems with one and with two in turn")
       ->check(CLI::Range(0, 2))
       ->capture_default_str();

@@ -16,14 +16,15 @@ class DispatcherBench {
   static constexpr int width = Config::WIDTH;
 
   explicit DispatcherBench(const sim::SimulationOptions& options)
-      : random_(options.seed), simulation_(options), bench_([this](const auto&) { drive(); },
-                                                           [this](const auto& now) { sample(now); }) {
+      : random_(options.seed),
+        simulation_(options),
+        bench_([this](const auto&) { drive(); }, [this](const auto& now) { sample(now); }) {
     simulation_.add(bench_);
     simulation_.reset();
   }
   void steps(std::uint64_t clocks) { simulation_.steps(clocks); }
 
-  std::array<int, 4> refused{};                       ///< by kind, 0: illegal
+  std::array<int, 4> refused{};                           ///< by kind, 0: illegal
   std::array<std::array<int, 4>, Config::SLOTS> given{};  ///< by slot and kind
   int both_ready = 0, first_of_both = 0;
 
@@ -89,7 +90,8 @@ class DispatcherBench {
         first_of_both += (top().m_pair_valid & 1U) != 0 ? 1 : 0;
       }
     }
-    const bool some = waits_[0] || (((waits_[1] ? 1U : 0U) | (waits_[2] ? 2U : 0U) | (waits_[3] ? 4U : 0U)) & refusing_) != 0;
+    const bool some =
+        waits_[0] || (((waits_[1] ? 1U : 0U) | (waits_[2] ? 2U : 0U) | (waits_[3] ? 4U : 0U)) & refusing_) != 0;
     expect("m_refused_valid", top().m_refused_valid != 0, some);
     if (some) {
       const std::size_t kind = top().m_refused_kind;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <models/cchip_pair_queue.hpp>
-
 #include <deque>
+#include <models/cchip_pair_queue.hpp>
 
 #include "stream_bench.hpp"
 

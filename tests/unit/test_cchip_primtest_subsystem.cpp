@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subsystem as a whole: every tag is answered once and right, whatever happens to the swaps; each fault has its code
-// and leaves the slot as documented. Answers come from the exact oracle and the model of the tests.
+// The subsystem as a whole: every tag is answered once and right, whatever happens to the swaps; each fault has its
+// code and leaves the slot as documented. Answers come from the exact oracle and the model of the tests.
 #include <catch2/catch.hpp>
 #include <cchip/sim/wave_on_failure.hpp>
 
@@ -120,12 +120,15 @@ CCHIP_CASE("all patterns of senders and receivers") {
 }
 
 CCHIP_CASE("spoilt bitstreams: code, slot at work or decoupled, valid bit gone, interrupt; then a good one") {
-  const std::map<Spoilt, SwapCode> codes = {
-      {Spoilt::magic, SwapCode::magic},           {Spoilt::slot, SwapCode::slot},
-      {Spoilt::module_id, SwapCode::module},      {Spoilt::length, SwapCode::length},
-      {Spoilt::crc, SwapCode::crc},               {Spoilt::truncated, SwapCode::wrong_module},
-      {Spoilt::too_long, SwapCode::wrong_module}, {Spoilt::content, SwapCode::wrong_module},
-      {Spoilt::other_module, SwapCode::wrong_module}};
+  const std::map<Spoilt, SwapCode> codes = {{Spoilt::magic, SwapCode::magic},
+                                            {Spoilt::slot, SwapCode::slot},
+                                            {Spoilt::module_id, SwapCode::module},
+                                            {Spoilt::length, SwapCode::length},
+                                            {Spoilt::crc, SwapCode::crc},
+                                            {Spoilt::truncated, SwapCode::wrong_module},
+                                            {Spoilt::too_long, SwapCode::wrong_module},
+                                            {Spoilt::content, SwapCode::wrong_module},
+                                            {Spoilt::other_module, SwapCode::wrong_module}};
   REQUIRE(codes.size() + 1 == static_cast<std::size_t>(Spoilt::last));
   with_wave([&](const sim::SimulationOptions& options) {
     System<TestType> s(options);
@@ -142,7 +145,8 @@ CCHIP_CASE("spoilt bitstreams: code, slot at work or decoupled, valid bit gone, 
         const Report r = s.swap(slot, module_id);
         REQUIRE(static_cast<int>(r.code) == static_cast<int>(code));
         REQUIRE(r.lost == 0);
-        const bool at_work = code == SwapCode::magic || code == SwapCode::slot || code == SwapCode::module || code == SwapCode::length;
+        const bool at_work =
+            code == SwapCode::magic || code == SwapCode::slot || code == SwapCode::module || code == SwapCode::length;
         s.steps(4);
         REQUIRE(s.decoupled(slot) == !at_work);
         REQUIRE(s.module_in(slot) == (at_work ? before : 0));
@@ -267,7 +271,8 @@ CCHIP_CASE("abort in each phase: at work with the former module, decoupled, or t
   });
 }
 
-CCHIP_CASE("a receiver that is gone: shut-down times out and the slot goes on; by force pairs are given up and reported") {
+CCHIP_CASE(
+    "a receiver that is gone: shut-down times out and the slot goes on; by force pairs are given up and reported") {
   with_wave([](const sim::SimulationOptions& options) {
     for (const bool force : {false, true}) {
       System<TestType> s(options);
@@ -339,7 +344,8 @@ CCHIP_CASE("transfer takes eq. (4) and a fixed number of clocks") {
       s.provide(0, module_id, s.good(0, module_id, bytes));
       s.settle_bus();
       REQUIRE(s.swap(0, module_id).code == SwapCode::ok);
-      const std::uint64_t clocks = s.read(regs::phase_clocks::offset(static_cast<std::uint32_t>(SwapPhase::transfer) - 1));
+      const std::uint64_t clocks =
+          s.read(regs::phase_clocks::offset(static_cast<std::uint32_t>(SwapPhase::transfer) - 1));
       const std::uint64_t eq4 = transfer_clocks(bytes, TestType::CFG_W, TestType::CFG_DIVIDER);
       CAPTURE(bytes, clocks, eq4);
       REQUIRE(clocks >= eq4);

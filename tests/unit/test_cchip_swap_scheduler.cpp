@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scheduler with slots, queues, table and controller played by the test.
-#include <models/cchip_swap_scheduler.hpp>
-
 #include <cchip/defs.hpp>
+#include <models/cchip_swap_scheduler.hpp>
 
 #include "bench.hpp"
 
@@ -33,7 +32,8 @@ class SchedulerBench {
   static constexpr std::size_t entries = 4 * slots;
 
   explicit SchedulerBench(const sim::SimulationOptions& options)
-      : simulation(long_run(options)), bench_([this](const auto&) { drive(); }, [this](const auto& now) { sample(now); }) {
+      : simulation(long_run(options)),
+        bench_([this](const auto&) { drive(); }, [this](const auto& now) { sample(now); }) {
     for (std::size_t e = 0; e < entries; ++e) address[e] = static_cast<std::uint32_t>(64 * (e + 1));
     simulation.add(bench_);
     reset();
@@ -62,12 +62,12 @@ class SchedulerBench {
   std::uint32_t batch = 1, age = 1000;
   unsigned valid = (1U << entries) - 1;
   std::array<std::uint32_t, entries> address{};
-  std::array<int, 4> waiting{};         // by kind
-  std::array<int, slots> modules{};     // 0: none
-  unsigned taken = 0;                   // this clock, by slot
-  std::vector<Swap> requests;           // accepted
+  std::array<int, 4> waiting{};      // by kind
+  std::array<int, slots> modules{};  // 0: none
+  unsigned taken = 0;                // this clock, by slot
+  std::vector<Swap> requests;        // accepted
   std::vector<Told> told;
-  unsigned cleared = 0;                 // entries invalidated so far
+  unsigned cleared = 0;  // entries invalidated so far
   unsigned no_provider = 0;
   std::function<void()> on_clock = [] {};
   sim::Simulation<typename Config::Model> simulation;
@@ -115,10 +115,12 @@ class SchedulerBench {
     auto& top = simulation.top();
     if (now.in_reset) return;
     if (top.m_swap_valid != 0 && ready) {
-      requests.push_back({top.m_swap_slot, top.m_swap_module, top.m_swap_address, top.m_swap_size, top.m_swap_force != 0});
+      requests.push_back(
+          {top.m_swap_slot, top.m_swap_module, top.m_swap_address, top.m_swap_size, top.m_swap_force != 0});
     }
     if (top.m_report_valid != 0) {
-      told.push_back({top.m_report_slot, top.m_report_module, static_cast<SwapCode>(top.m_report_code), top.m_report_lost});
+      told.push_back(
+          {top.m_report_slot, top.m_report_module, static_cast<SwapCode>(top.m_report_code), top.m_report_lost});
     }
     cleared |= static_cast<unsigned>(sim::get_bits(top.table_invalidate, 0, static_cast<int>(entries)));
     no_provider = top.no_provider;
@@ -146,7 +148,8 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
       bench.taken = 0;
       bench.batch = static_cast<std::uint32_t>(random() % 20);
       bench.age = static_cast<std::uint32_t>(random() % 250);
-      bench.valid = static_cast<unsigned>(random() & ((1U << (4 * slots)) - 1)) | (chance(random, 50) ? ~0x11U & ((1U << (4 * slots)) - 1) : 0);
+      bench.valid = static_cast<unsigned>(random() & ((1U << (4 * slots)) - 1)) |
+                    (chance(random, 50) ? ~0x11U & ((1U << (4 * slots)) - 1) : 0);
       for (int& m : bench.modules) m = static_cast<int>(random() % 4);
       bench.reset();
       // kinds begin to wait one after the other; slots take some pairs
@@ -186,7 +189,8 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
           const int has = bench.modules[s];
           const bool idle = has == 0 || bench.waiting[static_cast<std::size_t>(has)] == 0;
           const bool settled = has != 0 && pairs_taken[s] > 0 && pairs_taken[s] >= static_cast<int>(bench.batch);
-          const bool legal = (bench.valid >> (4 * s + k) & 1U) != 0 && ((idle && (enough || too_old)) || (settled && too_old));
+          const bool legal =
+              (bench.valid >> (4 * s + k) & 1U) != 0 && ((idle && (enough || too_old)) || (settled && too_old));
           const std::tuple merit_of_slot(idle, s != 1);
           const bool first = !best_of_slots && (!best || merit > *best);
           const bool better_slot = best_of_slots && merit_of_slot > *best_of_slots;
@@ -200,7 +204,7 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
       }
       bench.enable = true;
       bench.steps(2 * (3 * slots + 3) + 2);  // two scans
-      if (unclear) continue;  // an age passes the limit meanwhile
+      if (unclear) continue;                 // an age passes the limit meanwhile
       INFO("picture " << picture);
       REQUIRE(bench.requests.size() == (best ? 1U : 0U));
       none += best ? 0 : 1;

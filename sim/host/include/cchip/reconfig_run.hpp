@@ -41,8 +41,8 @@ struct ReconfigAnswer {
   bool hit = false;
   bool grid = false;
   bool definite = false;
-  bool tested = false;      ///< false: the subsystem had no module for it
-  unsigned answers = 0;     ///< times that the tag came back
+  bool tested = false;   ///< false: the subsystem had no module for it
+  unsigned answers = 0;  ///< times that the tag came back
   ModuleId module_id = ModuleId::blank;
 };
 
@@ -59,10 +59,10 @@ struct ReconfigResult {
   std::vector<ReconfigAnswer> answers;  ///< in the order of the pairs
   std::vector<ReconfigSwap> swaps;
   std::uint64_t clocks = 0;
-  std::uint64_t foreign_answers = 0;   ///< tags that nobody sent
-  std::uint64_t transfer_clocks = 0;   ///< clocks of phase TRANSFER
-  std::uint64_t hidden_clocks = 0;     ///< of them, with pairs inside the other slot
-  std::uint64_t equation_4 = 0;        ///< clocks of one transfer by eq. (4): bytes times clocks per byte of the port
+  std::uint64_t foreign_answers = 0;  ///< tags that nobody sent
+  std::uint64_t transfer_clocks = 0;  ///< clocks of phase TRANSFER
+  std::uint64_t hidden_clocks = 0;    ///< of them, with pairs inside the other slot
+  std::uint64_t equation_4 = 0;       ///< clocks of one transfer by eq. (4): bytes times clocks per byte of the port
 };
 
 /// Sends the pairs in their order and returns when all are answered. Slot 0 begins with tri-tri, slot 1 with quad-quad.
