@@ -69,9 +69,8 @@ MUTANTS = [
     ("cchip_swap_sequencer prove", SEQUENCER, "else if (expired_q) begin\n        phase_d = `CCHIP_PHASE_REPORT;\n        code_d  = `CCHIP_SWAP_SHUTDOWN;",
      "else if (abort_q) begin\n        phase_d = `CCHIP_PHASE_REPORT;\n        code_d  = `CCHIP_SWAP_SHUTDOWN;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "if (decoupled_q) phase_d = `CCHIP_PHASE_RESET;", "if (quiet_q) phase_d = `CCHIP_PHASE_RESET;"),
-    ("cchip_swap_sequencer prove", SEQUENCER, "wire refuses = refuse_q & ~reports;", "wire refuses = refuse_q;"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "refuse_q <= (accept & ~idle) | (refuse_q & reports);", "refuse_q <= accept & ~idle;"),
     ("cchip_bitstream_fetch bounded", FETCH, "wire [4:0] to_edge = 5'd16 - {1'b0, addr_q[5:2]};", "wire [4:0] to_edge = 5'd16;"),
-    ("cchip_bitstream_fetch bounded", FETCH, "~arvalid_q & ~bursts_q[1] & room;", "~arvalid_q & room;"),
     ("cchip_bitstream_fetch bounded", FETCH, "issue | (arvalid_q & ~m_axi_arready);", "issue | (arvalid_q & ~m_axi_arready & run);"),
     ("cchip_bitstream_fetch bounded", FETCH, "timeout_q <= run & (timeout_q |", "timeout_q <= run & (1'b0 |"),
 ]
