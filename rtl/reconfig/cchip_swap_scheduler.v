@@ -67,6 +67,7 @@ module cchip_swap_scheduler #(
     output reg  [          15:0] m_report_lost
 );
 
+  localparam [31:0] COUNT_BITS = COUNT_W;
   localparam [31:0] SLOT_COUNT = SLOTS;
   localparam [31:0] LAST = 3 * SLOTS - 1;
 
@@ -187,12 +188,12 @@ module cchip_swap_scheduler #(
   wire [ 1:0] settled_of = {{2 - SLOTS{1'b0}}, settled_q};
   wire        scan_idle = idle_of[scan_slot_q];
   wire        scan_settled = settled_of[scan_slot_q];
-  wire [31:0] scan_waiting = {{32 - COUNT_W{1'b0}}, waiting[COUNT_W*scan_kind_q+:COUNT_W]};
+  wire [31:0] scan_waiting = {{32 - COUNT_W{1'b0}}, waiting[COUNT_BITS*{30'd0, scan_kind_q}+:COUNT_W]};
 
   always @(posedge clk) begin
     legal_q <= valid_of[{scan_slot_q, scan_kind_q + 2'd1}] & open_q[scan_kind_q]
         & ((scan_idle & (enough_q[scan_kind_q] | scan_old)) | (scan_settled & scan_old));
-    merit_q <= {scan_old, scan_old ? age_q[32*scan_kind_q+:32] : scan_waiting, scan_idle, scan_slot_q != last_slot_q};
+    merit_q <= {scan_old, scan_old ? age_q[{scan_kind_q, 5'd0}+:32] : scan_waiting, scan_idle, scan_slot_q != last_slot_q};
     slot_q  <= scan_slot_q;
     kind_q  <= scan_kind_q;
     end_q   <= scan_q == LAST[2:0];
@@ -235,8 +236,8 @@ module cchip_swap_scheduler #(
     if (take_command | take_best) begin
       slot_of_swap_q <= entry[2];
       m_swap_module  <= {6'd0, entry[1:0]};
-      m_swap_address <= address_of[32*entry+:32];
-      m_swap_size    <= size_of[32*entry+:32];
+      m_swap_address <= address_of[{entry, 5'd0}+:32];
+      m_swap_size    <= size_of[{entry, 5'd0}+:32];
       m_swap_force   <= take_command & command_force;
     end
     if (rst) begin
