@@ -204,7 +204,7 @@ void add_reconfig(CLI::App& app, ReconfigJobOptions& options) {
       app.add_subcommand("reconfig", "Meshes through two slots whose modules are exchanged at run time");
   command->add_option("--bitstream-bits", options.bitstream_bits,
                       "payload of each bitstream (default 16384; the paper's: 5504088, takes minutes)");
-  command->add_option("--pairs", options.pairs, "pairs of each kind, at most (default 500)")
+  command->add_option("--pairs", options.pairs, "pairs of each kind, at most (default 1500)")
       ->check(CLI::PositiveNumber);
   add_choice(*command, "--program", options.mode, programs, "axis programme (default exhaustive)");
   command->add_option("--waves", options.wave_folder, "folder for sim-reconfig.fst (default build/waves)");

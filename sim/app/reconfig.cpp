@@ -29,14 +29,17 @@ constexpr std::array<const char*, 9> phase_names = {"header", "shut down", "deco
 /// Candidate pairs of the demo's meshes by module, at most `limit` of each.
 std::array<std::vector<ReconfigPair>, 4> mesh_pairs(std::uint64_t limit, PairMode mode) {
   std::array<std::vector<ReconfigPair>, 4> pairs;
-  for (const DemoRun& run : make_demo_runs()) {
-    if (run.pose != "deep" || run.mode != mode) continue;
+  std::vector<DemoRun> runs = make_demo_runs();
+  std::stable_partition(runs.begin(), runs.end(), [](const DemoRun& run) { return run.pose == "deep"; });  // hits first
+  for (const DemoRun& run : runs) {
+    if (run.mode != mode) continue;
     for_each_candidate(run.a, run.b, limit, [&](const PairJob& job) {
       GridPair pair = quantise(job.a, job.b, defs::coord_w_default).pair;
       if (pair.a.kind == Kind::quad && pair.b.kind == Kind::tri) std::swap(pair.a, pair.b);
       pair.a = canonical_quad(pair.a);
       pair.b = canonical_quad(pair.b);
-      pairs[static_cast<std::size_t>(module_of(pair))].push_back({pair, mode});
+      auto& of_kind = pairs[static_cast<std::size_t>(module_of(pair))];
+      if (of_kind.size() < limit) of_kind.push_back({pair, mode});
     });
   }
   return pairs;

@@ -13,7 +13,7 @@ namespace cchip::app {
 
 struct ReconfigJobOptions {
   std::uint64_t bitstream_bits = 16384;  ///< payload of each bitstream
-  std::uint64_t pairs = 500;             ///< of each kind, at most
+  std::uint64_t pairs = 1500;            ///< of each kind, at most
   PairMode mode = PairMode::exhaustive;
   std::uint64_t seed = 1;
   std::string wave_folder = "build/waves";

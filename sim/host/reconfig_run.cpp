@@ -122,9 +122,9 @@ class System : public sim::Agent {
         address += (bytes + align - 1) / align * align;
       }
     }
-    const auto two_transfers = static_cast<std::uint32_t>(2 * result_.equation_4);
+    const auto half_a_transfer = static_cast<std::uint32_t>(result_.equation_4 / 2);
     write(regs::minimum_batch::offset, options_.minimum_batch);
-    write(regs::maximum_age::offset, options_.maximum_age == 0 ? two_transfers : options_.maximum_age);
+    write(regs::maximum_age::offset, options_.maximum_age == 0 ? half_a_transfer : options_.maximum_age);
     write(regs::control::offset, regs::control::scheduler_enable_mask);
   }
 

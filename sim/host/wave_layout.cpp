@@ -282,9 +282,9 @@ void slot(SaveFile& file, int number) {
 
 // ---- files
 
-constexpr int wave_pixels = 1500;  ///< of a window of 1920, less the names
+constexpr double wave_frames = 7.5;  ///< GTKWave's frames of 200 pixels in a window of 1920, less the names
 
-/// What the window shows first: start, time units, and GTKWave's zoom: -log2 of the time units per pixel.
+/// What the window shows first: start, time units, and GTKWave's zoom: -log2 of the time units per frame.
 struct View {
   std::uint64_t start;
   double zoom;
@@ -338,8 +338,8 @@ void write_swap_gtkw(const std::string& fst_path, std::uint64_t from, std::uint6
   SaveFile file(out, "cchip_primtest_subsystem");
   const std::uint64_t margin = (to - from) / 20;
   const std::uint64_t first = from > margin ? from - margin : 0;
-  const double per_pixel = static_cast<double>(to + margin - first) / wave_pixels;
-  begin(file, "A swap of the reconfigurable subsystem", fst_path, {first, -std::log2(per_pixel)});
+  const double per_frame = static_cast<double>(to + margin - first) / wave_frames;
+  begin(file, "A swap of the reconfigurable subsystem", fst_path, {first, -std::log2(per_frame)});
   pair_streams(file);
   scheduler(file);
   config_controller(file);

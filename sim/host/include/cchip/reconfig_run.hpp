@@ -17,7 +17,7 @@ namespace cchip {
 struct ReconfigOptions {
   /// Payload of each bitstream, bytes, >= defs::bitstream_payload_min.
   std::size_t payload_bytes = 2048;
-  /// Registers of the scheduler: pairs, clocks; an age of 0: two transfers.
+  /// Registers of the scheduler: pairs, clocks; an age of 0: half a transfer.
   std::uint32_t minimum_batch = 64;
   std::uint32_t maximum_age = 0;
   /// Seed of what the RTL leaves undefined at power-up and of the bitstreams.
