@@ -298,7 +298,8 @@ def in_words(path):
 
 def cells(stat):
     """Cells {type: count} of every module, from `stat -json`; counts of the instances of modules are left out."""
-    modules = json.loads(stat)["modules"]
+    # Yosys 0.23 prints its tree of modules into the middle if that has more than two levels
+    modules = json.loads(re.sub(r'^ +[^\s"{}]+ +\d+\n', "", stat, flags=re.M))["modules"]
     return {name.lstrip("\\"): {cell: n for cell, n in module["num_cells_by_type"].items()
                                if re.fullmatch(r"\w+", cell)} for name, module in modules.items()}
 
