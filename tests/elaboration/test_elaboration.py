@@ -43,6 +43,14 @@ CFG_W = "cchip_error_CFG_W_must_be_8_or_32"
 SLOT_ID = "cchip_error_SLOT_ID_must_be_0_to_255"
 SIMULATION = "cchip_error_SIMULATION_must_be_0_or_1"
 RM_ID = "cchip_error_RM_ID_must_be_0_to_3"
+QUEUE = "cchip_error_pair_queue_WIDTH_below_1_or_DEPTH_not_16_to_1024"
+MERGE = "cchip_error_result_merge_SOURCES_not_2_to_8_or_WIDTH_below_1"
+CRC = "cchip_error_crc32_DATA_W_must_be_a_multiple_of_8"
+FETCH = "cchip_error_bitstream_fetch_FIFO_DEPTH_below_32"
+SLOT_LIMIT = "cchip_error_SLOT_LIMIT_below_16"
+COUNT_W = "cchip_error_COUNT_W_must_be_1_to_16"
+PORT = "cchip_error_config_port_CFG_W_must_be_8_or_32_and_CFG_DIVIDER_above_0"
+SLOTS = "cchip_error_SLOTS_must_be_1_or_2"
 SIGN = "cchip_error_SIGN_must_be_below_POINTS"
 COMPARE = "cchip_error_compare_POINTS_must_be_3_to_5_and_OWN_1_or_2"
 RAM = "cchip_error_ram_WIDTH_or_DEPTH_below_1_or_ADDR_W_too_small"
@@ -101,6 +109,15 @@ ILLEGAL = [
     ("cchip_pr_slot", {"SLOT_ID": 256}, SLOT_ID),
     ("cchip_pr_slot", {"SIMULATION": 2}, SIMULATION),
     ("cchip_pr_slot", {"ROC_CYCLES": 0}, ROC),
+    *(("cchip_pair_queue", {"DEPTH": n}, QUEUE) for n in (15, 1025)),
+    *(("cchip_result_merge", {"SOURCES": n}, MERGE) for n in (1, 9)),
+    ("cchip_crc32", {"DATA_W": 12}, CRC),
+    ("cchip_bitstream_fetch", {"FIFO_DEPTH": 31}, FETCH),
+    ("cchip_swap_sequencer", {"SLOTS": 3}, SLOTS),
+    ("cchip_swap_sequencer", {"SLOT_LIMIT": 15}, SLOT_LIMIT),
+    ("cchip_swap_scheduler", {"COUNT_W": 17}, COUNT_W),
+    ("cchip_config_port", {"CFG_W": 16}, PORT),
+    ("cchip_config_port", {"CFG_DIVIDER": 0}, PORT),
 ]
 
 # module, parameters
@@ -125,6 +142,8 @@ LEGAL = [
     ("cchip_delay", {"DEPTH": 0, "RESET": 1}),
     *(("cchip_delay", {"DEPTH": n, "MEMORY": 1}) for n in (3, 4, 20)),
     ("cchip_fifo", {"DEPTH": 1}),
+    *(("cchip_pair_queue", {"DEPTH": n}) for n in (16, 1024)),
+    *(("cchip_result_merge", {"SOURCES": n}) for n in (2, 8)),
     ("cchip_fifo", {"WIDTH": 1, "DEPTH": 5}),
     ("cchip_ram", {"WIDTH": 1, "DEPTH": 1, "ADDR_W": 1}),
     ("cchip_skid_buffer", {"WIDTH": 1}),
