@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Area and clock of the primitive tests on FPGAs, with open tools: nothing here needs a board or a vendor's tool.
 
-usage: fpga.py [ROW...] [options]     without ROW all rows; `fpga.py --list` names them
+usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --list` names them
   --seeds N         place and route with the seeds 1..N (default 5); rows that only serve comparison, and array6, with 3
                     at most
   --jobs N          tools at the same time (default 2; one place and route takes about 1 GB)
@@ -444,7 +444,7 @@ def measure(chosen, options):
                   for row in chosen if options.families and row.families for family in FAMILIES}
         syntheses = {row: submit(synthesise, row, options) for row in chosen}
         placed = {row: {seed: submit(place, row, synthesis.result(), seed, options)
-                        for seed in range(1, min(options.seeds, row.seeds) + 1)}
+                        for seed in range(1, row.seeds + 1)}
                   for row, synthesis in syntheses.items() if synthesis.result()}
         found = {}
         for row, jobs in placed.items():
@@ -471,10 +471,14 @@ def arguments():
     for flag in ("--families", "--write", "--list"):
         parser.add_argument(flag, action="store_true")
     options = parser.parse_args()
+    try:
+        options.rows = {name: int(n or options.seeds) for name, _, n in (row.partition(":") for row in options.rows)}
+    except ValueError:
+        parser.error("the number of seeds behind a row, as in array6:1, is at least 1")
     unknown = sorted(set(options.rows) - set(rows()))
     if unknown:
         parser.error(f"no row {unknown[0]}, one of: {' '.join(rows())}")
-    if options.seeds < 1 or options.jobs < 1 or options.pairs < 1:
+    if min(options.seeds, options.jobs, options.pairs, *options.rows.values()) < 1:
         parser.error("--seeds, --jobs and --pairs are at least 1")
     options.families |= options.write and not options.rows
     return options
@@ -495,7 +499,8 @@ def main():
     if options.list:
         print("\n".join(rows()))
         return 0
-    chosen = [row for name, row in rows().items() if not options.rows or name in options.rows]
+    chosen = [dataclasses.replace(row, seeds=min(row.seeds, options.rows.get(name, options.seeds)))
+              for name, row in rows().items() if not options.rows or name in options.rows]
     version(options.nextpnr, "--version")
     if not pathlib.Path(options.campaign).exists():
         say(f"fpga.py: no {options.campaign}, so no pairs per second; run: make campaign-build")
