@@ -402,24 +402,26 @@ def families_table(found):
     return datasheet.table(["row", "family", *columns], body)
 
 
-def bill_table(found):
-    """What reconfiguration costs: three static modules, one slot, two slots."""
-    if not {"tri_tri", "tri_quad", "quad_quad", "subsystem1", "subsystem2"} <= set(found):
-        return ""
-    columns = ("lut4", "comb", "ff", "dsp", "bram", "dram")
-    take = lambda name: [found[name][column] for column in columns]
-    add = lambda *rows: [sum(cells) for cells in zip(*rows)]
-    less = lambda row, other, n: [a - n * b for a, b in zip(row, other)]
-    static = add(*map(take, ("tri_tri", "tri_quad", "quad_quad")))
-    body = [["three static modules", *static]]
+def bill_table(options):
+    """What reconfiguration costs: three static modules, one slot, two slots; synthesis alone."""
+    columns = {"LUT4, logic": "LUT4", "carry": "CCU2C", "FF": "TRELLIS_FF", "DSP": "MULT18X18D", "block RAM": "DP16KD",
+               "distributed RAM": "TRELLIS_DPR16X4"}
+
+    def take(name):
+        stat = (synthesise(rows()[name], options) / "stat.json").read_text()
+        module, _ = module_cells(cells(stat))
+        return [module[cell] for cell in columns.values()]
+
+    static = [take(name) for name in ("tri_tri", "tri_quad", "quad_quad")]
+    body = [["three static modules", *map(sum, zip(*static))]]
     for slots, name in ((1, "one slot"), (2, "two slots")):
         row = take(f"subsystem{slots}")
         body.append([name, *row])
-        body.append([f"of which not in the {'modules' if slots > 1 else 'module'}", *less(row, take("quad_quad"), slots)])
-    return datasheet.table(["", "LUT4, logic", "LUT4, all", "FF", "DSP", "block RAM", "distributed RAM"], body)
+        body.append(["of which not in the modules", *(a - slots * b for a, b in zip(row, static[2]))])
+    return datasheet.table(["", *columns], body)
 
 
-TABLES = {"bill": bill_table, "ecp5": area_table, "choices": choices_table, "classes": classes_table, "families": families_table}
+TABLES = {"ecp5": area_table, "choices": choices_table, "classes": classes_table, "families": families_table}
 
 
 # ---- command line
@@ -510,6 +512,8 @@ def main():
     if options.families:
         print(families_table(found))
     if options.write and not failures:
+        if "subsystem1" in found:
+            datasheet.rewrite(PAGE, "bill", bill_table(options))
         for name, make in TABLES.items():
             if name != "families" or options.families:
                 datasheet.rewrite(PAGE, name, make(found))
