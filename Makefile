@@ -32,7 +32,7 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv build sim sim-reconfig wave test test-long formal test-gates test-debug test-asan lint tidy format campaign campaign-build \
+.PHONY: help bootstrap venv build sim sim-reconfig sim-levels wave test test-long formal test-gates test-debug test-asan lint tidy format campaign campaign-build \
   campaign-grid campaign-classes campaign-certainty campaign-leaves campaign-swaps export fpga fpga-quick install clean
 
 help: ## list the targets
@@ -59,6 +59,10 @@ sim: $(RELEASE)/build.ninja ## run two meshes through the simulated hardware, ch
 sim-reconfig: $(RELEASE)/build.ninja ## run mixed meshes through two slots with real swaps, check every pair, write build/waves/sim-reconfig.fst
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip
 	$(RELEASE)/bin/cchip reconfig $(SIM_ARGS)
+
+sim-levels: $(RELEASE)/build.ninja ## run 10^5 pairs through every SystemC refinement level with 51 swaps, compare all answers (docs/levels.md)
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip_levels
+	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_levels $(SIM_ARGS)
 
 wave: ## open the waveform of the last `make sim`
 	@test -f build/waves/sim.fst || { echo "no build/waves/sim.fst yet, run: make sim" >&2; exit 1; }

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cchip/levels/functional_api.hpp>
+#include <cchip/reconfig_run.hpp>
+
+namespace cchip::levels {
+namespace {
+
+Vertices to_vertices(const GridPrimitive& p) {
+  Vertices result;
+  for (std::size_t i = 0; i < p.vertex_count(); ++i) result.v.at(i) = {p.v.at(i)[0], p.v.at(i)[1], p.v.at(i)[2]};
+  return result;
+}
+
+}  // namespace
+
+FunctionalApi::FunctionalApi(const sc_core::sc_module_name& name, const Stimulus& stimulus, sc_core::sc_time patience,
+                             std::size_t sets)
+    : Api(name, stimulus, patience), m("m", sets), a("a", sets), b("b", sets), hit("hit", sets) {}
+
+std::size_t FunctionalApi::set_of(std::size_t index) const {
+  if (m.size() == 1) return 0;
+  const StimulusPair& pair = stimulus()[index];
+  return static_cast<std::size_t>(module_of({pair.a, pair.b, 0})) - 1;
+}
+
+void FunctionalApi::send(std::size_t index) {
+  const StimulusPair& pair = stimulus()[index];
+  const std::size_t set = set_of(index);
+  m[set].write(pair.m);
+  a[set].write(to_vertices(pair.a));
+  b[set].write(to_vertices(pair.b));
+}
+
+std::pair<std::size_t, bool> FunctionalApi::receive() {
+  const std::size_t index = answered();
+  if (index == stimulus().size()) wait();  // for ever: all are answered
+  return {index, hit[set_of(index)].read()};
+}
+
+}  // namespace cchip::levels

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Random stimulus.
+#ifndef CCHIP_LEVELS_GENERATOR_HPP
+#define CCHIP_LEVELS_GENERATOR_HPP
+
+#include <cchip/levels/stimulus.hpp>
+#include <cstddef>
+#include <cstdint>
+
+namespace cchip::levels {
+
+struct GeneratorOptions {
+  std::size_t pairs = 102000;     ///< primitive pairs
+  std::size_t object_pairs = 51;  ///< 1..pairs; they get the same number of primitive pairs, give or take one
+  std::uint64_t seed = 1;         ///< the stimulus depends on the options only
+};
+
+/// Successive object pairs differ in kind. Primitive pairs of every class: general, a grid step apart, touching,
+/// coplanar, degenerate, quads planar, warped and collapsed. Half of the matrices turn A by any angle, the others keep
+/// the class of the pair exactly: they permute and mirror axes, shift, and scale by 1, 1/2 or 1/4.
+/// \throws std::invalid_argument no such number of object pairs
+Stimulus generate(const GeneratorOptions& options);
+
+}  // namespace cchip::levels
+
+#endif

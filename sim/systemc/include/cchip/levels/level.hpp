@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The refinement levels as functions from stimulus to answers. One process can run one of them only once, because
+/// SystemC elaborates once: see in_child().
+#ifndef CCHIP_LEVELS_LEVEL_HPP
+#define CCHIP_LEVELS_LEVEL_HPP
+
+#include <cchip/levels/stimulus.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace cchip::levels {
+
+struct LevelOptions {
+  /// Payload of each bitstream, byte.
+  std::size_t payload_bytes = 2048;
+  /// Seed of what RTL leaves undefined at power-up and of the bitstreams.
+  std::uint64_t seed = 1;
+};
+
+struct LevelResult {
+  std::vector<std::uint8_t> answers;  ///< in the order of the stimulus: 1 the closed primitives share a point
+  std::uint64_t swaps = 0;            ///< configurations of another module
+  double simulated_seconds = 0;
+  double wall_seconds = 0;  ///< of the simulation, without elaboration
+  std::uint64_t deltas = 0;
+};
+
+/// L0: the three functional modules side by side, with FIFOs, without time (paper, figure 3).
+/// All: \throws std::runtime_error not every primitive pair is answered; says why
+LevelResult run_l0(const Stimulus& stimulus, const LevelOptions& options);
+
+/// Runs `job` in a child process and hands its result over.
+/// \throws std::runtime_error with the message of what `job` threw, or that the child ended by a signal
+LevelResult in_child(const std::function<LevelResult()>& job);
+
+}  // namespace cchip::levels
+
+#endif

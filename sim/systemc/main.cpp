@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// cchip_levels: the refinement levels on one stimulus, compared pair by pair.
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cchip/defs.hpp>
+#include <cchip/levels/generator.hpp>
+#include <cchip/levels/level.hpp>
+#include <cchip/levels/stimulus_file.hpp>
+#include <cchip/levels/summary.hpp>
+#include <cchip/sim/seed.hpp>
+#include <fstream>
+#include <iostream>
+#include <systemc>
+#include <usage_error.hpp>
+
+namespace cchip::levels {
+namespace {
+
+struct Level {
+  const char* name;
+  const char* description;
+  bool reconfigures;
+  LevelResult (*run)(const Stimulus&, const LevelOptions&);
+};
+constexpr std::array<Level, 1> all_levels = {{
+    {"L0", "functional, all tests side by side", false, run_l0},
+}};
+
+struct Options {
+  GeneratorOptions generator;
+  LevelOptions level;
+  std::string read_from;
+  std::string write_to;
+};
+
+Stimulus make_stimulus(const Options& options) {
+  if (options.read_from.empty()) return generate(options.generator);
+  std::ifstream in(options.read_from);
+  if (!in) throw app::UsageError(options.read_from + ": cannot be read; check its path and permissions");
+  return read_stimulus(in, options.read_from);
+}
+
+void save(const Stimulus& stimulus, const std::string& path) {
+  std::ofstream out(path);
+  write_stimulus(out, stimulus);
+  out.close();
+  if (!out) throw app::UsageError(path + ": cannot be written; check folder, permissions and disk");
+}
+
+int run(const Options& options) {
+  const Stimulus stimulus = make_stimulus(options);
+  if (!options.write_to.empty()) save(stimulus, options.write_to);
+  Summary summary(stimulus);
+  for (const Level& level : all_levels) {
+    try {
+      summary.add({level.name, level.description, level.reconfigures,
+                   in_child([&] { return level.run(stimulus, options.level); })});
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(std::string(level.name) + ": " + error.what());
+    }
+  }
+  summary.print(std::cout);
+  return summary.good() ? app::exit_ok : app::exit_mismatch;
+}
+
+int run_with_arguments(int argc, char** argv) {
+  Options options;
+  options.generator.seed = sim::seed_from_environment();
+  CLI::App command("Five refinement levels of the primitive tests on one stimulus, compared with the Eigen reference.");
+  command.add_option("--pairs", options.generator.pairs, "primitive pairs")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command.add_option("--object-pairs", options.generator.object_pairs, "object pairs, each needs a swap")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command.add_option("--seed", options.generator.seed, "seed of stimulus and power-up values (or CCHIP_SEED)")
+      ->capture_default_str();
+  command.add_option("--bitstream", options.level.payload_bytes, "payload of a bitstream, byte")
+      ->capture_default_str()
+      ->check(CLI::Range(defs::bitstream_payload_min, 1 << 24));
+  command.add_option("--read", options.read_from, "CSV file with the stimulus instead of a random one");
+  command.add_option("--write", options.write_to, "CSV file that gets the stimulus");
+  try {
+    command.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return command.exit(error) == 0 ? app::exit_ok : app::exit_usage;
+  }
+  options.level.seed = options.generator.seed;
+  std::cout << "CCHIP_SEED=" << options.generator.seed << '\n';
+  return run(options);
+}
+
+}  // namespace
+}  // namespace cchip::levels
+
+int sc_main(int argc, char** argv) {
+  using namespace cchip;
+  try {
+    return levels::run_with_arguments(argc, argv);
+  } catch (const app::UsageError& error) {
+    std::cerr << error.what() << '\n';
+    return app::exit_usage;
+  } catch (const std::invalid_argument& error) {
+    std::cerr << error.what() << '\n';
+    return app::exit_usage;
+  } catch (const std::exception& error) {
+    std::cerr << "cchip_levels: " << error.what() << '\n';
+    return app::exit_internal;
+  }
+}

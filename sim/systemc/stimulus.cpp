@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cchip/levels/stimulus.hpp>
+#include <cchip/reconfig_run.hpp>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace cchip::levels {
+namespace {
+
+constexpr std::int32_t limit = std::int32_t{1} << (coord_w - 1);
+
+void check_matrix(const Matrix& m) {
+  for (std::size_t i = 0; i < m.entry.size(); ++i) {
+    const double entry = m.entry[i];
+    const double largest = i % 4 == 3 ? unplaced_max : matrix_entry_max;
+    const std::string name = "m" + std::to_string(i / 4) + std::to_string(i % 4);
+    if (!(std::abs(entry) <= largest)) {
+      throw std::invalid_argument(name + " is beyond " + std::to_string(static_cast<int>(largest)) +
+                                  "; scale the vertices instead");
+    }
+    if (std::floor(entry * matrix_unit) != entry * matrix_unit) {
+      throw std::invalid_argument(name + " is no multiple of 1/" + std::to_string(matrix_unit) + "; round it to one");
+    }
+  }
+}
+
+template <class InRange>
+void check_vertices(const GridPrimitive& p, const char* what, InRange in_range) {
+  for (std::size_t i = 0; i < p.vertex_count(); ++i) {
+    if (in_range(p.v[i])) continue;
+    throw std::invalid_argument("vertex " + std::to_string(i) + " of " + what + "; move or scale the primitive");
+  }
+}
+
+bool on_grid(const Vec3i& v) { return v.minCoeff() >= -limit && v.maxCoeff() < limit; }
+
+const char* name_of(Kind kind) { return kind == Kind::tri ? "tri" : "quad"; }
+
+}  // namespace
+
+std::ostream& operator<<(std::ostream& out, const Matrix& m) {
+  for (const double entry : m.entry) out << entry << ' ';
+  return out;
+}
+
+std::vector<ObjectPair> object_pairs(const Stimulus& stimulus) {
+  std::vector<ObjectPair> result;
+  for (std::size_t i = 0; i < stimulus.size(); ++i) {
+    if (i == 0 || stimulus[i].object_pair != stimulus[i - 1].object_pair) {
+      result.push_back({module_of({stimulus[i].a, stimulus[i].b, 0}), i, 0});
+    }
+    ++result.back().count;
+  }
+  return result;
+}
+
+GridPrimitive place(const Matrix& m, const GridPrimitive& p) {
+  using RowMajor = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+  const Eigen::Map<const RowMajor> matrix(m.entry.data());
+  GridPrimitive result;
+  result.kind = p.kind;
+  for (std::size_t i = 0; i < p.vertex_count(); ++i) {
+    const Vec3d x = matrix.leftCols<3>() * p.v[i].cast<double>() + matrix.col(3);
+    result.v[i] = (x.array() + 0.5).floor().cast<std::int32_t>();
+  }
+  return result;
+}
+
+GridPair placed(const StimulusPair& pair) { return {place(pair.m, pair.a), pair.b, 0}; }
+
+void check_pair(const StimulusPair& pair) {
+  if (pair.a.kind == Kind::quad && pair.b.kind == Kind::tri) {
+    throw std::invalid_argument("a quad and a triangle; make the triangle a and the quad b");
+  }
+  check_matrix(pair.m);
+  check_vertices(pair.a, "a is beyond 2^19",
+                 [](const Vec3i& v) { return v.minCoeff() >= -unplaced_max && v.maxCoeff() <= unplaced_max; });
+  check_vertices(place(pair.m, pair.a), "m a is off the grid of 16 bits", on_grid);
+  check_vertices(pair.b, "b is off the grid of 16 bits", on_grid);
+}
+
+void check_order(const StimulusPair& last, const StimulusPair& next) {
+  if (next.object_pair < last.object_pair) {
+    throw std::invalid_argument("object_pair " + std::to_string(next.object_pair) + " follows " +
+                                std::to_string(last.object_pair) + "; sort the rows by object_pair");
+  }
+  if (next.object_pair == last.object_pair && (next.a.kind != last.a.kind || next.b.kind != last.b.kind)) {
+    throw std::invalid_argument("object_pair " + std::to_string(next.object_pair) + " has " + name_of(last.a.kind) +
+                                "-" + name_of(last.b.kind) + " and " + name_of(next.a.kind) + "-" +
+                                name_of(next.b.kind) + "; give each kind an object_pair of its own");
+  }
+}
+
+}  // namespace cchip::levels
