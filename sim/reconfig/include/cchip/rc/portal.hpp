@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What all portals have in common. A portal stands between one static channel and the like ports of any number of
+/// reconfigurable modules, of which one at a time may be active. It passes everything to and from the active module
+/// and nothing to and from the others.
+#ifndef CCHIP_RC_PORTAL_HPP
+#define CCHIP_RC_PORTAL_HPP
+
+#include <cchip/rc/context.hpp>
+#include <string>
+#include <systemc>
+#include <vector>
+
+namespace cchip::rc {
+
+/// The end of a portal at one port of one module; the port is bound to it. Belongs to the module.
+class accessor : public holder {
+ public:
+  ~accessor() override;
+  accessor(const accessor&) = delete;
+  accessor& operator=(const accessor&) = delete;
+
+  context& owner() const { return owner_; }
+  /// The portal it is attached to, nullptr after the portal's end.
+  portal* at() const { return portal_; }
+  bool is_open() const { return open_; }
+  /// Full name of the port.
+  const std::string& port_name() const { return port_name_; }
+  std::string holding() const override { return {}; }
+
+ protected:
+  accessor(context& owner, portal& at, std::string port_name);
+  /// Called in an update phase, before or at the start of simulation for a module that begins active: notify events
+  /// with SC_ZERO_TIME, write nothing.
+  virtual void opened() = 0;
+  virtual void closed() = 0;
+  /// Whether portal `to` is one that this accessor can work with; then it does from now on.
+  virtual bool reattach(portal& to) = 0;
+  /// Waits for the next opening.
+  void wait_until_open();
+
+ private:
+  friend class context;
+  friend class control;
+  friend class portal;
+  void open();
+  void close();
+  void attach(portal& to);
+
+  context& owner_;
+  portal* portal_;
+  std::string port_name_;
+  bool open_ = false;
+  sc_core::sc_event opened_;
+};
+
+class portal_group_base;
+
+/// portal_for<sc_in<T>>::type is in_portal<T>, and so on.
+template <class Port>
+struct portal_for;
+
+class portal : public sc_core::sc_module {
+ public:
+  ~portal() override;
+  /// The module whose accessor is open, nullptr: closed.
+  context* active_module() const { return open_ == nullptr ? nullptr : &open_->owner(); }
+  /// The loaded module that the portal is reserved for, nullptr: none.
+  context* loaded_module() const { return claimed_by_; }
+  /// The group that it belongs to, nullptr: none.
+  portal_group_base* group() const { return group_; }
+
+ protected:
+  explicit portal(const sc_core::sc_module_name&) {}
+  accessor* open_accessor() const { return open_; }
+  /// Makes an accessor for a port of a reconfigurable module, which keeps it.
+  /// \throws error the port is not in a reconfigurable module, is in two portals, or simulation has begun
+  template <class Accessor, class Port, class Portal>
+  Accessor& make_accessor(Port& port, Portal& self) {
+    context& owner = owner_of(port);
+    auto made = std::make_unique<Accessor>(owner, self, std::string(port.name()));
+    Accessor& result = *made;
+    keep(owner, std::move(made));
+    return result;
+  }
+
+ private:
+  friend class accessor;
+  friend class context;
+  friend class portal_group_base;
+  static void keep(context& owner, std::unique_ptr<accessor> made);
+  context& owner_of(const sc_core::sc_object& port) const;
+
+  std::vector<accessor*> attached_;
+  accessor* open_ = nullptr;
+  context* claimed_by_ = nullptr;
+  portal_group_base* group_ = nullptr;
+};
+
+}  // namespace cchip::rc
+
+#endif

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// All of cchip::rc.
+#ifndef CCHIP_RC_RC_HPP
+#define CCHIP_RC_RC_HPP
+
+#include <cchip/rc/context.hpp>
+#include <cchip/rc/control.hpp>
+#include <cchip/rc/fifo_portal.hpp>
+#include <cchip/rc/group.hpp>
+#include <cchip/rc/portal.hpp>
+#include <cchip/rc/signal_portal.hpp>
+
+#endif

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Portals for sc_in, sc_out and sc_inout. They add no delta cycle: a change of the static signal reaches the module's
+/// processes in the evaluation phase that follows it, a write of the module reaches the static signal in the evaluation
+/// phase in which it is made.
+///
+/// Closed: the module reads an undefined value and sees no event; the static side gets an undefined value or keeps the
+/// last one. What the module writes meanwhile is written when the portal opens: that is what its pins show then. On
+/// opening, the module sees one event of each input, an edge for bool and sc_logic, too.
+#ifndef CCHIP_RC_SIGNAL_PORTAL_HPP
+#define CCHIP_RC_SIGNAL_PORTAL_HPP
+
+#include <cchip/rc/portal.hpp>
+#include <functional>
+#include <systemc>
+#include <type_traits>
+#include <utility>
+
+namespace cchip::rc {
+
+/// Value that stands for an undefined one: T() for plain types; specialise it for others.
+template <class T>
+struct undefined_value {
+  static T get() { return T(); }
+};
+template <>
+struct undefined_value<sc_dt::sc_logic> {
+  static sc_dt::sc_logic get() { return sc_dt::SC_LOGIC_Z; }
+};
+template <int W>
+struct undefined_value<sc_dt::sc_lv<W>> {
+  static sc_dt::sc_lv<W> get() { return sc_dt::sc_lv<W>(sc_dt::SC_LOGIC_Z); }
+};
+
+namespace detail {
+
+template <class T>
+constexpr bool has_edges = std::is_same_v<T, bool> || std::is_same_v<T, sc_dt::sc_logic>;
+inline bool is_high(bool value) { return value; }
+inline bool is_high(const sc_dt::sc_logic& value) { return value == sc_dt::SC_LOGIC_1; }
+inline bool is_low(bool value) { return !value; }
+inline bool is_low(const sc_dt::sc_logic& value) { return value == sc_dt::SC_LOGIC_0; }
+
+/// The events of a signal as its module sees them.
+template <class T>
+struct signal_events {
+  sc_core::sc_event changed;
+  sc_core::sc_event positive;
+  sc_core::sc_event negative;
+
+  void notify(const T& value) {
+    changed.notify();
+    if constexpr (has_edges<T>) {
+      if (is_high(value)) positive.notify();
+      if (is_low(value)) negative.notify();
+    }
+  }
+};
+
+}  // namespace detail
+
+/// What accessors need of the portal of a signal.
+template <class T>
+class signal_portal : public portal {
+ public:
+  /// What a closed portal shows to the module, T() or 'Z' at first.
+  void set_undefined_input(const T& value) { undefined_input_ = value; }
+
+  const T& undefined_input() const { return undefined_input_; }
+
+  // for its accessors
+  virtual const sc_core::sc_signal_in_if<T>& channel() const = 0;
+  /// The module writes: now, or in the next delta if it did so while the portal was closed.
+  virtual void request_write(const T&) {}
+  virtual void request_write_later(const T&) {}
+  virtual void request_undefined() {}
+  /// The module waits for events of the static signal.
+  virtual void watch() {}
+  /// Runs follow() of the open accessor in the next delta.
+  virtual void refresh() = 0;
+
+ protected:
+  using portal::portal;
+
+ private:
+  T undefined_input_ = undefined_value<T>::get();
+};
+
+/// The interface IF of a static signal as one module sees it.
+template <class T, class IF>
+class signal_accessor : public accessor, public IF {
+ public:
+  signal_accessor(context& owner, signal_portal<T>& at, const std::string& port_name)
+      : accessor(owner, at, port_name), portal_(&at) {}
+
+  const sc_core::sc_event& default_event() const override { return value_changed_event(); }
+  const sc_core::sc_event& value_changed_event() const override { return watched(events_.changed); }
+  const T& read() const override { return is_open() ? portal_->channel().read() : portal_->undefined_input(); }
+  const T& get_data_ref() const override { return read(); }
+  bool event() const override { return is_open() && (portal_->channel().event() || just_opened()); }
+
+  /// The static signal has changed, or the portal has been opened.
+  virtual void follow() { events_.notify(read()); }
+
+ protected:
+  const sc_core::sc_event& watched(const sc_core::sc_event& event) const {
+    portal_->watch();
+    return event;
+  }
+  signal_portal<T>& signal() const { return *portal_; }
+  const detail::signal_events<T>& events() const { return events_; }
+
+  void opened() override {
+    opened_at_ = sc_core::sc_delta_count();
+    portal_->refresh();
+  }
+  void closed() override {}
+  bool reattach(portal& to) override {
+    auto* p = dynamic_cast<signal_portal<T>*>(&to);
+    if (p != nullptr) portal_ = p;
+    return p != nullptr;
+  }
+
+ private:
+  bool just_opened() const { return sc_core::sc_delta_count() == opened_at_ + 1; }
+
+  signal_portal<T>* portal_;
+  detail::signal_events<T> events_;
+  sc_dt::uint64 opened_at_ = ~sc_dt::uint64{0} - 1;
+};
+
+/// The same with edges, for bool and sc_logic.
+template <class T, class IF, bool Edges = detail::has_edges<T>>
+class edge_accessor : public signal_accessor<T, IF> {
+ public:
+  using signal_accessor<T, IF>::signal_accessor;
+};
+template <class T, class IF>
+class edge_accessor<T, IF, true> : public signal_accessor<T, IF> {
+ public:
+  using signal_accessor<T, IF>::signal_accessor;
+  const sc_core::sc_event& posedge_event() const override { return this->watched(this->events().positive); }
+  const sc_core::sc_event& negedge_event() const override { return this->watched(this->events().negative); }
+  bool posedge() const override { return this->event() && detail::is_high(this->read()); }
+  bool negedge() const override { return this->event() && detail::is_low(this->read()); }
+};
+
+template <class T>
+class input_accessor : public edge_accessor<T, sc_core::sc_signal_in_if<T>> {
+ public:
+  using edge_accessor<T, sc_core::sc_signal_in_if<T>>::edge_accessor;
+};
+
+/// Inputs of type bool are signals of the kernel as well, so that reset_signal_is() of the module works on them.
+template <>
+class input_accessor<bool> : public edge_accessor<bool, sc_core::sc_signal<bool, sc_core::SC_MANY_WRITERS>> {
+ public:
+  using edge_accessor::edge_accessor;
+  void follow() override {
+    m_new_val = read();
+    sc_core::sc_signal<bool, sc_core::SC_MANY_WRITERS>::update();
+    edge_accessor::follow();
+  }
+};
+
+template <class T>
+class output_accessor : public edge_accessor<T, sc_core::sc_signal_inout_if<T>> {
+ public:
+  using edge_accessor<T, sc_core::sc_signal_inout_if<T>>::edge_accessor;
+  void write(const T& value) override {
+    check_writer();
+    value_ = value;
+    written_ = true;
+    if (this->is_open()) this->signal().request_write(value_);
+  }
+
+ protected:
+  void opened() override {
+    edge_accessor<T, sc_core::sc_signal_inout_if<T>>::opened();
+    if (written_) this->signal().request_write_later(value_);
+  }
+  void closed() override { this->signal().request_undefined(); }
+
+ private:
+  /// Like a signal: one process of a module writes.
+  void check_writer() {
+    const sc_core::sc_object* writer = sc_core::sc_get_current_process_b();
+    if (writer == nullptr || writer == writer_) return;
+    if (writer_ != nullptr) {
+      SC_REPORT_ERROR(sc_core::SC_ID_MORE_THAN_ONE_SIGNAL_DRIVER_,
+                      (this->port_name() + " is written by " + writer_->name() + " and by " + writer->name()).c_str());
+    }
+    writer_ = writer;
+  }
+
+  T value_{};
+  bool written_ = false;
+  const sc_core::sc_object* writer_ = nullptr;
+};
+
+/// sc_in<T>: from the static signal to the active module.
+template <class T>
+class in_portal : public signal_portal<T> {
+ public:
+  sc_core::sc_in<T> static_port{"static_port"};
+
+  explicit in_portal(const sc_core::sc_module_name& name) : signal_portal<T>(name) {
+    SC_HAS_PROCESS(in_portal);
+    SC_METHOD(follow);
+    this->sensitive << static_port << refresh_;
+    this->dont_initialize();
+  }
+  /// \throws error see portal::make_accessor
+  void bind_dynamic(sc_core::sc_in<T>& port) {
+    auto& made = this->template make_accessor<input_accessor<T>>(port, *this);
+    port.bind(static_cast<sc_core::sc_signal_in_if<T>&>(made));
+  }
+
+ private:
+  const sc_core::sc_signal_in_if<T>& channel() const override { return *static_port[0]; }
+  void refresh() override { refresh_.notify(sc_core::SC_ZERO_TIME); }
+  void follow() {
+    if (auto* a = this->open_accessor()) static_cast<input_accessor<T>*>(a)->follow();
+  }
+
+  sc_core::sc_event refresh_;
+};
+
+/// sc_out<T> or sc_inout<T>: from the active module to the static signal, and back for what reads its own output.
+template <class T, class Port>
+class driving_portal : public signal_portal<T> {
+ public:
+  Port static_port{"static_port"};
+
+  explicit driving_portal(const sc_core::sc_module_name& name) : signal_portal<T>(name) {
+    SC_HAS_PROCESS(driving_portal);
+    SC_METHOD(drive);
+    this->sensitive << request_;
+    this->dont_initialize();
+    SC_METHOD(follow);
+    this->sensitive << refresh_;
+    this->dont_initialize();
+  }
+  /// \throws error see portal::make_accessor
+  void bind_dynamic(Port& port) {
+    auto& made = this->template make_accessor<output_accessor<T>>(port, *this);
+    port.bind(static_cast<sc_core::sc_signal_inout_if<T>&>(made));
+  }
+  /// What the static signal gets when the portal closes; asked each time. T() or 'Z' at first.
+  void set_undefined_output(std::function<T()> value) { undefined_output_ = std::move(value); }
+  /// The static signal keeps its last value when the portal closes, as behind a register.
+  void hold_output() { undefined_output_ = nullptr; }
+
+ private:
+  const sc_core::sc_signal_in_if<T>& channel() const override { return *static_port[0]; }
+
+  void request_write(const T& value) override {
+    value_ = value;
+    request_.notify();
+  }
+  void request_write_later(const T& value) override {
+    value_ = value;
+    if (sc_core::sc_get_status() == sc_core::SC_RUNNING) {
+      request_.notify(sc_core::SC_ZERO_TIME);
+    } else {
+      drive();  // as an initial value
+    }
+  }
+  void request_undefined() override {
+    if (undefined_output_) request_write_later(undefined_output_());
+  }
+  void drive() { static_port->write(value_); }
+
+  void watch() override {
+    if (watched_) return;
+    watched_ = true;
+    refresh();
+  }
+  void refresh() override {
+    if (watched_) refresh_.notify(sc_core::SC_ZERO_TIME);
+  }
+  /// Costs nothing unless a module waits for its own output.
+  void follow() {
+    if (auto* a = this->open_accessor()) static_cast<output_accessor<T>*>(a)->follow();
+    sc_core::next_trigger(static_port->value_changed_event() | refresh_);
+  }
+
+  T value_{};
+  std::function<T()> undefined_output_ = [] { return undefined_value<T>::get(); };
+  bool watched_ = false;
+  sc_core::sc_event request_;
+  sc_core::sc_event refresh_;
+};
+template <class T>
+using out_portal = driving_portal<T, sc_core::sc_out<T>>;
+template <class T>
+using inout_portal = driving_portal<T, sc_core::sc_inout<T>>;
+
+template <class T>
+struct portal_for<sc_core::sc_in<T>> {
+  using type = in_portal<T>;
+};
+template <class T>
+struct portal_for<sc_core::sc_out<T>> {
+  using type = out_portal<T>;
+};
+template <class T>
+struct portal_for<sc_core::sc_inout<T>> {
+  using type = inout_portal<T>;
+};
+
+}  // namespace cchip::rc
+
+#endif
