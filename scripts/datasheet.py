@@ -402,7 +402,10 @@ def check():
     for path in sorted(MODULES.glob("*.md")):
         if path.stem not in rtl_files():
             found.append(f"{path.relative_to(ROOT)}: no such module in rtl/cchip.f")
-    for path in [ARCHITECTURE, README, ROOT / "docs" / "README.md", *sorted(MODULES.glob("*.md"))]:
+    index = ROOT / "docs" / "README.md"
+    found += [f"docs/README.md: no link to modules/{module}.md" for module in rtl_files()
+              if f"(modules/{module}.md)" not in index.read_text()]
+    for path in [README, *sorted((ROOT / "docs").glob("*.md")), *sorted(MODULES.glob("*.md"))]:
         for name in re.findall(r"`(tests/[\w/]+\.cpp)`", path.read_text()):
             if not (ROOT / name).exists():
                 found.append(f"{path.relative_to(ROOT)}: names {name}, which does not exist")
