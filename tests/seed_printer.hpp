@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Prints the seed of every run; tests take it from the same variable. Include it once, beside main().
+#ifndef CCHIP_TESTS_SEED_PRINTER_HPP
+#define CCHIP_TESTS_SEED_PRINTER_HPP
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <iostream>
+
+struct SeedPrinter : Catch::TestEventListenerBase {
+  using TestEventListenerBase::TestEventListenerBase;
+  void testRunStarting(const Catch::TestRunInfo&) override {
+    const char* seed = std::getenv("CCHIP_SEED");
+    std::cout << "CCHIP_SEED=" << (seed == nullptr || *seed == '\0' ? "1" : seed) << std::endl;
+  }
+};
+
+CATCH_REGISTER_LISTENER(SeedPrinter)
+
+#endif
