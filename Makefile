@@ -33,7 +33,7 @@ export JOBS
 
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv build sim sim-reconfig sim-levels wave test test-long formal test-gates test-debug test-asan lint tidy format campaign campaign-build \
-  campaign-grid campaign-classes campaign-certainty campaign-leaves campaign-swaps export fpga fpga-quick install clean
+  campaign-grid campaign-classes campaign-certainty campaign-leaves campaign-swaps table1 table1-plot export fpga fpga-quick install clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
@@ -118,6 +118,14 @@ SWAPS ?= 10000
 campaign-swaps: $(RELEASE)/build.ninja ## SWAPS exchanges of modules under random traffic with faults (CCHIP_SEED repeats a run)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_swaps
 	$(RELEASE)/bin/cchip_swaps --swaps $(SWAPS) --threads $(JOBS)
+
+TABLE1 := $(RELEASE)/bin/cchip_table1
+table1: $(RELEASE)/build.ninja ## Table 1 of the paper from a timed simulation, and the overhead of swaps against work per swap
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip_table1
+	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(TABLE1)
+
+table1-plot: table1 venv ## the same into docs/table1.md with its curves as CSV and SVG
+	scripts/plot_table1.py --program $(TABLE1)
 
 fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEEDS places and routes each (hours), into docs/fpga.md
 	scripts/fpga.py --seeds $(SEEDS) --jobs $(JOBS) --campaign $(CAMPAIGN) --write

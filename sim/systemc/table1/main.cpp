@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// cchip_table1: Table 1 of the paper from a timed simulation.
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+#include <systemc>
+
+#include "report.hpp"
+
+int sc_main(int argc, char** argv) {
+  CLI::App app(
+      "Run times of collision queries with reconfiguration: Table 1 of the paper from a timed simulation,\n"
+      "and the overhead of reconfiguration against the work per swap.",
+      "cchip_table1");
+  std::uint64_t data_bits = 8'388'608;
+  std::string csv;
+  app.add_option("--data-bits", data_bits, "data of an object pair on the bus; the paper does not say")
+      ->capture_default_str();
+  app.add_option("--csv", csv, "file for the overhead curves");
+  app.footer("Exit codes: 0 done, 1 a file cannot be written or the simulation failed, 2 bad arguments");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    const cchip::table1::Figures figures = cchip::table1::run_experiments(data_bits);
+    cchip::table1::print_report(figures, std::cout);
+    if (csv.empty()) return 0;
+    std::ofstream file(csv);
+    cchip::table1::write_csv(figures, file);
+    file.close();
+    if (!file) throw std::runtime_error(csv + ": cannot be written; give another file with --csv");
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "cchip_table1: " << error.what() << '\n';
+    return 2;
+  } catch (const std::exception& error) {
+    std::cerr << "cchip_table1: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}
