@@ -36,7 +36,7 @@ export JOBS
   campaign-grid campaign-classes campaign-certainty campaign-leaves campaign-swaps table1 table1-plot export fpga fpga-quick install clean
 
 help: ## list the targets
-	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
+	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
 	@echo "settings: JOBS=$(JOBS) PREFIX=$(PREFIX) DESTDIR=$(DESTDIR) PAIRS=$(PAIRS) SIM_ARGS=$(SIM_ARGS) VERILATOR=$(VERILATOR)"
 
 bootstrap: ## install the Debian packages that are missing (all other targets do this first)
