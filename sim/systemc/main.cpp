@@ -22,8 +22,9 @@ struct Level {
   bool reconfigures;
   LevelResult (*run)(const Stimulus&, const LevelOptions&);
 };
-constexpr std::array<Level, 1> all_levels = {{
+constexpr std::array<Level, 2> all_levels = {{
     {"L0", "functional, all tests side by side", false, run_l0},
+    {"L4", "RTL slot and configuration controller, TLM", true, run_l4},
 }};
 
 struct Options {

@@ -32,6 +32,9 @@ struct LevelResult {
 /// L0: the three functional modules side by side, with FIFOs, without time (paper, figure 3).
 /// All: \throws std::runtime_error not every primitive pair is answered; says why
 LevelResult run_l0(const Stimulus& stimulus, const LevelOptions& options);
+/// L4: RTL of the subsystem with one slot and its configuration controller; registers and the memory of the bitstreams
+/// over TLM-2.0. Clock 100 MHz, configuration port 8 bit at 50 MHz.
+LevelResult run_l4(const Stimulus& stimulus, const LevelOptions& options);
 
 /// Runs `job` in a child process and hands its result over.
 /// \throws std::runtime_error with the message of what `job` threw, or that the child ended by a signal
