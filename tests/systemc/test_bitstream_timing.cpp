@@ -2,11 +2,15 @@
 // Equations (4) to (6) in whole picoseconds, and the attribute that carries a module's bitstream length.
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
-#include <cchip/rc/bitstream_timing.hpp>
+#include <cchip/rc/rc.hpp>
+#include <cchip/rc/timed_control.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cstdlib>
+#include <functional>
 #include <random>
+#include <vector>
 
+using namespace cchip;
 using namespace cchip::rc;
 using sc_core::sc_time;
 
@@ -87,6 +91,40 @@ TEST_CASE("bitfile_size: attribute of an untouched module", "[systemc][timing]")
   module.add_attribute(foreign);
   CHECK_THROWS_WITH(bitfile_bits(module), Catch::Contains("no std::uint64_t"));
   module.remove_attribute(bitfile_size::attribute);
+}
+
+TEST_CASE("timed_control: loads are computed, other delays looked up for each module and action", "[systemc][timing]") {
+  reconfigurable<closed_module> sized("sized"), plain("plain");
+  const bitfile_size size(static_cast<closed_module&>(sized), 5'409'976);
+  const auto ms = [](double count) { return sc_time(count, sc_core::SC_MS); };
+  sized.set_delay(action::load, ms(2));  // on top of eq. (4)
+  sized.set_delay(action::activate, ms(3));
+  sized.set_delay(action::deactivate, ms(5));
+  sized.set_delay(action::unload, ms(7));
+  plain.set_delay(action::load, ms(11));
+  timed_control control("control");
+  control.add(sized + plain);
+
+  using step = void (rc::control::*)(const module_set&);
+  const step steps[] = {&rc::control::load, &rc::control::activate, &rc::control::deactivate, &rc::control::unload};
+  std::vector<sc_time> times;
+  struct thread : sc_core::sc_module {
+    SC_HAS_PROCESS(thread);
+    thread(const sc_core::sc_module_name&, std::function<void()> run) : run_(std::move(run)) { SC_THREAD(body); }
+    void body() { run_(); }
+    std::function<void()> run_;
+  } caller("caller", [&] {
+    for (reconfigurable<closed_module>* module : {&sized, &plain}) {
+      for (const step& s : steps) {
+        const sc_time start = sc_core::sc_time_stamp();
+        (control.*s)(*module);
+        times.push_back(sc_core::sc_time_stamp() - start);
+      }
+    }
+  });
+  sc_core::sc_start();
+  const sc_time eq4(13'524'940, sc_core::SC_NS), none;
+  CHECK(times == std::vector<sc_time>{ms(2) + eq4, ms(3), ms(5), ms(7), ms(11), none, none, none});
 }
 
 TEST_CASE("transfer_time: finer time resolutions keep the value", "[systemc][timing]") {
