@@ -33,7 +33,7 @@ export JOBS
 
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv build sim sim-reconfig sim-levels wave test test-long formal test-gates test-debug test-asan lint tidy format campaign campaign-build \
-  campaign-grid campaign-classes campaign-certainty campaign-leaves campaign-swaps table1 table1-plot export fpga fpga-quick install clean
+  campaign-grid campaign-classes campaign-certainty campaign-leaves campaign-swaps table1 table1-plot bench-reconfig export fpga fpga-quick install clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
@@ -126,6 +126,10 @@ table1: $(RELEASE)/build.ninja ## Table 1 of the paper from a timed simulation, 
 
 table1-plot: table1 venv ## the same into docs/table1.md with its curves as CSV and SVG
 	scripts/plot_table1.py --program $(TABLE1)
+
+bench-reconfig: $(RELEASE)/build.ninja ## cost of cchip::rc: portals against direct binding, exchanges per second
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip_rc_bench
+	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_rc_bench
 
 fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEEDS places and routes each (hours), into docs/fpga.md
 	scripts/fpga.py --seeds $(SEEDS) --jobs $(JOBS) --campaign $(CAMPAIGN) --write

@@ -41,7 +41,7 @@ struct Channels {
 /// Where tests are.
 class Stations : public sc_core::sc_module {
  public:
-  using sc_module::sc_module;
+  explicit Stations(const sc_core::sc_module_name& name) : sc_module(name) {}
   /// Asks for the test of pair number `index`; does not wait.
   virtual void request(std::size_t index, std::size_t kind) = 0;
   /// Waits until that test can work.

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// cchip_rc_bench: what the library cchip::rc costs.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <systemc>
+#include <vector>
+
+#include "rigs.hpp"
+
+namespace cchip::bench {
+namespace {
+
+struct Measure {
+  double ns = 0;      ///< wall time of one transfer
+  double deltas = 0;  ///< of one transfer
+};
+
+Measure measure(Rig& rig, std::uint64_t count) {
+  rig.begin(count);
+  const auto deltas = sc_core::sc_delta_count();
+  const auto start = std::chrono::steady_clock::now();
+  sc_core::sc_start();
+  const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - start;
+  const auto n = static_cast<double>(count);
+  // one delta is that of Rig::begin()
+  return {time.count() / n, static_cast<double>(sc_core::sc_delta_count() - deltas - 1) / n};
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The same rig bound directly and through portals, in turn.
+class Comparison {
+ public:
+  Comparison(std::string name, Rig& direct, Rig& portals)
+      : name_(std::move(name)), direct_(direct), portals_(portals) {}
+
+  void run(std::uint64_t transfers, unsigned rounds) {
+    measure(direct_, transfers / 10 + 1);  // warm caches
+    measure(portals_, transfers / 10 + 1);
+    std::vector<double> ratios, direct_ns, portal_ns;
+    for (unsigned round = 0; round < rounds; ++round) {
+      const Measure direct = measure(direct_, transfers), portals = measure(portals_, transfers);
+      direct_ns.push_back(direct.ns);
+      portal_ns.push_back(portals.ns);
+      ratios.push_back(portals.ns / direct.ns);
+      added_deltas = std::max(added_deltas, portals.deltas - direct.deltas);
+      deltas_ = direct.deltas;
+    }
+    ratio = median(ratios);
+    fmt::print("{:<34}{:>14.0f}{:>14.0f}{:>8.2f}{:>16.3f}{:>14.3f}\n", name_, median(direct_ns), median(portal_ns),
+               ratio, deltas_, added_deltas);
+  }
+  std::uint64_t faults() const { return direct_.faults() + portals_.faults(); }
+
+  double ratio = 0;
+  double added_deltas = -1e9;
+
+ private:
+  std::string name_;
+  Rig& direct_;
+  Rig& portals_;
+  double deltas_ = 0;
+};
+
+/// Exchanges per second.
+double exchanges(const char* ports, Rig& rig, std::uint64_t swaps, unsigned rounds) {
+  std::vector<double> times;
+  Measure one;
+  for (unsigned round = 0; round < rounds; ++round) {
+    one = measure(rig, swaps);
+    times.push_back(one.ns);
+  }
+  const double per_second = 1e9 / median(times);
+  fmt::print("{:<34}{:>14.0f}{:>16.3f}\n", ports, per_second, one.deltas);
+  return per_second;
+}
+
+int run(std::uint64_t transfers, std::uint64_t swaps, unsigned rounds) {
+  SignalRig<Direct> signal_direct("signal_direct");
+  SignalRig<ThroughPortals> signal_portals("signal_portals");
+  ClockedRig<Direct> clocked_direct("clocked_direct");
+  ClockedRig<ThroughPortals> clocked_portals("clocked_portals");
+  FifoRig<Direct> fifo_direct("fifo_direct");
+  FifoRig<ThroughPortals> fifo_portals("fifo_portals");
+  FifoSwapRig fifo_swap("fifo_swap");
+  WideSwapRig wide_swap("wide_swap");
+  Comparison signal("signal: value and answer", signal_direct, signal_portals);
+  Comparison clocked("signals and clock: a period", clocked_direct, clocked_portals);
+  Comparison fifo("FIFO: item and answer", fifo_direct, fifo_portals);
+  sc_core::sc_start(sc_core::SC_ZERO_TIME);
+
+  fmt::print("The same module bound directly and through portals, {} transfers each, median of {} runs in turn\n\n",
+             transfers, rounds);
+  fmt::print("{:<34}{:>14}{:>14}{:>8}{:>16}{:>14}\n", "transfer", "direct [ns]", "portals [ns]", "ratio",
+             "deltas direct", "deltas added");
+  for (Comparison* comparison : {&signal, &clocked, &fifo}) comparison->run(transfers, rounds);
+
+  fmt::print("\nExchange without delays: unload one module, load and activate the other, one transfer\n\n");
+  fmt::print("{:<34}{:>14}{:>16}\n", "ports", "per second", "deltas each");
+  const double fifo_swaps = exchanges("2, FIFO", fifo_swap, swaps, rounds);
+  const double wide_swaps = exchanges("32, signal", wide_swap, swaps, rounds);
+  const std::uint64_t faults =
+      signal.faults() + clocked.faults() + fifo.faults() + fifo_swap.faults() + wide_swap.faults();
+  fmt::print(
+      "\nfaults={} signal_added_deltas={:.3f} clocked_added_deltas={:.3f} fifo_added_deltas={:.3f} signal_ratio={:.2f} "
+      "clocked_ratio={:.2f} fifo_ratio={:.2f} fifo_swaps_per_second={:.0f} signal_swaps_per_second={:.0f}\n",
+      faults, signal.added_deltas, clocked.added_deltas, fifo.added_deltas, signal.ratio, clocked.ratio, fifo.ratio,
+      fifo_swaps, wide_swaps);
+  return faults == 0 ? 0 : 3;
+}
+
+}  // namespace
+}  // namespace cchip::bench
+
+int sc_main(int argc, char** argv) {
+  CLI::App app("Cost of reconfigurable modules in SystemC: portals against direct binding, exchanges per second.",
+               "cchip_rc_bench");
+  std::uint64_t transfers = 200'000, swaps = 20'000;
+  unsigned rounds = 9;
+  app.add_option("--transfers", transfers, "of each run")->capture_default_str()->check(CLI::PositiveNumber);
+  app.add_option("--swaps", swaps, "of each run")->capture_default_str()->check(CLI::PositiveNumber);
+  app.add_option("--rounds", rounds, "runs of each kind")->capture_default_str()->check(CLI::PositiveNumber);
+  app.footer("Exit codes: 0 done, 1 the simulation failed, 2 bad arguments, 3 a wrong answer");
+  try {
+    app.parse(argc, argv);
+    return cchip::bench::run(transfers, swaps, rounds);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::cerr << "cchip_rc_bench: " << error.what() << '\n';
+    return 1;
+  }
+}
