@@ -12,34 +12,46 @@
 
 namespace cchip::bench {
 
-/// Something to measure: run(count) within a process of the rig, as often as begin(count) is called.
+/// Something to measure, in a process of the rig: transfers one after the other, as often as begin() is called.
 class Rig : public sc_core::sc_module {
  public:
   SC_HAS_PROCESS(Rig);
   explicit Rig(const sc_core::sc_module_name& name) : sc_module(name) { SC_THREAD(drive); }
-  /// What the next sc_start() does.
-  void begin(std::uint64_t count) {
+  /// What the next sc_start() does; `pause` between transfers, none if zero.
+  void begin(std::uint64_t count, const sc_core::sc_time& pause) {
     count_ = count;
+    pause_ = pause;
+    deltas_ = 0;
     begin_.notify(sc_core::SC_ZERO_TIME);
   }
+  /// From the beginnings of transfers to their answers, all of the run together.
+  sc_dt::uint64 deltas_to_answers() const { return deltas_; }
   /// Answers that were wrong, and runs that have not ended.
   std::uint64_t faults() const { return faults_ + (running_ ? 1 : 0); }
 
  protected:
-  virtual void run(std::uint64_t count) = 0;
-  void expect(bool right) { faults_ += right ? 0 : 1; }
+  /// Sends a value, waits for the answer. \returns whether it was right
+  virtual bool transfer(int value) = 0;
 
  private:
   void drive() {
     for (;;) {
       wait(begin_);
       running_ = true;
-      run(count_);
+      for (std::uint64_t i = 0; i < count_; ++i) {
+        const sc_dt::uint64 start = sc_core::sc_delta_count();
+        if (!transfer(++value_)) ++faults_;
+        deltas_ += sc_core::sc_delta_count() - start;
+        if (pause_ != sc_core::SC_ZERO_TIME) wait(pause_);
+      }
       running_ = false;
     }
   }
   sc_core::sc_event begin_;
   std::uint64_t count_ = 0;
+  sc_core::sc_time pause_;
+  int value_ = 0;
+  sc_dt::uint64 deltas_ = 0;
   std::uint64_t faults_ = 0;
   bool running_ = false;
 };
@@ -154,15 +166,12 @@ class SignalRig : public Rig {
   explicit SignalRig(const sc_core::sc_module_name& name) : Rig(name) { module_.bind(in_, out_); }
 
  private:
-  void run(std::uint64_t count) override {
-    for (std::uint64_t i = 0; i < count; ++i) {
-      in_.write(++value_);
-      wait(out_.value_changed_event());
-      expect(out_.read() == value_ + 1);
-    }
+  bool transfer(int value) override {
+    in_.write(value);
+    wait(out_.value_changed_event());
+    return out_.read() == value + 1;
   }
   sc_core::sc_signal<int> in_, out_;
-  int value_ = 0;
   Binding<SignalModule> module_{"module"};
 };
 
@@ -173,19 +182,16 @@ class ClockedRig : public Rig {
   explicit ClockedRig(const sc_core::sc_module_name& name) : Rig(name) { module_.bind(clk_, in_, out_); }
 
  private:
-  void run(std::uint64_t count) override {
-    for (std::uint64_t i = 0; i < count; ++i) {
-      in_.write(++value_);
-      clk_.write(true);
-      wait(out_.value_changed_event());
-      expect(out_.read() == value_ + 1);
-      clk_.write(false);
-      wait(clk_.value_changed_event());
-    }
+  bool transfer(int value) override {
+    in_.write(value);
+    clk_.write(true);
+    wait(out_.value_changed_event());
+    clk_.write(false);
+    wait(clk_.value_changed_event());
+    return out_.read() == value + 1;
   }
   sc_core::sc_signal<bool> clk_;
   sc_core::sc_signal<int> in_, out_;
-  int value_ = 0;
   Binding<ClockedModule> module_{"module"};
 };
 
@@ -196,22 +202,19 @@ class FifoRig : public Rig {
   explicit FifoRig(const sc_core::sc_module_name& name) : Rig(name) { module_.bind(in_, out_); }
 
  private:
-  void run(std::uint64_t count) override {
-    for (std::uint64_t i = 0; i < count; ++i) {
-      in_.write(++value_);
-      int answer = 0;
-      out_.read(answer);
-      expect(answer == value_ + 1);
-    }
+  bool transfer(int value) override {
+    in_.write(value);
+    int answer = 0;
+    out_.read(answer);
+    return answer == value + 1;
   }
   sc_core::sc_fifo<int> in_, out_;
-  int value_ = 0;
   Binding<FifoModule> module_{"module"};
 };
 
 // ---- exchanges
 
-/// Two modules take turns behind the same portals; a transfer after each exchange proves that it is there.
+/// Two modules take turns behind the same portals; a value and its answer after each exchange prove that it is there.
 template <class M>
 class SwapRig : public Rig {
  protected:
@@ -222,20 +225,16 @@ class SwapRig : public Rig {
     }
     control_.activate(*active_);
   }
-  /// \returns whether the answer to `value` was right
-  virtual bool transfer(int value) = 0;
+  virtual bool ask(int value) = 0;
   rc::portal_group<PortsOf<M>>& portals() { return portals_; }
 
  private:
-  void run(std::uint64_t count) override {
-    for (std::uint64_t i = 0; i < count; ++i) {
-      std::swap(active_, other_);
-      control_.unload(*other_);
-      control_.activate(*active_);
-      expect(transfer(++value_));
-    }
+  bool transfer(int value) override {
+    std::swap(active_, other_);
+    control_.unload(*other_);
+    control_.activate(*active_);
+    return ask(value);
   }
-  int value_ = 0;
   rc::reconfigurable<M> first_{"first"}, second_{"second"};
   rc::context *active_ = &first_, *other_ = &second_;
   rc::portal_group<PortsOf<M>> portals_{"portals"};
@@ -247,7 +246,7 @@ class FifoSwapRig : public SwapRig<FifoModule> {
   explicit FifoSwapRig(const sc_core::sc_module_name& name) : SwapRig(name) { portals().bind_static(in_, out_); }
 
  private:
-  bool transfer(int value) override {
+  bool ask(int value) override {
     in_.write(value);
     int answer = 0;
     out_.read(answer);
@@ -267,7 +266,7 @@ class WideSwapRig : public SwapRig<WideModule> {
   void bind(std::index_sequence<I...>) {
     portals().bind_static(in_[I]..., out_[I]...);
   }
-  bool transfer(int value) override {
+  bool ask(int value) override {
     for (auto& signal : in_) signal.write(value);
     while (out_[0].read() != value + 1) wait(out_[0].value_changed_event());
     return out_[WideModule::width - 1].read() == value + 1;
