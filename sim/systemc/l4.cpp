@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cchip/bitstream.hpp>
+#include <cchip/levels/bitstream_length.hpp>
 #include <cchip/levels/bitstream_memory.hpp>
 #include <cchip/levels/level.hpp>
 #include <cchip/levels/simulate.hpp>
@@ -32,7 +33,7 @@ class Api4 : public RtlApi {
 
   void announce_all() {
     for (const ModuleId id : {ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad}) {
-      const Bytes payload = make_payload(0, id, options_.payload_bytes, static_cast<std::uint32_t>(options_.seed));
+      const Bytes payload = make_payload(0, id, payload_bytes(options_, id), static_cast<std::uint32_t>(options_.seed));
       const Bytes bitstream = make_bitstream(0, id, payload);
       c3_.announce(id, memory_.append(bitstream), bitstream.size());
     }
@@ -51,7 +52,7 @@ class Api4 : public RtlApi {
 
 LevelResult run_l4(const Stimulus& stimulus, const LevelOptions& options) {
   const sc_time period(10, SC_NS);
-  const sc_time patience = (20.0 * static_cast<double>(options.payload_bytes) + 100000) * period;
+  const sc_time patience = (20.0 * static_cast<double>(longest_payload_bytes(options)) + 100000) * period;
   sc_core::sc_clock clk("clk", period);
   sc_core::sc_signal<bool> irq("irq");
   sc_core::sc_fifo<RtlRequest> requests("requests_fifo");

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cchip/defs.hpp>
+#include <cchip/levels/added_deltas.hpp>
 #include <cchip/levels/generator.hpp>
 #include <cchip/levels/level.hpp>
 #include <cchip/levels/stimulus_file.hpp>
@@ -22,8 +23,11 @@ struct Level {
   bool reconfigures;
   LevelResult (*run)(const Stimulus&, const LevelOptions&);
 };
-constexpr std::array<Level, 2> all_levels = {{
+constexpr std::array<Level, 5> all_levels = {{
     {"L0", "functional, all tests side by side", false, run_l0},
+    {"L1", "the same reconfigurable, portals and control", true, run_l1},
+    {"L2", "the same with configuration times", true, run_l2},
+    {"L3", "Verilated RTL behind signal portals", true, run_l3},
     {"L4", "RTL slot and configuration controller, TLM", true, run_l4},
 }};
 
@@ -33,6 +37,12 @@ struct Options {
   std::string read_from;
   std::string write_to;
 };
+
+/// 0 or a length that a bitstream can have.
+std::string check_payload(const std::string& text) {
+  if (text == "0" || CLI::Range(defs::bitstream_payload_min, 1 << 24)(text).empty()) return {};
+  return "write 0, or 16 to 16777216";
+}
 
 Stimulus make_stimulus(const Options& options) {
   if (options.read_from.empty()) return generate(options.generator);
@@ -60,6 +70,7 @@ int run(const Options& options) {
       throw std::runtime_error(std::string(level.name) + ": " + error.what());
     }
   }
+  summary.set_added_deltas(added_deltas(stimulus, options.level));
   summary.print(std::cout);
   return summary.good() ? app::exit_ok : app::exit_mismatch;
 }
@@ -76,9 +87,13 @@ int run_with_arguments(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   command.add_option("--seed", options.generator.seed, "seed of stimulus and power-up values (or CCHIP_SEED)")
       ->capture_default_str();
-  command.add_option("--bitstream", options.level.payload_bytes, "payload of a bitstream, byte")
+  command
+      .add_option("--bitstream", options.level.payload_bytes,
+                  "payload of a bitstream, bytes; 0: the lengths of Table 1")
       ->capture_default_str()
-      ->check(CLI::Range(defs::bitstream_payload_min, 1 << 24));
+      ->check(check_payload);
+  command.add_flag("!--without-roc", options.level.reset_on_configuration,
+                   "L3 without reset on configuration, to see what happens");
   command.add_option("--read", options.read_from, "CSV file with the stimulus instead of a random one");
   command.add_option("--write", options.write_to, "CSV file that gets the stimulus");
   try {

@@ -15,10 +15,12 @@
 namespace cchip::levels {
 
 struct LevelOptions {
-  /// Payload of each bitstream, byte.
+  /// Payload of each bitstream, bytes; 0: those of Table 1 of the paper (default_payload_bytes()).
   std::size_t payload_bytes = 2048;
   /// Seed of what RTL leaves undefined at power-up and of the bitstreams.
   std::uint64_t seed = 1;
+  /// L3: false leaves the process of listing 3.3 out, to see what happens.
+  bool reset_on_configuration = true;
 };
 
 struct LevelResult {
@@ -32,6 +34,17 @@ struct LevelResult {
 /// L0: the three functional modules side by side, with FIFOs, without time (paper, figure 3).
 /// All: \throws std::runtime_error not every primitive pair is answered; says why
 LevelResult run_l0(const Stimulus& stimulus, const LevelOptions& options);
+/// L1: the same modules made reconfigurable, behind one set of portals, C3 in the API (figures 4 and 5).
+LevelResult run_l1(const Stimulus& stimulus, const LevelOptions& options);
+/// L2: L1 with the times of equations (4) to (6) with the paper's port and bus.
+LevelResult run_l2(const Stimulus& stimulus, const LevelOptions& options);
+/// L3: Verilated RTL as closed components with pins in port groups, reset on configuration beside each; configuration
+/// takes the time of equation (4). Clock 100 MHz.
+LevelResult run_l3(const Stimulus& stimulus, const LevelOptions& options);
+/// L3 whose first test is there from the beginning.
+LevelResult run_l3_preloaded(const Stimulus& stimulus, const LevelOptions& options);
+/// One test of L3 bound directly, without library; a stimulus of one kind.
+LevelResult run_l3_direct(const Stimulus& stimulus, const LevelOptions& options);
 /// L4: RTL of the subsystem with one slot and its configuration controller; registers and the memory of the bitstreams
 /// over TLM-2.0. Clock 100 MHz, configuration port 8 bit at 50 MHz.
 LevelResult run_l4(const Stimulus& stimulus, const LevelOptions& options);

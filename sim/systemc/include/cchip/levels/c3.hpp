@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Configuration control of levels 1 to 3.
+#ifndef CCHIP_LEVELS_C3_HPP
+#define CCHIP_LEVELS_C3_HPP
+
+#include <array>
+#include <cchip/defs.hpp>
+#include <cchip/rc/rc.hpp>
+#include <cstdint>
+
+namespace cchip::levels {
+
+/// The paper's custom configuration controller (C3): the test that the API asks for takes the place of the present one.
+class C3 {
+ public:
+  /// \param tests in the order tri-tri, tri-quad, quad-quad; added to the control, one may be active
+  C3(rc::control& control, std::array<rc::context*, 3> tests);
+
+  /// Returns when the test is active. From a thread.
+  void configure(ModuleId test);
+  std::uint64_t swaps() const { return swaps_; }
+
+ private:
+  rc::control& control_;
+  std::array<rc::context*, 3> tests_;
+  std::uint64_t swaps_ = 0;
+};
+
+}  // namespace cchip::levels
+
+#endif
