@@ -155,9 +155,9 @@ class SlottedTests : public Stations {
     }
   }
 
+  std::vector<std::unique_ptr<Slot>> slots_;
   rc::timed_control control_;
   sc_core::sc_mutex& path_;
-  std::vector<std::unique_ptr<Slot>> slots_;
   sc_core::sc_fifo<Request> requests_{2};
   sc_core::sc_event exchanged_;
   unsigned loads_ = 0;
