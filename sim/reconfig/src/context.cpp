@@ -2,7 +2,9 @@
 #define SC_INCLUDE_DYNAMIC_PROCESSES
 #include <algorithm>
 #include <cchip/rc/context.hpp>
+#include <cchip/rc/control.hpp>
 #include <cchip/rc/portal.hpp>
+#include <utility>
 
 namespace cchip::rc {
 
@@ -52,7 +54,9 @@ class context::updater : public sc_core::sc_prim_channel {
 
 context::context(sc_core::sc_module& module) : module_(module), updater_(std::make_unique<updater>(*this)) {}
 
-context::~context() = default;
+context::~context() {
+  if (control_ != nullptr) control_->forget(*this);
+}
 
 context* context::of(const sc_core::sc_object* object) {
   for (auto* o = const_cast<sc_core::sc_object*>(object); o != nullptr; o = o->get_parent_object()) {
@@ -62,13 +66,17 @@ context* context::of(const sc_core::sc_object* object) {
 }
 
 std::string context::held_by() const {
-  std::string all;
-  const auto ask = [&all](const holder& h) {
-    const std::string text = h.holding();
-    if (!text.empty()) all += (all.empty() ? "" : "; ") + text;
+  std::vector<std::string> reasons;  // two portals may give the same
+  const auto ask = [&reasons](const holder& h) {
+    std::string text = h.holding();
+    if (!text.empty() && std::find(reasons.begin(), reasons.end(), text) == reasons.end()) {
+      reasons.push_back(std::move(text));
+    }
   };
   for (const auto& a : accessors_) ask(*a);
   for (const holder* h : holders_) ask(*h);
+  std::string all;
+  for (const std::string& text : reasons) all += (all.empty() ? "" : "; ") + text;
   return all;
 }
 
@@ -79,8 +87,12 @@ sc_time context::delay(action a) const {
 
 void context::remove(holder& h) { holders_.erase(std::remove(holders_.begin(), holders_.end(), &h), holders_.end()); }
 
+void context::recheck() {
+  if (deactivation_pending()) updater_->ask();
+}
+
 void context::possible_deactivation() {
-  if (deactivation_pending()) {
+  if (deactivation_pending() && held_by().empty()) {
     recheck();
     sc_core::wait(SC_ZERO_TIME);
   }
@@ -95,34 +107,50 @@ void context::park_until_activated(process_kind kind) {
   if (kind == process_kind::clocked_thread) sc_core::wait();  // a clocked process starts with an edge
 }
 
+std::function<void()> context::method_shell(std::function<void()> body) {
+  return [this, body = std::move(body)] {
+    if (is_active()) {
+      body();
+    } else if (!sc_core::sc_get_current_process_b()->dont_initialize()) {
+      sc_core::next_trigger(activated_);
+    }
+  };
+}
+
+std::function<void()> context::thread_shell(process_kind kind, std::function<void()> body) {
+  return [this, kind, body = std::move(body)] {
+    for (;;) {
+      park_until_activated(kind);
+      body();
+      sc_core::wait(deactivated_);  // has returned: waits for the next configuration
+    }
+  };
+}
+
 sc_core::sc_process_handle context::spawn(const char* process_name, process_kind kind, std::function<void()> body) {
   const bool running = sc_core::sc_get_status() == sc_core::SC_RUNNING;
   sc_core::sc_spawn_options options;
-  std::function<void()> shell;
   if (kind == process_kind::method) {
     options.spawn_method();
-    shell = [this, body = std::move(body)] {
-      if (is_active()) {
-        body();
-      } else {
-        sc_core::next_trigger(activated_);
-      }
-    };
-  } else if (running) {
-    shell = std::move(body);
-  } else {
-    shell = [this, kind, body = std::move(body)] {
-      for (;;) {
-        park_until_activated(kind);
-        body();
-        sc_core::wait(deactivated_);  // has returned: waits for the next configuration
-      }
-    };
+    body = method_shell(std::move(body));
+  } else if (!running) {
+    body = thread_shell(kind, std::move(body));
   }
-  const sc_core::sc_process_handle handle =
-      sc_core::sc_spawn(std::move(shell), sc_core::sc_gen_unique_name(process_name), &options);
+  const auto handle = sc_core::sc_spawn(std::move(body), sc_core::sc_gen_unique_name(process_name), &options);
   (running ? spawned_ : processes_).push_back(handle);
   return handle;
+}
+
+bool context::is_own(const sc_core::sc_process_handle& process) const {
+  const auto has = [&process](const auto& list) { return std::find(list.begin(), list.end(), process) != list.end(); };
+  return has(processes_) || has(spawned_);
+}
+
+void context::cancel_processes() {
+  for (auto& process : std::exchange(spawned_, {})) {
+    if (process.valid() && !process.terminated()) process.kill();
+  }
+  for (auto& process : processes_) process.reset();
 }
 
 // ---- actions
@@ -171,38 +199,40 @@ void context::activate(const sc_time& delay) {
 
 void context::deactivate(const sc_time& delay, const sc_time& timeout) {
   const sc_time start = sc_core::sc_time_stamp();
+  sc_core::wait(SC_ZERO_TIME);  // what is written in this evaluation phase holds the module, too
   next_ = state::inactive;
-  for (bool asked = false; state_ == state::active; asked = true) {
+  updater_->ask();
+  while (state_ == state::active) {
     const sc_time waited = sc_core::sc_time_stamp() - start;
-    const std::string why = asked && waited >= timeout ? held_by() : std::string();
-    if (!why.empty()) {
+    wait_for_holders(timeout == sc_core::sc_max_time() ? timeout : timeout - waited);
+    if (state_ != state::active) break;
+    const std::string why = held_by();
+    if (!why.empty() && sc_core::sc_time_stamp() - start >= timeout) {
       next_ = state::active;
       throw error(full_name() + ": cannot be deactivated within " + timeout.to_string() + ", it is held by " + why +
                   "; it stays active");
     }
-    sc_core::sc_event_or_list list = deactivated_ | again_;
-    const auto follow = [&list](const holder& h) {
-      if (const sc_core::sc_event* event = h.let_go()) list |= *event;
-    };
-    for (const auto& a : accessors_) follow(*a);
-    for (const holder* h : holders_) follow(*h);
     updater_->ask();
-    if (timeout == sc_core::sc_max_time()) {
-      sc_core::wait(list);
-    } else {
-      sc_core::wait(timeout - waited, list);
-    }
   }
-  // copies: a reset process may end the calling one
-  for (const auto& process : std::vector<sc_core::sc_process_handle>(spawned_)) {
-    auto handle = process;
-    if (handle.valid() && !handle.terminated()) handle.kill();
-  }
-  spawned_.clear();
-  for (auto process : processes_) process.reset();
+  cancel_processes();
   if (delay != SC_ZERO_TIME) sc_core::wait(delay);
   on_deactivate();
   reset_all();
+}
+
+void context::wait_for_holders(const sc_time& limit) {
+  sc_core::sc_event_or_list list;
+  list |= deactivated_;
+  const auto follow = [&list](const holder& h) {
+    if (const sc_core::sc_event* event = h.let_go()) list |= *event;
+  };
+  for (const auto& a : accessors_) follow(*a);
+  for (const holder* h : holders_) follow(*h);
+  if (limit == sc_core::sc_max_time()) {
+    sc_core::wait(list);
+  } else {
+    sc_core::wait(limit, list);
+  }
 }
 
 void context::unload(const sc_time& delay) {
@@ -213,12 +243,17 @@ void context::unload(const sc_time& delay) {
   on_unload();
 }
 
+void context::become_active() {
+  for (const auto& a : accessors_) a->open();
+  for (resettable* r : resettables_) r->activated();
+  activated_.notify(SC_ZERO_TIME);
+}
+
 void context::update() {
   if (opens_) {
     opens_ = false;
     state_ = state::active;
-    for (const auto& a : accessors_) a->open();
-    activated_.notify(SC_ZERO_TIME);
+    become_active();
   } else if (deactivation_pending() && held_by().empty()) {
     state_ = state::inactive;
     for (const auto& a : accessors_) a->close();
@@ -238,9 +273,7 @@ void context::start() {
   collect_resettables(module_);
   for (resettable* r : resettables_) r->store_reset_value();
   if (state_ != state::unloaded) claim_portals();
-  if (state_ != state::active) return;
-  for (const auto& a : accessors_) a->open();
-  activated_.notify(SC_ZERO_TIME);
+  if (state_ == state::active) become_active();
 }
 
 }  // namespace cchip::rc

@@ -2,7 +2,6 @@
 #define SC_INCLUDE_DYNAMIC_PROCESSES
 #include <algorithm>
 #include <cchip/rc/control.hpp>
-#include <exception>
 #include <memory>
 #include <typeinfo>
 
@@ -21,7 +20,7 @@ class locked {
   control& control_;
 };
 
-bool before_simulation() { return sc_core::sc_get_status() <= sc_core::SC_START_OF_SIMULATION; }
+bool before_simulation() { return sc_core::sc_get_status() < sc_core::SC_START_OF_SIMULATION; }
 
 }  // namespace
 
@@ -34,6 +33,11 @@ module_set& module_set::operator+=(const module_set& other) {
 
 control::~control() {
   for (context* module : modules_) module->control_ = nullptr;
+}
+
+void control::forget(context& module) {
+  modules_.erase(std::remove(modules_.begin(), modules_.end(), &module), modules_.end());
+  module.control_ = nullptr;
 }
 
 void control::add(const module_set& set) {
@@ -57,10 +61,7 @@ void control::remove(const module_set& set) {
                   "; only its own unloaded modules can be removed");
     }
   }
-  for (context* module : set.modules()) {
-    modules_.erase(std::remove(modules_.begin(), modules_.end(), module), modules_.end());
-    module->control_ = nullptr;
-  }
+  for (context* module : set.modules()) forget(*module);
 }
 
 void control::load(const module_set& set) { run(action::load, set); }
@@ -75,10 +76,17 @@ void control::check(action a, const module_set& set) const {
       throw error(what + " " + module->full_name() + ", which is not in this control; add() it");
   }
   if (before_simulation()) return;
-  const sc_core::sc_curr_proc_kind kind = sc_core::sc_get_current_process_handle().proc_kind();
+  const sc_core::sc_process_handle self = sc_core::sc_get_current_process_handle();
+  const sc_core::sc_curr_proc_kind kind = self.proc_kind();
   if (sc_core::sc_get_status() != sc_core::SC_RUNNING ||
       (kind != sc_core::SC_THREAD_PROC_ && kind != sc_core::SC_CTHREAD_PROC_)) {
     throw error(what + " is not called from a thread; actions take time, call them from an SC_THREAD");
+  }
+  for (const context* module : set.modules()) {
+    if (module->is_own(self)) {
+      throw error(what + " " + module->full_name() + " is called by " + self.name() +
+                  ", which ends with the module's deactivation; call it from a process outside");
+    }
   }
 }
 
@@ -89,6 +97,14 @@ void control::run(action a, const module_set& set) {
     return;
   }
   const locked guard(*this);
+  if (set.modules().size() == 1) {
+    run_one(a, *set.modules().front());
+  } else {
+    run_side_by_side(a, set);
+  }
+}
+
+void control::run_side_by_side(action a, const module_set& set) {
   // shared: the calling process may be cancelled before the others have ended
   struct Join {
     std::size_t open = 0;
@@ -98,7 +114,7 @@ void control::run(action a, const module_set& set) {
   const auto join = std::make_shared<Join>();
   join->open = set.modules().size();
   for (context* module : set.modules()) {
-    auto one = [this, a, module, join] {
+    const auto one = [this, a, module, join] {
       try {
         run_one(a, *module);
       } catch (const error& e) {
@@ -106,11 +122,7 @@ void control::run(action a, const module_set& set) {
       }
       if (--join->open == 0) join->done.notify();
     };
-    if (set.modules().size() == 1) {
-      one();
-    } else {
-      sc_core::sc_spawn(one, sc_core::sc_gen_unique_name(to_name(a)));
-    }
+    sc_core::sc_spawn(one, sc_core::sc_gen_unique_name(to_name(a)));
   }
   while (join->open != 0) sc_core::wait(join->done);
   if (!join->errors.empty()) throw error(join->errors);
@@ -165,10 +177,18 @@ void control::move(context& module, portal_group_base& to) {
   }
 }
 
-bool control::lock(const sc_core::sc_time& limit) {
+bool control::is_mine() const {
+  if (!is_locked()) return false;
   const sc_core::sc_process_handle self = sc_core::sc_get_current_process_handle();
+  if (!self.valid() || !owner_.valid()) return self == owner_;
+  const sc_core::sc_object* o = self.get_process_object();
+  while (o != nullptr && o != owner_.get_process_object()) o = o->get_parent_object();
+  return o != nullptr;
+}
+
+bool control::lock(const sc_core::sc_time& limit) {
   const sc_core::sc_time start = sc_core::sc_time_stamp();
-  while (is_locked() && owner_ != self) {
+  while (is_locked() && !is_mine()) {
     const sc_core::sc_time waited = sc_core::sc_time_stamp() - start;
     if (waited >= limit) return false;
     if (limit == sc_core::sc_max_time()) {
@@ -177,15 +197,16 @@ bool control::lock(const sc_core::sc_time& limit) {
       sc_core::wait(limit - waited, unlocked_ | owner_.terminated_event());
     }
   }
-  depth_ = owner_ == self && is_locked() ? depth_ + 1 : 1;
-  owner_ = self;
+  if (!is_locked()) {
+    owner_ = sc_core::sc_get_current_process_handle();
+    depth_ = 0;
+  }
+  ++depth_;
   return true;
 }
 
 void control::unlock() {
-  if (!is_locked() || owner_ != sc_core::sc_get_current_process_handle()) {
-    throw error(std::string(name()) + ": unlock() by a process that has not locked it");
-  }
+  if (!is_mine()) throw error(std::string(name()) + ": unlock() by a process that has not locked it");
   if (--depth_ == 0) unlocked_.notify();
 }
 

@@ -31,6 +31,7 @@ void accessor::open() {
   open_ = true;
   portal_->open_ = this;
   opened_.notify(sc_core::SC_ZERO_TIME);
+  portal_->module_opened_.notify(sc_core::SC_ZERO_TIME);
   opened();
 }
 
@@ -50,6 +51,16 @@ portal::~portal() {
     a->portal_ = nullptr;
     a->open_ = false;
   }
+}
+
+void portal::wait_until_open() {
+  while (open_ == nullptr) sc_core::wait(module_opened_);
+}
+
+void portal::make_follower() {
+  SC_HAS_PROCESS(portal);
+  SC_METHOD(follow);
+  dont_initialize();
 }
 
 void portal::keep(context& owner, std::unique_ptr<accessor> made) { owner.accessors_.push_back(std::move(made)); }

@@ -39,7 +39,7 @@ class holder {
   virtual ~holder() = default;
   /// Why the module cannot leave now, in words with a name; empty: it can.
   virtual std::string holding() const = 0;
-  /// Event after which to ask again; none if the holder calls context::recheck() itself.
+  /// Event after which to ask again; none if the holder calls context::recheck() when it lets go.
   virtual const sc_core::sc_event* let_go() const { return nullptr; }
 };
 
@@ -51,6 +51,8 @@ class resettable {
   virtual void store_reset_value() = 0;
   /// Back to the value kept: before each activation and after each deactivation.
   virtual void reset() = 0;
+  /// The module has become active, in an update phase or at the start of simulation.
+  virtual void activated() {}
 };
 
 class accessor;
@@ -89,15 +91,13 @@ class context {
   /// The holder must outlive the simulation or be removed.
   void add(holder& h) { holders_.push_back(&h); }
   void remove(holder& h);
-  /// A holder may have let go: looks again whether a pending deactivation can be done.
-  void recheck() {
-    if (deactivation_pending()) again_.notify(sc_core::SC_ZERO_TIME);
-  }
+  /// A holder may have let go: the next update phase looks again whether a pending deactivation can be done.
+  void recheck();
   /// Objects below the module that are resettable are found at the start of simulation; this is for others.
   void add(resettable& r) { resettables_.push_back(&r); }
 
-  /// A possible point of deactivation inside a process of the module: waits one delta if deactivation is pending, and
-  /// as long as the module then is not active.
+  /// A possible point of deactivation inside a process of the module: if deactivation is pending and nothing holds the
+  /// module, waits until the next activation.
   void possible_deactivation();
 
   /// Process that starts from its top at each activation and is cancelled at a wait() when the module is deactivated
@@ -130,10 +130,16 @@ class context {
   void claim_portals();
   void release_portals();
   void reset_all();
+  void cancel_processes();
+  void become_active();
+  void wait_for_holders(const sc_core::sc_time& limit);
+  bool is_own(const sc_core::sc_process_handle& process) const;
   void collect_resettables(const sc_core::sc_object& object);
   void start();   // start of simulation
   void update();  // update phase
   void park_until_activated(process_kind kind);
+  std::function<void()> method_shell(std::function<void()> body);
+  std::function<void()> thread_shell(process_kind kind, std::function<void()> body);
 
   sc_core::sc_module& module_;
   state state_ = state::unloaded;
@@ -141,7 +147,6 @@ class context {
   bool opens_ = false;  // activate() waits for the update phase
   sc_core::sc_event activated_;
   sc_core::sc_event deactivated_;
-  sc_core::sc_event again_;
   std::map<action, sc_core::sc_time> delays_;
   std::vector<holder*> holders_;
   std::vector<resettable*> resettables_;

@@ -28,7 +28,8 @@ inline module_set operator+(module_set left, const module_set& right) { return l
 /// Modules that are not in the state that an action begins with are left alone: load() looks at unloaded ones,
 /// activate() at unloaded (which it loads first) and inactive ones, deactivate() at active ones, unload() at inactive
 /// and active (which it deactivates first) ones. Every action \throws error: a module is not added; it is called from
-/// an SC_METHOD or between two sc_start(); a portal of the module is reserved for another loaded one (nothing has
+/// an SC_METHOD, from a process of the module that it would cancel, at the start of simulation or between two
+/// sc_start(); a portal of the module is reserved for another loaded one (nothing has
 /// changed then); deactivation is not possible in time (the module stays active). Of a set, the others are done and all
 /// errors reported.
 class control : public sc_core::sc_module {
@@ -52,8 +53,9 @@ class control : public sc_core::sc_module {
   /// Longest wait for what holds a module, 1 s at first; sc_max_time(): for ever.
   void set_deactivation_timeout(const sc_core::sc_time& timeout) { timeout_ = timeout; }
 
-  /// Keeps the control for the calling process until it has called unlock() as often; actions of other processes wait
-  /// meanwhile. A process that has ended keeps nothing. \returns false: not free within the limit
+  /// Keeps the control for the calling process, and those that it spawns, until it has called unlock() as often;
+  /// actions of other processes wait meanwhile. A process that has ended keeps nothing. \returns false: not free within
+  /// the limit
   bool lock(const sc_core::sc_time& limit = sc_core::sc_max_time());
   bool trylock() { return lock(sc_core::SC_ZERO_TIME); }
   /// \throws error the calling process does not have the lock
@@ -64,7 +66,11 @@ class control : public sc_core::sc_module {
   virtual sc_core::sc_time takes_time(const context& module, action a) const { return module.delay(a); }
 
  private:
+  friend class context;
+  void forget(context& module);
+  bool is_mine() const;
   void run(action a, const module_set& set);
+  void run_side_by_side(action a, const module_set& set);
   void run_one(action a, context& module);
   void set_initial(action a, context& module);
   void check(action a, const module_set& set) const;

@@ -9,6 +9,8 @@
 #define CCHIP_RC_FIFO_PORTAL_HPP
 
 #include <cchip/rc/portal.hpp>
+#include <cchip/rc/transaction.hpp>
+#include <limits>
 #include <string>
 #include <systemc>
 
@@ -20,19 +22,92 @@ enum class fifo_rule {
   transfers  ///< that of ReChannel 2: data stay in the FIFO for the next module
 };
 
+/// What both directions have in common: rule and filter.
+class fifo_portal : public portal {
+ public:
+  void set_rule(fifo_rule rule) { rule_ = rule; }
+  fifo_rule rule() const { return rule_; }
+
+  /// Each item that passes counts `weight` transactions; the module is held while the counter is not 0. With +1 at its
+  /// inputs and -1 at its outputs a module leaves when it has given as many results as it has taken operands. Before a
+  /// blocking read the module leaves if it shall and can. The counter must outlive the simulation.
+  void count(transaction_counter& counter, long weight) {
+    counter_ = &counter;
+    weight_ = weight;
+  }
+  /// Items that may pass in one activation; after them the FIFO looks empty, or full, to the module.
+  void set_limit(long items) { limit_ = items; }
+
+  // for its accessors
+  transaction_counter* counter() const { return counter_; }
+  long weight() const { return weight_; }
+  long limit() const { return limit_; }
+
+ protected:
+  using portal::portal;
+
+ private:
+  fifo_rule rule_ = fifo_rule::empty;
+  transaction_counter* counter_ = nullptr;
+  long weight_ = 0;
+  long limit_ = std::numeric_limits<long>::max();
+};
+
+/// A FIFO as one module sees it, without its direction.
+template <class Portal>
+class fifo_accessor : public accessor_of<Portal> {
+ public:
+  fifo_accessor(context& owner, Portal& at, const std::string& port_name) : accessor_of<Portal>(owner, at, port_name) {}
+
+  std::string holding() const override {
+    if (!this->is_open()) return {};
+    std::string text = this->typed_portal().rule() == fifo_rule::empty ? not_empty() : std::string();
+    const transaction_counter* counter = this->typed_portal().counter();
+    return text.empty() && counter != nullptr ? counter->holding() : text;
+  }
+
+ protected:
+  /// What the rule `empty` waits for, in words.
+  virtual std::string not_empty() const = 0;
+  virtual bool can_transfer() const = 0;
+
+  bool may_pass() const { return this->is_open() && passed_ < this->typed_portal().limit(); }
+  void passed() {
+    ++passed_;
+    if (transaction_counter* counter = this->typed_portal().counter()) counter->add(this->typed_portal().weight());
+    this->owner().recheck();
+  }
+  void leave_if_asked() {
+    if (this->typed_portal().counter() != nullptr) this->owner().possible_deactivation();
+  }
+  const sc_core::sc_event& event() const { return event_; }
+
+  void opened() override {
+    passed_ = 0;
+    if (can_transfer()) event_.notify(sc_core::SC_ZERO_TIME);
+  }
+  void follow() override {
+    if (may_pass()) event_.notify();
+  }
+
+ private:
+  long passed_ = 0;
+  sc_core::sc_event event_;
+};
+
 template <class T>
 class fifo_in_portal;
 template <class T>
 class fifo_out_portal;
 
 template <class T>
-class fifo_in_accessor : public accessor, public sc_core::sc_fifo_in_if<T> {
+class fifo_in_accessor : public fifo_accessor<fifo_in_portal<T>>, public sc_core::sc_fifo_in_if<T> {
  public:
-  fifo_in_accessor(context& owner, fifo_in_portal<T>& at, const std::string& port_name)
-      : accessor(owner, at, port_name), portal_(&at) {}
+  using fifo_accessor<fifo_in_portal<T>>::fifo_accessor;
 
   void read(T& value) override {
-    while (!nb_read(value)) sc_core::wait(written_);
+    this->leave_if_asked();
+    while (!nb_read(value)) sc_core::wait(this->event());
   }
   T read() override {
     T value{};
@@ -40,146 +115,85 @@ class fifo_in_accessor : public accessor, public sc_core::sc_fifo_in_if<T> {
     return value;
   }
   bool nb_read(T& value) override {
-    if (!is_open() || !portal_->static_port->nb_read(value)) return false;
-    owner().recheck();
+    if (!this->may_pass() || !this->typed_portal().static_port->nb_read(value)) return false;
+    this->passed();
     return true;
   }
-  const sc_core::sc_event& data_written_event() const override { return written_; }
-  int num_available() const override { return is_open() ? portal_->static_port->num_available() : 0; }
-  const sc_core::sc_event& default_event() const override { return written_; }
-
-  void follow() {
-    if (is_open()) written_.notify();
+  int num_available() const override {
+    return this->may_pass() ? this->typed_portal().static_port->num_available() : 0;
   }
-  std::string holding() const override;
+  const sc_core::sc_event& data_written_event() const override { return this->event(); }
+  const sc_core::sc_event& default_event() const override { return this->event(); }
 
  protected:
-  void opened() override {
-    if (num_available() > 0) written_.notify(sc_core::SC_ZERO_TIME);
+  std::string not_empty() const override {
+    const int count = num_available();
+    if (count == 0) return {};
+    return std::string(this->typed_portal().name()) + ": " + std::to_string(count) + " item(s) not read";
   }
-  void closed() override {}
-  bool reattach(portal& to) override {
-    auto* p = dynamic_cast<fifo_in_portal<T>*>(&to);
-    if (p != nullptr) portal_ = p;
-    return p != nullptr;
-  }
-
- private:
-  fifo_in_portal<T>* portal_;
-  sc_core::sc_event written_;
+  bool can_transfer() const override { return num_available() > 0; }
 };
 
 template <class T>
-class fifo_out_accessor : public accessor, public sc_core::sc_fifo_out_if<T> {
+class fifo_out_accessor : public fifo_accessor<fifo_out_portal<T>>, public sc_core::sc_fifo_out_if<T> {
  public:
-  fifo_out_accessor(context& owner, fifo_out_portal<T>& at, const std::string& port_name)
-      : accessor(owner, at, port_name), portal_(&at) {}
+  using fifo_accessor<fifo_out_portal<T>>::fifo_accessor;
 
   void write(const T& value) override {
-    while (!nb_write(value)) sc_core::wait(read_);
+    while (!nb_write(value)) sc_core::wait(this->event());
   }
   bool nb_write(const T& value) override {
-    if (!is_open() || !portal_->static_port->nb_write(value)) return false;
+    if (!this->may_pass() || !this->typed_portal().static_port->nb_write(value)) return false;
     wrote_at_ = sc_core::sc_delta_count();
-    owner().recheck();
+    this->passed();
     return true;
   }
-  const sc_core::sc_event& data_read_event() const override { return read_; }
-  int num_free() const override { return is_open() ? portal_->static_port->num_free() : 0; }
-  const sc_core::sc_event& default_event() const override { return read_; }
-
-  void follow() {
-    if (is_open()) read_.notify();
-  }
-  std::string holding() const override;
-  const sc_core::sc_event* let_go() const override;
+  int num_free() const override { return this->may_pass() ? this->typed_portal().static_port->num_free() : 0; }
+  const sc_core::sc_event& data_read_event() const override { return this->event(); }
+  const sc_core::sc_event& default_event() const override { return this->event(); }
+  const sc_core::sc_event* let_go() const override { return &this->typed_portal().static_port->data_read_event(); }
 
  protected:
-  void opened() override {
-    if (num_free() > 0) read_.notify(sc_core::SC_ZERO_TIME);
+  std::string not_empty() const override {
+    const auto* channel = dynamic_cast<const sc_core::sc_fifo_in_if<T>*>(this->typed_portal().static_port[0]);
+    const bool empty = channel == nullptr || channel->num_available() == 0;
+    if (empty && wrote_at_ != sc_core::sc_delta_count()) return {};
+    return std::string(this->typed_portal().name()) + ": result(s) not fetched by the static side";
   }
-  void closed() override {}
-  bool reattach(portal& to) override {
-    auto* p = dynamic_cast<fifo_out_portal<T>*>(&to);
-    if (p != nullptr) portal_ = p;
-    return p != nullptr;
-  }
+  bool can_transfer() const override { return num_free() > 0; }
 
  private:
-  fifo_out_portal<T>* portal_;
-  sc_core::sc_event read_;
   sc_dt::uint64 wrote_at_ = ~sc_dt::uint64{0};
 };
 
 /// sc_fifo_in<T>: from the static FIFO to the active module.
 template <class T>
-class fifo_in_portal : public portal {
+class fifo_in_portal : public fifo_portal {
  public:
   sc_core::sc_fifo_in<T> static_port{"static_port"};
 
-  explicit fifo_in_portal(const sc_core::sc_module_name& name) : portal(name) {
-    SC_HAS_PROCESS(fifo_in_portal);
-    SC_METHOD(follow);
+  explicit fifo_in_portal(const sc_core::sc_module_name& name) : fifo_portal(name) {
+    make_follower();
     sensitive << static_port.data_written();
-    dont_initialize();
   }
   /// \throws error see portal::make_accessor
   void bind_dynamic(sc_core::sc_fifo_in<T>& port) { port.bind(make_accessor<fifo_in_accessor<T>>(port, *this)); }
-  void set_rule(fifo_rule rule) { rule_ = rule; }
-  fifo_rule rule() const { return rule_; }
-
- private:
-  void follow() {
-    if (auto* a = open_accessor()) static_cast<fifo_in_accessor<T>*>(a)->follow();
-  }
-  fifo_rule rule_ = fifo_rule::empty;
 };
 
-/// sc_fifo_out<T>: from the active module to the static FIFO.
+/// sc_fifo_out<T>: from the active module to the static FIFO. The rule `empty` needs a channel that can be asked for
+/// what it holds, as sc_fifo can.
 template <class T>
-class fifo_out_portal : public portal {
+class fifo_out_portal : public fifo_portal {
  public:
   sc_core::sc_fifo_out<T> static_port{"static_port"};
 
-  explicit fifo_out_portal(const sc_core::sc_module_name& name) : portal(name) {
-    SC_HAS_PROCESS(fifo_out_portal);
-    SC_METHOD(follow);
+  explicit fifo_out_portal(const sc_core::sc_module_name& name) : fifo_portal(name) {
+    make_follower();
     sensitive << static_port.data_read();
-    dont_initialize();
   }
   /// \throws error see portal::make_accessor
   void bind_dynamic(sc_core::sc_fifo_out<T>& port) { port.bind(make_accessor<fifo_out_accessor<T>>(port, *this)); }
-  /// The rule `empty` needs a channel that can be asked for what it holds, as sc_fifo can.
-  void set_rule(fifo_rule rule) { rule_ = rule; }
-  fifo_rule rule() const { return rule_; }
-
- private:
-  void follow() {
-    if (auto* a = open_accessor()) static_cast<fifo_out_accessor<T>*>(a)->follow();
-  }
-  fifo_rule rule_ = fifo_rule::empty;
 };
-
-template <class T>
-std::string fifo_in_accessor<T>::holding() const {
-  if (!is_open() || portal_->rule() != fifo_rule::empty) return {};
-  const int count = num_available();
-  return count == 0 ? std::string() : std::string(portal_->name()) + ": " + std::to_string(count) + " item(s) not read";
-}
-
-template <class T>
-std::string fifo_out_accessor<T>::holding() const {
-  if (!is_open() || portal_->rule() != fifo_rule::empty) return {};
-  const auto* channel = dynamic_cast<const sc_core::sc_fifo_in_if<T>*>(portal_->static_port[0]);
-  const int count = channel == nullptr ? 0 : channel->num_available();
-  if (count == 0 && wrote_at_ != sc_core::sc_delta_count()) return {};
-  return std::string(portal_->name()) + ": result(s) not fetched by the static side";
-}
-
-template <class T>
-const sc_core::sc_event* fifo_out_accessor<T>::let_go() const {
-  return &portal_->static_port->data_read_event();
-}
 
 template <class T>
 struct portal_for<sc_core::sc_fifo_in<T>> {

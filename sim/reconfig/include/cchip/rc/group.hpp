@@ -61,8 +61,12 @@ class portal_group<std::tuple<Port&...>> : public portal_group_base {
     static_assert(sizeof...(Channel) == sizeof...(Port), "portal_group::bind_static: one channel for each portal");
     std::apply([&](auto&... p) { (p->static_port.bind(channel), ...); }, portals_);
   }
-  /// Binds the ports of a module; once for each module. \throws error see portal::make_accessor
-  void bind_dynamic(std::tuple<Port&...> module_ports) { bind(module_ports, std::index_sequence_for<Port...>()); }
+  /// Binds the ports of a module; once for each module.
+  /// \throws error see portal::make_accessor; or the ports are not of one module
+  void bind_dynamic(std::tuple<Port&...> module_ports) {
+    check_one_module(module_ports);
+    bind(module_ports, std::index_sequence_for<Port...>());
+  }
   template <std::size_t I>
   auto& at() {
     return *std::get<I>(portals_);
@@ -79,6 +83,15 @@ class portal_group<std::tuple<Port&...>> : public portal_group_base {
     }
     const auto name_of = [&names](std::size_t i) { return names.empty() ? "p" + std::to_string(i) : names[i]; };
     return Portals(std::make_unique<typename portal_for<Port>::type>(name_of(I).c_str())...);
+  }
+  void check_one_module(const std::tuple<Port&...>& module_ports) const {
+    const sc_core::sc_object& first = std::get<0>(module_ports);
+    const auto check = [&](const sc_core::sc_object& port) {
+      if (context::of(&port) == context::of(&first)) return;
+      throw error(std::string(name()) + ": ports " + first.name() + " and " + port.name() +
+                  " are of two modules; bind the ports of one at a time");
+    };
+    std::apply([&](const auto&... port) { (check(port), ...); }, module_ports);
   }
   template <std::size_t... I>
   void bind(std::tuple<Port&...>& module_ports, std::index_sequence<I...>) {

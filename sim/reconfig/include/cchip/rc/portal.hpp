@@ -32,8 +32,10 @@ class accessor : public holder {
   accessor(context& owner, portal& at, std::string port_name);
   /// Called in an update phase, before or at the start of simulation for a module that begins active: notify events
   /// with SC_ZERO_TIME, write nothing.
-  virtual void opened() = 0;
-  virtual void closed() = 0;
+  virtual void opened() {}
+  virtual void closed() {}
+  /// The static side has notified its event while this accessor is open.
+  virtual void follow() {}
   /// Whether portal `to` is one that this accessor can work with; then it does from now on.
   virtual bool reattach(portal& to) = 0;
   /// Waits for the next opening.
@@ -54,10 +56,27 @@ class accessor : public holder {
   sc_core::sc_event opened_;
 };
 
+/// An accessor of portals of type Portal.
+template <class Portal>
+class accessor_of : public accessor {
+ protected:
+  accessor_of(context& owner, Portal& at, const std::string& port_name)
+      : accessor(owner, at, port_name), portal_(&at) {}
+  Portal& typed_portal() const { return *portal_; }
+  bool reattach(portal& to) override {
+    auto* p = dynamic_cast<Portal*>(&to);
+    if (p != nullptr) portal_ = p;
+    return p != nullptr;
+  }
+
+ private:
+  Portal* portal_;
+};
+
 class portal_group_base;
 
 /// portal_for<sc_in<T>>::type is in_portal<T>, and so on.
-template <class Port>
+template <class Port, class Enable = void>
 struct portal_for;
 
 class portal : public sc_core::sc_module {
@@ -73,6 +92,14 @@ class portal : public sc_core::sc_module {
  protected:
   explicit portal(const sc_core::sc_module_name&) {}
   accessor* open_accessor() const { return open_; }
+  /// Waits until a module is active here.
+  void wait_until_open();
+  /// To be called in the constructor, `sensitive <<` after it: the process that runs follow().
+  void make_follower();
+  /// Passes an event of the static side on to the open accessor.
+  virtual void follow() {
+    if (open_ != nullptr) open_->follow();
+  }
   /// Makes an accessor for a port of a reconfigurable module, which keeps it.
   /// \throws error the port is not in a reconfigurable module, is in two portals, or simulation has begun
   template <class Accessor, class Port, class Portal>
@@ -95,6 +122,7 @@ class portal : public sc_core::sc_module {
   accessor* open_ = nullptr;
   context* claimed_by_ = nullptr;
   portal_group_base* group_ = nullptr;
+  sc_core::sc_event module_opened_;
 };
 
 }  // namespace cchip::rc

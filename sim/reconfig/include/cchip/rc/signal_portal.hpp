@@ -74,6 +74,7 @@ class signal_portal : public portal {
   virtual void request_write(const T&) {}
   virtual void request_write_later(const T&) {}
   virtual void request_undefined() {}
+  virtual sc_core::sc_writer_policy writer_policy() const { return sc_core::SC_ONE_WRITER; }
   /// The module waits for events of the static signal.
   virtual void watch() {}
   /// Runs follow() of the open accessor in the next delta.
@@ -88,43 +89,36 @@ class signal_portal : public portal {
 
 /// The interface IF of a static signal as one module sees it.
 template <class T, class IF>
-class signal_accessor : public accessor, public IF {
+class signal_accessor : public accessor_of<signal_portal<T>>, public IF {
  public:
   signal_accessor(context& owner, signal_portal<T>& at, const std::string& port_name)
-      : accessor(owner, at, port_name), portal_(&at) {}
+      : accessor_of<signal_portal<T>>(owner, at, port_name) {}
 
   const sc_core::sc_event& default_event() const override { return value_changed_event(); }
   const sc_core::sc_event& value_changed_event() const override { return watched(events_.changed); }
-  const T& read() const override { return is_open() ? portal_->channel().read() : portal_->undefined_input(); }
+  const T& read() const override {
+    return this->is_open() ? this->typed_portal().channel().read() : this->typed_portal().undefined_input();
+  }
   const T& get_data_ref() const override { return read(); }
-  bool event() const override { return is_open() && (portal_->channel().event() || just_opened()); }
-
-  /// The static signal has changed, or the portal has been opened.
-  virtual void follow() { events_.notify(read()); }
+  bool event() const override { return this->is_open() && (this->typed_portal().channel().event() || just_opened()); }
 
  protected:
   const sc_core::sc_event& watched(const sc_core::sc_event& event) const {
-    portal_->watch();
+    this->typed_portal().watch();
     return event;
   }
-  signal_portal<T>& signal() const { return *portal_; }
   const detail::signal_events<T>& events() const { return events_; }
 
   void opened() override {
     opened_at_ = sc_core::sc_delta_count();
-    portal_->refresh();
+    this->typed_portal().refresh();
   }
-  void closed() override {}
-  bool reattach(portal& to) override {
-    auto* p = dynamic_cast<signal_portal<T>*>(&to);
-    if (p != nullptr) portal_ = p;
-    return p != nullptr;
-  }
+  /// Also runs after the opening.
+  void follow() override { events_.notify(read()); }
 
  private:
   bool just_opened() const { return sc_core::sc_delta_count() == opened_at_ + 1; }
 
-  signal_portal<T>* portal_;
   detail::signal_events<T> events_;
   sc_dt::uint64 opened_at_ = ~sc_dt::uint64{0} - 1;
 };
@@ -145,105 +139,115 @@ class edge_accessor<T, IF, true> : public signal_accessor<T, IF> {
   bool negedge() const override { return this->event() && detail::is_low(this->read()); }
 };
 
-template <class T>
-class input_accessor : public edge_accessor<T, sc_core::sc_signal_in_if<T>> {
+template <class T, class IF>
+class input_accessor : public edge_accessor<T, IF> {
  public:
-  using edge_accessor<T, sc_core::sc_signal_in_if<T>>::edge_accessor;
+  using edge_accessor<T, IF>::edge_accessor;
 };
 
 /// Inputs of type bool are signals of the kernel as well, so that reset_signal_is() of the module works on them.
+using bool_signal = sc_core::sc_signal<bool, sc_core::SC_MANY_WRITERS>;
 template <>
-class input_accessor<bool> : public edge_accessor<bool, sc_core::sc_signal<bool, sc_core::SC_MANY_WRITERS>> {
+class input_accessor<bool, sc_core::sc_signal_in_if<bool>> : public edge_accessor<bool, bool_signal> {
  public:
   using edge_accessor::edge_accessor;
+
+ protected:
   void follow() override {
     m_new_val = read();
-    sc_core::sc_signal<bool, sc_core::SC_MANY_WRITERS>::update();
+    bool_signal::update();
     edge_accessor::follow();
   }
 };
 
-template <class T>
-class output_accessor : public edge_accessor<T, sc_core::sc_signal_inout_if<T>> {
+/// What a module shows at an output; it appears at the static side while the portal is open.
+template <class T, class IF>
+class driving_accessor : public edge_accessor<T, IF> {
  public:
-  using edge_accessor<T, sc_core::sc_signal_inout_if<T>>::edge_accessor;
-  void write(const T& value) override {
-    check_writer();
-    value_ = value;
-    written_ = true;
-    if (this->is_open()) this->signal().request_write(value_);
-  }
+  using edge_accessor<T, IF>::edge_accessor;
 
  protected:
-  void opened() override {
-    edge_accessor<T, sc_core::sc_signal_inout_if<T>>::opened();
-    if (written_) this->signal().request_write_later(value_);
+  void show(const T& value) {
+    value_ = value;
+    written_ = true;
+    if (this->is_open()) this->typed_portal().request_write(value_);
   }
-  void closed() override { this->signal().request_undefined(); }
+  void opened() override {
+    edge_accessor<T, IF>::opened();
+    if (written_) this->typed_portal().request_write_later(value_);
+  }
+  void closed() override { this->typed_portal().request_undefined(); }
 
  private:
-  /// Like a signal: one process of a module writes.
+  T value_{};
+  bool written_ = false;
+};
+
+template <class T>
+class output_accessor : public driving_accessor<T, sc_core::sc_signal_inout_if<T>> {
+ public:
+  using driving_accessor<T, sc_core::sc_signal_inout_if<T>>::driving_accessor;
+  sc_core::sc_writer_policy get_writer_policy() const override { return this->typed_portal().writer_policy(); }
+  void write(const T& value) override {
+    if (get_writer_policy() == sc_core::SC_ONE_WRITER) check_writer();
+    this->show(value);
+  }
+
+ private:
+  /// As in sc_signal: one process of a module writes. One that has ended may be followed by another.
   void check_writer() {
-    const sc_core::sc_object* writer = sc_core::sc_get_current_process_b();
-    if (writer == nullptr || writer == writer_) return;
-    if (writer_ != nullptr) {
+    const sc_core::sc_process_handle writer = sc_core::sc_get_current_process_handle();
+    if (!writer.valid() || writer == writer_) return;
+    if (writer_.valid() && !writer_.terminated()) {
       SC_REPORT_ERROR(sc_core::SC_ID_MORE_THAN_ONE_SIGNAL_DRIVER_,
-                      (this->port_name() + " is written by " + writer_->name() + " and by " + writer->name()).c_str());
+                      (this->port_name() + " is written by " + writer_.name() + " and by " + writer.name()).c_str());
     }
     writer_ = writer;
   }
 
-  T value_{};
-  bool written_ = false;
-  const sc_core::sc_object* writer_ = nullptr;
+  sc_core::sc_process_handle writer_;
 };
 
-/// sc_in<T>: from the static signal to the active module.
-template <class T>
-class in_portal : public signal_portal<T> {
+/// From the static signal to the active module.
+template <class T, class Port, class Accessor>
+class sensing_portal : public signal_portal<T> {
  public:
-  sc_core::sc_in<T> static_port{"static_port"};
+  Port static_port{"static_port"};
 
-  explicit in_portal(const sc_core::sc_module_name& name) : signal_portal<T>(name) {
-    SC_HAS_PROCESS(in_portal);
-    SC_METHOD(follow);
+  explicit sensing_portal(const sc_core::sc_module_name& name) : signal_portal<T>(name) {
+    this->make_follower();
     this->sensitive << static_port << refresh_;
-    this->dont_initialize();
   }
   /// \throws error see portal::make_accessor
-  void bind_dynamic(sc_core::sc_in<T>& port) {
-    auto& made = this->template make_accessor<input_accessor<T>>(port, *this);
+  void bind_dynamic(Port& port) {
+    auto& made = this->template make_accessor<Accessor>(port, static_cast<signal_portal<T>&>(*this));
     port.bind(static_cast<sc_core::sc_signal_in_if<T>&>(made));
   }
 
  private:
   const sc_core::sc_signal_in_if<T>& channel() const override { return *static_port[0]; }
   void refresh() override { refresh_.notify(sc_core::SC_ZERO_TIME); }
-  void follow() {
-    if (auto* a = this->open_accessor()) static_cast<input_accessor<T>*>(a)->follow();
-  }
 
   sc_core::sc_event refresh_;
 };
 
-/// sc_out<T> or sc_inout<T>: from the active module to the static signal, and back for what reads its own output.
-template <class T, class Port>
+/// From the active module to the static signal, and back for what reads its own output.
+template <class T, class Port, class Accessor>
 class driving_portal : public signal_portal<T> {
  public:
   Port static_port{"static_port"};
 
   explicit driving_portal(const sc_core::sc_module_name& name) : signal_portal<T>(name) {
+    this->make_follower();
+    this->sensitive << refresh_;
     SC_HAS_PROCESS(driving_portal);
     SC_METHOD(drive);
     this->sensitive << request_;
     this->dont_initialize();
-    SC_METHOD(follow);
-    this->sensitive << refresh_;
-    this->dont_initialize();
   }
   /// \throws error see portal::make_accessor
   void bind_dynamic(Port& port) {
-    auto& made = this->template make_accessor<output_accessor<T>>(port, *this);
+    auto& made = this->template make_accessor<Accessor>(port, static_cast<signal_portal<T>&>(*this));
     port.bind(static_cast<sc_core::sc_signal_inout_if<T>&>(made));
   }
   /// What the static signal gets when the portal closes; asked each time. T() or 'Z' at first.
@@ -253,6 +257,7 @@ class driving_portal : public signal_portal<T> {
 
  private:
   const sc_core::sc_signal_in_if<T>& channel() const override { return *static_port[0]; }
+  sc_core::sc_writer_policy writer_policy() const override { return static_port[0]->get_writer_policy(); }
 
   void request_write(const T& value) override {
     value_ = value;
@@ -280,8 +285,8 @@ class driving_portal : public signal_portal<T> {
     if (watched_) refresh_.notify(sc_core::SC_ZERO_TIME);
   }
   /// Costs nothing unless a module waits for its own output.
-  void follow() {
-    if (auto* a = this->open_accessor()) static_cast<output_accessor<T>*>(a)->follow();
+  void follow() override {
+    signal_portal<T>::follow();
     sc_core::next_trigger(static_port->value_changed_event() | refresh_);
   }
 
@@ -291,10 +296,13 @@ class driving_portal : public signal_portal<T> {
   sc_core::sc_event request_;
   sc_core::sc_event refresh_;
 };
+
 template <class T>
-using out_portal = driving_portal<T, sc_core::sc_out<T>>;
+using in_portal = sensing_portal<T, sc_core::sc_in<T>, input_accessor<T, sc_core::sc_signal_in_if<T>>>;
 template <class T>
-using inout_portal = driving_portal<T, sc_core::sc_inout<T>>;
+using out_portal = driving_portal<T, sc_core::sc_out<T>, output_accessor<T>>;
+template <class T>
+using inout_portal = driving_portal<T, sc_core::sc_inout<T>, output_accessor<T>>;
 
 template <class T>
 struct portal_for<sc_core::sc_in<T>> {
