@@ -14,6 +14,7 @@
 #include <cchip/rc/resettable.hpp>
 #include <cchip/rc/resolved_portal.hpp>
 #include <cchip/rc/signal_portal.hpp>
+#include <cchip/rc/timed_control.hpp>
 #include <cchip/rc/tlm_portal.hpp>
 #include <cchip/rc/transaction.hpp>
 
