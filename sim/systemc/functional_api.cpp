@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cchip/levels/functional_api.hpp>
-#include <cchip/reconfig_run.hpp>
 
 namespace cchip::levels {
 namespace {
@@ -19,8 +18,7 @@ FunctionalApi::FunctionalApi(const sc_core::sc_module_name& name, const Stimulus
 
 std::size_t FunctionalApi::set_of(std::size_t index) const {
   if (m.size() == 1) return 0;
-  const StimulusPair& pair = stimulus()[index];
-  return static_cast<std::size_t>(module_of({pair.a, pair.b, 0})) - 1;
+  return static_cast<std::size_t>(test_of(stimulus()[index])) - 1;
 }
 
 void FunctionalApi::send(std::size_t index) {

@@ -104,13 +104,15 @@ Stimulus generate(const GeneratorOptions& options) {
   Stimulus stimulus;
   stimulus.reserve(options.pairs);
   int kind = integer(random, 0, 2);
+  int step = integer(random, 1, 2);
   for (std::size_t object = 0; object < options.object_pairs; ++object) {
     const std::size_t end = options.pairs * (object + 1) / options.object_pairs;
     while (stimulus.size() < end) {
       stimulus.push_back(sources.at(static_cast<std::size_t>(kind)).draw());
       stimulus.back().object_pair = object;
     }
-    kind = (kind + integer(random, 1, 2)) % 3;
+    kind = (kind + step) % 3;
+    if (object > 0) step = integer(random, 1, 2);
   }
   return stimulus;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cchip/levels/stimulus.hpp>
-#include <cchip/reconfig_run.hpp>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -45,11 +44,16 @@ std::ostream& operator<<(std::ostream& out, const Matrix& m) {
   return out;
 }
 
+ModuleId test_of(const StimulusPair& pair) {
+  if (pair.a.kind == Kind::quad) return ModuleId::quad_quad;
+  return pair.b.kind == Kind::quad ? ModuleId::tri_quad : ModuleId::tri_tri;
+}
+
 std::vector<ObjectPair> object_pairs(const Stimulus& stimulus) {
   std::vector<ObjectPair> result;
   for (std::size_t i = 0; i < stimulus.size(); ++i) {
     if (i == 0 || stimulus[i].object_pair != stimulus[i - 1].object_pair) {
-      result.push_back({module_of({stimulus[i].a, stimulus[i].b, 0}), i, 0});
+      result.push_back({test_of(stimulus[i]), i, 0});
     }
     ++result.back().count;
   }

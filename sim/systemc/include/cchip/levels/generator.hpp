@@ -16,9 +16,10 @@ struct GeneratorOptions {
   std::uint64_t seed = 1;         ///< the stimulus depends on the options only
 };
 
-/// Successive object pairs differ in kind. Primitive pairs of every class: general, a grid step apart, touching,
-/// coplanar, degenerate, quads planar, warped and collapsed. Half of the matrices turn A by any angle, the others keep
-/// the class of the pair exactly: they permute and mirror axes, shift, and scale by 1, 1/2 or 1/4.
+/// Successive object pairs differ in kind, the first three have all kinds. Primitive pairs of every class: general, a
+/// grid step apart, touching, coplanar, degenerate, quads planar, warped and collapsed. Half of the matrices turn A by
+/// any angle, the others keep the class of the pair exactly: they permute and mirror axes, shift, and scale by 1, 1/2
+/// or 1/4.
 /// \throws std::invalid_argument no such number of object pairs
 Stimulus generate(const GeneratorOptions& options);
 

@@ -49,6 +49,9 @@ struct ObjectPair {
   std::size_t count = 0;
 };
 
+/// Module that tests the pair.
+ModuleId test_of(const StimulusPair& pair);
+
 /// The object pairs of a stimulus in their order.
 std::vector<ObjectPair> object_pairs(const Stimulus& stimulus);
 
