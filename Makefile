@@ -128,8 +128,9 @@ table1-plot: table1 venv ## the same into docs/table1.md with its curves as CSV 
 	scripts/plot_table1.py --program $(TABLE1)
 
 bench-reconfig: $(RELEASE)/build.ninja ## cost of cchip::rc: portals against direct binding, exchanges per second
-	cmake --build $(RELEASE) -j $(JOBS) --target cchip_rc_bench
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip_rc_bench cchip_rtl_bench
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_rc_bench
+	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_rtl_bench
 
 fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEEDS places and routes each (hours), into docs/fpga.md
 	scripts/fpga.py --seeds $(SEEDS) --jobs $(JOBS) --campaign $(CAMPAIGN) --write
