@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # Libraries of Verilated modules, with the Verilator of CCHIP_VERILATOR.
-#   cchip_model_library(<library>)                    an empty one
-#   cchip_verilate(<library> <module> [PREFIX <class>] [PARAMETERS NAME=VALUE ...] [SOURCES file ...])
+#   cchip_model_library(<library> [SYSTEMC])          an empty one
+#   cchip_verilate(<library> <module> [SYSTEMC] [PREFIX <class>] [PARAMETERS NAME=VALUE ...] [SOURCES file ...])
 #       adds the module as C++ class <class> (default V<module>); without SOURCES from rtl/cchip.f
+# SYSTEMC, for a library and all that is in it: classes are SystemC modules, without waveforms. Such a library and one of
+# the others cannot be in one program, their runtimes differ; its users need SystemC from pkg-config (sim/reconfig).
 # include() this file in every folder that calls them.
 include_guard(DIRECTORY)
 set(CCHIP_RTL_DIR ${PROJECT_SOURCE_DIR}/rtl)
@@ -45,6 +47,16 @@ function(cchip_foreign_code library)
   endif()
 endfunction()
 
+# SystemC models: another runtime.
+if(NOT TARGET cchip_verilated_sc)
+  set(include ${CCHIP_VERILATOR_ROOT}/include)
+  add_library(cchip_verilated_sc STATIC EXCLUDE_FROM_ALL ${include}/verilated.cpp ${include}/verilated_threads.cpp)
+  cchip_foreign_code(cchip_verilated_sc)
+  target_include_directories(cchip_verilated_sc SYSTEM PUBLIC ${include} ${include}/vltstd)
+  target_compile_definitions(cchip_verilated_sc PUBLIC VM_SC=1 VM_TRACE=0 VM_COVERAGE=0)
+  target_link_libraries(cchip_verilated_sc PUBLIC PkgConfig::SYSTEMC Threads::Threads)
+endif()
+
 # The runtime that all models share: a program holds one copy of it.
 if(NOT TARGET cchip_verilated)
   message(STATUS "Verilator: ${CCHIP_VERILATOR_VERSION} (${CCHIP_VERILATOR}, runtime in ${CCHIP_VERILATOR_ROOT})")
@@ -67,11 +79,17 @@ endif()
 function(cchip_model_library library)
   add_library(${library} STATIC)
   cchip_foreign_code(${library})
-  target_link_libraries(${library} PUBLIC cchip_verilated)
+  cmake_parse_arguments(ARG "SYSTEMC" "" "" ${ARGN})
+  target_link_libraries(${library} PUBLIC cchip_verilated$<$<BOOL:${ARG_SYSTEMC}>:_sc>)
 endfunction()
 
 function(cchip_verilate library top)
-  cmake_parse_arguments(ARG "" "PREFIX" "PARAMETERS;SOURCES" ${ARGN})
+  cmake_parse_arguments(ARG "SYSTEMC" "PREFIX" "PARAMETERS;SOURCES" ${ARGN})
+  set(command ${CCHIP_VERILATOR_COMMAND})
+  if(ARG_SYSTEMC)
+    list(REMOVE_ITEM command --cc --trace-fst)
+    list(APPEND command --sc)
+  endif()
   if(NOT ARG_PREFIX)
     set(ARG_PREFIX V${top})
   endif()
@@ -88,7 +106,7 @@ function(cchip_verilate library top)
   add_custom_command(OUTPUT ${unit} BYPRODUCTS ${dir}/${ARG_PREFIX}.h ${dir}/${ARG_PREFIX}___024root.h
     COMMAND ${CMAKE_COMMAND} -E rm -rf ${dir}
     COMMAND ${CMAKE_COMMAND} -E make_directory ${dir}
-    COMMAND ${CCHIP_VERILATOR_COMMAND} --prefix ${ARG_PREFIX} --Mdir ${dir} --top-module ${top}
+    COMMAND ${command} --prefix ${ARG_PREFIX} --Mdir ${dir} --top-module ${top}
       ${ARG_PARAMETERS} ${CCHIP_VERILATOR_WAIVER} ${files}
     COMMAND ${CMAKE_COMMAND} -D UNIT=${unit} -D PREFIX=${ARG_PREFIX} -P ${script}
     DEPENDS ${CCHIP_VERILATOR_WAIVER} ${ARG_SOURCES} ${script}

@@ -37,6 +37,7 @@ PinApi::PinApi(const sc_core::sc_module_name& name, const Stimulus& stimulus, sc
 void PinApi::prepare(const ObjectPair& objects) {
   constexpr int clocks = defs::roc_clocks_default + 2;
   driver_.couple(false);
+  wait(clk.posedge_event());  // now it is
   configure_(objects.test);
   for (int i = 0; i < clocks; ++i) wait(clk.posedge_event());
   if (driver_.rm_id.read() != static_cast<unsigned>(objects.test)) {
