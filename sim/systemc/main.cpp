@@ -58,19 +58,22 @@ void save(const Stimulus& stimulus, const std::string& path) {
   if (!out) throw app::UsageError(path + ": cannot be written; check folder, permissions and disk");
 }
 
+LevelRun run(const Level& level, const Stimulus& stimulus, const LevelOptions& options) {
+  LevelRun result{level.name, level.description, level.reconfigures, {}, {}};
+  try {
+    result.result = in_child([&] { return level.run(stimulus, options); });
+  } catch (const std::runtime_error& error) {
+    result.error = error.what();
+  }
+  return result;
+}
+
 int run(const Options& options) {
   const Stimulus stimulus = make_stimulus(options);
   if (!options.write_to.empty()) save(stimulus, options.write_to);
   Summary summary(stimulus);
-  for (const Level& level : all_levels) {
-    try {
-      summary.add({level.name, level.description, level.reconfigures,
-                   in_child([&] { return level.run(stimulus, options.level); })});
-    } catch (const std::runtime_error& error) {
-      throw std::runtime_error(std::string(level.name) + ": " + error.what());
-    }
-  }
-  summary.set_added_deltas(added_deltas(stimulus, options.level));
+  for (const Level& level : all_levels) summary.add(run(level, stimulus, options.level));
+  if (summary.good()) summary.set_added_deltas(added_deltas(stimulus, options.level));
   summary.print(std::cout);
   return summary.good() ? app::exit_ok : app::exit_mismatch;
 }

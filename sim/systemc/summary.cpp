@@ -30,12 +30,14 @@ std::size_t Summary::mismatches() const {
 }
 
 bool Summary::swaps_agree() const {
-  return std::all_of(runs_.begin(), runs_.end(),
-                     [&](const LevelRun& run) { return !run.reconfigures || run.result.swaps == swaps(); });
+  return std::all_of(runs_.begin(), runs_.end(), [&](const LevelRun& run) {
+    return !run.reconfigures || !run.error.empty() || run.result.swaps == swaps();
+  });
 }
 
 std::uint64_t Summary::swaps() const {
-  const auto first = std::find_if(runs_.begin(), runs_.end(), [](const LevelRun& run) { return run.reconfigures; });
+  const auto first = std::find_if(runs_.begin(), runs_.end(),
+                                  [](const LevelRun& run) { return run.reconfigures && run.error.empty(); });
   return first == runs_.end() ? 0 : first->result.swaps;
 }
 
@@ -58,6 +60,10 @@ void Summary::print_run(std::ostream& out, const LevelRun& run) const {
 }
 
 void Summary::print_differences(std::ostream& out, const LevelRun& run) const {
+  if (!run.error.empty()) {
+    fmt::print(out, "{}: {}\n", run.name, run.error);
+    return;
+  }
   constexpr std::size_t shown = 3;
   const std::vector<std::size_t> all = differences(expected_, run.result.answers);
   for (std::size_t i = 0; i < std::min(all.size(), shown); ++i) {

@@ -154,7 +154,7 @@ TEST_CASE("levels: the summary finds wrong answers, missing answers and swaps", 
   other.swaps = 2;
   const auto last_line = [&](const std::vector<LevelResult>& results, std::int64_t deltas, bool good) {
     Summary summary(stimulus);
-    for (const LevelResult& result : results) summary.add({"L1", "a level", true, result});
+    for (const LevelResult& result : results) summary.add({"L1", "a level", true, result, {}});
     summary.set_added_deltas(deltas);
     CHECK(summary.good() == good);
     std::ostringstream out;
@@ -166,5 +166,6 @@ TEST_CASE("levels: the summary finds wrong answers, missing answers and swaps", 
   CHECK(last_line({right, wrong}, 0, false) == "levels=2 pairs=30 swaps=3 mismatches=1 added_deltas=0\n");
   CHECK(last_line({missing}, 0, false) == "levels=1 pairs=30 swaps=3 mismatches=2 added_deltas=0\n");
   CHECK(last_line({right, other}, 0, false) == "levels=2 pairs=30 swaps=3 mismatches=0 added_deltas=0\n");
+  CHECK(last_line({LevelResult()}, 0, false) == "levels=1 pairs=30 swaps=0 mismatches=30 added_deltas=0\n");
   CHECK(last_line({right}, 5, false) == "levels=1 pairs=30 swaps=3 mismatches=0 added_deltas=5\n");
 }

@@ -19,6 +19,7 @@ struct LevelRun {
   std::string description;  ///< a few words
   bool reconfigures = false;
   LevelResult result;
+  std::string error;  ///< why it ended before all was answered; then no answer counts
 };
 
 /// Answers of the Eigen reference for the pairs on the grid.
@@ -42,7 +43,7 @@ class Summary {
   bool swaps_agree() const;
   bool good() const { return mismatches() == 0 && swaps_agree() && added_deltas_ == 0; }
 
-  /// Table, the first differences of each level, and a last line
+  /// Table, errors and the first differences of each level, and a last line
   /// levels=5 pairs=N swaps=S mismatches=M added_deltas=D
   void print(std::ostream& out) const;
 
