@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cchip/levels/added_deltas.hpp>
 #include <cchip/levels/generator.hpp>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
+#include <random>
 #include <sstream>
 
 using namespace cchip;
@@ -45,6 +47,20 @@ TEST_CASE("levels: each agrees with the reference, each reconfiguring one swaps 
     const LevelResult result = in_child([&] { return run(stimulus, short_bitstreams()); });
     CHECK(differences(expected, result.answers).empty());
     CHECK(result.swaps == (run == run_l0 ? 0 : 9));
+  }
+}
+
+TEST_CASE("levels: quads may have their vertices in any order", "[systemc][levels]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  Stimulus stimulus = generate({1200, 6, sim::seed_from_environment()});
+  for (StimulusPair& pair : stimulus) {
+    for (GridPrimitive* p : {&pair.a, &pair.b}) {
+      std::shuffle(p->v.begin(), p->v.begin() + static_cast<std::ptrdiff_t>(p->vertex_count()), random);
+    }
+  }
+  const std::vector<std::uint8_t> expected = reference_answers(stimulus);
+  for (const auto run : {run_l0, run_l3, run_l4}) {
+    CHECK(differences(expected, in_child([&] { return run(stimulus, short_bitstreams()); }).answers).empty());
   }
 }
 
