@@ -57,12 +57,6 @@ void portal::wait_until_open() {
   while (open_ == nullptr) sc_core::wait(module_opened_);
 }
 
-void portal::make_follower() {
-  SC_HAS_PROCESS(portal);
-  SC_METHOD(follow);
-  dont_initialize();
-}
-
 void portal::keep(context& owner, std::unique_ptr<accessor> made) { owner.accessors_.push_back(std::move(made)); }
 
 context& portal::owner_of(const sc_core::sc_object& port) const {
@@ -81,6 +75,30 @@ context& portal::owner_of(const sc_core::sc_object& port) const {
     }
   }
   return *owner;
+}
+
+void following_portal::watch() {
+  if (watched_) return;
+  watched_ = true;
+  refresh();
+}
+
+void following_portal::refresh() {
+  if (watched_) refresh_.notify(sc_core::SC_ZERO_TIME);
+}
+
+void following_portal::end_of_elaboration() {
+  watched_early_ = watched_;
+  SC_HAS_PROCESS(following_portal);
+  SC_METHOD(follow);
+  sensitive << refresh_;
+  if (watched_early_) sensitive << static_event();
+  dont_initialize();
+}
+
+void following_portal::follow() {
+  if (accessor* a = open_accessor()) a->follow();
+  if (!watched_early_) next_trigger(static_event() | refresh_);
 }
 
 }  // namespace cchip::rc

@@ -14,16 +14,14 @@ namespace cchip::rc {
 
 class event_accessor;
 
-class event_portal : public portal {
+class event_portal : public following_portal {
  public:
   sc_core::sc_event_queue_port static_port{"static_port"};
 
-  explicit event_portal(const sc_core::sc_module_name& name) : portal(name) {
-    make_follower();
-    sensitive << static_port;
-  }
+  explicit event_portal(const sc_core::sc_module_name& name) : following_portal(name) {}
   /// \throws error see portal::make_accessor
   void bind_dynamic(sc_core::sc_port_b<sc_core::sc_event_queue_if>& port);
+  const sc_core::sc_event& static_event() const override { return static_port->default_event(); }
 };
 
 /// The static queue as one module sees it.
@@ -31,7 +29,10 @@ class event_accessor : public accessor_of<event_portal>, public sc_core::sc_even
  public:
   event_accessor(context& owner, event_portal& at, const std::string& port_name)
       : accessor_of<event_portal>(owner, at, port_name) {}
-  const sc_core::sc_event& default_event() const override { return event_; }
+  const sc_core::sc_event& default_event() const override {
+    typed_portal().watch();
+    return event_;
+  }
   void notify(double time, sc_core::sc_time_unit unit) override { notify(sc_core::sc_time(time, unit)); }
   void notify(const sc_core::sc_time& time) override {
     if (is_open()) typed_portal().static_port->notify(time);

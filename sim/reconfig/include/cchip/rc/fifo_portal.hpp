@@ -23,7 +23,7 @@ enum class fifo_rule {
 };
 
 /// What both directions have in common: rule and filter.
-class fifo_portal : public portal {
+class fifo_portal : public following_portal {
  public:
   void set_rule(fifo_rule rule) { rule_ = rule; }
   fifo_rule rule() const { return rule_; }
@@ -44,7 +44,7 @@ class fifo_portal : public portal {
   long limit() const { return limit_; }
 
  protected:
-  using portal::portal;
+  using following_portal::following_portal;
 
  private:
   fifo_rule rule_ = fifo_rule::empty;
@@ -77,14 +77,19 @@ class fifo_accessor : public accessor_of<Portal> {
     if (transaction_counter* counter = this->typed_portal().counter()) counter->add(this->typed_portal().weight());
     this->owner().recheck();
   }
+  /// Until a blocking call may succeed.
+  void wait_for_chance() { this->wait_for_opening_or(this->typed_portal().static_event()); }
   void leave_if_asked() {
     if (this->typed_portal().counter() != nullptr) this->owner().possible_deactivation();
   }
-  const sc_core::sc_event& event() const { return event_; }
+  const sc_core::sc_event& event() const {
+    this->typed_portal().watch();
+    return event_;
+  }
 
   void opened() override {
     passed_ = 0;
-    if (can_transfer()) event_.notify(sc_core::SC_ZERO_TIME);
+    if (can_transfer()) this->typed_portal().refresh();
   }
   void follow() override {
     if (may_pass()) event_.notify();
@@ -107,7 +112,7 @@ class fifo_in_accessor : public fifo_accessor<fifo_in_portal<T>>, public sc_core
 
   void read(T& value) override {
     this->leave_if_asked();
-    while (!nb_read(value)) sc_core::wait(this->event());
+    while (!nb_read(value)) this->wait_for_chance();
   }
   T read() override {
     T value{};
@@ -140,7 +145,7 @@ class fifo_out_accessor : public fifo_accessor<fifo_out_portal<T>>, public sc_co
   using fifo_accessor<fifo_out_portal<T>>::fifo_accessor;
 
   void write(const T& value) override {
-    while (!nb_write(value)) sc_core::wait(this->event());
+    while (!nb_write(value)) this->wait_for_chance();
   }
   bool nb_write(const T& value) override {
     if (!this->may_pass() || !this->typed_portal().static_port->nb_write(value)) return false;
@@ -151,7 +156,7 @@ class fifo_out_accessor : public fifo_accessor<fifo_out_portal<T>>, public sc_co
   int num_free() const override { return this->may_pass() ? this->typed_portal().static_port->num_free() : 0; }
   const sc_core::sc_event& data_read_event() const override { return this->event(); }
   const sc_core::sc_event& default_event() const override { return this->event(); }
-  const sc_core::sc_event* let_go() const override { return &this->typed_portal().static_port->data_read_event(); }
+  const sc_core::sc_event* let_go() const override { return &this->typed_portal().static_event(); }
 
  protected:
   std::string not_empty() const override {
@@ -172,12 +177,10 @@ class fifo_in_portal : public fifo_portal {
  public:
   sc_core::sc_fifo_in<T> static_port{"static_port"};
 
-  explicit fifo_in_portal(const sc_core::sc_module_name& name) : fifo_portal(name) {
-    make_follower();
-    sensitive << static_port.data_written();
-  }
+  explicit fifo_in_portal(const sc_core::sc_module_name& name) : fifo_portal(name) {}
   /// \throws error see portal::make_accessor
   void bind_dynamic(sc_core::sc_fifo_in<T>& port) { port.bind(make_accessor<fifo_in_accessor<T>>(port, *this)); }
+  const sc_core::sc_event& static_event() const override { return static_port->data_written_event(); }
 };
 
 /// sc_fifo_out<T>: from the active module to the static FIFO. The rule `empty` needs a channel that can be asked for
@@ -187,12 +190,10 @@ class fifo_out_portal : public fifo_portal {
  public:
   sc_core::sc_fifo_out<T> static_port{"static_port"};
 
-  explicit fifo_out_portal(const sc_core::sc_module_name& name) : fifo_portal(name) {
-    make_follower();
-    sensitive << static_port.data_read();
-  }
+  explicit fifo_out_portal(const sc_core::sc_module_name& name) : fifo_portal(name) {}
   /// \throws error see portal::make_accessor
   void bind_dynamic(sc_core::sc_fifo_out<T>& port) { port.bind(make_accessor<fifo_out_accessor<T>>(port, *this)); }
+  const sc_core::sc_event& static_event() const override { return static_port->data_read_event(); }
 };
 
 template <class T>

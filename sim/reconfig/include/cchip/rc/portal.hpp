@@ -38,12 +38,14 @@ class accessor : public holder {
   virtual void follow() {}
   /// Whether portal `to` is one that this accessor can work with; then it does from now on.
   virtual bool reattach(portal& to) = 0;
-  /// Waits for the next opening.
   void wait_until_open();
+  /// Waits for the next opening or an event of the static side.
+  void wait_for_opening_or(const sc_core::sc_event& event) { sc_core::wait(opened_ | event); }
 
  private:
   friend class context;
   friend class control;
+  friend class following_portal;
   friend class portal;
   void open();
   void close();
@@ -94,12 +96,6 @@ class portal : public sc_core::sc_module {
   accessor* open_accessor() const { return open_; }
   /// Waits until a module is active here.
   void wait_until_open();
-  /// To be called in the constructor, `sensitive <<` after it: the process that runs follow().
-  void make_follower();
-  /// Passes an event of the static side on to the open accessor.
-  virtual void follow() {
-    if (open_ != nullptr) open_->follow();
-  }
   /// Makes an accessor for a port of a reconfigurable module, which keeps it.
   /// \throws error the port is not in a reconfigurable module, is in two portals, or simulation has begun
   template <class Accessor, class Port, class Portal>
@@ -123,6 +119,28 @@ class portal : public sc_core::sc_module {
   context* claimed_by_ = nullptr;
   portal_group_base* group_ = nullptr;
   sc_core::sc_event module_opened_;
+};
+
+/// A portal that passes events on: what waits for an event of the accessor has to say so by watch(). Costs nothing, and
+/// no delta, as long as nothing waits.
+class following_portal : public portal {
+ public:
+  // for accessors
+  void watch();
+  /// Runs follow() of the open accessor in the next delta.
+  void refresh();
+  virtual const sc_core::sc_event& static_event() const = 0;
+
+ protected:
+  using portal::portal;
+  void end_of_elaboration() override;
+
+ private:
+  void follow();
+
+  bool watched_ = false;
+  bool watched_early_ = false;  // before the end of elaboration: static sensitivity
+  sc_core::sc_event refresh_;
 };
 
 }  // namespace cchip::rc

@@ -61,7 +61,7 @@ struct signal_events {
 
 /// What accessors need of the portal of a signal.
 template <class T>
-class signal_portal : public portal {
+class signal_portal : public following_portal {
  public:
   /// What a closed portal shows to the module, T() or 'Z' at first.
   void set_undefined_input(const T& value) { undefined_input_ = value; }
@@ -75,13 +75,10 @@ class signal_portal : public portal {
   virtual void request_write_later(const T&) {}
   virtual void request_undefined() {}
   virtual sc_core::sc_writer_policy writer_policy() const { return sc_core::SC_ONE_WRITER; }
-  /// The module waits for events of the static signal.
-  virtual void watch() {}
-  /// Runs follow() of the open accessor in the next delta.
-  virtual void refresh() = 0;
+  const sc_core::sc_event& static_event() const override { return channel().value_changed_event(); }
 
  protected:
-  using portal::portal;
+  using following_portal::following_portal;
 
  private:
   T undefined_input_ = undefined_value<T>::get();
@@ -100,7 +97,9 @@ class signal_accessor : public accessor_of<signal_portal<T>>, public IF {
     return this->is_open() ? this->typed_portal().channel().read() : this->typed_portal().undefined_input();
   }
   const T& get_data_ref() const override { return read(); }
-  bool event() const override { return this->is_open() && (this->typed_portal().channel().event() || just_opened()); }
+  bool event() const override {
+    return this->is_open() && (this->typed_portal().channel().event() || followed_at_ == sc_core::sc_delta_count());
+  }
 
  protected:
   const sc_core::sc_event& watched(const sc_core::sc_event& event) const {
@@ -109,18 +108,16 @@ class signal_accessor : public accessor_of<signal_portal<T>>, public IF {
   }
   const detail::signal_events<T>& events() const { return events_; }
 
-  void opened() override {
-    opened_at_ = sc_core::sc_delta_count();
-    this->typed_portal().refresh();
-  }
+  void opened() override { this->typed_portal().refresh(); }
   /// Also runs after the opening.
-  void follow() override { events_.notify(read()); }
+  void follow() override {
+    followed_at_ = sc_core::sc_delta_count();
+    events_.notify(read());
+  }
 
  private:
-  bool just_opened() const { return sc_core::sc_delta_count() == opened_at_ + 1; }
-
   detail::signal_events<T> events_;
-  sc_dt::uint64 opened_at_ = ~sc_dt::uint64{0} - 1;
+  sc_dt::uint64 followed_at_ = ~sc_dt::uint64{0};
 };
 
 /// The same with edges, for bool and sc_logic.
@@ -153,6 +150,10 @@ class input_accessor<bool, sc_core::sc_signal_in_if<bool>> : public edge_accesso
   using edge_accessor::edge_accessor;
 
  protected:
+  void opened() override {
+    if (m_reset_p != nullptr) typed_portal().watch();
+    edge_accessor::opened();
+  }
   void follow() override {
     m_new_val = read();
     bool_signal::update();
@@ -214,10 +215,7 @@ class sensing_portal : public signal_portal<T> {
  public:
   Port static_port{"static_port"};
 
-  explicit sensing_portal(const sc_core::sc_module_name& name) : signal_portal<T>(name) {
-    this->make_follower();
-    this->sensitive << static_port << refresh_;
-  }
+  explicit sensing_portal(const sc_core::sc_module_name& name) : signal_portal<T>(name) {}
   /// \throws error see portal::make_accessor
   void bind_dynamic(Port& port) {
     auto& made = this->template make_accessor<Accessor>(port, static_cast<signal_portal<T>&>(*this));
@@ -226,9 +224,6 @@ class sensing_portal : public signal_portal<T> {
 
  private:
   const sc_core::sc_signal_in_if<T>& channel() const override { return *static_port[0]; }
-  void refresh() override { refresh_.notify(sc_core::SC_ZERO_TIME); }
-
-  sc_core::sc_event refresh_;
 };
 
 /// From the active module to the static signal, and back for what reads its own output.
@@ -238,8 +233,6 @@ class driving_portal : public signal_portal<T> {
   Port static_port{"static_port"};
 
   explicit driving_portal(const sc_core::sc_module_name& name) : signal_portal<T>(name) {
-    this->make_follower();
-    this->sensitive << refresh_;
     SC_HAS_PROCESS(driving_portal);
     SC_METHOD(drive);
     this->sensitive << request_;
@@ -276,25 +269,9 @@ class driving_portal : public signal_portal<T> {
   }
   void drive() { static_port->write(value_); }
 
-  void watch() override {
-    if (watched_) return;
-    watched_ = true;
-    refresh();
-  }
-  void refresh() override {
-    if (watched_) refresh_.notify(sc_core::SC_ZERO_TIME);
-  }
-  /// Costs nothing unless a module waits for its own output.
-  void follow() override {
-    signal_portal<T>::follow();
-    sc_core::next_trigger(static_port->value_changed_event() | refresh_);
-  }
-
   T value_{};
   std::function<T()> undefined_output_ = [] { return undefined_value<T>::get(); };
-  bool watched_ = false;
   sc_core::sc_event request_;
-  sc_core::sc_event refresh_;
 };
 
 template <class T>
