@@ -57,7 +57,7 @@ sc_time steady(const JobResult& result) { return result.answers.back() - result.
 /// What the row or curve is called in an error.
 void expect_loads(const JobResult& result, unsigned loads, const std::string& what) {
   if (result.loads != loads) {
-    throw std::runtime_error(fmt::format("table1: {}: {} loads instead of {}", what, result.loads, loads));
+    throw std::runtime_error(fmt::format("{}: {} loads instead of {}", what, result.loads, loads));
   }
 }
 
@@ -68,7 +68,7 @@ Figures run_experiments(std::uint64_t data_bits) {
   const sc_time share = rc::from_picoseconds(1000 * paper_static_ns / 2);  // of an object pair
   if (figures.transmission >= share) {
     throw std::invalid_argument(
-        fmt::format("table1: {} bits take {} on the bus, but an object pair of the paper's static run takes only {}; "
+        fmt::format("{} bits take {} on the bus, but an object pair of the paper's static run takes only {}; "
                     "give fewer bits",
                     data_bits, figures.transmission.to_string(), share.to_string()));
   }

@@ -223,15 +223,15 @@ class System : public sc_core::sc_module {
 
 void check(const Series& series) {
   if (series.platform.slots > 2) {
-    throw std::invalid_argument(fmt::format("table1: a platform with {} slots; give 0, 1 or 2", series.platform.slots));
+    throw std::invalid_argument(fmt::format("a platform with {} slots; give 0, 1 or 2", series.platform.slots));
   }
   for (const Job& job : series.jobs) {
     const bool known = std::all_of(job.pairs.begin(), job.pairs.end(),
                                    [](const ObjectPair& pair) { return pair.kind < test_kinds.size(); });
     if (job.pairs.empty() || !known) {
       throw std::invalid_argument(
-          fmt::format("table1: a job needs object pairs, each of a kind below {}; this one has {} pairs",
-                      test_kinds.size(), job.pairs.size()));
+          fmt::format("a job needs object pairs, each of a kind below {}; this one has {} pairs", test_kinds.size(),
+                      job.pairs.size()));
     }
   }
 }
