@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 #include <cchip/rc/rc.hpp>
 #include <functional>
+#include <memory>
 #include <string>
 #include <systemc>
 #include <utility>
@@ -29,6 +30,28 @@ inline sc_time ns(double n) { return {n, SC_NS}; }
 inline void deltas(int n) {
   for (int i = 0; i < n; ++i) wait(SC_ZERO_TIME);
 }
+
+/// Elaboration and simulation of its own, as often as wanted in one process; all objects have to die before it.
+/// SystemC 2.3.4 frees twice what belongs to reset_signal_is() of a port when a context ends, so keep() those.
+class OwnContext {
+ public:
+  OwnContext() : mine_(std::make_unique<sc_core::sc_simcontext>()) { use(mine_.get()); }
+  ~OwnContext() { use(old_); }
+  OwnContext(const OwnContext&) = delete;
+  OwnContext& operator=(const OwnContext&) = delete;
+  /// Until the end of the process.
+  void keep() {
+    static std::vector<sc_core::sc_simcontext*> kept;
+    kept.push_back(mine_.release());
+  }
+
+ private:
+  static void use(sc_core::sc_simcontext* context) {
+    sc_core::sc_curr_simcontext = sc_core::sc_default_global_context = context;
+  }
+  sc_core::sc_simcontext* old_ = sc_core::sc_curr_simcontext;
+  std::unique_ptr<sc_core::sc_simcontext> mine_;
+};
 
 /// A thread of the static side.
 class Thread : public sc_core::sc_module {

@@ -44,39 +44,33 @@ struct Row {
 TEST_CASE("actions on sets of 1 to 8 modules run side by side and await them all", "[rc][control]") {
   const int size = GENERATE(1, 2, 3, 4, 5, 6, 7, 8);
   const int slowest = GENERATE_COPY(range(0, size));
-  // one simulation per process: each combination in a context of its own
-  const auto old = sc_core::sc_curr_simcontext;
-  sc_core::sc_curr_simcontext = sc_core::sc_default_global_context = new sc_core::sc_simcontext;
-  {
-    Row row(size);
-    for (int i = 0; i < size; ++i) {
-      const double time = i == slowest ? 50 : 1 + i;
-      for (const action a : {action::load, action::activate, action::deactivate, action::unload}) {
-        row[static_cast<std::size_t>(i)].set_delay(a, ns(time));
-      }
+  const OwnContext context;
+  Row row(size);
+  for (int i = 0; i < size; ++i) {
+    const double time = i == slowest ? 50 : 1 + i;
+    for (const action a : {action::load, action::activate, action::deactivate, action::unload}) {
+      row[static_cast<std::size_t>(i)].set_delay(a, ns(time));
     }
-    const auto all_are = [&row](state s) {
-      for (const auto& m : row.modules) CHECK(m->now() == s);
-    };
-    simulate([&] {
-      row.control.load(row.all());
-      CHECK(sc_time_stamp() == ns(50));
-      all_are(state::inactive);
-      row.control.activate(row.all());
-      CHECK(sc_time_stamp() == ns(100));
-      all_are(state::active);
-      for (const auto& m : row.modules) CHECK(m->log.size() == 2);
-      row.control.deactivate(row.all());
-      CHECK(sc_time_stamp() == ns(150));
-      all_are(state::inactive);
-      row.control.unload(row.all());
-      CHECK(sc_time_stamp() == ns(200));
-      all_are(state::unloaded);
-      for (const auto& m : row.modules) CHECK(m->log.size() == 4);
-    });
   }
-  delete sc_core::sc_curr_simcontext;
-  sc_core::sc_curr_simcontext = sc_core::sc_default_global_context = old;
+  const auto all_are = [&row](state s) {
+    for (const auto& m : row.modules) CHECK(m->now() == s);
+  };
+  simulate([&] {
+    row.control.load(row.all());
+    CHECK(sc_time_stamp() == ns(50));
+    all_are(state::inactive);
+    row.control.activate(row.all());
+    CHECK(sc_time_stamp() == ns(100));
+    all_are(state::active);
+    for (const auto& m : row.modules) CHECK(m->log.size() == 2);
+    row.control.deactivate(row.all());
+    CHECK(sc_time_stamp() == ns(150));
+    all_are(state::inactive);
+    row.control.unload(row.all());
+    CHECK(sc_time_stamp() == ns(200));
+    all_are(state::unloaded);
+    for (const auto& m : row.modules) CHECK(m->log.size() == 4);
+  });
 }
 
 TEST_CASE("a module named twice in a set is one module", "[rc][control]") {

@@ -298,16 +298,12 @@ Passage pass(sc_core::sc_fifo<int>& in, sc_core::sc_fifo<int>& out, int count) {
 }
 
 Passage pass_directly(int count) {
-  const auto old = sc_core::sc_curr_simcontext;
-  sc_core::sc_curr_simcontext = sc_core::sc_default_global_context = new sc_core::sc_simcontext;
+  const OwnContext context;
   Passage result{};
-  {
-    sc_core::sc_fifo<int> a("a", 3), b("b", 2), c("c", 4), d("d", 1);
-    Adder m1("m1", 100), m2("m2", 10), m3("m3", 1);
-    m1.in(a), m1.out(b), m2.in(b), m2.out(c), m3.in(c), m3.out(d);
-    simulate([&] { result = pass(a, d, count); });
-  }
-  sc_core::sc_curr_simcontext = sc_core::sc_default_global_context = old;
+  sc_core::sc_fifo<int> a("a", 3), b("b", 2), c("c", 4), d("d", 1);
+  Adder m1("m1", 100), m2("m2", 10), m3("m3", 1);
+  m1.in(a), m1.out(b), m2.in(b), m2.out(c), m3.in(c), m3.out(d);
+  simulate([&] { result = pass(a, d, count); });
   return result;
 }
 
@@ -316,20 +312,16 @@ Passage pass_directly(int count) {
 TEST_CASE("FIFO portals add no delta to a chain of modules", "[rc][fifo]") {
   const int count = GENERATE(1, 2, 50);
   const Passage expected = pass_directly(count);
-  const auto old = sc_core::sc_curr_simcontext;
-  sc_core::sc_curr_simcontext = sc_core::sc_default_global_context = new sc_core::sc_simcontext;
-  {
-    sc_core::sc_fifo<int> a("a", 3), b("b", 2), c("c", 4), d("d", 1);
-    rc::reconfigurable<Adder> m1("m1", 100), m2("m2", 10), m3("m3", 1);
-    AdderGroup g1("g1"), g2("g2"), g3("g3");
-    g1.bind_static(a, b), g2.bind_static(b, c), g3.bind_static(c, d);
-    g1.bind_dynamic(group_of(m1)), g2.bind_dynamic(group_of(m2)), g3.bind_dynamic(group_of(m3));
-    rc::control control("control");
-    control.add(m1 + m2 + m3);
-    control.activate(m1 + m2 + m3);
-    simulate([&] { CHECK(pass(a, d, count) == expected); });
-  }
-  sc_core::sc_curr_simcontext = sc_core::sc_default_global_context = old;
+  const OwnContext context;
+  sc_core::sc_fifo<int> a("a", 3), b("b", 2), c("c", 4), d("d", 1);
+  rc::reconfigurable<Adder> m1("m1", 100), m2("m2", 10), m3("m3", 1);
+  AdderGroup g1("g1"), g2("g2"), g3("g3");
+  g1.bind_static(a, b), g2.bind_static(b, c), g3.bind_static(c, d);
+  g1.bind_dynamic(group_of(m1)), g2.bind_dynamic(group_of(m2)), g3.bind_dynamic(group_of(m3));
+  rc::control control("control");
+  control.add(m1 + m2 + m3);
+  control.activate(m1 + m2 + m3);
+  simulate([&] { CHECK(pass(a, d, count) == expected); });
 }
 
 // ---- transactions
@@ -386,33 +378,29 @@ TEST_CASE("a transaction counter may be negative; the module is held unless it i
 TEST_CASE("a module that has read but not yet written is lost without a count, and held with one",
           "[rc][transaction]") {
   const bool counted = GENERATE(false, true);
-  const auto old = sc_core::sc_curr_simcontext;
-  sc_core::sc_curr_simcontext = sc_core::sc_default_global_context = new sc_core::sc_simcontext;
-  {
-    rc::transaction_counter owed("results owed");
-    System<Slow> s;
-    if (counted) {
-      s.portals.at<0>().count(owed, +1);
-      s.portals.at<1>().count(owed, -1);
-    }
-    s.set_rule(fifo_rule::transfers);
-    s.control.activate(s.m);
-    simulate([&] {
-      for (int i = 0; i < 3; ++i) s.a.write(i);
-      wait(ns(5));
-      s.control.unload(s.m);
-      CHECK(sc_time_stamp() == ns(counted ? 10 : 5));
-      CHECK(s.a.num_available() == 2);
-      s.control.activate(s.other);
-      std::vector<int> results;
-      sc_core::sc_spawn([&] {
-        for (;;) results.push_back(s.b.read());
-      });
-      wait(ns(100));
-      CHECK(results == (counted ? std::vector<int>{10, 21, 22} : std::vector<int>{21, 22}));
-    });
+  const OwnContext context;
+  rc::transaction_counter owed("results owed");
+  System<Slow> s;
+  if (counted) {
+    s.portals.at<0>().count(owed, +1);
+    s.portals.at<1>().count(owed, -1);
   }
-  sc_core::sc_curr_simcontext = sc_core::sc_default_global_context = old;
+  s.set_rule(fifo_rule::transfers);
+  s.control.activate(s.m);
+  simulate([&] {
+    for (int i = 0; i < 3; ++i) s.a.write(i);
+    wait(ns(5));
+    s.control.unload(s.m);
+    CHECK(sc_time_stamp() == ns(counted ? 10 : 5));
+    CHECK(s.a.num_available() == 2);
+    s.control.activate(s.other);
+    std::vector<int> results;
+    sc_core::sc_spawn([&] {
+      for (;;) results.push_back(s.b.read());
+    });
+    wait(ns(100));
+    CHECK(results == (counted ? std::vector<int>{10, 21, 22} : std::vector<int>{21, 22}));
+  });
 }
 
 TEST_CASE("before a counted read the module leaves if it shall and can", "[rc][transaction]") {

@@ -104,40 +104,36 @@ TEST_CASE("an opened portal gives the module one event of its input", "[rc][sign
 
 TEST_CASE("an opened portal gives an edge according to the present value", "[rc][signal]") {
   const bool level = GENERATE(false, true);
-  const auto old = sc_core::sc_curr_simcontext;
-  sc_core::sc_curr_simcontext = sc_core::sc_default_global_context = new sc_core::sc_simcontext;
-  {
-    System<bool> s;
-    s.d.write(level);
-    int rises = 0, falls = 0;
-    Thread up("up", [&] {
-      for (;;) {
-        wait(s.a.d.posedge_event());
-        CHECK(s.a.d.posedge());
-        CHECK_FALSE(s.a.d.negedge());
-        ++rises;
-      }
-    });
-    Thread down("down", [&] {
-      for (;;) {
-        wait(s.a.d.negedge_event());
-        CHECK(s.a.d.negedge());
-        ++falls;
-      }
-    });
-    simulate([&] {
-      wait(ns(1));
-      s.control.activate(s.a);
-      deltas(3);
-      CHECK(rises == (level ? 1 : 0));
-      CHECK(falls == (level ? 0 : 1));
-      s.d.write(!level);
-      deltas(3);
-      CHECK(rises == 1);
-      CHECK(falls == 1);
-    });
-  }
-  sc_core::sc_curr_simcontext = sc_core::sc_default_global_context = old;
+  const OwnContext context;
+  System<bool> s;
+  s.d.write(level);
+  int rises = 0, falls = 0;
+  Thread up("up", [&] {
+    for (;;) {
+      wait(s.a.d.posedge_event());
+      CHECK(s.a.d.posedge());
+      CHECK_FALSE(s.a.d.negedge());
+      ++rises;
+    }
+  });
+  Thread down("down", [&] {
+    for (;;) {
+      wait(s.a.d.negedge_event());
+      CHECK(s.a.d.negedge());
+      ++falls;
+    }
+  });
+  simulate([&] {
+    wait(ns(1));
+    s.control.activate(s.a);
+    deltas(3);
+    CHECK(rises == (level ? 1 : 0));
+    CHECK(falls == (level ? 0 : 1));
+    s.d.write(!level);
+    deltas(3);
+    CHECK(rises == 1);
+    CHECK(falls == 1);
+  });
 }
 
 TEST_CASE("an output appears at the static signal while its module is active", "[rc][signal]") {
@@ -402,16 +398,12 @@ std::pair<sc_dt::uint64, int> change(Chain& c, Comb& first, Comb& second, Comb& 
 }
 
 std::pair<sc_dt::uint64, int> direct() {
-  const auto old = sc_core::sc_curr_simcontext;
-  sc_core::sc_curr_simcontext = sc_core::sc_default_global_context = new sc_core::sc_simcontext;
+  const OwnContext context;
   std::pair<sc_dt::uint64, int> result;
-  {
-    Chain c;
-    Comb m1("m1", 100), m2("m2", 10), m3("m3", 1);
-    m1.d(c.s0), m1.q(c.s1), m2.d(c.s1), m2.q(c.s2), m3.d(c.s2), m3.q(c.s3);
-    simulate([&] { result = change(c, m1, m2, m3); });
-  }
-  sc_core::sc_curr_simcontext = sc_core::sc_default_global_context = old;
+  Chain c;
+  Comb m1("m1", 100), m2("m2", 10), m3("m3", 1);
+  m1.d(c.s0), m1.q(c.s1), m2.d(c.s1), m2.q(c.s2), m3.d(c.s2), m3.q(c.s3);
+  simulate([&] { result = change(c, m1, m2, m3); });
   return result;
 }
 
@@ -503,41 +495,38 @@ auto group_of(Counter<Async>& m) {
 /// The same stimulus, value of n after every nanosecond.
 template <bool Async>
 std::vector<int> counts(bool through_portals) {
-  const auto old = sc_core::sc_curr_simcontext;
-  sc_core::sc_curr_simcontext = sc_core::sc_default_global_context = new sc_core::sc_simcontext;
+  OwnContext context;
+  context.keep();
   std::vector<int> trace;
-  {
-    sc_core::sc_clock clk("clk", 4, SC_NS);
-    sc_core::sc_signal<bool> rst("rst");
-    sc_core::sc_signal<int> n("n");
-    rc::reconfigurable<Counter<Async>> m("m");
-    using Group = rc::portal_group<decltype(group_of(m))>;
-    std::unique_ptr<Group> portals;
-    rc::control control("control");
-    control.add(m);
-    if (through_portals) {
-      portals = std::make_unique<Group>("portals");
-      portals->bind_static(clk, rst, n);
-      portals->bind_dynamic(group_of(m));
-      control.activate(m);
-    } else {
-      m.clk(clk), m.rst(rst), m.n(n);
-    }
-    Thread reset("reset", [&] {
-      for (const double time : {2.0, 7.0, 5.5, 4.0, 3.5, 12.0, 0.5, 6.0}) {  // also on clock edges
-        rst.write(!rst.read());
-        wait(ns(time));
-      }
-    });
-    simulate([&] {
-      for (int i = 0; i < 60; ++i) {
-        wait(ns(1));
-        deltas(3);
-        trace.push_back(n.read());
-      }
-    });
+  sc_core::sc_clock clk("clk", 4, SC_NS);
+  sc_core::sc_signal<bool> rst("rst");
+  sc_core::sc_signal<int> n("n");
+  rc::reconfigurable<Counter<Async>> m("m");
+  using Group = rc::portal_group<decltype(group_of(m))>;
+  std::unique_ptr<Group> portals;
+  rc::control control("control");
+  control.add(m);
+  if (through_portals) {
+    portals = std::make_unique<Group>("portals");
+    portals->bind_static(clk, rst, n);
+    portals->bind_dynamic(group_of(m));
+    control.activate(m);
+  } else {
+    m.clk(clk), m.rst(rst), m.n(n);
   }
-  sc_core::sc_curr_simcontext = sc_core::sc_default_global_context = old;
+  Thread reset("reset", [&] {
+    for (const double time : {2.0, 7.0, 5.5, 4.0, 3.5, 12.0, 0.5, 6.0}) {  // also on clock edges
+      rst.write(!rst.read());
+      wait(ns(time));
+    }
+  });
+  simulate([&] {
+    for (int i = 0; i < 60; ++i) {
+      wait(ns(1));
+      deltas(3);
+      trace.push_back(n.read());
+    }
+  });
   return trace;
 }
 

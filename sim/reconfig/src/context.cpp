@@ -92,7 +92,7 @@ void context::recheck() {
 }
 
 void context::possible_deactivation() {
-  if (deactivation_pending() && held_by().empty()) {
+  if (can_leave()) {
     recheck();
     sc_core::wait(SC_ZERO_TIME);
   }
@@ -254,7 +254,7 @@ void context::update() {
     opens_ = false;
     state_ = state::active;
     become_active();
-  } else if (deactivation_pending() && held_by().empty()) {
+  } else if (can_leave()) {
     state_ = state::inactive;
     for (const auto& a : accessors_) a->close();
     deactivated_.notify(SC_ZERO_TIME);

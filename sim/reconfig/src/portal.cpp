@@ -42,10 +42,6 @@ void accessor::close() {
   closed();
 }
 
-void accessor::wait_until_open() {
-  while (!open_) sc_core::wait(opened_);
-}
-
 portal::~portal() {
   for (accessor* a : attached_) {
     a->portal_ = nullptr;
@@ -53,8 +49,26 @@ portal::~portal() {
   }
 }
 
-void portal::wait_until_open() {
-  while (open_ == nullptr) sc_core::wait(module_opened_);
+void accessor::wait_for_opening_or(const sc_core::sc_event& event) {
+  if (last_waited_for_ != &event) {
+    waits_.emplace_back();
+    waits_.back() |= opened_;
+    waits_.back() |= event;
+    last_waited_for_ = &event;
+  }
+  sc_core::wait(waits_.back());
+}
+
+bool portal::takes_calls() const { return open_ != nullptr && !open_->owner().can_leave(); }
+
+void portal::wait_until_it_takes_calls() {
+  while (!takes_calls()) {
+    if (open_ == nullptr) {
+      sc_core::wait(module_opened_);
+    } else {
+      sc_core::wait(sc_core::SC_ZERO_TIME);  // it is about to close
+    }
+  }
 }
 
 void portal::keep(context& owner, std::unique_ptr<accessor> made) { owner.accessors_.push_back(std::move(made)); }
@@ -94,11 +108,13 @@ void following_portal::end_of_elaboration() {
   sensitive << refresh_;
   if (watched_early_) sensitive << static_event();
   dont_initialize();
+  static_or_refresh_ |= static_event();
+  static_or_refresh_ |= refresh_;
 }
 
 void following_portal::follow() {
   if (accessor* a = open_accessor()) a->follow();
-  if (!watched_early_) next_trigger(static_event() | refresh_);
+  if (!watched_early_) next_trigger(static_or_refresh_);
 }
 
 }  // namespace cchip::rc

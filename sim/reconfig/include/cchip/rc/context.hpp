@@ -75,6 +75,8 @@ class context {
   bool is_active() const { return state_ == state::active; }
   /// Asked to leave, but something holds it.
   bool deactivation_pending() const { return state_ == state::active && next_ == state::inactive; }
+  /// Asked to leave, and nothing holds it: it does so in the next update phase.
+  bool can_leave() const { return deactivation_pending() && held_by().empty(); }
   /// Notified one delta after the change.
   const sc_core::sc_event& activated_event() const { return activated_; }
   const sc_core::sc_event& deactivated_event() const { return deactivated_; }

@@ -7,6 +7,7 @@
 #include <cchip/rc/context.hpp>
 #include <cchip/rc/group.hpp>
 #include <systemc>
+#include <utility>
 #include <vector>
 
 namespace cchip::rc {
@@ -15,7 +16,8 @@ namespace cchip::rc {
 class module_set {
  public:
   module_set(context& module) : modules_{&module} {}  // NOLINT(google-explicit-constructor): a module is a set
-  const std::vector<context*>& modules() const { return modules_; }
+  const std::vector<context*>& modules() const& { return modules_; }
+  std::vector<context*> modules() && { return std::move(modules_); }
   module_set& operator+=(const module_set& other);
 
  private:

@@ -7,6 +7,7 @@
 #define CCHIP_RC_PORTAL_HPP
 
 #include <cchip/rc/context.hpp>
+#include <list>
 #include <string>
 #include <systemc>
 #include <vector>
@@ -38,9 +39,8 @@ class accessor : public holder {
   virtual void follow() {}
   /// Whether portal `to` is one that this accessor can work with; then it does from now on.
   virtual bool reattach(portal& to) = 0;
-  void wait_until_open();
   /// Waits for the next opening or an event of the static side.
-  void wait_for_opening_or(const sc_core::sc_event& event) { sc_core::wait(opened_ | event); }
+  void wait_for_opening_or(const sc_core::sc_event& event);
 
  private:
   friend class context;
@@ -56,6 +56,8 @@ class accessor : public holder {
   std::string port_name_;
   bool open_ = false;
   sc_core::sc_event opened_;
+  const sc_core::sc_event* last_waited_for_ = nullptr;
+  std::list<sc_core::sc_event_or_list> waits_;  // the last one for that event; processes may wait for the others
 };
 
 /// An accessor of portals of type Portal.
@@ -94,8 +96,9 @@ class portal : public sc_core::sc_module {
  protected:
   explicit portal(const sc_core::sc_module_name&) {}
   accessor* open_accessor() const { return open_; }
-  /// Waits until a module is active here.
-  void wait_until_open();
+  /// A module is active here that is not about to leave.
+  bool takes_calls() const;
+  void wait_until_it_takes_calls();
   /// Makes an accessor for a port of a reconfigurable module, which keeps it.
   /// \throws error the port is not in a reconfigurable module, is in two portals, or simulation has begun
   template <class Accessor, class Port, class Portal>
@@ -141,6 +144,7 @@ class following_portal : public portal {
   bool watched_ = false;
   bool watched_early_ = false;  // before the end of elaboration: static sensitivity
   sc_core::sc_event refresh_;
+  sc_core::sc_event_or_list static_or_refresh_;  // dynamic sensitivity
 };
 
 }  // namespace cchip::rc

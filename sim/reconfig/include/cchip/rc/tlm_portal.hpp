@@ -15,7 +15,8 @@
 
 namespace cchip::rc {
 
-/// What a call from the static side into a closed portal gets.
+/// What a call from the static side gets when the portal is closed or about to close: no call begins when the module
+/// shall leave and nothing holds it.
 enum class tlm_rule {
   refuse,  ///< TLM_GENERIC_ERROR_RESPONSE at once
   wait     ///< it waits for the next activation
@@ -95,7 +96,8 @@ class tlm_initiator_portal;
 template <unsigned Width, class Types>
 class tlm_target_portal;
 
-/// The static target as one module sees it. A call into the closed portal waits for the next activation.
+/// The static target as one module sees it. A call into a portal that is closed or about to close waits for the next
+/// activation.
 template <unsigned Width, class Types>
 class tlm_initiator_accessor : public detail::call_accessor<tlm_initiator_portal<Width, Types>>,
                                public detail::forward_blocking<Types> {
@@ -103,7 +105,7 @@ class tlm_initiator_accessor : public detail::call_accessor<tlm_initiator_portal
   using payload = typename Types::tlm_payload_type;
   using detail::call_accessor<tlm_initiator_portal<Width, Types>>::call_accessor;
   void b_transport(payload& data, sc_core::sc_time& delay) override {
-    this->wait_until_open();
+    this->owner().possible_deactivation();
     this->call(*this->typed_portal().static_port[0], data, delay);
   }
   unsigned transport_dbg(payload& data) override {
@@ -176,9 +178,9 @@ class tlm_target_portal : public portal, private detail::forward_blocking<Types>
 
  private:
   void b_transport(payload& data, sc_core::sc_time& delay) override {
-    if (rule_ == tlm_rule::wait) this->wait_until_open();
-    if (auto* a = open_target()) {
-      a->b_transport(data, delay);
+    if (rule_ == tlm_rule::wait) this->wait_until_it_takes_calls();
+    if (this->takes_calls()) {
+      open_target()->b_transport(data, delay);
     } else {
       data.set_response_status(tlm::TLM_GENERIC_ERROR_RESPONSE);
     }
