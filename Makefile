@@ -89,7 +89,7 @@ test-debug: build/debug$(OTHER)/build.ninja ## build without optimisation and ru
 
 test-asan: build/asan$(OTHER)/build.ninja ## build with AddressSanitizer and UBSan and run the regression
 	cmake --build build/asan$(OTHER) -j $(JOBS)
-	$(CTEST) --test-dir build/asan$(OTHER) -LE '^long$$'
+	LSAN_OPTIONS=suppressions=$(CURDIR)/tests/lsan.supp $(CTEST) --test-dir build/asan$(OTHER) -LE '^long$$'
 
 CAMPAIGN := $(RELEASE)/bin/cchip_campaign
 campaign-build: $(RELEASE)/build.ninja

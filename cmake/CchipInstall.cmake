@@ -3,6 +3,8 @@
 #   bin/cchip                     command line (if built)
 #   lib/libcchip_{ref,model}.a    with include/cchip/ and lib/cmake/collisionchip/:
 #                                 find_package(collisionchip) gives collisionchip::ref and ::model
+#   lib/libcchip_reconfig.a       with include/cchip/rc/ (if built): find_package(collisionchip COMPONENTS reconfig) gives
+#                                 collisionchip::reconfig alone, which needs SystemC and nothing of the above
 #   share/collisionchip/rtl       Verilog sources, include folder and file list cchip.f
 #   share/doc/collisionchip       licences
 include(GNUInstallDirs)
@@ -16,6 +18,12 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/cpp_ref/include/ DESTINATION ${CMAKE_INS
   FILES_MATCHING PATTERN "*.hpp")
 if(CCHIP_SIMULATION)
   install(TARGETS cchip RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  set_target_properties(cchip_reconfig PROPERTIES EXPORT_NAME reconfig)
+  install(TARGETS cchip_reconfig EXPORT collisionchipReconfig ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/sim/reconfig/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+    FILES_MATCHING PATTERN "*.hpp")
+  install(EXPORT collisionchipReconfig NAMESPACE collisionchip:: FILE collisionchipReconfigTargets.cmake
+    DESTINATION ${CCHIP_PACKAGE_DIR})
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/rtl DESTINATION ${CMAKE_INSTALL_DATADIR}/collisionchip)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake -D BUILD= -D SCRATCH= -D CONSUMER= -D GENERATOR= -D CXX= -D FLAGS= -P install_and_consume.cmake
-# Installs BUILD below SCRATCH as a packager does (DESTDIR), builds CONSUMER against that and checks
-# what it prints; then runs the installed command and reads the installed Verilog file list.
+# Installs BUILD below SCRATCH as a packager does (DESTDIR), builds CONSUMER and CONSUMER_reconfig against
+# that and checks what they print; then runs the installed command and reads the installed Verilog file list.
 cmake_minimum_required(VERSION 3.25)
 set(stage ${SCRATCH}/stage)
 set(prefix ${stage}/usr)
@@ -13,16 +13,22 @@ endfunction()
 
 file(REMOVE_RECURSE ${SCRATCH})
 run(${CMAKE_COMMAND} -E env DESTDIR=${stage} ${CMAKE_COMMAND} --install ${BUILD} --prefix /usr)
-run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${SCRATCH}/consumer -G ${GENERATOR} -D CMAKE_BUILD_TYPE=Release
-  -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_CXX_FLAGS=${FLAGS} -D CMAKE_PREFIX_PATH=${prefix}
-  -D CMAKE_FIND_USE_PACKAGE_REGISTRY=OFF)
-run(${CMAKE_COMMAND} --build ${SCRATCH}/consumer)
 
-run(${SCRATCH}/consumer/consumer)
-set(expected "touch: yes\nlifted by 2^-40: no\n")
-if(NOT out STREQUAL expected)
-  message(FATAL_ERROR "the consumer printed\n${out}instead of\n${expected}")
-endif()
+# Builds the project ${CONSUMER}${suffix} and checks what its program prints.
+function(consume suffix expected)
+  set(name consumer${suffix})
+  run(${CMAKE_COMMAND} -S ${CONSUMER}${suffix} -B ${SCRATCH}/${name} -G ${GENERATOR} -D CMAKE_BUILD_TYPE=Release
+    -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_CXX_FLAGS=${FLAGS} -D CMAKE_PREFIX_PATH=${prefix}
+    -D CMAKE_FIND_USE_PACKAGE_REGISTRY=OFF)
+  run(${CMAKE_COMMAND} --build ${SCRATCH}/${name})
+  run(${SCRATCH}/${name}/${name})
+  if(NOT out STREQUAL expected)
+    message(FATAL_ERROR "${name} printed\n${out}instead of\n${expected}")
+  endif()
+endfunction()
+
+consume("" "touch: yes\nlifted by 2^-40: no\n")
+consume(_reconfig "41\n42\n")
 
 run(${prefix}/bin/cchip --version)
 

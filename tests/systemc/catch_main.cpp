@@ -14,14 +14,6 @@
 
 #include "../seed_printer.hpp"
 
-#ifdef __SANITIZE_ADDRESS__
-/// What the kernel of SystemC 2.3.4 does not free: its pool of timed notifications, and the thread that it makes when a
-/// thread resets a method.
-extern "C" const char* __lsan_default_suppressions() {  // NOLINT: name by LeakSanitizer
-  return "leak:sc_core::sc_event_timed::allocate\nleak:sc_core::sc_simcontext::create_thread_process\n";
-}
-#endif
-
 namespace {
 
 /// The argument that selects this test case only.
