@@ -314,6 +314,23 @@ TEST_CASE("move unloads a module and attaches it to another group of the same ty
   });
 }
 
+TEST_CASE("a moved module sees events at portals that no other module listens to", "[rc][control]") {
+  Row row(1);
+  sc_core::sc_signal<int> d("d"), q("q");
+  CombGroup empty("empty");
+  empty.bind_static(d, q);
+  row.control.activate(row[0]);
+  simulate([&] {
+    row.control.move(row[0], empty);
+    row.control.activate(row[0]);
+    for (int i = 1; i <= 3; ++i) {
+      d.write(i);
+      deltas(2);
+      CHECK(q.read() == i);
+    }
+  });
+}
+
 TEST_CASE("move to a group of another type is an error", "[rc][control]") {
   Row row(1);
   sc_core::sc_fifo<int> a("a"), b("b");

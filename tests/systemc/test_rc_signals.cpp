@@ -463,6 +463,88 @@ TEST_CASE("a process of a module sees inputs that change in one delta once, in t
   });
 }
 
+TEST_CASE("a process that starts to wait for an event gets no event for that", "[rc][signal]") {
+  System<bool> s;
+  s.control.activate(s.a);
+  std::vector<std::string> log;
+  const auto note = [&](const char* what) { log.push_back(what + sc_time_stamp().to_string()); };
+  Thread waiter("waiter", [&] {
+    wait(ns(1));
+    for (int i = 0; i < 2; ++i) {
+      wait(s.a.d.posedge_event());
+      note("rise ");
+      wait(s.a.d.negedge_event());
+      note("fall ");
+    }
+    wait(s.a.d.value_changed_event());
+    note("any ");
+  });
+  simulate([&] {
+    for (int i = 0; i < 6; ++i) {
+      wait(ns(10));
+      s.d.write(!s.d.read());
+    }
+    deltas(3);
+    CHECK(log == std::vector<std::string>{"rise 10 ns", "fall 20 ns", "rise 30 ns", "fall 40 ns", "any 50 ns"});
+  });
+}
+
+namespace {
+
+/// Works at rising edges, looks at its data only then.
+struct Edges : sc_core::sc_module {
+  sc_core::sc_in<bool> clk{"clk"};
+  sc_core::sc_in<int> d{"d"};
+  int sum = 0;
+  SC_HAS_PROCESS(Edges);
+  explicit Edges(const sc_core::sc_module_name&) {
+    SC_METHOD(step);
+    sensitive << clk.pos();
+    dont_initialize();
+  }
+  void step() { sum += d.read(); }
+};
+auto group_of(Edges& m) { return rc::ports(m.clk, m.d); }
+
+/// All deltas of some clocks, and the sum.
+std::pair<sc_dt::uint64, int> clocks(bool through_portals) {
+  const OwnContext context;
+  sc_core::sc_clock clk("clk", 4, SC_NS);
+  sc_core::sc_signal<int> d("d");
+  rc::reconfigurable<Edges> m("m");
+  using Group = rc::portal_group<decltype(group_of(m))>;
+  std::unique_ptr<Group> portals;
+  rc::control control("control");
+  control.add(m);
+  if (through_portals) {
+    portals = std::make_unique<Group>("portals");
+    portals->bind_static(clk, d);
+    portals->bind_dynamic(group_of(m));
+    control.activate(m);
+  } else {
+    m.clk(clk), m.d(d);
+  }
+  std::pair<sc_dt::uint64, int> result;
+  simulate([&] {
+    wait(ns(1));
+    const auto start = sc_delta_count();
+    for (int i = 0; i < 100; ++i) {
+      d.write(i);
+      wait(ns(3));  // mostly apart from the edges
+    }
+    result = {sc_delta_count() - start, m.sum};
+  });
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("portals of clocks and data add no delta where nothing waits for their events", "[rc][signal]") {
+  const auto direct = clocks(false);
+  CHECK(direct.second > 0);
+  CHECK(clocks(true) == direct);
+}
+
 namespace {
 
 /// Counts clocks from reset, as a closed module does.

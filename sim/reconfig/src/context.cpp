@@ -272,6 +272,7 @@ void context::collect_resettables(const sc_core::sc_object& object) {
 void context::start() {
   collect_resettables(module_);
   for (resettable* r : resettables_) r->store_reset_value();
+  for (const auto& a : accessors_) a->started();
   if (state_ != state::unloaded) claim_portals();
   if (state_ == state::active) become_active();
 }

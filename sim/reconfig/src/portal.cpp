@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#define SC_INCLUDE_DYNAMIC_PROCESSES
 #include <algorithm>
 #include <cchip/rc/portal.hpp>
 
 namespace cchip::rc {
+namespace {
+
+constexpr edge all_edges[] = {edge::any, edge::rise, edge::fall};
+constexpr std::size_t index(edge e) { return static_cast<std::size_t>(e); }
+
+}  // namespace
 
 accessor::accessor(context& owner, portal& at, std::string port_name)
     : owner_(owner), portal_(nullptr), port_name_(std::move(port_name)) {
@@ -24,6 +31,14 @@ void accessor::attach(portal& to) {
   }
   portal_ = &to;
   to.attached_.push_back(this);
+  for (const edge e : all_edges) {
+    if (watched_[index(e)]) to.watch(e);
+  }
+}
+
+void accessor::watch(edge e) const {
+  watched_[index(e)] = true;
+  if (portal_ != nullptr) portal_->watch(e);
 }
 
 void accessor::open() {
@@ -91,30 +106,50 @@ context& portal::owner_of(const sc_core::sc_object& port) const {
   return *owner;
 }
 
-void following_portal::watch() {
-  if (watched_) return;
-  watched_ = true;
-  refresh();
+void following_portal::watch(edge e) {
+  if (watched_[index(edge::any)] || watched_[index(e)]) return;
+  watched_[index(e)] = true;
+  if (elaborated_) listen(e);
 }
 
 void following_portal::refresh() {
-  if (watched_) refresh_.notify(sc_core::SC_ZERO_TIME);
+  if (std::find(watched_.begin(), watched_.end(), true) != watched_.end()) refresh_.notify(sc_core::SC_ZERO_TIME);
 }
 
 void following_portal::end_of_elaboration() {
-  watched_early_ = watched_;
   SC_HAS_PROCESS(following_portal);
-  SC_METHOD(follow);
+  SC_METHOD(follow_opening);
   sensitive << refresh_;
-  if (watched_early_) sensitive << static_event();
   dont_initialize();
-  static_or_refresh_ |= static_event();
-  static_or_refresh_ |= refresh_;
+  elaborated_ = true;
+  for (const edge e : all_edges) {
+    if (watched_[index(e)]) listen(e);
+  }
 }
 
-void following_portal::follow() {
+void following_portal::listen(edge e) {
+  sc_core::sc_spawn_options options;
+  options.spawn_method();
+  options.dont_initialize();
+  options.set_sensitivity(&static_event(e));
+  sc_core::sc_spawn([this, e] { follow(e); }, sc_core::sc_gen_unique_name("follow"), &options);
+}
+
+void following_portal::follow(edge e) {
+  if (e != edge::any && watched_[index(edge::any)]) return;  // came later, and has its own process
+  if (opened_at_ == sc_core::sc_delta_count()) return;
+  followed_at_ = sc_core::sc_delta_count();
+  pass_on();
+}
+
+void following_portal::follow_opening() {
+  if (followed_at_ == sc_core::sc_delta_count()) return;
+  opened_at_ = sc_core::sc_delta_count();
+  pass_on();
+}
+
+void following_portal::pass_on() {
   if (accessor* a = open_accessor()) a->follow();
-  if (!watched_early_) next_trigger(static_or_refresh_);
 }
 
 }  // namespace cchip::rc

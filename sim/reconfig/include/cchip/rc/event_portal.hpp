@@ -21,7 +21,7 @@ class event_portal : public following_portal {
   explicit event_portal(const sc_core::sc_module_name& name) : following_portal(name) {}
   /// \throws error see portal::make_accessor
   void bind_dynamic(sc_core::sc_port_b<sc_core::sc_event_queue_if>& port);
-  const sc_core::sc_event& static_event() const override { return static_port->default_event(); }
+  const sc_core::sc_event& static_event(edge = edge::any) const override { return static_port->default_event(); }
 };
 
 /// The static queue as one module sees it.
@@ -30,7 +30,7 @@ class event_accessor : public accessor_of<event_portal>, public sc_core::sc_even
   event_accessor(context& owner, event_portal& at, const std::string& port_name)
       : accessor_of<event_portal>(owner, at, port_name) {}
   const sc_core::sc_event& default_event() const override {
-    typed_portal().watch();
+    watch();
     return event_;
   }
   void notify(double time, sc_core::sc_time_unit unit) override { notify(sc_core::sc_time(time, unit)); }

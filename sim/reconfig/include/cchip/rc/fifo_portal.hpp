@@ -83,7 +83,7 @@ class fifo_accessor : public accessor_of<Portal> {
     if (this->typed_portal().counter() != nullptr) this->owner().possible_deactivation();
   }
   const sc_core::sc_event& event() const {
-    this->typed_portal().watch();
+    this->watch();
     return event_;
   }
 
@@ -180,7 +180,7 @@ class fifo_in_portal : public fifo_portal {
   explicit fifo_in_portal(const sc_core::sc_module_name& name) : fifo_portal(name) {}
   /// \throws error see portal::make_accessor
   void bind_dynamic(sc_core::sc_fifo_in<T>& port) { port.bind(make_accessor<fifo_in_accessor<T>>(port, *this)); }
-  const sc_core::sc_event& static_event() const override { return static_port->data_written_event(); }
+  const sc_core::sc_event& static_event(edge = edge::any) const override { return static_port->data_written_event(); }
 };
 
 /// sc_fifo_out<T>: from the active module to the static FIFO. The rule `empty` needs a channel that can be asked for
@@ -193,7 +193,7 @@ class fifo_out_portal : public fifo_portal {
   explicit fifo_out_portal(const sc_core::sc_module_name& name) : fifo_portal(name) {}
   /// \throws error see portal::make_accessor
   void bind_dynamic(sc_core::sc_fifo_out<T>& port) { port.bind(make_accessor<fifo_out_accessor<T>>(port, *this)); }
-  const sc_core::sc_event& static_event() const override { return static_port->data_read_event(); }
+  const sc_core::sc_event& static_event(edge = edge::any) const override { return static_port->data_read_event(); }
 };
 
 template <class T>

@@ -6,6 +6,7 @@
 #ifndef CCHIP_RC_PORTAL_HPP
 #define CCHIP_RC_PORTAL_HPP
 
+#include <array>
 #include <cchip/rc/context.hpp>
 #include <list>
 #include <string>
@@ -13,6 +14,10 @@
 #include <vector>
 
 namespace cchip::rc {
+
+/// Kinds of events of a signal; others have `any` only.
+enum class edge { any, rise, fall };
+using edge_set = std::array<bool, 3>;
 
 /// The end of a portal at one port of one module; the port is bound to it. Belongs to the module.
 class accessor : public holder {
@@ -34,9 +39,13 @@ class accessor : public holder {
   /// Called in an update phase, before or at the start of simulation for a module that begins active: notify events
   /// with SC_ZERO_TIME, write nothing.
   virtual void opened() {}
+  /// Start of simulation, in every state.
+  virtual void started() {}
   virtual void closed() {}
   /// The static side has notified its event while this accessor is open.
   virtual void follow() {}
+  /// Something waits for such events of the static side from now on.
+  void watch(edge e = edge::any) const;
   /// Whether portal `to` is one that this accessor can work with; then it does from now on.
   virtual bool reattach(portal& to) = 0;
   /// Waits for the next opening or an event of the static side.
@@ -55,6 +64,7 @@ class accessor : public holder {
   portal* portal_;
   std::string port_name_;
   bool open_ = false;
+  mutable edge_set watched_{};
   sc_core::sc_event opened_;
   const sc_core::sc_event* last_waited_for_ = nullptr;
   std::list<sc_core::sc_event_or_list> waits_;  // the last one for that event; processes may wait for the others
@@ -96,6 +106,7 @@ class portal : public sc_core::sc_module {
  protected:
   explicit portal(const sc_core::sc_module_name&) {}
   accessor* open_accessor() const { return open_; }
+  virtual void watch(edge) {}
   /// A module is active here that is not about to leave.
   bool takes_calls() const;
   void wait_until_it_takes_calls();
@@ -124,27 +135,30 @@ class portal : public sc_core::sc_module {
   sc_core::sc_event module_opened_;
 };
 
-/// A portal that passes events on: what waits for an event of the accessor has to say so by watch(). Costs nothing, and
-/// no delta, as long as nothing waits.
+/// A portal that passes events on. Where nothing in a module waits for them, it does not listen and adds no delta.
 class following_portal : public portal {
  public:
   // for accessors
-  void watch();
-  /// Runs follow() of the open accessor in the next delta.
+  /// Runs follow() of the open accessor in the next delta if something waits.
   void refresh();
-  virtual const sc_core::sc_event& static_event() const = 0;
+  virtual const sc_core::sc_event& static_event(edge e = edge::any) const = 0;
 
  protected:
   using portal::portal;
+  void watch(edge e) override;
   void end_of_elaboration() override;
 
  private:
-  void follow();
+  void listen(edge e);
+  void follow(edge e);
+  void follow_opening();
+  void pass_on();
 
-  bool watched_ = false;
-  bool watched_early_ = false;  // before the end of elaboration: static sensitivity
+  edge_set watched_{};
+  bool elaborated_ = false;
   sc_core::sc_event refresh_;
-  sc_core::sc_event_or_list static_or_refresh_;  // dynamic sensitivity
+  sc_dt::uint64 followed_at_ = ~sc_dt::uint64{0};
+  sc_dt::uint64 opened_at_ = ~sc_dt::uint64{0};
 };
 
 }  // namespace cchip::rc

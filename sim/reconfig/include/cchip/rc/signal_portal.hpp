@@ -75,7 +75,13 @@ class signal_portal : public following_portal {
   virtual void request_write_later(const T&) {}
   virtual void request_undefined() {}
   virtual sc_core::sc_writer_policy writer_policy() const { return sc_core::SC_ONE_WRITER; }
-  const sc_core::sc_event& static_event() const override { return channel().value_changed_event(); }
+  const sc_core::sc_event& static_event(edge e) const override {
+    if constexpr (detail::has_edges<T>) {
+      if (e == edge::rise) return channel().posedge_event();
+      if (e == edge::fall) return channel().negedge_event();
+    }
+    return channel().value_changed_event();
+  }
 
  protected:
   using following_portal::following_portal;
@@ -92,7 +98,7 @@ class signal_accessor : public accessor_of<signal_portal<T>>, public IF {
       : accessor_of<signal_portal<T>>(owner, at, port_name) {}
 
   const sc_core::sc_event& default_event() const override { return value_changed_event(); }
-  const sc_core::sc_event& value_changed_event() const override { return watched(events_.changed); }
+  const sc_core::sc_event& value_changed_event() const override { return watched(events_.changed, edge::any); }
   const T& read() const override {
     return this->is_open() ? this->typed_portal().channel().read() : this->typed_portal().undefined_input();
   }
@@ -102,8 +108,8 @@ class signal_accessor : public accessor_of<signal_portal<T>>, public IF {
   }
 
  protected:
-  const sc_core::sc_event& watched(const sc_core::sc_event& event) const {
-    this->typed_portal().watch();
+  const sc_core::sc_event& watched(const sc_core::sc_event& event, edge e) const {
+    this->watch(e);
     return event;
   }
   const detail::signal_events<T>& events() const { return events_; }
@@ -130,8 +136,8 @@ template <class T, class IF>
 class edge_accessor<T, IF, true> : public signal_accessor<T, IF> {
  public:
   using signal_accessor<T, IF>::signal_accessor;
-  const sc_core::sc_event& posedge_event() const override { return this->watched(this->events().positive); }
-  const sc_core::sc_event& negedge_event() const override { return this->watched(this->events().negative); }
+  const sc_core::sc_event& posedge_event() const override { return this->watched(this->events().positive, edge::rise); }
+  const sc_core::sc_event& negedge_event() const override { return this->watched(this->events().negative, edge::fall); }
   bool posedge() const override { return this->event() && detail::is_high(this->read()); }
   bool negedge() const override { return this->event() && detail::is_low(this->read()); }
 };
@@ -150,9 +156,8 @@ class input_accessor<bool, sc_core::sc_signal_in_if<bool>> : public edge_accesso
   using edge_accessor::edge_accessor;
 
  protected:
-  void opened() override {
-    if (m_reset_p != nullptr) typed_portal().watch();
-    edge_accessor::opened();
+  void started() override {
+    if (m_reset_p != nullptr) watch();
   }
   void follow() override {
     m_new_val = read();
