@@ -17,9 +17,9 @@ class PrimtestRtl;
 using VertexBits = sc_dt::sc_bv<defs::vertices * 3 * defs::coord_w_default>;
 
 /// Pins of cchip_primtest_tri_tri and the others (docs/modules/cchip_primtest.md), with the types that `verilator --sc`
-/// gives them. Like such a model it wakes at every change of an input; its outputs change at the rising edge of clk. A
-/// Verilated model for SystemC cannot be made during simulation, so the model inside is one for C++. The component does
-/// not reset itself and knows nothing of reconfiguration.
+/// gives them. Works at the rising edge of clk, since every output is a flip-flop. A Verilated model for SystemC cannot
+/// be made during simulation, so the model inside is one for C++. The component does not reset itself and knows nothing
+/// of reconfiguration.
 class RtlShell : public sc_core::sc_module {
  public:
   sc_core::sc_in<bool> clk{"clk"};
