@@ -81,7 +81,7 @@ TEST_CASE("table1: one configuration per object pair adds eq. (4), whatever the 
 TEST_CASE("table1: overhead against work per swap is load / work, or what the work does not hide",
           "[systemc][table1]") {
   const table1::Figures figures = table1::run_experiments(0);
-  REQUIRE(figures.points.size() > 6 * 100);
+  REQUIRE(figures.points.size() > 600);
   std::vector<unsigned> hidden(3, 0), seen(3, 0);
   for (const table1::Point& point : figures.points) {
     CAPTURE(point.slots, point.port.width, point.port.clock, point.work.to_string());

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
-#include <algorithm>
+#include <array>
 
 namespace cchip::table1 {
 namespace {
@@ -37,7 +37,7 @@ void print_bitfiles(std::ostream& out) {
   fmt::print(out, "Eq. (4): configuration delay of a bitfile, {} bit at {} MHz\n\n", port.width,
              port.clock / 1'000'000);
   fmt::print(out, "{:<38}{:>16}{:>16}{:>16}\n", "Design", "bitfile [bit]", "clocks", "delay [ns]");
-  const char* names[] = {"Triangle-triangle intersection test", "Quad-quad intersection test"};
+  constexpr std::array<const char*, 2> names = {"Triangle-triangle intersection test", "Quad-quad intersection test"};
   std::uint64_t bits = 0;
   sc_time sum;
   for (std::size_t kind = 0; kind < 2; ++kind) {
@@ -56,7 +56,7 @@ void print_table(const Figures& figures, std::ostream& out) {
   fmt::print(out, "Table 1: two triangle objects, then two quad objects\n\n");
   fmt::print(out, "{:<38}{:>16}{:>16}{:>16}{:>12}\n", "Simulation", "paper [ns]", "here [ns]", "longer [ns]",
              "longer [%]");
-  const std::uint64_t paper[] = {paper_static_ns, paper_single_bus_ns};
+  constexpr std::array<std::uint64_t, 2> paper = {paper_static_ns, paper_single_bus_ns};
   for (std::size_t r = 0; r < 2; ++r) {
     const sc_time& run = figures.rows[r].counted;
     fmt::print(out, "{:<38}{:>16}{:>16}{:>16}{:>12.3f}\n", figures.rows[r].name, grouped(paper[r]), ns(run),
