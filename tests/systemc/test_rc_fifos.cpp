@@ -215,6 +215,31 @@ TEST_CASE("a module that waits at a full output can leave, and goes on later", "
   });
 }
 
+TEST_CASE("a module that is moved while it waits at a FIFO goes on at the new one", "[rc][fifo]") {
+  System<Idle> s;
+  sc_core::sc_fifo<int> c("c"), d("d");
+  AdderGroup elsewhere("elsewhere");
+  elsewhere.bind_static(c, d);
+  s.control.activate(s.m);
+  std::vector<int> seen;
+  Thread reader("reader", [&] {
+    for (;;) seen.push_back(s.m.in.read());
+  });
+  simulate([&] {
+    wait(ns(1));
+    s.control.move(s.m, elsewhere);
+    s.a.write(1);
+    s.control.activate(s.m);
+    for (int i = 2; i < 5; ++i) {
+      wait(ns(1));
+      c.write(i);
+    }
+    wait(ns(1));
+    CHECK(seen == std::vector<int>{2, 3, 4});
+    CHECK(s.a.num_available() == 1);
+  });
+}
+
 TEST_CASE("non-blocking calls into a closed portal fail and counts are 0", "[rc][fifo]") {
   System<Idle> s;
   simulate([&] {

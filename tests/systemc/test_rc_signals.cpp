@@ -102,6 +102,72 @@ TEST_CASE("an opened portal gives the module one event of its input", "[rc][sign
   });
 }
 
+TEST_CASE("a module that is active from the start sees one event of its input", "[rc][signal]") {
+  System<int> s;
+  s.d.write(5);
+  s.control.activate(s.a);
+  simulate([&] {
+    deltas(3);
+    CHECK(s.a.seen == std::vector<std::pair<sc_time, int>>{{SC_ZERO_TIME, 5}});
+  });
+}
+
+TEST_CASE("a value that changes while the portal opens gives one event", "[rc][signal]") {
+  System<int> s;
+  Thread writer("writer", [&] {
+    s.d.write(6);
+    wait(s.a.activated_event());
+    s.d.write(7);  // in the delta that has the event of the opening
+  });
+  simulate([&] {
+    wait(ns(1));
+    s.control.activate(s.a);
+    deltas(4);
+    CHECK(s.a.seen == std::vector<std::pair<sc_time, int>>{{ns(1), 6}, {ns(1), 7}});
+  });
+}
+
+TEST_CASE("processes that wait for different kinds of events of one input run once for each", "[rc][signal]") {
+  struct Kinds : sc_core::sc_module {
+    sc_core::sc_in<bool> clk{"clk"};
+    int any = 0, rises = 0, falls = 0;
+    SC_HAS_PROCESS(Kinds);
+    explicit Kinds(const sc_core::sc_module_name&) {
+      SC_METHOD(on_rise);
+      sensitive << clk.pos();
+      dont_initialize();
+      SC_METHOD(on_any);
+      sensitive << clk;
+      dont_initialize();
+      SC_METHOD(on_fall);
+      sensitive << clk.neg();
+      dont_initialize();
+    }
+    void on_any() { ++any; }
+    void on_rise() { ++rises; }
+    void on_fall() { ++falls; }
+  };
+  sc_core::sc_signal<bool> clk("clk");
+  rc::reconfigurable<Kinds> m("m");
+  rc::in_portal<bool> portal("portal");
+  portal.static_port(clk);
+  portal.bind_dynamic(m.clk);
+  rc::control control("control");
+  control.add(m);
+  control.activate(m);
+  simulate([&] {
+    wait(ns(1));
+    m.any = m.rises = m.falls = 0;
+    for (int i = 1; i <= 10; ++i) {
+      clk.write(!clk.read());
+      wait(ns(1));
+      CHECK(m.any == i);
+      CHECK(m.rises == (i + 1) / 2);
+      CHECK(m.falls == i / 2);
+    }
+  });
+}
+
 TEST_CASE("an opened portal gives an edge according to the present value", "[rc][signal]") {
   const bool level = GENERATE(false, true);
   const OwnContext context;

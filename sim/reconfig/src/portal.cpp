@@ -118,7 +118,7 @@ void following_portal::refresh() {
 
 void following_portal::end_of_elaboration() {
   SC_HAS_PROCESS(following_portal);
-  SC_METHOD(follow_opening);
+  SC_METHOD(pass_on);
   sensitive << refresh_;
   dont_initialize();
   elaborated_ = true;
@@ -132,20 +132,7 @@ void following_portal::listen(edge e) {
   options.spawn_method();
   options.dont_initialize();
   options.set_sensitivity(&static_event(e));
-  sc_core::sc_spawn([this, e] { follow(e); }, sc_core::sc_gen_unique_name("follow"), &options);
-}
-
-void following_portal::follow(edge e) {
-  if (e != edge::any && watched_[index(edge::any)]) return;  // came later, and has its own process
-  if (opened_at_ == sc_core::sc_delta_count()) return;
-  followed_at_ = sc_core::sc_delta_count();
-  pass_on();
-}
-
-void following_portal::follow_opening() {
-  if (followed_at_ == sc_core::sc_delta_count()) return;
-  opened_at_ = sc_core::sc_delta_count();
-  pass_on();
+  sc_core::sc_spawn([this] { pass_on(); }, sc_core::sc_gen_unique_name("follow"), &options);
 }
 
 void following_portal::pass_on() {

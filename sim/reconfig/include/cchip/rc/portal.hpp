@@ -150,15 +150,11 @@ class following_portal : public portal {
 
  private:
   void listen(edge e);
-  void follow(edge e);
-  void follow_opening();
   void pass_on();
 
   edge_set watched_{};
   bool elaborated_ = false;
   sc_core::sc_event refresh_;
-  sc_dt::uint64 followed_at_ = ~sc_dt::uint64{0};
-  sc_dt::uint64 opened_at_ = ~sc_dt::uint64{0};
 };
 
 }  // namespace cchip::rc
