@@ -17,7 +17,7 @@ namespace detail {
 inline sc_dt::sc_logic resolved(const std::vector<sc_dt::sc_logic>& drivers) {
   auto result = sc_dt::Log_Z;
   for (const sc_dt::sc_logic& driver : drivers) result = sc_core::sc_logic_resolution_tbl[result][driver.value()];
-  return sc_dt::sc_logic(result);
+  return {result};
 }
 
 template <int W>

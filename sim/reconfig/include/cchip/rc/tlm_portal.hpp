@@ -73,10 +73,10 @@ class call_accessor : public accessor_of<Portal> {
  protected:
   template <class Interface, class Payload>
   void call(Interface& target, Payload& payload, sc_core::sc_time& delay) {
-    struct Guard {
+    struct under_way {
       call_accessor& a;
-      explicit Guard(call_accessor& accessor) : a(accessor) { ++a.calls_; }
-      ~Guard() {
+      explicit under_way(call_accessor& accessor) : a(accessor) { ++a.calls_; }
+      ~under_way() {
         --a.calls_;
         a.owner().recheck();
       }
