@@ -284,6 +284,22 @@ TEST_CASE("a process spawned during the simulation ends with the deactivation", 
   });
 }
 
+TEST_CASE("a process spawned during the simulation for a module that is not active waits for the activation",
+          "[rc][process]") {
+  System<rc::reconfigurable<Bare>> s;
+  std::vector<sc_time> runs;
+  simulate([&] {
+    s.m.spawn("helper", rc::context::process_kind::thread, [&] { runs.push_back(sc_time_stamp()); });
+    wait(ns(5));
+    s.on();
+    wait(ns(5));
+    s.off();
+    s.on();
+    wait(ns(5));
+    CHECK(runs == std::vector<sc_time>{ns(5)});
+  });
+}
+
 TEST_CASE("processes can be spawned for a closed module before the simulation", "[rc][process]") {
   System<rc::reconfigurable<Bare>> s;
   int runs = 0;

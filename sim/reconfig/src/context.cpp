@@ -133,10 +133,17 @@ sc_core::sc_process_handle context::spawn(const char* process_name, process_kind
   if (kind == process_kind::method) {
     options.spawn_method();
     body = method_shell(std::move(body));
-  } else if (!running) {
+  } else if (running) {
+    body = [this, kind, once = std::move(body)] {
+      park_until_activated(kind);
+      once();
+    };
+  } else {
     body = thread_shell(kind, std::move(body));
   }
   const auto handle = sc_core::sc_spawn(std::move(body), sc_core::sc_gen_unique_name(process_name), &options);
+  const auto ended = [](const sc_core::sc_process_handle& process) { return process.terminated(); };
+  spawned_.erase(std::remove_if(spawned_.begin(), spawned_.end(), ended), spawned_.end());
   (running ? spawned_ : processes_).push_back(handle);
   return handle;
 }
