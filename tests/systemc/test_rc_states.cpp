@@ -195,6 +195,31 @@ TEST_CASE("deactivate limits its wait to 1 s at first, not at all with sc_max_ti
       sc_time(1000, sc_core::SC_SEC));
 }
 
+TEST_CASE("an action whose caller is cancelled leaves a module that can be used", "[rc][states]") {
+  System s;
+  Latch latch;
+  s.m.add(latch);
+  s.m.set_delay(action::load, ns(30));
+  simulate([&] {
+    sc_core::sc_process_handle caller = sc_core::sc_spawn([&] { s.control.load(s.m); });
+    wait(ns(10));
+    caller.kill();
+    s.control.activate(s.other);  // portals and lock are free
+    s.control.unload(s.other);
+    s.control.activate(s.m);
+    caller = sc_core::sc_spawn([&] { s.control.deactivate(s.m); });
+    wait(ns(10));
+    CHECK(s.m.deactivation_pending());
+    caller.kill();
+    CHECK_FALSE(s.m.deactivation_pending());
+    latch.open();
+    wait(ns(10));
+    CHECK(s.m.is_active());
+    s.control.unload(s.m);
+    CHECK(s.m.now() == state::unloaded);
+  });
+}
+
 TEST_CASE("deactivate takes its delay with closed portals, then calls on_deactivate", "[rc][states]") {
   System s;
   s.m.set_delay(action::deactivate, ns(8));

@@ -11,6 +11,23 @@ namespace cchip::rc {
 using sc_core::sc_time;
 using sc_core::SC_ZERO_TIME;
 
+namespace {
+
+/// Does something at the end of its scope, also if the process is cancelled there.
+template <class F>
+class at_exit {
+ public:
+  explicit at_exit(F f) : f_(std::move(f)) {}
+  ~at_exit() { f_(); }
+  at_exit(const at_exit&) = delete;
+  at_exit& operator=(const at_exit&) = delete;
+
+ private:
+  F f_;
+};
+
+}  // namespace
+
 const char* to_name(state s) {
   switch (s) {
     case state::unloaded:
@@ -188,14 +205,15 @@ void context::reset_all() {
 
 void context::load(const sc_time& delay) {
   claim_portals();
-  next_ = state::inactive;
+  const at_exit undo([this] {
+    if (state_ == state::unloaded) release_portals();
+  });
   if (delay != SC_ZERO_TIME) sc_core::wait(delay);
   state_ = state::inactive;
   on_load();
 }
 
 void context::activate(const sc_time& delay) {
-  next_ = state::active;
   reset_all();
   sc_core::wait(delay);  // a delta at least
   opens_ = true;
@@ -207,7 +225,8 @@ void context::activate(const sc_time& delay) {
 void context::deactivate(const sc_time& delay, const sc_time& timeout) {
   const sc_time start = sc_core::sc_time_stamp();
   sc_core::wait(SC_ZERO_TIME);  // what is written in this evaluation phase holds the module, too
-  next_ = state::inactive;
+  leaving_ = true;
+  const at_exit given_up([this] { leaving_ = false; });
   updater_->ask();
   while (state_ == state::active) {
     const sc_time waited = sc_core::sc_time_stamp() - start;
@@ -215,7 +234,6 @@ void context::deactivate(const sc_time& delay, const sc_time& timeout) {
     if (state_ != state::active) break;
     const std::string why = held_by();
     if (!why.empty() && sc_core::sc_time_stamp() - start >= timeout) {
-      next_ = state::active;
       throw error(full_name() + ": cannot be deactivated within " + timeout.to_string() + ", it is held by " + why +
                   "; it stays active");
     }
@@ -243,7 +261,6 @@ void context::wait_for_holders(const sc_time& limit) {
 }
 
 void context::unload(const sc_time& delay) {
-  next_ = state::unloaded;
   if (delay != SC_ZERO_TIME) sc_core::wait(delay);
   state_ = state::unloaded;
   release_portals();

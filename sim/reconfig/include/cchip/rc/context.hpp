@@ -74,7 +74,7 @@ class context {
   state now() const { return state_; }
   bool is_active() const { return state_ == state::active; }
   /// Asked to leave, but something holds it.
-  bool deactivation_pending() const { return state_ == state::active && next_ == state::inactive; }
+  bool deactivation_pending() const { return state_ == state::active && leaving_; }
   /// Asked to leave, and nothing holds it: it does so in the next update phase.
   bool can_leave() const { return deactivation_pending() && held_by().empty(); }
   /// Notified one delta after the change.
@@ -127,7 +127,7 @@ class context {
   void activate(const sc_core::sc_time& delay);
   void deactivate(const sc_core::sc_time& delay, const sc_core::sc_time& timeout);
   void unload(const sc_core::sc_time& delay);
-  void set_initial(state s) { state_ = next_ = s; }
+  void set_initial(state s) { state_ = s; }
 
   void claim_portals();
   void release_portals();
@@ -145,8 +145,8 @@ class context {
 
   sc_core::sc_module& module_;
   state state_ = state::unloaded;
-  state next_ = state::unloaded;
-  bool opens_ = false;  // activate() waits for the update phase
+  bool opens_ = false;    // activate() waits for the update phase
+  bool leaving_ = false;  // deactivate() is under way
   sc_core::sc_event activated_;
   sc_core::sc_event deactivated_;
   std::map<action, sc_core::sc_time> delays_;
