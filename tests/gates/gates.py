@@ -306,6 +306,9 @@ def say(text):
 
 
 def parse(arguments):
+    if {"-h", "--help"} & set(arguments):
+        print(__doc__)
+        sys.exit(0)
     parser = argparse.ArgumentParser(usage=__doc__, add_help=False)
     parser.add_argument("command", choices=("simulate", "prove"))
     parser.add_argument("names", nargs="*")
