@@ -32,8 +32,9 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv build sim sim-reconfig sim-levels wave test test-long formal test-gates test-debug test-asan lint tidy format campaign campaign-build \
-  campaign-grid campaign-classes campaign-certainty campaign-leaves campaign-swaps table1 table1-plot bench-reconfig export fpga fpga-quick install clean
+.PHONY: help bootstrap venv build sim sim-reconfig sim-levels wave test test-long formal test-gates test-debug \
+  test-asan lint tidy format campaign campaign-build campaign-grid campaign-classes campaign-certainty \
+  campaign-leaves campaign-swaps table1 table1-plot bench-reconfig export fpga fpga-quick install clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
