@@ -41,8 +41,8 @@ class OwnContext {
   OwnContext& operator=(const OwnContext&) = delete;
   /// Until the end of the process.
   void keep() {
-    static std::vector<sc_core::sc_simcontext*> kept;
-    kept.push_back(mine_.release());
+    static auto& kept = *new std::vector<std::unique_ptr<sc_core::sc_simcontext>>;  // not destroyed
+    kept.push_back(std::move(mine_));
   }
 
  private:

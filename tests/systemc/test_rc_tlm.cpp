@@ -223,9 +223,9 @@ TEST_CASE("calls without pause do not keep a module", "[rc][tlm]") {
   MemorySystem s;
   s.portals.at<0>().set_rule(tlm_rule::wait);
   s.control.activate(s.m);
+  Access write(tlm::TLM_WRITE_COMMAND, 7);  // outside: the thread does not end
   const auto call = [&] {
     for (;;) {
-      Access write(tlm::TLM_WRITE_COMMAND, 7);
       s.master.initiator->b_transport(write.payload, write.delay);
       CHECK(write.payload.is_response_ok());
     }
@@ -265,9 +265,9 @@ TEST_CASE("a module that waits for a static call to let it go gets it", "[rc][tl
 
 TEST_CASE("a module that calls without pause can leave, and goes on later", "[rc][tlm]") {
   MasterSystem s;
+  Access write(tlm::TLM_WRITE_COMMAND, 7);  // outside: the thread does not end
   Thread caller("caller", [&] {
     for (;;) {
-      Access write(tlm::TLM_WRITE_COMMAND, 7);
       s.m.initiator->b_transport(write.payload, write.delay);
       CHECK(write.payload.is_response_ok());
     }
