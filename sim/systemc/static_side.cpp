@@ -30,8 +30,8 @@ void StaticReset::write_rst() {
   rst.write(false);
 }
 
-PinApi::PinApi(const sc_core::sc_module_name& name, const Stimulus& stimulus, sc_time patience, PinDriver& driver,
-               std::function<void(ModuleId)> configure)
+PinApi::PinApi(const sc_core::sc_module_name& name, const Stimulus& stimulus, const sc_time& patience,
+               PinDriver& driver, std::function<void(ModuleId)> configure)
     : RtlApi(name, stimulus, patience), driver_(driver), configure_(std::move(configure)) {}
 
 void PinApi::prepare(const ObjectPair& objects) {

@@ -8,7 +8,7 @@
 
 namespace cchip::levels {
 
-Subsystem::Subsystem(const sc_core::sc_module_name& name, std::uint64_t seed, sc_core::sc_time period)
+Subsystem::Subsystem(const sc_core::sc_module_name& name, std::uint64_t seed, const sc_core::sc_time& period)
     : sc_module(name), period_(period), rtl_(std::make_unique<SubsystemRtl>(seed)) {
   SC_HAS_PROCESS(Subsystem);
   registers.register_b_transport(this, &Subsystem::transport);

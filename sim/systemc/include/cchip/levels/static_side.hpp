@@ -40,8 +40,8 @@ class PinApi : public RtlApi {
  public:
   sc_core::sc_in<bool> clk{"clk"};
 
-  PinApi(const sc_core::sc_module_name& name, const Stimulus& stimulus, sc_core::sc_time patience, PinDriver& driver,
-         std::function<void(ModuleId)> configure);
+  PinApi(const sc_core::sc_module_name& name, const Stimulus& stimulus, const sc_core::sc_time& patience,
+         PinDriver& driver, std::function<void(ModuleId)> configure);
 
  private:
   void prepare(const ObjectPair& objects) override;

@@ -37,7 +37,7 @@ class Subsystem : public sc_core::sc_module {
 
   /// \param seed of what the RTL leaves undefined at power-up
   /// \param period of the clock
-  Subsystem(const sc_core::sc_module_name& name, std::uint64_t seed, sc_core::sc_time period);
+  Subsystem(const sc_core::sc_module_name& name, std::uint64_t seed, const sc_core::sc_time& period);
   ~Subsystem() override;
 
  private:
