@@ -46,7 +46,6 @@ HARNESS = "scripts/fpga_harness.v"
 SUBSYSTEM = "scripts/fpga_subsystem.v"
 DEVICE = ("--85k", "--speed", "6", "--package", "CABGA756")
 PAGE = ROOT / "docs" / "fpga.md"
-LARGE = ("--router", "router2")  # of large rows: router1 was not done with them after 20 CPU-minutes
 
 
 @dataclasses.dataclass(frozen=True)
@@ -59,7 +58,6 @@ class Row:
     shape: str = "tri-tri"  # as cchip_campaign names it
     label: str = ""  # in the last lines, if not the name
     seeds: int = 99  # at most: of rows that only serve comparison
-    route: tuple = ()  # more options of nextpnr
 
     @property
     def coord_w(self):
@@ -88,10 +86,10 @@ def rows():
               Row("tri_tri_w18", tri_tri, (("COORD_W", 18),), families=True, label="tri_tri")]
     table += [Row(f"tri_tri_substages{n}", tri_tri, (("SUBSTAGES", n),), seeds=3) for n in (6, 8, 12)]
     table += [Row("tri_tri_portable", tri_tri, files="cchip.f", seeds=3),
-              Row("array6", "cchip_primtest_array", (("LANES", 6),), seeds=3, route=LARGE)]
+              Row("array6", "cchip_primtest_array", (("LANES", 6),), seeds=3)]
     # each slot is a partition for the largest module
-    table += [Row(f"subsystem{n}", "fpga_subsystem", (("SLOTS", n), ("RM_ID", 3)), shape="quad-quad", seeds=3,
-                  route=LARGE if n > 1 else ()) for n in (1, 2)]
+    table += [Row(f"subsystem{n}", "fpga_subsystem", (("SLOTS", n), ("RM_ID", 3)), shape="quad-quad", seeds=3)
+              for n in (1, 2)]
     return {row.name: row for row in table}
 
 
@@ -242,7 +240,7 @@ def mean_beats(shape, options):
 def place(row, synthesis, seed, options):
     """Place and route: the report of nextpnr."""
     netlist = synthesis / "netlist.json"
-    choices = [*DEVICE, "--freq", str(options.freq), "--seed", str(seed), "--timing-allow-fail", *row.route]
+    choices = [*DEVICE, "--freq", str(options.freq), "--seed", str(seed), "--timing-allow-fail"]
     command = [str(options.nextpnr), *choices, "--json", str(netlist.relative_to(ROOT)), "--report", "{}/report.json"]
     depends = [choices, hashlib.sha256(netlist.read_bytes()).hexdigest(), version(options.nextpnr, "--version")]
     folder = step(f"{row.name}.seed{seed}", command, {}, depends, "report.json")
