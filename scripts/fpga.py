@@ -202,7 +202,7 @@ FAMILIES = {
 
 def count_family(row, family):
     """Cells of the module alone with the portable multiplier leaf, {column: number}; `packed` are the multiplier
-    blocks whose own input, middle and output registers are used (the model of Intel's block has none)."""
+    blocks that hold both registers of the leaf, at the inputs and behind the multiplier (Intel's model has none)."""
     row = dataclasses.replace(row, files="cchip.f")
     text = sources(row)
     del text[HARNESS]
@@ -216,8 +216,8 @@ def count_family(row, family):
     counts = {name: sum(bool(re.fullmatch(pattern, cell["type"])) for cell in found)
               for name, pattern in columns.items()}
     used = lambda cell, name: int(cell["parameters"].get(name, "0"), 2) > 0
-    counts["packed"] = sum(cell["type"] == "DSP48E1" and all(used(cell, r) for r in ("AREG", "BREG", "MREG", "PREG"))
-                           for cell in found)
+    counts["packed"] = sum(cell["type"] == "DSP48E1" and used(cell, "AREG") and used(cell, "BREG") and
+                           (used(cell, "MREG") or used(cell, "PREG")) for cell in found)
     return counts
 
 
