@@ -2,13 +2,11 @@
 // cchip_rc_bench: what the library cchip::rc costs.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <ctime>
-#include <iostream>
 #include <systemc>
 #include <vector>
 
+#include "program.hpp"
 #include "rigs.hpp"
 
 namespace cchip::bench {
@@ -30,12 +28,6 @@ Measure measure(Rig& rig, std::uint64_t count, const sc_core::sc_time& pause = s
   const auto n = static_cast<double>(count);
   return {ns / n, static_cast<double>(rig.deltas_to_answers()) / n,
           static_cast<double>(sc_core::sc_delta_count() - deltas) / n};
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// The same rig bound directly and through portals, in turn.
@@ -136,13 +128,5 @@ int sc_main(int argc, char** argv) {
   app.add_option("--swaps", swaps, "of each run")->capture_default_str()->check(CLI::PositiveNumber);
   app.add_option("--rounds", rounds, "runs of each kind")->capture_default_str()->check(CLI::PositiveNumber);
   app.footer("Exit codes: 0 done, 1 the simulation failed, 2 bad arguments, 3 a wrong answer");
-  try {
-    app.parse(argc, argv);
-    return cchip::bench::run(transfers, swaps, rounds);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const std::exception& error) {
-    std::cerr << "cchip_rc_bench: " << error.what() << '\n';
-    return 1;
-  }
+  return cchip::bench::run_program(app, argc, argv, [&] { return cchip::bench::run(transfers, swaps, rounds); });
 }

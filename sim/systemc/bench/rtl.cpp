@@ -3,7 +3,6 @@
 // side.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cchip/levels/generator.hpp>
@@ -15,16 +14,13 @@
 #include <utility>
 #include <vector>
 
+#include "program.hpp"
+
 namespace cchip::levels {
 namespace {
 
+using bench::median;
 using RunLevel = LevelResult (*)(const Stimulus&, const LevelOptions&);
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 struct TimedResult {
   LevelResult level;
@@ -124,13 +120,5 @@ int sc_main(int argc, char** argv) {
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   app.footer("Exit codes: 0 done, 1 a simulation failed, 2 bad arguments, 3 answers differ");
-  try {
-    app.parse(argc, argv);
-    return cchip::levels::run(pairs, rounds);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const std::exception& error) {
-    std::cerr << "cchip_rtl_bench: " << error.what() << '\n';
-    return 1;
-  }
+  return cchip::bench::run_program(app, argc, argv, [&] { return cchip::levels::run(pairs, rounds); });
 }
