@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cchip/bitstream.hpp>
 #include <cchip/levels/bitstream_length.hpp>
-#include <cchip/levels/bitstream_memory.hpp>
 #include <cchip/levels/level.hpp>
+#include <cchip/levels/platform.hpp>
 #include <cchip/levels/simulate.hpp>
 #include <cchip/levels/software_c3.hpp>
-#include <cchip/levels/subsystem.hpp>
 
 namespace cchip::levels {
 namespace {
@@ -53,23 +52,13 @@ class Api4 : public RtlApi {
 LevelResult run_l4(const Stimulus& stimulus, const LevelOptions& options) {
   const sc_time period(10, SC_NS);
   const sc_time patience = (20.0 * static_cast<double>(longest_payload_bytes(options)) + 100000) * period;
-  sc_core::sc_clock clk("clk", period);
-  sc_core::sc_signal<bool> irq("irq");
-  sc_core::sc_fifo<RtlRequest> requests("requests_fifo");
-  sc_core::sc_fifo<RtlResult> results("results_fifo");
-  Subsystem subsystem("subsystem", options.seed, period);
-  BitstreamMemory memory("memory", 4 * period);
+  Platform platform(options.seed, period, 4 * period);
   SoftwareC3 c3("c3", patience);
-  Api4 api("api", stimulus, 2 * patience, c3, memory, options);
-  subsystem.clk(clk);
-  subsystem.irq(irq);
-  subsystem.requests(requests);
-  subsystem.results(results);
-  subsystem.memory.bind(memory.socket);
-  c3.registers.bind(subsystem.registers);
-  c3.irq(irq);
-  api.requests(requests);
-  api.results(results);
+  Api4 api("api", stimulus, 2 * patience, c3, platform.memory, options);
+  c3.registers.bind(platform.subsystem.registers);
+  c3.irq(platform.irq);
+  api.requests(platform.requests);
+  api.results(platform.results);
   LevelResult result = simulate(api);
   result.swaps = api.swaps();
   return result;

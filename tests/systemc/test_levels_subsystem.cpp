@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #define SC_INCLUDE_DYNAMIC_PROCESSES
 #include <catch2/catch.hpp>
-#include <cchip/levels/bitstream_memory.hpp>
+#include <cchip/levels/platform.hpp>
 #include <cchip/levels/software_c3.hpp>
-#include <cchip/levels/subsystem.hpp>
 #include <cchip/registers.hpp>
 #include <cchip/sim/seed.hpp>
 #include <functional>
@@ -19,28 +18,20 @@ const sc_core::sc_time period(10, sc_core::SC_NS);
 /// The subsystem of level 4 with its memory and software, and a thread that runs a test.
 class Bench : public sc_core::sc_module {
  public:
-  sc_core::sc_clock clk{"clk", period};
-  sc_core::sc_signal<bool> irq{"irq"};
-  sc_core::sc_fifo<RtlRequest> requests{"requests"};
-  sc_core::sc_fifo<RtlResult> results{"results"};
-  Subsystem subsystem{"subsystem", sim::seed_from_environment(), period};
-  BitstreamMemory memory{"memory", 4 * period};
+  Platform platform{sim::seed_from_environment(), period, 4 * period};
   SoftwareC3 c3{"c3", 20000 * period};
 
   SC_HAS_PROCESS(Bench);
   Bench(const sc_core::sc_module_name& name, std::function<void(Bench&)> body)
       : sc_module(name), body_(std::move(body)) {
-    subsystem.clk(clk);
-    subsystem.irq(irq);
-    subsystem.requests(requests);
-    subsystem.results(results);
-    subsystem.memory.bind(memory.socket);
-    c3.registers.bind(subsystem.registers);
-    c3.irq(irq);
+    c3.registers.bind(platform.subsystem.registers);
+    c3.irq(platform.irq);
     SC_THREAD(run);
   }
 
-  void announce(ModuleId id, const Bytes& bitstream) { c3.announce(id, memory.append(bitstream), bitstream.size()); }
+  void announce(ModuleId id, const Bytes& bitstream) {
+    c3.announce(id, platform.memory.append(bitstream), bitstream.size());
+  }
 
   /// Answer for two triangles that share their plane and overlap.
   RtlResult ask(std::uint16_t tag) {
@@ -48,8 +39,8 @@ class Bench : public sc_core::sc_module {
     request.tag = tag;
     request.pair.a.v = {Vec3i{0, 0, 0}, Vec3i{4, 0, 0}, Vec3i{0, 4, 0}, Vec3i::Zero()};
     request.pair.b = request.pair.a;
-    requests.write(request);
-    return results.read();
+    platform.requests.write(request);
+    return platform.results.read();
   }
 
  private:
@@ -105,19 +96,9 @@ class Prober : public sc_core::sc_module {
 }  // namespace
 
 TEST_CASE("levels subsystem: registers behind a TLM-2.0 socket", "[systemc][levels]") {
-  sc_core::sc_clock clk("clk", period);
-  sc_core::sc_signal<bool> irq("irq");
-  sc_core::sc_fifo<RtlRequest> requests("requests");
-  sc_core::sc_fifo<RtlResult> results("results");
-  Subsystem subsystem("subsystem", sim::seed_from_environment(), period);
-  BitstreamMemory memory("memory", period);
+  Platform platform(sim::seed_from_environment(), period, period);
   Prober prober("prober");
-  subsystem.clk(clk);
-  subsystem.irq(irq);
-  subsystem.requests(requests);
-  subsystem.results(results);
-  subsystem.memory.bind(memory.socket);
-  prober.socket.bind(subsystem.registers);
+  prober.socket.bind(platform.subsystem.registers);
   bool finished = false;
   sc_core::sc_spawn([&] {
     std::uint32_t data = 0;
