@@ -379,14 +379,12 @@ module {module} (
   assign s_axil_rdata = rdata_q;
   assign s_axil_rresp = {{rerror_q, 1'b0}};
 
-  reg [32:0] word;
-  always @*
-    case (raddr_q[{top}:3])
-{choices}
-      default: word = 33'd0;
-    endcase
+  reg [{last_group}:0] group_q;  // one-hot: the group of raddr_q
+  wire [32:0] word =
+{choices};
 
   always @(posedge clk) begin
+{groups_decoded}
     if (ar) raddr_q <= s_axil_araddr[{addr_top}:2];
     if (read_q2) {{rerror_q, rdata_q}} <= {{~word[32], word[31:0]}};
     if (rst) begin
@@ -438,10 +436,14 @@ def verilog(name, registers):
             row = f["width"] * r["count"]
             if f["width"] == 64:
                 high = f"{signal(r, f)}_high_q"
+                low = f"{signal(r, f)}_low_q"
                 declarations.append(f"  reg [{r['count']}*32-1:0] {high};  // kept by a read of the low word")
+                declarations.append(f"  reg {span(1, r['count']) + ' ' if r['count'] > 1 else ''}{low};  // it is read")
                 for address, i, w in words(r):
                     if w == 0:
-                        latches.append(f"    if (read_q && raddr_q == {ADDR_W - 2}'h{address // 4:X}) "
+                        latches.append(f"    {part(low, 1, r['count'], i)} <= ar && s_axil_araddr[{ADDR_W - 1}:2] == "
+                                       f"{ADDR_W - 2}'h{address // 4:X};")
+                        latches.append(f"    if ({part(low, 1, r['count'], i)}) "
                                        f"{part(high, 32, r['count'], i)} <= hwif_in_{signal(r, f)}[{64 * i + 32}+:32];")
             elif kind(f) not in ("constant", "input"):
                 declarations.append(f"  reg {span(f['width'], r['count']) + ' ' if row > 1 else ''}{signal(r, f)}_q;")
@@ -465,7 +467,10 @@ def verilog(name, registers):
         declarations="\n".join(declarations), resets="\n".join(resets), updates="\n".join(updates),
         outputs="\n".join(outputs), groups="\n".join(group_lines),
         group_declarations="\n".join(f"  reg [32:0] group{g}_q;" for g in sorted(groups)),
-        choices="\n".join(f"      {ADDR_W - 5}'d{g}: word = group{g}_q;" for g in sorted(groups)))
+        last_group=len(groups) - 1,
+        groups_decoded="\n".join(f"    group_q[{k}] <= raddr_q[{ADDR_W - 3}:3] == {ADDR_W - 5}'d{g};"
+                                 for k, g in enumerate(sorted(groups))),
+        choices=" |\n".join(f"      (group{g}_q & {{33{{group_q[{k}]}}}})" for k, g in enumerate(sorted(groups))))
 
 
 # ---- C++ header and page

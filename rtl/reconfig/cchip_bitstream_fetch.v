@@ -65,7 +65,7 @@ module cchip_bitstream_fetch #(
   reg [COUNT_W-1:0] reserved_q;  // words asked for and not yet taken from the FIFO
 
   wire [4:0] to_edge = 5'd16 - {1'b0, addr_q[5:2]};
-  wire fits = left_q >= {25'd0, to_edge};
+  wire fits = |left_q[29:5] | left_q[4:0] >= to_edge;
   wire room = {{32 - COUNT_W{1'b0}}, reserved_q} <= ROOM;
   wire issue = working & planned_q & ~arvalid_q & ~bursts_q[1] & room;
   wire taken = arvalid_q & m_axi_arready;
@@ -134,18 +134,22 @@ module cchip_bitstream_fetch #(
   assign owes = arvalid_q | owed;
 
   // ---- clocks without an address taken or a beat
-  reg [31:0] wait_q;
+  reg [31:0] wait_q;  // one more than there were
+  reg late_q;  // there were `limit`
+  wire progress = taken | beat | ~owes;
   always @(posedge clk) begin
-    wait_q <= taken | beat | ~owes ? 32'd1 : wait_q + 32'd1;
+    wait_q <= progress ? 32'd2 : wait_q + 32'd1;
+    late_q <= progress ? limit == 32'd1 : wait_q == limit;
     if (rst) timeout_q <= 1'b0;
-    else timeout_q <= run & (timeout_q | (working & owes & ~taken & ~beat & wait_q == limit));
+    else timeout_q <= run & (timeout_q | (working & ~progress & late_q));
   end
   assign timeout = timeout_q;
 
   wire fifo_ready;
   cchip_fifo #(
-      .WIDTH(32),
-      .DEPTH(FIFO_DEPTH)
+      .WIDTH     (32),
+      .DEPTH     (FIFO_DEPTH),
+      .ROOM_KNOWN(1)
   ) u_fifo (
       .clk    (clk),
       .rst    (rst | ~run_q),
@@ -161,7 +165,6 @@ module cchip_bitstream_fetch #(
 `include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_room, !push || fifo_ready)
       `CCHIP_ASSERT(a_bursts, bursts_q != 2'd3)
       `CCHIP_ASSERT(a_start, !run || run_q || !owes)
     end

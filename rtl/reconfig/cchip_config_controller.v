@@ -8,7 +8,7 @@
 //   time         payload: CFG_DIVIDER clocks per port word (the paper's eq. 4) while memory keeps up; see the datasheet for
 //                the rest; every wait has a bound: shutdown_limit for the pairs, memory_limit for each beat
 //   busy         a request during a swap is taken and answered BUSY; every request is answered by exactly one report
-//   cuts         every path: each output is a flip-flop
+//   cuts         every path: each output comes from flip-flops, m_report_* through a multiplexer of two
 //   reset        no swap, slots at work, except one whose transfer had begun and not ended well: `half_q` outlives rst and
 //                keeps it stopped, decoupled and in reset until a good transfer
 module cchip_config_controller #(
@@ -75,7 +75,7 @@ module cchip_config_controller #(
 
   wire [7:0] slot, module_id;
   wire [31:0] address, size, limit;
-  wire run, owes, bus_error, timeout;
+  wire in_header, in_transfer, run, owes, bus_error, timeout;
   wire header_done, header_ok;
   wire [3:0] header_code;
   wire fetch_valid, port_ready, transfer_done, stall;
@@ -114,6 +114,9 @@ module cchip_config_controller #(
       .region_rm_id  (region_rm_id),
       .lost          (lost),
       .phase         (phase),
+      .busy          (busy),
+      .in_header     (in_header),
+      .in_transfer   (in_transfer),
       .slot          (slot),
       .module_id     (module_id),
       .address       (address),
@@ -132,8 +135,6 @@ module cchip_config_controller #(
   );
 
   // ---- memory to header or port
-  wire in_header = phase == `CCHIP_PHASE_HEADER;
-  wire in_transfer = phase == `CCHIP_PHASE_TRANSFER;
   reg [31:0] fetch_address_q;
   reg [29:0] fetch_words_q;
   always @(posedge clk) begin
@@ -218,7 +219,6 @@ module cchip_config_controller #(
       .phase_clocks(phase_clocks)
   );
 
-  assign busy = phase != `CCHIP_PHASE_IDLE;
   assign phase_slot = slot;
 
 `include "cchip_assert.vh"

@@ -46,30 +46,30 @@ module cchip_config_port #(
 
   wire tick = ticking_q & slot_q == {SLOT_W{1'b0}} & ~done_q;
   wire emit = tick & s_valid;
-  wire last = left_q == 32'd1;
+  reg last_q;  // left_q == 1
   wire [CFG_W-1:0] piece;
+  wire [31:0] words;  // of the port
 
   generate
     if (CFG_W == 32) begin : gen_word
       assign piece   = s_data;
       assign s_ready = emit;
-      wire [31:0] words = {2'b00, length[31:2]};
+      assign words = {2'b00, length[31:2]};
       wire unused = &{1'b0, length[1:0]};
-      always @(posedge clk) left_q <= ~run ? words : emit ? left_q - 32'd1 : left_q;
     end else begin : gen_byte
       reg [1:0] lane_q;
       assign piece   = s_data[{lane_q, 3'd0}+:8];
-      assign s_ready = emit & (lane_q == 2'd3 | last);
-      always @(posedge clk) begin
-        left_q <= ~run ? length : emit ? left_q - 32'd1 : left_q;
-        lane_q <= ~run ? 2'd0 : emit ? lane_q + 2'd1 : lane_q;
-      end
+      assign s_ready = emit & (lane_q == 2'd3 | last_q);
+      assign words = length;
+      always @(posedge clk) lane_q <= ~run ? 2'd0 : emit ? lane_q + 2'd1 : lane_q;
     end
   endgenerate
 
   always @(posedge clk) begin
     slot_q <= ~ticking_q | slot_q == {SLOT_W{1'b0}} ? SLOT[SLOT_W-1:0] : slot_q - ONE;
     if (emit) data_q <= piece;
+    left_q <= ~run ? words : emit ? left_q - 32'd1 : left_q;
+    last_q <= ~run ? words == 32'd1 : emit ? left_q == 32'd2 : last_q;
     if (rst | ~run) begin
       ticking_q <= 1'b0;
       done_q    <= 1'b0;
@@ -77,7 +77,7 @@ module cchip_config_port #(
       stall_q   <= 1'b0;
     end else begin
       ticking_q <= ticking_q | s_valid;
-      done_q    <= done_q | (emit & last);
+      done_q    <= done_q | (emit & last_q);
       valid_q   <= emit;
       stall_q   <= tick & ~s_valid;
     end

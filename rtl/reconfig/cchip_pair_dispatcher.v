@@ -2,13 +2,15 @@
 `default_nettype none
 // cchip_pair_dispatcher: gives the pairs that wait at the heads of three queues, one queue per kind, to the slots that
 // work on their kind; pairs of a kind that nobody provides go to `refused`, tag and kind only.
-//   latency      0 clocks: queues and slots are registered on their side
+//   latency      0 clocks to a slot: queues and slots are registered on their side; `refused`: the turn comes to a pair
+//                that waits one clock later, or three if others are refused before it
 //   throughput   one pair per clock for each queue, if a slot takes it
 //   offers       m_pair_valid of a slot is 1 only on clocks on which its m_pair_ready is 1, so a pair is never offered to
 //                a slot that is being shut down, nor taken back. m_pair_ready must therefore not wait for m_pair_valid.
 //   fair         two slots of one kind get the pairs of its queue in turn while both are ready; the queues and the
 //                illegal pairs are refused in turn
-//   cuts         nothing: m_pair_valid and s_ready follow m_pair_ready and s_valid through two levels of logic
+//   cuts         s_valid to s_ready; m_pair_valid and s_ready follow m_pair_ready, m_refused_ready and registers,
+//                m_pair_valid and m_refused_* also s_valid
 //   reset        `serves` is registered: no pair is given on the first clock after rst
 module cchip_pair_dispatcher #(
     // slots, 1 or 2
@@ -56,9 +58,11 @@ module cchip_pair_dispatcher #(
       wire [1:0] serve = serves[2*slot+:2];
       always @(posedge clk) choice_q[3*slot+:3] <= rst ? 3'd0 : {serve == 2'd3, serve == 2'd2, serve == 2'd1};
       assign m_pair_valid[slot] = |(give[3*slot+:3] & s_valid);
-      assign m_pair_data[WIDTH*slot+:WIDTH] = (s_data[0+:WIDTH] & {WIDTH{choice_q[3*slot]}})
-          | (s_data[WIDTH+:WIDTH] & {WIDTH{choice_q[3*slot+1]}})
-          | (s_data[2*WIDTH+:WIDTH] & {WIDTH{choice_q[3*slot+2]}});
+      // chosen by a register of its own, for its many loads; any pair if there is none to give
+      reg [1:0] serve_q;
+      always @(posedge clk) serve_q <= serve;
+      assign m_pair_data[WIDTH*slot+:WIDTH] =
+          serve_q == 2'd3 ? s_data[2*WIDTH+:WIDTH] : serve_q == 2'd2 ? s_data[WIDTH+:WIDTH] : s_data[0+:WIDTH];
     end
     if (SLOTS == 1) begin : gen_one
       assign give = choice_q & {3{m_pair_ready[0]}};
@@ -80,19 +84,32 @@ module cchip_pair_dispatcher #(
   always @(posedge clk) refuse_q <= rst ? 3'd0 : no_provider & ~served;
 
   wire [3:0] waits = {s_valid & refuse_q, s_illegal_valid};
-  reg  [3:0] after_q;  // one-hot: the one refused last
-  wire [3:0] turn = {after_q[2:0], after_q[3]};
-  wire [7:0] first = {waits, waits} & ~({waits, waits} - {4'd0, turn});
-  wire [3:0] next = first[3:0] | first[7:4];
+  reg  [3:0] turn_of_refused_q;  // one-hot, a register: what a queue is told does not depend on the other queues
+  // the first that waits behind the one whose turn it is, or itself: a token goes round
+  function [3:0] next_turn(input [3:0] now, input [3:0] offers);
+    reg [3:0] token;
+    integer i;
+    begin
+      token = now;
+      next_turn = 4'd0;
+      for (i = 0; i < 4; i = i + 1) begin
+        token = {token[2:0], token[3]};
+        next_turn = next_turn | (token & offers);
+        token = token & ~offers;
+      end
+      next_turn = next_turn | token;
+    end
+  endfunction
   always @(posedge clk)
-    if (rst) after_q <= 4'b1000;
-    else if (m_refused_valid & m_refused_ready) after_q <= next;
+    if (rst) turn_of_refused_q <= 4'b0001;
+    else if (m_refused_ready | ~m_refused_valid) turn_of_refused_q <= next_turn(turn_of_refused_q, waits);
 
-  assign m_refused_valid = |waits;
-  assign m_refused_kind  = {next[3] | next[2], next[3] | next[1]};
-  assign m_refused_tag = (s_illegal_tag & {16{next[0]}}) | (s_data[0+:16] & {16{next[1]}})
-      | (s_data[WIDTH+:16] & {16{next[2]}}) | (s_data[2*WIDTH+:16] & {16{next[3]}});
-  assign s_illegal_ready = m_refused_ready & next[0];
+  wire [3:0] turn = turn_of_refused_q;
+  assign m_refused_valid = |(waits & turn);
+  assign m_refused_kind  = {turn[3] | turn[2], turn[3] | turn[1]};
+  assign m_refused_tag = (s_illegal_tag & {16{turn[0]}}) | (s_data[0+:16] & {16{turn[1]}})
+      | (s_data[WIDTH+:16] & {16{turn[2]}}) | (s_data[2*WIDTH+:16] & {16{turn[3]}});
+  assign s_illegal_ready = m_refused_ready & turn[0];
 
   generate
     for (kind = 0; kind < 3; kind = kind + 1) begin : gen_kinds
@@ -103,13 +120,13 @@ module cchip_pair_dispatcher #(
         assign works[slot] = choice_q[3*slot+kind] | serves[2*slot+:2] == KIND[1:0];
       end
       assign served[kind]  = |works;
-      assign s_ready[kind] = |taken | (m_refused_ready & next[kind+1]);
+      assign s_ready[kind] = |taken | (m_refused_ready & turn[kind+1] & refuse_q[kind]);
 
 `include "cchip_assert.vh"
       always @(posedge clk)
         if (!rst) begin
           `CCHIP_ASSERT(a_once, (taken & (taken - {{SLOTS - 1{1'b0}}, 1'b1})) == {SLOTS{1'b0}})
-          `CCHIP_ASSERT(a_one_way, !(|taken && s_valid[kind] && m_refused_ready && next[kind+1]))
+          `CCHIP_ASSERT(a_one_way, !(|taken && m_refused_ready && turn[kind+1] && refuse_q[kind]))
         end
     end
   endgenerate

@@ -29,6 +29,7 @@ module cchip_pair_queue #(
   localparam [31:0] LAST = DEPTH - 1;
   localparam [31:0] FULL = DEPTH;
   localparam [31:0] ONE = 1;
+  localparam [31:0] TWO = 2;
 
   generate
     if (WIDTH < 1 || DEPTH < 16 || DEPTH > 1024) begin : gen_illegal
@@ -40,7 +41,7 @@ module cchip_pair_queue #(
   reg [COUNT_W-1:0] count_q;
   reg [COUNT_W-1:0] stored_q;  // words in the memory that were not read yet
   reg ready_q;  // count_q < DEPTH
-  reg some_q;  // stored_q >= 1
+  reg some_q, more_q;  // stored_q >= 1, >= 2
   reg fetched_q;  // the memory's output register holds a word
   reg valid_q;
   reg [WIDTH-1:0] fetched_data_q, data_q;
@@ -65,6 +66,8 @@ module cchip_pair_queue #(
     next = pointer == LAST[PTR_W-1:0] ? {PTR_W{1'b0}} : pointer + ONE[PTR_W-1:0];
   endfunction
 
+  // sums and comparisons start from registers, push, pop and fetch choose (~(~n + 1) is n - 1: Yosys would make one of a
+  // sum and a difference, behind the choice)
   always @(posedge clk) begin
     if (advance) data_q <= fetched_data_q;
     if (rst) begin
@@ -74,15 +77,17 @@ module cchip_pair_queue #(
       stored_q  <= {COUNT_W{1'b0}};
       ready_q   <= 1'b0;
       some_q    <= 1'b0;
+      more_q    <= 1'b0;
       fetched_q <= 1'b0;
       valid_q   <= 1'b0;
     end else begin
       if (push) write_q <= next(write_q);
       if (fetch) read_q <= next(read_q);
-      if (push != pop) count_q <= push ? count_q + ONE[COUNT_W-1:0] : count_q - ONE[COUNT_W-1:0];
-      if (push != fetch) stored_q <= push ? stored_q + ONE[COUNT_W-1:0] : stored_q - ONE[COUNT_W-1:0];
+      if (push != pop) count_q <= push ? count_q + ONE[COUNT_W-1:0] : ~(~count_q + ONE[COUNT_W-1:0]);
+      if (push != fetch) stored_q <= push ? stored_q + ONE[COUNT_W-1:0] : ~(~stored_q + ONE[COUNT_W-1:0]);
       ready_q   <= push == pop ? count_q != FULL[COUNT_W-1:0] : pop || count_q != LAST[COUNT_W-1:0];
-      some_q    <= push | (fetch ? stored_q > ONE[COUNT_W-1:0] : some_q);
+      some_q    <= push | (fetch ? more_q : some_q);
+      more_q    <= push == fetch ? more_q : push ? some_q : stored_q > TWO[COUNT_W-1:0];
       fetched_q <= fetch | (fetched_q & ~advance);
       valid_q   <= advance ? fetched_q : valid_q;
     end
@@ -94,6 +99,7 @@ module cchip_pair_queue #(
       `CCHIP_ASSERT(a_count, {{32 - COUNT_W{1'b0}}, count_q} <= FULL)
       `CCHIP_ASSERT(a_places, count_q == stored_q + {{COUNT_W - 1{1'b0}}, fetched_q} + {{COUNT_W - 1{1'b0}}, valid_q})
       `CCHIP_ASSERT(a_some, some_q == (stored_q != {COUNT_W{1'b0}}))
+      `CCHIP_ASSERT(a_more, more_q == (stored_q > ONE[COUNT_W-1:0]))
       `CCHIP_ASSERT(a_ready, !ready_q || count_q != FULL[COUNT_W-1:0])
     end
 

@@ -4,9 +4,9 @@
 // cchip_pair_router: the streams of the reconfigurable subsystem. Sorts pairs by kind into three queues, gives them to
 // the slots that work on their kind, collects the answers in turn and answers itself what nobody can test: pairs of
 // kind 0 and of kinds without a provider get axis class CCHIP_AXIS_ILLEGAL, hit 1, grid 1, definite 0, beats 0.
-//   latency      5 clocks to the slot (skid buffer, queue), 1 clock back
+//   latency      5 clocks to the slot (skid buffer, queue), 1 clock back; own answers wait one to three clocks more
 //   throughput   one pair and one answer per clock
-//   in flight    2 + 3 * QUEUE_DEPTH pairs at most wait here; a full queue stops the other kinds too
+//   in flight    4 + 3 * QUEUE_DEPTH pairs at most wait here; a full queue stops the other kinds too
 //   fair         slots and own answers leave in turn
 //   cuts         s_pair_ready, m_result_valid and m_result_*, all status: flip-flops; between slots and queues see
 //                cchip_pair_dispatcher, cchip_result_merge
@@ -65,24 +65,23 @@ module cchip_pair_router #(
   localparam integer RESULT_W = ANSWER_W + 2;
   localparam integer COUNT_W = $clog2(QUEUE_DEPTH + 1);
 
-  // ---- sort
+  // ---- sort: the kind is decoded on the way in
   wire in_valid;
-  wire [1:0] in_kind;
+  wire [3:0] in_kind;  // one-hot
   wire [PAIR_W-1:0] in_pair;
   wire [2:0] queue_ready;
   wire illegal_ready;
-  wire [3:0] in_ready_of = {queue_ready, illegal_ready};
 
   cchip_skid_buffer #(
-      .WIDTH(PAIR_W + 2)
+      .WIDTH(PAIR_W + 4)
   ) u_in (
       .clk    (clk),
       .rst    (rst),
       .s_valid(s_pair_valid),
       .s_ready(s_pair_ready),
-      .s_data ({s_pair_kind, s_pair_mode, s_pair_err, s_pair_b, s_pair_a, s_pair_tag}),
+      .s_data ({4'd1 << s_pair_kind, s_pair_mode, s_pair_err, s_pair_b, s_pair_a, s_pair_tag}),
       .m_valid(in_valid),
-      .m_ready(in_ready_of[in_kind]),
+      .m_ready(|(in_kind & {queue_ready, illegal_ready})),
       .m_data ({in_kind, in_pair})
   );
 
@@ -92,14 +91,13 @@ module cchip_pair_router #(
   genvar kind, slot;
   generate
     for (kind = 0; kind < 3; kind = kind + 1) begin : gen_kinds
-      localparam [31:0] KIND = kind + 1;
       cchip_pair_queue #(
           .WIDTH(PAIR_W),
           .DEPTH(QUEUE_DEPTH)
       ) u_queue (
           .clk    (clk),
           .rst    (rst),
-          .s_valid(in_valid & in_kind == KIND[1:0]),
+          .s_valid(in_valid & in_kind[kind+1]),
           .s_ready(queue_ready[kind]),
           .s_data (in_pair),
           .m_valid(head_valid[kind]),
@@ -111,9 +109,9 @@ module cchip_pair_router #(
   endgenerate
 
   // ---- to the slots
-  wire refused_valid, refused_ready;
-  wire [15:0] refused_tag;
-  wire [1:0] kind_of_refused;
+  wire refusing_valid, refusing_ready, refused_valid, refused_ready;
+  wire [15:0] refusing_tag, refused_tag;
+  wire [1:0] kind_of_refusing, kind_of_refused;
 
   cchip_pair_dispatcher #(
       .SLOTS(SLOTS),
@@ -126,16 +124,30 @@ module cchip_pair_router #(
       .s_valid        (head_valid),
       .s_ready        (head_ready),
       .s_data         (head),
-      .s_illegal_valid(in_valid & in_kind == 2'd0),
+      .s_illegal_valid(in_valid & in_kind[0]),
       .s_illegal_ready(illegal_ready),
       .s_illegal_tag  (in_pair[15:0]),
       .m_pair_valid   (m_slot_valid),
       .m_pair_ready   (m_slot_ready),
       .m_pair_data    (m_slot_data),
-      .m_refused_valid(refused_valid),
-      .m_refused_ready(refused_ready),
-      .m_refused_tag  (refused_tag),
-      .m_refused_kind (kind_of_refused)
+      .m_refused_valid(refusing_valid),
+      .m_refused_ready(refusing_ready),
+      .m_refused_tag  (refusing_tag),
+      .m_refused_kind (kind_of_refusing)
+  );
+
+  // the queues do not wait for the merge
+  cchip_skid_buffer #(
+      .WIDTH(18)
+  ) u_refused (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(refusing_valid),
+      .s_ready(refusing_ready),
+      .s_data ({kind_of_refusing, refusing_tag}),
+      .m_valid(refused_valid),
+      .m_ready(refused_ready),
+      .m_data ({kind_of_refused, refused_tag})
   );
 
   // ---- answers: the slots' and, last, our own

@@ -102,8 +102,9 @@ module cchip_pr_slot #(
 
   wire accept = s_pair_valid & s_pair_ready;
   wire answer = m_result_valid & m_result_ready;
-  wire [15:0] outstanding_d = accept & ~answer ? outstanding_q + 16'd1 :
-      answer & ~accept & (outstanding_q != 16'd0) ? outstanding_q - 16'd1 : outstanding_q;
+  // sums start from registers, handshakes choose (~(~n + 1) is n - 1: Yosys would make one of a sum and a difference)
+  wire [15:0] one_less = outstanding_q == 16'd0 ? 16'd0 : ~(~outstanding_q + 16'd1);
+  wire [15:0] outstanding_d = accept & ~answer ? outstanding_q + 16'd1 : answer & ~accept ? one_less : outstanding_q;
 
   always @(posedge clk) begin
     if (rst) begin

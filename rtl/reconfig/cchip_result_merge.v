@@ -29,13 +29,23 @@ module cchip_result_merge #(
     end
   endgenerate
 
-  // the first source with a beat behind the one that was last: the lowest bit not below `turn`
-  reg  [  SOURCES-1:0] last_q;  // one-hot
-  wire [  SOURCES-1:0] turn = (last_q << 1) | (last_q >> (SOURCES - 1));
-  wire [2*SOURCES-1:0] twice = {s_valid, s_valid};
-  wire [2*SOURCES-1:0] first = twice & ~(twice - {{SOURCES{1'b0}}, turn});
-  wire [  SOURCES-1:0] next = first[SOURCES-1:0] | first[SOURCES+:SOURCES];
-  wire                 ready;
+  // the first source with a beat behind the one that was last: a token goes round from there and stays with it
+  reg [SOURCES-1:0] last_q;  // one-hot
+  function [SOURCES-1:0] first_behind(input [SOURCES-1:0] last, input [SOURCES-1:0] offers);
+    reg [SOURCES-1:0] token;
+    integer i;
+    begin
+      token = last;
+      first_behind = {SOURCES{1'b0}};
+      for (i = 0; i < SOURCES; i = i + 1) begin
+        token = (token << 1) | (token >> (SOURCES - 1));
+        first_behind = first_behind | (token & offers);
+        token = token & ~offers;
+      end
+    end
+  endfunction
+  wire [SOURCES-1:0] next = first_behind(last_q, s_valid);
+  wire               ready;
 
   assign s_ready = next & {SOURCES{ready}};
 

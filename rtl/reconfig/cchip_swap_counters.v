@@ -2,7 +2,7 @@
 `include "cchip_defs.vh"
 `default_nettype none
 // cchip_swap_counters: what the configuration controller has done.
-//   latency      1 clock
+//   latency      1 clock, phase_clocks 2
 //   numbers      32 bit, wrap around; phase_clocks[32*(p-1) +: 32] = clocks of phase p in the last swap, 0 if it had none
 //   cuts         every path: each output is a flip-flop
 //   reset        rst or clear: 0
@@ -26,15 +26,19 @@ module cchip_swap_counters (
   reg [`CCHIP_PHASE_W-1:0] phase_q;
   reg [31:0] clocks_q;
   wire [31:0] clocks = phase == phase_q ? clocks_q + 32'd1 : 32'd1;
-  wire first = phase_q == `CCHIP_PHASE_IDLE & phase != `CCHIP_PHASE_IDLE;
+  // decoded a clock before it counts: many registers follow
+  reg [9:0] in_q;  // one-hot, phase_q
+  reg first_q;
   integer p;
 
   always @(posedge clk) begin
     phase_q  <= phase;
     clocks_q <= clocks;
+    first_q <= phase_q == `CCHIP_PHASE_IDLE & phase != `CCHIP_PHASE_IDLE;
+    for (p = 0; p < 10; p = p + 1) in_q[p] <= phase == p[`CCHIP_PHASE_W-1:0];
     for (p = 1; p < 10; p = p + 1)
-      if (phase == p[`CCHIP_PHASE_W-1:0]) phase_clocks[32*(p-1)+:32] <= clocks;
-      else if (first) phase_clocks[32*(p-1)+:32] <= 32'd0;
+      if (in_q[p]) phase_clocks[32*(p-1)+:32] <= clocks_q;
+      else if (first_q) phase_clocks[32*(p-1)+:32] <= 32'd0;
     if (report_valid & ok) swaps <= swaps + 32'd1;
     if (report_valid & ~ok & ~none) rejected <= rejected + 32'd1;
     if (stall) stalls <= stalls + 32'd1;
@@ -45,6 +49,8 @@ module cchip_swap_counters (
       phase_clocks <= {9 * 32{1'b0}};
     end
     if (rst) phase_q <= `CCHIP_PHASE_IDLE;
+    if (rst) in_q <= 10'd0;
+    if (rst) first_q <= 1'b0;
   end
 
 endmodule

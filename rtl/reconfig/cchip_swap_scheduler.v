@@ -13,8 +13,8 @@
 //                abort, busy and same module leave it. A kind that no slot holds, no valid bitstream brings and no
 //                swap is bringing for 16 clocks has `no_provider` = 1.
 //   command      refused with BUSY while a swap is under way, with REQUEST where the table has no valid bitstream
-//   latency      a scan of all slots and kinds takes 3 * SLOTS + 2 clocks, a request leaves at its end; 15 clocks of rest
-//                after a report
+//   latency      a scan of all slots and kinds takes 3 * SLOTS + 2 clocks, a request leaves one clock after its end; a
+//                command's leaves 2 clocks after it; 15 clocks of rest after a report
 //   cuts         every path but rst: all outputs are flip-flops
 //   reset        no request, no report, ages 0
 module cchip_swap_scheduler #(
@@ -68,7 +68,6 @@ module cchip_swap_scheduler #(
 );
 
   localparam [31:0] COUNT_BITS = COUNT_W;
-  localparam [31:0] SLOT_COUNT = SLOTS;
   localparam [31:0] LAST = 3 * SLOTS - 1;
 
   generate
@@ -85,9 +84,9 @@ module cchip_swap_scheduler #(
   wire [255:0] address_of = {{32 * (8 - 4 * SLOTS) {1'b0}}, table_address};
   wire [255:0] size_of = {{32 * (8 - 4 * SLOTS) {1'b0}}, table_size};
 
-  // ---- swap under way: requested, or accepted by the controller
-  reg  swapping_q;
-  wire asked = swapping_q | m_swap_valid;
+  // ---- swap under way: chosen, requested, or accepted by the controller
+  reg  swapping_q, chosen_q;
+  wire asked = swapping_q | m_swap_valid | chosen_q;
 
   // ---- what the scan sees of kinds and slots stands still meanwhile
   wire look;
@@ -104,6 +103,8 @@ module cchip_swap_scheduler #(
   generate
     for (kind = 0; kind < 3; kind = kind + 1) begin : gen_kinds
       localparam [31:0] KIND = kind + 1;
+      reg some_q;
+      reg ageing_q;  // waits without a slot
       wire [SLOTS-1:0] holds, brings;
       for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_holds
         assign holds[slot]  = slot_module[2*slot+:2] == KIND[1:0];
@@ -111,15 +112,16 @@ module cchip_swap_scheduler #(
       end
       assign provided[kind]  = |holds;
       assign bitstream[kind] = |brings;
-      assign some[kind]      = |waiting[COUNT_W*kind+:COUNT_W];
+      assign some[kind]      = some_q;
 
       wire [31:0] age = age_q[32*kind+:32];
-      wire unserved = some[kind] & ~provided[kind];
       always @(posedge clk) begin
-        if (rst | ~unserved | restart[kind]) age_q[32*kind+:32] <= 32'd0;
+        some_q   <= |waiting[COUNT_W*kind+:COUNT_W];
+        ageing_q <= some_q & ~provided[kind] & ~restart[kind];
+        if (rst | ~ageing_q) age_q[32*kind+:32] <= 32'd0;
         else if (~&age) age_q[32*kind+:32] <= age + 32'd1;
         if (look) begin
-          open_q[kind]   <= unserved & ~restart[kind];
+          open_q[kind]   <= ageing_q;
           over_q[kind]   <= age >= max_age;
           enough_q[kind] <= {{32 - COUNT_W{1'b0}}, waiting[COUNT_W*kind+:COUNT_W]} >= min_batch;
         end
@@ -179,7 +181,8 @@ module cchip_swap_scheduler #(
   wire        better = legal_q & (~found_q |
       (kind_q == best_kind_q ? merit_q[1:0] > best_q[1:0] : merit_q[34:2] > best_q[34:2]));
   reg  [ 3:0] pause_q;  // after a report slots and table are seen late
-  wire        scanning = enable & ~asked & ~command_valid & pause_q == 4'd0;
+  reg         pausing_q;  // pause_q != 0
+  wire        scanning = enable & ~asked & ~command_valid & ~pausing_q;
   assign look = ~scanning | scan_end_q;
 
   wire [ 1:0] scan_kind_d = scan_kind_q + {1'b0, SLOTS == 1 | scan_slot_q};
@@ -203,7 +206,8 @@ module cchip_swap_scheduler #(
       best_kind_q <= kind_q;
     end
     scan_end_q <= end_q;
-    pause_q    <= rst | s_report_valid ? 4'd15 : pause_q - {3'd0, pause_q != 4'd0};
+    pause_q    <= rst | s_report_valid ? 4'd15 : pause_q - {3'd0, pausing_q};
+    pausing_q  <= rst | s_report_valid | pause_q[3:1] != 3'd0;
     if (rst | look) begin
       scan_q      <= 3'd0;
       scan_slot_q <= 1'b0;
@@ -225,7 +229,7 @@ module cchip_swap_scheduler #(
   // ---- requests
   reg slot_of_swap_q;
   assign m_swap_slot = {7'd0, slot_of_swap_q};
-  wire command_known = {24'd0, command_slot} < SLOT_COUNT & command_module[7:2] == 6'd0;
+  wire command_known = command_slot[7:1] == 7'd0 & (SLOTS == 2 | ~command_slot[0]) & command_module[7:2] == 6'd0;
   wire [2:0] command_entry = {command_slot[0], command_module[1:0]};
   wire command_ok = command_known & valid_of[command_entry];
   wire take_command = command_valid & ~asked & command_ok;
@@ -236,16 +240,19 @@ module cchip_swap_scheduler #(
     if (take_command | take_best) begin
       slot_of_swap_q <= entry[2];
       m_swap_module  <= {6'd0, entry[1:0]};
-      m_swap_address <= address_of[{entry, 5'd0}+:32];
-      m_swap_size    <= size_of[{entry, 5'd0}+:32];
       m_swap_force   <= take_command & command_force;
     end
+    // the table is read a clock later
+    if (chosen_q) m_swap_address <= address_of[{m_swap_slot[0], m_swap_module[1:0], 5'd0}+:32];
+    if (chosen_q) m_swap_size <= size_of[{m_swap_slot[0], m_swap_module[1:0], 5'd0}+:32];
     if (rst) begin
       m_swap_valid <= 1'b0;
+      chosen_q     <= 1'b0;
       swapping_q   <= 1'b0;
       last_slot_q  <= 1'b1;
     end else begin
-      m_swap_valid <= take_command | take_best | (m_swap_valid & ~m_swap_ready);
+      chosen_q     <= take_command | take_best;
+      m_swap_valid <= chosen_q | (m_swap_valid & ~m_swap_ready);
       swapping_q   <= (m_swap_valid & m_swap_ready) | (swapping_q & ~s_report_valid);
       if (m_swap_valid & m_swap_ready) last_slot_q <= slot_of_swap_q;
     end
@@ -279,7 +286,8 @@ module cchip_swap_scheduler #(
 `include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_one_swap, !(swapping_q && m_swap_valid))
+      `CCHIP_ASSERT(a_one_swap, {1'b0, swapping_q} + {1'b0, m_swap_valid} + {1'b0, chosen_q} <= 2'd1)
+      `CCHIP_ASSERT(a_pause, pausing_q == (pause_q != 4'd0))
       `CCHIP_ASSERT(a_answer, !s_report_valid || swapping_q || (m_swap_valid && m_swap_ready))
     end
 

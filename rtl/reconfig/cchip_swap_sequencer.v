@@ -7,7 +7,7 @@
 //                the slot at work, what fails from there on leaves it stopped, decoupled and in reset
 //   bounds       SHUTDOWN: shutdown_limit; DECOUPLE, ROC, RECOUPLE: SLOT_LIMIT; HEADER and TRANSFER: error or timeout of the
 //                fetch, or their words are there; the rest: fixed
-//   cuts         every path: each output is a flip-flop
+//   cuts         every path: each output is a flip-flop, m_report_slot, _module, _code and _lost one of two
 //   reset        no swap, slots at work, except one whose transfer had begun and not ended well: half_q outlives rst and
 //                keeps it stopped, decoupled and in reset until a good transfer
 module cchip_swap_sequencer #(
@@ -43,6 +43,9 @@ module cchip_swap_sequencer #(
     input  wire [ 8*SLOTS-1:0] region_rm_id,
     input  wire [16*SLOTS-1:0] lost,
     output wire [         3:0] phase,
+    output wire                busy,           // a phase other than IDLE
+    output wire                in_header,      // phase is HEADER, TRANSFER
+    output wire                in_transfer,
     output wire [         7:0] slot,           // of the request
     output wire [         7:0] module_id,
     output wire [        31:0] address,
@@ -64,9 +67,10 @@ module cchip_swap_sequencer #(
   localparam [3:0] DECIDE = 4'd2;  // of HEADER: the request is judged
   localparam [3:0] RESET_LAST = 4'd1;
   localparam [3:0] CHECK_LAST = 4'd7;  // the device may report an error on all but this one
-  localparam [3:0] ROC_SEEN = 4'd6;  // roc_busy counts from here on
+  localparam [3:0] SEEN = 4'd6;  // roc_busy counts from here on in ROC, decoupled in RECOUPLE
   localparam [3:0] RECOUPLE_AT = 4'd1;  // decouple falls behind it, after reset
-  localparam [3:0] RECOUPLE_SEEN = 4'd6;  // decoupled counts from here on
+  localparam [9:0] AT_IDLE = 10'd1;
+  localparam [9:0] AT_REPORT = AT_IDLE << `CCHIP_PHASE_REPORT;
   localparam [31:0] LIMIT = SLOT_LIMIT;
   localparam [31:0] SLOT_COUNT = SLOTS;
 
@@ -81,13 +85,15 @@ module cchip_swap_sequencer #(
 
   // ---- request
   reg [3:0] phase_q;
+  reg [9:0] at_q;  // phase_q, one-hot
   reg [7:0] slot_q, module_q;
   reg [31:0] address_q, size_q;
   reg force_q;
-  reg [31:0] shutdown_limit_q, memory_limit_q;
+  reg [31:0] memory_limit_q;
+  reg [31:0] bound_q;  // of the phase: shutdown_limit up to SHUTDOWN, SLOT_LIMIT from then on
   reg ready_q, refuse_q;  // a request during a swap waits for its report
   reg [7:0] refuse_slot_q, refuse_module_q;
-  wire idle = phase_q == `CCHIP_PHASE_IDLE;
+  wire idle = at_q[`CCHIP_PHASE_IDLE];
   wire accept = s_swap_valid & ready_q;
   wire begins = accept & idle;
 
@@ -98,9 +104,10 @@ module cchip_swap_sequencer #(
       address_q <= s_swap_address;
       size_q <= s_swap_size;
       force_q <= s_swap_force;
-      shutdown_limit_q <= shutdown_limit == 32'd0 ? `CCHIP_SHUTDOWN_LIMIT_DEFAULT : shutdown_limit;
-      memory_limit_q <= memory_limit == 32'd0 ? `CCHIP_MEMORY_LIMIT_DEFAULT : memory_limit;
     end
+    if (idle) memory_limit_q <= memory_limit == 32'd0 ? `CCHIP_MEMORY_LIMIT_DEFAULT : memory_limit;
+    if (idle) bound_q <= shutdown_limit == 32'd0 ? `CCHIP_SHUTDOWN_LIMIT_DEFAULT : shutdown_limit;
+    else if (pass[`CCHIP_PHASE_SHUTDOWN]) bound_q <= LIMIT;
     if (accept) refuse_slot_q <= s_swap_slot;
     if (accept) refuse_module_q <= s_swap_module;
   end
@@ -121,6 +128,7 @@ module cchip_swap_sequencer #(
     end
   endfunction
   wire [24*SLOTS-1:0] slots;  // {lost, rm_id} of each
+  wire [23:0] chosen = choose(slots, mine_q);
   genvar s;
   generate
     for (s = 0; s < SLOTS; s = s + 1) begin : gen_slot
@@ -129,12 +137,13 @@ module cchip_swap_sequencer #(
   endgenerate
 
   reg [SLOTS-1:0] mine_q;  // one-hot
-  reg [7:0] rm_id_q;
+  reg match_q;  // the region shows the module asked for
   reg [15:0] slot_lost_q, lost_q;
   reg quiet_q, decoupled_q, roc_busy_q;
   always @(posedge clk) begin
     if (begins) mine_q <= one_hot(s_swap_slot);
-    {slot_lost_q, rm_id_q} <= choose(slots, mine_q);
+    slot_lost_q <= chosen[23:8];
+    match_q <= chosen[7:0] == module_q;
     quiet_q <= |(quiet & mine_q);
     decoupled_q <= |(decoupled & mine_q);
     roc_busy_q <= |(roc_busy & mine_q);
@@ -142,93 +151,78 @@ module cchip_swap_sequencer #(
 
   // ---- what is wrong with the request
   reg illegal_q, same_q;
-  wire [31:0] last_byte = address_q + size_q - 32'd1;
+  reg [31:0] last_byte_q;
+  reg outside_q;
   always @(posedge clk) begin
-    illegal_q <= {24'd0, slot_q} >= SLOT_COUNT | module_q > `CCHIP_RM_QUAD_QUAD | size_q == 32'd0
-                 | address_q[5:0] != 6'd0 | last_byte < address_q;
-    same_q <= ~decoupled_q & rm_id_q == module_q;
+    last_byte_q <= address_q + size_q - 32'd1;
+    outside_q <= {24'd0, slot_q} >= SLOT_COUNT | module_q > `CCHIP_RM_QUAD_QUAD | address_q[5:0] != 6'd0;
+    illegal_q <= outside_q | size_q == 32'd0 | last_byte_q < address_q;
+    same_q <= ~decoupled_q & match_q;
   end
 
-  // ---- sequence: next phase, and the code if it is REPORT
+  // ---- sequence: to the next phase, or with a code to REPORT
   reg [31:0] clocks_q;  // in this phase
-  reg [3:0] step_q;  // the same, up to 15
+  reg [3:0] step_q;  // the same, from 0 to 15
+  reg decide_q, reset_last_q, check_last_q, late_q;  // step_q is DECIDE, ..., SEEN or more
   reg expired_q, error_q, forced_q, abort_q;
-  reg [3:0] alike_q;  // clocks on which the region showed the module asked for: garbage may show it on one by chance
-  wire roc_over = phase_q == `CCHIP_PHASE_ROC & step_q >= ROC_SEEN & ~roc_busy_q;
-  reg [3:0] phase_d, code_d;
-  wire past = phase_q >= `CCHIP_PHASE_DECOUPLE;  // the slot is no longer at work
-  wire abortable = ~idle & phase_q <= `CCHIP_PHASE_ROC;
-  wire [3:0] fetch_code = bus_error ? `CCHIP_SWAP_BUS : `CCHIP_SWAP_MEMORY;
+  reg fault_q;  // the fetch failed, a clock ago
+  reg [3:0] fault_code_q;
+  reg [4:0] alike_q;  // 1 + clocks on which the region showed the module asked for: garbage may show it on one by chance
+  wire at_header = at_q[`CCHIP_PHASE_HEADER];
+  wire at_shutdown = at_q[`CCHIP_PHASE_SHUTDOWN];
+  wire at_decouple = at_q[`CCHIP_PHASE_DECOUPLE];
+  wire at_transfer = at_q[`CCHIP_PHASE_TRANSFER];
+  wire at_check = at_q[`CCHIP_PHASE_CHECK];
+  wire at_roc = at_q[`CCHIP_PHASE_ROC];
+  wire at_recouple = at_q[`CCHIP_PHASE_RECOUPLE];
+  wire at_report = at_q[`CCHIP_PHASE_REPORT];
 
-  always @* begin
-    phase_d = phase_q;
-    code_d  = `CCHIP_SWAP_OK;
-    case (phase_q)
-      `CCHIP_PHASE_IDLE: if (begins) phase_d = `CCHIP_PHASE_HEADER;
-      `CCHIP_PHASE_HEADER:
-      if (step_q == DECIDE) begin
-        if (illegal_q | same_q | owes) phase_d = `CCHIP_PHASE_REPORT;
-        code_d = illegal_q ? `CCHIP_SWAP_REQUEST : same_q ? `CCHIP_SWAP_SAME : `CCHIP_SWAP_MEMORY;
-      end else if (bus_error | timeout) begin
-        phase_d = `CCHIP_PHASE_REPORT;
-        code_d  = fetch_code;
-      end else if (header_done) begin
-        phase_d = header_ok ? `CCHIP_PHASE_SHUTDOWN : `CCHIP_PHASE_REPORT;
-        code_d  = header_code;
-      end
-      `CCHIP_PHASE_SHUTDOWN:
-      if (quiet_q | decoupled_q | (expired_q & force_q)) phase_d = `CCHIP_PHASE_DECOUPLE;
-      else if (expired_q) begin
-        phase_d = `CCHIP_PHASE_REPORT;
-        code_d  = `CCHIP_SWAP_SHUTDOWN;
-      end
-      `CCHIP_PHASE_DECOUPLE:
-      if (decoupled_q) phase_d = `CCHIP_PHASE_RESET;
-      else if (expired_q) begin
-        phase_d = `CCHIP_PHASE_REPORT;
-        code_d  = `CCHIP_SWAP_DEVICE;
-      end
-      `CCHIP_PHASE_RESET: if (step_q == RESET_LAST) phase_d = `CCHIP_PHASE_TRANSFER;
-      `CCHIP_PHASE_TRANSFER:
-      if (error_q | bus_error | timeout) begin
-        phase_d = `CCHIP_PHASE_REPORT;
-        code_d  = error_q ? `CCHIP_SWAP_DEVICE : fetch_code;
-      end else if (transfer_done) phase_d = `CCHIP_PHASE_CHECK;
-      `CCHIP_PHASE_CHECK:
-      if (error_q | step_q == CHECK_LAST) begin
-        phase_d = error_q | ~crc_ok ? `CCHIP_PHASE_REPORT : `CCHIP_PHASE_ROC;
-        code_d  = error_q ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_CRC;
-      end
-      `CCHIP_PHASE_ROC:
-      if (roc_over & (rm_id_q != module_q | alike_q == 4'd15)) begin
-        phase_d = rm_id_q == module_q ? `CCHIP_PHASE_RECOUPLE : `CCHIP_PHASE_REPORT;
-        code_d  = `CCHIP_SWAP_WRONG_MODULE;
-      end else if (expired_q & roc_busy_q) begin
-        phase_d = `CCHIP_PHASE_REPORT;
-        code_d  = `CCHIP_SWAP_DEVICE;
-      end
-      `CCHIP_PHASE_RECOUPLE:
-      if (step_q >= RECOUPLE_SEEN & (~decoupled_q | expired_q)) begin
-        phase_d = `CCHIP_PHASE_REPORT;
-        code_d  = decoupled_q ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_OK;
-      end
-      default: phase_d = `CCHIP_PHASE_IDLE;
-    endcase
-    if (abort_q & abortable & (decoupled_q | expired_q | phase_q != `CCHIP_PHASE_DECOUPLE)) begin
-      phase_d = `CCHIP_PHASE_REPORT;
-      code_d  = `CCHIP_SWAP_ABORTED;
-    end
-  end
+  wire roc_over = at_roc & late_q & ~roc_busy_q;
+  wire fails_early = (at_header & (decide_q ? illegal_q | same_q | owes : fault_q | (header_done & ~header_ok)))
+      | (at_shutdown & expired_q & ~quiet_q & ~decoupled_q & ~force_q);
+  wire fails_late = (at_decouple & expired_q & ~decoupled_q)
+      | (at_transfer & (error_q | fault_q))
+      | (at_check & (error_q | (check_last_q & ~crc_ok)))
+      | (at_roc & (roc_busy_q ? expired_q : late_q & ~match_q))
+      | (at_recouple & late_q & decoupled_q & expired_q);
+  wire aborts = abort_q & ~at_decouple;  // a slot that decouples is waited for
+  wire past = |at_q[`CCHIP_PHASE_RECOUPLE:`CCHIP_PHASE_DECOUPLE];  // the slot is no longer at work
+  // what fails does so a clock later: the many registers that start again then follow one register
+  wire failing = fails_early | fails_late;
+  reg fail_q;
 
-  wire enter = phase_d != phase_q;
-  wire reports = enter & phase_d == `CCHIP_PHASE_REPORT;
-  wire fails = reports & past & code_d != `CCHIP_SWAP_OK;
+  // the phase is over and was good; never with failing, and before an abort
+  wire [9:0] pass;
+  assign pass[`CCHIP_PHASE_IDLE] = begins;
+  assign pass[`CCHIP_PHASE_HEADER] = at_header & ~decide_q & ~fault_q & header_done & header_ok & ~fail_q;
+  assign pass[`CCHIP_PHASE_SHUTDOWN] = at_shutdown & (quiet_q | decoupled_q | (expired_q & force_q)) & ~fail_q;
+  assign pass[`CCHIP_PHASE_DECOUPLE] = at_decouple & decoupled_q & ~fail_q;
+  assign pass[`CCHIP_PHASE_RESET] = at_q[`CCHIP_PHASE_RESET] & reset_last_q & ~fail_q;
+  assign pass[`CCHIP_PHASE_TRANSFER] = at_transfer & transfer_done & ~error_q & ~fault_q & ~fail_q;
+  assign pass[`CCHIP_PHASE_CHECK] = at_check & check_last_q & crc_ok & ~error_q & ~fail_q;
+  assign pass[`CCHIP_PHASE_ROC] = roc_over & match_q & alike_q[4] & ~fail_q;
+  assign pass[`CCHIP_PHASE_RECOUPLE] = at_recouple & late_q & ~decoupled_q & ~fail_q;
+  assign pass[`CCHIP_PHASE_REPORT] = at_report;
+
+  wire [3:0] code_of_header = decide_q ?
+      (illegal_q ? `CCHIP_SWAP_REQUEST : same_q ? `CCHIP_SWAP_SAME : `CCHIP_SWAP_MEMORY) :
+      fault_q ? fault_code_q : header_code;
+  wire [3:0] code_d = abort_q ? `CCHIP_SWAP_ABORTED :
+      ({4{at_header}} & code_of_header)
+      | ({4{at_shutdown}} & `CCHIP_SWAP_SHUTDOWN)
+      | ({4{at_decouple}} & `CCHIP_SWAP_DEVICE)
+      | ({4{at_transfer}} & (error_q ? `CCHIP_SWAP_DEVICE : fault_code_q))
+      | ({4{at_check}} & (error_q ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_CRC))
+      | ({4{at_roc}} & (roc_busy_q ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_WRONG_MODULE))
+      | ({4{at_recouple}} & (decoupled_q ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_OK));
+
+  wire enter = fail_q | (|pass);
+  wire reports = fail_q | pass[`CCHIP_PHASE_RECOUPLE];
   wire refuses = refuse_q & ~reports;
-  wire [SLOTS-1:0] mine_if_transfer = enter & phase_d == `CCHIP_PHASE_TRANSFER ? mine_q : {SLOTS{1'b0}};
-  wire [SLOTS-1:0] mine_if_recouple = enter & phase_d == `CCHIP_PHASE_RECOUPLE ? mine_q : {SLOTS{1'b0}};
-  wire [SLOTS-1:0] mine_if_fails = fails ? mine_q : {SLOTS{1'b0}};
-  wire gone = phase_q == `CCHIP_PHASE_DECOUPLE & decoupled_q & forced_q;
-  wire [15:0] lost_d = gone ? slot_lost_q : lost_q;
+  wire [SLOTS-1:0] mine_if_transfer = mine_q & {SLOTS{pass[`CCHIP_PHASE_RESET]}};
+  wire [SLOTS-1:0] mine_if_recouple = mine_q & {SLOTS{pass[`CCHIP_PHASE_ROC]}};
+  wire [SLOTS-1:0] mine_if_fails = mine_q & {SLOTS{fail_q & past}};
+  wire gone = at_decouple & decoupled_q & forced_q;
 
   // ---- what the slots are told
   reg [SLOTS-1:0] stop_q, decouple_q, hold_reset_q, roc_start_q;
@@ -242,65 +236,74 @@ module cchip_swap_sequencer #(
       hold_reset_q <= half_q;
       roc_start_q  <= {SLOTS{1'b0}};
     end else begin
-      if (enter & phase_d == `CCHIP_PHASE_SHUTDOWN) stop_q <= stop_q | mine_q;
+      if (pass[`CCHIP_PHASE_HEADER]) stop_q <= stop_q | mine_q;
       else if (reports) stop_q <= decouple_q | mine_if_fails;
-      if (enter & phase_d == `CCHIP_PHASE_DECOUPLE) decouple_q <= decouple_q | mine_q;
-      else if (phase_q == `CCHIP_PHASE_RECOUPLE & step_q == RECOUPLE_AT) decouple_q <= decouple_q & ~mine_q;
+      if (pass[`CCHIP_PHASE_SHUTDOWN]) decouple_q <= decouple_q | mine_q;
+      else if (at_recouple & step_q == RECOUPLE_AT) decouple_q <= decouple_q & ~mine_q;
       else decouple_q <= decouple_q | mine_if_fails;
-      if (enter & phase_d == `CCHIP_PHASE_RESET) hold_reset_q <= hold_reset_q | mine_q;
+      if (pass[`CCHIP_PHASE_DECOUPLE]) hold_reset_q <= hold_reset_q | mine_q;
       else hold_reset_q <= (hold_reset_q | mine_if_fails) & ~mine_if_recouple;
-      roc_start_q <= enter & phase_d == `CCHIP_PHASE_ROC ? mine_q : {SLOTS{1'b0}};
+      roc_start_q <= mine_q & {SLOTS{pass[`CCHIP_PHASE_CHECK]}};
     end
   end
 
   // ---- phase and report
   reg run_q;  // the fetch works
   reg report_valid_q;
-  reg [7:0] report_slot_q, report_module_q;
-  reg [3:0] report_code_q;
-  reg [15:0] report_lost_q;
+  reg refused_q;  // the report is that of a refused request
+  reg [3:0] code_q;
   always @(posedge clk) begin
     clocks_q <= enter ? 32'd1 : clocks_q + 32'd1;
     step_q <= enter ? 4'd0 : step_q == 4'd15 ? 4'd15 : step_q + 4'd1;
-    expired_q <= ~enter & (expired_q | clocks_q == (phase_q == `CCHIP_PHASE_SHUTDOWN ? shutdown_limit_q : LIMIT));
-    error_q <= cfg_error & (phase_q == `CCHIP_PHASE_TRANSFER | phase_q == `CCHIP_PHASE_CHECK);
-    abort_q <= ~idle & ~reports & (abort_q | abort_swap);
-    forced_q <= ~idle & (forced_q | (phase_q == `CCHIP_PHASE_SHUTDOWN & expired_q & ~quiet_q));
-    alike_q <= roc_over ? alike_q + 4'd1 : 4'd0;
-    lost_q <= begins ? 16'd0 : lost_d;
-    if (reports | refuse_q) begin
-      report_slot_q   <= reports ? slot_q : refuse_slot_q;
-      report_module_q <= reports ? module_q : refuse_module_q;
-      report_code_q   <= reports ? code_d : `CCHIP_SWAP_BUSY;
-      report_lost_q   <= reports ? lost_d : 16'd0;
-    end
+    decide_q <= ~enter & step_q == DECIDE - 4'd1;
+    reset_last_q <= ~enter & step_q == RESET_LAST - 4'd1;
+    check_last_q <= ~enter & step_q == CHECK_LAST - 4'd1;
+    late_q <= ~enter & step_q >= SEEN - 4'd1;
+    expired_q <= ~enter & (expired_q | clocks_q == bound_q);
+    error_q <= cfg_error & (at_transfer | at_check);
+    forced_q <= ~idle & (forced_q | (at_shutdown & expired_q & ~quiet_q));
+    alike_q <= roc_over ? alike_q + 5'd1 : 5'd1;
+    fault_q <= bus_error | timeout;
+    fault_code_q <= bus_error ? `CCHIP_SWAP_BUS : `CCHIP_SWAP_MEMORY;
+    lost_q <= begins ? 16'd0 : gone ? slot_lost_q : lost_q;
+    refused_q <= refuses;
+    if (~fail_q) code_q <= code_d;
     if (rst) begin
       phase_q <= `CCHIP_PHASE_IDLE;
+      at_q <= AT_IDLE;
+      fail_q <= 1'b0;
+      abort_q <= 1'b0;
       ready_q <= 1'b0;
       refuse_q <= 1'b0;
       run_q <= 1'b0;
       report_valid_q <= 1'b0;
     end else begin
-      phase_q <= phase_d;
+      abort_q <= |at_q[`CCHIP_PHASE_ROC:`CCHIP_PHASE_HEADER] & ~reports & ~pass[`CCHIP_PHASE_ROC] & (abort_q | abort_swap);
+      fail_q <= (failing | (aborts & ~(|pass))) & ~fail_q;
+      at_q <= fail_q ? AT_REPORT : (at_q & ~pass) | {pass[8:0], pass[9]};
+      phase_q <= fail_q ? `CCHIP_PHASE_REPORT : at_report ? `CCHIP_PHASE_IDLE : phase_q + {3'd0, |pass};
       ready_q <= ~(accept & ~idle) & ~(refuse_q & reports);
       refuse_q <= (accept & ~idle) | (refuse_q & reports);
-      run_q <= (run_q | enter | step_q == DECIDE)
-               & (phase_d == `CCHIP_PHASE_TRANSFER | (phase_d == `CCHIP_PHASE_HEADER & ~enter));
+      run_q <= pass[`CCHIP_PHASE_RESET] | ((run_q | decide_q) & ~failing & ~aborts & ~enter & (at_header | at_transfer));
       report_valid_q <= reports | refuses;
     end
   end
 
   assign s_swap_ready = ready_q;
   assign m_report_valid = report_valid_q;
-  assign m_report_slot = report_slot_q;
-  assign m_report_module = report_module_q;
-  assign m_report_code = report_code_q;
-  assign m_report_lost = report_lost_q;
+  // the request and lost_q stand still in REPORT
+  assign m_report_slot = refused_q ? refuse_slot_q : slot_q;
+  assign m_report_module = refused_q ? refuse_module_q : module_q;
+  assign m_report_code = refused_q ? `CCHIP_SWAP_BUSY : code_q;
+  assign m_report_lost = refused_q ? 16'd0 : lost_q;
   assign stop = stop_q;
   assign decouple = decouple_q;
   assign hold_reset = hold_reset_q;
   assign roc_start = roc_start_q;
   assign phase = phase_q;
+  assign busy = ~idle;
+  assign in_header = at_header;
+  assign in_transfer = at_transfer;
   assign slot = slot_q;
   assign module_id = module_q;
   assign address = address_q;
@@ -311,6 +314,9 @@ module cchip_swap_sequencer #(
 `include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
+      `CCHIP_ASSERT(a_phase, at_q == AT_IDLE << phase_q)
+      `CCHIP_ASSERT(a_pass, (pass & (pass - 10'd1)) == 10'd0)
+      `CCHIP_ASSERT(a_fail, !(failing || fail_q) || pass == 10'd0)
       `CCHIP_ASSERT(a_order, (hold_reset_q & ~decouple_q) == {SLOTS{1'b0}})
       `CCHIP_ASSERT(a_stopped, (decouple_q & ~stop_q) == {SLOTS{1'b0}})
       `CCHIP_ASSERT(a_half, (half_q & ~hold_reset_q) == {SLOTS{1'b0}})

@@ -180,6 +180,7 @@ module cchip_subsystem_regs (
   reg [31:0] minimum_batch_pairs_q;
   reg [31:0] maximum_age_clocks_q;
   reg [4*32-1:0] pairs_value_high_q;  // kept by a read of the low word
+  reg [3:0] pairs_value_low_q;  // it is read
   reg [8*32-1:0] bitstream_address_value_q;
   reg [8*32-1:0] bitstream_size_value_q;
   reg [7:0] bitstream_valid_value_q;
@@ -287,24 +288,32 @@ module cchip_subsystem_regs (
   assign s_axil_rdata = rdata_q;
   assign s_axil_rresp = {rerror_q, 1'b0};
 
-  reg [32:0] word;
-  always @*
-    case (raddr_q[9:3])
-      7'd0: word = group0_q;
-      7'd1: word = group1_q;
-      7'd2: word = group2_q;
-      7'd4: word = group4_q;
-      7'd6: word = group6_q;
-      7'd7: word = group7_q;
-      7'd8: word = group8_q;
-      7'd16: word = group16_q;
-      7'd17: word = group17_q;
-      7'd18: word = group18_q;
-      7'd19: word = group19_q;
-      default: word = 33'd0;
-    endcase
+  reg [10:0] group_q;  // one-hot: the group of raddr_q
+  wire [32:0] word =
+      (group0_q & {33{group_q[0]}}) |
+      (group1_q & {33{group_q[1]}}) |
+      (group2_q & {33{group_q[2]}}) |
+      (group4_q & {33{group_q[3]}}) |
+      (group6_q & {33{group_q[4]}}) |
+      (group7_q & {33{group_q[5]}}) |
+      (group8_q & {33{group_q[6]}}) |
+      (group16_q & {33{group_q[7]}}) |
+      (group17_q & {33{group_q[8]}}) |
+      (group18_q & {33{group_q[9]}}) |
+      (group19_q & {33{group_q[10]}});
 
   always @(posedge clk) begin
+    group_q[0] <= raddr_q[9:3] == 7'd0;
+    group_q[1] <= raddr_q[9:3] == 7'd1;
+    group_q[2] <= raddr_q[9:3] == 7'd2;
+    group_q[3] <= raddr_q[9:3] == 7'd4;
+    group_q[4] <= raddr_q[9:3] == 7'd6;
+    group_q[5] <= raddr_q[9:3] == 7'd7;
+    group_q[6] <= raddr_q[9:3] == 7'd8;
+    group_q[7] <= raddr_q[9:3] == 7'd16;
+    group_q[8] <= raddr_q[9:3] == 7'd17;
+    group_q[9] <= raddr_q[9:3] == 7'd18;
+    group_q[10] <= raddr_q[9:3] == 7'd19;
     if (ar) raddr_q <= s_axil_araddr[11:2];
     if (read_q2) {rerror_q, rdata_q} <= {~word[32], word[31:0]};
     if (rst) begin
@@ -323,10 +332,14 @@ module cchip_subsystem_regs (
   end
 
   always @(posedge clk) begin
-    if (read_q && raddr_q == 10'h40) pairs_value_high_q[0+:32] <= hwif_in_pairs_value[32+:32];
-    if (read_q && raddr_q == 10'h42) pairs_value_high_q[32+:32] <= hwif_in_pairs_value[96+:32];
-    if (read_q && raddr_q == 10'h44) pairs_value_high_q[64+:32] <= hwif_in_pairs_value[160+:32];
-    if (read_q && raddr_q == 10'h46) pairs_value_high_q[96+:32] <= hwif_in_pairs_value[224+:32];
+    pairs_value_low_q[0] <= ar && s_axil_araddr[11:2] == 10'h40;
+    if (pairs_value_low_q[0]) pairs_value_high_q[0+:32] <= hwif_in_pairs_value[32+:32];
+    pairs_value_low_q[1] <= ar && s_axil_araddr[11:2] == 10'h42;
+    if (pairs_value_low_q[1]) pairs_value_high_q[32+:32] <= hwif_in_pairs_value[96+:32];
+    pairs_value_low_q[2] <= ar && s_axil_araddr[11:2] == 10'h44;
+    if (pairs_value_low_q[2]) pairs_value_high_q[64+:32] <= hwif_in_pairs_value[160+:32];
+    pairs_value_low_q[3] <= ar && s_axil_araddr[11:2] == 10'h46;
+    if (pairs_value_low_q[3]) pairs_value_high_q[96+:32] <= hwif_in_pairs_value[224+:32];
   end
 
   always @(posedge clk) begin

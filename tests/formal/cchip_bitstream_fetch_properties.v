@@ -2,7 +2,7 @@
 `default_nettype none
 // Proved of cchip_bitstream_fetch, for 38 clocks from reset, whatever memory does (also against its own rules):
 //   addresses are stable until taken, bursts lie within 64 bytes, two are under way at most, never more words than the FIFO
-//   holds are asked for, the FIFO is never pushed when full (assertion a_room of the RTL); no word appears after run = 0;
+//   holds are asked for, the FIFO is never pushed when full (assertion a_room of the FIFO); no word appears after run = 0;
 //   after `limit` clocks without progress there is a timeout; an error or a timeout lasts until run = 0.
 module cchip_bitstream_fetch_properties (
     input wire        clk,

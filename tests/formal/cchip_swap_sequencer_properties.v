@@ -35,7 +35,7 @@ module cchip_swap_sequencer_properties (
   localparam [7:0] RESET_MIN = 8'd8;
   localparam [31:0] LIMIT = 32'd5;
   localparam [7:0] SLOT_LIMIT = 8'd16;
-  wire s_swap_ready, m_report_valid, run;
+  wire s_swap_ready, m_report_valid, busy, in_header, in_transfer, run;
   wire [7:0] m_report_slot, m_report_module, slot, module_id;
   wire [3:0] m_report_code, phase;
   wire [15:0] m_report_lost;
@@ -72,6 +72,9 @@ module cchip_swap_sequencer_properties (
       .region_rm_id   (region_rm_id),
       .lost           (lost),
       .phase          (phase),
+      .busy           (busy),
+      .in_header      (in_header),
+      .in_transfer    (in_transfer),
       .slot           (slot),
       .module_id      (module_id),
       .address        (address),

@@ -62,13 +62,12 @@ MUTANTS = [
     ("cchip_pr_slot prove", SLOT, "rst | hold_reset | roc;", "rst | hold_reset;"),
     ("cchip_pr_slot prove", SLOT, "rst | roc_start | roc;", "rst | roc_start;"),
     ("cchip_pr_slot prove", SLOT, "accept & ~answer ?", "accept ?"),
-    # a bad check recouples; reset ends with the transfer; both slots are told; no bound; decoupling is not awaited
-    ("cchip_swap_sequencer prove", SEQUENCER, "error_q | ~crc_ok ? `CCHIP_PHASE_REPORT", "error_q ? `CCHIP_PHASE_REPORT"),
-    ("cchip_swap_sequencer prove", SEQUENCER, "phase_d = `CCHIP_PHASE_CHECK;", "phase_d = `CCHIP_PHASE_RECOUPLE;"),
+    # a bad check recouples; a phase goes back; both slots are told; no bound; decoupling is not awaited; a refusal is lost
+    ("cchip_swap_sequencer prove", SEQUENCER, "at_check & check_last_q & crc_ok &", "at_check & check_last_q &"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "{pass[8:0], pass[9]}", "{pass[8:6], pass[4], pass[5], pass[3:0], pass[9]}"),
     ("cchip_swap_sequencer prove", SEQUENCER, "hold_reset_q <= hold_reset_q | mine_q;", "hold_reset_q <= {SLOTS{1'b1}};"),
-    ("cchip_swap_sequencer prove", SEQUENCER, "else if (expired_q) begin\n        phase_d = `CCHIP_PHASE_REPORT;\n        code_d  = `CCHIP_SWAP_SHUTDOWN;",
-     "else if (abort_q) begin\n        phase_d = `CCHIP_PHASE_REPORT;\n        code_d  = `CCHIP_SWAP_SHUTDOWN;"),
-    ("cchip_swap_sequencer prove", SEQUENCER, "if (decoupled_q) phase_d = `CCHIP_PHASE_RESET;", "if (quiet_q) phase_d = `CCHIP_PHASE_RESET;"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "(at_shutdown & expired_q &", "(at_shutdown & abort_q &"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "= at_decouple & decoupled_q &", "= at_decouple & quiet_q &"),
     ("cchip_swap_sequencer prove", SEQUENCER, "refuse_q <= (accept & ~idle) | (refuse_q & reports);", "refuse_q <= accept & ~idle;"),
     ("cchip_bitstream_fetch bounded", FETCH, "wire [4:0] to_edge = 5'd16 - {1'b0, addr_q[5:2]};", "wire [4:0] to_edge = 5'd16;"),
     ("cchip_bitstream_fetch bounded", FETCH, "issue | (arvalid_q & ~m_axi_arready);", "issue | (arvalid_q & ~m_axi_arready & run);"),

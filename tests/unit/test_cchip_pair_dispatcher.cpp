@@ -66,6 +66,7 @@ class DispatcherBench {
     if (now.in_reset) {
       served_.fill(0);
       refusing_ = 0;
+      turn_ = 0;
       return;
     }
     std::array<int, 4> taken{};
@@ -90,18 +91,24 @@ class DispatcherBench {
         first_of_both += (top().m_pair_valid & 1U) != 0 ? 1 : 0;
       }
     }
-    const bool some =
-        waits_[0] || (((waits_[1] ? 1U : 0U) | (waits_[2] ? 2U : 0U) | (waits_[3] ? 4U : 0U)) & refusing_) != 0;
-    expect("m_refused_valid", top().m_refused_valid != 0, some);
-    if (some) {
-      const std::size_t kind = top().m_refused_kind;
-      sim::require(waits_[kind] && (kind == 0 || (refusing_ >> (kind - 1) & 1U) != 0), "refused without need");
-      expect("m_refused_tag", std::uint64_t{top().m_refused_tag}, pair_[kind] & 0xFFFFU);
+    const auto refusable = [&](std::size_t kind) {
+      return waits_[kind] && (kind == 0 || (refusing_ >> (kind - 1) & 1U) != 0);
+    };
+    const bool offered = refusable(turn_);
+    expect("m_refused_valid", top().m_refused_valid != 0, offered);
+    std::size_t next_turn = turn_;
+    for (std::size_t i = 4; i-- > 1;) {
+      if (refusable((turn_ + i) % 4)) next_turn = (turn_ + i) % 4;
+    }
+    if (offered) {
+      expect("m_refused_kind", std::size_t{top().m_refused_kind}, turn_);
+      expect("m_refused_tag", std::uint64_t{top().m_refused_tag}, pair_[turn_] & 0xFFFFU);
       if (top().m_refused_ready != 0) {
-        ++taken[kind];
-        ++refused[kind];
+        ++taken[turn_];
+        ++refused[turn_];
       }
     }
+    if (!offered || top().m_refused_ready != 0) turn_ = next_turn;
     for (std::size_t k = 1; k < 4; ++k) {
       const bool ready = (top().s_ready >> (k - 1) & 1U) != 0;
       expect("s_ready & s_valid", ready && waits_[k], taken[k] != 0);
@@ -127,6 +134,7 @@ class DispatcherBench {
   std::array<unsigned, Config::SLOTS> serves_{}, served_{};
   unsigned no_provider_ = 0;
   unsigned refusing_ = 0;
+  std::size_t turn_ = 0;  // of the refused pairs, by kind
 };
 
 }  // namespace
