@@ -36,16 +36,19 @@ module cchip_delay #(
     end else if (MEMORY != 0) begin : gen_memory
       // DEPTH - 1 words and the output register
       localparam integer PTR_W = $clog2(DEPTH - 1);
-      localparam [31:0] LAST = DEPTH - 2;
+      localparam [31:0] BEFORE_LAST = DEPTH - 3;
       (* ram_style = "distributed" *)
       reg [WIDTH-1:0] mem [0:DEPTH-2];
       reg [PTR_W-1:0] pointer_q;
+      reg last_q;
       reg [WIDTH-1:0] q_q;
-      // any value finds into the circle, over 0: no reset
+      // any values find into the circle, over 0: no reset
       initial pointer_q = {PTR_W{1'b0}};
+      initial last_q = 1'b0;
       wire unused = &{1'b0, rst};
       always @(posedge clk) begin
-        if (pointer_q == LAST[PTR_W-1:0]) pointer_q <= {PTR_W{1'b0}};
+        last_q <= pointer_q == BEFORE_LAST[PTR_W-1:0] & ~last_q;
+        if (last_q) pointer_q <= {PTR_W{1'b0}};
         else pointer_q <= pointer_q + {{PTR_W - 1{1'b0}}, 1'b1};
         mem[pointer_q] <= d;
         q_q <= mem[pointer_q];

@@ -86,7 +86,6 @@ module cchip_primtest #(
   wire               up = accept & ~answer;
   wire               down = answer & ~accept;
 
-  // sums and comparisons start from registers: the handshakes only choose (n - 1 as in cchip_fifo)
   always @(posedge clk)
     if (rst) begin
       pairs_q <= {COUNT_W{1'b0}};
@@ -95,7 +94,7 @@ module cchip_primtest #(
       awake_q <= 1'b0;
     end else begin
       awake_q <= 1'b1;  // the first context stands ready two clocks after rst
-      pairs_q <= up ? pairs_q + ONE[COUNT_W-1:0] : down ? ~(~pairs_q + ONE[COUNT_W-1:0]) : pairs_q;
+      if (accept != answer) pairs_q <= pairs_q + ({COUNT_W{answer}} | ONE[COUNT_W-1:0]);  // + 1 or - 1
       ready_q <= awake_q && (up ? pairs_q != LAST[COUNT_W-1:0] : down || pairs_q != FULL[COUNT_W-1:0]);
       idle_q  <= ~up && (down ? pairs_q == ONE[COUNT_W-1:0] : pairs_q == {COUNT_W{1'b0}});
     end

@@ -215,17 +215,19 @@ module cchip_axis_controller #(
 
   // an EXHAUSTIVE pair keeps the pipeline until its last axis
   reg keep_q;
-  reg [8:0] keep_code_q;  // its next axis
-  wire [2:0] keep_k = keep_code_q[5:3];
-  wire [2:0] keep_l = keep_code_q[2:0];
-  wire keep_last = keep_code_q == {`CCHIP_AXIS_CROSS, LAST_K[2:0], LAST_L[2:0]};
+  // its next axis: nB or e_k x f_l
+  reg keep_cross_q;
+  reg [1:0] keep_k_q, keep_l_q;
+  wire keep_row = keep_cross_q & keep_l_q == LAST_L[1:0];  // the last l of a k
+  wire keep_last = keep_row & keep_k_q == LAST_K[1:0];
+  wire [8:0] keep_code = {keep_cross_q ? `CCHIP_AXIS_CROSS : `CCHIP_AXIS_NORMAL_B, 1'b0, keep_k_q, 1'b0, keep_l_q};
 
   // a pair waits for an axis slot (read by monitors)
   wire pair_waits /* verilator public_flat_rd */ = start_valid | ready_valid | beat_valid_q;
   reg  started_q;  // a pair that started had the last turn
   wire take_start = start_valid & (~ready_valid | ~started_q);
-  assign ready_ready = ~keep_q & ~take_start;
-  assign start_ready = ~keep_q & take_start;
+  assign ready_ready = ~keep_q & (~start_valid | started_q);
+  assign start_ready = ~keep_q & (~ready_valid | ~started_q);
 
   always @(posedge clk) begin
     if (rst) beat_valid_q <= 1'b0;
@@ -234,12 +236,11 @@ module cchip_axis_controller #(
     else keep_q <= keep_q ? ~keep_last : take_start & start_mode == `CCHIP_MODE_EXHAUSTIVE;
     if (rst) started_q <= 1'b0;
     else if (!keep_q) started_q <= take_start;
-    if (!keep_q) keep_code_q <= {`CCHIP_AXIS_NORMAL_B, 6'd0};
-    else if (keep_code_q[8:6] == `CCHIP_AXIS_NORMAL_B) keep_code_q <= {`CCHIP_AXIS_CROSS, 6'd0};
-    else if (keep_l == LAST_L[2:0]) keep_code_q <= {`CCHIP_AXIS_CROSS, keep_k + 3'd1, 3'd0};
-    else keep_code_q <= {`CCHIP_AXIS_CROSS, keep_k, keep_l + 3'd1};
+    keep_cross_q <= keep_q;
+    keep_l_q <= ~keep_q | keep_row ? 2'd0 : keep_l_q + {1'b0, keep_cross_q};
+    keep_k_q <= ~keep_q ? 2'd0 : keep_k_q + {1'b0, keep_row};
     if (keep_q) begin
-      beat_q[11:3]  <= keep_code_q;
+      beat_q[11:3]  <= keep_code;
       beat_q[31:26] <= beat_count + 6'd1;
     end else beat_q <= take_start ? {start_context, start_state} : ready_state;
   end
@@ -251,20 +252,21 @@ module cchip_axis_controller #(
 
   // in-plane axes are one-sided: the own vertices lie on the side of sign(-n_d), d = l; told one clock after the beat
   //   info of DEGENERATE: signs of both normals; of COPLANAR: whether n_d is negative
-  reg in_plane_a_q, in_plane_b_q, coplanar_q;
-  reg [2:0] component_q;
-  reg [11:0] info_q;
+  wire coplanar = beat_programme == `CCHIP_PROG_COPLANAR;
+  reg in_plane_a_q, in_plane_b_q, negative_a_q, negative_b_q, zero_a_q, zero_b_q;
+  function of_component(input [2:0] bits, input [1:0] component);
+    of_component = component[1] ? bits[2] : component[0] ? bits[1] : bits[0];
+  endfunction
   always @(posedge clk) begin
     in_plane_a_q <= beat_code[8:6] == `CCHIP_AXIS_IN_PLANE_A;
     in_plane_b_q <= beat_code[8:6] == `CCHIP_AXIS_IN_PLANE_B;
-    coplanar_q   <= beat_programme == `CCHIP_PROG_COPLANAR;
-    component_q  <= 3'd1 << beat_code[1:0];
-    info_q       <= beat_info;
+    negative_a_q <= coplanar ? beat_info[0] : of_component(beat_info[2:0], beat_code[1:0]);
+    negative_b_q <= coplanar ? beat_info[1] : of_component(beat_info[8:6], beat_code[1:0]);
+    zero_a_q     <= ~coplanar & of_component(beat_info[5:3], beat_code[1:0]);
+    zero_b_q     <= ~coplanar & of_component(beat_info[11:9], beat_code[1:0]);
   end
-  wire [2:0] normal_negative = in_plane_a_q ? info_q[2:0] : info_q[8:6];
-  wire [2:0] normal_zero = in_plane_a_q ? info_q[5:3] : info_q[11:9];
-  wire n_negative = coplanar_q ? (in_plane_a_q ? info_q[0] : info_q[1]) : |(normal_negative & component_q);
-  wire n_zero = ~coplanar_q & (|(normal_zero & component_q));
+  wire n_negative = in_plane_a_q ? negative_a_q : negative_b_q;
+  wire n_zero = in_plane_a_q ? zero_a_q : zero_b_q;
   wire one_sided = in_plane_a_q | in_plane_b_q;
   assign m_beat_allow_above = ~one_sided | n_zero | ~n_negative;
   assign m_beat_allow_below = ~one_sided | n_zero | n_negative;

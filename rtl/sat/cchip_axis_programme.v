@@ -98,13 +98,19 @@ module cchip_axis_programme #(
     end
   endgenerate
 
+  // vertices on the positive side; those on the plane count among them if any is negative
+  function [3:0] positive_side(input [3:0] negative, input [3:0] zero, input quad);
+    begin
+      positive_side = ~negative & (~zero | {4{|negative}});
+      if (!quad) positive_side[3] = positive_side[0];
+    end
+  endfunction
+
   // first edge i -> i + 1 that leads from the side from_positive to the other; 0 if there is none
-  function [1:0] crossing_edge(input [3:0] negative, input [3:0] zero, input quad, input from_positive);
-    reg [3:0] side, follow;
+  function [1:0] crossing_edge(input [3:0] side, input quad, input from_positive);
+    reg [3:0] follow;
     integer i;
     begin
-      side   = ~negative & (~zero | {4{|negative}});
-      if (!quad) side[3] = side[0];
       follow = {side[0], side[3:1]};
       crossing_edge = 2'd0;
       for (i = 3; i >= 0; i = i - 1)
@@ -123,26 +129,30 @@ module cchip_axis_programme #(
   wire [2:0] last_k = is_cross ? (TETRA != 0 && tetra && info[0] ? 3'd5 : LAST_K[2:0])
                     : is_in_plane_a ? LAST_K[2:0] : is_in_plane_b ? LAST_L[2:0] : 3'd4;
   wire [2:0] last_l = !is_cross ? 3'd2 : TETRA != 0 && tetra && info[1] ? 3'd5 : LAST_L[2:0];
+  wire loops_l = is_cross | degenerate;  // all l of a k; else l stays
 
   reg valid_q, exhaustive_q, normals_q, crossing_q, illegal_q;
-  reg normal_a_q, normal_b_q, cross_q, in_plane_a_q, exhaustive_last_q, second_q, box_q, box_certain_q;
-  reg tetra_q, degenerate_q, k_ends_q, l_ends_q;
+  reg normal_a_q, normal_b_q, exhaustive_last_q, second_q, box_q, box_certain_q;
+  reg loops_l_q, l_goes_on_q, k_ends_q, last_kind_q;
   reg separated_q, certain_gap_q, clear_q, sign_certain_q, sign_negative_q, certain_q, open_q, certain_before_q;
   reg [2:0] programme_q, axis_negative_q, axis_zero_q;
   reg [8:0] code_q;
   reg [2:0] k_next_q, l_next_q;
-  reg [13:0] info_q, normal_a_info_q, about_a_q;
+  reg [13:0] info_q, about_a_q;
   reg [5:0] beats_q;
-  reg [1:0] k_down_q, k_up_q;
-  reg warped_b_q, no_normal_q;
+  reg warped_a_q, warped_b_q, b_on_plane_q, no_normal_q;
+  reg [1:0] largest_q;
+  reg [3:0] side_a_q, side_b_q;
+  reg [2:0] next_class_q, next_k_q;
+  // the info of NORMALS after nA
   wire [13:0] normal_a_info = {
-    warped_a_now,
-    s_axis_largest,
-    s_axis_zero,
-    s_axis_negative,
-    &b_zero,
-    crossing_edge(b_negative, b_zero, VERTS_B == 4, 1'b0),
-    crossing_edge(b_negative, b_zero, VERTS_B == 4, 1'b1)
+    warped_a_q,
+    largest_q,
+    axis_zero_q,
+    axis_negative_q,
+    b_on_plane_q,
+    crossing_edge(side_b_q, VERTS_B == 4, 1'b0),
+    crossing_edge(side_b_q, VERTS_B == 4, 1'b1)
   };
 
   always @(posedge clk) begin
@@ -160,13 +170,11 @@ module cchip_axis_programme #(
     certain_q         <= s_state[33];
     normal_a_q        <= axis_class == `CCHIP_AXIS_NORMAL_A;
     normal_b_q        <= axis_class == `CCHIP_AXIS_NORMAL_B;
-    cross_q           <= is_cross;
-    in_plane_a_q      <= is_in_plane_a;
     exhaustive_last_q <= is_cross && k == LAST_K[2:0] && l == LAST_L[2:0];
-    tetra_q           <= tetra;
-    degenerate_q      <= degenerate;
+    loops_l_q         <= loops_l;
+    l_goes_on_q       <= loops_l && l != last_l;
     k_ends_q          <= k == last_k;
-    l_ends_q          <= l == last_l;
+    last_kind_q       <= tetra ? is_cross : !is_cross && !is_in_plane_a;
     k_next_q          <= k + 3'd1;
     l_next_q          <= l + 3'd1;
     second_q          <= {k[1:0], l[1:0]} == info[3:0];
@@ -179,17 +187,26 @@ module cchip_axis_programme #(
     sign_negative_q   <= s_negative[VERTS_A-2];
     axis_negative_q   <= s_axis_negative;
     axis_zero_q       <= s_axis_zero;
-    normal_a_info_q   <= normal_a_info;
+    warped_a_q        <= warped_a_now;
+    largest_q         <= s_axis_largest;
+    b_on_plane_q      <= &b_zero;
+    side_a_q          <= positive_side(a_negative, a_zero, VERTS_A == 4);
+    side_b_q          <= positive_side(b_negative, b_zero, VERTS_B == 4);
     // nB of an EXHAUSTIVE pair follows its nA at once
-    about_a_q         <= exhaustive ? normal_a_info_q : info;
+    about_a_q         <= exhaustive ? normal_a_info : info;
     certain_before_q  <= exhaustive ? clear_q : s_state[33];
-    no_normal_q       <= (exhaustive ? &normal_a_info_q[10:8] : &info[10:8]) || &s_axis_zero;
-    k_down_q          <= crossing_edge(a_negative, a_zero, VERTS_A == 4, 1'b1);
-    k_up_q            <= crossing_edge(a_negative, a_zero, VERTS_A == 4, 1'b0);
+    no_normal_q       <= (exhaustive ? &axis_zero_q : &info[10:8]) || &s_axis_zero;
     warped_b_q        <= warped_b_now;
+    // the kind after the last axis of this one
+    next_class_q      <= axis_class == `CCHIP_AXIS_NORMAL_A && info[1] ? `CCHIP_AXIS_NORMAL_B
+                       : axis_class == `CCHIP_AXIS_NORMAL_A || axis_class == `CCHIP_AXIS_NORMAL_B ? `CCHIP_AXIS_CROSS
+                       : is_cross ? `CCHIP_AXIS_IN_PLANE_A : `CCHIP_AXIS_IN_PLANE_B;
+    next_k_q          <= {2'd0, axis_class == `CCHIP_AXIS_NORMAL_A && info[1]};
   end
 
   // ================ clock 2: the plan when nB's verdict is here
+  wire [1:0] k_down = crossing_edge(side_a_q, VERTS_A == 4, 1'b1);
+  wire [1:0] k_up = crossing_edge(side_a_q, VERTS_A == 4, 1'b0);
   wire [1:0] l_down = about_a_q[1:0];
   wire [1:0] l_up = about_a_q[3:2];
   wire b_on_plane = about_a_q[4];
@@ -223,8 +240,8 @@ module cchip_axis_programme #(
       plan_info      = {12'd0, |(axis_negative_q & largest_mask), |(na_negative & largest_mask)};
     end else begin
       plan_programme = `CCHIP_PROG_CROSSING;
-      plan_code      = {`CCHIP_AXIS_CROSS, 1'b0, k_down_q, 1'b0, l_down};
-      plan_info      = {8'd0, warped_b_q, warped_a, k_up_q, l_up};
+      plan_code      = {`CCHIP_AXIS_CROSS, 1'b0, k_down, 1'b0, l_down};
+      plan_info      = {8'd0, warped_b_q, warped_a, k_up, l_up};
     end
   end
   wire plan_open = warped && WARPED_EXACT == 0;
@@ -242,18 +259,9 @@ module cchip_axis_programme #(
   wire found_first = {code_q[4:3], code_q[1:0]} == {found_plan_q[7:6], found_plan_q[4:3]};
 
   // ---- next axis of the programmes that visit all of a kind: the next l, the next k, the next kind
-  wire loops_l = cross_q | degenerate_q;
-  wire [2:0] l_first = loops_l ? 3'd0 : code_q[2:0];
-  reg [8:0] next_kind;
-  always @*
-    if (normal_a_q && info_q[1]) next_kind = {`CCHIP_AXIS_NORMAL_B, 6'o10};
-    else if (normal_a_q || normal_b_q) next_kind = {`CCHIP_AXIS_CROSS, 6'd0};
-    else next_kind = {cross_q ? `CCHIP_AXIS_IN_PLANE_A : `CCHIP_AXIS_IN_PLANE_B, 3'd0, l_first};
-  wire [8:0] next_code = loops_l && !l_ends_q ? {code_q[8:3], l_next_q}
-                       : !k_ends_q ? {code_q[8:6], k_next_q, l_first}
-                                   : next_kind;
-  wire last_kind = tetra_q ? cross_q : ~cross_q & ~in_plane_a_q;
-  wire last_axis = last_kind & k_ends_q & (l_ends_q | ~loops_l);
+  wire [8:0] next_code = l_goes_on_q ? {code_q[8:3], l_next_q}
+                       : {k_ends_q ? {next_class_q, next_k_q} : {code_q[8:6], k_next_q}, loops_l_q ? 3'd0 : code_q[2:0]};
+  wire last_axis = last_kind_q & k_ends_q & ~l_goes_on_q;
 
   // ---- outcome but for what EXHAUSTIVE has found
   reg outcome, grid, certain, open, illegal;
@@ -262,7 +270,7 @@ module cchip_axis_programme #(
     outcome = 1'b1;
     grid    = 1'b0;
     certain = certain_gap_q;
-    open    = 1'b0;
+    open    = open_q & ~(illegal_q | box_q | separated_q | normals_q);
     illegal = 1'b0;
     witness = code_q;
     if (illegal_q) begin
@@ -277,7 +285,6 @@ module cchip_axis_programme #(
       else begin
         outcome = crossing_q ? second_q && !to_tetra : last_axis;
         grid    = 1'b1;
-        open    = open_q;
         certain = crossing_q & certain_crossing;
         witness = 9'd0;
       end
@@ -288,7 +295,7 @@ module cchip_axis_programme #(
   wire take_plan = normals_q & normal_b_q;
   wire take_tetra = crossing_q & to_tetra;
   wire state_certain = normals_q ? clear_q : crossing_q ? certain_crossing : certain_q;
-  wire [13:0] state_info = normals_q ? normal_a_info_q : info_q;
+  wire [13:0] state_info = normals_q ? normal_a_info : info_q;
   wire [8:0] state_code = normals_q ? {`CCHIP_AXIS_NORMAL_B, 6'd0}
                         : crossing_q ? {`CCHIP_AXIS_CROSS, 1'b0, info_q[3:2], 1'b0, info_q[1:0]}
                                      : next_code;

@@ -101,18 +101,26 @@ module cchip_sat_bound #(
   assign m_gap_bound = gap_q2;
 
   // ---- E (|a|_1 + |b|_1 + 2 E)
+  function [FACTOR_W-1:0] shifted_by_ones(input [NORM_W:0] value, input [4:0] choice);
+    integer j;
+    begin
+      shifted_by_ones = {FACTOR_W{1'b0}};
+      for (j = 0; j < 5; j = j + 1) shifted_by_ones = shifted_by_ones | (({4'd0, value} & {FACTOR_W{choice[j]}}) << j);
+    end
+  endfunction
   reg [NORM_W-1:0] edge_norm_q;
   reg [NORM_W:0] edges_q2;
   reg [5:0] twice_error_q;
-  reg [2:0] shift_q, shift_q2;
+  reg [2:0] shift_q;
+  reg [4:0] shift_q2;  // one-hot: a choice of two levels of LUTs
   reg [FACTOR_W-1:0] factor_q;
   always @(posedge clk) begin
     edge_norm_q   <= s_edge_norm;
     twice_error_q <= 6'd2 << s_error_shift;
     shift_q       <= s_error_shift;
     edges_q2      <= {1'b0, edge_norm_q} + {{NORM_W - 5{1'b0}}, twice_error_q};
-    shift_q2      <= shift_q;
-    factor_q      <= {4'd0, edges_q2} << shift_q2;
+    shift_q2      <= 5'd1 << shift_q;
+    factor_q      <= shifted_by_ones(edges_q2, shift_q2);
   end
   wire [FACTOR_W-1:0] factor;
   cchip_delay #(
@@ -180,19 +188,28 @@ module cchip_sat_bound #(
 
   // ---- product and bound: shifts by 1..4, then by multiples of four
   wire [FACTOR_W+3:0] product_low;
-  wire [2:0] log_high;
+  wire [GROUPS-1:0] log_high;  // one-hot
   cchip_delay #(
-      .WIDTH(FACTOR_W + 4 + 3),
+      .WIDTH(FACTOR_W + 4 + GROUPS),
       .DEPTH(SHIFT_REGS)
   ) u_shift (
       .clk(clk),
       .rst(1'b0),
-      .d  ({{3'd0, factor, 1'b0} << log[1:0], log[4:2]}),
+      .d  ({{3'd0, factor, 1'b0} << log[1:0], {{GROUPS - 1{1'b0}}, 1'b1} << log[4:2]}),
       .q  ({product_low, log_high})
   );
+  function [BOUND_W-1:0] shifted_by_fours(input [FACTOR_W+3:0] value, input [GROUPS-1:0] choice);
+    integer j;
+    begin
+      shifted_by_fours = {BOUND_W{1'b0}};
+      for (j = 0; j < GROUPS; j = j + 1)
+        shifted_by_fours = shifted_by_fours
+                         | (({{BOUND_W - FACTOR_W - 4{1'b0}}, value} & {BOUND_W{choice[j]}}) << (4 * j));
+    end
+  endfunction
   reg [BOUND_W-1:0] product_q, bound_q;
   always @(posedge clk) begin
-    product_q <= {{BOUND_W - FACTOR_W - 4{1'b0}}, product_low} << {log_high, 2'd0};
+    product_q <= shifted_by_fours(product_low, log_high);
     bound_q   <= product_q + gap_q;
   end
   assign m_sign_bound = bound_q;

@@ -58,12 +58,12 @@ module cchip_sat_compare #(
     end
   endfunction
 
-  // ---- clocks 1 to 3 beside the values
+  // ---- clocks 1 and 2 beside the values
   wire [1:0] own;
   wire allow_above, allow_below;
   cchip_delay #(
       .WIDTH(4),
-      .DEPTH(3)
+      .DEPTH(2)
   ) u_flags (
       .clk(clk),
       .rst(1'b0),
@@ -108,40 +108,51 @@ module cchip_sat_compare #(
                           v_q[LOW_W-1:0] ^ {LOW_W{v_q[PROJ_W-1]}}};
         end
         // clock 3
-        reg negative_q3, zero_q3, near_q3;
+        reg zero_q3, near_q3;
         always @(posedge clk) begin
-          negative_q3 <= negative_q2;
-          zero_q3     <= ~|some_q2;
-          near_q3     <= no_more(negative_q2, size_q2, s_gap_bound);
+          zero_q3 <= ~|some_q2;
+          near_q3 <= no_more(negative_q2, size_q2, s_gap_bound);
         end
         if (i == OWN) begin : gen_sign
           always @(posedge clk) uncertain_q3 <= no_more(negative_q2, size_q2, s_sign_bound);
         end
-        assign negative[i] = negative_q3;
+        assign negative[i] = negative_q2;
         assign zero[i] = zero_q3;
         assign near[i] = near_q3;
       end
     end
   endgenerate
 
-  // ---- clock 4: all differences between the sets together
-  wire [POINTS-1:0] skip = {{POINTS - 2{1'b0}}, own};
-  wire [POINTS-1:0] skip0 = skip | {POINTS{~own[0]}};
-  wire [POINTS-1:0] skip1 = skip | {POINTS{~own[1]}};
-  wire [VALUES-1:0] ignore = {OWN == 2 ? skip1 : {POINTS{1'b1}}, skip0, skip};
+  // ---- clock 3: all differences between the sets together; what takes signs alone
+  function [VALUES-1:0] ignored(input [1:0] in);
+    ignored = {OWN == 2 ? {{POINTS - 2{1'b0}}, in} | {POINTS{~in[1]}} : {POINTS{1'b1}},
+               {{POINTS - 2{1'b0}}, in} | {POINTS{~in[0]}}, {{POINTS - 2{1'b0}}, in}};
+  endfunction
+  wire [VALUES-1:0] ignore = ignored(own);
   // on the same side of the own points in slots 0 and 1 as of the reference
   wire [VALUES-1:0] same = negative ~^ {3{negative[POINTS-1:0]}};
-  wire above = allow_above & (&(ignore | ~(negative | zero)));
-  wire below = allow_below & (&(ignore | negative));
-  wire all_far = &(ignore | ~near);
-
+  reg [1:0] own_q3;
+  reg above_q3, below_q3, same_q3;
+  reg [POINTS-1:0] negative_q3;
   always @(posedge clk) begin
-    m_separated   <= above | below;
-    m_certain_gap <= (above | below) & all_far;
-    m_negative    <= negative[POINTS-1:0];
+    own_q3      <= own;
+    above_q3    <= allow_above & (&(ignore | ~negative));
+    below_q3    <= allow_below & (&(ignore | negative));
+    same_q3     <= &(ignore | same);
+    negative_q3 <= negative[POINTS-1:0];
+  end
+
+  // ---- clock 4: those found late
+  wire [VALUES-1:0] ignore_q3 = ignored(own_q3);
+  wire none_zero = &(ignore_q3 | ~zero);
+  wire all_far = &(ignore_q3 | ~near);  // then none is zero
+  always @(posedge clk) begin
+    m_separated   <= (above_q3 & none_zero) | below_q3;
+    m_certain_gap <= (above_q3 | below_q3) & all_far;
+    m_negative    <= negative_q3;
     m_zero        <= zero[POINTS-1:0];
     m_certain     <= ~uncertain_q3;
-    m_clear       <= &(ignore | (~near & same));
+    m_clear       <= same_q3 & all_far;
   end
 
 endmodule
