@@ -159,6 +159,7 @@ module cchip_primtest_array #(
   generate
     for (lane = 0; lane < LANES; lane = lane + 1) begin : gen_lanes
       localparam [31:0] LANE = lane;
+      localparam [31:0] ONE_HOT = 32'd1 << lane;
 
       // places that are neither chosen nor in flight; the count sees a choice one clock late
       reg  [PLACES_W-1:0] places_q;
@@ -231,15 +232,14 @@ module cchip_primtest_array #(
       wire unused_lane = &{1'b0, pair_ready, lane_rm_id, lane_idle};
 
       // results of this lane and of the `lane` lanes before: one of its own for at most `lane` of theirs
-      reg  [LANE_W-1:0] theirs_q;  // of theirs that may still pass first
-      wire              merged_ready;
-      wire              own_next = own_valid[lane] & (~back_valid[lane] | theirs_q == {LANE_W{1'b0}});
-      assign own_ready[lane]  = merged_ready & own_next;
-      assign back_ready[lane] = merged_ready & ~own_next;
+      reg  [lane:0] theirs_q;  // bit n: n of theirs may still pass first
+      wire          merged_ready;
+      wire          own_next = own_valid[lane] & (~back_valid[lane] | theirs_q[0]);
+      assign own_ready[lane]  = merged_ready & (~back_valid[lane] | theirs_q[0]);
+      assign back_ready[lane] = merged_ready & (~own_valid[lane] | ~theirs_q[0]);
       always @(posedge clk)
-        if (lane_rst | own_ready[lane]) theirs_q <= LANE[LANE_W-1:0];
-        else if (back_valid[lane] & merged_ready & theirs_q != {LANE_W{1'b0}})
-          theirs_q <= theirs_q - {{LANE_W - 1{1'b0}}, 1'b1};
+        if (lane_rst | (merged_ready & own_next)) theirs_q <= ONE_HOT[lane:0];
+        else if (back_valid[lane] & merged_ready & ~theirs_q[0]) theirs_q <= theirs_q >> 1;
 
       // two registers for the way
       wire                half_valid, half_ready;
