@@ -140,7 +140,7 @@ module cchip_axis_programme #(
   reg [2:0] k_next_q, l_next_q;
   reg [13:0] info_q, about_a_q;
   reg [5:0] beats_q;
-  reg warped_a_q, warped_b_q, b_on_plane_q, no_normal_q;
+  reg warped_a_q, warped_b_q, warped_q, b_on_plane_q, no_normal_q;
   reg [1:0] largest_q;
   reg [3:0] side_a_q, side_b_q;
   reg [2:0] next_class_q, next_k_q;
@@ -197,6 +197,7 @@ module cchip_axis_programme #(
     certain_before_q  <= exhaustive ? clear_q : s_state[33];
     no_normal_q       <= (exhaustive ? &axis_zero_q : &info[10:8]) || &s_axis_zero;
     warped_b_q        <= warped_b_now;
+    warped_q          <= (VERTS_A == 4 && (exhaustive ? warped_a_q : info[13])) || warped_b_now;
     // the kind after the last axis of this one
     next_class_q      <= axis_class == `CCHIP_AXIS_NORMAL_A && info[1] ? `CCHIP_AXIS_NORMAL_B
                        : axis_class == `CCHIP_AXIS_NORMAL_A || axis_class == `CCHIP_AXIS_NORMAL_B ? `CCHIP_AXIS_CROSS
@@ -214,7 +215,6 @@ module cchip_axis_programme #(
   wire [2:0] na_zero = about_a_q[10:8];
   wire [1:0] largest = about_a_q[12:11];
   wire warped_a = about_a_q[13];
-  wire warped = warped_a | warped_b_q;
   wire certain_sides = certain_before_q & clear_q;
   wire [2:0] largest_mask = 3'd1 << largest;
 
@@ -226,15 +226,15 @@ module cchip_axis_programme #(
   reg [8:0] plan_code;
   reg [13:0] plan_info;
   always @* begin
-    if (TETRA != 0 && warped && !certain_sides) begin
+    if (TETRA != 0 && warped_q && !certain_sides) begin
       plan_programme = `CCHIP_PROG_TETRAHEDRON;
       plan_code      = tetra_code(warped_a);
       plan_info      = {12'd0, warped_b_q, warped_a};
-    end else if (!warped && no_normal_q) begin
+    end else if (!warped_q && no_normal_q) begin
       plan_programme = `CCHIP_PROG_DEGENERATE;
       plan_code      = {`CCHIP_AXIS_CROSS, 6'd0};
       plan_info      = {2'd0, axis_zero_q, axis_negative_q, na_zero, na_negative};
-    end else if (!warped && b_on_plane) begin
+    end else if (!warped_q && b_on_plane) begin
       plan_programme = `CCHIP_PROG_COPLANAR;
       plan_code      = {`CCHIP_AXIS_IN_PLANE_A, 3'd0, 1'b0, largest};
       plan_info      = {12'd0, |(axis_negative_q & largest_mask), |(na_negative & largest_mask)};
@@ -244,7 +244,7 @@ module cchip_axis_programme #(
       plan_info      = {8'd0, warped_b_q, warped_a, k_up, l_up};
     end
   end
-  wire plan_open = warped && WARPED_EXACT == 0;
+  wire plan_open = warped_q && WARPED_EXACT == 0;
   wire [PLAN_W-1:0] plan = {certain_sides, plan_open, plan_info, plan_code, plan_programme};
 
   // ---- CROSSING: t(k, l) is the projection of W_l; certain: t > 0 on the first, t < 0 on the second axis
