@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// cchip_fifo: first-in first-out queue: distributed memory and a cchip_skid_buffer behind it.
+// cchip_fifo: first-in first-out queue in distributed memory with a register behind it.
 //   latency      2 clocks from the push to m_valid of an empty queue
-//   throughput   one beat per clock, DEPTH >= 2
-//   capacity     DEPTH beats in memory and the 2 of the skid buffer
-//   cuts         valid, ready and data: every output is a flip-flop; m_ready reaches the skid buffer alone
+//   throughput   one beat per clock, DEPTH >= 3
+//   capacity     DEPTH beats
+//   cuts         valid, ready and data: every output is a flip-flop
 //   reset        empty; s_ready = 0 while rst is 1
 module cchip_fifo #(
     // width of the payload, bit
     parameter integer WIDTH = 8,
-    // beats in memory
+    // capacity, beats
     parameter integer DEPTH = 16,
     // 1: the sender sees to it that s_valid finds s_ready = 1; saves the logic between them
     parameter integer ROOM_KNOWN = 0
@@ -25,12 +25,14 @@ module cchip_fifo #(
 );
 
   // banks of 16 words, the smallest memory of LUTs, that take turns: pointers run round by themselves, nothing is
-  // compared. Each bank is read with a pointer of its own: short ways.
-  localparam integer BANKS = (DEPTH + 15) / 16;
+  // compared. Each bank is read with a pointer of its own, which moves on a clock after the read: the turn is another
+  // bank's then, so there are two banks at least.
+  localparam integer BANKS = DEPTH > 16 ? (DEPTH + 15) / 16 : 2;
   localparam integer COUNT_W = $clog2(DEPTH + 1);
   localparam [31:0] LAST = DEPTH - 1;
   localparam [31:0] FULL = DEPTH;
   localparam [31:0] ONE = 1;
+  localparam [31:0] TWO = 2;
 
   generate
     if (WIDTH < 1 || DEPTH < 1) begin : gen_illegal
@@ -40,14 +42,20 @@ module cchip_fifo #(
 
   reg [BANKS-1:0] write_bank_q, read_bank_q;  // one-hot
   reg [3:0] write_q;  // word, of all banks
-  reg [COUNT_W-1:0] count_q;  // beats in memory
-  reg ready_q, some_q;  // count_q < DEPTH, >= 1
-  wire room;  // in the skid buffer
+  reg [COUNT_W-1:0] count_q; // beats in memory and output register
+  reg ready_q, some_q, more_q;  // count_q < DEPTH, >= 1, >= 2
+  reg valid_q;
+  reg [WIDTH-1:0] data_q;
 
   assign s_ready = ready_q;
+  assign m_valid = valid_q;
+  assign m_data  = data_q;
 
   wire push = s_valid & (ready_q | ROOM_KNOWN != 0);
-  wire take = some_q & room;
+  wire pop = valid_q & m_ready;
+  wire up = push & ~pop;
+  wire down = pop & ~push;
+  wire load = (~valid_q & some_q) | (m_ready & more_q);
 
   // ---- memory
   wire [WIDTH*BANKS-1:0] words;
@@ -57,10 +65,16 @@ module cchip_fifo #(
       (* ram_style = "distributed" *)
       reg [WIDTH-1:0] mem [0:15];
       reg [3:0] read_q;
+      reg was_read_q;
       always @(posedge clk) begin
         if (push & write_bank_q[b]) mem[write_q] <= s_data;
-        if (rst) read_q <= 4'd0;
-        else if (take & read_bank_q[b]) read_q <= read_q + 4'd1;
+        if (rst) begin
+          was_read_q <= 1'b0;
+          read_q     <= 4'd0;
+        end else begin
+          was_read_q <= load & read_bank_q[b];
+          if (was_read_q) read_q <= read_q + 4'd1;
+        end
       end
       assign words[WIDTH*b+:WIDTH] = mem[read_q];
     end
@@ -75,24 +89,13 @@ module cchip_fifo #(
   endfunction
   wire [WIDTH-1:0] word = choose(words, read_bank_q);
 
-  cchip_skid_buffer #(
-      .WIDTH(WIDTH)
-  ) u_out (
-      .clk    (clk),
-      .rst    (rst),
-      .s_valid(some_q),
-      .s_ready(room),
-      .s_data (word),
-      .m_valid(m_valid),
-      .m_ready(m_ready),
-      .m_data (m_data)
-  );
-
   // the bank after this one
   wire [BANKS-1:0] write_bank_next = (write_bank_q << 1) | (write_bank_q >> (BANKS - 1));
   wire [BANKS-1:0] read_bank_next = (read_bank_q << 1) | (read_bank_q >> (BANKS - 1));
 
-  always @(posedge clk)
+  // comparisons start from registers: push and pop only choose
+  always @(posedge clk) begin
+    if (load) data_q <= word;
     if (rst) begin
       write_q <= 4'd0;
       write_bank_q <= ONE[BANKS-1:0];
@@ -100,14 +103,19 @@ module cchip_fifo #(
       count_q <= {COUNT_W{1'b0}};
       ready_q <= 1'b0;
       some_q  <= 1'b0;
+      more_q  <= 1'b0;
+      valid_q <= 1'b0;
     end else begin
       if (push & write_bank_q[BANKS-1]) write_q <= write_q + 4'd1;
       if (push) write_bank_q <= write_bank_next;
-      if (take) read_bank_q <= read_bank_next;
-      if (push != take) count_q <= count_q + ({COUNT_W{take}} | ONE[COUNT_W-1:0]);  // + 1 or - 1
-      ready_q <= push & ~take ? count_q != LAST[COUNT_W-1:0] : take || count_q != FULL[COUNT_W-1:0];
-      some_q  <= push | (some_q & ~(room & count_q == ONE[COUNT_W-1:0]));
+      if (load) read_bank_q <= read_bank_next;
+      if (push != pop) count_q <= count_q + ({COUNT_W{pop}} | ONE[COUNT_W-1:0]);  // + 1 or - 1
+      ready_q <= up ? count_q != LAST[COUNT_W-1:0] : pop || count_q != FULL[COUNT_W-1:0];
+      some_q  <= up || (down ? more_q : some_q);
+      more_q  <= up ? some_q : down ? more_q && {{32 - COUNT_W{1'b0}}, count_q} != TWO : more_q;
+      valid_q <= load | (valid_q & ~m_ready);
     end
+  end
 
 `include "cchip_assert.vh"
   always @(posedge clk)
@@ -115,6 +123,8 @@ module cchip_fifo #(
       `CCHIP_ASSERT(a_room, ROOM_KNOWN == 0 || !s_valid || ready_q)
       `CCHIP_ASSERT(a_count, {{32 - COUNT_W{1'b0}}, count_q} <= FULL)
       `CCHIP_ASSERT(a_some, some_q == (count_q != {COUNT_W{1'b0}}))
+      `CCHIP_ASSERT(a_more, more_q == ({{32 - COUNT_W{1'b0}}, count_q} >= TWO))
+      `CCHIP_ASSERT(a_valid, !valid_q || some_q)
     end
 
 endmodule

@@ -38,8 +38,9 @@ FETCH = "rtl/reconfig/cchip_bitstream_fetch.v"
 MUTANTS = [
     ("cchip_skid_buffer prove", SKID, "if (ready_q) skid_data_q <= s_data;", "skid_data_q <= s_data;"),
     ("cchip_skid_buffer prove", SKID, "ready_q      <= ~skid_valid_d;", "ready_q      <= advance;"),
-    ("cchip_fifo prove", FIFO, "push & ~take ? count_q != LAST[COUNT_W-1:0]", "push & ~take ? count_q != FULL[COUNT_W-1:0]"),
-    ("cchip_fifo prove", FIFO, "take & read_bank_q[b]", "some_q & read_bank_q[b]"),
+    ("cchip_fifo prove", FIFO, "up ? count_q != LAST[COUNT_W-1:0]", "up ? count_q != FULL[COUNT_W-1:0]"),
+    ("cchip_fifo prove", FIFO, "load | (valid_q & ~m_ready);", "load | valid_q;"),
+    ("cchip_fifo prove", FIFO, "was_read_q <= load & read_bank_q[b];", "was_read_q <= load;"),
     ("cchip_roc_generator prove_5", ROC, "left_q << 1", "left_q << 2"),
     ("cchip_roc_generator prove_2", ROC, "rst | configured ?", "configured ?"),
     ("cchip_pr_gate prove", GATE, "ready_q      <= ~stop & ~skid_valid_d;", "ready_q      <= ~skid_valid_d;"),

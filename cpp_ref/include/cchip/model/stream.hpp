@@ -37,6 +37,40 @@ class Delay {
   std::size_t next_ = 0;
 };
 
+/// cchip_fifo: capacity `depth`, visible two clocks after the push; every output registered.
+template <class T>
+class Fifo {
+ public:
+  explicit Fifo(std::size_t depth) : depth_(depth) {}
+  bool s_ready() const { return ready_; }
+  bool m_valid() const { return out_.has_value(); }
+  /// Defined while m_valid().
+  const T& m_data() const { return *out_; }
+  std::size_t size() const { return items_.size() + (out_ ? 1 : 0); }
+
+  void clock(bool s_valid, const T& s_data, bool m_ready) {
+    const bool push = s_valid && ready_;
+    if (m_ready) out_.reset();
+    if (!out_ && !items_.empty()) {
+      out_ = std::move(items_.front());
+      items_.pop_front();
+    }
+    if (push) items_.push_back(s_data);
+    ready_ = size() != depth_;
+  }
+  void reset() {
+    items_.clear();
+    out_.reset();
+    ready_ = false;
+  }
+
+ private:
+  std::size_t depth_;
+  std::deque<T> items_;
+  std::optional<T> out_;
+  bool ready_ = false;
+};
+
 /// cchip_skid_buffer: two beats, every output registered.
 template <class T>
 class SkidBuffer {
@@ -66,38 +100,6 @@ class SkidBuffer {
   bool ready_ = false;
   std::optional<T> out_;
   std::optional<T> skid_;
-};
-
-/// cchip_fifo: `depth` beats in memory, a skid buffer behind it.
-template <class T>
-class Fifo {
- public:
-  explicit Fifo(std::size_t depth) : depth_(depth) {}
-  bool s_ready() const { return ready_; }
-  bool m_valid() const { return out_.m_valid(); }
-  /// Defined while m_valid().
-  const T& m_data() const { return out_.m_data(); }
-
-  void clock(bool s_valid, const T& s_data, bool m_ready) {
-    const bool push = s_valid && ready_;
-    const bool some = !memory_.empty();
-    const bool take = some && out_.s_ready();
-    out_.clock(some, some ? memory_.front() : T{}, m_ready);
-    if (take) memory_.pop_front();
-    if (push) memory_.push_back(s_data);
-    ready_ = memory_.size() != depth_;
-  }
-  void reset() {
-    memory_.clear();
-    out_.reset();
-    ready_ = false;
-  }
-
- private:
-  std::size_t depth_;
-  std::deque<T> memory_;
-  SkidBuffer<T> out_;
-  bool ready_ = false;
 };
 
 /// cchip_ram: registered read of the old word; words are undefined (nullopt) until written.
