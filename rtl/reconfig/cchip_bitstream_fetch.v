@@ -111,7 +111,8 @@ module cchip_bitstream_fetch #(
   wire owed = bursts_q != 2'd0;
   wire last = beat & m_axi_rlast & owed;
   wire good = owed & m_axi_rresp == 2'b00 & first_q != 5'd0 & m_axi_rlast == (first_q == 5'd1);
-  wire push = beat & working & good;
+  // short: without run, whose end empties the FIFO, and rready_q, 1 whenever run_q is
+  wire push = m_axi_rvalid & run_q & ~error_q & ~timeout_q & good;
 
   always @(posedge clk) begin
     if (taken & (bursts_q == 2'd0 | (bursts_q == 2'd1 & last))) first_q <= beats_q;

@@ -26,7 +26,7 @@ module cchip_bitstream_header #(
 
   reg [31:0] magic_q, names_q, length_q, crc_q, expected_q;
   reg [2:0] words_q;
-  reg done_q, magic_ok_q, slot_ok_q, module_ok_q, length_ok_q;
+  reg done_q, magic_ok_q, slot_ok_q, module_ok_q, size_ok_q, length_ok_q;
 
   always @(posedge clk) begin
     // the first word ends in magic_q
@@ -37,8 +37,8 @@ module cchip_bitstream_header #(
     magic_ok_q <= magic_q == `CCHIP_BITSTREAM_MAGIC & names_q[31:16] == 16'd0;
     slot_ok_q <= names_q[15:8] == slot;
     module_ok_q <= names_q[7:0] == module_id;
-    length_ok_q <= length_q == expected_q & size >= `CCHIP_BITSTREAM_HEADER
-                   & length_q >= `CCHIP_BITSTREAM_PAYLOAD_MIN & (CFG_W == 8 | length_q[1:0] == 2'd0);
+    size_ok_q <= size >= `CCHIP_BITSTREAM_HEADER + `CCHIP_BITSTREAM_PAYLOAD_MIN;
+    length_ok_q <= length_q == expected_q & size_ok_q & (CFG_W == 8 | length_q[1:0] == 2'd0);
   end
 
   assign done = done_q;
