@@ -370,8 +370,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: abort on every clock of a swap
       bench.simulation().steps(40);
       REQUIRE(bench.reports().size() == before + 1);
       const SwapCode code = bench.reports().back().code;
-      // an abort takes effect a clock later: the last clock of a phase belongs to the next one; a slot that decouples is
-      // waited for, that belongs to RESET
+      // an abort takes effect a clock later: the last clock of a phase belongs to the next one; a slot that decouples
+      // is waited for, that belongs to RESET
       const SwapPhase last = bench.phases()[bench.phases().size() - 2];
       if (code == SwapCode::aborted) {
         REQUIRE(last <= SwapPhase::roc);
