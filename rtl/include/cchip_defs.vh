@@ -178,8 +178,8 @@
 `define CCHIP_CONTEXTS_DEFAULT(s) (`CCHIP_PAIR_LATENCY((s), 1) + 4)
 // longest time from the last accepted pair to idle = 1 with m_result_ready = 1 [clock]
 `define CCHIP_DRAIN_BOUND(s, contexts) (64 * ((contexts) > `CCHIP_PAIR_LATENCY((s), 1) ? (contexts) : `CCHIP_PAIR_LATENCY((s), 1)))
-// cchip_primtest_array: added to the latency of a pair; two registers from lane to lane [clock]
-`define CCHIP_ARRAY_LATENCY(lanes) (2 * (lanes) + 2)
+// cchip_primtest_array: added to the latency of a pair; two registers from lane to lane, one behind the lane [clock]
+`define CCHIP_ARRAY_LATENCY(lanes) (2 * (lanes) + 3)
 // cchip_primtest_array: handshake of m_result to the first possible handshake of s_pair in the same place [clock]
 `define CCHIP_ARRAY_PLACE_LATENCY (3)
 // cchip_primtest_array: most results that leave between a result's arrival at the head of its lane and its own handshake [result]

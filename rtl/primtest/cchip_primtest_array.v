@@ -196,7 +196,8 @@ module cchip_primtest_array #(
 
       wire                pair_valid = pair[PAIR_W-LANES+lane];
       wire                pair_ready;
-      wire [ANSWER_W-1:0] own;
+      wire                lane_valid, lane_ready;  // result as it leaves the lane
+      wire [ANSWER_W-1:0] lane_own, own;
       wire [         7:0] lane_rm_id;
       wire                lane_idle;
       cchip_primtest #(
@@ -218,18 +219,32 @@ module cchip_primtest_array #(
           .s_pair_a         (pair[0+:VERTEX_W]),
           .s_pair_b         (pair[VERTEX_W+:VERTEX_W]),
           .s_pair_err       (pair[2*VERTEX_W+:4]),
-          .m_result_valid   (own_valid[lane]),
-          .m_result_ready   (own_ready[lane]),
-          .m_result_tag     (own[15:0]),
-          .m_result_hit     (own[16]),
-          .m_result_grid    (own[17]),
-          .m_result_definite(own[18]),
-          .m_result_axis    (own[27:19]),
-          .m_result_beats   (own[33:28]),
+          .m_result_valid   (lane_valid),
+          .m_result_ready   (lane_ready),
+          .m_result_tag     (lane_own[15:0]),
+          .m_result_hit     (lane_own[16]),
+          .m_result_grid    (lane_own[17]),
+          .m_result_definite(lane_own[18]),
+          .m_result_axis    (lane_own[27:19]),
+          .m_result_beats   (lane_own[33:28]),
           .rm_id            (lane_rm_id),
           .idle             (lane_idle)
       );
       wire unused_lane = &{1'b0, pair_ready, lane_rm_id, lane_idle};
+
+      // the station's turn does not reach into the lane, nor the lane's FIFO into the station
+      cchip_skid_buffer #(
+          .WIDTH(ANSWER_W)
+      ) u_own (
+          .clk    (clk),
+          .rst    (lane_rst),
+          .s_valid(lane_valid),
+          .s_ready(lane_ready),
+          .s_data (lane_own),
+          .m_valid(own_valid[lane]),
+          .m_ready(own_ready[lane]),
+          .m_data (own)
+      );
 
       // results of this lane and of the `lane` lanes before: one of its own for at most `lane` of theirs
       reg  [lane:0] theirs_q;  // bit n: n of theirs may still pass first

@@ -196,8 +196,8 @@ constexpr int beat_latency(int s) { return pipe_latency(s) + programme_latency()
 constexpr int contexts_default(int s) { return pair_latency(s, 1) + 4; }
 /// longest time from the last accepted pair to idle = 1 with m_result_ready = 1 [clock]
 constexpr int drain_bound(int s, int contexts) { return 64 * (contexts > pair_latency(s, 1) ? contexts : pair_latency(s, 1)); }
-/// cchip_primtest_array: added to the latency of a pair; two registers from lane to lane [clock]
-constexpr int array_latency(int lanes) { return 2 * lanes + 2; }
+/// cchip_primtest_array: added to the latency of a pair; two registers from lane to lane, one behind the lane [clock]
+constexpr int array_latency(int lanes) { return 2 * lanes + 3; }
 /// cchip_primtest_array: handshake of m_result to the first possible handshake of s_pair in the same place [clock]
 constexpr int array_place_latency() { return 3; }
 /// cchip_primtest_array: most results that leave between a result's arrival at the head of its lane and its own handshake [result]
