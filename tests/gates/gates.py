@@ -260,8 +260,9 @@ def equivalent(technology, build, folder, module, parameters, netlist):
     log = folder / f"{netlist}.abc.log"
     verdict = run(log, "yosys-abc", "-c", f"read {miter}; print_stats; strash; scorr; dprove")
     flipflops = int(re.search(r"lat = *(\d+)", verdict).group(1))
-    proved = re.search(r"^Networks are equivalent|^UNSATISFIABLE", verdict, re.M)
-    refuted = re.search(r"^Networks are not equivalent|^SATISFIABLE", verdict, re.M)
+    # dprove spells its verdict by the engine that found it
+    proved = re.search(r"^Networks are equivalent|^UNSATISFIABLE", verdict, re.M | re.I)
+    refuted = re.search(r"^Networks are not equivalent|^SATISFIABLE", verdict, re.M | re.I)
     if bool(proved) == bool(refuted):
         raise Failure(f"neither proved nor refuted, see {log}")
     return bool(proved), flipflops
