@@ -46,7 +46,7 @@ STIMULI = {
     "cchip_sat_axis": ("", "s_e_to = 1; s_f_to = 1 << dut.COORD_W;", "m_axis"),
     "cchip_sat_bound": ("", "s_axis = 1;", "m_gap_bound"),
     "cchip_sat_project": ("", "s_axis = 1; s_points = 1;", "m_projection"),
-    "cchip_sat_compare": ("", "s_projection = ~s_projection;", "m_separated"),
+    "cchip_sat_compare": ("s_own = 1; s_allow_below = 1;", "s_projection = {1024{1'b1}} << dut.PROJ_W;", "m_separated"),
     "cchip_box_compare": (
         "", "s_a = 1 | 1 << 3 * dut.COORD_W | 1 << 6 * dut.COORD_W;", "m_separated"),
     "cchip_axis_programme": ("s_state = `CCHIP_PROG_ILLEGAL;", "s_valid = 1;", "m_outcome"),
@@ -72,7 +72,7 @@ STIMULI = {
     "cchip_subsystem_regs": ("", "s_axil_arvalid = 1;", "s_axil_rvalid"),
     "cchip_roc_generator": ("", "configured = 1;", "roc"),
     "cchip_pr_gate": ("close = 1; tick; close = 0;", "s_valid = 1;", "m_valid"),
-    "cchip_pr_decoupler": ("", "s_pair_valid = 1;", "r_pair_valid"),
+    "cchip_pr_decoupler": ("r_rm_id = `CCHIP_RM_TRI_TRI;", "s_pair_valid = 1;", "r_pair_valid"),
     "cchip_pr_config_memory": (
         "cfg_valid = 1; cfg_data = 'h66; tick; cfg_data = 'h55; tick; cfg_data = 'h99; tick; cfg_data = 'haa; tick; "
         "cfg_data = 0; repeat (3) tick; cfg_valid = 0;", "cfg_valid = 1;", "garbage"),
@@ -173,7 +173,10 @@ endmodule
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "latency.v"
         path.write_text(bench)
-        return int(simulate(str(path)).split()[-1])
+        clocks = int(simulate(str(path)).split()[-1])
+    if clocks == 1000:
+        fail(f"{module}: {output} does not answer to {change!r} within 1000 clocks; mend its line of STIMULI")
+    return clocks
 
 
 @functools.lru_cache(None)
