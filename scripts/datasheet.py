@@ -4,8 +4,8 @@
 
 usage: datasheet.py                        measure everything, rewrite the generated tables (some minutes)
        datasheet.py MODULE... | architecture   the same for some pages only
-       datasheet.py --check                run no tool; exit 1 if a module of rtl/cchip.f has no datasheet, or one
-                                           whose parameters, ports or markers do not agree with the RTL
+       datasheet.py --check                write nothing; exit 1 if a module of rtl/cchip.f has no datasheet, or one
+                                           whose parameters, ports, markers or latency do not agree with the RTL
        datasheet.py --latency MODULE       clocks from an input to the output it changes (Icarus Verilog)
        datasheet.py --stream [NAME=VALUE...]   a primitive test: latency, clocks per pair, drain (Icarus Verilog);
                                            NAME: a parameter of scripts/datasheet_stream.v, as VERTS_B=4
@@ -400,6 +400,14 @@ def findings(module):
         yield f"{path.relative_to(ROOT)}: no '<!-- generated: begin -->' with '<!-- generated: end -->' behind it"
 
 
+def stale_latencies():
+    for path in sorted(MODULES.glob("*.md")):
+        for written, module in re.findall(r"^\| latency, clocks \| (\d+) \| `[^`]* --latency (\w+)` \|$", path.read_text(), re.M):
+            measured = latency(module)
+            if measured != int(written):
+                yield f"{path.relative_to(ROOT)}: latency of {module} is {measured} clocks, not {written}"
+
+
 def check():
     found = [finding for module in rtl_files() for finding in findings(module)]
     for path in sorted(MODULES.glob("*.md")):
@@ -415,6 +423,7 @@ def check():
         for link in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", path.read_text()):
             if not (path.parent / link).exists():
                 found.append(f"{path.relative_to(ROOT)}: link to {link}, which does not exist")
+    found += stale_latencies()
     print("\n".join(found) if found else f"{len(rtl_files())} datasheets agree with the RTL")
     return 1 if found else 0
 
