@@ -80,6 +80,8 @@ STIMULI = {
     "cchip_pr_slot": ("", "s_pair_valid = 1; s_pair_mode = 2;", "m_result_valid"),
 }
 
+LATENCY_LIMIT = 1000  # clocks; a longer wait means a stimulus without effect
+
 SIMULATION_ONLY = ("cchip_pr_config_memory", "cchip_pr_virtual")
 
 # Vertices of A and of B.
@@ -165,7 +167,7 @@ module bench;
     before = {output};
     {change}
     #1;
-    for (clocks = 0; {output} === before && clocks < 1000; clocks = clocks + 1) tick;
+    for (clocks = 0; {output} === before && clocks < {LATENCY_LIMIT}; clocks = clocks + 1) tick;
     $display("%0d", clocks);
   end
 endmodule
@@ -174,8 +176,8 @@ endmodule
         path = pathlib.Path(folder) / "latency.v"
         path.write_text(bench)
         clocks = int(simulate(str(path)).split()[-1])
-    if clocks == 1000:
-        fail(f"{module}: {output} does not answer to {change!r} within 1000 clocks; mend its line of STIMULI")
+    if clocks == LATENCY_LIMIT:
+        fail(f"{module}: {output} does not answer to {change!r} within {clocks} clocks; mend its line of STIMULI")
     return clocks
 
 
