@@ -5,13 +5,16 @@
 usage: test_elaboration.py Verilator|Icarus|Yosys|Names
 
 Environment: VERILATOR, IVERILOG, YOSYS = commands (default: found on PATH)."""
-import os
 import pathlib
 import re
-import subprocess
+import sys
 import unittest
 
-RTL = pathlib.Path(__file__).resolve().parents[2] / "rtl"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests"))
+from tools import run, tool  # noqa: E402
+
+RTL = ROOT / "rtl"
 FILES = [str(RTL / line) for line in (RTL / "cchip.f").read_text().split() if line.endswith(".v")]
 TOP = "cchip_primtest_tri_tri"
 ARRAY = "cchip_primtest_array"
@@ -158,13 +161,6 @@ LEGAL = [
 LEGAL_FEW = [case for case in LEGAL if "primtest" not in case[0] or case[1].get("COORD_W", 16) == 4 or not case[1]]
 
 
-def run(variable, default, *arguments):
-    """Exit code and everything that the tool printed."""
-    result = subprocess.run([os.environ.get(variable, default), *arguments], stdout=subprocess.PIPE,
-                            stderr=subprocess.STDOUT, text=True, timeout=120)
-    return result.returncode, result.stdout
-
-
 class Cases:
     legal = LEGAL
 
@@ -190,9 +186,8 @@ class Cases:
 class Verilator(Cases, unittest.TestCase):
     def elaborate(self, module, parameters):
         values = (f"-G{name}={value}" for name, value in parameters.items())
-        code, text = run("VERILATOR", "verilator", "--lint-only", "-Wall", f"-I{RTL}/include",
-                         f"{RTL}/lint/verilator_waiver.vlt", *values, "--top-module", module, *FILES)
-        return code, re.sub(r"(?m)^- .*\n", "", text)  # newer ones report time and size
+        return run(tool("verilator"), "--lint-only", "-Wall", f"-I{RTL}/include",
+                   f"{RTL}/lint/verilator_waiver.vlt", *values, "--top-module", module, *FILES)
 
     def assert_named(self, name, parameters, text):
         """Verilator elaborates from the leaves up and ends at the first vector without a bit: values far
@@ -202,7 +197,7 @@ class Verilator(Cases, unittest.TestCase):
 
 class Icarus(Cases, unittest.TestCase):
     def elaborate(self, module, parameters):
-        return run("IVERILOG", "iverilog", "-g2005", "-Wall", "-t", "null", "-I", f"{RTL}/include", "-s", module,
+        return run(tool("iverilog"), "-g2005", "-Wall", "-t", "null", "-I", f"{RTL}/include", "-s", module,
                    *(f"-P{module}.{name}={value}" for name, value in parameters.items()), *FILES)
 
 
@@ -211,7 +206,7 @@ class Yosys(Cases, unittest.TestCase):
 
     def elaborate(self, module, parameters):
         values = "".join(f" -chparam {name} 32'h{value & 0xffffffff:08x}" for name, value in parameters.items())
-        return run("YOSYS", "yosys", "-q", "-p", f"read_verilog -DSYNTHESIS -I{RTL}/include {' '.join(FILES)}; "
+        return run(tool("yosys"), "-q", "-p", f"read_verilog -DSYNTHESIS -I{RTL}/include {' '.join(FILES)}; "
                    f"hierarchy -check -top {module}{values}; proc; check -assert")
 
 

@@ -9,21 +9,17 @@ import os
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests"))
+from tools import run, tool  # noqa: E402
 TOP, VECTORS, SCRATCH = "", "", ""
 BLANK = "cchip_primtest_blank"
 SUBSYSTEM = "cchip_primtest_subsystem"
 PASS = r"\APASS [^\n]*\n\Z"  # and nothing else
-
-
-def run(*command, cwd):
-    result = subprocess.run(command, cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    return result.returncode, result.stdout
 
 
 def export(top, out):
@@ -41,8 +37,8 @@ class Export(unittest.TestCase):
         cls.folder = pathlib.Path(cls.temporary.name) / "alone"
         shutil.copytree(pathlib.Path(SCRATCH) / TOP, cls.folder)
         cls.file = f"{TOP}.v"
-        cls.verilator = (os.environ.get("VERILATOR", "verilator"), "--lint-only", "-Wall", "--top-module", TOP)
-        cls.icarus = (os.environ.get("IVERILOG", "iverilog"), "-g2005", "-Wall", "-t", "null", "-s", TOP)
+        cls.verilator = (tool("verilator"), "--lint-only", "-Wall", "--top-module", TOP)
+        cls.icarus = (tool("iverilog"), "-g2005", "-Wall", "-t", "null", "-s", TOP)
 
     @classmethod
     def tearDownClass(cls):
@@ -50,9 +46,7 @@ class Export(unittest.TestCase):
 
     def clean(self, *command):
         """The command succeeds and says nothing."""
-        code, text = run(*command, cwd=self.folder)
-        text = re.sub(r"(?m)^- .*\n", "", text)  # Verilators newer than 5.006 report time and size
-        self.assertEqual((code, text), (0, ""), " ".join(command))
+        self.assertEqual(run(*command, cwd=self.folder), (0, ""), " ".join(command))
 
     def sections(self, name):
         """Text of an exported Verilog file by the source it comes from."""
@@ -61,7 +55,7 @@ class Export(unittest.TestCase):
 
     def yosys(self, file, *more):
         checks = f"hierarchy -check -top {TOP}; proc; check -assert; select -assert-none t:$dlatch"
-        self.clean(os.environ.get("YOSYS", "yosys"), "-q", "-p", "; ".join([f"read_verilog {file}", checks, *more]))
+        self.clean(tool("yosys"), "-q", "-p", "; ".join([f"read_verilog {file}", checks, *more]))
 
     def test_one_file_is_self_contained(self):
         for path in self.folder.glob("*.v"):
@@ -86,7 +80,7 @@ class Export(unittest.TestCase):
         self.assertIn(TOP, modules)
         used = set()
         for parameters in ("", "-chparam SIMULATION 1") if TOP == SUBSYSTEM else ("",):
-            code, text = run(os.environ.get("YOSYS", "yosys"), "-p",
+            code, text = run(tool("yosys"), "-p",
                              f"read_verilog {self.file}; hierarchy -check -top {TOP} {parameters}", cwd=self.folder)
             self.assertEqual(code, 0, text)
             # yosys names the modules that stay: as they are, or derived from one with parameters
@@ -178,7 +172,7 @@ class TwoTops(unittest.TestCase):
             for top in (TOP, other):
                 export(top, folder)
             files = [f"{top}/{top}.v" for top in (TOP, other)]
-            self.assertEqual(run(os.environ.get("IVERILOG", "iverilog"), "-g2005", "-Wall", "-t", "null", "-s", TOP, "-s", other,
+            self.assertEqual(run(tool("iverilog"), "-g2005", "-Wall", "-t", "null", "-s", TOP, "-s", other,
                                  *files, cwd=folder), (0, ""))
 
 

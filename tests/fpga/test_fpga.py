@@ -20,6 +20,8 @@ ROOT = HERE.parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
 import datasheet  # noqa: E402
 import fpga  # noqa: E402
+sys.path.insert(0, str(ROOT / "tests"))
+from tools import run, tool  # noqa: E402
 
 
 class Reports(unittest.TestCase):
@@ -180,22 +182,21 @@ class Harness(unittest.TestCase):
             yield row, files
 
     def clean(self, *command):
-        result = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        self.assertEqual((result.returncode, result.stdout), (0, ""), " ".join(command))
+        self.assertEqual(run(*command, cwd=ROOT), (0, ""), " ".join(command))
 
     def test_verilator(self):
         for row, files in self.each_row():
-            self.clean(os.environ.get("VERILATOR", "verilator"), "--lint-only", "-Wall", "-Irtl/include", *row.macros(),
+            self.clean(tool("verilator"), "--lint-only", "-Wall", "-Irtl/include", *row.macros(),
                        "rtl/lint/verilator_waiver.vlt", *files, "--top-module", "fpga_harness")
 
     def test_icarus(self):
         for row, files in self.each_row():
-            self.clean(os.environ.get("IVERILOG", "iverilog"), "-g2005", "-Wall", "-t", "null", "-Irtl/include",
+            self.clean(tool("iverilog"), "-g2005", "-Wall", "-t", "null", "-Irtl/include",
                        *row.macros(), "-s", "fpga_harness", *files)
 
     def test_yosys(self):
         for row, files in self.each_row():
-            self.clean(os.environ.get("YOSYS", "yosys"), "-q", "-p", fpga.read_verilog(files, *row.macros()) +
+            self.clean(tool("yosys"), "-q", "-p", fpga.read_verilog(files, *row.macros()) +
                        "hierarchy -check -top fpga_harness; proc; check -assert; select -assert-none t:$dlatch")
 
     def test_synthesis_keeps_a_register_for_every_port(self):
@@ -208,7 +209,7 @@ class Harness(unittest.TestCase):
             fold = -(-fold // 5)
             expected += fold
         files = [file for file in fpga.sources(row) if file.endswith(".v") and file != fpga.HARNESS]
-        out = subprocess.run([os.environ.get("YOSYS", "yosys"), "-p", fpga.read_verilog(files, "-lib") +
+        out = subprocess.run([tool("yosys"), "-p", fpga.read_verilog(files, "-lib") +
                               fpga.read_verilog([fpga.HARNESS], *row.macros()) + "synth -top fpga_harness; "
                               "select -count t:*DFF*"], cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout
         self.assertEqual(int(re.findall(r"^(\d+) objects\.$", out, re.M)[-1]), expected)

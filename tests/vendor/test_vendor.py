@@ -12,23 +12,18 @@ import os
 import pathlib
 import re
 import shutil
-import subprocess
+import sys
 import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests"))
+from tools import run, tool  # noqa: E402
 HERE = pathlib.Path(__file__).resolve().parent
 REGION = "cchip_pr_region"
 STATIC = "scripts/vendor/cchip_pr_static.v"
 VIVADO = "scripts/vivado/dfx.tcl"
 QUARTUS = "scripts/quartus/pr.tcl"
-
-
-def run(variable, default, *arguments, **options):
-    """Exit code and everything that the tool printed."""
-    result = subprocess.run([os.environ.get(variable, default), *map(str, arguments)], stdout=subprocess.PIPE,
-                            stderr=subprocess.STDOUT, text=True, timeout=300, **options)
-    return result.returncode, result.stdout
 
 
 def files(root=ROOT):
@@ -49,7 +44,7 @@ def ports(top, root=ROOT, parameters=(), define=""):
     sources = " ".join(str(name) for name in [*files(root), root / STATIC])
     with tempfile.TemporaryDirectory() as folder:
         out = f"{folder}/ports.json"
-        code, text = run("YOSYS", "yosys", "-q", "-p", f"read_verilog -DSYNTHESIS {define} -I{root}/rtl/include {sources};"
+        code, text = run(tool("yosys"), "-q", "-p", f"read_verilog -DSYNTHESIS {define} -I{root}/rtl/include {sources};"
                          f" hierarchy -check -top {top}{values}; delete p:*; write_json {out}")
         if code:
             raise AssertionError(text)
@@ -82,7 +77,7 @@ def tcl(stubs, script, *settings, root=ROOT, incompatible=""):
         log = pathlib.Path(folder) / "log"
         environment = {**os.environ, "VENDOR_LOG": str(log), "VENDOR_PORTS": port_names(),
                        "VENDOR_INCOMPATIBLE": incompatible}
-        code, text = run("TCLSH", "tclsh", HERE / stubs, root / script, f"out={folder}/out", *settings, env=environment,
+        code, text = run(tool("tclsh"), HERE / stubs, root / script, f"out={folder}/out", *settings, env=environment,
                          cwd=folder)
         if code:
             raise AssertionError(text)
@@ -164,18 +159,18 @@ class Static(unittest.TestCase):
     def test_static_side_sends_answers_and_holds(self):
         with tempfile.TemporaryDirectory() as folder:
             sources = [*files(), ROOT / STATIC, HERE / "bench_static.v"]
-            self.assertEqual(run("IVERILOG", "iverilog", "-g2005", "-Wall", "-I", ROOT / "rtl/include", "-s",
+            self.assertEqual(run(tool("iverilog"), "-g2005", "-Wall", "-I", ROOT / "rtl/include", "-s",
                                  "bench_static", "-o", f"{folder}/bench", *sources), (0, ""))
-            self.assertEqual(run("VVP", "vvp", "-n", f"{folder}/bench"), (0, "PASS\n"))
+            self.assertEqual(run(tool("vvp"), "-n", f"{folder}/bench"), (0, "PASS\n"))
 
     def test_static_side_is_clean(self):
-        self.assertEqual(run("VERILATOR", "verilator", "--lint-only", "-Wall", f"-I{ROOT}/rtl/include",
+        self.assertEqual(run(tool("verilator"), "--lint-only", "-Wall", f"-I{ROOT}/rtl/include",
                              ROOT / "rtl/lint/verilator_waiver.vlt", *files(), ROOT / STATIC, "--top-module",
                              "cchip_pr_static"), (0, ""))
 
     def test_static_side_is_clean_around_an_empty_cell(self):
         sources = " ".join(str(name) for name in [*files(), ROOT / STATIC])
-        self.assertEqual(run("YOSYS", "yosys", "-q", "-p",
+        self.assertEqual(run(tool("yosys"), "-q", "-p",
                              f"read_verilog -DSYNTHESIS -DCCHIP_PR_BLACK_BOX -I{ROOT}/rtl/include {sources};"
                              " hierarchy -check -top cchip_pr_static; proc; check -assert; select -assert-none t:$dlatch;"
                              f" select -assert-count 1 t:{REGION}"), (0, ""))
