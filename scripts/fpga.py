@@ -90,8 +90,8 @@ def rows():
     table += [Row("tri_tri_portable", tri_tri, files="cchip.f", seeds=3),
               Row("array6", "cchip_primtest_array", (("LANES", 6),), seeds=3)]
     # each slot is a partition for the largest module
-    table += [Row(f"subsystem{n}", "fpga_subsystem", (("SLOTS", n), ("RM_ID", 3)), shape="quad-quad", seeds=3)
-              for n in (1, 2)]
+    table += [Row(f"subsystem{n}", "fpga_subsystem", (("SLOTS", n), ("RM_ID", 3)), shape="quad-quad", seeds=3,
+                  placer="heap") for n in (1, 2)]
     return {row.name: row for row in table}
 
 
