@@ -5,7 +5,6 @@
 usage: test_export.py TOP VECTORS_PROGRAM SCRATCH
 
 Environment: VERILATOR, IVERILOG, YOSYS = commands (default: found on PATH)."""
-import os
 import pathlib
 import re
 import shutil
@@ -16,6 +15,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 from tools import run, tool  # noqa: E402
+
 TOP, VECTORS, SCRATCH = "", "", ""
 BLANK = "cchip_primtest_blank"
 SUBSYSTEM = "cchip_primtest_subsystem"
@@ -80,8 +80,8 @@ class Export(unittest.TestCase):
         self.assertIn(TOP, modules)
         used = set()
         for parameters in ("", "-chparam SIMULATION 1") if TOP == SUBSYSTEM else ("",):
-            code, text = run(tool("yosys"), "-p",
-                             f"read_verilog {self.file}; hierarchy -check -top {TOP} {parameters}", cwd=self.folder)
+            code, text = run(tool("yosys"), "-p", f"read_verilog {self.file}; "
+                             f"hierarchy -check -top {TOP} {parameters}", cwd=self.folder)
             self.assertEqual(code, 0, text)
             # yosys names the modules that stay: as they are, or derived from one with parameters
             used |= set(re.findall(r"(?:Top|Used) module: +\\?(?:\$paramod(?:\$[0-9a-f]+)?\\)?(\w+)", text))

@@ -17,10 +17,9 @@ import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
 import datasheet  # noqa: E402
 import fpga  # noqa: E402
-sys.path.insert(0, str(ROOT / "tests"))
 from tools import run, tool  # noqa: E402
 
 
