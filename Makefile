@@ -146,14 +146,14 @@ tidy: build ## clang-tidy over our own C++ (slow)
 	run-clang-tidy -quiet -j $(JOBS) -p $(RELEASE) '^$(CURDIR)/(cpp_ref|sim|tests)/'
 
 format: ## format our own C++
-	git ls-files -z --cached --others --exclude-standard '*.cpp' '*.hpp' ':!cpp_ref/include/cchip/defs.hpp' | xargs -0 -r clang-format -i
+	git ls-files -z --cached --others --exclude-standard '*.cpp' '*.hpp' ':!cpp_ref/include/cchip/wire/definitions.hpp' | xargs -0 -r clang-format -i
 
 export: $(RELEASE)/build.ninja ## one Verilog file per top with constraints, datasheet and bench in build/export (EXPORT_ARGS=--help)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_pair_vectors
 	scripts/export.py $(EXPORT_ARGS)
 
 install: $(RELEASE)/build.ninja ## install command, libraries, headers and RTL below DESTDIR/PREFIX
-	cmake --build $(RELEASE) -j $(JOBS) --target cchip cchip_ref cchip_model
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip cchip_core cchip_mesh_io cchip_reference cchip_model cchip_device
 	$(if $(DESTDIR),DESTDIR="$(abspath $(DESTDIR))") cmake --install $(RELEASE) --prefix "$(PREFIX)"
 
 clean: ## delete the build folder

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installed tree below the prefix:
 #   bin/cchip                     command line (if built)
-#   lib/libcchip_{ref,model}.a    with include/cchip/ and lib/cmake/collisionchip/:
-#                                 find_package(collisionchip) gives collisionchip::ref and ::model
+#   lib/libcchip_*.a              with include/cchip/ and lib/cmake/collisionchip/: find_package(collisionchip) gives
+#                                 collisionchip::core, ::mesh_io, ::reference, ::model and ::device
 #   lib/libcchip_reconfig.a       with include/cchip/rc/ (if built): find_package(collisionchip COMPONENTS reconfig) gives
 #                                 collisionchip::reconfig alone, which needs SystemC and nothing of the above
 #   share/collisionchip/rtl       Verilog sources, include folder and file list cchip.f
@@ -11,9 +11,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(CCHIP_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/collisionchip)
 
-set_target_properties(cchip_ref PROPERTIES EXPORT_NAME ref)
-set_target_properties(cchip_model PROPERTIES EXPORT_NAME model)
-install(TARGETS cchip_ref cchip_model EXPORT collisionchip ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS cchip_core cchip_mesh_io cchip_reference cchip_model cchip_device EXPORT collisionchip ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/cpp_ref/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.hpp")
 if(CCHIP_SIMULATION)

@@ -237,7 +237,7 @@ def export(top, options):
     shutil.copy(ROOT / "tests" / "icarus" / bench, folder)
     if top == SUBSYSTEM:
         shutil.copy(ROOT / "tests" / "icarus" / "bench_subsystem.v", folder)
-        shutil.copy(ROOT / "cpp_ref" / "include" / "cchip" / "registers.hpp", folder)
+        shutil.copy(ROOT / "cpp_ref" / "include" / "cchip" / "wire" / "registers.hpp", folder)
     if top != BLANK:
         write_vectors(options.vectors, KINDS[top], folder / "vectors.hex", options.pairs, options.seed)
     (folder / "README.md").write_text(readme(top, [suffix for suffix, _ in files], options.pairs, options.mhz))

@@ -57,7 +57,7 @@ def verilog(data, names):
 
 
 def cpp(data, names):
-    lines = ["// SPDX-License-Identifier: Apache-2.0", f"// {NOTE}", "#ifndef CCHIP_DEFS_HPP", "#define CCHIP_DEFS_HPP", "",
+    lines = ["// SPDX-License-Identifier: Apache-2.0", f"// {NOTE}", "#ifndef CCHIP_WIRE_DEFINITIONS_HPP", "#define CCHIP_WIRE_DEFINITIONS_HPP", "",
              "#include <cstdint>", "", "namespace cchip {", ""]
     for e in data["enums"]:
         lines += [f"/// {e['doc'][0].upper() + e['doc'][1:]}.", f"enum class {e['name']} : std::uint8_t {{"]
@@ -80,7 +80,7 @@ def cpp(data, names):
 
 def page(data):
     lines = ["<!-- SPDX-License-Identifier: Apache-2.0 -->", f"<!-- {NOTE} -->", "# Shared definitions", "",
-             "Verilog: `` `CCHIP_<NAME> `` of `rtl/include/cchip_defs.vh`. C++: `cchip::defs::<name>` of `<cchip/defs.hpp>`.", "",
+             "Verilog: `` `CCHIP_<NAME> `` of `rtl/include/cchip_defs.vh`. C++: `cchip::defs::<name>` of `<cchip/wire/definitions.hpp>`.", "",
              "## Constants", "", "| name | value | unit | meaning |", "|---|---|---|---|"]
     lines += [f"| `{c['name']}` | {c['value']} | {c['unit']} | {c['doc']} |" for c in data["constants"]]
     for e in data["enums"]:
@@ -102,7 +102,7 @@ def main():
         names[f["name"]] = "function" if f["args"] else "function0"
     outputs = {
         ROOT / "rtl" / "include" / "cchip_defs.vh": verilog(data, names),
-        ROOT / "cpp_ref" / "include" / "cchip" / "defs.hpp": cpp(data, names),
+        ROOT / "cpp_ref" / "include" / "cchip" / "wire" / "definitions.hpp": cpp(data, names),
         ROOT / "docs" / "definitions.md": page(data),
     }
     stale = [p for p, text in outputs.items() if not p.exists() or p.read_text() != text]

@@ -479,7 +479,7 @@ def verilog(name, registers):
 def cpp(registers):
     lines = ["// SPDX-License-Identifier: Apache-2.0", f"// {NOTE}", "/// \\file",
              "/// Byte offsets, masks and shifts of the registers of cchip_primtest_subsystem; see docs/registers.md.",
-             "#ifndef CCHIP_REGISTERS_HPP", "#define CCHIP_REGISTERS_HPP", "", "#include <cstdint>", "",
+             "#ifndef CCHIP_WIRE_REGISTERS_HPP", "#define CCHIP_WIRE_REGISTERS_HPP", "", "#include <cstdint>", "",
              "namespace cchip::registers {", ""]
     for r in registers:
         lines += [f"/// {r['desc']}.".replace("..", "."), f"namespace {r['name']} {{"]
@@ -506,7 +506,7 @@ ACCESS = {"constant": "ro", "input": "ro", "plain": "rw", "pulse": "wo, reads 0"
 
 def page(title, registers):
     lines = ["<!-- SPDX-License-Identifier: Apache-2.0 -->", f"<!-- {NOTE} -->", f"# {title}", "",
-             "AXI4-Lite, 32-bit words, little endian. C++: `cchip::registers` of `<cchip/registers.hpp>`. RTL: "
+             "AXI4-Lite, 32-bit words, little endian. C++: `cchip::registers` of `<cchip/wire/registers.hpp>`. RTL: "
              "[cchip_subsystem_regs](modules/cchip_subsystem_regs.md). A read where no register is and a write where nothing can "
              "be written are answered `SLVERR`. Bits that are not listed read 0; writing them does nothing.", "",
              "| offset | register | what |", "|---|---|---|"]
@@ -528,7 +528,7 @@ def main():
     name, title, registers = read(SOURCE.read_text())
     outputs = {
         ROOT / "rtl" / "regs" / f"{name}_regs.v": verilog(name, registers),
-        ROOT / "cpp_ref" / "include" / "cchip" / "registers.hpp": cpp(registers),
+        ROOT / "cpp_ref" / "include" / "cchip" / "wire" / "registers.hpp": cpp(registers),
         ROOT / "docs" / "registers.md": page(title, registers),
     }
     stale = [p for p, text in outputs.items() if not p.exists() or p.read_text() != text]

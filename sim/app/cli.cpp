@@ -5,22 +5,22 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cchip/stimulus/csv_reader.hpp>
+#include <cchip/stimulus/pair_columns.hpp>
+#include <cchip/stimulus/usage_error.hpp>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <utility>
 
-#include "csv_reader.hpp"
 #include "demo.hpp"
 #include "engines.hpp"
 #include "mesh_source.hpp"
-#include "pair_columns.hpp"
 #include "pair_runner.hpp"
 #include "pose.hpp"
 #include "progress.hpp"
 #include "reconfig.hpp"
-#include "usage_error.hpp"
 
 namespace cchip::app {
 namespace {

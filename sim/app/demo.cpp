@@ -4,16 +4,16 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
-#include <cchip/eigen_reference.hpp>
-#include <cchip/exact_oracle.hpp>
-#include <cchip/local_grid.hpp>
+#include <cchip/exact/oracle.hpp>
+#include <cchip/geometry/grid.hpp>
+#include <cchip/reference/eigen_sat.hpp>
+#include <cchip/stimulus/usage_error.hpp>
 #include <chrono>
 #include <filesystem>
 
 #include "mesh_source.hpp"
 #include "pair_runner.hpp"
 #include "pose.hpp"
-#include "usage_error.hpp"
 
 namespace cchip::app {
 namespace {
@@ -48,7 +48,7 @@ void check(const PairJob& job, const GridPair& pair, int coord_w, const EngineAn
   counts.hits += answer.definite ? answer.grid : on_doubles;
   counts.mismatches += !agrees;
   counts.indefinite += !answer.definite;
-  if (answer.hardware) counts.beats += static_cast<std::uint64_t>(answer.hardware->beats);
+  if (answer.hardware) counts.beats += static_cast<std::uint64_t>(answer.beats);
 }
 
 double ratio(std::uint64_t count, std::uint64_t of) {

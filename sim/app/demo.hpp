@@ -5,7 +5,7 @@
 #define CCHIP_APP_DEMO_HPP
 
 #include <Eigen/Geometry>
-#include <cchip/mesh.hpp>
+#include <cchip/mesh/mesh.hpp>
 #include <ostream>
 #include <string>
 #include <vector>

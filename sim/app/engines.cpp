@@ -3,10 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <cchip/rtl_engine.hpp>
+#include <cchip/rtl/rtl_engine.hpp>
+#include <cchip/stimulus/usage_error.hpp>
 #include <fstream>
-
-#include "usage_error.hpp"
 
 namespace cchip::app {
 namespace {

@@ -4,7 +4,7 @@
 #ifndef CCHIP_APP_ENGINES_HPP
 #define CCHIP_APP_ENGINES_HPP
 
-#include <cchip/engine.hpp>
+#include <cchip/device/pair_engine.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>

@@ -3,9 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cchip/stimulus/usage_error.hpp>
 #include <stdexcept>
-
-#include "usage_error.hpp"
 
 namespace cchip::app {
 

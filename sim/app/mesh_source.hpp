@@ -4,14 +4,13 @@
 #ifndef CCHIP_APP_MESH_SOURCE_HPP
 #define CCHIP_APP_MESH_SOURCE_HPP
 
-#include <cchip/mesh.hpp>
+#include <cchip/mesh/mesh.hpp>
+#include <cchip/stimulus/pair_job.hpp>
 #include <cstdint>
 #include <functional>
 #include <ostream>
 #include <string>
 #include <vector>
-
-#include "pair_job.hpp"
 
 namespace cchip::app {
 

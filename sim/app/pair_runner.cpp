@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cchip/local_grid.hpp>
-#include <cchip/resolve.hpp>
-
-#include "usage_error.hpp"
+#include <cchip/exact/resolve.hpp>
+#include <cchip/geometry/grid.hpp>
+#include <cchip/stimulus/usage_error.hpp>
 
 namespace cchip::app {
 namespace {
@@ -79,7 +78,7 @@ void PairRunner::answer_batch() {
     ++summary_.pairs;
     summary_.hits += hit;
     summary_.indefinite += !answers[i].definite;
-    if (answers[i].hardware) summary_.beats += static_cast<std::uint64_t>(answers[i].hardware->beats);
+    if (answers[i].hardware) summary_.beats += static_cast<std::uint64_t>(answers[i].beats);
     write_row(jobs_[i], answers[i], hit);
   }
   writer_->flush();

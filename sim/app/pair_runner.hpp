@@ -4,7 +4,8 @@
 #ifndef CCHIP_APP_PAIR_RUNNER_HPP
 #define CCHIP_APP_PAIR_RUNNER_HPP
 
-#include <cchip/engine.hpp>
+#include <cchip/device/pair_engine.hpp>
+#include <cchip/stimulus/pair_job.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -12,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "pair_job.hpp"
 #include "row_writer.hpp"
 
 namespace cchip::app {

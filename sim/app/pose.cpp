@@ -3,13 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
+#include <cchip/geometry/pose.hpp>
+#include <cchip/stimulus/pair_columns.hpp>
+#include <cchip/stimulus/usage_error.hpp>
 #include <string_view>
 #include <vector>
-
-#include "pair_columns.hpp"
-#include "usage_error.hpp"
 
 namespace cchip::app {
 namespace {
@@ -28,31 +26,7 @@ std::vector<double> parse_numbers(const std::string& option, std::string_view te
   }
 }
 
-/// Rotation in the plane of axes `from` and `to`; the quarter turns have no rounding error.
-Eigen::Matrix3d rotation(double degrees, int from, int to) {
-  int quarter = 0;
-  const double rest = std::remquo(degrees, 90.0, &quarter);
-  const double radians = rest * (std::acos(-1.0) / 180.0);
-  const double c = std::cos(radians);
-  const double s = std::sin(radians);
-  const std::array<double, 4> cosines = {c, -s, -c, s};
-  const std::array<double, 4> sines = {s, c, -s, -c};
-  const auto turn = static_cast<std::size_t>(((quarter % 4) + 4) % 4);
-  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
-  matrix(from, from) = matrix(to, to) = cosines[turn];
-  matrix(to, from) = sines[turn];
-  matrix(from, to) = -sines[turn];
-  return matrix;
-}
-
 }  // namespace
-
-Eigen::Isometry3d make_pose(const Eigen::Vector3d& translation, const Eigen::Vector3d& degrees) {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = rotation(degrees.z(), 0, 1) * rotation(degrees.y(), 2, 0) * rotation(degrees.x(), 1, 2);
-  pose.translation() = translation;
-  return pose;
-}
 
 Eigen::Isometry3d parse_pose(const std::string& text) {
   const std::vector<double> n = parse_numbers("--pose", text);

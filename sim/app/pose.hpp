@@ -18,9 +18,6 @@ Eigen::Isometry3d parse_pose(const std::string& text);
 /// \throws UsageError not twelve numbers, or R is not a rotation within 1e-9
 Eigen::Isometry3d parse_pose_matrix(const std::string& text);
 
-/// The pose of parse_pose() from its six numbers: length units and degrees.
-Eigen::Isometry3d make_pose(const Eigen::Vector3d& translation, const Eigen::Vector3d& degrees);
-
 }  // namespace cchip::app
 
 #endif

@@ -5,11 +5,12 @@
 #include <fmt/ostream.h>
 
 #include <algorithm>
-#include <cchip/canonical.hpp>
-#include <cchip/exact_oracle.hpp>
-#include <cchip/local_grid.hpp>
-#include <cchip/primtest_engine.hpp>
-#include <cchip/reconfig_run.hpp>
+#include <cchip/device/primtest_engine.hpp>
+#include <cchip/exact/oracle.hpp>
+#include <cchip/geometry/canonical.hpp>
+#include <cchip/geometry/grid.hpp>
+#include <cchip/rtl/reconfig_run.hpp>
+#include <cchip/stimulus/usage_error.hpp>
 #include <chrono>
 #include <filesystem>
 #include <random>
@@ -17,7 +18,6 @@
 #include "demo.hpp"
 #include "mesh_source.hpp"
 #include "pair_runner.hpp"
-#include "usage_error.hpp"
 
 namespace cchip::app {
 namespace {

@@ -4,9 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cchip/stimulus/csv_reader.hpp>
 #include <nlohmann/json.hpp>
-
-#include "csv_reader.hpp"
 
 namespace cchip::app {
 namespace {

@@ -2,12 +2,11 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cchip/levels/generator.hpp>
+#include <cchip/stimulus/pair_source.hpp>
 #include <cmath>
 #include <random>
 #include <stdexcept>
 #include <string>
-
-#include "../../tests/campaign/pair_source.hpp"
 
 namespace cchip::levels {
 namespace {
@@ -77,7 +76,7 @@ bool is_legal(const StimulusPair& pair) {
 class Source {
  public:
   Source(Kind a, Kind b, std::uint64_t seed)
-      : pairs_(coord_w, seed, a, b), classes_(campaign::classes_of(a, b)), random_(seed) {}
+      : pairs_(coord_w, seed, a, b), classes_(stimulus::classes_of(a, b)), random_(seed) {}
   StimulusPair draw() {
     while (true) {  // a rotation can move a vertex over the rim of the grid
       const StimulusPair pair = with_matrix(pairs_.draw(classes_[pairs_.draw_class()].value), random_);
@@ -86,8 +85,8 @@ class Source {
   }
 
  private:
-  campaign::PairSource pairs_;
-  std::vector<campaign::PairClassInfo> classes_;
+  stimulus::PairSource pairs_;
+  std::vector<stimulus::PairClassInfo> classes_;
   Random random_;
 };
 

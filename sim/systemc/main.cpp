@@ -2,17 +2,17 @@
 // cchip_levels: the refinement levels on one stimulus, compared pair by pair.
 #include <CLI/CLI.hpp>
 #include <array>
-#include <cchip/defs.hpp>
 #include <cchip/levels/added_deltas.hpp>
 #include <cchip/levels/generator.hpp>
 #include <cchip/levels/level.hpp>
 #include <cchip/levels/stimulus_file.hpp>
 #include <cchip/levels/summary.hpp>
 #include <cchip/sim/seed.hpp>
+#include <cchip/stimulus/usage_error.hpp>
+#include <cchip/wire/definitions.hpp>
 #include <fstream>
 #include <iostream>
 #include <systemc>
-#include <usage_error.hpp>
 
 namespace cchip::levels {
 namespace {
@@ -47,7 +47,7 @@ std::string check_payload(const std::string& text) {
 Stimulus make_stimulus(const Options& options) {
   if (options.read_from.empty()) return generate(options.generator);
   std::ifstream in(options.read_from);
-  if (!in) throw app::UsageError(options.read_from + ": cannot be read; check its path and permissions");
+  if (!in) throw UsageError(options.read_from + ": cannot be read; check its path and permissions");
   return read_stimulus(in, options.read_from);
 }
 
@@ -55,7 +55,7 @@ void save(const Stimulus& stimulus, const std::string& path) {
   std::ofstream out(path);
   write_stimulus(out, stimulus);
   out.close();
-  if (!out) throw app::UsageError(path + ": cannot be written; check folder, permissions and disk");
+  if (!out) throw UsageError(path + ": cannot be written; check folder, permissions and disk");
 }
 
 LevelRun run(const Level& level, const Stimulus& stimulus, const LevelOptions& options) {
@@ -75,7 +75,7 @@ int run(const Options& options) {
   for (const Level& level : all_levels) summary.add(run(level, stimulus, options.level));
   if (summary.good()) summary.set_added_deltas(added_deltas(stimulus, options.level));
   summary.print(std::cout);
-  return summary.good() ? app::exit_ok : app::exit_mismatch;
+  return summary.good() ? exit_ok : exit_mismatch;
 }
 
 int run_with_arguments(int argc, char** argv) {
@@ -102,7 +102,7 @@ int run_with_arguments(int argc, char** argv) {
   try {
     command.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return command.exit(error) == 0 ? app::exit_ok : app::exit_usage;
+    return command.exit(error) == 0 ? exit_ok : exit_usage;
   }
   options.level.seed = options.generator.seed;
   std::cout << "CCHIP_SEED=" << options.generator.seed << '\n';
@@ -116,14 +116,14 @@ int sc_main(int argc, char** argv) {
   using namespace cchip;
   try {
     return levels::run_with_arguments(argc, argv);
-  } catch (const app::UsageError& error) {
+  } catch (const UsageError& error) {
     std::cerr << error.what() << '\n';
-    return app::exit_usage;
+    return exit_usage;
   } catch (const std::invalid_argument& error) {
     std::cerr << error.what() << '\n';
-    return app::exit_usage;
+    return exit_usage;
   } catch (const std::exception& error) {
     std::cerr << "cchip_levels: " << error.what() << '\n';
-    return app::exit_internal;
+    return exit_internal;
   }
 }

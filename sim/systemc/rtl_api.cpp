@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/canonical.hpp>
+#include <cchip/geometry/canonical.hpp>
 #include <cchip/levels/rtl_api.hpp>
 #include <stdexcept>
 

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include <cchip/levels/software_c3.hpp>
-#include <cchip/registers.hpp>
+#include <cchip/wire/registers.hpp>
 #include <stdexcept>
 
 namespace cchip::levels {

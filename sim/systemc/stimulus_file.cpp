@@ -2,13 +2,13 @@
 #include <fmt/ostream.h>
 
 #include <cchip/levels/stimulus_file.hpp>
+#include <cchip/stimulus/csv_reader.hpp>
+#include <cchip/stimulus/pair_columns.hpp>
+#include <cchip/stimulus/usage_error.hpp>
 #include <cmath>
-#include <csv_reader.hpp>
 #include <limits>
 #include <map>
-#include <pair_columns.hpp>
 #include <stdexcept>
-#include <usage_error.hpp>
 
 namespace cchip::levels {
 namespace {
@@ -34,7 +34,7 @@ std::vector<std::string> column_names() {
 /// One row by names of columns.
 class Row {
  public:
-  Row(const std::map<std::string, std::size_t>& columns, const app::CsvRow& row) : columns_(columns), row_(row) {}
+  Row(const std::map<std::string, std::size_t>& columns, const CsvRow& row) : columns_(columns), row_(row) {}
 
   const std::string& text(const std::string& name) const {
     const std::size_t column = columns_.at(name);
@@ -43,7 +43,7 @@ class Row {
   }
   double number(const std::string& name) const {
     try {
-      return app::parse_coordinate(text(name));
+      return parse_coordinate(text(name));
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("column " + name + ": " + error.what());
     }
@@ -84,16 +84,16 @@ class Row {
 
  private:
   const std::map<std::string, std::size_t>& columns_;
-  const app::CsvRow& row_;
+  const CsvRow& row_;
 };
 
-std::map<std::string, std::size_t> find_columns(const app::CsvRow& header, const std::string& file) {
+std::map<std::string, std::size_t> find_columns(const CsvRow& header, const std::string& file) {
   std::map<std::string, std::size_t> columns;
   for (std::size_t i = 0; i < header.fields.size(); ++i) columns.emplace(header.fields[i], i);
   for (const std::string& name : column_names()) {
     if (columns.count(name) != 0) continue;
-    throw app::row_error(file, header.line,
-                         "column " + name + " is missing; see docs/levels.md, or write a file with --write");
+    throw row_error(file, header.line,
+                    "column " + name + " is missing; see docs/levels.md, or write a file with --write");
   }
   return columns;
 }
@@ -120,9 +120,9 @@ void write_stimulus(std::ostream& out, const Stimulus& stimulus) {
 }
 
 Stimulus read_stimulus(std::istream& in, const std::string& name) {
-  app::CsvReader reader(in, name);
-  app::CsvRow row;
-  if (!reader.next(row)) throw app::UsageError(name + ": the file is empty; write one with --write");
+  CsvReader reader(in, name);
+  CsvRow row;
+  if (!reader.next(row)) throw UsageError(name + ": the file is empty; write one with --write");
   const auto columns = find_columns(row, name);
   Stimulus stimulus;
   while (reader.next(row)) {
@@ -131,10 +131,10 @@ Stimulus read_stimulus(std::istream& in, const std::string& name) {
       if (!stimulus.empty()) check_order(stimulus.back(), pair);
       stimulus.push_back(pair);
     } catch (const std::invalid_argument& error) {
-      throw app::row_error(name, row.line, error.what());
+      throw row_error(name, row.line, error.what());
     }
   }
-  if (stimulus.empty()) throw app::UsageError(name + ": no pairs; write a file with --write");
+  if (stimulus.empty()) throw UsageError(name + ": no pairs; write a file with --write");
   return stimulus;
 }
 

@@ -4,10 +4,10 @@
 #include <Vlevel4_subsystem.h>
 
 #include <cchip/levels/stimulus.hpp>
-#include <cchip/reconfig_run.hpp>
+#include <cchip/rtl/pair_port.hpp>
+#include <cchip/rtl/reconfig_run.hpp>
 #include <cchip/sim/axi_lite.hpp>
 #include <cchip/sim/axi_memory.hpp>
-#include <cchip/sim/pair_port.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <deque>
 #include <utility>
@@ -34,7 +34,7 @@ class Pairs : public sim::Agent {
     port_.put({});
   }
 
-  void offer(const PrimtestRequest& request) {
+  void offer(const PairRequest& request) {
     port_.put({request.pair, request.tag, static_cast<std::uint8_t>(request.mode)});
     model_.s_pair_kind = static_cast<CData>(module_of(request.pair));
     offers_ = true;
@@ -46,13 +46,13 @@ class Pairs : public sim::Agent {
     if (now.in_reset) return;
     if (model_.s_pair_ready != 0) offers_ = false;
     if (model_.m_result_valid == 0 || model_.m_result_ready == 0) return;
-    const sim::PairResultBeat beat = port_.result();
-    result = PrimtestResult{beat.tag, beat.hit, beat.grid, beat.definite, beat.axis, beat.beats};
+    const PairResult beat = port_.result();
+    result = beat;
   }
 
   bool offers() const { return offers_; }
 
-  std::optional<PrimtestResult> result;
+  std::optional<PairResult> result;
 
  private:
   Model& model_;
@@ -108,9 +108,9 @@ SubsystemRtl::~SubsystemRtl() = default;
 void SubsystemRtl::clock() { parts_->simulation.step(); }
 
 bool SubsystemRtl::wants_pair() const { return !parts_->pairs.offers(); }
-void SubsystemRtl::offer(const PrimtestRequest& request) { parts_->pairs.offer(request); }
+void SubsystemRtl::offer(const PairRequest& request) { parts_->pairs.offer(request); }
 void SubsystemRtl::set_result_ready(bool ready) { parts_->simulation->m_result_ready = ready ? 1 : 0; }
-std::optional<PrimtestResult> SubsystemRtl::result() const { return parts_->pairs.result; }
+std::optional<PairResult> SubsystemRtl::result() const { return parts_->pairs.result; }
 
 void SubsystemRtl::write_register(std::uint32_t address, std::uint32_t data) {
   parts_->registers.push_write(address, data);

@@ -5,7 +5,7 @@
 #ifndef CCHIP_LEVELS_SUBSYSTEM_RTL_HPP
 #define CCHIP_LEVELS_SUBSYSTEM_RTL_HPP
 
-#include <cchip/primtest_engine.hpp>
+#include <cchip/device/primtest_engine.hpp>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -37,11 +37,11 @@ class SubsystemRtl {
 
   /// s_pair: true if the pair offered last was accepted.
   bool wants_pair() const;
-  void offer(const PrimtestRequest& request);
+  void offer(const PairRequest& request);
   /// m_result_ready of the next clock.
   void set_result_ready(bool ready);
   /// Answer handed over on the last clock.
-  std::optional<PrimtestResult> result() const;
+  std::optional<PairResult> result() const;
 
   /// AXI4-Lite, one access at a time.
   void write_register(std::uint32_t address, std::uint32_t data);

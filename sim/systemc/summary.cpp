@@ -2,8 +2,8 @@
 #include <fmt/ostream.h>
 
 #include <algorithm>
-#include <cchip/eigen_reference.hpp>
 #include <cchip/levels/summary.hpp>
+#include <cchip/reference/eigen_sat.hpp>
 
 namespace cchip::levels {
 

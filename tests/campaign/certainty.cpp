@@ -2,13 +2,13 @@
 // True vertices lie off the grid points, on a grid 1024 times finer, so that the exact oracle knows them.
 #include <Eigen/Geometry>
 #include <boost/multiprecision/cpp_int.hpp>
-#include <cchip/canonical.hpp>
-#include <cchip/exact_oracle.hpp>
+#include <cchip/exact/oracle.hpp>
+#include <cchip/geometry/canonical.hpp>
+#include <cchip/stimulus/pair_source.hpp>
 #include <cmath>
 #include <random>
 
 #include "commands.hpp"
-#include "pair_source.hpp"
 
 namespace cchip::campaign {
 namespace {
@@ -154,7 +154,7 @@ Row judge(const ShapeInfo& shape, const GridPair& grid, bool grid_hit, const Gri
   row.hits = hit ? 1 : 0;
   row.changed = hit != grid_hit ? 1 : 0;
   for (std::size_t mode = 0; mode < 2; ++mode) {
-    const model::Outcome o = model::run_programme(shape.options(), grid, static_cast<int>(mode), coord_w);
+    const model::Outcome o = model::run_programme(shape.options(), grid, static_cast<PairMode>(mode), coord_w);
     if (o.definite) ++(o.grid ? row.definite_hit : row.definite_no)[mode];
     row.contradictions += o.definite && o.grid != hit ? 1 : 0;
     row.false_no += !o.hit() && hit ? 1 : 0;

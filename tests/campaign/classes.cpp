@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cchip/stimulus/judge.hpp>
+#include <cchip/stimulus/pair_source.hpp>
 #include <fstream>
 #include <random>
 
 #include "commands.hpp"
-#include "judge.hpp"
-#include "pair_source.hpp"
 #include "rtl_stream.hpp"
 
 namespace cchip::campaign {

@@ -5,11 +5,12 @@
 #ifndef CCHIP_CAMPAIGN_COMMANDS_HPP
 #define CCHIP_CAMPAIGN_COMMANDS_HPP
 
-#include <cchip/defs.hpp>
-
-#include "campaign.hpp"
+#include <cchip/stimulus/campaign.hpp>
+#include <cchip/wire/definitions.hpp>
 
 namespace cchip::campaign {
+
+using namespace stimulus;
 
 struct RandomOptions : CommonOptions {
   std::uint64_t pairs = 1000000;  ///< per shape

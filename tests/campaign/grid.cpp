@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The grid -1..1: 27 points, 27^3 ordered triangles.
-#include <cchip/canonical.hpp>
+#include <cchip/geometry/canonical.hpp>
+#include <cchip/stimulus/judge.hpp>
 #include <random>
 
 #include "commands.hpp"
-#include "judge.hpp"
 #include "rtl_stream.hpp"
 
 namespace cchip::campaign {

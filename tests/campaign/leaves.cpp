@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // What reaches a primitive test behind a bounding volume test: pairs of faces whose 24-DOPs overlap.
-#include <cchip/canonical.hpp>
-#include <cchip/dop24.hpp>
-#include <cchip/exact_oracle.hpp>
-#include <cchip/local_grid.hpp>
-#include <cchip/mesh.hpp>
+#include <cchip/bvh/dop24.hpp>
+#include <cchip/exact/oracle.hpp>
+#include <cchip/geometry/canonical.hpp>
+#include <cchip/geometry/grid.hpp>
+#include <cchip/mesh/mesh.hpp>
+#include <cchip/stimulus/quads.hpp>
 #include <cmath>
 #include <random>
 
 #include "commands.hpp"
-#include "quads.hpp"
 
 namespace cchip::campaign {
 namespace {
@@ -171,7 +171,7 @@ void measure(const ShapeInfo& shape, const LeafPair& pair, std::uint64_t part, M
     row.rounded = grid.eta != 0 ? 1 : 0;
     row.warped = is_warped(grid.a) || is_warped(grid.b) ? 1 : 0;
     for (std::size_t mode = 0; mode < 2; ++mode) {
-      const model::Outcome o = model::run_programme(shape.options(), grid, static_cast<int>(mode), widths[w]);
+      const model::Outcome o = model::run_programme(shape.options(), grid, static_cast<PairMode>(mode), widths[w]);
       row.beats[mode].add(o.beats);
       row.grid_differs = o.grid != hit ? 1 : 0;
       if (!o.definite) ++(o.grid ? row.open_hit : row.open_no)[mode];

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cchip/stimulus/judge.hpp>
+#include <cchip/stimulus/pair_source.hpp>
+
 #include "commands.hpp"
-#include "judge.hpp"
-#include "pair_source.hpp"
 
 namespace cchip::campaign {
 

@@ -9,9 +9,8 @@
 #include <Vcchip_primtest_tri_tri___024root.h>
 
 #include <cchip/sim/simulation.hpp>
+#include <cchip/stimulus/judge.hpp>
 #include <sstream>
-
-#include "judge.hpp"
 
 namespace cchip::campaign {
 namespace {
@@ -49,7 +48,7 @@ class Stream : public RtlStream {
     simulation_.reset();
   }
 
-  Run run(const std::vector<Request>& requests) override {
+  Run run(const std::vector<PairRequest>& requests) override {
     constexpr std::size_t tags = std::size_t{1} << defs::tag_w;
     Run run;
     run.results.resize(requests.size());
@@ -66,7 +65,7 @@ class Stream : public RtlStream {
         run.counts.beats += axis_leaves(simulation_.top()) ? 1 : 0;
       }
       if (simulation_->m_result_valid != 0) {
-        const sim::PairResultBeat beat = port_.result();
+        const PairResult beat = port_.result();
         std::size_t& index = in_flight[beat.tag];
         if (index == nobody) throw sim::ScoreboardError(fmt::format("a result with tag {} that no pair has", beat.tag));
         run.results[index] = beat;
@@ -93,13 +92,13 @@ class Stream : public RtlStream {
  private:
   static constexpr std::size_t nobody = ~std::size_t{0};
 
-  void offer(const std::vector<Request>& requests, std::size_t index) {
+  void offer(const std::vector<PairRequest>& requests, std::size_t index) {
     simulation_->s_pair_valid = index < requests.size() ? 1 : 0;
     if (index >= requests.size()) {
       port_.scramble(random_);
       return;
     }
-    sim::PairRequest sent{requests[index].pair, tag(index), static_cast<std::uint8_t>(requests[index].mode)};
+    PairRequest sent{requests[index].pair, tag(index), static_cast<std::uint8_t>(requests[index].mode)};
     for (GridPrimitive* p : {&sent.pair.a, &sent.pair.b}) {
       if (p->kind == Kind::tri) p->v[3].setConstant(static_cast<std::int16_t>(random_()));
     }
@@ -119,20 +118,20 @@ std::unique_ptr<RtlStream> make_rtl_stream(const ShapeInfo& shape, std::uint64_t
   return std::make_unique<Stream<Vcchip_primtest_tri_tri>>(seed);
 }
 
-sim::PairResultBeat predicted(const ShapeInfo& shape, const RtlStream::Request& request, std::uint16_t tag) {
+PairResult predicted(const ShapeInfo& shape, const PairRequest& request, std::uint16_t tag) {
   const model::Outcome o = model::run_programme(shape.options(), request.pair, request.mode, width);
   return {tag, o.hit(), o.grid, o.definite, o.witness, o.beats};
 }
 
-RtlJudgement judge_rtl(const ShapeInfo& shape, const std::vector<RtlStream::Request>& requests,
-                       const std::vector<bool>& exact, std::uint64_t seed, std::uint64_t part, Examples& examples) {
+RtlJudgement judge_rtl(const ShapeInfo& shape, const std::vector<PairRequest>& requests, const std::vector<bool>& exact,
+                       std::uint64_t seed, std::uint64_t part, Examples& examples) {
   const auto run = make_rtl_stream(shape, seed)->run(requests);
   RtlJudgement sum;
   sum.counts = run.counts;
   for (std::size_t i = 0; i < requests.size(); ++i) {
-    const RtlStream::Request& request = requests[i];
-    const sim::PairResultBeat& got = run.results[i];
-    const sim::PairResultBeat expected = predicted(shape, request, RtlStream::tag(i));
+    const PairRequest& request = requests[i];
+    const PairResult& got = run.results[i];
+    const PairResult expected = predicted(shape, request, RtlStream::tag(i));
     const bool legal = request.mode <= static_cast<int>(PairMode::directed);
     RtlJudgement one;
     one.pairs = 1;

@@ -4,10 +4,9 @@
 #ifndef CCHIP_CAMPAIGN_RTL_STREAM_HPP
 #define CCHIP_CAMPAIGN_RTL_STREAM_HPP
 
-#include <cchip/sim/pair_port.hpp>
+#include <cchip/rtl/pair_port.hpp>
+#include <cchip/stimulus/campaign.hpp>
 #include <memory>
-
-#include "campaign.hpp"
 
 namespace cchip::campaign {
 
@@ -27,17 +26,13 @@ struct RtlCounts {
 /// One module with default parameters, sources and sinks always ready.
 class RtlStream {
  public:
-  struct Request {
-    GridPair pair;
-    int mode = 0;
-  };
   struct Run {
-    std::vector<sim::PairResultBeat> results;  ///< in the order of the pairs, with the tags that were sent
+    std::vector<PairResult> results;  ///< in the order of the pairs, with the tags that were sent
     RtlCounts counts;
   };
   virtual ~RtlStream() = default;
   /// \throws sim::SimulationError no answer, an answer nobody asked for, a failed assertion
-  virtual Run run(const std::vector<Request>& requests) = 0;
+  virtual Run run(const std::vector<PairRequest>& requests) = 0;
   /// The tag of request number `index`.
   static std::uint16_t tag(std::size_t index) { return static_cast<std::uint16_t>(40503U * index); }
 };
@@ -47,7 +42,7 @@ class RtlStream {
 std::unique_ptr<RtlStream> make_rtl_stream(const ShapeInfo& shape, std::uint64_t seed);
 
 /// The result that the model predicts, with this tag.
-sim::PairResultBeat predicted(const ShapeInfo& shape, const RtlStream::Request& request, std::uint16_t tag);
+PairResult predicted(const ShapeInfo& shape, const PairRequest& request, std::uint16_t tag);
 
 /// Results that differ in any bit from the model's, or in the grid answer from the exact one (reserved modes are
 /// not asked for it).
@@ -75,8 +70,8 @@ struct RtlJudgement {
 };
 
 /// Runs the requests and judges them. `exact[i]` is the exact answer of request i.
-RtlJudgement judge_rtl(const ShapeInfo& shape, const std::vector<RtlStream::Request>& requests,
-                       const std::vector<bool>& exact, std::uint64_t seed, std::uint64_t part, Examples& examples);
+RtlJudgement judge_rtl(const ShapeInfo& shape, const std::vector<PairRequest>& requests, const std::vector<bool>& exact,
+                       std::uint64_t seed, std::uint64_t part, Examples& examples);
 
 }  // namespace cchip::campaign
 

@@ -12,7 +12,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-GENERATED = ["rtl/include/cchip_defs.vh", "cpp_ref/include/cchip/defs.hpp", "docs/definitions.md"]
+GENERATED = ["rtl/include/cchip_defs.vh", "cpp_ref/include/cchip/wire/definitions.hpp", "docs/definitions.md"]
 
 
 def generate(root, *options):

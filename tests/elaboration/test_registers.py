@@ -13,7 +13,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SOURCE = "rtl/regs/cchip_subsystem.rdl"
-GENERATED = ["rtl/regs/cchip_subsystem_regs.v", "cpp_ref/include/cchip/registers.hpp", "docs/registers.md"]
+GENERATED = ["rtl/regs/cchip_subsystem_regs.v", "cpp_ref/include/cchip/wire/registers.hpp", "docs/registers.md"]
 
 
 def generate(root, *options):

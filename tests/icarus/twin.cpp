@@ -5,11 +5,10 @@
 #include <Vcchip_primtest_tri_quad.h>
 #include <Vcchip_primtest_tri_tri.h>
 
-#include <cchip/sim/pair_port.hpp>
+#include <cchip/rtl/pair_port.hpp>
 #include <cchip/sim/simulation.hpp>
+#include <cchip/stimulus/pair_vector.hpp>
 #include <iostream>
-
-#include "vector.hpp"
 
 namespace {
 
@@ -96,9 +95,9 @@ class Twin {
     }
     const int idle = simulation_->idle;
     if (simulation_->m_result_valid != 0 && simulation_->m_result_ready != 0) {
-      const PairResultBeat result = port_.result();
+      const PairResult result = port_.result();
       lines_ << "out " << clock_ << ' ' << result.tag << ' ' << result.hit << ' ' << result.grid << ' '
-             << result.definite << ' ' << pack_axis(result.axis) << ' ' << result.beats << ' ' << idle << '\n';
+             << result.definite << ' ' << to_bits(result.axis) << ' ' << result.beats << ' ' << idle << '\n';
       --inside_;
     }
     accepted_ = simulation_->s_pair_valid != 0 && simulation_->s_pair_ready != 0;

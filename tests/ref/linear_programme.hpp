@@ -4,7 +4,7 @@
 #ifndef CCHIP_TESTS_REF_LINEAR_PROGRAMME_HPP
 #define CCHIP_TESTS_REF_LINEAR_PROGRAMME_HPP
 
-#include <cchip/geometry.hpp>
+#include <cchip/geometry/primitive.hpp>
 
 namespace cchip_test {
 

@@ -5,7 +5,7 @@
 #define CCHIP_TESTS_REF_RANDOM_PAIRS_HPP
 
 #include <algorithm>
-#include <cchip/geometry.hpp>
+#include <cchip/geometry/primitive.hpp>
 #include <cstdlib>
 #include <iostream>
 #include <random>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
-#include <cchip/dop24.hpp>
-#include <cchip/exact_oracle.hpp>
+#include <cchip/bvh/dop24.hpp>
+#include <cchip/exact/oracle.hpp>
 #include <cstdlib>
 #include <limits>
 #include <random>

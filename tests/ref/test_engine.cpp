@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/engine.hpp>
-#include <cchip/exact_oracle.hpp>
+#include <cchip/device/pair_engine.hpp>
+#include <cchip/exact/oracle.hpp>
 
 #include "random_pairs.hpp"
 
@@ -26,7 +26,7 @@ TEST_CASE("engine: eigen and exact answer batches in order", "[ref][engine]") {
       INFO(describe(pairs[i]));
       REQUIRE(answers[i].grid == cchip::exact_intersects(pairs[i]));
       REQUIRE(answers[i].definite == (pairs[i].eta == 0));
-      REQUIRE_FALSE(answers[i].hardware.has_value());
+      REQUIRE_FALSE(answers[i].clocks.has_value());
     }
     CHECK(engine->statistics().clocks == 0);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/geometry.hpp>
+#include <cchip/geometry/primitive.hpp>
 
 #include "random_pairs.hpp"
 

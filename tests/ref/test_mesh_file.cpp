@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <cchip/mesh.hpp>
+#include <cchip/mesh/mesh.hpp>
 #include <filesystem>
 #include <fstream>
 

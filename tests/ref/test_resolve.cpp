@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/resolve.hpp>
+#include <cchip/exact/resolve.hpp>
 
 using cchip::EngineAnswer;
 using cchip::Primitive;

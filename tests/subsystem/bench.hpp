@@ -8,22 +8,22 @@
 #include <verilated.h>
 
 #include <array>
-#include <cchip/bitstream.hpp>
-#include <cchip/exact_oracle.hpp>
+#include <cchip/device/primtest_engine.hpp>
+#include <cchip/exact/oracle.hpp>
 #include <cchip/model/programme.hpp>
-#include <cchip/primtest_engine.hpp>
-#include <cchip/registers.hpp>
+#include <cchip/rtl/pair_port.hpp>
 #include <cchip/sim/axi_lite.hpp>
 #include <cchip/sim/axi_memory.hpp>
-#include <cchip/sim/pair_port.hpp>
 #include <cchip/sim/simulation.hpp>
+#include <cchip/stimulus/pair_source.hpp>
+#include <cchip/wire/bitstream.hpp>
+#include <cchip/wire/registers.hpp>
 #include <map>
 #include <memory>
 #include <optional>
 #include <random>
 #include <set>
 
-#include "../campaign/pair_source.hpp"
 #include "models.hpp"
 
 namespace cchip::subsystem {
@@ -34,13 +34,13 @@ inline bool chance(Random& random, int percent) { return static_cast<int>(random
 
 /// One beat of s_pair; kind is the ModuleId of the test, 0 is illegal.
 struct KindRequest {
-  sim::PairRequest request;
+  PairRequest request;
   int kind = 0;
 };
 
 /// One beat of m_result.
 struct KindResult {
-  sim::PairResultBeat beat;
+  PairResult beat;
   int kind = 0;
   friend bool operator==(const KindResult& x, const KindResult& y) { return x.kind == y.kind && x.beat == y.beat; }
   friend std::ostream& operator<<(std::ostream& out, const KindResult& x) {
@@ -78,10 +78,10 @@ class KindSource {
   /// \param kind 0: illegal, what is in the payload does not matter
   KindRequest draw(int kind) {
     const std::size_t shape = kind == 0 ? 1 : static_cast<std::size_t>(kind);
-    campaign::PairSource& source = sources_[shape - 1];
+    stimulus::PairSource& source = sources_[shape - 1];
     KindRequest r;
     r.kind = kind;
-    r.request.pair = source.draw(campaign::classes_of(kind_a[shape], kind_b[shape])[source.draw_class()].value);
+    r.request.pair = source.draw(stimulus::classes_of(kind_a[shape], kind_b[shape])[source.draw_class()].value);
     const int half = 1 << (coord_w_ - 1);
     for (GridPrimitive* p : {&r.request.pair.a, &r.request.pair.b}) {  // slot 3 of a triangle must not matter
       if (p->kind == Kind::tri) p->v[3].setConstant(static_cast<int>(random_() % static_cast<unsigned>(half)));
@@ -94,7 +94,7 @@ class KindSource {
  private:
   int coord_w_;
   Random random_;
-  std::vector<campaign::PairSource> sources_;
+  std::vector<stimulus::PairSource> sources_;
 };
 
 /// Ways to spoil a bitstream.

@@ -6,9 +6,9 @@
 
 #include <CLI/CLI.hpp>
 #include <cchip/sim/wave_on_failure.hpp>
+#include <cchip/stimulus/campaign.hpp>
 #include <cstdio>
 
-#include "../campaign/campaign.hpp"
 #include "bench.hpp"
 
 namespace cchip::subsystem {
@@ -284,8 +284,8 @@ Totals run_part(std::uint64_t number, std::uint64_t seed, std::uint64_t swaps) {
 int run(const Options& o) {
   const std::uint64_t parts = (o.swaps + o.per_part - 1) / o.per_part;
   fmt::print("seed {}, {} parts of {} swaps\n", o.seed, parts, o.per_part);
-  const campaign::StopWatch watch;
-  const Totals t = campaign::sum_of_parts<Totals>(parts, o.threads, [&](std::uint64_t part) {
+  const stimulus::StopWatch watch;
+  const Totals t = stimulus::sum_of_parts<Totals>(parts, o.threads, [&](std::uint64_t part) {
     const std::uint64_t seed = o.seed * 0x9e3779b97f4a7c15U + part;
     const bool one = o.slots == 1 || (o.slots == 0 && part % 2 == 1);
     return one ? run_part<OneSlot>(part, seed, o.per_part) : run_part<TwoSlots>(part, seed, o.per_part);

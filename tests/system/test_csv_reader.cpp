@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cchip/sim/seed.hpp>
+#include <cchip/stimulus/csv_reader.hpp>
+#include <cchip/stimulus/usage_error.hpp>
 #include <random>
 #include <sstream>
 
-#include "csv_reader.hpp"
 #include "support.hpp"
-#include "usage_error.hpp"
 
 using namespace cchip::app;
 using Fields = std::vector<std::string>;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/eigen_reference.hpp>
+#include <cchip/reference/eigen_sat.hpp>
+#include <cchip/stimulus/usage_error.hpp>
 
 #include "demo.hpp"
 #include "support.hpp"
-#include "usage_error.hpp"
 
 using namespace cchip;
 using namespace cchip::app;

@@ -2,8 +2,8 @@
 // The dispatcher over the three modules, with the model and the RTL behind it.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
-#include <cchip/canonical.hpp>
-#include <cchip/exact_oracle.hpp>
+#include <cchip/exact/oracle.hpp>
+#include <cchip/geometry/canonical.hpp>
 #include <cchip/sim/seed.hpp>
 #include <map>
 #include <random>
@@ -189,7 +189,7 @@ TEST_CASE("engines: statistics are sums over the modules", "[system][engines]") 
   const auto engine = engine_of(EngineKind::model);
   const auto answers = engine->run(pairs, PairMode::directed);
   std::uint64_t beats = 0;
-  for (const EngineAnswer& answer : answers) beats += static_cast<std::uint64_t>(answer.hardware->beats);
+  for (const EngineAnswer& answer : answers) beats += static_cast<std::uint64_t>(answer.beats);
   CHECK(engine->statistics().beats == beats);
   CHECK(engine->statistics().waiting_clocks >= beats);
   CHECK(engine->statistics().clocks > beats);

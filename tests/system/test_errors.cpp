@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Wrong input and wrong command lines: one line with place and remedy, nothing on stdout, exit code 2.
 #include <catch2/catch.hpp>
+#include <cchip/stimulus/usage_error.hpp>
 
 #include "support.hpp"
-#include "usage_error.hpp"
 
 using namespace cchip::test;
 using cchip::app::exit_usage;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/exact_oracle.hpp>
-#include <cchip/local_grid.hpp>
+#include <cchip/exact/oracle.hpp>
+#include <cchip/geometry/grid.hpp>
+#include <cchip/stimulus/csv_reader.hpp>
+#include <cchip/stimulus/usage_error.hpp>
 
-#include "csv_reader.hpp"
 #include "engines.hpp"
 #include "mesh_source.hpp"
 #include "pose.hpp"
 #include "support.hpp"
-#include "usage_error.hpp"
 
 using namespace cchip;
 using namespace cchip::app;
@@ -114,9 +114,9 @@ TEST_CASE("meshpairs: the engines agree on the grid of real meshes", "[system][m
     CAPTURE(i);
     REQUIRE(rtl[i].grid == clock_model[i].grid);
     REQUIRE(rtl[i].definite == clock_model[i].definite);
-    REQUIRE(rtl[i].hardware->axis == clock_model[i].hardware->axis);
-    REQUIRE(rtl[i].hardware->beats == clock_model[i].hardware->beats);
-    REQUIRE(rtl[i].hardware->clock_out == clock_model[i].hardware->clock_out);
+    REQUIRE(rtl[i].axis == clock_model[i].axis);
+    REQUIRE(rtl[i].beats == clock_model[i].beats);
+    REQUIRE(rtl[i].clocks->answered == clock_model[i].clocks->answered);
     REQUIRE(eigen[i].grid == exact[i].grid);
     REQUIRE(rtl[i].grid == exact[i].grid);
     hits += exact[i].grid;

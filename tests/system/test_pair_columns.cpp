@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
+#include <cchip/stimulus/pair_columns.hpp>
+#include <cchip/stimulus/usage_error.hpp>
 #include <cmath>
 #include <limits>
-
-#include "pair_columns.hpp"
-#include "usage_error.hpp"
 
 using namespace cchip;
 using namespace cchip::app;

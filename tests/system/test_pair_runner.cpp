@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/exact_oracle.hpp>
+#include <cchip/exact/oracle.hpp>
 #include <sstream>
 
 #include "pair_runner.hpp"

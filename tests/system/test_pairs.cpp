@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cchip/stimulus/csv_reader.hpp>
+#include <cchip/stimulus/usage_error.hpp>
 #include <nlohmann/json.hpp>
 
-#include "csv_reader.hpp"
 #include "support.hpp"
-#include "usage_error.hpp"
 
 using namespace cchip::app;
 using namespace cchip::test;

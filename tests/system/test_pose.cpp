@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cchip/sim/seed.hpp>
+#include <cchip/stimulus/usage_error.hpp>
 #include <cmath>
 #include <random>
 
 #include "pose.hpp"
 #include "support.hpp"
-#include "usage_error.hpp"
 
 using namespace cchip::app;
 using Eigen::Vector3d;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
-#include <cchip/eigen_reference.hpp>
 #include <cchip/levels/functional_test.hpp>
 #include <cchip/levels/generator.hpp>
 #include <cchip/levels/stimulus_file.hpp>
+#include <cchip/reference/eigen_sat.hpp>
 #include <cchip/sim/seed.hpp>
+#include <cchip/stimulus/usage_error.hpp>
 #include <functional>
 #include <map>
 #include <random>
 #include <sstream>
-#include <usage_error.hpp>
 
 using namespace cchip;
 using namespace cchip::levels;

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cchip/levels/platform.hpp>
 #include <cchip/levels/software_c3.hpp>
-#include <cchip/registers.hpp>
 #include <cchip/sim/seed.hpp>
+#include <cchip/wire/registers.hpp>
 #include <functional>
 
 using namespace cchip;

@@ -7,8 +7,8 @@
 #include <catch2/catch.hpp>
 #include <cchip/model/sat.hpp>
 #include <cchip/model/stream.hpp>
+#include <cchip/rtl/pair_port.hpp>
 #include <cchip/sim/bits.hpp>
-#include <cchip/sim/pair_port.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cchip/sim/wave_on_failure.hpp>
 #include <cctype>

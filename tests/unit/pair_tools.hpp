@@ -4,10 +4,9 @@
 #ifndef CCHIP_TESTS_UNIT_PAIR_TOOLS_HPP
 #define CCHIP_TESTS_UNIT_PAIR_TOOLS_HPP
 
-#include <cchip/exact_oracle.hpp>
-
-#include "../campaign/pair_source.hpp"
-#include "witness.hpp"
+#include <cchip/exact/oracle.hpp>
+#include <cchip/stimulus/pair_source.hpp>
+#include <cchip/stimulus/witness.hpp>
 
 namespace cchip::test {
 
@@ -45,11 +44,11 @@ inline std::vector<AxisCode> exhaustive_codes(const model::Shape& shape) {
 /// For each axis of exhaustive_codes() a pair, not coplanar nor degenerate, that it separates and no other does.
 inline std::vector<GridPair> pairs_separated_by_one(const model::Shape& shape, int coord_w, std::uint64_t seed) {
   const std::vector<AxisCode> codes = exhaustive_codes(shape);
-  campaign::PairSource source(coord_w, seed, kind_of(shape.a), kind_of(shape.b));
+  stimulus::PairSource source(coord_w, seed, kind_of(shape.a), kind_of(shape.b));
   std::vector<std::optional<GridPair>> found(codes.size());
   for (std::size_t missing = codes.size(); missing > 0;) {
     const GridPair pair =
-        source.draw(source.coin() ? campaign::PairClass::general_full : campaign::PairClass::near_edge);
+        source.draw(source.coin() ? stimulus::PairClass::general_full : stimulus::PairClass::near_edge);
     if (is_degenerate(pair.a) || is_degenerate(pair.b) || is_coplanar(pair)) continue;
     std::size_t separating = 0;
     std::size_t last = 0;

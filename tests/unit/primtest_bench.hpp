@@ -21,7 +21,7 @@ class PrimtestPins {
     bool result_valid = false;
     bool idle = false;
     int rm_id = 0;
-    sim::PairResultBeat result;
+    PairResult result;
     friend bool operator==(const Outputs& x, const Outputs& y) {
       return x.pair_ready == y.pair_ready && x.result_valid == y.result_valid && x.idle == y.idle &&
              x.rm_id == y.rm_id && x.result == y.result;
@@ -40,9 +40,9 @@ class PrimtestPins {
   virtual const CData& m_result_valid() const = 0;
   virtual CData& m_result_ready() = 0;
   /// Payload of s_pair.
-  virtual void put(const sim::PairRequest& request) = 0;
+  virtual void put(const PairRequest& request) = 0;
   virtual void scramble(Random& random) = 0;
-  virtual sim::PairRequest request() const = 0;
+  virtual PairRequest request() const = 0;
   /// Signals of the controller: an axis leaves / a pair waits for a slot.
   virtual bool beat_leaves() const = 0;
   virtual bool pair_waits() const = 0;
@@ -99,10 +99,10 @@ class PrimtestPinsOf : public PrimtestPins {
   const CData& s_pair_ready() const override { return top().s_pair_ready; }
   const CData& m_result_valid() const override { return top().m_result_valid; }
   CData& m_result_ready() override { return top().m_result_ready; }
-  void put(const sim::PairRequest& request) override { port_.put(request); }
+  void put(const PairRequest& request) override { port_.put(request); }
   void scramble(Random& random) override { port_.scramble(random); }
-  sim::PairRequest request() const override {
-    sim::PairRequest r;
+  PairRequest request() const override {
+    PairRequest r;
     r.pair = {primitive(top().s_pair_a, kind_a_), primitive(top().s_pair_b, kind_b_), top().s_pair_err};
     r.tag = top().s_pair_tag;
     r.mode = top().s_pair_mode;
@@ -150,8 +150,7 @@ PrimtestConfig primtest_config(ModuleId id) {
 
 /// Answers to these pairs in their order, on a module that is kept full. Every answer is compared with the exact
 /// oracle, every "no" with the intervals on its witness.
-std::vector<sim::PairResultBeat> exact_answers(const PrimtestConfig& config, const std::vector<GridPair>& pairs,
-                                               PairMode mode);
+std::vector<PairResult> exact_answers(const PrimtestConfig& config, const std::vector<GridPair>& pairs, PairMode mode);
 
 /// Every output on every clock against the model, for all pairs of idle and back-pressure patterns, with resets.
 void check_every_clock(const PrimtestConfig& config);

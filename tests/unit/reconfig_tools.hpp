@@ -6,7 +6,7 @@
 
 #include <zlib.h>
 
-#include <cchip/defs.hpp>
+#include <cchip/wire/definitions.hpp>
 #include <cstdint>
 #include <optional>
 #include <vector>

@@ -5,11 +5,11 @@
 #ifndef CCHIP_TESTS_UNIT_SLOT_BENCH_HPP
 #define CCHIP_TESTS_UNIT_SLOT_BENCH_HPP
 
-#include <cchip/exact_oracle.hpp>
+#include <cchip/exact/oracle.hpp>
 #include <cchip/model/programme.hpp>
 #include <cchip/sim/scoreboard.hpp>
+#include <cchip/stimulus/pair_source.hpp>
 
-#include "../campaign/pair_source.hpp"
 #include "reconfig_tools.hpp"
 
 namespace cchip::test {
@@ -25,17 +25,17 @@ class SlotRequests {
   static Kind kind_a(ModuleId id) { return id == ModuleId::quad_quad ? Kind::quad : Kind::tri; }
   static Kind kind_b(ModuleId id) { return id == ModuleId::tri_tri ? Kind::tri : Kind::quad; }
 
-  sim::PairRequest draw(ModuleId id) {
-    campaign::PairSource& source = sources_.at(static_cast<std::size_t>(id) - 1);
-    const auto classes = campaign::classes_of(kind_a(id), kind_b(id));
-    sim::PairRequest request;
+  PairRequest draw(ModuleId id) {
+    stimulus::PairSource& source = sources_.at(static_cast<std::size_t>(id) - 1);
+    const auto classes = stimulus::classes_of(kind_a(id), kind_b(id));
+    PairRequest request;
     request.pair = source.draw(classes.at(source.draw_class()).value);
     request.mode = random_() & 1;
     request.tag = tag_++;
     return request;
   }
   /// The answer by the functional model, which the exact oracle confirms.
-  sim::PairResultBeat answer(const sim::PairRequest& request) const {
+  PairResult answer(const PairRequest& request) const {
     const auto vertices = [](Kind kind) { return static_cast<std::size_t>(kind); };
     const model::Options options{{vertices(request.pair.a.kind), vertices(request.pair.b.kind)}, true};
     const model::Outcome o = model::run_programme(options, request.pair, request.mode, coord_w_);
@@ -47,7 +47,7 @@ class SlotRequests {
  private:
   int coord_w_;
   Random random_;
-  std::vector<campaign::PairSource> sources_;
+  std::vector<stimulus::PairSource> sources_;
   std::uint16_t tag_ = 1;
 };
 
@@ -68,11 +68,11 @@ class SlotBench : public sim::Agent {
         sink(port_.sink(std::move(back_pressure))) {
     top.stop = top.decouple = top.hold_reset = top.roc_start = top.cfg_valid = 0;
     driver.when_idle([this] { port_.scramble(random); });
-    driver.on_accept([this](const sim::PairRequest& request, std::uint64_t clock) {
+    driver.on_accept([this](const PairRequest& request, std::uint64_t clock) {
       scoreboard.expect(request.tag, requests.answer(request), clock);
       ++accepted;
     });
-    sink.on_item([this](const sim::PairResultBeat& beat, std::uint64_t clock) {
+    sink.on_item([this](const PairResult& beat, std::uint64_t clock) {
       ++returned;
       if (on_result) return on_result(beat);
       scoreboard.got(beat.tag, beat, clock);
@@ -89,7 +89,7 @@ class SlotBench : public sim::Agent {
       ++decoupled_clocks;
       expect("s_pair_ready while decoupled", int{top.s_pair_ready}, 0);
       expect("m_result_valid while decoupled", int{top.m_result_valid}, 0);
-      expect("m_result while decoupled", port_.result(), sim::PairResultBeat{});
+      expect("m_result while decoupled", port_.result(), PairResult{});
       expect("rm_id while decoupled", int{top.rm_id}, static_cast<int>(ModuleId::blank));
       expect("idle while decoupled", int{top.idle}, 1);
     }
@@ -180,11 +180,11 @@ class SlotBench : public sim::Agent {
   sim::PairPort<Model> port_;
 
  public:
-  sim::StreamDriver<sim::PairRequest> driver;
-  sim::StreamSink<sim::PairResultBeat> sink;
-  sim::TagScoreboard<sim::PairResultBeat> scoreboard{"slot"};
+  sim::StreamDriver<PairRequest> driver;
+  sim::StreamSink<PairResult> sink;
+  sim::TagScoreboard<PairResult> scoreboard{"slot"};
   /// Takes the results instead of the scoreboard.
-  std::function<void(const sim::PairResultBeat&)> on_result;
+  std::function<void(const PairResult&)> on_result;
   /// Called after every word of a transfer.
   std::function<void()> during;
   std::uint64_t accepted = 0;

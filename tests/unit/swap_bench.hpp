@@ -4,8 +4,8 @@
 #ifndef CCHIP_TESTS_UNIT_SWAP_BENCH_HPP
 #define CCHIP_TESTS_UNIT_SWAP_BENCH_HPP
 
-#include <cchip/bitstream.hpp>
 #include <cchip/sim/axi_memory.hpp>
+#include <cchip/wire/bitstream.hpp>
 #include <deque>
 
 #include "bench.hpp"

@@ -114,7 +114,7 @@ class ControllerBench {
     if (const auto& beat = model_.beat()) {
       const AxisBeat expected = model::beat_of(beat->state, 0);
       expect("m_beat_context", std::size_t{top.m_beat_context}, beat->context);
-      expect("m_beat_code", std::uint16_t{top.m_beat_code}, model::to_bits(expected.code));
+      expect("m_beat_code", std::uint16_t{top.m_beat_code}, to_bits(expected.code));
     }
     if (allowed_) {  // by the beat of the clock before
       expect("m_beat_allow_above", top.m_beat_allow_above != 0, allowed_->allow_above);
@@ -124,12 +124,12 @@ class ControllerBench {
     if (top.s_pair_valid != 0) expect("m_load_context", std::size_t{top.m_load_context}, model_.load_context());
     expect("m_result_valid", top.m_result_valid != 0, model_.result().has_value());
     if (!model_.result()) return;
-    const model::Result r{top.m_result_tag,
-                          top.m_result_hit != 0,
-                          top.m_result_grid != 0,
-                          top.m_result_definite != 0,
-                          model::axis_code_from_bits(top.m_result_axis),
-                          top.m_result_beats};
+    const PairResult r{top.m_result_tag,
+                       top.m_result_hit != 0,
+                       top.m_result_grid != 0,
+                       top.m_result_definite != 0,
+                       axis_code_from_bits(top.m_result_axis),
+                       top.m_result_beats};
     sim::require(r == *model_.result(), "result with tag " + std::to_string(r.tag) + " differs from the model");
     if (!now.in_reset) judge(r);
   }
@@ -152,7 +152,7 @@ class ControllerBench {
     }
   }
 
-  void judge(const model::Result& r) {
+  void judge(const PairResult& r) {
     sim::require(!done_.empty(), "a result without its verdict");
     const Pair pair = in_flight_.at(done_.front());
     in_flight_.erase(done_.front());

@@ -15,7 +15,7 @@ constexpr std::uint64_t code_mask = 0x1ffULL << 3;
 constexpr std::uint64_t beats_mask = 0x3fULL << beats_at;
 
 std::uint64_t with_code(std::uint64_t state, const model::State& s) {
-  return (state & ~code_mask & ~beats_mask) | std::uint64_t{model::to_bits(s.code)} << 3 |
+  return (state & ~code_mask & ~beats_mask) | std::uint64_t{to_bits(s.code)} << 3 |
          static_cast<std::uint64_t>(s.beats) << beats_at;
 }
 
@@ -66,7 +66,7 @@ class Walk {
       bits = top.m_state;
       state = *step.next;
       REQUIRE((bits & 7) == static_cast<std::uint64_t>(state.programme));
-      REQUIRE((bits & code_mask) >> 3 == model::to_bits(state.code));
+      REQUIRE((bits & code_mask) >> 3 == to_bits(state.code));
       REQUIRE((bits & beats_mask) >> beats_at == static_cast<std::uint64_t>(state.beats));
       idle();
     }
@@ -95,7 +95,7 @@ class Walk {
     const bool illegal = state.programme == Programme::illegal;
     REQUIRE((top.m_illegal != 0) == illegal);
     REQUIRE((top.m_grid != 0) == o.grid);
-    REQUIRE(top.m_witness == model::to_bits(o.witness));
+    REQUIRE(top.m_witness == to_bits(o.witness));
     REQUIRE(int{top.m_beats} == o.beats);
     const bool certain = top.m_certain != 0;
     const bool definite = err == 0 ? certain || top.m_open == 0 : certain && err != defs::err_unknown;

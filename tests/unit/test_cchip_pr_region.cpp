@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The partition with each of its personas: it is the module that its RM_ID names, on every clock.
+#include <cchip/stimulus/pair_source.hpp>
 #include <models/cchip_pr_region.hpp>
 
-#include "../campaign/pair_source.hpp"
 #include "primtest_bench.hpp"
 
 using namespace cchip;
@@ -15,9 +15,9 @@ template <class Config>
 void check_persona(ModuleId id) {
   REQUIRE(Config::RM_ID == static_cast<int>(id));
   const PrimtestConfig config = primtest_config<Config>(id);
-  campaign::PairSource source(config.coord_w, sim::seed_from_environment(), config.kind_a, config.kind_b);
+  stimulus::PairSource source(config.coord_w, sim::seed_from_environment(), config.kind_a, config.kind_b);
   std::vector<GridPair> pairs;
-  for (const campaign::PairClassInfo& info : campaign::classes_of(config.kind_a, config.kind_b)) {
+  for (const stimulus::PairClassInfo& info : stimulus::classes_of(config.kind_a, config.kind_b)) {
     for (int i = 0; i < 3; ++i) pairs.push_back(source.draw(info.value));
   }
   REQUIRE(pairs.size() >= 10);
@@ -54,7 +54,7 @@ TEST_CASE("cchip_pr_region: RM_ID 0 is blank: never ready, never valid", "[unit]
       REQUIRE(top.m_result_valid == 0);
       REQUIRE(top.idle == 1);
       REQUIRE(int{top.rm_id} == static_cast<int>(ModuleId::blank));
-      REQUIRE(port.result() == sim::PairResultBeat{});
+      REQUIRE(port.result() == PairResult{});
       simulation.rise();
     }
   });

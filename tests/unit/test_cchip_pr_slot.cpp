@@ -33,22 +33,22 @@ TEST_CASE("cchip_pr_slot: the partition answers pairs like the model, two clocks
     bench.power_up();
     bench.steps(20);
     std::uint64_t sent = 0;
-    bench.driver.on_accept([&](const sim::PairRequest& r, std::uint64_t clock) {
+    bench.driver.on_accept([&](const PairRequest& r, std::uint64_t clock) {
       bench.scoreboard.expect(r.tag, bench.requests.answer(r), clock);
       sent = clock;
     });
-    sim::PairRequest request = bench.requests.draw(ModuleId::tri_quad);
+    PairRequest request = bench.requests.draw(ModuleId::tri_quad);
     request.pair.a = request.pair.b = GridPrimitive{};
     request.pair.a.kind = Kind::tri;
     request.pair.b.kind = Kind::quad;
     std::uint64_t latency = 0;
     int beats = 0;
-    bench.on_result = [&](const sim::PairResultBeat& r) {
+    bench.on_result = [&](const PairResult& r) {
       beats = r.beats;
       latency = bench.simulation.clock() - sent;
     };
     request.mode = 2;  // reserved: answered at once
-    bench.driver.on_accept([&](const sim::PairRequest&, std::uint64_t clock) { sent = clock; });
+    bench.driver.on_accept([&](const PairRequest&, std::uint64_t clock) { sent = clock; });
     bench.driver.push(request);
     bench.steps(200);
     REQUIRE(beats == 0);
@@ -131,7 +131,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: without decoupling, garbage of the trans
     bench.power_up();
     std::set<int> tags;
     std::set<int> numbers;
-    bench.on_result = [&](const sim::PairResultBeat& r) { tags.insert(r.tag); };
+    bench.on_result = [&](const PairResult& r) { tags.insert(r.tag); };
     bench.during = [&] { numbers.insert(bench.top.rm_id); };
     bench.stop();
     bench.hold_reset();  // a reset alone does not help
@@ -148,7 +148,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: recoupled two words too early, garbage g
     for (int i = 0; i < 10; ++i) {
       SlotBench<TestType> bench(options);
       bench.power_up();
-      bench.on_result = [&](const sim::PairResultBeat&) { ++leaks; };
+      bench.on_result = [&](const PairResult&) { ++leaks; };
       bench.stop();
       bench.decouple();
       bench.hold_reset();
@@ -173,7 +173,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: without reset after a swap, answers to p
         SlotBench<TestType> bench(options);
         bench.power_up();
         int unasked = 0;
-        bench.on_result = [&](const sim::PairResultBeat&) { ++unasked; };
+        bench.on_result = [&](const PairResult&) { ++unasked; };
         bench.stop();
         bench.decouple();
         bench.transfer(bench.payload(id));
@@ -328,7 +328,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: no output follows an input before the ri
       sim::set_random(top.cfg_data, TestType::CFG_W, random);
     };
     const auto outputs = [&] {
-      const sim::PairResultBeat r = port.result();
+      const PairResult r = port.result();
       return std::vector<int>{top.quiet,
                               top.outstanding,
                               top.decoupled,
@@ -340,7 +340,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: no output follows an input before the ri
                               top.idle,
                               top.m_result_valid,
                               r.tag,
-                              static_cast<int>(sim::pack_axis(r.axis)),
+                              static_cast<int>(to_bits(r.axis)),
                               r.beats,
                               r.hit,
                               r.grid,

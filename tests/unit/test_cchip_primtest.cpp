@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // The checks of the whole modules on their ports: clock by clock against the model, and the rules of DESIGN
 // section 4 by counting, without the model's clocks.
-#include <cchip/canonical.hpp>
-#include <cchip/exact_oracle.hpp>
-#include <cchip/primtest_engine.hpp>
+#include <cchip/device/primtest_engine.hpp>
+#include <cchip/exact/oracle.hpp>
+#include <cchip/geometry/canonical.hpp>
 #include <cchip/sim/scoreboard.hpp>
+#include <cchip/stimulus/pair_source.hpp>
+#include <cchip/stimulus/witness.hpp>
 #include <iostream>
 
-#include "../campaign/pair_source.hpp"
 #include "primtest_bench.hpp"
-#include "witness.hpp"
 
 namespace cchip::test {
 namespace {
 
-using sim::PairRequest;
-using sim::PairResultBeat;
+using PairRequest;
+using PairResult;
 
 constexpr int exhaustive = static_cast<int>(PairMode::exhaustive);
 constexpr int directed = static_cast<int>(PairMode::directed);
@@ -24,7 +24,7 @@ constexpr int directed = static_cast<int>(PairMode::directed);
 constexpr int general_position_beats = 4;
 
 bool is_general_position(const GridPair& pair) {
-  return !campaign::is_warped(pair.a) && !campaign::is_warped(pair.b) && !is_degenerate(pair.a) &&
+  return !stimulus::is_warped(pair.a) && !stimulus::is_warped(pair.b) && !is_degenerate(pair.a) &&
          !is_degenerate(pair.b) && !is_coplanar(pair);
 }
 
@@ -33,7 +33,7 @@ class RequestSource {
  public:
   RequestSource(const PrimtestConfig& config, std::uint64_t seed)
       : config_(config),
-        classes_(campaign::classes_of(config.kind_a, config.kind_b)),
+        classes_(stimulus::classes_of(config.kind_a, config.kind_b)),
         pairs_(config.coord_w, seed, config.kind_a, config.kind_b),
         random_(seed) {}
 
@@ -96,17 +96,17 @@ class RequestSource {
   }
 
   const PrimtestConfig& config_;
-  std::vector<campaign::PairClassInfo> classes_;
-  campaign::PairSource pairs_;
+  std::vector<stimulus::PairClassInfo> classes_;
+  stimulus::PairSource pairs_;
   Random random_;
   unsigned tag_ = 0;
 };
 
 /// The answer by the functional model, without clocks; the rules that every answer obeys, whatever the model.
-PairResultBeat answer(const PrimtestConfig& config, const PairRequest& request) {
+PairResult answer(const PrimtestConfig& config, const PairRequest& request) {
   if (request.mode > directed) return {request.tag, true, true, false, {AxisClass::illegal, 0, 0}, 0};
   const model::Outcome o = model::run_programme(config.options(), request.pair, request.mode, config.coord_w);
-  const PairResultBeat r{request.tag, o.hit(), o.grid, o.definite, o.witness, o.beats};
+  const PairResult r{request.tag, o.hit(), o.grid, o.definite, o.witness, o.beats};
   const auto rule = [&](bool holds, const char* text) {
     sim::require(holds, std::string(text) + ": " + to_text(request.pair) + " mode " + std::to_string(request.mode) +
                             ", model " + sim::to_text(r));
@@ -159,8 +159,8 @@ class ExactMonitor : public sim::Agent {
     expect("rm_id", out.rm_id, id_);
     expect("m_result_valid", out.result_valid, model_.m_result_valid());
     if (!model_.m_result_valid()) return;
-    const model::Result& r = model_.m_result();
-    expect("m_result", out.result, PairResultBeat{r.tag, r.hit, r.grid, r.definite, r.axis, r.beats});
+    const PairResult& r = model_.m_result();
+    expect("m_result", out.result, r);
     ++results_;
   }
 
@@ -175,20 +175,20 @@ class ExactMonitor : public sim::Agent {
 class RuleMonitor : public sim::Agent {
  public:
   RuleMonitor(const PrimtestConfig& config, PrimtestPins& pins, sim::StreamDriver<PairRequest>& driver,
-              sim::StreamSink<PairResultBeat>& sink)
+              sim::StreamSink<PairResult>& sink)
       : contexts_(static_cast<std::uint64_t>(config.contexts)), pins_(pins), scoreboard_("m_result") {
     driver.on_accept([this, &config](const PairRequest& request, std::uint64_t clock) {
       scoreboard_.expect(request.tag, answer(config, request), clock);
       ++accepted_;
     });
-    sink.on_item([this](const PairResultBeat& beat, std::uint64_t clock) {
+    sink.on_item([this](const PairResult& beat, std::uint64_t clock) {
       scoreboard_.got(beat.tag, beat, clock);
       if (on_result) on_result(beat);
       ++returned_;
     });
   }
 
-  std::function<void(const PairResultBeat&)> on_result;
+  std::function<void(const PairResult&)> on_result;
   std::uint64_t accepted() const { return accepted_; }
   std::uint64_t returned() const { return returned_; }
   std::uint64_t in_flight() const { return accepted_ - returned_; }
@@ -218,7 +218,7 @@ class RuleMonitor : public sim::Agent {
  private:
   std::uint64_t contexts_;
   PrimtestPins& pins_;
-  sim::TagScoreboard<PairResultBeat> scoreboard_;
+  sim::TagScoreboard<PairResult> scoreboard_;
   std::uint64_t accepted_ = 0;
   std::uint64_t returned_ = 0;
   std::uint64_t before_ = 0;
@@ -276,7 +276,7 @@ class ModuleBench {
  public:
   PrimtestPins& pins;
   sim::StreamDriver<PairRequest> driver;
-  sim::StreamSink<PairResultBeat> sink;
+  sim::StreamSink<PairResult> sink;
   RuleMonitor rules;
   ExactMonitor exact;
 
@@ -300,12 +300,11 @@ int lone_latency(ModuleBench& bench, const PairRequest& request) {
 
 }  // namespace
 
-std::vector<PairResultBeat> exact_answers(const PrimtestConfig& config, const std::vector<GridPair>& pairs,
-                                          PairMode mode) {
-  std::vector<PairResultBeat> result(pairs.size());
+std::vector<PairResult> exact_answers(const PrimtestConfig& config, const std::vector<GridPair>& pairs, PairMode mode) {
+  std::vector<PairResult> result(pairs.size());
   sim::with_wave_on_failure(test_name(), [&](const sim::SimulationOptions& options) {
     ModuleBench bench(config, options);
-    bench.rules.on_result = [&](const PairResultBeat& r) { result.at(r.tag) = r; };
+    bench.rules.on_result = [&](const PairResult& r) { result.at(r.tag) = r; };
     bench.pins.reset(2);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       bench.driver.push({pairs[i], static_cast<std::uint16_t>(i), static_cast<std::uint8_t>(mode)});
@@ -346,7 +345,7 @@ void check_long_traffic(const PrimtestConfig& config) {
                       sim::Pattern::random(0.5, options.seed + 1));
     int certain_warped_hits = 0;
     int open = 0;
-    bench.rules.on_result = [&](const PairResultBeat& r) {
+    bench.rules.on_result = [&](const PairResult& r) {
       certain_warped_hits += r.grid && r.definite && r.beats == general_position_beats ? 1 : 0;
       open += r.definite || r.axis.cls == AxisClass::illegal ? 0 : 1;
     };
@@ -381,7 +380,7 @@ void check_extreme_coordinates(const PrimtestConfig& config) {
   }
   for (const PairMode mode : {PairMode::exhaustive, PairMode::directed}) {
     const auto result = exact_answers(config, pairs, mode);
-    const auto hits = std::count_if(result.begin(), result.end(), [](const PairResultBeat& r) { return r.grid; });
+    const auto hits = std::count_if(result.begin(), result.end(), [](const PairResult& r) { return r.grid; });
     REQUIRE(hits > 80);
     REQUIRE(hits < 800);
   }
@@ -395,10 +394,10 @@ void check_only_witness(const PrimtestConfig& config) {
   }
   REQUIRE(static_cast<int>(codes.size()) == config.exhaustive_beats());
   std::vector<GridPair> pairs;
-  campaign::PairSource source(config.coord_w, sim::seed_from_environment(), config.kind_a, config.kind_b);
+  stimulus::PairSource source(config.coord_w, sim::seed_from_environment(), config.kind_a, config.kind_b);
   for (const AxisCode& code : codes) {
     for (int n = 0; n < 2;) {
-      const GridPair pair = source.draw(campaign::PairClass::general_full);
+      const GridPair pair = source.draw(stimulus::PairClass::general_full);
       if (!witness_separates(code, pair) || !is_general_position(pair)) continue;
       const auto separating =
           std::count_if(codes.begin(), codes.end(), [&](const AxisCode& c) { return witness_separates(c, pair); });
@@ -587,7 +586,7 @@ void check_throughput(const PrimtestConfig& config) {
       std::uint64_t waiting = 0;
       std::uint64_t clocks = 0;
       std::uint64_t answered_beats = 0;
-      bench.rules.on_result = [&](const PairResultBeat& r) {
+      bench.rules.on_result = [&](const PairResult& r) {
         answered_beats += r.axis.cls == AxisClass::illegal ? 1U : static_cast<unsigned>(r.beats);
       };
       Bench counter([](const sim::ClockInfo&) {},

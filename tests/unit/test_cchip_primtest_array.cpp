@@ -6,24 +6,24 @@
 #include <Vpa_l3___024root.h>
 
 #include <algorithm>
-#include <cchip/exact_oracle.hpp>
+#include <cchip/device/primtest_engine.hpp>
+#include <cchip/exact/oracle.hpp>
 #include <cchip/model/primtest.hpp>
-#include <cchip/primtest_engine.hpp>
 #include <cchip/sim/scoreboard.hpp>
+#include <cchip/stimulus/pair_source.hpp>
+#include <cchip/stimulus/witness.hpp>
 #include <deque>
 #include <map>
 #include <models/cchip_primtest_array.hpp>
 #include <numeric>
 
-#include "../campaign/pair_source.hpp"
 #include "bench.hpp"
-#include "witness.hpp"
 
 namespace cchip::test {
 namespace {
 
-using sim::PairRequest;
-using sim::PairResultBeat;
+using PairRequest;
+using PairResult;
 
 constexpr int exhaustive = static_cast<int>(PairMode::exhaustive);
 constexpr int directed = static_cast<int>(PairMode::directed);
@@ -41,7 +41,7 @@ template <class Config>
 constexpr Kind kind_b = static_cast<Kind>(Config::VERTS_B);
 
 template <class Config>
-PairResultBeat answer(const PairRequest& request) {
+PairResult answer(const PairRequest& request) {
   if (request.mode > directed) return {request.tag, true, true, false, {AxisClass::illegal, 0, 0}, 0};
   const model::Options options{{Config::VERTS_A, Config::VERTS_B}, Config::WARPED_EXACT != 0};
   const model::Outcome o = model::run_programme(options, request.pair, request.mode, Config::COORD_W);
@@ -61,7 +61,7 @@ class RequestSource {
   }
   PairRequest draw(int mode) {
     PairRequest request;
-    const auto classes = campaign::classes_of(kind_a<Config>, kind_b<Config>);
+    const auto classes = stimulus::classes_of(kind_a<Config>, kind_b<Config>);
     request.pair = pairs_.draw(classes[pairs_.draw_class()].value);
     for (GridPrimitive* p : {&request.pair.a, &request.pair.b}) {
       if (p->kind == Kind::tri) p->v[3] = random_point(random_, Config::COORD_W);
@@ -80,7 +80,7 @@ class RequestSource {
   }
 
  private:
-  campaign::PairSource pairs_;
+  stimulus::PairSource pairs_;
   Random random_;
   unsigned tag_ = 0;
 };
@@ -111,7 +111,7 @@ class ArrayBench {
         rules_([](const sim::ClockInfo&) {}, [this](const sim::ClockInfo& now) { check(now); }) {
     driver.when_idle([this] { port_.scramble(garbage_); });
     driver.on_accept([this](const PairRequest& r, std::uint64_t clock) { accept(r, clock); });
-    sink.on_item([this](const PairResultBeat& r, std::uint64_t clock) { take(r, clock); });
+    sink.on_item([this](const PairResult& r, std::uint64_t clock) { take(r, clock); });
     simulation.add(driver);
     simulation.add(sink);
     simulation.add(rules_);
@@ -145,7 +145,7 @@ class ArrayBench {
 
  public:
   sim::StreamDriver<PairRequest> driver;
-  sim::StreamSink<PairResultBeat> sink;
+  sim::StreamSink<PairResult> sink;
 
  private:
   struct Lane {
@@ -179,7 +179,7 @@ class ArrayBench {
     pairs_[request.tag] = {lane, clock};
   }
 
-  void take(const PairResultBeat& beat, std::uint64_t clock) {
+  void take(const PairResult& beat, std::uint64_t clock) {
     scoreboard_.got(beat.tag, beat, clock);
     const Pair pair = pairs_.at(beat.tag);
     Lane& l = state_[pair.lane];
@@ -219,7 +219,7 @@ class ArrayBench {
     for (std::size_t lane = 0; lane < lanes; ++lane) old_returns_.back()[lane] = state_[lane].returned;
   }
 
-  sim::TagScoreboard<PairResultBeat> scoreboard_;
+  sim::TagScoreboard<PairResult> scoreboard_;
   Random garbage_;
   Bench rules_;
   std::array<Lane, lanes> state_;

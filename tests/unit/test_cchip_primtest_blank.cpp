@@ -24,7 +24,7 @@ TEST_CASE("cchip_primtest_blank: constant outputs, never ready, never valid, idl
         REQUIRE(top.m_result_valid == 0);
         REQUIRE(top.idle == 1);
         REQUIRE(int{top.rm_id} == static_cast<int>(ModuleId::blank));
-        REQUIRE(port.result() == sim::PairResultBeat{});
+        REQUIRE(port.result() == PairResult{});
         simulation.rise();
       }
     }

@@ -3,10 +3,10 @@
 #include <Vtt_w16_s12_abs___024root.h>
 #include <Vtt_w16_s8_abs___024root.h>
 
+#include <cchip/stimulus/witness.hpp>
 #include <models/cchip_primtest_tri_tri.hpp>
 
 #include "primtest_bench.hpp"
-#include "witness.hpp"
 
 CCHIP_WATCH(cchip_primtest_tri_tri, tt_w16_s8_abs);
 CCHIP_WATCH(cchip_primtest_tri_tri, tt_w16_s10_rel);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random pairs of all shapes through the default configurations, and relations between the answers of related pairs.
-#include <cchip/canonical.hpp>
-#include <cchip/eigen_reference.hpp>
-#include <cchip/exact_oracle.hpp>
+#include <cchip/exact/oracle.hpp>
+#include <cchip/geometry/canonical.hpp>
 #include <cchip/model/programme.hpp>
-#include <cchip/rtl_engine.hpp>
+#include <cchip/reference/eigen_sat.hpp>
+#include <cchip/rtl/rtl_engine.hpp>
+#include <cchip/stimulus/pair_source.hpp>
+#include <cchip/stimulus/witness.hpp>
 #include <iostream>
-
-#include "../campaign/pair_source.hpp"
-#include "witness.hpp"
 
 using namespace cchip;
 using namespace cchip::test;
@@ -24,7 +23,7 @@ std::unique_ptr<PairEngine> rtl(std::uint64_t seed) {
 }
 
 bool is_general_position(const GridPair& pair) {
-  return !campaign::is_warped(pair.a) && !campaign::is_warped(pair.b) && !is_degenerate(pair.a) &&
+  return !stimulus::is_warped(pair.a) && !stimulus::is_warped(pair.b) && !is_degenerate(pair.a) &&
          !is_degenerate(pair.b) && !is_coplanar(pair);
 }
 
@@ -67,9 +66,9 @@ struct Run {
 void require_right_answers(const Run& run) {
   const std::uint64_t seed = sim::seed_from_environment();
   const auto engine = rtl(seed);
-  campaign::PairSource source(w, seed + static_cast<std::uint64_t>(run.mode(0)), run.a, run.b);
+  stimulus::PairSource source(w, seed + static_cast<std::uint64_t>(run.mode(0)), run.a, run.b);
   Random random(seed);
-  const auto classes = campaign::classes_of(run.a, run.b);
+  const auto classes = stimulus::classes_of(run.a, run.b);
   std::vector<Counts> table(classes.size());
   constexpr std::size_t batch = 50000;
   for (std::size_t done = 0; done < run.pairs; done += batch) {
@@ -134,7 +133,7 @@ TEST_CASE("A quad module with V3 = V2 answers as the triangle module",
           "[unit][cchip_primtest_tri_quad][cchip_primtest_quad_quad]") {
   const std::uint64_t seed = sim::seed_from_environment();
   const auto engine = rtl(seed);
-  campaign::PairSource source(w, seed);
+  stimulus::PairSource source(w, seed);
   const auto as_quad = [](GridPrimitive p) {
     p.kind = Kind::quad;
     p.v[3] = p.v[2];
@@ -143,7 +142,7 @@ TEST_CASE("A quad module with V3 = V2 answers as the triangle module",
   std::vector<GridPair> tri_tri, tri_quad, quad_quad;
   std::vector<PairMode> modes;
   for (std::size_t i = 0; i < 100000; ++i) {
-    const GridPair pair = source.draw(campaign::pair_classes[source.draw_class()].value);
+    const GridPair pair = source.draw(stimulus::pair_classes[source.draw_class()].value);
     tri_tri.push_back(pair);
     tri_quad.push_back({pair.a, as_quad(pair.b), 0});
     quad_quad.push_back({as_quad(pair.a), as_quad(pair.b), 0});
@@ -210,9 +209,9 @@ std::vector<std::pair<const char*, GridPair>> variants(const GridPair& pair, Ran
 void require_same_answers(Kind a, Kind b, std::size_t count) {
   const std::uint64_t seed = sim::seed_from_environment();
   const auto engine = rtl(seed);
-  campaign::PairSource source(w - 2, seed, a, b);  // a quarter of the grid
+  stimulus::PairSource source(w - 2, seed, a, b);  // a quarter of the grid
   Random random(seed);
-  const auto classes = campaign::classes_of(a, b);
+  const auto classes = stimulus::classes_of(a, b);
   std::vector<GridPair> pairs, changed;
   std::vector<PairMode> modes, changed_modes;
   std::vector<std::pair<const char*, std::size_t>> relation;  // and the index of the pair

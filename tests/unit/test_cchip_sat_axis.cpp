@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cchip/stimulus/witness.hpp>
 #include <models/cchip_sat_axis.hpp>
-
-#include "witness.hpp"
 
 using namespace cchip;
 using namespace cchip::test;

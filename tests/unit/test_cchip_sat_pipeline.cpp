@@ -113,7 +113,7 @@ class PipelineBench {
     }
     if (!in_) return;
     in_->user = sim::get_bits(top.s_beat_user, 0, Config::USER_W);
-    top.s_beat_code = model::to_bits(in_->beat.code);
+    top.s_beat_code = to_bits(in_->beat.code);
   }
 
   void sample(const sim::ClockInfo& now) {
@@ -179,8 +179,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_pipeline: every verdict on its clock, through
     PipelineBench<TestType> bench(options);
     const model::Shape& shape = bench.shape;
     const std::vector<AxisCode> codes = axis_codes(shape);
-    const auto classes = campaign::classes_of(kind_of(shape.a), kind_of(shape.b));
-    campaign::PairSource pairs(TestType::COORD_W, options.seed, kind_of(shape.a), kind_of(shape.b));
+    const auto classes = stimulus::classes_of(kind_of(shape.a), kind_of(shape.b));
+    stimulus::PairSource pairs(TestType::COORD_W, options.seed, kind_of(shape.a), kind_of(shape.b));
     Random random(options.seed);
     int verdicts = 0, separated = 0, certain_gaps = 0, box_separated = 0, box_certain = 0;
     bench.source = [&]() -> std::optional<BeatIn> {

@@ -128,7 +128,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_select: edges, points and flags of every axis
           in.code = codes[next++ % codes.size()];
           in.pair.a = random_primitive(random, shape.a, w);
           in.pair.b = random_primitive(random, shape.b, w);
-          top.s_code = model::to_bits(in.code);
+          top.s_code = to_bits(in.code);
         },
         [&](const sim::ClockInfo&) {
           if (const auto& task = delay.q()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scheduler with slots, queues, table and controller played by the test.
-#include <cchip/defs.hpp>
+#include <cchip/wire/definitions.hpp>
 #include <models/cchip_swap_scheduler.hpp>
 
 #include "bench.hpp"

@@ -2,8 +2,8 @@
 // Pair streams and the engine `rtl`: that they carry what they are given. What the hardware answers is the
 // subject of test_cchip_primtest_tri_tri.cpp.
 #include <catch2/catch.hpp>
-#include <cchip/rtl_engine.hpp>
-#include <cchip/sim/pair_port.hpp>
+#include <cchip/rtl/pair_port.hpp>
+#include <cchip/rtl/rtl_engine.hpp>
 #include <cchip/sim/scoreboard.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cchip/sim/wave_on_failure.hpp>
@@ -44,14 +44,14 @@ TEMPLATE_LIST_TEST_CASE("harness: pairs come back by tag under every pattern", "
     auto driver = port.driver(source);
     auto sink = port.sink(back_pressure);
     std::mt19937_64 random(options.seed);
-    TagScoreboard<PairRequest, PairResultBeat> board("pairs", [](const PairRequest& sent, const PairResultBeat& got) {
+    TagScoreboard<PairRequest, PairResult> board("pairs", [](const PairRequest& sent, const PairResult& got) {
       const bool reserved = sent.mode > 1;
       return (got.axis.cls == AxisClass::illegal) == reserved && (got.beats == 0) == reserved &&
              got.hit == (got.grid || !got.definite) && !(got.definite && sent.pair.eta == defs::err_unknown);
     });
     driver.when_idle([&] { port.scramble(random); });
     driver.on_accept([&](const PairRequest& sent, std::uint64_t clock) { board.expect(sent.tag, sent, clock); });
-    sink.on_item([&](const PairResultBeat& got, std::uint64_t clock) { board.got(got.tag, got, clock); });
+    sink.on_item([&](const PairResult& got, std::uint64_t clock) { board.got(got.tag, got, clock); });
     constexpr int pairs = 60;
     for (int i = 0; i < pairs; ++i) {
       PairRequest request{random_pair(random, TestType::COORD_W),
@@ -85,9 +85,9 @@ TEST_CASE("harness: results of before a reset do not appear after it", "[unit][h
     auto driver = port.driver();
     auto sink = port.sink(Pattern::random(0.7, options.seed));
     std::mt19937_64 random(options.seed);
-    TagScoreboard<int, PairResultBeat> board("pairs", [](int, const PairResultBeat&) { return true; });
+    TagScoreboard<int, PairResult> board("pairs", [](int, const PairResult&) { return true; });
     driver.on_accept([&](const PairRequest& sent, std::uint64_t clock) { board.expect(sent.tag, 0, clock); });
-    sink.on_item([&](const PairResultBeat& got, std::uint64_t clock) { board.got(got.tag, got, clock); });
+    sink.on_item([&](const PairResult& got, std::uint64_t clock) { board.got(got.tag, got, clock); });
     for (int i = 0; i < 1000; ++i) {
       driver.push({random_pair(random, Config::COORD_W), static_cast<std::uint16_t>(i), 0});
     }
@@ -113,27 +113,27 @@ TEST_CASE("harness: engine rtl answers batches in order and counts", "[unit][har
   REQUIRE(first.size() == 3);
   REQUIRE(second.size() == 100);
   CHECK(first[0].grid);
-  CHECK(first[0].hardware->axis.cls == AxisClass::none);
+  CHECK(first[0].axis.cls == AxisClass::none);
   for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
     CHECK_FALSE(first[i].grid);
     CHECK(first[i].definite);
-    CHECK(first[i].hardware->axis == AxisCode{AxisClass::normal_a, 0, 0});
+    CHECK(first[i].axis == AxisCode{AxisClass::normal_a, 0, 0});
   }
   for (const EngineAnswer& answer : second) CHECK_FALSE(answer.grid);
   for (const EngineAnswer& answer : first) {
-    CHECK(answer.hardware->clock_out - answer.hardware->clock_in >=
+    CHECK(answer.clocks->answered - answer.clocks->accepted >=
           static_cast<std::uint64_t>(defs::pair_latency(defs::substages_default, defs::exhaustive_beats(3, 3))));
   }
-  CHECK(second[0].hardware->clock_in > first[2].hardware->clock_out);
+  CHECK(second[0].clocks->accepted > first[2].clocks->answered);
   const EngineStatistics statistics = engine->statistics();
   std::uint64_t beats = 0;
   for (const auto* batch : {&first, &second}) {
-    for (const EngineAnswer& answer : *batch) beats += static_cast<std::uint64_t>(answer.hardware->beats);
+    for (const EngineAnswer& answer : *batch) beats += static_cast<std::uint64_t>(answer.beats);
   }
   CHECK(statistics.beats == beats);
-  CHECK(second[0].hardware->beats == defs::exhaustive_beats(3, 3));
+  CHECK(second[0].beats == defs::exhaustive_beats(3, 3));
   CHECK(statistics.waiting_clocks >= statistics.beats);
-  CHECK(statistics.clocks > second.back().hardware->clock_out);
+  CHECK(statistics.clocks > second.back().clocks->answered);
 }
 
 TEST_CASE("harness: a lone pair takes the generated latency", "[unit][harness]") {

@@ -3,10 +3,10 @@
 #include <gtkwave/fstapi.h>
 
 #include <catch2/catch.hpp>
-#include <cchip/primtest_engine.hpp>
-#include <cchip/rtl_engine.hpp>
+#include <cchip/device/primtest_engine.hpp>
+#include <cchip/rtl/rtl_engine.hpp>
 #include <cchip/sim/wave_on_failure.hpp>
-#include <cchip/wave_layout.hpp>
+#include <cchip/waves/wave_layout.hpp>
 #include <filesystem>
 #include <fstream>
 #include <set>

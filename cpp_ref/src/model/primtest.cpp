@@ -28,7 +28,7 @@ void AxisController::clock(const std::optional<PairHeader>& pair, const std::opt
     const Step step = advance(options_, returned->beat.state, returned->verdict, header.err, found_);
     if (step.next) proceeding = Beat{context, *step.next};
     if (const auto& o = step.outcome) {
-      result_ = Result{header.tag, o->hit(), o->grid, o->definite, o->witness, o->beats};
+      result_ = o->result(header.tag);
       leaving_ = context;
     }
   }
@@ -86,11 +86,11 @@ Primtest::Primtest(const Parameters& parameters)
       pipeline_(static_cast<std::size_t>(defs::pipe_latency(parameters.substages))),
       results_(static_cast<std::size_t>(parameters.contexts)) {}
 
-void Primtest::clock(const std::optional<PairIn>& pair, bool m_result_ready) {
+void Primtest::clock(const std::optional<PairRequest>& pair, bool m_result_ready) {
   const bool accept = pair && ready_;
   const bool answer = m_result_ready && results_.m_valid();
 
-  results_.clock(controller_.result().has_value(), controller_.result().value_or(Result{}), m_result_ready);
+  results_.clock(controller_.result().has_value(), controller_.result().value_or(PairResult{}), m_result_ready);
 
   std::optional<ReturnedBeat> entering;
   if (const auto& beat = controller_.beat()) {
@@ -98,8 +98,9 @@ void Primtest::clock(const std::optional<PairIn>& pair, bool m_result_ready) {
     entering = ReturnedBeat{
         *beat, sat_pipeline(parameters_.options.shape, beat_of(beat->state, o.err), o.a, o.b, parameters_.coord_w)};
   }
-  if (accept) operands_.at(controller_.load_context()) = {pair->a, pair->b, pair->header.err};
-  controller_.clock(accept ? std::optional<PairHeader>(pair->header) : std::nullopt, pipeline_.q());
+  if (accept) operands_.at(controller_.load_context()) = {pair->pair.a, pair->pair.b, pair->pair.eta};
+  controller_.clock(accept ? std::optional<PairHeader>({pair->tag, pair->mode, pair->pair.eta}) : std::nullopt,
+                    pipeline_.q());
   pipeline_.clock(std::move(entering));
 
   pairs_ = pairs_ + (accept ? 1 : 0) - (answer ? 1 : 0);

@@ -147,10 +147,10 @@ Outcome make_outcome(const Options& o, const State& s, bool grid, const AxisCode
 
 }  // namespace
 
-State first_state(int mode) {
+State first_state(PairMode mode) {
   State s;
-  if (mode == static_cast<int>(PairMode::exhaustive)) s.programme = Programme::exhaustive;
-  if (mode > static_cast<int>(PairMode::directed)) s.programme = Programme::illegal;
+  if (mode == PairMode::exhaustive) s.programme = Programme::exhaustive;
+  if (mode > PairMode::directed) s.programme = Programme::illegal;
   s.code = axis(s.programme == Programme::illegal ? AxisClass::illegal : AxisClass::normal_a);
   return s;
 }
@@ -246,7 +246,7 @@ Step advance(const Options& o, const State& s, const Verdict& v, int err, Exhaus
   return {make_outcome(o, s, true, {}, certain, err), std::nullopt};
 }
 
-Outcome run_programme(const Options& o, const GridPair& pair, int mode, int coord_w) {
+Outcome run_programme(const Options& o, const GridPair& pair, PairMode mode, int coord_w) {
   State s = first_state(mode);
   Exhaustive found;
   for (;;) {

@@ -219,13 +219,4 @@ Verdict sat_pipeline(const Shape& shape, const AxisBeat& beat, const GridPrimiti
   return v;
 }
 
-std::uint16_t to_bits(const AxisCode& code) {
-  return static_cast<std::uint16_t>(static_cast<unsigned>(code.cls) << 6 | unsigned{code.k} << 3 | code.l);
-}
-
-AxisCode axis_code_from_bits(std::uint16_t bits) {
-  return {static_cast<AxisClass>(bits >> 6 & 7), static_cast<std::uint8_t>(bits >> 3 & 7),
-          static_cast<std::uint8_t>(bits & 7)};
-}
-
 }  // namespace cchip::model

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Do these two triangles touch?
-#include <cchip/exact_oracle.hpp>
+#include <cchip/exact/oracle.hpp>
 #include <iostream>
 
 int main() {

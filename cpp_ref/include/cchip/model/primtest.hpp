@@ -5,34 +5,19 @@
 #ifndef CCHIP_MODEL_PRIMTEST_HPP
 #define CCHIP_MODEL_PRIMTEST_HPP
 
-#include <cchip/defs.hpp>
-#include <cchip/engine.hpp>
 #include <cchip/model/programme.hpp>
 #include <cchip/model/stream.hpp>
+#include <cchip/wire/pair.hpp>
 #include <cstdint>
 #include <optional>
 
 namespace cchip::model {
 
-/// One beat of the stream m_result.
-struct Result {
-  std::uint16_t tag = 0;
-  bool hit = false;
-  bool grid = false;
-  bool definite = false;
-  AxisCode axis;
-  int beats = 0;
-  friend bool operator==(const Result& x, const Result& y) {
-    return x.tag == y.tag && x.hit == y.hit && x.grid == y.grid && x.definite == y.definite && x.axis == y.axis &&
-           x.beats == y.beats;
-  }
-};
-
 /// The fields of the stream s_pair that the controller sees.
 struct PairHeader {
   std::uint16_t tag = 0;
-  int mode = 0;  ///< 0..3, reserved values included
-  int err = 0;   ///< eta, 0..15
+  PairMode mode = PairMode::exhaustive;  ///< reserved values included
+  int err = 0;                           ///< eta, 0..15
 };
 
 /// A beat on its way through the pipeline, and the verdict that comes back for it.
@@ -54,7 +39,7 @@ class AxisController {
   /// m_beat_*; the axis it asks for is beat_of(beat()->state, eta).
   const std::optional<Beat>& beat() const { return beat_; }
   /// m_result_*
-  const std::optional<Result>& result() const { return result_; }
+  const std::optional<PairResult>& result() const { return result_; }
   /// Internal net pair_waits.
   bool pair_waits() const { return start_.m_valid() || ready_.m_valid() || beat_.has_value(); }
 
@@ -64,7 +49,7 @@ class AxisController {
  private:
   struct Start {
     std::size_t context = 0;
-    int mode = 0;
+    PairMode mode = PairMode::exhaustive;
   };
   Options options_;
   std::size_t contexts_;
@@ -79,7 +64,7 @@ class AxisController {
   std::vector<PairHeader> side_;
   Delay<std::optional<ReturnedBeat>> programme_;  // cchip_axis_programme but for its last register
   std::optional<Beat> beat_;
-  std::optional<Result> result_;
+  std::optional<PairResult> result_;
   std::size_t leaving_ = 0;  // context of result_
   Exhaustive found_;
 };
@@ -93,11 +78,6 @@ class Primtest {
     int contexts = defs::contexts_default(defs::substages_default);
     Options options = {};
   };
-  struct PairIn {
-    PairHeader header;
-    GridPrimitive a;
-    GridPrimitive b;
-  };
 
   explicit Primtest(const Parameters& parameters);
 
@@ -105,14 +85,14 @@ class Primtest {
   bool s_pair_ready() const { return ready_; }
   bool m_result_valid() const { return results_.m_valid(); }
   /// Defined while m_result_valid().
-  const Result& m_result() const { return results_.m_data(); }
+  const PairResult& m_result() const { return results_.m_data(); }
   bool idle() const { return idle_; }
   /// For statistics: a beat leaves the controller / a pair waits for an axis slot.
   bool beat_valid() const { return controller_.beat().has_value(); }
   bool pair_waits() const { return controller_.pair_waits(); }
 
   /// Rising edge. `pair` is s_pair with its valid.
-  void clock(const std::optional<PairIn>& pair, bool m_result_ready);
+  void clock(const std::optional<PairRequest>& pair, bool m_result_ready);
   /// Rising edge with rst = 1.
   void reset();
 
@@ -130,7 +110,7 @@ class Primtest {
   std::vector<Operands> operands_;
   AxisController controller_;
   Delay<std::optional<ReturnedBeat>> pipeline_;  // the four macro stages
-  Fifo<Result> results_;
+  Fifo<PairResult> results_;
 };
 
 }  // namespace cchip::model

@@ -38,6 +38,7 @@ struct Outcome {
   AxisCode witness;
   int beats = 0;
   bool hit() const { return grid || !definite; }
+  PairResult result(std::uint16_t tag) const { return {tag, hit(), grid, definite, witness, beats}; }
 };
 
 struct Options {
@@ -45,8 +46,8 @@ struct Options {
   bool warped_exact = true;
 };
 
-/// First state of a pair in a mode (0..3; reserved ones give Programme::illegal).
-State first_state(int mode);
+/// First state of a pair in a mode (reserved ones give Programme::illegal).
+State first_state(PairMode mode);
 /// The axis the state asks for.
 AxisBeat beat_of(const State& state, int err);
 /// The beat of an EXHAUSTIVE pair that follows at once; nullopt after its last.
@@ -73,7 +74,7 @@ struct Exhaustive {
 Step advance(const Options& options, const State& state, const Verdict& verdict, int err, Exhaustive& found);
 
 /// Runs a whole programme on one pair.
-Outcome run_programme(const Options& options, const GridPair& pair, int mode, int coord_w);
+Outcome run_programme(const Options& options, const GridPair& pair, PairMode mode, int coord_w);
 
 }  // namespace cchip::model
 

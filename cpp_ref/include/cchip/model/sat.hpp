@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Bit-exact models of rtl/arith and rtl/sat: what each block computes, as values. Arithmetic is modular
-/// like the hardware's; the latencies are those of <cchip/defs.hpp>.
+/// like the hardware's; the latencies are those of <cchip/wire/definitions.hpp>.
 #ifndef CCHIP_MODEL_SAT_HPP
 #define CCHIP_MODEL_SAT_HPP
 
 #include <array>
-#include <cchip/defs.hpp>
-#include <cchip/engine.hpp>
-#include <cchip/geometry.hpp>
+#include <cchip/device/pair_engine.hpp>
+#include <cchip/geometry/primitive.hpp>
+#include <cchip/wire/definitions.hpp>
 #include <cstdint>
 
 namespace cchip::model {
@@ -110,10 +110,6 @@ BoxComparison box_compare(const Shape& shape, const GridPrimitive& a, const Grid
 /// The whole pipeline: one axis of one pair.
 Verdict sat_pipeline(const Shape& shape, const AxisBeat& beat, const GridPrimitive& a, const GridPrimitive& b,
                      int coord_w);
-
-/// Numeric form of an axis code, {class, k, l} as in `m_result_axis`.
-std::uint16_t to_bits(const AxisCode& code);
-AxisCode axis_code_from_bits(std::uint16_t bits);
 
 }  // namespace cchip::model
 

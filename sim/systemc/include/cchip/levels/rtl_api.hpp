@@ -4,19 +4,19 @@
 #ifndef CCHIP_LEVELS_RTL_API_HPP
 #define CCHIP_LEVELS_RTL_API_HPP
 
+#include <cchip/device/primtest_engine.hpp>
 #include <cchip/levels/api.hpp>
-#include <cchip/primtest_engine.hpp>
 #include <ostream>
 
 namespace cchip::levels {
 
 /// A beat of s_pair in a FIFO.
-struct RtlRequest : PrimtestRequest {
+struct RtlRequest : PairRequest {
   friend std::ostream& operator<<(std::ostream& out, const RtlRequest& x) { return out << "{tag " << x.tag << '}'; }
 };
 
 /// A beat of m_result in a FIFO.
-struct RtlResult : PrimtestResult {
+struct RtlResult : PairResult {
   friend std::ostream& operator<<(std::ostream& out, const RtlResult& x) {
     return out << "{tag " << x.tag << " grid " << x.grid << '}';
   }

@@ -6,7 +6,7 @@
 
 #include <tlm_utils/simple_initiator_socket.h>
 
-#include <cchip/defs.hpp>
+#include <cchip/wire/definitions.hpp>
 #include <cstdint>
 #include <systemc>
 

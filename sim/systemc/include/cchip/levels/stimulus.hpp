@@ -6,8 +6,8 @@
 #define CCHIP_LEVELS_STIMULUS_HPP
 
 #include <array>
-#include <cchip/defs.hpp>
-#include <cchip/geometry.hpp>
+#include <cchip/geometry/primitive.hpp>
+#include <cchip/wire/definitions.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <ostream>

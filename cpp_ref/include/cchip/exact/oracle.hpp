@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The exact oracle: orientation predicates over a multiprecision library; no separating axes, so it
+/// shares neither arithmetic nor algorithm with the hardware, its model or the Eigen reference.
+#ifndef CCHIP_EXACT_ORACLE_HPP
+#define CCHIP_EXACT_ORACLE_HPP
+
+#include <cchip/geometry/primitive.hpp>
+
+namespace cchip {
+
+/// True if the closed primitives share a point (touching counts), for any 32-bit coordinates, in fixed-width
+/// 128-bit integers. Coplanar and degenerate primitives included, quads as hulls of their four vertices.
+/// eta plays no part.
+bool exact_intersects(const GridPair& pair);
+/// The same for any finite doubles, exact for these doubles: all coordinates are scaled by one power of two to
+/// integers of arbitrary size.
+/// \throws std::invalid_argument if a coordinate is not finite
+bool exact_intersects(const Primitive& a, const Primitive& b);
+
+}  // namespace cchip
+
+#endif

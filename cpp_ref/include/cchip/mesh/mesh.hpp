@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Meshes of triangles and quads, moved by poses; candidate pairs of faces.
+#ifndef CCHIP_MESH_MESH_HPP
+#define CCHIP_MESH_MESH_HPP
+
+#include <Eigen/Geometry>
+#include <cchip/geometry/primitive.hpp>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace cchip {
+
+/// Faces as tuples of indices into the vertex positions.
+struct Mesh {
+  std::string name;  ///< path of the file, or name of the shape
+  std::vector<Vec3d> vertices;
+  struct Face {
+    Kind kind = Kind::tri;
+    std::array<std::uint32_t, 4> vertex = {0, 0, 0, 0};
+  };
+  std::vector<Face> faces;
+  /// Faces of the file that load_mesh() cut into triangles.
+  std::size_t polygons_cut = 0;
+  /// Face number `face` (less than faces.size()) with its vertex positions.
+  Primitive primitive(std::size_t face) const;
+};
+
+/// Mesh moved by a rigid transform.
+Mesh transformed(const Mesh& mesh, const Eigen::Isometry3d& pose);
+
+/// Numbers of a face of A and a face of B.
+struct CandidatePair {
+  std::uint32_t face_a;
+  std::uint32_t face_b;
+};
+
+/// Calls `visit` for every pair of faces whose closed axis-aligned boxes overlap: sort and sweep
+/// along x, each pair once. The order depends on the meshes only. Memory is linear in the number of faces.
+void sweep_box_pairs(const Mesh& a, const Mesh& b, const std::function<void(CandidatePair)>& visit);
+
+}  // namespace cchip
+
+#endif

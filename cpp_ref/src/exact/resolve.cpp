@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cchip/exact/oracle.hpp>
+#include <cchip/exact/resolve.hpp>
+
+namespace cchip {
+
+bool resolve(const Primitive& a, const Primitive& b, const PairResult& result) {
+  return result.definite ? result.grid : exact_intersects(a, b);
+}
+
+}  // namespace cchip

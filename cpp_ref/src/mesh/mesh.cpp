@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cchip/mesh/mesh.hpp>
+
+namespace cchip {
+namespace {
+
+struct Box {
+  Vec3d least;
+  Vec3d greatest;
+};
+
+std::vector<Box> face_boxes(const Mesh& mesh) {
+  std::vector<Box> boxes(mesh.faces.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Primitive p = mesh.primitive(i);
+    boxes[i] = {p.v[0], p.v[0]};
+    for (std::size_t k = 1; k < p.vertex_count(); ++k) {
+      boxes[i].least = boxes[i].least.cwiseMin(p.v[k]);
+      boxes[i].greatest = boxes[i].greatest.cwiseMax(p.v[k]);
+    }
+  }
+  return boxes;
+}
+
+bool overlap(const Box& p, const Box& q) {
+  return (p.least.array() <= q.greatest.array()).all() && (q.least.array() <= p.greatest.array()).all();
+}
+
+/// Faces of one mesh in the order in which a sweep along x meets them, and those it is in.
+class Sweep {
+ public:
+  explicit Sweep(const Mesh& mesh) : boxes_(face_boxes(mesh)), order_(boxes_.size()) {
+    for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<std::uint32_t>(i);
+    std::stable_sort(order_.begin(), order_.end(),
+                     [this](std::uint32_t i, std::uint32_t j) { return boxes_[i].least.x() < boxes_[j].least.x(); });
+  }
+  bool done() const { return next_ == order_.size(); }
+  /// Where the next face begins; there must be one.
+  double next_x() const { return boxes_[order_[next_]].least.x(); }
+  /// Enters the next face and returns its number.
+  std::uint32_t enter() {
+    active_.push_back(order_[next_]);
+    return order_[next_++];
+  }
+  /// Leaves the faces that end before x and calls `visit` for those whose box overlaps the given one.
+  template <class Visit>
+  void meet(const Box& box, const Visit& visit) {
+    const auto is_behind = [&](std::uint32_t i) { return boxes_[i].greatest.x() < box.least.x(); };
+    active_.erase(std::remove_if(active_.begin(), active_.end(), is_behind), active_.end());
+    for (const std::uint32_t i : active_) {
+      if (overlap(boxes_[i], box)) visit(i);
+    }
+  }
+  const Box& box(std::uint32_t face) const { return boxes_[face]; }
+
+ private:
+  std::vector<Box> boxes_;
+  std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> active_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace
+
+Primitive Mesh::primitive(std::size_t face) const {
+  Primitive p;
+  p.kind = faces[face].kind;
+  for (std::size_t i = 0; i < p.vertex_count(); ++i) p.v[i] = vertices[faces[face].vertex[i]];
+  return p;
+}
+
+Mesh transformed(const Mesh& mesh, const Eigen::Isometry3d& pose) {
+  Mesh result = mesh;
+  for (Vec3d& p : result.vertices) p = pose * p;
+  return result;
+}
+
+void sweep_box_pairs(const Mesh& a, const Mesh& b, const std::function<void(CandidatePair)>& visit) {
+  Sweep sweep_a(a);
+  Sweep sweep_b(b);
+  while (!sweep_a.done() || !sweep_b.done()) {
+    if (sweep_b.done() || (!sweep_a.done() && sweep_a.next_x() <= sweep_b.next_x())) {
+      const std::uint32_t i = sweep_a.enter();
+      sweep_b.meet(sweep_a.box(i), [&](std::uint32_t j) { visit({i, j}); });
+    } else {
+      const std::uint32_t j = sweep_b.enter();
+      sweep_a.meet(sweep_b.box(j), [&](std::uint32_t i) { visit({i, j}); });
+    }
+  }
+}
+
+}  // namespace cchip

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cchip/wire/pair.hpp>
+
+namespace cchip {
+
+std::string to_text(const GridPair& pair) {
+  std::string text;
+  for (const GridPrimitive* p : {&pair.a, &pair.b}) {
+    text += p == &pair.a ? "A" : "  B";
+    for (std::size_t i = 0; i < p->vertex_count(); ++i) {
+      text += " (" + std::to_string(p->v[i].x()) + ", " + std::to_string(p->v[i].y()) + ", " +
+              std::to_string(p->v[i].z()) + ")";
+    }
+  }
+  return text + "  eta " + std::to_string(pair.eta);
+}
+
+ModuleId module_of(Kind a, Kind b) {
+  if (a != b) return ModuleId::tri_quad;
+  return a == Kind::quad ? ModuleId::quad_quad : ModuleId::tri_tri;
+}
+
+std::array<std::size_t, 2> vertices_of(ModuleId id) {
+  switch (id) {
+    case ModuleId::tri_tri:
+      return {3, 3};
+    case ModuleId::tri_quad:
+      return {3, 4};
+    case ModuleId::quad_quad:
+      return {4, 4};
+    case ModuleId::blank:
+      break;
+  }
+  return {0, 0};
+}
+
+const char* to_name(ModuleId id) {
+  switch (id) {
+    case ModuleId::tri_tri:
+      return "tri_tri";
+    case ModuleId::tri_quad:
+      return "tri_quad";
+    case ModuleId::quad_quad:
+      return "quad_quad";
+    case ModuleId::blank:
+      break;
+  }
+  return "blank";
+}
+
+}  // namespace cchip

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs of every class and the results that the bit-exact model expects, for bench_primtest.v.
+//   cchip_pair_vectors KIND FILE PAIRS SEED      KIND: tri_tri, tri_quad, quad_quad; PAIRS: at most 65536
+#include <algorithm>
+#include <cchip/device/pair_engine.hpp>
+#include <cchip/stimulus/campaign.hpp>
+#include <cchip/stimulus/pair_source.hpp>
+#include <cchip/stimulus/pair_vector.hpp>
+#include <iostream>
+#include <random>
+
+namespace {
+
+using namespace cchip;
+using campaign::ShapeInfo;
+
+/// Pairs that follow each other in one mix of programmes.
+constexpr int run_length = 100;
+constexpr int tags = 1 << defs::tag_w;
+
+const ShapeInfo& find_shape(std::string kind) {
+  std::replace(kind.begin(), kind.end(), '_', '-');
+  for (const ShapeInfo& shape : campaign::all_shapes) {
+    if (kind == shape.name) return shape;
+  }
+  throw std::invalid_argument(kind + ": no such kind, one of tri_tri, tri_quad, quad_quad");
+}
+
+ModuleId rm_id_of(const ShapeInfo& shape) {
+  if (shape.b == Kind::tri) return ModuleId::tri_tri;
+  return shape.a == Kind::tri ? ModuleId::tri_quad : ModuleId::quad_quad;
+}
+
+/// Runs of EXHAUSTIVE, of DIRECTED, and of both with a reserved mode now and then.
+int draw_mode(int index, std::mt19937_64& random) {
+  const int mix = index / run_length % 3;
+  if (mix < 2) return mix;
+  return static_cast<int>(random() % 16 == 0 ? 2 + random() % 2 : random() % 2);
+}
+
+/// What is on the pins of the unused vertex slot of a triangle must not matter.
+void fill_unused_slot(GridPrimitive& p, std::mt19937_64& random) {
+  if (p.kind == Kind::tri) p.v[3] = Vec3i::NullaryExpr([&] { return static_cast<std::int16_t>(random()); });
+}
+
+bench::Vector to_vector(const ShapeInfo& shape, const GridPair& pair, int mode, int index) {
+  const model::Outcome outcome = model::run_programme(shape.options(), pair, mode, bench::coord_w);
+  const AxisCode& witness = outcome.witness;
+  bench::Vector vector;
+  vector.set(bench::side_a, pair.a);
+  vector.set(bench::side_b, pair.b);
+  vector.set(bench::tag, static_cast<std::uint64_t>(index) * 40503 % tags);  // odd: a tag of its own for each pair
+  vector.set(bench::mode, static_cast<std::uint64_t>(mode));
+  vector.set(bench::err, static_cast<std::uint64_t>(pair.eta));
+  vector.set(bench::hit, outcome.hit() ? 1 : 0);
+  vector.set(bench::grid, outcome.grid ? 1 : 0);
+  vector.set(bench::definite, outcome.definite ? 1 : 0);
+  vector.set(bench::axis, std::uint64_t(witness.cls) << 6 | std::uint64_t{witness.k} << 3 | witness.l);
+  vector.set(bench::beats, static_cast<std::uint64_t>(outcome.beats));
+  vector.set(bench::rm_id, std::uint64_t(rm_id_of(shape)));
+  return vector;
+}
+
+void write_vectors(const ShapeInfo& shape, const std::string& path, int pairs, std::uint64_t seed) {
+  if (pairs < 1 || pairs > tags) throw std::invalid_argument("PAIRS must be 1 to 65536: every pair has its own tag");
+  std::ofstream out(path);
+  campaign::PairSource source(bench::coord_w, seed, shape.a, shape.b);
+  std::mt19937_64 random(seed);
+  const auto classes = campaign::classes_of(shape.a, shape.b);
+  for (int i = 0; i < pairs; ++i) {
+    GridPair pair = source.draw(classes[static_cast<std::size_t>(i) % classes.size()].value);
+    pair.eta = static_cast<int>(random() % 2 == 0 ? 0 : random() % 16);
+    fill_unused_slot(pair.a, random);
+    fill_unused_slot(pair.b, random);
+    out << to_vector(shape, pair, draw_mode(i, random), i).line() << '\n';
+  }
+  out.close();
+  if (!out) throw std::runtime_error(path + ": cannot be written");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const std::vector<std::string> arguments(argv + 1, argv + argc);
+    if (arguments.size() != 4) throw std::invalid_argument("usage: cchip_pair_vectors KIND FILE PAIRS SEED");
+    write_vectors(find_shape(arguments[0]), arguments[1], std::stoi(arguments[2]), std::stoull(arguments[3]));
+  } catch (const std::exception& error) {
+    std::cerr << "cchip_pair_vectors: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

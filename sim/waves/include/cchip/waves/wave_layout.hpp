@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// How GTKWave shows a waveform of the engine `rtl`.
+#ifndef CCHIP_WAVES_WAVE_LAYOUT_HPP
+#define CCHIP_WAVES_WAVE_LAYOUT_HPP
+
+#include <cchip/wire/definitions.hpp>
+#include <cstdint>
+#include <string>
+
+namespace cchip {
+
+/// Writes the GTKWave save file beside the waveform of this module (same name, .gtkw): signals in the order in which
+/// the data flows, grouped by stream and macro stage, zoomed to the first pairs. The waveform need not exist yet.
+/// \throws std::runtime_error the file cannot be written
+void write_gtkw(const std::string& fst_path, ModuleId module);
+
+/// The same for a waveform of cchip_primtest_subsystem with two slots: streams, scheduler, configuration controller and
+/// slots, zoomed to a swap.
+/// \param from,to time units of the waveform
+/// \throws std::runtime_error the file cannot be written
+void write_swap_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to);
+
+}  // namespace cchip
+
+#endif
