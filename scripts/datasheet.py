@@ -26,6 +26,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RTL = ROOT / "rtl"
+MODELS = ROOT / "sim" / "rtl_models" / "sim.f"  # for simulation only
 MODULES = ROOT / "docs" / "modules"
 README = ROOT / "README.md"
 ARCHITECTURE = ROOT / "docs" / "architecture.md"
@@ -82,8 +83,6 @@ STIMULI = {
 
 LATENCY_LIMIT = 1000  # clocks; a longer wait means a stimulus without effect
 
-SIMULATION_ONLY = ("cchip_pr_config_memory", "cchip_pr_virtual")
-
 # Vertices of A and of B.
 SHAPES = {"tri_tri": (3, 3), "tri_quad": (3, 4), "quad_quad": (4, 4)}
 PRIMTESTS = {"cchip_primtest": (3, 3), **{f"cchip_primtest_{name}": verts for name, verts in SHAPES.items()}}
@@ -104,8 +103,10 @@ def run(*command, cwd=ROOT):
 
 
 def rtl_files():
-    lines = [line.strip() for line in (RTL / "cchip.f").read_text().splitlines()]
-    return {pathlib.Path(line).stem: line for line in lines if line.endswith(".v")}
+    """Path of every module below the root, those for simulation only at the end."""
+    files = [file_list.parent / line.strip() for file_list in (RTL / "cchip.f", MODELS)
+             for line in file_list.read_text().splitlines() if line.strip().endswith(".v")]
+    return {path.stem: str(path.relative_to(ROOT)) for path in files}
 
 
 def squeeze(text):
@@ -114,7 +115,7 @@ def squeeze(text):
 
 def parse(module):
     """Parameters [(name, default)] and ports [(name, direction, width)] of a module, in order; blanks removed."""
-    text = re.sub(r"//[^\n]*", "", (RTL / rtl_files()[module]).read_text())
+    text = re.sub(r"//[^\n]*", "", (ROOT / rtl_files()[module]).read_text())
     head = re.search(rf"\bmodule\s+{module}\b(.*?)\);", text, re.S)
     if not head:
         fail(f"{rtl_files()[module]}: no module {module}")
@@ -139,8 +140,7 @@ def width_of(top):
 def simulate(bench, *options):
     with tempfile.TemporaryDirectory() as folder:
         program = f"{folder}/bench.vvp"
-        files = [f"rtl/{name}" for name in rtl_files().values()]
-        run("iverilog", "-g2005", "-Irtl/include", "-o", program, *options, *files, bench)
+        run("iverilog", "-g2005", "-Irtl/include", "-o", program, *options, *rtl_files().values(), bench)
         return run("vvp", "-n", program)
 
 
@@ -308,7 +308,7 @@ def speed(module):
 
 def datasheet_block(module):
     text = speed(module)
-    if module in SIMULATION_ONLY:
+    if not rtl_files()[module].startswith("rtl/"):
         return text + "\nNo area, no clock: for simulations only.\n"
     text += "\nFmax: whole primitive tests are placed and routed, see [fpga.md](../fpga.md).\n\n"
     kinds = list(next(iter(TARGETS.values()))[1])

@@ -208,7 +208,7 @@ module cchip_pr_slot #(
           .rm_id            (r_rm_id),
           .idle             (r_idle)
       );
-      wire unused = &{1'b0, cfg_valid, cfg_data};
+      wire unused = &{1'b0, cfg_valid, cfg_data, SEED};
     end else if (SIMULATION == 1) begin : gen_simulation
       cchip_pr_virtual #(
           .SLOT_ID            (SLOT_ID),
