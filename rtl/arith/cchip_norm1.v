@@ -30,7 +30,8 @@ module cchip_norm1 #(
   end
 
   // ---- clock 2: the missing ones go in as carries
-  wire [V_W:0] xy = {1'b0, size_q[0+:V_W-1], x_negative_q} + {1'b0, size_q[V_W-1+:V_W-1], x_negative_q};
+  wire [V_W:0] xy = {1'b0, size_q[0+:V_W-1], x_negative_q}
+      + {1'b0, size_q[V_W-1+:V_W-1], x_negative_q};
   wire [V_W:0] rest = {{V_W - 1{1'b0}}, rest_q};
   reg [V_W-1:0] xy_q, z_q;
   always @(posedge clk) begin

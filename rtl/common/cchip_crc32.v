@@ -30,7 +30,8 @@ module cchip_crc32 #(
     integer i;
     begin
       next = from;
-      for (i = 0; i < DATA_W; i = i + 1) next = {1'b0, next[31:1]} ^ (next[0] ^ word[i] ? 32'hEDB88320 : 32'd0);
+      for (i = 0; i < DATA_W; i = i + 1) next = {1'b0, next[31:1]}
+          ^ (next[0] ^ word[i] ? 32'hEDB88320 : 32'd0);
     end
   endfunction
 

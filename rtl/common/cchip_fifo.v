@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_fifo: first-in first-out queue in distributed memory with a register behind it.
 //   latency      2 clocks from the push to m_valid of an empty queue
 //   throughput   one beat per clock, DEPTH >= 3
@@ -24,9 +25,9 @@ module cchip_fifo #(
     output wire [WIDTH-1:0] m_data
 );
 
-  // banks of 16 words, the smallest memory of LUTs, that take turns: pointers run round by themselves, nothing is
-  // compared. Each bank is read with a pointer of its own, which moves on a clock after the read: the turn is another
-  // bank's then, so there are two banks at least.
+  // banks of 16 words, the smallest memory of LUTs, that take turns: pointers run round by
+  // themselves, nothing is compared. Each bank is read with a pointer of its own, which moves on a
+  // clock after the read: the turn is another bank's then, so there are two banks at least.
   localparam integer BANKS = DEPTH > 16 ? (DEPTH + 15) / 16 : 2;
   localparam integer COUNT_W = $clog2(DEPTH + 1);
   localparam [31:0] LAST = DEPTH - 1;
@@ -51,7 +52,7 @@ module cchip_fifo #(
   assign m_valid = valid_q;
   assign m_data  = data_q;
 
-  wire push = s_valid & (ready_q | ROOM_KNOWN != 0);
+  wire push = s_valid && (ready_q || ROOM_KNOWN != 0);
   wire pop = valid_q & m_ready;
   wire up = push & ~pop;
   wire down = pop & ~push;
@@ -67,7 +68,7 @@ module cchip_fifo #(
       reg [3:0] read_q;
       reg was_read_q;
       always @(posedge clk) begin
-        if (push & write_bank_q[b]) mem[write_q] <= s_data;
+        if (push && write_bank_q[b]) mem[write_q] <= s_data;
         if (rst) begin
           was_read_q <= 1'b0;
           read_q     <= 4'd0;
@@ -106,7 +107,7 @@ module cchip_fifo #(
       more_q  <= 1'b0;
       valid_q <= 1'b0;
     end else begin
-      if (push & write_bank_q[BANKS-1]) write_q <= write_q + 4'd1;
+      if (push && write_bank_q[BANKS-1]) write_q <= write_q + 4'd1;
       if (push) write_bank_q <= write_bank_next;
       if (load) read_bank_q <= read_bank_next;
       if (push != pop) count_q <= count_q + ({COUNT_W{pop}} | ONE[COUNT_W-1:0]);  // + 1 or - 1
@@ -117,7 +118,6 @@ module cchip_fifo #(
     end
   end
 
-`include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_room, ROOM_KNOWN == 0 || !s_valid || ready_q)

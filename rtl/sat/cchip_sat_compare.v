@@ -4,12 +4,13 @@
 // intervals (eq. 3) disjoint, and are they for the unrounded primitives too?
 //   latency      CCHIP_COMPARE_LATENCY = 4 clocks; from the bounds CCHIP_BOUND_LAG = 2 less
 //   throughput   one axis per clock, never stalls
-//   numbers      signed projections relative to the reference point, unsigned bounds of their errors
+//   numbers      signed projections relative to the reference point, unsigned bounds of their
+//                errors
 //   reset        none (data only)
 // Own set of the axis: {0} and the slots marked s_own; other set: the other slots. Closed sets:
 // separated only if every difference between the two sets is strictly of one sign that is allowed.
-// Certain: |value| > bound, strictly. m_clear: every difference between the sets exceeds the gap bound, and each
-// point of the other set is on one side of the whole own set.
+// Certain: |value| > bound, strictly. m_clear: every difference between the sets exceeds the gap
+// bound, and each point of the other set is on one side of the whole own set.
 module cchip_sat_compare #(
     // width of a projection, bit
     parameter integer PROJ_W = 51,
@@ -17,24 +18,41 @@ module cchip_sat_compare #(
     parameter integer BOUND_W = 43,
     // point slots, 3..5
     parameter integer POINTS = 3,
-    // the first slots that can hold own points: 1 or 2; the sign of the slot behind them can be certain
+    // the first slots that can hold own points: 1 or 2; the sign of the slot behind them can be
+    // certain
     parameter integer OWN = 1
 ) (
     input  wire                     clk,
-    input  wire [              1:0] s_own,          // slot 0, 1 holds an own point; [1] only with [0] and OWN = 2
-    input  wire                     s_allow_above,  // the other set may be separated above the own one
+    // slot 0, 1 holds an own point; [1] only with [0] and OWN = 2
+    input  wire [              1:0] s_own,
+    // the other set may be separated above the own one
+    input  wire                     s_allow_above,
     input  wire                     s_allow_below,
     input  wire [POINTS*PROJ_W-1:0] s_projection,   // p0 in the low bits
     input  wire [      BOUND_W-1:0] s_sign_bound,   // of slot OWN; two clocks after s_projection
     input  wire [      BOUND_W-1:0] s_gap_bound,    // two clocks after s_projection
-    output reg                      m_separated,
-    output reg                      m_certain_gap,  // separated for the unrounded primitives
-    output reg  [       POINTS-1:0] m_negative,     // p_i < 0
-    output reg  [       POINTS-1:0] m_zero,         // p_i = 0
-    output reg                      m_certain,      // the sign of p_OWN is that of the unrounded vertices
-    output reg                      m_clear         // every other point lies certainly beyond all own points,
-                                                    // on either side
+    output wire                     m_separated,
+    output wire                     m_certain_gap,  // separated for the unrounded primitives
+    output wire [       POINTS-1:0] m_negative,     // p_i < 0
+    output wire [       POINTS-1:0] m_zero,         // p_i = 0
+    // the sign of p_OWN is that of the unrounded vertices
+    output wire                     m_certain,
+    // every other point lies certainly beyond all own points, on either side
+    output wire                     m_clear
 );
+
+  reg m_separated_q;
+  reg m_certain_gap_q;
+  reg [POINTS-1:0] m_negative_q;
+  reg [POINTS-1:0] m_zero_q;
+  reg m_certain_q;
+  reg m_clear_q;
+  assign m_separated = m_separated_q;
+  assign m_certain_gap = m_certain_gap_q;
+  assign m_negative = m_negative_q;
+  assign m_zero = m_zero_q;
+  assign m_certain = m_certain_q;
+  assign m_clear = m_clear_q;
 
   generate
     if (POINTS < 3 || POINTS > 5 || OWN < 1 || OWN > 2) begin : gen_illegal
@@ -147,12 +165,12 @@ module cchip_sat_compare #(
   wire none_zero = &(ignore_q3 | ~zero);
   wire all_far = &(ignore_q3 | ~near);  // then none is zero
   always @(posedge clk) begin
-    m_separated   <= (above_q3 & none_zero) | below_q3;
-    m_certain_gap <= (above_q3 | below_q3) & all_far;
-    m_negative    <= negative_q3;
-    m_zero        <= zero[POINTS-1:0];
-    m_certain     <= ~uncertain_q3;
-    m_clear       <= same_q3 & all_far;
+    m_separated_q   <= (above_q3 & none_zero) | below_q3;
+    m_certain_gap_q <= (above_q3 | below_q3) & all_far;
+    m_negative_q    <= negative_q3;
+    m_zero_q        <= zero[POINTS-1:0];
+    m_certain_q     <= ~uncertain_q3;
+    m_clear_q       <= same_q3 & all_far;
   end
 
 endmodule

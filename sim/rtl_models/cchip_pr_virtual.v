@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-`include "cchip_defs.vh"
 `default_nettype none
-// cchip_pr_virtual: a reconfigurable region for simulations: all four modules and a selector that the words of the
-// configuration port move (cchip_pr_config_memory). Same ports as cchip_pr_region and the configuration port.
-//   garbage      from the word of a payload that names the slot to its last one, and for ever after a bad payload, every
-//                output of the region is random on every clock, and all modules are fed random pairs without reset: who
-//                forgets to decouple sees garbage, who forgets the reset afterwards sees answers to pairs nobody sent
+`include "cchip_defs.vh"
+// cchip_pr_virtual: a reconfigurable region for simulations: all four modules and a selector that
+// the words of the configuration port move (cchip_pr_config_memory). Same ports as cchip_pr_region
+// and the configuration port.
+//   garbage      from the word of a payload that names the slot to its last one, and for ever after
+//                a bad payload, every output of the region is random on every clock, and all
+//                modules are fed random pairs without reset: who forgets to decouple sees garbage,
+//                who forgets the reset afterwards sees answers to pairs nobody sent
 //   otherwise    the selected module, nothing added; rst resets all of them
 module cchip_pr_virtual #(
     // number of this slot, 0..255
@@ -23,27 +25,27 @@ module cchip_pr_virtual #(
     parameter integer ABSOLUTE_PROJECTION = 0,
     parameter integer WARPED_EXACT = 1
 ) (
-    input  wire                   clk,
-    input  wire                   rst,
-    input  wire                   cfg_valid,
-    input  wire [      CFG_W-1:0] cfg_data,
-    input  wire                   s_pair_valid,
-    output wire                   s_pair_ready,
-    input  wire [           15:0] s_pair_tag,
-    input  wire [            1:0] s_pair_mode,
-    input  wire [4*3*COORD_W-1:0] s_pair_a,
-    input  wire [4*3*COORD_W-1:0] s_pair_b,
-    input  wire [            3:0] s_pair_err,
-    output wire                   m_result_valid,
-    input  wire                   m_result_ready,
-    output wire [           15:0] m_result_tag,
-    output wire                   m_result_hit,
-    output wire                   m_result_grid,
-    output wire                   m_result_definite,
-    output wire [            8:0] m_result_axis,
-    output wire [            5:0] m_result_beats,
-    output wire [            7:0] rm_id,
-    output wire                   idle
+    input  wire                                   clk,
+    input  wire                                   rst,
+    input  wire                                   cfg_valid,
+    input  wire [                      CFG_W-1:0] cfg_data,
+    input  wire                                   s_pair_valid,
+    output wire                                   s_pair_ready,
+    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
+    input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
+    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
+    output wire                                   m_result_valid,
+    input  wire                                   m_result_ready,
+    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
+    output wire                                   m_result_hit,
+    output wire                                   m_result_grid,
+    output wire                                   m_result_definite,
+    output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
+    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
+    output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
+    output wire                                   idle
 );
 
   localparam integer PAIR_W = 16 + 2 + 4 + 24 * COORD_W;
@@ -54,7 +56,7 @@ module cchip_pr_virtual #(
   localparam [31:0] START = SEED;
 
   wire garbage;
-  wire [7:0] select;
+  wire [`CCHIP_RM_ID_W-1:0] select;
   cchip_pr_config_memory #(
       .SLOT_ID(SLOT_ID),
       .RM_ID  (RM_ID),
@@ -129,8 +131,10 @@ module cchip_pr_virtual #(
     end
   endgenerate
 
-  assign {s_pair_ready, m_result_valid, m_result_tag, m_result_hit, m_result_grid, m_result_definite, m_result_axis,
-          m_result_beats, rm_id, idle} = garbage ? random_q[OUT_W-1:0] : outs[STEP*{30'd0, select[1:0]}+:OUT_W];
+  assign {s_pair_ready, m_result_valid, m_result_tag, m_result_hit, m_result_grid,
+      m_result_definite, m_result_axis,
+          m_result_beats, rm_id, idle} = garbage ? random_q[OUT_W-1:0]
+              : outs[STEP*{30'd0, select[1:0]}+:OUT_W];
 
   wire unused = &{1'b0, select[7:2], pair_q[PAIR_W+63:PAIR_W]};
 
