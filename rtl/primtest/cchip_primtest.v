@@ -59,7 +59,7 @@ module cchip_primtest #(
   localparam [31:0] FULL = CONTEXTS;
   localparam [31:0] LAST = CONTEXTS - 1;
   localparam [31:0] ONE = 1;
-  localparam integer RESULT_W = 16 + 3 + 9 + 6;
+  localparam integer RESULT_W = `CCHIP_RESULT_W;
 
   generate
     if (COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX) begin : gen_illegal_coord_w
@@ -128,10 +128,10 @@ module cchip_primtest #(
 
   generate
     if (VERTS_A == 3) begin : gen_unused_a
-      wire unused = &{1'b0, s_pair_a[12*COORD_W-1:A_W]};
+      wire unused = &{1'b0, s_pair_a[`CCHIP_PRIMITIVE_W(COORD_W)-1:A_W]};
     end
     if (VERTS_B == 3) begin : gen_unused_b
-      wire unused = &{1'b0, s_pair_b[12*COORD_W-1:B_W]};
+      wire unused = &{1'b0, s_pair_b[`CCHIP_PRIMITIVE_W(COORD_W)-1:B_W]};
     end
   endgenerate
 
@@ -237,12 +237,12 @@ module cchip_primtest #(
       .s_verdict_box_separated(verdict_box_separated),
       .s_verdict_box_certain  (verdict_box_certain),
       .m_result_valid         (outcome_valid),
-      .m_result_tag           (outcome[15:0]),
-      .m_result_hit           (outcome[16]),
-      .m_result_grid          (outcome[17]),
-      .m_result_definite      (outcome[18]),
-      .m_result_axis          (outcome[27:19]),
-      .m_result_beats         (outcome[33:28])
+      .m_result_tag           (outcome[`CCHIP_RESULT_TAG]),
+      .m_result_hit           (outcome[`CCHIP_RESULT_HIT]),
+      .m_result_grid          (outcome[`CCHIP_RESULT_GRID]),
+      .m_result_definite      (outcome[`CCHIP_RESULT_DEFINITE]),
+      .m_result_axis          (outcome[`CCHIP_RESULT_AXIS]),
+      .m_result_beats         (outcome[`CCHIP_RESULT_BEATS])
   );
 
   // ---- results: the FIFO has room for every pair in flight, so verdicts never wait

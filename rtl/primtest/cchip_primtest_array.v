@@ -55,12 +55,12 @@ module cchip_primtest_array #(
     output wire                                   idle
 );
 
-  localparam integer VERTEX_W = 4 * 3 * COORD_W;
-  // {lanes, one-hot; tag; mode; err; b; a}
-  localparam integer PAIR_W = LANES + 16 + 2 + 4 + 2 * VERTEX_W;
+  // {lane, one-hot; request}
+  localparam integer REQUEST_W = `CCHIP_REQUEST_W(COORD_W);
+  localparam integer PAIR_W = LANES + REQUEST_W;
   localparam integer LANE_W = LANES > 1 ? $clog2(LANES) : 1;
-  localparam integer ANSWER_W = 16 + 3 + 9 + 6;
-  // {lane; beats; axis; definite; grid; hit; tag}
+  localparam integer ANSWER_W = `CCHIP_RESULT_W;
+  // {lane; result}
   localparam integer RESULT_W = LANE_W + ANSWER_W;
   localparam integer PLACES_W = $clog2(CONTEXTS + 1);
   localparam integer COUNT_W = $clog2(LANES * CONTEXTS + 1);
@@ -68,8 +68,8 @@ module cchip_primtest_array #(
   localparam [31:0] PLACES = CONTEXTS;
   localparam [31:0] COUNT = LANES * CONTEXTS;
   localparam [31:0] SHUT = `CCHIP_ARRAY_LATENCY(LANES);
-  localparam [7:0] RM = VERTS_A == 4 ? `CCHIP_RM_QUAD_QUAD : VERTS_B == 4 ? `CCHIP_RM_TRI_QUAD
-      : `CCHIP_RM_TRI_TRI;
+  localparam [31:0] MODULE = `CCHIP_RM_OF(VERTS_A, VERTS_B);
+  localparam [`CCHIP_RM_ID_W-1:0] RM = MODULE[`CCHIP_RM_ID_W-1:0];
 
   generate
     if (LANES < 1 || LANES > `CCHIP_LANES_MAX) begin : gen_illegal_lanes
@@ -152,7 +152,7 @@ module cchip_primtest_array #(
   wire [            LANE_W-1:0] answer_lane;
 
   assign way[PAIR_W-1:0] = {
-    choice_q & {LANES{accept & ~rst}}, s_pair_tag, s_pair_mode, s_pair_err, s_pair_b, s_pair_a
+    choice_q & {LANES{accept & ~rst}}, s_pair_mode, s_pair_err, s_pair_b, s_pair_a, s_pair_tag
   };
   assign back_valid[0] = 1'b0;
   assign back[RESULT_W-1:0] = {RESULT_W{1'b0}};
@@ -202,7 +202,7 @@ module cchip_primtest_array #(
       );
       assign way[PAIR_W*(lane+1)+:PAIR_W] = pair;
 
-      wire                pair_valid = pair[PAIR_W-LANES+lane];
+      wire                pair_valid = pair[REQUEST_W+lane];
       wire                pair_ready;
       wire                lane_valid, lane_ready;  // result as it leaves the lane
       wire [ANSWER_W-1:0] lane_own, own;
@@ -222,19 +222,19 @@ module cchip_primtest_array #(
           .rst              (lane_rst),
           .s_pair_valid     (pair_valid),
           .s_pair_ready     (pair_ready),
-          .s_pair_tag       (pair[2*VERTEX_W+6+:16]),
-          .s_pair_mode      (pair[2*VERTEX_W+4+:2]),
-          .s_pair_a         (pair[0+:VERTEX_W]),
-          .s_pair_b         (pair[VERTEX_W+:VERTEX_W]),
-          .s_pair_err       (pair[2*VERTEX_W+:4]),
+          .s_pair_tag       (pair[`CCHIP_REQUEST_TAG]),
+          .s_pair_mode      (pair[`CCHIP_REQUEST_MODE(COORD_W)]),
+          .s_pair_a         (pair[`CCHIP_REQUEST_A(COORD_W)]),
+          .s_pair_b         (pair[`CCHIP_REQUEST_B(COORD_W)]),
+          .s_pair_err       (pair[`CCHIP_REQUEST_ERR(COORD_W)]),
           .m_result_valid   (lane_valid),
           .m_result_ready   (lane_ready),
-          .m_result_tag     (lane_own[15:0]),
-          .m_result_hit     (lane_own[16]),
-          .m_result_grid    (lane_own[17]),
-          .m_result_definite(lane_own[18]),
-          .m_result_axis    (lane_own[27:19]),
-          .m_result_beats   (lane_own[33:28]),
+          .m_result_tag     (lane_own[`CCHIP_RESULT_TAG]),
+          .m_result_hit     (lane_own[`CCHIP_RESULT_HIT]),
+          .m_result_grid    (lane_own[`CCHIP_RESULT_GRID]),
+          .m_result_definite(lane_own[`CCHIP_RESULT_DEFINITE]),
+          .m_result_axis    (lane_own[`CCHIP_RESULT_AXIS]),
+          .m_result_beats   (lane_own[`CCHIP_RESULT_BEATS]),
           .rm_id            (lane_rm_id),
           .idle             (lane_idle)
       );

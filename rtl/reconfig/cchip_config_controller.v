@@ -27,60 +27,61 @@ module cchip_config_controller #(
     // longest wait for a slot to decouple, to end its ROC, to recouple, clocks, >= 16
     parameter integer SLOT_LIMIT = 4096
 ) (
-    input  wire                           clk,
-    input  wire                           rst,
-    input  wire                           s_swap_valid,
-    output wire                           s_swap_ready,
-    input  wire [   `CCHIP_SLOT_ID_W-1:0] s_swap_slot,
-    input  wire [     `CCHIP_RM_ID_W-1:0] s_swap_module,
-    input  wire [                   31:0] s_swap_address,   // of the header, byte
-    input  wire [                   31:0] s_swap_size,      // header and payload, byte
+    input  wire                                 clk,
+    input  wire                                 rst,
+    input  wire                                 s_swap_valid,
+    output wire                                 s_swap_ready,
+    input  wire [         `CCHIP_SLOT_ID_W-1:0] s_swap_slot,
+    input  wire [           `CCHIP_RM_ID_W-1:0] s_swap_module,
+    input  wire [                         31:0] s_swap_address,   // of the header, byte
+    input  wire [                         31:0] s_swap_size,      // header and payload, byte
     // 1: pairs not answered in time are given up
-    input  wire                           s_swap_force,
-    output wire                           m_report_valid,   // 1 clock, no ready
-    output wire [   `CCHIP_SLOT_ID_W-1:0] m_report_slot,
-    output wire [     `CCHIP_RM_ID_W-1:0] m_report_module,
-    output wire [      `CCHIP_SWAP_W-1:0] m_report_code,
-    output wire [`CCHIP_PAIR_COUNT_W-1:0] m_report_lost,
-    input  wire                           abort_swap,
-    input  wire                           clear,            // counters
-    input  wire [                   31:0] shutdown_limit,   // clocks; 0: default
-    input  wire [                   31:0] memory_limit,     // clocks; 0: default
-    output wire [              SLOTS-1:0] stop,
-    output wire [              SLOTS-1:0] decouple,
-    output wire [              SLOTS-1:0] hold_reset,
-    output wire [              SLOTS-1:0] roc_start,
-    input  wire [              SLOTS-1:0] quiet,
-    input  wire [              SLOTS-1:0] decoupled,
-    input  wire [              SLOTS-1:0] roc_busy,
-    input  wire [            8*SLOTS-1:0] region_rm_id,
-    input  wire [           16*SLOTS-1:0] lost,
-    output wire                           busy,
-    output wire [     `CCHIP_PHASE_W-1:0] phase,
-    output wire [   `CCHIP_SLOT_ID_W-1:0] phase_slot,
-    output wire                           m_axi_arvalid,
-    input  wire                           m_axi_arready,
-    output wire [                   31:0] m_axi_araddr,
-    output wire [                    7:0] m_axi_arlen,
-    output wire [                    2:0] m_axi_arsize,
-    output wire [                    1:0] m_axi_arburst,
-    output wire [                    3:0] m_axi_arcache,
-    output wire [                    2:0] m_axi_arprot,
-    input  wire                           m_axi_rvalid,
-    output wire                           m_axi_rready,
-    input  wire [                   31:0] m_axi_rdata,
-    input  wire [                    1:0] m_axi_rresp,
-    input  wire                           m_axi_rlast,
-    output wire                           cfg_valid,
-    output wire [              CFG_W-1:0] cfg_data,
-    input  wire                           cfg_error,
-    output wire [                   31:0] swaps,
-    output wire [                   31:0] rejected,
-    output wire [                   31:0] stalls,
-    output wire [               9*32-1:0] phase_clocks
+    input  wire                                 s_swap_force,
+    output wire                                 m_report_valid,   // 1 clock, no ready
+    output wire [         `CCHIP_SLOT_ID_W-1:0] m_report_slot,
+    output wire [           `CCHIP_RM_ID_W-1:0] m_report_module,
+    output wire [            `CCHIP_SWAP_W-1:0] m_report_code,
+    output wire [      `CCHIP_PAIR_COUNT_W-1:0] m_report_lost,
+    input  wire                                 abort_swap,
+    input  wire                                 clear,            // counters
+    input  wire [                         31:0] shutdown_limit,   // clocks; 0: default
+    input  wire [                         31:0] memory_limit,     // clocks; 0: default
+    output wire [                    SLOTS-1:0] stop,
+    output wire [                    SLOTS-1:0] decouple,
+    output wire [                    SLOTS-1:0] hold_reset,
+    output wire [                    SLOTS-1:0] roc_start,
+    input  wire [                    SLOTS-1:0] quiet,
+    input  wire [                    SLOTS-1:0] decoupled,
+    input  wire [                    SLOTS-1:0] roc_busy,
+    input  wire [     `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,
+    input  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] lost,
+    output wire                                 busy,
+    output wire [           `CCHIP_PHASE_W-1:0] phase,
+    output wire [         `CCHIP_SLOT_ID_W-1:0] phase_slot,
+    output wire                                 m_axi_arvalid,
+    input  wire                                 m_axi_arready,
+    output wire [                         31:0] m_axi_araddr,
+    output wire [                          7:0] m_axi_arlen,
+    output wire [                          2:0] m_axi_arsize,
+    output wire [                          1:0] m_axi_arburst,
+    output wire [                          3:0] m_axi_arcache,
+    output wire [                          2:0] m_axi_arprot,
+    input  wire                                 m_axi_rvalid,
+    output wire                                 m_axi_rready,
+    input  wire [                         31:0] m_axi_rdata,
+    input  wire [                          1:0] m_axi_rresp,
+    input  wire                                 m_axi_rlast,
+    output wire                                 cfg_valid,
+    output wire [                    CFG_W-1:0] cfg_data,
+    input  wire                                 cfg_error,
+    output wire [                         31:0] swaps,
+    output wire [                         31:0] rejected,
+    output wire [                         31:0] stalls,
+    output wire [                     9*32-1:0] phase_clocks
 );
 
-  wire [7:0] slot, module_id;
+  wire [`CCHIP_SLOT_ID_W-1:0] slot;
+  wire [`CCHIP_RM_ID_W-1:0] module_id;
   wire [31:0] address, size, limit;
   wire in_header, in_transfer, run, owes, bus_error, timeout;
   wire header_done, header_ok;

@@ -20,33 +20,35 @@
 module cchip_pair_dispatcher #(
     // slots, 1 or 2
     parameter integer SLOTS = 2,
-    // width of a pair, tag in bits 15:0, bit
+    // width of a pair, bit; its tag at REQUEST_TAG
     parameter integer WIDTH = 406
 ) (
-    input  wire                     clk,
-    input  wire                     rst,
+    input  wire                           clk,
+    input  wire                           rst,
     // module that works in each slot, ModuleId; 0: none, or no new pairs
-    input  wire [      2*SLOTS-1:0] serves,
+    input  wire [`CCHIP_KIND_W*SLOTS-1:0] serves,
     // bit k - 1: no slot and no bitstream provides kind k
-    input  wire [              2:0] no_provider,
+    input  wire [                    2:0] no_provider,
     // heads of the queues, kind k at bit and word k - 1
-    input  wire [              2:0] s_valid,
-    output wire [              2:0] s_ready,
-    input  wire [      3*WIDTH-1:0] s_data,
+    input  wire [                    2:0] s_valid,
+    output wire [                    2:0] s_ready,
+    input  wire [            3*WIDTH-1:0] s_data,
     // pairs of an illegal kind
-    input  wire                     s_illegal_valid,
-    output wire                     s_illegal_ready,
-    input  wire [ `CCHIP_TAG_W-1:0] s_illegal_tag,
+    input  wire                           s_illegal_valid,
+    output wire                           s_illegal_ready,
+    input  wire [       `CCHIP_TAG_W-1:0] s_illegal_tag,
     // slots
-    output wire [        SLOTS-1:0] m_pair_valid,
-    input  wire [        SLOTS-1:0] m_pair_ready,
-    output wire [  SLOTS*WIDTH-1:0] m_pair_data,
+    output wire [              SLOTS-1:0] m_pair_valid,
+    input  wire [              SLOTS-1:0] m_pair_ready,
+    output wire [        SLOTS*WIDTH-1:0] m_pair_data,
     // pairs to be answered without a test; kind 0: illegal
-    output wire                     m_refused_valid,
-    input  wire                     m_refused_ready,
-    output wire [ `CCHIP_TAG_W-1:0] m_refused_tag,
-    output wire [`CCHIP_KIND_W-1:0] m_refused_kind
+    output wire                           m_refused_valid,
+    input  wire                           m_refused_ready,
+    output wire [       `CCHIP_TAG_W-1:0] m_refused_tag,
+    output wire [      `CCHIP_KIND_W-1:0] m_refused_kind
 );
+
+  localparam integer TAG_W = `CCHIP_TAG_W;
 
   generate
     if (SLOTS < 1 || SLOTS > 2) begin : gen_illegal
@@ -116,8 +118,8 @@ module cchip_pair_dispatcher #(
   wire [3:0] turn = turn_of_refused_q;
   assign m_refused_valid = |(waits & turn);
   assign m_refused_kind  = {turn[3] | turn[2], turn[3] | turn[1]};
-  assign m_refused_tag = (s_illegal_tag & {16{turn[0]}}) | (s_data[0+:16] & {16{turn[1]}})
-      | (s_data[WIDTH+:16] & {16{turn[2]}}) | (s_data[2*WIDTH+:16] & {16{turn[3]}});
+  assign m_refused_tag = (s_illegal_tag & {TAG_W{turn[0]}}) | (s_data[0+:TAG_W] & {TAG_W{turn[1]}})
+      | (s_data[WIDTH+:TAG_W] & {TAG_W{turn[2]}}) | (s_data[2*WIDTH+:TAG_W] & {TAG_W{turn[3]}});
   assign s_illegal_ready = m_refused_ready & turn[0];
 
   generate

@@ -23,45 +23,45 @@ module cchip_pair_router #(
     // pairs in each queue, 16..1024
     parameter integer QUEUE_DEPTH = 256
 ) (
-    input  wire                                   clk,
-    input  wire                                   rst,
+    input  wire                                       clk,
+    input  wire                                       rst,
     // pairs of any kind, ModuleId of the test
-    input  wire                                   s_pair_valid,
-    output wire                                   s_pair_ready,
-    input  wire [              `CCHIP_KIND_W-1:0] s_pair_kind,
-    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
-    input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
-    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
-    output wire                                   m_result_valid,
-    input  wire                                   m_result_ready,
-    output wire [              `CCHIP_KIND_W-1:0] m_result_kind,
-    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
-    output wire                                   m_result_hit,
-    output wire                                   m_result_grid,
-    output wire                                   m_result_definite,
-    output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
-    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
-    // slots: {mode; err; b; a; tag} and {beats; axis; definite; grid; hit; tag}
-    output wire [                      SLOTS-1:0] m_slot_valid,
-    input  wire [                      SLOTS-1:0] m_slot_ready,
-    output wire [   SLOTS*(22+2*4*3*COORD_W)-1:0] m_slot_data,
-    input  wire [                      SLOTS-1:0] s_slot_valid,
-    output wire [                      SLOTS-1:0] s_slot_ready,
-    input  wire [                   SLOTS*34-1:0] s_slot_data,
+    input  wire                                       s_pair_valid,
+    output wire                                       s_pair_ready,
+    input  wire [                  `CCHIP_KIND_W-1:0] s_pair_kind,
+    input  wire [                   `CCHIP_TAG_W-1:0] s_pair_tag,
+    input  wire [                  `CCHIP_MODE_W-1:0] s_pair_mode,
+    input  wire [    `CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
+    input  wire [    `CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
+    input  wire [                   `CCHIP_ERR_W-1:0] s_pair_err,
+    output wire                                       m_result_valid,
+    input  wire                                       m_result_ready,
+    output wire [                  `CCHIP_KIND_W-1:0] m_result_kind,
+    output wire [                   `CCHIP_TAG_W-1:0] m_result_tag,
+    output wire                                       m_result_hit,
+    output wire                                       m_result_grid,
+    output wire                                       m_result_definite,
+    output wire [             `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
+    output wire [                 `CCHIP_BEATS_W-1:0] m_result_beats,
+    // slots: records REQUEST and RESULT
+    output wire [                          SLOTS-1:0] m_slot_valid,
+    input  wire [                          SLOTS-1:0] m_slot_ready,
+    output wire [SLOTS*`CCHIP_REQUEST_W(COORD_W)-1:0] m_slot_data,
+    input  wire [                          SLOTS-1:0] s_slot_valid,
+    output wire [                          SLOTS-1:0] s_slot_ready,
+    input  wire [          SLOTS*`CCHIP_RESULT_W-1:0] s_slot_data,
     // module of each slot's answers; module that takes pairs (0: none)
-    input  wire [                    2*SLOTS-1:0] slot_module,
-    input  wire [                    2*SLOTS-1:0] serves,
-    input  wire [                            2:0] no_provider,
+    input  wire [            `CCHIP_KIND_W*SLOTS-1:0] slot_module,
+    input  wire [            `CCHIP_KIND_W*SLOTS-1:0] serves,
+    input  wire [                                2:0] no_provider,
     // kind k at place k - 1
-    output wire [    3*$clog2(QUEUE_DEPTH+1)-1:0] waiting,
+    output wire [        3*$clog2(QUEUE_DEPTH+1)-1:0] waiting,
     // a pair was answered: by a slot with this module, or 0: by the router, because of its kind or
     // for want of a provider
-    output wire                                   answered,
-    output wire [                            1:0] answered_module,
-    output wire                                   refused_kind,
-    output wire                                   refused_provider
+    output wire                                       answered,
+    output wire [                                1:0] answered_module,
+    output wire                                       refused_kind,
+    output wire                                       refused_provider
 );
 
   reg answered_q;
@@ -73,10 +73,10 @@ module cchip_pair_router #(
   assign refused_kind = refused_kind_q;
   assign refused_provider = refused_provider_q;
 
-  localparam integer VERTEX_W = 4 * 3 * COORD_W;
-  localparam integer PAIR_W = 22 + 2 * VERTEX_W;
-  localparam integer ANSWER_W = 34;
-  localparam integer RESULT_W = ANSWER_W + 2;
+  localparam integer PAIR_W = `CCHIP_REQUEST_W(COORD_W);
+  localparam integer ANSWER_W = `CCHIP_RESULT_W;
+  // {kind; result}
+  localparam integer RESULT_W = `CCHIP_KIND_W + ANSWER_W;
   localparam integer COUNT_W = $clog2(QUEUE_DEPTH + 1);
 
   // ---- sort: the kind is decoded on the way in
@@ -140,7 +140,7 @@ module cchip_pair_router #(
       .s_data         (head),
       .s_illegal_valid(in_valid & in_kind[0]),
       .s_illegal_ready(illegal_ready),
-      .s_illegal_tag  (in_pair[15:0]),
+      .s_illegal_tag  (in_pair[`CCHIP_REQUEST_TAG]),
       .m_pair_valid   (m_slot_valid),
       .m_pair_ready   (m_slot_ready),
       .m_pair_data    (m_slot_data),
@@ -152,7 +152,7 @@ module cchip_pair_router #(
 
   // the queues do not wait for the merge
   cchip_skid_buffer #(
-      .WIDTH(18)
+      .WIDTH(`CCHIP_KIND_W + `CCHIP_TAG_W)
   ) u_refused (
       .clk    (clk),
       .rst    (rst),

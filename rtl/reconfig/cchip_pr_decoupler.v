@@ -62,40 +62,37 @@ module cchip_pr_decoupler #(
     input  wire                                   r_idle
 );
 
-  localparam integer PAIR_W = 16 + 2 + 4 + 24 * COORD_W;
-  localparam integer RESULT_W = 16 + 1 + 1 + 1 + 9 + 6;
-
   wire close = rst | decouple;
   wire blank = r_rm_id == `CCHIP_RM_BLANK;
 
   cchip_pr_gate #(
-      .WIDTH(PAIR_W)
+      .WIDTH(`CCHIP_REQUEST_W(COORD_W))
   ) u_pair (
       .clk    (clk),
       .close  (close),
       .stop   (stop | blank),
       .s_valid(s_pair_valid),
       .s_ready(s_pair_ready),
-      .s_data ({s_pair_tag, s_pair_mode, s_pair_err, s_pair_a, s_pair_b}),
+      .s_data ({s_pair_mode, s_pair_err, s_pair_b, s_pair_a, s_pair_tag}),
       .m_valid(r_pair_valid),
       .m_ready(r_pair_ready),
-      .m_data ({r_pair_tag, r_pair_mode, r_pair_err, r_pair_a, r_pair_b})
+      .m_data ({r_pair_mode, r_pair_err, r_pair_b, r_pair_a, r_pair_tag})
   );
 
   cchip_pr_gate #(
-      .WIDTH(RESULT_W)
+      .WIDTH(`CCHIP_RESULT_W)
   ) u_result (
       .clk    (clk),
       .close  (close),
       .stop   (1'b0),
       .s_valid(r_result_valid),
       .s_ready(r_result_ready),
-      .s_data ({r_result_tag, r_result_hit, r_result_grid, r_result_definite, r_result_axis,
-          r_result_beats}),
+      .s_data ({r_result_beats, r_result_axis, r_result_definite, r_result_grid, r_result_hit,
+        r_result_tag}),
       .m_valid(m_result_valid),
       .m_ready(m_result_ready),
-      .m_data ({m_result_tag, m_result_hit, m_result_grid, m_result_definite, m_result_axis,
-          m_result_beats})
+      .m_data ({m_result_beats, m_result_axis, m_result_definite, m_result_grid, m_result_hit,
+        m_result_tag})
   );
 
   reg decoupled_q;

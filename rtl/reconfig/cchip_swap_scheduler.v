@@ -45,7 +45,7 @@ module cchip_swap_scheduler #(
     input  wire [          3*COUNT_W-1:0] waiting,
     output wire [                    2:0] no_provider,
     // slots: module that works (ModuleId, 0: none or decoupled), a pair was taken
-    input  wire [            2*SLOTS-1:0] slot_module,
+    input  wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module,
     input  wire [              SLOTS-1:0] slot_taken,
     // software's swap, one clock
     input  wire                           command_valid,

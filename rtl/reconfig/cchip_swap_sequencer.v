@@ -22,52 +22,52 @@ module cchip_swap_sequencer #(
     // longest wait for a slot to decouple, to end its ROC, to recouple, clocks, >= 16
     parameter integer SLOT_LIMIT = 4096
 ) (
-    input  wire                           clk,
-    input  wire                           rst,
-    input  wire                           s_swap_valid,
-    output wire                           s_swap_ready,
-    input  wire [   `CCHIP_SLOT_ID_W-1:0] s_swap_slot,
-    input  wire [     `CCHIP_RM_ID_W-1:0] s_swap_module,
-    input  wire [                   31:0] s_swap_address,
-    input  wire [                   31:0] s_swap_size,
-    input  wire                           s_swap_force,
-    output wire                           m_report_valid,
-    output wire [   `CCHIP_SLOT_ID_W-1:0] m_report_slot,
-    output wire [     `CCHIP_RM_ID_W-1:0] m_report_module,
-    output wire [      `CCHIP_SWAP_W-1:0] m_report_code,
-    output wire [`CCHIP_PAIR_COUNT_W-1:0] m_report_lost,
-    input  wire                           abort_swap,
-    input  wire [                   31:0] shutdown_limit,
-    input  wire [                   31:0] memory_limit,
-    output wire [              SLOTS-1:0] stop,
-    output wire [              SLOTS-1:0] decouple,
-    output wire [              SLOTS-1:0] hold_reset,
-    output wire [              SLOTS-1:0] roc_start,
-    input  wire [              SLOTS-1:0] quiet,
-    input  wire [              SLOTS-1:0] decoupled,
-    input  wire [              SLOTS-1:0] roc_busy,
-    input  wire [            8*SLOTS-1:0] region_rm_id,
-    input  wire [           16*SLOTS-1:0] lost,
-    output wire [     `CCHIP_PHASE_W-1:0] phase,
-    output wire                           busy,             // a phase other than IDLE
-    output wire                           in_header,        // phase is HEADER, TRANSFER
-    output wire                           in_transfer,
-    output wire [   `CCHIP_SLOT_ID_W-1:0] slot,             // of the request
-    output wire [     `CCHIP_RM_ID_W-1:0] module_id,
-    output wire [                   31:0] address,
-    output wire [                   31:0] size,
-    output wire [                   31:0] limit,            // of the memory
+    input  wire                                 clk,
+    input  wire                                 rst,
+    input  wire                                 s_swap_valid,
+    output wire                                 s_swap_ready,
+    input  wire [         `CCHIP_SLOT_ID_W-1:0] s_swap_slot,
+    input  wire [           `CCHIP_RM_ID_W-1:0] s_swap_module,
+    input  wire [                         31:0] s_swap_address,
+    input  wire [                         31:0] s_swap_size,
+    input  wire                                 s_swap_force,
+    output wire                                 m_report_valid,
+    output wire [         `CCHIP_SLOT_ID_W-1:0] m_report_slot,
+    output wire [           `CCHIP_RM_ID_W-1:0] m_report_module,
+    output wire [            `CCHIP_SWAP_W-1:0] m_report_code,
+    output wire [      `CCHIP_PAIR_COUNT_W-1:0] m_report_lost,
+    input  wire                                 abort_swap,
+    input  wire [                         31:0] shutdown_limit,
+    input  wire [                         31:0] memory_limit,
+    output wire [                    SLOTS-1:0] stop,
+    output wire [                    SLOTS-1:0] decouple,
+    output wire [                    SLOTS-1:0] hold_reset,
+    output wire [                    SLOTS-1:0] roc_start,
+    input  wire [                    SLOTS-1:0] quiet,
+    input  wire [                    SLOTS-1:0] decoupled,
+    input  wire [                    SLOTS-1:0] roc_busy,
+    input  wire [     `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,
+    input  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] lost,
+    output wire [           `CCHIP_PHASE_W-1:0] phase,
+    output wire                                 busy,             // a phase other than IDLE
+    output wire                                 in_header,        // phase is HEADER, TRANSFER
+    output wire                                 in_transfer,
+    output wire [         `CCHIP_SLOT_ID_W-1:0] slot,             // of the request
+    output wire [           `CCHIP_RM_ID_W-1:0] module_id,
+    output wire [                         31:0] address,
+    output wire [                         31:0] size,
+    output wire [                         31:0] limit,            // of the memory
     // the fetch works, in HEADER and in TRANSFER
-    output wire                           run,
-    input  wire                           header_done,
-    input  wire                           header_ok,
-    input  wire [      `CCHIP_SWAP_W-1:0] header_code,
-    input  wire                           owes,
-    input  wire                           bus_error,
-    input  wire                           timeout,
-    input  wire                           transfer_done,
-    input  wire                           crc_ok,
-    input  wire                           cfg_error
+    output wire                                 run,
+    input  wire                                 header_done,
+    input  wire                                 header_ok,
+    input  wire [            `CCHIP_SWAP_W-1:0] header_code,
+    input  wire                                 owes,
+    input  wire                                 bus_error,
+    input  wire                                 timeout,
+    input  wire                                 transfer_done,
+    input  wire                                 crc_ok,
+    input  wire                                 cfg_error
 );
 
   // clocks of a phase, counted from 0
@@ -91,15 +91,18 @@ module cchip_swap_sequencer #(
   endgenerate
 
   // ---- request
+  wire [9:0] pass;  // one-hot: this phase is over and was good
   reg [`CCHIP_PHASE_W-1:0] phase_q;
   reg [9:0] at_q;  // phase_q, one-hot
-  reg [7:0] slot_q, module_q;
+  reg [`CCHIP_SLOT_ID_W-1:0] slot_q;
+  reg [`CCHIP_RM_ID_W-1:0] module_q;
   reg [31:0] address_q, size_q;
   reg force_q;
   reg [31:0] memory_limit_q;
   reg [31:0] bound_q;  // of the phase: shutdown_limit up to SHUTDOWN, SLOT_LIMIT from then on
   reg ready_q, refuse_q;  // a request during a swap waits for its report
-  reg [7:0] refuse_slot_q, refuse_module_q;
+  reg [`CCHIP_SLOT_ID_W-1:0] refuse_slot_q;
+  reg [`CCHIP_RM_ID_W-1:0] refuse_module_q;
   wire idle = at_q[`CCHIP_PHASE_IDLE];
   wire accept = s_swap_valid & ready_q;
   wire begins = accept & idle;
@@ -120,6 +123,7 @@ module cchip_swap_sequencer #(
   end
 
   // ---- the slot
+  reg [SLOTS-1:0] mine_q;  // one-hot: the slot of the request
   function [SLOTS-1:0] one_hot(input [7:0] number);
     integer i;
     begin
@@ -143,7 +147,6 @@ module cchip_swap_sequencer #(
     end
   endgenerate
 
-  reg [SLOTS-1:0] mine_q;  // one-hot
   reg match_q;  // the region shows the module asked for
   reg [`CCHIP_PAIR_COUNT_W-1:0] slot_lost_q, lost_q;
   reg quiet_q, decoupled_q, roc_busy_q;
@@ -202,8 +205,7 @@ module cchip_swap_sequencer #(
   wire failing = fails_early | fails_late;
   reg fail_q;
 
-  // the phase is over and was good; never with failing, and before an abort
-  wire [9:0] pass;
+  // never with failing, and before an abort
   assign pass[`CCHIP_PHASE_IDLE] = begins;
   assign pass[`CCHIP_PHASE_HEADER] = at_header & ~decide_q & ~fault_q & header_done & header_ok
       & ~fail_q;

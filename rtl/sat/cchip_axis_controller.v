@@ -76,8 +76,8 @@ module cchip_axis_controller #(
   localparam [31:0] CONTEXT_LAST = CONTEXTS - 1;
   // programme state: {certain, open, beats, info, code, programme}, see cchip_axis_programme
   localparam integer STATE_W = `CCHIP_STATE_W;
-  localparam [8:0] CODE_FIRST = {`CCHIP_AXIS_NORMAL_A, 6'd0};
-  localparam [8:0] CODE_ILLEGAL = {`CCHIP_AXIS_ILLEGAL, 6'd0};
+  localparam [`CCHIP_AXIS_CODE_W-1:0] CODE_FIRST = {`CCHIP_AXIS_NORMAL_A, 6'd0};
+  localparam [`CCHIP_AXIS_CODE_W-1:0] CODE_ILLEGAL = {`CCHIP_AXIS_ILLEGAL, 6'd0};
   localparam [31:0] LAST_K = VERTS_A - 1;
   localparam [31:0] LAST_L = VERTS_B - 1;
 
@@ -172,7 +172,7 @@ module cchip_axis_controller #(
   wire [`CCHIP_MODE_W-1:0] start_mode;
 
   cchip_fifo #(
-      .WIDTH     (CONTEXT_W + 2),
+      .WIDTH     (CONTEXT_W + `CCHIP_MODE_W),
       .DEPTH     (CONTEXTS),
       .ROOM_KNOWN(1)
   ) u_start (
@@ -186,7 +186,8 @@ module cchip_axis_controller #(
       .m_data ({start_context, start_mode})
   );
 
-  wire [2:0] start_programme = start_mode == `CCHIP_MODE_EXHAUSTIVE ? `CCHIP_PROG_EXHAUSTIVE
+  wire [`CCHIP_PROG_W-1:0] start_programme = start_mode == `CCHIP_MODE_EXHAUSTIVE
+      ? `CCHIP_PROG_EXHAUSTIVE
                              : start_mode == `CCHIP_MODE_DIRECTED ? `CCHIP_PROG_NORMALS
                                                                   : `CCHIP_PROG_ILLEGAL;
   wire [`CCHIP_AXIS_CODE_W-1:0] start_code = start_mode[1] ? CODE_ILLEGAL : CODE_FIRST;
@@ -217,10 +218,12 @@ module cchip_axis_controller #(
   reg                          beat_valid_q /* verilator public_flat_rd */;
   reg  [CONTEXT_W+STATE_W-1:0] beat_q;
 
-  wire [2:0] beat_programme = beat_q[2:0];
-  wire [`CCHIP_AXIS_CODE_W-1:0] beat_code = beat_q[11:3];
-  wire [11:0] beat_info = beat_q[23:12];
-  wire [`CCHIP_BEATS_W-1:0] beat_count = beat_q[31:26];
+  wire [`CCHIP_PROG_W-1:0] beat_programme = beat_q[`CCHIP_STATE_PROGRAMME];
+  wire [`CCHIP_AXIS_CODE_W-1:0] beat_code = beat_q[`CCHIP_STATE_CODE];
+  wire [`CCHIP_INFO_W-1:0] beat_info = beat_q[`CCHIP_STATE_INFO];
+  wire [`CCHIP_INDEX_W-1:0] beat_l = beat_code[`CCHIP_AXIS_CODE_L];
+  wire [`CCHIP_CLASS_W-1:0] beat_class = beat_code[`CCHIP_AXIS_CODE_CLASS];
+  wire [`CCHIP_BEATS_W-1:0] beat_count = beat_q[`CCHIP_STATE_BEATS];
 
   // an EXHAUSTIVE pair keeps the pipeline until its last axis
   reg keep_q;
@@ -250,8 +253,8 @@ module cchip_axis_controller #(
     keep_l_q <= !keep_q || keep_row ? 2'd0 : keep_l_q + {1'b0, keep_cross_q};
     keep_k_q <= !keep_q ? 2'd0 : keep_k_q + {1'b0, keep_row};
     if (keep_q) begin
-      beat_q[11:3]  <= keep_code;
-      beat_q[31:26] <= beat_count + 6'd1;
+      beat_q[`CCHIP_STATE_CODE]  <= keep_code;
+      beat_q[`CCHIP_STATE_BEATS] <= beat_count + 6'd1;
     end else beat_q <= take_start ? {start_context, start_state} : ready_state;
   end
 
@@ -269,13 +272,16 @@ module cchip_axis_controller #(
     of_component = component[1] ? bits[2] : component[0] ? bits[1] : bits[0];
   endfunction
   always @(posedge clk) begin
-    in_plane_a_q <= beat_code[8:6] == `CCHIP_AXIS_IN_PLANE_A;
-    in_plane_b_q <= beat_code[8:6] == `CCHIP_AXIS_IN_PLANE_B;
-    negative_a_q <= coplanar ? beat_info[0] : of_component(beat_info[2:0], beat_code[1:0]);
-    negative_b_q <= coplanar ? beat_info[1] : of_component(beat_info[8:6], beat_code[1:0]);
-    zero_a_q     <= ~coplanar & of_component(beat_info[5:3], beat_code[1:0]);
-    zero_b_q     <= ~coplanar & of_component(beat_info[11:9], beat_code[1:0]);
+    in_plane_a_q <= beat_class == `CCHIP_AXIS_IN_PLANE_A;
+    in_plane_b_q <= beat_class == `CCHIP_AXIS_IN_PLANE_B;
+    negative_a_q <= coplanar ? beat_info[`CCHIP_INFO_COPLANAR_A_NEGATIVE]
+        : of_component(beat_info[`CCHIP_INFO_DEGENERATE_A_NEGATIVE], beat_l[1:0]);
+    negative_b_q <= coplanar ? beat_info[`CCHIP_INFO_COPLANAR_B_NEGATIVE]
+        : of_component(beat_info[`CCHIP_INFO_DEGENERATE_B_NEGATIVE], beat_l[1:0]);
+    zero_a_q     <= ~coplanar & of_component(beat_info[`CCHIP_INFO_DEGENERATE_A_ZERO], beat_l[1:0]);
+    zero_b_q     <= ~coplanar & of_component(beat_info[`CCHIP_INFO_DEGENERATE_B_ZERO], beat_l[1:0]);
   end
+  wire unused_info = &{1'b0, beat_info, beat_l};
   wire n_negative = in_plane_a_q ? negative_a_q : negative_b_q;
   wire n_zero = in_plane_a_q ? zero_a_q : zero_b_q;
   wire one_sided = in_plane_a_q | in_plane_b_q;
@@ -317,9 +323,9 @@ module cchip_axis_controller #(
   );
 
   // ---- result: tag and what there is to know of eta arrive with the outcome
-  wire [17:0] side;
+  wire [`CCHIP_TAG_W+1:0] side;
   cchip_ram #(
-      .WIDTH (18),
+      .WIDTH (`CCHIP_TAG_W + 2),
       .DEPTH (CONTEXTS),
       .ADDR_W(CONTEXT_W)
   ) u_side (
@@ -331,11 +337,10 @@ module cchip_axis_controller #(
       .read_data (side)
   );
 
-  wire err_none = side[17];
-  wire err_unknown = side[16];
-
+  
   assign m_result_valid    = outcome;
-  assign m_result_tag      = side[15:0];
+  wire err_none, err_unknown;
+  assign {err_none, err_unknown, m_result_tag} = side;
   assign m_result_definite = ~outcome_illegal
       & (err_none ? outcome_certain | ~outcome_open : outcome_certain & ~err_unknown);
   assign m_result_hit      = m_result_grid | ~m_result_definite;

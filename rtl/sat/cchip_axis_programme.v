@@ -85,19 +85,19 @@ module cchip_axis_programme #(
   localparam integer POINTS = `CCHIP_POINTS(VERTS_A, VERTS_B);
   localparam [31:0] LAST_K = VERTS_A - 1;
   localparam [31:0] LAST_L = VERTS_B - 1;
-  // {certain, open, info, code, programme}: a state without beats
-  localparam integer PLAN_W = `CCHIP_STATE_W - 6;
+  // a plan: {certain, open, info, code, programme}, a state without beats
+  localparam integer PLAN_W = `CCHIP_STATE_W - `CCHIP_BEATS_W;
   // warped quads may have to go through TETRAHEDRON
   localparam integer TETRA = VERTS_B == 4 && WARPED_EXACT != 0 ? 1 : 0;
 
   // ================ clock 1: what the verdict and the state say
-  wire [2:0] programme = s_state[2:0];
-  wire [`CCHIP_AXIS_CODE_W-1:0] code = s_state[11:3];
-  wire [2:0] axis_class = code[8:6];
-  wire [2:0] k = code[5:3];
-  wire [2:0] l = code[2:0];
-  wire [13:0] info = s_state[25:12];
-  wire [`CCHIP_BEATS_W-1:0] beats = s_state[31:26];
+  wire [`CCHIP_PROG_W-1:0] programme = s_state[`CCHIP_STATE_PROGRAMME];
+  wire [`CCHIP_AXIS_CODE_W-1:0] code = s_state[`CCHIP_STATE_CODE];
+  wire [`CCHIP_CLASS_W-1:0] axis_class = code[`CCHIP_AXIS_CODE_CLASS];
+  wire [`CCHIP_INDEX_W-1:0] k = code[`CCHIP_AXIS_CODE_K];
+  wire [`CCHIP_INDEX_W-1:0] l = code[`CCHIP_AXIS_CODE_L];
+  wire [`CCHIP_INFO_W-1:0] info = s_state[`CCHIP_STATE_INFO];
+  wire [`CCHIP_BEATS_W-1:0] beats = s_state[`CCHIP_STATE_BEATS];
   wire exhaustive = programme == `CCHIP_PROG_EXHAUSTIVE;
   wire tetra = programme == `CCHIP_PROG_TETRAHEDRON;
   wire degenerate = programme == `CCHIP_PROG_DEGENERATE;
@@ -150,9 +150,11 @@ module cchip_axis_programme #(
   wire is_cross = axis_class == `CCHIP_AXIS_CROSS;
   wire is_in_plane_a = axis_class == `CCHIP_AXIS_IN_PLANE_A;
   wire is_in_plane_b = axis_class == `CCHIP_AXIS_IN_PLANE_B;
-  wire [2:0] last_k = is_cross ? (TETRA != 0 && tetra && info[0] ? 3'd5 : LAST_K[2:0])
+  wire [2:0] last_k = is_cross
+      ? (TETRA != 0 && tetra && info[`CCHIP_INFO_TETRAHEDRON_WARPED_A] ? 3'd5 : LAST_K[2:0])
                     : is_in_plane_a ? LAST_K[2:0] : is_in_plane_b ? LAST_L[2:0] : 3'd4;
-  wire [2:0] last_l = !is_cross ? 3'd2 : TETRA != 0 && tetra && info[1] ? 3'd5 : LAST_L[2:0];
+  wire [2:0] last_l = !is_cross ? 3'd2 : TETRA != 0 && tetra
+      && info[`CCHIP_INFO_TETRAHEDRON_WARPED_B] ? 3'd5 : LAST_L[2:0];
   wire loops_l = is_cross | degenerate;  // all l of a k; else l stays
 
   reg valid_q, exhaustive_q, normals_q, crossing_q, illegal_q;
@@ -163,14 +165,14 @@ module cchip_axis_programme #(
   reg [2:0] programme_q, axis_negative_q, axis_zero_q;
   reg [`CCHIP_AXIS_CODE_W-1:0] code_q;
   reg [2:0] k_next_q, l_next_q;
-  reg [13:0] info_q, about_a_q;
+  reg [`CCHIP_INFO_W-1:0] info_q, about_a_q;
   reg [`CCHIP_BEATS_W-1:0] beats_q;
   reg warped_a_q, warped_b_q, warped_q, b_on_plane_q, no_normal_q;
   reg [1:0] largest_q;
   reg [3:0] side_a_q, side_b_q;
   reg [2:0] next_class_q, next_k_q;
   // the info of NORMALS after nA
-  wire [13:0] normal_a_info = {
+  wire [`CCHIP_INFO_W-1:0] normal_a_info = {
     warped_a_q,
     largest_q,
     axis_zero_q,
@@ -191,8 +193,8 @@ module cchip_axis_programme #(
     code_q            <= code;
     info_q            <= info;
     beats_q           <= beats + 6'd1;
-    open_q            <= s_state[32];
-    certain_q         <= s_state[33];
+    open_q            <= s_state[`CCHIP_STATE_OPEN];
+    certain_q         <= s_state[`CCHIP_STATE_CERTAIN];
     normal_a_q        <= axis_class == `CCHIP_AXIS_NORMAL_A;
     normal_b_q        <= axis_class == `CCHIP_AXIS_NORMAL_B;
     exhaustive_last_q <= is_cross && k == LAST_K[2:0] && l == LAST_L[2:0];
@@ -202,7 +204,8 @@ module cchip_axis_programme #(
     last_kind_q       <= tetra ? is_cross : !is_cross && !is_in_plane_a;
     k_next_q          <= k + 3'd1;
     l_next_q          <= l + 3'd1;
-    second_q          <= {k[1:0], l[1:0]} == info[3:0];
+    second_q          <= {k[1:0], l[1:0]} == {info[`CCHIP_INFO_CROSSING_K_UP],
+        info[`CCHIP_INFO_CROSSING_L_UP]};
     box_q             <= degenerate && is_cross && k == 3'd0 && s_box_separated;
     box_certain_q     <= s_box_certain;
     separated_q       <= s_separated;
@@ -219,38 +222,42 @@ module cchip_axis_programme #(
     side_b_q          <= positive_side(b_negative, b_zero, VERTS_B == 4);
     // nB of an EXHAUSTIVE pair follows its nA at once
     about_a_q         <= exhaustive ? normal_a_info : info;
-    certain_before_q  <= exhaustive ? clear_q : s_state[33];
-    no_normal_q       <= (exhaustive ? &axis_zero_q : &info[10:8]) || &s_axis_zero;
+    certain_before_q  <= exhaustive ? clear_q : s_state[`CCHIP_STATE_CERTAIN];
+    no_normal_q       <= (exhaustive ? &axis_zero_q : &info[`CCHIP_INFO_NORMALS_A_ZERO])
+        || &s_axis_zero;
     warped_b_q        <= warped_b_now;
-    warped_q          <= (VERTS_A == 4 && (exhaustive ? warped_a_q : info[13])) || warped_b_now;
+    warped_q          <= (VERTS_A == 4
+        && (exhaustive ? warped_a_q : info[`CCHIP_INFO_NORMALS_WARPED_A])) || warped_b_now;
     // the kind after the last axis of this one
-    next_class_q      <= axis_class == `CCHIP_AXIS_NORMAL_A && info[1] ? `CCHIP_AXIS_NORMAL_B
+    next_class_q      <= axis_class == `CCHIP_AXIS_NORMAL_A
+        && info[`CCHIP_INFO_TETRAHEDRON_WARPED_B] ? `CCHIP_AXIS_NORMAL_B
                        : axis_class == `CCHIP_AXIS_NORMAL_A || axis_class == `CCHIP_AXIS_NORMAL_B
                            ? `CCHIP_AXIS_CROSS
                        : is_cross ? `CCHIP_AXIS_IN_PLANE_A : `CCHIP_AXIS_IN_PLANE_B;
-    next_k_q          <= {2'd0, axis_class == `CCHIP_AXIS_NORMAL_A && info[1]};
+    next_k_q          <= {2'd0, axis_class == `CCHIP_AXIS_NORMAL_A
+        && info[`CCHIP_INFO_TETRAHEDRON_WARPED_B]};
   end
 
   // ================ clock 2: the plan when nB's verdict is here
   wire [1:0] k_down = crossing_edge(side_a_q, VERTS_A == 4, 1'b1);
   wire [1:0] k_up = crossing_edge(side_a_q, VERTS_A == 4, 1'b0);
-  wire [1:0] l_down = about_a_q[1:0];
-  wire [1:0] l_up = about_a_q[3:2];
-  wire b_on_plane = about_a_q[4];
-  wire [2:0] na_negative = about_a_q[7:5];
-  wire [2:0] na_zero = about_a_q[10:8];
-  wire [1:0] largest = about_a_q[12:11];
-  wire warped_a = about_a_q[13];
+  wire [1:0] l_down = about_a_q[`CCHIP_INFO_NORMALS_L_DOWN];
+  wire [1:0] l_up = about_a_q[`CCHIP_INFO_NORMALS_L_UP];
+  wire b_on_plane = about_a_q[`CCHIP_INFO_NORMALS_B_ON_PLANE];
+  wire [2:0] na_negative = about_a_q[`CCHIP_INFO_NORMALS_A_NEGATIVE];
+  wire [2:0] na_zero = about_a_q[`CCHIP_INFO_NORMALS_A_ZERO];
+  wire [1:0] largest = about_a_q[`CCHIP_INFO_NORMALS_LARGEST];
+  wire warped_a = about_a_q[`CCHIP_INFO_NORMALS_WARPED_A];
   wire certain_sides = certain_before_q & clear_q;
   wire [2:0] largest_mask = 3'd1 << largest;
 
-  function [8:0] tetra_code(input a_is_warped);
+  function [`CCHIP_AXIS_CODE_W-1:0] tetra_code(input a_is_warped);
     tetra_code = {a_is_warped ? `CCHIP_AXIS_NORMAL_A : `CCHIP_AXIS_NORMAL_B, 3'd1, 3'd0};
   endfunction
 
-  reg [2:0] plan_programme;
+  reg [`CCHIP_PROG_W-1:0] plan_programme;
   reg [`CCHIP_AXIS_CODE_W-1:0] plan_code;
-  reg [13:0] plan_info;
+  reg [`CCHIP_INFO_W-1:0] plan_info;
   always @* begin
     if (TETRA != 0 && warped_q && !certain_sides) begin
       plan_programme = `CCHIP_PROG_TETRAHEDRON;
@@ -276,14 +283,20 @@ module cchip_axis_programme #(
   // ---- CROSSING: t(k, l) is the projection of W_l; certain: t > 0 on the first, t < 0 on the
   // second axis
   wire certain_crossing = certain_q && sign_certain_q && sign_negative_q == second_q;
-  wire to_tetra = TETRA != 0 && |info_q[5:4] && !certain_crossing;
+  wire warped_a_crossing = info_q[`CCHIP_INFO_CROSSING_WARPED_A];
+  wire warped_b_crossing = info_q[`CCHIP_INFO_CROSSING_WARPED_B];
+  wire to_tetra = TETRA != 0 && (warped_a_crossing || warped_b_crossing) && !certain_crossing;
 
   // ---- EXHAUSTIVE: the same for the crossing axes of its plan
   reg [PLAN_W-1:0] found_plan_q;  // what the normals lead to
   always @(posedge clk) if (valid_q && exhaustive_q && normal_b_q) found_plan_q <= plan;
-  wire [5:0] found_info = found_plan_q[17:12];
-  wire found_second = {code_q[4:3], code_q[1:0]} == found_info[3:0];
-  wire found_first = {code_q[4:3], code_q[1:0]} == {found_plan_q[7:6], found_plan_q[4:3]};
+  wire [`CCHIP_INFO_W-1:0] found_info = found_plan_q[`CCHIP_STATE_INFO];
+  wire [`CCHIP_AXIS_CODE_W-1:0] found_code = found_plan_q[`CCHIP_STATE_CODE];
+  wire [1:0] found_warped = {found_info[`CCHIP_INFO_CROSSING_WARPED_B],
+                             found_info[`CCHIP_INFO_CROSSING_WARPED_A]};
+  wire found_second = {code_q[4:3], code_q[1:0]} ==
+      {found_info[`CCHIP_INFO_CROSSING_K_UP], found_info[`CCHIP_INFO_CROSSING_L_UP]};
+  wire found_first = {code_q[4:3], code_q[1:0]} == {found_code[4:3], found_code[1:0]};
 
   // ---- next axis of the programmes that visit all of a kind: the next l, the next k, the next
   // kind
@@ -324,9 +337,11 @@ module cchip_axis_programme #(
   wire take_plan = normals_q & normal_b_q;
   wire take_tetra = crossing_q & to_tetra;
   wire state_certain = normals_q ? clear_q : crossing_q ? certain_crossing : certain_q;
-  wire [13:0] state_info = normals_q ? normal_a_info : info_q;
+  wire [`CCHIP_INFO_W-1:0] state_info = normals_q ? normal_a_info : info_q;
   wire [`CCHIP_AXIS_CODE_W-1:0] state_code = normals_q ? {`CCHIP_AXIS_NORMAL_B, 6'd0}
-                        : crossing_q ? {`CCHIP_AXIS_CROSS, 1'b0, info_q[3:2], 1'b0, info_q[1:0]}
+                        : crossing_q
+                            ? {`CCHIP_AXIS_CROSS, 1'b0, info_q[`CCHIP_INFO_CROSSING_K_UP], 1'b0,
+                             info_q[`CCHIP_INFO_CROSSING_L_UP]}
                                      : next_code;
 
   reg valid_q2, exhaustive_q2, exhaustive_last_q2, normal_a_q2, normal_q2;
@@ -358,7 +373,7 @@ module cchip_axis_programme #(
     beats_q2           <= beats_q;
     take_plan_q2       <= take_plan;
     take_tetra_q2      <= take_tetra;
-    warped_q2          <= info_q[5:4];
+    warped_q2          <= {warped_b_crossing, warped_a_crossing};
     plan_q2            <= plan;
     state_q2           <= {state_certain, open_q, state_info, state_code, programme_q};
   end
@@ -373,8 +388,8 @@ module cchip_axis_programme #(
       ? code_q2 : 9'd0;
   wire found_gap = separated_before ? found_gap_q : certain_gap_q2;
   wire found_certain = normal_q2 ? certain_sides_q2 : found_certain_q & still_certain_q2;
-  wire plan_is_crossing = found_plan_q[2:0] == `CCHIP_PROG_CROSSING;
-  wire found_to_tetra = TETRA != 0 && plan_is_crossing && |found_info[5:4] && !found_certain;
+  wire plan_is_crossing = found_plan_q[`CCHIP_STATE_PROGRAMME] == `CCHIP_PROG_CROSSING;
+  wire found_to_tetra = TETRA != 0 && plan_is_crossing && found_warped != 2'd0 && !found_certain;
 
   always @(posedge clk)
     if (valid_q2 && exhaustive_q2) begin
@@ -401,14 +416,14 @@ module cchip_axis_programme #(
     else proceed_q3 <= valid_q2 & (exhaustive_q2 ? found_proceed : ~outcome_q2);
     grid_q3       <= exhaustive_q2 ? ~found_separated : grid_q2;
     certain_q3    <= exhaustive_q2 ? (found_separated ? found_gap : found_certain) : certain_q2;
-    open_q3       <= exhaustive_q2 ? found_plan_q[26] & ~found_separated : open_q2;
+    open_q3       <= exhaustive_q2 ? found_plan_q[PLAN_W-2] & ~found_separated : open_q2;
     illegal_q3    <= illegal_q2;
     witness_q3    <= exhaustive_q2 ? found_witness : witness_q2;
     beats_q3      <= beats_q2;
     take_plan_q3  <= take_plan_q2;
     take_found_q3 <= exhaustive_q2;
     take_tetra_q3 <= exhaustive_q2 ? found_to_tetra : take_tetra_q2;
-    warped_q3     <= exhaustive_q2 ? found_info[5:4] : warped_q2;
+    warped_q3     <= exhaustive_q2 ? found_warped : warped_q2;
     plan_q3       <= plan_q2;
     state_q3      <= state_q2;
   end
@@ -432,7 +447,7 @@ module cchip_axis_programme #(
                           : state[PLAN_W-3:0]};
   end
 
-  wire unused = &{1'b0, s_negative};
+  wire unused = &{1'b0, s_negative, found_info, found_code};
 
 endmodule
 `default_nettype wire

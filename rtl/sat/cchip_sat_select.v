@@ -63,15 +63,15 @@ module cchip_sat_select #(
   endgenerate
 
   // ---- clock 1: what the code says
-  wire [`CCHIP_CLASS_W-1:0] axis_class = s_code[8:6];
+  wire [`CCHIP_CLASS_W-1:0] axis_class = s_code[`CCHIP_AXIS_CODE_CLASS];
   reg is_cross_q, is_in_plane_q, own_b_q;
-  reg [2:0] k_q, l_q;
+  reg [`CCHIP_INDEX_W-1:0] k_q, l_q;
   always @(posedge clk) begin
     is_cross_q    <= axis_class == `CCHIP_AXIS_CROSS;
     is_in_plane_q <= axis_class == `CCHIP_AXIS_IN_PLANE_A || axis_class == `CCHIP_AXIS_IN_PLANE_B;
     own_b_q       <= axis_class == `CCHIP_AXIS_NORMAL_B || axis_class == `CCHIP_AXIS_IN_PLANE_B;
-    k_q           <= s_code[5:3];
-    l_q           <= s_code[2:0];
+    k_q           <= s_code[`CCHIP_AXIS_CODE_K];
+    l_q           <= s_code[`CCHIP_AXIS_CODE_L];
   end
 
   // i + offset among the vertices of a triangle or quad

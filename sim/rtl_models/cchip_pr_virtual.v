@@ -48,9 +48,10 @@ module cchip_pr_virtual #(
     output wire                                   idle
 );
 
-  localparam integer PAIR_W = 16 + 2 + 4 + 24 * COORD_W;
-  // ready, valid, tag, hit, grid, definite, axis, beats, rm_id, idle
-  localparam integer OUT_W = 1 + 1 + 16 + 1 + 1 + 1 + 9 + 6 + 8 + 1;
+  localparam integer PAIR_W = `CCHIP_REQUEST_W(COORD_W);
+  localparam integer RESULT_W = `CCHIP_RESULT_W;
+  // {ready; valid; result; rm_id; idle}
+  localparam integer OUT_W = 1 + 1 + RESULT_W + `CCHIP_RM_ID_W + 1;
   localparam [31:0] STEP = OUT_W;
   localparam [31:0] SLOT = SLOT_ID;
   localparam [31:0] START = SEED;
@@ -91,14 +92,16 @@ module cchip_pr_virtual #(
 
   // ---- the modules
   wire [PAIR_W-1:0] pair = garbage ? pair_q[PAIR_W-1:0] :
-      {s_pair_tag, s_pair_mode, s_pair_err, s_pair_a, s_pair_b};
+      {s_pair_mode, s_pair_err, s_pair_b, s_pair_a, s_pair_tag};
   wire [4*OUT_W-1:0] outs;
   genvar i;
   generate
     for (i = 0; i < 4; i = i + 1) begin : gen_module
       localparam [7:0] ID = i;
       wire here = select == ID;
-      wire [OUT_W-1:0] out;
+      wire ready, valid, quiet;
+      wire [RESULT_W-1:0] result;
+      wire [`CCHIP_RM_ID_W-1:0] module_id;
       cchip_pr_region #(
           .RM_ID              (i),
           .COORD_W            (COORD_W),
@@ -110,30 +113,29 @@ module cchip_pr_virtual #(
           .clk              (clk),
           .rst              (rst & ~garbage),
           .s_pair_valid     (garbage | (here & s_pair_valid)),
-          .s_pair_ready     (out[OUT_W-1]),
-          .s_pair_tag       (pair[PAIR_W-1-:16]),
-          .s_pair_mode      (pair[PAIR_W-17-:2]),
-          .s_pair_a         (pair[24*COORD_W-1-:12*COORD_W]),
-          .s_pair_b         (pair[12*COORD_W-1-:12*COORD_W]),
-          .s_pair_err       (pair[PAIR_W-19-:4]),
-          .m_result_valid   (out[OUT_W-2]),
+          .s_pair_ready     (ready),
+          .s_pair_tag       (pair[`CCHIP_REQUEST_TAG]),
+          .s_pair_mode      (pair[`CCHIP_REQUEST_MODE(COORD_W)]),
+          .s_pair_a         (pair[`CCHIP_REQUEST_A(COORD_W)]),
+          .s_pair_b         (pair[`CCHIP_REQUEST_B(COORD_W)]),
+          .s_pair_err       (pair[`CCHIP_REQUEST_ERR(COORD_W)]),
+          .m_result_valid   (valid),
           .m_result_ready   (garbage ? random_q[63] : here & m_result_ready),
-          .m_result_tag     (out[OUT_W-3-:16]),
-          .m_result_hit     (out[26]),
-          .m_result_grid    (out[25]),
-          .m_result_definite(out[24]),
-          .m_result_axis    (out[23:15]),
-          .m_result_beats   (out[14:9]),
-          .rm_id            (out[8:1]),
-          .idle             (out[0])
+          .m_result_tag     (result[`CCHIP_RESULT_TAG]),
+          .m_result_hit     (result[`CCHIP_RESULT_HIT]),
+          .m_result_grid    (result[`CCHIP_RESULT_GRID]),
+          .m_result_definite(result[`CCHIP_RESULT_DEFINITE]),
+          .m_result_axis    (result[`CCHIP_RESULT_AXIS]),
+          .m_result_beats   (result[`CCHIP_RESULT_BEATS]),
+          .rm_id            (module_id),
+          .idle             (quiet)
       );
-      assign outs[OUT_W*i+:OUT_W] = out;
+      assign outs[OUT_W*i+:OUT_W] = {ready, valid, result, module_id, quiet};
     end
   endgenerate
 
-  assign {s_pair_ready, m_result_valid, m_result_tag, m_result_hit, m_result_grid,
-      m_result_definite, m_result_axis,
-          m_result_beats, rm_id, idle} = garbage ? random_q[OUT_W-1:0]
+  assign {s_pair_ready, m_result_valid, m_result_beats, m_result_axis, m_result_definite,
+          m_result_grid, m_result_hit, m_result_tag, rm_id, idle} = garbage ? random_q[OUT_W-1:0]
               : outs[STEP*{30'd0, select[1:0]}+:OUT_W];
 
   wire unused = &{1'b0, select[7:2], pair_q[PAIR_W+63:PAIR_W]};
