@@ -12,7 +12,7 @@ module cchip_fifo #(
     parameter integer WIDTH = 8,
     // capacity, beats
     parameter integer DEPTH = 16,
-    // 1: the sender sees to it that s_valid finds s_ready = 1; saves the logic between them
+    // 1: the sender raises s_valid only while s_ready is 1; saves the logic that checks it
     parameter integer ROOM_KNOWN = 0
 ) (
     input  wire             clk,
@@ -25,9 +25,10 @@ module cchip_fifo #(
     output wire [WIDTH-1:0] m_data
 );
 
-  // banks of 16 words, the smallest memory of LUTs, that take turns: pointers run round by
-  // themselves, nothing is compared. Each bank is read with a pointer of its own, which moves on a
-  // clock after the read: the turn is another bank's then, so there are two banks at least.
+  // The memory is made of banks of 16 words, the smallest memory that LUTs form. Successive beats
+  // go to successive banks, so a pointer of 4 bits wraps by itself and no comparison is needed.
+  // Each bank has a read pointer of its own, which moves one clock after the read. There must be
+  // two banks at least, so that no bank is read on two consecutive clocks.
   localparam integer BANKS = DEPTH > 16 ? (DEPTH + 15) / 16 : 2;
   localparam integer COUNT_W = $clog2(DEPTH + 1);
   localparam [31:0] LAST = DEPTH - 1;
@@ -42,7 +43,7 @@ module cchip_fifo #(
   endgenerate
 
   reg [BANKS-1:0] write_bank_q, read_bank_q;  // one-hot
-  reg [3:0] write_q;  // word, of all banks
+  reg [3:0] write_q;  // write pointer, the same for all banks
   reg [COUNT_W-1:0] count_q; // beats in memory and output register
   reg ready_q, some_q, more_q;  // count_q < DEPTH, >= 1, >= 2
   reg valid_q;
@@ -94,7 +95,7 @@ module cchip_fifo #(
   wire [BANKS-1:0] write_bank_next = (write_bank_q << 1) | (write_bank_q >> (BANKS - 1));
   wire [BANKS-1:0] read_bank_next = (read_bank_q << 1) | (read_bank_q >> (BANKS - 1));
 
-  // comparisons start from registers: push and pop only choose
+  // the comparisons use registers only; push and pop, which come late, select among their results
   always @(posedge clk) begin
     if (load) data_q <= word;
     if (rst) begin

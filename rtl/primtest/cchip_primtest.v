@@ -78,7 +78,7 @@ module cchip_primtest #(
 
   assign rm_id = RM[`CCHIP_RM_ID_W-1:0];
 
-  // ---- pairs between the two handshakes: decides ready and idle
+  // ---- number of pairs between the two handshakes; ready and idle follow from it
   reg  [COUNT_W-1:0] pairs_q;
   reg                ready_q, idle_q;
   reg                awake_q;
@@ -94,7 +94,7 @@ module cchip_primtest #(
       idle_q  <= 1'b1;
       awake_q <= 1'b0;
     end else begin
-      awake_q <= 1'b1;  // the first context stands ready two clocks after rst
+      awake_q <= 1'b1;  // the controller has its first context two clocks after rst
       // + 1 or - 1
       if (accept != answer) pairs_q <= pairs_q + ({COUNT_W{answer}} | ONE[COUNT_W-1:0]);
       ready_q <= awake_q
@@ -245,7 +245,7 @@ module cchip_primtest #(
       .m_result_beats         (outcome[`CCHIP_RESULT_BEATS])
   );
 
-  // ---- results: the FIFO has room for every pair in flight, so verdicts never wait
+  // ---- results: the FIFO has room for every pair in flight, so no verdict ever waits
   wire queue_space;
 
   cchip_fifo #(

@@ -100,8 +100,8 @@ module cchip_primtest_array #(
     end
   end
 
-  // ---- the choice: the lane of the next pair, one clock ahead; its place is taken with the choice
-  reg  [LANES-1:0] choice_q;  // one-hot, also without a next pair: the lane of the last one
+  // ---- the lane of the next pair is chosen one clock ahead, and its place is reserved at once
+  reg  [LANES-1:0] choice_q;  // one-hot; without a next pair it stays at the lane of the last one
   reg              ready_q;
   wire [LANES-1:0] room;  // lanes with a place that is free and not taken
   wire             accept = s_pair_valid & ready_q;
@@ -125,7 +125,7 @@ module cchip_primtest_array #(
 
   assign s_pair_ready = ready_q;
 
-  // ---- pairs between the two handshakes: idle
+  // ---- number of pairs between the two handshakes; idle follows from it
   reg  [COUNT_W-1:0] pairs_q;
   reg                idle_q;
   wire               answer = m_result_valid & m_result_ready;
@@ -169,7 +169,8 @@ module cchip_primtest_array #(
       localparam [31:0] LANE = lane;
       localparam [31:0] ONE_HOT = 32'd1 << lane;
 
-      // places that are neither chosen nor in flight; the count sees a choice one clock late
+      // places that are neither reserved nor in flight; places_q follows a reservation one clock
+      // late, places is up to date
       reg  [PLACES_W-1:0] places_q;
       reg                 room_q, give_q, take_q;
       wire [PLACES_W-1:0] places = places_q - {{PLACES_W - 1{1'b0}}, take_q};
@@ -240,7 +241,7 @@ module cchip_primtest_array #(
       );
       wire unused_lane = &{1'b0, pair_ready, lane_rm_id, lane_idle};
 
-      // the station's turn does not reach into the lane, nor the lane's FIFO into the station
+      // a register between the lane's FIFO and the merge of this station
       cchip_skid_buffer #(
           .WIDTH(ANSWER_W)
       ) u_own (
@@ -265,7 +266,7 @@ module cchip_primtest_array #(
         if (lane_rst || (merged_ready && own_next)) theirs_q <= ONE_HOT[lane:0];
         else if (back_valid[lane] && merged_ready && !theirs_q[0]) theirs_q <= theirs_q >> 1;
 
-      // two registers for the way
+      // two registers from station to station
       wire                half_valid, half_ready;
       wire [RESULT_W-1:0] half;
       cchip_skid_buffer #(

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_assert.vh"
-// cchip_bitstream_fetch: AXI4 read master that brings a row of words from memory into a FIFO.
+// cchip_bitstream_fetch: AXI4 read master that reads consecutive words from memory into a FIFO.
 // run = 1 starts; address and words are taken on its first clock. run = 0 empties the FIFO; beats
-// that memory still owes are swallowed (owes = 1 until then), and run must stay 0 as long.
+// that memory still owes are dropped when they come. owes is 1 until then, and run must stay 0 as
+// long.
 //   latency      m_valid 5 clocks after run plus the memory's, counted from arvalid = 1, arready =
 //                1 to rvalid = 1
 //   throughput   one word per clock if a read takes less than 13 clocks
@@ -11,11 +12,11 @@
 //                what the FIFO has room for
 //   cuts         every path but m_ready to the FIFO's: each output is a flip-flop; m_axi_rready is
 //                always 1
-//   errors       bus_error: rresp other than OKAY, rlast too early or too late, a beat nobody asked
-//                for; timeout: `limit` clocks without an address taken or a beat. Both stay 1 until
-//                run = 0; nothing enters the FIFO any more. RLAST ends a burst, whatever the count
-//                says.
-//   reset        that of the bus too: nothing is owed after it
+//   errors       bus_error: rresp other than OKAY, rlast too early or too late, a beat that was not
+//                requested; timeout: `limit` clocks without an address taken or a beat. Both stay 1
+//                until run = 0; nothing enters the FIFO any more. RLAST ends a burst, whatever the
+//                count says.
+//   reset        must reset the bus too: after it no beat of an earlier read may come
 module cchip_bitstream_fetch #(
     // capacity of the FIFO, words, >= 32
     parameter integer FIFO_DEPTH = 32
@@ -116,7 +117,8 @@ module cchip_bitstream_fetch #(
   wire owed = bursts_q != 2'd0;
   wire last = beat & m_axi_rlast & owed;
   wire good = owed && m_axi_rresp == 2'b00 && first_q != 5'd0 && m_axi_rlast == (first_q == 5'd1);
-  // short: without run, whose end empties the FIFO, and rready_q, 1 whenever run_q is
+  // kept short: run is left out because its end empties the FIFO, rready_q because it is 1 whenever
+  // run_q is 1
   wire push = m_axi_rvalid & run_q & ~error_q & ~timeout_q & good;
 
   always @(posedge clk) begin
@@ -140,8 +142,8 @@ module cchip_bitstream_fetch #(
   assign owes = arvalid_q | owed;
 
   // ---- clocks without an address taken or a beat
-  reg [31:0] wait_q;  // one more than there were
-  reg late_q;  // there were `limit`
+  reg [31:0] wait_q;  // 1 + clocks without progress
+  reg late_q;  // wait_q has reached `limit`
   wire progress = taken | beat | ~owes;
   always @(posedge clk) begin
     wait_q <= progress ? 32'd2 : wait_q + 32'd1;

@@ -6,8 +6,8 @@
 //   latency      2 clocks from the last word to done; payload_* stay until the next header
 //   throughput   one word per clock
 //   cuts         every path: each output comes from flip-flops
-//   reset        clear = 1 between two headers, for 2 clocks or more; the request is stable from
-//                then to done
+//   reset        clear must be 1 for 2 clocks at least between two headers; slot, module_id and
+//                size must not change from then to done
 module cchip_bitstream_header #(
     // width of the configuration port, bit: 8 or 32
     parameter integer CFG_W = 8
@@ -31,7 +31,7 @@ module cchip_bitstream_header #(
   reg done_q, magic_ok_q, slot_ok_q, module_ok_q, size_ok_q, length_ok_q;
 
   always @(posedge clk) begin
-    // the first word ends in magic_q
+    // a shift register of four words: after the last one, the first word is in magic_q
     if (s_valid && !words_q[2]) {crc_q, length_q, names_q, magic_q} <= {s_data, crc_q, length_q,
         names_q};
     words_q <= clear ? 3'd0 : words_q + {2'd0, s_valid & ~words_q[2]};

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 // cchip_config_port: payload of a bitstream from a stream of 32-bit words to the configuration
-// port, low byte first, with its CRC-32. A slot of CFG_DIVIDER clocks is a clock of the port; the
-// first slot begins with the first word that is there.
+// port, low byte first, with its CRC-32. The port takes one word in CFG_DIVIDER clocks, called a
+// slot; the first slot begins when the first word is there.
 //   latency      transfer = 1 + CFG_DIVIDER * (port words + slots without data) clocks from s_valid
 //                and run to done
 //   throughput   one port word per slot, while s_valid = 1
 //   cuts         every path but s_ready: each output is a flip-flop
 //   reset        run = 0 ends a transfer and prepares the next: it must be 0 for a clock between
 //                two; length is read then
-//   numbers      a last word is used as far as length goes; length is a multiple of 4 for CFG_W =
-//                32
+//   numbers      of the last 32-bit word only the bytes within length are used; length is a
+//                multiple of 4 for CFG_W = 32
 module cchip_config_port #(
     // width of the configuration port, bit: 8 or 32
     parameter integer CFG_W = 8,
@@ -92,7 +92,7 @@ module cchip_config_port #(
   assign done = done_q;
   assign stall = stall_q;
 
-  // the CRC is read after the transfer: it is cleared when the next begins
+  // the CRC is read after the transfer, so it is cleared only when the next transfer begins
   cchip_crc32 #(
       .DATA_W(CFG_W)
   ) u_crc (

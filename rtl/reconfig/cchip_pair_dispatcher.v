@@ -3,8 +3,8 @@
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
 // cchip_pair_dispatcher: gives the pairs that wait at the heads of three queues, one queue per
-// kind, to the slots that work on their kind; pairs of a kind that nobody provides go to `refused`,
-// tag and kind only.
+// kind, to the slots that work on their kind; pairs of a kind that no slot and no bitstream
+// provides go to `refused`, tag and kind only.
 //   latency      0 clocks to a slot: queues and slots are registered on their side; `refused`: the
 //                turn comes to a pair that waits one clock later, or three if others are refused
 //                before it
@@ -66,7 +66,8 @@ module cchip_pair_dispatcher #(
       always @(posedge clk) choice_q[3*slot+:3] <= rst ? 3'd0
           : {serve == 2'd3, serve == 2'd2, serve == 2'd1};
       assign m_pair_valid[slot] = |(give[3*slot+:3] & s_valid);
-      // chosen by a register of its own, for its many loads; any pair if there is none to give
+      // serve_q is a copy of its own for the selection of the data, which has many loads; while
+      // m_pair_valid is 0, the data are those of any queue
       reg [1:0] serve_q;
       always @(posedge clk) serve_q <= serve;
       assign m_pair_data[WIDTH*slot+:WIDTH] =
@@ -89,13 +90,14 @@ module cchip_pair_dispatcher #(
 
   // ---- refused pairs: illegal ones and those of the queues without a provider, in turn
   reg  [2:0] refuse_q;
-  wire [2:0] served;  // a slot works on the kind: never refused
+  wire [2:0] served;  // a slot works on the kind, so its pairs must not be refused
   always @(posedge clk) refuse_q <= rst ? 3'd0 : no_provider & ~served;
 
   wire [3:0] waits = {s_valid & refuse_q, s_illegal_valid};
   // one-hot, a register: what a queue is told does not depend on the other queues
   reg  [3:0] turn_of_refused_q;
-  // the first that waits behind the one whose turn it is, or itself: a token goes round
+  // Round robin: the token moves from the present turn to the first other queue that waits; if none
+  // does, the turn stays.
   function [3:0] next_turn(input [3:0] now, input [3:0] offers);
     reg [3:0] token;
     integer i;

@@ -70,8 +70,9 @@ module cchip_pair_queue #(
     next = pointer == LAST[PTR_W-1:0] ? {PTR_W{1'b0}} : pointer + ONE[PTR_W-1:0];
   endfunction
 
-  // sums and comparisons start from registers, push, pop and fetch choose (~(~n + 1) is n - 1:
-  // Yosys would make one of a sum and a difference, behind the choice)
+  // All sums and comparisons are computed from registers; push, pop and fetch, which come late,
+  // select among them. n - 1 is written ~(~n + 1): otherwise Yosys merges the sum and the
+  // difference into one adder behind the selection.
   always @(posedge clk) begin
     if (advance) data_q <= fetched_data_q;
     if (rst) begin

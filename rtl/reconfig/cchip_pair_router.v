@@ -4,8 +4,8 @@
 `include "cchip_assert.vh"
 // cchip_pair_router: the streams of the reconfigurable subsystem. Sorts pairs by kind into three
 // queues, gives them to the slots that work on their kind, collects the answers in turn and answers
-// itself what nobody can test: pairs of kind 0 and of kinds without a provider get axis class
-// CCHIP_AXIS_ILLEGAL, hit 1, grid 1, definite 0, beats 0.
+// itself the pairs that no module can test: those of kind 0 and of kinds without a provider get
+// axis class CCHIP_AXIS_ILLEGAL, hit 1, grid 1, definite 0, beats 0.
 //   latency      5 clocks to the slot (skid buffer, queue), 1 clock back; own answers wait one to
 //                three clocks more
 //   throughput   one pair and one answer per clock
@@ -79,7 +79,7 @@ module cchip_pair_router #(
   localparam integer RESULT_W = `CCHIP_KIND_W + ANSWER_W;
   localparam integer COUNT_W = $clog2(QUEUE_DEPTH + 1);
 
-  // ---- sort: the kind is decoded on the way in
+  // ---- sort: the kind is decoded before the input register
   wire in_valid;
   wire [3:0] in_kind;  // one-hot
   wire [PAIR_W-1:0] in_pair;
@@ -150,7 +150,7 @@ module cchip_pair_router #(
       .m_refused_kind (kind_of_refusing)
   );
 
-  // the queues do not wait for the merge
+  // a register between queues and merge, so that a queue's ready does not depend on the merge
   cchip_skid_buffer #(
       .WIDTH(`CCHIP_KIND_W + `CCHIP_TAG_W)
   ) u_refused (

@@ -12,8 +12,7 @@
 //                one handed over on the clock on which decouple rises, are lost: stop first, wait
 //                for the answers, then decouple
 //   stop         s_pair_ready is 0 from the next clock on; pairs inside and answers pass
-//   blank        no pair is accepted while r_rm_id is CCHIP_RM_BLANK: nobody would take it out
-//                again
+//   blank        no pair is accepted while r_rm_id is CCHIP_RM_BLANK: no module would answer it
 //   reset        empties both streams; has no effect on decoupled
 module cchip_pr_decoupler #(
     // width of a coordinate, bit
@@ -103,7 +102,7 @@ module cchip_pr_decoupler #(
   assign rm_id     = rm_id_q;
   assign idle      = idle_q;
 
-  // the region's own idle does not know of beats in the gates
+  // the region's own idle does not include the beats inside the two gates
   wire accept = s_pair_valid & s_pair_ready;
   wire filled = accept | r_pair_valid | r_result_valid | m_result_valid;
 

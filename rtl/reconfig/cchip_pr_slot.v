@@ -12,9 +12,9 @@
 //   decouple     see cchip_pr_decoupler; pairs inside are counted in lost as decoupled rises
 //   hold_reset   level, reset of the module one clock later; roc_start: pulse, a reset of
 //                ROC_CYCLES clocks; roc_busy is 1 from the next clock to the last clock of that
-//                reset. Reset an uncoupled module only
-//   reset        resets streams and module (for ROC_CYCLES clocks more); nothing old comes out. A
-//                configuration survives
+//                reset. Only a decoupled module may be reset
+//   reset        resets streams and module (for ROC_CYCLES clocks more); nothing old comes out. The
+//                configuration stays
 // SIMULATION = 0: one cchip_pr_region, the partition of FPGA tools. SIMULATION = 1: all four
 // modules, exchanged by the words that pass the configuration port (cchip_pr_virtual).
 module cchip_pr_slot #(
@@ -98,7 +98,8 @@ module cchip_pr_slot #(
   assign roc_busy     = roc_busy_q;
   assign region_rm_id = region_rm_id_q;
 
-  // ---- pairs inside, counted on the static side: a handshake of the region proves nothing
+  // ---- pairs inside, counted at the static side's handshakes: while the region is rewritten, its
+  // own signals mean nothing
   reg [`CCHIP_PAIR_COUNT_W-1:0] outstanding_q;
   reg [`CCHIP_PAIR_COUNT_W-1:0] lost_q;
   reg stopped_q;
@@ -106,8 +107,9 @@ module cchip_pr_slot #(
 
   wire accept = s_pair_valid & s_pair_ready;
   wire answer = m_result_valid & m_result_ready;
-  // sums start from registers, handshakes choose (~(~n + 1) is n - 1: Yosys would make one of a sum
-  // and a difference)
+  // Both possible counts are computed from registers; the handshakes, which come late, select one.
+  // n - 1 is written ~(~n + 1): otherwise Yosys merges the sum and the difference into one adder
+  // behind the selection.
   wire [`CCHIP_PAIR_COUNT_W-1:0] one_less = outstanding_q == 16'd0 ? 16'd0
       : ~(~outstanding_q + 16'd1);
   wire [`CCHIP_PAIR_COUNT_W-1:0] outstanding_d = accept && !answer ? outstanding_q + 16'd1

@@ -31,8 +31,8 @@ module cchip_result_merge #(
     end
   endgenerate
 
-  // the first source with a beat behind the one that was last: a token goes round from there and
-  // stays with it
+  // Round robin: the search begins behind the source that was served last. A token moves from
+  // source to source and is removed by the first one that offers a beat.
   reg [SOURCES-1:0] last_q;  // one-hot
   function [SOURCES-1:0] first_behind(input [SOURCES-1:0] last, input [SOURCES-1:0] offers);
     reg [SOURCES-1:0] token;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// cchip_subsystem_status: what the registers of the subsystem show of the past: the last report,
-// counters of lost and of answered pairs.
+// cchip_subsystem_status: the past that the registers of the subsystem show: the last report,
+// counts of lost and of answered pairs.
 //   latency      1 clock from a report to last_* and swap_events, 2 clocks from an answer to its
 //                counter
 //   cuts         every path: each output is a flip-flop
@@ -63,7 +63,7 @@ module cchip_subsystem_status (
       lost_q <= clear ? 32'd0 : lost_q + (report_valid ? {16'd0, report_lost} : 32'd0);
     end
 
-  // 64-bit counters in two halves: the carry comes a clock later
+  // 64-bit counters in two halves; the carry enters the high half one clock later
   genvar m;
   generate
     for (m = 0; m < 4; m = m + 1) begin : gen_modules

@@ -36,7 +36,7 @@ module cchip_swap_counters (
   reg [`CCHIP_PHASE_W-1:0] phase_q;
   reg [31:0] clocks_q;
   wire [31:0] clocks = phase == phase_q ? clocks_q + 32'd1 : 32'd1;
-  // decoded a clock before it counts: many registers follow
+  // the phase is decoded one clock ahead, because the decoded bits drive many registers
   reg [9:0] in_q;  // one-hot, phase_q
   reg first_q;
   integer p;

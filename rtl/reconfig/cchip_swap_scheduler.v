@@ -111,7 +111,7 @@ module cchip_swap_scheduler #(
     end
   endgenerate
 
-  // ---- two slots, whatever SLOTS is: the second is never found
+  // ---- the tables are extended to two slots; with SLOTS = 1 the second one has no valid bitstream
   wire [  7:0] valid_of = {{8 - 4 * SLOTS{1'b0}}, table_valid};
   wire [255:0] address_of = {{32 * (8 - 4 * SLOTS) {1'b0}}, table_address};
   wire [255:0] size_of = {{32 * (8 - 4 * SLOTS) {1'b0}}, table_size};
@@ -120,7 +120,7 @@ module cchip_swap_scheduler #(
   reg  swapping_q, chosen_q;
   wire asked = swapping_q | m_swap_valid_q | chosen_q;
 
-  // ---- what the scan sees of kinds and slots stands still meanwhile
+  // ---- 1: the registers that a scan reads are updated; they do not change during a scan
   wire look;
 
   // ---- kinds
@@ -131,7 +131,8 @@ module cchip_swap_scheduler #(
       {s_report_module == `CCHIP_RM_QUAD_QUAD, s_report_module == `CCHIP_RM_TRI_QUAD,
           s_report_module == `CCHIP_RM_TRI_TRI};
   reg  [ 95:0] age_q;
-  reg  [  2:0] over_q, enough_q, open_q;  // too old; a batch; wait without a slot
+  // pairs of the kind: have waited max_age; are min_batch; wait and no slot holds their module
+  reg  [  2:0] over_q, enough_q, open_q;
   genvar kind, slot;
   generate
     for (kind = 0; kind < 3; kind = kind + 1) begin : gen_kinds
@@ -160,7 +161,7 @@ module cchip_swap_scheduler #(
         end
       end
 
-      // 16 clocks bridge what the table and the slots show late
+      // table and slots show a change some clocks late: a kind must be absent for 16 clocks
       reg [3:0] absent_clocks_q;
       wire absent = !provided[kind] && !bitstream[kind] && !(asked && m_swap_module_q == KIND[7:0]);
       always @(posedge clk)
@@ -210,10 +211,10 @@ module cchip_swap_scheduler #(
   reg  [ 1:0] kind_q, best_kind_q;
   reg  [34:0] merit_q, best_q;  // {too old, age or pairs, idle, not exchanged last}
   reg         found_q;
-  // ages grow during the scan: they only compare different kinds
+  // ages grow during the scan, so for two slots of one kind only the last two bits are compared
   wire        better = legal_q & (~found_q |
       (kind_q == best_kind_q ? merit_q[1:0] > best_q[1:0] : merit_q[34:2] > best_q[34:2]));
-  reg  [ 3:0] pause_q;  // after a report slots and table are seen late
+  reg  [ 3:0] pause_q;  // clocks of rest after a report, until slots and table show its effect
   reg         pausing_q;  // pause_q != 0
   wire        scanning = enable & ~asked & ~command_valid & ~pausing_q;
   assign look = ~scanning | scan_end_q;
@@ -278,7 +279,7 @@ module cchip_swap_scheduler #(
       m_swap_module_q  <= {6'd0, entry[1:0]};
       m_swap_force_q   <= take_command & command_force;
     end
-    // the table is read a clock later
+    // the table is read one clock after the choice
     if (chosen_q) m_swap_address_q <= address_of[{m_swap_slot[0], m_swap_module_q[1:0], 5'd0}+:32];
     if (chosen_q) m_swap_size_q <= size_of[{m_swap_slot[0], m_swap_module_q[1:0], 5'd0}+:32];
     if (rst) begin
@@ -294,7 +295,7 @@ module cchip_swap_scheduler #(
     end
   end
 
-  // ---- reports: that of a refused command waits a clock if both come
+  // ---- reports: if both come on one clock, that of the refused command waits
   reg         refused_q;
   reg  [ 7:0] refused_slot_q, refused_module_q;
   reg  [`CCHIP_SWAP_W-1:0] refused_code_q;

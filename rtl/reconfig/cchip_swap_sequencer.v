@@ -159,7 +159,7 @@ module cchip_swap_sequencer #(
     roc_busy_q <= |(roc_busy & mine_q);
   end
 
-  // ---- what is wrong with the request
+  // ---- is the request legal, and is it needed?
   reg illegal_q, same_q;
   reg [31:0] last_byte_q;
   reg outside_q;
@@ -178,8 +178,8 @@ module cchip_swap_sequencer #(
   reg expired_q, error_q, forced_q, abort_q;
   reg fault_q;  // the fetch failed, a clock ago
   reg [`CCHIP_SWAP_W-1:0] fault_code_q;
-  // 1 + clocks on which the region showed the module asked for: garbage may show it on one by
-  // chance
+  // 1 + number of consecutive clocks on which the region showed the module asked for. One such
+  // clock proves nothing: a region full of garbage may show any number.
   reg [4:0] alike_q;
   wire at_header = at_q[`CCHIP_PHASE_HEADER];
   wire at_shutdown = at_q[`CCHIP_PHASE_SHUTDOWN];
@@ -199,13 +199,15 @@ module cchip_swap_sequencer #(
       | (at_check & (error_q | (check_last_q & ~crc_ok)))
       | (at_roc & (roc_busy_q ? expired_q : late_q & ~match_q))
       | (at_recouple & late_q & decoupled_q & expired_q);
-  wire aborts = abort_q & ~at_decouple;  // a slot that decouples is waited for
+  // DECOUPLE is not aborted: the slot finishes decoupling first
+  wire aborts = abort_q & ~at_decouple;
   wire past = |at_q[`CCHIP_PHASE_RECOUPLE:`CCHIP_PHASE_DECOUPLE];  // the slot is no longer at work
-  // what fails does so a clock later: the many registers that start again then follow one register
+  // A failure takes effect one clock after it is detected: fail_q drives the many registers that it
+  // resets, so that they do not wait for the logic of failing.
   wire failing = fails_early | fails_late;
   reg fail_q;
 
-  // never with failing, and before an abort
+  // a phase never passes while it fails; if it passes and is aborted on one clock, passing wins
   assign pass[`CCHIP_PHASE_IDLE] = begins;
   assign pass[`CCHIP_PHASE_HEADER] = at_header & ~decide_q & ~fault_q & header_done & header_ok
       & ~fail_q;
@@ -309,7 +311,7 @@ module cchip_swap_sequencer #(
 
   assign s_swap_ready = ready_q;
   assign m_report_valid = report_valid_q;
-  // the request and lost_q stand still in REPORT
+  // slot_q, module_q and lost_q do not change in REPORT
   assign m_report_slot = refused_q ? refuse_slot_q : slot_q;
   assign m_report_module = refused_q ? refuse_module_q : module_q;
   assign m_report_code = refused_q ? `CCHIP_SWAP_BUSY : code_q;

@@ -82,8 +82,8 @@ module cchip_axis_controller #(
   localparam [31:0] LAST_L = VERTS_B - 1;
 
   generate
-    if (CONTEXTS < 1 || CONTEXTS > `CCHIP_CONTEXTS_MAX || (1 << CONTEXT_W) < CONTEXTS) begin
-        : gen_illegal
+    if (CONTEXTS < 1 || CONTEXTS > `CCHIP_CONTEXTS_MAX || (1 << CONTEXT_W) < CONTEXTS)
+    begin : gen_illegal
       cchip_error_CONTEXTS_must_be_1_to_256 u_error ();
     end
     if (WARPED_EXACT != 0 && WARPED_EXACT != 1) begin : gen_illegal_warped
@@ -91,11 +91,12 @@ module cchip_axis_controller #(
     end
   endgenerate
 
-  // ---- contexts: each number is handed out once after reset, then from the list of those given
-  // back
+  // ---- contexts: after reset every number is handed out once in order; after that, numbers come
+  // from the list of those that pairs have given back
   wire                 outcome;  // a verdict ended its pair
   wire [CONTEXT_W-1:0] verdict_context = s_verdict_user[STATE_W+:CONTEXT_W];
-  wire [CONTEXT_W-1:0] side_context, outcome_context;  // beside the clocks of the programme
+  // the context of a verdict, delayed as cchip_axis_programme delays the verdict
+  wire [CONTEXT_W-1:0] side_context, outcome_context;
   cchip_delay #(
       .WIDTH(CONTEXT_W),
       .DEPTH(`CCHIP_PROGRAMME_LATENCY - `CCHIP_RAM_LATENCY)
@@ -142,7 +143,7 @@ module cchip_axis_controller #(
       .m_ready(hand_ready & ~fresh_left_q),
       .m_data (free_context)
   );
-  // the next one to hand out: s_pair_valid drives nothing but this
+  // holds the next context to hand out; s_pair_valid reaches only this buffer
   wire hand_valid;
   cchip_skid_buffer #(
       .WIDTH(CONTEXT_W)
@@ -225,9 +226,9 @@ module cchip_axis_controller #(
   wire [`CCHIP_CLASS_W-1:0] beat_class = beat_code[`CCHIP_AXIS_CODE_CLASS];
   wire [`CCHIP_BEATS_W-1:0] beat_count = beat_q[`CCHIP_STATE_BEATS];
 
-  // an EXHAUSTIVE pair keeps the pipeline until its last axis
+  // while keep_q is 1, an EXHAUSTIVE pair issues its beats back to back and no other pair does
   reg keep_q;
-  // its next axis: nB or e_k x f_l
+  // the next axis of that pair: nB or e_k x f_l
   reg keep_cross_q;
   reg [1:0] keep_k_q, keep_l_q;
   wire keep_row = keep_cross_q && keep_l_q == LAST_L[1:0];  // the last l of a k
@@ -237,7 +238,7 @@ module cchip_axis_controller #(
 
   // a pair waits for an axis slot (read by monitors)
   wire pair_waits /* verilator public_flat_rd */ = start_valid | ready_valid | beat_valid_q;
-  reg  started_q;  // a pair that started had the last turn
+  reg  started_q;  // the last turn went to a pair that started
   wire take_start = start_valid & (~ready_valid | ~started_q);
   assign ready_ready = ~keep_q & (~start_valid | started_q);
   assign start_ready = ~keep_q & (~ready_valid | ~started_q);
@@ -263,8 +264,8 @@ module cchip_axis_controller #(
   assign m_beat_code    = beat_code;
   assign m_beat_user    = beat_q;
 
-  // in-plane axes are one-sided: the own vertices lie on the side of sign(-n_d), d = l; told one
-  // clock after the beat
+  // In-plane axes are one-sided: the primitive's own vertices lie on the side of sign(-n_d), d = l.
+  // allow_above and allow_below follow one clock after their beat.
   //   info of DEGENERATE: signs of both normals; of COPLANAR: whether n_d is negative
   wire coplanar = beat_programme == `CCHIP_PROG_COPLANAR;
   reg in_plane_a_q, in_plane_b_q, negative_a_q, negative_b_q, zero_a_q, zero_b_q;
@@ -288,7 +289,7 @@ module cchip_axis_controller #(
   assign m_beat_allow_above = ~one_sided | n_zero | ~n_negative;
   assign m_beat_allow_below = ~one_sided | n_zero | n_negative;
 
-  // ---- what follows from the verdict
+  // ---- after the verdict: the outcome of the pair, or its next axis
   wire outcome_certain, outcome_open, outcome_illegal;
 
   cchip_axis_programme #(
@@ -322,7 +323,7 @@ module cchip_axis_controller #(
       .m_state        (next_state)
   );
 
-  // ---- result: tag and what there is to know of eta arrive with the outcome
+  // ---- result: the tag, eta = 0 and eta unknown are read from memory on the clock of the outcome
   wire [`CCHIP_TAG_W+1:0] side;
   cchip_ram #(
       .WIDTH (`CCHIP_TAG_W + 2),
@@ -337,7 +338,6 @@ module cchip_axis_controller #(
       .read_data (side)
   );
 
-  
   assign m_result_valid    = outcome;
   wire err_none, err_unknown;
   assign {err_none, err_unknown, m_result_tag} = side;

@@ -2,11 +2,11 @@
 `default_nettype none
 `include "cchip_defs.vh"
 // cchip_axis_programme: what follows a verdict: the outcome of the pair, or its next axis.
-//   latency      CCHIP_PROGRAMME_LATENCY = 4 clocks: what the verdict and the state say; the plan;
-//                the outcome, with what was found before; the next state
+//   latency      CCHIP_PROGRAMME_LATENCY = 4 clocks: 1 decodes verdict and state, 2 makes the plan,
+//                3 joins it with what an EXHAUSTIVE pair found before, 4 selects the next state
 //   throughput   one verdict per clock
-//   reset        none but s_valid = 0: what an EXHAUSTIVE pair has found so far is rewritten by the
-//                first verdicts of the next one
+//   reset        valid bits only: what is remembered of an EXHAUSTIVE pair is overwritten by the
+//                first verdicts of the next such pair
 // A "no" is given only when the intervals of all vertices are disjoint on an axis (s_separated) or
 // the boxes are; signs choose the next axis and never decide.
 //   NORMALS      nA, nB, then
@@ -19,15 +19,9 @@
 //                positive; the edges of A and of B from + to -, then those from - to +. A warped
 //                quad is hit only if every sign is certain (docs/architecture.md), else TETRAHEDRON
 //                decides
-// State, from the top: certain (all signs used so far), open (a warped quad was not decided
-// exactly), beats issued before this one (6), info (14), code (9), programme (3). info by
-// programme:
-//   NORMALS (nB)  {warped A, largest (2), nA zero (3), nA negative (3), all W on A's plane, edge of
-//                 B from - to + (2), from + to - (2)}
-//   CROSSING      [5:4] warped B, A, [3:0] {k, l} of the second axis
-//   COPLANAR      [1:0] n_d negative of B, of A
-//   DEGENERATE    [11:0] {nB zero, nB negative, nA zero, nA negative}
-//   TETRAHEDRON   [1:0] warped B, A
+// The state is the record STATE of docs/definitions.md. Its field info holds a record of its own
+// for each programme: INFO_NORMALS (after nA), INFO_CROSSING, INFO_COPLANAR, INFO_DEGENERATE,
+// INFO_TETRAHEDRON.
 // The verdicts of an EXHAUSTIVE pair come on consecutive clocks.
 module cchip_axis_programme #(
     // vertices of A and of B: 3 3, 3 4 or 4 4
@@ -59,7 +53,7 @@ module cchip_axis_programme #(
     output wire                          m_illegal,
     output wire [`CCHIP_AXIS_CODE_W-1:0] m_witness,
     output wire [    `CCHIP_BEATS_W-1:0] m_beats,
-    output wire                          m_proceed,        // m_state goes on
+    output wire                          m_proceed,        // m_state is the pair's next beat
     output wire [    `CCHIP_STATE_W-1:0] m_state
 );
 
@@ -146,7 +140,7 @@ module cchip_axis_programme #(
   wire warped_a_now = VERTS_A == 4 && !s_zero[0];
   wire warped_b_now = VERTS_B == 4 && !s_zero[0];
 
-  // ---- the ends of k and l in the programmes that visit all of a kind
+  // ---- the last k and l of an axis class in the programmes that visit all of its axes
   wire is_cross = axis_class == `CCHIP_AXIS_CROSS;
   wire is_in_plane_a = axis_class == `CCHIP_AXIS_IN_PLANE_A;
   wire is_in_plane_b = axis_class == `CCHIP_AXIS_IN_PLANE_B;
@@ -155,7 +149,7 @@ module cchip_axis_programme #(
                     : is_in_plane_a ? LAST_K[2:0] : is_in_plane_b ? LAST_L[2:0] : 3'd4;
   wire [2:0] last_l = !is_cross ? 3'd2 : TETRA != 0 && tetra
       && info[`CCHIP_INFO_TETRAHEDRON_WARPED_B] ? 3'd5 : LAST_L[2:0];
-  wire loops_l = is_cross | degenerate;  // all l of a k; else l stays
+  wire loops_l = is_cross | degenerate;  // l runs through all values for each k; else l stays
 
   reg valid_q, exhaustive_q, normals_q, crossing_q, illegal_q;
   reg normal_a_q, normal_b_q, exhaustive_last_q, second_q, box_q, box_certain_q;
@@ -228,7 +222,7 @@ module cchip_axis_programme #(
     warped_b_q        <= warped_b_now;
     warped_q          <= (VERTS_A == 4
         && (exhaustive ? warped_a_q : info[`CCHIP_INFO_NORMALS_WARPED_A])) || warped_b_now;
-    // the kind after the last axis of this one
+    // the class that follows the last axis of this one
     next_class_q      <= axis_class == `CCHIP_AXIS_NORMAL_A
         && info[`CCHIP_INFO_TETRAHEDRON_WARPED_B] ? `CCHIP_AXIS_NORMAL_B
                        : axis_class == `CCHIP_AXIS_NORMAL_A || axis_class == `CCHIP_AXIS_NORMAL_B
@@ -238,7 +232,7 @@ module cchip_axis_programme #(
         && info[`CCHIP_INFO_TETRAHEDRON_WARPED_B]};
   end
 
-  // ================ clock 2: the plan when nB's verdict is here
+  // ================ clock 2: the plan that follows the verdict of nB
   wire [1:0] k_down = crossing_edge(side_a_q, VERTS_A == 4, 1'b1);
   wire [1:0] k_up = crossing_edge(side_a_q, VERTS_A == 4, 1'b0);
   wire [1:0] l_down = about_a_q[`CCHIP_INFO_NORMALS_L_DOWN];
@@ -287,7 +281,7 @@ module cchip_axis_programme #(
   wire warped_b_crossing = info_q[`CCHIP_INFO_CROSSING_WARPED_B];
   wire to_tetra = TETRA != 0 && (warped_a_crossing || warped_b_crossing) && !certain_crossing;
 
-  // ---- EXHAUSTIVE: the same for the crossing axes of its plan
+  // ---- EXHAUSTIVE: the same test on the two axes that CROSSING would visit
   reg [PLAN_W-1:0] found_plan_q;  // what the normals lead to
   always @(posedge clk) if (valid_q && exhaustive_q && normal_b_q) found_plan_q <= plan;
   wire [`CCHIP_INFO_W-1:0] found_info = found_plan_q[`CCHIP_STATE_INFO];
@@ -298,14 +292,13 @@ module cchip_axis_programme #(
       {found_info[`CCHIP_INFO_CROSSING_K_UP], found_info[`CCHIP_INFO_CROSSING_L_UP]};
   wire found_first = {code_q[4:3], code_q[1:0]} == {found_code[4:3], found_code[1:0]};
 
-  // ---- next axis of the programmes that visit all of a kind: the next l, the next k, the next
-  // kind
+  // ---- next axis of the programmes that visit all axes: the next l, the next k, the next class
   wire [`CCHIP_AXIS_CODE_W-1:0] next_code = l_goes_on_q ? {code_q[8:3], l_next_q}
                        : {k_ends_q ? {next_class_q, next_k_q} : {code_q[8:6], k_next_q}, loops_l_q
                            ? 3'd0 : code_q[2:0]};
   wire last_axis = last_kind_q & k_ends_q & ~l_goes_on_q;
 
-  // ---- outcome but for what EXHAUSTIVE has found
+  // ---- outcome of every programme but EXHAUSTIVE
   reg outcome, grid, certain, open, illegal;
   reg [`CCHIP_AXIS_CODE_W-1:0] witness;
   always @* begin
@@ -333,7 +326,7 @@ module cchip_axis_programme #(
     end
   end
 
-  // ---- next state, should there be one
+  // ---- next state, used if the pair is not decided
   wire take_plan = normals_q & normal_b_q;
   wire take_tetra = crossing_q & to_tetra;
   wire state_certain = normals_q ? clear_q : crossing_q ? certain_crossing : certain_q;
@@ -428,7 +421,7 @@ module cchip_axis_programme #(
     state_q3      <= state_q2;
   end
 
-  // ================ clock 4
+  // ================ clock 4: the next state
   wire [PLAN_W-1:0] state = take_plan_q3 ? plan_q3 : take_found_q3 ? found_plan_q : state_q3;
   always @(posedge clk) begin
     if (rst) m_outcome_q <= 1'b0;

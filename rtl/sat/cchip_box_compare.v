@@ -101,7 +101,7 @@ module cchip_box_compare #(
   wire [COORD_W-1:0] low_b = range_q5[PAIR_W+:COORD_W];
   wire [COORD_W-1:0] high_b = range_q5[PAIR_W+COORD_W+:COORD_W];
 
-  // ---- clock 6: gaps on both sides, less 1, so that the sign tells whether there is one
+  // ---- clock 6: (gap - 1) on both sides: negative exactly when there is no gap
   function [GAP_W-1:0] gap(input [COORD_W-1:0] from, input [COORD_W-1:0] to);
     gap = {to[COORD_W-1], to} + ~{from[COORD_W-1], from};
   endfunction
@@ -134,7 +134,7 @@ module cchip_box_compare #(
     b_near_q7  <= b_left[GAP_W];
   end
 
-  // ---- clock 8
+  // ---- clock 8: either side
   always @(posedge clk) begin
     m_separated_q   <= a_above_q7 | b_above_q7;
     m_certain_gap_q <= ~(a_near_q7 & b_near_q7);

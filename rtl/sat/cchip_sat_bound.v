@@ -53,7 +53,7 @@ module cchip_sat_bound #(
     end
   endgenerate
 
-  // ---- gap bound, one clock before it leaves: the sum needs it
+  // ---- gap bound; gap_q is one clock ahead of the output, because the sign bound is a sum with it
   wire [`CCHIP_ERROR_SHIFT_W-1:0] shift_norm;
   wire four_gap;
   cchip_delay #(
@@ -107,15 +107,15 @@ module cchip_sat_bound #(
     integer j;
     begin
       shifted_by_ones = {FACTOR_W{1'b0}};
-      for (j = 0; j < 5; j = j + 1) shifted_by_ones = shifted_by_ones
-          | (({4'd0, value} & {FACTOR_W{choice[j]}}) << j);
+      for (j = 0; j < 5; j = j + 1)
+        shifted_by_ones = shifted_by_ones | (({4'd0, value} & {FACTOR_W{choice[j]}}) << j);
     end
   endfunction
   reg [NORM_W-1:0] edge_norm_q;
   reg [NORM_W:0] edges_q2;
   reg [5:0] twice_error_q;
   reg [`CCHIP_ERROR_SHIFT_W-1:0] shift_q;
-  reg [4:0] shift_q2;  // one-hot: a choice of two levels of LUTs
+  reg [4:0] shift_q2;  // one-hot, so that the shift is two levels of LUTs
   reg [FACTOR_W-1:0] factor_q;
   always @(posedge clk) begin
     edge_norm_q   <= s_edge_norm;
@@ -137,7 +137,7 @@ module cchip_sat_bound #(
       .q  (factor)
   );
 
-  // ---- n: position of the highest one of |c|_1 + 2 E - 1, plus 1
+  // ---- n = 1 + position of the highest bit that is 1 in |c|_1 + 2 E - 1
   wire [EDGE_W:0] norm;
   cchip_norm1 #(
       .V_W(EDGE_W)
@@ -154,8 +154,8 @@ module cchip_sat_bound #(
     sum_q <= {1'b0, norm} + {{U_W - 5{1'b0}}, twice_error_less_1_q};
   end
 
-  // by groups of four: the highest group with a one, the position of the highest one in it (the sum
-  // is not 0)
+  // found in groups of four bits: the highest group that is not 0, and the highest 1 in that group
+  // (the sum is never 0)
   wire [4*GROUPS-1:0] u = {{4 * GROUPS - U_W{1'b0}}, sum_q};
   wire [3*GROUPS-1:0] found, group;  // {any, position} of each
   genvar g;

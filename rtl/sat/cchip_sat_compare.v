@@ -62,9 +62,10 @@ module cchip_sat_compare #(
 
   // size of a value: |v|, or |v| - 1 of a negative one
   localparam integer SIZE_W = PROJ_W - 1;
-  // what is compared with a bound: as many bits as it has; one more stands for all above them
+  // bits of a size that are compared with a bound, as many as the bound has; one more bit is the OR
+  // of all higher ones
   localparam integer LOW_W = SIZE_W > BOUND_W ? BOUND_W : SIZE_W;
-  // zero is found in two steps
+  // v = 0 is detected in two clocks: parts of 16 bits, then all parts
   localparam integer PARTS = (PROJ_W + 15) / 16;
 
   // |v| <= bound: size + minus < bound + 1
@@ -141,13 +142,13 @@ module cchip_sat_compare #(
     end
   endgenerate
 
-  // ---- clock 3: all differences between the sets together; what takes signs alone
+  // ---- clock 3: combines the signs of all differences between the sets
   function [VALUES-1:0] ignored(input [1:0] in);
     ignored = {OWN == 2 ? {{POINTS - 2{1'b0}}, in} | {POINTS{~in[1]}} : {POINTS{1'b1}},
                {{POINTS - 2{1'b0}}, in} | {POINTS{~in[0]}}, {{POINTS - 2{1'b0}}, in}};
   endfunction
   wire [VALUES-1:0] ignore = ignored(own);
-  // on the same side of the own points in slots 0 and 1 as of the reference
+  // the point is on the same side of the own points in slots 0 and 1 as of the reference
   wire [VALUES-1:0] same = negative ~^ {3{negative[POINTS-1:0]}};
   reg [1:0] own_q3;
   reg above_q3, below_q3, same_q3;
@@ -160,7 +161,7 @@ module cchip_sat_compare #(
     negative_q3 <= negative[POINTS-1:0];
   end
 
-  // ---- clock 4: those found late
+  // ---- clock 4: combines zero and near, which take one clock longer than the signs
   wire [VALUES-1:0] ignore_q3 = ignored(own_q3);
   wire none_zero = &(ignore_q3 | ~zero);
   wire all_far = &(ignore_q3 | ~near);  // then none is zero

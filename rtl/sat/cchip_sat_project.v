@@ -103,7 +103,7 @@ module cchip_sat_project #(
         );
       end
     end else begin : gen_absolute
-      wire unused = &{1'b0, difference_q};  // but for point SIGN
+      wire unused = &{1'b0, difference_q};  // all but that of point SIGN
       // width of a dot product with W-bit coordinates: CCHIP_PROJ_ABS_W
       localparam integer DOT_W = COORD_W + AXIS_W;
       // latency of cchip_dot3 may differ from the relative one (narrower factor): the rest is delay
@@ -169,7 +169,7 @@ module cchip_sat_project #(
   generate
     for (d = 0; d < 3; d = d + 1) begin : gen_axis
       wire [AXIS_W-1:0] v = s_axis[AXIS_W*d+:AXIS_W];
-      // zero is found in two steps
+      // v = 0 is detected in two clocks: parts of 9 bits, then all parts
       wire [9*PARTS-1:0] parts = {{9 * PARTS - AXIS_W{1'b0}}, v};
       reg [PARTS-1:0] some_q;
       for (g = 0; g < PARTS; g = g + 1) begin : gen_part

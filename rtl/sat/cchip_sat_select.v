@@ -83,7 +83,7 @@ module cchip_sat_select #(
     end
   endfunction
 
-  // {to, from} of edge k, {other 1, other 0}: the vertices off it
+  // {other 1, other 0, to, from}: the ends of an edge and the vertices that are not on it
   function [7:0] edge_of(input quad, input [2:0] index);
     if (quad && index == 3'd4) edge_of = {2'd3, 2'd1, 2'd2, 2'd0};
     else if (quad && index == 3'd5) edge_of = {2'd2, 2'd0, 2'd3, 2'd1};
@@ -104,7 +104,7 @@ module cchip_sat_select #(
       endcase
   endfunction
 
-  // ---- clock 2: the vertex {of B, index} that each end and slot takes
+  // ---- clock 2: which vertex, {of B, index}, goes to each end of e and f and to each point slot
   wire own_quad = own_b_q ? VERTS_B == 4 : VERTS_A == 4;
   wire [7:0] own_edge = edge_of(own_quad, k_q);
   wire [7:0] b_edge = edge_of(VERTS_B == 4, l_q);
@@ -170,7 +170,7 @@ module cchip_sat_select #(
     end
   endgenerate
 
-  // ---- clock 4: the vertices. Vertices that an end or slot never takes are masked.
+  // ---- clock 4: the vertices. A mask removes the vertices that an end or a slot never takes.
   wire [8*POINT_W-1:0] vertices;
   generate
     if (VERTS_A == 4) begin : gen_a_quad

@@ -5,7 +5,7 @@
 // All slots see every word written to the configuration port.
 //   payload      low byte first: CCHIP_BITSTREAM_SYNC, {0 (16 bit), module, slot}, filler, CRC-32
 //                (as zlib) of all bytes before it; at least CCHIP_BITSTREAM_PAYLOAD_MIN bytes. The
-//                synchronisation word must not occur again: wherever it stands (32-bit port: in one
+//                synchronisation word must not occur again: wherever it occurs (32-bit port: in one
 //                word) a new payload begins, so a truncated one blocks nothing
 //   garbage      1: what is in the slot is undefined: from the word that names the slot until a
 //                complete, correct payload has passed; also again from any word after its end that

@@ -6,8 +6,9 @@
 // and the configuration port.
 //   garbage      from the word of a payload that names the slot to its last one, and for ever after
 //                a bad payload, every output of the region is random on every clock, and all
-//                modules are fed random pairs without reset: who forgets to decouple sees garbage,
-//                who forgets the reset afterwards sees answers to pairs nobody sent
+//                modules are fed random pairs without reset. A controller that does not decouple
+//                sees garbage; one that does not reset afterwards sees answers to pairs that were
+//                never sent
 //   otherwise    the selected module, nothing added; rst resets all of them
 module cchip_pr_virtual #(
     // number of this slot, 0..255
