@@ -2,22 +2,29 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures what the datasheets claim and keeps them in step with the RTL.
 
-usage: datasheet.py                        measure everything, rewrite the generated tables (some minutes)
-       datasheet.py MODULE... | architecture   the same for some pages only
-       datasheet.py --check                write nothing; exit 1 if a module of rtl/cchip.f has no datasheet, or one
-                                           whose parameters, ports, markers or latency do not agree with the RTL
+usage: datasheet.py                        measure everything, rewrite the generated tables (many minutes)
+       datasheet.py PAGE...                the same for some pages only: a module, architecture, verification
+       datasheet.py --compare simulation   write nothing; measure what simulation tells, and exit 1 with the differences if
+                                           a table says otherwise (not: areas; of the primitive tests' tables only the
+                                           latency of a lone pair)
+       datasheet.py --compare all          the same for every generated table (many minutes)
+       datasheet.py --check                write nothing; exit 1 if a module has no datasheet, or one whose parameters,
+                                           ports or markers do not agree with the RTL, or if a page names a file or links
+                                           to a page that does not exist
        datasheet.py --latency MODULE       clocks from an input to the output it changes (Icarus Verilog)
        datasheet.py --stream [NAME=VALUE...]   a primitive test: latency, clocks per pair, drain (Icarus Verilog);
                                            NAME: a parameter of scripts/datasheet_stream.v, as VERTS_B=4
        datasheet.py --widths               widths and smallest SUBSTAGES for every COORD_W (Icarus Verilog)
-       datasheet.py --leaves               18x18 multipliers for every COORD_W, shape and projection (Yosys)
+       datasheet.py --leaves               18x18 multipliers for every COORD_W, shape and projection (Icarus Verilog)
        datasheet.py --bounds               two bounds on the error of a sign, mean over random triples of edges
-       datasheet.py readme                 the generated table of README.md
 
-Tables are written between the lines `<!-- generated: begin NAME -->` and `<!-- generated: end -->` (a datasheet
-has one, without NAME). Tools: Debian's yosys 0.23 and iverilog 11; default parameters unless a table says otherwise."""
+Tables are written between the lines `<!-- generated: begin NAME -->` and `<!-- generated: end -->` (a datasheet has two:
+one without NAME, simulated, and area, synthesised). JOBS = tools at the same time (default: all processors). Tools: Debian's yosys 0.23 and iverilog 11; default parameters unless a table says otherwise."""
+import concurrent.futures
+import difflib
 import functools
 import json
+import os
 import pathlib
 import random
 import re
@@ -31,6 +38,7 @@ MODELS = ROOT / "sim" / "rtl_models" / "sim.f"  # for simulation only
 MODULES = ROOT / "docs" / "modules"
 README = ROOT / "README.md"
 ARCHITECTURE = ROOT / "docs" / "architecture.md"
+VERIFICATION = ROOT / "docs" / "verification.md"
 BLOCK = r"(<!-- generated: begin{} -->\n).*?(<!-- generated: end -->)"
 
 # How a change of the inputs is made visible: (what is prepared, what changes, the output that answers).
@@ -245,13 +253,14 @@ def yosys(script):
 
 @functools.lru_cache(None)
 def leaf_count(width, shape, absolute):
-    """$mul cells of cchip_sat_pipeline, each one in a cchip_mul18."""
+    """Instances of cchip_mul18 in cchip_sat_pipeline, which Icarus elaborates."""
     verts_a, verts_b = SHAPES[shape]
-    out = run("sh", "-c", yosys(
-        f"hierarchy -top cchip_sat_pipeline -chparam COORD_W {width} -chparam ABSOLUTE_PROJECTION {absolute}"
-        f" -chparam VERTS_A {verts_a} -chparam VERTS_B {verts_b};"
-        " proc; flatten; select -count t:$mul".replace("$", "\\$")), cwd=RTL)
-    return re.findall(r"(\d+) objects", out)[-1]
+    settings = {"COORD_W": width, "SUBSTAGES": 12, "ABSOLUTE_PROJECTION": absolute, "VERTS_A": verts_a, "VERTS_B": verts_b}
+    with tempfile.TemporaryDirectory() as folder:
+        program = pathlib.Path(folder) / "pipeline.vvp"
+        run("iverilog", "-g2005", "-Irtl/include", "-o", str(program), "-s", "cchip_sat_pipeline",
+            *(f"-Pcchip_sat_pipeline.{name}={value}" for name, value in settings.items()), *rtl_files().values())
+        return str(len(re.findall(r'^S_\w+ \.scope module, "\w+" "cchip_mul18"', program.read_text(), re.M)))
 
 
 def leaves():
@@ -337,27 +346,37 @@ def shape_settings(shape):
     return f"VERTS_A={shape[0]}", f"VERTS_B={shape[1]}"
 
 
-def speed(module):
+def lone_only(path, rows):
+    """Rows of a primitive test of which only the latency of a lone pair was measured: the rest is that of the page."""
+    shown = {tuple(cells[:2]): cells for cells in ([c.strip() for c in line.strip("|").split("|")]
+                                                   for line in path.read_text().splitlines() if line.startswith("| "))}
+    return [[*shown.get(tuple(row[:2]), row)[:3], row[3], *shown.get(tuple(row[:2]), row)[4:]] for row in rows]
+
+
+def speed(module, quick=False):
     if module == "cchip_primtest_blank":
         return "No latency and no throughput: every output is a constant.\n"
     if module not in PRIMTESTS:
         return table(["quantity", "value", "command"],
                      [["latency, clocks", latency(module), f"`scripts/datasheet.py --latency {module}`"]])
     settings = shape_settings(PRIMTESTS[module])
-    text = stream(*settings)
+    text = stream(*settings, *(["LONE=1"] if quick else []))
     rows = [[name.replace("_", " "), mode, beats, lone, f"{least} / {mean} / {greatest}", busy, drain]
             for name, mode, beats, lone, least, mean, greatest, busy, drain in pairs(text)]
-    return (f"Clocks, printed by `scripts/datasheet.py --stream {' '.join(settings)}`:\n\n" +
+    rows = lone_only(MODULES / f"{module}.md", rows) if quick else rows
+    text = (f"Clocks, printed by `scripts/datasheet.py --stream {' '.join(settings)}`:\n\n" +
             table(["pair", "mode", "beats", "latency of a lone pair", "clocks per pair, min / mean / max",
                    "beats per 100 clocks while pairs wait", "drain after `CONTEXTS` pairs"], rows) +
             f"\nDrain bound, `CCHIP_DRAIN_BOUND`: {values(text)['drain_bound'][0]} clocks.\n")
+    return text
 
 
-def datasheet_block(module):
-    text = speed(module)
-    if not rtl_files()[module].startswith("rtl/"):
-        return text + "\nNo area, no clock: for simulations only.\n"
-    text += "\nFmax: whole primitive tests are placed and routed, see [fpga.md](../fpga.md).\n\n"
+def synthesised(module):
+    return rtl_files()[module].startswith("rtl/")
+
+
+def area(module):
+    text = "Fmax: whole primitive tests are placed and routed, see [fpga.md](../fpga.md).\n\n"
     kinds = list(next(iter(TARGETS.values()))[1])
     rows = []
     for target, (script, patterns) in TARGETS.items():
@@ -368,13 +387,14 @@ def datasheet_block(module):
     return text + "".join(f"    {yosys(f'{script} -top {module}')}\n" for script, _ in TARGETS.values())
 
 
+THROUGHPUT = [*([f"SUBSTAGES={n}"] for n in (6, 8, 10, 12)), *([f"CONTEXTS={n}"] for n in (1, 2, 3, 4, 5, 8)),
+              ["COORD_W=8", "SUBSTAGES=6"], ["COORD_W=18", "SUBSTAGES=8"], ["COORD_W=20", "SUBSTAGES=12"],
+              ["ABSOLUTE_PROJECTION=1"]]
+
+
 def throughput():
-    rows = [[f"SUBSTAGES={n}"] for n in (6, 8, 10, 12)]
-    rows += [[f"CONTEXTS={n}"] for n in (1, 2, 3, 4, 5, 8)]
-    rows += [["COORD_W=8", "SUBSTAGES=6"], ["COORD_W=18", "SUBSTAGES=8"], ["COORD_W=20", "SUBSTAGES=12"],
-             ["ABSOLUTE_PROJECTION=1"]]
     body = []
-    for settings in rows:
+    for settings in THROUGHPUT:
         text = stream("BRIEF=1", *settings)
         found = values(text)
         exhaustive, directed = pairs(text)[:2]
@@ -385,22 +405,26 @@ def throughput():
                   "optional registers of axis: operand + product + result", "the same of project"], body)
 
 
+# (COORD_W, SUBSTAGES, ABSOLUTE_PROJECTION, shape) of the table of configurations: settings of the bench
+CONFIGURATIONS = {(width, substages, absolute, shape): (*shape_settings(verts), f"COORD_W={width}", f"SUBSTAGES={substages}",
+                                                        f"ABSOLUTE_PROJECTION={absolute}")
+                  for width, substages, absolute in ((16, 10, 0), (16, 10, 1), (16, 6, 0), (8, 6, 0), (20, 12, 0))
+                  for shape, verts in SHAPES.items()}
+
+
 def configurations():
-    """One row per configuration; the table of README.md."""
+    """One row per configuration."""
     rows = []
-    for width, substages, absolute in ((16, 10, 0), (16, 10, 1), (16, 6, 0), (8, 6, 0), (20, 12, 0)):
-        for shape, verts in SHAPES.items():
-            settings = (*shape_settings(verts), f"COORD_W={width}", f"SUBSTAGES={substages}",
-                        f"ABSOLUTE_PROJECTION={absolute}")
-            exhaustive = pairs(stream("BRIEF=1", *settings))[0]
-            rows.append([shape, width, substages, "absolute" if absolute else "relative",
-                         leaf_count(width, shape, absolute), exhaustive[3], exhaustive[5], f"`--stream BRIEF=1 {' '.join(settings)}`"])
+    for (width, substages, absolute, shape), settings in CONFIGURATIONS.items():
+        exhaustive = pairs(stream("BRIEF=2", *settings))[0]
+        rows.append([shape, width, substages, "absolute" if absolute else "relative", leaf_count(width, shape, absolute),
+                     exhaustive[3], exhaustive[5], f"`--stream BRIEF=2 {' '.join(settings)}`"])
     return table(["`cchip_primtest_`", "`COORD_W`", "`SUBSTAGES`", "projection", "18x18 multipliers",
                   "latency, clocks", "clocks per pair", "`scripts/datasheet.py --leaves` and"], rows)
 
 
 def clock_table():
-    lines = stream("VERTS_A=3", "VERTS_B=3").splitlines()
+    lines = stream("BRIEF=2", "LONE=1").splitlines()
     rows = [line.split(" ", 2)[1:] for line in lines if line.startswith("clock ")]
     return table(["clock", "what is valid"], rows)
 
@@ -409,14 +433,64 @@ BLOCKS = {"widths": lambda: text_table(widths()), "leaves": lambda: text_table(l
           "bounds": lambda: text_table(bounds()), "throughput": throughput, "clocks": clock_table}
 
 
-def rewrite(path, name, block):
+def begin(name):
+    return f"<!-- generated: begin{' ' + name if name else ''} -->"
+
+
+def replaced(path, name, block):
+    """The text of a page with a new block."""
     text = path.read_text()
     pattern = re.compile(BLOCK.format(f" {name}" if name else ""), re.S)
     if not pattern.search(text):
-        fail(f"{path.relative_to(ROOT)}: no lines '<!-- generated: begin{' ' + name if name else ''} -->' and"
-             " '<!-- generated: end -->'; add them where the table belongs")
-    path.write_text(pattern.sub(lambda m: f"{m.group(1)}{block}{m.group(2)}", text))
+        fail(f"{path.relative_to(ROOT)}: no lines '{begin(name)}' and '<!-- generated: end -->'; add them where the table belongs")
+    return pattern.sub(lambda m: f"{m.group(1)}{block}{m.group(2)}", text)
+
+
+def rewrite(path, name, block):
+    path.write_text(replaced(path, name, block))
     print(f"wrote {path.relative_to(ROOT)} {name}".rstrip(), flush=True)
+
+
+def blocks(page, simulation=True, synthesis=True, quick=False):
+    """(path, name, how it is made) of the generated blocks of a page."""
+    if page == "architecture":
+        return [(ARCHITECTURE, name, make) for name, make in BLOCKS.items()] if simulation else []
+    if page == "verification":
+        return [(VERIFICATION, "configurations", configurations)] if simulation else []
+    path = MODULES / f"{page}.md"
+    return ([(path, "", lambda: speed(page, quick))] if simulation else []) + \
+        ([(path, "area", lambda: area(page))] if synthesis and synthesised(page) else [])
+
+
+def pages():
+    return [*rtl_files(), "architecture", "verification"]
+
+
+def in_parallel(function, items):
+    with concurrent.futures.ThreadPoolExecutor(int(os.environ.get("JOBS") or os.cpu_count())) as pool:
+        return list(pool.map(function, items))
+
+
+def settings_of_all(quick):
+    """Every setting of the bench that the tables need, the slowest first."""
+    full = [[*shape_settings(shape), *(["LONE=1"] if quick else [])] for shape in reversed(SHAPES.values())]
+    return full + [["BRIEF=2", *s] for s in CONFIGURATIONS.values()] + [["BRIEF=1", *s] for s in THROUGHPUT]
+
+
+def compare(what):
+    """Prints what the generated blocks would become; 1 if one of them is stale."""
+    quick = what == "simulation"
+    in_parallel(lambda settings: stream(*settings), settings_of_all(quick))
+    jobs = [block for page in pages() for block in blocks(page, synthesis=not quick, quick=quick)]
+    stale = 0
+    for (path, name, _), fresh in zip(jobs, in_parallel(lambda job: replaced(job[0], job[1], job[2]()), jobs)):
+        difference = list(difflib.unified_diff(path.read_text().splitlines(), fresh.splitlines(), "page", "measured", lineterm="", n=0))
+        if difference:
+            stale += 1
+            print(f"{path.relative_to(ROOT)}: block '{begin(name)}' is stale: scripts/datasheet.py {path.stem}")
+            print("\n".join(difference[2:12]), flush=True)
+    print(f"{len(jobs)} generated blocks, {stale} stale")
+    return 1 if stale or not jobs else 0
 
 
 # ---- check
@@ -445,16 +519,9 @@ def findings(module):
         yield from (f"{path.relative_to(ROOT)}: {heading}: {' '.join(f)} is not in the RTL" for f in found if f not in expected)
         if sorted(found) == sorted(expected):
             yield f"{path.relative_to(ROOT)}: {heading}: not in the order of the RTL"
-    if not re.search(BLOCK.format(""), text, re.S):
-        yield f"{path.relative_to(ROOT)}: no '<!-- generated: begin -->' with '<!-- generated: end -->' behind it"
-
-
-def stale_latencies():
-    for path in sorted(MODULES.glob("*.md")):
-        for written, module in re.findall(r"^\| latency, clocks \| (\d+) \| `[^`]* --latency (\w+)` \|$", path.read_text(), re.M):
-            measured = latency(module)
-            if measured != int(written):
-                yield f"{path.relative_to(ROOT)}: latency of {module} is {measured} clocks, not {written}"
+    for _, name, _ in blocks(module):
+        if not re.search(BLOCK.format(f" {name}" if name else ""), text, re.S):
+            yield f"{path.relative_to(ROOT)}: no '{begin(name)}' with '<!-- generated: end -->' behind it"
 
 
 def check():
@@ -472,7 +539,6 @@ def check():
         for link in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", path.read_text()):
             if not (path.parent / link).exists():
                 found.append(f"{path.relative_to(ROOT)}: link to {link}, which does not exist")
-    found += stale_latencies()
     print("\n".join(found) if found else f"{len(rtl_files())} datasheets agree with the RTL")
     return 1 if found else 0
 
@@ -494,18 +560,15 @@ def main():
         print(leaves(), end="")
     elif option == "--bounds" and len(arguments) == 1:
         print(bounds(), end="")
-    elif option or not set(arguments) <= {*rtl_files(), "architecture", "readme"}:
+    elif option == "--compare" and arguments[1:] in (["simulation"], ["all"]):
+        return compare(arguments[1])
+    elif option or not set(arguments) <= set(pages()):
         print(__doc__, file=sys.stderr)
         return 2
     else:
-        for page in arguments or [*rtl_files(), "architecture", "readme"]:
-            if page == "readme":
-                rewrite(README, "configurations", configurations())
-            elif page == "architecture":
-                for name, block in BLOCKS.items():
-                    rewrite(ARCHITECTURE, name, block())
-            else:
-                rewrite(MODULES / f"{page}.md", "", datasheet_block(page))
+        for page in arguments or pages():
+            for path, name, make in blocks(page):
+                rewrite(path, name, make())
     return 0
 
 

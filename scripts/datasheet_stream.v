@@ -19,10 +19,12 @@ module bench;
   parameter integer WARPED_EXACT = 1;
   parameter integer VERTS_A = 3;
   parameter integer VERTS_B = 3;
-  // results measured, after twice CONTEXTS results that are not; pairs of equal length end in groups of CONTEXTS
+  // results measured, after CONTEXTS results that are not; pairs of equal length end in groups of CONTEXTS
   parameter integer PAIRS = CONTEXTS * (1 + 100 / CONTEXTS);
-  // 1: random pairs only
+  // 1: random pairs only, 2: random pairs in mode EXHAUSTIVE only
   parameter integer BRIEF = 0;
+  // 1: only the latency of a lone pair of each kind is measured, what else a line tells is 0
+  parameter integer LONE = 0;
 
   localparam [3*COORD_W-1:0] ORIGIN = 0;
 
@@ -111,7 +113,7 @@ module bench;
     end
   endtask
 
-  task event_line(input [60*8-1:0] text);
+  task event_line(input [100*8-1:0] text);
     $display("clock %0d %0s", clocks - (last_accept < 0 ? clocks : last_accept), text);
   endtask
 
@@ -199,12 +201,21 @@ module bench;
   task measure(input [30*8-1:0] name, input [1:0] its_mode);
     begin
       mode = its_mode;
+      seed = 1;
       reset;
       lone_pair;
       $write("pair %0s %0s", name, mode == `CCHIP_MODE_EXHAUSTIVE ? "EXHAUSTIVE" : mode == `CCHIP_MODE_DIRECTED ? "DIRECTED" : "reserved");
+      if (LONE) $display(" 0 %0d 0 0 0 0 0", latency);
+      else steady_state;
+    end
+  endtask
+
+  // pairs always offered, then the drain
+  task steady_state;
+    begin
       reset;
       pair_valid = 1;
-      while (intervals < 2 * CONTEXTS) tick;
+      while (intervals < CONTEXTS) tick;
       clear;
       while (intervals < PAIRS) tick;
       if (least_beats == greatest_beats) $write(" %0d", least_beats);
@@ -223,7 +234,7 @@ module bench;
   task both_modes(input [30*8-1:0] name);
     begin
       measure(name, `CCHIP_MODE_EXHAUSTIVE);
-      measure(name, `CCHIP_MODE_DIRECTED);
+      if (BRIEF < 2) measure(name, `CCHIP_MODE_DIRECTED);
     end
   endtask
 
@@ -236,7 +247,7 @@ module bench;
     show = 1;
     lone_pair;
     both_modes("random_planar");
-    measure("any", 2'd3);
+    if (BRIEF < 2) measure("any", 2'd3);
     random_pairs = 0;
     if (!BRIEF) known_pairs;
     $display("drain_bound %0d", `CCHIP_DRAIN_BOUND(SUBSTAGES, CONTEXTS));

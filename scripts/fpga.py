@@ -497,6 +497,17 @@ def save(found):
     path.write_text(json.dumps({**kept, **found}, indent=2) + "\n")
 
 
+def name_tree():
+    """Writes into the page which RTL was measured; changes of rtl/ that are not committed have no name."""
+    git = lambda *command: subprocess.run(["git", "-C", str(ROOT), *command], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
+    if git("status", "--porcelain", "rtl"):
+        say("fpga.py: rtl/ has changes that are not committed; docs/fpga.md still names the tree measured before")
+        return
+    text = re.sub(r"git tree `[0-9a-f]{40}` of `rtl/`\n\(commit \w+;",
+                  f"git tree `{git('rev-parse', 'HEAD:rtl')}` of `rtl/`\n(commit {git('rev-parse', '--short', 'HEAD')};", PAGE.read_text())
+    PAGE.write_text(text)
+
+
 def main():
     if set(sys.argv) & {"-h", "--help"}:
         print(__doc__)
@@ -521,6 +532,8 @@ def main():
         for name, make in TABLES.items():
             if name != "families" or options.families:
                 datasheet.rewrite(PAGE, name, make(found))
+        if options.families:  # every row is of this run
+            name_tree()
     for failure in failures:
         say(f"fpga.py: {failure}")
     for row in found.values():

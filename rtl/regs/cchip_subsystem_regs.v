@@ -4,10 +4,13 @@
 // cchip_subsystem_regs: register block on AXI4-Lite.
 //   latency      write: 3 clocks from the later of address and data to the response, read: 3 clocks
 //   throughput   one write per 4 clocks and one read per 4 clocks, side by side
-//   cuts         every path on the bus side: each output is a flip-flop; hwif_out_* are flip-flops too
+//   cuts         every path on the bus side: each output is a flip-flop; hwif_out_* are flip-flops
+// too
 //   reset        reset values of the fields; nothing is accepted while rst is 1
-//   errors       SLVERR: a read where no register is, a write where nothing can be written; neither does anything
-// hwif_in_<register>_<field> is what hardware writes, hwif_out_<register>_<field> what it reads; element i of an array of
+//   errors       SLVERR: a read where no register is, a write where nothing can be written; neither
+// does anything
+// hwif_in_<register>_<field> is what hardware writes, hwif_out_<register>_<field> what it reads;
+// element i of an array of
 // w bits is [w*i +: w]. _hwset: an event, 1 for a clock; _hwclr: clears the field.
 module cchip_subsystem_regs (
     input  wire clk,
@@ -215,18 +218,26 @@ module cchip_subsystem_regs (
     end else begin
       control_clear_q <= put[2] & strobe_q[0];
       control_abort_q <= put[1] & strobe_q[0];
-      if (strobe_q[0]) control_scheduler_enable_q <= (control_scheduler_enable_q & keep[0]) | put[0];
+      if (strobe_q[0]) control_scheduler_enable_q <= (control_scheduler_enable_q & keep[0]) |
+          put[0];
       command_go_q <= put[31] & strobe_q[1];
       if (strobe_q[1]) command_force_q <= (command_force_q & keep[16]) | put[16];
       if (strobe_q[1]) command_module_id_q <= (command_module_id_q & keep[15:8]) | put[15:8];
       if (strobe_q[1]) command_slot_q <= (command_slot_q & keep[7:0]) | put[7:0];
-      interrupt_status_illegal_kind_q <= (strobe_q[2] ? interrupt_status_illegal_kind_q & ~put[4] : interrupt_status_illegal_kind_q) | hwif_in_interrupt_status_illegal_kind_hwset;
-      interrupt_status_no_provider_q <= (strobe_q[2] ? interrupt_status_no_provider_q & ~put[3] : interrupt_status_no_provider_q) | hwif_in_interrupt_status_no_provider_hwset;
-      interrupt_status_lost_q <= (strobe_q[2] ? interrupt_status_lost_q & ~put[2] : interrupt_status_lost_q) | hwif_in_interrupt_status_lost_hwset;
-      interrupt_status_error_q <= (strobe_q[2] ? interrupt_status_error_q & ~put[1] : interrupt_status_error_q) | hwif_in_interrupt_status_error_hwset;
-      interrupt_status_done_q <= (strobe_q[2] ? interrupt_status_done_q & ~put[0] : interrupt_status_done_q) | hwif_in_interrupt_status_done_hwset;
-      if (strobe_q[3]) interrupt_enable_illegal_kind_q <= (interrupt_enable_illegal_kind_q & keep[4]) | put[4];
-      if (strobe_q[3]) interrupt_enable_no_provider_q <= (interrupt_enable_no_provider_q & keep[3]) | put[3];
+      interrupt_status_illegal_kind_q <= (strobe_q[2] ? interrupt_status_illegal_kind_q & ~put[4] :
+          interrupt_status_illegal_kind_q) | hwif_in_interrupt_status_illegal_kind_hwset;
+      interrupt_status_no_provider_q <= (strobe_q[2] ? interrupt_status_no_provider_q & ~put[3] :
+          interrupt_status_no_provider_q) | hwif_in_interrupt_status_no_provider_hwset;
+      interrupt_status_lost_q <= (strobe_q[2] ? interrupt_status_lost_q & ~put[2] :
+          interrupt_status_lost_q) | hwif_in_interrupt_status_lost_hwset;
+      interrupt_status_error_q <= (strobe_q[2] ? interrupt_status_error_q & ~put[1] :
+          interrupt_status_error_q) | hwif_in_interrupt_status_error_hwset;
+      interrupt_status_done_q <= (strobe_q[2] ? interrupt_status_done_q & ~put[0] :
+          interrupt_status_done_q) | hwif_in_interrupt_status_done_hwset;
+      if (strobe_q[3]) interrupt_enable_illegal_kind_q <= (interrupt_enable_illegal_kind_q &
+          keep[4]) | put[4];
+      if (strobe_q[3]) interrupt_enable_no_provider_q <= (interrupt_enable_no_provider_q & keep[3])
+          | put[3];
       if (strobe_q[3]) interrupt_enable_lost_q <= (interrupt_enable_lost_q & keep[2]) | put[2];
       if (strobe_q[3]) interrupt_enable_error_q <= (interrupt_enable_error_q & keep[1]) | put[1];
       if (strobe_q[3]) interrupt_enable_done_q <= (interrupt_enable_done_q & keep[0]) | put[0];
@@ -234,9 +245,13 @@ module cchip_subsystem_regs (
       if (strobe_q[5]) memory_limit_clocks_q <= (memory_limit_clocks_q & keep) | put;
       if (strobe_q[6]) minimum_batch_pairs_q <= (minimum_batch_pairs_q & keep) | put;
       if (strobe_q[7]) maximum_age_clocks_q <= (maximum_age_clocks_q & keep) | put;
-      for (i = 0; i < 8; i = i + 1) if (strobe_q[8+i]) bitstream_address_value_q[32*i+:32] <= (bitstream_address_value_q[32*i+:32] & keep) | put;
-      for (i = 0; i < 8; i = i + 1) if (strobe_q[16+i]) bitstream_size_value_q[32*i+:32] <= (bitstream_size_value_q[32*i+:32] & keep) | put;
-      for (i = 0; i < 8; i = i + 1) bitstream_valid_value_q[i] <= strobe_q[24+i] ? (bitstream_valid_value_q[i] & keep[0]) | put[0] : bitstream_valid_value_q[i] & ~hwif_in_bitstream_valid_value_hwclr[i];
+      for (i = 0; i < 8; i = i + 1) if (strobe_q[8+i]) bitstream_address_value_q[32*i+:32] <=
+          (bitstream_address_value_q[32*i+:32] & keep) | put;
+      for (i = 0; i < 8; i = i + 1) if (strobe_q[16+i]) bitstream_size_value_q[32*i+:32] <=
+          (bitstream_size_value_q[32*i+:32] & keep) | put;
+      for (i = 0; i < 8; i = i + 1) bitstream_valid_value_q[i] <= strobe_q[24+i] ?
+          (bitstream_valid_value_q[i] & keep[0]) | put[0] : bitstream_valid_value_q[i] &
+          ~hwif_in_bitstream_valid_value_hwclr[i];
     end
 
   assign hwif_out_control_clear = control_clear_q;
@@ -346,16 +361,22 @@ module cchip_subsystem_regs (
     case (raddr_q[2:0])
       3'd0: group0_q <= {1'b1, 32'h50484343};
       3'd1: group0_q <= {1'b1, {16'd0, 8'h1, 8'h0}};
-      3'd2: group0_q <= {1'b1, {8'd0, hwif_in_capabilities_coord_w, hwif_in_capabilities_cfg_w, hwif_in_capabilities_slots}};
+      3'd2: group0_q <= {1'b1, {8'd0, hwif_in_capabilities_coord_w, hwif_in_capabilities_cfg_w,
+          hwif_in_capabilities_slots}};
       3'd3: group0_q <= {1'b1, hwif_in_queue_depth_pairs};
       3'd4: group0_q <= {1'b1, {29'd0, 1'd0, 1'd0, control_scheduler_enable_q}};
       3'd5: group0_q <= {1'b1, {1'd0, 14'd0, command_force_q, command_module_id_q, command_slot_q}};
-      3'd6: group0_q <= {1'b1, {8'd0, hwif_in_report_module_id, hwif_in_report_slot, 4'd0, hwif_in_report_code}};
+      3'd6: group0_q <= {1'b1, {8'd0, hwif_in_report_module_id, hwif_in_report_slot, 4'd0,
+          hwif_in_report_code}};
       default: group0_q <= {1'b1, {16'd0, hwif_in_report_lost_pairs}};
     endcase
     case (raddr_q[2:0])
-      3'd0: group1_q <= {1'b1, {27'd0, interrupt_status_illegal_kind_q, interrupt_status_no_provider_q, interrupt_status_lost_q, interrupt_status_error_q, interrupt_status_done_q}};
-      3'd1: group1_q <= {1'b1, {27'd0, interrupt_enable_illegal_kind_q, interrupt_enable_no_provider_q, interrupt_enable_lost_q, interrupt_enable_error_q, interrupt_enable_done_q}};
+      3'd0: group1_q <= {1'b1, {27'd0, interrupt_status_illegal_kind_q,
+          interrupt_status_no_provider_q, interrupt_status_lost_q, interrupt_status_error_q,
+          interrupt_status_done_q}};
+      3'd1: group1_q <= {1'b1, {27'd0, interrupt_enable_illegal_kind_q,
+          interrupt_enable_no_provider_q, interrupt_enable_lost_q, interrupt_enable_error_q,
+          interrupt_enable_done_q}};
       3'd4: group1_q <= {1'b1, shutdown_limit_clocks_q};
       3'd5: group1_q <= {1'b1, memory_limit_clocks_q};
       3'd6: group1_q <= {1'b1, minimum_batch_pairs_q};
@@ -363,8 +384,12 @@ module cchip_subsystem_regs (
       default: group1_q <= 33'd0;
     endcase
     case (raddr_q[2:0])
-      3'd0: group2_q <= {1'b1, {hwif_in_slot_status_outstanding[0+:16], 3'd0, hwif_in_slot_status_decoupled[0], hwif_in_slot_status_phase[0+:4], hwif_in_slot_status_module_id[0+:8]}};
-      3'd1: group2_q <= {1'b1, {hwif_in_slot_status_outstanding[16+:16], 3'd0, hwif_in_slot_status_decoupled[1], hwif_in_slot_status_phase[4+:4], hwif_in_slot_status_module_id[8+:8]}};
+      3'd0: group2_q <= {1'b1, {hwif_in_slot_status_outstanding[0+:16], 3'd0,
+          hwif_in_slot_status_decoupled[0], hwif_in_slot_status_phase[0+:4],
+          hwif_in_slot_status_module_id[0+:8]}};
+      3'd1: group2_q <= {1'b1, {hwif_in_slot_status_outstanding[16+:16], 3'd0,
+          hwif_in_slot_status_decoupled[1], hwif_in_slot_status_phase[4+:4],
+          hwif_in_slot_status_module_id[8+:8]}};
       default: group2_q <= 33'd0;
     endcase
     case (raddr_q[2:0])

@@ -42,7 +42,7 @@ MUTANTS = [
     ("cchip_fifo prove", FIFO, "load | (valid_q & ~m_ready);", "load | valid_q;"),
     ("cchip_fifo prove", FIFO, "was_read_q <= load & read_bank_q[b];", "was_read_q <= load;"),
     ("cchip_roc_generator prove_5", ROC, "left_q << 1", "left_q << 2"),
-    ("cchip_roc_generator prove_2", ROC, "rst | configured ?", "configured ?"),
+    ("cchip_roc_generator prove_2", ROC, "rst || configured ?", "configured ?"),
     ("cchip_pr_gate prove", GATE, "ready_q      <= ~stop & ~skid_valid_d;", "ready_q      <= ~skid_valid_d;"),
     ("cchip_pr_gate prove", GATE, "      data_q       <= {WIDTH{1'b0}};\n", ""),
     # closed, and opened, one clock late
@@ -58,11 +58,11 @@ MUTANTS = [
     ("cchip_pr_decoupler prove", DECOUPLER, "close ? `CCHIP_RM_BLANK : r_rm_id", "r_rm_id"),
     ("cchip_pr_decoupler prove", DECOUPLER, "(stop | blank)", "(stop)"),
     ("cchip_pr_decoupler prove", DECOUPLER, "wire filled = accept |", "wire filled ="),
-    ("cchip_pr_slot prove", SLOT, "stop & stopped_q & (outstanding_q", "stop & (outstanding_q"),
+    ("cchip_pr_slot prove", SLOT, "stop && stopped_q && (outstanding_q", "stop && (outstanding_q"),
     ("cchip_pr_slot prove", SLOT, "lost_q <= outstanding_d;", "lost_q <= outstanding_q;"),
     ("cchip_pr_slot prove", SLOT, "rst | hold_reset | roc;", "rst | hold_reset;"),
     ("cchip_pr_slot prove", SLOT, "rst | roc_start | roc;", "rst | roc_start;"),
-    ("cchip_pr_slot prove", SLOT, "accept & ~answer ?", "accept ?"),
+    ("cchip_pr_slot prove", SLOT, "accept && !answer ?", "accept ?"),
     # a bad check recouples; a phase goes back; both slots are told; no bound; decoupling is not awaited; a refusal is lost
     ("cchip_swap_sequencer prove", SEQUENCER, "at_check & check_last_q & crc_ok &", "at_check & check_last_q &"),
     ("cchip_swap_sequencer prove", SEQUENCER, "{pass[8:0], pass[9]}", "{pass[8:6], pass[4], pass[5], pass[3:0], pass[9]}"),
