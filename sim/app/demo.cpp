@@ -6,6 +6,8 @@
 
 #include <cchip/exact/oracle.hpp>
 #include <cchip/geometry/grid.hpp>
+#include <cchip/geometry/pose.hpp>
+#include <cchip/mesh/shapes.hpp>
 #include <cchip/reference/eigen_sat.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <chrono>
@@ -13,7 +15,6 @@
 
 #include "mesh_source.hpp"
 #include "pair_runner.hpp"
-#include "pose.hpp"
 
 namespace cchip::app {
 namespace {
@@ -48,7 +49,7 @@ void check(const PairJob& job, const GridPair& pair, int coord_w, const EngineAn
   counts.hits += answer.definite ? answer.grid : on_doubles;
   counts.mismatches += !agrees;
   counts.indefinite += !answer.definite;
-  if (answer.hardware) counts.beats += static_cast<std::uint64_t>(answer.beats);
+  counts.beats += static_cast<std::uint64_t>(answer.beats);
 }
 
 double ratio(std::uint64_t count, std::uint64_t of) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cchip/mesh_io/mesh_file.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <stdexcept>
 

@@ -4,7 +4,8 @@
 #include <cchip/exact/oracle.hpp>
 #include <cchip/geometry/canonical.hpp>
 #include <cchip/geometry/grid.hpp>
-#include <cchip/mesh/mesh.hpp>
+#include <cchip/mesh/shapes.hpp>
+#include <cchip/mesh_io/mesh_file.hpp>
 #include <cchip/stimulus/quads.hpp>
 #include <cmath>
 #include <random>

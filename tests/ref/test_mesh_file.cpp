@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <cchip/mesh/mesh.hpp>
+#include <cchip/mesh_io/mesh_file.hpp>
 #include <filesystem>
 #include <fstream>
 

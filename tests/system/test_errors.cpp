@@ -6,7 +6,7 @@
 #include "support.hpp"
 
 using namespace cchip::test;
-using cchip::app::exit_usage;
+using cchip::exit_usage;
 
 namespace {
 

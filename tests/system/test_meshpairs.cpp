@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/geometry/grid.hpp>
+#include <cchip/mesh_io/mesh_file.hpp>
 #include <cchip/stimulus/csv_reader.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 

@@ -5,7 +5,7 @@
 
 #include "primtest_bench.hpp"
 
-CCHIP_WATCH(cchip_primtest_quad_quad, qq_w16_s10_rel);
+CCHIP_WATCH(qq_w16_s10_rel);
 
 using namespace cchip;
 using namespace cchip::test;

@@ -5,7 +5,7 @@
 
 #include "primtest_bench.hpp"
 
-CCHIP_WATCH(cchip_primtest_tri_quad, tq_w16_s10_rel);
+CCHIP_WATCH(tq_w16_s10_rel);
 
 using namespace cchip;
 using namespace cchip::test;

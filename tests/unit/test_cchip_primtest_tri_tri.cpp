@@ -8,9 +8,9 @@
 
 #include "primtest_bench.hpp"
 
-CCHIP_WATCH(cchip_primtest_tri_tri, tt_w16_s8_abs);
-CCHIP_WATCH(cchip_primtest_tri_tri, tt_w16_s10_rel);
-CCHIP_WATCH(cchip_primtest_tri_tri, tt_w16_s12_abs);
+CCHIP_WATCH(tt_w16_s8_abs);
+CCHIP_WATCH(tt_w16_s10_rel);
+CCHIP_WATCH(tt_w16_s12_abs);
 
 using namespace cchip;
 using namespace cchip::test;
