@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cchip/stimulus/csv_reader.hpp>
 #include <cchip/stimulus/pair_columns.hpp>
+#include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <cerrno>
 #include <cstring>
@@ -19,7 +20,6 @@
 #include "mesh_source.hpp"
 #include "pair_runner.hpp"
 #include "pose.hpp"
-#include "progress.hpp"
 #include "reconfig.hpp"
 
 namespace cchip::app {

@@ -9,6 +9,7 @@
 #include <cchip/geometry/pose.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/reference/eigen_sat.hpp>
+#include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <chrono>
 #include <filesystem>
@@ -104,11 +105,22 @@ void add(DemoCounts& total, const DemoCounts& c) {
   total.engine_seconds += c.engine_seconds;
 }
 
+std::uint64_t count_candidates(const std::vector<DemoRun>& runs) {
+  std::uint64_t pairs = 0;
+  for (const DemoRun& run : runs) sweep_box_pairs(run.a, run.b, [&pairs](CandidatePair) { ++pairs; });
+  return pairs;
+}
+
 DemoCounts do_runs(PairEngine& engine, std::ostream& out) {
   print_introduction(out, engine);
   DemoCounts total;
-  for (const DemoRun& run : make_demo_runs()) {
-    const DemoCounts counts = run_demo_pairs(engine, run.mode, run.a, run.b);
+  const std::vector<DemoRun> runs = make_demo_runs();
+  const std::uint64_t all = count_candidates(runs);
+  Progress progress;
+  for (const DemoRun& run : runs) {
+    const DemoCounts counts = run_demo_pairs(
+        engine, run.mode, run.a, run.b, [&](std::uint64_t pairs) { progress.update_of(total.pairs + pairs, all); });
+    progress.clear();
     print_row(out, {run.kinds, run.pose, to_name(run.mode)}, counts);
     out.flush();
     add(total, counts);
@@ -156,7 +168,8 @@ std::vector<DemoRun> make_demo_runs() {
   return runs;
 }
 
-DemoCounts run_demo_pairs(PairEngine& engine, PairMode mode, const Mesh& a, const Mesh& b) {
+DemoCounts run_demo_pairs(PairEngine& engine, PairMode mode, const Mesh& a, const Mesh& b,
+                          const std::function<void(std::uint64_t)>& on_answered) {
   DemoCounts counts;
   std::vector<PairJob> jobs;
   std::vector<GridPair> pairs;
@@ -166,6 +179,7 @@ DemoCounts run_demo_pairs(PairEngine& engine, PairMode mode, const Mesh& a, cons
     const std::vector<EngineAnswer> answers = engine.run(pairs, mode);
     counts.engine_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     for (std::size_t i = 0; i < jobs.size(); ++i) check(jobs[i], pairs[i], engine.coord_w(), answers.at(i), counts);
+    if (on_answered) on_answered(counts.pairs);
     jobs.clear();
     pairs.clear();
   };

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <cchip/mesh/mesh.hpp>
+#include <functional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -42,7 +43,9 @@ struct DemoCounts {
 
 /// All candidate pairs of the two meshes through the engine. Every answer on the grid is compared with the Eigen
 /// reference and the exact oracle, every definite answer with the exact oracle on the doubles.
-DemoCounts run_demo_pairs(PairEngine& engine, PairMode mode, const Mesh& a, const Mesh& b);
+/// \param on_answered gets the number of pairs answered so far, now and then
+DemoCounts run_demo_pairs(PairEngine& engine, PairMode mode, const Mesh& a, const Mesh& b,
+                          const std::function<void(std::uint64_t)>& on_answered = {});
 
 /// Does all runs and reports to `out`; returns the exit code.
 int run_demo(const DemoOptions& options, std::ostream& out);

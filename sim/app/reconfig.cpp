@@ -10,6 +10,7 @@
 #include <cchip/geometry/canonical.hpp>
 #include <cchip/geometry/grid.hpp>
 #include <cchip/rtl/simulated_subsystem.hpp>
+#include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <chrono>
 #include <filesystem>
@@ -142,8 +143,11 @@ int run_reconfig_job(const ReconfigJobOptions& options, std::ostream& out) {
       8 * reconfig.payload_bytes);
   out.flush();
   const auto start = std::chrono::steady_clock::now();
+  Progress progress;
+  reconfig.progress = [&](std::uint64_t answered) { progress.update_of(answered, pairs.size()); };
   SimulatedSubsystem machine(machine_options);
   const ReconfigResult result = run_reconfig(machine, pairs, reconfig);
+  progress.clear();
   machine.write_layout();
   const SubsystemObservations& seen = machine.observations();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/device/primtest_engine.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <cchip/wire/definitions.hpp>
 #include <cmath>

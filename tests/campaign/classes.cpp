@@ -110,15 +110,16 @@ int run_classes(const ClassesOptions& options) {
     all += table.sum();
   }
   beats.check();
-  const bool slow = least < least_axes_per_clock;
-  if (slow) fmt::print("axes per waiting clock fall below {}\n", least_axes_per_clock);
+  Goals goals;
+  options.check(goals, all.pairs, all.hits);
+  goals.at_least("number of axes per waiting clock", least, least_axes_per_clock);
   fmt::print(
       "pairs={} not_as_model={} wrong={} too_many_beats={} least_axes_per_waiting_clock={:.4f} clocks={} "
       "seconds={:.1f} "
       "seed={}\n",
       all.pairs, all.not_as_model, all.wrong, all.too_many_beats, least, all.counts.clocks, watch.seconds(),
       options.seed);
-  return all.failed() || slow ? wrong_result : 0;
+  return all.failed() || goals.missed() ? wrong_result : 0;
 }
 
 }  // namespace cchip::campaign

@@ -173,7 +173,9 @@ int run_grid(const GridOptions& options) {
       "rtl_wrong={} seconds={:.1f} seed={}\n",
       sum.pairs, sum.wrong[0], sum.wrong[1], sum.false_no, sum.too_many_beats + rtl.too_many_beats, rtl.pairs,
       rtl.not_as_model, rtl.wrong, watch.seconds(), options.seed);
-  return sum.failed() || rtl.failed() ? wrong_result : 0;
+  Goals goals;
+  options.check(goals, sum.pairs, sum.hits);
+  return sum.failed() || rtl.failed() || goals.missed() ? wrong_result : 0;
 }
 
 }  // namespace cchip::campaign
