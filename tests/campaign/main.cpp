@@ -11,7 +11,7 @@ namespace cchip::campaign {
 namespace {
 
 void add_common(CLI::App& command, CommonOptions& options) {
-  command.add_option("--seed", options.seed, "repeats a run")->envname("CCHIP_SEED")->capture_default_str();
+  command.add_option("--seed", options.seed, "repeats a run (or CCHIP_SEED)")->capture_default_str();
   command.add_option("--threads", options.threads, "threads; the outcome does not depend on it")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
@@ -62,7 +62,8 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
   certainty->add_option("--offset", e->offset, "offsets, as a multiple of what eta allows: over 1 must fail")
       ->check(CLI::Range(0.0, 4.0))
       ->capture_default_str();
-  certainty->add_option("--least-definite", e->least_definite, "goal: % of the pairs with eta 1, shape and programme each")
+  certainty
+      ->add_option("--least-definite", e->least_definite, "goal: % of the pairs with eta 1, shape and programme each")
       ->capture_default_str();
   certainty
       ->add_option("--least-definite-hits", e->least_definite_hits,
@@ -88,7 +89,8 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
 int main(int argc, char** argv) try {
   CLI::App app{
       "Campaigns: long comparisons of RTL and model with the exact oracle.\n"
-      "Exit codes: 0 nothing wrong, 3 wrong results or a missed goal, 2 the run could not be made, others: wrong arguments."};
+      "Exit codes: 0 nothing wrong, 3 wrong results or a missed goal, 2 the run could not be made, others: wrong "
+      "arguments."};
   app.require_subcommand(1);
   std::function<int()> chosen;
   cchip::campaign::add_commands(app, chosen);

@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cchip/geometry/primitive.hpp>
 #include <cchip/model/programme.hpp>
+#include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/progress.hpp>
 #include <chrono>
 #include <cstdint>
@@ -60,7 +61,7 @@ class Goals {
 
 /// What every campaign can be told.
 struct CommonOptions {
-  std::uint64_t seed = 1;
+  std::uint64_t seed = sim::seed_from_environment();
   unsigned threads = 2;
   std::uint64_t least_pairs = 1000;  ///< goals: in all
   std::uint64_t least_hits = 100;
