@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Sums of doubles rounded in a direction, and the sign of their error.
+#ifndef CCHIP_BVH_ROUNDING_HPP
+#define CCHIP_BVH_ROUNDING_HPP
+
+#include <cmath>
+#include <limits>
+
+namespace cchip::bvh {
+
+/// a + b - fl(a + b), exactly, unless the sum overflows (Knuth's TwoSum).
+inline double sum_error(double a, double b) {
+  const double sum = a + b;
+  const double b_part = sum - a;
+  return (a - (sum - b_part)) + (b - b_part);
+}
+
+/// The least double that is not below the exact sum.
+inline double sum_up(double a, double b) {
+  const double sum = a + b;
+  return sum_error(a, b) > 0 ? std::nextafter(sum, std::numeric_limits<double>::infinity()) : sum;
+}
+/// The greatest double that is not above the exact sum.
+inline double sum_down(double a, double b) { return -sum_up(-a, -b); }
+
+}  // namespace cchip::bvh
+
+#endif
