@@ -16,12 +16,13 @@ inline double sum_error(double a, double b) {
   return (a - (sum - b_part)) + (b - b_part);
 }
 
-/// The least double that is not below the exact sum.
+/// The least double that is not below the exact sum; infinity if it is too great for a double.
 inline double sum_up(double a, double b) {
   const double sum = a + b;
+  if (sum == -std::numeric_limits<double>::infinity()) return std::numeric_limits<double>::lowest();
   return sum_error(a, b) > 0 ? std::nextafter(sum, std::numeric_limits<double>::infinity()) : sum;
 }
-/// The greatest double that is not above the exact sum.
+/// The greatest double that is not above the exact sum; minus infinity if it is too small for a double.
 inline double sum_down(double a, double b) { return -sum_up(-a, -b); }
 
 }  // namespace cchip::bvh
