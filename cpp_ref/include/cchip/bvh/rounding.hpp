@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Sums of doubles rounded in a direction, and the sign of their error.
+/// Doubles rounded in a direction.
 #ifndef CCHIP_BVH_ROUNDING_HPP
 #define CCHIP_BVH_ROUNDING_HPP
 
@@ -24,6 +24,13 @@ inline double sum_up(double a, double b) {
 }
 /// The greatest double that is not above the exact sum; minus infinity if it is too small for a double.
 inline double sum_down(double a, double b) { return -sum_up(-a, -b); }
+
+/// x 2^exponent; where that underflows, the least double that is not below.
+inline double scale_up(double x, int exponent) {
+  const double scaled = std::ldexp(x, exponent);
+  return std::ldexp(scaled, -exponent) < x ? std::nextafter(scaled, std::numeric_limits<double>::infinity()) : scaled;
+}
+inline double scale_down(double x, int exponent) { return -scale_up(-x, exponent); }
 
 }  // namespace cchip::bvh
 
