@@ -48,7 +48,7 @@ struct LeavesOptions : CommonOptions {
   std::uint64_t pairs_max = 200000;  ///< leaf pairs per mesh and pose
   bool quads = false;                ///< keep the quads of the files
 };
-/// Leaf pairs of two meshes whose 24-DOPs overlap.
+/// Leaf pairs of two meshes whose 26-DOPs overlap.
 int run_leaves(const LeavesOptions& options);
 
 }  // namespace cchip::campaign

@@ -54,9 +54,8 @@ Item make_item(const Mesh& mesh, std::size_t face) {
   item.kind = p.kind;
   item.centre = Vec3d::Zero();
   for (std::size_t i = 0; i < p.vertex_count(); ++i) {
-    // Not a number compares false. Within 2^1000, no sum or product of areas with counts matters: they may become
-    // infinite, and the split then falls back to the median.
-    if (!(p.v[i].cwiseAbs().maxCoeff() <= 0x1p1000)) {
+    // Areas may become infinite within 2^1000; the split then falls back to the median.
+    if (!p.v[i].allFinite() || p.v[i].cwiseAbs().maxCoeff() > 0x1p1000) {
       throw std::invalid_argument("face " + std::to_string(face) + ": vertex " + std::to_string(i) +
                                   " is not finite or beyond 2^1000; scale the mesh");
     }
