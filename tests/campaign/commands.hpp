@@ -54,7 +54,7 @@ struct LeavesOptions : CommonOptions {
   double most_indefinite = 1;
   double most_beats = 4;
 };
-/// Leaf pairs of two meshes whose 24-DOPs overlap.
+/// Leaf pairs of two meshes whose 26-DOPs overlap.
 int run_leaves(const LeavesOptions& options);
 
 }  // namespace cchip::campaign

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What reaches a primitive test behind a bounding volume test: pairs of faces whose 24-DOPs overlap.
-#include <cchip/bvh/dop24.hpp>
+// What reaches a primitive test behind a bounding volume test: pairs of faces whose 26-DOPs overlap.
+#include <cchip/bvh/dop26.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/geometry/canonical.hpp>
 #include <cchip/geometry/grid.hpp>
@@ -69,8 +69,8 @@ Mesh posed(const Mesh& mesh, std::mt19937_64& random) {
 /// Pairs of one shape; every n-th if there are too many.
 std::vector<LeafPair> leaf_pairs(const Mesh& a, const Mesh& b, std::uint64_t most) {
   const auto dops = [](const Mesh& mesh) {
-    std::vector<Dop24> result;
-    for (std::size_t i = 0; i < mesh.faces.size(); ++i) result.push_back(make_dop24(mesh.primitive(i)));
+    std::vector<bvh::Dop26> result;
+    for (std::size_t i = 0; i < mesh.faces.size(); ++i) result.push_back(bvh::make_dop26(mesh.primitive(i)));
     return result;
   };
   const auto dops_a = dops(a);
