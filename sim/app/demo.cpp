@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <algorithm>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/geometry/grid.hpp>
 #include <cchip/geometry/pose.hpp>
@@ -130,6 +131,16 @@ DemoCounts do_runs(PairEngine& engine, std::ostream& out) {
   return total;
 }
 
+void write_picture(const std::string& path) {
+  HitPicture picture(path);
+  const auto runs = make_demo_runs();
+  const auto deep = std::find_if(runs.begin(), runs.end(), [](const DemoRun& run) { return run.pose == "deep"; });
+  for_each_candidate(deep->a, deep->b, 0, [&](const PairJob& job) {
+    if (exact_intersects(job.a, job.b)) picture.add_hit(job);
+  });
+  picture.write(deep->a, deep->b);
+}
+
 /// The waveform's path, its folder made; empty for engines without one.
 std::string prepare_waves(const DemoOptions& options) {
   if (options.engine.kind != EngineKind::rtl) return {};
@@ -194,6 +205,10 @@ DemoCounts run_demo_pairs(PairEngine& engine, PairMode mode, const Mesh& a, cons
 }
 
 int run_demo(const DemoOptions& options, std::ostream& out) {
+  if (!options.ply.empty()) {
+    write_picture(options.ply);
+    return exit_ok;
+  }
   EngineOptions engine_options = options.engine;
   engine_options.trace_path = prepare_waves(options);
   engine_options.trace_clocks = wave_clocks;

@@ -18,6 +18,8 @@ namespace cchip::app {
 struct DemoOptions {
   EngineOptions engine;
   std::string wave_folder = "build/waves";
+  /// If not empty: only a PLY is written, torus and gear in pose deep, the faces that hit by the exact oracle coloured.
+  std::string ply;
 };
 
 /// One row of the report: all candidate pairs of two meshes in one pose.

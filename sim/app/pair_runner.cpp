@@ -77,6 +77,7 @@ void PairRunner::answer_batch() {
     const bool hit = resolve(jobs_[i].a, jobs_[i].b, answers.at(i));
     ++summary_.pairs;
     summary_.hits += hit;
+    if (hit && options_.on_hit) options_.on_hit(jobs_[i]);
     summary_.indefinite += !answers[i].definite;
     summary_.beats += static_cast<std::uint64_t>(answers[i].beats);
     write_row(jobs_[i], answers[i], hit);
