@@ -25,7 +25,7 @@ FILL_LIGHT = (0.5, -0.8, 0.5)
 CREASE = math.cos(math.radians(40))  # faces that meet at less look smooth
 EDGE = 0.05           # darkening of the faces' edges
 # --check: share of the bytes that may differ by more than this, because sines differ in the last bit between machines
-MOST_DIFFERENT, TOLERANCE = 0.002, 12
+MOST_DIFFERENT, TOLERANCE = 0.00005, 12
 
 
 def sub(a, b):
