@@ -29,12 +29,12 @@ enum class FaceKinds {
 ///
 /// A file that was cut or damaged is refused where it can be told: counts must match, numbers must be whole words, and
 /// vertices must exist. OBJ announces no counts, so one that lacks whole lines at its end may pass.
-/// Memory is at most about 50 times the size of the file, and time is proportional to it.
+/// Memory and time are bounded by multiples of the file's size: counts that the file cannot hold are refused first.
 ///
 /// The readers are our own because none of Debian's passed tests/ref/test_mesh_file.cpp: assimp rounds to single
 /// precision and does not end on a cut PLY; CGAL loses corners that tabs separate in OBJ, refuses its `l` lines and
-/// takes 1.5 GB for a list of a PLY of 250 bytes; OpenMesh drops faces at edges with three of them. \throws
-/// std::runtime_error one line: file, line number if it has one, what is wrong, what to do
+/// takes 1.5 GB for a list of a PLY of 250 bytes.
+/// \throws std::runtime_error one line: file, line number if it has one, what is wrong, what to do
 Mesh load_mesh(const std::string& path, FaceKinds kinds = FaceKinds::triangles);
 
 /// Red, green, blue.
