@@ -80,7 +80,7 @@ GridPair true_pair(const GridPair& pair, std::size_t kind, int reach, bool grid_
   GridPair result = pair;
   const Vec3d axis = kind == 2 ? tightest_axis(pair) : Vec3d::Zero();
   for (GridPrimitive* p : {&result.a, &result.b}) {
-    // the worst: what is apart moves together, what meets moves apart
+    // The worst direction: primitives that are apart move towards each other, primitives that meet move apart.
     const double towards = (p == &result.a) == grid_hit ? -1 : 1;
     for (std::size_t i = 0; i < p->vertex_count(); ++i) {
       for (Eigen::Index d = 0; d < 3; ++d) {
