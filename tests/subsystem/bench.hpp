@@ -19,6 +19,7 @@
 #include <cchip/stimulus/pair_source.hpp>
 #include <cchip/wire/bitstream.hpp>
 #include <cchip/wire/registers.hpp>
+#include <cchip/wire/swap.hpp>
 #include <map>
 #include <memory>
 #include <optional>
@@ -123,20 +124,11 @@ inline Bytes spoilt_bitstream(Spoilt how, int slot, int module_id, std::size_t p
   return join_bitstream(header, payload);
 }
 
-/// A swap as its report told.
-struct Report {
-  std::uint64_t clock = 0;
-  int slot = 0;
-  int module_id = 0;
-  SwapCode code = SwapCode::ok;
-  unsigned lost = 0;
-};
-
 /// Signals of the subsystem that the account needs.
 template <class Model>
-Report report_of(const Model& top) {
-  return {0, static_cast<int>(probes::report_slot(top)), static_cast<int>(probes::report_module(top)),
-          static_cast<SwapCode>(probes::report_code(top)), static_cast<unsigned>(probes::report_lost(top))};
+SwapReport report_of(const Model& top) {
+  return {static_cast<int>(probes::report_slot(top)), static_cast<int>(probes::report_module(top)),
+          static_cast<SwapCode>(probes::report_code(top)), static_cast<int>(probes::report_lost(top)), 0};
 }
 /// Module of slot n in bits [2n +: 2].
 template <int slots, class Model>
@@ -310,13 +302,13 @@ class SubsystemBench {
   }
 
   // ---- swaps
-  std::vector<Report> reports;  ///< since construction
+  std::vector<SwapReport> reports;  ///< since construction
   std::size_t count(SwapCode code) const {
     return static_cast<std::size_t>(
-        std::count_if(reports.begin(), reports.end(), [&](const Report& r) { return r.code == code; }));
+        std::count_if(reports.begin(), reports.end(), [&](const SwapReport& r) { return r.code == code; }));
   }
   /// Steps until one more report came. \throws SimulationTimeout
-  Report next_report(std::uint64_t most_clocks = 20000) {
+  SwapReport next_report(std::uint64_t most_clocks = 20000) {
     const std::size_t before = reports.size();
     simulation.run_until([&] { return reports.size() > before; }, most_clocks, "a report");
     return reports.back();
@@ -409,7 +401,7 @@ class SubsystemBench {
   void watch(const sim::ClockInfo& now) {
     if (now.in_reset) return;
     if (probes::report_valid(top()) != 0) {
-      Report r = report_of(top());
+      SwapReport r = report_of(top());
       r.clock = now.clock;
       given_up_ += r.lost;
       account.given_up += r.lost;

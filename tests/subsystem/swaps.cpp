@@ -71,7 +71,7 @@ class Part {
     if (clocks == most) hang("too few swaps");
     drain();
     total_.swaps = bench_.count(SwapCode::ok);
-    for (const Report& r : bench_.reports) ++total_.codes[static_cast<std::size_t>(r.code)];
+    for (const SwapReport& r : bench_.reports) ++total_.codes[static_cast<std::size_t>(r.code)];
     total_.account = bench_.account;
     total_.clocks = bench_.simulation.total_clocks();
     return total_;

@@ -165,4 +165,20 @@ void check_throughput(const PrimtestConfig& config);
 
 }  // namespace cchip::test
 
+/// A test case for each of these checks, of every configuration of cchip_primtest_<kind>.
+#define CCHIP_PRIMTEST_CASE(kind, name, check)                                                   \
+  TEMPLATE_LIST_TEST_CASE("cchip_primtest_" #kind ": " name, "[unit][cchip_primtest_" #kind "]", \
+                          cchip_primtest_##kind##_configs) {                                     \
+    check(primtest_config<TestType>(ModuleId::kind));                                            \
+  }
+#define CCHIP_PRIMTEST_CASES(kind)                                                                              \
+  CCHIP_PRIMTEST_CASE(kind, "every output on every clock is the model's", check_every_clock)                    \
+  CCHIP_PRIMTEST_CASE(kind, "long traffic", check_long_traffic)                                                 \
+  CCHIP_PRIMTEST_CASE(kind, "extreme coordinates", check_extreme_coordinates)                                   \
+  CCHIP_PRIMTEST_CASE(kind, "each axis is the witness of the pair that it alone separates", check_only_witness) \
+  CCHIP_PRIMTEST_CASE(kind, "latency of a lone pair", check_lone_pair_latency)                                  \
+  CCHIP_PRIMTEST_CASE(kind, "drains within its bound, keeps all results without ready", check_drain)            \
+  CCHIP_PRIMTEST_CASE(kind, "no output follows an input before the rising edge", check_registered_outputs)      \
+  CCHIP_PRIMTEST_CASE(kind, "no old tag after reset, whenever it comes", check_no_old_tags)
+
 #endif

@@ -10,8 +10,7 @@ Object::Object(Mesh mesh) {
 }
 
 void Device::collide(const Object& a, const Object& b, const std::vector<PosePair>& poses,
-                     const CollisionRequest& request,
-                     const std::function<void(std::size_t, CollisionResult&&)>& take) {
+                     const CollisionRequest& request, const std::function<void(std::size_t, CollisionResult&&)>& take) {
   for (std::size_t i = 0; i < poses.size(); ++i) take(i, collide(a, poses[i].a, b, poses[i].b, request));
 }
 
