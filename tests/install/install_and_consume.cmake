@@ -27,7 +27,7 @@ function(consume suffix expected)
   endif()
 endfunction()
 
-consume("" "touch: yes\nlifted by 2^-40: no\n")
+consume("" "touch: 1, lifted by 2^-40: 0\n")
 consume(_reconfig "41\n42\n")
 
 run(${prefix}/bin/cchip --version)

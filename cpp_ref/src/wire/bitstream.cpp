@@ -14,9 +14,11 @@ void append(Bytes& bytes, std::uint32_t word) {
 
 }  // namespace
 
-std::uint32_t crc32(const Bytes& bytes) {
+std::uint32_t crc32(const Bytes& bytes) { return crc32(bytes.data(), bytes.size()); }
+
+std::uint32_t crc32(const std::uint8_t* bytes, std::size_t count) {
   boost::crc_32_type crc;
-  crc.process_bytes(bytes.data(), bytes.size());
+  crc.process_bytes(bytes, count);
   return crc.checksum();
 }
 

@@ -29,6 +29,7 @@ struct BitstreamHeader {
 
 /// CRC-32 of IEEE 802.3, that of zlib.
 std::uint32_t crc32(const Bytes& bytes);
+std::uint32_t crc32(const std::uint8_t* bytes, std::size_t count);
 
 /// Length of the payload if nothing else is asked for, bytes: Table 1 of the paper, 688,011 for tri-tri and 676,247 for
 /// quad-quad; tri-quad and blank, which it does not have, are as long as tri-tri. Rounded up to words of the port.

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// 26-DOPs: bounding volumes of 26 planes in 13 fixed orientations.
+#ifndef CCHIP_BVH_DOP26_HPP
+#define CCHIP_BVH_DOP26_HPP
+
+#include <array>
+#include <cchip/geometry/primitive.hpp>
+#include <cstddef>
+
+namespace cchip::bvh {
+
+/// Normals of the plane pairs, not normalised: 3 axes, 6 face diagonals, 4 cube diagonals of a cube, of which the first
+/// component that is not 0 is positive, except in the last. This order is that of the chip.
+inline constexpr std::array<std::array<int, 3>, 13> directions = {{{1, 0, 0},
+                                                                   {0, 1, 0},
+                                                                   {0, 0, 1},
+                                                                   {1, 1, 0},
+                                                                   {1, -1, 0},
+                                                                   {1, 0, 1},
+                                                                   {1, 0, -1},
+                                                                   {0, 1, 1},
+                                                                   {0, 1, -1},
+                                                                   {1, 1, 1},
+                                                                   {1, 1, -1},
+                                                                   {1, -1, 1},
+                                                                   {-1, 1, 1}}};
+/// Directions first_face..first_corner - 1 are face diagonals, the ones before axes, the ones behind cube diagonals.
+inline constexpr std::size_t first_face = 3;
+inline constexpr std::size_t first_corner = 9;
+
+/// Intervals of a set of points on the directions, in units of the caller's length times |direction|, each bound the
+/// exact one or rounded outward. Infinite where doubles overflow.
+struct Dop26 {
+  std::array<double, directions.size()> least = {};
+  std::array<double, directions.size()> greatest = {};
+};
+
+/// The smallest 26-DOP of the hull of the vertices, up to rounding: at most two units in the last place of the sums.
+Dop26 make_dop26(const Primitive& p);
+
+/// The smallest 26-DOP around both.
+Dop26 enclose(const Dop26& p, const Dop26& q);
+
+/// False only if the sets inside are disjoint.
+bool overlap(const Dop26& p, const Dop26& q);
+
+}  // namespace cchip::bvh
+
+#endif
