@@ -41,6 +41,7 @@ FETCH = "rtl/reconfig/cchip_bitstream_fetch.v"
 # Tasks that take seconds (the others take minutes); .ci/run proves these.
 QUICK = {(name, task) for name, tasks in {
     "cchip_skid_buffer": ("prove", "cover"), "cchip_pr_gate": ("prove", "cover"), "cchip_fifo": ("cover",),
+    "cchip_pr_decoupler": ("prove", "cover"), "cchip_pr_slot": ("prove", "cover"),
     "cchip_roc_generator": ("prove_1", "prove_2", "prove_5", "cover_5")}.items() for task in tasks}
 # (task that has to fail, file, text, what takes its place); the text occurs once
 MUTANTS = [
