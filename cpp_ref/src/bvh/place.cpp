@@ -108,8 +108,9 @@ std::optional<Query> make_ordered(const HeaderLine& a, const Eigen::Affine3d& po
   for (const Vector& row : map->linear) {
     for (const Interval& x : row) greatest = std::max({greatest, std::abs(x.least), std::abs(x.greatest)});
   }
-  if (greatest == 0) return std::nullopt;
   // The greatest shift at which M 2^-shift with |M_ij| <= 1 holds the linear part, less where M does not fit otherwise.
+  // With half of the greatest |M_ij| M would lose a bit: that much is allowed at the limit of shift, not more.
+  if (greatest < std::ldexp(0.5, -query_shift_max)) return std::nullopt;
   Query query;
   query.shift = std::min(query_shift_max, -std::ilogb(greatest));
   const auto fill = [&] {
