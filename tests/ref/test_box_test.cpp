@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The box test never separates volumes that share a point. Cases are made so that two volumes touch in one point, at the
-// very end of their intervals on one direction: then every rounding counts. CCHIP_BOX_CASES sets their number.
+// The box test never separates volumes that share a point. Cases are made so that two volumes touch in one point, at
+// the very end of their intervals on one direction: then every rounding counts. CCHIP_BOX_CASES sets their number.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cchip/model/box_test.hpp>
@@ -60,7 +60,9 @@ class Generator {
         const std::int64_t first = whole(0, 2);
         const std::int64_t flip = whole(1, 2);
         for (std::int64_t i = 0; i < 3; ++i) m(i, (first + flip * i) % 3) = one_in(2) ? 1 : -1;
-        if (one_in(2)) m += 0x1p-16 * Eigen::Matrix3d::Random();  // or nearly one, with near ties of |m|
+        if (one_in(2)) {  // or nearly one, with near ties of |m|
+          for (double& x : m.reshaped()) x += real(-0x1p-15, 0x1p-15);
+        }
         break;
       }
       case 2:  // shear, any numbers
@@ -190,7 +192,8 @@ class Generator {
     return inside(node, p);
   }
 
-  /// Puts the node's origin somewhere so that the point, half steps from it, is in the unit; then the point in the unit.
+  /// Puts the node's origin somewhere so that the point, half steps from it, is in the unit; then the point in the
+  /// unit.
   bool put(InnerLine& node, Eigen::Vector3d& p) {
     for (int i = 0; i < 3; ++i) {
       const double offset = std::ldexp(p[i], node.step - 25);
@@ -212,7 +215,8 @@ class Generator {
     query.shift = one_in(2) ? 0 : static_cast<int>(whole(0, 15));
     touch.a.step = static_cast<int>(whole(0, 18));
     const int level = touch.a.step - query.shift;  // of B's step: near A's, mostly
-    touch.b.step = static_cast<int>(std::clamp<std::int64_t>(level + (one_in(4) ? whole(-12, 12) : whole(-6, 6)), 0, 18));
+    touch.b.step =
+        static_cast<int>(std::clamp<std::int64_t>(level + (one_in(4) ? whole(-12, 12) : whole(-6, 6)), 0, 18));
     const auto& d = directions[static_cast<std::size_t>(whole(0, 12))];
     const Eigen::Vector3d n = (one_in(2) ? 1.0 : -1.0) * Eigen::Vector3d(d[0], d[1], d[2]);
     Eigen::Vector3d p_a;
@@ -273,7 +277,9 @@ std::vector<Mutation> mutations() {
   };
   using Magnitudes = std::array<std::int32_t, 3>;
   const auto slack = [](std::int64_t less) {
-    return [less](const Touch&, const PoseSetup&, NodeGrid& grid) { grid.slack = std::max<std::int64_t>(0, grid.slack - less); };
+    return [less](const Touch&, const PoseSetup&, NodeGrid& grid) {
+      grid.slack = std::max<std::int64_t>(0, grid.slack - less);
+    };
   };
   const auto epsilon = [](std::int64_t dropped_38) {
     return [dropped_38](const Touch& touch, PoseSetup& pose) {
@@ -284,16 +290,19 @@ std::vector<Mutation> mutations() {
     };
   };
   std::vector<Mutation> list;
-  list.push_back({"|m| rounded down", each_direction([](DirectionSetup& s, const Magnitudes& m) {
+  list.push_back({"|m| rounded down",
+                  each_direction([](DirectionSetup& s, const Magnitudes& m) {
                     for (std::size_t j = 0; j < 3; ++j) s.magnitude[j] = m[j] >> 8;
                   }),
                   {}});
-  list.push_back({"b - c rounded up", each_direction([](DirectionSetup& s, Magnitudes m) {
+  list.push_back({"b - c rounded up",
+                  each_direction([](DirectionSetup& s, Magnitudes m) {
                     std::sort(m.begin(), m.end());
                     s.face_factor = std::min(127, (m[1] - m[0] + 2047) >> 11);
                   }),
                   {}});
-  list.push_back({"c rounded up", each_direction([](DirectionSetup& s, Magnitudes m) {
+  list.push_back({"c rounded up",
+                  each_direction([](DirectionSetup& s, Magnitudes m) {
                     std::sort(m.begin(), m.end());
                     s.corner_factor = std::min(127, (m[0] + 1023) >> 10);
                   }),
@@ -304,11 +313,8 @@ std::vector<Mutation> mutations() {
                     const int g = touch.a.step - touch.query.shift + grid.x + 1;
                     const std::int64_t of_position = (1024 * std::int64_t{pose.epsilon}) >> (g + 6);
                     const std::int64_t with_floors =
-                        (1024 * std::int64_t{pose.epsilon} + (std::int64_t{92} << g) - 1) >> (g + 6);
+                        (1024 * std::int64_t{pose.epsilon} + (std::int64_t{96} << g) - 1) >> (g + 6);
                     grid.slack -= with_floors - of_position;
-                  }});
-  list.push_back({"B's corners, floored", {}, [slack](const Touch& t, const PoseSetup& p, NodeGrid& grid) {
-                    if (grid.y >= 4 && !grid.b_is_point) slack(1)(t, p, grid);
                   }});
   list.push_back({"A as a point", {}, [slack](const Touch& t, const PoseSetup& p, NodeGrid& grid) {
                     if (grid.a_is_point) slack(std::int64_t{1} << std::max(0, 10 - grid.x))(t, p, grid);
@@ -353,8 +359,8 @@ TEST_CASE("box test: volumes that share a point are never separated", "[ref]") {
     kinds[3] += grid.x == 0 && grid.y <= 1 ? 1 : 0;
     for (const std::int64_t w : grid.offset) far_offsets += std::abs(w) >= 1 << 14 ? 1 : 0;
     if (separated(touch, nullptr) && wrong++ == 0) {
-      WARN("first at case " << n << ": steps " << touch.a.step << ", " << touch.b.step << ", shift " << touch.query.shift
-                            << ", x " << grid.x << ", y " << grid.y);
+      WARN("first at case " << n << ": steps " << touch.a.step << ", " << touch.b.step << ", shift "
+                            << touch.query.shift << ", x " << grid.x << ", y " << grid.y);
     }
   }
   WARN("box_cases=" << cases << " violations=" << wrong << " a_point=" << kinds[0] << " b_point=" << kinds[1]

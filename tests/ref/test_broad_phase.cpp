@@ -147,7 +147,9 @@ Posed random_poses(std::mt19937_64& random, const Mesh& a, const Mesh& b) {
   if (kind < 3) pose.b.linear() = rotation();
   if (kind == 2) pose.a.linear() *= 0.3 + 0.1 * static_cast<double>(random() % 20);
   pose.sheared = kind == 3;
-  if (pose.sheared) pose.b.linear() = Eigen::Matrix3d::Identity() + 0.3 * Eigen::Matrix3d::Random();
+  if (pose.sheared) {
+    for (Eigen::Index i = 0; i < 3; ++i) pose.b.linear().row(i) += random_vector(random, 0.3).transpose();
+  }
   if (kind >= 4 && kind < 7) pose.a.linear() = permutation();
   if (kind == 6) pose.b.linear() = permutation();
   pose.a = on_grid(pose.a);
@@ -180,7 +182,8 @@ struct Tally {
   std::size_t refused = 0;
 };
 
-/// Open pairs are resolved exactly, like the host does; then ALL must give the pairs that meet, and FIRST whether any does.
+/// Open pairs are resolved exactly, like the host does; then ALL must give the pairs that meet, and FIRST whether any
+/// does.
 void check_query(const Object& a, const Object& b, const Posed& pose, const FacePairs& truth, std::mt19937_64& random,
                  Tally& tally) {
   if (pose.sheared && !make_query(a.image.header(), pose.a, b.image.header(), pose.b)) {
@@ -262,8 +265,8 @@ TEST_CASE("query: descriptors and records keep every field", "[ref]") {
 }
 
 TEST_CASE("query: the map is within its error bound of the poses, exactly", "[ref]") {
-  // B's map undone: with r = PB (cB + 2^eB v) + pB - (PA (cA + 2^eA u) + pA), the position v of u is off by PB^-1 r 2^-eB,
-  // and PB^-1 = adjugate / determinant.
+  // B's map undone: with r = PB (cB + 2^eB v) + pB - (PA (cA + 2^eA u) + pA), the position v of u is off by PB^-1 r
+  // 2^-eB, and PB^-1 = adjugate / determinant.
   std::mt19937_64 random(seed());
   std::size_t none = 0;
   std::size_t exact = 0;
@@ -278,7 +281,8 @@ TEST_CASE("query: the map is within its error bound of the poses, exactly", "[re
     for (Affine3d* p : {&pose.a, &pose.b}) {
       if (n % 4 != 0) {
         std::uniform_real_distribution<double> entry(-1, 1);
-        for (Eigen::Index i = 0; i < 9; ++i) p->linear()(i / 3, i % 3) += n % 4 == 1 ? entry(random) : 1e-7 * entry(random);
+        for (Eigen::Index i = 0; i < 9; ++i)
+          p->linear()(i / 3, i % 3) += n % 4 == 1 ? entry(random) : 1e-7 * entry(random);
         p->translation() = random_vector(random, 4);
       }
     }

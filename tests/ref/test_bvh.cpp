@@ -123,7 +123,8 @@ TEST_CASE("dop26: every vertex is inside, and no plane is further out than round
     Primitive p;
     p.kind = random() % 2 == 0 ? Kind::tri : Kind::quad;
     for (Vec3d& v : p.v) {
-      for (double& c : v) c = std::ldexp(static_cast<double>(random() >> 11U), static_cast<int>(random() % 40)) - 0x1p60;
+      for (double& c : v)
+        c = std::ldexp(static_cast<double>(random() >> 11U), static_cast<int>(random() % 40)) - 0x1p60;
     }
     const Dop26 dop = make_dop26(p);
     for (std::size_t d = 0; d < directions.size(); ++d) {
@@ -304,7 +305,8 @@ TEST_CASE("image: lines keep every value of every field", "[ref]") {
     check(inner_field::all, [](const Line& l) { return encode(decode_inner(l)); });
     namespace f = leaf_field;
     const std::array<Field, 6> triangles = {f::origin, f::extent, f::rounded, f::open, f::id, f::triangle};
-    check(triangles, [](const Line& l) { return encode(decode_leaf(l, NodeKind::two_triangles), NodeKind::two_triangles); });
+    check(triangles,
+          [](const Line& l) { return encode(decode_leaf(l, NodeKind::two_triangles), NodeKind::two_triangles); });
     Field one_id = f::id;
     one_id.count = 1;
     const std::array<Field, 6> quad = {f::origin, f::extent, f::rounded, f::open, one_id, f::quad};
@@ -443,7 +445,8 @@ TEST_CASE("image: damaged images are refused with line and field", "[ref]") {
 
   SECTION("length") {
     Bytes bytes = good;
-    for (const std::size_t size : {std::size_t{0}, std::size_t{63}, std::size_t{64}, std::size_t{128}, good.size() - 1}) {
+    for (const std::size_t size :
+         {std::size_t{0}, std::size_t{63}, std::size_t{64}, std::size_t{128}, good.size() - 1}) {
       bytes = good;
       bytes.resize(size);
       REQUIRE_THROWS_AS(parse_image(bytes), ImageError);
@@ -469,7 +472,8 @@ TEST_CASE("image: damaged images are refused with line and field", "[ref]") {
     refused(with_field(image, 0, f::depth, 49), "0", "depth");
     refused(with_field(image, 0, f::depth, tree.depth + 1), "0", "depth");
     refused(with_field(image, 0, f::kinds, 1), "0", "kinds");
-    REQUIRE_THROWS_AS(parse_image(with_field(image, 0, f::triangles, get(image.lines[0], f::triangles) - 1)), ImageError);
+    REQUIRE_THROWS_AS(parse_image(with_field(image, 0, f::triangles, get(image.lines[0], f::triangles) - 1)),
+                      ImageError);
     refused(with_field(image, 0, f::triangles, get(image.lines[0], f::triangles) + 1), "0", "triangles");
     refused(with_field(image, 0, f::triangles, 0xffffffff), "0", "triangles");
     refused(with_field(image, 0, f::quads, get(image.lines[0], f::quads) + 1), "0", "quads");

@@ -25,8 +25,7 @@ std::array<Bounds, directions.size()> positions(const Vec3d& point) {
   const Bounds z = {point.z(), point.z()};
   const Bounds sum = x + y;
   const Bounds difference = x - y;
-  return {x,     y,     z,       sum,     difference,     x + z,         x - z,
-          y + z, y - z, sum + z, sum - z, difference + z, z - difference};
+  return {x, y, z, sum, difference, x + z, x - z, y + z, y - z, sum + z, sum - z, difference + z, z - difference};
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ Frame frame_of(const Dop26& object) {
   point.v = {frame.centre, frame.centre, frame.centre, frame.centre};
   frame.centre_dop = make_dop26(point);
   if (half == 0) return frame;  // a single point has no size
-  // The least exponent for which half <= (1/2 - 2^-24) 2^exponent; at least -1000, so that a step of a leaf is a double.
+  // The least exponent for which half <= (1/2 - 2^-24) 2^exponent; at least -1000, so that a step of a leaf is a
+  // double.
   frame.exponent = std::max(std::ilogb(half) + 1, -1000);
   while (half > std::ldexp(0.5 - 0x1p-24, frame.exponent)) ++frame.exponent;
   return frame;

@@ -13,8 +13,7 @@ namespace {
 
 void check_range(std::size_t line, const Field& field, std::int64_t value, std::int64_t least, std::int64_t most) {
   if (value >= least && value <= most) return;
-  fail(line, field.name,
-       std::to_string(value) + " is not in " + std::to_string(least) + ".." + std::to_string(most));
+  fail(line, field.name, std::to_string(value) + " is not in " + std::to_string(least) + ".." + std::to_string(most));
 }
 
 /// What a line decodes to must encode to the same line: bits without a field, and fields of children and vertices that
@@ -95,7 +94,8 @@ class Checker {
       }
       for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(node.children); ++i) {
         const std::uint32_t child = node.first + i;
-        if (seen_[child]) fail(visit.line, inner_field::first.name, "line " + std::to_string(child) + " has two parents");
+        if (seen_[child])
+          fail(visit.line, inner_field::first.name, "line " + std::to_string(child) + " has two parents");
         seen_[child] = true;  // each line enters `open` once, so this ends
         open.push_back({child, node.kind[i], visit.level + 1});
       }

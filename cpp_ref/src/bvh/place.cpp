@@ -17,9 +17,7 @@ Vector cross(const Vector& x, const Vector& y) {
   return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
 }
 
-Vector column(const Eigen::Affine3d& pose, Eigen::Index i) {
-  return {pose(0, i), pose(1, i), pose(2, i)};
-}
+Vector column(const Eigen::Affine3d& pose, Eigen::Index i) { return {pose(0, i), pose(1, i), pose(2, i)}; }
 
 /// u -> linear u + offset
 struct Map {

@@ -71,9 +71,7 @@ struct Split {
   int bin = 0;
   double least = 0;
   double scale = 0;
-  int bin_of(const Vec3d& centre) const {
-    return std::min(bins - 1, static_cast<int>((centre[axis] - least) * scale));
-  }
+  int bin_of(const Vec3d& centre) const { return std::min(bins - 1, static_cast<int>((centre[axis] - least) * scale)); }
 };
 
 class Builder {

@@ -20,15 +20,14 @@ struct Planes {
 std::int64_t quarters(int exponent) { return std::int64_t{1} << std::max(0, exponent); }
 
 std::int64_t slack_of(const NodeGrid& grid, int step, const PoseSetup& pose) {
-  // In half steps of the grid, per unit of |d|_1:
-  //   2 epsilon / 2^step: the position of A's points
-  //   7/64: floors, 1 of the offset, 3 of M centre, 3 of |m| half, each of 6 fraction bits
-  // together rounded up to a quarter, step + 1 >= 0;
-  const int g = step + 1;
-  std::int64_t slack = (1024 * std::int64_t{pose.epsilon} + (std::int64_t{28} << g) + (std::int64_t{64} << g) - 1) >> (g + 6);
-  // B's corners have 2 fraction bits: their floor loses less than a quarter from y = 4 on;
-  if (grid.y >= 4) slack += 1;
-  // A's box as a point: its corners are at most 128 half steps of A from the origin, rows of |M| add up to less than 2;
+  // In half steps of the grid, per unit of |d|_1, rounded up to a quarter:
+  //   2 epsilon / 2^step: the position of A's points;
+  //   1/8: floors of A's planes, 1 of the offset, 3 of M centre, 3 of |m| half, each of 6 fraction bits; and those of
+  //   B's corners, 2 fraction bits (docs/image.md says why they need no more).
+  const int g = step + 1;  // >= 0
+  std::int64_t slack =
+      (1024 * std::int64_t{pose.epsilon} + (std::int64_t{32} << g) + (std::int64_t{64} << g) - 1) >> (g + 6);
+  // A's box as a point: its corners are at most 128 half steps of A from the origin, rows of |M| add up to less than 2.
   if (grid.a_is_point) slack += quarters(2 + 8 - grid.x);
   // B's box as a point.
   if (grid.b_is_point) slack += quarters(2 + 7 - grid.y);
@@ -65,8 +64,8 @@ Planes planes_of_a(const bvh::InnerLine& node, std::size_t child, const PoseSetu
       const std::int64_t product = setup.face_factor * face + setup.corner_factor * corner;
       return (product << (node.cut_exponent - 2)) << 2;
     };
-    // Modulo 2^width like the hardware's sums. Planes of children that overlap fit; others may wrap into an overlap, which
-    // is safe.
+    // Modulo 2^width like the hardware's sums. Planes of children that overlap fit; others may wrap into an overlap,
+    // which is safe.
     const int width = d < first_face ? 17 : 18;
     planes.upper[d] = wrap(static_cast<std::uint64_t>(middle + extent - cut(false)), width) >> 5;
     planes.lower[d] = wrap(static_cast<std::uint64_t>(middle - extent + cut(true)), width) >> 5;

@@ -52,8 +52,8 @@ MovedVertices move_a(const bvh::LeafLine& leaf, NodeKind kind, const std::array<
       moved.vertex[n][i] = origin[i] + scaled(sum, step - vertex_m_fraction - unit, sum_lost);
     }
   }
-  // Twice: the query's error; half a step of the leaf on each axis, where rows of |M| add up to less than 2; three entries
-  // of M off by half of 2^-20 times an offset of at most the extent; half a unit each.
+  // Twice: the query's error; half a step of the leaf on each axis, where rows of |M| add up to less than 2; three
+  // entries of M off by half of 2^-20 times an offset of at most the extent; half a unit each.
   moved.error = bound(query.error, 1 - query_error_fraction - unit);
   if (leaf.rounded) moved.error += bound(1, step + 1 - unit);
   if (m_lost) moved.error += bound(3, leaf.extent - query.shift - 24 - vertex_m_fraction - unit);
@@ -84,8 +84,8 @@ MovedLeaves move_leaves(const bvh::LeafLine& a, NodeKind kind_a, const bvh::Leaf
   return {move_a(a, kind_a, b.origin, extent, query), move_b(b, kind_b, extent), a.open || b.open};
 }
 
-GridPair normalise(const MovedLeaves& leaves, NodeKind kind_a, std::size_t index_a, NodeKind kind_b, std::size_t index_b,
-                   int coord_w) {
+GridPair normalise(const MovedLeaves& leaves, NodeKind kind_a, std::size_t index_a, NodeKind kind_b,
+                   std::size_t index_b, int coord_w) {
   GridPair pair;
   pair.a.kind = primitive_kind(kind_a);
   pair.b.kind = primitive_kind(kind_b);

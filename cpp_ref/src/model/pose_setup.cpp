@@ -37,7 +37,8 @@ DirectionSetup direction_of(const PoseSetup& pose, const std::array<int, 3>& d) 
     magnitude[j] = std::abs(m[j]);
   }
   std::array<std::size_t, 3> order = {0, 1, 2};
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) { return magnitude[p] > magnitude[q]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t p, std::size_t q) { return magnitude[p] > magnitude[q]; });
   const std::int32_t b = magnitude[order[1]];
   const std::int32_t c = magnitude[order[2]];
   DirectionSetup result;

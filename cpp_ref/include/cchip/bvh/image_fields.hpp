@@ -30,11 +30,11 @@ inline constexpr std::array<Field, 13> all = {magic, crc,       version, exponen
 
 /// An inner node and the volumes of its children.
 namespace inner_field {
-inline constexpr Field origin = {"origin", 0, 18, 3, true};  ///< 2^-18
-inline constexpr Field step = {"step", 54, 5};               ///< s: a step is 2^(s - 24)
-inline constexpr Field first = {"first", 59, 24};            ///< line of the first child
-inline constexpr Field kind = {"kind", 83, 2, 4};            ///< NodeKind of each child
-inline constexpr Field children = {"children", 91, 2};       ///< their number - 1
+inline constexpr Field origin = {"origin", 0, 18, 3, true};     ///< 2^-18
+inline constexpr Field step = {"step", 54, 5};                  ///< s: a step is 2^(s - 24)
+inline constexpr Field first = {"first", 59, 24};               ///< line of the first child
+inline constexpr Field kind = {"kind", 83, 2, 4};               ///< NodeKind of each child
+inline constexpr Field children = {"children", 91, 2};          ///< their number - 1
 inline constexpr Field cut_exponent = {"cut_exponent", 93, 1};  ///< k - 2
 inline constexpr Field child = {"child", 96, 102, 4};
 inline constexpr std::array<Field, 7> all = {origin, step, first, kind, children, cut_exponent, child};
@@ -42,7 +42,7 @@ inline constexpr std::array<Field, 7> all = {origin, step, first, kind, children
 
 /// Within the bits of one child.
 namespace child_field {
-inline constexpr Field box = {"box", 0, 7, 6, true};         ///< least x, greatest x, least y, ...; steps from the origin
+inline constexpr Field box = {"box", 0, 7, 6, true};  ///< least x, greatest x, least y, ...; steps from the origin
 inline constexpr Field face_cut = {"face_cut", 42, 3, 12};     ///< two a face diagonal: upper, lower; 2^k half steps
 inline constexpr Field corner_cut = {"corner_cut", 78, 3, 8};  ///< two a cube diagonal; 2^(k+1) half steps
 inline constexpr std::array<Field, 3> all = {box, face_cut, corner_cut};
@@ -51,7 +51,7 @@ inline constexpr std::array<Field, 3> all = {box, face_cut, corner_cut};
 /// A leaf: one or two triangles, or a quad; the parent's `kind` says which.
 namespace leaf_field {
 inline constexpr Field origin = {"origin", 0, 24, 3, true};  ///< 2^-24
-inline constexpr Field extent = {"extent", 72, 5};  ///< q: a step is 2^(q - 43) for triangles, 2^(q - 47) for a quad
+inline constexpr Field extent = {"extent", 72, 5};    ///< q: a step is 2^(q - 43) for triangles, 2^(q - 47) for a quad
 inline constexpr Field rounded = {"rounded", 77, 1};  ///< 0: every vertex is the mesh's exactly
 inline constexpr Field open = {"open", 78, 1};        ///< no answer for this quad is definite
 inline constexpr Field id = {"id", 80, 32, 2};        ///< numbers of the faces
@@ -65,9 +65,9 @@ static_assert(leaf_field::triangle.end() == 504 && header_field::centre.end() ==
 
 inline constexpr unsigned image_magic = 0x4D494343;  // "CCIM"
 inline constexpr unsigned image_version = 1;
-inline constexpr int step_max = 18;         ///< of inner_field::step
-inline constexpr int extent_max = 24;       ///< of leaf_field::extent
-inline constexpr int exponent_max = 1002;   ///< of header_field::exponent, in magnitude
+inline constexpr int step_max = 18;        ///< of inner_field::step
+inline constexpr int extent_max = 24;      ///< of leaf_field::extent
+inline constexpr int exponent_max = 1002;  ///< of header_field::exponent, in magnitude
 
 }  // namespace cchip::bvh
 

@@ -67,9 +67,10 @@ inline Interval operator-(const Interval& x, const Interval& y) { return x + -y;
 inline Interval operator*(const Interval& x, const Interval& y) {
   const auto up = [](double a, double b) { return product_up(a, b); };
   const auto down = [](double a, double b) { return -product_up(-a, b); };
-  return {std::min({down(x.least, y.least), down(x.least, y.greatest), down(x.greatest, y.least),
-                    down(x.greatest, y.greatest)}),
-          std::max({up(x.least, y.least), up(x.least, y.greatest), up(x.greatest, y.least), up(x.greatest, y.greatest)})};
+  return {
+      std::min(
+          {down(x.least, y.least), down(x.least, y.greatest), down(x.greatest, y.least), down(x.greatest, y.greatest)}),
+      std::max({up(x.least, y.least), up(x.least, y.greatest), up(x.greatest, y.least), up(x.greatest, y.greatest)})};
 }
 /// \pre y does not hold 0
 inline Interval operator/(const Interval& x, const Interval& y) {

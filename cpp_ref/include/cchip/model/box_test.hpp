@@ -3,8 +3,8 @@
 /// The box test: which children of a node of A may meet which children of a node of B.
 ///
 /// Everything is reckoned in half steps of the pair's own grid, a power of two that is A's step unless B's is much
-/// coarser. All roundings are floors; one slack per node pair, added to the corners of B's boxes, makes up for all of them
-/// (docs/collide.md, "Box test").
+/// coarser. All roundings are floors; one slack per node pair, added to the corners of B's boxes, makes up for all of
+/// them (docs/image.md, "Box test").
 #ifndef CCHIP_MODEL_BOX_TEST_HPP
 #define CCHIP_MODEL_BOX_TEST_HPP
 
@@ -17,8 +17,8 @@ namespace cchip::model {
 
 /// Where a node pair stands on its grid.
 struct NodeGrid {
-  /// A's steps over the grid's, B's likewise: log2 (grid step / step), and whether a box counts as a point, because it is
-  /// so much smaller than a step that the slack covers it.
+  /// A's steps over the grid's, B's likewise: log2 (grid step / step), and whether a box counts as a point, because it
+  /// is so much smaller than a step that the slack covers it.
   int x = 0;  ///< 0, 2, 4, or more and a_is_point
   int y = 0;  ///< -1..5, or more and b_is_point
   bool a_is_point = false;
@@ -33,14 +33,14 @@ struct NodeGrid {
   bool near = false;       ///< the slack does not fit: nothing is separated
 };
 
-inline constexpr int offset_w = 17;   ///< bits of NodeGrid::offset; what does not fit is far
+inline constexpr int offset_w = 17;  ///< bits of NodeGrid::offset; what does not fit is far
 inline constexpr int slack_max = 255;
 
 NodeGrid grid_of(const bvh::InnerLine& a, const bvh::InnerLine& b, const PoseSetup& pose);
 
 /// Child pair (i, j), i of A, has number 4 i + j.
 struct BoxVerdict {
-  std::uint16_t overlap = 0;           ///< bit of each child pair that is not separated
+  std::uint16_t overlap = 0;              ///< bit of each child pair that is not separated
   std::array<std::uint8_t, 16> key = {};  ///< least overlap over the directions, 0..15, of these
 };
 

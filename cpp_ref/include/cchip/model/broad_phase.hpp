@@ -16,10 +16,10 @@ namespace cchip::model {
 struct BroadPhaseOptions {
   int coord_w = defs::coord_w_default;
   PairMode mode = PairMode::directed;
-  std::size_t stack = 64;                    ///< entries
-  std::uint32_t step_limit = 0xffffffff;     ///< node pairs
-  std::uint32_t open_limit = 16;             ///< open pairs at which a FIRST query goes to the host
-  std::mt19937_64* random_order = nullptr;   ///< visit node pairs in any order instead of the best first
+  std::size_t stack = 64;                   ///< entries
+  std::uint32_t step_limit = 0xffffffff;    ///< node pairs
+  std::uint32_t open_limit = 16;            ///< open pairs at which a FIRST query goes to the host
+  std::mt19937_64* random_order = nullptr;  ///< visit node pairs in any order instead of the best first
 };
 
 struct BroadPhaseCounts {

@@ -2,8 +2,8 @@
 /// \file
 /// Vertex transform and normaliser: from the leaves of two images to pairs for the primitive tests.
 ///
-/// Both leaves are brought to one unit, 2^(x - 48) of B's, x the greater of the leaves' extents: 2^24 units reach from a
-/// leaf's origin to its edge. Vertices are then relative to the origin of B's leaf.
+/// Both leaves are brought to one unit, 2^(x - 48) of B's, x the greater of the leaves' extents: 2^24 units reach from
+/// a leaf's origin to its edge. Vertices are then relative to the origin of B's leaf.
 #ifndef CCHIP_MODEL_LEAF_PAIR_HPP
 #define CCHIP_MODEL_LEAF_PAIR_HPP
 

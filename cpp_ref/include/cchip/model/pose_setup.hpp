@@ -11,14 +11,14 @@
 
 namespace cchip::model {
 
-/// One direction d of B. With m = M^T d, |m_j| sorted a >= b >= c: m = (a - b) axis + (b - c) face + c corner, with axis,
-/// face and corner among A's 26 directions. So A's support along m is that of its box less (b - c) times a face cut
-/// less c times a corner cut.
+/// One direction d of B. With m = M^T d, |m_j| sorted a >= b >= c: m = (a - b) axis + (b - c) face + c corner, with
+/// axis, face and corner among A's 26 directions. So A's support along m is that of its box less (b - c) times a face
+/// cut less c times a corner cut.
 struct DirectionSetup {
   /// |m_j|, 9 fraction bits, rounded up: a greater box is a safe box. 10 bits.
   std::array<std::int32_t, 3> magnitude = {};
-  /// b - c, 6 fraction bits, and c, 7 fraction bits, rounded down: a smaller cut is a safe cut. 7 bits each, the second at
-  /// most 127/128.
+  /// b - c, 6 fraction bits, and c, 7 fraction bits, rounded down: a smaller cut is a safe cut. 7 bits each, the second
+  /// at most 127/128.
   std::int32_t face_factor = 0;
   std::int32_t corner_factor = 0;
   /// Numbers among bvh::directions; `*_reversed`: it is the opposite direction, so upper and lower cuts change places.

@@ -16,7 +16,8 @@ inline constexpr std::size_t line_bytes = 64;
 /// 64 bytes, as they lie in memory.
 using Line = std::array<std::uint8_t, line_bytes>;
 
-/// `count` equal fields in a row; field i begins at bit lsb + i width. Up to 57 bits wide, or whole bytes from a byte on.
+/// `count` equal fields in a row; field i begins at bit lsb + i width. Up to 57 bits wide, or whole bytes from a byte
+/// on.
 struct Field {
   const char* name;
   std::size_t lsb;

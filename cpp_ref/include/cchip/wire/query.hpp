@@ -22,8 +22,8 @@ struct Query {
   /// t, 32 fraction bits, 36 bits.
   std::array<std::int64_t, 3> t = {};
   int shift = 0;  ///< 0..15
-  /// Bound, in 2^-38 of B's unit and infinity norm, on the distance of M 2^-shift u + t from the exact position, for every
-  /// u in [-1/2, 1/2]^3; 12 bits.
+  /// Bound, in 2^-38 of B's unit and infinity norm, on the distance of M 2^-shift u + t from the exact position, for
+  /// every u in [-1/2, 1/2]^3; 12 bits.
   std::uint32_t error = 0;
   QueryMode mode = QueryMode::first;
   bool swapped = false;  ///< A is the user's second object
