@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cchip/model/box_test.hpp>
 #include <cchip/model/broad_phase.hpp>
 #include <cchip/model/leaf_pair.hpp>
 #include <cchip/model/programme.hpp>
+#include <optional>
 
 namespace cchip::model {
 namespace {
@@ -20,12 +22,19 @@ struct Half {
   unsigned children;
 };
 
-/// An expanded node pair with the child pairs that wait, as bits 4 i + j.
-struct Entry {
+/// Key from which on a child pair overlaps well, in half steps of the grid: it is likely to hold a contact.
+constexpr std::uint8_t strong_key = 8;
+
+struct NodePair {
   Half a;
   Half b;
+};
+
+/// An expanded node pair with the child pairs that wait, as bits 4 i + j.
+struct Entry {
+  NodePair pair;
   std::uint16_t waiting = 0;
-  std::array<std::uint8_t, 16> key = {};
+  std::uint16_t strong = 0;  ///< those of them with at least strong_key: they go first
 };
 
 class Run {
@@ -51,15 +60,10 @@ class Run {
  private:
   void traverse() {
     check_descriptor();
-    expand(whole(a_, a_.header().root), whole(b_, b_.header().root));
-    while (!stack_.empty() && !finished_) {
-      Entry& top = stack_.back();
-      const unsigned number = choose(top);
-      top.waiting = static_cast<std::uint16_t>(top.waiting & ~(1U << number));
-      const Half a = child(a_, top.a, number / 4);
-      const Half b = child(b_, top.b, number % 4);
-      if (top.waiting == 0) stack_.pop_back();
-      expand(a, b);
+    std::optional<NodePair> next = NodePair{whole(a_, a_.header().root), whole(b_, b_.header().root)};
+    while (next && !finished_) {
+      next = expand(*next);
+      if (!next) next = pop();
     }
   }
 
@@ -77,19 +81,34 @@ class Run {
     }
   }
 
-  /// The child pair that comes next: the one that overlaps most, the first of equals.
-  unsigned choose(const Entry& entry) {
-    std::array<unsigned, 16> waiting;
+  std::optional<NodePair> pop() {
+    if (stack_.empty()) return std::nullopt;
+    const auto at = stack_.end() - 1 - static_cast<std::ptrdiff_t>(any_of(stack_.size()));
+    const unsigned from = at->strong != 0 ? at->strong : at->waiting;
+    unsigned number = 0;
+    while ((from >> number & 1U) == 0) ++number;
+    at->strong = static_cast<std::uint16_t>(at->strong & ~(1U << number));
+    at->waiting = static_cast<std::uint16_t>(at->waiting & ~(1U << number));
+    const NodePair next = children(at->pair, number);
+    if (at->waiting == 0) stack_.erase(at);
+    return next;
+  }
+
+  /// 0, or any number below `count` if the order is to be random.
+  std::size_t any_of(std::size_t count) const {
+    return options_.random_order != nullptr ? (*options_.random_order)() % count : 0;
+  }
+
+  /// The child pair that overlaps most, the first of equals.
+  unsigned best_of(const std::array<std::uint8_t, 16>& key, std::uint16_t waiting) const {
+    std::array<unsigned, 16> numbers = {};
     std::size_t count = 0;
     for (unsigned n = 0; n < 16; ++n) {
-      if ((entry.waiting >> n & 1U) != 0) waiting[count++] = n;
+      if ((waiting >> n & 1U) != 0) numbers[count++] = n;
     }
-    if (options_.random_order != nullptr) return waiting[(*options_.random_order)() % count];
-    unsigned best = waiting[0];
-    for (std::size_t i = 1; i < count; ++i) {
-      if (entry.key[waiting[i]] > entry.key[best]) best = waiting[i];
-    }
-    return best;
+    if (options_.random_order != nullptr) return numbers[any_of(count)];
+    return *std::max_element(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(count),
+                             [&key](unsigned p, unsigned q) { return key[p] < key[q]; });
   }
 
   bvh::InnerLine node(const bvh::Image& image, std::uint32_t line) const {
@@ -112,26 +131,41 @@ class Run {
     return parent.kind[i] == NodeKind::inner ? whole(image, parent.first + i) : Half{half.line, 1U << i};
   }
 
-  void expand(const Half& half_a, const Half& half_b) {
+  NodePair children(const NodePair& pair, unsigned number) const {
+    return {child(a_, pair.a, number / 4), child(b_, pair.b, number % 4)};
+  }
+
+  /// Tests the children of a node pair, sends pairs of leaves on, and returns the child pair to go on with; the others
+  /// wait on the stack.
+  std::optional<NodePair> expand(const NodePair& pair) {
     if (result_.counts.steps == options_.step_limit) throw Stop{QueryCode::steps};
     ++result_.counts.steps;
-    const bvh::InnerLine a = node(a_, half_a.line);
-    const bvh::InnerLine b = node(b_, half_b.line);
+    const bvh::InnerLine a = node(a_, pair.a.line);
+    const bvh::InnerLine b = node(b_, pair.b.line);
     const BoxVerdict verdict = test_boxes(a, b, pose_, grid_of(a, b, pose_));
-    Entry entry{half_a, half_b, 0, verdict.key};
+    Entry entry{pair};
     for (unsigned number = 0; number < 16 && !finished_; ++number) {
       const unsigned i = number / 4;
       const unsigned j = number % 4;
-      if ((half_a.children >> i & 1U) == 0 || (half_b.children >> j & 1U) == 0) continue;
+      if ((pair.a.children >> i & 1U) == 0 || (pair.b.children >> j & 1U) == 0) continue;
       ++result_.counts.box_tests;
       if ((verdict.overlap >> number & 1U) == 0) continue;
       if (a.kind[i] == NodeKind::inner || b.kind[j] == NodeKind::inner) {
         entry.waiting = static_cast<std::uint16_t>(entry.waiting | 1U << number);
+        if (verdict.key[number] >= strong_key) entry.strong = static_cast<std::uint16_t>(entry.strong | 1U << number);
       } else {
         test_leaves(a.first + i, a.kind[i], b.first + j, b.kind[j]);
       }
     }
-    if (entry.waiting == 0 || finished_) return;
+    if (entry.waiting == 0 || finished_) return std::nullopt;
+    const unsigned best = best_of(verdict.key, entry.waiting);
+    entry.waiting = static_cast<std::uint16_t>(entry.waiting & ~(1U << best));
+    entry.strong = static_cast<std::uint16_t>(entry.strong & ~(1U << best));
+    if (entry.waiting != 0) push(entry);
+    return children(pair, best);
+  }
+
+  void push(const Entry& entry) {
     if (stack_.size() == options_.stack) throw Stop{QueryCode::stack};
     stack_.push_back(entry);
     result_.counts.stack_most = std::max(result_.counts.stack_most, stack_.size());
