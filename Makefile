@@ -13,9 +13,10 @@ SEEDS ?= 5
 EXPORT_ARGS ?=
 # meshes of campaign-leaves, each against itself (Debian: assimp-testmodels)
 MODELS ?= /usr/share/assimp/models
-LEAVES ?= $(addprefix $(MODELS)/,OBJ/WusonOBJ.obj OBJ/spider.obj STL/Spider_binary.stl COB/dwarf.cob Collada/duck.dae \
-  Collada/teapots.DAE BLEND/Suzanne_248.blend MD2/sydney.md2 MD2/faerie.md2)
-QUAD_LEAVES ?= $(MODELS)/BLEND/Suzanne_248.blend
+LEAVES ?= $(addprefix $(MODELS)/,OBJ/WusonOBJ.obj OBJ/spider.obj STL/Spider_binary.stl) \
+  $(addprefix build/leaves/,COB/dwarf.cob.obj Collada/duck.dae.obj Collada/teapots.DAE.obj \
+  BLEND/Suzanne_248.blend.obj MD2/sydney.md2.obj MD2/faerie.md2.obj)
+QUAD_LEAVES ?= build/leaves/BLEND/Suzanne_248.blend.obj
 # command that provides the tools; BOOTSTRAP=true skips it
 BOOTSTRAP ?= scripts/bootstrap
 # another command verilator than the one on PATH, as in: make test VERILATOR=/opt/verilator/bin/verilator
@@ -34,7 +35,7 @@ export JOBS
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv build sim sim-reconfig sim-levels wave test test-long formal test-gates test-debug \
   test-asan lint tidy format campaign campaign-build campaign-grid campaign-classes campaign-certainty \
-  campaign-leaves campaign-swaps table1 table1-plot bench-reconfig export fpga fpga-quick install clean
+  campaign-leaves campaign-swaps picture table1 table1-plot bench-reconfig export fpga fpga-quick install clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
@@ -110,7 +111,13 @@ campaign-classes: campaign-build ## RTL against model and exact oracle, 10^5 pai
 campaign-certainty: campaign-build ## definite answers against exact ones of 10^7 pairs off the grid
 	$(CAMPAIGN) certainty
 
-campaign-leaves: campaign-build ## leaf pairs of meshes: beats and share of indefinite answers
+# models of other formats, by the program of Debian's assimp-utils
+build/leaves/%.obj: $(MODELS)/%
+	@command -v assimp > /dev/null || { echo "install Debian's assimp-utils: scripts/bootstrap --dev" >&2; exit 1; }
+	mkdir -p $(@D)
+	assimp export $< $@ > $@.log || { cat $@.log; rm -f $@; exit 1; }
+
+campaign-leaves: campaign-build $(LEAVES) $(QUAD_LEAVES) ## leaf pairs of meshes: beats and share of indefinite answers
 	$(CAMPAIGN) leaves
 	$(CAMPAIGN) leaves $(LEAVES)
 	$(CAMPAIGN) leaves --quads $(QUAD_LEAVES)
@@ -119,6 +126,11 @@ SWAPS ?= 10000
 campaign-swaps: $(RELEASE)/build.ninja ## SWAPS exchanges of modules under random traffic with faults (CCHIP_SEED repeats a run)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_swaps
 	$(RELEASE)/bin/cchip_swaps --swaps $(SWAPS) --threads $(JOBS)
+
+picture: $(RELEASE)/build.ninja ## draw docs/pictures/demo.png: the demo's meshes, the faces that hit coloured
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip
+	$(RELEASE)/bin/cchip demo --ply build/demo.ply
+	scripts/picture.py build/demo.ply docs/pictures/demo.png
 
 TABLE1 := $(RELEASE)/bin/cchip_table1
 table1: $(RELEASE)/build.ninja ## Table 1 of the paper from a timed simulation, and the overhead of swaps against work per swap

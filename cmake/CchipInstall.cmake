@@ -6,6 +6,7 @@
 #   lib/libcchip_reconfig.a       with include/cchip/rc/ (if built): find_package(collisionchip COMPONENTS reconfig) gives
 #                                 collisionchip::reconfig alone, which needs SystemC and nothing of the above
 #   share/collisionchip/rtl       Verilog sources, include folder and file list cchip.f
+#   share/collisionchip/sim/rtl_models   Verilog for simulations only, file list sim.f
 #   share/doc/collisionchip       licences
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -24,6 +25,7 @@ if(CCHIP_SIMULATION)
     DESTINATION ${CCHIP_PACKAGE_DIR})
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/rtl DESTINATION ${CMAKE_INSTALL_DATADIR}/collisionchip)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/sim/rtl_models DESTINATION ${CMAKE_INSTALL_DATADIR}/collisionchip/sim)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/LICENSES DESTINATION ${CMAKE_INSTALL_DOCDIR})
 

@@ -2,12 +2,14 @@
 # Libraries of Verilated modules, with the Verilator of CCHIP_VERILATOR.
 #   cchip_model_library(<library> [SYSTEMC])          an empty one
 #   cchip_verilate(<library> <module> [SYSTEMC] [PREFIX <class>] [PARAMETERS NAME=VALUE ...] [SOURCES file ...])
-#       adds the module as C++ class <class> (default V<module>); without SOURCES from rtl/cchip.f
+#       adds the module as C++ class <class> (default V<module>); without SOURCES from rtl/cchip.f and the models for
+#       simulation only, sim/rtl_models/sim.f
 # SYSTEMC, for a library and all that is in it: classes are SystemC modules, without waveforms. Such a library and one of
 # the others cannot be in one program, their runtimes differ; its users need SystemC from pkg-config (sim/reconfig).
 # include() this file in every folder that calls them.
 include_guard(DIRECTORY)
 set(CCHIP_RTL_DIR ${PROJECT_SOURCE_DIR}/rtl)
+set(CCHIP_RTL_LISTS ${CCHIP_RTL_DIR}/cchip.f ${PROJECT_SOURCE_DIR}/sim/rtl_models/sim.f)
 file(STRINGS ${CCHIP_RTL_DIR}/cchip.f CCHIP_RTL_FILES REGEX "\\.v$")
 list(TRANSFORM CCHIP_RTL_FILES PREPEND ${CCHIP_RTL_DIR}/)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CCHIP_RTL_DIR}/cchip.f)
@@ -98,9 +100,10 @@ function(cchip_verilate library top)
     set(ARG_PREFIX V${top})
   endif()
   set(files ${ARG_SOURCES})
-  if(NOT files)  # Verilator reads the file list itself: a new line in it must not need a new configuration first
-    set(files -F ${CCHIP_RTL_DIR}/cchip.f)
-    set(ARG_SOURCES ${CCHIP_RTL_DIR}/cchip.f)
+  if(NOT files)  # Verilator reads the file lists itself: a new line in one must not need a new configuration first
+    set(files ${CCHIP_RTL_LISTS})
+    list(TRANSFORM files PREPEND -F\;)
+    set(ARG_SOURCES ${CCHIP_RTL_LISTS})
   endif()
   list(TRANSFORM ARG_PARAMETERS PREPEND -G)
   # One translation unit per module: the common headers cost more than the code.

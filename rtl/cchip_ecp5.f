@@ -28,8 +28,6 @@ reconfig/cchip_pr_region.v
 reconfig/cchip_roc_generator.v
 reconfig/cchip_pr_gate.v
 reconfig/cchip_pr_decoupler.v
-reconfig/cchip_pr_config_memory.v
-reconfig/cchip_pr_virtual.v
 reconfig/cchip_pr_slot.v
 reconfig/cchip_bitstream_fetch.v
 reconfig/cchip_bitstream_header.v

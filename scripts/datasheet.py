@@ -17,6 +17,7 @@ usage: datasheet.py                        measure everything, rewrite the gener
 Tables are written between the lines `<!-- generated: begin NAME -->` and `<!-- generated: end -->` (a datasheet
 has one, without NAME). Tools: Debian's yosys 0.23 and iverilog 11; default parameters unless a table says otherwise."""
 import functools
+import json
 import pathlib
 import random
 import re
@@ -26,6 +27,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RTL = ROOT / "rtl"
+MODELS = ROOT / "sim" / "rtl_models" / "sim.f"  # for simulation only
 MODULES = ROOT / "docs" / "modules"
 README = ROOT / "README.md"
 ARCHITECTURE = ROOT / "docs" / "architecture.md"
@@ -82,8 +84,6 @@ STIMULI = {
 
 LATENCY_LIMIT = 1000  # clocks; a longer wait means a stimulus without effect
 
-SIMULATION_ONLY = ("cchip_pr_config_memory", "cchip_pr_virtual")
-
 # Vertices of A and of B.
 SHAPES = {"tri_tri": (3, 3), "tri_quad": (3, 4), "quad_quad": (4, 4)}
 PRIMTESTS = {"cchip_primtest": (3, 3), **{f"cchip_primtest_{name}": verts for name, verts in SHAPES.items()}}
@@ -104,8 +104,10 @@ def run(*command, cwd=ROOT):
 
 
 def rtl_files():
-    lines = [line.strip() for line in (RTL / "cchip.f").read_text().splitlines()]
-    return {pathlib.Path(line).stem: line for line in lines if line.endswith(".v")}
+    """Path of every module below the root, those for simulation only at the end."""
+    files = [file_list.parent / line.strip() for file_list in (RTL / "cchip.f", MODELS)
+             for line in file_list.read_text().splitlines() if line.strip().endswith(".v")]
+    return {path.stem: str(path.relative_to(ROOT)) for path in files}
 
 
 def squeeze(text):
@@ -114,20 +116,66 @@ def squeeze(text):
 
 def parse(module):
     """Parameters [(name, default)] and ports [(name, direction, width)] of a module, in order; blanks removed."""
-    text = re.sub(r"//[^\n]*", "", (RTL / rtl_files()[module]).read_text())
+    text = re.sub(r"//[^\n]*", "", (ROOT / rtl_files()[module]).read_text())
     head = re.search(rf"\bmodule\s+{module}\b(.*?)\);", text, re.S)
     if not head:
         fail(f"{rtl_files()[module]}: no module {module}")
     parameters = re.findall(r"\bparameter\s+integer\s+(\w+)\s*=\s*([^,\n]+)", head.group(1))
     ports = re.findall(r"\b(input|output)\s+(?:wire|reg)\s+(?:signed\s+)?(?:\[([^\]]*):0\])?\s*(\w+)", head.group(1))
-    widths = [(name, direction, width_of(squeeze(top).replace("`", ""))) for direction, top, name in ports]
+    widths = [(name, direction, width_of(squeeze(top))) for direction, top, name in ports]
     return [(name, squeeze(value).replace("`", "")) for name, value in parameters], widths
+
+
+@functools.lru_cache(None)
+def definitions():
+    """Constants by name, and functions of COORD_W as (factor, summand): all of them are linear."""
+    data = json.loads((ROOT / "scripts" / "definitions.json").read_text())
+    constants = {c["name"]: c["value"] for c in data["constants"]}
+    sources = {f["name"]: (f["args"], f["expr"]) for f in data["functions"]}
+    for record in data["records"]:
+        sources[f"{record['name']}_W"] = (record["args"], " + ".join(f["width"] for f in record["fields"]))
+
+    def value(text, given):
+        names = constants | given | {n: (lambda *a, s=s: value(s[1], dict(zip(s[0], a)))) if s[0] else None for n, s in sources.items()}
+        return eval(re.sub(r"\b([A-Z]\w*)\b(?!\()", lambda m: str(value(sources[m[1]][1], {})) if m[1] in sources else m[1], text),
+                    {"__builtins__": {}}, names)
+
+    linear = {}
+    for name, (args, text) in sources.items():
+        if not args:
+            constants[name] = value(text, {})
+    for name, (args, text) in sources.items():
+        if args == ["w"] and name.endswith("_W"):
+            zero, one, two = (value(text, {"w": w}) for w in range(3))
+            assert two - one == one - zero, name
+            linear[name] = (one - zero, zero)
+    return constants, linear
+
+
+def plain(text):
+    """A width with the definitions of scripts/definitions.json worked out: `CCHIP_TAG_W-1 becomes 15."""
+    constants, linear = definitions()
+
+    def function(match):
+        factor, summand = linear[match[1]]
+        text = f"{factor}*COORD_W" if factor != 1 else "COORD_W"
+        return f"({text}+{summand})" if summand else text
+
+    text = re.sub(r"`?CCHIP_(\w+)\(COORD_W\)", function, text)
+    text = re.sub(r"`?CCHIP_(\w+)", lambda m: str(constants[m[1]]), text)
+    alone = re.fullmatch(r"\(([^()]*)\)-1", text)
+    text = f"{alone[1]}-1" if alone else text
+    sums = re.fullmatch(r"(.*?)((?:[+-]\d+)+)", text)
+    if re.fullmatch(r"[\d+-]+", text):
+        return str(eval(text))
+    return f"{sums[1]}{eval(sums[2]):+d}" if sums and sums[1] and sums[1][-1] not in "*(" else text
 
 
 def width_of(top):
     """Width of the range [top:0]."""
     if not top:
         return "1"
+    top = plain(top)
     base, offset = re.fullmatch(r"(.*?)([+-]?\d+)?", top).groups() if re.search(r"(^|[+-])\d+$", top) else (top, "0")
     width = int(offset) + 1
     return str(width) if not base else base if width == 0 else f"{base}{width:+d}"
@@ -139,8 +187,7 @@ def width_of(top):
 def simulate(bench, *options):
     with tempfile.TemporaryDirectory() as folder:
         program = f"{folder}/bench.vvp"
-        files = [f"rtl/{name}" for name in rtl_files().values()]
-        run("iverilog", "-g2005", "-Irtl/include", "-o", program, *options, *files, bench)
+        run("iverilog", "-g2005", "-Irtl/include", "-o", program, *options, *rtl_files().values(), bench)
         return run("vvp", "-n", program)
 
 
@@ -308,7 +355,7 @@ def speed(module):
 
 def datasheet_block(module):
     text = speed(module)
-    if module in SIMULATION_ONLY:
+    if not rtl_files()[module].startswith("rtl/"):
         return text + "\nNo area, no clock: for simulations only.\n"
     text += "\nFmax: whole primitive tests are placed and routed, see [fpga.md](../fpga.md).\n\n"
     kinds = list(next(iter(TARGETS.values()))[1])

@@ -24,6 +24,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RTL = ROOT / "rtl"
+MODELS = ROOT / "sim" / "rtl_models" / "sim.f"  # for simulation only
 INCLUDES = ("cchip_defs.vh", "cchip_assert.vh")
 BLANK = "cchip_primtest_blank"
 SUBSYSTEM = "cchip_primtest_subsystem"
@@ -46,7 +47,7 @@ class ExportError(Exception):
 def read_list(path):
     """Files of a list by module name, in its order."""
     lines = [line.strip() for line in path.read_text().splitlines()]
-    return {pathlib.Path(line).stem: RTL / line for line in lines if line.endswith(".v")}
+    return {pathlib.Path(line).stem: path.parent / line for line in lines if line.endswith(".v")}
 
 
 def without_comments(text):
@@ -87,6 +88,12 @@ def body(path):
     return "\n".join(kept) + "\n"
 
 
+def guarded(path):
+    """A module that may occur in more than one exported file of a project."""
+    guard = f"CCHIP_EXPORT_{path.stem.upper()}"
+    return f"\n// ---- {path.relative_to(ROOT)}\n`ifndef {guard}\n`define {guard}\n{body(path)}`endif\n"
+
+
 def one_file(top, files, list_name):
     """Verilog of a top and everything below it. Each module is guarded: two exported files fit into one project."""
     names = closure(top, files)
@@ -98,9 +105,19 @@ def one_file(top, files, list_name):
     for name in INCLUDES:
         text += f"\n// ---- rtl/include/{name}\n{body(RTL / 'include' / name)}"
     for name in names:
-        guard = f"CCHIP_EXPORT_{name.upper()}"
-        text += f"\n// ---- {files[name].relative_to(ROOT)}\n`ifndef {guard}\n`define {guard}\n{body(files[name])}`endif\n"
+        text += guarded(files[name])
     return text + "/* verilator lint_on DECLFILENAME */\n"
+
+
+def simulation_models(top):
+    """Verilog of the models for simulation only that a top may instantiate, or nothing."""
+    models = read_list(MODELS)
+    names = [name for name in closure(top, read_list(RTL / "cchip.f") | models) if name in models]
+    return "".join(["// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1\n// Models for simulation only, to be read after "
+                    f"{top}.v, whose definitions they use. Written by scripts/export.py. Do not edit.\n"
+                    "/* verilator lint_off DECLFILENAME */ // many modules in one file\n",
+                    *(guarded(models[name]) for name in names),
+                    "/* verilator lint_on DECLFILENAME */\n"] if names else [])
 
 
 def variants(top):
@@ -189,7 +206,7 @@ def readme(top, suffixes, pairs, mhz):
         wrapped = "bench_subsystem" if top == SUBSYSTEM else top
         compiled = (f"iverilog -g2005 -DCCHIP_BENCH_TOP={wrapped} -s bench_primtest -o bench.vvp bench_primtest.v "
                     f"{'bench_subsystem.v ' if top == SUBSYSTEM else ''}{top}.v")
-    more = """- [Registers](docs/registers.md), for C++ `registers.hpp`. Parameter `SIMULATION` = 1: a slot holds all modules, bitstreams exchange them.
+    more = """- [Registers](docs/registers.md), for C++ `registers.hpp`. `simulation_models.v` with parameter `SIMULATION` = 1: a slot holds all modules, bitstreams exchange them.
 """ if top == SUBSYSTEM else ""
     return f"""<!-- SPDX-License-Identifier: Apache-2.0 -->
 # {top}, collisionchip {version()}
@@ -229,9 +246,12 @@ def export(top, options):
             f"// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1\n{top}{suffix}.v\n")
         if suffix:
             shutil.copy(ROOT / CELLS[suffix], folder)
+    models = simulation_models(top)
+    if models:
+        (folder / "simulation_models.v").write_text(models)
     for kind, text in constraints(top, options.mhz).items():
         (folder / "constraints" / f"{top}.{kind}").write_text(text)
-    write_pages(folder, closure(top, read_list(RTL / "cchip.f")))
+    write_pages(folder, closure(top, read_list(RTL / "cchip.f") | (read_list(MODELS) if models else {})))
     shutil.copytree(ROOT / "LICENSES", folder / "LICENSES")
     bench = "bench_blank.v" if top == BLANK else "bench_primtest.v"
     shutil.copy(ROOT / "tests" / "icarus" / bench, folder)

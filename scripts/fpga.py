@@ -40,6 +40,7 @@ import subprocess
 import sys
 
 import datasheet
+import progress
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build" / "fpga"
@@ -105,8 +106,11 @@ def definition(name):
     return int(re.search(rf"^`define CCHIP_{name} (\d+)$", text, re.M).group(1))
 
 
+bar = progress.Progress(0, "jobs")
+
+
 def say(text):
-    print(text, file=sys.stderr, flush=True)
+    bar.say(text, sys.stderr)
 
 
 # ---- tools and their outputs
@@ -443,7 +447,10 @@ def measure(chosen, options):
     """Figures by row, and the failures; a row that fails does not stop the others."""
     failures = []
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        submit = lambda *job: pool.submit(attempt, failures, *job)
+        def submit(*job):
+            bar.total += 1
+            return pool.submit(bar.counted(attempt), failures, *job)
+
         beats = {shape: submit(mean_beats, shape, options) for shape in dict.fromkeys(row.shape for row in chosen)}
         counts = {(row.name, family): submit(count_family, row, family)
                   for row in chosen if options.families and row.families for family in FAMILIES}
@@ -510,7 +517,8 @@ def main():
     version(options.nextpnr, "--version")
     if not pathlib.Path(options.campaign).exists():
         say(f"fpga.py: no {options.campaign}, so no pairs per second; run: make campaign-build")
-    found, failures = measure(chosen, options)
+    with bar:
+        found, failures = measure(chosen, options)
     save(found)
     print(area_table(found))
     if options.families:

@@ -10,6 +10,7 @@ import json
 import pathlib
 import re
 import sys
+import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "scripts" / "definitions.json"
@@ -35,25 +36,68 @@ def expand(expr, style, names, args):
     return re.sub(r"[A-Za-z_][A-Za-z_0-9]*", replace, expr)
 
 
+def fields(record, style, names, values):
+    """(field, its arguments, lowest bit, width) from the lowest field on, and the width of the record, as expressions for
+    one language; numbers where no argument enters. `values`: constants and records by name, to which this one is added."""
+    found, below, parts = [], 0, []
+    for f in record["fields"]:
+        width = values.get(f["width"]) or (int(f["width"]) if f["width"].isdigit() else None)
+        lsb = " + ".join(([str(below)] if below or not parts else []) + parts)
+        if width and not parts:
+            found.append((f, [], lsb, str(width)))
+            below += width
+        else:
+            parts.append(expand(f["width"], style, names, record["args"]))
+            found.append((f, record["args"], lsb, parts[-1]))
+    total = " + ".join([str(below), *parts])
+    values[f"{record['name']}_W"] = int(total) if not parts else None
+    return found, total
+
+
+def sizes(data):
+    return {c["name"]: c["value"] for c in data["constants"]}
+
+
+def comment(text, unit=""):
+    return textwrap.wrap(text + (f" [{unit}]" if unit else ""), 100, initial_indent="// ", subsequent_indent="// ")
+
+
+def define(head, value):
+    line = f"`define CCHIP_{head} {value}"
+    return [line] if len(line) <= 100 else [f"`define CCHIP_{head} \\", *textwrap.wrap(value, 96, initial_indent="  ", subsequent_indent="  ")]
+
+
 def verilog(data, names):
     lines = ["// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1", f"// {NOTE}", "`ifndef CCHIP_DEFS_VH", "`define CCHIP_DEFS_VH", ""]
     for c in data["constants"]:
-        lines.append(f"// {c['doc']}" + (f" [{c['unit']}]" if c["unit"] else ""))
-        value = str(c["value"]).replace("0x", "32'h")
-        lines.append(f"`define CCHIP_{c['name']} {value}")
+        lines += comment(c["doc"], c["unit"])
+        lines += define(c["name"], str(c["value"]).replace("0x", "32'h"))
     widths = {"MODE": "MODE_W", "AXIS": "CLASS_W", "RM": "RM_ID_W", "PROG": "PROG_W", "PHASE": "PHASE_W", "SWAP": "SWAP_W"}
-    size = {c["name"]: c["value"] for c in data["constants"]}
+    size = sizes(data)
     for e in data["enums"]:
-        lines += ["", f"// {e['doc']}"]
+        lines += ["", f"// ---- {e['doc']}"]
         for v in e["values"]:
-            lines.append(f"`define CCHIP_{e['prefix']}_{v['name']} {size[widths[e['prefix']]]}'d{v['value']} // {v['doc']}")
-    lines.append("")
+            lines += comment(v["doc"]) + define(f"{e['prefix']}_{v['name']}", f"{size[widths[e['prefix']]]}'d{v['value']}")
+    lines += ["", "// ---- functions of the parameters"]
     for f in data["functions"]:
-        lines.append(f"// {f['doc']} [{f['unit']}]")
-        head = f"`define CCHIP_{f['name']}" + (f"({', '.join(f['args'])})" if f["args"] else "")
-        lines.append(f"{head} ({expand(f['expr'], 'verilog', names, f['args'])})")
+        args = f"({', '.join(f['args'])})" if f["args"] else ""
+        lines += comment(f["doc"], f["unit"])
+        lines += define(f["name"] + args, f"({expand(f['expr'], 'verilog', names, f['args'])})")
+    for r in data["records"]:
+        args = f"({', '.join(r['args'])})" if r["args"] else ""
+        found, width = fields(r, "verilog", names, size)
+        lines += ["", *comment(f"---- {r['doc']}: word[`CCHIP_{r['name']}_<field>]"), *define(f"{r['name']}_W{args}", width if width.isdigit() else f"({width})")]
+        for f, needs, lsb, width in found:
+            lines += comment(f["doc"]) + define(f"{r['name']}_{f['name']}{args if needs else ''}", f"{lsb}+:{width}")
     lines += ["", "`endif", ""]
     return "\n".join(lines)
+
+
+def constant(kind, name, args, value):
+    """A C++ constant, or a function of its arguments."""
+    name = name.lower()
+    head = f"{name}({', '.join(f'int {a}' for a in args)}) {{ return" if args else f"{name} ="
+    return f"constexpr {kind} {head} {value};" + (" }" if args else "")
 
 
 def cpp(data, names):
@@ -74,11 +118,18 @@ def cpp(data, names):
         lines.append(f"/// {f['doc']} [{f['unit']}]")
         args = ", ".join(f"int {a}" for a in f["args"])
         lines.append(f"constexpr int {f['name'].lower()}({args}) {{ return {expand(f['expr'], 'cpp', names, f['args'])}; }}")
+    lines += ["", "/// A field of a record: its lowest bit and its width.", "struct Field {", "  int lsb;", "  int width;", "};"]
+    size = sizes(data)
+    for r in data["records"]:
+        found, width = fields(r, "cpp", names, size)
+        lines += ["", f"/// {r['doc']} [bit]", constant("int", f"{r['name']}_W", r["args"], width)]
+        for f, needs, lsb, width in found:
+            lines += [f"/// {f['doc']}", constant("Field", f"{r['name']}_{f['name']}", needs, f"{{{lsb}, {width}}}")]
     lines += ["", "}  // namespace defs", "}  // namespace cchip", "", "#endif", ""]
     return "\n".join(lines)
 
 
-def page(data):
+def page(data, names):
     lines = ["<!-- SPDX-License-Identifier: Apache-2.0 -->", f"<!-- {NOTE} -->", "# Shared definitions", "",
              "Verilog: `` `CCHIP_<NAME> `` of `rtl/include/cchip_defs.vh`. C++: `cchip::defs::<name>` of `<cchip/wire/definitions.hpp>`.", "",
              "## Constants", "", "| name | value | unit | meaning |", "|---|---|---|---|"]
@@ -86,6 +137,13 @@ def page(data):
     for e in data["enums"]:
         lines += ["", f"## `{e['name']}`", "", e["doc"][0].upper() + e["doc"][1:] + ".", "", "| name | code | meaning |", "|---|---|---|"]
         lines += [f"| `{e['prefix']}_{v['name']}` | {v['value']} | {v['doc']} |" for v in e["values"]]
+    size = sizes(data)
+    for r in data["records"]:
+        args = f"({', '.join(r['args'])})" if r["args"] else ""
+        found, width = fields(r, "page", names, size)
+        lines += ["", f"## Record `{r['name']}{args}`", "", r["doc"][0].upper() + r["doc"][1:] + f". Lowest field first, `{width}` bits.", "",
+                  "| field | lowest bit | width | meaning |", "|---|---|---|---|"]
+        lines += [f"| `{r['name']}_{f['name']}` | `{lsb}` | `{w}` | {f['doc']} |" for f, _, lsb, w in found]
     lines += ["", "## Functions of the parameters", "", "`w` = `COORD_W`, `s` = `SUBSTAGES`.", "",
               "| name | value | unit | meaning |", "|---|---|---|---|"]
     for f in data["functions"]:
@@ -100,10 +158,12 @@ def main():
     names = {c["name"]: "constant" for c in data["constants"]}
     for f in data["functions"]:
         names[f["name"]] = "function" if f["args"] else "function0"
+    for r in data["records"]:
+        names[f"{r['name']}_W"] = "function" if r["args"] else "constant"
     outputs = {
         ROOT / "rtl" / "include" / "cchip_defs.vh": verilog(data, names),
         ROOT / "cpp_ref" / "include" / "cchip" / "wire" / "definitions.hpp": cpp(data, names),
-        ROOT / "docs" / "definitions.md": page(data),
+        ROOT / "docs" / "definitions.md": page(data, names),
     }
     stale = [p for p, text in outputs.items() if not p.exists() or p.read_text() != text]
     if "--check" in sys.argv[1:]:

@@ -4,14 +4,13 @@
 #define CCHIP_TESTS_SEED_PRINTER_HPP
 
 #include <catch2/catch.hpp>
-#include <cstdlib>
+#include <cchip/sim/seed.hpp>
 #include <iostream>
 
 struct SeedPrinter : Catch::TestEventListenerBase {
   using TestEventListenerBase::TestEventListenerBase;
   void testRunStarting(const Catch::TestRunInfo&) override {
-    const char* seed = std::getenv("CCHIP_SEED");
-    std::cout << "CCHIP_SEED=" << (seed == nullptr || *seed == '\0' ? "1" : seed) << std::endl;
+    std::cout << "CCHIP_SEED=" << cchip::sim::seed_from_environment() << std::endl;
   }
 };
 

@@ -5,7 +5,8 @@
 //   throughput   one result per clock, never stalls
 //   numbers      two's complement, x in the low bits; components of q have 2 E_W bits, exact for
 //                |components of a and b| < 2^(E_W-1)
-//   cost         six multipliers, three subtractors (paper, section 3.3: with the six of the edges nine adders)
+//   cost         six multipliers, three subtractors (paper, section 3.3: with the six of the edges
+//                nine adders)
 //   reset        none (data only)
 module cchip_cross3 #(
     // width of a component of a and b, bit

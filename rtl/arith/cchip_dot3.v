@@ -3,8 +3,8 @@
 // cchip_dot3: dot product of two vectors of three components. q = a.x b.x + a.y b.y + a.z b.z.
 //   latency      CCHIP_MUL_LATENCY(A_W, B_W) + 2 + OPERAND_REGS + PRODUCT_REGS + RESULT_REGS clocks
 //   throughput   one result per clock, never stalls
-//   numbers      two's complement, x in the low bits; q wraps modulo 2^(A_W+B_W): exact whenever the true
-//                value fits, as 3x3 determinants do (CCHIP_PROJ_W)
+//   numbers      two's complement, x in the low bits; q wraps modulo 2^(A_W+B_W): exact whenever
+//                the true value fits, as 3x3 determinants do (CCHIP_PROJ_W)
 //   reset        none (data only)
 module cchip_dot3 #(
     // width of a component of a, bit

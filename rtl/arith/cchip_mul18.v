@@ -7,7 +7,7 @@
 //   reset        none (data only): the registers can move into the block
 // Every multiplication of the chip goes through this module; a device-specific twin may replace it.
 module cchip_mul18 (
-    input  wire               clk,
+    input  wire        clk,
     input  wire signed [17:0] a,
     input  wire signed [17:0] b,
     output wire signed [35:0] p

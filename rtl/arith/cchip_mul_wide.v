@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_defs.vh"
 // cchip_mul_wide: signed A_W x B_W multiplier from 18x18 leaves. p = a * b.
 //   latency      CCHIP_MUL_LATENCY(A_W, B_W) + PRODUCT_REGS clocks
 //   throughput   one product per clock, never stalls
-//   numbers      two's complement, p has A_W + B_W bits and is exact. A factor of at most 18 bits is one
-//                limb; a wider one is cut into 17-bit unsigned limbs below a signed limb of at most 18
-//                bits. One leaf per pair of limbs, then an adder tree with a register per level.
+//   numbers      two's complement, p has A_W + B_W bits and is exact. A factor of at most 18 bits
+//                is one limb; a wider one is cut into 17-bit unsigned limbs below a signed limb of
+//                at most 18 bits. One leaf per pair of limbs, then an adder tree with a register
+//                per level.
 //   leaves       CCHIP_LIMBS(A_W) * CCHIP_LIMBS(B_W)
 //   reset        none (data only)
 module cchip_mul_wide #(
@@ -21,8 +23,6 @@ module cchip_mul_wide #(
     input  wire [    B_W-1:0] b,
     output wire [A_W+B_W-1:0] p
 );
-
-`include "cchip_defs.vh"
 
   localparam integer P_W = A_W + B_W;
   localparam integer LA = `CCHIP_LIMBS(A_W);

@@ -14,10 +14,10 @@ module cchip_norm1 #(
     output wire [    V_W:0] q
 );
 
-  // ---- clock 1: |v| of what is not negative, |v| - 1 of what is
+  // ---- clock 1: bits inverted if negative: |v| of v >= 0, |v| - 1 of v < 0
   reg [3*(V_W-1)-1:0] size_q;
   reg x_negative_q;
-  reg [1:0] rest_q;  // y and z: how many are negative
+  reg [1:0] rest_q;  // number of negative components among y and z
   genvar d;
   generate
     for (d = 0; d < 3; d = d + 1) begin : gen_component
@@ -29,8 +29,10 @@ module cchip_norm1 #(
     rest_q       <= {v[2*V_W-1] & v[3*V_W-1], v[2*V_W-1] ^ v[3*V_W-1]};
   end
 
-  // ---- clock 2: the missing ones go in as carries
-  wire [V_W:0] xy = {1'b0, size_q[0+:V_W-1], x_negative_q} + {1'b0, size_q[V_W-1+:V_W-1], x_negative_q};
+  // ---- clock 2: adds the 1 that every negative component still lacks: that of x as the carry into
+  // x + y, those of y and z together with z
+  wire [V_W:0] xy =
+      {1'b0, size_q[0+:V_W-1], x_negative_q} + {1'b0, size_q[V_W-1+:V_W-1], x_negative_q};
   wire [V_W:0] rest = {{V_W - 1{1'b0}}, rest_q};
   reg [V_W-1:0] xy_q, z_q;
   always @(posedge clk) begin
@@ -38,7 +40,7 @@ module cchip_norm1 #(
     z_q  <= {1'b0, size_q[2*(V_W-1)+:V_W-1]} + rest[V_W-1:0];
   end
 
-  // ---- clock 3
+  // ---- clock 3: all three
   reg [V_W:0] sum_q;
   always @(posedge clk) sum_q <= {1'b0, xy_q} + {1'b0, z_q};
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// cchip_crc32: CRC-32 of IEEE 802.3 (that of zlib) over a row of words, first byte lowest.
+// cchip_crc32: CRC-32 of IEEE 802.3 (as in zlib) over a sequence of words, first byte lowest.
 //   latency      1 clock from a word to the CRC of all words up to it
 //   throughput   one word per clock
 //   numbers      reflected polynomial EDB88320, starts with all ones, result inverted
@@ -30,7 +30,8 @@ module cchip_crc32 #(
     integer i;
     begin
       next = from;
-      for (i = 0; i < DATA_W; i = i + 1) next = {1'b0, next[31:1]} ^ (next[0] ^ word[i] ? 32'hEDB88320 : 32'd0);
+      for (i = 0; i < DATA_W; i = i + 1)
+        next = {1'b0, next[31:1]} ^ (next[0] ^ word[i] ? 32'hEDB88320 : 32'd0);
     end
   endfunction
 

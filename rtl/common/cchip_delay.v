@@ -5,8 +5,8 @@
 //   throughput   one value per clock, never stalls
 //   cuts         d -> q if DEPTH > 0
 //   reset        RESET = 1 clears every stage (valid bits); RESET = 0 leaves data alone
-//   MEMORY = 1   (DEPTH >= 3, RESET = 0) keeps the values in a small memory with a circulating pointer
-//                instead of flip-flops
+//   MEMORY = 1   (DEPTH >= 3, RESET = 0) keeps the values in a small memory with a circulating
+//                pointer instead of flip-flops
 module cchip_delay #(
     // width of the value, bit
     parameter integer WIDTH = 1,
@@ -27,7 +27,8 @@ module cchip_delay #(
     if (WIDTH < 1 || DEPTH < 0 || RESET < 0 || RESET > 1) begin : gen_illegal
       cchip_error_delay_WIDTH_below_1_or_DEPTH_below_0_or_RESET_not_0_or_1 u_error ();
     end
-    if (MEMORY < 0 || MEMORY > 1 || (MEMORY == 1 && (DEPTH < 3 || RESET == 1))) begin : gen_illegal_memory
+    if (MEMORY < 0 || MEMORY > 1 || (MEMORY == 1 && (DEPTH < 3 || RESET == 1)))
+    begin : gen_illegal_memory
       cchip_error_delay_MEMORY_needs_DEPTH_3_and_RESET_0 u_error ();
     end
     if (DEPTH == 0) begin : gen_wire
@@ -42,12 +43,13 @@ module cchip_delay #(
       reg [PTR_W-1:0] pointer_q;
       reg last_q;
       reg [WIDTH-1:0] q_q;
-      // any values find into the circle, over 0: no reset
+      // no reset: from any value at power-up the pointer counts up, overflows to 0 and then counts
+      // the DEPTH - 1 words round and round
       initial pointer_q = {PTR_W{1'b0}};
       initial last_q = 1'b0;
       wire unused = &{1'b0, rst};
       always @(posedge clk) begin
-        last_q <= pointer_q == BEFORE_LAST[PTR_W-1:0] & ~last_q;
+        last_q <= pointer_q == BEFORE_LAST[PTR_W-1:0] && !last_q;
         if (last_q) pointer_q <= {PTR_W{1'b0}};
         else pointer_q <= pointer_q + {{PTR_W - 1{1'b0}}, 1'b1};
         mem[pointer_q] <= d;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_fifo: first-in first-out queue in distributed memory with a register behind it.
 //   latency      2 clocks from the push to m_valid of an empty queue
 //   throughput   one beat per clock, DEPTH >= 3
@@ -11,7 +12,7 @@ module cchip_fifo #(
     parameter integer WIDTH = 8,
     // capacity, beats
     parameter integer DEPTH = 16,
-    // 1: the sender sees to it that s_valid finds s_ready = 1; saves the logic between them
+    // 1: the sender raises s_valid only while s_ready is 1; saves the logic that checks it
     parameter integer ROOM_KNOWN = 0
 ) (
     input  wire             clk,
@@ -24,9 +25,10 @@ module cchip_fifo #(
     output wire [WIDTH-1:0] m_data
 );
 
-  // banks of 16 words, the smallest memory of LUTs, that take turns: pointers run round by themselves, nothing is
-  // compared. Each bank is read with a pointer of its own, which moves on a clock after the read: the turn is another
-  // bank's then, so there are two banks at least.
+  // The memory is made of banks of 16 words, the smallest memory that LUTs form. Successive beats
+  // go to successive banks, so a pointer of 4 bits wraps by itself and no comparison is needed.
+  // Each bank has a read pointer of its own, which moves one clock after the read. There must be
+  // two banks at least, so that no bank is read on two consecutive clocks.
   localparam integer BANKS = DEPTH > 16 ? (DEPTH + 15) / 16 : 2;
   localparam integer COUNT_W = $clog2(DEPTH + 1);
   localparam [31:0] LAST = DEPTH - 1;
@@ -41,7 +43,7 @@ module cchip_fifo #(
   endgenerate
 
   reg [BANKS-1:0] write_bank_q, read_bank_q;  // one-hot
-  reg [3:0] write_q;  // word, of all banks
+  reg [3:0] write_q;  // write pointer, the same for all banks
   reg [COUNT_W-1:0] count_q; // beats in memory and output register
   reg ready_q, some_q, more_q;  // count_q < DEPTH, >= 1, >= 2
   reg valid_q;
@@ -51,7 +53,7 @@ module cchip_fifo #(
   assign m_valid = valid_q;
   assign m_data  = data_q;
 
-  wire push = s_valid & (ready_q | ROOM_KNOWN != 0);
+  wire push = s_valid && (ready_q || ROOM_KNOWN != 0);
   wire pop = valid_q & m_ready;
   wire up = push & ~pop;
   wire down = pop & ~push;
@@ -67,7 +69,7 @@ module cchip_fifo #(
       reg [3:0] read_q;
       reg was_read_q;
       always @(posedge clk) begin
-        if (push & write_bank_q[b]) mem[write_q] <= s_data;
+        if (push && write_bank_q[b]) mem[write_q] <= s_data;
         if (rst) begin
           was_read_q <= 1'b0;
           read_q     <= 4'd0;
@@ -93,7 +95,7 @@ module cchip_fifo #(
   wire [BANKS-1:0] write_bank_next = (write_bank_q << 1) | (write_bank_q >> (BANKS - 1));
   wire [BANKS-1:0] read_bank_next = (read_bank_q << 1) | (read_bank_q >> (BANKS - 1));
 
-  // comparisons start from registers: push and pop only choose
+  // the comparisons use registers only; push and pop, which come late, select among their results
   always @(posedge clk) begin
     if (load) data_q <= word;
     if (rst) begin
@@ -106,7 +108,7 @@ module cchip_fifo #(
       more_q  <= 1'b0;
       valid_q <= 1'b0;
     end else begin
-      if (push & write_bank_q[BANKS-1]) write_q <= write_q + 4'd1;
+      if (push && write_bank_q[BANKS-1]) write_q <= write_q + 4'd1;
       if (push) write_bank_q <= write_bank_next;
       if (load) read_bank_q <= read_bank_next;
       if (push != pop) count_q <= count_q + ({COUNT_W{pop}} | ONE[COUNT_W-1:0]);  // + 1 or - 1
@@ -117,7 +119,6 @@ module cchip_fifo #(
     end
   end
 
-`include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_room, ROOM_KNOWN == 0 || !s_valid || ready_q)

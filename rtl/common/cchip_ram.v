@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 // cchip_ram: memory with one write port and one registered read port.
-//   latency      read data CCHIP_RAM_LATENCY = 3 clocks after the address; write data come 1 clock after write
-//                and its address: what fans out to all blocks starts from registers
+//   latency      read data CCHIP_RAM_LATENCY = 3 clocks after the address. The sender presents the
+//                write data one clock after write and write_addr, so that the decoded address,
+//                which goes to every bank, comes from registers
 //   throughput   one write and one read per clock
-//   collision    an address one clock after that of the write, on the clock of its data, reads the new word;
-//                an earlier one the old word
+//   collision    a read address that comes one clock after the write address reads the new word, an
+//                earlier one the old word
 //   reset        none; words are undefined until written
 module cchip_ram #(
     // width of a word, bit
@@ -20,8 +21,11 @@ module cchip_ram #(
     input  wire [ADDR_W-1:0] write_addr,
     input  wire [ WIDTH-1:0] write_data,  // one clock after write, write_addr
     input  wire [ADDR_W-1:0] read_addr,
-    output reg  [ WIDTH-1:0] read_data
+    output wire [ WIDTH-1:0] read_data
 );
+
+  reg [WIDTH-1:0] read_data_q;
+  assign read_data = read_data_q;
 
   generate
     if (WIDTH < 1 || DEPTH < 1 || (1 << ADDR_W) < DEPTH) begin : gen_illegal
@@ -29,8 +33,9 @@ module cchip_ram #(
     end
   endgenerate
 
-  // banks of 16 words, the smallest memory of LUTs. A register on both sides of the memory: the choice of the bank
-  // comes behind it.
+  // The memory is made of banks of 16 words, the smallest memory that LUTs form. There is a
+  // register before and behind the banks; the word of the right bank is selected after the second
+  // one.
   localparam integer BANKS = (DEPTH + 15) / 16;
   localparam integer WORD_W = ADDR_W > 4 ? 4 : ADDR_W;
 
@@ -49,7 +54,7 @@ module cchip_ram #(
       if (BANKS == 1) begin : gen_one
         always @(posedge clk) write_q <= write;
       end else begin : gen_decode
-        always @(posedge clk) write_q <= write & write_addr[ADDR_W-1:4] == B[ADDR_W-5:0];
+        always @(posedge clk) write_q <= write && write_addr[ADDR_W-1:4] == B[ADDR_W-5:0];
       end
       always @(posedge clk) begin
         if (write_q) mem[write_word_q] <= write_data;
@@ -62,13 +67,14 @@ module cchip_ram #(
     integer j;
     begin
       choose = from[0+:WIDTH];
-      for (j = 1; j < BANKS; j = j + 1) if ({{32 - ADDR_W{1'b0}}, address} >> 4 == j[31:0]) choose = from[WIDTH*j+:WIDTH];
+      for (j = 1; j < BANKS; j = j + 1)
+        if ({{32 - ADDR_W{1'b0}}, address} >> 4 == j[31:0]) choose = from[WIDTH*j+:WIDTH];
     end
   endfunction
   always @(posedge clk) begin
     read_addr_q  <= read_addr;
     read_addr_q2 <= read_addr_q;
-    read_data    <= choose(words_q2, read_addr_q2);
+    read_data_q  <= choose(words_q2, read_addr_q2);
   end
 
 endmodule

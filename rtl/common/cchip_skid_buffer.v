@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_skid_buffer: stream register with registered ready.
 //   latency      1 clock
 //   throughput   one beat per clock, also while m_ready toggles
@@ -54,7 +55,6 @@ module cchip_skid_buffer #(
     if (ready_q) skid_data_q <= s_data;
   end
 
-`include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_ready_means_empty, !(ready_q && skid_valid_q))

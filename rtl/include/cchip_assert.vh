@@ -14,7 +14,10 @@
 `ifdef SYNTHESIS
 `define CCHIP_ASSERT(label, condition)
 `else
-`define CCHIP_ASSERT(label, condition) begin : label if (!(condition)) begin $display("CCHIP_ASSERT failed: %m"); $finish; end end
+`define CCHIP_ASSERT(label, condition) \
+  begin : label \
+    if (!(condition)) begin $display("CCHIP_ASSERT failed: %m"); $finish; end \
+  end
 `endif
 `endif
 `endif

@@ -31,12 +31,18 @@
 `define CCHIP_CLASS_W 3
 // width of the fields k and l of an axis code [bit]
 `define CCHIP_INDEX_W 3
-// width of m_result_axis = {class, k, l} [bit]
-`define CCHIP_AXIS_CODE_W 9
 // width of m_result_beats (saturating) [bit]
 `define CCHIP_BEATS_W 6
 // width of rm_id [bit]
 `define CCHIP_RM_ID_W 8
+// width of s_pair_kind: the low bits of the ModuleId that tests the pair [bit]
+`define CCHIP_KIND_W 2
+// width of a slot's number [bit]
+`define CCHIP_SLOT_ID_W 8
+// width of a slot's counts of pairs inside and of pairs lost [bit]
+`define CCHIP_PAIR_COUNT_W 16
+// width of error_shift, 0..4: the smallest shift with eta <= 2^error_shift [bit]
+`define CCHIP_ERROR_SHIFT_W 3
 // unsigned limb of a wide factor on an 18x18 multiplier block [bit]
 `define CCHIP_LIMB_W 17
 // input and output register of cchip_mul18 [clock]
@@ -63,67 +69,120 @@
 `define CCHIP_SHUTDOWN_LIMIT_DEFAULT 65536
 // longest wait for a beat of the bitstream's memory, unless a register says otherwise [clock]
 `define CCHIP_MEMORY_LIMIT_DEFAULT 4096
-// state of a pair's programme that travels with its beat (cchip_axis_programme) [bit]
-`define CCHIP_STATE_W 34
+// width of the field info of a programme state; what it holds depends on the programme [bit]
+`define CCHIP_INFO_W 14
 
-// programme requested by s_pair_mode
-`define CCHIP_MODE_EXHAUSTIVE 2'd0 // the paper's schedule: every axis, back to back
-`define CCHIP_MODE_DIRECTED 2'd1 // one beat of a pair in flight, the next chosen from what came back
+// ---- programme requested by s_pair_mode
+// the paper's schedule: every axis, back to back
+`define CCHIP_MODE_EXHAUSTIVE 2'd0
+// one beat of a pair in flight, the next chosen from what came back
+`define CCHIP_MODE_DIRECTED 2'd1
 
-// class field of an axis code (the witness of a no)
-`define CCHIP_AXIS_NONE 3'd0 // no separating axis: hit
-`define CCHIP_AXIS_NORMAL_A 3'd1 // normal of A (k = 0), of the face of A without vertex k - 1 (k = 1..4)
-`define CCHIP_AXIS_NORMAL_B 3'd2 // normal of B (k = 0), of the face of B without vertex k - 1 (k = 1..4)
-`define CCHIP_AXIS_CROSS 3'd3 // e_k x f_l; edges 0..3 are the sides, 4 = V0V2, 5 = V1V3
-`define CCHIP_AXIS_IN_PLANE_A 3'd4 // e_k x u_d in the plane of A, l = d
-`define CCHIP_AXIS_IN_PLANE_B 3'd5 // f_k x u_d in the plane of B, l = d
-`define CCHIP_AXIS_BOX 3'd6 // bounding boxes disjoint in component l
-`define CCHIP_AXIS_ILLEGAL 3'd7 // illegal request (reserved mode)
+// ---- class field of an axis code (the witness of a no)
+// no separating axis: hit
+`define CCHIP_AXIS_NONE 3'd0
+// normal of A (k = 0), of the face of A without vertex k - 1 (k = 1..4)
+`define CCHIP_AXIS_NORMAL_A 3'd1
+// normal of B (k = 0), of the face of B without vertex k - 1 (k = 1..4)
+`define CCHIP_AXIS_NORMAL_B 3'd2
+// e_k x f_l; edges 0..3 are the sides, 4 = V0V2, 5 = V1V3
+`define CCHIP_AXIS_CROSS 3'd3
+// e_k x u_d in the plane of A, l = d
+`define CCHIP_AXIS_IN_PLANE_A 3'd4
+// f_k x u_d in the plane of B, l = d
+`define CCHIP_AXIS_IN_PLANE_B 3'd5
+// bounding boxes disjoint in component l
+`define CCHIP_AXIS_BOX 3'd6
+// illegal request (reserved mode)
+`define CCHIP_AXIS_ILLEGAL 3'd7
 
-// rm_id of the reconfigurable modules
-`define CCHIP_RM_BLANK 8'd0 // cchip_primtest_blank
-`define CCHIP_RM_TRI_TRI 8'd1 // cchip_primtest_tri_tri
-`define CCHIP_RM_TRI_QUAD 8'd2 // cchip_primtest_tri_quad
-`define CCHIP_RM_QUAD_QUAD 8'd3 // cchip_primtest_quad_quad
+// ---- rm_id of the reconfigurable modules
+// cchip_primtest_blank
+`define CCHIP_RM_BLANK 8'd0
+// cchip_primtest_tri_tri
+`define CCHIP_RM_TRI_TRI 8'd1
+// cchip_primtest_tri_quad
+`define CCHIP_RM_TRI_QUAD 8'd2
+// cchip_primtest_quad_quad
+`define CCHIP_RM_QUAD_QUAD 8'd3
 
-// phase of a swap (cchip_config_controller)
-`define CCHIP_PHASE_IDLE 4'd0 // no swap
-`define CCHIP_PHASE_HEADER 4'd1 // header of the bitstream is fetched and checked; the slot works on
-`define CCHIP_PHASE_SHUTDOWN 4'd2 // no new pairs; wait until the pairs inside have been answered
-`define CCHIP_PHASE_DECOUPLE 4'd3 // outputs of the region become constants
-`define CCHIP_PHASE_RESET 4'd4 // the region is held in reset
-`define CCHIP_PHASE_TRANSFER 4'd5 // payload passes the configuration port
-`define CCHIP_PHASE_CHECK 4'd6 // length, CRC-32 and the device's own error
-`define CCHIP_PHASE_ROC 4'd7 // reset on configuration is clocked in, module compared
-`define CCHIP_PHASE_RECOUPLE 4'd8 // outputs of the region are connected again
-`define CCHIP_PHASE_REPORT 4'd9 // the report is given
+// ---- phase of a swap (cchip_config_controller)
+// no swap
+`define CCHIP_PHASE_IDLE 4'd0
+// header of the bitstream is fetched and checked; the slot works on
+`define CCHIP_PHASE_HEADER 4'd1
+// no new pairs; wait until the pairs inside have been answered
+`define CCHIP_PHASE_SHUTDOWN 4'd2
+// outputs of the region become constants
+`define CCHIP_PHASE_DECOUPLE 4'd3
+// the region is held in reset
+`define CCHIP_PHASE_RESET 4'd4
+// payload passes the configuration port
+`define CCHIP_PHASE_TRANSFER 4'd5
+// length, CRC-32 and the device's own error
+`define CCHIP_PHASE_CHECK 4'd6
+// reset on configuration is clocked in, module compared
+`define CCHIP_PHASE_ROC 4'd7
+// outputs of the region are connected again
+`define CCHIP_PHASE_RECOUPLE 4'd8
+// the report is given
+`define CCHIP_PHASE_REPORT 4'd9
 
-// outcome of a swap (cchip_config_controller)
-`define CCHIP_SWAP_OK 4'd0 // the module asked for works
-`define CCHIP_SWAP_SAME 4'd1 // the slot held the module already: nothing done
-`define CCHIP_SWAP_BUSY 4'd2 // a swap was under way: request refused
-`define CCHIP_SWAP_REQUEST 4'd3 // no such slot or module, no bitstream for it, or its address is not aligned: request refused
-`define CCHIP_SWAP_MAGIC 4'd4 // not a bitstream; the slot works on with its former module
-`define CCHIP_SWAP_SLOT 4'd5 // bitstream for another slot; the slot works on
-`define CCHIP_SWAP_MODULE 4'd6 // bitstream of another module; the slot works on
-`define CCHIP_SWAP_LENGTH 4'd7 // length in the header does not fit the size of the file or the port; the slot works on
-`define CCHIP_SWAP_CRC 4'd8 // CRC-32 of the payload is wrong: slot decoupled, in reset
-`define CCHIP_SWAP_DEVICE 4'd9 // the configuration port reported an error: slot decoupled, in reset
-`define CCHIP_SWAP_WRONG_MODULE 4'd10 // the new module has another rm_id: slot decoupled, in reset
-`define CCHIP_SWAP_BUS 4'd11 // error response or wrong burst length from memory: decoupled if the transfer had begun
-`define CCHIP_SWAP_MEMORY 4'd12 // memory did not answer in time, or still owes beats of an earlier read
-`define CCHIP_SWAP_SHUTDOWN 4'd13 // pairs inside were not answered in time; the slot works on with its former module
-`define CCHIP_SWAP_ABORTED 4'd14 // aborted: the slot works on if it was not decoupled yet, else decoupled, in reset
+// ---- outcome of a swap (cchip_config_controller)
+// the module asked for works
+`define CCHIP_SWAP_OK 4'd0
+// the slot held the module already: nothing done
+`define CCHIP_SWAP_SAME 4'd1
+// a swap was under way: request refused
+`define CCHIP_SWAP_BUSY 4'd2
+// no such slot or module, no bitstream for it, or its address is not aligned: request refused
+`define CCHIP_SWAP_REQUEST 4'd3
+// not a bitstream; the slot works on with its former module
+`define CCHIP_SWAP_MAGIC 4'd4
+// bitstream for another slot; the slot works on
+`define CCHIP_SWAP_SLOT 4'd5
+// bitstream of another module; the slot works on
+`define CCHIP_SWAP_MODULE 4'd6
+// length in the header does not fit the size of the file or the port; the slot works on
+`define CCHIP_SWAP_LENGTH 4'd7
+// CRC-32 of the payload is wrong: slot decoupled, in reset
+`define CCHIP_SWAP_CRC 4'd8
+// the configuration port reported an error: slot decoupled, in reset
+`define CCHIP_SWAP_DEVICE 4'd9
+// the new module has another rm_id: slot decoupled, in reset
+`define CCHIP_SWAP_WRONG_MODULE 4'd10
+// error response or wrong burst length from memory: decoupled if the transfer had begun
+`define CCHIP_SWAP_BUS 4'd11
+// memory did not answer in time, or still owes beats of an earlier read
+`define CCHIP_SWAP_MEMORY 4'd12
+// pairs inside were not answered in time; the slot works on with its former module
+`define CCHIP_SWAP_SHUTDOWN 4'd13
+// aborted: the slot works on if it was not decoupled yet, else decoupled, in reset
+`define CCHIP_SWAP_ABORTED 4'd14
 
-// programme of a pair in the axis controller
-`define CCHIP_PROG_NORMALS 3'd0 // directed: nA, then nB
-`define CCHIP_PROG_CROSSING 3'd1 // directed: the two axes that decide a pair in general position
-`define CCHIP_PROG_COPLANAR 3'd2 // in-plane axes of both
-`define CCHIP_PROG_DEGENERATE 3'd3 // a zero normal: boxes, e_k x f_l, e x u_d, f x u_d
-`define CCHIP_PROG_TETRAHEDRON 3'd4 // a warped quad: face normals and all edge pairs
-`define CCHIP_PROG_EXHAUSTIVE 3'd5 // every axis back to back
-`define CCHIP_PROG_ILLEGAL 3'd6 // reserved mode: one idle beat
+// ---- programme of a pair in the axis controller
+// directed: nA, then nB
+`define CCHIP_PROG_NORMALS 3'd0
+// directed: the two axes that decide a pair in general position
+`define CCHIP_PROG_CROSSING 3'd1
+// in-plane axes of both
+`define CCHIP_PROG_COPLANAR 3'd2
+// a zero normal: boxes, e_k x f_l, e x u_d, f x u_d
+`define CCHIP_PROG_DEGENERATE 3'd3
+// a warped quad: face normals and all edge pairs
+`define CCHIP_PROG_TETRAHEDRON 3'd4
+// every axis back to back
+`define CCHIP_PROG_EXHAUSTIVE 3'd5
+// reserved mode: one idle beat
+`define CCHIP_PROG_ILLEGAL 3'd6
 
+// ---- functions of the parameters
+// point: three coordinates, x in the low bits [bit]
+`define CCHIP_POINT_W(w) (3 * (w))
+// s_pair_a, s_pair_b: vertex i at bit POINT_W i [bit]
+`define CCHIP_PRIMITIVE_W(w) (`CCHIP_VERTICES * `CCHIP_POINT_W((w)))
+// the module that tests primitives of a and of b vertices, a <= b: 3 3, 3 4 or 4 4 [ModuleId]
+`define CCHIP_RM_OF(a, b) ((a) + (b) - 5)
 // difference of two coordinates [bit]
 `define CCHIP_EDGE_W(w) ((w) + 1)
 // component of the cross product of two edges: |.| <= 2 (2^w - 1)^2 [bit]
@@ -142,14 +201,18 @@
 `define CCHIP_POINTS(a, b) ((a) + (b) - 3)
 // registered levels of an adder tree over n <= 16 terms [clock]
 `define CCHIP_LEVELS(n) ((n) <= 1 ? 0 : (n) <= 2 ? 1 : (n) <= 4 ? 2 : (n) <= 8 ? 3 : 4)
-// limbs of an n-bit signed factor, n <= 52: 17-bit unsigned limbs below an up to 18-bit signed one [limb]
+// limbs of an n-bit signed factor, n <= 52: 17-bit unsigned limbs below an up to 18-bit signed one
+// [limb]
 `define CCHIP_LIMBS(n) ((n) <= 18 ? 1 : (n) <= 35 ? 2 : 3)
 // cchip_mul_wide of a by b bits without optional registers [clock]
-`define CCHIP_MUL_LATENCY(a, b) (`CCHIP_MUL18_LATENCY + `CCHIP_LEVELS(`CCHIP_LIMBS((a)) * `CCHIP_LIMBS((b))))
+`define CCHIP_MUL_LATENCY(a, b) \
+  (`CCHIP_MUL18_LATENCY + `CCHIP_LEVELS(`CCHIP_LIMBS((a)) * `CCHIP_LIMBS((b))))
 // edges, products, difference of products [clock]
 `define CCHIP_AXIS_SUBSTAGES_MIN(w) (2 + `CCHIP_MUL_LATENCY(`CCHIP_EDGE_W((w)), `CCHIP_EDGE_W((w))))
-// point differences (or, absolute, differences of projections), products, two levels of sums [clock]
-`define CCHIP_PROJECT_SUBSTAGES_MIN(w) (3 + `CCHIP_MUL_LATENCY(`CCHIP_EDGE_W((w)), `CCHIP_AXIS_W((w))))
+// point differences (or, absolute, differences of projections), products, two levels of sums
+// [clock]
+`define CCHIP_PROJECT_SUBSTAGES_MIN(w) \
+  (3 + `CCHIP_MUL_LATENCY(`CCHIP_EDGE_W((w)), `CCHIP_AXIS_W((w))))
 // smallest legal SUBSTAGES; the project stage is always the longer one [clock]
 `define CCHIP_SUBSTAGES_MIN(w) (`CCHIP_PROJECT_SUBSTAGES_MIN((w)))
 // cchip_ram: address to data; a beat to its operands [clock]
@@ -168,25 +231,141 @@
 `define CCHIP_PROGRAMME_LATENCY (4)
 // cchip_sat_pipeline: beat in to verdict out [clock]
 `define CCHIP_PIPE_LATENCY(s) (`CCHIP_SELECT_LATENCY + 2 * (s) + `CCHIP_COMPARE_LATENCY)
-// of a lone pair: handshake of s_pair to its first beat, plus last verdict to handshake of m_result with ready = 1 [clock]
+// of a lone pair: handshake of s_pair to its first beat, plus last verdict to handshake of m_result
+// with ready = 1 [clock]
 `define CCHIP_PAIR_OVERHEAD (6 + `CCHIP_PROGRAMME_LATENCY)
 // lone pair: handshake of s_pair to handshake of m_result, beats issued back to back [clock]
 `define CCHIP_PAIR_LATENCY(s, beats) (`CCHIP_PIPE_LATENCY((s)) + `CCHIP_PAIR_OVERHEAD + (beats) - 1)
-// beat to the next beat of the same pair where the verdict decides what follows (all but EXHAUSTIVE) [clock]
+// beat to the next beat of the same pair where the verdict decides what follows (all but
+// EXHAUSTIVE) [clock]
 `define CCHIP_BEAT_LATENCY(s) (`CCHIP_PIPE_LATENCY((s)) + `CCHIP_PROGRAMME_LATENCY + 3)
 // default CONTEXTS: round trip of a one-beat pair + 4 [pair]
 `define CCHIP_CONTEXTS_DEFAULT(s) (`CCHIP_PAIR_LATENCY((s), 1) + 4)
 // longest time from the last accepted pair to idle = 1 with m_result_ready = 1 [clock]
-`define CCHIP_DRAIN_BOUND(s, contexts) (64 * ((contexts) > `CCHIP_PAIR_LATENCY((s), 1) ? (contexts) : `CCHIP_PAIR_LATENCY((s), 1)))
-// cchip_primtest_array: added to the latency of a pair; two registers from lane to lane, one behind the lane [clock]
+`define CCHIP_DRAIN_BOUND(s, contexts) \
+  (64 * ((contexts) > `CCHIP_PAIR_LATENCY((s), 1) ? (contexts) : `CCHIP_PAIR_LATENCY((s), 1)))
+// cchip_primtest_array: added to the latency of a pair; two registers from lane to lane, one behind
+// the lane [clock]
 `define CCHIP_ARRAY_LATENCY(lanes) (2 * (lanes) + 3)
-// cchip_primtest_array: handshake of m_result to the first possible handshake of s_pair in the same place [clock]
+// cchip_primtest_array: handshake of m_result to the first possible handshake of s_pair in the same
+// place [clock]
 `define CCHIP_ARRAY_PLACE_LATENCY (3)
-// cchip_primtest_array: most results that leave between a result's arrival at the head of its lane and its own handshake [result]
+// cchip_primtest_array: most results that leave between a result's arrival at the head of its lane
+// and its own handshake [result]
 `define CCHIP_ARRAY_WAIT_BOUND(lanes) (16 * (lanes))
 // DRAIN_BOUND of cchip_primtest_array [clock]
-`define CCHIP_ARRAY_DRAIN_BOUND(s, contexts, lanes) (`CCHIP_DRAIN_BOUND((s), (contexts)) + `CCHIP_ARRAY_LATENCY((lanes)) + (lanes) * (contexts))
+`define CCHIP_ARRAY_DRAIN_BOUND(s, contexts, lanes) \
+  (`CCHIP_DRAIN_BOUND((s), (contexts)) + `CCHIP_ARRAY_LATENCY((lanes)) + (lanes) * (contexts))
 // axes of the exhaustive programme: nA, nB, every e_k x f_l: 11, 14, 18 (paper, eq. 1) [beat]
 `define CCHIP_EXHAUSTIVE_BEATS(a, b) (2 + (a) * (b))
+
+// ---- axis code {class, k, l}: the axis of a beat, the witness of a result:
+// word[`CCHIP_AXIS_CODE_<field>]
+`define CCHIP_AXIS_CODE_W 9
+// index of the edge of B, or component
+`define CCHIP_AXIS_CODE_L 0+:3
+// index of the edge or face of the axis' own primitive
+`define CCHIP_AXIS_CODE_K 3+:3
+// AxisClass
+`define CCHIP_AXIS_CODE_CLASS 6+:3
+
+// ---- beat of s_pair as one word, coordinates of w bits: word[`CCHIP_REQUEST_<field>]
+`define CCHIP_REQUEST_W(w) \
+  (16 + `CCHIP_PRIMITIVE_W((w)) + `CCHIP_PRIMITIVE_W((w)) + `CCHIP_ERR_W + `CCHIP_MODE_W)
+// s_pair_tag
+`define CCHIP_REQUEST_TAG 0+:16
+// s_pair_a
+`define CCHIP_REQUEST_A(w) 16+:`CCHIP_PRIMITIVE_W((w))
+// s_pair_b
+`define CCHIP_REQUEST_B(w) 16 + `CCHIP_PRIMITIVE_W((w))+:`CCHIP_PRIMITIVE_W((w))
+// s_pair_err
+`define CCHIP_REQUEST_ERR(w) 16 + `CCHIP_PRIMITIVE_W((w)) + `CCHIP_PRIMITIVE_W((w))+:`CCHIP_ERR_W
+// s_pair_mode
+`define CCHIP_REQUEST_MODE(w) \
+  16 + `CCHIP_PRIMITIVE_W((w)) + `CCHIP_PRIMITIVE_W((w)) + `CCHIP_ERR_W+:`CCHIP_MODE_W
+
+// ---- beat of m_result as one word: word[`CCHIP_RESULT_<field>]
+`define CCHIP_RESULT_W 34
+// m_result_tag
+`define CCHIP_RESULT_TAG 0+:16
+// m_result_hit
+`define CCHIP_RESULT_HIT 16+:1
+// m_result_grid
+`define CCHIP_RESULT_GRID 17+:1
+// m_result_definite
+`define CCHIP_RESULT_DEFINITE 18+:1
+// m_result_axis
+`define CCHIP_RESULT_AXIS 19+:9
+// m_result_beats
+`define CCHIP_RESULT_BEATS 28+:6
+
+// ---- state of a pair's programme, which travels with its beat (cchip_axis_programme):
+// word[`CCHIP_STATE_<field>]
+`define CCHIP_STATE_W 34
+// Programme
+`define CCHIP_STATE_PROGRAMME 0+:3
+// axis code of the beat
+`define CCHIP_STATE_CODE 3+:9
+// what the programme remembers: one of the records INFO_*
+`define CCHIP_STATE_INFO 12+:14
+// beats issued before this one
+`define CCHIP_STATE_BEATS 26+:6
+// a warped quad was not decided exactly
+`define CCHIP_STATE_OPEN 32+:1
+// all signs used so far hold for the unrounded primitives
+`define CCHIP_STATE_CERTAIN 33+:1
+
+// ---- info of NORMALS after nA: word[`CCHIP_INFO_NORMALS_<field>]
+`define CCHIP_INFO_NORMALS_W 14
+// edge of B that leads from the positive side of A's plane to the negative one
+`define CCHIP_INFO_NORMALS_L_DOWN 0+:2
+// edge of B that leads from the negative side to the positive one
+`define CCHIP_INFO_NORMALS_L_UP 2+:2
+// all vertices of B lie in A's plane
+`define CCHIP_INFO_NORMALS_B_ON_PLANE 4+:1
+// components of nA: < 0
+`define CCHIP_INFO_NORMALS_A_NEGATIVE 5+:3
+// components of nA: = 0
+`define CCHIP_INFO_NORMALS_A_ZERO 8+:3
+// component of nA with the largest absolute value
+`define CCHIP_INFO_NORMALS_LARGEST 11+:2
+// quad A is warped
+`define CCHIP_INFO_NORMALS_WARPED_A 13+:1
+
+// ---- info of CROSSING: word[`CCHIP_INFO_CROSSING_<field>]
+`define CCHIP_INFO_CROSSING_W 6
+// edge of B of the second axis
+`define CCHIP_INFO_CROSSING_L_UP 0+:2
+// edge of A of the second axis
+`define CCHIP_INFO_CROSSING_K_UP 2+:2
+// quad A is warped
+`define CCHIP_INFO_CROSSING_WARPED_A 4+:1
+// quad B is warped
+`define CCHIP_INFO_CROSSING_WARPED_B 5+:1
+
+// ---- info of COPLANAR: word[`CCHIP_INFO_COPLANAR_<field>]
+`define CCHIP_INFO_COPLANAR_W 2
+// component l of nA < 0
+`define CCHIP_INFO_COPLANAR_A_NEGATIVE 0+:1
+// component l of nB < 0
+`define CCHIP_INFO_COPLANAR_B_NEGATIVE 1+:1
+
+// ---- info of DEGENERATE: word[`CCHIP_INFO_DEGENERATE_<field>]
+`define CCHIP_INFO_DEGENERATE_W 12
+// components of nA: < 0
+`define CCHIP_INFO_DEGENERATE_A_NEGATIVE 0+:3
+// components of nA: = 0
+`define CCHIP_INFO_DEGENERATE_A_ZERO 3+:3
+// components of nB: < 0
+`define CCHIP_INFO_DEGENERATE_B_NEGATIVE 6+:3
+// components of nB: = 0
+`define CCHIP_INFO_DEGENERATE_B_ZERO 9+:3
+
+// ---- info of TETRAHEDRON: word[`CCHIP_INFO_TETRAHEDRON_<field>]
+`define CCHIP_INFO_TETRAHEDRON_W 2
+// quad A is warped
+`define CCHIP_INFO_TETRAHEDRON_WARPED_A 0+:1
+// quad B is warped
+`define CCHIP_INFO_TETRAHEDRON_WARPED_B 1+:1
 
 `endif

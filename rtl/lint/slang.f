@@ -3,8 +3,6 @@
 --std 1364-2005
 // One finding, one block of text (rtl/lint/slang.waiver).
 --diag-hierarchy never
-// found_certain and CONTEXT_W stand below their first use, which every other tool here takes.
---allow-use-before-declare
 -Weverything
 // Every module is top once, so the others are unused.
 -Wno-unused-def

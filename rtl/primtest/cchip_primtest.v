@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-`include "cchip_defs.vh"
 `default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_primtest: the machine behind every primitive test: operand memory, axis controller, SAT
 // pipeline, result FIFO. Wrapped by cchip_primtest_tri_tri, _tri_quad and _quad_quad, whose
 // headers describe it for the user.
 //   latency      lone pair, handshake of s_pair to handshake of m_result with ready = 1:
-//                EXHAUSTIVE without special case CCHIP_PAIR_LATENCY(SUBSTAGES, beats), whatever the data;
-//                each beat that waits for a verdict adds CCHIP_BEAT_LATENCY(SUBSTAGES)
+//                EXHAUSTIVE without special case CCHIP_PAIR_LATENCY(SUBSTAGES, beats), whatever the
+//                data; each beat that waits for a verdict adds CCHIP_BEAT_LATENCY(SUBSTAGES)
 //   throughput   one axis per clock
 //   in flight    at most CONTEXTS pairs between the handshakes of s_pair and m_result
 //   cuts         every path: each output, s_pair_ready included, is a flip-flop
@@ -28,25 +29,25 @@ module cchip_primtest #(
     // value of rm_id
     parameter integer RM_ID = 1
 ) (
-    input  wire                   clk,
-    input  wire                   rst,
-    input  wire                   s_pair_valid,
-    output wire                   s_pair_ready,
-    input  wire [           15:0] s_pair_tag,
-    input  wire [            1:0] s_pair_mode,
-    input  wire [4*3*COORD_W-1:0] s_pair_a,
-    input  wire [4*3*COORD_W-1:0] s_pair_b,
-    input  wire [            3:0] s_pair_err,
-    output wire                   m_result_valid,
-    input  wire                   m_result_ready,
-    output wire [           15:0] m_result_tag,
-    output wire                   m_result_hit,
-    output wire                   m_result_grid,
-    output wire                   m_result_definite,
-    output wire [            8:0] m_result_axis,
-    output wire [            5:0] m_result_beats,
-    output wire [            7:0] rm_id,
-    output wire                   idle
+    input  wire                                   clk,
+    input  wire                                   rst,
+    input  wire                                   s_pair_valid,
+    output wire                                   s_pair_ready,
+    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
+    input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
+    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
+    output wire                                   m_result_valid,
+    input  wire                                   m_result_ready,
+    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
+    output wire                                   m_result_hit,
+    output wire                                   m_result_grid,
+    output wire                                   m_result_definite,
+    output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
+    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
+    output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
+    output wire                                   idle
 );
 
   localparam integer A_W = 3 * VERTS_A * COORD_W;
@@ -58,7 +59,7 @@ module cchip_primtest #(
   localparam [31:0] FULL = CONTEXTS;
   localparam [31:0] LAST = CONTEXTS - 1;
   localparam [31:0] ONE = 1;
-  localparam integer RESULT_W = 16 + 3 + 9 + 6;
+  localparam integer RESULT_W = `CCHIP_RESULT_W;
 
   generate
     if (COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX) begin : gen_illegal_coord_w
@@ -77,7 +78,7 @@ module cchip_primtest #(
 
   assign rm_id = RM[`CCHIP_RM_ID_W-1:0];
 
-  // ---- pairs between the two handshakes: decides ready and idle
+  // ---- number of pairs between the two handshakes; ready and idle follow from it
   reg  [COUNT_W-1:0] pairs_q;
   reg                ready_q, idle_q;
   reg                awake_q;
@@ -93,25 +94,28 @@ module cchip_primtest #(
       idle_q  <= 1'b1;
       awake_q <= 1'b0;
     end else begin
-      awake_q <= 1'b1;  // the first context stands ready two clocks after rst
-      if (accept != answer) pairs_q <= pairs_q + ({COUNT_W{answer}} | ONE[COUNT_W-1:0]);  // + 1 or - 1
-      ready_q <= awake_q && (up ? pairs_q != LAST[COUNT_W-1:0] : down || pairs_q != FULL[COUNT_W-1:0]);
-      idle_q  <= ~up && (down ? pairs_q == ONE[COUNT_W-1:0] : pairs_q == {COUNT_W{1'b0}});
+      awake_q <= 1'b1;  // the controller has its first context two clocks after rst
+      // + 1 or - 1
+      if (accept != answer) pairs_q <= pairs_q + ({COUNT_W{answer}} | ONE[COUNT_W-1:0]);
+      ready_q <= awake_q
+          && (up ? pairs_q != LAST[COUNT_W-1:0] : down || pairs_q != FULL[COUNT_W-1:0]);
+      idle_q  <= !up && (down ? pairs_q == ONE[COUNT_W-1:0] : pairs_q == {COUNT_W{1'b0}});
     end
 
   assign s_pair_ready = ready_q;
   assign idle         = idle_q;
 
   // ---- input register and operand memory: one writer, read by the beats
-  reg [      15:0] load_tag_q;
-  reg [       3:0] load_err_q;
-  reg [       2:0] load_shift_q;
+  reg [`CCHIP_TAG_W-1:0] load_tag_q;
+  reg [`CCHIP_ERR_W-1:0] load_err_q;
+  reg [`CCHIP_ERROR_SHIFT_W-1:0] load_shift_q;
   reg [   A_W-1:0] load_a_q;
   reg [   B_W-1:0] load_b_q;
 
   // smallest shift with eta <= 2^shift
   function [2:0] error_shift(input [3:0] err);
-    error_shift = err <= 4'd1 ? 3'd0 : err == 4'd2 ? 3'd1 : err <= 4'd4 ? 3'd2 : err <= 4'd8 ? 3'd3 : 3'd4;
+    error_shift = err <= 4'd1 ? 3'd0 : err == 4'd2 ? 3'd1 : err <= 4'd4 ? 3'd2 : err <= 4'd8
+        ? 3'd3 : 3'd4;
   endfunction
 
   always @(posedge clk) begin
@@ -124,21 +128,21 @@ module cchip_primtest #(
 
   generate
     if (VERTS_A == 3) begin : gen_unused_a
-      wire unused = &{1'b0, s_pair_a[12*COORD_W-1:A_W]};
+      wire unused = &{1'b0, s_pair_a[`CCHIP_PRIMITIVE_W(COORD_W)-1:A_W]};
     end
     if (VERTS_B == 3) begin : gen_unused_b
-      wire unused = &{1'b0, s_pair_b[12*COORD_W-1:B_W]};
+      wire unused = &{1'b0, s_pair_b[`CCHIP_PRIMITIVE_W(COORD_W)-1:B_W]};
     end
   endgenerate
 
   wire                 beat_valid;
   wire [CONTEXT_W-1:0] load_context, beat_context;
-  wire [          8:0] beat_code;
+  wire [`CCHIP_AXIS_CODE_W-1:0] beat_code;
   wire                 beat_allow_above, beat_allow_below;
   wire [   USER_W-1:0] beat_user;
   wire [      A_W-1:0] operand_a;
   wire [      B_W-1:0] operand_b;
-  wire [          2:0] operand_shift;
+  wire [`CCHIP_ERROR_SHIFT_W-1:0] operand_shift;
 
   cchip_ram #(
       .WIDTH (3 + A_W + B_W),
@@ -233,15 +237,15 @@ module cchip_primtest #(
       .s_verdict_box_separated(verdict_box_separated),
       .s_verdict_box_certain  (verdict_box_certain),
       .m_result_valid         (outcome_valid),
-      .m_result_tag           (outcome[15:0]),
-      .m_result_hit           (outcome[16]),
-      .m_result_grid          (outcome[17]),
-      .m_result_definite      (outcome[18]),
-      .m_result_axis          (outcome[27:19]),
-      .m_result_beats         (outcome[33:28])
+      .m_result_tag           (outcome[`CCHIP_RESULT_TAG]),
+      .m_result_hit           (outcome[`CCHIP_RESULT_HIT]),
+      .m_result_grid          (outcome[`CCHIP_RESULT_GRID]),
+      .m_result_definite      (outcome[`CCHIP_RESULT_DEFINITE]),
+      .m_result_axis          (outcome[`CCHIP_RESULT_AXIS]),
+      .m_result_beats         (outcome[`CCHIP_RESULT_BEATS])
   );
 
-  // ---- results: the FIFO has room for every pair in flight, so verdicts never wait
+  // ---- results: the FIFO has room for every pair in flight, so no verdict ever waits
   wire queue_space;
 
   cchip_fifo #(
@@ -256,10 +260,10 @@ module cchip_primtest #(
       .s_data (outcome),
       .m_valid(m_result_valid),
       .m_ready(m_result_ready),
-      .m_data ({m_result_beats, m_result_axis, m_result_definite, m_result_grid, m_result_hit, m_result_tag})
+      .m_data ({m_result_beats, m_result_axis, m_result_definite, m_result_grid, m_result_hit,
+          m_result_tag})
   );
 
-`include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_result_space, !outcome_valid || queue_space)

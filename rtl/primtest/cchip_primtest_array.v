@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-`include "cchip_defs.vh"
 `default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_primtest_array: LANES primitive tests of one kind behind the ports of one.
-// A place is a context of a lane. The entry knows which lanes have a free place, chooses one in turn and sends the pair
-// down a chain of registers that passes all lanes and never stalls; the place is free again when the result has left.
+// A place is a context of a lane. The entry knows which lanes have a free place, chooses one in
+// turn and sends the pair down a chain of registers that passes all lanes and never stalls; the
+// place is free again when the result has left.
 //   latency      CCHIP_ARRAY_LATENCY(LANES) clocks more than a lane alone, whichever lane it is
-//   throughput   one pair and one result per clock if the lanes keep up; per lane one axis per clock
+//   throughput   one pair and one result per clock if the lanes keep up; per lane one axis per
+//                clock
 //   in flight    at most LANES * CONTEXTS pairs between the handshakes of s_pair and m_result
-//   fair         pairs go to the lanes with a free place in turn; a result at the head of its lane lets at most
-//                CCHIP_ARRAY_WAIT_BOUND(LANES) others leave before it
-//   cuts         every path: each output, s_pair_ready included, is a flip-flop; two registers from lane to lane
+//   fair         pairs go to the lanes with a free place in turn; a result at the head of its lane
+//                lets at most CCHIP_ARRAY_WAIT_BOUND(LANES) others leave before it
+//   cuts         every path: each output, s_pair_ready included, is a flip-flop; two registers from
+//                lane to lane
 //   reset        no pair accepted before is ever answered; s_pair_ready is 0 while rst is 1 and
 //                CCHIP_ARRAY_LATENCY(LANES) + 1 clocks longer
 // Ports and their meaning: cchip_primtest_tri_tri, _tri_quad, _quad_quad.
@@ -30,33 +34,33 @@ module cchip_primtest_array #(
     parameter integer VERTS_A = 3,
     parameter integer VERTS_B = 3
 ) (
-    input  wire                   clk,
-    input  wire                   rst,
-    input  wire                   s_pair_valid,
-    output wire                   s_pair_ready,
-    input  wire [           15:0] s_pair_tag,
-    input  wire [            1:0] s_pair_mode,
-    input  wire [4*3*COORD_W-1:0] s_pair_a,
-    input  wire [4*3*COORD_W-1:0] s_pair_b,
-    input  wire [            3:0] s_pair_err,
-    output wire                   m_result_valid,
-    input  wire                   m_result_ready,
-    output wire [           15:0] m_result_tag,
-    output wire                   m_result_hit,
-    output wire                   m_result_grid,
-    output wire                   m_result_definite,
-    output wire [            8:0] m_result_axis,
-    output wire [            5:0] m_result_beats,
-    output wire [            7:0] rm_id,
-    output wire                   idle
+    input  wire                                   clk,
+    input  wire                                   rst,
+    input  wire                                   s_pair_valid,
+    output wire                                   s_pair_ready,
+    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
+    input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
+    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
+    output wire                                   m_result_valid,
+    input  wire                                   m_result_ready,
+    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
+    output wire                                   m_result_hit,
+    output wire                                   m_result_grid,
+    output wire                                   m_result_definite,
+    output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
+    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
+    output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
+    output wire                                   idle
 );
 
-  localparam integer VERTEX_W = 4 * 3 * COORD_W;
-  // {lanes, one-hot; tag; mode; err; b; a}
-  localparam integer PAIR_W = LANES + 16 + 2 + 4 + 2 * VERTEX_W;
+  // {lane, one-hot; request}
+  localparam integer REQUEST_W = `CCHIP_REQUEST_W(COORD_W);
+  localparam integer PAIR_W = LANES + REQUEST_W;
   localparam integer LANE_W = LANES > 1 ? $clog2(LANES) : 1;
-  localparam integer ANSWER_W = 16 + 3 + 9 + 6;
-  // {lane; beats; axis; definite; grid; hit; tag}
+  localparam integer ANSWER_W = `CCHIP_RESULT_W;
+  // {lane; result}
   localparam integer RESULT_W = LANE_W + ANSWER_W;
   localparam integer PLACES_W = $clog2(CONTEXTS + 1);
   localparam integer COUNT_W = $clog2(LANES * CONTEXTS + 1);
@@ -64,7 +68,8 @@ module cchip_primtest_array #(
   localparam [31:0] PLACES = CONTEXTS;
   localparam [31:0] COUNT = LANES * CONTEXTS;
   localparam [31:0] SHUT = `CCHIP_ARRAY_LATENCY(LANES);
-  localparam [7:0] RM = VERTS_A == 4 ? `CCHIP_RM_QUAD_QUAD : VERTS_B == 4 ? `CCHIP_RM_TRI_QUAD : `CCHIP_RM_TRI_TRI;
+  localparam [31:0] MODULE = `CCHIP_RM_OF(VERTS_A, VERTS_B);
+  localparam [`CCHIP_RM_ID_W-1:0] RM = MODULE[`CCHIP_RM_ID_W-1:0];
 
   generate
     if (LANES < 1 || LANES > `CCHIP_LANES_MAX) begin : gen_illegal_lanes
@@ -74,8 +79,8 @@ module cchip_primtest_array #(
 
   assign rm_id = RM;
 
-  // ---- reset passes the lanes as a pair does; both ends are shut until it is through. It starts as 1, so that no lane
-  // runs before it was reset.
+  // ---- reset passes the lanes as a pair does; both ends are shut until it is through. It starts
+  // as 1, so that no lane runs before it was reset.
   reg  [2*LANES-1:0] rst_q;
   reg  [ SHUT_W-1:0] shut_clocks_q;
   reg                shut_q;
@@ -95,8 +100,8 @@ module cchip_primtest_array #(
     end
   end
 
-  // ---- the choice: the lane of the next pair, one clock ahead; its place is taken with the choice
-  reg  [LANES-1:0] choice_q;  // one-hot, also without a next pair: the lane of the last one
+  // ---- the lane of the next pair is chosen one clock ahead, and its place is reserved at once
+  reg  [LANES-1:0] choice_q;  // one-hot; without a next pair it stays at the lane of the last one
   reg              ready_q;
   wire [LANES-1:0] room;  // lanes with a place that is free and not taken
   wire             accept = s_pair_valid & ready_q;
@@ -120,7 +125,7 @@ module cchip_primtest_array #(
 
   assign s_pair_ready = ready_q;
 
-  // ---- pairs between the two handshakes: idle
+  // ---- number of pairs between the two handshakes; idle follows from it
   reg  [COUNT_W-1:0] pairs_q;
   reg                idle_q;
   wire               answer = m_result_valid & m_result_ready;
@@ -131,13 +136,15 @@ module cchip_primtest_array #(
       idle_q  <= 1'b1;
     end else begin
       if (accept != answer)
-        pairs_q <= accept ? pairs_q + {{COUNT_W - 1{1'b0}}, 1'b1} : pairs_q - {{COUNT_W - 1{1'b0}}, 1'b1};
-      idle_q <= ~accept & (idle_q | (answer & pairs_q == {{COUNT_W - 1{1'b0}}, 1'b1}));
+        pairs_q <= accept ? pairs_q + {{COUNT_W - 1{1'b0}}, 1'b1} : pairs_q
+            - {{COUNT_W - 1{1'b0}}, 1'b1};
+      idle_q <= !accept && (idle_q || (answer && pairs_q == {{COUNT_W - 1{1'b0}}, 1'b1}));
     end
 
   assign idle = idle_q;
 
-  // ---- the lanes. way of the pairs, way back of the results: word i enters station i, word i + 1 leaves it
+  // ---- the lanes. way of the pairs, way back of the results: word i enters station i, word i + 1
+  // leaves it
   wire [  PAIR_W*(LANES+1)-1:0] way;
   wire [               LANES:0] back_valid, back_ready;
   wire [RESULT_W*(LANES+1)-1:0] back;
@@ -145,13 +152,14 @@ module cchip_primtest_array #(
   wire [            LANE_W-1:0] answer_lane;
 
   assign way[PAIR_W-1:0] = {
-    choice_q & {LANES{accept & ~rst}}, s_pair_tag, s_pair_mode, s_pair_err, s_pair_b, s_pair_a
+    choice_q & {LANES{accept & ~rst}}, s_pair_mode, s_pair_err, s_pair_b, s_pair_a, s_pair_tag
   };
   assign back_valid[0] = 1'b0;
   assign back[RESULT_W-1:0] = {RESULT_W{1'b0}};
   assign m_result_valid = back_valid[LANES];
   assign back_ready[LANES] = m_result_ready;
-  assign {answer_lane, m_result_beats, m_result_axis, m_result_definite, m_result_grid, m_result_hit, m_result_tag} =
+  assign {answer_lane, m_result_beats, m_result_axis, m_result_definite, m_result_grid,
+      m_result_hit, m_result_tag} =
       back[RESULT_W*LANES+:RESULT_W];
   wire unused = &{1'b0, rst_way[2*LANES], way[PAIR_W*LANES+:PAIR_W], back_ready[0]};
 
@@ -161,7 +169,8 @@ module cchip_primtest_array #(
       localparam [31:0] LANE = lane;
       localparam [31:0] ONE_HOT = 32'd1 << lane;
 
-      // places that are neither chosen nor in flight; the count sees a choice one clock late
+      // places that are neither reserved nor in flight; places_q follows a reservation one clock
+      // late, places is up to date
       reg  [PLACES_W-1:0] places_q;
       reg                 room_q, give_q, take_q;
       wire [PLACES_W-1:0] places = places_q - {{PLACES_W - 1{1'b0}}, take_q};
@@ -173,7 +182,7 @@ module cchip_primtest_array #(
           places_q <= PLACES[PLACES_W-1:0];
           room_q   <= 1'b1;
         end else begin
-          give_q   <= answer & answer_lane == LANE[LANE_W-1:0];
+          give_q   <= answer && answer_lane == LANE[LANE_W-1:0];
           take_q   <= take[lane];
           places_q <= places + {{PLACES_W - 1{1'b0}}, give_q};
           room_q   <= give_q | (take[lane] ? several : room_q);
@@ -194,11 +203,11 @@ module cchip_primtest_array #(
       );
       assign way[PAIR_W*(lane+1)+:PAIR_W] = pair;
 
-      wire                pair_valid = pair[PAIR_W-LANES+lane];
+      wire                pair_valid = pair[REQUEST_W+lane];
       wire                pair_ready;
       wire                lane_valid, lane_ready;  // result as it leaves the lane
       wire [ANSWER_W-1:0] lane_own, own;
-      wire [         7:0] lane_rm_id;
+      wire [`CCHIP_RM_ID_W-1:0] lane_rm_id;
       wire                lane_idle;
       cchip_primtest #(
           .COORD_W            (COORD_W),
@@ -214,25 +223,25 @@ module cchip_primtest_array #(
           .rst              (lane_rst),
           .s_pair_valid     (pair_valid),
           .s_pair_ready     (pair_ready),
-          .s_pair_tag       (pair[2*VERTEX_W+6+:16]),
-          .s_pair_mode      (pair[2*VERTEX_W+4+:2]),
-          .s_pair_a         (pair[0+:VERTEX_W]),
-          .s_pair_b         (pair[VERTEX_W+:VERTEX_W]),
-          .s_pair_err       (pair[2*VERTEX_W+:4]),
+          .s_pair_tag       (pair[`CCHIP_REQUEST_TAG]),
+          .s_pair_mode      (pair[`CCHIP_REQUEST_MODE(COORD_W)]),
+          .s_pair_a         (pair[`CCHIP_REQUEST_A(COORD_W)]),
+          .s_pair_b         (pair[`CCHIP_REQUEST_B(COORD_W)]),
+          .s_pair_err       (pair[`CCHIP_REQUEST_ERR(COORD_W)]),
           .m_result_valid   (lane_valid),
           .m_result_ready   (lane_ready),
-          .m_result_tag     (lane_own[15:0]),
-          .m_result_hit     (lane_own[16]),
-          .m_result_grid    (lane_own[17]),
-          .m_result_definite(lane_own[18]),
-          .m_result_axis    (lane_own[27:19]),
-          .m_result_beats   (lane_own[33:28]),
+          .m_result_tag     (lane_own[`CCHIP_RESULT_TAG]),
+          .m_result_hit     (lane_own[`CCHIP_RESULT_HIT]),
+          .m_result_grid    (lane_own[`CCHIP_RESULT_GRID]),
+          .m_result_definite(lane_own[`CCHIP_RESULT_DEFINITE]),
+          .m_result_axis    (lane_own[`CCHIP_RESULT_AXIS]),
+          .m_result_beats   (lane_own[`CCHIP_RESULT_BEATS]),
           .rm_id            (lane_rm_id),
           .idle             (lane_idle)
       );
       wire unused_lane = &{1'b0, pair_ready, lane_rm_id, lane_idle};
 
-      // the station's turn does not reach into the lane, nor the lane's FIFO into the station
+      // a register between the lane's FIFO and the merge of this station
       cchip_skid_buffer #(
           .WIDTH(ANSWER_W)
       ) u_own (
@@ -246,17 +255,18 @@ module cchip_primtest_array #(
           .m_data (own)
       );
 
-      // results of this lane and of the `lane` lanes before: one of its own for at most `lane` of theirs
+      // results of this lane and of the `lane` lanes before: one of its own for at most `lane` of
+      // theirs
       reg  [lane:0] theirs_q;  // bit n: n of theirs may still pass first
       wire          merged_ready;
       wire          own_next = own_valid[lane] & (~back_valid[lane] | theirs_q[0]);
       assign own_ready[lane]  = merged_ready & (~back_valid[lane] | theirs_q[0]);
       assign back_ready[lane] = merged_ready & (~own_valid[lane] | ~theirs_q[0]);
       always @(posedge clk)
-        if (lane_rst | (merged_ready & own_next)) theirs_q <= ONE_HOT[lane:0];
-        else if (back_valid[lane] & merged_ready & ~theirs_q[0]) theirs_q <= theirs_q >> 1;
+        if (lane_rst || (merged_ready && own_next)) theirs_q <= ONE_HOT[lane:0];
+        else if (back_valid[lane] && merged_ready && !theirs_q[0]) theirs_q <= theirs_q >> 1;
 
-      // two registers for the way
+      // two registers from station to station
       wire                half_valid, half_ready;
       wire [RESULT_W-1:0] half;
       cchip_skid_buffer #(
@@ -284,7 +294,6 @@ module cchip_primtest_array #(
           .m_data (back[RESULT_W*(lane+1)+:RESULT_W])
       );
 
-`include "cchip_assert.vh"
       always @(posedge clk) begin
         if (!lane_rst) begin
           `CCHIP_ASSERT(a_place, !pair_valid || pair_ready)
@@ -300,7 +309,8 @@ module cchip_primtest_array #(
   always @(posedge clk)
     if (!shut) begin
       `CCHIP_ASSERT(a_count, {{32 - COUNT_W{1'b0}}, pairs_q} <= COUNT)
-      `CCHIP_ASSERT(a_choice, choice_q != {LANES{1'b0}} && (choice_q & (choice_q - {{LANES - 1{1'b0}}, 1'b1})) == {LANES{1'b0}})
+      `CCHIP_ASSERT(a_choice, choice_q != {LANES{1'b0}}
+          && (choice_q & (choice_q - {{LANES - 1{1'b0}}, 1'b1})) == {LANES{1'b0}})
     end
 
 endmodule

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-`include "cchip_defs.vh"
 `default_nettype none
-// cchip_primtest_tri_quad: do a triangle A and a quad B intersect? Reconfigurable module: ports identical to the
-// other primitive tests; the machine is cchip_primtest.
-//   latency      lone pair, EXHAUSTIVE, no special case: CCHIP_PAIR_LATENCY(SUBSTAGES, 14) clocks from handshake
-//                of s_pair to handshake of m_result with ready = 1
-//   throughput   one axis per clock; EXHAUSTIVE: one pair per 14 clocks; DIRECTED: at most 4 axes for pairs
-//                that are planar on the grid, not coplanar, not degenerate
+`include "cchip_defs.vh"
+// cchip_primtest_tri_quad: do a triangle A and a quad B intersect? Reconfigurable module: ports
+// identical to the other primitive tests; the machine is cchip_primtest.
+//   latency      lone pair, EXHAUSTIVE, no special case: CCHIP_PAIR_LATENCY(SUBSTAGES, 14) clocks
+//                from handshake of s_pair to handshake of m_result with ready = 1
+//   throughput   one axis per clock; EXHAUSTIVE: one pair per 14 clocks; DIRECTED: at most 4 axes
+//                for pairs that are planar on the grid, not coplanar, not degenerate
 //   in flight    at most CONTEXTS pairs between the handshakes of s_pair and m_result
 //   cuts         every path: each output, s_pair_ready included, is a flip-flop
 //   reset        no pair accepted before is ever answered; s_pair_ready is 0 while rst is 1
-// s_pair_a: triangle, s_pair_b: quad; vertex i in bits [3*COORD_W*i +: 3*COORD_W], x lowest. Quads are canonical:
-// planar ones in weakly convex cyclic order, or warped, or all vertices on one line.
+// s_pair_a: triangle, s_pair_b: quad; vertex i in bits [3*COORD_W*i +: 3*COORD_W], x lowest. Quads
+// are canonical: planar ones in weakly convex cyclic order, or warped, or all vertices on one line.
 // s_pair_mode: CCHIP_MODE_EXHAUSTIVE or _DIRECTED; others: axis class ILLEGAL, hit 1, definite 0.
-// s_pair_err: eta (0 exact, 15 unknown). m_result_grid: exact answer for the grid; m_result_definite: proven
-// for the unrounded primitives; m_result_hit = grid or not definite. m_result_axis = {class, k, l}: the
-// separating axis (also where definite = 0 turns grid = 0 into hit = 1), class NONE if there is none.
+// s_pair_err: eta (0 exact, 15 unknown). m_result_grid: exact answer for the grid;
+// m_result_definite: proven for the unrounded primitives; m_result_hit = grid or not definite.
+// m_result_axis = {class, k, l}: the separating axis (also where definite = 0 turns grid = 0 into
+// hit = 1), class NONE if there is none.
 module cchip_primtest_tri_quad #(
     // width of a coordinate, bit, 4..20
     parameter integer COORD_W = 16,
@@ -28,25 +29,25 @@ module cchip_primtest_tri_quad #(
     // 1: warped quads are decided exactly; 0: they are left open (see cchip_axis_controller)
     parameter integer WARPED_EXACT = 1
 ) (
-    input  wire                   clk,
-    input  wire                   rst,
-    input  wire                   s_pair_valid,
-    output wire                   s_pair_ready,
-    input  wire [           15:0] s_pair_tag,
-    input  wire [            1:0] s_pair_mode,
-    input  wire [4*3*COORD_W-1:0] s_pair_a,
-    input  wire [4*3*COORD_W-1:0] s_pair_b,
-    input  wire [            3:0] s_pair_err,
-    output wire                   m_result_valid,
-    input  wire                   m_result_ready,
-    output wire [           15:0] m_result_tag,
-    output wire                   m_result_hit,
-    output wire                   m_result_grid,
-    output wire                   m_result_definite,
-    output wire [            8:0] m_result_axis,
-    output wire [            5:0] m_result_beats,
-    output wire [            7:0] rm_id,
-    output wire                   idle
+    input  wire                                   clk,
+    input  wire                                   rst,
+    input  wire                                   s_pair_valid,
+    output wire                                   s_pair_ready,
+    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
+    input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
+    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
+    output wire                                   m_result_valid,
+    input  wire                                   m_result_ready,
+    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
+    output wire                                   m_result_hit,
+    output wire                                   m_result_grid,
+    output wire                                   m_result_definite,
+    output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
+    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
+    output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
+    output wire                                   idle
 );
 
   cchip_primtest #(

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// cchip_bitstream_fetch: AXI4 read master that brings a row of words from memory into a FIFO.
-// run = 1 starts; address and words are taken on its first clock. run = 0 empties the FIFO; beats that memory still owes
-// are swallowed (owes = 1 until then), and run must stay 0 as long.
-//   latency      m_valid 5 clocks after run plus the memory's, counted from arvalid = 1, arready = 1 to rvalid = 1
+`include "cchip_assert.vh"
+// cchip_bitstream_fetch: AXI4 read master that reads consecutive words from memory into a FIFO.
+// run = 1 starts; address and words are taken on its first clock. run = 0 empties the FIFO; beats
+// that memory still owes are dropped when they come. owes is 1 until then, and run must stay 0 as
+// long.
+//   latency      m_valid 5 clocks after run plus the memory's, counted from arvalid = 1, arready =
+//                1 to rvalid = 1
 //   throughput   one word per clock if a read takes less than 13 clocks
-//   bursts       INCR, up to 16 beats, within 64 bytes (never across 4 KiB); two outstanding; only what the FIFO has room for
-//   cuts         every path but m_ready to the FIFO's: each output is a flip-flop; m_axi_rready is always 1
-//   errors       bus_error: rresp other than OKAY, rlast too early or too late, a beat nobody asked for; timeout: `limit`
-//                clocks without an address taken or a beat. Both stay 1 until run = 0; nothing enters the FIFO any more.
-//                RLAST ends a burst, whatever the count says.
-//   reset        that of the bus too: nothing is owed after it
+//   bursts       INCR, up to 16 beats, within 64 bytes (never across 4 KiB); two outstanding; only
+//                what the FIFO has room for
+//   cuts         every path but m_ready to the FIFO's: each output is a flip-flop; m_axi_rready is
+//                always 1
+//   errors       bus_error: rresp other than OKAY, rlast too early or too late, a beat that was not
+//                requested; timeout: `limit` clocks without an address taken or a beat. Both stay 1
+//                until run = 0; nothing enters the FIFO any more. RLAST ends a burst, whatever the
+//                count says.
+//   reset        must reset the bus too: after it no beat of an earlier read may come
 module cchip_bitstream_fetch #(
     // capacity of the FIFO, words, >= 32
     parameter integer FIFO_DEPTH = 32
@@ -18,9 +24,9 @@ module cchip_bitstream_fetch #(
     input  wire        clk,
     input  wire        rst,
     input  wire        run,
-    input  wire [31:0] address,  // byte, multiple of 4
+    input  wire [31:0] address,        // byte, multiple of 4
     input  wire [29:0] words,
-    input  wire [31:0] limit,    // clocks, > 0
+    input  wire [31:0] limit,          // clocks, > 0
     output wire        m_valid,
     input  wire        m_ready,
     output wire [31:0] m_data,
@@ -65,21 +71,21 @@ module cchip_bitstream_fetch #(
   reg [COUNT_W-1:0] reserved_q;  // words asked for and not yet taken from the FIFO
 
   wire [4:0] to_edge = 5'd16 - {1'b0, addr_q[5:2]};
-  wire fits = |left_q[29:5] | left_q[4:0] >= to_edge;
+  wire fits = |left_q[29:5] || left_q[4:0] >= to_edge;
   wire room = {{32 - COUNT_W{1'b0}}, reserved_q} <= ROOM;
   wire issue = working & planned_q & ~arvalid_q & ~bursts_q[1] & room;
   wire taken = arvalid_q & m_axi_arready;
   wire pop = m_valid & m_ready;
 
   always @(posedge clk) begin
-    if (run & ~run_q) begin
+    if (run && !run_q) begin
       addr_q <= address;
       left_q <= words;
     end else if (taken) begin
       addr_q <= addr_q + {25'd0, beats_q, 2'd0};
       left_q <= left_q - {25'd0, beats_q};
     end
-    if (~planned_q) beats_q <= fits ? to_edge : left_q[4:0];
+    if (!planned_q) beats_q <= fits ? to_edge : left_q[4:0];
     if (rst) begin
       run_q      <= 1'b0;
       planned_q  <= 1'b0;
@@ -87,9 +93,9 @@ module cchip_bitstream_fetch #(
       reserved_q <= {COUNT_W{1'b0}};
     end else begin
       run_q <= run;
-      planned_q <= ~taken & (planned_q ? arvalid_q | working : working & left_q != 30'd0);
+      planned_q <= ~taken & (planned_q ? arvalid_q | working : working && left_q != 30'd0);
       arvalid_q <= issue | (arvalid_q & ~m_axi_arready);
-      if (~run_q) reserved_q <= {COUNT_W{1'b0}};
+      if (!run_q) reserved_q <= {COUNT_W{1'b0}};
       else
         reserved_q <= reserved_q + (issue ? {{COUNT_W - 5{1'b0}}, beats_q} : {COUNT_W{1'b0}})
                       - {{COUNT_W - 1{1'b0}}, pop};
@@ -110,14 +116,15 @@ module cchip_bitstream_fetch #(
   wire beat = m_axi_rvalid & rready_q;
   wire owed = bursts_q != 2'd0;
   wire last = beat & m_axi_rlast & owed;
-  wire good = owed & m_axi_rresp == 2'b00 & first_q != 5'd0 & m_axi_rlast == (first_q == 5'd1);
-  // short: without run, whose end empties the FIFO, and rready_q, 1 whenever run_q is
+  wire good = owed && m_axi_rresp == 2'b00 && first_q != 5'd0 && m_axi_rlast == (first_q == 5'd1);
+  // kept short: run is left out because its end empties the FIFO, rready_q because it is 1 whenever
+  // run_q is 1
   wire push = m_axi_rvalid & run_q & ~error_q & ~timeout_q & good;
 
   always @(posedge clk) begin
-    if (taken & (bursts_q == 2'd0 | (bursts_q == 2'd1 & last))) first_q <= beats_q;
+    if (taken && (bursts_q == 2'd0 || (bursts_q == 2'd1 && last))) first_q <= beats_q;
     else if (last) first_q <= second_q;
-    else if (beat & first_q != 5'd0) first_q <= first_q - 5'd1;
+    else if (beat && first_q != 5'd0) first_q <= first_q - 5'd1;
     if (taken) second_q <= beats_q;
     if (rst) begin
       rready_q <= 1'b0;
@@ -135,8 +142,8 @@ module cchip_bitstream_fetch #(
   assign owes = arvalid_q | owed;
 
   // ---- clocks without an address taken or a beat
-  reg [31:0] wait_q;  // one more than there were
-  reg late_q;  // there were `limit`
+  reg [31:0] wait_q;  // 1 + clocks without progress
+  reg late_q;  // wait_q has reached `limit`
   wire progress = taken | beat | ~owes;
   always @(posedge clk) begin
     wait_q <= progress ? 32'd2 : wait_q + 32'd1;
@@ -163,7 +170,6 @@ module cchip_bitstream_fetch #(
   );
 
   wire unused = &{1'b0, fifo_ready};
-`include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_bursts, bursts_q != 2'd3)

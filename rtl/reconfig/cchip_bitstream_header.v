@@ -1,27 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-`include "cchip_defs.vh"
 `default_nettype none
-// cchip_bitstream_header: takes the four words of a bitstream's header and says what is wrong with them.
+`include "cchip_defs.vh"
+// cchip_bitstream_header: takes the four words of a bitstream's header and says what is wrong with
+// them.
 //   latency      2 clocks from the last word to done; payload_* stay until the next header
 //   throughput   one word per clock
 //   cuts         every path: each output comes from flip-flops
-//   reset        clear = 1 between two headers, for 2 clocks or more; the request is stable from then to done
+//   reset        clear must be 1 for 2 clocks at least between two headers; slot, module_id and
+//                size must not change from then to done
 module cchip_bitstream_header #(
     // width of the configuration port, bit: 8 or 32
     parameter integer CFG_W = 8
 ) (
-    input  wire                     clk,
-    input  wire                     clear,
-    input  wire                     s_valid,
-    input  wire [             31:0] s_data,
-    input  wire [              7:0] slot,            // asked for
-    input  wire [              7:0] module_id,
-    input  wire [             31:0] size,            // header and payload, byte
-    output wire                     done,
-    output wire                     ok,              // with done
-    output wire [`CCHIP_SWAP_W-1:0] code,            // what is wrong, if not ok
-    output wire [             31:0] payload_length,  // byte
-    output wire [             31:0] payload_crc
+    input  wire                        clk,
+    input  wire                        clear,
+    input  wire                        s_valid,
+    input  wire [                31:0] s_data,
+    input  wire [`CCHIP_SLOT_ID_W-1:0] slot,            // asked for
+    input  wire [  `CCHIP_RM_ID_W-1:0] module_id,
+    input  wire [                31:0] size,            // header and payload, byte
+    output wire                        done,
+    output wire                        ok,              // with done
+    output wire [   `CCHIP_SWAP_W-1:0] code,            // what is wrong, if not ok
+    output wire [                31:0] payload_length,  // byte
+    output wire [                31:0] payload_crc
 );
 
   reg [31:0] magic_q, names_q, length_q, crc_q, expected_q;
@@ -29,22 +31,23 @@ module cchip_bitstream_header #(
   reg done_q, magic_ok_q, slot_ok_q, module_ok_q, size_ok_q, length_ok_q;
 
   always @(posedge clk) begin
-    // the first word ends in magic_q
-    if (s_valid & ~words_q[2]) {crc_q, length_q, names_q, magic_q} <= {s_data, crc_q, length_q, names_q};
+    // a shift register of four words: after the last one, the first word is in magic_q
+    if (s_valid && !words_q[2]) {crc_q, length_q, names_q, magic_q} <= {s_data, crc_q, length_q,
+        names_q};
     words_q <= clear ? 3'd0 : words_q + {2'd0, s_valid & ~words_q[2]};
     done_q <= ~clear & words_q[2];
     expected_q <= size - `CCHIP_BITSTREAM_HEADER;
-    magic_ok_q <= magic_q == `CCHIP_BITSTREAM_MAGIC & names_q[31:16] == 16'd0;
+    magic_ok_q <= magic_q == `CCHIP_BITSTREAM_MAGIC && names_q[31:16] == 16'd0;
     slot_ok_q <= names_q[15:8] == slot;
     module_ok_q <= names_q[7:0] == module_id;
     size_ok_q <= size >= `CCHIP_BITSTREAM_HEADER + `CCHIP_BITSTREAM_PAYLOAD_MIN;
-    length_ok_q <= length_q == expected_q & size_ok_q & (CFG_W == 8 | length_q[1:0] == 2'd0);
+    length_ok_q <= length_q == expected_q && size_ok_q && (CFG_W == 8 || length_q[1:0] == 2'd0);
   end
 
   assign done = done_q;
   assign ok = magic_ok_q & slot_ok_q & module_ok_q & length_ok_q;
-  assign code = ~magic_ok_q ? `CCHIP_SWAP_MAGIC : ~slot_ok_q ? `CCHIP_SWAP_SLOT :
-                ~module_ok_q ? `CCHIP_SWAP_MODULE : `CCHIP_SWAP_LENGTH;
+  assign code = !magic_ok_q ? `CCHIP_SWAP_MAGIC : !slot_ok_q ? `CCHIP_SWAP_SLOT :
+                !module_ok_q ? `CCHIP_SWAP_MODULE : `CCHIP_SWAP_LENGTH;
   assign payload_length = length_q;
   assign payload_crc = crc_q;
 

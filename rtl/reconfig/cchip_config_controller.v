@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-`include "cchip_defs.vh"
 `default_nettype none
-// cchip_config_controller: exchanges the module of a slot: fetches a bitstream, streams it into the configuration port and
-// sequences the slot. Phases CCHIP_PHASE_*, outcomes CCHIP_SWAP_*.
-//   order        HEADER, SHUTDOWN, DECOUPLE, RESET, TRANSFER, CHECK, ROC, RECOUPLE, REPORT; a bad header or a shutdown that
-//                fails leaves the slot at work; whatever fails from DECOUPLE on leaves it stopped, decoupled and in reset
-//   time         payload: CFG_DIVIDER clocks per port word (the paper's eq. 4) while memory keeps up; see the datasheet for
-//                the rest; every wait has a bound: shutdown_limit for the pairs, memory_limit for each beat
-//   busy         a request during a swap is taken and answered BUSY; every request is answered by exactly one report
-//   cuts         every path: each output comes from flip-flops, m_report_* through a multiplexer of two
-//   reset        no swap, slots at work, except one whose transfer had begun and not ended well: `half_q` outlives rst and
-//                keeps it stopped, decoupled and in reset until a good transfer
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_config_controller: exchanges the module of a slot: fetches a bitstream, streams it into the
+// configuration port and sequences the slot. Phases CCHIP_PHASE_*, outcomes CCHIP_SWAP_*.
+//   order        HEADER, SHUTDOWN, DECOUPLE, RESET, TRANSFER, CHECK, ROC, RECOUPLE, REPORT; a bad
+//                header or a shutdown that fails leaves the slot at work; whatever fails from
+//                DECOUPLE on leaves it stopped, decoupled and in reset
+//   time         payload: CFG_DIVIDER clocks per port word (the paper's eq. 4) while memory keeps
+//                up; see the datasheet for the rest; every wait has a bound: shutdown_limit for the
+//                pairs, memory_limit for each beat
+//   busy         a request during a swap is taken and answered BUSY; every request is answered by
+//                exactly one report
+//   cuts         every path: each output comes from flip-flops, m_report_* through a multiplexer of
+//                two
+//   reset        no swap, slots at work, except one whose transfer had begun and not ended well:
+//                `half_q` outlives rst and keeps it stopped, decoupled and in reset until a good
+//                transfer
 module cchip_config_controller #(
     // slots, 1 or 2
     parameter integer SLOTS = 1,
@@ -21,63 +27,65 @@ module cchip_config_controller #(
     // longest wait for a slot to decouple, to end its ROC, to recouple, clocks, >= 16
     parameter integer SLOT_LIMIT = 4096
 ) (
-    input  wire                clk,
-    input  wire                rst,
-    input  wire                s_swap_valid,
-    output wire                s_swap_ready,
-    input  wire [         7:0] s_swap_slot,
-    input  wire [         7:0] s_swap_module,
-    input  wire [        31:0] s_swap_address,    // of the header, byte
-    input  wire [        31:0] s_swap_size,       // header and payload, byte
-    input  wire                s_swap_force,      // 1: pairs not answered in time are given up
-    output wire                m_report_valid,    // 1 clock, no ready
-    output wire [         7:0] m_report_slot,
-    output wire [         7:0] m_report_module,
-    output wire [         3:0] m_report_code,
-    output wire [        15:0] m_report_lost,
-    input  wire                abort_swap,
-    input  wire                clear,             // counters
-    input  wire [        31:0] shutdown_limit,    // clocks; 0: default
-    input  wire [        31:0] memory_limit,      // clocks; 0: default
-    output wire [   SLOTS-1:0] stop,
-    output wire [   SLOTS-1:0] decouple,
-    output wire [   SLOTS-1:0] hold_reset,
-    output wire [   SLOTS-1:0] roc_start,
-    input  wire [   SLOTS-1:0] quiet,
-    input  wire [   SLOTS-1:0] decoupled,
-    input  wire [   SLOTS-1:0] roc_busy,
-    input  wire [ 8*SLOTS-1:0] region_rm_id,
-    input  wire [16*SLOTS-1:0] lost,
-    output wire                busy,
-    output wire [         3:0] phase,
-    output wire [         7:0] phase_slot,
-    output wire                m_axi_arvalid,
-    input  wire                m_axi_arready,
-    output wire [        31:0] m_axi_araddr,
-    output wire [         7:0] m_axi_arlen,
-    output wire [         2:0] m_axi_arsize,
-    output wire [         1:0] m_axi_arburst,
-    output wire [         3:0] m_axi_arcache,
-    output wire [         2:0] m_axi_arprot,
-    input  wire                m_axi_rvalid,
-    output wire                m_axi_rready,
-    input  wire [        31:0] m_axi_rdata,
-    input  wire [         1:0] m_axi_rresp,
-    input  wire                m_axi_rlast,
-    output wire                cfg_valid,
-    output wire [   CFG_W-1:0] cfg_data,
-    input  wire                cfg_error,
-    output wire [        31:0] swaps,
-    output wire [        31:0] rejected,
-    output wire [        31:0] stalls,
-    output wire [    9*32-1:0] phase_clocks
+    input  wire                                 clk,
+    input  wire                                 rst,
+    input  wire                                 s_swap_valid,
+    output wire                                 s_swap_ready,
+    input  wire [         `CCHIP_SLOT_ID_W-1:0] s_swap_slot,
+    input  wire [           `CCHIP_RM_ID_W-1:0] s_swap_module,
+    input  wire [                         31:0] s_swap_address,   // of the header, byte
+    input  wire [                         31:0] s_swap_size,      // header and payload, byte
+    // 1: pairs not answered in time are given up
+    input  wire                                 s_swap_force,
+    output wire                                 m_report_valid,   // 1 clock, no ready
+    output wire [         `CCHIP_SLOT_ID_W-1:0] m_report_slot,
+    output wire [           `CCHIP_RM_ID_W-1:0] m_report_module,
+    output wire [            `CCHIP_SWAP_W-1:0] m_report_code,
+    output wire [      `CCHIP_PAIR_COUNT_W-1:0] m_report_lost,
+    input  wire                                 abort_swap,
+    input  wire                                 clear,            // counters
+    input  wire [                         31:0] shutdown_limit,   // clocks; 0: default
+    input  wire [                         31:0] memory_limit,     // clocks; 0: default
+    output wire [                    SLOTS-1:0] stop,
+    output wire [                    SLOTS-1:0] decouple,
+    output wire [                    SLOTS-1:0] hold_reset,
+    output wire [                    SLOTS-1:0] roc_start,
+    input  wire [                    SLOTS-1:0] quiet,
+    input  wire [                    SLOTS-1:0] decoupled,
+    input  wire [                    SLOTS-1:0] roc_busy,
+    input  wire [     `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,
+    input  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] lost,
+    output wire                                 busy,
+    output wire [           `CCHIP_PHASE_W-1:0] phase,
+    output wire [         `CCHIP_SLOT_ID_W-1:0] phase_slot,
+    output wire                                 m_axi_arvalid,
+    input  wire                                 m_axi_arready,
+    output wire [                         31:0] m_axi_araddr,
+    output wire [                          7:0] m_axi_arlen,
+    output wire [                          2:0] m_axi_arsize,
+    output wire [                          1:0] m_axi_arburst,
+    output wire [                          3:0] m_axi_arcache,
+    output wire [                          2:0] m_axi_arprot,
+    input  wire                                 m_axi_rvalid,
+    output wire                                 m_axi_rready,
+    input  wire [                         31:0] m_axi_rdata,
+    input  wire [                          1:0] m_axi_rresp,
+    input  wire                                 m_axi_rlast,
+    output wire                                 cfg_valid,
+    output wire [                    CFG_W-1:0] cfg_data,
+    input  wire                                 cfg_error,
+    output wire [                         31:0] swaps,
+    output wire [                         31:0] rejected,
+    output wire [                         31:0] stalls,
+    output wire [                     9*32-1:0] phase_clocks
 );
 
-  wire [7:0] slot, module_id;
+  wire [`CCHIP_SLOT_ID_W-1:0] slot;
+  wire [`CCHIP_RM_ID_W-1:0] module_id;
   wire [31:0] address, size, limit;
   wire in_header, in_transfer, run, owes, bus_error, timeout;
   wire header_done, header_ok;
-  wire [3:0] header_code;
+  wire [`CCHIP_SWAP_W-1:0] header_code;
   wire fetch_valid, port_ready, transfer_done, stall;
   wire [31:0] length, payload_crc, fetch_data, crc;
   reg crc_ok_q;
@@ -221,7 +229,6 @@ module cchip_config_controller #(
 
   assign phase_slot = slot;
 
-`include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_transfer, !cfg_valid || (hold_reset & decouple & stop) != {SLOTS{1'b0}})

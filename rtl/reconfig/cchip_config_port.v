@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// cchip_config_port: payload of a bitstream from a stream of 32-bit words to the configuration port, low byte first, with
-// its CRC-32. A slot of CFG_DIVIDER clocks is a clock of the port; the first slot begins with the first word that is there.
-//   latency      transfer = 1 + CFG_DIVIDER * (port words + slots without data) clocks from s_valid and run to done
+// cchip_config_port: payload of a bitstream from a stream of 32-bit words to the configuration
+// port, low byte first, with its CRC-32. The port takes one word in CFG_DIVIDER clocks, called a
+// slot; the first slot begins when the first word is there.
+//   latency      transfer = 1 + CFG_DIVIDER * (port words + slots without data) clocks from s_valid
+//                and run to done
 //   throughput   one port word per slot, while s_valid = 1
 //   cuts         every path but s_ready: each output is a flip-flop
-//   reset        run = 0 ends a transfer and prepares the next: it must be 0 for a clock between two; length is read then
-//   numbers      a last word is used as far as length goes; length is a multiple of 4 for CFG_W = 32
+//   reset        run = 0 ends a transfer and prepares the next: it must be 0 for a clock between
+//                two; length is read then
+//   numbers      of the last 32-bit word only the bytes within length are used; length is a
+//                multiple of 4 for CFG_W = 32
 module cchip_config_port #(
     // width of the configuration port, bit: 8 or 32
     parameter integer CFG_W = 8,
@@ -44,7 +48,7 @@ module cchip_config_port #(
   initial valid_q = 1'b0;
   reg [CFG_W-1:0] data_q;
 
-  wire tick = ticking_q & slot_q == {SLOT_W{1'b0}} & ~done_q;
+  wire tick = ticking_q && slot_q == {SLOT_W{1'b0}} && !done_q;
   wire emit = tick & s_valid;
   reg last_q;  // left_q == 1
   wire [CFG_W-1:0] piece;
@@ -59,18 +63,18 @@ module cchip_config_port #(
     end else begin : gen_byte
       reg [1:0] lane_q;
       assign piece   = s_data[{lane_q, 3'd0}+:8];
-      assign s_ready = emit & (lane_q == 2'd3 | last_q);
+      assign s_ready = emit && (lane_q == 2'd3 || last_q);
       assign words = length;
-      always @(posedge clk) lane_q <= ~run ? 2'd0 : emit ? lane_q + 2'd1 : lane_q;
+      always @(posedge clk) lane_q <= !run ? 2'd0 : emit ? lane_q + 2'd1 : lane_q;
     end
   endgenerate
 
   always @(posedge clk) begin
-    slot_q <= ~ticking_q | slot_q == {SLOT_W{1'b0}} ? SLOT[SLOT_W-1:0] : slot_q - ONE;
+    slot_q <= !ticking_q || slot_q == {SLOT_W{1'b0}} ? SLOT[SLOT_W-1:0] : slot_q - ONE;
     if (emit) data_q <= piece;
-    left_q <= ~run ? words : emit ? left_q - 32'd1 : left_q;
-    last_q <= ~run ? words == 32'd1 : emit ? left_q == 32'd2 : last_q;
-    if (rst | ~run) begin
+    left_q <= !run ? words : emit ? left_q - 32'd1 : left_q;
+    last_q <= !run ? words == 32'd1 : emit ? left_q == 32'd2 : last_q;
+    if (rst || !run) begin
       ticking_q <= 1'b0;
       done_q    <= 1'b0;
       valid_q   <= 1'b0;
@@ -88,7 +92,7 @@ module cchip_config_port #(
   assign done = done_q;
   assign stall = stall_q;
 
-  // the CRC is read after the transfer: it is cleared when the next begins
+  // the CRC is read after the transfer, so it is cleared only when the next transfer begins
   cchip_crc32 #(
       .DATA_W(CFG_W)
   ) u_crc (

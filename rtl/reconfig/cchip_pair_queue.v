@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// cchip_pair_queue: first-in first-out queue of wide words in block RAM, with the number of words that wait.
-//   latency      3 clocks from the push to m_valid of an empty queue: memory, its output register, m_data
+`include "cchip_assert.vh"
+// cchip_pair_queue: first-in first-out queue of wide words in block RAM, with the number of words
+// that wait.
+//   latency      3 clocks from the push to m_valid of an empty queue: memory, its output register,
+//                m_data
 //   throughput   one word per clock
 //   capacity     DEPTH words, both registers behind the memory included
 //   cuts         every path: s_ready, m_valid, m_data and count are flip-flops
@@ -21,7 +24,7 @@ module cchip_pair_queue #(
     output wire                       m_valid,
     input  wire                       m_ready,
     output wire [          WIDTH-1:0] m_data,
-    output wire [$clog2(DEPTH+1)-1:0] count    // words that were pushed and not taken yet
+    output wire [$clog2(DEPTH+1)-1:0] count     // words that were pushed and not taken yet
 );
 
   localparam integer PTR_W = $clog2(DEPTH);
@@ -56,7 +59,8 @@ module cchip_pair_queue #(
   wire advance = m_ready | ~valid_q;  // data_q is free
   wire fetch = some_q & (advance | ~fetched_q);
 
-  // ---- memory: one write port, one read port with its register; a word is never read on the clock of its write
+  // ---- memory: one write port, one read port with its register; a word is never read on the clock
+  // of its write
   (* ram_style = "block", no_rw_check *)
   reg [WIDTH-1:0] mem [0:DEPTH-1];
   always @(posedge clk) if (push) mem[write_q] <= s_data;
@@ -66,8 +70,9 @@ module cchip_pair_queue #(
     next = pointer == LAST[PTR_W-1:0] ? {PTR_W{1'b0}} : pointer + ONE[PTR_W-1:0];
   endfunction
 
-  // sums and comparisons start from registers, push, pop and fetch choose (~(~n + 1) is n - 1: Yosys would make one of a
-  // sum and a difference, behind the choice)
+  // All sums and comparisons are computed from registers; push, pop and fetch, which come late,
+  // select among them. n - 1 is written ~(~n + 1): otherwise Yosys merges the sum and the
+  // difference into one adder behind the selection.
   always @(posedge clk) begin
     if (advance) data_q <= fetched_data_q;
     if (rst) begin
@@ -83,8 +88,10 @@ module cchip_pair_queue #(
     end else begin
       if (push) write_q <= next(write_q);
       if (fetch) read_q <= next(read_q);
-      if (push != pop) count_q <= push ? count_q + ONE[COUNT_W-1:0] : ~(~count_q + ONE[COUNT_W-1:0]);
-      if (push != fetch) stored_q <= push ? stored_q + ONE[COUNT_W-1:0] : ~(~stored_q + ONE[COUNT_W-1:0]);
+      if (push != pop) count_q <= push ? count_q + ONE[COUNT_W-1:0]
+          : ~(~count_q + ONE[COUNT_W-1:0]);
+      if (push != fetch) stored_q <= push ? stored_q + ONE[COUNT_W-1:0]
+          : ~(~stored_q + ONE[COUNT_W-1:0]);
       ready_q   <= push == pop ? count_q != FULL[COUNT_W-1:0] : pop || count_q != LAST[COUNT_W-1:0];
       some_q    <= push | (fetch ? more_q : some_q);
       more_q    <= push == fetch ? more_q : push ? some_q : stored_q > TWO[COUNT_W-1:0];
@@ -93,11 +100,11 @@ module cchip_pair_queue #(
     end
   end
 
-`include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_count, {{32 - COUNT_W{1'b0}}, count_q} <= FULL)
-      `CCHIP_ASSERT(a_places, count_q == stored_q + {{COUNT_W - 1{1'b0}}, fetched_q} + {{COUNT_W - 1{1'b0}}, valid_q})
+      `CCHIP_ASSERT(a_places, count_q == stored_q + {{COUNT_W - 1{1'b0}}, fetched_q}
+          + {{COUNT_W - 1{1'b0}}, valid_q})
       `CCHIP_ASSERT(a_some, some_q == (stored_q != {COUNT_W{1'b0}}))
       `CCHIP_ASSERT(a_more, more_q == (stored_q > ONE[COUNT_W-1:0]))
       `CCHIP_ASSERT(a_ready, !ready_q || count_q != FULL[COUNT_W-1:0])

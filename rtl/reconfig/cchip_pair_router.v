@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-`include "cchip_defs.vh"
 `default_nettype none
-// cchip_pair_router: the streams of the reconfigurable subsystem. Sorts pairs by kind into three queues, gives them to
-// the slots that work on their kind, collects the answers in turn and answers itself what nobody can test: pairs of
-// kind 0 and of kinds without a provider get axis class CCHIP_AXIS_ILLEGAL, hit 1, grid 1, definite 0, beats 0.
-//   latency      5 clocks to the slot (skid buffer, queue), 1 clock back; own answers wait one to three clocks more
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_pair_router: the streams of the reconfigurable subsystem. Sorts pairs by kind into three
+// queues, gives them to the slots that work on their kind, collects the answers in turn and answers
+// itself the pairs that no module can test: those of kind 0 and of kinds without a provider get
+// axis class CCHIP_AXIS_ILLEGAL, hit 1, grid 1, definite 0, beats 0.
+//   latency      5 clocks to the slot (skid buffer, queue), 1 clock back; own answers wait one to
+//                three clocks more
 //   throughput   one pair and one answer per clock
-//   in flight    4 + 3 * QUEUE_DEPTH pairs at most wait here; a full queue stops the other kinds too
+//   in flight    4 + 3 * QUEUE_DEPTH pairs at most wait here; a full queue stops the other kinds
+//                too
 //   fair         slots and own answers leave in turn
-//   cuts         s_pair_ready, m_result_valid and m_result_*, all status: flip-flops; between slots and queues see
-//                cchip_pair_dispatcher, cchip_result_merge
+//   cuts         s_pair_ready, m_result_valid and m_result_*, all status: flip-flops; between slots
+//                and queues see cchip_pair_dispatcher, cchip_result_merge
 //   reset        all streams empty
 module cchip_pair_router #(
     // width of a coordinate, bit, 4..20
@@ -19,53 +23,63 @@ module cchip_pair_router #(
     // pairs in each queue, 16..1024
     parameter integer QUEUE_DEPTH = 256
 ) (
-    input  wire                                clk,
-    input  wire                                rst,
+    input  wire                                       clk,
+    input  wire                                       rst,
     // pairs of any kind, ModuleId of the test
-    input  wire                                s_pair_valid,
-    output wire                                s_pair_ready,
-    input  wire [                         1:0] s_pair_kind,
-    input  wire [                        15:0] s_pair_tag,
-    input  wire [                         1:0] s_pair_mode,
-    input  wire [             4*3*COORD_W-1:0] s_pair_a,
-    input  wire [             4*3*COORD_W-1:0] s_pair_b,
-    input  wire [                         3:0] s_pair_err,
-    output wire                                m_result_valid,
-    input  wire                                m_result_ready,
-    output wire [                         1:0] m_result_kind,
-    output wire [                        15:0] m_result_tag,
-    output wire                                m_result_hit,
-    output wire                                m_result_grid,
-    output wire                                m_result_definite,
-    output wire [                         8:0] m_result_axis,
-    output wire [                         5:0] m_result_beats,
-    // slots: {mode; err; b; a; tag} and {beats; axis; definite; grid; hit; tag}
-    output wire [                   SLOTS-1:0] m_slot_valid,
-    input  wire [                   SLOTS-1:0] m_slot_ready,
-    output wire [SLOTS*(22+2*4*3*COORD_W)-1:0] m_slot_data,
-    input  wire [                   SLOTS-1:0] s_slot_valid,
-    output wire [                   SLOTS-1:0] s_slot_ready,
-    input  wire [                SLOTS*34-1:0] s_slot_data,
+    input  wire                                       s_pair_valid,
+    output wire                                       s_pair_ready,
+    input  wire [                  `CCHIP_KIND_W-1:0] s_pair_kind,
+    input  wire [                   `CCHIP_TAG_W-1:0] s_pair_tag,
+    input  wire [                  `CCHIP_MODE_W-1:0] s_pair_mode,
+    input  wire [    `CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
+    input  wire [    `CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
+    input  wire [                   `CCHIP_ERR_W-1:0] s_pair_err,
+    output wire                                       m_result_valid,
+    input  wire                                       m_result_ready,
+    output wire [                  `CCHIP_KIND_W-1:0] m_result_kind,
+    output wire [                   `CCHIP_TAG_W-1:0] m_result_tag,
+    output wire                                       m_result_hit,
+    output wire                                       m_result_grid,
+    output wire                                       m_result_definite,
+    output wire [             `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
+    output wire [                 `CCHIP_BEATS_W-1:0] m_result_beats,
+    // slots: records REQUEST and RESULT
+    output wire [                          SLOTS-1:0] m_slot_valid,
+    input  wire [                          SLOTS-1:0] m_slot_ready,
+    output wire [SLOTS*`CCHIP_REQUEST_W(COORD_W)-1:0] m_slot_data,
+    input  wire [                          SLOTS-1:0] s_slot_valid,
+    output wire [                          SLOTS-1:0] s_slot_ready,
+    input  wire [          SLOTS*`CCHIP_RESULT_W-1:0] s_slot_data,
     // module of each slot's answers; module that takes pairs (0: none)
-    input  wire [                 2*SLOTS-1:0] slot_module,
-    input  wire [                 2*SLOTS-1:0] serves,
-    input  wire [                         2:0] no_provider,
+    input  wire [            `CCHIP_KIND_W*SLOTS-1:0] slot_module,
+    input  wire [            `CCHIP_KIND_W*SLOTS-1:0] serves,
+    input  wire [                                2:0] no_provider,
     // kind k at place k - 1
-    output wire [   3*$clog2(QUEUE_DEPTH+1)-1:0] waiting,
-    // a pair was answered: by a slot with this module, or 0: by the router, because of its kind or for want of a provider
-    output reg                                 answered,
-    output reg  [                         1:0] answered_module,
-    output reg                                 refused_kind,
-    output reg                                 refused_provider
+    output wire [        3*$clog2(QUEUE_DEPTH+1)-1:0] waiting,
+    // a pair was answered: by a slot with this module, or 0: by the router, because of its kind or
+    // for want of a provider
+    output wire                                       answered,
+    output wire [                                1:0] answered_module,
+    output wire                                       refused_kind,
+    output wire                                       refused_provider
 );
 
-  localparam integer VERTEX_W = 4 * 3 * COORD_W;
-  localparam integer PAIR_W = 22 + 2 * VERTEX_W;
-  localparam integer ANSWER_W = 34;
-  localparam integer RESULT_W = ANSWER_W + 2;
+  reg answered_q;
+  reg [1:0] answered_module_q;
+  reg refused_kind_q;
+  reg refused_provider_q;
+  assign answered = answered_q;
+  assign answered_module = answered_module_q;
+  assign refused_kind = refused_kind_q;
+  assign refused_provider = refused_provider_q;
+
+  localparam integer PAIR_W = `CCHIP_REQUEST_W(COORD_W);
+  localparam integer ANSWER_W = `CCHIP_RESULT_W;
+  // {kind; result}
+  localparam integer RESULT_W = `CCHIP_KIND_W + ANSWER_W;
   localparam integer COUNT_W = $clog2(QUEUE_DEPTH + 1);
 
-  // ---- sort: the kind is decoded on the way in
+  // ---- sort: the kind is decoded before the input register
   wire in_valid;
   wire [3:0] in_kind;  // one-hot
   wire [PAIR_W-1:0] in_pair;
@@ -110,8 +124,8 @@ module cchip_pair_router #(
 
   // ---- to the slots
   wire refusing_valid, refusing_ready, refused_valid, refused_ready;
-  wire [15:0] refusing_tag, refused_tag;
-  wire [1:0] kind_of_refusing, kind_of_refused;
+  wire [`CCHIP_TAG_W-1:0] refusing_tag, refused_tag;
+  wire [`CCHIP_KIND_W-1:0] kind_of_refusing, kind_of_refused;
 
   cchip_pair_dispatcher #(
       .SLOTS(SLOTS),
@@ -126,7 +140,7 @@ module cchip_pair_router #(
       .s_data         (head),
       .s_illegal_valid(in_valid & in_kind[0]),
       .s_illegal_ready(illegal_ready),
-      .s_illegal_tag  (in_pair[15:0]),
+      .s_illegal_tag  (in_pair[`CCHIP_REQUEST_TAG]),
       .m_pair_valid   (m_slot_valid),
       .m_pair_ready   (m_slot_ready),
       .m_pair_data    (m_slot_data),
@@ -136,9 +150,9 @@ module cchip_pair_router #(
       .m_refused_kind (kind_of_refusing)
   );
 
-  // the queues do not wait for the merge
+  // a register between queues and merge, so that a queue's ready does not depend on the merge
   cchip_skid_buffer #(
-      .WIDTH(18)
+      .WIDTH(`CCHIP_KIND_W + `CCHIP_TAG_W)
   ) u_refused (
       .clk    (clk),
       .rst    (rst),
@@ -154,10 +168,12 @@ module cchip_pair_router #(
   wire [(SLOTS+1)*RESULT_W-1:0] answers;
   generate
     for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_slots
-      assign answers[RESULT_W*slot+:RESULT_W] = {slot_module[2*slot+:2], s_slot_data[ANSWER_W*slot+:ANSWER_W]};
+      assign answers[RESULT_W*slot+:RESULT_W] =
+          {slot_module[2*slot+:2], s_slot_data[ANSWER_W*slot+:ANSWER_W]};
     end
   endgenerate
-  assign answers[RESULT_W*SLOTS+:RESULT_W] = {kind_of_refused, 6'd0, `CCHIP_AXIS_ILLEGAL, 6'd0, 1'b0, 1'b1, 1'b1, refused_tag};
+  assign answers[RESULT_W*SLOTS+:RESULT_W] =
+      {kind_of_refused, 6'd0, `CCHIP_AXIS_ILLEGAL, 6'd0, 1'b0, 1'b1, 1'b1, refused_tag};
 
   cchip_result_merge #(
       .SOURCES(SLOTS + 1),
@@ -193,13 +209,12 @@ module cchip_pair_router #(
   endfunction
 
   always @(posedge clk) begin
-    answered         <= ~rst & (|passed | refused);
-    answered_module  <= module_of(passed, slot_module);
-    refused_kind     <= ~rst & refused & kind_of_refused == 2'd0;
-    refused_provider <= ~rst & refused & kind_of_refused != 2'd0;
+    answered_q         <= ~rst & (|passed | refused);
+    answered_module_q  <= module_of(passed, slot_module);
+    refused_kind_q     <= !rst && refused && kind_of_refused == 2'd0;
+    refused_provider_q <= !rst && refused && kind_of_refused != 2'd0;
   end
 
-`include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_module, !(|passed) || module_of(passed, slot_module) != 2'd0)

@@ -1,106 +1,108 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-`include "cchip_defs.vh"
 `default_nettype none
-// cchip_pr_decoupler: the boundary of a reconfigurable region. Static side: ports of a primitive test. Region side: r_*.
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_pr_decoupler: the boundary of a reconfigurable region. Static side: ports of a primitive
+// test. Region side: r_*.
 //   latency      1 clock each way
 //   throughput   one beat per clock
 //   cuts         every path both ways: every output is a flip-flop
-//   decouple     decoupled follows one clock later; while it is 1 every output is constant: valid, ready and data 0 on
-//                both sides, rm_id CCHIP_RM_BLANK, idle 1. Beats inside, and one handed over on the clock on which
-//                decouple rises, are lost: stop first, wait for the answers, then decouple
+//   decouple     decoupled follows one clock later; while it is 1 every output is constant: valid,
+//                ready and data 0 on both sides, rm_id CCHIP_RM_BLANK, idle 1. Beats inside, and
+//                one handed over on the clock on which decouple rises, are lost: stop first, wait
+//                for the answers, then decouple
 //   stop         s_pair_ready is 0 from the next clock on; pairs inside and answers pass
-//   blank        no pair is accepted while r_rm_id is CCHIP_RM_BLANK: nobody would take it out again
+//   blank        no pair is accepted while r_rm_id is CCHIP_RM_BLANK: no module would answer it
 //   reset        empties both streams; has no effect on decoupled
 module cchip_pr_decoupler #(
     // width of a coordinate, bit
     parameter integer COORD_W = 16
 ) (
-    input  wire                   clk,
-    input  wire                   rst,
-    input  wire                   stop,
-    input  wire                   decouple,
-    output wire                   decoupled,
+    input  wire                                   clk,
+    input  wire                                   rst,
+    input  wire                                   stop,
+    input  wire                                   decouple,
+    output wire                                   decoupled,
     // static side
-    input  wire                   s_pair_valid,
-    output wire                   s_pair_ready,
-    input  wire [           15:0] s_pair_tag,
-    input  wire [            1:0] s_pair_mode,
-    input  wire [4*3*COORD_W-1:0] s_pair_a,
-    input  wire [4*3*COORD_W-1:0] s_pair_b,
-    input  wire [            3:0] s_pair_err,
-    output wire                   m_result_valid,
-    input  wire                   m_result_ready,
-    output wire [           15:0] m_result_tag,
-    output wire                   m_result_hit,
-    output wire                   m_result_grid,
-    output wire                   m_result_definite,
-    output wire [            8:0] m_result_axis,
-    output wire [            5:0] m_result_beats,
-    output wire [            7:0] rm_id,
-    output wire                   idle,
+    input  wire                                   s_pair_valid,
+    output wire                                   s_pair_ready,
+    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
+    input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
+    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
+    output wire                                   m_result_valid,
+    input  wire                                   m_result_ready,
+    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
+    output wire                                   m_result_hit,
+    output wire                                   m_result_grid,
+    output wire                                   m_result_definite,
+    output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
+    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
+    output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
+    output wire                                   idle,
     // region side
-    output wire                   r_pair_valid,
-    input  wire                   r_pair_ready,
-    output wire [           15:0] r_pair_tag,
-    output wire [            1:0] r_pair_mode,
-    output wire [4*3*COORD_W-1:0] r_pair_a,
-    output wire [4*3*COORD_W-1:0] r_pair_b,
-    output wire [            3:0] r_pair_err,
-    input  wire                   r_result_valid,
-    output wire                   r_result_ready,
-    input  wire [           15:0] r_result_tag,
-    input  wire                   r_result_hit,
-    input  wire                   r_result_grid,
-    input  wire                   r_result_definite,
-    input  wire [            8:0] r_result_axis,
-    input  wire [            5:0] r_result_beats,
-    input  wire [            7:0] r_rm_id,
-    input  wire                   r_idle
+    output wire                                   r_pair_valid,
+    input  wire                                   r_pair_ready,
+    output wire [               `CCHIP_TAG_W-1:0] r_pair_tag,
+    output wire [              `CCHIP_MODE_W-1:0] r_pair_mode,
+    output wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] r_pair_a,
+    output wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] r_pair_b,
+    output wire [               `CCHIP_ERR_W-1:0] r_pair_err,
+    input  wire                                   r_result_valid,
+    output wire                                   r_result_ready,
+    input  wire [               `CCHIP_TAG_W-1:0] r_result_tag,
+    input  wire                                   r_result_hit,
+    input  wire                                   r_result_grid,
+    input  wire                                   r_result_definite,
+    input  wire [         `CCHIP_AXIS_CODE_W-1:0] r_result_axis,
+    input  wire [             `CCHIP_BEATS_W-1:0] r_result_beats,
+    input  wire [             `CCHIP_RM_ID_W-1:0] r_rm_id,
+    input  wire                                   r_idle
 );
-
-  localparam integer PAIR_W = 16 + 2 + 4 + 24 * COORD_W;
-  localparam integer RESULT_W = 16 + 1 + 1 + 1 + 9 + 6;
 
   wire close = rst | decouple;
   wire blank = r_rm_id == `CCHIP_RM_BLANK;
 
   cchip_pr_gate #(
-      .WIDTH(PAIR_W)
+      .WIDTH(`CCHIP_REQUEST_W(COORD_W))
   ) u_pair (
       .clk    (clk),
       .close  (close),
       .stop   (stop | blank),
       .s_valid(s_pair_valid),
       .s_ready(s_pair_ready),
-      .s_data ({s_pair_tag, s_pair_mode, s_pair_err, s_pair_a, s_pair_b}),
+      .s_data ({s_pair_mode, s_pair_err, s_pair_b, s_pair_a, s_pair_tag}),
       .m_valid(r_pair_valid),
       .m_ready(r_pair_ready),
-      .m_data ({r_pair_tag, r_pair_mode, r_pair_err, r_pair_a, r_pair_b})
+      .m_data ({r_pair_mode, r_pair_err, r_pair_b, r_pair_a, r_pair_tag})
   );
 
   cchip_pr_gate #(
-      .WIDTH(RESULT_W)
+      .WIDTH(`CCHIP_RESULT_W)
   ) u_result (
       .clk    (clk),
       .close  (close),
       .stop   (1'b0),
       .s_valid(r_result_valid),
       .s_ready(r_result_ready),
-      .s_data ({r_result_tag, r_result_hit, r_result_grid, r_result_definite, r_result_axis, r_result_beats}),
+      .s_data ({r_result_beats, r_result_axis, r_result_definite, r_result_grid, r_result_hit,
+        r_result_tag}),
       .m_valid(m_result_valid),
       .m_ready(m_result_ready),
-      .m_data ({m_result_tag, m_result_hit, m_result_grid, m_result_definite, m_result_axis, m_result_beats})
+      .m_data ({m_result_beats, m_result_axis, m_result_definite, m_result_grid, m_result_hit,
+        m_result_tag})
   );
 
   reg decoupled_q;
-  reg [7:0] rm_id_q;
+  reg [`CCHIP_RM_ID_W-1:0] rm_id_q;
   reg idle_q;
 
   assign decoupled = decoupled_q;
   assign rm_id     = rm_id_q;
   assign idle      = idle_q;
 
-  // the region's own idle does not know of beats in the gates
+  // the region's own idle does not include the beats inside the two gates
   wire accept = s_pair_valid & s_pair_ready;
   wire filled = accept | r_pair_valid | r_result_valid | m_result_valid;
 
@@ -110,7 +112,6 @@ module cchip_pr_decoupler #(
     idle_q      <= close | (r_idle & ~filled);
   end
 
-`include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst && decoupled_q) begin
       `CCHIP_ASSERT(a_no_pair, !s_pair_ready && !r_pair_valid)

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_pr_gate: stream register that can be closed: one direction of cchip_pr_decoupler.
 //   latency      1 clock
 //   throughput   one beat per clock, also while m_ready toggles
 //   capacity     2 beats
 //   cuts         every path: s_ready, m_valid and m_data are flip-flops
-//   stop         no further beat is accepted: s_ready is 0 from the next clock on; beats inside leave as usual
-//   close        empties the gate like a reset, and m_data is 0, too; a beat of the clock on which close rises is lost
+//   stop         no further beat is accepted: s_ready is 0 from the next clock on; beats inside
+//                leave as usual
+//   close        empties the gate like a reset, and m_data is 0, too; a beat of the clock on which
+//                close rises is lost
 module cchip_pr_gate #(
     // width of the payload, bit, >= 1
     parameter integer WIDTH = 8
@@ -57,7 +60,6 @@ module cchip_pr_gate #(
     if (ready_q) skid_data_q <= s_data;
   end
 
-`include "cchip_assert.vh"
   always @(posedge clk)
     if (!close) begin
       `CCHIP_ASSERT(a_ready_means_empty, !(ready_q && skid_valid_q))

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-`include "cchip_defs.vh"
 `default_nettype none
-// cchip_pr_region: the reconfigurable partition: one cell, one module name, ports of a primitive test, whatever is in
-// it. RM_ID chooses the persona: blank, triangle-triangle, triangle-quad or quad-quad. Vendor flows synthesise this
-// module out of context once per RM_ID and exchange the results in the static design.
+`include "cchip_defs.vh"
+// cchip_pr_region: the reconfigurable partition: one cell, one module name, ports of a primitive
+// test, whatever is in it. RM_ID chooses the persona: blank, triangle-triangle, triangle-quad or
+// quad-quad. Vendor flows synthesise this module out of context once per RM_ID and exchange the
+// results in the static design.
 //   latency, throughput, in flight, reset   those of the persona: nothing is added
-//   cuts         what the persona cuts: each output is a flip-flop of it, or a constant of the blank one
-// With the macro CCHIP_PR_BLACK_BOX the module has its ports and nothing else: the empty cell of the static design.
+//   cuts         what the persona cuts: each output is a flip-flop of it, or a constant of the
+//                blank one
+// With the macro CCHIP_PR_BLACK_BOX the module has its ports and nothing else: the empty cell of
+// the static design.
 `ifdef CCHIP_PR_BLACK_BOX
 (* black_box *)
 `endif
@@ -24,25 +27,25 @@ module cchip_pr_region #(
     // 1: warped quads are decided exactly; 0: they are left open (see cchip_axis_controller)
     parameter integer WARPED_EXACT = 1
 ) (
-    input  wire                   clk,
-    input  wire                   rst,
-    input  wire                   s_pair_valid,
-    output wire                   s_pair_ready,
-    input  wire [           15:0] s_pair_tag,
-    input  wire [            1:0] s_pair_mode,
-    input  wire [4*3*COORD_W-1:0] s_pair_a,
-    input  wire [4*3*COORD_W-1:0] s_pair_b,
-    input  wire [            3:0] s_pair_err,
-    output wire                   m_result_valid,
-    input  wire                   m_result_ready,
-    output wire [           15:0] m_result_tag,
-    output wire                   m_result_hit,
-    output wire                   m_result_grid,
-    output wire                   m_result_definite,
-    output wire [            8:0] m_result_axis,
-    output wire [            5:0] m_result_beats,
-    output wire [            7:0] rm_id,
-    output wire                   idle
+    input  wire                                   clk,
+    input  wire                                   rst,
+    input  wire                                   s_pair_valid,
+    output wire                                   s_pair_ready,
+    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
+    input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
+    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
+    output wire                                   m_result_valid,
+    input  wire                                   m_result_ready,
+    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
+    output wire                                   m_result_hit,
+    output wire                                   m_result_grid,
+    output wire                                   m_result_definite,
+    output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
+    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
+    output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
+    output wire                                   idle
 );
 
 `ifndef CCHIP_PR_BLACK_BOX

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-`include "cchip_defs.vh"
 `default_nettype none
-// cchip_pr_slot: one reconfigurable module behind its decoupler and reset generator, with what a controller needs to
-// exchange it: stop, quiet, decouple, reset, the module's number.
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_pr_slot: one reconfigurable module behind its decoupler and reset generator, with what a
+// controller needs to exchange it: stop, quiet, decouple, reset, the module's number.
 //   latency      that of the module + 2 clocks
 //   throughput   that of the module
 //   cuts         every path: every output is a flip-flop
-//   stop         s_pair_ready is 0 from the next clock on; quiet rises when every accepted pair has been answered
+//   stop         s_pair_ready is 0 from the next clock on; quiet rises when every accepted pair has
+//                been answered
 //   decouple     see cchip_pr_decoupler; pairs inside are counted in lost as decoupled rises
-//   hold_reset   level, reset of the module one clock later; roc_start: pulse, a reset of ROC_CYCLES clocks; roc_busy is
-//                1 from the next clock to the last clock of that reset. Reset an uncoupled module only
-//   reset        resets streams and module (for ROC_CYCLES clocks more); nothing old comes out. A configuration survives
-// SIMULATION = 0: one cchip_pr_region, the partition of FPGA tools. SIMULATION = 1: all four modules, exchanged by the
-// words that pass the configuration port (cchip_pr_virtual).
+//   hold_reset   level, reset of the module one clock later; roc_start: pulse, a reset of
+//                ROC_CYCLES clocks; roc_busy is 1 from the next clock to the last clock of that
+//                reset. Only a decoupled module may be reset
+//   reset        resets streams and module (for ROC_CYCLES clocks more); nothing old comes out. The
+//                configuration stays
+// SIMULATION = 0: one cchip_pr_region, the partition of FPGA tools. SIMULATION = 1: all four
+// modules, exchanged by the words that pass the configuration port (cchip_pr_virtual).
 module cchip_pr_slot #(
     // see cchip_pr_region
     parameter integer COORD_W = 16,
@@ -33,47 +37,47 @@ module cchip_pr_slot #(
     // start of the random numbers of a simulated reconfiguration, any
     parameter integer SEED = 1
 ) (
-    input  wire                   clk,
-    input  wire                   rst,
+    input  wire                                   clk,
+    input  wire                                   rst,
     // control
-    input  wire                   stop,
-    output wire                   quiet,
-    output wire [           15:0] outstanding,
-    input  wire                   decouple,
-    output wire                   decoupled,
-    output wire [           15:0] lost,
-    input  wire                   hold_reset,
-    input  wire                   roc_start,
-    output wire                   roc_busy,
-    output wire [            7:0] region_rm_id,
+    input  wire                                   stop,
+    output wire                                   quiet,
+    output wire [        `CCHIP_PAIR_COUNT_W-1:0] outstanding,
+    input  wire                                   decouple,
+    output wire                                   decoupled,
+    output wire [        `CCHIP_PAIR_COUNT_W-1:0] lost,
+    input  wire                                   hold_reset,
+    input  wire                                   roc_start,
+    output wire                                   roc_busy,
+    output wire [             `CCHIP_RM_ID_W-1:0] region_rm_id,
     // configuration port of the device
-    input  wire                   cfg_valid,
-    input  wire [      CFG_W-1:0] cfg_data,
+    input  wire                                   cfg_valid,
+    input  wire [                      CFG_W-1:0] cfg_data,
     // ports of a primitive test
-    input  wire                   s_pair_valid,
-    output wire                   s_pair_ready,
-    input  wire [           15:0] s_pair_tag,
-    input  wire [            1:0] s_pair_mode,
-    input  wire [4*3*COORD_W-1:0] s_pair_a,
-    input  wire [4*3*COORD_W-1:0] s_pair_b,
-    input  wire [            3:0] s_pair_err,
-    output wire                   m_result_valid,
-    input  wire                   m_result_ready,
-    output wire [           15:0] m_result_tag,
-    output wire                   m_result_hit,
-    output wire                   m_result_grid,
-    output wire                   m_result_definite,
-    output wire [            8:0] m_result_axis,
-    output wire [            5:0] m_result_beats,
-    output wire [            7:0] rm_id,
-    output wire                   idle
+    input  wire                                   s_pair_valid,
+    output wire                                   s_pair_ready,
+    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
+    input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
+    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
+    output wire                                   m_result_valid,
+    input  wire                                   m_result_ready,
+    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
+    output wire                                   m_result_hit,
+    output wire                                   m_result_grid,
+    output wire                                   m_result_definite,
+    output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
+    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
+    output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
+    output wire                                   idle
 );
 
   // ---- reset of the module
   wire roc;
   reg region_rst_q;
   reg roc_busy_q;
-  reg [7:0] region_rm_id_q;
+  reg [`CCHIP_RM_ID_W-1:0] region_rm_id_q;
   initial region_rst_q = 1'b1;
 
   cchip_roc_generator #(
@@ -85,7 +89,7 @@ module cchip_pr_slot #(
       .roc       (roc)
   );
 
-  wire [7:0] r_rm_id;
+  wire [`CCHIP_RM_ID_W-1:0] r_rm_id;
   always @(posedge clk) begin
     region_rst_q   <= rst | hold_reset | roc;
     roc_busy_q     <= rst | roc_start | roc;
@@ -94,17 +98,22 @@ module cchip_pr_slot #(
   assign roc_busy     = roc_busy_q;
   assign region_rm_id = region_rm_id_q;
 
-  // ---- pairs inside, counted on the static side: a handshake of the region proves nothing
-  reg [15:0] outstanding_q;
-  reg [15:0] lost_q;
+  // ---- pairs inside, counted at the static side's handshakes: while the region is rewritten, its
+  // own signals mean nothing
+  reg [`CCHIP_PAIR_COUNT_W-1:0] outstanding_q;
+  reg [`CCHIP_PAIR_COUNT_W-1:0] lost_q;
   reg stopped_q;
   reg quiet_q;
 
   wire accept = s_pair_valid & s_pair_ready;
   wire answer = m_result_valid & m_result_ready;
-  // sums start from registers, handshakes choose (~(~n + 1) is n - 1: Yosys would make one of a sum and a difference)
-  wire [15:0] one_less = outstanding_q == 16'd0 ? 16'd0 : ~(~outstanding_q + 16'd1);
-  wire [15:0] outstanding_d = accept & ~answer ? outstanding_q + 16'd1 : answer & ~accept ? one_less : outstanding_q;
+  // Both possible counts are computed from registers; the handshakes, which come late, select one.
+  // n - 1 is written ~(~n + 1): otherwise Yosys merges the sum and the difference into one adder
+  // behind the selection.
+  wire [`CCHIP_PAIR_COUNT_W-1:0] one_less = outstanding_q == 16'd0 ? 16'd0
+      : ~(~outstanding_q + 16'd1);
+  wire [`CCHIP_PAIR_COUNT_W-1:0] outstanding_d = accept && !answer ? outstanding_q + 16'd1
+      : answer && !accept ? one_less : outstanding_q;
 
   always @(posedge clk) begin
     if (rst) begin
@@ -114,9 +123,9 @@ module cchip_pr_slot #(
       quiet_q       <= 1'b0;
     end else begin
       outstanding_q <= decouple ? 16'd0 : outstanding_d;
-      if (decouple & ~decoupled) lost_q <= outstanding_d;
+      if (decouple && !decoupled) lost_q <= outstanding_d;
       stopped_q <= stop;
-      quiet_q   <= stop & stopped_q & (outstanding_q == 16'd0);
+      quiet_q   <= stop && stopped_q && (outstanding_q == 16'd0);
     end
   end
   assign outstanding = outstanding_q;
@@ -124,13 +133,14 @@ module cchip_pr_slot #(
   assign quiet       = quiet_q;
 
   // ---- boundary
-  wire r_pair_valid, r_pair_ready, r_result_valid, r_result_ready, r_result_hit, r_result_grid, r_result_definite;
-  wire [15:0] r_pair_tag, r_result_tag;
-  wire [1:0] r_pair_mode;
-  wire [12*COORD_W-1:0] r_pair_a, r_pair_b;
-  wire [3:0] r_pair_err;
-  wire [8:0] r_result_axis;
-  wire [5:0] r_result_beats;
+  wire r_pair_valid, r_pair_ready, r_result_valid, r_result_ready, r_result_hit, r_result_grid,
+      r_result_definite;
+  wire [`CCHIP_TAG_W-1:0] r_pair_tag, r_result_tag;
+  wire [`CCHIP_MODE_W-1:0] r_pair_mode;
+  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] r_pair_a, r_pair_b;
+  wire [`CCHIP_ERR_W-1:0] r_pair_err;
+  wire [`CCHIP_AXIS_CODE_W-1:0] r_result_axis;
+  wire [`CCHIP_BEATS_W-1:0] r_result_beats;
   wire r_idle;
 
   cchip_pr_decoupler #(
@@ -208,7 +218,7 @@ module cchip_pr_slot #(
           .rm_id            (r_rm_id),
           .idle             (r_idle)
       );
-      wire unused = &{1'b0, cfg_valid, cfg_data};
+      wire unused = &{1'b0, cfg_valid, cfg_data, SEED};
     end else if (SIMULATION == 1) begin : gen_simulation
       cchip_pr_virtual #(
           .SLOT_ID            (SLOT_ID),
@@ -254,7 +264,6 @@ module cchip_pr_slot #(
     end
   endgenerate
 
-`include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_quiet, !quiet_q || (outstanding_q == 16'd0 && !s_pair_ready))

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-`include "cchip_defs.vh"
 `default_nettype none
-// cchip_primtest_subsystem: primitive tests of three kinds in one or two slots that are exchanged at run time. Pairs of
-// any kind in, answers out, the exchange of modules done by itself or by software.
+`include "cchip_defs.vh"
+// cchip_primtest_subsystem: primitive tests of three kinds in one or two slots that are exchanged
+// at run time. Pairs of any kind in, answers out, the exchange of modules done by itself or by
+// software.
 //   latency      that of the test + 8 clocks while its module is in a slot; a swap longer otherwise
 //   throughput   one pair per clock and slot at most, that of the tests
 //   in flight    3 * QUEUE_DEPTH pairs in the queues, those in the slots
-//   order        answers in any order; tag and kind of the pair come back with each exactly once, except the pairs that a
-//                swap by force gave up: these are counted and reported
+//   order        answers in any order; tag and kind of the pair come back with each exactly once,
+//                except the pairs that a swap by force gave up: these are counted and reported
 //   cuts         every path: each output is a flip-flop
-//   reset        forgets all pairs and registers; a slot whose rewriting was cut off stays decoupled until a good swap
+//   reset        forgets all pairs and registers; a slot whose rewriting was cut off stays
+//                decoupled until a good swap
 //   errors       codes CCHIP_SWAP_* in the register report, interrupt; see docs/registers.md
-// Streams: cchip_pair_router; modules: cchip_swap_scheduler, cchip_config_controller; slots: cchip_pr_slot.
+// Streams: cchip_pair_router; modules: cchip_swap_scheduler, cchip_config_controller; slots:
+// cchip_pr_slot.
 module cchip_primtest_subsystem #(
     // width of a coordinate, bit, 4..20
     parameter integer COORD_W = 16,
@@ -38,69 +41,72 @@ module cchip_primtest_subsystem #(
     // start of the random numbers of a simulated reconfiguration, any
     parameter integer SEED = 1
 ) (
-    input  wire                   clk,
-    input  wire                   rst,
+    input  wire                                   clk,
+    input  wire                                   rst,
     // pairs; kind = ModuleId of the test: 1 tri-tri, 2 tri-quad, 3 quad-quad
-    input  wire                   s_pair_valid,
-    output wire                   s_pair_ready,
-    input  wire [            1:0] s_pair_kind,
-    input  wire [           15:0] s_pair_tag,
-    input  wire [            1:0] s_pair_mode,
-    input  wire [4*3*COORD_W-1:0] s_pair_a,
-    input  wire [4*3*COORD_W-1:0] s_pair_b,
-    input  wire [            3:0] s_pair_err,
-    output wire                   m_result_valid,
-    input  wire                   m_result_ready,
-    output wire [            1:0] m_result_kind,
-    output wire [           15:0] m_result_tag,
-    output wire                   m_result_hit,
-    output wire                   m_result_grid,
-    output wire                   m_result_definite,
-    output wire [            8:0] m_result_axis,
-    output wire [            5:0] m_result_beats,
+    input  wire                                   s_pair_valid,
+    output wire                                   s_pair_ready,
+    input  wire [              `CCHIP_KIND_W-1:0] s_pair_kind,
+    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
+    input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
+    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
+    output wire                                   m_result_valid,
+    input  wire                                   m_result_ready,
+    output wire [              `CCHIP_KIND_W-1:0] m_result_kind,
+    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
+    output wire                                   m_result_hit,
+    output wire                                   m_result_grid,
+    output wire                                   m_result_definite,
+    output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
+    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
     // registers, AXI4-Lite
-    input  wire                   s_axil_awvalid,
-    output wire                   s_axil_awready,
-    input  wire [           11:0] s_axil_awaddr,
-    input  wire [            2:0] s_axil_awprot,
-    input  wire                   s_axil_wvalid,
-    output wire                   s_axil_wready,
-    input  wire [           31:0] s_axil_wdata,
-    input  wire [            3:0] s_axil_wstrb,
-    output wire                   s_axil_bvalid,
-    input  wire                   s_axil_bready,
-    output wire [            1:0] s_axil_bresp,
-    input  wire                   s_axil_arvalid,
-    output wire                   s_axil_arready,
-    input  wire [           11:0] s_axil_araddr,
-    input  wire [            2:0] s_axil_arprot,
-    output wire                   s_axil_rvalid,
-    input  wire                   s_axil_rready,
-    output wire [           31:0] s_axil_rdata,
-    output wire [            1:0] s_axil_rresp,
-    output reg                    irq,
+    input  wire                                   s_axil_awvalid,
+    output wire                                   s_axil_awready,
+    input  wire [                           11:0] s_axil_awaddr,
+    input  wire [                            2:0] s_axil_awprot,
+    input  wire                                   s_axil_wvalid,
+    output wire                                   s_axil_wready,
+    input  wire [                           31:0] s_axil_wdata,
+    input  wire [                            3:0] s_axil_wstrb,
+    output wire                                   s_axil_bvalid,
+    input  wire                                   s_axil_bready,
+    output wire [                            1:0] s_axil_bresp,
+    input  wire                                   s_axil_arvalid,
+    output wire                                   s_axil_arready,
+    input  wire [                           11:0] s_axil_araddr,
+    input  wire [                            2:0] s_axil_arprot,
+    output wire                                   s_axil_rvalid,
+    input  wire                                   s_axil_rready,
+    output wire [                           31:0] s_axil_rdata,
+    output wire [                            1:0] s_axil_rresp,
+    output wire                                   irq,
     // memory of the bitstreams, AXI4, read only
-    output wire                   m_axi_arvalid,
-    input  wire                   m_axi_arready,
-    output wire [           31:0] m_axi_araddr,
-    output wire [            7:0] m_axi_arlen,
-    output wire [            2:0] m_axi_arsize,
-    output wire [            1:0] m_axi_arburst,
-    output wire [            3:0] m_axi_arcache,
-    output wire [            2:0] m_axi_arprot,
-    input  wire                   m_axi_rvalid,
-    output wire                   m_axi_rready,
-    input  wire [           31:0] m_axi_rdata,
-    input  wire [            1:0] m_axi_rresp,
-    input  wire                   m_axi_rlast,
+    output wire                                   m_axi_arvalid,
+    input  wire                                   m_axi_arready,
+    output wire [                           31:0] m_axi_araddr,
+    output wire [                            7:0] m_axi_arlen,
+    output wire [                            2:0] m_axi_arsize,
+    output wire [                            1:0] m_axi_arburst,
+    output wire [                            3:0] m_axi_arcache,
+    output wire [                            2:0] m_axi_arprot,
+    input  wire                                   m_axi_rvalid,
+    output wire                                   m_axi_rready,
+    input  wire [                           31:0] m_axi_rdata,
+    input  wire [                            1:0] m_axi_rresp,
+    input  wire                                   m_axi_rlast,
     // configuration port of the device
-    output wire                   cfg_valid,
-    output wire [      CFG_W-1:0] cfg_data,
-    input  wire                   cfg_error
+    output wire                                   cfg_valid,
+    output wire [                      CFG_W-1:0] cfg_data,
+    input  wire                                   cfg_error
 );
 
-  localparam integer VERTEX_W = 4 * 3 * COORD_W;
-  localparam integer PAIR_W = 22 + 2 * VERTEX_W;
+  reg irq_q;
+  assign irq = irq_q;
+
+  localparam integer PAIR_W = `CCHIP_REQUEST_W(COORD_W);
+  localparam integer RESULT_W = `CCHIP_RESULT_W;
   localparam integer COUNT_W = $clog2(QUEUE_DEPTH + 1);
   localparam [31:0] SLOT_COUNT = SLOTS;
   localparam [31:0] PORT_W = CFG_W;
@@ -116,8 +122,8 @@ module cchip_primtest_subsystem #(
   // ---- streams
   wire [SLOTS-1:0] pair_valid, pair_ready, result_valid, result_ready;
   wire [SLOTS*PAIR_W-1:0] pair;
-  wire [SLOTS*34-1:0] result;
-  wire [2*SLOTS-1:0] slot_module, serves;
+  wire [SLOTS*RESULT_W-1:0] result;
+  wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module, serves;
   wire [2:0] no_provider;
   wire [3*COUNT_W-1:0] waiting;
   wire answered, refused_kind, refused_provider;
@@ -165,11 +171,16 @@ module cchip_primtest_subsystem #(
 
   // ---- slots
   wire [SLOTS-1:0] stop, quiet, decouple, decoupled, hold_reset, roc_start, roc_busy, slot_idle;
-  wire [8*SLOTS-1:0] region_rm_id, rm_id;
-  wire [16*SLOTS-1:0] outstanding, slot_lost;
+  wire [`CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id, rm_id;
+  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] outstanding, slot_lost;
   genvar slot;
   generate
     for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_slots
+      wire [PAIR_W-1:0] its_pair = pair[PAIR_W*slot+:PAIR_W];
+      wire [RESULT_W-1:0] its_result;
+      wire [`CCHIP_RM_ID_W-1:0] module_id;
+      assign result[RESULT_W*slot+:RESULT_W] = its_result;
+      assign rm_id[`CCHIP_RM_ID_W*slot+:`CCHIP_RM_ID_W] = module_id;
       cchip_pr_slot #(
           .COORD_W            (COORD_W),
           .SUBSTAGES          (SUBSTAGES),
@@ -187,62 +198,66 @@ module cchip_primtest_subsystem #(
           .rst              (rst),
           .stop             (stop[slot]),
           .quiet            (quiet[slot]),
-          .outstanding      (outstanding[16*slot+:16]),
+          .outstanding      (outstanding[`CCHIP_PAIR_COUNT_W*slot+:`CCHIP_PAIR_COUNT_W]),
           .decouple         (decouple[slot]),
           .decoupled        (decoupled[slot]),
-          .lost             (slot_lost[16*slot+:16]),
+          .lost             (slot_lost[`CCHIP_PAIR_COUNT_W*slot+:`CCHIP_PAIR_COUNT_W]),
           .hold_reset       (hold_reset[slot]),
           .roc_start        (roc_start[slot]),
           .roc_busy         (roc_busy[slot]),
-          .region_rm_id     (region_rm_id[8*slot+:8]),
+          .region_rm_id     (region_rm_id[`CCHIP_RM_ID_W*slot+:`CCHIP_RM_ID_W]),
           .cfg_valid        (cfg_valid),
           .cfg_data         (cfg_data),
           .s_pair_valid     (pair_valid[slot]),
           .s_pair_ready     (pair_ready[slot]),
-          .s_pair_tag       (pair[PAIR_W*slot+:16]),
-          .s_pair_a         (pair[PAIR_W*slot+16+:VERTEX_W]),
-          .s_pair_b         (pair[PAIR_W*slot+16+VERTEX_W+:VERTEX_W]),
-          .s_pair_err       (pair[PAIR_W*slot+16+2*VERTEX_W+:4]),
-          .s_pair_mode      (pair[PAIR_W*slot+20+2*VERTEX_W+:2]),
+          .s_pair_tag       (its_pair[`CCHIP_REQUEST_TAG]),
+          .s_pair_a         (its_pair[`CCHIP_REQUEST_A(COORD_W)]),
+          .s_pair_b         (its_pair[`CCHIP_REQUEST_B(COORD_W)]),
+          .s_pair_err       (its_pair[`CCHIP_REQUEST_ERR(COORD_W)]),
+          .s_pair_mode      (its_pair[`CCHIP_REQUEST_MODE(COORD_W)]),
           .m_result_valid   (result_valid[slot]),
           .m_result_ready   (result_ready[slot]),
-          .m_result_tag     (result[34*slot+:16]),
-          .m_result_hit     (result[34*slot+16]),
-          .m_result_grid    (result[34*slot+17]),
-          .m_result_definite(result[34*slot+18]),
-          .m_result_axis    (result[34*slot+19+:9]),
-          .m_result_beats   (result[34*slot+28+:6]),
-          .rm_id            (rm_id[8*slot+:8]),
+          .m_result_tag     (its_result[`CCHIP_RESULT_TAG]),
+          .m_result_hit     (its_result[`CCHIP_RESULT_HIT]),
+          .m_result_grid    (its_result[`CCHIP_RESULT_GRID]),
+          .m_result_definite(its_result[`CCHIP_RESULT_DEFINITE]),
+          .m_result_axis    (its_result[`CCHIP_RESULT_AXIS]),
+          .m_result_beats   (its_result[`CCHIP_RESULT_BEATS]),
+          .rm_id            (module_id),
           .idle             (slot_idle[slot])
       );
       // what the slot holds, and whether it takes pairs
-      assign slot_module[2*slot+:2] = rm_id[8*slot+2+:6] == 6'd0 ? rm_id[8*slot+:2] : 2'd0;
+      assign slot_module[2*slot+:2] = module_id[7:2] == 6'd0 ? module_id[1:0] : 2'd0;
       assign serves[2*slot+:2] = stop[slot] ? 2'd0 : slot_module[2*slot+:2];
     end
   endgenerate
 
   // ---- registers
   wire clear, abort_swap, enable, go, force_swap;
-  wire [7:0] command_module, command_slot;
+  wire [`CCHIP_RM_ID_W-1:0] command_module;
+  wire [`CCHIP_SLOT_ID_W-1:0] command_slot;
   wire [31:0] shutdown_limit, memory_limit, minimum_batch, maximum_age;
   wire [7:0] table_valid;
   wire [8*32-1:0] table_address, table_size;
   wire [4*SLOTS-1:0] invalidate;
   wire report_valid;
-  wire [7:0] report_slot, report_module;
-  wire [3:0] report_code;
-  wire [15:0] report_lost;
+  wire [`CCHIP_SLOT_ID_W-1:0] report_slot;
+  wire [`CCHIP_RM_ID_W-1:0] report_module;
+  wire [`CCHIP_SWAP_W-1:0] report_code;
+  wire [`CCHIP_PAIR_COUNT_W-1:0] report_lost;
   wire [4:0] status, status_enable;
   wire [31:0] lost, swaps, rejected, stalls;
   wire [9*32-1:0] phase_clocks;
   wire [4*64-1:0] pairs;
-  wire [3:0] phase;
-  wire [7:0] phase_slot, last_slot, last_module;
-  wire [3:0] last_code;
-  wire [15:0] last_lost;
+  wire [`CCHIP_PHASE_W-1:0] phase;
+  wire [`CCHIP_SLOT_ID_W-1:0] phase_slot, last_slot;
+  wire [`CCHIP_RM_ID_W-1:0] last_module;
+  wire [`CCHIP_SWAP_W-1:0] last_code;
+  wire [`CCHIP_PAIR_COUNT_W-1:0] last_lost;
   wire [2:0] swap_events;  // {lost, error, done}
-  wire [16+15:0] outstanding_of = {{16 * (2 - SLOTS) {1'b0}}, outstanding};
-  wire [8+7:0] rm_id_of = {{8 * (2 - SLOTS) {1'b0}}, rm_id};
+  wire [2*`CCHIP_PAIR_COUNT_W-1:0] outstanding_of =
+      {{`CCHIP_PAIR_COUNT_W * (2 - SLOTS) {1'b0}}, outstanding};
+  wire [2*`CCHIP_RM_ID_W-1:0] rm_id_of = {{`CCHIP_RM_ID_W * (2 - SLOTS) {1'b0}}, rm_id};
   wire busy;
 
   cchip_subsystem_status u_status (
@@ -323,7 +338,8 @@ module cchip_primtest_subsystem #(
       .hwif_out_maximum_age_clocks                 (maximum_age),
       .hwif_in_slot_status_outstanding             (outstanding_of),
       .hwif_in_slot_status_decoupled               ({{2 - SLOTS{1'b0}}, decoupled}),
-      .hwif_in_slot_status_phase                   ({phase & {4{phase_slot == 8'd1}}, phase & {4{phase_slot == 8'd0}}}),
+      .hwif_in_slot_status_phase                   ({phase & {4{phase_slot == 8'd1}}, phase
+          & {4{phase_slot == 8'd0}}}),
       .hwif_in_slot_status_module_id               (rm_id_of),
       .hwif_in_swaps_value                         (swaps),
       .hwif_in_rejected_value                      (rejected),
@@ -337,14 +353,15 @@ module cchip_primtest_subsystem #(
       .hwif_in_bitstream_valid_value_hwclr         ({{4 * (2 - SLOTS) {1'b0}}, invalidate})
   );
 
-  always @(posedge clk) irq <= ~rst & |(status & status_enable);
+  always @(posedge clk) irq_q <= ~rst & |(status & status_enable);
 
   // ---- which slot gets which module when, and how
   wire swap_valid, swap_ready, swap_force, swap_report;
-  wire [7:0] swap_slot, swap_module, swap_report_slot, swap_report_module;
+  wire [`CCHIP_SLOT_ID_W-1:0] swap_slot, swap_report_slot;
+  wire [`CCHIP_RM_ID_W-1:0] swap_module, swap_report_module;
   wire [31:0] swap_address, swap_size;
-  wire [3:0] swap_report_code;
-  wire [15:0] swap_report_lost;
+  wire [`CCHIP_SWAP_W-1:0] swap_report_code;
+  wire [`CCHIP_PAIR_COUNT_W-1:0] swap_report_lost;
 
   cchip_swap_scheduler #(
       .SLOTS  (SLOTS),

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_result_merge: several streams into one, in turn.
 //   latency      1 clock
 //   throughput   one beat per clock
 //   fair         a beat that is offered lets at most SOURCES - 1 others leave before it
-//   cuts         m_valid and m_data are flip-flops; s_ready follows s_valid of the sources, not m_ready
+//   cuts         m_valid and m_data are flip-flops; s_ready follows s_valid of the sources, not
+//                m_ready
 //   reset        empty; s_ready = 0 while rst is 1 and one clock longer
 //   errors       none. A source may take an offer back: what was not accepted does not appear.
 module cchip_result_merge #(
@@ -29,7 +31,8 @@ module cchip_result_merge #(
     end
   endgenerate
 
-  // the first source with a beat behind the one that was last: a token goes round from there and stays with it
+  // Round robin: the search begins behind the source that was served last. A token moves from
+  // source to source and is removed by the first one that offers a beat.
   reg [SOURCES-1:0] last_q;  // one-hot
   function [SOURCES-1:0] first_behind(input [SOURCES-1:0] last, input [SOURCES-1:0] offers);
     reg [SOURCES-1:0] token;
@@ -53,13 +56,14 @@ module cchip_result_merge #(
     integer i;
     begin
       choose = {WIDTH{1'b0}};
-      for (i = 0; i < SOURCES; i = i + 1) choose = choose | (from[WIDTH*i+:WIDTH] & {WIDTH{source[i]}});
+      for (i = 0; i < SOURCES; i = i + 1) choose = choose
+          | (from[WIDTH*i+:WIDTH] & {WIDTH{source[i]}});
     end
   endfunction
 
   always @(posedge clk)
     if (rst) last_q <= {1'b1, {SOURCES - 1{1'b0}}};
-    else if (|s_valid & ready) last_q <= next;
+    else if (|s_valid && ready) last_q <= next;
 
   cchip_skid_buffer #(
       .WIDTH(WIDTH)
@@ -74,7 +78,6 @@ module cchip_result_merge #(
       .m_data (m_data)
   );
 
-`include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_one, (next & (next - {{SOURCES - 1{1'b0}}, 1'b1})) == {SOURCES{1'b0}})

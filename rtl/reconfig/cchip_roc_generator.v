@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// cchip_roc_generator: reset on configuration (paper, listing 3.3 and figure 8) for a module that has none of its own.
-//   rule         roc = 1 on the CYCLES clocks after every clock on which configured or rst is 1, else 0: a pulse makes
-//                exactly CYCLES clocks, a level itself one clock later and CYCLES - 1 clocks longer
+// cchip_roc_generator: reset on configuration (paper, listing 3.3 and figure 8) for a module that
+// has none of its own.
+//   rule         roc = 1 on the CYCLES clocks after every clock on which configured or rst is 1,
+//                else 0: a pulse gives a reset of exactly CYCLES clocks; a level gives one that
+//                begins one clock later and is CYCLES - 1 clocks longer
 //   latency      1 clock
 //   cuts         every path: roc is a flip-flop
 //   reset        rst counts as a configuration; so does power-up: roc is 1 for CYCLES clocks then
@@ -27,7 +29,7 @@ module cchip_roc_generator #(
 
   assign roc = left_q[CYCLES-1];
 
-  always @(posedge clk) left_q <= rst | configured ? {CYCLES{1'b1}} : left_q << 1;
+  always @(posedge clk) left_q <= rst || configured ? {CYCLES{1'b1}} : left_q << 1;
 
 endmodule
 `default_nettype wire

@@ -1,67 +1,83 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-`include "cchip_defs.vh"
 `default_nettype none
-// cchip_subsystem_status: what the registers of the subsystem show of the past: the last report, counters of lost and of
-// answered pairs.
-//   latency      1 clock from a report to last_* and swap_events, 2 clocks from an answer to its counter
+`include "cchip_defs.vh"
+// cchip_subsystem_status: the past that the registers of the subsystem show: the last report,
+// counts of lost and of answered pairs.
+//   latency      1 clock from a report to last_* and swap_events, 2 clocks from an answer to its
+//                counter
 //   cuts         every path: each output is a flip-flop
 //   reset        all 0; clear: the counters 0
 module cchip_subsystem_status (
-    input  wire         clk,
-    input  wire         rst,
-    input  wire         clear,
-    input  wire         report_valid,
-    input  wire [  7:0] report_slot,
-    input  wire [  7:0] report_module,
-    input  wire [  3:0] report_code,
-    input  wire [ 15:0] report_lost,
-    input  wire         answered,
-    input  wire [  1:0] answered_module,  // 0: without a test
-    output reg  [  7:0] last_slot,
-    output reg  [  7:0] last_module,
-    output reg  [  3:0] last_code,
-    output reg  [ 15:0] last_lost,
-    output reg  [  2:0] swap_events,      // {lost, error, done}, one clock
-    output reg  [ 31:0] lost,
-    output reg  [255:0] pairs             // 64 bit for each module
+    input  wire                           clk,
+    input  wire                           rst,
+    input  wire                           clear,
+    input  wire                           report_valid,
+    input  wire [   `CCHIP_SLOT_ID_W-1:0] report_slot,
+    input  wire [     `CCHIP_RM_ID_W-1:0] report_module,
+    input  wire [      `CCHIP_SWAP_W-1:0] report_code,
+    input  wire [`CCHIP_PAIR_COUNT_W-1:0] report_lost,
+    input  wire                           answered,
+    input  wire [                    1:0] answered_module,  // 0: without a test
+    output wire [   `CCHIP_SLOT_ID_W-1:0] last_slot,
+    output wire [     `CCHIP_RM_ID_W-1:0] last_module,
+    output wire [      `CCHIP_SWAP_W-1:0] last_code,
+    output wire [`CCHIP_PAIR_COUNT_W-1:0] last_lost,
+    output wire [                    2:0] swap_events,      // {lost, error, done}, one clock
+    output wire [                   31:0] lost,
+    output wire [                  255:0] pairs             // 64 bit for each module
 );
 
-  wire done = report_code == `CCHIP_SWAP_OK | report_code == `CCHIP_SWAP_SAME;
+  reg [`CCHIP_SLOT_ID_W-1:0] last_slot_q;
+  reg [`CCHIP_RM_ID_W-1:0] last_module_q;
+  reg [`CCHIP_SWAP_W-1:0] last_code_q;
+  reg [`CCHIP_PAIR_COUNT_W-1:0] last_lost_q;
+  reg [2:0] swap_events_q;
+  reg [31:0] lost_q;
+  reg [255:0] pairs_q;
+  assign last_slot = last_slot_q;
+  assign last_module = last_module_q;
+  assign last_code = last_code_q;
+  assign last_lost = last_lost_q;
+  assign swap_events = swap_events_q;
+  assign lost = lost_q;
+  assign pairs = pairs_q;
+
+  wire done = report_code == `CCHIP_SWAP_OK || report_code == `CCHIP_SWAP_SAME;
 
   always @(posedge clk)
     if (rst) begin
-      last_slot   <= 8'd0;
-      last_module <= 8'd0;
-      last_code   <= 4'd0;
-      last_lost   <= 16'd0;
-      swap_events <= 3'd0;
-      lost        <= 32'd0;
+      last_slot_q   <= 8'd0;
+      last_module_q <= 8'd0;
+      last_code_q   <= 4'd0;
+      last_lost_q   <= 16'd0;
+      swap_events_q <= 3'd0;
+      lost_q        <= 32'd0;
     end else begin
       if (report_valid) begin
-        last_slot   <= report_slot;
-        last_module <= report_module;
-        last_code   <= report_code;
-        last_lost   <= report_lost;
+        last_slot_q   <= report_slot;
+        last_module_q <= report_module;
+        last_code_q   <= report_code;
+        last_lost_q   <= report_lost;
       end
-      swap_events <= {3{report_valid}} & {report_lost != 16'd0, ~done, done};
-      lost <= clear ? 32'd0 : lost + (report_valid ? {16'd0, report_lost} : 32'd0);
+      swap_events_q <= {3{report_valid}} & {report_lost != 16'd0, ~done, done};
+      lost_q <= clear ? 32'd0 : lost_q + (report_valid ? {16'd0, report_lost} : 32'd0);
     end
 
-  // 64-bit counters in two halves: the carry comes a clock later
+  // 64-bit counters in two halves; the carry enters the high half one clock later
   genvar m;
   generate
     for (m = 0; m < 4; m = m + 1) begin : gen_modules
       localparam [31:0] MODULE = m;
       reg carry_q;
-      wire count = answered & answered_module == MODULE[1:0];
+      wire count = answered && answered_module == MODULE[1:0];
       always @(posedge clk)
-        if (rst | clear) begin
+        if (rst || clear) begin
           carry_q         <= 1'b0;
-          pairs[64*m+:64] <= 64'd0;
+          pairs_q[64*m+:64] <= 64'd0;
         end else begin
-          carry_q <= count & (&pairs[64*m+:32]);
-          if (count) pairs[64*m+:32] <= pairs[64*m+:32] + 32'd1;
-          if (carry_q) pairs[64*m+32+:32] <= pairs[64*m+32+:32] + 32'd1;
+          carry_q <= count & (&pairs_q[64*m+:32]);
+          if (count) pairs_q[64*m+:32] <= pairs_q[64*m+:32] + 32'd1;
+          if (carry_q) pairs_q[64*m+32+:32] <= pairs_q[64*m+32+:32] + 32'd1;
         end
     end
   endgenerate

@@ -1,66 +1,73 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-`include "cchip_defs.vh"
 `default_nettype none
-// cchip_swap_sequencer: requests, phases and reports of cchip_config_controller, and what the slots are told in them.
-//   latency      every request is answered by exactly one report; one during a swap by BUSY, 2 clocks later or 3
-//   order        HEADER, SHUTDOWN, DECOUPLE, RESET, TRANSFER, CHECK, ROC, RECOUPLE, REPORT; what fails before DECOUPLE leaves
-//                the slot at work, what fails from there on leaves it stopped, decoupled and in reset
-//   bounds       SHUTDOWN: shutdown_limit; DECOUPLE, ROC, RECOUPLE: SLOT_LIMIT; HEADER and TRANSFER: error or timeout of the
-//                fetch, or their words are there; the rest: fixed
-//   cuts         every path: each output is a flip-flop, m_report_slot, _module, _code and _lost one of two
-//   reset        no swap, slots at work, except one whose transfer had begun and not ended well: half_q outlives rst and
-//                keeps it stopped, decoupled and in reset until a good transfer
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_swap_sequencer: requests, phases and reports of cchip_config_controller, and what the slots
+// are told in them.
+//   latency      every request is answered by exactly one report; one during a swap by BUSY, 2
+//                clocks later or 3
+//   order        HEADER, SHUTDOWN, DECOUPLE, RESET, TRANSFER, CHECK, ROC, RECOUPLE, REPORT; what
+//                fails before DECOUPLE leaves the slot at work, what fails from there on leaves it
+//                stopped, decoupled and in reset
+//   bounds       SHUTDOWN: shutdown_limit; DECOUPLE, ROC, RECOUPLE: SLOT_LIMIT; HEADER and
+//                TRANSFER: error or timeout of the fetch, or their words are there; the rest: fixed
+//   cuts         every path: each output is a flip-flop, m_report_slot, _module, _code and _lost
+//                one of two
+//   reset        no swap, slots at work, except one whose transfer had begun and not ended well:
+//                half_q outlives rst and keeps it stopped, decoupled and in reset until a good
+//                transfer
 module cchip_swap_sequencer #(
     // slots, 1 or 2
     parameter integer SLOTS = 1,
     // longest wait for a slot to decouple, to end its ROC, to recouple, clocks, >= 16
     parameter integer SLOT_LIMIT = 4096
 ) (
-    input  wire                clk,
-    input  wire                rst,
-    input  wire                s_swap_valid,
-    output wire                s_swap_ready,
-    input  wire [         7:0] s_swap_slot,
-    input  wire [         7:0] s_swap_module,
-    input  wire [        31:0] s_swap_address,
-    input  wire [        31:0] s_swap_size,
-    input  wire                s_swap_force,
-    output wire                m_report_valid,
-    output wire [         7:0] m_report_slot,
-    output wire [         7:0] m_report_module,
-    output wire [         3:0] m_report_code,
-    output wire [        15:0] m_report_lost,
-    input  wire                abort_swap,
-    input  wire [        31:0] shutdown_limit,
-    input  wire [        31:0] memory_limit,
-    output wire [   SLOTS-1:0] stop,
-    output wire [   SLOTS-1:0] decouple,
-    output wire [   SLOTS-1:0] hold_reset,
-    output wire [   SLOTS-1:0] roc_start,
-    input  wire [   SLOTS-1:0] quiet,
-    input  wire [   SLOTS-1:0] decoupled,
-    input  wire [   SLOTS-1:0] roc_busy,
-    input  wire [ 8*SLOTS-1:0] region_rm_id,
-    input  wire [16*SLOTS-1:0] lost,
-    output wire [         3:0] phase,
-    output wire                busy,           // a phase other than IDLE
-    output wire                in_header,      // phase is HEADER, TRANSFER
-    output wire                in_transfer,
-    output wire [         7:0] slot,           // of the request
-    output wire [         7:0] module_id,
-    output wire [        31:0] address,
-    output wire [        31:0] size,
-    output wire [        31:0] limit,          // of the memory
-    output wire                run,            // the fetch works, in HEADER and in TRANSFER
-    input  wire                header_done,
-    input  wire                header_ok,
-    input  wire [         3:0] header_code,
-    input  wire                owes,
-    input  wire                bus_error,
-    input  wire                timeout,
-    input  wire                transfer_done,
-    input  wire                crc_ok,
-    input  wire                cfg_error
+    input  wire                                 clk,
+    input  wire                                 rst,
+    input  wire                                 s_swap_valid,
+    output wire                                 s_swap_ready,
+    input  wire [         `CCHIP_SLOT_ID_W-1:0] s_swap_slot,
+    input  wire [           `CCHIP_RM_ID_W-1:0] s_swap_module,
+    input  wire [                         31:0] s_swap_address,
+    input  wire [                         31:0] s_swap_size,
+    input  wire                                 s_swap_force,
+    output wire                                 m_report_valid,
+    output wire [         `CCHIP_SLOT_ID_W-1:0] m_report_slot,
+    output wire [           `CCHIP_RM_ID_W-1:0] m_report_module,
+    output wire [            `CCHIP_SWAP_W-1:0] m_report_code,
+    output wire [      `CCHIP_PAIR_COUNT_W-1:0] m_report_lost,
+    input  wire                                 abort_swap,
+    input  wire [                         31:0] shutdown_limit,
+    input  wire [                         31:0] memory_limit,
+    output wire [                    SLOTS-1:0] stop,
+    output wire [                    SLOTS-1:0] decouple,
+    output wire [                    SLOTS-1:0] hold_reset,
+    output wire [                    SLOTS-1:0] roc_start,
+    input  wire [                    SLOTS-1:0] quiet,
+    input  wire [                    SLOTS-1:0] decoupled,
+    input  wire [                    SLOTS-1:0] roc_busy,
+    input  wire [     `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,
+    input  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] lost,
+    output wire [           `CCHIP_PHASE_W-1:0] phase,
+    output wire                                 busy,             // a phase other than IDLE
+    output wire                                 in_header,        // phase is HEADER, TRANSFER
+    output wire                                 in_transfer,
+    output wire [         `CCHIP_SLOT_ID_W-1:0] slot,             // of the request
+    output wire [           `CCHIP_RM_ID_W-1:0] module_id,
+    output wire [                         31:0] address,
+    output wire [                         31:0] size,
+    output wire [                         31:0] limit,            // of the memory
+    // the fetch works, in HEADER and in TRANSFER
+    output wire                                 run,
+    input  wire                                 header_done,
+    input  wire                                 header_ok,
+    input  wire [            `CCHIP_SWAP_W-1:0] header_code,
+    input  wire                                 owes,
+    input  wire                                 bus_error,
+    input  wire                                 timeout,
+    input  wire                                 transfer_done,
+    input  wire                                 crc_ok,
+    input  wire                                 cfg_error
 );
 
   // clocks of a phase, counted from 0
@@ -84,15 +91,18 @@ module cchip_swap_sequencer #(
   endgenerate
 
   // ---- request
-  reg [3:0] phase_q;
+  wire [9:0] pass;  // one-hot: this phase is over and was good
+  reg [`CCHIP_PHASE_W-1:0] phase_q;
   reg [9:0] at_q;  // phase_q, one-hot
-  reg [7:0] slot_q, module_q;
+  reg [`CCHIP_SLOT_ID_W-1:0] slot_q;
+  reg [`CCHIP_RM_ID_W-1:0] module_q;
   reg [31:0] address_q, size_q;
   reg force_q;
   reg [31:0] memory_limit_q;
   reg [31:0] bound_q;  // of the phase: shutdown_limit up to SHUTDOWN, SLOT_LIMIT from then on
   reg ready_q, refuse_q;  // a request during a swap waits for its report
-  reg [7:0] refuse_slot_q, refuse_module_q;
+  reg [`CCHIP_SLOT_ID_W-1:0] refuse_slot_q;
+  reg [`CCHIP_RM_ID_W-1:0] refuse_module_q;
   wire idle = at_q[`CCHIP_PHASE_IDLE];
   wire accept = s_swap_valid & ready_q;
   wire begins = accept & idle;
@@ -113,6 +123,7 @@ module cchip_swap_sequencer #(
   end
 
   // ---- the slot
+  reg [SLOTS-1:0] mine_q;  // one-hot: the slot of the request
   function [SLOTS-1:0] one_hot(input [7:0] number);
     integer i;
     begin
@@ -136,9 +147,8 @@ module cchip_swap_sequencer #(
     end
   endgenerate
 
-  reg [SLOTS-1:0] mine_q;  // one-hot
   reg match_q;  // the region shows the module asked for
-  reg [15:0] slot_lost_q, lost_q;
+  reg [`CCHIP_PAIR_COUNT_W-1:0] slot_lost_q, lost_q;
   reg quiet_q, decoupled_q, roc_busy_q;
   always @(posedge clk) begin
     if (begins) mine_q <= one_hot(s_swap_slot);
@@ -149,14 +159,15 @@ module cchip_swap_sequencer #(
     roc_busy_q <= |(roc_busy & mine_q);
   end
 
-  // ---- what is wrong with the request
+  // ---- is the request legal, and is it needed?
   reg illegal_q, same_q;
   reg [31:0] last_byte_q;
   reg outside_q;
   always @(posedge clk) begin
     last_byte_q <= address_q + size_q - 32'd1;
-    outside_q <= {24'd0, slot_q} >= SLOT_COUNT | module_q > `CCHIP_RM_QUAD_QUAD | address_q[5:0] != 6'd0;
-    illegal_q <= outside_q | size_q == 32'd0 | last_byte_q < address_q;
+    outside_q <= {24'd0, slot_q} >= SLOT_COUNT || module_q > `CCHIP_RM_QUAD_QUAD
+        || address_q[5:0] != 6'd0;
+    illegal_q <= outside_q || size_q == 32'd0 || last_byte_q < address_q;
     same_q <= ~decoupled_q & match_q;
   end
 
@@ -166,8 +177,10 @@ module cchip_swap_sequencer #(
   reg decide_q, reset_last_q, check_last_q, late_q;  // step_q is DECIDE, ..., SEEN or more
   reg expired_q, error_q, forced_q, abort_q;
   reg fault_q;  // the fetch failed, a clock ago
-  reg [3:0] fault_code_q;
-  reg [4:0] alike_q;  // 1 + clocks on which the region showed the module asked for: garbage may show it on one by chance
+  reg [`CCHIP_SWAP_W-1:0] fault_code_q;
+  // 1 + number of consecutive clocks on which the region showed the module asked for. One such
+  // clock proves nothing: a region full of garbage may show any number.
+  reg [4:0] alike_q;
   wire at_header = at_q[`CCHIP_PHASE_HEADER];
   wire at_shutdown = at_q[`CCHIP_PHASE_SHUTDOWN];
   wire at_decouple = at_q[`CCHIP_PHASE_DECOUPLE];
@@ -178,24 +191,28 @@ module cchip_swap_sequencer #(
   wire at_report = at_q[`CCHIP_PHASE_REPORT];
 
   wire roc_over = at_roc & late_q & ~roc_busy_q;
-  wire fails_early = (at_header & (decide_q ? illegal_q | same_q | owes : fault_q | (header_done & ~header_ok)))
+  wire fails_early =
+      (at_header & (decide_q ? illegal_q | same_q | owes : fault_q | (header_done & ~header_ok)))
       | (at_shutdown & expired_q & ~quiet_q & ~decoupled_q & ~force_q);
   wire fails_late = (at_decouple & expired_q & ~decoupled_q)
       | (at_transfer & (error_q | fault_q))
       | (at_check & (error_q | (check_last_q & ~crc_ok)))
       | (at_roc & (roc_busy_q ? expired_q : late_q & ~match_q))
       | (at_recouple & late_q & decoupled_q & expired_q);
-  wire aborts = abort_q & ~at_decouple;  // a slot that decouples is waited for
+  // DECOUPLE is not aborted: the slot finishes decoupling first
+  wire aborts = abort_q & ~at_decouple;
   wire past = |at_q[`CCHIP_PHASE_RECOUPLE:`CCHIP_PHASE_DECOUPLE];  // the slot is no longer at work
-  // what fails does so a clock later: the many registers that start again then follow one register
+  // A failure takes effect one clock after it is detected: fail_q drives the many registers that it
+  // resets, so that they do not wait for the logic of failing.
   wire failing = fails_early | fails_late;
   reg fail_q;
 
-  // the phase is over and was good; never with failing, and before an abort
-  wire [9:0] pass;
+  // a phase never passes while it fails; if it passes and is aborted on one clock, passing wins
   assign pass[`CCHIP_PHASE_IDLE] = begins;
-  assign pass[`CCHIP_PHASE_HEADER] = at_header & ~decide_q & ~fault_q & header_done & header_ok & ~fail_q;
-  assign pass[`CCHIP_PHASE_SHUTDOWN] = at_shutdown & (quiet_q | decoupled_q | (expired_q & force_q)) & ~fail_q;
+  assign pass[`CCHIP_PHASE_HEADER] = at_header & ~decide_q & ~fault_q & header_done & header_ok
+      & ~fail_q;
+  assign pass[`CCHIP_PHASE_SHUTDOWN] = at_shutdown
+      & (quiet_q | decoupled_q | (expired_q & force_q)) & ~fail_q;
   assign pass[`CCHIP_PHASE_DECOUPLE] = at_decouple & decoupled_q & ~fail_q;
   assign pass[`CCHIP_PHASE_RESET] = at_q[`CCHIP_PHASE_RESET] & reset_last_q & ~fail_q;
   assign pass[`CCHIP_PHASE_TRANSFER] = at_transfer & transfer_done & ~error_q & ~fault_q & ~fail_q;
@@ -204,10 +221,10 @@ module cchip_swap_sequencer #(
   assign pass[`CCHIP_PHASE_RECOUPLE] = at_recouple & late_q & ~decoupled_q & ~fail_q;
   assign pass[`CCHIP_PHASE_REPORT] = at_report;
 
-  wire [3:0] code_of_header = decide_q ?
+  wire [`CCHIP_SWAP_W-1:0] code_of_header = decide_q ?
       (illegal_q ? `CCHIP_SWAP_REQUEST : same_q ? `CCHIP_SWAP_SAME : `CCHIP_SWAP_MEMORY) :
       fault_q ? fault_code_q : header_code;
-  wire [3:0] code_d = abort_q ? `CCHIP_SWAP_ABORTED :
+  wire [`CCHIP_SWAP_W-1:0] code_d = abort_q ? `CCHIP_SWAP_ABORTED :
       ({4{at_header}} & code_of_header)
       | ({4{at_shutdown}} & `CCHIP_SWAP_SHUTDOWN)
       | ({4{at_decouple}} & `CCHIP_SWAP_DEVICE)
@@ -229,7 +246,7 @@ module cchip_swap_sequencer #(
   reg [SLOTS-1:0] half_q;  // the region holds no whole module
   initial half_q = {SLOTS{1'b0}};
   always @(posedge clk) begin
-    if (~rst) half_q <= (half_q | mine_if_transfer) & ~mine_if_recouple;
+    if (!rst) half_q <= (half_q | mine_if_transfer) & ~mine_if_recouple;
     if (rst) begin
       stop_q       <= half_q;
       decouple_q   <= half_q;
@@ -239,7 +256,7 @@ module cchip_swap_sequencer #(
       if (pass[`CCHIP_PHASE_HEADER]) stop_q <= stop_q | mine_q;
       else if (reports) stop_q <= decouple_q | mine_if_fails;
       if (pass[`CCHIP_PHASE_SHUTDOWN]) decouple_q <= decouple_q | mine_q;
-      else if (at_recouple & step_q == RECOUPLE_AT) decouple_q <= decouple_q & ~mine_q;
+      else if (at_recouple && step_q == RECOUPLE_AT) decouple_q <= decouple_q & ~mine_q;
       else decouple_q <= decouple_q | mine_if_fails;
       if (pass[`CCHIP_PHASE_DECOUPLE]) hold_reset_q <= hold_reset_q | mine_q;
       else hold_reset_q <= (hold_reset_q | mine_if_fails) & ~mine_if_recouple;
@@ -251,15 +268,15 @@ module cchip_swap_sequencer #(
   reg run_q;  // the fetch works
   reg report_valid_q;
   reg refused_q;  // the report is that of a refused request
-  reg [3:0] code_q;
+  reg [`CCHIP_SWAP_W-1:0] code_q;
   always @(posedge clk) begin
     clocks_q <= enter ? 32'd1 : clocks_q + 32'd1;
     step_q <= enter ? 4'd0 : step_q == 4'd15 ? 4'd15 : step_q + 4'd1;
-    decide_q <= ~enter & step_q == DECIDE - 4'd1;
-    reset_last_q <= ~enter & step_q == RESET_LAST - 4'd1;
-    check_last_q <= ~enter & step_q == CHECK_LAST - 4'd1;
-    late_q <= ~enter & step_q >= SEEN - 4'd1;
-    expired_q <= ~enter & (expired_q | clocks_q == bound_q);
+    decide_q <= !enter && step_q == DECIDE - 4'd1;
+    reset_last_q <= !enter && step_q == RESET_LAST - 4'd1;
+    check_last_q <= !enter && step_q == CHECK_LAST - 4'd1;
+    late_q <= !enter && step_q >= SEEN - 4'd1;
+    expired_q <= !enter && (expired_q || clocks_q == bound_q);
     error_q <= cfg_error & (at_transfer | at_check);
     forced_q <= ~idle & (forced_q | (at_shutdown & expired_q & ~quiet_q));
     alike_q <= roc_over ? alike_q + 5'd1 : 5'd1;
@@ -267,7 +284,7 @@ module cchip_swap_sequencer #(
     fault_code_q <= bus_error ? `CCHIP_SWAP_BUS : `CCHIP_SWAP_MEMORY;
     lost_q <= begins ? 16'd0 : gone ? slot_lost_q : lost_q;
     refused_q <= refuses;
-    if (~fail_q) code_q <= code_d;
+    if (!fail_q) code_q <= code_d;
     if (rst) begin
       phase_q <= `CCHIP_PHASE_IDLE;
       at_q <= AT_IDLE;
@@ -278,20 +295,23 @@ module cchip_swap_sequencer #(
       run_q <= 1'b0;
       report_valid_q <= 1'b0;
     end else begin
-      abort_q <= |at_q[`CCHIP_PHASE_ROC:`CCHIP_PHASE_HEADER] & ~reports & ~pass[`CCHIP_PHASE_ROC] & (abort_q | abort_swap);
+      abort_q <= |at_q[`CCHIP_PHASE_ROC:`CCHIP_PHASE_HEADER] & ~reports & ~pass[`CCHIP_PHASE_ROC]
+          & (abort_q | abort_swap);
       fail_q <= (failing | (aborts & ~(|pass))) & ~fail_q;
       at_q <= fail_q ? AT_REPORT : (at_q & ~pass) | {pass[8:0], pass[9]};
-      phase_q <= fail_q ? `CCHIP_PHASE_REPORT : at_report ? `CCHIP_PHASE_IDLE : phase_q + {3'd0, |pass};
+      phase_q <= fail_q ? `CCHIP_PHASE_REPORT : at_report ? `CCHIP_PHASE_IDLE : phase_q
+          + {3'd0, |pass};
       ready_q <= ~(accept & ~idle) & ~(refuse_q & reports);
       refuse_q <= (accept & ~idle) | (refuse_q & reports);
-      run_q <= pass[`CCHIP_PHASE_RESET] | ((run_q | decide_q) & ~failing & ~aborts & ~enter & (at_header | at_transfer));
+      run_q <= pass[`CCHIP_PHASE_RESET]
+          | ((run_q | decide_q) & ~failing & ~aborts & ~enter & (at_header | at_transfer));
       report_valid_q <= reports | refuses;
     end
   end
 
   assign s_swap_ready = ready_q;
   assign m_report_valid = report_valid_q;
-  // the request and lost_q stand still in REPORT
+  // slot_q, module_q and lost_q do not change in REPORT
   assign m_report_slot = refused_q ? refuse_slot_q : slot_q;
   assign m_report_module = refused_q ? refuse_module_q : module_q;
   assign m_report_code = refused_q ? `CCHIP_SWAP_BUSY : code_q;
@@ -311,7 +331,6 @@ module cchip_swap_sequencer #(
   assign limit = memory_limit_q;
   assign run = run_q;
 
-`include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_phase, at_q == AT_IDLE << phase_q)

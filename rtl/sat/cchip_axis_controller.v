@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// cchip_axis_controller: sequences the axes of many pairs through one SAT pipeline (paper, figure 6).
-//   pair in      never stalls, from the third clock after rst: the owner accepts at most CONTEXTS pairs
-//                whose result has not left at least three clocks ago
+`include "cchip_assert.vh"
+// cchip_axis_controller: sequences the axes of many pairs through one SAT pipeline (paper, figure
+// 6).
+//   pair in      never stalls, from the third clock after rst: the owner accepts at most CONTEXTS
+//                pairs whose result has not left at least three clocks ago
 //   beats        one per clock while a pair waits: beats of an EXHAUSTIVE pair leave back to back;
 //                otherwise pairs that start and pairs that continue take turns
-//   latency      s_pair to its first beat 4 clocks; verdict to m_result CCHIP_PROGRAMME_LATENCY clocks, to the
-//                next beat of its pair 3 more
+//   latency      s_pair to its first beat 4 clocks; verdict to m_result CCHIP_PROGRAMME_LATENCY
+//                clocks, to the next beat of its pair 3 more
 //   cuts         every path
 //   reset        empties everything; no pair of before is ever answered
-// A pair gets a context: its slot in the operand memory. The owner stores the operands of s_pair under
-// m_load_context; each beat's operands reach the pipeline CCHIP_RAM_LATENCY clocks after the beat.
-// The programme state {context, programme, code, beats, ...} travels with the beat (m_beat_user) and
-// comes back with the verdict; which axis follows is decided by cchip_axis_programme.
+// A pair gets a context: its slot in the operand memory. The owner stores the operands of s_pair
+// under m_load_context; each beat's operands reach the pipeline CCHIP_RAM_LATENCY clocks after the
+// beat.
+// The programme state {context, programme, code, beats, ...} travels with the beat (m_beat_user)
+// and comes back with the verdict; which axis follows is decided by cchip_axis_programme.
 // EXHAUSTIVE: nA, nB, all e_k x f_l (l runs first) whatever they find, the first separating axis is
-// reported; a special case that none separates goes on with its programme. Its verdicts come back to
-// back too, so one accumulator serves all. Reserved modes: one idle beat, then axis class ILLEGAL.
+// reported; a special case that none separates goes on with its programme. Its verdicts come back
+// to back too, so one accumulator serves all. Reserved modes: one idle beat, then axis class
+// ILLEGAL.
 module cchip_axis_controller #(
     // pairs in flight
     parameter integer CONTEXTS = 42,
@@ -25,57 +29,61 @@ module cchip_axis_controller #(
     // vertices of A and of B: 3 3, 3 4 or 4 4
     parameter integer VERTS_A = 3,
     parameter integer VERTS_B = 3,
-    // 1: warped quads are decided exactly; 0: what the directed beats do not decide is left open (definite = 0)
+    // 1: warped quads are decided exactly; 0: what the directed beats do not decide is left open
+    // (definite = 0)
     parameter integer WARPED_EXACT = 1
 ) (
-    input  wire                       clk,
-    input  wire                       rst,
+    input  wire                                clk,
+    input  wire                                rst,
     // pairs
-    input  wire                       s_pair_valid,
-    input  wire [                1:0] s_pair_mode,
-    input  wire [               15:0] s_pair_tag,   // one clock after s_pair_valid
-    input  wire [                3:0] s_pair_err,   // one clock after s_pair_valid
-    output wire [      CONTEXT_W-1:0] m_load_context,
+    input  wire                                s_pair_valid,
+    input  wire [           `CCHIP_MODE_W-1:0] s_pair_mode,
+    // one clock after s_pair_valid
+    input  wire [            `CCHIP_TAG_W-1:0] s_pair_tag,
+    // one clock after s_pair_valid
+    input  wire [            `CCHIP_ERR_W-1:0] s_pair_err,
+    output wire [               CONTEXT_W-1:0] m_load_context,
     // beats to the pipeline and what comes back
-    output wire                       m_beat_valid,
-    output wire [      CONTEXT_W-1:0] m_beat_context,
-    output wire [                8:0] m_beat_code,
-    output wire                       m_beat_allow_above,  // one clock after the beat
-    output wire                       m_beat_allow_below,
+    output wire                                m_beat_valid,
+    output wire [               CONTEXT_W-1:0] m_beat_context,
+    output wire [      `CCHIP_AXIS_CODE_W-1:0] m_beat_code,
+    output wire                                m_beat_allow_above,       // one clock after the beat
+    output wire                                m_beat_allow_below,
     output wire [CONTEXT_W+`CCHIP_STATE_W-1:0] m_beat_user,
-    input  wire                       s_verdict_valid,
+    input  wire                                s_verdict_valid,
     input  wire [CONTEXT_W+`CCHIP_STATE_W-1:0] s_verdict_user,
-    input  wire                       s_verdict_separated,
-    input  wire                       s_verdict_certain_gap,
-    input  wire [VERTS_A+VERTS_B-4:0] s_verdict_negative,
-    input  wire [VERTS_A+VERTS_B-4:0] s_verdict_zero,
-    input  wire                       s_verdict_certain,
-    input  wire                       s_verdict_clear,
-    input  wire [                2:0] s_verdict_axis_negative,
-    input  wire [                2:0] s_verdict_axis_zero,
-    input  wire [                1:0] s_verdict_axis_largest,
-    input  wire                       s_verdict_box_separated,
-    input  wire                       s_verdict_box_certain,
+    input  wire                                s_verdict_separated,
+    input  wire                                s_verdict_certain_gap,
+    input  wire [         VERTS_A+VERTS_B-4:0] s_verdict_negative,
+    input  wire [         VERTS_A+VERTS_B-4:0] s_verdict_zero,
+    input  wire                                s_verdict_certain,
+    input  wire                                s_verdict_clear,
+    input  wire [                         2:0] s_verdict_axis_negative,
+    input  wire [                         2:0] s_verdict_axis_zero,
+    input  wire [                         1:0] s_verdict_axis_largest,
+    input  wire                                s_verdict_box_separated,
+    input  wire                                s_verdict_box_certain,
     // results
-    output wire                       m_result_valid,
-    output wire [               15:0] m_result_tag,
-    output wire                       m_result_hit,
-    output wire                       m_result_grid,
-    output wire                       m_result_definite,
-    output wire [                8:0] m_result_axis,
-    output wire [                5:0] m_result_beats
+    output wire                                m_result_valid,
+    output wire [            `CCHIP_TAG_W-1:0] m_result_tag,
+    output wire                                m_result_hit,
+    output wire                                m_result_grid,
+    output wire                                m_result_definite,
+    output wire [      `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
+    output wire [          `CCHIP_BEATS_W-1:0] m_result_beats
 );
 
   localparam [31:0] CONTEXT_LAST = CONTEXTS - 1;
   // programme state: {certain, open, beats, info, code, programme}, see cchip_axis_programme
   localparam integer STATE_W = `CCHIP_STATE_W;
-  localparam [8:0] CODE_FIRST = {`CCHIP_AXIS_NORMAL_A, 6'd0};
-  localparam [8:0] CODE_ILLEGAL = {`CCHIP_AXIS_ILLEGAL, 6'd0};
+  localparam [`CCHIP_AXIS_CODE_W-1:0] CODE_FIRST = {`CCHIP_AXIS_NORMAL_A, 6'd0};
+  localparam [`CCHIP_AXIS_CODE_W-1:0] CODE_ILLEGAL = {`CCHIP_AXIS_ILLEGAL, 6'd0};
   localparam [31:0] LAST_K = VERTS_A - 1;
   localparam [31:0] LAST_L = VERTS_B - 1;
 
   generate
-    if (CONTEXTS < 1 || CONTEXTS > `CCHIP_CONTEXTS_MAX || (1 << CONTEXT_W) < CONTEXTS) begin : gen_illegal
+    if (CONTEXTS < 1 || CONTEXTS > `CCHIP_CONTEXTS_MAX || (1 << CONTEXT_W) < CONTEXTS)
+    begin : gen_illegal
       cchip_error_CONTEXTS_must_be_1_to_256 u_error ();
     end
     if (WARPED_EXACT != 0 && WARPED_EXACT != 1) begin : gen_illegal_warped
@@ -83,10 +91,12 @@ module cchip_axis_controller #(
     end
   endgenerate
 
-  // ---- contexts: each number is handed out once after reset, then from the list of those given back
+  // ---- contexts: after reset every number is handed out once in order; after that, numbers come
+  // from the list of those that pairs have given back
   wire                 outcome;  // a verdict ended its pair
   wire [CONTEXT_W-1:0] verdict_context = s_verdict_user[STATE_W+:CONTEXT_W];
-  wire [CONTEXT_W-1:0] side_context, outcome_context;  // beside the clocks of the programme
+  // the context of a verdict, delayed as cchip_axis_programme delays the verdict
+  wire [CONTEXT_W-1:0] side_context, outcome_context;
   cchip_delay #(
       .WIDTH(CONTEXT_W),
       .DEPTH(`CCHIP_PROGRAMME_LATENCY - `CCHIP_RAM_LATENCY)
@@ -114,7 +124,7 @@ module cchip_axis_controller #(
     if (rst) begin
       fresh_q      <= {CONTEXT_W{1'b0}};
       fresh_left_q <= 1'b1;
-    end else if (hand_ready & fresh_left_q) begin
+    end else if (hand_ready && fresh_left_q) begin
       fresh_q      <= fresh_q + {{CONTEXT_W - 1{1'b0}}, 1'b1};
       fresh_left_q <= fresh_q != CONTEXT_LAST[CONTEXT_W-1:0];
     end
@@ -133,7 +143,7 @@ module cchip_axis_controller #(
       .m_ready(hand_ready & ~fresh_left_q),
       .m_data (free_context)
   );
-  // the next one to hand out: s_pair_valid drives nothing but this
+  // holds the next context to hand out; s_pair_valid reaches only this buffer
   wire hand_valid;
   cchip_skid_buffer #(
       .WIDTH(CONTEXT_W)
@@ -151,7 +161,7 @@ module cchip_axis_controller #(
   // ---- pairs that wait for their first beat
   reg                  load_valid_q;
   reg  [CONTEXT_W-1:0] load_context_q;
-  reg  [          1:0] load_mode_q;
+  reg  [`CCHIP_MODE_W-1:0] load_mode_q;
   always @(posedge clk) begin
     if (rst) load_valid_q <= 1'b0;
     else load_valid_q <= s_pair_valid;
@@ -160,10 +170,10 @@ module cchip_axis_controller #(
   end
   wire                 start_valid, start_ready, start_space;
   wire [CONTEXT_W-1:0] start_context;
-  wire [          1:0] start_mode;
+  wire [`CCHIP_MODE_W-1:0] start_mode;
 
   cchip_fifo #(
-      .WIDTH     (CONTEXT_W + 2),
+      .WIDTH     (CONTEXT_W + `CCHIP_MODE_W),
       .DEPTH     (CONTEXTS),
       .ROOM_KNOWN(1)
   ) u_start (
@@ -177,10 +187,11 @@ module cchip_axis_controller #(
       .m_data ({start_context, start_mode})
   );
 
-  wire [2:0] start_programme = start_mode == `CCHIP_MODE_EXHAUSTIVE ? `CCHIP_PROG_EXHAUSTIVE
+  wire [`CCHIP_PROG_W-1:0] start_programme = start_mode == `CCHIP_MODE_EXHAUSTIVE
+      ? `CCHIP_PROG_EXHAUSTIVE
                              : start_mode == `CCHIP_MODE_DIRECTED ? `CCHIP_PROG_NORMALS
                                                                   : `CCHIP_PROG_ILLEGAL;
-  wire [8:0] start_code = start_mode[1] ? CODE_ILLEGAL : CODE_FIRST;
+  wire [`CCHIP_AXIS_CODE_W-1:0] start_code = start_mode[1] ? CODE_ILLEGAL : CODE_FIRST;
   wire [STATE_W-1:0] start_state = {1'b1, 1'b0, 6'd0, 14'd0, start_code, start_programme};
 
   // ---- pairs that wait for their next beat
@@ -208,23 +219,26 @@ module cchip_axis_controller #(
   reg                          beat_valid_q /* verilator public_flat_rd */;
   reg  [CONTEXT_W+STATE_W-1:0] beat_q;
 
-  wire [2:0] beat_programme = beat_q[2:0];
-  wire [8:0] beat_code = beat_q[11:3];
-  wire [11:0] beat_info = beat_q[23:12];
-  wire [5:0] beat_count = beat_q[31:26];
+  wire [`CCHIP_PROG_W-1:0] beat_programme = beat_q[`CCHIP_STATE_PROGRAMME];
+  wire [`CCHIP_AXIS_CODE_W-1:0] beat_code = beat_q[`CCHIP_STATE_CODE];
+  wire [`CCHIP_INFO_W-1:0] beat_info = beat_q[`CCHIP_STATE_INFO];
+  wire [`CCHIP_INDEX_W-1:0] beat_l = beat_code[`CCHIP_AXIS_CODE_L];
+  wire [`CCHIP_CLASS_W-1:0] beat_class = beat_code[`CCHIP_AXIS_CODE_CLASS];
+  wire [`CCHIP_BEATS_W-1:0] beat_count = beat_q[`CCHIP_STATE_BEATS];
 
-  // an EXHAUSTIVE pair keeps the pipeline until its last axis
+  // while keep_q is 1, an EXHAUSTIVE pair issues its beats back to back and no other pair does
   reg keep_q;
-  // its next axis: nB or e_k x f_l
+  // the next axis of that pair: nB or e_k x f_l
   reg keep_cross_q;
   reg [1:0] keep_k_q, keep_l_q;
-  wire keep_row = keep_cross_q & keep_l_q == LAST_L[1:0];  // the last l of a k
-  wire keep_last = keep_row & keep_k_q == LAST_K[1:0];
-  wire [8:0] keep_code = {keep_cross_q ? `CCHIP_AXIS_CROSS : `CCHIP_AXIS_NORMAL_B, 1'b0, keep_k_q, 1'b0, keep_l_q};
+  wire keep_row = keep_cross_q && keep_l_q == LAST_L[1:0];  // the last l of a k
+  wire keep_last = keep_row && keep_k_q == LAST_K[1:0];
+  wire [`CCHIP_AXIS_CODE_W-1:0] keep_code =
+      {keep_cross_q ? `CCHIP_AXIS_CROSS : `CCHIP_AXIS_NORMAL_B, 1'b0, keep_k_q, 1'b0, keep_l_q};
 
   // a pair waits for an axis slot (read by monitors)
   wire pair_waits /* verilator public_flat_rd */ = start_valid | ready_valid | beat_valid_q;
-  reg  started_q;  // a pair that started had the last turn
+  reg  started_q;  // the last turn went to a pair that started
   wire take_start = start_valid & (~ready_valid | ~started_q);
   assign ready_ready = ~keep_q & (~start_valid | started_q);
   assign start_ready = ~keep_q & (~ready_valid | ~started_q);
@@ -233,15 +247,15 @@ module cchip_axis_controller #(
     if (rst) beat_valid_q <= 1'b0;
     else beat_valid_q <= keep_q | ready_valid | start_valid;
     if (rst) keep_q <= 1'b0;
-    else keep_q <= keep_q ? ~keep_last : take_start & start_mode == `CCHIP_MODE_EXHAUSTIVE;
+    else keep_q <= keep_q ? ~keep_last : take_start && start_mode == `CCHIP_MODE_EXHAUSTIVE;
     if (rst) started_q <= 1'b0;
     else if (!keep_q) started_q <= take_start;
     keep_cross_q <= keep_q;
-    keep_l_q <= ~keep_q | keep_row ? 2'd0 : keep_l_q + {1'b0, keep_cross_q};
-    keep_k_q <= ~keep_q ? 2'd0 : keep_k_q + {1'b0, keep_row};
+    keep_l_q <= !keep_q || keep_row ? 2'd0 : keep_l_q + {1'b0, keep_cross_q};
+    keep_k_q <= !keep_q ? 2'd0 : keep_k_q + {1'b0, keep_row};
     if (keep_q) begin
-      beat_q[11:3]  <= keep_code;
-      beat_q[31:26] <= beat_count + 6'd1;
+      beat_q[`CCHIP_STATE_CODE]  <= keep_code;
+      beat_q[`CCHIP_STATE_BEATS] <= beat_count + 6'd1;
     end else beat_q <= take_start ? {start_context, start_state} : ready_state;
   end
 
@@ -250,7 +264,8 @@ module cchip_axis_controller #(
   assign m_beat_code    = beat_code;
   assign m_beat_user    = beat_q;
 
-  // in-plane axes are one-sided: the own vertices lie on the side of sign(-n_d), d = l; told one clock after the beat
+  // In-plane axes are one-sided: the primitive's own vertices lie on the side of sign(-n_d), d = l.
+  // allow_above and allow_below follow one clock after their beat.
   //   info of DEGENERATE: signs of both normals; of COPLANAR: whether n_d is negative
   wire coplanar = beat_programme == `CCHIP_PROG_COPLANAR;
   reg in_plane_a_q, in_plane_b_q, negative_a_q, negative_b_q, zero_a_q, zero_b_q;
@@ -258,20 +273,23 @@ module cchip_axis_controller #(
     of_component = component[1] ? bits[2] : component[0] ? bits[1] : bits[0];
   endfunction
   always @(posedge clk) begin
-    in_plane_a_q <= beat_code[8:6] == `CCHIP_AXIS_IN_PLANE_A;
-    in_plane_b_q <= beat_code[8:6] == `CCHIP_AXIS_IN_PLANE_B;
-    negative_a_q <= coplanar ? beat_info[0] : of_component(beat_info[2:0], beat_code[1:0]);
-    negative_b_q <= coplanar ? beat_info[1] : of_component(beat_info[8:6], beat_code[1:0]);
-    zero_a_q     <= ~coplanar & of_component(beat_info[5:3], beat_code[1:0]);
-    zero_b_q     <= ~coplanar & of_component(beat_info[11:9], beat_code[1:0]);
+    in_plane_a_q <= beat_class == `CCHIP_AXIS_IN_PLANE_A;
+    in_plane_b_q <= beat_class == `CCHIP_AXIS_IN_PLANE_B;
+    negative_a_q <= coplanar ? beat_info[`CCHIP_INFO_COPLANAR_A_NEGATIVE]
+        : of_component(beat_info[`CCHIP_INFO_DEGENERATE_A_NEGATIVE], beat_l[1:0]);
+    negative_b_q <= coplanar ? beat_info[`CCHIP_INFO_COPLANAR_B_NEGATIVE]
+        : of_component(beat_info[`CCHIP_INFO_DEGENERATE_B_NEGATIVE], beat_l[1:0]);
+    zero_a_q     <= ~coplanar & of_component(beat_info[`CCHIP_INFO_DEGENERATE_A_ZERO], beat_l[1:0]);
+    zero_b_q     <= ~coplanar & of_component(beat_info[`CCHIP_INFO_DEGENERATE_B_ZERO], beat_l[1:0]);
   end
+  wire unused_info = &{1'b0, beat_info, beat_l};
   wire n_negative = in_plane_a_q ? negative_a_q : negative_b_q;
   wire n_zero = in_plane_a_q ? zero_a_q : zero_b_q;
   wire one_sided = in_plane_a_q | in_plane_b_q;
   assign m_beat_allow_above = ~one_sided | n_zero | ~n_negative;
   assign m_beat_allow_below = ~one_sided | n_zero | n_negative;
 
-  // ---- what follows from the verdict
+  // ---- after the verdict: the outcome of the pair, or its next axis
   wire outcome_certain, outcome_open, outcome_illegal;
 
   cchip_axis_programme #(
@@ -305,10 +323,10 @@ module cchip_axis_controller #(
       .m_state        (next_state)
   );
 
-  // ---- result: tag and what there is to know of eta arrive with the outcome
-  wire [17:0] side;
+  // ---- result: the tag, eta = 0 and eta unknown are read from memory on the clock of the outcome
+  wire [`CCHIP_TAG_W+1:0] side;
   cchip_ram #(
-      .WIDTH (18),
+      .WIDTH (`CCHIP_TAG_W + 2),
       .DEPTH (CONTEXTS),
       .ADDR_W(CONTEXT_W)
   ) u_side (
@@ -320,15 +338,13 @@ module cchip_axis_controller #(
       .read_data (side)
   );
 
-  wire err_none = side[17];
-  wire err_unknown = side[16];
-
   assign m_result_valid    = outcome;
-  assign m_result_tag      = side[15:0];
-  assign m_result_definite = ~outcome_illegal & (err_none ? outcome_certain | ~outcome_open : outcome_certain & ~err_unknown);
+  wire err_none, err_unknown;
+  assign {err_none, err_unknown, m_result_tag} = side;
+  assign m_result_definite = ~outcome_illegal
+      & (err_none ? outcome_certain | ~outcome_open : outcome_certain & ~err_unknown);
   assign m_result_hit      = m_result_grid | ~m_result_definite;
 
-`include "cchip_assert.vh"
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_context_free, !s_pair_valid || hand_valid)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_defs.vh"
 // cchip_box_compare: are the bounding boxes of the two primitives disjoint in one component?
 //   latency      CCHIP_BOX_LATENCY = 8 clocks
 //   throughput   one comparison per clock, never stalls
@@ -13,14 +14,19 @@ module cchip_box_compare #(
     parameter integer VERTS_A = 3,
     parameter integer VERTS_B = 3
 ) (
-    input  wire                         clk,
-    input  wire [3*VERTS_A*COORD_W-1:0] s_a,            // vertex 0 in the low bits, x lowest
-    input  wire [3*VERTS_B*COORD_W-1:0] s_b,
-    input  wire [                  1:0] s_component,    // 0 x, 1 y, 2 z; 3 like 0
-    input  wire [                  2:0] s_error_shift,  // eta <= 2^s_error_shift
-    output reg                          m_separated,
-    output reg                          m_certain_gap   // the gap exceeds 2^s_error_shift
+    input  wire                            clk,
+    input  wire [   3*VERTS_A*COORD_W-1:0] s_a,            // vertex 0 in the low bits, x lowest
+    input  wire [   3*VERTS_B*COORD_W-1:0] s_b,
+    input  wire [                     1:0] s_component,    // 0 x, 1 y, 2 z; 3 like 0
+    input  wire [`CCHIP_ERROR_SHIFT_W-1:0] s_error_shift,  // eta <= 2^s_error_shift
+    output wire                            m_separated,
+    output wire                            m_certain_gap   // the gap exceeds 2^s_error_shift
 );
+
+  reg m_separated_q;
+  reg m_certain_gap_q;
+  assign m_separated = m_separated_q;
+  assign m_certain_gap = m_certain_gap_q;
 
   localparam integer GAP_W = COORD_W + 1;
   localparam integer VERTS = VERTS_A + VERTS_B;
@@ -49,13 +55,15 @@ module cchip_box_compare #(
     end
   endfunction
 
-  // ---- clocks 2 and 3: vertices 0 and 1, and the last two, of A and of B: {higher, lower} of each pair.
+  // ---- clocks 2 and 3: vertices 0 and 1, and the last two, of A and of B: {higher, lower} of each
+  // pair.
   // ---- clocks 4 and 5: {higher, lower} of all
   localparam integer PAIR_W = 2 * COORD_W;
   localparam integer A_LAST = COORD_W * (VERTS_A - 2);
   localparam integer B_FIRST = COORD_W * VERTS_A;
   localparam integer B_LAST = COORD_W * (VERTS - 2);
-  wire [4*PAIR_W-1:0] couple = {x_q[B_LAST+:PAIR_W], x_q[B_FIRST+:PAIR_W], x_q[A_LAST+:PAIR_W], x_q[0+:PAIR_W]};
+  wire [4*PAIR_W-1:0] couple =
+      {x_q[B_LAST+:PAIR_W], x_q[B_FIRST+:PAIR_W], x_q[A_LAST+:PAIR_W], x_q[0+:PAIR_W]};
   reg [4*PAIR_W-1:0] couple_q2, sorted_q3;
   reg [3:0] rising_q2;
   reg [2*PAIR_W-1:0] low_q4, high_q4, range_q5;
@@ -80,8 +88,10 @@ module cchip_box_compare #(
         high_q4[PAIR_W*i+:PAIR_W] <= {high1, high0};
         low_rising_q4[i]          <= less(low0, low1);
         high_rising_q4[i]         <= less(high0, high1);
-        range_q5[PAIR_W*i+:COORD_W] <= low_rising_q4[i] ? low_q4[PAIR_W*i+:COORD_W] : low_q4[PAIR_W*i+COORD_W+:COORD_W];
-        range_q5[PAIR_W*i+COORD_W+:COORD_W] <= high_rising_q4[i] ? high_q4[PAIR_W*i+COORD_W+:COORD_W]
+        range_q5[PAIR_W*i+:COORD_W] <= low_rising_q4[i] ? low_q4[PAIR_W*i+:COORD_W]
+            : low_q4[PAIR_W*i+COORD_W+:COORD_W];
+        range_q5[PAIR_W*i+COORD_W+:COORD_W] <= high_rising_q4[i]
+            ? high_q4[PAIR_W*i+COORD_W+:COORD_W]
                                                                  : high_q4[PAIR_W*i+:COORD_W];
       end
     end
@@ -91,7 +101,7 @@ module cchip_box_compare #(
   wire [COORD_W-1:0] low_b = range_q5[PAIR_W+:COORD_W];
   wire [COORD_W-1:0] high_b = range_q5[PAIR_W+COORD_W+:COORD_W];
 
-  // ---- clock 6: gaps on both sides, less 1, so that the sign tells whether there is one
+  // ---- clock 6: (gap - 1) on both sides: negative exactly when there is no gap
   function [GAP_W-1:0] gap(input [COORD_W-1:0] from, input [COORD_W-1:0] to);
     gap = {to[COORD_W-1], to} + ~{from[COORD_W-1], from};
   endfunction
@@ -102,7 +112,7 @@ module cchip_box_compare #(
   end
 
   // ---- clock 7: gap - 1 - 2^shift
-  wire [2:0] error_shift;
+  wire [`CCHIP_ERROR_SHIFT_W-1:0] error_shift;
   cchip_delay #(
       .WIDTH(3),
       .DEPTH(5)
@@ -124,10 +134,10 @@ module cchip_box_compare #(
     b_near_q7  <= b_left[GAP_W];
   end
 
-  // ---- clock 8
+  // ---- clock 8: either side
   always @(posedge clk) begin
-    m_separated   <= a_above_q7 | b_above_q7;
-    m_certain_gap <= ~(a_near_q7 & b_near_q7);
+    m_separated_q   <= a_above_q7 | b_above_q7;
+    m_certain_gap_q <= ~(a_near_q7 & b_near_q7);
   end
   wire unused = &{1'b0, a_left, b_left};
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_defs.vh"
 // cchip_sat_axis: macro stage 2 of the SAT pipeline (paper, figure 7): axis = e x f (eq. 1).
 //   latency      SUBSTAGES clocks
 //   throughput   one axis per clock, never stalls
@@ -7,25 +8,24 @@
 //                2 COORD_W + 2 bits; exact for every input. m_edge_norm = |e|_1 + |f|_1, unsigned.
 //   cost         six wide multipliers, nine adders; the norm
 //   reset        none (data only)
-// Substages: edges, [operand register], leaf input, leaf output, [product register], adder levels of wide
-// products, difference of products, [result registers]. Those in brackets use what SUBSTAGES leaves
-// over CCHIP_AXIS_SUBSTAGES_MIN: first the product register, then the operand register, then results.
+// Substages: edges, [operand register], leaf input, leaf output, [product register], adder levels
+// of wide products, difference of products, [result registers]. Those in brackets use what
+// SUBSTAGES leaves over CCHIP_AXIS_SUBSTAGES_MIN: first the product register, then the operand
+// register, then results.
 module cchip_sat_axis #(
     // width of a coordinate, bit
     parameter integer COORD_W = 16,
     // registers from input to output, clocks
     parameter integer SUBSTAGES = 10
 ) (
-    input  wire                     clk,
-    input  wire [    3*COORD_W-1:0] s_e_from,
-    input  wire [    3*COORD_W-1:0] s_e_to,
-    input  wire [    3*COORD_W-1:0] s_f_from,
-    input  wire [    3*COORD_W-1:0] s_f_to,
-    output wire [6*(COORD_W+1)-1:0] m_axis,
-    output wire [      COORD_W+2:0] m_edge_norm
+    input  wire                                clk,
+    input  wire [               3*COORD_W-1:0] s_e_from,
+    input  wire [               3*COORD_W-1:0] s_e_to,
+    input  wire [               3*COORD_W-1:0] s_f_from,
+    input  wire [               3*COORD_W-1:0] s_f_to,
+    output wire [3*`CCHIP_AXIS_W(COORD_W)-1:0] m_axis,
+    output wire [  `CCHIP_NORM_W(COORD_W)-1:0] m_edge_norm
 );
-
-`include "cchip_defs.vh"
 
   localparam integer EDGE_W = `CCHIP_EDGE_W(COORD_W);
   localparam integer SPARE = SUBSTAGES - `CCHIP_AXIS_SUBSTAGES_MIN(COORD_W);

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// cchip_sat_bound: how far the projections of the unrounded vertices can lie from those of the grid.
-// Part of macro stage 3; shifts and adds, no multiplier. a, b are the edges whose cross product is the
-// axis, c the point whose sign is asked, relative to the reference (docs/architecture.md, certainty):
+`include "cchip_defs.vh"
+// cchip_sat_bound: how far the projections of the unrounded vertices can lie from those of the
+// grid.
+// Part of macro stage 3; shifts and adds, no multiplier. a, b are the edges whose cross product is
+// the axis, c the point whose sign is asked, relative to the reference (docs/architecture.md,
+// certainty):
 //   m_gap_bound  = E |axis|_1, E = 2^s_error_shift >= eta
 //   m_sign_bound = E (|axis|_1 + (|a|_1 + |b|_1 + 2 E) 2^n), n smallest with 2^n >= |c|_1 + 2 E
-//   latency      SUBSTAGES + CCHIP_BOUND_LAG clocks from s_axis, s_edge_norm, s_error_shift; one less
-//                from s_difference
+//   latency      SUBSTAGES + CCHIP_BOUND_LAG clocks from s_axis, s_edge_norm, s_error_shift; one
+//                less from s_difference
 //   throughput   one axis per clock, never stalls
 //   numbers      unsigned, CCHIP_BOUND_W(COORD_W) bits, no overflow
 //   reset        none (data only)
@@ -16,16 +19,14 @@ module cchip_sat_bound #(
     // registers of the projections beside this, clocks, >= 5
     parameter integer SUBSTAGES = 10
 ) (
-    input  wire                     clk,
-    input  wire [6*(COORD_W+1)-1:0] s_axis,
-    input  wire [      COORD_W+2:0] s_edge_norm,
-    input  wire [              2:0] s_error_shift,
-    input  wire [3*(COORD_W+1)-1:0] s_difference,  // c, one clock after s_axis
-    output wire [   2*COORD_W+10:0] m_sign_bound,
-    output wire [   2*COORD_W+10:0] m_gap_bound
+    input  wire                                clk,
+    input  wire [3*`CCHIP_AXIS_W(COORD_W)-1:0] s_axis,
+    input  wire [  `CCHIP_NORM_W(COORD_W)-1:0] s_edge_norm,
+    input  wire [    `CCHIP_ERROR_SHIFT_W-1:0] s_error_shift,
+    input  wire [3*`CCHIP_EDGE_W(COORD_W)-1:0] s_difference,   // c, one clock after s_axis
+    output wire [ `CCHIP_BOUND_W(COORD_W)-1:0] m_sign_bound,
+    output wire [ `CCHIP_BOUND_W(COORD_W)-1:0] m_gap_bound
 );
-
-`include "cchip_defs.vh"
 
   localparam integer EDGE_W = `CCHIP_EDGE_W(COORD_W);
   localparam integer AXIS_W = `CCHIP_AXIS_W(COORD_W);
@@ -38,8 +39,9 @@ module cchip_sat_bound #(
   localparam integer GROUPS = (U_W + 3) / 4;
   // E (|a|_1 + |b|_1 + 2 E) <= 16 (6 (2^COORD_W - 1) + 32) < 2^(NORM_W + 5)
   localparam integer FACTOR_W = NORM_W + 5;
-  // clocks used: difference, norm, sum, product, bound. What is left over goes, in this order, behind the
-  // logarithm, between the two shifts of the product, into the logarithm, behind the logarithm again.
+  // clocks used: difference, norm, sum, product, bound. What is left over goes, in this order,
+  // behind the logarithm, between the two shifts of the product, into the logarithm, behind the
+  // logarithm again.
   localparam integer SPARE = LATENCY - 4 - `CCHIP_NORM1_LATENCY;
   localparam integer SHIFT_REGS = SPARE >= 2 ? 1 : 0;
   localparam integer GROUP_REGS = SPARE >= 3 ? 1 : 0;
@@ -51,8 +53,8 @@ module cchip_sat_bound #(
     end
   endgenerate
 
-  // ---- gap bound, one clock before it leaves: the sum needs it
-  wire [2:0] shift_norm;
+  // ---- gap bound; gap_q is one clock ahead of the output, because the sign bound is a sum with it
+  wire [`CCHIP_ERROR_SHIFT_W-1:0] shift_norm;
   wire four_gap;
   cchip_delay #(
       .WIDTH(3),
@@ -105,14 +107,15 @@ module cchip_sat_bound #(
     integer j;
     begin
       shifted_by_ones = {FACTOR_W{1'b0}};
-      for (j = 0; j < 5; j = j + 1) shifted_by_ones = shifted_by_ones | (({4'd0, value} & {FACTOR_W{choice[j]}}) << j);
+      for (j = 0; j < 5; j = j + 1)
+        shifted_by_ones = shifted_by_ones | (({4'd0, value} & {FACTOR_W{choice[j]}}) << j);
     end
   endfunction
   reg [NORM_W-1:0] edge_norm_q;
   reg [NORM_W:0] edges_q2;
   reg [5:0] twice_error_q;
-  reg [2:0] shift_q;
-  reg [4:0] shift_q2;  // one-hot: a choice of two levels of LUTs
+  reg [`CCHIP_ERROR_SHIFT_W-1:0] shift_q;
+  reg [4:0] shift_q2;  // one-hot, so that the shift is two levels of LUTs
   reg [FACTOR_W-1:0] factor_q;
   always @(posedge clk) begin
     edge_norm_q   <= s_edge_norm;
@@ -134,7 +137,7 @@ module cchip_sat_bound #(
       .q  (factor)
   );
 
-  // ---- n: position of the highest one of |c|_1 + 2 E - 1, plus 1
+  // ---- n = 1 + position of the highest bit that is 1 in |c|_1 + 2 E - 1
   wire [EDGE_W:0] norm;
   cchip_norm1 #(
       .V_W(EDGE_W)
@@ -146,11 +149,13 @@ module cchip_sat_bound #(
   reg [4:0] twice_error_less_1_q;
   reg [U_W-1:0] sum_q;
   always @(posedge clk) begin
-    twice_error_less_1_q <= {shift_norm >= 3'd4, shift_norm >= 3'd3, shift_norm >= 3'd2, shift_norm >= 3'd1, 1'b1};
+    twice_error_less_1_q <=
+        {shift_norm >= 3'd4, shift_norm >= 3'd3, shift_norm >= 3'd2, shift_norm >= 3'd1, 1'b1};
     sum_q <= {1'b0, norm} + {{U_W - 5{1'b0}}, twice_error_less_1_q};
   end
 
-  // by groups of four: the highest group with a one, the position of the highest one in it (the sum is not 0)
+  // found in groups of four bits: the highest group that is not 0, and the highest 1 in that group
+  // (the sum is never 0)
   wire [4*GROUPS-1:0] u = {{4 * GROUPS - U_W{1'b0}}, sum_q};
   wire [3*GROUPS-1:0] found, group;  // {any, position} of each
   genvar g;
@@ -204,7 +209,8 @@ module cchip_sat_bound #(
       shifted_by_fours = {BOUND_W{1'b0}};
       for (j = 0; j < GROUPS; j = j + 1)
         shifted_by_fours = shifted_by_fours
-                         | (({{BOUND_W - FACTOR_W - 4{1'b0}}, value} & {BOUND_W{choice[j]}}) << (4 * j));
+                         | (({{BOUND_W - FACTOR_W - 4{1'b0}}, value}
+                             & {BOUND_W{choice[j]}}) << (4 * j));
     end
   endfunction
   reg [BOUND_W-1:0] product_q, bound_q;

@@ -4,12 +4,13 @@
 // intervals (eq. 3) disjoint, and are they for the unrounded primitives too?
 //   latency      CCHIP_COMPARE_LATENCY = 4 clocks; from the bounds CCHIP_BOUND_LAG = 2 less
 //   throughput   one axis per clock, never stalls
-//   numbers      signed projections relative to the reference point, unsigned bounds of their errors
+//   numbers      signed projections relative to the reference point, unsigned bounds of their
+//                errors
 //   reset        none (data only)
 // Own set of the axis: {0} and the slots marked s_own; other set: the other slots. Closed sets:
 // separated only if every difference between the two sets is strictly of one sign that is allowed.
-// Certain: |value| > bound, strictly. m_clear: every difference between the sets exceeds the gap bound, and each
-// point of the other set is on one side of the whole own set.
+// Certain: |value| > bound, strictly. m_clear: every difference between the sets exceeds the gap
+// bound, and each point of the other set is on one side of the whole own set.
 module cchip_sat_compare #(
     // width of a projection, bit
     parameter integer PROJ_W = 51,
@@ -17,24 +18,41 @@ module cchip_sat_compare #(
     parameter integer BOUND_W = 43,
     // point slots, 3..5
     parameter integer POINTS = 3,
-    // the first slots that can hold own points: 1 or 2; the sign of the slot behind them can be certain
+    // the first slots that can hold own points: 1 or 2; the sign of the slot behind them can be
+    // certain
     parameter integer OWN = 1
 ) (
     input  wire                     clk,
-    input  wire [              1:0] s_own,          // slot 0, 1 holds an own point; [1] only with [0] and OWN = 2
-    input  wire                     s_allow_above,  // the other set may be separated above the own one
+    // slot 0, 1 holds an own point; [1] only with [0] and OWN = 2
+    input  wire [              1:0] s_own,
+    // the other set may be separated above the own one
+    input  wire                     s_allow_above,
     input  wire                     s_allow_below,
     input  wire [POINTS*PROJ_W-1:0] s_projection,   // p0 in the low bits
     input  wire [      BOUND_W-1:0] s_sign_bound,   // of slot OWN; two clocks after s_projection
     input  wire [      BOUND_W-1:0] s_gap_bound,    // two clocks after s_projection
-    output reg                      m_separated,
-    output reg                      m_certain_gap,  // separated for the unrounded primitives
-    output reg  [       POINTS-1:0] m_negative,     // p_i < 0
-    output reg  [       POINTS-1:0] m_zero,         // p_i = 0
-    output reg                      m_certain,      // the sign of p_OWN is that of the unrounded vertices
-    output reg                      m_clear         // every other point lies certainly beyond all own points,
-                                                    // on either side
+    output wire                     m_separated,
+    output wire                     m_certain_gap,  // separated for the unrounded primitives
+    output wire [       POINTS-1:0] m_negative,     // p_i < 0
+    output wire [       POINTS-1:0] m_zero,         // p_i = 0
+    // the sign of p_OWN is that of the unrounded vertices
+    output wire                     m_certain,
+    // every other point lies certainly beyond all own points, on either side
+    output wire                     m_clear
 );
+
+  reg m_separated_q;
+  reg m_certain_gap_q;
+  reg [POINTS-1:0] m_negative_q;
+  reg [POINTS-1:0] m_zero_q;
+  reg m_certain_q;
+  reg m_clear_q;
+  assign m_separated = m_separated_q;
+  assign m_certain_gap = m_certain_gap_q;
+  assign m_negative = m_negative_q;
+  assign m_zero = m_zero_q;
+  assign m_certain = m_certain_q;
+  assign m_clear = m_clear_q;
 
   generate
     if (POINTS < 3 || POINTS > 5 || OWN < 1 || OWN > 2) begin : gen_illegal
@@ -44,9 +62,10 @@ module cchip_sat_compare #(
 
   // size of a value: |v|, or |v| - 1 of a negative one
   localparam integer SIZE_W = PROJ_W - 1;
-  // what is compared with a bound: as many bits as it has; one more stands for all above them
+  // bits of a size that are compared with a bound, as many as the bound has; one more bit is the OR
+  // of all higher ones
   localparam integer LOW_W = SIZE_W > BOUND_W ? BOUND_W : SIZE_W;
-  // zero is found in two steps
+  // v = 0 is detected in two clocks: parts of 16 bits, then all parts
   localparam integer PARTS = (PROJ_W + 15) / 16;
 
   // |v| <= bound: size + minus < bound + 1
@@ -123,13 +142,13 @@ module cchip_sat_compare #(
     end
   endgenerate
 
-  // ---- clock 3: all differences between the sets together; what takes signs alone
+  // ---- clock 3: combines the signs of all differences between the sets
   function [VALUES-1:0] ignored(input [1:0] in);
     ignored = {OWN == 2 ? {{POINTS - 2{1'b0}}, in} | {POINTS{~in[1]}} : {POINTS{1'b1}},
                {{POINTS - 2{1'b0}}, in} | {POINTS{~in[0]}}, {{POINTS - 2{1'b0}}, in}};
   endfunction
   wire [VALUES-1:0] ignore = ignored(own);
-  // on the same side of the own points in slots 0 and 1 as of the reference
+  // the point is on the same side of the own points in slots 0 and 1 as of the reference
   wire [VALUES-1:0] same = negative ~^ {3{negative[POINTS-1:0]}};
   reg [1:0] own_q3;
   reg above_q3, below_q3, same_q3;
@@ -142,17 +161,17 @@ module cchip_sat_compare #(
     negative_q3 <= negative[POINTS-1:0];
   end
 
-  // ---- clock 4: those found late
+  // ---- clock 4: combines zero and near, which take one clock longer than the signs
   wire [VALUES-1:0] ignore_q3 = ignored(own_q3);
   wire none_zero = &(ignore_q3 | ~zero);
   wire all_far = &(ignore_q3 | ~near);  // then none is zero
   always @(posedge clk) begin
-    m_separated   <= (above_q3 & none_zero) | below_q3;
-    m_certain_gap <= (above_q3 | below_q3) & all_far;
-    m_negative    <= negative_q3;
-    m_zero        <= zero[POINTS-1:0];
-    m_certain     <= ~uncertain_q3;
-    m_clear       <= same_q3 & all_far;
+    m_separated_q   <= (above_q3 & none_zero) | below_q3;
+    m_certain_gap_q <= (above_q3 | below_q3) & all_far;
+    m_negative_q    <= negative_q3;
+    m_zero_q        <= zero[POINTS-1:0];
+    m_certain_q     <= ~uncertain_q3;
+    m_clear_q       <= same_q3 & all_far;
   end
 
 endmodule

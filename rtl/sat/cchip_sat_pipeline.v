@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_defs.vh"
 // cchip_sat_pipeline: the four macro stages of the separating axis test (paper, figure 7):
 // select -> axis -> project -> compare; the box comparison runs beside them.
 //   latency      CCHIP_PIPE_LATENCY(SUBSTAGES) clocks, beat to verdict; the operands of a beat come
 //                CCHIP_RAM_LATENCY clocks after it, from the memory that its context addresses
 //   throughput   one axis per clock, never stalls: whoever issues a beat keeps room for its verdict
-//   cuts         every path (registered outputs; the first register of a vertex is behind the multiplexers of select)
+//   cuts         every path (registered outputs; the first register of a vertex is behind the
+//                multiplexers of select)
 //   reset        valid bits; data on its way is lost
 // s_beat_user travels with the beat and comes back as m_verdict_user.
 module cchip_sat_pipeline #(
@@ -21,32 +23,36 @@ module cchip_sat_pipeline #(
     // width of the user field, bit
     parameter integer USER_W = 8
 ) (
-    input  wire                         clk,
-    input  wire                         rst,
-    input  wire                         s_beat_valid,
-    input  wire [                  8:0] s_beat_code,             // {class, k, l}
-    input  wire                         s_beat_allow_above,      // one clock after the beat; see cchip_sat_compare
-    input  wire                         s_beat_allow_below,
-    input  wire [           USER_W-1:0] s_beat_user,
-    input  wire [                  2:0] s_operand_error_shift,   // after the beat by CCHIP_RAM_LATENCY: eta <= 2^this, 0..4
-    input  wire [3*VERTS_A*COORD_W-1:0] s_operand_a,             // vertex 0 in the low bits
-    input  wire [3*VERTS_B*COORD_W-1:0] s_operand_b,
-    output wire                         m_verdict_valid,
-    output wire                         m_verdict_separated,     // intervals disjoint
-    output wire                         m_verdict_certain_gap,   // for the unrounded primitives too
-    output wire [VERTS_A+VERTS_B-4:0]   m_verdict_negative,      // projected points: < 0
-    output wire [VERTS_A+VERTS_B-4:0]   m_verdict_zero,          // = 0
-    output wire                         m_verdict_certain,       // the sign of point VERTS_A - 2 is certain
-    output wire                         m_verdict_clear,         // see cchip_sat_compare
-    output wire [                  2:0] m_verdict_axis_negative, // components of the axis: < 0
-    output wire [                  2:0] m_verdict_axis_zero,     // = 0
-    output wire [                  1:0] m_verdict_axis_largest,  // component of the largest absolute value
-    output wire                         m_verdict_box_separated, // boxes disjoint in component l of the code
-    output wire                         m_verdict_box_certain,   // by more than 2^error_shift
-    output wire [           USER_W-1:0] m_verdict_user
+    input  wire                            clk,
+    input  wire                            rst,
+    input  wire                            s_beat_valid,
+    input  wire [  `CCHIP_AXIS_CODE_W-1:0] s_beat_code,              // {class, k, l}
+    // one clock after the beat; see cchip_sat_compare
+    input  wire                            s_beat_allow_above,
+    input  wire                            s_beat_allow_below,
+    input  wire [              USER_W-1:0] s_beat_user,
+    // after the beat by CCHIP_RAM_LATENCY: eta <= 2^this, 0..4
+    input  wire [`CCHIP_ERROR_SHIFT_W-1:0] s_operand_error_shift,
+    input  wire [   3*VERTS_A*COORD_W-1:0] s_operand_a,              // vertex 0 in the low bits
+    input  wire [   3*VERTS_B*COORD_W-1:0] s_operand_b,
+    output wire                            m_verdict_valid,
+    output wire                            m_verdict_separated,      // intervals disjoint
+    // for the unrounded primitives too
+    output wire                            m_verdict_certain_gap,
+    output wire [     VERTS_A+VERTS_B-4:0] m_verdict_negative,       // projected points: < 0
+    output wire [     VERTS_A+VERTS_B-4:0] m_verdict_zero,           // = 0
+    // the sign of point VERTS_A - 2 is certain
+    output wire                            m_verdict_certain,
+    output wire                            m_verdict_clear,          // see cchip_sat_compare
+    output wire [                     2:0] m_verdict_axis_negative,  // components of the axis: < 0
+    output wire [                     2:0] m_verdict_axis_zero,      // = 0
+    // component of the largest absolute value
+    output wire [                     1:0] m_verdict_axis_largest,
+    // boxes disjoint in component l of the code
+    output wire                            m_verdict_box_separated,
+    output wire                            m_verdict_box_certain,    // by more than 2^error_shift
+    output wire [              USER_W-1:0] m_verdict_user
 );
-
-`include "cchip_defs.vh"
 
   localparam integer POINT_W = 3 * COORD_W;
   localparam integer POINTS = `CCHIP_POINTS(VERTS_A, VERTS_B);
@@ -89,7 +95,7 @@ module cchip_sat_pipeline #(
       .d  (allow_q),
       .q  ({project_allow_above, project_allow_below})
   );
-  wire [2:0] axis_error_shift;
+  wire [`CCHIP_ERROR_SHIFT_W-1:0] axis_error_shift;
   cchip_delay #(
       .WIDTH (3),
       .DEPTH (`CCHIP_SELECT_LATENCY - `CCHIP_RAM_LATENCY + SUBSTAGES),

@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_defs.vh"
 // cchip_sat_project: macro stage 3 of the SAT pipeline (paper, figure 7): projections of the points
-// onto the axis (eq. 2), relative to the projection of the reference point, and what the certainty of
-// their signs needs. m_projection[i] = (p_i - reference) . axis.
+// onto the axis (eq. 2), relative to the projection of the reference point, and what the certainty
+// of their signs needs. m_projection[i] = (p_i - reference) . axis.
 //   latency      SUBSTAGES clocks; bounds CCHIP_BOUND_LAG more
 //   throughput   one axis per clock, never stalls
 //   numbers      points of COORD_W bits, axis components of 2 COORD_W + 2 bits, projections of
-//                3 COORD_W + 3 bits, exact for every axis that is a cross product of two edges of the pair
+//                3 COORD_W + 3 bits, exact for every axis that is a cross product of two edges of
+//                the pair
 //   reset        none (data only)
 // ABSOLUTE_PROJECTION = 0: points relative to the reference are projected; POINTS dot products.
-// ABSOLUTE_PROJECTION = 1: the paper's: the reference is projected too and its projection subtracted;
+// ABSOLUTE_PROJECTION = 1: the paper's: the reference is projected too and its projection
+// subtracted;
 //   POINTS + 1 dot products. Identical results, same latency.
-// Substages: point differences (relative) or projection differences (absolute), [operand register], leaf
-// input, leaf output, [product register], adder levels of wide products, two levels of sums, [result
-// registers]. Those in brackets use what SUBSTAGES leaves over CCHIP_PROJECT_SUBSTAGES_MIN: first the
-// product register, then the operand register, then results. The error bounds run beside (cchip_sat_bound).
+// Substages: point differences (relative) or projection differences (absolute), [operand register],
+// leaf input, leaf output, [product register], adder levels of wide products, two levels of sums,
+// [result registers]. Those in brackets use what SUBSTAGES leaves over CCHIP_PROJECT_SUBSTAGES_MIN:
+// first the product register, then the operand register, then results. The error bounds run beside
+// (cchip_sat_bound).
 module cchip_sat_project #(
     // width of a coordinate, bit
     parameter integer COORD_W = 16,
@@ -27,21 +31,23 @@ module cchip_sat_project #(
     // the one whose sign may have to be certain
     parameter integer SIGN = 1
 ) (
-    input  wire                            clk,
-    input  wire [       6*(COORD_W+1)-1:0] s_axis,
-    input  wire [             COORD_W+2:0] s_edge_norm,      // |e|_1 + |f|_1
-    input  wire [                     2:0] s_error_shift,    // eta <= 2^s_error_shift, 0..4
-    input  wire [           3*COORD_W-1:0] s_reference,
-    input  wire [    3*POINTS*COORD_W-1:0] s_points,         // p0 in the low bits
-    output wire [POINTS*3*(COORD_W+1)-1:0] m_projection,     // p0 in the low bits
-    output wire [          2*COORD_W+10:0] m_sign_bound,     // of the error of projection SIGN
-    output wire [          2*COORD_W+10:0] m_gap_bound,      // of the difference of two true projections
-    output wire [                     2:0] m_axis_negative,  // components of the axis: < 0
-    output wire [                     2:0] m_axis_zero,      // = 0
-    output wire [                     1:0] m_axis_largest    // component of the largest absolute value
+    input  wire                                     clk,
+    input  wire [     3*`CCHIP_AXIS_W(COORD_W)-1:0] s_axis,
+    input  wire [       `CCHIP_NORM_W(COORD_W)-1:0] s_edge_norm,      // |e|_1 + |f|_1
+    // eta <= 2^s_error_shift, 0..4
+    input  wire [         `CCHIP_ERROR_SHIFT_W-1:0] s_error_shift,
+    input  wire [                    3*COORD_W-1:0] s_reference,
+    input  wire [             3*POINTS*COORD_W-1:0] s_points,         // p0 in the low bits
+    output wire [POINTS*`CCHIP_PROJ_W(COORD_W)-1:0] m_projection,     // p0 in the low bits
+    // of the error of projection SIGN
+    output wire [      `CCHIP_BOUND_W(COORD_W)-1:0] m_sign_bound,
+    // of the difference of two true projections
+    output wire [      `CCHIP_BOUND_W(COORD_W)-1:0] m_gap_bound,
+    output wire [                              2:0] m_axis_negative,  // components of the axis: < 0
+    output wire [                              2:0] m_axis_zero,      // = 0
+    // component of the largest absolute value
+    output wire [                              1:0] m_axis_largest
 );
-
-`include "cchip_defs.vh"
 
   localparam integer EDGE_W = `CCHIP_EDGE_W(COORD_W);
   localparam integer AXIS_W = `CCHIP_AXIS_W(COORD_W);
@@ -97,11 +103,12 @@ module cchip_sat_project #(
         );
       end
     end else begin : gen_absolute
-      wire unused = &{1'b0, difference_q};  // but for point SIGN
+      wire unused = &{1'b0, difference_q};  // all but that of point SIGN
       // width of a dot product with W-bit coordinates: CCHIP_PROJ_ABS_W
       localparam integer DOT_W = COORD_W + AXIS_W;
       // latency of cchip_dot3 may differ from the relative one (narrower factor): the rest is delay
-      localparam integer FILL = `CCHIP_MUL_LATENCY(EDGE_W, AXIS_W) - `CCHIP_MUL_LATENCY(COORD_W, AXIS_W);
+      localparam integer FILL = `CCHIP_MUL_LATENCY(EDGE_W, AXIS_W)
+          - `CCHIP_MUL_LATENCY(COORD_W, AXIS_W);
       wire [DOT_W-1:0] reference;
       cchip_dot3 #(
           .A_W(COORD_W),
@@ -130,7 +137,8 @@ module cchip_sat_project #(
             .b  (s_axis),
             .q  (point)
         );
-        always @(posedge clk) relative_q <= {point[DOT_W-1], point} - {reference[DOT_W-1], reference};
+        always @(posedge clk) relative_q <= {point[DOT_W-1], point}
+            - {reference[DOT_W-1], reference};
         assign m_projection[PROJ_W*i+:PROJ_W] = relative_q;
       end
     end
@@ -161,7 +169,7 @@ module cchip_sat_project #(
   generate
     for (d = 0; d < 3; d = d + 1) begin : gen_axis
       wire [AXIS_W-1:0] v = s_axis[AXIS_W*d+:AXIS_W];
-      // zero is found in two steps
+      // v = 0 is detected in two clocks: parts of 9 bits, then all parts
       wire [9*PARTS-1:0] parts = {{9 * PARTS - AXIS_W{1'b0}}, v};
       reg [PARTS-1:0] some_q;
       for (g = 0; g < PARTS; g = g + 1) begin : gen_part
@@ -171,7 +179,8 @@ module cchip_sat_project #(
         zero_q2[d]    <= ~|some_q;
         negative_q[d] <= v[AXIS_W-1];
         size_q[(AXIS_W-1)*d+:AXIS_W-1] <= v[AXIS_W-2:0] ^ {AXIS_W - 1{v[AXIS_W-1]}};
-        absolute_q2[AXIS_W*d+:AXIS_W] <= {1'b0, size_q[(AXIS_W-1)*d+:AXIS_W-1]} + {{AXIS_W - 1{1'b0}}, negative_q[d]};
+        absolute_q2[AXIS_W*d+:AXIS_W] <= {1'b0, size_q[(AXIS_W-1)*d+:AXIS_W-1]}
+            + {{AXIS_W - 1{1'b0}}, negative_q[d]};
       end
     end
   endgenerate

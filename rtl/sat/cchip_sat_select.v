@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// cchip_sat_select: macro stage 1 of the SAT pipeline (paper, figure 7). Chooses the two edges e, f whose
-// cross product is the axis (or a constant unit vector for f), and the points to project.
-//   latency      CCHIP_SELECT_LATENCY clocks from s_code, 1 from s_a and s_b, which come CCHIP_RAM_LATENCY = 3
-//                clocks after it
+`include "cchip_defs.vh"
+// cchip_sat_select: macro stage 1 of the SAT pipeline (paper, figure 7). Chooses the two edges e, f
+// whose cross product is the axis (or a constant unit vector for f), and the points to project.
+//   latency      CCHIP_SELECT_LATENCY clocks from s_code, 1 from s_a and s_b, which come
+//                CCHIP_RAM_LATENCY = 3 clocks after it
 //   throughput   one axis per clock, never stalls
 //   numbers      points of three signed COORD_W-bit coordinates, x in the low bits
 //   reset        none (data only)
@@ -14,10 +15,11 @@
 //   CROSS k l     edge k of A       edge l of B A's others         Wl, B's others
 //   IN_PLANE_A k l  edge k of A     unit vector l   none           all W
 //   NORMAL_B, IN_PLANE_B: the same with A and B, V and W exchanged
-// Sides are edges k = 0..3 from vertex k to k + 1, edge 4 is V0V2, edge 5 V1V3. The points of the other
-// primitive fill the last slots; a slot left over (slot 0) repeats one of them. The start of e is the
-// reference of the projection: vertices that are not among the points project onto the same value as
-// it or as a point. Any other class selects like NORMAL_A; its verdict has no meaning.
+// Sides are edges k = 0..3 from vertex k to k + 1, edge 4 is V0V2, edge 5 V1V3. The points of the
+// other primitive fill the last slots; a slot left over (slot 0) repeats one of them. The start of
+// e is the reference of the projection: vertices that are not among the points project onto the
+// same value as it or as a point. Any other class selects like NORMAL_A; its verdict has no
+// meaning.
 module cchip_sat_select #(
     // width of a coordinate, bit
     parameter integer COORD_W = 16,
@@ -26,18 +28,30 @@ module cchip_sat_select #(
     parameter integer VERTS_B = 3
 ) (
     input  wire                                     clk,
-    input  wire [                              8:0] s_code,    // {class, k, l}
-    input  wire [            3*VERTS_A*COORD_W-1:0] s_a,       // CCHIP_RAM_LATENCY clocks after s_code; vertex 0 in the low bits
+    input  wire [           `CCHIP_AXIS_CODE_W-1:0] s_code,    // {class, k, l}
+    // CCHIP_RAM_LATENCY clocks after s_code; vertex 0 in the low bits
+    input  wire [            3*VERTS_A*COORD_W-1:0] s_a,
     input  wire [            3*VERTS_B*COORD_W-1:0] s_b,
-    output reg  [                    3*COORD_W-1:0] m_e_from,
-    output reg  [                    3*COORD_W-1:0] m_e_to,
-    output reg  [                    3*COORD_W-1:0] m_f_from,
-    output reg  [                    3*COORD_W-1:0] m_f_to,
-    output reg  [3*(VERTS_A+VERTS_B-3)*COORD_W-1:0] m_points,  // p0 in the low bits
-    output reg  [                              1:0] m_own      // slot 0, 1 holds an own point
+    output wire [                    3*COORD_W-1:0] m_e_from,
+    output wire [                    3*COORD_W-1:0] m_e_to,
+    output wire [                    3*COORD_W-1:0] m_f_from,
+    output wire [                    3*COORD_W-1:0] m_f_to,
+    output wire [3*(VERTS_A+VERTS_B-3)*COORD_W-1:0] m_points,  // p0 in the low bits
+    output wire [                              1:0] m_own      // slot 0, 1 holds an own point
 );
 
-`include "cchip_defs.vh"
+  reg [3*COORD_W-1:0] m_e_from_q;
+  reg [3*COORD_W-1:0] m_e_to_q;
+  reg [3*COORD_W-1:0] m_f_from_q;
+  reg [3*COORD_W-1:0] m_f_to_q;
+  reg [3*(VERTS_A+VERTS_B-3)*COORD_W-1:0] m_points_q;
+  reg [1:0] m_own_q;
+  assign m_e_from = m_e_from_q;
+  assign m_e_to = m_e_to_q;
+  assign m_f_from = m_f_from_q;
+  assign m_f_to = m_f_to_q;
+  assign m_points = m_points_q;
+  assign m_own = m_own_q;
 
   localparam integer POINT_W = 3 * COORD_W;
   localparam integer POINTS = `CCHIP_POINTS(VERTS_A, VERTS_B);
@@ -49,15 +63,15 @@ module cchip_sat_select #(
   endgenerate
 
   // ---- clock 1: what the code says
-  wire [`CCHIP_CLASS_W-1:0] axis_class = s_code[8:6];
+  wire [`CCHIP_CLASS_W-1:0] axis_class = s_code[`CCHIP_AXIS_CODE_CLASS];
   reg is_cross_q, is_in_plane_q, own_b_q;
-  reg [2:0] k_q, l_q;
+  reg [`CCHIP_INDEX_W-1:0] k_q, l_q;
   always @(posedge clk) begin
     is_cross_q    <= axis_class == `CCHIP_AXIS_CROSS;
     is_in_plane_q <= axis_class == `CCHIP_AXIS_IN_PLANE_A || axis_class == `CCHIP_AXIS_IN_PLANE_B;
     own_b_q       <= axis_class == `CCHIP_AXIS_NORMAL_B || axis_class == `CCHIP_AXIS_IN_PLANE_B;
-    k_q           <= s_code[5:3];
-    l_q           <= s_code[2:0];
+    k_q           <= s_code[`CCHIP_AXIS_CODE_K];
+    l_q           <= s_code[`CCHIP_AXIS_CODE_L];
   end
 
   // i + offset among the vertices of a triangle or quad
@@ -69,7 +83,7 @@ module cchip_sat_select #(
     end
   endfunction
 
-  // {to, from} of edge k, {other 1, other 0}: the vertices off it
+  // {other 1, other 0, to, from}: the ends of an edge and the vertices that are not on it
   function [7:0] edge_of(input quad, input [2:0] index);
     if (quad && index == 3'd4) edge_of = {2'd3, 2'd1, 2'd2, 2'd0};
     else if (quad && index == 3'd5) edge_of = {2'd2, 2'd0, 2'd3, 2'd1};
@@ -90,7 +104,7 @@ module cchip_sat_select #(
       endcase
   endfunction
 
-  // ---- clock 2: the vertex {of B, index} that each end and slot takes
+  // ---- clock 2: which vertex, {of B, index}, goes to each end of e and f and to each point slot
   wire own_quad = own_b_q ? VERTS_B == 4 : VERTS_A == 4;
   wire [7:0] own_edge = edge_of(own_quad, k_q);
   wire [7:0] b_edge = edge_of(VERTS_B == 4, l_q);
@@ -105,7 +119,8 @@ module cchip_sat_select #(
     e_to_q2   <= {own_b_q, is_edge ? own_edge[3:2] : normal[3:2]};
     f_from_q2 <= is_cross_q ? {1'b1, b_edge[1:0]} : {own_b_q, normal[5:4]};
     f_to_q2   <= is_cross_q ? {1'b1, b_edge[3:2]} : {own_b_q, normal[7:6]};
-    unit_q2   <= {is_in_plane_q && l_q == 3'd2, is_in_plane_q && l_q == 3'd1, is_in_plane_q && l_q == 3'd0};
+    unit_q2   <= {is_in_plane_q && l_q == 3'd2, is_in_plane_q && l_q == 3'd1, is_in_plane_q
+        && l_q == 3'd0};
     own_q2    <= {is_cross_q && VERTS_A == 4, is_cross_q || (!is_in_plane_q && own_quad)};
   end
 
@@ -128,13 +143,15 @@ module cchip_sat_select #(
       wire [2:0] of_own = is_in_plane_q ? {~own_b_q, 2'd0} : {own_b_q, normal[9:8]};
       wire [2:0] of_a = p < POINTS - VERTS_A ? of_own : {1'b0, IN_A[1:0]};
       wire [2:0] of_b = p < POINTS - VERTS_B ? of_own : {1'b1, IN_B[1:0]};
-      always @(posedge clk) point_q2[3*p+:3] <= is_cross_q ? cross_points[3*p+:3] : own_b_q ? of_a : of_b;
+      always @(posedge clk) point_q2[3*p+:3] <= is_cross_q ? cross_points[3*p+:3] : own_b_q ? of_a
+          : of_b;
     end
   endgenerate
 
   wire unused = &{1'b0, b_edge[7:6], own_edge[7:6], cross_points};
 
-  // ---- clock 3: one bit for each vertex of A, then of B. f of an in-plane axis: from the origin to unit vector l.
+  // ---- clock 3: one bit for each vertex of A, then of B. f of an in-plane axis: from the origin
+  // to unit vector l.
   reg [7:0] e_from_q3, e_to_q3, f_from_q3, f_to_q3;
   reg [8*POINTS-1:0] point_q3;
   reg [2:0] unit_q3;
@@ -153,7 +170,7 @@ module cchip_sat_select #(
     end
   endgenerate
 
-  // ---- clock 4: the vertices. Vertices that an end or slot never takes are masked.
+  // ---- clock 4: the vertices. A mask removes the vertices that an end or a slot never takes.
   wire [8*POINT_W-1:0] vertices;
   generate
     if (VERTS_A == 4) begin : gen_a_quad
@@ -190,7 +207,8 @@ module cchip_sat_select #(
       localparam [3:0] OF_A = p < VERTS_A - 2 ? ALL_A : 4'd1 << IN_A;
       localparam [3:0] OF_B = p >= VERTS_A - 2 || (p == 0 && VERTS_B == 4) ? ALL_B : 4'd1 << IN_B;
       localparam [7:0] MASK = {OF_B, OF_A};
-      always @(posedge clk) m_points[POINT_W*p+:POINT_W] <= pick(vertices, point_q3[8*p+:8] & MASK);
+      always @(posedge clk) m_points_q[POINT_W*p+:POINT_W] <= pick(vertices, point_q3[8*p+:8]
+          & MASK);
     end
   endgenerate
 
@@ -203,11 +221,11 @@ module cchip_sat_select #(
   endgenerate
 
   always @(posedge clk) begin
-    m_e_from <= pick(vertices, e_from_q3 & ALL);
-    m_e_to   <= pick(vertices, e_to_q3 & ALL);
-    m_f_from <= pick(vertices, f_from_q3 & F_FROM);
-    m_f_to   <= pick(vertices, f_to_q3 & F_TO) | unit;
-    m_own    <= own_q3;
+    m_e_from_q <= pick(vertices, e_from_q3 & ALL);
+    m_e_to_q   <= pick(vertices, e_to_q3 & ALL);
+    m_f_from_q <= pick(vertices, f_from_q3 & F_FROM);
+    m_f_to_q   <= pick(vertices, f_to_q3 & F_TO) | unit;
+    m_own_q    <= own_q3;
   end
 
 endmodule

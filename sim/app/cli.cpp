@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <cchip/stimulus/csv_reader.hpp>
 #include <cchip/stimulus/pair_columns.hpp>
+#include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <utility>
 
 #include "demo.hpp"
@@ -19,7 +21,6 @@
 #include "mesh_source.hpp"
 #include "pair_runner.hpp"
 #include "pose.hpp"
-#include "progress.hpp"
 #include "reconfig.hpp"
 
 namespace cchip::app {
@@ -48,6 +49,7 @@ struct MeshPairsOptions {
   std::string pose;
   std::string pose_matrix;
   std::uint64_t limit = 0;
+  std::string ply;  ///< path of the coloured picture; empty: none
   EngineOptions engine;
   Format format = Format::table;
 };
@@ -112,9 +114,12 @@ Summary answer_meshes(const MeshPairsOptions& options, const Streams& streams) {
   const Eigen::Isometry3d pose = pose_of(options);
   const Mesh a = load_mesh_file(options.file_a, streams.err);
   const Mesh b = transformed(load_mesh_file(options.file_b, streams.err), pose);
+  std::optional<HitPicture> picture;
+  if (!options.ply.empty()) picture.emplace(options.ply);
   Progress progress(streams.err, streams.progress);
   const auto engine = make_engine(options.engine);
-  const RunOptions run{options.engine.mode, options.format};
+  RunOptions run{options.engine.mode, options.format};
+  if (picture) run.on_hit = [&](const PairJob& job) { picture->add_hit(job); };
   const auto locate = [&](const PairJob& job) {
     return fmt::format("{} face {}, {} face {}", options.file_a, job.passed[0], options.file_b, job.passed[1]);
   };
@@ -123,7 +128,9 @@ Summary answer_meshes(const MeshPairsOptions& options, const Streams& streams) {
     runner.add(std::move(job));
     if (runner.pairs_taken() % 1024 == 0) progress.update(runner.pairs_taken(), -1.0);
   });
-  return runner.finish();
+  const Summary summary = runner.finish();
+  if (picture) picture->write(a, b);
+  return summary;
 }
 
 int run_meshpairs(const MeshPairsOptions& options, const Streams& streams) {
@@ -184,11 +191,13 @@ void add_meshpairs(CLI::App& app, MeshPairsOptions& options) {
   command->add_option("--pose-matrix", options.pose_matrix, "twelve numbers, the 3x4 matrix [R|t] row by row")
       ->excludes(pose);
   command->add_option("--limit", options.limit, "answer the first N candidate pairs only (default 0: all)");
+  command->add_option("--ply", options.ply, "write both meshes, the faces that hit coloured, for MeshLab or Blender");
   add_engine_options(*command, options.engine, options.format);
   command->footer(
       "Examples:\n"
       "  cchip meshpairs a.obj b.stl --pose 0.5,0,0\n"
-      "  cchip meshpairs a.off a.off --pose 0,0,1,0,0,90 --format csv > hits.csv");
+      "  cchip meshpairs a.off a.off --pose 0,0,1,0,0,90 --format csv > hits.csv\n"
+      "  cchip meshpairs a.obj b.stl --ply hits.ply > pairs.txt && meshlab hits.ply");
 }
 
 void add_demo(CLI::App& app, DemoOptions& options) {
@@ -196,6 +205,7 @@ void add_demo(CLI::App& app, DemoOptions& options) {
       app.add_subcommand("demo", "Torus and gear, of triangles and of quads, through the RTL, every answer checked");
   add_choice(*command, "--engine", options.engine.kind, hardware_engines, "rtl (default) or its model");
   command->add_option("--waves", options.wave_folder, "folder of the waveform (default build/waves)");
+  command->add_option("--ply", options.ply, "run nothing: write torus and gear, the faces that hit coloured");
   command->add_option("--seed", options.engine.seed, seed_words);
 }
 
@@ -209,6 +219,21 @@ void add_reconfig(CLI::App& app, ReconfigJobOptions& options) {
   add_choice(*command, "--program", options.mode, programs, "axis programme (default exhaustive)");
   command->add_option("--waves", options.wave_folder, "folder for sim-reconfig.fst (default build/waves)");
   command->add_option("--seed", options.seed, seed_words);
+}
+
+/// What is wrong with a command line in which `words` were not understood.
+std::string unknown_words(const CLI::App& app, const std::vector<std::string>& words) {
+  const auto option =
+      std::find_if(words.begin(), words.end(), [](const std::string& word) { return word.rfind("-", 0) == 0; });
+  const auto chosen = app.get_subcommands();
+  if (chosen.empty() && option != words.begin()) {
+    std::string names;
+    for (const CLI::App* command : app.get_subcommands({})) names += (names.empty() ? "" : ", ") + command->get_name();
+    return fmt::format("{}: no such command; the commands are {}", words.front(), names);
+  }
+  const std::string help = chosen.empty() ? "cchip --help" : fmt::format("cchip {} --help", chosen.front()->get_name());
+  if (option != words.end()) return fmt::format("{}: no such option; see {}", *option, help);
+  return fmt::format("{}: one argument too many; see {}", words.front(), help);
 }
 
 int dispatch(std::vector<std::string> arguments, const Streams& streams) {
@@ -238,6 +263,8 @@ int dispatch(std::vector<std::string> arguments, const Streams& streams) {
   } catch (const CLI::Success& request) {  // --help, --version
     return app.exit(request, streams.out, streams.err);
   } catch (const CLI::ParseError& error) {
+    const std::vector<std::string> unknown = app.remaining(true);
+    if (!unknown.empty()) throw UsageError(unknown_words(app, unknown));
     throw UsageError(std::string(error.what()) + "; see cchip --help");
   }
   if (app.got_subcommand("pairs")) return run_pairs(pairs, streams);

@@ -4,16 +4,19 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <algorithm>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/geometry/grid.hpp>
+#include <cchip/geometry/pose.hpp>
+#include <cchip/mesh/shapes.hpp>
 #include <cchip/reference/eigen_sat.hpp>
+#include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <chrono>
 #include <filesystem>
 
 #include "mesh_source.hpp"
 #include "pair_runner.hpp"
-#include "pose.hpp"
 
 namespace cchip::app {
 namespace {
@@ -48,7 +51,7 @@ void check(const PairJob& job, const GridPair& pair, int coord_w, const EngineAn
   counts.hits += answer.definite ? answer.grid : on_doubles;
   counts.mismatches += !agrees;
   counts.indefinite += !answer.definite;
-  if (answer.hardware) counts.beats += static_cast<std::uint64_t>(answer.beats);
+  counts.beats += static_cast<std::uint64_t>(answer.beats);
 }
 
 double ratio(std::uint64_t count, std::uint64_t of) {
@@ -103,11 +106,22 @@ void add(DemoCounts& total, const DemoCounts& c) {
   total.engine_seconds += c.engine_seconds;
 }
 
+std::uint64_t count_candidates(const std::vector<DemoRun>& runs) {
+  std::uint64_t pairs = 0;
+  for (const DemoRun& run : runs) sweep_box_pairs(run.a, run.b, [&pairs](CandidatePair) { ++pairs; });
+  return pairs;
+}
+
 DemoCounts do_runs(PairEngine& engine, std::ostream& out) {
   print_introduction(out, engine);
   DemoCounts total;
-  for (const DemoRun& run : make_demo_runs()) {
-    const DemoCounts counts = run_demo_pairs(engine, run.mode, run.a, run.b);
+  const std::vector<DemoRun> runs = make_demo_runs();
+  const std::uint64_t all = count_candidates(runs);
+  Progress progress;
+  for (const DemoRun& run : runs) {
+    const DemoCounts counts = run_demo_pairs(
+        engine, run.mode, run.a, run.b, [&](std::uint64_t pairs) { progress.update_of(total.pairs + pairs, all); });
+    progress.clear();
     print_row(out, {run.kinds, run.pose, to_name(run.mode)}, counts);
     out.flush();
     add(total, counts);
@@ -115,6 +129,16 @@ DemoCounts do_runs(PairEngine& engine, std::ostream& out) {
   print_row(out, {"total", "", ""}, total);
   print_explanation(out, total);
   return total;
+}
+
+void write_picture(const std::string& path) {
+  HitPicture picture(path);
+  const auto runs = make_demo_runs();
+  const auto deep = std::find_if(runs.begin(), runs.end(), [](const DemoRun& run) { return run.pose == "deep"; });
+  for_each_candidate(deep->a, deep->b, 0, [&](const PairJob& job) {
+    if (exact_intersects(job.a, job.b)) picture.add_hit(job);
+  });
+  picture.write(deep->a, deep->b);
 }
 
 /// The waveform's path, its folder made; empty for engines without one.
@@ -155,7 +179,8 @@ std::vector<DemoRun> make_demo_runs() {
   return runs;
 }
 
-DemoCounts run_demo_pairs(PairEngine& engine, PairMode mode, const Mesh& a, const Mesh& b) {
+DemoCounts run_demo_pairs(PairEngine& engine, PairMode mode, const Mesh& a, const Mesh& b,
+                          const std::function<void(std::uint64_t)>& on_answered) {
   DemoCounts counts;
   std::vector<PairJob> jobs;
   std::vector<GridPair> pairs;
@@ -165,6 +190,7 @@ DemoCounts run_demo_pairs(PairEngine& engine, PairMode mode, const Mesh& a, cons
     const std::vector<EngineAnswer> answers = engine.run(pairs, mode);
     counts.engine_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     for (std::size_t i = 0; i < jobs.size(); ++i) check(jobs[i], pairs[i], engine.coord_w(), answers.at(i), counts);
+    if (on_answered) on_answered(counts.pairs);
     jobs.clear();
     pairs.clear();
   };
@@ -179,6 +205,10 @@ DemoCounts run_demo_pairs(PairEngine& engine, PairMode mode, const Mesh& a, cons
 }
 
 int run_demo(const DemoOptions& options, std::ostream& out) {
+  if (!options.ply.empty()) {
+    write_picture(options.ply);
+    return exit_ok;
+  }
   EngineOptions engine_options = options.engine;
   engine_options.trace_path = prepare_waves(options);
   engine_options.trace_clocks = wave_clocks;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <cchip/mesh/mesh.hpp>
+#include <functional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ namespace cchip::app {
 struct DemoOptions {
   EngineOptions engine;
   std::string wave_folder = "build/waves";
+  /// If not empty: only a PLY is written, torus and gear in pose deep, the faces that hit by the exact oracle coloured.
+  std::string ply;
 };
 
 /// One row of the report: all candidate pairs of two meshes in one pose.
@@ -42,7 +45,9 @@ struct DemoCounts {
 
 /// All candidate pairs of the two meshes through the engine. Every answer on the grid is compared with the Eigen
 /// reference and the exact oracle, every definite answer with the exact oracle on the doubles.
-DemoCounts run_demo_pairs(PairEngine& engine, PairMode mode, const Mesh& a, const Mesh& b);
+/// \param on_answered gets the number of pairs answered so far, now and then
+DemoCounts run_demo_pairs(PairEngine& engine, PairMode mode, const Mesh& a, const Mesh& b,
+                          const std::function<void(std::uint64_t)>& on_answered = {});
 
 /// Does all runs and reports to `out`; returns the exit code.
 int run_demo(const DemoOptions& options, std::ostream& out);

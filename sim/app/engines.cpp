@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cchip/reference/eigen_sat.hpp>
 #include <cchip/rtl/rtl_engine.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <fstream>
@@ -55,7 +56,8 @@ std::unique_ptr<PairEngine> make_engine(const EngineOptions& options) {
     case EngineKind::model:
       return make_model_engine(defs::coord_w_default);
     case EngineKind::eigen:
-      return make_eigen_engine(defs::coord_w_default);
+      return make_function_engine("eigen", defs::coord_w_default,
+                                  [](const GridPair& pair) { return eigen_intersects(pair, defs::coord_w_default); });
     case EngineKind::exact:
       return make_exact_engine(defs::coord_w_default);
   }

@@ -3,10 +3,31 @@
 
 #include <fmt/format.h>
 
+#include <cchip/mesh_io/mesh_file.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <stdexcept>
 
 namespace cchip::app {
+namespace {
+
+constexpr Colour grey_a = {216, 218, 222};
+constexpr Colour grey_b = {188, 194, 204};
+constexpr Colour orange = {235, 94, 40};
+constexpr Colour blue = {30, 110, 210};
+
+void append(const Mesh& mesh, const std::set<std::size_t>& hits, const Colour& hit, const Colour& other, Mesh& all,
+            std::vector<Colour>& colours) {
+  const auto first = static_cast<std::uint32_t>(all.vertices.size());
+  all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    Mesh::Face face = mesh.faces[i];
+    for (std::uint32_t& vertex : face.vertex) vertex += first;
+    all.faces.push_back(face);
+    colours.push_back(hits.count(i) != 0 ? hit : other);
+  }
+}
+
+}  // namespace
 
 Mesh load_mesh_file(const std::string& path, std::ostream& notices) {
   try {
@@ -37,6 +58,29 @@ void for_each_candidate(const Mesh& a, const Mesh& b, std::uint64_t limit, const
     job.passed = {std::to_string(candidate.face_a), std::to_string(candidate.face_b)};
     take(std::move(job));
   });
+}
+
+HitPicture::HitPicture(const std::string& path) : path_(path), file_(path, std::ios::binary) {
+  if (!file_) refuse();
+}
+
+void HitPicture::add_hit(const PairJob& job) {
+  hits_a_.insert(std::stoull(job.passed.at(0)));
+  hits_b_.insert(std::stoull(job.passed.at(1)));
+}
+
+void HitPicture::write(const Mesh& a, const Mesh& b) {
+  Mesh all;
+  std::vector<Colour> colours;
+  append(a, hits_a_, orange, grey_a, all, colours);
+  append(b, hits_b_, blue, grey_b, all, colours);
+  write_ply(file_, all, colours);
+  file_.close();
+  if (!file_) refuse();
+}
+
+void HitPicture::refuse() const {
+  throw UsageError(path_ + ": the PLY cannot be written; check folder, permissions and disk space");
 }
 
 }  // namespace cchip::app

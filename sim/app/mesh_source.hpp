@@ -5,10 +5,13 @@
 #define CCHIP_APP_MESH_SOURCE_HPP
 
 #include <cchip/mesh/mesh.hpp>
+#include <cchip/mesh_io/mesh_file.hpp>
 #include <cchip/stimulus/pair_job.hpp>
 #include <cstdint>
+#include <fstream>
 #include <functional>
 #include <ostream>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +26,26 @@ const std::vector<std::string>& mesh_pair_names();
 
 /// Calls `take` for every pair of faces whose boxes overlap, at most `limit` times (0: no limit).
 void for_each_candidate(const Mesh& a, const Mesh& b, std::uint64_t limit, const std::function<void(PairJob)>& take);
+
+/// A PLY of both meshes: faces of A that hit are orange, those of B blue, all others light grey.
+class HitPicture {
+ public:
+  /// Makes the file.
+  /// \throws UsageError it cannot be written
+  explicit HitPicture(const std::string& path);
+  /// Marks the faces of a candidate pair of for_each_candidate() that hit.
+  void add_hit(const PairJob& job);
+  /// \throws UsageError as above
+  void write(const Mesh& a, const Mesh& b);
+
+ private:
+  [[noreturn]] void refuse() const;
+
+  std::string path_;
+  std::ofstream file_;
+  std::set<std::size_t> hits_a_;
+  std::set<std::size_t> hits_b_;
+};
 
 }  // namespace cchip::app
 

@@ -29,14 +29,14 @@ std::vector<std::string> output_names(const RunOptions& options, const std::vect
   return names;
 }
 
-void append_hardware(std::vector<Cell>& cells, const HardwareAnswer& hardware) {
-  cells.emplace_back(std::uint64_t{hardware.hit});
-  cells.emplace_back(std::uint64_t{hardware.grid});
-  cells.emplace_back(std::uint64_t{hardware.definite});
-  cells.emplace_back(to_words(hardware.axis));
-  cells.emplace_back(static_cast<std::uint64_t>(hardware.beats));
-  cells.emplace_back(hardware.clock_in);
-  cells.emplace_back(hardware.clock_out);
+void append_hardware(std::vector<Cell>& cells, const EngineAnswer& answer) {
+  cells.emplace_back(std::uint64_t{answer.hit});
+  cells.emplace_back(std::uint64_t{answer.grid});
+  cells.emplace_back(std::uint64_t{answer.definite});
+  cells.emplace_back(to_words(answer.axis));
+  cells.emplace_back(static_cast<std::uint64_t>(answer.beats));
+  cells.emplace_back(answer.clocks->accepted);
+  cells.emplace_back(answer.clocks->answered);
 }
 
 }  // namespace
@@ -77,8 +77,9 @@ void PairRunner::answer_batch() {
     const bool hit = resolve(jobs_[i].a, jobs_[i].b, answers.at(i));
     ++summary_.pairs;
     summary_.hits += hit;
+    if (hit && options_.on_hit) options_.on_hit(jobs_[i]);
     summary_.indefinite += !answers[i].definite;
-    if (answers[i].hardware) summary_.beats += static_cast<std::uint64_t>(answers[i].beats);
+    summary_.beats += static_cast<std::uint64_t>(answers[i].beats);
     write_row(jobs_[i], answers[i], hit);
   }
   writer_->flush();
@@ -100,8 +101,8 @@ void PairRunner::write_row(const PairJob& job, const EngineAnswer& answer, bool 
     cells.emplace_back(std::uint64_t{*job.expected});
   }
   cells.emplace_back(std::uint64_t{hit});
-  if (answer.hardware) {
-    append_hardware(cells, *answer.hardware);
+  if (answer.clocks) {
+    append_hardware(cells, answer);
   } else {
     cells.resize(cells.size() + answer_names.size() - 1);
   }

@@ -38,6 +38,8 @@ struct RunOptions {
   bool compare = false;
   /// Pairs that go to the engine together; bounds the memory.
   std::size_t batch = 4096;
+  /// Called for each pair that hits, if it is set.
+  std::function<void(const PairJob&)> on_hit = {};
 };
 
 /// Takes pairs one by one, answers them in batches and writes one row per pair, in order.

@@ -6,8 +6,8 @@
 #include <Vcchip_primtest_tri_tri.h>
 #include <Vcchip_primtest_tri_tri___024root.h>
 
-#include <cchip/device/primtest_engine.hpp>
 #include <cchip/rtl/pair_port.hpp>
+#include <cchip/rtl/probes.hpp>
 #include <cchip/rtl/rtl_engine.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cchip/waves/wave_layout.hpp>
@@ -21,23 +21,11 @@ namespace {
 constexpr int width = defs::coord_w_default;
 constexpr int contexts = defs::contexts_default(defs::substages_default);
 
-// Nets of the controller that statistics are made of.
-#define CCHIP_CONTROLLER_NETS(module)                                                       \
-  bool beat_valid(const V##module& top) {                                                   \
-    return top.rootp->module##__DOT__u_primtest__DOT__u_controller__DOT__beat_valid_q != 0; \
-  }                                                                                         \
-  bool pair_waits(const V##module& top) {                                                   \
-    return top.rootp->module##__DOT__u_primtest__DOT__u_controller__DOT__pair_waits != 0;   \
-  }
-CCHIP_CONTROLLER_NETS(cchip_primtest_tri_tri)
-CCHIP_CONTROLLER_NETS(cchip_primtest_tri_quad)
-CCHIP_CONTROLLER_NETS(cchip_primtest_quad_quad)
-#undef CCHIP_CONTROLLER_NETS
-
 template <class Model>
 class RtlMachine : public PrimtestMachine {
  public:
-  RtlMachine(ModuleId id, const sim::SimulationOptions& options) try : simulation_(options) {
+  RtlMachine(ModuleId id, const RtlMachineOptions& options) try
+      : simulation_(simulation_options(options)), scramble_(options.scramble), random_(options.seed) {
     simulation_->s_pair_valid = 0;
     simulation_->m_result_ready = 1;
     port_.put({});
@@ -52,17 +40,20 @@ class RtlMachine : public PrimtestMachine {
 
   void offer(const std::optional<PairRequest>& request) override {
     simulation_->s_pair_valid = request ? 1 : 0;
-    if (request) port_.put({request->pair, request->tag, static_cast<std::uint8_t>(request->mode)});
+    if (scramble_) port_.scramble(random_);
+    if (!request) return;
+    PairRequest sent = *request;
+    for (GridPrimitive* p : {&sent.pair.a, &sent.pair.b}) {
+      if (scramble_ && p->kind == Kind::tri) p->v[3].setConstant(static_cast<std::int16_t>(random_()));
+    }
+    port_.put(sent);
   }
 
   Outputs outputs() override {
     simulation_.settle();
     const Model& top = simulation_.top();
-    Outputs out{top.s_pair_ready != 0, std::nullopt, beat_valid(top), pair_waits(top)};
-    if (top.m_result_valid != 0) {
-      const PairResult beat = port_.result();
-      out.result = beat;
-    }
+    Outputs out{top.s_pair_ready != 0, std::nullopt, probes::beat_valid(top) != 0, probes::pair_waits(top) != 0};
+    if (top.m_result_valid != 0) out.result = port_.result();
     return out;
   }
 
@@ -76,31 +67,27 @@ class RtlMachine : public PrimtestMachine {
   }
 
  private:
+  static sim::SimulationOptions simulation_options(const RtlMachineOptions& options) {
+    sim::SimulationOptions o;
+    o.seed = options.seed;
+    o.timeout_clocks = 0;
+    o.trace_path = options.trace_path;
+    o.trace_clocks = options.trace_clocks;
+    return o;
+  }
+
   sim::Simulation<Model> simulation_;
   sim::PairPort<Model> port_{simulation_.top(), width};
+  bool scramble_;
+  std::mt19937_64 random_;
 };
-
-std::unique_ptr<PrimtestMachine> make_module(ModuleId id, const sim::SimulationOptions& options) {
-  switch (id) {
-    case ModuleId::tri_tri:
-      return std::make_unique<RtlMachine<Vcchip_primtest_tri_tri>>(id, options);
-    case ModuleId::tri_quad:
-      return std::make_unique<RtlMachine<Vcchip_primtest_tri_quad>>(id, options);
-    case ModuleId::quad_quad:
-      return std::make_unique<RtlMachine<Vcchip_primtest_quad_quad>>(id, options);
-    case ModuleId::blank:
-      break;
-  }
-  throw std::invalid_argument("engine rtl: the blank module answers no pairs");
-}
 
 /// Makes the modules and gives each its waveform.
 class RtlModules {
  public:
-  explicit RtlModules(const RtlEngineOptions& options) : next_trace_(options.trace_path), trace_(options.trace_path) {
-    simulation_.seed = options.seed;
-    simulation_.trace_clocks = options.trace_clocks;
-    simulation_.timeout_clocks = 0;
+  explicit RtlModules(const RtlEngineOptions& options)
+      : next_trace_(options.trace_path), trace_(options.trace_path), machine_{options} {
+    machine_.trace_path.clear();
     if (trace_.empty()) return;
     std::error_code ignored;  // writing tells
     std::filesystem::create_directories(std::filesystem::path(trace_).parent_path(), ignored);
@@ -110,12 +97,12 @@ class RtlModules {
   }
 
   std::unique_ptr<PrimtestMachine> make(ModuleId id) {
-    sim::SimulationOptions options = simulation_;
+    RtlMachineOptions options = machine_;
     if (!trace_.empty()) {
       options.trace_path = trace_path(id);
       write_gtkw(options.trace_path, id);
     }
-    return make_module(id, options);
+    return make_rtl_machine(id, options);
   }
 
  private:
@@ -129,10 +116,24 @@ class RtlModules {
 
   std::string next_trace_;
   std::string trace_;
-  sim::SimulationOptions simulation_;
+  RtlMachineOptions machine_;
 };
 
 }  // namespace
+
+std::unique_ptr<PrimtestMachine> make_rtl_machine(ModuleId id, const RtlMachineOptions& options) {
+  switch (id) {
+    case ModuleId::tri_tri:
+      return std::make_unique<RtlMachine<Vcchip_primtest_tri_tri>>(id, options);
+    case ModuleId::tri_quad:
+      return std::make_unique<RtlMachine<Vcchip_primtest_tri_quad>>(id, options);
+    case ModuleId::quad_quad:
+      return std::make_unique<RtlMachine<Vcchip_primtest_quad_quad>>(id, options);
+    case ModuleId::blank:
+      break;
+  }
+  throw std::invalid_argument("engine rtl: the blank module answers no pairs");
+}
 
 std::unique_ptr<PairEngine> make_rtl_engine(const RtlEngineOptions& options) {
   PrimtestEngineOptions engine;

@@ -2,7 +2,6 @@
 // Pairs of every class and the results that the bit-exact model expects, for bench_primtest.v.
 //   cchip_pair_vectors KIND FILE PAIRS SEED      KIND: tri_tri, tri_quad, quad_quad; PAIRS: at most 65536
 #include <algorithm>
-#include <cchip/device/pair_engine.hpp>
 #include <cchip/stimulus/campaign.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cchip/stimulus/pair_vector.hpp>
@@ -12,7 +11,7 @@
 namespace {
 
 using namespace cchip;
-using campaign::ShapeInfo;
+using stimulus::ShapeInfo;
 
 /// Pairs that follow each other in one mix of programmes.
 constexpr int run_length = 100;
@@ -20,22 +19,17 @@ constexpr int tags = 1 << defs::tag_w;
 
 const ShapeInfo& find_shape(std::string kind) {
   std::replace(kind.begin(), kind.end(), '_', '-');
-  for (const ShapeInfo& shape : campaign::all_shapes) {
+  for (const ShapeInfo& shape : stimulus::all_shapes) {
     if (kind == shape.name) return shape;
   }
   throw std::invalid_argument(kind + ": no such kind, one of tri_tri, tri_quad, quad_quad");
 }
 
-ModuleId rm_id_of(const ShapeInfo& shape) {
-  if (shape.b == Kind::tri) return ModuleId::tri_tri;
-  return shape.a == Kind::tri ? ModuleId::tri_quad : ModuleId::quad_quad;
-}
-
 /// Runs of EXHAUSTIVE, of DIRECTED, and of both with a reserved mode now and then.
-int draw_mode(int index, std::mt19937_64& random) {
+PairMode draw_mode(int index, std::mt19937_64& random) {
   const int mix = index / run_length % 3;
-  if (mix < 2) return mix;
-  return static_cast<int>(random() % 16 == 0 ? 2 + random() % 2 : random() % 2);
+  if (mix < 2) return static_cast<PairMode>(mix);
+  return static_cast<PairMode>(random() % 16 == 0 ? 2 + random() % 2 : random() % 2);
 }
 
 /// What is on the pins of the unused vertex slot of a triangle must not matter.
@@ -43,30 +37,30 @@ void fill_unused_slot(GridPrimitive& p, std::mt19937_64& random) {
   if (p.kind == Kind::tri) p.v[3] = Vec3i::NullaryExpr([&] { return static_cast<std::int16_t>(random()); });
 }
 
-bench::Vector to_vector(const ShapeInfo& shape, const GridPair& pair, int mode, int index) {
-  const model::Outcome outcome = model::run_programme(shape.options(), pair, mode, bench::coord_w);
-  const AxisCode& witness = outcome.witness;
+bench::Vector to_vector(const ShapeInfo& shape, const GridPair& pair, PairMode mode, int index) {
+  const PairResult expected =
+      model::run_programme(shape.options(), pair, mode, bench::coord_w).result(tag_of(static_cast<std::size_t>(index)));
   bench::Vector vector;
   vector.set(bench::side_a, pair.a);
   vector.set(bench::side_b, pair.b);
-  vector.set(bench::tag, static_cast<std::uint64_t>(index) * 40503 % tags);  // odd: a tag of its own for each pair
+  vector.set(bench::tag, expected.tag);
   vector.set(bench::mode, static_cast<std::uint64_t>(mode));
   vector.set(bench::err, static_cast<std::uint64_t>(pair.eta));
-  vector.set(bench::hit, outcome.hit() ? 1 : 0);
-  vector.set(bench::grid, outcome.grid ? 1 : 0);
-  vector.set(bench::definite, outcome.definite ? 1 : 0);
-  vector.set(bench::axis, std::uint64_t(witness.cls) << 6 | std::uint64_t{witness.k} << 3 | witness.l);
-  vector.set(bench::beats, static_cast<std::uint64_t>(outcome.beats));
-  vector.set(bench::rm_id, std::uint64_t(rm_id_of(shape)));
+  vector.set(bench::hit, expected.hit ? 1 : 0);
+  vector.set(bench::grid, expected.grid ? 1 : 0);
+  vector.set(bench::definite, expected.definite ? 1 : 0);
+  vector.set(bench::axis, to_bits(expected.axis));
+  vector.set(bench::beats, static_cast<std::uint64_t>(expected.beats));
+  vector.set(bench::rm_id, std::uint64_t(module_of(shape.a, shape.b)));
   return vector;
 }
 
 void write_vectors(const ShapeInfo& shape, const std::string& path, int pairs, std::uint64_t seed) {
   if (pairs < 1 || pairs > tags) throw std::invalid_argument("PAIRS must be 1 to 65536: every pair has its own tag");
   std::ofstream out(path);
-  campaign::PairSource source(bench::coord_w, seed, shape.a, shape.b);
+  stimulus::PairSource source(bench::coord_w, seed, shape.a, shape.b);
   std::mt19937_64 random(seed);
-  const auto classes = campaign::classes_of(shape.a, shape.b);
+  const auto classes = stimulus::classes_of(shape.a, shape.b);
   for (int i = 0; i < pairs; ++i) {
     GridPair pair = source.draw(classes[static_cast<std::size_t>(i) % classes.size()].value);
     pair.eta = static_cast<int>(random() % 2 == 0 ? 0 : random() % 16);

@@ -46,7 +46,7 @@ void Api::receive_all() {
       throw std::runtime_error("primitive pair " + std::to_string(index) + " is answered twice");
     }
     answers_[index] = hit ? 1 : 0;
-    ++answered_;
+    progress_.update_of(++answered_, stimulus_.size());
     answer_.notify();
   }
 }

@@ -45,7 +45,8 @@ Eigen::Matrix3d any_rotation(Random& random) {
   return q.normalized().toRotationMatrix().unaryExpr(&to_unit);
 }
 
-/// `pair` with a taken back by a random matrix, so that m brings it to where it was, or, for a rotation, near it.
+/// `pair` with a random matrix m and with A moved by the inverse of m. Multiplying A by m, as the level does, brings A
+/// back to where it was, exactly so unless m is a rotation.
 StimulusPair with_matrix(const GridPair& pair, Random& random) {
   const bool exact = integer(random, 0, 1) == 0;
   const Eigen::Matrix3d left = exact ? axis_aligned(random) : any_rotation(random);

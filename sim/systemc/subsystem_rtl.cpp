@@ -5,7 +5,6 @@
 
 #include <cchip/levels/stimulus.hpp>
 #include <cchip/rtl/pair_port.hpp>
-#include <cchip/rtl/reconfig_run.hpp>
 #include <cchip/sim/axi_lite.hpp>
 #include <cchip/sim/axi_memory.hpp>
 #include <cchip/sim/simulation.hpp>
@@ -35,7 +34,7 @@ class Pairs : public sim::Agent {
   }
 
   void offer(const PairRequest& request) {
-    port_.put({request.pair, request.tag, static_cast<std::uint8_t>(request.mode)});
+    port_.put(request);
     model_.s_pair_kind = static_cast<CData>(module_of(request.pair));
     offers_ = true;
   }
@@ -46,8 +45,7 @@ class Pairs : public sim::Agent {
     if (now.in_reset) return;
     if (model_.s_pair_ready != 0) offers_ = false;
     if (model_.m_result_valid == 0 || model_.m_result_ready == 0) return;
-    const PairResult beat = port_.result();
-    result = beat;
+    result = port_.result();
   }
 
   bool offers() const { return offers_; }

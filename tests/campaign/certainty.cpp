@@ -80,7 +80,7 @@ GridPair true_pair(const GridPair& pair, std::size_t kind, int reach, bool grid_
   GridPair result = pair;
   const Vec3d axis = kind == 2 ? tightest_axis(pair) : Vec3d::Zero();
   for (GridPrimitive* p : {&result.a, &result.b}) {
-    // the worst: what is apart moves together, what meets moves apart
+    // The worst direction: primitives that are apart move towards each other, primitives that meet move apart.
     const double towards = (p == &result.a) == grid_hit ? -1 : 1;
     for (std::size_t i = 0; i < p->vertex_count(); ++i) {
       for (Eigen::Index d = 0; d < 3; ++d) {
@@ -276,6 +276,24 @@ BoundRow run_bounds(const CertaintyOptions& options) {
   });
 }
 
+/// Shares of the pairs with eta = 1 that are definite.
+void check_certainty(Goals& goals, const CertaintyOptions& options, const Table<Row>& table) {
+  const auto shapes = options.shapes();
+  for (std::size_t s = 0; s < shapes.size(); ++s) {
+    Row sum;
+    for (std::size_t kind = 0; kind < offset_kinds.size(); ++kind) {
+      sum += table.rows[s * rows_per_shape + offset_kinds.size() + kind];  // group 1 of eta_groups
+    }
+    for (std::size_t mode = 0; mode < 2; ++mode) {
+      const std::string of = fmt::format(" of {} {} with eta 1, %", shapes[s].name, programmes[mode]);
+      goals.at_least("share of definite answers" + of,
+                     percent(sum.definite_no[mode] + sum.definite_hit[mode], sum.pairs), options.least_definite);
+      goals.at_least("share of definite hits" + of, percent(sum.definite_hit[mode], sum.pairs),
+                     options.least_definite_hits);
+    }
+  }
+}
+
 }  // namespace
 
 int run_certainty(const CertaintyOptions& options) {
@@ -305,6 +323,9 @@ int run_certainty(const CertaintyOptions& options) {
   const Row sum = table.sum();
   print_row("all", "", "", sum);
   table.examples.print();
+  Goals goals;
+  options.check(goals, sum.pairs, sum.hits);
+  check_certainty(goals, options, table);
   const BoundRow bounds = run_bounds(options);
   fmt::print("\nbounds: {} cases, {} violations, largest change {:.4f} of the exact bound, {:.4f} of the hardware's\n",
              bounds.cases, bounds.violations, bounds.tightest, bounds.rounded);
@@ -313,7 +334,7 @@ int run_certainty(const CertaintyOptions& options) {
       "seed={}\n",
       sum.pairs, sum.contradictions, sum.false_no, sum.other, bounds.cases, bounds.violations, watch.seconds(),
       options.seed);
-  return sum.failed() || bounds.violations != 0 ? wrong_result : 0;
+  return sum.failed() || bounds.violations != 0 || goals.missed() ? wrong_result : 0;
 }
 
 }  // namespace cchip::campaign

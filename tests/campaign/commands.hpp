@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The subcommands of cchip_campaign. Each prints its tables and a last line key=value, and returns the exit code:
-/// 0, or wrong_result.
+/// 0, or wrong_result (a missed goal included).
 #ifndef CCHIP_CAMPAIGN_COMMANDS_HPP
 #define CCHIP_CAMPAIGN_COMMANDS_HPP
 
@@ -38,6 +38,9 @@ struct CertaintyOptions : CommonOptions {
   std::uint64_t bounds = 1000000;  ///< cases of the bounds alone
   int coord_w = defs::coord_w_default;
   double offset = 1;  ///< offsets as a multiple of what eta allows; over 1 must fail
+  /// Goals: definite answers, definite hits, per cent of the pairs with eta = 1, for each shape and programme.
+  double least_definite = 20;
+  double least_definite_hits = 2;
 };
 /// Primitives between the grid points: no definite answer may contradict the exact one.
 int run_certainty(const CertaintyOptions& options);
@@ -47,6 +50,9 @@ struct LeavesOptions : CommonOptions {
   int poses = 6;
   std::uint64_t pairs_max = 200000;  ///< leaf pairs per mesh and pose
   bool quads = false;                ///< keep the quads of the files
+  /// Goals for each shape, DIRECTED at the default width: per cent of the pairs, mean beats.
+  double most_indefinite = 1;
+  double most_beats = 4;
 };
 /// Leaf pairs of two meshes whose 26-DOPs overlap.
 int run_leaves(const LeavesOptions& options);

@@ -124,10 +124,10 @@ Table<RtlJudgement> rtl_pairs(const ShapeInfo& shape, const GridOptions& options
   const Pairs pairs(shape, options.rtl, firsts);
   return sum_of_parts<Table<RtlJudgement>>(2 * part_count(options.rtl), options.threads, [&](std::uint64_t job) {
     const std::uint64_t part = job / 2;
-    std::vector<RtlStream::Request> requests;
+    std::vector<PairRequest> requests;
     std::vector<bool> exact;
     pairs.visit(part, options.seed_of(part), [&](const GridPair& pair) {
-      requests.push_back({pair, static_cast<int>(job % 2)});
+      requests.push_back({pair, 0, static_cast<PairMode>(job % 2)});
       exact.push_back(exact_intersects(pair));
     });
     Table<RtlJudgement> counted(2);
@@ -173,7 +173,9 @@ int run_grid(const GridOptions& options) {
       "rtl_wrong={} seconds={:.1f} seed={}\n",
       sum.pairs, sum.wrong[0], sum.wrong[1], sum.false_no, sum.too_many_beats + rtl.too_many_beats, rtl.pairs,
       rtl.not_as_model, rtl.wrong, watch.seconds(), options.seed);
-  return sum.failed() || rtl.failed() ? wrong_result : 0;
+  Goals goals;
+  options.check(goals, sum.pairs, sum.hits);
+  return sum.failed() || rtl.failed() || goals.missed() ? wrong_result : 0;
 }
 
 }  // namespace cchip::campaign

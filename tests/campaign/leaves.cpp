@@ -4,7 +4,8 @@
 #include <cchip/exact/oracle.hpp>
 #include <cchip/geometry/canonical.hpp>
 #include <cchip/geometry/grid.hpp>
-#include <cchip/mesh/mesh.hpp>
+#include <cchip/mesh/shapes.hpp>
+#include <cchip/mesh_io/mesh_file.hpp>
 #include <cchip/stimulus/quads.hpp>
 #include <cmath>
 #include <random>
@@ -262,9 +263,17 @@ int run_leaves(const LeavesOptions& options) {
     }
   }
   std::uint64_t pairs = 0;
+  std::uint64_t hits = 0;
   std::uint64_t wrong = 0;
+  Goals goals;
   for (std::size_t s = 0; s < all_shapes.size(); ++s) {
     if (all[s].width[0].pairs == 0) continue;
+    const WidthRow& row = all[s].width[default_width];
+    const std::string of = std::string(" of ") + all_shapes[s].name + ", directed";
+    hits += row.hits;
+    goals.at_most("share of indefinite answers" + of + ", %", percent(row.open_no[1] + row.open_hit[1], row.pairs),
+                  options.most_indefinite);
+    goals.at_most("mean number of beats" + of, row.beats[1].mean(), options.most_beats);
     print("all", all_shapes[s], all[s]);
     pairs += all[s].width[0].pairs;
     for (const WidthRow& w : all[s].width) wrong += w.wrong;
@@ -274,7 +283,8 @@ int run_leaves(const LeavesOptions& options) {
       "pairs={} wrong={} tri_tri_beats_directed={:.3f} tri_tri_indefinite_percent={:.3f} seconds={:.1f} seed={}\n",
       pairs, wrong, triangles.beats[1].mean(), percent(triangles.open_no[1] + triangles.open_hit[1], triangles.pairs),
       watch.seconds(), options.seed);
-  return wrong == 0 ? 0 : wrong_result;
+  options.check(goals, pairs, hits);
+  return wrong == 0 && !goals.missed() ? 0 : wrong_result;
 }
 
 }  // namespace cchip::campaign

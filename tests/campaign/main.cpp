@@ -11,13 +11,15 @@ namespace cchip::campaign {
 namespace {
 
 void add_common(CLI::App& command, CommonOptions& options) {
-  command.add_option("--seed", options.seed, "repeats a run")->envname("CCHIP_SEED")->capture_default_str();
+  command.add_option("--seed", options.seed, "repeats a run (or CCHIP_SEED)")->capture_default_str();
   command.add_option("--threads", options.threads, "threads; the outcome does not depend on it")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   command.add_option("--shape", options.shape, "kinds of the primitives")
       ->check(CLI::IsMember({"all", "tri-tri", "tri-quad", "quad-quad"}))
       ->capture_default_str();
+  command.add_option("--least-pairs", options.least_pairs, "goal: pairs in all")->capture_default_str();
+  command.add_option("--least-hits", options.least_hits, "goal: pairs that meet")->capture_default_str();
 }
 
 void add_coord_w(CLI::App& command, int& coord_w) {
@@ -60,6 +62,13 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
   certainty->add_option("--offset", e->offset, "offsets, as a multiple of what eta allows: over 1 must fail")
       ->check(CLI::Range(0.0, 4.0))
       ->capture_default_str();
+  certainty
+      ->add_option("--least-definite", e->least_definite, "goal: % of the pairs with eta 1, shape and programme each")
+      ->capture_default_str();
+  certainty
+      ->add_option("--least-definite-hits", e->least_definite_hits,
+                   "goal: definite hits, % of the pairs with eta 1, shape and programme each")
+      ->capture_default_str();
   add_coord_w(*certainty, e->coord_w);
   const auto [leaves, l] = add("leaves", "leaf pairs of two meshes whose 24-DOPs overlap", LeavesOptions{}, run_leaves);
   leaves->add_option("meshes", l->meshes, "mesh files, each against itself; none: built-in torus, gear, quad torus");
@@ -68,6 +77,10 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
       ->capture_default_str();
   leaves->add_option("--pairs", l->pairs_max, "most leaf pairs per mesh and pose")->capture_default_str();
   leaves->add_flag("--quads", l->quads, "keep the quads of the files");
+  leaves->add_option("--most-indefinite", l->most_indefinite, "goal: % of the pairs of a shape at 16 bit, directed")
+      ->capture_default_str();
+  leaves->add_option("--most-beats", l->most_beats, "goal: mean beats of a shape at 16 bit, directed")
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -76,7 +89,8 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
 int main(int argc, char** argv) try {
   CLI::App app{
       "Campaigns: long comparisons of RTL and model with the exact oracle.\n"
-      "Exit codes: 0 nothing wrong, 3 wrong results, 2 the run could not be made, others: wrong arguments."};
+      "Exit codes: 0 nothing wrong, 3 wrong results or a missed goal, 2 the run could not be made, others: wrong "
+      "arguments."};
   app.require_subcommand(1);
   std::function<int()> chosen;
   cchip::campaign::add_commands(app, chosen);

@@ -34,7 +34,9 @@ int run_random(const RandomOptions& options) {
   }
   fmt::print("pairs={} wrong_exhaustive={} wrong_directed={} false_no={} too_many_beats={} seconds={:.1f} seed={}\n",
              all.pairs, all.wrong[0], all.wrong[1], all.false_no, all.too_many_beats, watch.seconds(), options.seed);
-  return all.failed() ? wrong_result : 0;
+  Goals goals;
+  options.check(goals, all.pairs, all.hits);
+  return all.failed() || goals.missed() ? wrong_result : 0;
 }
 
 }  // namespace cchip::campaign

@@ -4,9 +4,10 @@
 #ifndef CCHIP_CAMPAIGN_RTL_STREAM_HPP
 #define CCHIP_CAMPAIGN_RTL_STREAM_HPP
 
-#include <cchip/rtl/pair_port.hpp>
-#include <cchip/stimulus/campaign.hpp>
-#include <memory>
+#include <cchip/rtl/rtl_engine.hpp>
+#include <vector>
+
+#include "commands.hpp"
 
 namespace cchip::campaign {
 
@@ -23,23 +24,14 @@ struct RtlCounts {
   }
 };
 
-/// One module with default parameters, sources and sinks always ready.
-class RtlStream {
- public:
-  struct Run {
-    std::vector<PairResult> results;  ///< in the order of the pairs, with the tags that were sent
-    RtlCounts counts;
-  };
-  virtual ~RtlStream() = default;
-  /// \throws sim::SimulationError no answer, an answer nobody asked for, a failed assertion
-  virtual Run run(const std::vector<PairRequest>& requests) = 0;
-  /// The tag of request number `index`.
-  static std::uint16_t tag(std::size_t index) { return static_cast<std::uint16_t>(40503U * index); }
+struct RtlRun {
+  std::vector<PairResult> results;  ///< in the order of the pairs
+  RtlCounts counts;
 };
 
-/// \param seed of everything the RTL leaves undefined at power-up, and of the vertex slots of triangles that do
-/// not matter
-std::unique_ptr<RtlStream> make_rtl_stream(const ShapeInfo& shape, std::uint64_t seed);
+/// The requests one behind the other, a new one on every clock on which the module is ready; number n gets tag_of(n).
+/// \throws sim::SimulationError no answer, an answer nobody asked for, a failed assertion
+RtlRun run_rtl(PrimtestMachine& machine, const std::vector<PairRequest>& requests);
 
 /// The result that the model predicts, with this tag.
 PairResult predicted(const ShapeInfo& shape, const PairRequest& request, std::uint16_t tag);

@@ -15,7 +15,8 @@ sys.path.insert(0, str(ROOT / "tests"))
 from tools import run, tool  # noqa: E402
 
 RTL = ROOT / "rtl"
-FILES = [str(RTL / line) for line in (RTL / "cchip.f").read_text().split() if line.endswith(".v")]
+LISTS = (RTL / "cchip.f", ROOT / "sim/rtl_models/sim.f")
+FILES = [str(path.parent / line) for path in LISTS for line in path.read_text().splitlines() if line.endswith(".v")]
 TOP = "cchip_primtest_tri_tri"
 ARRAY = "cchip_primtest_array"
 QUADS = ("cchip_primtest_tri_quad", "cchip_primtest_quad_quad")

@@ -75,12 +75,13 @@ class Export(unittest.TestCase):
         self.yosys(self.file)
 
     def test_only_what_the_top_needs(self):
-        modules = re.findall(r"^module (\w+)", (self.folder / self.file).read_text(), re.M)
+        files = [self.file, *(["simulation_models.v"] if TOP == SUBSYSTEM else [])]
+        modules = [name for file in files for name in re.findall(r"^module (\w+)", (self.folder / file).read_text(), re.M)]
         self.assertEqual(len(modules), len(set(modules)))
         self.assertIn(TOP, modules)
         used = set()
         for parameters in ("", "-chparam SIMULATION 1") if TOP == SUBSYSTEM else ("",):
-            code, text = run(tool("yosys"), "-p", f"read_verilog {self.file}; "
+            code, text = run(tool("yosys"), "-p", f"read_verilog {' '.join(files)}; "
                              f"hierarchy -check -top {TOP} {parameters}", cwd=self.folder)
             self.assertEqual(code, 0, text)
             # yosys names the modules that stay: as they are, or derived from one with parameters

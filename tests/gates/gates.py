@@ -37,6 +37,9 @@ import shutil
 import subprocess
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+import progress  # noqa: E402
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 HERE = ROOT / "tests" / "gates"
 SETTLE = 8  # clocks before a comparison
@@ -302,8 +305,8 @@ def prove(technology, module, parameters, build, options):
 # ----
 
 
-def say(text):
-    print(text, flush=True)
+bar = progress.Progress(0, "netlists")
+say = bar.say
 
 
 def parse(arguments):
@@ -357,8 +360,9 @@ def main(arguments):
         technology.write_cells(options.build)
     say(f"CCHIP_SEED={options.seed}")
     failed = 0
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        running = [(name, pool.submit(function, *parameters)) for name, function, parameters in tasks(options)]
+    with bar, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        bar.total = len(list(tasks(options)))
+        running = [(name, pool.submit(bar.counted(function), *parameters)) for name, function, parameters in tasks(options)]
         if options.command == "simulate" and options.changed > 0:
             _, _, (technology, kind, build, _) = next(tasks(options))
             first = running[0][1]

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cchip/geometry/primitive.hpp>
+#include <cchip/sim/seed.hpp>
 #include <cstdlib>
-#include <iostream>
 #include <random>
 #include <sstream>
 #include <string>
@@ -19,16 +19,8 @@ using cchip::GridPrimitive;
 using cchip::Kind;
 using cchip::Vec3i;
 
-/// Seed of this process: environment CCHIP_SEED, else 1. Printed on first use.
-inline std::uint64_t seed() {
-  static const std::uint64_t value = [] {
-    const char* text = std::getenv("CCHIP_SEED");
-    const std::uint64_t chosen = text == nullptr ? 1 : std::strtoull(text, nullptr, 0);
-    std::cout << "CCHIP_SEED=" << chosen << '\n';
-    return chosen;
-  }();
-  return value;
-}
+/// Seed of this process.
+inline std::uint64_t seed() { return cchip::sim::seed_from_environment(); }
 
 enum class PairClass { general, coplanar, degenerate, touching, shared };
 constexpr PairClass pair_classes[] = {PairClass::general, PairClass::coplanar, PairClass::degenerate,

@@ -7,6 +7,7 @@
 #include <cchip/bvh/place.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/model/broad_phase.hpp>
+#include <cchip/model/leaf_pair.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -40,11 +41,11 @@ Affine3d on_grid(Affine3d pose) {
   return pose;
 }
 
-struct Object {
+struct Body {
   Mesh mesh;
   Tree tree;
   Image image;
-  explicit Object(const Mesh& m) : mesh(on_grid(m)), tree(build_tree(mesh)), image(make_image(mesh, tree)) {}
+  explicit Body(const Mesh& m) : mesh(on_grid(m)), tree(build_tree(mesh)), image(make_image(mesh, tree)) {}
 };
 
 Primitive moved(const Affine3d& pose, Primitive p) {
@@ -55,7 +56,7 @@ Primitive moved(const Affine3d& pose, Primitive p) {
 using FacePairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
 /// Every pair of faces, exactly.
-FacePairs brute_force(const Object& a, const Affine3d& pose_a, const Object& b, const Affine3d& pose_b) {
+FacePairs brute_force(const Body& a, const Affine3d& pose_a, const Body& b, const Affine3d& pose_b) {
   FacePairs found;
   std::vector<std::pair<Primitive, Dop26>> others;
   for (std::size_t j = 0; j < b.mesh.faces.size(); ++j) {
@@ -73,7 +74,7 @@ FacePairs brute_force(const Object& a, const Affine3d& pose_a, const Object& b, 
 }
 
 /// The same by descending both trees with the boxes of moved boxes: slow, loose, and plain.
-FacePairs descend(const Object& a, const Affine3d& pose_a, const Object& b, const Affine3d& pose_b) {
+FacePairs descend(const Body& a, const Affine3d& pose_a, const Body& b, const Affine3d& pose_b) {
   struct Box {
     Vec3d least;
     Vec3d greatest;
@@ -162,7 +163,7 @@ Posed random_poses(std::mt19937_64& random, const Mesh& a, const Mesh& b) {
   return pose;
 }
 
-model::BroadPhaseResult ask(const Object& a, const Object& b, const Posed& pose, QueryMode mode,
+model::BroadPhaseResult ask(const Body& a, const Body& b, const Posed& pose, QueryMode mode,
                             const model::BroadPhaseOptions& options = {}) {
   std::optional<Query> query = make_query(a.image.header(), pose.a, b.image.header(), pose.b);
   REQUIRE(query);
@@ -184,7 +185,7 @@ struct Tally {
 
 /// Open pairs are resolved exactly, like the host does; then ALL must give the pairs that meet, and FIRST whether any
 /// does.
-void check_query(const Object& a, const Object& b, const Posed& pose, const FacePairs& truth, std::mt19937_64& random,
+void check_query(const Body& a, const Body& b, const Posed& pose, const FacePairs& truth, std::mt19937_64& random,
                  Tally& tally) {
   if (pose.sheared && !make_query(a.image.header(), pose.a, b.image.header(), pose.b)) {
     ++tally.refused;
@@ -369,7 +370,7 @@ TEST_CASE("query: what the chip does not take", "[ref]") {
 
 TEST_CASE("broad phase: small meshes, all classes of poses, equal to brute force", "[ref]") {
   std::mt19937_64 random(seed());
-  std::vector<Object> objects;
+  std::vector<Body> objects;
   objects.emplace_back(make_torus(1, 0.4, 8, 6));
   objects.emplace_back(noisy(make_torus(1, 0.4, 7, 5, Kind::quad), 0.02, random));
   objects.emplace_back(make_torus(1, 0.4, 8, 4, Kind::quad));
@@ -396,8 +397,8 @@ TEST_CASE("broad phase: small meshes, all classes of poses, equal to brute force
   objects.emplace_back(cube);
   Tally tally;
   for (int n = 0; n < 4000; ++n) {
-    const Object& a = objects[random() % objects.size()];
-    const Object& b = random() % 4 == 0 ? a : objects[random() % objects.size()];
+    const Body& a = objects[random() % objects.size()];
+    const Body& b = random() % 4 == 0 ? a : objects[random() % objects.size()];
     const Posed pose = random_poses(random, a.mesh, b.mesh);
     const FacePairs truth = brute_force(a, pose.a, b, pose.b);
     check_query(a, b, pose, truth, random, tally);
@@ -411,16 +412,177 @@ TEST_CASE("broad phase: small meshes, all classes of poses, equal to brute force
                   << " open=" << tally.open << " to_host=" << tally.to_host << " refused=" << tally.refused);
 }
 
+TEST_CASE("broad phase: differences of vertices are within eta of the exact ones", "[ref]") {
+  std::mt19937_64 random(seed());
+  std::vector<Body> bodies;
+  bodies.emplace_back(noisy(make_torus(1, 0.4, 20, 12), 0.02, random));
+  bodies.emplace_back(noisy(make_torus(1, 0.4, 20, 12, Kind::quad), 0.02, random));
+  bodies.emplace_back(soup(100, true, random));
+  std::array<std::size_t, 16> etas = {};
+  for (int n = 0; n < 20000; ++n) {
+    const Body& a = bodies[random() % bodies.size()];
+    const Body& b = bodies[random() % bodies.size()];
+    Posed pose = random_poses(random, a.mesh, b.mesh);
+    pose.b = Affine3d::Identity();  // positions in B's frame, and their differences, are exact doubles then
+    const HeaderLine header_b = b.image.header();
+    const std::optional<Query> query = make_query(a.image.header(), pose.a, header_b, pose.b);
+    if (!query || query->swapped) continue;
+    const auto leaf_of = [&random](const Body& body, NodeKind& kind) {
+      std::size_t i = 0;
+      do i = random() % body.tree.nodes.size();
+      while (body.tree.nodes[i].kind == NodeKind::inner);
+      kind = body.tree.nodes[i].kind;
+      return decode_leaf(body.image.lines[i + 1], kind);
+    };
+    NodeKind kind_a{};
+    NodeKind kind_b{};
+    const LeafLine leaf_a = leaf_of(a, kind_a);
+    const LeafLine leaf_b = leaf_of(b, kind_b);
+    const model::MovedLeaves moved_leaves = model::move_leaves(leaf_a, kind_a, leaf_b, kind_b, *query);
+    const GridPair pair = model::normalise(moved_leaves, kind_a, 0, kind_b, 0, 16);
+    if (!moved_leaves.open) ++etas[static_cast<std::size_t>(pair.eta)];
+    struct Vertex {
+      Vec3d exact;
+      std::array<std::int64_t, 3> units;
+      Vec3i grid;
+    };
+    std::vector<Vertex> vertices;
+    for (std::size_t i = 0; i < pair.a.vertex_count(); ++i) {
+      vertices.push_back({pose.a * a.mesh.primitive(leaf_a.id[0]).v[i], moved_leaves.a.vertex[i], pair.a.v[i]});
+    }
+    for (std::size_t i = 0; i < pair.b.vertex_count(); ++i) {
+      vertices.push_back({b.mesh.primitive(leaf_b.id[0]).v[i], moved_leaves.b.vertex[i], pair.b.v[i]});
+    }
+    // The grid's step, from the span of the vertices in units.
+    std::int64_t span = 0;
+    for (const Vertex& p : vertices) {
+      for (const Vertex& q : vertices) {
+        for (std::size_t i = 0; i < 3; ++i) span = std::max(span, p.units[i] - q.units[i]);
+        REQUIRE(std::abs(p.units[0]) < std::int64_t{1} << (model::moved_w - 1));
+      }
+    }
+    int shift = 0;
+    while ((shift > 0 ? span + (std::int64_t{1} << (shift - 1)) : span) >> shift > 65535) ++shift;
+    const int extent = std::max({leaf_a.extent - query->shift, leaf_b.extent, model::extent_least});
+    const double step = std::ldexp(1.0, shift + extent - 48 + header_b.exponent);
+    for (const Vertex& p : vertices) {
+      REQUIRE(p.grid.minCoeff() >= -32768);
+      REQUIRE(p.grid.maxCoeff() <= 32767);
+      for (const Vertex& q : vertices) {
+        const Vec3d grid = (p.grid - q.grid).cast<double>();
+        const Vec3d exact = (p.exact - q.exact) / step;
+        REQUIRE((grid - exact).cwiseAbs().maxCoeff() <= pair.eta);
+      }
+    }
+  }
+  WARN("eta 0: " << etas[0] << ", 1: " << etas[1] << ", 2: " << etas[2] << ", 3: " << etas[3]);
+  REQUIRE(etas[0] > 10);
+  REQUIRE(etas[2] > 1000);
+}
+
+TEST_CASE("broad phase: quads that rounding bends get no wrong definite answer", "[ref]") {
+  std::mt19937_64 random(seed());
+  std::size_t definite = 0;
+  std::size_t open = 0;
+  for (int n = 0; n < 10000; ++n) {
+    // A planar quad with a corner that hardly stands out, by less than a step of the pair's grid or by many.
+    const double bulge = std::ldexp(1.0, -static_cast<int>(random() % 19));
+    Mesh quad;
+    const Vec3d u = random_vector(random, 1);
+    const Vec3d v = random_vector(random, 1);
+    const Vec3d from = random_vector(random, 1);
+    const auto at = [&](double x, double y) { return Vec3d(from + x * u + y * v); };
+    std::vector<Vec3d> corners = {at(0, 0), at(0.5, -bulge), at(1, 0), at(0.5, 1)};
+    std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(random() % 4), corners.end());
+    add_face(quad, corners);
+    // A triangle or quad that crosses its plane near that corner.
+    Mesh other;
+    const Vec3d w = u.cross(v);
+    const Vec3d tip = at(0.5, -2 * bulge * std::uniform_real_distribution<double>(0, 1)(random));
+    std::vector<Vec3d> points = {tip, tip - v + w + 0.1 * u, tip - v - w};
+    if (random() % 2 == 0) points.push_back(tip - w);
+    add_face(other, points);
+    const Body a(quad);
+    const Body b(other);
+    const Posed pose{Affine3d::Identity(), Affine3d::Identity()};
+    Posed turned = random_poses(random, a.mesh, b.mesh);
+    turned.a.translation().setZero();
+    if (turned.sheared) continue;
+    turned.b = turned.a;
+    for (const Posed& p : {pose, turned}) {
+      if (!make_query(a.image.header(), p.a, b.image.header(), p.b)) continue;
+      const FacePairs truth = brute_force(a, p.a, b, p.b);
+      const model::BroadPhaseResult result = ask(a, b, p, QueryMode::all);
+      REQUIRE(result.done.code == QueryCode::ok);
+      const bool hit = !truth.empty();
+      if (result.done.answer == QueryAnswer::yes) REQUIRE(hit);
+      if (result.done.answer == QueryAnswer::no) REQUIRE_FALSE(hit);
+      ++(result.done.answer == QueryAnswer::open ? open : definite);
+    }
+  }
+  WARN("definite=" << definite << " open=" << open);
+  REQUIRE(definite > 1000);
+  REQUIRE(open > 100);
+}
+
+TEST_CASE("broad phase: limits and lines that make no sense end a query with a code", "[ref]") {
+  std::mt19937_64 random(seed());
+  const Body torus(noisy(make_torus(1, 0.4, 30, 20), 0.01, random));
+  Posed pose{Affine3d::Identity(), Affine3d::Identity()};
+  pose.a.translation() = Vec3d(0.25, 0, 0);
+  const Query query = [&] {
+    Query q = *make_query(torus.image.header(), pose.a, torus.image.header(), pose.b);
+    q.mode = QueryMode::all;
+    return q;
+  }();
+  const auto code = [&](const Image& image, const model::BroadPhaseOptions& options = {}) {
+    return model::run_query(query, image, image, options).done.code;
+  };
+  REQUIRE(code(torus.image) == QueryCode::ok);
+  model::BroadPhaseOptions options;
+  options.step_limit = 10;
+  REQUIRE(model::run_query(query, torus.image, torus.image, options).counts.steps == 10);
+  REQUIRE(code(torus.image, options) == QueryCode::steps);
+  options = {};
+  options.stack = 2;
+  REQUIRE(code(torus.image, options) == QueryCode::stack);
+  Query wrong = query;
+  wrong.m[1][1] = (1 << query_m_fraction) + 1;
+  REQUIRE(model::run_query(wrong, torus.image, torus.image).done.code == QueryCode::bad_descriptor);
+  const auto changed = [&](std::size_t line, const Field& field, std::int64_t value) {
+    Image image = torus.image;
+    put(image.lines[line], field, value);
+    return code(image);
+  };
+  REQUIRE(changed(0, header_field::magic, 0) == QueryCode::bad_descriptor);
+  REQUIRE(changed(0, header_field::version, 9) == QueryCode::bad_descriptor);
+  REQUIRE(changed(0, header_field::root, 0xffffff) == QueryCode::outside);
+  REQUIRE(changed(1, inner_field::step, 19) == QueryCode::corrupt);
+  REQUIRE(changed(1, inner_field::first, 1) == QueryCode::outside);
+  REQUIRE(changed(1, inner_field::first, 0xffffff) == QueryCode::outside);
+  // any bits: a query ends
+  for (int n = 0; n < 300; ++n) {
+    Image image = torus.image;
+    for (int i = 0; i < 20; ++i) {
+      const std::size_t bit = 512 + random() % (512 * (image.lines.size() - 1));
+      image.lines[bit / 512][bit % 512 / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
+    }
+    options = {};
+    options.step_limit = 20000;
+    REQUIRE(code(image, options) <= QueryCode::bad_descriptor);
+  }
+}
+
 TEST_CASE("broad phase: larger meshes, no touching pair is missed", "[ref]") {
   std::mt19937_64 random(seed());
-  std::vector<Object> objects;
+  std::vector<Body> objects;
   objects.emplace_back(noisy(make_torus(1, 0.4, 60, 30), 0.01, random));
   objects.emplace_back(noisy(make_torus(1, 0.4, 40, 20, Kind::quad), 0.005, random));
   objects.emplace_back(make_gear(0.7, 1, 0.3, 0.4, 24, 6));
   Tally tally;
   for (int n = 0; n < 60; ++n) {
-    const Object& a = objects[random() % objects.size()];
-    const Object& b = objects[random() % objects.size()];
+    const Body& a = objects[random() % objects.size()];
+    const Body& b = objects[random() % objects.size()];
     const Posed pose = random_poses(random, a.mesh, b.mesh);
     check_query(a, b, pose, descend(a, pose.a, b, pose.b), random, tally);
   }

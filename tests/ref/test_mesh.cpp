@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/mesh/mesh.hpp>
+#include <cchip/mesh/shapes.hpp>
 #include <cmath>
 #include <map>
 #include <set>

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cchip/exact/resolve.hpp>
 
-using cchip::EngineAnswer;
+using cchip::PairResult;
 using cchip::Primitive;
 using cchip::resolve;
 using cchip::Vec3d;
@@ -15,15 +15,15 @@ TEST_CASE("resolve: a definite answer stands, an open one is decided on the doub
   Primitive lifted = touching;
   lifted.v[0].z() += 1e-15;  // a hit on any grid
   for (const bool grid : {false, true}) {
-    const EngineAnswer definite{grid, true, std::nullopt};
+    const PairResult definite{0, grid, grid, true, {}, 0};
     CHECK(resolve(a, touching, definite) == grid);
     CHECK(resolve(a, lifted, definite) == grid);
-    const EngineAnswer open{grid, false, std::nullopt};
+    const PairResult open{0, true, grid, false, {}, 0};
     CHECK(resolve(a, touching, open));
     CHECK_FALSE(resolve(a, lifted, open));
   }
   Primitive quad = a;
   quad.kind = cchip::Kind::quad;
   quad.v[3] = Vec3d(-4, 4, -4);
-  CHECK(resolve(quad, touching, EngineAnswer{}));
+  CHECK(resolve(quad, touching, PairResult{}));
 }

@@ -12,12 +12,14 @@
 #include <cchip/exact/oracle.hpp>
 #include <cchip/model/programme.hpp>
 #include <cchip/rtl/pair_port.hpp>
+#include <cchip/rtl/probes.hpp>
 #include <cchip/sim/axi_lite.hpp>
 #include <cchip/sim/axi_memory.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cchip/wire/bitstream.hpp>
 #include <cchip/wire/registers.hpp>
+#include <cchip/wire/swap.hpp>
 #include <map>
 #include <memory>
 #include <optional>
@@ -32,22 +34,6 @@ namespace regs = cchip::registers;
 using Random = std::mt19937_64;
 inline bool chance(Random& random, int percent) { return static_cast<int>(random() % 100) < percent; }
 
-/// One beat of s_pair; kind is the ModuleId of the test, 0 is illegal.
-struct KindRequest {
-  PairRequest request;
-  int kind = 0;
-};
-
-/// One beat of m_result.
-struct KindResult {
-  PairResult beat;
-  int kind = 0;
-  friend bool operator==(const KindResult& x, const KindResult& y) { return x.kind == y.kind && x.beat == y.beat; }
-  friend std::ostream& operator<<(std::ostream& out, const KindResult& x) {
-    return out << "kind " << x.kind << ' ' << x.beat;
-  }
-};
-
 constexpr std::array<Kind, 4> kind_a = {Kind::tri, Kind::tri, Kind::tri, Kind::quad};
 constexpr std::array<Kind, 4> kind_b = {Kind::tri, Kind::tri, Kind::quad, Kind::quad};
 
@@ -58,7 +44,7 @@ inline KindResult refused_answer(const KindRequest& r) {
 
 /// What the test of its kind says; the grid answer is the exact oracle's.
 inline KindResult tested_answer(const KindRequest& r, int coord_w) {
-  if (r.kind == 0 || r.request.mode > 1) return refused_answer(r);
+  if (r.kind == 0 || r.request.mode > PairMode::directed) return refused_answer(r);
   const auto kind = static_cast<std::size_t>(r.kind);
   const model::Options options{{static_cast<std::size_t>(kind_a[kind]), static_cast<std::size_t>(kind_b[kind])}, true};
   const model::Outcome o = model::run_programme(options, r.request.pair, r.request.mode, coord_w);
@@ -87,7 +73,7 @@ class KindSource {
       if (p->kind == Kind::tri) p->v[3].setConstant(static_cast<int>(random_() % static_cast<unsigned>(half)));
     }
     r.request.pair.eta = static_cast<int>(random_() % 16);
-    r.request.mode = static_cast<std::uint8_t>(chance(random_, 5) ? 2 + random_() % 2 : chance(random_, 25) ? 0 : 1);
+    r.request.mode = static_cast<PairMode>(chance(random_, 5) ? 2 + random_() % 2 : chance(random_, 25) ? 0 : 1);
     return r;
   }
 
@@ -138,42 +124,26 @@ inline Bytes spoilt_bitstream(Spoilt how, int slot, int module_id, std::size_t p
   return join_bitstream(header, payload);
 }
 
-/// A swap as its report told.
-struct Report {
-  std::uint64_t clock = 0;
-  int slot = 0;
-  int module_id = 0;
-  SwapCode code = SwapCode::ok;
-  unsigned lost = 0;
-};
-
-/// Nets of the subsystem that the account needs.
+/// Signals of the subsystem that the account needs.
 template <class Model>
-struct Nets;
-#define CCHIP_SUBSYSTEM_NET(name) t.rootp->cchip_primtest_subsystem__DOT__##name
-#define CCHIP_SLOT_NET(slot, name) CCHIP_SUBSYSTEM_NET(gen_slots__BRA__##slot##__KET____DOT__u_slot__DOT__##name)
-#define CCHIP_SUBSYSTEM_NETS(model, modules, coupled)                                                             \
-  template <>                                                                                                     \
-  struct Nets<model> {                                                                                            \
-    static bool report_valid(model& t) { return CCHIP_SUBSYSTEM_NET(report_valid) != 0; }                         \
-    static Report report(model& t) {                                                                              \
-      return {0, CCHIP_SUBSYSTEM_NET(report_slot), CCHIP_SUBSYSTEM_NET(report_module),                            \
-              static_cast<SwapCode>(CCHIP_SUBSYSTEM_NET(report_code)), CCHIP_SUBSYSTEM_NET(report_lost)};         \
-    }                                                                                                             \
-    static unsigned slot_module(model& t) { return modules; }                                                     \
-    static unsigned decoupled(model& t) { return coupled; }                                                       \
-    static unsigned phase(model& t) { return CCHIP_SUBSYSTEM_NET(u_controller__DOT__u_sequencer__DOT__phase_q); } \
-    static unsigned bitstreams(model& t) { return CCHIP_SUBSYSTEM_NET(u_regs__DOT__bitstream_valid_value_q); }    \
-  }
-#define CCHIP_MODULE(slot) (CCHIP_SLOT_NET(slot, u_decoupler__DOT__rm_id_q) & 3U) << (2 * (slot))
-#define CCHIP_DECOUPLED(slot) (CCHIP_SLOT_NET(slot, u_decoupler__DOT__decoupled_q) & 1U) << (slot)
-CCHIP_SUBSYSTEM_NETS(Vsubsystem_s1, CCHIP_MODULE(0), CCHIP_DECOUPLED(0));
-CCHIP_SUBSYSTEM_NETS(Vsubsystem_s2, CCHIP_MODULE(0) | CCHIP_MODULE(1), CCHIP_DECOUPLED(0) | CCHIP_DECOUPLED(1));
-#undef CCHIP_DECOUPLED
-#undef CCHIP_MODULE
-#undef CCHIP_SUBSYSTEM_NETS
-#undef CCHIP_SLOT_NET
-#undef CCHIP_SUBSYSTEM_NET
+SwapReport report_of(const Model& top) {
+  return {static_cast<int>(probes::report_slot(top)), static_cast<int>(probes::report_module(top)),
+          static_cast<SwapCode>(probes::report_code(top)), static_cast<int>(probes::report_lost(top)), 0};
+}
+/// Module of slot n in bits [2n +: 2].
+template <int slots, class Model>
+unsigned modules_of(const Model& top) {
+  unsigned modules = probes::slot0_module_id(top) & 3U;
+  if constexpr (slots > 1) modules |= (probes::slot1_module_id(top) & 3U) << 2;
+  return modules;
+}
+/// Bit n: slot n is decoupled.
+template <int slots, class Model>
+unsigned decoupled_of(const Model& top) {
+  unsigned decoupled = probes::slot0_decoupled(top) & 1U;
+  if constexpr (slots > 1) decoupled |= (probes::slot1_decoupled(top) & 1U) << 1;
+  return decoupled;
+}
 
 /// What went wrong; the first one in words.
 struct Account {
@@ -332,20 +302,20 @@ class SubsystemBench {
   }
 
   // ---- swaps
-  std::vector<Report> reports;  ///< since construction
+  std::vector<SwapReport> reports;  ///< since construction
   std::size_t count(SwapCode code) const {
     return static_cast<std::size_t>(
-        std::count_if(reports.begin(), reports.end(), [&](const Report& r) { return r.code == code; }));
+        std::count_if(reports.begin(), reports.end(), [&](const SwapReport& r) { return r.code == code; }));
   }
   /// Steps until one more report came. \throws SimulationTimeout
-  Report next_report(std::uint64_t most_clocks = 20000) {
+  SwapReport next_report(std::uint64_t most_clocks = 20000) {
     const std::size_t before = reports.size();
     simulation.run_until([&] { return reports.size() > before; }, most_clocks, "a report");
     return reports.back();
   }
-  SwapPhase phase() { return static_cast<SwapPhase>(Nets<Model>::phase(top())); }
-  int module_in(int slot) { return static_cast<int>(Nets<Model>::slot_module(top()) >> (2 * slot) & 3U); }
-  bool decoupled(int slot) { return (Nets<Model>::decoupled(top()) >> slot & 1U) != 0; }
+  SwapPhase phase() { return static_cast<SwapPhase>(probes::swap_phase(top())); }
+  int module_in(int slot) { return static_cast<int>(modules_of<Config::SLOTS>(top()) >> (2 * slot) & 3U); }
+  bool decoupled(int slot) { return (decoupled_of<Config::SLOTS>(top()) >> slot & 1U) != 0; }
   std::uint64_t last_progress() const { return progress_; }
 
   sim::Simulation<Model> simulation;
@@ -430,15 +400,15 @@ class SubsystemBench {
   }
   void watch(const sim::ClockInfo& now) {
     if (now.in_reset) return;
-    if (Nets<Model>::report_valid(top())) {
-      Report r = Nets<Model>::report(top());
+    if (probes::report_valid(top()) != 0) {
+      SwapReport r = report_of(top());
       r.clock = now.clock;
       given_up_ += r.lost;
       account.given_up += r.lost;
       reports.push_back(r);
     }
-    const unsigned modules = Nets<Model>::slot_module(top());
-    const unsigned valid = Nets<Model>::bitstreams(top());
+    const unsigned modules = modules_of<Config::SLOTS>(top());
+    const auto valid = static_cast<unsigned>(probes::bitstreams_valid(top()));
     for (unsigned kind = 1; kind < 4; ++kind) {
       bool provided = false;
       for (unsigned slot = 0; slot < static_cast<unsigned>(slots); ++slot) {

@@ -19,7 +19,7 @@ constexpr std::uint64_t drain_bound = 400000;
 
 struct Options {
   std::uint64_t swaps = 10000;
-  std::uint64_t seed = 1;
+  std::uint64_t seed = sim::seed_from_environment();
   unsigned threads = 2;
   std::uint64_t per_part = 50;
   int slots = 0;
@@ -71,7 +71,7 @@ class Part {
     if (clocks == most) hang("too few swaps");
     drain();
     total_.swaps = bench_.count(SwapCode::ok);
-    for (const Report& r : bench_.reports) ++total_.codes[static_cast<std::size_t>(r.code)];
+    for (const SwapReport& r : bench_.reports) ++total_.codes[static_cast<std::size_t>(r.code)];
     total_.account = bench_.account;
     total_.clocks = bench_.simulation.total_clocks();
     return total_;
@@ -316,7 +316,7 @@ int main(int argc, char** argv) try {
       "Exit codes: 0 nothing wrong, 3 lost, duplicated or wrong answers or a hang, 2 the run could not be made."};
   cchip::subsystem::Options o;
   app.add_option("--swaps", o.swaps, "swaps that end well, in all")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--seed", o.seed, "repeats a run")->envname("CCHIP_SEED")->capture_default_str();
+  app.add_option("--seed", o.seed, "repeats a run (or CCHIP_SEED)")->capture_default_str();
   app.add_option("--threads", o.threads, "threads; the outcome does not depend on it")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();

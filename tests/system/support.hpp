@@ -114,6 +114,15 @@ inline std::string mixed_file() {
   return text;
 }
 
+/// An answer of an engine without a clock.
+inline EngineAnswer answer(bool grid, bool definite) {
+  EngineAnswer result;
+  result.grid = grid;
+  result.definite = definite;
+  result.hit = grid || !definite;
+  return result;
+}
+
 /// Engine that answers what the test tells it.
 class ScriptedEngine : public PairEngine {
  public:

@@ -8,6 +8,7 @@
 
 #include "support.hpp"
 
+using namespace cchip;
 using namespace cchip::app;
 using Fields = std::vector<std::string>;
 

@@ -13,11 +13,11 @@ using namespace cchip::test;
 namespace {
 
 /// Right on the grid, certain only where nothing was rounded.
-EngineAnswer honest(const GridPair& pair) { return {eigen_intersects(pair, 16), pair.eta == 0, std::nullopt}; }
+EngineAnswer honest(const GridPair& pair) { return answer(eigen_intersects(pair, 16), pair.eta == 0); }
 /// Wrong on the grid, although it admits to be uncertain.
-EngineAnswer lying(const GridPair& pair) { return {!eigen_intersects(pair, 16), false, std::nullopt}; }
+EngineAnswer lying(const GridPair& pair) { return answer(!eigen_intersects(pair, 16), false); }
 /// Right on the grid, but sure of it where rounding forbids.
-EngineAnswer boasting(const GridPair& pair) { return {eigen_intersects(pair, 16), true, std::nullopt}; }
+EngineAnswer boasting(const GridPair& pair) { return answer(eigen_intersects(pair, 16), true); }
 
 DemoCounts run(ScriptedEngine::Answer answer, const DemoRun& what) {
   ScriptedEngine engine(answer);

@@ -6,7 +6,7 @@
 #include "support.hpp"
 
 using namespace cchip::test;
-using cchip::app::exit_usage;
+using cchip::exit_usage;
 
 namespace {
 
@@ -132,6 +132,7 @@ TEST_CASE("errors: meshes", "[system][errors]") {
       CHECK(outcome.out.empty());
       REQUIRE(lines(outcome.err).size() == 1);
       CHECK(outcome.err.rfind("cchip: " + bad + ": ", 0) == 0);  // then what is wrong, and what to do
+      CHECK(outcome.err.find("; ") != std::string::npos);
     }
   }
 }
@@ -142,8 +143,14 @@ TEST_CASE("errors: command line", "[system][errors]") {
   check_error({"pairs"}, "cchip: FILE is required" + help);
   check_error({"pairs", "f", "--engine", "abacus"}, "cchip: --engine: abacus not in {rtl,model,eigen,exact}" + help);
   check_error({"pairs", "f", "--format", "xml"}, "cchip: --format: xml not in {table,csv,jsonl}" + help);
-  CHECK(run_cchip({"pairs", "f", "--nonsense"}).code == exit_usage);
-  CHECK(run_cchip({"nonsense"}).code == exit_usage);
+  const std::string commands = ": no such command; the commands are pairs, meshpairs, demo, reconfig, version";
+  check_error({"foo"}, "cchip: foo" + commands);
+  check_error({"foo", "--engine", "model"}, "cchip: foo" + commands);
+  check_error({"--foo"}, "cchip: --foo: no such option; see cchip --help");
+  check_error({"--foo", "foo"}, "cchip: --foo: no such option; see cchip --help");
+  check_error({"pairs", "f", "--nonsense"}, "cchip: --nonsense: no such option; see cchip pairs --help");
+  check_error({"meshpairs", "f", "--limits", "7"}, "cchip: --limits: no such option; see cchip meshpairs --help");
+  check_error({"pairs", "f", "g"}, "cchip: g: one argument too many; see cchip pairs --help");
 
   const std::string input = header + "\n" + tri_a + "," + b_through + "\n";
   check_error({"pairs", "-", "--program", "clever"}, "cchip: --program: clever not in {exhaustive,directed}" + help,

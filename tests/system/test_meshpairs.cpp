@@ -2,8 +2,10 @@
 #include <catch2/catch.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/geometry/grid.hpp>
+#include <cchip/mesh_io/mesh_file.hpp>
 #include <cchip/stimulus/csv_reader.hpp>
 #include <cchip/stimulus/usage_error.hpp>
+#include <map>
 
 #include "engines.hpp"
 #include "mesh_source.hpp"
@@ -123,6 +125,51 @@ TEST_CASE("meshpairs: the engines agree on the grid of real meshes", "[system][m
   }
   CHECK(hits > 0);
   CHECK(hits < pairs.size());
+}
+
+TEST_CASE("meshpairs: a PLY shows the faces that hit", "[system][meshpairs]") {
+  const TemporaryFolder folder;
+  const std::string file_a = model("OBJ/box.obj");  // of quads
+  const std::string file_b = model("STL/Spider_ascii.stl");
+  const std::string pose = "0.3,0.1,0.2,10,20,30";
+  const std::string ply = folder.path("hits.ply");
+  const Outcome outcome =
+      run_cchip({"meshpairs", file_a, file_b, "--pose", pose, "--engine", "exact", "--format", "csv", "--ply", ply});
+  REQUIRE(outcome.code == exit_ok);
+
+  const Mesh a = load_mesh(file_a, FaceKinds::triangles_and_quads);
+  const Mesh b = transformed(load_mesh(file_b), parse_pose(pose));
+  const Mesh picture = load_mesh(ply, FaceKinds::triangles_and_quads);
+  REQUIRE(picture.faces.size() == a.faces.size() + b.faces.size());
+  // The colours of the faces end the file: per face a count, its vertices and three bytes.
+  const std::string content = folder.read("hits.ply");
+  std::size_t at = content.size();
+  std::map<std::string, std::size_t> colours_a;
+  std::map<std::string, std::size_t> colours_b;
+  for (std::size_t i = picture.faces.size(); i > 0; --i) {
+    const bool of_a = i <= a.faces.size();
+    const Primitive face = picture.primitive(i - 1);
+    const Primitive expected = of_a ? a.primitive(i - 1) : b.primitive(i - 1 - a.faces.size());
+    REQUIRE(face.kind == expected.kind);
+    for (std::size_t k = 0; k < face.vertex_count(); ++k) REQUIRE(face.v[k] == expected.v[k]);
+    bool hit = false;
+    const Mesh& other = of_a ? b : a;
+    for (std::size_t k = 0; k < other.faces.size() && !hit; ++k) hit = exact_intersects(face, other.primitive(k));
+    ++(of_a ? colours_a : colours_b)[content.substr(at - 3, 3) + (hit ? " hit" : "")];
+    at -= 1 + 4 * face.vertex_count() + 3;
+  }
+  for (const auto& colours : {colours_a, colours_b}) {
+    REQUIRE(colours.size() == 2);  // one colour for all that hit, another for all others
+    CHECK(colours.begin()->first.substr(0, 3) != colours.rbegin()->first.substr(0, 3));
+    CHECK(colours.begin()->first.size() + colours.rbegin()->first.size() == 3 + 7);
+  }
+
+  const Outcome refused =
+      run_cchip({"meshpairs", file_a, file_b, "--engine", "exact", "--ply", "/no/such/folder/x.ply"});
+  CHECK(refused.code == exit_usage);
+  CHECK(refused.out.empty());
+  CHECK(refused.err ==
+        "cchip: /no/such/folder/x.ply: the PLY cannot be written; check folder, permissions and disk space\n");
 }
 
 TEST_CASE("meshpairs: one model in four file formats", "[system][meshpairs]") {

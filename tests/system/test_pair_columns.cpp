@@ -6,7 +6,6 @@
 #include <limits>
 
 using namespace cchip;
-using namespace cchip::app;
 
 TEST_CASE("parse_coordinate: the nearest double", "[system][pair_columns]") {
   CHECK(parse_coordinate("1.5") == 1.5);

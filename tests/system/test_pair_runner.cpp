@@ -8,21 +8,20 @@
 
 using namespace cchip;
 using namespace cchip::app;
+using cchip::test::answer;
 using cchip::test::lines;
 using cchip::test::ScriptedEngine;
 
 namespace {
 
-EngineAnswer definite_hit(const GridPair&) { return {true, true, std::nullopt}; }
-EngineAnswer open_hit(const GridPair&) { return {true, false, std::nullopt}; }
+EngineAnswer definite_hit(const GridPair&) { return answer(true, true); }
+EngineAnswer open_hit(const GridPair&) { return answer(true, false); }
 EngineAnswer hardware_no(const GridPair&) {
-  HardwareAnswer hardware;
-  hardware.definite = true;
+  EngineAnswer hardware = answer(false, true);
   hardware.axis = {AxisClass::cross, 1, 2};
   hardware.beats = 11;
-  hardware.clock_in = 5;
-  hardware.clock_out = 70;
-  return {false, true, hardware};
+  hardware.clocks = EngineAnswer::Handshakes{5, 70};
+  return hardware;
 }
 
 /// Two triangles that are `gap` apart along z.

@@ -7,6 +7,7 @@
 
 #include "support.hpp"
 
+using namespace cchip;
 using namespace cchip::app;
 using namespace cchip::test;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
+#include <cchip/geometry/pose.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include "pose.hpp"
 #include "support.hpp"
 
+using namespace cchip;
 using namespace cchip::app;
 using Eigen::Vector3d;
 

@@ -6,6 +6,7 @@
 #define CCHIP_TESTS_UNIT_PRIMTEST_BENCH_HPP
 
 #include <cchip/model/primtest.hpp>
+#include <cchip/rtl/probes.hpp>
 #include <functional>
 #include <memory>
 
@@ -70,15 +71,11 @@ struct Watch {
   static bool beat(const typename Config::Model&) { throw std::logic_error("Watch: use CCHIP_WATCH"); }
   static bool waits(const typename Config::Model&) { throw std::logic_error("Watch: use CCHIP_WATCH"); }
 };
-#define CCHIP_WATCH(module, name)                                                             \
-  template <>                                                                                 \
-  struct cchip::test::Watch<cchip::test::name> {                                              \
-    static bool beat(const V##name& top) {                                                    \
-      return top.rootp->module##__DOT__u_primtest__DOT__u_controller__DOT__beat_valid_q != 0; \
-    }                                                                                         \
-    static bool waits(const V##name& top) {                                                   \
-      return top.rootp->module##__DOT__u_primtest__DOT__u_controller__DOT__pair_waits != 0;   \
-    }                                                                                         \
+#define CCHIP_WATCH(name)                                                          \
+  template <>                                                                      \
+  struct cchip::test::Watch<cchip::test::name> {                                   \
+    static bool beat(const V##name& top) { return probes::beat_valid(top) != 0; }  \
+    static bool waits(const V##name& top) { return probes::pair_waits(top) != 0; } \
   }
 
 template <class Config>
@@ -105,7 +102,7 @@ class PrimtestPinsOf : public PrimtestPins {
     PairRequest r;
     r.pair = {primitive(top().s_pair_a, kind_a_), primitive(top().s_pair_b, kind_b_), top().s_pair_err};
     r.tag = top().s_pair_tag;
-    r.mode = top().s_pair_mode;
+    r.mode = static_cast<PairMode>(top().s_pair_mode);
     return r;
   }
   bool beat_leaves() const override { return Watch<Config>::beat(top()); }
@@ -167,5 +164,21 @@ void check_no_old_tags(const PrimtestConfig& config);
 void check_throughput(const PrimtestConfig& config);
 
 }  // namespace cchip::test
+
+/// A test case for each of these checks, of every configuration of cchip_primtest_<kind>.
+#define CCHIP_PRIMTEST_CASE(kind, name, check)                                                   \
+  TEMPLATE_LIST_TEST_CASE("cchip_primtest_" #kind ": " name, "[unit][cchip_primtest_" #kind "]", \
+                          cchip_primtest_##kind##_configs) {                                     \
+    check(primtest_config<TestType>(ModuleId::kind));                                            \
+  }
+#define CCHIP_PRIMTEST_CASES(kind)                                                                              \
+  CCHIP_PRIMTEST_CASE(kind, "every output on every clock is the model's", check_every_clock)                    \
+  CCHIP_PRIMTEST_CASE(kind, "long traffic", check_long_traffic)                                                 \
+  CCHIP_PRIMTEST_CASE(kind, "extreme coordinates", check_extreme_coordinates)                                   \
+  CCHIP_PRIMTEST_CASE(kind, "each axis is the witness of the pair that it alone separates", check_only_witness) \
+  CCHIP_PRIMTEST_CASE(kind, "latency of a lone pair", check_lone_pair_latency)                                  \
+  CCHIP_PRIMTEST_CASE(kind, "drains within its bound, keeps all results without ready", check_drain)            \
+  CCHIP_PRIMTEST_CASE(kind, "no output follows an input before the rising edge", check_registered_outputs)      \
+  CCHIP_PRIMTEST_CASE(kind, "no old tag after reset, whenever it comes", check_no_old_tags)
 
 #endif

@@ -30,7 +30,7 @@ class SlotRequests {
     const auto classes = stimulus::classes_of(kind_a(id), kind_b(id));
     PairRequest request;
     request.pair = source.draw(classes.at(source.draw_class()).value);
-    request.mode = random_() & 1;
+    request.mode = static_cast<PairMode>(random_() & 1);
     request.tag = tag_++;
     return request;
   }

@@ -6,29 +6,12 @@
 
 #include <cchip/sim/axi_memory.hpp>
 #include <cchip/wire/bitstream.hpp>
+#include <cchip/wire/swap.hpp>
 #include <deque>
 
 #include "bench.hpp"
 
 namespace cchip::test {
-
-/// One beat of s_swap.
-struct SwapRequest {
-  int slot = 0;
-  int module_id = 0;
-  std::uint32_t address = 0;
-  std::uint32_t size = 0;
-  bool force = false;
-};
-
-/// One clock of m_report.
-struct SwapReport {
-  int slot = 0;
-  int module_id = 0;
-  SwapCode code = SwapCode::ok;
-  int lost = 0;
-  std::uint64_t clock = 0;
-};
 
 /// How a slot behaves; outputs of the slot are flip-flops.
 struct SlotBehaviour {

@@ -166,7 +166,7 @@ class ControllerBench {
     expect("hit", r.hit, r.grid || !r.definite);
     expect("beats", r.beats, o.beats);
     sim::require(r.axis == o.witness, "wrong witness");
-    if (pair.header.mode > 1) {
+    if (pair.header.mode > PairMode::directed) {
       ++illegal;
       sim::require(r.axis.cls == AxisClass::illegal && r.hit && !r.definite && r.beats == 0, "reserved mode");
       return;

@@ -47,7 +47,7 @@ TEST_CASE("cchip_pr_slot: the partition answers pairs like the model, two clocks
       beats = r.beats;
       latency = bench.simulation.clock() - sent;
     };
-    request.mode = 2;  // reserved: answered at once
+    request.mode = static_cast<PairMode>(2);  // reserved: answered at once
     bench.driver.on_accept([&](const PairRequest&, std::uint64_t clock) { sent = clock; });
     bench.driver.push(request);
     bench.steps(200);

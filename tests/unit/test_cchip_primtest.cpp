@@ -14,11 +14,8 @@
 namespace cchip::test {
 namespace {
 
-using PairRequest;
-using PairResult;
-
-constexpr int exhaustive = static_cast<int>(PairMode::exhaustive);
-constexpr int directed = static_cast<int>(PairMode::directed);
+constexpr PairMode exhaustive = PairMode::exhaustive;
+constexpr PairMode directed = PairMode::directed;
 
 /// Most beats of a DIRECTED pair that is planar on the grid, not coplanar, not degenerate.
 constexpr int general_position_beats = 4;
@@ -39,7 +36,7 @@ class RequestSource {
 
   PairRequest draw() {
     PairRequest request = draw_legal(chance(random_, 50) ? exhaustive : directed);
-    if (chance(random_, 8)) request.mode = static_cast<std::uint8_t>(random_() % 4);
+    if (chance(random_, 8)) request.mode = static_cast<PairMode>(random_() % 4);
     return request;
   }
   PairRequest draw_legal(int mode) {
@@ -52,7 +49,7 @@ class RequestSource {
       if (p->kind == Kind::tri) p->v[3] = random_point(random_, config_.coord_w);
     }
     request.pair.eta = chance(random_, 50) ? 0 : static_cast<int>(random_() % 16);
-    request.mode = static_cast<std::uint8_t>(mode);
+    request.mode = mode;
     request.tag = static_cast<std::uint16_t>(40503U * tag_++);  // odd factor: every tag once in 65536
     return request;
   }
@@ -105,11 +102,11 @@ class RequestSource {
 /// The answer by the functional model, without clocks; the rules that every answer obeys, whatever the model.
 PairResult answer(const PrimtestConfig& config, const PairRequest& request) {
   if (request.mode > directed) return {request.tag, true, true, false, {AxisClass::illegal, 0, 0}, 0};
-  const model::Outcome o = model::run_programme(config.options(), request.pair, request.mode, config.coord_w);
-  const PairResult r{request.tag, o.hit(), o.grid, o.definite, o.witness, o.beats};
+  const PairResult r =
+      model::run_programme(config.options(), request.pair, request.mode, config.coord_w).result(request.tag);
   const auto rule = [&](bool holds, const char* text) {
-    sim::require(holds, std::string(text) + ": " + to_text(request.pair) + " mode " + std::to_string(request.mode) +
-                            ", model " + sim::to_text(r));
+    sim::require(holds, std::string(text) + ": " + to_text(request.pair) + " mode " +
+                            std::to_string(static_cast<int>(request.mode)) + ", model " + sim::to_text(r));
   };
   const bool exact = exact_intersects(request.pair);
   const bool exactly_decided = config.warped_exact || (request.pair.eta == 0 && r.definite);
@@ -143,12 +140,9 @@ class ExactMonitor : public sim::Agent {
       defined_ = true;
       return;
     }
-    std::optional<model::Primtest::PairIn> pair;
-    if (pins_.s_pair_valid() != 0) {
-      const PairRequest r = pins_.request();
-      pair = {{r.tag, r.mode, r.pair.eta}, r.pair.a, r.pair.b};
-    }
-    model_.clock(pair, pins_.m_result_ready() != 0);
+    std::optional<PairRequest> request;
+    if (pins_.s_pair_valid() != 0) request = pins_.request();
+    model_.clock(request, pins_.m_result_ready() != 0);
   }
 
  private:
@@ -159,8 +153,7 @@ class ExactMonitor : public sim::Agent {
     expect("rm_id", out.rm_id, id_);
     expect("m_result_valid", out.result_valid, model_.m_result_valid());
     if (!model_.m_result_valid()) return;
-    const PairResult& r = model_.m_result();
-    expect("m_result", out.result, r);
+    expect("m_result", out.result, model_.m_result());
     ++results_;
   }
 
@@ -433,7 +426,7 @@ void check_lone_pair_latency(const PrimtestConfig& config) {
       const bool special = !is_general_position(request.pair);
       if (request.mode == exhaustive && !special) REQUIRE(waited == 0);  // whatever the data
       const int clocks = lone_latency(bench, request);
-      INFO(to_text(request.pair) << " mode " << int{request.mode} << " beats " << beats);
+      INFO(to_text(request.pair) << " mode " << static_cast<int>(request.mode) << " beats " << beats);
       REQUIRE(clocks == defs::pair_latency(s, together) + waited * defs::beat_latency(s));
       bench.steps(static_cast<std::uint64_t>(i) % 3);
     }

@@ -9,6 +9,7 @@
 #include <cchip/device/primtest_engine.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/model/primtest.hpp>
+#include <cchip/rtl/probes.hpp>
 #include <cchip/sim/scoreboard.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cchip/stimulus/witness.hpp>
@@ -22,18 +23,9 @@
 namespace cchip::test {
 namespace {
 
-using PairRequest;
-using PairResult;
-
-constexpr int exhaustive = static_cast<int>(PairMode::exhaustive);
-constexpr int directed = static_cast<int>(PairMode::directed);
-constexpr int reserved = 3;
-
-/// What the ports do not show: the lane of the pair that is accepted, one-hot.
-template <class Model>
-unsigned choice(const Model& top) {
-  return top.rootp->cchip_primtest_array__DOT__choice_q;
-}
+constexpr PairMode exhaustive = PairMode::exhaustive;
+constexpr PairMode directed = PairMode::directed;
+constexpr auto reserved = static_cast<PairMode>(3);
 
 template <class Config>
 constexpr Kind kind_a = static_cast<Kind>(Config::VERTS_A);
@@ -44,9 +36,9 @@ template <class Config>
 PairResult answer(const PairRequest& request) {
   if (request.mode > directed) return {request.tag, true, true, false, {AxisClass::illegal, 0, 0}, 0};
   const model::Options options{{Config::VERTS_A, Config::VERTS_B}, Config::WARPED_EXACT != 0};
-  const model::Outcome o = model::run_programme(options, request.pair, request.mode, Config::COORD_W);
-  sim::require(o.grid == exact_intersects(request.pair), "the model is wrong: " + to_text(request.pair));
-  return {request.tag, o.hit(), o.grid, o.definite, o.witness, o.beats};
+  const PairResult r = model::run_programme(options, request.pair, request.mode, Config::COORD_W).result(request.tag);
+  sim::require(r.grid == exact_intersects(request.pair), "the model is wrong: " + to_text(request.pair));
+  return r;
 }
 
 /// Pairs of every class, every mode, any eta, tags unique among 2^16.
@@ -67,7 +59,7 @@ class RequestSource {
       if (p->kind == Kind::tri) p->v[3] = random_point(random_, Config::COORD_W);
     }
     request.pair.eta = static_cast<int>(random_() % 16);
-    request.mode = static_cast<std::uint8_t>(mode);
+    request.mode = mode;
     request.tag = static_cast<std::uint16_t>(40503U * tag_++);  // odd factor: every tag once in 65536
     return request;
   }
@@ -163,7 +155,7 @@ class ArrayBench {
   void accept(const PairRequest& request, std::uint64_t clock) {
     scoreboard_.expect(request.tag, answer<Config>(request), clock);
     std::size_t lane = 0;
-    while (lane < lanes && choice(top()) != 1U << lane) ++lane;
+    while (lane < lanes && static_cast<unsigned>(probes::array_choice(top())) != 1U << lane) ++lane;
     sim::require(lane < lanes, "not one lane is chosen");
     for (std::size_t other = 0; other < lanes; ++other) {
       Lane& l = state_[other];
@@ -294,7 +286,7 @@ CCHIP_CASE("latency of a lone pair is the same in every lane, lanes take turns")
       bench.push(request);
       bench.run();
       const Returned& r = bench.results.back();
-      INFO(to_text(request.pair) << " mode " << int{request.mode} << " beats " << beats);
+      INFO(to_text(request.pair) << " mode " << static_cast<int>(request.mode) << " beats " << beats);
       REQUIRE(r.lane == i % TestType::LANES);
       REQUIRE(static_cast<int>(r.returned - r.accepted) ==
               defs::array_latency(TestType::LANES) + defs::pair_latency(s, together) + waited * defs::beat_latency(s));

@@ -38,9 +38,9 @@ struct System : SubsystemBench<Config> {
     for (int i = 0; i < pairs; ++i) this->push(1 + static_cast<int>(this->random()() % 3));
   }
   /// A swap by software.
-  Report swap(int slot, int module_id, bool force = false) {
+  SwapReport swap(int slot, int module_id, bool force = false) {
     this->command(slot, module_id, force);
-    const Report r = this->next_report();
+    const SwapReport r = this->next_report();
     this->settle_bus();
     return r;
   }
@@ -82,7 +82,7 @@ CCHIP_CASE("mixed kinds by real swaps, counters and interrupt") {
       REQUIRE(s.read(regs::pairs::offset(m)) == sent[m]);
       REQUIRE(s.read(regs::pairs::offset(m) + 4) == 0);
     }
-    for (const Report& r : s.reports) {
+    for (const SwapReport& r : s.reports) {
       CAPTURE(r.clock, r.slot, r.module_id, static_cast<int>(r.code), r.lost);
       REQUIRE(r.code == SwapCode::ok);
     }
@@ -142,7 +142,7 @@ CCHIP_CASE("spoilt bitstreams: code, slot at work or decoupled, valid bit gone, 
         s.provide(slot, module_id, spoilt_bitstream(how, slot, module_id, 48, s.random()));
         s.settle_bus();
         s.write(regs::interrupt_status::offset, 0x1F);
-        const Report r = s.swap(slot, module_id);
+        const SwapReport r = s.swap(slot, module_id);
         REQUIRE(static_cast<int>(r.code) == static_cast<int>(code));
         REQUIRE(r.lost == 0);
         const bool at_work =
@@ -186,7 +186,7 @@ CCHIP_CASE("memory: an error, an address without memory, no answer") {
         } else {
           continue;
         }
-        const Report r = s.swap(0, 2);
+        const SwapReport r = s.swap(0, 2);
         REQUIRE(r.code == (what == 1 ? SwapCode::memory : SwapCode::bus));
         s.steps(4);
         if (moment == 0) REQUIRE(s.module_in(0) == before);
@@ -220,10 +220,10 @@ CCHIP_CASE("busy, the same module again, no such slot or module") {
     s.command(0, 2, false);
     s.simulation.run_until([&] { return s.phase() == SwapPhase::transfer; }, 2000, "the transfer");
     s.command(0, 3, false);
-    const Report busy = s.next_report();
+    const SwapReport busy = s.next_report();
     REQUIRE(busy.code == SwapCode::busy);
     REQUIRE(busy.module_id == 3);
-    const Report done = s.next_report();
+    const SwapReport done = s.next_report();
     REQUIRE(done.code == SwapCode::ok);
     REQUIRE(done.module_id == 2);
     s.settle_bus();
@@ -246,7 +246,7 @@ CCHIP_CASE("abort in each phase: at work with the former module, decoupled, or t
       s.steps(5);
       s.command(0, 2, false);
       // an abort takes some clocks through the bus: it is written so that it arrives in the phase asked for
-      std::optional<Report> report;
+      std::optional<SwapReport> report;
       for (int delay = 0; delay < 4000 && !report; ++delay) {
         const bool arrived = s.phase() == phase;
         if (arrived) {
@@ -280,7 +280,7 @@ CCHIP_CASE(
       s.sink.set_pattern(sim::Pattern::never_for(~std::uint64_t{0}));
       for (int i = 0; i < 12; ++i) s.push(1);
       s.steps(400);
-      const Report r = s.swap(0, 2, force);
+      const SwapReport r = s.swap(0, 2, force);
       REQUIRE(r.code == (force ? SwapCode::ok : SwapCode::shutdown));
       if (force) {
         REQUIRE(r.lost > 0);

@@ -10,20 +10,6 @@ using namespace cchip::test;
 
 namespace {
 
-struct Swap {
-  int slot = 0;
-  int module_id = 0;
-  std::uint32_t address = 0;
-  std::uint32_t size = 0;
-  bool force = false;
-};
-struct Told {
-  int slot = 0;
-  int module_id = 0;
-  SwapCode code = SwapCode::ok;
-  unsigned lost = 0;
-};
-
 /// Inputs as plain numbers; what leaves is collected.
 template <class Config>
 class SchedulerBench {
@@ -45,15 +31,15 @@ class SchedulerBench {
     simulation.reset();
   }
   void steps(std::uint64_t clocks) { simulation.steps(clocks); }
-  void report(const Told& r) {
+  void report(const SwapReport& r) {
     report_ = r;
     simulation.step();
     simulation.step();
   }
   /// For use inside on_clock.
-  void report_now(const Told& r) { report_ = r; }
+  void report_now(const SwapReport& r) { report_ = r; }
   void command(int slot, int module_id, bool force) {
-    command_ = Swap{slot, module_id, 0, 0, force};
+    command_ = SwapRequest{slot, module_id, 0, 0, force};
     simulation.step();
   }
 
@@ -62,11 +48,11 @@ class SchedulerBench {
   std::uint32_t batch = 1, age = 1000;
   unsigned valid = (1U << entries) - 1;
   std::array<std::uint32_t, entries> address{};
-  std::array<int, 4> waiting{};      // by kind
-  std::array<int, slots> modules{};  // 0: none
-  unsigned taken = 0;                // this clock, by slot
-  std::vector<Swap> requests;        // accepted
-  std::vector<Told> told;
+  std::array<int, 4> waiting{};       // by kind
+  std::array<int, slots> modules{};   // 0: none
+  unsigned taken = 0;                 // this clock, by slot
+  std::vector<SwapRequest> requests;  // accepted
+  std::vector<SwapReport> told;
   unsigned cleared = 0;  // entries invalidated so far
   unsigned no_provider = 0;
   std::function<void()> on_clock = [] {};
@@ -98,13 +84,13 @@ class SchedulerBench {
     top.slot_taken = static_cast<CData>(taken);
     top.m_swap_ready = ready;
     top.command_valid = command_ ? 1 : 0;
-    const Swap c = command_.value_or(Swap{});
+    const SwapRequest c = command_.value_or(SwapRequest{});
     top.command_slot = static_cast<CData>(c.slot);
     top.command_module = static_cast<CData>(c.module_id);
     top.command_force = c.force;
     command_.reset();
     top.s_report_valid = report_ ? 1 : 0;
-    const Told r = report_.value_or(Told{});
+    const SwapReport r = report_.value_or(SwapReport{});
     top.s_report_slot = static_cast<CData>(r.slot);
     top.s_report_module = static_cast<CData>(r.module_id);
     top.s_report_code = static_cast<CData>(r.code);
@@ -127,8 +113,8 @@ class SchedulerBench {
   }
 
   Bench bench_;
-  std::optional<Swap> command_;
-  std::optional<Told> report_;
+  std::optional<SwapRequest> command_;
+  std::optional<SwapReport> report_;
 };
 
 #define CCHIP_CASE(name) \
@@ -212,7 +198,7 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
       ++chosen;
       old += std::get<0>(*best) ? 1 : 0;
       busy_slot += best_idle ? 0 : 1;
-      const Swap& got = bench.requests.front();
+      const SwapRequest& got = bench.requests.front();
       REQUIRE(got.module_id == best_kind);
       REQUIRE(got.slot == static_cast<int>(best_slot));
       REQUIRE(got.address == bench.address[4 * best_slot + static_cast<std::size_t>(best_kind)]);
@@ -358,7 +344,7 @@ CCHIP_CASE("no kind starves under full load, and every turn serves pairs") {
             served_at[has] = now;
           }
           if (!bench.requests.empty()) {
-            const Swap r = bench.requests.front();
+            const SwapRequest r = bench.requests.front();
             bench.requests.clear();
             swapping = static_cast<std::size_t>(r.slot);
             coming = r.module_id;

@@ -45,7 +45,7 @@ TEMPLATE_LIST_TEST_CASE("harness: pairs come back by tag under every pattern", "
     auto sink = port.sink(back_pressure);
     std::mt19937_64 random(options.seed);
     TagScoreboard<PairRequest, PairResult> board("pairs", [](const PairRequest& sent, const PairResult& got) {
-      const bool reserved = sent.mode > 1;
+      const bool reserved = sent.mode > PairMode::directed;
       return (got.axis.cls == AxisClass::illegal) == reserved && (got.beats == 0) == reserved &&
              got.hit == (got.grid || !got.definite) && !(got.definite && sent.pair.eta == defs::err_unknown);
     });
@@ -56,7 +56,7 @@ TEMPLATE_LIST_TEST_CASE("harness: pairs come back by tag under every pattern", "
     for (int i = 0; i < pairs; ++i) {
       PairRequest request{random_pair(random, TestType::COORD_W),
                           static_cast<std::uint16_t>(64 * (random() % 1024) + static_cast<unsigned>(i)), 0};
-      if (i % 7 == 3) request.mode = static_cast<std::uint8_t>(1 + i % 3);
+      if (i % 7 == 3) request.mode = static_cast<PairMode>(1 + i % 3);
       if (i % 5 == 2) request.pair.eta = static_cast<int>(random() % 16);
       driver.push(request);
     }
@@ -89,7 +89,7 @@ TEST_CASE("harness: results of before a reset do not appear after it", "[unit][h
     driver.on_accept([&](const PairRequest& sent, std::uint64_t clock) { board.expect(sent.tag, 0, clock); });
     sink.on_item([&](const PairResult& got, std::uint64_t clock) { board.got(got.tag, got, clock); });
     for (int i = 0; i < 1000; ++i) {
-      driver.push({random_pair(random, Config::COORD_W), static_cast<std::uint16_t>(i), 0});
+      driver.push({random_pair(random, Config::COORD_W), static_cast<std::uint16_t>(i), PairMode::exhaustive});
     }
     simulation.add(driver);
     simulation.add(sink);
@@ -138,8 +138,8 @@ TEST_CASE("harness: engine rtl answers batches in order and counts", "[unit][har
 
 TEST_CASE("harness: a lone pair takes the generated latency", "[unit][harness]") {
   const auto engine = make_rtl_engine();
-  const HardwareAnswer answer = *engine->run({stacked(1)}, PairMode::exhaustive).front().hardware;
-  CHECK(answer.clock_out - answer.clock_in ==
+  const EngineAnswer answer = engine->run({stacked(1)}, PairMode::exhaustive).front();
+  CHECK(answer.clocks->answered - answer.clocks->accepted ==
         static_cast<std::uint64_t>(defs::pair_latency(defs::substages_default, defs::exhaustive_beats(3, 3))));
 }
 

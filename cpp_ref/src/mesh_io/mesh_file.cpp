@@ -1,159 +1,140 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
 #include <algorithm>
-#include <assimp/Importer.hpp>
 #include <cchip/mesh_io/mesh_file.hpp>
-#include <cmath>
+#include <cctype>
 #include <filesystem>
-#include <optional>
+#include <fstream>
+#include <limits>
+#include <sstream>
 #include <stdexcept>
-#include <vector>
+
+#include "cut_polygon.hpp"
+#include "polygon_soup.hpp"
 
 namespace cchip {
 namespace {
 
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  std::replace(text.begin(), text.end(), '\r', ' ');
-  return text;
+using mesh_io::FormatError;
+using mesh_io::PolygonSoup;
+using Reader = PolygonSoup (*)(std::string_view file);
+
+std::string read_file(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) throw std::runtime_error(path + ": no such file; check the path");
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream content;
+  content << in.rdbuf();
+  if (!in || content.str().empty()) {
+    throw std::runtime_error(path + ": the file is empty or cannot be read; check its content and permissions");
+  }
+  return content.str();
 }
 
-[[noreturn]] void refuse(const std::string& path, const std::string& what) {
-  throw std::runtime_error(path + ": " + one_line(what) + ": repair the file");
+/// The reader for a name's end; for others the one whose first word the file has; else nothing.
+Reader reader_of(const std::string& path, std::string_view file) {
+  std::string end = std::filesystem::path(path).extension();
+  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (end == ".obj") return mesh_io::read_obj;
+  if (end == ".off") return mesh_io::read_off;
+  if (end == ".ply") return mesh_io::read_ply;
+  if (end == ".stl") return mesh_io::read_stl;
+  const std::string_view word = file.substr(0, file.find_first_of(" \t\r\n"));
+  if (word == "ply") return mesh_io::read_ply;
+  if (word == "solid") return mesh_io::read_stl;
+  if (word.size() >= 3 && word.substr(word.size() - 3) == "OFF") return mesh_io::read_off;
+  return nullptr;
 }
 
-/// Refuses what importers let through from damaged files: triangulation stops the whole program on faces
-/// without vertices and does not check indices.
-void require_intact(const aiMesh& part, const std::string& path) {
-  const std::string of_part = part.mName.length == 0 ? "" : std::string(" of part \"") + part.mName.C_Str() + "\"";
-  for (unsigned i = 0; i < part.mNumVertices; ++i) {
-    const aiVector3D& p = part.mVertices[i];
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-      refuse(path, "vertex " + std::to_string(i) + of_part + " is not finite");
+/// Takes polygons of a file one by one into a mesh.
+class Builder {
+ public:
+  Builder(PolygonSoup soup, FaceKinds kinds) : soup_(std::move(soup)), kinds_(kinds) {}
+
+  Mesh build() {
+    if (std::max(soup_.points.size(), soup_.polygons.size()) > std::numeric_limits<std::uint32_t>::max()) {
+      throw FormatError("more than 2^32 vertices or faces are not read");
+    }
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < soup_.polygons.size(); ++i) {
+      const auto corners = soup_.corners.begin();
+      polygon_.assign(corners + static_cast<std::ptrdiff_t>(begin),
+                      corners + static_cast<std::ptrdiff_t>(soup_.polygons[i].end));
+      add_polygon(i);
+      begin = soup_.polygons[i].end;
+    }
+    if (mesh_.faces.empty()) throw FormatError("the file holds no faces");
+    if (mesh_.polygons_cut == 0) mesh_.file_face.clear();
+    mesh_.vertices = std::move(soup_.points);
+    return std::move(mesh_);
+  }
+
+ private:
+  void add_polygon(std::size_t number) {
+    for (const std::uint32_t corner : polygon_) {
+      if (corner >= soup_.points.size())
+        refuse(number, "names vertex " + std::to_string(corner) + ", which is not there");
+    }
+    if (polygon_.size() == 3) return add_face(number, Kind::tri, {0, 1, 2, 0});
+    const bool convex_quad = polygon_.size() == 4 && mesh_io::is_convex_quad({point(0), point(1), point(2), point(3)});
+    if (convex_quad && kinds_ == FaceKinds::triangles_and_quads) return add_face(number, Kind::quad, {0, 1, 2, 3});
+    ++mesh_.polygons_cut;
+    if (convex_quad) {
+      add_face(number, Kind::tri, {0, 1, 2, 0});
+      add_face(number, Kind::tri, {0, 2, 3, 0});
+    } else {
+      cut(number);
     }
   }
-  for (unsigned i = 0; i < part.mNumFaces; ++i) {
-    const aiFace& face = part.mFaces[i];
-    const auto is_known = [&part](unsigned vertex) { return vertex < part.mNumVertices; };
-    if (face.mNumIndices == 0 || !std::all_of(face.mIndices, face.mIndices + face.mNumIndices, is_known)) {
-      refuse(path, "face " + std::to_string(i) + of_part + " has no or unknown vertices");
+
+  void cut(std::size_t number) {
+    if (polygon_.size() > mesh_io::most_corners) {
+      refuse(number, "has more than " + std::to_string(mesh_io::most_corners) + " corners");
     }
+    std::vector<Vec3d> points;
+    for (std::size_t i = 0; i < polygon_.size(); ++i) points.push_back(point(i));
+    const auto triangles = mesh_io::cut_polygon(points);
+    if (triangles.empty()) refuse(number, "crosses itself");
+    for (const auto& t : triangles) add_face(number, Kind::tri, {t[0], t[1], t[2], 0});
   }
-}
 
-/// True if no corner of the outline turns against the quad's normal (V2 - V0) x (V3 - V1).
-bool is_convex_quad(const aiMesh& part, const aiFace& face) {
-  if (face.mNumIndices != 4) return false;
-  std::array<Vec3d, 4> v;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const aiVector3D& p = part.mVertices[face.mIndices[i]];
-    v[i] = Vec3d(p.x, p.y, p.z);
+  const Vec3d& point(std::size_t corner) const { return soup_.points[polygon_[corner]]; }
+
+  /// A face of corners of the polygon. Unused ones must be 0.
+  void add_face(std::size_t number, Kind kind, const std::array<std::size_t, 4>& corners) {
+    Mesh::Face face;
+    face.kind = kind;
+    const std::size_t count = kind == Kind::quad ? 4 : 3;
+    for (std::size_t i = 0; i < count; ++i) face.vertex[i] = polygon_[corners[i]];
+    mesh_.faces.push_back(face);
+    mesh_.file_face.push_back(static_cast<std::uint32_t>(number));
   }
-  const Vec3d normal = (v[2] - v[0]).cross(v[3] - v[1]);
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Vec3d& corner = v[(i + 1) % 4];
-    if ((corner - v[i]).cross(v[(i + 2) % 4] - corner).dot(normal) < 0) return false;
+
+  [[noreturn]] void refuse(std::size_t number, const std::string& what) const {
+    throw FormatError("face " + std::to_string(number) + " " + what, soup_.polygons[number].line);
   }
-  return true;
-}
 
-std::size_t count_polygons(const aiMesh& part) {
-  return static_cast<std::size_t>(std::count_if(part.mFaces, part.mFaces + part.mNumFaces,
-                                                [](const aiFace& face) { return face.mNumIndices > 3; }));
-}
-
-/// The faces of one sub-mesh that triangulation would cut although they are to be kept. They leave a point in
-/// their place, which triangulation does not touch.
-struct KeptQuads {
-  /// For each point of the sub-mesh, in order: the quad behind it, or nothing if it always was a point.
-  std::vector<std::optional<std::array<std::uint32_t, 4>>> behind_point;
+  PolygonSoup soup_;
+  FaceKinds kinds_;
+  std::vector<std::uint32_t> polygon_;  ///< the present one
+  Mesh mesh_;
 };
-
-KeptQuads take_quads(aiMesh& part) {
-  KeptQuads kept;
-  for (unsigned i = 0; i < part.mNumFaces; ++i) {
-    aiFace& face = part.mFaces[i];
-    if (face.mNumIndices == 1) kept.behind_point.emplace_back();
-    if (!is_convex_quad(part, face)) continue;
-    const unsigned* v = face.mIndices;
-    const std::array<std::uint32_t, 4> quad = {v[0], v[1], v[2], v[3]};
-    kept.behind_point.emplace_back(quad);
-    face.mNumIndices = 1;
-    part.mPrimitiveTypes |= aiPrimitiveType_POINT;
-  }
-  // triangulation stops the program where it expects polygons and finds none
-  if (count_polygons(part) == 0) part.mPrimitiveTypes &= ~static_cast<unsigned>(aiPrimitiveType_POLYGON);
-  return kept;
-}
-
-/// Appends the faces of one sub-mesh; its points and lines are dropped.
-void append(const aiMesh& part, const KeptQuads& kept, const Eigen::Affine3d& placement, Mesh& mesh) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (unsigned i = 0; i < part.mNumVertices; ++i) {
-    const aiVector3D& p = part.mVertices[i];
-    mesh.vertices.push_back(placement * Vec3d(p.x, p.y, p.z));
-  }
-  auto quad = kept.behind_point.begin();
-  for (unsigned i = 0; i < part.mNumFaces; ++i) {
-    const aiFace& face = part.mFaces[i];
-    const unsigned* v = face.mIndices;
-    if (face.mNumIndices == 3) mesh.faces.push_back({Kind::tri, {first + v[0], first + v[1], first + v[2], 0}});
-    if (face.mNumIndices != 1 || kept.behind_point.empty()) continue;
-    if (const auto& q = *quad++) {
-      mesh.faces.push_back({Kind::quad, {first + (*q)[0], first + (*q)[1], first + (*q)[2], first + (*q)[3]}});
-    }
-  }
-}
-
-Eigen::Affine3d to_eigen(const aiMatrix4x4& m) {
-  Eigen::Affine3d result = Eigen::Affine3d::Identity();
-  result.matrix().topRows<3>() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4;
-  return result;
-}
-
-void append(const aiScene& scene, const std::vector<KeptQuads>& kept, const aiNode& node, const Eigen::Affine3d& parent,
-            Mesh& mesh) {
-  const Eigen::Affine3d placement = parent * to_eigen(node.mTransformation);
-  if (!placement.matrix().allFinite()) {
-    refuse(mesh.name, std::string("transformation of node \"") + node.mName.C_Str() + "\" is not finite");
-  }
-  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-    append(*scene.mMeshes[node.mMeshes[i]], kept.at(node.mMeshes[i]), placement, mesh);
-  }
-  for (unsigned i = 0; i < node.mNumChildren; ++i) append(scene, kept, *node.mChildren[i], placement, mesh);
-}
 
 }  // namespace
 
 Mesh load_mesh(const std::string& path, FaceKinds kinds) {
-  if (!std::filesystem::is_regular_file(path)) {
-    throw std::runtime_error(path + ": no such file: check the path");
+  const std::string file = read_file(path);
+  const Reader reader = reader_of(path, file);
+  if (reader == nullptr) {
+    throw std::runtime_error(path + ": cannot be read as a mesh; give an OBJ, OFF, PLY or STL file");
   }
-  Mesh mesh;
-  mesh.name = path;
-  Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(path, 0);
-  std::vector<KeptQuads> kept;
-  if (scene != nullptr) {
-    kept.resize(scene->mNumMeshes);
-    for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
-      require_intact(*scene->mMeshes[i], path);
-      if (kinds == FaceKinds::triangles_and_quads) kept[i] = take_quads(*scene->mMeshes[i]);
-      mesh.polygons_cut += count_polygons(*scene->mMeshes[i]);
-    }
-    scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
+  try {
+    Mesh mesh = Builder(reader(file), kinds).build();
+    mesh.name = path;
+    return mesh;
+  } catch (const FormatError& error) {
+    const std::string line = error.line == 0 ? "" : std::to_string(error.line) + ": ";
+    throw std::runtime_error(path + ":" + (line.empty() ? " " : line) + error.what() +
+                             "; repair the file or write it again");
   }
-  if (scene == nullptr) {
-    throw std::runtime_error(path + ": cannot be read as a mesh (" + one_line(importer.GetErrorString()) +
-                             "): give an intact OBJ, STL, PLY or OFF file");
-  }
-  if (scene->mRootNode != nullptr) append(*scene, kept, *scene->mRootNode, Eigen::Affine3d::Identity(), mesh);
-  if (mesh.faces.empty()) {
-    throw std::runtime_error(path + ": holds no faces: give a mesh with triangles or polygons");
-  }
-  return mesh;
 }
 
 }  // namespace cchip

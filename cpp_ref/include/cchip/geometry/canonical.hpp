@@ -19,8 +19,8 @@ namespace cchip {
 bool is_canonical(const GridPrimitive& p);
 
 /// Vertex i of the canonical form is vertex order[i] of `p`. {0, 1, 2, 3} if `p` is canonical already; a quad that
-/// crosses itself or is folded is reordered; if one vertex lies inside the triangle of the others it is left out and
-/// the last of the others stands twice.
+/// crosses itself or is folded is reordered; if one vertex lies inside the triangle of the others, that vertex is
+/// left out and the last of the other three is repeated.
 std::array<std::size_t, 4> canonical_order(const GridPrimitive& p);
 
 /// The canonical primitive with the same convex hull. Rounding to a grid can flatten or dent a quad: call it after

@@ -4,8 +4,12 @@
 #ifndef CCHIP_MESH_IO_MESH_FILE_HPP
 #define CCHIP_MESH_IO_MESH_FILE_HPP
 
+#include <array>
 #include <cchip/mesh/mesh.hpp>
+#include <cstdint>
+#include <ostream>
 #include <string>
+#include <vector>
 
 namespace cchip {
 
@@ -16,12 +20,30 @@ enum class FaceKinds {
   triangles_and_quads
 };
 
-/// Reads OBJ, STL, PLY or OFF (and what else assimp reads): all sub-meshes with the transforms of their nodes,
-/// points and lines dropped, in the order of the file. Positions are in the file's unit, as assimp holds them:
-/// rounded to single precision.
-/// \throws std::runtime_error one line: file, what is wrong, what to do (missing file, parse error, no faces,
-///         vertex that is not finite, face with unknown vertices)
+/// Reads a mesh in the file's order and unit: Wavefront OBJ, Geomview OFF (text), Stanford PLY (text, binary of both
+/// byte orders), STL (text, binary). The name's end says which it is, or else how the file begins.
+///
+/// Positions are doubles: the nearest one of each decimal number; binary STL and PLY's `float` hold single precision.
+/// Points and lines of OBJ are left out. Free-form surfaces, PLY's triangle strips, binary OFF and homogeneous
+/// coordinates are refused. Polygons of up to 1024 corners are cut into triangles; all corners stay in use.
+///
+/// A file that was cut or damaged is refused where it can be told: counts must match, numbers must be whole words, and
+/// vertices must exist. OBJ announces no counts, so one that lacks whole lines at its end may pass.
+/// Memory and time are bounded by multiples of the file's size: counts that the file cannot hold are refused first.
+///
+/// The readers are our own because none of Debian's passed tests/ref/test_mesh_file.cpp: assimp rounds to single
+/// precision and does not end on a cut PLY; CGAL loses corners that tabs separate in OBJ, refuses its `l` lines and
+/// takes 1.5 GB for a list of a PLY of 250 bytes.
+/// \throws std::runtime_error one line: file, line number if it has one, what is wrong, what to do
 Mesh load_mesh(const std::string& path, FaceKinds kinds = FaceKinds::triangles);
+
+/// Red, green, blue.
+using Colour = std::array<std::uint8_t, 3>;
+
+/// Writes a binary PLY (little endian, doubles). Each face has vertices of its own, and its colour stands at the face
+/// and at these vertices, because MeshLab shows the ones and Blender the others.
+/// \throws std::invalid_argument unless there is one colour for each face
+void write_ply(std::ostream& out, const Mesh& mesh, const std::vector<Colour>& face_colours);
 
 }  // namespace cchip
 

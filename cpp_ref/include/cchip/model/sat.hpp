@@ -6,9 +6,7 @@
 #define CCHIP_MODEL_SAT_HPP
 
 #include <array>
-#include <cchip/device/pair_engine.hpp>
-#include <cchip/geometry/primitive.hpp>
-#include <cchip/wire/definitions.hpp>
+#include <cchip/wire/pair.hpp>
 #include <cstdint>
 
 namespace cchip::model {

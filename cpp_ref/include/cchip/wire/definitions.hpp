@@ -107,12 +107,18 @@ constexpr int err_unknown = 15;
 constexpr int class_w = 3;
 /// width of the fields k and l of an axis code [bit]
 constexpr int index_w = 3;
-/// width of m_result_axis = {class, k, l} [bit]
-constexpr int axis_code_w = 9;
 /// width of m_result_beats (saturating) [bit]
 constexpr int beats_w = 6;
 /// width of rm_id [bit]
 constexpr int rm_id_w = 8;
+/// width of s_pair_kind: the low bits of the ModuleId that tests the pair [bit]
+constexpr int kind_w = 2;
+/// width of a slot's number [bit]
+constexpr int slot_id_w = 8;
+/// width of a slot's counts of pairs inside and of pairs lost [bit]
+constexpr int pair_count_w = 16;
+/// width of error_shift, 0..4: the smallest shift with eta <= 2^error_shift [bit]
+constexpr int error_shift_w = 3;
 /// unsigned limb of a wide factor on an 18x18 multiplier block [bit]
 constexpr int limb_w = 17;
 /// input and output register of cchip_mul18 [clock]
@@ -139,9 +145,15 @@ constexpr int roc_clocks_default = 2;
 constexpr int shutdown_limit_default = 65536;
 /// longest wait for a beat of the bitstream's memory, unless a register says otherwise [clock]
 constexpr int memory_limit_default = 4096;
-/// state of a pair's programme that travels with its beat (cchip_axis_programme) [bit]
-constexpr int state_w = 34;
+/// width of the field info of a programme state; what it holds depends on the programme [bit]
+constexpr int info_w = 14;
 
+/// point: three coordinates, x in the low bits [bit]
+constexpr int point_w(int w) { return 3 * w; }
+/// s_pair_a, s_pair_b: vertex i at bit POINT_W i [bit]
+constexpr int primitive_w(int w) { return vertices * point_w(w); }
+/// the module that tests primitives of a and of b vertices, a <= b: 3 3, 3 4 or 4 4 [ModuleId]
+constexpr int rm_of(int a, int b) { return a + b - 5; }
 /// difference of two coordinates [bit]
 constexpr int edge_w(int w) { return w + 1; }
 /// component of the cross product of two edges: |.| <= 2 (2^w - 1)^2 [bit]
@@ -206,6 +218,117 @@ constexpr int array_wait_bound(int lanes) { return 16 * lanes; }
 constexpr int array_drain_bound(int s, int contexts, int lanes) { return drain_bound(s, contexts) + array_latency(lanes) + lanes * contexts; }
 /// axes of the exhaustive programme: nA, nB, every e_k x f_l: 11, 14, 18 (paper, eq. 1) [beat]
 constexpr int exhaustive_beats(int a, int b) { return 2 + a * b; }
+
+/// A field of a record: its lowest bit and its width.
+struct Field {
+  int lsb;
+  int width;
+};
+
+/// axis code {class, k, l}: the axis of a beat, the witness of a result [bit]
+constexpr int axis_code_w = 9;
+/// index of the edge of B, or component
+constexpr Field axis_code_l = {0, 3};
+/// index of the edge or face of the axis' own primitive
+constexpr Field axis_code_k = {3, 3};
+/// AxisClass
+constexpr Field axis_code_class = {6, 3};
+
+/// beat of s_pair as one word, coordinates of w bits [bit]
+constexpr int request_w(int w) { return 16 + primitive_w(w) + primitive_w(w) + err_w + mode_w; }
+/// s_pair_tag
+constexpr Field request_tag = {0, 16};
+/// s_pair_a
+constexpr Field request_a(int w) { return {16, primitive_w(w)}; }
+/// s_pair_b
+constexpr Field request_b(int w) { return {16 + primitive_w(w), primitive_w(w)}; }
+/// s_pair_err
+constexpr Field request_err(int w) { return {16 + primitive_w(w) + primitive_w(w), err_w}; }
+/// s_pair_mode
+constexpr Field request_mode(int w) { return {16 + primitive_w(w) + primitive_w(w) + err_w, mode_w}; }
+
+/// beat of m_result as one word [bit]
+constexpr int result_w = 34;
+/// m_result_tag
+constexpr Field result_tag = {0, 16};
+/// m_result_hit
+constexpr Field result_hit = {16, 1};
+/// m_result_grid
+constexpr Field result_grid = {17, 1};
+/// m_result_definite
+constexpr Field result_definite = {18, 1};
+/// m_result_axis
+constexpr Field result_axis = {19, 9};
+/// m_result_beats
+constexpr Field result_beats = {28, 6};
+
+/// state of a pair's programme, which travels with its beat (cchip_axis_programme) [bit]
+constexpr int state_w = 34;
+/// Programme
+constexpr Field state_programme = {0, 3};
+/// axis code of the beat
+constexpr Field state_code = {3, 9};
+/// what the programme remembers: one of the records INFO_*
+constexpr Field state_info = {12, 14};
+/// beats issued before this one
+constexpr Field state_beats = {26, 6};
+/// a warped quad was not decided exactly
+constexpr Field state_open = {32, 1};
+/// all signs used so far hold for the unrounded primitives
+constexpr Field state_certain = {33, 1};
+
+/// info of NORMALS after nA [bit]
+constexpr int info_normals_w = 14;
+/// edge of B that leads from the positive side of A's plane to the negative one
+constexpr Field info_normals_l_down = {0, 2};
+/// edge of B that leads from the negative side to the positive one
+constexpr Field info_normals_l_up = {2, 2};
+/// all vertices of B lie in A's plane
+constexpr Field info_normals_b_on_plane = {4, 1};
+/// components of nA: < 0
+constexpr Field info_normals_a_negative = {5, 3};
+/// components of nA: = 0
+constexpr Field info_normals_a_zero = {8, 3};
+/// component of nA with the largest absolute value
+constexpr Field info_normals_largest = {11, 2};
+/// quad A is warped
+constexpr Field info_normals_warped_a = {13, 1};
+
+/// info of CROSSING [bit]
+constexpr int info_crossing_w = 6;
+/// edge of B of the second axis
+constexpr Field info_crossing_l_up = {0, 2};
+/// edge of A of the second axis
+constexpr Field info_crossing_k_up = {2, 2};
+/// quad A is warped
+constexpr Field info_crossing_warped_a = {4, 1};
+/// quad B is warped
+constexpr Field info_crossing_warped_b = {5, 1};
+
+/// info of COPLANAR [bit]
+constexpr int info_coplanar_w = 2;
+/// component l of nA < 0
+constexpr Field info_coplanar_a_negative = {0, 1};
+/// component l of nB < 0
+constexpr Field info_coplanar_b_negative = {1, 1};
+
+/// info of DEGENERATE [bit]
+constexpr int info_degenerate_w = 12;
+/// components of nA: < 0
+constexpr Field info_degenerate_a_negative = {0, 3};
+/// components of nA: = 0
+constexpr Field info_degenerate_a_zero = {3, 3};
+/// components of nB: < 0
+constexpr Field info_degenerate_b_negative = {6, 3};
+/// components of nB: = 0
+constexpr Field info_degenerate_b_zero = {9, 3};
+
+/// info of TETRAHEDRON [bit]
+constexpr int info_tetrahedron_w = 2;
+/// quad A is warped
+constexpr Field info_tetrahedron_warped_a = {0, 1};
+/// quad B is warped
+constexpr Field info_tetrahedron_warped_b = {1, 1};
 
 }  // namespace defs
 }  // namespace cchip

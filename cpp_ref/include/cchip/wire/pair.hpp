@@ -74,6 +74,22 @@ struct PairResult {
   }
 };
 
+/// One beat of the stream s_pair of cchip_primtest_subsystem: kind is the ModuleId of the test, 0 is illegal.
+struct KindRequest {
+  PairRequest request;
+  int kind = 0;
+};
+
+/// One beat of its stream m_result. A pair that no module tested has axis class illegal.
+struct KindResult {
+  PairResult beat;
+  int kind = 0;
+  friend bool operator==(const KindResult& x, const KindResult& y) { return x.kind == y.kind && x.beat == y.beat; }
+  friend std::ostream& operator<<(std::ostream& out, const KindResult& x) {
+    return out << "kind " << x.kind << ' ' << x.beat;
+  }
+};
+
 /// Tag for the pair of this number: consecutive tags differ in many bits, and every tag comes once in 2^16 pairs,
 /// because the factor is odd.
 constexpr std::uint16_t tag_of(std::size_t number) { return static_cast<std::uint16_t>(40503U * number); }

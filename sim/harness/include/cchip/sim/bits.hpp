@@ -6,6 +6,7 @@
 
 #include <verilated.h>
 
+#include <cchip/sim/int128.hpp>
 #include <cstdint>
 #include <random>
 #include <stdexcept>
@@ -13,10 +14,6 @@
 #include <type_traits>
 
 namespace cchip::sim {
-
-/// For fields of 65 to 128 bits. __extension__ (no warning about a type outside ISO C++) needs typedef.
-__extension__ typedef __int128 Int128;            // NOLINT(modernize-use-using)
-__extension__ typedef unsigned __int128 UInt128;  // NOLINT(modernize-use-using)
 
 namespace detail {
 

@@ -29,8 +29,9 @@ class fifo_portal : public following_portal {
   fifo_rule rule() const { return rule_; }
 
   /// Each item that passes counts `weight` transactions; the module is held while the counter is not 0. With +1 at its
-  /// inputs and -1 at its outputs a module leaves when it has given as many results as it has taken operands. Before a
-  /// blocking read the module leaves if it shall and can. The counter must outlive the simulation.
+  /// inputs and -1 at its outputs a module leaves when it has given as many results as it has taken operands. If a
+  /// deactivation was requested and the counter is 0, the module leaves before its next blocking read. The counter must
+  /// outlive the simulation.
   void count(transaction_counter& counter, long weight) {
     counter_ = &counter;
     weight_ = weight;

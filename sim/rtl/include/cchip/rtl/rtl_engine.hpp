@@ -4,7 +4,7 @@
 #ifndef CCHIP_RTL_RTL_ENGINE_HPP
 #define CCHIP_RTL_RTL_ENGINE_HPP
 
-#include <cchip/device/pair_engine.hpp>
+#include <cchip/device/primtest_engine.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -21,6 +21,15 @@ struct RtlEngineOptions {
   /// Seed of what the RTL leaves undefined at power-up.
   std::uint64_t seed = 1;
 };
+
+struct RtlMachineOptions : RtlEngineOptions {
+  /// Random bits on the payload of s_pair while it is not valid, and on the unused vertex slot of triangles.
+  bool scramble = false;
+};
+
+/// One Verilated primitive test with default parameters, after reset. Its waveform is trace_path, without a layout.
+/// \throws std::invalid_argument the blank module
+std::unique_ptr<PrimtestMachine> make_rtl_machine(ModuleId id, const RtlMachineOptions& options = {});
 
 /// cchip_primtest_tri_tri, _tri_quad and _quad_quad with default parameters (16-bit coordinates), each made when a
 /// pair needs it; see make_primtest_engine() for the way of a pair.

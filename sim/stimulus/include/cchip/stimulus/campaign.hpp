@@ -5,13 +5,14 @@
 #define CCHIP_STIMULUS_CAMPAIGN_HPP
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cchip/geometry/primitive.hpp>
 #include <cchip/model/programme.hpp>
+#include <cchip/sim/seed.hpp>
+#include <cchip/stimulus/progress.hpp>
 #include <chrono>
 #include <cstdint>
 #include <exception>
@@ -39,10 +40,36 @@ constexpr std::array<ShapeInfo, 3> all_shapes = {
 /// Both programmes; the index is the mode.
 constexpr std::array<const char*, 2> programmes = {"exhaustive", "directed"};
 
+/// What a run must reach besides right results: one that sees next to nothing fails.
+class Goals {
+ public:
+  void at_least(const std::string& what, double got, double goal) {
+    if (!(got >= goal)) miss(what, got, "at least", goal);
+  }
+  void at_most(const std::string& what, double got, double goal) {
+    if (!(got <= goal)) miss(what, got, "at most", goal);
+  }
+  bool missed() const { return missed_; }
+
+ private:
+  void miss(const std::string& what, double got, const char* relation, double goal) {
+    missed_ = true;
+    fmt::print("goal missed: {} is {}, must be {} {}\n", what, got, relation, goal);
+  }
+  bool missed_ = false;
+};
+
 /// What every campaign can be told.
 struct CommonOptions {
-  std::uint64_t seed = 1;
+  std::uint64_t seed = sim::seed_from_environment();
   unsigned threads = 2;
+  std::uint64_t least_pairs = 1000;  ///< goals: in all
+  std::uint64_t least_hits = 100;
+
+  void check(Goals& goals, std::uint64_t pairs, std::uint64_t hits) const {
+    goals.at_least("number of pairs", static_cast<double>(pairs), static_cast<double>(least_pairs));
+    goals.at_least("number of hits", static_cast<double>(hits), static_cast<double>(least_hits));
+  }
   std::string shape = "all";  ///< name of a shape, or all
 
   std::vector<ShapeInfo> shapes() const {
@@ -56,7 +83,7 @@ struct CommonOptions {
   std::uint64_t seed_of(std::uint64_t part) const { return seed * 0x9e3779b97f4a7c15U + part; }
 };
 
-/// A wrong result ends a campaign with this exit code.
+/// A wrong result or a missed goal ends a campaign with this exit code.
 constexpr int wrong_result = 3;
 
 /// The failures of the first parts of a run.
@@ -127,7 +154,7 @@ Result sum_of_parts(std::uint64_t parts, unsigned threads, const Work& work) {
   std::mutex mutex;
   std::exception_ptr failure;
   std::atomic<std::uint64_t> next{0};
-  const bool on_terminal = isatty(STDERR_FILENO) == 1;
+  Progress progress("parts");
   std::uint64_t done = 0;
   const auto worker = [&] {
     for (std::uint64_t part = next++; part < parts; part = next++) {
@@ -135,8 +162,7 @@ Result sum_of_parts(std::uint64_t parts, unsigned threads, const Work& work) {
         const Result one = work(part);
         const std::lock_guard<std::mutex> lock(mutex);
         result += one;
-        ++done;
-        if (on_terminal) fmt::print(stderr, "\r{} of {} parts\033[K{}", done, parts, done == parts ? "\r\033[K" : "");
+        progress.update_of(++done, parts);
       } catch (...) {
         const std::lock_guard<std::mutex> lock(mutex);
         if (!failure) failure = std::current_exception();

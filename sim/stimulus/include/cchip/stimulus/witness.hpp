@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Witnesses checked by hand: the axis of a code from the definitions in DESIGN section 3.1, written out in wide
+/// Witnesses checked by hand: the axis of a code from the definitions in docs/architecture.md, written out in wide
 /// integers, and the intervals of all vertices on it.
 #ifndef CCHIP_STIMULUS_WITNESS_HPP
 #define CCHIP_STIMULUS_WITNESS_HPP
 
 #include <algorithm>
 #include <array>
-#include <cchip/sim/bits.hpp>
+#include <cchip/geometry/canonical.hpp>
+#include <cchip/sim/int128.hpp>
 #include <cchip/wire/pair.hpp>
 #include <stdexcept>
 
@@ -40,7 +41,10 @@ inline WideVector edge(const GridPrimitive& p, std::size_t k) {
 /// k = 0 of the primitive, 1..4 of the face without vertex k - 1.
 inline WideVector normal(const GridPrimitive& p, std::size_t k) {
   if (k == 0 && p.kind == Kind::tri) return cross(from_to(p, 0, 1), from_to(p, 0, 2));
-  if (k == 0) return cross(from_to(p, 0, 2), from_to(p, 1, 3));
+  if (k == 0) {  // of the canonical quad: zero for some orders of the vertices in a plane, but the plane is the same
+    const GridPrimitive c = canonical_quad(p);
+    return cross(from_to(c, 0, 2), from_to(c, 1, 3));
+  }
   if (k > 4 || p.kind == Kind::tri) throw std::invalid_argument("axis_vector: no face " + std::to_string(k));
   std::array<std::size_t, 3> face{};
   std::size_t count = 0;

@@ -5,6 +5,7 @@
 #define CCHIP_LEVELS_API_HPP
 
 #include <cchip/levels/stimulus.hpp>
+#include <cchip/stimulus/progress.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -55,6 +56,7 @@ class Api : public sc_core::sc_module {
   sc_core::sc_time patience_;
   std::vector<std::uint8_t> answers_;
   std::string failure_;
+  Progress progress_;
   std::size_t answered_ = 0;
   std::size_t prepared_ = 0;
   sc_core::sc_event answer_;

@@ -52,8 +52,8 @@ void bind_pins(Test& test, PrimtestSignals& signals) {
   test.idle(signals.idle);
 }
 
-/// Offers pairs and takes answers, one of each per clock at most, while it is coupled. Decoupled, it neither offers nor
-/// takes, so that what a module shows that is not yet reset does no harm.
+/// Offers pairs and takes answers, at most one of each per clock, while it is coupled. Decoupled, it does neither: the
+/// outputs of a module that was not yet reset are random and must be ignored.
 class PinDriver : public sc_core::sc_module {
  public:
   sc_core::sc_in<bool> clk{"clk"};

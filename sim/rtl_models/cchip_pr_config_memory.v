@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-`include "cchip_defs.vh"
 `default_nettype none
-// cchip_pr_config_memory: what a device's configuration memory does to one slot; for simulations. All slots see every
-// word written to the configuration port.
-//   payload      low byte first: CCHIP_BITSTREAM_SYNC, {0 (16 bit), module, slot}, filler, CRC-32 (as zlib) of all bytes
-//                before it; at least CCHIP_BITSTREAM_PAYLOAD_MIN bytes. The synchronisation word must not occur again:
-//                wherever it stands (32-bit port: in one word) a new payload begins, so a truncated one blocks nothing
-//   garbage      1: what is in the slot is undefined: from the word that names the slot until a complete, correct payload
-//                has passed; also again from any word after its end that is not the beginning of the next payload
+`include "cchip_defs.vh"
+// cchip_pr_config_memory: what a device's configuration memory does to one slot; for simulations.
+// All slots see every word written to the configuration port.
+//   payload      low byte first: CCHIP_BITSTREAM_SYNC, {0 (16 bit), module, slot}, filler, CRC-32
+//                (as zlib) of all bytes before it; at least CCHIP_BITSTREAM_PAYLOAD_MIN bytes. The
+//                synchronisation word must not occur again: wherever it occurs (32-bit port: in one
+//                word) a new payload begins, so a truncated one blocks nothing
+//   garbage      1: what is in the slot is undefined: from the word that names the slot until a
+//                complete, correct payload has passed; also again from any word after its end that
+//                is not the beginning of the next payload
 //   select       the module in the slot, CCHIP_RM_*; valid while garbage = 0
 //   latency      1 clock from a word of the port to garbage and select
 //   reset        none: a configuration survives a reset; RM_ID is the module at power-up
@@ -19,11 +21,11 @@ module cchip_pr_config_memory #(
     // width of the configuration port, bit, 8 or 32
     parameter integer CFG_W = 8
 ) (
-    input  wire             clk,
-    input  wire             cfg_valid,
-    input  wire [CFG_W-1:0] cfg_data,
-    output wire             garbage,
-    output wire [      7:0] select
+    input  wire                      clk,
+    input  wire                      cfg_valid,
+    input  wire [         CFG_W-1:0] cfg_data,
+    output wire                      garbage,
+    output wire [`CCHIP_RM_ID_W-1:0] select
 );
 
   localparam [31:0] SLOT = SLOT_ID;
@@ -36,11 +38,13 @@ module cchip_pr_config_memory #(
     integer i;
     begin
       crc_byte = crc ^ {24'd0, data};
-      for (i = 0; i < 8; i = i + 1) crc_byte = {1'b0, crc_byte[31:1]} ^ (crc_byte[0] ? 32'hEDB88320 : 32'd0);
+      for (i = 0; i < 8; i = i + 1) crc_byte = {1'b0, crc_byte[31:1]}
+          ^ (crc_byte[0] ? 32'hEDB88320 : 32'd0);
     end
   endfunction
   function [31:0] crc_word(input [31:0] crc, input [31:0] data);
-    crc_word = crc_byte(crc_byte(crc_byte(crc_byte(crc, data[7:0]), data[15:8]), data[23:16]), data[31:24]);
+    crc_word = crc_byte(crc_byte(crc_byte(crc_byte(crc, data[7:0]), data[15:8]), data[23:16]),
+        data[31:24]);
   endfunction
 
   reg [31:0] crc_q;
@@ -48,9 +52,9 @@ module cchip_pr_config_memory #(
   reg ours_q;  // payload for this slot
   reg [1:0] next_q;  // bytes of the next synchronisation word after its end
   reg legal_q;  // its module exists, its unused bits are 0
-  reg [7:0] module_q;
+  reg [`CCHIP_RM_ID_W-1:0] module_q;
   reg garbage_q;
-  reg [7:0] select_q;
+  reg [`CCHIP_RM_ID_W-1:0] select_q;
   initial count_q = 5'd0;
   initial ours_q = 1'b0;
   initial garbage_q = 1'b0;
@@ -70,8 +74,10 @@ module cchip_pr_config_memory #(
       always @(posedge clk) if (cfg_valid) last_q <= word[31:8];
       assign word = {cfg_data, last_q};
       assign crc_next = crc_byte(crc_q, cfg_data);
-      assign match = cfg_data == (next_q[1] ? (next_q[0] ? SYNC[31:24] : SYNC[23:16]) : next_q[0] ? SYNC[15:8] : SYNC[7:0]);
-      assign next = match | cfg_data == SYNC[7:0];
+      assign match =
+          cfg_data == (next_q[1] ? (next_q[0] ? SYNC[31:24] : SYNC[23:16]) : next_q[0]
+              ? SYNC[15:8] : SYNC[7:0]);
+      assign next = match || cfg_data == SYNC[7:0];
     end else if (CFG_W == 32) begin : gen_words
       assign word = cfg_data;
       assign crc_next = crc_word(crc_q, cfg_data);
@@ -89,7 +95,8 @@ module cchip_pr_config_memory #(
   endgenerate
 
   wire sync = word == SYNC;
-  wire [4:0] count_d = sync ? 5'd4 : count_q == 5'd0 || count_q == 5'd16 ? count_q : count_q + CFG_BYTES[4:0];
+  wire [4:0] count_d = sync ? 5'd4 : count_q == 5'd0 || count_q == 5'd16 ? count_q : count_q
+      + CFG_BYTES[4:0];
   wire named = count_d == 5'd8;  // word is {0, module, slot}
   wire here = word[7:0] == SLOT[7:0];
   wire complete = legal_q && count_d == 5'd16 && crc_next == RESIDUE;

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Do two objects touch, and where?
+///
+/// The answer is exact: for closed faces with the double coordinates of the meshes, and both poses as given, in real
+/// arithmetic without rounding. Touching counts. Objects are surfaces, not volumes: one wholly inside another does not
+/// touch it. A quad is the hull of its four vertices. There is no distance, no depth and no contact point.
+#ifndef CCHIP_COLLIDE_COLLIDE_HPP
+#define CCHIP_COLLIDE_COLLIDE_HPP
+
+#include <Eigen/Geometry>
+#include <cchip/collide/object.hpp>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace cchip {
+
+/// Where an object is: any affine map, x -> linear() x + translation(). Shears, mirrors, scales and singular maps are
+/// allowed. make_pose() makes rigid ones.
+using Pose = Eigen::Affine3d;
+
+/// Which contacts a caller wants.
+struct CollisionRequest {
+  enum class Contacts {
+    first,  ///< whether there is one; the device may name any
+    all     ///< every pair of faces that touch
+  };
+  Contacts contacts = Contacts::first;
+  /// With Contacts::all: the search ends when so many are found.
+  std::size_t most_contacts = std::numeric_limits<std::size_t>::max();
+};
+
+/// A face of A and a face of B that touch, by their numbers in the files (Mesh::file_face). A polygon that was cut into
+/// triangles is one face here.
+struct Contact {
+  std::uint32_t face_a = 0;
+  std::uint32_t face_b = 0;
+  friend bool operator==(const Contact& x, const Contact& y) { return x.face_a == y.face_a && x.face_b == y.face_b; }
+  friend bool operator<(const Contact& x, const Contact& y) {
+    return x.face_a != y.face_a ? x.face_a < y.face_a : x.face_b < y.face_b;
+  }
+};
+
+/// What a query cost.
+struct CollisionCounts {
+  std::uint64_t steps = 0;      ///< pairs of tree nodes that were expanded
+  std::uint64_t box_tests = 0;  ///< pairs of bounding volumes that were compared
+  std::uint64_t pairs = 0;      ///< pairs of primitives that were tested
+  std::uint64_t open = 0;       ///< of them, decided by exact arithmetic because faster arithmetic could not
+  std::uint64_t clocks = 0;     ///< clocks of the device; 0 for devices without a clock
+  CollisionCounts& operator+=(const CollisionCounts& x) {
+    steps += x.steps;
+    box_tests += x.box_tests;
+    pairs += x.pairs;
+    open += x.open;
+    clocks += x.clocks;
+    return *this;
+  }
+};
+
+struct CollisionResult {
+  bool hit = false;
+  /// In ascending order, none twice. With Contacts::first at most one.
+  std::vector<Contact> contacts;
+  CollisionCounts counts;
+};
+
+/// Poses of the two objects of one query.
+struct PosePair {
+  Pose a = Pose::Identity();
+  Pose b = Pose::Identity();
+};
+
+/// Something that answers queries. One call at a time for each device; objects may be shared between devices.
+class Device {
+ public:
+  virtual ~Device() = default;
+  virtual const char* name() const = 0;
+  /// \throws std::invalid_argument an entry of a pose is not finite or beyond 2^500 in magnitude
+  virtual CollisionResult collide(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
+                                  const CollisionRequest& request) = 0;
+  /// The same objects in many poses. `take` gets the number of the query and its result, one call at a time, in any
+  /// order. A device may use all cores.
+  virtual void collide(const Object& a, const Object& b, const std::vector<PosePair>& poses,
+                       const CollisionRequest& request,
+                       const std::function<void(std::size_t, CollisionResult&&)>& take);
+};
+
+/// One query.
+inline CollisionResult collide(Device& device, const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
+                               const CollisionRequest& request = {}) {
+  return device.collide(a, pose_a, b, pose_b, request);
+}
+
+/// A batch; results in the order of the poses.
+std::vector<CollisionResult> collide(Device& device, const Object& a, const Object& b,
+                                     const std::vector<PosePair>& poses, const CollisionRequest& request = {});
+
+}  // namespace cchip
+
+#endif

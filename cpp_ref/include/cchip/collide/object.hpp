@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// An object: a mesh made ready for collision tests.
+#ifndef CCHIP_COLLIDE_OBJECT_HPP
+#define CCHIP_COLLIDE_OBJECT_HPP
+
+#include <cchip/bvh/tree.hpp>
+#include <cchip/mesh/mesh.hpp>
+#include <memory>
+
+namespace cchip {
+
+/// A mesh with its tree, built once and shared by all copies of the object. Immutable, so it may be used by any number
+/// of threads at a time. It is the surface of the mesh, not the volume inside: an object wholly inside another does not
+/// touch it.
+class Object {
+ public:
+  /// Takes O(faces log(faces)) time. Degenerate faces are allowed.
+  /// \throws std::invalid_argument no faces, more than 2^24 - 2 of them, or a vertex that is not finite or beyond
+  /// 2^1000
+  explicit Object(Mesh mesh);
+
+  const Mesh& mesh() const { return data_->mesh; }
+  const bvh::Tree& tree() const { return data_->tree; }
+  /// Identity: equal for copies of one object only. Devices keep what they make of an object under it.
+  const void* id() const { return data_.get(); }
+
+ private:
+  struct Data {
+    Mesh mesh;
+    bvh::Tree tree;
+  };
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace cchip
+
+#endif

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Driver of cchip_primtest_subsystem: pairs of three kinds through slots whose modules are exchanged at run time.
+#ifndef CCHIP_DEVICE_RECONFIG_DRIVER_HPP
+#define CCHIP_DEVICE_RECONFIG_DRIVER_HPP
+
+#include <array>
+#include <cchip/device/machine.hpp>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace cchip {
+
+struct ReconfigOptions {
+  /// Payload of each bitstream, bytes, >= defs::bitstream_payload_min.
+  std::size_t payload_bytes = 2048;
+  /// Registers of the scheduler: pairs, clocks.
+  std::uint32_t minimum_batch = 64;
+  std::uint32_t maximum_age = 1024;
+  /// Seed of the bitstreams' payloads.
+  std::uint32_t seed = 1;
+  /// The driver gives up after so many proceed() without a pair accepted or answered.
+  std::uint64_t patience = 1000000;
+  /// Called with the number of pairs answered so far, now and then.
+  std::function<void(std::uint64_t)> progress;
+};
+
+/// What came back for a pair.
+struct ReconfigAnswer {
+  KindResult result;     ///< of the first answer
+  unsigned answers = 0;  ///< times that the tag came back
+};
+
+/// One swap as its report and the registers phase_clocks tell, clocks.
+struct ReconfigSwap {
+  int slot = 0;
+  ModuleId module_id = ModuleId::blank;
+  SwapCode code = SwapCode::ok;
+  std::array<std::uint32_t, 9> phases{};  ///< index: SwapPhase - 1
+};
+
+struct ReconfigResult {
+  std::vector<ReconfigAnswer> answers;  ///< in the order of the pairs
+  std::vector<ReconfigSwap> swaps;
+  std::uint64_t foreign_answers = 0;  ///< answers with a tag that nobody sent
+};
+
+/// Writes the bitstreams and their table, enables the scheduler, sends the pairs in their order and returns when all
+/// are answered. Pairs are as the stream takes them: triangle before quad, quads canonical, coordinates in range; their
+/// tags are replaced. Swaps that end within the time of some twenty register accesses may be missed in `swaps`. \throws
+/// std::invalid_argument a coordinate does not fit the machine's width, the payload is too short \throws
+/// std::runtime_error no answer in time, a register that refuses
+ReconfigResult run_reconfig(Machine& machine, const std::vector<PairRequest>& pairs, const ReconfigOptions& options);
+
+}  // namespace cchip
+
+#endif

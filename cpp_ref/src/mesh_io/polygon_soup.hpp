@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What the readers of the formats hand over: points and polygons as the file lists them.
+#ifndef CCHIP_SRC_MESH_IO_POLYGON_SOUP_HPP
+#define CCHIP_SRC_MESH_IO_POLYGON_SOUP_HPP
+
+#include <cchip/geometry/primitive.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cchip::mesh_io {
+
+/// A file that cannot be read: what is wrong, and the line if the format has lines.
+class FormatError : public std::runtime_error {
+ public:
+  explicit FormatError(const std::string& what, std::size_t line_number = 0)
+      : std::runtime_error(what), line(line_number) {}
+  std::size_t line;  ///< counted from 1; 0: none
+};
+
+struct PolygonSoup {
+  std::vector<Vec3d> points;
+  std::vector<std::uint32_t> corners;  ///< numbers of points, of all polygons one after the other
+  struct Polygon {
+    std::size_t end;   ///< behind its last corner in `corners`
+    std::size_t line;  ///< of the file; 0: binary file
+  };
+  std::vector<Polygon> polygons;
+
+  /// \throws FormatError a coordinate is not finite
+  void add_point(const Vec3d& point, std::size_t line);
+  /// \throws FormatError the number is below 0 or does not fit in 32 bits
+  void add_corner(double number, std::size_t line);
+  /// The corners since the last polygon become one.
+  /// \throws FormatError there are fewer than three
+  void end_polygon(std::size_t line);
+};
+
+// The readers take the whole file. Whatever counts the file announces, they keep only what they have read, so time and
+// memory are at most proportional to its size.
+// \throws FormatError the text is not of the format, or ends too early
+
+PolygonSoup read_obj(std::string_view file);
+PolygonSoup read_off(std::string_view file);
+PolygonSoup read_ply(std::string_view file);
+PolygonSoup read_stl(std::string_view file);
+
+}  // namespace cchip::mesh_io
+
+#endif

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Wavefront OBJ, polygons only.
+#include <algorithm>
+#include <array>
+
+#include "polygon_soup.hpp"
+#include "text.hpp"
+
+namespace cchip::mesh_io {
+namespace {
+
+/// Statements that add no face: texture, normals, names, materials, display, points and lines.
+constexpr std::array<std::string_view, 20> without_faces = {
+    "vt",     "vn",     "vp",     "g",        "o",        "s",     "mg",  "l",          "p",         "usemtl",
+    "mtllib", "usemap", "maplib", "c_interp", "d_interp", "bevel", "lod", "shadow_obj", "trace_obj", "end"};
+
+void add_point(const Lines& lines, PolygonSoup& soup) {
+  const std::size_t numbers = lines.words().size() - 1;
+  // a fourth number alone is a weight, which only free-form surfaces have; with more behind it they are colours
+  if (numbers == 4 && lines.to_number(4) != 1) throw FormatError("a weight other than 1 is not read", lines.number());
+  for (std::size_t i = 1; i <= numbers; ++i) lines.to_number(i);
+  soup.add_point({lines.to_number(1), lines.to_number(2), lines.to_number(3)}, lines.number());
+}
+
+/// The vertex of "v", "v/vt", "v//vn" or "v/vt/vn", counted from 0. A negative number counts back from the last vertex.
+double vertex_of(std::string_view corner, const Lines& lines, std::size_t points) {
+  const auto end = std::min(corner.find('/'), corner.size());
+  const double number = to_number(corner.substr(0, end), lines.number());
+  for (std::size_t begin = end; begin < corner.size();) {
+    const auto next = std::min(corner.find('/', begin + 1), corner.size());
+    if (next > begin + 1) to_number(corner.substr(begin + 1, next - begin - 1), lines.number());
+    begin = next;
+  }
+  return number < 0 ? static_cast<double>(points) + number : number - 1;
+}
+
+}  // namespace
+
+PolygonSoup read_obj(std::string_view file) {
+  PolygonSoup soup;
+  Lines lines(file, {true, true});
+  while (lines.next()) {
+    const std::string_view statement = lines.words()[0];
+    if (statement == "v") {
+      add_point(lines, soup);
+    } else if (statement == "f" || statement == "fo") {
+      for (std::size_t i = 1; i < lines.words().size(); ++i) {
+        soup.add_corner(vertex_of(lines.words()[i], lines, soup.points.size()), lines.number());
+      }
+      soup.end_polygon(lines.number());
+    } else if (std::find(without_faces.begin(), without_faces.end(), statement) == without_faces.end()) {
+      throw FormatError("the line is no statement of OBJ, or one of free-form surfaces, which are not read",
+                        lines.number());
+    }
+  }
+  return soup;
+}
+
+}  // namespace cchip::mesh_io

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// STL as text (doubles as they are written) and binary (single precision).
+#include <array>
+#include <cctype>
+#include <cstring>
+
+#include "polygon_soup.hpp"
+#include "text.hpp"
+
+namespace cchip::mesh_io {
+namespace {
+
+constexpr std::size_t header_bytes = 84;
+constexpr std::size_t triangle_bytes = 50;
+
+std::uint32_t little_endian(std::string_view bytes) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 4; i > 0; --i) value = value << 8 | static_cast<unsigned char>(bytes[i - 1]);
+  return value;
+}
+
+double to_float(std::string_view bytes) {
+  const std::uint32_t bits = little_endian(bytes);
+  float value = 0;
+  std::memcpy(&value, &bits, sizeof value);
+  return static_cast<double>(value);
+}
+
+std::uint64_t bytes_announced(std::string_view file) {
+  return header_bytes + std::uint64_t{little_endian(file.substr(header_bytes - 4))} * triangle_bytes;
+}
+
+void add_triangle(PolygonSoup& soup, const std::array<Vec3d, 3>& vertices, std::size_t line) {
+  for (const Vec3d& vertex : vertices) {
+    soup.add_corner(static_cast<double>(soup.points.size()), line);
+    soup.add_point(vertex, line);
+  }
+  soup.end_polygon(line);
+}
+
+PolygonSoup read_binary(std::string_view file) {
+  if (file.size() < header_bytes) throw FormatError("the file ends within the header of a binary STL");
+  if (bytes_announced(file) != file.size()) {
+    throw FormatError("the header announces " + std::to_string(bytes_announced(file)) + " bytes, the file has " +
+                      std::to_string(file.size()));
+  }
+  PolygonSoup soup;
+  for (file.remove_prefix(header_bytes); !file.empty(); file.remove_prefix(triangle_bytes)) {
+    std::array<Vec3d, 3> vertices;
+    for (std::size_t i = 0; i < 9; ++i) {
+      vertices[i / 3][static_cast<Eigen::Index>(i % 3)] = to_float(file.substr(12 + 4 * i));
+    }
+    add_triangle(soup, vertices, 0);
+  }
+  return soup;
+}
+
+/// Keywords may be written in capitals.
+bool is_keyword(std::string_view word, std::string_view keyword) {
+  return std::equal(word.begin(), word.end(), keyword.begin(), keyword.end(),
+                    [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+}
+
+void require(Words& words, std::string_view keyword) {
+  if (!is_keyword(words.next(), keyword)) {
+    throw FormatError("'" + std::string(keyword) + "' is missing", words.line());
+  }
+}
+
+double require_number(Words& words) {
+  const std::string_view word = words.next();
+  if (word.empty()) throw FormatError("the file ends where a number must follow", words.line());
+  return to_number(word, words.line());
+}
+
+/// A facet, its first word read.
+void read_facet(Words& words, PolygonSoup& soup) {
+  require(words, "normal");
+  for (int i = 0; i < 3; ++i) require_number(words);
+  require(words, "outer");
+  require(words, "loop");
+  std::array<Vec3d, 3> vertices;
+  for (Vec3d& vertex : vertices) {
+    require(words, "vertex");
+    for (Eigen::Index i = 0; i < 3; ++i) vertex[i] = require_number(words);
+  }
+  add_triangle(soup, vertices, words.line());
+  require(words, "endloop");
+  require(words, "endfacet");
+}
+
+PolygonSoup read_text(std::string_view file) {
+  PolygonSoup soup;
+  Words words(file);
+  for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+    if (!is_keyword(word, "solid")) throw FormatError("'solid' is missing", words.line());
+    words.skip_line();
+    for (word = words.next(); is_keyword(word, "facet"); word = words.next()) read_facet(words, soup);
+    if (!is_keyword(word, "endsolid")) throw FormatError("'facet' or 'endsolid' is missing", words.line());
+    words.skip_line();
+  }
+  return soup;
+}
+
+}  // namespace
+
+PolygonSoup read_stl(std::string_view file) {
+  const bool exact_size = file.size() >= header_bytes && bytes_announced(file) == file.size();
+  const auto first = std::min(file.find_first_not_of(" \t\r\n"), file.size());
+  return !exact_size && is_keyword(file.substr(first, 5), "solid") ? read_text(file) : read_binary(file);
+}
+
+}  // namespace cchip::mesh_io

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cchip/mesh_io/mesh_file.hpp>
+#include <cstring>
+#include <stdexcept>
+
+namespace cchip {
+namespace {
+
+void put(std::ostream& out, std::uint64_t value, int bytes) {
+  for (int i = 0; i < bytes; ++i) out.put(static_cast<char>(value >> 8 * i));
+}
+
+void put(std::ostream& out, double value) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  put(out, bits, 8);
+}
+
+void put(std::ostream& out, const Colour& colour) {
+  for (const std::uint8_t c : colour) put(out, c, 1);
+}
+
+}  // namespace
+
+void write_ply(std::ostream& out, const Mesh& mesh, const std::vector<Colour>& face_colours) {
+  if (face_colours.size() != mesh.faces.size()) throw std::invalid_argument("write_ply: one colour for each face");
+  std::size_t vertices = 0;
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) vertices += mesh.primitive(i).vertex_count();
+  const char* const colour = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  out << "ply\nformat binary_little_endian 1.0\nelement vertex " << vertices
+      << "\nproperty double x\nproperty double y\nproperty double z\n"
+      << colour << "element face " << mesh.faces.size() << "\nproperty list uchar uint vertex_indices\n"
+      << colour << "end_header\n";
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const Primitive face = mesh.primitive(i);
+    for (std::size_t k = 0; k < face.vertex_count(); ++k) {
+      for (const double x : face.v[k]) put(out, x);
+      put(out, face_colours[i]);
+    }
+  }
+  std::uint64_t vertex = 0;
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const std::size_t corners = mesh.primitive(i).vertex_count();
+    put(out, corners, 1);
+    for (std::size_t k = 0; k < corners; ++k) put(out, vertex++, 4);
+    put(out, face_colours[i]);
+  }
+}
+
+}  // namespace cchip

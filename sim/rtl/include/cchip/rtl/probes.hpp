@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Signals inside the Verilated RTL, by name. This is the only file that knows where a signal lies in the hierarchy;
+/// its user includes <V...___024root.h> of the model.
+///
+/// A function template takes every model that has the signal, whatever the name of its class.
+#ifndef CCHIP_RTL_PROBES_HPP
+#define CCHIP_RTL_PROBES_HPP
+
+namespace cchip::probes {
+
+#define CCHIP_PROBE(name, signal)                             \
+  template <class Model>                                      \
+  auto name(const Model& top)->decltype(+top.rootp->signal) { \
+    return top.rootp->signal;                                 \
+  }
+
+// Axis controller of a primitive test: a beat leaves it; a pair waits for an axis slot.
+#define CCHIP_CONTROLLER_PROBES(module)                                                    \
+  CCHIP_PROBE(beat_valid, module##__DOT__u_primtest__DOT__u_controller__DOT__beat_valid_q) \
+  CCHIP_PROBE(pair_waits, module##__DOT__u_primtest__DOT__u_controller__DOT__pair_waits)
+CCHIP_CONTROLLER_PROBES(cchip_primtest_tri_tri)
+CCHIP_CONTROLLER_PROBES(cchip_primtest_tri_quad)
+CCHIP_CONTROLLER_PROBES(cchip_primtest_quad_quad)
+#undef CCHIP_CONTROLLER_PROBES
+
+// cchip_primtest_array: the lane whose result leaves next, one-hot.
+CCHIP_PROBE(array_choice, cchip_primtest_array__DOT__choice_q)
+
+// cchip_primtest_subsystem: the swap under way and its report.
+#define CCHIP_SUBSYSTEM_PROBE(name, signal) CCHIP_PROBE(name, cchip_primtest_subsystem__DOT__##signal)
+CCHIP_SUBSYSTEM_PROBE(swap_phase, u_controller__DOT__u_sequencer__DOT__phase_q)
+CCHIP_SUBSYSTEM_PROBE(swap_slot, u_scheduler__DOT__slot_of_swap_q)
+CCHIP_SUBSYSTEM_PROBE(report_valid, report_valid)
+CCHIP_SUBSYSTEM_PROBE(report_slot, report_slot)
+CCHIP_SUBSYSTEM_PROBE(report_module, report_module)
+CCHIP_SUBSYSTEM_PROBE(report_code, report_code)
+CCHIP_SUBSYSTEM_PROBE(report_lost, report_lost)
+CCHIP_SUBSYSTEM_PROBE(bitstreams_valid, u_regs__DOT__bitstream_valid_value_q)
+
+// A slot of it: pairs inside, the module that it shows, whether it is decoupled.
+#define CCHIP_SLOT_PROBE(n, name, signal) \
+  CCHIP_SUBSYSTEM_PROBE(slot##n##_##name, gen_slots__BRA__##n##__KET____DOT__u_slot__DOT__##signal)
+#define CCHIP_SLOT_PROBES(n)                                \
+  CCHIP_SLOT_PROBE(n, outstanding, outstanding_q)           \
+  CCHIP_SLOT_PROBE(n, module_id, u_decoupler__DOT__rm_id_q) \
+  CCHIP_SLOT_PROBE(n, decoupled, u_decoupler__DOT__decoupled_q)
+CCHIP_SLOT_PROBES(0)
+CCHIP_SLOT_PROBES(1)
+#undef CCHIP_SLOT_PROBES
+#undef CCHIP_SLOT_PROBE
+#undef CCHIP_SUBSYSTEM_PROBE
+#undef CCHIP_PROBE
+
+}  // namespace cchip::probes
+
+#endif

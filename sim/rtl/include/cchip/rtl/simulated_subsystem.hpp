@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The Verilated cchip_primtest_subsystem as a machine: two slots, real swaps.
+#ifndef CCHIP_RTL_SIMULATED_SUBSYSTEM_HPP
+#define CCHIP_RTL_SIMULATED_SUBSYSTEM_HPP
+
+#include <cchip/device/machine.hpp>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace cchip {
+
+struct SimulatedSubsystemOptions {
+  /// Seed of what the RTL leaves undefined at power-up.
+  std::uint64_t seed = 1;
+  /// FST file, none if empty, of the first trace_clocks clocks.
+  std::string trace_path;
+  std::uint64_t trace_clocks = 30000;
+};
+
+/// What only a simulation can see.
+struct SubsystemObservations {
+  std::uint64_t clocks = 0;
+  std::uint64_t transfer_clocks = 0;   ///< clocks of phase TRANSFER
+  std::uint64_t hidden_clocks = 0;     ///< of them, with pairs inside the other slot
+  std::uint64_t first_swap_start = 0;  ///< clocks since reset; both 0: none yet
+  std::uint64_t first_swap_end = 0;
+};
+
+/// After reset slot 0 holds tri-tri and slot 1 quad-quad. Errors of the RTL or of a stream are std::runtime_error.
+class SimulatedSubsystem : public Machine {
+ public:
+  /// Width of the configuration port, bit, and clocks per word of it.
+  static constexpr int port_w = 8;
+  static constexpr int clocks_per_word = 2;
+
+  explicit SimulatedSubsystem(const SimulatedSubsystemOptions& options);
+  ~SimulatedSubsystem() override;
+
+  std::uint32_t read_register(std::uint32_t offset) override;
+  void write_register(std::uint32_t offset, std::uint32_t value) override;
+  void write_memory(std::uint32_t address, const Bytes& bytes) override;
+  bool send(const KindRequest& request) override;
+  std::optional<KindResult> receive() override;
+  bool interrupt() override;
+  void proceed() override;
+
+  const SubsystemObservations& observations() const;
+  /// Writes the layout of the waveform beside it, zoomed to the first swap.
+  void write_layout() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace cchip
+
+#endif

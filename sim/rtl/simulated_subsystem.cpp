@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <Vcchip_primtest_subsystem.h>
+#include <Vcchip_primtest_subsystem___024root.h>
+
+#include <algorithm>
+#include <cchip/rtl/pair_port.hpp>
+#include <cchip/rtl/probes.hpp>
+#include <cchip/rtl/simulated_subsystem.hpp>
+#include <cchip/sim/axi_lite.hpp>
+#include <cchip/sim/axi_memory.hpp>
+#include <cchip/sim/simulation.hpp>
+#include <cchip/waves/wave_layout.hpp>
+#include <cchip/wire/registers.hpp>
+#include <deque>
+#include <stdexcept>
+
+namespace cchip {
+namespace {
+
+using Model = Vcchip_primtest_subsystem;
+
+constexpr std::uint64_t time_units_per_clock = 10;
+constexpr std::uint64_t reset_clocks = 2;
+
+sim::SimulationOptions simulation_options(const SimulatedSubsystemOptions& options) {
+  sim::SimulationOptions o;
+  o.seed = options.seed;
+  o.timeout_clocks = 0;
+  o.trace_path = options.trace_path;
+  o.trace_clocks = options.trace_clocks;
+  return o;
+}
+
+/// The two streams of pairs.
+class Streams : public sim::Agent {
+ public:
+  explicit Streams(Model& model) : model_(model), port_(model, defs::coord_w_default) {}
+
+  bool send(const KindRequest& request) {
+    if (offers_) return false;
+    port_.put(request.request);
+    model_.s_pair_kind = static_cast<CData>(request.kind);
+    offers_ = true;
+    return true;
+  }
+
+  void drive(const sim::ClockInfo& now) override {
+    model_.m_result_ready = 1;
+    model_.s_pair_valid = offers_ && !now.in_reset ? 1 : 0;
+  }
+  void sample(const sim::ClockInfo& now) override {
+    if (now.in_reset) return;
+    if (model_.s_pair_ready != 0) offers_ = false;
+    if (model_.m_result_valid != 0) results.push_back({port_.result(), static_cast<int>(model_.m_result_kind)});
+  }
+
+  std::deque<KindResult> results;
+
+ private:
+  Model& model_;
+  sim::PairPort<Model> port_;
+  bool offers_ = false;
+};
+
+/// Counts what the registers do not tell.
+class Observer : public sim::Agent {
+ public:
+  explicit Observer(const Model& model) : model_(model) {}
+
+  void drive(const sim::ClockInfo&) override {}
+  void sample(const sim::ClockInfo& now) override {
+    if (now.in_reset) return;
+    ++seen.clocks;
+    const auto phase = static_cast<SwapPhase>(probes::swap_phase(model_));
+    if (phase == SwapPhase::idle) {
+      if (seen.first_swap_start != 0 && seen.first_swap_end == 0) seen.first_swap_end = now.clock;
+    } else if (seen.first_swap_start == 0) {
+      seen.first_swap_start = now.clock;
+    }
+    if (phase != SwapPhase::transfer) return;
+    ++seen.transfer_clocks;
+    const bool in_slot_0 = probes::swap_slot(model_) == 0;
+    seen.hidden_clocks += (in_slot_0 ? probes::slot1_outstanding(model_) : probes::slot0_outstanding(model_)) != 0;
+  }
+
+  SubsystemObservations seen;
+
+ private:
+  const Model& model_;
+};
+
+/// Errors of the simulation are defects of the RTL.
+template <class Action>
+auto guarded(const Action& action) {
+  try {
+    return action();
+  } catch (const sim::SimulationError& error) {
+    throw std::runtime_error(std::string("simulated subsystem: ") + error.what() +
+                             "; this is a defect, please report it");
+  }
+}
+
+}  // namespace
+
+struct SimulatedSubsystem::Parts {
+  explicit Parts(const SimulatedSubsystemOptions& o) : options(o), simulation(simulation_options(o)) {
+    simulation->cfg_error = 0;
+    for (sim::Agent* agent : std::initializer_list<sim::Agent*>{&memory, &registers, &streams, &observer}) {
+      simulation.add(*agent);
+    }
+    simulation.reset(static_cast<int>(reset_clocks));
+  }
+
+  SimulatedSubsystemOptions options;
+  sim::Simulation<Model> simulation;
+  Streams streams{simulation.top()};
+  Observer observer{simulation.top()};
+  sim::AxiMemory<Model> memory{simulation.top()};
+  sim::AxiLiteMaster<Model> registers{simulation.top()};
+};
+
+SimulatedSubsystem::SimulatedSubsystem(const SimulatedSubsystemOptions& options)
+    : parts_(guarded([&] { return std::make_unique<Parts>(options); })) {}
+SimulatedSubsystem::~SimulatedSubsystem() = default;
+
+std::uint32_t SimulatedSubsystem::read_register(std::uint32_t offset) {
+  return guarded([&] {
+    const sim::AxiLiteWord word = parts_->registers.read(parts_->simulation, offset);
+    if (!word.ok) throw sim::SimulationError("register " + std::to_string(offset) + " refuses a read");
+    return word.data;
+  });
+}
+
+void SimulatedSubsystem::write_register(std::uint32_t offset, std::uint32_t value) {
+  guarded([&] {
+    if (!parts_->registers.write(parts_->simulation, offset, value)) {
+      throw sim::SimulationError("register " + std::to_string(offset) + " refuses a write");
+    }
+  });
+}
+
+void SimulatedSubsystem::write_memory(std::uint32_t address, const Bytes& bytes) {
+  parts_->memory.write(address, bytes);
+}
+
+bool SimulatedSubsystem::send(const KindRequest& request) { return parts_->streams.send(request); }
+
+std::optional<KindResult> SimulatedSubsystem::receive() {
+  std::deque<KindResult>& results = parts_->streams.results;
+  if (results.empty()) return std::nullopt;
+  const KindResult result = results.front();
+  results.pop_front();
+  return result;
+}
+
+bool SimulatedSubsystem::interrupt() { return parts_->simulation->irq != 0; }
+
+void SimulatedSubsystem::proceed() {
+  guarded([&] { parts_->simulation.step(); });
+}
+
+const SubsystemObservations& SimulatedSubsystem::observations() const { return parts_->observer.seen; }
+
+void SimulatedSubsystem::write_layout() const {
+  if (parts_->options.trace_path.empty()) return;
+  const SubsystemObservations& seen = parts_->observer.seen;
+  std::uint64_t from = 0;
+  std::uint64_t to = parts_->options.trace_clocks;
+  if (seen.first_swap_end != 0) {
+    from = reset_clocks + seen.first_swap_start;
+    to = std::min(to, reset_clocks + seen.first_swap_end);
+  }
+  write_swap_gtkw(parts_->options.trace_path, from * time_units_per_clock, to * time_units_per_clock);
+}
+
+}  // namespace cchip

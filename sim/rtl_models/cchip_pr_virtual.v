@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+// cchip_pr_virtual: a reconfigurable region for simulations: all four modules and a selector that
+// the words of the configuration port move (cchip_pr_config_memory). Same ports as cchip_pr_region
+// and the configuration port.
+//   garbage      from the word of a payload that names the slot to its last one, and for ever after
+//                a bad payload, every output of the region is random on every clock, and all
+//                modules are fed random pairs without reset. A controller that does not decouple
+//                sees garbage; one that does not reset afterwards sees answers to pairs that were
+//                never sent
+//   otherwise    the selected module, nothing added; rst resets all of them
+module cchip_pr_virtual #(
+    // number of this slot, 0..255
+    parameter integer SLOT_ID = 0,
+    // module in the slot at power-up, CCHIP_RM_BLANK .. CCHIP_RM_QUAD_QUAD, 0..3
+    parameter integer RM_ID = 1,
+    // width of the configuration port, bit, 8 or 32
+    parameter integer CFG_W = 8,
+    // start of the random numbers, any
+    parameter integer SEED = 1,
+    // see cchip_pr_region
+    parameter integer COORD_W = 16,
+    parameter integer SUBSTAGES = 10,
+    parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
+    parameter integer ABSOLUTE_PROJECTION = 0,
+    parameter integer WARPED_EXACT = 1
+) (
+    input  wire                                   clk,
+    input  wire                                   rst,
+    input  wire                                   cfg_valid,
+    input  wire [                      CFG_W-1:0] cfg_data,
+    input  wire                                   s_pair_valid,
+    output wire                                   s_pair_ready,
+    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
+    input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
+    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
+    output wire                                   m_result_valid,
+    input  wire                                   m_result_ready,
+    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
+    output wire                                   m_result_hit,
+    output wire                                   m_result_grid,
+    output wire                                   m_result_definite,
+    output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
+    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
+    output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
+    output wire                                   idle
+);
+
+  localparam integer PAIR_W = `CCHIP_REQUEST_W(COORD_W);
+  localparam integer RESULT_W = `CCHIP_RESULT_W;
+  // {ready; valid; result; rm_id; idle}
+  localparam integer OUT_W = 1 + 1 + RESULT_W + `CCHIP_RM_ID_W + 1;
+  localparam [31:0] STEP = OUT_W;
+  localparam [31:0] SLOT = SLOT_ID;
+  localparam [31:0] START = SEED;
+
+  wire garbage;
+  wire [`CCHIP_RM_ID_W-1:0] select;
+  cchip_pr_config_memory #(
+      .SLOT_ID(SLOT_ID),
+      .RM_ID  (RM_ID),
+      .CFG_W  (CFG_W)
+  ) u_memory (
+      .clk      (clk),
+      .cfg_valid(cfg_valid),
+      .cfg_data (cfg_data),
+      .garbage  (garbage),
+      .select   (select)
+  );
+
+  // ---- random numbers: xorshift of 64 bits; the pair is the last of them
+  reg [63:0] random_q;
+  reg [PAIR_W+63:0] pair_q;
+  initial random_q = {START, SLOT ^ 32'h9E3779B9};
+  initial pair_q = {PAIR_W + 64{1'b0}};
+
+  function [63:0] xorshift(input [63:0] from);
+    begin
+      xorshift = from ^ {from[50:0], 13'd0};
+      xorshift = xorshift ^ {7'd0, xorshift[63:7]};
+      xorshift = xorshift ^ {xorshift[46:0], 17'd0};
+    end
+  endfunction
+
+  always @(posedge clk)
+    if (garbage) begin
+      random_q <= xorshift(random_q);
+      pair_q   <= {pair_q[PAIR_W-1:0], random_q};
+    end
+
+  // ---- the modules
+  wire [PAIR_W-1:0] pair = garbage ? pair_q[PAIR_W-1:0] :
+      {s_pair_mode, s_pair_err, s_pair_b, s_pair_a, s_pair_tag};
+  wire [4*OUT_W-1:0] outs;
+  genvar i;
+  generate
+    for (i = 0; i < 4; i = i + 1) begin : gen_module
+      localparam [7:0] ID = i;
+      wire here = select == ID;
+      wire ready, valid, quiet;
+      wire [RESULT_W-1:0] result;
+      wire [`CCHIP_RM_ID_W-1:0] module_id;
+      cchip_pr_region #(
+          .RM_ID              (i),
+          .COORD_W            (COORD_W),
+          .SUBSTAGES          (SUBSTAGES),
+          .CONTEXTS           (CONTEXTS),
+          .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
+          .WARPED_EXACT       (WARPED_EXACT)
+      ) u_region (
+          .clk              (clk),
+          .rst              (rst & ~garbage),
+          .s_pair_valid     (garbage | (here & s_pair_valid)),
+          .s_pair_ready     (ready),
+          .s_pair_tag       (pair[`CCHIP_REQUEST_TAG]),
+          .s_pair_mode      (pair[`CCHIP_REQUEST_MODE(COORD_W)]),
+          .s_pair_a         (pair[`CCHIP_REQUEST_A(COORD_W)]),
+          .s_pair_b         (pair[`CCHIP_REQUEST_B(COORD_W)]),
+          .s_pair_err       (pair[`CCHIP_REQUEST_ERR(COORD_W)]),
+          .m_result_valid   (valid),
+          .m_result_ready   (garbage ? random_q[63] : here & m_result_ready),
+          .m_result_tag     (result[`CCHIP_RESULT_TAG]),
+          .m_result_hit     (result[`CCHIP_RESULT_HIT]),
+          .m_result_grid    (result[`CCHIP_RESULT_GRID]),
+          .m_result_definite(result[`CCHIP_RESULT_DEFINITE]),
+          .m_result_axis    (result[`CCHIP_RESULT_AXIS]),
+          .m_result_beats   (result[`CCHIP_RESULT_BEATS]),
+          .rm_id            (module_id),
+          .idle             (quiet)
+      );
+      assign outs[OUT_W*i+:OUT_W] = {ready, valid, result, module_id, quiet};
+    end
+  endgenerate
+
+  assign {s_pair_ready, m_result_valid, m_result_beats, m_result_axis, m_result_definite,
+          m_result_grid, m_result_hit, m_result_tag, rm_id, idle} = garbage ? random_q[OUT_W-1:0]
+              : outs[STEP*{30'd0, select[1:0]}+:OUT_W];
+
+  wire unused = &{1'b0, select[7:2], pair_q[PAIR_W+63:PAIR_W]};
+
+endmodule
+`default_nettype wire
