@@ -22,7 +22,7 @@ struct Half {
   unsigned children;
 };
 
-/// Key from which on a child pair overlaps well, in half steps of the grid: it is likely to hold a contact.
+/// Key from which on a child pair overlaps well: it is likely to hold a contact.
 constexpr std::uint8_t strong_key = 8;
 
 struct NodePair {
