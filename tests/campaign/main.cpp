@@ -70,7 +70,7 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
                    "goal: definite hits, % of the pairs with eta 1, shape and programme each")
       ->capture_default_str();
   add_coord_w(*certainty, e->coord_w);
-  const auto [leaves, l] = add("leaves", "leaf pairs of two meshes whose 24-DOPs overlap", LeavesOptions{}, run_leaves);
+  const auto [leaves, l] = add("leaves", "leaf pairs of two meshes whose 26-DOPs overlap", LeavesOptions{}, run_leaves);
   leaves->add_option("meshes", l->meshes, "mesh files, each against itself; none: built-in torus, gear, quad torus");
   leaves->add_option("--poses", l->poses, "poses of the second mesh")
       ->check(CLI::Range(1, 1000))
