@@ -35,7 +35,7 @@ export JOBS
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv build sim sim-reconfig sim-levels wave test test-long formal test-gates test-debug \
   test-asan lint tidy format campaign campaign-build campaign-grid campaign-classes campaign-certainty \
-  campaign-leaves campaign-swaps picture table1 table1-plot bench-reconfig export fpga fpga-quick install clean
+  campaign-leaves campaign-boxes campaign-swaps picture table1 table1-plot bench-reconfig export fpga fpga-quick install clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
@@ -121,6 +121,11 @@ campaign-leaves: campaign-build $(LEAVES) $(QUAD_LEAVES) ## leaf pairs of meshes
 	$(CAMPAIGN) leaves
 	$(CAMPAIGN) leaves $(LEAVES)
 	$(CAMPAIGN) leaves --quads $(QUAD_LEAVES)
+
+CASES ?= 10000000
+campaign-boxes: $(RELEASE)/build.ninja ## box test: CASES touching volumes with every rounding error at its worst (CCHIP_SEED repeats a run)
+	cmake --build $(RELEASE) -j $(JOBS) --target test_ref
+	CCHIP_BOX_CASES=$(CASES) $(RELEASE)/bin/test_ref 'box test: volumes that share a point are never separated'
 
 SWAPS ?= 10000
 campaign-swaps: $(RELEASE)/build.ninja ## SWAPS exchanges of modules under random traffic with faults (CCHIP_SEED repeats a run)

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cchip/device/device.hpp>
 #include <cchip/stimulus/csv_reader.hpp>
 #include <cchip/stimulus/pair_columns.hpp>
 #include <cchip/stimulus/progress.hpp>
@@ -16,6 +17,7 @@
 #include <optional>
 #include <utility>
 
+#include "collide.hpp"
 #include "demo.hpp"
 #include "engines.hpp"
 #include "mesh_source.hpp"
@@ -35,6 +37,8 @@ const Choices<EngineKind> engines = {
 const Choices<EngineKind> hardware_engines = {engines[0], engines[1]};
 const Choices<PairMode> programs = {{"exhaustive", PairMode::exhaustive}, {"directed", PairMode::directed}};
 const Choices<Format> formats = {{"table", Format::table}, {"csv", Format::csv}, {"jsonl", Format::jsonl}};
+
+const Choices<std::optional<bool>> contact_choices = {{"first", false}, {"all", true}};
 
 struct PairsOptions {
   std::string file;
@@ -166,6 +170,12 @@ void add_engine_options(CLI::App& command, EngineOptions& engine, Format& format
   command.add_option("--seed", engine.seed, seed_words);
 }
 
+std::string device_words() {
+  std::string words;
+  for (const std::string& name : device_names()) words += (words.empty() ? "" : ", ") + name;
+  return words;
+}
+
 void add_pairs(CLI::App& app, PairsOptions& options) {
   CLI::App* command = app.add_subcommand("pairs", "Answer the pairs of primitives in a CSV file");
   command->add_option("FILE", options.file, "CSV file with columns a0x..a2z, b0x..b2z; - reads standard input")
@@ -198,6 +208,38 @@ void add_meshpairs(CLI::App& app, MeshPairsOptions& options) {
       "  cchip meshpairs a.obj b.stl --pose 0.5,0,0\n"
       "  cchip meshpairs a.off a.off --pose 0,0,1,0,0,90 --format csv > hits.csv\n"
       "  cchip meshpairs a.obj b.stl --ply hits.ply > pairs.txt && meshlab hits.ply");
+}
+
+void add_collide(CLI::App& app, CollideOptions& options) {
+  CLI::App* command = app.add_subcommand(
+      "collide", "Do two meshes (OBJ, STL, PLY, OFF) touch, and where? B placed by one pose or by many");
+  command->add_option("A", options.file_a, "mesh that stays")->required();
+  command->add_option("B", options.file_b, "mesh that is placed")->required();
+  auto* pose = command->add_option("--pose", options.pose,
+                                   "tx,ty,tz[,rx,ry,rz]: rotate B by degrees about x, then y, then z, then move it");
+  auto* matrix = command->add_option("--pose-matrix", options.pose_matrix,
+                                     "twelve numbers, the 3x4 matrix [R|t] of any affine map row by row");
+  auto* poses = command->add_option("--poses", options.poses_file,
+                                    "CSV file with columns r00..r22, tx, ty, tz: a query for each row");
+  pose->excludes(matrix)->excludes(poses);
+  matrix->excludes(poses);
+  add_choice(*command, "--contacts", options.all_contacts, contact_choices,
+             "stop at the first contact or find all (default: all, with --poses first)");
+  command->add_option("--most", options.most_contacts, "find at most N contacts of a query (default: no limit)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--device", options.device, "what answers: " + device_words() + " (default cpu)");
+  add_choice(*command, "--format", options.format, formats, "output (default table)");
+  command
+      ->add_option("--expect", options.expect,
+                   "compare with this column of the poses: 0 or 1, with --contacts all their number")
+      ->needs(poses);
+  command->add_option("--ply", options.ply, "write both meshes, the faces that touch coloured, for MeshLab or Blender")
+      ->excludes(poses);
+  command->footer(
+      "Examples:\n"
+      "  cchip collide a.obj b.stl --pose 0.5,0,0\n"
+      "  cchip collide a.obj b.stl --pose 0.5,0,0 --format csv > contacts.csv\n"
+      "  cchip collide a.obj b.stl --poses poses.csv --expect touches");
 }
 
 void add_demo(CLI::App& app, DemoOptions& options) {
@@ -245,12 +287,15 @@ int dispatch(std::vector<std::string> arguments, const Streams& streams) {
       "Exit codes: 0 done, 1 internal error, 2 wrong input or command line, 3 answers differ.\n"
       "Examples:\n"
       "  cchip demo\n"
+      "  cchip collide a.obj b.stl --pose 0.5,0,0\n"
       "  cchip pairs pairs.csv --expect touches\n"
       "  cchip meshpairs a.obj b.stl --pose 0.5,0,0\n"
       "\"cchip COMMAND --help\" lists the options of a command.");
+  CollideOptions collide;
   PairsOptions pairs;
   MeshPairsOptions meshpairs;
   DemoOptions demo;
+  add_collide(app, collide);
   add_pairs(app, pairs);
   add_meshpairs(app, meshpairs);
   add_demo(app, demo);
@@ -267,6 +312,7 @@ int dispatch(std::vector<std::string> arguments, const Streams& streams) {
     if (!unknown.empty()) throw UsageError(unknown_words(app, unknown));
     throw UsageError(std::string(error.what()) + "; see cchip --help");
   }
+  if (app.got_subcommand("collide")) return run_collide(collide, streams);
   if (app.got_subcommand("pairs")) return run_pairs(pairs, streams);
   if (app.got_subcommand("meshpairs")) return run_meshpairs(meshpairs, streams);
   if (app.got_subcommand("demo")) return run_demo(demo, streams.out);

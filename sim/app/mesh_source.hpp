@@ -35,6 +35,9 @@ class HitPicture {
   explicit HitPicture(const std::string& path);
   /// Marks the faces of a candidate pair of for_each_candidate() that hit.
   void add_hit(const PairJob& job);
+  /// The same by the faces' numbers in the meshes.
+  void add_hit_a(std::size_t face) { hits_a_.insert(face); }
+  void add_hit_b(std::size_t face) { hits_b_.insert(face); }
   /// \throws UsageError as above
   void write(const Mesh& a, const Mesh& b);
 

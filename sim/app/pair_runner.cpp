@@ -14,19 +14,10 @@ namespace {
 const std::vector<std::string> answer_names = {"hit",  "hw_hit", "hw_grid",  "hw_definite",
                                                "axis", "beats",  "clock_in", "clock_out"};
 
-/// A passed-through column with the name of one of ours gets "input_" in front.
 std::vector<std::string> output_names(const RunOptions& options, const std::vector<std::string>& passed) {
   std::vector<std::string> ours = answer_names;
   if (options.compare && options.format == Format::table) ours.insert(ours.begin(), {"row", "expected"});
-  std::vector<std::string> names = passed;
-  const auto taken = [&](const std::string& name) {
-    return std::count(ours.begin(), ours.end(), name) + std::count(names.begin(), names.end(), name);
-  };
-  for (std::string& name : names) {
-    while (taken(name) > 1) name.insert(0, "input_");
-  }
-  names.insert(names.end(), ours.begin(), ours.end());
-  return names;
+  return names_behind(passed, ours);
 }
 
 void append_hardware(std::vector<Cell>& cells, const EngineAnswer& answer) {

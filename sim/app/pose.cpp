@@ -3,14 +3,26 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cchip/geometry/pose.hpp>
 #include <cchip/stimulus/pair_columns.hpp>
 #include <cchip/stimulus/usage_error.hpp>
+#include <charconv>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
 namespace cchip::app {
 namespace {
+
+constexpr std::array<const char*, 12> pose_columns = {"r00", "r01", "r02", "r10", "r11", "r12",
+                                                      "r20", "r21", "r22", "tx",  "ty",  "tz"};
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
 
 std::vector<double> parse_numbers(const std::string& option, std::string_view text) {
   std::vector<double> numbers;
@@ -35,24 +47,101 @@ Eigen::Isometry3d parse_pose(const std::string& text) {
   throw UsageError(fmt::format("--pose: got {} numbers; write tx,ty,tz or tx,ty,tz,rx,ry,rz", n.size()));
 }
 
-Eigen::Isometry3d parse_pose_matrix(const std::string& text) {
+Pose parse_affine_matrix(const std::string& text) {
   const std::vector<double> n = parse_numbers("--pose-matrix", text);
   if (n.size() != 12) {
     throw UsageError(
         fmt::format("--pose-matrix: got {} numbers; write the twelve of the 3x4 matrix row by row", n.size()));
   }
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  Pose pose = Pose::Identity();
   auto next = n.begin();
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) pose(row, column) = *next++;
   }
+  return pose;
+}
+
+Eigen::Isometry3d parse_pose_matrix(const std::string& text) {
+  const Pose pose = parse_affine_matrix(text);
   const Eigen::Matrix3d r = pose.linear();
   const double error = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(error <= 1e-9) || r.determinant() <= 0) {
     throw UsageError(
         "--pose-matrix: the left 3x3 part is not a rotation; write an orthonormal matrix with determinant 1 (to 1e-9)");
   }
-  return pose;
+  return Eigen::Isometry3d(pose.matrix());
+}
+
+PoseColumns::PoseColumns(const CsvRow& header, std::string file, const std::string& expect)
+    : file_(std::move(file)), fields_(header.fields.size()) {
+  for (std::size_t i = 0; i < entry_.size(); ++i) {
+    const auto column = find(header, pose_columns[i]);
+    if (!column) {
+      throw row_error(file_, header.line,
+                      fmt::format("column {} is missing; the first row must name the columns r00,r01,r02 to r22 and "
+                                  "tx,ty,tz",
+                                  pose_columns[i]));
+    }
+    entry_[i] = *column;
+  }
+  if (!expect.empty()) {
+    expect_ = find(header, expect);
+    if (!expect_) {
+      throw row_error(file_, header.line,
+                      fmt::format("column {} of --expect is missing; name a column of the file", expect));
+    }
+  }
+  for (std::size_t i = 0; i < fields_; ++i) {
+    if (std::find(entry_.begin(), entry_.end(), i) != entry_.end()) continue;
+    passed_.push_back(i);
+    passed_names_.push_back(header.fields[i]);
+  }
+}
+
+std::optional<std::size_t> PoseColumns::find(const CsvRow& header, const std::string& name) const {
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < header.fields.size(); ++i) {
+    if (trimmed(header.fields[i]) != name) continue;
+    if (found) {
+      throw row_error(file_, header.line, fmt::format("column {} is there twice; rename or remove one of them", name));
+    }
+    found = i;
+  }
+  return found;
+}
+
+PoseColumns::Row PoseColumns::parse(const CsvRow& row) const {
+  if (row.fields.size() != fields_) {
+    throw row_error(file_, row.line,
+                    fmt::format("the row has {} fields, but the header names {} columns; write one field per column",
+                                row.fields.size(), fields_));
+  }
+  Row result;
+  for (std::size_t i = 0; i < entry_.size(); ++i) {
+    try {
+      const double value = parse_coordinate(row.fields[entry_[i]]);
+      const auto k = static_cast<Eigen::Index>(i);
+      if (i < 9) {
+        result.pose.linear()(k / 3, k % 3) = value;
+      } else {
+        result.pose.translation()[k - 9] = value;
+      }
+    } catch (const std::invalid_argument& error) {
+      throw row_error(file_, row.line, fmt::format("column {}: {}", pose_columns[i], error.what()));
+    }
+  }
+  for (const std::size_t i : passed_) result.passed.push_back(row.fields[i]);
+  if (expect_) {
+    const std::string_view text = trimmed(row.fields[*expect_]);
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) {
+      throw row_error(file_, row.line,
+                      "the expected answer is not a whole number; write 0 or 1, or a count of contacts");
+    }
+    result.expected = value;
+  }
+  return result;
 }
 
 }  // namespace cchip::app

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Rigid poses from the command line.
+/// Poses from the command line and from files.
 #ifndef CCHIP_APP_POSE_HPP
 #define CCHIP_APP_POSE_HPP
 
-#include <Eigen/Geometry>
+#include <array>
+#include <cchip/geometry/pose.hpp>
+#include <cchip/stimulus/csv_reader.hpp>
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace cchip::app {
 
@@ -15,8 +20,39 @@ namespace cchip::app {
 Eigen::Isometry3d parse_pose(const std::string& text);
 
 /// Twelve numbers, the rows of the 3x4 matrix [R | t].
+/// \throws UsageError not twelve numbers
+Pose parse_affine_matrix(const std::string& text);
+/// The same for a rigid pose.
 /// \throws UsageError not twelve numbers, or R is not a rotation within 1e-9
 Eigen::Isometry3d parse_pose_matrix(const std::string& text);
+
+/// Columns r00..r22 and tx, ty, tz of a CSV file: x -> R x + t, row by row.
+class PoseColumns {
+ public:
+  /// Reads the header record. \param expect column with the expected answers; empty: none
+  /// \throws UsageError a column is missing or there twice
+  PoseColumns(const CsvRow& header, std::string file, const std::string& expect);
+
+  struct Row {
+    Pose pose = Pose::Identity();
+    std::vector<std::string> passed;
+    std::optional<std::uint64_t> expected;
+  };
+  /// \throws UsageError the record is not a pose, or the expected answer no whole number
+  Row parse(const CsvRow& row) const;
+  /// Names of the columns that are passed through, in the order of the file.
+  const std::vector<std::string>& passed_names() const { return passed_names_; }
+
+ private:
+  std::optional<std::size_t> find(const CsvRow& header, const std::string& name) const;
+
+  std::string file_;
+  std::size_t fields_;
+  std::array<std::size_t, 12> entry_ = {};
+  std::optional<std::size_t> expect_;
+  std::vector<std::size_t> passed_;
+  std::vector<std::string> passed_names_;
+};
 
 }  // namespace cchip::app
 

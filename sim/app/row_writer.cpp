@@ -116,6 +116,17 @@ class TableWriter final : public RowWriter {
 
 }  // namespace
 
+std::vector<std::string> names_behind(std::vector<std::string> passed, const std::vector<std::string>& ours) {
+  const auto taken = [&](const std::string& name) {
+    return std::count(ours.begin(), ours.end(), name) + std::count(passed.begin(), passed.end(), name);
+  };
+  for (std::string& name : passed) {
+    while (taken(name) > 1) name.insert(0, "input_");
+  }
+  passed.insert(passed.end(), ours.begin(), ours.end());
+  return passed;
+}
+
 std::unique_ptr<RowWriter> make_row_writer(Format format, std::ostream& out, const std::vector<std::string>& names) {
   if (format == Format::csv) return std::make_unique<CsvWriter>(out, names);
   if (format == Format::jsonl) return std::make_unique<JsonlWriter>(out, names);

@@ -27,6 +27,10 @@ class RowWriter {
   virtual void flush() = 0;
 };
 
+/// Names of the columns that are passed through, then ours. One that has a name of ours, or is there twice, gets
+/// "input_" in front.
+std::vector<std::string> names_behind(std::vector<std::string> passed, const std::vector<std::string>& ours);
+
 /// `names` are the column names. The table aligns its columns by the rows before the first flush().
 std::unique_ptr<RowWriter> make_row_writer(Format format, std::ostream& out, const std::vector<std::string>& names);
 

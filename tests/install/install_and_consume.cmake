@@ -27,7 +27,7 @@ function(consume suffix expected)
   endif()
 endfunction()
 
-consume("" "touch: 1, lifted by 2^-40: 0\n")
+consume("" "touch: 0, pairs of faces: 0\ntouch: 1, pairs of faces: 708\ntouch: 1, pairs of faces: 834\n")
 consume(_reconfig "41\n42\n")
 
 run(${prefix}/bin/cchip --version)

@@ -107,6 +107,32 @@ TEST_CASE("mesh: torus is closed, faces outwards, has one hole", "[ref][mesh]") 
   }
 }
 
+TEST_CASE("mesh: sphere is closed, faces outwards, repeats with its seed", "[ref][mesh]") {
+  for (const int cuts : {1, 2, 9}) {
+    CAPTURE(cuts);
+    const Mesh sphere = cchip::make_sphere(2, cuts);
+    CHECK(sphere.faces.size() == static_cast<std::size_t>(20 * cuts * cuts));
+    CHECK(sphere.vertices.size() == static_cast<std::size_t>(10 * cuts * cuts + 2));
+    CHECK(is_closed_and_oriented(sphere));
+    CHECK(euler_characteristic(sphere) == 2);
+    for (const Vec3d& p : sphere.vertices) CHECK(p.norm() == Approx(2));
+  }
+  CHECK(volume(cchip::make_sphere(2, 20)) == Approx(4 * pi / 3 * 8).epsilon(0.01));
+  const Mesh noisy = cchip::make_sphere(1, 9, 0.25, 7);
+  CHECK(is_closed_and_oriented(noisy));
+  const auto [least, greatest] = std::minmax_element(
+      noisy.vertices.begin(), noisy.vertices.end(), [](const Vec3d& p, const Vec3d& q) { return p.norm() < q.norm(); });
+  CHECK(least->norm() > 0.7499);
+  CHECK(least->norm() < 0.76);
+  CHECK(greatest->norm() < 1.2501);
+  CHECK(greatest->norm() > 1.24);
+  CHECK(cchip::make_sphere(1, 9, 0.25, 7).vertices == noisy.vertices);
+  CHECK(cchip::make_sphere(1, 9, 0.25, 8).vertices != noisy.vertices);
+  CHECK_THROWS_AS(cchip::make_sphere(0, 9), std::invalid_argument);
+  CHECK_THROWS_AS(cchip::make_sphere(1, 0), std::invalid_argument);
+  CHECK_THROWS_AS(cchip::make_sphere(1, 9, 1), std::invalid_argument);
+}
+
 TEST_CASE("mesh: a torus of quads is the torus of triangles before the cut", "[ref][mesh]") {
   const Mesh quads = cchip::make_torus(3, 1, 12, 8, cchip::Kind::quad);
   const Mesh triangles = cchip::make_torus(3, 1, 12, 8);

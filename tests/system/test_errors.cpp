@@ -143,7 +143,7 @@ TEST_CASE("errors: command line", "[system][errors]") {
   check_error({"pairs"}, "cchip: FILE is required" + help);
   check_error({"pairs", "f", "--engine", "abacus"}, "cchip: --engine: abacus not in {rtl,model,eigen,exact}" + help);
   check_error({"pairs", "f", "--format", "xml"}, "cchip: --format: xml not in {table,csv,jsonl}" + help);
-  const std::string commands = ": no such command; the commands are pairs, meshpairs, demo, reconfig, version";
+  const std::string commands = ": no such command; the commands are collide, pairs, meshpairs, demo, reconfig, version";
   check_error({"foo"}, "cchip: foo" + commands);
   check_error({"foo", "--engine", "model"}, "cchip: foo" + commands);
   check_error({"--foo"}, "cchip: --foo: no such option; see cchip --help");

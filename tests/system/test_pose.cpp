@@ -49,6 +49,11 @@ TEST_CASE("pose: matrix row by row, rigid only", "[system][pose]") {
     CAPTURE(text);
     CHECK_THROWS_AS(parse_pose_matrix(text), UsageError);
   }
+  CHECK(parse_affine_matrix("-1,0.5,0,1, 0,2,0,0, 0,0,0,3") * Vector3d(1, 2, 3) == Vector3d(1, 4, 3));
+  for (const char* text : {"1,0,0,0,0,1,0,0,0,0,1", "1,0,0,0,0,1,0,0,0,0,1,0,0", "1,0,0,0,0,x,0,0,0,0,1,0", ""}) {
+    CAPTURE(text);
+    CHECK_THROWS_AS(parse_affine_matrix(text), UsageError);
+  }
   for (const char* text : {"", "1", "1,2", "1,2,3,4", "1,2,3,4,5", "1,2,3,4,5,6,7", "1,2,nan", "1,,3"}) {
     CAPTURE(text);
     CHECK_THROWS_AS(parse_pose(text), UsageError);

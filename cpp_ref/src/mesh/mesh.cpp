@@ -70,7 +70,7 @@ Primitive Mesh::primitive(std::size_t face) const {
   return p;
 }
 
-Mesh transformed(const Mesh& mesh, const Eigen::Isometry3d& pose) {
+Mesh transformed(const Mesh& mesh, const Pose& pose) {
   Mesh result = mesh;
   for (Vec3d& p : result.vertices) p = pose * p;
   return result;

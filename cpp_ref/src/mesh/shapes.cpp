@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <cchip/mesh/shapes.hpp>
 #include <cmath>
+#include <map>
+#include <random>
 #include <stdexcept>
 #include <utility>
 
@@ -97,6 +101,22 @@ void add_disc(Mesh& mesh, const Ring& ring, double z, bool up) {
   }
 }
 
+constexpr std::array<std::array<std::uint32_t, 3>, 20> icosahedron_faces = {
+    {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+     {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+     {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
+
+/// Corner 0..11: (-+1, +-golden ratio, 0), and the components moved on by one and by two places.
+Vec3d icosahedron_corner(std::uint32_t number) {
+  const double golden = (1 + std::sqrt(5.0)) / 2;
+  const double one = number % 2 == 0 ? -1 : 1;
+  const double ratio = number / 2 % 2 == 0 ? golden : -golden;
+  const std::uint32_t turn = number / 4;
+  if (turn == 0) return {one, ratio, 0};
+  if (turn == 1) return {0, one, ratio};
+  return {ratio, 0, one};
+}
+
 }  // namespace
 
 Mesh make_torus(double major_radius, double minor_radius, int around, int across, Kind kind) {
@@ -136,6 +156,45 @@ Mesh make_gear(double root_radius, double tip_radius, double bore_radius, double
   } else {
     add_disc(mesh, outer_high, high, true);
     add_disc(mesh, outer_low, -high, false);
+  }
+  return mesh;
+}
+
+Mesh make_sphere(double radius, int cuts, double noise, std::uint64_t seed) {
+  require(radius > 0 && cuts >= 1 && cuts <= 1000 && noise >= 0 && noise < 1,
+          "sphere: radius > 0, 1 <= cuts <= 1000 and 0 <= noise < 1 are needed");
+  Mesh mesh;
+  mesh.name = "sphere";
+  std::mt19937_64 random(seed);
+  // A point of a face of the icosahedron: its corners with their weights, of which the sum is `cuts`. Faces share the
+  // points of their common edges, whose other weights are 0.
+  using Weights = std::array<std::pair<std::uint32_t, int>, 3>;
+  std::map<Weights, std::uint32_t> number_of;
+  const auto vertex = [&](Weights w) {
+    for (auto& [corner, weight] : w) {
+      if (weight == 0) corner = 0;
+    }
+    std::sort(w.begin(), w.end());
+    const auto [place, is_new] = number_of.try_emplace(w, static_cast<std::uint32_t>(mesh.vertices.size()));
+    if (is_new) {
+      Vec3d p = Vec3d::Zero();
+      for (const auto& [corner, weight] : w) p += weight * icosahedron_corner(corner);
+      const double u = static_cast<double>(random() >> 11U) * 0x1p-52 - 1;
+      mesh.vertices.push_back(p.normalized() * (radius * (1 + noise * u)));
+    }
+    return place->second;
+  };
+  for (const auto& [i, j, k] : icosahedron_faces) {
+    const auto at = [&, i = i, j = j, k = k](int y, int z) { return vertex({{{i, cuts - y - z}, {j, y}, {k, z}}}); };
+    for (int y = 0; y < cuts; ++y) {
+      for (int z = 0; y + z < cuts; ++z) {
+        const std::uint32_t first = at(y, z);  // one after the other, so that the noise comes in this order
+        const std::uint32_t second = at(y + 1, z);
+        const std::uint32_t third = at(y, z + 1);
+        add_triangle(mesh, first, second, third);
+        if (y + z + 1 < cuts) add_triangle(mesh, second, at(y + 1, z + 1), third);
+      }
+    }
   }
   return mesh;
 }

@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Where each field of an image lies in its line of 64 bytes; docs/image.md shows the same as a table. Bit 0 is the
-/// lowest bit of byte 0, numbers are little endian, bits without a field are 0.
+/// Where each field of an image lies in its line of 64 bytes; docs/image.md shows the same as a table.
 #ifndef CCHIP_BVH_IMAGE_FIELDS_HPP
 #define CCHIP_BVH_IMAGE_FIELDS_HPP
 
 #include <array>
-#include <cstddef>
+#include <cchip/wire/line.hpp>
 
 namespace cchip::bvh {
-
-/// `count` equal fields in a row; field i begins at bit lsb + i width.
-struct Field {
-  const char* name;
-  std::size_t lsb;
-  std::size_t width;
-  std::size_t count = 1;
-  bool is_signed = false;
-  constexpr std::size_t end() const { return lsb + width * count; }
-};
 
 /// Line 0 of an image.
 namespace header_field {
@@ -71,7 +60,6 @@ inline constexpr Field quad = {"quad", 144, 24, 12, true};          ///< or four
 inline constexpr std::array<Field, 7> all = {origin, extent, rounded, open, id, triangle, quad};
 }  // namespace leaf_field
 
-inline constexpr std::size_t line_bytes = 64;
 static_assert(inner_field::child.end() == 504 && child_field::corner_cut.end() == inner_field::child.width);
 static_assert(leaf_field::triangle.end() == 504 && header_field::centre.end() == 512);
 

@@ -12,15 +12,6 @@
 
 namespace cchip::bvh {
 
-/// 64 bytes, as they lie in memory.
-using Line = std::array<std::uint8_t, line_bytes>;
-
-/// Field `index` of a line, sign-extended if it is signed. `base`: first bit of the part of the line that the field's
-/// place counts from.
-std::int64_t get(const Line& line, const Field& field, std::size_t index = 0, std::size_t base = 0);
-/// Its low bits.
-void put(Line& line, const Field& field, std::int64_t value, std::size_t index = 0, std::size_t base = 0);
-
 /// Integers of an object's frame: (x - centre) 2^-exponent lies in [-1/2, 1/2 - 2^-24]^3.
 struct HeaderLine {
   std::uint32_t magic = image_magic;

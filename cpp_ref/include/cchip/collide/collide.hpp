@@ -8,20 +8,14 @@
 #ifndef CCHIP_COLLIDE_COLLIDE_HPP
 #define CCHIP_COLLIDE_COLLIDE_HPP
 
-#include <Eigen/Geometry>
 #include <cchip/collide/object.hpp>
+#include <cchip/geometry/pose.hpp>
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <memory>
-#include <string>
 #include <vector>
 
 namespace cchip {
-
-/// Where an object is: any affine map, x -> linear() x + translation(). Shears, mirrors, scales and singular maps are
-/// allowed. make_pose() makes rigid ones.
-using Pose = Eigen::Affine3d;
 
 /// Which contacts a caller wants.
 struct CollisionRequest {

@@ -5,6 +5,7 @@
 #ifndef CCHIP_EXACT_ORACLE_HPP
 #define CCHIP_EXACT_ORACLE_HPP
 
+#include <cchip/geometry/pose.hpp>
 #include <cchip/geometry/primitive.hpp>
 
 namespace cchip {
@@ -17,6 +18,9 @@ bool exact_intersects(const GridPair& pair);
 /// integers of arbitrary size.
 /// \throws std::invalid_argument if a coordinate is not finite
 bool exact_intersects(const Primitive& a, const Primitive& b);
+/// The same for primitives under poses, in real arithmetic without rounding: a vertex v lies at linear() v +
+/// translation(). PosedPairs answers the same faster.
+bool exact_intersects(const Primitive& a, const Pose& pose_a, const Primitive& b, const Pose& pose_b);
 
 }  // namespace cchip
 

@@ -4,7 +4,7 @@
 #ifndef CCHIP_MESH_MESH_HPP
 #define CCHIP_MESH_MESH_HPP
 
-#include <Eigen/Geometry>
+#include <cchip/geometry/pose.hpp>
 #include <cchip/geometry/primitive.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -31,8 +31,8 @@ struct Mesh {
   Primitive primitive(std::size_t face) const;
 };
 
-/// Mesh moved by a rigid transform.
-Mesh transformed(const Mesh& mesh, const Eigen::Isometry3d& pose);
+/// Mesh whose vertices are moved by the pose, rounded.
+Mesh transformed(const Mesh& mesh, const Pose& pose);
 
 /// Numbers of a face of A and a face of B.
 struct CandidatePair {

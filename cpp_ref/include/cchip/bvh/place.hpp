@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// From two objects and their poses to the query that the chip takes.
+#ifndef CCHIP_BVH_PLACE_HPP
+#define CCHIP_BVH_PLACE_HPP
+
+#include <Eigen/Geometry>
+#include <cchip/bvh/image_line.hpp>
+#include <cchip/wire/query.hpp>
+#include <optional>
+
+namespace cchip::bvh {
+
+/// The query for objects with these headers, object i placed by pose i, any invertible affine map; nothing in the query
+/// but m, t, shift, error and swapped is set. The object with the finer unit plays A, whichever the user named first.
+/// The error bound covers, by interval arithmetic, that poses are doubles which are taken as exact, that their relation
+/// needs an inverse, and the rounding to the query's format; it is 0 if the query is exact.
+/// \returns nothing if the chip does not take this pair: units more than 2^15 apart, a map that is singular or so
+///          ill-conditioned that the bound does not fit, or numbers that are not finite or overflow
+std::optional<Query> make_query(const HeaderLine& a, const Eigen::Affine3d& pose_a, const HeaderLine& b,
+                                const Eigen::Affine3d& pose_b);
+
+}  // namespace cchip::bvh
+
+#endif

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Exact answers for many pairs under the same two poses, at the speed of doubles where these can tell.
+#ifndef CCHIP_EXACT_POSED_PAIRS_HPP
+#define CCHIP_EXACT_POSED_PAIRS_HPP
+
+#include <cchip/geometry/pose.hpp>
+#include <cchip/geometry/primitive.hpp>
+
+namespace cchip {
+
+/// Decides pairs of a primitive of A and one of B. The answers are those of exact_intersects(), for any finite numbers:
+/// first separating axes in doubles with a bound on the rounding, then the predicates of the exact oracle in doubles
+/// with an error bound each, then, where a sign is open, the exact oracle (docs/collide.md). Immutable: any number of
+/// threads may use it at a time.
+class PosedPairs {
+ public:
+  struct Answer {
+    bool hit = false;   ///< the closed primitives share a point
+    bool open = false;  ///< it took integers of any size to decide it
+  };
+
+  /// \throws std::invalid_argument an entry of a pose is not finite
+  PosedPairs(const Pose& pose_a, const Pose& pose_b);
+
+  /// \throws std::invalid_argument a coordinate is not finite
+  Answer decide(const Primitive& a, const Primitive& b) const;
+
+ private:
+  Pose pose_a_;
+  Pose pose_b_;
+  Vec3d offset_;        ///< translation of A relative to B, rounded
+  Vec3d offset_error_;  ///< bound on its error; exactly 0 where it is exact
+  double row_sum_a_;    ///< greatest sum of magnitudes in a row of the linear part
+  double row_sum_b_;
+};
+
+}  // namespace cchip
+
+#endif

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The box test: which children of a node of A may meet which children of a node of B.
+///
+/// Everything is reckoned in half steps of the pair's own grid, a power of two that is A's step unless B's is much
+/// coarser. All roundings are floors; one slack per node pair, added to the corners of B's boxes, makes up for all of
+/// them (docs/image.md, "Box test").
+#ifndef CCHIP_MODEL_BOX_TEST_HPP
+#define CCHIP_MODEL_BOX_TEST_HPP
+
+#include <array>
+#include <cchip/bvh/image_line.hpp>
+#include <cchip/model/pose_setup.hpp>
+#include <cstdint>
+
+namespace cchip::model {
+
+/// Where a node pair stands on its grid.
+struct NodeGrid {
+  /// A's steps over the grid's, B's likewise: log2 (grid step / step), and whether a box counts as a point, because it
+  /// is so much smaller than a step that the slack covers it.
+  int x = 0;  ///< 0, 2, 4, or more and a_is_point
+  int y = 0;  ///< -1..5, or more and b_is_point
+  bool a_is_point = false;
+  bool b_is_point = false;
+  /// Cuts of nodes that are much finer than the grid are left out.
+  bool use_a_cuts = true;
+  bool use_b_cuts = true;
+  /// M o_A + t - o_B, half steps with 6 fraction bits.
+  std::array<std::int64_t, 3> offset = {};
+  std::int64_t slack = 0;  ///< quarters of a half step, 0..255
+  bool far = false;        ///< the offset alone separates every child
+  bool near = false;       ///< the slack does not fit: nothing is separated
+};
+
+inline constexpr int offset_w = 17;  ///< bits of NodeGrid::offset; what does not fit is far
+inline constexpr int slack_max = 255;
+
+NodeGrid grid_of(const bvh::InnerLine& a, const bvh::InnerLine& b, const PoseSetup& pose);
+
+/// Child pair (i, j), i of A, has number 4 i + j.
+struct BoxVerdict {
+  std::uint16_t overlap = 0;              ///< bit of each child pair that is not separated
+  std::array<std::uint8_t, 16> key = {};  ///< least overlap over the directions, 0..15, of these
+};
+
+BoxVerdict test_boxes(const bvh::InnerLine& a, const bvh::InnerLine& b, const PoseSetup& pose, const NodeGrid& grid);
+
+}  // namespace cchip::model
+
+#endif

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// A whole query in the chip's integers: traversal of two images, leaf pairs, primitive tests, records.
+#ifndef CCHIP_MODEL_BROAD_PHASE_HPP
+#define CCHIP_MODEL_BROAD_PHASE_HPP
+
+#include <cchip/bvh/image.hpp>
+#include <cchip/wire/pair.hpp>
+#include <cchip/wire/query.hpp>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+namespace cchip::model {
+
+struct BroadPhaseOptions {
+  int coord_w = defs::coord_w_default;
+  PairMode mode = PairMode::directed;
+  std::size_t stack = 64;                   ///< entries
+  std::uint32_t step_limit = 0xffffffff;    ///< node pairs
+  std::uint32_t open_limit = 16;            ///< open pairs at which a FIRST query goes to the host
+  std::mt19937_64* random_order = nullptr;  ///< visit node pairs in any order instead of the best first
+};
+
+struct BroadPhaseCounts {
+  std::uint64_t steps = 0;            ///< node pairs expanded
+  std::uint64_t box_tests = 0;        ///< pairs of children compared
+  std::uint64_t leaf_pairs = 0;       ///< of which the boxes overlap
+  std::uint64_t primitive_pairs = 0;  ///< sent to a primitive test
+  std::uint64_t beats = 0;            ///< axes of the primitive tests
+  std::uint64_t open_pairs = 0;       ///< hits that are not definite
+  std::size_t stack_most = 0;         ///< entries
+};
+
+struct BroadPhaseResult {
+  std::vector<PairRecord> pairs;
+  DoneRecord done;
+  BroadPhaseCounts counts;
+};
+
+/// Runs the query as the chip with one node pair in flight would. Mode ALL gives the same pairs, in any order, and the
+/// same counts but stack_most however node pairs are ordered, if it ends with QueryCode::ok. A FIRST query gives every
+/// open pair up to its end, and then the pair that is in contact for certain, if there is one.
+/// base_a and base_b play no part.
+BroadPhaseResult run_query(const Query& query, const bvh::Image& a, const bvh::Image& b,
+                           const BroadPhaseOptions& options = {});
+
+}  // namespace cchip::model
+
+#endif

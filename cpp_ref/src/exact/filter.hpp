@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// A double with a proven bound on its error.
+#ifndef CCHIP_EXACT_FILTER_HPP
+#define CCHIP_EXACT_FILTER_HPP
+
+#include <cmath>
+
+namespace cchip::exact {
+
+/// Stands for a real number x with |x - value| <= error. Error 0 means that x is a double, and stays 0 through every
+/// operation whose result is a double again, so that whole numbers of moderate size are decided here. An overflow
+/// leaves an error that is infinite or NaN. docs/collide.md derives the bounds.
+class Filter {
+ public:
+  Filter() = default;
+  Filter(double value) : value_(value) {}
+  Filter(double value, double error) : value_(value), error_(error) {}
+
+  /// True if some sign since the last call of reset() could not be told: then every answer derived from signs since is
+  /// worth nothing. One flag for each thread.
+  static bool gave_up() { return gave_up_; }
+  static void reset() { gave_up_ = false; }
+
+  int sign() const {
+    if (std::abs(value_) > error_) return value_ > 0 ? 1 : -1;
+    if (!(value_ == 0 && error_ == 0)) gave_up_ = true;
+    return 0;
+  }
+
+  friend Filter operator+(const Filter& x, const Filter& y) {
+    const double sum = x.value_ + y.value_;
+    const double y_part = sum - x.value_;
+    const double rest = (x.value_ - (sum - y_part)) + (y.value_ - y_part);  // Knuth's TwoSum
+    return {sum, inflated(std::abs(rest) + (x.error_ + y.error_))};
+  }
+  friend Filter operator-(const Filter& x, const Filter& y) { return x + Filter(-y.value_, y.error_); }
+  friend Filter operator*(const Filter& x, const Filter& y) {
+    const double product = x.value_ * y.value_;
+    const double rest = std::fma(x.value_, y.value_, -product);
+    const double size_x = std::abs(x.value_);
+    const double size_y = std::abs(y.value_);
+    double error = std::abs(rest);
+    if (x.error_ != 0 || y.error_ != 0)
+      error = inflated(error + (size_x * y.error_ + (size_y + y.error_) * x.error_)) + lost;
+    if (std::abs(product) < 0x1p-960 && size_x != 0 && size_y != 0) error += lost;
+    return {product, error};
+  }
+  Filter& operator+=(const Filter& x) { return *this = *this + x; }
+
+  friend bool operator<(const Filter& x, const Filter& y) { return (x - y).sign() < 0; }
+  friend bool operator<=(const Filter& x, const Filter& y) { return (x - y).sign() <= 0; }
+  friend bool operator>=(const Filter& x, const Filter& y) { return (x - y).sign() >= 0; }
+
+ private:
+  /// What underflows of one product may take from its value and from its error bound.
+  static constexpr double lost = 0x1p-1072;
+  /// Covers the rounding of the few operations that made the bound; keeps 0.
+  static double inflated(double bound) { return bound * (1 + 0x1p-49); }
+
+  static inline thread_local bool gave_up_ = false;
+
+  double value_ = 0;
+  double error_ = 0;
+};
+
+}  // namespace cchip::exact
+
+#endif

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cchip/exact/oracle.hpp>
+#include <cchip/exact/posed_pairs.hpp>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "filter.hpp"
+#include "hulls.hpp"
+
+namespace cchip {
+namespace {
+
+using exact::Filter;
+using exact::Hull;
+using exact::Vec;
+
+constexpr double unit = std::numeric_limits<double>::epsilon() / 2;  // greatest relative error of one operation
+constexpr double lost = 0x1p-1070;                                   // more than what underflows of some operations
+
+/// Vertices of both primitives with B's translation taken off, rounded.
+struct Rounded {
+  std::array<Vec3d, 4> a;
+  std::array<Vec3d, 4> b;
+  std::size_t count_a = 0;
+  std::size_t count_b = 0;
+  double error = 0;     ///< bound on the error of each coordinate
+  double greatest = 0;  ///< magnitude of a coordinate relative to the base
+};
+
+double greatest_component(const Primitive& p) {
+  double greatest = 0;
+  for (std::size_t i = 0; i < p.vertex_count(); ++i) greatest = std::max(greatest, p.v[i].cwiseAbs().maxCoeff());
+  return greatest;
+}
+
+/// True only if the intervals on the axis are disjoint, by more than rounding can explain. The axis is taken as it is:
+/// any will do.
+bool separates(const Vec3d& axis, const Rounded& r) {
+  const double size = axis.cwiseAbs().sum();
+  if (!(size * r.greatest < 0x1p1000)) return false;  // a projection might overflow
+  const auto interval = [&axis](const std::array<Vec3d, 4>& v, std::size_t count) {
+    const double first = axis.dot(v[0]);
+    std::pair<double, double> range = {first, first};
+    for (std::size_t i = 1; i < count; ++i) {
+      const double at = axis.dot(v[i]);
+      range.first = std::min(range.first, at);
+      range.second = std::max(range.second, at);
+    }
+    return range;
+  };
+  const auto a = interval(r.a, r.count_a);
+  const auto b = interval(r.b, r.count_b);
+  const double gap = std::max(b.first - a.second, a.first - b.second);
+  return gap > size * (2.5 * r.error + 16 * unit * r.greatest) + lost;
+}
+
+/// Normal of a triangle, or of the plane along both diagonals of a quad.
+Vec3d normal(const std::array<Vec3d, 4>& v, std::size_t count) { return (v[2] - v[0]).cross(v[count - 1] - v[1]); }
+
+/// The axes of the separating axis test for planar primitives that are not coplanar.
+bool separated(const Rounded& r) {
+  if (separates(normal(r.a, r.count_a), r) || separates(normal(r.b, r.count_b), r)) return true;
+  for (std::size_t i = 0; i < r.count_a; ++i) {
+    const Vec3d edge = r.a[(i + 1) % r.count_a] - r.a[i];
+    for (std::size_t k = 0; k < r.count_b; ++k) {
+      if (separates(edge.cross(r.b[(k + 1) % r.count_b] - r.b[k]), r)) return true;
+    }
+  }
+  return false;
+}
+
+Hull<Filter> filter_hull(const Primitive& p, const Eigen::Matrix3d& linear, const Vec<Filter>& offset) {
+  std::array<Vec<Filter>, 4> points;
+  for (std::size_t i = 0; i < p.vertex_count(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto row = static_cast<Eigen::Index>(k);
+      points[i][k] = offset[k] + Filter(linear(row, 0)) * Filter(p.v[i].x()) +
+                     Filter(linear(row, 1)) * Filter(p.v[i].y()) + Filter(linear(row, 2)) * Filter(p.v[i].z());
+    }
+  }
+  return {points, p.vertex_count()};
+}
+
+}  // namespace
+
+PosedPairs::PosedPairs(const Pose& pose_a, const Pose& pose_b)
+    : pose_a_(pose_a),
+      pose_b_(pose_b),
+      row_sum_a_(pose_a.linear().cwiseAbs().rowwise().sum().maxCoeff()),
+      row_sum_b_(pose_b.linear().cwiseAbs().rowwise().sum().maxCoeff()) {
+  if (!pose_a.affine().allFinite() || !pose_b.affine().allFinite()) {
+    throw std::invalid_argument("pose: an entry is not finite: replace NaN and infinities by numbers");
+  }
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double to = pose_a.translation()[k];
+    const double from = pose_b.translation()[k];
+    offset_[k] = to - from;
+    const double part = offset_[k] - to;
+    offset_error_[k] = std::abs((to - (offset_[k] - part)) - (from + part));  // TwoSum
+  }
+}
+
+PosedPairs::Answer PosedPairs::decide(const Primitive& a, const Primitive& b) const {
+  Rounded r;
+  r.count_a = a.vertex_count();
+  r.count_b = b.vertex_count();
+  // Both frames lose B's translation; then b's first vertex, rounded, is the origin: a fixed point like any other.
+  const Vec3d base = pose_b_.linear() * b.v[0];
+  for (std::size_t i = 0; i < r.count_a; ++i) {
+    r.a[i] = (pose_a_.linear() * a.v[i] + offset_) - base;
+    r.greatest = std::max(r.greatest, r.a[i].cwiseAbs().maxCoeff());
+  }
+  for (std::size_t i = 0; i < r.count_b; ++i) {
+    r.b[i] = pose_b_.linear() * b.v[i] - base;
+    r.greatest = std::max(r.greatest, r.b[i].cwiseAbs().maxCoeff());
+  }
+  const double magnitude =
+      row_sum_a_ * greatest_component(a) + row_sum_b_ * greatest_component(b) + offset_.cwiseAbs().maxCoeff();
+  r.error = 8 * unit * magnitude + lost;
+  if (magnitude < 0x1p1000 && separated(r)) return {false, false};
+
+  Vec<Filter> offset;
+  for (std::size_t k = 0; k < 3; ++k) {
+    offset[k] = {offset_[static_cast<Eigen::Index>(k)], offset_error_[static_cast<Eigen::Index>(k)]};
+  }
+  Filter::reset();
+  const bool hit =
+      hulls_meet(filter_hull(a, pose_a_.linear(), offset), filter_hull(b, pose_b_.linear(), Vec<Filter>{}));
+  if (!Filter::gave_up()) return {hit, false};
+  return {exact_intersects(a, pose_a_, b, pose_b_), true};
+}
+
+}  // namespace cchip

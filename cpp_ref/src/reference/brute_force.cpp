@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cchip/exact/oracle.hpp>
+#include <cchip/reference/brute_force.hpp>
+
+namespace cchip {
+
+std::vector<Contact> brute_force_contacts(const Mesh& a, const Pose& pose_a, const Mesh& b, const Pose& pose_b) {
+  const auto in_file = [](const Mesh& mesh, std::size_t face) {
+    return mesh.file_face.empty() ? static_cast<std::uint32_t>(face) : mesh.file_face[face];
+  };
+  std::vector<Contact> contacts;
+  for (std::size_t i = 0; i < a.faces.size(); ++i) {
+    for (std::size_t k = 0; k < b.faces.size(); ++k) {
+      if (exact_intersects(a.primitive(i), pose_a, b.primitive(k), pose_b)) {
+        contacts.push_back({in_file(a, i), in_file(b, k)});
+      }
+    }
+  }
+  std::sort(contacts.begin(), contacts.end());
+  contacts.erase(std::unique(contacts.begin(), contacts.end()), contacts.end());
+  return contacts;
+}
+
+}  // namespace cchip

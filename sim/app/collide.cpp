@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "collide.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cchip/collide/face_pairs.hpp>
+#include <cchip/device/device.hpp>
+#include <cchip/stimulus/progress.hpp>
+#include <cchip/stimulus/usage_error.hpp>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "mesh_source.hpp"
+#include "pose.hpp"
+
+namespace cchip::app {
+namespace {
+
+constexpr std::size_t batch = 1024;
+constexpr std::size_t contacts_shown = 10;  // in a table
+
+/// Totals of a run, the last line.
+struct Totals {
+  std::uint64_t queries = 0;
+  std::uint64_t hits = 0;
+  std::uint64_t mismatches = 0;
+  std::uint64_t contacts = 0;
+  CollisionCounts counts;
+
+  void add(const CollisionResult& result, bool differs) {
+    ++queries;
+    hits += result.hit;
+    mismatches += differs;
+    contacts += result.contacts.size();
+    counts += result.counts;
+  }
+};
+
+std::string to_line(const Totals& t) {
+  const auto mean = [&t](std::uint64_t count) {
+    return t.queries == 0 ? 0.0 : static_cast<double>(count) / static_cast<double>(t.queries);
+  };
+  return fmt::format(
+      "queries={} hits={} mismatches={} contacts={} open={} steps_mean={:.1f} box_tests_mean={:.1f} pairs_mean={:.1f}",
+      t.queries, t.hits, t.mismatches, t.contacts, t.counts.open, mean(t.counts.steps), mean(t.counts.box_tests),
+      mean(t.counts.pairs));
+}
+
+/// stdout stays machine-readable: the summary of CSV and JSON lines goes to stderr.
+int report(const Totals& totals, Format format, const Streams& streams) {
+  (format == Format::table ? streams.out : streams.err) << to_line(totals) << '\n';
+  return totals.mismatches > 0 ? exit_mismatch : exit_ok;
+}
+
+Object load_object(const std::string& path, const Streams& streams) {
+  Mesh mesh = load_mesh_file(path, streams.err);
+  try {
+    return Object(std::move(mesh));
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(path + ": " + error.what());
+  }
+}
+
+std::unique_ptr<Device> open_named_device(const std::string& name) {
+  try {
+    return open_device(name);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(std::string("--device: ") + error.what());
+  }
+}
+
+CollisionRequest request_of(const CollideOptions& options) {
+  CollisionRequest request;
+  const bool all = options.all_contacts.value_or(options.poses_file.empty());
+  if (all) request.contacts = CollisionRequest::Contacts::all;
+  if (options.most_contacts != 0) request.most_contacts = options.most_contacts;
+  return request;
+}
+
+/// Faces of a mesh whose number in the file is in the set.
+template <class Take>
+void for_each_face_of(const Mesh& mesh, const std::set<std::uint32_t>& in_file, const Take& take) {
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const std::uint32_t number = mesh.file_face.empty() ? static_cast<std::uint32_t>(i) : mesh.file_face[i];
+    if (in_file.count(number) != 0) take(i);
+  }
+}
+
+/// Faces of each object that touch the other one.
+struct FacesHit {
+  explicit FacesHit(const std::vector<Contact>& contacts) {
+    for (const Contact& contact : contacts) {
+      a.insert(contact.face_a);
+      b.insert(contact.face_b);
+    }
+  }
+  std::set<std::uint32_t> a;
+  std::set<std::uint32_t> b;
+};
+
+/// The answer in words.
+std::string to_words(const CollisionResult& result, const CollisionRequest& request) {
+  if (!result.hit) return "apart";
+  if (request.contacts == CollisionRequest::Contacts::first) {
+    return fmt::format("touch: face {} of A meets face {} of B", result.contacts[0].face_a, result.contacts[0].face_b);
+  }
+  const FacesHit hit(result.contacts);
+  const bool more = result.contacts.size() == request.most_contacts;
+  return fmt::format("touch: {}{} face{} of A meet{} {} of B", more ? "at least " : "", hit.a.size(),
+                     hit.a.size() == 1 ? "" : "s", hit.a.size() == 1 ? "s" : "", hit.b.size());
+}
+
+void write_contacts(const std::vector<Contact>& contacts, Format format, std::ostream& out) {
+  if (contacts.empty() && format == Format::table) return;
+  const auto writer = make_row_writer(format, out, mesh_pair_names());
+  const std::size_t shown = format == Format::table ? std::min(contacts.size(), contacts_shown) : contacts.size();
+  for (std::size_t i = 0; i < shown; ++i) {
+    writer->write({std::uint64_t{contacts[i].face_a}, std::uint64_t{contacts[i].face_b}});
+  }
+  writer->flush();
+  if (shown < contacts.size()) {
+    out << fmt::format("... and {} more pairs of faces; --format csv lists all\n", contacts.size() - shown);
+  }
+}
+
+int answer_one(const CollideOptions& options, Device& device, const Streams& streams) {
+  std::optional<HitPicture> picture;
+  if (!options.ply.empty()) picture.emplace(options.ply);
+  Pose pose = Pose::Identity();
+  if (!options.pose.empty()) pose = parse_pose(options.pose);
+  if (!options.pose_matrix.empty()) pose = parse_affine_matrix(options.pose_matrix);
+  const CollisionRequest request = request_of(options);
+  try {
+    check_query(Pose::Identity(), pose, request);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+  const Object a = load_object(options.file_a, streams);
+  const Object b = load_object(options.file_b, streams);
+  const CollisionResult result = collide(device, a, Pose::Identity(), b, pose, request);
+  if (options.format == Format::table) streams.out << to_words(result, request) << '\n';
+  if (options.format != Format::table || request.contacts == CollisionRequest::Contacts::all) {
+    write_contacts(result.contacts, options.format, streams.out);
+  }
+  if (picture) {
+    const FacesHit hit(result.contacts);
+    for_each_face_of(a.mesh(), hit.a, [&picture](std::size_t face) { picture->add_hit_a(face); });
+    for_each_face_of(b.mesh(), hit.b, [&picture](std::size_t face) { picture->add_hit_b(face); });
+    picture->write(a.mesh(), transformed(b.mesh(), pose));
+  }
+  Totals totals;
+  totals.add(result, false);
+  return report(totals, options.format, streams);
+}
+
+/// Answers the poses of a file, a batch at a time, and writes a row for each.
+class PosesRunner {
+ public:
+  PosesRunner(const CollideOptions& options, Device& device, const Streams& streams)
+      : options_(options), device_(device), streams_(streams), request_(request_of(options)) {}
+
+  Totals run() {
+    std::ifstream in(options_.poses_file, std::ios::binary);
+    if (!in || std::filesystem::is_directory(options_.poses_file)) {
+      throw UsageError(fmt::format("{}: the file cannot be read ({}); check its name and permissions",
+                                   options_.poses_file, in ? "is a directory" : std::strerror(errno)));
+    }
+    CsvReader reader(in, options_.poses_file);
+    CsvRow row;
+    if (!reader.next(row)) {
+      throw row_error(options_.poses_file, 1,
+                      "the file is empty; write a first row with the column names r00 to r22, tx, ty, tz");
+    }
+    const PoseColumns columns(row, options_.poses_file, options_.expect);
+    const Object a = load_object(options_.file_a, streams_);
+    const Object b = load_object(options_.file_b, streams_);
+    // The first line of a table is the answer, so its rows wait in a text.
+    std::ostream& out = options_.format == Format::table ? table_ : streams_.out;
+    writer_ = make_row_writer(options_.format, out, names_behind(columns.passed_names(), names()));
+    Progress progress(streams_.err, streams_.progress, "poses");
+    const auto size = std::filesystem::file_size(options_.poses_file);
+    while (reader.next(row)) {
+      add(row, columns);
+      if (rows_.size() < batch) continue;
+      answer(a, b);
+      progress.update(totals_.queries, static_cast<double>(reader.bytes_read()) / static_cast<double>(size));
+    }
+    answer(a, b);
+    progress.clear();
+    if (options_.format == Format::table) {
+      streams_.out << fmt::format("touch in {} of {} poses\n", totals_.hits, totals_.queries) << table_.str();
+    }
+    return totals_;
+  }
+
+ private:
+  bool table_of_differences() const { return options_.format == Format::table && !options_.expect.empty(); }
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> names = {"hit", "contacts", "steps", "box_tests", "pairs", "open"};
+    if (table_of_differences()) names.insert(names.begin(), {"row", "expected"});
+    return names;
+  }
+
+  void add(const CsvRow& row, const PoseColumns& columns) {
+    rows_.push_back(columns.parse(row));
+    lines_.push_back(row.line);
+    poses_.push_back({Pose::Identity(), rows_.back().pose});
+    try {
+      check_query(poses_.back().a, poses_.back().b, request_);
+    } catch (const std::invalid_argument& error) {
+      throw row_error(options_.poses_file, row.line, error.what());
+    }
+  }
+
+  void answer(const Object& a, const Object& b) {
+    const std::vector<CollisionResult> results = collide(device_, a, b, poses_, request_);
+    for (std::size_t i = 0; i < rows_.size(); ++i) write(i, results[i]);
+    writer_->flush();
+    rows_.clear();
+    lines_.clear();
+    poses_.clear();
+  }
+
+  void write(std::size_t i, const CollisionResult& result) {
+    const PoseColumns::Row& row = rows_[i];
+    const bool all = request_.contacts == CollisionRequest::Contacts::all;
+    const std::uint64_t answer = all ? result.contacts.size() : std::uint64_t{result.hit};
+    const bool differs = row.expected && *row.expected != answer;
+    totals_.add(result, differs);
+    if (table_of_differences() && !differs) return;
+    if (differs && !table_of_differences()) {
+      streams_.err << fmt::format("cchip: {}:{}: expected {} {}, got {}\n", options_.poses_file, lines_[i],
+                                  all ? "contacts" : "hit", *row.expected, answer);
+    }
+    std::vector<Cell> cells(row.passed.begin(), row.passed.end());
+    if (table_of_differences()) {
+      cells.emplace_back(lines_[i]);
+      cells.emplace_back(*row.expected);
+    }
+    const CollisionCounts& counts = result.counts;
+    for (const std::uint64_t number : {std::uint64_t{result.hit}, std::uint64_t{result.contacts.size()}, counts.steps,
+                                       counts.box_tests, counts.pairs, counts.open}) {
+      cells.emplace_back(number);
+    }
+    writer_->write(cells);
+  }
+
+  const CollideOptions& options_;
+  Device& device_;
+  const Streams& streams_;
+  CollisionRequest request_;
+  std::ostringstream table_;
+  std::unique_ptr<RowWriter> writer_;
+  std::vector<PoseColumns::Row> rows_;
+  std::vector<std::uint64_t> lines_;
+  std::vector<PosePair> poses_;
+  Totals totals_;
+};
+
+}  // namespace
+
+int run_collide(const CollideOptions& options, const Streams& streams) {
+  if (options.poses_file.empty() && !options.expect.empty()) {
+    throw UsageError("--expect: there is no file of poses; name one with --poses");
+  }
+  const auto device = open_named_device(options.device);
+  if (options.poses_file.empty()) return answer_one(options, *device, streams);
+  return report(PosesRunner(options, *device, streams).run(), options.format, streams);
+}
+
+}  // namespace cchip::app

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The command `cchip collide`: two meshes in one pose or in many.
+#ifndef CCHIP_APP_COLLIDE_HPP
+#define CCHIP_APP_COLLIDE_HPP
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "cli.hpp"
+#include "row_writer.hpp"
+
+namespace cchip::app {
+
+struct CollideOptions {
+  std::string file_a;
+  std::string file_b;
+  std::string pose;         ///< of B: see parse_pose(); empty: none
+  std::string pose_matrix;  ///< of B: see parse_affine_matrix(); empty: none
+  std::string poses_file;   ///< CSV; empty: one query
+  /// True: all contacts. Nothing: all of one query, the first of each of many.
+  std::optional<bool> all_contacts;
+  std::size_t most_contacts = 0;  ///< 0: no limit
+  std::string device = "cpu";
+  Format format = Format::table;
+  std::string expect;  ///< column of the file; empty: none
+  std::string ply;     ///< path of the coloured picture; empty: none
+};
+
+/// Runs it and returns the exit code.
+/// \throws UsageError
+int run_collide(const CollideOptions& options, const Streams& streams);
+
+}  // namespace cchip::app
+
+#endif

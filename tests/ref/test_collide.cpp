@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0
+// The CPU device against brute force over exact integers.
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cchip/device/device.hpp>
+#include <cchip/reference/brute_force.hpp>
+#include <cchip/sim/seed.hpp>
+#include <iostream>
+#include <limits>
+#include <set>
+
+#include "bvh_meshes.hpp"
+#include "random_poses.hpp"
+
+using namespace cchip;
+using namespace cchip::testing;
+using cchip_test::PoseClass;
+using cchip_test::random_pose;
+
+namespace {
+
+const CollisionRequest all = {CollisionRequest::Contacts::all};
+
+Mesh one_face(const std::vector<Vec3d>& vertices) {
+  Mesh mesh;
+  add_face(mesh, vertices);
+  return mesh;
+}
+
+Mesh scaled(Mesh mesh, double factor) {
+  for (Vec3d& v : mesh.vertices) v *= factor;
+  return mesh;
+}
+
+/// Small, so that every pair of faces can be tested by the oracle.
+std::vector<Mesh> small_meshes(std::mt19937_64& random) {
+  std::vector<Mesh> meshes = {
+      make_torus(1, 0.4, 5, 4),
+      noisy(make_torus(1, 0.4, 4, 3, Kind::quad), 0.05, random),
+      make_torus(1, 0.4, 4, 4, Kind::quad),
+      make_gear(0.8, 1.2, 0.3, 0.5, 3, 1),
+      soup(12, false, random),
+      scaled(soup(12, true, random), 0.25),
+      one_face({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}),
+      one_face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}),
+      one_face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.25}, {0, 1, 0}}),     // warped
+      one_face({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}),        // crosses itself
+      one_face({{0, 0, 0}, {1, 0, 0}, {0.25, 0.25, 0}, {0, 1, 0}}),  // dented
+      one_face({{0, 0, 0}, {1, 1, 1}, {0.5, 0.5, 0.5}}),             // a segment
+      one_face({{0.5, 0.5, 0}, {0.5, 0.5, 0}, {0.5, 0.5, 0}}),       // a point
+      scaled(make_torus(1, 0.4, 4, 3), 1e-3),                        // a thousandth of the others
+  };
+  Mesh plane;  // faces in one plane
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const Vec3d p = Vec3d(i, k, 0) * 0.5;
+      add_face(plane, {p, p + Vec3d(0.5, 0, 0), p + Vec3d(0.5, 0.5, 0), p + Vec3d(0, 0.5, 0)});
+    }
+  }
+  meshes.push_back(plane);
+  Mesh many;  // degenerate and coincident faces among others
+  for (int i = 0; i < 4; ++i) {
+    add_face(many, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    add_face(many, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
+    add_face(many, {{0, 0.5, 0}, {0, 0.5, 0}, {0, 0.5, 0}, {0, 0.5, 0}});
+  }
+  meshes.push_back(many);
+  return meshes;
+}
+
+std::string describe(const PosePair& poses) {
+  std::ostringstream text;
+  text.precision(17);
+  text << poses.a.affine() << '\n' << poses.b.affine();
+  return text.str();
+}
+
+/// Poses of two objects of a size near 1: apart, near, touching, deep, and the same place.
+PosePair random_poses(std::mt19937_64& random) {
+  const auto pick = [&random] { return cchip_test::pose_classes[random() % std::size(cchip_test::pose_classes)]; };
+  const double range = std::ldexp(1.0, -static_cast<int>(random() % 4));
+  const PoseClass c = pick();
+  PosePair poses = {random_pose(c, range, random), random_pose(random() % 2 == 0 ? c : pick(), range, random)};
+  switch (random() % 6) {
+    case 0:
+      poses.b = poses.a;
+      break;
+    case 1:
+      poses.b.linear() = poses.a.linear();
+      break;
+    case 2:
+      poses.b.translation() = poses.a.translation() + random_vector(random, range);
+      break;
+    default:
+      break;
+  }
+  return poses;
+}
+
+}  // namespace
+
+TEST_CASE("collide: first and all contacts are those of brute force", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  const std::vector<Mesh> meshes = small_meshes(random);
+  std::vector<Object> objects;
+  for (const Mesh& mesh : meshes) objects.emplace_back(mesh);
+  const auto device = open_device("cpu");
+  const int rounds = 48;
+  std::uint64_t queries = 0;
+  std::uint64_t hits = 0;
+  CollisionCounts total;
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+      for (std::size_t k = 0; k < meshes.size(); ++k) {
+        if (round >= 4 && meshes[i].faces.size() * meshes[k].faces.size() > 300) continue;
+        const PosePair poses = random_poses(random);
+        const std::vector<Contact> expected = brute_force_contacts(meshes[i], poses.a, meshes[k], poses.b);
+        const CollisionResult found = collide(*device, objects[i], poses.a, objects[k], poses.b, all);
+        const CollisionResult first = collide(*device, objects[i], poses.a, objects[k], poses.b);
+        ++queries;
+        hits += found.hit;
+        total += found.counts;
+        if (found.contacts != expected || found.hit != !expected.empty() || first.hit != found.hit ||
+            first.contacts.size() != (found.hit ? 1 : 0) ||
+            (found.hit && !std::binary_search(expected.begin(), expected.end(), first.contacts[0])) ||
+            first.counts.pairs > found.counts.pairs) {
+          FAIL("meshes " << i << " and " << k << ", round " << round << ": " << found.contacts.size()
+                         << " contacts instead of " << expected.size() << ", first " << first.hit << '\n'
+                         << describe(poses));
+        }
+      }
+    }
+  }
+  std::cout << "queries=" << queries << " hits=" << hits << " pairs=" << total.pairs << " open=" << total.open << '\n';
+  CHECK(queries >= 10000);
+  CHECK(hits > queries / 4);
+  CHECK(hits < queries * 9 / 10);
+  CHECK(total.open > 0);
+}
+
+TEST_CASE("collide: a mesh on itself touches in every face", "[ref][collide]") {
+  const Object gear(make_gear(1.4, 2, 0.6, 0.8, 12, 2));
+  const auto device = open_device("cpu");
+  std::mt19937_64 random(sim::seed_from_environment());
+  for (const PoseClass c : {PoseClass::quarter_turns, PoseClass::rigid, PoseClass::shear, PoseClass::flat}) {
+    const Pose pose = random_pose(c, 1, random);
+    const CollisionResult result = collide(*device, gear, pose, gear, pose, all);
+    std::set<std::uint32_t> on_itself;
+    for (const Contact& contact : result.contacts) {
+      if (contact.face_a == contact.face_b) on_itself.insert(contact.face_a);
+    }
+    CHECK(on_itself.size() == gear.mesh().faces.size());
+    CHECK(std::is_sorted(result.contacts.begin(), result.contacts.end()));
+  }
+}
+
+TEST_CASE("collide: objects are surfaces", "[ref][collide]") {
+  const Object outer(make_gear(8, 9, 0, 10, 12, 2));
+  const Object inner(make_gear(0.5, 1, 0, 1, 12, 2));
+  const auto device = open_device("cpu");
+  CHECK_FALSE(collide(*device, outer, Pose::Identity(), inner, Pose::Identity()).hit);
+  Pose moved = Pose::Identity();
+  moved.translation().z() = 4.5;  // the inner one's face lies in the outer one's
+  CHECK(collide(*device, outer, Pose::Identity(), inner, moved).hit);
+  moved.translation().z() = 4.5 - 0x1p-48;
+  CHECK_FALSE(collide(*device, outer, Pose::Identity(), inner, moved).hit);
+}
+
+TEST_CASE("collide: objects of any magnitude", "[ref][collide]") {
+  const auto device = open_device("cpu");
+  const Mesh torus = make_torus(2, 0.7, 12, 8);
+  const Mesh gear = make_gear(1.4, 2, 0.6, 0.8, 12, 2);
+  const Pose pose = make_pose({1, 0.5, 0.25}, {20, 30, 40});
+  const CollisionResult expected = collide(*device, Object(torus), Pose::Identity(), Object(gear), pose, all);
+  REQUIRE(expected.hit);
+  for (const int exponent : {-1000, -500, -100, 100, 500, 990}) {
+    CAPTURE(exponent);
+    const double scale = std::ldexp(1.0, exponent);
+    const Object small_torus(scaled(torus, scale));
+    const Object small_gear(scaled(gear, scale));
+    Pose placed = pose;
+    if (std::abs(exponent) <= 100) {  // a translation of the same magnitude
+      placed.translation() *= scale;
+      CHECK(collide(*device, small_torus, Pose::Identity(), small_gear, placed, all).contacts == expected.contacts);
+    }
+    if (std::abs(exponent) <= 500) {  // the poses scale back
+      Pose back = Pose::Identity();
+      back.linear() /= scale;
+      placed = pose;
+      placed.linear() /= scale;
+      CHECK(collide(*device, small_torus, back, small_gear, placed, all).contacts == expected.contacts);
+    }
+    Pose origin = pose;
+    origin.translation().setZero();
+    const auto both = [&](const Object& a, const Object& b) {
+      return collide(*device, a, Pose::Identity(), b, origin, all).contacts;
+    };
+    CHECK(both(small_torus, small_gear) == both(Object(torus), Object(gear)));
+  }
+}
+
+TEST_CASE("collide: faces that were cut count once, by their number in the file", "[ref][collide]") {
+  Mesh cut;  // a square of two triangles, another square of two
+  add_face(cut, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}});
+  add_face(cut, {{0, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  add_face(cut, {{1, 0, 0}, {2, 0, 0}, {2, 1, 0}});
+  add_face(cut, {{1, 0, 0}, {2, 1, 0}, {1, 1, 0}});
+  cut.file_face = {7, 7, 3, 3};
+  const Mesh wall = one_face({{0.25, 0.5, -1}, {1.75, 0.5, -1}, {1.75, 0.5, 1}, {0.25, 0.5, 1}});
+  const auto device = open_device("cpu");
+  const Object a(cut);
+  const Object b(wall);
+  const CollisionResult result = collide(*device, a, Pose::Identity(), b, Pose::Identity(), all);
+  CHECK(result.contacts == std::vector<Contact>{{3, 0}, {7, 0}});
+  CHECK(brute_force_contacts(cut, Pose::Identity(), wall, Pose::Identity()) == result.contacts);
+  CHECK(result.counts.pairs == 4);
+  CollisionRequest one = all;
+  one.most_contacts = 1;
+  CHECK(collide(*device, b, Pose::Identity(), a, Pose::Identity(), one).contacts.size() == 1);
+}
+
+TEST_CASE("collide: most contacts", "[ref][collide]") {
+  const Object gear(make_gear(1.4, 2, 0.6, 0.8, 12, 2));
+  const auto device = open_device("cpu");
+  const Pose pose = make_pose({0.5, 0, 0}, {10, 20, 30});
+  const CollisionResult everything = collide(*device, gear, Pose::Identity(), gear, pose, all);
+  REQUIRE(everything.contacts.size() > 20);
+  for (const std::size_t most : {std::size_t{1}, std::size_t{7}, everything.contacts.size(), std::size_t{100000}}) {
+    CollisionRequest request = all;
+    request.most_contacts = most;
+    const CollisionResult some = collide(*device, gear, Pose::Identity(), gear, pose, request);
+    CHECK(some.hit);
+    CHECK(some.contacts.size() == std::min(most, everything.contacts.size()));
+    CHECK(std::includes(everything.contacts.begin(), everything.contacts.end(), some.contacts.begin(),
+                        some.contacts.end()));
+  }
+}
+
+TEST_CASE("collide: a batch gives what single queries give", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  const Object a(make_torus(2, 0.7, 24, 12));
+  const Object b(make_gear(1.4, 2, 0.6, 0.8, 12, 2));
+  std::vector<PosePair> poses(300);
+  for (PosePair& pose : poses) {
+    pose.a = random_pose(PoseClass::rigid, 1, random);
+    pose.b = random_pose(PoseClass::rigid, 3, random);
+  }
+  const auto device = open_device("cpu");
+  for (const CollisionRequest& request : {CollisionRequest{}, all}) {
+    const std::vector<CollisionResult> batch = collide(*device, a, b, poses, request);
+    REQUIRE(batch.size() == poses.size());
+    std::size_t hits = 0;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const CollisionResult single = collide(*device, a, poses[i].a, b, poses[i].b, request);
+      hits += single.hit;
+      CHECK(batch[i].hit == single.hit);
+      CHECK(batch[i].contacts == single.contacts);
+      CHECK(batch[i].counts.steps == single.counts.steps);
+      CHECK(batch[i].counts.box_tests == single.counts.box_tests);
+      CHECK(batch[i].counts.pairs == single.counts.pairs);
+      CHECK(batch[i].counts.open == single.counts.open);
+    }
+    CHECK(hits > 0);
+    CHECK(hits < poses.size());
+  }
+  CHECK(collide(*device, a, b, {}).empty());
+}
+
+TEST_CASE("collide: results of a batch come one call at a time, and an exception of the caller ends it",
+          "[ref][collide]") {
+  const Object a(make_torus(2, 0.7, 24, 12));
+  const auto device = open_device("cpu");
+  const std::vector<PosePair> poses(200);
+  std::atomic<int> inside = 0;
+  std::set<std::size_t> seen;
+  device->collide(a, a, poses, {}, [&](std::size_t i, CollisionResult&& result) {
+    CHECK(++inside == 1);
+    CHECK(result.hit);
+    seen.insert(i);
+    --inside;
+  });
+  CHECK(seen.size() == poses.size());
+  int calls = 0;
+  const auto stop = [&calls](std::size_t, CollisionResult&&) {
+    if (++calls == 3) throw std::runtime_error("enough");
+  };
+  CHECK_THROWS_WITH(device->collide(a, a, poses, {}, stop), "enough");
+  CHECK(calls == 3);
+}
+
+TEST_CASE("collide: input that makes no sense is refused in one line", "[ref][collide]") {
+  const Object a(one_face({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  const auto device = open_device("cpu");
+  Pose bad = Pose::Identity();
+  bad.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_WITH(collide(*device, a, Pose::Identity(), a, bad),
+                    "pose of B: row 0, column 3 is not finite or beyond 2^500; check it or scale it");
+  bad = Pose::Identity();
+  bad(1, 0) = 0x1p501;
+  CHECK_THROWS_WITH(collide(*device, a, bad, a, Pose::Identity()),
+                    "pose of A: row 1, column 0 is not finite or beyond 2^500; check it or scale it");
+  int calls = 0;
+  CHECK_THROWS_AS(device->collide(a, a, {PosePair{}, PosePair{bad, bad}}, {},
+                                  [&calls](std::size_t, CollisionResult&&) { ++calls; }),
+                  std::invalid_argument);
+  CHECK(calls == 0);
+  CollisionRequest none = all;
+  none.most_contacts = 0;
+  CHECK_THROWS_AS(collide(*device, a, Pose::Identity(), a, Pose::Identity(), none), std::invalid_argument);
+  CHECK_THROWS_AS(Object(Mesh{}), std::invalid_argument);
+  CHECK_THROWS_WITH(Object(one_face({{0, 0, 0}, {1, 0, std::numeric_limits<double>::infinity()}, {0, 1, 0}})),
+                    Catch::Contains("vertex 1 is not finite"));
+  CHECK_THROWS_WITH(open_device("gpu"), Catch::Contains("device gpu is not known: the devices are cpu"));
+  CHECK(device_names().front() == "cpu");
+  CHECK(std::string(device->name()) == "cpu");
+}
+
+TEST_CASE("collide: copies of an object are one object", "[ref][collide]") {
+  const Object a(one_face({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  const Object copy = a;
+  CHECK(copy.id() == a.id());
+  CHECK(Object(a.mesh()).id() != a.id());
+}

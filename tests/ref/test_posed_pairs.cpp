@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Filtered answers against integers of any size.
+#include <catch2/catch.hpp>
+#include <cchip/exact/oracle.hpp>
+#include <cchip/exact/posed_pairs.hpp>
+#include <cmath>
+#include <iostream>
+#include <limits>
+
+#include "random_pairs.hpp"
+#include "random_poses.hpp"
+
+using namespace cchip;
+using namespace cchip_test;
+
+namespace {
+
+/// Grid primitive times 2^exponent.
+Primitive scaled(const GridPrimitive& g, int exponent) {
+  Primitive p;
+  p.kind = g.kind;
+  for (std::size_t i = 0; i < g.vertex_count(); ++i) {
+    for (int d = 0; d < 3; ++d) p.v[i][d] = std::ldexp(g.v[i][d], exponent);
+  }
+  return p;
+}
+
+/// Some coordinates go to a neighbouring double.
+void nudge(Primitive& p, std::mt19937_64& random) {
+  for (Vec3d& v : p.v) {
+    for (double& c : v) {
+      if (random() % 4 == 0) c = std::nextafter(c, random() % 2 == 0 ? 1e300 : -1e300);
+    }
+  }
+}
+
+struct Count {
+  int pairs = 0;
+  int hits = 0;
+  int open = 0;
+};
+
+void check(const Primitive& a, const Pose& pose_a, const Primitive& b, const Pose& pose_b, const char* what,
+           Count& count) {
+  const PosedPairs::Answer answer = PosedPairs(pose_a, pose_b).decide(a, b);
+  ++count.pairs;
+  count.hits += answer.hit;
+  count.open += answer.open;
+  if (answer.hit == exact_intersects(a, pose_a, b, pose_b)) return;
+  std::ostringstream text;
+  text.precision(17);
+  for (const Primitive* p : {&a, &b}) {
+    for (std::size_t i = 0; i < p->vertex_count(); ++i) text << p->v[i].transpose() << "; ";
+  }
+  text << '\n' << pose_a.affine() << '\n' << pose_b.affine();
+  FAIL(what << ", pair " << count.pairs << ", seed " << seed() << ", filter says " << answer.hit << ": " << text.str());
+}
+
+/// Every class of pairs of a grid, under one pose, so that touching, coplanar and degenerate pairs stay so, each also
+/// with coordinates moved to neighbours, at many magnitudes; and under poses of their own.
+void compare(int rounds, Count& same, Count& nudged, Count& apart, Count& extreme) {
+  std::mt19937_64 random(seed() + 77);
+  for (const PairClass c : pair_classes) {
+    PairSource source(-40, 40, static_cast<std::uint64_t>(c) + 50);
+    for (int i = 0; i < rounds; ++i) {
+      const GridPair grid = source.pair(c, i % 3 == 0 ? Kind::quad : Kind::tri, i % 4 == 0 ? Kind::quad : Kind::tri);
+      Primitive a = scaled(grid.a, -4);
+      Primitive b = scaled(grid.b, -4);
+      const PoseClass pose_class = pose_classes[static_cast<std::size_t>(i) % std::size(pose_classes)];
+      const Pose pose = random_pose(pose_class, 2, random);
+      check(a, pose, b, pose, name(c), same);
+      if (is_invertible(pose_class) && exact_intersects(a, pose, b, pose) != exact_intersects(grid)) {
+        FAIL("the oracle is wrong about " << describe(grid));
+      }
+      check(a, pose, b, random_pose(pose_class, 2, random), name(c), apart);
+      nudge(a, random);
+      nudge(b, random);
+      check(a, pose, b, pose, name(c), nudged);
+      const auto exponent = [&random] { return std::array<int, 5>{-1060, -500, -330, 340, 500}[random() % 5]; };
+      const int size = exponent();
+      Pose huge = pose;
+      huge.translation() *= std::ldexp(1.0, std::abs(size) < 600 ? size : 0);
+      check(scaled(grid.a, size), huge, scaled(grid.b, size), huge, name(c), extreme);
+      huge = pose;
+      huge.linear() *= std::ldexp(1.0, std::max(-500, size));
+      check(a, huge, scaled(grid.b, exponent()), random_pose(pose_class, std::ldexp(1.0, size), random), name(c),
+            extreme);
+    }
+  }
+}
+
+void check_counts(const Count& c, double hits_least, double hits_most) {
+  CAPTURE(c.pairs, c.hits, c.open);
+  CHECK(c.hits > hits_least * c.pairs);
+  CHECK(c.hits < hits_most * c.pairs);
+  CHECK(c.open > 0);
+  CHECK(c.open < c.pairs);
+}
+
+void compare_and_count(int rounds) {
+  Count same;
+  Count nudged;
+  Count apart;
+  Count extreme;
+  compare(rounds, same, nudged, apart, extreme);
+  check_counts(same, 0.3, 0.95);
+  check_counts(nudged, 0.2, 0.9);
+  check_counts(apart, 0.02, 0.9);
+  check_counts(extreme, 0.05, 0.95);
+  for (const Count& c : {same, nudged, apart, extreme}) {
+    std::cout << "pairs=" << c.pairs << " hits=" << c.hits << " open=" << c.open << '\n';
+  }
+}
+
+}  // namespace
+
+TEST_CASE("posed pairs: 10^5 agree with integers of any size", "[ref][posed_pairs]") { compare_and_count(4000); }
+
+TEST_CASE("posed pairs: 10^6 agree with integers of any size", "[.long]") { compare_and_count(40000); }
+
+TEST_CASE("posed pairs: whole numbers are decided without integers of any size", "[ref][posed_pairs]") {
+  std::mt19937_64 random(seed());
+  for (const PairClass c : pair_classes) {
+    PairSource source(-200, 200, static_cast<std::uint64_t>(c) + 90);
+    int open = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const GridPair grid = source.pair(c, i % 3 == 0 ? Kind::quad : Kind::tri);
+      const Pose pose = random_pose(PoseClass::integers, 3, random);
+      open += PosedPairs(pose, pose).decide(scaled(grid.a, 0), scaled(grid.b, 0)).open;
+      if (PosedPairs(Pose::Identity(), Pose::Identity()).decide(scaled(grid.a, 3), scaled(grid.b, 3)).hit !=
+          exact_intersects(grid)) {
+        FAIL(describe(grid));
+      }
+    }
+    CHECK(open == 0);
+  }
+}
+
+TEST_CASE("posed pairs: a product that no double holds decides", "[ref][posed_pairs]") {
+  // The point lies at 0.1 x 0.1 in exact arithmetic, which is not the double 0.1 * 0.1.
+  Primitive point;
+  point.v = {Vec3d(0.1, 0, 0), Vec3d(0.1, 0, 0), Vec3d(0.1, 0, 0), Vec3d::Zero()};
+  Pose tenth = Pose::Identity();
+  tenth.linear() *= 0.1;
+  Primitive segment;  // from the exact product's rounded value away from it
+  const double rounded = 0.1 * 0.1;
+  const bool below = std::fma(0.1, 0.1, -rounded) < 0;
+  for (const bool reaches : {false, true}) {
+    const double end = below ? (reaches ? -1.0 : 1.0) : (reaches ? 1.0 : -1.0);
+    segment.v = {Vec3d(rounded, 0, 0), Vec3d(end, 0, 0), Vec3d(end, 0, 0), Vec3d::Zero()};
+    const PosedPairs::Answer answer = PosedPairs(tenth, Pose::Identity()).decide(point, segment);
+    CHECK(answer.hit == reaches);
+    CHECK(exact_intersects(point, tenth, segment, Pose::Identity()) == reaches);
+  }
+}
+
+TEST_CASE("posed pairs: common translations do not matter", "[ref][posed_pairs]") {
+  std::mt19937_64 random(seed() + 5);
+  PairSource source(-30, 30, 5);
+  int open = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const GridPair grid = source.pair(PairClass::general);
+    Pose pose_a = random_pose(PoseClass::rigid, 1, random);
+    Pose pose_b = pose_a;
+    const Primitive a = scaled(grid.a, -5);
+    const Primitive b = scaled(grid.b, -5);
+    const bool hit = PosedPairs(pose_a, pose_b).decide(a, b).hit;
+    pose_a.translation().array() += 0x1p80;
+    pose_b.translation() = pose_a.translation();
+    const PosedPairs::Answer far = PosedPairs(pose_a, pose_b).decide(a, b);
+    open += far.open;
+    CHECK(far.hit == hit);
+  }
+  CHECK(open < 20);
+}
+
+TEST_CASE("posed pairs: refuse what is not finite", "[ref][posed_pairs]") {
+  Pose pose = Pose::Identity();
+  pose.translation().y() = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_AS(PosedPairs(pose, Pose::Identity()), std::invalid_argument);
+  CHECK_THROWS_AS(PosedPairs(Pose::Identity(), pose), std::invalid_argument);
+  Primitive p;
+  CHECK_THROWS_AS(exact_intersects(p, pose, p, Pose::Identity()), std::invalid_argument);
+}

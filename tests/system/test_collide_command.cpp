@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <catch2/catch.hpp>
+#include <cchip/mesh/shapes.hpp>
+#include <cchip/mesh_io/mesh_file.hpp>
+#include <cchip/reference/brute_force.hpp>
+#include <cchip/stimulus/usage_error.hpp>
+#include <set>
+
+#include "pose.hpp"
+#include "support.hpp"
+
+using namespace cchip;
+using namespace cchip::app;
+using namespace cchip::test;
+
+namespace {
+
+const std::string cube_file = std::string(CCHIP_TEST_MODELS) + "/OFF/Cube.off";  // six quads, from -0.5 to 0.5
+const std::string poses_header = "r00,r01,r02,r10,r11,r12,r20,r21,r22,tx,ty,tz";
+
+Outcome collide_cubes(std::vector<std::string> options) {
+  options.insert(options.begin(), {"collide", cube_file, cube_file});
+  return run_cchip(options);
+}
+
+std::vector<std::string> rows_of(const std::vector<Contact>& contacts) {
+  std::vector<std::string> rows = {"face_a,face_b"};
+  for (const Contact& c : contacts) rows.push_back(std::to_string(c.face_a) + "," + std::to_string(c.face_b));
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("collide: the first line is the answer, the last one the summary", "[system][collide]") {
+  const Outcome apart = collide_cubes({"--pose", "1.0000000000000002,0,0"});
+  CHECK(apart.code == exit_ok);
+  CHECK(lines(apart.out).size() == 2);
+  CHECK(lines(apart.out).front() == "apart");
+  CHECK(last_line(apart.out).rfind("queries=1 hits=0 mismatches=0 contacts=0 ", 0) == 0);
+  CHECK(apart.err.empty());
+  // They share the corner (0.5, 0.5, 0.5), which three faces of either have.
+  const Outcome corner = collide_cubes({"--pose", "1,1,1"});
+  CHECK(lines(corner.out).front() == "touch: 3 faces of A meet 3 of B");
+  CHECK(lines(corner.out).at(1) == "face_a  face_b");
+  CHECK(last_line(corner.out).rfind("queries=1 hits=1 mismatches=0 contacts=9 ", 0) == 0);
+  const Outcome first = collide_cubes({"--pose", "1,1,1", "--contacts", "first"});
+  CHECK(lines(first.out).size() == 2);
+  CHECK(lines(first.out).front().rfind("touch: face ", 0) == 0);
+  const Outcome two = collide_cubes({"--pose", "1,1,1", "--most", "2"});
+  CHECK(lines(two.out).front().rfind("touch: at least ", 0) == 0);
+  CHECK(last_line(two.out).rfind("queries=1 hits=1 mismatches=0 contacts=2 ", 0) == 0);
+}
+
+TEST_CASE("collide: contacts are those of brute force", "[system][collide]") {
+  const std::string spider = std::string(CCHIP_TEST_MODELS) + "/OBJ/spider.obj";  // polygons that have to be cut
+  const std::string matrix = "40,0,10,3,0,-50,0,2,5,0,30,1";                      // mirrored, sheared
+  const Outcome outcome = run_cchip({"collide", spider, cube_file, "--pose-matrix", matrix, "--format", "csv"});
+  REQUIRE(outcome.code == exit_ok);
+  const Mesh a = load_mesh(spider, FaceKinds::triangles_and_quads);
+  const Mesh b = load_mesh(cube_file, FaceKinds::triangles_and_quads);
+  const auto expected = brute_force_contacts(a, Pose::Identity(), b, parse_affine_matrix(matrix));
+  REQUIRE(expected.size() > 10);
+  CHECK(lines(outcome.out) == rows_of(expected));
+  CHECK(count(last_line(outcome.err), "contacts") == expected.size());
+  const Outcome json = run_cchip({"collide", spider, cube_file, "--pose-matrix", matrix, "--format", "jsonl"});
+  CHECK(lines(json.out).size() == expected.size());
+  CHECK(lines(json.out).front() == "{\"face_a\":" + std::to_string(expected[0].face_a) +
+                                       ",\"face_b\":" + std::to_string(expected[0].face_b) + "}");
+}
+
+TEST_CASE("collide: poses of a file, expected answers", "[system][collide]") {
+  const TemporaryFolder folder;
+  const std::string rows =
+      "corner, 1,0,0,0,1,0,0,0,1,1,1,1,1,9\n"
+      "apart,1,0,0,0,1,0,0,0,1,2,0,0,0,0\n"
+      "\"flat, through the middle\",1,0,0,0,1,0,0,0,0,0,0,0,1,20\n";
+  const std::string header = "note," + poses_header + ",touches,contacts\n";
+  const std::string file = folder.write("poses.csv", header + rows);
+  const Outcome good = collide_cubes({"--poses", file, "--expect", "touches", "--format", "csv"});
+  CHECK(good.code == exit_ok);
+  REQUIRE(lines(good.out).size() == 4);
+  CHECK(lines(good.out)[0] == "note,touches,input_contacts,hit,contacts,steps,box_tests,pairs,open");
+  CHECK(lines(good.out)[1].rfind("corner,1,9,1,1,", 0) == 0);
+  CHECK(lines(good.out)[2].rfind("apart,0,0,0,0,", 0) == 0);
+  CHECK(lines(good.out)[3].rfind("\"flat, through the middle\",1,20,1,1,", 0) == 0);
+  CHECK(last_line(good.err).rfind("queries=3 hits=2 mismatches=0 contacts=2 ", 0) == 0);
+
+  const Mesh cube = load_mesh(cube_file, FaceKinds::triangles_and_quads);
+  Pose flat = Pose::Identity();
+  flat(2, 2) = 0;
+  // Two squares meet the four walls each, four segments meet their own wall and the two beside it.
+  CHECK(brute_force_contacts(cube, Pose::Identity(), cube, flat).size() == 2 * 4 + 4 * 3);
+  CHECK(collide_cubes({"--poses", file, "--expect", "contacts", "--contacts", "all"}).code == exit_ok);
+
+  const std::string wrong = folder.write("wrong.csv", header + rows + "apart,1,0,0,0,1,0,0,0,1,0,0,7,1,1\n");
+  const Outcome table = collide_cubes({"--poses", wrong, "--expect", "touches"});
+  CHECK(table.code == exit_mismatch);
+  REQUIRE(lines(table.out).size() == 4);
+  CHECK(lines(table.out)[0] == "touch in 2 of 4 poses");
+  CHECK(lines(table.out)[2].rfind("apart  1        1               5    1         0", 0) == 0);
+  CHECK(count(last_line(table.out), "mismatches") == 1);
+  const Outcome csv = collide_cubes({"--poses", wrong, "--expect", "contacts", "--contacts", "all", "--format", "csv"});
+  CHECK(csv.code == exit_mismatch);
+  CHECK(lines(csv.err).front() == "cchip: " + wrong + ":5: expected contacts 1, got 0");
+}
+
+TEST_CASE("collide: thousands of poses", "[system][collide]") {
+  const TemporaryFolder folder;
+  std::string text = "touches," + poses_header + "\n";
+  for (int i = 0; i < 3000; ++i) {  // along x in steps of an eighth: apart behind 1
+    text += std::string(i <= 8 ? "1" : "0") + ",1,0,0,0,1,0,0,0,1," + std::to_string(i / 8.0) + ",0,0\n";
+  }
+  const Outcome outcome = collide_cubes({"--poses", folder.write("poses.csv", text), "--expect", "touches"});
+  CHECK(outcome.code == exit_ok);
+  CHECK(lines(outcome.out).front() == "touch in 9 of 3000 poses");
+  CHECK(last_line(outcome.out).rfind("queries=3000 hits=9 mismatches=0 ", 0) == 0);
+}
+
+TEST_CASE("collide: picture", "[system][collide]") {
+  const TemporaryFolder folder;
+  const std::string ply = folder.path("hits.ply");
+  REQUIRE(collide_cubes({"--pose", "1,1,1", "--ply", ply}).code == exit_ok);
+  const Mesh both = load_mesh(ply, FaceKinds::triangles_and_quads);
+  CHECK(both.faces.size() == 12);
+  std::set<double> xs;
+  for (const Vec3d& v : both.vertices) xs.insert(v.x());
+  CHECK(xs == std::set<double>{-0.5, 0.5, 1.5});
+  // With one contact only fewer faces are coloured.
+  const std::string one = folder.path("one.ply");
+  REQUIRE(collide_cubes({"--pose", "1,1,1", "--contacts", "first", "--ply", one}).code == exit_ok);
+  CHECK(folder.read("one.ply").size() == folder.read("hits.ply").size());
+  CHECK(folder.read("one.ply") != folder.read("hits.ply"));
+}
+
+TEST_CASE("collide: wrong input is one line and exit code 2", "[system][collide]") {
+  const TemporaryFolder folder;
+  const std::string good_row = "1,0,0,0,1,0,0,0,1,0,0,0\n";
+  const auto poses = [&](const std::string& name, const std::string& text) {
+    return std::vector<std::string>{"--poses", folder.write(name, text)};
+  };
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {{"--pose", "1,2"}, "--pose: got 2 numbers"},
+      {{"--pose-matrix", "1,0,0"}, "--pose-matrix: got 3 numbers"},
+      {{"--pose-matrix", "1e200,0,0,0,0,1,0,0,0,0,1,0"}, "pose of B: row 0, column 0 is not finite or beyond 2^500"},
+      {{"--device", "fpga"}, "--device: device fpga is not known: the devices are cpu"},
+      {{"--expect", "touches"}, "--expect"},
+      {{"--most", "0"}, "--most"},
+      {{"--poses", folder.path("none.csv")}, "none.csv: the file cannot be read"},
+      {poses("empty.csv", ""), "empty.csv:1: the file is empty"},
+      {poses("short.csv", "r00,r01\n"), "short.csv:1: column r02 is missing"},
+      {poses("twice.csv", poses_header + ",tx\n" + good_row), "twice.csv:1: column tx is there twice"},
+      {poses("text.csv", poses_header + "\n" + good_row + "1,0,0,0,x,0,0,0,1,0,0,0\n"),
+       "text.csv:3: column r11: 'x' is not a number"},
+      {poses("fields.csv", poses_header + "\n1,2\n"), "fields.csv:2: the row has 2 fields"},
+      {poses("huge.csv", poses_header + "\n" + good_row + "1e300,0,0,0,1,0,0,0,1,0,0,0\n"),
+       "huge.csv:3: pose of B: row 0, column 0 is not finite or beyond 2^500"},
+  };
+  for (const auto& [options, message] : cases) {
+    const Outcome outcome = collide_cubes(options);
+    CAPTURE(message, outcome.err);
+    CHECK(outcome.code == exit_usage);
+    CHECK(outcome.out.empty());
+    CHECK(lines(outcome.err).size() == 1);
+    CHECK(outcome.err.find(message) != std::string::npos);
+  }
+  std::vector<std::string> named = poses("named.csv", poses_header + ",n\n1,0,0,0,1,0,0,0,1,0,0,0,yes\n");
+  named.insert(named.end(), {"--expect", "n"});
+  CHECK(collide_cubes(named).err.find("named.csv:2: the expected answer is not a whole number") != std::string::npos);
+  named.back() = "m";
+  CHECK(collide_cubes(named).err.find("named.csv:1: column m of --expect is missing") != std::string::npos);
+  CHECK(run_cchip({"collide", cube_file, folder.path("none.off")}).code == exit_usage);
+}
