@@ -10,6 +10,8 @@ import json
 import pathlib
 import re
 import sys
+
+import generated
 import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -160,21 +162,11 @@ def main():
         names[f["name"]] = "function" if f["args"] else "function0"
     for r in data["records"]:
         names[f"{r['name']}_W"] = "function" if r["args"] else "constant"
-    outputs = {
-        ROOT / "rtl" / "include" / "cchip_defs.vh": verilog(data, names),
-        ROOT / "cpp_ref" / "include" / "cchip" / "wire" / "definitions.hpp": cpp(data, names),
-        ROOT / "docs" / "definitions.md": page(data, names),
-    }
-    stale = [p for p, text in outputs.items() if not p.exists() or p.read_text() != text]
-    if "--check" in sys.argv[1:]:
-        for p in stale:
-            print(f"{p.relative_to(ROOT)} is stale: run scripts/gen_definitions.py and commit the result")
-        return 1 if stale else 0
-    for p in stale:
-        p.parent.mkdir(parents=True, exist_ok=True)
-        p.write_text(outputs[p])
-        print(f"wrote {p.relative_to(ROOT)}")
-    return 0
+    return generated.finish({
+        "rtl/include/cchip_defs.vh": verilog(data, names),
+        "cpp_ref/include/cchip/wire/definitions.hpp": cpp(data, names),
+        "docs/definitions.md": page(data, names),
+    }, "gen_definitions.py")
 
 
 if __name__ == "__main__":

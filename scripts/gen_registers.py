@@ -15,6 +15,8 @@ import pathlib
 import sys
 import textwrap
 
+import generated
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 try:
     import systemrdl
@@ -455,21 +457,11 @@ def page(title, registers):
 
 def main():
     name, title, registers = read()
-    outputs = {
-        ROOT / "rtl" / "regs" / f"{name}_regs.v": verilog(name, registers),
-        ROOT / "cpp_ref" / "include" / "cchip" / "wire" / "registers.hpp": cpp(registers),
-        ROOT / "docs" / "registers.md": page(title, registers),
-    }
-    stale = [p for p, text in outputs.items() if not p.exists() or p.read_text() != text]
-    if "--check" in sys.argv[1:]:
-        for p in stale:
-            print(f"{p.relative_to(ROOT)} is stale: run scripts/gen_registers.py and commit the result")
-        return 1 if stale else 0
-    for p in stale:
-        p.parent.mkdir(parents=True, exist_ok=True)
-        p.write_text(outputs[p])
-        print(f"wrote {p.relative_to(ROOT)}")
-    return 0
+    return generated.finish({
+        f"rtl/regs/{name}_regs.v": verilog(name, registers),
+        "cpp_ref/include/cchip/wire/registers.hpp": cpp(registers),
+        "docs/registers.md": page(title, registers),
+    }, "gen_registers.py")
 
 
 if __name__ == "__main__":
