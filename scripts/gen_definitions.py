@@ -10,9 +10,9 @@ import json
 import pathlib
 import re
 import sys
+import textwrap
 
 import generated
-import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "scripts" / "definitions.json"
