@@ -49,7 +49,9 @@ class RequestSource {
       : pairs_(Config::COORD_W, seed, kind_a<Config>, kind_b<Config>), random_(seed) {}
 
   PairRequest draw() {
-    return draw(chance(random_, 8) ? static_cast<PairMode>(random_() % 4) : chance(random_, 30) ? exhaustive : directed);
+    return draw(chance(random_, 8)    ? static_cast<PairMode>(random_() % 4)
+                : chance(random_, 30) ? exhaustive
+                                      : directed);
   }
   PairRequest draw(PairMode mode) {
     PairRequest request;

@@ -35,14 +35,16 @@ struct Counts {
 /// The RTL's answer against the functional model (every field), both references, the witness by hand, beats.
 void judge(const GridPair& pair, PairMode mode, const PairResult& got, Counts& counts) {
   const model::Options options{{pair.a.vertex_count(), pair.b.vertex_count()}, true};
-  if (!(got == model::run_programme(options, pair, mode, w).result(got.tag))) FAIL("RTL differs from the model: " << to_text(pair));
+  if (!(got == model::run_programme(options, pair, mode, w).result(got.tag)))
+    FAIL("RTL differs from the model: " << to_text(pair));
   if (!got.grid && !witness_separates(got.axis, pair)) FAIL("the witness does not separate: " << to_text(pair));
   const bool exact = exact_intersects(pair);
   if (eigen_intersects(pair, w) != exact) FAIL("Eigen reference differs from the exact oracle: " << to_text(pair));
   if (got.grid != exact) FAIL("wrong answer: " << to_text(pair));
   if (pair.eta == 0 && !got.definite) FAIL("exact input left open: " << to_text(pair));
   const bool general = is_general_position(pair);
-  if (general && mode == PairMode::directed && got.beats > general_position_beats) FAIL(got.beats << " beats: " << to_text(pair));
+  if (general && mode == PairMode::directed && got.beats > general_position_beats)
+    FAIL(got.beats << " beats: " << to_text(pair));
   ++counts.pairs;
   counts.hits += exact ? 1 : 0;
   counts.special += general ? 0 : 1;
