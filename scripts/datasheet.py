@@ -199,7 +199,7 @@ def width_of(top):
 def simulate(bench, *options):
     with tempfile.TemporaryDirectory() as folder:
         program = f"{folder}/bench.vvp"
-        run("iverilog", "-g2005", "-Irtl/include", "-o", program, *options, *rtl_files().values(), bench)
+        run("iverilog", "-g2005", "-Irtl/include", "-s", "bench", "-o", program, *options, *rtl_files().values(), bench)
         return run("vvp", "-n", program)
 
 
