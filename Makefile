@@ -35,7 +35,8 @@ export JOBS
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv build sim sim-reconfig sim-levels wave test test-long formal test-gates test-debug \
   test-asan lint tidy format campaign campaign-build campaign-grid campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-swaps picture table1 table1-plot bench-reconfig export fpga fpga-quick install clean
+  campaign-leaves campaign-boxes campaign-swaps picture table1 table1-plot bench-reconfig bench-collide export fpga \
+  fpga-quick install clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
@@ -149,6 +150,10 @@ bench-reconfig: $(RELEASE)/build.ninja ## cost of cchip::rc: portals against dir
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_rc_bench cchip_rtl_bench
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_rc_bench
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_rtl_bench
+
+bench-collide: $(RELEASE)/build.ninja ## queries per second of collide() on this computer and of FCL, the same poses
+	cmake --build $(RELEASE) -j $(JOBS) --target collide_speed
+	$(RELEASE)/bin/collide_speed
 
 fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEEDS places and routes each (hours), into docs/fpga.md
 	scripts/fpga.py --seeds $(SEEDS) --jobs $(JOBS) --campaign $(CAMPAIGN) --write

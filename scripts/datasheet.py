@@ -4,7 +4,7 @@
 
 usage: datasheet.py                        measure everything, rewrite the generated tables (many minutes)
        datasheet.py PAGE...                the same for some pages only: a module, architecture, verification
-       datasheet.py --write simulation     the same without the areas
+       datasheet.py --write simulation     the same without what --compare simulation leaves out, so it takes minutes
        datasheet.py --compare simulation   write nothing; measure what simulation tells, and exit 1 with the differences if
                                            a table says otherwise (not: areas; of the primitive tests' tables only the
                                            latency of a lone pair)
@@ -351,10 +351,12 @@ def shape_settings(shape):
 
 
 def lone_only(path, rows):
-    """Rows of a primitive test of which only the latency of a lone pair was measured: the rest is that of the page."""
-    shown = {tuple(cells[:2]): cells for cells in ([c.strip() for c in line.strip("|").split("|")]
-                                                   for line in path.read_text().splitlines() if line.startswith("| "))}
-    return [[*shown.get(tuple(row[:2]), row)[:3], row[3], *shown.get(tuple(row[:2]), row)[4:]] for row in rows]
+    """The table of a primitive test's page with the latencies of the lone pairs that were measured."""
+    lines = [line for line in path.read_text().splitlines() if re.match(r"\| .* \| (EXHAUSTIVE|DIRECTED|reserved) \|", line)]
+    shown = {tuple(cells[:2]): cells for cells in ([c.strip() for c in line.strip("|").split("|")] for line in lines)}
+    for row in rows:
+        shown.setdefault(tuple(row[:2]), row)[3] = row[3]
+    return list(shown.values())
 
 
 def speed(module, quick=False):
@@ -482,8 +484,8 @@ def settings_of_all(quick):
 
 
 def write_simulation():
-    in_parallel(lambda settings: stream(*settings), settings_of_all(False))
-    jobs = [block for page in pages() for block in blocks(page, synthesis=False)]
+    in_parallel(lambda settings: stream(*settings), settings_of_all(True))
+    jobs = [block for page in pages() for block in blocks(page, synthesis=False, quick=True)]
     for (path, name, _), block in zip(jobs, in_parallel(lambda job: job[2](), jobs)):
         rewrite(path, name, block)
 

@@ -15,6 +15,7 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "mesh_source.hpp"
@@ -185,12 +186,14 @@ class PosesRunner {
     std::ostream& out = options_.format == Format::table ? table_ : streams_.out;
     writer_ = make_row_writer(options_.format, out, names_behind(columns.passed_names(), names()));
     Progress progress(streams_.err, streams_.progress, "poses");
-    const auto size = std::filesystem::file_size(options_.poses_file);
+    std::error_code no_size;  // of a pipe
+    const auto size = std::filesystem::file_size(options_.poses_file, no_size);
     while (reader.next(row)) {
       add(row, columns);
       if (rows_.size() < batch) continue;
       answer(a, b);
-      progress.update(totals_.queries, static_cast<double>(reader.bytes_read()) / static_cast<double>(size));
+      progress.update(totals_.queries,
+                      no_size ? -1.0 : static_cast<double>(reader.bytes_read()) / static_cast<double>(size));
     }
     answer(a, b);
     progress.clear();

@@ -301,7 +301,7 @@ int run_certainty(const CertaintyOptions& options) {
   const auto shapes = options.shapes();
   const std::uint64_t pairs = (options.pairs + shapes.size() - 1) / shapes.size();
   const std::uint64_t parts = part_count(pairs);
-  const auto table = sum_of_parts<Table<Row>>(parts * shapes.size(), options.threads, [&](std::uint64_t job) {
+  auto table = sum_of_parts<Table<Row>>(parts * shapes.size(), options.threads, [&](std::uint64_t job) {
     const std::size_t shape = job / parts;
     const Table<Row> part = run_part(shapes[shape], options, pairs, job % parts, options.seed_of(job));
     Table<Row> counted(shapes.size() * rows_per_shape);
@@ -310,6 +310,7 @@ int run_certainty(const CertaintyOptions& options) {
     counted.examples = part.examples;
     return counted;
   });
+  table.rows.resize(shapes.size() * rows_per_shape);  // it has none without pairs
   fmt::print("seed={} coord_w={} offset={}\n", options.seed, options.coord_w, options.offset);
   fmt::print("{:<10} {:<6} {:<13} {:>9} {:>9} {:>8} {:>19} {:>28} {:>8} {:>8} {:>6}\n", "", "", "", "", "", "",
              "exhaustive definite", "directed definite", "contra-", "false", "other");

@@ -128,7 +128,7 @@ inline Bytes spoilt_bitstream(Spoilt how, int slot, int module_id, std::size_t p
 template <class Model>
 SwapReport report_of(const Model& top) {
   return {static_cast<int>(probes::report_slot(top)), static_cast<int>(probes::report_module(top)),
-          static_cast<SwapCode>(probes::report_code(top)), static_cast<int>(probes::report_lost(top)), 0};
+          static_cast<SwapCode>(probes::report_code(top)), static_cast<unsigned>(probes::report_lost(top)), 0};
 }
 /// Module of slot n in bits [2n +: 2].
 template <int slots, class Model>

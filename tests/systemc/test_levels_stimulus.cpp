@@ -31,7 +31,7 @@ Stimulus read_text(const std::string& text) {
 std::string error_of(const std::string& text) {
   try {
     read_text(text);
-  } catch (const app::UsageError& error) {
+  } catch (const UsageError& error) {
     return error.what();
   }
   return "no error";

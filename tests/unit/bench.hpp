@@ -19,7 +19,10 @@
 #include <utility>
 #include <vector>
 
+namespace cchip::stimulus {}
 namespace cchip::test {
+
+using namespace stimulus;
 
 using Random = std::mt19937_64;
 

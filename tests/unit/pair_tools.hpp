@@ -5,8 +5,11 @@
 #define CCHIP_TESTS_UNIT_PAIR_TOOLS_HPP
 
 #include <cchip/exact/oracle.hpp>
+#include <cchip/model/sat.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cchip/stimulus/witness.hpp>
+
+#include "bench.hpp"
 
 namespace cchip::test {
 

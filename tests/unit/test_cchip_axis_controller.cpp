@@ -60,7 +60,7 @@ class ControllerBench {
                                                             : 1;
     top.s_pair_tag = header_.tag;  // of the pair before
     top.s_pair_err = static_cast<CData>(header_.err);
-    header_ = {static_cast<std::uint16_t>(random_()), static_cast<int>(mode),
+    header_ = {static_cast<std::uint16_t>(random_()), static_cast<PairMode>(mode),
                static_cast<int>(chance(random_, 50) ? 0 : random_() % 16)};
     // the first context stands ready on the third clock after reset
     const bool may_send = !now.in_reset && now.clock > 1;

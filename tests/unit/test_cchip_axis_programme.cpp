@@ -38,7 +38,7 @@ class Walk {
   int open = 0;
   int most_beats = 0;
 
-  void pair(int mode) {
+  void pair(PairMode mode) {
     auto& top = simulation_.top();
     const int separated_percent = chance(random_, 50) ? 1 : 10;
     const unsigned zero_axes = random_zero_axes(random_);
@@ -122,7 +122,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_axis_programme: outcome and next axis of every pr
     Random random(options.seed);
     for (int i = 0; i < 8000; ++i) {
       const auto choice = static_cast<int>(random() % 100);
-      walk.pair(choice < 49 ? 0 : choice < 98 ? 1 : choice < 99 ? 2 : 3);
+      walk.pair(static_cast<PairMode>(choice < 49 ? 0 : choice < 98 ? 1 : choice < 99 ? 2 : 3));
     }
     constexpr bool tetra = TestType::VERTS_B == 4 && TestType::WARPED_EXACT != 0;
     for (const Programme p : {Programme::normals, Programme::crossing, Programme::coplanar, Programme::degenerate,

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checks of the whole modules on their ports: clock by clock against the model, and the rules of DESIGN
-// section 4 by counting, without the model's clocks.
+// The checks of the whole modules on their ports: clock by clock against the model, and the rules of
+// docs/modules/cchip_primtest.md by counting, without the model's clocks.
 #include <cchip/device/primtest_engine.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/geometry/canonical.hpp>
 #include <cchip/sim/scoreboard.hpp>
+#include <cchip/stimulus/judge.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cchip/stimulus/witness.hpp>
 #include <iostream>
@@ -16,14 +17,6 @@ namespace {
 
 constexpr PairMode exhaustive = PairMode::exhaustive;
 constexpr PairMode directed = PairMode::directed;
-
-/// Most beats of a DIRECTED pair that is planar on the grid, not coplanar, not degenerate.
-constexpr int general_position_beats = 4;
-
-bool is_general_position(const GridPair& pair) {
-  return !stimulus::is_warped(pair.a) && !stimulus::is_warped(pair.b) && !is_degenerate(pair.a) &&
-         !is_degenerate(pair.b) && !is_coplanar(pair);
-}
 
 /// Stimulus: pairs of every class, every mode, any eta, tags unique among 2^16.
 class RequestSource {
@@ -39,7 +32,7 @@ class RequestSource {
     if (chance(random_, 8)) request.mode = static_cast<PairMode>(random_() % 4);
     return request;
   }
-  PairRequest draw_legal(int mode) {
+  PairRequest draw_legal(PairMode mode) {
     PairRequest request;
     const auto choice = random_() % 100;
     request.pair = choice < 15   ? through_one_point()
@@ -50,7 +43,7 @@ class RequestSource {
     }
     request.pair.eta = chance(random_, 50) ? 0 : static_cast<int>(random_() % 16);
     request.mode = mode;
-    request.tag = static_cast<std::uint16_t>(40503U * tag_++);  // odd factor: every tag once in 65536
+    request.tag = tag_of(tag_++);
     return request;
   }
 
@@ -300,7 +293,7 @@ std::vector<PairResult> exact_answers(const PrimtestConfig& config, const std::v
     bench.rules.on_result = [&](const PairResult& r) { result.at(r.tag) = r; };
     bench.pins.reset(2);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      bench.driver.push({pairs[i], static_cast<std::uint16_t>(i), static_cast<std::uint8_t>(mode)});
+      bench.driver.push({pairs[i], static_cast<std::uint16_t>(i), mode});
     }
     bench.run();  // answer() asks the oracle
     REQUIRE(bench.rules.returned() == pairs.size());

@@ -49,9 +49,11 @@ class RequestSource {
       : pairs_(Config::COORD_W, seed, kind_a<Config>, kind_b<Config>), random_(seed) {}
 
   PairRequest draw() {
-    return draw(chance(random_, 8) ? static_cast<int>(random_() % 4) : chance(random_, 30) ? 0 : 1);
+    return draw(chance(random_, 8)    ? static_cast<PairMode>(random_() % 4)
+                : chance(random_, 30) ? exhaustive
+                                      : directed);
   }
-  PairRequest draw(int mode) {
+  PairRequest draw(PairMode mode) {
     PairRequest request;
     const auto classes = stimulus::classes_of(kind_a<Config>, kind_b<Config>);
     request.pair = pairs_.draw(classes[pairs_.draw_class()].value);
@@ -60,7 +62,7 @@ class RequestSource {
     }
     request.pair.eta = static_cast<int>(random_() % 16);
     request.mode = mode;
-    request.tag = static_cast<std::uint16_t>(40503U * tag_++);  // odd factor: every tag once in 65536
+    request.tag = tag_of(tag_++);
     return request;
   }
   /// EXHAUSTIVE pairs that need no more than the schedule.

@@ -120,4 +120,4 @@ void check_touching(const PrimtestConfig& config) {
 
 }  // namespace
 
-CCHIP_CASE("touching and just missing by one step", check_touching)
+CCHIP_PRIMTEST_CASE(tri_tri, "touching and just missing by one step", check_touching)

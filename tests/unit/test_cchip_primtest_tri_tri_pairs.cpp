@@ -5,9 +5,12 @@
 #include <cchip/model/programme.hpp>
 #include <cchip/reference/eigen_sat.hpp>
 #include <cchip/rtl/rtl_engine.hpp>
+#include <cchip/stimulus/judge.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cchip/stimulus/witness.hpp>
 #include <iostream>
+
+#include "bench.hpp"
 
 using namespace cchip;
 using namespace cchip::test;
@@ -22,11 +25,6 @@ std::unique_ptr<PairEngine> rtl(std::uint64_t seed) {
   return make_rtl_engine(options);
 }
 
-bool is_general_position(const GridPair& pair) {
-  return !stimulus::is_warped(pair.a) && !stimulus::is_warped(pair.b) && !is_degenerate(pair.a) &&
-         !is_degenerate(pair.b) && !is_coplanar(pair);
-}
-
 struct Counts {
   std::uint64_t pairs = 0;
   std::uint64_t hits = 0;
@@ -35,20 +33,18 @@ struct Counts {
 };
 
 /// The RTL's answer against the functional model (every field), both references, the witness by hand, beats.
-void judge(const GridPair& pair, PairMode mode, const EngineAnswer& answer, Counts& counts) {
-  const HardwareAnswer& got = answer.hardware.value();
+void judge(const GridPair& pair, PairMode mode, const PairResult& got, Counts& counts) {
   const model::Options options{{pair.a.vertex_count(), pair.b.vertex_count()}, true};
-  const model::Outcome model = model::run_programme(options, pair, static_cast<int>(mode), w);
-  const bool same = got.grid == model.grid && got.axis == model.witness && got.beats == model.beats &&
-                    got.definite == model.definite && got.hit == (model.grid || !model.definite);
-  if (!same) FAIL("RTL differs from the model: " << to_text(pair));
+  if (!(got == model::run_programme(options, pair, mode, w).result(got.tag)))
+    FAIL("RTL differs from the model: " << to_text(pair));
   if (!got.grid && !witness_separates(got.axis, pair)) FAIL("the witness does not separate: " << to_text(pair));
   const bool exact = exact_intersects(pair);
   if (eigen_intersects(pair, w) != exact) FAIL("Eigen reference differs from the exact oracle: " << to_text(pair));
   if (got.grid != exact) FAIL("wrong answer: " << to_text(pair));
   if (pair.eta == 0 && !got.definite) FAIL("exact input left open: " << to_text(pair));
   const bool general = is_general_position(pair);
-  if (general && mode == PairMode::directed && got.beats > 4) FAIL(got.beats << " beats: " << to_text(pair));
+  if (general && mode == PairMode::directed && got.beats > general_position_beats)
+    FAIL(got.beats << " beats: " << to_text(pair));
   ++counts.pairs;
   counts.hits += exact ? 1 : 0;
   counts.special += general ? 0 : 1;

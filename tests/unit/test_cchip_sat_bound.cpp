@@ -2,6 +2,8 @@
 #include <cchip/stimulus/witness.hpp>
 #include <models/cchip_sat_bound.hpp>
 
+#include "bench.hpp"
+
 using namespace cchip;
 using namespace cchip::test;
 

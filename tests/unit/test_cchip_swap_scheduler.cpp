@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scheduler with slots, queues, table and controller played by the test.
 #include <cchip/wire/definitions.hpp>
+#include <cchip/wire/swap.hpp>
 #include <models/cchip_swap_scheduler.hpp>
 
 #include "bench.hpp"

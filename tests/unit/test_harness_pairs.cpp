@@ -55,7 +55,8 @@ TEMPLATE_LIST_TEST_CASE("harness: pairs come back by tag under every pattern", "
     constexpr int pairs = 60;
     for (int i = 0; i < pairs; ++i) {
       PairRequest request{random_pair(random, TestType::COORD_W),
-                          static_cast<std::uint16_t>(64 * (random() % 1024) + static_cast<unsigned>(i)), 0};
+                          static_cast<std::uint16_t>(64 * (random() % 1024) + static_cast<unsigned>(i)),
+                          PairMode::exhaustive};
       if (i % 7 == 3) request.mode = static_cast<PairMode>(1 + i % 3);
       if (i % 5 == 2) request.pair.eta = static_cast<int>(random() % 16);
       driver.push(request);

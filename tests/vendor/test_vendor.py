@@ -285,11 +285,9 @@ EDITS = [
 
 # file, what is there once, what is written instead: the ports differ
 PORT_EDITS = [
-    ("rtl/primtest/cchip_primtest_quad_quad.v", "output wire [            5:0] m_result_beats",
-     "output wire [            6:0] m_result_beats"),
-    ("rtl/primtest/cchip_primtest_blank.v", "    output wire                   idle\n",
-     "    output wire                   idle,\n    input  wire                   scan\n"),
-    ("rtl/reconfig/cchip_pr_region.v", "output wire [            7:0] rm_id", "output wire [            6:0] rm_id"),
+    ("rtl/primtest/cchip_primtest_quad_quad.v", "`CCHIP_BEATS_W-1:0] m_result_beats", "`CCHIP_BEATS_W:0] m_result_beats"),
+    ("rtl/primtest/cchip_primtest_blank.v", " idle\n", " idle,\n    input  wire scan\n"),
+    ("rtl/reconfig/cchip_pr_region.v", "`CCHIP_RM_ID_W-1:0] rm_id", "`CCHIP_RM_ID_W-2:0] rm_id"),
 ]
 
 

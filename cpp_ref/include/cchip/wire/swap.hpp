@@ -23,7 +23,7 @@ struct SwapReport {
   int slot = 0;
   int module_id = 0;
   SwapCode code = SwapCode::ok;
-  int lost = 0;             ///< pairs given up
+  unsigned lost = 0;        ///< pairs given up
   std::uint64_t clock = 0;  ///< of the report, since reset
 };
 

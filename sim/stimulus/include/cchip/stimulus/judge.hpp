@@ -71,7 +71,7 @@ inline Judgement print(const std::vector<std::string>& names, const Table<Judgem
                j.beats[1].mean(), j.beats[1].greatest);
   };
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (table.rows[i].pairs != 0) line(names[i], table.rows[i]);
+    if (i < table.rows.size() && table.rows[i].pairs != 0) line(names[i], table.rows[i]);
   }
   const Judgement sum = table.sum();
   line("all", sum);
