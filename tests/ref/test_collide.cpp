@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CPU device against brute force over exact integers.
+// Devices against brute force over exact integers.
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <cchip/bvh/image.hpp>
+#include <cchip/bvh/place.hpp>
 #include <cchip/device/device.hpp>
+#include <cchip/model/broad_phase.hpp>
 #include <cchip/reference/brute_force.hpp>
 #include <cchip/sim/seed.hpp>
 #include <iostream>
 #include <limits>
 #include <set>
+#include <sstream>
 
 #include "bvh_meshes.hpp"
 #include "random_poses.hpp"
@@ -68,6 +72,13 @@ std::vector<Mesh> small_meshes(std::mt19937_64& random) {
   return meshes;
 }
 
+/// For GENERATE: a test case runs once with each device that needs no simulator.
+std::unique_ptr<Device> each_device() {
+  const std::string name = GENERATE(as<std::string>{}, "cpu", "model");
+  UNSCOPED_INFO("device " << name);
+  return open_device(name);
+}
+
 std::string describe(const PosePair& poses) {
   std::ostringstream text;
   text.precision(17);
@@ -99,48 +110,77 @@ PosePair random_poses(std::mt19937_64& random) {
 
 }  // namespace
 
+namespace {
+
+/// What a device was asked, and what it answered.
+struct Tally {
+  std::uint64_t queries = 0;
+  std::uint64_t hits = 0;
+  CollisionCounts counts;         ///< of the queries for all contacts
+  std::uint64_t first_pairs = 0;  ///< tested by the queries for the first one
+
+  void print(const Device& device) const {
+    std::cout << device.name() << ": queries=" << queries << " hits=" << hits << " pairs=" << counts.pairs
+              << " open=" << counts.open << '\n';
+  }
+};
+
+/// First and all contacts of a query are the expected ones.
+void check_answers(Device& device, const Object& a, const Object& b, const PosePair& poses,
+                   const std::vector<Contact>& expected, Tally& tally) {
+  const CollisionResult found = collide(device, a, poses.a, b, poses.b, all);
+  const CollisionResult first = collide(device, a, poses.a, b, poses.b);
+  ++tally.queries;
+  tally.hits += found.hit;
+  tally.counts += found.counts;
+  tally.first_pairs += first.counts.pairs;
+  if (found.contacts != expected || found.hit != !expected.empty() || first.hit != found.hit ||
+      first.contacts.size() != (found.hit ? 1 : 0) ||
+      (found.hit && !std::binary_search(expected.begin(), expected.end(), first.contacts[0]))) {
+    FAIL(device.name() << ": " << found.contacts.size() << " contacts instead of " << expected.size() << ", first "
+                       << first.hit << '\n'
+                       << describe(poses));
+  }
+}
+
+}  // namespace
+
 TEST_CASE("collide: first and all contacts are those of brute force", "[ref][collide]") {
   std::mt19937_64 random(sim::seed_from_environment());
   const std::vector<Mesh> meshes = small_meshes(random);
   std::vector<Object> objects;
   for (const Mesh& mesh : meshes) objects.emplace_back(mesh);
-  const auto device = open_device("cpu");
+  const auto cpu = open_device("cpu");
+  const auto model = open_device("model");
   const int rounds = 48;
-  std::uint64_t queries = 0;
-  std::uint64_t hits = 0;
-  CollisionCounts total;
+  Tally by_cpu;
+  Tally by_model;
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t i = 0; i < meshes.size(); ++i) {
       for (std::size_t k = 0; k < meshes.size(); ++k) {
         if (round >= 4 && meshes[i].faces.size() * meshes[k].faces.size() > 300) continue;
+        CAPTURE(round, i, k);
         const PosePair poses = random_poses(random);
         const std::vector<Contact> expected = brute_force_contacts(meshes[i], poses.a, meshes[k], poses.b);
-        const CollisionResult found = collide(*device, objects[i], poses.a, objects[k], poses.b, all);
-        const CollisionResult first = collide(*device, objects[i], poses.a, objects[k], poses.b);
-        ++queries;
-        hits += found.hit;
-        total += found.counts;
-        if (found.contacts != expected || found.hit != !expected.empty() || first.hit != found.hit ||
-            first.contacts.size() != (found.hit ? 1 : 0) ||
-            (found.hit && !std::binary_search(expected.begin(), expected.end(), first.contacts[0])) ||
-            first.counts.pairs > found.counts.pairs) {
-          FAIL("meshes " << i << " and " << k << ", round " << round << ": " << found.contacts.size()
-                         << " contacts instead of " << expected.size() << ", first " << first.hit << '\n'
-                         << describe(poses));
-        }
+        check_answers(*cpu, objects[i], objects[k], poses, expected, by_cpu);
+        check_answers(*model, objects[i], objects[k], poses, expected, by_model);
       }
     }
   }
-  std::cout << "queries=" << queries << " hits=" << hits << " pairs=" << total.pairs << " open=" << total.open << '\n';
-  CHECK(queries >= 10000);
-  CHECK(hits > queries / 4);
-  CHECK(hits < queries * 9 / 10);
-  CHECK(total.open > 0);
+  by_cpu.print(*cpu);
+  by_model.print(*model);
+  for (const Tally& tally : {by_cpu, by_model}) {
+    CHECK(tally.queries >= 10000);
+    CHECK(tally.hits > tally.queries / 4);
+    CHECK(tally.hits < tally.queries * 9 / 10);
+    CHECK(tally.counts.open > 0);
+    CHECK(tally.first_pairs < tally.counts.pairs);
+  }
 }
 
 TEST_CASE("collide: a mesh on itself touches in every face", "[ref][collide]") {
   const Object gear(make_gear(1.4, 2, 0.6, 0.8, 12, 2));
-  const auto device = open_device("cpu");
+  const auto device = each_device();
   std::mt19937_64 random(sim::seed_from_environment());
   for (const PoseClass c : {PoseClass::quarter_turns, PoseClass::rigid, PoseClass::shear, PoseClass::flat}) {
     const Pose pose = random_pose(c, 1, random);
@@ -157,7 +197,7 @@ TEST_CASE("collide: a mesh on itself touches in every face", "[ref][collide]") {
 TEST_CASE("collide: objects are surfaces", "[ref][collide]") {
   const Object outer(make_gear(8, 9, 0, 10, 12, 2));
   const Object inner(make_gear(0.5, 1, 0, 1, 12, 2));
-  const auto device = open_device("cpu");
+  const auto device = each_device();
   CHECK_FALSE(collide(*device, outer, Pose::Identity(), inner, Pose::Identity()).hit);
   Pose moved = Pose::Identity();
   moved.translation().z() = 4.5;  // the inner one's face lies in the outer one's
@@ -167,7 +207,7 @@ TEST_CASE("collide: objects are surfaces", "[ref][collide]") {
 }
 
 TEST_CASE("collide: objects of any magnitude", "[ref][collide]") {
-  const auto device = open_device("cpu");
+  const auto device = each_device();
   const Mesh torus = make_torus(2, 0.7, 12, 8);
   const Mesh gear = make_gear(1.4, 2, 0.6, 0.8, 12, 2);
   const Pose pose = make_pose({1, 0.5, 0.25}, {20, 30, 40});
@@ -207,7 +247,7 @@ TEST_CASE("collide: faces that were cut count once, by their number in the file"
   add_face(cut, {{1, 0, 0}, {2, 1, 0}, {1, 1, 0}});
   cut.file_face = {7, 7, 3, 3};
   const Mesh wall = one_face({{0.25, 0.5, -1}, {1.75, 0.5, -1}, {1.75, 0.5, 1}, {0.25, 0.5, 1}});
-  const auto device = open_device("cpu");
+  const auto device = each_device();
   const Object a(cut);
   const Object b(wall);
   const CollisionResult result = collide(*device, a, Pose::Identity(), b, Pose::Identity(), all);
@@ -221,7 +261,7 @@ TEST_CASE("collide: faces that were cut count once, by their number in the file"
 
 TEST_CASE("collide: most contacts", "[ref][collide]") {
   const Object gear(make_gear(1.4, 2, 0.6, 0.8, 12, 2));
-  const auto device = open_device("cpu");
+  const auto device = each_device();
   const Pose pose = make_pose({0.5, 0, 0}, {10, 20, 30});
   const CollisionResult everything = collide(*device, gear, Pose::Identity(), gear, pose, all);
   REQUIRE(everything.contacts.size() > 20);
@@ -240,12 +280,12 @@ TEST_CASE("collide: a batch gives what single queries give", "[ref][collide]") {
   std::mt19937_64 random(sim::seed_from_environment());
   const Object a(make_torus(2, 0.7, 24, 12));
   const Object b(make_gear(1.4, 2, 0.6, 0.8, 12, 2));
-  std::vector<PosePair> poses(300);
+  std::vector<PosePair> poses(100);
   for (PosePair& pose : poses) {
     pose.a = random_pose(PoseClass::rigid, 1, random);
     pose.b = random_pose(PoseClass::rigid, 3, random);
   }
-  const auto device = open_device("cpu");
+  const auto device = each_device();
   for (const CollisionRequest& request : {CollisionRequest{}, all}) {
     const std::vector<CollisionResult> batch = collide(*device, a, b, poses, request);
     REQUIRE(batch.size() == poses.size());
@@ -269,7 +309,7 @@ TEST_CASE("collide: a batch gives what single queries give", "[ref][collide]") {
 TEST_CASE("collide: results of a batch come one call at a time, and an exception of the caller ends it",
           "[ref][collide]") {
   const Object a(make_torus(2, 0.7, 24, 12));
-  const auto device = open_device("cpu");
+  const auto device = each_device();
   const std::vector<PosePair> poses(200);
   std::atomic<int> inside = 0;
   std::set<std::size_t> seen;
@@ -290,7 +330,7 @@ TEST_CASE("collide: results of a batch come one call at a time, and an exception
 
 TEST_CASE("collide: input that makes no sense is refused in one line", "[ref][collide]") {
   const Object a(one_face({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
-  const auto device = open_device("cpu");
+  const auto device = each_device();
   Pose bad = Pose::Identity();
   bad.translation().x() = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_WITH(collide(*device, a, Pose::Identity(), a, bad),
@@ -310,9 +350,9 @@ TEST_CASE("collide: input that makes no sense is refused in one line", "[ref][co
   CHECK_THROWS_AS(Object(Mesh{}), std::invalid_argument);
   CHECK_THROWS_WITH(Object(one_face({{0, 0, 0}, {1, 0, std::numeric_limits<double>::infinity()}, {0, 1, 0}})),
                     Catch::Contains("vertex 1 is not finite"));
-  CHECK_THROWS_WITH(open_device("gpu"), Catch::Contains("device gpu is not known: the devices are cpu"));
+  CHECK_THROWS_WITH(open_device("gpu"), Catch::Contains("device gpu is not known: the devices are cpu, model"));
   CHECK(device_names().front() == "cpu");
-  CHECK(std::string(device->name()) == "cpu");
+  for (const std::string& name : device_names()) CHECK(open_device(name)->name() == name);
 }
 
 TEST_CASE("collide: copies of an object are one object", "[ref][collide]") {
@@ -320,4 +360,75 @@ TEST_CASE("collide: copies of an object are one object", "[ref][collide]") {
   const Object copy = a;
   CHECK(copy.id() == a.id());
   CHECK(Object(a.mesh()).id() != a.id());
+}
+
+TEST_CASE("collide: the model and the CPU agree on meshes of more faces", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  // More objects than the device keeps images of.
+  std::vector<Object> objects;
+  for (int i = 0; i < 3; ++i) {
+    objects.emplace_back(noisy(make_torus(2, 0.7, 40, 20), 0.02, random));
+    objects.emplace_back(noisy(make_torus(1, 0.4, 30, 16, Kind::quad), 0.01, random));
+    objects.emplace_back(make_gear(1.4, 2, 0.6, 0.8, 12, 2));
+    objects.emplace_back(soup(200, i == 0, random));
+  }
+  const auto cpu = open_device("cpu");
+  const auto model = open_device("model");
+  Tally tally;
+  for (int n = 0; n < 300; ++n) {
+    const Object& a = objects[random() % objects.size()];
+    const Object& b = objects[random() % objects.size()];
+    PosePair poses;
+    poses.a = random_pose(PoseClass::rigid, 1, random);
+    poses.b = random_pose(random() % 8 == 0 ? PoseClass::mirror : PoseClass::rigid, 2.5, random);
+    CAPTURE(n);
+    check_answers(*model, a, b, poses, collide(*cpu, a, poses.a, b, poses.b, all).contacts, tally);
+  }
+  tally.print(*model);
+  CHECK(tally.hits > 50);
+  CHECK(tally.hits < 290);
+}
+
+TEST_CASE("collide: counts of the model are those of the chip's query", "[ref][collide]") {
+  const Object a(make_torus(2, 0.7, 40, 20));
+  const Object b(make_gear(1.4, 2, 0.6, 0.8, 12, 2));
+  const bvh::Image image_a = bvh::make_image(a.mesh(), a.tree());
+  const bvh::Image image_b = bvh::make_image(b.mesh(), b.tree());
+  const auto device = open_device("model");
+  for (const double x : {0.0, 0.5, 2.5, 10.0}) {
+    const Pose pose = make_pose({x, 0.25, 0}, {10, 20, 30});
+    auto query = bvh::make_query(image_a.header(), Pose::Identity(), image_b.header(), pose);
+    REQUIRE(query);
+    query->mode = QueryMode::all;
+    const auto expected =
+        query->swapped ? model::run_query(*query, image_b, image_a) : model::run_query(*query, image_a, image_b);
+    const CollisionResult found = collide(*device, a, Pose::Identity(), b, pose, all);
+    CHECK(found.hit == (x < 5));
+    CHECK(found.counts.steps == expected.counts.steps);
+    CHECK(found.counts.box_tests == expected.counts.box_tests);
+    CHECK(found.counts.pairs == expected.counts.primitive_pairs);
+    CHECK(found.counts.open == expected.counts.open_pairs);
+    CHECK(found.counts.clocks == 0);
+  }
+}
+
+TEST_CASE("collide: what the chip does not take is answered all the same", "[ref][collide]") {
+  const Object gear(make_gear(1.4, 2, 0.6, 0.8, 12, 2));
+  const Object small(scaled(make_gear(1.4, 2, 0.6, 0.8, 12, 2), 0x1p-20));  // units too far apart
+  const auto cpu = open_device("cpu");
+  const auto model = open_device("model");
+  Pose at_tooth = Pose::Identity();
+  at_tooth.translation() = gear.mesh().vertices.front();
+  const auto same = [&](const Object& a, const Object& b, const Pose& pose) {
+    const CollisionResult expected = collide(*cpu, a, Pose::Identity(), b, pose, all);
+    CHECK(expected.hit);
+    CHECK(collide(*model, a, Pose::Identity(), b, pose, all).contacts == expected.contacts);
+    CHECK(collide(*model, a, Pose::Identity(), b, pose).hit);
+  };
+  same(gear, small, at_tooth);
+  Pose flat = Pose::Identity();
+  flat(2, 2) = 0;
+  same(gear, gear, flat);
+  // Hundreds of open pairs, none of them certain: the chip gives a FIRST query to its host.
+  same(gear, gear, Pose::Identity());
 }

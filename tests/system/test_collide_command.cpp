@@ -68,6 +68,17 @@ TEST_CASE("collide: contacts are those of brute force", "[system][collide]") {
                                        ",\"face_b\":" + std::to_string(expected[0].face_b) + "}");
 }
 
+TEST_CASE("collide: the functional model of the chip gives the same contacts", "[system][collide]") {
+  for (const char* pose : {"1,1,1", "0.5,0.25,0.125,10,20,30", "1.0000000000000002,0,0"}) {
+    CAPTURE(pose);
+    const Outcome cpu = collide_cubes({"--pose", pose, "--format", "csv"});
+    const Outcome model = collide_cubes({"--pose", pose, "--format", "csv", "--device", "model"});
+    CHECK(model.code == exit_ok);
+    CHECK(model.out == cpu.out);
+    CHECK(count(last_line(model.err), "contacts") == count(last_line(cpu.err), "contacts"));
+  }
+}
+
 TEST_CASE("collide: poses of a file, expected answers", "[system][collide]") {
   const TemporaryFolder folder;
   const std::string rows =
@@ -142,7 +153,7 @@ TEST_CASE("collide: wrong input is one line and exit code 2", "[system][collide]
       {{"--pose", "1,2"}, "--pose: got 2 numbers"},
       {{"--pose-matrix", "1,0,0"}, "--pose-matrix: got 3 numbers"},
       {{"--pose-matrix", "1e200,0,0,0,0,1,0,0,0,0,1,0"}, "pose of B: row 0, column 0 is not finite or beyond 2^500"},
-      {{"--device", "fpga"}, "--device: device fpga is not known: the devices are cpu"},
+      {{"--device", "fpga"}, "--device: device fpga is not known: the devices are cpu, model"},
       {{"--expect", "touches"}, "--expect"},
       {{"--most", "0"}, "--most"},
       {{"--poses", folder.path("none.csv")}, "none.csv: the file cannot be read"},

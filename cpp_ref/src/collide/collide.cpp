@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cchip/collide/collide.hpp>
+#include <cchip/collide/face_pairs.hpp>
 #include <utility>
 
 namespace cchip {
@@ -11,6 +12,7 @@ Object::Object(Mesh mesh) {
 
 void Device::collide(const Object& a, const Object& b, const std::vector<PosePair>& poses,
                      const CollisionRequest& request, const std::function<void(std::size_t, CollisionResult&&)>& take) {
+  for (const PosePair& pose : poses) check_query(pose.a, pose.b, request);
   for (std::size_t i = 0; i < poses.size(); ++i) take(i, collide(a, poses[i].a, b, poses[i].b, request));
 }
 

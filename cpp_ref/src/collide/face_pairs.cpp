@@ -47,7 +47,10 @@ void FacePairs::test(std::uint32_t face_a, std::uint32_t face_b) {
   const PosedPairs::Answer answer = pairs_.decide(mesh_a_.primitive(face_a), mesh_b_.primitive(face_b));
   ++result_.counts.pairs;
   result_.counts.open += answer.open;
-  if (!answer.hit) return;
+  if (answer.hit) add(face_a, face_b);
+}
+
+void FacePairs::add(std::uint32_t face_a, std::uint32_t face_b) {
   const Contact contact = {file_face(mesh_a_, face_a), file_face(mesh_b_, face_b)};
   if (cut_ && !contacts_.insert(contact).second) return;
   result_.contacts.push_back(contact);

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "cpu_device.hpp"
+#include "model_device.hpp"
 
 namespace cchip {
 namespace {
@@ -14,6 +15,7 @@ struct NamedDevice {
 
 constexpr NamedDevice devices[] = {
     {"cpu", [] { return make_cpu_device(); }},
+    {"model", make_model_device},
 };
 
 }  // namespace

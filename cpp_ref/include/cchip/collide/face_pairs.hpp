@@ -20,6 +20,8 @@ class FacePairs {
 
   /// Tests a face of A against a face of B, by their numbers in the meshes.
   void test(std::uint32_t face_a, std::uint32_t face_b);
+  /// Takes a face of A and a face of B that are known to touch; counts nothing.
+  void add(std::uint32_t face_a, std::uint32_t face_b);
   /// True once the request is fulfilled: no pair needs to be tested any more.
   bool done() const { return done_; }
 
