@@ -3,6 +3,9 @@
 add_library(cchip_warnings INTERFACE)
 target_compile_options(cchip_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror)
+if(CCHIP_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
 if(CCHIP_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
