@@ -2,7 +2,12 @@
 # Warning flags of our own code (not of generated models), as a target to link privately.
 add_library(cchip_warnings INTERFACE)
 target_compile_options(cchip_warnings INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror)
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
+  # options of some files that only GCC knows
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-unknown-warning-option>)
+if(CCHIP_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
 if(CCHIP_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)

@@ -120,8 +120,9 @@ class Builder {
 
 }  // namespace
 
-Mesh load_mesh(const std::string& path, FaceKinds kinds) {
-  const std::string file = read_file(path);
+Mesh load_mesh(const std::string& path, FaceKinds kinds) { return parse_mesh(read_file(path), path, kinds); }
+
+Mesh parse_mesh(std::string_view file, const std::string& path, FaceKinds kinds) {
   const Reader reader = reader_of(path, file);
   if (reader == nullptr) {
     throw std::runtime_error(path + ": cannot be read as a mesh; give an OBJ, OFF, PLY or STL file");

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace cchip {
@@ -36,6 +37,9 @@ enum class FaceKinds {
 /// takes 1.5 GB for a list of a PLY of 250 bytes.
 /// \throws std::runtime_error one line: file, line number if it has one, what is wrong, what to do
 Mesh load_mesh(const std::string& path, FaceKinds kinds = FaceKinds::triangles);
+
+/// The same for the content of a file. `name` stands for its path: its end says the format, and messages begin with it.
+Mesh parse_mesh(std::string_view file, const std::string& name, FaceKinds kinds = FaceKinds::triangles);
 
 /// Red, green, blue.
 using Colour = std::array<std::uint8_t, 3>;
