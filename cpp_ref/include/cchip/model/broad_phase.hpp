@@ -25,7 +25,7 @@ struct BroadPhaseOptions {
 struct BroadPhaseCounts {
   std::uint64_t steps = 0;            ///< node pairs expanded
   std::uint64_t box_tests = 0;        ///< pairs of children compared
-  std::uint64_t leaf_pairs = 0;       ///< those of them whose boxes overlap
+  std::uint64_t leaf_pairs = 0;       ///< pairs of leaves whose boxes overlap
   std::uint64_t primitive_pairs = 0;  ///< sent to a primitive test
   std::uint64_t beats = 0;            ///< axes of the primitive tests
   std::uint64_t open_pairs = 0;       ///< hits that are not definite

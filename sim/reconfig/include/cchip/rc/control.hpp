@@ -34,7 +34,6 @@ inline module_set operator+(module_set left, const module_set& right) { return l
 ///         that it would cancel, at the start of simulation or between two sc_start(); a portal of the module is
 ///         reserved for another loaded one (nothing has changed then); deactivation is not possible in time (the module
 ///         stays active). In a set, the actions of the other modules are completed and all errors are reported.
-/// errors reported.
 class control : public sc_core::sc_module {
  public:
   explicit control(const sc_core::sc_module_name&) {}
