@@ -185,7 +185,7 @@ class Generator {
     int axis = static_cast<int>(whole(0, 2));
     while (n[axis] == 0) axis = (axis + 1) % 3;
     p[axis] -= n[axis] * amount;
-    for (int i = 0; i < 3; ++i) {  // along an axis that the plane does not contain, anywhere
+    for (int i = 0; i < 3; ++i) {  // anywhere along an axis parallel to the plane
       const auto k = static_cast<std::size_t>(i);
       if (n[i] == 0) p[i] = 2 * static_cast<double>(whole(node.child[0].least[k], node.child[0].greatest[k]));
     }

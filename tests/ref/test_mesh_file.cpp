@@ -315,7 +315,7 @@ TEST_CASE("mesh file: a large PLY that was cut is refused", "[ref][mesh_file]") 
 TEST_CASE("mesh file: a file cut anywhere is refused", "[ref][mesh_file]") {
   const TemporaryFolder folder;
   // What comes after the last corner or the last keyword says nothing about the mesh. A truncated decimal number cannot
-  // be detected, so text files are cut at or before the last digit that must be present.
+  // be detected, so the text files here end right after the last digit that must be present.
   struct File {
     std::string name;
     std::string content;

@@ -105,7 +105,7 @@ class context {
 
   /// Process that starts from its top at each activation and is cancelled at a wait() when the module is deactivated
   /// (stack unwound). Spawned while the simulation runs: starts when the module is active, and ends for good with the
-  /// deactivation. Usually written with RC_THREAD, RC_METHOD, RC_CTHREAD.
+  /// deactivation. Prefer RC_THREAD, RC_METHOD, RC_CTHREAD.
   enum class process_kind { thread, method, clocked_thread };
   sc_core::sc_process_handle spawn(const char* process_name, process_kind kind, std::function<void()> body);
 
