@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints the seed of every run; tests take it from the same variable. Include it once, beside main().
+// Prints the seed of every run; tests read it from the same variable. Include it once, beside main().
 #ifndef CCHIP_TESTS_SEED_PRINTER_HPP
 #define CCHIP_TESTS_SEED_PRINTER_HPP
 

@@ -182,7 +182,7 @@ class PosesRunner {
     const PoseColumns columns(row, options_.poses_file, options_.expect);
     const Object a = load_object(options_.file_a, streams_);
     const Object b = load_object(options_.file_b, streams_);
-    // The first line of a table is the answer, so its rows wait in a text.
+    // The first line of a table is the answer, so its rows are collected in a text first.
     std::ostream& out = options_.format == Format::table ? table_ : streams_.out;
     writer_ = make_row_writer(options_.format, out, names_behind(columns.passed_names(), names()));
     Progress progress(streams_.err, streams_.progress, "poses");

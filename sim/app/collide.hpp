@@ -19,7 +19,7 @@ struct CollideOptions {
   std::string pose;         ///< of B: see parse_pose(); empty: none
   std::string pose_matrix;  ///< of B: see parse_affine_matrix(); empty: none
   std::string poses_file;   ///< CSV; empty: one query
-  /// True: all contacts. Nothing: all of one query, the first of each of many.
+  /// True: all contacts. Nothing: all contacts of a single query, but only the first of each of many.
   std::optional<bool> all_contacts;
   std::size_t most_contacts = 0;  ///< 0: no limit
   std::string device = "cpu";

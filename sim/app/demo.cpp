@@ -141,7 +141,7 @@ void write_picture(const std::string& path) {
   picture.write(deep->a, deep->b);
 }
 
-/// The waveform's path, its folder made; empty for engines without one.
+/// The waveform's path, after making its folder; empty for engines without one.
 std::string prepare_waves(const DemoOptions& options) {
   if (options.engine.kind != EngineKind::rtl) return {};
   std::error_code error;

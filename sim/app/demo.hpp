@@ -18,7 +18,8 @@ namespace cchip::app {
 struct DemoOptions {
   EngineOptions engine;
   std::string wave_folder = "build/waves";
-  /// If not empty: only a PLY is written, torus and gear in pose deep, the faces that hit by the exact oracle coloured.
+  /// If not empty: writes only a PLY of torus and gear in pose deep; the faces that hit by the exact oracle are
+  /// coloured.
   std::string ply;
 };
 
@@ -32,7 +33,7 @@ struct DemoRun {
 };
 std::vector<DemoRun> make_demo_runs();
 
-/// What came out of one run.
+/// The results of one run.
 struct DemoCounts {
   std::uint64_t pairs = 0;
   std::uint64_t hits = 0;
@@ -40,12 +41,12 @@ struct DemoCounts {
   std::uint64_t indefinite = 0;
   std::uint64_t beats = 0;    ///< axes of all pairs
   std::uint64_t clocks = 0;   ///< clocks that this run took
-  double engine_seconds = 0;  ///< time that the engine needed, without the checks
+  double engine_seconds = 0;  ///< time that the engine took, without the checks
 };
 
 /// All candidate pairs of the two meshes through the engine. Every answer on the grid is compared with the Eigen
 /// reference and the exact oracle, every definite answer with the exact oracle on the doubles.
-/// \param on_answered gets the number of pairs answered so far, now and then
+/// \param on_answered is called now and then with the number of pairs answered so far
 DemoCounts run_demo_pairs(PairEngine& engine, PairMode mode, const Mesh& a, const Mesh& b,
                           const std::function<void(std::uint64_t)>& on_answered = {});
 

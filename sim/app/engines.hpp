@@ -28,7 +28,7 @@ const char* to_name(EngineKind kind);
 /// True for the engines whose answers carry beats, clocks and axes.
 bool is_hardware(EngineKind kind);
 
-/// \throws UsageError the options do not go together, or the waveform cannot be written
+/// \throws UsageError the options contradict each other, or the waveform cannot be written
 std::unique_ptr<PairEngine> make_engine(const EngineOptions& options);
 
 }  // namespace cchip::app

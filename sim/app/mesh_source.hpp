@@ -30,7 +30,7 @@ void for_each_candidate(const Mesh& a, const Mesh& b, std::uint64_t limit, const
 /// A PLY of both meshes: faces of A that hit are orange, those of B blue, all others light grey.
 class HitPicture {
  public:
-  /// Makes the file.
+  /// Creates the file.
   /// \throws UsageError it cannot be written
   explicit HitPicture(const std::string& path);
   /// Marks the faces of a candidate pair of for_each_candidate() that hit.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The way of a pair: local grid, engine, exact resolution of what the engine leaves open, output.
+/// What a pair passes through: local grid, engine, exact resolution of what the engine leaves open, output.
 #ifndef CCHIP_APP_PAIR_RUNNER_HPP
 #define CCHIP_APP_PAIR_RUNNER_HPP
 
@@ -33,12 +33,12 @@ std::string to_line(const Summary& summary);
 struct RunOptions {
   PairMode mode = PairMode::exhaustive;
   Format format = Format::table;
-  /// Expected answers are compared: the table shows the differing rows only, the other formats
-  /// report them on `messages`.
+  /// Answers are compared with the expected ones: the table shows the differing rows only, the other formats report
+  /// them on `messages`.
   bool compare = false;
-  /// Pairs that go to the engine together; bounds the memory.
+  /// Pairs that go to the engine together; this bounds the memory.
   std::size_t batch = 4096;
-  /// Called for each pair that hits, if it is set.
+  /// Called for each pair that hits, if set.
   std::function<void(const PairJob&)> on_hit = {};
 };
 
@@ -47,13 +47,13 @@ class PairRunner {
  public:
   using Locate = std::function<std::string(const PairJob&)>;
 
-  /// `locate` names the place of a pair in error messages; `passed_names` are the columns in PairJob::passed.
+  /// `locate` names the location of a pair for error messages; `passed_names` are the columns in PairJob::passed.
   PairRunner(PairEngine& engine, const RunOptions& options, const std::vector<std::string>& passed_names, Locate locate,
              std::ostream& out, std::ostream& messages);
 
-  /// \throws UsageError the pair fits no local grid
+  /// \throws UsageError no local grid fits the pair
   void add(PairJob job);
-  /// Answers what is left. Call once, at the end.
+  /// Answers the remaining pairs. Call once, at the end.
   Summary finish();
   std::uint64_t pairs_taken() const { return summary_.pairs + jobs_.size(); }
 

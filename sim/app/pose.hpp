@@ -30,7 +30,7 @@ Eigen::Isometry3d parse_pose_matrix(const std::string& text);
 class PoseColumns {
  public:
   /// Reads the header record. \param expect column with the expected answers; empty: none
-  /// \throws UsageError a column is missing or there twice
+  /// \throws UsageError a column is missing or occurs twice
   PoseColumns(const CsvRow& header, std::string file, const std::string& expect);
 
   struct Row {
@@ -38,7 +38,7 @@ class PoseColumns {
     std::vector<std::string> passed;
     std::optional<std::uint64_t> expected;
   };
-  /// \throws UsageError the record is not a pose, or the expected answer no whole number
+  /// \throws UsageError the record is not a pose, or the expected answer is not a whole number
   Row parse(const CsvRow& row) const;
   /// Names of the columns that are passed through, in the order of the file.
   const std::vector<std::string>& passed_names() const { return passed_names_; }

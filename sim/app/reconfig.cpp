@@ -68,7 +68,7 @@ struct Counts {
   std::uint64_t mismatches = 0, lost = 0, duplicated = 0;
 };
 
-/// Answers against the exact oracle: on the grid, of the right module, tested, once.
+/// Compares the answers with the exact oracle: on the grid, from the right module, tested, once.
 Counts judge(const std::vector<PairRequest>& pairs, const ReconfigResult& result) {
   Counts c;
   c.duplicated = result.foreign_answers;
@@ -107,7 +107,7 @@ void print_phases(std::ostream& out, const ReconfigResult& result, std::uint64_t
   }
 }
 
-/// The waveform's path, its folder made.
+/// The waveform's path, after making its folder.
 std::string prepare_wave(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

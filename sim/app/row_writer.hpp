@@ -23,12 +23,12 @@ class RowWriter {
  public:
   virtual ~RowWriter() = default;
   virtual void write(const std::vector<Cell>& cells) = 0;
-  /// Everything written so far reaches the stream.
+  /// Flushes everything written so far to the stream.
   virtual void flush() = 0;
 };
 
-/// Names of the columns that are passed through, then ours. One that has a name of ours, or is there twice, gets
-/// "input_" in front.
+/// Names of the columns that are passed through, then ours. A passed name that equals one of ours, or occurs twice,
+/// gets the prefix "input_".
 std::vector<std::string> names_behind(std::vector<std::string> passed, const std::vector<std::string>& ours);
 
 /// `names` are the column names. The table aligns its columns by the rows before the first flush().

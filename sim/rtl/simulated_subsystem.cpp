@@ -62,7 +62,7 @@ class Streams : public sim::Agent {
   bool offers_ = false;
 };
 
-/// Counts what the registers do not tell.
+/// Counts what the registers do not show.
 class Observer : public sim::Agent {
  public:
   explicit Observer(const Model& model) : model_(model) {}

@@ -12,7 +12,7 @@ namespace cchip::levels {
 namespace {
 
 /// The closed component made reconfigurable, with a generator of a reset on configuration beside it (paper, listing 3.3
-/// and figure 8). Whoever uses it feeds roc_out back to rst.
+/// and figure 8). The user must feed roc_out back to rst.
 class ReconfigurableRtl : public rc::reconfigurable<RtlShell> {
  public:
   sc_core::sc_out<bool> roc_out{"roc_out"};
@@ -24,7 +24,7 @@ class ReconfigurableRtl : public rc::reconfigurable<RtlShell> {
     sensitive << clk.pos();
   }
 
-  /// Other power-up values each time.
+  /// Different power-up values each time.
   void on_load() override { power_up(seeds_()); }
 
  private:

@@ -22,7 +22,7 @@ sim::SimulationOptions simulation_options(std::uint64_t seed) {
 template <class Model>
 class Machine : public PrimtestRtl {
  public:
-  /// The assertions hold from the first reset on.
+  /// The assertions are enabled from the first reset on.
   explicit Machine(std::uint64_t seed) : simulation_(simulation_options(seed)) {
     simulation_->contextp()->assertOn(false);
   }

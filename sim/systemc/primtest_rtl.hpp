@@ -47,7 +47,7 @@ class PrimtestRtl {
   virtual PrimtestOutputs clock(const PrimtestInputs& in) = 0;
 };
 
-/// A module at power-up, with a Verilated context of its own: no reset, what RTL leaves undefined is drawn from `seed`.
+/// A module at power-up, with its own Verilated context: no reset; what RTL leaves undefined is drawn from `seed`.
 /// \throws std::invalid_argument the blank module
 std::unique_ptr<PrimtestRtl> power_up_primtest(ModuleId id, std::uint64_t seed);
 

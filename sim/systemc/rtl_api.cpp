@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t tags = std::size_t{1} << defs::tag_w;
 constexpr std::size_t nobody = ~std::size_t{0};
 
-/// All of tags successive numbers have different tags.
+/// `tags` successive numbers all have different tags.
 std::uint16_t tag_of(std::size_t index) { return static_cast<std::uint16_t>(40503U * index); }
 
 }  // namespace
@@ -23,7 +23,7 @@ void RtlApi::send(std::size_t index) {
   request.pair = {canonical_quad(pair.a), canonical_quad(pair.b), 0};
   request.tag = tag_of(index);
   request.mode = stimulus()[index].mode;
-  under_way_[request.tag] = index;  // far fewer than `tags` are under way
+  under_way_[request.tag] = index;  // far fewer than `tags` are in flight
   requests.write(request);
 }
 

@@ -46,7 +46,7 @@ class SubsystemRtl {
   /// AXI4-Lite, one access at a time.
   void write_register(std::uint32_t address, std::uint32_t data);
   void read_register(std::uint32_t address);
-  /// The answer, once, when it is there.
+  /// The answer, returned once, when it has arrived.
   std::optional<RegisterAnswer> register_answer();
 
   /// Oldest burst not yet taken.

@@ -40,7 +40,7 @@ Row bit(std::string label, std::string name) { return {Row::What::signal, std::m
 Row vector(std::string label, std::string name, int width, Radix radix) {
   return {Row::What::signal, std::move(label), std::move(name), width, radix};
 }
-/// Bits [lsb +: field_width] of a vector as a signal of their own.
+/// Bits [lsb +: field_width] of a vector as a separate signal.
 Row field(std::string label, const std::string& name, int width, int lsb, int field_width, Radix radix) {
   return {Row::What::field, std::move(label), name, width, radix, lsb, field_width};
 }
@@ -103,7 +103,7 @@ Row pipeline_valid(int clocks) {
                Radix::binary);
 }
 
-/// A primitive test, along the way of a pair.
+/// A primitive test, in the order in which a pair passes through it.
 Rows primtest_layout(ModuleId id) {
   const auto verts_a = static_cast<int>(vertices_of(id)[0]);
   const auto verts_b = static_cast<int>(vertices_of(id)[1]);

@@ -25,7 +25,7 @@ int uniform(Random& random, int least, int greatest) {
 
 Vec3d to_doubles(const Vec3i& p) { return p.cast<double>(); }
 
-// --- where the true vertices are
+// --- the true vertices
 
 /// How the true vertices are chosen within half of eta of the grid points.
 constexpr std::array<const char*, 3> offset_kinds = {"anywhere", "at the limit", "to the worst"};
@@ -167,7 +167,7 @@ Row judge(const ShapeInfo& shape, const GridPair& grid, bool grid_hit, const Gri
 Table<Row> run_part(const ShapeInfo& shape, const CertaintyOptions& options, std::uint64_t pairs, std::uint64_t part,
                     std::uint64_t seed) {
   Random random(seed);
-  // from part to part another size, because what is definite depends on it
+  // the size differs from part to part, because it decides what is definite
   const int size_w = uniform(random, std::min(defs::coord_w_min + 1, options.coord_w), options.coord_w);
   PairSource source(size_w, random(), shape.a, shape.b);
   const auto classes = classes_of(shape.a, shape.b);

@@ -10,7 +10,7 @@
 namespace cchip::campaign {
 namespace {
 
-/// Least share of the clocks on which a pair waits at the input that the pipeline accepts an axis on.
+/// Of the clocks on which a pair waits at the input, the least share on which the pipeline must accept an axis.
 constexpr double least_axes_per_clock = 0.99;
 
 /// Programmes of a stream: one for all pairs, or pair by pair with a reserved mode now and then.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What reaches a primitive test behind a bounding volume test: pairs of faces whose 26-DOPs overlap.
+// What reaches a primitive test after a bounding volume test: pairs of faces whose 26-DOPs overlap.
 #include <cchip/bvh/dop26.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/geometry/canonical.hpp>

@@ -32,7 +32,7 @@ void add_pairs(CLI::App& command, std::uint64_t& pairs, const char* what) {
   command.add_option("--pairs", pairs, what)->capture_default_str();
 }
 
-/// The subcommand that was given is left in `chosen`.
+/// The chosen subcommand is stored in `chosen`.
 void add_commands(CLI::App& app, std::function<int()>& chosen) {
   const auto add = [&](const char* name, const char* what, auto options, int (*run)(const decltype(options)&)) {
     CLI::App* command = app.add_subcommand(name, what);

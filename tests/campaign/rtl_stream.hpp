@@ -29,15 +29,15 @@ struct RtlRun {
   RtlCounts counts;
 };
 
-/// The requests one behind the other, a new one on every clock on which the module is ready; number n gets tag_of(n).
-/// \throws sim::SimulationError no answer, an answer nobody asked for, a failed assertion
+/// Sends the requests back to back, a new one on every clock on which the module is ready; number n gets tag_of(n).
+/// \throws sim::SimulationError no answer, an unexpected answer, a failed assertion
 RtlRun run_rtl(PrimtestMachine& machine, const std::vector<PairRequest>& requests);
 
 /// The result that the model predicts, with this tag.
 PairResult predicted(const ShapeInfo& shape, const PairRequest& request, std::uint16_t tag);
 
-/// Results that differ in any bit from the model's, or in the grid answer from the exact one (reserved modes are
-/// not asked for it).
+/// Results that differ in any bit from the model's, or in the grid answer from the exact one (which is not checked in
+/// reserved modes).
 struct RtlJudgement {
   std::uint64_t pairs = 0;
   std::uint64_t hits = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does with the Verilated RTL what bench_primtest.v does, clock by clock, and writes the same lines.
+// Does the same as bench_primtest.v with the Verilated RTL, clock by clock, and writes the same lines.
 //   cchip_icarus_twin VECTORS START LINES      the module is the one whose rm_id the vectors name
 #include <Vcchip_primtest_quad_quad.h>
 #include <Vcchip_primtest_tri_quad.h>

@@ -19,7 +19,7 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
 
-/// The mesh without faces that have no area, which CGAL's predicates do not take.
+/// The mesh without faces of zero area, which CGAL's predicates do not accept.
 Mesh without_degenerate(Mesh mesh) {
   const auto is_flat = [&mesh](const Mesh::Face& face) {
     const auto point = [&](std::size_t i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// FCL computes in doubles: near contact it may err. Where it answers otherwise than the CPU device, exact integers
+// FCL computes in doubles, so it may err near contact. Where its answer differs from the CPU device's, exact integers
 // decide about the faces in question, and the pose is listed.
 #include <catch2/catch.hpp>
 #include <cchip/device/device.hpp>

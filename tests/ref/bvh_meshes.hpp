@@ -14,7 +14,7 @@
 
 namespace cchip::testing {
 
-/// Appends a face with vertices of its own.
+/// Appends a face with its own vertices.
 inline void add_face(Mesh& mesh, const std::vector<Vec3d>& vertices) {
   Mesh::Face face;
   face.kind = vertices.size() == 4 ? Kind::quad : Kind::tri;
@@ -56,7 +56,7 @@ inline Mesh soup(std::size_t faces, bool integers, std::mt19937_64& random) {
   return mesh;
 }
 
-/// Each mesh of this list, with what is special about it as its name.
+/// The meshes of this list, each named after its special property.
 inline std::vector<Mesh> assorted_meshes(std::mt19937_64& random) {
   std::vector<Mesh> meshes;
   const auto add = [&meshes](const std::string& name, Mesh mesh) {

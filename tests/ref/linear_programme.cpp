@@ -26,7 +26,7 @@ bool share_a_point(const Points& a, const Points& b) {
   std::vector<std::size_t> basis;  // indices from `variables` on are the artificial ones
   for (std::size_t i = 0; i < rows.size(); ++i) basis.push_back(variables + i);
 
-  // What the artificial variables add up to, in terms of the others, is to become 0.
+  // The sum of the artificial variables, in terms of the others, must become 0.
   std::vector<Rational> infeasibility(variables + 1);
   for (const auto& row : rows) {
     for (std::size_t j = 0; j <= variables; ++j) infeasibility[j] += row[j];

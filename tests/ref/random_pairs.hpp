@@ -88,7 +88,7 @@ class PairSource {
     return static_cast<std::size_t>(integer(0, static_cast<int>(p.vertex_count()) - 1));
   }
 
-  /// How far one may go from a coordinate to either side.
+  /// The greatest distance that a coordinate may move to either side.
   int room(int from) const { return greatest_ - std::abs(from); }
 
   /// Moves every vertex into one plane: z, x or y becomes an integer linear function of the others.

@@ -50,7 +50,7 @@ class Generator {
     return Eigen::Quaterniond(real(-1, 1), real(-1, 1), real(-1, 1), real(-1, 1)).normalized().toRotationMatrix();
   }
 
-  /// Any kind of map that the descriptor allows; entries of 30 fraction bits.
+  /// Any kind of map that the descriptor can represent; entries of 30 fraction bits.
   Eigen::Matrix3d map() {
     Eigen::Matrix3d m = rotation();
     switch (whole(0, 5)) {
@@ -185,7 +185,7 @@ class Generator {
     int axis = static_cast<int>(whole(0, 2));
     while (n[axis] == 0) axis = (axis + 1) % 3;
     p[axis] -= n[axis] * amount;
-    for (int i = 0; i < 3; ++i) {  // along an axis that the plane does not see, anywhere
+    for (int i = 0; i < 3; ++i) {  // anywhere along an axis parallel to the plane
       const auto k = static_cast<std::size_t>(i);
       if (n[i] == 0) p[i] = 2 * static_cast<double>(whole(node.child[0].least[k], node.child[0].greatest[k]));
     }
@@ -214,7 +214,7 @@ class Generator {
     Query& query = touch.query;
     query.shift = one_in(2) ? 0 : static_cast<int>(whole(0, 15));
     touch.a.step = static_cast<int>(whole(0, 18));
-    const int level = touch.a.step - query.shift;  // of B's step: near A's, mostly
+    const int level = touch.a.step - query.shift;  // in B's step: mostly near A's
     touch.b.step =
         static_cast<int>(std::clamp<std::int64_t>(level + (one_in(4) ? whole(-12, 12) : whole(-6, 6)), 0, 18));
     const auto& d = directions[static_cast<std::size_t>(whole(0, 12))];

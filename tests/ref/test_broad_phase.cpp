@@ -73,7 +73,7 @@ FacePairs brute_force(const Body& a, const Affine3d& pose_a, const Body& b, cons
   return found;
 }
 
-/// The same by descending both trees with the boxes of moved boxes: slow, loose, and plain.
+/// The same by descending both trees with the bounding boxes of the moved boxes: slow, loose and simple.
 FacePairs descend(const Body& a, const Affine3d& pose_a, const Body& b, const Affine3d& pose_b) {
   struct Box {
     Vec3d least;
@@ -203,7 +203,7 @@ void check_query(const Body& a, const Body& b, const Posed& pose, const FacePair
     if (meet) found.insert(ids);
     tally.open += pair.definite ? 0 : 1;
   }
-  const bool equal = found == truth;  // not the sets themselves in the message
+  const bool equal = found == truth;  // keep the sets themselves out of the message
   REQUIRE(equal);
   model::BroadPhaseOptions shuffled;
   shuffled.random_order = &random;
@@ -560,7 +560,7 @@ TEST_CASE("broad phase: limits and lines that make no sense end a query with a c
   REQUIRE(changed(1, inner_field::step, 19) == QueryCode::corrupt);
   REQUIRE(changed(1, inner_field::first, 1) == QueryCode::outside);
   REQUIRE(changed(1, inner_field::first, 0xffffff) == QueryCode::outside);
-  // any bits: a query ends
+  // whatever the bits are, a query ends
   for (int n = 0; n < 300; ++n) {
     Image image = torus.image;
     for (int i = 0; i < 20; ++i) {

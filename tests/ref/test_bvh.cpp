@@ -499,12 +499,12 @@ TEST_CASE("image: damaged images are refused with line and field", "[ref]") {
     REQUIRE(root.kind[1] == NodeKind::inner);
     const std::int64_t shared = get(image.lines[root.first + 1], f::first);
     REQUIRE_THROWS_WITH(parse_image(with_field(image, root.first, f::first, shared)), Catch::Contains("two parents"));
-    // a line that nothing leads to
+    // a line that cannot be reached
     Image longer = image;
     longer.lines.emplace_back();
     put(longer.lines[0], header_field::lines, lines + 1);
     refused(with_field(longer, 0, header_field::root, 1), std::to_string(lines), "line");
-    // kinds that do not fit the lines
+    // kinds that contradict the lines
     for (std::size_t i = 0; i < 4; ++i) {
       for (int kind = 0; kind < 4; ++kind) {
         if (static_cast<int>(root.kind[i]) == kind) continue;
@@ -536,7 +536,7 @@ TEST_CASE("image: damaged images are refused with line and field", "[ref]") {
     refused(with_field(image, quad, f::id, 1, 1), std::to_string(quad), "reserved");
   }
   SECTION("any bits") {
-    // Whatever stands in the lines, reading ends, with an image or with a message.
+    // Whatever the lines contain, reading ends with an image or with a message.
     int read = 0;
     for (int n = 0; n < 4000; ++n) {
       Image changed = image;

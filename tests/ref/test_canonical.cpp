@@ -38,8 +38,8 @@ bool holds_all(const GridPrimitive& p, const GridPrimitive& vertices) {
 
 std::string text_of(const GridPrimitive& p) { return describe({p, p, 0}); }
 
-/// What canonical means, from the definition: V1 off the plane; or all on one line; or a planar outline whose four
-/// corner triangles and diagonals turn the same way.
+/// The definition of canonical: V1 off the plane; or all on one line; or a planar outline whose four corner triangles
+/// and diagonals turn the same way.
 bool is_canonical_by_definition(const GridPrimitive& p) {
   const auto cross = [&](std::size_t from, std::size_t to, std::size_t from2, std::size_t to2) {
     const Vec3l e = (p.v[to] - p.v[from]).cast<std::int64_t>();
@@ -112,7 +112,7 @@ TEST_CASE("canonical: at the ends of the widest grid", "[ref][canonical]") {
     GridPrimitive p;
     p.kind = Kind::quad;
     for (int i = 0; i < 12; ++i) p.v[static_cast<std::size_t>(i / 3)][i % 3] = (n >> i & 1) != 0 ? high : low;
-    // a test in 32 bits would overflow: the same quad on the 0..1 grid tells
+    // a test in 32 bits would overflow; the same quad on the 0..1 grid must give the same order
     GridPrimitive small = p;
     for (Vec3i& v : small.v) v = v.unaryExpr([](int c) { return c > 0 ? 1 : 0; });
     REQUIRE(canonical_order(p) == canonical_order(small));

@@ -112,7 +112,7 @@ PosePair random_poses(std::mt19937_64& random) {
 
 namespace {
 
-/// What a device was asked, and what it answered.
+/// The questions to a device and its answers.
 struct Tally {
   std::uint64_t queries = 0;
   std::uint64_t hits = 0;
@@ -125,7 +125,7 @@ struct Tally {
   }
 };
 
-/// First and all contacts of a query are the expected ones.
+/// First and all contacts of a query must be the expected ones.
 void check_answers(Device& device, const Object& a, const Object& b, const PosePair& poses,
                    const std::vector<Contact>& expected, Tally& tally) {
   const CollisionResult found = collide(device, a, poses.a, b, poses.b, all);
@@ -364,7 +364,7 @@ TEST_CASE("collide: copies of an object are one object", "[ref][collide]") {
 
 TEST_CASE("collide: the model and the CPU agree on meshes of more faces", "[ref][collide]") {
   std::mt19937_64 random(sim::seed_from_environment());
-  // More objects than the device keeps images of.
+  // More objects than the device caches images of.
   std::vector<Object> objects;
   for (int i = 0; i < 3; ++i) {
     objects.emplace_back(noisy(make_torus(2, 0.7, 40, 20), 0.02, random));

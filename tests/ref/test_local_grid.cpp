@@ -98,7 +98,7 @@ bool can_be_exact(const std::vector<Vertex>& points, int coord_w) {
   return !exponent || (positions_fit(points, *exponent) && box_fits(points, *exponent, coord_w));
 }
 
-/// Everything that DESIGN and the header promise of a result.
+/// Everything that DESIGN and the header promise about a result.
 void check_result(const std::vector<Vertex>& points, const QuantisedPair& q, int coord_w) {
   const cpp_int step = units_of_step(q.grid.exponent);
   const cpp_int half_range = cpp_int(1) << (coord_w - 1);

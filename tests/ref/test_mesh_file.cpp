@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mesh files, among them some that nobody here made (Debian package assimp-testmodels).
+// Mesh files, some of them from third parties (Debian package assimp-testmodels).
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -23,7 +23,7 @@ namespace {
 
 const std::string models = "/usr/share/assimp/models/";
 
-/// A folder that goes away with its object.
+/// A folder that is deleted with its object.
 class TemporaryFolder {
  public:
   TemporaryFolder() : path_(std::filesystem::temp_directory_path() / ("cchip_mesh_" + std::to_string(getpid()))) {
@@ -44,7 +44,8 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// As long as it lives this process gets at most 64 MB of memory more; sanitizers need terabytes, so not with them.
+/// While it lives, this process gets at most 64 MB of additional memory; sanitizers need terabytes, so do not use it
+/// with them.
 class MemoryLimit {
  public:
   MemoryLimit() {
@@ -313,8 +314,8 @@ TEST_CASE("mesh file: a large PLY that was cut is refused", "[ref][mesh_file]") 
 
 TEST_CASE("mesh file: a file cut anywhere is refused", "[ref][mesh_file]") {
   const TemporaryFolder folder;
-  // What comes after the last corner or behind the last keyword says nothing about the mesh. Of a decimal number
-  // that was cut nobody can tell: files of text end behind the last digit that must be there.
+  // What comes after the last corner or the last keyword says nothing about the mesh. A truncated decimal number cannot
+  // be detected, so the text files here end right after the last digit that must be present.
   struct File {
     std::string name;
     std::string content;
@@ -615,7 +616,7 @@ TEST_CASE("mesh file: odd polygons", "[ref][mesh_file]") {
   CHECK(segment.faces.size() == 3);
   CHECK(covers(segment, 4.5, 0));
   CHECK(covers(segment, 0.5, 0));
-  // a square with a hole, joined by a slit that is gone along twice
+  // a square with a hole, joined by a slit that the outline passes twice
   const Mesh ring = load(
       {{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0}, {0, 0, 0}, {3, 3, 0}, {3, 6, 0}, {6, 6, 0}, {6, 3, 0}, {3, 3, 0}});
   CHECK(area_of(ring) == Approx(81 - 9));
@@ -624,13 +625,13 @@ TEST_CASE("mesh file: odd polygons", "[ref][mesh_file]") {
   CHECK(covers(ring, 7, 4.5));
   // standing upright: the axis of projection must be chosen
   CHECK(area_of(load({{7, 0, 0}, {7, 4, 0}, {7, 4, 4}, {7, 2, 1}, {7, 0, 4}})) == Approx(16 - 6));
-  // a dent that single precision does not see
+  // a dent that is invisible in single precision
   const double e = 1e-12;
   const Mesh dent = load({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, 4 - e, 0}, {0, 4, 0}});
   CHECK(dent.faces.size() == 3);
   CHECK_FALSE(covers(dent, 2, 4 - e / 2));
   CHECK(covers(dent, 2, 4 - e));
-  // more corners than are cut
+  // more corners than the cutter accepts
   std::vector<Vec3d> many;
   for (int i = 0; i < 1025; ++i) many.emplace_back(std::cos(i * 0.006), std::sin(i * 0.006), 0);
   CHECK(message_of(folder.write("t.obj", polygon_obj(many))).find("face 0 has more than 1024 corners") !=

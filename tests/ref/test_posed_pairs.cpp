@@ -57,7 +57,7 @@ void check(const Primitive& a, const Pose& pose_a, const Primitive& b, const Pos
 }
 
 /// Every class of pairs of a grid, under one pose, so that touching, coplanar and degenerate pairs stay so, each also
-/// with coordinates moved to neighbours, at many magnitudes; and under poses of their own.
+/// with coordinates moved to neighbours, at many magnitudes; then with a pose for each primitive.
 void compare(int rounds, Count& same, Count& nudged, Count& apart, Count& extreme) {
   std::mt19937_64 random(seed() + 77);
   for (const PairClass c : pair_classes) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints what a tree and an image of a large mesh cost: tree_build [FACES ...].
+// Prints the cost of a tree and an image of a large mesh: tree_build [FACES ...].
 #include <sys/resource.h>
 
 #include <cchip/bvh/image.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// cchip_primtest_subsystem with everything around it: pairs of three kinds, a sink, memory with bitstreams, registers.
-/// What tests, campaign and command share is the account of the pairs: every tag once, with the right answer.
+/// cchip_primtest_subsystem with its surroundings: pairs of three kinds, a sink, memory with bitstreams, registers.
+/// Tests, campaign and command share the account of the pairs: every tag once, with the right answer.
 #ifndef CCHIP_TESTS_SUBSYSTEM_BENCH_HPP
 #define CCHIP_TESTS_SUBSYSTEM_BENCH_HPP
 
@@ -37,12 +37,12 @@ inline bool chance(Random& random, int percent) { return static_cast<int>(random
 constexpr std::array<Kind, 4> kind_a = {Kind::tri, Kind::tri, Kind::tri, Kind::quad};
 constexpr std::array<Kind, 4> kind_b = {Kind::tri, Kind::tri, Kind::quad, Kind::quad};
 
-/// What the subsystem says about a pair that nobody tests.
+/// The expected answer for a pair that nobody tests.
 inline KindResult refused_answer(const KindRequest& r) {
   return {{r.request.tag, true, true, false, {AxisClass::illegal, 0, 0}, 0}, r.kind};
 }
 
-/// What the test of its kind says; the grid answer is the exact oracle's.
+/// The expected answer of the test of its kind; the grid answer is the exact oracle's.
 inline KindResult tested_answer(const KindRequest& r, int coord_w) {
   if (r.kind == 0 || r.request.mode > PairMode::directed) return refused_answer(r);
   const auto kind = static_cast<std::size_t>(r.kind);
@@ -61,7 +61,7 @@ class KindSource {
       sources_.emplace_back(coord_w, seed + kind, kind_a[kind], kind_b[kind]);
     }
   }
-  /// \param kind 0: illegal, what is in the payload does not matter
+  /// \param kind 0: illegal, the content of the payload does not matter
   KindRequest draw(int kind) {
     const std::size_t shape = kind == 0 ? 1 : static_cast<std::size_t>(kind);
     stimulus::PairSource& source = sources_[shape - 1];
@@ -83,7 +83,7 @@ class KindSource {
   std::vector<stimulus::PairSource> sources_;
 };
 
-/// Ways to spoil a bitstream.
+/// Ways to corrupt a bitstream.
 enum class Spoilt {
   no,
   magic,         ///< not a bitstream
@@ -91,18 +91,18 @@ enum class Spoilt {
   module_id,     ///< of another module
   length,        ///< header and size of the file differ
   crc,           ///< a bit of the payload is wrong
-  truncated,     ///< the end is missing, header and size say so: complete to the controller
-  too_long,      ///< bytes behind the end, header and size say so
+  truncated,     ///< the end is missing, header and size agree: complete to the controller
+  too_long,      ///< surplus bytes at the end, header and size agree
   content,       ///< the device's own check fails
   other_module,  ///< the payload is another module's
   last
 };
 
-/// The payload's words before this byte, synchronisation and name of the slot, stay as they are: a device that is told
-/// to rewrite another slot does so, nobody outside can know.
+/// The payload's words before this byte, synchronisation and name of the slot, are not corrupted: a device that is told
+/// to rewrite another slot does so, and nobody outside can know.
 constexpr std::size_t name_end = 8;
 
-/// Bytes of a bitstream for this slot and module, spoilt in this way.
+/// Bytes of a bitstream for this slot and module, corrupted in this way.
 inline Bytes spoilt_bitstream(Spoilt how, int slot, int module_id, std::size_t payload_bytes, Random& random) {
   const auto id = static_cast<ModuleId>(module_id);
   const auto other = static_cast<ModuleId>((module_id + 1 + static_cast<int>(random() % 3)) % 4);
@@ -145,7 +145,7 @@ unsigned decoupled_of(const Model& top) {
   return decoupled;
 }
 
-/// What went wrong; the first one in words.
+/// What went wrong; the first failure in words.
 struct Account {
   std::uint64_t pairs = 0;     ///< answered
   std::uint64_t refused = 0;   ///< of them without a test
@@ -204,7 +204,7 @@ class SubsystemBench {
 
   // ---- registers
   bool idle_bus() const { return master_->done(); }
-  /// Until all posted writes are answered.
+  /// Steps until all posted writes are answered.
   void settle_bus() {
     simulation.run_until([&] { return master_->done(); }, 4000, "the registers");
     collect();
@@ -219,7 +219,7 @@ class SubsystemBench {
     sim::require(word.ok, "a register refuses a read");
     return word.data;
   }
-  /// Collects what the posted writes were answered.
+  /// Collects the answers to the posted writes.
   void collect() {
     while (posted_ > 0) {
       master_->next_write();
@@ -231,7 +231,7 @@ class SubsystemBench {
     ++posted_;
   }
   static std::uint32_t entry(int slot, int module_id) { return static_cast<std::uint32_t>(4 * slot + module_id); }
-  /// Is this address in front of name_end of a payload?
+  /// Is this address below name_end of a payload?
   static bool in_name(std::uint32_t byte) { return byte % stride < defs::bitstream_header + name_end; }
   static std::uint32_t address(int slot, int module_id) { return stride * (1 + entry(slot, module_id)); }
 
@@ -275,7 +275,7 @@ class SubsystemBench {
     driver.push(r);
   }
   std::size_t in_flight() const { return open_.size(); }
-  /// Until every pair is answered or reported as given up; then all the rest is an error.
+  /// Steps until every pair is answered or reported as given up; then every remaining one is an error.
   /// \returns false if that does not happen: a hang
   bool drain(std::uint64_t most_clocks) {
     std::uint64_t clocks = 0;
@@ -283,7 +283,7 @@ class SubsystemBench {
       if (clocks++ == most_clocks) return false;
       simulation.step();
     }
-    simulation.steps(300);  // nothing comes after the last answer
+    simulation.steps(300);  // nothing may come after the last answer
     if (open_.size() != given_up_) {
       account.lost += open_.size() > given_up_ ? open_.size() - given_up_ : 0;
       if (open_.size() < given_up_) fail(account.wrong, "more pairs were answered than the reports of lost ones allow");
@@ -307,7 +307,7 @@ class SubsystemBench {
     return static_cast<std::size_t>(
         std::count_if(reports.begin(), reports.end(), [&](const SwapReport& r) { return r.code == code; }));
   }
-  /// Steps until one more report came. \throws SimulationTimeout
+  /// Steps until one more report has arrived. \throws SimulationTimeout
   SwapReport next_report(std::uint64_t most_clocks = 20000) {
     const std::size_t before = reports.size();
     simulation.run_until([&] { return reports.size() > before; }, most_clocks, "a report");
@@ -336,7 +336,7 @@ class SubsystemBench {
     KindResult refused;
     std::uint64_t clock;
   };
-  /// Passes to whoever is the master at the time.
+  /// Forwards to the current master.
   class Registers : public sim::Agent {
    public:
     explicit Registers(std::unique_ptr<sim::AxiLiteMaster<Model>>& master) : master_(master) {}
@@ -421,7 +421,7 @@ class SubsystemBench {
   std::map<std::uint16_t, Open> open_;
   std::set<std::uint16_t> queued_, answered_;
   std::uint16_t next_tag_ = 1;
-  std::uint64_t given_up_ = 0;             // reported, not yet known which
+  std::uint64_t given_up_ = 0;             // reported, but not yet known which
   std::array<std::uint64_t, 4> absent_{};  // last clock without a provider
   std::uint64_t progress_ = 0;
   std::unique_ptr<sim::AxiLiteMaster<Model>> master_;

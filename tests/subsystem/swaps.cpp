@@ -48,7 +48,7 @@ struct Totals {
   }
 };
 
-/// One system under attack, until it has made its swaps.
+/// One system under attack, until it has made its number of swaps.
 template <class Config>
 class Part {
  public:
@@ -106,7 +106,7 @@ class Part {
     bench_.step();
   }
 
-  /// What happens on this clock besides the clock.
+  /// Everything that happens on this clock besides the clock itself.
   void act() {
     traffic();
     if (bench_.idle_bus()) {
@@ -123,7 +123,7 @@ class Part {
       fault();
     }
     if (chance_in(3000)) new_patterns();
-    if (chance_in(12000)) {  // a receiver that is gone for longer than a shut-down waits
+    if (chance_in(12000)) {  // a receiver that is absent for longer than a shut-down waits
       bench_.sink.set_pattern(sim::Pattern::never_for(4000 + random_() % 3000));
       fault();
     }
@@ -156,13 +156,13 @@ class Part {
     const int module_id = pick(4);
     const std::uint32_t entry = SubsystemBench<Config>::entry(slot, module_id);
     switch (pick(40)) {
-      case 0:  // a spoilt bitstream
+      case 0:  // a corrupt bitstream
         bench_.provide(slot, module_id,
                        spoilt_bitstream(static_cast<Spoilt>(1 + pick(static_cast<int>(Spoilt::last) - 1)), slot,
                                         module_id, payload_bytes(), random_));
         fault();
         break;
-      case 1:  // none, or an address or size that is wrong
+      case 1:  // no bitstream, or a wrong address or size
         if (chance(random_, 50)) {
           bench_.post_write(regs::bitstream_valid::offset(entry), 0);
         } else if (chance(random_, 50)) {
@@ -172,7 +172,7 @@ class Part {
         }
         fault();
         break;
-      case 2:  // a kind that nobody brings
+      case 2:  // a kind that no slot provides
         if (chance(random_, 20)) {
           for (int s = 0; s < Config::SLOTS; ++s) {
             bench_.post_write(regs::bitstream_valid::offset(SubsystemBench<Config>::entry(s, module_id)), 0);
@@ -200,7 +200,7 @@ class Part {
         bench_.provide(slot, module_id, bench_.good(slot, module_id, payload_bytes()));
     }
   }
-  /// Whole words: the 32-bit port takes nothing else.
+  /// Whole words: the 32-bit port accepts nothing else.
   std::size_t payload_bytes() { return 16 + 4 * (random_() % (chance_in(10) ? 200 : 12)); }
 
   void memory_fault() {
@@ -236,7 +236,7 @@ class Part {
     resume_at_ = 0;
     bench_.driver.set_pattern(sim::Pattern::always());
     bench_.sink.set_pattern(sim::Pattern::always());
-    for (int i = 0; i < 3; ++i) {  // a swap under way may still reject what is repaired
+    for (int i = 0; i < 3; ++i) {  // a swap in progress may still reject a repaired bitstream
       bench_.settle_bus();
       bench_.set_up();
       bench_.steps(1500);

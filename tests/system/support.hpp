@@ -19,7 +19,7 @@
 
 namespace cchip::test {
 
-/// A folder that goes away with the object.
+/// A folder that is deleted with the object.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -123,7 +123,7 @@ inline EngineAnswer answer(bool grid, bool definite) {
   return result;
 }
 
-/// Engine that answers what the test tells it.
+/// Engine that answers as the test tells it.
 class ScriptedEngine : public PairEngine {
  public:
   using Answer = EngineAnswer (*)(const GridPair&);

@@ -38,7 +38,7 @@ TEST_CASE("collide: the first line is the answer, the last one the summary", "[s
   CHECK(lines(apart.out).front() == "apart");
   CHECK(last_line(apart.out).rfind("queries=1 hits=0 mismatches=0 contacts=0 ", 0) == 0);
   CHECK(apart.err.empty());
-  // They share the corner (0.5, 0.5, 0.5), which three faces of either have.
+  // They share the corner (0.5, 0.5, 0.5), where three faces of each meet.
   const Outcome corner = collide_cubes({"--pose", "1,1,1"});
   CHECK(lines(corner.out).front() == "touch: 3 faces of A meet 3 of B");
   CHECK(lines(corner.out).at(1) == "face_a  face_b");
@@ -99,7 +99,7 @@ TEST_CASE("collide: poses of a file, expected answers", "[system][collide]") {
   const Mesh cube = load_mesh(cube_file, FaceKinds::triangles_and_quads);
   Pose flat = Pose::Identity();
   flat(2, 2) = 0;
-  // Two squares meet the four walls each, four segments meet their own wall and the two beside it.
+  // Two squares meet all four walls, four segments meet their own wall and the two beside it.
   CHECK(brute_force_contacts(cube, Pose::Identity(), cube, flat).size() == 2 * 4 + 4 * 3);
   CHECK(collide_cubes({"--poses", file, "--expect", "contacts", "--contacts", "all"}).code == exit_ok);
 
@@ -136,7 +136,7 @@ TEST_CASE("collide: picture", "[system][collide]") {
   std::set<double> xs;
   for (const Vec3d& v : both.vertices) xs.insert(v.x());
   CHECK(xs == std::set<double>{-0.5, 0.5, 1.5});
-  // With one contact only fewer faces are coloured.
+  // With only one contact fewer faces are coloured.
   const std::string one = folder.path("one.ply");
   REQUIRE(collide_cubes({"--pose", "1,1,1", "--contacts", "first", "--ply", one}).code == exit_ok);
   CHECK(folder.read("one.ply").size() == folder.read("hits.ply").size());

@@ -14,9 +14,9 @@ namespace {
 
 /// Right on the grid, certain only where nothing was rounded.
 EngineAnswer honest(const GridPair& pair) { return answer(eigen_intersects(pair, 16), pair.eta == 0); }
-/// Wrong on the grid, although it admits to be uncertain.
+/// Wrong on the grid, although it admits uncertainty.
 EngineAnswer lying(const GridPair& pair) { return answer(!eigen_intersects(pair, 16), false); }
-/// Right on the grid, but sure of it where rounding forbids.
+/// Right on the grid, but certain where rounding forbids it.
 EngineAnswer boasting(const GridPair& pair) { return answer(eigen_intersects(pair, 16), true); }
 
 DemoCounts run(ScriptedEngine::Answer answer, const DemoRun& what) {
@@ -46,7 +46,7 @@ TEST_CASE("demo: apart, touching, deep, linked are what they say", "[system][dem
   CHECK(apart.pairs > 1000);
   CHECK(apart.hits == 0);
   CHECK(touching.hits > 100);
-  CHECK(touching.indefinite == 0);  // on the grid as it is
+  CHECK(touching.indefinite == 0);  // on the grid without rounding
   CHECK(deep.hits > 100);
   const DemoCounts cut = run(honest, find(runs, "tri-quad", "deep"));
   const DemoCounts linked = run(honest, find(runs, "quad-quad", "linked"));

@@ -14,7 +14,7 @@ TEST_CASE("parse_coordinate: the nearest double", "[system][pair_columns]") {
   CHECK(parse_coordinate(" 7\t") == 7.0);
   CHECK(parse_coordinate(".5") == 0.5);
   CHECK(parse_coordinate("0.1") == 0.1);
-  // Half-way between 2^53 and its successor: to even; a little more: up.
+  // Half-way between 2^53 and its successor rounds to even; a little more rounds up.
   CHECK(parse_coordinate("9007199254740993") == 9007199254740992.0);
   CHECK(parse_coordinate("9007199254740993.00000000000000000000000000001") == 9007199254740994.0);
   CHECK(parse_coordinate("4.9406564584124654e-324") == std::numeric_limits<double>::denorm_min());

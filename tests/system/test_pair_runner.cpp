@@ -68,7 +68,7 @@ TEST_CASE("pair_runner: batches bound what is kept, order stays", "[system][pair
 
 TEST_CASE("pair_runner: a definite answer stands, an open one is resolved exactly", "[system][pair_runner]") {
   Run definite(definite_hit);
-  definite.runner.add(parallel_job(2, 1e-12));  // apart, but the engine's word counts
+  definite.runner.add(parallel_job(2, 1e-12));  // apart, but the engine's answer counts
   CHECK(definite.runner.finish().hits == 1);
   Run open(open_hit);
   open.runner.add(parallel_job(2, 1e-12));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// sc_main() of the tests with SystemC, compiled once. The kernel elaborates once in a process: of several selected test
-// cases each gets a process of its own; a single one, which is what CTest asks for, runs here.
+// sc_main() of the tests with SystemC, compiled once. The kernel elaborates only once in a process. If several test
+// cases are selected, each runs in its own process; a single one, which is what CTest asks for, runs here.
 #define CATCH_CONFIG_RUNNER
 #include <sys/wait.h>
 #include <unistd.h>

@@ -31,15 +31,16 @@ inline void deltas(int n) {
   for (int i = 0; i < n; ++i) wait(SC_ZERO_TIME);
 }
 
-/// Elaboration and simulation of its own, as often as wanted in one process; all objects have to die before it.
-/// SystemC 2.3.4 frees twice what belongs to reset_signal_is() of a port when a context ends, so keep() those.
+/// Elaboration and simulation in a separate context, any number of times in one process; all objects must be destroyed
+/// before it. SystemC 2.3.4 frees twice what belongs to reset_signal_is() of a port when a context ends, so keep()
+/// those.
 class OwnContext {
  public:
   OwnContext() : mine_(std::make_unique<sc_core::sc_simcontext>()) { use(mine_.get()); }
   ~OwnContext() { use(old_); }
   OwnContext(const OwnContext&) = delete;
   OwnContext& operator=(const OwnContext&) = delete;
-  /// Until the end of the process.
+  /// Keeps it until the end of the process.
   void keep() {
     static auto& kept = *new std::vector<std::unique_ptr<sc_core::sc_simcontext>>;  // not destroyed
     kept.push_back(std::move(mine_));
@@ -69,7 +70,7 @@ class Thread : public sc_core::sc_module {
   bool done_ = false;
 };
 
-/// Elaborates with one more thread, which ends the simulation; fails if it does not come to its end by `limit`.
+/// Elaborates with one more thread, which ends the simulation; fails if this thread does not finish by `limit`.
 inline void simulate(std::function<void()> body, const sc_time& limit = sc_time(1, SC_MS)) {
   Thread script("script", [&body] {
     body();
@@ -113,7 +114,7 @@ inline auto group_of(Comb& m) { return rc::ports(m.d, m.q); }
 using AdderGroup = rc::portal_group<decltype(group_of(std::declval<Adder&>()))>;
 using CombGroup = rc::portal_group<decltype(group_of(std::declval<Comb&>()))>;
 
-/// Keeps a module until it is told to let go.
+/// Holds a module until it is told to release it.
 struct Latch : rc::holder {
   std::string why = "latch";
   sc_core::sc_event free;
@@ -125,7 +126,7 @@ struct Latch : rc::holder {
   }
 };
 
-/// Writes down what happens to it, with time.
+/// Records what happens to it, with the time.
 struct Probe : rc::reconfigurable<Comb> {
   std::vector<std::string> log;
   sc_time hook_time = SC_ZERO_TIME;

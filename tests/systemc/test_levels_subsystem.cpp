@@ -117,7 +117,7 @@ TEST_CASE("levels subsystem: registers behind a TLM-2.0 socket", "[systemc][leve
     CHECK(prober.access(tlm::TLM_IGNORE_COMMAND, 0x000, data) == tlm::TLM_COMMAND_ERROR_RESPONSE);
     std::array<unsigned char, 4> enables = {0xFF, 0xFF, 0xFF, 0xFF};
     CHECK(prober.access(tlm::TLM_READ_COMMAND, 0x000, data, 4, enables.data()) == tlm::TLM_BYTE_ENABLE_ERROR_RESPONSE);
-    CHECK(sc_core::sc_time_stamp() > 15 * period);  // the delays were waited for
+    CHECK(sc_core::sc_time_stamp() > 15 * period);  // the delays have passed
     finished = true;
     sc_core::sc_stop();
   });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Real models of `verilator --sc` in the port group of level 3: closed components that neither the library nor the
-// levels were made for.
+// levels were written for.
 #include <Vsc_quad_quad.h>
 #include <Vsc_tri_tri.h>
 
@@ -22,7 +22,7 @@ static_assert(
     std::is_same_v<decltype(pins_of(std::declval<Vsc_tri_tri&>())), decltype(pins_of(std::declval<RtlShell&>()))>,
     "RtlShell has the port types of a model of verilator --sc");
 
-/// With reset on configuration: the registers are random, and keep their content while the module is away.
+/// With reset on configuration: the registers are random, and keep their content while the module is absent.
 template <class Model>
 class Reconfigurable : public rc::reconfigurable<Model> {
  public:

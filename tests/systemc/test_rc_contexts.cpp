@@ -116,7 +116,7 @@ void one_system(int i) {
       CHECK(b.read() == 1 - i);
       control.unload(other);
     }
-    if (i % 3 == 0) control.activate(adder);  // some end in the midst of it
+    if (i % 3 == 0) control.activate(adder);  // some end halfway
   });
 }
 

@@ -12,7 +12,7 @@ using rc::state;
 
 namespace {
 
-/// Modules with a portal group of their own each.
+/// Modules with a separate portal group each.
 struct Row {
   std::vector<std::unique_ptr<sc_core::sc_signal<int>>> signals;
   std::vector<std::unique_ptr<Probe>> modules;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was wrong in the library's predecessor, ReChannel 2: each name says what would happen.
+// Defects of the library's predecessor, ReChannel 2: each name says what would happen.
 #include <memory>
 
 #include "rc_fixture.hpp"

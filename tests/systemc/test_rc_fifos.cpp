@@ -299,7 +299,7 @@ TEST_CASE("opening a FIFO portal gives an event if there are data or room", "[rc
 
 namespace {
 
-/// Deltas in which `count` items pass three adders in a row, and those in which the first result comes out.
+/// Deltas in which `count` items pass three adders in a row, and those until the first result comes out.
 struct Passage {
   sc_dt::uint64 first, all;
   bool operator==(const Passage& o) const { return first == o.first && all == o.all; }
@@ -446,7 +446,7 @@ TEST_CASE("before a counted read the module leaves if it shall and can", "[rc][t
   simulate([&] {
     deltas(50);
     CHECK(results.size() > 10);
-    s.control.unload(s.m);  // in the midst of it
+    s.control.unload(s.m);  // halfway through it
     CHECK(owed.count() == 0);
     deltas(5);
     const auto count = results.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Port groups and portal groups, and what they refuse.
+// Port groups and portal groups, and what they reject.
 #include <type_traits>
 
 #include "rc_fixture.hpp"

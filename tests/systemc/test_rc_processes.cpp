@@ -25,7 +25,7 @@ struct System {
   void off() { control.deactivate(m); }
 };
 
-/// Writes down when its destructor runs.
+/// Records when its destructor runs.
 struct Witness {
   std::vector<std::string>& log;
   ~Witness() { log.push_back("unwound"); }

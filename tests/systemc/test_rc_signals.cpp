@@ -445,7 +445,7 @@ TEST_CASE("an initial value of an output appears when the portal opens", "[rc][s
 
 namespace {
 
-/// A chain of combinational modules; how many deltas a change takes to pass, and how often each runs.
+/// A chain of combinational modules; counts the deltas that a change takes to pass, and the runs of each module.
 struct Chain {
   static constexpr int length = 3;
   sc_core::sc_signal<int> s0{"s0"}, s1{"s1"}, s2{"s2"}, s3{"s3"};

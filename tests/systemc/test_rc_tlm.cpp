@@ -66,7 +66,7 @@ struct Access {
   }
 };
 
-/// Modules with an initiator socket before one static memory.
+/// Modules with an initiator socket in front of one static memory.
 struct MasterSystem {
   Memory memory{"memory"};
   rc::reconfigurable<Master> m{"m"}, other{"other"};

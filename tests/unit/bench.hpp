@@ -67,13 +67,13 @@ void expect(const char* what, const Got& got, const Expected& expected) {
 
 inline bool chance(Random& random, int percent) { return static_cast<int>(random() % 100) < percent; }
 
-/// Signed numbers of `width` bits at which something can go wrong.
+/// Signed numbers of `width` bits at which errors are likely.
 inline std::vector<std::int64_t> extremes(int width) {
   const std::int64_t half = std::int64_t{1} << (width - 1);
   return {-half, -half + 1, -1, 0, 1, half - 1};
 }
 
-/// Signed number of `width` (up to 64) bits: an extreme one, a small one or any.
+/// Signed number of `width` (up to 64) bits: an extreme one, a small one or any other.
 inline std::int64_t random_word(Random& random, int width) {
   switch (random() % 4) {
     case 0: {
@@ -118,7 +118,7 @@ void set_primitive(Port& port, const GridPrimitive& p, int coord_w) {
 }
 inline model::Word3 to_word3(const Vec3i& v) { return {v.x(), v.y(), v.z()}; }
 
-/// Dot product without a limit on the way.
+/// Dot product without a limit on intermediate sums.
 inline sim::Int128 wide_dot(const model::Word3& a, const model::Word3& b) {
   sim::Int128 sum = 0;
   for (std::size_t d = 0; d < 3; ++d) sum += sim::Int128{a[d]} * b[d];

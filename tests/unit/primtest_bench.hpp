@@ -32,7 +32,7 @@ class PrimtestPins {
   virtual void add(sim::Agent& agent) = 0;
   virtual void step() = 0;
   virtual void reset(int clocks) = 0;
-  /// Lets outputs follow changed inputs, if they do.
+  /// Evaluates the model, so that outputs follow changed inputs if they do.
   virtual void eval() = 0;
   virtual Outputs outputs() const = 0;
   virtual CData& rst() = 0;
@@ -160,12 +160,12 @@ void check_lone_pair_latency(const PrimtestConfig& config);
 void check_drain(const PrimtestConfig& config);
 void check_registered_outputs(const PrimtestConfig& config);
 void check_no_old_tags(const PrimtestConfig& config);
-/// Axes accepted on at least 99 % of the clocks on which a pair waits, at the port or inside.
+/// Axes must be accepted on at least 99 % of the clocks on which a pair waits, at the port or inside.
 void check_throughput(const PrimtestConfig& config);
 
 }  // namespace cchip::test
 
-/// A test case for each of these checks, of every configuration of cchip_primtest_<kind>.
+/// A test case for each of these checks, for every configuration of cchip_primtest_<kind>.
 #define CCHIP_PRIMTEST_CASE(kind, name, check)                                                   \
   TEMPLATE_LIST_TEST_CASE("cchip_primtest_" #kind ": " name, "[unit][cchip_primtest_" #kind "]", \
                           cchip_primtest_##kind##_configs) {                                     \

@@ -10,10 +10,10 @@
 
 namespace cchip::test {
 
-/// Any verdict the pipeline can give, whatever the axis: a zero has no sign, what is certain is not zero, a
-/// certain gap is a gap.
-/// \param zero_axes components that are zero in both normals of the pair, bit mask 0..6: where the programme looks
-/// at a component of both, it is the largest of one and they are parallel
+/// Any verdict that the pipeline can give, whatever the axis: a zero has no sign, a certain sign is not zero, a certain
+/// gap is a gap.
+/// \param zero_axes components that are zero in both normals of the pair, bit mask 0..6: where the programme looks at a
+/// component of both, it is the largest of one and they are parallel
 inline model::Verdict random_verdict(Random& random, int separated_percent, unsigned zero_axes) {
   model::Verdict v;
   v.compare.separated = chance(random, separated_percent);

@@ -71,7 +71,7 @@ class ConfigMemoryModel {
     if (n >= 4 && word_at(bytes_, n - 4) == defs::bitstream_sync) bytes_.erase(bytes_.begin(), bytes_.end() - 4);
     if (bytes_.size() < 8 || word_at(bytes_, 0) != defs::bitstream_sync || bytes_[4] != slot_) return;
     garbage_ = true;
-    // complete, perhaps with the first bytes of synchronisation words behind it, cut off or not yet whole
+    // complete, perhaps followed by the first bytes of synchronisation words, cut off or incomplete
     const std::size_t most = port_bytes_ == 1 ? std::min<std::size_t>(bytes_.size() - 8, 64) : 0;
     for (std::size_t more = 0; more <= most && garbage_; ++more) {
       garbage_ = !(complete(bytes_.size() - more) && begins_sync(more));
@@ -101,7 +101,7 @@ class ConfigMemoryModel {
   Bytes bytes_;
 };
 
-/// Ways to spoil a payload.
+/// Ways to corrupt a payload.
 enum class Fault { none, crc, truncated, overlong, module, unused_bits, other_slot, too_short, filler, cut_sync };
 constexpr int faults = 10;
 

@@ -34,7 +34,7 @@ class SlotRequests {
     request.tag = tag_++;
     return request;
   }
-  /// The answer by the functional model, which the exact oracle confirms.
+  /// The answer of the functional model, which the exact oracle confirms.
   PairResult answer(const PairRequest& request) const {
     const auto vertices = [](Kind kind) { return static_cast<std::size_t>(kind); };
     const model::Options options{{vertices(request.pair.a.kind), vertices(request.pair.b.kind)}, true};
@@ -82,7 +82,7 @@ class SlotBench : public sim::Agent {
     simulation.add(*this);
   }
 
-  /// What holds on every clock, whatever the region does.
+  /// Rules for every clock, whatever the region does.
   void sample(const sim::ClockInfo& now) override {
     if (now.in_reset) return;
     if (top.decoupled != 0) {
@@ -161,7 +161,7 @@ class SlotBench : public sim::Agent {
     expect("region_rm_id", int{top.region_rm_id}, static_cast<int>(id));
     recouple();
   }
-  /// Different values of the region's number in so many clocks: 1 if something works in the slot.
+  /// Number of different values of the region's number within this many clocks: 1 if something works in the slot.
   std::size_t numbers(int clocks) {
     std::vector<int> seen;
     for (int i = 0; i < clocks; ++i) {

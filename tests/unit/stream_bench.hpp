@@ -106,7 +106,7 @@ std::uint64_t beats_until_full(const sim::SimulationOptions& options) {
   return accepted;
 }
 
-/// No output follows an input before the rising edge.
+/// No output may follow an input before the rising edge.
 template <class Model, int WIDTH>
 void require_registered_outputs(const sim::SimulationOptions& options) {
   Random random(options.seed);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Bench of cchip_config_controller: memory, slots that behave as told, watchers of the sequence.
+/// Bench of cchip_config_controller: memory, slots that behave as told, monitors of the sequence.
 #ifndef CCHIP_TESTS_UNIT_SWAP_BENCH_HPP
 #define CCHIP_TESTS_UNIT_SWAP_BENCH_HPP
 
@@ -23,7 +23,7 @@ struct SlotBehaviour {
   int becomes = -1;     ///< module after a complete payload; < 0: the one it names
 };
 
-/// Slots and watchers. Throws where the sequence breaks a rule.
+/// Slots and monitors. Throws where the sequence breaks a rule.
 template <class Config>
 class SwapBench : public sim::Agent {
  public:
@@ -62,7 +62,7 @@ class SwapBench : public sim::Agent {
     return sim::get_bits(top().phase_clocks, 32 * (static_cast<int>(phase) - 1), 32);
   }
 
-  /// Writes a good bitstream to memory; the request for it.
+  /// Writes a good bitstream to memory; returns the request for it.
   SwapRequest load(int slot, ModuleId module_id, std::size_t payload_bytes, std::uint32_t address = 0x1000) {
     payload_ =
         make_payload(static_cast<std::uint8_t>(slot), module_id, payload_bytes, static_cast<std::uint32_t>(random_()));
@@ -76,7 +76,7 @@ class SwapBench : public sim::Agent {
   }
   const Bytes& payload() const { return payload_; }
 
-  /// Sends a request, does not wait.
+  /// Sends a request without waiting.
   void start(const SwapRequest& request) {
     if (phase() == SwapPhase::idle) {
       passed_.clear();
@@ -95,7 +95,7 @@ class SwapBench : public sim::Agent {
     start(request);
     return finish();
   }
-  /// A good swap must work, whatever was before.
+  /// A good swap must work, whatever happened before.
   void require_good_swap(int slot, ModuleId module_id, std::size_t bytes = 64) {
     const SwapRequest request = load(slot, module_id, bytes);
     behaviour(slot) = SlotBehaviour{};
@@ -182,7 +182,7 @@ class SwapBench : public sim::Agent {
     return sim::get_bits(port, i, 1) != 0;
   }
 
-  /// A word passes the port: only while its slot is shut.
+  /// A word passes the port, which is allowed only while its slot is shut.
   void pass(Model& m) {
     sim::require(passed_.empty() || clock_ - last_word_ >= static_cast<std::uint64_t>(Config::CFG_DIVIDER),
                  "the port is faster than its clock");

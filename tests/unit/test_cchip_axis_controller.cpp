@@ -11,9 +11,9 @@ using namespace cchip::test;
 
 namespace {
 
-/// The controller with a fake pipeline behind it: every beat comes back `latency` clocks later with a random
-/// verdict. Every output is compared with the model's on every clock; every result a second time with what the
-/// verdicts of its pair say, followed for each pair alone.
+/// The controller with a fake pipeline behind it: every beat comes back `latency` clocks later with a random verdict.
+/// Every output is compared with the model's on every clock. Every result is also compared with what the verdicts of
+/// its pair imply, tracked for each pair alone.
 template <class Config>
 class ControllerBench {
  public:
@@ -62,7 +62,7 @@ class ControllerBench {
     top.s_pair_err = static_cast<CData>(header_.err);
     header_ = {static_cast<std::uint16_t>(random_()), static_cast<PairMode>(mode),
                static_cast<int>(chance(random_, 50) ? 0 : random_() % 16)};
-    // the first context stands ready on the third clock after reset
+    // the first context is ready on the third clock after reset
     const bool may_send = !now.in_reset && now.clock > 1;
     const bool room = in_flight_.size() + (left_before_ + left_earlier_) < static_cast<std::size_t>(Config::CONTEXTS);
     top.s_pair_valid = pattern_.next() && room && may_send ? 1 : 0;
@@ -135,7 +135,7 @@ class ControllerBench {
   }
   using AxisBeat = model::AxisBeat;
 
-  /// A pair for itself: its beats come in the order of its programme.
+  /// A pair by itself: its beats come in the order of its programme.
   void follow(const model::ReturnedBeat& returned) {
     const auto found = in_flight_.find(returned.beat.context);
     sim::require(found != in_flight_.end() && !found->second.outcome, "a beat too many");
@@ -184,7 +184,7 @@ class ControllerBench {
   Bench bench_;
   model::PairHeader header_;
   std::map<std::size_t, Pair> in_flight_;  ///< by context, until its result
-  std::deque<std::size_t> done_;           ///< contexts decided, their results under way
+  std::deque<std::size_t> done_;           ///< decided contexts whose results are on their way
   std::map<std::size_t, int> used_;
   std::uint64_t sent_ = 0;
   std::optional<AxisBeat> allowed_;

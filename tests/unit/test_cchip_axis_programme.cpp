@@ -73,7 +73,7 @@ class Walk {
   }
 
  private:
-  /// One clock with this verdict; the one before it has nothing to say any more.
+  /// One clock with this verdict; the verdict before it has no more influence.
   void present(const model::Verdict& v, std::uint64_t bits, bool valid) {
     auto& top = simulation_.top();
     REQUIRE(top.m_outcome == 0);

@@ -56,7 +56,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_fetch: every word in order, never more 
           20000, "the words");
       REQUIRE(top.bus_error == 0);
       REQUIRE(top.timeout == 0);
-      sink.set_pattern(sim::Pattern::always());  // valid may drop when run does
+      sink.set_pattern(sim::Pattern::always());  // valid may drop when run drops
       top.run = 0;
       simulation.step();
       for (std::size_t i = 0; i < got.size(); ++i) {

@@ -32,7 +32,7 @@ int gap_of(const Task& task) {
   return std::max(a.first - b.second, b.first - a.second);
 }
 
-/// Boxes a chosen gap apart, either way round, every vertex in turn the nearest; then anything.
+/// Boxes a chosen gap apart, in either order, every vertex in turn the nearest; then arbitrary boxes.
 std::vector<Task> tasks(Random& random, const model::Shape& shape, int coord_w) {
   const int least = -(1 << (coord_w - 1));
   const int greatest = (1 << (coord_w - 1)) - 1;

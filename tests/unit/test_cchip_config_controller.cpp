@@ -23,7 +23,7 @@ void with_bench(Body&& body) {
   });
 }
 
-/// A slot that holds tri and is asked for quad by a bad header stays at work.
+/// A slot that holds tri keeps working when a bad header asks for quad.
 template <class Config>
 void require_header_refused(const BitstreamHeader& header, std::uint32_t size, SwapCode code) {
   with_bench<Config>([&](SwapBench<Config>& bench) {
@@ -319,7 +319,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: memory that stops, and its lat
       const bool at_work = beats < 4;
       if (at_work) bench.require_at_work(0, tri);
       if (!at_work) bench.require_shut(0);
-      // no other swap while beats are owed
+      // no other swap may start while beats are outstanding
       REQUIRE(bench.swap(request).code == SwapCode::memory);
       REQUIRE(bench.phases() == std::vector<SwapPhase>{SwapPhase::header, SwapPhase::report});
       bench.memory().resume();
@@ -370,8 +370,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: abort on every clock of a swap
       bench.simulation().steps(40);
       REQUIRE(bench.reports().size() == before + 1);
       const SwapCode code = bench.reports().back().code;
-      // an abort takes effect a clock later: the last clock of a phase belongs to the next one; a slot that decouples
-      // is waited for, that belongs to RESET
+      // an abort takes effect a clock later, so the last clock of a phase belongs to the next one; the wait for a
+      // decoupling slot belongs to RESET
       const SwapPhase last = bench.phases()[bench.phases().size() - 2];
       if (code == SwapCode::aborted) {
         REQUIRE(last <= SwapPhase::roc);
@@ -428,7 +428,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: a slot that never becomes quie
       REQUIRE(report.code == SwapCode::shutdown);
       REQUIRE(report.lost == 0);
       bench.require_at_work(0, tri);
-      REQUIRE(bench.phase_clocks(SwapPhase::shutdown) == limit + 2);  // what fails does so a clock later
+      REQUIRE(bench.phase_clocks(SwapPhase::shutdown) == limit + 2);  // a failure takes effect a clock later
       request.force = true;
       report = bench.swap(request);
       REQUIRE(report.code == SwapCode::ok);
@@ -515,7 +515,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: another module than the one as
     bench.behaviour().becomes = static_cast<int>(ModuleId::tri_quad);
     REQUIRE(bench.swap(request).code == SwapCode::wrong_module);
     bench.require_shut(0);
-    // garbage shows any number now and then
+    // garbage may show any number now and then
     bench.behaviour().spoilt = true;
     for (int i = 0; i < 300; ++i) REQUIRE(bench.swap(request).code == SwapCode::wrong_module);
     bench.require_shut(0);

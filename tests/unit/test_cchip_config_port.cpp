@@ -59,7 +59,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_port: bytes in order, in their slots, with
       REQUIRE(passed == bytes);
       REQUIRE(driver.waiting() == 0);
       REQUIRE(last == clock);
-      // first slot: begins a clock after the first word is there
+      // first slot: begins a clock after the first word has arrived
       REQUIRE(clock == first + divider * (bytes.size() * 8 / width + stalls));
       simulation.steps(1);
       REQUIRE(top.crc == crc32(bytes));

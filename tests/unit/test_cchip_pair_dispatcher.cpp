@@ -8,7 +8,8 @@ using namespace cchip::test;
 
 namespace {
 
-/// Heads of queues, slots and the way of refused pairs, at random; what is given to whom follows rules, not a model.
+/// Heads of queues, slots and the path of refused pairs, at random; rules, not a model, decide which slot may get which
+/// pair.
 template <class Config>
 class DispatcherBench {
  public:
@@ -84,7 +85,7 @@ class DispatcherBench {
       ++given[s][kind];
     }
     for (std::size_t k = 1; k < 4; ++k) {
-      // never two slots with one pair, and a slot that could take it does
+      // two slots must never get the same pair, and a slot that could take a pair must get it
       expect("pairs taken", taken[k], waits_[k] && ready_for[k] > 0 ? 1 : 0);
       if (ready_for[k] == 2 && waits_[k]) {
         ++both_ready;
@@ -116,7 +117,7 @@ class DispatcherBench {
     }
     expect("s_illegal_ready & valid", top().s_illegal_ready != 0 && waits_[0], taken[0] != 0);
     for (std::size_t k = 0; k < 4; ++k) waits_[k] = waits_[k] && taken[k] == 0;
-    // registered: what holds on the next clock
+    // registered: valid on the next clock
     unsigned works = 0;
     for (std::size_t s = 0; s < slots; ++s) {
       if (serves_[s] != 0) works |= 1U << (serves_[s] - 1);
@@ -144,7 +145,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pair_dispatcher: each pair once, to a slot of its
   for_two_power_ups([](const sim::SimulationOptions& options) {
     DispatcherBench<TestType> bench(options);
     bench.steps(20000);
-    for (const int count : bench.refused) REQUIRE(count > 300);  // in turn: none starves
+    for (const int count : bench.refused) REQUIRE(count > 300);  // in turn: no kind starves
     for (const auto& of_slot : bench.given) {
       REQUIRE(of_slot[0] == 0);
       for (std::size_t k = 1; k < 4; ++k) REQUIRE(of_slot[k] > 300);

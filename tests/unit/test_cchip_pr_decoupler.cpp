@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The boundary of a region: both streams as queues, everything else as it is written in the header of the RTL.
+// The boundary of a region: both streams as queues, everything else as the header of the RTL specifies.
 #include <cchip/model/reconfig.hpp>
 #include <models/cchip_pr_decoupler.hpp>
 
@@ -160,7 +160,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_decoupler: reset does not couple, decoupling d
     top.decouple = 0;
     simulation.step();
     REQUIRE(top.decoupled == 0);
-    // both streams stuck: the region takes nothing, the static side neither
+    // both streams stuck: neither the region nor the static side takes anything
     top.s_pair_valid = top.r_result_valid = 1;
     top.r_pair_ready = top.m_result_ready = 0;
     simulation.steps(10);
@@ -174,7 +174,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_decoupler: reset does not couple, decoupling d
     top.decouple = 0;
     top.s_pair_valid = top.r_result_valid = 0;
     top.r_pair_ready = top.m_result_ready = 1;
-    for (int clock = 0; clock < 20; ++clock) {  // nothing old comes back
+    for (int clock = 0; clock < 20; ++clock) {  // nothing old may come back
       simulation.step();
       REQUIRE(top.r_pair_valid == 0);
       REQUIRE(top.m_result_valid == 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A slot whose four modules are exchanged through the configuration port, and what shows when a step is left out.
+// A slot whose four modules are exchanged through the configuration port, and what happens when a step is left out.
 #include <cchip/model/reconfig.hpp>
 #include <models/cchip_pr_slot.hpp>
 #include <set>
@@ -134,7 +134,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: without decoupling, garbage of the trans
     bench.on_result = [&](const PairResult& r) { tags.insert(r.tag); };
     bench.during = [&] { numbers.insert(bench.top.rm_id); };
     bench.stop();
-    bench.hold_reset();  // a reset alone does not help
+    bench.hold_reset();  // a reset alone is not enough
     bench.transfer(bench.payload(ModuleId::tri_tri));
     REQUIRE(tags.size() > 4);
     REQUIRE(numbers.size() > 4);
@@ -239,7 +239,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: forced decoupling counts the pairs it lo
       bench.swap(ModuleId::quad_quad);
       REQUIRE(int{top.lost} == static_cast<int>(lost));  // until the next decoupling
       bench.steps(500);
-      bench.stop();  // those that waited outside
+      bench.stop();  // the pairs that waited outside
       top.stop = 0;
     }
     REQUIRE(counts.size() > 2);
@@ -256,7 +256,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: a reset neither couples nor configures, 
       bench.swap(id);
       for (int n = 0; n < 8; ++n) bench.driver.push(bench.requests.draw(id));
       bench.steps(60);
-      bench.simulation.reset(1);  // pairs inside are gone
+      bench.simulation.reset(1);  // pairs inside are lost
       bench.driver.clear();
       bench.scoreboard.clear();
       bench.accepted = bench.returned = 0;
@@ -266,7 +266,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: a reset neither couples nor configures, 
       REQUIRE(bench.returned == 0);
       bench.work(id, 10);
 
-      // in mid transfer: still decoupled, still garbage
+      // in the middle of a transfer: still decoupled, still garbage
       bench.stop();
       bench.decouple();
       bench.hold_reset();

@@ -49,7 +49,7 @@ class Region {
   sim::PairPort<Model> port;
 };
 
-/// What leaves the region during the second half of a transfer.
+/// What the region outputs during the second half of a transfer.
 template <class Config>
 std::vector<std::uint64_t> garbage(const sim::SimulationOptions& options) {
   Region<Config> region(options);

@@ -92,7 +92,7 @@ class RequestSource {
   unsigned tag_ = 0;
 };
 
-/// The answer by the functional model, without clocks; the rules that every answer obeys, whatever the model.
+/// The answer of the functional model, without clocks, and the rules that every answer obeys, whatever the model.
 PairResult answer(const PrimtestConfig& config, const PairRequest& request) {
   if (request.mode > directed) return {request.tag, true, true, false, {AxisClass::illegal, 0, 0}, 0};
   const PairResult r =
@@ -238,7 +238,7 @@ class ModuleBench {
   void steps(std::uint64_t clocks) {
     for (std::uint64_t i = 0; i < clocks; ++i) pins.step();
   }
-  /// Until everything that was pushed is accepted.
+  /// Steps until everything that was pushed is accepted.
   void run_accepted() {
     const std::uint64_t most = driver.waiting() * 5000 + bound_;
     for (std::uint64_t i = 0; driver.waiting() != 0; ++i) {
@@ -246,7 +246,7 @@ class ModuleBench {
       pins.step();
     }
   }
-  /// Until everything is answered.
+  /// Steps until everything is answered.
   void run() {
     const std::uint64_t most = (driver.waiting() + rules.in_flight()) * 5000 + bound_;
     for (std::uint64_t i = 0; driver.waiting() != 0 || rules.in_flight() != 0; ++i) {
@@ -318,7 +318,7 @@ void check_every_clock(const PrimtestConfig& config) {
         while (bench.driver.waiting() < 12) bench.driver.push(requests.draw());
         bench.run();
         REQUIRE(bench.rules.returned() >= 12);
-        bench.steps(50);  // nothing comes after the last answer
+        bench.steps(50);  // nothing may come after the last answer
       }
     }
   });
@@ -439,13 +439,13 @@ void check_drain(const PrimtestConfig& config) {
       REQUIRE(bench.rules.accepted() == contexts);
       REQUIRE(bench.rules.returned() == 0);
       REQUIRE_FALSE(bench.pins.outputs().idle);
-      // every verdict is there: one result per clock
+      // every verdict has arrived: one result per clock
       bench.sink.set_pattern(sim::Pattern::always());
       bench.steps(contexts);
       REQUIRE(bench.rules.returned() >= contexts);
       bench.run();
     }
-    // the pair with the most beats, as often as the module holds it
+    // the pair with the most beats, as many times as the module has places
     PairRequest worst = requests.draw_legal(exhaustive);
     int most = answer(config, worst).beats;
     for (int i = 0; i < 1000; ++i) {
@@ -485,7 +485,7 @@ void check_registered_outputs(const PrimtestConfig& config) {
                       sim::Pattern::random(0.3, options.seed));
     PrimtestPins& pins = bench.pins;
     int seen_valid = 0;
-    // after driver and sink have set the inputs of a clock: other inputs, then theirs again
+    // after driver and sink have set the inputs of a clock: sets other inputs, then the original ones again
     Bench toggler([](const sim::ClockInfo&) {},
                   [&](const sim::ClockInfo& now) {
                     if (now.in_reset) return;
@@ -520,7 +520,7 @@ void check_no_old_tags(const PrimtestConfig& config) {
   for_two_power_ups([&](const sim::SimulationOptions& options) {
     RequestSource requests(config, options.seed);
     ModuleBench bench(config, options);
-    // a sender that is not in reset itself: what it offers on these clocks is not accepted
+    // a sender that is not itself in reset: what it offers on these clocks must not be accepted
     Bench careless(
         [&](const sim::ClockInfo& now) {
           if (now.in_reset) bench.pins.s_pair_valid() = 1;
@@ -532,7 +532,7 @@ void check_no_old_tags(const PrimtestConfig& config) {
       for (int i = 0; i < 8; ++i) bench.driver.push(requests.draw());
       bench.steps(moment);
       bench.driver.clear();
-      bench.pins.reset(1);  // the scoreboard forgets: any result from before is an error
+      bench.pins.reset(1);  // the scoreboard forgets: any earlier result is an error
       bench.steps(moment % 2 == 0 ? 120 : 0);
       bench.driver.push(requests.draw());
       bench.run();

@@ -79,7 +79,7 @@ class RequestSource {
   unsigned tag_ = 0;
 };
 
-/// A result with what happened on its way. Clocks of handshakes.
+/// A result and its history. Clocks of handshakes.
 struct Returned {
   std::uint16_t tag;
   std::size_t lane;
@@ -114,13 +114,13 @@ class ArrayBench {
   void push(const PairRequest& request) { driver.push(request); }
   void steps(std::uint64_t clocks) { simulation.steps(clocks); }
   std::uint64_t in_flight() const { return accepted_ - results.size(); }
-  /// Until everything is answered.
+  /// Steps until everything is answered.
   void run() {
     const std::uint64_t most = (driver.waiting() + in_flight()) * 6000 + 10000;
     simulation.run_until([this] { return driver.waiting() == 0 && in_flight() == 0; }, most, "all answers");
     scoreboard_.finish();
   }
-  /// rst = 1; the next pair is a pair of lane 0 again.
+  /// rst = 1; afterwards the next pair goes to lane 0 again.
   void reset(int clocks) {
     driver.clear();
     simulation.reset(clocks);
@@ -145,7 +145,7 @@ class ArrayBench {
   struct Lane {
     std::uint64_t accepted = 0;
     std::uint64_t returned = 0;
-    std::uint64_t passed_over = 0;  ///< pairs that others got while it had a place
+    std::uint64_t passed_over = 0;  ///< pairs that other lanes got while it had a place
   };
   struct Pair {
     std::size_t lane;
@@ -249,7 +249,7 @@ CCHIP_CASE("every tag once with the answer of the model, ready and idle on every
         for (int i = 0; i < 12; ++i) bench.push(requests.draw());
         bench.run();
         REQUIRE(bench.results.size() == 12);
-        bench.steps(50);  // nothing comes after the last answer
+        bench.steps(50);  // nothing may come after the last answer
       }
     }
   });
@@ -334,8 +334,8 @@ CCHIP_CASE("lanes work at the same time") {
     for (std::uint64_t i = 0; i < per_lane * Array::lanes; ++i) bench.push(requests.draw_plain());
     bench.run();
     const std::uint64_t clocks = bench.results.back().returned - bench.results.front().accepted;
-    // as long as one lane needs for its own pairs, the last lane starting last; with too few places the lane waits
-    // for them, but never for another lane
+    // the time that one lane needs for its own pairs, the last lane starting last; with too few places a lane waits for
+    // them, but never for another lane
     const std::uint64_t busy = (per_lane - 1) * beats;
     const std::uint64_t waiting = (per_lane - 1) / TestType::CONTEXTS * (latency + defs::array_place_latency());
     if (busy >= waiting + latency) {
@@ -359,7 +359,7 @@ CCHIP_CASE("full of results they leave in turn") {
       REQUIRE(bench.in_flight() == Array::capacity);
       bench.sink.set_pattern(back_pressure);
       bench.run();
-      // results of each lane since the last one of this lane: it came to the head of its lane later than that
+      // results of each lane since the last one of this lane, whose next result became ready later than that
       std::array<std::array<int, Array::lanes>, Array::lanes> since{};
       std::array<bool, Array::lanes> seen{};
       for (const Returned& r : bench.results) {
@@ -367,7 +367,7 @@ CCHIP_CASE("full of results they leave in turn") {
         if (seen[r.lane]) {
           INFO("lane " << r.lane << ", " << back_pressure.name());
           const auto own = others.begin() + static_cast<std::ptrdiff_t>(r.lane);
-          // one of its own for at most one of each lane before
+          // every lane before this one got at most one result per result of this lane
           REQUIRE(std::accumulate(others.begin(), own, 0) <= static_cast<int>(r.lane));
           REQUIRE(std::accumulate(others.begin(), others.end(), 0) <= defs::array_wait_bound(TestType::LANES));
         }
@@ -375,7 +375,7 @@ CCHIP_CASE("full of results they leave in turn") {
         others.fill(0);
         for (std::size_t lane = 0; lane < Array::lanes; ++lane) since[lane][r.lane] += lane == r.lane ? 0 : 1;
       }
-      // what is left when all ways are full leaves in equal shares
+      // the results that leave while all paths are full are shared equally
       constexpr std::size_t on_the_way = 4 * Array::lanes;
       constexpr std::size_t each = TestType::CONTEXTS / 3;
       if constexpr (each * Array::lanes + on_the_way <= Array::capacity) {
@@ -445,7 +445,7 @@ CCHIP_CASE("drains within its bound, keeps all results without ready") {
       REQUIRE(bench.in_flight() == Array::capacity);
       REQUIRE(bench.driver.waiting() == 10);
       bench.sink.set_pattern(sim::Pattern::always());
-      bench.steps(Array::capacity);  // every verdict is there: one result per clock
+      bench.steps(Array::capacity);  // every verdict has arrived: one result per clock
       REQUIRE(bench.results.size() >= Array::capacity);
       bench.run();
     }
@@ -475,7 +475,7 @@ CCHIP_CASE("no old tag after reset, whenever it comes") {
   for_two_power_ups([](const sim::SimulationOptions& options) {
     RequestSource<TestType> requests(options.seed);
     ArrayBench<TestType> bench(options);
-    // a sender that is not in reset itself: what it offers on these clocks is not accepted
+    // a sender that is not itself in reset: what it offers on these clocks must not be accepted
     Bench careless(
         [&](const sim::ClockInfo& now) {
           if (now.in_reset) bench.simulation->s_pair_valid = 1;
@@ -487,7 +487,7 @@ CCHIP_CASE("no old tag after reset, whenever it comes") {
     for (std::uint64_t moment = 1; moment < moments; ++moment) {  // a pair or several at every place of the array
       for (int i = 0; i < 16; ++i) bench.push(requests.draw());
       bench.steps(moment);
-      bench.reset(moment % 3 == 0 ? 2 : 1);  // the scoreboard forgets: any result from before is an error
+      bench.reset(moment % 3 == 0 ? 2 : 1);  // the scoreboard forgets: any earlier result is an error
       bench.steps(moment % 2 == 0 ? 120 : moment % 5);
       bench.push(requests.draw());
       bench.run();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subsystem as a whole: every tag is answered once and right, whatever happens to the swaps; each fault has its
-// code and leaves the slot as documented. Answers come from the exact oracle and the model of the tests.
+// The subsystem as a whole: every tag is answered once and correctly, whatever happens to the swaps; each fault has its
+// code and leaves the slot in the documented state. Answers come from the exact oracle and the model of the tests.
 #include <catch2/catch.hpp>
 #include <cchip/sim/wave_on_failure.hpp>
 
@@ -158,7 +158,7 @@ CCHIP_CASE("spoilt bitstreams: code, slot at work or decoupled, valid bit gone, 
         REQUIRE((report & regs::report::slot_mask) >> regs::report::slot_shift == static_cast<std::uint32_t>(slot));
         REQUIRE((report & regs::report::module_id_mask) >> regs::report::module_id_shift ==
                 static_cast<std::uint32_t>(module_id));
-        REQUIRE(s.swap(slot, module_id).code == SwapCode::request);  // its bitstream is forgotten
+        REQUIRE(s.swap(slot, module_id).code == SwapCode::request);  // its bitstream is removed
         s.works();
       }
     }
@@ -191,7 +191,7 @@ CCHIP_CASE("memory: an error, an address without memory, no answer") {
         s.steps(4);
         if (moment == 0) REQUIRE(s.module_in(0) == before);
         if (moment == 1) REQUIRE(s.decoupled(0));
-        s.works();  // beats that come late are nobody's
+        s.works();  // late beats belong to no burst
       }
     }
   });
@@ -264,7 +264,7 @@ CCHIP_CASE("abort in each phase: at work with the former module, decoupled, or t
       s.collect();
       REQUIRE(s.module_in(0) == (report->code == SwapCode::ok ? 2 : s.decoupled(0) ? 0 : 1));
       if (report->code == SwapCode::aborted) {
-        REQUIRE(s.read(regs::bitstream_valid::offset(2)) == 1);  // nothing wrong with it
+        REQUIRE(s.read(regs::bitstream_valid::offset(2)) == 1);  // it has no defect
       }
       s.works();
     }
@@ -307,7 +307,7 @@ CCHIP_CASE("blank slots asked to work: pairs wait for a bitstream, or are answer
     s.write(regs::interrupt_status::offset, 0x1F);
     s.push_some(10);
     s.steps(2000);
-    REQUIRE(s.account.pairs == 0);  // the scheduler is off, bitstreams are there
+    REQUIRE(s.account.pairs == 0);  // the scheduler is off, bitstreams are loaded
     for (int slot = 0; slot < TestType::SLOTS; ++slot) {
       for (int m = 1; m < 4; ++m) s.write(regs::bitstream_valid::offset(s.entry(slot, m)), 0);
     }

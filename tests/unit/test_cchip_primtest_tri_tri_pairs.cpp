@@ -161,7 +161,7 @@ TEST_CASE("A quad module with V3 = V2 answers as the triangle module",
 
 namespace {
 
-/// The same pair written in another way; `change` maps points.
+/// The same pair written differently; `change` maps points.
 template <class Change>
 GridPair mapped(const GridPair& pair, Change change) {
   GridPair result = pair;

@@ -63,7 +63,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_result_merge: every output on every clock is the 
             [&](const sim::ClockInfo&) {
               for (int i = 0; i < sources; ++i) {
                 const bool offers = (valid >> i & 1U) != 0;
-                if (offers && !chance(random, 2)) continue;  // now and then an offer is taken back
+                if (offers && !chance(random, 2)) continue;  // now and then an offer is withdrawn
                 valid &= ~(1U << i);
                 if (!chance(random, percent)) continue;
                 valid |= 1U << i;

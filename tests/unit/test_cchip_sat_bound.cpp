@@ -9,7 +9,7 @@ using namespace cchip::test;
 
 namespace {
 
-/// What stage 1 hands on, and the error.
+/// Outputs of stage 1, and the error.
 struct Task {
   model::Selection selection;
   int error_shift = 0;

@@ -8,7 +8,7 @@ using namespace cchip::test;
 
 namespace {
 
-/// What goes in on one clock; nothing on clocks without a valid beat.
+/// The inputs on one clock; nothing on clocks without a valid beat.
 struct BeatIn {
   std::uint64_t user = 0;
   model::AxisBeat beat;
@@ -83,7 +83,7 @@ class PipelineBench {
   }
 
   sim::Simulation<Model>& simulation() { return simulation_; }
-  /// Beats to send, one on every clock that has its turn.
+  /// Beats to send, one on every clock on which one is due.
   std::function<std::optional<BeatIn>()> source;
   /// Called for each verdict after it was compared.
   std::function<void(const BeatIn&, const model::Verdict&)> on_verdict = [](const BeatIn&, const model::Verdict&) {};

@@ -8,7 +8,7 @@ using namespace cchip::test;
 
 namespace {
 
-/// What stages 1 and 2 hand on: the axis is the cross product of two edges.
+/// Outputs of stages 1 and 2: the axis is the cross product of two edges.
 struct Task {
   model::Selection selection;
   model::Axis axis;

@@ -163,7 +163,7 @@ TEST_CASE("cchip_subsystem_regs: what hardware writes is read, and nothing is wh
         REQUIRE(read(r::phase_clocks::offset(i)) ==
                 sim::get_bits(top.hwif_in_phase_clocks_value, static_cast<int>(32 * i), 32));
       }
-      // the high word is that of the low word's reading
+      // the high word must be the one of the moment at which the low word was read
       for (std::uint32_t i = 0; i < r::pairs::count; ++i) {
         const std::uint64_t value = sim::get_bits(top.hwif_in_pairs_value, static_cast<int>(64 * i), 64);
         REQUIRE(read(r::pairs::offset(i)) == (value & 0xFFFFFFFF));
@@ -171,7 +171,7 @@ TEST_CASE("cchip_subsystem_regs: what hardware writes is read, and nothing is wh
         REQUIRE(read(r::pairs::offset(i) + 4) == value >> 32);
       }
     }
-    // what cannot be written, and where nothing is
+    // read-only registers, and addresses without a register
     for (const std::uint32_t offset : {r::id::offset, r::report::offset, r::pairs::offset(0)}) {
       REQUIRE(!master.write(simulation, offset, 1));
       REQUIRE(master.read(simulation, offset).ok);
@@ -237,7 +237,7 @@ TEST_CASE("cchip_subsystem_regs: events stay until they are cleared and are neve
       status |= 1U << i;
       REQUIRE(master.read(simulation, r::interrupt_status::offset).data == status);
       const auto clear = static_cast<std::uint32_t>(random());
-      // an event on the clock of the write stays: events on every clock of the write
+      // an event on the clock of the write is not lost: events on every clock of the write
       const bool again = chance(random, 30);
       *events[i] = again ? 1 : 0;
       REQUIRE(master.write(simulation, r::interrupt_status::offset, clear));

@@ -11,7 +11,7 @@ using namespace cchip::test;
 
 namespace {
 
-/// Inputs as plain numbers; what leaves is collected.
+/// Inputs as plain numbers; collects the outputs.
 template <class Config>
 class SchedulerBench {
  public:
@@ -154,9 +154,9 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
         }
         bench.taken = 0;
       }
-      bench.steps(4);  // until it has seen all that
+      bench.steps(4);  // until it has seen all of this
       const std::uint64_t now = bench.simulation.clock();
-      // what the rules say
+      // the decision by the rules
       std::optional<std::tuple<bool, std::uint64_t>> best;  // of the kinds: too old, then age or pairs
       std::size_t best_slot = 0;
       int best_kind = 0;
@@ -258,7 +258,7 @@ CCHIP_CASE("commands: passed on, busy, no such bitstream") {
     REQUIRE(bench.told.size() == 1);
     REQUIRE(bench.told[0].code == SwapCode::busy);
     REQUIRE(bench.told[0].module_id == 2);
-    // refused on the clock of a report: both are told
+    // refused on the clock of a report: both are reported
     bench.report_now({slots - 1, 3, SwapCode::ok, 0});
     bench.command(0, 2, false);
     bench.steps(3);
@@ -298,7 +298,7 @@ CCHIP_CASE("a kind has no provider after 16 clocks without slot, bitstream and s
     bench.valid |= 8;
     bench.steps(2);
     REQUIRE(bench.no_provider == 0);
-    bench.command(0, 3, false);  // a swap brings it, though its bitstream is forgotten meanwhile
+    bench.command(0, 3, false);  // a swap provides it, though its bitstream is removed meanwhile
     bench.valid &= ~8U;
     bench.steps(40);
     REQUIRE(bench.no_provider == 0);
@@ -361,7 +361,7 @@ CCHIP_CASE("no kind starves under full load, and every turn serves pairs") {
           }
         };
         bench.steps(60000);
-        // it becomes too old, the swap under way ends, a slot settles, one older kind goes first
+        // the kind becomes too old, the present swap ends, a slot settles, one older kind goes first
         const std::uint64_t turn = static_cast<std::uint64_t>(swap_clocks) + 40 + std::max<std::uint64_t>(age, 1024);
         const std::uint64_t bound = age + 3 * turn;
         for (std::size_t kind = 1; kind < 4; ++kind) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The harness finds what it is there to find, on a module that breaks one rule at a time.
+// The harness must find the defects that it looks for, on a module that breaks one rule at a time.
 #include <Vbad_stream.h>
 
 #include <catch2/catch.hpp>

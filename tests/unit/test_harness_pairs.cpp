@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pair streams and the engine `rtl`: that they carry what they are given. What the hardware answers is the
-// subject of test_cchip_primtest_tri_tri.cpp.
+// Pair streams and the engine `rtl`: they must carry what they are given. test_cchip_primtest_tri_tri.cpp checks the
+// answers of the hardware.
 #include <catch2/catch.hpp>
 #include <cchip/rtl/pair_port.hpp>
 #include <cchip/rtl/rtl_engine.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every signal of the GTKWave layout is in the waveform that it belongs to.
+// Every signal of the GTKWave layout must be in the waveform that it belongs to.
 #include <gtkwave/fstapi.h>
 
 #include <catch2/catch.hpp>

@@ -8,7 +8,7 @@
 namespace cchip::bvh {
 namespace {
 
-constexpr int unit_bits = 24;  // boxes are reckoned in 2^-24 of the object's unit
+constexpr int unit_bits = 24;  // boxes are computed in 2^-24 of the object's unit
 
 struct Frame {
   Vec3d centre = Vec3d::Zero();

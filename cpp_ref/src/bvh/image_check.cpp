@@ -16,8 +16,8 @@ void check_range(std::size_t line, const Field& field, std::int64_t value, std::
   fail(line, field.name, std::to_string(value) + " is not in " + std::to_string(least) + ".." + std::to_string(most));
 }
 
-/// What a line decodes to must encode to the same line: bits without a field, and fields of children and vertices that
-/// are not there, are 0.
+/// Decoding and encoding a line must give the same line: bits without a field, and the fields of absent children and
+/// vertices, must be 0.
 void check_reserved(std::size_t number, const Line& line, const Line& again) {
   if (line != again) fail(number, "reserved", "a bit that has no meaning here is not 0");
 }
@@ -68,7 +68,7 @@ class Checker {
     check_range(0, f::exponent, header_.exponent, -exponent_max, exponent_max);
     check_range(0, f::root, header_.root, 1, header_.lines - 1);
     check_range(0, f::depth, header_.depth, 2, tree_depth_max);
-    // A file must not make us allocate more than its own size deserves.
+    // The counts decide how much is allocated, so they must be bounded by the size of the file.
     check_range(0, f::triangles, header_.triangles, 0, 2 * std::int64_t{header_.lines});
     check_range(0, f::quads, header_.quads, 0, header_.lines);
     if (header_.has_triangles != (header_.triangles > 0) || header_.has_quads != (header_.quads > 0)) {

@@ -106,8 +106,9 @@ std::optional<Query> make_ordered(const HeaderLine& a, const Eigen::Affine3d& po
   for (const Vector& row : map->linear) {
     for (const Interval& x : row) greatest = std::max({greatest, std::abs(x.least), std::abs(x.greatest)});
   }
-  // The greatest shift at which M 2^-shift with |M_ij| <= 1 holds the linear part, less where M does not fit otherwise.
-  // With half of the greatest |M_ij| M would lose a bit: that much is allowed at the limit of shift, not more.
+  // The greatest shift at which M 2^-shift with |M_ij| <= 1 represents the linear part, less if M does not fit
+  // otherwise. If the greatest |M_ij| is below one half, M loses a bit: this much is allowed at the limit of shift, not
+  // more.
   if (greatest < std::ldexp(0.5, -query_shift_max)) return std::nullopt;
   Query query;
   query.shift = std::min(query_shift_max, -std::ilogb(greatest));
@@ -132,7 +133,7 @@ std::optional<Query> make_ordered(const HeaderLine& a, const Eigen::Affine3d& po
     row /= 2;  // |u_j| <= 1/2
     double offset = nearest(map->offset[i], query_t_fraction);
     if (std::abs(offset) > 0x1p34) {
-      // |M 2^-shift u| < 1, so A, this far away, cannot reach B: any |t_i| >= 4 tells the chip so.
+      // |M 2^-shift u| < 1, so A cannot reach B from this far away. Any |t_i| >= 4 says so to the chip.
       offset = std::copysign(0x1p34, offset);
     } else {
       row = sum_up(row, distance(map->offset[i], offset, query_t_fraction));

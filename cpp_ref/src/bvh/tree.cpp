@@ -26,7 +26,7 @@ struct Box {
   }
 };
 
-/// A face while its place in the order is sought.
+/// A face that is being sorted.
 struct Item {
   Box box;
   Vec3d centre;
@@ -108,8 +108,8 @@ class Builder {
     const Item& p = items_[node.first];
     const Item& q = items_[node.first + 1];
     if (node.count > 2 || p.kind != Kind::tri || q.kind != Kind::tri) return false;
-    // Cost of one leaf: both triangles are tested where the node is met. Of two: the node is visited, and each
-    // triangle is tested where its own box is met. The chance to meet a box grows with its surface.
+    // Cost of one leaf: both triangles are tested where the node is met. Cost of two leaves: the node is visited, and
+    // each triangle is tested where its own box is met. The chance to meet a box grows with its surface.
     const double area = node.box.area();
     return options_.visit_cost > 0 && 2 * area <= options_.visit_cost * area + p.box.area() + q.box.area();
   }

@@ -19,7 +19,7 @@ namespace {
 /// Images of the objects that were asked for last.
 class ImageCache {
  public:
-  /// The image of an object, made if it is not here; null if the object is too large for one. Valid until `most` other
+  /// The image of an object, made if it is not kept; null if the object is too large for one. Valid until `most` other
   /// objects were asked for.
   const bvh::Image* of(const Object& object) {
     const auto found =

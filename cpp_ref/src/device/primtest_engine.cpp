@@ -182,7 +182,7 @@ class PrimtestEngine : public PairEngine {
     }
   }
 
-  /// The tag is the place in the batch modulo 2^16; fewer pairs are inside, so it is unique there.
+  /// The tag is the place in the batch modulo 2^16. Fewer pairs are in flight, so it is unique among them.
   static void offer(PrimtestMachine& machine, const Batch& batch, std::size_t n) {
     if (n == batch.size()) {
       machine.offer(std::nullopt);

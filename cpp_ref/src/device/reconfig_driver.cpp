@@ -12,7 +12,7 @@ namespace regs = registers;
 constexpr std::size_t tags = std::size_t{1} << defs::tag_w;
 constexpr std::size_t nobody = ~std::size_t{0};
 constexpr std::uint32_t swap_events = regs::interrupt_status::done_mask | regs::interrupt_status::error_mask;
-/// After the last answer the driver goes on for so long: an answer too many would come now.
+/// The driver goes on for this long after the last answer, to catch a surplus answer.
 constexpr int epilogue = 1000;
 
 class Run {

@@ -8,7 +8,7 @@
 
 namespace cchip::exact {
 
-/// Stands for a real number x with |x - value| <= error. Error 0 means that x is a double, and stays 0 through every
+/// Represents a real number x with |x - value| <= error. Error 0 means that x is a double, and stays 0 through every
 /// operation whose result is a double again, so that whole numbers of moderate size are decided here. An overflow
 /// leaves an error that is infinite or NaN. docs/collide.md derives the bounds.
 class Filter {
@@ -17,8 +17,8 @@ class Filter {
   Filter(double value) : value_(value) {}
   Filter(double value, double error) : value_(value), error_(error) {}
 
-  /// True if some sign since the last call of reset() could not be told: then every answer derived from signs since is
-  /// worth nothing. One flag for each thread.
+  /// True if a sign since the last call of reset() could not be decided. Every answer derived from signs since then is
+  /// invalid. One flag for each thread.
   static bool gave_up() { return gave_up_; }
   static void reset() { gave_up_ = false; }
 

@@ -36,8 +36,8 @@ double greatest_component(const Primitive& p) {
   return greatest;
 }
 
-/// True only if the intervals on the axis are disjoint, by more than rounding can explain. The axis is taken as it is:
-/// any will do.
+/// True only if the intervals on the axis are disjoint, by more than rounding can explain. The axis itself needs no
+/// error bound: any axis is valid.
 bool separates(const Vec3d& axis, const Rounded& r) {
   const double size = axis.cwiseAbs().sum();
   if (!(size * r.greatest < 0x1p1000)) return false;  // a projection might overflow

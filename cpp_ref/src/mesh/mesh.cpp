@@ -27,7 +27,7 @@ bool overlap(const Box& p, const Box& q) {
   return (p.least.array() <= q.greatest.array()).all() && (q.least.array() <= p.greatest.array()).all();
 }
 
-/// Faces of one mesh in the order in which a sweep along x meets them, and those it is in.
+/// Faces of one mesh in the order in which a sweep along x meets them, and those that it is in now.
 class Sweep {
  public:
   explicit Sweep(const Mesh& mesh) : boxes_(face_boxes(mesh)), order_(boxes_.size()) {

@@ -29,7 +29,7 @@ std::string read_file(const std::string& path) {
   return content.str();
 }
 
-/// The reader for a name's end; for others the one whose first word the file has; else nothing.
+/// The reader for the extension of a name, or else the one whose first word begins the file, or else nothing.
 Reader reader_of(const std::string& path, std::string_view file) {
   std::string end = std::filesystem::path(path).extension();
   std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -44,7 +44,7 @@ Reader reader_of(const std::string& path, std::string_view file) {
   return nullptr;
 }
 
-/// Takes polygons of a file one by one into a mesh.
+/// Adds the polygons of a file to a mesh one by one.
 class Builder {
  public:
   Builder(PolygonSoup soup, FaceKinds kinds) : soup_(std::move(soup)), kinds_(kinds) {}

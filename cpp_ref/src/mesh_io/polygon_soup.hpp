@@ -35,7 +35,7 @@ struct PolygonSoup {
   void add_point(const Vec3d& point, std::size_t line);
   /// \throws FormatError the number is below 0 or does not fit in 32 bits
   void add_corner(double number, std::size_t line);
-  /// The corners since the last polygon become one.
+  /// Makes one polygon of the corners since the last polygon.
   /// \throws FormatError there are fewer than three
   void end_polygon(std::size_t line);
 };

@@ -12,7 +12,7 @@ bool take(std::string_view& text, std::string_view prefix) {
   return there;
 }
 
-/// Reads "OFF" with its prefixes; what they announce stands behind the coordinates and is left out.
+/// Reads "OFF" with its prefixes. The values that they announce follow the coordinates and are ignored.
 void check_keyword(std::string_view word, std::size_t line) {
   for (const char* const prefix : {"ST", "C", "N"}) take(word, prefix);
   if (take(word, "4") | take(word, "n")) throw FormatError("coordinates other than x, y, z are not read", line);

@@ -73,7 +73,7 @@ Property to_property(const std::vector<std::string_view>& words, std::size_t lin
   throw FormatError("the property is not complete", line);
 }
 
-/// Takes one line off the front of the file; the last one need not have an end.
+/// Takes one line off the front of the file; the last one need not end with a line break.
 std::string_view take_line(std::string_view& file) {
   const std::string_view line = file.substr(0, file.find('\n'));
   file.remove_prefix(std::min(line.size() + 1, file.size()));
@@ -104,7 +104,7 @@ Header take_header(std::string_view& file) {
       return header;
     } else if (words[0] == "format" || words[0] == "element" || words[0] == "property" || words[0] == "end_header") {
       throw FormatError("the line is not complete or stands in a wrong place", header.lines);
-    }  // others are comments, with or without the word for it
+    }  // others are comments, with or without the keyword
   }
   throw FormatError("the file ends within the header", header.lines);
 }

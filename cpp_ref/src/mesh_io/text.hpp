@@ -46,7 +46,7 @@ class Words {
   explicit Words(std::string_view text, std::size_t lines_before = 0) : lines_(text, {}), before_(lines_before) {}
   /// The next word; empty at the end of the text.
   std::string_view next();
-  /// Leaves the rest of the present line out.
+  /// Skips the rest of the present line.
   void skip_line() { next_ = lines_.words().size(); }
   /// Line of the last word.
   std::size_t line() const { return before_ + lines_.number(); }
@@ -61,7 +61,7 @@ class Words {
 /// \throws FormatError the word is not a number as a whole
 double to_number(std::string_view word, std::size_t line);
 /// A count from 0 to 2^53.
-/// \throws FormatError it is none
+/// \throws FormatError it is not such a count
 std::size_t to_count(std::string_view word, std::size_t line);
 
 }  // namespace cchip::mesh_io

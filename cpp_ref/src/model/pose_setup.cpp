@@ -26,7 +26,7 @@ Found find(const Components& d) {
     if (d[0] == e[0] && d[1] == e[1] && d[2] == e[2]) return {k, false};
     if (d[0] == -e[0] && d[1] == -e[1] && d[2] == -e[2]) return {k, true};
   }
-  return {0, false};  // not reached: every vector of -1, 0, 1 but 0 is there
+  return {0, false};  // not reached: every nonzero vector of -1, 0, 1 is in the table
 }
 
 DirectionSetup direction_of(const PoseSetup& pose, const std::array<int, 3>& d) {

@@ -87,7 +87,7 @@ Selection sat_select(const Shape& shape, const AxisCode& code, const GridPrimiti
     return s;
   }
   for (std::size_t j = 0; j < m; ++j) s.points[slots - m + j] = other.v[j];
-  if (slots > m) s.points[0] = other.v[0];  // a slot too many repeats a point
+  if (slots > m) s.points[0] = other.v[0];  // a surplus slot repeats a point
   if (code.cls == AxisClass::in_plane_a || code.cls == AxisClass::in_plane_b) {
     const EdgeOf e = edge_of(n, code.k);
     s.e_from = own.v[e.from];

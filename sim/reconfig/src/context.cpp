@@ -13,7 +13,7 @@ using sc_core::SC_ZERO_TIME;
 
 namespace {
 
-/// Does something at the end of its scope, also if the process is cancelled there.
+/// Runs something at the end of its scope, also if the process is cancelled there.
 template <class F>
 class at_exit {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Small closed modules, bound to their channels directly or through portals, and what drives them.
+/// Small closed modules, bound to their channels directly or through portals, and their drivers.
 #ifndef CCHIP_BENCH_RIGS_HPP
 #define CCHIP_BENCH_RIGS_HPP
 
@@ -214,7 +214,8 @@ class FifoRig : public Rig {
 
 // ---- exchanges
 
-/// Two modules take turns behind the same portals; a value and its answer after each exchange prove that it is there.
+/// Two modules take turns behind the same portals; a value and its answer after each exchange prove that the new one
+/// works.
 template <class M>
 class SwapRig : public Rig {
  protected:

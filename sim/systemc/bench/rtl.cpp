@@ -37,7 +37,7 @@ TimedResult run_timed(RunLevel run, const Stimulus& stimulus) {
   return {std::move(result), seconds};
 }
 
-/// Runs of both in turn, each in a process of its own. Returns whether all answers agree.
+/// Runs of both in turn, each in its own process. Returns whether all answers agree.
 bool compare(const char* name, RunLevel direct, RunLevel portals, std::size_t pairs, unsigned rounds) {
   const Stimulus stimulus = generate({pairs, 1, sim::seed_from_environment()});
   std::vector<double> ratios, direct_us, portal_us;

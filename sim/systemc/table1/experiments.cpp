@@ -41,7 +41,7 @@ std::vector<Row> rows() {
   return list;
 }
 
-/// A pair whose test is there already, then a swap for each pair.
+/// A pair whose test is loaded already, then a swap for each pair.
 constexpr unsigned sweep_swaps = 6;
 
 Job sweep_job(const sc_time& work) {
@@ -54,7 +54,7 @@ Job sweep_job(const sc_time& work) {
 /// From the first answer on: as many swaps as pairs.
 sc_time steady(const JobResult& result) { return result.answers.back() - result.answers.front(); }
 
-/// What the row or curve is called in an error.
+/// Name of the row or curve in an error message.
 void expect_loads(const JobResult& result, unsigned loads, const std::string& what) {
   if (result.loads != loads) {
     throw std::runtime_error(fmt::format("{}: {} loads instead of {}", what, result.loads, loads));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Table 1 of the paper, variants of it, and overhead against work per swap: what is simulated and what came out.
+/// Table 1 of the paper, variants of it, and overhead against work per swap: what is simulated and the results.
 #ifndef CCHIP_TABLE1_EXPERIMENTS_HPP
 #define CCHIP_TABLE1_EXPERIMENTS_HPP
 
@@ -21,7 +21,7 @@ struct Row {
   std::string name;
   Platform platform;
   sc_core::sc_time counted;  ///< run time with the first configuration
-  sc_core::sc_time loaded;   ///< without: the triangle test is there from the beginning
+  sc_core::sc_time loaded;   ///< run time without it: the triangle test is loaded from the beginning
 };
 
 /// One point of the curves: object pairs of three kinds in turn, a swap each; data are not transmitted.

@@ -14,7 +14,7 @@ namespace {
 
 using sc_core::sc_time;
 
-/// Stands for a primitive test: takes the work of an object pair, works, answers. Knows nothing of reconfiguration.
+/// Represents a primitive test: takes the work of an object pair, works, answers. Knows nothing of reconfiguration.
 class TimedTest : public sc_core::sc_module {
  public:
   sc_core::sc_fifo_in<sc_time> work{"work"};
@@ -46,7 +46,7 @@ class Stations : public sc_core::sc_module {
   virtual void request(std::size_t index, std::size_t kind) = 0;
   /// Waits until that test can work.
   virtual Channels& ready(std::size_t index, std::size_t kind) = 0;
-  /// Forgets all that is loaded.
+  /// Forgets all loaded tests.
   virtual void clear() = 0;
   virtual unsigned loads() const = 0;
 };
@@ -108,7 +108,7 @@ class Slot : public sc_core::sc_module {
   std::vector<std::unique_ptr<LoadableTest>> tests_;
 };
 
-/// Slots and the configuration controller (C3) that exchanges what they hold.
+/// Slots and the configuration controller (C3) that exchanges their tests.
 class SlottedTests : public Stations {
  public:
   SC_HAS_PROCESS(SlottedTests);

@@ -38,10 +38,10 @@ struct Platform {
 /// Object pairs one after the other.
 struct Job {
   std::vector<ObjectPair> pairs;
-  bool first_loaded = false;  ///< the first pair's test is there when time begins to count
+  bool first_loaded = false;  ///< the first pair's test is loaded when time begins to count
 };
 
-/// One platform and all that it is to do.
+/// One platform and all its jobs.
 struct Series {
   Platform platform;
   std::vector<Job> jobs;
@@ -52,8 +52,8 @@ struct JobResult {
   unsigned loads = 0;                     ///< while time was counted
 };
 
-/// Simulates all series, each on a platform of its own. Once per process (one elaboration).
-/// Errors: a job without pairs, a kind or number of slots that there is not, a simulation that stops early.
+/// Simulates all series, each on its own platform. Once per process (one elaboration).
+/// Errors: a job without pairs, a kind or number of slots that does not exist, a simulation that stops early.
 std::vector<std::vector<JobResult>> simulate(const std::vector<Series>& all);
 
 }  // namespace cchip::table1

@@ -12,7 +12,7 @@
 
 namespace cchip::bvh {
 
-/// An image is wrong. what() is one line: line of the image, field, what is wrong with it.
+/// An image is invalid. what() is one line: the line of the image, the field, what is wrong with it.
 class ImageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -28,18 +28,18 @@ struct Image {
   HeaderLine header() const { return decode_header(lines.front()); }
 };
 
-/// \param tree that of the mesh
+/// \param tree the tree of the mesh
 /// \throws std::invalid_argument more than 2^24 lines
 Image make_image(const Mesh& mesh, const Tree& tree);
 
 Bytes to_bytes(const Image& image);
 
-/// The image in these bytes, checked: sizes, magic, version, CRC-32, every field of every line, that each line is
-/// reached from the root once, and that the counts are right.
+/// Parses the image in these bytes and checks it: sizes, magic, version, CRC-32, every field of every line, the counts,
+/// and that each line is reached from the root exactly once.
 /// \throws ImageError
 Image parse_image(const Bytes& bytes);
 
-/// CRC-32 that belongs into the header.
+/// CRC-32 for the header.
 std::uint32_t image_crc(const Image& image);
 
 }  // namespace cchip::bvh

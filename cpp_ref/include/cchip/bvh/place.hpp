@@ -11,10 +11,10 @@
 
 namespace cchip::bvh {
 
-/// The query for objects with these headers, object i placed by pose i, any invertible affine map; nothing in the query
-/// but m, t, shift, error and swapped is set. The object with the finer unit plays A, whichever the user named first.
-/// The error bound covers, by interval arithmetic, that poses are doubles which are taken as exact, that their relation
-/// needs an inverse, and the rounding to the query's format; it is 0 if the query is exact.
+/// The query for objects with these headers, object i placed by pose i, which may be any invertible affine map. Sets
+/// only m, t, shift, error and swapped. The object with the finer unit plays A, whichever the user named first. The
+/// error bound covers, by interval arithmetic, the inverse that relates the two poses (their doubles are taken as
+/// exact) and the rounding to the query's format; it is 0 if the query is exact.
 /// \returns nothing if the chip does not take this pair: units more than 2^15 apart, a map that is singular or so
 ///          ill-conditioned that the bound does not fit, or numbers that are not finite or overflow
 std::optional<Query> make_query(const HeaderLine& a, const Eigen::Affine3d& pose_a, const HeaderLine& b,

@@ -33,8 +33,8 @@ inline double scale_up(double x, int exponent) {
 }
 inline double scale_down(double x, int exponent) { return -scale_up(-x, exponent); }
 
-/// The least double that is not below the exact product, or one more where the product is so small that its error
-/// cannot be told.
+/// The least double that is not below the exact product, or the next one above where the product is too small for its
+/// error to be computed.
 inline double product_up(double a, double b) {
   const double product = a * b;
   const bool tiny = std::abs(product) < 0x1p-900 && a != 0 && b != 0;
@@ -49,7 +49,7 @@ inline double quotient_up(double a, double b) {
                                                : quotient;
 }
 
-/// A closed interval; sums, products and quotients hold every result of every pair of members.
+/// A closed interval; sums, products and quotients contain every result of every pair of members.
 struct Interval {
   double least = 0;
   double greatest = 0;
@@ -72,7 +72,7 @@ inline Interval operator*(const Interval& x, const Interval& y) {
           {down(x.least, y.least), down(x.least, y.greatest), down(x.greatest, y.least), down(x.greatest, y.greatest)}),
       std::max({up(x.least, y.least), up(x.least, y.greatest), up(x.greatest, y.least), up(x.greatest, y.greatest)})};
 }
-/// \pre y does not hold 0
+/// \pre y does not contain 0
 inline Interval operator/(const Interval& x, const Interval& y) {
   if (y.greatest < 0) return -x / -y;
   const auto down = [](double a, double b) { return -quotient_up(-a, b); };

@@ -34,19 +34,18 @@ struct Tree {
   int depth = 0;
 };
 
-/// Bound on Tree::depth, whatever the mesh. A traversal that descends in both trees at once and keeps one entry for
-/// each expanded pair needs at most as many entries.
+/// Bound on Tree::depth for any mesh. A traversal that descends in both trees at once and keeps one entry for each
+/// expanded pair needs at most this many entries.
 inline constexpr int tree_depth_max = 48;
 
 struct TreeOptions {
-  /// Cost of visiting a node over that of testing a primitive in it, for the choice between a leaf of two triangles and
-  /// two leaves of one. 0: never two.
+  /// Cost of visiting a node relative to that of testing a primitive in it. Decides between a leaf of two triangles and
+  /// two leaves of one; 0: never two.
   double visit_cost = 1;
 };
 
 /// Builds a tree: binary by the surface area heuristic in bins, then up to four children each by opening the child with
-/// the greatest box. Faces of degenerate and coincident triangles and quads are as good as others. Takes
-/// O(faces log(faces)) time.
+/// the greatest box. Degenerate and coincident triangles and quads are allowed. Takes O(faces log(faces)) time.
 /// \throws std::invalid_argument the mesh has no faces, or more than 2^24 - 2, or a vertex of a face is not finite or
 ///         its coordinates exceed 2^1000 in magnitude
 Tree build_tree(const Mesh& mesh, const TreeOptions& options = {});

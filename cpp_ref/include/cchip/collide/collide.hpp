@@ -24,7 +24,7 @@ struct CollisionRequest {
     all     ///< every pair of faces that touch
   };
   Contacts contacts = Contacts::first;
-  /// With Contacts::all: the search ends when so many are found.
+  /// With Contacts::all: the search ends once this many are found.
   std::size_t most_contacts = std::numeric_limits<std::size_t>::max();
 };
 
@@ -44,7 +44,7 @@ struct CollisionCounts {
   std::uint64_t steps = 0;      ///< pairs of tree nodes that were expanded
   std::uint64_t box_tests = 0;  ///< pairs of bounding volumes that were compared
   std::uint64_t pairs = 0;      ///< pairs of primitives that were tested
-  std::uint64_t open = 0;       ///< of them, decided by exact arithmetic because faster arithmetic could not
+  std::uint64_t open = 0;       ///< those of them decided by exact arithmetic because faster arithmetic could not
   std::uint64_t clocks = 0;     ///< clocks of the device; 0 for devices without a clock
   CollisionCounts& operator+=(const CollisionCounts& x) {
     steps += x.steps;
@@ -58,7 +58,7 @@ struct CollisionCounts {
 
 struct CollisionResult {
   bool hit = false;
-  /// In ascending order, none twice. With Contacts::first at most one.
+  /// In ascending order, without duplicates. With Contacts::first at most one.
   std::vector<Contact> contacts;
   CollisionCounts counts;
 };
@@ -69,7 +69,7 @@ struct PosePair {
   Pose b = Pose::Identity();
 };
 
-/// Something that answers queries. One call at a time for each device; objects may be shared between devices.
+/// Answers queries. A device takes one call at a time; objects may be shared between devices.
 class Device {
  public:
   virtual ~Device() = default;
@@ -77,8 +77,8 @@ class Device {
   /// \throws std::invalid_argument an entry of a pose is not finite or beyond 2^500 in magnitude
   virtual CollisionResult collide(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
                                   const CollisionRequest& request) = 0;
-  /// The same objects in many poses. `take` gets the number of the query and its result, one call at a time, in any
-  /// order. A device may use all cores.
+  /// Answers the same query in many poses. `take` is called with the number of the query and its result, one call at a
+  /// time, in any order. A device may use all cores.
   virtual void collide(const Object& a, const Object& b, const std::vector<PosePair>& poses,
                        const CollisionRequest& request,
                        const std::function<void(std::size_t, CollisionResult&&)>& take);

@@ -20,7 +20,7 @@ class FacePairs {
 
   /// Tests a face of A against a face of B, by their numbers in the meshes.
   void test(std::uint32_t face_a, std::uint32_t face_b);
-  /// Takes a face of A and a face of B that are known to touch; counts nothing.
+  /// Records a face of A and a face of B that are known to touch; counts nothing.
   void add(std::uint32_t face_a, std::uint32_t face_b);
   /// True once the request is fulfilled: no pair needs to be tested any more.
   bool done() const { return done_; }
@@ -37,13 +37,12 @@ class FacePairs {
   CollisionRequest request_;
   CollisionResult result_;
   bool cut_;                    ///< some faces of a file are several faces of a mesh, so contacts may repeat
-  std::set<Contact> contacts_;  ///< used then
+  std::set<Contact> contacts_;  ///< in use if cut_
   bool done_ = false;
 };
 
 /// \throws std::invalid_argument an entry of a pose is not finite or beyond 2^500 in magnitude, or the request wants
-/// all
-///         contacts but at most 0; one line
+///         all contacts but at most 0 of them; one line
 void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest& request);
 
 }  // namespace cchip

@@ -17,12 +17,12 @@ class Object {
  public:
   /// Takes O(faces log(faces)) time. Degenerate faces are allowed.
   /// \throws std::invalid_argument no faces, more than 2^24 - 2 of them, or a vertex that is not finite or beyond
-  /// 2^1000
+  ///         2^1000
   explicit Object(Mesh mesh);
 
   const Mesh& mesh() const { return data_->mesh; }
   const bvh::Tree& tree() const { return data_->tree; }
-  /// Identity: equal for copies of one object only. Devices keep what they make of an object under it.
+  /// Identity: equal only for copies of one object. Devices use it as the key of what they derive from an object.
   const void* id() const { return data_.get(); }
 
  private:

@@ -15,8 +15,8 @@ namespace cchip {
 std::vector<std::string> device_names();
 
 /// "cpu": this computer, all its cores for batches. "model": the functional model of the chip, with the counts that the
-/// chip will show; what the chip leaves to its host, and queries that it does not take, are answered exactly all the
-/// same. \throws std::invalid_argument no device of this name; the message lists the names
+/// chip will show. What the chip leaves to its host, and queries that it does not take, are still answered exactly.
+/// \throws std::invalid_argument no device of this name; the message lists the names
 std::unique_ptr<Device> open_device(const std::string& name);
 
 }  // namespace cchip

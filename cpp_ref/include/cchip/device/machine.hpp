@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// What a host can do with a machine: registers, memory, streams of pairs, interrupt. The drivers of this folder use
-/// nothing else, so that they work on the simulated RTL as on a board.
+/// nothing else, so they work on the simulated RTL and on a board alike.
 #ifndef CCHIP_DEVICE_MACHINE_HPP
 #define CCHIP_DEVICE_MACHINE_HPP
 
@@ -12,8 +12,8 @@
 
 namespace cchip {
 
-/// A Linux UIO driver fills it like this: registers are a mapping of the device's first region, memory is a mapping of
-/// reserved physical memory, interrupt() reads the device file without blocking, proceed() sleeps for some
+/// A Linux UIO driver may implement it like this: registers are a mapping of the device's first region, memory is a
+/// mapping of reserved physical memory, interrupt() reads the device file without blocking, proceed() sleeps for some
 /// microseconds. Not thread-safe.
 class Machine {
  public:
@@ -24,18 +24,18 @@ class Machine {
   virtual std::uint32_t read_register(std::uint32_t offset) = 0;
   virtual void write_register(std::uint32_t offset, std::uint32_t value) = 0;
 
-  /// Puts bytes where the machine reads them from `address` on, a multiple of 4.
+  /// Writes bytes to the machine's memory from `address` on, a multiple of 4.
   virtual void write_memory(std::uint32_t address, const Bytes& bytes) = 0;
 
   /// Offers a pair on the stream s_pair.
-  /// \return false: the machine still has the pair before this one on offer; try again after proceed()
+  /// \return false: the previous pair has not been accepted yet; try again after proceed()
   virtual bool send(const KindRequest& request) = 0;
   /// The next result of the stream m_result, if there is one.
   virtual std::optional<KindResult> receive() = 0;
 
   /// Level of the interrupt line.
   virtual bool interrupt() = 0;
-  /// Lets the machine work: one clock of a simulation, a short time on a board.
+  /// Advances the machine: one clock of a simulation, a short time on a board.
   virtual void proceed() = 0;
 };
 

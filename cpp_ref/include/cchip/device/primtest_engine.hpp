@@ -27,21 +27,22 @@ class PrimtestMachine {
   /// s_pair from now on; nullopt: valid = 0.
   virtual void offer(const std::optional<PairRequest>& request) = 0;
   virtual Outputs outputs() = 0;
-  /// The rising edge that ends the present clock. Call outputs() before.
+  /// The rising edge that ends the present clock. Call outputs() first.
   virtual void clock() = 0;
 };
 
 struct PrimtestEngineOptions {
   std::string name;
   int coord_w = defs::coord_w_default;
-  /// The engine gives up if for so many clocks no pair is accepted and none answered.
+  /// The engine gives up after this many clocks without a pair accepted or answered.
   std::uint64_t answer_bound = 0;
   /// Makes a machine when a pair needs it for the first time.
   std::function<std::unique_ptr<PrimtestMachine>(ModuleId)> make_machine;
 };
 
-/// Engine over primitive tests. A pair goes to the module of its kinds; a quad and a triangle are swapped on the
-/// way, and the witness back. Quads are made canonical, the witness names the edges of the quad as it was given.
+/// Engine over primitive tests. A pair goes to the module of its kinds; a quad and a triangle are swapped on the way
+/// in, and the witness is swapped back. Quads are made canonical, the witness names the edges of the quad as it was
+/// given.
 /// Each module streams its pairs in their order with valid = 1 while pairs are left, one module after the other;
 /// clock_in and clock_out count the clocks of the module that answered, and go on from batch to batch.
 /// run() throws std::invalid_argument for a coordinate or eta out of range, before anything is sent.

@@ -20,7 +20,7 @@ struct ReconfigOptions {
   std::uint32_t maximum_age = 1024;
   /// Seed of the bitstreams' payloads.
   std::uint32_t seed = 1;
-  /// The driver gives up after so many proceed() without a pair accepted or answered.
+  /// The driver gives up after this many proceed() without a pair accepted or answered.
   std::uint64_t patience = 1000000;
   /// Called with the number of pairs answered so far, now and then.
   std::function<void(std::uint64_t)> progress;
@@ -32,7 +32,7 @@ struct ReconfigAnswer {
   unsigned answers = 0;  ///< times that the tag came back
 };
 
-/// One swap as its report and the registers phase_clocks tell, clocks.
+/// One swap, from its report and the registers phase_clocks; times in clocks.
 struct ReconfigSwap {
   int slot = 0;
   ModuleId module_id = ModuleId::blank;
@@ -47,10 +47,10 @@ struct ReconfigResult {
 };
 
 /// Writes the bitstreams and their table, enables the scheduler, sends the pairs in their order and returns when all
-/// are answered. Pairs are as the stream takes them: triangle before quad, quads canonical, coordinates in range; their
-/// tags are replaced. Swaps that end within the time of some twenty register accesses may be missed in `swaps`. \throws
-/// std::invalid_argument a coordinate does not fit the machine's width, the payload is too short \throws
-/// std::runtime_error no answer in time, a register that refuses
+/// are answered. Pairs must be as the stream takes them: triangle before quad, quads canonical, coordinates in range;
+/// their tags are replaced. Swaps that end within the time of some twenty register accesses may be missed in `swaps`.
+/// \throws std::invalid_argument a coordinate does not fit the machine's width, the payload is too short
+/// \throws std::runtime_error no answer in time, a register that refuses
 ReconfigResult run_reconfig(Machine& machine, const std::vector<PairRequest>& pairs, const ReconfigOptions& options);
 
 }  // namespace cchip

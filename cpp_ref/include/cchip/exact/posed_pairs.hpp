@@ -17,7 +17,7 @@ class PosedPairs {
  public:
   struct Answer {
     bool hit = false;   ///< the closed primitives share a point
-    bool open = false;  ///< it took integers of any size to decide it
+    bool open = false;  ///< deciding it took integers of any size
   };
 
   /// \throws std::invalid_argument an entry of a pose is not finite

@@ -33,8 +33,8 @@ class GridError : public std::invalid_argument {
 /// - If every coordinate is a whole number of steps on a grid that holds the box, nothing is rounded and
 ///   eta = 0. The step is then 1 if possible, else the greatest of which all coordinates are multiples, and the
 ///   origin 0 if the coordinates are in range as they are: such integers go in verbatim.
-/// - Otherwise the step is the finest on which the box fits after rounding to nearest, ties to even; the box is
-///   centred and eta = 1. A primitive much smaller than the other one may collapse: that is rounding, no error.
+/// - Otherwise the step is the finest on which the box fits after rounding to nearest, ties to even; the box is centred
+///   and eta = 1. A primitive much smaller than the other one may collapse: this is rounding, not an error.
 /// \throws GridError if a coordinate is not finite, or 2^62 or more steps from 0 on the grid that the box needs
 /// \throws std::invalid_argument if coord_w is not in 4..20
 QuantisedPair quantise(const Primitive& a, const Primitive& b, int coord_w);

@@ -25,7 +25,7 @@ struct Mesh {
   std::vector<Face> faces;
   /// Faces of the file that load_mesh() cut into triangles.
   std::size_t polygons_cut = 0;
-  /// For each face the number of the file's face that it is or was cut from; empty if no face was cut.
+  /// For each face, the number of the file's face that it is or was cut from; empty if no face was cut.
   std::vector<std::uint32_t> file_face;
   /// Face number `face` (less than faces.size()) with its vertex positions.
   Primitive primitive(std::size_t face) const;

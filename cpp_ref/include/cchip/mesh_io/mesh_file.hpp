@@ -22,19 +22,19 @@ enum class FaceKinds {
 };
 
 /// Reads a mesh in the file's order and unit: Wavefront OBJ, Geomview OFF (text), Stanford PLY (text, binary of both
-/// byte orders), STL (text, binary). The name's end says which it is, or else how the file begins.
+/// byte orders), STL (text, binary). The extension of the name decides the format, or else the beginning of the file.
 ///
 /// Positions are doubles: the nearest one of each decimal number; binary STL and PLY's `float` hold single precision.
 /// Points and lines of OBJ are left out. Free-form surfaces, PLY's triangle strips, binary OFF and homogeneous
 /// coordinates are refused. Polygons of up to 1024 corners are cut into triangles; all corners stay in use.
 ///
-/// A file that was cut or damaged is refused where it can be told: counts must match, numbers must be whole words, and
-/// vertices must exist. OBJ announces no counts, so one that lacks whole lines at its end may pass.
+/// A truncated or damaged file is refused where this can be detected: counts must match, numbers must be whole words,
+/// and vertices must exist. OBJ announces no counts, so a file that lacks whole lines at its end may pass.
 /// Memory and time are bounded by multiples of the file's size: counts that the file cannot hold are refused first.
 ///
 /// The readers are our own because none of Debian's passed tests/ref/test_mesh_file.cpp: assimp rounds to single
-/// precision and does not end on a cut PLY; CGAL loses corners that tabs separate in OBJ, refuses its `l` lines and
-/// takes 1.5 GB for a list of a PLY of 250 bytes.
+/// precision and does not terminate on a truncated PLY; CGAL loses corners that tabs separate in OBJ, refuses its `l`
+/// lines and takes 1.5 GB for a list in a PLY of 250 bytes.
 /// \throws std::runtime_error one line: file, line number if it has one, what is wrong, what to do
 Mesh load_mesh(const std::string& path, FaceKinds kinds = FaceKinds::triangles);
 
@@ -44,8 +44,8 @@ Mesh parse_mesh(std::string_view file, const std::string& name, FaceKinds kinds 
 /// Red, green, blue.
 using Colour = std::array<std::uint8_t, 3>;
 
-/// Writes a binary PLY (little endian, doubles). Each face has vertices of its own, and its colour stands at the face
-/// and at these vertices, because MeshLab shows the ones and Blender the others.
+/// Writes a binary PLY (little endian, doubles). Each face has its own vertices. Its colour is written to the face and
+/// to these vertices, because MeshLab shows face colours and Blender vertex colours.
 /// \throws std::invalid_argument unless there is one colour for each face
 void write_ply(std::ostream& out, const Mesh& mesh, const std::vector<Colour>& face_colours);
 

@@ -2,9 +2,9 @@
 /// \file
 /// The box test: which children of a node of A may meet which children of a node of B.
 ///
-/// Everything is reckoned in half steps of the pair's own grid, a power of two that is A's step unless B's is much
-/// coarser. All roundings are floors; one slack per node pair, added to the corners of B's boxes, makes up for all of
-/// them (docs/image.md, "Box test").
+/// All quantities are in half steps of the pair's own grid, a power of two that is A's step unless B's is much coarser.
+/// All roundings are floors. One slack per node pair, added to the corners of B's boxes, covers all of them
+/// (docs/image.md, "Box test").
 #ifndef CCHIP_MODEL_BOX_TEST_HPP
 #define CCHIP_MODEL_BOX_TEST_HPP
 
@@ -15,10 +15,10 @@
 
 namespace cchip::model {
 
-/// Where a node pair stands on its grid.
+/// A node pair placed on its grid.
 struct NodeGrid {
-  /// A's steps over the grid's, B's likewise: log2 (grid step / step), and whether a box counts as a point, because it
-  /// is so much smaller than a step that the slack covers it.
+  /// log2 (grid step / step) for A and for B, and whether a box counts as a point because it is so much smaller than a
+  /// step that the slack covers it.
   int x = 0;  ///< 0, 2, 4, or more and a_is_point
   int y = 0;  ///< -1..5, or more and b_is_point
   bool a_is_point = false;

@@ -25,7 +25,7 @@ struct BroadPhaseOptions {
 struct BroadPhaseCounts {
   std::uint64_t steps = 0;            ///< node pairs expanded
   std::uint64_t box_tests = 0;        ///< pairs of children compared
-  std::uint64_t leaf_pairs = 0;       ///< of which the boxes overlap
+  std::uint64_t leaf_pairs = 0;       ///< pairs of leaves whose boxes overlap
   std::uint64_t primitive_pairs = 0;  ///< sent to a primitive test
   std::uint64_t beats = 0;            ///< axes of the primitive tests
   std::uint64_t open_pairs = 0;       ///< hits that are not definite
@@ -38,10 +38,9 @@ struct BroadPhaseResult {
   BroadPhaseCounts counts;
 };
 
-/// Runs the query as the chip with one node pair in flight would. Mode ALL gives the same pairs, in any order, and the
-/// same counts but stack_most however node pairs are ordered, if it ends with QueryCode::ok. A FIRST query gives every
-/// open pair up to its end, and then the pair that is in contact for certain, if there is one.
-/// base_a and base_b play no part.
+/// Runs the query as the chip would with one node pair in flight. If an ALL query ends with QueryCode::ok, its set of
+/// pairs and all counts but stack_most do not depend on the order of the node pairs. A FIRST query gives every open
+/// pair up to its end, then the pair that is certainly in contact, if there is one. base_a and base_b are ignored.
 BroadPhaseResult run_query(const Query& query, const bvh::Image& a, const bvh::Image& b,
                            const BroadPhaseOptions& options = {});
 

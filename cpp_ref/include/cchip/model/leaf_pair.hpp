@@ -24,7 +24,7 @@ inline constexpr int vertex_m_fraction = 20;
 
 struct MovedVertices {
   std::array<std::array<std::int64_t, 3>, 6> vertex = {};  ///< units
-  /// Bound, in units, on twice the error of a coordinate; 0: none is off.
+  /// Bound, in units, on twice the error of a coordinate; 0: all are exact.
   std::int64_t error = 0;
 };
 

@@ -37,7 +37,7 @@ struct PoseSetup {
   /// t rounded to nearest, 24 fraction bits.
   std::array<std::int32_t, 3> t = {};
   int shift = 0;
-  /// Every coordinate of a point of A that the rounded M and t give is within this of the exact one, 2^-24.
+  /// Bound, in 2^-24, on the error of every coordinate of a point of A that the rounded M and t give.
   std::int32_t epsilon = 0;
   std::array<DirectionSetup, bvh::directions.size()> direction;
 };

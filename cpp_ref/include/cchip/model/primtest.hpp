@@ -62,7 +62,7 @@ class AxisController {
   std::optional<Beat> next_;
   bool started_ = false;
   std::vector<PairHeader> side_;
-  Delay<std::optional<ReturnedBeat>> programme_;  // cchip_axis_programme but for its last register
+  Delay<std::optional<ReturnedBeat>> programme_;  // cchip_axis_programme without its last register
   std::optional<Beat> beat_;
   std::optional<PairResult> result_;
   std::size_t leaving_ = 0;  // context of result_
@@ -105,7 +105,7 @@ class Primtest {
   Parameters parameters_;
   std::size_t pairs_ = 0;
   bool ready_ = false;
-  bool awake_ = false;  // a context stands ready
+  bool awake_ = false;  // a context is ready
   bool idle_ = true;
   std::vector<Operands> operands_;
   AxisController controller_;

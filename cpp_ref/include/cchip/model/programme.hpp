@@ -9,7 +9,7 @@
 
 namespace cchip::model {
 
-/// What beats nA and nB tell about a pair.
+/// What the beats nA and nB say about a pair.
 struct Sides {
   std::array<int, 4> b = {};  ///< sign of nA . (W_j - V0)
   std::array<int, 4> a = {};  ///< sign of nB . (V_i - W0)
@@ -60,7 +60,7 @@ struct Step {
   std::optional<State> next;
 };
 
-/// What the verdicts of one EXHAUSTIVE pair have told so far; they come one after the other.
+/// What the verdicts of one EXHAUSTIVE pair have shown so far; they arrive one after the other.
 struct Exhaustive {
   bool separated = false;
   bool certain_gap = false;

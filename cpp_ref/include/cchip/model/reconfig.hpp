@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Clock-exact models of the blocks in rtl/reconfig that stand between a region and the rest. Moore machines, like
-/// those in stream.hpp.
+/// Clock-exact models of the blocks in rtl/reconfig between a region and the rest. Moore machines, like those in
+/// stream.hpp.
 #ifndef CCHIP_MODEL_RECONFIG_HPP
 #define CCHIP_MODEL_RECONFIG_HPP
 
@@ -10,7 +10,7 @@
 
 namespace cchip::model {
 
-/// cchip_roc_generator, from power-up on: the clocks since the last configuration, power-up or reset are counted.
+/// cchip_roc_generator, modelled from power-up on: counts the clocks since the last configuration, power-up or reset.
 class RocGenerator {
  public:
   /// \param cycles length of the reset, clocks

@@ -31,21 +31,22 @@ struct BitstreamHeader {
 std::uint32_t crc32(const Bytes& bytes);
 std::uint32_t crc32(const std::uint8_t* bytes, std::size_t count);
 
-/// Length of the payload if nothing else is asked for, bytes: Table 1 of the paper, 688,011 for tri-tri and 676,247 for
-/// quad-quad; tri-quad and blank, which it does not have, are as long as tri-tri. Rounded up to words of the port.
+/// Default length of the payload, bytes: Table 1 of the paper, 688,011 for tri-tri and 676,247 for quad-quad; tri-quad
+/// and blank, which the table does not list, are as long as tri-tri. Rounded up to words of the port.
 /// \param port_w width of the configuration port, bit, 8 or 32
 std::size_t default_payload_bytes(ModuleId module_id, int port_w = 8);
 
-/// Payload that makes slot `slot` of the simulated device a `module_id`. The sync word occurs only at its beginning.
+/// Payload that configures slot `slot` of the simulated device as `module_id`. The sync word occurs only at its
+/// beginning.
 /// \param bytes its length, >= defs::bitstream_payload_min
 /// \param seed of the filler
-/// \throws std::invalid_argument it is shorter
+/// \throws std::invalid_argument `bytes` is less
 Bytes make_payload(std::uint8_t slot, ModuleId module_id, std::size_t bytes, std::uint32_t seed = 1);
 
-/// Header with length and CRC of the payload, and the payload.
+/// A bitstream: the header, with length and CRC of the payload, then the payload.
 Bytes make_bitstream(std::uint8_t slot, ModuleId module_id, const Bytes& payload);
 
-/// Any header, right or wrong, and any payload.
+/// A bitstream of any header, valid or not, and any payload.
 Bytes join_bitstream(const BitstreamHeader& header, const Bytes& payload);
 
 /// Clocks of a transfer while memory keeps up (the paper's eq. 4): words of the port times clocks per word.

@@ -27,10 +27,10 @@ struct Field {
   constexpr std::size_t end() const { return lsb + width * count; }
 };
 
-/// Field `index` of a line, sign-extended if it is signed. `base`: first bit of the part of the line that the field's
-/// place counts from.
+/// Field `index` of a line, sign-extended if it is signed. `base`: bit of the line from which the field's position
+/// counts.
 std::int64_t get(const Line& line, const Field& field, std::size_t index = 0, std::size_t base = 0);
-/// Writes its low bits.
+/// Writes the low bits of `value` to the field.
 void put(Line& line, const Field& field, std::int64_t value, std::size_t index = 0, std::size_t base = 0);
 
 }  // namespace cchip

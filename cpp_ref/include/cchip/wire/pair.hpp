@@ -90,7 +90,7 @@ struct KindResult {
   }
 };
 
-/// Tag for the pair of this number: consecutive tags differ in many bits, and every tag comes once in 2^16 pairs,
+/// Tag for the pair with this number: consecutive tags differ in many bits, and every tag occurs once in 2^16 pairs,
 /// because the factor is odd.
 constexpr std::uint16_t tag_of(std::size_t number) { return static_cast<std::uint16_t>(40503U * number); }
 

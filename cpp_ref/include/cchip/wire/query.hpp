@@ -15,7 +15,7 @@ enum class QueryMode : std::uint8_t { first = 0, all = 1 };
 /// Does A, moved, touch B? A point u of A's frame lies at M 2^-shift u + t in the frame of B, both frames those of the
 /// images, in which objects lie in [-1/2, 1/2)^3.
 struct Query {
-  std::uint32_t base_a = 0;  ///< address of the image of A over 64
+  std::uint32_t base_a = 0;  ///< address of the image of A divided by 64
   std::uint32_t base_b = 0;
   /// M, 30 fraction bits, |M_ij| <= 1.
   std::array<std::array<std::int32_t, 3>, 3> m = {};
@@ -57,9 +57,9 @@ enum class QueryCode : std::uint8_t {
   host = 1,            ///< FIRST: as many open pairs as the limit says, and no definite hit
   steps = 2,           ///< step limit
   stack = 3,           ///< full stack
-  corrupt = 4,         ///< a line of an image makes no sense
+  corrupt = 4,         ///< a line of an image is invalid
   outside = 5,         ///< a node's children lie outside its image
-  bad_descriptor = 6,  ///< bits that must be 0, |M_ij| > 1, or a line at a base that is no header
+  bad_descriptor = 6,  ///< bits that must be 0 but are not, |M_ij| > 1, or a line at a base that is no header
 };
 
 enum class QueryAnswer : std::uint8_t { no = 0, yes = 1, open = 2 };

@@ -14,7 +14,7 @@ struct SwapRequest {
   int slot = 0;
   int module_id = 0;
   std::uint32_t address = 0;  ///< of the bitstream, bytes
-  std::uint32_t size = 0;     ///< of it, header included, bytes
+  std::uint32_t size = 0;     ///< of the bitstream, header included, bytes
   bool force = false;         ///< pairs that are not answered in time are given up
 };
 

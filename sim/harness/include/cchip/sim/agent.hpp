@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What takes part in a simulation beside the model: drivers, monitors, sinks.
+/// The parts of a simulation beside the model: drivers, monitors, sinks.
 #ifndef CCHIP_SIM_AGENT_HPP
 #define CCHIP_SIM_AGENT_HPP
 
@@ -22,7 +22,7 @@ class Agent {
   virtual void drive(const ClockInfo&) {}
   /// Looks at all signals, settled, just before the rising edge; sets none.
   virtual void sample(const ClockInfo&) {}
-  /// What this agent still waits for, for the message of a timeout; empty if nothing.
+  /// What this agent is still waiting for, for the message of a timeout; empty if nothing.
   virtual std::string waits_for() const { return {}; }
 };
 

@@ -27,13 +27,14 @@ struct AxiLitePatterns {
   Pattern read_data = Pattern::always();
 };
 
-/// What a read brought.
+/// The result of a read.
 struct AxiLiteWord {
   std::uint32_t data = 0;
   bool ok = false;  ///< answered OKAY
 };
 
-/// Sends queues of writes and of reads, each in order, the two side by side. Checks that a stalled response stays.
+/// Sends queues of writes and of reads, each in order, the two side by side. Checks that a stalled response does not
+/// change.
 template <class Model>
 class AxiLiteMaster : public Agent {
  public:
@@ -59,7 +60,7 @@ class AxiLiteMaster : public Agent {
   /// Answers not yet fetched with next_*.
   bool done() const { return written_.size() == writes_ && read_.size() == reads_open_; }
 
-  /// Answer of the oldest write: OKAY?
+  /// Answer of the oldest write: was it OKAY?
   bool next_write() {
     const bool ok = written_.front();
     written_.pop_front();
@@ -73,7 +74,7 @@ class AxiLiteMaster : public Agent {
     return word;
   }
 
-  /// One write, one read from beginning to end, for a master without anything under way.
+  /// One write or one read from beginning to end, for a master with nothing in flight.
   template <class Simulation>
   bool write(Simulation& simulation, std::uint32_t address, std::uint32_t data, unsigned byte_lanes = 15) {
     push_write(address, data, byte_lanes);
@@ -105,7 +106,7 @@ class AxiLiteMaster : public Agent {
     model_.s_axil_rready = run && patterns_.read_data.next();
   }
 
-  /// \throws StreamError a response changed or went away before it was accepted
+  /// \throws StreamError a response changed or was withdrawn before it was accepted
   void sample(const ClockInfo& now) override {
     if (now.in_reset) {
       stalled_b_.reset();

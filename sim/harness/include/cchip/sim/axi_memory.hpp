@@ -41,17 +41,17 @@ struct AxiMemoryOptions {
 };
 
 /// Answers reads in order and checks the master: a stalled address does not change, bursts are INCR of 4-byte beats,
-/// aligned, within 4 KiB. Addresses that nothing was written to are answered with decode_error. Reset forgets what is
-/// under way.
+/// aligned, within 4 KiB. Addresses that were never written are answered with decode_error. Reset drops the bursts in
+/// flight.
 template <class Model>
 class AxiMemory : public Agent {
  public:
-  /// Changes the beats of a burst before they are sent: faults.
+  /// Changes the beats of a burst before they are sent, to inject faults.
   using Fault = std::function<void(std::vector<AxiBeat>&)>;
 
   explicit AxiMemory(Model& model, AxiMemoryOptions options = {}) : model_(model), options_(std::move(options)) {}
 
-  /// \param address multiple of 4; a last word that is not full ends in zeros
+  /// \param address multiple of 4; an incomplete last word is padded with zeros
   void write(std::uint32_t address, const std::vector<std::uint8_t>& bytes) {
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       std::uint32_t& word = words_[address + static_cast<std::uint32_t>(i / 4 * 4)];
@@ -62,7 +62,7 @@ class AxiMemory : public Agent {
   void clear() { words_.clear(); }
   void set_options(AxiMemoryOptions options) { options_ = std::move(options); }
   void set_fault(Fault fault) { fault_ = std::move(fault); }
-  /// No more than this number of further beats are sent until resume().
+  /// At most this many further beats are sent until resume().
   void stop_after(std::uint64_t beats) { allowed_ = beats; }
   /// No address is accepted until resume().
   void refuse_addresses() { refuses_ = true; }
@@ -71,11 +71,11 @@ class AxiMemory : public Agent {
     refuses_ = false;
   }
 
-  /// Beats not yet taken of addresses that were.
+  /// Beats not yet taken, of accepted addresses.
   std::size_t owed() const { return beats_.size(); }
   std::uint64_t bursts() const { return bursts_; }
   std::uint64_t beats() const { return sent_; }
-  /// Most bursts under way at a time.
+  /// Most bursts in flight at a time.
   std::size_t most_outstanding() const { return most_outstanding_; }
 
   void drive(const ClockInfo& now) override {

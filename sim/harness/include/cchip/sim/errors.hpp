@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What can go wrong in a simulation. All are SimulationError; Simulation adds the clock, the seed and the
-/// wave to the message on the way out.
+/// What can go wrong in a simulation. All are SimulationError; Simulation adds the clock, the seed and the wave to the
+/// message as the exception passes through it.
 #ifndef CCHIP_SIM_ERRORS_HPP
 #define CCHIP_SIM_ERRORS_HPP
 
@@ -21,7 +21,7 @@ class SimulationError : public std::exception {
   std::string message_;
 };
 
-/// Something did not happen within its clocks.
+/// Something did not happen within its limit of clocks.
 class SimulationTimeout : public SimulationError {
  public:
   using SimulationError::SimulationError;
@@ -39,7 +39,7 @@ class StreamError : public SimulationError {
   using SimulationError::SimulationError;
 };
 
-/// A result is wrong, missing, unasked for or came twice.
+/// A result is wrong, missing, unexpected or repeated.
 class ScoreboardError : public SimulationError {
  public:
   using SimulationError::SimulationError;

@@ -11,7 +11,7 @@
 
 namespace cchip::sim {
 
-/// A copy goes on independently from the state of the original.
+/// A copy continues independently of the original.
 class Pattern {
  public:
   /// Every clock.
@@ -25,7 +25,7 @@ class Pattern {
     return {
         "random " + std::to_string(static_cast<int>(100 * probability)) + " %", Kind::random, 0, 0, probability, seed};
   }
-  /// `active` clocks, then not for `idle` clocks, and again.
+  /// `active` clocks, then not for `idle` clocks, repeated.
   static Pattern bursts(std::uint64_t active, std::uint64_t idle) {
     return {"bursts " + std::to_string(active) + "/" + std::to_string(idle), Kind::bursts, active, idle, 1.0, 0};
   }

@@ -14,7 +14,7 @@
 
 namespace cchip::sim {
 
-/// Every tag expected once must come back once, with the value expected. A tag may be used again after that.
+/// Every expected tag must come back once, with the value expected. A tag may be used again after that.
 template <class Expected, class Got = Expected>
 class TagScoreboard {
  public:
@@ -29,7 +29,7 @@ class TagScoreboard {
     }
   }
 
-  /// \throws ScoreboardError nobody asked, came before, or wrong
+  /// \throws ScoreboardError the result is unexpected, repeated or wrong
   void got(std::uint64_t tag, const Got& value, std::uint64_t clock) {
     const auto entry = open_.find(tag);
     if (entry == open_.end()) {
@@ -58,7 +58,7 @@ class TagScoreboard {
                           to_text(entry.value));
   }
 
-  /// Forgets everything, for a reset in mid traffic: a result sent for before counts as never sent for.
+  /// Forgets everything, for a reset in mid traffic: results requested before count as never requested.
   void clear() {
     open_.clear();
     answered_.clear();

@@ -94,8 +94,8 @@ class Simulation {
   /// The agent must outlive the last step(). Agents run in the order in which they were added.
   void add(Agent& agent) { agents_.push_back(&agent); }
 
-  /// rst = 1 for `clocks` clocks, then 0. Also for a reset in mid traffic; clock() starts again at 0.
-  /// A model without rst just runs these clocks.
+  /// rst = 1 for `clocks` clocks, then 0. Also for a reset in mid traffic; clock() restarts at 0. A model without rst
+  /// just runs these clocks.
   void reset(int clocks = 2) {
     set_reset(true);
     in_reset_ = true;
@@ -126,7 +126,7 @@ class Simulation {
 
   /// Steps until done() is true (asked before each step).
   /// \param what for the message: what is being waited for
-  /// \throws SimulationTimeout it still is false after max_clocks
+  /// \throws SimulationTimeout done() is still false after max_clocks
   template <class Done>
   void run_until(Done done, std::uint64_t max_clocks, const std::string& what) {
     for (std::uint64_t i = 0; !done(); ++i) {

@@ -39,7 +39,7 @@ class StreamDriver : public Agent {
   void push(T item) { queue_.push_back(std::move(item)); }
   /// Called on the clock on which an item is accepted.
   void on_accept(std::function<void(const T&, std::uint64_t clock)> action) { on_accept_ = std::move(action); }
-  /// Called on clocks with valid = 0: may put garbage on the payload pins.
+  /// Called on clocks with valid = 0: may drive garbage on the payload pins.
   void when_idle(std::function<void()> action) { when_idle_ = std::move(action); }
   void set_pattern(Pattern pattern) { pattern_ = std::move(pattern); }
   /// Items not yet accepted.
@@ -85,8 +85,8 @@ class StreamDriver : public Agent {
   std::function<void()> when_idle_;
 };
 
-/// Watches a stream that others drive; checks its rules on every clock: a beat offered and not accepted stays,
-/// valid and payload.
+/// Watches a stream that others drive. Checks its rules on every clock: valid and payload of a beat that was offered
+/// but not accepted must not change.
 template <class T>
 class StreamMonitor : public Agent {
  public:
@@ -103,7 +103,7 @@ class StreamMonitor : public Agent {
   void on_item(std::function<void(const T&, std::uint64_t clock)> action) { on_item_ = std::move(action); }
   /// Items handed over.
   std::uint64_t count() const { return count_; }
-  /// Makes a timeout name this stream until `items` were handed over in all.
+  /// Makes a timeout name this stream until `items` have been handed over in all.
   void expect_count(std::uint64_t items) { expected_ = items; }
 
   /// \throws StreamError

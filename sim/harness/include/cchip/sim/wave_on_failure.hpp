@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A waveform of every failure without the cost of always writing one.
+/// A waveform of every failure without the cost of writing one for every run.
 #ifndef CCHIP_SIM_WAVE_ON_FAILURE_HPP
 #define CCHIP_SIM_WAVE_ON_FAILURE_HPP
 
@@ -20,12 +20,12 @@ inline std::string wave_folder() {
   return folder != nullptr && *folder != '\0' ? folder : CCHIP_WAVE_FOLDER;
 }
 
-/// Runs body(options) without a waveform. If it throws, runs it once more with the same options and the waveform
-/// <wave_folder>/<name>.fst of the clocks before the failure, then throws: a SimulationError again as one,
-/// with the file's name in the message; anything else (a REQUIRE of Catch2) as it was, with the name printed on
-/// standard error. CHECK does not throw: inside the body use REQUIRE, cchip::sim::require() or the agents' own
-/// errors. The body must do the same again when called twice, and build its Simulation from the options it
-/// gets; of several, one after the other, the wave shows the last, which is the one that failed.
+/// Runs body(options) without a waveform. If it throws, runs it once more with the same options and writes the waveform
+/// <wave_folder>/<name>.fst of the clocks before the failure. Then throws: a SimulationError as a SimulationError, with
+/// the file's name in the message; anything else (a REQUIRE of Catch2) unchanged, with the name printed on standard
+/// error. CHECK does not throw: inside the body use REQUIRE, cchip::sim::require() or the agents' own errors. The body
+/// must behave the same when called twice, and must build its Simulation from the options it gets. If it builds
+/// several, one after the other, the wave shows the last, which is the one that failed.
 template <class Body>
 void with_wave_on_failure(const std::string& name, Body&& body, SimulationOptions options = {}) {
   options.clocks_run = std::make_shared<std::uint64_t>(0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// What turns a closed SystemC module into a reconfigurable one: states, delays, hooks, and whatever holds the module
-/// while it is asked to leave.
+/// when its deactivation is requested.
 ///
 ///     unloaded --load--> inactive --activate--> active --deactivate--> inactive --unload--> unloaded
 ///
@@ -33,13 +33,13 @@ class error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Something that may keep a module from being deactivated.
+/// Something that may prevent the deactivation of a module.
 class holder {
  public:
   virtual ~holder() = default;
-  /// Why the module cannot leave now, in words with a name; empty: it can.
+  /// Why the module cannot be deactivated now, in words with a name; empty: it can.
   virtual std::string holding() const = 0;
-  /// Event after which to ask again; none if the holder calls context::recheck() when it lets go.
+  /// Event after which to ask again; none if the holder calls context::recheck() when it releases the module.
   virtual const sc_core::sc_event* let_go() const { return nullptr; }
 };
 
@@ -49,7 +49,7 @@ class resettable {
   virtual ~resettable() = default;
   /// Start of simulation: keep the present value.
   virtual void store_reset_value() = 0;
-  /// Back to the value kept: before each activation and after each deactivation.
+  /// Restores the value kept: before each activation and after each deactivation.
   virtual void reset() = 0;
   /// The module has become active, in an update phase or at the start of simulation.
   virtual void activated() {}
@@ -73,17 +73,17 @@ class context {
 
   state now() const { return state_; }
   bool is_active() const { return state_ == state::active; }
-  /// Asked to leave, but something holds it.
+  /// Deactivation is requested, but something holds the module.
   bool deactivation_pending() const { return state_ == state::active && leaving_; }
-  /// Asked to leave, and nothing holds it: it does so in the next update phase.
+  /// Deactivation is requested, and nothing holds the module: it happens in the next update phase.
   bool can_leave() const { return deactivation_pending() && held_by().empty(); }
   /// Notified one delta after the change.
   const sc_core::sc_event& activated_event() const { return activated_; }
   const sc_core::sc_event& deactivated_event() const { return deactivated_; }
-  /// What keeps the module from leaving, one after the other; empty: nothing.
+  /// What holds the module, one after the other; empty: nothing.
   std::string held_by() const;
 
-  /// Time that an action takes unless the control knows better; 0 at first.
+  /// Time that an action takes unless the control sets another; 0 at first.
   void set_delay(action a, const sc_core::sc_time& delay) { delays_[a] = delay; }
   sc_core::sc_time delay(action a) const;
 
@@ -93,9 +93,10 @@ class context {
   /// The holder must outlive the simulation or be removed.
   void add(holder& h) { holders_.push_back(&h); }
   void remove(holder& h);
-  /// A holder may have let go: the next update phase looks again whether a pending deactivation can be done.
+  /// To be called when a holder may have released the module: the next update phase checks again whether a pending
+  /// deactivation is possible.
   void recheck();
-  /// Objects below the module that are resettable are found at the start of simulation; this is for others.
+  /// Resettable objects below the module are found at the start of simulation; this is for others.
   void add(resettable& r) { resettables_.push_back(&r); }
 
   /// A possible point of deactivation inside a process of the module: if deactivation is pending and nothing holds the
@@ -104,13 +105,13 @@ class context {
 
   /// Process that starts from its top at each activation and is cancelled at a wait() when the module is deactivated
   /// (stack unwound). Spawned while the simulation runs: starts when the module is active, and ends for good with the
-  /// deactivation. Better written with RC_THREAD, RC_METHOD, RC_CTHREAD.
+  /// deactivation. Prefer RC_THREAD, RC_METHOD, RC_CTHREAD.
   enum class process_kind { thread, method, clocked_thread };
   sc_core::sc_process_handle spawn(const char* process_name, process_kind kind, std::function<void()> body);
 
  protected:
-  /// Hooks: after the action. on_load, on_activate, on_deactivate and on_unload may wait. Not called for actions before
-  /// the simulation.
+  /// Hooks, called after the action. on_load, on_activate, on_deactivate and on_unload may wait. Not called for actions
+  /// before the simulation.
   virtual void on_load() {}
   virtual void on_activate() {}
   virtual void on_deactivate() {}
@@ -146,7 +147,7 @@ class context {
   sc_core::sc_module& module_;
   state state_ = state::unloaded;
   bool opens_ = false;    // activate() waits for the update phase
-  bool leaving_ = false;  // deactivate() is under way
+  bool leaving_ = false;  // deactivate() is in progress
   sc_core::sc_event activated_;
   sc_core::sc_event deactivated_;
   std::map<action, sc_core::sc_time> delays_;

@@ -27,13 +27,13 @@ inline module_set operator+(module_set left, const module_set& right) { return l
 
 /// During simulation its actions block the calling SC_THREAD until they are done for all modules of the set, which are
 /// reconfigured side by side. Before sc_start() they take no time, call no hooks and set the initial configuration.
-/// Modules that are not in the state that an action begins with are left alone: load() looks at unloaded ones,
-/// activate() at unloaded (which it loads first) and inactive ones, deactivate() at active ones, unload() at inactive
-/// and active (which it deactivates first) ones. Every action \throws error: a module is not added; it is called from
-/// an SC_METHOD, from a process of the module that it would cancel, at the start of simulation or between two
-/// sc_start(); a portal of the module is reserved for another loaded one (nothing has
-/// changed then); deactivation is not possible in time (the module stays active). Of a set, the others are done and all
-/// errors reported.
+/// Modules that are not in the state that an action begins with are left alone: load() applies to unloaded ones,
+/// activate() to unloaded (which it loads first) and inactive ones, deactivate() to active ones, unload() to inactive
+/// and active (which it deactivates first) ones.
+/// \throws error, every action: a module is not added; it is called from an SC_METHOD, from a process of the module
+///         that it would cancel, at the start of simulation or between two sc_start(); a portal of the module is
+///         reserved for another loaded one (nothing has changed then); deactivation is not possible in time (the module
+///         stays active). In a set, the actions of the other modules are completed and all errors are reported.
 class control : public sc_core::sc_module {
  public:
   explicit control(const sc_core::sc_module_name&) {}
@@ -52,19 +52,19 @@ class control : public sc_core::sc_module {
   /// \throws error its portals are not those of such a group
   void move(context& module, portal_group_base& to);
 
-  /// Longest wait for what holds a module, 1 s at first; sc_max_time(): for ever.
+  /// Longest time to wait for the holders of a module, 1 s at first; sc_max_time(): for ever.
   void set_deactivation_timeout(const sc_core::sc_time& timeout) { timeout_ = timeout; }
 
-  /// Keeps the control for the calling process, and those that it spawns, until it has called unlock() as often;
-  /// actions of other processes wait meanwhile. A process that has ended keeps nothing. \returns false: not free within
-  /// the limit
+  /// Locks the control for the calling process, and those that it spawns, until it has called unlock() as often;
+  /// actions of other processes wait meanwhile. A process that has ended holds no lock.
+  /// \returns false: not free within the limit
   bool lock(const sc_core::sc_time& limit = sc_core::sc_max_time());
   bool trylock() { return lock(sc_core::SC_ZERO_TIME); }
   /// \throws error the calling process does not have the lock
   void unlock();
   bool is_locked() const;
 
-  /// Time of an action: the delay of the module unless a derived class knows better. Asked at the beginning of each.
+  /// Time of an action: the delay of the module unless a derived class overrides it. Asked at the beginning of each.
   virtual sc_core::sc_time takes_time(const context& module, action a) const { return module.delay(a); }
 
  private:

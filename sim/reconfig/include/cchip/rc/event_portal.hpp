@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Portal for events: ports of type sc_port<sc_event_queue_if>. Notifications of the static queue reach the active
-/// module in the delta in which they occur. What a module asks its port for while the portal is closed is dropped; a
-/// delayed notification that it has made before is on its way and arrives.
+/// module in the delta in which they occur. A notification that a module requests while the portal is closed is
+/// dropped; a delayed notification that it requested before still arrives.
 #ifndef CCHIP_RC_EVENT_PORTAL_HPP
 #define CCHIP_RC_EVENT_PORTAL_HPP
 

@@ -2,9 +2,9 @@
 /// \file
 /// Portals for sc_fifo_in and sc_fifo_out.
 ///
-/// A module that waits at an empty input or a full output can be deactivated: nothing has been transferred. Closed:
-/// blocking calls wait for the next activation and then go on, non-blocking ones fail, counts are 0. On opening the
-/// module sees one event if there are data or room.
+/// A module that waits at an empty input or a full output can be deactivated, because nothing has been transferred.
+/// While the portal is closed, blocking calls wait for the next activation and then continue, non-blocking ones fail,
+/// counts are 0. On opening, the module sees one event if there are data or room.
 #ifndef CCHIP_RC_FIFO_PORTAL_HPP
 #define CCHIP_RC_FIFO_PORTAL_HPP
 
@@ -16,7 +16,7 @@
 
 namespace cchip::rc {
 
-/// When a FIFO lets its module go.
+/// When a FIFO releases its module.
 enum class fifo_rule {
   empty,     ///< the paper's, section 3.1: a FIFO that is not empty holds the module
   transfers  ///< that of ReChannel 2: data stay in the FIFO for the next module
@@ -29,9 +29,9 @@ class fifo_portal : public following_portal {
   fifo_rule rule() const { return rule_; }
 
   /// Each item that passes counts `weight` transactions; the module is held while the counter is not 0. With +1 at its
-  /// inputs and -1 at its outputs a module leaves when it has given as many results as it has taken operands. If a
-  /// deactivation was requested and the counter is 0, the module leaves before its next blocking read. The counter must
-  /// outlive the simulation.
+  /// inputs and -1 at its outputs, a module can be deactivated once it has given as many results as it has taken
+  /// operands. If a deactivation was requested and the counter is 0, the module is deactivated before its next blocking
+  /// read. The counter must outlive the simulation.
   void count(transaction_counter& counter, long weight) {
     counter_ = &counter;
     weight_ = weight;
@@ -78,7 +78,7 @@ class fifo_accessor : public accessor_of<Portal> {
     if (transaction_counter* counter = this->typed_portal().counter()) counter->add(this->typed_portal().weight());
     this->owner().recheck();
   }
-  /// Until a blocking call may succeed.
+  /// Waits until a blocking call may succeed.
   void wait_for_chance() { this->wait_for_opening_or(this->typed_portal().static_event()); }
   void leave_if_asked() {
     if (this->typed_portal().counter() != nullptr) this->owner().possible_deactivation();

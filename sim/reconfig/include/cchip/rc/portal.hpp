@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What all portals have in common. A portal stands between one static channel and the like ports of any number of
-/// reconfigurable modules, of which one at a time may be active. It passes everything to and from the active module
-/// and nothing to and from the others.
+/// What all portals have in common. A portal connects one static channel with the like ports of any number of
+/// reconfigurable modules, of which one at a time may be active. It passes everything to and from the active module and
+/// nothing to and from the others.
 #ifndef CCHIP_RC_PORTAL_HPP
 #define CCHIP_RC_PORTAL_HPP
 
@@ -27,7 +27,7 @@ class accessor : public holder {
   accessor& operator=(const accessor&) = delete;
 
   context& owner() const { return owner_; }
-  /// The portal it is attached to, nullptr after the portal's end.
+  /// The portal it is attached to; nullptr after the portal's destruction.
   portal* at() const { return portal_; }
   bool is_open() const { return open_; }
   /// Full name of the port.
@@ -46,7 +46,7 @@ class accessor : public holder {
   virtual void follow() {}
   /// Something waits for such events of the static side from now on.
   void watch(edge e = edge::any) const;
-  /// Whether portal `to` is one that this accessor can work with; then it does from now on.
+  /// Returns whether this accessor can work with the portal `to`; if so, it is attached to it from now on.
   virtual bool reattach(portal& to) = 0;
   /// Waits for the next opening or an event of the static side.
   void wait_for_opening_or(const sc_core::sc_event& event);
@@ -107,7 +107,7 @@ class portal : public sc_core::sc_module {
   explicit portal(const sc_core::sc_module_name&) {}
   accessor* open_accessor() const { return open_; }
   virtual void watch(edge) {}
-  /// A module is active here that is not about to leave.
+  /// A module is active here and not about to be deactivated.
   bool takes_calls() const;
   void wait_until_it_takes_calls();
   /// Makes an accessor for a port of a reconfigurable module, which keeps it.

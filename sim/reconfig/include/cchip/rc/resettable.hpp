@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Members of a module that have their initial value again after each configuration. The value at the start of
-/// simulation is the initial one. Outside of a reconfigurable module they are plain variables, signals and FIFOs.
+/// Members of a module that return to their initial value at each configuration. The value at the start of simulation
+/// is the initial one. Outside of a reconfigurable module they are plain variables, signals and FIFOs.
 #ifndef CCHIP_RC_RESETTABLE_HPP
 #define CCHIP_RC_RESETTABLE_HPP
 
@@ -12,7 +12,8 @@
 
 namespace cchip::rc {
 
-/// A variable: `rc::var<int> n{"n", 5}; n += 2;` What shall survive the module's absence is a plain C++ variable.
+/// A variable: `rc::var<int> n{"n", 5}; n += 2;` A value that must survive the module's absence is a plain C++
+/// variable.
 template <class T>
 class var : public sc_core::sc_object, public resettable {
  public:

@@ -3,7 +3,7 @@
 /// Portals for resolved logic: sc_in_rv, sc_out_rv, sc_inout_rv and sc_in_resolved, sc_out_resolved, sc_inout_resolved.
 ///
 /// What several processes of a module write is resolved inside the module's accessor; the static signal sees the portal
-/// as one driver. A portal that is closed, also before a module was ever loaded, drives 'Z': it takes no part.
+/// as one driver. While the portal is closed, also before any module was loaded, it drives 'Z', so it has no influence.
 #ifndef CCHIP_RC_RESOLVED_PORTAL_HPP
 #define CCHIP_RC_RESOLVED_PORTAL_HPP
 

@@ -4,9 +4,9 @@
 /// processes in the evaluation phase that follows it, a write of the module reaches the static signal in the evaluation
 /// phase in which it is made.
 ///
-/// Closed: the module reads an undefined value and sees no event; the static side gets an undefined value or keeps the
-/// last one. What the module writes meanwhile is written when the portal opens: that is what its pins show then. On
-/// opening, the module sees one event of each input, an edge for bool and sc_logic, too.
+/// While the portal is closed, the module reads an undefined value and sees no event; the static side gets an undefined
+/// value or keeps the last one. What the module writes meanwhile takes effect when the portal opens, because that is
+/// what its pins show then. On opening, the module sees one event of each input, an edge for bool and sc_logic, too.
 #ifndef CCHIP_RC_SIGNAL_PORTAL_HPP
 #define CCHIP_RC_SIGNAL_PORTAL_HPP
 
@@ -18,7 +18,7 @@
 
 namespace cchip::rc {
 
-/// Value that stands for an undefined one: T() for plain types; specialise it for others.
+/// Value that represents an undefined one: T() for plain types; specialise it for others.
 template <class T>
 struct undefined_value {
   static T get() { return T(); }
@@ -231,7 +231,7 @@ class sensing_portal : public signal_portal<T> {
   const sc_core::sc_signal_in_if<T>& channel() const override { return *static_port[0]; }
 };
 
-/// From the active module to the static signal, and back for what reads its own output.
+/// From the active module to the static signal, and back for processes that read their own output.
 template <class T, class Port, class Accessor>
 class driving_portal : public signal_portal<T> {
  public:

@@ -9,8 +9,8 @@
 
 namespace cchip::rc {
 
-/// Time of an action: what is looked up, context::delay() (0 unless set), and for a load what is computed, eq. (4), of
-/// a module that has a bitfile_size.
+/// Time of an action: the delay that context::delay() gives (0 unless set), plus, for a load, the time by eq. (4) for a
+/// module that has a bitfile_size.
 class timed_control : public control {
  public:
   explicit timed_control(const sc_core::sc_module_name& name, const bitstream_timing& timing = bitstream_timing())

@@ -3,7 +3,7 @@
 /// Portals for TLM-2.0 sockets of modules with the blocking interface: tlm_initiator_portal for a module's initiator
 /// socket, tlm_target_portal for its target socket. b_transport() holds the module from call to return.
 /// transport_dbg() passes an open portal and moves 0 bytes through a closed one. Direct memory pointers are never
-/// given, for they would bypass the portal. The nonblocking interface is an error.
+/// granted, because they would bypass the portal. The nonblocking interface is an error.
 #ifndef CCHIP_RC_TLM_PORTAL_HPP
 #define CCHIP_RC_TLM_PORTAL_HPP
 
@@ -15,8 +15,8 @@
 
 namespace cchip::rc {
 
-/// What a call from the static side gets when the portal is closed or about to close: no call begins when the module
-/// shall leave and nothing holds it.
+/// What a call from the static side gets when the portal is closed or about to close. No call begins when deactivation
+/// of the module is requested and nothing holds it.
 enum class tlm_rule {
   refuse,  ///< TLM_GENERIC_ERROR_RESPONSE at once
   wait     ///< it waits for the next activation
@@ -28,7 +28,7 @@ namespace detail {
   throw error(where + ": nonblocking transport does not pass portals; use b_transport()");
 }
 
-/// Forward interface without what portals do not pass.
+/// Forward interface without the functions that portals do not pass.
 template <class Types>
 class forward_blocking : public tlm::tlm_fw_transport_if<Types> {
  public:
@@ -45,7 +45,7 @@ class forward_blocking : public tlm::tlm_fw_transport_if<Types> {
   virtual std::string where() const = 0;
 };
 
-/// Backward interface: nothing of it is used.
+/// Backward interface, unused.
 template <class Types>
 class backward_blocking : public tlm::tlm_bw_transport_if<Types> {
  public:
@@ -58,7 +58,7 @@ class backward_blocking : public tlm::tlm_bw_transport_if<Types> {
   virtual std::string where() const = 0;
 };
 
-/// Counts the calls that are under way.
+/// Counts the calls in progress.
 template <class Portal>
 class call_accessor : public accessor_of<Portal> {
  public:

@@ -30,12 +30,12 @@ class transaction : public holder {
   std::string name_;
 };
 
-/// Counts transactions begun less those ended. It holds the modules that it is add()ed to, or those active at FIFO
-/// portals that count with it, while it is not 0.
+/// Counts transactions begun minus those ended. While it is not 0, it holds the modules that it is add()ed to, or those
+/// active at FIFO portals that count with it.
 class transaction_counter : public holder {
  public:
   explicit transaction_counter(std::string name) : name_(std::move(name)) {}
-  /// \param transactions may be negative, and may make the count so
+  /// \param transactions may be negative, and so may the resulting count
   void add(long transactions) {
     count_ += transactions;
     if (count_ == 0) zero_.notify(sc_core::SC_ZERO_TIME);

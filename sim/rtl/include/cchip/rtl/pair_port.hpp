@@ -29,7 +29,7 @@ class PairPort {
  public:
   PairPort(Model& model, int coord_w) : model_(model), coord_w_(coord_w) {}
 
-  /// Payload of s_pair; valid is left alone. Slot 3 of a triangle carries v[3] as it is: it must not matter.
+  /// Payload of s_pair; valid is not touched. Slot 3 of a triangle carries v[3] as it is: it must not matter.
   void put(const PairRequest& request) {
     set_vertices(model_.s_pair_a, request.pair.a.v, defs::vertices, coord_w_);
     set_vertices(model_.s_pair_b, request.pair.b.v, defs::vertices, coord_w_);

@@ -27,7 +27,7 @@ CCHIP_CONTROLLER_PROBES(cchip_primtest_quad_quad)
 // cchip_primtest_array: the lane whose result leaves next, one-hot.
 CCHIP_PROBE(array_choice, cchip_primtest_array__DOT__choice_q)
 
-// cchip_primtest_subsystem: the swap under way and its report.
+// cchip_primtest_subsystem: the swap in progress and its report.
 #define CCHIP_SUBSYSTEM_PROBE(name, signal) CCHIP_PROBE(name, cchip_primtest_subsystem__DOT__##signal)
 CCHIP_SUBSYSTEM_PROBE(swap_phase, u_controller__DOT__u_sequencer__DOT__phase_q)
 CCHIP_SUBSYSTEM_PROBE(swap_slot, u_scheduler__DOT__slot_of_swap_q)

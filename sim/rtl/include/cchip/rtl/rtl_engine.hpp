@@ -31,11 +31,10 @@ struct RtlMachineOptions : RtlEngineOptions {
 /// \throws std::invalid_argument the blank module
 std::unique_ptr<PrimtestMachine> make_rtl_machine(ModuleId id, const RtlMachineOptions& options = {});
 
-/// cchip_primtest_tri_tri, _tri_quad and _quad_quad with default parameters (16-bit coordinates), each made when a
-/// pair needs it; see make_primtest_engine() for the way of a pair.
-/// run() throws std::invalid_argument for a coordinate that does not fit, before anything is sent, and
-/// std::runtime_error if a module does not answer within its drain bound, answers what was not asked, or one of
-/// its assertions fails.
+/// cchip_primtest_tri_tri, _tri_quad and _quad_quad with default parameters (16-bit coordinates), each made when a pair
+/// needs it; make_primtest_engine() says how pairs are sent. run() throws std::invalid_argument for a coordinate that
+/// does not fit, before anything is sent, and std::runtime_error if a module does not answer within its drain bound,
+/// gives an unexpected answer, or one of its assertions fails.
 /// \throws std::runtime_error the waveform cannot be written
 std::unique_ptr<PairEngine> make_rtl_engine(const RtlEngineOptions& options = {});
 

@@ -19,11 +19,11 @@ struct SimulatedSubsystemOptions {
   std::uint64_t trace_clocks = 30000;
 };
 
-/// What only a simulation can see.
+/// What only a simulation can observe.
 struct SubsystemObservations {
   std::uint64_t clocks = 0;
   std::uint64_t transfer_clocks = 0;   ///< clocks of phase TRANSFER
-  std::uint64_t hidden_clocks = 0;     ///< of them, with pairs inside the other slot
+  std::uint64_t hidden_clocks = 0;     ///< those of them with pairs inside the other slot
   std::uint64_t first_swap_start = 0;  ///< clocks since reset; both 0: none yet
   std::uint64_t first_swap_end = 0;
 };

@@ -40,7 +40,7 @@ constexpr std::array<ShapeInfo, 3> all_shapes = {
 /// Both programmes; the index is the mode.
 constexpr std::array<const char*, 2> programmes = {"exhaustive", "directed"};
 
-/// What a run must reach besides right results: one that sees next to nothing fails.
+/// What a run must reach besides right results: a run that covers next to nothing fails.
 class Goals {
  public:
   void at_least(const std::string& what, double got, double goal) {
@@ -59,7 +59,7 @@ class Goals {
   bool missed_ = false;
 };
 
-/// What every campaign can be told.
+/// The options of every campaign.
 struct CommonOptions {
   std::uint64_t seed = sim::seed_from_environment();
   unsigned threads = 2;
@@ -79,7 +79,7 @@ struct CommonOptions {
     }
     return chosen;
   }
-  /// Seed of a part of a run: another one for each part.
+  /// Seed of a part of a run; each part gets another one.
   std::uint64_t seed_of(std::uint64_t part) const { return seed * 0x9e3779b97f4a7c15U + part; }
 };
 
@@ -146,8 +146,8 @@ struct Table {
   }
 };
 
-/// Sum of work(0) .. work(parts - 1). Every part brings its own random numbers, so the sum depends neither on the
-/// number of threads nor on who does what. The first exception of a part ends the run.
+/// Sum of work(0) .. work(parts - 1). Every part draws its own random numbers, so the sum depends neither on the number
+/// of threads nor on which thread does which part. The first exception of a part ends the run.
 template <class Result, class Work>
 Result sum_of_parts(std::uint64_t parts, unsigned threads, const Work& work) {
   Result result;

@@ -18,7 +18,7 @@ inline bool is_general_position(const GridPair& pair) {
          !is_coplanar(pair);
 }
 
-/// What was seen of one class of pairs with eta = 0.
+/// Statistics of one class of pairs with eta = 0.
 struct Judgement {
   std::uint64_t pairs = 0;
   std::uint64_t hits = 0;                   ///< by the oracle

@@ -23,13 +23,13 @@ struct ColumnOptions {
 };
 
 /// Nearest double of a decimal number; spaces around it and one leading plus are allowed.
-/// \throws std::invalid_argument what is wrong and what to do, without a place
+/// \throws std::invalid_argument what is wrong and what to do, without a location
 double parse_coordinate(std::string_view text);
 
 class PairColumns {
  public:
   /// Reads the header record.
-  /// \throws UsageError a column is missing or there twice
+  /// \throws UsageError a column is missing or occurs twice
   PairColumns(const CsvRow& header, std::string file, const ColumnOptions& options);
 
   /// \throws UsageError the record is not a pair

@@ -90,7 +90,7 @@ class PairSource {
   /// Largest |i| and |j| to use with lattice(range).
   int lattice_size(int range) const;
   Vec3i beside() { return coin() ? Vec3i(Vec3i::Zero()) : point(1); }
-  /// Starts the vertices elsewhere, either way round.
+  /// Rotates the order of the vertices, and may reverse it.
   GridPrimitive turned(GridPrimitive p);
   /// With its vertices anywhere on the lattice.
   GridPrimitive on_lattice(Kind kind, const Lattice& l, int size);
@@ -389,7 +389,7 @@ inline GridPair PairSource::warped() {
       v = near ? Vec3i(v + point(1)) : point(range);
     }
     if (!is_warped(pair.a) && !is_warped(pair.b)) continue;
-    // what the step left planar may have lost its order
+    // moving a vertex may have spoilt the order of quads that stay planar
     pair.a = canonical_quad(pair.a);
     pair.b = canonical_quad(pair.b);
     if (fits(pair)) return pair;

@@ -77,7 +77,7 @@ class Vector {
   std::bitset<4 * digits> bits_;
 };
 
-/// \throws std::runtime_error the file cannot be read or holds no vector
+/// \throws std::runtime_error the file cannot be read or contains no vector
 inline std::vector<Vector> read_vectors(const std::string& path) {
   std::vector<Vector> vectors;
   std::ifstream in(path);

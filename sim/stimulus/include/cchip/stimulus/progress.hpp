@@ -11,25 +11,25 @@
 
 namespace cchip {
 
-/// One line with a bar, a count and an estimate of the time left. It is redrawn at most ten times a second and taken
-/// away at the end. Not thread-safe.
+/// One line with a bar, a count and an estimate of the time left. It is redrawn at most ten times a second and removed
+/// at the end. Not thread-safe.
 class Progress {
  public:
   /// \param unit what is counted, for example "pairs"
   Progress(std::ostream& out, bool enabled, std::string unit = "pairs")
       : out_(out), enabled_(enabled), unit_(std::move(unit)) {}
-  /// On standard error, silent unless that is a terminal.
+  /// On standard error; silent unless that is a terminal.
   explicit Progress(std::string unit = "pairs");
   ~Progress() { clear(); }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
   bool enabled() const { return enabled_; }
-  /// \param fraction of the work in 0..1, negative if not known: then there is no bar and no estimate
+  /// \param fraction of the work in 0..1; negative if not known, then there is no bar and no estimate
   void update(std::uint64_t count, double fraction);
-  /// The same for a count with a known end.
+  /// The same for a count with a known total.
   void update_of(std::uint64_t count, std::uint64_t total);
-  /// Takes the line away, so that something else can be printed.
+  /// Removes the line, so that something else can be printed.
   void clear();
 
  private:

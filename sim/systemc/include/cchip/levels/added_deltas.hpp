@@ -9,7 +9,8 @@
 namespace cchip::levels {
 
 /// The first object pair of each kind runs through its test of level 3 twice, behind portals and bound directly, each
-/// in a child process, without a swap. \return delta cycles of the former less those of the latter, in all
+/// in a child process, without a swap.
+/// \return delta cycles of the runs behind portals minus those of the runs bound directly, in all
 std::int64_t added_deltas(const Stimulus& stimulus, const LevelOptions& options);
 
 }  // namespace cchip::levels

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The process called API in the paper: it knows of what kind the objects are and sends their primitive pairs.
+/// The process called API in the paper: it knows the kinds of the objects and sends their primitive pairs.
 #ifndef CCHIP_LEVELS_API_HPP
 #define CCHIP_LEVELS_API_HPP
 
@@ -19,10 +19,10 @@ namespace cchip::levels {
 /// long enough: one sends, one receives. A third ends the simulation with an error if nothing happens for a while.
 class Api : public sc_core::sc_module {
  public:
-  /// Answer that did not come.
+  /// Marks an answer that did not come.
   static constexpr std::uint8_t unanswered = 2;
 
-  /// \param patience longest time without any answer or prepared object pair
+  /// \param patience longest time without an answer or a prepared object pair
   Api(const sc_core::sc_module_name& name, const Stimulus& stimulus, sc_core::sc_time patience);
 
   /// In the order of the stimulus: 0 apart, 1 intersecting, `unanswered`.
@@ -37,7 +37,7 @@ class Api : public sc_core::sc_module {
   /// Records what went wrong and ends the simulation.
   void fail(const std::string& message);
 
-  /// Before the first primitive pair of an object pair is sent; those before are answered. May wait.
+  /// Called before the first primitive pair of an object pair is sent, when all those before it are answered. May wait.
   virtual void prepare(const ObjectPair&) {}
   /// Sends the primitive pair with this index; may wait.
   virtual void send(std::size_t index) = 0;

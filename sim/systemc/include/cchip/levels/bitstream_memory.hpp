@@ -20,7 +20,7 @@ class BitstreamMemory : public sc_core::sc_module {
 
   BitstreamMemory(const sc_core::sc_module_name& name, sc_core::sc_time latency);
 
-  /// Behind what is there, at the next multiple of defs::bitstream_align. \return its address, bytes
+  /// Appends at the next multiple of defs::bitstream_align. \return the address, bytes
   std::uint32_t append(const Bytes& bitstream);
 
  private:

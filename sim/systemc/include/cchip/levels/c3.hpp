@@ -11,13 +11,13 @@
 
 namespace cchip::levels {
 
-/// The paper's custom configuration controller (C3): the test that the API asks for takes the place of the present one.
+/// The paper's custom configuration controller (C3): replaces the present test with the one that the API asks for.
 class C3 {
  public:
   /// \param tests in the order tri-tri, tri-quad, quad-quad; added to the control, one may be active
   C3(rc::control& control, std::array<rc::context*, 3> tests);
 
-  /// Returns when the test is active. From a thread.
+  /// Returns when the test is active. Call it from a thread.
   void configure(ModuleId test);
   std::uint64_t swaps() const { return swaps_; }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Level 0: the primitive tests, plainly functional, without time, with FIFOs only (paper, section 3 and figure 3).
-/// They know nothing of reconfiguration.
+/// Level 0: the primitive tests, purely functional, without time, with FIFOs only (paper, section 3 and figure 3). They
+/// know nothing of reconfiguration.
 #ifndef CCHIP_LEVELS_FUNCTIONAL_TEST_HPP
 #define CCHIP_LEVELS_FUNCTIONAL_TEST_HPP
 
@@ -26,7 +26,7 @@ std::vector<Integers> vertices_of(const Vertices& p, std::size_t count);
 /// The first `count` vertices times m, rounded by floor(x + 1/2), in fixed-point arithmetic.
 std::vector<Integers> placed_vertices_of(const Vertices& p, std::size_t count, const Matrix& m);
 
-/// Reads m, a and b, places a by m, writes whether the two intersect; again and again, one for one and in order.
+/// Reads m, a and b, places a by m, writes whether the two intersect; repeatedly, one answer for each input, in order.
 /// \tparam vertices_a, vertices_b  3 triangle, 4 quad
 template <std::size_t vertices_a, std::size_t vertices_b>
 class FunctionalTest : public sc_core::sc_module {

@@ -20,7 +20,7 @@ struct GeneratorOptions {
 /// grid step apart, touching, coplanar, degenerate, quads planar, warped and collapsed. Half of the matrices turn A by
 /// any angle, the others keep the class of the pair exactly: they permute and mirror axes, shift, and scale by 1, 1/2
 /// or 1/4.
-/// \throws std::invalid_argument no such number of object pairs
+/// \throws std::invalid_argument the number of object pairs is out of range
 Stimulus generate(const GeneratorOptions& options);
 
 }  // namespace cchip::levels

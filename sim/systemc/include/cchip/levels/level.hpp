@@ -19,7 +19,7 @@ struct LevelOptions {
   std::size_t payload_bytes = 2048;
   /// Seed of what RTL leaves undefined at power-up and of the bitstreams.
   std::uint64_t seed = 1;
-  /// L3: false leaves the process of listing 3.3 out, to see what happens.
+  /// L3: false leaves out the process of listing 3.3, to see what happens.
   bool reset_on_configuration = true;
 };
 
@@ -41,7 +41,7 @@ LevelResult run_l2(const Stimulus& stimulus, const LevelOptions& options);
 /// L3: Verilated RTL as closed components with pins in port groups, reset on configuration beside each; configuration
 /// takes the time of equation (4). Clock 100 MHz.
 LevelResult run_l3(const Stimulus& stimulus, const LevelOptions& options);
-/// L3 whose first test is there from the beginning.
+/// L3 whose first test is loaded from the beginning.
 LevelResult run_l3_preloaded(const Stimulus& stimulus, const LevelOptions& options);
 /// One test of L3 bound directly, without library; a stimulus of one kind.
 LevelResult run_l3_direct(const Stimulus& stimulus, const LevelOptions& options);
@@ -49,7 +49,7 @@ LevelResult run_l3_direct(const Stimulus& stimulus, const LevelOptions& options)
 /// over TLM-2.0. Clock 100 MHz, configuration port 8 bit at 50 MHz.
 LevelResult run_l4(const Stimulus& stimulus, const LevelOptions& options);
 
-/// Runs `job` in a child process and hands its result over.
+/// Runs `job` in a child process and returns its result.
 /// \throws std::runtime_error with the message of what `job` threw, or that the child ended by a signal
 LevelResult in_child(const std::function<LevelResult()>& job);
 

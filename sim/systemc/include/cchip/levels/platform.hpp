@@ -11,10 +11,10 @@
 
 namespace cchip::levels {
 
-/// Left open: the initiator of subsystem.registers, who writes requests and who reads results.
+/// Left unbound: the initiator of subsystem.registers, the writer of requests and the reader of results.
 struct Platform {
   /// \param seed,period see Subsystem
-  /// \param latency of the memory, each burst
+  /// \param latency of the memory, for each burst
   Platform(std::uint64_t seed, const sc_core::sc_time& period, const sc_core::sc_time& latency)
       : clk("clk", period), subsystem("subsystem", seed, period), memory("memory", latency) {
     subsystem.clk(clk);

@@ -34,7 +34,7 @@ class RtlApi : public Api {
   void send(std::size_t index) override;
   std::pair<std::size_t, bool> receive() override;
 
-  /// By tag: index of the primitive pair under way.
+  /// By tag: index of the primitive pair in flight.
   std::vector<std::size_t> under_way_;
 };
 

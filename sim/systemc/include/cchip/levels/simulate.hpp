@@ -10,7 +10,7 @@
 namespace cchip::levels {
 
 /// Simulates until `api` has all answers; swaps are left 0.
-/// \throws std::runtime_error it has not
+/// \throws std::runtime_error the simulation ended without them
 LevelResult simulate(const Api& api);
 
 }  // namespace cchip::levels

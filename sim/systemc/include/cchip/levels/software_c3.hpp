@@ -20,12 +20,12 @@ class SoftwareC3 : public sc_core::sc_module {
   /// \param patience longest time of a swap
   SoftwareC3(const sc_core::sc_module_name& name, sc_core::sc_time patience);
 
-  /// Tells the hardware where a bitstream of slot 0 is. From a thread, like configure().
-  /// \param bytes of it, header included
+  /// Tells the hardware the address of a bitstream of slot 0. From a thread, like configure().
+  /// \param bytes length of the bitstream, header included
   /// \throws std::runtime_error a register does not answer or refuses
   void announce(ModuleId module_id, std::uint32_t address, std::size_t bytes);
 
-  /// Puts the module into slot 0 and returns when it works.
+  /// Loads the module into slot 0 and returns when it works.
   /// \throws std::runtime_error the swap fails or does not end in time
   void configure(ModuleId module_id);
 

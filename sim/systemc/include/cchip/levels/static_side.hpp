@@ -34,8 +34,8 @@ class StaticReset : public sc_core::sc_module {
   void write_rst();
 };
 
-/// API that before each object pair decouples the driver, configures, waits until the reset is over, compares rm_id and
-/// couples the driver again.
+/// API that, before each object pair, decouples the driver, configures, waits until the reset is over, compares rm_id
+/// and couples the driver again.
 class PinApi : public RtlApi {
  public:
   sc_core::sc_in<bool> clk{"clk"};
@@ -57,7 +57,7 @@ struct StaticSide {
 
   /// Binds the portals' static sides.
   void bind(PinPortals& portals);
-  /// Binds a test directly, its reset excepted.
+  /// Binds a test directly, except its reset.
   template <class Test>
   void bind_test(Test& test) {
     test.clk(clk);

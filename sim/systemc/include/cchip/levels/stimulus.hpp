@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What all refinement levels are fed with: object pairs, each a run of primitive pairs of one kind with the matrix m
-/// that places one primitive in the coordinates of the other (paper, section 3).
+/// The input of all refinement levels: object pairs, each a run of primitive pairs of one kind with the matrix m that
+/// places one primitive in the coordinates of the other (paper, section 3).
 #ifndef CCHIP_LEVELS_STIMULUS_HPP
 #define CCHIP_LEVELS_STIMULUS_HPP
 
@@ -17,11 +17,11 @@ namespace cchip::levels {
 
 /// Width of a coordinate on the grid, bit.
 constexpr int coord_w = defs::coord_w_default;
-/// Entries of a matrix are multiples of 1 / matrix_unit, so that doubles hold them and all sums exactly.
+/// Entries of a matrix are multiples of 1 / matrix_unit, so that doubles represent them and all sums exactly.
 constexpr int matrix_unit = 1024;
 /// Largest |entry| in the three left columns of a matrix.
 constexpr int matrix_entry_max = 16;
-/// Largest |coordinate| of a vertex that the matrix is still to be applied to, and of its right column, grid steps.
+/// Largest |coordinate| of a vertex before the matrix is applied, and of the matrix's right column, grid steps.
 constexpr int unplaced_max = 1 << 19;
 
 /// The matrix m: 3 rows of 4 entries, row by row; the right column is the translation in grid steps.
@@ -55,14 +55,14 @@ ModuleId test_of(const StimulusPair& pair);
 /// The object pairs of a stimulus in their order.
 std::vector<ObjectPair> object_pairs(const Stimulus& stimulus);
 
-/// Vertices of `p` times `m`, rounded to the grid by floor(x + 1/2). Exact for what check_pair() lets through.
+/// Vertices of `p` times `m`, rounded to the grid by floor(x + 1/2). Exact for pairs that pass check_pair().
 GridPrimitive place(const Matrix& m, const GridPrimitive& p);
 
-/// The pair on the grid, with a placed: what the answer is about.
+/// The pair on the grid, with a placed: the answer refers to it.
 GridPair placed(const StimulusPair& pair);
 
-/// \throws std::invalid_argument quad before triangle; an entry of the matrix is too large or no multiple of
-/// 1 / matrix_unit; a vertex is off the grid, for a after it was placed
+/// \throws std::invalid_argument quad before triangle; an entry of the matrix is too large or no multiple of 1 /
+///         matrix_unit; a vertex is off the grid (for a: after it was placed)
 void check_pair(const StimulusPair& pair);
 
 /// \throws std::invalid_argument `next` cannot follow `last`: object pair that ended before, another kind in one

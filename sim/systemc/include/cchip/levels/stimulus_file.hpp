@@ -20,7 +20,7 @@ namespace cchip::levels {
 void write_stimulus(std::ostream& out, const Stimulus& stimulus);
 
 /// \param name of the file, for messages
-/// \throws UsageError file, line, what is wrong and what to do; also without any pair
+/// \throws UsageError file, line, what is wrong and what to do; also if the file has no pair
 Stimulus read_stimulus(std::istream& in, const std::string& name);
 
 }  // namespace cchip::levels

@@ -26,10 +26,11 @@ class Subsystem : public sc_core::sc_module {
   sc_core::sc_out<bool> irq{"irq"};
   sc_core::sc_fifo_in<RtlRequest> requests{"requests"};
   sc_core::sc_fifo_out<RtlResult> results{"results"};
-  /// b_transport() waits for the AXI4-Lite answer, at most register_clocks_max clocks. TLM_OK_RESPONSE;
-  /// TLM_BURST_ERROR_RESPONSE other than 4 bytes; TLM_BYTE_ENABLE_ERROR_RESPONSE byte enables;
-  /// TLM_COMMAND_ERROR_RESPONSE neither read nor write; TLM_ADDRESS_ERROR_RESPONSE not in the 4 KiB of the registers;
-  /// TLM_GENERIC_ERROR_RESPONSE refused by the registers; no answer in time, now or earlier
+  /// b_transport() waits for the AXI4-Lite answer, at most register_clocks_max clocks. Responses: TLM_OK_RESPONSE;
+  /// TLM_BURST_ERROR_RESPONSE for a length other than 4 bytes; TLM_BYTE_ENABLE_ERROR_RESPONSE for byte enables;
+  /// TLM_COMMAND_ERROR_RESPONSE for neither read nor write; TLM_ADDRESS_ERROR_RESPONSE for an address outside the 4 KiB
+  /// of the registers; TLM_GENERIC_ERROR_RESPONSE if the registers refuse the access, or do not answer in time, now or
+  /// earlier
   tlm_utils::simple_target_socket<Subsystem> registers{"registers"};
   tlm_utils::simple_initiator_socket<Subsystem> memory{"memory"};
 

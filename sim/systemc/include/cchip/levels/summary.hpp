@@ -13,13 +13,13 @@
 
 namespace cchip::levels {
 
-/// A level and what it said.
+/// A level and its answers.
 struct LevelRun {
   std::string name;         ///< L0 to L4
   std::string description;  ///< a few words
   bool reconfigures = false;
   LevelResult result;
-  std::string error;  ///< why it ended before all was answered; then no answer counts
+  std::string error;  ///< why it ended before all was answered; then its answers do not count
 };
 
 /// Answers of the Eigen reference for the pairs on the grid.
@@ -29,7 +29,7 @@ std::vector<std::uint8_t> reference_answers(const Stimulus& stimulus);
 std::vector<std::size_t> differences(const std::vector<std::uint8_t>& expected,
                                      const std::vector<std::uint8_t>& answers);
 
-/// Everything that was found.
+/// All findings.
 class Summary {
  public:
   explicit Summary(const Stimulus& stimulus) : stimulus_(stimulus), expected_(reference_answers(stimulus)) {}
@@ -39,7 +39,7 @@ class Summary {
 
   /// Answers of all levels that differ from the reference.
   std::size_t mismatches() const;
-  /// True if the levels that reconfigure did it equally often.
+  /// True if all levels that reconfigure did so equally often.
   bool swaps_agree() const;
   bool good() const { return mismatches() == 0 && swaps_agree() && added_deltas_ == 0; }
 
