@@ -4,24 +4,51 @@
 #include <utility>
 
 namespace cchip {
+namespace {
+
+std::vector<CollisionResult> gather(Device& device, std::size_t count, const Device::QuerySource& query,
+                                    const CollisionRequest& request) {
+  std::vector<CollisionResult> results(count);
+  device.collide(count, query, request,
+                 [&results](std::size_t i, const CollisionResult& result) { results[i] = result; });
+  return results;
+}
+
+Device::QuerySource in_poses(const Object& a, const Object& b, const std::vector<PosePair>& poses) {
+  return [&a, &b, &poses](std::size_t i) { return CollisionQuery{&a, &poses[i].a, &b, &poses[i].b}; };
+}
+
+}  // namespace
 
 Object::Object(Mesh mesh) {
-  bvh::Tree tree = bvh::build_tree(mesh);
+  bvh::SupportTree tree(mesh, bvh::build_tree(mesh));
   data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(tree)});
 }
 
-void Device::collide(const Object& a, const Object& b, const std::vector<PosePair>& poses,
-                     const CollisionRequest& request, const std::function<void(std::size_t, CollisionResult&&)>& take) {
-  for (const PosePair& pose : poses) check_query(pose.a, pose.b, request);
-  for (std::size_t i = 0; i < poses.size(); ++i) take(i, collide(a, poses[i].a, b, poses[i].b, request));
+void Device::collide(std::size_t count, const QuerySource& query, const CollisionRequest& request,
+                     const ResultSink& take) {
+  for (std::size_t i = 0; i < count; ++i) check_query(query(i), request);
+  CollisionResult result;
+  for (std::size_t i = 0; i < count; ++i) {
+    collide(query(i), request, result);
+    take(i, result);
+  }
+}
+
+void collide(Device& device, const Object& a, const Object& b, const std::vector<PosePair>& poses,
+             const CollisionRequest& request, const Device::ResultSink& take) {
+  device.collide(poses.size(), in_poses(a, b, poses), request, take);
 }
 
 std::vector<CollisionResult> collide(Device& device, const Object& a, const Object& b,
                                      const std::vector<PosePair>& poses, const CollisionRequest& request) {
-  std::vector<CollisionResult> results(poses.size());
-  device.collide(a, b, poses, request,
-                 [&results](std::size_t i, CollisionResult&& result) { results[i] = std::move(result); });
-  return results;
+  return gather(device, poses.size(), in_poses(a, b, poses), request);
+}
+
+std::vector<CollisionResult> collide(Device& device, const std::vector<CollisionQuery>& queries,
+                                     const CollisionRequest& request) {
+  return gather(
+      device, queries.size(), [&queries](std::size_t i) { return queries[i]; }, request);
 }
 
 }  // namespace cchip

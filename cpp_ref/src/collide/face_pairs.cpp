@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 namespace cchip {
 namespace {
@@ -25,42 +24,44 @@ std::uint32_t file_face(const Mesh& mesh, std::uint32_t face) {
 
 }  // namespace
 
-void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest& request) {
-  check_pose(pose_a, "A");
-  check_pose(pose_b, "B");
+void check_query(const CollisionQuery& query, const CollisionRequest& request) {
+  check_pose(*query.pose_a, "A");
+  check_pose(*query.pose_b, "B");
   if (request.contacts == CollisionRequest::Contacts::all && request.most_contacts == 0) {
     throw std::invalid_argument("most_contacts is 0: ask for at least one contact");
   }
 }
 
-FacePairs::FacePairs(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
-                     const CollisionRequest& request)
-    : mesh_a_(a.mesh()),
-      mesh_b_(b.mesh()),
-      pairs_((check_query(pose_a, pose_b, request), pose_a), pose_b),
-      request_(request),
-      cut_(!a.mesh().file_face.empty() || !b.mesh().file_face.empty()) {
-  if (request_.contacts == CollisionRequest::Contacts::first) request_.most_contacts = 1;
+void FacePairs::start(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) {
+  query_ = query;
+  result_ = &result;
+  result.hit = false;
+  result.contacts.clear();
+  result.counts = {};
+  most_ = request.contacts == CollisionRequest::Contacts::first ? 1 : request.most_contacts;
+  cut_ = !query.a->mesh().file_face.empty() || !query.b->mesh().file_face.empty();
+  if (cut_) contacts_.clear();
+  pairs_.reset();
 }
 
 void FacePairs::test(std::uint32_t face_a, std::uint32_t face_b) {
-  const PosedPairs::Answer answer = pairs_.decide(mesh_a_.primitive(face_a), mesh_b_.primitive(face_b));
-  ++result_.counts.pairs;
-  result_.counts.open += answer.open;
+  if (!pairs_) pairs_.emplace(*query_.pose_a, *query_.pose_b);
+  const PosedPairs::Answer answer =
+      pairs_->decide(query_.a->mesh().primitive(face_a), query_.b->mesh().primitive(face_b));
+  ++result_->counts.pairs;
+  result_->counts.open += answer.open;
   if (answer.hit) add(face_a, face_b);
 }
 
 void FacePairs::add(std::uint32_t face_a, std::uint32_t face_b) {
-  const Contact contact = {file_face(mesh_a_, face_a), file_face(mesh_b_, face_b)};
-  if (cut_ && !contacts_.insert(contact).second) return;
-  result_.contacts.push_back(contact);
-  done_ = result_.contacts.size() == request_.most_contacts;
+  const Contact contact = {file_face(query_.a->mesh(), face_a), file_face(query_.b->mesh(), face_b)};
+  if (cut_ && most_ > 1 && !contacts_.insert(contact).second) return;
+  result_->contacts.push_back(contact);
 }
 
-CollisionResult FacePairs::take() {
-  result_.hit = !result_.contacts.empty();
-  std::sort(result_.contacts.begin(), result_.contacts.end());
-  return std::move(result_);
+void FacePairs::finish() {
+  result_->hit = !result_->contacts.empty();
+  if (result_->contacts.size() > 1) std::sort(result_->contacts.begin(), result_->contacts.end());
 }
 
 }  // namespace cchip

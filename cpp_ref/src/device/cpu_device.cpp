@@ -1,166 +1,208 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cpu_device.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <cchip/collide/face_pairs.hpp>
+#include <cchip/device/cpu_device.hpp>
+#include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <stdexcept>
 #include <system_error>
 #include <thread>
 #include <utility>
 
-#include "dop_pairs.hpp"
+#include "search.hpp"
 
 namespace cchip {
 namespace {
 
-using bvh::NodeKind;
-using bvh::TreeNode;
+constexpr const char* plain = "plain";
 
-/// Numbers of a node of A and of one of B whose volumes overlap.
-struct NodePair {
-  std::uint32_t a;
-  std::uint32_t b;
-};
+std::unique_ptr<Search> make_search(const std::string& target) {
+  return target == plain ? make_plain_search() : make_simd_search(target);
+}
 
-/// Descends in both trees at once, where the volumes overlap most first. Keeps its memory from query to query.
-class Search {
+/// A batch that several threads answer. Each takes some queries at a time and keeps results until it has as many.
+class Batch {
  public:
-  CollisionResult run(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
-                      const CollisionRequest& request) {
-    FacePairs faces(a, pose_a, b, pose_b, request);
-    const DopPairs volumes(a, pose_a, b, pose_b);
-    const bvh::Tree& tree_a = a.tree();
-    const bvh::Tree& tree_b = b.tree();
-    stack_.clear();
-    ++faces.counts().box_tests;
-    if (DopPairs::overlap(volumes.volume_a(tree_a.nodes[0].dop), volumes.volume_b(tree_b.nodes[0].dop)) >= 0) {
-      stack_.push_back({0, 0});
+  Batch(std::size_t count, const Device::QuerySource& query, const CollisionRequest& request,
+        const Device::ResultSink& take)
+      : count_(count), query_(query), request_(request), take_(take) {}
+
+  /// What one thread does.
+  void work(Search& search, std::vector<std::pair<std::size_t, CollisionResult>>& kept) {
+    Feed feed(*this, kept);
+    try {
+      search.run(feed, request_);
+      feed.hand_over();
+    } catch (...) {
+      stop(std::current_exception());
     }
-    while (!stack_.empty() && !faces.done()) {
-      const NodePair pair = stack_.back();
-      stack_.pop_back();
-      const TreeNode& node_a = tree_a.nodes[pair.a];
-      const TreeNode& node_b = tree_b.nodes[pair.b];
-      if (node_a.kind != NodeKind::inner && node_b.kind != NodeKind::inner) {
-        test_leaves(tree_a, node_a, tree_b, node_b, faces);
-      } else {
-        expand(tree_a, pair.a, tree_b, pair.b, volumes, faces.counts());
-      }
-    }
-    return faces.take();
+  }
+
+  /// Call it when all threads are done.
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
   }
 
  private:
-  static constexpr std::size_t width = 4;  // children of a node
+  static constexpr std::size_t share = 32;
 
-  struct Range {
-    std::uint32_t first;
-    std::uint32_t count;
+  class Feed final : public QueryFeed {
+   public:
+    Feed(Batch& batch, std::vector<std::pair<std::size_t, CollisionResult>>& kept) : batch_(batch), kept_(kept) {
+      kept_.resize(share);
+    }
+    bool next(CollisionQuery& query, std::size_t& number) override {
+      if (at_ == end_) {
+        at_ = std::min(batch_.next_.fetch_add(share), batch_.count_);
+        end_ = std::min(at_ + share, batch_.count_);
+        if (at_ == end_) return false;
+      }
+      number = at_++;
+      query = batch_.query_(number);
+      return true;
+    }
+    void done(std::size_t number, CollisionResult& result) override {
+      kept_[kept_count_].first = number;
+      std::swap(kept_[kept_count_].second, result);
+      if (++kept_count_ == share) hand_over();
+    }
+    void hand_over() {
+      const std::lock_guard<std::mutex> lock(batch_.taking_);
+      for (std::size_t i = 0; i < kept_count_ && !batch_.error_; ++i) batch_.take_(kept_[i].first, kept_[i].second);
+      kept_count_ = 0;
+    }
+
+   private:
+    Batch& batch_;
+    std::vector<std::pair<std::size_t, CollisionResult>>& kept_;
+    std::size_t kept_count_ = 0;
+    std::size_t at_ = 0;
+    std::size_t end_ = 0;
   };
-  /// What comes below a node: its children, or itself if it is a leaf.
-  static Range below(const bvh::Tree& tree, std::uint32_t number) {
-    const TreeNode& node = tree.nodes[number];
-    if (node.kind == NodeKind::inner) return {node.first, node.count};
-    return {number, 1};
+
+  void stop(std::exception_ptr error) {
+    next_ = count_;
+    const std::lock_guard<std::mutex> lock(taking_);
+    if (!error_) error_ = std::move(error);
   }
 
-  void expand(const bvh::Tree& tree_a, std::uint32_t number_a, const bvh::Tree& tree_b, std::uint32_t number_b,
-              const DopPairs& volumes, CollisionCounts& counts) {
-    const Range range_a = below(tree_a, number_a);
-    const Range range_b = below(tree_b, number_b);
-    std::array<bvh::Dop26, width> volumes_b;
-    for (std::uint32_t k = 0; k < range_b.count; ++k) {
-      volumes_b[k] = volumes.volume_b(tree_b.nodes[range_b.first + k].dop);
+  const std::size_t count_;
+  const Device::QuerySource& query_;
+  const CollisionRequest& request_;
+  const Device::ResultSink& take_;
+  std::atomic<std::size_t> next_ = 0;
+  std::mutex taking_;
+  std::exception_ptr error_;
+};
+
+/// A thread with its search. It waits for batches.
+class Worker {
+ public:
+  explicit Worker(const std::string& target) : search_(make_search(target)) {}
+  ~Worker() {
+    if (!thread_.joinable()) return;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      end_ = true;
     }
-    struct Candidate {
-      double depth;
-      NodePair pair;
-    };
-    std::array<Candidate, width * width> found;
-    std::size_t count = 0;
-    for (std::uint32_t i = range_a.first; i < range_a.first + range_a.count; ++i) {
-      const bvh::Dop26 volume_a = volumes.volume_a(tree_a.nodes[i].dop);
-      for (std::uint32_t k = 0; k < range_b.count; ++k) {
-        const double depth = DopPairs::overlap(volume_a, volumes_b[k]);
-        if (depth >= 0) found[count++] = {depth, {i, range_b.first + k}};
-      }
+    changed_.notify_one();
+    thread_.join();
+  }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  /// Begins to work at the batch; wait() for the end. Does nothing if the system has no more threads.
+  void begin(Batch& batch) {
+    try {
+      if (!thread_.joinable()) thread_ = std::thread([this] { loop(); });
+    } catch (const std::system_error&) {
+      return;
     }
-    ++counts.steps;
-    counts.box_tests += std::uint64_t{range_a.count} * range_b.count;
-    // The deepest comes last, on top of the stack; among equals the first.
-    std::sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count),
-              [](const Candidate& p, const Candidate& q) {
-                if (p.depth != q.depth) return p.depth < q.depth;
-                return p.pair.a != q.pair.a ? p.pair.a > q.pair.a : p.pair.b > q.pair.b;
-              });
-    for (std::size_t i = 0; i < count; ++i) stack_.push_back(found[i].pair);
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      batch_ = &batch;
+    }
+    changed_.notify_one();
+  }
+  void wait() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [this] { return batch_ == nullptr; });
+  }
+  /// Works at the batch in the caller's thread.
+  void work(Batch& batch) { batch.work(*search_, kept_); }
+  Search& search() { return *search_; }
+
+ private:
+  void loop() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (true) {
+      changed_.wait(lock, [this] { return batch_ != nullptr || end_; });
+      if (end_) return;
+      lock.unlock();
+      work(*batch_);
+      lock.lock();
+      batch_ = nullptr;
+      changed_.notify_one();
+    }
   }
 
-  static void test_leaves(const bvh::Tree& tree_a, const TreeNode& leaf_a, const bvh::Tree& tree_b,
-                          const TreeNode& leaf_b, FacePairs& faces) {
-    for (std::size_t i = leaf_a.first; i < leaf_a.first + leaf_a.count; ++i) {
-      for (std::size_t k = leaf_b.first; k < leaf_b.first + leaf_b.count; ++k) {
-        faces.test(tree_a.faces[i], tree_b.faces[k]);
-        if (faces.done()) return;
-      }
-    }
-  }
-
-  std::vector<NodePair> stack_;
+  std::unique_ptr<Search> search_;
+  std::vector<std::pair<std::size_t, CollisionResult>> kept_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  Batch* batch_ = nullptr;
+  bool end_ = false;
+  std::thread thread_;
 };
 
 class CpuDevice final : public Device {
  public:
-  explicit CpuDevice(unsigned threads) : searches_(std::max(1U, threads)) {}
+  CpuDevice(unsigned threads, const std::string& target) {
+    for (unsigned i = 0; i < std::max(1U, threads); ++i) workers_.push_back(std::make_unique<Worker>(target));
+  }
 
   const char* name() const override { return "cpu"; }
 
-  CollisionResult collide(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
-                          const CollisionRequest& request) override {
-    return searches_.front().run(a, pose_a, b, pose_b, request);
+  void collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) override {
+    check_query(query, request);
+    workers_.front()->search().run(query, request, result);
   }
 
-  void collide(const Object& a, const Object& b, const std::vector<PosePair>& poses, const CollisionRequest& request,
-               const std::function<void(std::size_t, CollisionResult&&)>& take) override {
-    for (const PosePair& pose : poses) check_query(pose.a, pose.b, request);
-    std::atomic<std::size_t> next = 0;
-    std::mutex taking;
-    std::exception_ptr error;
-    const auto work = [&](Search& search) {
-      for (std::size_t i = next++; i < poses.size(); i = next++) {
-        try {
-          CollisionResult result = search.run(a, poses[i].a, b, poses[i].b, request);
-          const std::lock_guard<std::mutex> lock(taking);
-          if (!error) take(i, std::move(result));
-        } catch (...) {
-          const std::lock_guard<std::mutex> lock(taking);
-          if (!error) error = std::current_exception();
-          next = poses.size();
-        }
-      }
-    };
-    std::vector<std::thread> helpers;
-    const std::size_t threads = std::min(searches_.size(), poses.size());
-    try {
-      for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back([&work, this, i] { work(searches_[i]); });
-    } catch (const std::system_error&) {
-      // The system has no more threads: those that run do all the work.
-    }
-    work(searches_.front());
-    for (std::thread& helper : helpers) helper.join();
-    if (error) std::rethrow_exception(error);
+  void collide(std::size_t count, const QuerySource& query, const CollisionRequest& request,
+               const ResultSink& take) override {
+    for (std::size_t i = 0; i < count; ++i) check_query(query(i), request);
+    Batch batch(count, query, request, take);
+    const std::size_t threads = std::min(workers_.size(), count);
+    for (std::size_t i = 1; i < threads; ++i) workers_[i]->begin(batch);
+    workers_.front()->work(batch);
+    for (std::size_t i = 1; i < threads; ++i) workers_[i]->wait();
+    batch.rethrow();
   }
 
  private:
-  std::vector<Search> searches_;  // one for each thread
+  std::vector<std::unique_ptr<Worker>> workers_;  // the first one works in the caller's thread
 };
 
 }  // namespace
 
-std::unique_ptr<Device> make_cpu_device(unsigned threads) {
-  return std::make_unique<CpuDevice>(threads != 0 ? threads : std::thread::hardware_concurrency());
+std::vector<std::string> cpu_targets() {
+  std::vector<std::string> targets = simd_targets();
+  targets.emplace_back(plain);
+  return targets;
+}
+
+std::unique_ptr<Device> open_cpu_device(const CpuOptions& options) {
+  const std::vector<std::string> targets = cpu_targets();
+  const std::string target = options.target.empty() ? targets.front() : options.target;
+  if (std::find(targets.begin(), targets.end(), target) == targets.end()) {
+    std::string known;
+    for (const std::string& name : targets) known += (known.empty() ? "" : ", ") + name;
+    throw std::invalid_argument("instruction set " + target + " is not known on this computer: there are " + known);
+  }
+  return std::make_unique<CpuDevice>(options.threads != 0 ? options.threads : std::thread::hardware_concurrency(),
+                                     target);
 }
 
 }  // namespace cchip

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cchip/device/cpu_device.hpp>
 #include <cchip/device/device.hpp>
 #include <stdexcept>
 
-#include "cpu_device.hpp"
 #include "model_device.hpp"
 
 namespace cchip {
@@ -14,7 +14,7 @@ struct NamedDevice {
 };
 
 constexpr NamedDevice devices[] = {
-    {"cpu", [] { return make_cpu_device(); }},
+    {"cpu", [] { return open_cpu_device(); }},
     {"model", make_model_device},
 };
 

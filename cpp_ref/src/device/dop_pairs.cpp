@@ -46,14 +46,10 @@ Realignment::Directions own_directions() {
   return d;
 }
 
-/// Greatest magnitude of a coordinate of the object's vertices.
+/// Bound on the magnitude of the coordinates that an object's volumes are made of.
 double extent(const Object& object) {
-  const Dop26& dop = object.tree().nodes.front().dop;
-  double greatest = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    greatest = std::max({greatest, std::abs(dop.least[k]), std::abs(dop.greatest[k])});
-  }
-  return greatest;
+  const bvh::SupportTree& tree = object.tree();
+  return tree.centre().cwiseAbs().maxCoeff() + 2 * bvh::support_most * tree.unit();
 }
 
 /// Directions of the world that the pose maps to the 13, nearly; nothing if the pose has no good inverse.

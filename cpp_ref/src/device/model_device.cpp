@@ -5,13 +5,13 @@
 #include <cchip/bvh/image.hpp>
 #include <cchip/bvh/place.hpp>
 #include <cchip/collide/face_pairs.hpp>
+#include <cchip/device/cpu_device.hpp>
 #include <cchip/model/broad_phase.hpp>
 #include <iterator>
 #include <list>
 #include <optional>
 #include <stdexcept>
 
-#include "cpu_device.hpp"
 
 namespace cchip {
 namespace {
@@ -44,7 +44,7 @@ class ImageCache {
 
   static std::optional<bvh::Image> image_of(const Object& object) {
     try {
-      return bvh::make_image(object.mesh(), object.tree());
+      return bvh::make_image(object.mesh(), bvh::build_tree(object.mesh()));
     } catch (const std::invalid_argument&) {  // more lines than an image holds
       return std::nullopt;
     }
@@ -59,38 +59,35 @@ class ModelDevice final : public Device {
 
   const char* name() const override { return "model"; }
 
-  CollisionResult collide(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
-                          const CollisionRequest& request) override {
-    check_query(pose_a, pose_b, request);
-    const std::optional<model::BroadPhaseResult> answer = ask(a, pose_a, b, pose_b, request);
-    if (!answer) return cpu_->collide(a, pose_a, b, pose_b, request);
+  void collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) override {
+    check_query(query, request);
+    const std::optional<model::BroadPhaseResult> answer = ask(query, request);
+    if (!answer) return cpu_->collide(query, request, result);
     CollisionCounts counts;
     counts.steps = answer->counts.steps;
     counts.box_tests = answer->counts.box_tests;
     counts.pairs = answer->counts.primitive_pairs;
     const QueryCode code = answer->done.code;
     if (code == QueryCode::ok || code == QueryCode::host) {
-      FacePairs faces(a, pose_a, b, pose_b, request);
-      counts.open = resolve(answer->pairs, faces);
-      if (code == QueryCode::ok || faces.done()) {
-        CollisionResult result = faces.take();
+      faces_.start(query, request, result);
+      counts.open = resolve(answer->pairs, faces_);
+      if (code == QueryCode::ok || faces_.done()) {
+        faces_.finish();
         result.counts = counts;
-        return result;
+        return;
       }
     }
-    CollisionResult result = cpu_->collide(a, pose_a, b, pose_b, request);
+    cpu_->collide(query, request, result);
     result.counts += counts;
-    return result;
   }
 
  private:
   /// What the chip says; nothing if it does not take the query.
-  std::optional<model::BroadPhaseResult> ask(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
-                                             const CollisionRequest& request) {
-    const bvh::Image* image_a = images_.of(a);
-    const bvh::Image* image_b = images_.of(b);
+  std::optional<model::BroadPhaseResult> ask(const CollisionQuery& placed, const CollisionRequest& request) {
+    const bvh::Image* image_a = images_.of(*placed.a);
+    const bvh::Image* image_b = images_.of(*placed.b);
     if (image_a == nullptr || image_b == nullptr) return std::nullopt;
-    std::optional<Query> query = bvh::make_query(image_a->header(), pose_a, image_b->header(), pose_b);
+    std::optional<Query> query = bvh::make_query(image_a->header(), *placed.pose_a, image_b->header(), *placed.pose_b);
     if (!query) return std::nullopt;
     query->mode = request.contacts == CollisionRequest::Contacts::all ? QueryMode::all : QueryMode::first;
     if (query->swapped) std::swap(image_a, image_b);
@@ -114,7 +111,8 @@ class ModelDevice final : public Device {
   }
 
   ImageCache images_;
-  std::unique_ptr<Device> cpu_ = make_cpu_device(1);
+  FacePairs faces_;
+  std::unique_ptr<Device> cpu_ = open_cpu_device({1, {}});
 };
 
 }  // namespace

@@ -69,30 +69,50 @@ struct PosePair {
   Pose b = Pose::Identity();
 };
 
+/// Two placed objects. Refers to objects and poses of the caller, which must stay as they are during the call.
+struct CollisionQuery {
+  const Object* a = nullptr;
+  const Pose* pose_a = nullptr;
+  const Object* b = nullptr;
+  const Pose* pose_b = nullptr;
+};
+
 /// Answers queries. A device takes one call at a time; objects may be shared between devices.
 class Device {
  public:
   virtual ~Device() = default;
   virtual const char* name() const = 0;
+  /// Replaces what is in `result`, whose memory is used again.
   /// \throws std::invalid_argument an entry of a pose is not finite or beyond 2^500 in magnitude
-  virtual CollisionResult collide(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
-                                  const CollisionRequest& request) = 0;
-  /// Answers the same query in many poses. `take` is called with the number of the query and its result, one call at a
-  /// time, in any order. A device may use all cores.
-  virtual void collide(const Object& a, const Object& b, const std::vector<PosePair>& poses,
-                       const CollisionRequest& request,
-                       const std::function<void(std::size_t, CollisionResult&&)>& take);
+  virtual void collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) = 0;
+
+  using QuerySource = std::function<CollisionQuery(std::size_t)>;
+  using ResultSink = std::function<void(std::size_t, const CollisionResult&)>;
+  /// Answers `count` queries, those that `query` gives for 0..count - 1. It may be asked for a query more than once and
+  /// by several threads at a time. `take` is called with the number of a query and its result, one call at a time, in
+  /// any order. A device may use all cores.
+  /// \throws std::invalid_argument as above, before any result
+  virtual void collide(std::size_t count, const QuerySource& query, const CollisionRequest& request,
+                       const ResultSink& take);
 };
 
 /// One query.
 inline CollisionResult collide(Device& device, const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
                                const CollisionRequest& request = {}) {
-  return device.collide(a, pose_a, b, pose_b, request);
+  CollisionResult result;
+  device.collide({&a, &pose_a, &b, &pose_b}, request, result);
+  return result;
 }
 
-/// A batch; results in the order of the poses.
+/// The same objects in many poses; each result as it is ready.
+void collide(Device& device, const Object& a, const Object& b, const std::vector<PosePair>& poses,
+             const CollisionRequest& request, const Device::ResultSink& take);
+/// The same; results in the order of the poses.
 std::vector<CollisionResult> collide(Device& device, const Object& a, const Object& b,
                                      const std::vector<PosePair>& poses, const CollisionRequest& request = {});
+/// Any queries, such as one object against each of a scene; results in their order.
+std::vector<CollisionResult> collide(Device& device, const std::vector<CollisionQuery>& queries,
+                                     const CollisionRequest& request = {});
 
 }  // namespace cchip
 

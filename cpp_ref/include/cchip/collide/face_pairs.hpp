@@ -7,43 +7,42 @@
 #include <cchip/collide/collide.hpp>
 #include <cchip/exact/posed_pairs.hpp>
 #include <cstddef>
+#include <optional>
 #include <set>
-#include <vector>
 
 namespace cchip {
 
-/// Tests pairs of faces of one query exactly and gathers its result. The objects must outlive it.
+/// Tests pairs of faces of one query exactly and gathers its result. Keeps its memory from query to query.
 class FacePairs {
  public:
-  /// \throws std::invalid_argument as check_query()
-  FacePairs(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b, const CollisionRequest& request);
+  /// Begins a query: empties the result, which the other calls fill. All of what is named must outlive them.
+  /// \pre check_query() accepts it
+  void start(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result);
 
   /// Tests a face of A against a face of B, by their numbers in the meshes.
   void test(std::uint32_t face_a, std::uint32_t face_b);
   /// Records a face of A and a face of B that are known to touch; counts nothing.
   void add(std::uint32_t face_a, std::uint32_t face_b);
   /// True once the request is fulfilled: no pair needs to be tested any more.
-  bool done() const { return done_; }
+  bool done() const { return result_->contacts.size() >= most_; }
 
   /// What the search cost; test() counts `pairs` and `open`.
-  CollisionCounts& counts() { return result_.counts; }
-  /// The result of what was tested. Call it once, at the end.
-  CollisionResult take();
+  CollisionCounts& counts() { return result_->counts; }
+  /// Completes the result. Call it once, at the end.
+  void finish();
 
  private:
-  const Mesh& mesh_a_;
-  const Mesh& mesh_b_;
-  PosedPairs pairs_;
-  CollisionRequest request_;
-  CollisionResult result_;
-  bool cut_;                    ///< some faces of a file are several faces of a mesh, so contacts may repeat
-  std::set<Contact> contacts_;  ///< in use if cut_
-  bool done_ = false;
+  CollisionQuery query_;
+  CollisionResult* result_ = nullptr;
+  std::size_t most_ = 1;
+  bool cut_ = false;                 ///< some faces of a file are several faces of a mesh, so contacts may repeat
+  std::set<Contact> contacts_;       ///< in use if cut_ and more than one is wanted
+  std::optional<PosedPairs> pairs_;  ///< made when it is needed first
 };
 
 /// \throws std::invalid_argument an entry of a pose is not finite or beyond 2^500 in magnitude, or the request wants
 ///         all contacts but at most 0 of them; one line
-void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest& request);
+void check_query(const CollisionQuery& query, const CollisionRequest& request);
 
 }  // namespace cchip
 

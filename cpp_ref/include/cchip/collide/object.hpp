@@ -4,7 +4,7 @@
 #ifndef CCHIP_COLLIDE_OBJECT_HPP
 #define CCHIP_COLLIDE_OBJECT_HPP
 
-#include <cchip/bvh/tree.hpp>
+#include <cchip/bvh/support_tree.hpp>
 #include <cchip/mesh/mesh.hpp>
 #include <memory>
 
@@ -21,14 +21,15 @@ class Object {
   explicit Object(Mesh mesh);
 
   const Mesh& mesh() const { return data_->mesh; }
-  const bvh::Tree& tree() const { return data_->tree; }
+  /// What a CPU traverses. The chip's image is made from the mesh: make_image(mesh, build_tree(mesh)).
+  const bvh::SupportTree& tree() const { return data_->tree; }
   /// Identity: equal only for copies of one object. Devices use it as the key of what they derive from an object.
   const void* id() const { return data_.get(); }
 
  private:
   struct Data {
     Mesh mesh;
-    bvh::Tree tree;
+    bvh::SupportTree tree;
   };
   std::shared_ptr<const Data> data_;
 };

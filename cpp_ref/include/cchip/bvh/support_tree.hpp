@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Tree of 26-DOPs in 16 bits: what a CPU traverses. Made from the same tree as the chip's image.
+#ifndef CCHIP_BVH_SUPPORT_TREE_HPP
+#define CCHIP_BVH_SUPPORT_TREE_HPP
+
+#include <array>
+#include <cchip/bvh/tree.hpp>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+namespace cchip::bvh {
+
+/// What a node is and where what lies below it begins.
+class NodeRef {
+ public:
+  NodeRef() = default;
+  /// An inner node: its children are lines first..first + count - 1.
+  static NodeRef inner(std::uint32_t first, std::uint32_t count) { return NodeRef(first << 5U | count << 1U); }
+  /// A leaf: its primitives are first..first + count - 1.
+  static NodeRef leaf(std::uint32_t first, std::uint32_t count, bool quad) {
+    return NodeRef(first << 5U | (quad ? 16U : 0U) | count << 1U | 1U);
+  }
+  static NodeRef from_bits(std::uint32_t bits) { return NodeRef(bits); }
+  bool is_leaf() const { return (bits_ & 1U) != 0; }
+  bool is_quad() const { return (bits_ & 16U) != 0; }
+  std::uint32_t first() const { return bits_ >> 5U; }
+  std::uint32_t count() const { return bits_ >> 1U & 7U; }
+  std::uint32_t bits() const { return bits_; }
+
+ private:
+  explicit NodeRef(std::uint32_t bits) : bits_(bits) {}
+  std::uint32_t bits_ = 0;
+};
+
+/// Words of a SupportLine. Those of the axes, of the corners (cube diagonals) and of the first eight faces (face
+/// diagonals) lie within 16 bytes each, because instruction sets permute bytes within 16.
+///  word 2 axis + negative;  8 + (x<0) + 2 (y<0) + 4 (z<0);  16 + 4 missing axis + (u<0) + 2 (v<0), where u and v are
+///  the axes after the missing one, in cyclic order
+inline constexpr std::size_t support_words = 32;
+inline constexpr std::size_t first_corner_word = 8;
+inline constexpr std::size_t first_face_word = 16;
+/// Direction of a word, not normalised; 0, 0, 0 for those without one: 6, 7 (the reference) and 28..31.
+std::array<int, 3> support_direction(std::size_t word);
+
+/// A node: how far it reaches along each direction from the object's centre, divided by the direction's length, in
+/// units of the object, rounded up. At most support_most in magnitude.
+struct alignas(64) SupportLine {
+  std::array<std::int16_t, support_words> word = {};
+  NodeRef ref() const {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &word[6], sizeof bits);
+    return NodeRef::from_bits(bits);
+  }
+};
+inline constexpr int support_most = 29000;
+
+/// Lines and faces of an object. The object lies in a ball of support_most units around its centre.
+class SupportTree {
+ public:
+  /// \param tree of this mesh
+  SupportTree(const Mesh& mesh, const Tree& tree);
+
+  const Vec3d& centre() const { return centre_; }
+  /// Length of a unit; at least 2^-1000.
+  double unit() const { return unit_; }
+  /// The root's children.
+  NodeRef root() const { return root_; }
+  /// Lines in use; three more that nothing refers to follow, so that four can always be read.
+  std::size_t size() const { return size_; }
+  const SupportLine* lines() const { return lines_.data(); }
+  /// Number in the mesh of each primitive.
+  const std::vector<std::uint32_t>& faces() const { return faces_; }
+  /// Vertices of a leaf of n primitives from `first` on: x of the first one's four vertices, of the second one's, then
+  /// y, then z; (position - centre) / unit, rounded to nearest. Vertex 3 of a triangle is vertex 0.
+  const float* vertices(std::uint32_t first) const { return vertices_.data() + std::size_t{12} * first; }
+  /// Bytes of all of it.
+  std::size_t memory() const;
+
+ private:
+  Vec3d centre_;
+  double unit_;
+  NodeRef root_;
+  std::size_t size_;
+  std::vector<SupportLine> lines_;
+  std::vector<float> vertices_;
+  std::vector<std::uint32_t> faces_;
+};
+
+/// The 26-DOP of a line in the coordinates of the mesh; the line's is contained in it.
+Dop26 dop_of(const SupportTree& tree, const SupportLine& line);
+
+}  // namespace cchip::bvh
+
+#endif

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cchip/bvh/rounding.hpp>
+#include <cchip/bvh/support_tree.hpp>
+#include <cmath>
+#include <limits>
+
+namespace cchip::bvh {
+namespace {
+
+constexpr double least_unit = 0x1p-1000;
+
+double length_of(const std::array<int, 3>& d) {
+  return std::sqrt(static_cast<double>(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+}
+
+/// A word, the number of its direction among the 13, and which way it points along that.
+struct Word {
+  std::size_t word;
+  std::size_t direction;
+  bool negative;
+};
+
+std::vector<Word> make_words() {
+  std::vector<Word> words;
+  for (std::size_t w = 0; w < support_words; ++w) {
+    const std::array<int, 3> v = support_direction(w);
+    for (std::size_t d = 0; d < directions.size(); ++d) {
+      const std::array<int, 3>& u = directions[d];
+      if (v == u) words.push_back({w, d, false});
+      if (v[0] == -u[0] && v[1] == -u[1] && v[2] == -u[2]) words.push_back({w, d, true});
+    }
+  }
+  return words;
+}
+
+const std::vector<Word>& words() {
+  static const std::vector<Word> all = make_words();
+  return all;
+}
+
+double along(const std::array<int, 3>& d, const Vec3d& v) { return d[0] * v[0] + d[1] * v[1] + d[2] * v[2]; }
+
+/// Bound on the error of adding up the coordinates of the centre and of what lies around it.
+double sum_slack(const Vec3d& centre, double unit) {
+  return 0x1p-49 * (centre.cwiseAbs().sum() + 4.0 * support_most * unit) + 0x1p-1060;
+}
+
+SupportLine make_line(const Dop26& dop, const Vec3d& centre, double unit, NodeRef ref) {
+  SupportLine line;
+  const double slack = sum_slack(centre, unit);
+  for (const Word& w : words()) {
+    const std::array<int, 3>& d = directions[w.direction];
+    const double at = along(d, centre);
+    const double reach = (w.negative ? at - dop.least[w.direction] : dop.greatest[w.direction] - at) + slack;
+    // The division and its operands are off by a few units in the last place of a number below 2^16.
+    const double steps = reach / (length_of(d) * unit) + 0x1p-30;
+    // The object lies in the ball, so the bound may be cut off there. An overflow leaves the ball, too.
+    const double most = support_most;
+    line.word[w.word] = static_cast<std::int16_t>(steps < most ? std::max(std::ceil(steps), -most) : most);
+  }
+  const std::uint32_t bits = ref.bits();
+  std::memcpy(&line.word[6], &bits, sizeof bits);
+  return line;
+}
+
+NodeRef ref_of(const TreeNode& node) {
+  // The root has no line, so the children of node n begin at the line one before their number.
+  if (node.kind == NodeKind::inner) return NodeRef::inner(node.first - 1, node.count);
+  return NodeRef::leaf(node.first, node.count, node.kind == NodeKind::quad);
+}
+
+}  // namespace
+
+std::array<int, 3> support_direction(std::size_t word) {
+  std::array<int, 3> d = {0, 0, 0};
+  const auto sign = [word](std::size_t bit) { return (word >> bit & 1U) != 0 ? -1 : 1; };
+  if (word < 6) {
+    d[word / 2] = sign(0);
+  } else if (word >= first_face_word && word < first_face_word + 12) {
+    const std::size_t missing = (word - first_face_word) / 4;
+    d[(missing + 1) % 3] = sign(0);
+    d[(missing + 2) % 3] = sign(1);
+  } else if (word >= first_corner_word && word < first_face_word) {
+    d = {sign(0), sign(1), sign(2)};
+  }
+  return d;
+}
+
+SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : faces_(tree.faces) {
+  const Dop26& all = tree.nodes.front().dop;
+  for (std::size_t k = 0; k < 3; ++k) {
+    centre_[static_cast<Eigen::Index>(k)] = all.least[k] / 2 + all.greatest[k] / 2;
+  }
+  double radius = 0;
+  for (const std::uint32_t face : faces_) {
+    const Primitive p = mesh.primitive(face);
+    for (std::size_t i = 0; i < p.vertex_count(); ++i) {
+      const Vec3d v = p.v[i] - centre_;
+      radius = std::max(radius, std::hypot(v.x(), v.y(), v.z()));
+    }
+  }
+  unit_ = std::max(radius * (1 + 0x1p-40) / support_most, least_unit);  // up: hypot() and the difference are rounded
+
+  root_ = ref_of(tree.nodes.front());
+  size_ = tree.nodes.size() - 1;
+  lines_.reserve(size_ + 3);
+  for (std::size_t n = 1; n < tree.nodes.size(); ++n) {
+    lines_.push_back(make_line(tree.nodes[n].dop, centre_, unit_, ref_of(tree.nodes[n])));
+  }
+  lines_.resize(size_ + 3);
+
+  vertices_.resize(12 * faces_.size() + 12);  // two primitives can always be read
+  for (const TreeNode& node : tree.nodes) {
+    if (node.kind == NodeKind::inner) continue;
+    float* const to = vertices_.data() + std::size_t{12} * node.first;
+    for (std::size_t i = 0; i < node.count; ++i) {
+      const Primitive p = mesh.primitive(faces_[node.first + i]);
+      for (std::size_t v = 0; v < 4; ++v) {
+        const Vec3d at = (p.v[v < p.vertex_count() ? v : 0] - centre_) / unit_;
+        for (std::size_t k = 0; k < 3; ++k) {
+          to[4 * (k * node.count + i) + v] = static_cast<float>(at[static_cast<Eigen::Index>(k)]);
+        }
+      }
+    }
+  }
+}
+
+std::size_t SupportTree::memory() const {
+  return sizeof *this + lines_.capacity() * sizeof(SupportLine) + vertices_.capacity() * sizeof(float) +
+         faces_.capacity() * sizeof(std::uint32_t);
+}
+
+Dop26 dop_of(const SupportTree& tree, const SupportLine& line) {
+  Dop26 dop;
+  const double slack = sum_slack(tree.centre(), tree.unit());
+  for (const Word& w : words()) {
+    const std::array<int, 3>& d = directions[w.direction];
+    const double at = along(d, tree.centre());
+    const double reach = length_of(d) * tree.unit() * line.word[w.word] + slack;
+    if (w.negative) {
+      dop.least[w.direction] = at - reach;
+    } else {
+      dop.greatest[w.direction] = at + reach;
+    }
+  }
+  return dop;
+}
+
+}  // namespace cchip::bvh

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Searches for faces that touch: what one thread of the CPU device runs.
+#ifndef CCHIP_DEVICE_SEARCH_HPP
+#define CCHIP_DEVICE_SEARCH_HPP
+
+#include <cchip/collide/collide.hpp>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace cchip {
+
+/// Gives a search its queries and takes the results.
+class QueryFeed {
+ public:
+  virtual ~QueryFeed() = default;
+  /// The next query and its number; false: no more.
+  virtual bool next(CollisionQuery& query, std::size_t& number) = 0;
+  /// The result may be changed, for instance swapped with another one whose memory the search shall use.
+  virtual void done(std::size_t number, CollisionResult& result) = 0;
+};
+
+/// Keeps its memory from query to query. For one thread at a time.
+class Search {
+ public:
+  virtual ~Search() = default;
+  /// \pre check_query() accepts the query
+  virtual void run(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) = 0;
+  /// Many queries, several at a time.
+  virtual void run(QueryFeed& feed, const CollisionRequest& request) = 0;
+};
+
+/// Factors on the bounds that make the answers exact; 1 but in tests, which show that less is not enough.
+struct Margins {
+  double plane = 1;   ///< rounding of bounding planes
+  double vertex = 1;  ///< rounding of vertices in single precision
+};
+
+/// Directions and planes in doubles, a pair of nodes at a time; takes every query.
+std::unique_ptr<Search> make_plain_search();
+
+/// Instruction sets that this computer has and the searches below use, best first.
+std::vector<std::string> simd_targets();
+/// 16-bit planes, several queries in lock step; leaves what it cannot relate well to the plain search.
+/// \param target one of simd_targets()
+std::unique_ptr<Search> make_simd_search(const std::string& target, const Margins& margins = {});
+
+}  // namespace cchip
+
+#endif

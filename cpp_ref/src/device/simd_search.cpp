@@ -1,0 +1,1049 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled once for each instruction set by Highway's foreach_target.h. Bounds: docs/collide.md.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "device/simd_search.cpp"
+// Vectors of a size that only the machine knows cannot be kept in arrays.
+// The emulation of 128-bit vectors serves computers without any of the instruction sets, and as a check of these. GCC
+// before 12.3 miscompiles it where it vectorises, so this file is compiled without that.
+#define HWY_BROKEN_EMU128 0
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_WASM | HWY_WASM_EMU256)
+#include <hwy/foreach_target.h>
+// foreach_target.h must come before the others.
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <array>
+#include <cchip/collide/face_pairs.hpp>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+#include <stdexcept>
+
+#include "relation.hpp"
+#include "search.hpp"
+
+// What does not depend on the instruction set.
+#ifndef CCHIP_DEVICE_SIMD_SEARCH_ONCE
+#define CCHIP_DEVICE_SIMD_SEARCH_ONCE
+namespace cchip {
+namespace {
+
+using bvh::NodeRef;
+using bvh::SupportLine;
+using bvh::SupportTree;
+
+constexpr std::size_t words = bvh::support_words;
+constexpr float radius = bvh::support_most;
+constexpr float ulp = 0x1p-24F;  // greatest relative error of one operation
+
+/// A node of the moved object and one of the fixed object that may meet.
+struct Item {
+  NodeRef moved;
+  NodeRef fixed;
+  bool is_leaf_pair() const { return moved.is_leaf() && fixed.is_leaf(); }
+};
+
+/// Directions of the words, normalised; 0 for words without one.
+struct Directions {
+  Directions() {
+    for (std::size_t w = 0; w < words; ++w) {
+      const std::array<int, 3> d = bvh::support_direction(w);
+      const double length = std::sqrt(static_cast<double>(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+      for (std::size_t k = 0; k < 3; ++k) v[k][w] = length > 0 ? static_cast<float>(d[k] / length) : 0;
+      used[w] = length > 0;
+    }
+  }
+  alignas(64) std::array<std::array<float, words>, 3> v;
+  std::array<bool, words> used;
+};
+const Directions normalised;
+
+/// Bounds the moved object's nodes on the directions of the fixed one's words. Word w: how far the moved node reaches
+/// against direction w is at most the sum of three of its words times a factor each; `offset` adds the distance of the
+/// centres and all that rounding may cost.
+struct Planes {
+  /// Bytes of the three words within their 16 bytes; 0x8080 in one of the two for faces.
+  alignas(64) std::array<std::uint16_t, words> axis;
+  alignas(64) std::array<std::uint16_t, words> corner;
+  alignas(64) std::array<std::uint16_t, words> face_low;
+  alignas(64) std::array<std::uint16_t, words> face_high;
+  /// Narrow: all in 16 bits, factors times 2^15, the offset as a sum of two.
+  alignas(64) std::array<std::int16_t, words> axis_factor;
+  alignas(64) std::array<std::int16_t, words> face_factor;
+  alignas(64) std::array<std::int16_t, words> corner_factor;
+  alignas(64) std::array<std::int16_t, words> offset;
+  alignas(64) std::array<std::int16_t, words> offset_rest;
+  /// Wide: the same in single precision.
+  alignas(64) std::array<float, words> wide_axis;
+  alignas(64) std::array<float, words> wide_face;
+  alignas(64) std::array<float, words> wide_corner;
+  alignas(64) std::array<float, words> wide_offset;
+  bool wide;
+  float key_scale;  ///< wide: from units of the fixed object to those of the keys
+};
+
+/// Up to four primitives' planes in single precision: what a wide test compares with.
+struct WideNode {
+  alignas(64) std::array<std::array<float, words>, 4> plane;
+};
+
+/// The relation in single precision, and how far vertices may lie from where they are computed.
+struct Placement {
+  std::array<float, 9> m;
+  std::array<float, 3> t;
+  float moved_error;
+  float fixed_error;
+};
+
+/// Two primitives of a leaf, in units of the fixed object; lane 4 i + v is vertex v of primitive i.
+struct LeafSide {
+  alignas(32) std::array<float, 8> x, y, z;     ///< vertices
+  alignas(32) std::array<float, 8> nx, ny, nz;  ///< normal, in lane 4 i
+  alignas(32) std::array<float, 8> size;        ///< what its error grows with, in lane 4 i
+};
+
+enum class Verdict { apart, touch, open };
+
+/// For the mask of the vertices on the negative side: the vertex that is alone on its side.
+constexpr std::array<std::uint8_t, 8> lone_vertex = {0, 0, 1, 2, 2, 1, 0, 0};
+/// Edges of a triangle by lone vertex, + 3 if that is the negative one: from a positive to a negative vertex and back,
+/// in the order of the vertices.
+struct Edge {
+  std::uint8_t from;
+  std::uint8_t to;
+};
+constexpr std::array<std::array<Edge, 2>, 6> crossing_edges = {
+    {{{{0, 1}, {2, 0}}}, {{{1, 2}, {0, 1}}}, {{{2, 0}, {1, 2}}}, {{{2, 0}, {0, 1}}}, {{{0, 1}, {1, 2}}}, {{{1, 2}, {2, 0}}}}};
+
+/// (edge of p) x (edge of q) . (where the latter begins - where the former begins), and a bound on its error.
+struct Volume {
+  float value;
+  float error;
+};
+inline Volume volume(const LeafSide& p, std::size_t at_p, Edge edge_p, const LeafSide& q, std::size_t at_q, Edge edge_q,
+                     const Placement& place) {
+  const std::size_t p0 = at_p + edge_p.from;
+  const std::size_t p1 = at_p + edge_p.to;
+  const std::size_t q0 = at_q + edge_q.from;
+  const std::size_t q1 = at_q + edge_q.to;
+  const float ex = p.x[p1] - p.x[p0];
+  const float ey = p.y[p1] - p.y[p0];
+  const float ez = p.z[p1] - p.z[p0];
+  const float fx = q.x[q1] - q.x[q0];
+  const float fy = q.y[q1] - q.y[q0];
+  const float fz = q.z[q1] - q.z[q0];
+  const float dx = q.x[q0] - p.x[p0];
+  const float dy = q.y[q0] - p.y[p0];
+  const float dz = q.z[q0] - p.z[p0];
+  const float value = (ey * fz - ez * fy) * dx + (ez * fx - ex * fz) * dy + (ex * fy - ey * fx) * dz;
+  const float size_e = std::abs(ex) + std::abs(ey) + std::abs(ez) + 8 * place.moved_error;
+  const float size_f = std::abs(fx) + std::abs(fy) + std::abs(fz) + 8 * place.fixed_error;
+  const float size_d = std::abs(dx) + std::abs(dy) + std::abs(dz) + 2 * (place.moved_error + place.fixed_error);
+  const float both = size_e * size_f;
+  return {value, 1.02F * (both * (place.moved_error + place.fixed_error) +
+                          size_d * (4 * (size_e * place.fixed_error + size_f * place.moved_error) + 10 * ulp * both))};
+}
+
+/// Two triangles whose vertices all lie on certain sides of the other's plane, not all on one: the two axes that decide
+/// (docs/architecture.md, "Two axes decide").
+inline Verdict cross_test(const LeafSide& p, std::size_t at_p, unsigned negative_p, const LeafSide& q, std::size_t at_q,
+                          unsigned negative_q, const Placement& place) {
+  const std::size_t lone_p = lone_vertex[negative_p];
+  const std::size_t lone_q = lone_vertex[negative_q];
+  const auto& edges_p = crossing_edges[lone_p + ((negative_p >> lone_p & 1U) != 0 ? 3 : 0)];
+  const auto& edges_q = crossing_edges[lone_q + ((negative_q >> lone_q & 1U) != 0 ? 3 : 0)];
+  const Volume first = volume(p, at_p, edges_p[0], q, at_q, edges_q[0], place);
+  const Volume second = volume(p, at_p, edges_p[1], q, at_q, edges_q[1], place);
+  if (first.value < -first.error || second.value > second.error) return Verdict::apart;
+  if (first.value > first.error && second.value < -second.error) return Verdict::touch;
+  return Verdict::open;
+}
+
+/// A quad, or a triangle whose vertex 3 is vertex 0, as points in single precision.
+struct Corners {
+  std::array<std::array<float, 3>, 4> v;
+};
+
+inline Corners corners_of(const LeafSide& side, std::size_t at) {
+  Corners c;
+  for (std::size_t i = 0; i < 4; ++i) c.v[i] = {side.x[at + i], side.y[at + i], side.z[at + i]};
+  return c;
+}
+
+inline std::array<float, 3> difference(const std::array<float, 3>& p, const std::array<float, 3>& q) {
+  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+}
+inline std::array<float, 3> cross_product(const std::array<float, 3>& p, const std::array<float, 3>& q) {
+  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+}
+
+/// True only if the intervals on the axis are disjoint. Any axis is valid, so it needs no error bound.
+inline bool separates(const std::array<float, 3>& axis, const Corners& p, const Corners& q, float error) {
+  const std::array<float, 3>& base = q.v[0];
+  float greatest = 0;
+  const auto range = [&](const Corners& c) {
+    std::array<float, 2> r = {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+    for (const auto& v : c.v) {
+      const std::array<float, 3> d = difference(v, base);
+      const float at = axis[0] * d[0] + axis[1] * d[1] + axis[2] * d[2];
+      r = {std::min(r[0], at), std::max(r[1], at)};
+      greatest = std::max({greatest, std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+    }
+    return r;
+  };
+  const std::array<float, 2> a = range(p);
+  const std::array<float, 2> b = range(q);
+  const float size = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
+  const float gap = std::max(b[0] - a[1], a[0] - b[1]);
+  return gap > 1.02F * size * (error + 12 * ulp * greatest);
+}
+
+/// Pairs with a quad: the axes of two planar quads.
+inline bool hulls_apart(const Corners& p, const Corners& q, float error) {
+  const auto normal = [](const Corners& c) {
+    return cross_product(difference(c.v[2], c.v[0]), difference(c.v[3], c.v[1]));
+  };
+  if (separates(normal(p), p, q, error) || separates(normal(q), p, q, error)) return true;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::array<float, 3> e = difference(p.v[(i + 1) % 4], p.v[i]);
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (separates(cross_product(e, difference(q.v[(k + 1) % 4], q.v[k])), p, q, error)) return true;
+    }
+  }
+  return false;
+}
+
+/// Entries that a stack needs: each step replaces one item by at most 16 that are a level deeper in one of the trees.
+constexpr std::size_t stack_most = 15 * 2 * bvh::tree_depth_max + 16;
+
+/// Pairs that single precision leaves open wait until so many have come, or until the search ends without another hit.
+constexpr std::size_t open_most = 16;
+
+/// One query on its way.
+struct Task {
+  Planes planes;
+  Placement place;
+  const SupportTree* moved;
+  const SupportTree* fixed;
+  bool swapped;
+  std::size_t number;
+  FacePairs faces;
+  CollisionResult* result;
+  CollisionResult own_result;  ///< of batches
+  CollisionCounts counts;
+  std::array<std::array<std::uint32_t, 2>, open_most> open;  ///< faces of the moved and of the fixed object
+  std::size_t open_count;
+  std::size_t size;  ///< of the stack
+  std::array<Item, stack_most> stack;
+
+  void add(std::uint32_t face_moved, std::uint32_t face_fixed) {
+    swapped ? faces.add(face_fixed, face_moved) : faces.add(face_moved, face_fixed);
+  }
+  void resolve() {
+    for (std::size_t i = 0; i < open_count && !faces.done(); ++i) {
+      swapped ? faces.test(open[i][1], open[i][0]) : faces.test(open[i][0], open[i][1]);
+    }
+    open_count = 0;
+  }
+  void keep_open(std::uint32_t face_moved, std::uint32_t face_fixed) {
+    open[open_count++] = {face_moved, face_fixed};
+    if (open_count == open_most) resolve();
+  }
+  void finish() {
+    resolve();
+    counts.open = faces.counts().open;
+    faces.counts() = counts;
+    faces.finish();
+  }
+};
+
+}  // namespace
+}  // namespace cchip
+#endif  // CCHIP_DEVICE_SIMD_SEARCH_ONCE
+
+HWY_BEFORE_NAMESPACE();
+namespace cchip {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D16 = hn::CappedTag<std::int16_t, words>;
+using D8 = hn::Repartition<std::uint8_t, D16>;
+using D32 = hn::RepartitionToWide<D16>;  // half as many lanes
+using DF = hn::Rebind<float, D32>;
+using V16 = hn::Vec<D16>;
+using VF = hn::Vec<DF>;
+constexpr std::size_t lanes16 = hn::MaxLanes(D16());
+constexpr std::size_t parts = words / lanes16;
+constexpr std::size_t lanes_f = hn::MaxLanes(DF());
+
+/// Words of the moved object's line that an index names, for one part of the planes.
+struct Gathered {
+  V16 axis;
+  V16 corner;
+  V16 face;
+};
+
+HWY_INLINE hn::Vec<D8> quarter(const SupportLine& line, std::size_t number) {
+  return hn::LoadDup128(D8(), reinterpret_cast<const std::uint8_t*>(line.word.data()) + 16 * number);
+}
+
+template <class Array>
+HWY_INLINE hn::Vec<D8> load_bytes(const Array& from, std::size_t part) {
+  return hn::Load(D8(), reinterpret_cast<const std::uint8_t*>(from.data() + part * lanes16));
+}
+
+HWY_INLINE Gathered gather(const Planes& planes, std::size_t part, hn::Vec<D8> axes, hn::Vec<D8> corners,
+                           hn::Vec<D8> faces_low, hn::Vec<D8> faces_high) {
+  const D16 d;
+  return {hn::BitCast(d, hn::TableLookupBytes(axes, load_bytes(planes.axis, part))),
+          hn::BitCast(d, hn::TableLookupBytes(corners, load_bytes(planes.corner, part))),
+          hn::BitCast(d, hn::Or(hn::TableLookupBytesOr0(faces_low, load_bytes(planes.face_low, part)),
+                                hn::TableLookupBytesOr0(faces_high, load_bytes(planes.face_high, part))))};
+}
+
+/// Least lane of each of four vectors, twice, in each 128 bits: 0 1 2 3 0 1 2 3, each of a quarter of its lanes.
+HWY_INLINE V16 least_of_four(V16 s0, V16 s1, V16 s2, V16 s3) {
+  const D16 d;
+  const V16 t0 = hn::Min(hn::InterleaveLower(d, s0, s1), hn::InterleaveUpper(d, s0, s1));
+  const V16 t1 = hn::Min(hn::InterleaveLower(d, s2, s3), hn::InterleaveUpper(d, s2, s3));
+  const D32 d32;
+  const auto p0 = hn::BitCast(d32, t0);
+  const auto p1 = hn::BitCast(d32, t1);
+  return hn::Min(hn::BitCast(d, hn::InterleaveLower(d32, p0, p1)), hn::BitCast(d, hn::InterleaveUpper(d32, p0, p1)));
+}
+
+/// Least of the lanes at equal places of all 128-bit blocks.
+template <class D>
+HWY_INLINE hn::Vec<hn::FixedTag<std::int16_t, 8>> least_block(D, hn::Vec<D> v) {
+  if constexpr (hn::MaxLanes(D()) == 8) {
+    return v;
+  } else {
+    const hn::Half<D> half;
+    return least_block(half, hn::Min(hn::LowerHalf(half, v), hn::UpperHalf(half, v)));
+  }
+}
+
+/// Least overlaps of four moved with four fixed nodes, key 4 i + j, from the rows of least_of_four().
+HWY_INLINE unsigned store_keys(V16 u0, V16 u1, V16 u2, V16 u3, std::int16_t* keys) {
+  const D16 d;
+  const hn::Repartition<std::int64_t, D16> d64;
+  const auto pair = [&](V16 p, V16 q) {
+    const auto p64 = hn::BitCast(d64, p);
+    const auto q64 = hn::BitCast(d64, q);
+    return least_block(d, hn::Min(hn::BitCast(d, hn::InterleaveLower(d64, p64, q64)),
+                                  hn::BitCast(d, hn::InterleaveUpper(d64, p64, q64))));
+  };
+  const hn::FixedTag<std::int16_t, 8> d8;
+  const auto low = pair(u0, u1);
+  const auto high = pair(u2, u3);
+  hn::Store(low, d8, keys);
+  hn::Store(high, d8, keys + 8);
+  std::array<std::uint8_t, 16> bits = {};
+  hn::StoreMaskBits(d8, hn::Lt(low, hn::Zero(d8)), bits.data());
+  hn::StoreMaskBits(d8, hn::Lt(high, hn::Zero(d8)), bits.data() + 8);
+  return 0xFFFFU ^ (bits[0] | static_cast<unsigned>(bits[8]) << 8U);
+}
+
+/// Tests all pairs of four moved and four fixed lines. A key is the least overlap in units of the fixed object.
+/// \returns bit 4 i + j: moved node i may meet fixed node j
+HWY_INLINE unsigned narrow_test(const SupportLine* moved, const SupportLine* fixed, const Planes& planes,
+                                std::int16_t* keys) {
+  const D16 d;
+  V16 own[4][parts];
+  for (std::size_t j = 0; j < 4; ++j) {
+    for (std::size_t p = 0; p < parts; ++p) own[j][p] = hn::Load(d, fixed[j].word.data() + p * lanes16);
+  }
+  V16 row[4];
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto axes = quarter(moved[i], 0);
+    const auto corners = quarter(moved[i], 1);
+    const auto faces_low = quarter(moved[i], 2);
+    const auto faces_high = quarter(moved[i], 3);
+    V16 least[4];
+    for (std::size_t p = 0; p < parts; ++p) {
+      const Gathered g = gather(planes, p, axes, corners, faces_low, faces_high);
+      const std::size_t at = p * lanes16;
+      // These three do not overflow: make_planes() has looked at the sum of the factors.
+      V16 reach = hn::MulFixedPoint15(g.axis, hn::Load(d, planes.axis_factor.data() + at));
+      reach = hn::Add(reach, hn::MulFixedPoint15(g.corner, hn::Load(d, planes.corner_factor.data() + at)));
+      reach = hn::Add(reach, hn::MulFixedPoint15(g.face, hn::Load(d, planes.face_factor.data() + at)));
+      reach = hn::SaturatedAdd(reach, hn::Load(d, planes.offset.data() + at));
+      reach = hn::SaturatedAdd(reach, hn::Load(d, planes.offset_rest.data() + at));
+      for (std::size_t j = 0; j < 4; ++j) {
+        const V16 overlap = hn::SaturatedAdd(reach, own[j][p]);
+        least[j] = p == 0 ? overlap : hn::Min(least[j], overlap);
+      }
+    }
+    row[i] = least_of_four(least[0], least[1], least[2], least[3]);
+  }
+  return store_keys(row[0], row[1], row[2], row[3], keys);
+}
+
+HWY_INLINE VF to_float(V16 v, bool upper) {
+  const hn::Half<D16> half;
+  return hn::ConvertTo(DF(), hn::PromoteTo(D32(), upper ? hn::UpperHalf(half, v) : hn::LowerHalf(half, v)));
+}
+
+/// The same with planes of the fixed nodes, and factors, in single precision.
+HWY_NOINLINE unsigned wide_test(const SupportLine* moved, const WideNode& fixed, const Planes& planes,
+                                std::int16_t* keys) {
+  const D16 d;
+  const DF df;
+  const VF most = hn::Set(df, 32767.0F);
+  const VF scale = hn::Set(df, planes.key_scale);
+  V16 row[4];
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto axes = quarter(moved[i], 0);
+    const auto corners = quarter(moved[i], 1);
+    const auto faces_low = quarter(moved[i], 2);
+    const auto faces_high = quarter(moved[i], 3);
+    VF least[4];
+    for (std::size_t p = 0; p < parts; ++p) {
+      const Gathered g = gather(planes, p, axes, corners, faces_low, faces_high);
+      for (std::size_t h = 0; h < 2; ++h) {
+        const bool upper = h != 0;
+        const std::size_t at = p * lanes16 + h * lanes_f;
+        VF reach = hn::Load(df, planes.wide_offset.data() + at);
+        reach = hn::MulAdd(to_float(g.axis, upper), hn::Load(df, planes.wide_axis.data() + at), reach);
+        reach = hn::MulAdd(to_float(g.corner, upper), hn::Load(df, planes.wide_corner.data() + at), reach);
+        reach = hn::MulAdd(to_float(g.face, upper), hn::Load(df, planes.wide_face.data() + at), reach);
+        for (std::size_t j = 0; j < 4; ++j) {
+          const VF overlap = hn::Add(reach, hn::Load(df, fixed.plane[j].data() + at));
+          least[j] = p + h == 0 ? overlap : hn::Min(least[j], overlap);
+        }
+      }
+    }
+    // Rounding a negative key up to 0 is safe. Each is in half the lanes of a vector of keys; the other half repeats it.
+    V16 key[4];
+    for (std::size_t j = 0; j < 4; ++j) {
+      const VF scaled = hn::Max(hn::Min(hn::Mul(least[j], scale), most), hn::Neg(most));
+      const auto narrow = hn::DemoteTo(hn::Half<D16>(), hn::ConvertTo(D32(), scaled));
+      key[j] = hn::Combine(d, narrow, narrow);
+    }
+    row[i] = least_of_four(key[0], key[1], key[2], key[3]);
+  }
+  return store_keys(row[0], row[1], row[2], row[3], keys);
+}
+
+/// Planes of the lines in single precision.
+HWY_INLINE void widen(const SupportLine* lines, WideNode& node) {
+  for (std::size_t j = 0; j < 4; ++j) {
+    for (std::size_t w = 0; w < words; ++w) node.plane[j][w] = lines[j].word[w];
+  }
+}
+
+/// Planes of a leaf from its vertices: finer than its line, which matters if the moved object is much smaller.
+HWY_INLINE void widen(const SupportTree& tree, NodeRef leaf, WideNode& node) {
+  const float* const v = tree.vertices(leaf.first());
+  const std::size_t stride = 4 * leaf.count();
+  // Each term is off by 3 ulp of a coordinate, their sum by 2 more; normalised, so |x| + |y| + |z| <= sqrt(3) radius.
+  constexpr float error = 12 * ulp * radius;
+  for (std::size_t w = 0; w < words; ++w) {
+    float reach = -2 * radius;
+    for (std::size_t i = 0; i < stride; ++i) {
+      reach = std::max(reach, normalised.v[0][w] * v[i] + normalised.v[1][w] * v[stride + i] +
+                                  normalised.v[2][w] * v[2 * stride + i]);
+    }
+    node.plane[0][w] = reach + error;
+  }
+  for (std::size_t j = 1; j < 4; ++j) node.plane[j] = node.plane[0];
+}
+
+HWY_INLINE void make_planes(const Relation& r, const Margins& margins, Planes& planes) {
+  using DP = hn::CappedTag<float, 16>;
+  using DI = hn::Rebind<std::int32_t, DP>;
+  const DP d;
+  const DI di;
+  constexpr std::size_t lanes = hn::MaxLanes(DP());
+  using V = hn::Vec<DP>;
+  std::array<float, 9> m;
+  for (std::size_t i = 0; i < 9; ++i) m[i] = static_cast<float>(r.m[i]);
+  const std::array<float, 3> t = {static_cast<float>(r.t[0]), static_cast<float>(r.t[1]), static_cast<float>(r.t[2])};
+  V most_sum = hn::Zero(d);
+  V most_factor = hn::Zero(d);
+  for (std::size_t at = 0; at < words; at += lanes) {
+    const V dx = hn::Load(d, normalised.v[0].data() + at);
+    const V dy = hn::Load(d, normalised.v[1].data() + at);
+    const V dz = hn::Load(d, normalised.v[2].data() + at);
+    const auto against = [&](float x, float y, float z) {
+      return hn::Neg(hn::MulAdd(dx, hn::Set(d, x), hn::MulAdd(dy, hn::Set(d, y), hn::Mul(dz, hn::Set(d, z)))));
+    };
+    const V x = against(m[0], m[3], m[6]);
+    const V y = against(m[1], m[4], m[7]);
+    const V z = against(m[2], m[5], m[8]);
+    const V ax = hn::Abs(x);
+    const V ay = hn::Abs(y);
+    const V az = hn::Abs(z);
+    const V low = hn::Min(ax, ay);
+    const V high = hn::Max(ax, ay);
+    const V a = hn::Max(high, az);
+    const V c = hn::Min(low, az);
+    const V b = hn::Max(low, hn::Min(high, az));
+    const V axis = hn::Sub(a, b);
+    const V face = hn::Mul(hn::Sub(b, c), hn::Set(d, 1.41421356F));
+    const V corner = hn::Mul(c, hn::Set(d, 1.73205081F));
+    most_sum = hn::Max(most_sum, hn::Add(axis, hn::Add(face, corner)));
+    most_factor = hn::Max(most_factor, hn::Max(axis, hn::Max(face, corner)));
+    hn::Store(axis, d, planes.wide_axis.data() + at);
+    hn::Store(face, d, planes.wide_face.data() + at);
+    hn::Store(corner, d, planes.wide_corner.data() + at);
+    hn::Store(against(t[0], t[1], t[2]), d, planes.wide_offset.data() + at);
+
+    // Which words: of the greatest component's axis, of the face without the least component's axis, of the corner.
+    const auto bit = [&](hn::Mask<DP> mask, int value) {
+      return hn::IfThenElseZero(hn::RebindMask(di, mask), hn::Set(di, value));
+    };
+    const auto by_axis = [&](hn::Mask<DP> second, hn::Mask<DP> third, V first_v, V second_v, V third_v) {
+      return hn::IfThenElse(third, third_v, hn::IfThenElse(second, second_v, first_v));
+    };
+    const auto greatest_z = hn::Gt(az, high);
+    const auto greatest_y = hn::And(hn::Gt(ay, ax), hn::Not(greatest_z));
+    const auto least_z = hn::Lt(az, low);
+    const auto least_y = hn::And(hn::Lt(ay, ax), hn::Not(least_z));
+    // Components of equal size make no difference as long as the least is not also the greatest. If all are equal,
+    // "greatest" is x, and so is "least": then axis and face have factor 0, so any word will do.
+    const V zero = hn::Zero(d);
+    const auto sx = hn::Lt(x, zero);
+    const auto sy = hn::Lt(y, zero);
+    const auto sz = hn::Lt(z, zero);
+    const auto sa = hn::Lt(by_axis(greatest_y, greatest_z, x, y, z), zero);
+    const auto su = hn::Lt(by_axis(least_y, least_z, y, z, x), zero);
+    const auto sv = hn::Lt(by_axis(least_y, least_z, z, x, y), zero);
+    const auto axis_word = hn::Or(hn::Or(bit(greatest_y, 2), bit(greatest_z, 4)), bit(sa, 1));
+    const auto corner_word = hn::Or(hn::Or(bit(sx, 1), bit(sy, 2)), bit(sz, 4));
+    const auto face_word = hn::Or(hn::Or(bit(least_y, 4), bit(least_z, 8)), hn::Or(bit(su, 1), bit(sv, 2)));
+    const auto store = [&](std::array<std::uint16_t, words>& to, hn::Vec<DI> bytes) {
+      const hn::Rebind<std::int16_t, DI> d_half;
+      hn::Store(hn::DemoteTo(d_half, bytes), d_half, reinterpret_cast<std::int16_t*>(to.data() + at));
+    };
+    const auto bytes_of = [&](hn::Vec<DI> word) {
+      return hn::Add(hn::Or(hn::ShiftLeft<1>(word), hn::ShiftLeft<9>(word)), hn::Set(di, 0x0100));
+    };
+    const auto none = hn::Set(di, static_cast<std::int16_t>(0x8080));
+    const auto is_high = hn::Gt(face_word, hn::Set(di, 7));
+    store(planes.axis, bytes_of(axis_word));
+    store(planes.corner, bytes_of(corner_word));
+    store(planes.face_low, hn::IfThenElse(is_high, none, bytes_of(face_word)));
+    store(planes.face_high, hn::IfThenElse(is_high, bytes_of(hn::Sub(face_word, hn::Set(di, 8))), none));
+  }
+  const auto distance = static_cast<float>(r.distance);
+  const auto norm = static_cast<float>(r.norm);
+  const auto plane_error = static_cast<float>(r.plane_error) * 1.01F;
+  const auto margin = static_cast<float>(margins.plane);
+  // 26 of the 32 words have directions of length 1, so a sum of factors is at most sqrt(3) norm, nearly.
+  const float sum = hn::GetLane(hn::MaxOfLanes(d, most_sum));
+  const float factor = hn::GetLane(hn::MaxOfLanes(d, most_factor));
+  planes.wide = !(sum <= 1.1296F && factor <= 1.00001F && norm >= 0x1p-5F);
+  if (planes.wide) {
+    const float slack = margin * (plane_error + ulp * (radius * (32 * norm + 8) + 16 * distance));
+    // Keys of 16 bits: the moved object's radius becomes 2^13 or less.
+    planes.key_scale = std::min(0x1p60F, 8192.0F / (radius * std::max(norm, 0x1p-100F)));
+    for (std::size_t w = 0; w < words; ++w) {
+      if (normalised.used[w]) {
+        planes.wide_offset[w] += slack;
+      } else {
+        planes.wide_offset[w] = std::numeric_limits<float>::max() / 4;
+      }
+    }
+    return;
+  }
+  // Rounding of three products, 1/2 each, and of three factors, 1/2 each of 2^-15, a factor of 1.00001 up to 3/2.
+  const float slack = margin * (1.5F + 2.5F * 0x1p-15F * radius + plane_error +
+                                ulp * (radius * 16 * norm + 8 * distance + 64));
+  const V slack_v = hn::Set(d, slack);
+  const hn::Rebind<std::int16_t, DI> d_half;
+  const auto clamp = [&](hn::Vec<DI> v) {
+    return hn::Max(hn::Min(v, hn::Set(di, 32767)), hn::Set(di, -32768));
+  };
+  for (std::size_t at = 0; at < words; at += lanes) {
+    const auto fixed_point = [&](const std::array<float, words>& from, std::array<std::int16_t, words>& to) {
+      const V scaled = hn::Mul(hn::Load(d, from.data() + at), hn::Set(d, 32768.0F));
+      hn::Store(hn::DemoteTo(d_half, hn::NearestInt(scaled)), d_half, to.data() + at);  // 32768 becomes 32767
+    };
+    fixed_point(planes.wide_axis, planes.axis_factor);
+    fixed_point(planes.wide_face, planes.face_factor);
+    fixed_point(planes.wide_corner, planes.corner_factor);
+    const V exact = hn::Ceil(hn::Add(hn::Load(d, planes.wide_offset.data() + at), slack_v));
+    // Beyond twice the range of 16 bits every sum saturates on the side where it belongs.
+    const auto offset = hn::ConvertTo(di, hn::Max(hn::Min(exact, hn::Set(d, 65534.0F)), hn::Set(d, -65536.0F)));
+    const auto first = clamp(offset);
+    hn::Store(hn::DemoteTo(d_half, first), d_half, planes.offset.data() + at);
+    hn::Store(hn::DemoteTo(d_half, hn::Sub(offset, first)), d_half, planes.offset_rest.data() + at);
+  }
+  // Words without a direction must never separate: their factors are 0, and no half of a reference is below -32767.
+  for (const std::size_t w : {6U, 7U, 28U, 29U, 30U, 31U}) {
+    planes.offset[w] = 32767;
+    planes.offset_rest[w] = 32767;
+  }
+}
+
+using D8F = hn::CappedTag<float, 8>;
+constexpr std::size_t lanes8 = hn::MaxLanes(D8F());
+
+/// Normals of the primitives from their diagonals, and what their errors grow with.
+HWY_INLINE void finish_side(LeafSide& side, float error) {
+  const D8F d;
+  for (std::size_t at = 0; at < 8; at += lanes8) {
+    const auto x = hn::Load(d, side.x.data() + at);
+    const auto y = hn::Load(d, side.y.data() + at);
+    const auto z = hn::Load(d, side.z.data() + at);
+    const auto ex = hn::Sub(hn::Shuffle1032(x), x);  // lane 0: V2 - V0, lane 1: V3 - V1
+    const auto ey = hn::Sub(hn::Shuffle1032(y), y);
+    const auto ez = hn::Sub(hn::Shuffle1032(z), z);
+    const auto fx = hn::Shuffle0321(ex);
+    const auto fy = hn::Shuffle0321(ey);
+    const auto fz = hn::Shuffle0321(ez);
+    hn::Store(hn::MulSub(ey, fz, hn::Mul(ez, fy)), d, side.nx.data() + at);
+    hn::Store(hn::MulSub(ez, fx, hn::Mul(ex, fz)), d, side.ny.data() + at);
+    hn::Store(hn::MulSub(ex, fy, hn::Mul(ey, fx)), d, side.nz.data() + at);
+    const auto size = hn::Add(hn::Abs(ex), hn::Add(hn::Abs(ey), hn::Abs(ez)));
+    hn::Store(hn::Add(hn::Max(size, hn::Shuffle0321(size)), hn::Set(d, 8 * error)), d, side.size.data() + at);
+  }
+}
+
+HWY_INLINE void load_moved(const SupportTree& tree, NodeRef leaf, const Placement& place, LeafSide& side) {
+  const D8F d;
+  const float* const v = tree.vertices(leaf.first());
+  const std::size_t stride = 4 * leaf.count();
+  for (std::size_t at = 0; at < 8; at += lanes8) {
+    const auto x = hn::LoadU(d, v + at);
+    const auto y = hn::LoadU(d, v + stride + at);
+    const auto z = hn::LoadU(d, v + 2 * stride + at);
+    const auto row = [&](std::size_t i) {
+      return hn::MulAdd(x, hn::Set(d, place.m[3 * i]),
+                        hn::MulAdd(y, hn::Set(d, place.m[3 * i + 1]),
+                                   hn::MulAdd(z, hn::Set(d, place.m[3 * i + 2]), hn::Set(d, place.t[i]))));
+    };
+    hn::Store(row(0), d, side.x.data() + at);
+    hn::Store(row(1), d, side.y.data() + at);
+    hn::Store(row(2), d, side.z.data() + at);
+  }
+  finish_side(side, place.moved_error);
+}
+
+HWY_INLINE void load_fixed(const SupportTree& tree, NodeRef leaf, const Placement& place, LeafSide& side) {
+  const D8F d;
+  const float* const v = tree.vertices(leaf.first());
+  const std::size_t stride = 4 * leaf.count();
+  for (std::size_t at = 0; at < 8; at += lanes8) {
+    hn::Store(hn::LoadU(d, v + at), d, side.x.data() + at);
+    hn::Store(hn::LoadU(d, v + stride + at), d, side.y.data() + at);
+    hn::Store(hn::LoadU(d, v + 2 * stride + at), d, side.z.data() + at);
+  }
+  finish_side(side, place.fixed_error);
+}
+
+/// Of eight points, which lie certainly on the positive and on the negative side of a plane: a bit each.
+struct Sides {
+  unsigned positive = 0;
+  unsigned negative = 0;
+};
+
+template <class V>
+HWY_INLINE Sides sides_of(V nx, V ny, V nz, V size, V dx, V dy, V dz, float plane_error, float both_errors) {
+  const D8F d;
+  const V at = hn::MulAdd(nx, dx, hn::MulAdd(ny, dy, hn::Mul(nz, dz)));
+  const V distance = hn::Add(hn::Abs(dx), hn::Add(hn::Abs(dy), hn::Add(hn::Abs(dz), hn::Set(d, 2 * both_errors))));
+  const V slope = hn::MulAdd(size, hn::Set(d, 10.2F * ulp), hn::Set(d, 8.16F * plane_error));
+  const V error = hn::Mul(size, hn::MulAdd(distance, slope, hn::Mul(size, hn::Set(d, 1.02F * both_errors))));
+  std::array<std::uint8_t, 8> bits = {};
+  Sides sides;
+  hn::StoreMaskBits(d, hn::Gt(at, error), bits.data());
+  sides.positive = bits[0];
+  hn::StoreMaskBits(d, hn::Lt(at, hn::Neg(error)), bits.data());
+  sides.negative = bits[0];
+  return sides;
+}
+
+/// Primitive i of one leaf against both of the other: sides of the latter's points in the plane of i, and of the points
+/// of i in the latter's planes; four bits for each of the two.
+HWY_INLINE void compare(const LeafSide& p, std::size_t i, float error_p, const LeafSide& q, float error_q, Sides& of_q,
+                        Sides& of_p) {
+  const D8F d;
+  const float both = error_p + error_q;
+  const std::size_t at_p = 4 * i;
+  for (std::size_t at = 0; at < 8; at += lanes8) {
+    const auto qx = hn::Load(d, q.x.data() + at);
+    const auto qy = hn::Load(d, q.y.data() + at);
+    const auto qz = hn::Load(d, q.z.data() + at);
+    const auto set = [&](const std::array<float, 8>& from) { return hn::Set(d, from[at_p]); };
+    const Sides first =
+        sides_of(set(p.nx), set(p.ny), set(p.nz), set(p.size), hn::Sub(qx, set(p.x)), hn::Sub(qy, set(p.y)),
+                 hn::Sub(qz, set(p.z)), error_p, both);
+    const auto own = [&](const std::array<float, 8>& from) {
+      return hn::Broadcast<0>(hn::Load(d, from.data() + at));
+    };
+    const auto points = [&](const std::array<float, 8>& from) { return hn::LoadDup128(d, from.data() + at_p); };
+    const Sides second = sides_of(own(q.nx), own(q.ny), own(q.nz), own(q.size), hn::Sub(points(p.x), own(q.x)),
+                                  hn::Sub(points(p.y), own(q.y)), hn::Sub(points(p.z), own(q.z)), error_q, both);
+    of_q.positive |= first.positive << at;
+    of_q.negative |= first.negative << at;
+    of_p.positive |= second.positive << at;
+    of_p.negative |= second.negative << at;
+  }
+}
+
+/// Reads what the next steps need into the cache.
+HWY_INLINE void prefetch(const Task& task, Item item) {
+  const auto read = [](const char* from) {
+    for (std::size_t line = 0; line < 4; ++line) hwy::Prefetch(from + 64 * line);
+  };
+  if (item.is_leaf_pair()) {
+    read(reinterpret_cast<const char*>(task.moved->vertices(item.moved.first())));
+    read(reinterpret_cast<const char*>(task.fixed->vertices(item.fixed.first())));
+  } else {
+    read(reinterpret_cast<const char*>(task.moved->lines() + item.moved.first()));
+    read(reinterpret_cast<const char*>(task.fixed->lines() + item.fixed.first()));
+  }
+}
+
+/// One thread's search.
+class SimdSearch final : public Search {
+ public:
+  explicit SimdSearch(const Margins& margins) : margins_(margins), plain_(make_plain_search()) {}
+
+  void run(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) override {
+    Task& task = tasks_[0];
+    if (!start(task, query, request, result)) return;
+    if (request.contacts == CollisionRequest::Contacts::all) {
+      search_all(task);
+    } else {
+      search_alone(task);
+    }
+    task.finish();
+  }
+
+  void run(QueryFeed& feed, const CollisionRequest& request) override {
+    if (request.contacts == CollisionRequest::Contacts::all) {
+      Task& task = tasks_[0];
+      for (CollisionQuery query; feed.next(query, task.number);) {
+        run(query, request, task.own_result);
+        feed.done(task.number, task.own_result);
+      }
+    } else {
+      search_in_step(feed, request);
+    }
+  }
+
+ private:
+  static constexpr std::size_t together = 16;  // queries of a batch, items of a search for all contacts
+
+  /// Prepares a query.
+  /// \returns false if the result is complete
+  bool start(Task& task, const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) {
+    Relation relation;
+    if (!relate(query, relation)) {
+      plain_->run(query, request, result);
+      return false;
+    }
+    task.faces.start(query, request, result);
+    task.result = &result;
+    task.swapped = relation.swapped;
+    task.moved = &(relation.swapped ? query.b : query.a)->tree();
+    task.fixed = &(relation.swapped ? query.a : query.b)->tree();
+    make_planes(relation, margins_, task.planes);
+    for (std::size_t i = 0; i < 9; ++i) task.place.m[i] = static_cast<float>(relation.m[i]);
+    for (std::size_t i = 0; i < 3; ++i) task.place.t[i] = static_cast<float>(relation.t[i]);
+    // A coordinate of a moved vertex: 1 rounding each of vertex, matrix and three products, three sums; of the offset.
+    const double margin = margins_.vertex;
+    task.place.moved_error = static_cast<float>(
+        1.01 * margin * (ulp * (6 * radius * relation.row + 4 * relation.distance) + relation.vertex_error));
+    task.place.fixed_error = static_cast<float>(1.01 * margin * ulp * radius);
+    task.counts = {};
+    task.open_count = 0;
+    task.stack[0] = {task.moved->root(), task.fixed->root()};
+    task.size = 1;
+    return true;
+  }
+
+  /// Tests the nodes below an item.
+  unsigned test(const Task& task, Item item, std::int16_t* keys) {
+    const SupportLine* const moved = task.moved->lines() + item.moved.first();
+    const SupportLine* const fixed = task.fixed->lines() + item.fixed.first();
+    if (HWY_LIKELY(!task.planes.wide)) return narrow_test(moved, fixed, task.planes, keys);
+    const NodeRef first = fixed->ref();
+    if (item.fixed.count() == 1 && first.is_leaf()) {
+      widen(*task.fixed, first, wide_);
+    } else {
+      widen(fixed, wide_);
+    }
+    return wide_test(moved, wide_, task.planes, keys);
+  }
+
+  /// Puts the pairs that may meet onto a stack, the one that overlaps most on top.
+  /// \returns how many
+  template <bool best_first>
+  static HWY_INLINE std::size_t push(Task& task, Item item, unsigned hits, const std::int16_t* keys, Item* stack) {
+    const std::uint32_t moved_count = item.moved.count();
+    const std::uint32_t fixed_count = item.fixed.count();
+    ++task.counts.steps;
+    task.counts.box_tests += moved_count * fixed_count;
+    hits &= (0x1111U * ((1U << fixed_count) - 1)) & ((1U << 4 * moved_count) - 1);
+    if (hits == 0) return 0;
+    const SupportLine* const moved = task.moved->lines() + item.moved.first();
+    const SupportLine* const fixed = task.fixed->lines() + item.fixed.first();
+    std::size_t count = 0;
+    std::size_t best = 0;
+    int best_key = -1;
+    do {
+      const std::size_t bit = hwy::Num0BitsBelowLS1Bit_Nonzero32(hits);
+      hits &= hits - 1;
+      const auto i = static_cast<std::uint32_t>(bit / 4);
+      const auto j = static_cast<std::uint32_t>(bit % 4);
+      NodeRef a = moved[i].ref();
+      NodeRef b = fixed[j].ref();
+      // A leaf waits for the other one to come down: its own line is the only child.
+      const bool leaf_a = a.is_leaf();
+      const bool leaf_b = b.is_leaf();
+      if (leaf_a && !leaf_b) a = NodeRef::inner(item.moved.first() + i, 1);
+      if (leaf_b && !leaf_a) b = NodeRef::inner(item.fixed.first() + j, 1);
+      stack[count] = {a, b};
+      if (best_first) {
+        const bool better = keys[bit] > best_key;
+        best_key = better ? keys[bit] : best_key;
+        best = better ? count : best;
+      }
+      ++count;
+    } while (hits != 0);
+    if (best_first) std::swap(stack[best], stack[count - 1]);
+    return count;
+  }
+
+  /// Tests the primitives of two leaves.
+  /// \returns true if the request is fulfilled
+  static HWY_INLINE bool test_leaves(Task& task, Item item) {
+    const Placement& place = task.place;
+    alignas(64) LeafSide p;
+    alignas(64) LeafSide q;
+    load_moved(*task.moved, item.moved, place, p);
+    load_fixed(*task.fixed, item.fixed, place, q);
+    const std::size_t count_p = item.moved.count();
+    const std::size_t count_q = item.fixed.count();
+    task.counts.pairs += count_p * count_q;
+    const std::uint32_t* const faces_p = task.moved->faces().data() + item.moved.first();
+    const std::uint32_t* const faces_q = task.fixed->faces().data() + item.fixed.first();
+    if (HWY_UNLIKELY(item.moved.is_quad() || item.fixed.is_quad())) {
+      for (std::size_t i = 0; i < count_p; ++i) {
+        for (std::size_t k = 0; k < count_q; ++k) {
+          const Corners a = corners_of(p, 4 * i);
+          const Corners b = corners_of(q, 4 * k);
+          if (hulls_apart(a, b, place.moved_error + place.fixed_error)) continue;
+          if (quads_touch(a, item.moved.is_quad(), b, item.fixed.is_quad(), place)) {
+            task.add(faces_p[i], faces_q[k]);
+          } else {
+            task.keep_open(faces_p[i], faces_q[k]);
+          }
+          if (task.faces.done()) return true;
+        }
+      }
+      return false;
+    }
+    for (std::size_t i = 0; i < count_p; ++i) {
+      Sides of_p;
+      Sides of_q;
+      compare(p, i, place.moved_error, q, place.fixed_error, of_q, of_p);
+      for (std::size_t k = 0; k < count_q; ++k) {
+        const Verdict verdict = decide(p, 4 * i, of_p, q, 4 * k, of_q, place, 4 * k);
+        if (verdict == Verdict::apart) continue;
+        if (verdict == Verdict::touch) {
+          task.add(faces_p[i], faces_q[k]);
+        } else {
+          task.keep_open(faces_p[i], faces_q[k]);
+        }
+        if (task.faces.done()) return true;
+      }
+    }
+    return false;
+  }
+
+  /// Two triangles; their bits in `of_p` and `of_q` begin at `shift`.
+  static HWY_INLINE Verdict decide(const LeafSide& p, std::size_t at_p, const Sides& of_p, const LeafSide& q,
+                                   std::size_t at_q, const Sides& of_q, const Placement& place, std::size_t shift) {
+    const unsigned positive_p = of_p.positive >> shift & 7U;
+    const unsigned negative_p = of_p.negative >> shift & 7U;
+    const unsigned positive_q = of_q.positive >> shift & 7U;
+    const unsigned negative_q = of_q.negative >> shift & 7U;
+    if (positive_p == 7 || negative_p == 7 || positive_q == 7 || negative_q == 7) return Verdict::apart;
+    if ((positive_p | negative_p) != 7 || (positive_q | negative_q) != 7) return Verdict::open;
+    return cross_test(p, at_p, negative_p, q, at_q, negative_q, place);
+  }
+
+  /// True only if a triangle of one touches a triangle of the other. Triangles of a quad: 0 1 2 and 0 2 3.
+  static bool quads_touch(const Corners& a, bool quad_a, const Corners& b, bool quad_b, const Placement& place) {
+    const auto halves = [](const Corners& c) {
+      LeafSide side = {};
+      constexpr std::array<std::size_t, 8> vertex = {0, 1, 2, 0, 0, 2, 3, 0};
+      for (std::size_t i = 0; i < 8; ++i) {
+        side.x[i] = c.v[vertex[i]][0];
+        side.y[i] = c.v[vertex[i]][1];
+        side.z[i] = c.v[vertex[i]][2];
+      }
+      return side;
+    };
+    alignas(64) LeafSide p = halves(a);
+    alignas(64) LeafSide q = halves(b);
+    finish_side(p, place.moved_error);
+    finish_side(q, place.fixed_error);
+    for (std::size_t i = 0; i < (quad_a ? 2U : 1U); ++i) {
+      Sides of_p;
+      Sides of_q;
+      compare(p, i, place.moved_error, q, place.fixed_error, of_q, of_p);
+      for (std::size_t k = 0; k < (quad_b ? 2U : 1U); ++k) {
+        if (decide(p, 4 * i, of_p, q, 4 * k, of_q, place, 4 * k) == Verdict::touch) return true;
+      }
+    }
+    return false;
+  }
+
+  /// One query for its first contact, one item at a time.
+  void search_alone(Task& task) {
+    std::int16_t keys[16];
+    while (task.size > 0) {
+      const Item item = task.stack[--task.size];
+      if (item.is_leaf_pair()) {
+        if (test_leaves(task, item)) return;
+        continue;
+      }
+      if (task.size > 0) prefetch(task, task.stack[task.size - 1]);
+      const unsigned hits = test(task, item, keys);
+      task.size += push<true>(task, item, hits, keys, task.stack.data() + task.size);
+    }
+  }
+
+  /// One query for all contacts: several items at a time, in any order.
+  void search_all(Task& task) {
+    Item items[together];
+    std::int16_t keys[together][16];
+    std::array<unsigned, together> hits;
+    if (deep_.size() < 1024) deep_.resize(1024);
+    deep_[0] = task.stack[0];
+    std::size_t size = 1;
+    while (size > 0) {
+      std::size_t count = 0;
+      while (size > 0 && count < together) {
+        const Item item = deep_[--size];
+        if (item.is_leaf_pair()) {
+          if (test_leaves(task, item)) return;
+        } else {
+          items[count++] = item;
+        }
+      }
+      if (deep_.size() < size + 16 * together) deep_.resize(2 * deep_.size());
+      for (std::size_t i = 0; i < count; ++i) hits[i] = test(task, items[i], keys[i]);
+      for (std::size_t i = 0; i < count; ++i) size += push<false>(task, items[i], hits[i], keys[i], deep_.data() + size);
+      for (std::size_t i = 1; i <= std::min(size, together); ++i) prefetch(task, deep_[size - i]);
+    }
+  }
+
+  /// Many queries for their first contacts: one item of each in a round. All tests come first, which do not branch, then
+  /// all that depends on them.
+  void search_in_step(QueryFeed& feed, const CollisionRequest& request) {
+    Item current[together];
+    std::int16_t keys[together][16];
+    std::array<unsigned, together> hits;
+    std::array<std::array<std::uint8_t, together>, 2> inner;  // tasks whose item is a pair to be expanded
+    std::array<std::array<std::uint8_t, together>, 2> leaves;
+    std::array<std::size_t, 2> inner_count = {0, 0};
+    std::array<std::size_t, 2> leaf_count = {0, 0};
+    const auto pop = [&](std::size_t i, std::size_t round) {
+      Task& task = tasks_[i];
+      const Item item = task.stack[--task.size];
+      current[i] = item;
+      if (item.is_leaf_pair()) {
+        leaves[round][leaf_count[round]++] = static_cast<std::uint8_t>(i);
+      } else {
+        inner[round][inner_count[round]++] = static_cast<std::uint8_t>(i);
+      }
+      prefetch(task, item);
+    };
+    bool more = true;
+    const auto begin = [&](std::size_t i, std::size_t round) {
+      Task& task = tasks_[i];
+      for (CollisionQuery query; more;) {
+        more = feed.next(query, task.number);
+        if (!more) return;
+        if (start(task, query, request, task.own_result)) return pop(i, round);
+        feed.done(task.number, task.own_result);
+      }
+    };
+    const auto end = [&](std::size_t i, std::size_t round) {
+      tasks_[i].finish();
+      feed.done(tasks_[i].number, tasks_[i].own_result);
+      begin(i, round);
+    };
+    for (std::size_t i = 0; i < together; ++i) begin(i, 0);
+    for (std::size_t round = 0; inner_count[round] + leaf_count[round] > 0; round ^= 1U) {
+      const std::size_t next = round ^ 1U;
+      inner_count[next] = leaf_count[next] = 0;
+      const std::size_t count = inner_count[round];
+      for (std::size_t n = 0; n < count; ++n) {
+        const std::size_t i = inner[round][n];
+        hits[n] = test(tasks_[i], current[i], keys[n]);
+      }
+      for (std::size_t n = 0; n < count; ++n) {
+        const std::size_t i = inner[round][n];
+        Task& task = tasks_[i];
+        task.size += push<true>(task, current[i], hits[n], keys[n], task.stack.data() + task.size);
+        task.size > 0 ? pop(i, next) : end(i, next);
+      }
+      for (std::size_t n = 0; n < leaf_count[round]; ++n) {
+        const std::size_t i = leaves[round][n];
+        const bool fulfilled = test_leaves(tasks_[i], current[i]);
+        tasks_[i].size > 0 && !fulfilled ? pop(i, next) : end(i, next);
+      }
+    }
+  }
+
+  Margins margins_;
+  std::unique_ptr<Search> plain_;
+  WideNode wide_;
+  std::vector<Item> deep_;
+  std::array<Task, together> tasks_;
+};
+
+std::unique_ptr<Search> make(const Margins& margins) { return std::make_unique<SimdSearch>(margins); }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace cchip
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace cchip {
+namespace {
+
+HWY_EXPORT(make);
+
+/// Bits of the instruction sets that are compiled in and that this computer has, best first.
+std::vector<std::int64_t> target_bits() {
+  std::vector<std::int64_t> bits;
+  for (std::int64_t all = hwy::SupportedTargets() & HWY_TARGETS; all != 0; all &= all - 1) bits.push_back(all & -all);
+  return bits;
+}
+
+}  // namespace
+
+std::vector<std::string> simd_targets() {
+  std::vector<std::string> names;
+  for (const std::int64_t bit : target_bits()) names.emplace_back(hwy::TargetName(bit));
+  return names;
+}
+
+std::unique_ptr<Search> make_simd_search(const std::string& target, const Margins& margins) {
+  static std::mutex choosing;
+  const std::lock_guard<std::mutex> lock(choosing);
+  for (const std::int64_t bit : target_bits()) {
+    if (target != hwy::TargetName(bit)) continue;
+    // The table of HWY_EXPORT is read at the chosen target; nothing else is chosen by it meanwhile.
+    hwy::GetChosenTarget().Update(bit);
+    std::unique_ptr<Search> search = HWY_DYNAMIC_DISPATCH(make)(margins);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    return search;
+  }
+  throw std::invalid_argument("instruction set " + target + " is not one that this computer and this program have");
+}
+
+}  // namespace cchip
+#endif  // HWY_ONCE
