@@ -8,38 +8,46 @@
 namespace cchip {
 namespace {
 
-using Matrix = Eigen::Matrix3d;
 constexpr double u = 0x1p-53;
 constexpr double radius = bvh::support_most;
 
-/// Not for NaN.
-bool is_moderate(double size) { return size > 0x1p-200 && size < 0x1p200; }
+/// Three columns. Plain loops over few numbers: expressions of a matrix library cost several times as much here.
+using Matrix = std::array<std::array<double, 3>, 3>;
+using Vector = std::array<double, 3>;
 
-/// Determinants of the 2 x 2 minors with their signs; over the determinant, the transposed inverse.
-Matrix cofactors(const Matrix& l) {
-  Matrix c;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const Eigen::Index i1 = (i + 1) % 3;
-    const Eigen::Index i2 = (i + 2) % 3;
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      const Eigen::Index k1 = (k + 1) % 3;
-      const Eigen::Index k2 = (k + 2) % 3;
-      c(i, k) = l(i1, k1) * l(i2, k2) - l(i1, k2) * l(i2, k1);
-    }
-  }
-  return c;
+Matrix linear_of(const Pose& pose) {
+  Matrix m;
+  const double* const from = pose.data();  // columns of four
+  for (std::size_t c = 0; c < 3; ++c) m[c] = {from[4 * c], from[4 * c + 1], from[4 * c + 2]};
+  return m;
 }
 
-/// Where an object's centre is, and how great the numbers are that were added up for it.
+double dot(const Vector& p, const Vector& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; }
+Vector cross(const Vector& p, const Vector& q) {
+  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+}
+/// Square of the Frobenius norm.
+double square(const Matrix& m) { return dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2]); }
+
+/// Not for NaN.
+bool is_moderate(double square) { return square > 0x1p-400 && square < 0x1p400; }
+
+/// Where the centre of an object is, and a bound on the numbers that were added up for a coordinate of it.
 struct Centre {
-  Vec3d at;
-  Vec3d size;
+  Vector at;
+  double size;
 };
 
-Centre centre_of(const Object& object, const Pose& pose) {
+Centre centre_of(const Object& object, const Matrix& linear, double norm, const Pose& pose) {
   const Vec3d& c = object.tree().centre();
-  return {pose.linear() * c + pose.translation(),
-          pose.linear().cwiseAbs() * c.cwiseAbs() + pose.translation().cwiseAbs()};
+  const double* const p = pose.data() + 12;
+  Centre centre;
+  for (std::size_t i = 0; i < 3; ++i) {
+    centre.at[i] = linear[0][i] * c[0] + linear[1][i] * c[1] + linear[2][i] * c[2] + p[i];
+  }
+  centre.size = norm * (std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2])) + std::abs(p[0]) + std::abs(p[1]) +
+                std::abs(p[2]);
+  return centre;
 }
 
 }  // namespace
@@ -49,46 +57,70 @@ bool relate(const CollisionQuery& query, Relation& r) {
   const Object* fixed = query.b;
   const Pose* pose_m = query.pose_a;
   const Pose* pose_f = query.pose_b;
-  const double size_m = pose_m->linear().norm() * moved->tree().unit();
-  const double size_f = pose_f->linear().norm() * fixed->tree().unit();
-  r.swapped = size_m > size_f;
+  Matrix lm = linear_of(*pose_m);
+  Matrix lf = linear_of(*pose_f);
+  double square_m = square(lm);
+  double square_f = square(lf);
+  double unit_m = moved->tree().unit();
+  double unit_f = fixed->tree().unit();
+  r.swapped = square_m * (unit_m * unit_m) > square_f * (unit_f * unit_f);
   if (r.swapped) {
     std::swap(moved, fixed);
     std::swap(pose_m, pose_f);
+    std::swap(lm, lf);
+    std::swap(square_m, square_f);
+    std::swap(unit_m, unit_f);
   }
-  const double unit_m = moved->tree().unit();
-  const double unit_f = fixed->tree().unit();
-  const Matrix& lm = pose_m->linear();
-  const Matrix& lf = pose_f->linear();
-  if (!is_moderate(unit_f) || !is_moderate(lf.norm()) || !(unit_m < 0x1p200) || !(lm.norm() < 0x1p200)) return false;
+  if (!(unit_f > 0x1p-200 && unit_f < 0x1p200) || !is_moderate(square_f) || !(unit_m < 0x1p200) ||
+      !(square_m < 0x1p400)) {
+    return false;
+  }
 
-  // w maps a direction of the fixed object to one of the world. off = lf^T w - 1 says how well.
-  const Matrix cofactor = cofactors(lf);
-  const double determinant = lf.row(0).dot(cofactor.row(0));
-  const Matrix w = cofactor / determinant;
-  const Matrix off = lf.transpose() * w - Matrix::Identity();
-  const Matrix w_size = w.cwiseAbs();
-  const double inverse_error = off.cwiseAbs().sum() + 8 * u * (lf.cwiseAbs().transpose() * w_size).sum();
+  // w maps a direction of the fixed object to one of the world: the transposed inverse of lf, from its cofactors.
+  // lf^T w - 1 says how well.
+  Matrix w = {cross(lf[1], lf[2]), cross(lf[2], lf[0]), cross(lf[0], lf[1])};
+  const double inverse_determinant = 1 / dot(lf[0], w[0]);
+  for (Vector& column : w) {
+    for (double& x : column) x *= inverse_determinant;
+  }
+  const double norm_w = std::sqrt(square(w));
+  const double norm_m = std::sqrt(square_m);
+  const double norm_f = std::sqrt(square_f);
+  double off = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) off += std::abs(dot(lf[i], w[k]) - (i == k ? 1 : 0));
+  }
+  // Sums over all entries of |lf|^T |w| are at most 3 norms of both.
+  const double inverse_error = off + 24 * u * norm_f * norm_w;
   if (!(inverse_error <= 0x1p-20)) return false;  // NaN, too
 
   const double ratio = unit_m / unit_f;
-  const Matrix m = (w.transpose() * lm) * ratio;
-  const double m_error = 8 * u * (w_size.transpose() * lm.cwiseAbs()).sum() * ratio;
-  const Centre centre_m = centre_of(*moved, *pose_m);
-  const Centre centre_f = centre_of(*fixed, *pose_f);
-  const Vec3d t = w.transpose() * (centre_m.at - centre_f.at) / unit_f;
-  const double t_error = 16 * u * (w_size.transpose() * (centre_m.size + centre_f.size)).maxCoeff() / unit_f;
-
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    for (Eigen::Index k = 0; k < 3; ++k) r.m[static_cast<std::size_t>(3 * i + k)] = m(i, k);
-    r.t[static_cast<std::size_t>(i)] = t[i];
+  double square_r = 0;
+  double row = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    double square_row = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double m = dot(w[i], lm[k]) * ratio;
+      r.m[3 * i + k] = m;
+      square_row += m * m;
+    }
+    square_r += square_row;
+    row = std::max(row, square_row);
   }
-  r.norm = m.norm();
-  r.row = m.rowwise().norm().maxCoeff();
-  r.distance = t.norm();
+  const double m_error = 24 * u * norm_w * norm_m * ratio;
+  const Centre centre_m = centre_of(*moved, lm, norm_m, *pose_m);
+  const Centre centre_f = centre_of(*fixed, lf, norm_f, *pose_f);
+  const Vector between = {centre_m.at[0] - centre_f.at[0], centre_m.at[1] - centre_f.at[1],
+                          centre_m.at[2] - centre_f.at[2]};
+  for (std::size_t i = 0; i < 3; ++i) r.t[i] = dot(w[i], between) / unit_f;
+  const double t_error = 32 * u * norm_w * (centre_m.size + centre_f.size) / unit_f;
+
+  r.norm = std::sqrt(square_r);
+  r.row = std::sqrt(row);
+  r.distance = std::sqrt(dot(r.t, r.t));
   r.plane_error = radius * (inverse_error + m_error) + 3 * t_error;
   r.vertex_error = radius * m_error + t_error + 2 * inverse_error * (radius * r.norm + r.distance);
-  // What may underflow is far below a unit: products of these numbers are above 2^-800.
+  // What may underflow is far below a unit: see the bounds on the numbers above.
   r.plane_error += 0x1p-100;
   r.vertex_error += 0x1p-100;
   return r.norm < 0x1p60 && r.distance < 0x1p60 && r.plane_error < 0x1p60 && r.vertex_error < 0x1p60;

@@ -841,20 +841,36 @@ class SimdSearch final : public Search {
       }
       return false;
     }
+    // Four bits for each pair, 4 i + 2 k in all: only the lowest of each is used.
+    unsigned left = 0;
+    unsigned certain = 0;
+    std::array<Sides, 2> of_p;
+    std::array<Sides, 2> of_q;
+    const auto all_three = [](unsigned bits) { return bits & bits >> 1U & bits >> 2U; };
     for (std::size_t i = 0; i < count_p; ++i) {
-      Sides of_p;
-      Sides of_q;
-      compare(p, i, place.moved_error, q, place.fixed_error, of_q, of_p);
-      for (std::size_t k = 0; k < count_q; ++k) {
-        const Verdict verdict = decide(p, 4 * i, of_p, q, 4 * k, of_q, place, 4 * k);
-        if (verdict == Verdict::apart) continue;
-        if (verdict == Verdict::touch) {
-          task.add(faces_p[i], faces_q[k]);
-        } else {
-          task.keep_open(faces_p[i], faces_q[k]);
-        }
-        if (task.faces.done()) return true;
+      compare(p, i, place.moved_error, q, place.fixed_error, of_q[i], of_p[i]);
+      const unsigned apart = all_three(of_p[i].positive) | all_three(of_p[i].negative) | all_three(of_q[i].positive) |
+                             all_three(of_q[i].negative);
+      const unsigned known = all_three(of_p[i].positive | of_p[i].negative) &
+                             all_three(of_q[i].positive | of_q[i].negative);
+      left |= (~apart & (count_q == 2 ? 0x11U : 0x01U)) << 8 * i;
+      certain |= known << 8 * i;
+    }
+    for (; left != 0; left &= left - 1) {
+      const std::size_t bit = hwy::Num0BitsBelowLS1Bit_Nonzero32(left);
+      const std::size_t i = bit / 8;
+      const std::size_t k = bit / 4 % 2;
+      const Verdict verdict = (certain >> bit & 1U) != 0
+                                  ? cross_test(p, 4 * i, of_p[i].negative >> 4 * k & 7U, q, 4 * k,
+                                               of_q[i].negative >> 4 * k & 7U, place)
+                                  : Verdict::open;
+      if (verdict == Verdict::apart) continue;
+      if (verdict == Verdict::touch) {
+        task.add(faces_p[i], faces_q[k]);
+      } else {
+        task.keep_open(faces_p[i], faces_q[k]);
       }
+      if (task.faces.done()) return true;
     }
     return false;
   }
