@@ -189,10 +189,17 @@ class Benchmark {
         }
         return result;
       };
-      run_class(bodies, std::string(name_of(c)) + ", all", all_contacts, poses, 4, false);
+      run_class(bodies, std::string(name_of(c)) + " all", all_contacts, poses, 4, false);
     }
-    const auto path = [&](int) { return maker.path(options_.poses); };
-    run_class(bodies, "coherent", CollisionRequest{}, path, 8, false);
+    const auto paths = [&](int) {
+      std::vector<PosePair> poses;
+      while (poses.size() < options_.poses) {
+        const std::vector<PosePair> more = maker.path(std::min<std::size_t>(100, options_.poses - poses.size()));
+        poses.insert(poses.end(), more.begin(), more.end());
+      }
+      return poses;
+    };
+    run_class(bodies, "coherent", CollisionRequest{}, paths, 8, false);
     run_lone(bodies, maker, approaches);
   }
 
@@ -332,7 +339,7 @@ class Benchmark {
       for (const auto& [name, time] : seconds) means_[class_name][name].add(reference / time);
       if (boolean) {
         for (const auto& [name, time] : seconds) means_["booleans"][name].add(reference / time);
-      } else if (class_name.find(", all") != std::string::npos) {
+      } else if (class_name.find(" all") != std::string::npos) {
         for (const auto& [name, time] : seconds) means_["contacts"][name].add(reference / time);
       }
       if (seconds.count("FCL native") != 0) native_gain_.add(seconds.at("FCL Debian") / reference);
@@ -549,7 +556,7 @@ class Benchmark {
       if (!file.flush()) throw std::runtime_error(options_.csv + ": cannot be written");
     }
     fmt::print("\ngeometric means, times FCL built natively:");
-    for (const char* c : {"touch", "near", "deep", "far", "touch, all", "deep, all", "coherent", "lone"}) {
+    for (const char* c : {"touch", "near", "deep", "far", "touch all", "deep all", "coherent", "lone"}) {
       fmt::print("\n  {:<12} single {:>6.1f}", c, means_[c]["single"].value());
       if (means_[c].count("batch") != 0) {
         fmt::print("  batch {:>6.1f}  cores {:>6.1f}", means_[c]["batch"].value(), means_[c]["cores"].value());
