@@ -171,12 +171,13 @@ def draw(run):
             axes.annotate(f"{mean:.1f}", (i + shift, max(values)), xytext=(0, 5), textcoords="offset points", ha="center",
                           fontsize=8, color=colour)
     axes.axhline(1, color="0.45", linewidth=0.9, linestyle=":")
-    axes.annotate("FCL", (len(classes) - 0.55, 1), xytext=(0, 3), textcoords="offset points", fontsize=8, color="0.3")
+    axes.annotate("FCL", (len(classes) - 0.55, 1), xytext=(0, 3), textcoords="offset points", ha="right", fontsize=8,
+                  color="0.3")
     axes.set_yscale("log")
     axes.set_xticks(range(len(classes)), [name.replace(" all", ",\nall contacts") for name in classes])
     axes.set_xlim(-0.5, len(classes) - 0.5)
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
-    axes.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:g}"[0] in "25" else ""))
+    axes.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:e}"[0] in "25" else ""))
     axes.set_ylabel("queries per second, times FCL built natively")
     axes.grid(axis="y", color="0.9", linewidth=0.6, which="both")
     axes.legend(loc="upper right", frameon=False)

@@ -12,8 +12,8 @@ FclLibrary::FclLibrary(const std::string& path) {
   // Never closed: the code of a mesh may be needed until the process ends.
   void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (module == nullptr) throw std::runtime_error(std::string(dlerror()) + "; build the target of that name");
-  void* function = dlsym(module, CCHIP_FCL_PEER);
-  if (function == nullptr) throw std::runtime_error(path + ": no function " CCHIP_FCL_PEER);
+  void* function = dlsym(module, "cchip_fcl_peer");
+  if (function == nullptr) throw std::runtime_error(path + ": no function cchip_fcl_peer");
   peer_ = reinterpret_cast<CchipFclPeerFunction*>(function)();
 }
 

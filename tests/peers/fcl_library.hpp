@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "fcl_peer.h"
+#include "fcl_peer.hpp"
 
 namespace cchip::testing {
 

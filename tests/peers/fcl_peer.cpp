@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fcl_peer.h"
+#include "fcl_peer.hpp"
 
 #include <fcl/config.h>
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -71,4 +71,4 @@ constexpr CchipFclPeer peer = {
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) const CchipFclPeer* cchip_fcl_peer(void) { return &peer; }
+extern "C" __attribute__((visibility("default"))) const CchipFclPeer* cchip_fcl_peer() { return &peer; }
