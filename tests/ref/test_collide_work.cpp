@@ -70,11 +70,11 @@ std::vector<Contact> overlapping(const Mesh& a, const Mesh& b, const PosePair& p
   for (Pose* pose : {&pose_a, &pose_b}) pose->matrix().topRows<3>() *= std::ldexp(1.0, -exponent);
   double error = 0x1p-48 * (magnitude(a, pose_a) + magnitude(b, pose_b));
   // Along the axes of B if they are well defined, otherwise along those of the world.
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(pose_b.linear());
-  if (svd.singularValues()[2] > 0x1p-10 * svd.singularValues()[0]) {
+  const double determinant = std::abs(pose_b.linear().determinant());  // entries are below 1
+  if (determinant > 0x1p-16) {
     pose_a = Pose(pose_b.linear().inverse() * pose_a.matrix().topRows<3>());
     pose_b = Pose::Identity();
-    error *= 0x1p10 / svd.singularValues()[2];
+    error *= 16 / determinant;
   }
   const double widening = std::max(error, 0x1p-12 * std::min(reach(a, pose_a), reach(b, pose_b)));
   std::vector<Box> boxes;
