@@ -23,6 +23,12 @@ namespace {
 /// a native FCL where there is none.
 constexpr double assumed_native_gain = 2.3;
 
+#ifdef __clang__
+constexpr const char* compiler = __VERSION__;
+#else
+constexpr const char* compiler = "GCC " __VERSION__;
+#endif
+
 struct Options {
   std::size_t poses = 3000;
   int passes = 3;
@@ -105,10 +111,9 @@ class Benchmark {
   }
 
   int run() {
-    std::string libraries = debian_.description();
     rows_.note("machine", fmt::format("{}, {} cores; {}", first_line_after("/proc/cpuinfo", "model name"),
                                       std::thread::hardware_concurrency(), caches()));
-    rows_.note("compiler", "GCC " __VERSION__);
+    rows_.note("compiler", compiler);
     rows_.note("Debian's FCL", debian_.description());
     rows_.note("native FCL", native_ ? native_->description() : "none, Debian's time divided by 2.3 instead");
     std::string names;
