@@ -156,9 +156,13 @@ bench-reconfig: $(RELEASE)/build.ninja ## cost of cchip::rc: portals against dir
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_rc_bench
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_rtl_bench
 
-bench-collide: $(RELEASE)/build.ninja ## queries per second of collide() on this computer and of FCL, the same poses
+# an FCL that was built for this computer (docs/speed.md), as in: make bench-collide NATIVE_FCL=/opt/fcl BENCH_ARGS=--quick
+NATIVE_FCL ?=
+BENCH_ARGS ?=
+bench-collide: $(RELEASE)/build.ninja ## queries per second of collide() and of FCL, the same poses in turns (ten minutes); build/bench/collide.csv
+	$(if $(NATIVE_FCL),cmake -D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))' $(RELEASE))
 	cmake --build $(RELEASE) -j $(JOBS) --target collide_speed
-	$(RELEASE)/bin/collide_speed
+	$(RELEASE)/bin/collide_speed $(BENCH_ARGS)
 
 fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEEDS places and routes each (hours), into docs/fpga.md
 	scripts/fpga.py --seeds $(SEEDS) --jobs $(JOBS) --campaign $(CAMPAIGN) --write

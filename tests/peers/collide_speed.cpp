@@ -1,84 +1,628 @@
 // SPDX-License-Identifier: Apache-2.0
-// Queries per second of the CPU device and of FCL (OBBRSS, as Debian builds it), the same poses, yes or no, one thread.
+// Queries per second of the CPU device and of FCL (OBBRSS) in the same run, in turns, in the same poses: docs/speed.md.
 #include <fmt/format.h>
 
-#include <cchip/device/device.hpp>
+#include <CLI/CLI.hpp>
 #include <cchip/mesh/shapes.hpp>
-#include <chrono>
-#include <cmath>
-#include <functional>
-#include <random>
+#include <cchip/sim/seed.hpp>
+#include <cchip/stimulus/progress.hpp>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <thread>
 
-#include "fcl_model.hpp"
+#include "ask.hpp"
+#include "measure.hpp"
 
-using namespace cchip;
-using namespace cchip::testing;
-
+namespace cchip::testing {
 namespace {
 
-double seconds_of(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+/// What a native build of FCL gained over Debian's where both were measured before (git e5efcc4 of FCL); stands in for
+/// a native FCL where there is none.
+constexpr double assumed_native_gain = 2.3;
+
+#ifdef __clang__
+constexpr const char* compiler = __VERSION__;
+#else
+constexpr const char* compiler = "GCC " __VERSION__;
+#endif
+
+struct Options {
+  std::size_t poses = 3000;
+  int passes = 3;
+  std::uint64_t seed = sim::seed_from_environment();
+  std::vector<std::string> pairs = mesh_pair_names();
+  std::string csv = "build/bench/collide.csv";
+  bool quick = false;
+};
+
+/// Rows of the CSV file, which scripts/plot_speed.py reads.
+class Rows {
+ public:
+  void note(const std::string& key, const std::string& value) { text_ << "# " << key << ": " << value << '\n'; }
+  void head() { text_ << "table,meshes,class,variant,queries,hits,seconds_each,steps,box_tests,pairs,open,bytes\n"; }
+  void add(const std::string& table, const std::string& meshes, const std::string& pose_class,
+           const std::string& variant, std::size_t queries, std::size_t hits, double seconds_each,
+           const CollisionCounts& counts = {}, double bytes = 0) {
+    const double n = std::max(1.0, static_cast<double>(queries));
+    text_ << fmt::format("{},{},{},{},{},{},{:.4g},{:.5g},{:.5g},{:.5g},{:.5g},{:.4g}\n", table, meshes, pose_class,
+                         variant, queries, hits, seconds_each, static_cast<double>(counts.steps) / n,
+                         static_cast<double>(counts.box_tests) / n, static_cast<double>(counts.pairs) / n,
+                         static_cast<double>(counts.open) / n, bytes);
+  }
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_;
+};
+
+std::string first_line_after(const std::string& path, const std::string& key) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind(key, 0) != 0) continue;
+    const std::size_t colon = line.find(": ");
+    return colon == std::string::npos ? line : line.substr(colon + 2);
+  }
+  return "unknown";
 }
 
-/// Poses of B along a random direction from A's centre, at `share` of the distance at which they just touch.
-std::vector<Eigen::Isometry3d> poses_at(Device& device, const Object& a, const Object& b, double share, int count) {
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> normal;
-  std::vector<Eigen::Isometry3d> poses;
-  for (int i = 0; i < count; ++i) {
-    const double x = normal(random);
-    const double y = normal(random);
-    const Vec3d direction = Vec3d(x, y, normal(random)).normalized();
-    const Vec3d turn = 180 * direction;
-    double near = 0;
-    double far = 10;
-    for (int step = 0; step < 40; ++step) {
-      const double middle = (near + far) / 2;
-      const Pose pose(make_pose(middle * direction, turn));
-      (collide(device, a, Pose::Identity(), b, pose).hit ? near : far) = middle;
+std::string caches() {
+  std::string text;
+  for (int i = 0; i < 4; ++i) {
+    const std::string folder = fmt::format("/sys/devices/system/cpu/cpu0/cache/index{}/", i);
+    std::ifstream level(folder + "level");
+    std::ifstream type(folder + "type");
+    std::ifstream size(folder + "size");
+    std::string l;
+    std::string t;
+    std::string s;
+    if (!(level >> l && type >> t && size >> s)) continue;
+    if (t != "Instruction") text += fmt::format("{}L{} {}", text.empty() ? "" : ", ", l, s);
+  }
+  return text;
+}
+
+/// Our answers of one pass. They outlive the clock's run, so nothing of them may be optimised away.
+struct Answers {
+  std::vector<char> hit;
+  std::vector<Contact> witness;
+  std::size_t contacts = 0;
+  CollisionCounts counts;
+  explicit Answers(std::size_t queries) : hit(queries), witness(queries) {}
+  void take(std::size_t i, const CollisionResult& result) {
+    hit[i] = static_cast<char>(result.hit);
+    if (result.hit) witness[i] = result.contacts.front();
+    contacts += result.contacts.size();
+    counts += result.counts;
+  }
+};
+
+class Benchmark {
+ public:
+  explicit Benchmark(const Options& options)
+      : options_(options), debian_(FclLibrary::debian()), native_(FclLibrary::native()), progress_("queries") {
+    const std::vector<std::string> targets = cpu_targets();
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      targets_.push_back({targets[i], open_cpu_device({1, targets[i]})});
     }
-    poses.push_back(make_pose(share * far * direction, turn));
+    all_cores_ = open_cpu_device();
   }
-  return poses;
-}
 
-void measure(const char* name, const Mesh& mesh_a, const Mesh& mesh_b, int count) {
-  const auto device = open_device("cpu");
-  const Object a(mesh_a);
-  const Object b(mesh_b);
-  const auto model_a = fcl_model(mesh_a);
-  const auto model_b = fcl_model(mesh_b);
-  for (const auto& [kind, share] : {std::pair("touch", 1 - 1e-9), std::pair("near", 1.01), std::pair("deep", 0.7)}) {
-    const auto poses = poses_at(*device, a, b, share, count);
-    int hits = 0;
-    int fcl_hits = 0;
-    CollisionCounts counts;
-    const double ours = seconds_of([&] {
-      for (const auto& pose : poses) {
-        const CollisionResult result = collide(*device, a, Pose::Identity(), b, Pose(pose));
-        hits += result.hit;
-        counts += result.counts;
-      }
-    });
-    const double theirs = seconds_of([&] {
-      for (const auto& pose : poses) {
-        fcl_hits += fcl_collide(*model_a, Eigen::Isometry3d::Identity(), *model_b, pose).isCollision();
-      }
-    });
-    const double n = static_cast<double>(poses.size());
-    fmt::print("{:<16}{:<6}{:>7}{:>7}{:>10}{:>12.0f}{:>12.0f}{:>8.2f}{:>9.1f}{:>10.1f}{:>8.1f}{:>7}\n", name, kind,
-               poses.size(), hits, fcl_hits, n / ours, n / theirs, theirs / ours, static_cast<double>(counts.steps) / n,
-               static_cast<double>(counts.box_tests) / n, static_cast<double>(counts.pairs) / n, counts.open);
+  int run() {
+    rows_.note("machine", fmt::format("{}, {} cores; {}", first_line_after("/proc/cpuinfo", "model name"),
+                                      std::thread::hardware_concurrency(), caches()));
+    rows_.note("compiler", compiler);
+    rows_.note("Debian's FCL", debian_.description());
+    rows_.note("native FCL", native_ ? native_->description() : "none, Debian's time divided by 2.3 instead");
+    std::string names;
+    for (const Target& target : targets_) names += (names.empty() ? "" : ", ") + target.name;
+    rows_.note("instruction sets", names);
+    rows_.note("run", fmt::format("seed {}, {} passes of {} poses, of all contacts {}", options_.seed, options_.passes,
+                                  options_.poses, all_poses()));
+    fmt::print("{}", rows_.text());
+    rows_.head();
+    fmt::print(
+        "\nqueries/s, in brackets times FCL built natively{}; batch: one thread; cores: batch on all, wall clock\n"
+        "{:<14}{:<12}{:>6}{:>9}{:>9}{:>18}{:>18}{:>11}{:>7}{:>8}{:>8}{:>7}\n",
+        native_ ? "" : " (Debian's time / 2.3)", "meshes", "class", "hits", "Debian", "native", "single", "batch",
+        "cores", "steps", "boxes", "pairs", "open");
+    for (const std::string& name : options_.pairs) run_pair(name);
+    run_scene();
+    print_targets();
+    print_objects();
+    return summary();
   }
-}
+
+ private:
+  struct Target {
+    std::string name;
+    std::unique_ptr<Device> device;
+  };
+
+  std::size_t all_poses() const { return std::max<std::size_t>(4, options_.poses / 30); }
+  Device& best() { return *targets_.front().device; }
+  std::function<void(std::size_t)> tick() {
+    return [this](std::size_t count) {
+      done_ += count;
+      progress_.update(done_, -1);
+    };
+  }
+
+  /// Seconds that FCL built natively takes, measured or assumed.
+  static double native_seconds(const std::map<std::string, double>& seconds) {
+    const auto found = seconds.find("FCL native");
+    return found != seconds.end() ? found->second : seconds.at("FCL Debian") / assumed_native_gain;
+  }
+
+  void run_pair(const std::string& name) {
+    MeshPair meshes = mesh_pair(name);
+    print_build(meshes);
+    const Bodies bodies(std::move(meshes), debian_);
+    std::optional<FclMesh> native_a;
+    std::optional<FclMesh> native_b;
+    if (native_) {
+      native_a.emplace(native_->mesh(bodies.a.mesh()));
+      native_b.emplace(native_->mesh(bodies.b.mesh()));
+    }
+    natives_ = {native_a ? &*native_a : nullptr, native_b ? &*native_b : nullptr};
+    PoseMaker maker(best(), bodies.a, bodies.b, options_.seed);
+    std::vector<std::vector<Approach>> approaches(static_cast<std::size_t>(options_.passes));
+    for (auto& pass : approaches) {
+      for (std::size_t i = 0; i < options_.poses; ++i) {
+        pass.push_back(maker.approach());
+        tick()(1);
+      }
+    }
+    for (const PoseClass c : pose_classes) {
+      const auto poses = [&](int pass) {
+        std::vector<PosePair> result;
+        for (const Approach& approach : approaches[static_cast<std::size_t>(pass)]) {
+          result.push_back(maker.pose(approach, c));
+        }
+        return result;
+      };
+      run_class(bodies, name_of(c), CollisionRequest{}, poses, 8, true);
+    }
+    if (!bodies.counts) return;
+    for (const PoseClass c : {PoseClass::touch, PoseClass::deep}) {
+      const auto poses = [&](int pass) {
+        std::vector<PosePair> result;
+        for (std::size_t i = 0; i < all_poses(); ++i) {
+          result.push_back(maker.pose(approaches[static_cast<std::size_t>(pass)][i], c));
+        }
+        return result;
+      };
+      run_class(bodies, std::string(name_of(c)) + " all", all_contacts, poses, 4, false);
+    }
+    const auto paths = [&](int) {
+      std::vector<PosePair> poses;
+      while (poses.size() < options_.poses) {
+        const std::vector<PosePair> more = maker.path(std::min<std::size_t>(100, options_.poses - poses.size()));
+        poses.insert(poses.end(), more.begin(), more.end());
+      }
+      return poses;
+    };
+    run_class(bodies, "coherent", CollisionRequest{}, paths, 8, false);
+    run_lone(bodies, maker, approaches);
+  }
+
+  /// Ways to answer the queries of one pass about one pair of meshes.
+  std::vector<Variant> variants(const Bodies& bodies, const CollisionRequest& request,
+                                const std::vector<PosePair>& poses, std::vector<Answers>& answers, bool all_targets) {
+    const bool all = request.contacts == CollisionRequest::Contacts::all;
+    std::vector<Variant> result;
+    answers.clear();
+    answers.reserve(3 * targets_.size() + 4);  // the variants refer to its elements
+    const auto ours = [&](const std::string& name, Clock clock, Device& device, bool batch) {
+      Answers& mine = answers.emplace_back(poses.size());
+      const auto query = [&bodies, &poses](std::size_t i) {
+        return CollisionQuery{&bodies.a, &poses[i].a, &bodies.b, &poses[i].b};
+      };
+      if (batch) {
+        result.push_back({name, clock, [&, query, request](std::size_t first, std::size_t count) {
+                            ask(
+                                device, count, [&](std::size_t i) { return query(first + i); }, request,
+                                [&](std::size_t i, const CollisionResult& r) { mine.take(first + i, r); });
+                          }});
+      } else {
+        result.push_back({name, clock, [&, query, request](std::size_t first, std::size_t count) {
+                            for (std::size_t i = first; i < first + count; ++i) {
+                              ask(device, query(i), request, result_);
+                              mine.take(i, result_);
+                            }
+                          }});
+      }
+    };
+    const auto fcl = [&](const std::string& name, const FclMesh& a, const FclMesh& b) {
+      Answers& mine = answers.emplace_back(poses.size());
+      result.push_back({name, Clock::cpu, [&, all](std::size_t first, std::size_t count) {
+                          for (std::size_t i = first; i < first + count; ++i) {
+                            if (all) {
+                              const std::size_t found = a.count_contacts(poses[i].a, b, poses[i].b);
+                              mine.hit[i] = static_cast<char>(found > 0);
+                              mine.contacts += found;
+                            } else {
+                              mine.hit[i] = static_cast<char>(a.hit(poses[i].a, b, poses[i].b));
+                            }
+                          }
+                        }});
+    };
+    ours("single", Clock::cpu, best(), false);
+    fcl("FCL Debian", bodies.fcl_a, bodies.fcl_b);
+    ours("batch", Clock::cpu, best(), true);
+    if (natives_.first != nullptr) fcl("FCL native", *natives_.first, *natives_.second);
+    ours("cores", Clock::wall, *all_cores_, true);
+    for (std::size_t i = 1; all_targets && i < targets_.size(); ++i) {
+      ours("single " + targets_[i].name, Clock::cpu, *targets_[i].device, false);
+      ours("batch " + targets_[i].name, Clock::cpu, *targets_[i].device, true);
+    }
+    return result;
+  }
+
+  void run_class(const Bodies& bodies, const std::string& class_name, const CollisionRequest& request,
+                 const std::function<std::vector<PosePair>(int)>& make_poses, std::size_t chunks, bool all_targets) {
+    std::vector<std::vector<double>> passes;
+    std::vector<std::string> names;
+    std::size_t queries = 0;
+    std::size_t hits = 0;
+    std::size_t open = 0;
+    CollisionCounts counts;
+    for (int pass = 0; pass < options_.passes; ++pass) {
+      const std::vector<PosePair> poses = make_poses(pass);
+      std::vector<Answers> answers;
+      std::vector<Variant> ways = variants(bodies, request, poses, answers, all_targets);
+      measure_pass(ways, poses.size(), chunks, tick());
+      passes.resize(ways.size());
+      names.clear();
+      for (std::size_t i = 0; i < ways.size(); ++i) {
+        names.push_back(ways[i].name);
+        passes[i].push_back(ways[i].passes.front());
+      }
+      queries += poses.size();
+      counts += answers.front().counts;
+      open += answers.front().counts.open;
+      hits += static_cast<std::size_t>(std::count(answers.front().hit.begin(), answers.front().hit.end(), 1));
+      compare(bodies, class_name, request, poses, ways, answers);
+    }
+    std::map<std::string, double> seconds;
+    for (std::size_t i = 0; i < names.size(); ++i) seconds[names[i]] = median(passes[i]);
+    report("query", bodies.name, class_name, queries, hits, names, seconds, counts, bodies.counts);
+  }
+
+  /// Counts the answers that are not ours, and those that exact integers do not explain.
+  void compare(const Bodies& bodies, const std::string& class_name, const CollisionRequest& request,
+               const std::vector<PosePair>& poses, const std::vector<Variant>& ways,
+               const std::vector<Answers>& answers) {
+    const Answers& first = answers.front();
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      for (std::size_t k = 1; k < answers.size(); ++k) {
+        ++compared_;
+        if (answers[k].hit[i] == first.hit[i]) continue;
+        Difference difference = {0, 1};  // two variants of ours must not differ
+        if (ways[k].name.rfind("FCL", 0) == 0) {
+          const FclMesh& a = ways[k].name == "FCL native" ? *natives_.first : bodies.fcl_a;
+          const FclMesh& b = ways[k].name == "FCL native" ? *natives_.second : bodies.fcl_b;
+          difference = first.hit[i] != 0 ? bodies.judge(poses[i], true, first.witness[i])
+                                         : bodies.judge(poses[i], {}, a.contacts(poses[i].a, b, poses[i].b));
+        }
+        note(difference, bodies.name, class_name, ways[k].name, i);
+      }
+      if (request.contacts != CollisionRequest::Contacts::all) continue;
+      ++compared_;
+      ask(best(), {&bodies.a, &poses[i].a, &bodies.b, &poses[i].b}, request, result_);
+      note(bodies.judge(poses[i], result_.contacts, bodies.fcl_a.contacts(poses[i].a, bodies.fcl_b, poses[i].b)),
+           bodies.name, class_name, "contacts", i);
+    }
+    for (std::size_t k = 1; k < answers.size(); ++k) {
+      const bool same = ways[k].name.rfind("FCL", 0) == 0 || answers[k].contacts == first.contacts ||
+                        request.contacts != CollisionRequest::Contacts::all;
+      if (!same) note({0, 1}, bodies.name, class_name, ways[k].name + ", number of contacts", 0);
+    }
+  }
+
+  void note(const Difference& difference, const std::string& meshes, const std::string& class_name,
+            const std::string& variant, std::size_t pose) {
+    fcl_errs_ += difference.asked - std::min(difference.asked, difference.unexplained);
+    differences_ += difference.unexplained;
+    if (difference.unexplained == 0) return;
+    progress_.clear();
+    fmt::print("{}, {}, {}: answer {} differs, {} pairs of faces\n", meshes, class_name, variant, pose,
+               difference.unexplained);
+  }
+
+  void report(const std::string& table, const std::string& meshes, const std::string& class_name, std::size_t queries,
+              std::size_t hits, const std::vector<std::string>& names, const std::map<std::string, double>& seconds,
+              const CollisionCounts& counts, bool in_means) {
+    for (const std::string& name : names) {
+      rows_.add(table, meshes, class_name, name, queries, hits, seconds.at(name), counts);
+    }
+    const double reference = native_seconds(seconds);
+    const bool boolean = class_name == "touch" || class_name == "near" || class_name == "deep";
+    if (in_means) {
+      for (const auto& [name, time] : seconds) means_[class_name][name].add(reference / time);
+      if (boolean) {
+        for (const auto& [name, time] : seconds) means_["booleans"][name].add(reference / time);
+      } else if (class_name.find(" all") != std::string::npos) {
+        for (const auto& [name, time] : seconds) means_["contacts"][name].add(reference / time);
+      }
+      if (seconds.count("FCL native") != 0) native_gain_.add(seconds.at("FCL Debian") / reference);
+    }
+    const auto rate = [&](const char* name) {
+      const auto found = seconds.find(name);
+      return found == seconds.end() ? std::string("-") : fmt::format("{:.0f}", 1 / found->second);
+    };
+    const auto ratio = [&](const char* name) {
+      const auto found = seconds.find(name);
+      return found == seconds.end() ? std::string("-")
+                                    : fmt::format("{:.0f} ({:.1f})", 1 / found->second, reference / found->second);
+    };
+    const double n = static_cast<double>(queries);
+    progress_.clear();
+    fmt::print("{:<14}{:<12}{:>6}{:>9}{:>9}{:>18}{:>18}{:>11}{:>7.1f}{:>8.0f}{:>8.1f}{:>7.2f}\n", meshes, class_name,
+               hits, rate("FCL Debian"), rate("FCL native"), ratio("single"), ratio("batch"), rate("cores"),
+               static_cast<double>(counts.steps) / n, static_cast<double>(counts.box_tests) / n,
+               static_cast<double>(counts.pairs) / n, static_cast<double>(counts.open) / n);
+    std::fflush(stdout);
+  }
+
+  /// One query alone, after the caches were filled with something else.
+  void run_lone(const Bodies& bodies, PoseMaker& maker, const std::vector<std::vector<Approach>>& approaches) {
+    const std::size_t count = std::clamp<std::size_t>(options_.poses / 30, 5, 60);
+    std::vector<PosePair> poses;
+    for (std::size_t i = 0; i < count; ++i) poses.push_back(maker.pose(approaches[0][i], PoseClass::touch));
+    std::vector<Answers> answers;
+    std::vector<Variant> ways = variants(bodies, {}, poses, answers, false);
+    std::vector<unsigned char> unrelated(std::size_t{96} << 20U);
+    std::vector<std::vector<double>> times(ways.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t k = 0; k < ways.size(); ++k) {
+        if (ways[k].name == "batch" || ways[k].name == "cores") continue;
+        for (std::size_t byte = 0; byte < unrelated.size(); byte += 64) ++unrelated[byte];
+        const double start = seconds(Clock::wall);
+        ways[k].answer(i, 1);
+        times[k].push_back(seconds(Clock::wall) - start);
+      }
+      tick()(1);
+    }
+    std::map<std::string, double> each;
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < ways.size(); ++k) {
+      if (times[k].empty()) continue;
+      names.push_back(ways[k].name);
+      each[ways[k].name] = median(times[k]);
+    }
+    const auto hits = static_cast<std::size_t>(std::count(answers[0].hit.begin(), answers[0].hit.end(), 1));
+    report("query", bodies.name, "lone", count, hits, names, each, answers[0].counts, bodies.counts);
+  }
+
+  /// One object that moves against a scene of several: a batch of one query with each of them.
+  void run_scene() {
+    std::vector<Mesh> meshes = {
+        make_body(25, 0.3, 11), make_body(40, 0.8, 12),      make_gear(1.25, 1.5, 0.5, 0.5, 48, 8),
+        make_body(15, 0.6, 13), make_torus(1, 0.25, 64, 32), make_body(30, 0.2, 14),
+        make_sphere(1, 20),     make_body(50, 0.7, 15)};
+    const Object mover(normalised(make_body(39, 0.8, 16)));
+    std::vector<Object> objects;
+    std::vector<Pose> places;
+    std::mt19937_64 random(options_.seed);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    const auto vector = [&](double range) {
+      const double x = unit(random);
+      const double y = unit(random);
+      return Vec3d(range * x, range * y, range * unit(random));
+    };
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+      objects.emplace_back(normalised(std::move(meshes[i])));
+      const Vec3d corner((i & 1U) != 0 ? 0.4 : -0.4, (i & 2U) != 0 ? 0.4 : -0.4, (i & 4U) != 0 ? 0.4 : -0.4);
+      places.emplace_back(make_pose(corner, vector(180)));
+    }
+    struct Scene {
+      std::vector<FclMesh> objects;
+      FclMesh mover;
+    };
+    const auto scene = [&](const FclLibrary& library) {
+      Scene result = {{}, library.mesh(mover.mesh())};
+      for (const Object& object : objects) result.objects.push_back(library.mesh(object.mesh()));
+      return result;
+    };
+    const Scene debian = scene(debian_);
+    std::optional<Scene> native;
+    if (native_) native.emplace(scene(*native_));
+    const std::size_t n = objects.size();
+    const std::size_t poses = std::max<std::size_t>(8, options_.poses / 4);
+    std::vector<std::vector<double>> passes;
+    std::vector<std::string> names;
+    std::size_t hits = 0;
+    CollisionCounts counts;
+    for (int pass = 0; pass < options_.passes; ++pass) {
+      std::vector<Pose> moves;
+      for (std::size_t i = 0; i < poses; ++i) moves.emplace_back(make_pose(vector(0.4), vector(180)));
+      std::vector<Answers> answers;
+      answers.reserve(5);
+      std::vector<Variant> ways;
+      const auto ours = [&](const std::string& name, Clock clock, Device& device, bool batch) {
+        Answers& mine = answers.emplace_back(n * poses);
+        ways.push_back({name, clock, [&, batch](std::size_t first, std::size_t count) {
+                          for (std::size_t i = first; i < first + count; ++i) {
+                            const auto query = [&](std::size_t k) {
+                              return CollisionQuery{&mover, &moves[i], &objects[k], &places[k]};
+                            };
+                            const auto take = [&](std::size_t k, const CollisionResult& r) { mine.take(n * i + k, r); };
+                            if (batch) {
+                              ask(device, n, query, {}, take);
+                              continue;
+                            }
+                            for (std::size_t k = 0; k < n; ++k) {
+                              ask(device, query(k), {}, result_);
+                              take(k, result_);
+                            }
+                          }
+                        }});
+      };
+      const auto fcl = [&](const std::string& name, const Scene& s) {
+        Answers& mine = answers.emplace_back(n * poses);
+        ways.push_back({name, Clock::cpu, [&](std::size_t first, std::size_t count) {
+                          for (std::size_t i = first; i < first + count; ++i) {
+                            for (std::size_t k = 0; k < n; ++k) {
+                              mine.hit[n * i + k] = static_cast<char>(s.mover.hit(moves[i], s.objects[k], places[k]));
+                            }
+                          }
+                        }});
+      };
+      ours("single", Clock::cpu, best(), false);
+      fcl("FCL Debian", debian);
+      ours("batch", Clock::cpu, best(), true);
+      if (native) fcl("FCL native", *native);
+      ours("cores", Clock::wall, *all_cores_, true);
+      measure_pass(ways, poses, 8, tick());
+      passes.resize(ways.size());
+      names.clear();
+      for (std::size_t i = 0; i < ways.size(); ++i) {
+        names.push_back(ways[i].name);
+        passes[i].push_back(ways[i].passes.front() / static_cast<double>(n));
+      }
+      counts += answers.front().counts;
+      hits += static_cast<std::size_t>(std::count(answers.front().hit.begin(), answers.front().hit.end(), 1));
+    }
+    std::map<std::string, double> seconds;
+    for (std::size_t i = 0; i < names.size(); ++i) seconds[names[i]] = median(passes[i]);
+    report("query", "scene", fmt::format("{} objects", n), n * poses * static_cast<std::size_t>(options_.passes), hits,
+           names, seconds, counts, false);
+  }
+
+  struct Built {
+    std::string meshes, side, faces;
+    double bytes = 0, milliseconds = 0, fcl_bytes = 0, fcl_milliseconds = 0;
+  };
+
+  /// Time and memory of an object of either library. The device derives what it needs at the first query, which counts.
+  void print_build(const MeshPair& meshes) {
+    for (const bool second : {false, true}) {
+      const Mesh& mesh = second ? meshes.b : meshes.a;
+      const double n = static_cast<double>(mesh.faces.size());
+      Built built = {meshes.name, second ? "B" : "A", describe_faces(mesh)};
+      const double before = heap_bytes();
+      double start = seconds(Clock::cpu);
+      {
+        const Object object(mesh);
+        const auto device = open_cpu_device({1, targets_.front().name});
+        collide(*device, object, Pose::Identity(), object, Pose::Identity());
+        built.milliseconds = 1000 * (seconds(Clock::cpu) - start);
+        built.bytes = (heap_bytes() - before) / n;
+      }
+      const double between = heap_bytes();
+      start = seconds(Clock::cpu);
+      const FclMesh fcl = debian_.mesh(mesh);
+      built.fcl_milliseconds = 1000 * (seconds(Clock::cpu) - start);
+      built.fcl_bytes = (heap_bytes() - between) / n;
+      rows_.add("object", built.meshes, built.side + " " + built.faces, "ours", 0, 0, built.milliseconds / 1000, {},
+                built.bytes);
+      rows_.add("object", built.meshes, built.side + " " + built.faces, "FCL Debian", 0, 0,
+                built.fcl_milliseconds / 1000, {}, built.fcl_bytes);
+      built_.push_back(built);
+    }
+  }
+
+  void print_objects() {
+    fmt::print("\nobjects: bytes a face and build time, ms, mesh included\n{:<14}{:<6}{:<14}{:>10}{:>10}{:>12}{:>10}\n",
+               "meshes", "which", "faces", "bytes", "ms", "FCL: bytes", "ms");
+    for (const Built& x : built_) {
+      fmt::print("{:<14}{:<6}{:<14}{:>10.0f}{:>10.0f}{:>12.0f}{:>10.0f}\n", x.meshes, x.side, x.faces, x.bytes,
+                 x.milliseconds, x.fcl_bytes, x.fcl_milliseconds);
+    }
+  }
+
+  void print_targets() {
+    fmt::print("\ninstruction sets, times FCL built natively, geometric means of the meshes: single, batch\n{:<10}",
+               "");
+    for (const PoseClass c : pose_classes) fmt::print("{:>16}", name_of(c));
+    for (std::size_t i = 0; i < targets_.size(); ++i) {
+      fmt::print("\n{:<10}", targets_[i].name);
+      const std::string suffix = i == 0 ? "" : " " + targets_[i].name;
+      for (const PoseClass c : pose_classes) {
+        fmt::print("{:>16}", fmt::format("{:.1f}, {:.1f}", means_[name_of(c)]["single" + suffix].value(),
+                                         means_[name_of(c)]["batch" + suffix].value()));
+      }
+    }
+    fmt::print("\n");
+  }
+
+  int summary() {
+    std::ofstream file;
+    if (!options_.csv.empty()) {
+      std::filesystem::create_directories(std::filesystem::path(options_.csv).parent_path());
+      file.open(options_.csv);
+      const double gain = native_gain_.value();
+      file << rows_.text() << fmt::format("# FCL built natively is faster by: {:.2f}\n", gain);
+      file << fmt::format("# answers compared with FCL's: {}, FCL errs in: {}, differences: {}\n", compared_, fcl_errs_,
+                          differences_);
+      if (!file.flush()) throw std::runtime_error(options_.csv + ": cannot be written");
+    }
+    fmt::print("\ngeometric means, times FCL built natively:");
+    for (const char* c : {"touch", "near", "deep", "far", "touch all", "deep all", "coherent", "lone"}) {
+      fmt::print("\n  {:<12} single {:>6.1f}", c, means_[c]["single"].value());
+      if (means_[c].count("batch") != 0) {
+        fmt::print("  batch {:>6.1f}  cores {:>6.1f}", means_[c]["batch"].value(), means_[c]["cores"].value());
+      }
+    }
+    fmt::print("\n");
+    if (native_) fmt::print("FCL built natively is {:.2f} times as fast as Debian's here\n", native_gain_.value());
+    fmt::print("answers and sets of contacts compared: {}; pairs of faces in which FCL errs by exact integers: {}\n",
+               compared_, fcl_errs_);
+    fmt::print("single={:.1f} batch={:.1f} all_contacts={:.1f} differences={}\n", means_["booleans"]["single"].value(),
+               means_["booleans"]["batch"].value(), means_["contacts"]["single"].value(), differences_);
+    return differences_ == 0 ? 0 : 3;
+  }
+
+  Options options_;
+  FclLibrary debian_;
+  std::unique_ptr<FclLibrary> native_;
+  std::pair<const FclMesh*, const FclMesh*> natives_ = {nullptr, nullptr};  ///< of the present pair
+  std::vector<Target> targets_;                                             ///< one thread each, the best first
+  std::unique_ptr<Device> all_cores_;
+  CollisionResult result_;  ///< reused, as a user does
+  Rows rows_;
+  std::vector<Built> built_;
+  std::map<std::string, std::map<std::string, GeometricMean>> means_;  ///< class, variant
+  GeometricMean native_gain_;
+  std::size_t compared_ = 0;
+  std::size_t fcl_errs_ = 0;
+  std::size_t differences_ = 0;
+  std::size_t done_ = 0;
+  Progress progress_;
+};
 
 }  // namespace
+}  // namespace cchip::testing
 
-int main() {
-  fmt::print("{:<16}{:<6}{:>7}{:>7}{:>10}{:>12}{:>12}{:>8}{:>9}{:>10}{:>8}{:>7}\n", "meshes", "pose", "poses", "hits",
-             "FCL hits", "queries/s", "FCL's", "times", "steps", "box tests", "pairs", "open");
-  measure("torus, gear", make_torus(1, 0.25, 64, 32), make_gear(1.25, 1.5, 0.5, 0.5, 36, 6), 300);
-  measure("spheres, 50000", make_sphere(1, 50, 0.02), make_sphere(1, 50, 0.02, 2), 300);
+int main(int argc, char** argv) try {
+  cchip::testing::Options o;
+  CLI::App app{
+      "Queries per second of the CPU device and of FCL, the same poses in turns.\n"
+      "Exit codes: 0 done, 3 an answer differs from FCL's and exact integers say that FCL is right, 2 the run could "
+      "not be made."};
+  app.add_option("--poses", o.poses, "poses of each class and pair of meshes in a pass")
+      ->check(CLI::Range(8, 1000000))
+      ->capture_default_str();
+  app.add_option("--passes", o.passes, "passes, each with its own poses; times are their medians")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  app.add_option("--seed", o.seed, "repeats the poses (or CCHIP_SEED)")->capture_default_str();
+  app.add_option("--pairs", o.pairs, "pairs of meshes")
+      ->delimiter(',')
+      ->check(CLI::IsMember(cchip::testing::mesh_pair_names()))
+      ->capture_default_str();
+  app.add_option("--csv", o.csv, "the same figures as a file; empty: none")->capture_default_str();
+  auto* quick = app.add_flag("--quick", "300 poses in one pass, for a first look; its ratios are rough");
+  CLI11_PARSE(app, argc, argv);
+  if (*quick) {
+    o.poses = 300;
+    o.passes = 1;
+  }
+  return cchip::testing::Benchmark(o).run();
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "collide_speed: %s\n", error.what());
+  return 2;
 }

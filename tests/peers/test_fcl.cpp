@@ -9,6 +9,7 @@
 #include <iostream>
 #include <random>
 
+#include "ask.hpp"
 #include "fcl_model.hpp"
 
 using namespace cchip;
@@ -87,4 +88,27 @@ TEST_CASE("FCL answers the same, except where it errs", "[ref][fcl]") {
     std::cout << "poses=" << c.poses << " hits=" << c.hits << " fcl_missed=" << c.fcl_missed
               << " fcl_invented=" << c.fcl_invented << '\n';
   }
+}
+
+TEST_CASE("The judge of bench-collide and collide_agreement finds wrong answers", "[ref][fcl]") {
+  const FclLibrary debian = FclLibrary::debian();
+  const Bodies bodies(
+      {"torus and gear", make_torus(1, 0.25, 48, 24, Kind::quad), make_gear(1.25, 1.5, 0.5, 0.5, 24, 4)}, debian);
+  const PosePair poses = {Pose::Identity(), Pose(make_pose({0, 0.1, 0.4}, {7, 8, 9}))};
+  const auto device = open_device("cpu");
+  const std::vector<Contact> right = collide(*device, bodies.a, poses.a, bodies.b, poses.b, all_contacts).contacts;
+  REQUIRE(right.size() > 100);
+  CHECK(bodies.fcl_a.hit(poses.a, bodies.fcl_b, poses.b));
+  CHECK(bodies.fcl_a.count_contacts(poses.a, bodies.fcl_b, poses.b) >= right.size());
+  CHECK(bodies.judge(poses, right, bodies.fcl_a.contacts(poses.a, bodies.fcl_b, poses.b)).unexplained == 0);
+  CHECK(bodies.judge(poses, true, right.front()).unexplained == 0);
+  CHECK(bodies.judge(poses, false, {}).unexplained == right.size());
+  std::vector<Contact> wrong = right;
+  wrong.erase(wrong.begin() + 17);
+  CHECK(bodies.judge(poses, wrong, right).unexplained == 1);
+  CHECK(bodies.judge(poses, right, wrong).asked == 1);
+  CHECK(bodies.judge(poses, right, wrong).unexplained == 0);  // exact integers say that ours are right
+  Contact apart = {0, 0};
+  while (bodies.exact(apart, poses)) ++apart.face_b;
+  CHECK(bodies.judge(poses, true, apart).unexplained == 1);
 }

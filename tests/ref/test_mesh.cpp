@@ -133,6 +133,46 @@ TEST_CASE("mesh: sphere is closed, faces outwards, repeats with its seed", "[ref
   CHECK_THROWS_AS(cchip::make_sphere(1, 9, 1), std::invalid_argument);
 }
 
+TEST_CASE("mesh: body is closed, faces outwards, repeats with its seed, has its relief", "[ref][mesh]") {
+  const Mesh body = cchip::make_body(20, 0.8, 7);
+  CHECK(body.faces.size() == 20 * 20 * 20);
+  CHECK(is_closed_and_oriented(body));
+  CHECK(euler_characteristic(body) == 2);
+  const auto by_norm = [](const Vec3d& p, const Vec3d& q) { return p.norm() < q.norm(); };
+  const auto [least, greatest] = std::minmax_element(body.vertices.begin(), body.vertices.end(), by_norm);
+  CHECK(least->norm() > 0.2);
+  CHECK(least->norm() < 0.8);
+  CHECK(greatest->norm() > 1.25);
+  CHECK(greatest->norm() < 5);
+  CHECK(cchip::make_body(20, 0.8, 7).vertices == body.vertices);
+  CHECK(cchip::make_body(20, 0.8, 8).vertices != body.vertices);
+  CHECK(cchip::make_body(20, 0, 7).vertices == cchip::make_sphere(1, 20).vertices);
+  CHECK_THROWS_AS(cchip::make_body(20, -0.1), std::invalid_argument);
+  CHECK_THROWS_AS(cchip::make_body(20, 1.1), std::invalid_argument);
+  CHECK_THROWS_AS(cchip::make_body(0, 0.5), std::invalid_argument);
+}
+
+TEST_CASE("mesh: subdivided keeps the surface, normalised its shape", "[ref][mesh]") {
+  const Mesh torus = cchip::make_torus(3, 1, 24, 12);
+  const Mesh fine = cchip::subdivided(torus);
+  CHECK(fine.faces.size() == 4 * torus.faces.size());
+  CHECK(is_closed_and_oriented(fine));
+  CHECK(euler_characteristic(fine) == 0);
+  CHECK(volume(fine) == Approx(volume(torus)));
+  const Mesh quads = cchip::subdivided(cchip::make_torus(3, 1, 24, 12, cchip::Kind::quad));
+  CHECK(quads.faces.size() == 4 * 24 * 12);
+  CHECK(quads.vertices.size() == 4 * 24 * 12);  // as many vertices as faces, so a torus again
+  for (const Mesh::Face& face : quads.faces) CHECK(face.kind == cchip::Kind::quad);
+  Mesh moved = torus;
+  for (Vec3d& v : moved.vertices) v = 7 * v + Vec3d(1, 2, 3);
+  moved = cchip::normalised(moved);
+  const double size = std::sqrt(8 * 8 + 8 * 8 + 2 * 2);
+  for (std::size_t i = 0; i < torus.vertices.size(); ++i) {
+    CHECK((moved.vertices[i] - torus.vertices[i] / size).norm() < 1e-6);
+  }
+  CHECK_THROWS_AS(cchip::normalised(Mesh{}), std::invalid_argument);
+}
+
 TEST_CASE("mesh: a torus of quads is the torus of triangles before the cut", "[ref][mesh]") {
   const Mesh quads = cchip::make_torus(3, 1, 12, 8, cchip::Kind::quad);
   const Mesh triangles = cchip::make_torus(3, 1, 12, 8);

@@ -199,4 +199,81 @@ Mesh make_sphere(double radius, int cuts, double noise, std::uint64_t seed) {
   return mesh;
 }
 
+Mesh make_body(int cuts, double relief, std::uint64_t seed) {
+  require(relief >= 0 && relief <= 1, "body: 0 <= relief <= 1 is needed");
+  Mesh mesh = make_sphere(1, cuts);
+  mesh.name = "body";
+  struct Wave {
+    Vec3d frequency;
+    double phase;
+    double height;
+  };
+  std::vector<Wave> waves;
+  std::mt19937_64 random(seed);
+  const auto unit = [&random] { return static_cast<double>(random() >> 11U) * 0x1p-52 - 1; };  // -1..1
+  for (int octave = 0; octave < 5; ++octave) {
+    for (int i = 0; i < 6; ++i) {
+      Vec3d direction = Vec3d::Zero();
+      while (direction.norm() < 0.1 || direction.norm() > 1) {
+        for (double& x : direction) x = unit();
+      }
+      waves.push_back({direction.normalized() * 2.5 * std::pow(2.1, octave), pi * unit(), std::pow(0.42, octave) / 3});
+    }
+  }
+  for (Vec3d& v : mesh.vertices) {
+    double sum = 0;
+    for (const Wave& wave : waves) sum += wave.height * std::sin(wave.frequency.dot(v) + wave.phase);
+    v *= std::exp(relief * sum);
+  }
+  return mesh;
+}
+
+Mesh subdivided(const Mesh& mesh) {
+  Mesh fine;
+  fine.name = mesh.name;
+  fine.vertices = mesh.vertices;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+  const auto middle = [&](std::uint32_t i, std::uint32_t k) {
+    const auto [place, is_new] =
+        middles.try_emplace(std::minmax(i, k), static_cast<std::uint32_t>(fine.vertices.size()));
+    if (is_new) fine.vertices.push_back((mesh.vertices[i] + mesh.vertices[k]) / 2);
+    return place->second;
+  };
+  for (const Mesh::Face& face : mesh.faces) {
+    const auto& [i, j, k, l] = face.vertex;
+    if (face.kind == Kind::tri) {
+      const std::uint32_t ij = middle(i, j);
+      const std::uint32_t jk = middle(j, k);
+      const std::uint32_t ki = middle(k, i);
+      add_triangle(fine, i, ij, ki);
+      add_triangle(fine, ij, j, jk);
+      add_triangle(fine, ki, jk, k);
+      add_triangle(fine, ij, jk, ki);
+      continue;
+    }
+    const Vec3d sum = mesh.vertices[i] + mesh.vertices[j] + mesh.vertices[k] + mesh.vertices[l];
+    const std::uint32_t centre = add_vertex(fine, sum / 4);
+    const Ring corners = {i, j, k, l};
+    const Ring edges = {middle(i, j), middle(j, k), middle(k, l), middle(l, i)};
+    for (std::size_t n = 0; n < 4; ++n) {
+      fine.faces.push_back({Kind::quad, {corners[n], edges[n], centre, edges[(n + 3) % 4]}});
+    }
+  }
+  return fine;
+}
+
+Mesh normalised(Mesh mesh) {
+  require(!mesh.vertices.empty(), "normalised: the mesh has no vertices");
+  Vec3d low = mesh.vertices.front();
+  Vec3d high = low;
+  for (const Vec3d& v : mesh.vertices) {
+    low = low.cwiseMin(v);
+    high = high.cwiseMax(v);
+  }
+  const Vec3d centre = low + (high - low) / 2;
+  const double size = (high - low).norm();
+  for (Vec3d& v : mesh.vertices) v = (v - centre) / (size > 0 ? size : 1);
+  return mesh;
+}
+
 }  // namespace cchip

@@ -1,0 +1,226 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""docs/speed.md and its plot from the CSV file that collide_speed writes (make bench-collide).
+
+usage: plot_speed.py [--csv PATH | --check | --check-plot]
+  --csv PATH    take this run: copy it to docs/figures/collide_speed.csv, rewrite page and plot
+  --check       write nothing: compare the tables of the page with the checked-in CSV
+  --check-plot  write nothing: compare the plot with one drawn from the checked-in CSV
+
+Without an option page and plot are rewritten from the checked-in CSV. Drawing needs matplotlib, installed by `make venv`.
+Exit codes: 0 done or up to date, 1 stale or no such file, 2 bad arguments, 77 no matplotlib."""
+import argparse
+import csv
+import io
+import math
+import os
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs" / "speed.md"
+RUN = ROOT / "docs" / "figures" / "collide_speed.csv"
+PLOT = ROOT / "docs" / "pictures" / "collide_speed.svg"
+VENV = ROOT / "build" / "venv"
+ASSUMED_GAIN = 2.3  # collide_speed.cpp has the same
+BOOLEAN = ("touch", "near", "deep", "far")
+
+
+def fail(text):
+    print(f"plot_speed.py: {text}", file=sys.stderr)
+    sys.exit(1)
+
+
+class Run:
+    """The notes and rows of one run."""
+
+    def __init__(self, text):
+        lines = text.splitlines()
+        self.notes = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
+        self.rows = list(csv.DictReader(line for line in lines if not line.startswith("# ")))
+        self.cells = {}  # (meshes, class): {variant: row}
+        for row in self.rows:
+            if row["table"] == "query":
+                self.cells.setdefault((row["meshes"], row["class"]), {})[row["variant"]] = row
+        self.meshes = list(dict.fromkeys(meshes for meshes, _ in self.cells))
+        self.variants = list(dict.fromkeys(row["variant"] for row in self.rows if row["table"] == "query"))
+        self.has_native = "FCL native" in self.variants
+
+    def seconds(self, cell, variant):
+        """Seconds a query; "native": measured or assumed."""
+        if variant == "native" and not self.has_native:
+            return float(cell["FCL Debian"]["seconds_each"]) / ASSUMED_GAIN
+        return float(cell["FCL native" if variant == "native" else variant]["seconds_each"])
+
+    def ratio(self, cell, variant):
+        return self.seconds(cell, "native") / self.seconds(cell, variant)
+
+    def counts_in_means(self, meshes):
+        return meshes not in ("body-tiny", "scene")
+
+    def mean(self, classes, variant):
+        """Geometric mean over these classes and the meshes; None if there are none."""
+        logs = [math.log(self.ratio(cell, variant)) for (meshes, name), cell in self.cells.items()
+                if name in classes and self.counts_in_means(meshes) and variant in cell]
+        return math.exp(sum(logs) / len(logs)) if logs else None
+
+
+def rate(seconds):
+    return f"{1 / seconds:,.0f}"
+
+
+def times(value):
+    return "-" if value is None else f"{value:.1f}"
+
+
+def number(text):
+    value = float(text)
+    return f"{value:,.0f}" if value >= 100 else f"{value:.1f}"
+
+
+def tables(run):
+    """The generated part of the page."""
+    out = []
+    for key, value in run.notes.items():
+        out.append(f"- {key}: {value}")
+    native = "FCL native" if run.has_native else f"FCL native (Debian's / {ASSUMED_GAIN})"
+    out += ["", "### Queries", "",
+            f"| meshes | class | hits, % | FCL Debian | {native} | single | batch | all cores | steps | box tests | pairs | open |",
+            "|---|---|---|---|---|---|---|---|---|---|---|---|"]
+    for (meshes, name), cell in run.cells.items():
+        first = cell["single"]
+        columns = [meshes, name, f"{100 * float(first['hits']) / max(1, int(first['queries'])):.0f}",
+                   rate(run.seconds(cell, "FCL Debian")), rate(run.seconds(cell, "native"))]
+        for variant in ("single", "batch"):
+            columns.append(f"{rate(run.seconds(cell, variant))} ({times(run.ratio(cell, variant))})" if variant in cell else "-")
+        columns.append(rate(run.seconds(cell, "cores")) if "cores" in cell else "-")
+        columns += [number(first[key]) for key in ("steps", "box_tests", "pairs", "open")]
+        out.append("| " + " | ".join(columns) + " |")
+    out += ["", "### Geometric means of the six pairs", "", "Times FCL built natively.", "",
+            "| class | single | batch | all cores |", "|---|---|---|---|"]
+    for names, title in [((name,), name) for name in BOOLEAN] + [
+            (("touch", "near", "deep"), "**touch, near and deep**"), (("touch all",), "touch, all contacts"),
+            (("deep all",), "deep, all contacts"), (("touch all", "deep all"), "**all contacts**"),
+            (("coherent",), "coherent"), (("lone",), "lone")]:
+        cells = [times(run.mean(names, variant)) for variant in ("single", "batch", "cores")]
+        out.append(f"| {title} | " + " | ".join(cells) + " |")
+    out += ["", "### Instruction sets", "", "Single query, batch on one thread; times FCL built natively, geometric means.", "",
+            "| | " + " | ".join(BOOLEAN) + " |", "|---" * (len(BOOLEAN) + 1) + "|"]
+    for i, target in enumerate(run.notes["instruction sets"].split(", ")):
+        suffix = "" if i == 0 else f" {target}"
+        cells = [f"{times(run.mean((name,), 'single' + suffix))}, {times(run.mean((name,), 'batch' + suffix))}"
+                 for name in BOOLEAN]
+        out.append(f"| {target} | " + " | ".join(cells) + " |")
+    out += ["", "### Objects", "", "Memory and build time, mesh and what the device derives from it included.", "",
+            "| meshes | object, faces | bytes a face | ms | FCL: bytes a face | ms |", "|---|---|---|---|---|---|"]
+    objects = {}
+    for row in run.rows:
+        if row["table"] == "object":
+            objects.setdefault((row["meshes"], row["class"]), {})[row["variant"]] = row
+    for (meshes, name), both in objects.items():
+        ours, fcl = both["ours"], both["FCL Debian"]
+        out.append(f"| {meshes} | {name} | {float(ours['bytes']):.0f} | {1000 * float(ours['seconds_each']):.0f} | "
+                   f"{float(fcl['bytes']):.0f} | {1000 * float(fcl['seconds_each']):.0f} |")
+    return "\n".join(out) + "\n"
+
+
+def page_with(run):
+    text = PAGE.read_text()
+    block = re.compile(r"(<!-- generated: begin -->\n).*?(<!-- generated: end -->)", re.S)
+    if not block.search(text):
+        fail(f"{PAGE.relative_to(ROOT)} has no lines '<!-- generated: begin -->' and '<!-- generated: end -->'")
+    return block.sub(lambda found: found[1] + tables(run) + found[2], text)
+
+
+def matplotlib_of_venv():
+    for folder in VENV.glob("lib/python3*/site-packages"):
+        sys.path.append(str(folder))
+    os.environ.setdefault("MPLCONFIGDIR", str(ROOT / "build" / "matplotlib"))  # its font cache
+    try:
+        import matplotlib
+    except ImportError as error:
+        print(f"plot_speed.py: no plot ({error}); run: make venv", file=sys.stderr)
+        sys.exit(77)
+    matplotlib.use("svg")
+    return matplotlib
+
+
+def draw(run):
+    """The plot as SVG text, the same bytes for the same figures: a dot for each pair of meshes. Readable in grey."""
+    matplotlib = matplotlib_of_venv()
+    import matplotlib.pyplot as plt
+    from matplotlib.ticker import FuncFormatter
+    matplotlib.rcdefaults()
+    matplotlib.rcParams.update({"svg.hashsalt": "collide_speed", "font.size": 9, "axes.spines.top": False,
+                                "axes.spines.right": False})
+    classes = [name for name in BOOLEAN + ("touch all", "deep all", "coherent", "lone")
+               if any(cell == name for _, cell in run.cells)]
+    figure, axes = plt.subplots(figsize=(7.2, 4.2))
+    styles = {"single": ("#2f7fbc", "o", -0.13), "batch": ("#08306b", "s", 0.13)}
+    for variant, (colour, marker, shift) in styles.items():
+        for i, name in enumerate(classes):
+            values = [run.ratio(cell, variant) for (meshes, c), cell in run.cells.items()
+                      if c == name and variant in cell and run.counts_in_means(meshes)]
+            if not values:
+                continue
+            axes.plot([i + shift] * len(values), values, marker, color=colour, markersize=4.5, markerfacecolor="none",
+                      label=variant if i == 0 else None)
+            mean = math.exp(sum(map(math.log, values)) / len(values))
+            axes.plot([i + shift - 0.1, i + shift + 0.1], [mean, mean], color=colour, linewidth=2.2)
+            axes.annotate(f"{mean:.1f}", (i + shift, max(values)), xytext=(0, 5), textcoords="offset points", ha="center",
+                          fontsize=8, color=colour)
+    axes.axhline(1, color="0.45", linewidth=0.9, linestyle=":")
+    axes.annotate("FCL", (len(classes) - 0.55, 1), xytext=(0, 3), textcoords="offset points", ha="right", fontsize=8,
+                  color="0.3")
+    axes.set_yscale("log")
+    axes.set_xticks(range(len(classes)), [name.replace(" all", ",\nall contacts") for name in classes])
+    axes.set_xlim(-0.5, len(classes) - 0.5)
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
+    axes.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:e}"[0] in "25" else ""))
+    axes.set_ylabel("queries per second, times FCL built natively")
+    axes.grid(axis="y", color="0.9", linewidth=0.6, which="both")
+    axes.legend(loc="upper right", frameon=False)
+    figure.subplots_adjust(left=0.09, right=0.99, bottom=0.12, top=0.97)
+    text = io.StringIO()
+    figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+    return re.sub(r" +$", "", text.getvalue(), flags=re.M)
+
+
+def compare(path, fresh):
+    """1 if a checked-in file is not what it should be."""
+    if path.is_file() and path.read_text() == fresh:
+        return 0
+    print(f"{path.relative_to(ROOT)} is stale, run: scripts/plot_speed.py", file=sys.stderr)
+    return 1
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__, add_help=False)
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--csv", type=pathlib.Path)
+    what.add_argument("--check", action="store_true")
+    what.add_argument("--check-plot", action="store_true")
+    parser.add_argument("-h", "--help", action="store_true")
+    arguments = parser.parse_args()
+    if arguments.help:
+        print(__doc__)
+        return 0
+    source = arguments.csv or RUN
+    if not source.is_file():
+        fail(f"{source} is not there; make bench-collide writes build/bench/collide.csv")
+    text = source.read_text()
+    run = Run(text)
+    if arguments.check:
+        return compare(PAGE, page_with(run))
+    if arguments.check_plot:
+        return compare(PLOT, draw(run))
+    page, plot = page_with(run), draw(run)
+    for path, content in ((RUN, text), (PAGE, page), (PLOT, plot)):
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(content)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fcl_peer.hpp"
+
+#include <fcl/config.h>
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/math/bv/OBBRSS.h>
+#include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/collision_request.h>
+#include <fcl/narrowphase/collision_result.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace {
+
+using Model = fcl::BVHModel<fcl::OBBRSS<double>>;
+
+fcl::Transform3<double> transform(const double* pose) {
+  fcl::Transform3<double> result;
+  result.matrix() = Eigen::Map<const Eigen::Matrix4d>(pose);
+  return result;
+}
+
+void* make(const double* vertices, size_t vertex_count, const uint32_t* triangles, size_t triangle_count) {
+  std::vector<fcl::Vector3<double>> points(vertex_count);
+  for (size_t i = 0; i < vertex_count; ++i) points[i] = Eigen::Map<const Eigen::Vector3d>(vertices + 3 * i);
+  std::vector<fcl::Triangle> faces(triangle_count);
+  for (size_t i = 0; i < triangle_count; ++i) {
+    faces[i].set(triangles[3 * i], triangles[3 * i + 1], triangles[3 * i + 2]);
+  }
+  auto* model = new Model;
+  model->beginModel();
+  model->addSubModel(points, faces);
+  model->endModel();
+  return model;
+}
+
+void destroy(void* mesh) { delete static_cast<Model*>(mesh); }
+
+int hit(const void* a, const double* pose_a, const void* b, const double* pose_b) {
+  const fcl::CollisionRequest<double> request(1, false);
+  fcl::CollisionResult<double> result;
+  return fcl::collide(static_cast<const Model*>(a), transform(pose_a), static_cast<const Model*>(b), transform(pose_b),
+                      request, result) > 0;
+}
+
+size_t contacts(const void* a, const double* pose_a, const void* b, const double* pose_b, size_t most, uint32_t* pairs,
+                size_t room) {
+  const fcl::CollisionRequest<double> request(most, false);
+  fcl::CollisionResult<double> result;
+  fcl::collide(static_cast<const Model*>(a), transform(pose_a), static_cast<const Model*>(b), transform(pose_b),
+               request, result);
+  const size_t count = result.numContacts();
+  for (size_t i = 0; i < std::min(count, room); ++i) {
+    const fcl::Contact<double>& contact = result.getContact(i);
+    pairs[2 * i] = static_cast<uint32_t>(contact.b1);
+    pairs[2 * i + 1] = static_cast<uint32_t>(contact.b2);
+  }
+  return count;
+}
+
+constexpr CchipFclPeer peer = {
+#if defined(__AVX512F__)
+    FCL_VERSION ", compiled with AVX-512",
+#elif defined(__AVX2__)
+    FCL_VERSION ", compiled with AVX2",
+#else
+    FCL_VERSION ", compiled for any x86-64 or other processor",
+#endif
+    make, destroy, hit, contacts};
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) const CchipFclPeer* cchip_fcl_peer() { return &peer; }

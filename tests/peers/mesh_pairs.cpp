@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_pairs.hpp"
+
+#include <algorithm>
+#include <cchip/mesh/shapes.hpp>
+#include <cchip/mesh_io/mesh_file.hpp>
+#include <cmath>
+#include <stdexcept>
+
+namespace cchip::testing {
+namespace {
+
+Mesh model(const std::string& path) { return load_mesh(std::string(CCHIP_TEST_MODELS) + "/" + path); }
+
+double radius(const Mesh& mesh) {
+  double greatest = 0;
+  for (const Vec3d& v : mesh.vertices) greatest = std::max(greatest, v.norm());
+  return greatest;
+}
+
+double diagonal(const Mesh& mesh) {
+  Vec3d low = mesh.vertices.front();
+  Vec3d high = low;
+  for (const Vec3d& v : mesh.vertices) {
+    low = low.cwiseMin(v);
+    high = high.cwiseMax(v);
+  }
+  return (high - low).norm();
+}
+
+Mesh unit_segment() {
+  Mesh mesh;
+  mesh.name = "segment";
+  mesh.vertices = {Vec3d(0, 0, 0), Vec3d(1, 0, 0)};
+  mesh.faces = {{Kind::tri, {0, 1, 1, 0}}};
+  return mesh;
+}
+
+}  // namespace
+
+const std::vector<std::string>& mesh_pair_names() {
+  static const std::vector<std::string> names = {"body-body",   "limbs-limbs",   "gear-ring", "body-animal",
+                                                 "quads-limbs", "animal-spider", "body-tiny"};
+  return names;
+}
+
+MeshPair mesh_pair(const std::string& name) {
+  MeshPair pair;
+  if (name == "body-body") {  // two scanned figures
+    pair = {name, make_body(59, 0.25, 1), make_body(59, 0.25, 2)};
+  } else if (name == "limbs-limbs") {  // with arms and hollows, of different sizes
+    pair = {name, make_body(49, 0.8, 3), make_body(39, 0.8, 4)};
+  } else if (name == "gear-ring") {  // machine parts: flat and round faces, long triangles
+    pair = {name, make_gear(1.25, 1.5, 0.5, 0.5, 96, 12), make_torus(1, 0.25, 104, 64)};
+  } else if (name == "body-animal") {  // one with 19 times the faces of the other
+    pair = {name, make_body(59, 0.25, 5), model("OFF/Wuson.off")};
+  } else if (name == "quads-limbs") {  // quads against triangles
+    pair = {name, make_torus(1, 0.4, 192, 128, Kind::quad), make_body(32, 0.8, 6)};
+  } else if (name == "animal-spider") {  // small ones, drawn by hand
+    pair = {name, model("OFF/Wuson.off"), model("OBJ/spider.obj")};
+  } else if (name == "body-tiny") {  // sizes 10,000 : 1
+    pair = {name, make_body(59, 0.25, 7), make_body(22, 0.25, 8), false};
+  } else {
+    std::string known;
+    for (const std::string& n : mesh_pair_names()) known += (known.empty() ? "" : ", ") + n;
+    throw std::invalid_argument("no pair of meshes is called " + name + ": there are " + known);
+  }
+  pair.a = normalised(std::move(pair.a));
+  pair.b = normalised(std::move(pair.b));
+  if (name == "body-tiny") {
+    for (Vec3d& v : pair.b.vertices) v *= 1e-4;
+  }
+  return pair;
+}
+
+std::string describe_faces(const Mesh& mesh) {
+  const auto quads = std::count_if(mesh.faces.begin(), mesh.faces.end(),
+                                   [](const Mesh::Face& face) { return face.kind == Kind::quad; });
+  return std::to_string(mesh.faces.size()) + (quads != 0 ? " quads" : "");
+}
+
+const char* name_of(PoseClass pose_class) {
+  switch (pose_class) {
+    case PoseClass::touch:
+      return "touch";
+    case PoseClass::near:
+      return "near";
+    case PoseClass::deep:
+      return "deep";
+    case PoseClass::far:
+      break;
+  }
+  return "far";
+}
+
+PosePair Approach::at(double from_centre) const {
+  PosePair poses = {pose_a, pose_b};
+  poses.b.translation() += from_centre * direction;
+  return poses;
+}
+
+PoseMaker::PoseMaker(Device& device, const Object& a, const Object& b, std::uint64_t seed)
+    : device_(device),
+      a_(a),
+      b_(b),
+      segment_(unit_segment()),
+      random_(seed),
+      radius_a_(radius(a.mesh())),
+      radius_b_(radius(b.mesh())),
+      size_(std::min(diagonal(a.mesh()), diagonal(b.mesh()))) {}
+
+Vec3d PoseMaker::direction() {
+  std::normal_distribution<double> normal;
+  Vec3d result;
+  for (double& x : result) x = normal(random_);
+  return result.normalized();
+}
+
+Pose PoseMaker::turned() {
+  std::normal_distribution<double> normal;
+  Eigen::Quaterniond turn;
+  for (double& x : turn.coeffs()) x = normal(random_);
+  Pose pose = Pose::Identity();
+  pose.linear() = turn.normalized().toRotationMatrix();
+  return pose;
+}
+
+bool PoseMaker::hit(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b) {
+  return collide(device_, a, pose_a, b, pose_b).hit;
+}
+
+Approach PoseMaker::approach() {
+  for (;;) {
+    Approach result;
+    result.pose_a = turned();
+    result.pose_b = turned();
+    result.pose_a.translation() = radius_a_ * direction();
+    result.pose_b.translation() = result.pose_a.translation();
+    result.direction = direction();
+    double far = radius_a_ + radius_b_;
+    const double step = std::min(0.01 * radius_a_, 0.5 * radius_b_);
+    if (radius_b_ < 0.1 * radius_a_) {
+      // B is so small that the steps would be many: where does the line to the centre of A meet it first?
+      double free = 0;
+      double cut = far;
+      Pose ray = Pose::Identity();
+      ray.linear().setZero();
+      ray.translation() = result.pose_a.translation() + far * result.direction;
+      const auto reach = [&](double length) {
+        ray.linear().col(0) = -length * result.direction;
+        return hit(a_, result.pose_a, segment_, ray);
+      };
+      if (!reach(cut)) continue;
+      while (cut - free > step) (reach((free + cut) / 2) ? cut : free) = (free + cut) / 2;
+      far += 2 * radius_b_ - free;
+    }
+    const auto touches = [&](double distance) {
+      const PosePair poses = result.at(distance);
+      return hit(a_, poses.a, b_, poses.b);
+    };
+    double near = far - step;
+    while (near > 0 && !touches(near)) {
+      far = near;
+      near -= step;
+    }
+    if (near <= 0) continue;  // B lies inside a hole of A, or the other way round
+    while (far - near > 1e-9 * size_) {
+      const double middle = (near + far) / 2;
+      (touches(middle) ? near : far) = middle;
+    }
+    result.distance = near;
+    return result;
+  }
+}
+
+PosePair PoseMaker::pose(const Approach& approach, PoseClass pose_class) {
+  switch (pose_class) {
+    case PoseClass::touch:
+      return approach.at(approach.distance - size_ * std::pow(10, uniform(-6, -2)));
+    case PoseClass::near:
+      return approach.at(approach.distance + size_ * std::pow(10, uniform(-6, -3)));
+    case PoseClass::deep:
+      return approach.at(approach.distance * uniform(0.3, 0.7));
+    case PoseClass::far:
+      break;
+  }
+  return approach.at(approach.distance * uniform(1.2, 2));
+}
+
+std::vector<PosePair> PoseMaker::path(std::size_t count) {
+  const Approach start = approach();
+  const Vec3d contact = start.distance * start.direction;
+  Vec3d place = contact;
+  std::vector<PosePair> poses;
+  Pose turn = start.pose_b;
+  const double half_degree = 0.5 * 3.14159265358979 / 180;
+  while (poses.size() < count) {
+    place += (size_ * 1e-3) * direction() + 0.01 * (contact - place);  // wanders, but not away
+    turn.linear() = (Eigen::AngleAxisd(uniform(0, half_degree), direction()) * Eigen::Quaterniond(turn.linear()))
+                        .normalized()
+                        .toRotationMatrix();
+    poses.push_back({start.pose_a, turn});
+    poses.back().b.translation() += place;
+  }
+  return poses;
+}
+
+}  // namespace cchip::testing
