@@ -5,13 +5,13 @@
 #define CCHIP_TESTS_PEERS_ASK_HPP
 
 #include <algorithm>
+#include <cchip/device/cpu_device.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "cpu_api.hpp"
 #include "fcl_library.hpp"
 #include "mesh_pairs.hpp"
 

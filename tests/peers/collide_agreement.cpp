@@ -60,7 +60,7 @@ class Agreement {
     std::vector<PosePair> poses;
     while (poses.size() < count) {
       const Approach approach = maker.approach();
-      for (const PoseClass c : {PoseClass::touch, PoseClass::near, PoseClass::deep, PoseClass::touch, PoseClass::near,
+      for (const PoseClass c : {PoseClass::touch, PoseClass::graze, PoseClass::deep, PoseClass::graze, PoseClass::near,
                                 PoseClass::deep, PoseClass::far}) {
         if (poses.size() < count) poses.push_back(maker.pose(approach, c));
       }
@@ -83,7 +83,7 @@ class Agreement {
     std::vector<char> expected(poses.size());
     std::vector<Contact> witness(poses.size());
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      ask(*devices_.front().device, query(bodies, poses[i]), {}, result_);
+      devices_.front().device->collide(query(bodies, poses[i]), {}, result_);
       expected[i] = static_cast<char>(result_.hit);
       if (result_.hit) witness[i] = result_.contacts.front();
       totals_.hits += result_.hit;
@@ -101,11 +101,11 @@ class Agreement {
     };
     for (const OurDevice& device : devices_) {
       for (std::size_t i = 0; i < poses.size(); ++i) {
-        ask(*device.device, query(bodies, poses[i]), {}, result_);
+        device.device->collide(query(bodies, poses[i]), {}, result_);
         check(device, i, result_);
       }
-      ask(
-          *device.device, poses.size(), [&](std::size_t i) { return query(bodies, poses[i]); }, {},
+      device.device->collide(
+          poses.size(), [&](std::size_t i) { return query(bodies, poses[i]); }, {},
           [&](std::size_t i, const CollisionResult& result) { check(device, i, result); });
       progress_.update(totals_.poses + poses.size(), -1);
     }
@@ -115,7 +115,7 @@ class Agreement {
   void everything(const Bodies& bodies, const std::vector<PosePair>& poses) {
     std::vector<std::vector<Contact>> expected;
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      ask(*devices_.front().device, query(bodies, poses[i]), all_contacts, result_);
+      devices_.front().device->collide(query(bodies, poses[i]), all_contacts, result_);
       expected.push_back(result_.contacts);
       totals_.contacts += result_.contacts.size();
       note(bodies, "FCL, contacts", i,
@@ -128,11 +128,11 @@ class Agreement {
         if (result.contacts != expected[i]) note(bodies, device.name + ", contacts", i, {0, 1});
       };
       for (std::size_t i = 0; i < poses.size(); ++i) {
-        ask(*device.device, query(bodies, poses[i]), all_contacts, result_);
+        device.device->collide(query(bodies, poses[i]), all_contacts, result_);
         check(i, result_);
       }
-      ask(
-          *device.device, poses.size(), [&](std::size_t i) { return query(bodies, poses[i]); }, all_contacts, check);
+      device.device->collide(
+          poses.size(), [&](std::size_t i) { return query(bodies, poses[i]); }, all_contacts, check);
     }
   }
 

@@ -222,14 +222,14 @@ class Benchmark {
       };
       if (batch) {
         result.push_back({name, clock, [&, query, request](std::size_t first, std::size_t count) {
-                            ask(
-                                device, count, [&](std::size_t i) { return query(first + i); }, request,
+                            device.collide(
+                                count, [&](std::size_t i) { return query(first + i); }, request,
                                 [&](std::size_t i, const CollisionResult& r) { mine.take(first + i, r); });
                           }});
       } else {
         result.push_back({name, clock, [&, query, request](std::size_t first, std::size_t count) {
                             for (std::size_t i = first; i < first + count; ++i) {
-                              ask(device, query(i), request, result_);
+                              device.collide(query(i), request, result_);
                               mine.take(i, result_);
                             }
                           }});
@@ -311,7 +311,7 @@ class Benchmark {
       }
       if (request.contacts != CollisionRequest::Contacts::all) continue;
       ++compared_;
-      ask(best(), {&bodies.a, &poses[i].a, &bodies.b, &poses[i].b}, request, result_);
+      best().collide({&bodies.a, &poses[i].a, &bodies.b, &poses[i].b}, request, result_);
       note(bodies.judge(poses[i], result_.contacts, bodies.fcl_a.contacts(poses[i].a, bodies.fcl_b, poses[i].b)),
            bodies.name, class_name, "contacts", i);
     }
@@ -451,11 +451,11 @@ class Benchmark {
                             };
                             const auto take = [&](std::size_t k, const CollisionResult& r) { mine.take(n * i + k, r); };
                             if (batch) {
-                              ask(device, n, query, {}, take);
+                              device.collide(n, query, {}, take);
                               continue;
                             }
                             for (std::size_t k = 0; k < n; ++k) {
-                              ask(device, query(k), {}, result_);
+                              device.collide(query(k), {}, result_);
                               take(k, result_);
                             }
                           }
@@ -561,7 +561,7 @@ class Benchmark {
       if (!file.flush()) throw std::runtime_error(options_.csv + ": cannot be written");
     }
     fmt::print("\ngeometric means, times FCL built natively:");
-    for (const char* c : {"touch", "near", "deep", "far", "touch all", "deep all", "coherent", "lone"}) {
+    for (const char* c : {"touch", "near", "deep", "far", "graze", "touch all", "deep all", "coherent", "lone"}) {
       fmt::print("\n  {:<12} single {:>6.1f}", c, means_[c]["single"].value());
       if (means_[c].count("batch") != 0) {
         fmt::print("  batch {:>6.1f}  cores {:>6.1f}", means_[c]["batch"].value(), means_[c]["cores"].value());

@@ -122,7 +122,7 @@ Cost check(const std::string& what, const Object& a, const Object& b, const Pose
   }
   // A leaf holds up to two faces, and the volumes of A are those of B's directions by way of A's own.
   for (const CollisionCounts& c : {counts, cost.first.counts}) {
-    CHECK(c.pairs <= 4 * overlaps + 64);
+    CHECK(c.pairs <= 8 * overlaps + 64);
     CHECK(c.steps <= 2 * overlaps + a.mesh().faces.size() + b.mesh().faces.size() + 64);
     CHECK(c.box_tests <= 16 * c.steps + 1);
   }

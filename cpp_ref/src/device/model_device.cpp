@@ -12,7 +12,6 @@
 #include <optional>
 #include <stdexcept>
 
-
 namespace cchip {
 namespace {
 

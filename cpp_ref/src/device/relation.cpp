@@ -45,8 +45,8 @@ Centre centre_of(const Object& object, const Matrix& linear, double norm, const 
   for (std::size_t i = 0; i < 3; ++i) {
     centre.at[i] = linear[0][i] * c[0] + linear[1][i] * c[1] + linear[2][i] * c[2] + p[i];
   }
-  centre.size = norm * (std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2])) + std::abs(p[0]) + std::abs(p[1]) +
-                std::abs(p[2]);
+  centre.size =
+      norm * (std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2])) + std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]);
   return centre;
 }
 

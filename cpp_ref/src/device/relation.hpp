@@ -13,14 +13,15 @@ namespace cchip {
 /// centre and in its units, lies at m y + t relative to the fixed one's centre, in that one's units.
 /// docs/collide.md derives the bounds.
 struct Relation {
-  bool swapped = false;         ///< the moved object is B of the query
-  std::array<double, 9> m;      ///< row by row
+  bool swapped = false;     ///< the moved object is B of the query
+  std::array<double, 9> m;  ///< row by row
   std::array<double, 3> t;
-  double norm = 0;              ///< of m, Frobenius
-  double row = 0;               ///< greatest Euclidean norm of a row of m
-  double distance = 0;          ///< |t|
-  double plane_error = 0;       ///< units that the errors of m and t may add to a bound on a normalised direction
-  double vertex_error = 0;      ///< bound on how far m y + t lies from the exact place in each coordinate, |y| <= support_most
+  double norm = 0;         ///< of m, Frobenius
+  double row = 0;          ///< greatest Euclidean norm of a row of m
+  double distance = 0;     ///< |t|
+  double plane_error = 0;  ///< units that the errors of m and t may add to a bound on a normalised direction
+  double vertex_error =
+      0;  ///< bound on how far m y + t lies from the exact place in each coordinate, |y| <= support_most
 };
 
 /// \returns false if the relation cannot be computed well: a map that has no good inverse, or numbers that are so great

@@ -81,6 +81,7 @@ struct Planes {
   alignas(64) std::array<float, words> wide_corner;
   alignas(64) std::array<float, words> wide_offset;
   bool wide;
+  bool tiny;  ///< wide, and the moved object is so small that it waits as a whole until the fixed one's leaves come
   float key_scale;  ///< wide: from units of the fixed object to those of the keys
 };
 
@@ -106,60 +107,20 @@ struct LeafSide {
 
 enum class Verdict { apart, touch, open };
 
-/// For the mask of the vertices on the negative side: the vertex that is alone on its side.
-constexpr std::array<std::uint8_t, 8> lone_vertex = {0, 0, 1, 2, 2, 1, 0, 0};
-/// Edges of a triangle by lone vertex, + 3 if that is the negative one: from a positive to a negative vertex and back,
-/// in the order of the vertices.
-struct Edge {
-  std::uint8_t from;
-  std::uint8_t to;
+/// The two edges of a triangle that decide, by the mask of its vertices on the negative side: from the positive to the
+/// negative side and back, in the order of the vertices. Lanes 0 and 1 of where they begin and of where they end.
+struct CrossingEdges {
+  alignas(16) std::array<std::int32_t, 4> from;
+  alignas(16) std::array<std::int32_t, 4> to;
 };
-constexpr std::array<std::array<Edge, 2>, 6> crossing_edges = {
-    {{{{0, 1}, {2, 0}}}, {{{1, 2}, {0, 1}}}, {{{2, 0}, {1, 2}}}, {{{2, 0}, {0, 1}}}, {{{0, 1}, {1, 2}}}, {{{1, 2}, {2, 0}}}}};
-
-/// (edge of p) x (edge of q) . (where the latter begins - where the former begins), and a bound on its error.
-struct Volume {
-  float value;
-  float error;
-};
-inline Volume volume(const LeafSide& p, std::size_t at_p, Edge edge_p, const LeafSide& q, std::size_t at_q, Edge edge_q,
-                     const Placement& place) {
-  const std::size_t p0 = at_p + edge_p.from;
-  const std::size_t p1 = at_p + edge_p.to;
-  const std::size_t q0 = at_q + edge_q.from;
-  const std::size_t q1 = at_q + edge_q.to;
-  const float ex = p.x[p1] - p.x[p0];
-  const float ey = p.y[p1] - p.y[p0];
-  const float ez = p.z[p1] - p.z[p0];
-  const float fx = q.x[q1] - q.x[q0];
-  const float fy = q.y[q1] - q.y[q0];
-  const float fz = q.z[q1] - q.z[q0];
-  const float dx = q.x[q0] - p.x[p0];
-  const float dy = q.y[q0] - p.y[p0];
-  const float dz = q.z[q0] - p.z[p0];
-  const float value = (ey * fz - ez * fy) * dx + (ez * fx - ex * fz) * dy + (ex * fy - ey * fx) * dz;
-  const float size_e = std::abs(ex) + std::abs(ey) + std::abs(ez) + 8 * place.moved_error;
-  const float size_f = std::abs(fx) + std::abs(fy) + std::abs(fz) + 8 * place.fixed_error;
-  const float size_d = std::abs(dx) + std::abs(dy) + std::abs(dz) + 2 * (place.moved_error + place.fixed_error);
-  const float both = size_e * size_f;
-  return {value, 1.02F * (both * (place.moved_error + place.fixed_error) +
-                          size_d * (4 * (size_e * place.fixed_error + size_f * place.moved_error) + 10 * ulp * both))};
-}
-
-/// Two triangles whose vertices all lie on certain sides of the other's plane, not all on one: the two axes that decide
-/// (docs/architecture.md, "Two axes decide").
-inline Verdict cross_test(const LeafSide& p, std::size_t at_p, unsigned negative_p, const LeafSide& q, std::size_t at_q,
-                          unsigned negative_q, const Placement& place) {
-  const std::size_t lone_p = lone_vertex[negative_p];
-  const std::size_t lone_q = lone_vertex[negative_q];
-  const auto& edges_p = crossing_edges[lone_p + ((negative_p >> lone_p & 1U) != 0 ? 3 : 0)];
-  const auto& edges_q = crossing_edges[lone_q + ((negative_q >> lone_q & 1U) != 0 ? 3 : 0)];
-  const Volume first = volume(p, at_p, edges_p[0], q, at_q, edges_q[0], place);
-  const Volume second = volume(p, at_p, edges_p[1], q, at_q, edges_q[1], place);
-  if (first.value < -first.error || second.value > second.error) return Verdict::apart;
-  if (first.value > first.error && second.value < -second.error) return Verdict::touch;
-  return Verdict::open;
-}
+constexpr std::array<CrossingEdges, 8> crossing_edges = {{{{0, 0, 0, 0}, {0, 0, 0, 0}},    // none: not asked for
+                                                          {{2, 0, 2, 0}, {0, 1, 0, 1}},    // vertex 0
+                                                          {{0, 1, 0, 1}, {1, 2, 1, 2}},    // 1
+                                                          {{2, 1, 2, 1}, {0, 2, 0, 2}},    // 0 and 1
+                                                          {{1, 2, 1, 2}, {2, 0, 2, 0}},    // 2
+                                                          {{1, 0, 1, 0}, {2, 1, 2, 1}},    // 0 and 2
+                                                          {{0, 2, 0, 2}, {1, 0, 1, 0}},    // 1 and 2
+                                                          {{0, 0, 0, 0}, {0, 0, 0, 0}}}};  // all: not asked for
 
 /// A quad, or a triangle whose vertex 3 is vertex 0, as points in single precision.
 struct Corners {
@@ -347,8 +308,10 @@ HWY_INLINE unsigned store_keys(V16 u0, V16 u1, V16 u2, V16 u3, std::int16_t* key
   return 0xFFFFU ^ (bits[0] | static_cast<unsigned>(bits[8]) << 8U);
 }
 
-/// Tests all pairs of four moved and four fixed lines. A key is the least overlap in units of the fixed object.
+/// Tests the first `rows` of four moved lines with four fixed lines. A key is the least overlap in units of the fixed
+/// object.
 /// \returns bit 4 i + j: moved node i may meet fixed node j
+template <std::size_t rows>
 HWY_INLINE unsigned narrow_test(const SupportLine* moved, const SupportLine* fixed, const Planes& planes,
                                 std::int16_t* keys) {
   const D16 d;
@@ -357,7 +320,7 @@ HWY_INLINE unsigned narrow_test(const SupportLine* moved, const SupportLine* fix
     for (std::size_t p = 0; p < parts; ++p) own[j][p] = hn::Load(d, fixed[j].word.data() + p * lanes16);
   }
   V16 row[4];
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < rows; ++i) {
     const auto axes = quarter(moved[i], 0);
     const auto corners = quarter(moved[i], 1);
     const auto faces_low = quarter(moved[i], 2);
@@ -379,6 +342,7 @@ HWY_INLINE unsigned narrow_test(const SupportLine* moved, const SupportLine* fix
     }
     row[i] = least_of_four(least[0], least[1], least[2], least[3]);
   }
+  for (std::size_t i = rows; i < 4; ++i) row[i] = row[0];
   return store_keys(row[0], row[1], row[2], row[3], keys);
 }
 
@@ -416,7 +380,8 @@ HWY_NOINLINE unsigned wide_test(const SupportLine* moved, const WideNode& fixed,
         }
       }
     }
-    // Rounding a negative key up to 0 is safe. Each is in half the lanes of a vector of keys; the other half repeats it.
+    // Rounding a negative key up to 0 is safe. Each is in half the lanes of a vector of keys; the other half repeats
+    // it.
     V16 key[4];
     for (std::size_t j = 0; j < 4; ++j) {
       const VF scaled = hn::Max(hn::Min(hn::Mul(least[j], scale), most), hn::Neg(most));
@@ -536,7 +501,8 @@ HWY_INLINE void make_planes(const Relation& r, const Margins& margins, Planes& p
   // 26 of the 32 words have directions of length 1, so a sum of factors is at most sqrt(3) norm, nearly.
   const float sum = hn::GetLane(hn::MaxOfLanes(d, most_sum));
   const float factor = hn::GetLane(hn::MaxOfLanes(d, most_factor));
-  planes.wide = !(sum <= 1.1296F && factor <= 1.00001F && norm >= 0x1p-5F);
+  planes.tiny = norm < 0x1p-5F;
+  planes.wide = !(sum <= 1.1296F && factor <= 1.00001F) || planes.tiny;
   if (planes.wide) {
     const float slack = margin * (plane_error + ulp * (radius * (32 * norm + 8) + 16 * distance));
     // Keys of 16 bits: the moved object's radius becomes 2^13 or less.
@@ -551,13 +517,11 @@ HWY_INLINE void make_planes(const Relation& r, const Margins& margins, Planes& p
     return;
   }
   // Rounding of three products, 1/2 each, and of three factors, 1/2 each of 2^-15, a factor of 1.00001 up to 3/2.
-  const float slack = margin * (1.5F + 2.5F * 0x1p-15F * radius + plane_error +
-                                ulp * (radius * 16 * norm + 8 * distance + 64));
+  const float slack =
+      margin * (1.5F + 2.5F * 0x1p-15F * radius + plane_error + ulp * (radius * 16 * norm + 8 * distance + 64));
   const V slack_v = hn::Set(d, slack);
   const hn::Rebind<std::int16_t, DI> d_half;
-  const auto clamp = [&](hn::Vec<DI> v) {
-    return hn::Max(hn::Min(v, hn::Set(di, 32767)), hn::Set(di, -32768));
-  };
+  const auto clamp = [&](hn::Vec<DI> v) { return hn::Max(hn::Min(v, hn::Set(di, 32767)), hn::Set(di, -32768)); };
   for (std::size_t at = 0; at < words; at += lanes) {
     const auto fixed_point = [&](const std::array<float, words>& from, std::array<std::int16_t, words>& to) {
       const V scaled = hn::Mul(hn::Load(d, from.data() + at), hn::Set(d, 32768.0F));
@@ -670,12 +634,9 @@ HWY_INLINE void compare(const LeafSide& p, std::size_t i, float error_p, const L
     const auto qy = hn::Load(d, q.y.data() + at);
     const auto qz = hn::Load(d, q.z.data() + at);
     const auto set = [&](const std::array<float, 8>& from) { return hn::Set(d, from[at_p]); };
-    const Sides first =
-        sides_of(set(p.nx), set(p.ny), set(p.nz), set(p.size), hn::Sub(qx, set(p.x)), hn::Sub(qy, set(p.y)),
-                 hn::Sub(qz, set(p.z)), error_p, both);
-    const auto own = [&](const std::array<float, 8>& from) {
-      return hn::Broadcast<0>(hn::Load(d, from.data() + at));
-    };
+    const Sides first = sides_of(set(p.nx), set(p.ny), set(p.nz), set(p.size), hn::Sub(qx, set(p.x)),
+                                 hn::Sub(qy, set(p.y)), hn::Sub(qz, set(p.z)), error_p, both);
+    const auto own = [&](const std::array<float, 8>& from) { return hn::Broadcast<0>(hn::Load(d, from.data() + at)); };
     const auto points = [&](const std::array<float, 8>& from) { return hn::LoadDup128(d, from.data() + at_p); };
     const Sides second = sides_of(own(q.nx), own(q.ny), own(q.nz), own(q.size), hn::Sub(points(p.x), own(q.x)),
                                   hn::Sub(points(p.y), own(q.y)), hn::Sub(points(p.z), own(q.z)), error_q, both);
@@ -684,6 +645,65 @@ HWY_INLINE void compare(const LeafSide& p, std::size_t i, float error_p, const L
     of_p.positive |= second.positive << at;
     of_p.negative |= second.negative << at;
   }
+}
+
+/// Two triangles whose vertices all lie on certain sides of the other's plane, not all on one: the two axes that decide
+/// (docs/architecture.md, "Two axes decide"), in lanes 0 and 1.
+HWY_INLINE Verdict cross_test(const LeafSide& p, std::size_t at_p, unsigned negative_p, const LeafSide& q,
+                              std::size_t at_q, unsigned negative_q, const Placement& place) {
+  const hn::FixedTag<float, 4> d;
+  const hn::FixedTag<std::int32_t, 4> di;
+  using V = hn::Vec<hn::FixedTag<float, 4>>;
+  const CrossingEdges& edges_p = crossing_edges[negative_p];
+  const CrossingEdges& edges_q = crossing_edges[negative_q];
+  const auto from_p = hn::IndicesFromVec(d, hn::Load(di, edges_p.from.data()));
+  const auto to_p = hn::IndicesFromVec(d, hn::Load(di, edges_p.to.data()));
+  const auto from_q = hn::IndicesFromVec(d, hn::Load(di, edges_q.from.data()));
+  const auto to_q = hn::IndicesFromVec(d, hn::Load(di, edges_q.to.data()));
+  const V px = hn::Load(d, p.x.data() + at_p);
+  const V py = hn::Load(d, p.y.data() + at_p);
+  const V pz = hn::Load(d, p.z.data() + at_p);
+  const V qx = hn::Load(d, q.x.data() + at_q);
+  const V qy = hn::Load(d, q.y.data() + at_q);
+  const V qz = hn::Load(d, q.z.data() + at_q);
+  const V px0 = hn::TableLookupLanes(px, from_p);
+  const V py0 = hn::TableLookupLanes(py, from_p);
+  const V pz0 = hn::TableLookupLanes(pz, from_p);
+  const V qx0 = hn::TableLookupLanes(qx, from_q);
+  const V qy0 = hn::TableLookupLanes(qy, from_q);
+  const V qz0 = hn::TableLookupLanes(qz, from_q);
+  const V ex = hn::Sub(hn::TableLookupLanes(px, to_p), px0);
+  const V ey = hn::Sub(hn::TableLookupLanes(py, to_p), py0);
+  const V ez = hn::Sub(hn::TableLookupLanes(pz, to_p), pz0);
+  const V fx = hn::Sub(hn::TableLookupLanes(qx, to_q), qx0);
+  const V fy = hn::Sub(hn::TableLookupLanes(qy, to_q), qy0);
+  const V fz = hn::Sub(hn::TableLookupLanes(qz, to_q), qz0);
+  const V dx = hn::Sub(qx0, px0);
+  const V dy = hn::Sub(qy0, py0);
+  const V dz = hn::Sub(qz0, pz0);
+  const V volume =
+      hn::MulAdd(hn::MulSub(ey, fz, hn::Mul(ez, fy)), dx,
+                 hn::MulAdd(hn::MulSub(ez, fx, hn::Mul(ex, fz)), dy, hn::Mul(hn::MulSub(ex, fy, hn::Mul(ey, fx)), dz)));
+  const auto size = [&](V x, V y, V z, float more) {
+    return hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Add(hn::Abs(z), hn::Set(d, more))));
+  };
+  const float both_errors = place.moved_error + place.fixed_error;
+  const V size_e = size(ex, ey, ez, 8 * place.moved_error);
+  const V size_f = size(fx, fy, fz, 8 * place.fixed_error);
+  const V size_d = size(dx, dy, dz, 2 * both_errors);
+  const V area = hn::Mul(size_e, size_f);
+  const V slope =
+      hn::MulAdd(size_e, hn::Set(d, 4.08F * place.fixed_error),
+                 hn::MulAdd(size_f, hn::Set(d, 4.08F * place.moved_error), hn::Mul(area, hn::Set(d, 10.2F * ulp))));
+  const V error = hn::MulAdd(size_d, slope, hn::Mul(area, hn::Set(d, 1.02F * both_errors)));
+  std::array<std::uint8_t, 8> bits = {};
+  hn::StoreMaskBits(d, hn::Gt(volume, error), bits.data());
+  const unsigned positive = bits[0] & 3U;
+  hn::StoreMaskBits(d, hn::Lt(volume, hn::Neg(error)), bits.data());
+  const unsigned negative = bits[0] & 3U;
+  // Axis 0 separates if its volume is negative, axis 1 if its is positive.
+  if ((negative & 1U) != 0 || (positive & 2U) != 0) return Verdict::apart;
+  return positive == 1 && negative == 2 ? Verdict::touch : Verdict::open;
 }
 
 /// Reads what the next steps need into the cache.
@@ -763,7 +783,10 @@ class SimdSearch final : public Search {
   unsigned test(const Task& task, Item item, std::int16_t* keys) {
     const SupportLine* const moved = task.moved->lines() + item.moved.first();
     const SupportLine* const fixed = task.fixed->lines() + item.fixed.first();
-    if (HWY_LIKELY(!task.planes.wide)) return narrow_test(moved, fixed, task.planes, keys);
+    if (HWY_LIKELY(!task.planes.wide)) {
+      return item.moved.count() == 1 ? narrow_test<1>(moved, fixed, task.planes, keys)
+                                     : narrow_test<4>(moved, fixed, task.planes, keys);
+    }
     const NodeRef first = fixed->ref();
     if (item.fixed.count() == 1 && first.is_leaf()) {
       widen(*task.fixed, first, wide_);
@@ -798,7 +821,7 @@ class SimdSearch final : public Search {
       // A leaf waits for the other one to come down: its own line is the only child.
       const bool leaf_a = a.is_leaf();
       const bool leaf_b = b.is_leaf();
-      if (leaf_a && !leaf_b) a = NodeRef::inner(item.moved.first() + i, 1);
+      if (!leaf_b && (leaf_a || task.planes.tiny)) a = NodeRef::inner(item.moved.first() + i, 1);
       if (leaf_b && !leaf_a) b = NodeRef::inner(item.fixed.first() + j, 1);
       stack[count] = {a, b};
       if (best_first) {
@@ -851,8 +874,8 @@ class SimdSearch final : public Search {
       compare(p, i, place.moved_error, q, place.fixed_error, of_q[i], of_p[i]);
       const unsigned apart = all_three(of_p[i].positive) | all_three(of_p[i].negative) | all_three(of_q[i].positive) |
                              all_three(of_q[i].negative);
-      const unsigned known = all_three(of_p[i].positive | of_p[i].negative) &
-                             all_three(of_q[i].positive | of_q[i].negative);
+      const unsigned known =
+          all_three(of_p[i].positive | of_p[i].negative) & all_three(of_q[i].positive | of_q[i].negative);
       left |= (~apart & (count_q == 2 ? 0x11U : 0x01U)) << 8 * i;
       certain |= known << 8 * i;
     }
@@ -860,10 +883,9 @@ class SimdSearch final : public Search {
       const std::size_t bit = hwy::Num0BitsBelowLS1Bit_Nonzero32(left);
       const std::size_t i = bit / 8;
       const std::size_t k = bit / 4 % 2;
-      const Verdict verdict = (certain >> bit & 1U) != 0
-                                  ? cross_test(p, 4 * i, of_p[i].negative >> 4 * k & 7U, q, 4 * k,
-                                               of_q[i].negative >> 4 * k & 7U, place)
-                                  : Verdict::open;
+      const Verdict verdict = (certain >> bit & 1U) != 0 ? cross_test(p, 4 * i, of_p[i].negative >> 4 * k & 7U, q,
+                                                                      4 * k, of_q[i].negative >> 4 * k & 7U, place)
+                                                         : Verdict::open;
       if (verdict == Verdict::apart) continue;
       if (verdict == Verdict::touch) {
         task.add(faces_p[i], faces_q[k]);
@@ -949,13 +971,14 @@ class SimdSearch final : public Search {
       }
       if (deep_.size() < size + 16 * together) deep_.resize(2 * deep_.size());
       for (std::size_t i = 0; i < count; ++i) hits[i] = test(task, items[i], keys[i]);
-      for (std::size_t i = 0; i < count; ++i) size += push<false>(task, items[i], hits[i], keys[i], deep_.data() + size);
+      for (std::size_t i = 0; i < count; ++i)
+        size += push<false>(task, items[i], hits[i], keys[i], deep_.data() + size);
       for (std::size_t i = 1; i <= std::min(size, together); ++i) prefetch(task, deep_[size - i]);
     }
   }
 
-  /// Many queries for their first contacts: one item of each in a round. All tests come first, which do not branch, then
-  /// all that depends on them.
+  /// Many queries for their first contacts: one item of each in a round. All tests come first, which do not branch,
+  /// then all that depends on them.
   void search_in_step(QueryFeed& feed, const CollisionRequest& request) {
     Item current[together];
     std::int16_t keys[together][16];
