@@ -4,6 +4,11 @@
 #include <cchip/bvh/support_tree.hpp>
 #include <cmath>
 #include <limits>
+#include <new>
+
+#if __has_include(<sys/mman.h>)
+#include <sys/mman.h>
+#endif
 
 namespace cchip::bvh {
 namespace {
@@ -71,6 +76,18 @@ NodeRef ref_of(const TreeNode& node) {
 }
 
 }  // namespace
+
+void* allocate_bytes(std::size_t bytes) {
+  constexpr std::size_t line = 64;
+  constexpr std::size_t page = std::size_t{1} << 21U;  // of x86-64 and of most Arm systems
+  const std::size_t unit = bytes < page ? line : page;
+  void* const memory = std::aligned_alloc(unit, (bytes + unit - 1) / unit * unit);
+  if (memory == nullptr) throw std::bad_alloc();
+#ifdef MADV_HUGEPAGE
+  if (unit == page) madvise(memory, bytes, MADV_HUGEPAGE);  // a wish: it does no harm if the system refuses
+#endif
+  return memory;
+}
 
 std::array<int, 3> support_direction(std::size_t word) {
   std::array<int, 3> d = {0, 0, 0};

@@ -161,12 +161,16 @@ inline bool separates(const std::array<float, 3>& axis, const Corners& p, const 
   return gap > 1.02F * size * (error + 12 * ulp * greatest);
 }
 
-/// Pairs with a quad: the axes of two planar quads.
-inline bool hulls_apart(const Corners& p, const Corners& q, float error) {
+/// Pairs with a quad: the normals, from the diagonals.
+inline bool normals_separate(const Corners& p, const Corners& q, float error) {
   const auto normal = [](const Corners& c) {
     return cross_product(difference(c.v[2], c.v[0]), difference(c.v[3], c.v[1]));
   };
-  if (separates(normal(p), p, q, error) || separates(normal(q), p, q, error)) return true;
+  return separates(normal(p), p, q, error) || separates(normal(q), p, q, error);
+}
+
+/// Pairs with a quad: the cross products of their sides.
+inline bool sides_separate(const Corners& p, const Corners& q, float error) {
   for (std::size_t i = 0; i < 4; ++i) {
     const std::array<float, 3> e = difference(p.v[(i + 1) % 4], p.v[i]);
     for (std::size_t k = 0; k < 4; ++k) {
@@ -853,10 +857,11 @@ class SimdSearch final : public Search {
         for (std::size_t k = 0; k < count_q; ++k) {
           const Corners a = corners_of(p, 4 * i);
           const Corners b = corners_of(q, 4 * k);
-          if (hulls_apart(a, b, place.moved_error + place.fixed_error)) continue;
+          const float error = place.moved_error + place.fixed_error;
+          if (normals_separate(a, b, error)) continue;
           if (quads_touch(a, item.moved.is_quad(), b, item.fixed.is_quad(), place)) {
             task.add(faces_p[i], faces_q[k]);
-          } else {
+          } else if (!sides_separate(a, b, error)) {
             task.keep_open(faces_p[i], faces_q[k]);
           }
           if (task.faces.done()) return true;

@@ -6,7 +6,9 @@
 
 #include <array>
 #include <cchip/bvh/tree.hpp>
+#include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <vector>
 
@@ -56,6 +58,28 @@ struct alignas(64) SupportLine {
 };
 inline constexpr int support_most = 29000;
 
+/// Aligned to a cache line; free() takes it back.
+/// \throws std::bad_alloc
+void* allocate_bytes(std::size_t bytes);
+
+/// Memory in large pages where the system has them to give: a search jumps through all of a tree.
+template <class T>
+struct LargePages {
+  using value_type = T;
+  LargePages() = default;
+  template <class U>
+  LargePages(const LargePages<U>&) {}  // NOLINT: allocators convert
+  T* allocate(std::size_t count) { return static_cast<T*>(allocate_bytes(count * sizeof(T))); }
+  void deallocate(T* memory, std::size_t) { std::free(memory); }
+  template <class U>
+  bool operator==(const LargePages<U>&) const {
+    return true;
+  }
+  template <class U>
+  bool operator!=(const LargePages<U>&) const {
+    return false;
+  }
+};
 /// Lines and faces of an object. The object lies in a ball of support_most units around its centre.
 class SupportTree {
  public:
@@ -83,8 +107,8 @@ class SupportTree {
   double unit_;
   NodeRef root_;
   std::size_t size_;
-  std::vector<SupportLine> lines_;
-  std::vector<float> vertices_;
+  std::vector<SupportLine, LargePages<SupportLine>> lines_;
+  std::vector<float, LargePages<float>> vertices_;
   std::vector<std::uint32_t> faces_;
 };
 
