@@ -32,10 +32,14 @@ class Search {
   virtual void run(QueryFeed& feed, const CollisionRequest& request) = 0;
 };
 
-/// Factors on the bounds that make the answers exact; 1 but in tests, which show that less is not enough.
+/// Factors on the bounds that make the answers exact (docs/collide.md); 1 but in tests, which show that the answers are
+/// wrong without them.
 struct Margins {
-  double plane = 1;   ///< rounding of bounding planes
-  double vertex = 1;  ///< rounding of vertices in single precision
+  double narrow = 1;    ///< planes in 16 bits
+  double wide = 1;      ///< planes in single precision
+  double leaf = 1;      ///< planes of a leaf made from its vertices
+  double vertex = 1;    ///< vertices in single precision
+  double relation = 1;  ///< how the objects lie to each other, in doubles
 };
 
 /// Directions and planes in doubles, a pair of nodes at a time; takes every query.

@@ -405,11 +405,11 @@ HWY_INLINE void widen(const SupportLine* lines, WideNode& node) {
 }
 
 /// Planes of a leaf from its vertices: finer than its line, which matters if the moved object is much smaller.
-HWY_INLINE void widen(const SupportTree& tree, NodeRef leaf, WideNode& node) {
+HWY_INLINE void widen(const SupportTree& tree, NodeRef leaf, const Margins& margins, WideNode& node) {
   const float* const v = tree.vertices(leaf.first());
   const std::size_t stride = 4 * leaf.count();
   // Each term is off by 3 ulp of a coordinate, their sum by 2 more; normalised, so |x| + |y| + |z| <= sqrt(3) radius.
-  constexpr float error = 12 * ulp * radius;
+  const float error = static_cast<float>(margins.leaf) * 12 * ulp * radius;
   for (std::size_t w = 0; w < words; ++w) {
     float reach = -2 * radius;
     for (std::size_t i = 0; i < stride; ++i) {
@@ -500,15 +500,15 @@ HWY_INLINE void make_planes(const Relation& r, const Margins& margins, Planes& p
   }
   const auto distance = static_cast<float>(r.distance);
   const auto norm = static_cast<float>(r.norm);
-  const auto plane_error = static_cast<float>(r.plane_error) * 1.01F;
-  const auto margin = static_cast<float>(margins.plane);
+  const auto plane_error = static_cast<float>(margins.relation * r.plane_error) * 1.01F;
   // 26 of the 32 words have directions of length 1, so a sum of factors is at most sqrt(3) norm, nearly.
   const float sum = hn::GetLane(hn::MaxOfLanes(d, most_sum));
   const float factor = hn::GetLane(hn::MaxOfLanes(d, most_factor));
   planes.tiny = norm < 0x1p-5F;
   planes.wide = !(sum <= 1.1296F && factor <= 1.00001F) || planes.tiny;
   if (planes.wide) {
-    const float slack = margin * (plane_error + ulp * (radius * (32 * norm + 8) + 16 * distance));
+    const float slack =
+        plane_error + static_cast<float>(margins.wide) * ulp * (radius * (32 * norm + 8) + 16 * distance);
     // Keys of 16 bits: the moved object's radius becomes 2^13 or less.
     planes.key_scale = std::min(0x1p60F, 8192.0F / (radius * std::max(norm, 0x1p-100F)));
     for (std::size_t w = 0; w < words; ++w) {
@@ -522,7 +522,8 @@ HWY_INLINE void make_planes(const Relation& r, const Margins& margins, Planes& p
   }
   // Rounding of three products, 1/2 each, and of three factors, 1/2 each of 2^-15, a factor of 1.00001 up to 3/2.
   const float slack =
-      margin * (1.5F + 2.5F * 0x1p-15F * radius + plane_error + ulp * (radius * 16 * norm + 8 * distance + 64));
+      plane_error + static_cast<float>(margins.narrow) *
+                        (1.5F + 2.5F * 0x1p-15F * radius + ulp * (radius * 16 * norm + 8 * distance + 64));
   const V slack_v = hn::Set(d, slack);
   const hn::Rebind<std::int16_t, DI> d_half;
   const auto clamp = [&](hn::Vec<DI> v) { return hn::Max(hn::Min(v, hn::Set(di, 32767)), hn::Set(di, -32768)); };
@@ -772,10 +773,10 @@ class SimdSearch final : public Search {
     for (std::size_t i = 0; i < 9; ++i) task.place.m[i] = static_cast<float>(relation.m[i]);
     for (std::size_t i = 0; i < 3; ++i) task.place.t[i] = static_cast<float>(relation.t[i]);
     // A coordinate of a moved vertex: 1 rounding each of vertex, matrix and three products, three sums; of the offset.
-    const double margin = margins_.vertex;
-    task.place.moved_error = static_cast<float>(
-        1.01 * margin * (ulp * (6 * radius * relation.row + 4 * relation.distance) + relation.vertex_error));
-    task.place.fixed_error = static_cast<float>(1.01 * margin * ulp * radius);
+    const double own = 1.01 * margins_.vertex * ulp;
+    task.place.moved_error = static_cast<float>(own * (6 * radius * relation.row + 4 * relation.distance) +
+                                                1.01 * margins_.relation * relation.vertex_error);
+    task.place.fixed_error = static_cast<float>(own * radius);
     task.counts = {};
     task.open_count = 0;
     task.stack[0] = {task.moved->root(), task.fixed->root()};
@@ -793,7 +794,7 @@ class SimdSearch final : public Search {
     }
     const NodeRef first = fixed->ref();
     if (item.fixed.count() == 1 && first.is_leaf()) {
-      widen(*task.fixed, first, wide_);
+      widen(*task.fixed, first, margins_, wide_);
     } else {
       widen(fixed, wide_);
     }

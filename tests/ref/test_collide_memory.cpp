@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Once a device has seen its queries, answering them again takes no memory from the heap.
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cchip/device/cpu_device.hpp>
+#include <cchip/mesh/shapes.hpp>
+#include <cchip/sim/seed.hpp>
+#include <cstdlib>
+#include <new>
+
+#include "random_poses.hpp"
+
+using namespace cchip;
+using cchip_test::PoseClass;
+using cchip_test::random_pose;
+
+namespace {
+
+std::atomic<std::size_t> allocations = 0;
+
+void* counted(std::size_t size, std::size_t alignment) {
+  ++allocations;
+  const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
+  if (void* memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded)) return memory;
+  throw std::bad_alloc();
+}
+
+constexpr std::size_t plain = alignof(std::max_align_t);
+
+}  // namespace
+
+// The other forms of new and delete call these.
+void* operator new(std::size_t size) { return counted(size, plain); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return counted(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+
+namespace {
+
+/// Queries of two pairs of objects in turn, in which doubles can tell every answer.
+struct Queries {
+  Queries() {
+    std::mt19937_64 random(sim::seed_from_environment());
+    for (int i = 0; i < 200; ++i) {
+      poses.push_back({random_pose(PoseClass::rigid, 1, random), random_pose(PoseClass::rigid, 1, random)});
+    }
+  }
+  CollisionQuery at(std::size_t i) const { return {&body, &poses[i].a, i % 2 == 0 ? &torus : &quads, &poses[i].b}; }
+  Object body = Object(make_body(20, 0.5));
+  Object torus = Object(make_torus(1, 0.4, 48, 24));
+  Object quads = Object(make_torus(1, 0.4, 48, 24, Kind::quad));
+  std::vector<PosePair> poses;
+};
+
+std::size_t allocations_of(const std::function<void()>& work) {
+  const std::size_t before = allocations;
+  work();
+  return allocations - before;
+}
+
+}  // namespace
+
+TEST_CASE("memory: the counter counts", "[ref][collide]") {
+  CHECK(allocations_of([] {
+          const std::vector<int> some(100);
+          CHECK(some.size() == 100);
+        }) >= 1);
+}
+
+TEST_CASE("memory: a query into a result that is used again allocates nothing", "[ref][collide]") {
+  const Queries queries;
+  for (const std::string& target : cpu_targets()) {
+    const auto device = open_cpu_device({1, target});
+    for (const CollisionRequest& request : {CollisionRequest{}, CollisionRequest{CollisionRequest::Contacts::all}}) {
+      CollisionResult result;
+      std::size_t hits = 0;
+      std::uint64_t open = 0;
+      const std::function<void()> all = [&] {
+        for (std::size_t i = 0; i < queries.poses.size(); ++i) {
+          device->collide(queries.at(i), request, result);
+          hits += result.hit;
+          open += result.counts.open;
+        }
+      };
+      all();
+      CAPTURE(target, static_cast<int>(request.contacts));
+      CHECK(hits > queries.poses.size() / 4);
+      CHECK(open == 0);
+      CHECK(allocations_of(all) == 0);
+    }
+  }
+}
+
+TEST_CASE("memory: a batch allocates nothing for its queries", "[ref][collide]") {
+  const Queries queries;
+  for (const std::string& target : cpu_targets()) {
+    for (const unsigned threads : {1U, 2U}) {
+      const auto device = open_cpu_device({threads, target});
+      for (const CollisionRequest& request : {CollisionRequest{}, CollisionRequest{CollisionRequest::Contacts::all}}) {
+        std::size_t hits = 0;
+        const std::function<CollisionQuery(std::size_t)> query = [&](std::size_t i) { return queries.at(i); };
+        const std::function<void(std::size_t, const CollisionResult&)> take =
+            [&hits](std::size_t, const CollisionResult& result) { hits += result.hit; };
+        const std::function<void()> all = [&] { device->collide(queries.poses.size(), query, request, take); };
+        // With several threads it is chance which of them meets the largest query.
+        for (int i = 0; i < 8; ++i) all();
+        CAPTURE(target, threads, static_cast<int>(request.contacts));
+        CHECK(hits > 2 * queries.poses.size());
+        CHECK(allocations_of(all) <= (threads == 1 ? 0 : 16));  // a few for a call with threads, none for a query
+      }
+    }
+  }
+}
