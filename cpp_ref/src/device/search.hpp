@@ -37,7 +37,6 @@ class Search {
 struct Margins {
   double narrow = 1;    ///< planes in 16 bits
   double wide = 1;      ///< planes in single precision
-  double leaf = 1;      ///< planes of a leaf made from its vertices
   double vertex = 1;    ///< vertices in single precision
   double relation = 1;  ///< how the objects lie to each other, in doubles
 };

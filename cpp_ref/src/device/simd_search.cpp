@@ -409,7 +409,7 @@ HWY_INLINE void widen(const SupportTree& tree, NodeRef leaf, const Margins& marg
   const float* const v = tree.vertices(leaf.first());
   const std::size_t stride = 4 * leaf.count();
   // Each term is off by 3 ulp of a coordinate, their sum by 2 more; normalised, so |x| + |y| + |z| <= sqrt(3) radius.
-  const float error = static_cast<float>(margins.leaf) * 12 * ulp * radius;
+  const float error = static_cast<float>(margins.wide) * 12 * ulp * radius;
   for (std::size_t w = 0; w < words; ++w) {
     float reach = -2 * radius;
     for (std::size_t i = 0; i < stride; ++i) {
