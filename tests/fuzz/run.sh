@@ -24,7 +24,9 @@ export ASAN_OPTIONS=quarantine_size_mb=4:malloc_context_size=1
 longest() {
   case $1 in
     query) echo 64 ;;
-    *) echo 512 ;;
+    bitstream) echo 128 ;;
+    image) echo 512 ;;
+    *) echo 352 ;;
   esac
 }
 
