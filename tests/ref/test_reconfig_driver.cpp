@@ -58,6 +58,17 @@ TEST_CASE("reconfig driver: a user's bitstreams reach the machine with their tab
   }
 }
 
+TEST_CASE("reconfig driver: without a user's bitstreams the simulated device gets its own", "[ref][reconfig_driver]") {
+  Recorder machine(8);
+  ReconfigOptions options;
+  options.payload_bytes = 77;
+  options.seed = 5;
+  run_reconfig(machine, {}, options);
+  const std::uint32_t address = machine.written.at(registers::bitstream_address::offset(4 + 3));
+  CHECK(machine.memory.at(address) ==
+        make_bitstream(1, ModuleId::quad_quad, make_payload(1, ModuleId::quad_quad, 77, 5)));
+}
+
 TEST_CASE("reconfig driver: nothing is written if one bitstream is wrong", "[ref][reconfig_driver]") {
   const auto refused = [](std::uint32_t port_w, auto bitstream) {
     Recorder machine(port_w);
