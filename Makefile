@@ -34,7 +34,7 @@ export JOBS
 
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv build sim sim-reconfig sim-levels wave test test-long formal test-gates test-debug \
-  test-asan fuzz lint tidy format campaign campaign-build campaign-grid campaign-classes campaign-certainty \
+  test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-swaps picture table1 table1-plot bench-reconfig bench-collide export fpga \
   fpga-quick install clean
 
@@ -95,7 +95,10 @@ test-asan: build/asan$(OTHER)/build.ninja ## build with AddressSanitizer and UBS
 	LSAN_OPTIONS=suppressions=$(CURDIR)/tests/lsan.supp $(CTEST) --test-dir build/asan$(OTHER) -LE '^long$$'
 
 RUNS ?= 10000000
-fuzz: build/fuzz$(OTHER)/build.ninja ## try RUNS inputs on everything that reads users' bytes (libFuzzer; CCHIP_SEED repeats a run)
+fuzz-tools:
+	@command -v clang++ > /dev/null || { echo "install Debian's clang and libclang-rt-14-dev: scripts/bootstrap --dev" >&2; exit 1; }
+
+fuzz: fuzz-tools build/fuzz$(OTHER)/build.ninja ## try RUNS inputs on everything that reads users' bytes (libFuzzer; CCHIP_SEED repeats a run)
 	cmake --build build/fuzz$(OTHER) -j $(JOBS) --target fuzz_targets
 	tests/fuzz/run.sh build/fuzz$(OTHER) $(RUNS)
 

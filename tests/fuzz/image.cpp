@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as an image of an object, as they are and with the right CRC. What passes the check is used: queries of the
-// image against itself end.
+// Any bytes as an image of an object, with the right CRC. What passes the check is used: queries of the image against
+// itself end.
 #include <cchip/bvh/image.hpp>
 #include <cchip/bvh/place.hpp>
 #include <cchip/model/broad_phase.hpp>
@@ -32,11 +32,11 @@ void use(const Bytes& bytes) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Bytes bytes(data, data + size);
-  use(bytes);
   constexpr std::size_t from = bvh::header_field::crc.end() / 8;
-  if (size < from) return 0;
-  const std::uint32_t crc = crc32(bytes.data() + from, size - from);
-  for (std::size_t i = 0; i < 4; ++i) bytes[from - 4 + i] = static_cast<std::uint8_t>(crc >> (8 * i));
+  if (size >= from) {
+    const std::uint32_t crc = crc32(bytes.data() + from, size - from);
+    for (std::size_t i = 0; i < 4; ++i) bytes[from - 4 + i] = static_cast<std::uint8_t>(crc >> (8 * i));
+  }
   use(bytes);
   return 0;
 }

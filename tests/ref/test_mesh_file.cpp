@@ -606,6 +606,37 @@ TEST_CASE("mesh file: concave polygons keep their outline", "[ref][mesh_file]") 
   }
 }
 
+TEST_CASE("mesh file: a polygon is cut the same way whatever its unit", "[ref][mesh_file]") {
+  // Where areas underflow or overflow, integers of any size decide about every ear.
+  const TemporaryFolder folder;
+  std::vector<Vec3d> comb;
+  for (int i = 0; i < 100; ++i) {
+    comb.insert(comb.end(), {{2.0 * i, 1, 0}, {2.0 * i, 4, 0}, {2.0 * i + 1, 4, 0}, {2.0 * i + 1, 1, 0}});
+  }
+  comb.emplace_back(200, 0, 0);
+  comb.emplace_back(0, 0, 0);
+  const Mesh expected = load_mesh(folder.write("comb.obj", polygon_obj(comb)));
+  for (const int exponent : {-1074, -700, 700, 1000}) {
+    std::vector<Vec3d> scaled;
+    for (const Vec3d& corner : comb) scaled.emplace_back(corner * std::ldexp(1.0, exponent));
+    const Mesh mesh = load_mesh(folder.write("scaled.obj", polygon_obj(scaled)));
+    REQUIRE(mesh.faces.size() == expected.faces.size());
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < mesh.faces.size(); ++i) different += mesh.faces[i].vertex != expected.faces[i].vertex;
+    CHECK(different == 0);
+    const std::vector<Vec3d> dent = {{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}};
+    scaled.clear();
+    for (const Vec3d& corner : dent) scaled.emplace_back(corner * std::ldexp(1.0, exponent));
+    const std::string file = folder.write("dent.obj", polygon_obj(scaled));
+    const Mesh cut = load_mesh(file, cchip::FaceKinds::triangles_and_quads);
+    REQUIRE(cut.faces.size() == 2);
+    for (const Mesh::Face& face : cut.faces) {
+      CHECK(std::count(face.vertex.begin(), face.vertex.begin() + 3, 2U) == 1);  // each has the inner corner
+      CHECK(std::count(face.vertex.begin(), face.vertex.begin() + 3, 0U) == 1);
+    }
+  }
+}
+
 TEST_CASE("mesh file: odd polygons", "[ref][mesh_file]") {
   const TemporaryFolder folder;
   const auto load = [&](const std::vector<Vec3d>& corners) {

@@ -23,7 +23,7 @@ class Run {
   }
 
   ReconfigResult run() {
-    require_coordinates();
+    read_capabilities();
     load_bitstreams();
     enable();
     while (answered_ < pairs_.size()) {
@@ -40,10 +40,11 @@ class Run {
   }
 
  private:
-  void require_coordinates() {
+  void read_capabilities() {
     const std::uint32_t value = machine_.read_register(regs::capabilities::offset);
     const unsigned width = (value & regs::capabilities::coord_w_mask) >> regs::capabilities::coord_w_shift;
     slots_ = (value & regs::capabilities::slots_mask) >> regs::capabilities::slots_shift;
+    port_w_ = static_cast<int>((value & regs::capabilities::cfg_w_mask) >> regs::capabilities::cfg_w_shift);
     const std::int32_t limit = std::int32_t{1} << (width - 1);
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       for (const GridPrimitive* p : {&pairs_[i].pair.a, &pairs_[i].pair.b}) {
@@ -56,21 +57,45 @@ class Run {
     }
   }
 
-  void load_bitstreams() {
-    const auto bytes = static_cast<std::uint32_t>(options_.payload_bytes + defs::bitstream_header);
-    constexpr std::uint32_t align = defs::bitstream_align;
-    std::uint32_t address = align;
+  struct Loaded {
+    unsigned index;  ///< in the table of bitstreams
+    Bytes bytes;
+  };
+
+  Bytes bitstream_of(std::uint8_t slot, ModuleId id) const {
+    if (options_.bitstream) return options_.bitstream(slot, id);
+    return make_bitstream(slot, id, make_payload(slot, id, options_.payload_bytes, options_.seed));
+  }
+
+  /// All bitstreams, each as the machine will take it.
+  std::vector<Loaded> checked_bitstreams() const {
+    std::vector<Loaded> all;
     for (unsigned slot = 0; slot < slots_; ++slot) {
       for (unsigned m = 1; m < 4; ++m) {
         const auto id = static_cast<ModuleId>(m);
         const auto place = static_cast<std::uint8_t>(slot);
-        const Bytes payload = make_payload(place, id, options_.payload_bytes, options_.seed);
-        machine_.write_memory(address, make_bitstream(place, id, payload));
-        machine_.write_register(regs::bitstream_address::offset(4 * slot + m), address);
-        machine_.write_register(regs::bitstream_size::offset(4 * slot + m), bytes);
-        machine_.write_register(regs::bitstream_valid::offset(4 * slot + m), 1);
-        address += (bytes + align - 1) / align * align;
+        all.push_back({4 * slot + m, bitstream_of(place, id)});
+        try {
+          check_bitstream(all.back().bytes, place, id, port_w_);
+        } catch (const BitstreamError& error) {
+          throw BitstreamError(error.code(),
+                               "slot " + std::to_string(slot) + ", module " + to_name(id) + ": " + error.what());
+        }
       }
+    }
+    return all;
+  }
+
+  void load_bitstreams() {
+    constexpr std::uint32_t align = defs::bitstream_align;
+    std::uint32_t address = align;
+    for (const Loaded& loaded : checked_bitstreams()) {
+      const auto bytes = static_cast<std::uint32_t>(loaded.bytes.size());
+      machine_.write_memory(address, loaded.bytes);
+      machine_.write_register(regs::bitstream_address::offset(loaded.index), address);
+      machine_.write_register(regs::bitstream_size::offset(loaded.index), bytes);
+      machine_.write_register(regs::bitstream_valid::offset(loaded.index), 1);
+      address += (bytes + align - 1) / align * align;
     }
   }
 
@@ -135,6 +160,7 @@ class Run {
   std::vector<std::size_t> in_flight_;  // by tag: index of the pair inside
   std::vector<std::size_t> last_with_;  // by tag: index of the pair that was answered last
   unsigned slots_ = 0;
+  int port_w_ = 8;  // of the configuration port, bit
   std::size_t sent_ = 0;
   std::size_t answered_ = 0;
   std::uint64_t idle_ = 0;

@@ -10,16 +10,30 @@
 namespace cchip::mesh_io {
 namespace {
 
-using Rational = boost::multiprecision::cpp_rational;
+using Integer = boost::multiprecision::cpp_int;
 using Point = std::array<double, 2>;
 
-Rational exact_cross(const Point& a, const Point& b, const Point& c) {
-  const auto minus = [](double x, double y) { return Rational(Rational(x) - Rational(y)); };
+/// Exponent of a double's last bit, 0 for zero.
+int last_bit(double x) { return x == 0 ? 0 : std::ilogb(x) - 52; }
+
+int last_bit(const Point& p) { return std::min(last_bit(p[0]), last_bit(p[1])); }
+
+/// x 2^-exponent; `exponent` is at most last_bit(x).
+Integer scaled(double x, int exponent) {
+  if (x == 0) return 0;
+  const int last = last_bit(x);
+  return Integer(static_cast<std::int64_t>(std::scalbn(x, -last))) << static_cast<unsigned>(last - exponent);
+}
+
+/// Twice the area of the triangle a, b, c, times 2^(-2 exponent). Integers and not rationals: coordinates of very
+/// different magnitudes have denominators of a thousand bits, whose common divisors cost milliseconds.
+Integer exact_cross(const Point& a, const Point& b, const Point& c, int exponent) {
+  const auto minus = [exponent](double x, double y) { return Integer(scaled(x, exponent) - scaled(y, exponent)); };
   return minus(b[0], a[0]) * minus(c[1], a[1]) - minus(b[1], a[1]) * minus(c[0], a[0]);
 }
 
 /// Sign of the area of the triangle a, b, c: positive if counter-clockwise. Doubles decide if their error bound
-/// allows it (Shewchuk, "Adaptive Precision Floating-Point Arithmetic", 1997, section 4.3), else rationals.
+/// allows it (Shewchuk, "Adaptive Precision Floating-Point Arithmetic", 1997, section 4.3), else integers.
 int turn(const Point& a, const Point& b, const Point& c) {
   const double left = (b[0] - a[0]) * (c[1] - a[1]);
   const double right = (b[1] - a[1]) * (c[0] - a[0]);
@@ -27,21 +41,32 @@ int turn(const Point& a, const Point& b, const Point& c) {
   const double bound = 4e-16 * (std::abs(left) + std::abs(right));
   constexpr double no_underflow = 1e-280;
   if (bound > no_underflow && std::abs(area) > bound) return area > 0 ? 1 : -1;
-  return exact_cross(a, b, c).sign();
+  return exact_cross(a, b, c, std::min({last_bit(a), last_bit(b), last_bit(c)})).sign();
+}
+
+/// A power of two that brings coordinates to magnitudes near 1, where no product overflows or becomes 0.
+template <class Points>
+double unit_scale(const Points& points) {
+  double most = 0;
+  for (const Vec3d& v : points) most = std::max(most, v.cwiseAbs().maxCoeff());
+  return most == 0 ? 1 : std::ldexp(1.0, std::min(1000, -std::ilogb(most)));
 }
 
 /// The polygon seen along the axis of its largest area, counter-clockwise; empty if it has no area.
 std::vector<Point> project(const std::vector<Vec3d>& polygon) {
+  const double scale = unit_scale(polygon);
+  const auto edge = [&](std::size_t i) -> Vec3d { return polygon[i] * scale - polygon[0] * scale; };
   Vec3d normal = Vec3d::Zero();
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    normal += (polygon[i] - polygon[0]).cross(polygon[i + 1] - polygon[0]);
-  }
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) normal += edge(i).cross(edge(i + 1));
   Eigen::Index axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
   std::vector<Point> points;
   for (const Vec3d& v : polygon) points.push_back({v[(axis + 1) % 3], v[(axis + 2) % 3]});
-  Rational area = 0;
-  for (std::size_t i = 1; i + 1 < points.size(); ++i) area += exact_cross(points[0], points[i], points[i + 1]);
+  int exponent = 0;
+  for (const Point& p : points) exponent = std::min(exponent, last_bit(p));
+  Integer area = 0;
+  for (std::size_t i = 1; i + 1 < points.size(); ++i)
+    area += exact_cross(points[0], points[i], points[i + 1], exponent);
   if (area < 0) {
     for (Point& p : points) std::swap(p[0], p[1]);
   }
@@ -60,7 +85,10 @@ bool holds(const std::array<Point, 3>& triangle, const Point& p) {
 
 }  // namespace
 
-bool is_convex_quad(const std::array<Vec3d, 4>& v) {
+bool is_convex_quad(const std::array<Vec3d, 4>& quad) {
+  std::array<Vec3d, 4> v = quad;
+  const double scale = unit_scale(v);
+  for (Vec3d& corner : v) corner *= scale;
   const Vec3d normal = (v[2] - v[0]).cross(v[3] - v[1]);
   for (std::size_t i = 0; i < 4; ++i) {
     const Vec3d& corner = v[(i + 1) % 4];

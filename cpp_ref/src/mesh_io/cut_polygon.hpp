@@ -15,7 +15,7 @@ namespace cchip::mesh_io {
 constexpr std::size_t most_corners = 1024;
 
 /// True if no corner of the outline turns against the quad's normal (V2 - V0) x (V3 - V1).
-bool is_convex_quad(const std::array<Vec3d, 4>& v);
+bool is_convex_quad(const std::array<Vec3d, 4>& quad);
 
 /// Cuts a polygon with n corners, 4 to most_corners, into n - 2 triangles of its corners: the ears of its projection
 /// along the axis that sees most of its area, found with exact arithmetic. Corners on a straight line make triangles

@@ -15,7 +15,7 @@ bool take(std::string_view& text, std::string_view prefix) {
 /// Reads "OFF" with its prefixes. The values that they announce follow the coordinates and are ignored.
 void check_keyword(std::string_view word, std::size_t line) {
   for (const char* const prefix : {"ST", "C", "N"}) take(word, prefix);
-  if (take(word, "4") | take(word, "n")) throw FormatError("coordinates other than x, y, z are not read", line);
+  if (take(word, "4") || take(word, "n")) throw FormatError("coordinates other than x, y, z are not read", line);
   if (word != "OFF") throw FormatError("the file does not begin with OFF", line);
 }
 

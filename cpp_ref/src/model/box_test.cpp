@@ -120,7 +120,7 @@ NodeGrid grid_of(const bvh::InnerLine& a, const bvh::InnerLine& b, const PoseSet
     std::int64_t turned = 0;  // 2^-(35 + shift)
     for (std::size_t j = 0; j < 3; ++j) turned += std::int64_t{pose.m[i][j]} * a.origin[j];
     const std::int64_t between = pose.t[i] - std::int64_t{b.origin[i]} * 64;  // 2^-24
-    grid.offset[i] = ((between << (11 + pose.shift)) + turned) >> (step + 4 + pose.shift);
+    grid.offset[i] = (between * (std::int64_t{1} << (11 + pose.shift)) + turned) >> (step + 4 + pose.shift);
     // Boxes reach at most 256 half steps from their origins, A's after M, and the slack 64.
     grid.far = grid.far || wrap(static_cast<std::uint64_t>(grid.offset[i]), offset_w) != grid.offset[i];
   }

@@ -15,7 +15,7 @@ constexpr int eta_unknown = 15;
 
 /// value 2^exponent to nearest, halves up; `lost` is set if that rounds.
 std::int64_t scaled(Wide value, int exponent, bool& lost) {
-  if (exponent >= 0) return static_cast<std::int64_t>(value << exponent);
+  if (exponent >= 0) return static_cast<std::int64_t>(value * (Wide{1} << exponent));
   const Wide half = Wide{1} << (-exponent - 1);
   lost = lost || (value & (2 * half - 1)) != 0;
   return static_cast<std::int64_t>((value + half) >> -exponent);
@@ -37,7 +37,8 @@ MovedVertices move_a(const bvh::LeafLine& leaf, NodeKind kind, const std::array<
   Coordinates origin = {};
   std::array<Coordinates, 3> m = {};
   for (std::size_t i = 0; i < 3; ++i) {
-    Wide exact = (Wide{query.t[i]} << (22 + query.shift)) - (Wide{origin_b[i]} << (30 + query.shift));  // 2^-(54+shift)
+    Wide exact =
+        query.t[i] * (Wide{1} << (22 + query.shift)) - origin_b[i] * (Wide{1} << (30 + query.shift));  // 2^-(54+shift)
     for (std::size_t j = 0; j < 3; ++j) {
       exact += Wide{query.m[i][j]} * leaf.origin[j];
       m[i][j] = scaled(query.m[i][j], vertex_m_fraction - query_m_fraction, m_lost);

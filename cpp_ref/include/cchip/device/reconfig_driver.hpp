@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cchip/device/machine.hpp>
+#include <cchip/wire/bitstream.hpp>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -13,12 +14,15 @@
 namespace cchip {
 
 struct ReconfigOptions {
-  /// Payload of each bitstream, bytes, >= defs::bitstream_payload_min.
+  /// The bitstream that makes `module_id` of slot `slot`: header and payload, as make_bitstream() joins them. Without
+  /// it, virtual ones for the simulated device.
+  std::function<Bytes(std::uint8_t slot, ModuleId module_id)> bitstream;
+  /// Payload of each virtual bitstream, bytes, >= defs::bitstream_payload_min.
   std::size_t payload_bytes = 2048;
   /// Registers of the scheduler: pairs, clocks.
   std::uint32_t minimum_batch = 64;
   std::uint32_t maximum_age = 1024;
-  /// Seed of the bitstreams' payloads.
+  /// Seed of the virtual bitstreams' payloads.
   std::uint32_t seed = 1;
   /// The driver gives up after this many proceed() without a pair accepted or answered.
   std::uint64_t patience = 1000000;
@@ -46,11 +50,12 @@ struct ReconfigResult {
   std::uint64_t foreign_answers = 0;  ///< answers with a tag that nobody sent
 };
 
-/// Writes the bitstreams and their table, enables the scheduler, sends the pairs in their order and returns when all
-/// are answered. Pairs must be as the stream takes them: triangle before quad, quads canonical, coordinates in range;
-/// their tags are replaced. Swaps that end within the time of some twenty register accesses may be missed in `swaps`.
-/// \throws std::invalid_argument a coordinate does not fit the machine's width, the payload is too short
-/// \throws std::runtime_error no answer in time, a register that refuses
+/// Checks all bitstreams, writes them and their table, enables the scheduler, sends the pairs in their order and
+/// returns when all are answered. Pairs must be as the stream takes them: triangle before quad, quads canonical,
+/// coordinates in range; their tags are replaced. Swaps that end within the time of some twenty register accesses may
+/// be missed in `swaps`. \throws std::invalid_argument a coordinate does not fit the machine's width, the payload is
+/// too short \throws BitstreamError a bitstream is damaged, or not the one asked for; nothing was written then \throws
+/// std::runtime_error no answer in time, a register that refuses
 ReconfigResult run_reconfig(Machine& machine, const std::vector<PairRequest>& pairs, const ReconfigOptions& options);
 
 }  // namespace cchip

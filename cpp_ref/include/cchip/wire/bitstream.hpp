@@ -12,6 +12,8 @@
 #include <cchip/wire/definitions.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace cchip {
@@ -48,6 +50,27 @@ Bytes make_bitstream(std::uint8_t slot, ModuleId module_id, const Bytes& payload
 
 /// A bitstream of any header, valid or not, and any payload.
 Bytes join_bitstream(const BitstreamHeader& header, const Bytes& payload);
+
+/// A bitstream that a swap would refuse. One line: byte and field, what is wrong, what to do.
+class BitstreamError : public std::runtime_error {
+ public:
+  BitstreamError(SwapCode code, const std::string& what) : std::runtime_error(what), code_(code) {}
+  /// What the swap would answer.
+  SwapCode code() const { return code_; }
+
+ private:
+  SwapCode code_;
+};
+
+/// The header of a bitstream, after all checks of the configuration controller: magic, bytes that must be 0, a module
+/// that there is, length, CRC. The payload is what follows it; only a device knows what that means.
+/// \param port_w width of the configuration port, bit, 8 or 32
+/// \throws BitstreamError
+BitstreamHeader decode_bitstream(const Bytes& bytes, int port_w = 8);
+
+/// The same for the bitstream that slot `slot` is to get as `module_id`.
+/// \throws BitstreamError also if it is for another slot, or of another module
+BitstreamHeader check_bitstream(const Bytes& bytes, std::uint8_t slot, ModuleId module_id, int port_w = 8);
 
 /// Clocks of a transfer while memory keeps up (the paper's eq. 4): words of the port times clocks per word.
 std::uint64_t transfer_clocks(std::size_t payload_bytes, int port_w, int clocks_per_word);
