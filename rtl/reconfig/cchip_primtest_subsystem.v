@@ -139,20 +139,13 @@ module cchip_primtest_subsystem #(
       .s_pair_valid     (s_pair_valid),
       .s_pair_ready     (s_pair_ready),
       .s_pair_kind      (s_pair_kind),
-      .s_pair_tag       (s_pair_tag),
-      .s_pair_mode      (s_pair_mode),
-      .s_pair_a         (s_pair_a),
-      .s_pair_b         (s_pair_b),
-      .s_pair_err       (s_pair_err),
+      .s_pair_data      (`CCHIP_REQUEST_OF(s_pair_tag, s_pair_a, s_pair_b, s_pair_err,
+          s_pair_mode)),
       .m_result_valid   (m_result_valid),
       .m_result_ready   (m_result_ready),
       .m_result_kind    (m_result_kind),
-      .m_result_tag     (m_result_tag),
-      .m_result_hit     (m_result_hit),
-      .m_result_grid    (m_result_grid),
-      .m_result_definite(m_result_definite),
-      .m_result_axis    (m_result_axis),
-      .m_result_beats   (m_result_beats),
+      .m_result_data    (`CCHIP_RESULT_OF(m_result_tag, m_result_hit, m_result_grid,
+          m_result_definite, m_result_axis, m_result_beats)),
       .m_slot_valid     (pair_valid),
       .m_slot_ready     (pair_ready),
       .m_slot_data      (pair),
@@ -176,10 +169,7 @@ module cchip_primtest_subsystem #(
   genvar slot;
   generate
     for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_slots
-      wire [PAIR_W-1:0] its_pair = pair[PAIR_W*slot+:PAIR_W];
-      wire [RESULT_W-1:0] its_result;
       wire [`CCHIP_RM_ID_W-1:0] module_id;
-      assign result[RESULT_W*slot+:RESULT_W] = its_result;
       assign rm_id[`CCHIP_RM_ID_W*slot+:`CCHIP_RM_ID_W] = module_id;
       cchip_pr_slot #(
           .COORD_W            (COORD_W),
@@ -210,19 +200,10 @@ module cchip_primtest_subsystem #(
           .cfg_data         (cfg_data),
           .s_pair_valid     (pair_valid[slot]),
           .s_pair_ready     (pair_ready[slot]),
-          .s_pair_tag       (its_pair[`CCHIP_REQUEST_TAG]),
-          .s_pair_a         (its_pair[`CCHIP_REQUEST_A(COORD_W)]),
-          .s_pair_b         (its_pair[`CCHIP_REQUEST_B(COORD_W)]),
-          .s_pair_err       (its_pair[`CCHIP_REQUEST_ERR(COORD_W)]),
-          .s_pair_mode      (its_pair[`CCHIP_REQUEST_MODE(COORD_W)]),
+          .s_pair_data      (pair[PAIR_W*slot+:PAIR_W]),
           .m_result_valid   (result_valid[slot]),
           .m_result_ready   (result_ready[slot]),
-          .m_result_tag     (its_result[`CCHIP_RESULT_TAG]),
-          .m_result_hit     (its_result[`CCHIP_RESULT_HIT]),
-          .m_result_grid    (its_result[`CCHIP_RESULT_GRID]),
-          .m_result_definite(its_result[`CCHIP_RESULT_DEFINITE]),
-          .m_result_axis    (its_result[`CCHIP_RESULT_AXIS]),
-          .m_result_beats   (its_result[`CCHIP_RESULT_BEATS]),
+          .m_result_data    (result[RESULT_W*slot+:RESULT_W]),
           .rm_id            (module_id),
           .idle             (slot_idle[slot])
       );

@@ -98,30 +98,13 @@ class PrimtestPinsOf : public PrimtestPins {
   CData& m_result_ready() override { return top().m_result_ready; }
   void put(const PairRequest& request) override { port_.put(request); }
   void scramble(Random& random) override { port_.scramble(random); }
-  PairRequest request() const override {
-    PairRequest r;
-    r.pair = {primitive(top().s_pair_a, kind_a_), primitive(top().s_pair_b, kind_b_), top().s_pair_err};
-    r.tag = top().s_pair_tag;
-    r.mode = static_cast<PairMode>(top().s_pair_mode);
-    return r;
-  }
+  PairRequest request() const override { return port_.request(kind_a_, kind_b_); }
   bool beat_leaves() const override { return Watch<Config>::beat(top()); }
   bool pair_waits() const override { return Watch<Config>::waits(top()); }
 
  private:
   using Model = typename Config::Model;
   Model& top() const { return simulation_.top(); }
-
-  template <class Port>
-  static GridPrimitive primitive(const Port& port, Kind kind) {
-    GridPrimitive p;
-    p.kind = kind;
-    for (int i = 0; i < defs::vertices; ++i) {
-      const model::Word3 v = get_word3(port, Config::COORD_W, i);
-      p.v[static_cast<std::size_t>(i)] = {static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2])};
-    }
-    return p;
-  }
 
   mutable sim::Simulation<Model> simulation_;
   sim::PairPort<Model> port_;

@@ -13,10 +13,12 @@ namespace {
 using Bits = std::vector<std::uint64_t>;
 
 template <class Port>
-void append(Bits& bits, const Port& port, int width) {
+Bits bits(const Port& port, int width) {
+  Bits found;
   for (int done = 0; done < width; done += 64) {
-    bits.push_back(sim::get_bits(port, done, width - done < 64 ? width - done : 64));
+    found.push_back(sim::get_bits(port, done, width - done < 64 ? width - done : 64));
   }
+  return found;
 }
 bool all_zero(const Bits& bits) {
   return std::all_of(bits.begin(), bits.end(), [](std::uint64_t word) { return word == 0; });
@@ -25,29 +27,13 @@ bool all_zero(const Bits& bits) {
 /// Pins of a decoupler, and random values on all inputs but the controls.
 template <class Config>
 struct Pins {
-  static constexpr int primitive_w = 12 * Config::COORD_W;
+  static constexpr int pair_w = defs::request_w(Config::COORD_W);
   typename Config::Model& top;
 
-  Bits pair_in() const {
-    Bits b{top.s_pair_tag, top.s_pair_mode, top.s_pair_err};
-    append(b, top.s_pair_a, primitive_w);
-    append(b, top.s_pair_b, primitive_w);
-    return b;
-  }
-  Bits pair_out() const {
-    Bits b{top.r_pair_tag, top.r_pair_mode, top.r_pair_err};
-    append(b, top.r_pair_a, primitive_w);
-    append(b, top.r_pair_b, primitive_w);
-    return b;
-  }
-  Bits result_in() const {
-    return {top.r_result_tag,      top.r_result_hit,  top.r_result_grid,
-            top.r_result_definite, top.r_result_axis, top.r_result_beats};
-  }
-  Bits result_out() const {
-    return {top.m_result_tag,      top.m_result_hit,  top.m_result_grid,
-            top.m_result_definite, top.m_result_axis, top.m_result_beats};
-  }
+  Bits pair_in() const { return bits(top.s_pair_data, pair_w); }
+  Bits pair_out() const { return bits(top.r_pair_data, pair_w); }
+  Bits result_in() const { return {top.r_result_data}; }
+  Bits result_out() const { return {top.m_result_data}; }
   Bits outputs() const {
     Bits b{top.decoupled, top.s_pair_ready, top.m_result_valid, top.r_pair_valid, top.r_result_ready,
            top.rm_id,     top.idle};
@@ -56,20 +42,11 @@ struct Pins {
   }
   void scramble(Random& random) {
     top.s_pair_valid = random() & 1;
-    top.s_pair_tag = static_cast<SData>(random());
-    top.s_pair_mode = random() & 3;
-    top.s_pair_err = random() & 15;
-    sim::set_random(top.s_pair_a, primitive_w, random);
-    sim::set_random(top.s_pair_b, primitive_w, random);
+    sim::set_random(top.s_pair_data, pair_w, random);
     top.m_result_ready = random() & 1;
     top.r_pair_ready = random() & 1;
     top.r_result_valid = random() & 1;
-    top.r_result_tag = static_cast<SData>(random());
-    top.r_result_hit = random() & 1;
-    top.r_result_grid = random() & 1;
-    top.r_result_definite = random() & 1;
-    top.r_result_axis = random() & 511;
-    top.r_result_beats = random() & 63;
+    sim::set_random(top.r_result_data, defs::result_w, random);
     top.r_rm_id = chance(random, 10) ? 0 : static_cast<CData>(random());
     top.r_idle = random() & 1;
   }

@@ -154,6 +154,10 @@ constexpr int point_w(int w) { return 3 * w; }
 constexpr int primitive_w(int w) { return vertices * point_w(w); }
 /// the module that tests primitives of a and of b vertices, a <= b: 3 3, 3 4 or 4 4 [ModuleId]
 constexpr int rm_of(int a, int b) { return a + b - 5; }
+/// vertices of A of that module, m = 1..3 [vertex]
+constexpr int rm_verts_a(int m) { return m <= 2 ? 3 : 4; }
+/// vertices of B of that module, m = 1..3 [vertex]
+constexpr int rm_verts_b(int m) { return m <= 1 ? 3 : 4; }
 /// difference of two coordinates [bit]
 constexpr int edge_w(int w) { return w + 1; }
 /// component of the cross product of two edges: |.| <= 2 (2^w - 1)^2 [bit]
