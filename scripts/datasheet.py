@@ -82,7 +82,6 @@ STIMULI = {
     "cchip_config_controller": ("", "s_swap_valid = 1;", "phase"),
     "cchip_subsystem_regs": ("", "s_axil_arvalid = 1;", "s_axil_rvalid"),
     "cchip_roc_generator": ("", "configured = 1;", "roc"),
-    "cchip_pr_gate": ("close = 1; tick; close = 0;", "s_valid = 1;", "m_valid"),
     "cchip_pr_decoupler": ("r_rm_id = `CCHIP_RM_TRI_TRI;", "s_pair_valid = 1;", "r_pair_valid"),
     "cchip_pr_config_memory": (
         "cfg_valid = 1; cfg_data = 'h66; tick; cfg_data = 'h55; tick; cfg_data = 'h99; tick; cfg_data = 'haa; tick; "

@@ -82,6 +82,7 @@ module cchip_pair_router #(
   ) u_in (
       .clk    (clk),
       .rst    (rst),
+      .stop   (1'b0),
       .s_valid(s_pair_valid),
       .s_ready(s_pair_ready),
       .s_data ({4'd1 << s_pair_kind, s_pair_data}),
@@ -147,6 +148,7 @@ module cchip_pair_router #(
   ) u_refused (
       .clk    (clk),
       .rst    (rst),
+      .stop   (1'b0),
       .s_valid(refusing_valid),
       .s_ready(refusing_ready),
       .s_data ({kind_of_refusing, refusing_tag}),

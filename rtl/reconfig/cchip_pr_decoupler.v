@@ -46,11 +46,12 @@ module cchip_pr_decoupler #(
   wire close = rst | decouple;
   wire blank = r_rm_id == `CCHIP_RM_BLANK;
 
-  cchip_pr_gate #(
-      .WIDTH(`CCHIP_REQUEST_W(COORD_W))
+  cchip_skid_buffer #(
+      .WIDTH     (`CCHIP_REQUEST_W(COORD_W)),
+      .CLEAR_DATA(1)
   ) u_pair (
       .clk    (clk),
-      .close  (close),
+      .rst    (close),
       .stop   (stop | blank),
       .s_valid(s_pair_valid),
       .s_ready(s_pair_ready),
@@ -60,11 +61,12 @@ module cchip_pr_decoupler #(
       .m_data (r_pair_data)
   );
 
-  cchip_pr_gate #(
-      .WIDTH(`CCHIP_RESULT_W)
+  cchip_skid_buffer #(
+      .WIDTH     (`CCHIP_RESULT_W),
+      .CLEAR_DATA(1)
   ) u_result (
       .clk    (clk),
-      .close  (close),
+      .rst    (close),
       .stop   (1'b0),
       .s_valid(r_result_valid),
       .s_ready(r_result_ready),
@@ -82,7 +84,7 @@ module cchip_pr_decoupler #(
   assign rm_id     = rm_id_q;
   assign idle      = idle_q;
 
-  // the region's own idle does not include the beats inside the two gates
+  // the region's own idle does not include the beats inside the two buffers
   wire accept = s_pair_valid & s_pair_ready;
   wire filled = accept | r_pair_valid | r_result_valid | m_result_valid;
 

@@ -71,6 +71,7 @@ module cchip_pr_static (
   ) u_pair (
       .clk    (clk),
       .rst    (rst_q),
+      .stop   (1'b0),
       .s_valid(in_send_q),
       .s_ready(pair_ready),
       .s_data (pair_q),
@@ -84,6 +85,7 @@ module cchip_pr_static (
   ) u_result (
       .clk    (clk),
       .rst    (rst_q),
+      .stop   (1'b0),
       .s_valid(region_m_valid & ~decouple_q),
       .s_ready(result_ready),
       .s_data (region_result),

@@ -4,9 +4,8 @@
 // Proved of cchip_pr_decoupler, the region doing whatever it likes:
 //   while decoupled every output is its constant, so no handshake happens on either side
 //   decoupled follows decouple one clock later, also during reset
-//   both streams are queues of two beats, emptied by reset and by decoupling: a beat leaves once and in order; of the
-//   data one bit, any, is followed (which: `bit_pair`, `bit_result`)
-//   streams are stable under stall, unless it is closed
+//   both streams are queues of two beats (queue_spec.v), emptied by reset and by decoupling; of the data one bit, any, is
+//   followed (which: `bit_pair`, `bit_result`)
 //   after stop no pair is accepted, nor while the region is blank; idle = 1 only with nothing in either queue
 module cchip_pr_decoupler_properties #(
     parameter integer COORD_W = 4
@@ -65,38 +64,41 @@ module cchip_pr_decoupler_properties #(
   wire [255:0] r_pair_all = {{256 - PAIR_W{1'b0}}, r_pair_data};
   wire [63:0] r_result_all = {{64 - RESULT_W{1'b0}}, r_result_data};
   wire [63:0] m_result_all = {{64 - RESULT_W{1'b0}}, m_result_data};
-  wire s_bit = s_pair_all[bit_pair];
-  wire r_bit = r_pair_all[bit_pair];
-  wire t_bit = r_result_all[bit_result];
-  wire m_bit = m_result_all[bit_result];
+  wire close = rst | decouple;
+  wire [7:0] pairs, results;
+  wire pair_stalled, result_stalled;
+  queue_spec spec_pair (
+      .clk    (clk),
+      .rst    (close),
+      .s_valid(s_pair_valid),
+      .s_ready(s_pair_ready),
+      .s_data (s_pair_all[bit_pair]),
+      .m_valid(r_pair_valid),
+      .m_ready(r_pair_ready),
+      .m_data (r_pair_all[bit_pair]),
+      .count  (pairs),
+      .stalled(pair_stalled)
+  );
+  queue_spec spec_result (
+      .clk    (clk),
+      .rst    (close),
+      .s_valid(r_result_valid),
+      .s_ready(r_result_ready),
+      .s_data (r_result_all[bit_result]),
+      .m_valid(m_result_valid),
+      .m_ready(m_result_ready),
+      .m_data (m_result_all[bit_result]),
+      .count  (results),
+      .stalled(result_stalled)
+  );
 
   reg started_q = 1'b0;
   reg decouple_q, close_q, stop_q;
-  reg [1:0] pairs_q, results_q;
-  reg pair_first_q, pair_second_q, result_first_q, result_second_q;
-  reg pair_stalled_q, result_stalled_q, r_bit_q, m_bit_q;
-  wire close = rst | decouple;
-  wire pair_in = s_pair_valid & s_pair_ready;
-  wire pair_out = r_pair_valid & r_pair_ready;
-  wire result_in = r_result_valid & r_result_ready;
-  wire result_out = m_result_valid & m_result_ready;
   always @(posedge clk) begin
     started_q  <= 1'b1;
     decouple_q <= decouple;
     close_q    <= close;
     stop_q     <= stop | (r_rm_id == 8'd0);
-    pairs_q    <= close ? 2'd0 : pairs_q + {1'b0, pair_in} - {1'b0, pair_out};
-    results_q  <= close ? 2'd0 : results_q + {1'b0, result_in} - {1'b0, result_out};
-    if (pair_out) pair_first_q <= pairs_q == 2'd2 ? pair_second_q : s_bit;
-    else if (pair_in && pairs_q == 2'd0) pair_first_q <= s_bit;
-    if (pair_in) pair_second_q <= s_bit;
-    if (result_out) result_first_q <= results_q == 2'd2 ? result_second_q : t_bit;
-    else if (result_in && results_q == 2'd0) result_first_q <= t_bit;
-    if (result_in) result_second_q <= t_bit;
-    pair_stalled_q   <= r_pair_valid & ~r_pair_ready & ~close;
-    result_stalled_q <= m_result_valid & ~m_result_ready & ~close;
-    r_bit_q <= r_bit;
-    m_bit_q <= m_bit;
   end
 
   always @(*) begin
@@ -107,22 +109,19 @@ module cchip_pr_decoupler_properties #(
         constant_static: assert (!s_pair_ready && !m_result_valid && m_result_data == {RESULT_W{1'b0}});
         constant_others: assert (rm_id == 8'd0 && idle);
         constant_region: assert (!r_pair_valid && !r_result_ready && r_pair_data == {PAIR_W{1'b0}});
-        no_handshake: assert (!pair_in && !pair_out && !result_in && !result_out);
+        no_handshake: assert (!(s_pair_valid && s_pair_ready) && !(r_pair_valid && r_pair_ready)
+            && !(r_result_valid && r_result_ready) && !(m_result_valid && m_result_ready));
       end
-      pair_valid: assert (r_pair_valid == (pairs_q != 2'd0));
-      pair_order: assert (!r_pair_valid || r_bit == pair_first_q);
-      pair_ready: assert (s_pair_ready == (!close_q && !stop_q && pairs_q != 2'd2));
-      pair_stable: assert (!pair_stalled_q || (r_pair_valid && r_bit == r_bit_q));
-      result_valid: assert (m_result_valid == (results_q != 2'd0));
-      result_order: assert (!m_result_valid || m_bit == result_first_q);
-      result_ready: assert (r_result_ready == (!close_q && results_q != 2'd2));
-      result_stable: assert (!result_stalled_q || (m_result_valid && m_bit == m_bit_q));
-      idle_is_empty: assert (!idle || (pairs_q == 2'd0 && results_q == 2'd0));
+      pair_valid: assert (r_pair_valid == (pairs != 8'd0));
+      pair_ready: assert (s_pair_ready == (!close_q && !stop_q && pairs != 8'd2));
+      result_valid: assert (m_result_valid == (results != 8'd0));
+      result_ready: assert (r_result_ready == (!close_q && results != 8'd2));
+      idle_is_empty: assert (!idle || (pairs == 8'd0 && results == 8'd0));
     end
   end
   always @(posedge clk) begin
-    both_full: cover (started_q && pairs_q == 2'd2 && results_q == 2'd2);
-    cut_off: cover (started_q && decoupled && pair_stalled_q == 1'b0 && r_result_valid);
+    both_full: cover (started_q && pairs == 8'd2 && results == 8'd2);
+    cut_off: cover (started_q && decoupled && !pair_stalled && r_result_valid);
   end
 endmodule
 `default_nettype wire

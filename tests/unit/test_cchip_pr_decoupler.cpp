@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The boundary of a region: both streams as queues, everything else as the header of the RTL specifies.
-#include <cchip/model/reconfig.hpp>
+#include <cchip/model/stream.hpp>
 #include <models/cchip_pr_decoupler.hpp>
 
 #include "bench.hpp"
@@ -61,8 +61,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_decoupler: every output on every clock, inputs
     sim::Simulation<typename TestType::Model> simulation(options);
     auto& top = simulation.top();
     Pins<TestType> pins{top};
-    model::Gate<Bits> pairs;
-    model::Gate<Bits> results;
+    model::SkidBuffer<Bits> pairs;
+    model::SkidBuffer<Bits> results;
     bool decoupled = false;
     int rm_id = 0;
     bool idle = true;
@@ -106,9 +106,12 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_decoupler: every output on every clock, inputs
           close || (top.r_idle != 0 && !accepted && !pairs.m_valid() && top.r_result_valid == 0 && !results.m_valid());
       rm_id = close ? 0 : top.r_rm_id;
       decoupled = top.decouple != 0;
-      pairs.clock(close, top.stop != 0 || top.r_rm_id == 0, top.s_pair_valid != 0, pins.pair_in(),
-                  top.r_pair_ready != 0);
-      results.clock(close, false, top.r_result_valid != 0, pins.result_in(), top.m_result_ready != 0);
+      pairs.clock(top.s_pair_valid != 0, pins.pair_in(), top.r_pair_ready != 0, top.stop != 0 || top.r_rm_id == 0);
+      results.clock(top.r_result_valid != 0, pins.result_in(), top.m_result_ready != 0);
+      if (close) {
+        pairs.reset();
+        results.reset();
+      }
       simulation.rise();
     }
     REQUIRE(constant > 1000);
