@@ -308,6 +308,35 @@
 `define CCHIP_RESULT_OF(tag, hit, grid, definite, axis, beats) \
   {beats, axis, definite, grid, hit, tag}
 
+// ---- beat of s_swap and m_swap: put this module into this slot: word[`CCHIP_SWAP_REQUEST_<field>]
+`define CCHIP_SWAP_REQUEST_W 81
+// number of the slot
+`define CCHIP_SWAP_REQUEST_SLOT 0+:8
+// ModuleId
+`define CCHIP_SWAP_REQUEST_MODULE 8+:8
+// of the bitstream's header, byte
+`define CCHIP_SWAP_REQUEST_ADDRESS 16+:32
+// header and payload, byte
+`define CCHIP_SWAP_REQUEST_SIZE 48+:32
+// pairs not answered in time are given up
+`define CCHIP_SWAP_REQUEST_FORCE 80+:1
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_SWAP_REQUEST_OF(slot, module, address, size, force) \
+  {force, size, address, module, slot}
+
+// ---- beat of s_report and m_report: what became of a request: word[`CCHIP_SWAP_REPORT_<field>]
+`define CCHIP_SWAP_REPORT_W 36
+// slot of the request
+`define CCHIP_SWAP_REPORT_SLOT 0+:8
+// module of the request
+`define CCHIP_SWAP_REPORT_MODULE 8+:8
+// outcome, SwapCode
+`define CCHIP_SWAP_REPORT_CODE 16+:4
+// pairs given up
+`define CCHIP_SWAP_REPORT_LOST 20+:16
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_SWAP_REPORT_OF(slot, module, code, lost) {lost, code, module, slot}
+
 // ---- state of a pair's programme, which travels with its beat (cchip_axis_programme):
 // word[`CCHIP_STATE_<field>]
 `define CCHIP_STATE_W 34
