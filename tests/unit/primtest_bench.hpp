@@ -114,8 +114,8 @@ class PrimtestPinsOf : public PrimtestPins {
 
 template <class Config>
 PrimtestConfig primtest_config(ModuleId id) {
-  const Kind a = id == ModuleId::quad_quad ? Kind::quad : Kind::tri;
-  const Kind b = id == ModuleId::tri_tri ? Kind::tri : Kind::quad;
+  const Kind a = kinds_of(id)[0];
+  const Kind b = kinds_of(id)[1];
   return {Config::COORD_W,
           Config::SUBSTAGES,
           Config::CONTEXTS,
