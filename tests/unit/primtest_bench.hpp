@@ -128,6 +128,32 @@ PrimtestConfig primtest_config(ModuleId id) {
           }};
 }
 
+/// Outputs of an empty module, whatever the inputs are and whether a rising edge has passed.
+template <class Config>
+void require_never_answers() {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    Random random(options.seed);
+    sim::Simulation<typename Config::Model> simulation(options);
+    auto& top = simulation.top();
+    sim::PairPort<typename Config::Model> port(top, Config::COORD_W);
+    for (int clock = 0; clock < 500; ++clock) {
+      port.scramble(random);
+      top.rst = random() & 1;
+      top.s_pair_valid = random() & 1;
+      top.m_result_ready = random() & 1;
+      simulation.settle();
+      for (int phase = 0; phase < 2; ++phase) {
+        REQUIRE(top.s_pair_ready == 0);
+        REQUIRE(top.m_result_valid == 0);
+        REQUIRE(top.idle == 1);
+        REQUIRE(int{top.rm_id} == static_cast<int>(ModuleId::blank));
+        REQUIRE(port.result() == PairResult{});
+        if (phase == 0) simulation.rise();
+      }
+    }
+  });
+}
+
 /// Answers to these pairs in their order, on a module that is kept full. Every answer is compared with the exact
 /// oracle, every "no" with the intervals on its witness.
 std::vector<PairResult> exact_answers(const PrimtestConfig& config, const std::vector<GridPair>& pairs, PairMode mode);
