@@ -131,9 +131,7 @@ PrimtestConfig primtest_config(ModuleId id) {
 /// Outputs of an empty module, whatever the inputs are and whether a rising edge has passed.
 template <class Config>
 void require_never_answers() {
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<typename Config::Model> simulation(options);
+  for_two_power_ups<typename Config::Model>([](auto& simulation, Random& random) {
     auto& top = simulation.top();
     sim::PairPort<typename Config::Model> port(top, Config::COORD_W);
     for (int clock = 0; clock < 500; ++clock) {
