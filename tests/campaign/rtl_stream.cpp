@@ -19,7 +19,11 @@ RtlRun run_rtl(PrimtestMachine& machine, const std::vector<PairRequest>& request
   PrimtestTraffic traffic;
   traffic.pairs = requests.size();
   traffic.answer_bound = answer_bound;
-  traffic.request = [&](std::size_t n) { return requests[n]; };
+  traffic.request = [&](std::size_t n) {
+    PairRequest request = requests[n];
+    request.tag = tag_of(n);
+    return request;
+  };
   traffic.accepted = [](std::size_t) {};
   traffic.answered = [&](std::size_t n, const PairResult& result) { run.results[n] = result; };
   traffic.clock = [&](const PrimtestMachine::Outputs& out, bool offers) {

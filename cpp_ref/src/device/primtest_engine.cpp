@@ -3,6 +3,7 @@
 #include <cchip/geometry/canonical.hpp>
 #include <map>
 #include <stdexcept>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -162,7 +163,9 @@ class PrimtestEngine : public PairEngine {
     traffic.answer_bound = options_.answer_bound;
     traffic.request = [&](std::size_t n) {
       const GridPair& pair = batch.pair(n);
-      return PairRequest{sent(pair, dispatch_of(pair)), 0, batch.modes[batch.indices[n]]};
+      // fewer than 2^16 pairs are in flight
+      return PairRequest{sent(pair, dispatch_of(pair)), static_cast<std::uint16_t>(n % tags),
+                         batch.modes[batch.indices[n]]};
     };
     traffic.accepted = [&](std::size_t n) { batch.answer(n).clocks = EngineAnswer::Handshakes{statistics.clocks, 0}; };
     traffic.answered = [&](std::size_t n, const PairResult& result) {
@@ -191,14 +194,15 @@ class PrimtestEngine : public PairEngine {
 }  // namespace
 
 void stream_pairs(PrimtestMachine& machine, const PrimtestTraffic& traffic) {
-  std::vector<bool> done(traffic.pairs);
+  std::unordered_map<std::uint16_t, std::size_t> in_flight;  // number of the pair with this tag
+  std::uint16_t tag = 0;                                     // of the pair on s_pair
   std::size_t accepted = 0;
   std::size_t answered = 0;
   const auto offer = [&] {
     std::optional<PairRequest> request;
     if (accepted < traffic.pairs) {
       request = traffic.request(accepted);
-      request->tag = static_cast<std::uint16_t>(accepted % tags);
+      tag = request->tag;
     }
     machine.offer(request);
   };
@@ -208,18 +212,18 @@ void stream_pairs(PrimtestMachine& machine, const PrimtestTraffic& traffic) {
     const PrimtestMachine::Outputs out = machine.outputs();
     const bool offers = accepted < traffic.pairs;
     if (out.result) {
-      const std::size_t age = (accepted + tags - 1 - out.result->tag) % tags;  // 0: the pair accepted last
-      if (age >= accepted || done[accepted - 1 - age]) {
+      const auto found = in_flight.find(out.result->tag);
+      if (found == in_flight.end()) {
         throw PrimtestStreamError("result with tag " + std::to_string(out.result->tag) + " that no pair in flight has");
       }
-      const std::size_t n = accepted - 1 - age;
-      done[n] = true;
+      traffic.answered(found->second, *out.result);
+      in_flight.erase(found);
       ++answered;
-      traffic.answered(n, *out.result);
       progress = clock;
     }
     const bool accept = offers && out.pair_ready;
     if (accept) {
+      in_flight[tag] = accepted;
       traffic.accepted(accepted);
       ++accepted;
       progress = clock;

@@ -35,7 +35,7 @@ class PrimtestMachine {
 /// Pairs for one machine, and who is told what became of them. Number n counts from 0.
 struct PrimtestTraffic {
   std::size_t pairs = 0;
-  /// Request n; stream_pairs() sets its tag.
+  /// Request n; no other pair in flight has its tag.
   std::function<PairRequest(std::size_t n)> request;
   std::function<void(std::size_t n)> accepted;
   std::function<void(std::size_t n, const PairResult& result)> answered;
@@ -48,8 +48,8 @@ struct PrimtestTraffic {
 struct PrimtestStreamError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
-/// Sends the pairs back to back, a new one on every clock on which the machine is ready, until all are answered. The
-/// tag of pair n is n modulo 2^16; fewer pairs are in flight, so it is unique among them. \throws PrimtestStreamError
+/// Sends the pairs back to back, a new one on every clock on which the machine is ready, until all are answered.
+/// \throws PrimtestStreamError
 void stream_pairs(PrimtestMachine& machine, const PrimtestTraffic& traffic);
 
 struct PrimtestEngineOptions {
