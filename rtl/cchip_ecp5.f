@@ -26,7 +26,6 @@ primtest/cchip_primtest_array.v
 primtest/cchip_primtest_blank.v
 reconfig/cchip_pr_region.v
 reconfig/cchip_roc_generator.v
-reconfig/cchip_pr_gate.v
 reconfig/cchip_pr_decoupler.v
 reconfig/cchip_pr_slot.v
 reconfig/cchip_bitstream_fetch.v

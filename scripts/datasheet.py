@@ -71,7 +71,7 @@ STIMULI = {
     "cchip_subsystem_status": ("", "answered = 1;", "pairs"),
     "cchip_swap_scheduler": ("", "command_valid = 1;", "m_report_valid"),
     "cchip_primtest_subsystem": ("m_result_ready = 1; s_pair_mode = 2; s_pair_kind = 1;", "s_pair_valid = 1;", "m_result_valid"),
-    "cchip_pr_region": ("", "s_pair_valid = 1; s_pair_mode = 2;", "m_result_valid"),
+    "cchip_pr_region": ("", "s_pair_valid = 1; s_pair_data[`CCHIP_REQUEST_MODE(16)] = 2;", "m_result_valid"),
     "cchip_crc32": ("clear = 1; tick; clear = 0;", "valid = 1;", "crc"),
     "cchip_bitstream_fetch": ("words = 4; limit = 100;", "run = 1;", "m_axi_arvalid"),
     "cchip_bitstream_header": ("clear = 1; tick; tick; clear = 0; s_valid = 1; repeat (3) tick; s_valid = 0;", "s_valid = 1;",
@@ -82,13 +82,12 @@ STIMULI = {
     "cchip_config_controller": ("", "s_swap_valid = 1;", "phase"),
     "cchip_subsystem_regs": ("", "s_axil_arvalid = 1;", "s_axil_rvalid"),
     "cchip_roc_generator": ("", "configured = 1;", "roc"),
-    "cchip_pr_gate": ("close = 1; tick; close = 0;", "s_valid = 1;", "m_valid"),
     "cchip_pr_decoupler": ("r_rm_id = `CCHIP_RM_TRI_TRI;", "s_pair_valid = 1;", "r_pair_valid"),
     "cchip_pr_config_memory": (
         "cfg_valid = 1; cfg_data = 'h66; tick; cfg_data = 'h55; tick; cfg_data = 'h99; tick; cfg_data = 'haa; tick; "
         "cfg_data = 0; repeat (3) tick; cfg_valid = 0;", "cfg_valid = 1;", "garbage"),
-    "cchip_pr_virtual": ("", "s_pair_valid = 1; s_pair_mode = 2;", "m_result_valid"),
-    "cchip_pr_slot": ("", "s_pair_valid = 1; s_pair_mode = 2;", "m_result_valid"),
+    "cchip_pr_virtual": ("", "s_pair_valid = 1; s_pair_data[`CCHIP_REQUEST_MODE(16)] = 2;", "m_result_valid"),
+    "cchip_pr_slot": ("", "s_pair_valid = 1; s_pair_data[`CCHIP_REQUEST_MODE(16)] = 2;", "m_result_valid"),
 }
 
 # Yosys takes too long for these; docs/fpga.md has their area, placed and routed.

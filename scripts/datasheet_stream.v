@@ -32,7 +32,8 @@ module bench;
   reg clk, rst, pair_valid, random_pairs;
   reg [1:0] mode;
   reg [12*COORD_W-1:0] a, b;
-  wire [5:0] beats;
+  wire [`CCHIP_RESULT_W-1:0] result;
+  wire [`CCHIP_BEATS_W-1:0] beats = result[`CCHIP_RESULT_BEATS];
   wire pair_ready, result_valid, idle;
 
   cchip_primtest #(
@@ -44,25 +45,16 @@ module bench;
       .VERTS_A            (VERTS_A),
       .VERTS_B            (VERTS_B)
   ) dut (
-      .clk              (clk),
-      .rst              (rst),
-      .s_pair_valid     (pair_valid),
-      .s_pair_ready     (pair_ready),
-      .s_pair_tag       (16'd0),
-      .s_pair_mode      (mode),
-      .s_pair_a         (a),
-      .s_pair_b         (b),
-      .s_pair_err       (4'd0),
-      .m_result_valid   (result_valid),
-      .m_result_ready   (1'b1),
-      .m_result_tag     (),
-      .m_result_hit     (),
-      .m_result_grid    (),
-      .m_result_definite(),
-      .m_result_axis    (),
-      .m_result_beats   (beats),
-      .rm_id            (),
-      .idle             (idle)
+      .clk           (clk),
+      .rst           (rst),
+      .s_pair_valid  (pair_valid),
+      .s_pair_ready  (pair_ready),
+      .s_pair_data   (`CCHIP_REQUEST_OF(16'd0, a, b, 4'd0, mode)),
+      .m_result_valid(result_valid),
+      .m_result_ready(1'b1),
+      .m_result_data (result),
+      .rm_id         (),
+      .idle          (idle)
   );
 
   integer clocks, accepted, last_accept, last_result, least, greatest, total, intervals, i, seed, latency;

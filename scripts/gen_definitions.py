@@ -91,6 +91,10 @@ def verilog(data, names):
         lines += ["", *comment(f"---- {r['doc']}: word[`CCHIP_{r['name']}_<field>]"), *define(f"{r['name']}_W{args}", width if width.isdigit() else f"({width})")]
         for f, needs, lsb, width in found:
             lines += comment(f["doc"]) + define(f"{r['name']}_{f['name']}{args if needs else ''}", f"{lsb}+:{width}")
+        if r.get("stream"):
+            parts = [f["name"].lower() for f, *_ in found]
+            lines += comment("the word of these fields, also as the target of an assignment or an output")
+            lines += define(f"{r['name']}_OF({', '.join(parts)})", f"{{{', '.join(reversed(parts))}}}")
     lines += ["", "`endif", ""]
     return "\n".join(lines)
 
@@ -143,7 +147,10 @@ def page(data, names):
     for r in data["records"]:
         args = f"({', '.join(r['args'])})" if r["args"] else ""
         found, width = fields(r, "page", names, size)
-        lines += ["", f"## Record `{r['name']}{args}`", "", r["doc"][0].upper() + r["doc"][1:] + f". Lowest field first, `{width}` bits.", "",
+        lines += ["", f"## Record `{r['name']}{args}`", "", r["doc"][0].upper() + r["doc"][1:] + f". Lowest field first, `{width}` bits."]
+        if r.get("stream"):
+            lines += [f"`` `CCHIP_{r['name']}_OF({', '.join(f['name'].lower() for f, *_ in found)}) `` is the word of these fields."]
+        lines += ["",
                   "| field | lowest bit | width | meaning |", "|---|---|---|---|"]
         lines += [f"| `{r['name']}_{f['name']}` | `{lsb}` | `{w}` | {f['doc']} |" for f, _, lsb, w in found]
     lines += ["", "## Functions of the parameters", "", "`w` = `COORD_W`, `s` = `SUBSTAGES`.", "",

@@ -183,6 +183,10 @@
 `define CCHIP_PRIMITIVE_W(w) (`CCHIP_VERTICES * `CCHIP_POINT_W((w)))
 // the module that tests primitives of a and of b vertices, a <= b: 3 3, 3 4 or 4 4 [ModuleId]
 `define CCHIP_RM_OF(a, b) ((a) + (b) - 5)
+// vertices of A of that module, m = 1..3 [vertex]
+`define CCHIP_RM_VERTS_A(m) ((m) <= 2 ? 3 : 4)
+// vertices of B of that module, m = 1..3 [vertex]
+`define CCHIP_RM_VERTS_B(m) ((m) <= 1 ? 3 : 4)
 // difference of two coordinates [bit]
 `define CCHIP_EDGE_W(w) ((w) + 1)
 // component of the cross product of two edges: |.| <= 2 (2^w - 1)^2 [bit]
@@ -283,6 +287,8 @@
 // s_pair_mode
 `define CCHIP_REQUEST_MODE(w) \
   16 + `CCHIP_PRIMITIVE_W((w)) + `CCHIP_PRIMITIVE_W((w)) + `CCHIP_ERR_W+:`CCHIP_MODE_W
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_REQUEST_OF(tag, a, b, err, mode) {mode, err, b, a, tag}
 
 // ---- beat of m_result as one word: word[`CCHIP_RESULT_<field>]
 `define CCHIP_RESULT_W 34
@@ -298,6 +304,38 @@
 `define CCHIP_RESULT_AXIS 19+:9
 // m_result_beats
 `define CCHIP_RESULT_BEATS 28+:6
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_RESULT_OF(tag, hit, grid, definite, axis, beats) \
+  {beats, axis, definite, grid, hit, tag}
+
+// ---- beat of s_swap and m_swap: put this module into this slot: word[`CCHIP_SWAP_REQUEST_<field>]
+`define CCHIP_SWAP_REQUEST_W 81
+// number of the slot
+`define CCHIP_SWAP_REQUEST_SLOT 0+:8
+// ModuleId
+`define CCHIP_SWAP_REQUEST_MODULE 8+:8
+// of the bitstream's header, byte
+`define CCHIP_SWAP_REQUEST_ADDRESS 16+:32
+// header and payload, byte
+`define CCHIP_SWAP_REQUEST_SIZE 48+:32
+// pairs not answered in time are given up
+`define CCHIP_SWAP_REQUEST_FORCE 80+:1
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_SWAP_REQUEST_OF(slot, module, address, size, force) \
+  {force, size, address, module, slot}
+
+// ---- beat of s_report and m_report: what became of a request: word[`CCHIP_SWAP_REPORT_<field>]
+`define CCHIP_SWAP_REPORT_W 36
+// slot of the request
+`define CCHIP_SWAP_REPORT_SLOT 0+:8
+// module of the request
+`define CCHIP_SWAP_REPORT_MODULE 8+:8
+// outcome, SwapCode
+`define CCHIP_SWAP_REPORT_CODE 16+:4
+// pairs given up
+`define CCHIP_SWAP_REPORT_LOST 20+:16
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_SWAP_REPORT_OF(slot, module, code, lost) {lost, code, module, slot}
 
 // ---- state of a pair's programme, which travels with its beat (cchip_axis_programme):
 // word[`CCHIP_STATE_<field>]

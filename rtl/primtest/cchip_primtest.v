@@ -4,7 +4,7 @@
 `include "cchip_assert.vh"
 // cchip_primtest: the machine behind every primitive test: operand memory, axis controller, SAT
 // pipeline, result FIFO. Wrapped by cchip_primtest_tri_tri, _tri_quad and _quad_quad, whose
-// headers describe it for the user.
+// headers describe it for the user. The streams are records REQUEST and RESULT.
 //   latency      lone pair, handshake of s_pair to handshake of m_result with ready = 1:
 //                EXHAUSTIVE without special case CCHIP_PAIR_LATENCY(SUBSTAGES, beats), whatever the
 //                data; each beat that waits for a verdict adds CCHIP_BEAT_LATENCY(SUBSTAGES)
@@ -25,34 +25,23 @@ module cchip_primtest #(
     parameter integer WARPED_EXACT = 1,
     // vertices of A and of B: 3 3, 3 4 or 4 4
     parameter integer VERTS_A = 3,
-    parameter integer VERTS_B = 3,
-    // value of rm_id
-    parameter integer RM_ID = 1
+    parameter integer VERTS_B = 3
 ) (
     input  wire                                   clk,
     input  wire                                   rst,
     input  wire                                   s_pair_valid,
     output wire                                   s_pair_ready,
-    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
-    input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
-    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
+    input  wire [  `CCHIP_REQUEST_W(COORD_W)-1:0] s_pair_data,
     output wire                                   m_result_valid,
     input  wire                                   m_result_ready,
-    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
-    output wire                                   m_result_hit,
-    output wire                                   m_result_grid,
-    output wire                                   m_result_definite,
-    output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
-    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
+    output wire [            `CCHIP_RESULT_W-1:0] m_result_data,
     output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
     output wire                                   idle
 );
 
   localparam integer A_W = 3 * VERTS_A * COORD_W;
   localparam integer B_W = 3 * VERTS_B * COORD_W;
-  localparam [31:0] RM = RM_ID;
+  localparam [31:0] RM = `CCHIP_RM_OF(VERTS_A, VERTS_B);
   localparam integer CONTEXT_W = CONTEXTS > 1 ? $clog2(CONTEXTS) : 1;
   localparam integer USER_W = CONTEXT_W + `CCHIP_STATE_W;
   localparam integer COUNT_W = $clog2(CONTEXTS + 1);
@@ -106,6 +95,12 @@ module cchip_primtest #(
   assign idle         = idle_q;
 
   // ---- input register and operand memory: one writer, read by the beats
+  wire [`CCHIP_TAG_W-1:0] pair_tag;
+  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] pair_a, pair_b;
+  wire [`CCHIP_ERR_W-1:0] pair_err;
+  wire [`CCHIP_MODE_W-1:0] pair_mode;
+  assign `CCHIP_REQUEST_OF(pair_tag, pair_a, pair_b, pair_err, pair_mode) = s_pair_data;
+
   reg [`CCHIP_TAG_W-1:0] load_tag_q;
   reg [`CCHIP_ERR_W-1:0] load_err_q;
   reg [`CCHIP_ERROR_SHIFT_W-1:0] load_shift_q;
@@ -119,19 +114,19 @@ module cchip_primtest #(
   endfunction
 
   always @(posedge clk) begin
-    load_tag_q  <= s_pair_tag;
-    load_err_q  <= s_pair_err;
-    load_shift_q <= error_shift(s_pair_err);
-    load_a_q    <= s_pair_a[A_W-1:0];
-    load_b_q    <= s_pair_b[B_W-1:0];
+    load_tag_q  <= pair_tag;
+    load_err_q  <= pair_err;
+    load_shift_q <= error_shift(pair_err);
+    load_a_q    <= pair_a[A_W-1:0];
+    load_b_q    <= pair_b[B_W-1:0];
   end
 
   generate
     if (VERTS_A == 3) begin : gen_unused_a
-      wire unused = &{1'b0, s_pair_a[`CCHIP_PRIMITIVE_W(COORD_W)-1:A_W]};
+      wire unused = &{1'b0, pair_a[`CCHIP_PRIMITIVE_W(COORD_W)-1:A_W]};
     end
     if (VERTS_B == 3) begin : gen_unused_b
-      wire unused = &{1'b0, s_pair_b[`CCHIP_PRIMITIVE_W(COORD_W)-1:B_W]};
+      wire unused = &{1'b0, pair_b[`CCHIP_PRIMITIVE_W(COORD_W)-1:B_W]};
     end
   endgenerate
 
@@ -214,7 +209,7 @@ module cchip_primtest #(
       .rst                    (rst),
       .s_pair_valid           (accept),
       .s_pair_tag             (load_tag_q),
-      .s_pair_mode            (s_pair_mode),
+      .s_pair_mode            (pair_mode),
       .s_pair_err             (load_err_q),
       .m_load_context         (load_context),
       .m_beat_valid           (beat_valid),
@@ -260,8 +255,7 @@ module cchip_primtest #(
       .s_data (outcome),
       .m_valid(m_result_valid),
       .m_ready(m_result_ready),
-      .m_data ({m_result_beats, m_result_axis, m_result_definite, m_result_grid, m_result_hit,
-          m_result_tag})
+      .m_data (m_result_data)
   );
 
   always @(posedge clk)

@@ -152,15 +152,15 @@ module cchip_primtest_array #(
   wire [            LANE_W-1:0] answer_lane;
 
   assign way[PAIR_W-1:0] = {
-    choice_q & {LANES{accept & ~rst}}, s_pair_mode, s_pair_err, s_pair_b, s_pair_a, s_pair_tag
+    choice_q & {LANES{accept & ~rst}},
+    `CCHIP_REQUEST_OF(s_pair_tag, s_pair_a, s_pair_b, s_pair_err, s_pair_mode)
   };
   assign back_valid[0] = 1'b0;
   assign back[RESULT_W-1:0] = {RESULT_W{1'b0}};
   assign m_result_valid = back_valid[LANES];
   assign back_ready[LANES] = m_result_ready;
-  assign {answer_lane, m_result_beats, m_result_axis, m_result_definite, m_result_grid,
-      m_result_hit, m_result_tag} =
-      back[RESULT_W*LANES+:RESULT_W];
+  assign {answer_lane, `CCHIP_RESULT_OF(m_result_tag, m_result_hit, m_result_grid,
+      m_result_definite, m_result_axis, m_result_beats)} = back[RESULT_W*LANES+:RESULT_W];
   wire unused = &{1'b0, rst_way[2*LANES], way[PAIR_W*LANES+:PAIR_W], back_ready[0]};
 
   genvar lane;
@@ -216,28 +216,18 @@ module cchip_primtest_array #(
           .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
           .WARPED_EXACT       (WARPED_EXACT),
           .VERTS_A            (VERTS_A),
-          .VERTS_B            (VERTS_B),
-          .RM_ID              ({24'd0, RM})
+          .VERTS_B            (VERTS_B)
       ) u_primtest (
-          .clk              (clk),
-          .rst              (lane_rst),
-          .s_pair_valid     (pair_valid),
-          .s_pair_ready     (pair_ready),
-          .s_pair_tag       (pair[`CCHIP_REQUEST_TAG]),
-          .s_pair_mode      (pair[`CCHIP_REQUEST_MODE(COORD_W)]),
-          .s_pair_a         (pair[`CCHIP_REQUEST_A(COORD_W)]),
-          .s_pair_b         (pair[`CCHIP_REQUEST_B(COORD_W)]),
-          .s_pair_err       (pair[`CCHIP_REQUEST_ERR(COORD_W)]),
-          .m_result_valid   (lane_valid),
-          .m_result_ready   (lane_ready),
-          .m_result_tag     (lane_own[`CCHIP_RESULT_TAG]),
-          .m_result_hit     (lane_own[`CCHIP_RESULT_HIT]),
-          .m_result_grid    (lane_own[`CCHIP_RESULT_GRID]),
-          .m_result_definite(lane_own[`CCHIP_RESULT_DEFINITE]),
-          .m_result_axis    (lane_own[`CCHIP_RESULT_AXIS]),
-          .m_result_beats   (lane_own[`CCHIP_RESULT_BEATS]),
-          .rm_id            (lane_rm_id),
-          .idle             (lane_idle)
+          .clk           (clk),
+          .rst           (lane_rst),
+          .s_pair_valid  (pair_valid),
+          .s_pair_ready  (pair_ready),
+          .s_pair_data   (pair[REQUEST_W-1:0]),
+          .m_result_valid(lane_valid),
+          .m_result_ready(lane_ready),
+          .m_result_data (lane_own),
+          .rm_id         (lane_rm_id),
+          .idle          (lane_idle)
       );
       wire unused_lane = &{1'b0, pair_ready, lane_rm_id, lane_idle};
 
@@ -247,6 +237,7 @@ module cchip_primtest_array #(
       ) u_own (
           .clk    (clk),
           .rst    (lane_rst),
+          .stop   (1'b0),
           .s_valid(lane_valid),
           .s_ready(lane_ready),
           .s_data (lane_own),
@@ -274,6 +265,7 @@ module cchip_primtest_array #(
       ) u_merged (
           .clk    (clk),
           .rst    (lane_rst),
+          .stop   (1'b0),
           .s_valid(own_valid[lane] | back_valid[lane]),
           .s_ready(merged_ready),
           .s_data (own_next ? {LANE[LANE_W-1:0], own} : back[RESULT_W*lane+:RESULT_W]),
@@ -286,6 +278,7 @@ module cchip_primtest_array #(
       ) u_back (
           .clk    (clk),
           .rst    (lane == LANES - 1 ? shut : lane_rst),
+          .stop   (1'b0),
           .s_valid(half_valid),
           .s_ready(half_ready),
           .s_data (half),

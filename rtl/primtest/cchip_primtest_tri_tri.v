@@ -56,28 +56,19 @@ module cchip_primtest_tri_tri #(
       .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
       .WARPED_EXACT       (WARPED_EXACT),
       .VERTS_A            (3),
-      .VERTS_B            (3),
-      .RM_ID              ({24'd0, `CCHIP_RM_TRI_TRI})
+      .VERTS_B            (3)
   ) u_primtest (
-      .clk              (clk),
-      .rst              (rst),
-      .s_pair_valid     (s_pair_valid),
-      .s_pair_ready     (s_pair_ready),
-      .s_pair_tag       (s_pair_tag),
-      .s_pair_mode      (s_pair_mode),
-      .s_pair_a         (s_pair_a),
-      .s_pair_b         (s_pair_b),
-      .s_pair_err       (s_pair_err),
-      .m_result_valid   (m_result_valid),
-      .m_result_ready   (m_result_ready),
-      .m_result_tag     (m_result_tag),
-      .m_result_hit     (m_result_hit),
-      .m_result_grid    (m_result_grid),
-      .m_result_definite(m_result_definite),
-      .m_result_axis    (m_result_axis),
-      .m_result_beats   (m_result_beats),
-      .rm_id            (rm_id),
-      .idle             (idle)
+      .clk           (clk),
+      .rst           (rst),
+      .s_pair_valid  (s_pair_valid),
+      .s_pair_ready  (s_pair_ready),
+      .s_pair_data   (`CCHIP_REQUEST_OF(s_pair_tag, s_pair_a, s_pair_b, s_pair_err, s_pair_mode)),
+      .m_result_valid(m_result_valid),
+      .m_result_ready(m_result_ready),
+      .m_result_data (`CCHIP_RESULT_OF(m_result_tag, m_result_hit, m_result_grid,
+          m_result_definite, m_result_axis, m_result_beats)),
+      .rm_id         (rm_id),
+      .idle          (idle)
   );
 
 endmodule

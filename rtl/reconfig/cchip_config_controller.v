@@ -12,8 +12,8 @@
 //                pairs, memory_limit for each beat
 //   busy         a request during a swap is taken and answered BUSY; every request is answered by
 //                exactly one report
-//   cuts         every path: each output comes from flip-flops, m_report_* through a multiplexer of
-//                two
+//   cuts         every path: each output comes from flip-flops, m_report_data through a multiplexer
+//                of two
 //   reset        no swap, slots at work, except one whose transfer had begun and not ended well:
 //                `half_q` outlives rst and keeps it stopped, decoupled and in reset until a good
 //                transfer
@@ -31,17 +31,9 @@ module cchip_config_controller #(
     input  wire                                 rst,
     input  wire                                 s_swap_valid,
     output wire                                 s_swap_ready,
-    input  wire [         `CCHIP_SLOT_ID_W-1:0] s_swap_slot,
-    input  wire [           `CCHIP_RM_ID_W-1:0] s_swap_module,
-    input  wire [                         31:0] s_swap_address,   // of the header, byte
-    input  wire [                         31:0] s_swap_size,      // header and payload, byte
-    // 1: pairs not answered in time are given up
-    input  wire                                 s_swap_force,
+    input  wire [    `CCHIP_SWAP_REQUEST_W-1:0] s_swap_data,
     output wire                                 m_report_valid,   // 1 clock, no ready
-    output wire [         `CCHIP_SLOT_ID_W-1:0] m_report_slot,
-    output wire [           `CCHIP_RM_ID_W-1:0] m_report_module,
-    output wire [            `CCHIP_SWAP_W-1:0] m_report_code,
-    output wire [      `CCHIP_PAIR_COUNT_W-1:0] m_report_lost,
+    output wire [     `CCHIP_SWAP_REPORT_W-1:0] m_report_data,
     input  wire                                 abort_swap,
     input  wire                                 clear,            // counters
     input  wire [                         31:0] shutdown_limit,   // clocks; 0: default
@@ -99,16 +91,9 @@ module cchip_config_controller #(
       .rst           (rst),
       .s_swap_valid  (s_swap_valid),
       .s_swap_ready  (s_swap_ready),
-      .s_swap_slot   (s_swap_slot),
-      .s_swap_module (s_swap_module),
-      .s_swap_address(s_swap_address),
-      .s_swap_size   (s_swap_size),
-      .s_swap_force  (s_swap_force),
+      .s_swap_data   (s_swap_data),
       .m_report_valid(m_report_valid),
-      .m_report_slot (m_report_slot),
-      .m_report_module(m_report_module),
-      .m_report_code (m_report_code),
-      .m_report_lost (m_report_lost),
+      .m_report_data (m_report_data),
       .abort_swap    (abort_swap),
       .shutdown_limit(shutdown_limit),
       .memory_limit  (memory_limit),
@@ -219,7 +204,7 @@ module cchip_config_controller #(
       .clear       (clear),
       .phase       (phase),
       .report_valid(m_report_valid),
-      .report_code (m_report_code),
+      .report_code (m_report_data[`CCHIP_SWAP_REPORT_CODE]),
       .stall       (stall),
       .swaps       (swaps),
       .rejected    (rejected),

@@ -25,25 +25,16 @@ module cchip_pair_router #(
 ) (
     input  wire                                       clk,
     input  wire                                       rst,
-    // pairs of any kind, ModuleId of the test
+    // pairs of any kind, ModuleId of the test; records REQUEST and RESULT
     input  wire                                       s_pair_valid,
     output wire                                       s_pair_ready,
     input  wire [                  `CCHIP_KIND_W-1:0] s_pair_kind,
-    input  wire [                   `CCHIP_TAG_W-1:0] s_pair_tag,
-    input  wire [                  `CCHIP_MODE_W-1:0] s_pair_mode,
-    input  wire [    `CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
-    input  wire [    `CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
-    input  wire [                   `CCHIP_ERR_W-1:0] s_pair_err,
+    input  wire [      `CCHIP_REQUEST_W(COORD_W)-1:0] s_pair_data,
     output wire                                       m_result_valid,
     input  wire                                       m_result_ready,
     output wire [                  `CCHIP_KIND_W-1:0] m_result_kind,
-    output wire [                   `CCHIP_TAG_W-1:0] m_result_tag,
-    output wire                                       m_result_hit,
-    output wire                                       m_result_grid,
-    output wire                                       m_result_definite,
-    output wire [             `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
-    output wire [                 `CCHIP_BEATS_W-1:0] m_result_beats,
-    // slots: records REQUEST and RESULT
+    output wire [                `CCHIP_RESULT_W-1:0] m_result_data,
+    // slots
     output wire [                          SLOTS-1:0] m_slot_valid,
     input  wire [                          SLOTS-1:0] m_slot_ready,
     output wire [SLOTS*`CCHIP_REQUEST_W(COORD_W)-1:0] m_slot_data,
@@ -91,9 +82,10 @@ module cchip_pair_router #(
   ) u_in (
       .clk    (clk),
       .rst    (rst),
+      .stop   (1'b0),
       .s_valid(s_pair_valid),
       .s_ready(s_pair_ready),
-      .s_data ({4'd1 << s_pair_kind, s_pair_mode, s_pair_err, s_pair_b, s_pair_a, s_pair_tag}),
+      .s_data ({4'd1 << s_pair_kind, s_pair_data}),
       .m_valid(in_valid),
       .m_ready(|(in_kind & {queue_ready, illegal_ready})),
       .m_data ({in_kind, in_pair})
@@ -156,6 +148,7 @@ module cchip_pair_router #(
   ) u_refused (
       .clk    (clk),
       .rst    (rst),
+      .stop   (1'b0),
       .s_valid(refusing_valid),
       .s_ready(refusing_ready),
       .s_data ({kind_of_refusing, refusing_tag}),
@@ -173,7 +166,8 @@ module cchip_pair_router #(
     end
   endgenerate
   assign answers[RESULT_W*SLOTS+:RESULT_W] =
-      {kind_of_refused, 6'd0, `CCHIP_AXIS_ILLEGAL, 6'd0, 1'b0, 1'b1, 1'b1, refused_tag};
+      {kind_of_refused,
+       `CCHIP_RESULT_OF(refused_tag, 1'b1, 1'b1, 1'b0, {`CCHIP_AXIS_ILLEGAL, 6'd0}, 6'd0)};
 
   cchip_result_merge #(
       .SOURCES(SLOTS + 1),
@@ -186,15 +180,7 @@ module cchip_pair_router #(
       .s_data (answers),
       .m_valid(m_result_valid),
       .m_ready(m_result_ready),
-      .m_data ({
-        m_result_kind,
-        m_result_beats,
-        m_result_axis,
-        m_result_definite,
-        m_result_grid,
-        m_result_hit,
-        m_result_tag
-      })
+      .m_data ({m_result_kind, m_result_data})
   );
 
   // ---- status: at most one answer passes the merge per clock

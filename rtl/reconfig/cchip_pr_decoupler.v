@@ -2,8 +2,8 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// cchip_pr_decoupler: the boundary of a reconfigurable region. Static side: ports of a primitive
-// test. Region side: r_*.
+// cchip_pr_decoupler: the boundary of a reconfigurable region. Static side: s_*, m_*. Region side:
+// r_*. The streams are records REQUEST and RESULT.
 //   latency      1 clock each way
 //   throughput   one beat per clock
 //   cuts         every path both ways: every output is a flip-flop
@@ -26,37 +26,19 @@ module cchip_pr_decoupler #(
     // static side
     input  wire                                   s_pair_valid,
     output wire                                   s_pair_ready,
-    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
-    input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
-    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
+    input  wire [  `CCHIP_REQUEST_W(COORD_W)-1:0] s_pair_data,
     output wire                                   m_result_valid,
     input  wire                                   m_result_ready,
-    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
-    output wire                                   m_result_hit,
-    output wire                                   m_result_grid,
-    output wire                                   m_result_definite,
-    output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
-    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
+    output wire [            `CCHIP_RESULT_W-1:0] m_result_data,
     output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
     output wire                                   idle,
     // region side
     output wire                                   r_pair_valid,
     input  wire                                   r_pair_ready,
-    output wire [               `CCHIP_TAG_W-1:0] r_pair_tag,
-    output wire [              `CCHIP_MODE_W-1:0] r_pair_mode,
-    output wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] r_pair_a,
-    output wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] r_pair_b,
-    output wire [               `CCHIP_ERR_W-1:0] r_pair_err,
+    output wire [  `CCHIP_REQUEST_W(COORD_W)-1:0] r_pair_data,
     input  wire                                   r_result_valid,
     output wire                                   r_result_ready,
-    input  wire [               `CCHIP_TAG_W-1:0] r_result_tag,
-    input  wire                                   r_result_hit,
-    input  wire                                   r_result_grid,
-    input  wire                                   r_result_definite,
-    input  wire [         `CCHIP_AXIS_CODE_W-1:0] r_result_axis,
-    input  wire [             `CCHIP_BEATS_W-1:0] r_result_beats,
+    input  wire [            `CCHIP_RESULT_W-1:0] r_result_data,
     input  wire [             `CCHIP_RM_ID_W-1:0] r_rm_id,
     input  wire                                   r_idle
 );
@@ -64,34 +46,34 @@ module cchip_pr_decoupler #(
   wire close = rst | decouple;
   wire blank = r_rm_id == `CCHIP_RM_BLANK;
 
-  cchip_pr_gate #(
-      .WIDTH(`CCHIP_REQUEST_W(COORD_W))
+  cchip_skid_buffer #(
+      .WIDTH     (`CCHIP_REQUEST_W(COORD_W)),
+      .CLEAR_DATA(1)
   ) u_pair (
       .clk    (clk),
-      .close  (close),
+      .rst    (close),
       .stop   (stop | blank),
       .s_valid(s_pair_valid),
       .s_ready(s_pair_ready),
-      .s_data ({s_pair_mode, s_pair_err, s_pair_b, s_pair_a, s_pair_tag}),
+      .s_data (s_pair_data),
       .m_valid(r_pair_valid),
       .m_ready(r_pair_ready),
-      .m_data ({r_pair_mode, r_pair_err, r_pair_b, r_pair_a, r_pair_tag})
+      .m_data (r_pair_data)
   );
 
-  cchip_pr_gate #(
-      .WIDTH(`CCHIP_RESULT_W)
+  cchip_skid_buffer #(
+      .WIDTH     (`CCHIP_RESULT_W),
+      .CLEAR_DATA(1)
   ) u_result (
       .clk    (clk),
-      .close  (close),
+      .rst    (close),
       .stop   (1'b0),
       .s_valid(r_result_valid),
       .s_ready(r_result_ready),
-      .s_data ({r_result_beats, r_result_axis, r_result_definite, r_result_grid, r_result_hit,
-        r_result_tag}),
+      .s_data (r_result_data),
       .m_valid(m_result_valid),
       .m_ready(m_result_ready),
-      .m_data ({m_result_beats, m_result_axis, m_result_definite, m_result_grid, m_result_hit,
-        m_result_tag})
+      .m_data (m_result_data)
   );
 
   reg decoupled_q;
@@ -102,7 +84,7 @@ module cchip_pr_decoupler #(
   assign rm_id     = rm_id_q;
   assign idle      = idle_q;
 
-  // the region's own idle does not include the beats inside the two gates
+  // the region's own idle does not include the beats inside the two buffers
   wire accept = s_pair_valid & s_pair_ready;
   wire filled = accept | r_pair_valid | r_result_valid | m_result_valid;
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// cchip_pr_region: the reconfigurable partition: one cell, one module name, ports of a primitive
-// test, whatever is in it. RM_ID chooses the persona: blank, triangle-triangle, triangle-quad or
-// quad-quad. Vendor flows synthesise this module out of context once per RM_ID and exchange the
-// results in the static design.
+// cchip_pr_region: the reconfigurable partition: one cell, one module name, the same ports whatever
+// is in it. RM_ID chooses the persona: blank, triangle-triangle, triangle-quad or quad-quad. Vendor
+// flows synthesise this module out of context once per RM_ID and exchange the results in the static
+// design. The streams are records REQUEST and RESULT.
 //   latency, throughput, in flight, reset   those of the persona: nothing is added
 //   cuts         what the persona cuts: each output is a flip-flop of it, or a constant of the
 //                blank one
@@ -31,28 +31,17 @@ module cchip_pr_region #(
     input  wire                                   rst,
     input  wire                                   s_pair_valid,
     output wire                                   s_pair_ready,
-    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
-    input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
-    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
+    input  wire [  `CCHIP_REQUEST_W(COORD_W)-1:0] s_pair_data,
     output wire                                   m_result_valid,
     input  wire                                   m_result_ready,
-    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
-    output wire                                   m_result_hit,
-    output wire                                   m_result_grid,
-    output wire                                   m_result_definite,
-    output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
-    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
+    output wire [            `CCHIP_RESULT_W-1:0] m_result_data,
     output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
     output wire                                   idle
 );
 
 `ifndef CCHIP_PR_BLACK_BOX
-  localparam [31:0] RM = RM_ID;
-
   generate
-    if (RM == {24'd0, `CCHIP_RM_BLANK}) begin : gen_blank
+    if (RM_ID == 0) begin : gen_blank
       cchip_primtest_blank #(
           .COORD_W(COORD_W)
       ) u_persona (
@@ -60,105 +49,42 @@ module cchip_pr_region #(
           .rst              (rst),
           .s_pair_valid     (s_pair_valid),
           .s_pair_ready     (s_pair_ready),
-          .s_pair_tag       (s_pair_tag),
-          .s_pair_mode      (s_pair_mode),
-          .s_pair_a         (s_pair_a),
-          .s_pair_b         (s_pair_b),
-          .s_pair_err       (s_pair_err),
+          .s_pair_tag       (s_pair_data[`CCHIP_REQUEST_TAG]),
+          .s_pair_mode      (s_pair_data[`CCHIP_REQUEST_MODE(COORD_W)]),
+          .s_pair_a         (s_pair_data[`CCHIP_REQUEST_A(COORD_W)]),
+          .s_pair_b         (s_pair_data[`CCHIP_REQUEST_B(COORD_W)]),
+          .s_pair_err       (s_pair_data[`CCHIP_REQUEST_ERR(COORD_W)]),
           .m_result_valid   (m_result_valid),
           .m_result_ready   (m_result_ready),
-          .m_result_tag     (m_result_tag),
-          .m_result_hit     (m_result_hit),
-          .m_result_grid    (m_result_grid),
-          .m_result_definite(m_result_definite),
-          .m_result_axis    (m_result_axis),
-          .m_result_beats   (m_result_beats),
+          .m_result_tag     (m_result_data[`CCHIP_RESULT_TAG]),
+          .m_result_hit     (m_result_data[`CCHIP_RESULT_HIT]),
+          .m_result_grid    (m_result_data[`CCHIP_RESULT_GRID]),
+          .m_result_definite(m_result_data[`CCHIP_RESULT_DEFINITE]),
+          .m_result_axis    (m_result_data[`CCHIP_RESULT_AXIS]),
+          .m_result_beats   (m_result_data[`CCHIP_RESULT_BEATS]),
           .rm_id            (rm_id),
           .idle             (idle)
       );
-    end else if (RM == {24'd0, `CCHIP_RM_TRI_TRI}) begin : gen_tri_tri
-      cchip_primtest_tri_tri #(
+    end else if (RM_ID >= 1 && RM_ID <= 3) begin : gen_test
+      cchip_primtest #(
           .COORD_W            (COORD_W),
           .SUBSTAGES          (SUBSTAGES),
           .CONTEXTS           (CONTEXTS),
           .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
-          .WARPED_EXACT       (WARPED_EXACT)
+          .WARPED_EXACT       (WARPED_EXACT),
+          .VERTS_A            (`CCHIP_RM_VERTS_A(RM_ID)),
+          .VERTS_B            (`CCHIP_RM_VERTS_B(RM_ID))
       ) u_persona (
-          .clk              (clk),
-          .rst              (rst),
-          .s_pair_valid     (s_pair_valid),
-          .s_pair_ready     (s_pair_ready),
-          .s_pair_tag       (s_pair_tag),
-          .s_pair_mode      (s_pair_mode),
-          .s_pair_a         (s_pair_a),
-          .s_pair_b         (s_pair_b),
-          .s_pair_err       (s_pair_err),
-          .m_result_valid   (m_result_valid),
-          .m_result_ready   (m_result_ready),
-          .m_result_tag     (m_result_tag),
-          .m_result_hit     (m_result_hit),
-          .m_result_grid    (m_result_grid),
-          .m_result_definite(m_result_definite),
-          .m_result_axis    (m_result_axis),
-          .m_result_beats   (m_result_beats),
-          .rm_id            (rm_id),
-          .idle             (idle)
-      );
-    end else if (RM == {24'd0, `CCHIP_RM_TRI_QUAD}) begin : gen_tri_quad
-      cchip_primtest_tri_quad #(
-          .COORD_W            (COORD_W),
-          .SUBSTAGES          (SUBSTAGES),
-          .CONTEXTS           (CONTEXTS),
-          .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
-          .WARPED_EXACT       (WARPED_EXACT)
-      ) u_persona (
-          .clk              (clk),
-          .rst              (rst),
-          .s_pair_valid     (s_pair_valid),
-          .s_pair_ready     (s_pair_ready),
-          .s_pair_tag       (s_pair_tag),
-          .s_pair_mode      (s_pair_mode),
-          .s_pair_a         (s_pair_a),
-          .s_pair_b         (s_pair_b),
-          .s_pair_err       (s_pair_err),
-          .m_result_valid   (m_result_valid),
-          .m_result_ready   (m_result_ready),
-          .m_result_tag     (m_result_tag),
-          .m_result_hit     (m_result_hit),
-          .m_result_grid    (m_result_grid),
-          .m_result_definite(m_result_definite),
-          .m_result_axis    (m_result_axis),
-          .m_result_beats   (m_result_beats),
-          .rm_id            (rm_id),
-          .idle             (idle)
-      );
-    end else if (RM == {24'd0, `CCHIP_RM_QUAD_QUAD}) begin : gen_quad_quad
-      cchip_primtest_quad_quad #(
-          .COORD_W            (COORD_W),
-          .SUBSTAGES          (SUBSTAGES),
-          .CONTEXTS           (CONTEXTS),
-          .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
-          .WARPED_EXACT       (WARPED_EXACT)
-      ) u_persona (
-          .clk              (clk),
-          .rst              (rst),
-          .s_pair_valid     (s_pair_valid),
-          .s_pair_ready     (s_pair_ready),
-          .s_pair_tag       (s_pair_tag),
-          .s_pair_mode      (s_pair_mode),
-          .s_pair_a         (s_pair_a),
-          .s_pair_b         (s_pair_b),
-          .s_pair_err       (s_pair_err),
-          .m_result_valid   (m_result_valid),
-          .m_result_ready   (m_result_ready),
-          .m_result_tag     (m_result_tag),
-          .m_result_hit     (m_result_hit),
-          .m_result_grid    (m_result_grid),
-          .m_result_definite(m_result_definite),
-          .m_result_axis    (m_result_axis),
-          .m_result_beats   (m_result_beats),
-          .rm_id            (rm_id),
-          .idle             (idle)
+          .clk           (clk),
+          .rst           (rst),
+          .s_pair_valid  (s_pair_valid),
+          .s_pair_ready  (s_pair_ready),
+          .s_pair_data   (s_pair_data),
+          .m_result_valid(m_result_valid),
+          .m_result_ready(m_result_ready),
+          .m_result_data (m_result_data),
+          .rm_id         (rm_id),
+          .idle          (idle)
       );
     end else begin : gen_error
       cchip_error_RM_ID_must_be_0_to_3 u_error ();

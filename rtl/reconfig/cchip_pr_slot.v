@@ -53,22 +53,13 @@ module cchip_pr_slot #(
     // configuration port of the device
     input  wire                                   cfg_valid,
     input  wire [                      CFG_W-1:0] cfg_data,
-    // ports of a primitive test
+    // records REQUEST and RESULT
     input  wire                                   s_pair_valid,
     output wire                                   s_pair_ready,
-    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
-    input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
-    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
+    input  wire [  `CCHIP_REQUEST_W(COORD_W)-1:0] s_pair_data,
     output wire                                   m_result_valid,
     input  wire                                   m_result_ready,
-    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
-    output wire                                   m_result_hit,
-    output wire                                   m_result_grid,
-    output wire                                   m_result_definite,
-    output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
-    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
+    output wire [            `CCHIP_RESULT_W-1:0] m_result_data,
     output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
     output wire                                   idle
 );
@@ -133,58 +124,35 @@ module cchip_pr_slot #(
   assign quiet       = quiet_q;
 
   // ---- boundary
-  wire r_pair_valid, r_pair_ready, r_result_valid, r_result_ready, r_result_hit, r_result_grid,
-      r_result_definite;
-  wire [`CCHIP_TAG_W-1:0] r_pair_tag, r_result_tag;
-  wire [`CCHIP_MODE_W-1:0] r_pair_mode;
-  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] r_pair_a, r_pair_b;
-  wire [`CCHIP_ERR_W-1:0] r_pair_err;
-  wire [`CCHIP_AXIS_CODE_W-1:0] r_result_axis;
-  wire [`CCHIP_BEATS_W-1:0] r_result_beats;
+  wire r_pair_valid, r_pair_ready, r_result_valid, r_result_ready;
+  wire [`CCHIP_REQUEST_W(COORD_W)-1:0] r_pair_data;
+  wire [`CCHIP_RESULT_W-1:0] r_result_data;
   wire r_idle;
 
   cchip_pr_decoupler #(
       .COORD_W(COORD_W)
   ) u_decoupler (
-      .clk              (clk),
-      .rst              (rst),
-      .stop             (stop),
-      .decouple         (decouple),
-      .decoupled        (decoupled),
-      .s_pair_valid     (s_pair_valid),
-      .s_pair_ready     (s_pair_ready),
-      .s_pair_tag       (s_pair_tag),
-      .s_pair_mode      (s_pair_mode),
-      .s_pair_a         (s_pair_a),
-      .s_pair_b         (s_pair_b),
-      .s_pair_err       (s_pair_err),
-      .m_result_valid   (m_result_valid),
-      .m_result_ready   (m_result_ready),
-      .m_result_tag     (m_result_tag),
-      .m_result_hit     (m_result_hit),
-      .m_result_grid    (m_result_grid),
-      .m_result_definite(m_result_definite),
-      .m_result_axis    (m_result_axis),
-      .m_result_beats   (m_result_beats),
-      .rm_id            (rm_id),
-      .idle             (idle),
-      .r_pair_valid     (r_pair_valid),
-      .r_pair_ready     (r_pair_ready),
-      .r_pair_tag       (r_pair_tag),
-      .r_pair_mode      (r_pair_mode),
-      .r_pair_a         (r_pair_a),
-      .r_pair_b         (r_pair_b),
-      .r_pair_err       (r_pair_err),
-      .r_result_valid   (r_result_valid),
-      .r_result_ready   (r_result_ready),
-      .r_result_tag     (r_result_tag),
-      .r_result_hit     (r_result_hit),
-      .r_result_grid    (r_result_grid),
-      .r_result_definite(r_result_definite),
-      .r_result_axis    (r_result_axis),
-      .r_result_beats   (r_result_beats),
-      .r_rm_id          (r_rm_id),
-      .r_idle           (r_idle)
+      .clk           (clk),
+      .rst           (rst),
+      .stop          (stop),
+      .decouple      (decouple),
+      .decoupled     (decoupled),
+      .s_pair_valid  (s_pair_valid),
+      .s_pair_ready  (s_pair_ready),
+      .s_pair_data   (s_pair_data),
+      .m_result_valid(m_result_valid),
+      .m_result_ready(m_result_ready),
+      .m_result_data (m_result_data),
+      .rm_id         (rm_id),
+      .idle          (idle),
+      .r_pair_valid  (r_pair_valid),
+      .r_pair_ready  (r_pair_ready),
+      .r_pair_data   (r_pair_data),
+      .r_result_valid(r_result_valid),
+      .r_result_ready(r_result_ready),
+      .r_result_data (r_result_data),
+      .r_rm_id       (r_rm_id),
+      .r_idle        (r_idle)
   );
 
   // ---- region
@@ -198,25 +166,16 @@ module cchip_pr_slot #(
           .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
           .WARPED_EXACT       (WARPED_EXACT)
       ) u_region (
-          .clk              (clk),
-          .rst              (region_rst_q),
-          .s_pair_valid     (r_pair_valid),
-          .s_pair_ready     (r_pair_ready),
-          .s_pair_tag       (r_pair_tag),
-          .s_pair_mode      (r_pair_mode),
-          .s_pair_a         (r_pair_a),
-          .s_pair_b         (r_pair_b),
-          .s_pair_err       (r_pair_err),
-          .m_result_valid   (r_result_valid),
-          .m_result_ready   (r_result_ready),
-          .m_result_tag     (r_result_tag),
-          .m_result_hit     (r_result_hit),
-          .m_result_grid    (r_result_grid),
-          .m_result_definite(r_result_definite),
-          .m_result_axis    (r_result_axis),
-          .m_result_beats   (r_result_beats),
-          .rm_id            (r_rm_id),
-          .idle             (r_idle)
+          .clk           (clk),
+          .rst           (region_rst_q),
+          .s_pair_valid  (r_pair_valid),
+          .s_pair_ready  (r_pair_ready),
+          .s_pair_data   (r_pair_data),
+          .m_result_valid(r_result_valid),
+          .m_result_ready(r_result_ready),
+          .m_result_data (r_result_data),
+          .rm_id         (r_rm_id),
+          .idle          (r_idle)
       );
       wire unused = &{1'b0, cfg_valid, cfg_data, SEED};
     end else if (SIMULATION == 1) begin : gen_simulation
@@ -231,27 +190,18 @@ module cchip_pr_slot #(
           .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
           .WARPED_EXACT       (WARPED_EXACT)
       ) u_virtual (
-          .clk              (clk),
-          .rst              (region_rst_q),
-          .cfg_valid        (cfg_valid),
-          .cfg_data         (cfg_data),
-          .s_pair_valid     (r_pair_valid),
-          .s_pair_ready     (r_pair_ready),
-          .s_pair_tag       (r_pair_tag),
-          .s_pair_mode      (r_pair_mode),
-          .s_pair_a         (r_pair_a),
-          .s_pair_b         (r_pair_b),
-          .s_pair_err       (r_pair_err),
-          .m_result_valid   (r_result_valid),
-          .m_result_ready   (r_result_ready),
-          .m_result_tag     (r_result_tag),
-          .m_result_hit     (r_result_hit),
-          .m_result_grid    (r_result_grid),
-          .m_result_definite(r_result_definite),
-          .m_result_axis    (r_result_axis),
-          .m_result_beats   (r_result_beats),
-          .rm_id            (r_rm_id),
-          .idle             (r_idle)
+          .clk           (clk),
+          .rst           (region_rst_q),
+          .cfg_valid     (cfg_valid),
+          .cfg_data      (cfg_data),
+          .s_pair_valid  (r_pair_valid),
+          .s_pair_ready  (r_pair_ready),
+          .s_pair_data   (r_pair_data),
+          .m_result_valid(r_result_valid),
+          .m_result_ready(r_result_ready),
+          .m_result_data (r_result_data),
+          .rm_id         (r_rm_id),
+          .idle          (r_idle)
       );
     end else begin : gen_illegal
       cchip_error_SIMULATION_must_be_0_or_1 u_error ();

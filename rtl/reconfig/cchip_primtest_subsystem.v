@@ -139,20 +139,13 @@ module cchip_primtest_subsystem #(
       .s_pair_valid     (s_pair_valid),
       .s_pair_ready     (s_pair_ready),
       .s_pair_kind      (s_pair_kind),
-      .s_pair_tag       (s_pair_tag),
-      .s_pair_mode      (s_pair_mode),
-      .s_pair_a         (s_pair_a),
-      .s_pair_b         (s_pair_b),
-      .s_pair_err       (s_pair_err),
+      .s_pair_data      (`CCHIP_REQUEST_OF(s_pair_tag, s_pair_a, s_pair_b, s_pair_err,
+          s_pair_mode)),
       .m_result_valid   (m_result_valid),
       .m_result_ready   (m_result_ready),
       .m_result_kind    (m_result_kind),
-      .m_result_tag     (m_result_tag),
-      .m_result_hit     (m_result_hit),
-      .m_result_grid    (m_result_grid),
-      .m_result_definite(m_result_definite),
-      .m_result_axis    (m_result_axis),
-      .m_result_beats   (m_result_beats),
+      .m_result_data    (`CCHIP_RESULT_OF(m_result_tag, m_result_hit, m_result_grid,
+          m_result_definite, m_result_axis, m_result_beats)),
       .m_slot_valid     (pair_valid),
       .m_slot_ready     (pair_ready),
       .m_slot_data      (pair),
@@ -176,10 +169,7 @@ module cchip_primtest_subsystem #(
   genvar slot;
   generate
     for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_slots
-      wire [PAIR_W-1:0] its_pair = pair[PAIR_W*slot+:PAIR_W];
-      wire [RESULT_W-1:0] its_result;
       wire [`CCHIP_RM_ID_W-1:0] module_id;
-      assign result[RESULT_W*slot+:RESULT_W] = its_result;
       assign rm_id[`CCHIP_RM_ID_W*slot+:`CCHIP_RM_ID_W] = module_id;
       cchip_pr_slot #(
           .COORD_W            (COORD_W),
@@ -210,19 +200,10 @@ module cchip_primtest_subsystem #(
           .cfg_data         (cfg_data),
           .s_pair_valid     (pair_valid[slot]),
           .s_pair_ready     (pair_ready[slot]),
-          .s_pair_tag       (its_pair[`CCHIP_REQUEST_TAG]),
-          .s_pair_a         (its_pair[`CCHIP_REQUEST_A(COORD_W)]),
-          .s_pair_b         (its_pair[`CCHIP_REQUEST_B(COORD_W)]),
-          .s_pair_err       (its_pair[`CCHIP_REQUEST_ERR(COORD_W)]),
-          .s_pair_mode      (its_pair[`CCHIP_REQUEST_MODE(COORD_W)]),
+          .s_pair_data      (pair[PAIR_W*slot+:PAIR_W]),
           .m_result_valid   (result_valid[slot]),
           .m_result_ready   (result_ready[slot]),
-          .m_result_tag     (its_result[`CCHIP_RESULT_TAG]),
-          .m_result_hit     (its_result[`CCHIP_RESULT_HIT]),
-          .m_result_grid    (its_result[`CCHIP_RESULT_GRID]),
-          .m_result_definite(its_result[`CCHIP_RESULT_DEFINITE]),
-          .m_result_axis    (its_result[`CCHIP_RESULT_AXIS]),
-          .m_result_beats   (its_result[`CCHIP_RESULT_BEATS]),
+          .m_result_data    (result[RESULT_W*slot+:RESULT_W]),
           .rm_id            (module_id),
           .idle             (slot_idle[slot])
       );
@@ -241,19 +222,13 @@ module cchip_primtest_subsystem #(
   wire [8*32-1:0] table_address, table_size;
   wire [4*SLOTS-1:0] invalidate;
   wire report_valid;
-  wire [`CCHIP_SLOT_ID_W-1:0] report_slot;
-  wire [`CCHIP_RM_ID_W-1:0] report_module;
-  wire [`CCHIP_SWAP_W-1:0] report_code;
-  wire [`CCHIP_PAIR_COUNT_W-1:0] report_lost;
+  wire [`CCHIP_SWAP_REPORT_W-1:0] report_data, last_report;
   wire [4:0] status, status_enable;
   wire [31:0] lost, swaps, rejected, stalls;
   wire [9*32-1:0] phase_clocks;
   wire [4*64-1:0] pairs;
   wire [`CCHIP_PHASE_W-1:0] phase;
-  wire [`CCHIP_SLOT_ID_W-1:0] phase_slot, last_slot;
-  wire [`CCHIP_RM_ID_W-1:0] last_module;
-  wire [`CCHIP_SWAP_W-1:0] last_code;
-  wire [`CCHIP_PAIR_COUNT_W-1:0] last_lost;
+  wire [`CCHIP_SLOT_ID_W-1:0] phase_slot;
   wire [2:0] swap_events;  // {lost, error, done}
   wire [2*`CCHIP_PAIR_COUNT_W-1:0] outstanding_of =
       {{`CCHIP_PAIR_COUNT_W * (2 - SLOTS) {1'b0}}, outstanding};
@@ -265,16 +240,10 @@ module cchip_primtest_subsystem #(
       .rst            (rst),
       .clear          (clear),
       .report_valid   (report_valid),
-      .report_slot    (report_slot),
-      .report_module  (report_module),
-      .report_code    (report_code),
-      .report_lost    (report_lost),
+      .report_data(report_data),
       .answered       (answered),
       .answered_module(answered_module),
-      .last_slot      (last_slot),
-      .last_module    (last_module),
-      .last_code      (last_code),
-      .last_lost      (last_lost),
+      .last_report    (last_report),
       .swap_events    (swap_events),
       .lost           (lost),
       .pairs          (pairs)
@@ -313,10 +282,10 @@ module cchip_primtest_subsystem #(
       .hwif_out_command_force                      (force_swap),
       .hwif_out_command_module_id                  (command_module),
       .hwif_out_command_slot                       (command_slot),
-      .hwif_in_report_module_id                    (last_module),
-      .hwif_in_report_slot                         (last_slot),
-      .hwif_in_report_code                         (last_code),
-      .hwif_in_report_lost_pairs                   (last_lost),
+      .hwif_in_report_module_id                    (last_report[`CCHIP_SWAP_REPORT_MODULE]),
+      .hwif_in_report_slot                         (last_report[`CCHIP_SWAP_REPORT_SLOT]),
+      .hwif_in_report_code                         (last_report[`CCHIP_SWAP_REPORT_CODE]),
+      .hwif_in_report_lost_pairs                   (last_report[`CCHIP_SWAP_REPORT_LOST]),
       .hwif_out_interrupt_status_illegal_kind      (status[4]),
       .hwif_in_interrupt_status_illegal_kind_hwset (refused_kind),
       .hwif_out_interrupt_status_no_provider       (status[3]),
@@ -356,12 +325,9 @@ module cchip_primtest_subsystem #(
   always @(posedge clk) irq_q <= ~rst & |(status & status_enable);
 
   // ---- which slot gets which module when, and how
-  wire swap_valid, swap_ready, swap_force, swap_report;
-  wire [`CCHIP_SLOT_ID_W-1:0] swap_slot, swap_report_slot;
-  wire [`CCHIP_RM_ID_W-1:0] swap_module, swap_report_module;
-  wire [31:0] swap_address, swap_size;
-  wire [`CCHIP_SWAP_W-1:0] swap_report_code;
-  wire [`CCHIP_PAIR_COUNT_W-1:0] swap_report_lost;
+  wire swap_valid, swap_ready, swap_report;
+  wire [`CCHIP_SWAP_REQUEST_W-1:0] swap_data;
+  wire [`CCHIP_SWAP_REPORT_W-1:0] swap_report_data;
 
   cchip_swap_scheduler #(
       .SLOTS  (SLOTS),
@@ -386,21 +352,11 @@ module cchip_primtest_subsystem #(
       .command_force   (force_swap),
       .m_swap_valid    (swap_valid),
       .m_swap_ready    (swap_ready),
-      .m_swap_slot     (swap_slot),
-      .m_swap_module   (swap_module),
-      .m_swap_address  (swap_address),
-      .m_swap_size     (swap_size),
-      .m_swap_force    (swap_force),
+      .m_swap_data(swap_data),
       .s_report_valid  (swap_report),
-      .s_report_slot   (swap_report_slot),
-      .s_report_module (swap_report_module),
-      .s_report_code   (swap_report_code),
-      .s_report_lost   (swap_report_lost),
+      .s_report_data(swap_report_data),
       .m_report_valid  (report_valid),
-      .m_report_slot   (report_slot),
-      .m_report_module (report_module),
-      .m_report_code   (report_code),
-      .m_report_lost   (report_lost)
+      .m_report_data(report_data)
   );
 
   cchip_config_controller #(
@@ -412,16 +368,9 @@ module cchip_primtest_subsystem #(
       .rst            (rst),
       .s_swap_valid   (swap_valid),
       .s_swap_ready   (swap_ready),
-      .s_swap_slot    (swap_slot),
-      .s_swap_module  (swap_module),
-      .s_swap_address (swap_address),
-      .s_swap_size    (swap_size),
-      .s_swap_force   (swap_force),
+      .s_swap_data(swap_data),
       .m_report_valid (swap_report),
-      .m_report_slot  (swap_report_slot),
-      .m_report_module(swap_report_module),
-      .m_report_code  (swap_report_code),
-      .m_report_lost  (swap_report_lost),
+      .m_report_data(swap_report_data),
       .abort_swap     (abort_swap),
       .clear          (clear),
       .shutdown_limit (shutdown_limit),

@@ -3,62 +3,44 @@
 `include "cchip_defs.vh"
 // cchip_subsystem_status: the past that the registers of the subsystem show: the last report,
 // counts of lost and of answered pairs.
-//   latency      1 clock from a report to last_* and swap_events, 2 clocks from an answer to its
-//                counter
+//   latency      1 clock from a report to last_report and swap_events, 2 clocks from an answer to
+//                its counter
 //   cuts         every path: each output is a flip-flop
 //   reset        all 0; clear: the counters 0
 module cchip_subsystem_status (
-    input  wire                           clk,
-    input  wire                           rst,
-    input  wire                           clear,
-    input  wire                           report_valid,
-    input  wire [   `CCHIP_SLOT_ID_W-1:0] report_slot,
-    input  wire [     `CCHIP_RM_ID_W-1:0] report_module,
-    input  wire [      `CCHIP_SWAP_W-1:0] report_code,
-    input  wire [`CCHIP_PAIR_COUNT_W-1:0] report_lost,
-    input  wire                           answered,
-    input  wire [                    1:0] answered_module,  // 0: without a test
-    output wire [   `CCHIP_SLOT_ID_W-1:0] last_slot,
-    output wire [     `CCHIP_RM_ID_W-1:0] last_module,
-    output wire [      `CCHIP_SWAP_W-1:0] last_code,
-    output wire [`CCHIP_PAIR_COUNT_W-1:0] last_lost,
-    output wire [                    2:0] swap_events,      // {lost, error, done}, one clock
-    output wire [                   31:0] lost,
-    output wire [                  255:0] pairs             // 64 bit for each module
+    input  wire                            clk,
+    input  wire                            rst,
+    input  wire                            clear,
+    input  wire                            report_valid,
+    input  wire [`CCHIP_SWAP_REPORT_W-1:0] report_data,
+    input  wire                            answered,
+    input  wire [                     1:0] answered_module,  // 0: without a test
+    output wire [`CCHIP_SWAP_REPORT_W-1:0] last_report,
+    output wire [                     2:0] swap_events,      // {lost, error, done}, one clock
+    output wire [                    31:0] lost,
+    output wire [                   255:0] pairs             // 64 bit for each module
 );
 
-  reg [`CCHIP_SLOT_ID_W-1:0] last_slot_q;
-  reg [`CCHIP_RM_ID_W-1:0] last_module_q;
-  reg [`CCHIP_SWAP_W-1:0] last_code_q;
-  reg [`CCHIP_PAIR_COUNT_W-1:0] last_lost_q;
+  reg [`CCHIP_SWAP_REPORT_W-1:0] last_report_q;
   reg [2:0] swap_events_q;
   reg [31:0] lost_q;
   reg [255:0] pairs_q;
-  assign last_slot = last_slot_q;
-  assign last_module = last_module_q;
-  assign last_code = last_code_q;
-  assign last_lost = last_lost_q;
+  assign last_report = last_report_q;
   assign swap_events = swap_events_q;
   assign lost = lost_q;
   assign pairs = pairs_q;
 
+  wire [`CCHIP_SWAP_W-1:0] report_code = report_data[`CCHIP_SWAP_REPORT_CODE];
+  wire [`CCHIP_PAIR_COUNT_W-1:0] report_lost = report_data[`CCHIP_SWAP_REPORT_LOST];
   wire done = report_code == `CCHIP_SWAP_OK || report_code == `CCHIP_SWAP_SAME;
 
   always @(posedge clk)
     if (rst) begin
-      last_slot_q   <= 8'd0;
-      last_module_q <= 8'd0;
-      last_code_q   <= 4'd0;
-      last_lost_q   <= 16'd0;
+      last_report_q <= {`CCHIP_SWAP_REPORT_W{1'b0}};
       swap_events_q <= 3'd0;
       lost_q        <= 32'd0;
     end else begin
-      if (report_valid) begin
-        last_slot_q   <= report_slot;
-        last_module_q <= report_module;
-        last_code_q   <= report_code;
-        last_lost_q   <= report_lost;
-      end
+      if (report_valid) last_report_q <= report_data;
       swap_events_q <= {3{report_valid}} & {report_lost != 16'd0, ~done, done};
       lost_q <= clear ? 32'd0 : lost_q + (report_valid ? {16'd0, report_lost} : 32'd0);
     end

@@ -30,48 +30,38 @@ module cchip_swap_scheduler #(
     // width of the number of waiting pairs, bit, 1..16
     parameter integer COUNT_W = 9
 ) (
-    input  wire                           clk,
-    input  wire                           rst,
+    input  wire                             clk,
+    input  wire                             rst,
     // registers
-    input  wire                           enable,
-    input  wire [                   31:0] min_batch,
-    input  wire [                   31:0] max_age,
+    input  wire                             enable,
+    input  wire [                     31:0] min_batch,
+    input  wire [                     31:0] max_age,
     // bitstreams: entry 4 * slot + module
-    input  wire [            4*SLOTS-1:0] table_valid,
-    input  wire [         4*32*SLOTS-1:0] table_address,
-    input  wire [         4*32*SLOTS-1:0] table_size,
-    output wire [            4*SLOTS-1:0] table_invalidate,
+    input  wire [              4*SLOTS-1:0] table_valid,
+    input  wire [           4*32*SLOTS-1:0] table_address,
+    input  wire [           4*32*SLOTS-1:0] table_size,
+    output wire [              4*SLOTS-1:0] table_invalidate,
     // queues, kind k at place k - 1
-    input  wire [          3*COUNT_W-1:0] waiting,
-    output wire [                    2:0] no_provider,
+    input  wire [            3*COUNT_W-1:0] waiting,
+    output wire [                      2:0] no_provider,
     // slots: module that works (ModuleId, 0: none or decoupled), a pair was taken
-    input  wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module,
-    input  wire [              SLOTS-1:0] slot_taken,
+    input  wire [  `CCHIP_KIND_W*SLOTS-1:0] slot_module,
+    input  wire [                SLOTS-1:0] slot_taken,
     // software's swap, one clock
-    input  wire                           command_valid,
-    input  wire [   `CCHIP_SLOT_ID_W-1:0] command_slot,
-    input  wire [     `CCHIP_RM_ID_W-1:0] command_module,
-    input  wire                           command_force,
+    input  wire                             command_valid,
+    input  wire [     `CCHIP_SLOT_ID_W-1:0] command_slot,
+    input  wire [       `CCHIP_RM_ID_W-1:0] command_module,
+    input  wire                             command_force,
     // to the configuration controller
-    output wire                           m_swap_valid,
-    input  wire                           m_swap_ready,
-    output wire [   `CCHIP_SLOT_ID_W-1:0] m_swap_slot,
-    output wire [     `CCHIP_RM_ID_W-1:0] m_swap_module,
-    output wire [                   31:0] m_swap_address,
-    output wire [                   31:0] m_swap_size,
-    output wire                           m_swap_force,
+    output wire                             m_swap_valid,
+    input  wire                             m_swap_ready,
+    output wire [`CCHIP_SWAP_REQUEST_W-1:0] m_swap_data,
     // its report, one clock
-    input  wire                           s_report_valid,
-    input  wire [   `CCHIP_SLOT_ID_W-1:0] s_report_slot,
-    input  wire [     `CCHIP_RM_ID_W-1:0] s_report_module,
-    input  wire [      `CCHIP_SWAP_W-1:0] s_report_code,
-    input  wire [`CCHIP_PAIR_COUNT_W-1:0] s_report_lost,
+    input  wire                             s_report_valid,
+    input  wire [ `CCHIP_SWAP_REPORT_W-1:0] s_report_data,
     // the same, and the reports of refused commands, one clock
-    output wire                           m_report_valid,
-    output wire [   `CCHIP_SLOT_ID_W-1:0] m_report_slot,
-    output wire [     `CCHIP_RM_ID_W-1:0] m_report_module,
-    output wire [      `CCHIP_SWAP_W-1:0] m_report_code,
-    output wire [`CCHIP_PAIR_COUNT_W-1:0] m_report_lost
+    output wire                             m_report_valid,
+    output wire [ `CCHIP_SWAP_REPORT_W-1:0] m_report_data
 );
 
   reg [4*SLOTS-1:0] table_invalidate_q;
@@ -82,22 +72,16 @@ module cchip_swap_scheduler #(
   reg [31:0] m_swap_size_q;
   reg m_swap_force_q;
   reg m_report_valid_q;
-  reg [`CCHIP_SLOT_ID_W-1:0] m_report_slot_q;
-  reg [`CCHIP_RM_ID_W-1:0] m_report_module_q;
-  reg [`CCHIP_SWAP_W-1:0] m_report_code_q;
-  reg [`CCHIP_PAIR_COUNT_W-1:0] m_report_lost_q;
+  reg [`CCHIP_SWAP_REPORT_W-1:0] m_report_data_q;
   assign table_invalidate = table_invalidate_q;
   assign no_provider = no_provider_q;
   assign m_swap_valid = m_swap_valid_q;
-  assign m_swap_module = m_swap_module_q;
-  assign m_swap_address = m_swap_address_q;
-  assign m_swap_size = m_swap_size_q;
-  assign m_swap_force = m_swap_force_q;
   assign m_report_valid = m_report_valid_q;
-  assign m_report_slot = m_report_slot_q;
-  assign m_report_module = m_report_module_q;
-  assign m_report_code = m_report_code_q;
-  assign m_report_lost = m_report_lost_q;
+  assign m_report_data = m_report_data_q;
+
+  wire [`CCHIP_SLOT_ID_W-1:0] s_report_slot = s_report_data[`CCHIP_SWAP_REPORT_SLOT];
+  wire [`CCHIP_RM_ID_W-1:0] s_report_module = s_report_data[`CCHIP_SWAP_REPORT_MODULE];
+  wire [`CCHIP_SWAP_W-1:0] s_report_code = s_report_data[`CCHIP_SWAP_REPORT_CODE];
 
   localparam [31:0] COUNT_BITS = COUNT_W;
   localparam [31:0] LAST = 3 * SLOTS - 1;
@@ -264,7 +248,8 @@ module cchip_swap_scheduler #(
 
   // ---- requests
   reg slot_of_swap_q;
-  assign m_swap_slot = {7'd0, slot_of_swap_q};
+  assign m_swap_data = `CCHIP_SWAP_REQUEST_OF({7'd0, slot_of_swap_q}, m_swap_module_q,
+      m_swap_address_q, m_swap_size_q, m_swap_force_q);
   wire command_known = command_slot[7:1] == 7'd0 && (SLOTS == 2 || !command_slot[0])
       && command_module[7:2] == 6'd0;
   wire [2:0] command_entry = {command_slot[0], command_module[1:0]};
@@ -280,8 +265,8 @@ module cchip_swap_scheduler #(
       m_swap_force_q   <= take_command & command_force;
     end
     // the table is read one clock after the choice
-    if (chosen_q) m_swap_address_q <= address_of[{m_swap_slot[0], m_swap_module_q[1:0], 5'd0}+:32];
-    if (chosen_q) m_swap_size_q <= size_of[{m_swap_slot[0], m_swap_module_q[1:0], 5'd0}+:32];
+    if (chosen_q) m_swap_address_q <= address_of[{slot_of_swap_q, m_swap_module_q[1:0], 5'd0}+:32];
+    if (chosen_q) m_swap_size_q <= size_of[{slot_of_swap_q, m_swap_module_q[1:0], 5'd0}+:32];
     if (rst) begin
       m_swap_valid_q <= 1'b0;
       chosen_q     <= 1'b0;
@@ -310,10 +295,8 @@ module cchip_swap_scheduler #(
       refused_module_q <= command_module;
       refused_code_q   <= asked ? `CCHIP_SWAP_BUSY : `CCHIP_SWAP_REQUEST;
     end
-    m_report_slot_q   <= s_report_valid ? s_report_slot : refused_slot_q;
-    m_report_module_q <= s_report_valid ? s_report_module : refused_module_q;
-    m_report_code_q   <= s_report_valid ? s_report_code : refused_code_q;
-    m_report_lost_q   <= s_report_valid ? s_report_lost : 16'd0;
+    m_report_data_q <= s_report_valid ? s_report_data
+        : `CCHIP_SWAP_REPORT_OF(refused_slot_q, refused_module_q, refused_code_q, 16'd0);
     refused_q       <= ~rst & (refuse | (refused_q & s_report_valid));
     m_report_valid_q  <= ~rst & (s_report_valid | refused_q);
     for (i = 0; i < 4 * SLOTS; i = i + 1)

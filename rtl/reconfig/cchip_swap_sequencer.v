@@ -11,8 +11,7 @@
 //                stopped, decoupled and in reset
 //   bounds       SHUTDOWN: shutdown_limit; DECOUPLE, ROC, RECOUPLE: SLOT_LIMIT; HEADER and
 //                TRANSFER: error or timeout of the fetch, or their words are there; the rest: fixed
-//   cuts         every path: each output is a flip-flop, m_report_slot, _module, _code and _lost
-//                one of two
+//   cuts         every path: each output is a flip-flop, m_report_data one of two
 //   reset        no swap, slots at work, except one whose transfer had begun and not ended well:
 //                half_q outlives rst and keeps it stopped, decoupled and in reset until a good
 //                transfer
@@ -26,16 +25,9 @@ module cchip_swap_sequencer #(
     input  wire                                 rst,
     input  wire                                 s_swap_valid,
     output wire                                 s_swap_ready,
-    input  wire [         `CCHIP_SLOT_ID_W-1:0] s_swap_slot,
-    input  wire [           `CCHIP_RM_ID_W-1:0] s_swap_module,
-    input  wire [                         31:0] s_swap_address,
-    input  wire [                         31:0] s_swap_size,
-    input  wire                                 s_swap_force,
+    input  wire [    `CCHIP_SWAP_REQUEST_W-1:0] s_swap_data,
     output wire                                 m_report_valid,
-    output wire [         `CCHIP_SLOT_ID_W-1:0] m_report_slot,
-    output wire [           `CCHIP_RM_ID_W-1:0] m_report_module,
-    output wire [            `CCHIP_SWAP_W-1:0] m_report_code,
-    output wire [      `CCHIP_PAIR_COUNT_W-1:0] m_report_lost,
+    output wire [     `CCHIP_SWAP_REPORT_W-1:0] m_report_data,
     input  wire                                 abort_swap,
     input  wire [                         31:0] shutdown_limit,
     input  wire [                         31:0] memory_limit,
@@ -103,6 +95,12 @@ module cchip_swap_sequencer #(
   reg ready_q, refuse_q;  // a request during a swap waits for its report
   reg [`CCHIP_SLOT_ID_W-1:0] refuse_slot_q;
   reg [`CCHIP_RM_ID_W-1:0] refuse_module_q;
+  wire [`CCHIP_SLOT_ID_W-1:0] s_swap_slot;
+  wire [`CCHIP_RM_ID_W-1:0] s_swap_module;
+  wire [31:0] s_swap_address, s_swap_size;
+  wire s_swap_force;
+  assign `CCHIP_SWAP_REQUEST_OF(s_swap_slot, s_swap_module, s_swap_address, s_swap_size,
+      s_swap_force) = s_swap_data;
   wire idle = at_q[`CCHIP_PHASE_IDLE];
   wire accept = s_swap_valid & ready_q;
   wire begins = accept & idle;
@@ -312,10 +310,9 @@ module cchip_swap_sequencer #(
   assign s_swap_ready = ready_q;
   assign m_report_valid = report_valid_q;
   // slot_q, module_q and lost_q do not change in REPORT
-  assign m_report_slot = refused_q ? refuse_slot_q : slot_q;
-  assign m_report_module = refused_q ? refuse_module_q : module_q;
-  assign m_report_code = refused_q ? `CCHIP_SWAP_BUSY : code_q;
-  assign m_report_lost = refused_q ? 16'd0 : lost_q;
+  assign m_report_data = refused_q
+      ? `CCHIP_SWAP_REPORT_OF(refuse_slot_q, refuse_module_q, `CCHIP_SWAP_BUSY, 16'd0)
+      : `CCHIP_SWAP_REPORT_OF(slot_q, module_q, code_q, lost_q);
   assign stop = stop_q;
   assign decouple = decouple_q;
   assign hold_reset = hold_reset_q;

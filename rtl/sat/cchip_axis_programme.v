@@ -97,23 +97,18 @@ module cchip_axis_programme #(
   wire degenerate = programme == `CCHIP_PROG_DEGENERATE;
 
   // ---- sides: signs of the other primitive's vertices on a normal; vertex 3 of a triangle as zero
-  wire [3:0] b_negative, b_zero, a_negative, a_zero;
-  generate
-    if (VERTS_B == 4) begin : gen_b_quad
-      assign b_negative = s_negative[POINTS-1-:4];
-      assign b_zero     = s_zero[POINTS-1-:4];
-    end else begin : gen_b_triangle
-      assign b_negative = {1'b0, s_negative[POINTS-1-:3]};
-      assign b_zero     = {1'b1, s_zero[POINTS-1-:3]};
+  // the last `verts` points are the vertices
+  function [3:0] vertices(input [POINTS-1:0] points, input absent, input integer verts);
+    integer i;
+    begin
+      vertices = {4{absent}};
+      for (i = 0; i < verts; i = i + 1) vertices[i] = points[POINTS-verts+i];
     end
-    if (VERTS_A == 4) begin : gen_a_quad
-      assign a_negative = s_negative[POINTS-1-:4];
-      assign a_zero     = s_zero[POINTS-1-:4];
-    end else begin : gen_a_triangle
-      assign a_negative = {1'b0, s_negative[POINTS-1-:3]};
-      assign a_zero     = {1'b1, s_zero[POINTS-1-:3]};
-    end
-  endgenerate
+  endfunction
+  wire [3:0] b_negative = vertices(s_negative, 1'b0, VERTS_B);
+  wire [3:0] b_zero = vertices(s_zero, 1'b1, VERTS_B);
+  wire [3:0] a_negative = vertices(s_negative, 1'b0, VERTS_A);
+  wire [3:0] a_zero = vertices(s_zero, 1'b1, VERTS_A);
 
   // vertices on the positive side; those on the plane count among them if any is negative
   function [3:0] positive_side(input [3:0] negative, input [3:0] zero, input quad);

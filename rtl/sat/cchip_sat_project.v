@@ -109,22 +109,11 @@ module cchip_sat_project #(
       // latency of cchip_dot3 may differ from the relative one (narrower factor): the rest is delay
       localparam integer FILL = `CCHIP_MUL_LATENCY(EDGE_W, AXIS_W)
           - `CCHIP_MUL_LATENCY(COORD_W, AXIS_W);
-      wire [DOT_W-1:0] reference;
-      cchip_dot3 #(
-          .A_W(COORD_W),
-          .B_W(AXIS_W),
-          .OPERAND_REGS(OPERAND_REGS),
-          .PRODUCT_REGS(PRODUCT_REGS),
-          .RESULT_REGS(RESULT_REGS + FILL)
-      ) u_reference (
-          .clk(clk),
-          .a  (s_reference),
-          .b  (s_axis),
-          .q  (reference)
-      );
-      for (i = 0; i < POINTS; i = i + 1) begin : gen_point
-        wire [DOT_W-1:0] point;
-        reg [PROJ_W-1:0] relative_q;
+      // the reference is one more point, the last
+      wire [3*COORD_W*(POINTS+1)-1:0] points = {s_reference, s_points};
+      wire [DOT_W*(POINTS+1)-1:0] dot;
+      wire [PROJ_W-1:0] reference = {dot[DOT_W*(POINTS+1)-1], dot[DOT_W*POINTS+:DOT_W]};
+      for (i = 0; i <= POINTS; i = i + 1) begin : gen_dot
         cchip_dot3 #(
             .A_W(COORD_W),
             .B_W(AXIS_W),
@@ -133,12 +122,15 @@ module cchip_sat_project #(
             .RESULT_REGS(RESULT_REGS + FILL)
         ) u_dot (
             .clk(clk),
-            .a  (s_points[3*COORD_W*i+:3*COORD_W]),
+            .a  (points[3*COORD_W*i+:3*COORD_W]),
             .b  (s_axis),
-            .q  (point)
+            .q  (dot[DOT_W*i+:DOT_W])
         );
-        always @(posedge clk) relative_q <= {point[DOT_W-1], point}
-            - {reference[DOT_W-1], reference};
+      end
+      for (i = 0; i < POINTS; i = i + 1) begin : gen_point
+        reg [PROJ_W-1:0] relative_q;
+        always @(posedge clk)
+          relative_q <= {dot[DOT_W*(i+1)-1], dot[DOT_W*i+:DOT_W]} - reference;
         assign m_projection[PROJ_W*i+:PROJ_W] = relative_q;
       end
     end

@@ -3,10 +3,10 @@
 `default_nettype none
 // cchip_pr_static: static side of the partial reconfiguration projects of Vivado and Quartus: the partition
 // cchip_pr_region between two stream registers, reached over a serial port, so that any device has pins enough.
-//   in     in_shift moves in_bit into a word of PAIR_W bit {err, mode, b, a, tag}, tag[0] first; in_send = 1 for one
-//          clock while in_ready = 1 sends it
-//   out    out_take = 1 for one clock copies {idle, rm_id, valid, beats, axis, definite, grid, hit, tag} (STATUS_W bit)
-//          and takes the result if valid; out_shift brings it to out_bit, tag[0] first
+//   in     in_shift moves in_bit into a record REQUEST of PAIR_W bit, tag[0] first; in_send = 1 for one clock while
+//          in_ready = 1 sends it
+//   out    out_take = 1 for one clock copies {idle, rm_id, valid, record RESULT} (STATUS_W bit) and takes the result if
+//          valid; out_shift brings it to out_bit, tag[0] first
 //   swap   decouple = 1 holds every handshake and reads the region as rm_id 0, idle 0; region_rst resets the region.
 //          Both are apart from rst, which resets the static side and the region. Before decouple = 1 wait until all
 //          results are out; before decouple = 0 hold region_rst for two clocks.
@@ -25,9 +25,8 @@ module cchip_pr_static (
     output wire out_bit
 );
 
-  localparam integer SIDE_W = 4 * 3 * `CCHIP_COORD_W_DEFAULT;
-  localparam integer PAIR_W = `CCHIP_ERR_W + `CCHIP_MODE_W + 2 * SIDE_W + `CCHIP_TAG_W;
-  localparam integer RESULT_W = `CCHIP_BEATS_W + `CCHIP_AXIS_CODE_W + 3 + `CCHIP_TAG_W;
+  localparam integer PAIR_W = `CCHIP_REQUEST_W(`CCHIP_COORD_W_DEFAULT);
+  localparam integer RESULT_W = `CCHIP_RESULT_W;
   localparam integer STATUS_W = 1 + `CCHIP_RM_ID_W + 1 + RESULT_W;
 
   // ---- pins
@@ -72,6 +71,7 @@ module cchip_pr_static (
   ) u_pair (
       .clk    (clk),
       .rst    (rst_q),
+      .stop   (1'b0),
       .s_valid(in_send_q),
       .s_ready(pair_ready),
       .s_data (pair_q),
@@ -85,6 +85,7 @@ module cchip_pr_static (
   ) u_result (
       .clk    (clk),
       .rst    (rst_q),
+      .stop   (1'b0),
       .s_valid(region_m_valid & ~decouple_q),
       .s_ready(result_ready),
       .s_data (region_result),
@@ -95,25 +96,16 @@ module cchip_pr_static (
 
   // ---- the partition; without parameters, so that every tool calls the empty cell by the same name
   cchip_pr_region u_region (
-      .clk              (clk),
-      .rst              (region_rst_q),
-      .s_pair_valid     (region_s_valid),
-      .s_pair_ready     (region_s_ready),
-      .s_pair_tag       (pair[0+:`CCHIP_TAG_W]),
-      .s_pair_a         (pair[`CCHIP_TAG_W+:SIDE_W]),
-      .s_pair_b         (pair[`CCHIP_TAG_W+SIDE_W+:SIDE_W]),
-      .s_pair_mode      (pair[`CCHIP_TAG_W+2*SIDE_W+:`CCHIP_MODE_W]),
-      .s_pair_err       (pair[PAIR_W-1-:`CCHIP_ERR_W]),
-      .m_result_valid   (region_m_valid),
-      .m_result_ready   (region_m_ready),
-      .m_result_tag     (region_result[0+:`CCHIP_TAG_W]),
-      .m_result_hit     (region_result[`CCHIP_TAG_W]),
-      .m_result_grid    (region_result[`CCHIP_TAG_W+1]),
-      .m_result_definite(region_result[`CCHIP_TAG_W+2]),
-      .m_result_axis    (region_result[`CCHIP_TAG_W+3+:`CCHIP_AXIS_CODE_W]),
-      .m_result_beats   (region_result[RESULT_W-1-:`CCHIP_BEATS_W]),
-      .rm_id            (rm_id),
-      .idle             (idle)
+      .clk           (clk),
+      .rst           (region_rst_q),
+      .s_pair_valid  (region_s_valid),
+      .s_pair_ready  (region_s_ready),
+      .s_pair_data   (pair),
+      .m_result_valid(region_m_valid),
+      .m_result_ready(region_m_ready),
+      .m_result_data (region_result),
+      .rm_id         (rm_id),
+      .idle          (idle)
   );
 
 endmodule

@@ -25,7 +25,9 @@ template <class Model>
 class RtlMachine : public PrimtestMachine {
  public:
   RtlMachine(ModuleId id, const RtlMachineOptions& options) try
-      : simulation_(simulation_options(options)), scramble_(options.scramble), random_(options.seed) {
+      : simulation_(sim::without_timeout(options.seed, options.trace_path, options.trace_clocks)),
+        scramble_(options.scramble),
+        random_(options.seed) {
     simulation_->s_pair_valid = 0;
     simulation_->m_result_ready = 1;
     port_.put({});
@@ -67,15 +69,6 @@ class RtlMachine : public PrimtestMachine {
   }
 
  private:
-  static sim::SimulationOptions simulation_options(const RtlMachineOptions& options) {
-    sim::SimulationOptions o;
-    o.seed = options.seed;
-    o.timeout_clocks = 0;
-    o.trace_path = options.trace_path;
-    o.trace_clocks = options.trace_clocks;
-    return o;
-  }
-
   sim::Simulation<Model> simulation_;
   sim::PairPort<Model> port_{simulation_.top(), width};
   bool scramble_;

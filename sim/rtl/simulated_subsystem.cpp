@@ -22,15 +22,6 @@ using Model = Vcchip_primtest_subsystem;
 constexpr std::uint64_t time_units_per_clock = 10;
 constexpr std::uint64_t reset_clocks = 2;
 
-sim::SimulationOptions simulation_options(const SimulatedSubsystemOptions& options) {
-  sim::SimulationOptions o;
-  o.seed = options.seed;
-  o.timeout_clocks = 0;
-  o.trace_path = options.trace_path;
-  o.trace_clocks = options.trace_clocks;
-  return o;
-}
-
 /// The two streams of pairs.
 class Streams : public sim::Agent {
  public:
@@ -103,7 +94,8 @@ auto guarded(const Action& action) {
 }  // namespace
 
 struct SimulatedSubsystem::Parts {
-  explicit Parts(const SimulatedSubsystemOptions& o) : options(o), simulation(simulation_options(o)) {
+  explicit Parts(const SimulatedSubsystemOptions& o)
+      : options(o), simulation(sim::without_timeout(o.seed, o.trace_path, o.trace_clocks)) {
     simulation->cfg_error = 0;
     for (sim::Agent* agent : std::initializer_list<sim::Agent*>{&memory, &registers, &streams, &observer}) {
       simulation.add(*agent);

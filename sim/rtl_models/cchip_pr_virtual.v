@@ -32,19 +32,10 @@ module cchip_pr_virtual #(
     input  wire [                      CFG_W-1:0] cfg_data,
     input  wire                                   s_pair_valid,
     output wire                                   s_pair_ready,
-    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
-    input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
-    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
+    input  wire [  `CCHIP_REQUEST_W(COORD_W)-1:0] s_pair_data,
     output wire                                   m_result_valid,
     input  wire                                   m_result_ready,
-    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
-    output wire                                   m_result_hit,
-    output wire                                   m_result_grid,
-    output wire                                   m_result_definite,
-    output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
-    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
+    output wire [            `CCHIP_RESULT_W-1:0] m_result_data,
     output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
     output wire                                   idle
 );
@@ -92,8 +83,7 @@ module cchip_pr_virtual #(
     end
 
   // ---- the modules
-  wire [PAIR_W-1:0] pair = garbage ? pair_q[PAIR_W-1:0] :
-      {s_pair_mode, s_pair_err, s_pair_b, s_pair_a, s_pair_tag};
+  wire [PAIR_W-1:0] pair = garbage ? pair_q[PAIR_W-1:0]  : s_pair_data;
   wire [4*OUT_W-1:0] outs;
   genvar i;
   generate
@@ -111,33 +101,23 @@ module cchip_pr_virtual #(
           .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
           .WARPED_EXACT       (WARPED_EXACT)
       ) u_region (
-          .clk              (clk),
-          .rst              (rst & ~garbage),
-          .s_pair_valid     (garbage | (here & s_pair_valid)),
-          .s_pair_ready     (ready),
-          .s_pair_tag       (pair[`CCHIP_REQUEST_TAG]),
-          .s_pair_mode      (pair[`CCHIP_REQUEST_MODE(COORD_W)]),
-          .s_pair_a         (pair[`CCHIP_REQUEST_A(COORD_W)]),
-          .s_pair_b         (pair[`CCHIP_REQUEST_B(COORD_W)]),
-          .s_pair_err       (pair[`CCHIP_REQUEST_ERR(COORD_W)]),
-          .m_result_valid   (valid),
-          .m_result_ready   (garbage ? random_q[63] : here & m_result_ready),
-          .m_result_tag     (result[`CCHIP_RESULT_TAG]),
-          .m_result_hit     (result[`CCHIP_RESULT_HIT]),
-          .m_result_grid    (result[`CCHIP_RESULT_GRID]),
-          .m_result_definite(result[`CCHIP_RESULT_DEFINITE]),
-          .m_result_axis    (result[`CCHIP_RESULT_AXIS]),
-          .m_result_beats   (result[`CCHIP_RESULT_BEATS]),
-          .rm_id            (module_id),
-          .idle             (quiet)
+          .clk           (clk),
+          .rst           (rst & ~garbage),
+          .s_pair_valid  (garbage | (here & s_pair_valid)),
+          .s_pair_ready  (ready),
+          .s_pair_data   (pair),
+          .m_result_valid(valid),
+          .m_result_ready(garbage ? random_q[63] : here & m_result_ready),
+          .m_result_data (result),
+          .rm_id         (module_id),
+          .idle          (quiet)
       );
       assign outs[OUT_W*i+:OUT_W] = {ready, valid, result, module_id, quiet};
     end
   endgenerate
 
-  assign {s_pair_ready, m_result_valid, m_result_beats, m_result_axis, m_result_definite,
-          m_result_grid, m_result_hit, m_result_tag, rm_id, idle} = garbage ? random_q[OUT_W-1:0]
-              : outs[STEP*{30'd0, select[1:0]}+:OUT_W];
+  assign {s_pair_ready, m_result_valid, m_result_data, rm_id, idle} =
+      garbage ? random_q[OUT_W-1:0] : outs[STEP*{30'd0, select[1:0]}+:OUT_W];
 
   wire unused = &{1'b0, select[7:2], pair_q[PAIR_W+63:PAIR_W]};
 

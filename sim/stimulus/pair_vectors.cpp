@@ -51,7 +51,7 @@ bench::Vector to_vector(const ShapeInfo& shape, const GridPair& pair, PairMode m
   vector.set(bench::definite, expected.definite ? 1 : 0);
   vector.set(bench::axis, to_bits(expected.axis));
   vector.set(bench::beats, static_cast<std::uint64_t>(expected.beats));
-  vector.set(bench::rm_id, std::uint64_t(module_of(shape.a, shape.b)));
+  vector.set(bench::rm_id, std::uint64_t(shape.id));
   return vector;
 }
 

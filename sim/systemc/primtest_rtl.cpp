@@ -12,18 +12,11 @@
 namespace cchip::levels {
 namespace {
 
-sim::SimulationOptions simulation_options(std::uint64_t seed) {
-  sim::SimulationOptions options;
-  options.seed = seed;
-  options.timeout_clocks = 0;
-  return options;
-}
-
 template <class Model>
 class Machine : public PrimtestRtl {
  public:
   /// The assertions are enabled from the first reset on.
-  explicit Machine(std::uint64_t seed) : simulation_(simulation_options(seed)) {
+  explicit Machine(std::uint64_t seed) : simulation_(sim::without_timeout(seed)) {
     simulation_->contextp()->assertOn(false);
   }
 

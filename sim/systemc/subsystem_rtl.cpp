@@ -16,13 +16,6 @@ namespace {
 
 using Model = Vlevel4_subsystem;
 
-sim::SimulationOptions simulation_options(std::uint64_t seed) {
-  sim::SimulationOptions options;
-  options.seed = seed;
-  options.timeout_clocks = 0;
-  return options;
-}
-
 /// s_pair and m_result.
 class Pairs : public sim::Agent {
  public:
@@ -87,7 +80,7 @@ class Memory : public sim::Agent {
 }  // namespace
 
 struct SubsystemRtl::Parts {
-  explicit Parts(std::uint64_t seed) : simulation(simulation_options(seed)) {
+  explicit Parts(std::uint64_t seed) : simulation(sim::without_timeout(seed)) {
     simulation->cfg_error = 0;
     for (sim::Agent* agent : std::initializer_list<sim::Agent*>{&memory, &registers, &pairs}) simulation.add(*agent);
     simulation.reset();

@@ -44,6 +44,10 @@ Row vector(std::string label, std::string name, int width, Radix radix) {
 Row field(std::string label, const std::string& name, int width, int lsb, int field_width, Radix radix) {
   return {Row::What::field, std::move(label), name, width, radix, lsb, field_width};
 }
+/// A field of a record.
+Row field(std::string label, const std::string& name, int width, defs::Field f, Radix radix) {
+  return field(std::move(label), name, width, f.lsb, f.width, radix);
+}
 
 Rows operator+(Rows rows, const Rows& more) {
   rows.insert(rows.end(), more.begin(), more.end());
@@ -194,9 +198,12 @@ Rows subsystem_layout() {
                         vector("answer kind", "m_result_kind", 2, Radix::decimal),
                         vector("answer tag", "m_result_tag", defs::tag_w, Radix::hexadecimal)}) +
          group("scheduler",
-               {bit("request", "swap_valid"), vector("slot", "swap_slot", 8, Radix::decimal),
-                vector("module", "swap_module", defs::rm_id_w, Radix::decimal), bit("report", "report_valid"),
-                vector("code", "report_code", defs::swap_w, Radix::decimal), bit("interrupt", "irq")}) +
+               {bit("request", "swap_valid"),
+                field("slot", "swap_data", defs::swap_request_w, defs::swap_request_slot, Radix::decimal),
+                field("module", "swap_data", defs::swap_request_w, defs::swap_request_module, Radix::decimal),
+                bit("report", "report_valid"),
+                field("code", "report_data", defs::swap_report_w, defs::swap_report_code, Radix::decimal),
+                bit("interrupt", "irq")}) +
          group("configuration controller",
                {vector("phase", "phase", defs::phase_w, Radix::decimal), bit("memory: address", "m_axi_arvalid"),
                 bit("memory: data", "m_axi_rvalid"), bit("memory: ready", "m_axi_rready"),

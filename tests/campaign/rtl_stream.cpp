@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rtl_stream.hpp"
 
-#include <cchip/sim/errors.hpp>
 #include <cchip/stimulus/judge.hpp>
 #include <sstream>
 
@@ -11,54 +10,28 @@ namespace {
 constexpr int width = defs::coord_w_default;
 constexpr int contexts = defs::contexts_default(defs::substages_default);
 constexpr std::uint64_t answer_bound = defs::drain_bound(defs::substages_default, contexts);
-constexpr std::size_t tags = std::size_t{1} << defs::tag_w;
-constexpr std::size_t nobody = ~std::size_t{0};
 
 }  // namespace
 
 RtlRun run_rtl(PrimtestMachine& machine, const std::vector<PairRequest>& requests) {
   RtlRun run;
   run.results.resize(requests.size());
-  std::vector<std::size_t> in_flight(tags, nobody);
-  std::size_t accepted = 0;
-  std::size_t answered = 0;
-  std::uint64_t progress = 0;
-  const auto offer = [&] {
-    std::optional<PairRequest> request;
-    if (accepted < requests.size()) request = requests[accepted];
-    if (request) request->tag = tag_of(accepted);
-    machine.offer(request);
+  PrimtestTraffic traffic;
+  traffic.pairs = requests.size();
+  traffic.answer_bound = answer_bound;
+  traffic.request = [&](std::size_t n) {
+    PairRequest request = requests[n];
+    request.tag = tag_of(n);
+    return request;
   };
-  offer();
-  for (std::uint64_t& clock = run.counts.clocks; answered < requests.size(); ++clock) {
-    const PrimtestMachine::Outputs out = machine.outputs();
-    const bool offers = accepted < requests.size();
-    if (offers) {
-      ++run.counts.offered_clocks;
-      run.counts.beats += out.beat_valid ? 1 : 0;
-    }
-    if (out.result) {
-      std::size_t& index = in_flight[out.result->tag];
-      if (index == nobody) {
-        throw sim::ScoreboardError(fmt::format("a result with tag {} that no pair has", out.result->tag));
-      }
-      run.results[index] = *out.result;
-      index = nobody;
-      ++answered;
-      progress = clock;
-    }
-    const bool accept = offers && out.pair_ready;
-    if (accept) {
-      in_flight[tag_of(accepted)] = accepted;
-      ++accepted;
-      progress = clock;
-    }
-    machine.clock();
-    if (accept) offer();
-    if (clock - progress > answer_bound) {
-      throw sim::SimulationTimeout(fmt::format("no pair accepted and no result for {} clocks", answer_bound));
-    }
-  }
+  traffic.accepted = [](std::size_t) {};
+  traffic.answered = [&](std::size_t n, const PairResult& result) { run.results[n] = result; };
+  traffic.clock = [&](const PrimtestMachine::Outputs& out, bool offers) {
+    ++run.counts.clocks;
+    run.counts.offered_clocks += offers ? 1 : 0;
+    run.counts.beats += offers && out.beat_valid ? 1 : 0;
+  };
+  stream_pairs(machine, traffic);
   return run;
 }
 
@@ -71,7 +44,7 @@ RtlJudgement judge_rtl(const ShapeInfo& shape, const std::vector<PairRequest>& r
   RtlMachineOptions machine;
   machine.seed = seed;
   machine.scramble = true;
-  const RtlRun run = run_rtl(*make_rtl_machine(module_of(shape.a, shape.b), machine), requests);
+  const RtlRun run = run_rtl(*make_rtl_machine(shape.id, machine), requests);
   RtlJudgement sum;
   sum.counts = run.counts;
   for (std::size_t i = 0; i < requests.size(); ++i) {

@@ -30,7 +30,7 @@ struct RtlRun {
 };
 
 /// Sends the requests back to back, a new one on every clock on which the module is ready; number n gets tag_of(n).
-/// \throws sim::SimulationError no answer, an unexpected answer, a failed assertion
+/// \throws PrimtestStreamError no answer, an unexpected answer
 RtlRun run_rtl(PrimtestMachine& machine, const std::vector<PairRequest>& requests);
 
 /// The result that the model predicts, with this tag.

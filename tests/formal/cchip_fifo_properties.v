@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// Proved of cchip_fifo: it is a queue of DEPTH beats. Order, no loss, no duplicate, stability under stall; ready exactly
-// while there is room; a beat at the head waits one clock at most until it is offered.
+// Proved of cchip_fifo: it is a queue of DEPTH beats (queue_spec.v), ready exactly while there is room; a beat at the head
+// waits one clock at most until it is offered.
 module cchip_fifo_properties #(
     parameter integer WIDTH = 2,
     parameter integer DEPTH = 3
@@ -12,8 +12,9 @@ module cchip_fifo_properties #(
     input wire [WIDTH-1:0] s_data,
     input wire             m_ready
 );
-  wire s_ready, m_valid;
+  wire s_ready, m_valid, stalled;
   wire [WIDTH-1:0] m_data;
+  wire [7:0] count;
   cchip_fifo #(
       .WIDTH(WIDTH),
       .DEPTH(DEPTH)
@@ -28,37 +29,37 @@ module cchip_fifo_properties #(
       .m_data (m_data)
   );
 
-  // ---- the queue: a new beat enters at the end of those there are
+  queue_spec #(
+      .WIDTH(WIDTH),
+      .DEPTH(DEPTH)
+  ) spec (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(s_valid),
+      .s_ready(s_ready),
+      .s_data (s_data),
+      .m_valid(m_valid),
+      .m_ready(m_ready),
+      .m_data (m_data),
+      .count  (count),
+      .stalled(stalled)
+  );
+
   reg started_q = 1'b0;
-  reg reset_q, stalled_q, waited_q;
-  reg [7:0] count_q;
-  reg [WIDTH*DEPTH-1:0] queue_q;  // the head lowest
-  reg [WIDTH-1:0] data_q;
-  wire push = s_valid & s_ready;
-  wire pop = m_valid & m_ready;
-  wire [7:0] left = count_q - {7'd0, pop};
-  wire [WIDTH*DEPTH-1:0] rest = pop ? queue_q >> WIDTH : queue_q;
+  reg reset_q, waited_q;
   always @(posedge clk) begin
     started_q <= 1'b1;
     reset_q   <= rst;
-    stalled_q <= m_valid & ~m_ready & ~rst;
-    waited_q  <= ~rst & ~m_valid & (count_q != 8'd0);
-    data_q    <= m_data;
-    count_q   <= rst ? 8'd0 : left + {7'd0, push};
-    queue_q   <= rest;
-    if (push) queue_q[WIDTH*left+:WIDTH] <= s_data;
+    waited_q  <= ~rst & ~m_valid & (count != 8'd0);
   end
 
   always @(*) begin
     if (!started_q) assume (rst);
     if (started_q) begin
-      none_invented: assert (!m_valid || count_q != 8'd0);
-      order: assert (!m_valid || m_data == queue_q[WIDTH-1:0]);
-      ready: assert (s_ready == (!reset_q && count_q != DEPTH));
+      ready: assert (s_ready == (!reset_q && count != DEPTH));
       no_wait: assert (!waited_q || m_valid);
-      stable: assert (!stalled_q || (m_valid && m_data == data_q));
     end
   end
-  always @(posedge clk) full: cover (started_q && count_q == DEPTH && stalled_q);
+  always @(posedge clk) full: cover (started_q && count == DEPTH && stalled);
 endmodule
 `default_nettype wire

@@ -1,131 +1,104 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_defs.vh"
 // Proved of cchip_pr_decoupler, the region doing whatever it likes:
 //   while decoupled every output is its constant, so no handshake happens on either side
 //   decoupled follows decouple one clock later, also during reset
-//   both streams are queues of two beats, emptied by reset and by decoupling: a beat leaves once and in order; of the
-//   data one bit, any, is followed (which: `bit_pair`, `bit_result`)
-//   streams are stable under stall, unless it is closed
+//   both streams are queues of two beats (queue_spec.v), emptied by reset and by decoupling; of the data one bit, any, is
+//   followed (which: `bit_pair`, `bit_result`)
 //   after stop no pair is accepted, nor while the region is blank; idle = 1 only with nothing in either queue
 module cchip_pr_decoupler_properties #(
     parameter integer COORD_W = 4
 ) (
-    input wire                   clk,
-    input wire                   rst,
-    input wire                   stop,
-    input wire                   decouple,
-    input wire                   s_pair_valid,
-    input wire [           15:0] s_pair_tag,
-    input wire [            1:0] s_pair_mode,
-    input wire [4*3*COORD_W-1:0] s_pair_a,
-    input wire [4*3*COORD_W-1:0] s_pair_b,
-    input wire [            3:0] s_pair_err,
-    input wire                   m_result_ready,
-    input wire                   r_pair_ready,
-    input wire                   r_result_valid,
-    input wire [           15:0] r_result_tag,
-    input wire                   r_result_hit,
-    input wire                   r_result_grid,
-    input wire                   r_result_definite,
-    input wire [            8:0] r_result_axis,
-    input wire [            5:0] r_result_beats,
-    input wire [            7:0] r_rm_id,
-    input wire                   r_idle
+    input wire                                 clk,
+    input wire                                 rst,
+    input wire                                 stop,
+    input wire                                 decouple,
+    input wire                                 s_pair_valid,
+    input wire [`CCHIP_REQUEST_W(COORD_W)-1:0] s_pair_data,
+    input wire                                 m_result_ready,
+    input wire                                 r_pair_ready,
+    input wire                                 r_result_valid,
+    input wire [          `CCHIP_RESULT_W-1:0] r_result_data,
+    input wire [           `CCHIP_RM_ID_W-1:0] r_rm_id,
+    input wire                                 r_idle
 );
-  localparam integer PAIR_W = 22 + 24 * COORD_W;
-  localparam integer RESULT_W = 34;
+  localparam integer PAIR_W = `CCHIP_REQUEST_W(COORD_W);
+  localparam integer RESULT_W = `CCHIP_RESULT_W;
 
   wire decoupled, s_pair_ready, m_result_valid, idle, r_pair_valid, r_result_ready;
   wire [7:0] rm_id;
-  wire [RESULT_W-1:0] m_result;
-  wire [PAIR_W-1:0] r_pair;
-  wire [PAIR_W-1:0] s_pair = {s_pair_tag, s_pair_mode, s_pair_err, s_pair_a, s_pair_b};
-  wire [RESULT_W-1:0] r_result =
-      {r_result_tag, r_result_hit, r_result_grid, r_result_definite, r_result_axis, r_result_beats};
+  wire [PAIR_W-1:0] r_pair_data;
+  wire [RESULT_W-1:0] m_result_data;
   cchip_pr_decoupler #(
       .COORD_W(COORD_W)
   ) dut (
-      .clk              (clk),
-      .rst              (rst),
-      .stop             (stop),
-      .decouple         (decouple),
-      .decoupled        (decoupled),
-      .s_pair_valid     (s_pair_valid),
-      .s_pair_ready     (s_pair_ready),
-      .s_pair_tag       (s_pair_tag),
-      .s_pair_mode      (s_pair_mode),
-      .s_pair_a         (s_pair_a),
-      .s_pair_b         (s_pair_b),
-      .s_pair_err       (s_pair_err),
-      .m_result_valid   (m_result_valid),
-      .m_result_ready   (m_result_ready),
-      .m_result_tag     (m_result[33:18]),
-      .m_result_hit     (m_result[17]),
-      .m_result_grid    (m_result[16]),
-      .m_result_definite(m_result[15]),
-      .m_result_axis    (m_result[14:6]),
-      .m_result_beats   (m_result[5:0]),
-      .rm_id            (rm_id),
-      .idle             (idle),
-      .r_pair_valid     (r_pair_valid),
-      .r_pair_ready     (r_pair_ready),
-      .r_pair_tag       (r_pair[PAIR_W-1-:16]),
-      .r_pair_mode      (r_pair[PAIR_W-17-:2]),
-      .r_pair_a         (r_pair[24*COORD_W-1-:12*COORD_W]),
-      .r_pair_b         (r_pair[12*COORD_W-1:0]),
-      .r_pair_err       (r_pair[PAIR_W-19-:4]),
-      .r_result_valid   (r_result_valid),
-      .r_result_ready   (r_result_ready),
-      .r_result_tag     (r_result_tag),
-      .r_result_hit     (r_result_hit),
-      .r_result_grid    (r_result_grid),
-      .r_result_definite(r_result_definite),
-      .r_result_axis    (r_result_axis),
-      .r_result_beats   (r_result_beats),
-      .r_rm_id          (r_rm_id),
-      .r_idle           (r_idle)
+      .clk           (clk),
+      .rst           (rst),
+      .stop          (stop),
+      .decouple      (decouple),
+      .decoupled     (decoupled),
+      .s_pair_valid  (s_pair_valid),
+      .s_pair_ready  (s_pair_ready),
+      .s_pair_data   (s_pair_data),
+      .m_result_valid(m_result_valid),
+      .m_result_ready(m_result_ready),
+      .m_result_data (m_result_data),
+      .rm_id         (rm_id),
+      .idle          (idle),
+      .r_pair_valid  (r_pair_valid),
+      .r_pair_ready  (r_pair_ready),
+      .r_pair_data   (r_pair_data),
+      .r_result_valid(r_result_valid),
+      .r_result_ready(r_result_ready),
+      .r_result_data (r_result_data),
+      .r_rm_id       (r_rm_id),
+      .r_idle        (r_idle)
   );
 
   // ---- one bit of each queue
   (* anyconst *) reg [7:0] bit_pair;
   (* anyconst *) reg [5:0] bit_result;
   // vectors without an end that an index could pass
-  wire [255:0] s_pair_all = {{256 - PAIR_W{1'b0}}, s_pair};
-  wire [255:0] r_pair_all = {{256 - PAIR_W{1'b0}}, r_pair};
-  wire [63:0] r_result_all = {{64 - RESULT_W{1'b0}}, r_result};
-  wire [63:0] m_result_all = {{64 - RESULT_W{1'b0}}, m_result};
-  wire s_bit = s_pair_all[bit_pair];
-  wire r_bit = r_pair_all[bit_pair];
-  wire t_bit = r_result_all[bit_result];
-  wire m_bit = m_result_all[bit_result];
+  wire [255:0] s_pair_all = {{256 - PAIR_W{1'b0}}, s_pair_data};
+  wire [255:0] r_pair_all = {{256 - PAIR_W{1'b0}}, r_pair_data};
+  wire [63:0] r_result_all = {{64 - RESULT_W{1'b0}}, r_result_data};
+  wire [63:0] m_result_all = {{64 - RESULT_W{1'b0}}, m_result_data};
+  wire close = rst | decouple;
+  wire [7:0] pairs, results;
+  wire pair_stalled, result_stalled;
+  queue_spec spec_pair (
+      .clk    (clk),
+      .rst    (close),
+      .s_valid(s_pair_valid),
+      .s_ready(s_pair_ready),
+      .s_data (s_pair_all[bit_pair]),
+      .m_valid(r_pair_valid),
+      .m_ready(r_pair_ready),
+      .m_data (r_pair_all[bit_pair]),
+      .count  (pairs),
+      .stalled(pair_stalled)
+  );
+  queue_spec spec_result (
+      .clk    (clk),
+      .rst    (close),
+      .s_valid(r_result_valid),
+      .s_ready(r_result_ready),
+      .s_data (r_result_all[bit_result]),
+      .m_valid(m_result_valid),
+      .m_ready(m_result_ready),
+      .m_data (m_result_all[bit_result]),
+      .count  (results),
+      .stalled(result_stalled)
+  );
 
   reg started_q = 1'b0;
   reg decouple_q, close_q, stop_q;
-  reg [1:0] pairs_q, results_q;
-  reg pair_first_q, pair_second_q, result_first_q, result_second_q;
-  reg pair_stalled_q, result_stalled_q, r_bit_q, m_bit_q;
-  wire close = rst | decouple;
-  wire pair_in = s_pair_valid & s_pair_ready;
-  wire pair_out = r_pair_valid & r_pair_ready;
-  wire result_in = r_result_valid & r_result_ready;
-  wire result_out = m_result_valid & m_result_ready;
   always @(posedge clk) begin
     started_q  <= 1'b1;
     decouple_q <= decouple;
     close_q    <= close;
     stop_q     <= stop | (r_rm_id == 8'd0);
-    pairs_q    <= close ? 2'd0 : pairs_q + {1'b0, pair_in} - {1'b0, pair_out};
-    results_q  <= close ? 2'd0 : results_q + {1'b0, result_in} - {1'b0, result_out};
-    if (pair_out) pair_first_q <= pairs_q == 2'd2 ? pair_second_q : s_bit;
-    else if (pair_in && pairs_q == 2'd0) pair_first_q <= s_bit;
-    if (pair_in) pair_second_q <= s_bit;
-    if (result_out) result_first_q <= results_q == 2'd2 ? result_second_q : t_bit;
-    else if (result_in && results_q == 2'd0) result_first_q <= t_bit;
-    if (result_in) result_second_q <= t_bit;
-    pair_stalled_q   <= r_pair_valid & ~r_pair_ready & ~close;
-    result_stalled_q <= m_result_valid & ~m_result_ready & ~close;
-    r_bit_q <= r_bit;
-    m_bit_q <= m_bit;
   end
 
   always @(*) begin
@@ -133,25 +106,22 @@ module cchip_pr_decoupler_properties #(
     if (started_q) begin
       follows: assert (decoupled == decouple_q);
       if (decoupled) begin
-        constant_static: assert (!s_pair_ready && !m_result_valid && m_result == {RESULT_W{1'b0}});
+        constant_static: assert (!s_pair_ready && !m_result_valid && m_result_data == {RESULT_W{1'b0}});
         constant_others: assert (rm_id == 8'd0 && idle);
-        constant_region: assert (!r_pair_valid && !r_result_ready && r_pair == {PAIR_W{1'b0}});
-        no_handshake: assert (!pair_in && !pair_out && !result_in && !result_out);
+        constant_region: assert (!r_pair_valid && !r_result_ready && r_pair_data == {PAIR_W{1'b0}});
+        no_handshake: assert (!(s_pair_valid && s_pair_ready) && !(r_pair_valid && r_pair_ready)
+            && !(r_result_valid && r_result_ready) && !(m_result_valid && m_result_ready));
       end
-      pair_valid: assert (r_pair_valid == (pairs_q != 2'd0));
-      pair_order: assert (!r_pair_valid || r_bit == pair_first_q);
-      pair_ready: assert (s_pair_ready == (!close_q && !stop_q && pairs_q != 2'd2));
-      pair_stable: assert (!pair_stalled_q || (r_pair_valid && r_bit == r_bit_q));
-      result_valid: assert (m_result_valid == (results_q != 2'd0));
-      result_order: assert (!m_result_valid || m_bit == result_first_q);
-      result_ready: assert (r_result_ready == (!close_q && results_q != 2'd2));
-      result_stable: assert (!result_stalled_q || (m_result_valid && m_bit == m_bit_q));
-      idle_is_empty: assert (!idle || (pairs_q == 2'd0 && results_q == 2'd0));
+      pair_valid: assert (r_pair_valid == (pairs != 8'd0));
+      pair_ready: assert (s_pair_ready == (!close_q && !stop_q && pairs != 8'd2));
+      result_valid: assert (m_result_valid == (results != 8'd0));
+      result_ready: assert (r_result_ready == (!close_q && results != 8'd2));
+      idle_is_empty: assert (!idle || (pairs == 8'd0 && results == 8'd0));
     end
   end
   always @(posedge clk) begin
-    both_full: cover (started_q && pairs_q == 2'd2 && results_q == 2'd2);
-    cut_off: cover (started_q && decoupled && pair_stalled_q == 1'b0 && r_result_valid);
+    both_full: cover (started_q && pairs == 8'd2 && results == 8'd2);
+    cut_off: cover (started_q && decoupled && !pair_stalled && r_result_valid);
   end
 endmodule
 `default_nettype wire

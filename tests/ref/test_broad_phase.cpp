@@ -23,13 +23,6 @@ using Big = boost::multiprecision::cpp_int;
 
 namespace {
 
-std::uint64_t seed() {
-  const char* text = std::getenv("CCHIP_SEED");
-  const std::uint64_t value = text != nullptr ? std::strtoull(text, nullptr, 10) : 1;
-  UNSCOPED_INFO("CCHIP_SEED=" << value);
-  return value;
-}
-
 /// Rounded to a grid on which poses times vertices have no rounding error in doubles.
 Vec3d on_grid(const Vec3d& v) { return (v * 0x1p20).array().round().matrix() * 0x1p-20; }
 Mesh on_grid(Mesh mesh) {
@@ -245,7 +238,7 @@ Big fixed(double x) {
 }  // namespace
 
 TEST_CASE("query: descriptors and records keep every field", "[ref]") {
-  std::mt19937_64 random(seed());
+  std::mt19937_64 random(sim::seed_from_environment());
   for (int n = 0; n < 1000; ++n) {
     Line line = {};
     for (const Field& f : query_field::all) {
@@ -271,7 +264,7 @@ TEST_CASE("query: descriptors and records keep every field", "[ref]") {
 TEST_CASE("query: the map is within its error bound of the poses, exactly", "[ref]") {
   // B's map undone: with r = PB (cB + 2^eB v) + pB - (PA (cA + 2^eA u) + pA), the position v of u is off by PB^-1 r
   // 2^-eB, and PB^-1 = adjugate / determinant.
-  std::mt19937_64 random(seed());
+  std::mt19937_64 random(sim::seed_from_environment());
   std::size_t none = 0;
   std::size_t exact = 0;
   std::size_t swapped = 0;
@@ -369,7 +362,7 @@ TEST_CASE("query: what the chip does not take", "[ref]") {
 }
 
 TEST_CASE("broad phase: small meshes, all classes of poses, equal to brute force", "[ref]") {
-  std::mt19937_64 random(seed());
+  std::mt19937_64 random(sim::seed_from_environment());
   std::vector<Body> objects;
   objects.emplace_back(make_torus(1, 0.4, 8, 6));
   objects.emplace_back(noisy(make_torus(1, 0.4, 7, 5, Kind::quad), 0.02, random));
@@ -413,7 +406,7 @@ TEST_CASE("broad phase: small meshes, all classes of poses, equal to brute force
 }
 
 TEST_CASE("broad phase: differences of vertices are within eta of the exact ones", "[ref]") {
-  std::mt19937_64 random(seed());
+  std::mt19937_64 random(sim::seed_from_environment());
   std::vector<Body> bodies;
   bodies.emplace_back(noisy(make_torus(1, 0.4, 20, 12), 0.02, random));
   bodies.emplace_back(noisy(make_torus(1, 0.4, 20, 12, Kind::quad), 0.02, random));
@@ -481,7 +474,7 @@ TEST_CASE("broad phase: differences of vertices are within eta of the exact ones
 }
 
 TEST_CASE("broad phase: quads that rounding bends get no wrong definite answer", "[ref]") {
-  std::mt19937_64 random(seed());
+  std::mt19937_64 random(sim::seed_from_environment());
   std::size_t definite = 0;
   std::size_t open = 0;
   for (int n = 0; n < 10000; ++n) {
@@ -526,7 +519,7 @@ TEST_CASE("broad phase: quads that rounding bends get no wrong definite answer",
 }
 
 TEST_CASE("broad phase: limits and lines that make no sense end a query with a code", "[ref]") {
-  std::mt19937_64 random(seed());
+  std::mt19937_64 random(sim::seed_from_environment());
   const Body torus(noisy(make_torus(1, 0.4, 30, 20), 0.01, random));
   Posed pose{Affine3d::Identity(), Affine3d::Identity()};
   pose.a.translation() = Vec3d(0.25, 0, 0);
@@ -574,7 +567,7 @@ TEST_CASE("broad phase: limits and lines that make no sense end a query with a c
 }
 
 TEST_CASE("broad phase: larger meshes, no touching pair is missed", "[ref]") {
-  std::mt19937_64 random(seed());
+  std::mt19937_64 random(sim::seed_from_environment());
   std::vector<Body> objects;
   objects.emplace_back(noisy(make_torus(1, 0.4, 60, 30), 0.01, random));
   objects.emplace_back(noisy(make_torus(1, 0.4, 40, 20, Kind::quad), 0.005, random));

@@ -19,13 +19,6 @@ using Big = boost::multiprecision::cpp_int;
 
 namespace {
 
-std::uint64_t seed() {
-  const char* text = std::getenv("CCHIP_SEED");
-  const std::uint64_t value = text != nullptr ? std::strtoull(text, nullptr, 10) : 1;
-  UNSCOPED_INFO("CCHIP_SEED=" << value);
-  return value;
-}
-
 /// x 2^exponent in units of 2^-1300, which all doubles and all steps of leaves are multiples of.
 Big fixed(double x, int exponent = 0) {
   int own = 0;
@@ -117,7 +110,7 @@ Bytes with_field(const Image& image, std::size_t line, const Field& field, std::
 }  // namespace
 
 TEST_CASE("dop26: every vertex is inside, and no plane is further out than rounding takes it", "[ref]") {
-  std::mt19937_64 random(seed());
+  std::mt19937_64 random(sim::seed_from_environment());
   int rounded = 0;
   for (int n = 0; n < 3000; ++n) {
     Primitive p;
@@ -146,7 +139,7 @@ TEST_CASE("dop26: every vertex is inside, and no plane is further out than round
 }
 
 TEST_CASE("dop26: primitives that meet overlap, whatever their scale", "[ref]") {
-  std::mt19937_64 random(seed());
+  std::mt19937_64 random(sim::seed_from_environment());
   int hits = 0;
   int apart = 0;
   for (int n = 0; n < 20000; ++n) {
@@ -205,7 +198,7 @@ TEST_CASE("dop26: an overflow never separates", "[ref]") {
 }
 
 TEST_CASE("tree: every face once, volumes nested, children behind their parent, depth bounded", "[ref]") {
-  std::mt19937_64 random(seed());
+  std::mt19937_64 random(sim::seed_from_environment());
   std::array<std::size_t, 4> kinds = {};
   for (const Mesh& mesh : assorted_meshes(random)) {
     INFO(mesh.name);
@@ -272,7 +265,7 @@ TEST_CASE("tree: what has no tree is refused", "[ref]") {
 }
 
 TEST_CASE("image: what is read is what was written", "[ref]") {
-  std::mt19937_64 random(seed());
+  std::mt19937_64 random(sim::seed_from_environment());
   for (const Mesh& mesh : assorted_meshes(random)) {
     INFO(mesh.name);
     const Image image = image_of(mesh);
@@ -281,7 +274,7 @@ TEST_CASE("image: what is read is what was written", "[ref]") {
 }
 
 TEST_CASE("image: lines keep every value of every field", "[ref]") {
-  std::mt19937_64 random(seed());
+  std::mt19937_64 random(sim::seed_from_environment());
   const auto any = [&random](const Field& f) {
     const auto bits = static_cast<std::int64_t>(random() >> (64 - f.width));
     return f.is_signed ? bits - (std::int64_t{1} << (f.width - 1)) : bits;
@@ -339,7 +332,7 @@ TEST_CASE("image: no two fields of a line share a bit", "[ref]") {
 }
 
 TEST_CASE("image: every vertex is inside the box and the cuts of every node above, exactly", "[ref]") {
-  std::mt19937_64 random(seed());
+  std::mt19937_64 random(sim::seed_from_environment());
   std::size_t cuts = 0;
   for (const Mesh& mesh : assorted_meshes(random)) {
     INFO(mesh.name);
@@ -382,7 +375,7 @@ TEST_CASE("image: every vertex is inside the box and the cuts of every node abov
 }
 
 TEST_CASE("image: vertices of leaves are the mesh's to half a step, exactly where it says so", "[ref]") {
-  std::mt19937_64 random(seed());
+  std::mt19937_64 random(sim::seed_from_environment());
   std::size_t exact_leaves = 0;
   std::size_t rounded_leaves = 0;
   for (const Mesh& mesh : assorted_meshes(random)) {
@@ -432,7 +425,7 @@ TEST_CASE("image: quads that rounding could make concave are open", "[ref]") {
 }
 
 TEST_CASE("image: damaged images are refused with line and field", "[ref]") {
-  std::mt19937_64 random(seed());
+  std::mt19937_64 random(sim::seed_from_environment());
   const Mesh mesh = soup(200, false, random);
   const Tree tree = build_tree(mesh);
   const Image image = make_image(mesh, tree);

@@ -21,16 +21,6 @@ Primitive triangle(const Vec3d& v0, const Vec3d& v1, const Vec3d& v2) {
   return p;
 }
 
-/// Grid primitive times 2^exponent.
-Primitive scaled(const GridPrimitive& g, int exponent) {
-  Primitive p;
-  p.kind = g.kind;
-  for (std::size_t i = 0; i < g.vertex_count(); ++i) {
-    for (int d = 0; d < 3; ++d) p.v[i][d] = std::ldexp(g.v[i][d], exponent);
-  }
-  return p;
-}
-
 }  // namespace
 
 TEST_CASE("exact doubles: grid pairs at every magnitude", "[ref][exact_doubles]") {

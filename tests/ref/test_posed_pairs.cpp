@@ -15,16 +15,6 @@ using namespace cchip_test;
 
 namespace {
 
-/// Grid primitive times 2^exponent.
-Primitive scaled(const GridPrimitive& g, int exponent) {
-  Primitive p;
-  p.kind = g.kind;
-  for (std::size_t i = 0; i < g.vertex_count(); ++i) {
-    for (int d = 0; d < 3; ++d) p.v[i][d] = std::ldexp(g.v[i][d], exponent);
-  }
-  return p;
-}
-
 /// Some coordinates go to a neighbouring double.
 void nudge(Primitive& p, std::mt19937_64& random) {
   for (Vec3d& v : p.v) {

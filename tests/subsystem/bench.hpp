@@ -13,6 +13,7 @@
 #include <cchip/model/programme.hpp>
 #include <cchip/rtl/pair_port.hpp>
 #include <cchip/rtl/probes.hpp>
+#include <cchip/rtl/swap_port.hpp>
 #include <cchip/sim/axi_lite.hpp>
 #include <cchip/sim/axi_memory.hpp>
 #include <cchip/sim/simulation.hpp>
@@ -127,8 +128,7 @@ inline Bytes spoilt_bitstream(Spoilt how, int slot, int module_id, std::size_t p
 /// Signals of the subsystem that the account needs.
 template <class Model>
 SwapReport report_of(const Model& top) {
-  return {static_cast<int>(probes::report_slot(top)), static_cast<int>(probes::report_module(top)),
-          static_cast<SwapCode>(probes::report_code(top)), static_cast<unsigned>(probes::report_lost(top)), 0};
+  return sim::get_swap_report(probes::report_data(top));
 }
 /// Module of slot n in bits [2n +: 2].
 template <int slots, class Model>

@@ -58,6 +58,16 @@ void for_two_power_ups(Body&& body) {
   sim::with_wave_on_failure(test_name() + "_2", body, options);
 }
 
+/// The same with a simulation of `Model` and random numbers of its seed.
+template <class Model, class Body>
+void for_two_power_ups(Body&& body) {
+  for_two_power_ups([&](const sim::SimulationOptions& options) {
+    Random random(options.seed);
+    sim::Simulation<Model> simulation(options);
+    body(simulation, random);
+  });
+}
+
 /// \throws sim::SimulationError got differs from expected
 template <class Got, class Expected>
 void expect(const char* what, const Got& got, const Expected& expected) {

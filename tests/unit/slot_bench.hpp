@@ -19,15 +19,13 @@ class SlotRequests {
  public:
   SlotRequests(int coord_w, std::uint64_t seed) : coord_w_(coord_w), random_(seed) {
     for (const ModuleId id : {ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad}) {
-      sources_.emplace_back(coord_w, seed + static_cast<std::uint64_t>(id), kind_a(id), kind_b(id));
+      sources_.emplace_back(coord_w, seed + static_cast<std::uint64_t>(id), kinds_of(id)[0], kinds_of(id)[1]);
     }
   }
-  static Kind kind_a(ModuleId id) { return id == ModuleId::quad_quad ? Kind::quad : Kind::tri; }
-  static Kind kind_b(ModuleId id) { return id == ModuleId::tri_tri ? Kind::tri : Kind::quad; }
 
   PairRequest draw(ModuleId id) {
     stimulus::PairSource& source = sources_.at(static_cast<std::size_t>(id) - 1);
-    const auto classes = stimulus::classes_of(kind_a(id), kind_b(id));
+    const auto classes = stimulus::classes_of(kinds_of(id)[0], kinds_of(id)[1]);
     PairRequest request;
     request.pair = source.draw(classes.at(source.draw_class()).value);
     request.mode = static_cast<PairMode>(random_() & 1);

@@ -5,10 +5,22 @@
 #define CCHIP_TESTS_UNIT_STREAM_BENCH_HPP
 
 #include <array>
+#include <type_traits>
+#include <utility>
 
 #include "bench.hpp"
 
 namespace cchip::test {
+
+/// Whether a module has the input `stop`.
+template <class Model, class = void>
+struct HasStop : std::false_type {};
+template <class Model>
+struct HasStop<Model, std::void_t<decltype(std::declval<Model&>().stop)>> : std::true_type {};
+template <class Model>
+void set_stop(Model& top, bool stop) {
+  if constexpr (HasStop<Model>::value) top.stop = stop ? 1 : 0;
+}
 
 /// Inputs under all pairs of idle and back-pressure patterns, with resets in mid traffic; compares every output
 /// on every clock with the model that `make_model` returns.
@@ -68,6 +80,7 @@ template <class Model>
 std::uint64_t beats_passed(const sim::SimulationOptions& options, sim::Pattern source, std::uint64_t clocks) {
   sim::Simulation<Model> simulation(options);
   Model& top = simulation.top();
+  set_stop(top, false);
   std::uint64_t passed = 0;
   bool offered = false;
   Bench bench(
@@ -93,6 +106,7 @@ template <class Model>
 std::uint64_t beats_until_full(const sim::SimulationOptions& options) {
   sim::Simulation<Model> simulation(options);
   Model& top = simulation.top();
+  set_stop(top, false);
   std::uint64_t accepted = 0;
   Bench bench(
       [&](const sim::ClockInfo&) {
@@ -113,6 +127,7 @@ void require_registered_outputs(const sim::SimulationOptions& options) {
   sim::Simulation<Model> simulation(options);
   Model& top = simulation.top();
   const auto drive = [&] {
+    set_stop(top, chance(random, 20));
     top.s_valid = random() & 1;
     top.m_ready = random() & 1;
     sim::set_random(top.s_data, WIDTH, random);

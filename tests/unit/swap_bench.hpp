@@ -4,6 +4,7 @@
 #ifndef CCHIP_TESTS_UNIT_SWAP_BENCH_HPP
 #define CCHIP_TESTS_UNIT_SWAP_BENCH_HPP
 
+#include <cchip/rtl/swap_port.hpp>
 #include <cchip/sim/axi_memory.hpp>
 #include <cchip/wire/bitstream.hpp>
 #include <cchip/wire/swap.hpp>
@@ -126,14 +127,7 @@ class SwapBench : public sim::Agent {
     Model& m = top();
     if (now.in_reset) requests_.clear();
     m.s_swap_valid = requests_.empty() ? 0 : 1;
-    if (!requests_.empty()) {
-      const SwapRequest& r = requests_.front();
-      m.s_swap_slot = static_cast<CData>(r.slot);
-      m.s_swap_module = static_cast<CData>(r.module_id);
-      m.s_swap_address = r.address;
-      m.s_swap_size = r.size;
-      m.s_swap_force = r.force ? 1 : 0;
-    }
+    if (!requests_.empty()) sim::put_swap_request(m.s_swap_data, requests_.front());
     for (int i = 0; i < slots; ++i) {
       State& s = state_[at(i)];
       sim::set_bits(m.quiet, i, 1, s.quiet ? 1 : 0);
@@ -154,10 +148,7 @@ class SwapBench : public sim::Agent {
       if (phase() == SwapPhase::idle) accepted_ = clock_;
     }
     if (m.phase != 0 && !now.in_reset && (phases_.empty() || phases_.back() != phase())) phases_.push_back(phase());
-    if (m.m_report_valid != 0 && !now.in_reset) {
-      reports_.push_back(
-          {m.m_report_slot, m.m_report_module, static_cast<SwapCode>(m.m_report_code), m.m_report_lost, clock_});
-    }
+    if (m.m_report_valid != 0 && !now.in_reset) reports_.push_back(sim::get_swap_report(m.m_report_data, clock_));
     if (m.cfg_valid != 0) pass(m);
     for (int i = 0; i < slots; ++i) step(i, now.in_reset);
   }

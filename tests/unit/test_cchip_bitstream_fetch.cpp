@@ -12,10 +12,8 @@ using namespace cchip::test;
 TEMPLATE_LIST_TEST_CASE("cchip_bitstream_fetch: every word in order, never more than fit, stopped anywhere",
                         "[unit][cchip_bitstream_fetch]", cchip_bitstream_fetch_configs) {
   using Model = typename TestType::Model;
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<Model> simulation(options);
-    Model& top = simulation.top();
+  for_two_power_ups<Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
     top.run = 0;
     top.limit = 1000;
     sim::AxiMemory<Model> memory(top);

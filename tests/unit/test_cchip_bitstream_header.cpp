@@ -9,10 +9,8 @@ using namespace cchip::test;
 TEMPLATE_LIST_TEST_CASE("cchip_bitstream_header: verdict on headers with any of the faults",
                         "[unit][cchip_bitstream_header]", cchip_bitstream_header_configs) {
   using Model = typename TestType::Model;
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<Model> simulation(options);
-    Model& top = simulation.top();
+  for_two_power_ups<Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
     for (int round = 0; round < 2000; ++round) {
       const bool magic = chance(random, 80);
       const bool slot = chance(random, 80);

@@ -12,10 +12,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_port: bytes in order, in their slots, with
   using Model = typename TestType::Model;
   constexpr int width = TestType::CFG_W;
   constexpr std::uint64_t divider = TestType::CFG_DIVIDER;
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<Model> simulation(options);
-    Model& top = simulation.top();
+  for_two_power_ups<Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
     top.run = 0;
     top.length = 16;
     sim::StreamDriver<std::uint32_t> driver("s", top.s_valid, top.s_ready, [&](std::uint32_t w) { top.s_data = w; });

@@ -10,10 +10,8 @@ using namespace cchip::test;
 TEMPLATE_LIST_TEST_CASE("cchip_crc32: every clock agrees with a library's CRC", "[unit][cchip_crc32]",
                         cchip_crc32_configs) {
   using Model = typename TestType::Model;
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<Model> simulation(options);
-    Model& top = simulation.top();
+  for_two_power_ups<Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
     Bytes bytes;
     top.clear = 1;
     top.valid = 0;

@@ -9,10 +9,8 @@ using namespace cchip::test;
 TEMPLATE_LIST_TEST_CASE("cchip_delay: q is d DEPTH clocks later; reset clears what it shall, nothing else",
                         "[unit][cchip_delay]", cchip_delay_configs) {
   using Model = typename TestType::Model;
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<Model> simulation(options);
-    Model& top = simulation.top();
+  for_two_power_ups<Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
     // nothing: not defined
     using Value = std::optional<std::uint64_t>;
     const Value after_reset = TestType::RESET != 0 ? Value(0) : std::nullopt;

@@ -12,10 +12,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_norm1: sum of absolute values, all corners", "[un
   constexpr int v_w = TestType::V_W;
   const auto list = extremes(v_w);
   const std::size_t corners = list.size() * list.size() * list.size();
-  for_two_power_ups([&](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<Model> simulation(options);
-    Model& top = simulation.top();
+  for_two_power_ups<Model>([&](auto& simulation, Random& random) {
+    auto& top = simulation.top();
     model::Delay<std::optional<model::Word3>> delay(static_cast<std::size_t>(defs::norm1_latency()));
     model::Word3 in{};
     std::size_t next = 0;

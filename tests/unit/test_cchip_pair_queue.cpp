@@ -62,10 +62,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_pair_queue: throughput, DEPTH words of room, no p
 TEMPLATE_LIST_TEST_CASE("cchip_pair_queue: count is what waits, filled and drained several times",
                         "[unit][cchip_pair_queue]", cchip_pair_queue_configs) {
   using Model = typename TestType::Model;
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<Model> simulation(options);
-    Model& top = simulation.top();
+  for_two_power_ups<Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
     QueueModel model(TestType::DEPTH);
     bool filling = true;
     int full = 0;

@@ -9,9 +9,7 @@ using namespace cchip::test;
 TEMPLATE_LIST_TEST_CASE("cchip_pr_config_memory: every clock like a judge of the whole payload, good and bad ones",
                         "[unit][cchip_pr_config_memory]", cchip_pr_config_memory_configs) {
   constexpr int port_bytes = TestType::CFG_W / 8;
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<typename TestType::Model> simulation(options);
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     auto& top = simulation.top();
     ConfigMemoryModel model(TestType::SLOT_ID, TestType::RM_ID, port_bytes);
     const auto clock = [&](bool valid, std::uint32_t word) {
@@ -66,9 +64,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_config_memory: every clock like a judge of the
 
 TEMPLATE_LIST_TEST_CASE("cchip_pr_config_memory: at power-up RM_ID is in the slot; words without a name change nothing",
                         "[unit][cchip_pr_config_memory]", cchip_pr_config_memory_configs) {
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<typename TestType::Model> simulation(options);
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     auto& top = simulation.top();
     for (int i = 0; i < 500; ++i) {
       top.cfg_valid = 1;

@@ -39,23 +39,5 @@ TEST_CASE("cchip_pr_region: RM_ID 3 is the quad-quad test", "[unit][cchip_pr_reg
 }
 
 TEST_CASE("cchip_pr_region: RM_ID 0 is blank: never ready, never valid", "[unit][cchip_pr_region]") {
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<region_blank::Model> simulation(options);
-    sim::PairPort<region_blank::Model> port(simulation.top(), region_blank::COORD_W);
-    region_blank::Model& top = simulation.top();
-    for (int clock = 0; clock < 100; ++clock) {
-      port.scramble(random);
-      top.rst = random() & 1;
-      top.s_pair_valid = random() & 1;
-      top.m_result_ready = random() & 1;
-      simulation.settle();
-      REQUIRE(top.s_pair_ready == 0);
-      REQUIRE(top.m_result_valid == 0);
-      REQUIRE(top.idle == 1);
-      REQUIRE(int{top.rm_id} == static_cast<int>(ModuleId::blank));
-      REQUIRE(port.result() == PairResult{});
-      simulation.rise();
-    }
-  });
+  require_never_answers<region_blank>();
 }

@@ -311,9 +311,7 @@ TEMPLATE_LIST_TEST_CASE(
 
 TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: no output follows an input before the rising edge", "[unit][cchip_pr_slot]",
                         Simulated) {
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<typename TestType::Model> simulation(options);
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     auto& top = simulation.top();
     sim::PairPort<typename TestType::Model> port(top, TestType::COORD_W);
     const auto drive = [&] {

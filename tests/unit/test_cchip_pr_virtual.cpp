@@ -13,11 +13,9 @@ namespace {
 /// Outputs of the region as one number.
 template <class Model>
 std::uint64_t outputs(const Model& top) {
-  return std::uint64_t{top.m_result_tag} | std::uint64_t{top.m_result_axis} << 16 |
-         std::uint64_t{top.m_result_beats} << 25 | std::uint64_t{top.rm_id} << 31 | std::uint64_t{top.idle} << 39 |
-         std::uint64_t{top.s_pair_ready} << 40 | std::uint64_t{top.m_result_valid} << 41 |
-         std::uint64_t{top.m_result_hit} << 42 | std::uint64_t{top.m_result_grid} << 43 |
-         std::uint64_t{top.m_result_definite} << 44;
+  constexpr int w = defs::result_w;
+  return std::uint64_t{top.m_result_data} | std::uint64_t{top.rm_id} << w | std::uint64_t{top.idle} << (w + 8) |
+         std::uint64_t{top.s_pair_ready} << (w + 9) | std::uint64_t{top.m_result_valid} << (w + 10);
 }
 constexpr int output_bits = 45;
 

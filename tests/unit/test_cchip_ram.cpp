@@ -8,10 +8,8 @@ using namespace cchip::test;
 
 TEMPLATE_LIST_TEST_CASE("cchip_ram: registered read of the old word", "[unit][cchip_ram]", cchip_ram_configs) {
   using Model = typename TestType::Model;
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<Model> simulation(options);
-    Model& top = simulation.top();
+  for_two_power_ups<Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
     model::Ram<std::uint64_t> model(TestType::DEPTH);
     // the model gets the address one clock late and reads at once
     model::Delay<std::optional<std::uint64_t>> out(static_cast<std::size_t>(defs::ram_latency() - 1));

@@ -9,9 +9,7 @@ using namespace cchip::test;
 
 TEMPLATE_LIST_TEST_CASE("cchip_roc_generator: the model's output on every clock, from power-up on",
                         "[unit][cchip_roc_generator]", cchip_roc_generator_configs) {
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<typename TestType::Model> simulation(options);
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     auto& top = simulation.top();
     model::RocGenerator model(TestType::CYCLES);
     top.rst = 0;  // no reset at first: power-up counts as a configuration

@@ -31,10 +31,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_axis: e x f and its norms after SUBSTAGES clo
                         cchip_sat_axis_configs) {
   using Model = typename TestType::Model;
   constexpr int w = TestType::COORD_W;
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<Model> simulation(options);
-    Model& top = simulation.top();
+  for_two_power_ups<Model>([](sim::Simulation<Model>& simulation, Random& random) {
+    auto& top = simulation.top();
     model::Delay<std::optional<model::Selection>> delay(TestType::SUBSTAGES);
     model::Selection in;
     std::uint64_t compared = 0;

@@ -87,10 +87,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_project: projections and signs after SUBSTAGE
   using Model = typename TestType::Model;
   constexpr int w = TestType::COORD_W;
   constexpr int points = TestType::POINTS;
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<Model> simulation(options);
-    Model& top = simulation.top();
+  for_two_power_ups<Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
     model::Delay<std::optional<Task>> delay(TestType::SUBSTAGES);
     model::Delay<std::optional<Task>> bounds(static_cast<std::size_t>(TestType::SUBSTAGES + defs::bound_lag()));
     Task in;

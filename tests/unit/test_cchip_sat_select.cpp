@@ -106,10 +106,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_select: edges, points and flags of every axis
   const model::Shape shape{TestType::VERTS_A, TestType::VERTS_B};
   const std::vector<AxisCode> codes = axis_codes(shape);
   static_assert(defs::points(TestType::VERTS_A, TestType::VERTS_B) <= max_slots, "more slots than the model has");
-  for_two_power_ups([&](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<Model> simulation(options);
-    Model& top = simulation.top();
+  for_two_power_ups<Model>([&](auto& simulation, Random& random) {
+    auto& top = simulation.top();
     struct Task {
       AxisCode code;
       GridPair pair;

@@ -9,10 +9,8 @@ using namespace cchip::test;
 
 TEST_CASE("cchip_swap_counters: counts of random swaps", "[unit][cchip_swap_counters]") {
   using Model = cchip_swap_counters::Model;
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    sim::Simulation<Model> simulation(options);
-    Model& top = simulation.top();
+  for_two_power_ups<Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
     top.clear = 0;
     top.phase = 0;
     top.report_valid = 0;

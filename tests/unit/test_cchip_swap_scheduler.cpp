@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scheduler with slots, queues, table and controller played by the test.
+#include <cchip/rtl/swap_port.hpp>
 #include <cchip/wire/definitions.hpp>
 #include <cchip/wire/swap.hpp>
 #include <models/cchip_swap_scheduler.hpp>
@@ -91,24 +92,14 @@ class SchedulerBench {
     top.command_force = c.force;
     command_.reset();
     top.s_report_valid = report_ ? 1 : 0;
-    const SwapReport r = report_.value_or(SwapReport{});
-    top.s_report_slot = static_cast<CData>(r.slot);
-    top.s_report_module = static_cast<CData>(r.module_id);
-    top.s_report_code = static_cast<CData>(r.code);
-    top.s_report_lost = static_cast<SData>(r.lost);
+    sim::put_swap_report(top.s_report_data, report_.value_or(SwapReport{}));
     report_.reset();
   }
   void sample(const sim::ClockInfo& now) {
     auto& top = simulation.top();
     if (now.in_reset) return;
-    if (top.m_swap_valid != 0 && ready) {
-      requests.push_back(
-          {top.m_swap_slot, top.m_swap_module, top.m_swap_address, top.m_swap_size, top.m_swap_force != 0});
-    }
-    if (top.m_report_valid != 0) {
-      told.push_back(
-          {top.m_report_slot, top.m_report_module, static_cast<SwapCode>(top.m_report_code), top.m_report_lost});
-    }
+    if (top.m_swap_valid != 0 && ready) requests.push_back(sim::get_swap_request(top.m_swap_data));
+    if (top.m_report_valid != 0) told.push_back(sim::get_swap_report(top.m_report_data));
     cleared |= static_cast<unsigned>(sim::get_bits(top.table_invalidate, 0, static_cast<int>(entries)));
     no_provider = top.no_provider;
   }

@@ -46,8 +46,8 @@ TEST_CASE("harness: the layout names signals that exist", "[unit][harness]") {
   options.trace_path = sim::wave_folder() + "/harness_layout_" + to_name(id) + ".fst";
   options.trace_clocks = 10;
   GridPair pair;
-  pair.a.kind = id == ModuleId::quad_quad ? Kind::quad : Kind::tri;
-  pair.b.kind = id == ModuleId::tri_tri ? Kind::tri : Kind::quad;
+  pair.a.kind = kinds_of(id)[0];
+  pair.b.kind = kinds_of(id)[1];
   make_rtl_engine(options)->run({pair}, PairMode::directed);
   const std::set<std::string> signals = signals_of(options.trace_path);
   REQUIRE(signals.size() > 100);

@@ -6,9 +6,8 @@
 module bench_static;
 
   localparam integer W = `CCHIP_COORD_W_DEFAULT;
-  localparam integer SIDE_W = 4 * 3 * W;
-  localparam integer PAIR_W = `CCHIP_ERR_W + `CCHIP_MODE_W + 2 * SIDE_W + `CCHIP_TAG_W;
-  localparam integer RESULT_W = `CCHIP_BEATS_W + `CCHIP_AXIS_CODE_W + 3 + `CCHIP_TAG_W;
+  localparam integer PAIR_W = `CCHIP_REQUEST_W(W);
+  localparam integer RESULT_W = `CCHIP_RESULT_W;
   localparam integer STATUS_W = 1 + `CCHIP_RM_ID_W + 1 + RESULT_W;
 
   reg clk, rst, decouple, region_rst, in_bit, in_shift, in_send, out_take, out_shift;
@@ -42,16 +41,13 @@ module bench_static;
 
   // A: triangle in the plane z = 0; B: the same one, its apex `low` and its base 10 high
   integer i;
+  reg [`CCHIP_PRIMITIVE_W(W)-1:0] a, b;
   reg [PAIR_W-1:0] word;
   task send(input [15:0] tag, input integer low);
     begin
-      word = {
-        4'd0,
-        `CCHIP_MODE_DIRECTED,
-        {point(0, 0, 0), point(4, 4, low), point(20, 8, 10), point(-8, 20, 10)},
-        {point(0, 0, 0), point(0, 20, 0), point(20, 0, 0), point(-20, -20, 0)},
-        tag
-      };
+      a = {point(0, 0, 0), point(0, 20, 0), point(20, 0, 0), point(-20, -20, 0)};
+      b = {point(0, 0, 0), point(4, 4, low), point(20, 8, 10), point(-8, 20, 10)};
+      word = `CCHIP_REQUEST_OF(tag, a, b, 4'd0, `CCHIP_MODE_DIRECTED);
       for (i = 0; i < PAIR_W; i = i + 1) begin
         in_bit   = word[i];
         in_shift = 1;

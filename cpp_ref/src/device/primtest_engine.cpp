@@ -3,7 +3,9 @@
 #include <cchip/geometry/canonical.hpp>
 #include <map>
 #include <stdexcept>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
 namespace cchip {
 namespace {
@@ -144,6 +146,7 @@ class PrimtestEngine : public PairEngine {
     const std::vector<std::size_t>& indices;
     std::vector<EngineAnswer>& answers;
     std::size_t size() const { return indices.size(); }
+    const GridPair& pair(std::size_t n) const { return pairs[indices[n]]; }
     EngineAnswer& answer(std::size_t n) const { return answers[indices[n]]; }
   };
 
@@ -154,65 +157,34 @@ class PrimtestEngine : public PairEngine {
   }
 
   void stream(Lane& lane, const Batch& batch) {
-    PrimtestMachine& machine = *lane.machine;
-    std::size_t accepted = 0;
-    std::size_t answered = 0;
-    std::uint64_t progress = lane.statistics.clocks;
-    offer(machine, batch, 0);
-    while (answered < batch.size()) {
-      const std::uint64_t clock = lane.statistics.clocks;
-      const PrimtestMachine::Outputs out = machine.outputs();
-      if (out.result) {
-        take(*out.result, batch, accepted, clock);
-        ++answered;
-        progress = clock;
-      }
-      const bool accept = out.pair_ready && accepted < batch.size();
-      if (accept) {
-        batch.answer(accepted).clocks = EngineAnswer::Handshakes{clock, 0};
-        ++accepted;
-        progress = clock;
-      }
-      ++lane.statistics.clocks;
-      lane.statistics.beats += out.beat_valid;
-      lane.statistics.waiting_clocks += out.pair_waits;
-      machine.clock();
-      if (accept) offer(machine, batch, accepted);
-      if (clock - progress > options_.answer_bound) give_up(batch, clock, accepted, answered);
+    EngineStatistics& statistics = lane.statistics;
+    PrimtestTraffic traffic;
+    traffic.pairs = batch.size();
+    traffic.answer_bound = options_.answer_bound;
+    traffic.request = [&](std::size_t n) {
+      const GridPair& pair = batch.pair(n);
+      // fewer than 2^16 pairs are in flight
+      return PairRequest{sent(pair, dispatch_of(pair)), static_cast<std::uint16_t>(n % tags),
+                         batch.modes[batch.indices[n]]};
+    };
+    traffic.accepted = [&](std::size_t n) { batch.answer(n).clocks = EngineAnswer::Handshakes{statistics.clocks, 0}; };
+    traffic.answered = [&](std::size_t n, const PairResult& result) {
+      EngineAnswer& answer = batch.answer(n);
+      static_cast<PairResult&>(answer) = result;
+      answer.axis = original(result.axis, batch.pair(n), dispatch_of(batch.pair(n)));
+      answer.clocks->answered = statistics.clocks;
+    };
+    traffic.clock = [&](const PrimtestMachine::Outputs& out, bool) {
+      ++statistics.clocks;
+      statistics.beats += out.beat_valid;
+      statistics.waiting_clocks += out.pair_waits;
+    };
+    try {
+      stream_pairs(*lane.machine, traffic);
+    } catch (const PrimtestStreamError& error) {
+      throw std::runtime_error("engine " + options_.name + ": clock " + std::to_string(statistics.clocks) + ": " +
+                               error.what() + "; this is a defect, please report it");
     }
-  }
-
-  /// The tag is the place in the batch modulo 2^16. Fewer pairs are in flight, so it is unique among them.
-  static void offer(PrimtestMachine& machine, const Batch& batch, std::size_t n) {
-    if (n == batch.size()) {
-      machine.offer(std::nullopt);
-      return;
-    }
-    const std::size_t index = batch.indices[n];
-    const GridPair& pair = batch.pairs[index];
-    machine.offer(PairRequest{sent(pair, dispatch_of(pair)), static_cast<std::uint16_t>(n % tags), batch.modes[index]});
-  }
-
-  void take(const PairResult& result, const Batch& batch, std::size_t accepted, std::uint64_t clock) const {
-    const std::size_t age = (accepted + tags - 1 - result.tag) % tags;  // 0: the pair accepted last
-    if (age >= accepted || batch.answer(accepted - 1 - age).clocks->answered != 0) {
-      throw std::runtime_error("engine " + options_.name + ": clock " + std::to_string(clock) + ": result with tag " +
-                               std::to_string(result.tag) +
-                               " that no pair in flight has; this is a defect, please report it");
-    }
-    const std::size_t n = accepted - 1 - age;
-    const GridPair& pair = batch.pairs[batch.indices[n]];
-    EngineAnswer& answer = batch.answer(n);
-    static_cast<PairResult&>(answer) = result;
-    answer.axis = original(result.axis, pair, dispatch_of(pair));
-    answer.clocks->answered = clock;
-  }
-
-  [[noreturn]] void give_up(const Batch& batch, std::uint64_t clock, std::size_t accepted, std::size_t answered) const {
-    throw std::runtime_error("engine " + options_.name + ": no pair accepted and no result for " +
-                             std::to_string(options_.answer_bound) + " clocks, clock " + std::to_string(clock) + ", " +
-                             std::to_string(accepted) + " of " + std::to_string(batch.size()) + " pairs accepted, " +
-                             std::to_string(answered) + " answered; this is a defect, please report it");
   }
 
   PrimtestEngineOptions options_;
@@ -220,6 +192,52 @@ class PrimtestEngine : public PairEngine {
 };
 
 }  // namespace
+
+void stream_pairs(PrimtestMachine& machine, const PrimtestTraffic& traffic) {
+  std::unordered_map<std::uint16_t, std::size_t> in_flight;  // number of the pair with this tag
+  std::uint16_t tag = 0;                                     // of the pair on s_pair
+  std::size_t accepted = 0;
+  std::size_t answered = 0;
+  const auto offer = [&] {
+    std::optional<PairRequest> request;
+    if (accepted < traffic.pairs) {
+      request = traffic.request(accepted);
+      tag = request->tag;
+    }
+    machine.offer(request);
+  };
+  offer();
+  std::uint64_t progress = 0;
+  for (std::uint64_t clock = 0; answered < traffic.pairs; ++clock) {
+    const PrimtestMachine::Outputs out = machine.outputs();
+    const bool offers = accepted < traffic.pairs;
+    if (out.result) {
+      const auto found = in_flight.find(out.result->tag);
+      if (found == in_flight.end()) {
+        throw PrimtestStreamError("result with tag " + std::to_string(out.result->tag) + " that no pair in flight has");
+      }
+      traffic.answered(found->second, *out.result);
+      in_flight.erase(found);
+      ++answered;
+      progress = clock;
+    }
+    const bool accept = offers && out.pair_ready;
+    if (accept) {
+      in_flight[tag] = accepted;
+      traffic.accepted(accepted);
+      ++accepted;
+      progress = clock;
+    }
+    traffic.clock(out, offers);
+    machine.clock();
+    if (accept) offer();
+    if (clock - progress > traffic.answer_bound) {
+      throw PrimtestStreamError("no pair accepted and no result for " + std::to_string(traffic.answer_bound) +
+                                " clocks, " + std::to_string(accepted) + " of " + std::to_string(traffic.pairs) +
+                                " pairs accepted, " + std::to_string(answered) + " answered");
+    }
+  }
+}
 
 std::unique_ptr<PairEngine> make_primtest_engine(PrimtestEngineOptions options) {
   return std::make_unique<PrimtestEngine>(std::move(options));

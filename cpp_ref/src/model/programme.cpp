@@ -12,23 +12,24 @@ AxisCode axis(AxisClass cls, std::size_t k = 0, std::size_t l = 0) {
 int sign_of(bool negative, bool zero) { return zero ? 0 : negative ? -1 : 1; }
 bool is_zero(const std::array<int, 3>& normal) { return normal[0] == 0 && normal[1] == 0 && normal[2] == 0; }
 
-void record_normal_a(Sides& s, const Shape& shape, const Verdict& v) {
-  const std::size_t first = shape.points() - shape.b;
-  for (std::size_t j = 0; j < shape.b; ++j) {
-    s.b[j] = sign_of(v.compare.negative[first + j], v.compare.zero[first + j]);
+/// A normal, and the sides of it on which the other primitive's vertices lie: the last points of the verdict.
+template <class Signs>
+void record_normal(Sides& s, const Shape& shape, const Verdict& v, std::array<int, 3>& normal, std::size_t vertices,
+                   Signs& sides) {
+  const std::size_t first = shape.points() - vertices;
+  for (std::size_t i = 0; i < vertices; ++i) {
+    sides[i] = sign_of(v.compare.negative[first + i], v.compare.zero[first + i]);
   }
   s.certain = s.certain && v.compare.clear;
-  for (std::size_t d = 0; d < 3; ++d) s.normal_a[d] = sign_of(v.axis_negative[d], v.axis_zero[d]);
+  for (std::size_t d = 0; d < 3; ++d) normal[d] = sign_of(v.axis_negative[d], v.axis_zero[d]);
+}
+void record_normal_a(Sides& s, const Shape& shape, const Verdict& v) {
+  record_normal(s, shape, v, s.normal_a, shape.b, s.b);
   s.largest = v.axis_largest;
   s.warped_a = shape.a == 4 && !v.compare.zero[0];
 }
 void record_normal_b(Sides& s, const Shape& shape, const Verdict& v) {
-  const std::size_t first = shape.points() - shape.a;
-  for (std::size_t i = 0; i < shape.a; ++i) {
-    s.a[i] = sign_of(v.compare.negative[first + i], v.compare.zero[first + i]);
-  }
-  s.certain = s.certain && v.compare.clear;
-  for (std::size_t d = 0; d < 3; ++d) s.normal_b[d] = sign_of(v.axis_negative[d], v.axis_zero[d]);
+  record_normal(s, shape, v, s.normal_b, shape.a, s.a);
   s.warped_b = shape.b == 4 && !v.compare.zero[0];
 }
 

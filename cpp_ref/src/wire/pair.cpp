@@ -16,22 +16,7 @@ std::string to_text(const GridPair& pair) {
 }
 
 ModuleId module_of(Kind a, Kind b) {
-  if (a != b) return ModuleId::tri_quad;
-  return a == Kind::quad ? ModuleId::quad_quad : ModuleId::tri_tri;
-}
-
-std::array<std::size_t, 2> vertices_of(ModuleId id) {
-  switch (id) {
-    case ModuleId::tri_tri:
-      return {3, 3};
-    case ModuleId::tri_quad:
-      return {3, 4};
-    case ModuleId::quad_quad:
-      return {4, 4};
-    case ModuleId::blank:
-      break;
-  }
-  return {0, 0};
+  return static_cast<ModuleId>(defs::rm_of(static_cast<int>(a), static_cast<int>(b)));
 }
 
 const char* to_name(ModuleId id) {

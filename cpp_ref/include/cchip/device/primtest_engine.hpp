@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 namespace cchip {
@@ -30,6 +31,26 @@ class PrimtestMachine {
   /// The rising edge that ends the present clock. Call outputs() first.
   virtual void clock() = 0;
 };
+
+/// Pairs for one machine, and who is told what became of them. Number n counts from 0.
+struct PrimtestTraffic {
+  std::size_t pairs = 0;
+  /// Request n; no other pair in flight has its tag.
+  std::function<PairRequest(std::size_t n)> request;
+  std::function<void(std::size_t n)> accepted;
+  std::function<void(std::size_t n, const PairResult& result)> answered;
+  /// At the end of every clock; `offers`: a pair was on s_pair.
+  std::function<void(const PrimtestMachine::Outputs& outputs, bool offers)> clock;
+  /// Longest time without a pair accepted or answered, clocks.
+  std::uint64_t answer_bound = 0;
+};
+/// An answer that nobody asked for, or none.
+struct PrimtestStreamError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+/// Sends the pairs back to back, a new one on every clock on which the machine is ready, until all are answered.
+/// \throws PrimtestStreamError
+void stream_pairs(PrimtestMachine& machine, const PrimtestTraffic& traffic);
 
 struct PrimtestEngineOptions {
   std::string name;

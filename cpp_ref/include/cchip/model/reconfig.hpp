@@ -6,7 +6,6 @@
 #define CCHIP_MODEL_RECONFIG_HPP
 
 #include <cstdint>
-#include <deque>
 
 namespace cchip::model {
 
@@ -22,32 +21,6 @@ class RocGenerator {
  private:
   std::uint64_t cycles_;
   std::uint64_t since_ = 0;
-};
-
-/// cchip_pr_gate: a queue of two beats that takes nothing while stopped and is empty while closed.
-template <class T>
-class Gate {
- public:
-  bool s_ready() const { return ready_; }
-  bool m_valid() const { return !beats_.empty(); }
-  /// Defined while m_valid().
-  const T& m_data() const { return beats_.front(); }
-  /// All outputs are 0, data too.
-  bool closed() const { return closed_; }
-
-  void clock(bool close, bool stop, bool s_valid, const T& s_data, bool m_ready) {
-    const bool push = s_valid && ready_;
-    if (m_ready && !beats_.empty()) beats_.pop_front();
-    if (push) beats_.push_back(s_data);
-    if (close) beats_.clear();
-    ready_ = !close && !stop && beats_.size() < 2;
-    closed_ = close;
-  }
-
- private:
-  std::deque<T> beats_;
-  bool ready_ = false;
-  bool closed_ = true;
 };
 
 }  // namespace cchip::model

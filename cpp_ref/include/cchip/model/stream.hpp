@@ -71,7 +71,7 @@ class Fifo {
   bool ready_ = false;
 };
 
-/// cchip_skid_buffer: two beats, every output registered.
+/// cchip_skid_buffer: two beats, every output registered; takes nothing after a clock with `stop`.
 template <class T>
 class SkidBuffer {
  public:
@@ -80,7 +80,7 @@ class SkidBuffer {
   /// Defined while m_valid().
   const T& m_data() const { return *out_; }
 
-  void clock(bool s_valid, const T& s_data, bool m_ready) {
+  void clock(bool s_valid, const T& s_data, bool m_ready, bool stop = false) {
     std::optional<T> in;
     if (s_valid && ready_) in = s_data;
     if (m_ready || !out_) {
@@ -88,7 +88,7 @@ class SkidBuffer {
     } else if (in) {
       skid_ = std::move(in);
     }
-    ready_ = !skid_;
+    ready_ = !stop && !skid_;
   }
   void reset() {
     out_.reset();

@@ -154,6 +154,10 @@ constexpr int point_w(int w) { return 3 * w; }
 constexpr int primitive_w(int w) { return vertices * point_w(w); }
 /// the module that tests primitives of a and of b vertices, a <= b: 3 3, 3 4 or 4 4 [ModuleId]
 constexpr int rm_of(int a, int b) { return a + b - 5; }
+/// vertices of A of that module, m = 1..3 [vertex]
+constexpr int rm_verts_a(int m) { return m <= 2 ? 3 : 4; }
+/// vertices of B of that module, m = 1..3 [vertex]
+constexpr int rm_verts_b(int m) { return m <= 1 ? 3 : 4; }
 /// difference of two coordinates [bit]
 constexpr int edge_w(int w) { return w + 1; }
 /// component of the cross product of two edges: |.| <= 2 (2^w - 1)^2 [bit]
@@ -261,6 +265,30 @@ constexpr Field result_definite = {18, 1};
 constexpr Field result_axis = {19, 9};
 /// m_result_beats
 constexpr Field result_beats = {28, 6};
+
+/// beat of s_swap and m_swap: put this module into this slot [bit]
+constexpr int swap_request_w = 81;
+/// number of the slot
+constexpr Field swap_request_slot = {0, 8};
+/// ModuleId
+constexpr Field swap_request_module = {8, 8};
+/// of the bitstream's header, byte
+constexpr Field swap_request_address = {16, 32};
+/// header and payload, byte
+constexpr Field swap_request_size = {48, 32};
+/// pairs not answered in time are given up
+constexpr Field swap_request_force = {80, 1};
+
+/// beat of s_report and m_report: what became of a request [bit]
+constexpr int swap_report_w = 36;
+/// slot of the request
+constexpr Field swap_report_slot = {0, 8};
+/// module of the request
+constexpr Field swap_report_module = {8, 8};
+/// outcome, SwapCode
+constexpr Field swap_report_code = {16, 4};
+/// pairs given up
+constexpr Field swap_report_lost = {20, 16};
 
 /// state of a pair's programme, which travels with its beat (cchip_axis_programme) [bit]
 constexpr int state_w = 34;

@@ -36,6 +36,20 @@ struct SimulationOptions {
   std::shared_ptr<std::uint64_t> clocks_run;
 };
 
+/// Options of a simulation that lasts as long as somebody steps it.
+inline SimulationOptions without_timeout(std::uint64_t seed) {
+  SimulationOptions options;
+  options.seed = seed;
+  options.timeout_clocks = 0;
+  return options;
+}
+inline SimulationOptions without_timeout(std::uint64_t seed, std::string trace_path, std::uint64_t trace_clocks) {
+  SimulationOptions options = without_timeout(seed);
+  options.trace_path = std::move(trace_path);
+  options.trace_clocks = trace_clocks;
+  return options;
+}
+
 namespace detail {
 template <class Model, class = void>
 struct HasReset : std::false_type {};

@@ -32,10 +32,7 @@ CCHIP_PROBE(array_choice, cchip_primtest_array__DOT__choice_q)
 CCHIP_SUBSYSTEM_PROBE(swap_phase, u_controller__DOT__u_sequencer__DOT__phase_q)
 CCHIP_SUBSYSTEM_PROBE(swap_slot, u_scheduler__DOT__slot_of_swap_q)
 CCHIP_SUBSYSTEM_PROBE(report_valid, u_scheduler__DOT__m_report_valid_q)
-CCHIP_SUBSYSTEM_PROBE(report_slot, u_scheduler__DOT__m_report_slot_q)
-CCHIP_SUBSYSTEM_PROBE(report_module, u_scheduler__DOT__m_report_module_q)
-CCHIP_SUBSYSTEM_PROBE(report_code, u_scheduler__DOT__m_report_code_q)
-CCHIP_SUBSYSTEM_PROBE(report_lost, u_scheduler__DOT__m_report_lost_q)
+CCHIP_SUBSYSTEM_PROBE(report_data, u_scheduler__DOT__m_report_data_q)
 CCHIP_SUBSYSTEM_PROBE(bitstreams_valid, u_regs__DOT__bitstream_valid_value_q)
 
 // A slot of it: pairs inside, the module that it shows, whether it is decoupled.

@@ -25,17 +25,16 @@
 
 namespace cchip::stimulus {
 
-/// A primitive test: kinds of its primitives.
+/// A primitive test and the kinds of its primitives.
 struct ShapeInfo {
   const char* name;
-  Kind a;
-  Kind b;
-  model::Options options() const {
-    return {model::Shape{static_cast<std::size_t>(a), static_cast<std::size_t>(b)}, true};
-  }
+  ModuleId id;
+  Kind a = kinds_of(id)[0];
+  Kind b = kinds_of(id)[1];
+  model::Options options() const { return {{vertices_of(id)[0], vertices_of(id)[1]}, true}; }
 };
 constexpr std::array<ShapeInfo, 3> all_shapes = {
-    {{"tri-tri", Kind::tri, Kind::tri}, {"tri-quad", Kind::tri, Kind::quad}, {"quad-quad", Kind::quad, Kind::quad}}};
+    {{"tri-tri", ModuleId::tri_tri}, {"tri-quad", ModuleId::tri_quad}, {"quad-quad", ModuleId::quad_quad}}};
 
 /// Both programmes; the index is the mode.
 constexpr std::array<const char*, 2> programmes = {"exhaustive", "directed"};

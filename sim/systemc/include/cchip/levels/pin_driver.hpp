@@ -9,26 +9,10 @@
 
 namespace cchip::levels {
 
+template <class T>
+using PinSignal = sc_core::sc_signal<T>;
 /// Signals between the static side and a primitive test; the reset is not among them.
-struct PrimtestSignals {
-  sc_core::sc_signal<bool> s_pair_valid{"s_pair_valid"};
-  sc_core::sc_signal<bool> s_pair_ready{"s_pair_ready"};
-  sc_core::sc_signal<std::uint32_t> s_pair_tag{"s_pair_tag"};
-  sc_core::sc_signal<std::uint32_t> s_pair_mode{"s_pair_mode"};
-  sc_core::sc_signal<VertexBits> s_pair_a{"s_pair_a"};
-  sc_core::sc_signal<VertexBits> s_pair_b{"s_pair_b"};
-  sc_core::sc_signal<std::uint32_t> s_pair_err{"s_pair_err"};
-  sc_core::sc_signal<bool> m_result_valid{"m_result_valid"};
-  sc_core::sc_signal<bool> m_result_ready{"m_result_ready"};
-  sc_core::sc_signal<std::uint32_t> m_result_tag{"m_result_tag"};
-  sc_core::sc_signal<bool> m_result_hit{"m_result_hit"};
-  sc_core::sc_signal<bool> m_result_grid{"m_result_grid"};
-  sc_core::sc_signal<bool> m_result_definite{"m_result_definite"};
-  sc_core::sc_signal<std::uint32_t> m_result_axis{"m_result_axis"};
-  sc_core::sc_signal<std::uint32_t> m_result_beats{"m_result_beats"};
-  sc_core::sc_signal<std::uint32_t> rm_id{"rm_id"};
-  sc_core::sc_signal<bool> idle{"idle"};
-};
+using PrimtestSignals = PrimtestPins<PinSignal, PinSignal>;
 
 /// Binds the pins of `test`, clk and rst excepted, to the signals.
 template <class Test>
@@ -54,28 +38,11 @@ void bind_pins(Test& test, PrimtestSignals& signals) {
 
 /// Offers pairs and takes answers, at most one of each per clock, while it is coupled. Decoupled, it does neither: the
 /// outputs of a module that was not yet reset are random and must be ignored.
-class PinDriver : public sc_core::sc_module {
+class PinDriver : public sc_core::sc_module, public PrimtestPins<sc_core::sc_out, sc_core::sc_in> {
  public:
   sc_core::sc_in<bool> clk{"clk"};
   sc_core::sc_fifo_in<RtlRequest> requests{"requests"};
   sc_core::sc_fifo_out<RtlResult> results{"results"};
-  sc_core::sc_out<bool> s_pair_valid{"s_pair_valid"};
-  sc_core::sc_in<bool> s_pair_ready{"s_pair_ready"};
-  sc_core::sc_out<std::uint32_t> s_pair_tag{"s_pair_tag"};
-  sc_core::sc_out<std::uint32_t> s_pair_mode{"s_pair_mode"};
-  sc_core::sc_out<VertexBits> s_pair_a{"s_pair_a"};
-  sc_core::sc_out<VertexBits> s_pair_b{"s_pair_b"};
-  sc_core::sc_out<std::uint32_t> s_pair_err{"s_pair_err"};
-  sc_core::sc_in<bool> m_result_valid{"m_result_valid"};
-  sc_core::sc_out<bool> m_result_ready{"m_result_ready"};
-  sc_core::sc_in<std::uint32_t> m_result_tag{"m_result_tag"};
-  sc_core::sc_in<bool> m_result_hit{"m_result_hit"};
-  sc_core::sc_in<bool> m_result_grid{"m_result_grid"};
-  sc_core::sc_in<bool> m_result_definite{"m_result_definite"};
-  sc_core::sc_in<std::uint32_t> m_result_axis{"m_result_axis"};
-  sc_core::sc_in<std::uint32_t> m_result_beats{"m_result_beats"};
-  sc_core::sc_in<std::uint32_t> rm_id{"rm_id"};
-  sc_core::sc_in<bool> idle{"idle"};
 
   explicit PinDriver(const sc_core::sc_module_name& name);
 
