@@ -27,7 +27,10 @@ Object::Object(Mesh mesh) {
 
 void Device::collide(std::size_t count, const QuerySource& query, const CollisionRequest& request,
                      const ResultSink& take) {
-  for (std::size_t i = 0; i < count; ++i) check_query(query(i), request);
+  for (std::size_t i = 0; i < count; ++i) {
+    const CollisionQuery q = query(i);
+    check_query(*q.pose_a, *q.pose_b, request);
+  }
   CollisionResult result;
   for (std::size_t i = 0; i < count; ++i) {
     collide(query(i), request, result);

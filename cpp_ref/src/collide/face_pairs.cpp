@@ -24,9 +24,9 @@ std::uint32_t file_face(const Mesh& mesh, std::uint32_t face) {
 
 }  // namespace
 
-void check_query(const CollisionQuery& query, const CollisionRequest& request) {
-  check_pose(*query.pose_a, "A");
-  check_pose(*query.pose_b, "B");
+void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest& request) {
+  check_pose(pose_a, "A");
+  check_pose(pose_b, "B");
   if (request.contacts == CollisionRequest::Contacts::all && request.most_contacts == 0) {
     throw std::invalid_argument("most_contacts is 0: ask for at least one contact");
   }

@@ -166,13 +166,16 @@ class CpuDevice final : public Device {
   const char* name() const override { return "cpu"; }
 
   void collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) override {
-    check_query(query, request);
+    check_query(*query.pose_a, *query.pose_b, request);
     workers_.front()->search().run(query, request, result);
   }
 
   void collide(std::size_t count, const QuerySource& query, const CollisionRequest& request,
                const ResultSink& take) override {
-    for (std::size_t i = 0; i < count; ++i) check_query(query(i), request);
+    for (std::size_t i = 0; i < count; ++i) {
+      const CollisionQuery q = query(i);
+      check_query(*q.pose_a, *q.pose_b, request);
+    }
     Batch batch(count, query, request, take);
     const std::size_t threads = std::min(workers_.size(), count);
     for (std::size_t i = 1; i < threads; ++i) workers_[i]->begin(batch);

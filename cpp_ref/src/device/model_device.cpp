@@ -59,7 +59,7 @@ class ModelDevice final : public Device {
   const char* name() const override { return "model"; }
 
   void collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) override {
-    check_query(query, request);
+    check_query(*query.pose_a, *query.pose_b, request);
     const std::optional<model::BroadPhaseResult> answer = ask(query, request);
     if (!answer) return cpu_->collide(query, request, result);
     CollisionCounts counts;
