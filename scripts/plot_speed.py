@@ -24,7 +24,7 @@ RUN = ROOT / "docs" / "figures" / "collide_speed.csv"
 PLOT = ROOT / "docs" / "pictures" / "collide_speed.svg"
 VENV = ROOT / "build" / "venv"
 ASSUMED_GAIN = 2.3  # collide_speed.cpp has the same
-BOOLEAN = ("touch", "near", "deep", "far")
+BOOLEAN = ("touch", "near", "deep", "far", "graze")
 
 
 def fail(text):

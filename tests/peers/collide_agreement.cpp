@@ -60,7 +60,7 @@ class Agreement {
     std::vector<PosePair> poses;
     while (poses.size() < count) {
       const Approach approach = maker.approach();
-      for (const PoseClass c : {PoseClass::touch, PoseClass::near, PoseClass::deep, PoseClass::touch, PoseClass::near,
+      for (const PoseClass c : {PoseClass::touch, PoseClass::graze, PoseClass::deep, PoseClass::graze, PoseClass::near,
                                 PoseClass::deep, PoseClass::far}) {
         if (poses.size() < count) poses.push_back(maker.pose(approach, c));
       }

@@ -561,7 +561,7 @@ class Benchmark {
       if (!file.flush()) throw std::runtime_error(options_.csv + ": cannot be written");
     }
     fmt::print("\ngeometric means, times FCL built natively:");
-    for (const char* c : {"touch", "near", "deep", "far", "touch all", "deep all", "coherent", "lone"}) {
+    for (const char* c : {"touch", "near", "deep", "far", "graze", "touch all", "deep all", "coherent", "lone"}) {
       fmt::print("\n  {:<12} single {:>6.1f}", c, means_[c]["single"].value());
       if (means_[c].count("batch") != 0) {
         fmt::print("  batch {:>6.1f}  cores {:>6.1f}", means_[c]["batch"].value(), means_[c]["cores"].value());

@@ -88,9 +88,11 @@ const char* name_of(PoseClass pose_class) {
     case PoseClass::deep:
       return "deep";
     case PoseClass::far:
+      return "far";
+    case PoseClass::graze:
       break;
   }
-  return "far";
+  return "graze";
 }
 
 PosePair Approach::at(double from_centre) const {
@@ -176,15 +178,18 @@ Approach PoseMaker::approach() {
 PosePair PoseMaker::pose(const Approach& approach, PoseClass pose_class) {
   switch (pose_class) {
     case PoseClass::touch:
-      return approach.at(approach.distance - size_ * std::pow(10, uniform(-6, -2)));
+      return approach.at(approach.distance * uniform(0.95, 1.05));
     case PoseClass::near:
-      return approach.at(approach.distance + size_ * std::pow(10, uniform(-6, -3)));
+      return approach.at(approach.distance * uniform(1.001, 1.02));
     case PoseClass::deep:
       return approach.at(approach.distance * uniform(0.3, 0.7));
     case PoseClass::far:
+      return approach.at(approach.distance * uniform(1.2, 2));
+    case PoseClass::graze:
       break;
   }
-  return approach.at(approach.distance * uniform(1.2, 2));
+  const double off = size_ * std::pow(10, uniform(-6, -3));
+  return approach.at(approach.distance + (uniform(0, 1) < 0.5 ? -off : off));
 }
 
 std::vector<PosePair> PoseMaker::path(std::size_t count) {

@@ -29,13 +29,16 @@ MeshPair mesh_pair(const std::string& name);
 /// Faces with more than three vertices, and all of them.
 std::string describe_faces(const Mesh& mesh);
 
+/// By the distance of B from the centre of A, relative to that of the outermost contact.
 enum class PoseClass {
-  touch,  ///< at the outermost contact, pushed in by 10^-6 to 10^-2 of the smaller mesh's size
-  near,   ///< before the outermost contact by 10^-6 to 10^-3 of that size
-  deep,   ///< at 0.3 to 0.7 of the distance of the outermost contact
-  far     ///< at 1.2 to 2 times this distance
+  touch,  ///< 0.95 to 1.05 times
+  near,   ///< 1.001 to 1.02 times
+  deep,   ///< 0.3 to 0.7 times
+  far,    ///< 1.2 to 2 times
+  graze   ///< off by 10^-6 to 10^-3 of the smaller mesh's size, in or out; not in the geometric means
 };
-inline constexpr PoseClass pose_classes[] = {PoseClass::touch, PoseClass::near, PoseClass::deep, PoseClass::far};
+inline constexpr PoseClass pose_classes[] = {PoseClass::touch, PoseClass::near, PoseClass::deep, PoseClass::far,
+                                             PoseClass::graze};
 const char* name_of(PoseClass pose_class);
 
 /// Both objects turned and placed at random; B comes along a random direction towards the centre of A.
