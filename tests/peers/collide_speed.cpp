@@ -6,6 +6,7 @@
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/progress.hpp>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -114,6 +115,8 @@ class Benchmark {
     rows_.note("machine", fmt::format("{}, {} cores; {}", first_line_after("/proc/cpuinfo", "model name"),
                                       std::thread::hardware_concurrency(), caches()));
     rows_.note("compiler", compiler);
+    double load = 0;
+    if (getloadavg(&load, 1) == 1) rows_.note("load before the run", fmt::format("{:.1f}", load));
     rows_.note("Debian's FCL", debian_.description());
     rows_.note("native FCL", native_ ? native_->description() : "none, Debian's time divided by 2.3 instead");
     std::string names;
