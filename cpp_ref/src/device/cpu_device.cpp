@@ -113,7 +113,7 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  /// Begins to work at the batch; wait() for the end. Does nothing if the system has no more threads.
+  /// Offers the batch; end() it. Does nothing if the system has no more threads.
   void begin(Batch& batch) {
     try {
       if (!thread_.joinable()) thread_ = std::thread([this] { loop(); });
@@ -122,13 +122,15 @@ class Worker {
     }
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      batch_ = &batch;
+      offered_ = &batch;
     }
     changed_.notify_one();
   }
-  void wait() {
+  /// Takes the offer back if the thread has not come to it yet, as on a busy computer; otherwise waits until it is done.
+  void end() {
     std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [this] { return batch_ == nullptr; });
+    offered_ = nullptr;
+    changed_.wait(lock, [this] { return !working_; });
   }
   /// Works at the batch in the caller's thread.
   void work(Batch& batch) { batch.work(*search_, kept_); }
@@ -138,12 +140,15 @@ class Worker {
   void loop() {
     std::unique_lock<std::mutex> lock(mutex_);
     while (true) {
-      changed_.wait(lock, [this] { return batch_ != nullptr || end_; });
+      changed_.wait(lock, [this] { return offered_ != nullptr || end_; });
       if (end_) return;
+      Batch& batch = *offered_;
+      offered_ = nullptr;
+      working_ = true;
       lock.unlock();
-      work(*batch_);
+      work(batch);
       lock.lock();
-      batch_ = nullptr;
+      working_ = false;
       changed_.notify_one();
     }
   }
@@ -152,7 +157,8 @@ class Worker {
   std::vector<std::pair<std::size_t, CollisionResult>> kept_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  Batch* batch_ = nullptr;
+  Batch* offered_ = nullptr;
+  bool working_ = false;
   bool end_ = false;
   std::thread thread_;
 };
@@ -180,7 +186,7 @@ class CpuDevice final : public Device {
     const std::size_t threads = std::min(workers_.size(), count);
     for (std::size_t i = 1; i < threads; ++i) workers_[i]->begin(batch);
     workers_.front()->work(batch);
-    for (std::size_t i = 1; i < threads; ++i) workers_[i]->wait();
+    for (std::size_t i = 1; i < threads; ++i) workers_[i]->end();
     batch.rethrow();
   }
 
