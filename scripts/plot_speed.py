@@ -157,7 +157,7 @@ def draw(run):
     classes = [name for name in BOOLEAN + ("touch all", "deep all", "coherent", "lone")
                if any(cell == name for _, cell in run.cells)]
     figure, axes = plt.subplots(figsize=(7.2, 4.2))
-    styles = {"single": ("#2f7fbc", "o", -0.13), "batch": ("#08306b", "s", 0.13)}
+    styles = {"single": ("#2f7fbc", "o", -0.17), "batch": ("#08306b", "s", 0.17)}
     for variant, (colour, marker, shift) in styles.items():
         for i, name in enumerate(classes):
             values = [run.ratio(cell, variant) for (meshes, c), cell in run.cells.items()
@@ -174,7 +174,7 @@ def draw(run):
     axes.annotate("FCL", (len(classes) - 0.55, 1), xytext=(0, 3), textcoords="offset points", ha="right", fontsize=8,
                   color="0.3")
     axes.set_yscale("log")
-    axes.set_xticks(range(len(classes)), [name.replace(" all", ",\nall contacts") for name in classes])
+    axes.set_xticks(range(len(classes)), [name.replace(" all", ",\nall") for name in classes])
     axes.set_xlim(-0.5, len(classes) - 0.5)
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
     axes.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:e}"[0] in "25" else ""))
