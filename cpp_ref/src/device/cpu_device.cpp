@@ -126,7 +126,8 @@ class Worker {
     }
     changed_.notify_one();
   }
-  /// Takes the offer back if the thread has not come to it yet, as on a busy computer; otherwise waits until it is done.
+  /// Takes the offer back if the thread has not come to it yet, as on a busy computer; otherwise waits until it is
+  /// done.
   void end() {
     std::unique_lock<std::mutex> lock(mutex_);
     offered_ = nullptr;
