@@ -121,11 +121,12 @@ SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : faces_(tree.faces
 
   root_ = ref_of(tree.nodes.front());
   size_ = tree.nodes.size() - 1;
-  lines_.reserve(size_ + 3);
+  lines_.reserve(size_ + 4);
   for (std::size_t n = 1; n < tree.nodes.size(); ++n) {
     lines_.push_back(make_line(tree.nodes[n].dop, centre_, unit_, ref_of(tree.nodes[n])));
   }
-  lines_.resize(size_ + 3);
+  lines_.push_back(make_line(all, centre_, unit_, root_));
+  lines_.resize(size_ + 4);
 
   vertices_.resize(12 * faces_.size() + 12);  // two primitives can always be read
   for (const TreeNode& node : tree.nodes) {

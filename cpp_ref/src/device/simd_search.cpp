@@ -82,7 +82,8 @@ struct Planes {
   alignas(64) std::array<float, words> wide_offset;
   bool wide;
   bool tiny;  ///< wide, and the moved object is so small that it waits as a whole until the fixed one's leaves come
-  float key_scale;  ///< wide: from units of the fixed object to those of the keys
+  float side_error;  ///< wide: what separation of a node from the plane of a face must exceed, a unit of the axis each
+  float key_scale;   ///< wide: from units of the fixed object to those of the keys
 };
 
 /// Up to four primitives' planes in single precision: what a wide test compares with.
@@ -224,6 +225,58 @@ struct Task {
   }
 };
 
+/// How far a node reaches along a direction of its object's frame: at most this.
+inline float reach_along(const SupportLine& line, const std::array<float, 3>& m) {
+  const std::array<float, 3> size = {std::abs(m[0]), std::abs(m[1]), std::abs(m[2])};
+  const std::array<std::size_t, 3> negative = {m[0] < 0 ? 1U : 0U, m[1] < 0 ? 1U : 0U, m[2] < 0 ? 1U : 0U};
+  std::size_t greatest = size[1] > size[0] ? 1 : 0;
+  if (size[2] > size[greatest]) greatest = 2;
+  std::size_t least = greatest == 0 ? 1 : 0;  // of the other two
+  const std::size_t other = 3 - greatest - least;
+  if (size[other] < size[least]) least = other;
+  const float a = size[greatest];
+  const float b = size[3 - greatest - least];
+  const float c = size[least];
+  const std::size_t face = bvh::first_face_word + 4 * least + negative[(least + 1) % 3] + 2 * negative[(least + 2) % 3];
+  const std::size_t corner = bvh::first_corner_word + negative[0] + 2 * negative[1] + 4 * negative[2];
+  return (a - b) * line.word[2 * greatest + negative[greatest]] + 1.41421356F * (b - c) * line.word[face] +
+         1.73205081F * c * line.word[corner];
+}
+
+/// True only if the node of the moved object lies beside the plane of each face of the fixed object's leaf: planes of
+/// volumes leave much room around a face that is askew, in which all of a small object may lie.
+inline bool beside_faces(const Task& task, const SupportLine& node, NodeRef leaf) {
+  const float* const v = task.fixed->vertices(leaf.first());
+  const std::size_t stride = 4 * leaf.count();
+  const Placement& place = task.place;
+  for (std::size_t at = 0; at < stride; at += 4) {
+    Corners face;
+    for (std::size_t i = 0; i < 4; ++i) face.v[i] = {v[at + i], v[stride + at + i], v[2 * stride + at + i]};
+    // Any axis is valid, so it needs no error bound.
+    const std::array<float, 3> axis = cross_product(difference(face.v[2], face.v[0]), difference(face.v[3], face.v[1]));
+    const auto along = [&axis](const std::array<float, 3>& p) {
+      return axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2];
+    };
+    float low = along(face.v[0]);
+    float high = low;
+    for (std::size_t i = 1; i < 4; ++i) {
+      low = std::min(low, along(face.v[i]));
+      high = std::max(high, along(face.v[i]));
+    }
+    std::array<float, 3> m;
+    std::array<float, 3> against;
+    for (std::size_t k = 0; k < 3; ++k) {
+      m[k] = place.m[k] * axis[0] + place.m[3 + k] * axis[1] + place.m[6 + k] * axis[2];
+      against[k] = -m[k];
+    }
+    const float centre = along(place.t);
+    const float size = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
+    const float gap = std::max(low - (centre + reach_along(node, m)), centre - reach_along(node, against) - high);
+    if (!(gap > 1.02F * size * task.planes.side_error)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 }  // namespace cchip
 #endif  // CCHIP_DEVICE_SIMD_SEARCH_ONCE
@@ -356,6 +409,7 @@ HWY_INLINE VF to_float(V16 v, bool upper) {
 }
 
 /// The same with planes of the fixed nodes, and factors, in single precision.
+template <std::size_t rows>
 HWY_NOINLINE unsigned wide_test(const SupportLine* moved, const WideNode& fixed, const Planes& planes,
                                 std::int16_t* keys) {
   const D16 d;
@@ -363,7 +417,7 @@ HWY_NOINLINE unsigned wide_test(const SupportLine* moved, const WideNode& fixed,
   const VF most = hn::Set(df, 32767.0F);
   const VF scale = hn::Set(df, planes.key_scale);
   V16 row[4];
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < rows; ++i) {
     const auto axes = quarter(moved[i], 0);
     const auto corners = quarter(moved[i], 1);
     const auto faces_low = quarter(moved[i], 2);
@@ -394,6 +448,7 @@ HWY_NOINLINE unsigned wide_test(const SupportLine* moved, const WideNode& fixed,
     }
     row[i] = least_of_four(key[0], key[1], key[2], key[3]);
   }
+  for (std::size_t i = rows; i < 4; ++i) row[i] = row[0];
   return store_keys(row[0], row[1], row[2], row[3], keys);
 }
 
@@ -779,7 +834,9 @@ class SimdSearch final : public Search {
     task.place.fixed_error = static_cast<float>(own * radius);
     task.counts = {};
     task.open_count = 0;
-    task.stack[0] = {task.moved->root(), task.fixed->root()};
+    const double plane_of_face = margins_.wide * ulp * (radius * (3 + 16 * relation.norm) + 4 * relation.distance);
+    task.planes.side_error = static_cast<float>(1.01 * plane_of_face) + task.place.moved_error + task.place.fixed_error;
+    task.stack[0] = {task.planes.tiny ? task.moved->whole() : task.moved->root(), task.fixed->root()};
     task.size = 1;
     return true;
   }
@@ -793,12 +850,20 @@ class SimdSearch final : public Search {
                                      : narrow_test<4>(moved, fixed, task.planes, keys);
     }
     const NodeRef first = fixed->ref();
-    if (item.fixed.count() == 1 && first.is_leaf()) {
+    const bool leaf = item.fixed.count() == 1 && first.is_leaf();
+    if (leaf) {
       widen(*task.fixed, first, margins_, wide_);
     } else {
       widen(fixed, wide_);
     }
-    return wide_test(moved, wide_, task.planes, keys);
+    unsigned hits = item.moved.count() == 1 ? wide_test<1>(moved, wide_, task.planes, keys)
+                                            : wide_test<4>(moved, wide_, task.planes, keys);
+    if (leaf) {  // of the hits only those of the one fixed node count
+      for (std::uint32_t i = 0; i < item.moved.count(); ++i) {
+        if ((hits >> 4 * i & 1U) != 0 && beside_faces(task, moved[i], first)) hits ^= 1U << 4 * i;
+      }
+    }
+    return hits;
   }
 
   /// Puts the pairs that may meet onto a stack, the one that overlaps most on top.

@@ -91,7 +91,9 @@ class SupportTree {
   double unit() const { return unit_; }
   /// The root's children.
   NodeRef root() const { return root_; }
-  /// Lines in use; three more that nothing refers to follow, so that four can always be read.
+  /// The whole object as one node, whose line refers to the root.
+  NodeRef whole() const { return NodeRef::inner(static_cast<std::uint32_t>(size_), 1); }
+  /// Lines below the root. That of whole() follows, and three that nothing refers to, so that four can always be read.
   std::size_t size() const { return size_; }
   const SupportLine* lines() const { return lines_.data(); }
   /// Number in the mesh of each primitive.
