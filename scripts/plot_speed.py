@@ -11,25 +11,17 @@ Without an option page and plot are rewritten from the checked-in CSV. Drawing n
 Exit codes: 0 done or up to date, 1 stale or no such file, 2 bad arguments, 77 no matplotlib."""
 import argparse
 import csv
-import io
 import math
-import os
 import pathlib
-import re
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from generated_page import ROOT, compare, fail, page_with, plain_number, start_plot, svg_text, write
+
 PAGE = ROOT / "docs" / "speed.md"
 RUN = ROOT / "docs" / "figures" / "collide_speed.csv"
 PLOT = ROOT / "docs" / "pictures" / "collide_speed.svg"
-VENV = ROOT / "build" / "venv"
 ASSUMED_GAIN = 2.3  # collide_speed.cpp has the same
 BOOLEAN = ("touch", "near", "deep", "far", "graze")
-
-
-def fail(text):
-    print(f"plot_speed.py: {text}", file=sys.stderr)
-    sys.exit(1)
 
 
 class Run:
@@ -125,35 +117,10 @@ def tables(run):
     return "\n".join(out) + "\n"
 
 
-def page_with(run):
-    text = PAGE.read_text()
-    block = re.compile(r"(<!-- generated: begin -->\n).*?(<!-- generated: end -->)", re.S)
-    if not block.search(text):
-        fail(f"{PAGE.relative_to(ROOT)} has no lines '<!-- generated: begin -->' and '<!-- generated: end -->'")
-    return block.sub(lambda found: found[1] + tables(run) + found[2], text)
-
-
-def matplotlib_of_venv():
-    for folder in VENV.glob("lib/python3*/site-packages"):
-        sys.path.append(str(folder))
-    os.environ.setdefault("MPLCONFIGDIR", str(ROOT / "build" / "matplotlib"))  # its font cache
-    try:
-        import matplotlib
-    except ImportError as error:
-        print(f"plot_speed.py: no plot ({error}); run: make venv", file=sys.stderr)
-        sys.exit(77)
-    matplotlib.use("svg")
-    return matplotlib
-
-
 def draw(run):
     """The plot as SVG text, the same bytes for the same figures: a dot for each pair of meshes. Readable in grey."""
-    matplotlib = matplotlib_of_venv()
-    import matplotlib.pyplot as plt
+    plt = start_plot("collide_speed")
     from matplotlib.ticker import FuncFormatter
-    matplotlib.rcdefaults()
-    matplotlib.rcParams.update({"svg.hashsalt": "collide_speed", "font.size": 9, "axes.spines.top": False,
-                                "axes.spines.right": False})
     classes = [name for name in BOOLEAN + ("touch all", "deep all", "coherent", "lone")
                if any(cell == name for _, cell in run.cells)]
     figure, axes = plt.subplots(figsize=(7.2, 4.2))
@@ -176,23 +143,13 @@ def draw(run):
     axes.set_yscale("log")
     axes.set_xticks(range(len(classes)), [name.replace(" all", ",\nall") for name in classes])
     axes.set_xlim(-0.5, len(classes) - 0.5)
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
+    axes.yaxis.set_major_formatter(FuncFormatter(plain_number))
     axes.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:e}"[0] in "25" else ""))
     axes.set_ylabel("queries per second, times FCL built natively")
     axes.grid(axis="y", color="0.9", linewidth=0.6, which="both")
     axes.legend(loc="upper right", frameon=False)
     figure.subplots_adjust(left=0.09, right=0.99, bottom=0.12, top=0.97)
-    text = io.StringIO()
-    figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    return re.sub(r" +$", "", text.getvalue(), flags=re.M)
-
-
-def compare(path, fresh):
-    """1 if a checked-in file is not what it should be."""
-    if path.is_file() and path.read_text() == fresh:
-        return 0
-    print(f"{path.relative_to(ROOT)} is stale, run: scripts/plot_speed.py", file=sys.stderr)
-    return 1
+    return svg_text(figure)
 
 
 def main():
@@ -212,13 +169,10 @@ def main():
     text = source.read_text()
     run = Run(text)
     if arguments.check:
-        return compare(PAGE, page_with(run))
+        return compare(PAGE, page_with(PAGE, tables(run)), "scripts/plot_speed.py")
     if arguments.check_plot:
-        return compare(PLOT, draw(run))
-    page, plot = page_with(run), draw(run)
-    for path, content in ((RUN, text), (PAGE, page), (PLOT, plot)):
-        path.parent.mkdir(exist_ok=True)
-        path.write_text(content)
+        return compare(PLOT, draw(run), "scripts/plot_speed.py")
+    write({RUN: text, PAGE: page_with(PAGE, tables(run)), PLOT: draw(run)})
     return 0
 
 

@@ -13,24 +13,18 @@ Exit codes: 0 done or up to date, 1 stale or the program failed, 2 bad arguments
 import argparse
 import csv
 import io
-import os
 import pathlib
 import re
 import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from generated_page import ROOT, compare, fail, page_with, plain_number, start_plot, svg_text, write
+
 PAGE = ROOT / "docs" / "table1.md"
 CURVES = ROOT / "docs" / "figures" / "table1_overhead.csv"
 PLOT = CURVES.with_suffix(".svg")
-VENV = ROOT / "build" / "venv"
-BLOCK = re.compile(r"(<!-- generated: begin -->\n).*?(<!-- generated: end -->)", re.S)
-
-
-def fail(text):
-    print(f"plot_table1.py: {text}", file=sys.stderr)
-    sys.exit(1)
+COMMAND = "make table1-plot"
 
 
 def run(program):
@@ -46,11 +40,8 @@ def run(program):
         return result.stdout, curves.read_text()
 
 
-def page_with(output):
-    text = PAGE.read_text()
-    if not BLOCK.search(text):
-        fail(f"{PAGE.relative_to(ROOT)} has no lines '<!-- generated: begin -->' and '<!-- generated: end -->'")
-    return BLOCK.sub(lambda block: f"{block[1]}```text\n{output}```\n{block[2]}", text)
+def page(output):
+    return page_with(PAGE, f"```text\n{output}```\n")
 
 
 def summary(text):
@@ -59,28 +50,11 @@ def summary(text):
     return {key: float(value) for key, value in re.findall(r"(\w+)=([\d.]+)", line)}
 
 
-def matplotlib_of_venv():
-    for folder in VENV.glob("lib/python3*/site-packages"):
-        sys.path.append(str(folder))
-    os.environ.setdefault("MPLCONFIGDIR", str(ROOT / "build" / "matplotlib"))  # its font cache
-    try:
-        import matplotlib
-    except ImportError as error:
-        print(f"plot_table1.py: no plot ({error}); run: make venv", file=sys.stderr)
-        sys.exit(77)
-    matplotlib.use("svg")
-    return matplotlib
-
-
 def draw(curves, table):
     """The plot as SVG text, the same bytes for the same figures. Dark to light and solid or dashed: readable in grey."""
-    matplotlib = matplotlib_of_venv()
-    import matplotlib.pyplot as plt
+    plt = start_plot("cchip_table1")
     from matplotlib.lines import Line2D
     from matplotlib.ticker import FuncFormatter
-    matplotlib.rcdefaults()
-    matplotlib.rcParams.update({"svg.hashsalt": "cchip_table1", "font.size": 9, "axes.spines.top": False,
-                                "axes.spines.right": False})
     bottom, top = 0.005, 30000
     figure, axes = plt.subplots(figsize=(7.2, 4.6))
     series = {}
@@ -106,24 +80,14 @@ def draw(curves, table):
     axes.set(xscale="log", yscale="log", xlim=(0.1, 10000), ylim=(bottom, top), xlabel="work per swap (ms)",
              ylabel="overhead (% of the run time without swaps)")
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
+        axis.set_major_formatter(FuncFormatter(plain_number))
     axes.minorticks_off()
     axes.grid(color="0.9", linewidth=0.6)
     axes.legend(handles=[Line2D([], [], color="0.2", linewidth=1.8, label="one slot"),
                          Line2D([], [], color="0.2", linewidth=1.8, linestyle=(0, (4, 2)), label="two slots")],
                 loc="upper right", frameon=False, handlelength=2.6)
     figure.subplots_adjust(left=0.105, right=0.85, bottom=0.11, top=0.98)
-    text = io.StringIO()
-    figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    return re.sub(r" +$", "", text.getvalue(), flags=re.M)
-
-
-def compare(path, fresh):
-    """1 if a checked-in file is not what it should be."""
-    if path.is_file() and path.read_text() == fresh:
-        return 0
-    print(f"{path.relative_to(ROOT)} is stale, run: make table1-plot", file=sys.stderr)
-    return 1
+    return svg_text(figure)
 
 
 def main():
@@ -138,14 +102,11 @@ def main():
         print(__doc__)
         return 0
     if arguments.check_plot:
-        return compare(PLOT, draw(CURVES.read_text(), summary(PAGE.read_text())))
+        return compare(PLOT, draw(CURVES.read_text(), summary(PAGE.read_text())), COMMAND)
     output, curves = run(arguments.program)
     if arguments.check:
-        return compare(PAGE, page_with(output)) | compare(CURVES, curves)
-    plot = draw(curves, summary(output))
-    CURVES.parent.mkdir(exist_ok=True)
-    for path, text in ((PAGE, page_with(output)), (CURVES, curves), (PLOT, plot)):
-        path.write_text(text)
+        return compare(PAGE, page(output), COMMAND) | compare(CURVES, curves, COMMAND)
+    write({PAGE: page(output), CURVES: curves, PLOT: draw(curves, summary(output))})
     return 0
 
 

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the scripts share that write a page of docs/ with a generated block and a plot."""
+import io
+import os
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+VENV = ROOT / "build" / "venv"
+BLOCK = re.compile(r"(<!-- generated: begin -->\n).*?(<!-- generated: end -->)", re.S)
+
+
+def fail(text, code=1):
+    """Ends the script with one line."""
+    print(f"{pathlib.Path(sys.argv[0]).name}: {text}", file=sys.stderr)
+    sys.exit(code)
+
+
+def page_with(page, block):
+    """Text of a page with another block between its two `generated` lines."""
+    text = page.read_text()
+    if not BLOCK.search(text):
+        fail(f"{page.relative_to(ROOT)} has no lines '<!-- generated: begin -->' and '<!-- generated: end -->'")
+    return BLOCK.sub(lambda found: found[1] + block + found[2], text)
+
+
+def compare(path, fresh, command):
+    """1 if a checked-in file is not what it should be, and says which command writes it anew."""
+    if path.is_file() and path.read_text() == fresh:
+        return 0
+    print(f"{path.relative_to(ROOT)} is stale, run: {command}", file=sys.stderr)
+    return 1
+
+
+def write(contents):
+    """Writes the text of each path."""
+    for path, text in contents.items():
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+
+
+def start_plot(salt):
+    """matplotlib's pyplot, from the tools of `make venv`, set so that the same figures give the same bytes.
+    Exit code 77 if it is not there."""
+    for folder in VENV.glob("lib/python3*/site-packages"):
+        sys.path.append(str(folder))
+    os.environ.setdefault("MPLCONFIGDIR", str(ROOT / "build" / "matplotlib"))  # its font cache
+    try:
+        import matplotlib
+    except ImportError as error:
+        fail(f"no plot ({error}); run: make venv", 77)
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
+    matplotlib.rcdefaults()
+    matplotlib.rcParams.update({"svg.hashsalt": salt, "font.size": 9, "axes.spines.top": False,
+                                "axes.spines.right": False})
+    return plt
+
+
+def plain_number(value, _):
+    """Labels of a logarithmic axis, for matplotlib's FuncFormatter."""
+    return f"{value:,.10g}"
+
+
+def svg_text(figure):
+    text = io.StringIO()
+    figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+    return re.sub(r" +$", "", text.getvalue(), flags=re.M)
