@@ -9,10 +9,13 @@
 #include <cchip/model/broad_phase.hpp>
 #include <cchip/reference/brute_force.hpp>
 #include <cchip/sim/seed.hpp>
+#include <chrono>
 #include <iostream>
 #include <limits>
 #include <set>
 #include <sstream>
+#include <stdexcept>
+#include <thread>
 
 #include "bvh_meshes.hpp"
 #include "random_poses.hpp"
@@ -326,12 +329,18 @@ TEST_CASE("collide: results of a batch come one call at a time, and an exception
     --inside;
   });
   CHECK(seen.size() == poses.size());
-  int calls = 0;
-  const auto stop = [&calls](std::size_t, const CollisionResult&) {
-    if (++calls == 3) throw std::runtime_error("enough");
-  };
-  CHECK_THROWS_WITH(collide(*device, a, a, poses, {}, stop), "enough");
-  CHECK(calls == 3);
+  const auto threads = open_cpu_device({4, {}});
+  for (int i = 0; i < 10; ++i) {
+    int calls = 0;
+    const auto stop = [&calls](std::size_t, const CollisionResult&) {
+      if (++calls != 3) return;
+      // Meanwhile the other threads have results and wait for their turn.
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      throw std::runtime_error("enough");
+    };
+    CHECK_THROWS_WITH(collide(*threads, a, a, poses, {}, stop), "enough");
+    CHECK(calls == 3);
+  }
 }
 
 TEST_CASE("collide: input that makes no sense is refused in one line", "[ref][collide]") {

@@ -70,7 +70,13 @@ class Batch {
     }
     void hand_over() {
       const std::lock_guard<std::mutex> lock(batch_.taking_);
-      for (std::size_t i = 0; i < kept_count_ && !batch_.error_; ++i) batch_.take_(kept_[i].first, kept_[i].second);
+      try {
+        for (std::size_t i = 0; i < kept_count_ && !batch_.error_; ++i) batch_.take_(kept_[i].first, kept_[i].second);
+      } catch (...) {
+        // Noted before the lock is released: another thread may wait for it to hand over its results.
+        batch_.error_ = std::current_exception();
+        throw;
+      }
       kept_count_ = 0;
     }
 
