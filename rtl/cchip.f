@@ -16,6 +16,8 @@ sat/cchip_sat_project.v
 sat/cchip_sat_compare.v
 sat/cchip_box_compare.v
 sat/cchip_sat_pipeline.v
+sat/cchip_programme_plan.v
+sat/cchip_programme_exhaustive.v
 sat/cchip_axis_programme.v
 sat/cchip_axis_controller.v
 primtest/cchip_primtest.v

@@ -60,6 +60,8 @@ STIMULI = {
     "cchip_sat_compare": ("s_own = 1; s_allow_below = 1;", "s_projection = {1024{1'b1}} << dut.PROJ_W;", "m_separated"),
     "cchip_box_compare": (
         "", "s_a = 1 | 1 << 3 * dut.COORD_W | 1 << 6 * dut.COORD_W;", "m_separated"),
+    "cchip_programme_plan": ("", "s_axis_largest = 1;", "m_info"),
+    "cchip_programme_exhaustive": ("", "s_valid = 1;", "m_valid"),
     "cchip_axis_programme": ("s_state = `CCHIP_PROG_ILLEGAL;", "s_valid = 1;", "m_outcome"),
     "cchip_sat_pipeline": ("", "s_beat_valid = 1;", "m_verdict_valid"),
     "cchip_axis_controller": ("", "s_pair_valid = 1;", "m_beat_valid"),

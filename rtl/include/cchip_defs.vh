@@ -272,6 +272,8 @@
 `define CCHIP_AXIS_CODE_K 3+:3
 // AxisClass
 `define CCHIP_AXIS_CODE_CLASS 6+:3
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_AXIS_CODE_OF(l, k, class) {class, k, l}
 
 // ---- beat of s_pair as one word, coordinates of w bits: word[`CCHIP_REQUEST_<field>]
 `define CCHIP_REQUEST_W(w) \
@@ -352,6 +354,25 @@
 `define CCHIP_STATE_OPEN 32+:1
 // all signs used so far hold for the unrounded primitives
 `define CCHIP_STATE_CERTAIN 33+:1
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_STATE_OF(programme, code, info, beats, open, certain) \
+  {certain, open, beats, info, code, programme}
+
+// ---- a STATE without its count of beats: what the verdicts of both normals lead to
+// (cchip_programme_plan): word[`CCHIP_PLAN_<field>]
+`define CCHIP_PLAN_W 28
+// Programme
+`define CCHIP_PLAN_PROGRAMME 0+:3
+// axis code of its first beat
+`define CCHIP_PLAN_CODE 3+:9
+// what the programme remembers
+`define CCHIP_PLAN_INFO 12+:14
+// see STATE
+`define CCHIP_PLAN_OPEN 26+:1
+// see STATE
+`define CCHIP_PLAN_CERTAIN 27+:1
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_PLAN_OF(programme, code, info, open, certain) {certain, open, info, code, programme}
 
 // ---- info of NORMALS after nA: word[`CCHIP_INFO_NORMALS_<field>]
 `define CCHIP_INFO_NORMALS_W 14
@@ -369,6 +390,9 @@
 `define CCHIP_INFO_NORMALS_LARGEST 11+:2
 // quad A is warped
 `define CCHIP_INFO_NORMALS_WARPED_A 13+:1
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_INFO_NORMALS_OF(l_down, l_up, b_on_plane, a_negative, a_zero, largest, warped_a) \
+  {warped_a, largest, a_zero, a_negative, b_on_plane, l_up, l_down}
 
 // ---- info of CROSSING: word[`CCHIP_INFO_CROSSING_<field>]
 `define CCHIP_INFO_CROSSING_W 6
@@ -380,6 +404,8 @@
 `define CCHIP_INFO_CROSSING_WARPED_A 4+:1
 // quad B is warped
 `define CCHIP_INFO_CROSSING_WARPED_B 5+:1
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_INFO_CROSSING_OF(l_up, k_up, warped_a, warped_b) {warped_b, warped_a, k_up, l_up}
 
 // ---- info of COPLANAR: word[`CCHIP_INFO_COPLANAR_<field>]
 `define CCHIP_INFO_COPLANAR_W 2
@@ -387,6 +413,8 @@
 `define CCHIP_INFO_COPLANAR_A_NEGATIVE 0+:1
 // component l of nB < 0
 `define CCHIP_INFO_COPLANAR_B_NEGATIVE 1+:1
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_INFO_COPLANAR_OF(a_negative, b_negative) {b_negative, a_negative}
 
 // ---- info of DEGENERATE: word[`CCHIP_INFO_DEGENERATE_<field>]
 `define CCHIP_INFO_DEGENERATE_W 12
@@ -398,6 +426,9 @@
 `define CCHIP_INFO_DEGENERATE_B_NEGATIVE 6+:3
 // components of nB: = 0
 `define CCHIP_INFO_DEGENERATE_B_ZERO 9+:3
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_INFO_DEGENERATE_OF(a_negative, a_zero, b_negative, b_zero) \
+  {b_zero, b_negative, a_zero, a_negative}
 
 // ---- info of TETRAHEDRON: word[`CCHIP_INFO_TETRAHEDRON_<field>]
 `define CCHIP_INFO_TETRAHEDRON_W 2
@@ -405,5 +436,7 @@
 `define CCHIP_INFO_TETRAHEDRON_WARPED_A 0+:1
 // quad B is warped
 `define CCHIP_INFO_TETRAHEDRON_WARPED_B 1+:1
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_INFO_TETRAHEDRON_OF(warped_a, warped_b) {warped_b, warped_a}
 
 `endif

@@ -76,11 +76,8 @@ module cchip_axis_programme #(
   assign m_proceed = m_proceed_q;
   assign m_state = m_state_q;
 
-  localparam integer POINTS = `CCHIP_POINTS(VERTS_A, VERTS_B);
   localparam [31:0] LAST_K = VERTS_A - 1;
   localparam [31:0] LAST_L = VERTS_B - 1;
-  // a plan: {certain, open, info, code, programme}, a state without beats
-  localparam integer PLAN_W = `CCHIP_STATE_W - `CCHIP_BEATS_W;
   // warped quads may have to go through TETRAHEDRON
   localparam integer TETRA = VERTS_B == 4 && WARPED_EXACT != 0 ? 1 : 0;
 
@@ -96,45 +93,6 @@ module cchip_axis_programme #(
   wire tetra = programme == `CCHIP_PROG_TETRAHEDRON;
   wire degenerate = programme == `CCHIP_PROG_DEGENERATE;
 
-  // ---- sides: signs of the other primitive's vertices on a normal; vertex 3 of a triangle as zero
-  // the last `verts` points are the vertices
-  function [3:0] vertices(input [POINTS-1:0] points, input absent, input integer verts);
-    integer i;
-    begin
-      vertices = {4{absent}};
-      for (i = 0; i < verts; i = i + 1) vertices[i] = points[POINTS-verts+i];
-    end
-  endfunction
-  wire [3:0] b_negative = vertices(s_negative, 1'b0, VERTS_B);
-  wire [3:0] b_zero = vertices(s_zero, 1'b1, VERTS_B);
-  wire [3:0] a_negative = vertices(s_negative, 1'b0, VERTS_A);
-  wire [3:0] a_zero = vertices(s_zero, 1'b1, VERTS_A);
-
-  // vertices on the positive side; those on the plane count among them if any is negative
-  function [3:0] positive_side(input [3:0] negative, input [3:0] zero, input quad);
-    begin
-      positive_side = ~negative & (~zero | {4{|negative}});
-      if (!quad) positive_side[3] = positive_side[0];
-    end
-  endfunction
-
-  // first edge i -> i + 1 that leads from the side from_positive to the other; 0 if there is none
-  function [1:0] crossing_edge(input [3:0] side, input quad, input from_positive);
-    reg [3:0] follow;
-    integer i;
-    begin
-      follow = {side[0], side[3:1]};
-      crossing_edge = 2'd0;
-      for (i = 3; i >= 0; i = i - 1)
-        if ((quad || i < 3) && side[i] == from_positive
-            && follow[i] != from_positive) crossing_edge = i[1:0];
-    end
-  endfunction
-
-  // on normal k = 0 of a quad slot 0 is V1: off the plane through V0 parallel to the diagonals?
-  wire warped_a_now = VERTS_A == 4 && !s_zero[0];
-  wire warped_b_now = VERTS_B == 4 && !s_zero[0];
-
   // ---- the last k and l of an axis class in the programmes that visit all of its axes
   wire is_cross = axis_class == `CCHIP_AXIS_CROSS;
   wire is_in_plane_a = axis_class == `CCHIP_AXIS_IN_PLANE_A;
@@ -149,27 +107,14 @@ module cchip_axis_programme #(
   reg valid_q, exhaustive_q, normals_q, crossing_q, illegal_q;
   reg normal_a_q, normal_b_q, exhaustive_last_q, second_q, box_q, box_certain_q;
   reg loops_l_q, l_goes_on_q, k_ends_q, last_kind_q;
-  reg separated_q, certain_gap_q, clear_q, sign_certain_q, sign_negative_q, certain_q, open_q,
-      certain_before_q;
-  reg [2:0] programme_q, axis_negative_q, axis_zero_q;
+  reg separated_q, certain_gap_q, sign_certain_q, sign_negative_q, certain_q, open_q;
+  reg [`CCHIP_PROG_W-1:0] programme_q;
   reg [`CCHIP_AXIS_CODE_W-1:0] code_q;
   reg [2:0] k_next_q, l_next_q;
-  reg [`CCHIP_INFO_W-1:0] info_q, about_a_q;
+  reg [`CCHIP_INFO_W-1:0] info_q;
   reg [`CCHIP_BEATS_W-1:0] beats_q;
-  reg warped_a_q, warped_b_q, warped_q, b_on_plane_q, no_normal_q;
-  reg [1:0] largest_q;
-  reg [3:0] side_a_q, side_b_q;
-  reg [2:0] next_class_q, next_k_q;
-  // the info of NORMALS after nA
-  wire [`CCHIP_INFO_W-1:0] normal_a_info = {
-    warped_a_q,
-    largest_q,
-    axis_zero_q,
-    axis_negative_q,
-    b_on_plane_q,
-    crossing_edge(side_b_q, VERTS_B == 4, 1'b0),
-    crossing_edge(side_b_q, VERTS_B == 4, 1'b1)
-  };
+  reg [`CCHIP_CLASS_W-1:0] next_class_q;
+  reg [2:0] next_k_q;
 
   always @(posedge clk) begin
     if (rst) valid_q <= 1'b0;
@@ -199,24 +144,8 @@ module cchip_axis_programme #(
     box_certain_q     <= s_box_certain;
     separated_q       <= s_separated;
     certain_gap_q     <= s_certain_gap;
-    clear_q           <= s_clear;
     sign_certain_q    <= s_certain;
     sign_negative_q   <= s_negative[VERTS_A-2];
-    axis_negative_q   <= s_axis_negative;
-    axis_zero_q       <= s_axis_zero;
-    warped_a_q        <= warped_a_now;
-    largest_q         <= s_axis_largest;
-    b_on_plane_q      <= &b_zero;
-    side_a_q          <= positive_side(a_negative, a_zero, VERTS_A == 4);
-    side_b_q          <= positive_side(b_negative, b_zero, VERTS_B == 4);
-    // nB of an EXHAUSTIVE pair follows its nA at once
-    about_a_q         <= exhaustive ? normal_a_info : info;
-    certain_before_q  <= exhaustive ? clear_q : s_state[`CCHIP_STATE_CERTAIN];
-    no_normal_q       <= (exhaustive ? &axis_zero_q : &info[`CCHIP_INFO_NORMALS_A_ZERO])
-        || &s_axis_zero;
-    warped_b_q        <= warped_b_now;
-    warped_q          <= (VERTS_A == 4
-        && (exhaustive ? warped_a_q : info[`CCHIP_INFO_NORMALS_WARPED_A])) || warped_b_now;
     // the class that follows the last axis of this one
     next_class_q      <= axis_class == `CCHIP_AXIS_NORMAL_A
         && info[`CCHIP_INFO_TETRAHEDRON_WARPED_B] ? `CCHIP_AXIS_NORMAL_B
@@ -227,48 +156,29 @@ module cchip_axis_programme #(
         && info[`CCHIP_INFO_TETRAHEDRON_WARPED_B]};
   end
 
-  // ================ clock 2: the plan that follows the verdict of nB
-  wire [1:0] k_down = crossing_edge(side_a_q, VERTS_A == 4, 1'b1);
-  wire [1:0] k_up = crossing_edge(side_a_q, VERTS_A == 4, 1'b0);
-  wire [1:0] l_down = about_a_q[`CCHIP_INFO_NORMALS_L_DOWN];
-  wire [1:0] l_up = about_a_q[`CCHIP_INFO_NORMALS_L_UP];
-  wire b_on_plane = about_a_q[`CCHIP_INFO_NORMALS_B_ON_PLANE];
-  wire [2:0] na_negative = about_a_q[`CCHIP_INFO_NORMALS_A_NEGATIVE];
-  wire [2:0] na_zero = about_a_q[`CCHIP_INFO_NORMALS_A_ZERO];
-  wire [1:0] largest = about_a_q[`CCHIP_INFO_NORMALS_LARGEST];
-  wire warped_a = about_a_q[`CCHIP_INFO_NORMALS_WARPED_A];
-  wire certain_sides = certain_before_q & clear_q;
-  wire [2:0] largest_mask = 3'd1 << largest;
+  wire [`CCHIP_INFO_W-1:0] normal_a_info;
+  wire normal_clear, certain_sides;
+  wire [`CCHIP_PLAN_W-1:0] plan;
+  cchip_programme_plan #(
+      .VERTS_A     (VERTS_A),
+      .VERTS_B     (VERTS_B),
+      .WARPED_EXACT(WARPED_EXACT)
+  ) u_plan (
+      .clk            (clk),
+      .s_state        (s_state),
+      .s_negative     (s_negative),
+      .s_zero         (s_zero),
+      .s_clear        (s_clear),
+      .s_axis_negative(s_axis_negative),
+      .s_axis_zero    (s_axis_zero),
+      .s_axis_largest (s_axis_largest),
+      .m_info         (normal_a_info),
+      .m_clear        (normal_clear),
+      .m_certain      (certain_sides),
+      .m_plan         (plan)
+  );
 
-  function [`CCHIP_AXIS_CODE_W-1:0] tetra_code(input a_is_warped);
-    tetra_code = {a_is_warped ? `CCHIP_AXIS_NORMAL_A : `CCHIP_AXIS_NORMAL_B, 3'd1, 3'd0};
-  endfunction
-
-  reg [`CCHIP_PROG_W-1:0] plan_programme;
-  reg [`CCHIP_AXIS_CODE_W-1:0] plan_code;
-  reg [`CCHIP_INFO_W-1:0] plan_info;
-  always @* begin
-    if (TETRA != 0 && warped_q && !certain_sides) begin
-      plan_programme = `CCHIP_PROG_TETRAHEDRON;
-      plan_code      = tetra_code(warped_a);
-      plan_info      = {12'd0, warped_b_q, warped_a};
-    end else if (!warped_q && no_normal_q) begin
-      plan_programme = `CCHIP_PROG_DEGENERATE;
-      plan_code      = {`CCHIP_AXIS_CROSS, 6'd0};
-      plan_info      = {2'd0, axis_zero_q, axis_negative_q, na_zero, na_negative};
-    end else if (!warped_q && b_on_plane) begin
-      plan_programme = `CCHIP_PROG_COPLANAR;
-      plan_code      = {`CCHIP_AXIS_IN_PLANE_A, 3'd0, 1'b0, largest};
-      plan_info      = {12'd0, |(axis_negative_q & largest_mask), |(na_negative & largest_mask)};
-    end else begin
-      plan_programme = `CCHIP_PROG_CROSSING;
-      plan_code      = {`CCHIP_AXIS_CROSS, 1'b0, k_down, 1'b0, l_down};
-      plan_info      = {8'd0, warped_b_q, warped_a, k_up, l_up};
-    end
-  end
-  wire plan_open = warped_q && WARPED_EXACT == 0;
-  wire [PLAN_W-1:0] plan = {certain_sides, plan_open, plan_info, plan_code, plan_programme};
-
+  // ================ clock 2: what follows, pair by pair
   // ---- CROSSING: t(k, l) is the projection of W_l; certain: t > 0 on the first, t < 0 on the
   // second axis
   wire certain_crossing = certain_q && sign_certain_q && sign_negative_q == second_q;
@@ -276,21 +186,14 @@ module cchip_axis_programme #(
   wire warped_b_crossing = info_q[`CCHIP_INFO_CROSSING_WARPED_B];
   wire to_tetra = TETRA != 0 && (warped_a_crossing || warped_b_crossing) && !certain_crossing;
 
-  // ---- EXHAUSTIVE: the same test on the two axes that CROSSING would visit
-  reg [PLAN_W-1:0] found_plan_q;  // what the normals lead to
-  always @(posedge clk) if (valid_q && exhaustive_q && normal_b_q) found_plan_q <= plan;
-  wire [`CCHIP_INFO_W-1:0] found_info = found_plan_q[`CCHIP_STATE_INFO];
-  wire [`CCHIP_AXIS_CODE_W-1:0] found_code = found_plan_q[`CCHIP_STATE_CODE];
-  wire [1:0] found_warped = {found_info[`CCHIP_INFO_CROSSING_WARPED_B],
-                             found_info[`CCHIP_INFO_CROSSING_WARPED_A]};
-  wire found_second = {code_q[4:3], code_q[1:0]} ==
-      {found_info[`CCHIP_INFO_CROSSING_K_UP], found_info[`CCHIP_INFO_CROSSING_L_UP]};
-  wire found_first = {code_q[4:3], code_q[1:0]} == {found_code[4:3], found_code[1:0]};
-
   // ---- next axis of the programmes that visit all axes: the next l, the next k, the next class
-  wire [`CCHIP_AXIS_CODE_W-1:0] next_code = l_goes_on_q ? {code_q[8:3], l_next_q}
-                       : {k_ends_q ? {next_class_q, next_k_q} : {code_q[8:6], k_next_q}, loops_l_q
-                           ? 3'd0 : code_q[2:0]};
+  wire [`CCHIP_CLASS_W-1:0] code_class = code_q[`CCHIP_AXIS_CODE_CLASS];
+  wire [`CCHIP_INDEX_W-1:0] code_k = code_q[`CCHIP_AXIS_CODE_K];
+  wire [`CCHIP_INDEX_W-1:0] code_l = code_q[`CCHIP_AXIS_CODE_L];
+  wire [`CCHIP_AXIS_CODE_W-1:0] next_code =
+      l_goes_on_q ? `CCHIP_AXIS_CODE_OF(l_next_q, code_k, code_class)
+      : `CCHIP_AXIS_CODE_OF((loops_l_q ? 3'd0 : code_l), (k_ends_q ? next_k_q : k_next_q),
+          (k_ends_q ? next_class_q : code_class));
   wire last_axis = last_kind_q & k_ends_q & ~l_goes_on_q;
 
   // ---- outcome of every programme but EXHAUSTIVE
@@ -306,9 +209,9 @@ module cchip_axis_programme #(
     if (illegal_q) begin
       grid    = 1'b1;
       illegal = 1'b1;
-      witness = {`CCHIP_AXIS_ILLEGAL, 6'd0};
+      witness = `CCHIP_AXIS_CODE_OF(3'd0, 3'd0, `CCHIP_AXIS_ILLEGAL);
     end else if (box_q) begin
-      witness = {`CCHIP_AXIS_BOX, 3'd0, code_q[2:0]};
+      witness = `CCHIP_AXIS_CODE_OF(code_l, 3'd0, `CCHIP_AXIS_BOX);
       certain = box_certain_q;
     end else if (!separated_q) begin
       if (normals_q) outcome = 1'b0;
@@ -324,100 +227,101 @@ module cchip_axis_programme #(
   // ---- next state, used if the pair is not decided
   wire take_plan = normals_q & normal_b_q;
   wire take_tetra = crossing_q & to_tetra;
-  wire state_certain = normals_q ? clear_q : crossing_q ? certain_crossing : certain_q;
+  wire state_certain = normals_q ? normal_clear : crossing_q ? certain_crossing : certain_q;
   wire [`CCHIP_INFO_W-1:0] state_info = normals_q ? normal_a_info : info_q;
-  wire [`CCHIP_AXIS_CODE_W-1:0] state_code = normals_q ? {`CCHIP_AXIS_NORMAL_B, 6'd0}
-                        : crossing_q
-                            ? {`CCHIP_AXIS_CROSS, 1'b0, info_q[`CCHIP_INFO_CROSSING_K_UP], 1'b0,
-                             info_q[`CCHIP_INFO_CROSSING_L_UP]}
-                                     : next_code;
+  wire [`CCHIP_AXIS_CODE_W-1:0] state_code =
+      normals_q ? `CCHIP_AXIS_CODE_OF(3'd0, 3'd0, `CCHIP_AXIS_NORMAL_B)
+      : crossing_q ? `CCHIP_AXIS_CODE_OF({1'b0, info_q[`CCHIP_INFO_CROSSING_L_UP]},
+          {1'b0, info_q[`CCHIP_INFO_CROSSING_K_UP]}, `CCHIP_AXIS_CROSS)
+      : next_code;
 
-  reg valid_q2, exhaustive_q2, exhaustive_last_q2, normal_a_q2, normal_q2;
-  reg separated_q2, certain_gap_q2, certain_sides_q2, still_certain_q2;
+  reg valid_q2;
   reg outcome_q2, grid_q2, certain_q2, open_q2, illegal_q2, take_plan_q2, take_tetra_q2;
-  reg [`CCHIP_AXIS_CODE_W-1:0] code_q2, witness_q2;
+  reg [`CCHIP_AXIS_CODE_W-1:0] witness_q2;
   reg [`CCHIP_BEATS_W-1:0] beats_q2;
   reg [1:0] warped_q2;
-  reg [PLAN_W-1:0] plan_q2, state_q2;
+  reg [`CCHIP_PLAN_W-1:0] plan_q2, state_q2;
   always @(posedge clk) begin
     if (rst) valid_q2 <= 1'b0;
     else valid_q2 <= valid_q;
-    exhaustive_q2      <= exhaustive_q;
-    exhaustive_last_q2 <= exhaustive_last_q;
-    normal_a_q2        <= normal_a_q;
-    normal_q2          <= normal_a_q | normal_b_q;
-    separated_q2       <= separated_q;
-    certain_gap_q2     <= certain_gap_q;
-    certain_sides_q2   <= normal_a_q | certain_sides;  // after nA: nB tells for both
-    still_certain_q2   <= !(found_first || found_second)
-        || (sign_certain_q && sign_negative_q == found_second);
     outcome_q2         <= outcome;
     grid_q2            <= grid;
     certain_q2         <= certain;
     open_q2            <= open;
     illegal_q2         <= illegal;
-    code_q2            <= code_q;
     witness_q2         <= witness;
     beats_q2           <= beats_q;
     take_plan_q2       <= take_plan;
     take_tetra_q2      <= take_tetra;
     warped_q2          <= {warped_b_crossing, warped_a_crossing};
     plan_q2            <= plan;
-    state_q2           <= {state_certain, open_q, state_info, state_code, programme_q};
+    state_q2           <= `CCHIP_PLAN_OF(programme_q, state_code, state_info, open_q,
+        state_certain);
   end
 
-  // ================ clock 3: what an EXHAUSTIVE pair has found so far
-  reg found_certain_q;  // signs on both normals, then on the crossing axes too
-  reg found_separated_q, found_gap_q;
-  reg [`CCHIP_AXIS_CODE_W-1:0] found_witness_q;
-  wire separated_before = ~normal_a_q2 & found_separated_q;  // nA is the first axis
-  wire found_separated = separated_before | separated_q2;
-  wire [`CCHIP_AXIS_CODE_W-1:0] found_witness = separated_before ? found_witness_q : separated_q2
-      ? code_q2 : 9'd0;
-  wire found_gap = separated_before ? found_gap_q : certain_gap_q2;
-  wire found_certain = normal_q2 ? certain_sides_q2 : found_certain_q & still_certain_q2;
-  wire plan_is_crossing = found_plan_q[`CCHIP_STATE_PROGRAMME] == `CCHIP_PROG_CROSSING;
-  wire found_to_tetra = TETRA != 0 && plan_is_crossing && found_warped != 2'd0 && !found_certain;
-
-  always @(posedge clk)
-    if (valid_q2 && exhaustive_q2) begin
-      found_certain_q   <= found_certain;
-      found_separated_q <= found_separated;
-      found_witness_q   <= found_witness;
-      found_gap_q       <= found_gap;
-    end
-
-  wire found_outcome = exhaustive_last_q2
-      & (found_separated | (plan_is_crossing & ~found_to_tetra));
-  wire found_proceed = exhaustive_last_q2 & ~found_separated & (~plan_is_crossing | found_to_tetra);
+  // ================ clock 3: EXHAUSTIVE or not
+  wire found_valid, found_outcome, found_proceed, found_separated, found_certain, found_to_tetra;
+  wire [`CCHIP_AXIS_CODE_W-1:0] found_witness;
+  wire [`CCHIP_PLAN_W-1:0] found_plan;
+  cchip_programme_exhaustive #(
+      .TETRAHEDRON(TETRA)
+  ) u_exhaustive (
+      .clk             (clk),
+      .rst             (rst),
+      .s_valid         (valid_q & exhaustive_q),
+      .s_normal_a      (normal_a_q),
+      .s_normal_b      (normal_b_q),
+      .s_last          (exhaustive_last_q),
+      .s_code          (code_q),
+      .s_separated     (separated_q),
+      .s_certain_gap   (certain_gap_q),
+      .s_sign_certain  (sign_certain_q),
+      .s_sign_negative (sign_negative_q),
+      .s_certain_sides (certain_sides),
+      .s_plan          (plan),
+      .m_valid         (found_valid),
+      .m_outcome       (found_outcome),
+      .m_proceed       (found_proceed),
+      .m_separated     (found_separated),
+      .m_witness       (found_witness),
+      .m_certain       (found_certain),
+      .m_to_tetrahedron(found_to_tetra),
+      .m_plan          (found_plan)
+  );
+  wire [`CCHIP_INFO_W-1:0] found_info = found_plan[`CCHIP_PLAN_INFO];
+  wire [1:0] found_warped = {found_info[`CCHIP_INFO_CROSSING_WARPED_B],
+                             found_info[`CCHIP_INFO_CROSSING_WARPED_A]};
 
   reg outcome_q3, proceed_q3, grid_q3, certain_q3, open_q3, illegal_q3;
   reg take_plan_q3, take_found_q3, take_tetra_q3;
   reg [`CCHIP_AXIS_CODE_W-1:0] witness_q3;
   reg [`CCHIP_BEATS_W-1:0] beats_q3;
   reg [1:0] warped_q3;
-  reg [PLAN_W-1:0] plan_q3, state_q3;
+  reg [`CCHIP_PLAN_W-1:0] plan_q3, state_q3;
   always @(posedge clk) begin
     if (rst) outcome_q3 <= 1'b0;
-    else outcome_q3 <= valid_q2 & (exhaustive_q2 ? found_outcome : outcome_q2);
+    else outcome_q3 <= found_valid ? found_outcome : valid_q2 & outcome_q2;
     if (rst) proceed_q3 <= 1'b0;
-    else proceed_q3 <= valid_q2 & (exhaustive_q2 ? found_proceed : ~outcome_q2);
-    grid_q3       <= exhaustive_q2 ? ~found_separated : grid_q2;
-    certain_q3    <= exhaustive_q2 ? (found_separated ? found_gap : found_certain) : certain_q2;
-    open_q3       <= exhaustive_q2 ? found_plan_q[PLAN_W-2] & ~found_separated : open_q2;
+    else proceed_q3 <= found_valid ? found_proceed : valid_q2 & ~outcome_q2;
+    grid_q3       <= found_valid ? ~found_separated : grid_q2;
+    certain_q3    <= found_valid ? found_certain : certain_q2;
+    open_q3       <= found_valid ? found_plan[`CCHIP_PLAN_OPEN] & ~found_separated : open_q2;
     illegal_q3    <= illegal_q2;
-    witness_q3    <= exhaustive_q2 ? found_witness : witness_q2;
+    witness_q3    <= found_valid ? found_witness : witness_q2;
     beats_q3      <= beats_q2;
     take_plan_q3  <= take_plan_q2;
-    take_found_q3 <= exhaustive_q2;
-    take_tetra_q3 <= exhaustive_q2 ? found_to_tetra : take_tetra_q2;
-    warped_q3     <= exhaustive_q2 ? found_warped : warped_q2;
+    take_found_q3 <= found_valid;
+    take_tetra_q3 <= found_valid ? found_to_tetra : take_tetra_q2;
+    warped_q3     <= found_valid ? found_warped : warped_q2;
     plan_q3       <= plan_q2;
     state_q3      <= state_q2;
   end
 
   // ================ clock 4: the next state
-  wire [PLAN_W-1:0] state = take_plan_q3 ? plan_q3 : take_found_q3 ? found_plan_q : state_q3;
+  // first axis of TETRAHEDRON; its info is the record INFO_TETRAHEDRON
+  wire [`CCHIP_AXIS_CODE_W-1:0] tetra_code = `CCHIP_AXIS_CODE_OF(3'd0, 3'd1,
+      warped_q3[0] ? `CCHIP_AXIS_NORMAL_A : `CCHIP_AXIS_NORMAL_B);
+  wire [`CCHIP_PLAN_W-1:0] state = take_plan_q3 ? plan_q3 : take_found_q3 ? found_plan : state_q3;
   always @(posedge clk) begin
     if (rst) m_outcome_q <= 1'b0;
     else m_outcome_q <= outcome_q3;
@@ -429,13 +333,13 @@ module cchip_axis_programme #(
     m_illegal_q <= illegal_q3;
     m_witness_q <= witness_q3;
     m_beats_q   <= illegal_q3 ? 6'd0 : beats_q3;
-    m_state_q   <= {state[PLAN_W-1-:2], beats_q3,
-                  take_tetra_q3
-                      ? {12'd0, warped_q3, tetra_code(warped_q3[0]), `CCHIP_PROG_TETRAHEDRON}
-                          : state[PLAN_W-3:0]};
+    m_state_q   <= `CCHIP_STATE_OF((take_tetra_q3 ? `CCHIP_PROG_TETRAHEDRON
+        : state[`CCHIP_PLAN_PROGRAMME]), (take_tetra_q3 ? tetra_code : state[`CCHIP_PLAN_CODE]),
+        (take_tetra_q3 ? {12'd0, warped_q3} : state[`CCHIP_PLAN_INFO]), beats_q3,
+        state[`CCHIP_PLAN_OPEN], state[`CCHIP_PLAN_CERTAIN]);
   end
 
-  wire unused = &{1'b0, s_negative, found_info, found_code};
+  wire unused = &{1'b0, found_info};
 
 endmodule
 `default_nettype wire

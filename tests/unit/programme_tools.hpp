@@ -44,6 +44,40 @@ inline unsigned random_zero_axes(Random& random) {
   return chance(random, 60) ? 0 : static_cast<unsigned>(random() % 7);
 }
 
+/// A field of a record of up to 64 bits that holds `value`.
+constexpr std::uint64_t in_field(defs::Field field, std::uint64_t value) { return value << field.lsb; }
+
+/// Record PLAN of what the normals of a pair lead to.
+inline std::uint64_t plan_bits(const model::Options& options, const model::State& plan) {
+  const model::Sides& s = plan.sides;
+  const auto signs = [](const std::array<int, 3>& n, bool zero) {
+    std::uint64_t bits = 0;
+    for (std::size_t d = 0; d < 3; ++d) bits |= (zero ? n[d] == 0 : n[d] < 0) ? 1U << d : 0U;
+    return bits;
+  };
+  std::uint64_t info = 0;
+  if (plan.programme == Programme::tetrahedron) {
+    info =
+        in_field(defs::info_tetrahedron_warped_a, s.warped_a) | in_field(defs::info_tetrahedron_warped_b, s.warped_b);
+  } else if (plan.programme == Programme::degenerate) {
+    info = in_field(defs::info_degenerate_a_negative, signs(s.normal_a, false)) |
+           in_field(defs::info_degenerate_a_zero, signs(s.normal_a, true)) |
+           in_field(defs::info_degenerate_b_negative, signs(s.normal_b, false)) |
+           in_field(defs::info_degenerate_b_zero, signs(s.normal_b, true));
+  } else if (plan.programme == Programme::coplanar) {
+    const auto largest = static_cast<std::size_t>(s.largest);
+    info = in_field(defs::info_coplanar_a_negative, s.normal_a[largest] < 0) |
+           in_field(defs::info_coplanar_b_negative, s.normal_b[largest] < 0);
+  } else {
+    info = in_field(defs::info_crossing_k_up, plan.second.k) | in_field(defs::info_crossing_l_up, plan.second.l) |
+           in_field(defs::info_crossing_warped_a, s.warped_a) | in_field(defs::info_crossing_warped_b, s.warped_b);
+  }
+  return in_field(defs::plan_programme, static_cast<std::uint64_t>(plan.programme)) |
+         in_field(defs::plan_code, to_bits(plan.code)) | in_field(defs::plan_info, info) |
+         in_field(defs::plan_open, !options.warped_exact && (s.warped_a || s.warped_b)) |
+         in_field(defs::plan_certain, s.certain);
+}
+
 /// Writes a verdict to the pins <PREFIX>separated, ..., of which the first `points` slots exist.
 #define CCHIP_PUT_VERDICT(top, PREFIX, v, points)                                            \
   do {                                                                                       \

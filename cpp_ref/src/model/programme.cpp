@@ -23,16 +23,6 @@ void record_normal(Sides& s, const Shape& shape, const Verdict& v, std::array<in
   s.certain = s.certain && v.compare.clear;
   for (std::size_t d = 0; d < 3; ++d) normal[d] = sign_of(v.axis_negative[d], v.axis_zero[d]);
 }
-void record_normal_a(Sides& s, const Shape& shape, const Verdict& v) {
-  record_normal(s, shape, v, s.normal_a, shape.b, s.b);
-  s.largest = v.axis_largest;
-  s.warped_a = shape.a == 4 && !v.compare.zero[0];
-}
-void record_normal_b(Sides& s, const Shape& shape, const Verdict& v) {
-  record_normal(s, shape, v, s.normal_b, shape.a, s.a);
-  s.warped_b = shape.b == 4 && !v.compare.zero[0];
-}
-
 /// First edge k of a primitive with n vertices that leads from the side `from` to its opposite.
 std::size_t crossing_edge(const std::array<int, 4>& side, std::size_t n, bool from_positive) {
   bool any_negative = false;
@@ -50,31 +40,6 @@ State tetrahedron(const Sides& s, int beats) {
   next.code = s.warped_a ? axis(AxisClass::normal_a, 1) : axis(AxisClass::normal_b, 1);
   next.beats = beats;
   next.sides = s;
-  return next;
-}
-
-/// The state after beats nA and nB (and, EXHAUSTIVE, all others) did not separate.
-State plan(const Options& o, const Sides& s, int beats) {
-  State next;
-  next.beats = beats;
-  next.sides = s;
-  const bool warped = s.warped_a || s.warped_b;
-  bool all_zero = true;
-  for (std::size_t j = 0; j < o.shape.b; ++j) all_zero = all_zero && s.b[j] == 0;
-  if (warped && o.warped_exact && !s.certain) {
-    next = tetrahedron(s, beats);
-  } else if (!warped && (is_zero(s.normal_a) || is_zero(s.normal_b))) {
-    next.programme = Programme::degenerate;
-    next.code = axis(AxisClass::cross);
-  } else if (!warped && all_zero) {
-    next.programme = Programme::coplanar;
-    next.code = axis(AxisClass::in_plane_a, 0, static_cast<std::size_t>(s.largest));
-  } else {
-    next.programme = Programme::crossing;
-    next.code = axis(AxisClass::cross, crossing_edge(s.a, o.shape.a, true), crossing_edge(s.b, o.shape.b, true));
-    next.second = axis(AxisClass::cross, crossing_edge(s.a, o.shape.a, false), crossing_edge(s.b, o.shape.b, false));
-    next.certain = s.certain;
-  }
   return next;
 }
 
@@ -147,6 +112,40 @@ Outcome make_outcome(const Options& o, const State& s, bool grid, const AxisCode
 }
 
 }  // namespace
+
+void record_normal_a(Sides& s, const Shape& shape, const Verdict& v) {
+  record_normal(s, shape, v, s.normal_a, shape.b, s.b);
+  s.largest = v.axis_largest;
+  s.warped_a = shape.a == 4 && !v.compare.zero[0];
+}
+void record_normal_b(Sides& s, const Shape& shape, const Verdict& v) {
+  record_normal(s, shape, v, s.normal_b, shape.a, s.a);
+  s.warped_b = shape.b == 4 && !v.compare.zero[0];
+}
+
+State plan(const Options& o, const Sides& s, int beats) {
+  State next;
+  next.beats = beats;
+  next.sides = s;
+  const bool warped = s.warped_a || s.warped_b;
+  bool all_zero = true;
+  for (std::size_t j = 0; j < o.shape.b; ++j) all_zero = all_zero && s.b[j] == 0;
+  if (warped && o.warped_exact && !s.certain) {
+    next = tetrahedron(s, beats);
+  } else if (!warped && (is_zero(s.normal_a) || is_zero(s.normal_b))) {
+    next.programme = Programme::degenerate;
+    next.code = axis(AxisClass::cross);
+  } else if (!warped && all_zero) {
+    next.programme = Programme::coplanar;
+    next.code = axis(AxisClass::in_plane_a, 0, static_cast<std::size_t>(s.largest));
+  } else {
+    next.programme = Programme::crossing;
+    next.code = axis(AxisClass::cross, crossing_edge(s.a, o.shape.a, true), crossing_edge(s.b, o.shape.b, true));
+    next.second = axis(AxisClass::cross, crossing_edge(s.a, o.shape.a, false), crossing_edge(s.b, o.shape.b, false));
+    next.certain = s.certain;
+  }
+  return next;
+}
 
 State first_state(PairMode mode) {
   State s;

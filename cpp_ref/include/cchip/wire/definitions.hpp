@@ -305,6 +305,19 @@ constexpr Field state_open = {32, 1};
 /// all signs used so far hold for the unrounded primitives
 constexpr Field state_certain = {33, 1};
 
+/// a STATE without its count of beats: what the verdicts of both normals lead to (cchip_programme_plan) [bit]
+constexpr int plan_w = 28;
+/// Programme
+constexpr Field plan_programme = {0, 3};
+/// axis code of its first beat
+constexpr Field plan_code = {3, 9};
+/// what the programme remembers
+constexpr Field plan_info = {12, 14};
+/// see STATE
+constexpr Field plan_open = {26, 1};
+/// see STATE
+constexpr Field plan_certain = {27, 1};
+
 /// info of NORMALS after nA [bit]
 constexpr int info_normals_w = 14;
 /// edge of B that leads from the positive side of A's plane to the negative one

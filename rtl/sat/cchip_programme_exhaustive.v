@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+// cchip_programme_exhaustive: what the verdicts of an EXHAUSTIVE pair have shown so far. They come
+// on consecutive clocks, so one set of registers serves all pairs.
+//   latency      1 clock, then logic: m_* belong to the verdict that entered one clock before
+//   throughput   one verdict per clock
+//   cuts         every path from an input
+//   reset        m_valid; what is remembered is overwritten by the first verdicts of the next pair
+module cchip_programme_exhaustive #(
+    // 1: a hit of a warped quad that is not certain goes on with TETRAHEDRON, 0: never
+    parameter integer TETRAHEDRON = 0
+) (
+    input  wire                          clk,
+    input  wire                          rst,
+    input  wire                          s_valid,
+    input  wire                          s_normal_a,       // the verdict is that on nA, the first
+    input  wire                          s_normal_b,
+    input  wire                          s_last,           // the pair has no other axis
+    input  wire [`CCHIP_AXIS_CODE_W-1:0] s_code,           // its axis
+    input  wire                          s_separated,
+    input  wire                          s_certain_gap,
+    // the sign of a cross axis: certain, negative
+    input  wire                          s_sign_certain,
+    input  wire                          s_sign_negative,
+    // with nB: see cchip_programme_plan
+    input  wire                          s_certain_sides,
+    input  wire [     `CCHIP_PLAN_W-1:0] s_plan,
+    output wire                          m_valid,
+    output wire                          m_outcome,        // the pair is decided
+    output wire                          m_proceed,        // it goes on with m_plan
+    output wire                          m_separated,
+    output wire [`CCHIP_AXIS_CODE_W-1:0] m_witness,        // first axis that separates, 0: none
+    output wire                          m_certain,
+    output wire                          m_to_tetrahedron, // or with TETRAHEDRON
+    output wire [     `CCHIP_PLAN_W-1:0] m_plan
+);
+
+  // ---- the plan: what the normals lead to
+  reg [`CCHIP_PLAN_W-1:0] plan_q;
+  always @(posedge clk) if (s_valid && s_normal_b) plan_q <= s_plan;
+  assign m_plan = plan_q;
+  wire [`CCHIP_INFO_W-1:0] info = plan_q[`CCHIP_PLAN_INFO];
+  wire [`CCHIP_AXIS_CODE_W-1:0] code = plan_q[`CCHIP_PLAN_CODE];
+  wire warped = info[`CCHIP_INFO_CROSSING_WARPED_A] | info[`CCHIP_INFO_CROSSING_WARPED_B];
+  wire is_crossing = plan_q[`CCHIP_PLAN_PROGRAMME] == `CCHIP_PROG_CROSSING;
+
+  // ---- the two axes that CROSSING would visit, and whether their signs are certain
+  wire [`CCHIP_INDEX_W-1:0] k = s_code[`CCHIP_AXIS_CODE_K];
+  wire [`CCHIP_INDEX_W-1:0] l = s_code[`CCHIP_AXIS_CODE_L];
+  wire [`CCHIP_INDEX_W-1:0] first_k = code[`CCHIP_AXIS_CODE_K];
+  wire [`CCHIP_INDEX_W-1:0] first_l = code[`CCHIP_AXIS_CODE_L];
+  wire first = {k[1:0], l[1:0]} == {first_k[1:0], first_l[1:0]};
+  wire second = {k[1:0], l[1:0]}
+      == {info[`CCHIP_INFO_CROSSING_K_UP], info[`CCHIP_INFO_CROSSING_L_UP]};
+
+  reg valid_q, normal_a_q, normal_q, last_q, separated_q, certain_gap_q, certain_sides_q,
+      still_certain_q;
+  reg [`CCHIP_AXIS_CODE_W-1:0] code_q;
+  always @(posedge clk) begin
+    if (rst) valid_q <= 1'b0;
+    else valid_q <= s_valid;
+    normal_a_q      <= s_normal_a;
+    normal_q        <= s_normal_a | s_normal_b;
+    last_q          <= s_last;
+    code_q          <= s_code;
+    separated_q     <= s_separated;
+    certain_gap_q   <= s_certain_gap;
+    certain_sides_q <= s_normal_a | s_certain_sides;  // after nA: nB tells for both
+    still_certain_q <= !(first || second) || (s_sign_certain && s_sign_negative == second);
+  end
+
+  // ---- found so far: nA is the first axis
+  reg found_certain_q;  // signs on both normals, then on the crossing axes too
+  reg found_separated_q, found_gap_q;
+  reg [`CCHIP_AXIS_CODE_W-1:0] found_witness_q;
+  wire separated_before = ~normal_a_q & found_separated_q;
+  wire separated = separated_before | separated_q;
+  wire [`CCHIP_AXIS_CODE_W-1:0] witness = separated_before ? found_witness_q : separated_q ? code_q
+      : {`CCHIP_AXIS_CODE_W{1'b0}};
+  wire gap = separated_before ? found_gap_q : certain_gap_q;
+  wire certain = normal_q ? certain_sides_q : found_certain_q & still_certain_q;
+  wire to_tetrahedron = TETRAHEDRON != 0 && is_crossing && warped && !certain;
+
+  always @(posedge clk)
+    if (valid_q) begin
+      found_certain_q   <= certain;
+      found_separated_q <= separated;
+      found_witness_q   <= witness;
+      found_gap_q       <= gap;
+    end
+
+  assign m_valid          = valid_q;
+  assign m_outcome        = last_q & (separated | (is_crossing & ~to_tetrahedron));
+  assign m_proceed        = last_q & ~separated & (~is_crossing | to_tetrahedron);
+  assign m_separated      = separated;
+  assign m_witness        = witness;
+  assign m_certain        = separated ? gap : certain;
+  assign m_to_tetrahedron = to_tetrahedron;
+
+  wire unused = &{1'b0, info, code, k, l, first_k, first_l, plan_q};
+
+endmodule
+`default_nettype wire
