@@ -196,7 +196,6 @@ struct Task {
   bool swapped;
   std::size_t number;
   FacePairs faces;
-  CollisionResult* result;
   CollisionResult own_result;  ///< of batches
   CollisionCounts counts;
   std::array<std::array<std::uint32_t, 2>, open_most> open;  ///< faces of the moved and of the fixed object
@@ -297,6 +296,19 @@ constexpr std::size_t lanes16 = hn::MaxLanes(D16());
 constexpr std::size_t parts = words / lanes16;
 constexpr std::size_t lanes_f = hn::MaxLanes(DF());
 
+/// A line's four times 16 bytes, each in all blocks of a vector.
+struct Quarters {
+  HWY_INLINE explicit Quarters(const SupportLine& line)
+      : axes(quarter(line, 0)), corners(quarter(line, 1)), faces_low(quarter(line, 2)), faces_high(quarter(line, 3)) {}
+  static HWY_INLINE hn::Vec<D8> quarter(const SupportLine& line, std::size_t number) {
+    return hn::LoadDup128(D8(), reinterpret_cast<const std::uint8_t*>(line.word.data()) + 16 * number);
+  }
+  hn::Vec<D8> axes;
+  hn::Vec<D8> corners;
+  hn::Vec<D8> faces_low;
+  hn::Vec<D8> faces_high;
+};
+
 /// Words of the moved object's line that an index names, for one part of the planes.
 struct Gathered {
   V16 axis;
@@ -304,22 +316,17 @@ struct Gathered {
   V16 face;
 };
 
-HWY_INLINE hn::Vec<D8> quarter(const SupportLine& line, std::size_t number) {
-  return hn::LoadDup128(D8(), reinterpret_cast<const std::uint8_t*>(line.word.data()) + 16 * number);
-}
-
 template <class Array>
 HWY_INLINE hn::Vec<D8> load_bytes(const Array& from, std::size_t part) {
   return hn::Load(D8(), reinterpret_cast<const std::uint8_t*>(from.data() + part * lanes16));
 }
 
-HWY_INLINE Gathered gather(const Planes& planes, std::size_t part, hn::Vec<D8> axes, hn::Vec<D8> corners,
-                           hn::Vec<D8> faces_low, hn::Vec<D8> faces_high) {
+HWY_INLINE Gathered gather(const Planes& planes, std::size_t part, const Quarters& line) {
   const D16 d;
-  return {hn::BitCast(d, hn::TableLookupBytes(axes, load_bytes(planes.axis, part))),
-          hn::BitCast(d, hn::TableLookupBytes(corners, load_bytes(planes.corner, part))),
-          hn::BitCast(d, hn::Or(hn::TableLookupBytesOr0(faces_low, load_bytes(planes.face_low, part)),
-                                hn::TableLookupBytesOr0(faces_high, load_bytes(planes.face_high, part))))};
+  return {hn::BitCast(d, hn::TableLookupBytes(line.axes, load_bytes(planes.axis, part))),
+          hn::BitCast(d, hn::TableLookupBytes(line.corners, load_bytes(planes.corner, part))),
+          hn::BitCast(d, hn::Or(hn::TableLookupBytesOr0(line.faces_low, load_bytes(planes.face_low, part)),
+                                hn::TableLookupBytesOr0(line.faces_high, load_bytes(planes.face_high, part))))};
 }
 
 /// Least lane of each of four vectors, twice, in each 128 bits: 0 1 2 3 0 1 2 3, each of a quarter of its lanes.
@@ -344,8 +351,11 @@ HWY_INLINE hn::Vec<hn::FixedTag<std::int16_t, 8>> least_block(D, hn::Vec<D> v) {
   }
 }
 
-/// Least overlaps of four moved with four fixed nodes, key 4 i + j, from the rows of least_of_four().
-HWY_INLINE unsigned store_keys(V16 u0, V16 u1, V16 u2, V16 u3, std::int16_t* keys) {
+/// Least overlaps of moved with four fixed nodes, key 4 i + j, from the rows of least_of_four(). Rows that are missing
+/// repeat the first.
+/// \returns bit 4 i + j: key 4 i + j is not negative
+template <std::size_t rows>
+HWY_INLINE unsigned store_keys(const V16* row, std::int16_t* keys) {
   const D16 d;
   const hn::Repartition<std::int64_t, D16> d64;
   const auto pair = [&](V16 p, V16 q) {
@@ -355,8 +365,8 @@ HWY_INLINE unsigned store_keys(V16 u0, V16 u1, V16 u2, V16 u3, std::int16_t* key
                                   hn::BitCast(d, hn::InterleaveUpper(d64, p64, q64))));
   };
   const hn::FixedTag<std::int16_t, 8> d8;
-  const auto low = pair(u0, u1);
-  const auto high = pair(u2, u3);
+  const auto low = pair(row[0], row[rows > 1 ? 1 : 0]);
+  const auto high = pair(row[rows > 2 ? 2 : 0], row[rows > 3 ? 3 : 0]);
   hn::Store(low, d8, keys);
   hn::Store(high, d8, keys + 8);
   std::array<std::uint8_t, 16> bits = {};
@@ -376,15 +386,12 @@ HWY_INLINE unsigned narrow_test(const SupportLine* moved, const SupportLine* fix
   for (std::size_t j = 0; j < 4; ++j) {
     for (std::size_t p = 0; p < parts; ++p) own[j][p] = hn::Load(d, fixed[j].word.data() + p * lanes16);
   }
-  V16 row[4];
+  V16 row[rows];
   for (std::size_t i = 0; i < rows; ++i) {
-    const auto axes = quarter(moved[i], 0);
-    const auto corners = quarter(moved[i], 1);
-    const auto faces_low = quarter(moved[i], 2);
-    const auto faces_high = quarter(moved[i], 3);
+    const Quarters line(moved[i]);
     V16 least[4];
     for (std::size_t p = 0; p < parts; ++p) {
-      const Gathered g = gather(planes, p, axes, corners, faces_low, faces_high);
+      const Gathered g = gather(planes, p, line);
       const std::size_t at = p * lanes16;
       // These three do not overflow: make_planes() has looked at the sum of the factors.
       V16 reach = hn::MulFixedPoint15(g.axis, hn::Load(d, planes.axis_factor.data() + at));
@@ -399,8 +406,7 @@ HWY_INLINE unsigned narrow_test(const SupportLine* moved, const SupportLine* fix
     }
     row[i] = least_of_four(least[0], least[1], least[2], least[3]);
   }
-  for (std::size_t i = rows; i < 4; ++i) row[i] = row[0];
-  return store_keys(row[0], row[1], row[2], row[3], keys);
+  return store_keys<rows>(row, keys);
 }
 
 HWY_INLINE VF to_float(V16 v, bool upper) {
@@ -416,15 +422,12 @@ HWY_NOINLINE unsigned wide_test(const SupportLine* moved, const WideNode& fixed,
   const DF df;
   const VF most = hn::Set(df, 32767.0F);
   const VF scale = hn::Set(df, planes.key_scale);
-  V16 row[4];
+  V16 row[rows];
   for (std::size_t i = 0; i < rows; ++i) {
-    const auto axes = quarter(moved[i], 0);
-    const auto corners = quarter(moved[i], 1);
-    const auto faces_low = quarter(moved[i], 2);
-    const auto faces_high = quarter(moved[i], 3);
+    const Quarters line(moved[i]);
     VF least[4];
     for (std::size_t p = 0; p < parts; ++p) {
-      const Gathered g = gather(planes, p, axes, corners, faces_low, faces_high);
+      const Gathered g = gather(planes, p, line);
       for (std::size_t h = 0; h < 2; ++h) {
         const bool upper = h != 0;
         const std::size_t at = p * lanes16 + h * lanes_f;
@@ -448,8 +451,7 @@ HWY_NOINLINE unsigned wide_test(const SupportLine* moved, const WideNode& fixed,
     }
     row[i] = least_of_four(key[0], key[1], key[2], key[3]);
   }
-  for (std::size_t i = rows; i < 4; ++i) row[i] = row[0];
-  return store_keys(row[0], row[1], row[2], row[3], keys);
+  return store_keys<rows>(row, keys);
 }
 
 /// Planes of the lines in single precision.
@@ -820,7 +822,6 @@ class SimdSearch final : public Search {
       return false;
     }
     task.faces.start(query, request, result);
-    task.result = &result;
     task.swapped = relation.swapped;
     task.moved = &(relation.swapped ? query.b : query.a)->tree();
     task.fixed = &(relation.swapped ? query.a : query.b)->tree();
@@ -935,7 +936,22 @@ class SimdSearch final : public Search {
       }
       return false;
     }
-    // Four bits for each pair, 4 i + 2 k in all: only the lowest of each is used.
+    return visit_triangles(p, count_p, q, count_q, place, [&](std::size_t i, std::size_t k, Verdict verdict) {
+      if (verdict == Verdict::touch) {
+        task.add(faces_p[i], faces_q[k]);
+      } else {
+        task.keep_open(faces_p[i], faces_q[k]);
+      }
+      return task.faces.done();
+    });
+  }
+
+  /// Calls `visit` for the pairs of up to two by two triangles that are not apart, until it returns true.
+  /// \returns whether it did
+  template <class Visit>
+  static HWY_INLINE bool visit_triangles(const LeafSide& p, std::size_t count_p, const LeafSide& q, std::size_t count_q,
+                                         const Placement& place, const Visit& visit) {
+    // Bit 8 i + 4 k: triangles i and k may touch; all their vertices lie on certain sides.
     unsigned left = 0;
     unsigned certain = 0;
     std::array<Sides, 2> of_p;
@@ -957,27 +973,9 @@ class SimdSearch final : public Search {
       const Verdict verdict = (certain >> bit & 1U) != 0 ? cross_test(p, 4 * i, of_p[i].negative >> 4 * k & 7U, q,
                                                                       4 * k, of_q[i].negative >> 4 * k & 7U, place)
                                                          : Verdict::open;
-      if (verdict == Verdict::apart) continue;
-      if (verdict == Verdict::touch) {
-        task.add(faces_p[i], faces_q[k]);
-      } else {
-        task.keep_open(faces_p[i], faces_q[k]);
-      }
-      if (task.faces.done()) return true;
+      if (verdict != Verdict::apart && visit(i, k, verdict)) return true;
     }
     return false;
-  }
-
-  /// Two triangles; their bits in `of_p` and `of_q` begin at `shift`.
-  static HWY_INLINE Verdict decide(const LeafSide& p, std::size_t at_p, const Sides& of_p, const LeafSide& q,
-                                   std::size_t at_q, const Sides& of_q, const Placement& place, std::size_t shift) {
-    const unsigned positive_p = of_p.positive >> shift & 7U;
-    const unsigned negative_p = of_p.negative >> shift & 7U;
-    const unsigned positive_q = of_q.positive >> shift & 7U;
-    const unsigned negative_q = of_q.negative >> shift & 7U;
-    if (positive_p == 7 || negative_p == 7 || positive_q == 7 || negative_q == 7) return Verdict::apart;
-    if ((positive_p | negative_p) != 7 || (positive_q | negative_q) != 7) return Verdict::open;
-    return cross_test(p, at_p, negative_p, q, at_q, negative_q, place);
   }
 
   /// True only if a triangle of one touches a triangle of the other. Triangles of a quad: 0 1 2 and 0 2 3.
@@ -996,15 +994,8 @@ class SimdSearch final : public Search {
     alignas(64) LeafSide q = halves(b);
     finish_side(p, place.moved_error);
     finish_side(q, place.fixed_error);
-    for (std::size_t i = 0; i < (quad_a ? 2U : 1U); ++i) {
-      Sides of_p;
-      Sides of_q;
-      compare(p, i, place.moved_error, q, place.fixed_error, of_q, of_p);
-      for (std::size_t k = 0; k < (quad_b ? 2U : 1U); ++k) {
-        if (decide(p, 4 * i, of_p, q, 4 * k, of_q, place, 4 * k) == Verdict::touch) return true;
-      }
-    }
-    return false;
+    return visit_triangles(p, quad_a ? 2 : 1, q, quad_b ? 2 : 1, place,
+                           [](std::size_t, std::size_t, Verdict verdict) { return verdict == Verdict::touch; });
   }
 
   /// One query for its first contact, one item at a time.
