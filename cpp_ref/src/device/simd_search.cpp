@@ -811,7 +811,10 @@ class SimdSearch final : public Search {
   }
 
  private:
-  static constexpr std::size_t together = 16;  // queries of a batch, items of a search for all contacts
+  // Queries of a batch: more of them do not fit into the first level of the cache together.
+  static constexpr std::size_t together = 8;
+  // Items of a search for all contacts.
+  static constexpr std::size_t items_together = 16;
 
   /// Prepares a query.
   /// \returns false if the result is complete
@@ -1015,15 +1018,15 @@ class SimdSearch final : public Search {
 
   /// One query for all contacts: several items at a time, in any order.
   void search_all(Task& task) {
-    Item items[together];
-    std::int16_t keys[together][16];
-    std::array<unsigned, together> hits;
+    Item items[items_together];
+    std::int16_t keys[items_together][16];
+    std::array<unsigned, items_together> hits;
     if (deep_.size() < 1024) deep_.resize(1024);
     deep_[0] = task.stack[0];
     std::size_t size = 1;
     while (size > 0) {
       std::size_t count = 0;
-      while (size > 0 && count < together) {
+      while (size > 0 && count < items_together) {
         const Item item = deep_[--size];
         if (item.is_leaf_pair()) {
           if (test_leaves(task, item)) return;
@@ -1031,11 +1034,11 @@ class SimdSearch final : public Search {
           items[count++] = item;
         }
       }
-      if (deep_.size() < size + 16 * together) deep_.resize(2 * deep_.size());
+      if (deep_.size() < size + 16 * items_together) deep_.resize(2 * deep_.size());
       for (std::size_t i = 0; i < count; ++i) hits[i] = test(task, items[i], keys[i]);
       for (std::size_t i = 0; i < count; ++i)
         size += push<false>(task, items[i], hits[i], keys[i], deep_.data() + size);
-      for (std::size_t i = 1; i <= std::min(size, together); ++i) prefetch(task, deep_[size - i]);
+      for (std::size_t i = 1; i <= std::min(size, items_together); ++i) prefetch(task, deep_[size - i]);
     }
   }
 
