@@ -3,6 +3,7 @@
 #include <cchip/bvh/rounding.hpp>
 #include <cchip/bvh/support_tree.hpp>
 #include <cmath>
+#include <memory>
 #include <new>
 
 #if __has_include(<sys/mman.h>)
@@ -75,12 +76,15 @@ NodeRef ref_of(const TreeNode& node) {
 
 void* allocate_bytes(std::size_t bytes) {
   constexpr std::size_t line = 64;
-  constexpr std::size_t page = std::size_t{1} << 21U;  // of x86-64 and of most Arm systems
-  const std::size_t unit = bytes < page ? line : page;
-  void* const memory = std::aligned_alloc(unit, (bytes + unit - 1) / unit * unit);
+  void* const memory = std::aligned_alloc(line, (bytes + line - 1) / line * line);
   if (memory == nullptr) throw std::bad_alloc();
 #ifdef MADV_HUGEPAGE
-  if (unit == page) madvise(memory, bytes, MADV_HUGEPAGE);  // a wish: it does no harm if the system refuses
+  constexpr std::size_t large_page = std::size_t{1} << 21U;  // of x86-64 and of most Arm systems
+  constexpr std::size_t page = std::size_t{1} << 16U;        // the others are as large or smaller
+  void* begin = memory;
+  std::size_t left = bytes;
+  // A wish: it does no harm if the system refuses.
+  if (bytes >= large_page && std::align(page, 1, begin, left) != nullptr) madvise(begin, left, MADV_HUGEPAGE);
 #endif
   return memory;
 }
