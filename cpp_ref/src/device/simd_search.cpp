@@ -36,7 +36,8 @@ using bvh::SupportTree;
 
 constexpr std::size_t words = bvh::support_words;
 constexpr float radius = bvh::support_most;
-constexpr float ulp = 0x1p-24F;  // greatest relative error of one operation
+constexpr float ulp = 0x1p-24F;            // greatest relative error of one operation
+constexpr float shortest_axis = 0x1p-60F;  // |x| + |y| + |z|: with a shorter one products might underflow
 
 /// A node of the moved object and one of the fixed object that may meet.
 struct Item {
@@ -128,57 +129,11 @@ struct Corners {
   std::array<std::array<float, 3>, 4> v;
 };
 
-inline Corners corners_of(const LeafSide& side, std::size_t at) {
-  Corners c;
-  for (std::size_t i = 0; i < 4; ++i) c.v[i] = {side.x[at + i], side.y[at + i], side.z[at + i]};
-  return c;
-}
-
 inline std::array<float, 3> difference(const std::array<float, 3>& p, const std::array<float, 3>& q) {
   return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
 }
 inline std::array<float, 3> cross_product(const std::array<float, 3>& p, const std::array<float, 3>& q) {
   return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-}
-
-/// True only if the intervals on the axis are disjoint. Any axis is valid, so it needs no error bound.
-inline bool separates(const std::array<float, 3>& axis, const Corners& p, const Corners& q, float error) {
-  const std::array<float, 3>& base = q.v[0];
-  float greatest = 0;
-  const auto range = [&](const Corners& c) {
-    std::array<float, 2> r = {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
-    for (const auto& v : c.v) {
-      const std::array<float, 3> d = difference(v, base);
-      const float at = axis[0] * d[0] + axis[1] * d[1] + axis[2] * d[2];
-      r = {std::min(r[0], at), std::max(r[1], at)};
-      greatest = std::max({greatest, std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
-    }
-    return r;
-  };
-  const std::array<float, 2> a = range(p);
-  const std::array<float, 2> b = range(q);
-  const float size = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
-  const float gap = std::max(b[0] - a[1], a[0] - b[1]);
-  return gap > 1.02F * size * (error + 12 * ulp * greatest);
-}
-
-/// Pairs with a quad: the normals, from the diagonals.
-inline bool normals_separate(const Corners& p, const Corners& q, float error) {
-  const auto normal = [](const Corners& c) {
-    return cross_product(difference(c.v[2], c.v[0]), difference(c.v[3], c.v[1]));
-  };
-  return separates(normal(p), p, q, error) || separates(normal(q), p, q, error);
-}
-
-/// Pairs with a quad: the cross products of their sides.
-inline bool sides_separate(const Corners& p, const Corners& q, float error) {
-  for (std::size_t i = 0; i < 4; ++i) {
-    const std::array<float, 3> e = difference(p.v[(i + 1) % 4], p.v[i]);
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (separates(cross_product(e, difference(q.v[(k + 1) % 4], q.v[k])), p, q, error)) return true;
-    }
-  }
-  return false;
 }
 
 /// Entries that a stack needs: each step replaces one item by at most 16 that are a level deeper in one of the trees.
@@ -271,7 +226,7 @@ inline bool beside_faces(const Task& task, const SupportLine& node, NodeRef leaf
     const float centre = along(place.t);
     const float size = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
     const float gap = std::max(low - (centre + reach_along(node, m)), centre - reach_along(node, against) - high);
-    if (!(gap > 1.02F * size * task.planes.side_error)) return false;
+    if (!(gap > 1.02F * size * task.planes.side_error && size > shortest_axis)) return false;
   }
   return true;
 }
@@ -768,6 +723,105 @@ HWY_INLINE Verdict cross_test(const LeafSide& p, std::size_t at_p, unsigned nega
   return positive == 1 && negative == 2 ? Verdict::touch : Verdict::open;
 }
 
+using D4F = hn::FixedTag<float, 4>;
+using V4F = hn::Vec<D4F>;
+
+/// Seeks axes that separate two primitives, four at a time.
+class AxisTest {
+ public:
+  HWY_INLINE AxisTest(const LeafSide& p, std::size_t at_p, const LeafSide& q, std::size_t at_q, float error) {
+    const D4F d;
+    V4F greatest = hn::Zero(d);
+    const auto place = [&](const std::array<float, 8>& of_p, const std::array<float, 8>& of_q,
+                           std::array<float, 8>& to) {
+      const V4F base = hn::Set(d, of_q[at_q]);
+      const V4F first = hn::Sub(hn::Load(d, of_p.data() + at_p), base);
+      const V4F second = hn::Sub(hn::Load(d, of_q.data() + at_q), base);
+      hn::Store(first, d, to.data());
+      hn::Store(second, d, to.data() + 4);
+      greatest = hn::Max(greatest, hn::Max(hn::Abs(first), hn::Abs(second)));
+    };
+    place(p.x, q.x, x_);
+    place(p.y, q.y, y_);
+    place(p.z, q.z, z_);
+    limit_ = hn::MulAdd(hn::MaxOfLanes(d, greatest), hn::Set(d, 1.02F * 12 * ulp), hn::Set(d, 1.02F * error));
+  }
+
+  /// True only if the intervals of the primitives are disjoint on one of the axes. Any axis is valid, so an axis needs
+  /// no error bound; but the products of a very short one would underflow.
+  HWY_INLINE bool any_separates(V4F nx, V4F ny, V4F nz) const {
+    const D4F d;
+    const auto along = [&](std::size_t v) {
+      return hn::MulAdd(nx, hn::Set(d, x_[v]), hn::MulAdd(ny, hn::Set(d, y_[v]), hn::Mul(nz, hn::Set(d, z_[v]))));
+    };
+    V4F low[2];
+    V4F high[2];
+    for (std::size_t side = 0; side < 2; ++side) {
+      low[side] = high[side] = along(4 * side);
+      for (std::size_t v = 1; v < 4; ++v) {
+        const V4F at = along(4 * side + v);
+        low[side] = hn::Min(low[side], at);
+        high[side] = hn::Max(high[side], at);
+      }
+    }
+    const V4F gap = hn::Max(hn::Sub(low[1], high[0]), hn::Sub(low[0], high[1]));
+    const V4F size = hn::Add(hn::Abs(nx), hn::Add(hn::Abs(ny), hn::Abs(nz)));
+    return !hn::AllFalse(d, hn::And(hn::Gt(gap, hn::Mul(size, limit_)), hn::Gt(size, hn::Set(d, shortest_axis))));
+  }
+
+  /// The normals, from the diagonals.
+  HWY_INLINE bool normals_separate(const LeafSide& p, std::size_t at_p, const LeafSide& q, std::size_t at_q) const {
+    const D4F d;
+    const auto both = [&](const std::array<float, 8>& of_p, const std::array<float, 8>& of_q) {
+      return hn::InterleaveLower(d, hn::Set(d, of_p[at_p]), hn::Set(d, of_q[at_q]));
+    };
+    return any_separates(both(p.nx, q.nx), both(p.ny, q.ny), both(p.nz, q.nz));
+  }
+
+  /// The cross products of the sides.
+  HWY_INLINE bool sides_separate() const {
+    const D4F d;
+    const auto sides = [&](const std::array<float, 8>& of) {
+      const V4F at = hn::Load(d, of.data() + 4);
+      return hn::Sub(hn::Shuffle0321(at), at);
+    };
+    const V4F fx = sides(x_);
+    const V4F fy = sides(y_);
+    const V4F fz = sides(z_);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto side = [&](const std::array<float, 8>& of) { return hn::Set(d, of[(i + 1) % 4] - of[i]); };
+      const V4F ex = side(x_);
+      const V4F ey = side(y_);
+      const V4F ez = side(z_);
+      if (any_separates(hn::MulSub(ey, fz, hn::Mul(ez, fy)), hn::MulSub(ez, fx, hn::Mul(ex, fz)),
+                        hn::MulSub(ex, fy, hn::Mul(ey, fx)))) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  alignas(16) std::array<float, 8> x_, y_, z_;  ///< vertices of p, then of q, from the first one of q
+  V4F limit_;                                   ///< what a gap must exceed, a unit of the axis each
+};
+
+/// The two triangles 0 1 2 and 0 2 3 of a quad, as a leaf of their own.
+HWY_INLINE void halve(const LeafSide& quads, std::size_t at, float error, LeafSide& halves) {
+  const D8F d;
+  alignas(32) static constexpr std::array<std::int32_t, 8> vertex = {0, 1, 2, 0, 0, 2, 3, 0};
+  const auto take = [&](const std::array<float, 8>& from, std::array<float, 8>& to) {
+    for (std::size_t k = 0; k < 8; k += lanes8) {
+      const auto order = hn::SetTableIndices(d, vertex.data() + k);
+      hn::Store(hn::TableLookupLanes(hn::LoadDup128(d, from.data() + at), order), d, to.data() + k);
+    }
+  };
+  take(quads.x, halves.x);
+  take(quads.y, halves.y);
+  take(quads.z, halves.z);
+  finish_side(halves, error);
+}
+
 /// Reads what the next steps need into the cache.
 HWY_INLINE void prefetch(const Task& task, Item item) {
   const auto read = [](const char* from) {
@@ -833,13 +887,14 @@ class SimdSearch final : public Search {
     for (std::size_t i = 0; i < 3; ++i) task.place.t[i] = static_cast<float>(relation.t[i]);
     // A coordinate of a moved vertex: 1 rounding each of vertex, matrix and three products, three sums; of the offset.
     const double own = 1.01 * margins_.vertex * ulp;
-    task.place.moved_error = static_cast<float>(own * (6 * radius * relation.row + 4 * relation.distance) +
-                                                1.01 * margins_.relation * relation.vertex_error);
+    const double of_relation = 1.01 * margins_.relation * relation.vertex_error;
+    task.place.moved_error =
+        static_cast<float>(own * (6 * radius * relation.row + 4 * relation.distance) + of_relation);
     task.place.fixed_error = static_cast<float>(own * radius);
+    const double of_plane = margins_.wide * ulp * (radius * (3 + 12 * relation.norm) + 5 * relation.distance);
+    task.planes.side_error = static_cast<float>(1.01 * of_plane + of_relation) + task.place.fixed_error;
     task.counts = {};
     task.open_count = 0;
-    const double plane_of_face = margins_.wide * ulp * (radius * (3 + 16 * relation.norm) + 4 * relation.distance);
-    task.planes.side_error = static_cast<float>(1.01 * plane_of_face) + task.place.moved_error + task.place.fixed_error;
     task.stack[0] = {task.planes.tiny ? task.moved->whole() : task.moved->root(), task.fixed->root()};
     task.size = 1;
     return true;
@@ -925,13 +980,11 @@ class SimdSearch final : public Search {
     if (HWY_UNLIKELY(item.moved.is_quad() || item.fixed.is_quad())) {
       for (std::size_t i = 0; i < count_p; ++i) {
         for (std::size_t k = 0; k < count_q; ++k) {
-          const Corners a = corners_of(p, 4 * i);
-          const Corners b = corners_of(q, 4 * k);
-          const float error = place.moved_error + place.fixed_error;
-          if (normals_separate(a, b, error)) continue;
-          if (quads_touch(a, item.moved.is_quad(), b, item.fixed.is_quad(), place)) {
+          const AxisTest test(p, 4 * i, q, 4 * k, place.moved_error + place.fixed_error);
+          if (test.normals_separate(p, 4 * i, q, 4 * k)) continue;
+          if (quads_touch(p, 4 * i, item.moved.is_quad(), q, 4 * k, item.fixed.is_quad(), place)) {
             task.add(faces_p[i], faces_q[k]);
-          } else if (!sides_separate(a, b, error)) {
+          } else if (!test.sides_separate()) {
             task.keep_open(faces_p[i], faces_q[k]);
           }
           if (task.faces.done()) return true;
@@ -981,23 +1034,14 @@ class SimdSearch final : public Search {
     return false;
   }
 
-  /// True only if a triangle of one touches a triangle of the other. Triangles of a quad: 0 1 2 and 0 2 3.
-  static bool quads_touch(const Corners& a, bool quad_a, const Corners& b, bool quad_b, const Placement& place) {
-    const auto halves = [](const Corners& c) {
-      LeafSide side = {};
-      constexpr std::array<std::size_t, 8> vertex = {0, 1, 2, 0, 0, 2, 3, 0};
-      for (std::size_t i = 0; i < 8; ++i) {
-        side.x[i] = c.v[vertex[i]][0];
-        side.y[i] = c.v[vertex[i]][1];
-        side.z[i] = c.v[vertex[i]][2];
-      }
-      return side;
-    };
-    alignas(64) LeafSide p = halves(a);
-    alignas(64) LeafSide q = halves(b);
-    finish_side(p, place.moved_error);
-    finish_side(q, place.fixed_error);
-    return visit_triangles(p, quad_a ? 2 : 1, q, quad_b ? 2 : 1, place,
+  /// True only if a triangle of one touches a triangle of the other.
+  static bool quads_touch(const LeafSide& p, std::size_t at_p, bool quad_p, const LeafSide& q, std::size_t at_q,
+                          bool quad_q, const Placement& place) {
+    alignas(64) LeafSide halves_p;
+    alignas(64) LeafSide halves_q;
+    halve(p, at_p, place.moved_error, halves_p);
+    halve(q, at_q, place.fixed_error, halves_q);
+    return visit_triangles(halves_p, quad_p ? 2 : 1, halves_q, quad_q ? 2 : 1, place,
                            [](std::size_t, std::size_t, Verdict verdict) { return verdict == Verdict::touch; });
   }
 
