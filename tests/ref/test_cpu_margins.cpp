@@ -158,3 +158,42 @@ TEST_CASE("CPU device: bounds on rounding are enough, and none can be left out",
     std::printf("without the bound '%s': %zu hits missed\n", mutant.name, mutant.missed);
   }
 }
+
+TEST_CASE("CPU device: normals so short that products with them underflow separate nothing", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto vector = [&](double size) {
+    const double x = unit(random);
+    const double y = unit(random);
+    return Vec3d(size * x, size * y, size * unit(random));
+  };
+  // In the middle of the fixed object lies a face whose normal is about 2^-149, the least number in single precision.
+  // A corner of it is the origin, through which the plate goes.
+  const auto with_tiny_face = [&](Kind kind) {
+    Mesh mesh;
+    mesh.vertices = {{1, 0, 0}, {1, 0.1, 0}, {1, 0, 0.1}, {-1, 0, 0}, {-1, -0.1, 0}, {-1, 0, -0.1}, {0, 0, 0}};
+    const double size = std::ldexp(1 + std::abs(unit(random)), -90 + static_cast<int>(random() % 4));
+    for (int i = 0; i < 3; ++i) mesh.vertices.push_back(vector(size));
+    mesh.faces = {
+        {Kind::tri, {0, 1, 2, 0}}, {Kind::tri, {3, 4, 5, 3}}, {kind, {6, 7, 8, kind == Kind::quad ? 9U : 6U}}};
+    return mesh;
+  };
+  const auto plate = [](double size) {
+    Mesh mesh;
+    mesh.vertices = {{-size, -size, 0}, {3 * size, -size, 0}, {-size, 3 * size, 0}};
+    mesh.faces = {{Kind::tri, {0, 1, 2, 0}}};
+    return mesh;
+  };
+  for (const std::string& name : simd_targets()) {
+    const auto search = make_simd_search(name);
+    std::size_t missed = 0;
+    for (int i = 0; i < 400; ++i) {
+      const Object fixed(with_tiny_face(i % 2 == 0 ? Kind::tri : Kind::quad));
+      const Object small(plate(i % 4 < 2 ? 0.001 : 0.2));
+      const Pose turned = make_pose(Vec3d::Zero(), 360 * random_vector(random));
+      missed += hits(*search, fixed, Pose::Identity(), small, turned) ? 0U : 1U;
+    }
+    INFO(name);
+    CHECK(missed == 0);
+  }
+}

@@ -3,7 +3,7 @@
 #include <cchip/bvh/rounding.hpp>
 #include <cchip/bvh/support_tree.hpp>
 #include <cmath>
-#include <limits>
+#include <memory>
 #include <new>
 
 #if __has_include(<sys/mman.h>)
@@ -15,25 +15,23 @@ namespace {
 
 constexpr double least_unit = 0x1p-1000;
 
-double length_of(const std::array<int, 3>& d) {
-  return std::sqrt(static_cast<double>(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
-}
-
-/// A word, the number of its direction among the 13, and which way it points along that.
+/// A word, the number of its direction among the 13, which way it points along that, and the direction's length.
 struct Word {
   std::size_t word;
   std::size_t direction;
   bool negative;
+  double length;
 };
 
 std::vector<Word> make_words() {
   std::vector<Word> words;
   for (std::size_t w = 0; w < support_words; ++w) {
     const std::array<int, 3> v = support_direction(w);
+    const double length = std::sqrt(static_cast<double>(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
     for (std::size_t d = 0; d < directions.size(); ++d) {
       const std::array<int, 3>& u = directions[d];
-      if (v == u) words.push_back({w, d, false});
-      if (v[0] == -u[0] && v[1] == -u[1] && v[2] == -u[2]) words.push_back({w, d, true});
+      if (v == u) words.push_back({w, d, false, length});
+      if (v[0] == -u[0] && v[1] == -u[1] && v[2] == -u[2]) words.push_back({w, d, true, length});
     }
   }
   return words;
@@ -55,11 +53,10 @@ SupportLine make_line(const Dop26& dop, const Vec3d& centre, double unit, NodeRe
   SupportLine line;
   const double slack = sum_slack(centre, unit);
   for (const Word& w : words()) {
-    const std::array<int, 3>& d = directions[w.direction];
-    const double at = along(d, centre);
+    const double at = along(directions[w.direction], centre);
     const double reach = (w.negative ? at - dop.least[w.direction] : dop.greatest[w.direction] - at) + slack;
     // The division and its operands are off by a few units in the last place of a number below 2^16.
-    const double steps = reach / (length_of(d) * unit) + 0x1p-30;
+    const double steps = reach / (w.length * unit) + 0x1p-30;
     // The object lies in the ball, so the bound may be cut off there. An overflow leaves the ball, too.
     const double most = support_most;
     line.word[w.word] = static_cast<std::int16_t>(steps < most ? std::max(std::ceil(steps), -most) : most);
@@ -79,12 +76,15 @@ NodeRef ref_of(const TreeNode& node) {
 
 void* allocate_bytes(std::size_t bytes) {
   constexpr std::size_t line = 64;
-  constexpr std::size_t page = std::size_t{1} << 21U;  // of x86-64 and of most Arm systems
-  const std::size_t unit = bytes < page ? line : page;
-  void* const memory = std::aligned_alloc(unit, (bytes + unit - 1) / unit * unit);
+  void* const memory = std::aligned_alloc(line, (bytes + line - 1) / line * line);
   if (memory == nullptr) throw std::bad_alloc();
 #ifdef MADV_HUGEPAGE
-  if (unit == page) madvise(memory, bytes, MADV_HUGEPAGE);  // a wish: it does no harm if the system refuses
+  constexpr std::size_t large_page = std::size_t{1} << 21U;  // of x86-64 and of most Arm systems
+  constexpr std::size_t page = std::size_t{1} << 16U;        // the others are as large or smaller
+  void* begin = memory;
+  std::size_t left = bytes;
+  // A wish: it does no harm if the system refuses.
+  if (bytes >= large_page && std::align(page, 1, begin, left) != nullptr) madvise(begin, left, MADV_HUGEPAGE);
 #endif
   return memory;
 }
@@ -144,18 +144,12 @@ SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : faces_(tree.faces
   }
 }
 
-std::size_t SupportTree::memory() const {
-  return sizeof *this + lines_.capacity() * sizeof(SupportLine) + vertices_.capacity() * sizeof(float) +
-         faces_.capacity() * sizeof(std::uint32_t);
-}
-
 Dop26 dop_of(const SupportTree& tree, const SupportLine& line) {
   Dop26 dop;
   const double slack = sum_slack(tree.centre(), tree.unit());
   for (const Word& w : words()) {
-    const std::array<int, 3>& d = directions[w.direction];
-    const double at = along(d, tree.centre());
-    const double reach = length_of(d) * tree.unit() * line.word[w.word] + slack;
+    const double at = along(directions[w.direction], tree.centre());
+    const double reach = w.length * tree.unit() * line.word[w.word] + slack;
     if (w.negative) {
       dop.least[w.direction] = at - reach;
     } else {

@@ -36,7 +36,8 @@ using bvh::SupportTree;
 
 constexpr std::size_t words = bvh::support_words;
 constexpr float radius = bvh::support_most;
-constexpr float ulp = 0x1p-24F;  // greatest relative error of one operation
+constexpr float ulp = 0x1p-24F;            // greatest relative error of one operation
+constexpr float shortest_axis = 0x1p-60F;  // |x| + |y| + |z|: with a shorter one products might underflow
 
 /// A node of the moved object and one of the fixed object that may meet.
 struct Item {
@@ -128,57 +129,11 @@ struct Corners {
   std::array<std::array<float, 3>, 4> v;
 };
 
-inline Corners corners_of(const LeafSide& side, std::size_t at) {
-  Corners c;
-  for (std::size_t i = 0; i < 4; ++i) c.v[i] = {side.x[at + i], side.y[at + i], side.z[at + i]};
-  return c;
-}
-
 inline std::array<float, 3> difference(const std::array<float, 3>& p, const std::array<float, 3>& q) {
   return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
 }
 inline std::array<float, 3> cross_product(const std::array<float, 3>& p, const std::array<float, 3>& q) {
   return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-}
-
-/// True only if the intervals on the axis are disjoint. Any axis is valid, so it needs no error bound.
-inline bool separates(const std::array<float, 3>& axis, const Corners& p, const Corners& q, float error) {
-  const std::array<float, 3>& base = q.v[0];
-  float greatest = 0;
-  const auto range = [&](const Corners& c) {
-    std::array<float, 2> r = {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
-    for (const auto& v : c.v) {
-      const std::array<float, 3> d = difference(v, base);
-      const float at = axis[0] * d[0] + axis[1] * d[1] + axis[2] * d[2];
-      r = {std::min(r[0], at), std::max(r[1], at)};
-      greatest = std::max({greatest, std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
-    }
-    return r;
-  };
-  const std::array<float, 2> a = range(p);
-  const std::array<float, 2> b = range(q);
-  const float size = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
-  const float gap = std::max(b[0] - a[1], a[0] - b[1]);
-  return gap > 1.02F * size * (error + 12 * ulp * greatest);
-}
-
-/// Pairs with a quad: the normals, from the diagonals.
-inline bool normals_separate(const Corners& p, const Corners& q, float error) {
-  const auto normal = [](const Corners& c) {
-    return cross_product(difference(c.v[2], c.v[0]), difference(c.v[3], c.v[1]));
-  };
-  return separates(normal(p), p, q, error) || separates(normal(q), p, q, error);
-}
-
-/// Pairs with a quad: the cross products of their sides.
-inline bool sides_separate(const Corners& p, const Corners& q, float error) {
-  for (std::size_t i = 0; i < 4; ++i) {
-    const std::array<float, 3> e = difference(p.v[(i + 1) % 4], p.v[i]);
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (separates(cross_product(e, difference(q.v[(k + 1) % 4], q.v[k])), p, q, error)) return true;
-    }
-  }
-  return false;
 }
 
 /// Entries that a stack needs: each step replaces one item by at most 16 that are a level deeper in one of the trees.
@@ -196,7 +151,6 @@ struct Task {
   bool swapped;
   std::size_t number;
   FacePairs faces;
-  CollisionResult* result;
   CollisionResult own_result;  ///< of batches
   CollisionCounts counts;
   std::array<std::array<std::uint32_t, 2>, open_most> open;  ///< faces of the moved and of the fixed object
@@ -272,7 +226,7 @@ inline bool beside_faces(const Task& task, const SupportLine& node, NodeRef leaf
     const float centre = along(place.t);
     const float size = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
     const float gap = std::max(low - (centre + reach_along(node, m)), centre - reach_along(node, against) - high);
-    if (!(gap > 1.02F * size * task.planes.side_error)) return false;
+    if (!(gap > 1.02F * size * task.planes.side_error && size > shortest_axis)) return false;
   }
   return true;
 }
@@ -297,6 +251,19 @@ constexpr std::size_t lanes16 = hn::MaxLanes(D16());
 constexpr std::size_t parts = words / lanes16;
 constexpr std::size_t lanes_f = hn::MaxLanes(DF());
 
+/// A line's four times 16 bytes, each in all blocks of a vector.
+struct Quarters {
+  HWY_INLINE explicit Quarters(const SupportLine& line)
+      : axes(quarter(line, 0)), corners(quarter(line, 1)), faces_low(quarter(line, 2)), faces_high(quarter(line, 3)) {}
+  static HWY_INLINE hn::Vec<D8> quarter(const SupportLine& line, std::size_t number) {
+    return hn::LoadDup128(D8(), reinterpret_cast<const std::uint8_t*>(line.word.data()) + 16 * number);
+  }
+  hn::Vec<D8> axes;
+  hn::Vec<D8> corners;
+  hn::Vec<D8> faces_low;
+  hn::Vec<D8> faces_high;
+};
+
 /// Words of the moved object's line that an index names, for one part of the planes.
 struct Gathered {
   V16 axis;
@@ -304,22 +271,17 @@ struct Gathered {
   V16 face;
 };
 
-HWY_INLINE hn::Vec<D8> quarter(const SupportLine& line, std::size_t number) {
-  return hn::LoadDup128(D8(), reinterpret_cast<const std::uint8_t*>(line.word.data()) + 16 * number);
-}
-
 template <class Array>
 HWY_INLINE hn::Vec<D8> load_bytes(const Array& from, std::size_t part) {
   return hn::Load(D8(), reinterpret_cast<const std::uint8_t*>(from.data() + part * lanes16));
 }
 
-HWY_INLINE Gathered gather(const Planes& planes, std::size_t part, hn::Vec<D8> axes, hn::Vec<D8> corners,
-                           hn::Vec<D8> faces_low, hn::Vec<D8> faces_high) {
+HWY_INLINE Gathered gather(const Planes& planes, std::size_t part, const Quarters& line) {
   const D16 d;
-  return {hn::BitCast(d, hn::TableLookupBytes(axes, load_bytes(planes.axis, part))),
-          hn::BitCast(d, hn::TableLookupBytes(corners, load_bytes(planes.corner, part))),
-          hn::BitCast(d, hn::Or(hn::TableLookupBytesOr0(faces_low, load_bytes(planes.face_low, part)),
-                                hn::TableLookupBytesOr0(faces_high, load_bytes(planes.face_high, part))))};
+  return {hn::BitCast(d, hn::TableLookupBytes(line.axes, load_bytes(planes.axis, part))),
+          hn::BitCast(d, hn::TableLookupBytes(line.corners, load_bytes(planes.corner, part))),
+          hn::BitCast(d, hn::Or(hn::TableLookupBytesOr0(line.faces_low, load_bytes(planes.face_low, part)),
+                                hn::TableLookupBytesOr0(line.faces_high, load_bytes(planes.face_high, part))))};
 }
 
 /// Least lane of each of four vectors, twice, in each 128 bits: 0 1 2 3 0 1 2 3, each of a quarter of its lanes.
@@ -344,8 +306,11 @@ HWY_INLINE hn::Vec<hn::FixedTag<std::int16_t, 8>> least_block(D, hn::Vec<D> v) {
   }
 }
 
-/// Least overlaps of four moved with four fixed nodes, key 4 i + j, from the rows of least_of_four().
-HWY_INLINE unsigned store_keys(V16 u0, V16 u1, V16 u2, V16 u3, std::int16_t* keys) {
+/// Least overlaps of moved with four fixed nodes, key 4 i + j, from the rows of least_of_four(). Rows that are missing
+/// repeat the first.
+/// \returns bit 4 i + j: key 4 i + j is not negative
+template <std::size_t rows>
+HWY_INLINE unsigned store_keys(const V16* row, std::int16_t* keys) {
   const D16 d;
   const hn::Repartition<std::int64_t, D16> d64;
   const auto pair = [&](V16 p, V16 q) {
@@ -355,8 +320,8 @@ HWY_INLINE unsigned store_keys(V16 u0, V16 u1, V16 u2, V16 u3, std::int16_t* key
                                   hn::BitCast(d, hn::InterleaveUpper(d64, p64, q64))));
   };
   const hn::FixedTag<std::int16_t, 8> d8;
-  const auto low = pair(u0, u1);
-  const auto high = pair(u2, u3);
+  const auto low = pair(row[0], row[rows > 1 ? 1 : 0]);
+  const auto high = pair(row[rows > 2 ? 2 : 0], row[rows > 3 ? 3 : 0]);
   hn::Store(low, d8, keys);
   hn::Store(high, d8, keys + 8);
   std::array<std::uint8_t, 16> bits = {};
@@ -376,15 +341,12 @@ HWY_INLINE unsigned narrow_test(const SupportLine* moved, const SupportLine* fix
   for (std::size_t j = 0; j < 4; ++j) {
     for (std::size_t p = 0; p < parts; ++p) own[j][p] = hn::Load(d, fixed[j].word.data() + p * lanes16);
   }
-  V16 row[4];
+  V16 row[rows];
   for (std::size_t i = 0; i < rows; ++i) {
-    const auto axes = quarter(moved[i], 0);
-    const auto corners = quarter(moved[i], 1);
-    const auto faces_low = quarter(moved[i], 2);
-    const auto faces_high = quarter(moved[i], 3);
+    const Quarters line(moved[i]);
     V16 least[4];
     for (std::size_t p = 0; p < parts; ++p) {
-      const Gathered g = gather(planes, p, axes, corners, faces_low, faces_high);
+      const Gathered g = gather(planes, p, line);
       const std::size_t at = p * lanes16;
       // These three do not overflow: make_planes() has looked at the sum of the factors.
       V16 reach = hn::MulFixedPoint15(g.axis, hn::Load(d, planes.axis_factor.data() + at));
@@ -399,8 +361,7 @@ HWY_INLINE unsigned narrow_test(const SupportLine* moved, const SupportLine* fix
     }
     row[i] = least_of_four(least[0], least[1], least[2], least[3]);
   }
-  for (std::size_t i = rows; i < 4; ++i) row[i] = row[0];
-  return store_keys(row[0], row[1], row[2], row[3], keys);
+  return store_keys<rows>(row, keys);
 }
 
 HWY_INLINE VF to_float(V16 v, bool upper) {
@@ -416,15 +377,12 @@ HWY_NOINLINE unsigned wide_test(const SupportLine* moved, const WideNode& fixed,
   const DF df;
   const VF most = hn::Set(df, 32767.0F);
   const VF scale = hn::Set(df, planes.key_scale);
-  V16 row[4];
+  V16 row[rows];
   for (std::size_t i = 0; i < rows; ++i) {
-    const auto axes = quarter(moved[i], 0);
-    const auto corners = quarter(moved[i], 1);
-    const auto faces_low = quarter(moved[i], 2);
-    const auto faces_high = quarter(moved[i], 3);
+    const Quarters line(moved[i]);
     VF least[4];
     for (std::size_t p = 0; p < parts; ++p) {
-      const Gathered g = gather(planes, p, axes, corners, faces_low, faces_high);
+      const Gathered g = gather(planes, p, line);
       for (std::size_t h = 0; h < 2; ++h) {
         const bool upper = h != 0;
         const std::size_t at = p * lanes16 + h * lanes_f;
@@ -448,8 +406,7 @@ HWY_NOINLINE unsigned wide_test(const SupportLine* moved, const WideNode& fixed,
     }
     row[i] = least_of_four(key[0], key[1], key[2], key[3]);
   }
-  for (std::size_t i = rows; i < 4; ++i) row[i] = row[0];
-  return store_keys(row[0], row[1], row[2], row[3], keys);
+  return store_keys<rows>(row, keys);
 }
 
 /// Planes of the lines in single precision.
@@ -766,6 +723,105 @@ HWY_INLINE Verdict cross_test(const LeafSide& p, std::size_t at_p, unsigned nega
   return positive == 1 && negative == 2 ? Verdict::touch : Verdict::open;
 }
 
+using D4F = hn::FixedTag<float, 4>;
+using V4F = hn::Vec<D4F>;
+
+/// Seeks axes that separate two primitives, four at a time.
+class AxisTest {
+ public:
+  HWY_INLINE AxisTest(const LeafSide& p, std::size_t at_p, const LeafSide& q, std::size_t at_q, float error) {
+    const D4F d;
+    V4F greatest = hn::Zero(d);
+    const auto place = [&](const std::array<float, 8>& of_p, const std::array<float, 8>& of_q,
+                           std::array<float, 8>& to) {
+      const V4F base = hn::Set(d, of_q[at_q]);
+      const V4F first = hn::Sub(hn::Load(d, of_p.data() + at_p), base);
+      const V4F second = hn::Sub(hn::Load(d, of_q.data() + at_q), base);
+      hn::Store(first, d, to.data());
+      hn::Store(second, d, to.data() + 4);
+      greatest = hn::Max(greatest, hn::Max(hn::Abs(first), hn::Abs(second)));
+    };
+    place(p.x, q.x, x_);
+    place(p.y, q.y, y_);
+    place(p.z, q.z, z_);
+    limit_ = hn::MulAdd(hn::MaxOfLanes(d, greatest), hn::Set(d, 1.02F * 12 * ulp), hn::Set(d, 1.02F * error));
+  }
+
+  /// True only if the intervals of the primitives are disjoint on one of the axes. Any axis is valid, so an axis needs
+  /// no error bound; but the products of a very short one would underflow.
+  HWY_INLINE bool any_separates(V4F nx, V4F ny, V4F nz) const {
+    const D4F d;
+    const auto along = [&](std::size_t v) {
+      return hn::MulAdd(nx, hn::Set(d, x_[v]), hn::MulAdd(ny, hn::Set(d, y_[v]), hn::Mul(nz, hn::Set(d, z_[v]))));
+    };
+    V4F low[2];
+    V4F high[2];
+    for (std::size_t side = 0; side < 2; ++side) {
+      low[side] = high[side] = along(4 * side);
+      for (std::size_t v = 1; v < 4; ++v) {
+        const V4F at = along(4 * side + v);
+        low[side] = hn::Min(low[side], at);
+        high[side] = hn::Max(high[side], at);
+      }
+    }
+    const V4F gap = hn::Max(hn::Sub(low[1], high[0]), hn::Sub(low[0], high[1]));
+    const V4F size = hn::Add(hn::Abs(nx), hn::Add(hn::Abs(ny), hn::Abs(nz)));
+    return !hn::AllFalse(d, hn::And(hn::Gt(gap, hn::Mul(size, limit_)), hn::Gt(size, hn::Set(d, shortest_axis))));
+  }
+
+  /// The normals, from the diagonals.
+  HWY_INLINE bool normals_separate(const LeafSide& p, std::size_t at_p, const LeafSide& q, std::size_t at_q) const {
+    const D4F d;
+    const auto both = [&](const std::array<float, 8>& of_p, const std::array<float, 8>& of_q) {
+      return hn::InterleaveLower(d, hn::Set(d, of_p[at_p]), hn::Set(d, of_q[at_q]));
+    };
+    return any_separates(both(p.nx, q.nx), both(p.ny, q.ny), both(p.nz, q.nz));
+  }
+
+  /// The cross products of the sides.
+  HWY_INLINE bool sides_separate() const {
+    const D4F d;
+    const auto sides = [&](const std::array<float, 8>& of) {
+      const V4F at = hn::Load(d, of.data() + 4);
+      return hn::Sub(hn::Shuffle0321(at), at);
+    };
+    const V4F fx = sides(x_);
+    const V4F fy = sides(y_);
+    const V4F fz = sides(z_);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto side = [&](const std::array<float, 8>& of) { return hn::Set(d, of[(i + 1) % 4] - of[i]); };
+      const V4F ex = side(x_);
+      const V4F ey = side(y_);
+      const V4F ez = side(z_);
+      if (any_separates(hn::MulSub(ey, fz, hn::Mul(ez, fy)), hn::MulSub(ez, fx, hn::Mul(ex, fz)),
+                        hn::MulSub(ex, fy, hn::Mul(ey, fx)))) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  alignas(16) std::array<float, 8> x_, y_, z_;  ///< vertices of p, then of q, from the first one of q
+  V4F limit_;                                   ///< what a gap must exceed, a unit of the axis each
+};
+
+/// The two triangles 0 1 2 and 0 2 3 of a quad, as a leaf of their own.
+HWY_INLINE void halve(const LeafSide& quads, std::size_t at, float error, LeafSide& halves) {
+  const D8F d;
+  alignas(32) static constexpr std::array<std::int32_t, 8> vertex = {0, 1, 2, 0, 0, 2, 3, 0};
+  const auto take = [&](const std::array<float, 8>& from, std::array<float, 8>& to) {
+    for (std::size_t k = 0; k < 8; k += lanes8) {
+      const auto order = hn::SetTableIndices(d, vertex.data() + k);
+      hn::Store(hn::TableLookupLanes(hn::LoadDup128(d, from.data() + at), order), d, to.data() + k);
+    }
+  };
+  take(quads.x, halves.x);
+  take(quads.y, halves.y);
+  take(quads.z, halves.z);
+  finish_side(halves, error);
+}
+
 /// Reads what the next steps need into the cache.
 HWY_INLINE void prefetch(const Task& task, Item item) {
   const auto read = [](const char* from) {
@@ -809,7 +865,10 @@ class SimdSearch final : public Search {
   }
 
  private:
-  static constexpr std::size_t together = 16;  // queries of a batch, items of a search for all contacts
+  // Queries of a batch: more of them do not fit into the first level of the cache together.
+  static constexpr std::size_t together = 8;
+  // Items of a search for all contacts.
+  static constexpr std::size_t items_together = 16;
 
   /// Prepares a query.
   /// \returns false if the result is complete
@@ -820,7 +879,6 @@ class SimdSearch final : public Search {
       return false;
     }
     task.faces.start(query, request, result);
-    task.result = &result;
     task.swapped = relation.swapped;
     task.moved = &(relation.swapped ? query.b : query.a)->tree();
     task.fixed = &(relation.swapped ? query.a : query.b)->tree();
@@ -829,13 +887,14 @@ class SimdSearch final : public Search {
     for (std::size_t i = 0; i < 3; ++i) task.place.t[i] = static_cast<float>(relation.t[i]);
     // A coordinate of a moved vertex: 1 rounding each of vertex, matrix and three products, three sums; of the offset.
     const double own = 1.01 * margins_.vertex * ulp;
-    task.place.moved_error = static_cast<float>(own * (6 * radius * relation.row + 4 * relation.distance) +
-                                                1.01 * margins_.relation * relation.vertex_error);
+    const double of_relation = 1.01 * margins_.relation * relation.vertex_error;
+    task.place.moved_error =
+        static_cast<float>(own * (6 * radius * relation.row + 4 * relation.distance) + of_relation);
     task.place.fixed_error = static_cast<float>(own * radius);
+    const double of_plane = margins_.wide * ulp * (radius * (3 + 12 * relation.norm) + 5 * relation.distance);
+    task.planes.side_error = static_cast<float>(1.01 * of_plane + of_relation) + task.place.fixed_error;
     task.counts = {};
     task.open_count = 0;
-    const double plane_of_face = margins_.wide * ulp * (radius * (3 + 16 * relation.norm) + 4 * relation.distance);
-    task.planes.side_error = static_cast<float>(1.01 * plane_of_face) + task.place.moved_error + task.place.fixed_error;
     task.stack[0] = {task.planes.tiny ? task.moved->whole() : task.moved->root(), task.fixed->root()};
     task.size = 1;
     return true;
@@ -921,13 +980,11 @@ class SimdSearch final : public Search {
     if (HWY_UNLIKELY(item.moved.is_quad() || item.fixed.is_quad())) {
       for (std::size_t i = 0; i < count_p; ++i) {
         for (std::size_t k = 0; k < count_q; ++k) {
-          const Corners a = corners_of(p, 4 * i);
-          const Corners b = corners_of(q, 4 * k);
-          const float error = place.moved_error + place.fixed_error;
-          if (normals_separate(a, b, error)) continue;
-          if (quads_touch(a, item.moved.is_quad(), b, item.fixed.is_quad(), place)) {
+          const AxisTest test(p, 4 * i, q, 4 * k, place.moved_error + place.fixed_error);
+          if (test.normals_separate(p, 4 * i, q, 4 * k)) continue;
+          if (quads_touch(p, 4 * i, item.moved.is_quad(), q, 4 * k, item.fixed.is_quad(), place)) {
             task.add(faces_p[i], faces_q[k]);
-          } else if (!sides_separate(a, b, error)) {
+          } else if (!test.sides_separate()) {
             task.keep_open(faces_p[i], faces_q[k]);
           }
           if (task.faces.done()) return true;
@@ -935,7 +992,22 @@ class SimdSearch final : public Search {
       }
       return false;
     }
-    // Four bits for each pair, 4 i + 2 k in all: only the lowest of each is used.
+    return visit_triangles(p, count_p, q, count_q, place, [&](std::size_t i, std::size_t k, Verdict verdict) {
+      if (verdict == Verdict::touch) {
+        task.add(faces_p[i], faces_q[k]);
+      } else {
+        task.keep_open(faces_p[i], faces_q[k]);
+      }
+      return task.faces.done();
+    });
+  }
+
+  /// Calls `visit` for the pairs of up to two by two triangles that are not apart, until it returns true.
+  /// \returns whether it did
+  template <class Visit>
+  static HWY_INLINE bool visit_triangles(const LeafSide& p, std::size_t count_p, const LeafSide& q, std::size_t count_q,
+                                         const Placement& place, const Visit& visit) {
+    // Bit 8 i + 4 k: triangles i and k may touch; all their vertices lie on certain sides.
     unsigned left = 0;
     unsigned certain = 0;
     std::array<Sides, 2> of_p;
@@ -957,54 +1029,20 @@ class SimdSearch final : public Search {
       const Verdict verdict = (certain >> bit & 1U) != 0 ? cross_test(p, 4 * i, of_p[i].negative >> 4 * k & 7U, q,
                                                                       4 * k, of_q[i].negative >> 4 * k & 7U, place)
                                                          : Verdict::open;
-      if (verdict == Verdict::apart) continue;
-      if (verdict == Verdict::touch) {
-        task.add(faces_p[i], faces_q[k]);
-      } else {
-        task.keep_open(faces_p[i], faces_q[k]);
-      }
-      if (task.faces.done()) return true;
+      if (verdict != Verdict::apart && visit(i, k, verdict)) return true;
     }
     return false;
   }
 
-  /// Two triangles; their bits in `of_p` and `of_q` begin at `shift`.
-  static HWY_INLINE Verdict decide(const LeafSide& p, std::size_t at_p, const Sides& of_p, const LeafSide& q,
-                                   std::size_t at_q, const Sides& of_q, const Placement& place, std::size_t shift) {
-    const unsigned positive_p = of_p.positive >> shift & 7U;
-    const unsigned negative_p = of_p.negative >> shift & 7U;
-    const unsigned positive_q = of_q.positive >> shift & 7U;
-    const unsigned negative_q = of_q.negative >> shift & 7U;
-    if (positive_p == 7 || negative_p == 7 || positive_q == 7 || negative_q == 7) return Verdict::apart;
-    if ((positive_p | negative_p) != 7 || (positive_q | negative_q) != 7) return Verdict::open;
-    return cross_test(p, at_p, negative_p, q, at_q, negative_q, place);
-  }
-
-  /// True only if a triangle of one touches a triangle of the other. Triangles of a quad: 0 1 2 and 0 2 3.
-  static bool quads_touch(const Corners& a, bool quad_a, const Corners& b, bool quad_b, const Placement& place) {
-    const auto halves = [](const Corners& c) {
-      LeafSide side = {};
-      constexpr std::array<std::size_t, 8> vertex = {0, 1, 2, 0, 0, 2, 3, 0};
-      for (std::size_t i = 0; i < 8; ++i) {
-        side.x[i] = c.v[vertex[i]][0];
-        side.y[i] = c.v[vertex[i]][1];
-        side.z[i] = c.v[vertex[i]][2];
-      }
-      return side;
-    };
-    alignas(64) LeafSide p = halves(a);
-    alignas(64) LeafSide q = halves(b);
-    finish_side(p, place.moved_error);
-    finish_side(q, place.fixed_error);
-    for (std::size_t i = 0; i < (quad_a ? 2U : 1U); ++i) {
-      Sides of_p;
-      Sides of_q;
-      compare(p, i, place.moved_error, q, place.fixed_error, of_q, of_p);
-      for (std::size_t k = 0; k < (quad_b ? 2U : 1U); ++k) {
-        if (decide(p, 4 * i, of_p, q, 4 * k, of_q, place, 4 * k) == Verdict::touch) return true;
-      }
-    }
-    return false;
+  /// True only if a triangle of one touches a triangle of the other.
+  static bool quads_touch(const LeafSide& p, std::size_t at_p, bool quad_p, const LeafSide& q, std::size_t at_q,
+                          bool quad_q, const Placement& place) {
+    alignas(64) LeafSide halves_p;
+    alignas(64) LeafSide halves_q;
+    halve(p, at_p, place.moved_error, halves_p);
+    halve(q, at_q, place.fixed_error, halves_q);
+    return visit_triangles(halves_p, quad_p ? 2 : 1, halves_q, quad_q ? 2 : 1, place,
+                           [](std::size_t, std::size_t, Verdict verdict) { return verdict == Verdict::touch; });
   }
 
   /// One query for its first contact, one item at a time.
@@ -1024,15 +1062,15 @@ class SimdSearch final : public Search {
 
   /// One query for all contacts: several items at a time, in any order.
   void search_all(Task& task) {
-    Item items[together];
-    std::int16_t keys[together][16];
-    std::array<unsigned, together> hits;
+    Item items[items_together];
+    std::int16_t keys[items_together][16];
+    std::array<unsigned, items_together> hits;
     if (deep_.size() < 1024) deep_.resize(1024);
     deep_[0] = task.stack[0];
     std::size_t size = 1;
     while (size > 0) {
       std::size_t count = 0;
-      while (size > 0 && count < together) {
+      while (size > 0 && count < items_together) {
         const Item item = deep_[--size];
         if (item.is_leaf_pair()) {
           if (test_leaves(task, item)) return;
@@ -1040,11 +1078,11 @@ class SimdSearch final : public Search {
           items[count++] = item;
         }
       }
-      if (deep_.size() < size + 16 * together) deep_.resize(2 * deep_.size());
+      if (deep_.size() < size + 16 * items_together) deep_.resize(2 * deep_.size());
       for (std::size_t i = 0; i < count; ++i) hits[i] = test(task, items[i], keys[i]);
       for (std::size_t i = 0; i < count; ++i)
         size += push<false>(task, items[i], hits[i], keys[i], deep_.data() + size);
-      for (std::size_t i = 1; i <= std::min(size, together); ++i) prefetch(task, deep_[size - i]);
+      for (std::size_t i = 1; i <= std::min(size, items_together); ++i) prefetch(task, deep_[size - i]);
     }
   }
 

@@ -80,6 +80,7 @@ struct LargePages {
     return false;
   }
 };
+
 /// Lines and faces of an object. The object lies in a ball of support_most units around its centre.
 class SupportTree {
  public:
@@ -101,8 +102,6 @@ class SupportTree {
   /// Vertices of a leaf of n primitives from `first` on: x of the first one's four vertices, of the second one's, then
   /// y, then z; (position - centre) / unit, rounded to nearest. Vertex 3 of a triangle is vertex 0.
   const float* vertices(std::uint32_t first) const { return vertices_.data() + std::size_t{12} * first; }
-  /// Bytes of all of it.
-  std::size_t memory() const;
 
  private:
   Vec3d centre_;

@@ -34,9 +34,10 @@ struct Contact {
   std::uint32_t face_a = 0;
   std::uint32_t face_b = 0;
   friend bool operator==(const Contact& x, const Contact& y) { return x.face_a == y.face_a && x.face_b == y.face_b; }
-  friend bool operator<(const Contact& x, const Contact& y) {
-    return x.face_a != y.face_a ? x.face_a < y.face_a : x.face_b < y.face_b;
-  }
+  friend bool operator<(const Contact& x, const Contact& y) { return x.key() < y.key(); }
+
+ private:
+  std::uint64_t key() const { return std::uint64_t{face_a} << 32U | face_b; }  // one comparison, for long sorts
 };
 
 /// What a query cost.
