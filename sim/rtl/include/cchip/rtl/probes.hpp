@@ -27,6 +27,12 @@ CCHIP_CONTROLLER_PROBES(cchip_primtest_quad_quad)
 // cchip_primtest_array: the lane whose result leaves next, one-hot.
 CCHIP_PROBE(array_choice, cchip_primtest_array__DOT__choice_q)
 
+// cchip_subsystem_status: counters of answered pairs, to be set.
+template <class Model>
+auto& answered_pairs(Model& top) {
+  return top.rootp->cchip_subsystem_status__DOT__pairs_q;
+}
+
 // cchip_primtest_subsystem: the swap in progress and its report.
 #define CCHIP_SUBSYSTEM_PROBE(name, signal) CCHIP_PROBE(name, cchip_primtest_subsystem__DOT__##signal)
 CCHIP_SUBSYSTEM_PROBE(swap_phase, u_controller__DOT__u_sequencer__DOT__phase_q)
