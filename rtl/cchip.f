@@ -40,6 +40,7 @@ regs/cchip_subsystem_regs.v
 reconfig/cchip_pair_queue.v
 reconfig/cchip_pair_dispatcher.v
 reconfig/cchip_result_merge.v
+reconfig/cchip_swap_retry.v
 reconfig/cchip_swap_scheduler.v
 reconfig/cchip_pair_router.v
 reconfig/cchip_subsystem_status.v

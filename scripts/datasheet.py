@@ -79,6 +79,7 @@ STIMULI = {
     "cchip_bitstream_header": ("clear = 1; tick; tick; clear = 0; s_valid = 1; repeat (3) tick; s_valid = 0;", "s_valid = 1;",
                                "done"),
     "cchip_config_port": ("length = 4;", "run = 1; s_valid = 1;", "done"),
+    "cchip_swap_retry": ("", "report_valid = 1; report_data = {16'd0, `CCHIP_SWAP_BUS, 8'd1, 8'd0}; valid = 4'd15;", "resting"),
     "cchip_swap_counters": ("", "report_valid = 1;", "swaps"),
     "cchip_swap_sequencer": ("", "s_swap_valid = 1;", "phase"),
     "cchip_config_controller": ("", "s_swap_valid = 1;", "phase"),

@@ -31,6 +31,8 @@ def expand(expr, style, names, args):
         if style == "verilog":
             return f"`CCHIP_{word}"
         if style == "cpp":
+            if "::" in names[word]:
+                return f"static_cast<int>({names[word]})"
             call = names[word] == "function0"
             return word.lower() + ("()" if call else "") if names[word] != "constant" else word.lower()
         return word
@@ -157,14 +159,16 @@ def page(data, names):
               "| name | value | unit | meaning |", "|---|---|---|---|"]
     for f in data["functions"]:
         args = f"({', '.join(f['args'])})" if f["args"] else ""
-        doc = f["doc"].replace("|", "\\|")
-        lines.append(f"| `{f['name']}{args}` | `{f['expr']}` | {f['unit']} | {doc} |")
+        doc, expr = (f[key].replace("|", "\\|") for key in ("doc", "expr"))
+        lines.append(f"| `{f['name']}{args}` | `{expr}` | {f['unit']} | {doc} |")
     return "\n".join(lines) + "\n"
 
 
 def main():
     data = json.loads(SOURCE.read_text())
     names = {c["name"]: "constant" for c in data["constants"]}
+    for e in data["enums"]:
+        names.update({f"{e['prefix']}_{v['name']}": f"{e['name']}::{v['name'].lower()}" for v in e["values"]})
     for f in data["functions"]:
         names[f["name"]] = "function" if f["args"] else "function0"
     for r in data["records"]:

@@ -69,6 +69,14 @@
 `define CCHIP_SHUTDOWN_LIMIT_DEFAULT 65536
 // longest wait for a beat of the bitstream's memory, unless a register says otherwise [clock]
 `define CCHIP_MEMORY_LIMIT_DEFAULT 4096
+// a module has this long from the end of its reset on configuration to show its rm_id, which must
+// then stand for as long again [clock]
+`define CCHIP_RM_SETTLE_CLOCKS 16
+// rest of a bitstream after a swap that failed on its way; doubled by every failure that follows
+// [clock]
+`define CCHIP_RETRY_CLOCKS 256
+// the rest is doubled at most so often; a swap that ends well makes it RETRY_CLOCKS again
+`define CCHIP_RETRY_DOUBLINGS 8
 // width of the field info of a programme state; what it holds depends on the programme [bit]
 `define CCHIP_INFO_W 14
 
@@ -153,12 +161,14 @@
 `define CCHIP_SWAP_WRONG_MODULE 4'd10
 // error response or wrong burst length from memory: decoupled if the transfer had begun
 `define CCHIP_SWAP_BUS 4'd11
-// memory did not answer in time, or still owes beats of an earlier read
+// memory did not answer in time: decoupled if the transfer had begun
 `define CCHIP_SWAP_MEMORY 4'd12
 // pairs inside were not answered in time; the slot works on with its former module
 `define CCHIP_SWAP_SHUTDOWN 4'd13
 // aborted: the slot works on if it was not decoupled yet, else decoupled, in reset
 `define CCHIP_SWAP_ABORTED 4'd14
+// memory still owes beats of an earlier read: request refused, try again later
+`define CCHIP_SWAP_OWED 4'd15
 
 // ---- programme of a pair in the axis controller
 // directed: nA, then nB
@@ -187,6 +197,13 @@
 `define CCHIP_RM_VERTS_A(m) ((m) <= 2 ? 3 : 4)
 // vertices of B of that module, m = 1..3 [vertex]
 `define CCHIP_RM_VERTS_B(m) ((m) <= 1 ? 3 : 4)
+// 1: the code of this SwapCode says that the bitstream or its entry in the table is bad (REQUEST,
+// MAGIC, SLOT, MODULE, LENGTH, CRC, WRONG_MODULE); another attempt would end like this one
+`define CCHIP_SWAP_SPOILT(c) \
+  (((c) >= `CCHIP_SWAP_REQUEST && (c) <= `CCHIP_SWAP_CRC) || (c) == `CCHIP_SWAP_WRONG_MODULE)
+// 1: the code of this SwapCode says that the swap failed on its way (DEVICE, BUS, MEMORY, SHUTDOWN,
+// ABORTED, OWED); the bitstream may be good, another attempt may succeed
+`define CCHIP_SWAP_PUT_OFF(c) ((c) == `CCHIP_SWAP_DEVICE || (c) >= `CCHIP_SWAP_BUS)
 // difference of two coordinates [bit]
 `define CCHIP_EDGE_W(w) ((w) + 1)
 // component of the cross product of two edges: |.| <= 2 (2^w - 1)^2 [bit]

@@ -147,7 +147,7 @@ module cchip_bitstream_fetch #(
   wire progress = taken | beat | ~owes;
   always @(posedge clk) begin
     wait_q <= progress ? 32'd2 : wait_q + 32'd1;
-    late_q <= progress ? limit == 32'd1 : wait_q == limit;
+    late_q <= progress ? limit == 32'd1 : wait_q >= limit;
     if (rst) timeout_q <= 1'b0;
     else timeout_q <= run & (timeout_q | (working & ~progress & late_q));
   end

@@ -9,16 +9,19 @@
 //                DECOUPLE on leaves it stopped, decoupled and in reset
 //   time         payload: CFG_DIVIDER clocks per port word (the paper's eq. 4) while memory keeps
 //                up; see the datasheet for the rest; every wait has a bound: shutdown_limit for the
-//                pairs, memory_limit for each beat
+//                pairs, memory_limit for each beat. A limit counts from the clock on which it is
+//                written, in a swap under way too.
 //   busy         a request during a swap is taken and answered BUSY; every request is answered by
 //                exactly one report
+//   clocks       cfg_error may come from any clock, see cchip_swap_sequencer; the rest of the
+//                configuration port belongs to clk
 //   cuts         every path: each output comes from flip-flops, m_report_data through a multiplexer
 //                of two
 //   reset        no swap, slots at work, except one whose transfer had begun and not ended well:
 //                `half_q` outlives rst and keeps it stopped, decoupled and in reset until a good
 //                transfer
 module cchip_config_controller #(
-    // slots, 1 or 2
+    // slots, 1..4
     parameter integer SLOTS = 1,
     // width of the configuration port, bit: 8 or 32
     parameter integer CFG_W = 8,
@@ -74,8 +77,10 @@ module cchip_config_controller #(
 
   wire [`CCHIP_SLOT_ID_W-1:0] slot;
   wire [`CCHIP_RM_ID_W-1:0] module_id;
-  wire [31:0] address, size, limit;
-  wire in_header, in_transfer, run, owes, bus_error, timeout;
+  wire [31:0] address, size, clocks;
+  wire in_header = phase == `CCHIP_PHASE_HEADER;
+  wire in_transfer = phase == `CCHIP_PHASE_TRANSFER;
+  wire run, owes, bus_error, timeout;
   wire header_done, header_ok;
   wire [`CCHIP_SWAP_W-1:0] header_code;
   wire fetch_valid, port_ready, transfer_done, stall;
@@ -96,7 +101,6 @@ module cchip_config_controller #(
       .m_report_data (m_report_data),
       .abort_swap    (abort_swap),
       .shutdown_limit(shutdown_limit),
-      .memory_limit  (memory_limit),
       .stop          (stop),
       .decouple      (decouple),
       .hold_reset    (hold_reset),
@@ -107,14 +111,12 @@ module cchip_config_controller #(
       .region_rm_id  (region_rm_id),
       .lost          (lost),
       .phase         (phase),
+      .phase_clocks  (clocks),
       .busy          (busy),
-      .in_header     (in_header),
-      .in_transfer   (in_transfer),
       .slot          (slot),
       .module_id     (module_id),
       .address       (address),
       .size          (size),
-      .limit         (limit),
       .run           (run),
       .header_done   (header_done),
       .header_ok     (header_ok),
@@ -141,7 +143,8 @@ module cchip_config_controller #(
       .run          (run),
       .address      (fetch_address_q),
       .words        (fetch_words_q),
-      .limit        (limit),
+      .limit        (memory_limit
+          | (memory_limit == 32'd0 ? `CCHIP_MEMORY_LIMIT_DEFAULT : 32'd0)),
       .m_valid      (fetch_valid),
       .m_ready      (in_header | port_ready),
       .m_data       (fetch_data),
@@ -203,6 +206,7 @@ module cchip_config_controller #(
       .rst         (rst),
       .clear       (clear),
       .phase       (phase),
+      .clocks      (clocks),
       .report_valid(m_report_valid),
       .report_code (m_report_data[`CCHIP_SWAP_REPORT_CODE]),
       .stall       (stall),

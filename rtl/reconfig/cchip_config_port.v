@@ -7,6 +7,8 @@
 //                and run to done
 //   throughput   one port word per slot, while s_valid = 1
 //   cuts         every path but s_ready: each output is a flip-flop
+//   power-up     cfg_valid is 0 by its initial value: no word may enter the device before the first
+//                rst; a tool without initial values must start with rst = 1
 //   reset        run = 0 ends a transfer and prepares the next: it must be 0 for a clock between
 //                two; length is read then
 //   numbers      of the last 32-bit word only the bytes within length are used; length is a
@@ -44,7 +46,7 @@ module cchip_config_port #(
   reg ticking_q, done_q, stall_q;
   reg [SLOT_W-1:0] slot_q;  // clocks left in this slot
   reg [31:0] left_q;  // port words
-  reg valid_q;  // 0 from power-up on: nothing enters the device before rst
+  reg valid_q;
   initial valid_q = 1'b0;
   reg [CFG_W-1:0] data_q;
 

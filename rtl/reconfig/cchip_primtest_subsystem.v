@@ -329,6 +329,18 @@ module cchip_primtest_subsystem #(
   wire [`CCHIP_SWAP_REQUEST_W-1:0] swap_data;
   wire [`CCHIP_SWAP_REPORT_W-1:0] swap_report_data;
 
+  wire [4*SLOTS-1:0] resting;
+  cchip_swap_retry #(
+      .SLOTS(SLOTS)
+  ) u_retry (
+      .clk         (clk),
+      .rst         (rst),
+      .report_valid(swap_report),
+      .report_data (swap_report_data),
+      .valid       (table_valid[4*SLOTS-1:0]),
+      .resting     (resting)
+  );
+
   cchip_swap_scheduler #(
       .SLOTS  (SLOTS),
       .COUNT_W(COUNT_W)
@@ -342,6 +354,7 @@ module cchip_primtest_subsystem #(
       .table_address   (table_address[4*32*SLOTS-1:0]),
       .table_size      (table_size[4*32*SLOTS-1:0]),
       .table_invalidate(invalidate),
+      .table_resting   (resting),
       .waiting         (waiting),
       .no_provider     (no_provider),
       .slot_module     (slot_module),

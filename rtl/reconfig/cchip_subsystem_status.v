@@ -3,8 +3,8 @@
 `include "cchip_defs.vh"
 // cchip_subsystem_status: the past that the registers of the subsystem show: the last report,
 // counts of lost and of answered pairs.
-//   latency      1 clock from a report to last_report and swap_events, 2 clocks from an answer to
-//                its counter
+//   latency      1 clock from a report to last_report and swap_events, from an answer to its
+//                counter
 //   cuts         every path: each output is a flip-flop
 //   reset        all 0; clear: the counters 0
 module cchip_subsystem_status (
@@ -45,22 +45,15 @@ module cchip_subsystem_status (
       lost_q <= clear ? 32'd0 : lost_q + (report_valid ? {16'd0, report_lost} : 32'd0);
     end
 
-  // 64-bit counters in two halves; the carry enters the high half one clock later
+  // both halves change on one clock: whoever reads them together reads a value that the counter had
   genvar m;
   generate
     for (m = 0; m < 4; m = m + 1) begin : gen_modules
       localparam [31:0] MODULE = m;
-      reg carry_q;
-      wire count = answered && answered_module == MODULE[1:0];
       always @(posedge clk)
-        if (rst || clear) begin
-          carry_q         <= 1'b0;
-          pairs_q[64*m+:64] <= 64'd0;
-        end else begin
-          carry_q <= count & (&pairs_q[64*m+:32]);
-          if (count) pairs_q[64*m+:32] <= pairs_q[64*m+:32] + 32'd1;
-          if (carry_q) pairs_q[64*m+32+:32] <= pairs_q[64*m+32+:32] + 32'd1;
-        end
+        if (rst || clear) pairs_q[64*m+:64] <= 64'd0;
+        else if (answered && answered_module == MODULE[1:0])
+          pairs_q[64*m+:64] <= pairs_q[64*m+:64] + 64'd1;
     end
   endgenerate
 

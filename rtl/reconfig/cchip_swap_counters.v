@@ -12,6 +12,7 @@ module cchip_swap_counters (
     input  wire                      rst,
     input  wire                      clear,
     input  wire [`CCHIP_PHASE_W-1:0] phase,
+    input  wire [              31:0] clocks,       // in this phase, 1 on the first
     input  wire                      report_valid,
     input  wire [ `CCHIP_SWAP_W-1:0] report_code,
     input  wire                      stall,
@@ -35,7 +36,6 @@ module cchip_swap_counters (
 
   reg [`CCHIP_PHASE_W-1:0] phase_q;
   reg [31:0] clocks_q;
-  wire [31:0] clocks = phase == phase_q ? clocks_q + 32'd1 : 32'd1;
   // the phase is decoded one clock ahead, because the decoded bits drive many registers
   reg [9:0] in_q;  // one-hot, phase_q
   reg first_q;

@@ -13,10 +13,10 @@
 //                so no kind starves and every turn makes progress
 //   age          of a kind: clocks since pairs of it wait and no slot has its module; starts again
 //                after every attempt
-//   faults       a bitstream that was rejected loses its valid bit (`table_invalidate`). Shut down
-//                without success, abort, busy and same module leave it. A kind that no slot holds,
-//                no valid bitstream brings and no swap is bringing for 16 clocks has `no_provider`
-//                = 1.
+//   faults       only a bad bitstream or entry (CCHIP_SWAP_SPOILT) loses its valid bit
+//                (`table_invalidate`). An entry that rests (cchip_swap_retry) is not chosen here,
+//                by a command it is. A kind that no slot holds, no valid bitstream brings and no
+//                swap is bringing for 16 clocks has `no_provider` = 1.
 //   command      refused with BUSY while a swap is under way, with REQUEST where the table has no
 //                valid bitstream
 //   latency      a scan of all slots and kinds takes 3 * SLOTS + 2 clocks, a request leaves one
@@ -41,6 +41,7 @@ module cchip_swap_scheduler #(
     input  wire [           4*32*SLOTS-1:0] table_address,
     input  wire [           4*32*SLOTS-1:0] table_size,
     output wire [              4*SLOTS-1:0] table_invalidate,
+    input  wire [              4*SLOTS-1:0] table_resting,
     // queues, kind k at place k - 1
     input  wire [            3*COUNT_W-1:0] waiting,
     output wire [                      2:0] no_provider,
@@ -97,6 +98,7 @@ module cchip_swap_scheduler #(
 
   // ---- the tables are extended to two slots; with SLOTS = 1 the second one has no valid bitstream
   wire [  7:0] valid_of = {{8 - 4 * SLOTS{1'b0}}, table_valid};
+  wire [  7:0] ready_of = {{8 - 4 * SLOTS{1'b0}}, table_valid & ~table_resting};
   wire [255:0] address_of = {{32 * (8 - 4 * SLOTS) {1'b0}}, table_address};
   wire [255:0] size_of = {{32 * (8 - 4 * SLOTS) {1'b0}}, table_size};
 
@@ -213,7 +215,7 @@ module cchip_swap_scheduler #(
       {{32 - COUNT_W{1'b0}}, waiting[COUNT_BITS*{30'd0, scan_kind_q}+:COUNT_W]};
 
   always @(posedge clk) begin
-    legal_q <= valid_of[{scan_slot_q, scan_kind_q + 2'd1}] & open_q[scan_kind_q]
+    legal_q <= ready_of[{scan_slot_q, scan_kind_q + 2'd1}] & open_q[scan_kind_q]
         & ((scan_idle & (enough_q[scan_kind_q] | scan_old)) | (scan_settled & scan_old));
     merit_q <= {scan_old, scan_old ? age_q[{scan_kind_q, 5'd0}+:32] : scan_waiting, scan_idle,
         scan_slot_q != last_slot_q};
@@ -285,9 +287,7 @@ module cchip_swap_scheduler #(
   reg  [ 7:0] refused_slot_q, refused_module_q;
   reg  [`CCHIP_SWAP_W-1:0] refused_code_q;
   wire        refuse = command_valid & (asked | ~command_ok);
-  wire        reject = s_report_code != `CCHIP_SWAP_OK && s_report_code != `CCHIP_SWAP_SAME
-      && s_report_code != `CCHIP_SWAP_BUSY && s_report_code != `CCHIP_SWAP_SHUTDOWN
-          && s_report_code != `CCHIP_SWAP_ABORTED;
+  wire        reject = `CCHIP_SWAP_SPOILT(s_report_code);
   integer i;
   always @(posedge clk) begin
     if (refuse) begin

@@ -2,21 +2,29 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// cchip_swap_sequencer: requests, phases and reports of cchip_config_controller, and what the slots
-// are told in them.
+// cchip_swap_sequencer: the state machine of a swap: requests, phases and reports of
+// cchip_config_controller, and what the slots are told in them.
+//   order        HEADER, SHUTDOWN, DECOUPLE, RESET, TRANSFER, CHECK, ROC, RECOUPLE, REPORT. A
+//                failure before DECOUPLE leaves the slot at work, a failure from there on leaves it
+//                stopped, decoupled and in reset.
+//   reset on configuration   hold_reset falls as roc_start rises, so the only reset that the new
+//                module gets once it is whole is that of the slot's ROC generator. rm_id counts
+//                from CCHIP_RM_SETTLE_CLOCKS clocks after that reset on, and must then be right for
+//                as many clocks: a region full of garbage may show any number on one clock.
 //   latency      every request is answered by exactly one report; one during a swap by BUSY, 2
 //                clocks later or 3
-//   order        HEADER, SHUTDOWN, DECOUPLE, RESET, TRANSFER, CHECK, ROC, RECOUPLE, REPORT; what
-//                fails before DECOUPLE leaves the slot at work, what fails from there on leaves it
-//                stopped, decoupled and in reset
 //   bounds       SHUTDOWN: shutdown_limit; DECOUPLE, ROC, RECOUPLE: SLOT_LIMIT; HEADER and
 //                TRANSFER: error or timeout of the fetch, or their words are there; the rest: fixed
+//   clocks       cfg_error may come from any clock: it passes two flip-flops. Everything else
+//                belongs to clk.
 //   cuts         every path: each output is a flip-flop, m_report_data one of two
 //   reset        no swap, slots at work, except one whose transfer had begun and not ended well:
 //                half_q outlives rst and keeps it stopped, decoupled and in reset until a good
-//                transfer
+//                transfer. Its value at power-up is an initial value, because no reset can tell a
+//                power-up, after which every slot holds a whole module, from a reset in the middle
+//                of a transfer.
 module cchip_swap_sequencer #(
-    // slots, 1 or 2
+    // slots, 1..4
     parameter integer SLOTS = 1,
     // longest wait for a slot to decouple, to end its ROC, to recouple, clocks, >= 16
     parameter integer SLOT_LIMIT = 4096
@@ -30,7 +38,6 @@ module cchip_swap_sequencer #(
     output wire [     `CCHIP_SWAP_REPORT_W-1:0] m_report_data,
     input  wire                                 abort_swap,
     input  wire [                         31:0] shutdown_limit,
-    input  wire [                         31:0] memory_limit,
     output wire [                    SLOTS-1:0] stop,
     output wire [                    SLOTS-1:0] decouple,
     output wire [                    SLOTS-1:0] hold_reset,
@@ -41,14 +48,12 @@ module cchip_swap_sequencer #(
     input  wire [     `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,
     input  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] lost,
     output wire [           `CCHIP_PHASE_W-1:0] phase,
+    output wire [                         31:0] phase_clocks,     // in this phase, 1 on the first
     output wire                                 busy,             // a phase other than IDLE
-    output wire                                 in_header,        // phase is HEADER, TRANSFER
-    output wire                                 in_transfer,
     output wire [         `CCHIP_SLOT_ID_W-1:0] slot,             // of the request
     output wire [           `CCHIP_RM_ID_W-1:0] module_id,
     output wire [                         31:0] address,
     output wire [                         31:0] size,
-    output wire [                         31:0] limit,            // of the memory
     // the fetch works, in HEADER and in TRANSFER
     output wire                                 run,
     input  wire                                 header_done,
@@ -62,46 +67,59 @@ module cchip_swap_sequencer #(
     input  wire                                 cfg_error
 );
 
-  // clocks of a phase, counted from 0
-  localparam [3:0] DECIDE = 4'd2;  // of HEADER: the request is judged
-  localparam [3:0] RESET_LAST = 4'd1;
-  localparam [3:0] CHECK_LAST = 4'd7;  // the device may report an error on all but this one
-  localparam [3:0] SEEN = 4'd6;  // roc_busy counts from here on in ROC, decoupled in RECOUPLE
-  localparam [3:0] RECOUPLE_AT = 4'd1;  // decouple falls behind it, after reset
-  localparam [9:0] AT_IDLE = 10'd1;
-  localparam [9:0] AT_REPORT = AT_IDLE << `CCHIP_PHASE_REPORT;
+  // states: {phase, step of the phase}
+  localparam integer STATE_W = `CCHIP_PHASE_W + 2;
+  localparam [STATE_W-1:0] IDLE = {`CCHIP_PHASE_IDLE, 2'd0};
+  localparam [STATE_W-1:0] JUDGE = {`CCHIP_PHASE_HEADER, 2'd0};
+  localparam [STATE_W-1:0] FETCH = {`CCHIP_PHASE_HEADER, 2'd1};
+  localparam [STATE_W-1:0] SHUTDOWN = {`CCHIP_PHASE_SHUTDOWN, 2'd0};
+  localparam [STATE_W-1:0] DECOUPLE = {`CCHIP_PHASE_DECOUPLE, 2'd0};
+  localparam [STATE_W-1:0] RESET = {`CCHIP_PHASE_RESET, 2'd0};
+  localparam [STATE_W-1:0] TRANSFER = {`CCHIP_PHASE_TRANSFER, 2'd0};
+  localparam [STATE_W-1:0] CHECK = {`CCHIP_PHASE_CHECK, 2'd0};
+  localparam [STATE_W-1:0] PULSE = {`CCHIP_PHASE_ROC, 2'd0};
+  localparam [STATE_W-1:0] PULSED = {`CCHIP_PHASE_ROC, 2'd1};
+  localparam [STATE_W-1:0] SETTLE = {`CCHIP_PHASE_ROC, 2'd2};
+  localparam [STATE_W-1:0] MATCH = {`CCHIP_PHASE_ROC, 2'd3};
+  localparam [STATE_W-1:0] RECOUPLE = {`CCHIP_PHASE_RECOUPLE, 2'd0};
+  localparam [STATE_W-1:0] REPORT = {`CCHIP_PHASE_REPORT, 2'd0};
+
+  // clocks of a state, counted from 0
+  localparam [4:0] JUDGE_LAST = 5'd2;  // slot and request have passed their registers
+  localparam [4:0] RESET_LAST = 5'd1;
+  localparam [4:0] ERROR_FIRST = 5'd2;  // of TRANSFER: cfg_error of an earlier clock is over
+  localparam [4:0] CHECK_LAST = 5'd7;  // the device may report an error until here
+  localparam [4:0] PULSE_LAST = 5'd1;  // roc_busy is seen from here on
+  localparam [4:0] SETTLE_LAST = `CCHIP_RM_SETTLE_CLOCKS - 2;
+  localparam [4:0] MATCH_LAST = `CCHIP_RM_SETTLE_CLOCKS - 1;
   localparam [31:0] LIMIT = SLOT_LIMIT;
-  localparam [31:0] SLOT_COUNT = SLOTS;
 
   generate
-    if (SLOTS < 1 || SLOTS > 2) begin : gen_illegal
-      cchip_error_SLOTS_must_be_1_or_2 u_error ();
+    if (SLOTS < 1 || SLOTS > 4) begin : gen_illegal
+      cchip_error_SLOTS_must_be_1_to_4 u_error ();
     end
     if (SLOT_LIMIT < 16) begin : gen_illegal_limit
       cchip_error_SLOT_LIMIT_below_16 u_error ();
     end
   endgenerate
 
-  // ---- request
-  wire [9:0] pass;  // one-hot: this phase is over and was good
   reg [`CCHIP_PHASE_W-1:0] phase_q;
-  reg [9:0] at_q;  // phase_q, one-hot
-  reg [`CCHIP_SLOT_ID_W-1:0] slot_q;
-  reg [`CCHIP_RM_ID_W-1:0] module_q;
+  reg [1:0] step_q;
+  wire [STATE_W-1:0] state = {phase_q, step_q};
+  wire idle = state == IDLE;
+
+  // ---- request; one that comes during a swap waits in the refusal for a clock without report
+  reg ready_q, refuse_q;
+  reg [`CCHIP_SLOT_ID_W-1:0] slot_q, refuse_slot_q;
+  reg [`CCHIP_RM_ID_W-1:0] module_q, refuse_module_q;
   reg [31:0] address_q, size_q;
   reg force_q;
-  reg [31:0] memory_limit_q;
-  reg [31:0] bound_q;  // of the phase: shutdown_limit up to SHUTDOWN, SLOT_LIMIT from then on
-  reg ready_q, refuse_q;  // a request during a swap waits for its report
-  reg [`CCHIP_SLOT_ID_W-1:0] refuse_slot_q;
-  reg [`CCHIP_RM_ID_W-1:0] refuse_module_q;
   wire [`CCHIP_SLOT_ID_W-1:0] s_swap_slot;
   wire [`CCHIP_RM_ID_W-1:0] s_swap_module;
   wire [31:0] s_swap_address, s_swap_size;
   wire s_swap_force;
   assign `CCHIP_SWAP_REQUEST_OF(s_swap_slot, s_swap_module, s_swap_address, s_swap_size,
       s_swap_force) = s_swap_data;
-  wire idle = at_q[`CCHIP_PHASE_IDLE];
   wire accept = s_swap_valid & ready_q;
   wire begins = accept & idle;
 
@@ -113,197 +131,216 @@ module cchip_swap_sequencer #(
       size_q <= s_swap_size;
       force_q <= s_swap_force;
     end
-    if (idle) memory_limit_q <= memory_limit == 32'd0 ? `CCHIP_MEMORY_LIMIT_DEFAULT : memory_limit;
-    if (idle) bound_q <= shutdown_limit == 32'd0 ? `CCHIP_SHUTDOWN_LIMIT_DEFAULT : shutdown_limit;
-    else if (pass[`CCHIP_PHASE_SHUTDOWN]) bound_q <= LIMIT;
     if (accept) refuse_slot_q <= s_swap_slot;
     if (accept) refuse_module_q <= s_swap_module;
   end
 
-  // ---- the slot
-  reg [SLOTS-1:0] mine_q;  // one-hot: the slot of the request
-  function [SLOTS-1:0] one_hot(input [7:0] number);
-    integer i;
-    begin
-      one_hot = {SLOTS{1'b0}};
-      for (i = 0; i < SLOTS; i = i + 1) one_hot[i] = number == i[7:0];
+  // ---- the slot of the request, through registers
+  reg [SLOTS-1:0] mine;  // one-hot; 0 if there is no such slot
+  reg [`CCHIP_RM_ID_W-1:0] shown;
+  reg [`CCHIP_PAIR_COUNT_W-1:0] given_up;
+  integer i;
+  always @(*) begin
+    shown = {`CCHIP_RM_ID_W{1'b0}};
+    given_up = {`CCHIP_PAIR_COUNT_W{1'b0}};
+    for (i = 0; i < SLOTS; i = i + 1) begin
+      mine[i] = slot_q == i[`CCHIP_SLOT_ID_W-1:0];
+      shown = shown
+          | (region_rm_id[`CCHIP_RM_ID_W*i+:`CCHIP_RM_ID_W] & {`CCHIP_RM_ID_W{mine[i]}});
+      given_up = given_up
+          | (lost[`CCHIP_PAIR_COUNT_W*i+:`CCHIP_PAIR_COUNT_W] & {`CCHIP_PAIR_COUNT_W{mine[i]}});
     end
-  endfunction
-  function [23:0] choose(input [24*SLOTS-1:0] from, input [SLOTS-1:0] select);
-    integer i;
-    begin
-      choose = 24'd0;
-      for (i = 0; i < SLOTS; i = i + 1) choose = choose | (from[24*i+:24] & {24{select[i]}});
-    end
-  endfunction
-  wire [24*SLOTS-1:0] slots;  // {lost, rm_id} of each
-  wire [23:0] chosen = choose(slots, mine_q);
-  genvar s;
-  generate
-    for (s = 0; s < SLOTS; s = s + 1) begin : gen_slot
-      assign slots[24*s+:24] = {lost[16*s+:16], region_rm_id[8*s+:8]};
-    end
-  endgenerate
-
-  reg match_q;  // the region shows the module asked for
-  reg [`CCHIP_PAIR_COUNT_W-1:0] slot_lost_q, lost_q;
-  reg quiet_q, decoupled_q, roc_busy_q;
-  always @(posedge clk) begin
-    if (begins) mine_q <= one_hot(s_swap_slot);
-    slot_lost_q <= chosen[23:8];
-    match_q <= chosen[7:0] == module_q;
-    quiet_q <= |(quiet & mine_q);
-    decoupled_q <= |(decoupled & mine_q);
-    roc_busy_q <= |(roc_busy & mine_q);
   end
 
-  // ---- is the request legal, and is it needed?
-  reg illegal_q, same_q;
+  reg quiet_q, decoupled_q, roc_busy_q, match_q;  // match: the region shows the module asked for
+  reg same_q, illegal_q;
   reg [31:0] last_byte_q;
-  reg outside_q;
+  (* ASYNC_REG = "TRUE" *) reg [1:0] cfg_error_q;
   always @(posedge clk) begin
-    last_byte_q <= address_q + size_q - 32'd1;
-    outside_q <= {24'd0, slot_q} >= SLOT_COUNT || module_q > `CCHIP_RM_QUAD_QUAD
-        || address_q[5:0] != 6'd0;
-    illegal_q <= outside_q || size_q == 32'd0 || last_byte_q < address_q;
+    quiet_q <= |(quiet & mine);
+    decoupled_q <= |(decoupled & mine);
+    roc_busy_q <= |(roc_busy & mine);
+    match_q <= shown == module_q;
     same_q <= ~decoupled_q & match_q;
+    last_byte_q <= address_q + size_q - 32'd1;
+    illegal_q <= mine == {SLOTS{1'b0}} || module_q > `CCHIP_RM_QUAD_QUAD
+        || address_q[5:0] != 6'd0 || size_q == 32'd0 || last_byte_q < address_q;
+    cfg_error_q <= {cfg_error_q[0], cfg_error};
   end
 
-  // ---- sequence: to the next phase, or with a code to REPORT
-  reg [31:0] clocks_q;  // in this phase
-  reg [3:0] step_q;  // the same, from 0 to 15
-  reg decide_q, reset_last_q, check_last_q, late_q;  // step_q is DECIDE, ..., SEEN or more
-  reg expired_q, error_q, forced_q, abort_q;
-  reg fault_q;  // the fetch failed, a clock ago
-  reg [`CCHIP_SWAP_W-1:0] fault_code_q;
-  // 1 + number of consecutive clocks on which the region showed the module asked for. One such
-  // clock proves nothing: a region full of garbage may show any number.
-  reg [4:0] alike_q;
-  wire at_header = at_q[`CCHIP_PHASE_HEADER];
-  wire at_shutdown = at_q[`CCHIP_PHASE_SHUTDOWN];
-  wire at_decouple = at_q[`CCHIP_PHASE_DECOUPLE];
-  wire at_transfer = at_q[`CCHIP_PHASE_TRANSFER];
-  wire at_check = at_q[`CCHIP_PHASE_CHECK];
-  wire at_roc = at_q[`CCHIP_PHASE_ROC];
-  wire at_recouple = at_q[`CCHIP_PHASE_RECOUPLE];
-  wire at_report = at_q[`CCHIP_PHASE_REPORT];
+  // ---- clocks of the phase and of the state, and the bound of the phase
+  wire moves;  // to another state
+  wire turns;  // to another phase
+  reg [31:0] clocks_q;
+  reg [4:0] ticks_q;  // stops at 31
+  reg expired_q;
+  wire [31:0] bound = state != SHUTDOWN ? LIMIT : shutdown_limit
+      | (shutdown_limit == 32'd0 ? `CCHIP_SHUTDOWN_LIMIT_DEFAULT : 32'd0);
+  always @(posedge clk) begin
+    clocks_q <= turns ? 32'd1 : clocks_q + 32'd1;
+    ticks_q <= moves ? 5'd0 : ticks_q + {4'd0, ~&ticks_q};
+    expired_q <= !turns && clocks_q >= bound;
+  end
 
-  wire roc_over = at_roc & late_q & ~roc_busy_q;
-  wire fails_early =
-      (at_header & (decide_q ? illegal_q | same_q | owes : fault_q | (header_done & ~header_ok)))
-      | (at_shutdown & expired_q & ~quiet_q & ~decoupled_q & ~force_q);
-  wire fails_late = (at_decouple & expired_q & ~decoupled_q)
-      | (at_transfer & (error_q | fault_q))
-      | (at_check & (error_q | (check_last_q & ~crc_ok)))
-      | (at_roc & (roc_busy_q ? expired_q : late_q & ~match_q))
-      | (at_recouple & late_q & decoupled_q & expired_q);
-  // DECOUPLE is not aborted: the slot finishes decoupling first
-  wire aborts = abort_q & ~at_decouple;
-  wire past = |at_q[`CCHIP_PHASE_RECOUPLE:`CCHIP_PHASE_DECOUPLE];  // the slot is no longer at work
-  // A failure takes effect one clock after it is detected: fail_q drives the many registers that it
-  // resets, so that they do not wait for the logic of failing.
-  wire failing = fails_early | fails_late;
-  reg fail_q;
+  // ---- abort: kept until a state takes notice, dropped with the swap
+  reg abort_q;
 
-  // a phase never passes while it fails; if it passes and is aborted on one clock, passing wins
-  assign pass[`CCHIP_PHASE_IDLE] = begins;
-  assign pass[`CCHIP_PHASE_HEADER] = at_header & ~decide_q & ~fault_q & header_done & header_ok
-      & ~fail_q;
-  assign pass[`CCHIP_PHASE_SHUTDOWN] = at_shutdown
-      & (quiet_q | decoupled_q | (expired_q & force_q)) & ~fail_q;
-  assign pass[`CCHIP_PHASE_DECOUPLE] = at_decouple & decoupled_q & ~fail_q;
-  assign pass[`CCHIP_PHASE_RESET] = at_q[`CCHIP_PHASE_RESET] & reset_last_q & ~fail_q;
-  assign pass[`CCHIP_PHASE_TRANSFER] = at_transfer & transfer_done & ~error_q & ~fault_q & ~fail_q;
-  assign pass[`CCHIP_PHASE_CHECK] = at_check & check_last_q & crc_ok & ~error_q & ~fail_q;
-  assign pass[`CCHIP_PHASE_ROC] = roc_over & match_q & alike_q[4] & ~fail_q;
-  assign pass[`CCHIP_PHASE_RECOUPLE] = at_recouple & late_q & ~decoupled_q & ~fail_q;
-  assign pass[`CCHIP_PHASE_REPORT] = at_report;
+  // ---- states: what ends them well or badly, where they lead, what the slot is told on the way
+  reg done, fails;
+  reg aborts;  // the state can be aborted
+  reg [`CCHIP_SWAP_W-1:0] code;  // of its failure
+  reg [STATE_W-1:0] next;
+  reg set_stop, set_decouple, set_hold, transfer, start_roc, recouple;
 
-  wire [`CCHIP_SWAP_W-1:0] code_of_header = decide_q ?
-      (illegal_q ? `CCHIP_SWAP_REQUEST : same_q ? `CCHIP_SWAP_SAME : `CCHIP_SWAP_MEMORY) :
-      fault_q ? fault_code_q : header_code;
-  wire [`CCHIP_SWAP_W-1:0] code_d = abort_q ? `CCHIP_SWAP_ABORTED :
-      ({4{at_header}} & code_of_header)
-      | ({4{at_shutdown}} & `CCHIP_SWAP_SHUTDOWN)
-      | ({4{at_decouple}} & `CCHIP_SWAP_DEVICE)
-      | ({4{at_transfer}} & (error_q ? `CCHIP_SWAP_DEVICE : fault_code_q))
-      | ({4{at_check}} & (error_q ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_CRC))
-      | ({4{at_roc}} & (roc_busy_q ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_WRONG_MODULE))
-      | ({4{at_recouple}} & (decoupled_q ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_OK));
+  always @(*) begin
+    done = 1'b0;
+    fails = 1'b0;
+    aborts = 1'b1;
+    code = `CCHIP_SWAP_DEVICE;
+    next = IDLE;
+    {set_stop, set_decouple, set_hold, transfer, start_roc, recouple} = 6'd0;
+    case (state)
+      JUDGE: begin
+        done = ticks_q == JUDGE_LAST;
+        fails = done & (illegal_q | same_q | owes);
+        code = illegal_q ? `CCHIP_SWAP_REQUEST : same_q ? `CCHIP_SWAP_SAME : `CCHIP_SWAP_OWED;
+        next = FETCH;
+      end
+      FETCH: begin
+        done = header_done;
+        fails = bus_error | timeout | (header_done & ~header_ok);
+        code = bus_error ? `CCHIP_SWAP_BUS : timeout ? `CCHIP_SWAP_MEMORY : header_code;
+        next = SHUTDOWN;
+        set_stop = 1'b1;
+      end
+      SHUTDOWN: begin
+        done = quiet_q | decoupled_q | (expired_q & force_q);
+        fails = expired_q & ~done;
+        code = `CCHIP_SWAP_SHUTDOWN;
+        next = DECOUPLE;
+        set_decouple = 1'b1;
+      end
+      DECOUPLE: begin  // never aborted: the number of pairs given up is known only at its end
+        done = decoupled_q;
+        fails = expired_q & ~done;
+        aborts = 1'b0;
+        next = RESET;
+        set_hold = 1'b1;
+      end
+      RESET: begin
+        done = ticks_q == RESET_LAST;
+        next = TRANSFER;
+        transfer = 1'b1;
+      end
+      TRANSFER: begin
+        done = transfer_done;
+        fails = bus_error | timeout | (cfg_error_q[1] && ticks_q >= ERROR_FIRST);
+        code = bus_error ? `CCHIP_SWAP_BUS : timeout ? `CCHIP_SWAP_MEMORY : `CCHIP_SWAP_DEVICE;
+        next = CHECK;
+      end
+      CHECK: begin
+        done = ticks_q == CHECK_LAST;
+        fails = cfg_error_q[1] | (done & ~crc_ok);
+        code = cfg_error_q[1] ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_CRC;
+        next = PULSE;
+        start_roc = 1'b1;
+      end
+      PULSE: begin
+        done = ticks_q == PULSE_LAST;
+        next = PULSED;
+      end
+      PULSED: begin
+        done = ~roc_busy_q;
+        fails = expired_q & ~done;
+        next = SETTLE;
+      end
+      SETTLE: begin
+        done = ticks_q == SETTLE_LAST;
+        next = MATCH;
+      end
+      MATCH: begin
+        done = ticks_q == MATCH_LAST;
+        fails = ~match_q;
+        code = `CCHIP_SWAP_WRONG_MODULE;
+        next = RECOUPLE;
+        recouple = 1'b1;
+      end
+      RECOUPLE: begin
+        done = ~decoupled_q;
+        fails = expired_q & ~done;
+        aborts = 1'b0;
+        next = REPORT;
+      end
+      REPORT: begin
+        done = 1'b1;
+        aborts = 1'b0;
+      end
+      default: begin  // IDLE
+        done = begins;
+        aborts = 1'b0;
+        next = JUDGE;
+      end
+    endcase
+  end
 
-  wire enter = fail_q | (|pass);
-  wire reports = fail_q | pass[`CCHIP_PHASE_RECOUPLE];
+  wire aborted = aborts & abort_q;
+  wire failing = aborted | fails;
+  wire passes = done & ~failing;
+  wire reports = failing | (passes && next == REPORT);
+  wire late = state >= DECOUPLE;  // a failure leaves the slot shut
+  assign moves = failing | done;
+  assign turns = failing
+      | (done && next[STATE_W-1:2] != phase_q);
+
+  // ---- phase and report
+  reg run_q, report_valid_q, refused_q, forced_q;
+  reg [`CCHIP_SWAP_W-1:0] code_q;
+  reg [`CCHIP_PAIR_COUNT_W-1:0] lost_q;
   wire refuses = refuse_q & ~reports;
-  wire [SLOTS-1:0] mine_if_transfer = mine_q & {SLOTS{pass[`CCHIP_PHASE_RESET]}};
-  wire [SLOTS-1:0] mine_if_recouple = mine_q & {SLOTS{pass[`CCHIP_PHASE_ROC]}};
-  wire [SLOTS-1:0] mine_if_fails = mine_q & {SLOTS{fail_q & past}};
-  wire gone = at_decouple & decoupled_q & forced_q;
+  always @(posedge clk) begin
+    if (idle) lost_q <= {`CCHIP_PAIR_COUNT_W{1'b0}};
+    else if (state == DECOUPLE && forced_q && decoupled_q) lost_q <= given_up;
+    if (state == SHUTDOWN) forced_q <= ~quiet_q & ~decoupled_q;
+    code_q <= aborted ? `CCHIP_SWAP_ABORTED : fails ? code : `CCHIP_SWAP_OK;
+    refused_q <= refuses;
+    if (rst) begin
+      {phase_q, step_q} <= IDLE;
+      abort_q <= 1'b0;
+      run_q <= 1'b0;
+      ready_q <= 1'b0;
+      refuse_q <= 1'b0;
+      report_valid_q <= 1'b0;
+    end else begin
+      if (moves) {phase_q, step_q} <= failing ? REPORT : next;
+      abort_q <= (abort_q | abort_swap) && state > IDLE && state < RECOUPLE && !failing;
+      run_q <= !failing && (done ? next == FETCH || next == TRANSFER : run_q);
+      refuse_q <= (accept & ~idle) | (refuse_q & reports);
+      ready_q <= ~((accept & ~idle) | (refuse_q & reports));
+      report_valid_q <= reports | refuses;
+    end
+  end
 
   // ---- what the slots are told
   reg [SLOTS-1:0] stop_q, decouple_q, hold_reset_q, roc_start_q;
   reg [SLOTS-1:0] half_q;  // the region holds no whole module
   initial half_q = {SLOTS{1'b0}};
+  wire [SLOTS-1:0] on_pass = mine & {SLOTS{passes}};
+  wire [SLOTS-1:0] on_fail = mine & {SLOTS{failing}};
   always @(posedge clk) begin
-    if (!rst) half_q <= (half_q | mine_if_transfer) & ~mine_if_recouple;
+    if (!rst)
+      half_q <= (half_q | (on_pass & {SLOTS{transfer}})) & ~(on_pass & {SLOTS{recouple}});
     if (rst) begin
       stop_q       <= half_q;
       decouple_q   <= half_q;
       hold_reset_q <= half_q;
       roc_start_q  <= {SLOTS{1'b0}};
     end else begin
-      if (pass[`CCHIP_PHASE_HEADER]) stop_q <= stop_q | mine_q;
-      else if (reports) stop_q <= decouple_q | mine_if_fails;
-      if (pass[`CCHIP_PHASE_SHUTDOWN]) decouple_q <= decouple_q | mine_q;
-      else if (at_recouple && step_q == RECOUPLE_AT) decouple_q <= decouple_q & ~mine_q;
-      else decouple_q <= decouple_q | mine_if_fails;
-      if (pass[`CCHIP_PHASE_DECOUPLE]) hold_reset_q <= hold_reset_q | mine_q;
-      else hold_reset_q <= (hold_reset_q | mine_if_fails) & ~mine_if_recouple;
-      roc_start_q <= mine_q & {SLOTS{pass[`CCHIP_PHASE_CHECK]}};
-    end
-  end
-
-  // ---- phase and report
-  reg run_q;  // the fetch works
-  reg report_valid_q;
-  reg refused_q;  // the report is that of a refused request
-  reg [`CCHIP_SWAP_W-1:0] code_q;
-  always @(posedge clk) begin
-    clocks_q <= enter ? 32'd1 : clocks_q + 32'd1;
-    step_q <= enter ? 4'd0 : step_q == 4'd15 ? 4'd15 : step_q + 4'd1;
-    decide_q <= !enter && step_q == DECIDE - 4'd1;
-    reset_last_q <= !enter && step_q == RESET_LAST - 4'd1;
-    check_last_q <= !enter && step_q == CHECK_LAST - 4'd1;
-    late_q <= !enter && step_q >= SEEN - 4'd1;
-    expired_q <= !enter && (expired_q || clocks_q == bound_q);
-    error_q <= cfg_error & (at_transfer | at_check);
-    forced_q <= ~idle & (forced_q | (at_shutdown & expired_q & ~quiet_q));
-    alike_q <= roc_over ? alike_q + 5'd1 : 5'd1;
-    fault_q <= bus_error | timeout;
-    fault_code_q <= bus_error ? `CCHIP_SWAP_BUS : `CCHIP_SWAP_MEMORY;
-    lost_q <= begins ? 16'd0 : gone ? slot_lost_q : lost_q;
-    refused_q <= refuses;
-    if (!fail_q) code_q <= code_d;
-    if (rst) begin
-      phase_q <= `CCHIP_PHASE_IDLE;
-      at_q <= AT_IDLE;
-      fail_q <= 1'b0;
-      abort_q <= 1'b0;
-      ready_q <= 1'b0;
-      refuse_q <= 1'b0;
-      run_q <= 1'b0;
-      report_valid_q <= 1'b0;
-    end else begin
-      abort_q <= |at_q[`CCHIP_PHASE_ROC:`CCHIP_PHASE_HEADER] & ~reports & ~pass[`CCHIP_PHASE_ROC]
-          & (abort_q | abort_swap);
-      fail_q <= (failing | (aborts & ~(|pass))) & ~fail_q;
-      at_q <= fail_q ? AT_REPORT : (at_q & ~pass) | {pass[8:0], pass[9]};
-      phase_q <= fail_q ? `CCHIP_PHASE_REPORT : at_report ? `CCHIP_PHASE_IDLE : phase_q
-          + {3'd0, |pass};
-      ready_q <= ~(accept & ~idle) & ~(refuse_q & reports);
-      refuse_q <= (accept & ~idle) | (refuse_q & reports);
-      run_q <= pass[`CCHIP_PHASE_RESET]
-          | ((run_q | decide_q) & ~failing & ~aborts & ~enter & (at_header | at_transfer));
-      report_valid_q <= reports | refuses;
+      stop_q <= reports && !(failing && late) ? decouple_q : stop_q | (on_pass & {SLOTS{set_stop}});
+      decouple_q <= (decouple_q | (on_pass & {SLOTS{set_decouple}}) | (on_fail & {SLOTS{late}}))
+          & ~(on_pass & {SLOTS{recouple}});
+      hold_reset_q <= (hold_reset_q | (on_pass & {SLOTS{set_hold}}) | (on_fail & {SLOTS{late}}))
+          & ~(on_pass & {SLOTS{start_roc}});
+      roc_start_q <= on_pass & {SLOTS{start_roc}};
     end
   end
 
@@ -311,31 +348,28 @@ module cchip_swap_sequencer #(
   assign m_report_valid = report_valid_q;
   // slot_q, module_q and lost_q do not change in REPORT
   assign m_report_data = refused_q
-      ? `CCHIP_SWAP_REPORT_OF(refuse_slot_q, refuse_module_q, `CCHIP_SWAP_BUSY, 16'd0)
+      ? `CCHIP_SWAP_REPORT_OF(refuse_slot_q, refuse_module_q, `CCHIP_SWAP_BUSY,
+          {`CCHIP_PAIR_COUNT_W{1'b0}})
       : `CCHIP_SWAP_REPORT_OF(slot_q, module_q, code_q, lost_q);
   assign stop = stop_q;
   assign decouple = decouple_q;
   assign hold_reset = hold_reset_q;
   assign roc_start = roc_start_q;
   assign phase = phase_q;
+  assign phase_clocks = clocks_q;
   assign busy = ~idle;
-  assign in_header = at_header;
-  assign in_transfer = at_transfer;
   assign slot = slot_q;
   assign module_id = module_q;
   assign address = address_q;
   assign size = size_q;
-  assign limit = memory_limit_q;
   assign run = run_q;
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_phase, at_q == AT_IDLE << phase_q)
-      `CCHIP_ASSERT(a_pass, (pass & (pass - 10'd1)) == 10'd0)
-      `CCHIP_ASSERT(a_fail, !(failing || fail_q) || pass == 10'd0)
       `CCHIP_ASSERT(a_order, (hold_reset_q & ~decouple_q) == {SLOTS{1'b0}})
       `CCHIP_ASSERT(a_stopped, (decouple_q & ~stop_q) == {SLOTS{1'b0}})
-      `CCHIP_ASSERT(a_half, (half_q & ~hold_reset_q) == {SLOTS{1'b0}})
+      `CCHIP_ASSERT(a_half, (half_q & ~decouple_q) == {SLOTS{1'b0}})
+      `CCHIP_ASSERT(a_roc, (roc_start_q & hold_reset_q) == {SLOTS{1'b0}})
     end
 
 endmodule

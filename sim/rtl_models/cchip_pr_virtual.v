@@ -9,6 +9,9 @@
 //                modules are fed random pairs without reset. A controller that does not decouple
 //                sees garbage; one that does not reset afterwards sees answers to pairs that were
 //                never sent
+//   fresh        after the last word of a payload until rst rises: the selected module is in, but
+//                none has been reset. An rst from before the module was whole does not count, so
+//                only a reset on configuration does
 //   otherwise    the selected module, nothing added; rst resets all of them
 module cchip_pr_virtual #(
     // number of this slot, 0..255
@@ -62,6 +65,16 @@ module cchip_pr_virtual #(
       .select   (select)
   );
 
+  // ---- modules that are whole, but not reset yet
+  reg fresh_q, low_q;  // low: rst has been 0 since
+  initial fresh_q = 1'b0;
+  initial low_q = 1'b1;
+  wire dirty = garbage | (fresh_q & ~(low_q & rst));
+  always @(posedge clk) begin
+    fresh_q <= dirty;
+    low_q   <= ~garbage & (low_q | ~rst);
+  end
+
   // ---- random numbers: xorshift of 64 bits; the pair is the last of them
   reg [63:0] random_q;
   reg [PAIR_W+63:0] pair_q;
@@ -77,13 +90,13 @@ module cchip_pr_virtual #(
   endfunction
 
   always @(posedge clk)
-    if (garbage) begin
+    if (dirty) begin
       random_q <= xorshift(random_q);
       pair_q   <= {pair_q[PAIR_W-1:0], random_q};
     end
 
   // ---- the modules
-  wire [PAIR_W-1:0] pair = garbage ? pair_q[PAIR_W-1:0]  : s_pair_data;
+  wire [PAIR_W-1:0] pair = dirty ? pair_q[PAIR_W-1:0]  : s_pair_data;
   wire [4*OUT_W-1:0] outs;
   genvar i;
   generate
@@ -102,12 +115,12 @@ module cchip_pr_virtual #(
           .WARPED_EXACT       (WARPED_EXACT)
       ) u_region (
           .clk           (clk),
-          .rst           (rst & ~garbage),
-          .s_pair_valid  (garbage | (here & s_pair_valid)),
+          .rst           (rst & ~dirty),
+          .s_pair_valid  (dirty | (here & s_pair_valid)),
           .s_pair_ready  (ready),
           .s_pair_data   (pair),
           .m_result_valid(valid),
-          .m_result_ready(garbage ? random_q[63] : here & m_result_ready),
+          .m_result_ready(dirty ? random_q[63] : here & m_result_ready),
           .m_result_data (result),
           .rm_id         (module_id),
           .idle          (quiet)

@@ -2,10 +2,11 @@
 `include "cchip_defs.vh"
 `default_nettype none
 // Proved of cchip_swap_sequencer, two slots, whatever slots, memory and device do:
-//   phases follow their order; during TRANSFER the slot is stopped, seen decoupled and in reset; decouple falls only in
-//   RECOUPLE, after a good check, with reset for at least RESET_MIN clocks since the transfer and no reset any more; the
-//   other slot is left alone; every request gets exactly one report and no report comes unasked; every phase is bounded, if
-//   the fetch ends header and transfer by an event of its own (ROC: for 60 clocks from reset).
+//   phases follow their order; during TRANSFER and CHECK the slot is stopped, seen decoupled and in reset, in ROC stopped and
+//   decoupled; the reset ends as ROC begins, on the clock on which the reset on configuration starts; decouple falls only as
+//   RECOUPLE begins, after a good check and at least SETTLED clocks after that start; the other slot is left alone; every
+//   request gets exactly one report and no report comes unasked; every phase is bounded, if the fetch ends header and
+//   transfer by an event of its own (ROC: for 80 clocks from reset).
 //   Reset, decoupled, stopped imply each other (RTL assertions).
 module cchip_swap_sequencer_properties (
     input  wire                             clk,
@@ -28,15 +29,15 @@ module cchip_swap_sequencer_properties (
     input  wire                             crc_ok,
     input  wire                             cfg_error
 );
-  localparam [7:0] RESET_MIN = 8'd8;
+  localparam [7:0] SETTLED = 8'd32;
   localparam [31:0] LIMIT = 32'd5;
   localparam [7:0] SLOT_LIMIT = 8'd16;
-  wire s_swap_ready, m_report_valid, busy, in_header, in_transfer, run;
+  wire s_swap_ready, m_report_valid, busy, run;
   wire [`CCHIP_SWAP_REPORT_W-1:0] m_report_data;
   wire [7:0] slot, module_id;
   wire [3:0] phase;
   wire [1:0] stop, decouple, hold_reset, roc_start;
-  wire [31:0] address, size, limit;
+  wire [31:0] address, size, phase_clocks;
   cchip_swap_sequencer #(
       .SLOTS     (2),
       .SLOT_LIMIT(16)
@@ -50,7 +51,6 @@ module cchip_swap_sequencer_properties (
       .m_report_data (m_report_data),
       .abort_swap    (abort_swap),
       .shutdown_limit(LIMIT),
-      .memory_limit  (32'd0),
       .stop          (stop),
       .decouple      (decouple),
       .hold_reset    (hold_reset),
@@ -61,14 +61,12 @@ module cchip_swap_sequencer_properties (
       .region_rm_id  (region_rm_id),
       .lost          (lost),
       .phase         (phase),
+      .phase_clocks  (phase_clocks),
       .busy          (busy),
-      .in_header     (in_header),
-      .in_transfer   (in_transfer),
       .slot          (slot),
       .module_id     (module_id),
       .address       (address),
       .size          (size),
-      .limit         (limit),
       .run           (run),
       .header_done   (header_done),
       .header_ok     (header_ok),
@@ -86,7 +84,7 @@ module cchip_swap_sequencer_properties (
   reg [3:0] phase_q = 4'd0;
   reg [1:0] decouple_q, stop_q, hold_q, good_q = 2'b00;
   reg [1:0] seen_q, seen_q2;  // decoupled a clock ago
-  reg [7:0] reset_q = 8'd0;  // clocks in reset since the transfer, of the slot at work
+  reg [7:0] since_q = 8'd0;  // clocks since the reset on configuration started
   reg [7:0] clocks_q = 8'd0;  // in this phase
   reg [1:0] open_q = 2'd0;  // requests without report
   reg crc_ok_q;
@@ -107,8 +105,7 @@ module cchip_swap_sequencer_properties (
     crc_ok_q <= crc_ok;
     if (phase == `CCHIP_PHASE_TRANSFER) good_q <= good_q & ~mine;
     else if (phase == `CCHIP_PHASE_ROC && phase_q == `CCHIP_PHASE_CHECK && crc_ok_q) good_q <= good_q | mine;
-    if (phase == `CCHIP_PHASE_TRANSFER) reset_q <= 8'd0;
-    else if ((hold_reset & mine) != 2'b00) reset_q <= reset_q == 8'd255 ? reset_q : reset_q + 8'd1;
+    since_q <= roc_start != 2'b00 ? 8'd1 : since_q == 8'd255 ? since_q : since_q + 8'd1;
     clocks_q <= rst || phase != phase_q ? 8'd1 : clocks_q == 8'd255 ? clocks_q : clocks_q + 8'd1;
     open_q <= rst ? 2'd0 : open_q + {1'b0, accept} - {1'b0, m_report_valid};
   end
@@ -123,13 +120,14 @@ module cchip_swap_sequencer_properties (
       order: assert (!changed || phase == phase_q + 4'd1 || phase == `CCHIP_PHASE_REPORT
                      || (phase == `CCHIP_PHASE_IDLE && phase_q == `CCHIP_PHASE_REPORT));
       known: assert (phase <= `CCHIP_PHASE_REPORT);
-      shut: assert (phase < `CCHIP_PHASE_TRANSFER || phase > `CCHIP_PHASE_ROC
+      shut: assert (phase < `CCHIP_PHASE_TRANSFER || phase > `CCHIP_PHASE_CHECK
                     || (mine != 2'b00 && (stop & decouple & hold_reset & mine) == mine));
+      still_shut: assert (phase != `CCHIP_PHASE_ROC || (mine != 2'b00 && (stop & decouple & mine) == mine));
       seen: assert (phase != `CCHIP_PHASE_RESET || !changed || (seen_q2 & mine) == mine);
       checked: assert ((fell & ~good_q) == 2'b00);
-      long_reset: assert (fell == 2'b00 || (reset_q >= RESET_MIN && (hold_reset & fell) == 2'b00));
+      settled: assert (fell == 2'b00 || (since_q >= SETTLED && (hold_reset & fell) == 2'b00));
       in_recouple: assert (fell == 2'b00 || (phase == `CCHIP_PHASE_RECOUPLE && fell == mine));
-      reset_first: assert ((hold_q & ~hold_reset) == 2'b00 || (phase == `CCHIP_PHASE_RECOUPLE && decouple == decouple_q));
+      own_reset: assert ((hold_q & ~hold_reset) == roc_start);
       roc: assert (roc_start == 2'b00 || (phase == `CCHIP_PHASE_ROC && changed && roc_start == mine));
       other: assert (((stop ^ stop_q) & ~mine) == 2'b00 && ((decouple ^ decouple_q) & ~mine) == 2'b00
                      && ((hold_reset ^ hold_q) & ~mine) == 2'b00);
@@ -137,11 +135,11 @@ module cchip_swap_sequencer_properties (
       fetch: assert (!run || fetches);
       asked: assert (!m_report_valid || open_q != 2'd0);
       answered: assert (open_q != 2'd3 && (phase != `CCHIP_PHASE_IDLE || open_q <= 2'd1));
-      // the task `prove` leaves out the bound of ROC, which ends with a count of 16 clocks: it took too long
+      // the task `prove` leaves out the bound of ROC, which ends with a count of 31 clocks: it took too long
 `ifdef SKIP_ROC
       bounded: assert (phase == `CCHIP_PHASE_IDLE || phase == `CCHIP_PHASE_ROC || changed || clocks_q <= SLOT_LIMIT + 8'd4);
 `else
-      bounded: assert (phase == `CCHIP_PHASE_IDLE || changed || clocks_q <= SLOT_LIMIT + 8'd20);
+      bounded: assert (phase == `CCHIP_PHASE_IDLE || changed || clocks_q <= SLOT_LIMIT + 8'd36);
 `endif
     end
   end

@@ -134,10 +134,10 @@ class SlotBench : public sim::Agent {
     simulation.step();
   }
   void reset_on_configuration() {
+    top.hold_reset = 0;  // so that the reset on configuration is one of its own
     top.roc_start = 1;
     simulation.step();
     top.roc_start = 0;
-    top.hold_reset = 0;
     wait_reset();
   }
   void recouple() {

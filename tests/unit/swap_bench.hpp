@@ -19,7 +19,8 @@ struct SlotBehaviour {
   int drain = 3;        ///< clocks from stop to quiet, < 0: never
   int inside = 7;       ///< pairs lost by decoupling it before it is quiet
   bool follows = true;  ///< decoupled follows decouple
-  int roc_clocks = 2;   ///< < 0: roc_busy never falls
+  int roc_clocks = 2;   ///< < 0: roc_busy never falls; 0: there is no reset on configuration
+  int settles = 0;      ///< clocks from the end of that reset until the module shows its number
   bool spoilt = false;  ///< the region stays garbage
   int becomes = -1;     ///< module after a complete payload; < 0: the one it names
 };
@@ -133,8 +134,11 @@ class SwapBench : public sim::Agent {
       sim::set_bits(m.quiet, i, 1, s.quiet ? 1 : 0);
       sim::set_bits(m.decoupled, i, 1, s.decoupled ? 1 : 0);
       sim::set_bits(m.roc_busy, i, 1, s.roc_left != 0 ? 1 : 0);
-      const auto shown =
-          s.region < 0 ? static_cast<std::uint64_t>(random_() & 255U) : static_cast<std::uint64_t>(s.region);
+      // a closed module shows anything while it is in reset, and until it has had one of its own
+      std::uint64_t shown = random_() & 255U;
+      if (s.region >= 0 && s.works && !bit(m.hold_reset, i) && s.roc_left == 0) {
+        shown = static_cast<std::uint64_t>(s.region) ^ (clock_ < s.shows_at ? 255U : 0U);
+      }
       sim::set_bits(m.region_rm_id, 8 * i, 8, shown);
       sim::set_bits(m.lost, 16 * i, 16, static_cast<std::uint64_t>(s.lost));
     }
@@ -163,7 +167,8 @@ class SwapBench : public sim::Agent {
     int lost = 0;
     int stopped = 0;           ///< clocks since stop rose
     bool transferred = false;  ///< a complete payload has passed since it was decoupled
-    int reset_since = 0;       ///< clocks in reset since the last word
+    bool works = true;         ///< it was reset after its last word, by a reset of its own
+    std::uint64_t shows_at = 0;
     bool was_decoupled = false;
   };
 
@@ -185,7 +190,7 @@ class SwapBench : public sim::Agent {
       passed_.push_back(static_cast<std::uint8_t>(sim::get_bits(m.cfg_data, 8 * i, 8)));
     }
     s.region = -1;
-    s.reset_since = 0;
+    s.works = false;
     s.transferred = passed_ == payload_;
     if (s.transferred && !s.behaviour.spoilt) s.region = s.behaviour.becomes < 0 ? payload_[5] : s.behaviour.becomes;
   }
@@ -199,12 +204,11 @@ class SwapBench : public sim::Agent {
     if (!in_reset) {
       sim::require(!hold || decouple, "reset without decoupling");
       sim::require(!decouple || stop, "decoupled without stop");
-      sim::require(!bit(m.roc_start, i) || (hold && s.transferred), "ROC without reset or without a complete payload");
-      if (hold) ++s.reset_since;
+      sim::require(!bit(m.roc_start, i) || s.transferred, "ROC without a complete payload");
+      sim::require(!bit(m.roc_start, i) || !hold, "ROC under a reset that hides it");
       if (s.was_decoupled && !decouple) {
         sim::require(s.region >= 0, "garbage recoupled");
-        sim::require(!hold && (s.reset_since == 0 || s.reset_since >= s.behaviour.roc_clocks),
-                     "recoupled without a reset");
+        sim::require(!hold && s.works, "recoupled without a reset on configuration");
         sim::require(s.roc_left == 0, "recoupled during ROC");
       }
       sim::require(s.region >= 0 || decouple, "garbage is not decoupled");
@@ -218,8 +222,10 @@ class SwapBench : public sim::Agent {
     if (s.behaviour.follows) s.decoupled = decouple;
     if (bit(m.roc_start, i))
       s.roc_left = s.behaviour.roc_clocks;
-    else if (s.roc_left > 0)
-      --s.roc_left;
+    else if (s.roc_left > 0 && --s.roc_left == 0 && !hold) {
+      s.works = true;
+      s.shows_at = clock_ + static_cast<std::uint64_t>(s.behaviour.settles);
+    }
     if (in_reset) s.roc_left = 0;
   }
 

@@ -96,10 +96,10 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: clocks of a swap are eq. (4) a
           REQUIRE(bench.phase_clocks(SwapPhase::reset) == 2);
           REQUIRE(bench.phase_clocks(SwapPhase::transfer) == transfer + 7 + latency);
           REQUIRE(bench.phase_clocks(SwapPhase::check) == 8);
-          REQUIRE(bench.phase_clocks(SwapPhase::roc) == 22);
-          REQUIRE(bench.phase_clocks(SwapPhase::recouple) == 7);
+          REQUIRE(bench.phase_clocks(SwapPhase::roc) == 34 + 2);  // the reset itself
+          REQUIRE(bench.phase_clocks(SwapPhase::recouple) == 3);
           REQUIRE(bench.phase_clocks(SwapPhase::report) == 1);
-          REQUIRE(report.clock - bench.accepted() == transfer + 2 * latency + drained + 66);
+          REQUIRE(report.clock - bench.accepted() == transfer + 2 * latency + drained + 76);
         }
       }
     }
@@ -320,7 +320,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: memory that stops, and its lat
       if (at_work) bench.require_at_work(0, tri);
       if (!at_work) bench.require_shut(0);
       // no other swap may start while beats are outstanding
-      REQUIRE(bench.swap(request).code == SwapCode::memory);
+      REQUIRE(bench.swap(request).code == SwapCode::owed);
       REQUIRE(bench.phases() == std::vector<SwapPhase>{SwapPhase::header, SwapPhase::report});
       bench.memory().resume();
       bench.simulation().steps(100);
@@ -428,7 +428,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: a slot that never becomes quie
       REQUIRE(report.code == SwapCode::shutdown);
       REQUIRE(report.lost == 0);
       bench.require_at_work(0, tri);
-      REQUIRE(bench.phase_clocks(SwapPhase::shutdown) == limit + 2);  // a failure takes effect a clock later
+      REQUIRE(bench.phase_clocks(SwapPhase::shutdown) == limit + 1);
       request.force = true;
       report = bench.swap(request);
       REQUIRE(report.code == SwapCode::ok);
@@ -527,13 +527,48 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: another module than the one as
   });
 }
 
+TEMPLATE_LIST_TEST_CASE("cchip_config_controller: a module without reset on configuration is not coupled",
+                        "[unit][cchip_config_controller]", cchip_config_controller_configs) {
+  with_bench<TestType>([](SwapBench<TestType>& bench) {
+    bench.require_good_swap(0, tri);
+    for (const int clocks : {1, 2, 32}) {
+      SwapRequest request = bench.load(0, quad, 64);
+      bench.behaviour().roc_clocks = 0;
+      REQUIRE(bench.swap(request).code == SwapCode::wrong_module);
+      bench.require_shut(0);
+      bench.behaviour().roc_clocks = clocks;
+      REQUIRE(bench.swap(request).code == SwapCode::ok);
+      bench.require_at_work(0, quad);
+      bench.require_good_swap(0, tri);
+    }
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_config_controller: the time in which a module has to show its number is exact",
+                        "[unit][cchip_config_controller]", cchip_config_controller_configs) {
+  with_bench<TestType>([](SwapBench<TestType>& bench) {
+    for (const int roc_clocks : {1, 2, 7, 32}) {
+      for (const int settles : {0, 1, defs::rm_settle_clocks, defs::rm_settle_clocks + 1}) {
+        CAPTURE(roc_clocks, settles);
+        const SwapRequest request = bench.load(0, quad, 64);
+        bench.behaviour().roc_clocks = roc_clocks;
+        bench.behaviour().settles = settles;
+        const bool in_time = settles <= defs::rm_settle_clocks;
+        REQUIRE(bench.swap(request).code == (in_time ? SwapCode::ok : SwapCode::wrong_module));
+        if (!in_time) bench.require_shut(0);
+        bench.require_good_swap(0, tri);
+      }
+    }
+  });
+}
+
 TEMPLATE_LIST_TEST_CASE("cchip_config_controller: slots that do not follow", "[unit][cchip_config_controller]",
                         cchip_config_controller_configs) {
   with_bench<TestType>([](SwapBench<TestType>& bench) {
     bench.require_good_swap(0, tri);
     bench.behaviour().follows = false;
     REQUIRE(bench.swap(bench.load(0, quad, 64)).code == SwapCode::device);
-    REQUIRE(bench.phase_clocks(SwapPhase::decouple) == TestType::SLOT_LIMIT + 2);
+    REQUIRE(bench.phase_clocks(SwapPhase::decouple) == TestType::SLOT_LIMIT + 1);
     REQUIRE(bench.passed().empty());
     bench.require_good_swap(0, quad);
     const SwapRequest request = bench.load(0, tri, 64);

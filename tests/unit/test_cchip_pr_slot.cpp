@@ -187,6 +187,32 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: without reset after a swap, answers to p
   });
 }
 
+TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: the reset of the transfer does not stand in for that on configuration",
+                        "[unit][cchip_pr_slot]", Simulated) {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    for (const ModuleId id : tests) {
+      for (const bool roc : {false, true}) {
+        SlotBench<TestType> bench(options);
+        bench.power_up();
+        int unasked = 0;
+        bench.on_result = [&](const PairResult&) { ++unasked; };
+        bench.stop();
+        bench.decouple();
+        bench.hold_reset();
+        bench.transfer(bench.payload(id));
+        bench.steps(8);
+        bench.top.hold_reset = 0;
+        if (roc) bench.reset_on_configuration();
+        bench.steps(8);
+        bench.recouple();
+        bench.steps(2000);
+        INFO("module " << static_cast<int>(id) << ", reset on configuration " << roc);
+        REQUIRE((unasked > 0) == !roc);
+      }
+    }
+  });
+}
+
 TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: a bad payload leaves garbage behind the decoupler until a good one has passed",
                         "[unit][cchip_pr_slot]", Simulated) {
   for_two_power_ups([](const sim::SimulationOptions& options) {

@@ -88,17 +88,25 @@ TEST_CASE("cchip_pr_virtual: every output is random from the name of the slot to
   });
 }
 
-TEST_CASE("cchip_pr_virtual: the modules' state is scrambled even while rst is 1; afterwards rst clears it",
-          "[unit][cchip_pr_virtual]") {
+TEST_CASE(
+    "cchip_pr_virtual: the modules' state is scrambled even while rst is 1; only an rst that begins afterwards clears "
+    "it",
+    "[unit][cchip_pr_virtual]") {
   for_two_power_ups([](const sim::SimulationOptions& options) {
     using Config = virtual_8;
     for (const int module : {1, 2, 3}) {
-      for (const bool reset_after : {false, true}) {
+      for (const bool reset_after : {false, true}) {  // of its own
         Region<Config> region(options);
         region.top.rst = 1;
         for (const std::uint8_t byte : make_payload(Config::SLOT_ID, module, 100, region.random)) region.write(byte);
-        if (reset_after) region.simulation.steps(2);
+        region.simulation.steps(8);
         region.top.rst = 0;
+        if (reset_after) {
+          region.simulation.step();
+          region.top.rst = 1;
+          region.simulation.step();
+          region.top.rst = 0;
+        }
         int answers = 0;
         for (int clock = 0; clock < 2000; ++clock) {
           region.simulation.step();

@@ -58,6 +58,13 @@ struct System : SubsystemBench<Config> {
     REQUIRE(this->account.refused == refused);
   }
   bool irq() { return this->top().irq != 0; }
+  static constexpr std::uint32_t all_entries = (1U << (4 * Config::SLOTS)) - 1;
+  /// Bit per entry: its bitstream is announced.
+  std::uint32_t announced() {
+    std::uint32_t valid = 0;
+    for (std::uint32_t e = 0; e < 4 * Config::SLOTS; ++e) valid |= this->read(regs::bitstream_valid::offset(e)) << e;
+    return valid;
+  }
 };
 
 }  // namespace
@@ -194,6 +201,71 @@ CCHIP_CASE("memory: an error, an address without memory, no answer") {
         s.works();  // late beats belong to no burst
       }
     }
+  });
+}
+
+CCHIP_CASE("an abort while a slow memory brings the header: the bitstream stays, its pairs are tested") {
+  with_wave([](const sim::SimulationOptions& options) {
+    for (const std::uint64_t wait : {1, 20, 200}) {
+      INFO("abort " << wait << " clocks after the beginning");
+      System<TestType> s(options, true);
+      sim::AxiMemoryOptions slow;
+      slow.latency = 300;
+      s.memory.set_options(slow);
+      s.write(regs::memory_limit::offset, 1000);
+      for (int i = 0; i < 6; ++i) s.push(2);
+      s.simulation.run_until([&] { return s.phase() == SwapPhase::header; }, 5000, "the swap");
+      s.steps(wait);
+      s.write(regs::control::offset, regs::control::abort_mask | regs::control::scheduler_enable_mask);
+      s.finish();
+      REQUIRE(s.count(SwapCode::aborted) == 1);
+      REQUIRE(s.account.pairs == 6);
+      REQUIRE(s.account.refused == 0);
+      REQUIRE(s.announced() == s.all_entries);
+      s.works();
+    }
+  });
+}
+
+CCHIP_CASE("a read that comes too late costs time, not the bitstreams: header never read, entry kept") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<TestType> s(options, true);
+    s.memory.stop_after(0);
+    for (int i = 0; i < 6; ++i) s.push(2);
+    for (int i = 0; i < 6; ++i) s.push(TestType::SLOTS == 1 ? 3 : 1);
+    s.simulation.run_until([&] { return s.count(SwapCode::memory) == 1; }, 5000, "the end of the limit");
+    s.steps(3000);
+    REQUIRE(s.count(SwapCode::owed) >= 2);
+    s.memory.resume();
+    s.finish();
+    REQUIRE(s.account.pairs == 12);
+    REQUIRE(s.account.refused == 0);
+    REQUIRE(s.announced() == s.all_entries);
+    s.works();
+  });
+}
+
+CCHIP_CASE("faults on the way leave the entry; the scheduler tries again, later and later, until one ends well") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<TestType> s(options, true);
+    s.memory.set_fault([](std::vector<sim::AxiBeat>& burst) { burst.back().response = sim::AxiResponse::slave_error; });
+    for (int i = 0; i < 6; ++i) s.push(2);
+    const std::size_t before = s.reports.size();
+    s.simulation.run_until([&] { return s.reports.size() == before + 8; }, 200000, "eight attempts");
+    for (std::size_t i = before; i < s.reports.size(); ++i) REQUIRE(s.reports[i].code == SwapCode::bus);
+    for (std::size_t i = before + 1; i < s.reports.size(); ++i) {
+      const std::uint64_t rest = s.reports[i].clock - s.reports[i - 1].clock;
+      const std::uint64_t least = std::uint64_t{defs::retry_clocks}
+                                  << std::min<std::size_t>(i - before - 1, defs::retry_doublings);
+      CAPTURE(i, rest, least);
+      REQUIRE(rest > least);
+      REQUIRE(rest < least + 700);  // the rest, the age that starts again, a scan, the header
+    }
+    REQUIRE(s.announced() == s.all_entries);
+    s.memory.set_fault({});
+    s.finish();
+    REQUIRE(s.account.refused == 0);
+    s.works();
   });
 }
 

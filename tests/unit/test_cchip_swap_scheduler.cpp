@@ -49,6 +49,7 @@ class SchedulerBench {
   bool ready = true;
   std::uint32_t batch = 1, age = 1000;
   unsigned valid = (1U << entries) - 1;
+  unsigned resting = 0;
   std::array<std::uint32_t, entries> address{};
   std::array<int, 4> waiting{};       // by kind
   std::array<int, slots> modules{};   // 0: none
@@ -72,6 +73,7 @@ class SchedulerBench {
     top.min_batch = batch;
     top.max_age = age;
     sim::set_bits(top.table_valid, 0, static_cast<int>(entries), valid);
+    sim::set_bits(top.table_resting, 0, static_cast<int>(entries), resting);
     for (std::size_t e = 0; e < entries; ++e) {
       sim::set_bits(top.table_address, static_cast<int>(32 * e), 32, address[e]);
       sim::set_bits(top.table_size, static_cast<int>(32 * e), 32, address[e] + 7);
@@ -206,7 +208,7 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
 
 CCHIP_CASE("one swap at a time; a rejected bitstream is forgotten, an interrupted one is not") {
   for_two_power_ups([](const sim::SimulationOptions& options) {
-    for (unsigned code = 0; code < 15; ++code) {
+    for (unsigned code = 0; code < 16; ++code) {
       SchedulerBench<TestType> bench(options);
       bench.modules.fill(1);
       bench.waiting = {0, 0, 5, 0};
@@ -224,10 +226,35 @@ CCHIP_CASE("one swap at a time; a rejected bitstream is forgotten, an interrupte
       REQUIRE(bench.told[0].module_id == 2);
       REQUIRE(bench.told[0].lost == 3);
       const auto c = static_cast<SwapCode>(code);
-      const bool kept = c == SwapCode::ok || c == SwapCode::same || c == SwapCode::busy || c == SwapCode::shutdown ||
-                        c == SwapCode::aborted;
-      REQUIRE(bench.cleared == (kept ? 0 : 1U << (4 * slot + 2)));
+      const bool spoilt = c == SwapCode::request || c == SwapCode::magic || c == SwapCode::slot ||
+                          c == SwapCode::module || c == SwapCode::length || c == SwapCode::crc ||
+                          c == SwapCode::wrong_module;  // the others say nothing about the bitstream
+      REQUIRE((defs::swap_spoilt(static_cast<int>(code)) != 0) == spoilt);
+      REQUIRE(bench.cleared == (spoilt ? 1U << (4 * slot + 2) : 0));
     }
+  });
+}
+
+CCHIP_CASE("an entry that rests is not chosen, but a command takes it, and its kind keeps its provider") {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    SchedulerBench<TestType> bench(options);
+    bench.modules.fill(1);
+    bench.waiting = {0, 0, 5, 0};
+    bench.enable = true;
+    for (std::size_t s = 0; s < TestType::SLOTS; ++s) bench.resting |= 12U << (4 * s);  // kinds 2 and 3
+    bench.steps(2000);
+    REQUIRE(bench.requests.empty());
+    REQUIRE(bench.no_provider == 0);
+    bench.command(0, 2, false);
+    bench.steps(3);
+    REQUIRE(bench.requests.size() == 1);
+    bench.report({0, 2, SwapCode::memory, 0});
+    bench.steps(200);
+    REQUIRE(bench.requests.size() == 1);
+    bench.resting = 0;
+    bench.steps(60);
+    REQUIRE(bench.requests.size() == 2);
+    REQUIRE(bench.requests[1].module_id == 2);
   });
 }
 

@@ -61,9 +61,10 @@ enum class SwapCode : std::uint8_t {
   device = 9,  ///< the configuration port reported an error: slot decoupled, in reset
   wrong_module = 10,  ///< the new module has another rm_id: slot decoupled, in reset
   bus = 11,  ///< error response or wrong burst length from memory: decoupled if the transfer had begun
-  memory = 12,  ///< memory did not answer in time, or still owes beats of an earlier read
+  memory = 12,  ///< memory did not answer in time: decoupled if the transfer had begun
   shutdown = 13,  ///< pairs inside were not answered in time; the slot works on with its former module
   aborted = 14,  ///< aborted: the slot works on if it was not decoupled yet, else decoupled, in reset
+  owed = 15,  ///< memory still owes beats of an earlier read: request refused, try again later
 };
 
 /// Programme of a pair in the axis controller.
@@ -145,6 +146,12 @@ constexpr int roc_clocks_default = 2;
 constexpr int shutdown_limit_default = 65536;
 /// longest wait for a beat of the bitstream's memory, unless a register says otherwise [clock]
 constexpr int memory_limit_default = 4096;
+/// a module has this long from the end of its reset on configuration to show its rm_id, which must then stand for as long again [clock]
+constexpr int rm_settle_clocks = 16;
+/// rest of a bitstream after a swap that failed on its way; doubled by every failure that follows [clock]
+constexpr int retry_clocks = 256;
+/// the rest is doubled at most so often; a swap that ends well makes it RETRY_CLOCKS again
+constexpr int retry_doublings = 8;
 /// width of the field info of a programme state; what it holds depends on the programme [bit]
 constexpr int info_w = 14;
 
@@ -158,6 +165,10 @@ constexpr int rm_of(int a, int b) { return a + b - 5; }
 constexpr int rm_verts_a(int m) { return m <= 2 ? 3 : 4; }
 /// vertices of B of that module, m = 1..3 [vertex]
 constexpr int rm_verts_b(int m) { return m <= 1 ? 3 : 4; }
+/// 1: the code of this SwapCode says that the bitstream or its entry in the table is bad (REQUEST, MAGIC, SLOT, MODULE, LENGTH, CRC, WRONG_MODULE); another attempt would end like this one []
+constexpr int swap_spoilt(int c) { return (c >= static_cast<int>(SwapCode::request) && c <= static_cast<int>(SwapCode::crc)) || c == static_cast<int>(SwapCode::wrong_module); }
+/// 1: the code of this SwapCode says that the swap failed on its way (DEVICE, BUS, MEMORY, SHUTDOWN, ABORTED, OWED); the bitstream may be good, another attempt may succeed []
+constexpr int swap_put_off(int c) { return c == static_cast<int>(SwapCode::device) || c >= static_cast<int>(SwapCode::bus); }
 /// difference of two coordinates [bit]
 constexpr int edge_w(int w) { return w + 1; }
 /// component of the cross product of two edges: |.| <= 2 (2^w - 1)^2 [bit]

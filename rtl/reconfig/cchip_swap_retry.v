@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+// cchip_swap_retry: back-off. After a swap that failed on its way (CCHIP_SWAP_PUT_OFF) the
+// bitstream may be good, but the scheduler must not try it again at once.
+//   resting      entries that have failed and not ended well since rest together, for
+//                CCHIP_RETRY_CLOCKS << level clocks from the latest failure on. After each rest
+//                level grows by one, up to CCHIP_RETRY_DOUBLINGS; it is 0 again once no failed
+//                entry is left. An entry that is no longer valid is forgotten.
+//   latency      1 clock from the report to resting
+//   cuts         every path: each output comes from flip-flops
+//   reset        nothing rests, level 0
+module cchip_swap_retry #(
+    // slots, 1..4
+    parameter integer SLOTS = 1
+) (
+    input  wire                            clk,
+    input  wire                            rst,
+    input  wire                            report_valid,  // one clock
+    input  wire [`CCHIP_SWAP_REPORT_W-1:0] report_data,
+    // entry 4 * slot + module
+    input  wire [             4*SLOTS-1:0] valid,         // there is a bitstream
+    output wire [             4*SLOTS-1:0] resting
+);
+
+  localparam integer TIMER_W = $clog2(`CCHIP_RETRY_CLOCKS + 1) + `CCHIP_RETRY_DOUBLINGS;
+  localparam [TIMER_W-1:0] FIRST = `CCHIP_RETRY_CLOCKS;
+  localparam [TIMER_W-1:0] ONE = 1;
+  localparam [3:0] LEVEL_MAX = `CCHIP_RETRY_DOUBLINGS;
+
+  generate
+    if (SLOTS < 1 || SLOTS > 4) begin : gen_illegal
+      cchip_error_SLOTS_must_be_1_to_4 u_error ();
+    end
+  endgenerate
+
+  // ---- the report
+  wire [`CCHIP_SLOT_ID_W-1:0] slot = report_data[`CCHIP_SWAP_REPORT_SLOT];
+  wire [`CCHIP_RM_ID_W-1:0] module_id = report_data[`CCHIP_SWAP_REPORT_MODULE];
+  wire [`CCHIP_SWAP_W-1:0] code = report_data[`CCHIP_SWAP_REPORT_CODE];
+  wire ended_well = report_valid && code == `CCHIP_SWAP_OK;
+  wire put_off = report_valid && `CCHIP_SWAP_PUT_OFF(code);
+  reg [4*SLOTS-1:0] entry;  // one-hot; 0 if there is no such entry
+  integer i;
+  always @(*)
+    for (i = 0; i < 4 * SLOTS; i = i + 1) entry[i] = {slot, module_id} == {i[9:2], 6'd0, i[1:0]};
+
+  // ---- entries that failed, and their rest
+  reg [4*SLOTS-1:0] failed_q;
+  reg rests_q;
+  reg [3:0] level_q;
+  reg [TIMER_W-1:0] timer_q;  // clocks since the latest failure
+  wire [TIMER_W-1:0] limit = FIRST << level_q;
+  assign resting = failed_q & {4 * SLOTS{rests_q}};
+
+  always @(posedge clk) begin
+    timer_q <= put_off ? ONE : timer_q + ONE;
+    if (rst) begin
+      failed_q <= {4 * SLOTS{1'b0}};
+      rests_q  <= 1'b0;
+      level_q  <= 4'd0;
+    end else begin
+      failed_q <= valid & ((failed_q | (put_off ? entry : {4 * SLOTS{1'b0}}))
+          & ~(ended_well ? entry : {4 * SLOTS{1'b0}}));
+      if (put_off) rests_q <= 1'b1;
+      else if (rests_q && timer_q == limit) begin
+        rests_q <= 1'b0;
+        if (level_q != LEVEL_MAX) level_q <= level_q + 4'd1;
+      end
+      if (failed_q == {4 * SLOTS{1'b0}} && !put_off) level_q <= 4'd0;
+    end
+  end
+
+  wire unused = &{1'b0, report_data[`CCHIP_SWAP_REPORT_LOST]};
+
+endmodule
+`default_nettype wire
