@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Campaign: swaps under random traffic with random back-pressure and faults: in bitstreams, memory, configuration port,
-// commands, by abort and reset. Every pair must be answered once and right, or be reported as given up; nothing may
-// hang.
+// commands, by abort and reset. Every pair must be answered once, and right unless it was reported as given up;
+// nothing may hang.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -39,6 +39,7 @@ struct Totals {
     for (std::size_t i = 0; i < codes.size(); ++i) codes[i] += x.codes[i];
     account.pairs += x.account.pairs;
     account.refused += x.account.refused;
+    account.open += x.account.open;
     account.given_up += x.account.given_up;
     account.lost += x.account.lost;
     account.duplicated += x.account.duplicated;
