@@ -58,12 +58,14 @@ module cchip_descriptor_queues #(
   // ---- pointers and counts
   wire push = s_valid & s_ready;
   wire [PTR_W*QUEUES-1:0] write, read;
+  wire [QUEUES-1:0] kind_of_push;  // one-hot
   genvar k;
   generate
     for (k = 0; k < QUEUES; k = k + 1) begin : gen_queues
       localparam [31:0] KIND = k;
       reg [PTR_W-1:0] write_q, read_q;
-      wire push_here = push && s_kind == KIND[KIND_W-1:0];
+      assign kind_of_push[k] = s_kind == KIND[KIND_W-1:0];
+      wire push_here = push & kind_of_push[k];
       wire pop_here = pop & kind[k];
       always @(posedge clk)
         if (rst) begin
@@ -104,9 +106,8 @@ module cchip_descriptor_queues #(
       for (i = 0; i < QUEUES; i = i + 1) code_of = code_of | (i[KIND_W-1:0] & {KIND_W{one[i]}});
     end
   endfunction
-  wire [3:0] kinds_of_push = 4'd1 << s_kind;
-  assign s_ready = |(room & kinds_of_push[QUEUES-1:0]);
-  assign s_place = {s_kind, pointer_of(write, kinds_of_push[QUEUES-1:0])};
+  assign s_ready = |(room & kind_of_push);
+  assign s_place = {s_kind, pointer_of(write, kind_of_push)};
 
   // ---- memory: one write port, one read port with its register
   (* ram_style = "block", no_rw_check *)
@@ -124,7 +125,7 @@ module cchip_descriptor_queues #(
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_kind, (kind & (kind - {{KINDS{1'b0}}, 1'b1})) == {QUEUES{1'b0}})
+      `CCHIP_ASSERT(a_kind, !(look || pop) || (kind & (kind - {{KINDS{1'b0}}, 1'b1})) == {QUEUES{1'b0}})
       `CCHIP_ASSERT(a_pop, !pop || |(kind & some))
     end
 

@@ -16,7 +16,7 @@
 //   decouple     after SETTLE_CLOCKS the pairs inside are counted in `lost` and answered as open, one
 //                per clock; then decoupled rises. It falls one clock after decouple
 //   cuts         every path: each output is a flip-flop
-//   reset        no pair inside, no answer; open for pairs after CREDIT clocks
+//   reset        no pair inside, no answer; open for pairs after CREDIT + 2 clocks
 module cchip_slot_ledger #(
     // most pairs between grant and answer, 1..256
     parameter integer CREDIT = 42
@@ -81,13 +81,16 @@ module cchip_slot_ledger #(
     if (rst) begin
       state_q    <= CLEAR;
       step_q     <= {ID_W + 4{1'b0}};
-      clearing_q <= 1'b1;
+      clearing_q <= 1'b0;
       giving_q   <= 1'b0;
       lost_q     <= {COUNT_W{1'b0}};
     end else
       case (state_q)
         CLEAR:
-        if (last_step) begin
+        if (!clearing_q) begin
+          step_q     <= {ID_W + 4{1'b0}};
+          clearing_q <= 1'b1;
+        end else if (last_step) begin
           state_q    <= decouple ? CLOSED : WORK;
           clearing_q <= 1'b0;
         end
