@@ -31,8 +31,8 @@ struct ArbiterModel {
 
 TEMPLATE_LIST_TEST_CASE("cchip_arbiter: grant is the model's on every clock; nobody waits for more than the others",
                         "[unit][cchip_arbiter]", cchip_arbiter_configs) {
-  constexpr int n = TestType::N;
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
+    constexpr int n = TestType::N;
     auto& top = simulation.top();
     for (const int percent : {100, 60, 10}) {
       ArbiterModel<n> model;
@@ -46,7 +46,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_arbiter: grant is the model's on every clock; nob
         for (int i = 0; i < n; ++i) request |= chance(random, percent) ? 1U << i : 0;
         const bool take = chance(random, 70);
         const bool reset = chance(random, 1);
-        top.request = static_cast<SData>(request);
+        sim::set_bits(top.request, 0, n, request);
         top.take = take;
         top.rst = reset;
         simulation.settle();
@@ -55,7 +55,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_arbiter: grant is the model's on every clock; nob
         for (std::size_t i = 0; i < n; ++i) {
           if ((request >> i & 1U) == 0 || (grant >> i & 1U) != 0 || reset) others[i] = 0;
           others[i] += take && grant != 0 && (grant >> i & 1U) == 0 && (request >> i & 1U) != 0 ? 1 : 0;
-          REQUIRE(others[i] < n);
+          REQUIRE(others[i] < TestType::N);
         }
         model.clock(request, take);
         if (take) request &= ~grant;

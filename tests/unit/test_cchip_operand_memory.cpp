@@ -46,7 +46,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_operand_memory: what was written at a place is re
       const int place = static_cast<int>(random() % (1U << TestType::PLACE_W));
       stored.erase(place);
       put(p);
-      top.place = static_cast<SData>(place);
+      sim::set_bits(top.place, 0, TestType::PLACE_W, static_cast<std::uint64_t>(place));
       top.s_pair_valid = 1;
       // no room: nothing happens, for as long as it lasts
       for (int wait = chance(random, 30) ? static_cast<int>(random() % 5) : 0; wait > 0; --wait) {
@@ -77,7 +77,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_operand_memory: what was written at a place is re
       // any pair, vertex after vertex
       auto it = stored.begin();
       std::advance(it, static_cast<std::ptrdiff_t>(random() % stored.size()));
-      top.m_place = static_cast<SData>(it->first);
+      sim::set_bits(top.m_place, 0, TestType::PLACE_W, static_cast<std::uint64_t>(it->first));
       const int vertices = it->second.kind < 2 ? 3 : 4;
       for (int i = 0; i <= vertices; ++i) {
         top.m_vertex = static_cast<CData>(i & 3);

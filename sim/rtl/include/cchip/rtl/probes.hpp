@@ -35,17 +35,19 @@ CCHIP_SUBSYSTEM_PROBE(report_valid, u_scheduler__DOT__m_report_valid_q)
 CCHIP_SUBSYSTEM_PROBE(report_data, u_scheduler__DOT__m_report_data_q)
 CCHIP_SUBSYSTEM_PROBE(bitstreams_valid, u_regs__DOT__bitstream_valid_value_q)
 
-// A slot of it: pairs inside, the module that it shows, whether it is decoupled.
-#define CCHIP_SLOT_PROBES(n)                                                                                         \
-  CCHIP_SUBSYSTEM_PROBE(slot##n##_outstanding,                                                                       \
-                        u_dispatcher__DOT__gen_ledgers__BRA__##n##__KET____DOT__u_ledger__DOT__u_inside__DOT__count_q) \
-  CCHIP_SUBSYSTEM_PROBE(slot##n##_module_id,                                                                         \
-                        gen_slots__BRA__##n##__KET____DOT__u_slot__DOT__u_decoupler__DOT__rm_id_q)                   \
-  CCHIP_SUBSYSTEM_PROBE(slot##n##_decoupled,                                                                         \
-                        gen_slots__BRA__##n##__KET____DOT__u_slot__DOT__u_decoupler__DOT__decoupled_q)
+// Pairs inside slot n in bits [16n +: 16].
+CCHIP_SUBSYSTEM_PROBE(outstanding, outstanding)
+
+// A slot of it: the module that it shows, whether it is decoupled.
+#define CCHIP_SLOT_PROBE(n, name, signal) \
+  CCHIP_SUBSYSTEM_PROBE(slot##n##_##name, gen_slots__BRA__##n##__KET____DOT__u_slot__DOT__u_decoupler__DOT__##signal)
+#define CCHIP_SLOT_PROBES(n)               \
+  CCHIP_SLOT_PROBE(n, module_id, rm_id_q)  \
+  CCHIP_SLOT_PROBE(n, decoupled, decoupled_q)
 CCHIP_SLOT_PROBES(0)
 CCHIP_SLOT_PROBES(1)
 #undef CCHIP_SLOT_PROBES
+#undef CCHIP_SLOT_PROBE
 #undef CCHIP_SUBSYSTEM_PROBE
 #undef CCHIP_PROBE
 
