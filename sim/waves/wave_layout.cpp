@@ -19,7 +19,7 @@ constexpr int context_w = 6;
 static_assert(defs::contexts_default(substages) > 1 << (context_w - 1) &&
               defs::contexts_default(substages) <= 1 << context_w);
 constexpr int user_w = context_w + defs::state_w;
-constexpr int queue_count_w = 9;  ///< of QUEUE_DEPTH = 256
+constexpr int queue_count_w = 8;  ///< of QUEUE_DEPTH = 128
 
 /// Flags of a trace in a GTKWave save file (right-justified).
 enum class Radix : unsigned { hexadecimal = 0x22, decimal = 0x24, binary = 0x28, octal = 0x30, signed_decimal = 0x420 };

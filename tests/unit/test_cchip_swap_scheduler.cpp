@@ -129,19 +129,19 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
       bench.valid = static_cast<unsigned>(random() & ((1U << (4 * slots)) - 1));
       for (int& m : bench.modules) m = static_cast<int>(random() % (chance(random, 30) ? 4 : 2));
       bench.reset();
-      std::uint64_t since = 0;
+      std::optional<std::uint64_t> since;  // pairs of an unserved kind wait
       const int largest = *std::max_element(bench.modules.begin(), bench.modules.end());
       for (int kind = 1; kind < 4; ++kind) {
         if (chance(random, 50)) continue;
         bench.waiting[static_cast<std::size_t>(kind)] = 1 + static_cast<int>(random() % 40);
         if (chance(random, 30)) bench.full |= 1U << (kind - 1);
-        if (kind > largest && since == 0) since = bench.simulation.clock();
+        if (kind > largest && !since) since = bench.simulation.clock();
         bench.steps(random() % 150);
       }
       bench.steps(6);  // until it has seen all of this
-      const std::uint64_t its_age = since == 0 ? 0 : bench.simulation.clock() - since;
-      if (bench.age + 6 > its_age && bench.age < its_age + 120) continue;  // it passes the limit meanwhile
-      const bool too_old = since != 0 && its_age >= bench.age;
+      const std::uint64_t its_age = since ? bench.simulation.clock() - *since : 0;
+      if (since && bench.age + 6 > its_age && bench.age < its_age + 120) continue;  // it passes the limit meanwhile
+      const bool too_old = since && its_age >= bench.age;
       // what the rules allow: for each kind that is due, one slot and module
       std::vector<std::pair<int, int>> legal;
       for (int kind = 1; kind < 4; ++kind) {
