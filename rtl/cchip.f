@@ -4,6 +4,8 @@ common/cchip_skid_buffer.v
 common/cchip_fifo.v
 common/cchip_ram.v
 common/cchip_crc32.v
+common/cchip_arbiter.v
+common/cchip_count.v
 arith/cchip_mul18.v
 arith/cchip_mul_wide.v
 arith/cchip_dot3.v
@@ -26,6 +28,7 @@ primtest/cchip_primtest_tri_quad.v
 primtest/cchip_primtest_quad_quad.v
 primtest/cchip_primtest_array.v
 primtest/cchip_primtest_blank.v
+reconfig/cchip_vertex_collector.v
 reconfig/cchip_pr_region.v
 reconfig/cchip_roc_generator.v
 reconfig/cchip_pr_decoupler.v
@@ -37,11 +40,13 @@ reconfig/cchip_swap_counters.v
 reconfig/cchip_swap_sequencer.v
 reconfig/cchip_config_controller.v
 regs/cchip_subsystem_regs.v
-reconfig/cchip_pair_queue.v
-reconfig/cchip_pair_dispatcher.v
 reconfig/cchip_result_merge.v
 reconfig/cchip_swap_retry.v
 reconfig/cchip_swap_scheduler.v
-reconfig/cchip_pair_router.v
 reconfig/cchip_subsystem_status.v
-reconfig/cchip_primtest_subsystem.v
+dispatch/cchip_descriptor_queues.v
+dispatch/cchip_operand_memory.v
+dispatch/cchip_dispatch_sequencer.v
+dispatch/cchip_slot_ledger.v
+dispatch/cchip_dispatcher.v
+dispatch/cchip_primtest_subsystem.v

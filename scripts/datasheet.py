@@ -42,6 +42,10 @@ ARCHITECTURE = ROOT / "docs" / "architecture.md"
 VERIFICATION = ROOT / "docs" / "verification.md"
 BLOCK = r"(<!-- generated: begin{} -->\n).*?(<!-- generated: end -->)"
 
+# A pair of one vertex with a reserved mode, which is answered at once.
+RESERVED_PAIR = ("s_vertex_valid = 1; s_vertex_data[`CCHIP_VERTEX_FIRST] = 1; s_vertex_data[`CCHIP_VERTEX_LAST] = 1; "
+                 "s_vertex_data[`CCHIP_VERTEX_MODE] = 2;")
+
 # How a change of the inputs is made visible: (what is prepared, what changes, the output that answers).
 STIMULI = {
     "cchip_delay": ("", "d = 1;", "q"),
@@ -66,14 +70,20 @@ STIMULI = {
     "cchip_sat_pipeline": ("", "s_beat_valid = 1;", "m_verdict_valid"),
     "cchip_axis_controller": ("", "s_pair_valid = 1;", "m_beat_valid"),
     "cchip_primtest_array": ("m_result_ready = 1; s_pair_mode = 2;", "s_pair_valid = 1;", "m_result_valid"),
-    "cchip_pair_queue": ("", "s_valid = 1;", "m_valid"),
-    "cchip_pair_dispatcher": ("serves = 1; m_pair_ready = 1;", "s_valid = 1;", "m_pair_valid"),
+    "cchip_arbiter": ("", "request = 1;", "grant"),
+    "cchip_count": ("", "up = 1;", "some"),
+    "cchip_vertex_collector": ("", "s_vertex_valid = 1; s_vertex_data[1:0] = 3;", "m_pair_valid"),
+    "cchip_descriptor_queues": ("", "s_valid = 1;", "some"),
+    "cchip_operand_memory": (
+        "room = 1; s_pair_a = 1; s_pair_valid = 1; repeat (3) tick; s_pair_valid = 0; m_place = 1;", "m_place = 0;", "m_a"),
+    "cchip_dispatch_sequencer": ("serves = 1; room = 1;", "some = 1;", "launch"),
+    "cchip_slot_ledger": ("m_ready = 0; grant = 1; tick; grant = 0;", "s_result_valid = 1;", "m_valid"),
+    "cchip_dispatcher": ("slot_module = 1;", "some = 2;", "m_vertex_valid"),
     "cchip_result_merge": ("", "s_valid = 1;", "m_valid"),
-    "cchip_pair_router": ("serves = 1; m_slot_ready = 1; s_pair_kind = 1;", "s_pair_valid = 1;", "m_slot_valid"),
     "cchip_subsystem_status": ("", "answered = 1;", "pairs"),
     "cchip_swap_scheduler": ("", "command_valid = 1;", "m_report_valid"),
     "cchip_primtest_subsystem": ("m_result_ready = 1; s_pair_mode = 2; s_pair_kind = 1;", "s_pair_valid = 1;", "m_result_valid"),
-    "cchip_pr_region": ("", "s_pair_valid = 1; s_pair_data[`CCHIP_REQUEST_MODE(16)] = 2;", "m_result_valid"),
+    "cchip_pr_region": ("", RESERVED_PAIR, "m_result_valid"),
     "cchip_crc32": ("clear = 1; tick; clear = 0;", "valid = 1;", "crc"),
     "cchip_bitstream_fetch": ("words = 4; limit = 100;", "run = 1;", "m_axi_arvalid"),
     "cchip_bitstream_header": ("clear = 1; tick; tick; clear = 0; s_valid = 1; repeat (3) tick; s_valid = 0;", "s_valid = 1;",
@@ -85,12 +95,12 @@ STIMULI = {
     "cchip_config_controller": ("", "s_swap_valid = 1;", "phase"),
     "cchip_subsystem_regs": ("", "s_axil_arvalid = 1;", "s_axil_rvalid"),
     "cchip_roc_generator": ("", "configured = 1;", "roc"),
-    "cchip_pr_decoupler": ("r_rm_id = `CCHIP_RM_TRI_TRI;", "s_pair_valid = 1;", "r_pair_valid"),
+    "cchip_pr_decoupler": ("", "s_vertex_valid = 1;", "r_vertex_valid"),
     "cchip_pr_config_memory": (
         "cfg_valid = 1; cfg_data = 'h66; tick; cfg_data = 'h55; tick; cfg_data = 'h99; tick; cfg_data = 'haa; tick; "
         "cfg_data = 0; repeat (3) tick; cfg_valid = 0;", "cfg_valid = 1;", "garbage"),
-    "cchip_pr_virtual": ("", "s_pair_valid = 1; s_pair_data[`CCHIP_REQUEST_MODE(16)] = 2;", "m_result_valid"),
-    "cchip_pr_slot": ("", "s_pair_valid = 1; s_pair_data[`CCHIP_REQUEST_MODE(16)] = 2;", "m_result_valid"),
+    "cchip_pr_virtual": ("", RESERVED_PAIR, "m_result_valid"),
+    "cchip_pr_slot": ("", RESERVED_PAIR, "m_result_valid"),
 }
 
 # Yosys takes too long for these; docs/fpga.md has their area, placed and routed.

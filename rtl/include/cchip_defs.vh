@@ -39,6 +39,8 @@
 `define CCHIP_KIND_W 2
 // width of a slot's number [bit]
 `define CCHIP_SLOT_ID_W 8
+// width of a pair's number inside a slot: less than CONTEXTS_MAX [bit]
+`define CCHIP_PAIR_ID_W 8
 // width of a slot's counts of pairs inside and of pairs lost [bit]
 `define CCHIP_PAIR_COUNT_W 16
 // width of error_shift, 0..4: the smallest shift with eta <= 2^error_shift [bit]
@@ -326,6 +328,68 @@
 // the word of these fields, also as the target of an assignment or an output
 `define CCHIP_RESULT_OF(tag, hit, grid, definite, axis, beats) \
   {beats, axis, definite, grid, hit, tag}
+
+// ---- what a queue of the dispatcher holds of a pair; its kind and the place of its operands
+// follow from the place of the descriptor: word[`CCHIP_DESCRIPTOR_<field>]
+`define CCHIP_DESCRIPTOR_W 22
+// s_pair_tag
+`define CCHIP_DESCRIPTOR_TAG 0+:16
+// s_pair_err
+`define CCHIP_DESCRIPTOR_ERR 16+:4
+// s_pair_mode
+`define CCHIP_DESCRIPTOR_MODE 20+:2
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_DESCRIPTOR_OF(tag, err, mode) {mode, err, tag}
+
+// ---- beat of s_vertex, the way into a slot: one vertex of A and one of B, coordinates of w bits:
+// word[`CCHIP_VERTEX_<field>]
+`define CCHIP_VERTEX_W(w) (16 + `CCHIP_POINT_W((w)) + `CCHIP_POINT_W((w)))
+// vertex 0: a pair begins, whatever came before
+`define CCHIP_VERTEX_FIRST 0+:1
+// the pair is complete
+`define CCHIP_VERTEX_LAST 1+:1
+// number of the pair inside the slot, with its first vertex
+`define CCHIP_VERTEX_ID 2+:8
+// s_pair_err, with the first vertex
+`define CCHIP_VERTEX_ERR 10+:4
+// s_pair_mode, with the first vertex
+`define CCHIP_VERTEX_MODE 14+:2
+// vertex of A
+`define CCHIP_VERTEX_A(w) 16+:`CCHIP_POINT_W((w))
+// vertex of B
+`define CCHIP_VERTEX_B(w) 16 + `CCHIP_POINT_W((w))+:`CCHIP_POINT_W((w))
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_VERTEX_OF(first, last, id, err, mode, a, b) {b, a, mode, err, id, last, first}
+
+// ---- beat of a slot's m_result: a result with the pair's number inside the slot:
+// word[`CCHIP_SLOT_RESULT_<field>]
+`define CCHIP_SLOT_RESULT_W 26
+// number of the pair inside the slot
+`define CCHIP_SLOT_RESULT_ID 0+:8
+// m_result_hit
+`define CCHIP_SLOT_RESULT_HIT 8+:1
+// m_result_grid
+`define CCHIP_SLOT_RESULT_GRID 9+:1
+// m_result_definite
+`define CCHIP_SLOT_RESULT_DEFINITE 10+:1
+// m_result_axis
+`define CCHIP_SLOT_RESULT_AXIS 11+:9
+// m_result_beats
+`define CCHIP_SLOT_RESULT_BEATS 20+:6
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_SLOT_RESULT_OF(id, hit, grid, definite, axis, beats) \
+  {beats, axis, definite, grid, hit, id}
+
+// ---- an answer on its way out of the dispatcher: word[`CCHIP_ANSWER_<field>]
+`define CCHIP_ANSWER_W 38
+// record RESULT
+`define CCHIP_ANSWER_RESULT 0+:34
+// kind of the pair
+`define CCHIP_ANSWER_KIND 34+:2
+// module that gave it, 0: nobody, the pair is left open
+`define CCHIP_ANSWER_MODULE 36+:2
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_ANSWER_OF(result, kind, module) {module, kind, result}
 
 // ---- beat of s_swap and m_swap: put this module into this slot: word[`CCHIP_SWAP_REQUEST_<field>]
 `define CCHIP_SWAP_REQUEST_W 81

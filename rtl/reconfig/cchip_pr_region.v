@@ -2,12 +2,15 @@
 `default_nettype none
 `include "cchip_defs.vh"
 // cchip_pr_region: the reconfigurable partition: one cell, one module name, the same ports whatever
-// is in it. RM_ID chooses the persona: blank, triangle-triangle, triangle-quad or quad-quad. Vendor
-// flows synthesise this module out of context once per RM_ID and exchange the results in the static
-// design. The streams are records REQUEST and RESULT.
-//   latency, throughput, in flight, reset   those of the persona: nothing is added
-//   cuts         what the persona cuts: each output is a flip-flop of it, or a constant of the
-//                blank one
+// is in it. RM_ID chooses the persona: blank, which never answers, or the test of two triangles, of a
+// triangle and a quad, or of two quads behind a cchip_vertex_collector. Vendor flows synthesise this
+// module out of context once per RM_ID and exchange the results in the static design. The streams
+// are records VERTEX and SLOT_RESULT.
+//   latency      from the last vertex: that of the test + 1 clock
+//   throughput   that of the test, a pair per 3 or 4 clocks at most
+//   credit       no ready: at most CONTEXTS pairs may lie between their first vertex and their result
+//   cuts         every path: each output is a flip-flop, or a constant of the blank persona
+//   reset        no pair inside; pairs are taken from the third clock after rst on
 // With the macro CCHIP_PR_BLACK_BOX the module has its ports and nothing else: the empty cell of
 // the static design.
 `ifdef CCHIP_PR_BLACK_BOX
@@ -27,45 +30,42 @@ module cchip_pr_region #(
     // 1: warped quads are decided exactly; 0: they are left open (see cchip_axis_controller)
     parameter integer WARPED_EXACT = 1
 ) (
-    input  wire                                   clk,
-    input  wire                                   rst,
-    input  wire                                   s_pair_valid,
-    output wire                                   s_pair_ready,
-    input  wire [  `CCHIP_REQUEST_W(COORD_W)-1:0] s_pair_data,
-    output wire                                   m_result_valid,
-    input  wire                                   m_result_ready,
-    output wire [            `CCHIP_RESULT_W-1:0] m_result_data,
-    output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
-    output wire                                   idle
+    input  wire                                clk,
+    input  wire                                rst,
+    input  wire                                s_vertex_valid,
+    input  wire [`CCHIP_VERTEX_W(COORD_W)-1:0] s_vertex_data,
+    output wire                                m_result_valid,
+    output wire [    `CCHIP_SLOT_RESULT_W-1:0] m_result_data,
+    output wire [          `CCHIP_RM_ID_W-1:0] rm_id,
+    output wire                                idle
 );
 
 `ifndef CCHIP_PR_BLACK_BOX
   generate
     if (RM_ID == 0) begin : gen_blank
-      cchip_primtest_blank #(
-          .COORD_W(COORD_W)
-      ) u_persona (
-          .clk              (clk),
-          .rst              (rst),
-          .s_pair_valid     (s_pair_valid),
-          .s_pair_ready     (s_pair_ready),
-          .s_pair_tag       (s_pair_data[`CCHIP_REQUEST_TAG]),
-          .s_pair_mode      (s_pair_data[`CCHIP_REQUEST_MODE(COORD_W)]),
-          .s_pair_a         (s_pair_data[`CCHIP_REQUEST_A(COORD_W)]),
-          .s_pair_b         (s_pair_data[`CCHIP_REQUEST_B(COORD_W)]),
-          .s_pair_err       (s_pair_data[`CCHIP_REQUEST_ERR(COORD_W)]),
-          .m_result_valid   (m_result_valid),
-          .m_result_ready   (m_result_ready),
-          .m_result_tag     (m_result_data[`CCHIP_RESULT_TAG]),
-          .m_result_hit     (m_result_data[`CCHIP_RESULT_HIT]),
-          .m_result_grid    (m_result_data[`CCHIP_RESULT_GRID]),
-          .m_result_definite(m_result_data[`CCHIP_RESULT_DEFINITE]),
-          .m_result_axis    (m_result_data[`CCHIP_RESULT_AXIS]),
-          .m_result_beats   (m_result_data[`CCHIP_RESULT_BEATS]),
-          .rm_id            (rm_id),
-          .idle             (idle)
-      );
+      assign m_result_valid = 1'b0;
+      assign m_result_data  = {`CCHIP_SLOT_RESULT_W{1'b0}};
+      assign rm_id          = `CCHIP_RM_BLANK;
+      assign idle           = 1'b1;
+      wire unused = &{1'b0, clk, rst, s_vertex_valid, s_vertex_data};
     end else if (RM_ID >= 1 && RM_ID <= 3) begin : gen_test
+      wire pair_valid, pair_ready, busy, test_idle;
+      wire [`CCHIP_REQUEST_W(COORD_W)-1:0] pair;
+      wire [`CCHIP_RESULT_W-1:0] result;
+      reg idle_q;
+
+      cchip_vertex_collector #(
+          .COORD_W(COORD_W)
+      ) u_collector (
+          .clk           (clk),
+          .rst           (rst),
+          .s_vertex_valid(s_vertex_valid),
+          .s_vertex_data (s_vertex_data),
+          .m_pair_valid  (pair_valid),
+          .m_pair_data   (pair),
+          .busy          (busy)
+      );
+
       cchip_primtest #(
           .COORD_W            (COORD_W),
           .SUBSTAGES          (SUBSTAGES),
@@ -74,18 +74,23 @@ module cchip_pr_region #(
           .WARPED_EXACT       (WARPED_EXACT),
           .VERTS_A            (`CCHIP_RM_VERTS_A(RM_ID)),
           .VERTS_B            (`CCHIP_RM_VERTS_B(RM_ID))
-      ) u_persona (
+      ) u_test (
           .clk           (clk),
           .rst           (rst),
-          .s_pair_valid  (s_pair_valid),
-          .s_pair_ready  (s_pair_ready),
-          .s_pair_data   (s_pair_data),
+          .s_pair_valid  (pair_valid),
+          .s_pair_ready  (pair_ready),
+          .s_pair_data   (pair),
           .m_result_valid(m_result_valid),
-          .m_result_ready(m_result_ready),
-          .m_result_data (m_result_data),
+          .m_result_ready(1'b1),
+          .m_result_data (result),
           .rm_id         (rm_id),
-          .idle          (idle)
+          .idle          (test_idle)
       );
+      assign m_result_data = {result[`CCHIP_RESULT_W-1:`CCHIP_TAG_W], result[`CCHIP_PAIR_ID_W-1:0]};
+      always @(posedge clk) idle_q <= rst | (test_idle & ~busy & ~s_vertex_valid);
+      assign idle = idle_q;
+
+      wire unused = &{1'b0, pair_ready, result[`CCHIP_TAG_W-1:`CCHIP_PAIR_ID_W]};
     end else begin : gen_error
       cchip_error_RM_ID_must_be_0_to_3 u_error ();
     end

@@ -2,14 +2,12 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// cchip_pr_slot: one reconfigurable module behind its decoupler and reset generator, with what a
-// controller needs to exchange it: stop, quiet, decouple, reset, the module's number.
+// cchip_pr_slot: one reconfigurable module behind its decoupler and reset generator. The streams are
+// records VERTEX and SLOT_RESULT; what is inside, the dispatcher knows (cchip_slot_ledger).
 //   latency      that of the module + 2 clocks
 //   throughput   that of the module
 //   cuts         every path: every output is a flip-flop
-//   stop         s_pair_ready is 0 from the next clock on; quiet rises when every accepted pair has
-//                been answered
-//   decouple     see cchip_pr_decoupler; pairs inside are counted in lost as decoupled rises
+//   decouple     see cchip_pr_decoupler
 //   hold_reset   level, reset of the module one clock later; roc_start: pulse, a reset of
 //                ROC_CYCLES clocks; roc_busy is 1 from the next clock to the last clock of that
 //                reset. Only a decoupled module may be reset
@@ -37,31 +35,25 @@ module cchip_pr_slot #(
     // start of the random numbers of a simulated reconfiguration, any
     parameter integer SEED = 1
 ) (
-    input  wire                                   clk,
-    input  wire                                   rst,
+    input  wire                                clk,
+    input  wire                                rst,
     // control
-    input  wire                                   stop,
-    output wire                                   quiet,
-    output wire [        `CCHIP_PAIR_COUNT_W-1:0] outstanding,
-    input  wire                                   decouple,
-    output wire                                   decoupled,
-    output wire [        `CCHIP_PAIR_COUNT_W-1:0] lost,
-    input  wire                                   hold_reset,
-    input  wire                                   roc_start,
-    output wire                                   roc_busy,
-    output wire [             `CCHIP_RM_ID_W-1:0] region_rm_id,
+    input  wire                                decouple,
+    output wire                                decoupled,
+    input  wire                                hold_reset,
+    input  wire                                roc_start,
+    output wire                                roc_busy,
+    output wire [          `CCHIP_RM_ID_W-1:0] region_rm_id,
     // configuration port of the device
-    input  wire                                   cfg_valid,
-    input  wire [                      CFG_W-1:0] cfg_data,
-    // records REQUEST and RESULT
-    input  wire                                   s_pair_valid,
-    output wire                                   s_pair_ready,
-    input  wire [  `CCHIP_REQUEST_W(COORD_W)-1:0] s_pair_data,
-    output wire                                   m_result_valid,
-    input  wire                                   m_result_ready,
-    output wire [            `CCHIP_RESULT_W-1:0] m_result_data,
-    output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
-    output wire                                   idle
+    input  wire                                cfg_valid,
+    input  wire [                   CFG_W-1:0] cfg_data,
+    // records VERTEX and SLOT_RESULT
+    input  wire                                s_vertex_valid,
+    input  wire [`CCHIP_VERTEX_W(COORD_W)-1:0] s_vertex_data,
+    output wire                                m_result_valid,
+    output wire [    `CCHIP_SLOT_RESULT_W-1:0] m_result_data,
+    output wire [          `CCHIP_RM_ID_W-1:0] rm_id,
+    output wire                                idle
 );
 
   // ---- reset of the module
@@ -89,44 +81,10 @@ module cchip_pr_slot #(
   assign roc_busy     = roc_busy_q;
   assign region_rm_id = region_rm_id_q;
 
-  // ---- pairs inside, counted at the static side's handshakes: while the region is rewritten, its
-  // own signals mean nothing
-  reg [`CCHIP_PAIR_COUNT_W-1:0] outstanding_q;
-  reg [`CCHIP_PAIR_COUNT_W-1:0] lost_q;
-  reg stopped_q;
-  reg quiet_q;
-
-  wire accept = s_pair_valid & s_pair_ready;
-  wire answer = m_result_valid & m_result_ready;
-  // Both possible counts are computed from registers; the handshakes, which come late, select one.
-  // n - 1 is written ~(~n + 1): otherwise Yosys merges the sum and the difference into one adder
-  // behind the selection.
-  wire [`CCHIP_PAIR_COUNT_W-1:0] one_less = outstanding_q == 16'd0 ? 16'd0
-      : ~(~outstanding_q + 16'd1);
-  wire [`CCHIP_PAIR_COUNT_W-1:0] outstanding_d = accept && !answer ? outstanding_q + 16'd1
-      : answer && !accept ? one_less : outstanding_q;
-
-  always @(posedge clk) begin
-    if (rst) begin
-      outstanding_q <= 16'd0;
-      lost_q        <= 16'd0;
-      stopped_q     <= 1'b0;
-      quiet_q       <= 1'b0;
-    end else begin
-      outstanding_q <= decouple ? 16'd0 : outstanding_d;
-      if (decouple && !decoupled) lost_q <= outstanding_d;
-      stopped_q <= stop;
-      quiet_q   <= stop && stopped_q && (outstanding_q == 16'd0);
-    end
-  end
-  assign outstanding = outstanding_q;
-  assign lost        = lost_q;
-  assign quiet       = quiet_q;
-
   // ---- boundary
-  wire r_pair_valid, r_pair_ready, r_result_valid, r_result_ready;
-  wire [`CCHIP_REQUEST_W(COORD_W)-1:0] r_pair_data;
-  wire [`CCHIP_RESULT_W-1:0] r_result_data;
+  wire r_vertex_valid, r_result_valid;
+  wire [`CCHIP_VERTEX_W(COORD_W)-1:0] r_vertex_data;
+  wire [`CCHIP_SLOT_RESULT_W-1:0] r_result_data;
   wire r_idle;
 
   cchip_pr_decoupler #(
@@ -134,22 +92,17 @@ module cchip_pr_slot #(
   ) u_decoupler (
       .clk           (clk),
       .rst           (rst),
-      .stop          (stop),
       .decouple      (decouple),
       .decoupled     (decoupled),
-      .s_pair_valid  (s_pair_valid),
-      .s_pair_ready  (s_pair_ready),
-      .s_pair_data   (s_pair_data),
+      .s_vertex_valid(s_vertex_valid),
+      .s_vertex_data (s_vertex_data),
       .m_result_valid(m_result_valid),
-      .m_result_ready(m_result_ready),
       .m_result_data (m_result_data),
       .rm_id         (rm_id),
       .idle          (idle),
-      .r_pair_valid  (r_pair_valid),
-      .r_pair_ready  (r_pair_ready),
-      .r_pair_data   (r_pair_data),
+      .r_vertex_valid(r_vertex_valid),
+      .r_vertex_data (r_vertex_data),
       .r_result_valid(r_result_valid),
-      .r_result_ready(r_result_ready),
       .r_result_data (r_result_data),
       .r_rm_id       (r_rm_id),
       .r_idle        (r_idle)
@@ -168,11 +121,9 @@ module cchip_pr_slot #(
       ) u_region (
           .clk           (clk),
           .rst           (region_rst_q),
-          .s_pair_valid  (r_pair_valid),
-          .s_pair_ready  (r_pair_ready),
-          .s_pair_data   (r_pair_data),
+          .s_vertex_valid(r_vertex_valid),
+          .s_vertex_data (r_vertex_data),
           .m_result_valid(r_result_valid),
-          .m_result_ready(r_result_ready),
           .m_result_data (r_result_data),
           .rm_id         (r_rm_id),
           .idle          (r_idle)
@@ -194,11 +145,9 @@ module cchip_pr_slot #(
           .rst           (region_rst_q),
           .cfg_valid     (cfg_valid),
           .cfg_data      (cfg_data),
-          .s_pair_valid  (r_pair_valid),
-          .s_pair_ready  (r_pair_ready),
-          .s_pair_data   (r_pair_data),
+          .s_vertex_valid(r_vertex_valid),
+          .s_vertex_data (r_vertex_data),
           .m_result_valid(r_result_valid),
-          .m_result_ready(r_result_ready),
           .m_result_data (r_result_data),
           .rm_id         (r_rm_id),
           .idle          (r_idle)
@@ -213,11 +162,6 @@ module cchip_pr_slot #(
       cchip_error_SLOT_ID_must_be_0_to_255 u_error ();
     end
   endgenerate
-
-  always @(posedge clk)
-    if (!rst) begin
-      `CCHIP_ASSERT(a_quiet, !quiet_q || (outstanding_q == 16'd0 && !s_pair_ready))
-    end
 
 endmodule
 `default_nettype wire

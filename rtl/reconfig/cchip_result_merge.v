@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-`include "cchip_assert.vh"
 // cchip_result_merge: several streams into one, in turn.
 //   latency      1 clock
 //   throughput   one beat per clock
@@ -31,24 +30,17 @@ module cchip_result_merge #(
     end
   endgenerate
 
-  // Round robin: the search begins behind the source that was served last. A token moves from
-  // source to source and is removed by the first one that offers a beat.
-  reg [SOURCES-1:0] last_q;  // one-hot
-  function [SOURCES-1:0] first_behind(input [SOURCES-1:0] last, input [SOURCES-1:0] offers);
-    reg [SOURCES-1:0] token;
-    integer i;
-    begin
-      token = last;
-      first_behind = {SOURCES{1'b0}};
-      for (i = 0; i < SOURCES; i = i + 1) begin
-        token = (token << 1) | (token >> (SOURCES - 1));
-        first_behind = first_behind | (token & offers);
-        token = token & ~offers;
-      end
-    end
-  endfunction
-  wire [SOURCES-1:0] next = first_behind(last_q, s_valid);
-  wire               ready;
+  wire [SOURCES-1:0] next;
+  wire ready;
+  cchip_arbiter #(
+      .N(SOURCES)
+  ) u_arbiter (
+      .clk    (clk),
+      .rst    (rst),
+      .request(s_valid),
+      .grant  (next),
+      .take   (ready)
+  );
 
   assign s_ready = next & {SOURCES{ready}};
 
@@ -60,10 +52,6 @@ module cchip_result_merge #(
           | (from[WIDTH*i+:WIDTH] & {WIDTH{source[i]}});
     end
   endfunction
-
-  always @(posedge clk)
-    if (rst) last_q <= {1'b1, {SOURCES - 1{1'b0}}};
-    else if (|s_valid && ready) last_q <= next;
 
   cchip_skid_buffer #(
       .WIDTH(WIDTH)
@@ -78,12 +66,6 @@ module cchip_result_merge #(
       .m_ready(m_ready),
       .m_data (m_data)
   );
-
-  always @(posedge clk)
-    if (!rst) begin
-      `CCHIP_ASSERT(a_one, (next & (next - {{SOURCES - 1{1'b0}}, 1'b1})) == {SOURCES{1'b0}})
-      `CCHIP_ASSERT(a_some, (next == {SOURCES{1'b0}}) == (s_valid == {SOURCES{1'b0}}))
-    end
 
 endmodule
 `default_nettype wire

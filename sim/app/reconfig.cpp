@@ -130,7 +130,7 @@ int run_reconfig_job(const ReconfigJobOptions& options, std::ostream& out) {
   const std::uint64_t equation_4 =
       transfer_clocks(reconfig.payload_bytes, SimulatedSubsystem::port_w, SimulatedSubsystem::clocks_per_word);
   reconfig.seed = static_cast<std::uint32_t>(options.seed);
-  reconfig.maximum_age = static_cast<std::uint32_t>(equation_4 / 2);
+  reconfig.batch = static_cast<std::size_t>(std::max<std::uint64_t>(options.pairs / 5, 1));
   reconfig.patience = 20 * (equation_4 + 20000);
   SimulatedSubsystemOptions machine_options;
   machine_options.seed = options.seed;
@@ -138,8 +138,8 @@ int run_reconfig_job(const ReconfigJobOptions& options, std::ostream& out) {
   const std::vector<PairRequest> pairs = mixed(mesh_pairs(options.pairs, options.mode), options.seed);
   fmt::print(
       out,
-      "Pairs of triangles and quads through two slots; three kinds of test take turns in them. Every swap passes\n"
-      "its bitstream of {} bits through the 8-bit configuration port, two clocks per byte (100 MHz and 50 MHz).\n\n",
+      "Pairs of triangles and quads, sorted by kind into batches, through two slots: one tests a batch while the\n"
+      "other is given the module of the next. Every swap passes its bitstream of {} bits through the 8-bit configuration port, two clocks per byte (100 MHz and 50 MHz).\n\n",
       8 * reconfig.payload_bytes);
   out.flush();
   const auto start = std::chrono::steady_clock::now();

@@ -70,8 +70,8 @@ class Observer : public sim::Agent {
     }
     if (phase != SwapPhase::transfer) return;
     ++seen.transfer_clocks;
-    const bool in_slot_0 = probes::swap_slot(model_) == 0;
-    seen.hidden_clocks += (in_slot_0 ? probes::slot1_outstanding(model_) : probes::slot0_outstanding(model_)) != 0;
+    const int other = probes::swap_slot(model_) == 0 ? 1 : 0;
+    seen.hidden_clocks += (probes::outstanding(model_) >> (defs::pair_count_w * other) & 0xFFFFU) != 0 ? 1 : 0;
   }
 
   SubsystemObservations seen;

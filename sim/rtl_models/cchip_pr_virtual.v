@@ -6,7 +6,7 @@
 // and the configuration port.
 //   garbage      from the word of a payload that names the slot to its last one, and for ever after
 //                a bad payload, every output of the region is random on every clock, and all
-//                modules are fed random pairs without reset. A controller that does not decouple
+//                modules are fed random vertices without reset. A controller that does not decouple
 //                sees garbage; one that does not reset afterwards sees answers to pairs that were
 //                never sent
 //   fresh        after the last word of a payload until rst rises: the selected module is in, but
@@ -29,24 +29,22 @@ module cchip_pr_virtual #(
     parameter integer ABSOLUTE_PROJECTION = 0,
     parameter integer WARPED_EXACT = 1
 ) (
-    input  wire                                   clk,
-    input  wire                                   rst,
-    input  wire                                   cfg_valid,
-    input  wire [                      CFG_W-1:0] cfg_data,
-    input  wire                                   s_pair_valid,
-    output wire                                   s_pair_ready,
-    input  wire [  `CCHIP_REQUEST_W(COORD_W)-1:0] s_pair_data,
-    output wire                                   m_result_valid,
-    input  wire                                   m_result_ready,
-    output wire [            `CCHIP_RESULT_W-1:0] m_result_data,
-    output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
-    output wire                                   idle
+    input  wire                                clk,
+    input  wire                                rst,
+    input  wire                                cfg_valid,
+    input  wire [                   CFG_W-1:0] cfg_data,
+    input  wire                                s_vertex_valid,
+    input  wire [`CCHIP_VERTEX_W(COORD_W)-1:0] s_vertex_data,
+    output wire                                m_result_valid,
+    output wire [    `CCHIP_SLOT_RESULT_W-1:0] m_result_data,
+    output wire [          `CCHIP_RM_ID_W-1:0] rm_id,
+    output wire                                idle
 );
 
-  localparam integer PAIR_W = `CCHIP_REQUEST_W(COORD_W);
-  localparam integer RESULT_W = `CCHIP_RESULT_W;
-  // {ready; valid; result; rm_id; idle}
-  localparam integer OUT_W = 1 + 1 + RESULT_W + `CCHIP_RM_ID_W + 1;
+  localparam integer VERTEX_W = `CCHIP_VERTEX_W(COORD_W);
+  localparam integer RESULT_W = `CCHIP_SLOT_RESULT_W;
+  // {valid; result; rm_id; idle}
+  localparam integer OUT_W = 1 + RESULT_W + `CCHIP_RM_ID_W + 1;
   localparam [31:0] STEP = OUT_W;
   localparam [31:0] SLOT = SLOT_ID;
   localparam [31:0] START = SEED;
@@ -75,11 +73,11 @@ module cchip_pr_virtual #(
     low_q   <= ~garbage & (low_q | ~rst);
   end
 
-  // ---- random numbers: xorshift of 64 bits; the pair is the last of them
+  // ---- random numbers: xorshift of 64 bits; the vertices are the last of them
   reg [63:0] random_q;
-  reg [PAIR_W+63:0] pair_q;
+  reg [VERTEX_W+63:0] vertex_q;
   initial random_q = {START, SLOT ^ 32'h9E3779B9};
-  initial pair_q = {PAIR_W + 64{1'b0}};
+  initial vertex_q = {VERTEX_W + 64{1'b0}};
 
   function [63:0] xorshift(input [63:0] from);
     begin
@@ -92,18 +90,18 @@ module cchip_pr_virtual #(
   always @(posedge clk)
     if (dirty) begin
       random_q <= xorshift(random_q);
-      pair_q   <= {pair_q[PAIR_W-1:0], random_q};
+      vertex_q <= {vertex_q[VERTEX_W-1:0], random_q};
     end
 
   // ---- the modules
-  wire [PAIR_W-1:0] pair = dirty ? pair_q[PAIR_W-1:0]  : s_pair_data;
+  wire [VERTEX_W-1:0] vertex = dirty ? vertex_q[VERTEX_W-1:0] : s_vertex_data;
   wire [4*OUT_W-1:0] outs;
   genvar i;
   generate
     for (i = 0; i < 4; i = i + 1) begin : gen_module
       localparam [7:0] ID = i;
       wire here = select == ID;
-      wire ready, valid, quiet;
+      wire valid, quiet;
       wire [RESULT_W-1:0] result;
       wire [`CCHIP_RM_ID_W-1:0] module_id;
       cchip_pr_region #(
@@ -116,23 +114,21 @@ module cchip_pr_virtual #(
       ) u_region (
           .clk           (clk),
           .rst           (rst & ~dirty),
-          .s_pair_valid  (dirty | (here & s_pair_valid)),
-          .s_pair_ready  (ready),
-          .s_pair_data   (pair),
+          .s_vertex_valid(dirty | (here & s_vertex_valid)),
+          .s_vertex_data (vertex),
           .m_result_valid(valid),
-          .m_result_ready(dirty ? random_q[63] : here & m_result_ready),
           .m_result_data (result),
           .rm_id         (module_id),
           .idle          (quiet)
       );
-      assign outs[OUT_W*i+:OUT_W] = {ready, valid, result, module_id, quiet};
+      assign outs[OUT_W*i+:OUT_W] = {valid, result, module_id, quiet};
     end
   endgenerate
 
-  assign {s_pair_ready, m_result_valid, m_result_data, rm_id, idle} =
+  assign {m_result_valid, m_result_data, rm_id, idle} =
       garbage ? random_q[OUT_W-1:0] : outs[STEP*{30'd0, select[1:0]}+:OUT_W];
 
-  wire unused = &{1'b0, select[7:2], pair_q[PAIR_W+63:PAIR_W]};
+  wire unused = &{1'b0, select[7:2], vertex_q[VERTEX_W+63:VERTEX_W]};
 
 endmodule
 `default_nettype wire

@@ -19,7 +19,7 @@ constexpr int context_w = 6;
 static_assert(defs::contexts_default(substages) > 1 << (context_w - 1) &&
               defs::contexts_default(substages) <= 1 << context_w);
 constexpr int user_w = context_w + defs::state_w;
-constexpr int queue_count_w = 9;  ///< of QUEUE_DEPTH = 256
+constexpr int queue_count_w = 8;  ///< of QUEUE_DEPTH = 128
 
 /// Flags of a trace in a GTKWave save file (right-justified).
 enum class Radix : unsigned { hexadecimal = 0x22, decimal = 0x24, binary = 0x28, octal = 0x30, signed_decimal = 0x420 };
@@ -169,25 +169,28 @@ Rows primtest_layout(ModuleId id) {
 }
 
 Rows slot_layout(int number) {
-  const std::string scope = "gen_slots[" + std::to_string(number) + "].u_slot.";
+  const std::string slot = std::to_string(number);
+  const std::string scope = "gen_slots[" + slot + "].u_slot.";
+  const std::string ledger = "u_dispatcher.gen_ledgers[" + slot + "].u_ledger.";
   Rows rows = {vector("module", scope + "rm_id", defs::rm_id_w, Radix::decimal),
-               vector("pairs inside", scope + "outstanding", 16, Radix::decimal)};
-  for (const char* name : {"stop", "quiet", "decouple", "decoupled", "hold_reset", "roc_start", "roc_busy"}) {
+               vector("pairs inside", ledger + "outstanding", 16, Radix::decimal), bit("room", ledger + "room"),
+               bit("stop", ledger + "stop"), bit("quiet", ledger + "quiet")};
+  for (const char* name : {"decouple", "decoupled", "hold_reset", "roc_start", "roc_busy"}) {
     rows.push_back(bit(name, scope + name));
   }
-  return group(
-      "slot " + std::to_string(number),
-      rows + Rows{vector("region: module", scope + "r_rm_id", defs::rm_id_w, Radix::hexadecimal),
-                  bit("region: ready", scope + "r_pair_ready"), bit("region: answer", scope + "r_result_valid"),
-                  bit("pair accepted", scope + "accept"), bit("answer given", scope + "answer")});
+  return group("slot " + slot,
+               rows + Rows{bit("pairs answered", ledger + "decoupled"),
+                           vector("region: module", scope + "r_rm_id", defs::rm_id_w, Radix::hexadecimal),
+                           bit("region: vertex", scope + "r_vertex_valid"), bit("region: result", scope + "r_result_valid"),
+                           bit("answer", ledger + "m_valid")});
 }
 
 /// The reconfigurable subsystem with two slots.
 Rows subsystem_layout() {
   Rows waiting;
   for (int kind = 1; kind < 4; ++kind) {
-    waiting.push_back(field("waiting, kind " + std::to_string(kind), "waiting", 3 * queue_count_w,
-                            queue_count_w * (kind - 1), queue_count_w, Radix::decimal));
+    waiting.push_back(field("waiting, kind " + std::to_string(kind), "waiting", 4 * queue_count_w, queue_count_w * kind,
+                            queue_count_w, Radix::decimal));
   }
   return group("pairs and answers",
                Rows{bit("pair valid", "s_pair_valid"), bit("pair ready", "s_pair_ready"),

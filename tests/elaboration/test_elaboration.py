@@ -47,7 +47,14 @@ CFG_W = "cchip_error_CFG_W_must_be_8_or_32"
 SLOT_ID = "cchip_error_SLOT_ID_must_be_0_to_255"
 SIMULATION = "cchip_error_SIMULATION_must_be_0_or_1"
 RM_ID = "cchip_error_RM_ID_must_be_0_to_3"
-QUEUE = "cchip_error_pair_queue_WIDTH_below_1_or_DEPTH_not_16_to_1024"
+QUEUE = "cchip_error_QUEUE_DEPTH_must_be_a_power_of_two_16_to_1024"
+DESCRIPTOR = "cchip_error_descriptor_WIDTH_must_be_1_to_80"
+KINDS = "cchip_error_KINDS_must_be_1_to_3"
+PLACE = "cchip_error_PLACE_W_must_be_3_to_12"
+TAKERS = "cchip_error_TAKERS_must_be_2_to_5"
+CREDIT = "cchip_error_CREDIT_must_be_1_to_256"
+ARBITER = "cchip_error_arbiter_N_must_be_1_to_16"
+COUNT = "cchip_error_count_LIMIT_must_be_1_to_65535"
 MERGE = "cchip_error_result_merge_SOURCES_not_2_to_8_or_WIDTH_below_1"
 CRC = "cchip_error_crc32_DATA_W_must_be_a_multiple_of_8"
 FETCH = "cchip_error_bitstream_fetch_FIFO_DEPTH_below_32"
@@ -55,6 +62,7 @@ SLOT_LIMIT = "cchip_error_SLOT_LIMIT_below_16"
 COUNT_W = "cchip_error_COUNT_W_must_be_1_to_16"
 PORT = "cchip_error_config_port_CFG_W_must_be_8_or_32_and_CFG_DIVIDER_above_0"
 SLOTS = "cchip_error_SLOTS_must_be_1_or_2"
+SLOTS_4 = "cchip_error_SLOTS_must_be_1_to_4"
 SIGN = "cchip_error_SIGN_must_be_below_POINTS"
 COMPARE = "cchip_error_compare_POINTS_must_be_3_to_5_and_OWN_1_or_2"
 RAM = "cchip_error_ram_WIDTH_or_DEPTH_below_1_or_ADDR_W_too_small"
@@ -113,7 +121,19 @@ ILLEGAL = [
     ("cchip_pr_slot", {"SLOT_ID": 256}, SLOT_ID),
     ("cchip_pr_slot", {"SIMULATION": 2}, SIMULATION),
     ("cchip_pr_slot", {"ROC_CYCLES": 0}, ROC),
-    *(("cchip_pair_queue", {"DEPTH": n}, QUEUE) for n in (15, 1025)),
+    *(("cchip_arbiter", {"N": n}, ARBITER) for n in (0, 17)),
+    *(("cchip_count", {"LIMIT": n}, COUNT) for n in (0, 65536)),
+    *(("cchip_vertex_collector", {"COORD_W": n}, COORD_W) for n in (3, 21)),
+    *(("cchip_descriptor_queues", {"DEPTH": n}, QUEUE) for n in (8, 24, 2048)),
+    *(("cchip_descriptor_queues", {"WIDTH": n}, DESCRIPTOR) for n in (0, 81)),
+    *(("cchip_descriptor_queues", {"KINDS": n}, KINDS) for n in (0, 4)),
+    ("cchip_operand_memory", {"COORD_W": 3}, COORD_W),
+    *(("cchip_operand_memory", {"PLACE_W": n}, PLACE) for n in (2, 13)),
+    *(("cchip_dispatch_sequencer", {"TAKERS": n}, TAKERS) for n in (1, 6)),
+    *(("cchip_dispatch_sequencer", {"KINDS": n}, KINDS) for n in (0, 4)),
+    *(("cchip_slot_ledger", {"CREDIT": n}, CREDIT) for n in (0, 257)),
+    *((module, {"SLOTS": n}, SLOTS_4) for module in ("cchip_dispatcher", "cchip_swap_scheduler") for n in (0, 5)),
+    ("cchip_primtest_subsystem", {"SLOTS": 3}, SLOTS),
     *(("cchip_result_merge", {"SOURCES": n}, MERGE) for n in (1, 9)),
     ("cchip_crc32", {"DATA_W": 12}, CRC),
     ("cchip_bitstream_fetch", {"FIFO_DEPTH": 31}, FETCH),
@@ -146,7 +166,15 @@ LEGAL = [
     ("cchip_delay", {"DEPTH": 0, "RESET": 1}),
     *(("cchip_delay", {"DEPTH": n, "MEMORY": 1}) for n in (3, 4, 20)),
     ("cchip_fifo", {"DEPTH": 1}),
-    *(("cchip_pair_queue", {"DEPTH": n}) for n in (16, 1024)),
+    *(("cchip_arbiter", {"N": n}) for n in (1, 16)),
+    *(("cchip_count", {"LIMIT": n}) for n in (1, 65535)),
+    *(("cchip_vertex_collector", {"COORD_W": n}) for n in (4, 20)),
+    *(("cchip_descriptor_queues", {"DEPTH": d, "KINDS": k, "WIDTH": w}) for d, k, w in ((16, 1, 1), (1024, 3, 80))),
+    *(("cchip_operand_memory", {"COORD_W": w, "PLACE_W": p}) for w, p in ((4, 3), (20, 12))),
+    *(("cchip_dispatch_sequencer", {"TAKERS": t, "KINDS": k}) for t, k in ((2, 1), (5, 3))),
+    *(("cchip_slot_ledger", {"CREDIT": n}) for n in (1, 256)),
+    *(("cchip_dispatcher", {"SLOTS": s, "KINDS": k, "CREDIT": c}) for s, k, c in ((1, 1, 1), (4, 3, 256))),
+    *(("cchip_swap_scheduler", {"SLOTS": n}) for n in (1, 4)),
     *(("cchip_result_merge", {"SOURCES": n}) for n in (2, 8)),
     ("cchip_fifo", {"WIDTH": 1, "DEPTH": 5}),
     ("cchip_ram", {"WIDTH": 1, "DEPTH": 1, "ADDR_W": 1}),

@@ -36,7 +36,9 @@ module bench_subsystem (
     if (rst) pairs_q <= 16'd0;
     else if (accept != answer) pairs_q <= accept ? pairs_q + 16'd1 : pairs_q - 16'd1;
 
-  cchip_primtest_subsystem dut (
+  cchip_primtest_subsystem #(
+      .SLOTS(1)
+  ) dut (
       .clk              (clk),
       .rst              (rst),
       .s_pair_valid     (s_pair_valid),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Campaign: swaps under random traffic with random back-pressure and faults: in bitstreams, memory, configuration port,
-// commands, by abort and reset. Every pair must be answered once and right, or be reported as given up; nothing may
-// hang; a good bitstream must not lose its valid bit.
+// commands, by abort and reset. Every pair must be answered once, and right unless it was reported as given up;
+// nothing may hang; a good bitstream must not lose its valid bit.
 //
 // Beside faults at random there are encounters: a fault, the phase of a swap on which it falls, a latency of the memory
 // and an extreme value of a register that hold at that moment and for a while after it. Each pair of two of these four
@@ -138,6 +138,7 @@ struct Totals {
     coverage += x.coverage;
     account.pairs += x.account.pairs;
     account.refused += x.account.refused;
+    account.open += x.account.open;
     account.given_up += x.account.given_up;
     account.lost += x.account.lost;
     account.duplicated += x.account.duplicated;

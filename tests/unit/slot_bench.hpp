@@ -5,49 +5,10 @@
 #ifndef CCHIP_TESTS_UNIT_SLOT_BENCH_HPP
 #define CCHIP_TESTS_UNIT_SLOT_BENCH_HPP
 
-#include <cchip/exact/oracle.hpp>
-#include <cchip/model/programme.hpp>
-#include <cchip/sim/scoreboard.hpp>
-#include <cchip/stimulus/pair_source.hpp>
-
 #include "reconfig_tools.hpp"
+#include "vertex_port.hpp"
 
 namespace cchip::test {
-
-/// Pairs for one of the modules, every class, both programmes, tags that do not repeat.
-class SlotRequests {
- public:
-  SlotRequests(int coord_w, std::uint64_t seed) : coord_w_(coord_w), random_(seed) {
-    for (const ModuleId id : {ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad}) {
-      sources_.emplace_back(coord_w, seed + static_cast<std::uint64_t>(id), kinds_of(id)[0], kinds_of(id)[1]);
-    }
-  }
-
-  PairRequest draw(ModuleId id) {
-    stimulus::PairSource& source = sources_.at(static_cast<std::size_t>(id) - 1);
-    const auto classes = stimulus::classes_of(kinds_of(id)[0], kinds_of(id)[1]);
-    PairRequest request;
-    request.pair = source.draw(classes.at(source.draw_class()).value);
-    request.mode = static_cast<PairMode>(random_() & 1);
-    request.tag = tag_++;
-    return request;
-  }
-  /// The answer of the functional model, which the exact oracle confirms.
-  PairResult answer(const PairRequest& request) const {
-    const auto vertices = [](Kind kind) { return static_cast<std::size_t>(kind); };
-    const model::Options options{{vertices(request.pair.a.kind), vertices(request.pair.b.kind)}, true};
-    const model::Outcome o = model::run_programme(options, request.pair, request.mode, coord_w_);
-    sim::require(o.grid == exact_intersects(request.pair),
-                 "the model contradicts the oracle, tag " + std::to_string(request.tag));
-    return {request.tag, o.hit(), o.grid, o.definite, o.witness, o.beats};
-  }
-
- private:
-  int coord_w_;
-  Random random_;
-  std::vector<stimulus::PairSource> sources_;
-  std::uint16_t tag_ = 1;
-};
 
 template <class Config>
 class SlotBench : public sim::Agent {
@@ -55,28 +16,24 @@ class SlotBench : public sim::Agent {
   using Model = typename Config::Model;
   static constexpr int port_bytes = Config::CFG_W / 8;
 
-  explicit SlotBench(const sim::SimulationOptions& options, sim::Pattern source = sim::Pattern::always(),
-                     sim::Pattern back_pressure = sim::Pattern::always())
+  explicit SlotBench(const sim::SimulationOptions& options, sim::Pattern source = sim::Pattern::always())
       : random(options.seed),
         simulation(options),
         top(simulation.top()),
         requests(Config::COORD_W, options.seed),
-        port_(top, Config::COORD_W),
-        driver(port_.driver(std::move(source))),
-        sink(port_.sink(std::move(back_pressure))) {
-    top.stop = top.decouple = top.hold_reset = top.roc_start = top.cfg_valid = 0;
-    driver.when_idle([this] { port_.scramble(random); });
-    driver.on_accept([this](const PairRequest& request, std::uint64_t clock) {
-      scoreboard.expect(request.tag, requests.answer(request), clock);
+        port(top, Config::COORD_W, Config::CONTEXTS, options.seed, std::move(source)) {
+    top.decouple = top.hold_reset = top.roc_start = top.cfg_valid = 0;
+    port.on_sent = [this](const PairRequest& request) {
+      scoreboard.expect(request.tag, requests.answer(request, module_id), simulation.clock());
       ++accepted;
-    });
-    sink.on_item([this](const PairResult& beat, std::uint64_t clock) {
+    };
+    port.on_result = [this](const PairResult& result, bool known) {
       ++returned;
-      if (on_result) return on_result(beat);
-      scoreboard.got(beat.tag, beat, clock);
-    });
-    simulation.add(driver);
-    simulation.add(sink);
+      if (on_result) return on_result(result);
+      sim::require(known, "a result that nobody asked for");
+      scoreboard.got(result.tag, result, simulation.clock());
+    };
+    simulation.add(port);
     simulation.add(*this);
   }
 
@@ -85,13 +42,11 @@ class SlotBench : public sim::Agent {
     if (now.in_reset) return;
     if (top.decoupled != 0) {
       ++decoupled_clocks;
-      expect("s_pair_ready while decoupled", int{top.s_pair_ready}, 0);
       expect("m_result_valid while decoupled", int{top.m_result_valid}, 0);
-      expect("m_result while decoupled", port_.result(), PairResult{});
+      expect("m_result while decoupled", sim::get_bits(top.m_result_data, 0, defs::slot_result_w), std::uint64_t{0});
       expect("rm_id while decoupled", int{top.rm_id}, static_cast<int>(ModuleId::blank));
       expect("idle while decoupled", int{top.idle}, 1);
     }
-    if (top.quiet != 0 && !on_result) expect("pairs inside a quiet slot", accepted - returned, std::uint64_t{0});
   }
 
   void power_up() {
@@ -103,18 +58,20 @@ class SlotBench : public sim::Agent {
   }
   void steps(int clocks) { simulation.steps(static_cast<std::uint64_t>(clocks)); }
 
-  /// Sends pairs and waits for the answers.
-  void work(ModuleId id, int pairs) {
-    for (int i = 0; i < pairs; ++i) driver.push(requests.draw(id));
-    simulation.run_until([this] { return driver.waiting() == 0 && scoreboard.open() == 0; },
+  /// Sends pairs of this kind and waits for the answers.
+  void work(ModuleId kind, int pairs) {
+    for (int i = 0; i < pairs; ++i) port.push(requests.draw(kind));
+    simulation.run_until([this] { return port.waiting() == 0 && scoreboard.open() == 0; },
                          static_cast<std::uint64_t>(pairs) * 20000, "answers");
     scoreboard.finish();
   }
 
   // ---- the steps of a swap
   void stop() {
-    top.stop = 1;
-    simulation.run_until([this] { return top.quiet != 0; }, 20000, "quiet");
+    port.stop(true);
+    simulation.run_until([this] { return port.inside() == 0; }, 20000, "the results of the pairs inside");
+    steps(8);  // one that is being sent
+    simulation.run_until([this] { return port.inside() == 0; }, 20000, "the last result");
   }
   void decouple() {
     top.decouple = 1;
@@ -143,7 +100,7 @@ class SlotBench : public sim::Agent {
   void recouple() {
     top.decouple = 0;
     simulation.run_until([this] { return top.decoupled == 0; }, 4, "coupled");
-    top.stop = 0;
+    port.stop(false);
   }
 
   Bytes payload(ModuleId id) {
@@ -157,6 +114,7 @@ class SlotBench : public sim::Agent {
     transfer(payload(id));
     reset_on_configuration();
     expect("region_rm_id", int{top.region_rm_id}, static_cast<int>(id));
+    module_id = id;
     recouple();
   }
   /// Number of different values of the region's number within this many clocks: 1 if something works in the slot.
@@ -173,13 +131,8 @@ class SlotBench : public sim::Agent {
   sim::Simulation<Model> simulation;
   Model& top;
   SlotRequests requests;
-
- private:
-  sim::PairPort<Model> port_;
-
- public:
-  sim::StreamDriver<PairRequest> driver;
-  sim::StreamSink<PairResult> sink;
+  VertexPort<Model> port;
+  ModuleId module_id = static_cast<ModuleId>(Config::RM_ID);  ///< that answers
   sim::TagScoreboard<PairResult> scoreboard{"slot"};
   /// Takes the results instead of the scoreboard.
   std::function<void(const PairResult&)> on_result;

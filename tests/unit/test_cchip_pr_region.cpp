@@ -1,43 +1,78 @@
 // SPDX-License-Identifier: Apache-2.0
-// The partition with each of its personas: it is the module that its RM_ID names, on every clock.
-#include <cchip/stimulus/pair_source.hpp>
+// The partition with each of its personas: pairs of every class and of every kind that it serves, as the model answers.
 #include <models/cchip_pr_region.hpp>
 
-#include "primtest_bench.hpp"
+#include "vertex_port.hpp"
 
 using namespace cchip;
 using namespace cchip::test;
 
 namespace {
 
-/// A handful of pairs of every class, every answer checked with the exact oracle, every clock with the model.
 template <class Config>
-void check_persona(ModuleId id) {
-  REQUIRE(Config::RM_ID == static_cast<int>(id));
-  const PrimtestConfig config = primtest_config<Config>(id);
-  stimulus::PairSource source(config.coord_w, sim::seed_from_environment(), config.kind_a, config.kind_b);
-  std::vector<GridPair> pairs;
-  for (const stimulus::PairClassInfo& info : stimulus::classes_of(config.kind_a, config.kind_b)) {
-    for (int i = 0; i < 3; ++i) pairs.push_back(source.draw(info.value));
-  }
-  REQUIRE(pairs.size() >= 10);
-  for (const PairMode mode : {PairMode::exhaustive, PairMode::directed}) exact_answers(config, pairs, mode);
+void check_persona() {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    constexpr auto id = static_cast<ModuleId>(Config::RM_ID);
+    for (const double rate : {1.0, 0.4}) {
+      sim::Simulation<typename Config::Model> simulation(options);
+      auto& top = simulation.top();
+      SlotRequests requests(Config::COORD_W, options.seed);
+      VertexPort<typename Config::Model> port(top, Config::COORD_W, Config::CONTEXTS, options.seed,
+                                              sim::Pattern::random(rate, options.seed));
+      sim::TagScoreboard<PairResult> scoreboard{"region"};
+      port.on_sent = [&](const PairRequest& r) { scoreboard.expect(r.tag, requests.answer(r, id), simulation.clock()); };
+      port.on_result = [&](const PairResult& r, bool known) {
+        sim::require(known, "a result that nobody asked for");
+        scoreboard.got(r.tag, r, simulation.clock());
+      };
+      simulation.add(port);
+      simulation.reset();
+      simulation.steps(4);
+      REQUIRE(int{top.rm_id} == Config::RM_ID);
+      REQUIRE(top.idle == 1);
+      for (int i = 0; i < 300; ++i) port.push(requests.draw(static_cast<ModuleId>(1 + i % Config::RM_ID)));
+      simulation.steps(10);
+      std::uint64_t clocks = 0;
+      while (port.waiting() != 0 || scoreboard.open() != 0) {
+        REQUIRE(++clocks < 200000);
+        simulation.step();
+        if (port.inside() != 0) REQUIRE(top.idle == 0);
+      }
+      scoreboard.finish();
+      simulation.steps(4);
+      REQUIRE(top.idle == 1);
+    }
+  });
 }
 
 }  // namespace
 
 TEST_CASE("cchip_pr_region: RM_ID 1 is the triangle-triangle test", "[unit][cchip_pr_region]") {
-  check_persona<region_tri_tri>(ModuleId::tri_tri);
+  check_persona<region_tri_tri>();
 }
 
 TEST_CASE("cchip_pr_region: RM_ID 2 is the triangle-quad test", "[unit][cchip_pr_region]") {
-  check_persona<region_tri_quad>(ModuleId::tri_quad);
+  check_persona<region_tri_quad>();
 }
 
 TEST_CASE("cchip_pr_region: RM_ID 3 is the quad-quad test", "[unit][cchip_pr_region]") {
-  check_persona<region_quad_quad>(ModuleId::quad_quad);
+  check_persona<region_quad_quad>();
 }
 
-TEST_CASE("cchip_pr_region: RM_ID 0 is blank: never ready, never valid", "[unit][cchip_pr_region]") {
-  require_never_answers<region_blank>();
+TEST_CASE("cchip_pr_region: RM_ID 0 is blank: it never answers", "[unit][cchip_pr_region]") {
+  for_two_power_ups<region_blank::Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
+    simulation.reset();
+    for (int clock = 0; clock < 500; ++clock) {
+      top.s_vertex_valid = random() & 1;
+      sim::set_random(top.s_vertex_data, defs::vertex_w(region_blank::COORD_W), random);
+      top.rst = chance(random, 2) ? 1 : 0;
+      simulation.settle();
+      REQUIRE(top.m_result_valid == 0);
+      REQUIRE(sim::get_bits(top.m_result_data, 0, defs::slot_result_w) == 0);
+      REQUIRE(top.rm_id == 0);
+      REQUIRE(top.idle == 1);
+      simulation.rise();
+    }
+  });
 }

@@ -13,11 +13,11 @@ namespace {
 /// Outputs of the region as one number.
 template <class Model>
 std::uint64_t outputs(const Model& top) {
-  constexpr int w = defs::result_w;
+  constexpr int w = defs::slot_result_w;
   return std::uint64_t{top.m_result_data} | std::uint64_t{top.rm_id} << w | std::uint64_t{top.idle} << (w + 8) |
-         std::uint64_t{top.s_pair_ready} << (w + 9) | std::uint64_t{top.m_result_valid} << (w + 10);
+         std::uint64_t{top.m_result_valid} << (w + 9);
 }
-constexpr int output_bits = 45;
+constexpr int output_bits = defs::slot_result_w + 10;
 
 template <class Config>
 class Region {
@@ -25,10 +25,9 @@ class Region {
 
  public:
   explicit Region(const sim::SimulationOptions& options)
-      : random(options.seed), simulation(options), top(simulation.top()), port(top, Config::COORD_W) {
-    port.scramble(random);
-    top.s_pair_valid = 0;
-    top.m_result_ready = 1;
+      : random(options.seed), simulation(options), top(simulation.top()) {
+    sim::set_random(top.s_vertex_data, defs::vertex_w(Config::COORD_W), random);
+    top.s_vertex_valid = 0;
     top.cfg_valid = 0;
     simulation.reset();
   }
@@ -44,7 +43,6 @@ class Region {
   Random random;
   sim::Simulation<Model> simulation;
   Model& top;
-  sim::PairPort<Model> port;
 };
 
 /// What the region outputs during the second half of a transfer.

@@ -44,6 +44,12 @@ struct System : SubsystemBench<Config> {
     this->settle_bus();
     return r;
   }
+  /// All slots get the test of triangles, by software, so that the scheduler has to work again.
+  void only_triangles() {
+    for (int slot = 0; slot < Config::SLOTS; ++slot) {
+      if (this->module_in(slot) != 1) REQUIRE(swap(slot, 1).code == SwapCode::ok);
+    }
+  }
   /// Everything works: a pair of each kind is tested.
   void works() {
     this->memory.resume();
@@ -77,23 +83,32 @@ CCHIP_CASE("mixed kinds by real swaps, counters and interrupt") {
             static_cast<std::uint32_t>(TestType::COORD_W << 16 | TestType::CFG_W << 8 | TestType::SLOTS));
     REQUIRE(s.read(regs::queue_depth::offset) == TestType::QUEUE_DEPTH);
     std::array<std::uint32_t, 4> sent{};
-    for (int i = 0; i < 400; ++i) {
-      const int kind = static_cast<int>(s.random()() % 4);
-      ++sent[static_cast<std::size_t>(kind)];
-      s.push(kind);
+    for (int round = 0; round < 4; ++round) {
+      s.only_triangles();
+      for (int i = 0; i < 100; ++i) {
+        const int kind = static_cast<int>(s.random()() % 4);
+        ++sent[static_cast<std::size_t>(kind)];
+        s.push(kind);
+      }
+      s.finish();
     }
-    s.finish();
     REQUIRE(s.account.pairs == 400);
     REQUIRE(s.account.refused == 0);
+    REQUIRE(s.account.open == 0);
+    std::uint32_t counted = 0;
     for (std::uint32_t m = 0; m < 4; ++m) {
-      REQUIRE(s.read(regs::pairs::offset(m)) == sent[m]);
+      counted += s.read(regs::pairs::offset(m));
       REQUIRE(s.read(regs::pairs::offset(m) + 4) == 0);
     }
+    REQUIRE(counted == 400);
+    REQUIRE(s.read(regs::pairs::offset(0)) == sent[0]);
+    REQUIRE(s.read(regs::pairs::offset(1)) <= sent[1]);
+    REQUIRE(s.read(regs::pairs::offset(3)) >= sent[3]);
     for (const SwapReport& r : s.reports) {
       CAPTURE(r.clock, r.slot, r.module_id, static_cast<int>(r.code), r.lost);
       REQUIRE(r.code == SwapCode::ok);
     }
-    REQUIRE(s.count(SwapCode::ok) >= 3);
+    REQUIRE(s.count(SwapCode::ok) >= 7);  // four by the scheduler, three back
     REQUIRE(s.read(regs::swaps::offset) == s.reports.size());
     REQUIRE(s.read(regs::rejected::offset) == 0);
     REQUIRE(s.read(regs::lost::offset) == 0);
@@ -117,6 +132,7 @@ CCHIP_CASE("all patterns of senders and receivers") {
         INFO("s_pair " << source.name() << ", m_result " << back_pressure.name());
         s.driver.set_pattern(source);
         s.sink.set_pattern(back_pressure);
+        s.only_triangles();
         s.push_some(20);
         s.finish();
       }
@@ -343,15 +359,35 @@ CCHIP_CASE("abort in each phase: at work with the former module, decoupled, or t
   });
 }
 
-CCHIP_CASE(
-    "a receiver that is gone: shut-down times out and the slot goes on; by force pairs are given up and reported") {
+CCHIP_CASE("a receiver that is gone does not stop a swap: the answers wait outside the slot") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<TestType> s(options);
+    s.sink.set_pattern(sim::Pattern::never_for(~std::uint64_t{0}));
+    for (int i = 0; i < 12; ++i) s.push(1);
+    s.steps(2000);
+    const SwapReport r = s.swap(0, 2);
+    REQUIRE(r.code == SwapCode::ok);
+    REQUIRE(r.lost == 0);
+    s.works();
+    REQUIRE(s.account.pairs == 12 + 9);
+    REQUIRE(s.account.open == 0);
+  });
+}
+
+CCHIP_CASE("pairs inside for longer than the limit: the slot goes on; by force they are left open and reported") {
   with_wave([](const sim::SimulationOptions& options) {
     for (const bool force : {false, true}) {
       System<TestType> s(options);
-      s.write(regs::shutdown_limit::offset, 300);
-      s.sink.set_pattern(sim::Pattern::never_for(~std::uint64_t{0}));
-      for (int i = 0; i < 12; ++i) s.push(1);
-      s.steps(400);
+      s.write(regs::shutdown_limit::offset, 5);
+      std::uint64_t sent = 0;
+      const auto send = [&] {
+        KindRequest r = s.source.draw(1);
+        r.request.mode = PairMode::exhaustive;
+        s.push(r);
+        ++sent;
+      };
+      for (int i = 0; i < 60; ++i) send();
+      s.steps(100);
       const SwapReport r = s.swap(0, 2, force);
       REQUIRE(r.code == (force ? SwapCode::ok : SwapCode::shutdown));
       if (force) {
@@ -364,10 +400,29 @@ CCHIP_CASE(
         REQUIRE(s.module_in(0) == 1);
         REQUIRE(s.read(regs::bitstream_valid::offset(2)) == 1);
       }
+      s.write(regs::shutdown_limit::offset, 4000);
       s.works();
       REQUIRE(s.account.given_up == r.lost);
-      REQUIRE(s.account.pairs == 12 + 9 - r.lost);
+      REQUIRE(s.account.open == r.lost);
+      REQUIRE(s.account.refused == 0);
+      REQUIRE(s.account.pairs == sent + 9);
     }
+  });
+}
+
+CCHIP_CASE("a test of quads answers for every kind") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<TestType> s(options);
+    REQUIRE(s.swap(0, 3).code == SwapCode::ok);
+    if (TestType::SLOTS == 2) REQUIRE(s.swap(TestType::SLOTS - 1, 0).code == SwapCode::ok);
+    const std::size_t swaps = s.reports.size();
+    s.write(regs::control::offset, regs::control::scheduler_enable_mask);
+    s.push_some(200);
+    s.finish();
+    REQUIRE(s.account.pairs == 200);
+    REQUIRE(s.account.refused + s.account.open == 0);
+    REQUIRE(s.reports.size() == swaps);  // no kind is without a slot
+    REQUIRE(s.read(regs::pairs::offset(3)) == 200);
   });
 }
 
@@ -393,17 +448,50 @@ CCHIP_CASE("blank slots asked to work: pairs wait for a bitstream, or are answer
   });
 }
 
-CCHIP_CASE("a kind that no bitstream brings is answered without a test, the others are tested") {
+CCHIP_CASE("kinds that no bitstream serves are answered without a test, the others are tested") {
   with_wave([](const sim::SimulationOptions& options) {
     System<TestType> s(options, true);
-    for (int slot = 0; slot < TestType::SLOTS; ++slot) s.write(regs::bitstream_valid::offset(s.entry(slot, 2)), 0);
+    const auto announce = [&](std::uint32_t module_id, std::uint32_t valid) {
+      for (int slot = 0; slot < TestType::SLOTS; ++slot)
+        s.write(regs::bitstream_valid::offset(s.entry(slot, static_cast<int>(module_id))), valid);
+    };
+    announce(2, 0);
+    announce(3, 0);
     s.push_some(100);
     s.finish();
-    REQUIRE(s.account.refused > 10);
+    REQUIRE(s.account.refused > 20);
     REQUIRE(s.read(regs::pairs::offset(2)) == 0);
+    REQUIRE(s.read(regs::pairs::offset(3)) == 0);
     REQUIRE(s.read(regs::pairs::offset(1)) > 10);
-    REQUIRE(s.read(regs::pairs::offset(3)) > 10);
+    REQUIRE((s.read(regs::interrupt_status::offset) & regs::interrupt_status::no_provider_mask) != 0);
+    announce(3, 1);  // the test of quads serves kind 2 as well
+    const std::uint64_t refused = s.account.refused;
+    for (int i = 0; i < 20; ++i) s.push(2);
+    s.finish();
+    REQUIRE(s.account.refused == refused);
+    REQUIRE(s.read(regs::pairs::offset(3)) == 20);
     s.works();
+  });
+}
+
+CCHIP_CASE("a full queue is enough for a swap, however large the batch and the age that are asked for") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<TestType> s(options);
+    s.only_triangles();
+    s.write(regs::minimum_batch::offset, TestType::QUEUE_DEPTH + 1);
+    s.write(regs::maximum_age::offset, 0x7FFFFFFF);
+    s.write(regs::control::offset, regs::control::scheduler_enable_mask);
+    const std::size_t swaps = s.count(SwapCode::ok);
+    for (int i = 0; i < TestType::QUEUE_DEPTH - 1; ++i) s.push(2);
+    s.steps(5000);
+    REQUIRE(s.driver.waiting() == 0);
+    REQUIRE(s.account.pairs == 0);  // one pair less than full: neither enough nor old
+    REQUIRE(s.count(SwapCode::ok) == swaps);
+    for (int i = 0; i < 10; ++i) s.push(2);
+    s.finish(100000);
+    REQUIRE(s.count(SwapCode::ok) == swaps + 1);
+    REQUIRE(s.account.pairs == TestType::QUEUE_DEPTH + 9);
+    REQUIRE(s.account.refused == 0);
   });
 }
 
@@ -446,7 +534,7 @@ CCHIP_CASE("reset at every clock of a swap") {
       if (moment == 0) {
         const std::uint64_t start = s.simulation.clock();
         s.next_report();
-        length = s.simulation.clock() - start + 2;
+        length = s.simulation.clock() - start + 40;  // pairs inside may take longer another time
       } else {
         s.steps(moment);
       }

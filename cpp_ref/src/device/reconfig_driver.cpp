@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <cchip/device/reconfig_driver.hpp>
 #include <cchip/wire/registers.hpp>
 #include <stdexcept>
@@ -25,8 +27,10 @@ class Run {
   ReconfigResult run() {
     read_capabilities();
     load_bitstreams();
+    sort();
     enable();
     while (answered_ < pairs_.size()) {
+      load_ahead();
       send();
       proceed();
       if (++idle_ > options_.patience) {
@@ -104,16 +108,58 @@ class Run {
     machine_.write_register(regs::maximum_age::offset, options_.maximum_age);
     machine_.write_register(regs::interrupt_status::offset, swap_events);
     machine_.write_register(regs::interrupt_enable::offset, swap_events);
-    machine_.write_register(regs::control::offset, regs::control::scheduler_enable_mask);
+    if (options_.batch == 0) machine_.write_register(regs::control::offset, regs::control::scheduler_enable_mask);
   }
 
-  /// A pair waits if one with its tag is still inside: tags are unique in flight.
+  /// Order of the pairs: as they come, or in batches, the kinds in turn.
+  void sort() {
+    batch_of_.resize(pairs_.size());
+    if (options_.batch == 0) {
+      for (std::size_t i = 0; i < pairs_.size(); ++i) order_.push_back(i);
+      batches_.push_back({ModuleId::blank, pairs_.size()});
+      ready_ = 1;
+      return;
+    }
+    std::array<std::vector<std::size_t>, 4> of_kind;
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      of_kind[static_cast<std::size_t>(module_of(pairs_[i].pair))].push_back(i);
+    }
+    for (std::size_t round = 0; order_.size() < pairs_.size(); ++round) {
+      for (std::size_t kind = 1; kind < 4; ++kind) {
+        const auto& all = of_kind[kind];
+        const std::size_t begin = std::min(round * options_.batch, all.size());
+        const std::size_t end = std::min(begin + options_.batch, all.size());
+        if (begin == end) continue;
+        for (std::size_t i = begin; i < end; ++i) {
+          order_.push_back(all[i]);
+          batch_of_[all[i]] = batches_.size();
+        }
+        batches_.push_back({static_cast<ModuleId>(kind), end - begin});
+      }
+    }
+  }
+
+  /// The module of a batch goes into the slot of batch % slots, once that slot's former batch is answered, and not before
+  /// the batch ahead of it is sent.
+  void load_ahead() {
+    if (loading_ || ready_ == batches_.size() || ready_ > batch_to_send() + 1) return;
+    if (ready_ >= slots_ && batches_[ready_ - slots_].open > 0) return;
+    const auto slot = static_cast<std::uint32_t>(ready_ % slots_);
+    const auto module_id = static_cast<std::uint32_t>(batches_[ready_].module_id);
+    machine_.write_register(regs::command::offset,
+                            regs::command::go_mask | module_id << regs::command::module_id_shift | slot);
+    loading_ = true;
+  }
+  std::size_t batch_to_send() const { return sent_ < order_.size() ? batch_of_[order_[sent_]] : batches_.size(); }
+
+  /// A pair waits while one with its tag is inside, tags are unique in flight, and until the module of its batch is there.
   void send() {
-    if (sent_ == pairs_.size() || in_flight_[tag_of(sent_)] != nobody) return;
-    KindRequest request{pairs_[sent_], static_cast<int>(module_of(pairs_[sent_].pair))};
+    if (sent_ == pairs_.size() || in_flight_[tag_of(sent_)] != nobody || ready_ <= batch_to_send()) return;
+    const std::size_t index = order_[sent_];
+    KindRequest request{pairs_[index], static_cast<int>(module_of(pairs_[index].pair))};
     request.request.tag = tag_of(sent_);
     if (!machine_.send(request)) return;
-    in_flight_[tag_of(sent_)] = sent_;
+    in_flight_[tag_of(sent_)] = index;
     ++sent_;
     idle_ = 0;
   }
@@ -130,6 +176,7 @@ class Run {
       result_.answers[index] = {beat, 1};
       in_flight_[beat.beat.tag] = nobody;
       last_with_[beat.beat.tag] = index;
+      --batches_[batch_of_[index]].open;
       ++answered_;
       idle_ = 0;
       if (options_.progress) options_.progress(answered_);
@@ -151,7 +198,20 @@ class Run {
       swap.phases[p] = machine_.read_register(regs::phase_clocks::offset(p));
     }
     result_.swaps.push_back(swap);
+    if (!loading_) return;
+    loading_ = false;
+    ++ready_;
+    idle_ = 0;
+    if (swap.code == SwapCode::ok || swap.code == SwapCode::same) return;
+    throw std::runtime_error(std::string("module ") + to_name(swap.module_id) + " cannot be loaded into slot " +
+                             std::to_string(swap.slot) + ": swap code " +
+                             std::to_string(static_cast<int>(swap.code)) + "; see SwapCode in docs/definitions.md");
   }
+
+  struct Batch {
+    ModuleId module_id;
+    std::size_t open;  ///< pairs without an answer
+  };
 
   Machine& machine_;
   const std::vector<PairRequest>& pairs_;
@@ -159,6 +219,11 @@ class Run {
   ReconfigResult result_;
   std::vector<std::size_t> in_flight_;  // by tag: index of the pair inside
   std::vector<std::size_t> last_with_;  // by tag: index of the pair that was answered last
+  std::vector<std::size_t> order_;      // of the pairs, as they are sent
+  std::vector<std::size_t> batch_of_;   // by pair
+  std::vector<Batch> batches_;
+  std::size_t ready_ = 0;  // batches whose module was loaded
+  bool loading_ = false;
   unsigned slots_ = 0;
   int port_w_ = 8;  // of the configuration port, bit
   std::size_t sent_ = 0;

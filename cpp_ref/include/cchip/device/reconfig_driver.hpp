@@ -19,6 +19,9 @@ struct ReconfigOptions {
   std::function<Bytes(std::uint8_t slot, ModuleId module_id)> bitstream;
   /// Payload of each virtual bitstream, bytes, >= defs::bitstream_payload_min.
   std::size_t payload_bytes = 2048;
+  /// 0: pairs are sent in their order and the machine's scheduler exchanges modules. Else they are sorted by kind into
+  /// batches of so many pairs, and the driver loads the module of the next batch into one slot while the other works.
+  std::size_t batch = 0;
   /// Registers of the scheduler: pairs, clocks.
   std::uint32_t minimum_batch = 64;
   std::uint32_t maximum_age = 1024;
@@ -50,12 +53,12 @@ struct ReconfigResult {
   std::uint64_t foreign_answers = 0;  ///< answers with a tag that nobody sent
 };
 
-/// Checks all bitstreams, writes them and their table, enables the scheduler, sends the pairs in their order and
-/// returns when all are answered. Pairs must be as the stream takes them: triangle before quad, quads canonical,
+/// Checks all bitstreams, writes them and their table, sends the pairs, exchanges modules as `batch` says and returns
+/// when all are answered. Pairs must be as the stream takes them: triangle before quad, quads canonical,
 /// coordinates in range; their tags are replaced. Swaps that end within the time of some twenty register accesses may
 /// be missed in `swaps`. \throws std::invalid_argument a coordinate does not fit the machine's width, the payload is
 /// too short \throws BitstreamError a bitstream is damaged, or not the one asked for; nothing was written then \throws
-/// std::runtime_error no answer in time, a register that refuses
+/// std::runtime_error no answer in time, a register that refuses, a batch's module that cannot be loaded
 ReconfigResult run_reconfig(Machine& machine, const std::vector<PairRequest>& pairs, const ReconfigOptions& options);
 
 }  // namespace cchip

@@ -116,6 +116,8 @@ constexpr int rm_id_w = 8;
 constexpr int kind_w = 2;
 /// width of a slot's number [bit]
 constexpr int slot_id_w = 8;
+/// width of a pair's number inside a slot: less than CONTEXTS_MAX [bit]
+constexpr int pair_id_w = 8;
 /// width of a slot's counts of pairs inside and of pairs lost [bit]
 constexpr int pair_count_w = 16;
 /// width of error_shift, 0..4: the smallest shift with eta <= 2^error_shift [bit]
@@ -276,6 +278,56 @@ constexpr Field result_definite = {18, 1};
 constexpr Field result_axis = {19, 9};
 /// m_result_beats
 constexpr Field result_beats = {28, 6};
+
+/// what a queue of the dispatcher holds of a pair; its kind and the place of its operands follow from the place of the descriptor [bit]
+constexpr int descriptor_w = 22;
+/// s_pair_tag
+constexpr Field descriptor_tag = {0, 16};
+/// s_pair_err
+constexpr Field descriptor_err = {16, 4};
+/// s_pair_mode
+constexpr Field descriptor_mode = {20, 2};
+
+/// beat of s_vertex, the way into a slot: one vertex of A and one of B, coordinates of w bits [bit]
+constexpr int vertex_w(int w) { return 16 + point_w(w) + point_w(w); }
+/// vertex 0: a pair begins, whatever came before
+constexpr Field vertex_first = {0, 1};
+/// the pair is complete
+constexpr Field vertex_last = {1, 1};
+/// number of the pair inside the slot, with its first vertex
+constexpr Field vertex_id = {2, 8};
+/// s_pair_err, with the first vertex
+constexpr Field vertex_err = {10, 4};
+/// s_pair_mode, with the first vertex
+constexpr Field vertex_mode = {14, 2};
+/// vertex of A
+constexpr Field vertex_a(int w) { return {16, point_w(w)}; }
+/// vertex of B
+constexpr Field vertex_b(int w) { return {16 + point_w(w), point_w(w)}; }
+
+/// beat of a slot's m_result: a result with the pair's number inside the slot [bit]
+constexpr int slot_result_w = 26;
+/// number of the pair inside the slot
+constexpr Field slot_result_id = {0, 8};
+/// m_result_hit
+constexpr Field slot_result_hit = {8, 1};
+/// m_result_grid
+constexpr Field slot_result_grid = {9, 1};
+/// m_result_definite
+constexpr Field slot_result_definite = {10, 1};
+/// m_result_axis
+constexpr Field slot_result_axis = {11, 9};
+/// m_result_beats
+constexpr Field slot_result_beats = {20, 6};
+
+/// an answer on its way out of the dispatcher [bit]
+constexpr int answer_w = 38;
+/// record RESULT
+constexpr Field answer_result = {0, 34};
+/// kind of the pair
+constexpr Field answer_kind = {34, 2};
+/// module that gave it, 0: nobody, the pair is left open
+constexpr Field answer_module = {36, 2};
 
 /// beat of s_swap and m_swap: put this module into this slot [bit]
 constexpr int swap_request_w = 81;

@@ -45,13 +45,15 @@ CCHIP_SUBSYSTEM_PROBE(abort_arrives, u_regs__DOT__control_abort_q)
 CCHIP_SUBSYSTEM_PROBE(clear_arrives, u_regs__DOT__control_clear_q)
 CCHIP_SUBSYSTEM_PROBE(command_arrives, u_regs__DOT__command_go_q)
 
-// A slot of it: pairs inside, the module that it shows, whether it is decoupled.
+// Pairs inside slot n in bits [16n +: 16].
+CCHIP_SUBSYSTEM_PROBE(outstanding, outstanding)
+
+// A slot of it: the module that it shows, whether it is decoupled.
 #define CCHIP_SLOT_PROBE(n, name, signal) \
-  CCHIP_SUBSYSTEM_PROBE(slot##n##_##name, gen_slots__BRA__##n##__KET____DOT__u_slot__DOT__##signal)
-#define CCHIP_SLOT_PROBES(n)                                \
-  CCHIP_SLOT_PROBE(n, outstanding, outstanding_q)           \
-  CCHIP_SLOT_PROBE(n, module_id, u_decoupler__DOT__rm_id_q) \
-  CCHIP_SLOT_PROBE(n, decoupled, u_decoupler__DOT__decoupled_q)
+  CCHIP_SUBSYSTEM_PROBE(slot##n##_##name, gen_slots__BRA__##n##__KET____DOT__u_slot__DOT__u_decoupler__DOT__##signal)
+#define CCHIP_SLOT_PROBES(n)               \
+  CCHIP_SLOT_PROBE(n, module_id, rm_id_q)  \
+  CCHIP_SLOT_PROBE(n, decoupled, decoupled_q)
 CCHIP_SLOT_PROBES(0)
 CCHIP_SLOT_PROBES(1)
 #undef CCHIP_SLOT_PROBES

@@ -4,17 +4,18 @@
 // cchip_primtest_subsystem: primitive tests of three kinds in one or two slots that are exchanged
 // at run time. Pairs of any kind in, answers out, the exchange of modules done by itself or by
 // software.
-//   latency      that of the test + 8 clocks while its module is in a slot; a swap longer otherwise
-//   throughput   one pair per clock and slot at most, that of the tests
-//   in flight    3 * QUEUE_DEPTH pairs in the queues, those in the slots
-//   order        answers in any order; tag and kind of the pair come back with each exactly once,
-//                except the pairs that a swap by force gave up: these are counted and reported
+//   latency      that of the test + 20 clocks while a slot serves its kind; a swap longer otherwise
+//   throughput   a pair every 3 clocks, with quads every 4, at most; that of the tests
+//   in flight    QUEUE_DEPTH pairs of each kind in the queues, CONTEXTS for each slot
+//   order        answers in any order; tag and kind of the pair come back with each exactly once. A
+//                pair that a swap by force gave up, or that nobody can test, is answered as open: hit
+//                1, grid 1, definite 0, axis class CCHIP_AXIS_ILLEGAL
 //   cuts         every path: each output is a flip-flop
 //   reset        forgets all pairs and registers; a slot whose rewriting was cut off stays
 //                decoupled until a good swap
 //   errors       codes CCHIP_SWAP_* in the register report, interrupt; see docs/registers.md
-// Streams: cchip_pair_router; modules: cchip_swap_scheduler, cchip_config_controller; slots:
-// cchip_pr_slot.
+// Pairs: cchip_operand_memory, cchip_descriptor_queues, cchip_dispatcher; modules:
+// cchip_swap_scheduler, cchip_config_controller; slots: cchip_pr_slot.
 module cchip_primtest_subsystem #(
     // width of a coordinate, bit, 4..20
     parameter integer COORD_W = 16,
@@ -25,8 +26,8 @@ module cchip_primtest_subsystem #(
     parameter integer WARPED_EXACT = 1,
     // slots, 1 or 2
     parameter integer SLOTS = 2,
-    // pairs in each of the three queues, 16..1024
-    parameter integer QUEUE_DEPTH = 256,
+    // pairs in each of the three queues, a power of two, 16..1024
+    parameter integer QUEUE_DEPTH = 128,
     // width of the configuration port, bit, 8 or 32
     parameter integer CFG_W = 8,
     // clocks per word of the port
@@ -105,9 +106,12 @@ module cchip_primtest_subsystem #(
   reg irq_q;
   assign irq = irq_q;
 
-  localparam integer PAIR_W = `CCHIP_REQUEST_W(COORD_W);
-  localparam integer RESULT_W = `CCHIP_RESULT_W;
+  localparam integer KINDS = 3;
+  localparam integer POINT_W = `CCHIP_POINT_W(COORD_W);
+  localparam integer VERTEX_W = `CCHIP_VERTEX_W(COORD_W);
+  localparam integer RESULT_W = `CCHIP_SLOT_RESULT_W;
   localparam integer COUNT_W = $clog2(QUEUE_DEPTH + 1);
+  localparam integer PLACE_W = `CCHIP_KIND_W + $clog2(QUEUE_DEPTH);
   localparam [31:0] SLOT_COUNT = SLOTS;
   localparam [31:0] PORT_W = CFG_W;
   localparam [31:0] GRID_W = COORD_W;
@@ -119,57 +123,116 @@ module cchip_primtest_subsystem #(
     end
   endgenerate
 
-  // ---- streams
-  wire [SLOTS-1:0] pair_valid, pair_ready, result_valid, result_ready;
-  wire [SLOTS*PAIR_W-1:0] pair;
+  // ---- pairs that wait: descriptors in queues, vertices in the operand memory
+  wire [KINDS:0] some, queue_room, kind;
+  wire [(KINDS+1)*COUNT_W-1:0] waiting;
+  wire kind_room, look, pop;
+  wire [PLACE_W-1:0] write_place, read_place;
+  wire [1:0] vertex;
+  wire [POINT_W-1:0] a, b;
+  wire [`CCHIP_DESCRIPTOR_W-1:0] descriptor;
+
+  cchip_operand_memory #(
+      .COORD_W(COORD_W),
+      .PLACE_W(PLACE_W)
+  ) u_operands (
+      .clk         (clk),
+      .rst         (rst),
+      .s_pair_valid(s_pair_valid),
+      .s_pair_ready(s_pair_ready),
+      .s_pair_kind (s_pair_kind),
+      .s_pair_a    (s_pair_a),
+      .s_pair_b    (s_pair_b),
+      .room        (kind_room),
+      .place       (write_place),
+      .m_place     (read_place),
+      .m_vertex    (vertex),
+      .m_a         (a),
+      .m_b         (b)
+  );
+
+  cchip_descriptor_queues #(
+      .WIDTH(`CCHIP_DESCRIPTOR_W),
+      .KINDS(KINDS),
+      .DEPTH(QUEUE_DEPTH)
+  ) u_queues (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(s_pair_valid & s_pair_ready),
+      .s_ready(kind_room),
+      .s_kind (s_pair_kind),
+      .s_data (`CCHIP_DESCRIPTOR_OF(s_pair_tag, s_pair_err, s_pair_mode)),
+      .s_place(write_place),
+      .some   (some),
+      .waiting(waiting),
+      .room   (queue_room),
+      .kind   (kind),
+      .look   (look),
+      .pop    (pop),
+      .m_place(read_place),
+      .m_data (descriptor)
+  );
+
+  // ---- pairs that are tested
+  wire [SLOTS-1:0] vertex_valid, result_valid;
+  wire vertex_first, vertex_last;
+  wire [SLOTS*`CCHIP_PAIR_ID_W-1:0] vertex_id;
   wire [SLOTS*RESULT_W-1:0] result;
-  wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module, serves;
-  wire [2:0] no_provider;
-  wire [3*COUNT_W-1:0] waiting;
+  wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module;
+  wire [KINDS:1] no_provider;
+  wire [SLOTS-1:0] stop, quiet, decouple, decoupled, hold_reset, roc_start, roc_busy, slot_idle;
+  wire [SLOTS-1:0] slot_decoupled;  // its region; `decoupled` when all its pairs are answered, too
+  wire [`CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id, rm_id;
+  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] outstanding, slot_lost;
   wire answered, refused_kind, refused_provider;
   wire [1:0] answered_module;
 
-  cchip_pair_router #(
-      .COORD_W    (COORD_W),
-      .SLOTS      (SLOTS),
-      .QUEUE_DEPTH(QUEUE_DEPTH)
-  ) u_router (
-      .clk              (clk),
-      .rst              (rst),
-      .s_pair_valid     (s_pair_valid),
-      .s_pair_ready     (s_pair_ready),
-      .s_pair_kind      (s_pair_kind),
-      .s_pair_data      (`CCHIP_REQUEST_OF(s_pair_tag, s_pair_a, s_pair_b, s_pair_err,
-          s_pair_mode)),
-      .m_result_valid   (m_result_valid),
-      .m_result_ready   (m_result_ready),
-      .m_result_kind    (m_result_kind),
-      .m_result_data    (`CCHIP_RESULT_OF(m_result_tag, m_result_hit, m_result_grid,
+  cchip_dispatcher #(
+      .SLOTS (SLOTS),
+      .KINDS (KINDS),
+      .CREDIT(CONTEXTS)
+  ) u_dispatcher (
+      .clk             (clk),
+      .rst             (rst),
+      .some            (some),
+      .kind            (kind),
+      .look            (look),
+      .pop             (pop),
+      .vertex          (vertex),
+      .descriptor      (descriptor),
+      .no_provider     (no_provider),
+      .m_vertex_valid  (vertex_valid),
+      .m_vertex_first  (vertex_first),
+      .m_vertex_last   (vertex_last),
+      .m_vertex_id     (vertex_id),
+      .s_result_valid  (result_valid),
+      .s_result_data   (result),
+      .slot_module     (slot_module),
+      .m_result_valid  (m_result_valid),
+      .m_result_ready  (m_result_ready),
+      .m_result_kind   (m_result_kind),
+      .m_result_data   (`CCHIP_RESULT_OF(m_result_tag, m_result_hit, m_result_grid,
           m_result_definite, m_result_axis, m_result_beats)),
-      .m_slot_valid     (pair_valid),
-      .m_slot_ready     (pair_ready),
-      .m_slot_data      (pair),
-      .s_slot_valid     (result_valid),
-      .s_slot_ready     (result_ready),
-      .s_slot_data      (result),
-      .slot_module      (slot_module),
-      .serves           (serves),
-      .no_provider      (no_provider),
-      .waiting          (waiting),
-      .answered         (answered),
-      .answered_module  (answered_module),
-      .refused_kind     (refused_kind),
-      .refused_provider (refused_provider)
+      .stop            (stop),
+      .quiet           (quiet),
+      .decouple        (decouple),
+      .decoupled       (decoupled),
+      .outstanding     (outstanding),
+      .lost            (slot_lost),
+      .answered        (answered),
+      .answered_module (answered_module),
+      .refused_kind    (refused_kind),
+      .refused_provider(refused_provider)
   );
 
   // ---- slots
-  wire [SLOTS-1:0] stop, quiet, decouple, decoupled, hold_reset, roc_start, roc_busy, slot_idle;
-  wire [`CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id, rm_id;
-  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] outstanding, slot_lost;
   genvar slot;
   generate
     for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_slots
       wire [`CCHIP_RM_ID_W-1:0] module_id;
+      wire [`CCHIP_PAIR_ID_W-1:0] id = vertex_id[`CCHIP_PAIR_ID_W*slot+:`CCHIP_PAIR_ID_W];
+      wire [VERTEX_W-1:0] vertex_data = `CCHIP_VERTEX_OF(vertex_first, vertex_last, id,
+          descriptor[`CCHIP_DESCRIPTOR_ERR], descriptor[`CCHIP_DESCRIPTOR_MODE], a, b);
       assign rm_id[`CCHIP_RM_ID_W*slot+:`CCHIP_RM_ID_W] = module_id;
       cchip_pr_slot #(
           .COORD_W            (COORD_W),
@@ -184,32 +247,24 @@ module cchip_primtest_subsystem #(
           .SIMULATION         (SIMULATION),
           .SEED               (SEED)
       ) u_slot (
-          .clk              (clk),
-          .rst              (rst),
-          .stop             (stop[slot]),
-          .quiet            (quiet[slot]),
-          .outstanding      (outstanding[`CCHIP_PAIR_COUNT_W*slot+:`CCHIP_PAIR_COUNT_W]),
-          .decouple         (decouple[slot]),
-          .decoupled        (decoupled[slot]),
-          .lost             (slot_lost[`CCHIP_PAIR_COUNT_W*slot+:`CCHIP_PAIR_COUNT_W]),
-          .hold_reset       (hold_reset[slot]),
-          .roc_start        (roc_start[slot]),
-          .roc_busy         (roc_busy[slot]),
-          .region_rm_id     (region_rm_id[`CCHIP_RM_ID_W*slot+:`CCHIP_RM_ID_W]),
-          .cfg_valid        (cfg_valid),
-          .cfg_data         (cfg_data),
-          .s_pair_valid     (pair_valid[slot]),
-          .s_pair_ready     (pair_ready[slot]),
-          .s_pair_data      (pair[PAIR_W*slot+:PAIR_W]),
-          .m_result_valid   (result_valid[slot]),
-          .m_result_ready   (result_ready[slot]),
-          .m_result_data    (result[RESULT_W*slot+:RESULT_W]),
-          .rm_id            (module_id),
-          .idle             (slot_idle[slot])
+          .clk           (clk),
+          .rst           (rst),
+          .decouple      (decouple[slot]),
+          .decoupled     (slot_decoupled[slot]),
+          .hold_reset    (hold_reset[slot]),
+          .roc_start     (roc_start[slot]),
+          .roc_busy      (roc_busy[slot]),
+          .region_rm_id  (region_rm_id[`CCHIP_RM_ID_W*slot+:`CCHIP_RM_ID_W]),
+          .cfg_valid     (cfg_valid),
+          .cfg_data      (cfg_data),
+          .s_vertex_valid(vertex_valid[slot]),
+          .s_vertex_data (vertex_data),
+          .m_result_valid(result_valid[slot]),
+          .m_result_data (result[RESULT_W*slot+:RESULT_W]),
+          .rm_id         (module_id),
+          .idle          (slot_idle[slot])
       );
-      // what the slot holds, and whether it takes pairs
       assign slot_module[2*slot+:2] = module_id[7:2] == 6'd0 ? module_id[1:0] : 2'd0;
-      assign serves[2*slot+:2] = stop[slot] ? 2'd0 : slot_module[2*slot+:2];
     end
   endgenerate
 
@@ -355,10 +410,10 @@ module cchip_primtest_subsystem #(
       .table_size      (table_size[4*32*SLOTS-1:0]),
       .table_invalidate(invalidate),
       .table_resting   (resting),
-      .waiting         (waiting),
+      .waiting         (waiting[COUNT_W+:3*COUNT_W]),
+      .full            (~queue_room[KINDS:1]),
       .no_provider     (no_provider),
       .slot_module     (slot_module),
-      .slot_taken      (pair_valid & pair_ready),
       .command_valid   (go),
       .command_slot    (command_slot),
       .command_module  (command_module),
@@ -422,7 +477,8 @@ module cchip_primtest_subsystem #(
       .phase_clocks   (phase_clocks)
   );
 
-  wire unused = &{1'b0, table_valid, table_address, table_size, slot_idle, busy};
+  wire unused = &{1'b0, table_valid, table_address, table_size, slot_idle, slot_decoupled, busy,
+      waiting[COUNT_W-1:0], queue_room[0]};
 
 endmodule
 `default_nettype wire

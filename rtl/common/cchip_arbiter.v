@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_assert.vh"
+// cchip_arbiter: one of several requests, in turn (round robin).
+//   rule         the search begins behind the source that was served last, after reset at source 0;
+//                grant is one-hot, or 0 without a request
+//   fair         a request that stays lets at most N - 1 others be served before it
+//   latency      0 clocks: grant follows request
+//   cuts         nothing
+//   reset        the search begins at source 0
+module cchip_arbiter #(
+    // sources, 1..16
+    parameter integer N = 4
+) (
+    input  wire         clk,
+    input  wire         rst,
+    input  wire [N-1:0] request,
+    output wire [N-1:0] grant,
+    input  wire         take      // the source of grant, if any, is served on this clock
+);
+
+  generate
+    if (N < 1 || N > 16) begin : gen_illegal
+      cchip_error_arbiter_N_must_be_1_to_16 u_error ();
+    end
+  endgenerate
+
+  reg [N-1:0] behind_q;  // sources behind the one served last
+
+  function [N-1:0] lowest(input [N-1:0] of);
+    integer i;
+    reg found;
+    begin
+      found = 1'b0;
+      for (i = 0; i < N; i = i + 1) begin
+        lowest[i] = of[i] & ~found;
+        found = found | of[i];
+      end
+    end
+  endfunction
+  function [N-1:0] above(input [N-1:0] one);
+    integer i;
+    reg found;
+    begin
+      found = 1'b0;
+      for (i = 0; i < N; i = i + 1) begin
+        above[i] = found;
+        found = found | one[i];
+      end
+    end
+  endfunction
+
+  wire [N-1:0] next = request & behind_q;
+  assign grant = |next ? lowest(next) : lowest(request);
+
+  always @(posedge clk)
+    if (rst) behind_q <= {N{1'b0}};
+    else if (take && |request) behind_q <= above(grant);
+
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_one, (grant & (grant - {{N - 1{1'b0}}, 1'b1})) == {N{1'b0}})
+      `CCHIP_ASSERT(a_some, (grant == {N{1'b0}}) == (request == {N{1'b0}}))
+      `CCHIP_ASSERT(a_asked, (grant & ~request) == {N{1'b0}})
+    end
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_descriptor_queues: a queue of descriptors for each kind of pair, and one for the illegal
+// kind 0, all of them in one block RAM. A place is the address in it, {kind, pointer of the kind}.
+//   latency      1 clock from a push to `some`; the descriptor at the head of a kind is on m_data 2
+//                clocks after `look`, its place 1 clock after; both stay until 1 clock after the
+//                next `look`
+//   throughput   a push on every clock; a pop one clock after its look at the earliest
+//   cuts         every path but s_kind to s_ready and s_place
+//   reset        empty
+//   a place is written again one clock after its pop at the earliest
+module cchip_descriptor_queues #(
+    // width of a descriptor, bit, 1..80
+    parameter integer WIDTH = `CCHIP_DESCRIPTOR_W,
+    // kinds of pairs, 1..3
+    parameter integer KINDS = 3,
+    // descriptors in each queue, a power of two, 16..1024
+    parameter integer DEPTH = 128
+) (
+    input  wire                                  clk,
+    input  wire                                  rst,
+    input  wire                                  s_valid,
+    output wire                                  s_ready,  // the queue of s_kind has room
+    input  wire [              `CCHIP_KIND_W-1:0] s_kind,
+    input  wire [                     WIDTH-1:0] s_data,
+    output wire [`CCHIP_KIND_W+$clog2(DEPTH)-1:0] s_place,  // where the next of s_kind goes
+    // queue k at bit and word k
+    output wire [                       KINDS:0] some,     // it is not empty
+    output wire [(KINDS+1)*$clog2(DEPTH+1)-1:0]  waiting,  // descriptors in it
+    output wire [                       KINDS:0] room,
+    input  wire [                       KINDS:0] kind,     // one-hot: the kind looked at, popped
+    input  wire                                  look,
+    input  wire                                  pop,      // the descriptor at its head leaves
+    output wire [`CCHIP_KIND_W+$clog2(DEPTH)-1:0] m_place,
+    output wire [                     WIDTH-1:0] m_data
+);
+
+  localparam integer KIND_W = `CCHIP_KIND_W;
+  localparam integer PTR_W = $clog2(DEPTH);
+  localparam integer PLACE_W = KIND_W + PTR_W;
+  localparam integer COUNT_W = $clog2(DEPTH + 1);
+  localparam integer QUEUES = KINDS + 1;
+
+  generate
+    if (WIDTH < 1 || WIDTH > 80) begin : gen_illegal_width
+      cchip_error_descriptor_WIDTH_must_be_1_to_80 u_error ();
+    end
+    if (KINDS < 1 || KINDS > 3) begin : gen_illegal_kinds
+      cchip_error_KINDS_must_be_1_to_3 u_error ();
+    end
+    if (DEPTH < 16 || DEPTH > 1024 || (1 << PTR_W) != DEPTH) begin : gen_illegal_depth
+      cchip_error_QUEUE_DEPTH_must_be_a_power_of_two_16_to_1024 u_error ();
+    end
+  endgenerate
+
+  // ---- pointers and counts
+  wire push = s_valid & s_ready;
+  wire [PTR_W*QUEUES-1:0] write, read;
+  wire [QUEUES-1:0] kind_of_push;  // one-hot
+  genvar k;
+  generate
+    for (k = 0; k < QUEUES; k = k + 1) begin : gen_queues
+      localparam [31:0] KIND = k;
+      reg [PTR_W-1:0] write_q, read_q;
+      assign kind_of_push[k] = s_kind == KIND[KIND_W-1:0];
+      wire push_here = push & kind_of_push[k];
+      wire pop_here = pop & kind[k];
+      always @(posedge clk)
+        if (rst) begin
+          write_q <= {PTR_W{1'b0}};
+          read_q  <= {PTR_W{1'b0}};
+        end else begin
+          if (push_here) write_q <= write_q + {{PTR_W - 1{1'b0}}, 1'b1};
+          if (pop_here) read_q <= read_q + {{PTR_W - 1{1'b0}}, 1'b1};
+        end
+      assign write[PTR_W*k+:PTR_W] = write_q;
+      assign read[PTR_W*k+:PTR_W]  = read_q;
+
+      cchip_count #(
+          .LIMIT(DEPTH)
+      ) u_count (
+          .clk  (clk),
+          .rst  (rst),
+          .up   (push_here),
+          .down (pop_here),
+          .count(waiting[COUNT_W*k+:COUNT_W]),
+          .some (some[k]),
+          .room (room[k])
+      );
+    end
+  endgenerate
+
+  function [PTR_W-1:0] pointer_of(input [PTR_W*QUEUES-1:0] of, input [QUEUES-1:0] one);
+    integer i;
+    begin
+      pointer_of = {PTR_W{1'b0}};
+      for (i = 0; i < QUEUES; i = i + 1) pointer_of = pointer_of | (of[PTR_W*i+:PTR_W] & {PTR_W{one[i]}});
+    end
+  endfunction
+  function [KIND_W-1:0] code_of(input [QUEUES-1:0] one);
+    integer i;
+    begin
+      code_of = {KIND_W{1'b0}};
+      for (i = 0; i < QUEUES; i = i + 1) code_of = code_of | (i[KIND_W-1:0] & {KIND_W{one[i]}});
+    end
+  endfunction
+  assign s_ready = |(room & kind_of_push);
+  assign s_place = {s_kind, pointer_of(write, kind_of_push)};
+
+  // ---- memory: one write port, one read port with its register
+  (* ram_style = "block", no_rw_check *)
+  reg [WIDTH-1:0] mem [0:(1<<PLACE_W)-1];
+  reg [PLACE_W-1:0] place_q;
+  reg [WIDTH-1:0] data_q;
+  assign m_place = place_q;
+  assign m_data  = data_q;
+
+  always @(posedge clk) if (push) mem[s_place] <= s_data;
+  always @(posedge clk) begin
+    if (look) place_q <= {code_of(kind), pointer_of(read, kind)};
+    data_q <= mem[place_q];
+  end
+
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_kind, !(look || pop) || (kind & (kind - {{KINDS{1'b0}}, 1'b1})) == {QUEUES{1'b0}})
+      `CCHIP_ASSERT(a_pop, !pop || |(kind & some))
+    end
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_dispatch_sequencer: which kind of pair goes where, and when its vertices are read. One pair
+// at a time: a kind is chosen among those that wait and that some taker with room serves, then one
+// of these takers, then the pair leaves its queue and its vertices are read, one per clock.
+//   takers       the slots and, last, the one that answers pairs nobody can test
+//   latency      4 clocks from `some` to `launch` in an idle dispatcher
+//   throughput   a pair every 3 clocks, of a kind with quads every 4
+//   fair         kinds take turns, and so do takers: a kind that can be dispatched waits for at most
+//                KINDS + 2 pairs of other kinds
+//   order        look (where is the head of `kind`?); a clock later launch, with m_vertex = 0; on the
+//                next clocks m_vertex = 1, 2 (and 3)
+//   data         what m_vertex reads arrives a clock later, together with m_valid, m_first and
+//                m_last; m_kind and m_taker are those of the pair until the next m_first
+//   cuts         every path: each output comes from flip-flops
+//   reset        nothing is dispatched
+module cchip_dispatch_sequencer #(
+    // takers, 2..5
+    parameter integer TAKERS = 2,
+    // kinds of pairs, 1..3
+    parameter integer KINDS = 3
+) (
+    input  wire                        clk,
+    input  wire                        rst,
+    // kind k at bit k; 0 is the illegal kind
+    input  wire [             KINDS:0] some,     // pairs wait
+    // taker t serves kind k: bit (KINDS + 1) * t + k
+    input  wire [TAKERS*(KINDS+1)-1:0] serves,
+    input  wire [          TAKERS-1:0] room,     // the taker has room for a pair
+    output wire [             KINDS:0] kind,     // one-hot
+    output wire                        look,
+    output wire                        launch,   // the pair leaves its queue
+    output wire [          TAKERS-1:0] grant,    // one-hot: its taker; 0 without launch
+    output wire [                 1:0] m_vertex,
+    output wire                        m_valid,
+    output wire                        m_first,
+    output wire                        m_last,
+    output wire [   `CCHIP_KIND_W-1:0] m_kind,
+    output wire [          TAKERS-1:0] m_taker   // one-hot
+);
+
+  localparam integer QUEUES = KINDS + 1;
+
+  generate
+    if (TAKERS < 2 || TAKERS > 5) begin : gen_illegal_takers
+      cchip_error_TAKERS_must_be_2_to_5 u_error ();
+    end
+    if (KINDS < 1 || KINDS > 3) begin : gen_illegal_kinds
+      cchip_error_KINDS_must_be_1_to_3 u_error ();
+    end
+  endgenerate
+
+  localparam [1:0] CHOOSE = 2'd0;  // a kind
+  localparam [1:0] TAKER = 2'd1;  // one of its takers
+  localparam [1:0] LAUNCH = 2'd2;
+  localparam [1:0] FOURTH = 2'd3;  // the fourth vertex takes a clock more
+  reg [1:0] state_q;
+
+  // ---- the kind whose turn it is, ahead of time: turn_q may be wrong by now, so the takers are asked
+  reg [QUEUES-1:0] possible_q, turn_q;
+  wire [QUEUES-1:0] possible, turn;
+  wire choose = state_q == CHOOSE && turn_q != {QUEUES{1'b0}};
+  wire next_turn = choose || turn_q == {QUEUES{1'b0}};
+  genvar k, t;
+  generate
+    for (k = 0; k < QUEUES; k = k + 1) begin : gen_possible
+      wire [TAKERS-1:0] able;
+      for (t = 0; t < TAKERS; t = t + 1) begin : gen_able
+        assign able[t] = serves[QUEUES*t+k] & room[t];
+      end
+      assign possible[k] = some[k] & (|able);
+    end
+  endgenerate
+
+  cchip_arbiter #(
+      .N(QUEUES)
+  ) u_kinds (
+      .clk    (clk),
+      .rst    (rst),
+      .request(possible_q),
+      .grant  (turn),
+      .take   (next_turn)
+  );
+
+  // ---- the takers that serve it
+  reg [TAKERS-1:0] asked_q;
+  wire [TAKERS-1:0] able, chosen;
+  generate
+    for (t = 0; t < TAKERS; t = t + 1) begin : gen_takers
+      assign able[t] = room[t] & (|(turn_q & some & serves[QUEUES*t+:QUEUES]));
+    end
+  endgenerate
+
+  cchip_arbiter #(
+      .N(TAKERS)
+  ) u_takers (
+      .clk    (clk),
+      .rst    (rst),
+      .request(asked_q),
+      .grant  (chosen),
+      .take   (state_q == TAKER)
+  );
+
+  // ---- sequence
+  reg [QUEUES-1:0] kind_q;
+  reg look_q, launch_q;
+  reg [TAKERS-1:0] grant_q;
+  wire four;  // kind_q has four vertices
+  generate
+    if (KINDS > 1) begin : gen_four
+      assign four = |kind_q[QUEUES-1:2];
+    end else begin : gen_three
+      assign four = 1'b0;
+    end
+  endgenerate
+
+  always @(posedge clk) begin
+    possible_q <= possible;
+    asked_q    <= able;
+    if (choose) kind_q <= turn_q;
+    if (rst) begin
+      state_q  <= CHOOSE;
+      turn_q   <= {QUEUES{1'b0}};
+      look_q   <= 1'b0;
+      launch_q <= 1'b0;
+      grant_q  <= {TAKERS{1'b0}};
+    end else begin
+      if (next_turn) turn_q <= turn;
+      look_q   <= choose;
+      launch_q <= state_q == TAKER && asked_q != {TAKERS{1'b0}};
+      grant_q  <= state_q == TAKER ? chosen : {TAKERS{1'b0}};
+      case (state_q)
+        CHOOSE: if (choose) state_q <= TAKER;
+        TAKER: state_q <= asked_q != {TAKERS{1'b0}} ? LAUNCH : CHOOSE;
+        LAUNCH: state_q <= four ? FOURTH : CHOOSE;
+        default: state_q <= CHOOSE;
+      endcase
+    end
+  end
+  assign kind   = kind_q;
+  assign look   = look_q;
+  assign launch = launch_q;
+  assign grant  = grant_q;
+
+  // ---- read
+  function [`CCHIP_KIND_W-1:0] code_of(input [QUEUES-1:0] one);
+    integer i;
+    begin
+      code_of = {`CCHIP_KIND_W{1'b0}};
+      for (i = 0; i < QUEUES; i = i + 1)
+        code_of = code_of | (i[`CCHIP_KIND_W-1:0] & {`CCHIP_KIND_W{one[i]}});
+    end
+  endfunction
+  reg [1:0] vertex_q;
+  reg four_q;  // the pair that is read has four vertices
+  reg valid_q, first_q, last_q;
+  reg [`CCHIP_KIND_W-1:0] m_kind_q;
+  reg [TAKERS-1:0] taker_q;
+  wire last = vertex_q == {1'b1, four_q};
+
+  always @(posedge clk) begin
+    first_q <= launch_q;
+    last_q  <= last;
+    if (launch_q) begin
+      four_q   <= four;
+      m_kind_q <= code_of(kind_q);
+      taker_q  <= grant_q;
+    end
+    if (rst) begin
+      vertex_q <= 2'd0;
+      valid_q  <= 1'b0;
+    end else begin
+      if (launch_q || vertex_q != 2'd0) vertex_q <= last && !launch_q ? 2'd0 : vertex_q + 2'd1;
+      valid_q <= launch_q || vertex_q != 2'd0;
+    end
+  end
+  assign m_vertex = vertex_q;
+  assign m_valid  = valid_q;
+  assign m_first  = first_q;
+  assign m_last   = last_q;
+  assign m_kind   = m_kind_q;
+  assign m_taker  = taker_q;
+
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_launch, !launch_q || (vertex_q == 2'd0 && state_q == LAUNCH))
+      `CCHIP_ASSERT(a_grant, launch_q == (grant_q != {TAKERS{1'b0}}))
+      `CCHIP_ASSERT(a_one, (grant_q & (grant_q - {{TAKERS - 1{1'b0}}, 1'b1})) == {TAKERS{1'b0}})
+    end
+
+endmodule
+`default_nettype wire

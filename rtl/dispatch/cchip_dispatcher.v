@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_dispatcher: gives the pairs that wait in queues of descriptors to the slots whose module can
+// answer for their kind, and collects the answers. A pair of the illegal kind 0, or of a kind that
+// nobody provides, is answered as an open pair (see cchip_slot_ledger), and so is a pair that a swap
+// by force gives up: every pair that enters the queues is answered exactly once.
+//   serves       module m answers for the kinds 1..m: a test of quads takes a triangle as a quad
+//   latency      5 clocks from `some` to m_vertex_valid of an idle dispatcher; 7 clocks from a
+//                slot's result to m_result
+//   throughput   a pair every 3 clocks, of a kind with quads every 4; an answer every clock
+//   credit       no ready runs back from a slot: at most CREDIT of its pairs lie between dispatch
+//                and answer
+//   fair         kinds take turns, and so do slots; answers leave in turn
+//   cuts         every path: each output comes from flip-flops
+//   reset        no pair inside any slot, no answer
+module cchip_dispatcher #(
+    // slots, 1..4
+    parameter integer SLOTS = 2,
+    // kinds of pairs, 1..3
+    parameter integer KINDS = 3,
+    // most pairs between dispatch and answer for each slot, 1..256, at most CONTEXTS of each module
+    parameter integer CREDIT = 42
+) (
+    input  wire                                  clk,
+    input  wire                                  rst,
+    // queues: kind k at bit k; see cchip_dispatch_sequencer
+    input  wire [                       KINDS:0] some,
+    output wire [                       KINDS:0] kind,
+    output wire                                  look,
+    output wire                                  pop,
+    output wire [                           1:0] vertex,
+    input  wire [       `CCHIP_DESCRIPTOR_W-1:0] descriptor,   // 1 clock after pop, for 2 clocks
+    input  wire [                       KINDS:1] no_provider,  // nobody can serve the kind
+    // to the slots: record VERTEX but for its vertices, which go with it
+    output wire [                     SLOTS-1:0] m_vertex_valid,
+    output wire                                  m_vertex_first,
+    output wire                                  m_vertex_last,
+    output wire [  SLOTS*`CCHIP_PAIR_ID_W-1:0]   m_vertex_id,
+    // from the slots: records SLOT_RESULT, the module in each slot, 0: none
+    input  wire [                     SLOTS-1:0] s_result_valid,
+    input  wire [SLOTS*`CCHIP_SLOT_RESULT_W-1:0] s_result_data,
+    input  wire [       SLOTS*`CCHIP_KIND_W-1:0] slot_module,
+    // answers
+    output wire                                  m_result_valid,
+    input  wire                                  m_result_ready,
+    output wire [             `CCHIP_KIND_W-1:0] m_result_kind,
+    output wire [           `CCHIP_RESULT_W-1:0] m_result_data,
+    // swaps
+    input  wire [                     SLOTS-1:0] stop,
+    output wire [                     SLOTS-1:0] quiet,
+    input  wire [                     SLOTS-1:0] decouple,
+    output wire [                     SLOTS-1:0] decoupled,
+    output wire [ SLOTS*`CCHIP_PAIR_COUNT_W-1:0] outstanding,
+    output wire [ SLOTS*`CCHIP_PAIR_COUNT_W-1:0] lost,
+    // events, one clock: an answer of this module left, 0: of nobody; a pair of kind 0, or one that
+    // nobody provides, was taken
+    output wire                                  answered,
+    output wire [             `CCHIP_KIND_W-1:0] answered_module,
+    output wire                                  refused_kind,
+    output wire                                  refused_provider
+);
+
+  localparam integer KIND_W = `CCHIP_KIND_W;
+  localparam integer QUEUES = KINDS + 1;
+  localparam integer TAKERS = SLOTS + 1;  // the last one answers at once
+  localparam integer ANSWER_W = `CCHIP_ANSWER_W;
+
+  generate
+    if (SLOTS < 1 || SLOTS > 4) begin : gen_illegal
+      cchip_error_SLOTS_must_be_1_to_4 u_error ();
+    end
+  endgenerate
+
+  // ---- who serves what
+  reg [TAKERS*QUEUES-1:0] serves_q;
+  wire [SLOTS-1:0] open;
+  wire [TAKERS-1:0] room, grant, taker;
+  genvar s, k;
+  generate
+    for (k = 0; k < QUEUES; k = k + 1) begin : gen_serves
+      localparam [31:0] KIND = k;
+      wire [SLOTS-1:0] able;
+      for (s = 0; s < SLOTS; s = s + 1) begin : gen_slots
+        assign able[s] = k > 0 && slot_module[KIND_W*s+:KIND_W] >= KIND[KIND_W-1:0];
+        always @(posedge clk) serves_q[QUEUES*s+k] <= able[s] & open[s] & ~stop[s];
+      end
+      if (k == 0) begin : gen_illegal_kind
+        always @(posedge clk) serves_q[QUEUES*SLOTS+k] <= 1'b1;
+      end else begin : gen_kind
+        always @(posedge clk) serves_q[QUEUES*SLOTS+k] <= no_provider[k] & ~(|able);
+      end
+    end
+  endgenerate
+
+  wire [KIND_W-1:0] kind_of_pair;
+  wire vertex_valid;
+  cchip_dispatch_sequencer #(
+      .TAKERS(TAKERS),
+      .KINDS (KINDS)
+  ) u_sequencer (
+      .clk     (clk),
+      .rst     (rst),
+      .some    (some),
+      .serves  (serves_q),
+      .room    (room),
+      .kind    (kind),
+      .look    (look),
+      .launch  (pop),
+      .grant   (grant),
+      .m_vertex(vertex),
+      .m_valid (vertex_valid),
+      .m_first (m_vertex_first),
+      .m_last  (m_vertex_last),
+      .m_kind  (kind_of_pair),
+      .m_taker (taker)
+  );
+  assign m_vertex_valid = taker[SLOTS-1:0] & {SLOTS{vertex_valid}};
+
+  // ---- slots
+  wire [TAKERS-1:0] answer_valid, answer_ready;
+  wire [TAKERS*ANSWER_W-1:0] answer;
+  generate
+    for (s = 0; s < SLOTS; s = s + 1) begin : gen_ledgers
+      cchip_slot_ledger #(
+          .CREDIT(CREDIT)
+      ) u_ledger (
+          .clk           (clk),
+          .rst           (rst),
+          .open          (open[s]),
+          .room          (room[s]),
+          .grant         (grant[s]),
+          .id            (m_vertex_id[`CCHIP_PAIR_ID_W*s+:`CCHIP_PAIR_ID_W]),
+          .s_tag         (descriptor[`CCHIP_DESCRIPTOR_TAG]),
+          .s_kind        (kind_of_pair),
+          .s_result_valid(s_result_valid[s]),
+          .s_result_data (s_result_data[`CCHIP_SLOT_RESULT_W*s+:`CCHIP_SLOT_RESULT_W]),
+          .module_id     (slot_module[KIND_W*s+:KIND_W]),
+          .m_valid       (answer_valid[s]),
+          .m_ready       (answer_ready[s]),
+          .m_data        (answer[ANSWER_W*s+:ANSWER_W]),
+          .stop          (stop[s]),
+          .quiet         (quiet[s]),
+          .decouple      (decouple[s]),
+          .decoupled     (decoupled[s]),
+          .outstanding   (outstanding[`CCHIP_PAIR_COUNT_W*s+:`CCHIP_PAIR_COUNT_W]),
+          .lost          (lost[`CCHIP_PAIR_COUNT_W*s+:`CCHIP_PAIR_COUNT_W])
+      );
+    end
+  endgenerate
+
+  // ---- pairs that nobody can test, one at a time
+  reg refusing_q, refused_q;  // one was taken; its tag is here
+  reg [`CCHIP_TAG_W-1:0] refused_tag_q;
+  reg [KIND_W-1:0] refused_kind_q;
+  reg refused_illegal_q, refused_provider_q;
+  reg granted_q;
+  always @(posedge clk) begin
+    granted_q          <= ~rst & grant[SLOTS];
+    refused_illegal_q  <= ~rst & grant[SLOTS] & kind[0];
+    refused_provider_q <= ~rst & grant[SLOTS] & ~kind[0];
+    if (granted_q) refused_tag_q <= descriptor[`CCHIP_DESCRIPTOR_TAG];
+    if (granted_q) refused_kind_q <= kind_of_pair;
+    refusing_q <= ~rst & (grant[SLOTS] | (refusing_q & ~(refused_q & answer_ready[SLOTS])));
+    refused_q  <= ~rst & (granted_q | (refused_q & ~answer_ready[SLOTS]));
+  end
+  assign room[SLOTS] = ~refusing_q;
+  assign answer_valid[SLOTS] = refused_q;
+  wire [`CCHIP_RESULT_W-1:0] refused_result =
+      `CCHIP_RESULT_OF(refused_tag_q, 1'b1, 1'b1, 1'b0, {`CCHIP_AXIS_ILLEGAL, 6'd0}, 6'd0);
+  assign answer[ANSWER_W*SLOTS+:ANSWER_W] =
+      `CCHIP_ANSWER_OF(refused_result, refused_kind_q, {KIND_W{1'b0}});
+  assign refused_kind = refused_illegal_q;
+  assign refused_provider = refused_provider_q;
+
+  // ---- answers
+  wire [KIND_W-1:0] module_of_answer;
+  reg answered_q;
+  reg [KIND_W-1:0] answered_module_q;
+  cchip_result_merge #(
+      .SOURCES(TAKERS),
+      .WIDTH  (ANSWER_W)
+  ) u_merge (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(answer_valid),
+      .s_ready(answer_ready),
+      .s_data (answer),
+      .m_valid(m_result_valid),
+      .m_ready(m_result_ready),
+      .m_data (`CCHIP_ANSWER_OF(m_result_data, m_result_kind, module_of_answer))
+  );
+  always @(posedge clk) begin
+    answered_q        <= ~rst & m_result_valid & m_result_ready;
+    answered_module_q <= module_of_answer;
+  end
+  assign answered = answered_q;
+  assign answered_module = answered_module_q;
+
+  wire unused = &{1'b0, descriptor[`CCHIP_DESCRIPTOR_ERR], descriptor[`CCHIP_DESCRIPTOR_MODE], taker[SLOTS]};
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// The dispatcher between queues and slots played by the test: every pair is answered once, by a slot that serves its kind
+// or as an open one.
+#include <deque>
+#include <map>
+#include <models/cchip_dispatcher.hpp>
+
+#include "bench.hpp"
+
+using namespace cchip;
+using namespace cchip::test;
+
+namespace {
+
+struct WaitingPair {
+  std::uint16_t tag;
+  int kind;
+};
+
+template <class Config>
+class DispatcherBench {
+ public:
+  static constexpr int slots = Config::SLOTS;
+
+  DispatcherBench(sim::Simulation<typename Config::Model>& s, Random& r) : simulation(s), top(s.top()), random(r) {
+    top.some = top.no_provider = top.stop = top.decouple = 0;
+    top.s_result_valid = 0;
+    top.m_result_ready = 1;
+    put_modules();
+    simulation.reset();
+    for (int i = 0; i < Config::CREDIT + 10; ++i) simulation.step();
+  }
+  void push(int kind) {
+    while (open_.count(next_tag_) != 0) ++next_tag_;
+    queues[static_cast<std::size_t>(kind)].push_back({next_tag_, kind});
+    open_[next_tag_++] = kind;
+  }
+  /// \param results percent of the clocks on which each slot answers
+  void clock(int results, int ready) {
+    unsigned some = 0;
+    for (unsigned k = 0; k < 4; ++k) some |= queues[k].empty() ? 0 : 1U << k;
+    top.some = static_cast<CData>(some);
+    top.m_result_ready = chance(random, ready) ? 1 : 0;
+    sim::set_random(top.descriptor, defs::descriptor_w, random);
+    if (popped_clocks_ < 2) sim::set_bits(top.descriptor, defs::descriptor_tag.lsb, defs::descriptor_tag.width, popped_.tag);
+    if (popped_clocks_ < 2) ++popped_clocks_;
+    for (int s = 0; s < slots; ++s) {
+      auto& inside = slots_[static_cast<std::size_t>(s)];
+      std::uint64_t word = random();
+      bool valid = false;
+      if (!inside.pairs.empty() && inside.connected && chance(random, results)) {
+        auto it = inside.pairs.begin();
+        std::advance(it, static_cast<std::ptrdiff_t>(random() % inside.pairs.size()));
+        word = (word & ~std::uint64_t{255}) | static_cast<std::uint64_t>(it->first);
+        inside.pairs.erase(it);
+        valid = true;
+      }
+      sim::set_bits(top.s_result_data, defs::slot_result_w * s, defs::slot_result_w,
+                    word & ((std::uint64_t{1} << defs::slot_result_w) - 1));
+      sim::set_bits(top.s_result_valid, s, 1, valid ? 1 : 0);
+    }
+    simulation.settle();
+    if (top.pop != 0) {
+      unsigned kind = 0;
+      while ((top.kind >> kind & 1U) == 0) ++kind;
+      REQUIRE(unsigned{top.kind} == 1U << kind);
+      REQUIRE(!queues[kind].empty());
+      popped_ = queues[kind].front();
+      queues[kind].pop_front();
+      popped_clocks_ = 0;
+    }
+    for (int s = 0; s < slots; ++s) {
+      if ((top.m_vertex_valid >> s & 1U) == 0) continue;
+      REQUIRE(unsigned{top.m_vertex_valid} == 1U << s);
+      auto& inside = slots_[static_cast<std::size_t>(s)];
+      if (top.m_vertex_first != 0) {
+        vertices_ = 0;
+        REQUIRE(popped_.kind > 0);
+        REQUIRE(inside.module_id >= popped_.kind);  // it can answer for this kind
+        inside.next = static_cast<int>(sim::get_bits(top.m_vertex_id, defs::pair_id_w * s, defs::pair_id_w));
+      }
+      ++vertices_;
+      if (top.m_vertex_last == 0) continue;
+      REQUIRE(vertices_ == (popped_.kind >= 2 ? 4 : 3));
+      if (inside.connected) REQUIRE(inside.pairs.emplace(inside.next, popped_.kind).second);
+    }
+    if (top.m_result_valid != 0 && top.m_result_ready != 0) {
+      const auto get = [&](defs::Field f) { return sim::get_bits(top.m_result_data, f.lsb, f.width); };
+      const auto it = open_.find(static_cast<std::uint16_t>(get(defs::result_tag)));
+      REQUIRE(it != open_.end());
+      REQUIRE(it->second == int{top.m_result_kind});
+      ++answers;
+      last_open = get(defs::result_hit) == 1 && get(defs::result_grid) == 1 && get(defs::result_definite) == 0 &&
+                  get(defs::result_axis) == static_cast<std::uint64_t>(AxisClass::illegal) << 6 &&
+                  get(defs::result_beats) == 0;
+      opens += last_open ? 1 : 0;
+      if (it->second == 0) REQUIRE(last_open);
+      open_.erase(it);
+    }
+    counted += top.answered;
+    by_nobody += top.answered != 0 && top.answered_module == 0 ? 1 : 0;
+    illegal += top.refused_kind;
+    unprovided += top.refused_provider;
+    simulation.rise();
+  }
+  void put_modules() {
+    for (int s = 0; s < slots; ++s) {
+      sim::set_bits(top.slot_module, 2 * s, 2, static_cast<std::uint64_t>(slots_[static_cast<std::size_t>(s)].module_id));
+    }
+  }
+  /// A module in a slot, or none; pairs inside it are gone.
+  void load(int slot, int module_id) {
+    auto& s = slots_[static_cast<std::size_t>(slot)];
+    s.module_id = module_id;
+    s.connected = module_id != 0;
+    if (module_id == 0) s.pairs.clear();
+    put_modules();
+  }
+  int module_in(int slot) const { return slots_[static_cast<std::size_t>(slot)].module_id; }
+  std::size_t open() const { return open_.size(); }
+
+  sim::Simulation<typename Config::Model>& simulation;
+  typename Config::Model& top;
+  Random& random;
+  std::array<std::deque<WaitingPair>, 4> queues;
+  std::uint64_t answers = 0, opens = 0, counted = 0, by_nobody = 0, illegal = 0, unprovided = 0;
+  bool last_open = false;
+
+ private:
+  struct Slot {
+    int module_id = 0;
+    bool connected = false;
+    std::map<int, int> pairs;  // kind by number
+    int next = 0;
+  };
+  std::array<Slot, 4> slots_{};
+  std::map<std::uint16_t, int> open_;  // kind by tag
+  std::uint16_t next_tag_ = 0;
+  WaitingPair popped_{};
+  int popped_clocks_ = 2;
+  int vertices_ = 0;
+};
+
+}  // namespace
+
+TEMPLATE_LIST_TEST_CASE("cchip_dispatcher: every pair is answered once, whatever is exchanged by force or not",
+                        "[unit][cchip_dispatcher]", cchip_dispatcher_configs) {
+  constexpr int slots = TestType::SLOTS;
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
+    DispatcherBench<TestType> bench(simulation, random);
+    auto& top = bench.top;
+    std::uint64_t pushed = 0, given_up = 0;
+    for (int s = 0; s < slots; ++s) bench.load(s, 1 + s % 3);
+    for (int round = 0; round < 60; ++round) {
+      for (int clock = static_cast<int>(random() % 300); clock > 0; --clock) {
+        if (chance(random, 30)) {
+          bench.push(static_cast<int>(random() % 4));
+          ++pushed;
+        }
+        bench.clock(15, 80);
+      }
+      // a slot is exchanged, by force or when it is quiet
+      const int slot = static_cast<int>(random() % slots);
+      top.stop = static_cast<CData>(1U << slot);
+      const bool force = chance(random, 50);
+      int clocks = 0;
+      do {
+        bench.clock(15, 80);
+        REQUIRE(++clocks < 5000);
+      } while (!force && (top.quiet >> slot & 1U) == 0);
+      top.decouple = top.stop;
+      bench.clock(0, 80);
+      bench.load(slot, 0);
+      while ((top.decoupled >> slot & 1U) == 0) {
+        bench.clock(15, 80);
+        REQUIRE(++clocks < 6000);
+      }
+      const auto lost = sim::get_bits(top.lost, defs::pair_count_w * slot, defs::pair_count_w);
+      if (!force) REQUIRE(lost == 0);
+      given_up += lost;
+      top.decouple = 0;
+      bench.clock(15, 80);
+      bench.load(slot, 1 + static_cast<int>(random() % 3));
+      top.stop = 0;
+    }
+    for (int s = 0; s < slots; ++s) bench.load(s, 3);
+    for (int clock = 0; bench.open() > 0; ++clock) {
+      REQUIRE(clock < 200000);
+      bench.clock(30, 100);
+    }
+    for (int clock = 0; clock < 50; ++clock) bench.clock(30, 100);
+    REQUIRE(bench.answers == pushed);
+    REQUIRE(bench.counted == pushed);
+    REQUIRE(bench.by_nobody == bench.illegal + given_up);
+    REQUIRE(bench.illegal > 100);
+    REQUIRE(given_up > 20);
+    REQUIRE(bench.unprovided == 0);
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_dispatcher: a kind that nobody provides is left open, the others are tested",
+                        "[unit][cchip_dispatcher]", cchip_dispatcher_configs) {
+  constexpr int slots = TestType::SLOTS;
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
+    DispatcherBench<TestType> bench(simulation, random);
+    for (int s = 0; s < slots; ++s) bench.load(s, 1);
+    bench.top.no_provider = 4;  // kind 3; kind 2 waits for a bitstream
+    for (int i = 0; i < 90; ++i) bench.push(1 + i % 3);
+    for (int clock = 0; clock < 4000; ++clock) bench.clock(30, 100);
+    REQUIRE(bench.open() == 30);
+    REQUIRE(bench.unprovided == 30);
+    REQUIRE(bench.by_nobody == 30);
+    REQUIRE(bench.queues[2].size() == 30);
+    bench.load(0, 2);
+    for (int clock = 0; clock < 4000; ++clock) bench.clock(30, 100);
+    REQUIRE(bench.open() == 0);
+    REQUIRE(bench.by_nobody == 30);
+  });
+}
