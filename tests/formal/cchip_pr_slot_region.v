@@ -10,19 +10,17 @@ module cchip_pr_region #(
     parameter integer ABSOLUTE_PROJECTION = 0,
     parameter integer WARPED_EXACT = 1
 ) (
-    input  wire                                 clk,
-    input  wire                                 rst,
-    input  wire                                 s_pair_valid,
-    output wire                                 s_pair_ready,
-    input  wire [`CCHIP_REQUEST_W(COORD_W)-1:0] s_pair_data,
-    output wire                                 m_result_valid,
-    input  wire                                 m_result_ready,
-    output wire [          `CCHIP_RESULT_W-1:0] m_result_data,
-    output wire [           `CCHIP_RM_ID_W-1:0] rm_id,
-    output wire                                 idle
+    input  wire                                clk,
+    input  wire                                rst,
+    input  wire                                s_vertex_valid,
+    input  wire [`CCHIP_VERTEX_W(COORD_W)-1:0] s_vertex_data,
+    output wire                                m_result_valid,
+    output wire [    `CCHIP_SLOT_RESULT_W-1:0] m_result_data,
+    output wire [          `CCHIP_RM_ID_W-1:0] rm_id,
+    output wire                                idle
 );
-  (* anyseq *) wire [`CCHIP_RESULT_W+2:0] any;
-  assign {s_pair_ready, m_result_valid, m_result_data, idle} = any;
+  (* anyseq *) wire [`CCHIP_SLOT_RESULT_W+1:0] any;
+  assign {m_result_valid, m_result_data, idle} = any;
   assign rm_id = {rst, 7'd1};
 endmodule
 `default_nettype wire

@@ -53,8 +53,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_arbiter: grant is the model's on every clock; nob
         const unsigned grant = top.grant;
         REQUIRE(grant == model.grant(request));
         for (std::size_t i = 0; i < n; ++i) {
+          others[i] += take && grant != 0 ? 1 : 0;
           if ((request >> i & 1U) == 0 || (grant >> i & 1U) != 0 || reset) others[i] = 0;
-          others[i] += take && grant != 0 && (grant >> i & 1U) == 0 && (request >> i & 1U) != 0 ? 1 : 0;
           REQUIRE(others[i] < TestType::N);
         }
         model.clock(request, take);
