@@ -154,7 +154,7 @@ module cchip_swap_sequencer #(
 
   reg quiet_q, decoupled_q, roc_busy_q, match_q;  // match: the region shows the module asked for
   reg same_q, illegal_q;
-  reg [31:0] last_byte_q;
+  wire [32:0] past = {1'b0, address_q} + {1'b0, size_q};  // the byte behind the file
   (* ASYNC_REG = "TRUE" *) reg [1:0] cfg_error_q;
   always @(posedge clk) begin
     quiet_q <= |(quiet & mine);
@@ -162,9 +162,9 @@ module cchip_swap_sequencer #(
     roc_busy_q <= |(roc_busy & mine);
     match_q <= shown == module_q;
     same_q <= ~decoupled_q & match_q;
-    last_byte_q <= address_q + size_q - 32'd1;
     illegal_q <= mine == {SLOTS{1'b0}} || module_q > `CCHIP_RM_QUAD_QUAD
-        || address_q[5:0] != 6'd0 || size_q == 32'd0 || last_byte_q < address_q;
+        || address_q[5:0] != 6'd0 || size_q == 32'd0
+        || (past[32] && past[31:0] != 32'd0);
     cfg_error_q <= {cfg_error_q[0], cfg_error};
   end
 
@@ -174,12 +174,13 @@ module cchip_swap_sequencer #(
   reg [31:0] clocks_q;
   reg [4:0] ticks_q;  // stops at 31
   reg expired_q;
-  wire [31:0] bound = state != SHUTDOWN ? LIMIT : shutdown_limit
-      | (shutdown_limit == 32'd0 ? `CCHIP_SHUTDOWN_LIMIT_DEFAULT : 32'd0);
+  wire [31:0] shutdown_bound =
+      shutdown_limit | (shutdown_limit == 32'd0 ? `CCHIP_SHUTDOWN_LIMIT_DEFAULT : 32'd0);
   always @(posedge clk) begin
     clocks_q <= turns ? 32'd1 : clocks_q + 32'd1;
     ticks_q <= moves ? 5'd0 : ticks_q + {4'd0, ~&ticks_q};
-    expired_q <= !turns && clocks_q >= bound;
+    expired_q <= !turns
+        && (state == SHUTDOWN ? clocks_q >= shutdown_bound : clocks_q >= LIMIT);
   end
 
   // ---- abort: kept until a state takes notice, dropped with the swap

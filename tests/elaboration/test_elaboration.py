@@ -61,8 +61,8 @@ FETCH = "cchip_error_bitstream_fetch_FIFO_DEPTH_below_32"
 SLOT_LIMIT = "cchip_error_SLOT_LIMIT_below_16"
 COUNT_W = "cchip_error_COUNT_W_must_be_1_to_16"
 PORT = "cchip_error_config_port_CFG_W_must_be_8_or_32_and_CFG_DIVIDER_above_0"
-SLOTS = "cchip_error_SLOTS_must_be_1_or_2"
-SLOTS_4 = "cchip_error_SLOTS_must_be_1_to_4"
+SLOTS = "cchip_error_SLOTS_must_be_1_to_4"
+TWO_SLOTS = "cchip_error_SLOTS_must_be_1_or_2"
 SIGN = "cchip_error_SIGN_must_be_below_POINTS"
 COMPARE = "cchip_error_compare_POINTS_must_be_3_to_5_and_OWN_1_or_2"
 RAM = "cchip_error_ram_WIDTH_or_DEPTH_below_1_or_ADDR_W_too_small"
@@ -132,12 +132,14 @@ ILLEGAL = [
     *(("cchip_dispatch_sequencer", {"TAKERS": n}, TAKERS) for n in (1, 6)),
     *(("cchip_dispatch_sequencer", {"KINDS": n}, KINDS) for n in (0, 4)),
     *(("cchip_slot_ledger", {"CREDIT": n}, CREDIT) for n in (0, 257)),
-    *((module, {"SLOTS": n}, SLOTS_4) for module in ("cchip_dispatcher", "cchip_swap_scheduler") for n in (0, 5)),
-    ("cchip_primtest_subsystem", {"SLOTS": 3}, SLOTS),
+    *((module, {"SLOTS": n}, SLOTS) for module in ("cchip_dispatcher", "cchip_swap_scheduler") for n in (0, 5)),
+    ("cchip_primtest_subsystem", {"SLOTS": 3}, TWO_SLOTS),
     *(("cchip_result_merge", {"SOURCES": n}, MERGE) for n in (1, 9)),
     ("cchip_crc32", {"DATA_W": 12}, CRC),
     ("cchip_bitstream_fetch", {"FIFO_DEPTH": 31}, FETCH),
-    ("cchip_swap_sequencer", {"SLOTS": 3}, SLOTS),
+    ("cchip_swap_sequencer", {"SLOTS": 5}, SLOTS),
+    ("cchip_swap_retry", {"SLOTS": 0}, SLOTS),
+    ("cchip_swap_retry", {"SLOTS": 5}, SLOTS),
     ("cchip_swap_sequencer", {"SLOT_LIMIT": 15}, SLOT_LIMIT),
     ("cchip_swap_scheduler", {"COUNT_W": 17}, COUNT_W),
     ("cchip_config_port", {"CFG_W": 16}, PORT),

@@ -73,7 +73,7 @@ MUTANTS = [
     ("cchip_swap_sequencer prove", SEQUENCER, "next = CHECK;", "next = PULSE;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "(hold_reset_q | (on_pass & {SLOTS{set_hold}})", "(hold_reset_q | {SLOTS{passes & set_hold}}"),
     ("cchip_swap_sequencer prove", SEQUENCER, "& ~(on_pass & {SLOTS{start_roc}});", "& ~(on_pass & {SLOTS{recouple}});"),
-    ("cchip_swap_sequencer prove", SEQUENCER, "expired_q <= !turns && clocks_q >= bound;", "expired_q <= !turns && abort_q;"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "(state == SHUTDOWN ? clocks_q >= shutdown_bound : clocks_q >= LIMIT);", "abort_q;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "done = decoupled_q;", "done = quiet_q;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "refuse_q <= (accept & ~idle) | (refuse_q & reports);", "refuse_q <= accept & ~idle;"),
     ("cchip_bitstream_fetch bounded", FETCH, "wire [4:0] to_edge = 5'd16 - {1'b0, addr_q[5:2]};", "wire [4:0] to_edge = 5'd16;"),

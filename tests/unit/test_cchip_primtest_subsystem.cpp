@@ -264,6 +264,11 @@ CCHIP_CASE("a read that comes too late costs time, not the bitstreams: header ne
 CCHIP_CASE("faults on the way leave the entry; the scheduler tries again, later and later, until one ends well") {
   with_wave([](const sim::SimulationOptions& options) {
     System<TestType> s(options, true);
+    std::uint32_t entries = s.all_entries;
+    for (int slot = 1; slot < TestType::SLOTS; ++slot) {  // one entry alone brings the kind
+      s.write(regs::bitstream_valid::offset(s.entry(slot, 2)), 0);
+      entries &= ~(1U << s.entry(slot, 2));
+    }
     s.memory.set_fault([](std::vector<sim::AxiBeat>& burst) { burst.back().response = sim::AxiResponse::slave_error; });
     for (int i = 0; i < 6; ++i) s.push(2);
     const std::size_t before = s.reports.size();
@@ -277,7 +282,7 @@ CCHIP_CASE("faults on the way leave the entry; the scheduler tries again, later 
       REQUIRE(rest > least);
       REQUIRE(rest < least + 700);  // the rest, the age that starts again, a scan, the header
     }
-    REQUIRE(s.announced() == s.all_entries);
+    REQUIRE(s.announced() == entries);
     s.memory.set_fault({});
     s.finish();
     REQUIRE(s.account.refused == 0);
