@@ -206,7 +206,7 @@ module cchip_config_controller #(
       .rst         (rst),
       .clear       (clear),
       .phase       (phase),
-      .clocks      (clocks),
+      .elapsed     (clocks),
       .report_valid(m_report_valid),
       .report_code (m_report_data[`CCHIP_SWAP_REPORT_CODE]),
       .stall       (stall),

@@ -12,7 +12,7 @@ module cchip_swap_counters (
     input  wire                      rst,
     input  wire                      clear,
     input  wire [`CCHIP_PHASE_W-1:0] phase,
-    input  wire [              31:0] clocks,       // in this phase, 1 on the first
+    input  wire [              31:0] elapsed,      // clocks in this phase, 1 on the first
     input  wire                      report_valid,
     input  wire [ `CCHIP_SWAP_W-1:0] report_code,
     input  wire                      stall,
@@ -43,7 +43,7 @@ module cchip_swap_counters (
 
   always @(posedge clk) begin
     phase_q  <= phase;
-    clocks_q <= clocks;
+    clocks_q <= elapsed;
     first_q <= phase_q == `CCHIP_PHASE_IDLE && phase != `CCHIP_PHASE_IDLE;
     for (p = 0; p < 10; p = p + 1) in_q[p] <= phase == p[`CCHIP_PHASE_W-1:0];
     for (p = 1; p < 10; p = p + 1)

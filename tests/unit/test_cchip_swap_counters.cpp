@@ -26,7 +26,7 @@ TEST_CASE("cchip_swap_counters: counts of random swaps", "[unit][cchip_swap_coun
         clocks[phase - 1] = 1 + random() % 20;
         top.phase = static_cast<CData>(phase);
         for (std::uint64_t clock = 0; clock < clocks[phase - 1]; ++clock) {
-          top.clocks = static_cast<IData>(clock + 1);
+          top.elapsed = static_cast<IData>(clock + 1);
           top.report_valid = chance(random, 10) ? 1 : 0;
           top.report_code = static_cast<CData>(random() % 16);
           top.stall = static_cast<CData>(random() % 2);
