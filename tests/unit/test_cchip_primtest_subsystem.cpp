@@ -225,6 +225,7 @@ CCHIP_CASE("an abort while a slow memory brings the header: the bitstream stays,
     for (const std::uint64_t wait : {1, 20, 200}) {
       INFO("abort " << wait << " clocks after the beginning");
       System<TestType> s(options, true);
+      s.only_triangles();
       sim::AxiMemoryOptions slow;
       slow.latency = 300;
       s.memory.set_options(slow);
@@ -246,9 +247,10 @@ CCHIP_CASE("an abort while a slow memory brings the header: the bitstream stays,
 CCHIP_CASE("a read that comes too late costs time, not the bitstreams: header never read, entry kept") {
   with_wave([](const sim::SimulationOptions& options) {
     System<TestType> s(options, true);
+    s.only_triangles();
     s.memory.stop_after(0);
     for (int i = 0; i < 6; ++i) s.push(2);
-    for (int i = 0; i < 6; ++i) s.push(TestType::SLOTS == 1 ? 3 : 1);
+    for (int i = 0; i < 6; ++i) s.push(3);
     s.simulation.run_until([&] { return s.count(SwapCode::memory) == 1; }, 5000, "the end of the limit");
     s.steps(3000);
     REQUIRE(s.count(SwapCode::owed) >= 2);
@@ -264,10 +266,14 @@ CCHIP_CASE("a read that comes too late costs time, not the bitstreams: header ne
 CCHIP_CASE("faults on the way leave the entry; the scheduler tries again, later and later, until one ends well") {
   with_wave([](const sim::SimulationOptions& options) {
     System<TestType> s(options, true);
+    s.only_triangles();
     std::uint32_t entries = s.all_entries;
-    for (int slot = 1; slot < TestType::SLOTS; ++slot) {  // one entry alone brings the kind
-      s.write(regs::bitstream_valid::offset(s.entry(slot, 2)), 0);
-      entries &= ~(1U << s.entry(slot, 2));
+    for (int slot = 0; slot < TestType::SLOTS; ++slot) {  // one entry alone brings the kind
+      for (const int module_id : {2, 3}) {
+        if (slot == 0 && module_id == 2) continue;
+        s.write(regs::bitstream_valid::offset(s.entry(slot, module_id)), 0);
+        entries &= ~(1U << s.entry(slot, module_id));
+      }
     }
     s.memory.set_fault([](std::vector<sim::AxiBeat>& burst) { burst.back().response = sim::AxiResponse::slave_error; });
     for (int i = 0; i < 6; ++i) s.push(2);
