@@ -3,7 +3,8 @@
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
 // cchip_operand_memory: the vertices of the pairs that wait, in block RAM: one vertex of A and one
-// of B per word, four words a pair, at the place of the pair's descriptor (cchip_descriptor_queues).
+// of B per word, four words a pair, at the place of the pair's descriptor
+// (cchip_descriptor_queues).
 //   write        the pair on s_pair, which holds still, is written one vertex per clock: 3 clocks
 //                for triangles and for the illegal kind 0, 4 with quads; s_pair_ready is 1 on the
 //                last of them, s_ready says that there is room for its kind
