@@ -58,8 +58,8 @@ module cchip_dispatch_sequencer #(
   localparam [1:0] FOURTH = 2'd3;  // the fourth vertex takes a clock more
   reg [1:0] state_q;
 
-  // ---- the kind whose turn it is, ahead of time: turn_q may be out of date when it is used, so the
-  // takers are asked again below
+  // ---- the kind whose turn it is, ahead of time: turn_q may be out of date when it is used, so
+  // the takers are asked again below
   reg [QUEUES-1:0] possible_q, turn_q;
   wire [QUEUES-1:0] possible, turn;
   wire choose = state_q == CHOOSE && turn_q != {QUEUES{1'b0}};
