@@ -6,8 +6,8 @@
 //   latency      1 clock from up or down to count, some and room
 //   cuts         every path: each output is a flip-flop
 //   reset        count 0, some 0, room 1
-//   rules        up only while room = 1, down only while some = 1; both on one clock leave the count
-//                as it is
+//   rules        up only while room = 1, down only while some = 1; both on one clock leave the
+//                count as it is
 module cchip_count #(
     // most things inside, 1..65535
     parameter integer LIMIT = 16

@@ -96,7 +96,8 @@ module cchip_descriptor_queues #(
     integer i;
     begin
       pointer_of = {PTR_W{1'b0}};
-      for (i = 0; i < QUEUES; i = i + 1) pointer_of = pointer_of | (of[PTR_W*i+:PTR_W] & {PTR_W{one[i]}});
+      for (i = 0; i < QUEUES; i = i + 1)
+        pointer_of = pointer_of | (of[PTR_W*i+:PTR_W] & {PTR_W{one[i]}});
     end
   endfunction
   function [KIND_W-1:0] code_of(input [QUEUES-1:0] one);
@@ -125,7 +126,8 @@ module cchip_descriptor_queues #(
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_kind, !(look || pop) || (kind & (kind - {{KINDS{1'b0}}, 1'b1})) == {QUEUES{1'b0}})
+      `CCHIP_ASSERT(a_kind, !(look || pop)
+          || (kind & (kind - {{KINDS{1'b0}}, 1'b1})) == {QUEUES{1'b0}})
       `CCHIP_ASSERT(a_pop, !pop || |(kind & some))
     end
 

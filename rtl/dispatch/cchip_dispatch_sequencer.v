@@ -8,10 +8,10 @@
 //   takers       the slots and, last, the one that answers pairs nobody can test
 //   latency      4 clocks from `some` to `launch` in an idle dispatcher
 //   throughput   a pair every 3 clocks, of a kind with quads every 4
-//   fair         kinds take turns, and so do takers: a kind that can be dispatched waits for at most
-//                KINDS + 2 pairs of other kinds
-//   order        look (where is the head of `kind`?); a clock later launch, with m_vertex = 0; on the
-//                next clocks m_vertex = 1, 2 (and 3)
+//   fair         kinds take turns, and so do takers: a kind that can be dispatched waits for at
+//                most KINDS + 2 pairs of other kinds
+//   order        look (where is the head of `kind`?); a clock later launch, with m_vertex = 0; on
+//                the next clocks m_vertex = 1, 2 (and 3)
 //   data         what m_vertex reads arrives a clock later, together with m_valid, m_first and
 //                m_last; m_kind and m_taker are those of the pair until the next m_first
 //   cuts         every path: each output comes from flip-flops
@@ -58,7 +58,8 @@ module cchip_dispatch_sequencer #(
   localparam [1:0] FOURTH = 2'd3;  // the fourth vertex takes a clock more
   reg [1:0] state_q;
 
-  // ---- the kind whose turn it is, ahead of time: turn_q may be wrong by now, so the takers are asked
+  // ---- the kind whose turn it is, ahead of time: turn_q may be out of date when it is used, so
+  // the takers are asked again below
   reg [QUEUES-1:0] possible_q, turn_q;
   wire [QUEUES-1:0] possible, turn;
   wire choose = state_q == CHOOSE && turn_q != {QUEUES{1'b0}};

@@ -2,10 +2,10 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// cchip_dispatcher: gives the pairs that wait in queues of descriptors to the slots whose module can
-// answer for their kind, and collects the answers. A pair of the illegal kind 0, or of a kind that
-// nobody provides, is answered as an open pair (see cchip_slot_ledger), and so is a pair that a swap
-// by force gives up: every pair that enters the queues is answered exactly once.
+// cchip_dispatcher: gives the pairs that wait in queues of descriptors to the slots whose module
+// can answer for their kind, and collects the answers. A pair of the illegal kind 0, or of a kind
+// that nobody provides, is answered as an open pair (see cchip_slot_ledger), and so is a pair that
+// a swap by force gives up: every pair that enters the queues is answered exactly once.
 //   serves       module m answers for the kinds 1..m: a test of quads takes a triangle as a quad
 //   latency      5 clocks from `some` to m_vertex_valid of an idle dispatcher; 7 clocks from a
 //                slot's result to m_result
@@ -198,7 +198,8 @@ module cchip_dispatcher #(
   assign answered = answered_q;
   assign answered_module = answered_module_q;
 
-  wire unused = &{1'b0, descriptor[`CCHIP_DESCRIPTOR_ERR], descriptor[`CCHIP_DESCRIPTOR_MODE], taker[SLOTS]};
+  wire unused = &{1'b0, descriptor[`CCHIP_DESCRIPTOR_ERR], descriptor[`CCHIP_DESCRIPTOR_MODE],
+      taker[SLOTS]};
 
 endmodule
 `default_nettype wire

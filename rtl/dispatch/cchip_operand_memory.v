@@ -3,7 +3,8 @@
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
 // cchip_operand_memory: the vertices of the pairs that wait, in block RAM: one vertex of A and one
-// of B per word, four words a pair, at the place of the pair's descriptor (cchip_descriptor_queues).
+// of B per word, four words a pair, at the place of the pair's descriptor
+// (cchip_descriptor_queues).
 //   write        the pair on s_pair, which holds still, is written one vertex per clock: 3 clocks
 //                for triangles and for the illegal kind 0, 4 with quads; s_pair_ready is 1 on the
 //                last of them, s_ready says that there is room for its kind
@@ -35,7 +36,6 @@ module cchip_operand_memory #(
 );
 
   localparam integer POINT_W = `CCHIP_POINT_W(COORD_W);
-  localparam [31:0] POINT = POINT_W;
 
   generate
     if (COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX) begin : gen_illegal_coord_w
@@ -73,10 +73,18 @@ module cchip_operand_memory #(
   reg [2*POINT_W-1:0] data_q;
   assign {m_b, m_a} = data_q;
 
+  // written out: an index times a width would become a multiplier
+  function [POINT_W-1:0] choose(input [4*POINT_W-1:0] from, input [1:0] vertex);
+    case (vertex)
+      2'd0: choose = from[0+:POINT_W];
+      2'd1: choose = from[POINT_W+:POINT_W];
+      2'd2: choose = from[2*POINT_W+:POINT_W];
+      default: choose = from[3*POINT_W+:POINT_W];
+    endcase
+  endfunction
   always @(posedge clk)
     if (write)
-      mem[{place, vertex_q}] <= {s_pair_b[POINT*{30'd0, vertex_q}+:POINT_W],
-          s_pair_a[POINT*{30'd0, vertex_a}+:POINT_W]};
+      mem[{place, vertex_q}] <= {choose(s_pair_b, vertex_q), choose(s_pair_a, vertex_a)};
   always @(posedge clk) data_q <= mem[{m_place, m_vertex}];
 
   always @(posedge clk)

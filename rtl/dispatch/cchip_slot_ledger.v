@@ -6,15 +6,15 @@
 // and kind stay here. Each pair is answered exactly once: by the first result with its number, or,
 // when the slot is decoupled before that, as an open pair: hit 1, grid 1, definite 0, axis class
 // CCHIP_AXIS_ILLEGAL, beats 0.
-//   credit       room = 1: another pair may be granted. A pair uses a credit from its grant until its
-//                answer has left, so there is room for every answer, whatever the receiver does
+//   credit       room = 1: another pair may be granted. A pair uses a credit from its grant until
+//                its answer has left, so there is room for every answer, whatever the receiver does
 //   garbage      a result whose number is not that of a pair inside is dropped
 //   latency      6 clocks from a result to m_valid of an empty ledger
 //   throughput   a result on every clock; a grant on every third
 //   stop         quiet = 1: stop has lasted long enough for every grant under way, and no pair is
 //                inside. Answers that wait for the receiver do not matter
-//   decouple     after SETTLE_CLOCKS the pairs inside are counted in `lost` and answered as open, one
-//                per clock; then decoupled rises. It falls one clock after decouple
+//   decouple     after SETTLE_CLOCKS the pairs inside are counted in `lost` and answered as open,
+//                one per clock; then decoupled rises. It falls one clock after decouple
 //   cuts         every path: each output is a flip-flop
 //   reset        no pair inside, no answer; open for pairs after CREDIT + 2 clocks
 module cchip_slot_ledger #(

@@ -2,14 +2,15 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// cchip_pr_decoupler: the boundary of a reconfigurable region, a register each way. Static side: s_*,
-// m_*. Region side: r_*. The streams are records VERTEX and SLOT_RESULT; neither has a ready.
+// cchip_pr_decoupler: the boundary of a reconfigurable region, a register each way. Static side:
+// s_*, m_*. Region side: r_*. The streams are records VERTEX and SLOT_RESULT; neither has a ready.
 //   latency      1 clock each way
 //   throughput   one beat per clock
 //   cuts         every path both ways: every output is a flip-flop
-//   decouple     decoupled follows one clock later; while it is 1 every output is constant: valid and
-//                data 0 on both sides, rm_id CCHIP_RM_BLANK, idle 1. A beat that comes on the clock on
-//                which decouple rises is lost: stop first, wait for the results, then decouple
+//   decouple     decoupled follows one clock later; while it is 1 every output is constant: valid
+//                and data 0 on both sides, rm_id CCHIP_RM_BLANK, idle 1. A beat that comes on the
+//                clock on which decouple rises is lost: stop first, wait for the results, then
+//                decouple
 //   reset        nothing valid; has no effect on decoupled
 module cchip_pr_decoupler #(
     // width of a coordinate, bit

@@ -2,8 +2,8 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// cchip_pr_slot: one reconfigurable module behind its decoupler and reset generator. The streams are
-// records VERTEX and SLOT_RESULT; what is inside, the dispatcher knows (cchip_slot_ledger).
+// cchip_pr_slot: one reconfigurable module behind its decoupler and reset generator. The streams
+// are records VERTEX and SLOT_RESULT; what is inside, the dispatcher knows (cchip_slot_ledger).
 //   latency      that of the module + 2 clocks
 //   throughput   that of the module
 //   cuts         every path: every output is a flip-flop

@@ -5,11 +5,11 @@
 // cchip_swap_scheduler: which slot gets which module when. One swap at a time; every request of the
 // configuration controller comes from here, those of software too.
 //   serves       module m answers for the kinds 1..m
-//   rule         a swap is due for a kind that no slot serves and of which pairs wait: `min_batch` of
-//                them, a full queue, or any once some kind has waited unserved for `max_age` clocks.
-//                The kinds take turns. The module is the kind's own, else the next larger one with a
-//                valid bitstream; the slot is the one that holds least: it had served nothing that the
-//                new module does not, so a swap never takes a kind from the pairs
+//   rule         a swap is due for a kind that no slot serves and of which pairs wait: `min_batch`
+//                of them, a full queue, or any once some kind has waited unserved for `max_age`
+//                clocks. The kinds take turns. The module is the kind's own, else the next larger
+//                one with a valid bitstream; the slot is the one that holds least: it had served
+//                nothing that the new module does not, so a swap never takes a kind from the pairs
 //   age          clocks since pairs of some unserved kind wait; starts again after every report
 //   faults       only a bad bitstream or entry (CCHIP_SWAP_SPOILT) loses its valid bit
 //                (`table_invalidate`). An entry that rests (cchip_swap_retry) is not chosen here,
@@ -150,8 +150,8 @@ module cchip_swap_scheduler #(
     old_q <= age_q >= max_age;
   end
 
-  // ---- search: a kind; if a swap is due for it, every module that serves it, what a slot holds from
-  // nothing upwards, every slot. The first slot with such a bitstream is taken.
+  // ---- search: a kind; if a swap is due for it, every module that serves it, what a slot holds
+  // from nothing upwards, every slot. The first slot with such a bitstream is taken.
   reg [3:0] pause_q;  // clocks of rest after a report, until slots and table show its effect
   reg pausing_q;  // pause_q != 0
   wire searching = enable & ~asked & ~command_valid & ~pausing_q;

@@ -9,7 +9,8 @@
 //   first        begins a pair, whatever came before; vertices before the first `first`, and behind
 //                `last`, are ignored
 //   cuts         every path: each output is a flip-flop
-//   reset        no pair begun. m_pair_valid has no ready: the sender's credit says that there is room
+//   reset        no pair begun. m_pair_valid has no ready: the sender's credit says that there is
+//                room
 module cchip_vertex_collector #(
     // width of a coordinate, bit, 4..20
     parameter integer COORD_W = 16
