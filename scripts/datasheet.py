@@ -77,7 +77,7 @@ STIMULI = {
     "cchip_operand_memory": (
         "room = 1; s_pair_a = 1; s_pair_valid = 1; repeat (3) tick; s_pair_valid = 0; m_place = 1;", "m_place = 0;", "m_a"),
     "cchip_dispatch_sequencer": ("serves = 1; room = 1;", "some = 1;", "launch"),
-    "cchip_slot_ledger": ("m_ready = 0; grant = 1; tick; grant = 0;", "s_result_valid = 1;", "m_valid"),
+    "cchip_slot_ledger": ("repeat (60) tick; grant = 1; tick; grant = 0;", "s_result_valid = 1;", "m_valid"),
     "cchip_dispatcher": ("slot_module = 1;", "some = 2;", "m_vertex_valid"),
     "cchip_result_merge": ("", "s_valid = 1;", "m_valid"),
     "cchip_subsystem_status": ("", "answered = 1;", "pairs"),

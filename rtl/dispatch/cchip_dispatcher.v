@@ -7,7 +7,7 @@
 // that nobody provides, is answered as an open pair (see cchip_slot_ledger), and so is a pair that
 // a swap by force gives up: every pair that enters the queues is answered exactly once.
 //   serves       module m answers for the kinds 1..m: a test of quads takes a triangle as a quad
-//   latency      5 clocks from `some` to m_vertex_valid of an idle dispatcher; 7 clocks from a
+//   latency      5 clocks from `some` to m_vertex_valid of an idle dispatcher; 6 clocks from a
 //                slot's result to m_result
 //   throughput   a pair every 3 clocks, of a kind with quads every 4; an answer every clock
 //   credit       no ready runs back from a slot: at most CREDIT of its pairs lie between dispatch

@@ -4,7 +4,7 @@
 // cchip_primtest_subsystem: primitive tests of three kinds in one or two slots that are exchanged
 // at run time. Pairs of any kind in, answers out, the exchange of modules done by itself or by
 // software.
-//   latency      that of the test + 20 clocks while a slot serves its kind; a swap longer otherwise
+//   latency      that of the test + 19 clocks while a slot serves its kind; a swap longer otherwise
 //   throughput   a pair every 3 clocks, with quads every 4, at most; that of the tests
 //   in flight    QUEUE_DEPTH pairs of each kind in the queues, CONTEXTS for each slot
 //   order        answers in any order; tag and kind of the pair come back with each exactly once. A

@@ -9,7 +9,7 @@
 //   credit       room = 1: another pair may be granted. A pair uses a credit from its grant until
 //                its answer has left, so there is room for every answer, whatever the receiver does
 //   garbage      a result whose number is not that of a pair inside is dropped
-//   latency      6 clocks from a result to m_valid of an empty ledger
+//   latency      5 clocks from a result to m_valid of an empty ledger
 //   throughput   a result on every clock; a grant on every third
 //   stop         quiet = 1: stop has lasted long enough for every grant under way, and no pair is
 //                inside. Answers that wait for the receiver do not matter

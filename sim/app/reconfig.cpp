@@ -139,7 +139,8 @@ int run_reconfig_job(const ReconfigJobOptions& options, std::ostream& out) {
   fmt::print(
       out,
       "Pairs of triangles and quads, sorted by kind into batches, through two slots: one tests a batch while the\n"
-      "other is given the module of the next. Every swap passes its bitstream of {} bits through the 8-bit configuration port, two clocks per byte (100 MHz and 50 MHz).\n\n",
+      "other is given the module of the next. Every swap passes its bitstream of {} bits through the 8-bit "
+      "configuration port, two clocks per byte (100 MHz and 50 MHz).\n\n",
       8 * reconfig.payload_bytes);
   out.flush();
   const auto start = std::chrono::steady_clock::now();

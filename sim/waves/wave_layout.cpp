@@ -181,8 +181,8 @@ Rows slot_layout(int number) {
   return group("slot " + slot,
                rows + Rows{bit("pairs answered", ledger + "decoupled"),
                            vector("region: module", scope + "r_rm_id", defs::rm_id_w, Radix::hexadecimal),
-                           bit("region: vertex", scope + "r_vertex_valid"), bit("region: result", scope + "r_result_valid"),
-                           bit("answer", ledger + "m_valid")});
+                           bit("region: vertex", scope + "r_vertex_valid"),
+                           bit("region: result", scope + "r_result_valid"), bit("answer", ledger + "m_valid")});
 }
 
 /// The reconfigurable subsystem with two slots.

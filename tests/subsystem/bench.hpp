@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// cchip_primtest_subsystem with its surroundings: pairs of three kinds, a sink, memory with bitstreams, registers.
-/// Tests, campaign and command share the account of the pairs: every tag once, with the right answer, or as open where a
-/// report says so.
+/// Tests, campaign and command share the account of the pairs: every tag once, with the right answer, or as open where
+/// a report says so.
 #ifndef CCHIP_TESTS_SUBSYSTEM_BENCH_HPP
 #define CCHIP_TESTS_SUBSYSTEM_BENCH_HPP
 
@@ -296,7 +296,8 @@ class SubsystemBench {
       simulation.step();
     }
     simulation.steps(300);  // nothing may come after the last answer
-    if (answered_open_ > given_up_) fail(account.wrong, "more pairs were left open than the reports of lost ones allow");
+    if (answered_open_ > given_up_)
+      fail(account.wrong, "more pairs were left open than the reports of lost ones allow");
     account.lost += open_.size();
     open_.clear();
     given_up_ = 0;
@@ -401,8 +402,8 @@ class SubsystemBench {
     if (!is_tested(open, got)) {
       const KindRequest& r = open.request;
       if (!(got == refused_answer(r))) {
-        fail(account.wrong, "got " + sim::to_text(got) + ", expected " +
-                                sim::to_text(tested_answer(r, Config::COORD_W, r.kind)));
+        fail(account.wrong,
+             "got " + sim::to_text(got) + ", expected " + sim::to_text(tested_answer(r, Config::COORD_W, r.kind)));
       } else if (absent_[static_cast<std::size_t>(got.kind)] >= open.clock) {
         ++account.refused;
       } else {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The dispatcher between queues and slots played by the test: every pair is answered once, by a slot that serves its kind
-// or as an open one.
+// The dispatcher between queues and slots played by the test: every pair is answered once, by a slot that serves its
+// kind or as an open one.
 #include <deque>
 #include <map>
 #include <models/cchip_dispatcher.hpp>
@@ -42,7 +42,8 @@ class DispatcherBench {
     top.some = static_cast<CData>(some);
     top.m_result_ready = chance(random, ready) ? 1 : 0;
     sim::set_random(top.descriptor, defs::descriptor_w, random);
-    if (popped_clocks_ < 2) sim::set_bits(top.descriptor, defs::descriptor_tag.lsb, defs::descriptor_tag.width, popped_.tag);
+    if (popped_clocks_ < 2)
+      sim::set_bits(top.descriptor, defs::descriptor_tag.lsb, defs::descriptor_tag.width, popped_.tag);
     if (popped_clocks_ < 2) ++popped_clocks_;
     for (int s = 0; s < slots; ++s) {
       auto& inside = slots_[static_cast<std::size_t>(s)];
@@ -105,7 +106,8 @@ class DispatcherBench {
   }
   void put_modules() {
     for (int s = 0; s < slots; ++s) {
-      sim::set_bits(top.slot_module, 2 * s, 2, static_cast<std::uint64_t>(slots_[static_cast<std::size_t>(s)].module_id));
+      sim::set_bits(top.slot_module, 2 * s, 2,
+                    static_cast<std::uint64_t>(slots_[static_cast<std::size_t>(s)].module_id));
     }
   }
   /// A module in a slot, or none; pairs inside it are gone.

@@ -20,7 +20,9 @@ void check_persona() {
       VertexPort<typename Config::Model> port(top, Config::COORD_W, Config::CONTEXTS, options.seed,
                                               sim::Pattern::random(rate, options.seed));
       sim::TagScoreboard<PairResult> scoreboard{"region"};
-      port.on_sent = [&](const PairRequest& r) { scoreboard.expect(r.tag, requests.answer(r, id), simulation.clock()); };
+      port.on_sent = [&](const PairRequest& r) {
+        scoreboard.expect(r.tag, requests.answer(r, id), simulation.clock());
+      };
       port.on_result = [&](const PairResult& r, bool known) {
         sim::require(known, "a result that nobody asked for");
         scoreboard.got(r.tag, r, simulation.clock());

@@ -303,10 +303,13 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: no output follows an input before the ri
       sim::set_random(top.cfg_data, TestType::CFG_W, random);
     };
     const auto outputs = [&] {
-      return std::vector<std::uint64_t>{
-          top.decoupled, top.roc_busy,           top.region_rm_id,
-          top.rm_id,     top.idle,               top.m_result_valid,
-          sim::get_bits(top.m_result_data, 0, defs::slot_result_w)};
+      return std::vector<std::uint64_t>{top.decoupled,
+                                        top.roc_busy,
+                                        top.region_rm_id,
+                                        top.rm_id,
+                                        top.idle,
+                                        top.m_result_valid,
+                                        sim::get_bits(top.m_result_data, 0, defs::slot_result_w)};
     };
     drive();
     simulation.reset();

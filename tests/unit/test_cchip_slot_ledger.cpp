@@ -73,7 +73,8 @@ class LedgerBench {
       ++granted;
     }
     if (answered >= 0) {
-      expected_.push_back({inside.at(answered).first, sim::get_bits(top.s_result_data, 8, defs::slot_result_w - 8), false});
+      expected_.push_back(
+          {inside.at(answered).first, sim::get_bits(top.s_result_data, 8, defs::slot_result_w - 8), false});
       inside.erase(answered);
       last_id_ = answered;
     }
@@ -108,7 +109,8 @@ class LedgerBench {
   };
   void take() {
     const auto get = [&](int lsb, int width) { return sim::get_bits(top.m_data, lsb, width); };
-    const auto tag = static_cast<std::uint16_t>(get(defs::answer_result.lsb + defs::result_tag.lsb, defs::result_tag.width));
+    const auto tag =
+        static_cast<std::uint16_t>(get(defs::answer_result.lsb + defs::result_tag.lsb, defs::result_tag.width));
     const int kind = static_cast<int>(get(defs::answer_kind.lsb, defs::answer_kind.width));
     const int by = static_cast<int>(get(defs::answer_module.lsb, defs::answer_module.width));
     const std::uint64_t found = get(defs::result_hit.lsb, defs::result_w - defs::result_hit.lsb);
@@ -143,8 +145,9 @@ class LedgerBench {
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("cchip_slot_ledger: every pair is answered once, with its tag and kind; what nobody asked for is dropped",
-                        "[unit][cchip_slot_ledger]", cchip_slot_ledger_configs) {
+TEMPLATE_LIST_TEST_CASE(
+    "cchip_slot_ledger: every pair is answered once, with its tag and kind; what nobody asked for is dropped",
+    "[unit][cchip_slot_ledger]", cchip_slot_ledger_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     LedgerBench<TestType> bench(simulation, random);
     for (int part = 0; part < 12; ++part) {

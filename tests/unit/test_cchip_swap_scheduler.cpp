@@ -174,8 +174,8 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
       ++chosen;
       const SwapRequest& got = bench.requests.front();
       REQUIRE(std::count(legal.begin(), legal.end(), std::pair(got.slot, got.module_id)) != 0);
-      REQUIRE(got.address == bench.address[4 * static_cast<std::size_t>(got.slot) +
-                                           static_cast<std::size_t>(got.module_id)]);
+      REQUIRE(got.address ==
+              bench.address[4 * static_cast<std::size_t>(got.slot) + static_cast<std::size_t>(got.module_id)]);
       REQUIRE(got.size == got.address + 7);
       REQUIRE(!got.force);
     }

@@ -12,7 +12,9 @@ TEMPLATE_LIST_TEST_CASE("cchip_vertex_collector: the request of every complete p
   constexpr int w = TestType::COORD_W;
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     auto& top = simulation.top();
-    const auto put = [&](defs::Field f, std::uint64_t value) { sim::set_bits(top.s_vertex_data, f.lsb, f.width, value); };
+    const auto put = [&](defs::Field f, std::uint64_t value) {
+      sim::set_bits(top.s_vertex_data, f.lsb, f.width, value);
+    };
     struct Pair {
       std::array<model::Word3, 4> a{}, b{};
       std::uint64_t id = 0, err = 0, mode = 0;

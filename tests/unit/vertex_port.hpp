@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The way into a slot and out of it, s_vertex and m_result, records VERTEX and SLOT_RESULT: pairs as values, sent vertex
-/// by vertex within the credit of the module.
+/// The way into a slot and out of it, s_vertex and m_result, records VERTEX and SLOT_RESULT: pairs as values, sent
+/// vertex by vertex within the credit of the module.
 #ifndef CCHIP_TESTS_UNIT_VERTEX_PORT_HPP
 #define CCHIP_TESTS_UNIT_VERTEX_PORT_HPP
 
@@ -101,7 +101,9 @@ class VertexPort : public sim::Agent {
     if (!sending_ || !pattern_.next()) return;
     const GridPair& pair = sending_->pair;
     const int vertices = pair.b.kind == Kind::quad ? 4 : 3;
-    const auto put = [&](defs::Field f, std::uint64_t value) { sim::set_bits(model_.s_vertex_data, f.lsb, f.width, value); };
+    const auto put = [&](defs::Field f, std::uint64_t value) {
+      sim::set_bits(model_.s_vertex_data, f.lsb, f.width, value);
+    };
     const auto put_vertex = [&](int lsb, const GridPrimitive& p) {
       const int i = p.kind == Kind::tri && next_ == 3 ? 2 : next_;
       for (int d = 0; d < 3; ++d) {
@@ -125,7 +127,9 @@ class VertexPort : public sim::Agent {
   }
   void sample(const sim::ClockInfo& now) override {
     if (now.in_reset || model_.m_result_valid == 0) return;
-    const auto get = [&](defs::Field f) { return static_cast<int>(sim::get_bits(model_.m_result_data, f.lsb, f.width)); };
+    const auto get = [&](defs::Field f) {
+      return static_cast<int>(sim::get_bits(model_.m_result_data, f.lsb, f.width));
+    };
     const auto it = inside_.find(get(defs::slot_result_id));
     const bool known = it != inside_.end();
     const PairResult result{known ? it->second : std::uint16_t{0},

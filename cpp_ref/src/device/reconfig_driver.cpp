@@ -139,8 +139,8 @@ class Run {
     }
   }
 
-  /// The module of a batch goes into the slot of batch % slots, once that slot's former batch is answered, and not before
-  /// the batch ahead of it is sent.
+  /// The module of a batch goes into the slot of batch % slots, once that slot's former batch is answered, and not
+  /// before the batch ahead of it is sent.
   void load_ahead() {
     if (loading_ || ready_ == batches_.size() || ready_ > batch_to_send() + 1) return;
     if (ready_ >= slots_ && batches_[ready_ - slots_].open > 0) return;
@@ -152,7 +152,8 @@ class Run {
   }
   std::size_t batch_to_send() const { return sent_ < order_.size() ? batch_of_[order_[sent_]] : batches_.size(); }
 
-  /// A pair waits while one with its tag is inside, tags are unique in flight, and until the module of its batch is there.
+  /// A pair waits while one with its tag is inside, tags are unique in flight, and until the module of its batch is
+  /// there.
   void send() {
     if (sent_ == pairs_.size() || in_flight_[tag_of(sent_)] != nobody || ready_ <= batch_to_send()) return;
     const std::size_t index = order_[sent_];
@@ -204,8 +205,8 @@ class Run {
     idle_ = 0;
     if (swap.code == SwapCode::ok || swap.code == SwapCode::same) return;
     throw std::runtime_error(std::string("module ") + to_name(swap.module_id) + " cannot be loaded into slot " +
-                             std::to_string(swap.slot) + ": swap code " +
-                             std::to_string(static_cast<int>(swap.code)) + "; see SwapCode in docs/definitions.md");
+                             std::to_string(swap.slot) + ": swap code " + std::to_string(static_cast<int>(swap.code)) +
+                             "; see SwapCode in docs/definitions.md");
   }
 
   struct Batch {

@@ -51,8 +51,8 @@ CCHIP_SUBSYSTEM_PROBE(outstanding, outstanding)
 // A slot of it: the module that it shows, whether it is decoupled.
 #define CCHIP_SLOT_PROBE(n, name, signal) \
   CCHIP_SUBSYSTEM_PROBE(slot##n##_##name, gen_slots__BRA__##n##__KET____DOT__u_slot__DOT__u_decoupler__DOT__##signal)
-#define CCHIP_SLOT_PROBES(n)               \
-  CCHIP_SLOT_PROBE(n, module_id, rm_id_q)  \
+#define CCHIP_SLOT_PROBES(n)              \
+  CCHIP_SLOT_PROBE(n, module_id, rm_id_q) \
   CCHIP_SLOT_PROBE(n, decoupled, decoupled_q)
 CCHIP_SLOT_PROBES(0)
 CCHIP_SLOT_PROBES(1)
