@@ -36,18 +36,18 @@ struct Extreme {
   std::uint32_t offset;  ///< 0: none
   std::uint32_t value;
 };
-constexpr std::uint32_t most = 0xFFFFFFFF;
+constexpr std::uint32_t top_value = 0xFFFFFFFF;
 const std::array<Extreme, 11> extremes = {{{"usual registers", 0, 0},
                                            {"shutdown_limit 0", regs::shutdown_limit::offset, 0},
                                            {"shutdown_limit 1", regs::shutdown_limit::offset, 1},
-                                           {"shutdown_limit 2^32-1", regs::shutdown_limit::offset, most},
+                                           {"shutdown_limit 2^32-1", regs::shutdown_limit::offset, top_value},
                                            {"memory_limit 0", regs::memory_limit::offset, 0},
                                            {"memory_limit 1", regs::memory_limit::offset, 1},
-                                           {"memory_limit 2^32-1", regs::memory_limit::offset, most},
+                                           {"memory_limit 2^32-1", regs::memory_limit::offset, top_value},
                                            {"minimum_batch 0", regs::minimum_batch::offset, 0},
-                                           {"minimum_batch 2^32-1", regs::minimum_batch::offset, most},
+                                           {"minimum_batch 2^32-1", regs::minimum_batch::offset, top_value},
                                            {"maximum_age 0", regs::maximum_age::offset, 0},
-                                           {"maximum_age 2^32-1", regs::maximum_age::offset, most}}};
+                                           {"maximum_age 2^32-1", regs::maximum_age::offset, top_value}}};
 
 /// Fault, phase, latency, register: numbers in the tables above.
 using Encounter = std::array<std::size_t, 4>;
