@@ -194,6 +194,7 @@ module cchip_slot_ledger #(
   wire [`CCHIP_PAIR_ID_W-1:0] id_of_slot = s_result_data[`CCHIP_SLOT_RESULT_ID];
   wire [ID_W-1:0] id_in = giving_q ? step_q[ID_W-1:0] : id_of_slot[ID_W-1:0];
   wire [FOUND_W-1:0] found;
+  wire [`CCHIP_KIND_W-1:0] found_module;  // in the slot when the result came
   reg [2:0] valid_q;  // after 1, 2, 3 clocks
   reg [2:0] open_pair_q;
   reg [3*ID_W-1:0] id_q;
@@ -242,14 +243,14 @@ module cchip_slot_ledger #(
   );
 
   cchip_delay #(
-      .WIDTH (FOUND_W),
+      .WIDTH (`CCHIP_KIND_W + FOUND_W),
       .DEPTH (3),
       .MEMORY(1)
   ) u_found (
       .clk(clk),
       .rst(1'b0),
-      .d  (s_result_data[`CCHIP_SLOT_RESULT_W-1:`CCHIP_PAIR_ID_W]),
-      .q  (found)
+      .d  ({module_id, s_result_data[`CCHIP_SLOT_RESULT_W-1:`CCHIP_PAIR_ID_W]}),
+      .q  ({found_module, found})
   );
 
   // ---- answers
@@ -268,7 +269,7 @@ module cchip_slot_ledger #(
       .s_valid(accept),
       .s_ready(unused_ready),
       .s_data (`CCHIP_ANSWER_OF(result, pair[`CCHIP_TAG_W+:`CCHIP_KIND_W],
-          open_pair ? {`CCHIP_KIND_W{1'b0}} : module_id)),
+          open_pair ? {`CCHIP_KIND_W{1'b0}} : found_module)),
       .m_valid(m_valid),
       .m_ready(m_ready),
       .m_data (m_data)

@@ -61,6 +61,23 @@ class DispatcherBench {
       sim::set_bits(top.s_result_valid, s, 1, valid ? 1 : 0);
     }
     simulation.settle();
+    for (int s = 0; s < slots; ++s) {
+      if ((top.m_vertex_valid >> s & 1U) == 0) continue;
+      REQUIRE(unsigned{top.m_vertex_valid} == 1U << s);
+      auto& inside = slots_[static_cast<std::size_t>(s)];
+      if (top.m_vertex_first != 0) {
+        vertices_ = 0;
+        REQUIRE(popped_.kind > 0);
+        if (inside.connected) REQUIRE(inside.module_id >= popped_.kind);  // it can answer for this kind
+        inside.next = static_cast<int>(sim::get_bits(top.m_vertex_id, defs::pair_id_w * s, defs::pair_id_w));
+      }
+      ++vertices_;
+      if (top.m_vertex_last == 0) continue;
+      REQUIRE(vertices_ == (popped_.kind >= 2 ? 4 : 3));
+      if (inside.connected) REQUIRE(inside.pairs.emplace(inside.next, popped_.kind).second);
+    }
+    // The first vertex of a pair comes a clock after it left its queue, its last one together with the next at the
+    // earliest.
     if (top.pop != 0) {
       unsigned kind = 0;
       while ((top.kind >> kind & 1U) == 0) ++kind;
@@ -69,21 +86,6 @@ class DispatcherBench {
       popped_ = queues[kind].front();
       queues[kind].pop_front();
       popped_clocks_ = 0;
-    }
-    for (int s = 0; s < slots; ++s) {
-      if ((top.m_vertex_valid >> s & 1U) == 0) continue;
-      REQUIRE(unsigned{top.m_vertex_valid} == 1U << s);
-      auto& inside = slots_[static_cast<std::size_t>(s)];
-      if (top.m_vertex_first != 0) {
-        vertices_ = 0;
-        REQUIRE(popped_.kind > 0);
-        REQUIRE(inside.module_id >= popped_.kind);  // it can answer for this kind
-        inside.next = static_cast<int>(sim::get_bits(top.m_vertex_id, defs::pair_id_w * s, defs::pair_id_w));
-      }
-      ++vertices_;
-      if (top.m_vertex_last == 0) continue;
-      REQUIRE(vertices_ == (popped_.kind >= 2 ? 4 : 3));
-      if (inside.connected) REQUIRE(inside.pairs.emplace(inside.next, popped_.kind).second);
     }
     if (top.m_result_valid != 0 && top.m_result_ready != 0) {
       const auto get = [&](defs::Field f) { return sim::get_bits(top.m_result_data, f.lsb, f.width); };
