@@ -274,8 +274,9 @@ class Part {
                            static_cast<int>(phase) + 1 == static_cast<int>(wanted());
         if (phase != wanted() && !early) return;
         stage_ = Stage::meets;
-        // RECOUPLE lasts 3 clocks and ROC before it 36
+        // RECOUPLE lasts 3 clocks and ROC before it 36; RESET 2 and DECOUPLE before it 20
         meets_at_ = now() + (early && wanted() == SwapPhase::recouple              ? 20 + random_() % 20
+                             : early && wanted() == SwapPhase::reset               ? 14 + random_() % 6
                              : phase == SwapPhase::transfer && !by_register(fault) ? random_() % 40
                                                                                    : random_() % 5);
         bench_.memory.set_options(
