@@ -13,6 +13,8 @@
 //                none has been reset. An rst from before the module was whole does not count, so
 //                only a reset on configuration does
 //   otherwise    the selected module, nothing added; rst resets all of them
+//   clocks       a module that is not selected has none unless rst or the random vertices want one:
+//                what it does cannot be seen, and it takes most of the time of a simulation
 module cchip_pr_virtual #(
     // number of this slot, 0..255
     parameter integer SLOT_ID = 0,
@@ -104,6 +106,10 @@ module cchip_pr_virtual #(
       wire valid, quiet;
       wire [RESULT_W-1:0] result;
       wire [`CCHIP_RM_ID_W-1:0] module_id;
+      reg runs_q;  // changes while clk is 0, so that gated_clk has whole pulses only
+      initial runs_q = 1'b1;
+      always @(negedge clk) runs_q <= here | dirty | rst;
+      wire gated_clk = clk & runs_q;
       cchip_pr_region #(
           .RM_ID              (i),
           .COORD_W            (COORD_W),
@@ -112,7 +118,7 @@ module cchip_pr_virtual #(
           .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
           .WARPED_EXACT       (WARPED_EXACT)
       ) u_region (
-          .clk           (clk),
+          .clk           (gated_clk),
           .rst           (rst & ~dirty),
           .s_vertex_valid(dirty | (here & s_vertex_valid)),
           .s_vertex_data (vertex),
