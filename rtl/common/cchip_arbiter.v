@@ -31,6 +31,7 @@ module cchip_arbiter #(
     integer i;
     reg found;
     begin
+      lowest = {N{1'b0}};
       found = 1'b0;
       for (i = 0; i < N; i = i + 1) begin
         lowest[i] = of[i] & ~found;
@@ -42,6 +43,7 @@ module cchip_arbiter #(
     integer i;
     reg found;
     begin
+      above = {N{1'b0}};
       found = 1'b0;
       for (i = 0; i < N; i = i + 1) begin
         above[i] = found;

@@ -67,11 +67,11 @@ module cchip_dispatch_sequencer #(
   genvar k, t;
   generate
     for (k = 0; k < QUEUES; k = k + 1) begin : gen_possible
-      wire [TAKERS-1:0] able;
+      wire [TAKERS-1:0] takers;
       for (t = 0; t < TAKERS; t = t + 1) begin : gen_able
-        assign able[t] = serves[QUEUES*t+k] & room[t];
+        assign takers[t] = serves[QUEUES*t+k] & room[t];
       end
-      assign possible[k] = some[k] & (|able);
+      assign possible[k] = some[k] & (|takers);
     end
   endgenerate
 
