@@ -14,14 +14,17 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
                     `make campaign-build`); without it there are no pairs per second
   --pairs N         pairs of each class for the mean beats (default 20000)
   --families        count the blocks of Xilinx 7 and of Intel Cyclone V, too
-  --write           rewrite the generated tables of docs/fpga.md with the rows of this run; all rows: the families, too
+  --write           rewrite the generated tables of docs/fpga.md with the rows of this run (tables without a row of it stay);
+                    all rows: the families, too
   --list            print the rows
 
 Device: Lattice LFE5U-85F, speed grade 6 (the slowest), CABGA756, synthesised by Debian's Yosys 0.23 within
 scripts/fpga_harness.v. Counts are those of the module alone, the harness is not in them. Outputs are kept below
 build/fpga by the hash of what they depend on: a second run repeats only what changed. build/fpga/fpga.json holds the
 figures of all rows run so far. The last lines are `ROW w=COORD_W lut=N ff=N dsp=N ram=N fmax_mhz=X seeds=K`: logic LUT4
-(without carry chains and distributed RAM), flip-flops, MULT18X18D, block RAM, median of the seeds.
+(without carry chains and distributed RAM), flip-flops, MULT18X18D, block RAM, median of the seeds. In subsystems every
+region is synthesised on its own, as for partial reconfiguration: nothing is optimised across its border. Their lines go on
+with `static_lut=N static_ff=N static_ram=N`, all that is not in a region.
 Exit codes: 0 done, 1 a tool failed, 2 bad arguments."""
 import argparse
 import collections
@@ -46,6 +49,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build" / "fpga"
 HARNESS = "scripts/fpga_harness.v"
 SUBSYSTEM = "scripts/fpga_subsystem.v"
+REGION = "cchip_pr_region"
 DEVICE = ("--85k", "--speed", "6", "--package", "CABGA756")
 PAGE = ROOT / "docs" / "fpga.md"
 
@@ -92,7 +96,7 @@ def rows():
               Row("array6", "cchip_primtest_array", (("LANES", 6),), seeds=3)]
     # each slot is a partition for the largest module
     table += [Row(f"subsystem{n}", "fpga_subsystem", (("SLOTS", n), ("RM_ID", 3)), shape="quad-quad", seeds=3,
-                  placer="heap") for n in (1, 2)]
+                  placer="heap") for n in (1, 2, 3)]
     return {row.name: row for row in table}
 
 
@@ -185,9 +189,10 @@ def synthesise(row, options):
     """Synthesis for ECP5 within the harness: folder with netlist.json and stat.json (cells by module)."""
     text = sources(row)
     script = read_verilog(text, *row.macros()) + (
+        f"hierarchy -top fpga_harness\nsetattr -mod -set keep_hierarchy 1 *{REGION}*\n"
         f"synth_ecp5 {options.synth} -top fpga_harness\n"
         "tee -q -o {}/stat.json stat -json\n"
-        "setattr -unset keep_hierarchy */t:*\nflatten\nopt_clean\n"
+        "setattr -unset keep_hierarchy */t:*\nsetattr -mod -unset keep_hierarchy *\nflatten\nopt_clean\n"
         # without the places in the sources a new comment does not mean a new place and route
         "setattr -unset src *\nsetattr -mod -unset src *\n"
         "write_json {}/netlist.json\n")
@@ -247,7 +252,7 @@ def place(row, synthesis, seed, options):
     """Place and route: the report of nextpnr."""
     netlist = synthesis / "netlist.json"
     choices = [*DEVICE, "--placer", options.placer or row.placer, "--freq", str(options.freq), "--seed", str(seed),
-               "--timing-allow-fail"]
+               "--timing-allow-fail", "--detailed-timing-report"]
     command = [str(options.nextpnr), *choices, "--json", str(netlist.relative_to(ROOT)), "--report", "{}/report.json"]
     depends = [choices, hashlib.sha256(netlist.read_bytes()).hexdigest(), version(options.nextpnr, "--version")]
     folder = step(f"{row.name}.seed{seed}", command, {}, depends, "report.json")
@@ -303,25 +308,48 @@ def in_words(path):
             f": {', '.join(counts) or 'no LUT'}; {rest:.1f} ns logic, {routing:.1f} ns routing")
 
 
+def endpoints(report, count):
+    """The slowest registers and blocks by name in the RTL, [[name, ns until its data are there]]: the bits of one register
+    are one end. The clock needs the set-up time of the end besides."""
+    slowest = collections.defaultdict(float)
+    for net in report.get("detailed_net_timings", []):
+        for end in net["endpoints"]:
+            if "<async>" not in (net["event"], end["event"]):
+                name = name_of(end["cell"])
+                slowest[name] = max(slowest[name], end["delay"])
+    return [[name, round(slowest[name], 2)] for name in sorted(slowest, key=slowest.get, reverse=True)[:count]]
+
+
 def cells(stat):
-    """Cells {type: count} of every module, from `stat -json`; counts of the instances of modules are left out."""
+    """Cells {type: count} of every module, from `stat -json`; the type of an instance of a module is its name."""
     # Yosys 0.23 prints its tree of modules into the middle if that has more than two levels
     modules = json.loads(re.sub(r'^ +[^\s"{}]+ +\d+\n', "", stat, flags=re.M))["modules"]
-    return {name.lstrip("\\"): {cell: n for cell, n in module["num_cells_by_type"].items()
-                               if re.fullmatch(r"\w+", cell)} for name, module in modules.items()}
+    plain = lambda name: name.lstrip("\\")
+    return {plain(name): {plain(cell): n for cell, n in module["num_cells_by_type"].items()}
+            for name, module in modules.items()}
 
 
 def module_cells(modules):
-    """(cells of the module, cells of the harness) of a row's statistics."""
-    module, harness = collections.Counter(), collections.Counter()
-    for name, found in modules.items():
-        (harness if "fpga_" in name else module).update(found)
-    return module, harness
+    """(cells of the module without its regions, cells of its regions, cells of the harness) of a row's statistics."""
+    module, regions, harness = collections.Counter(), collections.Counter(), collections.Counter()
+
+    def add(name, times, inside):
+        into = regions if inside is regions or REGION in name else harness if "fpga_" in name else module
+        for cell, n in modules[name].items():
+            if cell in modules:
+                add(cell, times * n, into)
+            else:
+                into[cell] += times * n
+
+    for top in set(modules) - {cell for found in modules.values() for cell in found}:
+        add(top, 1, None)
+    return module, regions, harness
 
 
 def figures(row, synthesis, reports, beats):
     """What fpga.json holds of a row; reports by seed; beats as in mean_beats."""
-    module, harness = module_cells(cells((synthesis / "stat.json").read_text()))
+    static, regions, harness = module_cells(cells((synthesis / "stat.json").read_text()))
+    module = static + regions
     clocks = {seed: round(fmax(report), 2) for seed, report in reports.items()}
     median = statistics.median_low(clocks.values())
     seed = next(seed for seed, clock in clocks.items() if clock == median)
@@ -336,14 +364,18 @@ def figures(row, synthesis, reports, beats):
         "dram": module["TRELLIS_DPR16X4"], "fmax_mhz": clocks, "fmax_min": min(clocks.values()),
         "fmax_median": fmax_median, "fmax_max": max(clocks.values()),
         "critical_path": in_words(critical_path(reports[seed])), "synthesis": synthesis.name,
+        "static": {name: static[cell] for name, cell in COLUMNS.items()} if regions else {},
+        "endpoints": endpoints(reports[seed], 5),
         "mean_beats": beats,
         "pairs_per_s": {name: {programme: rate(mean) for programme, mean in means.items()}
                         for name, means in beats.items()}}
 
 
 def last_line(row):
+    static = row["static"]
     return (f"{row['label']} w={row['coord_w']} lut={row['lut4']} ff={row['ff']} dsp={row['dsp']} ram={row['bram']} "
-            f"fmax_mhz={row['fmax_median']:.1f} seeds={len(row['fmax_mhz'])}")
+            f"fmax_mhz={row['fmax_median']:.1f} seeds={len(row['fmax_mhz'])}" +
+            (f" static_lut={static['LUT4, logic']} static_ff={static['FF']} static_ram={static['block RAM']}" if static else ""))
 
 
 # ---- tables
@@ -409,26 +441,47 @@ def families_table(found):
     return datasheet.table(["row", "family", *columns], body)
 
 
+# cells that the bill counts
+COLUMNS = {"LUT4, logic": "LUT4", "carry": "CCU2C", "FF": "TRELLIS_FF", "DSP": "MULT18X18D", "block RAM": "DP16KD",
+           "distributed RAM": "TRELLIS_DPR16X4"}
+
+
 def bill_table(options):
-    """What reconfiguration costs: three static modules, one slot, two slots; synthesis alone."""
-    columns = {"LUT4, logic": "LUT4", "carry": "CCU2C", "FF": "TRELLIS_FF", "DSP": "MULT18X18D", "block RAM": "DP16KD",
-               "distributed RAM": "TRELLIS_DPR16X4"}
-
+    """What reconfiguration costs: three static modules, subsystems with one, two, three slots; synthesis alone."""
     def take(name):
-        stat = (synthesise(rows()[name], options) / "stat.json").read_text()
-        module, _ = module_cells(cells(stat))
-        return [module[cell] for cell in columns.values()]
+        static, regions, _ = module_cells(cells((synthesise(rows()[name], options) / "stat.json").read_text()))
+        return [[found[cell] for cell in COLUMNS.values()] for found in (static + regions, static)]
 
-    static = [take(name) for name in ("tri_tri", "tri_quad", "quad_quad")]
-    body = [["three static modules", *map(sum, zip(*static))]]
-    for slots, name in ((1, "one slot"), (2, "two slots")):
-        row = take(f"subsystem{slots}")
-        body.append([name, *row])
-        body.append(["of which not in the modules", *(a - slots * b for a, b in zip(row, static[2]))])
-    return datasheet.table(["", *columns], body)
+    body = [["three static modules", *map(sum, zip(*(take(name)[0] for name in ("tri_tri", "tri_quad", "quad_quad"))))]]
+    for slots, name in ((1, "one slot"), (2, "two slots"), (3, "three slots")):
+        whole, static = take(f"subsystem{slots}")
+        body += [[name, *whole], ["of which not in the regions", *static]]
+    return datasheet.table(["", *COLUMNS], body)
 
 
+def subsystems_table(found):
+    body = [[f"`{name}`", *(r["static"][column] for column in ("LUT4, logic", "FF", "block RAM", "distributed RAM")),
+             clocks_of(r), r["critical_path"]] for name, r in found.items()]
+    return datasheet.table(["row", "static side: LUT4, logic", "FF", "block RAM", "distributed RAM",
+                            "Fmax, MHz: min / median / max", "critical path of the median"], body)
+
+
+def endpoints_table(found):
+    body = [[f"`{name}`", f"`{end}`", f"{delay:.2f}"] for name, r in found.items() for end, delay in r["endpoints"]]
+    return datasheet.table(["row", "end", "ns"], body)
+
+
+# table -> what makes it; of rows of subsystems, of the other rows
+SUBSYSTEMS = {"subsystems": subsystems_table, "endpoints": endpoints_table}
 TABLES = {"ecp5": area_table, "choices": choices_table, "classes": classes_table, "families": families_table}
+
+
+def tables(found):
+    """Every table with a row of this run, [(name, text)]."""
+    for made, rows_of in ((TABLES, False), (SUBSYSTEMS, True)):
+        wanted = {name: row for name, row in found.items() if bool(row["static"]) == rows_of}
+        if wanted:
+            yield from ((name, make(wanted)) for name, make in made.items())
 
 
 # ---- command line
@@ -531,15 +584,15 @@ def main():
     with bar:
         found, failures = measure(chosen, options)
     save(found)
-    print(area_table(found))
-    if options.families:
-        print(families_table(found))
+    made = {name: text for name, text in tables(found) if name != "families" or options.families}
+    for name in ("ecp5", "subsystems", "endpoints", "families"):
+        if name in made:
+            print(made[name])
     if options.write and not failures:
         if "subsystem1" in found:
             datasheet.rewrite(PAGE, "bill", bill_table(options))
-        for name, make in TABLES.items():
-            if name != "families" or options.families:
-                datasheet.rewrite(PAGE, name, make(found))
+        for name, text in made.items():
+            datasheet.rewrite(PAGE, name, text)
         if options.families:  # every row is of this run
             name_tree()
     for failure in failures:

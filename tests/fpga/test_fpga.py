@@ -72,12 +72,31 @@ class Reports(unittest.TestCase):
             self.assertEqual(fpga.name_of(cell), name)
 
     def test_cells_are_those_of_the_module_alone(self):
-        module, harness = fpga.module_cells(fpga.cells(self.stat))
+        module, regions, harness = fpga.module_cells(fpga.cells(self.stat))
+        self.assertEqual(regions, {})
         design = json.loads(self.stat)["design"]["num_cells_by_type"]
         for cell in ("LUT4", "TRELLIS_FF", "CCU2C", "MULT18X18D"):
             self.assertEqual(module[cell] + harness.get(cell, 0), design[cell], cell)
         self.assertGreater(harness["TRELLIS_FF"], 0)
         self.assertNotIn("MULT18X18D", harness)
+
+    def test_cells_of_regions_count_once_per_slot(self):
+        module = lambda cells: {"num_cells_by_type": cells}
+        modules = {"\\fpga_harness": module({"LUT4": 1, "$paramod\\fpga_subsystem\\SLOTS=2": 1}),
+                   "$paramod\\fpga_subsystem\\SLOTS=2": module({"TRELLIS_FF": 3, "$paramod$1\\cchip_primtest_subsystem": 1}),
+                   "$paramod$1\\cchip_primtest_subsystem": module({"LUT4": 10, "$paramod$2\\cchip_pr_region": 2}),
+                   "$paramod$2\\cchip_pr_region": module({"LUT4": 100, "inner": 1}),
+                   "\\inner": module({"LUT4": 1000})}
+        static, regions, harness = fpga.module_cells(fpga.cells(json.dumps({"modules": modules})))
+        self.assertEqual((static, regions, harness), ({"LUT4": 10}, {"LUT4": 2200}, {"LUT4": 1, "TRELLIS_FF": 3}))
+
+    def test_slowest_ends_by_register(self):
+        end = lambda cell, delay, event="posedge clk": {"cell": f"u_dut.{cell}", "delay": delay, "event": event, "port": "DI"}
+        nets = [{"event": "posedge clk", "endpoints": [end("a_TRELLIS_FF_Q", 3.0), end("b_TRELLIS_FF_Q_1", 5.0)]},
+                {"event": "posedge clk", "endpoints": [end("b_TRELLIS_FF_Q_2", 4.0), end("c_TRELLIS_FF_Q", 9, "<async>")]},
+                {"event": "<async>", "endpoints": [end("d_TRELLIS_FF_Q", 9.0)]},
+                {"event": "posedge clk", "endpoints": [end("e_TRELLIS_FF_Q", 1.0)]}]
+        self.assertEqual(fpga.endpoints({"detailed_net_timings": nets}, 2), [["b", 5.0], ["a", 3.0]])
 
     def test_median_and_rates(self):
         row = self.figures([100.0, 300.0, 200.0])
@@ -103,8 +122,9 @@ class Reports(unittest.TestCase):
         self.assertEqual(fpga.families_table(found).count("\n"), 2 + 2 * len(fpga.FAMILIES))
 
     def test_page_has_a_place_for_every_table(self):
-        for name in fpga.TABLES:
-            self.assertRegex(fpga.PAGE.read_text(), re.compile(datasheet.BLOCK.format(f" {name}"), re.S))
+        text = fpga.PAGE.read_text()
+        for name in (*fpga.TABLES, *fpga.SUBSYSTEMS):
+            self.assertTrue(re.search(datasheet.BLOCK.format(f" {name}"), text, re.S), name)
 
 
 class OwnFolder(unittest.TestCase):
