@@ -473,6 +473,13 @@ class Part {
       case 6:
         bench_.post_write(regs::interrupt_status::offset, 0x1F);
         break;
+      case 7:  // a swap, as a host asks for it that sorts its work by kind
+      case 8:
+      case 9:
+      case 10:
+      case 11:
+        if (bench_.phase() == SwapPhase::idle) bench_.command(slot, module_id, chance(random_, 20));
+        break;
       default:
         provide(slot, module_id, Spoilt::no);
     }
