@@ -64,10 +64,16 @@ class Observer : public sim::Agent {
     ++seen.clocks;
     const auto phase = static_cast<SwapPhase>(probes::swap_phase(model_));
     if (phase == SwapPhase::idle) {
-      if (seen.first_swap_start != 0 && seen.first_swap_end == 0) seen.first_swap_end = now.clock;
-    } else if (seen.first_swap_start == 0) {
-      seen.first_swap_start = now.clock;
+      if (transfers_ && seen.first_swap_end == 0) {
+        seen.first_swap_start = begun_;
+        seen.first_swap_end = now.clock;
+      }
+      begun_ = 0;
+      transfers_ = false;
+    } else if (begun_ == 0) {
+      begun_ = now.clock;
     }
+    transfers_ = transfers_ || phase == SwapPhase::transfer;
     if (phase != SwapPhase::transfer) return;
     ++seen.transfer_clocks;
     const int other = probes::swap_slot(model_) == 0 ? 1 : 0;
@@ -78,6 +84,8 @@ class Observer : public sim::Agent {
 
  private:
   const Model& model_;
+  std::uint64_t begun_ = 0;  // the swap under way; 0: none
+  bool transfers_ = false;   // its module is or was written
 };
 
 /// Errors of the simulation are defects of the RTL.

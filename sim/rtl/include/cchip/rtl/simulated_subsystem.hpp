@@ -24,7 +24,7 @@ struct SubsystemObservations {
   std::uint64_t clocks = 0;
   std::uint64_t transfer_clocks = 0;   ///< clocks of phase TRANSFER
   std::uint64_t hidden_clocks = 0;     ///< those of them with pairs inside the other slot
-  std::uint64_t first_swap_start = 0;  ///< clocks since reset; both 0: none yet
+  std::uint64_t first_swap_start = 0;  ///< of the first swap that wrote a module; clocks since reset; both 0: none yet
   std::uint64_t first_swap_end = 0;
 };
 
