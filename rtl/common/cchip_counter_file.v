@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_assert.vh"
-// cchip_counter_file: eight counters of events in one distributed RAM, which takes less than a
-// quarter of their flip-flops. Counters 0..3 have 64 bits, counters 4..7 have 32; they wrap.
+// cchip_counter_file: eight counters of events in one distributed RAM, with a third of the
+// flip-flops of plain counters. Counters 0..3 have 64 bits, counters 4..7 have 32; they wrap.
 //   counting     the RAM is walked through, a word per clock. Beside it each counter has the number
 //                of its events since its turn, at most 16, which is added when its turn comes.
 //   read         `ack` is 1 for one clock, 2 to 18 clocks after `read`, 16 more after each clear,
