@@ -6,6 +6,7 @@ common/cchip_ram.v
 common/cchip_crc32.v
 common/cchip_arbiter.v
 common/cchip_count.v
+common/cchip_counter_file.v
 vendor/ecp5/cchip_mul18.v
 arith/cchip_mul_wide.v
 arith/cchip_dot3.v
@@ -36,10 +37,11 @@ reconfig/cchip_pr_slot.v
 reconfig/cchip_bitstream_fetch.v
 reconfig/cchip_bitstream_header.v
 reconfig/cchip_config_port.v
-reconfig/cchip_swap_counters.v
+reconfig/cchip_phase_clocks.v
 reconfig/cchip_swap_sequencer.v
 reconfig/cchip_config_controller.v
 regs/cchip_subsystem_regs.v
+reconfig/cchip_bitstream_table.v
 reconfig/cchip_result_merge.v
 reconfig/cchip_swap_retry.v
 reconfig/cchip_swap_scheduler.v

@@ -8,8 +8,9 @@ Source: rtl/regs/cchip_subsystem.rdl. Without an option the three files are writ
 the exit code is 1 if one of them is stale (the line printed says which). They are committed: only this script needs
 systemrdl-compiler, which `make venv` installs; without it the exit code is 77.
 
-What becomes hardware: registers and arrays of them, flat register files and arrays of them; 32 bits, or 64 for one field
-of sw = r, hw = w; fields with the properties of KINDS below. Anything else is an error."""
+What becomes hardware: registers and arrays of them, flat register files and arrays of them, 32 bits, fields with the
+properties of KINDS below. What is `external` is a request to another module, which may hold it in a memory; it may have 64
+bits. Anything else is an error."""
 import os
 import pathlib
 import sys
@@ -46,8 +47,10 @@ def field(node):
             "flags": sorted(name for name in node.list_properties() if name not in ("sw", "hw", "desc", "name", "reset"))}
 
 
-def register(node, name, count, stride, offset):
+def register(node, top, name, count, stride, offset):
+    """top: the register itself, or the register file that it is in."""
     return {"name": name, "count": count, "stride": stride, "address": offset + node.raw_address_offset,
+            "external": top.inst_name if top.external else None,
             "desc": node.get_property("desc") or "", "regwidth": node.get_property("regwidth"),
             "fields": [field(f) for f in sorted(node.fields(), key=lambda f: -f.lsb)]}
 
@@ -72,12 +75,13 @@ def read():
     registers = []
     for node in top.children():
         if isinstance(node, systemrdl.node.RegNode):
-            registers.append(register(node, node.inst_name, *shape(node), 0))
+            registers.append(register(node, node, node.inst_name, *shape(node), 0))
         elif isinstance(node, systemrdl.node.RegfileNode):
             for inner in node.children():
                 if not isinstance(inner, systemrdl.node.RegNode) or inner.is_array:
                     fail(f"{node.inst_name}.{inner.inst_name}: a register file holds single registers here")
-                registers.append(register(inner, f"{node.inst_name}_{inner.inst_name}", *shape(node), node.raw_address_offset))
+                registers.append(register(inner, node, f"{node.inst_name}_{inner.inst_name}", *shape(node),
+                                          node.raw_address_offset))
         else:
             fail(f"{node.inst_name}: neither a register nor a register file")
     check(registers)
@@ -92,10 +96,10 @@ def check(registers):
         for f in r["fields"]:
             where = f"{r['name']}.{f['name']}"
             kind(f, where)
-            if stored(f) and not isinstance(f["reset"], int):
+            if stored(f) and not r["external"] and not isinstance(f["reset"], int):
                 fail(f"{where}: needs a reset value")
-        if r["regwidth"] == 64 and (len(r["fields"]) != 1 or kind(r["fields"][0]) != "input"):
-            fail(f"{r['name']}: 64 bits only for one field of sw = r, hw = w")
+        if r["regwidth"] == 64 and not r["external"]:
+            fail(f"{r['name']}: 64 bits only where external")
         for address, _, _ in words(r):
             if address % 4 or address >= 1 << ADDR_W:
                 fail(f"{r['name']}: address 0x{address:X} is no multiple of 4 or too large")
@@ -136,7 +140,7 @@ def signal(r, f):
 def ports(registers):
     """(direction, width of an element, elements, name)"""
     for r in registers:
-        for f in r["fields"]:
+        for f in r["fields"] if not r["external"] else []:
             name = signal(r, f)
             if kind(f) == "input":
                 yield "input", f["width"], r["count"], f"hwif_in_{name}"
@@ -146,6 +150,15 @@ def ports(registers):
                 yield "input", f["width"], r["count"], f"hwif_in_{name}_hwset"
             if kind(f) == "cleared":
                 yield "input", f["width"], r["count"], f"hwif_in_{name}_hwclr"
+    for name in externals(registers):
+        yield "output", 1, 1, f"hwif_out_{name}_read"
+    for name in externals(filter(writable, registers)):
+        yield "output", 1, 1, f"hwif_out_{name}_write"
+
+
+def externals(registers):
+    """Names of what is external, each once."""
+    return list(dict.fromkeys(r["external"] for r in registers if r["external"]))
 
 
 def span(width, count):
@@ -159,56 +172,70 @@ def part(name, width, count, i):
     return f"{name}[{i}]" if width == 1 else f"{name}[{width * i}+:{width}]"
 
 
-def bits(name, f):
-    return name if f["width"] == 32 else f"{name}[{f['lsb']}]" if f["width"] == 1 else f"{name}[{f['lsb'] + f['width'] - 1}:{f['lsb']}]"
-
-
-def read_word(r, i, w):
-    """What a read of the word returns."""
-    if w == 1:
-        f = r["fields"][0]
-        return part(f"{signal(r, f)}_high_q", 32, r["count"], i)
+def read_word(r, i):
+    """What a read of element i returns."""
     pieces, position = [], 32
-    for f in sorted(r["fields"], key=lambda f: -f["lsb"]):
-        width = min(f["width"], 32)
-        gap = position - f["lsb"] - width
+    for f in r["fields"]:
+        gap = position - f["lsb"] - f["width"]
         pieces += [f"{gap}'d0"] if gap else []
-        name = signal(r, f)
         k = kind(f)
         if k == "constant":
-            pieces.append(f"{width}'h{f['reset']:X}")
+            pieces.append(f"{f['width']}'h{f['reset']:X}")
         elif k == "pulse":
-            pieces.append(f"{width}'d0")
-        elif k == "input":
-            whole = f"hwif_in_{name}"
-            pieces.append(f"{whole}[{64 * i}+:32]" if f["width"] == 64 else part(whole, width, r["count"], i))
+            pieces.append(f"{f['width']}'d0")
         else:
-            pieces.append(part(f"{name}_q", width, r["count"], i))
+            pieces.append(part(f"hwif_in_{signal(r, f)}" if k == "input" else f"{signal(r, f)}_q", f["width"], r["count"], i))
         position = f["lsb"]
     pieces += [f"{position}'d0"] if position else []
     return pieces[0] if len(pieces) == 1 else "{" + ", ".join(pieces) + "}"
 
 
-def update(r, f, first):
-    """What the stored field of every element becomes outside of reset; first = number of the strobe of element 0."""
-    many = r["count"] > 1
-    loop = f"for (i = 0; i < {r['count']}; i = i + 1) " if many else ""
-    strobe = f"strobe_q[{first}+i]" if many else f"strobe_q[{first}]"
+def lanes(f):
+    """(byte lane, lowest bit of the word, bits) of the pieces of a field."""
+    first = f["lsb"]
+    while first < f["lsb"] + f["width"]:
+        bits = min(8 - first % 8, f["lsb"] + f["width"] - first)
+        yield first // 8, first, bits
+        first += bits
 
-    def element(name):
-        return f"{name}[{'i' if f['width'] == 1 else str(f['width']) + '*i+:' + str(f['width'])}]" if many else name
 
-    q = element(f"{signal(r, f)}_q")
-    new = f"({q} & {bits('keep', f)}) | {bits('put', f)}"
-    k = kind(f)
-    if k == "plain":
-        return f"{loop}if ({strobe}) {q} <= {new};"
-    if k == "pulse":
-        return f"{loop}{q} <= {bits('put', f)} & {{{f['width']}{{{strobe}}}}};".replace(f"{{1{{{strobe}}}}}", strobe)
-    hardware = element(f"hwif_in_{signal(r, f)}_{'hwset' if k == 'event' else 'hwclr'}")
-    if k == "event":
-        return f"{loop}{q} <= ({strobe} ? {q} & ~{bits('put', f)} : {q}) | {hardware};"
-    return f"{loop}{q} <= {strobe} ? {new} : {q} & ~{hardware};"
+def update(r, f, i, strobe):
+    """What the stored field of element i becomes outside of reset."""
+    hardware = f"hwif_in_{signal(r, f)}_{'hwset' if kind(f) == 'event' else 'hwclr'}"
+    for lane, first, bits in lanes(f):
+        offset = f["width"] * i + first - f["lsb"]
+        row = f["width"] * r["count"]
+        index = "" if bits == row else f"[{offset}]" if bits == 1 else f"[{offset}+:{bits}]"
+        q = f"{signal(r, f)}_q{index}"
+        data = f"wdata_q[{first}]" if bits == 1 else f"wdata_q[{first}+:{bits}]"
+        write = f"strobe_q[{strobe}] & wstrb_q[{lane}]"
+        all_bits = lambda term: f"{{{bits}{{{term}}}}}" if bits > 1 else f"({term})" if "&" in term else term
+        k = kind(f)
+        if k == "plain":
+            yield f"if ({write}) {q} <= {data};"
+        elif k == "pulse":
+            yield f"{q} <= {data} & {all_bits(write)};"
+        elif k == "event":
+            yield f"{q} <= ({q} & ~({data} & {all_bits(write)})) | {hardware}{index};"
+        elif k == "cleared":
+            yield f"if ({write}) {q} <= {data};"
+            yield f"else {q} <= {q} & ~{hardware}{index};"
+
+
+def chosen(targets, name, address, enable):
+    """Assignments of a vector whose bit k is 1 if enable is 1 and the address is in targets[k], by groups of eight words. (No
+    case statement: synthesis makes a ROM of a large one.)"""
+    groups = sorted({a // 32 for addresses in targets for a in addresses})
+    lines = [f"  wire {name}_in_{g} = {enable} && {address}[{ADDR_W - 3}:3] == {ADDR_W - 5}'d{g};" for g in groups]
+    for k, addresses in enumerate(targets):
+        terms = []
+        for g in sorted({a // 32 for a in addresses}):
+            low = [a // 4 % 8 for a in addresses if a // 32 == g]
+            one_of = " || ".join(f"{address}[2:0] == 3'd{x}" for x in low)
+            one_of = one_of if len(low) == 1 else f"({one_of})"
+            terms.append(f"{name}_in_{g}" if len(low) == 8 else f"({name}_in_{g} && {one_of})")
+        lines.append(f"  assign {name}[{k}] = " + " || ".join(terms) + ";")
+    return "\n".join(lines)
 
 
 FRAME = """\
@@ -216,13 +243,20 @@ FRAME = """\
 // {note}
 `default_nettype none
 // {module}: register block on AXI4-Lite.
-//   latency      write: 3 clocks from the later of address and data to the response, read: 3 clocks
+//   latency      write: 3 clocks from the later of address and data to the response, read: 3 clocks,
+//                longer where an external register takes its time
 //   throughput   one write per 4 clocks and one read per 4 clocks, side by side
-//   cuts         every path on the bus side: each output is a flip-flop; hwif_out_* are flip-flops too
+//   cuts         every path but hwif_in_external_* to the read data: each output is a flip-flop
 //   reset        reset values of the fields; nothing is accepted while rst is 1
-//   errors       SLVERR: a read where no register is, a write where nothing can be written; neither does anything
-// hwif_in_<register>_<field> is what hardware writes, hwif_out_<register>_<field> what it reads; element i of an array of
-// w bits is [w*i +: w]. _hwset: an event, 1 for a clock; _hwclr: clears the field.
+//   errors       SLVERR: a read where no register is, a write where nothing can be written; neither
+//                does anything
+// hwif_in_<register>_<field> is what hardware writes, hwif_out_<register>_<field> what it reads;
+// element i of an array of w bits is [w*i +: w]. _hwset: an event, 1 for a clock; _hwclr: clears
+// the field.
+// External registers live in other modules. hwif_out_<name>_read, 1 for a clock, asks for the word
+// at word address hwif_out_external_raddr; hwif_in_external_ack answers it on the same clock or
+// later with the word on hwif_in_external_rdata, which is 0 otherwise. hwif_out_<name>_write, 1 for
+// a clock, writes those bytes of wdata whose bits in wstrb are 1 to word address waddr.
 module {module} (
 {ports}
 );
@@ -232,7 +266,7 @@ module {module} (
   reg [{top}:0] waddr_q;
   reg [31:0] wdata_q;
   reg [3:0] wstrb_q;
-  reg [{strobes}:0] strobe_q;  // one-hot: the word that is written
+  reg [{strobes}:0] strobe_q;  // one-hot: what is written
 
   wire aw = s_axil_awvalid & awready_q;
   wire w = s_axil_wvalid & wready_q;
@@ -240,8 +274,8 @@ module {module} (
   wire aw_d = (aw_q | aw) & ~b;
   wire w_d = (w_q | w) & ~b;
   wire decode = aw_q & w_q & ~decoded_q & ~bvalid_q;
-  wire [31:0] keep = {{{{8{{~wstrb_q[3]}}}}, {{8{{~wstrb_q[2]}}}}, {{8{{~wstrb_q[1]}}}}, {{8{{~wstrb_q[0]}}}}}};
-  wire [31:0] put = wdata_q & ~keep;
+  wire [{strobes}:0] written;
+{write_choice}
 
   assign s_axil_awready = awready_q;
   assign s_axil_wready = wready_q;
@@ -268,14 +302,13 @@ module {module} (
       w_q       <= w_d;
       decoded_q <= decode;
       bvalid_q  <= decoded_q | (bvalid_q & ~s_axil_bready);
-{decodes}
+      strobe_q  <= written;
     end
   end
 
   // ---- fields
 {declarations}
 
-  integer i;
   always @(posedge clk)
     if (rst) begin
 {resets}
@@ -285,46 +318,55 @@ module {module} (
 
 {outputs}
 
-  // ---- read: groups of eight words, then the group; bit 32 says that there is a register
-  reg arready_q, ar_q, read_q, read_q2, rvalid_q, rerror_q;
+  // ---- read: the address chooses a word, which is gated on its way to the bus
+  reg arready_q, ar_q, read_q, done_q, missing_q, rvalid_q, rerror_q;
   reg [{top}:0] raddr_q;
   reg [31:0] rdata_q;
-{group_declarations}
+  reg [{selects}:0] select_q;  // one-hot for a clock: the word that is read; above: what is external
+  wire [{selects}:0] selected;
+{read_choice}
 
   wire ar = s_axil_arvalid & arready_q;
   wire ar_d = (ar_q | ar) & ~(rvalid_q & s_axil_rready);
+  wire answered = done_q | hwif_in_external_ack;
 
   assign s_axil_arready = arready_q;
   assign s_axil_rvalid = rvalid_q;
   assign s_axil_rdata = rdata_q;
   assign s_axil_rresp = {{rerror_q, 1'b0}};
 
-  reg [{last_group}:0] group_q;  // one-hot: the group of raddr_q
-  wire [32:0] word =
-{choices};
+  wire [31:0] word =
+{words}
+      hwif_in_external_rdata;
 
   always @(posedge clk) begin
-{groups_decoded}
     if (ar) raddr_q <= s_axil_araddr[{addr_top}:2];
-    if (read_q2) {{rerror_q, rdata_q}} <= {{~word[32], word[31:0]}};
+    if (answered) rdata_q <= word;
+    if (answered) rerror_q <= missing_q;
+    if (read_q) missing_q <= selected == {select_count}'d0;
     if (rst) begin
       arready_q <= 1'b0;
       ar_q      <= 1'b0;
       read_q    <= 1'b0;
-      read_q2   <= 1'b0;
+      done_q    <= 1'b0;
       rvalid_q  <= 1'b0;
+      select_q  <= {select_count}'d0;
     end else begin
       arready_q <= ~ar_d;
       ar_q      <= ar_d;
       read_q    <= ar;
-      read_q2   <= read_q;
-      rvalid_q  <= read_q2 | (rvalid_q & ~s_axil_rready);
+      done_q    <= read_q & ~|selected[{selects}:{words_count}];
+      rvalid_q  <= answered | (rvalid_q & ~s_axil_rready);
+      select_q  <= selected;
     end
   end
 
-{latches}  always @(posedge clk) begin
-{groups}
-  end
+  // ---- external registers
+  assign hwif_out_external_raddr = raddr_q;
+  assign hwif_out_external_waddr = waddr_q;
+  assign hwif_out_external_wdata = wdata_q;
+  assign hwif_out_external_wstrb = wstrb_q;
+{external_outputs}
 
   wire unused = &{{1'b0, s_axil_awprot, s_axil_arprot, s_axil_awaddr[1:0], s_axil_araddr[1:0]}};
 
@@ -339,7 +381,9 @@ BUS = [("input", 1, "clk"), ("input", 1, "rst"),
        ("input", 1, "s_axil_bready"), ("output", 2, "s_axil_bresp"), ("input", 1, "s_axil_arvalid"),
        ("output", 1, "s_axil_arready"), ("input", ADDR_W, "s_axil_araddr"), ("input", 3, "s_axil_arprot"),
        ("output", 1, "s_axil_rvalid"), ("input", 1, "s_axil_rready"), ("output", 32, "s_axil_rdata"),
-       ("output", 2, "s_axil_rresp")]
+       ("output", 2, "s_axil_rresp"), ("output", ADDR_W - 2, "hwif_out_external_raddr"), ("input", 1, "hwif_in_external_ack"),
+       ("input", 32, "hwif_in_external_rdata"), ("output", ADDR_W - 2, "hwif_out_external_waddr"),
+       ("output", 32, "hwif_out_external_wdata"), ("output", 4, "hwif_out_external_wstrb")]
 
 
 def within_columns(text):
@@ -353,55 +397,42 @@ def within_columns(text):
     return "\n".join(lines)
 
 
-def verilog(name, registers):
+def verilog(name_of_map, registers):
     port_list = [(d, width, 1, n) for d, width, n in BUS] + list(ports(registers))
     port_lines = [f"    {d:6} wire {span(width, count) + ' ' if width * count > 1 else ''}{n}" for d, width, count, n in port_list]
-    written = [(address, r, i) for r in registers if writable(r) for address, i, _ in words(r)]
-    declarations, resets, updates, outputs, decodes, latches = [], [], [], [], [], []
-    for k, (address, r, i) in enumerate(written):
-        decodes.append(f"      strobe_q[{k}] <= decode & waddr_q == {ADDR_W - 2}'h{address // 4:X};")
-        if i == 0:
-            updates += ["      " + update(r, f, k) for f in r["fields"] if kind(f) not in ("constant", "input")]
-    for r in registers:
+    inside = [r for r in registers if not r["external"]]
+    declarations, resets, updates, outputs, strobes = [], [], [], [], []
+    for r in inside:
         for f in r["fields"]:
+            if kind(f) in ("constant", "input"):
+                continue
             row = f["width"] * r["count"]
-            if f["width"] == 64:
-                high = f"{signal(r, f)}_high_q"
-                low = f"{signal(r, f)}_low_q"
-                declarations.append(f"  reg [{r['count']}*32-1:0] {high};  // kept by a read of the low word")
-                declarations.append(f"  reg {span(1, r['count']) + ' ' if r['count'] > 1 else ''}{low};  // it is read")
-                for address, i, w in words(r):
-                    if w == 0:
-                        latches.append(f"    {part(low, 1, r['count'], i)} <= ar && s_axil_araddr[{ADDR_W - 1}:2] == "
-                                       f"{ADDR_W - 2}'h{address // 4:X};")
-                        latches.append(f"    if ({part(low, 1, r['count'], i)}) "
-                                       f"{part(high, 32, r['count'], i)} <= hwif_in_{signal(r, f)}[{64 * i + 32}+:32];")
-            elif kind(f) not in ("constant", "input"):
-                declarations.append(f"  reg {span(f['width'], r['count']) + ' ' if row > 1 else ''}{signal(r, f)}_q;")
-                value = f"{f['width']}'h{f['reset']:X}"
-                resets.append(f"      {signal(r, f)}_q <= " + (value if r["count"] == 1 else f"{{{r['count']}{{{value}}}}}") + ";")
-                outputs.append(f"  assign hwif_out_{signal(r, f)} = {signal(r, f)}_q;")
-    groups = {}
-    for address, r, i, w in sorted(((address, r, i, w) for r in registers for address, i, w in words(r)), key=lambda word: word[0]):
-        groups.setdefault(address // 32, []).append((address // 4 % 8, read_word(r, i, w)))
-    group_lines = []
-    for g, members in sorted(groups.items()):
-        group_lines.append("    case (raddr_q[2:0])")
-        for low, value in members:
-            label = "default" if low == 7 and len(members) == 8 else f"3'd{low}"
-            group_lines.append(f"      {label}: group{g}_q <= {{1'b1, {value}}};")
-        group_lines += ([] if len(members) == 8 else [f"      default: group{g}_q <= 33'd0;"]) + ["    endcase"]
-    latch_text = "  always @(posedge clk) begin\n" + "\n".join(latches) + "\n  end\n\n" if latches else ""
+            declarations.append(f"  reg {span(f['width'], r['count']) + ' ' if row > 1 else ''}{signal(r, f)}_q;")
+            value = f"{f['width']}'h{f['reset']:X}"
+            resets.append(f"      {signal(r, f)}_q <= " + (value if r["count"] == 1 else f"{{{r['count']}{{{value}}}}}") + ";")
+            outputs.append(f"  assign hwif_out_{signal(r, f)} = {signal(r, f)}_q;")
+        for address, i, _ in words(r) if writable(r) else []:
+            updates += ["      " + line for f in r["fields"] for line in update(r, f, i, len(strobes))]
+            strobes.append([address])
+    selects = [[address] for r in inside for address, _, _ in words(r)]
+    read_words = [read_word(r, i) for r in inside for _, i, _ in words(r)]
+    external_outputs = []
+    for name in externals(registers):
+        these = [r for r in registers if r["external"] == name]
+        external_outputs.append(f"  assign hwif_out_{name}_read = select_q[{len(selects)}];")
+        selects.append(sorted(address for r in these for address, _, _ in words(r)))
+        written = sorted(address for r in these if writable(r) for address, _, _ in words(r))
+        if written:
+            external_outputs.append(f"  assign hwif_out_{name}_write = strobe_q[{len(strobes)}];")
+            strobes.append(written)
     return within_columns(FRAME.format(
-        note=NOTE, module=f"{name}_regs", ports=",\n".join(port_lines), top=ADDR_W - 3, addr_top=ADDR_W - 1,
-        strobes=len(written) - 1, strobe_count=len(written), decodes="\n".join(decodes), latches=latch_text,
+        note=NOTE, module=f"{name_of_map}_regs", ports=",\n".join(port_lines), top=ADDR_W - 3, addr_top=ADDR_W - 1,
+        strobes=len(strobes) - 1, strobe_count=len(strobes), write_choice=chosen(strobes, "written", "waddr_q", "decode"),
+        selects=len(selects) - 1, select_count=len(selects), read_choice=chosen(selects, "selected", "raddr_q", "read_q"),
+        words_count=len(read_words), words="\n".join(f"      ({word} & {{32{{select_q[{k}]}}}}) |"
+                                                     for k, word in enumerate(read_words)),
         declarations="\n".join(declarations), resets="\n".join(resets), updates="\n".join(updates),
-        outputs="\n".join(outputs), groups="\n".join(group_lines),
-        group_declarations="\n".join(f"  reg [32:0] group{g}_q;" for g in sorted(groups)),
-        last_group=len(groups) - 1,
-        groups_decoded="\n".join(f"    group_q[{k}] <= raddr_q[{ADDR_W - 3}:3] == {ADDR_W - 5}'d{g};"
-                                 for k, g in enumerate(sorted(groups))),
-        choices=" |\n".join(f"      (group{g}_q & {{33{{group_q[{k}]}}}})" for k, g in enumerate(sorted(groups)))))
+        outputs="\n".join(outputs), external_outputs="\n".join(external_outputs)))
 
 
 # ---- C++ header and page

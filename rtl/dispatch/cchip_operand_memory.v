@@ -2,21 +2,22 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// cchip_operand_memory: the vertices of the pairs that wait, in block RAM: one vertex of A and one
-// of B per word, four words a pair, at the place of the pair's descriptor
-// (cchip_descriptor_queues).
-//   write        the pair on s_pair, which holds still, is written one vertex per clock: 3 clocks
-//                for triangles and for the illegal kind 0, 4 with quads; s_pair_ready is 1 on the
-//                last of them, s_ready says that there is room for its kind
+// cchip_operand_memory: the vertices of the pairs that wait, in block RAM, four words a pair, at
+// the place of the pair's descriptor (cchip_descriptor_queues). A word is one vertex of A and one
+// of B.
+//   write        all vertices of the pair on s_pair on the clock on which it is accepted, at the
+//                earliest 1 clock after it is offered: a pair every 2 clocks
 //   triangles    A of a tri-quad pair is written with its third vertex twice, so that a test of
 //                quads takes it as a quad
 //   read         m_a, m_b: vertex m_vertex of the pair at m_place, 1 clock later
+//   collision    the pair at m_place has left its queue when its vertex 0 is read. While m_vertex
+//                is 1 to 3 its place is not written: a new pair waits for it
 //   cuts         s_pair_ready, m_a and m_b are flip-flops
-//   reset        a pair that is half written is written again
+//   reset        no pair is accepted; what was written stays
 module cchip_operand_memory #(
     // width of a coordinate, bit, 4..20
     parameter integer COORD_W = 16,
-    // width of a place, bit, 3..12: 4 << PLACE_W words
+    // width of a place, bit, 3..12: 1 << PLACE_W pairs
     parameter integer PLACE_W = 9
 ) (
     input  wire                                   clk,
@@ -46,51 +47,38 @@ module cchip_operand_memory #(
     end
   endgenerate
 
-  // ---- write
-  reg [1:0] vertex_q;  // of the pair on s_pair: to be written next
+  // ---- accept: a pair that holds still is accepted one clock after there is room for it
+  // and nothing is read at its place any more
   reg ready_q;
+  wire being_read = m_vertex != 2'd0 && m_place == place;
+  wire write = s_pair_valid & ready_q;
   assign s_pair_ready = ready_q;
+  always @(posedge clk) ready_q <= ~rst & s_pair_valid & room & ~being_read & ~ready_q;
 
-  wire begun = |vertex_q;
-  wire write = s_pair_valid & (begun | room);
-  wire last = vertex_q == {1'b1, s_pair_kind[1]};
-  wire before_last = vertex_q == {s_pair_kind[1], ~s_pair_kind[1]};
-  wire [1:0] vertex_a = {vertex_q[1], vertex_q[0] & ~(vertex_q[1] & ~s_pair_kind[0])};
-
-  always @(posedge clk)
-    if (rst) begin
-      vertex_q <= 2'd0;
-      ready_q  <= 1'b0;
-    end else begin
-      vertex_q <= !write || last ? 2'd0 : vertex_q + 2'd1;
-      ready_q  <= write & before_last;
-    end
-
-  // ---- memory: one write port, one read port with its register. The sender is a register, so the
-  // choice of a vertex is the only logic before the block RAM.
+  // ---- memory: one write port four words wide, one read port with its register. Block RAMs have
+  // ports of different widths, so the words need no multiplexer.
+  wire [4*POINT_W-1:0] a = {
+    s_pair_kind[0] ? s_pair_a[3*POINT_W+:POINT_W] : s_pair_a[2*POINT_W+:POINT_W],
+    s_pair_a[3*POINT_W-1:0]
+  };
   (* ram_style = "block", no_rw_check *)
   reg [2*POINT_W-1:0] mem [0:(4<<PLACE_W)-1];
   reg [2*POINT_W-1:0] data_q;
   assign {m_b, m_a} = data_q;
 
-  // written out: an index times a width would become a multiplier
-  function [POINT_W-1:0] choose(input [4*POINT_W-1:0] from, input [1:0] vertex);
-    case (vertex)
-      2'd0: choose = from[0+:POINT_W];
-      2'd1: choose = from[POINT_W+:POINT_W];
-      2'd2: choose = from[2*POINT_W+:POINT_W];
-      default: choose = from[3*POINT_W+:POINT_W];
-    endcase
-  endfunction
+  integer v;
   always @(posedge clk)
-    if (write)
-      mem[{place, vertex_q}] <= {choose(s_pair_b, vertex_q), choose(s_pair_a, vertex_a)};
+    for (v = 0; v < 4; v = v + 1)
+      if (write) mem[{place, v[1:0]}] <= {s_pair_b[POINT_W*v+:POINT_W], a[POINT_W*v+:POINT_W]};
   always @(posedge clk) data_q <= mem[{m_place, m_vertex}];
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_last, !(s_pair_valid && ready_q) || (last && write))
+      `CCHIP_ASSERT(a_room, !write || room)
+      `CCHIP_ASSERT(a_read, !write || !being_read)
     end
+
+  wire unused = &{1'b0, s_pair_kind[1]};
 
 endmodule
 `default_nettype wire

@@ -4,8 +4,9 @@
 // cchip_primtest_subsystem: primitive tests of three kinds in one or two slots that are exchanged
 // at run time. Pairs of any kind in, answers out, the exchange of modules done by itself or by
 // software.
-//   latency      that of the test + 19 clocks while a slot serves its kind; a swap longer otherwise
-//   throughput   a pair every 3 clocks, with quads every 4, at most; that of the tests
+//   latency      that of the test + 18 clocks while a slot serves its kind; a swap longer otherwise
+//   throughput   in: a pair every 2 clocks; to the slots: every 3, with quads every 4; that of the
+//                tests
 //   in flight    QUEUE_DEPTH pairs of each kind in the queues, CONTEXTS for each slot
 //   order        answers in any order; tag and kind of the pair come back with each exactly once. A
 //                pair that a swap by force gave up, or that nobody can test, is answered as open:
@@ -183,7 +184,8 @@ module cchip_primtest_subsystem #(
   wire [SLOTS-1:0] stop, quiet, decouple, decoupled, hold_reset, roc_start, roc_busy, slot_idle;
   wire [SLOTS-1:0] slot_decoupled;  // its region; `decoupled` when all its pairs are answered, too
   wire [`CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id, rm_id;
-  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] outstanding, slot_lost;
+  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] outstanding  /* verilator public_flat_rd */;
+  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost;
   wire answered, refused_kind, refused_provider;
   wire [1:0] answered_module;
 
@@ -274,14 +276,14 @@ module cchip_primtest_subsystem #(
   wire [`CCHIP_SLOT_ID_W-1:0] command_slot;
   wire [31:0] shutdown_limit, memory_limit, minimum_batch, maximum_age;
   wire [7:0] table_valid;
-  wire [8*32-1:0] table_address, table_size;
+  wire [3:0] table_entry;
+  wire [31:0] table_address, table_size;
+  wire table_look;
   wire [4*SLOTS-1:0] invalidate;
   wire report_valid;
   wire [`CCHIP_SWAP_REPORT_W-1:0] report_data, last_report;
   wire [4:0] status, status_enable;
-  wire [31:0] lost, swaps, rejected, stalls;
-  wire [9*32-1:0] phase_clocks;
-  wire [4*64-1:0] pairs;
+  wire [31:0] lost;
   wire [`CCHIP_PHASE_W-1:0] phase;
   wire [`CCHIP_SLOT_ID_W-1:0] phase_slot;
   wire [2:0] swap_events;  // {lost, error, done}
@@ -296,12 +298,47 @@ module cchip_primtest_subsystem #(
       .clear          (clear),
       .report_valid   (report_valid),
       .report_data(report_data),
-      .answered       (answered),
-      .answered_module(answered_module),
       .last_report    (last_report),
       .swap_events    (swap_events),
-      .lost           (lost),
-      .pairs          (pairs)
+      .lost           (lost)
+  );
+
+  // external registers: word 0x100/4 on are counters of 64 bits, 0x080/4 on counters of 32; the
+  // clocks of phase p are in word 0x0C0/4 + p
+  wire [9:0] read_word, write_word;
+  wire [31:0] write_data, counter_data, phase_clocks, table_data;
+  wire [3:0] write_bytes;
+  wire read_swaps, read_rejected, read_stalls, read_pairs, read_phases, read_table, write_table;
+  wire swapped, rejected, stall, counter_ack;
+  wire [3:0] answered_by = {3'd0, answered} << answered_module;
+
+  cchip_counter_file u_counters (
+      .clk         (clk),
+      .rst         (rst),
+      .clear       (clear),
+      .count       ({1'b0, stall, rejected, swapped, answered_by}),
+      .read        (read_pairs | read_swaps | read_rejected | read_stalls),
+      .read_high   (read_pairs & read_word[0]),
+      .read_counter(read_word[6] ? {1'b0, read_word[2:1]} : {1'b1, read_word[1:0]}),
+      .ack         (counter_ack),
+      .read_data   (counter_data)
+  );
+
+  cchip_bitstream_table u_table (
+      .clk        (clk),
+      .rst        (rst),
+      .write      (write_table),
+      .write_word (write_word[4:0]),
+      .write_data (write_data),
+      .write_bytes(write_bytes),
+      .read_word  (read_word[4:0]),
+      .read_data  (table_data),
+      .look       (table_look),
+      .look_entry (table_entry[2:0]),
+      .address    (table_address),
+      .size       (table_size),
+      .valid      (table_valid),
+      .invalidate ({{4 * (2 - SLOTS) {1'b0}}, invalidate})
   );
 
   cchip_subsystem_regs u_regs (
@@ -326,6 +363,13 @@ module cchip_primtest_subsystem #(
       .s_axil_rready                               (s_axil_rready),
       .s_axil_rdata                                (s_axil_rdata),
       .s_axil_rresp                                (s_axil_rresp),
+      .hwif_out_external_raddr                     (read_word),
+      .hwif_in_external_ack                        (read_phases | read_table | counter_ack),
+      .hwif_in_external_rdata                      (counter_data
+          | (phase_clocks & {32{read_phases}}) | (table_data & {32{read_table}})),
+      .hwif_out_external_waddr                     (write_word),
+      .hwif_out_external_wdata                     (write_data),
+      .hwif_out_external_wstrb                     (write_bytes),
       .hwif_in_capabilities_coord_w                (GRID_W[7:0]),
       .hwif_in_capabilities_cfg_w                  (PORT_W[7:0]),
       .hwif_in_capabilities_slots                  (SLOT_COUNT[7:0]),
@@ -365,16 +409,14 @@ module cchip_primtest_subsystem #(
       .hwif_in_slot_status_phase                   ({phase & {4{phase_slot == 8'd1}}, phase
           & {4{phase_slot == 8'd0}}}),
       .hwif_in_slot_status_module_id               (rm_id_of),
-      .hwif_in_swaps_value                         (swaps),
-      .hwif_in_rejected_value                      (rejected),
-      .hwif_in_stalls_value                        (stalls),
       .hwif_in_lost_value                          (lost),
-      .hwif_in_phase_clocks_value                  (phase_clocks),
-      .hwif_in_pairs_value                         (pairs),
-      .hwif_out_bitstream_address_value            (table_address),
-      .hwif_out_bitstream_size_value               (table_size),
-      .hwif_out_bitstream_valid_value              (table_valid),
-      .hwif_in_bitstream_valid_value_hwclr         ({{4 * (2 - SLOTS) {1'b0}}, invalidate})
+      .hwif_out_swaps_read                         (read_swaps),
+      .hwif_out_rejected_read                      (read_rejected),
+      .hwif_out_stalls_read                        (read_stalls),
+      .hwif_out_phase_clocks_read                  (read_phases),
+      .hwif_out_pairs_read                         (read_pairs),
+      .hwif_out_bitstream_read                     (read_table),
+      .hwif_out_bitstream_write                    (write_table)
   );
 
   always @(posedge clk) irq_q <= ~rst & |(status & status_enable);
@@ -406,10 +448,12 @@ module cchip_primtest_subsystem #(
       .min_batch       (minimum_batch),
       .max_age         (maximum_age),
       .table_valid     (table_valid[4*SLOTS-1:0]),
-      .table_address   (table_address[4*32*SLOTS-1:0]),
-      .table_size      (table_size[4*32*SLOTS-1:0]),
       .table_invalidate(invalidate),
       .table_resting   (resting),
+      .table_look      (table_look),
+      .table_entry     (table_entry),
+      .table_address   (table_address),
+      .table_size      (table_size),
       .waiting         (waiting[COUNT_W+:3*COUNT_W]),
       .full            (~queue_room[KINDS:1]),
       .no_provider     (no_provider),
@@ -471,14 +515,15 @@ module cchip_primtest_subsystem #(
       .cfg_valid      (cfg_valid),
       .cfg_data       (cfg_data),
       .cfg_error      (cfg_error),
-      .swaps          (swaps),
+      .swapped        (swapped),
       .rejected       (rejected),
-      .stalls         (stalls),
-      .phase_clocks   (phase_clocks)
+      .stall          (stall),
+      .read_phase     (read_word[`CCHIP_PHASE_W-1:0]),
+      .read_clocks    (phase_clocks)
   );
 
-  wire unused = &{1'b0, table_valid, table_address, table_size, slot_idle, slot_decoupled, busy,
-      waiting[COUNT_W-1:0], queue_room[0]};
+  wire unused = &{1'b0, table_valid, table_entry, read_word, write_word, slot_idle,
+      slot_decoupled, busy, waiting[COUNT_W-1:0], queue_room[0]};
 
 endmodule
 `default_nettype wire

@@ -15,8 +15,8 @@
 //                exactly one report
 //   clocks       cfg_error may come from any clock, see cchip_swap_sequencer; the rest of the
 //                configuration port belongs to clk
-//   cuts         every path: each output comes from flip-flops, m_report_data through a multiplexer
-//                of two
+//   cuts         every path but read_phase to read_clocks: each output comes from flip-flops,
+//                m_report_data through a multiplexer of two, swapped and rejected through its code
 //   reset        no swap, slots at work, except one whose transfer had begun and not ended well:
 //                `half_q` outlives rst and keeps it stopped, decoupled and in reset until a good
 //                transfer
@@ -38,7 +38,7 @@ module cchip_config_controller #(
     output wire                                 m_report_valid,   // 1 clock, no ready
     output wire [     `CCHIP_SWAP_REPORT_W-1:0] m_report_data,
     input  wire                                 abort_swap,
-    input  wire                                 clear,            // counters
+    input  wire                                 clear,            // the clocks of phases
     input  wire [                         31:0] shutdown_limit,   // clocks; 0: default
     input  wire [                         31:0] memory_limit,     // clocks; 0: default
     output wire [                    SLOTS-1:0] stop,
@@ -69,10 +69,14 @@ module cchip_config_controller #(
     output wire                                 cfg_valid,
     output wire [                    CFG_W-1:0] cfg_data,
     input  wire                                 cfg_error,
-    output wire [                         31:0] swaps,
-    output wire [                         31:0] rejected,
-    output wire [                         31:0] stalls,
-    output wire [                     9*32-1:0] phase_clocks
+    // to be counted, one clock each: a swap ended well, one failed or was refused, a slot of the
+    // port passed without data
+    output wire                                 swapped,
+    output wire                                 rejected,
+    output wire                                 stall,
+    // clocks of a phase of the last swap; read_phase stays for 2 clocks
+    input  wire [           `CCHIP_PHASE_W-1:0] read_phase,
+    output wire [                         31:0] read_clocks
 );
 
   wire [`CCHIP_SLOT_ID_W-1:0] slot;
@@ -83,7 +87,7 @@ module cchip_config_controller #(
   wire run, owes, bus_error, timeout;
   wire header_done, header_ok;
   wire [`CCHIP_SWAP_W-1:0] header_code;
-  wire fetch_valid, port_ready, transfer_done, stall;
+  wire fetch_valid, port_ready, transfer_done;
   wire [31:0] length, payload_crc, fetch_data, crc;
   reg crc_ok_q;
   always @(posedge clk) crc_ok_q <= crc == payload_crc;
@@ -201,20 +205,20 @@ module cchip_config_controller #(
       .stall    (stall)
   );
 
-  cchip_swap_counters u_counters (
-      .clk         (clk),
-      .rst         (rst),
-      .clear       (clear),
-      .phase       (phase),
-      .elapsed     (clocks),
-      .report_valid(m_report_valid),
-      .report_code (m_report_data[`CCHIP_SWAP_REPORT_CODE]),
-      .stall       (stall),
-      .swaps       (swaps),
-      .rejected    (rejected),
-      .stalls      (stalls),
-      .phase_clocks(phase_clocks)
+  // ---- the past
+  cchip_phase_clocks u_phase_clocks (
+      .clk        (clk),
+      .rst        (rst),
+      .clear      (clear),
+      .phase      (phase),
+      .elapsed    (clocks),
+      .read_phase (read_phase),
+      .read_clocks(read_clocks)
   );
+  wire [`CCHIP_SWAP_W-1:0] report_code = m_report_data[`CCHIP_SWAP_REPORT_CODE];
+  assign swapped  = m_report_valid && report_code == `CCHIP_SWAP_OK;
+  assign rejected = m_report_valid && report_code != `CCHIP_SWAP_OK
+      && report_code != `CCHIP_SWAP_SAME;
 
   assign phase_slot = slot;
 

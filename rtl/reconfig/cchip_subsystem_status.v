@@ -1,34 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// cchip_subsystem_status: the past that the registers of the subsystem show: the last report,
-// counts of lost and of answered pairs.
-//   latency      1 clock from a report to last_report and swap_events, from an answer to its
-//                counter
+// cchip_subsystem_status: what the registers of the subsystem show of swaps: the last report, its
+// event, the sum of the pairs that were lost.
+//   latency      1 clock from a report to every output
 //   cuts         every path: each output is a flip-flop
-//   reset        all 0; clear: the counters 0
+//   reset        all 0; clear: lost 0
 module cchip_subsystem_status (
     input  wire                            clk,
     input  wire                            rst,
     input  wire                            clear,
     input  wire                            report_valid,
     input  wire [`CCHIP_SWAP_REPORT_W-1:0] report_data,
-    input  wire                            answered,
-    input  wire [                     1:0] answered_module,  // 0: without a test
     output wire [`CCHIP_SWAP_REPORT_W-1:0] last_report,
-    output wire [                     2:0] swap_events,      // {lost, error, done}, one clock
-    output wire [                    31:0] lost,
-    output wire [                   255:0] pairs             // 64 bit for each module
+    output wire [                     2:0] swap_events,  // {lost, error, done}, one clock
+    output wire [                    31:0] lost
 );
 
   reg [`CCHIP_SWAP_REPORT_W-1:0] last_report_q;
   reg [2:0] swap_events_q;
   reg [31:0] lost_q;
-  reg [255:0] pairs_q;
   assign last_report = last_report_q;
   assign swap_events = swap_events_q;
   assign lost = lost_q;
-  assign pairs = pairs_q;
 
   wire [`CCHIP_SWAP_W-1:0] report_code = report_data[`CCHIP_SWAP_REPORT_CODE];
   wire [`CCHIP_PAIR_COUNT_W-1:0] report_lost = report_data[`CCHIP_SWAP_REPORT_LOST];
@@ -44,18 +38,6 @@ module cchip_subsystem_status (
       swap_events_q <= {3{report_valid}} & {report_lost != 16'd0, ~done, done};
       lost_q <= clear ? 32'd0 : lost_q + (report_valid ? {16'd0, report_lost} : 32'd0);
     end
-
-  // both halves change on one clock: whoever reads them together reads a value that the counter had
-  genvar m;
-  generate
-    for (m = 0; m < 4; m = m + 1) begin : gen_modules
-      localparam [31:0] MODULE = m;
-      always @(posedge clk)
-        if (rst || clear) pairs_q[64*m+:64] <= 64'd0;
-        else if (answered && answered_module == MODULE[1:0])
-          pairs_q[64*m+:64] <= pairs_q[64*m+:64] + 64'd1;
-    end
-  endgenerate
 
 endmodule
 `default_nettype wire

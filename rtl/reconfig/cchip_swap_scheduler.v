@@ -18,8 +18,9 @@
 //   command      refused with BUSY while a swap is under way, with REQUEST where the table has no
 //                valid bitstream
 //   latency      a kind is looked at for 4 clocks, and for 9 * SLOTS + 1 more if a swap is due; a
-//                command's request leaves 2 clocks after it; 15 clocks of rest after a report
-//   cuts         every path but rst: all outputs are flip-flops
+//                command's request leaves 3 clocks after it; 15 clocks of rest after a report
+//   cuts         every path but rst: all outputs are flip-flops, address and size of m_swap_data
+//                those of the table
 //   reset        no request, no report, age 0
 module cchip_swap_scheduler #(
     // slots, 1..4
@@ -35,10 +36,13 @@ module cchip_swap_scheduler #(
     input  wire [                     31:0] max_age,
     // bitstreams: entry 4 * slot + module
     input  wire [              4*SLOTS-1:0] table_valid,
-    input  wire [           4*32*SLOTS-1:0] table_address,
-    input  wire [           4*32*SLOTS-1:0] table_size,
     output wire [              4*SLOTS-1:0] table_invalidate,
     input  wire [              4*SLOTS-1:0] table_resting,
+    // the entry of the swap; its address and size come 2 clocks after table_look and stay
+    output wire                             table_look,
+    output wire [                      3:0] table_entry,
+    input  wire [                     31:0] table_address,
+    input  wire [                     31:0] table_size,
     // queues, kind k at place k - 1
     input  wire [            3*COUNT_W-1:0] waiting,
     input  wire [                      2:0] full,
@@ -66,8 +70,6 @@ module cchip_swap_scheduler #(
   reg [2:0] no_provider_q;
   reg m_swap_valid_q;
   reg [`CCHIP_RM_ID_W-1:0] m_swap_module_q;
-  reg [31:0] m_swap_address_q;
-  reg [31:0] m_swap_size_q;
   reg m_swap_force_q;
   reg m_report_valid_q;
   reg [`CCHIP_SWAP_REPORT_W-1:0] m_report_data_q;
@@ -99,12 +101,10 @@ module cchip_swap_scheduler #(
   // ---- the tables are extended to a power of two; slots that do not exist have no bitstream
   wire [ENTRIES-1:0] valid_of = {{ENTRIES - 4 * SLOTS{1'b0}}, table_valid};
   wire [ENTRIES-1:0] ready_of = {{ENTRIES - 4 * SLOTS{1'b0}}, table_valid & ~table_resting};
-  wire [32*ENTRIES-1:0] address_of = {{32 * (ENTRIES - 4 * SLOTS) {1'b0}}, table_address};
-  wire [32*ENTRIES-1:0] size_of = {{32 * (ENTRIES - 4 * SLOTS) {1'b0}}, table_size};
 
   // ---- swap under way: chosen, requested, or accepted by the controller
-  reg swapping_q, chosen_q;
-  wire asked = swapping_q | m_swap_valid_q | chosen_q;
+  reg swapping_q, chosen_q, chosen_q2;
+  wire asked = swapping_q | m_swap_valid_q | chosen_q | chosen_q2;
 
   // ---- kinds
   reg [2:0] unserved_q;  // pairs wait, no slot serves the kind
@@ -209,14 +209,15 @@ module cchip_swap_scheduler #(
   // ---- requests
   reg [SLOT_W-1:0] slot_of_swap_q;
   assign m_swap_data = `CCHIP_SWAP_REQUEST_OF({{`CCHIP_SLOT_ID_W - SLOT_W{1'b0}}, slot_of_swap_q},
-      m_swap_module_q, m_swap_address_q, m_swap_size_q, m_swap_force_q);
+      m_swap_module_q, table_address, table_size, m_swap_force_q);
   wire command_known = {24'd0, command_slot} < SLOT_COUNT && command_module[7:2] == 6'd0;
   wire [ENTRY_W-1:0] command_entry = {command_slot[SLOT_W-1:0], command_module[1:0]};
   wire command_ok = command_known & valid_of[command_entry];
   wire take_command = command_valid & ~asked & command_ok;
   wire take_found = searching & found_q;
   wire [ENTRY_W-1:0] entry = take_command ? command_entry : {found_slot_q, found_module_q};
-  wire [ENTRY_W-1:0] entry_of_swap = {slot_of_swap_q, m_swap_module_q[1:0]};
+  assign table_look  = chosen_q;
+  assign table_entry = {{2 - SLOT_W{1'b0}}, slot_of_swap_q, m_swap_module_q[1:0]};
 
   always @(posedge clk) begin
     if (take_command || take_found) begin
@@ -224,16 +225,15 @@ module cchip_swap_scheduler #(
       m_swap_module_q <= {6'd0, entry[1:0]};
       m_swap_force_q  <= take_command & command_force;
     end
-    // the table is read one clock after the choice
-    if (chosen_q) m_swap_address_q <= address_of[{entry_of_swap, 5'd0}+:32];
-    if (chosen_q) m_swap_size_q <= size_of[{entry_of_swap, 5'd0}+:32];
     if (rst) begin
       m_swap_valid_q <= 1'b0;
       chosen_q     <= 1'b0;
+      chosen_q2    <= 1'b0;
       swapping_q   <= 1'b0;
     end else begin
       chosen_q     <= take_command | take_found;
-      m_swap_valid_q <= chosen_q | (m_swap_valid_q & ~m_swap_ready);
+      chosen_q2    <= chosen_q;
+      m_swap_valid_q <= chosen_q2 | (m_swap_valid_q & ~m_swap_ready);
       swapping_q   <= (m_swap_valid_q & m_swap_ready) | (swapping_q & ~s_report_valid);
     end
   end
@@ -262,8 +262,8 @@ module cchip_swap_scheduler #(
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_one_swap, {1'b0, swapping_q} + {1'b0, m_swap_valid_q}
-          + {1'b0, chosen_q} <= 2'd1)
+      `CCHIP_ASSERT(a_one_swap, {2'd0, swapping_q} + {2'd0, m_swap_valid_q}
+          + {2'd0, chosen_q} + {2'd0, chosen_q2} <= 3'd1)
       `CCHIP_ASSERT(a_pause, pausing_q == (pause_q != 4'd0))
       `CCHIP_ASSERT(a_answer, !s_report_valid || swapping_q || (m_swap_valid_q && m_swap_ready))
     end

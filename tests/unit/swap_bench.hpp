@@ -39,6 +39,7 @@ class SwapBench : public sim::Agent {
     top.s_swap_valid = 0;
     top.abort_swap = 0;
     top.clear = 0;
+    top.read_phase = 0;
     top.cfg_error = 0;
     top.shutdown_limit = 40;
     top.memory_limit = 50;
@@ -58,10 +59,16 @@ class SwapBench : public sim::Agent {
   const std::vector<SwapPhase>& phases() const { return phases_; }
   const std::vector<SwapReport>& reports() const { return reports_; }
   SwapPhase phase() { return static_cast<SwapPhase>(top().phase); }
+  /// Events to be counted, since the beginning.
+  std::uint64_t swaps() const { return swaps_; }
+  std::uint64_t rejected() const { return rejected_; }
+  std::uint64_t stalls() const { return stalls_; }
   /// Clock on which the last request was accepted.
   std::uint64_t accepted() const { return accepted_; }
   std::uint64_t phase_clocks(SwapPhase phase) {
-    return sim::get_bits(top().phase_clocks, 32 * (static_cast<int>(phase) - 1), 32);
+    top().read_phase = static_cast<CData>(phase);
+    simulation_.step();
+    return top().read_clocks;
   }
 
   /// Writes a good bitstream to memory; returns the request for it.
@@ -154,6 +161,11 @@ class SwapBench : public sim::Agent {
     if (m.phase != 0 && !now.in_reset && (phases_.empty() || phases_.back() != phase())) phases_.push_back(phase());
     if (m.m_report_valid != 0 && !now.in_reset) reports_.push_back(sim::get_swap_report(m.m_report_data, clock_));
     if (m.cfg_valid != 0) pass(m);
+    if (!now.in_reset) {
+      swaps_ += m.swapped;
+      rejected_ += m.rejected;
+      stalls_ += m.stall;
+    }
     for (int i = 0; i < slots; ++i) step(i, now.in_reset);
   }
 
@@ -238,6 +250,7 @@ class SwapBench : public sim::Agent {
   std::vector<SwapPhase> phases_;
   Bytes passed_;
   Bytes payload_;
+  std::uint64_t swaps_ = 0, rejected_ = 0, stalls_ = 0;
   std::uint64_t clock_ = 0;
   std::uint64_t accepted_ = 0;
   std::uint64_t last_word_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs come in vertex by vertex and are found again at their place.
+// Pairs come in whole and are found again at their place, vertex by vertex.
 #include <map>
 #include <models/cchip_operand_memory.hpp>
 
@@ -41,6 +41,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_operand_memory: what was written at a place is re
     top.s_pair_valid = 0;
     simulation.reset();
     int dropped = 0;
+    int held = 0;
+    top.m_vertex = 0;
     for (int round = 0; round < 600; ++round) {
       const Pair p = draw();
       const int place = static_cast<int>(random() % (1U << TestType::PLACE_W));
@@ -55,7 +57,6 @@ TEMPLATE_LIST_TEST_CASE("cchip_operand_memory: what was written at a place is re
         REQUIRE(top.s_pair_ready == 0);
         simulation.rise();
       }
-      const int clocks = p.kind < 2 ? 3 : 4;
       if (chance(random, 10)) {  // a reset, and a sender that starts again
         top.room = 1;
         simulation.steps(random() % 3);
@@ -64,10 +65,22 @@ TEMPLATE_LIST_TEST_CASE("cchip_operand_memory: what was written at a place is re
         top.rst = 0;
         ++dropped;
       }
-      for (int i = 0; i < clocks; ++i) {
-        top.room = i == 0 || chance(random, 50) ? 1 : 0;  // it counts at the beginning
+      top.room = 1;
+      // the pair that was there is still being read: it must not be written over
+      if (chance(random, 30)) {
+        sim::set_bits(top.m_place, 0, TestType::PLACE_W, static_cast<std::uint64_t>(place));
+        for (int vertex = 1 + static_cast<int>(random() % 3); vertex < 4; ++vertex) {
+          top.m_vertex = static_cast<CData>(vertex);
+          simulation.settle();
+          REQUIRE(top.s_pair_ready == 0);
+          simulation.rise();
+        }
+        top.m_vertex = 0;
+        ++held;
+      }
+      for (int i = 0; i < 2; ++i) {
         simulation.settle();
-        REQUIRE((top.s_pair_ready != 0) == (i + 1 == clocks));
+        REQUIRE((top.s_pair_ready != 0) == (i == 1));
         simulation.rise();
       }
       stored[place] = p;
@@ -90,7 +103,9 @@ TEMPLATE_LIST_TEST_CASE("cchip_operand_memory: what was written at a place is re
         }
         simulation.rise();
       }
+      top.m_vertex = 0;
     }
     REQUIRE(dropped > 20);
+    REQUIRE(held > 100);
   });
 }

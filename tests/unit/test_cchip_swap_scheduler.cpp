@@ -74,9 +74,10 @@ class SchedulerBench {
     top.max_age = age;
     sim::set_bits(top.table_valid, 0, static_cast<int>(entries), valid);
     sim::set_bits(top.table_resting, 0, static_cast<int>(entries), resting);
-    for (std::size_t e = 0; e < entries; ++e) {
-      sim::set_bits(top.table_address, static_cast<int>(32 * e), 32, address[e]);
-      sim::set_bits(top.table_size, static_cast<int>(32 * e), 32, address[e] + 7);
+    // the table answers a look 2 clocks later
+    if (looks_ > 0 && --looks_ == 0) {
+      top.table_address = address.at(entry_);
+      top.table_size = address.at(entry_) + 7;
     }
     for (int k = 1; k < 4; ++k) {
       sim::set_bits(top.waiting, Config::COUNT_W * (k - 1), Config::COUNT_W,
@@ -100,6 +101,10 @@ class SchedulerBench {
   void sample(const sim::ClockInfo& now) {
     auto& top = simulation.top();
     if (now.in_reset) return;
+    if (top.table_look != 0) {
+      entry_ = top.table_entry;
+      looks_ = 2;
+    }
     if (top.m_swap_valid != 0 && ready) requests.push_back(sim::get_swap_request(top.m_swap_data));
     if (top.m_report_valid != 0) told.push_back(sim::get_swap_report(top.m_report_data));
     cleared |= static_cast<unsigned>(sim::get_bits(top.table_invalidate, 0, static_cast<int>(entries)));
@@ -107,6 +112,8 @@ class SchedulerBench {
   }
 
   Bench bench_;
+  std::size_t entry_ = 0;  // being looked up
+  int looks_ = 0;          // clocks until it is there
   std::optional<SwapRequest> command_;
   std::optional<SwapReport> report_;
 };

@@ -258,7 +258,7 @@ constexpr std::uint32_t value_mask = 0xFFFFFFFF;
 constexpr int value_shift = 0;
 }  // namespace phase_clocks
 
-/// Pairs answered per module; index = `ModuleId`, 0: without a test. Reading the low word keeps the high word.
+/// Pairs answered per module; index = `ModuleId`, 0: without a test. A high word is that of the low word read last.
 namespace pairs {
 constexpr std::uint32_t count = 4;
 constexpr std::uint32_t offset(std::uint32_t index) { return 0x100 + 0x8 * index; }
@@ -271,20 +271,18 @@ constexpr int value_shift = 0;
 namespace bitstream_address {
 constexpr std::uint32_t count = 8;
 constexpr std::uint32_t offset(std::uint32_t index) { return 0x200 + 0x10 * index; }
-/// multiple of `BITSTREAM_ALIGN`
+/// multiple of `BITSTREAM_ALIGN`; undefined until written
 constexpr std::uint32_t value_mask = 0xFFFFFFFF;
 constexpr int value_shift = 0;
-constexpr std::uint32_t value_reset = 0x0;
 }  // namespace bitstream_address
 
 /// Size of a bitstream, header included.
 namespace bitstream_size {
 constexpr std::uint32_t count = 8;
 constexpr std::uint32_t offset(std::uint32_t index) { return 0x204 + 0x10 * index; }
-/// byte
+/// byte; undefined until written
 constexpr std::uint32_t value_mask = 0xFFFFFFFF;
 constexpr int value_shift = 0;
-constexpr std::uint32_t value_reset = 0x0;
 }  // namespace bitstream_size
 
 /// Is there a bitstream? Hardware clears it when a swap rejects it.

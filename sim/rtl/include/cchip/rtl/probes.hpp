@@ -27,10 +27,11 @@ CCHIP_CONTROLLER_PROBES(cchip_primtest_quad_quad)
 // cchip_primtest_array: the lane whose result leaves next, one-hot.
 CCHIP_PROBE(array_choice, cchip_primtest_array__DOT__choice_q)
 
-// cchip_subsystem_status: counters of answered pairs, to be set.
+// cchip_counter_file: the place of the walk; the words, to be set.
+CCHIP_PROBE(counter_place, cchip_counter_file__DOT__place_q)
 template <class Model>
-auto& answered_pairs(Model& top) {
-  return top.rootp->cchip_subsystem_status__DOT__pairs_q;
+auto& counter_words(Model& top) {
+  return top.rootp->cchip_counter_file__DOT__mem;
 }
 
 // cchip_primtest_subsystem: the swap in progress and its report.
@@ -39,7 +40,7 @@ CCHIP_SUBSYSTEM_PROBE(swap_phase, u_controller__DOT__u_sequencer__DOT__phase_q)
 CCHIP_SUBSYSTEM_PROBE(swap_slot, u_scheduler__DOT__slot_of_swap_q)
 CCHIP_SUBSYSTEM_PROBE(report_valid, u_scheduler__DOT__m_report_valid_q)
 CCHIP_SUBSYSTEM_PROBE(report_data, u_scheduler__DOT__m_report_data_q)
-CCHIP_SUBSYSTEM_PROBE(bitstreams_valid, u_regs__DOT__bitstream_valid_value_q)
+CCHIP_SUBSYSTEM_PROBE(bitstreams_valid, u_table__DOT__valid_q)
 // A write to a register that takes effect on this clock: abort, clear, a swap by software.
 CCHIP_SUBSYSTEM_PROBE(abort_arrives, u_regs__DOT__control_abort_q)
 CCHIP_SUBSYSTEM_PROBE(clear_arrives, u_regs__DOT__control_clear_q)
