@@ -2,6 +2,12 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
+// Quartus, which defines this macro, infers no ports of different widths from Verilog.
+`ifdef ALTERA_RESERVED_QIS
+`define CCHIP_MIXED_WIDTH 0
+`else
+`define CCHIP_MIXED_WIDTH 1
+`endif
 // cchip_operand_memory: the vertices of the pairs that wait, in block RAM, four words a pair, at
 // the place of the pair's descriptor (cchip_descriptor_queues). A word is one vertex of A and one
 // of B.
@@ -12,13 +18,15 @@
 //   read         m_a, m_b: vertex m_vertex of the pair at m_place, 1 clock later
 //   collision    the pair at m_place has left its queue when its vertex 0 is read. While m_vertex
 //                is 1 to 3 its place is not written: a new pair waits for it
-//   cuts         s_pair_ready, m_a and m_b are flip-flops
+//   cuts         every path: outputs are flip-flops, or m_a and m_b a multiplexer behind some
 //   reset        no pair is accepted; what was written stays
 module cchip_operand_memory #(
     // width of a coordinate, bit, 4..20
     parameter integer COORD_W = 16,
     // width of a place, bit, 3..12: 1 << PLACE_W pairs
-    parameter integer PLACE_W = 9
+    parameter integer PLACE_W = 9,
+    // 1: one block RAM with a wider port for writing; 0: four of them and a multiplexer
+    parameter integer MIXED_WIDTH = `CCHIP_MIXED_WIDTH
 ) (
     input  wire                                   clk,
     input  wire                                   rst,
@@ -55,22 +63,41 @@ module cchip_operand_memory #(
   assign s_pair_ready = ready_q;
   always @(posedge clk) ready_q <= ~rst & s_pair_valid & room & ~being_read & ~ready_q;
 
-  // ---- memory: one write port four words wide, one read port with its register. Block RAMs have
-  // ports of different widths, so the words need no multiplexer.
+  // ---- memory: a word per vertex, four are written at once
   wire [4*POINT_W-1:0] a = {
     s_pair_kind[0] ? s_pair_a[3*POINT_W+:POINT_W] : s_pair_a[2*POINT_W+:POINT_W],
     s_pair_a[3*POINT_W-1:0]
   };
-  (* ram_style = "block", no_rw_check *)
-  reg [2*POINT_W-1:0] mem [0:(4<<PLACE_W)-1];
-  reg [2*POINT_W-1:0] data_q;
-  assign {m_b, m_a} = data_q;
-
-  integer v;
-  always @(posedge clk)
-    for (v = 0; v < 4; v = v + 1)
-      if (write) mem[{place, v[1:0]}] <= {s_pair_b[POINT_W*v+:POINT_W], a[POINT_W*v+:POINT_W]};
-  always @(posedge clk) data_q <= mem[{m_place, m_vertex}];
+  generate
+    if (MIXED_WIDTH != 0) begin : gen_mixed
+      // the form that tools know as a write port four words wide
+      (* ram_style = "block", no_rw_check *)
+      reg [2*POINT_W-1:0] mem [0:(4<<PLACE_W)-1];
+      reg [2*POINT_W-1:0] data_q;
+      integer v;
+      always @(posedge clk)
+        for (v = 0; v < 4; v = v + 1)
+          if (write) mem[{place, v[1:0]}] <= {s_pair_b[POINT_W*v+:POINT_W], a[POINT_W*v+:POINT_W]};
+      always @(posedge clk) data_q <= mem[{m_place, m_vertex}];
+      assign {m_b, m_a} = data_q;
+    end else begin : gen_banks
+      wire [8*POINT_W-1:0] words;
+      reg [1:0] vertex_q;
+      genvar b;
+      for (b = 0; b < 4; b = b + 1) begin : gen_bank
+        (* ram_style = "block", no_rw_check *)
+        reg [2*POINT_W-1:0] mem [0:(1<<PLACE_W)-1];
+        reg [2*POINT_W-1:0] data_q;
+        always @(posedge clk)
+          if (write) mem[place] <= {s_pair_b[POINT_W*b+:POINT_W], a[POINT_W*b+:POINT_W]};
+        always @(posedge clk) data_q <= mem[m_place];
+        assign words[2*POINT_W*b+:2*POINT_W] = data_q;
+      end
+      always @(posedge clk) vertex_q <= m_vertex;
+      wire [4*POINT_W-1:0] half = vertex_q[1] ? words[4*POINT_W+:4*POINT_W] : words[0+:4*POINT_W];
+      assign {m_b, m_a} = vertex_q[0] ? half[2*POINT_W+:2*POINT_W] : half[0+:2*POINT_W];
+    end
+  endgenerate
 
   always @(posedge clk)
     if (!rst) begin
