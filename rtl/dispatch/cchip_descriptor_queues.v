@@ -5,8 +5,8 @@
 // cchip_descriptor_queues: a queue of descriptors for each kind of pair, and one for the illegal
 // kind 0, all of them in one block RAM. A place is the address in it, {kind, pointer of the kind}.
 //   latency      1 clock from a push to `some`; the descriptor at the head of a kind is on m_data 2
-//                clocks after `look`, its place 1 clock after; both stay until 1 clock after the
-//                next `look`
+//                clocks after `look`, its place 1 clock after; the place stays until 1 clock after
+//                the next `look`, m_data no longer than until 2 clocks after the pop
 //   throughput   a push on every clock; a pop one clock after its look at the earliest
 //   cuts         every path but s_kind to s_ready and s_place
 //   reset        empty
