@@ -114,12 +114,14 @@ class Coverage {
   std::map<std::array<std::size_t, 4>, std::uint64_t> bins_;  // two dimensions, their values
 };
 
+constexpr std::uint64_t every_part = ~std::uint64_t{0};
 struct Options {
   std::uint64_t swaps = 10000;
   std::uint64_t seed = sim::seed_from_environment();
   unsigned threads = 2;
   std::uint64_t per_part = 50;
   int slots = 0;
+  std::uint64_t part = every_part;
 };
 
 struct Totals {
@@ -214,6 +216,7 @@ class Part {
     bench_.top().cfg_error = cfg_error_ ? 1 : 0;
     cfg_error_ = false;
     bench_.step();
+    bench_.top().cfg_error = 0;  // one clock: what steps by itself, such as drain(), must not see it
   }
 
   /// Everything that happens on this clock besides the clock itself.
@@ -580,6 +583,7 @@ int run(const Options& o) {
   fmt::print("seed {}, {} parts of {} swaps\n", o.seed, parts, o.per_part);
   const stimulus::StopWatch watch;
   const Totals t = stimulus::sum_of_parts<Totals>(parts, o.threads, [&](std::uint64_t part) {
+    if (o.part != every_part && part != o.part) return Totals{};
     const std::uint64_t seed = o.seed * 0x9e3779b97f4a7c15U + part;
     const bool one = o.slots == 1 || (o.slots == 0 && part % 2 == 1);
     return one ? run_part<OneSlot>(part, seed, o.per_part) : run_part<TwoSlots>(part, seed, o.per_part);
@@ -595,7 +599,10 @@ int run(const Options& o) {
   const std::vector<std::string> empty = t.coverage.empty();
   fmt::print("bins of fault, phase, latency, register, two at a time: {} of {} hit, each {} times or more\n",
              t.coverage.hit(), Coverage::all(), t.coverage.least());
-  for (const std::string& name : empty) fmt::print("never met: {}\n", name);
+  const bool whole = o.part == every_part;  // one part alone need not fill the bins
+  if (whole) {
+    for (const std::string& name : empty) fmt::print("never met: {}\n", name);
+  }
   int shown = 0;
   for (const auto& [part, what] : t.first) {
     if (++shown <= 10) fmt::print("part {}: {}\n", part, what);
@@ -603,7 +610,7 @@ int run(const Options& o) {
   fmt::print("swaps={} pairs={} lost={} duplicated={} wrong={} hangs={} faults={} bins={}/{}\n", t.swaps,
              t.account.pairs, t.account.lost, t.account.duplicated, t.account.wrong, t.hangs, t.faults,
              t.coverage.hit(), Coverage::all());
-  return t.account.clean() && t.hangs == 0 && empty.empty() ? 0 : wrong_result;
+  return t.account.clean() && t.hangs == 0 && (empty.empty() || !whole) ? 0 : wrong_result;
 }
 
 }  // namespace
@@ -623,6 +630,7 @@ int main(int argc, char** argv) try {
   app.add_option("--per-part", o.per_part, "swaps of one simulation")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  app.add_option("--part", o.part, "only this one of the parts: the one that a longer run named");
   app.add_option("--slots", o.slots, "slots; 0: systems with one and with two in turn")
       ->check(CLI::Range(0, 2))
       ->capture_default_str();
