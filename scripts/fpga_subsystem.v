@@ -59,7 +59,9 @@ module fpga_subsystem #(
       .COORD_W    (COORD_W),
       .SLOTS      (SLOTS),
       .SLOT0_RM_ID(RM_ID),
-      .SLOT1_RM_ID(RM_ID)
+      .SLOT1_RM_ID(RM_ID),
+      .SLOT2_RM_ID(RM_ID),
+      .SLOT3_RM_ID(RM_ID)
   ) u_subsystem (
       .clk              (clk),
       .rst              (rst),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// cchip_primtest_subsystem: primitive tests of three kinds in one or two slots that are exchanged
-// at run time. Pairs of any kind in, answers out, the exchange of modules done by itself or by
+// cchip_primtest_subsystem: primitive tests of three kinds in 1 to 4 slots that are exchanged at
+// run time. Pairs of any kind in, answers out, the exchange of modules done by itself or by
 // software.
 //   latency      that of the test + 18 clocks while a slot serves its kind; a swap longer otherwise
 //   throughput   in: a pair every 2 clocks; to the slots: every 3, with quads every 4; that of the
@@ -25,7 +25,7 @@ module cchip_primtest_subsystem #(
     parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
     parameter integer ABSOLUTE_PROJECTION = 0,
     parameter integer WARPED_EXACT = 1,
-    // slots, 1 or 2
+    // slots, 1..4
     parameter integer SLOTS = 2,
     // pairs in each of the three queues, a power of two, 16..1024
     parameter integer QUEUE_DEPTH = 128,
@@ -38,6 +38,8 @@ module cchip_primtest_subsystem #(
     // modules at power-up, CCHIP_RM_BLANK .. CCHIP_RM_QUAD_QUAD, 0..3
     parameter integer SLOT0_RM_ID = 1,
     parameter integer SLOT1_RM_ID = 3,
+    parameter integer SLOT2_RM_ID = 2,
+    parameter integer SLOT3_RM_ID = 1,
     // 0: partitions of an FPGA; 1: simulated reconfiguration (see cchip_pr_slot)
     parameter integer SIMULATION = 0,
     // start of the random numbers of a simulated reconfiguration, any
@@ -117,12 +119,6 @@ module cchip_primtest_subsystem #(
   localparam [31:0] PORT_W = CFG_W;
   localparam [31:0] GRID_W = COORD_W;
   localparam [31:0] DEPTH = QUEUE_DEPTH;
-
-  generate
-    if (SLOTS < 1 || SLOTS > 2) begin : gen_illegal
-      cchip_error_SLOTS_must_be_1_or_2 u_error ();
-    end
-  endgenerate
 
   // ---- pairs that wait: descriptors in queues, vertices in the operand memory
   wire [KINDS:0] some, queue_room, kind;
@@ -243,7 +239,8 @@ module cchip_primtest_subsystem #(
           .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
           .WARPED_EXACT       (WARPED_EXACT),
           .SLOT_ID            (slot),
-          .RM_ID              (slot == 0 ? SLOT0_RM_ID : SLOT1_RM_ID),
+          .RM_ID              (slot == 0 ? SLOT0_RM_ID : slot == 1 ? SLOT1_RM_ID
+                               : slot == 2 ? SLOT2_RM_ID : SLOT3_RM_ID),
           .ROC_CYCLES         (ROC_CYCLES),
           .CFG_W              (CFG_W),
           .SIMULATION         (SIMULATION),
@@ -275,7 +272,7 @@ module cchip_primtest_subsystem #(
   wire [`CCHIP_RM_ID_W-1:0] command_module;
   wire [`CCHIP_SLOT_ID_W-1:0] command_slot;
   wire [31:0] shutdown_limit, memory_limit, minimum_batch, maximum_age;
-  wire [7:0] table_valid;
+  wire [4*SLOTS-1:0] table_valid;
   wire [3:0] table_entry;
   wire [31:0] table_address, table_size;
   wire table_look;
@@ -287,9 +284,24 @@ module cchip_primtest_subsystem #(
   wire [`CCHIP_PHASE_W-1:0] phase;
   wire [`CCHIP_SLOT_ID_W-1:0] phase_slot;
   wire [2:0] swap_events;  // {lost, error, done}
-  wire [2*`CCHIP_PAIR_COUNT_W-1:0] outstanding_of =
-      {{`CCHIP_PAIR_COUNT_W * (2 - SLOTS) {1'b0}}, outstanding};
-  wire [2*`CCHIP_RM_ID_W-1:0] rm_id_of = {{`CCHIP_RM_ID_W * (2 - SLOTS) {1'b0}}, rm_id};
+  // of four slots, those that are not there show 0
+  reg [4*`CCHIP_PAIR_COUNT_W-1:0] outstanding_of;
+  reg [4*`CCHIP_RM_ID_W-1:0] rm_id_of;
+  reg [3:0] decoupled_of;
+  reg [4*`CCHIP_PHASE_W-1:0] phase_of;
+  integer i;
+  always @(*) begin
+    outstanding_of = {4 * `CCHIP_PAIR_COUNT_W{1'b0}};
+    rm_id_of = {4 * `CCHIP_RM_ID_W{1'b0}};
+    decoupled_of = 4'd0;
+    phase_of = {4 * `CCHIP_PHASE_W{1'b0}};
+    outstanding_of[0+:SLOTS*`CCHIP_PAIR_COUNT_W] = outstanding;
+    rm_id_of[0+:SLOTS*`CCHIP_RM_ID_W] = rm_id;
+    decoupled_of[0+:SLOTS] = decoupled;
+    for (i = 0; i < SLOTS; i = i + 1)
+      if (phase_slot == i[`CCHIP_SLOT_ID_W-1:0])
+        phase_of[`CCHIP_PHASE_W*i+:`CCHIP_PHASE_W] = phase;
+  end
   wire busy;
 
   cchip_subsystem_status u_status (
@@ -324,21 +336,23 @@ module cchip_primtest_subsystem #(
       .read_data   (counter_data)
   );
 
-  cchip_bitstream_table u_table (
+  cchip_bitstream_table #(
+      .SLOTS(SLOTS)
+  ) u_table (
       .clk        (clk),
       .rst        (rst),
       .write      (write_table),
-      .write_word (write_word[4:0]),
+      .write_word (write_word[5:0]),
       .write_data (write_data),
       .write_bytes(write_bytes),
-      .read_word  (read_word[4:0]),
+      .read_word  (read_word[5:0]),
       .read_data  (table_data),
       .look       (table_look),
-      .look_entry (table_entry[2:0]),
+      .look_entry (table_entry),
       .address    (table_address),
       .size       (table_size),
       .valid      (table_valid),
-      .invalidate ({{4 * (2 - SLOTS) {1'b0}}, invalidate})
+      .invalidate (invalidate)
   );
 
   cchip_subsystem_regs u_regs (
@@ -405,9 +419,8 @@ module cchip_primtest_subsystem #(
       .hwif_out_minimum_batch_pairs                (minimum_batch),
       .hwif_out_maximum_age_clocks                 (maximum_age),
       .hwif_in_slot_status_outstanding             (outstanding_of),
-      .hwif_in_slot_status_decoupled               ({{2 - SLOTS{1'b0}}, decoupled}),
-      .hwif_in_slot_status_phase                   ({phase & {4{phase_slot == 8'd1}}, phase
-          & {4{phase_slot == 8'd0}}}),
+      .hwif_in_slot_status_decoupled               (decoupled_of),
+      .hwif_in_slot_status_phase                   (phase_of),
       .hwif_in_slot_status_module_id               (rm_id_of),
       .hwif_in_lost_value                          (lost),
       .hwif_out_swaps_read                         (read_swaps),
@@ -434,7 +447,7 @@ module cchip_primtest_subsystem #(
       .rst         (rst),
       .report_valid(swap_report),
       .report_data (swap_report_data),
-      .valid       (table_valid[4*SLOTS-1:0]),
+      .valid       (table_valid),
       .resting     (resting)
   );
 
@@ -447,7 +460,7 @@ module cchip_primtest_subsystem #(
       .enable          (enable),
       .min_batch       (minimum_batch),
       .max_age         (maximum_age),
-      .table_valid     (table_valid[4*SLOTS-1:0]),
+      .table_valid     (table_valid),
       .table_invalidate(invalidate),
       .table_resting   (resting),
       .table_look      (table_look),
@@ -522,7 +535,7 @@ module cchip_primtest_subsystem #(
       .read_clocks    (phase_clocks)
   );
 
-  wire unused = &{1'b0, table_valid, table_entry, read_word, write_word, slot_idle,
+  wire unused = &{1'b0, read_word, write_word, slot_idle,
       slot_decoupled, busy, waiting[COUNT_W-1:0], queue_room[0]};
 
 endmodule

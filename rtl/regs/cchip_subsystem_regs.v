@@ -79,10 +79,10 @@ module cchip_subsystem_regs (
     output wire [31:0] hwif_out_memory_limit_clocks,
     output wire [31:0] hwif_out_minimum_batch_pairs,
     output wire [31:0] hwif_out_maximum_age_clocks,
-    input  wire [2*16-1:0] hwif_in_slot_status_outstanding,
-    input  wire [1:0] hwif_in_slot_status_decoupled,
-    input  wire [2*4-1:0] hwif_in_slot_status_phase,
-    input  wire [2*8-1:0] hwif_in_slot_status_module_id,
+    input  wire [4*16-1:0] hwif_in_slot_status_outstanding,
+    input  wire [3:0] hwif_in_slot_status_decoupled,
+    input  wire [4*4-1:0] hwif_in_slot_status_phase,
+    input  wire [4*8-1:0] hwif_in_slot_status_module_id,
     input  wire [31:0] hwif_in_lost_value,
     output wire hwif_out_swaps_read,
     output wire hwif_out_rejected_read,
@@ -113,6 +113,10 @@ module cchip_subsystem_regs (
   wire written_in_17 = decode && waddr_q[9:3] == 7'd17;
   wire written_in_18 = decode && waddr_q[9:3] == 7'd18;
   wire written_in_19 = decode && waddr_q[9:3] == 7'd19;
+  wire written_in_20 = decode && waddr_q[9:3] == 7'd20;
+  wire written_in_21 = decode && waddr_q[9:3] == 7'd21;
+  wire written_in_22 = decode && waddr_q[9:3] == 7'd22;
+  wire written_in_23 = decode && waddr_q[9:3] == 7'd23;
   assign written[0] = (written_in_0 && waddr_q[2:0] == 3'd4);
   assign written[1] = (written_in_0 && waddr_q[2:0] == 3'd5);
   assign written[2] = (written_in_1 && waddr_q[2:0] == 3'd0);
@@ -128,7 +132,14 @@ module cchip_subsystem_regs (
       (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4
       || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6)) || (written_in_19 && (waddr_q[2:0] == 3'd0
       || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4 || waddr_q[2:0] ==
-      3'd5 || waddr_q[2:0] == 3'd6));
+      3'd5 || waddr_q[2:0] == 3'd6)) || (written_in_20 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] ==
+      3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0]
+      == 3'd6)) || (written_in_21 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0]
+      == 3'd2 || waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6)) ||
+      (written_in_22 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 ||
+      waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6)) || (written_in_23 &&
+      (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4
+      || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6));
 
   assign s_axil_awready = awready_q;
   assign s_axil_wready = wready_q;
@@ -272,8 +283,8 @@ module cchip_subsystem_regs (
   reg arready_q, ar_q, read_q, done_q, missing_q, rvalid_q, rerror_q;
   reg [9:0] raddr_q;
   reg [31:0] rdata_q;
-  reg [22:0] select_q;  // one-hot for a clock: the word that is read; above: what is external
-  wire [22:0] selected;
+  reg [24:0] select_q;  // one-hot for a clock: the word that is read; above: what is external
+  wire [24:0] selected;
   wire selected_in_0 = read_q && raddr_q[9:3] == 7'd0;
   wire selected_in_1 = read_q && raddr_q[9:3] == 7'd1;
   wire selected_in_2 = read_q && raddr_q[9:3] == 7'd2;
@@ -285,6 +296,10 @@ module cchip_subsystem_regs (
   wire selected_in_17 = read_q && raddr_q[9:3] == 7'd17;
   wire selected_in_18 = read_q && raddr_q[9:3] == 7'd18;
   wire selected_in_19 = read_q && raddr_q[9:3] == 7'd19;
+  wire selected_in_20 = read_q && raddr_q[9:3] == 7'd20;
+  wire selected_in_21 = read_q && raddr_q[9:3] == 7'd21;
+  wire selected_in_22 = read_q && raddr_q[9:3] == 7'd22;
+  wire selected_in_23 = read_q && raddr_q[9:3] == 7'd23;
   assign selected[0] = (selected_in_0 && raddr_q[2:0] == 3'd0);
   assign selected[1] = (selected_in_0 && raddr_q[2:0] == 3'd1);
   assign selected[2] = (selected_in_0 && raddr_q[2:0] == 3'd2);
@@ -301,23 +316,32 @@ module cchip_subsystem_regs (
   assign selected[13] = (selected_in_1 && raddr_q[2:0] == 3'd7);
   assign selected[14] = (selected_in_2 && raddr_q[2:0] == 3'd0);
   assign selected[15] = (selected_in_2 && raddr_q[2:0] == 3'd1);
-  assign selected[16] = (selected_in_4 && raddr_q[2:0] == 3'd3);
-  assign selected[17] = (selected_in_4 && raddr_q[2:0] == 3'd0);
-  assign selected[18] = (selected_in_4 && raddr_q[2:0] == 3'd1);
-  assign selected[19] = (selected_in_4 && raddr_q[2:0] == 3'd2);
-  assign selected[20] = (selected_in_6 && (raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 ||
+  assign selected[16] = (selected_in_2 && raddr_q[2:0] == 3'd2);
+  assign selected[17] = (selected_in_2 && raddr_q[2:0] == 3'd3);
+  assign selected[18] = (selected_in_4 && raddr_q[2:0] == 3'd3);
+  assign selected[19] = (selected_in_4 && raddr_q[2:0] == 3'd0);
+  assign selected[20] = (selected_in_4 && raddr_q[2:0] == 3'd1);
+  assign selected[21] = (selected_in_4 && raddr_q[2:0] == 3'd2);
+  assign selected[22] = (selected_in_6 && (raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 ||
       raddr_q[2:0] == 3'd3 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6
       || raddr_q[2:0] == 3'd7)) || (selected_in_7 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] ==
       3'd1));
-  assign selected[21] = selected_in_8;
-  assign selected[22] = (selected_in_16 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 ||
+  assign selected[23] = selected_in_8;
+  assign selected[24] = (selected_in_16 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 ||
       raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6))
       || (selected_in_17 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 ||
       raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_18 &&
       (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4
       || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_19 && (raddr_q[2:0] == 3'd0
       || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] ==
-      3'd5 || raddr_q[2:0] == 3'd6));
+      3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_20 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] ==
+      3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0]
+      == 3'd6)) || (selected_in_21 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0]
+      == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) ||
+      (selected_in_22 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 ||
+      raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_23 &&
+      (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4
+      || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6));
 
   wire ar = s_axil_arvalid & arready_q;
   wire ar_d = (ar_q | ar) & ~(rvalid_q & s_axil_rready);
@@ -355,26 +379,32 @@ module cchip_subsystem_regs (
       ({hwif_in_slot_status_outstanding[16+:16], 3'd0, hwif_in_slot_status_decoupled[1],
           hwif_in_slot_status_phase[4+:4], hwif_in_slot_status_module_id[8+:8]} &
           {32{select_q[15]}}) |
-      (hwif_in_lost_value & {32{select_q[16]}}) |
+      ({hwif_in_slot_status_outstanding[32+:16], 3'd0, hwif_in_slot_status_decoupled[2],
+          hwif_in_slot_status_phase[8+:4], hwif_in_slot_status_module_id[16+:8]} &
+          {32{select_q[16]}}) |
+      ({hwif_in_slot_status_outstanding[48+:16], 3'd0, hwif_in_slot_status_decoupled[3],
+          hwif_in_slot_status_phase[12+:4], hwif_in_slot_status_module_id[24+:8]} &
+          {32{select_q[17]}}) |
+      (hwif_in_lost_value & {32{select_q[18]}}) |
       hwif_in_external_rdata;
 
   always @(posedge clk) begin
     if (ar) raddr_q <= s_axil_araddr[11:2];
     if (answered) rdata_q <= word;
     if (answered) rerror_q <= missing_q;
-    if (read_q) missing_q <= selected == 23'd0;
+    if (read_q) missing_q <= selected == 25'd0;
     if (rst) begin
       arready_q <= 1'b0;
       ar_q      <= 1'b0;
       read_q    <= 1'b0;
       done_q    <= 1'b0;
       rvalid_q  <= 1'b0;
-      select_q  <= 23'd0;
+      select_q  <= 25'd0;
     end else begin
       arready_q <= ~ar_d;
       ar_q      <= ar_d;
       read_q    <= ar;
-      done_q    <= read_q & ~|selected[22:17];
+      done_q    <= read_q & ~|selected[24:19];
       rvalid_q  <= answered | (rvalid_q & ~s_axil_rready);
       select_q  <= selected;
     end
@@ -385,12 +415,12 @@ module cchip_subsystem_regs (
   assign hwif_out_external_waddr = waddr_q;
   assign hwif_out_external_wdata = wdata_q;
   assign hwif_out_external_wstrb = wstrb_q;
-  assign hwif_out_swaps_read = select_q[17];
-  assign hwif_out_rejected_read = select_q[18];
-  assign hwif_out_stalls_read = select_q[19];
-  assign hwif_out_phase_clocks_read = select_q[20];
-  assign hwif_out_pairs_read = select_q[21];
-  assign hwif_out_bitstream_read = select_q[22];
+  assign hwif_out_swaps_read = select_q[19];
+  assign hwif_out_rejected_read = select_q[20];
+  assign hwif_out_stalls_read = select_q[21];
+  assign hwif_out_phase_clocks_read = select_q[22];
+  assign hwif_out_pairs_read = select_q[23];
+  assign hwif_out_bitstream_read = select_q[24];
   assign hwif_out_bitstream_write = strobe_q[8];
 
   wire unused = &{1'b0, s_axil_awprot, s_axil_arprot, s_axil_awaddr[1:0], s_axil_araddr[1:0]};

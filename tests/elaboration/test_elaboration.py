@@ -62,7 +62,6 @@ SLOT_LIMIT = "cchip_error_SLOT_LIMIT_below_16"
 COUNT_W = "cchip_error_COUNT_W_must_be_1_to_16"
 PORT = "cchip_error_config_port_CFG_W_must_be_8_or_32_and_CFG_DIVIDER_above_0"
 SLOTS = "cchip_error_SLOTS_must_be_1_to_4"
-TWO_SLOTS = "cchip_error_SLOTS_must_be_1_or_2"
 SIGN = "cchip_error_SIGN_must_be_below_POINTS"
 COMPARE = "cchip_error_compare_POINTS_must_be_3_to_5_and_OWN_1_or_2"
 RAM = "cchip_error_ram_WIDTH_or_DEPTH_below_1_or_ADDR_W_too_small"
@@ -133,7 +132,8 @@ ILLEGAL = [
     *(("cchip_dispatch_sequencer", {"KINDS": n}, KINDS) for n in (0, 4)),
     *(("cchip_slot_ledger", {"CREDIT": n}, CREDIT) for n in (0, 257)),
     *((module, {"SLOTS": n}, SLOTS) for module in ("cchip_dispatcher", "cchip_swap_scheduler") for n in (0, 5)),
-    ("cchip_primtest_subsystem", {"SLOTS": 3}, TWO_SLOTS),
+    *(("cchip_primtest_subsystem", {"SLOTS": n}, SLOTS) for n in (0, 5)),
+    *(("cchip_bitstream_table", {"SLOTS": n}, SLOTS) for n in (0, 5)),
     *(("cchip_result_merge", {"SOURCES": n}, MERGE) for n in (1, 9)),
     ("cchip_crc32", {"DATA_W": 12}, CRC),
     ("cchip_bitstream_fetch", {"FIFO_DEPTH": 31}, FETCH),
@@ -176,7 +176,8 @@ LEGAL = [
     *(("cchip_dispatch_sequencer", {"TAKERS": t, "KINDS": k}) for t, k in ((2, 1), (5, 3))),
     *(("cchip_slot_ledger", {"CREDIT": n}) for n in (1, 256)),
     *(("cchip_dispatcher", {"SLOTS": s, "KINDS": k, "CREDIT": c}) for s, k, c in ((1, 1, 1), (4, 3, 256))),
-    *(("cchip_swap_scheduler", {"SLOTS": n}) for n in (1, 4)),
+    *((module, {"SLOTS": n}) for module in ("cchip_swap_scheduler", "cchip_bitstream_table") for n in (1, 4)),
+    *(("cchip_primtest_subsystem", {"SLOTS": n}) for n in (1, 3, 4)),
     *(("cchip_result_merge", {"SOURCES": n}) for n in (2, 8)),
     ("cchip_fifo", {"WIDTH": 1, "DEPTH": 5}),
     ("cchip_ram", {"WIDTH": 1, "DEPTH": 1, "ADDR_W": 1}),

@@ -49,7 +49,7 @@ class Errors(Copy):
         self.refused("scheduler_enable[0:0] = 0", "scheduler_enable[0:0]", "needs a reset value")
 
     def test_array_of_two_dimensions(self):
-        self.refused("slot_status[2] @ 0x040 += 0x4", "slot_status[2][2] @ 0x040 += 0x4", "one dimension")
+        self.refused("slot_status[4] @ 0x040 += 0x4", "slot_status[2][2] @ 0x040 += 0x4", "one dimension")
 
     def test_64_bits_that_are_not_external(self):
         self.refused("external pairs[4]", "pairs[4]", "64 bits only where external")

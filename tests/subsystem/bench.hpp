@@ -144,6 +144,8 @@ template <int slots, class Model>
 unsigned modules_of(const Model& top) {
   unsigned modules = probes::slot0_module_id(top) & 3U;
   if constexpr (slots > 1) modules |= (probes::slot1_module_id(top) & 3U) << 2;
+  if constexpr (slots > 2) modules |= (probes::slot2_module_id(top) & 3U) << 4;
+  if constexpr (slots > 3) modules |= (probes::slot3_module_id(top) & 3U) << 6;
   return modules;
 }
 /// Bit n: slot n is decoupled.
@@ -151,6 +153,8 @@ template <int slots, class Model>
 unsigned decoupled_of(const Model& top) {
   unsigned decoupled = probes::slot0_decoupled(top) & 1U;
   if constexpr (slots > 1) decoupled |= (probes::slot1_decoupled(top) & 1U) << 1;
+  if constexpr (slots > 2) decoupled |= (probes::slot2_decoupled(top) & 1U) << 2;
+  if constexpr (slots > 3) decoupled |= (probes::slot3_decoupled(top) & 1U) << 3;
   return decoupled;
 }
 

@@ -8,6 +8,8 @@
 #include <Vsubsystem_s1___024root.h>
 #include <Vsubsystem_s2.h>
 #include <Vsubsystem_s2___024root.h>
+#include <Vsubsystem_s4.h>
+#include <Vsubsystem_s4___024root.h>
 
 namespace cchip::subsystem {
 
@@ -28,6 +30,16 @@ struct TwoSlots {
   static constexpr int COORD_W = 8;
   static constexpr int QUEUE_DEPTH = 32;
   static constexpr int CFG_W = 8;
+  static constexpr int CFG_DIVIDER = 2;
+};
+
+/// Four slots, 32-bit port, a word in two clocks.
+struct FourSlots {
+  using Model = Vsubsystem_s4;
+  static constexpr int SLOTS = 4;
+  static constexpr int COORD_W = 8;
+  static constexpr int QUEUE_DEPTH = 32;
+  static constexpr int CFG_W = 32;
   static constexpr int CFG_DIVIDER = 2;
 };
 

@@ -585,8 +585,15 @@ int run(const Options& o) {
   const Totals t = stimulus::sum_of_parts<Totals>(parts, o.threads, [&](std::uint64_t part) {
     if (o.part != every_part && part != o.part) return Totals{};
     const std::uint64_t seed = o.seed * 0x9e3779b97f4a7c15U + part;
-    const bool one = o.slots == 1 || (o.slots == 0 && part % 2 == 1);
-    return one ? run_part<OneSlot>(part, seed, o.per_part) : run_part<TwoSlots>(part, seed, o.per_part);
+    constexpr std::array<int, 3> in_turn = {2, 1, 4};
+    switch (o.slots != 0 ? o.slots : in_turn[part % in_turn.size()]) {
+      case 1:
+        return run_part<OneSlot>(part, seed, o.per_part);
+      case 2:
+        return run_part<TwoSlots>(part, seed, o.per_part);
+      default:
+        return run_part<FourSlots>(part, seed, o.per_part);
+    }
   });
   constexpr std::array<const char*, 16> names = {"OK",     "SAME",     "BUSY",    "REQUEST", "MAGIC",        "SLOT",
                                                  "MODULE", "LENGTH",   "CRC",     "DEVICE",  "WRONG_MODULE", "BUS",
@@ -631,8 +638,8 @@ int main(int argc, char** argv) try {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--part", o.part, "only this one of the parts: the one that a longer run named");
-  app.add_option("--slots", o.slots, "slots; 0: systems with one and with two in turn")
-      ->check(CLI::Range(0, 2))
+  app.add_option("--slots", o.slots, "slots; 0: systems with two, one and four in turn")
+      ->check(CLI::IsMember({0, 1, 2, 4}))
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   return cchip::subsystem::run(o);

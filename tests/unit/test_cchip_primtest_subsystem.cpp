@@ -11,7 +11,7 @@ using namespace cchip::subsystem;
 
 namespace {
 
-using Configs = std::tuple<OneSlot, TwoSlots>;
+using Configs = std::tuple<OneSlot, TwoSlots, FourSlots>;
 #define CCHIP_CASE(name) \
   TEMPLATE_LIST_TEST_CASE("cchip_primtest_subsystem: " name, "[unit][cchip_primtest_subsystem]", Configs)
 

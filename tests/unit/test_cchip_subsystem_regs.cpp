@@ -25,10 +25,10 @@ void scramble(Model& top, Random& random) {
   sim::set_random(top.hwif_in_report_slot, 8, random);
   sim::set_random(top.hwif_in_report_code, 4, random);
   sim::set_random(top.hwif_in_report_lost_pairs, 16, random);
-  sim::set_random(top.hwif_in_slot_status_outstanding, 32, random);
-  sim::set_random(top.hwif_in_slot_status_decoupled, 2, random);
-  sim::set_random(top.hwif_in_slot_status_phase, 8, random);
-  sim::set_random(top.hwif_in_slot_status_module_id, 16, random);
+  sim::set_random(top.hwif_in_slot_status_outstanding, 64, random);
+  sim::set_random(top.hwif_in_slot_status_decoupled, 4, random);
+  sim::set_random(top.hwif_in_slot_status_phase, 16, random);
+  sim::set_random(top.hwif_in_slot_status_module_id, 32, random);
   sim::set_random(top.hwif_in_lost_value, 32, random);
   top.hwif_in_interrupt_status_done_hwset = 0;
   top.hwif_in_interrupt_status_error_hwset = 0;

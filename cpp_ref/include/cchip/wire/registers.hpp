@@ -199,9 +199,9 @@ constexpr int clocks_shift = 0;
 constexpr std::uint32_t clocks_reset = 0x10000;
 }  // namespace maximum_age
 
-/// State of a slot; index = slot.
+/// State of a slot; index = slot; 0 where there is no slot.
 namespace slot_status {
-constexpr std::uint32_t count = 2;
+constexpr std::uint32_t count = 4;
 constexpr std::uint32_t offset(std::uint32_t index) { return 0x040 + 0x4 * index; }
 /// module that works, `ModuleId`
 constexpr std::uint32_t module_id_mask = 0x000000FF;
@@ -267,9 +267,9 @@ constexpr std::uint32_t value_mask = 0xFFFFFFFF;
 constexpr int value_shift = 0;
 }  // namespace pairs
 
-/// Address of a bitstream; index = 4 slot + `ModuleId`.
+/// Address of a bitstream; index = 4 slot + `ModuleId`. Of a slot that is not there all three read as 0 and stay so.
 namespace bitstream_address {
-constexpr std::uint32_t count = 8;
+constexpr std::uint32_t count = 16;
 constexpr std::uint32_t offset(std::uint32_t index) { return 0x200 + 0x10 * index; }
 /// multiple of `BITSTREAM_ALIGN`; undefined until written
 constexpr std::uint32_t value_mask = 0xFFFFFFFF;
@@ -278,7 +278,7 @@ constexpr int value_shift = 0;
 
 /// Size of a bitstream, header included.
 namespace bitstream_size {
-constexpr std::uint32_t count = 8;
+constexpr std::uint32_t count = 16;
 constexpr std::uint32_t offset(std::uint32_t index) { return 0x204 + 0x10 * index; }
 /// byte; undefined until written
 constexpr std::uint32_t value_mask = 0xFFFFFFFF;
@@ -287,7 +287,7 @@ constexpr int value_shift = 0;
 
 /// Is there a bitstream? Hardware clears it when a swap rejects it.
 namespace bitstream_valid {
-constexpr std::uint32_t count = 8;
+constexpr std::uint32_t count = 16;
 constexpr std::uint32_t offset(std::uint32_t index) { return 0x208 + 0x10 * index; }
 /// 1: yes
 constexpr std::uint32_t value_mask = 0x00000001;
