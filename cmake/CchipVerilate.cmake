@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Libraries of Verilated modules, with the Verilator of CCHIP_VERILATOR.
-#   cchip_model_library(<library> [SYSTEMC])          an empty one
+#   cchip_model_library(<library> [SYSTEMC] [BRIEF])  an empty one; BRIEF: for short runs, compiled with -O1 in half the
+#       time
 #   cchip_verilate(<library> <module> [SYSTEMC] [PREFIX <class>] [PARAMETERS NAME=VALUE ...] [SOURCES file ...])
 #       adds the module as C++ class <class> (default V<module>); without SOURCES from rtl/cchip.f and the models for
 #       simulation only, sim/rtl_models/sim.f
@@ -81,7 +82,10 @@ endif()
 function(cchip_model_library library)
   add_library(${library} STATIC)
   cchip_foreign_code(${library})
-  cmake_parse_arguments(ARG "SYSTEMC" "" "" ${ARGN})
+  cmake_parse_arguments(ARG "SYSTEMC;BRIEF" "" "" ${ARGN})
+  if(ARG_BRIEF)
+    target_compile_options(${library} PRIVATE -O1)
+  endif()
   target_link_libraries(${library} PUBLIC cchip_verilated$<$<BOOL:${ARG_SYSTEMC}>:_sc>)
 endfunction()
 
