@@ -67,22 +67,27 @@ module cchip_swap_sequencer #(
     input  wire                                 cfg_error
 );
 
-  // states: {phase, step of the phase}
-  localparam integer STATE_W = `CCHIP_PHASE_W + 2;
-  localparam [STATE_W-1:0] IDLE = {`CCHIP_PHASE_IDLE, 2'd0};
-  localparam [STATE_W-1:0] JUDGE = {`CCHIP_PHASE_HEADER, 2'd0};
-  localparam [STATE_W-1:0] FETCH = {`CCHIP_PHASE_HEADER, 2'd1};
-  localparam [STATE_W-1:0] SHUTDOWN = {`CCHIP_PHASE_SHUTDOWN, 2'd0};
-  localparam [STATE_W-1:0] DECOUPLE = {`CCHIP_PHASE_DECOUPLE, 2'd0};
-  localparam [STATE_W-1:0] RESET = {`CCHIP_PHASE_RESET, 2'd0};
-  localparam [STATE_W-1:0] TRANSFER = {`CCHIP_PHASE_TRANSFER, 2'd0};
-  localparam [STATE_W-1:0] CHECK = {`CCHIP_PHASE_CHECK, 2'd0};
-  localparam [STATE_W-1:0] PULSE = {`CCHIP_PHASE_ROC, 2'd0};
-  localparam [STATE_W-1:0] PULSED = {`CCHIP_PHASE_ROC, 2'd1};
-  localparam [STATE_W-1:0] SETTLE = {`CCHIP_PHASE_ROC, 2'd2};
-  localparam [STATE_W-1:0] MATCH = {`CCHIP_PHASE_ROC, 2'd3};
-  localparam [STATE_W-1:0] RECOUPLE = {`CCHIP_PHASE_RECOUPLE, 2'd0};
-  localparam [STATE_W-1:0] REPORT = {`CCHIP_PHASE_REPORT, 2'd0};
+  // states, one bit each; each leads to the next one, the last to the first, a failure to REPORT
+  localparam integer IDLE = 0;
+  localparam integer JUDGE = 1;  // phase HEADER
+  localparam integer FETCH = 2;  // HEADER
+  localparam integer SHUTDOWN = 3;
+  localparam integer DECOUPLE = 4;
+  localparam integer RESET = 5;
+  localparam integer TRANSFER = 6;
+  localparam integer CHECK = 7;
+  localparam integer PULSE = 8;  // ROC
+  localparam integer PULSED = 9;  // ROC
+  localparam integer SETTLE = 10;  // ROC
+  localparam integer MATCH = 11;  // ROC
+  localparam integer RECOUPLE = 12;
+  localparam integer REPORT = 13;
+  localparam integer STATES = 14;
+  localparam [STATES-1:0] ABORTABLE =
+      ~(14'd1 << IDLE | 14'd1 << DECOUPLE | 14'd1 << RECOUPLE | 14'd1 << REPORT);
+  // the next state is in the same phase
+  localparam [STATES-1:0] SAME_PHASE =
+      14'd1 << JUDGE | 14'd1 << PULSE | 14'd1 << PULSED | 14'd1 << SETTLE;
 
   // clocks of a state, counted from 0
   localparam [4:0] JUDGE_LAST = 5'd2;  // slot and request have passed their registers
@@ -104,9 +109,8 @@ module cchip_swap_sequencer #(
   endgenerate
 
   reg [`CCHIP_PHASE_W-1:0] phase_q;
-  reg [1:0] step_q;
-  wire [STATE_W-1:0] state = {phase_q, step_q};
-  wire idle = state == IDLE;
+  reg [STATES-1:0] at_q;  // one-hot
+  wire idle = at_q[IDLE];
 
   // ---- request; one that comes during a swap waits in the refusal for a clock without report
   reg ready_q, refuse_q;
@@ -154,6 +158,7 @@ module cchip_swap_sequencer #(
 
   reg quiet_q, decoupled_q, roc_busy_q, match_q;  // match: the region shows the module asked for
   reg same_q, illegal_q;
+  reg owes_q;  // only falls while a request is judged
   wire [32:0] past = {1'b0, address_q} + {1'b0, size_q};  // the byte behind the file
   (* ASYNC_REG = "TRUE" *) reg [1:0] cfg_error_q;
   always @(posedge clk) begin
@@ -165,6 +170,7 @@ module cchip_swap_sequencer #(
     illegal_q <= mine == {SLOTS{1'b0}} || module_q > `CCHIP_RM_QUAD_QUAD
         || address_q[5:0] != 6'd0 || size_q == 32'd0
         || (past[32] && past[31:0] != 32'd0);
+    owes_q <= owes;
     cfg_error_q <= {cfg_error_q[0], cfg_error};
   end
 
@@ -180,118 +186,111 @@ module cchip_swap_sequencer #(
     clocks_q <= turns ? 32'd1 : clocks_q + 32'd1;
     ticks_q <= moves ? 5'd0 : ticks_q + {4'd0, ~&ticks_q};
     expired_q <= !turns
-        && (state == SHUTDOWN ? clocks_q >= shutdown_bound : clocks_q >= LIMIT);
+        && (at_q[SHUTDOWN] ? clocks_q >= shutdown_bound : clocks_q >= LIMIT);
   end
 
   // ---- abort: kept until a state takes notice, dropped with the swap
   reg abort_q;
 
-  // ---- states: what ends them well or badly, where they lead, what the slot is told on the way
-  reg done, fails;
-  reg aborts;  // the state can be aborted
-  reg [`CCHIP_SWAP_W-1:0] code;  // of its failure
-  reg [STATE_W-1:0] next;
-  reg set_stop, set_decouple, set_hold, transfer, start_roc, recouple;
+  // ---- states: what ends them well or badly, with which code, in which phase the next one is
+  reg [STATES-1:0] done, fails;
+  reg [`CCHIP_SWAP_W-1:0] code;  // of the failure of the state
+  reg [`CCHIP_PHASE_W-1:0] phase_after;  // of the state behind this one
 
   always @(*) begin
-    done = 1'b0;
-    fails = 1'b0;
-    aborts = 1'b1;
-    code = `CCHIP_SWAP_DEVICE;
-    next = IDLE;
-    {set_stop, set_decouple, set_hold, transfer, start_roc, recouple} = 6'd0;
-    case (state)
-      JUDGE: begin
-        done = ticks_q == JUDGE_LAST;
-        fails = done & (illegal_q | same_q | owes);
-        code = illegal_q ? `CCHIP_SWAP_REQUEST : same_q ? `CCHIP_SWAP_SAME : `CCHIP_SWAP_OWED;
-        next = FETCH;
-      end
-      FETCH: begin
-        done = header_done;
-        fails = bus_error | timeout | (header_done & ~header_ok);
-        code = bus_error ? `CCHIP_SWAP_BUS : timeout ? `CCHIP_SWAP_MEMORY : header_code;
-        next = SHUTDOWN;
-        set_stop = 1'b1;
-      end
-      SHUTDOWN: begin
-        done = quiet_q | decoupled_q | (expired_q & force_q);
-        fails = expired_q & ~done;
-        code = `CCHIP_SWAP_SHUTDOWN;
-        next = DECOUPLE;
-        set_decouple = 1'b1;
-      end
-      DECOUPLE: begin  // never aborted: the number of pairs given up is known only at its end
-        done = decoupled_q;
-        fails = expired_q & ~done;
-        aborts = 1'b0;
-        next = RESET;
-        set_hold = 1'b1;
-      end
-      RESET: begin
-        done = ticks_q == RESET_LAST;
-        next = TRANSFER;
-        transfer = 1'b1;
-      end
-      TRANSFER: begin
-        done = transfer_done;
-        fails = bus_error | timeout | (cfg_error_q[1] && ticks_q >= ERROR_FIRST);
-        code = bus_error ? `CCHIP_SWAP_BUS : timeout ? `CCHIP_SWAP_MEMORY : `CCHIP_SWAP_DEVICE;
-        next = CHECK;
-      end
-      CHECK: begin
-        done = ticks_q == CHECK_LAST;
-        fails = cfg_error_q[1] | (done & ~crc_ok);
-        code = cfg_error_q[1] ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_CRC;
-        next = PULSE;
-        start_roc = 1'b1;
-      end
-      PULSE: begin
-        done = ticks_q == PULSE_LAST;
-        next = PULSED;
-      end
-      PULSED: begin
-        done = ~roc_busy_q;
-        fails = expired_q & ~done;
-        next = SETTLE;
-      end
-      SETTLE: begin
-        done = ticks_q == SETTLE_LAST;
-        next = MATCH;
-      end
-      MATCH: begin
-        done = ticks_q == MATCH_LAST;
-        fails = ~match_q;
-        code = `CCHIP_SWAP_WRONG_MODULE;
-        next = RECOUPLE;
-        recouple = 1'b1;
-      end
-      RECOUPLE: begin
-        done = ~decoupled_q;
-        fails = expired_q & ~done;
-        aborts = 1'b0;
-        next = REPORT;
-      end
-      REPORT: begin
-        done = 1'b1;
-        aborts = 1'b0;
-      end
-      default: begin  // IDLE
-        done = begins;
-        aborts = 1'b0;
-        next = JUDGE;
-      end
-    endcase
-  end
+    done = {STATES{1'b0}};
+    fails = {STATES{1'b0}};
+    code = `CCHIP_SWAP_OK;
+    phase_after = `CCHIP_PHASE_IDLE;
 
-  wire aborted = aborts & abort_q;
-  wire failing = aborted | fails;
-  wire passes = done & ~failing;
-  wire reports = failing | (passes && next == REPORT);
-  wire late = state >= DECOUPLE;  // a failure leaves the slot shut
-  assign moves = failing | done;
-  assign turns = failing
-      | (done && next[STATE_W-1:2] != phase_q);
+    done[IDLE] = begins;
+    if (at_q[IDLE]) phase_after = phase_after | `CCHIP_PHASE_HEADER;
+
+    done[JUDGE] = ticks_q == JUDGE_LAST;
+    fails[JUDGE] = ticks_q == JUDGE_LAST && (illegal_q || same_q || owes_q);
+    if (at_q[JUDGE]) begin
+      code = code
+          | (illegal_q ? `CCHIP_SWAP_REQUEST : same_q ? `CCHIP_SWAP_SAME : `CCHIP_SWAP_OWED);
+      phase_after = phase_after | `CCHIP_PHASE_HEADER;
+    end
+
+    done[FETCH] = header_done;
+    fails[FETCH] = bus_error | timeout | (header_done & ~header_ok);
+    if (at_q[FETCH]) begin
+      code = code | (bus_error ? `CCHIP_SWAP_BUS : timeout ? `CCHIP_SWAP_MEMORY : header_code);
+      phase_after = phase_after | `CCHIP_PHASE_SHUTDOWN;
+    end
+
+    done[SHUTDOWN] = quiet_q | decoupled_q | (expired_q & force_q);
+    fails[SHUTDOWN] = expired_q & ~(quiet_q | decoupled_q | force_q);
+    if (at_q[SHUTDOWN]) begin
+      code = code | `CCHIP_SWAP_SHUTDOWN;
+      phase_after = phase_after | `CCHIP_PHASE_DECOUPLE;
+    end
+
+    // never aborted: the number of pairs given up is known only at its end
+    done[DECOUPLE] = decoupled_q;
+    fails[DECOUPLE] = expired_q & ~decoupled_q;
+    if (at_q[DECOUPLE]) begin
+      code = code | `CCHIP_SWAP_DEVICE;
+      phase_after = phase_after | `CCHIP_PHASE_RESET;
+    end
+
+    done[RESET] = ticks_q == RESET_LAST;
+    if (at_q[RESET]) phase_after = phase_after | `CCHIP_PHASE_TRANSFER;
+
+    done[TRANSFER] = transfer_done;
+    fails[TRANSFER] = bus_error | timeout | (cfg_error_q[1] && ticks_q >= ERROR_FIRST);
+    if (at_q[TRANSFER]) begin
+      code = code
+          | (bus_error ? `CCHIP_SWAP_BUS : timeout ? `CCHIP_SWAP_MEMORY : `CCHIP_SWAP_DEVICE);
+      phase_after = phase_after | `CCHIP_PHASE_CHECK;
+    end
+
+    done[CHECK] = ticks_q == CHECK_LAST;
+    fails[CHECK] = cfg_error_q[1] || (ticks_q == CHECK_LAST && !crc_ok);
+    if (at_q[CHECK]) begin
+      code = code | (cfg_error_q[1] ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_CRC);
+      phase_after = phase_after | `CCHIP_PHASE_ROC;
+    end
+
+    done[PULSE] = ticks_q == PULSE_LAST;
+    if (at_q[PULSE]) phase_after = phase_after | `CCHIP_PHASE_ROC;
+
+    done[PULSED] = ~roc_busy_q;
+    fails[PULSED] = expired_q & roc_busy_q;
+    if (at_q[PULSED]) begin
+      code = code | `CCHIP_SWAP_DEVICE;
+      phase_after = phase_after | `CCHIP_PHASE_ROC;
+    end
+
+    done[SETTLE] = ticks_q == SETTLE_LAST;
+    if (at_q[SETTLE]) phase_after = phase_after | `CCHIP_PHASE_ROC;
+
+    done[MATCH] = ticks_q == MATCH_LAST;
+    fails[MATCH] = ~match_q;
+    if (at_q[MATCH]) begin
+      code = code | `CCHIP_SWAP_WRONG_MODULE;
+      phase_after = phase_after | `CCHIP_PHASE_RECOUPLE;
+    end
+
+    done[RECOUPLE] = ~decoupled_q;
+    fails[RECOUPLE] = expired_q & decoupled_q;
+    if (at_q[RECOUPLE]) begin
+      code = code | `CCHIP_SWAP_DEVICE;
+      phase_after = phase_after | `CCHIP_PHASE_REPORT;
+    end
+
+    done[REPORT] = 1'b1;
+  end
+  wire aborted = abort_q & (|(at_q & ABORTABLE));
+  wire failing = aborted | (|(at_q & fails));
+  wire ending = |(at_q & done);
+  wire [STATES-1:0] passes = at_q & done & {STATES{~failing}};
+  wire reports = failing | passes[RECOUPLE];
+  wire late = |at_q[RECOUPLE:DECOUPLE];  // a failure leaves the slot shut
+  assign moves = failing | ending;
+  assign turns = failing | (|(at_q & done & ~SAME_PHASE));
 
   // ---- phase and report
   reg run_q, report_valid_q, refused_q, forced_q;
@@ -300,21 +299,28 @@ module cchip_swap_sequencer #(
   wire refuses = refuse_q & ~reports;
   always @(posedge clk) begin
     if (idle) lost_q <= {`CCHIP_PAIR_COUNT_W{1'b0}};
-    else if (state == DECOUPLE && forced_q && decoupled_q) lost_q <= given_up;
-    if (state == SHUTDOWN) forced_q <= ~quiet_q & ~decoupled_q;
-    code_q <= aborted ? `CCHIP_SWAP_ABORTED : fails ? code : `CCHIP_SWAP_OK;
+    else if (at_q[DECOUPLE] && forced_q && decoupled_q) lost_q <= given_up;
+    if (at_q[SHUTDOWN]) forced_q <= ~quiet_q & ~decoupled_q;
+    code_q <= aborted ? `CCHIP_SWAP_ABORTED : failing ? code : `CCHIP_SWAP_OK;
     refused_q <= refuses;
     if (rst) begin
-      {phase_q, step_q} <= IDLE;
+      at_q <= {{STATES - 1{1'b0}}, 1'b1};
+      phase_q <= `CCHIP_PHASE_IDLE;
       abort_q <= 1'b0;
       run_q <= 1'b0;
       ready_q <= 1'b0;
       refuse_q <= 1'b0;
       report_valid_q <= 1'b0;
     end else begin
-      if (moves) {phase_q, step_q} <= failing ? REPORT : next;
-      abort_q <= (abort_q | abort_swap) && state > IDLE && state < RECOUPLE && !failing;
-      run_q <= !failing && (done ? next == FETCH || next == TRANSFER : run_q);
+      if (failing) begin
+        at_q <= {1'b1, {STATES - 1{1'b0}}};
+        phase_q <= `CCHIP_PHASE_REPORT;
+      end else if (ending) begin
+        at_q <= {at_q[STATES-2:0], at_q[REPORT]};
+        phase_q <= phase_after;
+      end
+      abort_q <= (abort_q | abort_swap) & (|at_q[MATCH:JUDGE]) & ~failing;
+      run_q <= ~failing & (ending ? at_q[JUDGE] | at_q[RESET] : run_q);
       refuse_q <= (accept & ~idle) | (refuse_q & reports);
       ready_q <= ~((accept & ~idle) | (refuse_q & reports));
       report_valid_q <= reports | refuses;
@@ -325,23 +331,26 @@ module cchip_swap_sequencer #(
   reg [SLOTS-1:0] stop_q, decouple_q, hold_reset_q, roc_start_q;
   reg [SLOTS-1:0] half_q;  // the region holds no whole module
   initial half_q = {SLOTS{1'b0}};
-  wire [SLOTS-1:0] on_pass = mine & {SLOTS{passes}};
-  wire [SLOTS-1:0] on_fail = mine & {SLOTS{failing}};
+  wire [SLOTS-1:0] set_stop = mine & {SLOTS{passes[FETCH]}};
+  wire [SLOTS-1:0] set_decouple = mine & {SLOTS{passes[SHUTDOWN]}};
+  wire [SLOTS-1:0] set_hold = mine & {SLOTS{passes[DECOUPLE]}};
+  wire [SLOTS-1:0] transfer = mine & {SLOTS{passes[RESET]}};
+  wire [SLOTS-1:0] start_roc = mine & {SLOTS{passes[CHECK]}};
+  wire [SLOTS-1:0] recouple = mine & {SLOTS{passes[MATCH]}};
+  wire [SLOTS-1:0] shut = mine & {SLOTS{failing & late}};
   always @(posedge clk) begin
     if (!rst)
-      half_q <= (half_q | (on_pass & {SLOTS{transfer}})) & ~(on_pass & {SLOTS{recouple}});
+      half_q <= (half_q | transfer) & ~recouple;
     if (rst) begin
       stop_q       <= half_q;
       decouple_q   <= half_q;
       hold_reset_q <= half_q;
       roc_start_q  <= {SLOTS{1'b0}};
     end else begin
-      stop_q <= reports && !(failing && late) ? decouple_q : stop_q | (on_pass & {SLOTS{set_stop}});
-      decouple_q <= (decouple_q | (on_pass & {SLOTS{set_decouple}}) | (on_fail & {SLOTS{late}}))
-          & ~(on_pass & {SLOTS{recouple}});
-      hold_reset_q <= (hold_reset_q | (on_pass & {SLOTS{set_hold}}) | (on_fail & {SLOTS{late}}))
-          & ~(on_pass & {SLOTS{start_roc}});
-      roc_start_q <= on_pass & {SLOTS{start_roc}};
+      stop_q       <= reports && !(failing && late) ? decouple_q : stop_q | set_stop;
+      decouple_q   <= (decouple_q | set_decouple | shut) & ~recouple;
+      hold_reset_q <= (hold_reset_q | set_hold | shut) & ~start_roc;
+      roc_start_q  <= start_roc;
     end
   end
 
@@ -367,6 +376,7 @@ module cchip_swap_sequencer #(
 
   always @(posedge clk)
     if (!rst) begin
+      `CCHIP_ASSERT(a_one, at_q != {STATES{1'b0}} && (at_q & (at_q - 14'd1)) == {STATES{1'b0}})
       `CCHIP_ASSERT(a_order, (hold_reset_q & ~decouple_q) == {SLOTS{1'b0}})
       `CCHIP_ASSERT(a_stopped, (decouple_q & ~stop_q) == {SLOTS{1'b0}})
       `CCHIP_ASSERT(a_half, (half_q & ~decouple_q) == {SLOTS{1'b0}})
