@@ -158,7 +158,6 @@ module cchip_swap_sequencer #(
 
   reg quiet_q, decoupled_q, roc_busy_q, match_q;  // match: the region shows the module asked for
   reg same_q, illegal_q;
-  reg owes_q;  // only falls while a request is judged
   wire [32:0] past = {1'b0, address_q} + {1'b0, size_q};  // the byte behind the file
   (* ASYNC_REG = "TRUE" *) reg [1:0] cfg_error_q;
   always @(posedge clk) begin
@@ -170,7 +169,6 @@ module cchip_swap_sequencer #(
     illegal_q <= mine == {SLOTS{1'b0}} || module_q > `CCHIP_RM_QUAD_QUAD
         || address_q[5:0] != 6'd0 || size_q == 32'd0
         || (past[32] && past[31:0] != 32'd0);
-    owes_q <= owes;
     cfg_error_q <= {cfg_error_q[0], cfg_error};
   end
 
@@ -207,7 +205,7 @@ module cchip_swap_sequencer #(
     if (at_q[IDLE]) phase_after = phase_after | `CCHIP_PHASE_HEADER;
 
     done[JUDGE] = ticks_q == JUDGE_LAST;
-    fails[JUDGE] = ticks_q == JUDGE_LAST && (illegal_q || same_q || owes_q);
+    fails[JUDGE] = ticks_q == JUDGE_LAST && (illegal_q || same_q || owes);
     if (at_q[JUDGE]) begin
       code = code
           | (illegal_q ? `CCHIP_SWAP_REQUEST : same_q ? `CCHIP_SWAP_SAME : `CCHIP_SWAP_OWED);
