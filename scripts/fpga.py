@@ -316,7 +316,7 @@ def endpoints(report, count):
         for end in net["endpoints"]:
             if "<async>" not in (net["event"], end["event"]):
                 name = name_of(end["cell"])
-                slowest[name] = max(slowest[name], end["delay"])
+                slowest[name] = max(slowest[name], max(end["delay"]))  # [shortest, longest]
     return [[name, round(slowest[name], 2)] for name in sorted(slowest, key=slowest.get, reverse=True)[:count]]
 
 

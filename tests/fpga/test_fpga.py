@@ -91,7 +91,7 @@ class Reports(unittest.TestCase):
         self.assertEqual((static, regions, harness), ({"LUT4": 10}, {"LUT4": 2200}, {"LUT4": 1, "TRELLIS_FF": 3}))
 
     def test_slowest_ends_by_register(self):
-        end = lambda cell, delay, event="posedge clk": {"cell": f"u_dut.{cell}", "delay": delay, "event": event, "port": "DI"}
+        end = lambda cell, delay, event="posedge clk": {"cell": f"u_dut.{cell}", "delay": [delay - 0.5, delay], "event": event, "port": "DI"}
         nets = [{"event": "posedge clk", "endpoints": [end("a_TRELLIS_FF_Q", 3.0), end("b_TRELLIS_FF_Q_1", 5.0)]},
                 {"event": "posedge clk", "endpoints": [end("b_TRELLIS_FF_Q_2", 4.0), end("c_TRELLIS_FF_Q", 9, "<async>")]},
                 {"event": "<async>", "endpoints": [end("d_TRELLIS_FF_Q", 9.0)]},
