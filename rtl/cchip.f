@@ -3,6 +3,7 @@ common/cchip_delay.v
 common/cchip_skid_buffer.v
 common/cchip_fifo.v
 common/cchip_ram.v
+common/cchip_block_ram.v
 common/cchip_crc32.v
 common/cchip_arbiter.v
 common/cchip_count.v

@@ -7,6 +7,7 @@ common/cchip_crc32.v
 common/cchip_arbiter.v
 common/cchip_count.v
 common/cchip_counter_file.v
+vendor/ecp5/cchip_block_ram.v
 vendor/ecp5/cchip_mul18.v
 arith/cchip_mul_wide.v
 arith/cchip_dot3.v

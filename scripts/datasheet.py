@@ -52,6 +52,8 @@ STIMULI = {
     "cchip_skid_buffer": ("", "s_valid = 1;", "m_valid"),
     "cchip_fifo": ("", "s_valid = 1;", "m_valid"),
     "cchip_ram": ("write = 1; tick; write_addr = 1; tick; write_data = 1; write = 0; tick;", "read_addr = 1;", "read_data"),
+    "cchip_block_ram": ("write = 1; write_addr = 1; write_data = 1; tick; write = 0; repeat (2) tick;", "read_addr = 1;",
+                        "read_data"),
     "cchip_mul18": ("", "a = 1; b = 1;", "p"),
     "cchip_mul_wide": ("", "a = 1; b = 1;", "p"),
     "cchip_dot3": ("", "a = 1; b = 1;", "q"),

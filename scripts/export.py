@@ -32,8 +32,8 @@ SUBSYSTEM = "cchip_primtest_subsystem"
 KINDS = {"cchip_primtest_tri_tri": "tri_tri", "cchip_primtest_tri_quad": "tri_quad",
          "cchip_primtest_quad_quad": "quad_quad", "cchip_primtest_array": "tri_tri",
          SUBSYSTEM: "tri_tri"}
-# Simulation models of the blocks that a device's leaf instantiates.
-CELLS = {"_ecp5": "tests/gates/MULT18X18D.v"}
+# Simulation models of the blocks that the leaves of a device instantiate, and what the blocks are.
+CELLS = {"_ecp5": {"MULT18X18D": "multiplier block", "DP16KD": "block RAM"}}
 PAGES = ("architecture.md", "definitions.md")
 
 
@@ -194,10 +194,16 @@ def write_pages(folder, names):
         (folder / "docs" / name).write_text(page(ROOT / "docs" / name, pages))
 
 
-def readme(top, suffixes, pairs, mhz):
-    device = "".join(f"- `{top}{s}.v` instead on {s[1:].upper()}: with that device's multiplier block, whose registers synthesis does "
-                     f"not find otherwise. Simulate it with `{pathlib.Path(CELLS[s]).name}`, a model of the block.\n"
-                     for s in suffixes if s)
+def blocks(suffix, text):
+    """Blocks of a device that a text instantiates."""
+    return [name for name in CELLS.get(suffix, {}) if re.search(rf"\b{name}\b *#", without_comments(text))]
+
+
+def readme(top, files, pairs, mhz):
+    device = "".join(f"- `{top}{s}.v` instead on {s[1:].upper()}: with that device's "
+                     f"{' and '.join(CELLS[s][name] for name in blocks(s, text))}, whose registers synthesis does not find "
+                     f"otherwise. Simulate it with {' and '.join(f'`{name}.v`' for name in blocks(s, text))}, our models.\n"
+                     for s, text in files if s)
     if top == BLANK:
         bench, run = "bench_blank", "vvp -n bench.vvp"
         compiled = f"iverilog -g2005 -s bench_blank -o bench.vvp bench_blank.v {top}.v"
@@ -244,8 +250,8 @@ def export(top, options):
         (folder / f"{top}{suffix}.v").write_text(text)
         (folder / f"{top}{suffix}.f").write_text(
             f"// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1\n{top}{suffix}.v\n")
-        if suffix:
-            shutil.copy(ROOT / CELLS[suffix], folder)
+        for name in blocks(suffix, text):
+            shutil.copy(ROOT / "tests" / "gates" / f"{name}.v", folder)
     models = simulation_models(top)
     if models:
         (folder / "simulation_models.v").write_text(models)
@@ -260,7 +266,7 @@ def export(top, options):
         shutil.copy(ROOT / "cpp_ref" / "include" / "cchip" / "wire" / "registers.hpp", folder)
     if top != BLANK:
         write_vectors(options.vectors, KINDS[top], folder / "vectors.hex", options.pairs, options.seed)
-    (folder / "README.md").write_text(readme(top, [suffix for suffix, _ in files], options.pairs, options.mhz))
+    (folder / "README.md").write_text(readme(top, files, options.pairs, options.mhz))
     print(f"wrote {os.path.relpath(folder)}")
 
 

@@ -4,9 +4,9 @@
 `include "cchip_assert.vh"
 // cchip_descriptor_queues: a queue of descriptors for each kind of pair, and one for the illegal
 // kind 0, all of them in one block RAM. A place is the address in it, {kind, pointer of the kind}.
-//   latency      1 clock from a push to `some`; the descriptor at the head of a kind is on m_data 2
+//   latency      1 clock from a push to `some`; the descriptor at the head of a kind is on m_data 3
 //                clocks after `look`, its place 1 clock after; the place stays until 1 clock after
-//                the next `look`, m_data no longer than until 2 clocks after the pop
+//                the next `look`, m_data no longer than until 3 clocks after the pop
 //   throughput   a push on every clock; a pop one clock after its look at the earliest
 //   cuts         every path but s_kind to s_ready and s_place
 //   reset        empty
@@ -110,19 +110,22 @@ module cchip_descriptor_queues #(
   assign s_ready = |(room & kind_of_push);
   assign s_place = {s_kind, pointer_of(write, kind_of_push)};
 
-  // ---- memory: one write port, one read port with its register
-  (* ram_style = "block", no_rw_check *)
-  reg [WIDTH-1:0] mem [0:(1<<PLACE_W)-1];
+  // ---- memory
   reg [PLACE_W-1:0] place_q;
-  reg [WIDTH-1:0] data_q;
   assign m_place = place_q;
-  assign m_data  = data_q;
+  always @(posedge clk) if (look) place_q <= {code_of(kind), pointer_of(read, kind)};
 
-  always @(posedge clk) if (push) mem[s_place] <= s_data;
-  always @(posedge clk) begin
-    if (look) place_q <= {code_of(kind), pointer_of(read, kind)};
-    data_q <= mem[place_q];
-  end
+  cchip_block_ram #(
+      .WIDTH (WIDTH),
+      .ADDR_W(PLACE_W)
+  ) u_memory (
+      .clk       (clk),
+      .write     (push),
+      .write_addr(s_place),
+      .write_data(s_data),
+      .read_addr (place_q),
+      .read_data (m_data)
+  );
 
   always @(posedge clk)
     if (!rst) begin

@@ -12,7 +12,7 @@
 //                most KINDS + 2 pairs of other kinds
 //   order        look (where is the head of `kind`?); a clock later launch, with m_vertex = 0; on
 //                the next clocks m_vertex = 1, 2 (and 3)
-//   data         what m_vertex reads arrives a clock later, together with m_valid, m_first and
+//   data         what m_vertex reads arrives 2 clocks later, together with m_valid, m_first and
 //                m_last; m_kind and m_taker are those of the pair until the next m_first
 //   cuts         every path: each output comes from flip-flops
 //   reset        nothing is dispatched
@@ -156,33 +156,42 @@ module cchip_dispatch_sequencer #(
   endfunction
   reg [1:0] vertex_q;
   reg four_q;  // the pair that is read has four vertices
-  reg valid_q, first_q, last_q;
-  reg [`CCHIP_KIND_W-1:0] m_kind_q;
+  reg valid_q, first_q, last_q;  // a clock after m_vertex
+  reg [`CCHIP_KIND_W-1:0] kind_read_q;
   reg [TAKERS-1:0] taker_q;
+  reg m_valid_q, m_first_q, m_last_q;
+  reg [`CCHIP_KIND_W-1:0] m_kind_q;
+  reg [TAKERS-1:0] m_taker_q;
   wire last = vertex_q == {1'b1, four_q};
 
   always @(posedge clk) begin
     first_q <= launch_q;
     last_q  <= last;
     if (launch_q) begin
-      four_q   <= four;
-      m_kind_q <= code_of(kind_q);
-      taker_q  <= grant_q;
+      four_q      <= four;
+      kind_read_q <= code_of(kind_q);
+      taker_q     <= grant_q;
     end
+    m_first_q <= first_q;
+    m_last_q  <= last_q;
+    m_kind_q  <= kind_read_q;
+    m_taker_q <= taker_q;
     if (rst) begin
-      vertex_q <= 2'd0;
-      valid_q  <= 1'b0;
+      vertex_q  <= 2'd0;
+      valid_q   <= 1'b0;
+      m_valid_q <= 1'b0;
     end else begin
       if (launch_q || vertex_q != 2'd0) vertex_q <= last && !launch_q ? 2'd0 : vertex_q + 2'd1;
-      valid_q <= launch_q || vertex_q != 2'd0;
+      valid_q   <= launch_q || vertex_q != 2'd0;
+      m_valid_q <= valid_q;
     end
   end
   assign m_vertex = vertex_q;
-  assign m_valid  = valid_q;
-  assign m_first  = first_q;
-  assign m_last   = last_q;
+  assign m_valid  = m_valid_q;
+  assign m_first  = m_first_q;
+  assign m_last   = m_last_q;
   assign m_kind   = m_kind_q;
-  assign m_taker  = taker_q;
+  assign m_taker  = m_taker_q;
 
   always @(posedge clk)
     if (!rst) begin

@@ -7,7 +7,7 @@
 // that nobody provides, is answered as an open pair (see cchip_slot_ledger), and so is a pair that
 // a swap by force gives up: every pair that enters the queues is answered exactly once.
 //   serves       module m answers for the kinds 1..m: a test of quads takes a triangle as a quad
-//   latency      5 clocks from `some` to m_vertex_valid of an idle dispatcher; 6 clocks from a
+//   latency      6 clocks from `some` to m_vertex_valid of an idle dispatcher; 6 clocks from a
 //                slot's result to m_result
 //   throughput   a pair every 3 clocks, of a kind with quads every 4; an answer every clock
 //   credit       no ready runs back from a slot: at most CREDIT of its pairs lie between dispatch
@@ -31,7 +31,7 @@ module cchip_dispatcher #(
     output wire                                  look,
     output wire                                  pop,
     output wire [                           1:0] vertex,
-    input  wire [       `CCHIP_DESCRIPTOR_W-1:0] descriptor,   // 1 clock after pop, for 2 clocks
+    input  wire [       `CCHIP_DESCRIPTOR_W-1:0] descriptor,   // 2 clocks after pop, for 2 clocks
     input  wire [                       KINDS:1] no_provider,  // nobody can serve the kind
     // to the slots: record VERTEX but for its vertices, which go with it
     output wire [                     SLOTS-1:0] m_vertex_valid,
@@ -155,15 +155,16 @@ module cchip_dispatcher #(
   reg [`CCHIP_TAG_W-1:0] refused_tag_q;
   reg [KIND_W-1:0] refused_kind_q;
   reg refused_illegal_q, refused_provider_q;
-  reg granted_q;
+  reg granted_q, granted_q2;
   always @(posedge clk) begin
     granted_q          <= ~rst & grant[SLOTS];
+    granted_q2         <= ~rst & granted_q;
     refused_illegal_q  <= ~rst & grant[SLOTS] & kind[0];
     refused_provider_q <= ~rst & grant[SLOTS] & ~kind[0];
-    if (granted_q) refused_tag_q <= descriptor[`CCHIP_DESCRIPTOR_TAG];
-    if (granted_q) refused_kind_q <= kind_of_pair;
+    if (granted_q2) refused_tag_q <= descriptor[`CCHIP_DESCRIPTOR_TAG];
+    if (granted_q2) refused_kind_q <= kind_of_pair;
     refusing_q <= ~rst & (grant[SLOTS] | (refusing_q & ~(refused_q & answer_ready[SLOTS])));
-    refused_q  <= ~rst & (granted_q | (refused_q & ~answer_ready[SLOTS]));
+    refused_q  <= ~rst & (granted_q2 | (refused_q & ~answer_ready[SLOTS]));
   end
   assign room[SLOTS] = ~refusing_q;
   assign answer_valid[SLOTS] = refused_q;

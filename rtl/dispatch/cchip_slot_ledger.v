@@ -26,9 +26,9 @@ module cchip_slot_ledger #(
     output wire                            open,         // the slot may be given pairs
     output wire                            room,
     input  wire                            grant,        // a pair is given to the slot
-    output wire [    `CCHIP_PAIR_ID_W-1:0] id,           // its number, 1 clock after grant
-    input  wire [        `CCHIP_TAG_W-1:0] s_tag,        // 2 clocks after grant
-    input  wire [       `CCHIP_KIND_W-1:0] s_kind,       // 2 clocks after grant
+    output wire [    `CCHIP_PAIR_ID_W-1:0] id,           // its number, 2 clocks after grant
+    input  wire [        `CCHIP_TAG_W-1:0] s_tag,        // 3 clocks after grant
+    input  wire [       `CCHIP_KIND_W-1:0] s_kind,       // 3 clocks after grant
     // from the slot: record SLOT_RESULT, and the module in it
     input  wire                            s_result_valid,
     input  wire [`CCHIP_SLOT_RESULT_W-1:0] s_result_data,
@@ -161,7 +161,7 @@ module cchip_slot_ledger #(
 
   // ---- numbers. Two bits say whether a number is that of a pair inside: the one that the grant
   // writes beside the pair, and the one that the answer writes; they differ while it is.
-  reg take_q;  // a clock after grant
+  reg granted_q, take_q;  // a clock after grant, two
   reg given_q;  // the bit of the pair granted, a clock later
   wire free_valid, unused_free_ready, free_bit;
   wire [ID_W-1:0] free_id;
@@ -186,8 +186,9 @@ module cchip_slot_ledger #(
   assign id = {{`CCHIP_PAIR_ID_W - ID_W{1'b0}}, free_id};
 
   always @(posedge clk) begin
-    take_q  <= ~rst & grant;
-    given_q <= ~clearing_q & free_bit;
+    granted_q <= ~rst & grant;
+    take_q    <= ~rst & granted_q;
+    given_q   <= ~clearing_q & free_bit;
   end
 
   // ---- results: three clocks to find the pair

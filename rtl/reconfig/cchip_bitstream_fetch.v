@@ -144,10 +144,12 @@ module cchip_bitstream_fetch #(
   // ---- clocks without an address taken or a beat
   reg [31:0] wait_q;  // 1 + clocks without progress
   reg late_q;  // wait_q has reached `limit`
+  reg at_once_q;  // `limit` is 1
   wire progress = taken | beat | ~owes;
   always @(posedge clk) begin
+    at_once_q <= limit == 32'd1;
     wait_q <= progress ? 32'd2 : wait_q + 32'd1;
-    late_q <= progress ? limit == 32'd1 : wait_q >= limit;
+    late_q <= progress ? at_once_q : wait_q >= limit;
     if (rst) timeout_q <= 1'b0;
     else timeout_q <= run & (timeout_q | (working & ~progress & late_q));
   end

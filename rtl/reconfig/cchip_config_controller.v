@@ -136,7 +136,9 @@ module cchip_config_controller #(
   // ---- memory to header or port
   reg [31:0] fetch_address_q;
   reg [29:0] fetch_words_q;
+  reg no_limit_q;  // memory_limit is 0
   always @(posedge clk) begin
+    no_limit_q <= memory_limit == 32'd0;
     fetch_address_q <= address + (in_header ? 32'd0 : `CCHIP_BITSTREAM_HEADER);
     fetch_words_q   <= in_header ? 30'd4 : length[31:2] + {29'd0, length[1:0] != 2'd0};
   end
@@ -147,8 +149,7 @@ module cchip_config_controller #(
       .run          (run),
       .address      (fetch_address_q),
       .words        (fetch_words_q),
-      .limit        (memory_limit
-          | (memory_limit == 32'd0 ? `CCHIP_MEMORY_LIMIT_DEFAULT : 32'd0)),
+      .limit        (memory_limit | (`CCHIP_MEMORY_LIMIT_DEFAULT & {32{no_limit_q}})),
       .m_valid      (fetch_valid),
       .m_ready      (in_header | port_ready),
       .m_data       (fetch_data),

@@ -89,7 +89,7 @@ module cchip_swap_sequencer #(
   localparam [STATES-1:0] SAME_PHASE =
       14'd1 << JUDGE | 14'd1 << PULSE | 14'd1 << PULSED | 14'd1 << SETTLE;
 
-  // clocks of a state, counted from 0
+  // clocks of a state, counted from 0; each lasts two clocks or more
   localparam [4:0] JUDGE_LAST = 5'd2;  // slot and request have passed their registers
   localparam [4:0] RESET_LAST = 5'd1;
   localparam [4:0] ERROR_FIRST = 5'd2;  // of TRANSFER: cfg_error of an earlier clock is over
@@ -159,6 +159,8 @@ module cchip_swap_sequencer #(
   reg quiet_q, decoupled_q, roc_busy_q, match_q;  // match: the region shows the module asked for
   reg same_q, illegal_q;
   wire [32:0] past = {1'b0, address_q} + {1'b0, size_q};  // the byte behind the file
+  reg over_q;  // it lies beyond 4 GiB, unless its lower 32 bits, of which rest_q knows, are 0
+  reg [3:0] rest_q;
   (* ASYNC_REG = "TRUE" *) reg [1:0] cfg_error_q;
   always @(posedge clk) begin
     quiet_q <= |(quiet & mine);
@@ -166,9 +168,10 @@ module cchip_swap_sequencer #(
     roc_busy_q <= |(roc_busy & mine);
     match_q <= shown == module_q;
     same_q <= ~decoupled_q & match_q;
+    over_q <= past[32];
+    rest_q <= {|past[31:24], |past[23:16], |past[15:8], |past[7:0]};
     illegal_q <= mine == {SLOTS{1'b0}} || module_q > `CCHIP_RM_QUAD_QUAD
-        || address_q[5:0] != 6'd0 || size_q == 32'd0
-        || (past[32] && past[31:0] != 32'd0);
+        || address_q[5:0] != 6'd0 || size_q == 32'd0 || (over_q && rest_q != 4'd0);
     cfg_error_q <= {cfg_error_q[0], cfg_error};
   end
 
@@ -177,12 +180,23 @@ module cchip_swap_sequencer #(
   wire turns;  // to another phase
   reg [31:0] clocks_q;
   reg [4:0] ticks_q;  // stops at 31
+  reg last_q;  // the last clock of a state of fixed length
+  reg error_counts_q;  // of TRANSFER: cfg_error of an earlier clock is over
   reg expired_q;
+  reg no_limit_q;  // shutdown_limit is 0
   wire [31:0] shutdown_bound =
-      shutdown_limit | (shutdown_limit == 32'd0 ? `CCHIP_SHUTDOWN_LIMIT_DEFAULT : 32'd0);
+      shutdown_limit | (`CCHIP_SHUTDOWN_LIMIT_DEFAULT & {32{no_limit_q}});
   always @(posedge clk) begin
+    no_limit_q <= shutdown_limit == 32'd0;
     clocks_q <= turns ? 32'd1 : clocks_q + 32'd1;
     ticks_q <= moves ? 5'd0 : ticks_q + {4'd0, ~&ticks_q};
+    last_q <= !moves && ((at_q[JUDGE] && ticks_q == JUDGE_LAST - 5'd1)
+        || (at_q[RESET] && ticks_q == RESET_LAST - 5'd1)
+        || (at_q[CHECK] && ticks_q == CHECK_LAST - 5'd1)
+        || (at_q[PULSE] && ticks_q == PULSE_LAST - 5'd1)
+        || (at_q[SETTLE] && ticks_q == SETTLE_LAST - 5'd1)
+        || (at_q[MATCH] && ticks_q == MATCH_LAST - 5'd1));
+    error_counts_q <= !moves && ticks_q >= ERROR_FIRST - 5'd1;
     expired_q <= !turns
         && (at_q[SHUTDOWN] ? clocks_q >= shutdown_bound : clocks_q >= LIMIT);
   end
@@ -204,8 +218,8 @@ module cchip_swap_sequencer #(
     done[IDLE] = begins;
     if (at_q[IDLE]) phase_after = phase_after | `CCHIP_PHASE_HEADER;
 
-    done[JUDGE] = ticks_q == JUDGE_LAST;
-    fails[JUDGE] = ticks_q == JUDGE_LAST && (illegal_q || same_q || owes);
+    done[JUDGE] = last_q;
+    fails[JUDGE] = last_q & (illegal_q | same_q | owes);
     if (at_q[JUDGE]) begin
       code = code
           | (illegal_q ? `CCHIP_SWAP_REQUEST : same_q ? `CCHIP_SWAP_SAME : `CCHIP_SWAP_OWED);
@@ -234,25 +248,25 @@ module cchip_swap_sequencer #(
       phase_after = phase_after | `CCHIP_PHASE_RESET;
     end
 
-    done[RESET] = ticks_q == RESET_LAST;
+    done[RESET] = last_q;
     if (at_q[RESET]) phase_after = phase_after | `CCHIP_PHASE_TRANSFER;
 
     done[TRANSFER] = transfer_done;
-    fails[TRANSFER] = bus_error | timeout | (cfg_error_q[1] && ticks_q >= ERROR_FIRST);
+    fails[TRANSFER] = bus_error | timeout | (cfg_error_q[1] & error_counts_q);
     if (at_q[TRANSFER]) begin
       code = code
           | (bus_error ? `CCHIP_SWAP_BUS : timeout ? `CCHIP_SWAP_MEMORY : `CCHIP_SWAP_DEVICE);
       phase_after = phase_after | `CCHIP_PHASE_CHECK;
     end
 
-    done[CHECK] = ticks_q == CHECK_LAST;
-    fails[CHECK] = cfg_error_q[1] || (ticks_q == CHECK_LAST && !crc_ok);
+    done[CHECK] = last_q;
+    fails[CHECK] = cfg_error_q[1] | (last_q & ~crc_ok);
     if (at_q[CHECK]) begin
       code = code | (cfg_error_q[1] ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_CRC);
       phase_after = phase_after | `CCHIP_PHASE_ROC;
     end
 
-    done[PULSE] = ticks_q == PULSE_LAST;
+    done[PULSE] = last_q;
     if (at_q[PULSE]) phase_after = phase_after | `CCHIP_PHASE_ROC;
 
     done[PULSED] = ~roc_busy_q;
@@ -262,10 +276,10 @@ module cchip_swap_sequencer #(
       phase_after = phase_after | `CCHIP_PHASE_ROC;
     end
 
-    done[SETTLE] = ticks_q == SETTLE_LAST;
+    done[SETTLE] = last_q;
     if (at_q[SETTLE]) phase_after = phase_after | `CCHIP_PHASE_ROC;
 
-    done[MATCH] = ticks_q == MATCH_LAST;
+    done[MATCH] = last_q;
     fails[MATCH] = ~match_q;
     if (at_q[MATCH]) begin
       code = code | `CCHIP_SWAP_WRONG_MODULE;
@@ -284,7 +298,7 @@ module cchip_swap_sequencer #(
   wire aborted = abort_q & (|(at_q & ABORTABLE));
   wire failing = aborted | (|(at_q & fails));
   wire ending = |(at_q & done);
-  wire [STATES-1:0] passes = at_q & done & {STATES{~failing}};
+  wire [STATES-1:0] passes = at_q & done;  // unless it fails
   wire reports = failing | passes[RECOUPLE];
   wire late = |at_q[RECOUPLE:DECOUPLE];  // a failure leaves the slot shut
   assign moves = failing | ending;
@@ -329,25 +343,30 @@ module cchip_swap_sequencer #(
   reg [SLOTS-1:0] stop_q, decouple_q, hold_reset_q, roc_start_q;
   reg [SLOTS-1:0] half_q;  // the region holds no whole module
   initial half_q = {SLOTS{1'b0}};
+  // `failing` comes last, so it selects
   wire [SLOTS-1:0] set_stop = mine & {SLOTS{passes[FETCH]}};
   wire [SLOTS-1:0] set_decouple = mine & {SLOTS{passes[SHUTDOWN]}};
   wire [SLOTS-1:0] set_hold = mine & {SLOTS{passes[DECOUPLE]}};
   wire [SLOTS-1:0] transfer = mine & {SLOTS{passes[RESET]}};
   wire [SLOTS-1:0] start_roc = mine & {SLOTS{passes[CHECK]}};
   wire [SLOTS-1:0] recouple = mine & {SLOTS{passes[MATCH]}};
-  wire [SLOTS-1:0] shut = mine & {SLOTS{failing & late}};
+  wire [SLOTS-1:0] shut = mine & {SLOTS{late}};
   always @(posedge clk) begin
-    if (!rst)
-      half_q <= (half_q | transfer) & ~recouple;
+    if (!rst && !failing) half_q <= (half_q | transfer) & ~recouple;
     if (rst) begin
       stop_q       <= half_q;
       decouple_q   <= half_q;
       hold_reset_q <= half_q;
       roc_start_q  <= {SLOTS{1'b0}};
+    end else if (failing) begin
+      if (!late) stop_q <= decouple_q;
+      decouple_q   <= decouple_q | shut;
+      hold_reset_q <= hold_reset_q | shut;
+      roc_start_q  <= {SLOTS{1'b0}};
     end else begin
-      stop_q       <= reports && !(failing && late) ? decouple_q : stop_q | set_stop;
-      decouple_q   <= (decouple_q | set_decouple | shut) & ~recouple;
-      hold_reset_q <= (hold_reset_q | set_hold | shut) & ~start_roc;
+      stop_q       <= passes[RECOUPLE] ? decouple_q : stop_q | set_stop;
+      decouple_q   <= (decouple_q | set_decouple) & ~recouple;
+      hold_reset_q <= (hold_reset_q | set_hold) & ~start_roc;
       roc_start_q  <= start_roc;
     end
   end

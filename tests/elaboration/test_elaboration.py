@@ -65,6 +65,7 @@ SLOTS = "cchip_error_SLOTS_must_be_1_to_4"
 SIGN = "cchip_error_SIGN_must_be_below_POINTS"
 COMPARE = "cchip_error_compare_POINTS_must_be_3_to_5_and_OWN_1_or_2"
 RAM = "cchip_error_ram_WIDTH_or_DEPTH_below_1_or_ADDR_W_too_small"
+BLOCK_RAM = "cchip_error_block_ram_WIDTH_below_1_or_ADDR_W_not_3_to_16"
 
 # module, parameters, name in the message
 ILLEGAL = [
@@ -110,6 +111,9 @@ ILLEGAL = [
     ("cchip_ram", {"WIDTH": 0}, RAM),
     ("cchip_ram", {"DEPTH": 0}, RAM),
     ("cchip_ram", {"DEPTH": 17, "ADDR_W": 4}, RAM),
+    ("cchip_block_ram", {"WIDTH": 0}, BLOCK_RAM),
+    ("cchip_block_ram", {"ADDR_W": 17}, BLOCK_RAM),
+    ("cchip_block_ram", {"WORDS": 2}, "cchip_error_block_ram_WORDS_must_be_1_or_4"),
     *(("cchip_pr_region", {"RM_ID": n}, RM_ID) for n in (-1, 4)),
     *(("cchip_roc_generator", {"CYCLES": n}, ROC) for n in (0, 33)),
     ("cchip_skid_buffer", {"CLEAR_DATA": 2}, CLEAR_DATA),
@@ -181,6 +185,7 @@ LEGAL = [
     *(("cchip_result_merge", {"SOURCES": n}) for n in (2, 8)),
     ("cchip_fifo", {"WIDTH": 1, "DEPTH": 5}),
     ("cchip_ram", {"WIDTH": 1, "DEPTH": 1, "ADDR_W": 1}),
+    *(("cchip_block_ram", {"WIDTH": 1, "WORDS": n, "ADDR_W": 3}) for n in (1, 4)),
     ("cchip_skid_buffer", {"WIDTH": 1}),
     *(("cchip_pr_region", {"RM_ID": n, "COORD_W": 4, "SUBSTAGES": smallest_substages(4)}) for n in range(4)),
     *(("cchip_roc_generator", {"CYCLES": n}) for n in (1, 32)),

@@ -93,11 +93,17 @@ class Export(unittest.TestCase):
         if TOP == BLANK:
             return
         portable, device = self.sections(self.file), self.sections(f"{TOP}_ecp5.v")
-        self.assertEqual(set(portable) ^ set(device), {"rtl/arith/cchip_mul18.v", "rtl/vendor/ecp5/cchip_mul18.v"})
+        leaves = {"arith/cchip_mul18.v": "MULT18X18D", **({"common/cchip_block_ram.v": "DP16KD"} if TOP == SUBSYSTEM else {})}
+        expected = set()
+        for leaf in leaves:
+            expected |= {f"rtl/{leaf}", f"rtl/vendor/ecp5/{pathlib.Path(leaf).name}"}
+        self.assertEqual(set(portable) ^ set(device), expected)
         self.assertEqual([name for name in set(portable) & set(device) if portable[name] != device[name]], [])
-        self.yosys(f"-lib +/ecp5/cells_bb.v; read_verilog {TOP}_ecp5.v", "select -assert-any t:MULT18X18D")
-        self.clean(*self.icarus, f"{TOP}_ecp5.v", "MULT18X18D.v")
-        commands = [line.replace(self.file, f"{TOP}_ecp5.v MULT18X18D.v") for line in self.commands()]
+        blocks = [f"{block}.v" for block in leaves.values()]
+        self.yosys(f"-lib +/ecp5/cells_bb.v +/ecp5/cells_sim.v; read_verilog {TOP}_ecp5.v",
+                   *(f"select -assert-any t:{block}" for block in leaves.values()))
+        self.clean(*self.icarus, f"{TOP}_ecp5.v", *blocks)
+        commands = [line.replace(self.file, " ".join([f"{TOP}_ecp5.v", *blocks])) for line in self.commands()]
         self.assertRegex(self.bench(commands[0], commands[1].replace("+pairs=500", "+pairs=100")), PASS)
 
     def test_file_lists(self):

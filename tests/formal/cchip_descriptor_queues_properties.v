@@ -76,7 +76,8 @@ module cchip_descriptor_queues_properties #(
   wire pop_here = pop & (kind_q == mine);
   wire mark = push_here & follow & ~waits_q & ~done_q;
   reg found_q;  // the last look was at it
-  reg [1:0] since_look_q, since_pop_q;  // clocks, at most 3
+  reg [1:0] since_look_q;  // clocks, at most 3
+  reg [2:0] since_pop_q;  // clocks, at most 7
   wire finds = look_q & (kind_q == mine) & waits_q & (ahead_q == 0);
   reg started_q = 1'b0;
   wire [COUNT_W-1:0] waits_here = waiting >> (COUNT_W * mine);
@@ -102,7 +103,7 @@ module cchip_descriptor_queues_properties #(
       ahead_q <= count_q - pop_here;
     end else if (pop_here && ahead_q != 0) ahead_q <= ahead_q - 1;
     since_look_q <= look_q ? 2'd0 : since_look_q + {1'b0, ~&since_look_q};
-    since_pop_q  <= look_q || looked_q && !pop ? 2'd0 : since_pop_q + {1'b0, ~&since_pop_q};
+    since_pop_q  <= look_q || looked_q && !pop ? 3'd0 : since_pop_q + {2'd0, ~&since_pop_q};
   end
 
   always @(*) begin
@@ -123,7 +124,7 @@ module cchip_descriptor_queues_properties #(
       ready: assert (s_kind != mine || s_ready == room_here);
       own_place: assert (!push_here || !waits_q || s_place != place_q);
       place: assert (!found_q || rst || look_q || m_place == place_q);
-      order: assert (!found_q || rst || look_q || since_look_q < 2'd1 || since_pop_q > 2'd2 || m_data == data_q);
+      order: assert (!found_q || rst || look_q || since_look_q < 2'd2 || since_pop_q > 3'd3 || m_data == data_q);
     end
 `endif
 endmodule

@@ -5,7 +5,7 @@
 // pairs it holds in any order and after any time (dispatcher_region.v), while modules are exchanged at any moment, by force or not:
 //   once      one pair, any, is followed: its answer leaves at most once, never before it was taken from its queue, with its tag
 //             and kind
-//   not lost  with no pair inside the slot, none taken for 5 clocks and no answer offered for 5, every pair has been answered
+//   not lost  with no pair inside the slot, none taken for 6 clocks and no answer offered for 6, every pair has been answered
 //   reason    it is answered as open only if a slot was closed meanwhile, its kind is illegal or nobody provides it
 //   slot      no vertex enters the region in reset; a number is given again only when the pair before has left it; a pair's
 //             three vertices come in step; pairs are taken 3 clocks apart or more, each from a queue that is not empty
@@ -45,9 +45,9 @@ module cchip_dispatcher_properties #(
 
   // ---- queues: any
   reg [1:0] some_q;
-  reg [1:0] popped_q;  // 1 and 2 clocks ago
-  reg [1:0] followed_q;
-  wire tag = |popped_q ? |followed_q : any_tag;
+  reg [2:0] popped_q;  // 1, 2 and 3 clocks ago
+  reg [2:0] followed_q;
+  wire tag = |popped_q[2:1] ? |followed_q[2:1] : any_tag;
   wire [`CCHIP_DESCRIPTOR_W-1:0] descriptor = {{`CCHIP_DESCRIPTOR_W - 1{1'b0}}, tag};
   wire mark = pop & follow & (pair_q == NONE);
 
@@ -175,8 +175,8 @@ module cchip_dispatcher_properties #(
   always @(posedge clk) begin
     started_q  <= 1'b1;
     some_q     <= rst ? 2'b00 : (some_q & ~(kind & {2{pop}})) | arrive;
-    popped_q   <= rst ? 2'b00 : {popped_q[0], pop};
-    followed_q <= rst ? 2'b00 : {followed_q[0], mark};
+    popped_q   <= rst ? 3'b000 : {popped_q[1:0], pop};
+    followed_q <= rst ? 3'b000 : {followed_q[1:0], mark};
     inside_q   <= rst ? 8'd0 : inside_q + {7'd0, pop} - {7'd0, leaves};
     silent_q   <= rst || pop || m_valid || outstanding != 0 ? 3'd0 : silent_q + {2'd0, ~&silent_q};
     offered_q  <= ~rst & m_valid & ~m_result_ready;
@@ -206,14 +206,14 @@ module cchip_dispatcher_properties #(
       once: assert (!m_valid || !ours || pair_q == TAKEN);
       tag_known: assert (!m_valid || m_data[`CCHIP_RESULT_TAG] <= 16'd1);
       own_kind: assert (!m_valid || !ours || m_kind == {1'b0, ~illegal_q});
-      not_lost: assert (silent_q < 3'd6 || (inside_q == 8'd0 && pair_q != TAKEN));
+      not_lost: assert (silent_q < 3'd7 || (inside_q == 8'd0 && pair_q != TAKEN));
       reason: assert (!m_valid || !ours || by_module || illegal_q || excused_q);
       illegal: assert (!m_valid || !ours || !by_module || !illegal_q);
       credit: assert (&in_credit);
       nothing_inside: assert (((quiet | closed) & ~empty) == 0);
       vertices: assert (&in_step);
       stable: assert (!offered_q || (m_valid && offer == offer_q));
-      apart: assert (!pop || popped_q == 2'b00);
+      apart: assert (!pop || popped_q[1:0] == 2'b00);
       in_queue: assert (!pop || kind == 2'b01 || kind == 2'b10);
       waits: assert (!pop || (kind & some_q) != 0);
     end

@@ -12,7 +12,7 @@
 //             6 clocks, unless others are before it
 //   numbers   below CREDIT; while the pair followed is inside no other gets its number
 //   an offered answer stays as it is until it is taken
-//   a result with the number that comes sooner than 5 clocks after the grant, when no module can have answered, may or may not
+//   a result with the number that comes sooner than 6 clocks after the grant, when no module can have answered, may or may not
 //   count as the first one
 // Assumed of the dispatcher: a grant needs room, comes 3 clocks after the one before at the earliest, and 8 clocks after the
 // slot was open and not stopped at the latest. Tags are one bit: the bits of a tag do not know of each other.
@@ -40,12 +40,12 @@ module cchip_slot_ledger_properties #(
 
   // ---- the dispatcher
   reg [3:0] closed_q;  // clocks since the slot was open and not stopped
-  reg [1:0] granted_q;  // 1 and 2 clocks ago
-  reg [1:0] followed_q;  // that was the pair followed
+  reg [2:0] granted_q;  // 1, 2 and 3 clocks ago
+  reg [2:0] followed_q;  // that was the pair followed
   reg started_q = 1'b0;
-  wire grant = ~rst & want & room & (granted_q == 2'b00) & (closed_q <= 4'd8);
+  wire grant = ~rst & want & room & (granted_q[1:0] == 2'b00) & (closed_q <= 4'd8);
   wire mark = grant & follow & (pair_q == NONE);
-  wire s_tag = granted_q[1] ? followed_q[1] : any_tag;
+  wire s_tag = granted_q[2] ? followed_q[2] : any_tag;
 
   cchip_slot_ledger #(
       .CREDIT(CREDIT)
@@ -89,17 +89,18 @@ module cchip_slot_ledger_properties #(
   reg [`CCHIP_PAIR_ID_W-1:0] id_q;
   reg [`CCHIP_KIND_W-1:0] kind_q;
   reg [2:0] age_q;  // clocks since its grant, at most 7
-  reg last_valid_q;  // the result a clock ago
-  reg [`CCHIP_PAIR_ID_W-1:0] last_id_q;
+  reg last_valid_q, last_valid_q2;  // the results 1 and 2 clocks ago
+  reg [`CCHIP_PAIR_ID_W-1:0] last_id_q, last_id_q2;
   reg early_q;  // a result with its number came before any module can have answered
   reg came_q;  // a result with its number came
   reg hit_q;  // the first one's
   reg [`CCHIP_KIND_W-1:0] module_q;
   reg closed_since_q;  // decouple was 1, or the slot not open, since the grant
   reg [2:0] since_q;  // clocks since the result came with decouple 0 until then, at most 7
-  wire hits = s_result_valid & (s_result_id == (followed_q[0] ? id : id_q));
-  wire early = pair_q == GRANTED && age_q < 3'd5 && (hits || (followed_q[0] && last_valid_q && last_id_q == id));
-  wire comes = pair_q == GRANTED && age_q >= 3'd5 && !came_q && hits;
+  wire hits = s_result_valid & (s_result_id == (followed_q[1] ? id : id_q));  // from 2 clocks after the grant on
+  wire early = pair_q == GRANTED && age_q < 3'd6 && (hits
+      || (followed_q[1] && ((last_valid_q && last_id_q == id) || (last_valid_q2 && last_id_q2 == id))));
+  wire comes = pair_q == GRANTED && age_q >= 3'd6 && !came_q && hits;
 
   reg [7:0] used_q;  // between grant and the leaving of the answer
   reg [1:0] silent_q;  // clocks without answer and with no pair inside
@@ -111,8 +112,8 @@ module cchip_slot_ledger_properties #(
   always @(posedge clk) begin
     started_q  <= 1'b1;
     closed_q   <= rst ? 4'd15 : open && !stop ? 4'd0 : closed_q + {3'd0, ~&closed_q};
-    granted_q  <= rst ? 2'b00 : {granted_q[0], grant};
-    followed_q <= rst ? 2'b00 : {followed_q[0], mark};
+    granted_q  <= rst ? 3'b000 : {granted_q[1:0], grant};
+    followed_q <= rst ? 3'b000 : {followed_q[1:0], mark};
     used_q     <= rst ? 8'd0 : used_q + {7'd0, grant} - {7'd0, leaves};
     silent_q   <= rst || m_valid || outstanding != 0 ? 2'd0 : silent_q + {1'b0, ~&silent_q};
     answer_q   <= m_valid;
@@ -121,10 +122,12 @@ module cchip_slot_ledger_properties #(
     if (rst) pair_q <= NONE;
     else if (mark) pair_q <= GRANTED;
     else if (leaves && ours) pair_q <= ANSWERED;
-    if (followed_q[0]) id_q <= id;
-    if (followed_q[1]) kind_q <= s_kind;
+    if (followed_q[1]) id_q <= id;
+    if (followed_q[2]) kind_q <= s_kind;
     last_valid_q <= s_result_valid;
+    last_valid_q2 <= last_valid_q;
     last_id_q    <= s_result_id;
+    last_id_q2   <= last_id_q;
     if (rst || pair_q == NONE) begin
       age_q             <= 3'd1;
       early_q           <= 1'b0;

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 `default_nettype none
-// Simulation model of Lattice ECP5's block RAM, for netlists, in the one mode that synthesis takes for the memories
-// here: 512 words of 36 bits (FPGA-TN-02204), written through port A, read through port B one clock after the address.
-//   write   port A: CEA and WEA; byte i of 9 bits if ADA<i>; word ADA5..13; data {DIB, DIA}
-//   read    port B: CEB; word ADB5..13; data {DOB, DOA}
+// Simulation model of Lattice ECP5's block RAM (FPGA-TN-02204), for netlists: written through port A, read through port B,
+// in the modes that are taken for the memories here, where a byte has 9 bits and an address is that of a bit:
+//   inferred     512 words of 36 bits, read one clock after the address
+//   rtl/vendor/ecp5/cchip_block_ram.v   port B with its output register, read two clocks after the address: 1,024 words of
+//                18 bits, or 512 of 36 bits written and 2,048 of 9 read
+//   write        CEA and WEA; byte i of the word if ADA<i>; data {DIB, DIA}
+//   read         CEB; data {DOB, DOA} of 36 bits, DOB of fewer
 //   both at one word on one clock: undefined here (Yosys counts on nothing)
-// Other widths, output registers, resets, inverted clocks and initial contents other than 0 are refused.
+// Other modes, resets, inverted clocks and initial contents other than 0 are refused.
 /* verilator lint_off DECLFILENAME */
 /* verilator lint_off UNUSEDPARAM */
+/* verilator lint_off WIDTHCONCAT */
 module DP16KD #(
     parameter integer DATA_WIDTH_A = 18,
     parameter integer DATA_WIDTH_B = 18,
@@ -101,12 +105,13 @@ module DP16KD #(
 );
 
   generate
-    if (DATA_WIDTH_A != 36 || DATA_WIDTH_B != 36) begin : gen_width
-      dp16kd_model_knows_512_words_of_36_bits_only u_error ();
+    if (REGMODE_B == "NOREG" ? DATA_WIDTH_A != 36 || DATA_WIDTH_B != 36
+        : !(DATA_WIDTH_A == 36 && DATA_WIDTH_B == 9 || DATA_WIDTH_A == 18 && DATA_WIDTH_B == 18)) begin : gen_width
+      dp16kd_model_does_not_know_these_widths u_error ();
     end
-    if (REGMODE_A != "NOREG" || REGMODE_B != "NOREG" || CSDECODE_A != "0b000" || CSDECODE_B != "0b000"
-        || CLKAMUX != "CLKA" || CLKBMUX != "CLKB") begin : gen_mode
-      dp16kd_model_knows_neither_output_registers_nor_selects_nor_inverted_clocks u_error ();
+    if (REGMODE_A != "NOREG" || CSDECODE_A != "0b000" || CSDECODE_B != "0b000" || CLKAMUX != "CLKA" || CLKBMUX != "CLKB")
+    begin : gen_mode
+      dp16kd_model_knows_neither_a_register_of_port_a_nor_selects_nor_inverted_clocks u_error ();
     end
     if ({INITVAL_3F, INITVAL_3E, INITVAL_3D, INITVAL_3C, INITVAL_3B, INITVAL_3A, INITVAL_39, INITVAL_38,
       INITVAL_37, INITVAL_36, INITVAL_35, INITVAL_34, INITVAL_33, INITVAL_32, INITVAL_31, INITVAL_30,
@@ -121,25 +126,38 @@ module DP16KD #(
     end
   endgenerate
 
-  wire [8:0] write_word = {ADA13, ADA12, ADA11, ADA10, ADA9, ADA8, ADA7, ADA6, ADA5};
-  wire [8:0] read_word = {ADB13, ADB12, ADB11, ADB10, ADB9, ADB8, ADB7, ADB6, ADB5};
-  wire [3:0] bytes = {ADA3, ADA2, ADA1, ADA0} & {4{CEA & WEA}};
+  wire [13:0] write_bit = {ADA13, ADA12, ADA11, ADA10, ADA9, ADA8, ADA7, ADA6, ADA5, ADA4, ADA3, ADA2, ADA1, ADA0};
+  wire [13:0] read_bit = {ADB13, ADB12, ADB11, ADB10, ADB9, ADB8, ADB7, ADB6, ADB5, ADB4, ADB3, ADB2, ADB1, ADB0};
   wire [35:0] write_data = {DIB17, DIB16, DIB15, DIB14, DIB13, DIB12, DIB11, DIB10, DIB9, DIB8, DIB7, DIB6, DIB5, DIB4,
       DIB3, DIB2, DIB1, DIB0, DIA17, DIA16, DIA15, DIA14, DIA13, DIA12, DIA11, DIA10, DIA9, DIA8,
       DIA7, DIA6, DIA5, DIA4, DIA3, DIA2, DIA1, DIA0};
 
+  // 512 words of four bytes; a narrower port sees some of them
+  localparam integer WRITTEN = DATA_WIDTH_A / 9, READ = DATA_WIDTH_B / 9;
+  wire [8:0] write_word = write_bit[13:5], read_word = read_bit[13:5];
+  wire [1:0] write_byte = WRITTEN == 4 ? 2'd0 : {write_bit[4], 1'b0};
+  wire [1:0] read_byte = READ == 4 ? 2'd0 : READ == 2 ? {read_bit[4], 1'b0} : read_bit[4:3];
+  wire [3:0] bytes_read = (READ == 4 ? 4'd15 : READ == 2 ? 4'd3 : 4'd1) << read_byte;
+  wire [3:0] enabled = (WRITTEN == 4 ? write_bit[3:0] : {2'd0, write_bit[1:0]}) & {4{CEA & WEA}};
+  wire [3:0] bytes = enabled << write_byte;
+  wire [35:0] placed = write_data << 9 * write_byte;
+
   reg [35:0] mem[0:511];
-  reg [35:0] read_data;
+  reg [35:0] word, registered;
   integer i;
   initial for (i = 0; i < 512; i = i + 1) mem[i] = 36'd0;
 
   always @(posedge CLKA) begin
-    if (bytes[0]) mem[write_word][8:0] <= write_data[8:0];
-    if (bytes[1]) mem[write_word][17:9] <= write_data[17:9];
-    if (bytes[2]) mem[write_word][26:18] <= write_data[26:18];
-    if (bytes[3]) mem[write_word][35:27] <= write_data[35:27];
+    if (bytes[0]) mem[write_word][8:0] <= placed[8:0];
+    if (bytes[1]) mem[write_word][17:9] <= placed[17:9];
+    if (bytes[2]) mem[write_word][26:18] <= placed[26:18];
+    if (bytes[3]) mem[write_word][35:27] <= placed[35:27];
   end
-  always @(posedge CLKB) if (CEB) read_data <= |bytes && write_word == read_word ? 36'bx : mem[read_word];
+  always @(posedge CLKB) begin
+    if (CEB) word <= |(bytes & bytes_read) && write_word == read_word ? 36'bx : mem[read_word] >> 9 * read_byte;
+    if (OCEB) registered <= word;
+  end
+  wire [35:0] read_data = REGMODE_B == "OUTREG" ? {registered[17:0], 18'd0} : word;
 
   assign {DOB17, DOB16, DOB15, DOB14, DOB13, DOB12, DOB11, DOB10, DOB9, DOB8, DOB7, DOB6, DOB5, DOB4,
       DOB3, DOB2, DOB1, DOB0, DOA17, DOA16, DOA15, DOA14, DOA13, DOA12, DOA11, DOA10, DOA9, DOA8,
@@ -153,7 +171,7 @@ module DP16KD #(
     end
 `endif
 
-  wire unused = &{1'b0, OCEA, ADA4, ADB0, ADB1, ADB2, ADB3, ADB4};
+  wire unused = &{1'b0, OCEA, write_bit[4], read_bit[4:0], registered[35:18]};
 
 endmodule
 `default_nettype wire

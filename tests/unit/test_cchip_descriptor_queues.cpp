@@ -89,6 +89,7 @@ TEMPLATE_LIST_TEST_CASE(
         clock(fill);
       }
       top.kind = 0;
+      clock(fill);
       for (int later = 0; later < 2; ++later) {
         simulation.settle();
         REQUIRE(sim::get_bits(top.m_data, 0, TestType::WIDTH) == head.data);

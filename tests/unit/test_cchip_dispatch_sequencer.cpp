@@ -52,20 +52,18 @@ struct SequencerBench {
     top.room = static_cast<CData>(has_room);
     sim::set_bits(top.serves, 0, queues * takers, serves);
     simulation.settle();
-    // the read of the last pair, a clock behind its vertices
-    const int vertices = kind >= 2 ? 4 : 3;
-    const bool reading = launch_clock >= 1 && launch_clock <= vertices;
-    expect("m_valid", top.m_valid != 0, reading);
-    if (reading) {
-      expect("m_first", top.m_first != 0, launch_clock == 1);
-      expect("m_last", top.m_last != 0, launch_clock == vertices);
-      expect("m_kind", int{top.m_kind}, kind);
-      expect("m_taker", unsigned{top.m_taker}, 1U << taker);
+    const Vertex& arrives = read_[0];
+    expect("m_valid", top.m_valid != 0, arrives.valid);
+    if (arrives.valid) {
+      expect("m_first", top.m_first != 0, arrives.first);
+      expect("m_last", top.m_last != 0, arrives.last);
+      expect("m_kind", int{top.m_kind}, arrives.kind);
+      expect("m_taker", unsigned{top.m_taker}, 1U << arrives.taker);
     }
     const bool launch = top.launch != 0;
     if (launch) {
       sim::require(looked, "launch without look");
-      sim::require(launch_clock >= vertices, "launched while the last pair is read");
+      sim::require(launch_clock >= vertices(), "launched while the last pair is read");
       kind = index(top.kind);
       taker = index(top.grant);
       expect("grant", unsigned{top.grant}, 1U << taker);
@@ -75,10 +73,9 @@ struct SequencerBench {
       ++launched[static_cast<std::size_t>(kind)][static_cast<std::size_t>(taker)];
       launch_clock = 0;
     }
-    if (launch_clock < 4) {
-      const int next = kind >= 2 ? 4 : 3;
-      if (launch_clock < next) expect("m_vertex", int{top.m_vertex}, launch_clock);
-    }
+    const bool reads = launch_clock < vertices();
+    if (reads) expect("m_vertex", int{top.m_vertex}, launch_clock);
+    read_ = {read_[1], {reads, launch_clock == 0, launch_clock == vertices() - 1, kind, taker}};
     for (int k = 0; k < queues; ++k) {
       int& n = others[static_cast<std::size_t>(k)];
       if (!possible(k) || (launch && k == kind)) {
@@ -93,6 +90,14 @@ struct SequencerBench {
     return launch;
   }
   bool served_before_ = false;
+
+ private:
+  struct Vertex {
+    bool valid = false, first = false, last = false;
+    int kind = 0, taker = 0;
+  };
+  int vertices() const { return kind >= 2 ? 4 : 3; }
+  std::array<Vertex, 2> read_{};  ///< vertices read 2 clocks ago, 1 clock ago
 };
 
 }  // namespace

@@ -42,9 +42,9 @@ class DispatcherBench {
     top.some = static_cast<CData>(some);
     top.m_result_ready = chance(random, ready) ? 1 : 0;
     sim::set_random(top.descriptor, defs::descriptor_w, random);
-    if (popped_clocks_ < 2)
+    if (popped_clocks_ == 1 || popped_clocks_ == 2)
       sim::set_bits(top.descriptor, defs::descriptor_tag.lsb, defs::descriptor_tag.width, popped_.tag);
-    if (popped_clocks_ < 2) ++popped_clocks_;
+    if (popped_clocks_ < 3) ++popped_clocks_;
     for (int s = 0; s < slots; ++s) {
       auto& inside = slots_[static_cast<std::size_t>(s)];
       std::uint64_t word = random();
@@ -67,17 +67,17 @@ class DispatcherBench {
       auto& inside = slots_[static_cast<std::size_t>(s)];
       if (top.m_vertex_first != 0) {
         vertices_ = 0;
-        REQUIRE(popped_.kind > 0);
-        if (inside.connected) REQUIRE(inside.module_id >= popped_.kind);  // it can answer for this kind
+        read_kind_ = popped_.kind;
+        REQUIRE(read_kind_ > 0);
+        if (inside.connected) REQUIRE(inside.module_id >= read_kind_);  // it can answer for this kind
         inside.next = static_cast<int>(sim::get_bits(top.m_vertex_id, defs::pair_id_w * s, defs::pair_id_w));
       }
       ++vertices_;
       if (top.m_vertex_last == 0) continue;
-      REQUIRE(vertices_ == (popped_.kind >= 2 ? 4 : 3));
-      if (inside.connected) REQUIRE(inside.pairs.emplace(inside.next, popped_.kind).second);
+      REQUIRE(vertices_ == (read_kind_ >= 2 ? 4 : 3));
+      if (inside.connected) REQUIRE(inside.pairs.emplace(inside.next, read_kind_).second);
     }
-    // The first vertex of a pair comes a clock after it left its queue, its last one together with the next at the
-    // earliest.
+    // The first vertex of a pair comes two clocks after it left its queue; the next pair may leave before the last one.
     if (top.pop != 0) {
       unsigned kind = 0;
       while ((top.kind >> kind & 1U) == 0) ++kind;
@@ -141,7 +141,8 @@ class DispatcherBench {
   std::map<std::uint16_t, int> open_;  // kind by tag
   std::uint16_t next_tag_ = 0;
   WaitingPair popped_{};
-  int popped_clocks_ = 2;
+  int popped_clocks_ = 3;
+  int read_kind_ = 0;  // of the pair whose vertices come
   int vertices_ = 0;
 };
 

@@ -92,11 +92,11 @@ TEMPLATE_LIST_TEST_CASE("cchip_operand_memory: what was written at a place is re
       std::advance(it, static_cast<std::ptrdiff_t>(random() % stored.size()));
       sim::set_bits(top.m_place, 0, TestType::PLACE_W, static_cast<std::uint64_t>(it->first));
       const int vertices = it->second.kind < 2 ? 3 : 4;
-      for (int i = 0; i <= vertices; ++i) {
+      for (int i = 0; i <= vertices + 1; ++i) {
         top.m_vertex = static_cast<CData>(i & 3);
         simulation.settle();
-        if (i > 0) {
-          const int v = i - 1;
+        if (i > 1) {
+          const int v = i - 2;
           const int v_of_a = it->second.kind == 2 && v == 3 ? 2 : v;
           REQUIRE(word(top.m_a) == it->second.a[static_cast<std::size_t>(v_of_a)]);
           REQUIRE(word(top.m_b) == it->second.b[static_cast<std::size_t>(v)]);

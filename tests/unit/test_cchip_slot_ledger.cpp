@@ -32,7 +32,7 @@ class LedgerBench {
     // a grant every third clock at most, while there is room, the slot is open and not stopped
     const bool grant = since_grant_ >= 3 && top.room != 0 && allowed_ && chance(random, grants);
     top.grant = grant ? 1 : 0;
-    if (since_grant_ == 2) {
+    if (since_grant_ == 3) {
       top.s_tag = granted_.tag;
       top.s_kind = static_cast<CData>(granted_.kind);
     } else {
@@ -62,7 +62,7 @@ class LedgerBench {
       }
     }
     simulation.settle();
-    if (since_grant_ == 1) {
+    if (since_grant_ == 2) {
       REQUIRE(int{top.id} < Config::CREDIT);
       REQUIRE(inside.count(top.id) == 0);
       inside[top.id] = {granted_, clocks_};

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// Quartus, which defines this macro, infers no ports of different widths from Verilog.
+`ifdef ALTERA_RESERVED_QIS
+`define CCHIP_MIXED_WIDTH 0
+`else
+`define CCHIP_MIXED_WIDTH 1
+`endif
+// cchip_block_ram: block RAM with its output register, one port for writing and one for reading.
+// Without that register a block of an ECP5 takes 5.6 ns from clock to output.
+//   write        WORDS words at once: word i of write_data at address WORDS * write_addr + i
+//   latency      read_data belongs to read_addr of 2 clocks before
+//   throughput   a write and a read every clock
+//   collision    a word that is read on the clock on which it is written: any value
+//   device       rtl/cchip_ecp5.f takes the block itself, vendor/ecp5/cchip_block_ram.v, because
+//                Yosys does not pack the register
+//   cuts         every path
+//   reset        none; words never written hold any value
+module cchip_block_ram #(
+    // width of a word, bit, >= 1
+    parameter integer WIDTH = 8,
+    // words that are written at once, 1 or 4
+    parameter integer WORDS = 1,
+    // width of the address of a word, bit, 3..16
+    parameter integer ADDR_W = 9,
+    // with four words, 1: one memory with a wider port for writing; 0: four and a multiplexer
+    parameter integer MIXED_WIDTH = `CCHIP_MIXED_WIDTH
+) (
+    input  wire                                   clk,
+    input  wire                                   write,
+    input  wire [ADDR_W-(WORDS==4 ? 2 : 0)-1:0] write_addr,
+    input  wire [                WORDS*WIDTH-1:0] write_data,
+    input  wire [                     ADDR_W-1:0] read_addr,
+    output wire [                      WIDTH-1:0] read_data
+);
+
+  reg [WIDTH-1:0] read_data_q;
+  assign read_data = read_data_q;
+
+  generate
+    if (WIDTH < 1 || ADDR_W < 3 || ADDR_W > 16) begin : gen_illegal
+      cchip_error_block_ram_WIDTH_below_1_or_ADDR_W_not_3_to_16 u_error ();
+    end
+    if (WORDS != 1 && WORDS != 4) begin : gen_illegal_words
+      cchip_error_block_ram_WORDS_must_be_1_or_4 u_error ();
+    end
+
+    if (WORDS == 1) begin : gen_single
+      (* ram_style = "block", no_rw_check *)
+      reg [WIDTH-1:0] mem [0:(1<<ADDR_W)-1];
+      reg [WIDTH-1:0] word_q;
+      always @(posedge clk) if (write) mem[write_addr] <= write_data;
+      always @(posedge clk) begin
+        word_q      <= mem[read_addr];
+        read_data_q <= word_q;
+      end
+    end else if (MIXED_WIDTH != 0) begin : gen_mixed
+      // the form that tools know as a port four words wide
+      (* ram_style = "block", no_rw_check *)
+      reg [WIDTH-1:0] mem [0:(1<<ADDR_W)-1];
+      reg [WIDTH-1:0] word_q;
+      integer i;
+      always @(posedge clk)
+        for (i = 0; i < 4; i = i + 1)
+          if (write) mem[{write_addr, i[1:0]}] <= write_data[WIDTH*i+:WIDTH];
+      always @(posedge clk) begin
+        word_q      <= mem[read_addr];
+        read_data_q <= word_q;
+      end
+    end else begin : gen_banks
+      wire [4*WIDTH-1:0] words;
+      reg [1:0] bank_q;
+      genvar b;
+      for (b = 0; b < 4; b = b + 1) begin : gen_bank
+        (* ram_style = "block", no_rw_check *)
+        reg [WIDTH-1:0] mem [0:(1<<(ADDR_W-2))-1];
+        reg [WIDTH-1:0] word_q;
+        always @(posedge clk) if (write) mem[write_addr] <= write_data[WIDTH*b+:WIDTH];
+        always @(posedge clk) word_q <= mem[read_addr[ADDR_W-1:2]];
+        assign words[WIDTH*b+:WIDTH] = word_q;
+      end
+      wire [2*WIDTH-1:0] half = bank_q[1] ? words[2*WIDTH+:2*WIDTH] : words[0+:2*WIDTH];
+      always @(posedge clk) begin
+        bank_q      <= read_addr[1:0];
+        read_data_q <= bank_q[0] ? half[WIDTH+:WIDTH] : half[0+:WIDTH];
+      end
+    end
+  endgenerate
+
+endmodule
+`default_nettype wire
