@@ -6,19 +6,14 @@
 //   throughput   one beat per clock, also while m_ready toggles
 //   capacity     2 beats
 //   cuts         every path: s_ready, m_valid and m_data are flip-flops
-//   stop         no further beat is accepted: s_ready is 0 from the next clock on; beats inside
-//                leave as usual
 //   reset        empties the buffer; s_ready and m_valid are 0 while rst is 1; a beat of the clock
 //                on which rst rises is lost
 module cchip_skid_buffer #(
     // width of the payload, bit, >= 1
-    parameter integer WIDTH = 8,
-    // 1: reset makes m_data 0, too
-    parameter integer CLEAR_DATA = 0
+    parameter integer WIDTH = 8
 ) (
     input  wire             clk,
     input  wire             rst,
-    input  wire             stop,
     input  wire             s_valid,
     output wire             s_ready,
     input  wire [WIDTH-1:0] s_data,
@@ -30,9 +25,6 @@ module cchip_skid_buffer #(
   generate
     if (WIDTH < 1) begin : gen_illegal
       cchip_error_skid_buffer_WIDTH_below_1 u_error ();
-    end
-    if (CLEAR_DATA != 0 && CLEAR_DATA != 1) begin : gen_illegal_clear_data
-      cchip_error_skid_buffer_CLEAR_DATA_must_be_0_or_1 u_error ();
     end
   endgenerate
 
@@ -56,12 +48,11 @@ module cchip_skid_buffer #(
       skid_valid_q <= 1'b0;
       valid_q      <= 1'b0;
     end else begin
-      ready_q      <= ~stop & ~skid_valid_d;
+      ready_q      <= ~skid_valid_d;
       skid_valid_q <= skid_valid_d;
       if (advance) valid_q <= skid_valid_q | accept;
     end
-    if (CLEAR_DATA != 0 && rst) data_q <= {WIDTH{1'b0}};
-    else if (advance) data_q <= skid_valid_q ? skid_data_q : s_data;
+    if (advance) data_q <= skid_valid_q ? skid_data_q : s_data;
     if (ready_q) skid_data_q <= s_data;
   end
 

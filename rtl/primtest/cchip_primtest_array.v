@@ -237,7 +237,6 @@ module cchip_primtest_array #(
       ) u_own (
           .clk    (clk),
           .rst    (lane_rst),
-          .stop   (1'b0),
           .s_valid(lane_valid),
           .s_ready(lane_ready),
           .s_data (lane_own),
@@ -265,7 +264,6 @@ module cchip_primtest_array #(
       ) u_merged (
           .clk    (clk),
           .rst    (lane_rst),
-          .stop   (1'b0),
           .s_valid(own_valid[lane] | back_valid[lane]),
           .s_ready(merged_ready),
           .s_data (own_next ? {LANE[LANE_W-1:0], own} : back[RESULT_W*lane+:RESULT_W]),
@@ -278,7 +276,6 @@ module cchip_primtest_array #(
       ) u_back (
           .clk    (clk),
           .rst    (lane == LANES - 1 ? shut : lane_rst),
-          .stop   (1'b0),
           .s_valid(half_valid),
           .s_ready(half_ready),
           .s_data (half),

@@ -58,7 +58,6 @@ module cchip_result_merge #(
   ) u_out (
       .clk    (clk),
       .rst    (rst),
-      .stop   (1'b0),
       .s_valid(|s_valid),
       .s_ready(ready),
       .s_data (choose(s_data, next)),

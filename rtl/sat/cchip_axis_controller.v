@@ -150,7 +150,6 @@ module cchip_axis_controller #(
   ) u_hand_out (
       .clk    (clk),
       .rst    (rst),
-      .stop   (1'b0),
       .s_valid(fresh_left_q | free_valid),
       .s_ready(hand_ready),
       .s_data (fresh_left_q ? fresh_q : free_context),

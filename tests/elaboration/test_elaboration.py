@@ -42,7 +42,6 @@ MEMORY = "cchip_error_delay_MEMORY_needs_DEPTH_3_and_RESET_0"
 FIFO = "cchip_error_fifo_WIDTH_or_DEPTH_below_1"
 SKID = "cchip_error_skid_buffer_WIDTH_below_1"
 ROC = "cchip_error_ROC_CYCLES_must_be_1_to_32"
-CLEAR_DATA = "cchip_error_skid_buffer_CLEAR_DATA_must_be_0_or_1"
 CFG_W = "cchip_error_CFG_W_must_be_8_or_32"
 SLOT_ID = "cchip_error_SLOT_ID_must_be_0_to_255"
 SIMULATION = "cchip_error_SIMULATION_must_be_0_or_1"
@@ -116,7 +115,6 @@ ILLEGAL = [
     ("cchip_block_ram", {"WORDS": 2}, "cchip_error_block_ram_WORDS_must_be_1_or_4"),
     *(("cchip_pr_region", {"RM_ID": n}, RM_ID) for n in (-1, 4)),
     *(("cchip_roc_generator", {"CYCLES": n}, ROC) for n in (0, 33)),
-    ("cchip_skid_buffer", {"CLEAR_DATA": 2}, CLEAR_DATA),
     *(("cchip_pr_config_memory", {"CFG_W": n}, CFG_W) for n in (16, 0)),
     *(("cchip_pr_config_memory", {"SLOT_ID": n}, SLOT_ID) for n in (-1, 256)),
     ("cchip_pr_config_memory", {"RM_ID": 4}, RM_ID),

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 // Proved of cchip_skid_buffer: it is a queue of two beats (queue_spec.v), with ready and valid on exactly the clocks on
-// which the queue has room or a beat, but takes nothing after a clock with stop. With CLEAR_DATA = 1 it shows zeros after
-// every clock with rst.
+// which the queue has room or a beat.
 module cchip_skid_buffer_properties #(
-    parameter integer WIDTH = 3,
-    parameter integer CLEAR_DATA = 0
+    parameter integer WIDTH = 3
 ) (
     input wire             clk,
     input wire             rst,
-    input wire             stop,
     input wire             s_valid,
     input wire [WIDTH-1:0] s_data,
     input wire             m_ready
@@ -18,12 +15,10 @@ module cchip_skid_buffer_properties #(
   wire [WIDTH-1:0] m_data;
   wire [7:0] count;
   cchip_skid_buffer #(
-      .WIDTH     (WIDTH),
-      .CLEAR_DATA(CLEAR_DATA)
+      .WIDTH(WIDTH)
   ) dut (
       .clk    (clk),
       .rst    (rst),
-      .stop   (stop),
       .s_valid(s_valid),
       .s_ready(s_ready),
       .s_data (s_data),
@@ -48,23 +43,21 @@ module cchip_skid_buffer_properties #(
   );
 
   reg started_q = 1'b0;
-  reg reset_q, stopped_q;
+  reg reset_q;
   always @(posedge clk) begin
     started_q <= 1'b1;
     reset_q   <= rst;
-    stopped_q <= stop;
   end
 
   always @(*) begin
     if (!started_q) assume (rst);
     if (started_q) begin
       valid: assert (m_valid == (count != 8'd0));
-      ready: assert (s_ready == (!reset_q && !stopped_q && count != 8'd2));
-      zeros: assert (!CLEAR_DATA || !reset_q || m_data == {WIDTH{1'b0}});
+      ready: assert (s_ready == (!reset_q && count != 8'd2));
     end
   end
   always @(posedge clk) begin
-    full: cover (started_q && count == 8'd2 && stopped_q);
+    full: cover (started_q && count == 8'd2);
     drained: cover (started_q && stalled && count == 8'd1);
   end
 endmodule

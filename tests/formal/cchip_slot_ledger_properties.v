@@ -176,8 +176,8 @@ module cchip_slot_ledger_properties #(
       none_left: assert (used_q != 8'd0 || pair_q != GRANTED);
       nothing_inside: assert (!(quiet || decoupled) || outstanding == 0);
       prompt: assert (since_q < 3'd6 || early_q || m_valid || answer_q || pair_q != GRANTED);
-      number: assert (!granted_q[0] || id < CREDIT);
-      distinct: assert (!granted_q[0] || followed_q[0] || pair_q != GRANTED || came_q || early_q || id != id_q);
+      number: assert (!granted_q[1] || id < CREDIT);
+      distinct: assert (!granted_q[1] || followed_q[1] || pair_q != GRANTED || came_q || early_q || id != id_q);
     end
 `endif
 endmodule

@@ -49,10 +49,8 @@ SLOW = {("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"), 
         ("cchip_swap_retry", "prove")}
 # (task that has to fail, file, text, what takes its place); the text occurs once
 MUTANTS = [
-    ("cchip_skid_buffer prove_0", SKID, "if (ready_q) skid_data_q <= s_data;", "skid_data_q <= s_data;"),
-    ("cchip_skid_buffer prove_0", SKID, "~stop & ~skid_valid_d;", "~stop & advance;"),
-    ("cchip_skid_buffer prove_0", SKID, "~stop & ~skid_valid_d;", "~skid_valid_d;"),
-    ("cchip_skid_buffer prove_1", SKID, "if (CLEAR_DATA != 0 && rst) data_q <= {WIDTH{1'b0}};\n    else if (advance)", "if (advance)"),
+    ("cchip_skid_buffer prove", SKID, "if (ready_q) skid_data_q <= s_data;", "skid_data_q <= s_data;"),
+    ("cchip_skid_buffer prove", SKID, "ready_q      <= ~skid_valid_d;", "ready_q      <= advance;"),
     ("cchip_fifo prove", FIFO, "up ? count_q != LAST[COUNT_W-1:0]", "up ? count_q != FULL[COUNT_W-1:0]"),
     ("cchip_fifo prove", FIFO, "load | (valid_q & ~m_ready);", "load | valid_q;"),
     ("cchip_fifo prove", FIFO, "was_read_q <= load & read_bank_q[b];", "was_read_q <= load;"),

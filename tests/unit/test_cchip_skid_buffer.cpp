@@ -6,11 +6,10 @@
 using namespace cchip;
 using namespace cchip::test;
 
-TEMPLATE_LIST_TEST_CASE("cchip_skid_buffer: every output on every clock is the model's, reset, stopped and open",
+TEMPLATE_LIST_TEST_CASE("cchip_skid_buffer: every output on every clock is the model's, in reset and out of it",
                         "[unit][cchip_skid_buffer]", cchip_skid_buffer_configs) {
   constexpr int width = TestType::WIDTH;
   for_two_power_ups([](const sim::SimulationOptions& options) {
-    int held = 0;  // stopped with a beat inside
     for (const sim::Pattern& source : sim::standard_patterns(options.seed)) {
       for (const sim::Pattern& sink : sim::standard_patterns(options.seed + 100)) {
         sim::Pattern offer = source;
@@ -24,7 +23,6 @@ TEMPLATE_LIST_TEST_CASE("cchip_skid_buffer: every output on every clock is the m
         bool was_reset = false;
         for (int clock = 0; clock < 1200; ++clock) {
           top.rst = clock < 1 || (clock / 200 % 2 == 1 && clock % 40 < 5) ? 1 : 0;
-          top.stop = clock / 200 % 3 == 1 && clock % 50 < 20 ? 1 : 0;
           top.s_valid = offer.next() ? 1 : 0;
           sim::set_random(top.s_data, width, random);
           top.m_ready = accept.next() ? 1 : 0;
@@ -34,16 +32,14 @@ TEMPLATE_LIST_TEST_CASE("cchip_skid_buffer: every output on every clock is the m
             REQUIRE((top.m_valid != 0) == model.m_valid());
             const std::uint64_t data = sim::get_bits(top.m_data, 0, width);
             if (model.m_valid()) REQUIRE(data == model.m_data());
-            if (was_reset && TestType::CLEAR_DATA != 0) REQUIRE(data == 0);
             passed += top.m_valid & top.m_ready;
             resets += was_reset ? 1 : 0;
-            held += top.stop != 0 && model.m_valid() && !model.s_ready() ? 1 : 0;
           }
           was_reset = top.rst != 0;
           if (was_reset) {
             model.reset();
           } else {
-            model.clock(top.s_valid != 0, sim::get_bits(top.s_data, 0, width), top.m_ready != 0, top.stop != 0);
+            model.clock(top.s_valid != 0, sim::get_bits(top.s_data, 0, width), top.m_ready != 0);
           }
           simulation.rise();
         }
@@ -52,7 +48,6 @@ TEMPLATE_LIST_TEST_CASE("cchip_skid_buffer: every output on every clock is the m
         REQUIRE(resets > 50);
       }
     }
-    REQUIRE(held > 100);
   });
 }
 

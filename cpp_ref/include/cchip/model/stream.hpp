@@ -71,7 +71,7 @@ class Fifo {
   bool ready_ = false;
 };
 
-/// cchip_skid_buffer: two beats, every output registered; takes nothing after a clock with `stop`.
+/// cchip_skid_buffer: two beats, every output registered.
 template <class T>
 class SkidBuffer {
  public:
@@ -80,7 +80,7 @@ class SkidBuffer {
   /// Defined while m_valid().
   const T& m_data() const { return *out_; }
 
-  void clock(bool s_valid, const T& s_data, bool m_ready, bool stop = false) {
+  void clock(bool s_valid, const T& s_data, bool m_ready) {
     std::optional<T> in;
     if (s_valid && ready_) in = s_data;
     if (m_ready || !out_) {
@@ -88,7 +88,7 @@ class SkidBuffer {
     } else if (in) {
       skid_ = std::move(in);
     }
-    ready_ = !stop && !skid_;
+    ready_ = !skid_;
   }
   void reset() {
     out_.reset();
