@@ -97,8 +97,9 @@ module cchip_bitstream_fetch #(
       arvalid_q <= issue | (arvalid_q & ~m_axi_arready);
       if (!run_q) reserved_q <= {COUNT_W{1'b0}};
       else
-        reserved_q <= reserved_q + (issue ? {{COUNT_W - 5{1'b0}}, beats_q} : {COUNT_W{1'b0}})
-                      - {{COUNT_W - 1{1'b0}}, pop};
+        // one addition: of the beats of a burst, less one if a word leaves
+        reserved_q <= reserved_q + (issue ? {{COUNT_W - 5{1'b0}}, pop ? beats_q - 5'd1 : beats_q}
+                                    : {COUNT_W{pop}});
     end
   end
 

@@ -40,6 +40,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_header: verdict on headers with any of 
         top.s_valid = 0;
       }
       simulation.step();
+      REQUIRE(top.done == 0);
+      simulation.step();
       REQUIRE(top.done == 1);
       REQUIRE((top.ok != 0) == (magic && slot && module_id && fits));
       if (top.ok == 0) {

@@ -90,7 +90,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: clocks of a swap are eq. (4) a
           REQUIRE(bench.stalls() == 0);
           const std::uint64_t transfer = transfer_clocks(bytes, TestType::CFG_W, TestType::CFG_DIVIDER);
           const auto drained = static_cast<std::uint64_t>(drain);
-          REQUIRE(bench.phase_clocks(SwapPhase::header) == 14 + latency);
+          REQUIRE(bench.phase_clocks(SwapPhase::header) == 15 + latency);
           REQUIRE(bench.phase_clocks(SwapPhase::shutdown) == 2 + drained);
           REQUIRE(bench.phase_clocks(SwapPhase::decouple) == 3);
           REQUIRE(bench.phase_clocks(SwapPhase::reset) == 2);
@@ -99,7 +99,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: clocks of a swap are eq. (4) a
           REQUIRE(bench.phase_clocks(SwapPhase::roc) == 34 + 2);  // the reset itself
           REQUIRE(bench.phase_clocks(SwapPhase::recouple) == 3);
           REQUIRE(bench.phase_clocks(SwapPhase::report) == 1);
-          REQUIRE(report.clock - bench.accepted() == transfer + 2 * latency + drained + 76);
+          REQUIRE(report.clock - bench.accepted() == transfer + 2 * latency + drained + 77);
         }
       }
     }
