@@ -23,8 +23,7 @@ void compare(int words, int width, int addr_w) {
   int compared = 0;
   for (int clock = 0; clock < 20000; ++clock) {
     const int write_addr = static_cast<int>(random() % (written.size() / static_cast<std::size_t>(words)));
-    const int read_addr =
-        chance(random, 20) ? write_addr * words : static_cast<int>(random() % written.size());
+    const int read_addr = chance(random, 20) ? write_addr * words : static_cast<int>(random() % written.size());
     const bool write = chance(random, 60);
     sim::set_random(portable->write_data, words * width, random);
     block->write_data = portable->write_data;
