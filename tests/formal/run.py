@@ -43,6 +43,7 @@ DISPATCHER = "rtl/dispatch/cchip_dispatcher.v"
 QUEUES = "rtl/dispatch/cchip_descriptor_queues.v"
 RETRY = "rtl/reconfig/cchip_swap_retry.v"
 FETCH = "rtl/reconfig/cchip_bitstream_fetch.v"
+READ = "rtl/memory/cchip_axi_read.v"
 # Tasks that take minutes; --quick proves the others, which take seconds.
 SLOW = {("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"), ("cchip_slot_ledger", "prove"),
         ("cchip_dispatcher", "bounded"), ("cchip_dispatcher", "bounded_2"), ("cchip_descriptor_queues", "bounded"),
