@@ -10,7 +10,7 @@
 //   never 0 on two clocks.
 // One place, any: the solver chooses the client and the place that is followed.
 module cchip_axi_read_properties #(
-    parameter integer CLIENTS = 2,
+    parameter integer CLIENTS = 1,
     parameter integer SLOTS   = 2,
     parameter integer DATA_W  = 256
 ) (
@@ -117,6 +117,7 @@ module cchip_axi_read_properties #(
   reg line_q;  // asked for
   reg owed_q;  // memory owes it beats
   reg mine_q;  // and they are the answer to the present request
+  reg given_up_q;  // the address that is offered is that of an earlier request
   reg [2:0] beats_q;  // that came
   reg bad_q;  // one of them was
   reg asked_q;  // an address is offered and was not taken
@@ -130,7 +131,7 @@ module cchip_axi_read_properties #(
 
   // a beat on the clock on which its address is taken counts as one of the line
   wire owed = owed_q | take;
-  wire mine = mine_q | take;
+  wire mine = mine_q | (take & ~given_up_q);
   wire [2:0] number = take ? 3'd0 : beats_q;
   wire ends = m_axi_rlast | number == LAST_BEAT;
   wire bad = (bad_q & ~take) | (m_axi_rresp != 2'b00);
@@ -144,6 +145,7 @@ module cchip_axi_read_properties #(
     if (ask) line_q <= line_in;
     owed_q <= ~rst & owed & ~(beat & m_axi_rlast);
     mine_q <= ~rst & ~(answer & m_last) & mine & ~(beat & ends);
+    given_up_q <= ~rst & m_axi_arvalid & (m_axi_arid == id) & ~m_axi_arready & (given_up_q | (answer & m_last));
     beats_q <= number + {2'd0, beat};
     bad_q <= beat ? bad : bad_q & ~take;
     asked_q <= ~rst & m_axi_arvalid & ~m_axi_arready;

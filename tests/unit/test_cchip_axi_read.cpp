@@ -75,7 +75,7 @@ class ReadBench {
     how_.silence = how_.lost = how_.unasked = 0;
     silent_ = 0;
     how_.ready = how_.valid = 60;
-    for (int clock = 0; clock < 40000 && (open() != 0 || !owed_.empty()); ++clock) step(0);
+    for (int clock = 0; clock < 40000 && (open() != 0 || !owed_.empty() || model_.owes()); ++clock) step(0);
     REQUIRE(open() == 0);
     for (int clock = 0; clock < 4; ++clock) step(0);
     REQUIRE(top_.owes == 0);
@@ -260,7 +260,7 @@ TEMPLATE_LIST_TEST_CASE(
         // a line that is too long is owed still when the place is used again
         if (late) REQUIRE(count(ReadCode::owed) != 0);
         if (!late && !faulty) REQUIRE(count(ReadCode::owed) == 0);
-        if (percent == 100) REQUIRE(bench.most_open == TestType::CLIENTS * TestType::SLOTS);
+        if (percent == 100 && !late) REQUIRE(bench.most_open == TestType::CLIENTS * TestType::SLOTS);
       }
     }
   });
