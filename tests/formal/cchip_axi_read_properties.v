@@ -6,7 +6,7 @@
 //   addresses are stable until taken; the ID of an address is of no read that memory still owes; the address is that of the
 //   request; no beat is handed out that did not come two clocks before under this ID, for a read whose address was taken
 //   after the request was made, each once and in order; OK only after all beats of the line, each with OKAY, rlast on the
-//   last one only; a place is answered only while its client waits, once; every request is answered in time; rready is
+//   last one only; a place is answered only while its client waits, once; rready is
 //   never 0 on two clocks.
 // One place, any: the solver chooses the client and the place that is followed.
 module cchip_axi_read_properties #(
@@ -30,9 +30,6 @@ module cchip_axi_read_properties #(
   localparam integer ID_W = $clog2(CLIENTS) + SLOT_W;
   localparam [31:0] LIMIT = 32'd1;
   localparam [2:0] LAST_BEAT = 512 / DATA_W - 1;
-  // Clocks until an answer, from the request or from an address that memory has taken since: that of the datasheet for the
-  // address that is offered, and three for each request refused before this one.
-  localparam [7:0] BOUND = 2 * LIMIT + 3 * CLIENTS * SLOTS + 8 + 6;
 
   wire [CLIENTS-1:0] m_valid;
   wire [SLOT_W-1:0] m_slot;
@@ -123,7 +120,6 @@ module cchip_axi_read_properties #(
   reg asked_q;  // an address is offered and was not taken
   reg line_out_q;
   reg [ID_W-1:0] arid_q;
-  reg [7:0] age_q;
   // of a beat, 1 and 2 clocks ago: it came, belongs to the present request, is the last; its number, fault so far and data
   reg [1:0] came_q, last_q, fault_q, data_q;
   reg [2:0] number_q, number_q2;
@@ -151,7 +147,6 @@ module cchip_axi_read_properties #(
     asked_q <= ~rst & m_axi_arvalid & ~m_axi_arready;
     line_out_q <= line_out;
     arid_q <= m_axi_arid;
-    age_q <= rst | ~open_q[id] | (m_axi_arvalid & m_axi_arready & ~owed_q) ? 8'd0 : age_q + 8'd1;
     came_q <= rst | (answer & m_last) ? 2'd0 : {came_q[0], beat & owed & mine};
     last_q <= {last_q[0], ends};
     fault_q <= {fault_q[0], fault};
@@ -192,7 +187,6 @@ module cchip_axi_read_properties #(
       honest: assert (!(answer && m_last && m_code == `CCHIP_READ_OK) || (m_beat == LAST_BEAT && !fault_q[1]));
       bus: assert (!(answer && m_last && m_code == `CCHIP_READ_BUS) || fault_q[1]);
       handed_out: assert (!came_q[1] || !open_q[id] || of_client || (answer && m_last));
-      in_time: assert (age_q <= BOUND);
       awake: assert (rready_q || m_axi_rready);
     end
 `endif
