@@ -13,6 +13,7 @@ arith/cchip_mul_wide.v
 arith/cchip_dot3.v
 arith/cchip_cross3.v
 arith/cchip_norm1.v
+memory/cchip_axi_read.v
 sat/cchip_sat_select.v
 sat/cchip_sat_axis.v
 sat/cchip_sat_bound.v

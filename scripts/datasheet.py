@@ -89,6 +89,7 @@ STIMULI = {
     "cchip_pr_region": ("", RESERVED_PAIR, "m_result_valid"),
     "cchip_crc32": ("clear = 1; tick; clear = 0;", "valid = 1;", "crc"),
     "cchip_bitstream_fetch": ("words = 4; limit = 100;", "run = 1;", "m_axi_arvalid"),
+    "cchip_axi_read": ("limit = 100; tick;", "s_valid = 1;", "m_axi_arvalid"),
     "cchip_bitstream_header": ("clear = 1; tick; tick; clear = 0; s_valid = 1; repeat (3) tick; s_valid = 0;", "s_valid = 1;",
                                "done"),
     "cchip_config_port": ("length = 4;", "run = 1; s_valid = 1;", "done"),

@@ -55,6 +55,8 @@
 `define CCHIP_PHASE_W 4
 // width of a swap's code [bit]
 `define CCHIP_SWAP_W 4
+// width of the code of a read [bit]
+`define CCHIP_READ_CODE_W 2
 // word 0 of a bitstream's header
 `define CCHIP_BITSTREAM_MAGIC 32'h43434250
 // first word of a virtual bitstream's payload
@@ -171,6 +173,16 @@
 `define CCHIP_SWAP_ABORTED 4'd14
 // memory still owes beats of an earlier read: request refused, try again later
 `define CCHIP_SWAP_OWED 4'd15
+
+// ---- outcome of a read (cchip_axi_read)
+// every beat of the line came, without an error
+`define CCHIP_READ_OK 2'd0
+// error response or wrong burst length from memory
+`define CCHIP_READ_BUS 2'd1
+// memory did not answer in time
+`define CCHIP_READ_TIMEOUT 2'd2
+// not sent: memory still owes an earlier read, or does not take its address
+`define CCHIP_READ_OWED 2'd3
 
 // ---- programme of a pair in the axis controller
 // directed: nA, then nB

@@ -57,6 +57,7 @@ COUNT = "cchip_error_count_LIMIT_must_be_1_to_65535"
 MERGE = "cchip_error_result_merge_SOURCES_not_2_to_8_or_WIDTH_below_1"
 CRC = "cchip_error_crc32_DATA_W_must_be_a_multiple_of_8"
 FETCH = "cchip_error_bitstream_fetch_FIFO_DEPTH_below_32"
+READ = "cchip_error_axi_read_"
 SLOT_LIMIT = "cchip_error_SLOT_LIMIT_below_16"
 COUNT_W = "cchip_error_COUNT_W_must_be_1_to_16"
 PORT = "cchip_error_config_port_CFG_W_must_be_8_or_32_and_CFG_DIVIDER_above_0"
@@ -139,6 +140,9 @@ ILLEGAL = [
     *(("cchip_result_merge", {"SOURCES": n}, MERGE) for n in (1, 9)),
     ("cchip_crc32", {"DATA_W": 12}, CRC),
     ("cchip_bitstream_fetch", {"FIFO_DEPTH": 31}, FETCH),
+    *(("cchip_axi_read", {"CLIENTS": n}, READ + "CLIENTS_must_be_1_to_8") for n in (0, 9)),
+    *(("cchip_axi_read", {"SLOTS": n}, READ + "SLOTS_must_be_2_4_8_16_or_32") for n in (1, 3, 64)),
+    *(("cchip_axi_read", {"DATA_W": n}, READ + "DATA_W_must_be_64_128_256_or_512") for n in (32, 96, 1024)),
     ("cchip_swap_sequencer", {"SLOTS": 5}, SLOTS),
     ("cchip_swap_retry", {"SLOTS": 0}, SLOTS),
     ("cchip_swap_retry", {"SLOTS": 5}, SLOTS),
@@ -171,6 +175,7 @@ LEGAL = [
     *(("cchip_delay", {"DEPTH": n, "MEMORY": 1}) for n in (3, 4, 20)),
     ("cchip_fifo", {"DEPTH": 1}),
     *(("cchip_arbiter", {"N": n}) for n in (1, 16)),
+    *(("cchip_axi_read", {"CLIENTS": c, "SLOTS": s, "DATA_W": w}) for c, s, w in ((1, 2, 512), (8, 32, 64))),
     *(("cchip_count", {"LIMIT": n}) for n in (1, 65535)),
     *(("cchip_vertex_collector", {"COORD_W": n}) for n in (4, 20)),
     *(("cchip_descriptor_queues", {"DEPTH": d, "KINDS": k, "WIDTH": w}) for d, k, w in ((16, 1, 1), (1024, 3, 80))),

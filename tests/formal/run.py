@@ -43,10 +43,11 @@ DISPATCHER = "rtl/dispatch/cchip_dispatcher.v"
 QUEUES = "rtl/dispatch/cchip_descriptor_queues.v"
 RETRY = "rtl/reconfig/cchip_swap_retry.v"
 FETCH = "rtl/reconfig/cchip_bitstream_fetch.v"
+READ = "rtl/memory/cchip_axi_read.v"
 # Tasks that take minutes; --quick proves the others, which take seconds.
 SLOW = {("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"), ("cchip_slot_ledger", "prove"),
         ("cchip_dispatcher", "bounded"), ("cchip_dispatcher", "bounded_2"), ("cchip_descriptor_queues", "bounded"),
-        ("cchip_swap_retry", "prove")}
+        ("cchip_swap_retry", "prove"), ("cchip_axi_read", "bounded")}
 # (task that has to fail, file, text, what takes its place); the text occurs once
 MUTANTS = [
     ("cchip_skid_buffer prove", SKID, "if (ready_q) skid_data_q <= s_data;", "skid_data_q <= s_data;"),
@@ -79,6 +80,14 @@ MUTANTS = [
     ("cchip_bitstream_fetch bounded", FETCH, "wire [4:0] to_edge = 5'd16 - {1'b0, addr_q[5:2]};", "wire [4:0] to_edge = 5'd16;"),
     ("cchip_bitstream_fetch bounded", FETCH, "issue | (arvalid_q & ~m_axi_arready);", "issue | (arvalid_q & ~m_axi_arready & run);"),
     ("cchip_bitstream_fetch bounded", FETCH, "timeout_q <= run & (timeout_q |", "timeout_q <= run & (1'b0 |"),
+    # late beats reach the next request; a place that is owed is asked for again; beats of any read count; an
+    # error is forgotten; a line that is too long goes on; an address is taken back
+    ("cchip_axi_read bounded", READ, "wire deliver = (beat_q & wanted & owed_q[place_id_q])", "wire deliver = (beat_q & owed_q[place_id_q])"),
+    ("cchip_axi_read bounded", READ, "wire issue = head_valid_q & ~head_owed &", "wire issue = head_valid_q &"),
+    ("cchip_axi_read bounded", READ, "first_q <= (first_q & ~beaten) | taken;", "first_q <= first_q & ~beaten | offered & ~taken;"),
+    ("cchip_axi_read bounded", READ, "wire bad = bad_q | (~none_yet & progress_read[3]);", "wire bad = bad_q;"),
+    ("cchip_axi_read bounded", READ, "assign last = rlast_q || count == LAST_BEAT[2:0];", "assign last = rlast_q;"),
+    ("cchip_axi_read bounded", READ, "issue | (arvalid_q & ~m_axi_arready);", "issue | (arvalid_q & ~m_axi_arready & ar_live_q);"),
     # the turn follows requests instead of grants; passes without a grant taken; there is no turn
     ("cchip_arbiter prove", ARBITER, "behind_q <= above(grant);", "behind_q <= above(lowest(request));"),
     ("cchip_arbiter prove", ARBITER, "else if (take && |request)", "else if (|request)"),

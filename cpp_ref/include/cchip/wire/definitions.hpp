@@ -67,6 +67,14 @@ enum class SwapCode : std::uint8_t {
   owed = 15,  ///< memory still owes beats of an earlier read: request refused, try again later
 };
 
+/// Outcome of a read (cchip_axi_read).
+enum class ReadCode : std::uint8_t {
+  ok = 0,  ///< every beat of the line came, without an error
+  bus = 1,  ///< error response or wrong burst length from memory
+  timeout = 2,  ///< memory did not answer in time
+  owed = 3,  ///< not sent: memory still owes an earlier read, or does not take its address
+};
+
 /// Programme of a pair in the axis controller.
 enum class Programme : std::uint8_t {
   normals = 0,  ///< directed: nA, then nB
@@ -132,6 +140,8 @@ constexpr int prog_w = 3;
 constexpr int phase_w = 4;
 /// width of a swap's code [bit]
 constexpr int swap_w = 4;
+/// width of the code of a read [bit]
+constexpr int read_code_w = 2;
 /// word 0 of a bitstream's header
 constexpr std::uint32_t bitstream_magic = 0x43434250;
 /// first word of a virtual bitstream's payload

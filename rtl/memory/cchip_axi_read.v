@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_axi_read: AXI4 read master for lines of 64 bytes, shared by several clients. A client has
+// SLOTS places for lines and names the place in its request; the AXI ID is {client, slot}, so lines
+// may arrive in any order and mixed.
+//   credit       a place is the credit: a client asks again for a place only after the last beat of
+//                its answer, and takes every beat. There is no ready, and no client can stall the
+//                read channel or another client
+//   answer       the beats of the line in order, the last one marked and with a code. Data count
+//                only if that is CCHIP_READ_OK: rresp other than OKAY on any beat, or rlast too
+//                early or too late, is CCHIP_READ_BUS
+//   silence      a read that lasts longer than `limit` clocks, its address included, is answered
+//                with CCHIP_READ_TIMEOUT after 2 limit + 3 CLIENTS SLOTS + 8 clocks at the latest;
+//                on the last beat there are no data. While memory owes beats under that ID, or the
+//                address is not taken, a request that would have to wait for it is answered with
+//                CCHIP_READ_OWED. Beats that come after the answer, or unasked, are dropped
+//   latency      4 clocks from s_valid to arvalid, 2 from a beat to m_valid
+//   throughput   a beat and an address on every clock; an answer without data takes a clock of the
+//                read channel, at most every other one
+//   bursts       one line each, INCR, aligned, so never across 4 KiB
+//   cuts         every path: each output is a flip-flop
+//   reset        must reset the bus too: after it no beat of an earlier read may come; no request
+//                on the first clock after it
+module cchip_axi_read #(
+    // clients, 1..8
+    parameter integer CLIENTS = 3,
+    // lines that a client may be waiting for: 2, 4, 8, 16 or 32
+    parameter integer SLOTS = 16,
+    // width of the data bus, bit: 64, 128, 256 or 512
+    parameter integer DATA_W = 128
+) (
+    input  wire                                      clk,
+    input  wire                                      rst,
+    input  wire [                              31:0] limit,          // clocks
+    // requests, one of each client per clock
+    input  wire [                       CLIENTS-1:0] s_valid,
+    input  wire [         CLIENTS*$clog2(SLOTS)-1:0] s_slot,
+    input  wire [                    CLIENTS*58-1:0] s_line,         // address / 64
+    // answers
+    output wire [                       CLIENTS-1:0] m_valid,        // one-hot or 0
+    output wire [                 $clog2(SLOTS)-1:0] m_slot,
+    output wire [                               2:0] m_beat,         // 0, 1, ...
+    output wire                                      m_last,
+    output wire [             `CCHIP_READ_CODE_W-1:0] m_code,         // while m_last = 1
+    output wire [                        DATA_W-1:0] m_data,
+    output wire                                      owes,
+    output wire                                      m_axi_arvalid,
+    input  wire                                      m_axi_arready,
+    output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] m_axi_arid,
+    output wire [                              63:0] m_axi_araddr,
+    output wire [                               7:0] m_axi_arlen,
+    output wire [                               2:0] m_axi_arsize,
+    output wire [                               1:0] m_axi_arburst,
+    output wire [                               3:0] m_axi_arcache,
+    output wire [                               2:0] m_axi_arprot,
+    input  wire                                      m_axi_rvalid,
+    output wire                                      m_axi_rready,
+    input  wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] m_axi_rid,
+    input  wire [                        DATA_W-1:0] m_axi_rdata,
+    input  wire [                               1:0] m_axi_rresp,
+    input  wire                                      m_axi_rlast
+);
+
+  localparam integer SLOT_W = $clog2(SLOTS);
+  localparam integer ID_W = $clog2(CLIENTS) + SLOT_W;
+  localparam integer IDS = CLIENTS * SLOTS;
+  localparam integer CODE_W = `CCHIP_READ_CODE_W;
+  localparam [31:0] BEATS = 512 / DATA_W;
+  localparam [31:0] LAST_BEAT = BEATS - 1;
+  localparam [31:0] LAST_ID = IDS - 1;
+  localparam [31:0] BYTES_LOG2 = $clog2(DATA_W / 8);
+
+  generate
+    if (CLIENTS < 1 || CLIENTS > 8) begin : gen_illegal_clients
+      cchip_error_axi_read_CLIENTS_must_be_1_to_8 u_error ();
+    end
+    if (SLOTS < 2 || SLOTS > 32 || (1 << SLOT_W) != SLOTS) begin : gen_illegal_slots
+      cchip_error_axi_read_SLOTS_must_be_2_4_8_16_or_32 u_error ();
+    end
+    if (DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W) begin : gen_illegal_width
+      cchip_error_axi_read_DATA_W_must_be_64_128_256_or_512 u_error ();
+    end
+  endgenerate
+
+  // ---- what is under way. A request that waits for its address to be offered is in neither vector
+  reg [IDS-1:0] live_q;  // the address is or was offered, the client waits for the answer
+  reg [IDS-1:0] owed_q;  // the address was taken, its rlast has not come
+  reg [IDS-1:0] first_q;  // no beat of it has come
+  reg [IDS-1:0] seen_q, late_q;  // the read was live at the last tick, at the last two ticks
+  wire [IDS-1:0] offered, taken, closed, ended, beaten;  // what happens to them on this clock
+
+  // ---- requests: one queue per client, then the one whose turn it is
+  wire [CLIENTS-1:0] waiting, grant;
+  wire [CLIENTS-1:0] queue_ready;
+  wire [(SLOT_W+58)*CLIENTS-1:0] waiting_data;
+  reg head_valid_q;
+  reg [ID_W-1:0] head_id_q;
+  reg [57:0] head_line_q;
+  wire head_leaves;
+  wire load_head = head_leaves | ~head_valid_q;
+
+  genvar c;
+  generate
+    for (c = 0; c < CLIENTS; c = c + 1) begin : gen_client
+      cchip_fifo #(
+          .WIDTH     (SLOT_W + 58),
+          .DEPTH     (SLOTS),
+          .ROOM_KNOWN(1)
+      ) u_queue (
+          .clk    (clk),
+          .rst    (rst),
+          .s_valid(s_valid[c]),
+          .s_ready(queue_ready[c]),
+          .s_data ({s_slot[SLOT_W*c+:SLOT_W], s_line[58*c+:58]}),
+          .m_valid(waiting[c]),
+          .m_ready(grant[c] & load_head),
+          .m_data (waiting_data[(SLOT_W+58)*c+:SLOT_W+58])
+      );
+    end
+  endgenerate
+  cchip_arbiter #(
+      .N(CLIENTS)
+  ) u_turn (
+      .clk    (clk),
+      .rst    (rst),
+      .request(waiting),
+      .grant  (grant),
+      .take   (load_head)
+  );
+
+  // {id, line} of the client that is granted
+  function [ID_W+57:0] choose(input [(SLOT_W+58)*CLIENTS-1:0] from, input [CLIENTS-1:0] one);
+    integer j;
+    reg [ID_W-1:0] id;
+    begin
+      choose = {ID_W + 58{1'b0}};
+      for (j = 0; j < CLIENTS; j = j + 1)
+      if (one[j]) begin
+        id = j[ID_W-1:0] << SLOT_W;
+        id[SLOT_W-1:0] = from[(SLOT_W+58)*j+58+:SLOT_W];
+        choose = choose | {id, from[(SLOT_W+58)*j+:58]};
+      end
+    end
+  endfunction
+
+  // ---- addresses
+  reg arvalid_q;
+  reg ar_live_q;  // the client still waits for the read whose address is offered
+  reg [ID_W-1:0] arid_q;
+  reg [57:0] line_q;
+  reg failing_q;  // an answer without data is on its way to the read channel's place
+  reg [ID_W-1:0] fail_id_q;
+  reg fail_owed_q;  // 1: refused, 0: out of time
+
+  wire head_owed = owed_q[head_id_q];
+  reg found_q;  // there is a late read, found_id_q
+  wire issue = head_valid_q & ~head_owed & (~arvalid_q | (m_axi_arready & ar_live_q));
+  wire refuse = head_valid_q & (head_owed | (arvalid_q & ~ar_live_q)) & ~failing_q & ~found_q;
+  wire take_address = arvalid_q & m_axi_arready;
+  assign head_leaves = issue | refuse;
+
+  wire last, place_timeout;
+  reg [ID_W-1:0] place_id_q;
+  always @(posedge clk) begin
+    if (load_head) {head_id_q, head_line_q} <= choose(waiting_data, grant);
+    if (issue) begin
+      arid_q <= head_id_q;
+      line_q <= head_line_q;
+    end
+    if (rst) begin
+      head_valid_q <= 1'b0;
+      arvalid_q    <= 1'b0;
+      ar_live_q    <= 1'b0;
+    end else begin
+      if (load_head) head_valid_q <= |waiting;
+      arvalid_q <= issue | (arvalid_q & ~m_axi_arready);
+      ar_live_q <= issue | (ar_live_q & ~(place_timeout && place_id_q == arid_q));
+    end
+  end
+  assign m_axi_arvalid = arvalid_q;
+  assign m_axi_arid    = arid_q;
+  assign m_axi_araddr  = {line_q, 6'd0};
+  assign m_axi_arlen   = LAST_BEAT[7:0];
+  assign m_axi_arsize  = BYTES_LOG2[2:0];
+  assign m_axi_arburst = 2'b01;
+  assign m_axi_arcache = 4'b0011;
+  assign m_axi_arprot  = 3'b000;
+
+  // ---- time: a tick every limit + 1 clocks; a read that was live at two ticks is late
+  reg [31:0] timer_q;
+  reg tick_q;
+  reg [ID_W-1:0] scan_q, found_id_q;  // scan_q looks at one read after the other
+  wire timer_zero = timer_q == 32'd0;
+  wire fail = (found_q | refuse) & ~failing_q;
+  always @(posedge clk) begin
+    timer_q <= rst | timer_zero ? limit : timer_q - 32'd1;
+    fail_id_q <= found_q ? found_id_q : head_id_q;
+    fail_owed_q <= ~found_q;
+    if (!found_q) found_id_q <= scan_q;
+    if (rst) begin
+      tick_q    <= 1'b0;
+      scan_q    <= {ID_W{1'b0}};
+      found_q   <= 1'b0;
+      failing_q <= 1'b0;
+    end else begin
+      tick_q <= timer_zero;
+      if (!found_q)
+        scan_q <= scan_q == LAST_ID[ID_W-1:0] ? {ID_W{1'b0}} : scan_q + {{ID_W - 1{1'b0}}, 1'b1};
+      found_q   <= found_q ? failing_q : live_q[scan_q] & late_q[scan_q];
+      failing_q <= fail;
+    end
+  end
+
+  // ---- the read channel's place: a beat, or an answer without data, for which rready was 0
+  reg rready_q;
+  reg beat_q, fail_q, owed_fail_q;
+  reg [DATA_W-1:0] data_q;
+  reg bad_q, rlast_q;
+  wire known;  // there is a read of this ID
+  generate
+    if (IDS == 1 << ID_W) begin : gen_all_known
+      assign known = 1'b1;
+    end else begin : gen_known
+      assign known = m_axi_rid <= LAST_ID[ID_W-1:0];
+    end
+  endgenerate
+  always @(posedge clk) begin
+    place_id_q <= failing_q ? fail_id_q : m_axi_rid;
+    owed_fail_q <= fail_owed_q;
+    data_q <= m_axi_rdata;
+    bad_q <= m_axi_rresp != 2'b00;
+    rlast_q <= m_axi_rlast;
+    if (rst) begin
+      rready_q <= 1'b0;
+      beat_q   <= 1'b0;
+      fail_q   <= 1'b0;
+    end else begin
+      rready_q <= ~fail;
+      beat_q   <= m_axi_rvalid & rready_q & known;
+      fail_q   <= failing_q;
+    end
+  end
+  assign m_axi_rready = rready_q;
+
+  // {an earlier beat was bad, beats that have come} of each read
+  (* ram_style = "distributed" *)
+  reg [3:0] progress[0:(1<<ID_W)-1];
+  wire [3:0] progress_read = progress[place_id_q];
+  wire none_yet = first_q[place_id_q];
+  wire [2:0] count = none_yet ? 3'd0 : progress_read[2:0];
+  wire bad = bad_q | (~none_yet & progress_read[3]);
+  assign last = rlast_q || count == LAST_BEAT[2:0];
+  wire wrong_last = rlast_q != (count == LAST_BEAT[2:0]);
+  assign place_timeout = fail_q & ~owed_fail_q;
+  wire wanted = live_q[place_id_q];
+  wire deliver = (beat_q & wanted & owed_q[place_id_q]) | (place_timeout & wanted) |
+      (fail_q & owed_fail_q);
+  always @(posedge clk)
+    if (beat_q) progress[place_id_q] <= {bad, count + 3'd1};
+
+  genvar i;
+  generate
+    for (i = 0; i < IDS; i = i + 1) begin : gen_id
+      localparam [31:0] I = i;
+      wire here = place_id_q == I[ID_W-1:0];
+      assign offered[i] = issue && head_id_q == I[ID_W-1:0];
+      assign taken[i]   = take_address && arid_q == I[ID_W-1:0];
+      assign beaten[i]  = here & beat_q;
+      assign ended[i]   = here & beat_q & rlast_q;
+      assign closed[i]  = here & (place_timeout | (beat_q & owed_q[i] & last));
+    end
+  endgenerate
+  always @(posedge clk) begin
+    first_q <= (first_q & ~beaten) | taken;
+    seen_q  <= (tick_q ? live_q : seen_q) & ~offered;
+    late_q  <= (tick_q ? live_q & seen_q : late_q) & ~offered;
+    if (rst) begin
+      live_q <= {IDS{1'b0}};
+      owed_q <= {IDS{1'b0}};
+    end else begin
+      live_q <= (live_q & ~closed) | offered;
+      owed_q <= (owed_q & ~ended) | taken;
+    end
+  end
+
+  // ---- answers
+  reg [CLIENTS-1:0] valid_q;
+  reg [SLOT_W-1:0] slot_q;
+  reg [2:0] count_q;
+  reg last_q;
+  reg [CODE_W-1:0] code_q;
+  reg [DATA_W-1:0] data_q2;
+  reg owes_q;
+  wire [31:0] one_client = 32'd1 << ({{32 - ID_W{1'b0}}, place_id_q} >> SLOT_W);
+  always @(posedge clk) begin
+    slot_q  <= place_id_q[SLOT_W-1:0];
+    count_q <= count;
+    last_q  <= fail_q | last;
+    code_q  <= fail_q ? (owed_fail_q ? `CCHIP_READ_OWED : `CCHIP_READ_TIMEOUT) :
+        bad | wrong_last ? `CCHIP_READ_BUS : `CCHIP_READ_OK;
+    data_q2 <= data_q;
+    if (rst) begin
+      valid_q <= {CLIENTS{1'b0}};
+      owes_q  <= 1'b0;
+    end else begin
+      valid_q <= deliver ? one_client[CLIENTS-1:0] : {CLIENTS{1'b0}};
+      owes_q  <= arvalid_q | (|owed_q);
+    end
+  end
+  assign m_valid = valid_q;
+  assign m_slot  = slot_q;
+  assign m_beat  = count_q;
+  assign m_last  = last_q;
+  assign m_code  = code_q;
+  assign m_data  = data_q2;
+  assign owes    = owes_q;
+
+  wire unused = &{1'b0, queue_ready, one_client};
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_place, !(beat_q && fail_q))
+      `CCHIP_ASSERT(a_free, !issue || !live_q[head_id_q])
+    end
+
+endmodule
+`default_nettype wire
