@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// The depth rule of docs/architecture.md (certainty) against the exact oracle. A hit may be called definite exactly if
+// the cube of half-width eta lies in A - B: every translation of A by a corner of the cube, which is an error that eta
+// allows, must still meet B. The oracle answers that for each of the eight corners and knows no axis.
+#include <catch2/catch.hpp>
+#include <cchip/exact/oracle.hpp>
+#include <cchip/geometry/canonical.hpp>
+#include <cchip/model/programme.hpp>
+#include <cchip/sim/seed.hpp>
+#include <cchip/stimulus/campaign.hpp>
+#include <cchip/stimulus/pair_source.hpp>
+
+using namespace cchip;
+using namespace cchip::stimulus;
+
+namespace {
+
+/// Steps of the fine grid in one grid step.
+constexpr int fine = 64;
+
+/// The cube of half-width `reach` / fine lies in A - B: convex, so its corners are enough.
+bool cube_inside(const GridPair& pair, int reach) {
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    GridPair moved = pair;
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (Eigen::Index d = 0; d < 3; ++d) {
+        moved.a.v[i][d] = fine * pair.a.v[i][d] + ((corner >> d & 1U) != 0 ? reach : -reach);
+        moved.b.v[i][d] = fine * pair.b.v[i][d];
+      }
+    }
+    if (!exact_intersects(moved)) return false;
+  }
+  return true;
+}
+
+bool flat_and_without_area(const GridPrimitive& p) {
+  const auto edge = [&p](std::size_t from, std::size_t to) {
+    return Eigen::Matrix<std::int64_t, 3, 1>((p.v[to] - p.v[from]).cast<std::int64_t>());
+  };
+  const auto cross = [](const auto& e, const auto& f) {
+    return Eigen::Matrix<std::int64_t, 3, 1>(e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2],
+                                             e[0] * f[1] - e[1] * f[0]);
+  };
+  if (p.kind == Kind::tri) return cross(edge(0, 1), edge(0, 2)).isZero();
+  return !is_warped(p) && cross(edge(0, 2), edge(1, 3)).isZero();
+}
+
+/// A rule with a mistake in it.
+enum class Mistake { none, eta_less_one, one_direction, normal_left_out, cross_left_out };
+
+model::Verdict verdict(const model::Options& o, const model::AxisBeat& beat, const GridPair& pair, int coord_w,
+                       Mistake mistake) {
+  model::Verdict v = model::sat_pipeline(o.shape, beat, pair.a, pair.b, coord_w);
+  const int shift = model::error_shift(pair.eta);
+  const model::Selection s = model::sat_select(o.shape, beat.code, pair.a, pair.b);
+  model::Projections p = model::sat_project(o.shape, model::sat_axis(s, coord_w), s, shift, coord_w);
+  if (mistake == Mistake::eta_less_one) {
+    p.gap_bound = (p.gap_bound >> shift) * ((1 << shift) - 1);
+    v.compare.deep = model::sat_compare(o.shape, beat, s.own, p, coord_w).deep;
+  }
+  if (mistake == Mistake::one_direction) {
+    std::int64_t least_own = 0;
+    std::int64_t most_other = std::numeric_limits<std::int64_t>::min();
+    for (std::size_t i = 0; i < o.shape.points(); ++i) {
+      if (i < 2 && s.own[i]) {
+        least_own = std::min(least_own, p.p[i]);
+      } else {
+        most_other = std::max(most_other, p.p[i]);
+      }
+    }
+    v.compare.deep = most_other - least_own > p.gap_bound;
+  }
+  if (mistake == Mistake::normal_left_out && beat.code.cls == AxisClass::normal_b) v.compare.deep = true;
+  if (mistake == Mistake::cross_left_out && beat.code.cls == AxisClass::cross && beat.code.k == 1 && beat.code.l == 2) {
+    v.compare.deep = true;
+  }
+  return v;
+}
+
+model::Outcome run(const model::Options& o, const GridPair& pair, PairMode mode, int coord_w, Mistake mistake) {
+  model::State s = model::first_state(mode, o.depth);
+  model::Exhaustive found;
+  for (;;) {
+    const model::Verdict v = verdict(o, model::beat_of(s, pair.eta), pair, coord_w, mistake);
+    const model::Step step = model::advance(o, s, v, pair.eta, found);
+    if (step.outcome) return *step.outcome;
+    s = step.next ? *step.next : model::following_beat(o, s).value();
+  }
+}
+
+}  // namespace
+
+TEST_CASE("depth rule: definite exactly if every translation by a corner of the cube of the error still hits",
+          "[ref][depth]") {
+  const std::uint64_t seed = sim::seed_from_environment();
+  for (const ShapeInfo& shape : all_shapes) {
+    std::array<std::array<int, 2>, 5> contradictions = {};
+    for (const int coord_w : {5, 8, 16}) {
+      PairSource source(coord_w, seed + static_cast<std::uint64_t>(coord_w), shape.a, shape.b);
+      const auto classes = classes_of(shape.a, shape.b);
+      model::Options with = shape.options();
+      with.depth = true;
+      int proved = 0, more = 0, one_step_short = 0, same_beats = 0;
+      for (int n = 0; n < 12000; ++n) {
+        GridPair pair = source.draw(classes[source.draw_class()].value);
+        constexpr std::array<int, 6> etas = {1, 2, 3, 4, 8, 14};
+        pair.eta = etas[static_cast<std::size_t>(source.integer(0, source.coin() ? 0 : 5))];
+        pair.a = canonical_quad(pair.a);
+        pair.b = canonical_quad(pair.b);
+        if (!exact_intersects(pair)) continue;
+        const int bound = 1 << model::error_shift(pair.eta);
+        const bool inside = cube_inside(pair, bound * fine);
+        const bool inside_eta = inside || cube_inside(pair, pair.eta * fine);
+        const bool beyond = inside && cube_inside(pair, bound * fine + 1);
+        one_step_short += inside_eta ? 0 : cube_inside(pair, (pair.eta - 1) * fine + 1) ? 1 : 0;
+        const bool complete = !flat_and_without_area(pair.a) && !flat_and_without_area(pair.b);
+        for (const PairMode mode : {PairMode::exhaustive, PairMode::directed}) {
+          const model::Outcome today = model::run_programme(shape.options(), pair, mode, coord_w);
+          const model::Outcome o = model::run_programme(with, pair, mode, coord_w);
+          INFO(shape.name << ' ' << to_text(pair) << " mode " << static_cast<int>(mode));
+          REQUIRE(o.grid);
+          // sound: what is called definite survives every error that is a translation
+          if (o.definite) REQUIRE(inside);
+          // complete: no rule could call more pairs definite, up to the strict comparison
+          if (beyond && complete) REQUIRE(o.definite);
+          // answers that the signs decide stay as they are, beat by beat
+          if (today.definite) REQUIRE((o.definite && o.beats == today.beats));
+          REQUIRE(o.beats <= today.beats + (mode == PairMode::directed ? int(with.shape.a * with.shape.b) : 0));
+          proved += o.definite ? 1 : 0;
+          more += o.definite && !today.definite ? 1 : 0;
+          same_beats += o.beats == today.beats ? 1 : 0;
+          for (std::size_t m = 0; m < contradictions.size(); ++m) {
+            const model::Outcome wrong = run(with, pair, mode, coord_w, static_cast<Mistake>(m));
+            contradictions[m][static_cast<std::size_t>(mode)] += wrong.definite && !inside_eta ? 1 : 0;
+          }
+        }
+      }
+      INFO(shape.name << ", " << coord_w << " bit: " << proved << " definite, " << more << " by depth, " << one_step_short
+                      << " one step short, " << same_beats << " in the same beats");
+      CHECK(proved > 100);
+      CHECK(more > 20);
+      CHECK(one_step_short > 20);
+    }
+    for (std::size_t mode = 0; mode < 2; ++mode) {
+      CHECK(contradictions[static_cast<std::size_t>(Mistake::none)][mode] == 0);
+      for (const Mistake m :
+           {Mistake::eta_less_one, Mistake::one_direction, Mistake::normal_left_out, Mistake::cross_left_out}) {
+        INFO("mistake " << static_cast<int>(m) << ", mode " << mode);
+        CHECK(contradictions[static_cast<std::size_t>(m)][mode] > 0);
+      }
+    }
+  }
+}
