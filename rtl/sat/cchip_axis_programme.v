@@ -334,10 +334,10 @@ module cchip_axis_programme #(
 
   // ================ clock 4: the next state
   // first axis of TETRAHEDRON; its info is the record INFO_TETRAHEDRON
-  wire [`CCHIP_AXIS_CODE_W-1:0] tetra_code = `CCHIP_AXIS_CODE_OF(3'd0, 3'd1,
-      warped_q3[0] ? `CCHIP_AXIS_NORMAL_A : `CCHIP_AXIS_NORMAL_B);
-  wire [`CCHIP_AXIS_CODE_W-1:0] cross_code =
-      `CCHIP_AXIS_CODE_OF(3'd0, 3'd0, `CCHIP_AXIS_CROSS);
+  wire [`CCHIP_AXIS_CODE_W-1:0] tetra_code =
+      warped_q3 == 2'b00 ? `CCHIP_AXIS_CODE_OF(3'd0, 3'd0, `CCHIP_AXIS_CROSS)
+      : `CCHIP_AXIS_CODE_OF(3'd0, 3'd1,
+          (warped_q3[0] ? `CCHIP_AXIS_NORMAL_A : `CCHIP_AXIS_NORMAL_B));
   wire [`CCHIP_PLAN_W-1:0] state = take_plan_q3 ? plan_q3 : take_found_q3 ? found_plan : state_q3;
   always @(posedge clk) begin
     if (rst) m_outcome_q <= 1'b0;
@@ -351,7 +351,7 @@ module cchip_axis_programme #(
     m_witness_q <= witness_q3;
     m_beats_q   <= illegal_q3 ? 6'd0 : beats_q3;
     m_state_q   <= `CCHIP_STATE_OF((take_tetra_q3 ? `CCHIP_PROG_TETRAHEDRON
-        : state[`CCHIP_PLAN_PROGRAMME]), (take_tetra_q3 ? (|warped_q3 ? tetra_code : cross_code) : state[`CCHIP_PLAN_CODE]),
+        : state[`CCHIP_PLAN_PROGRAMME]), (take_tetra_q3 ? tetra_code : state[`CCHIP_PLAN_CODE]),
         (take_tetra_q3 ? {12'd0, warped_q3} : state[`CCHIP_PLAN_INFO]), beats_q3,
         state[`CCHIP_PLAN_OPEN], state[`CCHIP_PLAN_CERTAIN], deep_q3);
   end

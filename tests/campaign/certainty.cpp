@@ -188,7 +188,8 @@ Table<Row> run_part(const ShapeInfo& shape, const CertaintyOptions& options, std
     const std::size_t drawn = group(random);
     const std::size_t g = options.eta == 0 ? drawn : options.eta == 1 ? 1 : 2;
     const auto kind = static_cast<std::size_t>(uniform(random, 0, 2));
-    const GridPair grid{canonical_quad(raw.a), canonical_quad(raw.b), options.eta == 0 ? draw_eta(g, random) : options.eta};
+    const GridPair grid{canonical_quad(raw.a), canonical_quad(raw.b),
+                        options.eta == 0 ? draw_eta(g, random) : options.eta};
     const bool grid_hit = exact_intersects(grid);
     const int reach = static_cast<int>(options.offset * grid.eta * fine / 2);
     const GridPair truth = true_pair(raw, kind, reach, grid_hit, options.depth, random);

@@ -9,6 +9,9 @@
 #include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/campaign.hpp>
 #include <cchip/stimulus/pair_source.hpp>
+#include <limits>
+#include <optional>
+#include <set>
 
 using namespace cchip;
 using namespace cchip::stimulus;
@@ -48,8 +51,9 @@ bool flat_and_without_area(const GridPrimitive& p) {
 /// A rule with a mistake in it.
 enum class Mistake { none, eta_less_one, one_direction, normal_left_out, cross_left_out };
 
+/// \param left_out the axis that is left out: of the cross axes the first that is not deep
 model::Verdict verdict(const model::Options& o, const model::AxisBeat& beat, const GridPair& pair, int coord_w,
-                       Mistake mistake) {
+                       Mistake mistake, std::optional<AxisCode>& left_out) {
   model::Verdict v = model::sat_pipeline(o.shape, beat, pair.a, pair.b, coord_w);
   const int shift = model::error_shift(pair.eta);
   const model::Selection s = model::sat_select(o.shape, beat.code, pair.a, pair.b);
@@ -71,17 +75,19 @@ model::Verdict verdict(const model::Options& o, const model::AxisBeat& beat, con
     v.compare.deep = most_other - least_own > p.gap_bound;
   }
   if (mistake == Mistake::normal_left_out && beat.code.cls == AxisClass::normal_b) v.compare.deep = true;
-  if (mistake == Mistake::cross_left_out && beat.code.cls == AxisClass::cross && beat.code.k == 1 && beat.code.l == 2) {
-    v.compare.deep = true;
+  if (mistake == Mistake::cross_left_out && beat.code.cls == AxisClass::cross && !v.compare.deep && !v.zero_axis()) {
+    if (!left_out) left_out = beat.code;
+    v.compare.deep = *left_out == beat.code;
   }
   return v;
 }
 
-model::Outcome run(const model::Options& o, const GridPair& pair, PairMode mode, int coord_w, Mistake mistake) {
-  model::State s = model::first_state(mode, o.depth);
+model::Outcome run(const model::Options& o, const GridPair& pair, PairMode mode, int coord_w, Mistake mistake,
+                   std::optional<AxisCode>& left_out) {
+  model::State s = model::first_state(o, mode, pair.eta);
   model::Exhaustive found;
   for (;;) {
-    const model::Verdict v = verdict(o, model::beat_of(s, pair.eta), pair, coord_w, mistake);
+    const model::Verdict v = verdict(o, model::beat_of(s, pair.eta), pair, coord_w, mistake, left_out);
     const model::Step step = model::advance(o, s, v, pair.eta, found);
     if (step.outcome) return *step.outcome;
     s = step.next ? *step.next : model::following_beat(o, s).value();
@@ -95,11 +101,13 @@ TEST_CASE("depth rule: definite exactly if every translation by a corner of the 
   const std::uint64_t seed = sim::seed_from_environment();
   for (const ShapeInfo& shape : all_shapes) {
     std::array<std::array<int, 2>, 5> contradictions = {};
+    std::array<std::set<unsigned>, 2> needed;  // cross axes without which a wrong hit is called definite
     for (const int coord_w : {5, 8, 16}) {
       PairSource source(coord_w, seed + static_cast<std::uint64_t>(coord_w), shape.a, shape.b);
       const auto classes = classes_of(shape.a, shape.b);
-      model::Options with = shape.options();
-      with.depth = true;
+      const model::Options with = shape.options();
+      model::Options signs_only = with;
+      signs_only.depth = false;
       int proved = 0, more = 0, one_step_short = 0, same_beats = 0;
       for (int n = 0; n < 12000; ++n) {
         GridPair pair = source.draw(classes[source.draw_class()].value);
@@ -115,7 +123,7 @@ TEST_CASE("depth rule: definite exactly if every translation by a corner of the 
         one_step_short += inside_eta ? 0 : cube_inside(pair, (pair.eta - 1) * fine + 1) ? 1 : 0;
         const bool complete = !flat_and_without_area(pair.a) && !flat_and_without_area(pair.b);
         for (const PairMode mode : {PairMode::exhaustive, PairMode::directed}) {
-          const model::Outcome today = model::run_programme(shape.options(), pair, mode, coord_w);
+          const model::Outcome signs = model::run_programme(signs_only, pair, mode, coord_w);
           const model::Outcome o = model::run_programme(with, pair, mode, coord_w);
           INFO(shape.name << ' ' << to_text(pair) << " mode " << static_cast<int>(mode));
           REQUIRE(o.grid);
@@ -124,19 +132,22 @@ TEST_CASE("depth rule: definite exactly if every translation by a corner of the 
           // complete: no rule could call more pairs definite, up to the strict comparison
           if (beyond && complete) REQUIRE(o.definite);
           // answers that the signs decide stay as they are, beat by beat
-          if (today.definite) REQUIRE((o.definite && o.beats == today.beats));
-          REQUIRE(o.beats <= today.beats + (mode == PairMode::directed ? int(with.shape.a * with.shape.b) : 0));
+          if (signs.definite) REQUIRE((o.definite && o.beats == signs.beats));
+          REQUIRE(o.beats <= signs.beats + (mode == PairMode::directed ? int(with.shape.a * with.shape.b) : 0));
           proved += o.definite ? 1 : 0;
-          more += o.definite && !today.definite ? 1 : 0;
-          same_beats += o.beats == today.beats ? 1 : 0;
+          more += o.definite && !signs.definite ? 1 : 0;
+          same_beats += o.beats == signs.beats ? 1 : 0;
           for (std::size_t m = 0; m < contradictions.size(); ++m) {
-            const model::Outcome wrong = run(with, pair, mode, coord_w, static_cast<Mistake>(m));
-            contradictions[m][static_cast<std::size_t>(mode)] += wrong.definite && !inside_eta ? 1 : 0;
+            std::optional<AxisCode> left_out;
+            const model::Outcome wrong = run(with, pair, mode, coord_w, static_cast<Mistake>(m), left_out);
+            if (!wrong.definite || inside_eta) continue;
+            ++contradictions[m][static_cast<std::size_t>(mode)];
+            if (left_out) needed[static_cast<std::size_t>(mode)].insert(8U * left_out->k + left_out->l);
           }
         }
       }
-      INFO(shape.name << ", " << coord_w << " bit: " << proved << " definite, " << more << " by depth, " << one_step_short
-                      << " one step short, " << same_beats << " in the same beats");
+      INFO(shape.name << ", " << coord_w << " bit: " << proved << " definite, " << more << " by depth, "
+                      << one_step_short << " one step short, " << same_beats << " in the same beats");
       CHECK(proved > 100);
       CHECK(more > 20);
       CHECK(one_step_short > 20);
@@ -147,6 +158,13 @@ TEST_CASE("depth rule: definite exactly if every translation by a corner of the 
            {Mistake::eta_less_one, Mistake::one_direction, Mistake::normal_left_out, Mistake::cross_left_out}) {
         INFO("mistake " << static_cast<int>(m) << ", mode " << mode);
         CHECK(contradictions[static_cast<std::size_t>(m)][mode] > 0);
+      }
+      // whichever side of A and of B it is made of, no cross axis may be left out
+      for (unsigned k = 0; k < static_cast<unsigned>(shape.a); ++k) {
+        for (unsigned l = 0; l < static_cast<unsigned>(shape.b); ++l) {
+          INFO(shape.name << ", mode " << mode << ", e_" << k << " x f_" << l);
+          CHECK(needed[mode].count(8U * k + l) == 1);
+        }
       }
     }
   }

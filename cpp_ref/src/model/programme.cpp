@@ -156,9 +156,9 @@ State plan(const Options& o, const Sides& s, int beats) {
   return next;
 }
 
-State first_state(PairMode mode, bool deep) {
+State first_state(const Options& o, PairMode mode, int err) {
   State s;
-  s.deep = deep;
+  s.deep = o.depth && err != 0 && err != defs::err_unknown;
   if (mode == PairMode::exhaustive) s.programme = Programme::exhaustive;
   if (mode > PairMode::directed) s.programme = Programme::illegal;
   s.code = axis(s.programme == Programme::illegal ? AxisClass::illegal : AxisClass::normal_a);
@@ -269,13 +269,13 @@ Step advance(const Options& o, const State& s, const Verdict& v, int err, Exhaus
     next.code = *code;
     return {std::nullopt, next};
   }
-  const bool certain = s.programme == Programme::tetrahedron ? next.deep
-                                                             : s.programme == Programme::crossing && next.certain;
+  const bool certain =
+      s.programme == Programme::tetrahedron ? next.deep : s.programme == Programme::crossing && next.certain;
   return {make_outcome(o, s, true, {}, certain, err), std::nullopt};
 }
 
 Outcome run_programme(const Options& o, const GridPair& pair, PairMode mode, int coord_w) {
-  State s = first_state(mode, o.depth && pair.eta != 0 && pair.eta != defs::err_unknown);
+  State s = first_state(o, mode, pair.eta);
   Exhaustive found;
   for (;;) {
     const Verdict v = sat_pipeline(o.shape, beat_of(s, pair.eta), pair.a, pair.b, coord_w);

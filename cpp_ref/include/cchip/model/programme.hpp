@@ -29,8 +29,8 @@ struct State {
   Sides sides;
   AxisCode second;  ///< crossing: the axis after this one
   bool certain = true;
-  /// Every axis so far overlaps by more than the error in both directions. False from the start without the depth rule,
-  /// and if eta is 0, where no proof is needed, or unknown, where there is none.
+  /// Every axis so far overlaps by more than the error in both directions. False from the start if eta is 0, where no
+  /// proof is needed, or unknown, where there is none.
   bool deep = false;
 };
 
@@ -47,14 +47,13 @@ struct Outcome {
 struct Options {
   Shape shape;
   bool warped_exact = true;
-  /// A hit is also definite if every facet normal of A - B overlaps by more than the error. The RTL does not have this
-  /// rule, so its model keeps it off.
-  bool depth = false;
+  /// A hit is also definite if every facet normal of A - B overlaps by more than the error. False: only signs make a hit
+  /// definite, for comparisons; the RTL has no such switch.
+  bool depth = true;
 };
 
 /// First state of a pair in a mode (reserved ones give Programme::illegal).
-/// \param deep State::deep: the depth rule is asked for
-State first_state(PairMode mode, bool deep = false);
+State first_state(const Options& options, PairMode mode, int err);
 /// The axis the state asks for.
 AxisBeat beat_of(const State& state, int err);
 /// The beat of an EXHAUSTIVE pair that follows at once; nullopt after its last.
