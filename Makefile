@@ -14,7 +14,7 @@ EXPORT_ARGS ?=
 # meshes of campaign-leaves, each against itself (Debian: assimp-testmodels)
 MODELS ?= /usr/share/assimp/models
 LEAVES ?= $(addprefix $(MODELS)/,OBJ/WusonOBJ.obj OBJ/spider.obj STL/Spider_binary.stl) \
-  $(addprefix build/leaves/,COB/dwarf.cob.obj Collada/duck.dae.obj Collada/teapots.DAE.obj \
+  $(addprefix build/leaves/,COB/dwarf.cob.obj Collada/duck.dae.stl Collada/teapots.DAE.obj \
   BLEND/Suzanne_248.blend.obj MD2/sydney.md2.obj MD2/faerie.md2.obj)
 QUAD_LEAVES ?= build/leaves/BLEND/Suzanne_248.blend.obj
 # command that provides the tools; BOOTSTRAP=true skips it
@@ -121,7 +121,8 @@ campaign-certainty: campaign-build ## definite answers against exact ones of 10^
 	$(CAMPAIGN) certainty
 
 # models of other formats, by the program of Debian's assimp-utils
-build/leaves/%.obj: $(MODELS)/%
+# (as STL where a polygon of the model crosses itself, which the reader of OBJ refuses: assimp cuts it into triangles)
+build/leaves/%.obj build/leaves/%.stl: $(MODELS)/%
 	@command -v assimp > /dev/null || { echo "install Debian's assimp-utils: scripts/bootstrap --dev" >&2; exit 1; }
 	mkdir -p $(@D)
 	assimp export $< $@ > $@.log || { cat $@.log; rm -f $@; exit 1; }

@@ -107,8 +107,13 @@ module cchip_axis_programme #(
       && info[`CCHIP_INFO_TETRAHEDRON_WARPED_B] ? 3'd5 : LAST_L[2:0];
   wire loops_l = is_cross | degenerate;  // l runs through all values for each k; else l stays
 
+  // ---- depth: zero and in-plane axes are no facet normals of a solid A - B; it is flat if both
+  // normals are zero
+  wire flat = degenerate && (&info[`CCHIP_INFO_DEGENERATE_A_ZERO])
+      && (&info[`CCHIP_INFO_DEGENERATE_B_ZERO]);
+
   reg valid_q, exhaustive_q, normals_q, crossing_q, illegal_q;
-  reg tetra_q, normal_a_q, normal_b_q, exhaustive_last_q, second_q, box_q, box_certain_q;
+  reg complete_q, normal_a_q, normal_b_q, exhaustive_last_q, second_q, box_q, box_certain_q;
   reg loops_l_q, l_goes_on_q, k_ends_q, last_kind_q;
   reg separated_q, certain_gap_q, sign_certain_q, sign_negative_q, certain_q, open_q, deep_q,
       depth_only_q;
@@ -133,11 +138,11 @@ module cchip_axis_programme #(
     beats_q           <= beats + 6'd1;
     open_q            <= s_state[`CCHIP_STATE_OPEN];
     certain_q         <= s_state[`CCHIP_STATE_CERTAIN];
-    // a zero axis is no facet normal
-    deep_q            <= s_state[`CCHIP_STATE_DEEP] & (s_deep | &s_axis_zero);
+    deep_q            <= s_state[`CCHIP_STATE_DEEP] & ~flat
+        & (s_deep | &s_axis_zero | is_in_plane_a | is_in_plane_b);
     depth_only_q      <= tetra && (TETRA == 0 || (!info[`CCHIP_INFO_TETRAHEDRON_WARPED_A]
         && !info[`CCHIP_INFO_TETRAHEDRON_WARPED_B]));
-    tetra_q           <= tetra;
+    complete_q        <= tetra | degenerate;
     normal_a_q        <= axis_class == `CCHIP_AXIS_NORMAL_A;
     normal_b_q        <= axis_class == `CCHIP_AXIS_NORMAL_B;
     exhaustive_last_q <= is_cross && k == LAST_K[2:0] && l == LAST_L[2:0];
@@ -228,7 +233,7 @@ module cchip_axis_programme #(
       else begin
         outcome = crossing_q ? second_q && !to_tetra : last_axis | (depth_only_q & ~deep_q);
         grid    = 1'b1;
-        certain = (crossing_q & certain_crossing) | (tetra_q & deep_q);
+        certain = (crossing_q & certain_crossing) | (complete_q & deep_q);
         witness = 9'd0;
       end
     end

@@ -28,7 +28,7 @@ inline model::Verdict random_verdict(Random& random, int separated_percent, unsi
   }
   v.compare.certain = chance(random, certains);
   v.compare.clear = chance(random, 60);
-  v.compare.deep = chance(random, 95);
+  v.compare.deep = chance(random, 99);
   const bool no_normal = chance(random, 10);
   for (std::size_t d = 0; d < 3; ++d) {
     v.axis_zero[d] = no_normal || (zero_axes >> d & 1U) != 0;

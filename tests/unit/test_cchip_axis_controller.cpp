@@ -209,7 +209,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_axis_controller: every output on every clock, for
         bench.separated_percent = latency == 7 ? 40 : 5;
         for (int part = 0; part < 3; ++part) {
           bench.simulation().reset(1);
-          bench.simulation().steps(1000);
+          bench.simulation().steps(1200);
         }
         INFO("latency " << latency << ", pairs " << pattern.name());
         REQUIRE(bench.results > 0);

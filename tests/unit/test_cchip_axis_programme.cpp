@@ -36,7 +36,8 @@ class Walk {
   std::map<Programme, int> outcomes;  ///< by the programme that gave it
   int hits = 0;
   int open = 0;
-  int deep_hits = 0;  ///< definite by depth, in DIRECTED without a warped quad
+  int deep_hits = 0;        ///< definite by depth, in DIRECTED without a warped quad
+  int deep_degenerate = 0;  ///< definite by depth, in DEGENERATE
   int most_beats = 0;
 
   void pair(PairMode mode) {
@@ -107,6 +108,7 @@ class Walk {
     open += top.m_open != 0 ? 1 : 0;
     const bool warped = state.sides.warped_a || state.sides.warped_b;
     deep_hits += state.programme == Programme::tetrahedron && !warped && o.definite ? 1 : 0;
+    deep_degenerate += state.programme == Programme::degenerate && o.grid && o.definite && err != 0 ? 1 : 0;
     idle();
     most_beats = std::max(most_beats, o.beats);
   }
@@ -136,7 +138,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_axis_programme: outcome and next axis of every pr
     }
     // without warped quads too: hits that only depth can prove
     REQUIRE(walk.outcomes[Programme::tetrahedron] > 30);
-    REQUIRE(walk.deep_hits > 30);
+    REQUIRE(walk.deep_hits > 10);
+    REQUIRE(walk.deep_degenerate > 3);
     REQUIRE((walk.open > 30) == (TestType::WARPED_EXACT == 0));
     REQUIRE(walk.hits > 1000);
     // EXHAUSTIVE to its end, then the longest programme to its end: six edges instead of a warped quad's four

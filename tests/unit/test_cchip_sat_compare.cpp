@@ -111,7 +111,8 @@ std::vector<Task> tasks(Random& random, int proj_w, int bound_w, int points, uns
                                 : i >= 1 && (task.own & 1U) != 0 ? task.in.p[0]
                                                                  : 0;
       if (near_bound && task.in.gap_bound < std::int64_t{1} << (proj_w - 4)) {
-        p = base + sign * (task.in.gap_bound + static_cast<std::int64_t>(random() % 3) - 1);
+        const std::int64_t side = one_side || chance(random, 50) ? sign : -sign;
+        p = base + side * (task.in.gap_bound + static_cast<std::int64_t>(random() % 3) - 1);
         if (p != model::wrap(static_cast<std::uint64_t>(p), proj_w - 1)) p = 0;
       }
       task.in.p[i] = p;

@@ -50,8 +50,13 @@ State tetrahedron(const Sides& s, int beats, bool deep) {
   return next;
 }
 
-/// State::deep after this verdict. A zero axis is no facet normal.
-bool still_deep(const State& s, const Verdict& v) { return s.deep && (v.compare.deep || v.zero_axis()); }
+/// State::deep after this verdict. Zero axes and in-plane axes are no facet normals of a solid A - B; it is flat if
+/// both normals are zero.
+bool still_deep(const State& s, const Verdict& v) {
+  const bool in_plane = s.code.cls == AxisClass::in_plane_a || s.code.cls == AxisClass::in_plane_b;
+  const bool flat = s.programme == Programme::degenerate && is_zero(s.sides.normal_a) && is_zero(s.sides.normal_b);
+  return s.deep && !flat && (v.compare.deep || v.zero_axis() || in_plane);
+}
 
 /// t(k, l) is the projection of W_l; a certain hit has t > 0 on the first, t < 0 on the second crossing axis.
 bool certain_crossing(const Options& o, const Verdict& v, bool second) {
@@ -269,8 +274,8 @@ Step advance(const Options& o, const State& s, const Verdict& v, int err, Exhaus
     next.code = *code;
     return {std::nullopt, next};
   }
-  const bool certain =
-      s.programme == Programme::tetrahedron ? next.deep : s.programme == Programme::crossing && next.certain;
+  const bool complete = s.programme == Programme::tetrahedron || s.programme == Programme::degenerate;
+  const bool certain = complete ? next.deep : s.programme == Programme::crossing && next.certain;
   return {make_outcome(o, s, true, {}, certain, err), std::nullopt};
 }
 
