@@ -47,8 +47,8 @@ struct Outcome {
 struct Options {
   Shape shape;
   bool warped_exact = true;
-  /// A hit is also definite if every facet normal of A - B overlaps by more than the error. False: only signs make a hit
-  /// definite, for comparisons; the RTL has no such switch.
+  /// A hit is also definite if every facet normal of A - B overlaps by more than the error. False: only signs make a
+  /// hit definite, for comparisons; the RTL has no such switch.
   bool depth = true;
 };
 
