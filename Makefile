@@ -17,6 +17,8 @@ LEAVES ?= $(addprefix $(MODELS)/,OBJ/WusonOBJ.obj OBJ/spider.obj STL/Spider_bina
   $(addprefix build/leaves/,COB/dwarf.cob.obj Collada/duck.dae.stl Collada/teapots.DAE.obj \
   BLEND/Suzanne_248.blend.obj MD2/sydney.md2.obj MD2/faerie.md2.obj)
 QUAD_LEAVES ?= build/leaves/BLEND/Suzanne_248.blend.obj
+# more options of campaign-leaves, as --eta 2
+LEAF_ARGS ?=
 # command that provides the tools; BOOTSTRAP=true skips it
 BOOTSTRAP ?= scripts/bootstrap
 # another command verilator than the one on PATH, as in: make test VERILATOR=/opt/verilator/bin/verilator
@@ -128,9 +130,9 @@ build/leaves/%.obj build/leaves/%.stl: $(MODELS)/%
 	assimp export $< $@ > $@.log || { cat $@.log; rm -f $@; exit 1; }
 
 campaign-leaves: campaign-build $(LEAVES) $(QUAD_LEAVES) ## leaf pairs of meshes: beats and share of indefinite answers
-	$(CAMPAIGN) leaves
-	$(CAMPAIGN) leaves $(LEAVES)
-	$(CAMPAIGN) leaves --quads $(QUAD_LEAVES)
+	$(CAMPAIGN) leaves $(LEAF_ARGS)
+	$(CAMPAIGN) leaves $(LEAF_ARGS) $(LEAVES)
+	$(CAMPAIGN) leaves --most-beats 10 $(LEAF_ARGS) --quads $(QUAD_LEAVES)
 
 CASES ?= 10000000
 campaign-boxes: $(RELEASE)/build.ninja ## box test: CASES touching volumes with every rounding error at its worst (CCHIP_SEED repeats a run)

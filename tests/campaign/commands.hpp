@@ -55,7 +55,7 @@ struct LeavesOptions : CommonOptions {
   bool depth = true;                 ///< with the depth rule
   int eta = 1;                       ///< of a pair that was rounded: that of a sender with more error than the host
   /// Goals for each shape, DIRECTED at the default width: per cent of the pairs, mean beats.
-  double most_indefinite = 1;
+  double most_indefinite = 0.25;
   double most_beats = 4;
 };
 /// Leaf pairs of two meshes whose 26-DOPs overlap.
