@@ -14,9 +14,11 @@ EXPORT_ARGS ?=
 # meshes of campaign-leaves, each against itself (Debian: assimp-testmodels)
 MODELS ?= /usr/share/assimp/models
 LEAVES ?= $(addprefix $(MODELS)/,OBJ/WusonOBJ.obj OBJ/spider.obj STL/Spider_binary.stl) \
-  $(addprefix build/leaves/,COB/dwarf.cob.obj Collada/duck.dae.obj Collada/teapots.DAE.obj \
+  $(addprefix build/leaves/,COB/dwarf.cob.obj Collada/duck.dae.stl Collada/teapots.DAE.obj \
   BLEND/Suzanne_248.blend.obj MD2/sydney.md2.obj MD2/faerie.md2.obj)
 QUAD_LEAVES ?= build/leaves/BLEND/Suzanne_248.blend.obj
+# more options of campaign-leaves, as --eta 2
+LEAF_ARGS ?=
 # command that provides the tools; BOOTSTRAP=true skips it
 BOOTSTRAP ?= scripts/bootstrap
 # another command verilator than the one on PATH, as in: make test VERILATOR=/opt/verilator/bin/verilator
@@ -121,15 +123,16 @@ campaign-certainty: campaign-build ## definite answers against exact ones of 10^
 	$(CAMPAIGN) certainty
 
 # models of other formats, by the program of Debian's assimp-utils
-build/leaves/%.obj: $(MODELS)/%
+# (as STL where a polygon of the model crosses itself, which the reader of OBJ refuses: assimp cuts it into triangles)
+build/leaves/%.obj build/leaves/%.stl: $(MODELS)/%
 	@command -v assimp > /dev/null || { echo "install Debian's assimp-utils: scripts/bootstrap --dev" >&2; exit 1; }
 	mkdir -p $(@D)
 	assimp export $< $@ > $@.log || { cat $@.log; rm -f $@; exit 1; }
 
 campaign-leaves: campaign-build $(LEAVES) $(QUAD_LEAVES) ## leaf pairs of meshes: beats and share of indefinite answers
-	$(CAMPAIGN) leaves
-	$(CAMPAIGN) leaves $(LEAVES)
-	$(CAMPAIGN) leaves --quads $(QUAD_LEAVES)
+	$(CAMPAIGN) leaves $(LEAF_ARGS)
+	$(CAMPAIGN) leaves $(LEAF_ARGS) $(LEAVES)
+	$(CAMPAIGN) leaves --most-beats 10 $(LEAF_ARGS) --quads $(QUAD_LEAVES)
 
 CASES ?= 10000000
 campaign-boxes: $(RELEASE)/build.ninja ## box test: CASES touching volumes with every rounding error at its worst (CCHIP_SEED repeats a run)

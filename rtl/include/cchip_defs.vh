@@ -434,7 +434,7 @@
 
 // ---- state of a pair's programme, which travels with its beat (cchip_axis_programme):
 // word[`CCHIP_STATE_<field>]
-`define CCHIP_STATE_W 34
+`define CCHIP_STATE_W 35
 // Programme
 `define CCHIP_STATE_PROGRAMME 0+:3
 // axis code of the beat
@@ -447,9 +447,11 @@
 `define CCHIP_STATE_OPEN 32+:1
 // all signs used so far hold for the unrounded primitives
 `define CCHIP_STATE_CERTAIN 33+:1
+// eta is 1..14 and every axis so far overlaps by more than the error, both ways
+`define CCHIP_STATE_DEEP 34+:1
 // the word of these fields, also as the target of an assignment or an output
-`define CCHIP_STATE_OF(programme, code, info, beats, open, certain) \
-  {certain, open, beats, info, code, programme}
+`define CCHIP_STATE_OF(programme, code, info, beats, open, certain, deep) \
+  {deep, certain, open, beats, info, code, programme}
 
 // ---- a STATE without its count of beats: what the verdicts of both normals lead to
 // (cchip_programme_plan): word[`CCHIP_PLAN_<field>]

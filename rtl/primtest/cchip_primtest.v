@@ -158,7 +158,7 @@ module cchip_primtest #(
   wire [POINTS-1:0] verdict_negative, verdict_zero;
   wire [       2:0] verdict_axis_negative, verdict_axis_zero;
   wire [       1:0] verdict_axis_largest;
-  wire              verdict_certain, verdict_clear;
+  wire              verdict_certain, verdict_clear, verdict_deep;
   wire              verdict_box_separated, verdict_box_certain;
   wire [USER_W-1:0] verdict_user;
 
@@ -187,6 +187,7 @@ module cchip_primtest #(
       .m_verdict_zero         (verdict_zero),
       .m_verdict_certain      (verdict_certain),
       .m_verdict_clear        (verdict_clear),
+      .m_verdict_deep         (verdict_deep),
       .m_verdict_axis_negative(verdict_axis_negative),
       .m_verdict_axis_zero    (verdict_axis_zero),
       .m_verdict_axis_largest (verdict_axis_largest),
@@ -226,6 +227,7 @@ module cchip_primtest #(
       .s_verdict_zero         (verdict_zero),
       .s_verdict_certain      (verdict_certain),
       .s_verdict_clear        (verdict_clear),
+      .s_verdict_deep         (verdict_deep),
       .s_verdict_axis_negative(verdict_axis_negative),
       .s_verdict_axis_zero    (verdict_axis_zero),
       .s_verdict_axis_largest (verdict_axis_largest),

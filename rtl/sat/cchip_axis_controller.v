@@ -58,6 +58,7 @@ module cchip_axis_controller #(
     input  wire [         VERTS_A+VERTS_B-4:0] s_verdict_zero,
     input  wire                                s_verdict_certain,
     input  wire                                s_verdict_clear,
+    input  wire                                s_verdict_deep,
     input  wire [                         2:0] s_verdict_axis_negative,
     input  wire [                         2:0] s_verdict_axis_zero,
     input  wire [                         1:0] s_verdict_axis_largest,
@@ -74,7 +75,7 @@ module cchip_axis_controller #(
 );
 
   localparam [31:0] CONTEXT_LAST = CONTEXTS - 1;
-  // programme state: {certain, open, beats, info, code, programme}, see cchip_axis_programme
+  // programme state: {deep, certain, open, beats, info, code, programme}, see cchip_axis_programme
   localparam integer STATE_W = `CCHIP_STATE_W;
   localparam [`CCHIP_AXIS_CODE_W-1:0] CODE_FIRST = {`CCHIP_AXIS_NORMAL_A, 6'd0};
   localparam [`CCHIP_AXIS_CODE_W-1:0] CODE_ILLEGAL = {`CCHIP_AXIS_ILLEGAL, 6'd0};
@@ -171,9 +172,12 @@ module cchip_axis_controller #(
   wire                 start_valid, start_ready, start_space;
   wire [CONTEXT_W-1:0] start_context;
   wire [`CCHIP_MODE_W-1:0] start_mode;
+  // eta is 1..14: only then may depth prove a hit
+  wire start_deep;
+  wire load_deep = s_pair_err != 4'd0 && s_pair_err != `CCHIP_ERR_UNKNOWN;
 
   cchip_fifo #(
-      .WIDTH     (CONTEXT_W + `CCHIP_MODE_W),
+      .WIDTH     (CONTEXT_W + `CCHIP_MODE_W + 1),
       .DEPTH     (CONTEXTS),
       .ROOM_KNOWN(1)
   ) u_start (
@@ -181,10 +185,10 @@ module cchip_axis_controller #(
       .rst    (rst),
       .s_valid(load_valid_q),
       .s_ready(start_space),
-      .s_data ({load_context_q, load_mode_q}),
+      .s_data ({load_deep, load_context_q, load_mode_q}),
       .m_valid(start_valid),
       .m_ready(start_ready),
-      .m_data ({start_context, start_mode})
+      .m_data ({start_deep, start_context, start_mode})
   );
 
   wire [`CCHIP_PROG_W-1:0] start_programme = start_mode == `CCHIP_MODE_EXHAUSTIVE
@@ -192,7 +196,8 @@ module cchip_axis_controller #(
                              : start_mode == `CCHIP_MODE_DIRECTED ? `CCHIP_PROG_NORMALS
                                                                   : `CCHIP_PROG_ILLEGAL;
   wire [`CCHIP_AXIS_CODE_W-1:0] start_code = start_mode[1] ? CODE_ILLEGAL : CODE_FIRST;
-  wire [STATE_W-1:0] start_state = {1'b1, 1'b0, 6'd0, 14'd0, start_code, start_programme};
+  wire [STATE_W-1:0] start_state = {start_deep, 1'b1, 1'b0, 6'd0, 14'd0, start_code,
+                                    start_programme};
 
   // ---- pairs that wait for their next beat
   wire                         proceed;
@@ -307,6 +312,7 @@ module cchip_axis_controller #(
       .s_zero         (s_verdict_zero),
       .s_certain      (s_verdict_certain),
       .s_clear        (s_verdict_clear),
+      .s_deep         (s_verdict_deep),
       .s_axis_negative(s_verdict_axis_negative),
       .s_axis_zero    (s_verdict_axis_zero),
       .s_axis_largest (s_verdict_axis_largest),

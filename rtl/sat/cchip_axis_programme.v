@@ -19,6 +19,8 @@
 //                positive; the edges of A and of B from + to -, then those from - to +. A warped
 //                quad is hit only if every sign is certain (docs/architecture.md), else TETRAHEDRON
 //                decides
+//   TETRAHEDRON  also for a hit of CROSSING without a warped quad that only depth can prove: all
+//                e_k x f_l, until one of them is not deep
 // The state is the record STATE of docs/definitions.md. Its field info holds a record of its own
 // for each programme: INFO_NORMALS (after nA), INFO_CROSSING, INFO_COPLANAR, INFO_DEGENERATE,
 // INFO_TETRAHEDRON.
@@ -41,6 +43,7 @@ module cchip_axis_programme #(
     input  wire                          s_certain,        // the sign of point VERTS_A - 2
     // see cchip_sat_compare: on a normal, all sides are certain
     input  wire                          s_clear,
+    input  wire                          s_deep,           // see cchip_sat_compare
     input  wire [                   2:0] s_axis_negative,
     input  wire [                   2:0] s_axis_zero,
     input  wire [                   1:0] s_axis_largest,
@@ -104,10 +107,16 @@ module cchip_axis_programme #(
       && info[`CCHIP_INFO_TETRAHEDRON_WARPED_B] ? 3'd5 : LAST_L[2:0];
   wire loops_l = is_cross | degenerate;  // l runs through all values for each k; else l stays
 
+  // ---- depth: zero and in-plane axes are no facet normals of a solid A - B; it is flat if both
+  // normals are zero
+  wire flat = degenerate && (&info[`CCHIP_INFO_DEGENERATE_A_ZERO])
+      && (&info[`CCHIP_INFO_DEGENERATE_B_ZERO]);
+
   reg valid_q, exhaustive_q, normals_q, crossing_q, illegal_q;
-  reg normal_a_q, normal_b_q, exhaustive_last_q, second_q, box_q, box_certain_q;
+  reg complete_q, normal_a_q, normal_b_q, exhaustive_last_q, second_q, box_q, box_certain_q;
   reg loops_l_q, l_goes_on_q, k_ends_q, last_kind_q;
-  reg separated_q, certain_gap_q, sign_certain_q, sign_negative_q, certain_q, open_q;
+  reg separated_q, certain_gap_q, sign_certain_q, sign_negative_q, certain_q, open_q, deep_q,
+      depth_only_q;
   reg [`CCHIP_PROG_W-1:0] programme_q;
   reg [`CCHIP_AXIS_CODE_W-1:0] code_q;
   reg [2:0] k_next_q, l_next_q;
@@ -129,6 +138,11 @@ module cchip_axis_programme #(
     beats_q           <= beats + 6'd1;
     open_q            <= s_state[`CCHIP_STATE_OPEN];
     certain_q         <= s_state[`CCHIP_STATE_CERTAIN];
+    deep_q            <= s_state[`CCHIP_STATE_DEEP] & ~flat
+        & (s_deep | &s_axis_zero | is_in_plane_a | is_in_plane_b);
+    depth_only_q      <= tetra && (TETRA == 0 || (!info[`CCHIP_INFO_TETRAHEDRON_WARPED_A]
+        && !info[`CCHIP_INFO_TETRAHEDRON_WARPED_B]));
+    complete_q        <= tetra | degenerate;
     normal_a_q        <= axis_class == `CCHIP_AXIS_NORMAL_A;
     normal_b_q        <= axis_class == `CCHIP_AXIS_NORMAL_B;
     exhaustive_last_q <= is_cross && k == LAST_K[2:0] && l == LAST_L[2:0];
@@ -184,7 +198,8 @@ module cchip_axis_programme #(
   wire certain_crossing = certain_q && sign_certain_q && sign_negative_q == second_q;
   wire warped_a_crossing = info_q[`CCHIP_INFO_CROSSING_WARPED_A];
   wire warped_b_crossing = info_q[`CCHIP_INFO_CROSSING_WARPED_B];
-  wire to_tetra = TETRA != 0 && (warped_a_crossing || warped_b_crossing) && !certain_crossing;
+  wire to_tetra = !certain_crossing && (warped_a_crossing || warped_b_crossing ? TETRA != 0
+                                                                             : second_q && deep_q);
 
   // ---- next axis of the programmes that visit all axes: the next l, the next k, the next class
   wire [`CCHIP_CLASS_W-1:0] code_class = code_q[`CCHIP_AXIS_CODE_CLASS];
@@ -216,9 +231,9 @@ module cchip_axis_programme #(
     end else if (!separated_q) begin
       if (normals_q) outcome = 1'b0;
       else begin
-        outcome = crossing_q ? second_q && !to_tetra : last_axis;
+        outcome = crossing_q ? second_q && !to_tetra : last_axis | (depth_only_q & ~deep_q);
         grid    = 1'b1;
-        certain = crossing_q & certain_crossing;
+        certain = (crossing_q & certain_crossing) | (complete_q & deep_q);
         witness = 9'd0;
       end
     end
@@ -235,7 +250,7 @@ module cchip_axis_programme #(
           {1'b0, info_q[`CCHIP_INFO_CROSSING_K_UP]}, `CCHIP_AXIS_CROSS)
       : next_code;
 
-  reg valid_q2;
+  reg valid_q2, deep_q2;
   reg outcome_q2, grid_q2, certain_q2, open_q2, illegal_q2, take_plan_q2, take_tetra_q2;
   reg [`CCHIP_AXIS_CODE_W-1:0] witness_q2;
   reg [`CCHIP_BEATS_W-1:0] beats_q2;
@@ -244,6 +259,7 @@ module cchip_axis_programme #(
   always @(posedge clk) begin
     if (rst) valid_q2 <= 1'b0;
     else valid_q2 <= valid_q;
+    deep_q2            <= deep_q;
     outcome_q2         <= outcome;
     grid_q2            <= grid;
     certain_q2         <= certain;
@@ -260,7 +276,8 @@ module cchip_axis_programme #(
   end
 
   // ================ clock 3: EXHAUSTIVE or not
-  wire found_valid, found_outcome, found_proceed, found_separated, found_certain, found_to_tetra;
+  wire found_valid, found_outcome, found_proceed, found_separated, found_certain, found_to_tetra,
+      found_deep;
   wire [`CCHIP_AXIS_CODE_W-1:0] found_witness;
   wire [`CCHIP_PLAN_W-1:0] found_plan;
   cchip_programme_exhaustive #(
@@ -277,6 +294,7 @@ module cchip_axis_programme #(
       .s_certain_gap   (certain_gap_q),
       .s_sign_certain  (sign_certain_q),
       .s_sign_negative (sign_negative_q),
+      .s_deep          (deep_q),
       .s_certain_sides (certain_sides),
       .s_plan          (plan),
       .m_valid         (found_valid),
@@ -286,13 +304,14 @@ module cchip_axis_programme #(
       .m_witness       (found_witness),
       .m_certain       (found_certain),
       .m_to_tetrahedron(found_to_tetra),
+      .m_deep          (found_deep),
       .m_plan          (found_plan)
   );
   wire [`CCHIP_INFO_W-1:0] found_info = found_plan[`CCHIP_PLAN_INFO];
   wire [1:0] found_warped = {found_info[`CCHIP_INFO_CROSSING_WARPED_B],
                              found_info[`CCHIP_INFO_CROSSING_WARPED_A]};
 
-  reg outcome_q3, proceed_q3, grid_q3, certain_q3, open_q3, illegal_q3;
+  reg deep_q3, outcome_q3, proceed_q3, grid_q3, certain_q3, open_q3, illegal_q3;
   reg take_plan_q3, take_found_q3, take_tetra_q3;
   reg [`CCHIP_AXIS_CODE_W-1:0] witness_q3;
   reg [`CCHIP_BEATS_W-1:0] beats_q3;
@@ -303,6 +322,7 @@ module cchip_axis_programme #(
     else outcome_q3 <= found_valid ? found_outcome : valid_q2 & outcome_q2;
     if (rst) proceed_q3 <= 1'b0;
     else proceed_q3 <= found_valid ? found_proceed : valid_q2 & ~outcome_q2;
+    deep_q3       <= found_valid ? found_deep : deep_q2;
     grid_q3       <= found_valid ? ~found_separated : grid_q2;
     certain_q3    <= found_valid ? found_certain : certain_q2;
     open_q3       <= found_valid ? found_plan[`CCHIP_PLAN_OPEN] & ~found_separated : open_q2;
@@ -319,8 +339,10 @@ module cchip_axis_programme #(
 
   // ================ clock 4: the next state
   // first axis of TETRAHEDRON; its info is the record INFO_TETRAHEDRON
-  wire [`CCHIP_AXIS_CODE_W-1:0] tetra_code = `CCHIP_AXIS_CODE_OF(3'd0, 3'd1,
-      warped_q3[0] ? `CCHIP_AXIS_NORMAL_A : `CCHIP_AXIS_NORMAL_B);
+  wire [`CCHIP_AXIS_CODE_W-1:0] tetra_code =
+      warped_q3 == 2'b00 ? `CCHIP_AXIS_CODE_OF(3'd0, 3'd0, `CCHIP_AXIS_CROSS)
+      : `CCHIP_AXIS_CODE_OF(3'd0, 3'd1,
+          (warped_q3[0] ? `CCHIP_AXIS_NORMAL_A : `CCHIP_AXIS_NORMAL_B));
   wire [`CCHIP_PLAN_W-1:0] state = take_plan_q3 ? plan_q3 : take_found_q3 ? found_plan : state_q3;
   always @(posedge clk) begin
     if (rst) m_outcome_q <= 1'b0;
@@ -336,7 +358,7 @@ module cchip_axis_programme #(
     m_state_q   <= `CCHIP_STATE_OF((take_tetra_q3 ? `CCHIP_PROG_TETRAHEDRON
         : state[`CCHIP_PLAN_PROGRAMME]), (take_tetra_q3 ? tetra_code : state[`CCHIP_PLAN_CODE]),
         (take_tetra_q3 ? {12'd0, warped_q3} : state[`CCHIP_PLAN_INFO]), beats_q3,
-        state[`CCHIP_PLAN_OPEN], state[`CCHIP_PLAN_CERTAIN]);
+        state[`CCHIP_PLAN_OPEN], state[`CCHIP_PLAN_CERTAIN], deep_q3);
   end
 
   wire unused = &{1'b0, found_info};

@@ -23,6 +23,8 @@ module cchip_programme_exhaustive #(
     // the sign of a cross axis: certain, negative
     input  wire                          s_sign_certain,
     input  wire                          s_sign_negative,
+    // the axis overlaps by more than the error both ways, or is zero; eta is 1..14
+    input  wire                          s_deep,
     // with nB: see cchip_programme_plan
     input  wire                          s_certain_sides,
     input  wire [     `CCHIP_PLAN_W-1:0] s_plan,
@@ -33,6 +35,7 @@ module cchip_programme_exhaustive #(
     output wire [`CCHIP_AXIS_CODE_W-1:0] m_witness,        // first axis that separates, 0: none
     output wire                          m_certain,
     output wire                          m_to_tetrahedron, // or with TETRAHEDRON
+    output wire                          m_deep,           // every axis so far
     output wire [     `CCHIP_PLAN_W-1:0] m_plan
 );
 
@@ -55,7 +58,7 @@ module cchip_programme_exhaustive #(
       == {info[`CCHIP_INFO_CROSSING_K_UP], info[`CCHIP_INFO_CROSSING_L_UP]};
 
   reg valid_q, normal_a_q, normal_q, last_q, separated_q, certain_gap_q, certain_sides_q,
-      still_certain_q;
+      still_certain_q, deep_q;
   reg [`CCHIP_AXIS_CODE_W-1:0] code_q;
   always @(posedge clk) begin
     if (rst) valid_q <= 1'b0;
@@ -66,13 +69,14 @@ module cchip_programme_exhaustive #(
     code_q          <= s_code;
     separated_q     <= s_separated;
     certain_gap_q   <= s_certain_gap;
+    deep_q          <= s_deep;
     certain_sides_q <= s_normal_a | s_certain_sides;  // after nA: nB tells for both
     still_certain_q <= !(first || second) || (s_sign_certain && s_sign_negative == second);
   end
 
   // ---- found so far: nA is the first axis
   reg found_certain_q;  // signs on both normals, then on the crossing axes too
-  reg found_separated_q, found_gap_q;
+  reg found_separated_q, found_gap_q, found_deep_q;
   reg [`CCHIP_AXIS_CODE_W-1:0] found_witness_q;
   wire separated_before = ~normal_a_q & found_separated_q;
   wire separated = separated_before | separated_q;
@@ -80,6 +84,7 @@ module cchip_programme_exhaustive #(
       : {`CCHIP_AXIS_CODE_W{1'b0}};
   wire gap = separated_before ? found_gap_q : certain_gap_q;
   wire certain = normal_q ? certain_sides_q : found_certain_q & still_certain_q;
+  wire deep = deep_q & (normal_a_q | found_deep_q);
   wire to_tetrahedron = TETRAHEDRON != 0 && is_crossing && warped && !certain;
 
   always @(posedge clk)
@@ -88,6 +93,7 @@ module cchip_programme_exhaustive #(
       found_separated_q <= separated;
       found_witness_q   <= witness;
       found_gap_q       <= gap;
+      found_deep_q      <= deep;
     end
 
   assign m_valid          = valid_q;
@@ -95,7 +101,9 @@ module cchip_programme_exhaustive #(
   assign m_proceed        = last_q & ~separated & (~is_crossing | to_tetrahedron);
   assign m_separated      = separated;
   assign m_witness        = witness;
-  assign m_certain        = separated ? gap : certain;
+  // without a warped quad the set of axes is complete
+  assign m_certain        = separated ? gap : certain | (deep & ~warped);
+  assign m_deep           = deep;
   assign m_to_tetrahedron = to_tetrahedron;
 
   wire unused = &{1'b0, info, code, k, l, first_k, first_l, plan_q};

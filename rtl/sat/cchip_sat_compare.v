@@ -10,7 +10,8 @@
 // Own set of the axis: {0} and the slots marked s_own; other set: the other slots. Closed sets:
 // separated only if every difference between the two sets is strictly of one sign that is allowed.
 // Certain: |value| > bound, strictly. m_clear: every difference between the sets exceeds the gap
-// bound, and each point of the other set is on one side of the whole own set.
+// bound, and each point of the other set is on one side of the whole own set. m_deep: some
+// difference exceeds the gap bound, and some is below its negative.
 module cchip_sat_compare #(
     // width of a projection, bit
     parameter integer PROJ_W = 51,
@@ -38,7 +39,9 @@ module cchip_sat_compare #(
     // the sign of p_OWN is that of the unrounded vertices
     output wire                     m_certain,
     // every other point lies certainly beyond all own points, on either side
-    output wire                     m_clear
+    output wire                     m_clear,
+    // the sets overlap by more than the gap bound, both ways
+    output wire                     m_deep
 );
 
   reg m_separated_q;
@@ -47,12 +50,14 @@ module cchip_sat_compare #(
   reg [POINTS-1:0] m_zero_q;
   reg m_certain_q;
   reg m_clear_q;
+  reg m_deep_q;
   assign m_separated = m_separated_q;
   assign m_certain_gap = m_certain_gap_q;
   assign m_negative = m_negative_q;
   assign m_zero = m_zero_q;
   assign m_certain = m_certain_q;
   assign m_clear = m_clear_q;
+  assign m_deep = m_deep_q;
 
   generate
     if (POINTS < 3 || POINTS > 5 || OWN < 1 || OWN > 2) begin : gen_illegal
@@ -153,12 +158,15 @@ module cchip_sat_compare #(
   reg [1:0] own_q3;
   reg above_q3, below_q3, same_q3;
   reg [POINTS-1:0] negative_q3;
+  reg [VALUES-1:0] up_q3, down_q3;  // differences that are compared: not negative, negative
   always @(posedge clk) begin
     own_q3      <= own;
     above_q3    <= allow_above & (&(ignore | ~negative));
     below_q3    <= allow_below & (&(ignore | negative));
     same_q3     <= &(ignore | same);
     negative_q3 <= negative[POINTS-1:0];
+    up_q3       <= ~ignore & ~negative;
+    down_q3     <= ~ignore & negative;
   end
 
   // ---- clock 4: combines zero and near, which take one clock longer than the signs
@@ -172,6 +180,7 @@ module cchip_sat_compare #(
     m_zero_q        <= zero[POINTS-1:0];
     m_certain_q     <= ~uncertain_q3;
     m_clear_q       <= same_q3 & all_far;
+    m_deep_q        <= (|(up_q3 & ~near)) & (|(down_q3 & ~near));
   end
 
 endmodule

@@ -44,6 +44,7 @@ module cchip_sat_pipeline #(
     // the sign of point VERTS_A - 2 is certain
     output wire                            m_verdict_certain,
     output wire                            m_verdict_clear,          // see cchip_sat_compare
+    output wire                            m_verdict_deep,
     output wire [                     2:0] m_verdict_axis_negative,  // components of the axis: < 0
     output wire [                     2:0] m_verdict_axis_zero,      // = 0
     // component of the largest absolute value
@@ -248,7 +249,8 @@ module cchip_sat_pipeline #(
       .m_negative   (m_verdict_negative),
       .m_zero       (m_verdict_zero),
       .m_certain    (m_verdict_certain),
-      .m_clear      (m_verdict_clear)
+      .m_clear      (m_verdict_clear),
+      .m_deep       (m_verdict_deep)
   );
   cchip_delay #(
       .WIDTH(8),

@@ -89,16 +89,17 @@ Rows points(const std::string& label, const std::string& name, int shown, int po
 const char* const axis_label = "axis (class k l)";
 /// The programme state that travels with a beat (header of cchip_axis_programme), the context above it.
 Rows programme_state(const std::string& name) {
-  const auto part = [&](const char* label, int lsb, int width, Radix radix) {
-    return field(label, name, user_w, lsb, width, radix);
+  const auto part = [&](const char* label, defs::Field of, Radix radix) {
+    return field(label, name, user_w, of.lsb, of.width, radix);
   };
-  return {part("context", defs::state_w, context_w, Radix::decimal),
-          part("programme", 0, defs::prog_w, Radix::decimal),
-          part(axis_label, 3, defs::axis_code_w, Radix::octal),
-          part("info", 12, defs::state_w - 20, Radix::binary),
-          part("beats before", defs::state_w - 8, defs::beats_w, Radix::decimal),
-          part("open", defs::state_w - 2, 1, Radix::binary),
-          part("certain so far", defs::state_w - 1, 1, Radix::binary)};
+  return {part("context", {defs::state_w, context_w}, Radix::decimal),
+          part("programme", defs::state_programme, Radix::decimal),
+          part(axis_label, defs::state_code, Radix::octal),
+          part("info", defs::state_info, Radix::binary),
+          part("beats before", defs::state_beats, Radix::decimal),
+          part("open", defs::state_open, Radix::binary),
+          part("certain so far", defs::state_certain, Radix::binary),
+          part("deep so far", defs::state_deep, Radix::binary)};
 }
 
 /// valid of the pipeline after `clocks` of its registers.

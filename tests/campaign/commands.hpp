@@ -37,6 +37,8 @@ struct CertaintyOptions : CommonOptions {
   std::uint64_t pairs = 10000000;  ///< in all
   std::uint64_t bounds = 1000000;  ///< cases of the bounds alone
   int coord_w = defs::coord_w_default;
+  bool depth = true;  ///< with the depth rule
+  int eta = 0;        ///< of every pair; 0: drawn
   double offset = 1;  ///< offsets as a multiple of what eta allows; over 1 must fail
   /// Goals: definite answers, definite hits, per cent of the pairs with eta = 1, for each shape and programme.
   double least_definite = 20;
@@ -50,8 +52,10 @@ struct LeavesOptions : CommonOptions {
   int poses = 6;
   std::uint64_t pairs_max = 200000;  ///< leaf pairs per mesh and pose
   bool quads = false;                ///< keep the quads of the files
+  bool depth = true;                 ///< with the depth rule
+  int eta = 1;                       ///< of a pair that was rounded: that of a sender with more error than the host
   /// Goals for each shape, DIRECTED at the default width: per cent of the pairs, mean beats.
-  double most_indefinite = 1;
+  double most_indefinite = 0.25;
   double most_beats = 4;
 };
 /// Leaf pairs of two meshes whose 26-DOPs overlap.

@@ -159,11 +159,12 @@ std::size_t thickness_class(const LeafPair& pair, int exponent) {
   return i;
 }
 
-void measure(const ShapeInfo& shape, const LeafPair& pair, std::uint64_t part, Measured& result) {
+void measure(const model::Options& of, const LeafPair& pair, int eta, std::uint64_t part, Measured& result) {
   const bool hit = exact_intersects(pair.a, pair.b);
   for (std::size_t w = 0; w < widths.size(); ++w) {
     QuantisedPair quantised = quantise(pair.a, pair.b, widths[w]);
     GridPair& grid = quantised.pair;
+    if (grid.eta != 0) grid.eta = std::max(grid.eta, eta);
     grid.a = canonical_quad(grid.a);
     grid.b = canonical_quad(grid.b);
     WidthRow row;
@@ -172,7 +173,7 @@ void measure(const ShapeInfo& shape, const LeafPair& pair, std::uint64_t part, M
     row.rounded = grid.eta != 0 ? 1 : 0;
     row.warped = is_warped(grid.a) || is_warped(grid.b) ? 1 : 0;
     for (std::size_t mode = 0; mode < 2; ++mode) {
-      const model::Outcome o = model::run_programme(shape.options(), grid, static_cast<PairMode>(mode), widths[w]);
+      const model::Outcome o = model::run_programme(of, grid, static_cast<PairMode>(mode), widths[w]);
       row.beats[mode].add(o.beats);
       row.grid_differs = o.grid != hit ? 1 : 0;
       if (!o.definite) ++(o.grid ? row.open_hit : row.open_no)[mode];
@@ -188,12 +189,14 @@ void measure(const ShapeInfo& shape, const LeafPair& pair, std::uint64_t part, M
   }
 }
 
-Measured measure(const ShapeInfo& shape, const std::vector<LeafPair>& pairs, unsigned threads) {
+Measured measure(const ShapeInfo& shape, const std::vector<LeafPair>& pairs, const LeavesOptions& options) {
   constexpr std::size_t chunk = 1024;
-  return sum_of_parts<Measured>((pairs.size() + chunk - 1) / chunk, threads, [&](std::uint64_t part) {
+  model::Options of = shape.options();
+  of.depth = options.depth;
+  return sum_of_parts<Measured>((pairs.size() + chunk - 1) / chunk, options.threads, [&](std::uint64_t part) {
     Measured result;
     for (std::size_t i = part * chunk; i < std::min(pairs.size(), (part + 1) * chunk); ++i) {
-      measure(shape, pairs[i], part, result);
+      measure(of, pairs[i], options.eta, part, result);
     }
     return result;
   });
@@ -236,7 +239,7 @@ void print_thickness(const Measured& m) {
 
 int run_leaves(const LeavesOptions& options) {
   const StopWatch watch;
-  fmt::print("seed={} poses={}\n", options.seed, options.poses);
+  fmt::print("seed={} poses={} eta={} depth={}\n", options.seed, options.poses, options.eta, options.depth ? 1 : 0);
   fmt::print("{:<20} {:<10} {:>5} {:>9} {:>6} {:>8} {:>8} {:>7} {:>7} {:>8} {:>8} {:>8} {:>8} {:>6}\n", "", "", "", "",
              "hits", "warped", "grid", "beats", "beats", "open exh", "open dir", "dir, no", "dir, hit", "");
   fmt::print("{:<20} {:<10} {:>5} {:>9} {:>6} {:>8} {:>8} {:>7} {:>7} {:>8} {:>8} {:>8} {:>8} {:>6}\n", "meshes",
@@ -255,7 +258,7 @@ int run_leaves(const LeavesOptions& options) {
       std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(chosen),
                    [&shape](const LeafPair& p) { return p.a.kind == shape.a && p.b.kind == shape.b; });
       if (chosen.empty()) continue;
-      const Measured m = measure(shape, chosen, options.threads);
+      const Measured m = measure(shape, chosen, options);
       print(scene.name, shape, m);
       print_thickness(m);
       m.examples.print();

@@ -69,6 +69,10 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
       ->add_option("--least-definite-hits", e->least_definite_hits,
                    "goal: definite hits, % of the pairs with eta 1, shape and programme each")
       ->capture_default_str();
+  certainty->add_flag("!--signs-only", e->depth, "without the depth rule (docs/architecture.md, certainty)");
+  certainty->add_option("--eta", e->eta, "eta of every pair; 0: drawn, 15 included")
+      ->check(CLI::Range(0, 14))
+      ->capture_default_str();
   add_coord_w(*certainty, e->coord_w);
   const auto [leaves, l] = add("leaves", "leaf pairs of two meshes whose 26-DOPs overlap", LeavesOptions{}, run_leaves);
   leaves->add_option("meshes", l->meshes, "mesh files, each against itself; none: built-in torus, gear, quad torus");
@@ -77,6 +81,10 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
       ->capture_default_str();
   leaves->add_option("--pairs", l->pairs_max, "most leaf pairs per mesh and pose")->capture_default_str();
   leaves->add_flag("--quads", l->quads, "keep the quads of the files");
+  leaves->add_flag("!--signs-only", l->depth, "without the depth rule (docs/architecture.md, certainty)");
+  leaves->add_option("--eta", l->eta, "eta of a pair that was rounded; the chip's own vertex transform has 2 to 4")
+      ->check(CLI::Range(1, 14))
+      ->capture_default_str();
   leaves->add_option("--most-indefinite", l->most_indefinite, "goal: % of the pairs of a shape at 16 bit, directed")
       ->capture_default_str();
   leaves->add_option("--most-beats", l->most_beats, "goal: mean beats of a shape at 16 bit, directed")

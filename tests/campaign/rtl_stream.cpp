@@ -59,7 +59,8 @@ RtlJudgement judge_rtl(const ShapeInfo& shape, const std::vector<PairRequest>& r
     one.not_as_model = got == expected ? 0 : 1;
     one.wrong = legal && (got.grid != exact[i] || (exact[i] && !got.hit)) ? 1 : 0;
     const bool directed = request.mode == PairMode::directed;
-    one.too_many_beats = directed && got.beats > general_position_beats && is_general_position(request.pair) ? 1 : 0;
+    const bool bounded = directed && is_general_position(request.pair);
+    one.too_many_beats = bounded && got.beats > most_general_position_beats(request.pair, got.grid) ? 1 : 0;
     if (legal) one.beats.add(got.beats);
     if (one.failed()) {
       std::ostringstream text;

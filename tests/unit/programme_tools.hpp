@@ -11,7 +11,7 @@
 namespace cchip::test {
 
 /// Any verdict that the pipeline can give, whatever the axis: a zero has no sign, a certain sign is not zero, a certain
-/// gap is a gap.
+/// gap is a gap. Deep verdicts are likely, so that pairs stay deep through many of them.
 /// \param zero_axes components that are zero in both normals of the pair, bit mask 0..6: where the programme looks at a
 /// component of both, it is the largest of one and they are parallel
 inline model::Verdict random_verdict(Random& random, int separated_percent, unsigned zero_axes) {
@@ -28,6 +28,7 @@ inline model::Verdict random_verdict(Random& random, int separated_percent, unsi
   }
   v.compare.certain = chance(random, certains);
   v.compare.clear = chance(random, 60);
+  v.compare.deep = chance(random, 99);
   const bool no_normal = chance(random, 10);
   for (std::size_t d = 0; d < 3; ++d) {
     v.axis_zero[d] = no_normal || (zero_axes >> d & 1U) != 0;
@@ -87,6 +88,7 @@ inline std::uint64_t plan_bits(const model::Options& options, const model::State
     (top).PREFIX##zero = static_cast<CData>(bit_vector((v).compare.zero, (points)));         \
     (top).PREFIX##certain = (v).compare.certain ? 1 : 0;                                     \
     (top).PREFIX##clear = (v).compare.clear ? 1 : 0;                                         \
+    (top).PREFIX##deep = (v).compare.deep ? 1 : 0;                                           \
     (top).PREFIX##axis_negative = static_cast<CData>(bit_vector((v).axis_negative, 3));      \
     (top).PREFIX##axis_zero = static_cast<CData>(bit_vector((v).axis_zero, 3));              \
     (top).PREFIX##axis_largest = static_cast<CData>((v).axis_largest);                       \

@@ -100,7 +100,8 @@ class ControllerBench {
       accepted = header_;
       const std::size_t context = top.m_load_context;
       sim::require(in_flight_.count(context) == 0, "a context is handed out twice");
-      in_flight_[context] = {header_, sent_++, random_zero_axes(random_), model::first_state(header_.mode), {}, {}};
+      in_flight_[context] = {
+          header_, sent_++, random_zero_axes(random_), model::first_state(options_, header_.mode, header_.err), {}, {}};
       reused_contexts += used_[context]++ != 0 ? 1 : 0;
     }
     const auto& flying = pipeline_.q();
@@ -208,7 +209,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_axis_controller: every output on every clock, for
         bench.separated_percent = latency == 7 ? 40 : 5;
         for (int part = 0; part < 3; ++part) {
           bench.simulation().reset(1);
-          bench.simulation().steps(1000);
+          bench.simulation().steps(1200);
         }
         INFO("latency " << latency << ", pairs " << pattern.name());
         REQUIRE(bench.results > 0);

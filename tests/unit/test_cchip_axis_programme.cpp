@@ -9,19 +9,19 @@ using namespace cchip::test;
 
 namespace {
 
-// state: {certain, open, beats (6), info, code (9), programme (3)}
-constexpr int beats_at = defs::state_w - 8;
-constexpr std::uint64_t code_mask = 0x1ffULL << 3;
-constexpr std::uint64_t beats_mask = 0x3fULL << beats_at;
+std::uint64_t mask(defs::Field field) { return in_field(field, (1ULL << field.width) - 1); }
+std::uint64_t get(std::uint64_t state, defs::Field field) { return (state & mask(field)) >> field.lsb; }
 
 std::uint64_t with_code(std::uint64_t state, const model::State& s) {
-  return (state & ~code_mask & ~beats_mask) | std::uint64_t{to_bits(s.code)} << 3 |
-         static_cast<std::uint64_t>(s.beats) << beats_at;
+  return (state & ~mask(defs::state_code) & ~mask(defs::state_beats)) | in_field(defs::state_code, to_bits(s.code)) |
+         in_field(defs::state_beats, static_cast<std::uint64_t>(s.beats));
 }
 
 /// The state with which the controller starts a pair: certain, nothing known.
 std::uint64_t start_bits(const model::State& s) {
-  return with_code(1ULL << (defs::state_w - 1) | static_cast<std::uint64_t>(s.programme), s);
+  return with_code(in_field(defs::state_certain, 1) | in_field(defs::state_deep, s.deep) |
+                       in_field(defs::state_programme, static_cast<std::uint64_t>(s.programme)),
+                   s);
 }
 
 /// Walks whole programmes with made-up verdicts, the RTL's states beside the model's.
@@ -36,16 +36,18 @@ class Walk {
   std::map<Programme, int> outcomes;  ///< by the programme that gave it
   int hits = 0;
   int open = 0;
+  int deep_hits = 0;        ///< definite by depth, in DIRECTED without a warped quad
+  int deep_degenerate = 0;  ///< definite by depth, in DEGENERATE
   int most_beats = 0;
 
   void pair(PairMode mode) {
     auto& top = simulation_.top();
     const int separated_percent = chance(random_, 50) ? 1 : 10;
     const unsigned zero_axes = random_zero_axes(random_);
-    model::State state = model::first_state(mode);
+    const int err = chance(random_, 30) ? 0 : static_cast<int>(random_() % 16);
+    model::State state = model::first_state(options_, mode, err);
     std::uint64_t bits = start_bits(state);
     while (true) {
-      const int err = chance(random_, 50) ? 0 : static_cast<int>(random_() % 16);
       const model::Verdict v = random_verdict(random_, separated_percent, zero_axes);
       present(v, bits, true);
       const model::Step step = model::advance(options_, state, v, err, found_);
@@ -65,9 +67,10 @@ class Walk {
       if (step.outcome) return judge(state, *step.outcome, err);
       bits = top.m_state;
       state = *step.next;
-      REQUIRE((bits & 7) == static_cast<std::uint64_t>(state.programme));
-      REQUIRE((bits & code_mask) >> 3 == to_bits(state.code));
-      REQUIRE((bits & beats_mask) >> beats_at == static_cast<std::uint64_t>(state.beats));
+      REQUIRE(get(bits, defs::state_programme) == static_cast<std::uint64_t>(state.programme));
+      REQUIRE(get(bits, defs::state_code) == to_bits(state.code));
+      REQUIRE(get(bits, defs::state_beats) == static_cast<std::uint64_t>(state.beats));
+      REQUIRE((get(bits, defs::state_deep) != 0) == state.deep);
       idle();
     }
   }
@@ -103,6 +106,9 @@ class Walk {
     ++outcomes[state.programme];
     hits += o.grid ? 1 : 0;
     open += top.m_open != 0 ? 1 : 0;
+    const bool warped = state.sides.warped_a || state.sides.warped_b;
+    deep_hits += state.programme == Programme::tetrahedron && !warped && o.definite ? 1 : 0;
+    deep_degenerate += state.programme == Programme::degenerate && o.grid && o.definite && err != 0 ? 1 : 0;
     idle();
     most_beats = std::max(most_beats, o.beats);
   }
@@ -130,7 +136,10 @@ TEMPLATE_LIST_TEST_CASE("cchip_axis_programme: outcome and next axis of every pr
       INFO("programme " << static_cast<int>(p));
       REQUIRE(walk.outcomes[p] > 30);
     }
-    REQUIRE((walk.outcomes[Programme::tetrahedron] > 30) == tetra);
+    // without warped quads too: hits that only depth can prove
+    REQUIRE(walk.outcomes[Programme::tetrahedron] > 30);
+    REQUIRE(walk.deep_hits > 10);
+    REQUIRE(walk.deep_degenerate > 3);
     REQUIRE((walk.open > 30) == (TestType::WARPED_EXACT == 0));
     REQUIRE(walk.hits > 1000);
     // EXHAUSTIVE to its end, then the longest programme to its end: six edges instead of a warped quad's four

@@ -110,7 +110,7 @@ PairResult answer(const PrimtestConfig& config, const PairRequest& request) {
   if (request.pair.eta == 0) rule(r.definite || !config.warped_exact, "exact input left open");
   if (request.pair.eta == defs::err_unknown) rule(!r.definite, "definite with unknown error");
   if (is_general_position(request.pair)) {
-    if (request.mode == directed) rule(r.beats <= general_position_beats, "more than four beats");
+    if (request.mode == directed) rule(r.beats <= most_general_position_beats(request.pair, r.grid), "too many beats");
     if (request.mode == exhaustive) rule(r.beats == config.exhaustive_beats(), "not the paper's schedule");
   }
   return r;

@@ -48,6 +48,18 @@ bool clear(const Task& task, int points) {
   return true;
 }
 
+/// The intervals overlap by more than the gap bound, whichever of them is moved up.
+bool deep(const Task& task, int points) {
+  std::vector<std::int64_t> own = {0};
+  std::vector<std::int64_t> other;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(points); ++i) {
+    (i < 2 && (task.own >> i & 1U) != 0 ? own : other).push_back(task.in.p[i]);
+  }
+  const auto [own_low, own_high] = std::minmax_element(own.begin(), own.end());
+  const auto [other_low, other_high] = std::minmax_element(other.begin(), other.end());
+  return *other_high - *own_low > task.in.gap_bound && *own_high - *other_low > task.in.gap_bound;
+}
+
 /// |value| > bound without overflow.
 bool exceeds(std::int64_t value, std::int64_t bound) { return value > bound || value < -bound; }
 
@@ -99,7 +111,8 @@ std::vector<Task> tasks(Random& random, int proj_w, int bound_w, int points, uns
                                 : i >= 1 && (task.own & 1U) != 0 ? task.in.p[0]
                                                                  : 0;
       if (near_bound && task.in.gap_bound < std::int64_t{1} << (proj_w - 4)) {
-        p = base + sign * (task.in.gap_bound + static_cast<std::int64_t>(random() % 3) - 1);
+        const std::int64_t side = one_side || chance(random, 50) ? sign : -sign;
+        p = base + side * (task.in.gap_bound + static_cast<std::int64_t>(random() % 3) - 1);
         if (p != model::wrap(static_cast<std::uint64_t>(p), proj_w - 1)) p = 0;
       }
       task.in.p[i] = p;
@@ -134,7 +147,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_compare: verdict, signs and their certainty a
     std::size_t next = 0;
     std::size_t compared = 0;
     int certain_gaps = 0, clear_on_both_sides = 0, only_separated = 0, at_gap_bound = 0, at_sign_bound = 0,
-        beyond_sign_bound = 0;
+        beyond_sign_bound = 0, deeps = 0, deep_by_one = 0;
     Bench bench(
         [&](const sim::ClockInfo&) {
           const Task& task = list[std::min(next, list.size() - 1)];
@@ -162,9 +175,11 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_compare: verdict, signs and their certainty a
             expect("m_separated", separated, v.separated);
             expect("m_certain_gap", certain_gap, v.certain_gap);
             expect("m_clear", top.m_clear != 0, v.clear);
+            expect("m_deep", top.m_deep != 0, v.deep);
             expect("m_separated, intervals", separated, apart(*task, points, 0));
             expect("m_certain_gap, intervals", certain_gap, apart(*task, points, task->in.gap_bound));
             expect("m_clear, intervals", top.m_clear != 0, clear(*task, points));
+            expect("m_deep, intervals", top.m_deep != 0, deep(*task, points));
             for (unsigned i = 0; i < static_cast<unsigned>(points); ++i) {
               const std::int64_t p = task->in.p[i];
               expect("m_negative", (top.m_negative >> i & 1) != 0, v.negative[i]);
@@ -184,6 +199,10 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_compare: verdict, signs and their certainty a
             only_separated += separated && !certain_gap ? 1 : 0;
             const std::int64_t gap = task->in.gap_bound;
             at_gap_bound += gap > 0 && apart(*task, points, gap - 1) && !apart(*task, points, gap) ? 1 : 0;
+            Task less = *task;
+            --less.in.gap_bound;
+            deep_by_one += gap > 0 && deep(less, points) && !deep(*task, points) ? 1 : 0;
+            deeps += top.m_deep != 0 ? 1 : 0;
             ++compared;
           }
           const Task& sent = list[std::min(next++, list.size() - 1)];
@@ -193,8 +212,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_compare: verdict, signs and their certainty a
     simulation.add(bench);
     simulation.steps(list.size() + static_cast<std::size_t>(defs::compare_latency()));
     REQUIRE(compared == list.size());
-    for (const int count :
-         {certain_gaps, clear_on_both_sides, only_separated, at_gap_bound, at_sign_bound, beyond_sign_bound}) {
+    for (const int count : {certain_gaps, clear_on_both_sides, only_separated, at_gap_bound, at_sign_bound,
+                            beyond_sign_bound, deeps, deep_by_one}) {
       REQUIRE(count > 100);
     }
   });

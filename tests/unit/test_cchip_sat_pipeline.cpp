@@ -66,6 +66,26 @@ bool clear(const BeatIn& in) {
   return true;
 }
 
+/// By definition: some difference of an other and an own vertex lies beyond the bound, another one below its negative.
+bool deep(const BeatIn& in) {
+  const bool own_b = in.beat.code.cls == AxisClass::normal_b;
+  const GridPrimitive& other = own_b ? in.pair.a : in.pair.b;
+  const GridPrimitive& own = own_b ? in.pair.b : in.pair.a;
+  const WideVector axis = axis_of(in.beat.code, in.pair);
+  sim::Int128 bound = 0;
+  for (const sim::Int128 x : axis) bound += (x < 0 ? -x : x) << model::error_shift(in.beat.err);
+  bool above = false;
+  bool below = false;
+  for (std::size_t i = 0; i < own.vertex_count(); ++i) {
+    for (std::size_t j = 0; j < other.vertex_count(); ++j) {
+      const sim::Int128 gap = along(axis, other.v[j], own.v[i]);
+      above = above || gap > bound;
+      below = below || -gap > bound;
+    }
+  }
+  return above && below;
+}
+
 template <class Config>
 class PipelineBench {
  public:
@@ -143,6 +163,7 @@ class PipelineBench {
     }
     expect("m_verdict_certain", top.m_verdict_certain != 0, v.compare.certain);
     expect("m_verdict_clear", top.m_verdict_clear != 0, v.compare.clear);
+    expect("m_verdict_deep", top.m_verdict_deep != 0, v.compare.deep);
     for (unsigned d = 0; d < 3; ++d) {
       expect("m_verdict_axis_negative", (top.m_verdict_axis_negative >> d & 1) != 0, v.axis_negative[d]);
       expect("m_verdict_axis_zero", (top.m_verdict_axis_zero >> d & 1) != 0, v.axis_zero[d]);
@@ -157,6 +178,8 @@ class PipelineBench {
     sim::require((top.m_verdict_certain_gap != 0) == apart(in, 1 << model::error_shift(in.beat.err)),
                  "certain gap is not that of the projections of all vertices: " + text);
     sim::require((top.m_verdict_clear != 0) == clear(in), "clear is not that of the projections: " + text);
+    sim::require(in_plane(in.beat.code) || (top.m_verdict_deep != 0) == deep(in),
+                 "deep is not that of the projections of all vertices: " + text);
     sim::require(!separated || in_plane(in.beat.code) || witness_separates(in.beat.code, in.pair),
                  "separated by an axis that is no witness: " + text);
     on_verdict(in, v);

@@ -43,7 +43,8 @@ void AxisController::clock(const std::optional<PairHeader>& pair, const std::opt
   if (following) {
     beat_->state = *following;
   } else if (take_start) {
-    beat_ = Beat{start_.m_data().context, first_state(start_.m_data().mode)};
+    const Start& start = start_.m_data();
+    beat_ = Beat{start.context, first_state(options_, start.mode, side_.at(start.context).err)};
   } else if (ready_.m_valid()) {
     beat_ = ready_.m_data();
   } else {

@@ -34,13 +34,28 @@ std::size_t crossing_edge(const std::array<int, 4>& side, std::size_t n, bool fr
   return 0;
 }
 
-State tetrahedron(const Sides& s, int beats) {
+bool warped(const Sides& s) { return s.warped_a || s.warped_b; }
+
+/// The facet normals of A - B: faces of the warped quads, then all cross axes. Without a warped quad the grid's answer
+/// is a hit already and only `deep` is asked for.
+State tetrahedron(const Sides& s, int beats, bool deep) {
   State next;
   next.programme = Programme::tetrahedron;
-  next.code = s.warped_a ? axis(AxisClass::normal_a, 1) : axis(AxisClass::normal_b, 1);
+  next.code = s.warped_a   ? axis(AxisClass::normal_a, 1)
+              : s.warped_b ? axis(AxisClass::normal_b, 1)
+                           : axis(AxisClass::cross);
   next.beats = beats;
   next.sides = s;
+  next.deep = deep;
   return next;
+}
+
+/// State::deep after this verdict. Zero axes and in-plane axes are no facet normals of a solid A - B; it is flat if
+/// both normals are zero.
+bool still_deep(const State& s, const Verdict& v) {
+  const bool in_plane = s.code.cls == AxisClass::in_plane_a || s.code.cls == AxisClass::in_plane_b;
+  const bool flat = s.programme == Programme::degenerate && is_zero(s.sides.normal_a) && is_zero(s.sides.normal_b);
+  return s.deep && !flat && (v.compare.deep || v.zero_axis() || in_plane);
 }
 
 /// t(k, l) is the projection of W_l; a certain hit has t > 0 on the first, t < 0 on the second crossing axis.
@@ -49,7 +64,7 @@ bool certain_crossing(const Options& o, const Verdict& v, bool second) {
 }
 
 /// A warped quad in the CROSSING programme: if its hit is not certain, TETRAHEDRON decides.
-bool must_be_certain(const Options& o, const Sides& s) { return o.warped_exact && (s.warped_a || s.warped_b); }
+bool must_be_certain(const Options& o, const Sides& s) { return o.warped_exact && warped(s); }
 
 /// Next axis of a programme; nullopt after the last.
 std::optional<AxisCode> next_code(const Options& o, const State& s) {
@@ -106,7 +121,7 @@ Outcome make_outcome(const Options& o, const State& s, bool grid, const AxisCode
   out.grid = grid;
   out.witness = witness;
   out.beats = s.beats + 1;
-  const bool open = grid && !certain && !o.warped_exact && (s.sides.warped_a || s.sides.warped_b);
+  const bool open = grid && !certain && !o.warped_exact && warped(s.sides);
   out.definite = !open && (err == 0 || (err != defs::err_unknown && certain));
   return out;
 }
@@ -127,15 +142,14 @@ State plan(const Options& o, const Sides& s, int beats) {
   State next;
   next.beats = beats;
   next.sides = s;
-  const bool warped = s.warped_a || s.warped_b;
   bool all_zero = true;
   for (std::size_t j = 0; j < o.shape.b; ++j) all_zero = all_zero && s.b[j] == 0;
-  if (warped && o.warped_exact && !s.certain) {
-    next = tetrahedron(s, beats);
-  } else if (!warped && (is_zero(s.normal_a) || is_zero(s.normal_b))) {
+  if (must_be_certain(o, s) && !s.certain) {
+    next = tetrahedron(s, beats, false);
+  } else if (!warped(s) && (is_zero(s.normal_a) || is_zero(s.normal_b))) {
     next.programme = Programme::degenerate;
     next.code = axis(AxisClass::cross);
-  } else if (!warped && all_zero) {
+  } else if (!warped(s) && all_zero) {
     next.programme = Programme::coplanar;
     next.code = axis(AxisClass::in_plane_a, 0, static_cast<std::size_t>(s.largest));
   } else {
@@ -147,8 +161,9 @@ State plan(const Options& o, const Sides& s, int beats) {
   return next;
 }
 
-State first_state(PairMode mode) {
+State first_state(const Options& o, PairMode mode, int err) {
   State s;
+  s.deep = o.depth && err != 0 && err != defs::err_unknown;
   if (mode == PairMode::exhaustive) s.programme = Programme::exhaustive;
   if (mode > PairMode::directed) s.programme = Programme::illegal;
   s.code = axis(s.programme == Programme::illegal ? AxisClass::illegal : AxisClass::normal_a);
@@ -181,6 +196,7 @@ namespace {
 Step advance_exhaustive(const Options& o, const State& s, const Verdict& v, int err, Exhaustive& found) {
   if (s.code.cls == AxisClass::normal_a) {
     found = {};
+    found.deep = s.deep;
     record_normal_a(found.sides, o.shape, v);
     found.certain = found.sides.certain;
   } else if (s.code.cls == AxisClass::normal_b) {
@@ -190,6 +206,7 @@ Step advance_exhaustive(const Options& o, const State& s, const Verdict& v, int 
   } else if (s.code == found.plan.code || s.code == found.plan.second) {
     found.certain = found.certain && certain_crossing(o, v, s.code == found.plan.second);
   }
+  found.deep = found.deep && still_deep(s, v);
   if (v.compare.separated && !found.separated) {
     found.separated = true;
     found.certain_gap = v.compare.certain_gap;
@@ -200,10 +217,14 @@ Step advance_exhaustive(const Options& o, const State& s, const Verdict& v, int 
   if (found.plan.programme == Programme::crossing && (found.certain || !must_be_certain(o, found.sides))) {
     State last = s;
     last.sides = found.sides;
-    return {make_outcome(o, last, true, {}, found.certain, err), std::nullopt};
+    const bool certain = found.certain || (found.deep && !warped(found.sides));
+    return {make_outcome(o, last, true, {}, certain, err), std::nullopt};
   }
-  if (found.plan.programme == Programme::crossing) return {std::nullopt, tetrahedron(found.sides, s.beats + 1)};
+  if (found.plan.programme == Programme::crossing) {
+    return {std::nullopt, tetrahedron(found.sides, s.beats + 1, found.deep)};
+  }
   State next = found.plan;
+  next.deep = found.deep;
   next.beats = s.beats + 1;
   return {std::nullopt, next};
 }
@@ -224,6 +245,7 @@ Step advance(const Options& o, const State& s, const Verdict& v, int err, Exhaus
   if (v.compare.separated) return {make_outcome(o, s, false, s.code, v.compare.certain_gap, err), std::nullopt};
   State next = s;
   next.beats = s.beats + 1;
+  next.deep = still_deep(s, v);
   if (s.programme == Programme::normals) {
     if (s.code.cls == AxisClass::normal_a) {
       record_normal_a(next.sides, o.shape, v);
@@ -231,23 +253,34 @@ Step advance(const Options& o, const State& s, const Verdict& v, int err, Exhaus
       return {std::nullopt, next};
     }
     record_normal_b(next.sides, o.shape, v);
-    return {std::nullopt, plan(o, next.sides, next.beats)};
+    State planned = plan(o, next.sides, next.beats);
+    planned.deep = next.deep;
+    return {std::nullopt, planned};
   }
   if (s.programme == Programme::crossing) {
     next.certain = s.certain && certain_crossing(o, v, s.code == s.second);
     // a warped quad hits here only if it is certain
-    if (must_be_certain(o, s.sides) && !next.certain) return {std::nullopt, tetrahedron(s.sides, next.beats)};
+    if (must_be_certain(o, s.sides) && !next.certain) {
+      return {std::nullopt, tetrahedron(s.sides, next.beats, next.deep)};
+    }
+    // a hit that the signs leave open: do the other axes prove it?
+    if (s.code == s.second && !next.certain && next.deep && !warped(s.sides)) {
+      return {std::nullopt, tetrahedron(s.sides, next.beats, true)};
+    }
   }
+  const bool shallow_hit = s.programme == Programme::tetrahedron && !warped(s.sides) && !next.deep;
+  if (shallow_hit) return {make_outcome(o, s, true, {}, false, err), std::nullopt};
   if (const auto code = next_code(o, s)) {
     next.code = *code;
     return {std::nullopt, next};
   }
-  const bool certain = s.programme == Programme::crossing && next.certain;
+  const bool complete = s.programme == Programme::tetrahedron || s.programme == Programme::degenerate;
+  const bool certain = complete ? next.deep : s.programme == Programme::crossing && next.certain;
   return {make_outcome(o, s, true, {}, certain, err), std::nullopt};
 }
 
 Outcome run_programme(const Options& o, const GridPair& pair, PairMode mode, int coord_w) {
-  State s = first_state(mode);
+  State s = first_state(o, mode, pair.eta);
   Exhaustive found;
   for (;;) {
     const Verdict v = sat_pipeline(o.shape, beat_of(s, pair.eta), pair.a, pair.b, coord_w);

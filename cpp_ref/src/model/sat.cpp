@@ -163,8 +163,11 @@ Comparison sat_compare(const Shape& shape, const AxisBeat& beat, const std::arra
   bool above = beat.allow_above, below = beat.allow_below;
   bool certain_above = above, certain_below = below;
   bool clear = true;
+  bool deep_above = false, deep_below = false;
   const auto require = [&](std::int64_t d, bool negative) {
     clear = clear && (negative ? d < -in.gap_bound : d > in.gap_bound);
+    deep_above = deep_above || d > in.gap_bound;
+    deep_below = deep_below || d < -in.gap_bound;
     above = above && d > 0;
     below = below && d < 0;
     certain_above = certain_above && d > in.gap_bound;
@@ -184,6 +187,7 @@ Comparison sat_compare(const Shape& shape, const AxisBeat& beat, const std::arra
   out.separated = above || below;
   out.certain_gap = certain_above || certain_below;
   out.clear = clear;
+  out.deep = deep_above && deep_below;
   return out;
 }
 

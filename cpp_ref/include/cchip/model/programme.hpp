@@ -29,6 +29,9 @@ struct State {
   Sides sides;
   AxisCode second;  ///< crossing: the axis after this one
   bool certain = true;
+  /// Every axis so far overlaps by more than the error in both directions. False from the start if eta is 0, where no
+  /// proof is needed, or unknown, where there is none.
+  bool deep = false;
 };
 
 /// What a programme finds out about a pair.
@@ -44,10 +47,13 @@ struct Outcome {
 struct Options {
   Shape shape;
   bool warped_exact = true;
+  /// A hit is also definite if every facet normal of A - B overlaps by more than the error. False: only signs make a
+  /// hit definite, for comparisons; the RTL has no such switch.
+  bool depth = true;
 };
 
 /// First state of a pair in a mode (reserved ones give Programme::illegal).
-State first_state(PairMode mode);
+State first_state(const Options& options, PairMode mode, int err);
 /// The axis the state asks for.
 AxisBeat beat_of(const State& state, int err);
 /// The beat of an EXHAUSTIVE pair that follows at once; nullopt after its last.
@@ -71,6 +77,7 @@ struct Exhaustive {
   bool separated = false;
   bool certain_gap = false;
   bool certain = false;  ///< signs of nA, then of both normals, then also of the crossing axes
+  bool deep = false;     ///< State::deep after the latest verdict
   AxisCode witness;
   Sides sides;
   State plan;  ///< what the normals lead to

@@ -83,6 +83,9 @@ struct Comparison {
   bool certain = false;  ///< the sign of p[sign_slot(shape)] is that of the unrounded determinant
   /// Every other point lies beyond all own points by more than the gap bound, on either side.
   bool clear = false;
+  /// The two sets overlap by more than the gap bound in both directions: some other point lies that far above some own
+  /// point, and some other one that far below.
+  bool deep = false;
 };
 /// Outputs of cchip_box_compare for one component.
 struct BoxComparison {
@@ -96,6 +99,7 @@ struct Verdict {
   std::array<bool, 3> axis_negative = {};
   std::array<bool, 3> axis_zero = {};
   int axis_largest = 0;
+  bool zero_axis() const { return axis_zero[0] && axis_zero[1] && axis_zero[2]; }
 };
 
 Selection sat_select(const Shape& shape, const AxisCode& code, const GridPrimitive& a, const GridPrimitive& b);

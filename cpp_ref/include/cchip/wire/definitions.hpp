@@ -364,7 +364,7 @@ constexpr Field swap_report_code = {16, 4};
 constexpr Field swap_report_lost = {20, 16};
 
 /// state of a pair's programme, which travels with its beat (cchip_axis_programme) [bit]
-constexpr int state_w = 34;
+constexpr int state_w = 35;
 /// Programme
 constexpr Field state_programme = {0, 3};
 /// axis code of the beat
@@ -377,6 +377,8 @@ constexpr Field state_beats = {26, 6};
 constexpr Field state_open = {32, 1};
 /// all signs used so far hold for the unrounded primitives
 constexpr Field state_certain = {33, 1};
+/// eta is 1..14 and every axis so far overlaps by more than the error, both ways
+constexpr Field state_deep = {34, 1};
 
 /// a STATE without its count of beats: what the verdicts of both normals lead to (cchip_programme_plan) [bit]
 constexpr int plan_w = 28;

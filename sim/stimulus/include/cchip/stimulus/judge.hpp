@@ -10,8 +10,13 @@
 
 namespace cchip::stimulus {
 
-/// Most beats of a DIRECTED pair that is planar on the grid, not coplanar, not degenerate.
+/// Beats that decide a DIRECTED pair that is planar on the grid, not coplanar, not degenerate.
 constexpr int general_position_beats = 4;
+/// Most beats of such a pair with this answer: a hit that is inexact may visit every cross axis to become definite.
+inline int most_general_position_beats(const GridPair& pair, bool grid) {
+  const bool may_be_deep = grid && pair.eta != 0 && pair.eta != defs::err_unknown;
+  return general_position_beats + (may_be_deep ? static_cast<int>(pair.a.vertex_count() * pair.b.vertex_count()) : 0);
+}
 
 inline bool is_general_position(const GridPair& pair) {
   return !is_warped(pair.a) && !is_warped(pair.b) && !is_degenerate(pair.a) && !is_degenerate(pair.b) &&
