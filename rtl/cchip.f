@@ -3,6 +3,7 @@ common/cchip_delay.v
 common/cchip_skid_buffer.v
 common/cchip_fifo.v
 common/cchip_ram.v
+common/cchip_dual_ram.v
 common/cchip_block_ram.v
 common/cchip_crc32.v
 common/cchip_arbiter.v
@@ -14,6 +15,8 @@ arith/cchip_dot3.v
 arith/cchip_cross3.v
 arith/cchip_norm1.v
 memory/cchip_axi_read.v
+memory/cchip_cache_fill.v
+memory/cchip_cache.v
 sat/cchip_sat_select.v
 sat/cchip_sat_axis.v
 sat/cchip_sat_bound.v

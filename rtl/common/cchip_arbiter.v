@@ -9,7 +9,7 @@
 //   cuts         nothing
 //   reset        the search begins at source 0
 module cchip_arbiter #(
-    // sources, 1..16
+    // sources, 1..32
     parameter integer N = 4
 ) (
     input  wire         clk,
@@ -20,8 +20,8 @@ module cchip_arbiter #(
 );
 
   generate
-    if (N < 1 || N > 16) begin : gen_illegal
-      cchip_error_arbiter_N_must_be_1_to_16 u_error ();
+    if (N < 1 || N > 32) begin : gen_illegal
+      cchip_error_arbiter_N_must_be_1_to_32 u_error ();
     end
   endgenerate
 

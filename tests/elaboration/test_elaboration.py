@@ -52,12 +52,13 @@ KINDS = "cchip_error_KINDS_must_be_1_to_3"
 PLACE = "cchip_error_PLACE_W_must_be_3_to_12"
 TAKERS = "cchip_error_TAKERS_must_be_2_to_5"
 CREDIT = "cchip_error_CREDIT_must_be_1_to_256"
-ARBITER = "cchip_error_arbiter_N_must_be_1_to_16"
+ARBITER = "cchip_error_arbiter_N_must_be_1_to_32"
 COUNT = "cchip_error_count_LIMIT_must_be_1_to_65535"
 MERGE = "cchip_error_result_merge_SOURCES_not_2_to_8_or_WIDTH_below_1"
 CRC = "cchip_error_crc32_DATA_W_must_be_a_multiple_of_8"
 FETCH = "cchip_error_bitstream_fetch_FIFO_DEPTH_below_32"
 READ = "cchip_error_axi_read_"
+CACHE = "cchip_error_cache_"
 SLOT_LIMIT = "cchip_error_SLOT_LIMIT_below_16"
 COUNT_W = "cchip_error_COUNT_W_must_be_1_to_16"
 PORT = "cchip_error_config_port_CFG_W_must_be_8_or_32_and_CFG_DIVIDER_above_0"
@@ -111,6 +112,7 @@ ILLEGAL = [
     ("cchip_ram", {"WIDTH": 0}, RAM),
     ("cchip_ram", {"DEPTH": 0}, RAM),
     ("cchip_ram", {"DEPTH": 17, "ADDR_W": 4}, RAM),
+    *(("cchip_dual_ram", case, BLOCK_RAM.replace("block", "dual")) for case in ({"WIDTH": 0}, {"ADDR_W": 2}, {"ADDR_W": 17})),
     ("cchip_block_ram", {"WIDTH": 0}, BLOCK_RAM),
     ("cchip_block_ram", {"ADDR_W": 17}, BLOCK_RAM),
     ("cchip_block_ram", {"WORDS": 2}, "cchip_error_block_ram_WORDS_must_be_1_or_4"),
@@ -123,7 +125,7 @@ ILLEGAL = [
     ("cchip_pr_slot", {"SLOT_ID": 256}, SLOT_ID),
     ("cchip_pr_slot", {"SIMULATION": 2}, SIMULATION),
     ("cchip_pr_slot", {"ROC_CYCLES": 0}, ROC),
-    *(("cchip_arbiter", {"N": n}, ARBITER) for n in (0, 17)),
+    *(("cchip_arbiter", {"N": n}, ARBITER) for n in (0, 33)),
     *(("cchip_count", {"LIMIT": n}, COUNT) for n in (0, 65536)),
     *(("cchip_vertex_collector", {"COORD_W": n}, COORD_W) for n in (3, 21)),
     *(("cchip_descriptor_queues", {"DEPTH": n}, QUEUE) for n in (8, 24, 2048)),
@@ -140,6 +142,13 @@ ILLEGAL = [
     *(("cchip_result_merge", {"SOURCES": n}, MERGE) for n in (1, 9)),
     ("cchip_crc32", {"DATA_W": 12}, CRC),
     ("cchip_bitstream_fetch", {"FIFO_DEPTH": 31}, FETCH),
+    *(("cchip_cache", {"CACHE_KB": n}, CACHE + "CACHE_KB_must_be_a_power_of_two_1_to_1024") for n in (0, 3, 2048)),
+    *(("cchip_cache", {"PLACES": n}, CACHE + "PLACES_must_be_2_4_8_16_or_32") for n in (1, 12, 64)),
+    *(("cchip_cache", {"MISSES": n}, CACHE + "MISSES_must_be_2_4_8_16_or_32") for n in (1, 12, 64)),
+    *(("cchip_cache", case, CACHE + "LINE_W_must_be_over_SET_W_to_58_and_LOCKS_1_to_4")
+      for case in ({"LINE_W": 10}, {"LINE_W": 59}, {"LOCKS": 0}, {"LOCKS": 5})),
+    *(("cchip_cache_fill", {"MISSES": n}, CACHE + "fill_MISSES_must_be_2_to_32_and_FRAME_W_positive") for n in (1, 33)),
+    *(("cchip_cache_fill", {"DATA_W": n}, CACHE + "fill_DATA_W_must_be_64_128_256_or_512") for n in (32, 96, 1024)),
     *(("cchip_axi_read", {"CLIENTS": n}, READ + "CLIENTS_must_be_1_to_8") for n in (0, 9)),
     *(("cchip_axi_read", {"SLOTS": n}, READ + "SLOTS_must_be_2_4_8_16_or_32") for n in (1, 3, 64)),
     *(("cchip_axi_read", {"DATA_W": n}, READ + "DATA_W_must_be_64_128_256_or_512") for n in (32, 96, 1024)),
@@ -174,7 +183,9 @@ LEGAL = [
     ("cchip_delay", {"DEPTH": 0, "RESET": 1}),
     *(("cchip_delay", {"DEPTH": n, "MEMORY": 1}) for n in (3, 4, 20)),
     ("cchip_fifo", {"DEPTH": 1}),
-    *(("cchip_arbiter", {"N": n}) for n in (1, 16)),
+    *(("cchip_arbiter", {"N": n}) for n in (1, 32)),
+    ("cchip_cache", {"CACHE_KB": 1, "PLACES": 2, "MISSES": 2, "LINE_W": 4, "LOCKS": 1, "DATA_W": 512}),
+    *(("cchip_cache_fill", {"MISSES": n, "FRAME_W": 1, "DATA_W": w}) for n, w in ((2, 64), (32, 256))),
     *(("cchip_axi_read", {"CLIENTS": c, "SLOTS": s, "DATA_W": w}) for c, s, w in ((1, 2, 512), (8, 32, 64))),
     *(("cchip_count", {"LIMIT": n}) for n in (1, 65535)),
     *(("cchip_vertex_collector", {"COORD_W": n}) for n in (4, 20)),
@@ -188,6 +199,7 @@ LEGAL = [
     *(("cchip_result_merge", {"SOURCES": n}) for n in (2, 8)),
     ("cchip_fifo", {"WIDTH": 1, "DEPTH": 5}),
     ("cchip_ram", {"WIDTH": 1, "DEPTH": 1, "ADDR_W": 1}),
+    ("cchip_dual_ram", {"WIDTH": 1, "ADDR_W": 3}),
     *(("cchip_block_ram", {"WIDTH": 1, "WORDS": n, "ADDR_W": 3}) for n in (1, 4)),
     ("cchip_skid_buffer", {"WIDTH": 1}),
     *(("cchip_pr_region", {"RM_ID": n, "COORD_W": 4, "SUBSTAGES": smallest_substages(4)}) for n in range(4)),

@@ -10,7 +10,9 @@
 #include <cchip/wire/definitions.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -202,6 +204,415 @@ class AxiRead {
   std::optional<std::size_t> found_;
   std::optional<Failure> failing_, failed_;
   std::optional<Beat> beat_;
+};
+
+/// cchip_cache: lines of 64 bytes, two ways, two ports. Counts what its ports do on each clock.
+class Cache {
+ public:
+  struct Shape {
+    std::size_t sets = 1024;
+    std::size_t places = 32;
+    std::size_t misses = 32;
+    std::size_t beats = 4;  ///< of a line
+  };
+  struct Range {  ///< of lines; empty if first > last
+    std::uint64_t first = 1;
+    std::uint64_t last = 0;
+    bool has(std::uint64_t line) const { return first <= line && line <= last; }
+  };
+  struct Request {
+    std::size_t place = 0;
+    std::uint64_t line = 0;
+  };
+  struct Answer {
+    std::size_t place = 0;
+    ReadCode code = ReadCode::ok;
+    LineData data{};  ///< if the code is ok
+  };
+  /// An answer of cchip_axi_read.
+  struct Beat {
+    std::size_t slot = 0;
+    std::optional<std::size_t> beat;  ///< without: no data
+    bool last = false;
+    ReadCode code = ReadCode::ok;
+    LineData data{};
+  };
+  struct Inputs {
+    std::array<std::optional<Request>, 2> requests;
+    std::vector<Range> locks;
+    std::optional<Range> invalidate;  ///< taken if invalidate_ready()
+    std::optional<Beat> beat;
+  };
+  struct Counts {
+    bool hit = false, miss = false, wait = false, again = false;
+  };
+
+  explicit Cache(const Shape& shape)
+      : shape_(shape), arrived_(shape.misses), serve_queue_(shape.misses), entries_(shape.sets), data_(2 * shape.sets) {
+    reset();
+  }
+
+  const std::array<std::optional<Answer>, 2>& answers() const { return answers_; }
+  const std::array<Counts, 2>& counts() const { return counts_; }
+  bool invalidate_ready() const { return ready_; }
+  /// Request to memory: the slot is its place.
+  const std::optional<Request>& read() const { return read_; }
+
+  void clock(const Inputs& in) {
+    // what stage 4 wants
+    std::array<bool, 2> want{}, fresh{}, hit{}, wait{};
+    for (std::size_t p = 0; p < 2; ++p) {
+      Step& step = ports_[p].steps[3];
+      step.stale = step.stale || changes(step);
+      fresh[p] = step.kind == Kind::look && !step.stale;
+      wait[p] = fresh[p] && step.wait;
+      hit[p] = fresh[p] && step.match && !step.wait;
+      want[p] = fresh[p] && !step.match && step.victim && free_.offered;
+    }
+    const Step& fill4 = ports_[0].steps[3];
+    const Step& walk4 = ports_[1].steps[3];
+    const bool kill = fill4.kind == Kind::own && fill4.code != ReadCode::ok;
+    const bool forgets = walk4.forget[0] || walk4.forget[1];
+    const bool walk_seen = walk4.kind == Kind::own;
+    const bool walk_next = walk_seen && !walk4.stale && !(kill && forgets);
+    const bool walk_write = walk_next && forgets;
+    std::optional<std::size_t> granted;
+    if (want[0] && !walk_write && !(want[1] && favour_)) granted = 0;
+    if (want[1] && !kill && !(want[0] && !favour_)) granted = 1;
+    if (want[0] && want[1]) favour_ = !favour_;
+
+    // the lines under way: what they show on this clock
+    const bool fills = arrived_.m_valid();
+    const Arrived fill = fills ? arrived_.m_data() : Arrived{};
+    const bool release = serving_ && ports_[0].wake.empty() && ports_[1].wake.empty();
+    const bool collect = serve_queue_.m_valid() && (!serving_ || release);
+
+    const bool walks = walk_valid_;
+    std::array<Step, 2> first;
+    for (std::size_t p = 0; p < 2; ++p) {
+      Port& port = ports_[p];
+      Step& step4 = port.steps[3];
+      const bool grant = granted == p;
+      const bool sleeps = wait[p] || grant;
+      const bool again = step4.kind == Kind::look && (step4.stale || (!step4.match && !grant));
+      answers_[p].reset();
+      if (hit[p]) answers_[p] = Answer{step4.place, ReadCode::ok, step4.data};
+      if (step4.kind == Kind::serve) answers_[p] = Answer{step4.place, step4.code, step4.data};
+      counts_[p] = Counts{hit[p], grant, wait[p], again};
+
+      // stage 0
+      const auto& ask = in.requests[p];
+      const bool own = p == 0 ? fills : walks;
+      const bool serve = !own && !port.wake.empty();
+      const bool open = running_ && !own && !serve;
+      const bool pick = open && port.pick && (!ask || port.pick_first);
+      const bool fresh_request = open && ask && !pick;
+      if (open && ask && port.pick) port.pick_first = !port.pick_first;
+      Step& step = first[p];
+      if (own) {
+        step.kind = Kind::own;
+        step.line = p == 0 ? held_[fill.slot].frame / 2 : walk_set_;
+        step.way = held_[fill.slot].frame % 2;
+        step.slot = fill.slot;
+        step.code = fill.code;
+      } else if (serve) {
+        step.kind = Kind::serve;
+        step.place = *port.wake.begin();
+        step.line = serving_->frame / 2;
+        step.way = serving_->frame % 2;
+        step.code = serving_->code;
+        port.wake.erase(port.wake.begin());
+      } else if (pick || fresh_request) {
+        step.kind = Kind::look;
+        step.place = pick ? *port.pick : ask->place;
+        step.line = pick ? port.lines[*port.pick] : ask->line;
+      }
+      step.entries = entries_[set_of(step)];
+      step.stale = changes(step);
+      if (!port.pick || pick) port.pick = port.turn.take(port.todo);
+      if (ask) port.lines[ask->place] = ask->line;
+      if (ask && !fresh_request) port.todo.insert(ask->place);
+      if (again) port.todo.insert(step4.place);
+
+      // who waits
+      if (collect) {
+        for (const auto& [place, slot] : port.asleep) {
+          if (slot == serve_queue_.m_data().slot) port.wake.insert(place);
+        }
+        for (const std::size_t place : port.wake) port.asleep.erase(place);
+      }
+      if (sleeps) port.asleep[step4.place] = grant ? free_.slot : step4.wait_slot;
+
+      // stages 1 to 3
+      for (std::size_t s = 0; s < 3; ++s) port.steps[s].stale = port.steps[s].stale || changes(port.steps[s]);
+      for (const Range& range : in.locks) port.steps[0].locks = port.steps[0].locks || range.has(port.steps[0].line);
+      Step& step3 = port.steps[2];
+      judge(step3);
+      step3.data = data_[2 * set_of(step3) + step3.way];
+    }
+    const Step fill3 = ports_[0].steps[2];
+
+    // the change of the entries that this clock shows comes into force, and the next one is made
+    if (change_) {
+      for (std::size_t w = 0; w < 2; ++w) {
+        if (change_->ways[w]) entries_[change_->set][w] = change_->entries[w];
+      }
+    }
+    change_.reset();
+    if (!running_) {
+      change_ = Change{walk_set_, {true, true}, {}};
+    } else if (kill) {
+      change_ = Change{set_of(fill4), {fill4.way == 0, fill4.way == 1}, {}};
+      change_->entries[fill4.way].slot = fill4.slot;
+    } else if (walk_write) {
+      change_ = Change{set_of(walk4), {walk4.forget[0], walk4.forget[1]}, walk4.entries};
+      for (Entry& entry : change_->entries) entry.valid = entry.locked = false;
+    } else if (granted) {
+      const Step& step = ports_[*granted].steps[3];
+      change_ = Change{set_of(step), {*step.victim == 0, *step.victim == 1}, {}};
+      change_->entries[*step.victim] = Entry{true, step.locks, step.turn, free_.slot, step.line};
+    }
+
+    // the walk, before the slots it looks at change
+    clock_walk(in.invalidate, walk_seen, walk_next);
+
+    // the slots
+    std::optional<std::size_t> released;
+    if (release) {
+      released = serving_->slot;
+      held_[*released].held = false;
+      serving_.reset();
+    }
+    if (fill3.kind == Kind::own && fill3.code == ReadCode::ok) {
+      held_[fill3.slot].filled = true;
+      data_[2 * set_of(fill3) + fill3.way] = held_[fill3.slot].data;
+    }
+    if (read_) {
+      held_[read_->place].held = true;
+      held_[read_->place].filled = false;
+      held_[read_->place].frame = allocate_frame_;
+    }
+    if (in.beat && in.beat->beat) {
+      const std::size_t words = 16 / shape_.beats;
+      for (std::size_t w = 0; w < words; ++w) held_[in.beat->slot].data[*in.beat->beat * words + w] = in.beat->data[w];
+    }
+    if (collect) serving_ = serve_queue_.m_data();
+    serve_queue_.clock(fill3.kind == Kind::own, Arrived{fill3.slot, fill3.code, 2 * set_of(fill3) + fill3.way},
+                       collect);
+    arrived_.clock(in.beat && in.beat->last, in.beat ? Arrived{in.beat->slot, in.beat->code, 0} : Arrived{}, true);
+    const bool load = !free_.offered || granted;
+    read_.reset();
+    if (granted) {
+      const Step& step = ports_[*granted].steps[3];
+      read_ = Request{free_.slot, step.line};
+      allocate_frame_ = 2 * set_of(step) + *step.victim;
+    }
+    if (load) {
+      const auto next = free_.turn.take(free_.idle);
+      free_.offered = next.has_value();
+      if (next) free_.slot = *next;
+    }
+    if (released) free_.idle.insert(*released);
+
+    for (std::size_t p = 0; p < 2; ++p) {
+      auto& steps = ports_[p].steps;
+      steps = {first[p], steps[0], steps[1], steps[2]};
+    }
+  }
+
+  void reset() {
+    for (Port& port : ports_) port = Port(shape_.places);
+    held_.assign(shape_.misses, Held{});
+    free_ = Free(shape_.misses);
+    arrived_.reset();
+    serve_queue_.reset();
+    serving_.reset();
+    change_.reset();
+    read_.reset();
+    answers_ = {};
+    counts_ = {};
+    favour_ = running_ = ready_ = walk_valid_ = false;
+    state_ = State::clear;
+    walk_set_ = 0;
+    left_ = shape_.sets - 1;
+  }
+
+ private:
+  enum class Kind { none, look, serve, own };
+  enum class State { clear, idle, ask, see, reads, answers };
+  struct Entry {
+    bool valid = false;
+    bool locked = false;
+    bool turn = false;
+    std::size_t slot = 0;
+    std::uint64_t line = 0;
+  };
+  struct Step {
+    Kind kind = Kind::none;
+    std::size_t place = 0;
+    std::uint64_t line = 0;  // the set alone if kind is serve or own
+    std::size_t way = 0;
+    std::size_t slot = 0;
+    ReadCode code = ReadCode::ok;
+    bool stale = false;
+    std::array<Entry, 2> entries{};
+    bool match = false, wait = false;
+    std::size_t wait_slot = 0;
+    std::optional<std::size_t> victim;
+    bool locks = false, turn = false;
+    std::array<bool, 2> forget{};
+    LineData data{};
+  };
+  /// The first of several that want it, beginning behind the one that had it last.
+  struct Turn {
+    explicit Turn(std::size_t n) : last(n - 1) {}
+    std::optional<std::size_t> take(std::set<std::size_t>& of) {
+      if (of.empty()) return std::nullopt;
+      auto next = of.upper_bound(last);
+      if (next == of.end()) next = of.begin();
+      last = *next;
+      of.erase(next);
+      return last;
+    }
+    std::size_t last;
+  };
+  struct Port {
+    explicit Port(std::size_t places) : lines(places), turn(places) {}
+    std::vector<std::uint64_t> lines;
+    std::set<std::size_t> todo, wake;
+    std::map<std::size_t, std::size_t> asleep;  // place, slot of the line it waits for
+    Turn turn;
+    std::optional<std::size_t> pick;
+    bool pick_first = false;
+    std::array<Step, 4> steps;  // stages 1 to 4
+  };
+  struct Held {
+    bool held = false, filled = false;
+    std::size_t frame = 0;  // 2 set + way
+    LineData data{};
+  };
+  struct Free {
+    explicit Free(std::size_t slots = 1) : turn(slots) {
+      for (std::size_t i = 0; i < slots; ++i) idle.insert(i);
+    }
+    std::set<std::size_t> idle;
+    Turn turn;
+    bool offered = false;
+    std::size_t slot = 0;
+  };
+  struct Arrived {
+    std::size_t slot = 0;
+    ReadCode code = ReadCode::ok;
+    std::size_t frame = 0;
+  };
+  struct Change {
+    std::size_t set = 0;
+    std::array<bool, 2> ways{};
+    std::array<Entry, 2> entries{};
+  };
+
+  std::size_t set_of(const Step& step) const { return step.line % shape_.sets; }
+  bool changes(const Step& step) const { return change_ && change_->set == set_of(step); }
+
+  /// Stage 3.
+  void judge(Step& step) const {
+    std::array<bool, 2> may{};
+    step.victim.reset();
+    for (std::size_t w = 0; w < 2; ++w) {
+      const Entry& entry = step.entries[w];
+      const Held& held = held_[entry.slot];
+      const bool holds = held.held && held.frame == 2 * set_of(step) + w;
+      step.forget[w] = entry.valid && walk_range_.has(entry.line);
+      may[w] = !holds && !entry.locked;
+      if (step.kind != Kind::look || !entry.valid || entry.line != step.line) continue;
+      step.match = true;
+      step.way = w;
+      if (holds && !held.filled) {
+        step.wait = true;
+        step.wait_slot = entry.slot;
+      }
+    }
+    const auto& [a, b] = step.entries;
+    if (may[0] || may[1]) {
+      step.victim = !may[0] ? 1 : !may[1] ? 0 : !a.valid ? 0 : !b.valid ? 1 : a.turn != b.turn ? 1 : 0;
+      const Entry& other = step.entries[1 - *step.victim];
+      step.locks = step.locks && !other.locked;
+      step.turn = (*step.victim == 0) != other.turn;
+    }
+  }
+
+  void clock_walk(const std::optional<Range>& invalidate, bool seen, bool next) {
+    const bool last = left_ == 0;
+    if (state_ == State::reads) {
+      std::set<std::size_t> old;
+      for (const std::size_t slot : old_) {
+        if (held_[slot].held) old.insert(slot);
+      }
+      if (old_.empty()) state_ = State::answers;
+      old_ = old;
+      clocks_ = 6;
+      return;
+    }
+    old_.clear();
+    for (std::size_t slot = 0; slot < held_.size(); ++slot) {
+      if (held_[slot].held) old_.insert(slot);
+    }
+    walk_valid_ = false;
+    switch (state_) {
+      case State::clear:
+        walk_set_ = (walk_set_ + 1) % shape_.sets;
+        left_ = (left_ + shape_.sets - 1) % shape_.sets;
+        if (last) {
+          state_ = State::idle;
+          running_ = ready_ = true;
+        }
+        break;
+      case State::idle:
+        if (!invalidate) break;
+        walk_range_ = *invalidate;
+        walk_set_ = invalidate->first % shape_.sets;
+        left_ = std::min<std::uint64_t>(invalidate->last - invalidate->first, shape_.sets - 1);
+        ready_ = false;
+        state_ = State::ask;
+        break;
+      case State::ask:
+        walk_valid_ = true;
+        state_ = State::see;
+        break;
+      case State::see:
+        if (!seen) break;
+        state_ = next && last ? State::reads : State::ask;
+        if (!next) break;
+        walk_set_ = (walk_set_ + 1) % shape_.sets;
+        left_ = (left_ + shape_.sets - 1) % shape_.sets;
+        break;
+      default:
+        if (clocks_-- != 0) break;
+        state_ = State::idle;
+        ready_ = true;
+    }
+  }
+
+  Shape shape_;
+  std::array<Port, 2> ports_{Port(2), Port(2)};
+  std::vector<Held> held_;
+  Free free_;
+  Fifo<Arrived> arrived_, serve_queue_;
+  std::optional<Arrived> serving_;
+  std::vector<std::array<Entry, 2>> entries_;
+  std::vector<LineData> data_;
+  std::optional<Change> change_;
+  std::size_t allocate_frame_ = 0;
+  std::optional<Request> read_;
+  std::array<std::optional<Answer>, 2> answers_;
+  std::array<Counts, 2> counts_{};
+  bool favour_ = false, running_ = false, ready_ = false, walk_valid_ = false;
+  State state_ = State::clear;
+  std::size_t walk_set_ = 0;
+  std::uint64_t left_ = 0;
+  Range walk_range_;
+  std::set<std::size_t> old_;
+  int clocks_ = 0;
 };
 
 }  // namespace cchip::model

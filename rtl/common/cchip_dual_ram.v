@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_dual_ram: block RAM with its output registers and two ports; the first one writes or reads,
+// the second one reads.
+//   latency      read_data belongs to the address of 2 clocks before
+//   throughput   two accesses every clock
+//   collision    read_data_a of a clock with write, and read_data_b of the word that is written on
+//                that clock: any value
+//   cuts         every path
+//   reset        none; words never written hold any value
+module cchip_dual_ram #(
+    // width of a word, bit, >= 1
+    parameter integer WIDTH = 8,
+    // width of an address, bit, 3..16
+    parameter integer ADDR_W = 11
+) (
+    input  wire              clk,
+    input  wire              write,
+    input  wire [ADDR_W-1:0] addr_a,
+    input  wire [ WIDTH-1:0] write_data,
+    output wire [ WIDTH-1:0] read_data_a,
+    input  wire [ADDR_W-1:0] addr_b,
+    output wire [ WIDTH-1:0] read_data_b
+);
+
+  generate
+    if (WIDTH < 1 || ADDR_W < 3 || ADDR_W > 16) begin : gen_illegal
+      cchip_error_dual_ram_WIDTH_below_1_or_ADDR_W_not_3_to_16 u_error ();
+    end
+  endgenerate
+
+  (* ram_style = "block", no_rw_check *)
+  reg [WIDTH-1:0] mem[0:(1<<ADDR_W)-1];
+  reg [WIDTH-1:0] word_a_q, word_b_q, read_data_a_q, read_data_b_q;
+  always @(posedge clk) begin
+    if (write) mem[addr_a] <= write_data;
+    word_a_q      <= mem[addr_a];
+    read_data_a_q <= word_a_q;
+  end
+  always @(posedge clk) begin
+    word_b_q      <= mem[addr_b];
+    read_data_b_q <= word_b_q;
+  end
+  assign read_data_a = read_data_a_q;
+  assign read_data_b = read_data_b_q;
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,558 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_cache: lines of 64 bytes from memory, two ways, two ports that read at once.
+//   credit       a port has PLACES places. It asks for a line and names the place, and asks again
+//                for a place only after the answer. There is no ready: every request is taken, and
+//                every answer must be
+//   answer       a line, or a code of cchip_axi_read without data, in any order. Lines under way
+//                (MISSES of them) hold up nobody but those who ask for them; all of these get the
+//                line as it arrives, before its frame is given away
+//   lock         lines in a lock range stay once they are loaded, at most one way of a set, until
+//                they are invalidated
+//   invalidate   lines first..last. invalidate_ready = 1 again: no later answer is of data that
+//                memory held before the command
+//   latency      5 clocks from s_valid to m_valid for a line that is there and a port that is free,
+//                5 from s_valid to m_read_valid, 13 from a line's last beat to m_valid
+//   throughput   a line per port and clock; an arriving line takes a clock of port 0, an
+//                invalidation one in 6 of port 1
+//   collision    a request that meets a change of its set within 5 clocks, or both of whose ways
+//                are held, is looked up again
+//   cuts         every path: each output is a flip-flop
+//   reset        forgets every line; takes 2^SET_W clocks, requests wait
+module cchip_cache #(
+    // size of the data, KiB: 1, 2, 4 ... 1024
+    parameter integer CACHE_KB = 128,
+    // places of a port: 2, 4, 8, 16 or 32
+    parameter integer PLACES = 32,
+    // lines under way: 2, 4, 8, 16 or 32
+    parameter integer MISSES = 32,
+    // width of a line's number (address / 64), bit, more than SET_W and at most 58
+    parameter integer LINE_W = 32,
+    // ranges of lines to lock, 1..4
+    parameter integer LOCKS = 2,
+    // width of the data bus of memory, bit: 64, 128, 256 or 512
+    parameter integer DATA_W = 128
+) (
+    input  wire                            clk,
+    input  wire                            rst,
+    // requests and answers of the two ports
+    input  wire [                     1:0] s_valid,
+    input  wire [    2*$clog2(PLACES)-1:0] s_place,
+    input  wire [            2*LINE_W-1:0] s_line,
+    output wire [                     1:0] m_valid,
+    output wire [    2*$clog2(PLACES)-1:0] m_place,
+    output wire [2*`CCHIP_READ_CODE_W-1:0] m_code,
+    output wire [                  1023:0] m_data,            // if m_code is CCHIP_READ_OK
+    // lines to lock; none if first > last
+    input  wire [        LOCKS*LINE_W-1:0] lock_first,
+    input  wire [        LOCKS*LINE_W-1:0] lock_last,
+    // lines to forget
+    input  wire                            invalidate_valid,
+    output wire                            invalidate_ready,
+    input  wire [              LINE_W-1:0] invalidate_first,
+    input  wire [              LINE_W-1:0] invalidate_last,
+    // client of cchip_axi_read
+    output wire                            m_read_valid,
+    output wire [      $clog2(MISSES)-1:0] m_read_slot,
+    output wire [                    57:0] m_read_line,
+    input  wire                            s_read_valid,
+    input  wire [      $clog2(MISSES)-1:0] s_read_slot,
+    input  wire [                     2:0] s_read_beat,
+    input  wire                            s_read_last,
+    input  wire [  `CCHIP_READ_CODE_W-1:0] s_read_code,
+    input  wire [              DATA_W-1:0] s_read_data,
+    // what happens on this clock, for counters; of each port
+    output wire [                     1:0] count_hit,         // answered at once
+    output wire [                     1:0] count_miss,        // asks memory
+    output wire [                     1:0] count_wait,        // waits for a line under way
+    output wire [                     1:0] count_again        // is looked up again
+);
+
+  localparam integer PLACE_W = $clog2(PLACES);
+  localparam integer MISS_W = $clog2(MISSES);
+  localparam integer SETS = 8 * CACHE_KB;
+  localparam integer SET_W = $clog2(SETS);
+  localparam integer TAG_W = LINE_W - SET_W;
+  localparam integer CODE_W = `CCHIP_READ_CODE_W;
+  localparam [31:0] ONE = 1;
+
+  generate
+    if (CACHE_KB < 1 || CACHE_KB > 1024 || (1 << SET_W) != SETS) begin : gen_illegal_size
+      cchip_error_cache_CACHE_KB_must_be_a_power_of_two_1_to_1024 u_error ();
+    end
+    if (PLACES < 2 || PLACES > 32 || (1 << PLACE_W) != PLACES) begin : gen_illegal_places
+      cchip_error_cache_PLACES_must_be_2_4_8_16_or_32 u_error ();
+    end
+    if (MISSES < 2 || MISSES > 32 || (1 << MISS_W) != MISSES) begin : gen_illegal_misses
+      cchip_error_cache_MISSES_must_be_2_4_8_16_or_32 u_error ();
+    end
+    if (LINE_W <= SET_W || LINE_W > 58 || LOCKS < 1 || LOCKS > 4) begin : gen_illegal_line
+      cchip_error_cache_LINE_W_must_be_over_SET_W_to_58_and_LOCKS_1_to_4 u_error ();
+    end
+  endgenerate
+
+  // An entry of a way: {valid, locked, turn, the slot of the read that filled it or will, tag}. The
+  // two turns of a set, combined by exclusive or, are the way to replace next.
+  localparam integer ENTRY_W = 3 + MISS_W + TAG_W;
+  localparam integer AT_MISS = TAG_W, AT_TURN = TAG_W + MISS_W;
+  localparam integer AT_LOCKED = AT_TURN + 1, AT_VALID = AT_TURN + 2;
+
+  // ---- lines under way
+  wire [MISSES-1:0] held, filled;  // has a frame; its data are in the frame
+  wire free_valid;
+  wire [MISS_W-1:0] free_slot;
+  reg allocate_q;  // slot has this frame from the next clock on
+  reg [MISS_W-1:0] allocate_slot_q;
+  reg [SET_W:0] allocate_frame_q;  // {set, way}
+  reg [LINE_W-1:0] allocate_line_q;
+  wire [1:0] grant;
+  wire fill_valid;  // takes a clock of port 0
+  wire [MISS_W-1:0] fill_slot;
+  wire [CODE_W-1:0] fill_code;
+  wire [SET_W:0] fill_frame;
+  wire [511:0] fill_data;
+  wire collect;  // who waits for collect_slot is served from the next clock on
+  wire [MISS_W-1:0] collect_slot;
+  wire [CODE_W-1:0] serve_code;
+  wire [SET_W:0] serve_frame;
+  wire [1:0] serving;
+
+  cchip_cache_fill #(
+      .MISSES (MISSES),
+      .FRAME_W(SET_W + 1),
+      .DATA_W (DATA_W)
+  ) u_fill (
+      .clk           (clk),
+      .rst           (rst),
+      .free_valid    (free_valid),
+      .free_slot     (free_slot),
+      .free_take     (|grant),
+      .allocate      (allocate_q),
+      .allocate_slot (allocate_slot_q),
+      .allocate_frame(allocate_frame_q),
+      .held          (held),
+      .filled        (filled),
+      .s_read_valid  (s_read_valid),
+      .s_read_slot   (s_read_slot),
+      .s_read_beat   (s_read_beat),
+      .s_read_last   (s_read_last),
+      .s_read_code   (s_read_code),
+      .s_read_data   (s_read_data),
+      .fill_valid    (fill_valid),
+      .fill_slot     (fill_slot),
+      .fill_code     (fill_code),
+      .fill_frame    (fill_frame),
+      .fill_data     (fill_data),
+      .collect       (collect),
+      .collect_slot  (collect_slot),
+      .serve_code    (serve_code),
+      .serve_frame   (serve_frame),
+      .serving       (serving)
+  );
+  assign m_read_valid = allocate_q;
+  assign m_read_slot  = allocate_slot_q;
+  assign m_read_line  = {{58 - LINE_W{1'b0}}, allocate_line_q};
+
+  // ---- the one write to the entries, from registers
+  reg [1:0] entry_write_q;  // ways
+  reg [SET_W-1:0] entry_set_q;
+  reg [2*ENTRY_W-1:0] entry_data_q;
+
+  // ---- invalidation: one set after the other, each in a clock of port 1
+  reg running_q;  // 0 while the entries are cleared after reset
+  reg walk_valid_q;
+  reg [SET_W-1:0] walk_set_q;
+  reg [LINE_W-1:0] first_q, last_q;
+
+  // what stage 4 of the ports wants
+  wire [1:0] want, want_way, want_locked, want_turn;  // a frame for a line
+  wire [2*LINE_W-1:0] line4;
+  wire [1:0] own4;  // a fill or a walk
+  wire walk_stale4;
+  wire [1:0] fill_way4;
+  wire [CODE_W-1:0] fill_code4;
+  wire [MISS_W-1:0] fill_slot4;
+  wire [1:0] walk_ways4;  // ways to forget
+  wire [2*(MISS_W+1)-1:0] walk_keep4;  // their {turn, slot}
+
+  wire [2*SET_W+1:0] data_addr;  // frames that the ports read or write in stage 3
+  wire fill_write;
+
+  function [4:0] lowest(input [31:0] of);
+    integer j;
+    begin
+      lowest = 5'd0;
+      for (j = 31; j >= 0; j = j - 1) if (of[j]) lowest = j[4:0];
+    end
+  endfunction
+
+  genvar p, w, i;
+  generate
+    for (p = 0; p < 2; p = p + 1) begin : gen_port
+      wire ask = s_valid[p];
+      wire [PLACE_W-1:0] ask_place = s_place[PLACE_W*p+:PLACE_W];
+      wire [LINE_W-1:0] ask_line = s_line[LINE_W*p+:LINE_W];
+
+      // ---- the places: their lines; to be looked up; waiting for a line under way; it has come
+      (* ram_style = "distributed" *)
+      reg [LINE_W-1:0] lines[0:PLACES-1];
+      reg [PLACES-1:0] todo_q, sleep_q, wake_q;
+      reg [MISS_W*PLACES-1:0] on_q;
+      always @(posedge clk) if (ask) lines[ask_place] <= ask_line;
+
+      // ---- stage 0: who has this clock. A fill or a walk first, then those whose line has come,
+      // then new requests and those to be looked up again, in turn
+      wire own0 = p == 0 ? fill_valid : walk_valid_q;
+      wire serve0 = (|wake_q) & ~own0;
+      reg pick_valid_q, pick_first_q;
+      reg [PLACE_W-1:0] pick_q;
+      wire open0 = running_q & ~own0 & ~serve0;
+      wire pick0 = open0 & pick_valid_q & (~ask | pick_first_q);
+      wire new0 = open0 & ask & ~pick0;
+      wire [31:0] wake32 = {{32 - PLACES{1'b0}}, wake_q};
+      wire [4:0] wake_place = lowest(wake32);
+      wire [PLACE_W-1:0] place0 = serve0 ? wake_place[PLACE_W-1:0] : pick0 ? pick_q : ask_place;
+      wire [LINE_W-1:0] look_line0 = pick0 ? lines[pick_q] : ask_line;
+      wire [SET_W-1:0] own_set0 = p == 0 ? fill_frame[SET_W:1] : walk_set_q;
+      wire [SET_W-1:0] set0 = own0 ? own_set0 : serve0 ? serve_frame[SET_W:1] : look_line0[SET_W-1:0];
+
+      wire [PLACES-1:0] turn;  // one-hot
+      wire load_pick = ~pick_valid_q | pick0;
+      cchip_arbiter #(
+          .N(PLACES)
+      ) u_turn (
+          .clk    (clk),
+          .rst    (rst),
+          .request(todo_q),
+          .grant  (turn),
+          .take   (load_pick)
+      );
+      wire [31:0] turn32 = {{32 - PLACES{1'b0}}, turn};
+      wire [4:0] turn_place = lowest(turn32);
+
+      // ---- stages 1 to 4: in 2 the entries are read, in 3 the data are addressed, 4 decides
+      reg look_q1, look_q2, look_q3, look_q4;
+      reg serve_q1, serve_q2, serve_q3, serve_q4;
+      reg own_q1, own_q2, own_q3, own_q4;
+      reg stale_q1, stale_q2, stale_q3, stale_q4;  // the set has changed since it was read
+      reg [PLACE_W-1:0] place_q1, place_q2, place_q3, place_q4;
+      reg [LINE_W-1:0] line_q1, line_q2, line_q3, line_q4;
+      reg [CODE_W-1:0] code_q1, code_q2, code_q3, code_q4;
+      reg [MISS_W-1:0] slot_q1, slot_q2, slot_q3, slot_q4;  // of a fill
+      reg way_q1, way_q2, way_q3, way_q4;
+      reg lock_q2, lock_q3;  // the line is one to lock
+      wire change = |entry_write_q;
+
+      wire [LOCKS-1:0] in_range;
+      for (i = 0; i < LOCKS; i = i + 1) begin : gen_lock
+        assign in_range[i] = line_q1 >= lock_first[LINE_W*i+:LINE_W] &&
+            line_q1 <= lock_last[LINE_W*i+:LINE_W];
+      end
+
+      // of each way
+      wire [2*MISS_W-1:0] miss3, miss4;
+      wire [1:0] match2, match3, valid3, locked3, turn3, turn4, hold3, full3, forget4;
+      for (w = 0; w < 2; w = w + 1) begin : gen_way
+        localparam [31:0] W = w;
+        wire [ENTRY_W-1:0] entry2;
+        cchip_block_ram #(
+            .WIDTH (ENTRY_W),
+            .ADDR_W(SET_W)
+        ) u_entries (
+            .clk       (clk),
+            .write     (entry_write_q[w]),
+            .write_addr(entry_set_q),
+            .write_data(entry_data_q[ENTRY_W*w+:ENTRY_W]),
+            .read_addr (set0),
+            .read_data (entry2)
+        );
+        wire [LINE_W-1:0] kept2 = {entry2[TAG_W-1:0], line_q2[SET_W-1:0]};  // line in this way
+        assign match2[w] = entry2[AT_VALID] && kept2 == line_q2;
+        reg match_q3, valid_q3, locked_q3, turn_q3, turn_q4, forget_q3, forget_q4;
+        reg [MISS_W-1:0] miss_q3, miss_q4;
+        (* ram_style = "distributed" *)
+        reg [SET_W:0] frames[0:MISSES-1];
+        wire [SET_W:0] frame3 = frames[miss_q3];
+        always @(posedge clk) begin
+          if (allocate_q) frames[allocate_slot_q] <= allocate_frame_q;
+          match_q3  <= match2[w];
+          valid_q3  <= entry2[AT_VALID];
+          locked_q3 <= entry2[AT_LOCKED];
+          turn_q3   <= entry2[AT_TURN];
+          miss_q3   <= entry2[AT_MISS+:MISS_W];
+          forget_q3 <= entry2[AT_VALID] && kept2 >= first_q && kept2 <= last_q;
+          forget_q4 <= forget_q3;
+          turn_q4   <= turn_q3;
+          miss_q4   <= miss_q3;
+        end
+        assign match3[w]  = match_q3;
+        assign valid3[w]  = valid_q3;
+        assign locked3[w] = locked_q3;
+        assign turn3[w]   = turn_q3;
+        assign turn4[w]   = turn_q4;
+        assign forget4[w] = forget_q4;
+        assign miss3[MISS_W*w+:MISS_W] = miss_q3;
+        assign miss4[MISS_W*w+:MISS_W] = miss_q4;
+        assign hold3[w] = held[miss_q3] && frame3 == {line_q3[SET_W-1:0], W[0]};
+        assign full3[w] = filled[miss_q3];
+      end
+
+      wire [1:0] wait3 = match3 & hold3 & ~full3;  // the line is under way
+      wire [1:0] may3 = ~hold3 & ~locked3;  // frames that may be given away
+      wire victim3 = &may3 ? (&valid3 ? ^turn3 : valid3[0]) : may3[1];
+      reg match_q4, wait_q4, may_q4, victim_q4, locked_q4, new_turn_q4;
+      reg [MISS_W-1:0] wait_slot_q4;
+
+      wire stale = stale_q4 | (change && entry_set_q == line_q4[SET_W-1:0]);
+      wire fresh = look_q4 & ~stale;
+      wire hit = fresh & match_q4 & ~wait_q4;
+      wire sleeps = (fresh & wait_q4) | grant[p];
+      wire again = look_q4 & (stale | (~match_q4 & ~grant[p]));
+      assign want[p] = fresh & ~match_q4 & may_q4 & free_valid;
+      assign want_way[p] = victim_q4;
+      assign want_locked[p] = locked_q4;
+      assign want_turn[p] = new_turn_q4;
+      assign line4[LINE_W*p+:LINE_W] = line_q4;
+      assign own4[p] = own_q4;
+      assign data_addr[(SET_W+1)*p+:SET_W+1] = {line_q3[SET_W-1:0], way_q3};
+      assign serving[p] = |wake_q;
+      if (p == 0) begin : gen_fill
+        assign fill_write = own_q3 && code_q3 == `CCHIP_READ_OK;
+        assign fill_code4 = code_q4;
+        assign fill_slot4 = slot_q4;
+        assign fill_way4  = {way_q4, ~way_q4};
+        wire unused = &{1'b0, forget4, turn4, miss4};
+      end else begin : gen_walk
+        assign walk_stale4 = stale;
+        assign walk_ways4  = forget4;
+        assign walk_keep4 = {turn4[1], miss4[MISS_W+:MISS_W], turn4[0], miss4[0+:MISS_W]};
+        wire unused = &{1'b0, slot_q4, way_q4};
+      end
+
+      always @(posedge clk) begin
+        {place_q1, code_q1, slot_q1, way_q1} <= {
+          place0, own0 ? fill_code : serve_code, fill_slot, own0 ? fill_frame[0] : serve_frame[0]
+        };
+        {place_q2, code_q2, slot_q2, way_q2} <= {place_q1, code_q1, slot_q1, way_q1};
+        {place_q3, code_q3, slot_q3, way_q3} <= {
+          place_q2, code_q2, slot_q2, look_q2 ? match2[1] : way_q2
+        };
+        {place_q4, code_q4, slot_q4, way_q4} <= {place_q3, code_q3, slot_q3, way_q3};
+        line_q1 <= {look_line0[LINE_W-1:SET_W], set0};
+        line_q2 <= line_q1;
+        line_q3 <= line_q2;
+        line_q4 <= line_q3;
+        stale_q1 <= change && entry_set_q == set0;
+        stale_q2 <= stale_q1 | (change && entry_set_q == line_q1[SET_W-1:0]);
+        stale_q3 <= stale_q2 | (change && entry_set_q == line_q2[SET_W-1:0]);
+        stale_q4 <= stale_q3 | (change && entry_set_q == line_q3[SET_W-1:0]);
+        lock_q2 <= |in_range;
+        lock_q3 <= lock_q2;
+        match_q4 <= |match3;
+        wait_q4 <= |wait3;
+        wait_slot_q4 <= match3[1] ? miss3[MISS_W+:MISS_W] : miss3[0+:MISS_W];
+        may_q4 <= |may3;
+        victim_q4 <= victim3;
+        locked_q4 <= lock_q3 & ~(victim3 ? locked3[0] : locked3[1]);
+        new_turn_q4 <= ~victim3 ^ (victim3 ? turn3[0] : turn3[1]);
+        if (load_pick) pick_q <= turn_place[PLACE_W-1:0];
+        if (rst) begin
+          {look_q1, look_q2, look_q3, look_q4} <= 4'd0;
+          {serve_q1, serve_q2, serve_q3, serve_q4} <= 4'd0;
+          {own_q1, own_q2, own_q3, own_q4} <= 4'd0;
+          pick_valid_q <= 1'b0;
+          pick_first_q <= 1'b0;
+        end else begin
+          {look_q1, look_q2, look_q3, look_q4} <= {pick0 | new0, look_q1, look_q2, look_q3};
+          {serve_q1, serve_q2, serve_q3, serve_q4} <= {serve0, serve_q1, serve_q2, serve_q3};
+          {own_q1, own_q2, own_q3, own_q4} <= {own0, own_q1, own_q2, own_q3};
+          if (load_pick) pick_valid_q <= |todo_q;
+          if (open0 && ask && pick_valid_q) pick_first_q <= ~pick_first_q;
+        end
+      end
+      for (i = 0; i < PLACES; i = i + 1) begin : gen_place
+        localparam [31:0] I = i;
+        wire on_line = on_q[MISS_W*i+:MISS_W] == collect_slot;
+        wire falls = sleeps && place_q4 == I[PLACE_W-1:0];
+        always @(posedge clk) begin
+          if (falls) on_q[MISS_W*i+:MISS_W] <= grant[p] ? free_slot : wait_slot_q4;
+          if (rst) begin
+            todo_q[i]  <= 1'b0;
+            sleep_q[i] <= 1'b0;
+            wake_q[i]  <= 1'b0;
+          end else begin
+            todo_q[i] <= (todo_q[i] & ~(turn[i] & load_pick)) |
+                (ask && !new0 && ask_place == I[PLACE_W-1:0]) |
+                (again && place_q4 == I[PLACE_W-1:0]);
+            sleep_q[i] <= falls | (sleep_q[i] & ~(collect & on_line));
+            wake_q[i] <= collect ? sleep_q[i] & on_line :
+                wake_q[i] & ~(serve0 && wake_place[PLACE_W-1:0] == I[PLACE_W-1:0]);
+          end
+        end
+      end
+
+      // ---- answers and counts
+      reg valid_q5, hit_q, miss_q, wait_q, again_q;
+      reg [PLACE_W-1:0] place_q5;
+      reg [CODE_W-1:0] code_q5;
+      always @(posedge clk) begin
+        place_q5 <= place_q4;
+        code_q5  <= serve_q4 ? code_q4 : `CCHIP_READ_OK;
+        valid_q5 <= ~rst & (hit | serve_q4);
+        hit_q    <= ~rst & hit;
+        miss_q   <= ~rst & grant[p];
+        wait_q   <= ~rst & fresh & wait_q4;
+        again_q  <= ~rst & again;
+      end
+      assign m_valid[p] = valid_q5;
+      assign m_place[PLACE_W*p+:PLACE_W] = place_q5;
+      assign m_code[CODE_W*p+:CODE_W] = code_q5;
+      assign count_hit[p] = hit_q;
+      assign count_miss[p] = miss_q;
+      assign count_wait[p] = wait_q;
+      assign count_again[p] = again_q;
+
+      reg both_q4;  // the two ways hold the same line
+      always @(posedge clk) both_q4 <= &match3;
+      wire unused = &{1'b0, wake_place, turn_place, code_q4};
+      always @(posedge clk)
+        if (!rst) begin
+          `CCHIP_ASSERT(a_collect, !collect || wake_q == {PLACES{1'b0}})
+          `CCHIP_ASSERT(a_one, !fresh || !(match_q4 && both_q4))
+          `CCHIP_ASSERT(a_place, !ask || !todo_q[ask_place] && !sleep_q[ask_place] && !wake_q[ask_place])
+        end
+    end
+  endgenerate
+
+  // ---- data
+  cchip_dual_ram #(
+      .WIDTH (512),
+      .ADDR_W(SET_W + 1)
+  ) u_data (
+      .clk        (clk),
+      .write      (fill_write),
+      .addr_a     (data_addr[0+:SET_W+1]),
+      .write_data (fill_data),
+      .read_data_a(m_data[511:0]),
+      .addr_b     (data_addr[SET_W+1+:SET_W+1]),
+      .read_data_b(m_data[1023:512])
+  );
+
+  // ---- changes of the entries: a line that could not be read is forgotten, then the walk, then
+  // frames for lines. Who cannot have his change is looked up again
+  reg favour_q;  // port that gets a frame if both want one
+  wire kill = own4[0] && fill_code4 != `CCHIP_READ_OK;
+  wire walk_write = own4[1] & ~walk_stale4 & (|walk_ways4) & ~kill;
+  wire walk_next = own4[1] & ~walk_stale4 & ~(kill & (|walk_ways4));
+  assign grant[0] = want[0] & ~walk_write & ~(want[1] & favour_q);
+  assign grant[1] = want[1] & ~kill & ~(want[0] & ~favour_q);
+  wire by = grant[1];
+  wire [LINE_W-1:0] line = by ? line4[LINE_W+:LINE_W] : line4[0+:LINE_W];
+  wire way = by ? want_way[1] : want_way[0];
+  wire [ENTRY_W-1:0] entry = {
+    1'b1,
+    by ? want_locked[1] : want_locked[0],
+    by ? want_turn[1] : want_turn[0],
+    free_slot,
+    line[LINE_W-1:SET_W]
+  };
+  generate
+    for (w = 0; w < 2; w = w + 1) begin : gen_entry
+      always @(posedge clk)
+        entry_data_q[ENTRY_W*w+:ENTRY_W] <= !running_q ? {ENTRY_W{1'b0}} :
+            kill ? {3'b000, fill_slot4, {TAG_W{1'b0}}} :
+            walk_write ? {2'b00, walk_keep4[(MISS_W+1)*w+:MISS_W+1], {TAG_W{1'b0}}} : entry;
+    end
+  endgenerate
+  always @(posedge clk) begin
+    entry_set_q <= !running_q ? walk_set_q : kill ? line4[SET_W-1:0] :
+        walk_write ? line4[LINE_W+:SET_W] : line[SET_W-1:0];
+    allocate_slot_q  <= free_slot;
+    allocate_frame_q <= {line[SET_W-1:0], way};
+    allocate_line_q  <= line;
+    if (rst) begin
+      entry_write_q <= 2'b00;
+      allocate_q    <= 1'b0;
+      favour_q      <= 1'b0;
+    end else begin
+      entry_write_q <= !running_q ? 2'b11 : kill ? fill_way4 : walk_write ? walk_ways4 :
+          {way, ~way} & {2{|grant}};
+      allocate_q <= |grant;
+      if (&want) favour_q <= ~favour_q;
+    end
+  end
+
+  // ---- the walk. It is over when the reads that were under way at its last set have answered
+  localparam [2:0] CLEAR = 3'd0, IDLE = 3'd1, ASK = 3'd2, SEE = 3'd3, READS = 3'd4, ANSWERS = 3'd5;
+  localparam [2:0] ANSWER_CLOCKS = 3'd6;
+  reg [2:0] state_q;
+  reg [SET_W-1:0] left_q;  // sets after this one
+  reg [MISSES-1:0] old_q;  // reads under way
+  reg [2:0] clocks_q;
+  wire [LINE_W-1:0] more = invalidate_last - invalidate_first;
+  wire set_last = left_q == {SET_W{1'b0}};
+  reg ready_q;
+  always @(posedge clk) begin
+    if (state_q == IDLE) begin
+      first_q <= invalidate_first;
+      last_q  <= invalidate_last;
+    end
+    old_q    <= state_q == READS ? old_q & held : held;
+    clocks_q <= state_q == ANSWERS ? clocks_q - 3'd1 : ANSWER_CLOCKS;
+    if (rst) begin
+      state_q      <= CLEAR;
+      running_q    <= 1'b0;
+      ready_q      <= 1'b0;
+      walk_valid_q <= 1'b0;
+      walk_set_q   <= {SET_W{1'b0}};
+      left_q       <= {SET_W{1'b1}};
+    end else begin
+      walk_valid_q <= 1'b0;
+      case (state_q)
+        CLEAR: begin
+          walk_set_q <= walk_set_q + ONE[SET_W-1:0];
+          left_q     <= left_q - ONE[SET_W-1:0];
+          running_q  <= set_last;
+          ready_q    <= set_last;
+          if (set_last) state_q <= IDLE;
+        end
+        IDLE: begin
+          walk_set_q <= invalidate_first[SET_W-1:0];
+          left_q     <= |more[LINE_W-1:SET_W] ? {SET_W{1'b1}} : more[SET_W-1:0];
+          ready_q    <= ~invalidate_valid;
+          if (invalidate_valid) state_q <= ASK;
+        end
+        ASK: begin
+          walk_valid_q <= 1'b1;
+          state_q      <= SEE;
+        end
+        SEE:
+        if (own4[1]) begin
+          if (walk_next) begin
+            walk_set_q <= walk_set_q + ONE[SET_W-1:0];
+            left_q     <= left_q - ONE[SET_W-1:0];
+          end
+          state_q <= walk_next && set_last ? READS : ASK;
+        end
+        READS: if (old_q == {MISSES{1'b0}}) state_q <= ANSWERS;
+        default:  // ANSWERS
+        if (clocks_q == 3'd0) begin
+          state_q <= IDLE;
+          ready_q <= 1'b1;
+        end
+      endcase
+    end
+  end
+  assign invalidate_ready = ready_q;
+
+  wire unused = &{1'b0, by};
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_grant, grant != 2'b11)
+      `CCHIP_ASSERT(a_one_change, !(|grant) || !(kill || walk_write))
+    end
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_cache_fill: the lines under way of cchip_cache. A line has a slot, the one of its read,
+// from allocation until all who wait for it have been served.
+//   fill         lines leave in the order of their last beats; fill_data 3 clocks after fill_valid,
+//                filled on the next clock if the code is CCHIP_READ_OK
+//   serve        collect 5 clocks after fill_valid or later, one line after the other: a line is
+//                done, and its slot free, when serving is 0
+//   latency      2 clocks from the last beat to fill_valid
+//   throughput   a line every clock into the frames, every second clock if one waits for each
+//   cuts         every path but serving to collect
+//   reset        every slot is free; memory must not answer reads from before
+module cchip_cache_fill #(
+    // slots, 2..32
+    parameter integer MISSES = 32,
+    // width of a frame's number, bit
+    parameter integer FRAME_W = 12,
+    // width of the data bus, bit: 64, 128, 256 or 512
+    parameter integer DATA_W = 128
+) (
+    input  wire                          clk,
+    input  wire                          rst,
+    // a free slot; it has a frame on the clock after free_take or later
+    output wire                          free_valid,
+    output wire [    $clog2(MISSES)-1:0] free_slot,
+    input  wire                          free_take,
+    input  wire                          allocate,
+    input  wire [    $clog2(MISSES)-1:0] allocate_slot,
+    input  wire [           FRAME_W-1:0] allocate_frame,
+    output wire [            MISSES-1:0] held,            // allocated
+    output wire [            MISSES-1:0] filled,          // the data are in the frame
+    // answers of cchip_axi_read
+    input  wire                          s_read_valid,
+    input  wire [    $clog2(MISSES)-1:0] s_read_slot,
+    input  wire [                   2:0] s_read_beat,
+    input  wire                          s_read_last,
+    input  wire [`CCHIP_READ_CODE_W-1:0] s_read_code,
+    input  wire [            DATA_W-1:0] s_read_data,
+    // a line goes into its frame; must be taken
+    output wire                          fill_valid,
+    output wire [    $clog2(MISSES)-1:0] fill_slot,
+    output wire [`CCHIP_READ_CODE_W-1:0] fill_code,
+    output wire [           FRAME_W-1:0] fill_frame,
+    output wire [                 511:0] fill_data,
+    // who waits for a line
+    output wire                          collect,
+    output wire [    $clog2(MISSES)-1:0] collect_slot,
+    output wire [`CCHIP_READ_CODE_W-1:0] serve_code,      // from the clock after collect on
+    output wire [           FRAME_W-1:0] serve_frame,
+    input  wire [                   1:0] serving          // ports that have not served all of them
+);
+
+  localparam integer MISS_W = $clog2(MISSES);
+  localparam integer CODE_W = `CCHIP_READ_CODE_W;
+  localparam integer BEATS = 512 / DATA_W;
+  localparam integer ROW_W = MISS_W < 3 ? 3 : MISS_W;
+
+  generate
+    if (MISSES < 2 || MISSES > 32 || FRAME_W < 1) begin : gen_illegal_misses
+      cchip_error_cache_fill_MISSES_must_be_2_to_32_and_FRAME_W_positive u_error ();
+    end
+    if (DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W) begin : gen_illegal_width
+      cchip_error_cache_fill_DATA_W_must_be_64_128_256_or_512 u_error ();
+    end
+  endgenerate
+
+  // ---- the slots
+  reg [MISSES-1:0] idle_q;  // neither offered nor held
+  reg [MISSES-1:0] held_q, filled_q;
+  reg free_valid_q;
+  reg [MISS_W-1:0] free_slot_q;
+  wire [MISSES-1:0] turn;  // one-hot
+  wire load_free = ~free_valid_q | free_take;
+  wire release_slot;
+  cchip_arbiter #(
+      .N(MISSES)
+  ) u_turn (
+      .clk    (clk),
+      .rst    (rst),
+      .request(idle_q),
+      .grant  (turn),
+      .take   (load_free)
+  );
+  function [MISS_W-1:0] encode(input [MISSES-1:0] one);
+    integer j;
+    begin
+      encode = {MISS_W{1'b0}};
+      for (j = 0; j < MISSES; j = j + 1) if (one[j]) encode = encode | j[MISS_W-1:0];
+    end
+  endfunction
+
+  // ---- lines that have come
+  cchip_fifo #(
+      .WIDTH     (MISS_W + CODE_W),
+      .DEPTH     (MISSES),
+      .ROOM_KNOWN(1)
+  ) u_arrived (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(s_read_valid & s_read_last),
+      .s_ready(arrived_ready),
+      .s_data ({s_read_slot, s_read_code}),
+      .m_valid(fill_valid),
+      .m_ready(1'b1),
+      .m_data ({fill_slot, fill_code})
+  );
+  wire arrived_ready;
+  (* ram_style = "distributed" *)
+  reg [FRAME_W-1:0] frames[0:MISSES-1];
+  always @(posedge clk) if (allocate) frames[allocate_slot] <= allocate_frame;
+  assign fill_frame = frames[fill_slot];
+
+  reg fill_q1, fill_q2, fill_q3;
+  reg [MISS_W-1:0] slot_q1, slot_q2, slot_q3;
+  reg [CODE_W-1:0] code_q1, code_q2, code_q3;
+  reg [FRAME_W-1:0] frame_q1, frame_q2, frame_q3;
+  wire [31:0] row = {{32 - MISS_W{1'b0}}, slot_q1};
+  wire [31:0] write_row = {{32 - MISS_W{1'b0}}, s_read_slot};
+  genvar b;
+  generate
+    for (b = 0; b < BEATS; b = b + 1) begin : gen_beat
+      localparam [31:0] B = b;
+      cchip_block_ram #(
+          .WIDTH (DATA_W),
+          .ADDR_W(ROW_W)
+      ) u_beats (
+          .clk       (clk),
+          .write     (s_read_valid && s_read_beat == B[2:0]),
+          .write_addr(write_row[ROW_W-1:0]),
+          .write_data(s_read_data),
+          .read_addr (row[ROW_W-1:0]),
+          .read_data (fill_data[DATA_W*b+:DATA_W])
+      );
+    end
+  endgenerate
+
+  // ---- lines whose waiters are to be served
+  wire waiting;
+  wire serve_ready;
+  wire [CODE_W-1:0] next_code;
+  wire [FRAME_W-1:0] next_frame;
+  reg serve_q;
+  reg [MISS_W-1:0] serve_slot_q;
+  reg [CODE_W-1:0] serve_code_q;
+  reg [FRAME_W-1:0] serve_frame_q;
+  cchip_fifo #(
+      .WIDTH     (MISS_W + CODE_W + FRAME_W),
+      .DEPTH     (MISSES),
+      .ROOM_KNOWN(1)
+  ) u_serve (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(fill_q3),
+      .s_ready(serve_ready),
+      .s_data ({slot_q3, code_q3, frame_q3}),
+      .m_valid(waiting),
+      .m_ready(collect),
+      .m_data ({collect_slot, next_code, next_frame})
+  );
+  assign release_slot = serve_q && serving == 2'b00;
+  assign collect = waiting & (~serve_q | release_slot);
+
+  always @(posedge clk) begin
+    {slot_q1, code_q1, frame_q1} <= {fill_slot, fill_code, fill_frame};
+    {slot_q2, code_q2, frame_q2} <= {slot_q1, code_q1, frame_q1};
+    {slot_q3, code_q3, frame_q3} <= {slot_q2, code_q2, frame_q2};
+    if (collect) {serve_slot_q, serve_code_q, serve_frame_q} <= {collect_slot, next_code, next_frame};
+    if (load_free) free_slot_q <= encode(turn);
+    if (rst) begin
+      fill_q1 <= 1'b0;
+      fill_q2 <= 1'b0;
+      fill_q3 <= 1'b0;
+      serve_q <= 1'b0;
+      free_valid_q <= 1'b0;
+    end else begin
+      fill_q1 <= fill_valid;
+      fill_q2 <= fill_q1;
+      fill_q3 <= fill_q2;
+      serve_q <= collect | (serve_q & ~release_slot);
+      if (load_free) free_valid_q <= |idle_q;
+    end
+  end
+  genvar i;
+  generate
+    for (i = 0; i < MISSES; i = i + 1) begin : gen_slot
+      localparam [31:0] I = i;
+      wire frees = release_slot && serve_slot_q == I[MISS_W-1:0];
+      wire starts = allocate && allocate_slot == I[MISS_W-1:0];
+      wire fills = fill_q3 && slot_q3 == I[MISS_W-1:0] && code_q3 == `CCHIP_READ_OK;
+      always @(posedge clk)
+        if (rst) begin
+          idle_q[i]   <= 1'b1;
+          held_q[i]   <= 1'b0;
+          filled_q[i] <= 1'b0;
+        end else begin
+          idle_q[i]   <= frees | (idle_q[i] & ~(turn[i] & load_free));
+          held_q[i]   <= starts | (held_q[i] & ~frees);
+          filled_q[i] <= fills | (filled_q[i] & ~starts);
+        end
+    end
+  endgenerate
+  assign free_valid  = free_valid_q;
+  assign free_slot   = free_slot_q;
+  assign held        = held_q;
+  assign filled      = filled_q;
+  assign serve_code  = serve_code_q;
+  assign serve_frame = serve_frame_q;
+
+  wire unused = &{1'b0, arrived_ready, serve_ready, row, write_row};
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_take, !free_take || free_valid_q)
+      `CCHIP_ASSERT(a_allocate, !allocate || !held_q[allocate_slot])
+      `CCHIP_ASSERT(a_answer, !s_read_valid || held_q[s_read_slot] && !filled_q[s_read_slot])
+    end
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cchip/model/memory.hpp>
+#include <deque>
+#include <models/cchip_cache_fill.hpp>
+#include <set>
+
+#include "bench.hpp"
+
+using namespace cchip;
+using namespace cchip::test;
+
+namespace {
+
+constexpr int log2(int n) { return n <= 1 ? 0 : 1 + log2((n + 1) / 2); }
+
+struct Line {
+  int slot = 0;
+  std::uint64_t frame = 0;
+  unsigned code = 0;
+  std::array<std::uint32_t, 16> data{};
+  int beats = 0;  // that have come
+};
+
+}  // namespace
+
+TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of their last beats; a slot is one line's",
+                        "[unit][cchip_cache_fill]", cchip_cache_fill_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
+    constexpr int misses = TestType::MISSES, width = TestType::DATA_W, beats = 512 / width, words = width / 32;
+    for (const int busy : {100, 60, 10}) {  // per cent of the clocks on which something comes
+      auto& top = simulation.top();
+      top.free_take = top.allocate = top.s_read_valid = top.serving = 0;
+      simulation.reset();
+      std::set<int> used;                        // slots
+      std::optional<Line> taken;                 // on the clock before
+      std::vector<Line> reads;                   // memory owes
+      std::deque<std::pair<int, Line>> filling;  // clock of fill_valid
+      model::Fifo<Line> queue(misses);
+      std::optional<Line> served;
+      int serves = 0, lines = 0, most = 0;  // clocks left, lines done
+      std::array<bool, misses> held{}, filled{};
+      for (int clock = 0; clock < 6000; ++clock) {
+        // the slot taken a clock ago gets its frame
+        top.allocate = taken ? 1 : 0;
+        std::optional<int> starts;
+        sim::set_random(top.allocate_slot, log2(misses), random);
+        sim::set_random(top.allocate_frame, TestType::FRAME_W, random);
+        if (taken) {
+          top.allocate_slot = static_cast<CData>(taken->slot);
+          taken->frame = top.allocate_frame;
+          starts = taken->slot;
+        }
+        // memory
+        std::optional<Line> comes;
+        top.s_read_valid = 0;
+        sim::set_random(top.s_read_data, width, random);
+        if (!reads.empty() && chance(random, busy)) {
+          const auto read = reads.begin() + static_cast<std::ptrdiff_t>(random() % reads.size());
+          const bool fails = chance(random, 5);
+          top.s_read_valid = 1;
+          top.s_read_slot = static_cast<CData>(read->slot);
+          top.s_read_beat = static_cast<CData>(read->beats);
+          for (int w = 0; w < words; ++w)
+            read->data[static_cast<std::size_t>(read->beats * words + w)] =
+                static_cast<std::uint32_t>(sim::get_bits(top.s_read_data, 32 * w, 32));
+          ++read->beats;
+          top.s_read_last = fails || read->beats == beats ? 1 : 0;
+          top.s_read_code = static_cast<CData>(fails ? 1 + random() % 3 : top.s_read_last != 0 ? 0 : random() % 4);
+          if (top.s_read_last != 0) {
+            read->code = top.s_read_code;
+            comes = *read;
+            reads.erase(read);
+          }
+        } else {
+          top.s_read_last = random() & 1;
+          sim::set_random(top.s_read_slot, log2(misses), random);
+          sim::set_random(top.s_read_beat, 3, random);
+        }
+        top.serving = static_cast<CData>(serves > 0 ? 1 + random() % 3 : 0);
+        top.free_take = 0;
+        simulation.settle();
+        const bool take = top.free_valid != 0 && clock > 0 && chance(random, busy);
+        top.free_take = take ? 1 : 0;
+        simulation.settle();
+
+        const bool fills = !filling.empty() && filling.front().first == clock;
+        REQUIRE((top.fill_valid != 0) == fills);
+        if (fills) {
+          REQUIRE(top.fill_slot == filling.front().second.slot);
+          REQUIRE(top.fill_code == filling.front().second.code);
+          REQUIRE(top.fill_frame == filling.front().second.frame);
+        }
+        std::optional<Line> written;
+        for (const auto& [at, line] : filling) {
+          if (at + 3 == clock) written = line;
+        }
+        if (written && written->code == 0) {
+          for (int w = 0; w < 16; ++w)
+            REQUIRE(sim::get_bits(top.fill_data, 32 * w, 32) == written->data[static_cast<std::size_t>(w)]);
+        }
+        for (int s = 0; s < misses; ++s) {
+          REQUIRE((top.held >> s & 1) == (held[static_cast<std::size_t>(s)] ? 1 : 0));
+          if (held[static_cast<std::size_t>(s)])
+            REQUIRE((top.filled >> s & 1) == (filled[static_cast<std::size_t>(s)] ? 1 : 0));
+        }
+        const bool release = served && serves == 0;
+        const bool collect = queue.m_valid() && (!served || release);
+        REQUIRE((top.collect != 0) == collect);
+        if (collect) REQUIRE(top.collect_slot == queue.m_data().slot);
+        if (served) {
+          REQUIRE(top.serve_code == served->code);
+          REQUIRE(top.serve_frame == served->frame);
+        }
+
+        // what the clock does
+        if (release) {
+          held[static_cast<std::size_t>(served->slot)] = false;
+          used.erase(served->slot);
+          served.reset();
+          ++lines;
+        }
+        if (starts) {
+          held[static_cast<std::size_t>(*starts)] = true;
+          filled[static_cast<std::size_t>(*starts)] = false;
+          reads.push_back(*taken);
+          taken.reset();
+        }
+        if (written && written->code == 0) filled[static_cast<std::size_t>(written->slot)] = true;
+        if (serves > 0) --serves;
+        if (collect) {
+          served = queue.m_data();
+          serves = chance(random, 70) ? 1 : static_cast<int>(random() % 8);
+        }
+        queue.clock(written.has_value(), written.value_or(Line{}), collect);
+        while (!filling.empty() && filling.front().first + 3 <= clock) filling.pop_front();
+        if (comes) filling.emplace_back(clock + 2, *comes);
+        if (take) {
+          taken = Line{top.free_slot};
+          REQUIRE(used.insert(taken->slot).second);
+        }
+        most = std::max(most, static_cast<int>(used.size()));
+        simulation.rise();
+      }
+      REQUIRE(lines > 6000 * busy / 100 / (beats + 9 * misses));
+      if (busy == 100) REQUIRE(most == misses);
+    }
+  });
+}
