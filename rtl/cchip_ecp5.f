@@ -3,12 +3,13 @@ common/cchip_delay.v
 common/cchip_skid_buffer.v
 common/cchip_fifo.v
 common/cchip_ram.v
-common/cchip_dual_ram.v
 common/cchip_crc32.v
 common/cchip_arbiter.v
 common/cchip_count.v
 common/cchip_counter_file.v
+vendor/ecp5/cchip_dp16kd.v
 vendor/ecp5/cchip_block_ram.v
+vendor/ecp5/cchip_dual_ram.v
 vendor/ecp5/cchip_mul18.v
 arith/cchip_mul_wide.v
 arith/cchip_dot3.v

@@ -6,6 +6,7 @@
 //   throughput   two accesses every clock
 //   collision    read_data_a of a clock with write, and read_data_b of the word that is written on
 //                that clock: any value
+//   device       rtl/cchip_ecp5.f takes the block itself, vendor/ecp5/cchip_dual_ram.v
 //   cuts         every path
 //   reset        none; words never written hold any value
 module cchip_dual_ram #(

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 `default_nettype none
-// Simulation model of Lattice ECP5's block RAM (FPGA-TN-02204), for netlists: written through port A, read through port B,
-// in the modes that are taken for the memories here, where a byte has 9 bits and an address is that of a bit:
-//   inferred     512 words of 36 bits, read one clock after the address
-//   rtl/vendor/ecp5/cchip_block_ram.v   port B with its output register, read two clocks after the address: 1,024 words of
-//                18 bits, or 512 of 36 bits written and 2,048 of 9 read
+// Simulation model of Lattice ECP5's block RAM (FPGA-TN-02204), for netlists: written through port A, read through both
+// ports, in the modes that are taken for the memories here, where a byte has 9 bits and an address is that of a bit:
+//   inferred     512 words of 36 bits, read through port B one clock after the address
+//   rtl/vendor/ecp5/cchip_dp16kd.v   both ports with their output registers, read two clocks after the address: 2,048 words
+//                of 9 bits, 1,024 of 18, or 512 of 36 written through A and 2,048 of 9 read through B
 //   write        CEA and WEA; byte i of the word if ADA<i>; data {DIB, DIA}
 //   read         CEB; data {DOB, DOA} of 36 bits, DOB of fewer
 //   both at one word on one clock: undefined here (Yosys counts on nothing)
@@ -106,12 +106,13 @@ module DP16KD #(
 
   generate
     if (REGMODE_B == "NOREG" ? DATA_WIDTH_A != 36 || DATA_WIDTH_B != 36
-        : !(DATA_WIDTH_A == 36 && DATA_WIDTH_B == 9 || DATA_WIDTH_A == 18 && DATA_WIDTH_B == 18)) begin : gen_width
+        : !(DATA_WIDTH_A == 36 && DATA_WIDTH_B == 9 || DATA_WIDTH_A == DATA_WIDTH_B && DATA_WIDTH_B <= 18
+            && DATA_WIDTH_B % 9 == 0)) begin : gen_width
       dp16kd_model_does_not_know_these_widths u_error ();
     end
-    if (REGMODE_A != "NOREG" || CSDECODE_A != "0b000" || CSDECODE_B != "0b000" || CLKAMUX != "CLKA" || CLKBMUX != "CLKB")
+    if (REGMODE_A != REGMODE_B || CSDECODE_A != "0b000" || CSDECODE_B != "0b000" || CLKAMUX != "CLKA" || CLKBMUX != "CLKB")
     begin : gen_mode
-      dp16kd_model_knows_neither_a_register_of_port_a_nor_selects_nor_inverted_clocks u_error ();
+      dp16kd_model_knows_neither_different_registers_nor_selects_nor_inverted_clocks u_error ();
     end
     if ({INITVAL_3F, INITVAL_3E, INITVAL_3D, INITVAL_3C, INITVAL_3B, INITVAL_3A, INITVAL_39, INITVAL_38,
       INITVAL_37, INITVAL_36, INITVAL_35, INITVAL_34, INITVAL_33, INITVAL_32, INITVAL_31, INITVAL_30,
@@ -135,15 +136,17 @@ module DP16KD #(
   // 512 words of four bytes; a narrower port sees some of them
   localparam integer WRITTEN = DATA_WIDTH_A / 9, READ = DATA_WIDTH_B / 9;
   wire [8:0] write_word = write_bit[13:5], read_word = read_bit[13:5];
-  wire [1:0] write_byte = WRITTEN == 4 ? 2'd0 : {write_bit[4], 1'b0};
+  wire [1:0] write_byte = WRITTEN == 4 ? 2'd0 : WRITTEN == 2 ? {write_bit[4], 1'b0} : write_bit[4:3];
   wire [1:0] read_byte = READ == 4 ? 2'd0 : READ == 2 ? {read_bit[4], 1'b0} : read_bit[4:3];
   wire [3:0] bytes_read = (READ == 4 ? 4'd15 : READ == 2 ? 4'd3 : 4'd1) << read_byte;
-  wire [3:0] enabled = (WRITTEN == 4 ? write_bit[3:0] : {2'd0, write_bit[1:0]}) & {4{CEA & WEA}};
+  wire [3:0] enabled = (WRITTEN == 4 ? write_bit[3:0] : WRITTEN == 2 ? {2'd0, write_bit[1:0]} : 4'd1) &
+      {4{CEA & WEA}};
   wire [3:0] bytes = enabled << write_byte;
   wire [35:0] placed = write_data << 9 * write_byte;
 
   reg [35:0] mem[0:511];
   reg [35:0] word, registered;
+  reg [35:0] word_a, registered_a;
   integer i;
   initial for (i = 0; i < 512; i = i + 1) mem[i] = 36'd0;
 
@@ -153,11 +156,16 @@ module DP16KD #(
     if (bytes[2]) mem[write_word][26:18] <= placed[26:18];
     if (bytes[3]) mem[write_word][35:27] <= placed[35:27];
   end
+  // a port of 36 bits is not read
+  always @(posedge CLKA) begin
+    if (CEA) word_a <= WEA ? 36'bx : mem[write_word] >> 9 * write_byte;
+    if (OCEA) registered_a <= word_a;
+  end
   always @(posedge CLKB) begin
     if (CEB) word <= |(bytes & bytes_read) && write_word == read_word ? 36'bx : mem[read_word] >> 9 * read_byte;
     if (OCEB) registered <= word;
   end
-  wire [35:0] read_data = REGMODE_B == "OUTREG" ? {registered[17:0], 18'd0} : word;
+  wire [35:0] read_data = REGMODE_B == "OUTREG" ? {registered[17:0], registered_a[17:0]} : word;
 
   assign {DOB17, DOB16, DOB15, DOB14, DOB13, DOB12, DOB11, DOB10, DOB9, DOB8, DOB7, DOB6, DOB5, DOB4,
       DOB3, DOB2, DOB1, DOB0, DOA17, DOA16, DOA15, DOA14, DOA13, DOA12, DOA11, DOA10, DOA9, DOA8,
@@ -165,13 +173,13 @@ module DP16KD #(
 
 `ifndef YOSYS
   always @*
-    if (RSTA || RSTB || WEB || CSA0 || CSA1 || CSA2 || CSB0 || CSB1 || CSB2 || !OCEB) begin
-      $display("DP16KD %m: this model has no resets and no selects, writes through A and reads through B");
+    if (RSTA || RSTB || WEB || CSA0 || CSA1 || CSA2 || CSB0 || CSB1 || CSB2 || !OCEA || !OCEB) begin
+      $display("DP16KD %m: this model has no resets and no selects, writes through A only");
       $finish;
     end
 `endif
 
-  wire unused = &{1'b0, OCEA, write_bit[4], read_bit[4:0], registered[35:18]};
+  wire unused = &{1'b0, write_bit[4:2], read_bit[4:0], registered[35:18], registered_a[35:18]};
 
 endmodule
 `default_nettype wire

@@ -64,47 +64,18 @@ module cchip_block_ram #(
           assign d[35:18] = 18'd0;
         end
         assign found[LEAST*b+:LEAST] = q[LEAST-1:0];
-        DP16KD #(
-            .DATA_WIDTH_A(WORDS == 4 ? 36 : 18),
-            .DATA_WIDTH_B(LEAST),
-            .REGMODE_A   ("NOREG"),
-            .REGMODE_B   ("OUTREG"),
-            .RESETMODE   ("SYNC"),
-            .CSDECODE_A  ("0b000"),
-            .CSDECODE_B  ("0b000"),
-            .CLKAMUX     ("CLKA"),
-            .CLKBMUX     ("CLKB"),
-            .GSR         ("DISABLED")
+        cchip_dp16kd #(
+            .WIDTH_A(WORDS == 4 ? 36 : 18),
+            .WIDTH_B(LEAST)
         ) u_block (
-            .CLKA(clk), .CEA(write), .WEA(1'b1), .OCEA(1'b1), .RSTA(1'b0),
-            .CSA0(1'b0), .CSA1(1'b0), .CSA2(1'b0),
-            .CLKB(clk), .CEB(1'b1), .WEB(1'b0), .OCEB(1'b1), .RSTB(1'b0),
-            .CSB0(1'b0), .CSB1(1'b0), .CSB2(1'b0),
-            .ADA0(write_bit[0]), .ADA1(write_bit[1]), .ADA2(write_bit[2]), .ADA3(write_bit[3]),
-            .ADA4(write_bit[4]), .ADA5(write_bit[5]), .ADA6(write_bit[6]), .ADA7(write_bit[7]),
-            .ADA8(write_bit[8]), .ADA9(write_bit[9]), .ADA10(write_bit[10]), .ADA11(write_bit[11]),
-            .ADA12(write_bit[12]), .ADA13(write_bit[13]),
-            .ADB0(read_bit[0]), .ADB1(read_bit[1]), .ADB2(read_bit[2]), .ADB3(read_bit[3]),
-            .ADB4(read_bit[4]), .ADB5(read_bit[5]), .ADB6(read_bit[6]), .ADB7(read_bit[7]),
-            .ADB8(read_bit[8]), .ADB9(read_bit[9]), .ADB10(read_bit[10]), .ADB11(read_bit[11]),
-            .ADB12(read_bit[12]), .ADB13(read_bit[13]),
-            .DIA0(d[0]), .DIA1(d[1]), .DIA2(d[2]), .DIA3(d[3]), .DIA4(d[4]), .DIA5(d[5]),
-            .DIA6(d[6]), .DIA7(d[7]), .DIA8(d[8]), .DIA9(d[9]), .DIA10(d[10]), .DIA11(d[11]),
-            .DIA12(d[12]), .DIA13(d[13]), .DIA14(d[14]), .DIA15(d[15]), .DIA16(d[16]),
-            .DIA17(d[17]),
-            .DIB0(d[18]), .DIB1(d[19]), .DIB2(d[20]), .DIB3(d[21]), .DIB4(d[22]), .DIB5(d[23]),
-            .DIB6(d[24]), .DIB7(d[25]), .DIB8(d[26]), .DIB9(d[27]), .DIB10(d[28]), .DIB11(d[29]),
-            .DIB12(d[30]), .DIB13(d[31]), .DIB14(d[32]), .DIB15(d[33]), .DIB16(d[34]),
-            .DIB17(d[35]),
-            .DOA0(unused_a[0]), .DOA1(unused_a[1]), .DOA2(unused_a[2]), .DOA3(unused_a[3]),
-            .DOA4(unused_a[4]), .DOA5(unused_a[5]), .DOA6(unused_a[6]), .DOA7(unused_a[7]),
-            .DOA8(unused_a[8]), .DOA9(unused_a[9]), .DOA10(unused_a[10]), .DOA11(unused_a[11]),
-            .DOA12(unused_a[12]), .DOA13(unused_a[13]), .DOA14(unused_a[14]), .DOA15(unused_a[15]),
-            .DOA16(unused_a[16]), .DOA17(unused_a[17]),
-            .DOB0(q[0]), .DOB1(q[1]), .DOB2(q[2]), .DOB3(q[3]), .DOB4(q[4]), .DOB5(q[5]),
-            .DOB6(q[6]), .DOB7(q[7]), .DOB8(q[8]), .DOB9(q[9]), .DOB10(q[10]), .DOB11(q[11]),
-            .DOB12(q[12]), .DOB13(q[13]), .DOB14(q[14]), .DOB15(q[15]), .DOB16(q[16]),
-            .DOB17(q[17])
+            .clk   (clk),
+            .write (write),
+            .addr_a(write_bit),
+            .d_a   (d[17:0]),
+            .d_b   (d[35:18]),
+            .q_a   (unused_a),
+            .addr_b(read_bit),
+            .q_b   (q)
         );
         wire unused = &{1'b0, q, unused_a};
       end
