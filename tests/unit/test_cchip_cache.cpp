@@ -97,7 +97,7 @@ class CacheBench {
       ++clocks;
       REQUIRE(clocks < 10000);
     }
-    return clocks - 1;
+    return clocks;
   }
   void invalidate(Cache::Range range) {
     forced_ = range;
@@ -318,7 +318,7 @@ class CacheBench {
   typename Config::Model& top_;
   Random& random_;
   Cache model_;
-  Behaviour how_{};
+  Behaviour how_{"one at a time", 0, 0, 1, 1, 100, 0, 0, false};
   std::vector<Cache::Range> locks_ = std::vector<Cache::Range>(Config::LOCKS);
   std::array<std::vector<std::optional<Asked>>, 2> asked_;
   std::array<std::optional<std::uint64_t>, 2> want_;
@@ -337,12 +337,15 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache: outputs are the model's on every clock; ev
       CacheBench<TestType> bench(simulation, random);
       bench.run(how, 6000);
       CAPTURE(bench.reads, bench.hits, bench.waits, bench.agains, bench.invalidations, bench.slowest);
-      REQUIRE(bench.answers[0] > 200);
+      REQUIRE(bench.answers[0] > 100);
       REQUIRE(bench.reads > 5);
       REQUIRE(bench.waits > 0);
+      // lines of one set on all places: everybody gets on
+      if (how.sets == 1) REQUIRE(bench.slowest < static_cast<int>(CacheBench<TestType>::sets) + 300);
       REQUIRE((bench.invalidations != 0) == (how.invalidate != 0));
       for (std::size_t code = 1; code < 4; ++code) REQUIRE((bench.answers[code] != 0) == (how.error != 0));
-      if (how.sets == 0 && how.ask == 100 && TestType::PLACES >= 16) REQUIRE(bench.hits > 8000);
+      if (how.sets == 0 && how.ask == 100 && TestType::PLACES >= 16 && TestType::CACHE_KB == 1)
+        REQUIRE(bench.hits > 8000);
     }
   });
 }
