@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Area and clock of the primitive tests on FPGAs, with open tools: nothing here needs a board or a vendor's tool.
+"""Area and clock of the primitive tests and of other blocks on FPGAs, with open tools: nothing here needs a board or a vendor's tool.
 
 usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --list` names them
   --seeds N         place and route with the seeds 1..N (default 5); rows that only serve comparison, and array6, with 3
@@ -19,7 +19,7 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
   --list            print the rows
 
 Device: Lattice LFE5U-85F, speed grade 6 (the slowest), CABGA756, synthesised by Debian's Yosys 0.23 within
-scripts/fpga_harness.v. Counts are those of the module alone, the harness is not in them. Outputs are kept below
+scripts/fpga_harness.v, blocks that are no primitive test within one like it that is made for their ports. Counts are those of the module alone, the harness is not in them. Outputs are kept below
 build/fpga by the hash of what they depend on: a second run repeats only what changed. build/fpga/fpga.json holds the
 figures of all rows run so far. The last lines are `ROW w=COORD_W lut=N ff=N dsp=N ram=N fmax_mhz=X seeds=K`: logic LUT4
 (without carry chains and distributed RAM), flip-flops, MULT18X18D, block RAM, median of the seeds. In subsystems every
@@ -65,6 +65,7 @@ class Row:
     label: str = ""  # in the last lines, if not the name
     seeds: int = 99  # at most: of rows that only serve comparison
     placer: str = "static"  # of nextpnr: static, or heap where it is the better one
+    block: bool = False  # has other ports than a primitive test
 
     @property
     def coord_w(self):
@@ -80,6 +81,8 @@ class Row:
 
     def macros(self):
         """Macros of the harness for this row."""
+        if self.block:
+            return []
         extra = "".join(f",.{name}({value})" for name, value in self.parameters if name != "COORD_W")
         named = {"TOP": self.top, "COORD_W": self.coord_w, **({"PARAMETERS": extra} if extra else {})}
         return [f"-DCCHIP_FPGA_{name}={value}" for name, value in named.items()]
@@ -97,6 +100,8 @@ def rows():
     # each slot is a partition for the largest module
     table += [Row(f"subsystem{n}", "fpga_subsystem", (("SLOTS", n), ("RM_ID", 3)), shape="quad-quad", seeds=3,
                   placer="heap") for n in (1, 2, 3)]
+    table += [Row(name.replace("cchip_", ""), name, shape="", seeds=3, placer="heap", block=True)
+              for name in ("cchip_axi_read", "cchip_cache")]
     return {row.name: row for row in table}
 
 
@@ -166,7 +171,7 @@ def sources(row):
     listed = (ROOT / "rtl" / row.files).read_text().splitlines()
     modules = {pathlib.Path(line).stem: f"rtl/{line.strip()}" for line in listed if line.strip().endswith(".v")}
     modules["fpga_subsystem"] = SUBSYSTEM
-    text, wanted = {HARNESS: (ROOT / HARNESS).read_text()}, [row.top]
+    text, wanted = {HARNESS: block_harness(row) if row.block else (ROOT / HARNESS).read_text()}, [row.top]
     while wanted:
         name = modules[wanted.pop()]
         if name not in text:
@@ -176,19 +181,64 @@ def sources(row):
                                                                 "rtl/include/cchip_assert.vh")}
 
 
+def block_harness(row):
+    """scripts/fpga_harness.v for a block with any ports: each input and each output is at a register of its own."""
+    parameters, ports = datasheet.parse(row.top)
+    values = "".join(f"  localparam integer {name} = {dict(row.parameters).get(name, value)};\n" for name, value in parameters)
+    widths, pins = {"input": "0", "output": "0"}, ["    .clk(clk)"]
+    for name, direction, width in ports:
+        if name != "clk":
+            pins.append(f"    .{name}({direction[:-3]}[{widths[direction]} +: {width}])")
+            widths[direction] += f" + {width}"
+    return f"""`include "cchip_defs.vh"
+`default_nettype none
+module fpga_harness (input wire clk, input wire d, output reg q);
+{values}  localparam integer IN_W = {widths["input"]};
+  localparam integer OUT_W = {widths["output"]};
+  localparam integer FOLD_W = (OUT_W + 4) / 5;
+  localparam integer FOLD2_W = (FOLD_W + 4) / 5;
+  localparam integer FOLD3_W = (FOLD2_W + 4) / 5;
+  reg [IN_W-1:0] shift, in;
+  wire [OUT_W-1:0] out;
+  reg [5*FOLD_W-1:0] out_r;
+  reg [5*FOLD2_W-1:0] fold;
+  reg [5*FOLD3_W-1:0] fold2;
+  reg [FOLD3_W-1:0] fold3;
+  integer i;
+  (* keep_hierarchy *)
+  {row.top} #({", ".join(f".{name}({name})" for name, _ in parameters)}) u_dut (
+{("," + chr(10)).join(pins)}
+  );
+  always @(posedge clk) begin
+    shift <= {{shift[IN_W-2:0], d}};
+    in <= shift ^ {{shift[IN_W-2:0], shift[IN_W-1]}};
+    out_r <= {{{{5 * FOLD_W - OUT_W + 1{{1'b0}}}}, out}};
+    fold <= {{5 * FOLD2_W{{1'b0}}}};
+    fold2 <= {{5 * FOLD3_W{{1'b0}}}};
+    for (i = 0; i < FOLD_W; i = i + 1) fold[i] <= ^out_r[5*i+:5];
+    for (i = 0; i < FOLD2_W; i = i + 1) fold2[i] <= ^fold[5*i+:5];
+    for (i = 0; i < FOLD3_W; i = i + 1) fold3[i] <= ^fold2[5*i+:5];
+    q <= ^fold3;
+  end
+endmodule
+`default_nettype wire
+"""
+
+
 def read_verilog(text, *macros):
     return f"read_verilog -DSYNTHESIS -Irtl/include {' '.join([*macros, *(n for n in text if n.endswith('.v'))])}\n"
 
 
-def yosys(name, script, depends, product):
-    return step(name, ["yosys", "-q", "-T", "-s", "{}/synth.ys"], {"synth.ys": script},
+def yosys(name, script, depends, product, files=None):
+    return step(name, ["yosys", "-q", "-T", "-s", "{}/synth.ys"], {"synth.ys": script, **(files or {})},
                 [depends, version("yosys", "-V")], product)
 
 
 def synthesise(row, options):
     """Synthesis for ECP5 within the harness: folder with netlist.json and stat.json (cells by module)."""
     text = sources(row)
-    script = read_verilog(text, *row.macros()) + (
+    made = {"harness.v": text.pop(HARNESS)} if row.block else {}
+    script = read_verilog([*text, *("{}/" + name for name in made)], *row.macros()) + (
         f"hierarchy -top fpga_harness\nsetattr -mod -set keep_hierarchy 1 *{REGION}*\n"
         f"synth_ecp5 {options.synth} -top fpga_harness\n"
         "tee -q -o {}/stat.json stat -json\n"
@@ -196,7 +246,7 @@ def synthesise(row, options):
         # without the places in the sources a new comment does not mean a new place and route
         "setattr -unset src *\nsetattr -mod -unset src *\n"
         "write_json {}/netlist.json\n")
-    return yosys(f"{row.name}.synth", script, text, "netlist.json")
+    return yosys(f"{row.name}.synth", script, [text, made], "netlist.json", made)
 
 
 # command of Yosys, and the cells that each column counts
@@ -364,6 +414,7 @@ def figures(row, synthesis, reports, beats):
         "dram": module["TRELLIS_DPR16X4"], "fmax_mhz": clocks, "fmax_min": min(clocks.values()),
         "fmax_median": fmax_median, "fmax_max": max(clocks.values()),
         "critical_path": in_words(critical_path(reports[seed])), "synthesis": synthesis.name,
+        "block": row.block,
         "static": {name: static[cell] for name, cell in COLUMNS.items()} if regions else {},
         "endpoints": endpoints(reports[seed], 5),
         "mean_beats": beats,
@@ -373,7 +424,8 @@ def figures(row, synthesis, reports, beats):
 
 def last_line(row):
     static = row["static"]
-    return (f"{row['label']} w={row['coord_w']} lut={row['lut4']} ff={row['ff']} dsp={row['dsp']} ram={row['bram']} "
+    width = "" if row["block"] else f" w={row['coord_w']}"
+    return (f"{row['label']}{width} lut={row['lut4']} ff={row['ff']} dsp={row['dsp']} ram={row['bram']} "
             f"fmax_mhz={row['fmax_median']:.1f} seeds={len(row['fmax_mhz'])}" +
             (f" static_lut={static['LUT4, logic']} static_ff={static['FF']} static_ram={static['block RAM']}" if static else ""))
 
@@ -466,20 +518,29 @@ def subsystems_table(found):
                             "Fmax, MHz: min / median / max", "critical path of the median"], body)
 
 
+def blocks_table(found):
+    body = [[f"`{name}`", r["lut4"], r["carry"], r["lut4"] + 2 * r["carry"], r["ff"], r["dsp"], r["bram"], r["dram"], clocks_of(r),
+             r["critical_path"]] for name, r in found.items()]
+    return datasheet.table(["row", "LUT4, logic", "carry", "LUT4 + 2 carry", "FF", "DSP", "block RAM", "distributed RAM",
+                            "Fmax, MHz: min / median / max", "critical path of the median"], body)
+
+
 def endpoints_table(found):
     body = [[f"`{name}`", f"`{end}`", f"{delay:.2f}"] for name, r in found.items() for end, delay in r["endpoints"]]
     return datasheet.table(["row", "end", "ns"], body)
 
 
-# table -> what makes it; of rows of subsystems, of the other rows
+# table -> what makes it; of rows of subsystems, of blocks that are no primitive test, of the other rows
+BLOCKS = {"blocks": blocks_table}
 SUBSYSTEMS = {"subsystems": subsystems_table, "endpoints": endpoints_table}
 TABLES = {"ecp5": area_table, "choices": choices_table, "classes": classes_table, "families": families_table}
 
 
 def tables(found):
     """Every table with a row of this run, [(name, text)]."""
-    for made, rows_of in ((TABLES, False), (SUBSYSTEMS, True)):
-        wanted = {name: row for name, row in found.items() if bool(row["static"]) == rows_of}
+    kind = lambda row: "subsystem" if row["static"] else "block" if row["block"] else "test"
+    for made, rows_of in ((TABLES, "test"), (SUBSYSTEMS, "subsystem"), (BLOCKS, "block")):
+        wanted = {name: row for name, row in found.items() if kind(row) == rows_of}
         if wanted:
             yield from ((name, make(wanted)) for name, make in made.items())
 
@@ -504,7 +565,7 @@ def measure(chosen, options):
             bar.total += 1
             return pool.submit(bar.counted(attempt), failures, *job)
 
-        beats = {shape: submit(mean_beats, shape, options) for shape in dict.fromkeys(row.shape for row in chosen)}
+        beats = {shape: submit(mean_beats, shape, options) for shape in dict.fromkeys(row.shape for row in chosen) if shape}
         counts = {(row.name, family): submit(count_family, row, family)
                   for row in chosen if options.families and row.families for family in FAMILIES}
         syntheses = {row: submit(synthesise, row, options) for row in chosen}
@@ -516,7 +577,7 @@ def measure(chosen, options):
             reports = {seed: job.result() for seed, job in jobs.items()}
             if None in reports.values():
                 continue
-            found[row.name] = figures(row, syntheses[row].result(), reports, beats[row.shape].result() or {})
+            found[row.name] = figures(row, syntheses[row].result(), reports, beats[row.shape].result() or {} if row.shape else {})
             of_row = {family: job.result() for (name, family), job in counts.items() if name == row.name}
             if None not in of_row.values() and of_row:
                 found[row.name]["families"] = of_row
@@ -585,7 +646,7 @@ def main():
         found, failures = measure(chosen, options)
     save(found)
     made = {name: text for name, text in tables(found) if name != "families" or options.families}
-    for name in ("ecp5", "subsystems", "endpoints", "families"):
+    for name in ("ecp5", "subsystems", "endpoints", "blocks", "families"):
         if name in made:
             print(made[name])
     if options.write and not failures:
