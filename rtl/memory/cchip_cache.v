@@ -14,7 +14,7 @@
 //   invalidate   lines first..last. invalidate_ready = 1 again: no later answer is of data that
 //                memory held before the command
 //   latency      5 clocks from s_valid to m_valid for a line that is there and a port that is free,
-//                5 from s_valid to m_read_valid, 13 from a line's last beat to m_valid
+//                5 from s_valid to m_read_valid, 15 from a line's last beat to m_valid
 //   throughput   a line per port and clock; an arriving line takes a clock of port 0, an
 //                invalidation one in 6 of port 1
 //   collision    a request that meets a change of its set within 5 clocks, or both of whose ways
@@ -113,7 +113,7 @@ module cchip_cache #(
   wire [CODE_W-1:0] fill_code;
   wire [SET_W:0] fill_frame;
   wire [511:0] fill_data;
-  wire collect;  // who waits for collect_slot is served from the next clock on
+  wire collect;  // who waits for collect_slot is to be served
   wire [MISS_W-1:0] collect_slot;
   wire [CODE_W-1:0] serve_code;
   wire [SET_W:0] serve_frame;
@@ -157,7 +157,10 @@ module cchip_cache #(
 
   // ---- the one write to the entries, from registers
   reg [1:0] entry_write_q;  // ways
-  reg [SET_W-1:0] entry_set_q;
+  reg [SET_W-1:0] entry_set_q, entry_set_q2;
+  wire change = |entry_write_q;
+  reg change_q;
+  reg [1:0] change_by_q;  // ports whose stage 4 made it
   reg [2*ENTRY_W-1:0] entry_data_q;
 
   // ---- invalidation: one set after the other, each in a clock of port 1
@@ -195,55 +198,77 @@ module cchip_cache #(
       wire [PLACE_W-1:0] ask_place = s_place[PLACE_W*p+:PLACE_W];
       wire [LINE_W-1:0] ask_line = s_line[LINE_W*p+:LINE_W];
 
-      // ---- the places: their lines; to be looked up; waiting for a line under way; it has come
-      (* ram_style = "distributed" *)
-      reg [LINE_W-1:0] lines[0:PLACES-1];
-      reg [PLACES-1:0] todo_q, sleep_q, wake_q;
-      reg [MISS_W*PLACES-1:0] on_q;
-      always @(posedge clk) if (ask) lines[ask_place] <= ask_line;
-
       // ---- stage 0: who has this clock. A fill or a walk first, then those whose line has come,
-      // then new requests and those to be looked up again, in turn
+      // then new requests, the oldest first, and those to be looked up again, in turn
       wire own0 = p == 0 ? fill_valid : walk_valid_q;
-      wire serve0 = (|wake_q) & ~own0;
-      reg pick_valid_q, pick_first_q;
-      reg [PLACE_W-1:0] pick_q;
-      wire open0 = running_q & ~own0 & ~serve0;
-      wire pick0 = open0 & pick_valid_q & (~ask | pick_first_q);
-      wire new0 = open0 & ask & ~pick0;
-      wire [31:0] wake32 = {{32 - PLACES{1'b0}}, wake_q};
-      wire [4:0] wake_place = lowest(wake32);
-      wire [PLACE_W-1:0] place0 = serve0 ? wake_place[PLACE_W-1:0] : pick0 ? pick_q : ask_place;
-      wire [LINE_W-1:0] look_line0 = pick0 ? lines[pick_q] : ask_line;
-      wire [SET_W-1:0] own_set0 = p == 0 ? fill_frame[SET_W:1] : walk_set_q;
-      wire [SET_W-1:0] set0 = own0 ? own_set0 : serve0 ? serve_frame[SET_W:1] : look_line0[SET_W-1:0];
-
-      wire [PLACES-1:0] turn;  // one-hot
-      wire load_pick = ~pick_valid_q | pick0;
-      cchip_arbiter #(
-          .N(PLACES)
-      ) u_turn (
+      reg serve_q0;
+      wire serve0 = serve_q0 & ~own0;
+      wire go0 = running_q & ~own0 & ~serve_q0;
+      wire late_valid, again_valid;
+      wire [PLACE_W+LINE_W-1:0] late_data, again_data;
+      reg again_first_q;
+      wire use_again = again_valid & (again_first_q | ~(late_valid | ask));
+      wire look0 = go0 & (again_valid | late_valid | ask);
+      wire late_ready, again_ready;
+      wire again;  // of stage 4
+      cchip_fifo #(
+          .WIDTH     (PLACE_W + LINE_W),
+          .DEPTH     (PLACES),
+          .ROOM_KNOWN(1)
+      ) u_late (
           .clk    (clk),
           .rst    (rst),
-          .request(todo_q),
-          .grant  (turn),
-          .take   (load_pick)
+          .s_valid(ask & ~(go0 & ~use_again & ~late_valid)),
+          .s_ready(late_ready),
+          .s_data ({ask_place, ask_line}),
+          .m_valid(late_valid),
+          .m_ready(go0 & ~use_again),
+          .m_data (late_data)
       );
-      wire [31:0] turn32 = {{32 - PLACES{1'b0}}, turn};
-      wire [4:0] turn_place = lowest(turn32);
+      cchip_fifo #(
+          .WIDTH     (PLACE_W + LINE_W),
+          .DEPTH     (PLACES),
+          .ROOM_KNOWN(1)
+      ) u_again (
+          .clk    (clk),
+          .rst    (rst),
+          .s_valid(again),
+          .s_ready(again_ready),
+          .s_data ({place_q4, line_q4}),
+          .m_valid(again_valid),
+          .m_ready(go0 & use_again),
+          .m_data (again_data)
+      );
+      wire [PLACE_W-1:0] look_place0;
+      wire [LINE_W-1:0] look_line0;
+      assign {look_place0, look_line0} = use_again ? again_data :
+          late_valid ? late_data : {ask_place, ask_line};
+      wire [SET_W-1:0] own_set0 = p == 0 ? fill_frame[SET_W:1] : walk_set_q;
+      wire [SET_W-1:0] set0 = p == 1 && walk_valid_q ? walk_set_q : look_line0[SET_W-1:0];
+
+      // ---- who waits for a line under way, and for which; whose line has come; who is served next
+      reg [PLACES-1:0] sleep_q, wake_q;
+      reg [MISS_W*PLACES-1:0] on_q;
+      reg [PLACE_W-1:0] serve_place_q0;
+      reg [CODE_W-1:0] serve_code_q0;
+      reg [SET_W:0] serve_frame_q0;
+      wire [31:0] wake32 = {{32 - PLACES{1'b0}}, wake_q};
+      wire [4:0] wake_place = lowest(wake32);
+      wire load_serve = ~serve_q0 | serve0;
+      assign serving[p] = |wake_q;
 
       // ---- stages 1 to 4: in 2 the entries are read, in 3 the data are addressed, 4 decides
       reg look_q1, look_q2, look_q3, look_q4;
       reg serve_q1, serve_q2, serve_q3, serve_q4;
       reg own_q1, own_q2, own_q3, own_q4;
-      reg stale_q1, stale_q2, stale_q3, stale_q4;  // the set has changed since it was read
+      reg stale_q2, stale_q3, stale_q4;  // the set has changed since it was read
       reg [PLACE_W-1:0] place_q1, place_q2, place_q3, place_q4;
       reg [LINE_W-1:0] line_q1, line_q2, line_q3, line_q4;
       reg [CODE_W-1:0] code_q1, code_q2, code_q3, code_q4;
       reg [MISS_W-1:0] slot_q1, slot_q2, slot_q3, slot_q4;  // of a fill
       reg way_q1, way_q2, way_q3, way_q4;
       reg lock_q2, lock_q3;  // the line is one to lock
-      wire change = |entry_write_q;
+      reg [1:0] same_q4;  // the set of the lookup of each port that is a clock ahead
 
       wire [LOCKS-1:0] in_range;
       for (i = 0; i < LOCKS; i = i + 1) begin : gen_lock
@@ -272,16 +297,21 @@ module cchip_cache #(
         assign match2[w] = entry2[AT_VALID] && kept2 == line_q2;
         reg match_q3, valid_q3, locked_q3, turn_q3, turn_q4, forget_q3, forget_q4;
         reg [MISS_W-1:0] miss_q3, miss_q4;
+        wire [MISS_W-1:0] miss2 = entry2[AT_MISS+:MISS_W];
         (* ram_style = "distributed" *)
         reg [SET_W:0] frames[0:MISSES-1];
-        wire [SET_W:0] frame3 = frames[miss_q3];
+        reg [SET_W:0] frame_q3;
+        reg held_q3, filled_q3;
         always @(posedge clk) begin
           if (allocate_q) frames[allocate_slot_q] <= allocate_frame_q;
+          frame_q3  <= frames[miss2];
+          held_q3   <= held[miss2];
+          filled_q3 <= filled[miss2];
           match_q3  <= match2[w];
           valid_q3  <= entry2[AT_VALID];
           locked_q3 <= entry2[AT_LOCKED];
           turn_q3   <= entry2[AT_TURN];
-          miss_q3   <= entry2[AT_MISS+:MISS_W];
+          miss_q3   <= miss2;
           forget_q3 <= entry2[AT_VALID] && kept2 >= first_q && kept2 <= last_q;
           forget_q4 <= forget_q3;
           turn_q4   <= turn_q3;
@@ -295,8 +325,8 @@ module cchip_cache #(
         assign forget4[w] = forget_q4;
         assign miss3[MISS_W*w+:MISS_W] = miss_q3;
         assign miss4[MISS_W*w+:MISS_W] = miss_q4;
-        assign hold3[w] = held[miss_q3] && frame3 == {line_q3[SET_W-1:0], W[0]};
-        assign full3[w] = filled[miss_q3];
+        assign hold3[w] = held_q3 && frame_q3 == {line_q3[SET_W-1:0], W[0]};
+        assign full3[w] = filled_q3;
       end
 
       wire [1:0] wait3 = match3 & hold3 & ~full3;  // the line is under way
@@ -305,11 +335,11 @@ module cchip_cache #(
       reg match_q4, wait_q4, may_q4, victim_q4, locked_q4, new_turn_q4;
       reg [MISS_W-1:0] wait_slot_q4;
 
-      wire stale = stale_q4 | (change && entry_set_q == line_q4[SET_W-1:0]);
+      wire stale = stale_q4 | (|(change_by_q & same_q4));
       wire fresh = look_q4 & ~stale;
       wire hit = fresh & match_q4 & ~wait_q4;
       wire sleeps = (fresh & wait_q4) | grant[p];
-      wire again = look_q4 & (stale | (~match_q4 & ~grant[p]));
+      assign again = look_q4 & (stale | (~match_q4 & ~grant[p]));
       assign want[p] = fresh & ~match_q4 & may_q4 & free_valid;
       assign want_way[p] = victim_q4;
       assign want_locked[p] = locked_q4;
@@ -317,7 +347,6 @@ module cchip_cache #(
       assign line4[LINE_W*p+:LINE_W] = line_q4;
       assign own4[p] = own_q4;
       assign data_addr[(SET_W+1)*p+:SET_W+1] = {line_q3[SET_W-1:0], way_q3};
-      assign serving[p] = |wake_q;
       if (p == 0) begin : gen_fill
         assign fill_write = own_q3 && code_q3 == `CCHIP_READ_OK;
         assign fill_code4 = code_q4;
@@ -332,22 +361,28 @@ module cchip_cache #(
       end
 
       always @(posedge clk) begin
-        {place_q1, code_q1, slot_q1, way_q1} <= {
-          place0, own0 ? fill_code : serve_code, fill_slot, own0 ? fill_frame[0] : serve_frame[0]
-        };
+        {place_q1, code_q1, slot_q1, way_q1} <= own0 ?
+            {serve_place_q0, fill_code, fill_slot, fill_frame[0]} :
+            {serve_q0 ? serve_place_q0 : look_place0, serve_code_q0, fill_slot, serve_frame_q0[0]};
         {place_q2, code_q2, slot_q2, way_q2} <= {place_q1, code_q1, slot_q1, way_q1};
         {place_q3, code_q3, slot_q3, way_q3} <= {
           place_q2, code_q2, slot_q2, look_q2 ? match2[1] : way_q2
         };
         {place_q4, code_q4, slot_q4, way_q4} <= {place_q3, code_q3, slot_q3, way_q3};
-        line_q1 <= {look_line0[LINE_W-1:SET_W], set0};
+        line_q1 <= {
+          look_line0[LINE_W-1:SET_W],
+          own0 ? own_set0 : serve_q0 ? serve_frame_q0[SET_W:1] : look_line0[SET_W-1:0]
+        };
         line_q2 <= line_q1;
         line_q3 <= line_q2;
         line_q4 <= line_q3;
-        stale_q1 <= change && entry_set_q == set0;
-        stale_q2 <= stale_q1 | (change && entry_set_q == line_q1[SET_W-1:0]);
+        stale_q2 <= (change && entry_set_q == line_q1[SET_W-1:0]) ||
+            (change_q && entry_set_q2 == line_q1[SET_W-1:0]);
         stale_q3 <= stale_q2 | (change && entry_set_q == line_q2[SET_W-1:0]);
         stale_q4 <= stale_q3 | (change && entry_set_q == line_q3[SET_W-1:0]);
+        same_q4 <= {
+          line4[LINE_W+:SET_W] == line_q3[SET_W-1:0], line4[SET_W-1:0] == line_q3[SET_W-1:0]
+        };
         lock_q2 <= |in_range;
         lock_q3 <= lock_q2;
         match_q4 <= |match3;
@@ -357,19 +392,23 @@ module cchip_cache #(
         victim_q4 <= victim3;
         locked_q4 <= lock_q3 & ~(victim3 ? locked3[0] : locked3[1]);
         new_turn_q4 <= ~victim3 ^ (victim3 ? turn3[0] : turn3[1]);
-        if (load_pick) pick_q <= turn_place[PLACE_W-1:0];
+        if (load_serve) begin
+          serve_place_q0 <= wake_place[PLACE_W-1:0];
+          serve_code_q0  <= serve_code;
+          serve_frame_q0 <= serve_frame;
+        end
         if (rst) begin
           {look_q1, look_q2, look_q3, look_q4} <= 4'd0;
           {serve_q1, serve_q2, serve_q3, serve_q4} <= 4'd0;
           {own_q1, own_q2, own_q3, own_q4} <= 4'd0;
-          pick_valid_q <= 1'b0;
-          pick_first_q <= 1'b0;
+          serve_q0 <= 1'b0;
+          again_first_q <= 1'b0;
         end else begin
-          {look_q1, look_q2, look_q3, look_q4} <= {pick0 | new0, look_q1, look_q2, look_q3};
+          {look_q1, look_q2, look_q3, look_q4} <= {look0, look_q1, look_q2, look_q3};
           {serve_q1, serve_q2, serve_q3, serve_q4} <= {serve0, serve_q1, serve_q2, serve_q3};
           {own_q1, own_q2, own_q3, own_q4} <= {own0, own_q1, own_q2, own_q3};
-          if (load_pick) pick_valid_q <= |todo_q;
-          if (open0 && ask && pick_valid_q) pick_first_q <= ~pick_first_q;
+          if (load_serve) serve_q0 <= |wake_q;
+          if (go0 && again_valid && (late_valid || ask)) again_first_q <= ~again_first_q;
         end
       end
       for (i = 0; i < PLACES; i = i + 1) begin : gen_place
@@ -379,16 +418,12 @@ module cchip_cache #(
         always @(posedge clk) begin
           if (falls) on_q[MISS_W*i+:MISS_W] <= grant[p] ? free_slot : wait_slot_q4;
           if (rst) begin
-            todo_q[i]  <= 1'b0;
             sleep_q[i] <= 1'b0;
             wake_q[i]  <= 1'b0;
           end else begin
-            todo_q[i] <= (todo_q[i] & ~(turn[i] & load_pick)) |
-                (ask && !new0 && ask_place == I[PLACE_W-1:0]) |
-                (again && place_q4 == I[PLACE_W-1:0]);
             sleep_q[i] <= falls | (sleep_q[i] & ~(collect & on_line));
             wake_q[i] <= collect ? sleep_q[i] & on_line :
-                wake_q[i] & ~(serve0 && wake_place[PLACE_W-1:0] == I[PLACE_W-1:0]);
+                wake_q[i] & ~(load_serve && wake_place[PLACE_W-1:0] == I[PLACE_W-1:0]);
           end
         end
       end
@@ -416,12 +451,12 @@ module cchip_cache #(
 
       reg both_q4;  // the two ways hold the same line
       always @(posedge clk) both_q4 <= &match3;
-      wire unused = &{1'b0, wake_place, turn_place, code_q4};
+      wire unused = &{1'b0, wake_place, code_q4, late_ready, again_ready};
       always @(posedge clk)
         if (!rst) begin
           `CCHIP_ASSERT(a_collect, !collect || wake_q == {PLACES{1'b0}})
           `CCHIP_ASSERT(a_one, !fresh || !(match_q4 && both_q4))
-          `CCHIP_ASSERT(a_place, !ask || !todo_q[ask_place] && !sleep_q[ask_place] && !wake_q[ask_place])
+          `CCHIP_ASSERT(a_place, !ask || !sleep_q[ask_place] && !wake_q[ask_place])
         end
     end
   endgenerate
@@ -469,17 +504,21 @@ module cchip_cache #(
   always @(posedge clk) begin
     entry_set_q <= !running_q ? walk_set_q : kill ? line4[SET_W-1:0] :
         walk_write ? line4[LINE_W+:SET_W] : line[SET_W-1:0];
+    entry_set_q2 <= entry_set_q;
+    change_q <= change;
     allocate_slot_q  <= free_slot;
     allocate_frame_q <= {line[SET_W-1:0], way};
     allocate_line_q  <= line;
     if (rst) begin
       entry_write_q <= 2'b00;
+      change_by_q   <= 2'b00;
       allocate_q    <= 1'b0;
       favour_q      <= 1'b0;
     end else begin
       entry_write_q <= !running_q ? 2'b11 : kill ? fill_way4 : walk_write ? walk_ways4 :
           {way, ~way} & {2{|grant}};
-      allocate_q <= |grant;
+      change_by_q <= {grant[1] | walk_write, grant[0] | kill};
+      allocate_q  <= |grant;
       if (&want) favour_q <= ~favour_q;
     end
   end

@@ -6,14 +6,15 @@
 // from allocation until all who wait for it have been served.
 //   fill         lines leave in the order of their last beats; fill_data 3 clocks after fill_valid,
 //                filled on the next clock if the code is CCHIP_READ_OK
-//   serve        collect 5 clocks after fill_valid or later, one line after the other: a line is
-//                done, and its slot free, when serving is 0
+//   serve        collect 6 clocks after fill_valid or later, one line after the other: a line is
+//                done, and its slot free, when serving is 0 on a later clock than the one after
+//                collect
 //   latency      2 clocks from the last beat to fill_valid
-//   throughput   a line every clock into the frames, every second clock if one waits for each
-//   cuts         every path but serving to collect
-//   reset        every slot is free; memory must not answer reads from before
+//   throughput   a line every clock into the frames, every third clock if one waits for each
+//   cuts         every path
+//   reset        every slot is free after MISSES clocks; memory must not answer reads from before
 module cchip_cache_fill #(
-    // slots, 2..32
+    // slots: 2, 4, 8, 16 or 32
     parameter integer MISSES = 32,
     // width of a frame's number, bit
     parameter integer FRAME_W = 12,
@@ -58,38 +59,36 @@ module cchip_cache_fill #(
   localparam integer ROW_W = MISS_W < 3 ? 3 : MISS_W;
 
   generate
-    if (MISSES < 2 || MISSES > 32 || FRAME_W < 1) begin : gen_illegal_misses
-      cchip_error_cache_fill_MISSES_must_be_2_to_32_and_FRAME_W_positive u_error ();
+    if (MISSES < 2 || MISSES > 32 || (1 << MISS_W) != MISSES || FRAME_W < 1) begin : gen_illegal_misses
+      cchip_error_cache_fill_MISSES_must_be_2_4_8_16_or_32_and_FRAME_W_positive u_error ();
     end
     if (DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W) begin : gen_illegal_width
       cchip_error_cache_fill_DATA_W_must_be_64_128_256_or_512 u_error ();
     end
   endgenerate
 
-  // ---- the slots
-  reg [MISSES-1:0] idle_q;  // neither offered nor held
+  // ---- the slots. The free ones wait in a queue, so that each is used again as late as possible
   reg [MISSES-1:0] held_q, filled_q;
-  reg free_valid_q;
-  reg [MISS_W-1:0] free_slot_q;
-  wire [MISSES-1:0] turn;  // one-hot
-  wire load_free = ~free_valid_q | free_take;
-  wire release_slot;
-  cchip_arbiter #(
-      .N(MISSES)
-  ) u_turn (
+  reg first_q;  // slots are put into the queue for the first time
+  reg [MISS_W-1:0] first_slot_q;
+  wire free_ready;
+  wire done;
+  reg serve_q;
+  reg [MISS_W-1:0] serve_slot_q;
+  cchip_fifo #(
+      .WIDTH     (MISS_W),
+      .DEPTH     (MISSES),
+      .ROOM_KNOWN(1)
+  ) u_free (
       .clk    (clk),
       .rst    (rst),
-      .request(idle_q),
-      .grant  (turn),
-      .take   (load_free)
+      .s_valid((done | first_q) & free_ready),
+      .s_ready(free_ready),
+      .s_data (done ? serve_slot_q : first_slot_q),
+      .m_valid(free_valid),
+      .m_ready(free_take),
+      .m_data (free_slot)
   );
-  function [MISS_W-1:0] encode(input [MISSES-1:0] one);
-    integer j;
-    begin
-      encode = {MISS_W{1'b0}};
-      for (j = 0; j < MISSES; j = j + 1) if (one[j]) encode = encode | j[MISS_W-1:0];
-    end
-  endfunction
 
   // ---- lines that have come
   cchip_fifo #(
@@ -139,10 +138,10 @@ module cchip_cache_fill #(
   // ---- lines whose waiters are to be served
   wire waiting;
   wire serve_ready;
+  wire [MISS_W-1:0] next_slot;
   wire [CODE_W-1:0] next_code;
   wire [FRAME_W-1:0] next_frame;
-  reg serve_q;
-  reg [MISS_W-1:0] serve_slot_q;
+  reg collect_q;
   reg [CODE_W-1:0] serve_code_q;
   reg [FRAME_W-1:0] serve_frame_q;
   cchip_fifo #(
@@ -156,62 +155,65 @@ module cchip_cache_fill #(
       .s_ready(serve_ready),
       .s_data ({slot_q3, code_q3, frame_q3}),
       .m_valid(waiting),
-      .m_ready(collect),
-      .m_data ({collect_slot, next_code, next_frame})
+      .m_ready(~serve_q | done),
+      .m_data ({next_slot, next_code, next_frame})
   );
-  assign release_slot = serve_q && serving == 2'b00;
-  assign collect = waiting & (~serve_q | release_slot);
+  assign done = serve_q && !collect_q && serving == 2'b00;
 
   always @(posedge clk) begin
     {slot_q1, code_q1, frame_q1} <= {fill_slot, fill_code, fill_frame};
     {slot_q2, code_q2, frame_q2} <= {slot_q1, code_q1, frame_q1};
     {slot_q3, code_q3, frame_q3} <= {slot_q2, code_q2, frame_q2};
-    if (collect) {serve_slot_q, serve_code_q, serve_frame_q} <= {collect_slot, next_code, next_frame};
-    if (load_free) free_slot_q <= encode(turn);
+    if (~serve_q | done)
+      {serve_slot_q, serve_code_q, serve_frame_q} <= {next_slot, next_code, next_frame};
     if (rst) begin
       fill_q1 <= 1'b0;
       fill_q2 <= 1'b0;
       fill_q3 <= 1'b0;
       serve_q <= 1'b0;
-      free_valid_q <= 1'b0;
+      collect_q <= 1'b0;
+      first_q <= 1'b1;
+      first_slot_q <= {MISS_W{1'b0}};
     end else begin
       fill_q1 <= fill_valid;
       fill_q2 <= fill_q1;
       fill_q3 <= fill_q2;
-      serve_q <= collect | (serve_q & ~release_slot);
-      if (load_free) free_valid_q <= |idle_q;
+      serve_q <= waiting | (serve_q & ~done);
+      collect_q <= waiting & (~serve_q | done);
+      if (free_ready && !done) begin
+        first_q <= first_q && first_slot_q != {MISS_W{1'b1}};
+        first_slot_q <= first_slot_q + {{MISS_W - 1{1'b0}}, 1'b1};
+      end
     end
   end
   genvar i;
   generate
     for (i = 0; i < MISSES; i = i + 1) begin : gen_slot
       localparam [31:0] I = i;
-      wire frees = release_slot && serve_slot_q == I[MISS_W-1:0];
+      wire frees = done && serve_slot_q == I[MISS_W-1:0];
       wire starts = allocate && allocate_slot == I[MISS_W-1:0];
       wire fills = fill_q3 && slot_q3 == I[MISS_W-1:0] && code_q3 == `CCHIP_READ_OK;
       always @(posedge clk)
         if (rst) begin
-          idle_q[i]   <= 1'b1;
           held_q[i]   <= 1'b0;
           filled_q[i] <= 1'b0;
         end else begin
-          idle_q[i]   <= frees | (idle_q[i] & ~(turn[i] & load_free));
           held_q[i]   <= starts | (held_q[i] & ~frees);
           filled_q[i] <= fills | (filled_q[i] & ~starts);
         end
     end
   endgenerate
-  assign free_valid  = free_valid_q;
-  assign free_slot   = free_slot_q;
   assign held        = held_q;
   assign filled      = filled_q;
+  assign collect      = collect_q;
+  assign collect_slot = serve_slot_q;
   assign serve_code  = serve_code_q;
   assign serve_frame = serve_frame_q;
 
   wire unused = &{1'b0, arrived_ready, serve_ready, row, write_row};
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_take, !free_take || free_valid_q)
+      `CCHIP_ASSERT(a_take, !free_take || free_valid)
       `CCHIP_ASSERT(a_allocate, !allocate || !held_q[allocate_slot])
       `CCHIP_ASSERT(a_answer, !s_read_valid || held_q[s_read_slot] && !filled_q[s_read_slot])
     end

@@ -147,7 +147,7 @@ ILLEGAL = [
     *(("cchip_cache", {"MISSES": n}, CACHE + "MISSES_must_be_2_4_8_16_or_32") for n in (1, 12, 64)),
     *(("cchip_cache", case, CACHE + "LINE_W_must_be_over_SET_W_to_58_and_LOCKS_1_to_4")
       for case in ({"LINE_W": 10}, {"LINE_W": 59}, {"LOCKS": 0}, {"LOCKS": 5})),
-    *(("cchip_cache_fill", {"MISSES": n}, CACHE + "fill_MISSES_must_be_2_to_32_and_FRAME_W_positive") for n in (1, 33)),
+    *(("cchip_cache_fill", {"MISSES": n}, CACHE + "fill_MISSES_must_be_2_4_8_16_or_32_and_FRAME_W_positive") for n in (1, 33)),
     *(("cchip_cache_fill", {"DATA_W": n}, CACHE + "fill_DATA_W_must_be_64_128_256_or_512") for n in (32, 96, 1024)),
     *(("cchip_axi_read", {"CLIENTS": n}, READ + "CLIENTS_must_be_1_to_8") for n in (0, 9)),
     *(("cchip_axi_read", {"SLOTS": n}, READ + "SLOTS_must_be_2_4_8_16_or_32") for n in (1, 3, 64)),

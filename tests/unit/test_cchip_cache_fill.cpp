@@ -37,6 +37,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
       std::deque<std::pair<int, Line>> filling;  // clock of fill_valid
       model::Fifo<Line> queue(misses);
       std::optional<Line> served;
+      bool collects = false;                // on this clock
       int serves = 0, lines = 0, most = 0;  // clocks left, lines done
       std::array<bool, misses> held{}, filled{};
       for (int clock = 0; clock < 6000; ++clock) {
@@ -102,10 +103,9 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
           if (held[static_cast<std::size_t>(s)])
             REQUIRE((top.filled >> s & 1) == (filled[static_cast<std::size_t>(s)] ? 1 : 0));
         }
-        const bool release = served && serves == 0;
-        const bool collect = queue.m_valid() && (!served || release);
-        REQUIRE((top.collect != 0) == collect);
-        if (collect) REQUIRE(top.collect_slot == queue.m_data().slot);
+        const bool release = served && !collects && serves == 0;
+        REQUIRE((top.collect != 0) == collects);
+        if (collects) REQUIRE(top.collect_slot == served->slot);
         if (served) {
           REQUIRE(top.serve_code == served->code);
           REQUIRE(top.serve_frame == served->frame);
@@ -125,12 +125,14 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
           taken.reset();
         }
         if (written && written->code == 0) filled[static_cast<std::size_t>(written->slot)] = true;
-        if (serves > 0) --serves;
-        if (collect) {
+        if (serves > 0 && !collects) --serves;
+        const bool next = !served;
+        collects = next && queue.m_valid();
+        if (collects) {
           served = queue.m_data();
           serves = chance(random, 70) ? 1 : static_cast<int>(random() % 8);
         }
-        queue.clock(written.has_value(), written.value_or(Line{}), collect);
+        queue.clock(written.has_value(), written.value_or(Line{}), next);
         while (!filling.empty() && filling.front().first + 3 <= clock) filling.pop_front();
         if (comes) filling.emplace_back(clock + 2, *comes);
         if (take) {

@@ -10,12 +10,6 @@ using bvh::directions;
 using bvh::first_corner;
 using bvh::first_face;
 
-/// Planes of a child on the directions of B: half steps with 1 fraction bit.
-struct Planes {
-  std::array<std::int64_t, directions.size()> upper;
-  std::array<std::int64_t, directions.size()> lower;
-};
-
 /// 2^exponent, at least 1: a fraction of a quarter counts as a quarter.
 std::int64_t quarters(int exponent) { return std::int64_t{1} << std::max(0, exponent); }
 
@@ -33,6 +27,8 @@ std::int64_t slack_of(const NodeGrid& grid, int step, const PoseSetup& pose) {
   if (grid.b_is_point) slack += quarters(2 + 7 - grid.y);
   return slack;
 }
+
+}  // namespace
 
 Planes planes_of_a(const bvh::InnerLine& node, std::size_t child, const PoseSetup& pose, const NodeGrid& grid) {
   const bvh::ChildVolume& volume = node.child[child];
@@ -102,8 +98,6 @@ Planes planes_of_b(const bvh::InnerLine& node, std::size_t child, const NodeGrid
   }
   return planes;
 }
-
-}  // namespace
 
 NodeGrid grid_of(const bvh::InnerLine& a, const bvh::InnerLine& b, const PoseSetup& pose) {
   NodeGrid grid;

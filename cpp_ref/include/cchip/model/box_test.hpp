@@ -36,6 +36,14 @@ struct NodeGrid {
 inline constexpr int offset_w = 17;  ///< bits of NodeGrid::offset; what does not fit is far
 inline constexpr int slack_max = 255;
 
+/// Planes of a child on the directions of B: half steps with 1 fraction bit.
+struct Planes {
+  std::array<std::int64_t, bvh::directions.size()> upper;
+  std::array<std::int64_t, bvh::directions.size()> lower;
+};
+Planes planes_of_a(const bvh::InnerLine& node, std::size_t child, const PoseSetup& pose, const NodeGrid& grid);
+Planes planes_of_b(const bvh::InnerLine& node, std::size_t child, const NodeGrid& grid);
+
 NodeGrid grid_of(const bvh::InnerLine& a, const bvh::InnerLine& b, const PoseSetup& pose);
 
 /// Child pair (i, j), i of A, has number 4 i + j.

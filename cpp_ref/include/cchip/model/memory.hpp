@@ -248,7 +248,12 @@ class Cache {
   };
 
   explicit Cache(const Shape& shape)
-      : shape_(shape), arrived_(shape.misses), serve_queue_(shape.misses), entries_(shape.sets), data_(2 * shape.sets) {
+      : shape_(shape),
+        arrived_(shape.misses),
+        serve_queue_(shape.misses),
+        free_(shape.misses),
+        entries_(shape.sets),
+        data_(2 * shape.sets) {
     reset();
   }
 
@@ -267,7 +272,7 @@ class Cache {
       fresh[p] = step.kind == Kind::look && !step.stale;
       wait[p] = fresh[p] && step.wait;
       hit[p] = fresh[p] && step.match && !step.wait;
-      want[p] = fresh[p] && !step.match && step.victim && free_.offered;
+      want[p] = fresh[p] && !step.match && step.victim && free_.m_valid();
     }
     const Step& fill4 = ports_[0].steps[3];
     const Step& walk4 = ports_[1].steps[3];
@@ -284,8 +289,8 @@ class Cache {
     // the lines under way: what they show on this clock
     const bool fills = arrived_.m_valid();
     const Arrived fill = fills ? arrived_.m_data() : Arrived{};
-    const bool release = serving_ && ports_[0].wake.empty() && ports_[1].wake.empty();
-    const bool collect = serve_queue_.m_valid() && (!serving_ || release);
+    const bool release = serving_ && !collect_ && ports_[0].wake.empty() && ports_[1].wake.empty();
+    const bool next_serves = serve_queue_.m_valid() && (!serving_ || release);
 
     const bool walks = walk_valid_;
     std::array<Step, 2> first;
@@ -303,11 +308,13 @@ class Cache {
       // stage 0
       const auto& ask = in.requests[p];
       const bool own = p == 0 ? fills : walks;
-      const bool serve = !own && !port.wake.empty();
-      const bool open = running_ && !own && !serve;
-      const bool pick = open && port.pick && (!ask || port.pick_first);
-      const bool fresh_request = open && ask && !pick;
-      if (open && ask && port.pick) port.pick_first = !port.pick_first;
+      const bool serve = !own && port.serve;
+      const bool go = running_ && !own && !port.serve;
+      const bool late = port.late.m_valid();
+      const bool use_again = port.again.m_valid() && (port.again_first || !(late || ask));
+      const bool use_late = !use_again && late;
+      const bool use_ask = !use_again && !late && ask;
+      if (go && port.again.m_valid() && (late || ask)) port.again_first = !port.again_first;
       Step& step = first[p];
       if (own) {
         step.kind = Kind::own;
@@ -316,36 +323,43 @@ class Cache {
         step.slot = fill.slot;
         step.code = fill.code;
       } else if (serve) {
-        step.kind = Kind::serve;
-        step.place = *port.wake.begin();
-        step.line = serving_->frame / 2;
-        step.way = serving_->frame % 2;
-        step.code = serving_->code;
-        port.wake.erase(port.wake.begin());
-      } else if (pick || fresh_request) {
+        step = *port.serve;
+      } else if (go && (use_again || use_late || use_ask)) {
+        const Request& request = use_again ? port.again.m_data() : use_late ? port.late.m_data() : *ask;
         step.kind = Kind::look;
-        step.place = pick ? *port.pick : ask->place;
-        step.line = pick ? port.lines[*port.pick] : ask->line;
+        step.place = request.place;
+        step.line = request.line;
       }
       step.entries = entries_[set_of(step)];
       step.stale = changes(step);
-      if (!port.pick || pick) port.pick = port.turn.take(port.todo);
-      if (ask) port.lines[ask->place] = ask->line;
-      if (ask && !fresh_request) port.todo.insert(ask->place);
-      if (again) port.todo.insert(step4.place);
+      port.late.clock(ask && !(go && use_ask), ask.value_or(Request{}), go && !use_again);
+      port.again.clock(again, Request{step4.place, step4.line}, go && use_again);
 
       // who waits
-      if (collect) {
+      if (!port.serve || serve) {
+        port.serve.reset();
+        if (!port.wake.empty()) {
+          port.serve.emplace();
+          port.serve->kind = Kind::serve;
+          port.serve->place = *port.wake.begin();
+          port.serve->line = serving_->frame / 2;
+          port.serve->way = serving_->frame % 2;
+          port.serve->code = serving_->code;
+          port.wake.erase(port.wake.begin());
+        }
+      }
+      if (collect_) {
         for (const auto& [place, slot] : port.asleep) {
-          if (slot == serve_queue_.m_data().slot) port.wake.insert(place);
+          if (slot == serving_->slot) port.wake.insert(place);
         }
         for (const std::size_t place : port.wake) port.asleep.erase(place);
       }
-      if (sleeps) port.asleep[step4.place] = grant ? free_.slot : step4.wait_slot;
+      if (sleeps) port.asleep[step4.place] = grant ? free_.m_data() : step4.wait_slot;
 
       // stages 1 to 3
       for (std::size_t s = 0; s < 3; ++s) port.steps[s].stale = port.steps[s].stale || changes(port.steps[s]);
       for (const Range& range : in.locks) port.steps[0].locks = port.steps[0].locks || range.has(port.steps[0].line);
+      look_up(port.steps[1]);
       Step& step3 = port.steps[2];
       judge(step3);
       step3.data = data_[2 * set_of(step3) + step3.way];
@@ -370,7 +384,7 @@ class Cache {
     } else if (granted) {
       const Step& step = ports_[*granted].steps[3];
       change_ = Change{set_of(step), {*step.victim == 0, *step.victim == 1}, {}};
-      change_->entries[*step.victim] = Entry{true, step.locks, step.turn, free_.slot, step.line};
+      change_->entries[*step.victim] = Entry{true, step.locks, step.turn, free_.m_data(), step.line};
     }
 
     // the walk, before the slots it looks at change
@@ -396,23 +410,21 @@ class Cache {
       const std::size_t words = 16 / shape_.beats;
       for (std::size_t w = 0; w < words; ++w) held_[in.beat->slot].data[*in.beat->beat * words + w] = in.beat->data[w];
     }
-    if (collect) serving_ = serve_queue_.m_data();
+    const bool take_serve = !serving_;
+    if (next_serves) serving_ = serve_queue_.m_data();
+    collect_ = next_serves;
     serve_queue_.clock(fill3.kind == Kind::own, Arrived{fill3.slot, fill3.code, 2 * set_of(fill3) + fill3.way},
-                       collect);
+                       take_serve);
     arrived_.clock(in.beat && in.beat->last, in.beat ? Arrived{in.beat->slot, in.beat->code, 0} : Arrived{}, true);
-    const bool load = !free_.offered || granted;
     read_.reset();
     if (granted) {
       const Step& step = ports_[*granted].steps[3];
-      read_ = Request{free_.slot, step.line};
+      read_ = Request{free_.m_data(), step.line};
       allocate_frame_ = 2 * set_of(step) + *step.victim;
     }
-    if (load) {
-      const auto next = free_.turn.take(free_.idle);
-      free_.offered = next.has_value();
-      if (next) free_.slot = *next;
-    }
-    if (released) free_.idle.insert(*released);
+    const bool first_slot = !released && first_slot_ < shape_.misses && free_.s_ready();
+    free_.clock(released || first_slot, released.value_or(first_slot_), granted.has_value());
+    first_slot_ += first_slot ? 1 : 0;
 
     for (std::size_t p = 0; p < 2; ++p) {
       auto& steps = ports_[p].steps;
@@ -423,7 +435,9 @@ class Cache {
   void reset() {
     for (Port& port : ports_) port = Port(shape_.places);
     held_.assign(shape_.misses, Held{});
-    free_ = Free(shape_.misses);
+    free_.reset();
+    first_slot_ = 0;
+    collect_ = false;
     arrived_.reset();
     serve_queue_.reset();
     serving_.reset();
@@ -456,6 +470,7 @@ class Cache {
     ReadCode code = ReadCode::ok;
     bool stale = false;
     std::array<Entry, 2> entries{};
+    std::array<bool, 2> holds{}, filled{};  // of the lines under way that the entries name
     bool match = false, wait = false;
     std::size_t wait_slot = 0;
     std::optional<std::size_t> victim;
@@ -463,42 +478,19 @@ class Cache {
     std::array<bool, 2> forget{};
     LineData data{};
   };
-  /// The first of several that want it, beginning behind the one that had it last.
-  struct Turn {
-    explicit Turn(std::size_t n) : last(n - 1) {}
-    std::optional<std::size_t> take(std::set<std::size_t>& of) {
-      if (of.empty()) return std::nullopt;
-      auto next = of.upper_bound(last);
-      if (next == of.end()) next = of.begin();
-      last = *next;
-      of.erase(next);
-      return last;
-    }
-    std::size_t last;
-  };
   struct Port {
-    explicit Port(std::size_t places) : lines(places), turn(places) {}
-    std::vector<std::uint64_t> lines;
-    std::set<std::size_t> todo, wake;
+    explicit Port(std::size_t places) : late(places), again(places) {}
+    Fifo<Request> late, again;  // found the port taken; to be looked up again
+    bool again_first = false;
+    std::set<std::size_t> wake;
+    std::optional<Step> serve;
     std::map<std::size_t, std::size_t> asleep;  // place, slot of the line it waits for
-    Turn turn;
-    std::optional<std::size_t> pick;
-    bool pick_first = false;
-    std::array<Step, 4> steps;  // stages 1 to 4
+    std::array<Step, 4> steps;                  // stages 1 to 4
   };
   struct Held {
     bool held = false, filled = false;
     std::size_t frame = 0;  // 2 set + way
     LineData data{};
-  };
-  struct Free {
-    explicit Free(std::size_t slots = 1) : turn(slots) {
-      for (std::size_t i = 0; i < slots; ++i) idle.insert(i);
-    }
-    std::set<std::size_t> idle;
-    Turn turn;
-    bool offered = false;
-    std::size_t slot = 0;
   };
   struct Arrived {
     std::size_t slot = 0;
@@ -514,20 +506,27 @@ class Cache {
   std::size_t set_of(const Step& step) const { return step.line % shape_.sets; }
   bool changes(const Step& step) const { return change_ && change_->set == set_of(step); }
 
+  /// Stage 2.
+  void look_up(Step& step) const {
+    for (std::size_t w = 0; w < 2; ++w) {
+      const Held& held = held_[step.entries[w].slot];
+      step.holds[w] = held.held && held.frame == 2 * set_of(step) + w;
+      step.filled[w] = held.filled;
+    }
+  }
   /// Stage 3.
   void judge(Step& step) const {
     std::array<bool, 2> may{};
     step.victim.reset();
     for (std::size_t w = 0; w < 2; ++w) {
       const Entry& entry = step.entries[w];
-      const Held& held = held_[entry.slot];
-      const bool holds = held.held && held.frame == 2 * set_of(step) + w;
+      const bool holds = step.holds[w];
       step.forget[w] = entry.valid && walk_range_.has(entry.line);
       may[w] = !holds && !entry.locked;
       if (step.kind != Kind::look || !entry.valid || entry.line != step.line) continue;
       step.match = true;
       step.way = w;
-      if (holds && !held.filled) {
+      if (holds && !step.filled[w]) {
         step.wait = true;
         step.wait_slot = entry.slot;
       }
@@ -596,8 +595,10 @@ class Cache {
   Shape shape_;
   std::array<Port, 2> ports_{Port(2), Port(2)};
   std::vector<Held> held_;
-  Free free_;
   Fifo<Arrived> arrived_, serve_queue_;
+  Fifo<std::size_t> free_;
+  std::size_t first_slot_ = 0;
+  bool collect_ = false;
   std::optional<Arrived> serving_;
   std::vector<std::array<Entry, 2>> entries_;
   std::vector<LineData> data_;

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_bv_compare: the planes of a child of A against those of a child of B.
+//   rule         separated if the intervals of one direction of 13 are disjoint; else the key is the
+//                least overlap, 8 half steps in axes and 16 in diagonals, at most 15
+//   numbers      planes in half steps with 1 fraction bit, as cchip_bv_lane_a and _b give them
+//   latency      separated 2 clocks, key 6 clocks after the planes
+//   throughput   a pair on every clock
+//   cuts         every path
+//   reset        none
+// Bit for bit model::test_boxes.
+module cchip_bv_compare (
+    input  wire         clk,
+    input  wire [331:0] a,          // of 3 axes, then of 10 diagonals: {lower, upper}
+    input  wire [331:0] b,
+    output wire         separated,
+    output wire [  3:0] key         // if not separated
+);
+
+  // ---- clock 0: how far each upper plane is above the other's lower one
+  wire [25:0] negative;
+  wire [25:0] bit_q[0:3];  // of the overlaps, saturated
+  genvar d, s;
+  generate
+    for (d = 0; d < 13; d = d + 1) begin : gen_direction
+      localparam integer W = d < 3 ? 12 : 13;
+      localparam integer AT = d < 3 ? 24 * d : 72 + 26 * (d - 3);
+      localparam integer LOW = d < 3 ? 3 : 4;
+      for (s = 0; s < 2; s = s + 1) begin : gen_side
+        wire signed [W-1:0] upper = s == 0 ? a[AT+:W] : b[AT+:W];
+        wire signed [W-1:0] lower = s == 0 ? b[AT+W+:W] : a[AT+W+:W];
+        reg signed [W:0] over_q;
+        reg [3:0] key_q2;
+        always @(posedge clk) begin
+          over_q <= {upper[W-1], upper} - {lower[W-1], lower};
+          key_q2 <= over_q[LOW+:4] | {4{|over_q[W-1:LOW+4]}};
+        end
+        assign negative[2*d+s] = over_q[W];
+        assign bit_q[0][2*d+s] = key_q2[0];
+        assign bit_q[1][2*d+s] = key_q2[1];
+        assign bit_q[2][2*d+s] = key_q2[2];
+        assign bit_q[3][2*d+s] = key_q2[3];
+        wire unused = &{1'b0, over_q[LOW-1:0]};
+      end
+    end
+  endgenerate
+  reg separated_q;
+  always @(posedge clk) separated_q <= |negative;
+  assign separated = separated_q;
+
+  // ---- the least of 26 numbers: from the highest bit on, those with a 0 stay if there are any
+  reg [25:0] bit2_q3, bit1_q3, bit1_q4, bit0_q3, bit0_q4, bit0_q5;
+  reg [25:0] stay_q3, stay_q4, stay_q5;
+  reg key3_q3, key3_q4, key3_q5, key3_q6, key2_q4, key2_q5, key2_q6, key1_q5, key1_q6, key0_q6;
+  wire none3 = &bit_q[3];
+  wire none2 = &(bit2_q3 | ~stay_q3);
+  wire none1 = &(bit1_q4 | ~stay_q4);
+  wire none0 = &(bit0_q5 | ~stay_q5);
+  always @(posedge clk) begin
+    stay_q3 <= ~bit_q[3] | {26{none3}};
+    stay_q4 <= stay_q3 & (~bit2_q3 | {26{none2}});
+    stay_q5 <= stay_q4 & (~bit1_q4 | {26{none1}});
+    bit2_q3 <= bit_q[2];
+    bit1_q3 <= bit_q[1];
+    bit1_q4 <= bit1_q3;
+    bit0_q3 <= bit_q[0];
+    bit0_q4 <= bit0_q3;
+    bit0_q5 <= bit0_q4;
+    {key3_q3, key3_q4, key3_q5, key3_q6} <= {none3, key3_q3, key3_q4, key3_q5};
+    {key2_q4, key2_q5, key2_q6} <= {none2, key2_q4, key2_q5};
+    {key1_q5, key1_q6} <= {none1, key1_q5};
+    key0_q6 <= none0;
+  end
+  assign key = {key3_q6, key2_q6, key1_q6, key0_q6};
+
+endmodule
+`default_nettype wire

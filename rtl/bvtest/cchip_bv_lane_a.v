@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_bv_lane_a: planes of one child of a node of A in the directions of B.
+//   rule         a plane of m = M^T d is that of the box, m centre +- |m| half, less (b - c) times a
+//                face cut less c times a corner cut, m = (a - b) axis + (b - c) face + c corner
+//   numbers      half steps of the node pair's grid, rounded down; planes modulo 2^17 in axes, 2^18
+//                in diagonals, with 6 fraction bits, of which 1 leaves
+//   latency      9 clocks from child; the other inputs come as many clocks after it as they say
+//   throughput   a child on every clock
+//   cuts         every path
+//   reset        none
+// Bit for bit model::planes_of_a (docs/image.md, "Box test").
+module cchip_bv_lane_a (
+    input  wire         clk,
+    // clock 0
+    input  wire [101:0] child,           // as stored in its node: box, face cuts, corner cuts
+    input  wire [  1:0] scale,           // grid step / step of A: 1, 4, 16; 3: the box is a point
+    // clock 1
+    input  wire         coarse,          // cut exponent of the node is 3, not 2
+    input  wire [ 90:0] pose_select,     // of 13 directions {reversed, corner[2], reversed, face[3]}
+    // clock 2
+    input  wire [170:0] pose_m,          // M, 17 fraction bits; row 0 first, -1 and 1 included
+    input  wire [389:0] pose_magnitude,  // |m| of 13 directions, 9 fraction bits, below 2
+    input  wire [181:0] pose_factor,     // {c 2^7, (b - c) 2^6} of 13 directions, 7 bits each
+    // clock 4
+    input  wire [ 50:0] offset,          // M o_A + t - o_B, 6 fraction bits
+    // clock 9
+    output wire [331:0] planes           // of 3 axes, then of 10 diagonals: {lower, upper}
+);
+
+  // ---- clock 0: sum and difference of opposite corners are centre and half size in half steps
+  wire [41:0] box = child[41:0];
+  reg [59:0] cuts_q;  // of diagonal i: 3 bits at 6 i for the upper plane, at 6 i + 3 for the lower
+  reg [1:0] scale_q;
+  always @(posedge clk) begin
+    cuts_q  <= child[101:42] & {60{scale == 2'd0}};
+    scale_q <= scale;
+  end
+
+  wire signed [17:0] centre2[0:2];  // 5 fraction bits
+  wire signed [17:0] half2[0:2];
+  reg signed [12:0] centre_q3[0:2], centre_q4[0:2];
+  genvar i, j, d, s;
+  generate
+    for (i = 0; i < 3; i = i + 1) begin : gen_box
+      wire signed [6:0] least = box[14*i+:7];
+      wire signed [6:0] greatest = box[14*i+7+:7];
+      reg signed [7:0] sum_q;
+      reg [6:0] size_q;
+      reg signed [12:0] centre_q2;
+      reg [11:0] half_q2;
+      wire [7:0] size = {greatest[6], greatest} - {least[6], least};
+      always @(posedge clk) begin
+        sum_q  <= {greatest[6], greatest} + {least[6], least};
+        size_q <= size[6:0];
+        case (scale_q)
+          2'd0: begin
+            centre_q2 <= {sum_q, 5'd0};
+            half_q2   <= {size_q, 5'd0};
+          end
+          2'd1: begin
+            centre_q2 <= {{2{sum_q[7]}}, sum_q, 3'd0};
+            half_q2   <= {2'd0, size_q, 3'd0};
+          end
+          2'd2: begin
+            centre_q2 <= {{4{sum_q[7]}}, sum_q, 1'b0};
+            half_q2   <= {4'd0, size_q, 1'b0};
+          end
+          default: begin
+            centre_q2 <= 13'd0;
+            half_q2   <= 12'd0;
+          end
+        endcase
+        centre_q3[i] <= centre_q2;
+        centre_q4[i] <= centre_q3[i];
+      end
+      assign centre2[i] = {{5{centre_q2[12]}}, centre_q2};
+      assign half2[i]   = {6'd0, half_q2};
+      wire unused = size[7];
+    end
+  endgenerate
+
+  // ---- clocks 2 to 6: M centre + offset, of each axis of B
+  reg signed [17:0] moved_q6[0:2], moved_q7[0:2];
+  generate
+    for (i = 0; i < 3; i = i + 1) begin : gen_axis
+      wire signed [13:0] term4[0:2];  // M_ij centre_j, 6 fraction bits
+      for (j = 0; j < 3; j = j + 1) begin : gen_term
+        wire [18:0] m = pose_m[19*(3*i+j)+:19];
+        wire signed [35:0] p;
+        reg one_q3, one_q4;  // M_ij is 1, which has no place in 18 bits
+        always @(posedge clk) begin
+          one_q3 <= ~m[18] & m[17];
+          one_q4 <= one_q3;
+        end
+        cchip_mul18 u_mul (
+            .clk(clk),
+            .a  (m[17:0]),
+            .b  (centre2[j]),
+            .p  (p)
+        );
+        assign term4[j] = one_q4 ? {centre_q4[j], 1'b0} : p[29:16];
+        wire unused = &{1'b0, p[35:30], p[15:0]};
+      end
+      reg signed [17:0] first_q5, rest_q5;
+      wire [16:0] at = offset[17*i+:17];
+      always @(posedge clk) begin
+        first_q5 <= {{4{term4[0][13]}}, term4[0]} + {{4{term4[1][13]}}, term4[1]};
+        rest_q5 <= {{4{term4[2][13]}}, term4[2]} + {at[16], at};
+        moved_q6[i] <= first_q5 + rest_q5;
+        moved_q7[i] <= moved_q6[i];
+      end
+    end
+  endgenerate
+
+  // ---- the middle of each direction: axes and face diagonals at clock 7, cube diagonals at 8
+  wire signed [17:0] middle7[0:8];
+  reg signed [17:0] face_q7[0:5];
+  reg signed [17:0] corner_q8[0:3];
+  always @(posedge clk) begin
+    face_q7[0]   <= moved_q6[0] + moved_q6[1];
+    face_q7[1]   <= moved_q6[0] - moved_q6[1];
+    face_q7[2]   <= moved_q6[0] + moved_q6[2];
+    face_q7[3]   <= moved_q6[0] - moved_q6[2];
+    face_q7[4]   <= moved_q6[1] + moved_q6[2];
+    face_q7[5]   <= moved_q6[1] - moved_q6[2];
+    corner_q8[0] <= face_q7[0] + moved_q7[2];
+    corner_q8[1] <= face_q7[0] - moved_q7[2];
+    corner_q8[2] <= face_q7[1] + moved_q7[2];
+    corner_q8[3] <= moved_q7[2] - face_q7[1];
+  end
+  generate
+    for (d = 0; d < 9; d = d + 1) begin : gen_middle
+      if (d < 3) begin : gen_axis
+        assign middle7[d] = moved_q7[d];
+      end else begin : gen_face
+        assign middle7[d] = face_q7[d-3];
+      end
+    end
+  endgenerate
+
+  function [5:0] choose_face(input [35:0] from, input [2:0] which);
+    case (which)
+      3'd0: choose_face = from[5:0];
+      3'd1: choose_face = from[11:6];
+      3'd2: choose_face = from[17:12];
+      3'd3: choose_face = from[23:18];
+      3'd4: choose_face = from[29:24];
+      default: choose_face = from[35:30];
+    endcase
+  endfunction
+  function [5:0] choose_corner(input [23:0] from, input [1:0] which);
+    case (which)
+      2'd0: choose_corner = from[5:0];
+      2'd1: choose_corner = from[11:6];
+      2'd2: choose_corner = from[17:12];
+      default: choose_corner = from[23:18];
+    endcase
+  endfunction
+
+  // ---- extent and planes of each direction
+  generate
+    for (d = 0; d < 13; d = d + 1) begin : gen_direction
+      wire [6:0] select = pose_select[7*d+:7];
+      wire [5:0] face1 = choose_face(cuts_q[35:0], select[2:0]);
+      wire [5:0] corner1 = choose_corner(cuts_q[59:36], select[5:4]);
+
+      wire [15:0] term4[0:2];  // |m_j| half_j, 6 fraction bits
+      for (j = 0; j < 3; j = j + 1) begin : gen_term
+        wire signed [35:0] p;
+        cchip_mul18 u_mul (
+            .clk(clk),
+            .a  ({8'd0, pose_magnitude[30*d+10*j+:10]}),
+            .b  (half2[j]),
+            .p  (p)
+        );
+        assign term4[j] = {2'd0, p[21:8]};
+        wire unused = &{1'b0, p[35:22], p[7:0]};
+      end
+      reg [15:0] first_q5, rest_q5, extent_q6;
+      always @(posedge clk) begin
+        first_q5  <= term4[0] + term4[1];
+        rest_q5   <= term4[2];
+        extent_q6 <= first_q5 + rest_q5;
+      end
+
+      // Both cuts in one product: (f + c 2^11) (corner + face 2^11), bits 11 to 21. The factor c may
+      // have its highest bit set, which counts as -2^17 in the multiplier: 2^18 times the lowest
+      // bits of the other operand are added again.
+      wire [13:0] factor = pose_factor[14*d+:14];
+      reg top_q3, top_q4;
+      always @(posedge clk) begin
+        top_q3 <= factor[13];
+        top_q4 <= top_q3;
+      end
+      for (s = 0; s < 2; s = s + 1) begin : gen_side  // upper, lower
+        wire [2:0] face = select[3] != (s == 1) ? face1[5:3] : face1[2:0];
+        wire [2:0] corner = select[6] != (s == 1) ? corner1[5:3] : corner1[2:0];
+        reg [3:0] face_q2, corner_q2, corner_q3, corner_q4;
+        reg [10:0] cut_q5, cut_q6;
+        reg [17:0] extent_q7;
+        wire signed [35:0] p;
+        cchip_mul18 u_mul (
+            .clk(clk),
+            .a  ({factor[13:7], 4'd0, factor[6:0]}),
+            .b  ({3'd0, face_q2, 7'd0, corner_q2}),
+            .p  (p)
+        );
+        always @(posedge clk) begin
+          face_q2   <= coarse ? {face, 1'b0} : {1'b0, face};
+          corner_q2 <= coarse ? {corner, 1'b0} : {1'b0, corner};
+          corner_q3 <= corner_q2;
+          corner_q4 <= corner_q3;
+          cut_q5    <= {p[21:18] + (corner_q4 & {4{top_q4}}), p[17:11]};
+          cut_q6    <= cut_q5;
+          extent_q7 <= {2'd0, extent_q6} - {5'd0, cut_q6, 2'd0};
+        end
+        wire unused = &{1'b0, p[35:22], p[10:0]};
+
+        if (d < 9) begin : gen_early
+          reg [17:0] plane_q8, plane_q9;
+          always @(posedge clk) begin
+            plane_q8 <= s == 0 ? middle7[d] + extent_q7 : middle7[d] - extent_q7;
+            plane_q9 <= plane_q8;
+          end
+          if (d < 3) begin : gen_out
+            assign planes[24*d+12*s+:12] = plane_q9[16:5];
+            wire unused_low = &{1'b0, plane_q9[17], plane_q9[4:0]};
+          end else begin : gen_out
+            assign planes[72+26*(d-3)+13*s+:13] = plane_q9[17:5];
+            wire unused_low = &{1'b0, plane_q9[4:0]};
+          end
+        end else begin : gen_late
+          reg [17:0] extent_q8, plane_q9;
+          always @(posedge clk) begin
+            extent_q8 <= extent_q7;
+            plane_q9  <= s == 0 ? corner_q8[d-9] + extent_q8 : corner_q8[d-9] - extent_q8;
+          end
+          assign planes[72+26*(d-3)+13*s+:13] = plane_q9[17:5];
+          wire unused_low = &{1'b0, plane_q9[4:0]};
+        end
+      end
+    end
+  endgenerate
+
+endmodule
+`default_nettype wire

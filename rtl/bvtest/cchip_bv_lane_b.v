@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_bv_lane_b: planes of one child of a node of B, in its own 13 directions, on the grid of the
+// node pair.
+//   rule         a plane of a direction is the sum of the box corners on that side less a cut; the
+//                slack of the node pair moves each corner outward first
+//   numbers      half steps of the grid, rounded down, with 2 fraction bits, of which 1 leaves
+//   latency      5 clocks from child
+//   throughput   a child on every clock
+//   cuts         every path
+//   reset        none
+// Bit for bit model::planes_of_b (docs/image.md, "Box test").
+module cchip_bv_lane_b (
+    input  wire         clk,
+    // clock 0
+    input  wire [101:0] child,   // as stored in its node: box, face cuts, corner cuts
+    input  wire [  2:0] scale,   // log2 (grid step / step of B) + 1, 0..6; 7: the box is a point
+    input  wire         coarse,  // cut exponent of the node is 3, not 2
+    // clock 1
+    input  wire [  7:0] slack,   // quarters of a half step
+    // clock 5
+    output wire [331:0] planes   // of 3 axes, then of 10 diagonals: {lower, upper}
+);
+
+  // ---- clock 0: corners on the grid, and cuts by their exponent. Cuts count up to scale 2
+  reg signed [11:0] least_q2[0:2], greatest_q2[0:2];
+  reg [59:0] cuts_q1;
+  reg [1:0] exponent_q1;  // of a face cut: 3 more, half steps with 2 fraction bits
+  always @(posedge clk) begin
+    cuts_q1     <= child[101:42] & {60{scale < 3'd3}};
+    exponent_q1 <= {1'b0, coarse} + 2'd2 - scale[1:0];
+  end
+  genvar i, s;
+  generate
+    for (i = 0; i < 3; i = i + 1) begin : gen_axis
+      wire signed [10:0] least = {child[14*i+:7], 4'd0};
+      wire signed [10:0] greatest = {child[14*i+7+:7], 4'd0};
+      reg signed [10:0] least_q1, greatest_q1;
+      always @(posedge clk) begin
+        least_q1 <= scale == 3'd7 ? 11'sd0 : least >>> scale;
+        greatest_q1 <= scale == 3'd7 ? 11'sd0 : greatest >>> scale;
+        least_q2[i] <= {least_q1[10], least_q1} - {4'd0, slack};
+        greatest_q2[i] <= {greatest_q1[10], greatest_q1} + {4'd0, slack};
+      end
+    end
+  endgenerate
+
+  // ---- clock 2: face diagonals, clock 3: cube diagonals, from {upper, lower} of their parts
+  function signed [13:0] widen(input signed [11:0] value);
+    widen = {{2{value[11]}}, value};
+  endfunction
+  reg signed [13:0] upper_q3[0:5], lower_q3[0:5];
+  reg signed [13:0] upper_q4[0:3], lower_q4[0:3];
+  reg signed [13:0] least_q3[0:2], greatest_q3[0:2];
+  always @(posedge clk) begin
+    upper_q3[0] <= widen(greatest_q2[0]) + widen(greatest_q2[1]);
+    lower_q3[0] <= widen(least_q2[0]) + widen(least_q2[1]);
+    upper_q3[1] <= widen(greatest_q2[0]) - widen(least_q2[1]);
+    lower_q3[1] <= widen(least_q2[0]) - widen(greatest_q2[1]);
+    upper_q3[2] <= widen(greatest_q2[0]) + widen(greatest_q2[2]);
+    lower_q3[2] <= widen(least_q2[0]) + widen(least_q2[2]);
+    upper_q3[3] <= widen(greatest_q2[0]) - widen(least_q2[2]);
+    lower_q3[3] <= widen(least_q2[0]) - widen(greatest_q2[2]);
+    upper_q3[4] <= widen(greatest_q2[1]) + widen(greatest_q2[2]);
+    lower_q3[4] <= widen(least_q2[1]) + widen(least_q2[2]);
+    upper_q3[5] <= widen(greatest_q2[1]) - widen(least_q2[2]);
+    lower_q3[5] <= widen(least_q2[1]) - widen(greatest_q2[2]);
+    upper_q4[0] <= upper_q3[0] + greatest_q3[2];
+    lower_q4[0] <= lower_q3[0] + least_q3[2];
+    upper_q4[1] <= upper_q3[0] - least_q3[2];
+    lower_q4[1] <= lower_q3[0] - greatest_q3[2];
+    upper_q4[2] <= upper_q3[1] + greatest_q3[2];
+    lower_q4[2] <= lower_q3[1] + least_q3[2];
+    upper_q4[3] <= greatest_q3[2] - lower_q3[1];
+    lower_q4[3] <= least_q3[2] - upper_q3[1];
+  end
+
+  // ---- cuts off, and each plane at clock 5
+  generate
+    for (i = 0; i < 3; i = i + 1) begin : gen_out_axis
+      reg [11:0] upper_q4a, upper_q5, lower_q4a, lower_q5;
+      always @(posedge clk) begin
+        greatest_q3[i] <= widen(greatest_q2[i]);
+        least_q3[i]    <= widen(least_q2[i]);
+        upper_q4a      <= greatest_q3[i][12:1];
+        lower_q4a      <= least_q3[i][12:1];
+        upper_q5       <= upper_q4a;
+        lower_q5       <= lower_q4a;
+      end
+      assign planes[24*i+:24] = {lower_q5, upper_q5};
+    end
+    for (i = 0; i < 10; i = i + 1) begin : gen_diagonal
+      wire [5:0] cut[0:1];  // upper, lower; half steps
+      for (s = 0; s < 2; s = s + 1) begin : gen_cut
+        reg [5:0] cut_q2, cut_q3;
+        always @(posedge clk) begin
+          cut_q2 <= {3'd0, cuts_q1[6*i+3*s+:3]} << exponent_q1;
+          cut_q3 <= cut_q2;
+        end
+        assign cut[s] = cut_q3;
+      end
+      reg [12:0] upper_q5, lower_q5;
+      if (i < 6) begin : gen_face
+        wire [13:0] upper = upper_q3[i] - {5'd0, cut[0], 3'd0};
+        wire [13:0] lower = lower_q3[i] + {5'd0, cut[1], 3'd0};
+        reg [12:0] upper_q4f, lower_q4f;
+        always @(posedge clk) begin
+          upper_q4f <= upper[13:1];
+          lower_q4f <= lower[13:1];
+          upper_q5  <= upper_q4f;
+          lower_q5  <= lower_q4f;
+        end
+        wire unused = &{1'b0, upper[0], lower[0]};
+      end else begin : gen_corner
+        reg [5:0] upper_cut_q4, lower_cut_q4;
+        wire [13:0] upper = upper_q4[i-6] - {4'd0, upper_cut_q4, 4'd0};
+        wire [13:0] lower = lower_q4[i-6] + {4'd0, lower_cut_q4, 4'd0};
+        always @(posedge clk) begin
+          upper_cut_q4 <= cut[0];
+          lower_cut_q4 <= cut[1];
+          upper_q5     <= upper[13:1];
+          lower_q5     <= lower[13:1];
+        end
+        wire unused = &{1'b0, upper[0], lower[0]};
+      end
+      assign planes[72+26*i+:26] = {lower_q5, upper_q5};
+    end
+  endgenerate
+
+endmodule
+`default_nettype wire

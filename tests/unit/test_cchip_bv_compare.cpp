@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <deque>
+#include <models/cchip_bv_compare.hpp>
+
+#include "bv_tools.hpp"
+
+using namespace cchip;
+using namespace cchip::test;
+
+namespace {
+
+/// Planes anywhere in their width, or such that intervals overlap by about `most` half steps.
+model::Planes random_planes(Random& random, int most) {
+  model::Planes planes{};
+  for (std::size_t d = 0; d < bvh::directions.size(); ++d) {
+    const int limit = most == 0 ? (1 << (plane_width(d) - 1)) - 1 : most;
+    planes.upper[d] = number(random, most == 0 ? -limit - 1 : -1, limit);
+    planes.lower[d] = number(random, -limit, most == 0 ? limit : 1);
+  }
+  return planes;
+}
+
+/// The comparison of two children, as the functional model makes it: a node of one child each.
+struct Expected {
+  bool separated = false;
+  int key = 15;
+};
+Expected compare(const model::Planes& a, const model::Planes& b) {
+  Expected expected;
+  for (std::size_t d = 0; d < bvh::directions.size(); ++d) {
+    for (const std::int64_t over : {a.upper[d] - b.lower[d], b.upper[d] - a.lower[d]}) {
+      expected.separated = expected.separated || over < 0;
+      expected.key = static_cast<int>(std::min<std::int64_t>(expected.key, over / (d < bvh::first_face ? 8 : 16)));
+    }
+  }
+  return expected;
+}
+
+}  // namespace
+
+TEMPLATE_LIST_TEST_CASE("cchip_bv_compare: separation after 2 clocks, least overlap after 6",
+                        "[unit][cchip_bv_compare]", cchip_bv_compare_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
+    std::deque<Expected> expected;  // newest first
+    std::array<int, 16> keys{};
+    int separations = 0;
+    for (int clock = 0; clock < 60000; ++clock) {
+      const int most = chance(random, 10) ? 0 : 1 << number(random, 0, 9);
+      const model::Planes a = random_planes(random, most);
+      const model::Planes b = random_planes(random, most);
+      set_planes(top.a, a);
+      set_planes(top.b, b);
+      expected.push_front(compare(a, b));
+      simulation.settle();
+      if (expected.size() > 2) {
+        REQUIRE((top.separated != 0) == expected[2].separated);
+        separations += expected[2].separated ? 1 : 0;
+      }
+      if (expected.size() > 6) {
+        if (!expected[6].separated) {
+          REQUIRE(top.key == expected[6].key);
+          ++keys[top.key];
+        }
+        expected.pop_back();
+      }
+      simulation.rise();
+    }
+    REQUIRE(separations > 1000);
+    for (const std::size_t key : {0, 1, 2, 4, 8}) REQUIRE(keys[key] > 0);
+  });
+}
