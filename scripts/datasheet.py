@@ -96,6 +96,9 @@ STIMULI = {
     "cchip_cache_fill": (
         "repeat (2) tick; free_take = 1; tick; free_take = 0; allocate = 1; tick; allocate = 0;",
         "s_read_valid = 1; s_read_last = 1;", "fill_valid"),
+    "cchip_bv_lane_a": ("", "child = 1; offset = 1 << 10;", "planes"),
+    "cchip_bv_lane_b": ("", "child = 1;", "planes"),
+    "cchip_bv_compare": ("", "a = 1 << 11;", "separated"),
     "cchip_bitstream_header": ("clear = 1; tick; tick; clear = 0; s_valid = 1; repeat (3) tick; s_valid = 0;", "s_valid = 1;",
                                "done"),
     "cchip_config_port": ("length = 4;", "run = 1; s_valid = 1;", "done"),

@@ -198,6 +198,19 @@ module cchip_cache #(
       wire [PLACE_W-1:0] ask_place = s_place[PLACE_W*p+:PLACE_W];
       wire [LINE_W-1:0] ask_line = s_line[LINE_W*p+:LINE_W];
 
+      // ---- stages 1 to 4: in 2 the entries are read, in 3 the data are addressed, 4 decides
+      reg look_q1, look_q2, look_q3, look_q4;
+      reg serve_q1, serve_q2, serve_q3, serve_q4;
+      reg own_q1, own_q2, own_q3, own_q4;
+      reg stale_q2, stale_q3, stale_q4;  // the set has changed since it was read
+      reg [PLACE_W-1:0] place_q1, place_q2, place_q3, place_q4;
+      reg [LINE_W-1:0] line_q1, line_q2, line_q3, line_q4;
+      reg [CODE_W-1:0] code_q1, code_q2, code_q3, code_q4;
+      reg [MISS_W-1:0] slot_q1, slot_q2, slot_q3, slot_q4;  // of a fill
+      reg way_q1, way_q2, way_q3, way_q4;
+      reg lock_q2, lock_q3;  // the line is one to lock
+      reg [1:0] same_q4;  // the set of the lookup of each port that is a clock ahead
+
       // ---- stage 0: who has this clock. A fill or a walk first, then those whose line has come,
       // then new requests, the oldest first, and those to be looked up again, in turn
       wire own0 = p == 0 ? fill_valid : walk_valid_q;
@@ -256,19 +269,6 @@ module cchip_cache #(
       wire [4:0] wake_place = lowest(wake32);
       wire load_serve = ~serve_q0 | serve0;
       assign serving[p] = |wake_q;
-
-      // ---- stages 1 to 4: in 2 the entries are read, in 3 the data are addressed, 4 decides
-      reg look_q1, look_q2, look_q3, look_q4;
-      reg serve_q1, serve_q2, serve_q3, serve_q4;
-      reg own_q1, own_q2, own_q3, own_q4;
-      reg stale_q2, stale_q3, stale_q4;  // the set has changed since it was read
-      reg [PLACE_W-1:0] place_q1, place_q2, place_q3, place_q4;
-      reg [LINE_W-1:0] line_q1, line_q2, line_q3, line_q4;
-      reg [CODE_W-1:0] code_q1, code_q2, code_q3, code_q4;
-      reg [MISS_W-1:0] slot_q1, slot_q2, slot_q3, slot_q4;  // of a fill
-      reg way_q1, way_q2, way_q3, way_q4;
-      reg lock_q2, lock_q3;  // the line is one to lock
-      reg [1:0] same_q4;  // the set of the lookup of each port that is a clock ahead
 
       wire [LOCKS-1:0] in_range;
       for (i = 0; i < LOCKS; i = i + 1) begin : gen_lock
