@@ -96,6 +96,7 @@ STIMULI = {
     "cchip_cache_fill": (
         "repeat (2) tick; free_take = 1; tick; free_take = 0; allocate = 1; tick; allocate = 0;",
         "s_read_valid = 1; s_read_last = 1;", "fill_valid"),
+    "cchip_pose_setup": ("tick;", "s_valid = 1; s_m = 1 << 20;", "m_valid"),
     "cchip_bv_lane_a": ("", "child = 1; offset = 1 << 10;", "planes"),
     "cchip_bv_lane_b": ("", "child = 1;", "planes"),
     "cchip_bv_compare": ("", "a = 1 << 11;", "separated"),

@@ -48,7 +48,7 @@ module cchip_cache_fill #(
     // who waits for a line
     output wire                          collect,
     output wire [    $clog2(MISSES)-1:0] collect_slot,
-    output wire [`CCHIP_READ_CODE_W-1:0] serve_code,      // from the clock after collect on
+    output wire [`CCHIP_READ_CODE_W-1:0] serve_code,      // from collect on
     output wire [           FRAME_W-1:0] serve_frame,
     input  wire [                   1:0] serving          // ports that have not served all of them
 );
