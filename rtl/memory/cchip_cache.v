@@ -13,11 +13,11 @@
 //                they are invalidated
 //   invalidate   lines first..last. invalidate_ready = 1 again: no later answer is of data that
 //                memory held before the command
-//   latency      5 clocks from s_valid to m_valid for a line that is there and a port that is free,
-//                5 from s_valid to m_read_valid, 15 from a line's last beat to m_valid
+//   latency      7 clocks from s_valid to m_valid for a line that is there and a port that is free,
+//                7 from s_valid to m_read_valid, 19 from a line's last beat to m_valid
 //   throughput   a line per port and clock; an arriving line takes a clock of port 0, an
-//                invalidation one in 6 of port 1
-//   collision    a request that meets a change of its set within 5 clocks, or both of whose ways
+//                invalidation one in 7 of port 1
+//   collision    a request that meets a change of its set within 7 clocks, or both of whose ways
 //                are held, is looked up again
 //   cuts         every path: each output is a flip-flop
 //   reset        forgets every line; takes 2^SET_W clocks, requests wait
@@ -117,7 +117,7 @@ module cchip_cache #(
   wire [MISS_W-1:0] collect_slot;
   wire [CODE_W-1:0] serve_code;
   wire [SET_W:0] serve_frame;
-  wire [1:0] serving;
+  wire [1:0] serving, serves0;
 
   cchip_cache_fill #(
       .MISSES (MISSES),
@@ -157,10 +157,9 @@ module cchip_cache #(
 
   // ---- the one write to the entries, from registers
   reg [1:0] entry_write_q;  // ways
-  reg [SET_W-1:0] entry_set_q, entry_set_q2;
+  reg [SET_W-1:0] entry_set_q;
   wire change = |entry_write_q;
-  reg change_q;
-  reg [1:0] change_by_q;  // ports whose stage 4 made it
+  reg [1:0] change_by_q;  // ports whose stage 6 made it
   reg [2*ENTRY_W-1:0] entry_data_q;
 
   // ---- invalidation: one set after the other, each in a clock of port 1
@@ -169,18 +168,18 @@ module cchip_cache #(
   reg [SET_W-1:0] walk_set_q;
   reg [LINE_W-1:0] first_q, last_q;
 
-  // what stage 4 of the ports wants
+  // what stage 6 of the ports wants
   wire [1:0] want, want_way, want_locked, want_turn;  // a frame for a line
-  wire [2*LINE_W-1:0] line4;
-  wire [1:0] own4;  // a fill or a walk
-  wire walk_stale4;
-  wire [1:0] fill_way4;
-  wire [CODE_W-1:0] fill_code4;
-  wire [MISS_W-1:0] fill_slot4;
-  wire [1:0] walk_ways4;  // ways to forget
-  wire [2*(MISS_W+1)-1:0] walk_keep4;  // their {turn, slot}
+  wire [2*LINE_W-1:0] line6;
+  wire [1:0] own6;  // a fill or a walk
+  wire walk_stale6;
+  wire [1:0] fill_way6;
+  wire [CODE_W-1:0] fill_code6;
+  wire [MISS_W-1:0] fill_slot6;
+  wire [1:0] walk_ways6;  // ways to forget
+  wire [2*(MISS_W+1)-1:0] walk_keep6;  // their {turn, slot}
 
-  wire [2*SET_W+1:0] data_addr;  // frames that the ports read or write in stage 3
+  wire [2*SET_W+1:0] data_addr;  // frames that the ports read or write in stage 5
   wire fill_write;
 
   function [4:0] lowest(input [31:0] of);
@@ -198,18 +197,18 @@ module cchip_cache #(
       wire [PLACE_W-1:0] ask_place = s_place[PLACE_W*p+:PLACE_W];
       wire [LINE_W-1:0] ask_line = s_line[LINE_W*p+:LINE_W];
 
-      // ---- stages 1 to 4: in 2 the entries are read, in 3 the data are addressed, 4 decides
-      reg look_q1, look_q2, look_q3, look_q4;
-      reg serve_q1, serve_q2, serve_q3, serve_q4;
-      reg own_q1, own_q2, own_q3, own_q4;
-      reg stale_q2, stale_q3, stale_q4;  // the set has changed since it was read
-      reg [PLACE_W-1:0] place_q1, place_q2, place_q3, place_q4;
-      reg [LINE_W-1:0] line_q1, line_q2, line_q3, line_q4;
-      reg [CODE_W-1:0] code_q1, code_q2, code_q3, code_q4;
-      reg [MISS_W-1:0] slot_q1, slot_q2, slot_q3, slot_q4;  // of a fill
-      reg way_q1, way_q2, way_q3, way_q4;
-      reg lock_q2, lock_q3;  // the line is one to lock
-      reg [1:0] same_q4;  // the set of the lookup of each port that is a clock ahead
+      // ---- stages 1 to 6: from 1 to 4 the entries are read, in 5 the data are addressed, 6 decides
+      reg look_q1, look_q2, look_q3, look_q4, look_q5, look_q6;
+      reg serve_q1, serve_q2, serve_q3, serve_q4, serve_q5, serve_q6;
+      reg own_q1, own_q2, own_q3, own_q4, own_q5, own_q6;
+      reg stale_q2, stale_q3, stale_q4, stale_q5, stale_q6;  // the set has changed since it was read
+      reg [PLACE_W-1:0] place_q1, place_q2, place_q3, place_q4, place_q5, place_q6;
+      reg [LINE_W-1:0] line_q1, line_q2, line_q3, line_q4, line_q5, line_q6;
+      reg [CODE_W-1:0] code_q1, code_q2, code_q3, code_q4, code_q5, code_q6;
+      reg [MISS_W-1:0] slot_q1, slot_q2, slot_q3, slot_q4, slot_q5, slot_q6;  // of a fill
+      reg way_q1, way_q2, way_q3, way_q4, way_q5, way_q6;
+      reg lock_q2, lock_q3, lock_q4, lock_q5;  // the line is one to lock
+      reg [1:0] same_q6;  // the set of the lookup of each port that is a clock ahead
 
       // ---- stage 0: who has this clock. A fill or a walk first, then those whose line has come,
       // then new requests, the oldest first, and those to be looked up again, in turn
@@ -223,7 +222,7 @@ module cchip_cache #(
       wire use_again = again_valid & (again_first_q | ~(late_valid | ask));
       wire look0 = go0 & (again_valid | late_valid | ask);
       wire late_ready, again_ready;
-      wire again;  // of stage 4
+      wire again;  // of stage 6
       cchip_fifo #(
           .WIDTH     (PLACE_W + LINE_W),
           .DEPTH     (PLACES),
@@ -247,7 +246,7 @@ module cchip_cache #(
           .rst    (rst),
           .s_valid(again),
           .s_ready(again_ready),
-          .s_data ({place_q4, line_q4}),
+          .s_data ({place_q6, line_q6}),
           .m_valid(again_valid),
           .m_ready(go0 & use_again),
           .m_data (again_data)
@@ -257,7 +256,6 @@ module cchip_cache #(
       assign {look_place0, look_line0} = use_again ? again_data :
           late_valid ? late_data : {ask_place, ask_line};
       wire [SET_W-1:0] own_set0 = p == 0 ? fill_frame[SET_W:1] : walk_set_q;
-      wire [SET_W-1:0] set0 = p == 1 && walk_valid_q ? walk_set_q : look_line0[SET_W-1:0];
 
       // ---- who waits for a line under way, and for which; whose line has come; who is served next
       reg [PLACES-1:0] sleep_q, wake_q;
@@ -269,6 +267,7 @@ module cchip_cache #(
       wire [4:0] wake_place = lowest(wake32);
       wire load_serve = ~serve_q0 | serve0;
       assign serving[p] = |wake_q;
+      assign serves0[p] = serve_q0;
 
       wire [LOCKS-1:0] in_range;
       for (i = 0; i < LOCKS; i = i + 1) begin : gen_lock
@@ -277,11 +276,12 @@ module cchip_cache #(
       end
 
       // of each way
-      wire [2*MISS_W-1:0] miss3, miss4;
-      wire [1:0] match2, match3, valid3, locked3, turn3, turn4, hold3, full3, forget4;
+      wire [2*MISS_W-1:0] miss5, miss6;
+      wire [1:0] match4, match5, valid5, locked5, turn5, turn6, hold5, full5, forget6;
       for (w = 0; w < 2; w = w + 1) begin : gen_way
         localparam [31:0] W = w;
-        wire [ENTRY_W-1:0] entry2;
+        wire [ENTRY_W-1:0] entry3;
+        reg [ENTRY_W-1:0] entry_q4;
         cchip_block_ram #(
             .WIDTH (ENTRY_W),
             .ADDR_W(SET_W)
@@ -290,74 +290,75 @@ module cchip_cache #(
             .write     (entry_write_q[w]),
             .write_addr(entry_set_q),
             .write_data(entry_data_q[ENTRY_W*w+:ENTRY_W]),
-            .read_addr (set0),
-            .read_data (entry2)
+            .read_addr (line_q1[SET_W-1:0]),
+            .read_data (entry3)
         );
-        wire [LINE_W-1:0] kept2 = {entry2[TAG_W-1:0], line_q2[SET_W-1:0]};  // line in this way
-        assign match2[w] = entry2[AT_VALID] && kept2 == line_q2;
-        reg match_q3, valid_q3, locked_q3, turn_q3, turn_q4, forget_q3, forget_q4;
-        reg [MISS_W-1:0] miss_q3, miss_q4;
-        wire [MISS_W-1:0] miss2 = entry2[AT_MISS+:MISS_W];
+        wire [LINE_W-1:0] kept4 = {entry_q4[TAG_W-1:0], line_q4[SET_W-1:0]};  // line in this way
+        assign match4[w] = entry_q4[AT_VALID] && kept4 == line_q4;
+        reg match_q5, valid_q5, locked_q5, turn_q5, turn_q6, forget_q5, forget_q6;
+        reg [MISS_W-1:0] miss_q5, miss_q6;
+        wire [MISS_W-1:0] miss4 = entry_q4[AT_MISS+:MISS_W];
         (* ram_style = "distributed" *)
         reg [SET_W:0] frames[0:MISSES-1];
-        reg [SET_W:0] frame_q3;
-        reg held_q3, filled_q3;
+        reg [SET_W:0] frame_q5;
+        reg held_q5, filled_q5;
         always @(posedge clk) begin
+          entry_q4 <= entry3;
           if (allocate_q) frames[allocate_slot_q] <= allocate_frame_q;
-          frame_q3  <= frames[miss2];
-          held_q3   <= held[miss2];
-          filled_q3 <= filled[miss2];
-          match_q3  <= match2[w];
-          valid_q3  <= entry2[AT_VALID];
-          locked_q3 <= entry2[AT_LOCKED];
-          turn_q3   <= entry2[AT_TURN];
-          miss_q3   <= miss2;
-          forget_q3 <= entry2[AT_VALID] && kept2 >= first_q && kept2 <= last_q;
-          forget_q4 <= forget_q3;
-          turn_q4   <= turn_q3;
-          miss_q4   <= miss_q3;
+          frame_q5  <= frames[miss4];
+          held_q5   <= held[miss4];
+          filled_q5 <= filled[miss4];
+          match_q5  <= match4[w];
+          valid_q5  <= entry_q4[AT_VALID];
+          locked_q5 <= entry_q4[AT_LOCKED];
+          turn_q5   <= entry_q4[AT_TURN];
+          miss_q5   <= miss4;
+          forget_q5 <= entry_q4[AT_VALID] && kept4 >= first_q && kept4 <= last_q;
+          forget_q6 <= forget_q5;
+          turn_q6   <= turn_q5;
+          miss_q6   <= miss_q5;
         end
-        assign match3[w]  = match_q3;
-        assign valid3[w]  = valid_q3;
-        assign locked3[w] = locked_q3;
-        assign turn3[w]   = turn_q3;
-        assign turn4[w]   = turn_q4;
-        assign forget4[w] = forget_q4;
-        assign miss3[MISS_W*w+:MISS_W] = miss_q3;
-        assign miss4[MISS_W*w+:MISS_W] = miss_q4;
-        assign hold3[w] = held_q3 && frame_q3 == {line_q3[SET_W-1:0], W[0]};
-        assign full3[w] = filled_q3;
+        assign match5[w]  = match_q5;
+        assign valid5[w]  = valid_q5;
+        assign locked5[w] = locked_q5;
+        assign turn5[w]   = turn_q5;
+        assign turn6[w]   = turn_q6;
+        assign forget6[w] = forget_q6;
+        assign miss5[MISS_W*w+:MISS_W] = miss_q5;
+        assign miss6[MISS_W*w+:MISS_W] = miss_q6;
+        assign hold5[w] = held_q5 && frame_q5 == {line_q5[SET_W-1:0], W[0]};
+        assign full5[w] = filled_q5;
       end
 
-      wire [1:0] wait3 = match3 & hold3 & ~full3;  // the line is under way
-      wire [1:0] may3 = ~hold3 & ~locked3;  // frames that may be given away
-      wire victim3 = &may3 ? (&valid3 ? ^turn3 : valid3[0]) : may3[1];
-      reg match_q4, wait_q4, may_q4, victim_q4, locked_q4, new_turn_q4;
-      reg [MISS_W-1:0] wait_slot_q4;
+      wire [1:0] wait5 = match5 & hold5 & ~full5;  // the line is under way
+      wire [1:0] may5 = ~hold5 & ~locked5;  // frames that may be given away
+      wire victim5 = &may5 ? (&valid5 ? ^turn5 : valid5[0]) : may5[1];
+      reg match_q6, wait_q6, may_q6, victim_q6, locked_q6, new_turn_q6;
+      reg [MISS_W-1:0] wait_slot_q6;
 
-      wire stale = stale_q4 | (|(change_by_q & same_q4));
-      wire fresh = look_q4 & ~stale;
-      wire hit = fresh & match_q4 & ~wait_q4;
-      wire sleeps = (fresh & wait_q4) | grant[p];
-      assign again = look_q4 & (stale | (~match_q4 & ~grant[p]));
-      assign want[p] = fresh & ~match_q4 & may_q4 & free_valid;
-      assign want_way[p] = victim_q4;
-      assign want_locked[p] = locked_q4;
-      assign want_turn[p] = new_turn_q4;
-      assign line4[LINE_W*p+:LINE_W] = line_q4;
-      assign own4[p] = own_q4;
-      assign data_addr[(SET_W+1)*p+:SET_W+1] = {line_q3[SET_W-1:0], way_q3};
+      wire stale = stale_q6 | (|(change_by_q & same_q6));
+      wire fresh = look_q6 & ~stale;
+      wire hit = fresh & match_q6 & ~wait_q6;
+      wire sleeps = (fresh & wait_q6) | grant[p];
+      assign again = look_q6 & (stale | (~match_q6 & ~grant[p]));
+      assign want[p] = fresh & ~match_q6 & may_q6 & free_valid;
+      assign want_way[p] = victim_q6;
+      assign want_locked[p] = locked_q6;
+      assign want_turn[p] = new_turn_q6;
+      assign line6[LINE_W*p+:LINE_W] = line_q6;
+      assign own6[p] = own_q6;
+      assign data_addr[(SET_W+1)*p+:SET_W+1] = {line_q5[SET_W-1:0], way_q5};
       if (p == 0) begin : gen_fill
-        assign fill_write = own_q3 && code_q3 == `CCHIP_READ_OK;
-        assign fill_code4 = code_q4;
-        assign fill_slot4 = slot_q4;
-        assign fill_way4  = {way_q4, ~way_q4};
-        wire unused = &{1'b0, forget4, turn4, miss4};
+        assign fill_write = own_q5 && code_q5 == `CCHIP_READ_OK;
+        assign fill_code6 = code_q6;
+        assign fill_slot6 = slot_q6;
+        assign fill_way6  = {way_q6, ~way_q6};
+        wire unused = &{1'b0, forget6, turn6, miss6};
       end else begin : gen_walk
-        assign walk_stale4 = stale;
-        assign walk_ways4  = forget4;
-        assign walk_keep4 = {turn4[1], miss4[MISS_W+:MISS_W], turn4[0], miss4[0+:MISS_W]};
-        wire unused = &{1'b0, slot_q4, way_q4};
+        assign walk_stale6 = stale;
+        assign walk_ways6  = forget6;
+        assign walk_keep6 = {turn6[1], miss6[MISS_W+:MISS_W], turn6[0], miss6[0+:MISS_W]};
+        wire unused = &{1'b0, slot_q6, way_q6};
       end
 
       always @(posedge clk) begin
@@ -365,10 +366,12 @@ module cchip_cache #(
             {serve_place_q0, fill_code, fill_slot, fill_frame[0]} :
             {serve_q0 ? serve_place_q0 : look_place0, serve_code_q0, fill_slot, serve_frame_q0[0]};
         {place_q2, code_q2, slot_q2, way_q2} <= {place_q1, code_q1, slot_q1, way_q1};
-        {place_q3, code_q3, slot_q3, way_q3} <= {
-          place_q2, code_q2, slot_q2, look_q2 ? match2[1] : way_q2
-        };
+        {place_q3, code_q3, slot_q3, way_q3} <= {place_q2, code_q2, slot_q2, way_q2};
         {place_q4, code_q4, slot_q4, way_q4} <= {place_q3, code_q3, slot_q3, way_q3};
+        {place_q5, code_q5, slot_q5, way_q5} <= {
+          place_q4, code_q4, slot_q4, look_q4 ? match4[1] : way_q4
+        };
+        {place_q6, code_q6, slot_q6, way_q6} <= {place_q5, code_q5, slot_q5, way_q5};
         line_q1 <= {
           look_line0[LINE_W-1:SET_W],
           own0 ? own_set0 : serve_q0 ? serve_frame_q0[SET_W:1] : look_line0[SET_W-1:0]
@@ -376,37 +379,48 @@ module cchip_cache #(
         line_q2 <= line_q1;
         line_q3 <= line_q2;
         line_q4 <= line_q3;
-        stale_q2 <= (change && entry_set_q == line_q1[SET_W-1:0]) ||
-            (change_q && entry_set_q2 == line_q1[SET_W-1:0]);
+        line_q5 <= line_q4;
+        line_q6 <= line_q5;
+        stale_q2 <= change && entry_set_q == line_q1[SET_W-1:0];
         stale_q3 <= stale_q2 | (change && entry_set_q == line_q2[SET_W-1:0]);
         stale_q4 <= stale_q3 | (change && entry_set_q == line_q3[SET_W-1:0]);
-        same_q4 <= {
-          line4[LINE_W+:SET_W] == line_q3[SET_W-1:0], line4[SET_W-1:0] == line_q3[SET_W-1:0]
+        stale_q5 <= stale_q4 | (change && entry_set_q == line_q4[SET_W-1:0]);
+        stale_q6 <= stale_q5 | (change && entry_set_q == line_q5[SET_W-1:0]);
+        same_q6 <= {
+          line6[LINE_W+:SET_W] == line_q5[SET_W-1:0], line6[SET_W-1:0] == line_q5[SET_W-1:0]
         };
         lock_q2 <= |in_range;
         lock_q3 <= lock_q2;
-        match_q4 <= |match3;
-        wait_q4 <= |wait3;
-        wait_slot_q4 <= match3[1] ? miss3[MISS_W+:MISS_W] : miss3[0+:MISS_W];
-        may_q4 <= |may3;
-        victim_q4 <= victim3;
-        locked_q4 <= lock_q3 & ~(victim3 ? locked3[0] : locked3[1]);
-        new_turn_q4 <= ~victim3 ^ (victim3 ? turn3[0] : turn3[1]);
+        lock_q4 <= lock_q3;
+        lock_q5 <= lock_q4;
+        match_q6 <= |match5;
+        wait_q6 <= |wait5;
+        wait_slot_q6 <= match5[1] ? miss5[MISS_W+:MISS_W] : miss5[0+:MISS_W];
+        may_q6 <= |may5;
+        victim_q6 <= victim5;
+        locked_q6 <= lock_q5 & ~(victim5 ? locked5[0] : locked5[1]);
+        new_turn_q6 <= ~victim5 ^ (victim5 ? turn5[0] : turn5[1]);
         if (load_serve) begin
           serve_place_q0 <= wake_place[PLACE_W-1:0];
           serve_code_q0  <= serve_code;
           serve_frame_q0 <= serve_frame;
         end
         if (rst) begin
-          {look_q1, look_q2, look_q3, look_q4} <= 4'd0;
-          {serve_q1, serve_q2, serve_q3, serve_q4} <= 4'd0;
-          {own_q1, own_q2, own_q3, own_q4} <= 4'd0;
+          {look_q1, look_q2, look_q3, look_q4, look_q5, look_q6} <= 6'd0;
+          {serve_q1, serve_q2, serve_q3, serve_q4, serve_q5, serve_q6} <= 6'd0;
+          {own_q1, own_q2, own_q3, own_q4, own_q5, own_q6} <= 6'd0;
           serve_q0 <= 1'b0;
           again_first_q <= 1'b0;
         end else begin
-          {look_q1, look_q2, look_q3, look_q4} <= {look0, look_q1, look_q2, look_q3};
-          {serve_q1, serve_q2, serve_q3, serve_q4} <= {serve0, serve_q1, serve_q2, serve_q3};
-          {own_q1, own_q2, own_q3, own_q4} <= {own0, own_q1, own_q2, own_q3};
+          {look_q1, look_q2, look_q3, look_q4, look_q5, look_q6} <= {
+            look0, look_q1, look_q2, look_q3, look_q4, look_q5
+          };
+          {serve_q1, serve_q2, serve_q3, serve_q4, serve_q5, serve_q6} <= {
+            serve0, serve_q1, serve_q2, serve_q3, serve_q4, serve_q5
+          };
+          {own_q1, own_q2, own_q3, own_q4, own_q5, own_q6} <= {
+            own0, own_q1, own_q2, own_q3, own_q4, own_q5
+          };
           if (load_serve) serve_q0 <= |wake_q;
           if (go0 && again_valid && (late_valid || ask)) again_first_q <= ~again_first_q;
         end
@@ -414,9 +428,9 @@ module cchip_cache #(
       for (i = 0; i < PLACES; i = i + 1) begin : gen_place
         localparam [31:0] I = i;
         wire on_line = on_q[MISS_W*i+:MISS_W] == collect_slot;
-        wire falls = sleeps && place_q4 == I[PLACE_W-1:0];
+        wire falls = sleeps && place_q6 == I[PLACE_W-1:0];
         always @(posedge clk) begin
-          if (falls) on_q[MISS_W*i+:MISS_W] <= grant[p] ? free_slot : wait_slot_q4;
+          if (falls) on_q[MISS_W*i+:MISS_W] <= grant[p] ? free_slot : wait_slot_q6;
           if (rst) begin
             sleep_q[i] <= 1'b0;
             wake_q[i]  <= 1'b0;
@@ -429,33 +443,33 @@ module cchip_cache #(
       end
 
       // ---- answers and counts
-      reg valid_q5, hit_q, miss_q, wait_q, again_q;
-      reg [PLACE_W-1:0] place_q5;
-      reg [CODE_W-1:0] code_q5;
+      reg valid_q7, hit_q, miss_q, wait_q, again_q;
+      reg [PLACE_W-1:0] place_q7;
+      reg [CODE_W-1:0] code_q7;
       always @(posedge clk) begin
-        place_q5 <= place_q4;
-        code_q5  <= serve_q4 ? code_q4 : `CCHIP_READ_OK;
-        valid_q5 <= ~rst & (hit | serve_q4);
+        place_q7 <= place_q6;
+        code_q7  <= serve_q6 ? code_q6 : `CCHIP_READ_OK;
+        valid_q7 <= ~rst & (hit | serve_q6);
         hit_q    <= ~rst & hit;
         miss_q   <= ~rst & grant[p];
-        wait_q   <= ~rst & fresh & wait_q4;
+        wait_q   <= ~rst & fresh & wait_q6;
         again_q  <= ~rst & again;
       end
-      assign m_valid[p] = valid_q5;
-      assign m_place[PLACE_W*p+:PLACE_W] = place_q5;
-      assign m_code[CODE_W*p+:CODE_W] = code_q5;
+      assign m_valid[p] = valid_q7;
+      assign m_place[PLACE_W*p+:PLACE_W] = place_q7;
+      assign m_code[CODE_W*p+:CODE_W] = code_q7;
       assign count_hit[p] = hit_q;
       assign count_miss[p] = miss_q;
       assign count_wait[p] = wait_q;
       assign count_again[p] = again_q;
 
-      reg both_q4;  // the two ways hold the same line
-      always @(posedge clk) both_q4 <= &match3;
-      wire unused = &{1'b0, wake_place, code_q4, late_ready, again_ready};
+      reg both_q6;  // the two ways hold the same line
+      always @(posedge clk) both_q6 <= &match5;
+      wire unused = &{1'b0, wake_place, code_q6, late_ready, again_ready};
       always @(posedge clk)
         if (!rst) begin
           `CCHIP_ASSERT(a_collect, !collect || wake_q == {PLACES{1'b0}})
-          `CCHIP_ASSERT(a_one, !fresh || !(match_q4 && both_q4))
+          `CCHIP_ASSERT(a_one, !fresh || !(match_q6 && both_q6))
           `CCHIP_ASSERT(a_place, !ask || !sleep_q[ask_place] && !wake_q[ask_place])
         end
     end
@@ -478,13 +492,13 @@ module cchip_cache #(
   // ---- changes of the entries: a line that could not be read is forgotten, then the walk, then
   // frames for lines. Who cannot have his change is looked up again
   reg favour_q;  // port that gets a frame if both want one
-  wire kill = own4[0] && fill_code4 != `CCHIP_READ_OK;
-  wire walk_write = own4[1] & ~walk_stale4 & (|walk_ways4) & ~kill;
-  wire walk_next = own4[1] & ~walk_stale4 & ~(kill & (|walk_ways4));
+  wire kill = own6[0] && fill_code6 != `CCHIP_READ_OK;
+  wire walk_write = own6[1] & ~walk_stale6 & (|walk_ways6) & ~kill;
+  wire walk_next = own6[1] & ~walk_stale6 & ~(kill & (|walk_ways6));
   assign grant[0] = want[0] & ~walk_write & ~(want[1] & favour_q);
   assign grant[1] = want[1] & ~kill & ~(want[0] & ~favour_q);
   wire by = grant[1];
-  wire [LINE_W-1:0] line = by ? line4[LINE_W+:LINE_W] : line4[0+:LINE_W];
+  wire [LINE_W-1:0] line = by ? line6[LINE_W+:LINE_W] : line6[0+:LINE_W];
   wire way = by ? want_way[1] : want_way[0];
   wire [ENTRY_W-1:0] entry = {
     1'b1,
@@ -497,15 +511,13 @@ module cchip_cache #(
     for (w = 0; w < 2; w = w + 1) begin : gen_entry
       always @(posedge clk)
         entry_data_q[ENTRY_W*w+:ENTRY_W] <= !running_q ? {ENTRY_W{1'b0}} :
-            kill ? {3'b000, fill_slot4, {TAG_W{1'b0}}} :
-            walk_write ? {2'b00, walk_keep4[(MISS_W+1)*w+:MISS_W+1], {TAG_W{1'b0}}} : entry;
+            kill ? {3'b000, fill_slot6, {TAG_W{1'b0}}} :
+            walk_write ? {2'b00, walk_keep6[(MISS_W+1)*w+:MISS_W+1], {TAG_W{1'b0}}} : entry;
     end
   endgenerate
   always @(posedge clk) begin
-    entry_set_q <= !running_q ? walk_set_q : kill ? line4[SET_W-1:0] :
-        walk_write ? line4[LINE_W+:SET_W] : line[SET_W-1:0];
-    entry_set_q2 <= entry_set_q;
-    change_q <= change;
+    entry_set_q <= !running_q ? walk_set_q : kill ? line6[SET_W-1:0] :
+        walk_write ? line6[LINE_W+:SET_W] : line[SET_W-1:0];
     allocate_slot_q  <= free_slot;
     allocate_frame_q <= {line[SET_W-1:0], way};
     allocate_line_q  <= line;
@@ -515,7 +527,7 @@ module cchip_cache #(
       allocate_q    <= 1'b0;
       favour_q      <= 1'b0;
     end else begin
-      entry_write_q <= !running_q ? 2'b11 : kill ? fill_way4 : walk_write ? walk_ways4 :
+      entry_write_q <= !running_q ? 2'b11 : kill ? fill_way6 : walk_write ? walk_ways6 :
           {way, ~way} & {2{|grant}};
       change_by_q <= {grant[1] | walk_write, grant[0] | kill};
       allocate_q  <= |grant;
@@ -525,7 +537,7 @@ module cchip_cache #(
 
   // ---- the walk. It is over when the reads that were under way at its last set have answered
   localparam [2:0] CLEAR = 3'd0, IDLE = 3'd1, ASK = 3'd2, SEE = 3'd3, READS = 3'd4, ANSWERS = 3'd5;
-  localparam [2:0] ANSWER_CLOCKS = 3'd6;
+  localparam [2:0] ANSWER_CLOCKS = 3'd7;
   reg [2:0] state_q;
   reg [SET_W-1:0] left_q;  // sets after this one
   reg [MISSES-1:0] old_q;  // reads under way
@@ -568,14 +580,14 @@ module cchip_cache #(
           state_q      <= SEE;
         end
         SEE:
-        if (own4[1]) begin
+        if (own6[1]) begin
           if (walk_next) begin
             walk_set_q <= walk_set_q + ONE[SET_W-1:0];
             left_q     <= left_q - ONE[SET_W-1:0];
           end
           state_q <= walk_next && set_last ? READS : ASK;
         end
-        READS: if (old_q == {MISSES{1'b0}}) state_q <= ANSWERS;
+        READS: if (old_q == {MISSES{1'b0}} && serves0 == 2'b00) state_q <= ANSWERS;
         default:  // ANSWERS
         if (clocks_q == 3'd0) begin
           state_q <= IDLE;

@@ -4,9 +4,9 @@
 `include "cchip_assert.vh"
 // cchip_cache_fill: the lines under way of cchip_cache. A line has a slot, the one of its read,
 // from allocation until all who wait for it have been served.
-//   fill         lines leave in the order of their last beats; fill_data 3 clocks after fill_valid,
+//   fill         lines leave in the order of their last beats; fill_data 5 clocks after fill_valid,
 //                filled on the next clock if the code is CCHIP_READ_OK
-//   serve        collect 6 clocks after fill_valid or later, one line after the other: a line is
+//   serve        collect 8 clocks after fill_valid or later, one line after the other: a line is
 //                done, and its slot free, when serving is 0 on a later clock than the one after
 //                collect
 //   latency      2 clocks from the last beat to fill_valid
@@ -111,11 +111,11 @@ module cchip_cache_fill #(
   always @(posedge clk) if (allocate) frames[allocate_slot] <= allocate_frame;
   assign fill_frame = frames[fill_slot];
 
-  reg fill_q1, fill_q2, fill_q3;
-  reg [MISS_W-1:0] slot_q1, slot_q2, slot_q3;
-  reg [CODE_W-1:0] code_q1, code_q2, code_q3;
-  reg [FRAME_W-1:0] frame_q1, frame_q2, frame_q3;
-  wire [31:0] row = {{32 - MISS_W{1'b0}}, slot_q1};
+  reg fill_q1, fill_q2, fill_q3, fill_q4, fill_q5;
+  reg [MISS_W-1:0] slot_q1, slot_q2, slot_q3, slot_q4, slot_q5;
+  reg [CODE_W-1:0] code_q1, code_q2, code_q3, code_q4, code_q5;
+  reg [FRAME_W-1:0] frame_q1, frame_q2, frame_q3, frame_q4, frame_q5;
+  wire [31:0] row = {{32 - MISS_W{1'b0}}, slot_q3};
   wire [31:0] write_row = {{32 - MISS_W{1'b0}}, s_read_slot};
   genvar b;
   generate
@@ -151,9 +151,9 @@ module cchip_cache_fill #(
   ) u_serve (
       .clk    (clk),
       .rst    (rst),
-      .s_valid(fill_q3),
+      .s_valid(fill_q5),
       .s_ready(serve_ready),
-      .s_data ({slot_q3, code_q3, frame_q3}),
+      .s_data ({slot_q5, code_q5, frame_q5}),
       .m_valid(waiting),
       .m_ready(~serve_q | done),
       .m_data ({next_slot, next_code, next_frame})
@@ -164,20 +164,20 @@ module cchip_cache_fill #(
     {slot_q1, code_q1, frame_q1} <= {fill_slot, fill_code, fill_frame};
     {slot_q2, code_q2, frame_q2} <= {slot_q1, code_q1, frame_q1};
     {slot_q3, code_q3, frame_q3} <= {slot_q2, code_q2, frame_q2};
+    {slot_q4, code_q4, frame_q4} <= {slot_q3, code_q3, frame_q3};
+    {slot_q5, code_q5, frame_q5} <= {slot_q4, code_q4, frame_q4};
     if (~serve_q | done)
       {serve_slot_q, serve_code_q, serve_frame_q} <= {next_slot, next_code, next_frame};
     if (rst) begin
-      fill_q1 <= 1'b0;
-      fill_q2 <= 1'b0;
-      fill_q3 <= 1'b0;
+      {fill_q1, fill_q2, fill_q3, fill_q4, fill_q5} <= 5'd0;
       serve_q <= 1'b0;
       collect_q <= 1'b0;
       first_q <= 1'b1;
       first_slot_q <= {MISS_W{1'b0}};
     end else begin
-      fill_q1 <= fill_valid;
-      fill_q2 <= fill_q1;
-      fill_q3 <= fill_q2;
+      {fill_q1, fill_q2, fill_q3, fill_q4, fill_q5} <= {
+        fill_valid, fill_q1, fill_q2, fill_q3, fill_q4
+      };
       serve_q <= waiting | (serve_q & ~done);
       collect_q <= waiting & (~serve_q | done);
       if (free_ready && !done) begin
@@ -192,7 +192,7 @@ module cchip_cache_fill #(
       localparam [31:0] I = i;
       wire frees = done && serve_slot_q == I[MISS_W-1:0];
       wire starts = allocate && allocate_slot == I[MISS_W-1:0];
-      wire fills = fill_q3 && slot_q3 == I[MISS_W-1:0] && code_q3 == `CCHIP_READ_OK;
+      wire fills = fill_q5 && slot_q5 == I[MISS_W-1:0] && code_q5 == `CCHIP_READ_OK;
       always @(posedge clk)
         if (rst) begin
           held_q[i]   <= 1'b0;

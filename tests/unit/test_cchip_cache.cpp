@@ -367,11 +367,11 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache: clocks of a hit and of a miss; a locked li
       return bench.reads != before;
     };
 
-    // 5 clocks to memory's request, one for memory, the beats, 15 from the last of them
+    // 7 clocks to memory's request, one for memory, the beats, 19 from the last of them
     for (const std::size_t port : {0, 1}) {
-      REQUIRE(bench.fetch(port, line(port, 5)) == 5 + static_cast<int>(Bench::beats) + 15);
-      REQUIRE(bench.fetch(0, line(port, 5)) == 5);
-      REQUIRE(bench.fetch(1, line(port, 5)) == 5);
+      REQUIRE(bench.fetch(port, line(port, 5)) == 7 + static_cast<int>(Bench::beats) + 19);
+      REQUIRE(bench.fetch(0, line(port, 5)) == 7);
+      REQUIRE(bench.fetch(1, line(port, 5)) == 7);
     }
     // the way that was filled first is replaced first
     REQUIRE(fetches(line(2, 5)));

@@ -86,7 +86,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
         std::optional<Line> written;
         for (const auto& [at, line] : filling) {
           if (at == clock) fill = line;
-          if (at + 3 == clock) written = line;
+          if (at + 5 == clock) written = line;
         }
         REQUIRE((top.fill_valid != 0) == fill.has_value());
         if (fill) {
@@ -133,7 +133,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
           serves = chance(random, 70) ? 1 : static_cast<int>(random() % 8);
         }
         queue.clock(written.has_value(), written.value_or(Line{}), next);
-        while (!filling.empty() && filling.front().first + 3 <= clock) filling.pop_front();
+        while (!filling.empty() && filling.front().first + 5 <= clock) filling.pop_front();
         if (comes) filling.emplace_back(clock + 2, *comes);
         if (take) {
           taken = Line{top.free_slot};

@@ -264,22 +264,22 @@ class Cache {
   const std::optional<Request>& read() const { return read_; }
 
   void clock(const Inputs& in) {
-    // what stage 4 wants
+    // what stage 6 wants
     std::array<bool, 2> want{}, fresh{}, hit{}, wait{};
     for (std::size_t p = 0; p < 2; ++p) {
-      Step& step = ports_[p].steps[3];
+      Step& step = ports_[p].steps[5];
       step.stale = step.stale || changes(step);
       fresh[p] = step.kind == Kind::look && !step.stale;
       wait[p] = fresh[p] && step.wait;
       hit[p] = fresh[p] && step.match && !step.wait;
       want[p] = fresh[p] && !step.match && step.victim && free_.m_valid();
     }
-    const Step& fill4 = ports_[0].steps[3];
-    const Step& walk4 = ports_[1].steps[3];
-    const bool kill = fill4.kind == Kind::own && fill4.code != ReadCode::ok;
-    const bool forgets = walk4.forget[0] || walk4.forget[1];
-    const bool walk_seen = walk4.kind == Kind::own;
-    const bool walk_next = walk_seen && !walk4.stale && !(kill && forgets);
+    const Step& fill6 = ports_[0].steps[5];
+    const Step& walk6 = ports_[1].steps[5];
+    const bool kill = fill6.kind == Kind::own && fill6.code != ReadCode::ok;
+    const bool forgets = walk6.forget[0] || walk6.forget[1];
+    const bool walk_seen = walk6.kind == Kind::own;
+    const bool walk_next = walk_seen && !walk6.stale && !(kill && forgets);
     const bool walk_write = walk_next && forgets;
     std::optional<std::size_t> granted;
     if (want[0] && !walk_write && !(want[1] && favour_)) granted = 0;
@@ -293,16 +293,17 @@ class Cache {
     const bool next_serves = serve_queue_.m_valid() && (!serving_ || release);
 
     const bool walks = walk_valid_;
+    const bool serves = ports_[0].serve || ports_[1].serve;
     std::array<Step, 2> first;
     for (std::size_t p = 0; p < 2; ++p) {
       Port& port = ports_[p];
-      Step& step4 = port.steps[3];
+      Step& step6 = port.steps[5];
       const bool grant = granted == p;
       const bool sleeps = wait[p] || grant;
-      const bool again = step4.kind == Kind::look && (step4.stale || (!step4.match && !grant));
+      const bool again = step6.kind == Kind::look && (step6.stale || (!step6.match && !grant));
       answers_[p].reset();
-      if (hit[p]) answers_[p] = Answer{step4.place, ReadCode::ok, step4.data};
-      if (step4.kind == Kind::serve) answers_[p] = Answer{step4.place, step4.code, step4.data};
+      if (hit[p]) answers_[p] = Answer{step6.place, ReadCode::ok, step6.data};
+      if (step6.kind == Kind::serve) answers_[p] = Answer{step6.place, step6.code, step6.data};
       counts_[p] = Counts{hit[p], grant, wait[p], again};
 
       // stage 0
@@ -330,10 +331,8 @@ class Cache {
         step.place = request.place;
         step.line = request.line;
       }
-      step.entries = entries_[set_of(step)];
-      step.stale = changes(step);
       port.late.clock(ask && !(go && use_ask), ask.value_or(Request{}), go && !use_again);
-      port.again.clock(again, Request{step4.place, step4.line}, go && use_again);
+      port.again.clock(again, Request{step6.place, step6.line}, go && use_again);
 
       // who waits
       if (!port.serve || serve) {
@@ -354,17 +353,18 @@ class Cache {
         }
         for (const std::size_t place : port.wake) port.asleep.erase(place);
       }
-      if (sleeps) port.asleep[step4.place] = grant ? free_.m_data() : step4.wait_slot;
+      if (sleeps) port.asleep[step6.place] = grant ? free_.m_data() : step6.wait_slot;
 
-      // stages 1 to 3
-      for (std::size_t s = 0; s < 3; ++s) port.steps[s].stale = port.steps[s].stale || changes(port.steps[s]);
+      // stages 1 to 5: the entries are read in 1
+      port.steps[0].entries = entries_[set_of(port.steps[0])];
+      for (std::size_t s = 0; s < 5; ++s) port.steps[s].stale = port.steps[s].stale || changes(port.steps[s]);
       for (const Range& range : in.locks) port.steps[0].locks = port.steps[0].locks || range.has(port.steps[0].line);
-      look_up(port.steps[1]);
-      Step& step3 = port.steps[2];
-      judge(step3);
-      step3.data = data_[2 * set_of(step3) + step3.way];
+      look_up(port.steps[3]);
+      Step& step5 = port.steps[4];
+      judge(step5);
+      step5.data = data_[2 * set_of(step5) + step5.way];
     }
-    const Step fill3 = ports_[0].steps[2];
+    const Step fill5 = ports_[0].steps[4];
 
     // the change of the entries that this clock shows comes into force, and the next one is made
     if (change_) {
@@ -376,19 +376,19 @@ class Cache {
     if (!running_) {
       change_ = Change{walk_set_, {true, true}, {}};
     } else if (kill) {
-      change_ = Change{set_of(fill4), {fill4.way == 0, fill4.way == 1}, {}};
-      change_->entries[fill4.way].slot = fill4.slot;
+      change_ = Change{set_of(fill6), {fill6.way == 0, fill6.way == 1}, {}};
+      change_->entries[fill6.way].slot = fill6.slot;
     } else if (walk_write) {
-      change_ = Change{set_of(walk4), {walk4.forget[0], walk4.forget[1]}, walk4.entries};
+      change_ = Change{set_of(walk6), {walk6.forget[0], walk6.forget[1]}, walk6.entries};
       for (Entry& entry : change_->entries) entry.valid = entry.locked = false;
     } else if (granted) {
-      const Step& step = ports_[*granted].steps[3];
+      const Step& step = ports_[*granted].steps[5];
       change_ = Change{set_of(step), {*step.victim == 0, *step.victim == 1}, {}};
       change_->entries[*step.victim] = Entry{true, step.locks, step.turn, free_.m_data(), step.line};
     }
 
     // the walk, before the slots it looks at change
-    clock_walk(in.invalidate, walk_seen, walk_next);
+    clock_walk(in.invalidate, walk_seen, walk_next, serves);
 
     // the slots
     std::optional<std::size_t> released;
@@ -397,9 +397,9 @@ class Cache {
       held_[*released].held = false;
       serving_.reset();
     }
-    if (fill3.kind == Kind::own && fill3.code == ReadCode::ok) {
-      held_[fill3.slot].filled = true;
-      data_[2 * set_of(fill3) + fill3.way] = held_[fill3.slot].data;
+    if (fill5.kind == Kind::own && fill5.code == ReadCode::ok) {
+      held_[fill5.slot].filled = true;
+      data_[2 * set_of(fill5) + fill5.way] = held_[fill5.slot].data;
     }
     if (read_) {
       held_[read_->place].held = true;
@@ -413,12 +413,12 @@ class Cache {
     const bool take_serve = !serving_;
     if (next_serves) serving_ = serve_queue_.m_data();
     collect_ = next_serves;
-    serve_queue_.clock(fill3.kind == Kind::own, Arrived{fill3.slot, fill3.code, 2 * set_of(fill3) + fill3.way},
+    serve_queue_.clock(fill5.kind == Kind::own, Arrived{fill5.slot, fill5.code, 2 * set_of(fill5) + fill5.way},
                        take_serve);
     arrived_.clock(in.beat && in.beat->last, in.beat ? Arrived{in.beat->slot, in.beat->code, 0} : Arrived{}, true);
     read_.reset();
     if (granted) {
-      const Step& step = ports_[*granted].steps[3];
+      const Step& step = ports_[*granted].steps[5];
       read_ = Request{free_.m_data(), step.line};
       allocate_frame_ = 2 * set_of(step) + *step.victim;
     }
@@ -428,7 +428,7 @@ class Cache {
 
     for (std::size_t p = 0; p < 2; ++p) {
       auto& steps = ports_[p].steps;
-      steps = {first[p], steps[0], steps[1], steps[2]};
+      steps = {first[p], steps[0], steps[1], steps[2], steps[3], steps[4]};
     }
   }
 
@@ -485,7 +485,7 @@ class Cache {
     std::set<std::size_t> wake;
     std::optional<Step> serve;
     std::map<std::size_t, std::size_t> asleep;  // place, slot of the line it waits for
-    std::array<Step, 4> steps;                  // stages 1 to 4
+    std::array<Step, 6> steps;                  // stages 1 to 6
   };
   struct Held {
     bool held = false, filled = false;
@@ -506,7 +506,7 @@ class Cache {
   std::size_t set_of(const Step& step) const { return step.line % shape_.sets; }
   bool changes(const Step& step) const { return change_ && change_->set == set_of(step); }
 
-  /// Stage 2.
+  /// Stage 4.
   void look_up(Step& step) const {
     for (std::size_t w = 0; w < 2; ++w) {
       const Held& held = held_[step.entries[w].slot];
@@ -514,7 +514,7 @@ class Cache {
       step.filled[w] = held.filled;
     }
   }
-  /// Stage 3.
+  /// Stage 5.
   void judge(Step& step) const {
     std::array<bool, 2> may{};
     step.victim.reset();
@@ -540,16 +540,16 @@ class Cache {
     }
   }
 
-  void clock_walk(const std::optional<Range>& invalidate, bool seen, bool next) {
+  void clock_walk(const std::optional<Range>& invalidate, bool seen, bool next, bool serves) {
     const bool last = left_ == 0;
     if (state_ == State::reads) {
       std::set<std::size_t> old;
       for (const std::size_t slot : old_) {
         if (held_[slot].held) old.insert(slot);
       }
-      if (old_.empty()) state_ = State::answers;
+      if (old_.empty() && !serves) state_ = State::answers;
       old_ = old;
-      clocks_ = 6;
+      clocks_ = 7;
       return;
     }
     old_.clear();
