@@ -196,7 +196,7 @@ module cchip_bv_lane_a (
       for (s = 0; s < 2; s = s + 1) begin : gen_side  // upper, lower
         wire [2:0] face = select[3] != (s == 1) ? face1[5:3] : face1[2:0];
         wire [2:0] corner = select[6] != (s == 1) ? corner1[5:3] : corner1[2:0];
-        reg [3:0] face_q2, corner_q2, corner_q3, corner_q4;
+        reg [3:0] face_q2, corner_q2, corner_q3, corner_q4, corner_q5;
         reg [10:0] cut_q5, cut_q6;
         reg [17:0] extent_q7;
         wire signed [35:0] p;
@@ -211,8 +211,9 @@ module cchip_bv_lane_a (
           corner_q2 <= coarse ? {corner, 1'b0} : {1'b0, corner};
           corner_q3 <= corner_q2;
           corner_q4 <= corner_q3;
-          cut_q5    <= {p[21:18] + (corner_q4 & {4{top_q4}}), p[17:11]};
-          cut_q6    <= cut_q5;
+          corner_q5 <= corner_q4 & {4{top_q4}};
+          cut_q5    <= p[21:11];
+          cut_q6    <= {cut_q5[10:7] + corner_q5, cut_q5[6:0]};
           extent_q7 <= {2'd0, extent_q6} - {5'd0, cut_q6, 2'd0};
         end
         wire unused = &{1'b0, p[35:22], p[10:0]};
