@@ -94,7 +94,7 @@ STIMULI = {
     "cchip_axi_read": ("limit = 100; tick;", "s_valid = 1;", "m_axi_arvalid"),
     "cchip_cache": ("repeat (1 << dut.SET_W) tick; repeat (2) tick;", "s_valid = 1;", "m_read_valid"),
     "cchip_cache_fill": (
-        "repeat (2) tick; free_take = 1; tick; free_take = 0; allocate = 1; tick; allocate = 0;",
+        "repeat (6) tick; free_take = 1; tick; free_take = 0; allocate = 1; tick; allocate = 0;",
         "s_read_valid = 1; s_read_last = 1;", "fill_valid"),
     "cchip_pose_setup": ("tick;", "s_valid = 1; s_m = 1 << 20;", "m_valid"),
     "cchip_bv_lane_a": ("", "child = 1; offset = 1 << 10;", "planes"),

@@ -7,10 +7,10 @@
 //   fill         lines leave in the order of their last beats; fill_data 5 clocks after fill_valid,
 //                filled on the next clock if the code is CCHIP_READ_OK
 //   serve        collect 8 clocks after fill_valid or later, one line after the other: a line is
-//                done, and its slot free, when serving is 0 on a later clock than the one after
-//                collect
+//                done, and its slot free, one clock after serving is 0 for the first time since
+//                the clock after collect
 //   latency      2 clocks from the last beat to fill_valid
-//   throughput   a line every clock into the frames, every third clock if one waits for each
+//   throughput   a line every clock into the frames, every fourth clock if one waits for each
 //   cuts         every path
 //   reset        every slot is free after MISSES clocks; memory must not answer reads from before
 module cchip_cache_fill #(
@@ -141,7 +141,7 @@ module cchip_cache_fill #(
   wire [MISS_W-1:0] next_slot;
   wire [CODE_W-1:0] next_code;
   wire [FRAME_W-1:0] next_frame;
-  reg collect_q;
+  reg collect_q, collect_q2, serving_q;
   reg [CODE_W-1:0] serve_code_q;
   reg [FRAME_W-1:0] serve_frame_q;
   cchip_fifo #(
@@ -158,7 +158,7 @@ module cchip_cache_fill #(
       .m_ready(~serve_q | done),
       .m_data ({next_slot, next_code, next_frame})
   );
-  assign done = serve_q && !collect_q && serving == 2'b00;
+  assign done = serve_q & ~collect_q & ~collect_q2 & ~serving_q;
 
   always @(posedge clk) begin
     {slot_q1, code_q1, frame_q1} <= {fill_slot, fill_code, fill_frame};
@@ -172,6 +172,8 @@ module cchip_cache_fill #(
       {fill_q1, fill_q2, fill_q3, fill_q4, fill_q5} <= 5'd0;
       serve_q <= 1'b0;
       collect_q <= 1'b0;
+      collect_q2 <= 1'b0;
+      serving_q <= 1'b0;
       first_q <= 1'b1;
       first_slot_q <= {MISS_W{1'b0}};
     end else begin
@@ -180,6 +182,8 @@ module cchip_cache_fill #(
       };
       serve_q <= waiting | (serve_q & ~done);
       collect_q <= waiting & (~serve_q | done);
+      collect_q2 <= collect_q;
+      serving_q <= |serving;
       if (free_ready && !done) begin
         first_q <= first_q && first_slot_q != {MISS_W{1'b1}};
         first_slot_q <= first_slot_q + {{MISS_W - 1{1'b0}}, 1'b1};

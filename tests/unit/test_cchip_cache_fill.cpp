@@ -37,8 +37,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
       std::deque<std::pair<int, Line>> filling;  // clock of fill_valid
       model::Fifo<Line> queue(misses);
       std::optional<Line> served;
-      bool collects = false;                // on this clock
-      int serves = 0, lines = 0, most = 0;  // clocks left, lines done
+      bool collects = false, collected = false, serving = false;  // on this clock; on the one before
+      int serves = 0, lines = 0, most = 0;                        // clocks left, lines done
       std::array<bool, misses> held{}, filled{};
       for (int clock = 0; clock < 6000; ++clock) {
         // the slot taken a clock ago gets its frame
@@ -103,7 +103,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
           if (held[static_cast<std::size_t>(s)])
             REQUIRE((top.filled >> s & 1) == (filled[static_cast<std::size_t>(s)] ? 1 : 0));
         }
-        const bool release = served && !collects && serves == 0;
+        const bool release = served && !collects && !collected && !serving;
         REQUIRE((top.collect != 0) == collects);
         if (collects) REQUIRE(top.collect_slot == served->slot);
         if (served) {
@@ -126,6 +126,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
         }
         if (written && written->code == 0) filled[static_cast<std::size_t>(written->slot)] = true;
         if (serves > 0 && !collects) --serves;
+        serving = top.serving != 0;
+        collected = collects;
         const bool next = !served;
         collects = next && queue.m_valid();
         if (collects) {

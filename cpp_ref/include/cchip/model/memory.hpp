@@ -289,7 +289,8 @@ class Cache {
     // the lines under way: what they show on this clock
     const bool fills = arrived_.m_valid();
     const Arrived fill = fills ? arrived_.m_data() : Arrived{};
-    const bool release = serving_ && !collect_ && ports_[0].wake.empty() && ports_[1].wake.empty();
+    const bool release = serving_ && !collect_ && !collected_ && !woken_;
+    const bool woken = !ports_[0].wake.empty() || !ports_[1].wake.empty();
     const bool next_serves = serve_queue_.m_valid() && (!serving_ || release);
 
     const bool walks = walk_valid_;
@@ -412,7 +413,9 @@ class Cache {
     }
     const bool take_serve = !serving_;
     if (next_serves) serving_ = serve_queue_.m_data();
+    collected_ = collect_;
     collect_ = next_serves;
+    woken_ = woken;
     serve_queue_.clock(fill5.kind == Kind::own, Arrived{fill5.slot, fill5.code, 2 * set_of(fill5) + fill5.way},
                        take_serve);
     arrived_.clock(in.beat && in.beat->last, in.beat ? Arrived{in.beat->slot, in.beat->code, 0} : Arrived{}, true);
@@ -437,7 +440,7 @@ class Cache {
     held_.assign(shape_.misses, Held{});
     free_.reset();
     first_slot_ = 0;
-    collect_ = false;
+    collect_ = collected_ = woken_ = false;
     arrived_.reset();
     serve_queue_.reset();
     serving_.reset();
@@ -598,7 +601,7 @@ class Cache {
   Fifo<Arrived> arrived_, serve_queue_;
   Fifo<std::size_t> free_;
   std::size_t first_slot_ = 0;
-  bool collect_ = false;
+  bool collect_ = false, collected_ = false, woken_ = false;
   std::optional<Arrived> serving_;
   std::vector<std::array<Entry, 2>> entries_;
   std::vector<LineData> data_;
