@@ -39,7 +39,7 @@ module cchip_bv_lane_a (
 
   wire signed [17:0] centre2[0:2];  // 5 fraction bits
   wire signed [17:0] half2[0:2];
-  reg signed [12:0] centre_q3[0:2], centre_q4[0:2];
+  wire signed [12:0] centre4[0:2];
   genvar i, j, d, s;
   generate
     for (i = 0; i < 3; i = i + 1) begin : gen_box
@@ -47,7 +47,7 @@ module cchip_bv_lane_a (
       wire signed [6:0] greatest = box[14*i+7+:7];
       reg signed [7:0] sum_q;
       reg [6:0] size_q;
-      reg signed [12:0] centre_q2;
+      reg signed [12:0] centre_q2, centre_q3, centre_q4;
       reg [11:0] half_q2;
       wire [7:0] size = {greatest[6], greatest} - {least[6], least};
       always @(posedge clk) begin
@@ -71,17 +71,18 @@ module cchip_bv_lane_a (
             half_q2   <= 12'd0;
           end
         endcase
-        centre_q3[i] <= centre_q2;
-        centre_q4[i] <= centre_q3[i];
+        centre_q3 <= centre_q2;
+        centre_q4 <= centre_q3;
       end
       assign centre2[i] = {{5{centre_q2[12]}}, centre_q2};
       assign half2[i]   = {6'd0, half_q2};
+      assign centre4[i] = centre_q4;
       wire unused = size[7];
     end
   endgenerate
 
   // ---- clocks 2 to 6: M centre + offset, of each axis of B
-  reg signed [17:0] moved_q6[0:2], moved_q7[0:2];
+  wire signed [17:0] moved6[0:2], moved7[0:2];
   generate
     for (i = 0; i < 3; i = i + 1) begin : gen_axis
       wire signed [13:0] term4[0:2];  // M_ij centre_j, 6 fraction bits
@@ -99,42 +100,56 @@ module cchip_bv_lane_a (
             .b  (centre2[j]),
             .p  (p)
         );
-        assign term4[j] = one_q4 ? {centre_q4[j], 1'b0} : p[29:16];
+        assign term4[j] = one_q4 ? {centre4[j], 1'b0} : p[29:16];
         wire unused = &{1'b0, p[35:30], p[15:0]};
       end
-      reg signed [17:0] first_q5, rest_q5;
+      reg signed [17:0] first_q5, rest_q5, moved_q6, moved_q7;
+      assign moved6[i] = moved_q6;
+      assign moved7[i] = moved_q7;
       wire [16:0] at = offset[17*i+:17];
       always @(posedge clk) begin
         first_q5 <= {{4{term4[0][13]}}, term4[0]} + {{4{term4[1][13]}}, term4[1]};
         rest_q5 <= {{4{term4[2][13]}}, term4[2]} + {at[16], at};
-        moved_q6[i] <= first_q5 + rest_q5;
-        moved_q7[i] <= moved_q6[i];
+        moved_q6 <= first_q5 + rest_q5;
+        moved_q7 <= moved_q6;
       end
     end
   endgenerate
 
   // ---- the middle of each direction: axes and face diagonals at clock 7, cube diagonals at 8
   wire signed [17:0] middle7[0:8];
-  reg signed [17:0] face_q7[0:5];
-  reg signed [17:0] corner_q8[0:3];
+  reg signed [17:0] face0_q7, face1_q7, face2_q7, face3_q7, face4_q7, face5_q7;
+  reg signed [17:0] corner0_q8, corner1_q8, corner2_q8, corner3_q8;
+  wire signed [17:0] face7[0:5];
+  wire signed [17:0] corner8[0:3];
+  assign face7[0] = face0_q7;
+  assign face7[1] = face1_q7;
+  assign face7[2] = face2_q7;
+  assign face7[3] = face3_q7;
+  assign face7[4] = face4_q7;
+  assign face7[5] = face5_q7;
+  assign corner8[0] = corner0_q8;
+  assign corner8[1] = corner1_q8;
+  assign corner8[2] = corner2_q8;
+  assign corner8[3] = corner3_q8;
   always @(posedge clk) begin
-    face_q7[0]   <= moved_q6[0] + moved_q6[1];
-    face_q7[1]   <= moved_q6[0] - moved_q6[1];
-    face_q7[2]   <= moved_q6[0] + moved_q6[2];
-    face_q7[3]   <= moved_q6[0] - moved_q6[2];
-    face_q7[4]   <= moved_q6[1] + moved_q6[2];
-    face_q7[5]   <= moved_q6[1] - moved_q6[2];
-    corner_q8[0] <= face_q7[0] + moved_q7[2];
-    corner_q8[1] <= face_q7[0] - moved_q7[2];
-    corner_q8[2] <= face_q7[1] + moved_q7[2];
-    corner_q8[3] <= moved_q7[2] - face_q7[1];
+    face0_q7   <= moved6[0] + moved6[1];
+    face1_q7   <= moved6[0] - moved6[1];
+    face2_q7   <= moved6[0] + moved6[2];
+    face3_q7   <= moved6[0] - moved6[2];
+    face4_q7   <= moved6[1] + moved6[2];
+    face5_q7   <= moved6[1] - moved6[2];
+    corner0_q8 <= face0_q7 + moved7[2];
+    corner1_q8 <= face0_q7 - moved7[2];
+    corner2_q8 <= face1_q7 + moved7[2];
+    corner3_q8 <= moved7[2] - face1_q7;
   end
   generate
     for (d = 0; d < 9; d = d + 1) begin : gen_middle
       if (d < 3) begin : gen_axis
-        assign middle7[d] = moved_q7[d];
+        assign middle7[d] = moved7[d];
       end else begin : gen_face
-        assign middle7[d] = face_q7[d-3];
+        assign middle7[d] = face7[d-3];
       end
     end
   endgenerate
@@ -235,7 +250,7 @@ module cchip_bv_lane_a (
           reg [17:0] extent_q8, plane_q9;
           always @(posedge clk) begin
             extent_q8 <= extent_q7;
-            plane_q9  <= s == 0 ? corner_q8[d-9] + extent_q8 : corner_q8[d-9] - extent_q8;
+            plane_q9  <= s == 0 ? corner8[d-9] + extent_q8 : corner8[d-9] - extent_q8;
           end
           assign planes[72+26*(d-3)+13*s+:13] = plane_q9[17:5];
           wire unused_low = &{1'b0, plane_q9[4:0]};

@@ -23,7 +23,7 @@ module cchip_bv_lane_b (
 );
 
   // ---- clock 0: corners on the grid, and cuts by their exponent. Cuts count up to scale 2
-  reg signed [11:0] least_q2[0:2], greatest_q2[0:2];
+  wire signed [11:0] least2[0:2], greatest2[0:2];
   reg [59:0] cuts_q1;
   reg [1:0] exponent_q1;  // of a face cut: 3 more, half steps with 2 fraction bits
   always @(posedge clk) begin
@@ -36,11 +36,14 @@ module cchip_bv_lane_b (
       wire signed [10:0] least = {child[14*i+:7], 4'd0};
       wire signed [10:0] greatest = {child[14*i+7+:7], 4'd0};
       reg signed [10:0] least_q1, greatest_q1;
+      reg signed [11:0] least_q2, greatest_q2;
+      assign least2[i] = least_q2;
+      assign greatest2[i] = greatest_q2;
       always @(posedge clk) begin
         least_q1 <= scale == 3'd7 ? 11'sd0 : least >>> scale;
         greatest_q1 <= scale == 3'd7 ? 11'sd0 : greatest >>> scale;
-        least_q2[i] <= {least_q1[10], least_q1} - {4'd0, slack};
-        greatest_q2[i] <= {greatest_q1[10], greatest_q1} + {4'd0, slack};
+        least_q2 <= {least_q1[10], least_q1} - {4'd0, slack};
+        greatest_q2 <= {greatest_q1[10], greatest_q1} + {4'd0, slack};
       end
     end
   endgenerate
@@ -49,41 +52,66 @@ module cchip_bv_lane_b (
   function signed [13:0] widen(input signed [11:0] value);
     widen = {{2{value[11]}}, value};
   endfunction
-  reg signed [13:0] upper_q3[0:5], lower_q3[0:5];
-  reg signed [13:0] upper_q4[0:3], lower_q4[0:3];
-  reg signed [13:0] least_q3[0:2], greatest_q3[0:2];
+  reg signed [13:0] upper0_q3, upper1_q3, upper2_q3, upper3_q3, upper4_q3, upper5_q3;
+  reg signed [13:0] lower0_q3, lower1_q3, lower2_q3, lower3_q3, lower4_q3, lower5_q3;
+  reg signed [13:0] upper0_q4, upper1_q4, upper2_q4, upper3_q4;
+  reg signed [13:0] lower0_q4, lower1_q4, lower2_q4, lower3_q4;
+  wire signed [13:0] upper3[0:5], lower3[0:5], upper4[0:3], lower4[0:3], least3[0:2], greatest3[0:2];
+  assign upper3[0] = upper0_q3;
+  assign lower3[0] = lower0_q3;
+  assign upper3[1] = upper1_q3;
+  assign lower3[1] = lower1_q3;
+  assign upper3[2] = upper2_q3;
+  assign lower3[2] = lower2_q3;
+  assign upper3[3] = upper3_q3;
+  assign lower3[3] = lower3_q3;
+  assign upper3[4] = upper4_q3;
+  assign lower3[4] = lower4_q3;
+  assign upper3[5] = upper5_q3;
+  assign lower3[5] = lower5_q3;
+  assign upper4[0] = upper0_q4;
+  assign lower4[0] = lower0_q4;
+  assign upper4[1] = upper1_q4;
+  assign lower4[1] = lower1_q4;
+  assign upper4[2] = upper2_q4;
+  assign lower4[2] = lower2_q4;
+  assign upper4[3] = upper3_q4;
+  assign lower4[3] = lower3_q4;
   always @(posedge clk) begin
-    upper_q3[0] <= widen(greatest_q2[0]) + widen(greatest_q2[1]);
-    lower_q3[0] <= widen(least_q2[0]) + widen(least_q2[1]);
-    upper_q3[1] <= widen(greatest_q2[0]) - widen(least_q2[1]);
-    lower_q3[1] <= widen(least_q2[0]) - widen(greatest_q2[1]);
-    upper_q3[2] <= widen(greatest_q2[0]) + widen(greatest_q2[2]);
-    lower_q3[2] <= widen(least_q2[0]) + widen(least_q2[2]);
-    upper_q3[3] <= widen(greatest_q2[0]) - widen(least_q2[2]);
-    lower_q3[3] <= widen(least_q2[0]) - widen(greatest_q2[2]);
-    upper_q3[4] <= widen(greatest_q2[1]) + widen(greatest_q2[2]);
-    lower_q3[4] <= widen(least_q2[1]) + widen(least_q2[2]);
-    upper_q3[5] <= widen(greatest_q2[1]) - widen(least_q2[2]);
-    lower_q3[5] <= widen(least_q2[1]) - widen(greatest_q2[2]);
-    upper_q4[0] <= upper_q3[0] + greatest_q3[2];
-    lower_q4[0] <= lower_q3[0] + least_q3[2];
-    upper_q4[1] <= upper_q3[0] - least_q3[2];
-    lower_q4[1] <= lower_q3[0] - greatest_q3[2];
-    upper_q4[2] <= upper_q3[1] + greatest_q3[2];
-    lower_q4[2] <= lower_q3[1] + least_q3[2];
-    upper_q4[3] <= greatest_q3[2] - lower_q3[1];
-    lower_q4[3] <= least_q3[2] - upper_q3[1];
+    upper0_q3 <= widen(greatest2[0]) + widen(greatest2[1]);
+    lower0_q3 <= widen(least2[0]) + widen(least2[1]);
+    upper1_q3 <= widen(greatest2[0]) - widen(least2[1]);
+    lower1_q3 <= widen(least2[0]) - widen(greatest2[1]);
+    upper2_q3 <= widen(greatest2[0]) + widen(greatest2[2]);
+    lower2_q3 <= widen(least2[0]) + widen(least2[2]);
+    upper3_q3 <= widen(greatest2[0]) - widen(least2[2]);
+    lower3_q3 <= widen(least2[0]) - widen(greatest2[2]);
+    upper4_q3 <= widen(greatest2[1]) + widen(greatest2[2]);
+    lower4_q3 <= widen(least2[1]) + widen(least2[2]);
+    upper5_q3 <= widen(greatest2[1]) - widen(least2[2]);
+    lower5_q3 <= widen(least2[1]) - widen(greatest2[2]);
+    upper0_q4 <= upper0_q3 + greatest3[2];
+    lower0_q4 <= lower0_q3 + least3[2];
+    upper1_q4 <= upper0_q3 - least3[2];
+    lower1_q4 <= lower0_q3 - greatest3[2];
+    upper2_q4 <= upper1_q3 + greatest3[2];
+    lower2_q4 <= lower1_q3 + least3[2];
+    upper3_q4 <= greatest3[2] - lower1_q3;
+    lower3_q4 <= least3[2] - upper1_q3;
   end
 
   // ---- cuts off, and each plane at clock 5
   generate
     for (i = 0; i < 3; i = i + 1) begin : gen_out_axis
+      reg signed [13:0] least_q3, greatest_q3;
       reg [11:0] upper_q4a, upper_q5, lower_q4a, lower_q5;
+      assign least3[i] = least_q3;
+      assign greatest3[i] = greatest_q3;
       always @(posedge clk) begin
-        greatest_q3[i] <= widen(greatest_q2[i]);
-        least_q3[i]    <= widen(least_q2[i]);
-        upper_q4a      <= greatest_q3[i][12:1];
-        lower_q4a      <= least_q3[i][12:1];
+        greatest_q3 <= widen(greatest2[i]);
+        least_q3 <= widen(least2[i]);
+        upper_q4a <= greatest_q3[12:1];
+        lower_q4a <= least_q3[12:1];
         upper_q5       <= upper_q4a;
         lower_q5       <= lower_q4a;
       end
@@ -101,8 +129,8 @@ module cchip_bv_lane_b (
       end
       reg [12:0] upper_q5, lower_q5;
       if (i < 6) begin : gen_face
-        wire [13:0] upper = upper_q3[i] - {5'd0, cut[0], 3'd0};
-        wire [13:0] lower = lower_q3[i] + {5'd0, cut[1], 3'd0};
+        wire [13:0] upper = upper3[i] - {5'd0, cut[0], 3'd0};
+        wire [13:0] lower = lower3[i] + {5'd0, cut[1], 3'd0};
         reg [12:0] upper_q4f, lower_q4f;
         always @(posedge clk) begin
           upper_q4f <= upper[13:1];
@@ -113,8 +141,8 @@ module cchip_bv_lane_b (
         wire unused = &{1'b0, upper[0], lower[0]};
       end else begin : gen_corner
         reg [5:0] upper_cut_q4, lower_cut_q4;
-        wire [13:0] upper = upper_q4[i-6] - {4'd0, upper_cut_q4, 4'd0};
-        wire [13:0] lower = lower_q4[i-6] + {4'd0, lower_cut_q4, 4'd0};
+        wire [13:0] upper = upper4[i-6] - {4'd0, upper_cut_q4, 4'd0};
+        wire [13:0] lower = lower4[i-6] + {4'd0, lower_cut_q4, 4'd0};
         always @(posedge clk) begin
           upper_cut_q4 <= cut[0];
           lower_cut_q4 <= cut[1];

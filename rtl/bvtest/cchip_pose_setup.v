@@ -95,7 +95,7 @@ module cchip_pose_setup (
   assign epsilon = epsilon_q;
 
   // ---- clocks 1 to 3: m, then its magnitudes and signs
-  reg [17:0] size_q4[0:2];
+  wire [17:0] size4[0:2];
   reg [2:0] negative_q4;
   generate
     for (j = 0; j < 3; j = j + 1) begin : gen_component
@@ -108,12 +108,14 @@ module cchip_pose_setup (
         assign term[i] = {21{left_q[2*i]}} & (left_q[2*i+1] ? -entry : entry);
       end
       reg [20:0] first_q2, rest_q2, m_q3;
+      reg [17:0] size_q4;
+      assign size4[j] = size_q4;
       wire [20:0] size = m_q3[20] ? -m_q3 : m_q3;
       always @(posedge clk) begin
         first_q2 <= term[0] + term[1];
         rest_q2 <= term[2];
         m_q3 <= first_q2 + rest_q2;
-        size_q4[j] <= size[17:0];
+        size_q4 <= size[17:0];
         negative_q4[j] <= m_q3[20];
       end
       wire unused = &{1'b0, size[20:18]};
@@ -121,15 +123,15 @@ module cchip_pose_setup (
   endgenerate
 
   // ---- clock 4: the order. Of equals the first one counts as greater
-  reg [17:0] size_q5[0:2];
+  reg [17:0] size0_q5, size1_q5, size2_q5;
   reg [2:0] negative_q5;
   reg ge01_q5, ge02_q5, ge12_q5;
   wire least0 = ~ge01_q5 & ~ge02_q5;
   wire least1 = ge01_q5 & ~ge12_q5;
   wire middle0 = ge01_q5 != ge02_q5;
   wire middle1 = ge01_q5 == ge12_q5;
-  wire [17:0] b = middle0 ? size_q5[0] : middle1 ? size_q5[1] : size_q5[2];
-  wire [17:0] c = least0 ? size_q5[0] : least1 ? size_q5[1] : size_q5[2];
+  wire [17:0] b = middle0 ? size0_q5 : middle1 ? size1_q5 : size2_q5;
+  wire [17:0] c = least0 ? size0_q5 : least1 ? size1_q5 : size2_q5;
 
   // ---- clocks 5 and 6: coefficients. A face is named by the two greater components, a corner by
   // the one whose sign is not that of the two others
@@ -150,19 +152,19 @@ module cchip_pose_setup (
     round_up = size[17:8] + {9'd0, |size[7:0]};
   endfunction
   always @(posedge clk) begin
-    size_q5[0] <= size_q4[0];
-    size_q5[1] <= size_q4[1];
-    size_q5[2] <= size_q4[2];
+    size0_q5 <= size4[0];
+    size1_q5 <= size4[1];
+    size2_q5 <= size4[2];
     negative_q5 <= negative_q4;
-    ge01_q5 <= size_q4[0] >= size_q4[1];
-    ge02_q5 <= size_q4[0] >= size_q4[2];
-    ge12_q5 <= size_q4[1] >= size_q4[2];
+    ge01_q5 <= size4[0] >= size4[1];
+    ge02_q5 <= size4[0] >= size4[2];
+    ge12_q5 <= size4[1] >= size4[2];
     b_q6 <= b;
     c_q6 <= c;
     select_q6 <= {
       most_negative, corner, first_negative, pair, first_negative != second_negative
     };
-    magnitude_q6 <= {round_up(size_q5[2]), round_up(size_q5[1]), round_up(size_q5[0])};
+    magnitude_q6 <= {round_up(size2_q5), round_up(size1_q5), round_up(size0_q5)};
     select_q7 <= select_q6;
     magnitude_q7 <= magnitude_q6;
     face_factor_q7 <= difference[17:11];
