@@ -19,6 +19,7 @@ memory/cchip_axi_read.v
 memory/cchip_cache_fill.v
 memory/cchip_cache.v
 bvtest/cchip_pose_setup.v
+bvtest/cchip_bv_offset.v
 bvtest/cchip_bv_lane_a.v
 bvtest/cchip_bv_lane_b.v
 bvtest/cchip_bv_compare.v

@@ -97,6 +97,7 @@ STIMULI = {
         "repeat (6) tick; free_take = 1; tick; free_take = 0; allocate = 1; tick; allocate = 0;",
         "s_read_valid = 1; s_read_last = 1;", "fill_valid"),
     "cchip_pose_setup": ("tick;", "s_valid = 1; s_m = 1 << 20;", "m_valid"),
+    "cchip_bv_offset": ("", "start = 1; pose_t = 1 << 10; a_step = 7; b_step = 7;", "offset"),
     "cchip_bv_lane_a": ("", "child = 1; offset = 1 << 10;", "planes"),
     "cchip_bv_lane_b": ("", "child = 1;", "planes"),
     "cchip_bv_compare": ("", "a = 1 << 11;", "separated"),

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_bv_offset: places a node pair on its grid: where A's node lies from B's, and how the steps
+// of the two relate.
+//   rule         the grid's step is A's unless B's is much coarser; one slack covers all roundings
+//   numbers      offset M o_A + t - o_B in half steps of the grid, 6 fraction bits, rounded down
+//   latency      5 clocks from start to the scales, 9 to the slack, 12 to offset, is_far, is_near; each
+//                stays until that of the next node pair comes
+//   throughput   a node pair every third clock; its inputs stay for the three clocks from start on
+//   cuts         every path
+//   reset        none: a start that is not used does no harm
+// Bit for bit model::grid_of (docs/image.md, "Box test").
+module cchip_bv_offset (
+    input  wire         clk,
+    input  wire         start,
+    input  wire [ 53:0] a_origin,  // 2^-18
+    input  wire [  4:0] a_step,    // a step is 2^(a_step - 24)
+    input  wire [ 53:0] b_origin,
+    input  wire [  4:0] b_step,
+    input  wire [170:0] pose_m,    // 17 fraction bits, row by row
+    input  wire [ 86:0] pose_t,    // 24 fraction bits
+    input  wire [  3:0] shift,     // of the query: A's unit is 2^-shift of B's
+    input  wire [  6:0] epsilon,   // 2^-24
+    output wire [  1:0] a_scale,   // as cchip_bv_lane_a takes it
+    output wire [  2:0] b_scale,   // as cchip_bv_lane_b takes it
+    output wire [  7:0] slack,     // quarters of a half step
+    output wire [ 50:0] offset,
+    output wire         is_far,    // separated by the offset alone
+    output wire         is_near    // the slack does not fit: nothing is separated
+);
+
+  // ---- clocks 0 to 4: e = log2 (B's step / A's), scales, and the grid's step, -1..18
+  reg start_q1, start_q2, start_q3;
+  reg signed [6:0] e_q1;
+  reg [4:0] b_step_q1, b_step_q2;
+  reg [3:0] shift_q1, shift_q2;
+  reg [6:0] epsilon_q1, epsilon_q2;
+  wire a_point = e_q1 > 7'sd5;
+  wire b_point = e_q1 < -7'sd5;
+  wire signed [6:0] least_y = e_q1[0] ? -7'sd1 : 7'sd0;  // for e >= 1
+  wire signed [6:0] y = a_point ? -7'sd1 : e_q1 < 7'sd1 ? -e_q1 : least_y;
+  reg [1:0] a_scale_q2, a_scale_q3, a_scale_q4, a_scale_q5;
+  reg [2:0] b_scale_q2, b_scale_q3, b_scale_q4, b_scale_q5;
+  reg signed [6:0] y_q2, step_q3;
+  reg [5:0] a_more_q2, a_more_q3;  // slack for a box that counts as a point
+  reg [3:0] b_more_q2, b_more_q3;
+  reg [3:0] shift_q3;
+  reg [16:0] x_q3;  // 1024 epsilon - 1
+  // of the node pair from its fourth clock on
+  reg [3:0] low_q4;  // least of step and 7, plus 1
+  reg [3:0] high_q4, high_q5, high_q6, high_q7;  // step - 7, at least 0
+  reg [1:0] high_q8;
+  reg [4:0] amount_q4;
+  reg [4:0] g_q4;
+  reg [16:0] x_q4;
+  reg [5:0] a_more_q4;
+  reg [3:0] b_more_q4;
+  wire signed [6:0] above = step_q3 - 7'sd7;
+  wire signed [6:0] next = step_q3 + 7'sd1;
+  wire [3:0] low = above[6] ? next[3:0] : 4'd8;
+  always @(posedge clk) begin
+    start_q1   <= start;
+    start_q2   <= start_q1;
+    start_q3   <= start_q2;
+    e_q1       <= $signed({2'd0, b_step}) - $signed({2'd0, a_step}) + $signed({3'd0, shift});
+    b_step_q1  <= b_step;
+    b_step_q2  <= b_step_q1;
+    shift_q1   <= shift;
+    shift_q2   <= shift_q1;
+    shift_q3   <= shift_q2;
+    epsilon_q1 <= epsilon;
+    epsilon_q2 <= epsilon_q1;
+    a_scale_q2 <= a_point ? 2'd3 : e_q1 < 7'sd2 ? 2'd0 : e_q1 < 7'sd4 ? 2'd1 : 2'd2;
+    b_scale_q2 <= b_point ? 3'd7 : y[2:0] + 3'd1;
+    y_q2       <= y;
+    a_more_q2  <= !a_point ? 6'd0 : e_q1 > 7'sd10 ? 6'd1 : 6'd32 >> (e_q1[3:0] - 4'd6);
+    b_more_q2  <= !b_point ? 4'd0 : e_q1 < -7'sd8 ? 4'd1 : 4'd8 >> (y[3:0] - 4'd6);
+    step_q3    <= $signed({2'd0, b_step_q2}) + y_q2;
+    a_scale_q3 <= a_scale_q2;
+    b_scale_q3 <= b_scale_q2;
+    a_more_q3  <= a_more_q2;
+    b_more_q3  <= b_more_q2;
+    x_q3       <= {epsilon_q2, 10'd0} - 17'd1;
+    if (start_q3) begin
+      a_scale_q4 <= a_scale_q3;
+      b_scale_q4 <= b_scale_q3;
+      low_q4     <= low;
+      high_q4    <= above[6] ? 4'd0 : above[3:0];
+      amount_q4  <= {1'b0, shift_q3} + {1'b0, low} + 5'd3;
+      g_q4       <= next[4:0];
+      x_q4       <= x_q3;
+      a_more_q4  <= a_more_q3;
+      b_more_q4  <= b_more_q3;
+    end
+    a_scale_q5 <= a_scale_q4;
+    b_scale_q5 <= b_scale_q4;
+  end
+  assign a_scale = a_scale_q5;
+  assign b_scale = b_scale_q5;
+
+  // ---- clocks 4 to 8: the slack, 1 + (x / 2^(g + 5) + 1) / 2 and what points need
+  reg [11:0] x_q5;
+  reg [11:0] base_q6;
+  reg [5:0] a_more_q5, a_more_q6;
+  reg [3:0] b_more_q5, b_more_q6;
+  reg [12:0] slack_q7, slack_q8;
+  reg [7:0] slack_q9;
+  reg near_q9, near_q10, near_q11, near_q12;
+  always @(posedge clk) begin
+    x_q5      <= x_q4[16:5] >> g_q4;
+    a_more_q5 <= a_more_q4;
+    b_more_q5 <= b_more_q4;
+    base_q6   <= {1'b0, x_q5[11:1]} + {11'd0, x_q5[0]};
+    a_more_q6 <= a_more_q5;
+    b_more_q6 <= b_more_q5;
+    slack_q7  <= {1'b0, base_q6} + {7'd0, a_more_q6} + 13'd1;
+    slack_q8  <= slack_q7 + {9'd0, b_more_q6};
+    slack_q9  <= slack_q8[7:0] & {8{slack_q8[12:8] == 5'd0}};
+    near_q9   <= slack_q8[12:8] != 5'd0;
+    near_q10  <= near_q9;
+    near_q11  <= near_q10;
+    near_q12  <= near_q11;
+  end
+  assign slack = slack_q9;
+  assign is_near = near_q12;
+
+  // ---- the offset, one axis after the other: M o_A
+  wire [56:0] row = start ? pose_m[56:0] : start_q1 ? pose_m[113:57] : pose_m[170:114];
+  wire [28:0] t = start ? pose_t[28:0] : start_q1 ? pose_t[57:29] : pose_t[86:58];
+  wire [17:0] origin = start ? b_origin[17:0] : start_q1 ? b_origin[35:18] : b_origin[53:36];
+  wire signed [36:0] term2[0:2];  // 35 fraction bits
+  genvar j;
+  generate
+    for (j = 0; j < 3; j = j + 1) begin : gen_term
+      wire [18:0] m = row[19*j+:19];
+      wire signed [35:0] p;
+      reg one_q1, one_q2;  // M_ij is 1, which has no place in 18 bits
+      reg [17:0] origin_q1, origin_q2;
+      always @(posedge clk) begin
+        one_q1    <= ~m[18] & m[17];
+        one_q2    <= one_q1;
+        origin_q1 <= a_origin[18*j+:18];
+        origin_q2 <= origin_q1;
+      end
+      cchip_mul18 u_mul (
+          .clk(clk),
+          .a  (m[17:0]),
+          .b  (a_origin[18*j+:18]),
+          .p  (p)
+      );
+      assign term2[j] = one_q2 ? {{2{origin_q2[17]}}, origin_q2, 17'd0} : {p[35], p};
+    end
+  endgenerate
+  reg signed [38:0] first_q3, rest_q3, turned_q4;
+  reg signed [29:0] between_q1, between_q2, between_q3, between_q4;  // t - o_B, 24 fraction bits
+
+  // ---- clocks 4 to 9: to the grid. With s = least of step and 7: both to 2^(s - 31), then to the
+  // grid's half steps
+  reg signed [38:0] turned_q5, turned_q6;
+  reg signed [37:0] between_q5, between_q6;
+  reg signed [38:0] sum_q7;
+  reg signed [38:0] sum_q8;
+  reg [2:0] fine_q5;
+  reg [16:0] axis_q9;
+  reg far_q9;
+  always @(posedge clk) begin
+    first_q3 <= {{2{term2[0][36]}}, term2[0]} + {{2{term2[1][36]}}, term2[1]};
+    rest_q3 <= {{2{term2[2][36]}}, term2[2]};
+    turned_q4 <= first_q3 + rest_q3;
+    between_q1 <= {t[28], t} - {{6{origin[17]}}, origin, 6'd0};
+    between_q2 <= between_q1;
+    between_q3 <= between_q2;
+    between_q4 <= between_q3;
+    // turned >> (shift + 4 + s), by eights and by ones
+    turned_q5 <= turned_q4 >>> {amount_q4[4:3], 3'd0};
+    fine_q5 <= amount_q4[2:0];
+    turned_q6 <= turned_q5 >>> fine_q5;
+    // between << (7 - s)
+    between_q5 <= {{8{between_q4[29]}}, between_q4} <<< (4'd8 - low_q4);
+    between_q6 <= between_q5;
+    sum_q7 <= turned_q6 + {between_q6[37], between_q6};
+    high_q5 <= high_q4;
+    high_q6 <= high_q5;
+    high_q7 <= high_q6;
+    high_q8 <= high_q7[1:0];
+    sum_q8 <= sum_q7 >>> {high_q7[3:2], 2'd0};
+    {far_q9, axis_q9} <= to_grid(sum_q8, high_q8);
+  end
+  function [17:0] to_grid(input signed [38:0] sum, input [1:0] by);
+    reg signed [38:0] value;
+    begin
+      value = sum >>> by;
+      to_grid = {value[38:16] != {23{value[16]}}, value[16:0]};
+    end
+  endfunction
+
+  // ---- clocks 9 to 11: the three axes together
+  reg start_q4, start_q5, start_q6, start_q7, start_q8, start_q9, start_q10, start_q11;
+  reg [16:0] axis_q10, axis_q11;
+  reg far_q10, far_q11, far_q12;
+  reg [50:0] offset_q12;
+  always @(posedge clk) begin
+    {start_q4, start_q5, start_q6, start_q7, start_q8, start_q9, start_q10, start_q11} <= {
+      start_q3, start_q4, start_q5, start_q6, start_q7, start_q8, start_q9, start_q10
+    };
+    axis_q10 <= axis_q9;
+    axis_q11 <= axis_q10;
+    far_q10  <= far_q9;
+    far_q11  <= far_q10;
+    if (start_q11) begin
+      offset_q12 <= {axis_q9, axis_q10, axis_q11};
+      far_q12    <= far_q9 | far_q10 | far_q11;
+    end
+  end
+  assign offset = offset_q12;
+  assign is_far = far_q12;
+
+  wire unused = &{1'b0, y[6:4], above[5:4], next[6:5], x_q4[4:0]};
+
+endmodule
+`default_nettype wire
