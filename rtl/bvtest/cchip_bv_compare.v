@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 // cchip_bv_compare: the planes of a child of A against those of a child of B.
-//   rule         separated if the intervals of one direction of 13 are disjoint; else the key is the
-//                least overlap, in units of 4 half steps in axes and 8 in diagonals, at most 15
+//   rule         separated if the intervals of one direction of 13 are disjoint; else the key is
+//                the least overlap, in units of 4 half steps in axes, 8 in diagonals, at most 15
 //   numbers      planes in half steps with 1 fraction bit, as cchip_bv_lane_a and _b give them
 //   latency      separated 2 clocks, key 6 clocks after the planes
 //   throughput   a pair on every clock

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 // cchip_bv_lane_a: planes of one child of a node of A in the directions of B.
-//   rule         a plane of m = M^T d is that of the box, m centre +- |m| half, less (b - c) times a
-//                face cut less c times a corner cut, m = (a - b) axis + (b - c) face + c corner
+//   rule         a plane of m = M^T d is that of the box, m centre +- |m| half, less (b - c) times
+//                a face cut less c times a corner cut, m = (a - b) axis + (b - c) face + c corner
 //   numbers      half steps of the node pair's grid, rounded down; planes modulo 2^17 in axes, 2^18
 //                in diagonals, with 6 fraction bits, of which 1 leaves
 //   latency      9 clocks from child; the other inputs come as many clocks after it as they say
@@ -17,7 +17,7 @@ module cchip_bv_lane_a (
     input  wire [  1:0] scale,           // grid step / step of A: 1, 4, 16; 3: the box is a point
     // clock 1
     input  wire         coarse,          // cut exponent of the node is 3, not 2
-    input  wire [ 90:0] pose_select,     // of 13 directions {reversed, corner[2], reversed, face[3]}
+    input  wire [ 90:0] pose_select,     // of 13 {reversed, corner[2], reversed, face[3]}
     // clock 2
     input  wire [170:0] pose_m,          // M, 17 fraction bits; row 0 first, -1 and 1 included
     input  wire [389:0] pose_magnitude,  // |m| of 13 directions, 9 fraction bits, below 2
@@ -146,7 +146,7 @@ module cchip_bv_lane_a (
   end
   generate
     for (d = 0; d < 9; d = d + 1) begin : gen_middle
-      if (d < 3) begin : gen_axis
+      if (d < 3) begin : gen_of_axis
         assign middle7[d] = moved7[d];
       end else begin : gen_face
         assign middle7[d] = face7[d-3];
@@ -199,9 +199,9 @@ module cchip_bv_lane_a (
         extent_q6 <= first_q5 + rest_q5;
       end
 
-      // Both cuts in one product: (f + c 2^11) (corner + face 2^11), bits 11 to 21. The factor c may
-      // have its highest bit set, which counts as -2^17 in the multiplier: 2^18 times the lowest
-      // bits of the other operand are added again.
+      // Both cuts in one product: (f + c 2^11) (corner + face 2^11), bits 11 to 21. If the factor c
+      // has its highest bit set, the multiplier takes it for -2^17: 2^18 times the lowest bits of
+      // the other operand are added again.
       wire [13:0] factor = pose_factor[14*d+:14];
       reg top_q3, top_q4;
       always @(posedge clk) begin
@@ -213,7 +213,7 @@ module cchip_bv_lane_a (
         wire [2:0] corner = select[6] != (s == 1) ? corner1[5:3] : corner1[2:0];
         reg [3:0] face_q2, corner_q2, corner_q3, corner_q4, corner_q5;
         reg [10:0] cut_q5, cut_q6;
-        reg [17:0] extent_q7;
+        reg signed [17:0] extent_q7;
         wire signed [35:0] p;
         cchip_mul18 u_mul (
             .clk(clk),
@@ -247,7 +247,8 @@ module cchip_bv_lane_a (
             wire unused_low = &{1'b0, plane_q9[4:0]};
           end
         end else begin : gen_late
-          reg [17:0] extent_q8, plane_q9;
+          reg signed [17:0] extent_q8;
+          reg [17:0] plane_q9;
           always @(posedge clk) begin
             extent_q8 <= extent_q7;
             plane_q9  <= s == 0 ? corner8[d-9] + extent_q8 : corner8[d-9] - extent_q8;

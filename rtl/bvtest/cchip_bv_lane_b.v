@@ -56,7 +56,8 @@ module cchip_bv_lane_b (
   reg signed [13:0] lower0_q3, lower1_q3, lower2_q3, lower3_q3, lower4_q3, lower5_q3;
   reg signed [13:0] upper0_q4, upper1_q4, upper2_q4, upper3_q4;
   reg signed [13:0] lower0_q4, lower1_q4, lower2_q4, lower3_q4;
-  wire signed [13:0] upper3[0:5], lower3[0:5], upper4[0:3], lower4[0:3], least3[0:2], greatest3[0:2];
+  wire signed [13:0] upper3[0:5], lower3[0:5], upper4[0:3], lower4[0:3];
+  wire signed [13:0] least3[0:2], greatest3[0:2];
   assign upper3[0] = upper0_q3;
   assign lower3[0] = lower0_q3;
   assign upper3[1] = upper1_q3;
@@ -129,8 +130,8 @@ module cchip_bv_lane_b (
       end
       reg [12:0] upper_q5, lower_q5;
       if (i < 6) begin : gen_face
-        wire [13:0] upper = upper3[i] - {5'd0, cut[0], 3'd0};
-        wire [13:0] lower = lower3[i] + {5'd0, cut[1], 3'd0};
+        wire [13:0] upper = $unsigned(upper3[i]) - {5'd0, cut[0], 3'd0};
+        wire [13:0] lower = $unsigned(lower3[i]) + {5'd0, cut[1], 3'd0};
         reg [12:0] upper_q4f, lower_q4f;
         always @(posedge clk) begin
           upper_q4f <= upper[13:1];
@@ -141,8 +142,8 @@ module cchip_bv_lane_b (
         wire unused = &{1'b0, upper[0], lower[0]};
       end else begin : gen_corner
         reg [5:0] upper_cut_q4, lower_cut_q4;
-        wire [13:0] upper = upper4[i-6] - {4'd0, upper_cut_q4, 4'd0};
-        wire [13:0] lower = lower4[i-6] + {4'd0, lower_cut_q4, 4'd0};
+        wire [13:0] upper = $unsigned(upper4[i-6]) - {4'd0, upper_cut_q4, 4'd0};
+        wire [13:0] lower = $unsigned(lower4[i-6]) + {4'd0, lower_cut_q4, 4'd0};
         always @(posedge clk) begin
           upper_cut_q4 <= cut[0];
           lower_cut_q4 <= cut[1];

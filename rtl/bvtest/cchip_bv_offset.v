@@ -4,8 +4,8 @@
 // of the two relate.
 //   rule         the grid's step is A's unless B's is much coarser; one slack covers all roundings
 //   numbers      offset M o_A + t - o_B in half steps of the grid, 6 fraction bits, rounded down
-//   latency      5 clocks from start to the scales, 9 to the slack, 12 to offset, is_far, is_near; each
-//                stays until that of the next node pair comes
+//   latency      5 clocks from start to the scales, 9 to the slack, 12 to offset, is_far, is_near;
+//                each stays until that of the next node pair comes
 //   throughput   a node pair every third clock; its inputs stay for the three clocks from start on
 //   cuts         every path
 //   reset        none: a start that is not used does no harm
@@ -178,7 +178,7 @@ module cchip_bv_offset (
     // between << (7 - s)
     between_q5 <= {{8{between_q4[29]}}, between_q4} <<< (4'd8 - low_q4);
     between_q6 <= between_q5;
-    sum_q7 <= turned_q6 + {between_q6[37], between_q6};
+    sum_q7 <= turned_q6 + $signed({between_q6[37], between_q6});
     high_q5 <= high_q4;
     high_q6 <= high_q5;
     high_q7 <= high_q6;

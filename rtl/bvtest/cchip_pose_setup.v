@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_assert.vh"
-// cchip_pose_setup: what the box test needs of a query's pose: M rounded, and of each direction d of
-// B, seen from A as m = M^T d, the coefficients of m = (a - b) axis + (b - c) face + c corner, with
-// |m_j| sorted a >= b >= c.
+// cchip_pose_setup: what the box test needs of a query's pose: M rounded, and of each direction d
+// of B, seen from A as m = M^T d, the coefficients of m = (a - b) axis + (b - c) face + c corner,
+// with |m_j| sorted a >= b >= c.
 //   latency      1 clock from start to pose_m, pose_t and epsilon, which stay until the next start;
 //                7 clocks to the first direction
 //   throughput   a direction on every clock, a query every 13 clocks
@@ -69,12 +69,12 @@ module cchip_pose_setup (
     for (i = 0; i < 9; i = i + 1) begin : gen_m
       wire [31:0] sum = s_m[32*i+:32] + 32'd4096;
       always @(posedge clk) if (start) pose_m_q[19*i+:19] <= sum[31:13];
-      wire unused = &{1'b0, sum[12:0]};
+      wire unused_low = &{1'b0, sum[12:0]};
     end
     for (i = 0; i < 3; i = i + 1) begin : gen_t
       wire [36:0] sum = {s_t[36*i+35], s_t[36*i+:36]} + 37'd128;
       always @(posedge clk) if (start) pose_t_q[29*i+:29] <= sum[36:8];
-      wire unused = &{1'b0, sum[7:0]};
+      wire unused_low = &{1'b0, sum[7:0]};
     end
   endgenerate
   always @(posedge clk) begin
@@ -118,7 +118,7 @@ module cchip_pose_setup (
         size_q4 <= size[17:0];
         negative_q4[j] <= m_q3[20];
       end
-      wire unused = &{1'b0, size[20:18]};
+      wire unused_high = &{1'b0, size[20:18]};
     end
   endgenerate
 
@@ -181,7 +181,10 @@ module cchip_pose_setup (
   assign m_factor    = {corner_factor_q7, face_factor_q7};
 
   wire unused = &{1'b0, difference[10:0], c_q6[9:0], error[21], error[13:0]};
-  always @(posedge clk) if (!rst) begin `CCHIP_ASSERT(a_start, !start || !busy_q || last) end
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_start, !start || !busy_q || last)
+    end
 
 endmodule
 `default_nettype wire

@@ -197,11 +197,11 @@ module cchip_cache #(
       wire [PLACE_W-1:0] ask_place = s_place[PLACE_W*p+:PLACE_W];
       wire [LINE_W-1:0] ask_line = s_line[LINE_W*p+:LINE_W];
 
-      // ---- stages 1 to 6: from 1 to 4 the entries are read, in 5 the data are addressed, 6 decides
+      // ---- stages 1 to 6: 1 to 4 read the entries, 5 addresses the data, 6 decides
       reg look_q1, look_q2, look_q3, look_q4, look_q5, look_q6;
       reg serve_q1, serve_q2, serve_q3, serve_q4, serve_q5, serve_q6;
       reg own_q1, own_q2, own_q3, own_q4, own_q5, own_q6;
-      reg stale_q2, stale_q3, stale_q4, stale_q5, stale_q6;  // the set has changed since it was read
+      reg stale_q2, stale_q3, stale_q4, stale_q5, stale_q6;  // the set has changed since
       reg [PLACE_W-1:0] place_q1, place_q2, place_q3, place_q4, place_q5, place_q6;
       reg [LINE_W-1:0] line_q1, line_q2, line_q3, line_q4, line_q5, line_q6;
       reg [CODE_W-1:0] code_q1, code_q2, code_q3, code_q4, code_q5, code_q6;
@@ -353,12 +353,12 @@ module cchip_cache #(
         assign fill_code6 = code_q6;
         assign fill_slot6 = slot_q6;
         assign fill_way6  = {way_q6, ~way_q6};
-        wire unused = &{1'b0, forget6, turn6, miss6};
+        wire unused_fill = &{1'b0, forget6, turn6, miss6};
       end else begin : gen_walk
         assign walk_stale6 = stale;
         assign walk_ways6  = forget6;
         assign walk_keep6 = {turn6[1], miss6[MISS_W+:MISS_W], turn6[0], miss6[0+:MISS_W]};
-        wire unused = &{1'b0, slot_q6, way_q6};
+        wire unused_walk = &{1'b0, slot_q6, way_q6};
       end
 
       always @(posedge clk) begin
@@ -465,12 +465,12 @@ module cchip_cache #(
 
       reg both_q6;  // the two ways hold the same line
       always @(posedge clk) both_q6 <= &match5;
-      wire unused = &{1'b0, wake_place, code_q6, late_ready, again_ready};
+      wire unused_port = &{1'b0, wake_place, code_q6, late_ready, again_ready};
       always @(posedge clk)
         if (!rst) begin
           `CCHIP_ASSERT(a_collect, !collect || wake_q == {PLACES{1'b0}})
           `CCHIP_ASSERT(a_one, !fresh || !(match_q6 && both_q6))
-          `CCHIP_ASSERT(a_place, !ask || !sleep_q[ask_place] && !wake_q[ask_place])
+          `CCHIP_ASSERT(a_place, !ask || (!sleep_q[ask_place] && !wake_q[ask_place]))
         end
     end
   endgenerate

@@ -59,7 +59,8 @@ module cchip_cache_fill #(
   localparam integer ROW_W = MISS_W < 3 ? 3 : MISS_W;
 
   generate
-    if (MISSES < 2 || MISSES > 32 || (1 << MISS_W) != MISSES || FRAME_W < 1) begin : gen_illegal_misses
+    if (MISSES < 2 || MISSES > 32 || (1 << MISS_W) != MISSES || FRAME_W < 1)
+    begin : gen_illegal_misses
       cchip_error_cache_fill_MISSES_must_be_2_4_8_16_or_32_and_FRAME_W_positive u_error ();
     end
     if (DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W) begin : gen_illegal_width
@@ -91,6 +92,7 @@ module cchip_cache_fill #(
   );
 
   // ---- lines that have come
+  wire arrived_ready;
   cchip_fifo #(
       .WIDTH     (MISS_W + CODE_W),
       .DEPTH     (MISSES),
@@ -105,7 +107,6 @@ module cchip_cache_fill #(
       .m_ready(1'b1),
       .m_data ({fill_slot, fill_code})
   );
-  wire arrived_ready;
   (* ram_style = "distributed" *)
   reg [FRAME_W-1:0] frames[0:MISSES-1];
   always @(posedge clk) if (allocate) frames[allocate_slot] <= allocate_frame;
@@ -219,7 +220,7 @@ module cchip_cache_fill #(
     if (!rst) begin
       `CCHIP_ASSERT(a_take, !free_take || free_valid)
       `CCHIP_ASSERT(a_allocate, !allocate || !held_q[allocate_slot])
-      `CCHIP_ASSERT(a_answer, !s_read_valid || held_q[s_read_slot] && !filled_q[s_read_slot])
+      `CCHIP_ASSERT(a_answer, !s_read_valid || (held_q[s_read_slot] && !filled_q[s_read_slot]))
     end
 
 endmodule

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// cchip_dual_ram for Lattice ECP5: blocks DP16KD with their own output registers. Takes the place of
-// common/cchip_dual_ram.v in rtl/cchip_ecp5.f.
-//   blocks       one for 9 bits of a word with ADDR_W = 11, for 18 bits with ADDR_W up to 10. Larger
-//                memories are left to inference, their output registers are made of flip-flops
+// cchip_dual_ram for Lattice ECP5: blocks DP16KD with their own output registers. Takes the place
+// of common/cchip_dual_ram.v in rtl/cchip_ecp5.f.
+//   blocks       one for 9 bits of a word with ADDR_W = 11, for 18 bits with ADDR_W up to 10.
+//                Larger memories are left to inference, their output registers to flip-flops
 //   latency, throughput, collision, cuts, reset   those of common/cchip_dual_ram.v
 module cchip_dual_ram #(
     // see common/cchip_dual_ram.v
