@@ -102,7 +102,7 @@ module cchip_bv_offset (
   reg [11:0] x_q5;
   reg [11:0] base_q6;
   reg [5:0] a_more_q5, a_more_q6;
-  reg [3:0] b_more_q5, b_more_q6;
+  reg [3:0] b_more_q5, b_more_q6, b_more_q7;
   reg [12:0] slack_q7, slack_q8;
   reg [7:0] slack_q9;
   reg near_q9, near_q10, near_q11, near_q12;
@@ -114,7 +114,8 @@ module cchip_bv_offset (
     a_more_q6 <= a_more_q5;
     b_more_q6 <= b_more_q5;
     slack_q7  <= {1'b0, base_q6} + {7'd0, a_more_q6} + 13'd1;
-    slack_q8  <= slack_q7 + {9'd0, b_more_q6};
+    b_more_q7 <= b_more_q6;
+    slack_q8  <= slack_q7 + {9'd0, b_more_q7};
     slack_q9  <= slack_q8[7:0] & {8{slack_q8[12:8] == 5'd0}};
     near_q9   <= slack_q8[12:8] != 5'd0;
     near_q10  <= near_q9;
