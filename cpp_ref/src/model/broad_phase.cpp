@@ -173,6 +173,7 @@ class Run {
 
   void test_leaves(std::uint32_t line_a, NodeKind kind_a, std::uint32_t line_b, NodeKind kind_b) {
     ++result_.counts.leaf_pairs;
+    if (options_.leaf_pairs != nullptr) options_.leaf_pairs->emplace_back(line_a, line_b);
     const bvh::LeafLine a = bvh::decode_leaf(a_.lines[line_a], kind_a);
     const bvh::LeafLine b = bvh::decode_leaf(b_.lines[line_b], kind_b);
     if (a.extent > bvh::extent_max || b.extent > bvh::extent_max) throw Stop{QueryCode::corrupt};

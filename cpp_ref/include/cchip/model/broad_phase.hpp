@@ -9,6 +9,7 @@
 #include <cchip/wire/query.hpp>
 #include <cstdint>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace cchip::model {
@@ -20,6 +21,8 @@ struct BroadPhaseOptions {
   std::uint32_t step_limit = 0xffffffff;    ///< node pairs
   std::uint32_t open_limit = 16;            ///< open pairs at which a FIRST query goes to the host
   std::mt19937_64* random_order = nullptr;  ///< visit node pairs in any order instead of the best first
+  /// If set: gets every pair of leaves whose boxes overlap, as lines of A and B.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>>* leaf_pairs = nullptr;
 };
 
 struct BroadPhaseCounts {

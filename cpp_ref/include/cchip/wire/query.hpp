@@ -60,6 +60,7 @@ enum class QueryCode : std::uint8_t {
   corrupt = 4,         ///< a line of an image is invalid
   outside = 5,         ///< a node's children lie outside its image
   bad_descriptor = 6,  ///< bits that must be 0 but are not, |M_ij| > 1, or a line at a base that is no header
+  memory = 7,          ///< a line could not be read: an error of the bus, or no answer in time
 };
 
 enum class QueryAnswer : std::uint8_t { no = 0, yes = 1, open = 2 };

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_query.vh"
+// cchip_broad_phase: from queries to pairs of leaves: cache, box test and traversal. Memory is read
+// as a client of cchip_axi_read.
+//   query        a line as docs/image.md describes it; its answer comes when every pair of leaves
+//                that the query still waited for has its result
+//   leaves       pairs of leaves of which nothing is known but that their volumes overlap, with
+//                their lines. The receiver tests the primitives and answers each with one result
+//   errors       end one query with a code, and leave the others alone
+//   bound        every wait has one: a read by the limit of cchip_axi_read, a query by step_limit;
+//                results and the receiver of answers are waited for
+//   cuts         every path: each output is a flip-flop
+//   reset        forgets queries and lines; takes 2^SET_W clocks of the cache
+module cchip_broad_phase #(
+    // queries at once: 2, 4, 8 or 16
+    parameter integer QUERIES = 16,
+    // node pairs under way, of all and of one query
+    parameter integer PAIRS = 24,
+    parameter integer PAIRS_EACH = 4,
+    // pairs of leaves that are fetched at once; PAIRS + LEAVES is 8, 16 or 32
+    parameter integer LEAVES = 8,
+    // entries of a query's stack: 8, 16, 32 or 64
+    parameter integer STACK = 64,
+    // entries of the queue of leaves, more than PAIRS
+    parameter integer LEAF_DEPTH = 40,
+    // pairs of leaves that the receiver has room for
+    parameter integer CREDIT = 16,
+    // size of the cache, KiB: 4, 8 ... 1024
+    parameter integer CACHE_KB = 128,
+    // lines under way from memory: 2, 4, 8, 16 or 32
+    parameter integer MISSES = 32,
+    // ranges of lines to lock, 1..4
+    parameter integer LOCKS = 2,
+    // width of the data bus of memory, bit: 64, 128, 256 or 512
+    parameter integer DATA_W = 128
+) (
+    input  wire                            clk,
+    input  wire                            rst,
+    input  wire [                    31:0] step_limit,           // node pairs of a query
+    input  wire [                     7:0] open_limit,           // open pairs of a FIRST query
+    // queries (docs/image.md)
+    input  wire                            s_query_valid,
+    output wire                            s_query_ready,
+    input  wire [                   511:0] s_query,
+    // a query that has started
+    output wire                            m_start_valid,
+    output wire [     $clog2(QUERIES)-1:0] m_start_context,
+    output wire [      `CCHIP_EPOCH_W-1:0] m_start_epoch,
+    output wire [                   511:0] m_start_query,
+    // pairs of leaves; CREDIT of them at most until s_credit says that one has left
+    output wire                            m_leaf_valid,
+    output wire [     $clog2(QUERIES)-1:0] m_leaf_context,
+    output wire [      `CCHIP_EPOCH_W-1:0] m_leaf_epoch,
+    output wire [                     3:0] m_leaf_kinds,         // {B's, A's}
+    output wire                            m_leaf_failed,        // a line could not be read
+    output wire [                  1023:0] m_leaf_lines,         // {B's, A's}
+    input  wire                            s_credit,
+    // what became of each
+    input  wire                            s_result_valid,
+    output wire                            s_result_ready,
+    input  wire [     $clog2(QUERIES)-1:0] s_result_context,
+    input  wire [      `CCHIP_EPOCH_W-1:0] s_result_epoch,
+    input  wire [                     2:0] s_result_hits,        // definite hits, 0..4
+    input  wire [                     2:0] s_result_open,        // others
+    input  wire [ `CCHIP_QUERY_CODE_W-1:0] s_result_code,
+    // queries that have ended
+    output wire                            m_done_valid,
+    input  wire                            m_done_ready,
+    output wire [                    31:0] m_done_tag,
+    output wire [ `CCHIP_QUERY_CODE_W-1:0] m_done_code,
+    output wire [                     1:0] m_done_answer,        // no, yes, open
+    output wire [                    31:0] m_done_steps,
+    output wire [                    31:0] m_done_pairs,
+    // lines to lock; none if first > last
+    input  wire [            LOCKS*32-1:0] lock_first,
+    input  wire [            LOCKS*32-1:0] lock_last,
+    // lines to forget
+    input  wire                            invalidate_valid,
+    output wire                            invalidate_ready,
+    input  wire [                    31:0] invalidate_first,
+    input  wire [                    31:0] invalidate_last,
+    // what happens on this clock, for counters
+    output wire                            count_step,
+    output wire [                     4:0] count_tests,
+    output wire                            count_leaf_pair,
+    output wire [                     1:0] count_hit,
+    output wire [                     1:0] count_miss,
+    output wire [                     1:0] count_wait,
+    output wire [                     1:0] count_again,
+    output wire                            count_box_busy,       // the box test works
+    // client of cchip_axi_read
+    output wire                            m_read_valid,
+    output wire [      $clog2(MISSES)-1:0] m_read_slot,
+    output wire [                    57:0] m_read_line,
+    input  wire                            s_read_valid,
+    input  wire [      $clog2(MISSES)-1:0] s_read_slot,
+    input  wire [                     2:0] s_read_beat,
+    input  wire                            s_read_last,
+    input  wire [  `CCHIP_READ_CODE_W-1:0] s_read_code,
+    input  wire [              DATA_W-1:0] s_read_data
+);
+
+  localparam integer PLACES = PAIRS + LEAVES;
+  localparam integer PLACE_W = $clog2(PLACES);
+  localparam integer CONTEXT_W = $clog2(QUERIES);
+  localparam integer RECORD_W = `CCHIP_RECORD_W;
+
+  wire start_ready, get_valid, lookup, posed;
+  wire [PLACE_W-1:0] get_place, lookup_place, leaf_place, pair_place, verdict_place;
+  wire [CONTEXT_W-1:0] get_context, lookup_context, posed_context, pair_context;
+  wire [RECORD_W-1:0] get_record, lookup_record;
+  wire [63:0] get_lines, line;
+  wire [`CCHIP_NODES_W-1:0] lookup_nodes;
+  wire [1:0] line_valid, came_valid;
+  wire [2*PLACE_W-1:0] line_place, came_place;
+  wire [2*`CCHIP_READ_CODE_W-1:0] came_code;
+  wire [1023:0] came_data, lines;
+  wire pair_valid, pair_ready, verdict_valid;
+  wire [7:0] pair_children;
+  wire [15:0] verdict_waiting, verdict_leaves, verdict_strong;
+  wire [3:0] verdict_best;
+  wire [4:0] verdict_tests;
+
+  cchip_traversal #(
+      .QUERIES   (QUERIES),
+      .PAIRS     (PAIRS),
+      .PAIRS_EACH(PAIRS_EACH),
+      .LEAVES    (LEAVES),
+      .STACK     (STACK),
+      .LEAF_DEPTH(LEAF_DEPTH),
+      .CREDIT    (CREDIT)
+  ) u_traversal (
+      .clk              (clk),
+      .rst              (rst),
+      .step_limit       (step_limit),
+      .open_limit       (open_limit),
+      .s_query_valid    (s_query_valid),
+      .s_query_ready    (s_query_ready),
+      .s_query          (s_query),
+      .m_start_valid    (m_start_valid),
+      .m_start_ready    (start_ready),
+      .m_start_context  (m_start_context),
+      .m_start_epoch    (m_start_epoch),
+      .m_start_query    (m_start_query),
+      .m_valid          (get_valid),
+      .m_place          (get_place),
+      .m_context        (get_context),
+      .m_record         (get_record),
+      .m_lines          (get_lines),
+      .s_leaf_valid     (m_leaf_valid),
+      .s_leaf_place     (leaf_place),
+      .s_verdict_valid  (verdict_valid),
+      .s_verdict_place  (verdict_place),
+      .s_verdict_waiting(verdict_waiting),
+      .s_verdict_leaves (verdict_leaves),
+      .s_verdict_strong (verdict_strong),
+      .s_verdict_best   (verdict_best),
+      .s_verdict_tests  (verdict_tests),
+      .lookup           (lookup),
+      .lookup_place     (lookup_place),
+      .lookup_context   (lookup_context),
+      .lookup_record    (lookup_record),
+      .lookup_nodes     (lookup_nodes),
+      .s_result_valid   (s_result_valid),
+      .s_result_ready   (s_result_ready),
+      .s_result_context (s_result_context),
+      .s_result_epoch   (s_result_epoch),
+      .s_result_hits    (s_result_hits),
+      .s_result_open    (s_result_open),
+      .s_result_code    (s_result_code),
+      .s_credit         (s_credit),
+      .m_done_valid     (m_done_valid),
+      .m_done_ready     (m_done_ready),
+      .m_done_tag       (m_done_tag),
+      .m_done_code      (m_done_code),
+      .m_done_answer    (m_done_answer),
+      .m_done_steps     (m_done_steps),
+      .m_done_pairs     (m_done_pairs),
+      .count_step       (count_step),
+      .count_tests      (count_tests),
+      .count_leaf_pair  (count_leaf_pair)
+  );
+
+  cchip_get_data #(
+      .QUERIES(QUERIES),
+      .PAIRS  (PAIRS),
+      .LEAVES (LEAVES)
+  ) u_get_data (
+      .clk            (clk),
+      .rst            (rst),
+      .s_valid        (get_valid),
+      .s_place        (get_place),
+      .s_context      (get_context),
+      .s_record       (get_record),
+      .s_lines        (get_lines),
+      .s_pose_valid   (posed),
+      .s_pose_context (posed_context),
+      .m_line_valid   (line_valid),
+      .m_line_place   (line_place),
+      .m_line         (line),
+      .s_line_valid   (came_valid),
+      .s_line_place   (came_place),
+      .s_line_code    (came_code),
+      .s_line_data    (came_data),
+      .m_pair_valid   (pair_valid),
+      .m_pair_ready   (pair_ready),
+      .m_pair_place   (pair_place),
+      .m_pair_context (pair_context),
+      .m_pair_children(pair_children),
+      .m_leaf_valid   (m_leaf_valid),
+      .m_leaf_place   (leaf_place),
+      .m_leaf_context (m_leaf_context),
+      .m_leaf_epoch   (m_leaf_epoch),
+      .m_leaf_kinds   (m_leaf_kinds),
+      .m_leaf_failed  (m_leaf_failed),
+      .m_lines        (lines),
+      .lookup         (lookup),
+      .lookup_place   (lookup_place),
+      .lookup_context (lookup_context),
+      .lookup_record  (lookup_record),
+      .lookup_nodes   (lookup_nodes)
+  );
+
+  assign m_leaf_lines   = lines;
+  assign count_box_busy = pair_valid;
+
+  cchip_bv_unit #(
+      .QUERIES(QUERIES),
+      .TAG_W  (PLACE_W)
+  ) u_bv_unit (
+      .clk           (clk),
+      .rst           (rst),
+      .s_pose_valid  (m_start_valid),
+      .s_pose_ready  (start_ready),
+      .s_pose_context(m_start_context),
+      .s_pose_m      (m_start_query[351:64]),
+      .s_pose_t      (m_start_query[459:352]),
+      .s_pose_shift  (m_start_query[475:472]),
+      .s_pose_error  (m_start_query[471:460]),
+      .m_pose_valid  (posed),
+      .m_pose_context(posed_context),
+      .s_valid       (pair_valid),
+      .s_ready       (pair_ready),
+      .s_tag         (pair_place),
+      .s_context     (pair_context),
+      .s_a           (lines[511:0]),
+      .s_b           (lines[1023:512]),
+      .s_a_children  (pair_children[3:0]),
+      .s_b_children  (pair_children[7:4]),
+      .m_valid       (verdict_valid),
+      .m_tag         (verdict_place),
+      .m_waiting     (verdict_waiting),
+      .m_leaves      (verdict_leaves),
+      .m_strong      (verdict_strong),
+      .m_best        (verdict_best),
+      .m_tests       (verdict_tests)
+  );
+
+  cchip_cache #(
+      .CACHE_KB(CACHE_KB),
+      .PLACES  (PLACES),
+      .MISSES  (MISSES),
+      .LINE_W  (32),
+      .LOCKS   (LOCKS),
+      .DATA_W  (DATA_W)
+  ) u_cache (
+      .clk             (clk),
+      .rst             (rst),
+      .s_valid         (line_valid),
+      .s_place         (line_place),
+      .s_line          (line),
+      .m_valid         (came_valid),
+      .m_place         (came_place),
+      .m_code          (came_code),
+      .m_data          (came_data),
+      .lock_first      (lock_first),
+      .lock_last       (lock_last),
+      .invalidate_valid(invalidate_valid),
+      .invalidate_ready(invalidate_ready),
+      .invalidate_first(invalidate_first),
+      .invalidate_last (invalidate_last),
+      .m_read_valid    (m_read_valid),
+      .m_read_slot     (m_read_slot),
+      .m_read_line     (m_read_line),
+      .s_read_valid    (s_read_valid),
+      .s_read_slot     (s_read_slot),
+      .s_read_beat     (s_read_beat),
+      .s_read_last     (s_read_last),
+      .s_read_code     (s_read_code),
+      .s_read_data     (s_read_data),
+      .count_hit       (count_hit),
+      .count_miss      (count_miss),
+      .count_wait      (count_wait),
+      .count_again     (count_again)
+  );
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_query.vh"
+`include "cchip_assert.vh"
+// cchip_get_data: fetches the two lines of a node pair or of a pair of leaves through the cache,
+// waits for both, and hands them on: node pairs to the box test, leaves to the primitive tests.
+//   rule         a pair has a place, given by who asks; its lines arrive in any order. Of the pairs
+//                whose lines have both come one after the other goes on, in turn
+//   check        what a line says of its children, and of a header, leaves with `lookup` when the
+//                verdict of the box test comes: code, kinds and lines of the children
+//   latency      1 clock from s_valid to m_line_valid, 6 from the second line to m_pair_valid or
+//                m_leaf_valid
+//   throughput   a request per clock, a pair every third clock
+//   credit       a place is used again only after m_leaf_valid or the verdict
+//   cuts         every path: each output is a flip-flop
+//   reset        forgets all; no line of before may come
+module cchip_get_data #(
+    // queries at once: 2, 4, 8 or 16
+    parameter integer QUERIES = 16,
+    // node pairs under way
+    parameter integer PAIRS = 24,
+    // pairs of leaves under way; PAIRS + LEAVES is 8, 16 or 32
+    parameter integer LEAVES = 8
+) (
+    input  wire                                                 clk,
+    input  wire                                                 rst,
+    // two lines wanted; always taken
+    input  wire                                                 s_valid,
+    input  wire [                     $clog2(PAIRS+LEAVES)-1:0] s_place,   // >= PAIRS: leaves
+    input  wire [                 $clog2(QUERIES)-1:0] s_context,
+    input  wire [                  `CCHIP_RECORD_W-1:0] s_record,
+    input  wire [                                         63:0] s_lines,   // {B's, A's}
+    // the poses: node pairs wait for theirs
+    input  wire                                                 s_pose_valid,
+    input  wire [                          $clog2(QUERIES)-1:0] s_pose_context,
+    // ports of the cache, A's lines through port 0, B's through port 1
+    output wire [                                          1:0] m_line_valid,
+    output wire [                   2*$clog2(PAIRS+LEAVES)-1:0] m_line_place,
+    output wire [                                         63:0] m_line,
+    input  wire [                                          1:0] s_line_valid,
+    input  wire [                   2*$clog2(PAIRS+LEAVES)-1:0] s_line_place,
+    input  wire [                     2*`CCHIP_READ_CODE_W-1:0] s_line_code,
+    input  wire [                                       1023:0] s_line_data,
+    // node pairs, with the children that count: none if these are headers
+    output wire                                                 m_pair_valid,
+    input  wire                                                 m_pair_ready,
+    output wire [                     $clog2(PAIRS+LEAVES)-1:0] m_pair_place,
+    output wire [                          $clog2(QUERIES)-1:0] m_pair_context,
+    output wire [                                          7:0] m_pair_children,  // {B's, A's}
+    // pairs of leaves; no ready
+    output wire                                                 m_leaf_valid,
+    output wire [                     $clog2(PAIRS+LEAVES)-1:0] m_leaf_place,
+    output wire [                          $clog2(QUERIES)-1:0] m_leaf_context,
+    output wire [                           `CCHIP_EPOCH_W-1:0] m_leaf_epoch,
+    output wire [                                          3:0] m_leaf_kinds,  // {B's, A's}
+    output wire                                                 m_leaf_failed,  // lines not read
+    output wire [                                       1023:0] m_lines,  // {B's, A's} of either
+    // of a node pair whose verdict has come; 1 clock later
+    input  wire                                                 lookup,
+    input  wire [                     $clog2(PAIRS+LEAVES)-1:0] lookup_place,
+    output wire [                 $clog2(QUERIES)-1:0] lookup_context,
+    output wire [                  `CCHIP_RECORD_W-1:0] lookup_record,
+    output wire [                           `CCHIP_NODES_W-1:0] lookup_nodes
+);
+
+  localparam integer PLACES = PAIRS + LEAVES;
+  localparam integer PLACE_W = $clog2(PLACES);
+  localparam integer CONTEXT_W = $clog2(QUERIES);
+  localparam integer RECORD_W = `CCHIP_RECORD_W;
+  localparam integer NODES_W = `CCHIP_NODES_W;
+  localparam integer END_W = `CCHIP_QUERY_CODE_W;
+  localparam integer CODE_W = `CCHIP_READ_CODE_W;
+  localparam integer AT_EPOCH = 56, AT_HEADER = 58;
+  localparam [31:0] MAGIC = 32'h4D494343;
+  localparam [15:0] VERSION = 16'd1;
+  localparam [31:0] FIRST_LEAF = PAIRS;
+
+  generate
+    if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES) begin : gen_illegal_queries
+      cchip_error_get_data_QUERIES_must_be_2_4_8_or_16 u_error ();
+    end
+    if (PAIRS < 1 || LEAVES < 1 || PLACES < 8 || PLACES > 32 || (1 << PLACE_W) != PLACES)
+    begin : gen_illegal_places
+      cchip_error_get_data_PAIRS_and_LEAVES_must_be_8_16_or_32_together u_error ();
+    end
+  endgenerate
+
+  // ---- requests
+  reg ask_q;
+  reg [PLACE_W-1:0] ask_place_q;
+  reg [63:0] ask_lines_q;
+  reg [QUERIES-1:0] no_pose_q;  // contexts whose pose is not set up yet
+  wire [QUERIES-1:0] asks_header = {{QUERIES - 1{1'b0}}, s_valid & s_record[AT_HEADER]}
+      << s_context;
+  wire [QUERIES-1:0] posed = {{QUERIES - 1{1'b0}}, s_pose_valid} << s_pose_context;
+  (* ram_style = "distributed" *)
+  reg [CONTEXT_W+RECORD_W-1:0] records[0:PLACES-1];
+  always @(posedge clk) begin
+    if (s_valid) records[s_place] <= {s_context, s_record};
+    ask_place_q <= s_place;
+    ask_lines_q <= s_lines;
+    if (rst) begin
+      ask_q     <= 1'b0;
+      no_pose_q <= {QUERIES{1'b0}};
+    end else begin
+      ask_q     <= s_valid;
+      no_pose_q <= (no_pose_q & ~posed) | asks_header;
+    end
+  end
+  assign m_line_valid = {2{ask_q}};
+  assign m_line_place = {2{ask_place_q}};
+  assign m_line       = ask_lines_q;
+
+  // ---- lines that have come, by place; one pair is picked, its lines are read
+  wire [2*PLACES-1:0] came;
+  wire [1023:0] read_lines;
+  wire [2*CODE_W-1:0] read_codes;
+  reg pick_valid_q, fetch_valid_q;
+  reg [PLACE_W-1:0] pick_q, fetch_q;
+  wire pick, advance;
+  wire [PLACES-1:0] grant;
+  reg [PLACES-1:0] ready_q;  // both lines have come
+  wire [PLACES-1:0] picked = grant & {PLACES{pick}};
+  genvar p;
+  generate
+    for (p = 0; p < 2; p = p + 1) begin : gen_port
+      wire [PLACE_W-1:0] place = s_line_place[PLACE_W*p+:PLACE_W];
+      reg [PLACES-1:0] came_q;
+      (* ram_style = "distributed" *)
+      reg [CODE_W-1:0] codes[0:PLACES-1];
+      reg [CODE_W-1:0] code_q;
+      cchip_block_ram #(
+          .WIDTH (512),
+          .ADDR_W(PLACE_W)
+      ) u_lines (
+          .clk       (clk),
+          .write     (s_line_valid[p]),
+          .write_addr(place),
+          .write_data(s_line_data[512*p+:512]),
+          .read_addr (fetch_q),
+          .read_data (read_lines[512*p+:512])
+      );
+      always @(posedge clk) begin
+        if (s_line_valid[p]) codes[place] <= s_line_code[CODE_W*p+:CODE_W];
+        code_q <= codes[fetch_q];
+        if (rst) came_q <= {PLACES{1'b0}};
+        else came_q <= (came_q & ~picked) | ({{PLACES - 1{1'b0}}, s_line_valid[p]} << place);
+      end
+      assign came[PLACES*p+:PLACES] = came_q;
+      assign read_codes[CODE_W*p+:CODE_W] = code_q;
+    end
+  endgenerate
+  // ready_q is a clock behind came: a place that was picked a clock ago is left out
+  cchip_arbiter #(
+      .N(PLACES)
+  ) u_arbiter (
+      .clk    (clk),
+      .rst    (rst),
+      .request(ready_q),
+      .grant  (grant),
+      .take   (pick)
+  );
+  wire [PLACE_W-1:0] grant_place;
+  generate
+    for (p = 0; p < PLACE_W; p = p + 1) begin : gen_grant
+      wire [PLACES-1:0] with_bit;
+      genvar n;
+      for (n = 0; n < PLACES; n = n + 1) begin : gen_place
+        localparam [31:0] N = n;
+        assign with_bit[n] = N[p];
+      end
+      assign grant_place[p] = |(grant & with_bit);
+    end
+  endgenerate
+  assign pick = |ready_q & (~pick_valid_q | advance);
+
+  // ---- the picked pair's lines: memory answers 2 clocks after fetch_q
+  reg [1:0] age_q;
+  reg [CONTEXT_W+RECORD_W-1:0] record_q;
+  reg no_pose_fetch_q;
+  wire [CONTEXT_W-1:0] fetch_context = record_q[RECORD_W+:CONTEXT_W];
+  wire fetch_leaf = {{32 - PLACE_W{1'b0}}, fetch_q} >= FIRST_LEAF;
+  reg fetch_leaf_q;
+  reg pair_valid_q, leaf_valid_q, fresh_q;
+  wire load = fetch_valid_q & age_q[1] & ~no_pose_fetch_q & (~pair_valid_q | m_pair_ready);
+  assign advance = pick_valid_q & (~fetch_valid_q | load);
+  reg [PLACE_W-1:0] place_q;
+  reg [CONTEXT_W+RECORD_W-1:0] hold_record_q;
+  reg [1023:0] lines_q;
+  wire failed_a = read_codes[0+:CODE_W] != `CCHIP_READ_OK;
+  wire failed_b = read_codes[CODE_W+:CODE_W] != `CCHIP_READ_OK;
+  reg [1:0] failed_q;
+  always @(posedge clk) begin
+    ready_q <= came[0+:PLACES] & came[PLACES+:PLACES] & ~picked;
+    if (pick) pick_q <= grant_place;
+    if (advance) fetch_q <= pick_q;
+    record_q        <= records[fetch_q];
+    fetch_leaf_q    <= fetch_leaf;
+    no_pose_fetch_q <= record_q[AT_HEADER] & no_pose_q[fetch_context];
+    if (load) begin
+      place_q       <= fetch_q;
+      hold_record_q <= record_q;
+      lines_q       <= read_lines;
+      failed_q      <= {failed_b, failed_a};
+    end
+    age_q <= advance ? 2'd0 : age_q[1] ? age_q : age_q + 2'd1;
+    if (rst) begin
+      pick_valid_q  <= 1'b0;
+      fetch_valid_q <= 1'b0;
+      pair_valid_q  <= 1'b0;
+      leaf_valid_q  <= 1'b0;
+      fresh_q       <= 1'b0;
+    end else begin
+      pick_valid_q  <= pick | (pick_valid_q & ~advance);
+      fetch_valid_q <= advance | (fetch_valid_q & ~load);
+      pair_valid_q  <= (load & ~fetch_leaf_q) | (pair_valid_q & ~m_pair_ready);
+      leaf_valid_q  <= load & fetch_leaf_q;
+      fresh_q       <= load;
+    end
+  end
+  assign m_pair_valid    = pair_valid_q;
+  assign m_pair_place    = place_q;
+  assign m_pair_context  = hold_record_q[RECORD_W+:CONTEXT_W];
+  assign m_pair_children = {hold_record_q[55:52], hold_record_q[27:24]};
+  assign m_leaf_valid    = leaf_valid_q;
+  assign m_leaf_place    = place_q;
+  assign m_leaf_context  = hold_record_q[RECORD_W+:CONTEXT_W];
+  assign m_leaf_epoch    = hold_record_q[AT_EPOCH+:`CCHIP_EPOCH_W];
+  assign m_leaf_kinds    = {hold_record_q[29:28], hold_record_q[1:0]};
+  assign m_leaf_failed   = |failed_q;
+  assign m_lines         = lines_q;
+
+  // ---- what the lines say: the fields on the first clock, compared on the second, judged on the
+  // third
+  (* ram_style = "distributed" *)
+  reg [49:0] sizes[0:QUERIES-1];  // lines of each image, {B's, A's}, at most 2^24
+  reg [49:0] sizes_q1;
+  reg check_q1, check_q2, check_q3;
+  reg header_q1, header_q2;
+  reg [PLACE_W-1:0] place_q1, place_q2, place_q3;
+  reg [CONTEXT_W-1:0] context_q1, context_q2;
+  wire [2*END_W-1:0] end3;  // of a node
+  wire [1:0] no_header3;
+  wire [49:0] size2;
+  wire [63:0] node3;
+  generate
+    for (p = 0; p < 2; p = p + 1) begin : gen_check
+      wire [511:0] line = lines_q[512*p+:512];
+      reg [23:0] first_q1, root_q1, at_q1, first_q2, first_q3;
+      reg [7:0] kinds_q1, kinds_q2, kinds_q3;
+      reg [1:0] more_q1;
+      reg [24:0] size_q1, size_q2;
+      reg steep_q1, steep_q2, failed_q1, failed_q2, header_here_q1, header_here_q2, outside_q2;
+      reg [END_W-1:0] end_q3;
+      reg no_header_q3;
+      wire [24:0] last = {1'b0, first_q1} + {23'd0, more_q1};
+      wire [24:0] limit = sizes_q1[25*p+:25];
+      always @(posedge clk) begin
+        first_q1       <= line[59+:24];
+        root_q1        <= line[128+:24];
+        more_q1        <= line[91+:2];
+        kinds_q1       <= line[83+:8];
+        at_q1          <= hold_record_q[28*p+:24];
+        steep_q1       <= line[54+:5] > 5'd18;
+        size_q1        <= |line[121+:7] ? 25'h1000000 : line[96+:25];
+        failed_q1      <= failed_q[p];
+        header_here_q1 <= line[0+:32] == MAGIC && line[64+:16] == VERSION;
+        first_q2       <= header_q1 ? root_q1 : first_q1;
+        kinds_q2       <= kinds_q1;
+        size_q2        <= size_q1;
+        steep_q2       <= steep_q1;
+        failed_q2      <= failed_q1;
+        header_here_q2 <= header_here_q1;
+        outside_q2     <= header_q1 ? {1'b0, root_q1} >= size_q1 : first_q1 <= at_q1 || last >= limit;
+        first_q3       <= first_q2;
+        kinds_q3       <= kinds_q2;
+        no_header_q3   <= header_q2 & ~failed_q2 & ~header_here_q2;
+        end_q3 <= failed_q2 ? `CCHIP_QUERY_MEMORY : steep_q2 & ~header_q2 ? `CCHIP_QUERY_CORRUPT :
+            outside_q2 ? `CCHIP_QUERY_OUTSIDE : `CCHIP_QUERY_OK;
+      end
+      wire unused = &{1'b0, line[511:152], line[95:93], line[53:32]};
+      assign size2[25*p+:25] = size_q2;
+      assign node3[32*p+:32] = {kinds_q3, first_q3};
+      assign end3[END_W*p+:END_W] = end_q3;
+      assign no_header3[p] = no_header_q3;
+    end
+  endgenerate
+  wire [END_W-1:0] code3 = end3[0+:END_W] == `CCHIP_QUERY_MEMORY ? `CCHIP_QUERY_MEMORY :
+      |no_header3 ? `CCHIP_QUERY_BAD_DESCRIPTOR :
+      end3[0+:END_W] != `CCHIP_QUERY_OK ? end3[0+:END_W] : end3[END_W+:END_W];
+  (* ram_style = "distributed" *)
+  reg [NODES_W-1:0] nodes[0:PLACES-1];
+  reg [NODES_W-1:0] nodes_q;
+  reg [CONTEXT_W+RECORD_W-1:0] lookup_q;
+  always @(posedge clk) begin
+    sizes_q1   <= sizes[hold_record_q[RECORD_W+:CONTEXT_W]];
+    header_q1  <= hold_record_q[AT_HEADER];
+    header_q2  <= header_q1;
+    place_q1   <= place_q;
+    place_q2   <= place_q1;
+    place_q3   <= place_q2;
+    context_q1 <= hold_record_q[RECORD_W+:CONTEXT_W];
+    context_q2 <= context_q1;
+    if (check_q2 & header_q2) sizes[context_q2] <= size2;
+    if (check_q3) nodes[place_q3] <= {code3, node3};
+    if (lookup) begin
+      nodes_q  <= nodes[lookup_place];
+      lookup_q <= records[lookup_place];
+    end
+    if (rst) begin
+      check_q1 <= 1'b0;
+      check_q2 <= 1'b0;
+      check_q3 <= 1'b0;
+    end else begin
+      check_q1 <= fresh_q & pair_valid_q;
+      check_q2 <= check_q1;
+      check_q3 <= check_q2;
+    end
+  end
+  assign {lookup_context, lookup_record} = lookup_q;
+  assign lookup_nodes = nodes_q;
+
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_place, !(s_valid && pair_valid_q && place_q == s_place))
+    end
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_query.vh"
+`include "cchip_assert.vh"
+// cchip_leaf_queue: pairs of leaves that wait for a primitive test. One entry holds all of a node
+// pair; they leave one by one.
+//   rule         a pair of a query that is still at work is fetched when the receiver has room for
+//                it; one of a query that has ended is dropped, and told
+//   credit       the receiver has room for CREDIT pairs; s_credit = 1 when one has left it
+//   latency      5 clocks from s_valid to m_valid
+//   throughput   a pair every third clock
+//   capacity     DEPTH entries; the sender counts them: m_room = 1 when one has left
+//   cuts         every path: each output is a flip-flop
+//   reset        empty, all credit back
+module cchip_leaf_queue #(
+    // queries at once: 2, 4, 8 or 16
+    parameter integer QUERIES = 16,
+    // entries
+    parameter integer DEPTH = 40,
+    // pairs that the receiver has room for, 1..65535
+    parameter integer CREDIT = 16
+) (
+    input  wire                       clk,
+    input  wire                       rst,
+    // the pairs of leaves among the children of a node pair: i of A and j of B is bit 4 i + j
+    input  wire                       s_valid,
+    input  wire [$clog2(QUERIES)-1:0] s_context,
+    input  wire [ `CCHIP_EPOCH_W-1:0] s_epoch,
+    input  wire [               39:0] s_a,        // {kinds of the children, line of the first}
+    input  wire [               39:0] s_b,
+    input  wire [               15:0] s_leaves,
+    output wire                       m_room,
+    // epochs as they change
+    input  wire                       epoch_write,
+    input  wire [$clog2(QUERIES)-1:0] epoch_context,
+    input  wire [ `CCHIP_EPOCH_W-1:0] epoch,
+    // a pair to fetch, or to forget
+    input  wire                       s_credit,
+    output wire                       m_valid,
+    input  wire                       m_ready,
+    output wire                       m_drop_valid,
+    input  wire                       m_drop_ready,
+    output wire [$clog2(QUERIES)-1:0] m_context,
+    output wire [ `CCHIP_EPOCH_W-1:0] m_epoch,
+    output wire [                3:0] m_kinds,    // {B's, A's}
+    output wire [               63:0] m_lines     // {B's, A's}
+);
+
+  localparam integer CONTEXT_W = $clog2(QUERIES);
+  localparam integer EPOCH_W = `CCHIP_EPOCH_W;
+  localparam integer ENTRY_W = CONTEXT_W + EPOCH_W + 96;
+  localparam [31:0] ALL_CREDIT = CREDIT;
+
+  generate
+    if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES) begin : gen_illegal_queries
+      cchip_error_leaf_queue_QUERIES_must_be_2_4_8_or_16 u_error ();
+    end
+    if (CREDIT < 1 || CREDIT > 65535) begin : gen_illegal_credit
+      cchip_error_leaf_queue_CREDIT_must_be_1_to_65535 u_error ();
+    end
+  endgenerate
+
+  wire ready, queue_valid, load;
+  wire [ENTRY_W-1:0] queue_entry;
+  cchip_fifo #(
+      .WIDTH     (ENTRY_W),
+      .DEPTH     (DEPTH),
+      .ROOM_KNOWN(1)
+  ) u_fifo (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(s_valid),
+      .s_ready(ready),
+      .s_data ({s_context, s_epoch, s_leaves, s_b, s_a}),
+      .m_valid(queue_valid),
+      .m_ready(load),
+      .m_data (queue_entry)
+  );
+
+  // ---- the entry at work. Of its next pair: chosen, judged, waiting to be taken
+  localparam [1:0] CHOOSE = 2'd0, JUDGE = 2'd1, TAKE = 2'd2;
+  reg work_q;
+  reg [1:0] state_q;
+  reg [79:0] nodes_q;
+  reg [15:0] left_q;
+  reg [CONTEXT_W-1:0] context_q;
+  reg [EPOCH_W-1:0] epoch_q;
+  reg [3:0] number_q;
+  reg last_q;
+  reg valid_q, drop_q, room_q;
+  reg [3:0] kinds_q;
+  reg [63:0] lines_q;
+  wire [15:0] one = left_q & (~left_q + 16'd1);
+  wire [15:0] rest = left_q & ~one;
+  wire [3:0] number;
+  assign number[3] = |one[15:8];
+  assign number[2] = |{one[15:12], one[7:4]};
+  assign number[1] = |{one[15:14], one[11:10], one[7:6], one[3:2]};
+  assign number[0] = |{one[15], one[13], one[11], one[9], one[7], one[5], one[3], one[1]};
+  wire taken = (valid_q & m_ready) | (drop_q & m_drop_ready);
+  assign load = ~work_q | (taken & last_q);
+
+  (* ram_style = "distributed" *)
+  reg [EPOCH_W-1:0] epochs[0:QUERIES-1];
+  wire live = epochs[context_q] == epoch_q;
+  reg [15:0] credit_q;
+  reg some_q;
+  wire judge = work_q && state_q == JUDGE;
+  wire spend = judge & live & some_q;
+  wire [15:0] credit = credit_q + {15'd0, s_credit} - {15'd0, spend};
+
+  always @(posedge clk) begin
+    if (epoch_write) epochs[epoch_context] <= epoch;
+    if (load) {context_q, epoch_q, nodes_q} <= {queue_entry[ENTRY_W-1:96], queue_entry[79:0]};
+    if (load) left_q <= queue_entry[95:80];
+    else if (state_q == CHOOSE) left_q <= rest;
+    if (state_q == CHOOSE) begin
+      number_q <= number;
+      last_q   <= rest == 16'd0;
+    end
+    kinds_q <= {nodes_q[72+2*number_q[1:0]+:2], nodes_q[32+2*number_q[3:2]+:2]};
+    lines_q <= {nodes_q[71:40] + {30'd0, number_q[1:0]}, nodes_q[31:0] + {30'd0, number_q[3:2]}};
+    if (rst) begin
+      work_q   <= 1'b0;
+      state_q  <= CHOOSE;
+      valid_q  <= 1'b0;
+      drop_q   <= 1'b0;
+      room_q   <= 1'b0;
+      credit_q <= ALL_CREDIT[15:0];
+      some_q   <= 1'b1;
+    end else begin
+      work_q <= load ? queue_valid : 1'b1;
+      room_q <= load & queue_valid;
+      if (load) state_q <= CHOOSE;
+      else
+        case (state_q)
+          CHOOSE: state_q <= JUDGE;
+          JUDGE: if (~live | some_q) state_q <= TAKE;
+          default: if (taken) state_q <= CHOOSE;
+        endcase
+      valid_q  <= spend | (valid_q & ~m_ready);
+      drop_q   <= (judge & ~live) | (drop_q & ~m_drop_ready);
+      credit_q <= credit;
+      some_q   <= credit != 16'd0;
+    end
+  end
+  assign m_room       = room_q;
+  assign m_valid      = valid_q;
+  assign m_drop_valid = drop_q;
+  assign m_context    = context_q;
+  assign m_epoch      = epoch_q;
+  assign m_kinds      = kinds_q;
+  assign m_lines      = lines_q;
+
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_room, !s_valid || ready)
+      `CCHIP_ASSERT(a_leaves, !s_valid || s_leaves != 16'd0)
+      `CCHIP_ASSERT(a_credit, credit_q <= ALL_CREDIT[15:0])
+    end
+
+endmodule
+`default_nettype wire
