@@ -82,7 +82,7 @@ module cchip_cache #(
     if (CACHE_KB < 1 || CACHE_KB > 1024 || (1 << SET_W) != SETS) begin : gen_illegal_size
       cchip_error_cache_CACHE_KB_must_be_a_power_of_two_1_to_1024 u_error ();
     end
-    if (PLACES < 2 || PLACES > 32 || (1 << PLACE_W) != PLACES) begin : gen_illegal_places
+    if (PLACES < 2 || PLACES > 64 || (1 << PLACE_W) != PLACES) begin : gen_illegal_places
       cchip_error_cache_PLACES_must_be_2_4_8_16_or_32 u_error ();
     end
     if (MISSES < 2 || MISSES > 32 || (1 << MISS_W) != MISSES) begin : gen_illegal_misses
@@ -182,11 +182,11 @@ module cchip_cache #(
   wire [2*SET_W+1:0] data_addr;  // frames that the ports read or write in stage 5
   wire fill_write;
 
-  function [4:0] lowest(input [31:0] of);
+  function [5:0] lowest(input [63:0] of);
     integer j;
     begin
-      lowest = 5'd0;
-      for (j = 31; j >= 0; j = j - 1) if (of[j]) lowest = j[4:0];
+      lowest = 6'd0;
+      for (j = 63; j >= 0; j = j - 1) if (of[j]) lowest = j[5:0];
     end
   endfunction
 
@@ -263,8 +263,8 @@ module cchip_cache #(
       reg [PLACE_W-1:0] serve_place_q0;
       reg [CODE_W-1:0] serve_code_q0;
       reg [SET_W:0] serve_frame_q0;
-      wire [31:0] wake32 = {{32 - PLACES{1'b0}}, wake_q};
-      wire [4:0] wake_place = lowest(wake32);
+      wire [63:0] wake32 = {{64 - PLACES{1'b0}}, wake_q};
+      wire [5:0] wake_place = lowest(wake32);
       wire load_serve = ~serve_q0 | serve0;
       assign serving[p] = |wake_q;
       assign serves0[p] = serve_q0;

@@ -5,8 +5,8 @@
 `include "cchip_assert.vh"
 // cchip_get_data: fetches the two lines of a node pair or of a pair of leaves through the cache,
 // waits for both, and hands them on: node pairs to the box test, leaves to the primitive tests.
-//   rule         a pair has a place, given by who asks; its lines arrive in any order. Of the pairs
-//                whose lines have both come one after the other goes on, in turn
+//   rule         a pair has a place, given by who asks; its lines arrive in any order. Pairs go on
+//                in the order in which their second lines come
 //   check        what a line says of its children, and of a header, leaves with `lookup` when the
 //                verdict of the box test comes: code, kinds and lines of the children
 //   latency      1 clock from s_valid to m_line_valid, 6 from the second line to m_pair_valid or
@@ -19,8 +19,8 @@ module cchip_get_data #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
     // node pairs under way
-    parameter integer PAIRS = 24,
-    // pairs of leaves under way; PAIRS + LEAVES is 8, 16 or 32
+    parameter integer PAIRS = 56,
+    // pairs of leaves under way; PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 8
 ) (
     input  wire                                                 clk,
@@ -80,9 +80,9 @@ module cchip_get_data #(
     if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES) begin : gen_illegal_queries
       cchip_error_get_data_QUERIES_must_be_2_4_8_or_16 u_error ();
     end
-    if (PAIRS < 1 || LEAVES < 1 || PLACES < 8 || PLACES > 32 || (1 << PLACE_W) != PLACES)
+    if (PAIRS < 1 || LEAVES < 1 || PLACES < 8 || PLACES > 64 || (1 << PLACE_W) != PLACES)
     begin : gen_illegal_places
-      cchip_error_get_data_PAIRS_and_LEAVES_must_be_8_16_or_32_together u_error ();
+      cchip_error_get_data_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together u_error ();
     end
   endgenerate
 
@@ -112,24 +112,34 @@ module cchip_get_data #(
   assign m_line_place = {2{ask_place_q}};
   assign m_line       = ask_lines_q;
 
-  // ---- lines that have come, by place; one pair is picked, its lines are read
+  // ---- lines that have come, by place. The port of a pair's second line puts it in its queue
   wire [2*PLACES-1:0] came;
   wire [1023:0] read_lines;
   wire [2*CODE_W-1:0] read_codes;
-  reg pick_valid_q, fetch_valid_q;
-  reg [PLACE_W-1:0] pick_q, fetch_q;
-  wire pick, advance;
-  wire [PLACES-1:0] grant;
-  reg [PLACES-1:0] ready_q;  // both lines have come
-  wire [PLACES-1:0] picked = grant & {PLACES{pick}};
+  reg fetch_valid_q;
+  reg [PLACE_W-1:0] fetch_q;
+  wire [1:0] whole;  // this line is the second
+  wire [PLACES-1:0] spot[0:1];
+  wire [PLACE_W-1:0] place0 = s_line_place[0+:PLACE_W];
+  wire [PLACE_W-1:0] place1 = s_line_place[PLACE_W+:PLACE_W];
+  wire both = &s_line_valid && place0 == place1;
+  wire [1:0] queue_valid, queue_ready, queue_take;
+  wire [2*PLACE_W-1:0] queue_place;
   genvar p;
   generate
     for (p = 0; p < 2; p = p + 1) begin : gen_port
-      wire [PLACE_W-1:0] place = s_line_place[PLACE_W*p+:PLACE_W];
+      localparam integer OTHER = 1 - p;
+      wire [PLACE_W-1:0] place = p == 0 ? place0 : place1;
       reg [PLACES-1:0] came_q;
+      reg whole_q;
+      reg [PLACE_W-1:0] whole_place_q;
       (* ram_style = "distributed" *)
       reg [CODE_W-1:0] codes[0:PLACES-1];
       reg [CODE_W-1:0] code_q;
+      wire [PLACES-1:0] of_other = came[PLACES*OTHER+:PLACES];
+      wire set = s_line_valid[p] & ~whole[p] & ~both;
+      assign whole[p] = s_line_valid[p] & (of_other[place] | (both & (p == 0)));
+      assign spot[p]  = {{PLACES - 1{1'b0}}, 1'b1} << place;
       cchip_block_ram #(
           .WIDTH (512),
           .ADDR_W(PLACE_W)
@@ -141,39 +151,41 @@ module cchip_get_data #(
           .read_addr (fetch_q),
           .read_data (read_lines[512*p+:512])
       );
+      cchip_fifo #(
+          .WIDTH     (PLACE_W),
+          .DEPTH     (PLACES),
+          .ROOM_KNOWN(1)
+      ) u_whole (
+          .clk    (clk),
+          .rst    (rst),
+          .s_valid(whole_q),
+          .s_ready(queue_ready[p]),
+          .s_data (whole_place_q),
+          .m_valid(queue_valid[p]),
+          .m_ready(queue_take[p]),
+          .m_data (queue_place[PLACE_W*p+:PLACE_W])
+      );
       always @(posedge clk) begin
         if (s_line_valid[p]) codes[place] <= s_line_code[CODE_W*p+:CODE_W];
-        code_q <= codes[fetch_q];
-        if (rst) came_q <= {PLACES{1'b0}};
-        else came_q <= (came_q & ~picked) | ({{PLACES - 1{1'b0}}, s_line_valid[p]} << place);
+        code_q        <= codes[fetch_q];
+        whole_place_q <= place;
+        if (rst) begin
+          came_q  <= {PLACES{1'b0}};
+          whole_q <= 1'b0;
+        end else begin
+          came_q <= (came_q & ~(spot[OTHER] & {PLACES{whole[OTHER]}})) | (spot[p] & {PLACES{set}});
+          whole_q <= whole[p];
+        end
       end
       assign came[PLACES*p+:PLACES] = came_q;
       assign read_codes[CODE_W*p+:CODE_W] = code_q;
     end
   endgenerate
-  // ready_q is a clock behind came: a place that was picked a clock ago is left out
-  cchip_arbiter #(
-      .N(PLACES)
-  ) u_arbiter (
-      .clk    (clk),
-      .rst    (rst),
-      .request(ready_q),
-      .grant  (grant),
-      .take   (pick)
-  );
-  wire [PLACE_W-1:0] grant_place;
-  generate
-    for (p = 0; p < PLACE_W; p = p + 1) begin : gen_grant
-      wire [PLACES-1:0] with_bit;
-      genvar n;
-      for (n = 0; n < PLACES; n = n + 1) begin : gen_place
-        localparam [31:0] N = n;
-        assign with_bit[n] = N[p];
-      end
-      assign grant_place[p] = |(grant & with_bit);
-    end
-  endgenerate
-  assign pick = |ready_q & (~pick_valid_q | advance);
+  // the two queues in turn
+  reg turn_q;
+  wire from1 = queue_valid[1] & (turn_q | ~queue_valid[0]);
+  wire advance;
+  assign queue_take = {from1, queue_valid[0] & ~from1} & {2{advance}};
 
   // ---- the picked pair's lines: memory answers 2 clocks after fetch_q
   reg [1:0] age_q;
@@ -184,7 +196,7 @@ module cchip_get_data #(
   reg fetch_leaf_q;
   reg pair_valid_q, leaf_valid_q, fresh_q;
   wire load = fetch_valid_q & age_q[1] & ~no_pose_fetch_q & (~pair_valid_q | m_pair_ready);
-  assign advance = pick_valid_q & (~fetch_valid_q | load);
+  assign advance = |queue_valid & (~fetch_valid_q | load);
   reg [PLACE_W-1:0] place_q;
   reg [CONTEXT_W+RECORD_W-1:0] hold_record_q;
   reg [1023:0] lines_q;
@@ -192,9 +204,10 @@ module cchip_get_data #(
   wire failed_b = read_codes[CODE_W+:CODE_W] != `CCHIP_READ_OK;
   reg [1:0] failed_q;
   always @(posedge clk) begin
-    ready_q <= came[0+:PLACES] & came[PLACES+:PLACES] & ~picked;
-    if (pick) pick_q <= grant_place;
-    if (advance) fetch_q <= pick_q;
+    if (advance) begin
+      fetch_q <= from1 ? queue_place[PLACE_W+:PLACE_W] : queue_place[0+:PLACE_W];
+      turn_q  <= ~from1;
+    end
     record_q        <= records[fetch_q];
     fetch_leaf_q    <= fetch_leaf;
     no_pose_fetch_q <= record_q[AT_HEADER] & no_pose_q[fetch_context];
@@ -206,13 +219,11 @@ module cchip_get_data #(
     end
     age_q <= advance ? 2'd0 : age_q[1] ? age_q : age_q + 2'd1;
     if (rst) begin
-      pick_valid_q  <= 1'b0;
       fetch_valid_q <= 1'b0;
       pair_valid_q  <= 1'b0;
       leaf_valid_q  <= 1'b0;
       fresh_q       <= 1'b0;
     end else begin
-      pick_valid_q  <= pick | (pick_valid_q & ~advance);
       fetch_valid_q <= advance | (fetch_valid_q & ~load);
       pair_valid_q  <= (load & ~fetch_leaf_q) | (pair_valid_q & ~m_pair_ready);
       leaf_valid_q  <= load & fetch_leaf_q;
@@ -323,6 +334,7 @@ module cchip_get_data #(
 
   always @(posedge clk)
     if (!rst) begin
+      `CCHIP_ASSERT(a_whole, (whole & ~queue_ready) == 2'd0)
       `CCHIP_ASSERT(a_place, !(s_valid && pair_valid_q && place_q == s_place))
     end
 

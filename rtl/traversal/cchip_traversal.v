@@ -21,14 +21,14 @@ module cchip_traversal #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
     // node pairs under way, of all and of one query
-    parameter integer PAIRS = 24,
+    parameter integer PAIRS = 56,
     parameter integer PAIRS_EACH = 4,
-    // pairs of leaves that are fetched at once; PAIRS + LEAVES is 8, 16 or 32
+    // pairs of leaves that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 8,
     // entries of a query's stack: 8, 16, 32 or 64
     parameter integer STACK = 64,
     // entries of the leaf queue, more than PAIRS
-    parameter integer LEAF_DEPTH = 40,
+    parameter integer LEAF_DEPTH = 80,
     // pairs of leaves that the receiver has room for
     parameter integer CREDIT = 16
 ) (
@@ -100,7 +100,7 @@ module cchip_traversal #(
   localparam integer STACK_W = $clog2(STACK);
   localparam integer WORK_W = 12;  // pairs of one epoch of a query: LEAF_DEPTH 16 and some
   localparam integer ROOM_W = $clog2(LEAF_DEPTH + 1);
-  localparam [31:0] EACH = PAIRS_EACH, FULL = STACK, DEPTH = LEAF_DEPTH;
+  localparam [31:0] EACH = PAIRS_EACH, FEW = (PAIRS_EACH + 1) / 2, FULL = STACK, DEPTH = LEAF_DEPTH;
   localparam [31:0] LAST_EPOCH = QUERIES * 4 - 1;
   localparam integer LIMIT_DONE = 2 * QUERIES;
 
@@ -605,6 +605,9 @@ module cchip_traversal #(
   reg [4:0] tests_q7;
   reg [68:0] answer_q7;
   wire active6 = active_q6 & ~ends6;
+  // a FIRST query with pairs of leaves out, one of which may end it, asks for half as much
+  wire hopes6 = ~mode_q6 && work_q6 != {{WORK_W - 3{1'b0}}, under_q6};
+  wire [2:0] most6 = hopes6 ? FEW[2:0] : EACH[2:0];
   wire [EPOCH_W-1:0] now6 = now_q6 + {{EPOCH_W - 1{1'b0}}, ends6};
   always @(posedge clk) begin
     event_start_q7 <= event_q6 == START;
@@ -617,7 +620,8 @@ module cchip_traversal #(
     ends_q7        <= valid_q6 & ends6;
     step_q7        <= valid_q6 & step_q6;
     active_q7      <= active6;
-    wants_q7       <= active6 && entries_q6 != {STACK_W + 1{1'b0}} && under_q6 < EACH[2:0];
+    wants_q7       <= active6 && entries_q6 != {STACK_W + 1{1'b0}} &&
+        under_q6 < most6;
     room_back_q7   <= valid_q6 ? room_back_q6 : 2'd0;
     state_q7       <= {
       now6, active6, mode_q6, entries_q6, under_q6, steps_q6, pairs_q6, opens_q6, hit_q6

@@ -31,6 +31,7 @@ struct Settings {
   std::uint64_t seed = sim::seed_from_environment();
   MemoryOptions memory;
   std::size_t at_once = 0;
+  std::uint32_t lock = 512;  ///< lines of each image, from its first one
   std::vector<std::string> modes = {"first", "all"};
   std::string wave;
 };
@@ -78,8 +79,8 @@ class Run {
     fmt::print("seed={} latency={} jitter={} reorder={} beat_every={} poses={} of each class, after {} more\n",
                settings_.seed, settings_.memory.latency, settings_.memory.jitter, settings_.memory.reorder,
                settings_.memory.beat_every, settings_.poses, settings_.warm);
-    fmt::print("{:<12} {:<6} {:<6} {:>7} {:>6} {:>8} {:>9} {:>8} {:>9} {:>8} {:>9} {:>6} {:>6} {:>6}\n", "meshes", "class",
-               "mode", "queries", "hits", "steps", "boxtests", "leaves", "clocks", "hitrate", "bytes", "box", "bus",
+    fmt::print("{:<12} {:<6} {:<6} {:>7} {:>6} {:>8} {:>8} {:>9} {:>8} {:>9} {:>8} {:>9} {:>6} {:>6} {:>6}\n", "meshes", "class",
+               "mode", "queries", "hits", "alone", "steps", "boxtests", "leaves", "clocks", "hitrate", "bytes", "box", "bus",
                "lane");
     for (const std::string& name : settings_.meshes) run_pair(name);
     const double n = std::max(1.0, static_cast<double>(total_.queries));
@@ -102,7 +103,8 @@ class Run {
     const Object a(meshes.a);
     const Object b(meshes.b);
     const Placed image_a(meshes.a, line_of_a);
-    const Placed image_b(meshes.b, line_of_a + (image_a.image.lines.size() + 0xFFFF) / 0x10000 * 0x10000);
+    // the first 512 lines of both have sets of their own, so that they can be locked together
+    const Placed image_b(meshes.b, line_of_a + 512 + (image_a.image.lines.size() + 1023) / 1024 * 1024);
     PoseMaker maker(*device_, a, b, settings_.seed);
     std::vector<Approach> approaches;
     for (std::size_t i = 0; i < settings_.poses + settings_.warm; ++i) approaches.push_back(maker.approach());
@@ -136,6 +138,13 @@ class Run {
     bench.at_once = settings_.at_once;
     bench.place(image_a.line, image_a.image.lines);
     bench.place(image_b.line, image_b.image.lines);
+    if (settings_.lock != 0) {
+      const auto last = [this](const Placed& x) {
+        return static_cast<std::uint32_t>(x.line + std::min<std::size_t>(settings_.lock, x.image.lines.size()) - 1);
+      };
+      bench.set_lock(0, static_cast<std::uint32_t>(image_a.line), last(image_a));
+      bench.set_lock(1, static_cast<std::uint32_t>(image_b.line), last(image_b));
+    }
     std::size_t lost = 0;
     Counters before;
     const auto run = [&](std::size_t from, std::size_t to) {
@@ -153,16 +162,17 @@ class Run {
     const Counters spent = bench.counters() - before;
     std::size_t hits = 0;
     std::size_t mismatches = 0;
+    steps_alone_ = 0;
     for (std::size_t i = 0; i < queries.size(); ++i) {
       if (i >= bench.answers().size() || !bench.answers()[i].done) continue;
-      mismatches += compare(queries[i], bench.answers()[i], image_a, image_b);
+      mismatches += compare(queries[i], bench.answers()[i], image_a, image_b, i >= settings_.warm);
       if (i >= settings_.warm) hits += bench.answers()[i].done->answer == QueryAnswer::yes;
     }
     const double n = std::max(1.0, static_cast<double>(settings_.poses));
     const auto mean = [n](std::uint64_t x) { return static_cast<double>(x) / n; };
     const double clocks = std::max(1.0, static_cast<double>(spent.clocks));
-    fmt::print("{:<12} {:<6} {:<6} {:>7} {:>6} {:>8.2f} {:>9.1f} {:>8.2f} {:>9.1f} {:>8.3f} {:>9.0f} {:>6.2f} {:>6.2f} {:>6.2f}\n",
-               meshes, pose_class, mode, settings_.poses, hits, mean(spent.steps), mean(spent.box_tests),
+    fmt::print("{:<12} {:<6} {:<6} {:>7} {:>6} {:>8.2f} {:>8.2f} {:>9.1f} {:>8.2f} {:>9.1f} {:>8.3f} {:>9.0f} {:>6.2f} {:>6.2f} {:>6.2f}\n",
+               meshes, pose_class, mode, settings_.poses, hits, mean(steps_alone_), mean(spent.steps), mean(spent.box_tests),
                mean(spent.leaf_pairs), mean(spent.clocks), hit_rate(spent), mean(bytes(spent)),
                static_cast<double>(spent.box_busy) / clocks, static_cast<double>(spent.beats) / clocks,
                static_cast<double>(spent.lane_busy) / clocks);
@@ -175,7 +185,8 @@ class Run {
 
   /// 0 if the answer is the model's: all of it in mode ALL; whether they meet, and no pair of leaves that the model
   /// does not have, in mode FIRST.
-  std::size_t compare(const Query& query, const Answer& answer, const Placed& image_a, const Placed& image_b) {
+  std::size_t compare(const Query& query, const Answer& answer, const Placed& image_a, const Placed& image_b,
+                      bool counts) {
     const Placed& moved = query.swapped ? image_b : image_a;
     const Placed& fixed = query.swapped ? image_a : image_b;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> lines;
@@ -183,6 +194,7 @@ class Run {
     options.leaf_pairs = &lines;
     Query all = query;
     const model::BroadPhaseResult expected = run_query(all, moved.image, fixed.image, options);
+    if (counts) steps_alone_ += expected.done.steps;
     std::string wrong;
     if (answer.done->code != expected.done.code) wrong = "code";
     if (answer.done->answer != expected.done.answer) wrong = "answer";
@@ -211,6 +223,7 @@ class Run {
   Settings settings_;
   std::unique_ptr<Device> device_;
   Totals total_;
+  std::uint64_t steps_alone_ = 0;  ///< of the model, which has one node pair under way
 };
 
 }  // namespace
@@ -230,6 +243,7 @@ int main(int argc, char** argv) {
   app.add_option("--beat-every", settings.memory.beat_every, "clocks from one beat to the next")->capture_default_str();
   app.add_flag("--reorder", settings.memory.reorder, "memory answers in any order");
   app.add_option("--at-once", settings.at_once, "queries that may be unanswered; 0: no limit")->capture_default_str();
+  app.add_option("--lock", settings.lock, "lines of each image that stay in the cache")->capture_default_str();
   app.add_option("--wave", settings.wave, "waveform of the beginning, FST");
   app.footer("Exit codes: 0 nothing wrong, 3 a wrong or a lost answer, others: wrong arguments.");
   CLI11_PARSE(app, argc, argv);
