@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-// Queries and images as the chip reads them (docs/image.md): the fields that the traversal uses.
-// tests/unit/test_cchip_traversal.cpp compares all of them with cpp_ref/include/cchip/wire/query.hpp
-// and cpp_ref/include/cchip/bvh/image_fields.hpp.
+// Queries in the traversal. The codes are those of QueryCode in cpp_ref/include/cchip/wire/query.hpp
+// (docs/image.md).
 `ifndef CCHIP_QUERY_VH
 `define CCHIP_QUERY_VH
 

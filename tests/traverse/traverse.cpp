@@ -11,7 +11,7 @@
 #include <cchip/sim/seed.hpp>
 #include <set>
 
-#include "bench.hpp"
+#include "traverse_bench.hpp"
 #include "mesh_pairs.hpp"
 
 namespace cchip::testing {

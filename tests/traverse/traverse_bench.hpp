@@ -36,7 +36,9 @@ struct ReceiverOptions {
   std::uint64_t transform = 28;  ///< clocks from a pair of leaves to the first axis of its first primitives
   std::uint64_t first = 41;      ///< clocks from an axis to what becomes of it, of a pair's first one and of the others
   std::uint64_t others = 35;
-  bool held = false;  ///< gives no results
+  std::uint64_t jitter = 0;  ///< up to so many more, at random
+  bool held = false;         ///< gives no results
+  bool only_hits = false;    ///< holds back the results without a definite hit, and their room
 };
 
 /// What became of a query.
@@ -139,9 +141,13 @@ class TraverseBench {
 
   /// Forgets everything under way.
   void reset() {
+    waiting_.clear();
+    offering_ = false;
+    invalidate_.reset();
     reads_.clear();
     burst_.reset();
     results_.clear();
+    given_.reset();
     started_.clear();
     simulation_.reset(3);
     open_ = 0;
@@ -150,6 +156,13 @@ class TraverseBench {
     credits_.clear();
     next_beat_ = 0;
   }
+
+  void steps(std::uint64_t clocks) {
+    for (std::uint64_t i = 0; i < clocks; ++i) step();
+  }
+
+  void invalidate(std::uint32_t first, std::uint32_t last) { invalidate_ = {first, last}; }
+  bool invalidating() const { return invalidate_.has_value(); }
 
   /// Until every query has its answer. \throws SimulationTimeout
   void run(std::uint64_t most_clocks) {
@@ -228,10 +241,18 @@ class TraverseBench {
       std::memcpy(&m.m_axi_rdata, data_.data() + beat_ * (Config::DATA_W / 8), Config::DATA_W / 8);
     }
     // results
-    const bool result = !receiver.held && !results_.empty() && results_.front().due <= now;
-    m.s_result_valid = result ? 1 : 0;
-    if (result) {
-      const Result& r = results_.front();
+    if (!given_ && !receiver.held) {
+      const auto ready = std::find_if(results_.begin(), results_.end(), [this, now](const Result& r) {
+        return r.due <= now && (!receiver.only_hits || r.hits > 0);
+      });
+      if (ready != results_.end()) {
+        given_ = *ready;
+        results_.erase(ready);
+      }
+    }
+    m.s_result_valid = given_ ? 1 : 0;
+    if (given_) {
+      const Result& r = *given_;
       m.s_result_context = static_cast<CData>(r.context);
       m.s_result_epoch = static_cast<CData>(r.epoch);
       m.s_result_hits = static_cast<CData>(r.hits);
@@ -242,6 +263,11 @@ class TraverseBench {
     m.s_credit = credit ? 1 : 0;
     if (credit) credits_.pop_front();
     m.m_done_ready = chance(done_percent) ? 1 : 0;
+    m.invalidate_valid = invalidate_ ? 1 : 0;
+    if (invalidate_) {
+      m.invalidate_first = invalidate_->first;
+      m.invalidate_last = invalidate_->second;
+    }
   }
 
   void sample(Model& m, std::uint64_t now) {
@@ -278,9 +304,10 @@ class TraverseBench {
       next_beat_ = now + memory.beat_every;
       if (++beat_ == beats_of_line) burst_.reset();
     }
+    if (m.invalidate_valid != 0 && m.invalidate_ready != 0) invalidate_.reset();
     // pairs of leaves
     if (m.m_leaf_valid != 0) take_leaves(m, now);
-    if (m.s_result_valid != 0 && m.s_result_ready != 0) results_.pop_front();
+    if (m.s_result_valid != 0 && m.s_result_ready != 0) given_.reset();
     // answers
     if (m.m_done_valid != 0 && m.m_done_ready != 0) {
       DoneRecord done;
@@ -361,6 +388,7 @@ class TraverseBench {
     lane_free_ = std::max(lane_free_, now + receiver.transform) + beats;
     counters_.lane_busy += beats;
     result.due = lane_free_ + receiver.first + receiver.others * (most - 1);
+    if (receiver.jitter != 0) result.due += random_() % (receiver.jitter + 1);
     credits_.push_back(lane_free_);
     const auto place = std::upper_bound(results_.begin(), results_.end(), result.due,
                                         [](std::uint64_t due, const Result& r) { return due < r.due; });
@@ -382,6 +410,8 @@ class TraverseBench {
   bool asked_ = false;
   std::uint64_t asked_line_ = 0;
   std::deque<Result> results_;
+  std::optional<Result> given_;
+  std::optional<std::pair<std::uint32_t, std::uint32_t>> invalidate_;
   std::deque<std::uint64_t> credits_;
   std::uint64_t lane_free_ = 0;
   bool offering_ = false;
