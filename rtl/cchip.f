@@ -22,6 +22,10 @@ bvtest/cchip_bv_offset.v
 bvtest/cchip_bv_lane_a.v
 bvtest/cchip_bv_lane_b.v
 bvtest/cchip_bv_compare.v
+bvtest/cchip_bv_cell.v
+bvtest/cchip_bv_feed.v
+bvtest/cchip_bv_pose.v
+bvtest/cchip_bv_unit.v
 sat/cchip_sat_select.v
 sat/cchip_sat_axis.v
 sat/cchip_sat_bound.v

@@ -6,7 +6,7 @@
 //   numbers      offset M o_A + t - o_B in half steps of the grid, 6 fraction bits, rounded down
 //   latency      5 clocks from start to the scales, 9 to the slack, 12 to offset, is_far, is_near;
 //                each stays until that of the next node pair comes
-//   throughput   a node pair every third clock; its inputs stay for the three clocks from start on
+//   throughput   a node pair every third clock; origins stay for the three clocks from start on
 //   cuts         every path
 //   reset        none: a start that is not used does no harm
 // Bit for bit model::grid_of (docs/image.md, "Box test").
@@ -17,8 +17,8 @@ module cchip_bv_offset (
     input  wire [  4:0] a_step,    // a step is 2^(a_step - 24)
     input  wire [ 53:0] b_origin,
     input  wire [  4:0] b_step,
-    input  wire [170:0] pose_m,    // 17 fraction bits, row by row
-    input  wire [ 86:0] pose_t,    // 24 fraction bits
+    input  wire [ 56:0] row_m,     // M, 17 fraction bits: row 0 with start, then 1, 2
+    input  wire [ 28:0] row_t,     // t, 24 fraction bits, likewise
     input  wire [  3:0] shift,     // of the query: A's unit is 2^-shift of B's
     input  wire [  6:0] epsilon,   // 2^-24
     output wire [  1:0] a_scale,   // as cchip_bv_lane_a takes it
@@ -126,14 +126,12 @@ module cchip_bv_offset (
   assign is_near = near_q12;
 
   // ---- the offset, one axis after the other: M o_A
-  wire [56:0] row = start ? pose_m[56:0] : start_q1 ? pose_m[113:57] : pose_m[170:114];
-  wire [28:0] t = start ? pose_t[28:0] : start_q1 ? pose_t[57:29] : pose_t[86:58];
   wire [17:0] origin = start ? b_origin[17:0] : start_q1 ? b_origin[35:18] : b_origin[53:36];
   wire signed [36:0] term2[0:2];  // 35 fraction bits
   genvar j;
   generate
     for (j = 0; j < 3; j = j + 1) begin : gen_term
-      wire [18:0] m = row[19*j+:19];
+      wire [18:0] m = row_m[19*j+:19];
       wire signed [35:0] p;
       reg one_q1, one_q2;  // M_ij is 1, which has no place in 18 bits
       reg [17:0] origin_q1, origin_q2;
@@ -168,7 +166,7 @@ module cchip_bv_offset (
     first_q3 <= {{2{term2[0][36]}}, term2[0]} + {{2{term2[1][36]}}, term2[1]};
     rest_q3 <= {{2{term2[2][36]}}, term2[2]};
     turned_q4 <= first_q3 + rest_q3;
-    between_q1 <= {t[28], t} - {{6{origin[17]}}, origin, 6'd0};
+    between_q1 <= {row_t[28], row_t} - {{6{origin[17]}}, origin, 6'd0};
     between_q2 <= between_q1;
     between_q3 <= between_q2;
     between_q4 <= between_q3;

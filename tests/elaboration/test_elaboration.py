@@ -69,6 +69,7 @@ SIGN = "cchip_error_SIGN_must_be_below_POINTS"
 COMPARE = "cchip_error_compare_POINTS_must_be_3_to_5_and_OWN_1_or_2"
 RAM = "cchip_error_ram_WIDTH_or_DEPTH_below_1_or_ADDR_W_too_small"
 BLOCK_RAM = "cchip_error_block_ram_WIDTH_below_1_or_ADDR_W_not_3_to_16"
+QUERIES = "cchip_error_bv_QUERIES_must_be_2_4_8_or_16"
 
 # module, parameters, name in the message
 ILLEGAL = [
@@ -118,6 +119,8 @@ ILLEGAL = [
     ("cchip_block_ram", {"WIDTH": 0}, BLOCK_RAM),
     ("cchip_block_ram", {"ADDR_W": 17}, BLOCK_RAM),
     ("cchip_block_ram", {"WORDS": 2}, "cchip_error_block_ram_WORDS_must_be_1_or_4"),
+    *(("cchip_bv_unit", {"QUERIES": n}, QUERIES) for n in (3, 32)),
+    ("cchip_bv_unit", {"TAG_W": 0}, "cchip_error_bv_unit_TAG_W_below_1"),
     *(("cchip_pr_region", {"RM_ID": n}, RM_ID) for n in (-1, 4)),
     *(("cchip_roc_generator", {"CYCLES": n}, ROC) for n in (0, 33)),
     *(("cchip_pr_config_memory", {"CFG_W": n}, CFG_W) for n in (16, 0)),
@@ -203,6 +206,7 @@ LEGAL = [
     ("cchip_ram", {"WIDTH": 1, "DEPTH": 1, "ADDR_W": 1}),
     ("cchip_dual_ram", {"WIDTH": 1, "ADDR_W": 3}),
     *(("cchip_block_ram", {"WIDTH": 1, "WORDS": n, "ADDR_W": 3}) for n in (1, 4)),
+    *(("cchip_bv_unit", {"QUERIES": n, "TAG_W": t}) for n, t in ((2, 1), (8, 40))),
     ("cchip_skid_buffer", {"WIDTH": 1}),
     *(("cchip_pr_region", {"RM_ID": n, "COORD_W": 4, "SUBSTAGES": smallest_substages(4)}) for n in range(4)),
     *(("cchip_roc_generator", {"CYCLES": n}) for n in (1, 32)),

@@ -19,12 +19,18 @@ TEMPLATE_LIST_TEST_CASE("cchip_bv_offset: grids are the functional model's, a no
     int far = 0;
     int near = 0;
     int rest = 0;
+    model::PoseSetup pose;  // of the node pair that was started last
+    const auto show_row = [&](std::size_t i) {
+      for (std::size_t j = 0; j < 3; ++j)
+        sim::set_bits(top.row_m, static_cast<int>(19 * j), 19, static_cast<std::uint64_t>(pose.m[i][j]));
+      top.row_t = static_cast<IData>(pose.t[i]) & 0x1FFFFFFF;
+    };
     for (int clock = 0; clock < 60000; ++clock) {
       const bool start = rest == 0 && chance(random, 80);
       top.start = start ? 1 : 0;
       if (start) {
         rest = 2;
-        const model::PoseSetup pose = model::set_up(random_query(random));
+        pose = model::set_up(random_query(random));
         bvh::InnerLine a = random_node(random);
         bvh::InnerLine b = random_node(random);
         if (chance(random, 70)) b.step = std::clamp(a.step - pose.shift + number(random, -8, 8), 0, bvh::step_max);
@@ -35,20 +41,21 @@ TEMPLATE_LIST_TEST_CASE("cchip_bv_offset: grids are the functional model's, a no
         for (std::size_t i = 0; i < 3; ++i) {
           sim::set_bits(top.a_origin, static_cast<int>(18 * i), 18, static_cast<std::uint64_t>(a.origin[i]));
           sim::set_bits(top.b_origin, static_cast<int>(18 * i), 18, static_cast<std::uint64_t>(b.origin[i]));
-          sim::set_bits(top.pose_t, static_cast<int>(29 * i), 29, static_cast<std::uint64_t>(pose.t[i]));
         }
-        for (std::size_t i = 0; i < 9; ++i)
-          sim::set_bits(top.pose_m, static_cast<int>(19 * i), 19, static_cast<std::uint64_t>(pose.m[i / 3][i % 3]));
+        show_row(0);
         top.a_step = static_cast<CData>(a.step);
         top.b_step = static_cast<CData>(b.step);
         top.shift = static_cast<CData>(pose.shift);
         top.epsilon = static_cast<CData>(pose.epsilon);
       } else if (rest > 0) {
+        show_row(static_cast<std::size_t>(3 - rest));
+        top.shift = static_cast<CData>(random() % 16);  // counts with start only
+        top.epsilon = static_cast<CData>(random() % 128);
         --rest;
       } else {  // nobody looks
         sim::set_random(top.a_origin, 54, random);
-        sim::set_random(top.pose_m, 171, random);
-        sim::set_random(top.pose_t, 87, random);
+        sim::set_random(top.row_m, 57, random);
+        sim::set_random(top.row_t, 29, random);
         top.a_step = static_cast<CData>(random() % 19);
       }
       simulation.settle();

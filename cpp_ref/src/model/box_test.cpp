@@ -151,4 +151,26 @@ BoxVerdict test_boxes(const bvh::InnerLine& a, const bvh::InnerLine& b, const Po
   return verdict;
 }
 
+ChildPairs sort_children(const bvh::InnerLine& a, unsigned children_a, const bvh::InnerLine& b, unsigned children_b,
+                         const BoxVerdict& verdict) {
+  ChildPairs pairs;
+  for (unsigned number = 0; number < 16; ++number) {
+    const unsigned i = number / 4;
+    const unsigned j = number % 4;
+    if ((children_a >> i & 1U) == 0 || (children_b >> j & 1U) == 0) continue;
+    if (static_cast<int>(i) >= a.children || static_cast<int>(j) >= b.children) continue;
+    const auto with = [number](std::uint16_t mask) { return static_cast<std::uint16_t>(mask | 1U << number); };
+    pairs.counted = with(pairs.counted);
+    if ((verdict.overlap >> number & 1U) == 0) continue;
+    if (a.kind[i] != bvh::NodeKind::inner && b.kind[j] != bvh::NodeKind::inner) {
+      pairs.leaves = with(pairs.leaves);
+      continue;
+    }
+    if (pairs.waiting == 0 || verdict.key[number] > verdict.key[pairs.best]) pairs.best = number;
+    pairs.waiting = with(pairs.waiting);
+    if (verdict.key[number] >= strong_key) pairs.strong = with(pairs.strong);
+  }
+  return pairs;
+}
+
 }  // namespace cchip::model

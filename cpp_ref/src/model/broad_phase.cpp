@@ -22,9 +22,6 @@ struct Half {
   unsigned children;
 };
 
-/// Key from which on a child pair overlaps well: it is likely to hold a contact.
-constexpr std::uint8_t strong_key = 8;
-
 struct NodePair {
   Half a;
   Half b;
@@ -100,15 +97,14 @@ class Run {
   }
 
   /// The child pair that overlaps most, the first of equals.
-  unsigned best_of(const std::array<std::uint8_t, 16>& key, std::uint16_t waiting) const {
+  unsigned best_of(const ChildPairs& pairs) const {
+    if (options_.random_order == nullptr) return pairs.best;
     std::array<unsigned, 16> numbers = {};
     std::size_t count = 0;
     for (unsigned n = 0; n < 16; ++n) {
-      if ((waiting >> n & 1U) != 0) numbers[count++] = n;
+      if ((pairs.waiting >> n & 1U) != 0) numbers[count++] = n;
     }
-    if (options_.random_order != nullptr) return numbers[any_of(count)];
-    return *std::max_element(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(count),
-                             [&key](unsigned p, unsigned q) { return key[p] < key[q]; });
+    return numbers[any_of(count)];
   }
 
   bvh::InnerLine node(const bvh::Image& image, std::uint32_t line) const {
@@ -142,23 +138,17 @@ class Run {
     ++result_.counts.steps;
     const bvh::InnerLine a = node(a_, pair.a.line);
     const bvh::InnerLine b = node(b_, pair.b.line);
-    const BoxVerdict verdict = test_boxes(a, b, pose_, grid_of(a, b, pose_));
-    Entry entry{pair};
+    const ChildPairs pairs =
+        sort_children(a, pair.a.children, b, pair.b.children, test_boxes(a, b, pose_, grid_of(a, b, pose_)));
     for (unsigned number = 0; number < 16 && !finished_; ++number) {
       const unsigned i = number / 4;
       const unsigned j = number % 4;
-      if ((pair.a.children >> i & 1U) == 0 || (pair.b.children >> j & 1U) == 0) continue;
-      ++result_.counts.box_tests;
-      if ((verdict.overlap >> number & 1U) == 0) continue;
-      if (a.kind[i] == NodeKind::inner || b.kind[j] == NodeKind::inner) {
-        entry.waiting = static_cast<std::uint16_t>(entry.waiting | 1U << number);
-        if (verdict.key[number] >= strong_key) entry.strong = static_cast<std::uint16_t>(entry.strong | 1U << number);
-      } else {
-        test_leaves(a.first + i, a.kind[i], b.first + j, b.kind[j]);
-      }
+      if ((pairs.counted >> number & 1U) != 0) ++result_.counts.box_tests;
+      if ((pairs.leaves >> number & 1U) != 0) test_leaves(a.first + i, a.kind[i], b.first + j, b.kind[j]);
     }
+    Entry entry{pair, pairs.waiting, pairs.strong};
     if (entry.waiting == 0 || finished_) return std::nullopt;
-    const unsigned best = best_of(verdict.key, entry.waiting);
+    const unsigned best = best_of(pairs);
     entry.waiting = static_cast<std::uint16_t>(entry.waiting & ~(1U << best));
     entry.strong = static_cast<std::uint16_t>(entry.strong & ~(1U << best));
     if (entry.waiting != 0) push(entry);

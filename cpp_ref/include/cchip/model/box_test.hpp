@@ -54,6 +54,22 @@ struct BoxVerdict {
 
 BoxVerdict test_boxes(const bvh::InnerLine& a, const bvh::InnerLine& b, const PoseSetup& pose, const NodeGrid& grid);
 
+/// Key from which on a child pair overlaps well: it is likely to hold a contact.
+inline constexpr std::uint8_t strong_key = 8;
+
+/// What becomes of the child pairs of a node pair; bit 4 i + j is child pair (i, j).
+struct ChildPairs {
+  std::uint16_t counted = 0;  ///< compared
+  std::uint16_t waiting = 0;  ///< overlap, and at least one of the two is an inner node
+  std::uint16_t leaves = 0;   ///< overlap, and both are leaves
+  std::uint16_t strong = 0;   ///< of `waiting`: with at least strong_key
+  unsigned best = 0;          ///< of `waiting`: number of the greatest key, the first of equals
+};
+
+/// \param children_a, children_b bit of each child that counts; bits beyond the children of the node are ignored
+ChildPairs sort_children(const bvh::InnerLine& a, unsigned children_a, const bvh::InnerLine& b, unsigned children_b,
+                         const BoxVerdict& verdict);
+
 }  // namespace cchip::model
 
 #endif

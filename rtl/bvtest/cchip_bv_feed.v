@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_assert.vh"
+// cchip_bv_feed: takes the lines of node pairs and hands their parts to the box test, each at its
+// clock: the pose's rows and the origins to cchip_bv_offset, then child after child to the lanes.
+//   rule         position 0, 1, 2, ... of a node are its children that count, in their order; if
+//                there are less than four, one that does not count comes last
+//   throughput   a node pair in max(3, children that count) clocks; so long its lines stay
+//   latency      clocks from the first one of a node pair are in the names: x10 comes 10 after it
+//   memory       block RAM keeps the children until the lanes take them
+//   cuts         every path but the context to row_context0, which a block RAM takes
+//   reset        forgets the node pairs
+module cchip_bv_feed #(
+    // queries at work, 2, 4, 8 or 16
+    parameter integer QUERIES = 16,
+    // width of the tag, bit
+    parameter integer TAG_W = 5
+) (
+    input  wire                       clk,
+    input  wire                       rst,
+    // a node pair; its lines stay until s_ready
+    input  wire                       s_valid,
+    output wire                       s_ready,
+    input  wire [          TAG_W-1:0] s_tag,
+    input  wire [$clog2(QUERIES)-1:0] s_context,
+    input  wire [              511:0] s_a,
+    input  wire [              511:0] s_b,
+    input  wire [                3:0] s_a_children,
+    input  wire [                3:0] s_b_children,
+    // for the pose and cchip_bv_offset
+    output wire [$clog2(QUERIES)-1:0] row_context0,
+    output wire [                1:0] row0,
+    output wire                       start2,
+    output wire [               53:0] a_origin2,    // for three clocks
+    output wire [                4:0] a_step2,
+    output wire [               53:0] b_origin2,
+    output wire [                4:0] b_step2,
+    output wire [$clog2(QUERIES)-1:0] lane_context9,
+    // for the lanes: one child after the other
+    output wire [              101:0] a_child10,
+    output wire [                3:0] a_about10,    // {number, inner, counts}
+    output wire                       a_coarse11,
+    output wire [              101:0] b_child13,
+    output wire [                3:0] b_about13,
+    output wire                       b_coarse13,
+    // for the choice
+    output wire                       first18,
+    output wire                       last18,
+    output wire                       first29,
+    output wire                       last30,
+    output wire [          TAG_W-1:0] tag30,        // with last30
+    output wire [                4:0] tests30
+);
+
+  localparam integer CONTEXT_W = $clog2(QUERIES);
+
+  // ---- clocks of a node pair
+  reg [1:0] count_q;  // 0, 1, 2, and 3 if there are four children that count
+  reg ready_q, four_q;
+  wire [3:0] a_counts, b_counts;
+  wire [7:0] a_inner;  // and of B
+  assign s_ready = ready_q;
+  wire taken = s_valid & ready_q;
+  always @(posedge clk) begin
+    four_q <= &a_counts | &b_counts;
+    if (rst) begin
+      count_q <= 2'd0;
+      ready_q <= 1'b0;
+    end else begin
+      if (s_valid) count_q <= ready_q ? 2'd0 : count_q + 2'd1;
+      ready_q <= s_valid && (count_q == 2'd1 ? !four_q : count_q == 2'd2 && !ready_q);
+    end
+  end
+
+  // children of a node, from their number - 1
+  function [3:0] there(input [1:0] last);
+    there = {last == 2'd3, last[1], last != 2'd0, 1'b1};
+  endfunction
+  assign a_counts = s_a_children & there(s_a[92:91]);
+  assign b_counts = s_b_children & there(s_b[92:91]);
+  genvar i, j;
+  generate
+    for (i = 0; i < 4; i = i + 1) begin : gen_child
+      assign a_inner[i]   = s_a[83+2*i+:2] == 2'd0;
+      assign a_inner[4+i] = s_b[83+2*i+:2] == 2'd0;
+    end
+  endgenerate
+
+  // ---- the first and the last clock of each node pair, later
+  localparam integer LATEST = 30;
+  reg [LATEST-1:1] first_q;
+  reg [LATEST:1] last_q;
+  always @(posedge clk) begin
+    if (rst) begin
+      first_q <= {LATEST - 1{1'b0}};
+      last_q  <= {LATEST{1'b0}};
+    end else begin
+      first_q <= {first_q[LATEST-2:1], s_valid && count_q == 2'd0};
+      last_q  <= {last_q[LATEST-1:1], taken};
+    end
+  end
+  assign first18 = first_q[18];
+  assign last18  = last_q[18];
+  assign first29 = first_q[29];
+  assign last30  = last_q[30];
+
+  // ---- origins
+  reg [53:0] a_origin_q2, b_origin_q2;
+  reg [4:0] a_step_q2, b_step_q2;
+  always @(posedge clk)
+    if (first_q[1]) begin
+      {a_step_q2, a_origin_q2} <= s_a[58:0];
+      {b_step_q2, b_origin_q2} <= s_b[58:0];
+    end
+  assign a_origin2    = a_origin_q2;
+  assign a_step2      = a_step_q2;
+  assign b_origin2    = b_origin_q2;
+  assign b_step2      = b_step_q2;
+  assign row_context0 = s_context;
+  assign row0         = count_q;
+  assign start2       = first_q[2];
+  reg [9*CONTEXT_W-1:0] context_q;
+  always @(posedge clk) context_q <= {context_q[8*CONTEXT_W-1:0], s_context};
+  assign lane_context9 = context_q[8*CONTEXT_W+:CONTEXT_W];
+
+  // ---- which child has a position: those before the first one that does not count, then those
+  // behind it
+  function [1:0] hole_of(input [2:0] counts);
+    hole_of = !counts[0] ? 2'd0 : !counts[1] ? 2'd1 : !counts[2] ? 2'd2 : 2'd3;
+  endfunction
+  function [1:0] child_of(input [1:0] place, input [1:0] hole);
+    child_of = place == 2'd3 ? hole : place + {1'b0, place >= hole};
+  endfunction
+  reg [1:0] place_q1, a_hole_q1, b_hole_q1;
+  reg [13:0] a_number_q;  // from clock 2 to 8
+  reg [19:0] b_number_q;  // to 11
+  always @(posedge clk) begin
+    place_q1   <= count_q;
+    a_hole_q1  <= hole_of(a_counts[2:0]);
+    b_hole_q1  <= hole_of(b_counts[2:0]);
+    a_number_q <= {a_number_q[11:0], child_of(place_q1, a_hole_q1)};
+    b_number_q <= {b_number_q[17:0], child_of(place_q1, b_hole_q1)};
+  end
+
+  // ---- children in memory: 16 node pairs, of which at most 5 wait for the lanes, 11 for a verdict
+  reg [3:0] place_q, a_place_q8, b_place_q11, end_place_q28;
+  always @(posedge clk) begin
+    if (rst) begin
+      place_q       <= 4'd0;
+      a_place_q8    <= 4'd0;
+      b_place_q11   <= 4'd0;
+      end_place_q28 <= 4'd0;
+    end else begin
+      place_q       <= place_q + {3'd0, taken};
+      a_place_q8    <= a_place_q8 + {3'd0, last_q[8]};
+      b_place_q11   <= b_place_q11 + {3'd0, last_q[11]};
+      end_place_q28 <= end_place_q28 + {3'd0, last_q[28]};
+    end
+  end
+
+  localparam integer WORD_W = 107;
+  wire [4*WORD_W-1:0] a_words, b_words;
+  generate
+    for (j = 0; j < 4; j = j + 1) begin : gen_word
+      localparam [31:0] J = j;
+      assign a_words[WORD_W*j+:WORD_W] = {
+        s_a[93], J[1:0], a_inner[j], a_counts[j], s_a[96+102*j+:102]
+      };
+      assign b_words[WORD_W*j+:WORD_W] = {
+        s_b[93], J[1:0], a_inner[4+j], b_counts[j], s_b[96+102*j+:102]
+      };
+    end
+  endgenerate
+  wire a_coarse10;
+  reg a_coarse_q11;
+  always @(posedge clk) a_coarse_q11 <= a_coarse10;
+  assign a_coarse11 = a_coarse_q11;
+  cchip_block_ram #(
+      .WIDTH (WORD_W),
+      .WORDS (4),
+      .ADDR_W(6)
+  ) u_a (
+      .clk       (clk),
+      .write     (s_valid),
+      .write_addr(place_q),
+      .write_data(a_words),
+      .read_addr ({a_place_q8, a_number_q[13:12]}),
+      .read_data ({a_coarse10, a_about10, a_child10})
+  );
+  cchip_block_ram #(
+      .WIDTH (WORD_W),
+      .WORDS (4),
+      .ADDR_W(6)
+  ) u_b (
+      .clk       (clk),
+      .write     (s_valid),
+      .write_addr(place_q),
+      .write_data(b_words),
+      .read_addr ({b_place_q11, b_number_q[19:18]}),
+      .read_data ({b_coarse13, b_about13, b_child13})
+  );
+
+  // ---- tag and number of tests, which is right from the third clock on
+  function [2:0] number_of(input [3:0] counts);
+    number_of = {2'd0, counts[0]} + {2'd0, counts[1]} + {2'd0, counts[2]} + {2'd0, counts[3]};
+  endfunction
+  reg [2:0] a_number_of_q1, b_number_of_q1;
+  reg [4:0] tests_q2;
+  always @(posedge clk) begin
+    a_number_of_q1 <= number_of(a_counts);
+    b_number_of_q1 <= number_of(b_counts);
+    tests_q2       <= {2'd0, a_number_of_q1} * {2'd0, b_number_of_q1};
+  end
+  cchip_block_ram #(
+      .WIDTH (TAG_W + 5),
+      .ADDR_W(4)
+  ) u_about (
+      .clk       (clk),
+      .write     (s_valid),
+      .write_addr(place_q),
+      .write_data({s_tag, tests_q2}),
+      .read_addr (end_place_q28),
+      .read_data ({tag30, tests30})
+  );
+
+  wire unused = &{1'b0, s_a[82:59], s_a[95:94], s_a[511:504], s_b[82:59], s_b[95:94], s_b[511:504]};
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_stays, s_valid || count_q == 2'd0)
+    end
+
+endmodule
+`default_nettype wire
