@@ -35,7 +35,7 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv build sim sim-reconfig sim-levels wave test test-long formal test-gates test-debug \
+.PHONY: help bootstrap venv build sim sim-reconfig sim-levels sim-traverse wave test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-swaps picture table1 table1-plot bench-reconfig bench-collide export fpga \
   fpga-quick install clean
@@ -64,6 +64,10 @@ sim: $(RELEASE)/build.ninja ## run two meshes through the simulated hardware, ch
 sim-reconfig: $(RELEASE)/build.ninja ## run mixed meshes through two slots with real swaps, check every pair, write build/waves/sim-reconfig.fst
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip
 	$(RELEASE)/bin/cchip reconfig $(SIM_ARGS)
+
+sim-traverse: $(RELEASE)/build.ninja ## run queries of five pairs of meshes through the broad phase in RTL, check all against the model, write build/waves/sim-traverse.fst
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip_traverse
+	$(RELEASE)/bin/cchip_traverse --wave build/waves/sim-traverse.fst $(SIM_ARGS)
 
 sim-levels: $(RELEASE)/build.ninja ## run 10^5 pairs through every SystemC refinement level with 51 swaps, compare all answers (docs/levels.md)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_levels

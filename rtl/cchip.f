@@ -26,6 +26,11 @@ bvtest/cchip_bv_cell.v
 bvtest/cchip_bv_feed.v
 bvtest/cchip_bv_pose.v
 bvtest/cchip_bv_unit.v
+traversal/cchip_get_data.v
+traversal/cchip_leaf_queue.v
+traversal/cchip_traversal.v
+traversal/cchip_broad_phase.v
+traversal/cchip_broad_phase_axi.v
 sat/cchip_sat_select.v
 sat/cchip_sat_axis.v
 sat/cchip_sat_bound.v

@@ -24,7 +24,7 @@
 module cchip_cache #(
     // size of the data, KiB: 1, 2, 4 ... 1024
     parameter integer CACHE_KB = 128,
-    // places of a port: 2, 4, 8, 16 or 32
+    // places of a port: 2, 4, 8, 16, 32 or 64
     parameter integer PLACES = 32,
     // lines under way: 2, 4, 8, 16 or 32
     parameter integer MISSES = 32,
@@ -83,7 +83,7 @@ module cchip_cache #(
       cchip_error_cache_CACHE_KB_must_be_a_power_of_two_1_to_1024 u_error ();
     end
     if (PLACES < 2 || PLACES > 64 || (1 << PLACE_W) != PLACES) begin : gen_illegal_places
-      cchip_error_cache_PLACES_must_be_2_4_8_16_or_32 u_error ();
+      cchip_error_cache_PLACES_must_be_a_power_of_two_2_to_64 u_error ();
     end
     if (MISSES < 2 || MISSES > 32 || (1 << MISS_W) != MISSES) begin : gen_illegal_misses
       cchip_error_cache_MISSES_must_be_2_4_8_16_or_32 u_error ();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-`include "cchip_query.vh"
 // cchip_broad_phase: from queries to pairs of leaves: cache, box test and traversal. Memory is read
 // as a client of cchip_axi_read.
 //   query        a line as docs/image.md describes it; its answer comes when every pair of leaves
@@ -47,12 +46,12 @@ module cchip_broad_phase #(
     // a query that has started
     output wire                            m_start_valid,
     output wire [     $clog2(QUERIES)-1:0] m_start_context,
-    output wire [      `CCHIP_EPOCH_W-1:0] m_start_epoch,
+    output wire [                     1:0] m_start_epoch,
     output wire [                   511:0] m_start_query,
     // pairs of leaves; CREDIT of them at most until s_credit says that one has left
     output wire                            m_leaf_valid,
     output wire [     $clog2(QUERIES)-1:0] m_leaf_context,
-    output wire [      `CCHIP_EPOCH_W-1:0] m_leaf_epoch,
+    output wire [                     1:0] m_leaf_epoch,
     output wire [                     3:0] m_leaf_kinds,         // {B's, A's}
     output wire                            m_leaf_failed,        // a line could not be read
     output wire [                  1023:0] m_leaf_lines,         // {B's, A's}
@@ -61,15 +60,15 @@ module cchip_broad_phase #(
     input  wire                            s_result_valid,
     output wire                            s_result_ready,
     input  wire [     $clog2(QUERIES)-1:0] s_result_context,
-    input  wire [      `CCHIP_EPOCH_W-1:0] s_result_epoch,
+    input  wire [                     1:0] s_result_epoch,
     input  wire [                     2:0] s_result_hits,        // definite hits, 0..4
     input  wire [                     2:0] s_result_open,        // others
-    input  wire [ `CCHIP_QUERY_CODE_W-1:0] s_result_code,
+    input  wire [                     2:0] s_result_code,
     // queries that have ended
     output wire                            m_done_valid,
     input  wire                            m_done_ready,
     output wire [                    31:0] m_done_tag,
-    output wire [ `CCHIP_QUERY_CODE_W-1:0] m_done_code,
+    output wire [                     2:0] m_done_code,
     output wire [                     1:0] m_done_answer,        // no, yes, open
     output wire [                    31:0] m_done_steps,
     output wire [                    31:0] m_done_pairs,
@@ -105,14 +104,14 @@ module cchip_broad_phase #(
   localparam integer PLACES = PAIRS + LEAVES;
   localparam integer PLACE_W = $clog2(PLACES);
   localparam integer CONTEXT_W = $clog2(QUERIES);
-  localparam integer RECORD_W = `CCHIP_RECORD_W;
+  localparam integer RECORD_W = 59;
 
   wire start_ready, get_valid, lookup, posed;
   wire [PLACE_W-1:0] get_place, lookup_place, leaf_place, pair_place, verdict_place;
   wire [CONTEXT_W-1:0] get_context, lookup_context, posed_context, pair_context;
   wire [RECORD_W-1:0] get_record, lookup_record;
   wire [63:0] get_lines, line;
-  wire [`CCHIP_NODES_W-1:0] lookup_nodes;
+  wire [              66:0] lookup_nodes;
   wire [1:0] line_valid, came_valid;
   wire [2*PLACE_W-1:0] line_place, came_place;
   wire [2*`CCHIP_READ_CODE_W-1:0] came_code;

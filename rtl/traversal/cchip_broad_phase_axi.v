@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-`include "cchip_query.vh"
-// cchip_broad_phase_axi: cchip_broad_phase with a cchip_axi_read of its own: all that the broad phase
-// takes, for an AXI4 memory. Ports and rules are those of the two.
+// cchip_broad_phase_axi: cchip_broad_phase with a cchip_axi_read of its own, for an AXI4 memory. Ports
+// and rules are those of the two.
 //   cuts         every path: each output is a flip-flop
 //   reset        must reset the bus, too
 module cchip_broad_phase_axi #(
@@ -40,12 +39,12 @@ module cchip_broad_phase_axi #(
     // a query that has started
     output wire                            m_start_valid,
     output wire [     $clog2(QUERIES)-1:0] m_start_context,
-    output wire [      `CCHIP_EPOCH_W-1:0] m_start_epoch,
+    output wire [                     1:0] m_start_epoch,
     output wire [                   511:0] m_start_query,
     // pairs of leaves; CREDIT of them at most until s_credit says that one has left
     output wire                            m_leaf_valid,
     output wire [     $clog2(QUERIES)-1:0] m_leaf_context,
-    output wire [      `CCHIP_EPOCH_W-1:0] m_leaf_epoch,
+    output wire [                     1:0] m_leaf_epoch,
     output wire [                     3:0] m_leaf_kinds,         // {B's, A's}
     output wire                            m_leaf_failed,        // a line could not be read
     output wire [                  1023:0] m_leaf_lines,         // {B's, A's}
@@ -54,15 +53,15 @@ module cchip_broad_phase_axi #(
     input  wire                            s_result_valid,
     output wire                            s_result_ready,
     input  wire [     $clog2(QUERIES)-1:0] s_result_context,
-    input  wire [      `CCHIP_EPOCH_W-1:0] s_result_epoch,
+    input  wire [                     1:0] s_result_epoch,
     input  wire [                     2:0] s_result_hits,        // definite hits, 0..4
     input  wire [                     2:0] s_result_open,        // others
-    input  wire [ `CCHIP_QUERY_CODE_W-1:0] s_result_code,
+    input  wire [                     2:0] s_result_code,
     // queries that have ended
     output wire                            m_done_valid,
     input  wire                            m_done_ready,
     output wire [                    31:0] m_done_tag,
-    output wire [ `CCHIP_QUERY_CODE_W-1:0] m_done_code,
+    output wire [                     2:0] m_done_code,
     output wire [                     1:0] m_done_answer,        // no, yes, open
     output wire [                    31:0] m_done_steps,
     output wire [                    31:0] m_done_pairs,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-`include "cchip_query.vh"
 `include "cchip_assert.vh"
 // cchip_get_data: fetches the two lines of a node pair or of a pair of leaves through the cache,
 // waits for both, and hands them on: node pairs to the box test, leaves to the primitive tests.
@@ -29,7 +28,7 @@ module cchip_get_data #(
     input  wire                                                 s_valid,
     input  wire [                     $clog2(PAIRS+LEAVES)-1:0] s_place,   // >= PAIRS: leaves
     input  wire [                 $clog2(QUERIES)-1:0] s_context,
-    input  wire [                  `CCHIP_RECORD_W-1:0] s_record,
+    input  wire [                                 58:0] s_record,
     input  wire [                                         63:0] s_lines,   // {B's, A's}
     // the poses: node pairs wait for theirs
     input  wire                                                 s_pose_valid,
@@ -52,7 +51,7 @@ module cchip_get_data #(
     output wire                                                 m_leaf_valid,
     output wire [                     $clog2(PAIRS+LEAVES)-1:0] m_leaf_place,
     output wire [                          $clog2(QUERIES)-1:0] m_leaf_context,
-    output wire [                           `CCHIP_EPOCH_W-1:0] m_leaf_epoch,
+    output wire [                                          1:0] m_leaf_epoch,
     output wire [                                          3:0] m_leaf_kinds,  // {B's, A's}
     output wire                                                 m_leaf_failed,  // lines not read
     output wire [                                       1023:0] m_lines,  // {B's, A's} of either
@@ -60,16 +59,19 @@ module cchip_get_data #(
     input  wire                                                 lookup,
     input  wire [                     $clog2(PAIRS+LEAVES)-1:0] lookup_place,
     output wire [                 $clog2(QUERIES)-1:0] lookup_context,
-    output wire [                  `CCHIP_RECORD_W-1:0] lookup_record,
-    output wire [                           `CCHIP_NODES_W-1:0] lookup_nodes
+    output wire [                                 58:0] lookup_record,
+    output wire [                                         66:0] lookup_nodes
 );
 
+  // how a query ended (docs/image.md)
+  localparam [2:0] END_OK = 3'd0, END_CORRUPT = 3'd4, END_OUTSIDE = 3'd5;
+  localparam [2:0] END_BAD_DESCRIPTOR = 3'd6, END_MEMORY = 3'd7;
   localparam integer PLACES = PAIRS + LEAVES;
   localparam integer PLACE_W = $clog2(PLACES);
   localparam integer CONTEXT_W = $clog2(QUERIES);
-  localparam integer RECORD_W = `CCHIP_RECORD_W;
-  localparam integer NODES_W = `CCHIP_NODES_W;
-  localparam integer END_W = `CCHIP_QUERY_CODE_W;
+  localparam integer RECORD_W = 59;
+  localparam integer NODES_W = 67;
+  localparam integer END_W = 3;
   localparam integer CODE_W = `CCHIP_READ_CODE_W;
   localparam integer AT_EPOCH = 56, AT_HEADER = 58;
   localparam [31:0] MAGIC = 32'h4D494343;
@@ -237,7 +239,7 @@ module cchip_get_data #(
   assign m_leaf_valid    = leaf_valid_q;
   assign m_leaf_place    = place_q;
   assign m_leaf_context  = hold_record_q[RECORD_W+:CONTEXT_W];
-  assign m_leaf_epoch    = hold_record_q[AT_EPOCH+:`CCHIP_EPOCH_W];
+  assign m_leaf_epoch    = hold_record_q[AT_EPOCH+:2];
   assign m_leaf_kinds    = {hold_record_q[29:28], hold_record_q[1:0]};
   assign m_leaf_failed   = |failed_q;
   assign m_lines         = lines_q;
@@ -283,12 +285,13 @@ module cchip_get_data #(
         steep_q2       <= steep_q1;
         failed_q2      <= failed_q1;
         header_here_q2 <= header_here_q1;
-        outside_q2     <= header_q1 ? {1'b0, root_q1} >= size_q1 : first_q1 <= at_q1 || last >= limit;
+        outside_q2     <= header_q1 ? {1'b0, root_q1} >= size_q1 :
+            first_q1 <= at_q1 || last >= limit;
         first_q3       <= first_q2;
         kinds_q3       <= kinds_q2;
         no_header_q3   <= header_q2 & ~failed_q2 & ~header_here_q2;
-        end_q3 <= failed_q2 ? `CCHIP_QUERY_MEMORY : steep_q2 & ~header_q2 ? `CCHIP_QUERY_CORRUPT :
-            outside_q2 ? `CCHIP_QUERY_OUTSIDE : `CCHIP_QUERY_OK;
+        end_q3 <= failed_q2 ? END_MEMORY : steep_q2 & ~header_q2 ? END_CORRUPT :
+            outside_q2 ? END_OUTSIDE : END_OK;
       end
       wire unused = &{1'b0, line[511:152], line[95:93], line[53:32]};
       assign size2[25*p+:25] = size_q2;
@@ -297,9 +300,9 @@ module cchip_get_data #(
       assign no_header3[p] = no_header_q3;
     end
   endgenerate
-  wire [END_W-1:0] code3 = end3[0+:END_W] == `CCHIP_QUERY_MEMORY ? `CCHIP_QUERY_MEMORY :
-      |no_header3 ? `CCHIP_QUERY_BAD_DESCRIPTOR :
-      end3[0+:END_W] != `CCHIP_QUERY_OK ? end3[0+:END_W] : end3[END_W+:END_W];
+  wire [END_W-1:0] code3 = end3[0+:END_W] == END_MEMORY ? END_MEMORY :
+      |no_header3 ? END_BAD_DESCRIPTOR :
+      end3[0+:END_W] != END_OK ? end3[0+:END_W] : end3[END_W+:END_W];
   (* ram_style = "distributed" *)
   reg [NODES_W-1:0] nodes[0:PLACES-1];
   reg [NODES_W-1:0] nodes_q;

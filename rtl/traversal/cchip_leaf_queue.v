@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-`include "cchip_query.vh"
 `include "cchip_assert.vh"
 // cchip_leaf_queue: pairs of leaves that wait for a primitive test. One entry holds all of a node
 // pair; they leave one by one.
@@ -25,7 +24,7 @@ module cchip_leaf_queue #(
     // the pairs of leaves among the children of a node pair: i of A and j of B is bit 4 i + j
     input  wire                       s_valid,
     input  wire [$clog2(QUERIES)-1:0] s_context,
-    input  wire [ `CCHIP_EPOCH_W-1:0] s_epoch,
+    input  wire [                1:0] s_epoch,
     input  wire [               39:0] s_a,        // {kinds of the children, line of the first}
     input  wire [               39:0] s_b,
     input  wire [               15:0] s_leaves,
@@ -33,7 +32,7 @@ module cchip_leaf_queue #(
     // epochs as they change
     input  wire                       epoch_write,
     input  wire [$clog2(QUERIES)-1:0] epoch_context,
-    input  wire [ `CCHIP_EPOCH_W-1:0] epoch,
+    input  wire [                1:0] epoch,
     // a pair to fetch, or to forget
     input  wire                       s_credit,
     output wire                       m_valid,
@@ -41,13 +40,13 @@ module cchip_leaf_queue #(
     output wire                       m_drop_valid,
     input  wire                       m_drop_ready,
     output wire [$clog2(QUERIES)-1:0] m_context,
-    output wire [ `CCHIP_EPOCH_W-1:0] m_epoch,
+    output wire [                1:0] m_epoch,
     output wire [                3:0] m_kinds,    // {B's, A's}
     output wire [               63:0] m_lines     // {B's, A's}
 );
 
   localparam integer CONTEXT_W = $clog2(QUERIES);
-  localparam integer EPOCH_W = `CCHIP_EPOCH_W;
+  localparam integer EPOCH_W = 2;
   localparam integer ENTRY_W = CONTEXT_W + EPOCH_W + 96;
   localparam [31:0] ALL_CREDIT = CREDIT;
 

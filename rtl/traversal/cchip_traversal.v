@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-`include "cchip_query.vh"
 `include "cchip_assert.vh"
 // cchip_traversal: walks the trees of two objects. Of a node pair whose boxes the box test has
 // compared, the child pair that overlaps most goes on at once; the others wait on the query's
@@ -13,7 +12,7 @@
 //                is used again when its count is 0
 //   room         a verdict always has room: a node pair is under way only with a place in the leaf
 //                queue; a query starts only with a place for its answer
-//   latency      9 clocks from s_verdict_valid to m_valid
+//   latency      12 clocks from s_verdict_valid to m_valid
 //   throughput   an event per clock, of one query one in 9 clocks
 //   cuts         every path: each output is a flip-flop
 //   reset        forgets all queries; takes 4 QUERIES clocks, events wait
@@ -44,13 +43,13 @@ module cchip_traversal #(
     output wire                             m_start_valid,
     input  wire                             m_start_ready,
     output wire [      $clog2(QUERIES)-1:0] m_start_context,
-    output wire [       `CCHIP_EPOCH_W-1:0] m_start_epoch,
+    output wire [                      1:0] m_start_epoch,
     output wire [                    511:0] m_start_query,
     // lines for a place of cchip_get_data; always taken
     output wire                             m_valid,
     output wire [$clog2(PAIRS+LEAVES)-1:0] m_place,
     output wire [      $clog2(QUERIES)-1:0] m_context,
-    output wire [      `CCHIP_RECORD_W-1:0] m_record,
+    output wire [                     58:0] m_record,
     output wire [                     63:0] m_lines,
     // a pair of leaves has left there
     input  wire                             s_leaf_valid,
@@ -66,22 +65,22 @@ module cchip_traversal #(
     output wire                             lookup,
     output wire [$clog2(PAIRS+LEAVES)-1:0] lookup_place,
     input  wire [      $clog2(QUERIES)-1:0] lookup_context,
-    input  wire [      `CCHIP_RECORD_W-1:0] lookup_record,
-    input  wire [       `CCHIP_NODES_W-1:0] lookup_nodes,
+    input  wire [                     58:0] lookup_record,
+    input  wire [                     66:0] lookup_nodes,
     // what became of a pair of leaves, and room for another one
     input  wire                             s_result_valid,
     output wire                             s_result_ready,
     input  wire [      $clog2(QUERIES)-1:0] s_result_context,
-    input  wire [       `CCHIP_EPOCH_W-1:0] s_result_epoch,
+    input  wire [                      1:0] s_result_epoch,
     input  wire [                      2:0] s_result_hits,    // definite hits, 0..4
     input  wire [                      2:0] s_result_open,    // others
-    input  wire [  `CCHIP_QUERY_CODE_W-1:0] s_result_code,
+    input  wire [                      2:0] s_result_code,
     input  wire                             s_credit,
     // queries that have ended
     output wire                             m_done_valid,
     input  wire                             m_done_ready,
     output wire [                     31:0] m_done_tag,
-    output wire [  `CCHIP_QUERY_CODE_W-1:0] m_done_code,
+    output wire [                      2:0] m_done_code,
     output wire [                      1:0] m_done_answer,    // no, yes, open
     output wire [                     31:0] m_done_steps,
     output wire [                     31:0] m_done_pairs,
@@ -91,12 +90,15 @@ module cchip_traversal #(
     output wire                             count_leaf_pair
 );
 
+  // how a query ended (docs/image.md)
+  localparam [2:0] END_OK = 3'd0, END_HOST = 3'd1, END_STEPS = 3'd2, END_STACK = 3'd3;
+  localparam [2:0] END_BAD_DESCRIPTOR = 3'd6;
   localparam integer PLACE_W = $clog2(PAIRS + LEAVES);
   localparam integer CONTEXT_W = $clog2(QUERIES);
-  localparam integer EPOCH_W = `CCHIP_EPOCH_W;
-  localparam integer RECORD_W = `CCHIP_RECORD_W;
-  localparam integer NODES_W = `CCHIP_NODES_W;
-  localparam integer CODE_W = `CCHIP_QUERY_CODE_W;
+  localparam integer EPOCH_W = 2;
+  localparam integer RECORD_W = 59;
+  localparam integer NODES_W = 67;
+  localparam integer CODE_W = 3;
   localparam integer STACK_W = $clog2(STACK);
   localparam integer WORK_W = 12;  // pairs of one epoch of a query: LEAF_DEPTH 16 and some
   localparam integer ROOM_W = $clog2(LEAF_DEPTH + 1);
@@ -191,6 +193,8 @@ module cchip_traversal #(
   reg [511:0] query_q;
   reg [CONTEXT_W-1:0] idle_context_q;
   wire start_take, start_done, start_cancel;  // on its way; ended in the pipeline; try another one
+  wire start_ends = start_done & ~start_cancel;
+  wire query_in = s_query_valid & query_ready_q;
   wire [8:0] beyond;  // |M_ij| > 1
   wire [QUERIES-1:0] idle_grant, want_grant;
   wire [CONTEXT_W-1:0] idle_context, want_context;
@@ -220,7 +224,7 @@ module cchip_traversal #(
       .take   (~idle_valid_q)
   );
   always @(posedge clk) begin
-    if (s_query_valid & query_ready_q) query_q <= s_query;
+    if (query_in) query_q <= s_query;
     bad_q <= |beyond | (|query_q[479:478]);
     if (~idle_valid_q) idle_context_q <= idle_context;
     if (rst) begin
@@ -230,8 +234,8 @@ module cchip_traversal #(
       idle_valid_q  <= 1'b0;
       starting_q    <= 1'b0;
     end else begin
-      query_valid_q <= query_valid_q ? ~(start_done & ~start_cancel) : s_query_valid & query_ready_q;
-      query_ready_q <= query_valid_q ? start_done & ~start_cancel : ~(s_query_valid & query_ready_q);
+      query_valid_q <= query_valid_q ? ~start_ends : query_in;
+      query_ready_q <= query_valid_q ? start_ends : ~query_in;
       judged_q      <= query_valid_q & ~start_done;
       idle_valid_q  <= idle_valid_q ? ~start_take : running_q & |(idle_q & ~lock_q);
       starting_q    <= start_take | (starting_q & ~start_done);
@@ -446,7 +450,7 @@ module cchip_traversal #(
     over_q5 <= over_q4;
     full_q4 <= state_q3[76+:STACK_W+1] == FULL[STACK_W:0];
     full_q5 <= full_q4;
-    fails_q5 <= code4 != `CCHIP_QUERY_OK;
+    fails_q5 <= code4 != END_OK;
     leaves_q5 <= |leaves4;
     waiting_q5 <= |verdict_q4[15:0];
     room_q5 <= ~|leaves4 | extra_q4;
@@ -491,9 +495,11 @@ module cchip_traversal #(
   assign lowest_number5[3] = |lowest5[15:8];
   assign lowest_number5[2] = |{lowest5[15:12], lowest5[7:4]};
   assign lowest_number5[1] = |{lowest5[15:14], lowest5[11:10], lowest5[7:6], lowest5[3:2]};
-  assign lowest_number5[0] = |{
-    lowest5[15], lowest5[13], lowest5[11], lowest5[9], lowest5[7], lowest5[5], lowest5[3], lowest5[1]
+  wire [7:0] odd5 = {
+    lowest5[15], lowest5[13], lowest5[11], lowest5[9],
+    lowest5[7], lowest5[5], lowest5[3], lowest5[1]
   };
+  assign lowest_number5[0] = |odd5;
   wire rest5 = |rest_waiting5;
   wire push5 = step5 & waiting_q5 & (~room_q5 | rest5);
   wire spill5 = push5 & full_q5;
@@ -508,15 +514,16 @@ module cchip_traversal #(
   wire was5 = state_q5[STATE_W-EPOCH_W-1];  // the context has a query
   wire fails5 = live_q5 & (verdict5 ? fails_q5 | (~header5 & over_q5) | spill5 :
       result5 & (|result_code5 | (~mode5 & (|hits5 | opens5 >= {1'b0, open_limit}))));
-  wire [CODE_W-1:0] code5 = result5 ? (|result_code5 ? result_code5 : |hits5 ? `CCHIP_QUERY_OK :
-      `CCHIP_QUERY_HOST) : fails_q5 ? nodes_q5[NODES_W-1-:CODE_W] :
-      spill5 ? `CCHIP_QUERY_STACK : `CCHIP_QUERY_STEPS;
+  wire [CODE_W-1:0] code5 = result5 ? (|result_code5 ? result_code5 : |hits5 ? END_OK :
+      END_HOST) : fails_q5 ? nodes_q5[NODES_W-1-:CODE_W] :
+      spill5 ? END_STACK : END_STEPS;
   // what is added to the work of the epoch: pairs of leaves, and the node pair itself
   wire [WORK_W-1:0] more5 = leaf5 ? {{WORK_W - 5{1'b0}}, leaf_count_q5} : {WORK_W{1'b0}};
   wire [WORK_W-1:0] one_more5 = {{WORK_W - 1{1'b0}}, pop5};
   wire [WORK_W-1:0] one_less5 = {{WORK_W - 1{1'b0}}, result5 | (verdict5 & ~goes5)};
 
-  reg goes_q6, header_q6, push_q6, leaf_q6, back_q6, fails_q6, bad_q6, cancel_q6, live_q6, step_q6, active_q6;
+  reg goes_q6, header_q6, push_q6, leaf_q6, back_q6, fails_q6, bad_q6, cancel_q6, live_q6, step_q6;
+  reg active_q6;
   reg [1:0] room_back_q6;
   reg [51:0] half_a_q6, half_b_q6;
   reg [3:0] number_q6;
@@ -560,7 +567,7 @@ module cchip_traversal #(
         work_q5 + more5 + one_more5 - one_less5;
     entries_q6      <= start5 ? {STACK_W + 1{1'b0}} : push5 ? entries5 + one_entry :
         pop5 & ~rest5 ? entries5 - one_entry : entries5;
-    at_q6           <= pop5 ? entries5[STACK_W-1:0] - one_entry[STACK_W-1:0] : entries5[STACK_W-1:0];
+    at_q6           <= entries5[STACK_W-1:0] - (pop5 ? one_entry[STACK_W-1:0] : {STACK_W{1'b0}});
     under_q6        <= start5 ? 3'd1 : pop5 ? under5 + 3'd1 :
         verdict5 & live_q5 & ~goes5 ? under5 - 3'd1 : under5;
     steps_q6        <= start5 ? 32'd0 : state_q5[72:41] + {31'd0, step5};
@@ -581,8 +588,8 @@ module cchip_traversal #(
 
   // ---- stage 6: the child pair's lines; is the query at its end?
   wire ends6 = bad_q6 | (live_q6 & (fails_q6 | (~|work_q6 & ~|entries_q6)));
-  wire [CODE_W-1:0] end_code6 = bad_q6 ? `CCHIP_QUERY_BAD_DESCRIPTOR :
-      fails_q6 ? code_q6 : `CCHIP_QUERY_OK;
+  wire [CODE_W-1:0] end_code6 = bad_q6 ? END_BAD_DESCRIPTOR :
+      fails_q6 ? code_q6 : END_OK;
   wire [1:0] i6 = number_q6[3:2];
   wire [1:0] j6 = number_q6[1:0];
   wire [27:0] next_a6 = root_q6 ? {4'd15, half_a_q6[47:24]} : half_a_q6[{4'd12, i6}] ?
@@ -780,7 +787,8 @@ module cchip_traversal #(
   assign count_step      = out_step_q;
   assign count_tests     = out_tests_q;
   assign count_leaf_pair = out_fetch_q;
-  wire unused = &{1'b0, answers, answer_some, entries2[STACK_W], record_q5[57:52], record_q5[27:24]};
+  wire unused = &{1'b0, answers, answer_some, entries2[STACK_W], record_q5[57:52],
+                  record_q5[27:24]};
 
   always @(posedge clk)
     if (!rst) begin

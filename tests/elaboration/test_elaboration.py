@@ -120,6 +120,15 @@ ILLEGAL = [
     ("cchip_block_ram", {"ADDR_W": 17}, BLOCK_RAM),
     ("cchip_block_ram", {"WORDS": 2}, "cchip_error_block_ram_WORDS_must_be_1_or_4"),
     *(("cchip_bv_unit", {"QUERIES": n}, QUERIES) for n in (3, 32)),
+    *(("cchip_get_data", {"QUERIES": n}, "cchip_error_get_data_QUERIES_must_be_2_4_8_or_16") for n in (3, 32)),
+    *(("cchip_get_data", {"PAIRS": n}, "cchip_error_get_data_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together")
+      for n in (0, 20, 120)),
+    *(("cchip_leaf_queue", {"QUERIES": n}, "cchip_error_leaf_queue_QUERIES_must_be_2_4_8_or_16") for n in (3, 32)),
+    ("cchip_leaf_queue", {"CREDIT": 0}, "cchip_error_leaf_queue_CREDIT_must_be_1_to_65535"),
+    *(("cchip_traversal", {"QUERIES": n}, "cchip_error_traversal_QUERIES_must_be_2_4_8_or_16") for n in (3, 32)),
+    *(("cchip_traversal", case, "cchip_error_traversal_LEAF_DEPTH_must_be_over_PAIRS_to_128_and_PAIRS_EACH_1_to_7")
+      for case in ({"LEAF_DEPTH": 56}, {"LEAF_DEPTH": 129}, {"PAIRS_EACH": 8}, {"PAIRS_EACH": 0})),
+    *(("cchip_traversal", {"STACK": n}, "cchip_error_traversal_STACK_must_be_8_16_32_or_64") for n in (4, 12, 128)),
     ("cchip_bv_unit", {"TAG_W": 0}, "cchip_error_bv_unit_TAG_W_below_1"),
     *(("cchip_pr_region", {"RM_ID": n}, RM_ID) for n in (-1, 4)),
     *(("cchip_roc_generator", {"CYCLES": n}, ROC) for n in (0, 33)),
@@ -148,7 +157,7 @@ ILLEGAL = [
     ("cchip_crc32", {"DATA_W": 12}, CRC),
     ("cchip_bitstream_fetch", {"FIFO_DEPTH": 31}, FETCH),
     *(("cchip_cache", {"CACHE_KB": n}, CACHE + "CACHE_KB_must_be_a_power_of_two_1_to_1024") for n in (0, 3, 2048)),
-    *(("cchip_cache", {"PLACES": n}, CACHE + "PLACES_must_be_2_4_8_16_or_32") for n in (1, 12, 64)),
+    *(("cchip_cache", {"PLACES": n}, CACHE + "PLACES_must_be_a_power_of_two_2_to_64") for n in (1, 12, 128)),
     *(("cchip_cache", {"MISSES": n}, CACHE + "MISSES_must_be_2_4_8_16_or_32") for n in (12, 64)),
     *(("cchip_cache", case, CACHE + "LINE_W_must_be_over_SET_W_to_58_and_LOCKS_1_to_4")
       for case in ({"LINE_W": 10}, {"LINE_W": 59}, {"LOCKS": 0}, {"LOCKS": 5})),

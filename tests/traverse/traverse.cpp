@@ -11,8 +11,8 @@
 #include <cchip/sim/seed.hpp>
 #include <set>
 
-#include "traverse_bench.hpp"
 #include "mesh_pairs.hpp"
+#include "traverse_bench.hpp"
 
 namespace cchip::testing {
 namespace {
@@ -79,15 +79,17 @@ class Run {
     fmt::print("seed={} latency={} jitter={} reorder={} beat_every={} poses={} of each class, after {} more\n",
                settings_.seed, settings_.memory.latency, settings_.memory.jitter, settings_.memory.reorder,
                settings_.memory.beat_every, settings_.poses, settings_.warm);
-    fmt::print("{:<12} {:<6} {:<6} {:>7} {:>6} {:>8} {:>8} {:>9} {:>8} {:>9} {:>8} {:>9} {:>6} {:>6} {:>6}\n", "meshes", "class",
-               "mode", "queries", "hits", "alone", "steps", "boxtests", "leaves", "clocks", "hitrate", "bytes", "box", "bus",
-               "lane");
+    fmt::print("{:<12} {:<6} {:<6} {:>7} {:>6} {:>8} {:>8} {:>9} {:>8} {:>9} {:>8} {:>9} {:>6} {:>6} {:>6}\n", "meshes",
+               "class", "mode", "queries", "hits", "alone", "steps", "boxtests", "leaves", "clocks", "hitrate", "bytes",
+               "box", "bus", "lane");
     for (const std::string& name : settings_.meshes) run_pair(name);
     const double n = std::max(1.0, static_cast<double>(total_.queries));
-    fmt::print("queries={} mismatches={} lost={} steps={} box_tests={} leaf_pairs={} clocks_mean={:.1f} hit_rate={:.3f} bytes_mean={:.0f}\n",
-               total_.queries, total_.mismatches, total_.lost, total_.counters.steps, total_.counters.box_tests,
-               total_.counters.leaf_pairs, static_cast<double>(total_.counters.clocks) / n, hit_rate(total_.counters),
-               static_cast<double>(bytes(total_.counters)) / n);
+    fmt::print(
+        "queries={} mismatches={} lost={} steps={} box_tests={} leaf_pairs={} clocks_mean={:.1f} hit_rate={:.3f} "
+        "bytes_mean={:.0f}\n",
+        total_.queries, total_.mismatches, total_.lost, total_.counters.steps, total_.counters.box_tests,
+        total_.counters.leaf_pairs, static_cast<double>(total_.counters.clocks) / n, hit_rate(total_.counters),
+        static_cast<double>(bytes(total_.counters)) / n);
     return total_.mismatches == 0 && total_.lost == 0 ? 0 : 3;
   }
 
@@ -112,8 +114,7 @@ class Run {
       std::vector<Query> queries;
       for (const Approach& approach : approaches) {
         const PosePair pose = maker.pose(approach, pose_class);
-        std::optional<Query> query =
-            bvh::make_query(image_a.image.header(), pose.a, image_b.image.header(), pose.b);
+        std::optional<Query> query = bvh::make_query(image_a.image.header(), pose.a, image_b.image.header(), pose.b);
         if (!query) throw std::runtime_error("a pose that the chip does not take");
         const Placed& moved = query->swapped ? image_b : image_a;
         const Placed& fixed = query->swapped ? image_a : image_b;
@@ -171,11 +172,13 @@ class Run {
     const double n = std::max(1.0, static_cast<double>(settings_.poses));
     const auto mean = [n](std::uint64_t x) { return static_cast<double>(x) / n; };
     const double clocks = std::max(1.0, static_cast<double>(spent.clocks));
-    fmt::print("{:<12} {:<6} {:<6} {:>7} {:>6} {:>8.2f} {:>8.2f} {:>9.1f} {:>8.2f} {:>9.1f} {:>8.3f} {:>9.0f} {:>6.2f} {:>6.2f} {:>6.2f}\n",
-               meshes, pose_class, mode, settings_.poses, hits, mean(steps_alone_), mean(spent.steps), mean(spent.box_tests),
-               mean(spent.leaf_pairs), mean(spent.clocks), hit_rate(spent), mean(bytes(spent)),
-               static_cast<double>(spent.box_busy) / clocks, static_cast<double>(spent.beats) / clocks,
-               static_cast<double>(spent.lane_busy) / clocks);
+    fmt::print(
+        "{:<12} {:<6} {:<6} {:>7} {:>6} {:>8.2f} {:>8.2f} {:>9.1f} {:>8.2f} {:>9.1f} {:>8.3f} {:>9.0f} {:>6.2f} "
+        "{:>6.2f} {:>6.2f}\n",
+        meshes, pose_class, mode, settings_.poses, hits, mean(steps_alone_), mean(spent.steps), mean(spent.box_tests),
+        mean(spent.leaf_pairs), mean(spent.clocks), hit_rate(spent), mean(bytes(spent)),
+        static_cast<double>(spent.box_busy) / clocks, static_cast<double>(spent.beats) / clocks,
+        static_cast<double>(spent.lane_busy) / clocks);
     std::fflush(stdout);
     total_.queries += settings_.poses;
     total_.mismatches += mismatches;
@@ -200,8 +203,7 @@ class Run {
     if (answer.done->answer != expected.done.answer) wrong = "answer";
     if (answer.done->pairs != answer.pairs.size() && query.mode == QueryMode::all) wrong = "number of pairs";
     Pairs leaves;
-    for (const auto& [line_a, line_b] : lines)
-      leaves.emplace(moved.first_face.at(line_a), fixed.first_face.at(line_b));
+    for (const auto& [line_a, line_b] : lines) leaves.emplace(moved.first_face.at(line_a), fixed.first_face.at(line_b));
     const Pairs seen(answer.leaf_pairs.begin(), answer.leaf_pairs.end());
     const bool whole = query.mode == QueryMode::all || expected.done.answer == QueryAnswer::no;
     if (whole) {
@@ -238,7 +240,8 @@ int main(int argc, char** argv) {
   app.add_option("--warm", settings.warm, "poses before these, which fill the cache")->capture_default_str();
   app.add_option("--seed", settings.seed, "of the poses and of memory")->capture_default_str();
   app.add_option("--modes", settings.modes, "first, all")->delimiter(',')->capture_default_str();
-  app.add_option("--latency", settings.memory.latency, "clocks from an address to its first beat")->capture_default_str();
+  app.add_option("--latency", settings.memory.latency, "clocks from an address to its first beat")
+      ->capture_default_str();
   app.add_option("--jitter", settings.memory.jitter, "up to so many more, at random")->capture_default_str();
   app.add_option("--beat-every", settings.memory.beat_every, "clocks from one beat to the next")->capture_default_str();
   app.add_flag("--reorder", settings.memory.reorder, "memory answers in any order");

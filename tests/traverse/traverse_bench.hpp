@@ -46,7 +46,7 @@ struct Answer {
   std::optional<DoneRecord> done;
   std::vector<PairRecord> pairs;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> leaf_pairs;  ///< lines of A and of B
-  std::uint64_t started = 0;                                       ///< clocks
+  std::uint64_t started = 0;                                        ///< clocks
   std::uint64_t ended = 0;
 };
 

@@ -31,7 +31,8 @@ struct Objects {
     std::uniform_real_distribution<double> unit(-1, 1);
     const auto pose = [&] {
       Pose p = Pose::Identity();
-      p.linear() = Eigen::Quaterniond(unit(random), unit(random), unit(random), unit(random)).normalized().toRotationMatrix();
+      p.linear() =
+          Eigen::Quaterniond(unit(random), unit(random), unit(random), unit(random)).normalized().toRotationMatrix();
       return p;
     };
     for (;;) {
@@ -52,6 +53,8 @@ struct Objects {
 template <class Config>
 struct Broad : testing::TraverseBench<Config> {
   using Base = testing::TraverseBench<Config>;
+  static constexpr std::size_t stack = Config::STACK;
+  static constexpr std::size_t pairs_each = Config::PAIRS_EACH;
   Objects objects;
   explicit Broad(std::uint64_t seed) : Base(sim::without_timeout(seed)) { restore(); }
   void restore() {
@@ -60,7 +63,8 @@ struct Broad : testing::TraverseBench<Config> {
   }
 };
 
-model::BroadPhaseResult expected(const Objects& objects, const Query& query, const model::BroadPhaseOptions& options = {}) {
+model::BroadPhaseResult expected(const Objects& objects, const Query& query,
+                                 const model::BroadPhaseOptions& options = {}) {
   return run_query(query, objects.moved(query), objects.fixed(query), options);
 }
 
@@ -71,10 +75,15 @@ Pairs pairs_of(const std::vector<PairRecord>& records) {
   return pairs;
 }
 
-/// The answer is the model's.
-void check(const Objects& objects, const Query& query, const Answer& answer) {
+/// The answer is the model's; or the stack was full, to which every node pair under way adds.
+template <class Machine>
+void check(const Machine& bench, const Query& query, const Answer& answer) {
   REQUIRE(answer.done);
-  const model::BroadPhaseResult model = expected(objects, query);
+  const model::BroadPhaseResult model = expected(bench.objects, query);
+  if (answer.done->code == QueryCode::stack) {
+    REQUIRE(model.counts.stack_most * Machine::pairs_each >= Machine::stack);
+    return;
+  }
   REQUIRE(answer.done->answer == model.done.answer);
   REQUIRE(answer.done->code == model.done.code);
   if (query.mode == QueryMode::all || model.done.answer == QueryAnswer::no) {
@@ -97,8 +106,9 @@ std::vector<Query> submit(Machine& bench, Random& random, int count) {
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: answers and counts are the functional model's, whatever memory and receiver do",
-                        "[unit][cchip_broad_phase_axi]", cchip_broad_phase_axi_configs) {
+TEMPLATE_LIST_TEST_CASE(
+    "cchip_broad_phase_axi: answers and counts are the functional model's, whatever memory and receiver do",
+    "[unit][cchip_broad_phase_axi]", cchip_broad_phase_axi_configs) {
   Random random(sim::seed_from_environment());
   Broad<TestType> bench(random());
   std::size_t from = 0;
@@ -110,13 +120,14 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: answers and counts are the funct
     bench.at_once = round == 2 ? 1 : 0;
     const std::vector<Query> queries = submit(bench, random, 40);
     bench.run(3000000);
-    for (std::size_t i = 0; i < queries.size(); ++i) check(bench.objects, queries[i], bench.answers()[from + i]);
+    for (std::size_t i = 0; i < queries.size(); ++i) check(bench, queries[i], bench.answers()[from + i]);
     from += queries.size();
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: errors and silence of memory end a query with a code, later ones are right",
-                        "[unit][cchip_broad_phase_axi]", cchip_broad_phase_axi_configs) {
+TEMPLATE_LIST_TEST_CASE(
+    "cchip_broad_phase_axi: errors and silence of memory end a query with a code, later ones are right",
+    "[unit][cchip_broad_phase_axi]", cchip_broad_phase_axi_configs) {
   Random random(sim::seed_from_environment());
   Broad<TestType> bench(random());
   bench.memory.latency = 20;
@@ -133,7 +144,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: errors and silence of memory end
       if (answer.done->code == QueryCode::memory) {
         ++failed;
       } else {
-        check(bench.objects, queries[i], answer);
+        check(bench, queries[i], answer);
       }
     }
     REQUIRE(failed > 0);
@@ -143,7 +154,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: errors and silence of memory end
     const std::size_t after = bench.answers().size();
     queries = submit(bench, random, 10);
     bench.run(1000000);
-    for (std::size_t i = 0; i < queries.size(); ++i) check(bench.objects, queries[i], bench.answers()[after + i]);
+    for (std::size_t i = 0; i < queries.size(); ++i) check(bench, queries[i], bench.answers()[after + i]);
   }
 }
 
@@ -169,9 +180,9 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: a corrupt line has the model's c
     const std::size_t at = bench.submit(query);
     bench.run(3000000);
     const QueryCode code = bench.answers()[at].done->code;
-    const model::BroadPhaseResult model = run_query(query, bad, bench.objects.fixed(query));
+    const model::BroadPhaseResult wanted = model::run_query(query, bad, bench.objects.fixed(query));
     INFO("line " << line);
-    REQUIRE(code == model.done.code);
+    REQUIRE(code == wanted.done.code);
     bench.restore();
     return code;
   };
@@ -217,7 +228,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: a corrupt line has the model's c
   bench.reset();
   const std::size_t at = bench.submit(query);
   bench.run(3000000);
-  check(bench.objects, query, bench.answers()[at]);
+  check(bench, query, bench.answers()[at]);
 }
 
 TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: step limit, open pairs, full stack, bad descriptors",
@@ -238,7 +249,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: step limit, open pairs, full sta
         REQUIRE(expected(bench.objects, queries[i]).counts.steps > 7);
         ++limited;
       } else {
-        check(bench.objects, queries[i], answer);
+        check(bench, queries[i], answer);
       }
     }
     REQUIRE(limited > 5);
@@ -253,7 +264,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: step limit, open pairs, full sta
       if (answer.done->code == QueryCode::stack) {
         ++full;
       } else {
-        check(bench.objects, queries[i], answer);
+        check(bench, queries[i], answer);
       }
     }
     REQUIRE((full > 0) == (TestType::STACK == 8));
@@ -297,7 +308,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: step limit, open pairs, full sta
     }
     const std::vector<Query> queries = submit(bench, random, 5);
     bench.run(1000000);
-    for (std::size_t i = 0; i < 5; ++i) check(bench.objects, queries[i], bench.answers()[bench.answers().size() - 5 + i]);
+    for (std::size_t i = 0; i < 5; ++i) check(bench, queries[i], bench.answers()[bench.answers().size() - 5 + i]);
   }
 }
 
@@ -320,7 +331,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: contexts start anew while result
   bench.run(3000000);
   INFO("answered while results were held back: " << 60 - held);
   REQUIRE(held < 60);
-  for (std::size_t i = 0; i < queries.size(); ++i) check(bench.objects, queries[i], bench.answers()[i]);
+  for (std::size_t i = 0; i < queries.size(); ++i) check(bench, queries[i], bench.answers()[i]);
 
   bench.receiver.held = true;  // everything
   const std::size_t from = bench.answers().size();
@@ -328,7 +339,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: contexts start anew while result
   bench.steps(100000);
   bench.receiver.held = false;
   bench.run(3000000);
-  for (std::size_t i = 0; i < queries.size(); ++i) check(bench.objects, queries[i], bench.answers()[from + i]);
+  for (std::size_t i = 0; i < queries.size(); ++i) check(bench, queries[i], bench.answers()[from + i]);
 
   bench.done_percent = 0;  // nobody takes an answer
   const std::size_t last = bench.answers().size();
@@ -337,7 +348,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: contexts start anew while result
   REQUIRE(bench.unanswered() == 60);
   bench.done_percent = 100;
   bench.run(3000000);
-  for (std::size_t i = 0; i < queries.size(); ++i) check(bench.objects, queries[i], bench.answers()[last + i]);
+  for (std::size_t i = 0; i < queries.size(); ++i) check(bench, queries[i], bench.answers()[last + i]);
 }
 
 TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: locks and invalidation during traffic", "[unit][cchip_broad_phase_axi]",
@@ -359,7 +370,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: locks and invalidation during tr
       bench.invalidate(first, first + static_cast<std::uint32_t>(random() % 30));
     }
   }
-  for (std::size_t i = 0; i < queries.size(); ++i) check(bench.objects, queries[i], bench.answers()[i]);
+  for (std::size_t i = 0; i < queries.size(); ++i) check(bench, queries[i], bench.answers()[i]);
 }
 
 TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: reset at any clock of a query", "[unit][cchip_broad_phase_axi]",
@@ -381,6 +392,6 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: reset at any clock of a query", 
     bench.reset();
     const std::size_t at = bench.submit(other);
     bench.run(1000000);
-    check(bench.objects, other, bench.answers()[at]);
+    check(bench, other, bench.answers()[at]);
   }
 }
