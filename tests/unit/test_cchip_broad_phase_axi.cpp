@@ -246,7 +246,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: step limit, open pairs, full sta
       REQUIRE(answer.done->steps <= 7);
       if (answer.done->code == QueryCode::steps) {
         REQUIRE(answer.done->steps == 7);
-        REQUIRE(expected(bench.objects, queries[i]).counts.steps > 7);
+        // a query for the first hit may have gone on while its hit was under way
+        if (queries[i].mode == QueryMode::all) REQUIRE(expected(bench.objects, queries[i]).counts.steps > 7);
         ++limited;
       } else {
         check(bench, queries[i], answer);
