@@ -2,7 +2,7 @@
 `default_nettype none
 `include "cchip_defs.vh"
 // cchip_broad_phase_axi: cchip_broad_phase with a cchip_axi_read of its own, for an AXI4 memory. Ports
-// and rules are those of the two.
+// Ports and rules are those of the two.
 //   cuts         every path: each output is a flip-flop
 //   reset        must reset the bus, too
 module cchip_broad_phase_axi #(
