@@ -301,6 +301,68 @@ void write_gtkw(const std::string& fst_path, ModuleId id) {
   end(out, path);
 }
 
+namespace {
+
+/// A query from its descriptor to its answer, in the order of its way.
+Rows broad_phase_layout() {
+  const std::string broad = "u_broad_phase.";
+  const std::string traversal = broad + "u_traversal.";
+  const std::string get = broad + "u_get_data.";
+  return Rows{bit("clock", "clk"), bit("reset", "rst")} +
+         group("1 query", {bit("valid", "s_query_valid"), bit("ready", "s_query_ready"), bit("starts", "m_start_valid"),
+                           vector("context", "m_start_context", 4, Radix::decimal),
+                           vector("epoch", "m_start_epoch", 2, Radix::decimal),
+                           field("base of A, line", "m_start_query", 512, 0, 32, Radix::hexadecimal),
+                           field("base of B, line", "m_start_query", 512, 32, 32, Radix::hexadecimal),
+                           field("tag", "m_start_query", 512, 480, 32, Radix::decimal)}) +
+         group("2 lines wanted",
+               {bit("valid", traversal + "m_valid"), vector("place", traversal + "m_place", 6, Radix::decimal),
+                vector("context", traversal + "m_context", 4, Radix::decimal),
+                field("line of A", traversal + "m_lines", 64, 0, 32, Radix::hexadecimal),
+                field("line of B", traversal + "m_lines", 64, 32, 32, Radix::hexadecimal)}) +
+         group("3 cache", {vector("hit", "count_hit", 2, Radix::binary), vector("miss", "count_miss", 2, Radix::binary),
+                           vector("waits", "count_wait", 2, Radix::binary),
+                           vector("line comes", get + "s_line_valid", 2, Radix::binary),
+                           field("place, A", get + "s_line_place", 12, 0, 6, Radix::decimal),
+                           field("place, B", get + "s_line_place", 12, 6, 6, Radix::decimal)}) +
+         group("4 memory",
+               {bit("address valid", "m_axi_arvalid"), bit("address ready", "m_axi_arready"),
+                vector("address", "m_axi_araddr", 64, Radix::hexadecimal), bit("beat valid", "m_axi_rvalid"),
+                vector("ID", "m_axi_rid", 5, Radix::decimal), bit("last", "m_axi_rlast")}) +
+         group("5 box test", {bit("valid", get + "m_pair_valid"), bit("ready", get + "m_pair_ready"),
+                              vector("place", get + "m_pair_place", 6, Radix::decimal),
+                              vector("context", get + "m_pair_context", 4, Radix::decimal),
+                              vector("children B, A", get + "m_pair_children", 8, Radix::binary)}) +
+         group("6 verdict", {bit("valid", traversal + "s_verdict_valid"),
+                             vector("place", traversal + "s_verdict_place", 6, Radix::decimal),
+                             vector("waiting", traversal + "s_verdict_waiting", 16, Radix::binary),
+                             vector("leaves", traversal + "s_verdict_leaves", 16, Radix::binary),
+                             vector("best", traversal + "s_verdict_best", 4, Radix::decimal)}) +
+         group("7 stack",
+               {bit("push", traversal + "push_q7"), vector("entry", traversal + "stack_addr", 10, Radix::decimal)}) +
+         group("8 leaves", {bit("valid", "m_leaf_valid"), vector("context", "m_leaf_context", 4, Radix::decimal),
+                            vector("epoch", "m_leaf_epoch", 2, Radix::decimal),
+                            vector("kinds B, A", "m_leaf_kinds", 4, Radix::binary), bit("result", "s_result_valid"),
+                            vector("of context", "s_result_context", 4, Radix::decimal),
+                            vector("hits", "s_result_hits", 3, Radix::decimal)}) +
+         group("9 answer",
+               {bit("valid", "m_done_valid"), vector("tag", "m_done_tag", 32, Radix::decimal),
+                vector("code", "m_done_code", 3, Radix::decimal), vector("answer", "m_done_answer", 2, Radix::decimal),
+                vector("steps", "m_done_steps", 32, Radix::decimal)});
+}
+
+}  // namespace
+
+void write_broad_phase_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to) {
+  const std::filesystem::path path = layout_path(fst_path);
+  std::ofstream out(path);
+  SaveFile file(out, "cchip_broad_phase_axi");
+  begin(file, "Queries through the broad phase", fst_path,
+        {from, -std::log2(static_cast<double>(to - from) / wave_frames)});
+  file.write(broad_phase_layout());
+  end(out, path);
+}
+
 void write_swap_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to) {
   const std::filesystem::path path = layout_path(fst_path);
   std::ofstream out(path);

@@ -9,6 +9,7 @@
 #include <cchip/device/cpu_device.hpp>
 #include <cchip/model/broad_phase.hpp>
 #include <cchip/sim/seed.hpp>
+#include <cchip/waves/wave_layout.hpp>
 #include <set>
 
 #include "mesh_pairs.hpp"
@@ -132,7 +133,13 @@ class Run {
   void measure(const std::string& meshes, const std::string& pose_class, const std::string& mode,
                const std::vector<Query>& queries, const Placed& image_a, const Placed& image_b) {
     sim::SimulationOptions options = sim::without_timeout(settings_.seed);
-    if (!settings_.wave.empty()) options.trace_path = settings_.wave;
+    if (!settings_.wave.empty()) {
+      options.trace_path = settings_.wave;
+      options.trace_from = 1000;  // the cache is clear after 1024 clocks
+      options.trace_clocks = 6000;
+      write_broad_phase_gtkw(settings_.wave, 10000, 30000);
+      fmt::print("waveform {}, its layout beside it\n", settings_.wave);
+    }
     settings_.wave.clear();
     TraverseBench<BroadPhase> bench(options);
     bench.memory = settings_.memory;

@@ -21,6 +21,11 @@ void write_gtkw(const std::string& fst_path, ModuleId module);
 /// \throws std::runtime_error the file cannot be written
 void write_swap_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to);
 
+/// The same for a waveform of cchip_broad_phase_axi with 16 queries: a query from its descriptor to its answer.
+/// \param from,to time units of the waveform
+/// \throws std::runtime_error the file cannot be written
+void write_broad_phase_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to);
+
 }  // namespace cchip
 
 #endif
