@@ -1,17 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// cchip_mul18: signed 18x18 multiplier leaf, one multiplier block. p = a * b.
+// cchip_mul18: 18x18 multiplier leaf, one multiplier block. p = a * b.
 //   latency      2 clocks (input register, output register)
 //   throughput   one product per clock, never stalls
-//   numbers      two's complement; p is exact, also for (-2^17)^2
+//   numbers      two's complement, p is exact, also for (-2^17)^2; with SIGNED = 0 all three are
+//                unsigned
 //   reset        none (data only): the registers can move into the block
 // Every multiplication of the chip goes through this module; a device-specific twin may replace it.
-module cchip_mul18 (
+module cchip_mul18 #(
+    // 1: a, b and p are signed; 0: they are not
+    parameter integer SIGNED = 1
+) (
     input  wire        clk,
     input  wire signed [17:0] a,
     input  wire signed [17:0] b,
     output wire signed [35:0] p
 );
+
+  generate
+    if (SIGNED != 0 && SIGNED != 1) begin : gen_illegal
+      cchip_error_mul18_SIGNED_must_be_0_or_1 u_error ();
+    end
+  endgenerate
 
   reg signed [17:0] a_q, b_q;
   (* use_dsp = "yes" *)
@@ -20,8 +30,14 @@ module cchip_mul18 (
   always @(posedge clk) begin
     a_q <= a;
     b_q <= b;
-    p_q <= a_q * b_q;
   end
+  generate
+    if (SIGNED != 0) begin : gen_signed
+      always @(posedge clk) p_q <= a_q * b_q;
+    end else begin : gen_unsigned
+      always @(posedge clk) p_q <= $unsigned(a_q) * $unsigned(b_q);
+    end
+  endgenerate
 
   assign p = p_q;
 

@@ -19,7 +19,8 @@ module cchip_bv_compare (
 
   // ---- clock 0: how far each upper plane is above the other's lower one
   wire [25:0] negative;
-  wire [25:0] bit_q[0:3];  // of the overlaps, saturated
+  wire [25:0] bit_q[0:3];  // of the overlaps
+  wire [25:0] big_q2;      // over 15
   genvar d, s;
   generate
     for (d = 0; d < 13; d = d + 1) begin : gen_direction
@@ -31,11 +32,14 @@ module cchip_bv_compare (
         wire signed [W-1:0] lower = s == 0 ? b[AT+W+:W] : a[AT+W+:W];
         reg signed [W:0] over_q;
         reg [3:0] key_q2;
+        reg over_15_q2;
         always @(posedge clk) begin
           over_q <= {upper[W-1], upper} - {lower[W-1], lower};
-          key_q2 <= over_q[LOW+:4] | {4{|over_q[W-1:LOW+4]}};
+          key_q2 <= over_q[LOW+:4];
+          over_15_q2 <= |over_q[W-1:LOW+4];
         end
         assign negative[2*d+s] = over_q[W];
+        assign big_q2[2*d+s] = over_15_q2;
         assign bit_q[0][2*d+s] = key_q2[0];
         assign bit_q[1][2*d+s] = key_q2[1];
         assign bit_q[2][2*d+s] = key_q2[2];
@@ -48,16 +52,17 @@ module cchip_bv_compare (
   always @(posedge clk) separated_q <= |negative;
   assign separated = separated_q;
 
-  // ---- the least of 26 numbers: from the highest bit on, those with a 0 stay if there are any
+  // ---- the least of 26 numbers: from the highest bit on, those with a 0 stay if there are any. If
+  // all are over 15 none stays, which makes a 15
   reg [25:0] bit2_q3, bit1_q3, bit1_q4, bit0_q3, bit0_q4, bit0_q5;
   reg [25:0] stay_q3, stay_q4, stay_q5;
   reg key3_q3, key3_q4, key3_q5, key3_q6, key2_q4, key2_q5, key2_q6, key1_q5, key1_q6, key0_q6;
-  wire none3 = &bit_q[3];
+  wire none3 = &(bit_q[3] | big_q2);
   wire none2 = &(bit2_q3 | ~stay_q3);
   wire none1 = &(bit1_q4 | ~stay_q4);
   wire none0 = &(bit0_q5 | ~stay_q5);
   always @(posedge clk) begin
-    stay_q3 <= ~bit_q[3] | {26{none3}};
+    stay_q3 <= ~big_q2 & (~bit_q[3] | {26{none3}});
     stay_q4 <= stay_q3 & (~bit2_q3 | {26{none2}});
     stay_q5 <= stay_q4 & (~bit1_q4 | {26{none1}});
     bit2_q3 <= bit_q[2];

@@ -35,7 +35,7 @@ module cchip_bv_feed #(
     output wire [                4:0] a_step2,
     output wire [               53:0] b_origin2,
     output wire [                4:0] b_step2,
-    output wire [$clog2(QUERIES)-1:0] lane_context9,
+    output wire [$clog2(QUERIES)-1:0] lane_context8,
     // for the lanes: one child after the other
     output wire [              101:0] a_child10,
     output wire [                3:0] a_about10,    // {number, inner, counts}
@@ -119,9 +119,9 @@ module cchip_bv_feed #(
   assign row_context0 = s_context;
   assign row0         = count_q;
   assign start2       = first_q[2];
-  reg [9*CONTEXT_W-1:0] context_q;
-  always @(posedge clk) context_q <= {context_q[8*CONTEXT_W-1:0], s_context};
-  assign lane_context9 = context_q[8*CONTEXT_W+:CONTEXT_W];
+  reg [8*CONTEXT_W-1:0] context_q;
+  always @(posedge clk) context_q <= {context_q[7*CONTEXT_W-1:0], s_context};
+  assign lane_context8 = context_q[7*CONTEXT_W+:CONTEXT_W];
 
   // ---- which child has a position: those before the first one that does not count, then those
   // behind it
@@ -132,28 +132,28 @@ module cchip_bv_feed #(
     child_of = place == 2'd3 ? hole : place + {1'b0, place >= hole};
   endfunction
   reg [1:0] place_q1, a_hole_q1, b_hole_q1;
-  reg [13:0] a_number_q;  // from clock 2 to 8
-  reg [19:0] b_number_q;  // to 11
+  reg [11:0] a_number_q;  // from clock 2 to 7
+  reg [17:0] b_number_q;  // to 10
   always @(posedge clk) begin
     place_q1   <= count_q;
     a_hole_q1  <= hole_of(a_counts[2:0]);
     b_hole_q1  <= hole_of(b_counts[2:0]);
-    a_number_q <= {a_number_q[11:0], child_of(place_q1, a_hole_q1)};
-    b_number_q <= {b_number_q[17:0], child_of(place_q1, b_hole_q1)};
+    a_number_q <= {a_number_q[9:0], child_of(place_q1, a_hole_q1)};
+    b_number_q <= {b_number_q[15:0], child_of(place_q1, b_hole_q1)};
   end
 
   // ---- children in memory: 16 node pairs, of which at most 5 wait for the lanes, 11 for a verdict
-  reg [3:0] place_q, a_place_q8, b_place_q11, end_place_q28;
+  reg [3:0] place_q, a_place_q7, b_place_q10, end_place_q28;
   always @(posedge clk) begin
     if (rst) begin
       place_q       <= 4'd0;
-      a_place_q8    <= 4'd0;
-      b_place_q11   <= 4'd0;
+      a_place_q7    <= 4'd0;
+      b_place_q10   <= 4'd0;
       end_place_q28 <= 4'd0;
     end else begin
       place_q       <= place_q + {3'd0, taken};
-      a_place_q8    <= a_place_q8 + {3'd0, last_q[8]};
-      b_place_q11   <= b_place_q11 + {3'd0, last_q[11]};
+      a_place_q7    <= a_place_q7 + {3'd0, last_q[7]};
+      b_place_q10   <= b_place_q10 + {3'd0, last_q[10]};
       end_place_q28 <= end_place_q28 + {3'd0, last_q[28]};
     end
   end
@@ -171,10 +171,21 @@ module cchip_bv_feed #(
       };
     end
   endgenerate
-  wire a_coarse10;
+  // from a block to the first logic it is far
+  wire [WORD_W-1:0] a_word9, b_word12;
+  reg [WORD_W-1:0] a_word_q10, b_word_q13;
   reg a_coarse_q11;
-  always @(posedge clk) a_coarse_q11 <= a_coarse10;
+  always @(posedge clk) begin
+    a_word_q10   <= a_word9;
+    b_word_q13   <= b_word12;
+    a_coarse_q11 <= a_word_q10[106];
+  end
+  assign a_child10  = a_word_q10[101:0];
+  assign a_about10  = a_word_q10[105:102];
   assign a_coarse11 = a_coarse_q11;
+  assign b_child13  = b_word_q13[101:0];
+  assign b_about13  = b_word_q13[105:102];
+  assign b_coarse13 = b_word_q13[106];
   cchip_block_ram #(
       .WIDTH (WORD_W),
       .WORDS (4),
@@ -184,8 +195,8 @@ module cchip_bv_feed #(
       .write     (s_valid),
       .write_addr(place_q),
       .write_data(a_words),
-      .read_addr ({a_place_q8, a_number_q[13:12]}),
-      .read_data ({a_coarse10, a_about10, a_child10})
+      .read_addr ({a_place_q7, a_number_q[11:10]}),
+      .read_data (a_word9)
   );
   cchip_block_ram #(
       .WIDTH (WORD_W),
@@ -196,8 +207,8 @@ module cchip_bv_feed #(
       .write     (s_valid),
       .write_addr(place_q),
       .write_data(b_words),
-      .read_addr ({b_place_q11, b_number_q[19:18]}),
-      .read_data ({b_coarse13, b_about13, b_child13})
+      .read_addr ({b_place_q10, b_number_q[17:16]}),
+      .read_data (b_word12)
   );
 
   // ---- tag and number of tests, which is right from the third clock on

@@ -199,23 +199,18 @@ module cchip_bv_lane_a (
         extent_q6 <= first_q5 + rest_q5;
       end
 
-      // Both cuts in one product: (f + c 2^11) (corner + face 2^11), bits 11 to 21. If the factor c
-      // has its highest bit set, the multiplier takes it for -2^17: 2^18 times the lowest bits of
-      // the other operand are added again.
+      // Both cuts in one product: (f + c 2^11) (corner + face 2^11), bits 11 to 21.
       wire [13:0] factor = pose_factor[14*d+:14];
-      reg top_q3, top_q4;
-      always @(posedge clk) begin
-        top_q3 <= factor[13];
-        top_q4 <= top_q3;
-      end
       for (s = 0; s < 2; s = s + 1) begin : gen_side  // upper, lower
         wire [2:0] face = select[3] != (s == 1) ? face1[5:3] : face1[2:0];
         wire [2:0] corner = select[6] != (s == 1) ? corner1[5:3] : corner1[2:0];
-        reg [3:0] face_q2, corner_q2, corner_q3, corner_q4, corner_q5;
+        reg [3:0] face_q2, corner_q2;
         reg [10:0] cut_q5, cut_q6;
         reg signed [17:0] extent_q7;
         wire signed [35:0] p;
-        cchip_mul18 u_mul (
+        cchip_mul18 #(
+            .SIGNED(0)
+        ) u_mul (
             .clk(clk),
             .a  ({factor[13:7], 4'd0, factor[6:0]}),
             .b  ({3'd0, face_q2, 7'd0, corner_q2}),
@@ -224,12 +219,9 @@ module cchip_bv_lane_a (
         always @(posedge clk) begin
           face_q2   <= coarse ? {face, 1'b0} : {1'b0, face};
           corner_q2 <= coarse ? {corner, 1'b0} : {1'b0, corner};
-          corner_q3 <= corner_q2;
-          corner_q4 <= corner_q3;
-          corner_q5 <= corner_q4 & {4{top_q4}};
           cut_q5    <= p[21:11];
-          cut_q6    <= {cut_q5[10:7] + corner_q5, cut_q5[6:0]};
-          extent_q7 <= {2'd0, extent_q6} - {5'd0, cut_q6, 2'd0};
+          cut_q6    <= cut_q5;
+          extent_q7 <= {{2'd0, extent_q6[15:2]} - {5'd0, cut_q6}, extent_q6[1:0]};
         end
         wire unused = &{1'b0, p[35:22], p[10:0]};
 

@@ -130,8 +130,8 @@ module cchip_bv_lane_b (
       end
       reg [12:0] upper_q5, lower_q5;
       if (i < 6) begin : gen_face
-        wire [13:0] upper = $unsigned(upper3[i]) - {5'd0, cut[0], 3'd0};
-        wire [13:0] lower = $unsigned(lower3[i]) + {5'd0, cut[1], 3'd0};
+        wire [13:0] upper = {upper3[i][13:3] - {5'd0, cut[0]}, upper3[i][2:0]};
+        wire [13:0] lower = {lower3[i][13:3] + {5'd0, cut[1]}, lower3[i][2:0]};
         reg [12:0] upper_q4f, lower_q4f;
         always @(posedge clk) begin
           upper_q4f <= upper[13:1];
@@ -142,8 +142,8 @@ module cchip_bv_lane_b (
         wire unused = &{1'b0, upper[0], lower[0]};
       end else begin : gen_corner
         reg [5:0] upper_cut_q4, lower_cut_q4;
-        wire [13:0] upper = $unsigned(upper4[i-6]) - {4'd0, upper_cut_q4, 4'd0};
-        wire [13:0] lower = $unsigned(lower4[i-6]) + {4'd0, lower_cut_q4, 4'd0};
+        wire [13:0] upper = {upper4[i-6][13:4] - {4'd0, upper_cut_q4}, upper4[i-6][3:0]};
+        wire [13:0] lower = {lower4[i-6][13:4] + {4'd0, lower_cut_q4}, lower4[i-6][3:0]};
         always @(posedge clk) begin
           upper_cut_q4 <= cut[0];
           lower_cut_q4 <= cut[1];

@@ -128,28 +128,32 @@ module cchip_bv_offset (
   // ---- the offset, one axis after the other: M o_A
   wire [17:0] origin = start ? b_origin[17:0] : start_q1 ? b_origin[35:18] : b_origin[53:36];
   wire signed [36:0] term2[0:2];  // 35 fraction bits
+  wire [17:0] again2[0:2];
   genvar j;
   generate
     for (j = 0; j < 3; j = j + 1) begin : gen_term
       wire [18:0] m = row_m[19*j+:19];
       wire signed [35:0] p;
-      reg one_q1, one_q2;  // M_ij is 1, which has no place in 18 bits
-      reg [17:0] origin_q1, origin_q2;
+      // M_ij = 1 has no place in 18 bits and is taken for -1: 2^18 times the origin is added again.
+      // That is at most one of a row, whose magnitudes add up to less than 2
+      reg one_q1;
+      reg [17:0] origin_q1, again_q2;
       always @(posedge clk) begin
         one_q1    <= ~m[18] & m[17];
-        one_q2    <= one_q1;
         origin_q1 <= a_origin[18*j+:18];
-        origin_q2 <= origin_q1;
+        again_q2  <= origin_q1 & {18{one_q1}};
       end
+      assign again2[j] = again_q2;
       cchip_mul18 u_mul (
           .clk(clk),
           .a  (m[17:0]),
           .b  (a_origin[18*j+:18]),
           .p  (p)
       );
-      assign term2[j] = one_q2 ? {{2{origin_q2[17]}}, origin_q2, 17'd0} : {p[35], p};
+      assign term2[j] = {p[35], p};
     end
   endgenerate
+  wire [17:0] again = again2[0] | again2[1] | again2[2];
   reg signed [38:0] first_q3, rest_q3, turned_q4;
   reg signed [29:0] between_q1, between_q2, between_q3, between_q4;  // t - o_B, 24 fraction bits
 
@@ -158,13 +162,23 @@ module cchip_bv_offset (
   reg signed [38:0] turned_q5, turned_q6;
   reg signed [37:0] between_q5, between_q6;
   reg signed [38:0] sum_q7;
-  reg signed [38:0] sum_q8;
+  wire signed [38:0] shifted = sum_q7 >>> {high_q7[3:2], 2'd0};
+  wire [3:0] alike = {
+    sum_q7[37:31] == {7{sum_q7[38]}},
+    sum_q7[30:27] == {4{sum_q7[38]}},
+    sum_q7[26:23] == {4{sum_q7[38]}},
+    sum_q7[22:19] == {4{sum_q7[38]}}
+  };
+  reg [19:0] sum_q8;
+  reg narrow_q8;  // the bits above those of sum_q8 are like its highest
   reg [2:0] fine_q5;
   reg [16:0] axis_q9;
   reg far_q9;
   always @(posedge clk) begin
     first_q3 <= {{2{term2[0][36]}}, term2[0]} + {{2{term2[1][36]}}, term2[1]};
-    rest_q3 <= {{2{term2[2][36]}}, term2[2]};
+    rest_q3 <= {
+      {{2{term2[2][36]}}, term2[2][36:18]} + {{3{again[17]}}, again}, term2[2][17:0]
+    };
     turned_q4 <= first_q3 + rest_q3;
     between_q1 <= {row_t[28], row_t} - {{6{origin[17]}}, origin, 6'd0};
     between_q2 <= between_q1;
@@ -182,14 +196,20 @@ module cchip_bv_offset (
     high_q6 <= high_q5;
     high_q7 <= high_q6;
     high_q8 <= high_q7[1:0];
-    sum_q8 <= sum_q7 >>> {high_q7[3:2], 2'd0};
-    {far_q9, axis_q9} <= to_grid(sum_q8, high_q8);
+    sum_q8 <= shifted[19:0];
+    narrow_q8 <= alike[3] && (alike[2] || high_q7[3:2] == 2'd3) && (alike[1] || high_q7[3]) &&
+        (alike[0] || high_q7[3:2] != 2'd0);
+    {far_q9, axis_q9} <= to_grid(narrow_q8, sum_q8, high_q8);
   end
-  function [17:0] to_grid(input signed [38:0] sum, input [1:0] by);
-    reg signed [38:0] value;
+  function [17:0] to_grid(input narrow, input [19:0] sum, input [1:0] by);
+    reg fits;
     begin
-      value = sum >>> by;
-      to_grid = {value[38:16] != {23{value[16]}}, value[16:0]};
+      fits = narrow && (by == 2'd3 || sum[18] == sum[19]) && (by[1] || sum[17] == sum[19]) &&
+          (by != 2'd0 || sum[16] == sum[19]);
+      to_grid = {!fits, sum[16:0]};
+      if (by == 2'd1) to_grid[16:0] = sum[17:1];
+      if (by == 2'd2) to_grid[16:0] = sum[18:2];
+      if (by == 2'd3) to_grid[16:0] = sum[19:3];
     end
   endfunction
 
@@ -214,7 +234,7 @@ module cchip_bv_offset (
   assign offset = offset_q12;
   assign is_far = far_q12;
 
-  wire unused = &{1'b0, y[6:4], above[5:4], next[6:5], x_q4[4:0]};
+  wire unused = &{1'b0, y[6:4], above[5:4], next[6:5], x_q4[4:0], shifted[38:20]};
 
 endmodule
 `default_nettype wire

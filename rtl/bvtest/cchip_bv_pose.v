@@ -2,8 +2,8 @@
 `default_nettype none
 // cchip_bv_pose: sets up the poses of the queries and keeps them for the box test.
 //   latency      20 clocks from an accepted pose to m_pose_valid, while all of it is in memory;
-//                2 clocks from row_context to a row, from lane_context to pose_select, and 3 to
-//                pose_m, pose_magnitude and pose_factor
+//                2 clocks from row_context to a row, 3 from lane_context to pose_select, and 4
+//                to pose_m, pose_magnitude and pose_factor
 //   throughput   a pose every 13 clocks; each port reads on every clock
 //   memory       block RAM: the rows of M and t one after the other for cchip_bv_offset, and M and
 //                the 13 directions side by side for cchip_bv_lane_a
@@ -136,8 +136,11 @@ module cchip_bv_pose #(
       assign lane_addr  = lane_context;
     end
   endgenerate
-  reg [ADDR_W-1:0] lane_addr_q;
-  always @(posedge clk) lane_addr_q <= lane_addr;
+  reg [ADDR_W-1:0] lane_addr_q, lane_addr_q2;
+  always @(posedge clk) begin
+    lane_addr_q  <= lane_addr;
+    lane_addr_q2 <= lane_addr_q;
+  end
   cchip_block_ram #(
       .WIDTH (171),
       .ADDR_W(ADDR_W)
@@ -146,17 +149,25 @@ module cchip_bv_pose #(
       .write     (start_q),
       .write_addr(set_addr),
       .write_data(set_m),
-      .read_addr (lane_addr_q),
+      .read_addr (lane_addr_q2),
       .read_data (pose_m)
   );
   generate
     for (d = 0; d < 13; d = d + 1) begin : gen_direction
       localparam [31:0] D = d;
       wire write = set_valid && set_direction == D[3:0];
-      wire [7:0] high;  // of the factors; as early as pose_select
-      reg [7:0] high_q;
-      always @(posedge clk) high_q <= high;
-      assign pose_factor[14*d+6+:8] = high_q;
+      // from a block to the multiplexers behind pose_select it is far
+      wire [6:0] select;
+      wire [7:0] high;  // of the factors
+      reg [6:0] select_q;
+      reg [7:0] high_q, high_q2;
+      always @(posedge clk) begin
+        select_q <= select;
+        high_q   <= high;
+        high_q2  <= high_q;
+      end
+      assign pose_select[7*d+:7]    = select_q;
+      assign pose_factor[14*d+6+:8] = high_q2;
       cchip_block_ram #(
           .WIDTH (15),
           .ADDR_W(ADDR_W)
@@ -166,7 +177,7 @@ module cchip_bv_pose #(
           .write_addr(write_addr),
           .write_data({set_factor[13:6], set_select}),
           .read_addr (lane_addr),
-          .read_data ({high, pose_select[7*d+:7]})
+          .read_data ({high, select})
       );
       cchip_block_ram #(
           .WIDTH (36),
@@ -176,7 +187,7 @@ module cchip_bv_pose #(
           .write     (write),
           .write_addr(write_addr),
           .write_data({set_factor[5:0], set_magnitude}),
-          .read_addr (lane_addr_q),
+          .read_addr (lane_addr_q2),
           .read_data ({pose_factor[14*d+:6], pose_magnitude[30*d+:30]})
       );
     end

@@ -55,7 +55,7 @@ module cchip_bv_unit #(
   endgenerate
 
   // ---- numbers in names: clocks from the first one of a node pair
-  wire [CONTEXT_W-1:0] row_context0, lane_context9;
+  wire [CONTEXT_W-1:0] row_context0, lane_context8;
   wire [1:0] row0;
   wire start2, first18, last18, first29;
   wire [53:0] a_origin2, b_origin2;
@@ -84,7 +84,7 @@ module cchip_bv_unit #(
       .a_step2      (a_step2),
       .b_origin2    (b_origin2),
       .b_step2      (b_step2),
-      .lane_context9(lane_context9),
+      .lane_context8(lane_context8),
       .a_child10    (a_child10),
       .a_about10    (a_about10),
       .a_coarse11   (a_coarse11),
@@ -127,7 +127,7 @@ module cchip_bv_unit #(
       .row_t         (row_t2),
       .shift         (shift2),
       .epsilon       (epsilon2),
-      .lane_context  (lane_context9),
+      .lane_context  (lane_context8),
       .pose_select   (pose_select11),
       .pose_m        (pose_m12),
       .pose_magnitude(pose_magnitude12),

@@ -105,20 +105,22 @@ module cchip_pose_setup (
       wire [20:0] term[0:2];
       for (i = 0; i < 3; i = i + 1) begin : gen_term
         wire [20:0] entry = {{2{column[19*i+18]}}, column[19*i+:19]};
-        assign term[i] = {21{left_q[2*i]}} & (left_q[2*i+1] ? -entry : entry);
+        assign term[i] = {21{left_q[2*i]}} & (entry ^ {21{left_q[2*i+1]}});
       end
+      // -x is ~x + 1; a direction has one negative component at most
+      wire [21:0] first = {term[0], 1'b1} + {term[1], left_q[1] | left_q[3] | left_q[5]};
       reg [20:0] first_q2, rest_q2, m_q3;
       reg [17:0] size_q4;
       assign size4[j] = size_q4;
       wire [20:0] size = m_q3[20] ? -m_q3 : m_q3;
       always @(posedge clk) begin
-        first_q2 <= term[0] + term[1];
+        first_q2 <= first[21:1];
         rest_q2 <= term[2];
         m_q3 <= first_q2 + rest_q2;
         size_q4 <= size[17:0];
         negative_q4[j] <= m_q3[20];
       end
-      wire unused_high = &{1'b0, size[20:18]};
+      wire unused_bits = &{1'b0, size[20:18], first[0]};
     end
   endgenerate
 

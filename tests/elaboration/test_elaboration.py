@@ -118,6 +118,7 @@ ILLEGAL = [
     *(("cchip_dual_ram", case, BLOCK_RAM.replace("block", "dual")) for case in ({"WIDTH": 0}, {"ADDR_W": 2}, {"ADDR_W": 17})),
     ("cchip_block_ram", {"WIDTH": 0}, BLOCK_RAM),
     ("cchip_block_ram", {"ADDR_W": 17}, BLOCK_RAM),
+    *(("cchip_mul18", {"SIGNED": n}, "cchip_error_mul18_SIGNED_must_be_0_or_1") for n in (-1, 2)),
     ("cchip_block_ram", {"WORDS": 2}, "cchip_error_block_ram_WORDS_must_be_1_or_4"),
     *(("cchip_bv_unit", {"QUERIES": n}, QUERIES) for n in (3, 32)),
     *(("cchip_get_data", {"QUERIES": n}, "cchip_error_get_data_QUERIES_must_be_2_4_8_or_16") for n in (3, 32)),

@@ -3,13 +3,23 @@
 // cchip_mul18 for Lattice ECP5: the multiplier leaf as one MULT18X18D with its own input and output
 // registers, which Yosys does not pack. Takes the place of arith/cchip_mul18.v in rtl/cchip_ecp5.f.
 //   latency, throughput, numbers, reset   those of arith/cchip_mul18.v
-module cchip_mul18 (
+module cchip_mul18 #(
+    // 1: a, b and p are signed; 0: they are not
+    parameter integer SIGNED = 1
+) (
     input  wire               clk,
     input  wire signed [17:0] a,
     input  wire signed [17:0] b,
     output wire signed [35:0] p
 );
 
+  generate
+    if (SIGNED != 0 && SIGNED != 1) begin : gen_illegal
+      cchip_error_mul18_SIGNED_must_be_0_or_1 u_error ();
+    end
+  endgenerate
+
+  localparam [0:0] IS_SIGNED = SIGNED != 0;
   MULT18X18D #(
       .REG_INPUTA_CLK("CLK0"),
       .REG_INPUTB_CLK("CLK0"),
@@ -19,7 +29,7 @@ module cchip_mul18 (
       .CLK0(clk), .CLK1(1'b0), .CLK2(1'b0), .CLK3(1'b0),
       .CE0(1'b1), .CE1(1'b0), .CE2(1'b0), .CE3(1'b0),
       .RST0(1'b0), .RST1(1'b0), .RST2(1'b0), .RST3(1'b0),
-      .SIGNEDA(1'b1), .SIGNEDB(1'b1), .SOURCEA(1'b0), .SOURCEB(1'b0),
+      .SIGNEDA(IS_SIGNED), .SIGNEDB(IS_SIGNED), .SOURCEA(1'b0), .SOURCEB(1'b0),
       .C0(1'b0), .C1(1'b0), .C2(1'b0), .C3(1'b0), .C4(1'b0), .C5(1'b0),
       .C6(1'b0), .C7(1'b0), .C8(1'b0), .C9(1'b0), .C10(1'b0), .C11(1'b0),
       .C12(1'b0), .C13(1'b0), .C14(1'b0), .C15(1'b0), .C16(1'b0), .C17(1'b0),
