@@ -71,9 +71,9 @@ MUTANTS = [
     ("cchip_pr_slot prove", SLOT, "rst | hold_reset | roc;", "rst | hold_reset;"),
     ("cchip_pr_slot prove", SLOT, "rst | roc_start | roc;", "rst | roc_start;"),
     # a bad check recouples; a phase goes back; both slots are told; no bound; decoupling is not awaited; a refusal is lost
-    ("cchip_swap_sequencer prove", SEQUENCER, "fails[CHECK] = cfg_error_q[1] | (last_q & ~crc_ok);", "fails[CHECK] = cfg_error_q[1];"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "fails[CHECK] = cfg_error_q[1] | cfg_error_q3 | (last_q & ~crc_ok);", "fails[CHECK] = cfg_error_q[1] | cfg_error_q3;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "at_q <= {at_q[STATES-2:0], at_q[REPORT]};", "at_q <= at_q[TRANSFER] ? 14'd1 << PULSE : {at_q[STATES-2:0], at_q[REPORT]};"),
-    ("cchip_swap_sequencer prove", SEQUENCER, "set_hold = mine & {SLOTS{passes[DECOUPLE]}};", "set_hold = {SLOTS{passes[DECOUPLE]}};"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "set_hold = mine_q & {SLOTS{passes[DECOUPLE]}};", "set_hold = {SLOTS{passes[DECOUPLE]}};"),
     ("cchip_swap_sequencer prove", SEQUENCER, "(hold_reset_q | set_hold) & ~start_roc;", "(hold_reset_q | set_hold) & ~recouple;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "(at_q[SHUTDOWN] ? clocks_q >= shutdown_bound : clocks_q >= LIMIT);", "abort_q;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "done[DECOUPLE] = decoupled_q;", "done[DECOUPLE] = quiet_q;"),
