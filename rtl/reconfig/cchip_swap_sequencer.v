@@ -11,6 +11,8 @@
 //                module gets once it is whole is that of the slot's ROC generator. rm_id counts
 //                from CCHIP_RM_SETTLE_CLOCKS clocks after that reset on, and must then be right for
 //                as many clocks: a region full of garbage may show any number on one clock.
+//   decision     whether a state ends, well or badly, is a register. Next state, clocks and slots
+//                follow from it a clock later, on which nothing else is decided.
 //   latency      every request is answered by exactly one report; one during a swap by BUSY, 2
 //                clocks later or 3
 //   bounds       SHUTDOWN: shutdown_limit; DECOUPLE, ROC, RECOUPLE: SLOT_LIMIT; HEADER and
@@ -89,13 +91,11 @@ module cchip_swap_sequencer #(
   localparam [STATES-1:0] SAME_PHASE =
       14'd1 << JUDGE | 14'd1 << PULSE | 14'd1 << PULSED | 14'd1 << SETTLE;
 
-  // clocks of a state, counted from 0; each lasts two clocks or more
+  // the clock of a state on which it is decided, from 0; the next state begins 2 clocks later
   localparam [4:0] JUDGE_LAST = 5'd2;  // slot and request have passed their registers
-  localparam [4:0] RESET_LAST = 5'd1;
   localparam [4:0] ERROR_FIRST = 5'd2;  // of TRANSFER: cfg_error of an earlier clock is over
   localparam [4:0] CHECK_LAST = 5'd7;  // the device may report an error until here
-  localparam [4:0] PULSE_LAST = 5'd1;  // roc_busy is seen from here on
-  localparam [4:0] SETTLE_LAST = `CCHIP_RM_SETTLE_CLOCKS - 2;
+  localparam [4:0] SETTLE_LAST = `CCHIP_RM_SETTLE_CLOCKS - 4;
   localparam [4:0] MATCH_LAST = `CCHIP_RM_SETTLE_CLOCKS - 1;
   localparam [31:0] LIMIT = SLOT_LIMIT;
 
@@ -127,8 +127,11 @@ module cchip_swap_sequencer #(
   wire accept = s_swap_valid & ready_q;
   wire begins = accept & idle;
 
+  reg [SLOTS-1:0] mine_q;  // its slot, one-hot; 0 if there is no such slot
+  integer s;
   always @(posedge clk) begin
     if (begins) begin
+      for (s = 0; s < SLOTS; s = s + 1) mine_q[s] <= s_swap_slot == s[`CCHIP_SLOT_ID_W-1:0];
       slot_q <= s_swap_slot;
       module_q <= s_swap_module;
       address_q <= s_swap_address;
@@ -140,7 +143,6 @@ module cchip_swap_sequencer #(
   end
 
   // ---- the slot of the request, through registers
-  reg [SLOTS-1:0] mine;  // one-hot; 0 if there is no such slot
   reg [`CCHIP_RM_ID_W-1:0] shown;
   reg [`CCHIP_PAIR_COUNT_W-1:0] given_up;
   integer i;
@@ -148,11 +150,10 @@ module cchip_swap_sequencer #(
     shown = {`CCHIP_RM_ID_W{1'b0}};
     given_up = {`CCHIP_PAIR_COUNT_W{1'b0}};
     for (i = 0; i < SLOTS; i = i + 1) begin
-      mine[i] = slot_q == i[`CCHIP_SLOT_ID_W-1:0];
       shown = shown
-          | (region_rm_id[`CCHIP_RM_ID_W*i+:`CCHIP_RM_ID_W] & {`CCHIP_RM_ID_W{mine[i]}});
+          | (region_rm_id[`CCHIP_RM_ID_W*i+:`CCHIP_RM_ID_W] & {`CCHIP_RM_ID_W{mine_q[i]}});
       given_up = given_up
-          | (lost[`CCHIP_PAIR_COUNT_W*i+:`CCHIP_PAIR_COUNT_W] & {`CCHIP_PAIR_COUNT_W{mine[i]}});
+          | (lost[`CCHIP_PAIR_COUNT_W*i+:`CCHIP_PAIR_COUNT_W] & {`CCHIP_PAIR_COUNT_W{mine_q[i]}});
     end
   end
 
@@ -162,17 +163,19 @@ module cchip_swap_sequencer #(
   reg over_q;  // it lies beyond 4 GiB, unless its lower 32 bits, of which rest_q knows, are 0
   reg [3:0] rest_q;
   (* ASYNC_REG = "TRUE" *) reg [1:0] cfg_error_q;
+  reg cfg_error_q3;  // a clock later, so that CHECK sees that of TRANSFER's last clock
   always @(posedge clk) begin
-    quiet_q <= |(quiet & mine);
-    decoupled_q <= |(decoupled & mine);
-    roc_busy_q <= |(roc_busy & mine);
+    quiet_q <= |(quiet & mine_q);
+    decoupled_q <= |(decoupled & mine_q);
+    roc_busy_q <= |(roc_busy & mine_q);
     match_q <= shown == module_q;
     same_q <= ~decoupled_q & match_q;
     over_q <= past[32];
     rest_q <= {|past[31:24], |past[23:16], |past[15:8], |past[7:0]};
-    illegal_q <= mine == {SLOTS{1'b0}} || module_q > `CCHIP_RM_QUAD_QUAD
+    illegal_q <= mine_q == {SLOTS{1'b0}} || module_q > `CCHIP_RM_QUAD_QUAD
         || address_q[5:0] != 6'd0 || size_q == 32'd0 || (over_q && rest_q != 4'd0);
     cfg_error_q <= {cfg_error_q[0], cfg_error};
+    cfg_error_q3 <= cfg_error_q[1];
   end
 
   // ---- clocks of the phase and of the state, and the bound of the phase
@@ -180,7 +183,7 @@ module cchip_swap_sequencer #(
   wire turns;  // to another phase
   reg [31:0] clocks_q;
   reg [4:0] ticks_q;  // stops at 31
-  reg last_q;  // the last clock of a state of fixed length
+  reg last_q;  // the clock on which a state of fixed length is decided
   reg error_counts_q;  // of TRANSFER: cfg_error of an earlier clock is over
   reg expired_q;
   reg no_limit_q;  // shutdown_limit is 0
@@ -191,9 +194,7 @@ module cchip_swap_sequencer #(
     clocks_q <= turns ? 32'd1 : clocks_q + 32'd1;
     ticks_q <= moves ? 5'd0 : ticks_q + {4'd0, ~&ticks_q};
     last_q <= !moves && ((at_q[JUDGE] && ticks_q == JUDGE_LAST - 5'd1)
-        || (at_q[RESET] && ticks_q == RESET_LAST - 5'd1)
         || (at_q[CHECK] && ticks_q == CHECK_LAST - 5'd1)
-        || (at_q[PULSE] && ticks_q == PULSE_LAST - 5'd1)
         || (at_q[SETTLE] && ticks_q == SETTLE_LAST - 5'd1)
         || (at_q[MATCH] && ticks_q == MATCH_LAST - 5'd1));
     error_counts_q <= !moves && ticks_q >= ERROR_FIRST - 5'd1;
@@ -215,7 +216,6 @@ module cchip_swap_sequencer #(
     code = `CCHIP_SWAP_OK;
     phase_after = `CCHIP_PHASE_IDLE;
 
-    done[IDLE] = begins;
     if (at_q[IDLE]) phase_after = phase_after | `CCHIP_PHASE_HEADER;
 
     done[JUDGE] = last_q;
@@ -248,7 +248,7 @@ module cchip_swap_sequencer #(
       phase_after = phase_after | `CCHIP_PHASE_RESET;
     end
 
-    done[RESET] = last_q;
+    done[RESET] = 1'b1;  // two clocks
     if (at_q[RESET]) phase_after = phase_after | `CCHIP_PHASE_TRANSFER;
 
     done[TRANSFER] = transfer_done;
@@ -260,13 +260,13 @@ module cchip_swap_sequencer #(
     end
 
     done[CHECK] = last_q;
-    fails[CHECK] = cfg_error_q[1] | (last_q & ~crc_ok);
+    fails[CHECK] = cfg_error_q[1] | cfg_error_q3 | (last_q & ~crc_ok);
     if (at_q[CHECK]) begin
-      code = code | (cfg_error_q[1] ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_CRC);
+      code = code | (cfg_error_q[1] | cfg_error_q3 ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_CRC);
       phase_after = phase_after | `CCHIP_PHASE_ROC;
     end
 
-    done[PULSE] = last_q;
+    done[PULSE] = 1'b1;  // two clocks, then roc_busy is seen
     if (at_q[PULSE]) phase_after = phase_after | `CCHIP_PHASE_ROC;
 
     done[PULSED] = ~roc_busy_q;
@@ -292,17 +292,20 @@ module cchip_swap_sequencer #(
       code = code | `CCHIP_SWAP_DEVICE;
       phase_after = phase_after | `CCHIP_PHASE_REPORT;
     end
-
-    done[REPORT] = 1'b1;
   end
+
+  // ---- decision, and a clock later what follows from it: that is wide, so it starts at registers.
+  // IDLE and REPORT have nothing to decide.
+  reg failing_q, ending_q;
+  wire deciding = ~failing_q & ~ending_q;
   wire aborted = abort_q & (|(at_q & ABORTABLE));
-  wire failing = aborted | (|(at_q & fails));
-  wire ending = |(at_q & done);
-  wire [STATES-1:0] passes = at_q & done;  // unless it fails
-  wire reports = failing | passes[RECOUPLE];
+  wire fails_now = aborted | (|(at_q & fails));
+  wire goes = ending_q | begins | at_q[REPORT];
+  wire [STATES-1:0] passes = at_q & {STATES{ending_q}};  // unless it fails
+  wire reports = failing_q | passes[RECOUPLE];
   wire late = |at_q[RECOUPLE:DECOUPLE];  // a failure leaves the slot shut
-  assign moves = failing | ending;
-  assign turns = failing | (|(at_q & done & ~SAME_PHASE));
+  assign moves = failing_q | goes;
+  assign turns = failing_q | (goes & ~(|(at_q & SAME_PHASE)));
 
   // ---- phase and report
   reg run_q, report_valid_q, refused_q, forced_q;
@@ -313,7 +316,7 @@ module cchip_swap_sequencer #(
     if (idle) lost_q <= {`CCHIP_PAIR_COUNT_W{1'b0}};
     else if (at_q[DECOUPLE] && forced_q && decoupled_q) lost_q <= given_up;
     if (at_q[SHUTDOWN]) forced_q <= ~quiet_q & ~decoupled_q;
-    code_q <= aborted ? `CCHIP_SWAP_ABORTED : failing ? code : `CCHIP_SWAP_OK;
+    if (deciding) code_q <= aborted ? `CCHIP_SWAP_ABORTED : fails_now ? code : `CCHIP_SWAP_OK;
     refused_q <= refuses;
     if (rst) begin
       at_q <= {{STATES - 1{1'b0}}, 1'b1};
@@ -323,16 +326,20 @@ module cchip_swap_sequencer #(
       ready_q <= 1'b0;
       refuse_q <= 1'b0;
       report_valid_q <= 1'b0;
+      failing_q <= 1'b0;
+      ending_q <= 1'b0;
     end else begin
-      if (failing) begin
+      failing_q <= deciding & fails_now;
+      ending_q <= deciding & (|(at_q & done));
+      if (failing_q) begin
         at_q <= {1'b1, {STATES - 1{1'b0}}};
         phase_q <= `CCHIP_PHASE_REPORT;
-      end else if (ending) begin
+      end else if (goes) begin
         at_q <= {at_q[STATES-2:0], at_q[REPORT]};
         phase_q <= phase_after;
       end
-      abort_q <= (abort_q | abort_swap) & (|at_q[MATCH:JUDGE]) & ~failing;
-      run_q <= ~failing & (ending ? at_q[JUDGE] | at_q[RESET] : run_q);
+      abort_q <= (abort_q | abort_swap) & (|at_q[MATCH:JUDGE]) & ~failing_q;
+      run_q <= ~failing_q & (goes ? at_q[JUDGE] | at_q[RESET] : run_q);
       refuse_q <= (accept & ~idle) | (refuse_q & reports);
       ready_q <= ~((accept & ~idle) | (refuse_q & reports));
       report_valid_q <= reports | refuses;
@@ -343,22 +350,21 @@ module cchip_swap_sequencer #(
   reg [SLOTS-1:0] stop_q, decouple_q, hold_reset_q, roc_start_q;
   reg [SLOTS-1:0] half_q;  // the region holds no whole module
   initial half_q = {SLOTS{1'b0}};
-  // `failing` comes last, so it selects
-  wire [SLOTS-1:0] set_stop = mine & {SLOTS{passes[FETCH]}};
-  wire [SLOTS-1:0] set_decouple = mine & {SLOTS{passes[SHUTDOWN]}};
-  wire [SLOTS-1:0] set_hold = mine & {SLOTS{passes[DECOUPLE]}};
-  wire [SLOTS-1:0] transfer = mine & {SLOTS{passes[RESET]}};
-  wire [SLOTS-1:0] start_roc = mine & {SLOTS{passes[CHECK]}};
-  wire [SLOTS-1:0] recouple = mine & {SLOTS{passes[MATCH]}};
-  wire [SLOTS-1:0] shut = mine & {SLOTS{late}};
+  wire [SLOTS-1:0] set_stop = mine_q & {SLOTS{passes[FETCH]}};
+  wire [SLOTS-1:0] set_decouple = mine_q & {SLOTS{passes[SHUTDOWN]}};
+  wire [SLOTS-1:0] set_hold = mine_q & {SLOTS{passes[DECOUPLE]}};
+  wire [SLOTS-1:0] transfer = mine_q & {SLOTS{passes[RESET]}};
+  wire [SLOTS-1:0] start_roc = mine_q & {SLOTS{passes[CHECK]}};
+  wire [SLOTS-1:0] recouple = mine_q & {SLOTS{passes[MATCH]}};
+  wire [SLOTS-1:0] shut = mine_q & {SLOTS{late}};
   always @(posedge clk) begin
-    if (!rst && !failing) half_q <= (half_q | transfer) & ~recouple;
+    if (!rst && !failing_q) half_q <= (half_q | transfer) & ~recouple;
     if (rst) begin
       stop_q       <= half_q;
       decouple_q   <= half_q;
       hold_reset_q <= half_q;
       roc_start_q  <= {SLOTS{1'b0}};
-    end else if (failing) begin
+    end else if (failing_q) begin
       if (!late) stop_q <= decouple_q;
       decouple_q   <= decouple_q | shut;
       hold_reset_q <= hold_reset_q | shut;

@@ -83,11 +83,11 @@ module cchip_swap_sequencer_properties (
   reg rst_q = 1'b1;
   reg [3:0] phase_q = 4'd0;
   reg [1:0] decouple_q, stop_q, hold_q, good_q = 2'b00;
-  reg [1:0] seen_q, seen_q2;  // decoupled a clock ago
+  reg [1:0] seen_q, seen_q2, seen_q3;  // decoupled a clock ago
   reg [7:0] since_q = 8'd0;  // clocks since the reset on configuration started
   reg [7:0] clocks_q = 8'd0;  // in this phase
   reg [1:0] open_q = 2'd0;  // requests without report
-  reg crc_ok_q;
+  reg crc_ok_q, crc_ok_q2;
   wire [1:0] mine = slot == 8'd0 ? 2'b01 : slot == 8'd1 ? 2'b10 : 2'b00;
   wire accept = s_swap_valid & s_swap_ready;
   wire ends = header_done | bus_error | timeout;
@@ -102,9 +102,11 @@ module cchip_swap_sequencer_properties (
     hold_q <= hold_reset;
     seen_q <= decoupled;
     seen_q2 <= seen_q;
+    seen_q3 <= seen_q2;
     crc_ok_q <= crc_ok;
+    crc_ok_q2 <= crc_ok_q;
     if (phase == `CCHIP_PHASE_TRANSFER) good_q <= good_q & ~mine;
-    else if (phase == `CCHIP_PHASE_ROC && phase_q == `CCHIP_PHASE_CHECK && crc_ok_q) good_q <= good_q | mine;
+    else if (phase == `CCHIP_PHASE_ROC && phase_q == `CCHIP_PHASE_CHECK && crc_ok_q2) good_q <= good_q | mine;
     since_q <= roc_start != 2'b00 ? 8'd1 : since_q == 8'd255 ? since_q : since_q + 8'd1;
     clocks_q <= rst || phase != phase_q ? 8'd1 : clocks_q == 8'd255 ? clocks_q : clocks_q + 8'd1;
     open_q <= rst ? 2'd0 : open_q + {1'b0, accept} - {1'b0, m_report_valid};
@@ -123,7 +125,7 @@ module cchip_swap_sequencer_properties (
       shut: assert (phase < `CCHIP_PHASE_TRANSFER || phase > `CCHIP_PHASE_CHECK
                     || (mine != 2'b00 && (stop & decouple & hold_reset & mine) == mine));
       still_shut: assert (phase != `CCHIP_PHASE_ROC || (mine != 2'b00 && (stop & decouple & mine) == mine));
-      seen: assert (phase != `CCHIP_PHASE_RESET || !changed || (seen_q2 & mine) == mine);
+      seen: assert (phase != `CCHIP_PHASE_RESET || !changed || (seen_q3 & mine) == mine);
       checked: assert ((fell & ~good_q) == 2'b00);
       settled: assert (fell == 2'b00 || (since_q >= SETTLED && (hold_reset & fell) == 2'b00));
       in_recouple: assert (fell == 2'b00 || (phase == `CCHIP_PHASE_RECOUPLE && fell == mine));

@@ -90,16 +90,16 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: clocks of a swap are eq. (4) a
           REQUIRE(bench.stalls() == 0);
           const std::uint64_t transfer = transfer_clocks(bytes, TestType::CFG_W, TestType::CFG_DIVIDER);
           const auto drained = static_cast<std::uint64_t>(drain);
-          REQUIRE(bench.phase_clocks(SwapPhase::header) == 15 + latency);
-          REQUIRE(bench.phase_clocks(SwapPhase::shutdown) == 2 + drained);
-          REQUIRE(bench.phase_clocks(SwapPhase::decouple) == 3);
+          REQUIRE(bench.phase_clocks(SwapPhase::header) == 17 + latency);
+          REQUIRE(bench.phase_clocks(SwapPhase::shutdown) == 3 + drained);
+          REQUIRE(bench.phase_clocks(SwapPhase::decouple) == 4);
           REQUIRE(bench.phase_clocks(SwapPhase::reset) == 2);
-          REQUIRE(bench.phase_clocks(SwapPhase::transfer) == transfer + 7 + latency);
-          REQUIRE(bench.phase_clocks(SwapPhase::check) == 8);
-          REQUIRE(bench.phase_clocks(SwapPhase::roc) == 34 + 2);  // the reset itself
-          REQUIRE(bench.phase_clocks(SwapPhase::recouple) == 3);
+          REQUIRE(bench.phase_clocks(SwapPhase::transfer) == transfer + 8 + latency);
+          REQUIRE(bench.phase_clocks(SwapPhase::check) == 9);
+          REQUIRE(bench.phase_clocks(SwapPhase::roc) == 35 + 2);  // the reset itself
+          REQUIRE(bench.phase_clocks(SwapPhase::recouple) == 4);
           REQUIRE(bench.phase_clocks(SwapPhase::report) == 1);
-          REQUIRE(report.clock - bench.accepted() == transfer + 2 * latency + drained + 77);
+          REQUIRE(report.clock - bench.accepted() == transfer + 2 * latency + drained + 85);
         }
       }
     }
@@ -428,12 +428,12 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: a slot that never becomes quie
       REQUIRE(report.code == SwapCode::shutdown);
       REQUIRE(report.lost == 0);
       bench.require_at_work(0, tri);
-      REQUIRE(bench.phase_clocks(SwapPhase::shutdown) == limit + 1);
+      REQUIRE(bench.phase_clocks(SwapPhase::shutdown) == limit + 2);
       request.force = true;
       report = bench.swap(request);
       REQUIRE(report.code == SwapCode::ok);
       REQUIRE(report.lost == 7);
-      REQUIRE(bench.phase_clocks(SwapPhase::shutdown) == limit + 1);
+      REQUIRE(bench.phase_clocks(SwapPhase::shutdown) == limit + 2);
       bench.require_at_work(0, quad);
       // force without need loses nothing
       bench.top().shutdown_limit = 40;
@@ -568,7 +568,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: slots that do not follow", "[u
     bench.require_good_swap(0, tri);
     bench.behaviour().follows = false;
     REQUIRE(bench.swap(bench.load(0, quad, 64)).code == SwapCode::device);
-    REQUIRE(bench.phase_clocks(SwapPhase::decouple) == TestType::SLOT_LIMIT + 1);
+    REQUIRE(bench.phase_clocks(SwapPhase::decouple) == TestType::SLOT_LIMIT + 2);
     REQUIRE(bench.passed().empty());
     bench.require_good_swap(0, quad);
     const SwapRequest request = bench.load(0, tri, 64);
