@@ -133,13 +133,13 @@ module cchip_axi_read #(
   // {id, line} of the client that is granted
   function [ID_W+57:0] choose(input [(SLOT_W+58)*CLIENTS-1:0] from, input [CLIENTS-1:0] one);
     integer j;
-    reg [31:0] first;  // ID of the client's slot 0
+    integer first;  // ID of the client's slot 0
     reg [ID_W-1:0] id;
     begin
       choose = {ID_W + 58{1'b0}};
       for (j = 0; j < CLIENTS; j = j + 1)
       if (one[j]) begin
-        first = j << SLOT_W;
+        first = j * SLOTS;
         id = first[ID_W-1:0];
         id[SLOT_W-1:0] = from[(SLOT_W+58)*j+58+:SLOT_W];
         choose = choose | {id, from[(SLOT_W+58)*j+:58]};

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// cchip_broad_phase_axi: cchip_broad_phase with a cchip_axi_read of its own, for an AXI4 memory. Ports
+// cchip_broad_phase_axi: cchip_broad_phase with a cchip_axi_read of its own, for an AXI4 memory.
 // Ports and rules are those of the two.
 //   cuts         every path: each output is a flip-flop
 //   reset        must reset the bus, too
 module cchip_broad_phase_axi #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
-    // node pairs under way, of all and of one query
+    // node pairs under way
     parameter integer PAIRS = 56,
-    parameter integer PAIRS_EACH = 4,
     // pairs of leaves that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 8,
     // entries of a query's stack: 8, 16, 32 or 64
@@ -30,6 +29,8 @@ module cchip_broad_phase_axi #(
 ) (
     input  wire                            clk,
     input  wire                            rst,
+    // node pairs of a query that may be under way, 1..7; half of it with pairs of leaves out
+    input  wire [                     2:0] pairs_each,
     input  wire [                    31:0] step_limit,           // node pairs of a query
     input  wire [                     7:0] open_limit,           // open pairs of a FIRST query
     // queries (docs/image.md)
@@ -113,7 +114,6 @@ module cchip_broad_phase_axi #(
   cchip_broad_phase #(
       .QUERIES   (QUERIES),
       .PAIRS     (PAIRS),
-      .PAIRS_EACH(PAIRS_EACH),
       .LEAVES    (LEAVES),
       .STACK     (STACK),
       .LEAF_DEPTH(LEAF_DEPTH),
@@ -125,6 +125,7 @@ module cchip_broad_phase_axi #(
   ) u_broad_phase (
       .clk             (clk),
       .rst             (rst),
+      .pairs_each      (pairs_each),
       .step_limit      (step_limit),
       .open_limit      (open_limit),
       .s_query_valid   (s_query_valid),

@@ -19,9 +19,8 @@
 module cchip_traversal #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
-    // node pairs under way, of all and of one query
+    // node pairs under way
     parameter integer PAIRS = 56,
-    parameter integer PAIRS_EACH = 4,
     // pairs of leaves that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 8,
     // entries of a query's stack: 8, 16, 32 or 64
@@ -33,6 +32,8 @@ module cchip_traversal #(
 ) (
     input  wire                             clk,
     input  wire                             rst,
+    // node pairs of a query that may be under way, 1..7; half of it with pairs of leaves out
+    input  wire [                      2:0] pairs_each,
     input  wire [                     31:0] step_limit,       // node pairs of a query
     input  wire [                      7:0] open_limit,       // open pairs of a FIRST query
     // queries (docs/image.md)
@@ -102,7 +103,7 @@ module cchip_traversal #(
   localparam integer STACK_W = $clog2(STACK);
   localparam integer WORK_W = 12;  // pairs of one epoch of a query: LEAF_DEPTH 16 and some
   localparam integer ROOM_W = $clog2(LEAF_DEPTH + 1);
-  localparam [31:0] EACH = PAIRS_EACH, FEW = (PAIRS_EACH + 1) / 2, FULL = STACK, DEPTH = LEAF_DEPTH;
+  localparam [31:0] FULL = STACK, DEPTH = LEAF_DEPTH;
   localparam [31:0] LAST_EPOCH = QUERIES * 4 - 1;
   localparam integer LIMIT_DONE = 2 * QUERIES;
 
@@ -110,9 +111,8 @@ module cchip_traversal #(
     if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES) begin : gen_illegal_queries
       cchip_error_traversal_QUERIES_must_be_2_4_8_or_16 u_error ();
     end
-    if (PAIRS_EACH < 1 || PAIRS_EACH > 7 || LEAF_DEPTH <= PAIRS || LEAF_DEPTH > 128)
-    begin : gen_illegal_depth
-      cchip_error_traversal_LEAF_DEPTH_must_be_over_PAIRS_to_128_and_PAIRS_EACH_1_to_7 u_error ();
+    if (LEAF_DEPTH <= PAIRS || LEAF_DEPTH > 128) begin : gen_illegal_depth
+      cchip_error_traversal_LEAF_DEPTH_must_be_over_PAIRS_to_128 u_error ();
     end
     if (STACK < 8 || STACK > 64 || (1 << STACK_W) != STACK) begin : gen_illegal_stack
       cchip_error_traversal_STACK_must_be_8_16_32_or_64 u_error ();
@@ -614,7 +614,7 @@ module cchip_traversal #(
   wire active6 = active_q6 & ~ends6;
   // a FIRST query with pairs of leaves out, one of which may end it, asks for half as much
   wire hopes6 = ~mode_q6 && work_q6 != {{WORK_W - 3{1'b0}}, under_q6};
-  wire [2:0] most6 = hopes6 ? FEW[2:0] : EACH[2:0];
+  wire [2:0] most6 = hopes6 ? {1'b0, pairs_each[2:1]} + {2'd0, pairs_each[0]} : pairs_each;
   wire [EPOCH_W-1:0] now6 = now_q6 + {{EPOCH_W - 1{1'b0}}, ends6};
   always @(posedge clk) begin
     event_start_q7 <= event_q6 == START;

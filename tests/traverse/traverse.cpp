@@ -32,6 +32,7 @@ struct Settings {
   std::uint64_t seed = sim::seed_from_environment();
   MemoryOptions memory;
   std::size_t at_once = 0;
+  unsigned pairs_each = 4;
   std::uint32_t lock = 512;  ///< lines of each image, from its first one
   std::vector<std::string> modes = {"first", "all"};
   std::string wave;
@@ -144,6 +145,7 @@ class Run {
     TraverseBench<BroadPhase> bench(options);
     bench.memory = settings_.memory;
     bench.at_once = settings_.at_once;
+    bench.top().pairs_each = static_cast<CData>(settings_.pairs_each);
     bench.place(image_a.line, image_a.image.lines);
     bench.place(image_b.line, image_b.image.lines);
     if (settings_.lock != 0) {
@@ -253,6 +255,9 @@ int main(int argc, char** argv) {
   app.add_option("--beat-every", settings.memory.beat_every, "clocks from one beat to the next")->capture_default_str();
   app.add_flag("--reorder", settings.memory.reorder, "memory answers in any order");
   app.add_option("--at-once", settings.at_once, "queries that may be unanswered; 0: no limit")->capture_default_str();
+  app.add_option("--pairs-each", settings.pairs_each, "node pairs of a query under way")
+      ->check(CLI::Range(1, 7))
+      ->capture_default_str();
   app.add_option("--lock", settings.lock, "lines of each image that stay in the cache")->capture_default_str();
   app.add_option("--wave", settings.wave, "waveform of the beginning, FST");
   app.footer("Exit codes: 0 nothing wrong, 3 a wrong or a lost answer, others: wrong arguments.");
