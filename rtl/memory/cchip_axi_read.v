@@ -70,6 +70,7 @@ module cchip_axi_read #(
   localparam [31:0] BEATS = 512 / DATA_W;
   localparam [31:0] LAST_BEAT = BEATS - 1;
   localparam [31:0] LAST_ID = IDS - 1;
+  localparam [31:0] STRIDE = SLOTS;  // from a client's IDs to the next one's
   localparam [31:0] BYTES_LOG2 = $clog2(DATA_W / 8);
 
   generate
@@ -133,14 +134,12 @@ module cchip_axi_read #(
   // {id, line} of the client that is granted
   function [ID_W+57:0] choose(input [(SLOT_W+58)*CLIENTS-1:0] from, input [CLIENTS-1:0] one);
     integer j;
-    integer first;  // ID of the client's slot 0
     reg [ID_W-1:0] id;
     begin
       choose = {ID_W + 58{1'b0}};
       for (j = 0; j < CLIENTS; j = j + 1)
       if (one[j]) begin
-        first = j * SLOTS;
-        id = first[ID_W-1:0];
+        id = j[ID_W-1:0] * STRIDE[ID_W-1:0];
         id[SLOT_W-1:0] = from[(SLOT_W+58)*j+58+:SLOT_W];
         choose = choose | {id, from[(SLOT_W+58)*j+:58]};
       end

@@ -16,15 +16,15 @@ module cchip_broad_phase #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
     // node pairs under way
-    parameter integer PAIRS = 56,
+    parameter integer PAIRS = 48,
     // pairs of leaves that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
-    parameter integer LEAVES = 8,
+    parameter integer LEAVES = 16,
     // entries of a query's stack: 8, 16, 32 or 64
     parameter integer STACK = 64,
     // entries of the queue of leaves, more than PAIRS
-    parameter integer LEAF_DEPTH = 80,
+    parameter integer LEAF_DEPTH = 72,
     // pairs of leaves that the receiver has room for
-    parameter integer CREDIT = 16,
+    parameter integer CREDIT = 32,
     // size of the cache, KiB: 4, 8 ... 1024
     parameter integer CACHE_KB = 128,
     // lines under way from memory: 2, 4, 8, 16 or 32

@@ -18,9 +18,9 @@ module cchip_get_data #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
     // node pairs under way
-    parameter integer PAIRS = 56,
+    parameter integer PAIRS = 48,
     // pairs of leaves under way; PAIRS + LEAVES is 8, 16, 32 or 64
-    parameter integer LEAVES = 8
+    parameter integer LEAVES = 16
 ) (
     input  wire                                                 clk,
     input  wire                                                 rst,

@@ -15,9 +15,9 @@ module cchip_leaf_queue #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
     // entries
-    parameter integer DEPTH = 80,
+    parameter integer DEPTH = 72,
     // pairs that the receiver has room for, 1..65535
-    parameter integer CREDIT = 16
+    parameter integer CREDIT = 32
 ) (
     input  wire                       clk,
     input  wire                       rst,

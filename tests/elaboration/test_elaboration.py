@@ -128,7 +128,7 @@ ILLEGAL = [
     ("cchip_leaf_queue", {"CREDIT": 0}, "cchip_error_leaf_queue_CREDIT_must_be_1_to_65535"),
     *(("cchip_traversal", {"QUERIES": n}, "cchip_error_traversal_QUERIES_must_be_2_4_8_or_16") for n in (3, 32)),
     *(("cchip_traversal", case, "cchip_error_traversal_LEAF_DEPTH_must_be_over_PAIRS_to_128")
-      for case in ({"LEAF_DEPTH": 56}, {"LEAF_DEPTH": 129})),
+      for case in ({"LEAF_DEPTH": 48}, {"LEAF_DEPTH": 129})),
     *(("cchip_traversal", {"STACK": n}, "cchip_error_traversal_STACK_must_be_8_16_32_or_64") for n in (4, 12, 128)),
     ("cchip_bv_unit", {"TAG_W": 0}, "cchip_error_bv_unit_TAG_W_below_1"),
     *(("cchip_pr_region", {"RM_ID": n}, RM_ID) for n in (-1, 4)),
