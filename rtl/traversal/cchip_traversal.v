@@ -614,7 +614,7 @@ module cchip_traversal #(
   wire active6 = active_q6 & ~ends6;
   // a FIRST query with pairs of leaves out, one of which may end it, asks for half as much
   wire hopes6 = ~mode_q6 && work_q6 != {{WORK_W - 3{1'b0}}, under_q6};
-  wire [2:0] most6 = hopes6 ? {1'b0, pairs_each[2:1]} + {2'd0, pairs_each[0]} : pairs_each;
+  wire [2:0] most6 = hopes6 ? {1'b0, pairs_each[2:1]} : pairs_each;
   wire [EPOCH_W-1:0] now6 = now_q6 + {{EPOCH_W - 1{1'b0}}, ends6};
   always @(posedge clk) begin
     event_start_q7 <= event_q6 == START;
