@@ -32,7 +32,7 @@ struct Settings {
   std::uint64_t seed = sim::seed_from_environment();
   MemoryOptions memory;
   std::size_t at_once = 0;
-  unsigned pairs_each = 4;
+  unsigned pairs_each = 3;
   std::uint32_t lock = 512;  ///< lines of each image, from its first one
   std::vector<std::string> modes = {"first", "all"};
   std::string wave;

@@ -87,7 +87,7 @@ class TraverseBench {
   explicit TraverseBench(sim::SimulationOptions options)
       : simulation_(std::move(options)), random_(simulation_.seed()) {
     Model& top = simulation_.top();
-    top.pairs_each = 4;
+    top.pairs_each = 3;
     top.step_limit = 0xffffffff;
     top.open_limit = 16;
     top.memory_limit = 100000;
