@@ -10,6 +10,7 @@
 #include <cchip/wire/definitions.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <set>
@@ -204,6 +205,201 @@ class AxiRead {
   std::optional<std::size_t> found_;
   std::optional<Failure> failing_, failed_;
   std::optional<Beat> beat_;
+};
+
+/// cchip_axi_write: writes of several clients, within a line each, into a memory that answers in order.
+class AxiWrite {
+ public:
+  struct Beat {
+    std::uint64_t address = 0;  ///< in beats; counts on the first beat of a write
+    LineData data{};
+    std::uint64_t strobes = 0;
+    bool last = false;
+  };
+  struct Response {
+    bool own = true;  ///< the ID is 0
+    bool okay = true;
+  };
+  struct Inputs {
+    std::uint32_t limit = 0;
+    std::vector<std::optional<Beat>> beats;  ///< offered, one for each client
+    bool awready = false;
+    bool wready = false;
+    std::optional<Response> response;  ///< bvalid = 1
+  };
+  struct Address {
+    std::uint64_t address = 0;  ///< in beats
+    std::size_t beats = 0;
+  };
+  struct Data {
+    std::optional<LineData> data;  ///< without: the client of the write has been answered, nothing is written
+    std::uint64_t strobes = 0;
+    bool last = false;
+  };
+  struct Answer {
+    std::size_t client = 0;
+    WriteCode code = WriteCode::ok;
+  };
+
+  /// \param beats of a line
+  AxiWrite(std::size_t clients, std::size_t beats, std::size_t outstanding)
+      : clients_(clients), line_(beats), outstanding_(outstanding) {}
+
+  /// Client whose beat is taken.
+  const std::optional<std::size_t>& ready() const { return ready_; }
+  const std::optional<Answer>& answer() const { return answer_; }
+  bool awvalid() const { return addresses_.m_valid(); }
+  const Address& address() const { return addresses_.m_data(); }
+  bool wvalid() const { return data_.m_valid(); }
+  const Data& data() const { return data_.m_data(); }
+  bool bready() const { return bready_; }
+  bool owes() const { return owes_; }
+
+  void clock(const Inputs& in) {
+    // what becomes of the writes under way
+    const bool counts = response_ && addresses_taken_ != 0 && bursts_taken_ != 0;
+    const bool answered = counts && dropped_ == 0;
+    const bool timeout = !answered && !waiting_.empty() && waiting_.front().ticks == 2;
+
+    // the head of the queues
+    const bool awaited = !waiting_.empty();
+    const bool pop = take_ && beats_.m_valid() && (data_.s_ready() || !awaited);
+    const bool send = send_ && data_.s_ready() && (beats_.m_valid() || !awaited);
+    const bool free = !take_ || (pop && take_->left == 0);
+    const bool refuse = writes_.m_valid() && free && dropped_ != 0 && !awaited;
+    const bool issue =
+        writes_.m_valid() && free && dropped_ == 0 && waiting_.size() < outstanding_ && addresses_.s_ready();
+    const bool refused = pop && take_->left == 0 && take_->refused;
+    const Write write = writes_.m_valid() ? writes_.m_data() : Write{};
+    const Data word = beats_.m_valid() ? beats_.m_data() : Data{};
+
+    owes_ = awaited || dropped_ != 0;
+    answer_.reset();
+    if (refused) {
+      answer_ = Answer{take_->client, WriteCode::owed};
+    } else if (answered) {
+      answer_ = Answer{waiting_.front().client, *response_ ? WriteCode::ok : WriteCode::bus};
+    } else if (timeout) {
+      answer_ = Answer{waiting_.front().client, WriteCode::timeout};
+    }
+
+    // to memory
+    const bool address_taken = awvalid() && in.awready;
+    const bool burst_taken = wvalid() && data().last && in.wready;
+    addresses_.clock(issue, write.address, in.awready);
+    data_.clock(send, Data{awaited ? word.data : std::nullopt, awaited ? word.strobes : 0, send && *send_ == 0},
+                in.wready);
+    if (pop) {
+      if (take_->left == 0) {
+        take_.reset();
+      } else {
+        --take_->left;
+      }
+    }
+    if (send) {
+      if (*send_ == 0) {
+        send_.reset();
+      } else {
+        --*send_;
+      }
+    }
+    if (issue || refuse) take_ = Take{write.address.beats - 1, refuse, write.client};
+    if (issue) send_ = write.address.beats - 1;
+
+    // time
+    if (tick_) {
+      for (Waiting& one : waiting_) one.ticks = std::min(one.ticks + 1, 2);
+    }
+    tick_ = timer_ == 0;
+    timer_ = timer_ == 0 ? in.limit : timer_ - 1;
+    if (answered || timeout) waiting_.pop_front();
+    if (issue) waiting_.push_back(Waiting{write.client, 0});
+    if (timeout) ++dropped_;
+    if (counts && !answered) --dropped_;
+
+    // from memory
+    if (address_taken_) ++addresses_taken_;
+    if (burst_taken_) ++bursts_taken_;
+    if (counts) {
+      --addresses_taken_;
+      --bursts_taken_;
+    }
+    address_taken_ = address_taken;
+    burst_taken_ = burst_taken;
+    response_.reset();
+    if (bready_ && in.response && in.response->own) response_ = in.response->okay;
+    bready_ = true;
+
+    // from the clients
+    writes_.clock(in_ && in_->last, current_, issue || refuse);
+    beats_.clock(in_.has_value(), in_.value_or(Data{}), pop);
+    in_.reset();
+    const bool room = held_ <= 13;
+    if (pop) --held_;
+    if (ready_ && in.beats[*ready_]) {
+      const Beat& beat = *in.beats[*ready_];
+      if (!begun_) current_ = Write{*ready_, {beat.address, 0}};
+      ++current_.address.beats;
+      const bool last = beat.last || (current_.address.address + current_.address.beats) % line_ == 0;
+      in_ = Data{beat.data, beat.strobes, last};
+      begun_ = !last;
+      ++held_;
+    }
+    if (!begun_) {
+      turn_.reset();
+      for (std::size_t i = 1; i <= clients_ && !turn_; ++i) {
+        if (in.beats[(served_ + i) % clients_]) turn_ = (served_ + i) % clients_;
+      }
+      if (room && turn_) served_ = *turn_;
+    }
+    ready_ = room ? turn_ : std::nullopt;
+  }
+
+  void reset(std::uint32_t limit) {
+    *this = AxiWrite(clients_, line_, outstanding_);
+    timer_ = limit;
+  }
+
+ private:
+  static constexpr std::size_t queue_depth = 16;
+  struct Write {
+    std::size_t client = 0;
+    Address address;
+  };
+  struct Take {
+    std::size_t left;  // beats behind the present one
+    bool refused;
+    std::size_t client;
+  };
+  struct Waiting {
+    std::size_t client;
+    int ticks;  // seen, at most 2
+  };
+
+  std::size_t clients_;
+  std::size_t line_;
+  std::size_t outstanding_;
+  std::size_t served_ = clients_ - 1;
+  std::optional<std::size_t> turn_, ready_;
+  bool begun_ = false;
+  Write current_;
+  std::optional<Data> in_;
+  std::size_t held_ = 0;  // beats taken that have not left their queue
+  Fifo<Write> writes_{queue_depth};
+  Fifo<Data> beats_{queue_depth};
+  std::optional<Take> take_;         // whose beats leave the queue
+  std::optional<std::size_t> send_;  // beats behind the one to send
+  SkidBuffer<Address> addresses_;
+  SkidBuffer<Data> data_;
+  std::deque<Waiting> waiting_;
+  std::size_t dropped_ = 0;  // given up, the response is owed
+  bool address_taken_ = false, burst_taken_ = false;
+  std::size_t addresses_taken_ = 0, bursts_taken_ = 0;  // without a response
+  std::optional<bool> response_;                        // okay
+  bool bready_ = false;
+  std::optional<Answer> answer_;
+  std::uint32_t timer_ = 0;
+  bool tick_ = false, owes_ = false;
 };
 
 /// cchip_cache: lines of 64 bytes, two ways, two ports. Counts what its ports do on each clock.
