@@ -396,22 +396,21 @@ module cchip_axi_write #(
   end
 
   // ---- answers, and whose they are
-  wire [1:0] first_client;
-  wire first_valid, first_room;
-  cchip_fifo #(
-      .WIDTH     (2),
-      .DEPTH     (OUTSTANDING),
-      .ROOM_KNOWN(1)
-  ) u_clients (
-      .clk    (clk),
-      .rst    (rst),
-      .s_valid(issue),
-      .s_ready(first_room),
-      .s_data (client),
-      .m_valid(first_valid),
-      .m_ready(gone),
-      .m_data (first_client)
-  );
+  localparam integer CLIENT_W = OUTSTANDING < 2 ? 1 : $clog2(OUTSTANDING);
+  (* ram_style = "distributed" *)
+  reg [1:0] clients[0:(1<<CLIENT_W)-1];
+  reg [CLIENT_W-1:0] write_q, read_q;
+  wire [1:0] first_client = clients[read_q];
+  always @(posedge clk) begin
+    if (issue) clients[write_q] <= client;
+    if (rst) begin
+      write_q <= {CLIENT_W{1'b0}};
+      read_q  <= {CLIENT_W{1'b0}};
+    end else begin
+      if (issue) write_q <= write_q + {{CLIENT_W - 1{1'b0}}, 1'b1};
+      if (gone) read_q <= read_q + {{CLIENT_W - 1{1'b0}}, 1'b1};
+    end
+  end
   reg [CLIENTS-1:0] valid_q;
   reg [CODE_W-1:0] code_q;
   reg owes_q;
@@ -431,7 +430,7 @@ module cchip_axi_write #(
   assign m_code  = code_q;
   assign owes    = owes_q;
 
-  wire unused = &{1'b0, one_client, dropped, addresses, bursts, write_ready, beat_ready, first_room,
+  wire unused = &{1'b0, one_client, dropped, addresses, bursts, write_ready, beat_ready,
                   dropped_room, address_room, data_room};
   always @(posedge clk)
     if (!rst) begin
@@ -439,7 +438,6 @@ module cchip_axi_write #(
       `CCHIP_ASSERT(a_refuse, !(refused_q && take_q && waiting_some))
       `CCHIP_ASSERT(a_send, !issue || !send_q || (send && send_last_q))
       `CCHIP_ASSERT(a_step, !send_q || !waiting_some || (take_q && take_left_q == send_left_q))
-      `CCHIP_ASSERT(a_client, !gone || first_valid)
       `CCHIP_ASSERT(a_beat, !pop || held_q != 5'd0)
     end
 

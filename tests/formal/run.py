@@ -44,6 +44,7 @@ QUEUES = "rtl/dispatch/cchip_descriptor_queues.v"
 RETRY = "rtl/reconfig/cchip_swap_retry.v"
 FETCH = "rtl/reconfig/cchip_bitstream_fetch.v"
 READ = "rtl/memory/cchip_axi_read.v"
+WRITE = "rtl/memory/cchip_axi_write.v"
 # Tasks that take minutes; --quick proves the others, which take seconds.
 SLOW = {("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"), ("cchip_slot_ledger", "prove"),
         ("cchip_dispatcher", "bounded"), ("cchip_dispatcher", "bounded_2"), ("cchip_descriptor_queues", "bounded"),
@@ -88,6 +89,18 @@ MUTANTS = [
     ("cchip_axi_read bounded", READ, "wire bad = bad_q | (~none_yet & progress_read[3]);", "wire bad = bad_q;"),
     ("cchip_axi_read bounded", READ, "assign last = rlast_q || count == LAST_BEAT[2:0];", "assign last = rlast_q;"),
     ("cchip_axi_read bounded", READ, "issue | (arvalid_q & ~m_axi_arready);", "issue | (arvalid_q & ~m_axi_arready & ar_live_q);"),
+    # a response that comes late answers the next write; one that comes before the data is taken for theirs; a burst leaves its
+    # line; more writes than can be counted; data of another write end a burst; writes of two clients are mixed; a refused
+    # write is answered at once
+    ("cchip_axi_write bounded", WRITE, "assign answered = b_counts & ~dropped_some;", "assign answered = b_counts;"),
+    ("cchip_axi_write bounded", WRITE, "wire b_counts = b_valid_q & address_some & data_some;", "wire b_counts = b_valid_q & address_some;"),
+    ("cchip_axi_write bounded", WRITE, "wire ends = last || place == LAST_BEAT[2:0];", "wire ends = last;"),
+    ("cchip_axi_write bounded", WRITE, "assign issue = write_valid & take_free & ~dropped_some & waiting_room & aw_ready;",
+     "assign issue = write_valid & take_free & ~dropped_some & aw_ready;"),
+    ("cchip_axi_write bounded", WRITE, "beat_strb & {STRB_W{waiting_some}}", "beat_strb"),
+    ("cchip_axi_write bounded", WRITE, "turn_d = begun_d ? turn_q : grant;", "turn_d = grant;"),
+    ("cchip_axi_write bounded", WRITE, "wire refuse = write_valid & take_free & dropped_some & ~waiting_some;",
+     "wire refuse = write_valid & take_free & dropped_some;"),
     # the turn follows requests instead of grants; passes without a grant taken; there is no turn
     ("cchip_arbiter prove", ARBITER, "behind_q <= above(grant);", "behind_q <= above(lowest(request));"),
     ("cchip_arbiter prove", ARBITER, "else if (take && |request)", "else if (|request)"),
