@@ -65,11 +65,11 @@ class AxiRead {
 
   void clock(const Inputs& in) {
     // decisions, from the present state
-    const bool head_owed = head_ && reads_[head_->id].owed;
     const bool dead = address_ && !address_awaited_;
-    const bool issue = head_ && !head_owed && (!address_ || (in.arready && address_awaited_));
-    const bool refuse = head_ && (head_owed || dead) && !failing_ && !found_;
+    const bool issue = head_ && !head_owed_ && (!address_ || (in.arready && address_awaited_));
+    const bool refuse = head_ && head_owed_ && !failing_ && !found_;
     const bool taken = address_ && in.arready;
+    const bool next_owed = next_.m_valid() && reads_[next_.m_data().id].owed;
     std::optional<Failure> fail;
     if (found_ && !failing_) {
       fail = Failure{*found_, ReadCode::timeout};
@@ -79,47 +79,57 @@ class AxiRead {
     const auto found = found_ ? (failing_ ? found_ : std::nullopt) : late(scan_) ? std::optional(scan_) : std::nullopt;
     const std::size_t scan = found_ ? scan_ : (scan_ + 1) % reads_.size();
     const auto place_beat = rready_ && in.beat && in.beat->id < reads_.size() ? in.beat : std::nullopt;
-    owes_ =
-        address_.has_value() || std::any_of(reads_.begin(), reads_.end(), [](const Read& read) { return read.owed; });
+    owes_ = address_ || taken_ || std::any_of(reads_.begin(), reads_.end(), [](const Read& read) { return read.owed; });
 
     if (tick_) {
       for (Read& read : reads_) read.ticks = read.live ? std::min(read.ticks + 1, 2) : 0;
     }
     answer_.reset();
-    if (failed_) answer_failure(*failed_);
-    if (beat_) answer_beat(*beat_);
+    if (place_) answer_place(*place_);
 
-    // addresses
-    if (taken) {
-      Read& read = reads_[address_->id];
+    // the next beat or failure sees what this one did, and not yet what happens to addresses on this clock
+    place_.reset();
+    if (failed_) place_ = Place{failed_, {}, reads_[failed_->id]};
+    if (beat_) place_ = Place{{}, *beat_, reads_[beat_->id]};
+    if (taken_) {
+      Read& read = reads_[*taken_];
       read.owed = true;
       read.count = 0;
       read.bad = false;
-      address_.reset();
     }
-    if (issue) {
-      address_ = Address{head_->id, head_->line};
-      address_awaited_ = true;
-      reads_[head_->id].live = true;
-      reads_[head_->id].ticks = 0;
+    if (issued_) {
+      reads_[*issued_].live = true;
+      reads_[*issued_].ticks = 0;
     }
+
+    // addresses
     const bool load = !head_ || issue || refuse;
+    head_owed_ = dead || (load ? was_dead_ || next_owed : head_owed_);
+    was_dead_ = dead;
+    taken_ = taken ? std::optional(address_->id) : std::nullopt;
+    issued_ = issue ? std::optional(head_->id) : std::nullopt;
+    if (taken) address_.reset();
+    if (issue) {
+      address_ = head_;
+      address_awaited_ = true;
+    }
+    if (load) head_ = next_.m_valid() ? std::optional(next_.m_data()) : std::nullopt;
     const std::size_t clients = queues_.size();
+    const bool turn = next_.s_ready();
     std::optional<std::size_t> granted;
     for (std::size_t i = 1; i <= clients && !granted; ++i) {
       if (queues_[(served_ + i) % clients].m_valid()) granted = (served_ + i) % clients;
     }
-    if (load) {
-      head_.reset();
-      if (granted) {
-        const Request& request = queues_[*granted].m_data();
-        head_ = Address{*granted * slots_ + request.slot, request.line};
-        served_ = *granted;
-      }
+    Address next;
+    if (granted) {
+      const Request& request = queues_[*granted].m_data();
+      next = Address{*granted * slots_ + request.slot, request.line};
+      if (turn) served_ = *granted;
     }
+    next_.clock(granted.has_value(), next, load);
     for (std::size_t i = 0; i < clients; ++i) {
       const auto& request = in.requests[i];
-      queues_[i].clock(request.has_value(), request.value_or(Request{}), load && granted == i);
+      queues_[i].clock(request.has_value(), request.value_or(Request{}), turn && granted == i);
     }
 
     // time
@@ -138,8 +148,12 @@ class AxiRead {
   void reset(std::uint32_t limit) {
     for (auto& queue : queues_) queue.reset();
     for (auto& read : reads_) read = Read{};
+    next_.reset();
     head_.reset();
     address_.reset();
+    issued_.reset();
+    taken_.reset();
+    place_.reset();
     answer_.reset();
     found_.reset();
     failing_.reset();
@@ -148,7 +162,7 @@ class AxiRead {
     served_ = queues_.size() - 1;
     timer_ = limit;
     scan_ = 0;
-    tick_ = rready_ = owes_ = address_awaited_ = false;
+    tick_ = rready_ = owes_ = address_awaited_ = head_owed_ = was_dead_ = false;
   }
 
  private:
@@ -163,25 +177,34 @@ class AxiRead {
     std::size_t id;
     ReadCode code;
   };
+  struct Place {  // a beat or a failure, with what was known of its read when it came
+    std::optional<Failure> failure;
+    Beat beat;
+    Read was;
+  };
 
   bool late(std::size_t id) const { return reads_[id].live && reads_[id].ticks == 2; }
 
-  void answer_failure(const Failure& failure) {
-    Read& read = reads_[failure.id];
+  void answer_place(const Place& place) {
+    if (!place.failure) {
+      answer_beat(place.beat, place.was);
+      return;
+    }
+    const Failure& failure = *place.failure;
     if (failure.code == ReadCode::timeout) {
-      if (!read.live) return;
-      read.live = false;
+      if (!place.was.live) return;
+      reads_[failure.id].live = false;
       if (address_ && address_->id == failure.id) address_awaited_ = false;
     }
     answer_ = Answer{failure.id / slots_, failure.id % slots_, true, failure.code, std::nullopt, {}};
   }
 
-  void answer_beat(const Beat& beat) {
+  void answer_beat(const Beat& beat, const Read& was) {
+    if (!was.owed) return;
     Read& read = reads_[beat.id];
-    if (!read.owed) return;
     const bool last_one = read.count + 1 == beats_;
     read.bad = read.bad || !beat.okay;
-    if (read.live) {
+    if (was.live) {
       const bool last = beat.last || last_one;
       const ReadCode code = read.bad || beat.last != last_one ? ReadCode::bus : ReadCode::ok;
       answer_ = Answer{beat.id / slots_, beat.id % slots_, last, code, read.count, beat.data};
@@ -196,8 +219,12 @@ class AxiRead {
   std::vector<Fifo<Request>> queues_;
   std::vector<Read> reads_;
   std::size_t served_ = 0;
+  SkidBuffer<Address> next_;
   std::optional<Address> head_, address_;
+  bool head_owed_ = false;  // or an address in front of it was given up
+  bool was_dead_ = false;
   bool address_awaited_ = false;
+  std::optional<std::size_t> issued_, taken_;  // on the last clock
   std::optional<Answer> answer_;
   std::uint32_t timer_ = 0;
   bool tick_ = false, rready_ = false, owes_ = false;
@@ -205,6 +232,7 @@ class AxiRead {
   std::optional<std::size_t> found_;
   std::optional<Failure> failing_, failed_;
   std::optional<Beat> beat_;
+  std::optional<Place> place_;
 };
 
 /// cchip_axi_write: writes of several clients, within a line each, into a memory that answers in order.
