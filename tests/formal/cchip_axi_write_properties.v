@@ -88,7 +88,9 @@ module cchip_axi_write_properties #(
   end
 
   // ---- clients: where each is in its write, and how many wait for their answer. A line has two beats
-  (* anyconst *) reg [$clog2(CLIENTS)-1:0] chosen;
+  localparam integer CHOSEN_W = CLIENTS < 2 ? 1 : $clog2(CLIENTS);
+  (* anyconst *) reg [CHOSEN_W-1:0] any_client;
+  wire [CHOSEN_W-1:0] chosen = CLIENTS < 2 ? 1'b0 : any_client;
   (* anyseq *) wire mark;  // if a write of that client begins now, it is the one that is followed
   reg marked_q;  // it has begun
   reg [CLIENTS-1:0] begun_q, second_q, mine_q;  // in a write; at the line's second beat; in the one that is followed
@@ -113,6 +115,9 @@ module cchip_axi_write_properties #(
           open_q[5*c+:5] <= 5'd0;
         end
       end
+`ifndef COVER
+      always @(*) if (started_q && !rst_q && !rst) assert (!m_valid[c] || open_q[5*c+:5] != 0);
+`endif
       always @(*) begin
         assume (s_strb[STRB_W*c+STRB_W-1] == mine[c]);
         if (!begun_q[c]) assume (addresses[ADDRESS_W*c+ADDRESS_W-1] == mine[c]);
@@ -208,7 +213,10 @@ module cchip_axi_write_properties #(
     end
   end
 
-  always @(*) assume (started_q || rst);
+  always @(*) begin
+    assume (started_q || rst);
+    assume (chosen < CLIENTS);
+  end
 `ifdef COVER
   always @(posedge clk)
     if (started_q && !rst && !rst_q) begin
@@ -230,20 +238,16 @@ module cchip_axi_write_properties #(
       length_data: assert (!(take_last && w_n != aw_n && aw_n - w_n < 3'd4) || aw_long[w_n[1:0]] == w_second);
       length_both: assert (!(take_last && take_address && w_n == aw_n) || m_axi_awlen[0] == w_second);
       counted: assert (unanswered + m_axi_awvalid <= OUTSTANDING);
-`ifndef RULES
       in_order: assert (!(aw_seen && w_seen) || aw_mine_n == w_mine_n);
       its_address: assert (!aw_mine || (complete_q && m_axi_awaddr[PLACE] == place_q && m_axi_awlen + 1 == beats_q));
       its_data: assert (!w_mine || (complete_q && sent_q < beats_q && m_axi_wdata[0] == data_q[sent_q[0]] &&
           m_axi_wstrb[0] == strb_q[sent_q[0]]));
       one_client: assert ((m_valid & (m_valid - 1)) == 0);
-      once: assert (!m_valid[0] || open_q[4:0] != 0);
-      once_1: assert (!m_valid[1] || open_q[9:5] != 0);
       honest: assert (!(answer && m_code == `CCHIP_WRITE_OK) || (came_q[1] && okay_q[1] && sent_q == beats_q));
       bus: assert (!(answer && m_code == `CCHIP_WRITE_BUS) || (came_q[1] && !okay_q[1]));
       told: assert (!came_q[1] || answered_q || (answer && !m_code[1]));
       nothing_sent: assert (!((answer && m_code == `CCHIP_WRITE_OWED) || owed_q) || !(aw_seen || w_seen || aw_mine || w_mine));
       in_time: assert (waits_q != BOUND);
-`endif
     end
 `endif
 endmodule
