@@ -82,12 +82,12 @@ MUTANTS = [
     ("cchip_bitstream_fetch bounded", FETCH, "issue | (arvalid_q & ~m_axi_arready);", "issue | (arvalid_q & ~m_axi_arready & run);"),
     ("cchip_bitstream_fetch bounded", FETCH, "timeout_q <= run & (timeout_q |", "timeout_q <= run & (1'b0 |"),
     # late beats reach the next request; a place that is owed is asked for again, also if its address is taken as the request
-    # comes; beats of any read count; what the beat before has closed, and its count, is not seen; an error is forgotten; a line
+    # comes; a read counts on where the one before it ended; what the beat before has closed, and its count, is not seen; an error is forgotten; a line
     # that is too long goes on; an address is taken back
     ("cchip_axi_read bounded", READ, "wire deliver = (counts & wanted) |", "wire deliver = counts |"),
     ("cchip_axi_read bounded", READ, "wire issue = head_valid_q & ~head_owed_q &", "wire issue = head_valid_q &"),
     ("cchip_axi_read bounded", READ, "owed_q[next_id] | dead | dead_q :", "owed_q[next_id] | dead :"),
-    ("cchip_axi_read bounded", READ, "first_q <= (first_q & ~counted) | taken;", "first_q <= (first_q & ~counted) | (offered & ~taken);"),
+    ("cchip_axi_read bounded", READ, "first_q <= (first_q & ~counted) | taken;", "first_q <= first_q & ~counted;"),
     ("cchip_axi_read bounded", READ, "wire wanted = live_q2 & ~closed_q2;", "wire wanted = live_q2;"),
     ("cchip_axi_read bounded", READ, "counted_q2  <= same & counts;", "counted_q2  <= 1'b0;"),
     ("cchip_axi_read bounded", READ, "wire bad = bad_q2 | (~none_yet & progress_now[3]);", "wire bad = bad_q2;"),
