@@ -16,6 +16,7 @@ arith/cchip_dot3.v
 arith/cchip_cross3.v
 arith/cchip_norm1.v
 memory/cchip_axi_read.v
+memory/cchip_axi_write.v
 memory/cchip_cache_fill.v
 memory/cchip_cache.v
 bvtest/cchip_pose_setup.v

@@ -92,6 +92,7 @@ STIMULI = {
     "cchip_crc32": ("clear = 1; tick; clear = 0;", "valid = 1;", "crc"),
     "cchip_bitstream_fetch": ("words = 4; limit = 100;", "run = 1;", "m_axi_arvalid"),
     "cchip_axi_read": ("limit = 100; tick;", "s_valid = 1;", "m_axi_arvalid"),
+    "cchip_axi_write": ("limit = 100; s_last = 1; tick;", "s_valid = 1;", "m_axi_awvalid"),
     "cchip_cache": ("repeat (1 << dut.SET_W) tick; repeat (2) tick;", "s_valid = 1;", "m_read_valid"),
     "cchip_cache_fill": (
         "repeat (6) tick; free_take = 1; tick; free_take = 0; allocate = 1; tick; allocate = 0;",

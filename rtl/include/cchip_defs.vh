@@ -57,6 +57,8 @@
 `define CCHIP_SWAP_W 4
 // width of the code of a read [bit]
 `define CCHIP_READ_CODE_W 2
+// width of the code of a write [bit]
+`define CCHIP_WRITE_CODE_W 2
 // word 0 of a bitstream's header
 `define CCHIP_BITSTREAM_MAGIC 32'h43434250
 // first word of a virtual bitstream's payload
@@ -183,6 +185,16 @@
 `define CCHIP_READ_TIMEOUT 2'd2
 // not sent: memory still owes an earlier read, or does not take its address
 `define CCHIP_READ_OWED 2'd3
+
+// ---- outcome of a write (cchip_axi_write)
+// memory has answered that it holds the data
+`define CCHIP_WRITE_OK 2'd0
+// error response from memory
+`define CCHIP_WRITE_BUS 2'd1
+// memory did not answer in time; it may hold all data, parts or none
+`define CCHIP_WRITE_TIMEOUT 2'd2
+// not sent: memory still owes the response to an earlier write
+`define CCHIP_WRITE_OWED 2'd3
 
 // ---- programme of a pair in the axis controller
 // directed: nA, then nB

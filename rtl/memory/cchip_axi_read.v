@@ -12,11 +12,11 @@
 //                only if that is CCHIP_READ_OK: rresp other than OKAY on any beat, or rlast too
 //                early or too late, is CCHIP_READ_BUS
 //   silence      a read that lasts longer than `limit` clocks, its address included, is answered
-//                with CCHIP_READ_TIMEOUT after 2 limit + 3 CLIENTS SLOTS + 8 clocks at the latest;
+//                with CCHIP_READ_TIMEOUT after 2 limit + 3 CLIENTS SLOTS + 10 clocks at the latest;
 //                on the last beat there are no data. While memory owes beats under that ID, or the
 //                address is not taken, a request that would have to wait for it is answered with
 //                CCHIP_READ_OWED. Beats that come after the answer, or unasked, are dropped
-//   latency      4 clocks from s_valid to arvalid, 2 from a beat to m_valid
+//   latency      5 clocks from s_valid to arvalid, 3 from a beat to m_valid
 //   throughput   a beat and an address on every clock; an answer without data takes a clock of the
 //                read channel, at most every other one
 //   bursts       one line each, INCR, aligned, so never across 4 KiB
@@ -90,17 +90,17 @@ module cchip_axi_read #(
   reg [IDS-1:0] owed_q;  // the address was taken, its rlast has not come
   reg [IDS-1:0] first_q;  // no beat of it has come
   reg [IDS-1:0] seen_q, late_q;  // the read was live at the last tick, at the last two ticks
-  wire [IDS-1:0] offered, taken, closed, ended, beaten;  // what happens to them on this clock
+  wire [IDS-1:0] offered, taken, closed, ended, counted;  // what happens to them on this clock
 
   // ---- requests: one queue per client, then the one whose turn it is
   wire [CLIENTS-1:0] waiting, grant;
   wire [CLIENTS-1:0] queue_ready;
   wire [(SLOT_W+58)*CLIENTS-1:0] waiting_data;
-  reg head_valid_q;
-  reg [ID_W-1:0] head_id_q;
-  reg [57:0] head_line_q;
-  wire head_leaves;
-  wire load_head = head_leaves | ~head_valid_q;
+  wire turn_ready;
+  wire next_valid;
+  wire [ID_W-1:0] next_id;
+  wire [57:0] next_line;
+  wire load_head;
 
   genvar c;
   generate
@@ -116,7 +116,7 @@ module cchip_axi_read #(
           .s_ready(queue_ready[c]),
           .s_data ({s_slot[SLOT_W*c+:SLOT_W], s_line[58*c+:58]}),
           .m_valid(waiting[c]),
-          .m_ready(grant[c] & load_head),
+          .m_ready(grant[c] & turn_ready),
           .m_data (waiting_data[(SLOT_W+58)*c+:SLOT_W+58])
       );
     end
@@ -128,7 +128,7 @@ module cchip_axi_read #(
       .rst    (rst),
       .request(waiting),
       .grant  (grant),
-      .take   (load_head)
+      .take   (turn_ready)
   );
 
   // {id, line} of the client that is granted
@@ -146,7 +146,25 @@ module cchip_axi_read #(
     end
   endfunction
 
-  // ---- addresses
+  cchip_skid_buffer #(
+      .WIDTH(ID_W + 58)
+  ) u_next (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(|waiting),
+      .s_ready(turn_ready),
+      .s_data (choose(waiting_data, grant)),
+      .m_valid(next_valid),
+      .m_ready(load_head),
+      .m_data ({next_id, next_line})
+  );
+
+  // ---- addresses. The head of the requests is one that has to be refused if memory owed its place
+  // as it came here, or if the address in front of it was given up then or since: it may be an
+  // earlier one of the same place
+  reg head_valid_q, head_owed_q;
+  reg [ID_W-1:0] head_id_q;
+  reg [57:0] head_line_q;
   reg arvalid_q;
   reg ar_live_q;  // the client still waits for the read whose address is offered
   reg [ID_W-1:0] arid_q;
@@ -155,17 +173,22 @@ module cchip_axi_read #(
   reg [ID_W-1:0] fail_id_q;
   reg fail_owed_q;  // 1: refused, 0: out of time
 
-  wire head_owed = owed_q[head_id_q];
   reg found_q;  // there is a late read, found_id_q
-  wire issue = head_valid_q & ~head_owed & (~arvalid_q | (m_axi_arready & ar_live_q));
-  wire refuse = head_valid_q & (head_owed | (arvalid_q & ~ar_live_q)) & ~failing_q & ~found_q;
-  wire take_address = arvalid_q & m_axi_arready;
-  assign head_leaves = issue | refuse;
+  reg dead_q;  // the address that was offered on the last clock had been given up
+  reg issued_q, taken_q;  // an address was put on offer, was taken
+  reg [ID_W-1:0] taken_id_q;
+  wire dead = arvalid_q & ~ar_live_q;
+  wire issue = head_valid_q & ~head_owed_q & (~arvalid_q | (m_axi_arready & ar_live_q));
+  wire refuse = head_valid_q & head_owed_q & ~failing_q & ~found_q;
+  assign load_head = issue | refuse | ~head_valid_q;
 
-  wire last, place_timeout;
-  reg [ID_W-1:0] place_id_q;
+  wire place_timeout;
+  reg [ID_W-1:0] place_id_q, place_id_q2;
   always @(posedge clk) begin
-    if (load_head) {head_id_q, head_line_q} <= choose(waiting_data, grant);
+    if (load_head) {head_id_q, head_line_q} <= {next_id, next_line};
+    head_owed_q <= load_head ? owed_q[next_id] | dead | dead_q : head_owed_q | dead;
+    dead_q <= dead;
+    taken_id_q <= arid_q;
     if (issue) begin
       arid_q <= head_id_q;
       line_q <= head_line_q;
@@ -174,10 +197,14 @@ module cchip_axi_read #(
       head_valid_q <= 1'b0;
       arvalid_q    <= 1'b0;
       ar_live_q    <= 1'b0;
+      issued_q     <= 1'b0;
+      taken_q      <= 1'b0;
     end else begin
-      if (load_head) head_valid_q <= |waiting;
+      if (load_head) head_valid_q <= next_valid;
       arvalid_q <= issue | (arvalid_q & ~m_axi_arready);
-      ar_live_q <= issue | (ar_live_q & ~(place_timeout && place_id_q == arid_q));
+      ar_live_q <= issue | (ar_live_q & ~(place_timeout && place_id_q2 == arid_q));
+      issued_q  <= issue;
+      taken_q   <= arvalid_q & m_axi_arready;
     end
   end
   assign m_axi_arvalid = arvalid_q;
@@ -193,6 +220,7 @@ module cchip_axi_read #(
   reg [31:0] timer_q;
   reg tick_q;
   reg [ID_W-1:0] scan_q, found_id_q;  // scan_q looks at one read after the other
+  wire [IDS-1:0] late = live_q & late_q;
   wire timer_zero = timer_q == 32'd0;
   wire fail = (found_q | refuse) & ~failing_q;
   always @(posedge clk) begin
@@ -209,7 +237,7 @@ module cchip_axi_read #(
       tick_q <= timer_zero;
       if (!found_q)
         scan_q <= scan_q == LAST_ID[ID_W-1:0] ? {ID_W{1'b0}} : scan_q + {{ID_W - 1{1'b0}}, 1'b1};
-      found_q   <= found_q ? failing_q : live_q[scan_q] & late_q[scan_q];
+      found_q   <= found_q ? failing_q : late[scan_q];
       failing_q <= fail;
     end
   end
@@ -248,33 +276,67 @@ module cchip_axi_read #(
   // {an earlier beat was bad, beats that have come} of each read
   (* ram_style = "distributed" *)
   reg [3:0] progress[0:(1<<ID_W)-1];
-  wire [3:0] progress_read = progress[place_id_q];
-  wire none_yet = first_q[place_id_q];
-  wire [2:0] count = none_yet ? 3'd0 : progress_read[2:0];
-  wire bad = bad_q | (~none_yet & progress_read[3]);
-  assign last = rlast_q || count == LAST_BEAT[2:0];
-  wire wrong_last = rlast_q != (count == LAST_BEAT[2:0]);
-  assign place_timeout = fail_q & ~owed_fail_q;
-  wire wanted = live_q[place_id_q];
-  wire deliver = (beat_q & wanted & owed_q[place_id_q]) | (place_timeout & wanted) |
-      (fail_q & owed_fail_q);
-  always @(posedge clk)
-    if (beat_q) progress[place_id_q] <= {bad, count + 3'd1};
+
+  // ---- what is known of its read, a clock later. What the clock before changes in it is added
+  reg beat_q2, timeout_q2, refused_q2;
+  reg bad_q2, rlast_q2;
+  reg [DATA_W-1:0] data_q2;
+  reg live_q2, owed_q2, first_q2;
+  reg [3:0] progress_q2;
+  reg closed_q2, ended_q2, counted_q2;  // by the answer or beat before, which is of the same read
+  reg [3:0] progress_q3;  // after the beat before
+  wire same = place_id_q == place_id_q2;
+  wire wanted = live_q2 & ~closed_q2;
+  wire counts = beat_q2 & owed_q2 & ~ended_q2;  // memory owes this beat
+  wire none_yet = first_q2 & ~counted_q2;
+  wire [3:0] progress_now = counted_q2 ? progress_q3 : progress_q2;
+  wire [2:0] count = none_yet ? 3'd0 : progress_now[2:0];
+  wire bad = bad_q2 | (~none_yet & progress_now[3]);
+  wire [3:0] progress_d = {bad, count + 3'd1};
+  wire last = rlast_q2 || count == LAST_BEAT[2:0];
+  wire wrong_last = rlast_q2 != (count == LAST_BEAT[2:0]);
+  assign place_timeout = timeout_q2 & wanted;
+  wire close = place_timeout | (counts & last);
+  wire deliver = (counts & wanted) | place_timeout | refused_q2;
+  always @(posedge clk) begin
+    if (counts) progress[place_id_q2] <= progress_d;
+    place_id_q2 <= place_id_q;
+    data_q2     <= data_q;
+    bad_q2      <= bad_q;
+    rlast_q2    <= rlast_q;
+    live_q2     <= live_q[place_id_q];
+    owed_q2     <= owed_q[place_id_q];
+    first_q2    <= first_q[place_id_q];
+    progress_q2 <= progress[place_id_q];
+    closed_q2   <= same & close;
+    ended_q2    <= same & counts & rlast_q2;
+    counted_q2  <= same & counts;
+    progress_q3 <= progress_d;
+    if (rst) begin
+      beat_q2    <= 1'b0;
+      timeout_q2 <= 1'b0;
+      refused_q2 <= 1'b0;
+    end else begin
+      beat_q2    <= beat_q;
+      timeout_q2 <= fail_q & ~owed_fail_q;
+      refused_q2 <= fail_q & owed_fail_q;
+    end
+  end
 
   genvar i;
   generate
     for (i = 0; i < IDS; i = i + 1) begin : gen_id
       localparam [31:0] I = i;
-      wire here = place_id_q == I[ID_W-1:0];
-      assign offered[i] = issue && head_id_q == I[ID_W-1:0];
-      assign taken[i]   = take_address && arid_q == I[ID_W-1:0];
-      assign beaten[i]  = here & beat_q;
-      assign ended[i]   = here & beat_q & rlast_q;
-      assign closed[i]  = here & (place_timeout | (beat_q & owed_q[i] & last));
+      wire here = place_id_q2 == I[ID_W-1:0];
+      assign offered[i] = issued_q && arid_q == I[ID_W-1:0];
+      assign taken[i]   = taken_q && taken_id_q == I[ID_W-1:0];
+      assign counted[i] = here & counts;
+      assign ended[i]   = here & counts & rlast_q2;
+      assign closed[i]  = here & close;
     end
   endgenerate
   always @(posedge clk) begin
-    first_q <= (first_q & ~beaten) | taken;
+    first_q <= (first_q & ~counted) | taken;
     seen_q  <= (tick_q ? live_q : seen_q) & ~offered;
     late_q  <= (tick_q ? live_q & seen_q : late_q) & ~offered;
     if (rst) begin
@@ -292,22 +354,22 @@ module cchip_axi_read #(
   reg [2:0] count_q;
   reg last_q;
   reg [CODE_W-1:0] code_q;
-  reg [DATA_W-1:0] data_q2;
+  reg [DATA_W-1:0] data_q3;
   reg owes_q;
-  wire [31:0] one_client = 32'd1 << ({{32 - ID_W{1'b0}}, place_id_q} >> SLOT_W);
+  wire [31:0] one_client = 32'd1 << ({{32 - ID_W{1'b0}}, place_id_q2} >> SLOT_W);
   always @(posedge clk) begin
-    slot_q  <= place_id_q[SLOT_W-1:0];
+    slot_q  <= place_id_q2[SLOT_W-1:0];
     count_q <= count;
-    last_q  <= fail_q | last;
-    code_q  <= fail_q ? (owed_fail_q ? `CCHIP_READ_OWED : `CCHIP_READ_TIMEOUT) :
+    last_q  <= ~beat_q2 | last;
+    code_q  <= refused_q2 ? `CCHIP_READ_OWED : timeout_q2 ? `CCHIP_READ_TIMEOUT :
         bad | wrong_last ? `CCHIP_READ_BUS : `CCHIP_READ_OK;
-    data_q2 <= data_q;
+    data_q3 <= data_q2;
     if (rst) begin
       valid_q <= {CLIENTS{1'b0}};
       owes_q  <= 1'b0;
     end else begin
       valid_q <= deliver ? one_client[CLIENTS-1:0] : {CLIENTS{1'b0}};
-      owes_q  <= arvalid_q | (|owed_q);
+      owes_q  <= arvalid_q | taken_q | (|owed_q);
     end
   end
   assign m_valid = valid_q;
@@ -315,7 +377,7 @@ module cchip_axi_read #(
   assign m_beat  = count_q;
   assign m_last  = last_q;
   assign m_code  = code_q;
-  assign m_data  = data_q2;
+  assign m_data  = data_q3;
   assign owes    = owes_q;
 
   wire unused = &{1'b0, queue_ready, one_client};

@@ -60,6 +60,7 @@ MERGE = "cchip_error_result_merge_SOURCES_not_2_to_8_or_WIDTH_below_1"
 CRC = "cchip_error_crc32_DATA_W_must_be_a_multiple_of_8"
 FETCH = "cchip_error_bitstream_fetch_FIFO_DEPTH_below_32"
 READ = "cchip_error_axi_read_"
+WRITE = "cchip_error_axi_write_"
 CACHE = "cchip_error_cache_"
 SLOT_LIMIT = "cchip_error_SLOT_LIMIT_below_16"
 COUNT_W = "cchip_error_COUNT_W_must_be_1_to_16"
@@ -167,6 +168,10 @@ ILLEGAL = [
     *(("cchip_axi_read", {"CLIENTS": n}, READ + "CLIENTS_must_be_1_to_8") for n in (0, 9)),
     *(("cchip_axi_read", {"SLOTS": n}, READ + "SLOTS_must_be_2_4_8_16_or_32") for n in (1, 3, 64)),
     *(("cchip_axi_read", {"DATA_W": n}, READ + "DATA_W_must_be_64_128_256_or_512") for n in (32, 96, 1024)),
+    *(("cchip_axi_write", {"CLIENTS": n}, WRITE + "CLIENTS_must_be_1_to_4") for n in (0, 5)),
+    *(("cchip_axi_write", {"DATA_W": n}, WRITE + "DATA_W_must_be_64_128_256_or_512") for n in (32, 96, 1024)),
+    *(("cchip_axi_write", {"OUTSTANDING": n}, WRITE + "OUTSTANDING_must_be_1_to_64") for n in (0, 65)),
+    *(("cchip_axi_write", {"ID_W": n}, WRITE + "ID_W_must_be_1_to_16") for n in (0, 17)),
     ("cchip_swap_sequencer", {"SLOTS": 5}, SLOTS),
     ("cchip_swap_retry", {"SLOTS": 0}, SLOTS),
     ("cchip_swap_retry", {"SLOTS": 5}, SLOTS),
@@ -202,6 +207,8 @@ LEGAL = [
     ("cchip_cache", {"CACHE_KB": 1, "PLACES": 2, "MISSES": 2, "LINE_W": 4, "LOCKS": 1, "DATA_W": 512}),
     *(("cchip_cache_fill", {"MISSES": n, "FRAME_W": 1, "DATA_W": w}) for n, w in ((2, 64), (32, 256))),
     *(("cchip_axi_read", {"CLIENTS": c, "SLOTS": s, "DATA_W": w}) for c, s, w in ((1, 2, 512), (8, 32, 64))),
+    *(("cchip_axi_write", {"CLIENTS": c, "DATA_W": w, "OUTSTANDING": o, "ID_W": i})
+      for c, w, o, i in ((1, 512, 1, 1), (4, 64, 64, 16))),
     *(("cchip_count", {"LIMIT": n}) for n in (1, 65535)),
     *(("cchip_vertex_collector", {"COORD_W": n}) for n in (4, 20)),
     *(("cchip_descriptor_queues", {"DEPTH": d, "KINDS": k, "WIDTH": w}) for d, k, w in ((16, 1, 1), (1024, 3, 80))),

@@ -4,8 +4,8 @@
 // Proved of cchip_axi_read, whatever memory does (also against the rules of the bus, but for what SPEAKS_TRUE assumes) and
 // whatever clients ask for that follow the rule "again only after the last beat":
 //   addresses are stable until taken; the ID of an address is of no read that memory still owes; the address is that of the
-//   request; no beat is handed out that did not come two clocks before under this ID, for a read whose address was taken
-//   after the request was made, each once and in order; OK only after all beats of the line, each with OKAY, rlast on the
+//   request; no beat is handed out that did not come three clocks before under this ID, for a read whose address was
+//   taken before and after the request was made, each once and in order; OK only after all beats of the line, each with OKAY, rlast on the
 //   last one only; a place is answered only while its client waits, once; rready is
 //   never 0 on two clocks.
 // One place, any: the solver chooses the client and the place that is followed.
@@ -120,18 +120,15 @@ module cchip_axi_read_properties #(
   reg asked_q;  // an address is offered and was not taken
   reg line_out_q;
   reg [ID_W-1:0] arid_q;
-  // of a beat, 1 and 2 clocks ago: it came, belongs to the present request, is the last; its number, fault so far and data
-  reg [1:0] came_q, last_q, fault_q, data_q;
-  reg [2:0] number_q, number_q2;
+  // of a beat, 1 to 3 clocks ago: it came, belongs to the present request, is the last; its number, fault so far and data
+  reg [2:0] came_q, last_q, fault_q, data_q;
+  reg [2:0] number_q, number_q2, number_q3;
   reg [2:0] handed_q;  // beats handed out of the present request
 
-  // a beat on the clock on which its address is taken counts as one of the line
-  wire owed = owed_q | take;
-  wire mine = mine_q | (take & ~given_up_q);
-  wire [2:0] number = take ? 3'd0 : beats_q;
-  wire ends = m_axi_rlast | number == LAST_BEAT;
-  wire bad = (bad_q & ~take) | (m_axi_rresp != 2'b00);
-  wire fault = bad | m_axi_rlast != (number == LAST_BEAT);
+  // a beat on the clock on which its address is taken is none of the line
+  wire ends = m_axi_rlast | beats_q == LAST_BEAT;
+  wire bad = bad_q | (m_axi_rresp != 2'b00);
+  wire fault = bad | m_axi_rlast != (beats_q == LAST_BEAT);
   wire of_client = answer & ~(m_last & m_code[1]);  // a beat, not an answer without data
   always @(posedge clk) begin
     started_q <= 1'b1;
@@ -139,19 +136,19 @@ module cchip_axi_read_properties #(
     rready_q <= m_axi_rready | rst;
     open_q <= rst ? 0 : (open_q & ~answered_last) | asks;
     if (ask) line_q <= line_in;
-    owed_q <= ~rst & owed & ~(beat & m_axi_rlast);
-    mine_q <= ~rst & ~(answer & m_last) & mine & ~(beat & ends);
+    owed_q <= ~rst & ((owed_q & ~(beat & m_axi_rlast)) | take);
+    mine_q <= ~rst & ~(answer & m_last) & ((mine_q & ~(beat & ends)) | (take & ~given_up_q));
     given_up_q <= ~rst & m_axi_arvalid & (m_axi_arid == id) & ~m_axi_arready & (given_up_q | (answer & m_last));
-    beats_q <= number + {2'd0, beat};
-    bad_q <= beat ? bad : bad_q & ~take;
+    beats_q <= take ? 3'd0 : beats_q + {2'd0, beat};
+    bad_q <= ~take & (beat ? bad : bad_q);
     asked_q <= ~rst & m_axi_arvalid & ~m_axi_arready;
     line_out_q <= line_out;
     arid_q <= m_axi_arid;
-    came_q <= rst | (answer & m_last) ? 2'd0 : {came_q[0], beat & owed & mine};
-    last_q <= {last_q[0], ends};
-    fault_q <= {fault_q[0], fault};
-    data_q <= {data_q[0], data_in};
-    {number_q2, number_q} <= {number_q, number};
+    came_q <= rst | (answer & m_last) ? 3'd0 : {came_q[1:0], beat & owed_q & mine_q};
+    last_q <= {last_q[1:0], ends};
+    fault_q <= {fault_q[1:0], fault};
+    data_q <= {data_q[1:0], data_in};
+    {number_q3, number_q2, number_q} <= {number_q2, number_q, beats_q};
     handed_q <= rst | ask ? 3'd0 : handed_q + {2'd0, of_client};
   end
 
@@ -182,11 +179,11 @@ module cchip_axi_read_properties #(
       kind: assert (m_axi_arlen == LAST_BEAT && m_axi_arsize == $clog2(DATA_W / 8) && m_axi_arburst == 2'b01 && m_axi_araddr[5:0] == 0);
       one_client: assert ((m_valid & (m_valid - 1)) == 0);
       waits: assert (!answer || open_q[id]);
-      came: assert (!of_client || (came_q[1] && m_beat == number_q2 && m_beat == handed_q && data_out == data_q[1]));
-      marked: assert (!of_client || m_last == last_q[1]);
-      honest: assert (!(answer && m_last && m_code == `CCHIP_READ_OK) || (m_beat == LAST_BEAT && !fault_q[1]));
-      bus: assert (!(answer && m_last && m_code == `CCHIP_READ_BUS) || fault_q[1]);
-      handed_out: assert (!came_q[1] || !open_q[id] || of_client || (answer && m_last));
+      came: assert (!of_client || (came_q[2] && m_beat == number_q3 && m_beat == handed_q && data_out == data_q[2]));
+      marked: assert (!of_client || m_last == last_q[2]);
+      honest: assert (!(answer && m_last && m_code == `CCHIP_READ_OK) || (m_beat == LAST_BEAT && !fault_q[2]));
+      bus: assert (!(answer && m_last && m_code == `CCHIP_READ_BUS) || fault_q[2]);
+      handed_out: assert (!came_q[2] || !open_q[id] || of_client || (answer && m_last));
       awake: assert (rready_q || m_axi_rready);
     end
 `endif

@@ -45,10 +45,11 @@ QUEUES = "rtl/dispatch/cchip_descriptor_queues.v"
 RETRY = "rtl/reconfig/cchip_swap_retry.v"
 FETCH = "rtl/reconfig/cchip_bitstream_fetch.v"
 READ = "rtl/memory/cchip_axi_read.v"
+WRITE = "rtl/memory/cchip_axi_write.v"
 # Tasks that take minutes; --quick proves the others, which take seconds.
 SLOW = {("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"), ("cchip_slot_ledger", "prove"),
         ("cchip_dispatcher", "bounded"), ("cchip_dispatcher", "bounded_2"), ("cchip_descriptor_queues", "bounded"),
-        ("cchip_swap_retry", "prove"), ("cchip_axi_read", "bounded")}
+        ("cchip_swap_retry", "prove"), ("cchip_axi_read", "bounded"), ("cchip_axi_write", "bounded_1")}
 # (task that has to fail, file, text, what takes its place); the text occurs once
 MUTANTS = [
     ("cchip_skid_buffer prove", SKID, "if (ready_q) skid_data_q <= s_data;", "skid_data_q <= s_data;"),
@@ -81,14 +82,30 @@ MUTANTS = [
     ("cchip_bitstream_fetch bounded", FETCH, "wire [4:0] to_edge = 5'd16 - {1'b0, addr_q[5:2]};", "wire [4:0] to_edge = 5'd16;"),
     ("cchip_bitstream_fetch bounded", FETCH, "issue | (arvalid_q & ~m_axi_arready);", "issue | (arvalid_q & ~m_axi_arready & run);"),
     ("cchip_bitstream_fetch bounded", FETCH, "timeout_q <= run & (timeout_q |", "timeout_q <= run & (1'b0 |"),
-    # late beats reach the next request; a place that is owed is asked for again; beats of any read count; an
-    # error is forgotten; a line that is too long goes on; an address is taken back
-    ("cchip_axi_read bounded", READ, "wire deliver = (beat_q & wanted & owed_q[place_id_q])", "wire deliver = (beat_q & owed_q[place_id_q])"),
-    ("cchip_axi_read bounded", READ, "wire issue = head_valid_q & ~head_owed &", "wire issue = head_valid_q &"),
-    ("cchip_axi_read bounded", READ, "first_q <= (first_q & ~beaten) | taken;", "first_q <= first_q & ~beaten | offered & ~taken;"),
-    ("cchip_axi_read bounded", READ, "wire bad = bad_q | (~none_yet & progress_read[3]);", "wire bad = bad_q;"),
-    ("cchip_axi_read bounded", READ, "assign last = rlast_q || count == LAST_BEAT[2:0];", "assign last = rlast_q;"),
+    # late beats reach the next request; a place that is owed is asked for again, also if its address is taken as the request
+    # comes; a read counts on where the one before it ended; what the beat before has closed, and its count, is not seen; an error is forgotten; a line
+    # that is too long goes on; an address is taken back
+    ("cchip_axi_read bounded", READ, "wire deliver = (counts & wanted) |", "wire deliver = counts |"),
+    ("cchip_axi_read bounded", READ, "wire issue = head_valid_q & ~head_owed_q &", "wire issue = head_valid_q &"),
+    ("cchip_axi_read bounded", READ, "owed_q[next_id] | dead | dead_q :", "owed_q[next_id] | dead :"),
+    ("cchip_axi_read bounded", READ, "first_q <= (first_q & ~counted) | taken;", "first_q <= first_q & ~counted;"),
+    ("cchip_axi_read bounded", READ, "wire wanted = live_q2 & ~closed_q2;", "wire wanted = live_q2;"),
+    ("cchip_axi_read bounded", READ, "counted_q2  <= same & counts;", "counted_q2  <= 1'b0;"),
+    ("cchip_axi_read bounded", READ, "wire bad = bad_q2 | (~none_yet & progress_now[3]);", "wire bad = bad_q2;"),
+    ("cchip_axi_read bounded", READ, "wire last = rlast_q2 || count == LAST_BEAT[2:0];", "wire last = rlast_q2;"),
     ("cchip_axi_read bounded", READ, "issue | (arvalid_q & ~m_axi_arready);", "issue | (arvalid_q & ~m_axi_arready & ar_live_q);"),
+    # a response that comes late answers the next write; one that comes before the data is taken for theirs; a burst leaves its
+    # line; more writes than can be counted; data of another write end a burst; writes of two clients are mixed; a refused
+    # write is answered at once
+    ("cchip_axi_write bounded", WRITE, "assign answered = b_counts & ~dropped_some;", "assign answered = b_counts;"),
+    ("cchip_axi_write bounded", WRITE, "wire b_counts = b_valid_q & address_some & data_some;", "wire b_counts = b_valid_q & address_some;"),
+    ("cchip_axi_write bounded", WRITE, "wire ends = last || place == LAST_BEAT[2:0];", "wire ends = last;"),
+    ("cchip_axi_write bounded", WRITE, "assign issue = write_valid & take_free & ~dropped_some & waiting_room & aw_ready;",
+     "assign issue = write_valid & take_free & ~dropped_some & aw_ready;"),
+    ("cchip_axi_write bounded_1", WRITE, "beat_strb & {STRB_W{waiting_some}}", "beat_strb"),
+    ("cchip_axi_write bounded", WRITE, "turn_d = begun_d ? turn_q : grant;", "turn_d = grant;"),
+    ("cchip_axi_write bounded", WRITE, "wire refuse = write_valid & take_free & dropped_some & ~waiting_some;",
+     "wire refuse = write_valid & take_free & dropped_some;"),
     # the turn follows requests instead of grants; passes without a grant taken; there is no turn
     ("cchip_arbiter prove", ARBITER, "behind_q <= above(grant);", "behind_q <= above(lowest(request));"),
     ("cchip_arbiter prove", ARBITER, "else if (take && |request)", "else if (|request)"),
@@ -169,7 +186,8 @@ def meaning(name, task, text):
     """How far a passed task reaches, from the log of the tool."""
     if re.search(r"engine_\d+: .*(Property proved|successful proof by k-induction|Proved)", text):
         return "for all time"
-    depth = re.findall(r"^\s*(?:\w+: )?depth (\d+)", (HERE / f"{name}.sby").read_text(), re.M)
+    depths = re.findall(r"^\s*(?:(\w+): )?depth (\d+)", (HERE / f"{name}.sby").read_text(), re.M)
+    depth = [clocks for of, clocks in depths if of == task] or [clocks for _, clocks in depths]
     steps = [int(n) for n in re.findall(r"Checking (?:assertions|cover reachability) in step (\d+)", text)]
     if "cover" in task:
         steps += [int(n) for n in re.findall(r"was asserted in frame (\d+)", text)]

@@ -10,6 +10,7 @@
 #include <cchip/wire/definitions.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <set>
@@ -64,11 +65,11 @@ class AxiRead {
 
   void clock(const Inputs& in) {
     // decisions, from the present state
-    const bool head_owed = head_ && reads_[head_->id].owed;
     const bool dead = address_ && !address_awaited_;
-    const bool issue = head_ && !head_owed && (!address_ || (in.arready && address_awaited_));
-    const bool refuse = head_ && (head_owed || dead) && !failing_ && !found_;
+    const bool issue = head_ && !head_owed_ && (!address_ || (in.arready && address_awaited_));
+    const bool refuse = head_ && head_owed_ && !failing_ && !found_;
     const bool taken = address_ && in.arready;
+    const bool next_owed = next_.m_valid() && reads_[next_.m_data().id].owed;
     std::optional<Failure> fail;
     if (found_ && !failing_) {
       fail = Failure{*found_, ReadCode::timeout};
@@ -78,47 +79,57 @@ class AxiRead {
     const auto found = found_ ? (failing_ ? found_ : std::nullopt) : late(scan_) ? std::optional(scan_) : std::nullopt;
     const std::size_t scan = found_ ? scan_ : (scan_ + 1) % reads_.size();
     const auto place_beat = rready_ && in.beat && in.beat->id < reads_.size() ? in.beat : std::nullopt;
-    owes_ =
-        address_.has_value() || std::any_of(reads_.begin(), reads_.end(), [](const Read& read) { return read.owed; });
+    owes_ = address_ || taken_ || std::any_of(reads_.begin(), reads_.end(), [](const Read& read) { return read.owed; });
 
     if (tick_) {
       for (Read& read : reads_) read.ticks = read.live ? std::min(read.ticks + 1, 2) : 0;
     }
     answer_.reset();
-    if (failed_) answer_failure(*failed_);
-    if (beat_) answer_beat(*beat_);
+    if (place_) answer_place(*place_);
 
-    // addresses
-    if (taken) {
-      Read& read = reads_[address_->id];
+    // the next beat or failure sees what this one did, and not yet what happens to addresses on this clock
+    place_.reset();
+    if (failed_) place_ = Place{failed_, {}, reads_[failed_->id]};
+    if (beat_) place_ = Place{{}, *beat_, reads_[beat_->id]};
+    if (taken_) {
+      Read& read = reads_[*taken_];
       read.owed = true;
       read.count = 0;
       read.bad = false;
-      address_.reset();
     }
-    if (issue) {
-      address_ = Address{head_->id, head_->line};
-      address_awaited_ = true;
-      reads_[head_->id].live = true;
-      reads_[head_->id].ticks = 0;
+    if (issued_) {
+      reads_[*issued_].live = true;
+      reads_[*issued_].ticks = 0;
     }
+
+    // addresses
     const bool load = !head_ || issue || refuse;
+    head_owed_ = dead || (load ? was_dead_ || next_owed : head_owed_);
+    was_dead_ = dead;
+    taken_ = taken ? std::optional(address_->id) : std::nullopt;
+    issued_ = issue ? std::optional(head_->id) : std::nullopt;
+    if (taken) address_.reset();
+    if (issue) {
+      address_ = head_;
+      address_awaited_ = true;
+    }
+    if (load) head_ = next_.m_valid() ? std::optional(next_.m_data()) : std::nullopt;
     const std::size_t clients = queues_.size();
+    const bool turn = next_.s_ready();
     std::optional<std::size_t> granted;
     for (std::size_t i = 1; i <= clients && !granted; ++i) {
       if (queues_[(served_ + i) % clients].m_valid()) granted = (served_ + i) % clients;
     }
-    if (load) {
-      head_.reset();
-      if (granted) {
-        const Request& request = queues_[*granted].m_data();
-        head_ = Address{*granted * slots_ + request.slot, request.line};
-        served_ = *granted;
-      }
+    Address next;
+    if (granted) {
+      const Request& request = queues_[*granted].m_data();
+      next = Address{*granted * slots_ + request.slot, request.line};
+      if (turn) served_ = *granted;
     }
+    next_.clock(granted.has_value(), next, load);
     for (std::size_t i = 0; i < clients; ++i) {
       const auto& request = in.requests[i];
-      queues_[i].clock(request.has_value(), request.value_or(Request{}), load && granted == i);
+      queues_[i].clock(request.has_value(), request.value_or(Request{}), turn && granted == i);
     }
 
     // time
@@ -137,8 +148,12 @@ class AxiRead {
   void reset(std::uint32_t limit) {
     for (auto& queue : queues_) queue.reset();
     for (auto& read : reads_) read = Read{};
+    next_.reset();
     head_.reset();
     address_.reset();
+    issued_.reset();
+    taken_.reset();
+    place_.reset();
     answer_.reset();
     found_.reset();
     failing_.reset();
@@ -147,7 +162,7 @@ class AxiRead {
     served_ = queues_.size() - 1;
     timer_ = limit;
     scan_ = 0;
-    tick_ = rready_ = owes_ = address_awaited_ = false;
+    tick_ = rready_ = owes_ = address_awaited_ = head_owed_ = was_dead_ = false;
   }
 
  private:
@@ -162,25 +177,34 @@ class AxiRead {
     std::size_t id;
     ReadCode code;
   };
+  struct Place {  // a beat or a failure, with what was known of its read when it came
+    std::optional<Failure> failure;
+    Beat beat;
+    Read was;
+  };
 
   bool late(std::size_t id) const { return reads_[id].live && reads_[id].ticks == 2; }
 
-  void answer_failure(const Failure& failure) {
-    Read& read = reads_[failure.id];
+  void answer_place(const Place& place) {
+    if (!place.failure) {
+      answer_beat(place.beat, place.was);
+      return;
+    }
+    const Failure& failure = *place.failure;
     if (failure.code == ReadCode::timeout) {
-      if (!read.live) return;
-      read.live = false;
+      if (!place.was.live) return;
+      reads_[failure.id].live = false;
       if (address_ && address_->id == failure.id) address_awaited_ = false;
     }
     answer_ = Answer{failure.id / slots_, failure.id % slots_, true, failure.code, std::nullopt, {}};
   }
 
-  void answer_beat(const Beat& beat) {
+  void answer_beat(const Beat& beat, const Read& was) {
+    if (!was.owed) return;
     Read& read = reads_[beat.id];
-    if (!read.owed) return;
     const bool last_one = read.count + 1 == beats_;
     read.bad = read.bad || !beat.okay;
-    if (read.live) {
+    if (was.live) {
       const bool last = beat.last || last_one;
       const ReadCode code = read.bad || beat.last != last_one ? ReadCode::bus : ReadCode::ok;
       answer_ = Answer{beat.id / slots_, beat.id % slots_, last, code, read.count, beat.data};
@@ -195,8 +219,12 @@ class AxiRead {
   std::vector<Fifo<Request>> queues_;
   std::vector<Read> reads_;
   std::size_t served_ = 0;
+  SkidBuffer<Address> next_;
   std::optional<Address> head_, address_;
+  bool head_owed_ = false;  // or an address in front of it was given up
+  bool was_dead_ = false;
   bool address_awaited_ = false;
+  std::optional<std::size_t> issued_, taken_;  // on the last clock
   std::optional<Answer> answer_;
   std::uint32_t timer_ = 0;
   bool tick_ = false, rready_ = false, owes_ = false;
@@ -204,6 +232,202 @@ class AxiRead {
   std::optional<std::size_t> found_;
   std::optional<Failure> failing_, failed_;
   std::optional<Beat> beat_;
+  std::optional<Place> place_;
+};
+
+/// cchip_axi_write: writes of several clients, within a line each, into a memory that answers in order.
+class AxiWrite {
+ public:
+  struct Beat {
+    std::uint64_t address = 0;  ///< in beats; counts on the first beat of a write
+    LineData data{};
+    std::uint64_t strobes = 0;
+    bool last = false;
+  };
+  struct Response {
+    bool own = true;  ///< the ID is 0
+    bool okay = true;
+  };
+  struct Inputs {
+    std::uint32_t limit = 0;
+    std::vector<std::optional<Beat>> beats;  ///< offered, one for each client
+    bool awready = false;
+    bool wready = false;
+    std::optional<Response> response;  ///< bvalid = 1
+  };
+  struct Address {
+    std::uint64_t address = 0;  ///< in beats
+    std::size_t beats = 0;
+  };
+  struct Data {
+    std::optional<LineData> data;  ///< without: the client of the write has been answered, nothing is written
+    std::uint64_t strobes = 0;
+    bool last = false;
+  };
+  struct Answer {
+    std::size_t client = 0;
+    WriteCode code = WriteCode::ok;
+  };
+
+  /// \param beats of a line
+  AxiWrite(std::size_t clients, std::size_t beats, std::size_t outstanding)
+      : clients_(clients), line_(beats), outstanding_(outstanding) {}
+
+  /// Client whose beat is taken.
+  const std::optional<std::size_t>& ready() const { return ready_; }
+  const std::optional<Answer>& answer() const { return answer_; }
+  bool awvalid() const { return addresses_.m_valid(); }
+  const Address& address() const { return addresses_.m_data(); }
+  bool wvalid() const { return data_.m_valid(); }
+  const Data& data() const { return data_.m_data(); }
+  bool bready() const { return bready_; }
+  bool owes() const { return owes_; }
+
+  void clock(const Inputs& in) {
+    // what becomes of the writes under way
+    const bool counts = response_ && addresses_taken_ != 0 && bursts_taken_ != 0;
+    const bool answered = counts && dropped_ == 0;
+    const bool timeout = !answered && !waiting_.empty() && waiting_.front().ticks == 2;
+
+    // the head of the queues
+    const bool awaited = !waiting_.empty();
+    const bool pop = take_ && beats_.m_valid() && (data_.s_ready() || !awaited);
+    const bool send = send_ && data_.s_ready() && (beats_.m_valid() || !awaited);
+    const bool free = !take_ || (pop && take_->left == 0);
+    const bool refuse = writes_.m_valid() && free && dropped_ != 0 && !awaited;
+    const bool issue =
+        writes_.m_valid() && free && dropped_ == 0 && waiting_.size() < outstanding_ && addresses_.s_ready();
+    const bool refused = pop && take_->left == 0 && take_->refused;
+    const Write write = writes_.m_valid() ? writes_.m_data() : Write{};
+    const Data word = beats_.m_valid() ? beats_.m_data() : Data{};
+
+    owes_ = awaited || dropped_ != 0;
+    answer_.reset();
+    if (refused) {
+      answer_ = Answer{take_->client, WriteCode::owed};
+    } else if (answered) {
+      answer_ = Answer{waiting_.front().client, *response_ ? WriteCode::ok : WriteCode::bus};
+    } else if (timeout) {
+      answer_ = Answer{waiting_.front().client, WriteCode::timeout};
+    }
+
+    // to memory
+    const bool address_taken = awvalid() && in.awready;
+    const bool burst_taken = wvalid() && data().last && in.wready;
+    addresses_.clock(issue, write.address, in.awready);
+    data_.clock(send, Data{awaited ? word.data : std::nullopt, awaited ? word.strobes : 0, send && *send_ == 0},
+                in.wready);
+    if (pop) {
+      if (take_->left == 0) {
+        take_.reset();
+      } else {
+        --take_->left;
+      }
+    }
+    if (send) {
+      if (*send_ == 0) {
+        send_.reset();
+      } else {
+        --*send_;
+      }
+    }
+    if (issue || refuse) take_ = Take{write.address.beats - 1, refuse, write.client};
+    if (issue) send_ = write.address.beats - 1;
+
+    // time
+    if (tick_) {
+      for (Waiting& one : waiting_) one.ticks = std::min(one.ticks + 1, 2);
+    }
+    tick_ = timer_ == 0;
+    timer_ = timer_ == 0 ? in.limit : timer_ - 1;
+    if (answered || timeout) waiting_.pop_front();
+    if (issue) waiting_.push_back(Waiting{write.client, 0});
+    if (timeout) ++dropped_;
+    if (counts && !answered) --dropped_;
+
+    // from memory
+    if (address_taken_) ++addresses_taken_;
+    if (burst_taken_) ++bursts_taken_;
+    if (counts) {
+      --addresses_taken_;
+      --bursts_taken_;
+    }
+    address_taken_ = address_taken;
+    burst_taken_ = burst_taken;
+    response_.reset();
+    if (bready_ && in.response && in.response->own) response_ = in.response->okay;
+    bready_ = true;
+
+    // from the clients
+    writes_.clock(in_ && in_->last, current_, issue || refuse);
+    beats_.clock(in_.has_value(), in_.value_or(Data{}), pop);
+    in_.reset();
+    const bool room = held_ <= 13;
+    if (pop) --held_;
+    if (ready_ && in.beats[*ready_]) {
+      const Beat& beat = *in.beats[*ready_];
+      if (!begun_) current_ = Write{*ready_, {beat.address, 0}};
+      ++current_.address.beats;
+      const bool last = beat.last || (current_.address.address + current_.address.beats) % line_ == 0;
+      in_ = Data{beat.data, beat.strobes, last};
+      begun_ = !last;
+      ++held_;
+    }
+    if (!begun_) {
+      turn_.reset();
+      for (std::size_t i = 1; i <= clients_ && !turn_; ++i) {
+        if (in.beats[(served_ + i) % clients_]) turn_ = (served_ + i) % clients_;
+      }
+      if (room && turn_) served_ = *turn_;
+    }
+    ready_ = room ? turn_ : std::nullopt;
+  }
+
+  void reset(std::uint32_t limit) {
+    *this = AxiWrite(clients_, line_, outstanding_);
+    timer_ = limit;
+  }
+
+ private:
+  static constexpr std::size_t queue_depth = 16;
+  struct Write {
+    std::size_t client = 0;
+    Address address;
+  };
+  struct Take {
+    std::size_t left;  // beats behind the present one
+    bool refused;
+    std::size_t client;
+  };
+  struct Waiting {
+    std::size_t client;
+    int ticks;  // seen, at most 2
+  };
+
+  std::size_t clients_;
+  std::size_t line_;
+  std::size_t outstanding_;
+  std::size_t served_ = clients_ - 1;
+  std::optional<std::size_t> turn_, ready_;
+  bool begun_ = false;
+  Write current_;
+  std::optional<Data> in_;
+  std::size_t held_ = 0;  // beats taken that have not left their queue
+  Fifo<Write> writes_{queue_depth};
+  Fifo<Data> beats_{queue_depth};
+  std::optional<Take> take_;         // whose beats leave the queue
+  std::optional<std::size_t> send_;  // beats behind the one to send
+  SkidBuffer<Address> addresses_;
+  SkidBuffer<Data> data_;
+  std::deque<Waiting> waiting_;
+  std::size_t dropped_ = 0;  // given up, the response is owed
+  bool address_taken_ = false, burst_taken_ = false;
+  std::size_t addresses_taken_ = 0, bursts_taken_ = 0;  // without a response
+  std::optional<bool> response_;                        // okay
+  bool bready_ = false;
+  std::optional<Answer> answer_;
+  std::uint32_t timer_ = 0;
+  bool tick_ = false, owes_ = false;
 };
 
 /// cchip_cache: lines of 64 bytes, two ways, two ports. Counts what its ports do on each clock.

@@ -75,6 +75,14 @@ enum class ReadCode : std::uint8_t {
   owed = 3,  ///< not sent: memory still owes an earlier read, or does not take its address
 };
 
+/// Outcome of a write (cchip_axi_write).
+enum class WriteCode : std::uint8_t {
+  ok = 0,  ///< memory has answered that it holds the data
+  bus = 1,  ///< error response from memory
+  timeout = 2,  ///< memory did not answer in time; it may hold all data, parts or none
+  owed = 3,  ///< not sent: memory still owes the response to an earlier write
+};
+
 /// Programme of a pair in the axis controller.
 enum class Programme : std::uint8_t {
   normals = 0,  ///< directed: nA, then nB
@@ -142,6 +150,8 @@ constexpr int phase_w = 4;
 constexpr int swap_w = 4;
 /// width of the code of a read [bit]
 constexpr int read_code_w = 2;
+/// width of the code of a write [bit]
+constexpr int write_code_w = 2;
 /// word 0 of a bitstream's header
 constexpr std::uint32_t bitstream_magic = 0x43434250;
 /// first word of a virtual bitstream's payload
