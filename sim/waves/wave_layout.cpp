@@ -308,8 +308,7 @@ Rows broad_phase_layout() {
   const std::string broad = "u_broad_phase.";
   const std::string traversal = broad + "u_traversal.";
   const std::string get = broad + "u_get_data.";
-  return Rows{bit("clock", "clk"), bit("reset", "rst")} +
-         group("1 query", {bit("valid", "s_query_valid"), bit("ready", "s_query_ready"), bit("starts", "m_start_valid"),
+  return group("1 query", {bit("valid", "s_query_valid"), bit("ready", "s_query_ready"), bit("starts", "m_start_valid"),
                            vector("context", "m_start_context", 4, Radix::decimal),
                            vector("epoch", "m_start_epoch", 2, Radix::decimal),
                            field("base of A, line", "m_start_query", 512, 0, 32, Radix::hexadecimal),

@@ -136,9 +136,8 @@ class Run {
     sim::SimulationOptions options = sim::without_timeout(settings_.seed);
     if (!settings_.wave.empty()) {
       options.trace_path = settings_.wave;
-      options.trace_from = 1000;  // the cache is clear after 1024 clocks
-      options.trace_clocks = 6000;
-      write_broad_phase_gtkw(settings_.wave, 10000, 30000);
+      options.trace_clocks = 7000;
+      write_broad_phase_gtkw(settings_.wave, 10000, 30000);  // the cache is clear after 1024 clocks
       fmt::print("waveform {}, its layout beside it\n", settings_.wave);
     }
     settings_.wave.clear();
