@@ -263,8 +263,8 @@ module cchip_cache #(
       reg [PLACE_W-1:0] serve_place_q0;
       reg [CODE_W-1:0] serve_code_q0;
       reg [SET_W:0] serve_frame_q0;
-      wire [63:0] wake32 = {{64 - PLACES{1'b0}}, wake_q};
-      wire [5:0] wake_place = lowest(wake32);
+      wire [63:0] all_wake = {{64 - PLACES{1'b0}}, wake_q};
+      wire [5:0] wake_place = lowest(all_wake);
       wire load_serve = ~serve_q0 | serve0;
       assign serving[p] = |wake_q;
       assign serves0[p] = serve_q0;

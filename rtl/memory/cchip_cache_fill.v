@@ -68,27 +68,22 @@ module cchip_cache_fill #(
     end
   endgenerate
 
-  // ---- the slots. The free ones wait in a queue, so that each is used again as late as possible
+  // ---- the slots
   reg [MISSES-1:0] held_q, filled_q;
-  reg first_q;  // slots are put into the queue for the first time
-  reg [MISS_W-1:0] first_slot_q;
-  wire free_ready;
   wire done;
   reg serve_q;
   reg [MISS_W-1:0] serve_slot_q;
-  cchip_fifo #(
-      .WIDTH     (MISS_W),
-      .DEPTH     (MISSES),
-      .ROOM_KNOWN(1)
+  cchip_pool #(
+      .COUNT(MISSES),
+      .WIDTH(MISS_W)
   ) u_free (
-      .clk    (clk),
-      .rst    (rst),
-      .s_valid((done | first_q) & free_ready),
-      .s_ready(free_ready),
-      .s_data (done ? serve_slot_q : first_slot_q),
-      .m_valid(free_valid),
-      .m_ready(free_take),
-      .m_data (free_slot)
+      .clk        (clk),
+      .rst        (rst),
+      .m_valid    (free_valid),
+      .m_ready    (free_take),
+      .m_number   (free_slot),
+      .back_valid (done),
+      .back_number(serve_slot_q)
   );
 
   // ---- lines that have come
@@ -175,8 +170,6 @@ module cchip_cache_fill #(
       collect_q <= 1'b0;
       collect_q2 <= 1'b0;
       serving_q <= 1'b0;
-      first_q <= 1'b1;
-      first_slot_q <= {MISS_W{1'b0}};
     end else begin
       {fill_q1, fill_q2, fill_q3, fill_q4, fill_q5} <= {
         fill_valid, fill_q1, fill_q2, fill_q3, fill_q4
@@ -185,10 +178,6 @@ module cchip_cache_fill #(
       collect_q <= waiting & (~serve_q | done);
       collect_q2 <= collect_q;
       serving_q <= |serving;
-      if (free_ready && !done) begin
-        first_q <= first_q && first_slot_q != {MISS_W{1'b1}};
-        first_slot_q <= first_slot_q + {{MISS_W - 1{1'b0}}, 1'b1};
-      end
     end
   end
   genvar i;

@@ -578,7 +578,7 @@ class Cache {
         }
         for (const std::size_t place : port.wake) port.asleep.erase(place);
       }
-      if (sleeps) port.asleep[step6.place] = grant ? free_.m_data() : step6.wait_slot;
+      if (sleeps) port.asleep[step6.place] = grant ? free_.m_number() : step6.wait_slot;
 
       // stages 1 to 5: the entries are read in 1
       port.steps[0].entries = entries_[set_of(port.steps[0])];
@@ -609,7 +609,7 @@ class Cache {
     } else if (granted) {
       const Step& step = ports_[*granted].steps[5];
       change_ = Change{set_of(step), {*step.victim == 0, *step.victim == 1}, {}};
-      change_->entries[*step.victim] = Entry{true, step.locks, step.turn, free_.m_data(), step.line};
+      change_->entries[*step.victim] = Entry{true, step.locks, step.turn, free_.m_number(), step.line};
     }
 
     // the walk, before the slots it looks at change
@@ -646,12 +646,10 @@ class Cache {
     read_.reset();
     if (granted) {
       const Step& step = ports_[*granted].steps[5];
-      read_ = Request{free_.m_data(), step.line};
+      read_ = Request{free_.m_number(), step.line};
       allocate_frame_ = 2 * set_of(step) + *step.victim;
     }
-    const bool first_slot = !released && first_slot_ < shape_.misses && free_.s_ready();
-    free_.clock(released || first_slot, released.value_or(first_slot_), granted.has_value());
-    first_slot_ += first_slot ? 1 : 0;
+    free_.clock(granted.has_value(), released);
 
     for (std::size_t p = 0; p < 2; ++p) {
       auto& steps = ports_[p].steps;
@@ -663,7 +661,6 @@ class Cache {
     for (Port& port : ports_) port = Port(shape_.places);
     held_.assign(shape_.misses, Held{});
     free_.reset();
-    first_slot_ = 0;
     collect_ = collected_ = woken_ = false;
     arrived_.reset();
     serve_queue_.reset();
@@ -823,8 +820,7 @@ class Cache {
   std::array<Port, 2> ports_{Port(2), Port(2)};
   std::vector<Held> held_;
   Fifo<Arrived> arrived_, serve_queue_;
-  Fifo<std::size_t> free_;
-  std::size_t first_slot_ = 0;
+  Pool free_;
   bool collect_ = false, collected_ = false, woken_ = false;
   std::optional<Arrived> serving_;
   std::vector<std::array<Entry, 2>> entries_;

@@ -6,6 +6,7 @@
 #define CCHIP_MODEL_STREAM_HPP
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <optional>
 #include <stdexcept>
@@ -100,6 +101,52 @@ class SkidBuffer {
   bool ready_ = false;
   std::optional<T> out_;
   std::optional<T> skid_;
+};
+
+/// cchip_pool: numbers first to first + count - 1, lent one at a time; the one that came back first goes first.
+class Pool {
+ public:
+  explicit Pool(std::size_t count, std::size_t first = 0) : first_(first), end_(first + count), free_(count) {}
+  bool m_valid() const { return free_.m_valid(); }
+  std::size_t m_number() const { return free_.m_data(); }
+
+  void clock(bool m_ready, std::optional<std::size_t> back) {
+    const bool fill = next_ != end_ && free_.s_ready() && !back;
+    free_.clock(fill || back, back.value_or(next_), m_ready);
+    next_ += fill ? 1 : 0;
+  }
+  void reset() {
+    free_.reset();
+    next_ = first_;
+  }
+
+ private:
+  std::size_t first_;
+  std::size_t end_;
+  std::size_t next_ = first_;
+  Fifo<std::size_t> free_;
+};
+
+/// cchip_arbiter: of the requests the first behind the one served last. At most 32 sources.
+class Arbiter {
+ public:
+  explicit Arbiter(std::size_t sources) : sources_(sources) {}
+  std::optional<std::size_t> grant(std::uint32_t requests) const {
+    for (std::size_t i = 0; i < sources_; ++i) {
+      const std::size_t source = (next_ + i) % sources_;
+      if ((requests >> source & 1) != 0) return source;
+    }
+    return std::nullopt;
+  }
+  /// The source of grant(requests), if any, is served if take = 1.
+  void clock(std::uint32_t requests, bool take) {
+    if (const auto served = grant(requests); served && take) next_ = (*served + 1) % sources_;
+  }
+  void reset() { next_ = 0; }
+
+ private:
+  std::size_t sources_;
+  std::size_t next_ = 0;
 };
 
 /// cchip_ram: registered read of the old word; words are undefined (nullopt) until written.
