@@ -8,6 +8,7 @@ common/cchip_block_ram.v
 common/cchip_crc32.v
 common/cchip_arbiter.v
 common/cchip_count.v
+common/cchip_pool.v
 common/cchip_counter_file.v
 arith/cchip_mul18.v
 arith/cchip_mul_wide.v
@@ -29,6 +30,8 @@ bvtest/cchip_bv_pose.v
 bvtest/cchip_bv_unit.v
 traversal/cchip_get_data.v
 traversal/cchip_leaf_queue.v
+traversal/cchip_traversal_events.v
+traversal/cchip_traversal_decision.v
 traversal/cchip_traversal.v
 traversal/cchip_broad_phase.v
 traversal/cchip_broad_phase_axi.v

@@ -112,7 +112,7 @@ module cchip_broad_phase #(
   wire [CONTEXT_W-1:0] get_context, lookup_context, posed_context, pair_context;
   wire [RECORD_W-1:0] get_record, lookup_record;
   wire [63:0] get_lines, line;
-  wire [              66:0] lookup_nodes;
+  wire [66:0] lookup_nodes;
   wire [1:0] line_valid, came_valid;
   wire [2*PLACE_W-1:0] line_place, came_place;
   wire [2*`CCHIP_READ_CODE_W-1:0] came_code;

@@ -63,6 +63,7 @@ READ = "cchip_error_axi_read_"
 WRITE = "cchip_error_axi_write_"
 CACHE = "cchip_error_cache_"
 SLOT_LIMIT = "cchip_error_SLOT_LIMIT_below_16"
+POOL = "cchip_error_pool_COUNT_must_be_1_to_256_and_all_numbers_have_WIDTH_bit"
 COUNT_W = "cchip_error_COUNT_W_must_be_1_to_16"
 PORT = "cchip_error_config_port_CFG_W_must_be_8_or_32_and_CFG_DIVIDER_above_0"
 SLOTS = "cchip_error_SLOTS_must_be_1_to_4"
@@ -143,6 +144,7 @@ ILLEGAL = [
     ("cchip_pr_slot", {"ROC_CYCLES": 0}, ROC),
     *(("cchip_arbiter", {"N": n}, ARBITER) for n in (0, 33)),
     *(("cchip_count", {"LIMIT": n}, COUNT) for n in (0, 65536)),
+    *(("cchip_pool", case, POOL) for case in ({"COUNT": 0}, {"COUNT": 257, "WIDTH": 9}, {"FIRST": 1}, {"WIDTH": 0})),
     *(("cchip_vertex_collector", {"COORD_W": n}, COORD_W) for n in (3, 21)),
     *(("cchip_descriptor_queues", {"DEPTH": n}, QUEUE) for n in (8, 24, 2048)),
     *(("cchip_descriptor_queues", {"WIDTH": n}, DESCRIPTOR) for n in (0, 81)),
@@ -210,6 +212,7 @@ LEGAL = [
     *(("cchip_axi_write", {"CLIENTS": c, "DATA_W": w, "OUTSTANDING": o, "ID_W": i})
       for c, w, o, i in ((1, 512, 1, 1), (4, 64, 64, 16))),
     *(("cchip_count", {"LIMIT": n}) for n in (1, 65535)),
+    *(("cchip_pool", {"FIRST": f, "COUNT": n, "WIDTH": w}) for f, n, w in ((0, 1, 1), (0, 256, 8), (48, 16, 6))),
     *(("cchip_vertex_collector", {"COORD_W": n}) for n in (4, 20)),
     *(("cchip_descriptor_queues", {"DEPTH": d, "KINDS": k, "WIDTH": w}) for d, k, w in ((16, 1, 1), (1024, 3, 80))),
     *(("cchip_operand_memory", {"COORD_W": w, "PLACE_W": p}) for w, p in ((4, 3), (20, 12))),

@@ -70,7 +70,6 @@ struct Totals {
   std::size_t lost = 0;
   std::uint64_t hits = 0;
   Counters counters;
-  void add(const Counters& x) { counters = counters - (Counters{} - x); }
 };
 
 class Run {
@@ -155,7 +154,6 @@ class Run {
       bench.set_lock(1, static_cast<std::uint32_t>(image_b.line), last(image_b));
     }
     std::size_t lost = 0;
-    Counters before;
     const auto run = [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) bench.submit(queries[i]);
       try {
@@ -166,9 +164,9 @@ class Run {
       }
     };
     run(0, settings_.warm);
-    before = bench.counters();
+    bench.clear_counters();
     if (lost == 0) run(settings_.warm, queries.size());
-    const Counters spent = bench.counters() - before;
+    const Counters& spent = bench.counters();
     std::size_t hits = 0;
     std::size_t mismatches = 0;
     steps_alone_ = 0;
@@ -191,7 +189,7 @@ class Run {
     total_.queries += settings_.poses;
     total_.mismatches += mismatches;
     total_.lost += lost;
-    total_.add(spent);
+    total_.counters += spent;
   }
 
   /// 0 if the answer is the model's: all of it in mode ALL; whether they meet, and no pair of leaves that the model

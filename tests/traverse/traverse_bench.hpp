@@ -39,6 +39,7 @@ struct ReceiverOptions {
   std::uint64_t jitter = 0;  ///< up to so many more, at random
   bool held = false;         ///< gives no results
   bool only_hits = false;    ///< holds back the results without a definite hit, and their room
+  bool all_open = false;     ///< no hit is definite
 };
 
 /// What became of a query.
@@ -62,19 +63,19 @@ struct Counters {
   std::uint64_t beats = 0;
   std::uint64_t box_busy = 0;
   std::uint64_t lane_busy = 0;
-  friend Counters operator-(Counters x, const Counters& y) {
-    x.clocks -= y.clocks;
-    x.steps -= y.steps;
-    x.box_tests -= y.box_tests;
-    x.leaf_pairs -= y.leaf_pairs;
-    x.hits -= y.hits;
-    x.misses -= y.misses;
-    x.waits -= y.waits;
-    x.again -= y.again;
-    x.beats -= y.beats;
-    x.box_busy -= y.box_busy;
-    x.lane_busy -= y.lane_busy;
-    return x;
+  Counters& operator+=(const Counters& x) {
+    clocks += x.clocks;
+    steps += x.steps;
+    box_tests += x.box_tests;
+    leaf_pairs += x.leaf_pairs;
+    hits += x.hits;
+    misses += x.misses;
+    waits += x.waits;
+    again += x.again;
+    beats += x.beats;
+    box_busy += x.box_busy;
+    lane_busy += x.lane_busy;
+    return *this;
   }
 };
 
@@ -137,7 +138,9 @@ class TraverseBench {
   }
 
   const std::vector<Answer>& answers() const { return answers_; }
+  /// What has happened since the last call of clear_counters().
   const Counters& counters() const { return counters_; }
+  void clear_counters() { counters_ = {}; }
   std::size_t unanswered() const { return open_ + waiting_.size(); }
 
   /// Forgets everything under way.
@@ -178,7 +181,7 @@ class TraverseBench {
 
   void step() {
     Model& m = top();
-    const std::uint64_t now = counters_.clocks;
+    const std::uint64_t now = now_++;
     drive(m, now);
     simulation_.settle();
     sample(m, now);
@@ -375,8 +378,9 @@ class TraverseBench {
             std::uint32_t id_a = a.id[i];
             std::uint32_t id_b = b.id[j];
             if (query.swapped) std::swap(id_a, id_b);
-            answer.pairs.push_back({query.tag, id_a, id_b, outcome.definite});
-            if (outcome.definite) {
+            const bool definite = outcome.definite && !receiver.all_open;
+            answer.pairs.push_back({query.tag, id_a, id_b, definite});
+            if (definite) {
               ++result.hits;
               finished = query.mode == QueryMode::first;
             } else {
@@ -417,6 +421,7 @@ class TraverseBench {
   std::uint64_t lane_free_ = 0;
   bool offering_ = false;
   std::size_t open_ = 0;
+  std::uint64_t now_ = 0;  ///< clocks since construction
   Counters counters_;
 };
 

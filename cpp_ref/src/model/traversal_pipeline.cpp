@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cchip/model/traversal_pipeline.hpp>
+
+namespace cchip::model {
+
+namespace {
+
+unsigned count(unsigned set) {
+  unsigned n = 0;
+  for (; set != 0; set &= set - 1) ++n;
+  return n;
+}
+unsigned lowest(unsigned set) {
+  unsigned n = 0;
+  while ((set >> n & 1U) == 0) ++n;
+  return n;
+}
+/// Children that are nodes.
+unsigned inner(std::uint8_t kinds) {
+  unsigned set = 0;
+  for (unsigned i = 0; i < 4; ++i) set |= (kinds >> 2 * i & 3U) == 0 ? 1U << i : 0U;
+  return set;
+}
+/// Child `child` of a node, or the node itself with the one child that is a leaf.
+void descend(const StackEntry::Side& side, unsigned child, unsigned& children, std::uint32_t& line) {
+  const bool node = (side.inner >> child & 1U) != 0;
+  children = node ? 15 : 1U << child;
+  line = (node ? side.first + child : side.line) & 0xffffff;
+}
+NodePair child_pair(const StackEntry& of, unsigned number, unsigned epoch) {
+  NodePair pair;
+  pair.epoch = epoch;
+  descend(of.a, number >> 2, pair.children_a, pair.line_a);
+  descend(of.b, number & 3U, pair.children_b, pair.line_b);
+  return pair;
+}
+
+}  // namespace
+
+Decision decide(const TraversalLimits& limits, const Occurrence& o) {
+  Decision d;
+  d.state = o.state;
+  d.constants = o.constants;
+  d.work = o.work;
+  std::optional<QueryCode> code;  // the query ends with it
+  bool live = o.live;
+  switch (o.event) {
+    case TraversalEvent::start: {
+      d.constants = o.query;
+      d.state = {o.state.epoch, false, o.mode, 0, 1, 0, 0, 0, false};
+      d.cancelled = o.work != 0;
+      live = !d.cancelled;
+      if (live && o.bad) code = QueryCode::bad_descriptor;
+      if (live && !o.bad) {
+        d.state.active = true;
+        d.work = 1;
+        d.goes = NodePair{true, o.state.epoch, 0, 0, 0, 0};
+      } else {
+        d.place_free = true;
+        d.room = 1;
+      }
+      break;
+    }
+    case TraversalEvent::pop: {
+      StackEntry entry = o.top;
+      const unsigned chosen = lowest(entry.strong != 0 ? entry.strong : entry.waiting);
+      d.goes = child_pair(entry, chosen, o.epoch);
+      const auto others = static_cast<std::uint16_t>(~(1U << chosen));
+      entry.waiting &= others;
+      entry.strong &= others;
+      d.at = o.state.entries - 1;
+      if (entry.waiting != 0) {
+        d.push = entry;
+      } else {
+        --d.state.entries;
+      }
+      ++d.state.under_way;
+      ++d.work;
+      break;
+    }
+    case TraversalEvent::verdict: {
+      d.room = o.extra ? 2 : 1;
+      if (live && o.lines.code != QueryCode::ok) {
+        code = o.lines.code;
+      } else if (live && o.pair.header) {
+        d.goes = NodePair{false, o.epoch, 15, 15, o.lines.first_a, o.lines.first_b};
+      } else if (live && o.state.steps == limits.steps) {
+        code = QueryCode::steps;
+      } else if (live) {
+        d.step = o.verdict.tests;
+        ++d.state.steps;
+        StackEntry entry{{inner(o.lines.kinds_a), o.lines.first_a, o.pair.line_a},
+                         {inner(o.lines.kinds_b), o.lines.first_b, o.pair.line_b},
+                         o.verdict.waiting,
+                         o.verdict.strong};
+        const bool room = o.verdict.leaves == 0 || o.extra;  // for the leaves of the next node pair
+        const auto best = static_cast<std::uint16_t>(1U << o.verdict.best);
+        std::optional<NodePair> next;
+        if (o.verdict.waiting != 0 && room) {
+          next = child_pair(entry, o.verdict.best, o.epoch);
+          entry.waiting &= static_cast<std::uint16_t>(~best);
+          entry.strong &= static_cast<std::uint16_t>(~best);
+        } else {
+          entry.strong |= best;
+        }
+        if (entry.waiting != 0 && o.state.entries == limits.stack) {
+          code = QueryCode::stack;
+          ++d.state.entries;  // of no meaning: the query has ended
+        } else {
+          d.goes = next;
+          d.at = o.state.entries;
+          if (entry.waiting != 0) {
+            d.push = entry;
+            ++d.state.entries;
+          }
+          if (o.verdict.leaves != 0) {
+            d.leaf = LeafEntry{o.constants.base_a + o.lines.first_a, o.constants.base_b + o.lines.first_b,
+                               o.lines.kinds_a, o.lines.kinds_b, o.verdict.leaves};
+            d.work += count(o.verdict.leaves);
+          }
+        }
+      }
+      d.room -= (d.goes ? 1 : 0) + (d.leaf ? 1 : 0);
+      d.place_free = !d.goes;
+      if (!d.goes) {
+        --d.work;
+        if (live) d.state.under_way = (d.state.under_way + 7) % 8;
+      }
+      break;
+    }
+    case TraversalEvent::result: {
+      --d.work;
+      if (!live) break;
+      d.state.pairs += o.result.hits + o.result.open;
+      const unsigned open = d.state.open + o.result.open;
+      d.state.open = std::min(open, 255U);
+      d.state.hit = d.state.hit || o.result.hits != 0;
+      if (o.result.code != QueryCode::ok) {
+        code = o.result.code;
+      } else if (d.state.mode == QueryMode::first && o.result.hits != 0) {
+        code = QueryCode::ok;
+      } else if (d.state.mode == QueryMode::first && open >= limits.open) {
+        code = QueryCode::host;
+      }
+      break;
+    }
+  }
+  if (live && d.work == 0 && d.state.entries == 0 && !code) code = QueryCode::ok;
+  if (code) {
+    d.state.active = false;
+    d.state.epoch = (d.state.epoch + 1) % 4;
+    d.done = DoneRecord{d.constants.tag, *code,
+                        d.state.hit        ? QueryAnswer::yes
+                        : d.state.open > 0 ? QueryAnswer::open
+                                           : QueryAnswer::no,
+                        d.state.steps, d.state.pairs};
+  }
+  // a pair of leaves that is out may end a query for the first hit
+  const bool hopes = live && d.state.mode == QueryMode::first && d.work != d.state.under_way;
+  d.wants =
+      d.state.active && d.state.entries != 0 && d.state.under_way < (hopes ? limits.pairs_each / 2 : limits.pairs_each);
+  return d;
+}
+
+bool bad_descriptor(const std::array<std::uint32_t, 16>& query) {
+  bool bad = (query[14] >> 30) != 0;
+  for (std::size_t i = 2; i < 11; ++i) {
+    const auto m = static_cast<std::int32_t>(query[i]);
+    bad = bad || m > (1 << 30) || m < -(1 << 30);
+  }
+  return bad;
+}
+
+TraversalEvents::Source TraversalEvents::choose(const Inputs& in) const {
+  const auto may = [this](std::size_t context) { return !has(locked_, context); };
+  const bool can_go = places_.m_valid() && some_room_;
+  if (verdict_ && may(in.lookup.context)) return Source::verdict;
+  if (results_.m_valid() && may(results_.m_data().context)) return Source::result;
+  if (in.drop && may(in.drop->context)) return Source::drop;
+  if (query_valid_ && judged_ && !starting_ && idle_context_ && may(*idle_context_) && can_go &&
+      answers_ < shape_.answers && in.start_ready) {
+    return Source::start;
+  }
+  if (pop_context_ && has(wanting_, *pop_context_) && may(*pop_context_) && can_go) return Source::pop;
+  return Source::nobody;
+}
+
+void TraversalEvents::clock(const Inputs& in) {
+  const Source source = choose(in);
+  const bool start = source == Source::start;
+  const bool goes = start || source == Source::pop;
+  std::optional<Event> event;
+  if (source != Source::nobody) {
+    event.emplace();
+    if (goes) event->place = places_.m_number();
+  }
+  switch (source) {
+    case Source::nobody:
+      break;
+    case Source::verdict:
+      event->event = TraversalEvent::verdict;
+      event->context = in.lookup.context;
+      event->epoch = in.lookup.epoch;
+      event->extra = some_room_;
+      event->place = verdict_->place;
+      event->verdict = *verdict_;
+      break;
+    case Source::result:
+      event->event = TraversalEvent::result;
+      event->context = results_.m_data().context;
+      event->epoch = results_.m_data().epoch;
+      event->result = results_.m_data();
+      break;
+    case Source::drop:
+      event->event = TraversalEvent::result;
+      event->context = in.drop->context;
+      event->epoch = in.drop->epoch;
+      break;
+    case Source::start:
+      event->event = TraversalEvent::start;
+      event->context = *idle_context_;
+      break;
+    case Source::pop:
+      event->event = TraversalEvent::pop;
+      event->context = *pop_context_;
+      break;
+  }
+
+  // what the next clock may choose from
+  const std::uint32_t free_idle = without_query_ & ~locked_;
+  const std::uint32_t free_want = wanting_ & ~locked_;
+  const auto idle = idle_.grant(free_idle);
+  const bool idle_load = !idle_context_;
+  idle_.clock(free_idle, idle_load);
+  pop_context_ = want_.grant(free_want);
+  want_.clock(free_want, true);
+  if (idle_load) {
+    if (in.running) idle_context_ = idle;
+  } else if (start) {
+    idle_context_.reset();
+  }
+
+  const bool done = in.left && in.left->start;
+  const bool ends = done && !in.left->cancel;
+  const bool query_in = in.query && query_ready_;
+  query_bad_ = query_ && bad_descriptor(*query_);
+  if (query_in) query_ = in.query;
+  judged_ = query_valid_ && !done;
+  query_ready_ = query_valid_ ? ends : !query_in;
+  query_valid_ = query_valid_ ? !ends : query_in;
+  starting_ = start || (starting_ && !done);
+
+  const bool lookup = !verdict_ || source == Source::verdict;
+  if (lookup) verdict_ = verdicts_.m_valid() ? std::optional(verdicts_.m_data()) : std::nullopt;
+  verdicts_.clock(in.verdict.has_value(), in.verdict.value_or(BoxVerdict{}), lookup);
+  results_.clock(in.result.has_value(), in.result.value_or(TraversalResult{}), source == Source::result);
+  places_.clock(goes, in.left ? in.left->place : std::nullopt);
+  room_ += (in.left ? in.left->room : 0) + (in.leaf_room ? 1 : 0);
+  room_ -= goes || (source == Source::verdict && some_room_) ? 1 : 0;
+  some_room_ = room_ != 0;
+  answers_ += ends ? 1 : 0;
+  answers_ -= in.answer_room ? 1 : 0;
+
+  if (in.left) {
+    const std::uint32_t bit = std::uint32_t{1} << in.left->context;
+    locked_ &= ~bit;
+    without_query_ = in.left->active ? without_query_ & ~bit : without_query_ | bit;
+    wanting_ = in.left->wants ? wanting_ | bit : wanting_ & ~bit;
+  }
+  if (event) locked_ |= std::uint32_t{1} << event->context;
+  event_ = event;
+}
+
+void TraversalEvents::reset() {
+  idle_.reset();
+  want_.reset();
+  verdicts_.reset();
+  verdict_.reset();
+  results_.reset();
+  places_.reset();
+  room_ = shape_.leaf_depth;
+  some_room_ = true;
+  answers_ = 0;
+  locked_ = wanting_ = 0;
+  without_query_ = 0xffffffff;
+  query_ready_ = query_valid_ = judged_ = starting_ = false;
+  idle_context_.reset();
+  pop_context_.reset();
+  event_.reset();
+}
+
+}  // namespace cchip::model

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_assert.vh"
+// cchip_traversal_events: which event enters the pipeline of cchip_traversal. A verdict goes first,
+// then a result, a dropped pair of leaves, a query, a stack.
+//   rule         an event waits while another one of its query is in the pipeline
+//   room         a query or a stack enters with a place for its node pair, with room in the leaf
+//                queue, a query with a place for its answer, too; a verdict takes further room in
+//                the leaf queue if there is some. What was not needed comes back
+//   latency      1 clock from what enters to m_valid; a verdict is a clock in its queue, another
+//                one before it
+//   throughput   an event per clock
+//   cuts         every path but s_drop_valid -> s_drop_ready, lookup_context -> s_drop_ready and
+//                -> lookup
+//   reset        forgets all; all places and all room are free
+module cchip_traversal_events #(
+    // queries at once: 2, 4, 8 or 16
+    parameter integer QUERIES = 16,
+    // node pairs under way
+    parameter integer PAIRS = 48,
+    // width of a place's number, bit
+    parameter integer PLACE_W = 6,
+    // entries of the leaf queue
+    parameter integer LEAF_DEPTH = 72,
+    // answers that may wait
+    parameter integer ANSWERS = 32
+) (
+    input  wire                        clk,
+    input  wire                        rst,
+    input  wire                        running,          // contexts may take queries
+    // queries (docs/image.md); the one that waits or is at its start, and whether it is valid
+    input  wire                        s_query_valid,
+    output wire                        s_query_ready,
+    input  wire [               511:0] s_query,
+    output wire [               511:0] query,
+    output wire                        query_bad,
+    input  wire                        start_ready,      // somebody takes its pose
+    // verdicts: {place, tests, best, strong, leaves, waiting}
+    input  wire                        s_verdict_valid,
+    input  wire [        PLACE_W+56:0] s_verdict,
+    output wire                        lookup,
+    output wire [         PLACE_W-1:0] lookup_place,
+    input  wire [ $clog2(QUERIES)-1:0] lookup_context,
+    input  wire [                 1:0] lookup_epoch,
+    // results: {context, epoch, code, open, hits}
+    input  wire                        s_result_valid,
+    output wire                        s_result_ready,
+    input  wire [$clog2(QUERIES)+10:0] s_result,
+    // pairs of leaves that nobody waits for any more
+    input  wire                        s_drop_valid,
+    output wire                        s_drop_ready,
+    input  wire [ $clog2(QUERIES)-1:0] s_drop_context,
+    input  wire [                 1:0] s_drop_epoch,
+    // the event; verdict, result and place as far as it has one
+    output wire                        m_valid,
+    output wire                        m_verdict_event,  // what it is: one of these four
+    output wire                        m_result_event,
+    output wire                        m_start_event,
+    output wire                        m_pop_event,      // a node pair leaves the stack
+    output wire [ $clog2(QUERIES)-1:0] m_context,
+    output wire [                 1:0] m_epoch,
+    output wire                        m_extra,          // it has further room in the leaf queue
+    output wire [         PLACE_W-1:0] m_place,
+    output wire [                56:0] m_verdict,
+    output wire [                 8:0] m_result,
+    // an event leaves the pipeline
+    input  wire                        s_left_valid,
+    input  wire [ $clog2(QUERIES)-1:0] s_left_context,
+    input  wire                        s_left_active,    // the context has a query
+    input  wire                        s_left_wants,     // whose stack may send a node pair
+    input  wire                        s_left_start,     // it was a query's start,
+    input  wire                        s_left_cancel,    // to be tried with another context
+    input  wire                        s_left_back,      // its place is free
+    input  wire [         PLACE_W-1:0] s_left_place,
+    input  wire [                 1:0] s_left_room,      // entries of the leaf queue it leaves
+    // further room: an entry has left the leaf queue, an answer was taken
+    input  wire                        s_leaf_room,
+    input  wire                        s_answer_room
+);
+
+  localparam integer CONTEXT_W = $clog2(QUERIES);
+  localparam integer ROOM_W = $clog2(LEAF_DEPTH + 1);
+  localparam [31:0] DEPTH = LEAF_DEPTH;
+
+  reg [QUERIES-1:0] lock_q;  // has an event in the pipeline
+  reg [QUERIES-1:0] idle_q;  // has no query
+  reg [QUERIES-1:0] want_q;  // has a stack and may have another node pair under way
+
+  // ---- verdicts, with what is known of their node pairs
+  reg verdict_valid_q;
+  reg [PLACE_W+56:0] verdict_q;
+  wire verdict_take, queue_valid, queue_ready;
+  wire [PLACE_W+56:0] queue_verdict;
+  cchip_fifo #(
+      .WIDTH     (PLACE_W + 57),
+      .DEPTH     (PAIRS),
+      .ROOM_KNOWN(1)
+  ) u_verdicts (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(s_verdict_valid),
+      .s_ready(queue_ready),
+      .s_data (s_verdict),
+      .m_valid(queue_valid),
+      .m_ready(lookup),
+      .m_data (queue_verdict)
+  );
+  assign lookup       = ~verdict_valid_q | verdict_take;
+  assign lookup_place = queue_verdict[57+:PLACE_W];
+  always @(posedge clk) begin
+    if (lookup) verdict_q <= queue_verdict;
+    if (rst) verdict_valid_q <= 1'b0;
+    else if (lookup) verdict_valid_q <= queue_valid;
+  end
+
+  // ---- results
+  wire result_valid, result_take;
+  wire [CONTEXT_W-1:0] result_context;
+  wire [1:0] result_epoch;
+  wire [8:0] result;
+  cchip_skid_buffer #(
+      .WIDTH(CONTEXT_W + 11)
+  ) u_result (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(s_result_valid),
+      .s_ready(s_result_ready),
+      .s_data (s_result),
+      .m_valid(result_valid),
+      .m_ready(result_take),
+      .m_data ({result_context, result_epoch, result})
+  );
+
+  // ---- contexts: one without a query, one with a stack
+  wire [QUERIES-1:0] idle_grant, want_grant;
+  wire [CONTEXT_W-1:0] idle_context, want_context;
+  reg idle_valid_q, pop_valid_q;
+  reg [CONTEXT_W-1:0] idle_context_q, pop_context_q;
+  cchip_arbiter #(
+      .N(QUERIES)
+  ) u_idle (
+      .clk    (clk),
+      .rst    (rst),
+      .request(idle_q & ~lock_q),
+      .grant  (idle_grant),
+      .take   (~idle_valid_q)
+  );
+  cchip_arbiter #(
+      .N(QUERIES)
+  ) u_want (
+      .clk    (clk),
+      .rst    (rst),
+      .request(want_q & ~lock_q),
+      .grant  (want_grant),
+      .take   (1'b1)
+  );
+  genvar n, b;
+  generate
+    for (b = 0; b < CONTEXT_W; b = b + 1) begin : gen_context
+      wire [QUERIES-1:0] with_bit;
+      for (n = 0; n < QUERIES; n = n + 1) begin : gen_with
+        localparam [31:0] N = n;
+        assign with_bit[n] = N[b];
+      end
+      assign idle_context[b] = |(idle_grant & with_bit);
+      assign want_context[b] = |(want_grant & with_bit);
+    end
+  endgenerate
+
+  // ---- the next query
+  reg query_valid_q, query_ready_q, bad_q, judged_q, starting_q;
+  reg [511:0] query_q;
+  wire start_take;
+  wire start_done = s_left_valid & s_left_start;
+  wire start_ends = start_done & ~s_left_cancel;
+  wire query_in = s_query_valid & query_ready_q;
+  wire [8:0] beyond;  // |M_ij| > 1
+  generate
+    for (n = 0; n < 9; n = n + 1) begin : gen_m
+      wire [31:0] m = query_q[64+32*n+:32];
+      assign beyond[n] = m[31] ? ~m[30] : m[30] & |m[29:0];
+    end
+  endgenerate
+  always @(posedge clk) begin
+    if (query_in) query_q <= s_query;
+    bad_q         <= |beyond | (|query_q[479:478]);
+    pop_context_q <= want_context;
+    if (~idle_valid_q) idle_context_q <= idle_context;
+    if (rst) begin
+      query_valid_q <= 1'b0;
+      query_ready_q <= 1'b0;
+      judged_q      <= 1'b0;
+      idle_valid_q  <= 1'b0;
+      pop_valid_q   <= 1'b0;
+      starting_q    <= 1'b0;
+    end else begin
+      query_valid_q <= query_valid_q ? ~start_ends : query_in;
+      query_ready_q <= query_valid_q ? start_ends : ~query_in;
+      judged_q      <= query_valid_q & ~start_done;
+      idle_valid_q  <= idle_valid_q ? ~start_take : running & |(idle_q & ~lock_q);
+      pop_valid_q   <= |(want_q & ~lock_q);
+      starting_q    <= start_take | (starting_q & ~start_done);
+    end
+  end
+  assign s_query_ready = query_ready_q;
+  assign query         = query_q;
+  assign query_bad     = bad_q;
+
+  // ---- a place, room in the leaf queue, room for the answer
+  wire place_valid, place_take;
+  wire [PLACE_W-1:0] place;
+  cchip_pool #(
+      .COUNT(PAIRS),
+      .WIDTH(PLACE_W)
+  ) u_places (
+      .clk        (clk),
+      .rst        (rst),
+      .m_valid    (place_valid),
+      .m_ready    (place_take),
+      .m_number   (place),
+      .back_valid (s_left_back),
+      .back_number(s_left_place)
+  );
+  reg [ROOM_W-1:0] room_q;  // of the leaf queue, that no node pair has
+  reg some_room_q;
+  wire room_take;
+  wire [ROOM_W-1:0] room = room_q + {{ROOM_W - 2{1'b0}}, s_left_room} +
+      {{ROOM_W - 1{1'b0}}, s_leaf_room} - {{ROOM_W - 1{1'b0}}, room_take};
+  always @(posedge clk)
+    if (rst) begin
+      room_q      <= DEPTH[ROOM_W-1:0];
+      some_room_q <= 1'b1;
+    end else begin
+      room_q      <= room;
+      some_room_q <= room != {ROOM_W{1'b0}};
+    end
+  wire answer_room, unused_some;
+  wire [$clog2(ANSWERS+1)-1:0] unused_answers;
+  cchip_count #(
+      .LIMIT(ANSWERS)
+  ) u_answers (
+      .clk  (clk),
+      .rst  (rst),
+      .up   (start_ends),
+      .down (s_answer_room),
+      .count(unused_answers),
+      .some (unused_some),
+      .room (answer_room)
+  );
+
+  // ---- one event is let in
+  wire can_verdict = verdict_valid_q & ~lock_q[lookup_context];
+  wire can_result = result_valid & ~lock_q[result_context];
+  wire can_drop = s_drop_valid & ~lock_q[s_drop_context];
+  wire can_go = place_valid & some_room_q;
+  wire can_start = query_valid_q & judged_q & ~starting_q & idle_valid_q & can_go & answer_room &
+      start_ready & ~lock_q[idle_context_q];
+  wire can_pop = pop_valid_q & want_q[pop_context_q] & ~lock_q[pop_context_q] & can_go;
+  wire drop_take = can_drop & ~can_verdict & ~can_result;
+  wire pop_take = can_pop & ~can_verdict & ~can_result & ~can_drop & ~can_start;
+  assign verdict_take = can_verdict;
+  assign result_take  = can_result & ~can_verdict;
+  assign start_take   = can_start & ~can_verdict & ~can_result & ~can_drop;
+  assign place_take   = start_take | pop_take;
+  assign room_take    = place_take | (verdict_take & some_room_q);
+  assign s_drop_ready = drop_take;
+  wire take = verdict_take | result_take | drop_take | start_take | pop_take;
+  wire [CONTEXT_W-1:0] taken = verdict_take ? lookup_context : result_take ? result_context :
+      drop_take ? s_drop_context : start_take ? idle_context_q : pop_context_q;
+  wire [QUERIES-1:0] locks = {{QUERIES - 1{1'b0}}, take} << taken;
+  wire [QUERIES-1:0] unlocks = {{QUERIES - 1{1'b0}}, s_left_valid} << s_left_context;
+
+  reg valid_q, is_verdict_q, is_result_q, is_start_q, is_pop_q, extra_q;
+  reg [1:0] epoch_q;
+  reg [CONTEXT_W-1:0] context_q;
+  reg [PLACE_W-1:0] place_q;
+  reg [56:0] of_verdict_q;
+  reg [8:0] of_result_q;
+  always @(posedge clk) begin
+    is_verdict_q <= verdict_take;
+    is_result_q  <= result_take | drop_take;
+    is_start_q   <= start_take;
+    is_pop_q     <= pop_take;
+    context_q    <= taken;
+    epoch_q      <= verdict_take ? lookup_epoch : result_take ? result_epoch : s_drop_epoch;
+    extra_q      <= verdict_take & some_room_q;
+    place_q      <= verdict_take ? verdict_q[57+:PLACE_W] : place;
+    of_verdict_q <= verdict_q[56:0];
+    of_result_q  <= result_take ? result : 9'd0;
+    if (rst) begin
+      valid_q <= 1'b0;
+      lock_q  <= {QUERIES{1'b0}};
+      idle_q  <= {QUERIES{1'b1}};
+      want_q  <= {QUERIES{1'b0}};
+    end else begin
+      valid_q <= take;
+      lock_q  <= (lock_q & ~unlocks) | locks;
+      idle_q  <= s_left_active ? idle_q & ~unlocks : idle_q | unlocks;
+      want_q  <= s_left_wants ? want_q | unlocks : want_q & ~unlocks;
+    end
+  end
+  assign m_valid = valid_q;
+  assign m_verdict_event = is_verdict_q;
+  assign m_result_event = is_result_q;
+  assign m_start_event = is_start_q;
+  assign m_pop_event = is_pop_q;
+  assign m_context = context_q;
+  assign m_epoch = epoch_q;
+  assign m_extra = extra_q;
+  assign m_place = place_q;
+  assign m_verdict = of_verdict_q;
+  assign m_result = of_result_q;
+  wire unused = &{1'b0, unused_answers, unused_some};
+
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_verdict, !s_verdict_valid || queue_ready)
+      `CCHIP_ASSERT(a_room, room_q <= DEPTH[ROOM_W-1:0])
+      `CCHIP_ASSERT(a_locked, !take || !lock_q[taken])
+      `CCHIP_ASSERT(a_left, !s_left_valid || lock_q[s_left_context])
+    end
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <deque>
+#include <map>
+#include <models/cchip_traversal_events.hpp>
+
+#include "bench.hpp"
+#include "traversal_ports.hpp"
+
+using namespace cchip;
+using namespace cchip::test;
+
+namespace {
+
+using model::TraversalEvent;
+using model::TraversalEvents;
+
+unsigned below(Random& random, std::size_t n) { return static_cast<unsigned>(random() % n); }
+
+/// A pipeline of six clocks that decides at random, a box test and a leaf queue that answer at random, within the
+/// rules.
+class Surroundings {
+ public:
+  Surroundings(std::size_t queries, Random& random) : active_(queries), random_(random) {}
+  int busy = 50;  ///< chance of whatever may happen on a clock, per cent
+
+  TraversalEvents::Inputs next() {
+    TraversalEvents::Inputs in;
+    in.running = clock_ > 5;
+    in.start_ready = chance(random_, 90);
+    if (!query_ && chance(random_, busy)) query_ = words();
+    in.query = query_;
+    if (!under_way_.empty() && chance(random_, busy)) {
+      std::swap(under_way_[below(random_, under_way_.size())], under_way_.back());
+      in.verdict.emplace();
+      in.verdict->place = under_way_.back();
+      in.verdict->waiting = static_cast<std::uint16_t>(random_());
+      in.verdict->leaves = static_cast<std::uint16_t>(random_());
+      in.verdict->strong = static_cast<std::uint16_t>(random_());
+      in.verdict->best = below(random_, 16);
+      in.verdict->tests = below(random_, 17);
+      under_way_.pop_back();
+    }
+    in.lookup = looked_;
+    if (!result_ && chance(random_, busy / 2)) {
+      result_ = model::TraversalResult{below(random_, active_.size()), below(random_, 4), below(random_, 5),
+                                       below(random_, 5), static_cast<QueryCode>(random_() % 8)};
+    }
+    in.result = result_;
+    if (!drop_ && chance(random_, busy / 4))
+      drop_ = TraversalEvents::Of{below(random_, active_.size()), below(random_, 4)};
+    in.drop = drop_;
+    in.leaf_room = leaves_ > 0 && chance(random_, busy);
+    in.answer_room = answers_ > 0 && chance(random_, busy);
+    if (pipeline_[5]) in.left = leave(*pipeline_[5]);
+    return in;
+  }
+
+  void clock(const TraversalEvents& model, const TraversalEvents::Inputs& in) {
+    if (model.query_ready()) query_.reset();
+    if (model.result_ready()) result_.reset();
+    if (model.drop_ready(in)) drop_.reset();
+    if (const auto place = model.lookup_place(); place && model.lookup(in))
+      looked_ = {context_of_.at(*place), below(random_, 4)};
+    leaves_ -= in.leaf_room ? 1 : 0;
+    answers_ -= in.answer_room ? 1 : 0;
+    for (std::size_t i = 5; i > 0; --i) pipeline_[i] = pipeline_[i - 1];
+    pipeline_[0] = model.event();
+    ++clock_;
+  }
+  std::map<TraversalEvent, int> left;  ///< how many of each
+
+ private:
+  TraversalEvents::QueryWords words() {
+    TraversalEvents::QueryWords x{};
+    for (auto& word : x) word = static_cast<std::uint32_t>(random_());
+    if (chance(random_, 80)) x[14] &= 0x3fffffff;
+    if (chance(random_, 90)) {
+      for (std::size_t i = 2; i < 11; ++i) x[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(x[i]) / 2);
+    }
+    if (chance(random_, 20)) {
+      const std::array<std::uint32_t, 4> extremes = {0x40000000, 0xc0000000, 0x40000001, 0xbfffffff};
+      x[2 + below(random_, 9)] = extremes[below(random_, 4)];
+    }
+    return x;
+  }
+
+  TraversalEvents::Left leave(const TraversalEvents::Event& event) {
+    TraversalEvents::Left x;
+    x.context = event.context;
+    ++left[event.event];
+    bool goes = true;
+    switch (event.event) {
+      case TraversalEvent::start:
+        x.start = true;
+        x.cancel = chance(random_, 10);
+        goes = !x.cancel && chance(random_, 90);
+        active_[x.context] = goes;
+        if (!goes && !x.cancel) ++answers_;
+        x.room = goes ? 0 : 1;
+        break;
+      case TraversalEvent::pop:
+        break;
+      case TraversalEvent::verdict: {
+        goes = active_[x.context] && chance(random_, 60);
+        x.room = (event.extra ? 2U : 1U) - (goes ? 1U : 0U);
+        const bool leaf = active_[x.context] && x.room > 0 && chance(random_, 50);
+        x.room -= leaf ? 1 : 0;
+        leaves_ += leaf ? 1 : 0;
+        break;
+      }
+      case TraversalEvent::result:
+        goes = false;
+        break;
+    }
+    if (event.event != TraversalEvent::start && !goes && active_[x.context] && chance(random_, 20)) {
+      active_[x.context] = false;
+      ++answers_;
+    }
+    x.active = active_[x.context];
+    x.wants = x.active && chance(random_, 70);
+    if (event.event == TraversalEvent::result) return x;
+    if (goes) {
+      under_way_.push_back(event.place);
+      context_of_[event.place] = x.context;
+    } else {
+      x.place = event.place;
+    }
+    return x;
+  }
+
+  std::vector<bool> active_;
+  Random& random_;
+  std::uint64_t clock_ = 0;
+  std::optional<TraversalEvents::QueryWords> query_;
+  std::optional<model::TraversalResult> result_;
+  std::optional<TraversalEvents::Of> drop_;
+  std::vector<std::size_t> under_way_;
+  std::map<std::size_t, std::size_t> context_of_;
+  TraversalEvents::Of looked_;
+  std::array<std::optional<TraversalEvents::Event>, 6> pipeline_;
+  int leaves_ = 0, answers_ = 0;
+};
+
+template <class Top>
+void drive(Top& top, const TraversalEvents::Inputs& in, int context_w, int place_w) {
+  top.running = in.running ? 1 : 0;
+  top.start_ready = in.start_ready ? 1 : 0;
+  top.s_query_valid = in.query ? 1 : 0;
+  for (int i = 0; in.query && i < 16; ++i)
+    sim::set_bits(top.s_query, 32 * i, 32, (*in.query)[static_cast<std::size_t>(i)]);
+  top.s_verdict_valid = in.verdict ? 1 : 0;
+  if (in.verdict) {
+    put_verdict(top.s_verdict, *in.verdict);
+    sim::set_bits(top.s_verdict, 57, place_w, in.verdict->place);
+  }
+  top.lookup_context = static_cast<CData>(in.lookup.context);
+  top.lookup_epoch = static_cast<CData>(in.lookup.epoch);
+  top.s_result_valid = in.result ? 1 : 0;
+  if (in.result) {
+    Fields<decltype(top.s_result)>(top.s_result)
+        .put(3, in.result->hits)
+        .put(3, in.result->open)
+        .put(3, static_cast<unsigned>(in.result->code))
+        .put(2, in.result->epoch)
+        .put(context_w, in.result->context);
+  }
+  top.s_drop_valid = in.drop ? 1 : 0;
+  if (in.drop) {
+    top.s_drop_context = static_cast<CData>(in.drop->context);
+    top.s_drop_epoch = static_cast<CData>(in.drop->epoch);
+  }
+  const auto& left = in.left;
+  top.s_left_valid = left ? 1 : 0;
+  top.s_left_context = static_cast<CData>(left ? left->context : 0);
+  top.s_left_active = left && left->active ? 1 : 0;
+  top.s_left_wants = left && left->wants ? 1 : 0;
+  top.s_left_start = left && left->start ? 1 : 0;
+  top.s_left_cancel = left && left->cancel ? 1 : 0;
+  top.s_left_back = left && left->place ? 1 : 0;
+  if (left && left->place) top.s_left_place = static_cast<CData>(*left->place);
+  top.s_left_room = static_cast<CData>(left ? left->room : 0);
+  top.s_leaf_room = in.leaf_room ? 1 : 0;
+  top.s_answer_room = in.answer_room ? 1 : 0;
+}
+
+template <class Top>
+void check(const Top& top, const TraversalEvents& model, const TraversalEvents::Inputs& in) {
+  REQUIRE((top.s_query_ready != 0) == model.query_ready());
+  REQUIRE((top.s_result_ready != 0) == model.result_ready());
+  REQUIRE((top.s_drop_ready != 0) == model.drop_ready(in));
+  REQUIRE((top.lookup != 0) == model.lookup(in));
+  if (model.lookup_place()) REQUIRE(std::size_t{top.lookup_place} == *model.lookup_place());
+  if (model.query()) {
+    for (int i = 0; i < 16; ++i)
+      REQUIRE(sim::get_bits(top.query, 32 * i, 32) == (*model.query())[static_cast<std::size_t>(i)]);
+  }
+  const auto& event = model.event();
+  REQUIRE((top.m_valid != 0) == event.has_value());
+  if (!event) return;
+  REQUIRE((top.m_verdict_event != 0) == (event->event == TraversalEvent::verdict));
+  REQUIRE((top.m_result_event != 0) == (event->event == TraversalEvent::result));
+  REQUIRE((top.m_start_event != 0) == (event->event == TraversalEvent::start));
+  REQUIRE((top.m_pop_event != 0) == (event->event == TraversalEvent::pop));
+  REQUIRE(std::size_t{top.m_context} == event->context);
+  REQUIRE((top.m_extra != 0) == event->extra);
+  if (event->event == TraversalEvent::start) REQUIRE((top.query_bad != 0) == model.query_bad());
+  if (event->event != TraversalEvent::result) REQUIRE(std::size_t{top.m_place} == event->place);
+  if (event->event == TraversalEvent::verdict || event->event == TraversalEvent::result) {
+    REQUIRE(unsigned{top.m_epoch} == event->epoch);
+  }
+  if (event->event == TraversalEvent::verdict) {
+    const model::BoxVerdict verdict = get_verdict(top.m_verdict);
+    REQUIRE(verdict.waiting == event->verdict.waiting);
+    REQUIRE(verdict.leaves == event->verdict.leaves);
+    REQUIRE(verdict.strong == event->verdict.strong);
+    REQUIRE(verdict.best == event->verdict.best);
+    REQUIRE(verdict.tests == event->verdict.tests);
+  }
+  if (event->event == TraversalEvent::result) {
+    const auto& r = event->result;
+    REQUIRE(unsigned{top.m_result} == (static_cast<unsigned>(r.code) << 6 | r.open << 3 | r.hits));
+  }
+}
+
+}  // namespace
+
+TEMPLATE_LIST_TEST_CASE(
+    "cchip_traversal_events: the model's event on every clock, none of a query twice, none for ever",
+    "[unit][cchip_traversal_events]", cchip_traversal_events_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
+    constexpr std::size_t queries = TestType::QUERIES;
+    TraversalEvents model({queries, TestType::PAIRS, TestType::LEAF_DEPTH, TestType::ANSWERS});
+    std::map<TraversalEvent, int> left;
+    for (int run = 0; run < 40; ++run) {
+      Surroundings around(queries, random);
+      around.busy = run % 3 == 0 ? 90 : run % 3 == 1 ? 40 : 8;
+      drive(top, {}, log2(TestType::QUERIES), TestType::PLACE_W);
+      simulation.reset();
+      model.reset();
+      for (int clock = 0; clock < 1000; ++clock) {
+        const TraversalEvents::Inputs in = around.next();
+        drive(top, in, log2(TestType::QUERIES), TestType::PLACE_W);
+        simulation.settle();
+        check(top, model, in);
+        around.clock(model, in);
+        model.clock(in);
+        simulation.rise();
+      }
+      for (const auto& [event, n] : around.left) left[event] += n;
+    }
+    REQUIRE(left.size() == 4);
+    for (const auto& [event, n] : left) {
+      CAPTURE(static_cast<int>(event), n);
+      REQUIRE(n > 200);
+    }
+  });
+}
