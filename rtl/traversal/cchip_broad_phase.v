@@ -6,7 +6,8 @@
 //   query        a line as docs/image.md describes it; its answer comes when every pair of leaves
 //                that the query still waited for has its result
 //   leaves       pairs of leaves of which nothing is known but that their volumes overlap, with
-//                their lines. The receiver tests the primitives and answers each with one result
+//                their lines. The receiver tests the primitives and answers each with one
+//                result; fewer than 1,900 are without one at any time
 //   errors       end one query with a code, and leave the others alone
 //   bound        every wait has one: a read by the limit of cchip_axi_read, a query by step_limit;
 //                results and the receiver of answers are waited for

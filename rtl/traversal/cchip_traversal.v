@@ -12,6 +12,7 @@
 //                is used again when its count is 0
 //   room         a verdict always has room: a node pair is under way only with a place in the leaf
 //                queue; a query starts only with a place for its answer
+//   rules        fewer than 1,900 pairs of leaves are without a result behind cchip_get_data
 //   latency      12 clocks from s_verdict_valid to m_valid
 //   throughput   an event per clock, of one query one in 9 clocks
 //   cuts         every path but lookup_context -> lookup: each other output is a flip-flop
@@ -523,6 +524,7 @@ module cchip_traversal #(
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_done, !ends7 || done_ready)
+      `CCHIP_ASSERT(a_results, !valid_q7 || work7 < 12'd4000)
       `CCHIP_ASSERT(a_pop, !(valid5 && is5[3]) || (live_q5 && |state_q5[76+:STACK_W+1]))
       `CCHIP_ASSERT(a_work, !(valid5 && (is5[0] || is5[1])) || |work_q5)
     end

@@ -46,6 +46,7 @@ RETRY = "rtl/reconfig/cchip_swap_retry.v"
 FETCH = "rtl/reconfig/cchip_bitstream_fetch.v"
 READ = "rtl/memory/cchip_axi_read.v"
 WRITE = "rtl/memory/cchip_axi_write.v"
+DECISION = "rtl/traversal/cchip_traversal_decision.v"
 # Tasks that take minutes; --quick proves the others, which take seconds.
 SLOW = {("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"), ("cchip_slot_ledger", "prove"),
         ("cchip_dispatcher", "bounded"), ("cchip_dispatcher", "bounded_2"), ("cchip_descriptor_queues", "bounded"),
@@ -106,6 +107,20 @@ MUTANTS = [
     ("cchip_axi_write bounded", WRITE, "turn_d = begun_d ? turn_q : grant;", "turn_d = grant;"),
     ("cchip_axi_write bounded", WRITE, "wire refuse = write_valid & take_free & dropped_some & ~waiting_some;",
      "wire refuse = write_valid & take_free & dropped_some;"),
+    # work of a former query makes the present one wait; what is left of an entry is lost, of its weak pairs; a pair from the stack
+    # is not counted, nor that the place of a bad query is free; room for leaves is given back though they are there; leaves of a
+    # query that has ended; its epoch goes on; another code; an old event ends the new query; the child pair of another number
+    ("cchip_traversal_decision prove", DECISION, "wire hopes = live_q && ~mode_q", "wire hopes = ~mode_q"),
+    ("cchip_traversal_decision prove", DECISION, "(push & ~s_full) | (s_is_pop & rest);", "push & ~s_full;"),
+    ("cchip_traversal_decision prove", DECISION, "wire rest = |rest_waiting;", "wire rest = |rest_strong;"),
+    ("cchip_traversal_decision prove", DECISION, "s_work + more + one_more - one_less;", "s_work + more - one_less;"),
+    ("cchip_traversal_decision prove", DECISION, "~goes & ~s_is_result;", "~goes & s_is_verdict;"),
+    ("cchip_traversal_decision prove", DECISION, "- {1'b0, leaf} - {1'b0, goes};", "- {1'b0, goes};"),
+    ("cchip_traversal_decision prove", DECISION, "wire leaf = step & s_some_leaves & ~spill;", "wire leaf = s_is_verdict & s_some_leaves & ~spill;"),
+    ("cchip_traversal_decision prove", DECISION, "now_q + {1'b0, ends};", "now_q;"),
+    ("cchip_traversal_decision prove", DECISION, "spill ? END_STACK : END_STEPS;", "END_STEPS;"),
+    ("cchip_traversal_decision prove", DECISION, "bad_q | (live_q & (", "bad_q | ((active_q) & ("),
+    ("cchip_traversal_decision prove", DECISION, "s_is_pop ? lowest_number : best_number;", "best_number;"),
     # the turn follows requests instead of grants; passes without a grant taken; there is no turn
     ("cchip_arbiter prove", ARBITER, "behind_q <= above(grant);", "behind_q <= above(lowest(request));"),
     ("cchip_arbiter prove", ARBITER, "else if (take && |request)", "else if (|request)"),
