@@ -255,7 +255,7 @@ module cchip_traversal_events #(
   wire can_go = place_valid & some_room_q;
   wire can_start = query_valid_q & judged_q & ~starting_q & idle_valid_q & can_go & answer_room &
       start_ready & ~lock_q[idle_context_q];
-  wire can_pop = pop_valid_q & want_q[pop_context_q] & ~lock_q[pop_context_q] & can_go;
+  wire can_pop = pop_valid_q & ~lock_q[pop_context_q] & can_go;
   wire drop_take = can_drop & ~can_verdict & ~can_result;
   wire pop_take = can_pop & ~can_verdict & ~can_result & ~can_drop & ~can_start;
   assign verdict_take = can_verdict;

@@ -46,11 +46,14 @@ RETRY = "rtl/reconfig/cchip_swap_retry.v"
 FETCH = "rtl/reconfig/cchip_bitstream_fetch.v"
 READ = "rtl/memory/cchip_axi_read.v"
 WRITE = "rtl/memory/cchip_axi_write.v"
+EVENTS = "rtl/traversal/cchip_traversal_events.v"
+POOL = "rtl/common/cchip_pool.v"
 DECISION = "rtl/traversal/cchip_traversal_decision.v"
 # Tasks that take minutes; --quick proves the others, which take seconds.
 SLOW = {("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"), ("cchip_slot_ledger", "prove"),
         ("cchip_dispatcher", "bounded"), ("cchip_dispatcher", "bounded_2"), ("cchip_descriptor_queues", "bounded"),
-        ("cchip_swap_retry", "prove"), ("cchip_axi_read", "bounded"), ("cchip_axi_write", "bounded_1")}
+        ("cchip_swap_retry", "prove"), ("cchip_axi_read", "bounded"), ("cchip_axi_write", "bounded_1"),
+        ("cchip_traversal_events", "bounded")}
 # (task that has to fail, file, text, what takes its place); the text occurs once
 MUTANTS = [
     ("cchip_skid_buffer prove", SKID, "if (ready_q) skid_data_q <= s_data;", "skid_data_q <= s_data;"),
@@ -107,6 +110,19 @@ MUTANTS = [
     ("cchip_axi_write bounded", WRITE, "turn_d = begun_d ? turn_q : grant;", "turn_d = grant;"),
     ("cchip_axi_write bounded", WRITE, "wire refuse = write_valid & take_free & dropped_some & ~waiting_some;",
      "wire refuse = write_valid & take_free & dropped_some;"),
+    # a verdict, a stack, do not wait for the query's event inside, at two places; further room that there is not; the
+    # same room twice; a result is lost behind a verdict; a context that has a query gets another; two starts of a query; a place
+    # that came back is not the one that is lent
+    ("cchip_traversal_events bounded", EVENTS, "verdict_valid_q & ~lock_q[lookup_context];", "verdict_valid_q;"),
+    ("cchip_traversal_events bounded", EVENTS, "pop_valid_q & ~lock_q[pop_context_q] &", "pop_valid_q &"),
+    ("cchip_traversal_events bounded", EVENTS, "pop_valid_q   <= |(want_q & ~lock_q);", "pop_valid_q   <= |want_q;"),
+    ("cchip_traversal_events bounded", EVENTS, "extra_q      <= verdict_take & some_room_q;", "extra_q      <= verdict_take;"),
+    ("cchip_traversal_events bounded", EVENTS, "place_take | (verdict_take & some_room_q);", "place_take;"),
+    ("cchip_traversal_events bounded", EVENTS, "can_result & ~can_verdict;", "can_result;"),
+    ("cchip_traversal_events bounded", EVENTS, "s_left_active ? idle_q & ~unlocks : idle_q | unlocks;", "idle_q | unlocks;"),
+    ("cchip_traversal_events bounded", EVENTS, "judged_q & ~starting_q &", "judged_q &"),
+    ("cchip_traversal_events bounded", EVENTS, "idle_context_q <= idle_context;", "idle_context_q <= 1'b0;"),
+    ("cchip_traversal_events bounded", POOL, "back_valid ? back_number : next_q", "next_q"),
     # work of a former query makes the present one wait; what is left of an entry is lost, of its weak pairs; a pair from the stack
     # is not counted, nor that the place of a bad query is free; room for leaves is given back though they are there; leaves of a
     # query that has ended; its epoch goes on; another code; an old event ends the new query; the child pair of another number

@@ -103,6 +103,7 @@ class Run {
 
   void run_pair(const std::string& name) {
     const MeshPair meshes = mesh_pair(name);
+    fmt::print("{}: {} against {} faces\n", name, describe_faces(meshes.a), describe_faces(meshes.b));
     const Object a(meshes.a);
     const Object b(meshes.b);
     const Placed image_a(meshes.a, line_of_a);

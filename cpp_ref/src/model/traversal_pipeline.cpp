@@ -182,7 +182,7 @@ TraversalEvents::Source TraversalEvents::choose(const Inputs& in) const {
       answers_ < shape_.answers && in.start_ready) {
     return Source::start;
   }
-  if (pop_context_ && has(wanting_, *pop_context_) && may(*pop_context_) && can_go) return Source::pop;
+  if (pop_context_ && may(*pop_context_) && can_go) return Source::pop;
   return Source::nobody;
 }
 
