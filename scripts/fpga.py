@@ -14,7 +14,7 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
                     `make campaign-build`); without it there are no pairs per second
   --pairs N         pairs of each class for the mean beats (default 20000)
   --families        count the blocks of Xilinx 7 and of Intel Cyclone V, too
-  --write           rewrite the generated tables of docs/fpga.md with the rows of this run (tables without a row of it stay);
+  --write           rewrite the rows of this run in the generated tables of docs/fpga.md; other rows stay;
                     all rows: the families, too
   --list            print the rows
 
@@ -633,6 +633,19 @@ def name_tree():
     PAGE.write_text(text)
 
 
+def with_others(name, table, found):
+    """The table with the lines that the page has of rows that are not in found, in the order of rows(); None if its lines do
+    not begin with the name of their row."""
+    order = list(rows())
+    row = lambda line: line.split("|")[1].strip(" `")
+    head, lines = table.splitlines()[:2], table.splitlines()[2:]
+    if not all(row(line) in order for line in lines):
+        return None
+    present = re.search(datasheet.BLOCK.format(f" {name}"), PAGE.read_text(), re.S)[0].splitlines()[1:-1]
+    others = [line for line in present[2:] if row(line) in order and row(line) not in found] if present[:2] == head else []
+    return "\n".join([*head, *sorted(others + lines, key=lambda line: order.index(row(line)))]) + "\n"
+
+
 def main():
     if set(sys.argv) & {"-h", "--help"}:
         print(__doc__)
@@ -657,7 +670,11 @@ def main():
         if "subsystem1" in found:
             datasheet.rewrite(PAGE, "bill", bill_table(options))
         for name, text in made.items():
-            datasheet.rewrite(PAGE, name, text)
+            block = with_others(name, text, found) if options.rows else text
+            if block:
+                datasheet.rewrite(PAGE, name, block)
+            else:
+                say(f"fpga.py: the table {name} of docs/fpga.md needs all rows; it is as it was")
         if options.families:  # every row is of this run
             name_tree()
     for failure in failures:
