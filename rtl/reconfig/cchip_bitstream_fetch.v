@@ -68,24 +68,27 @@ module cchip_bitstream_fetch #(
   reg [4:0] beats_q;
   reg arvalid_q;
   reg [1:0] bursts_q;  // addresses taken, last beat not yet here
-  reg [COUNT_W-1:0] reserved_q;  // words asked for and not yet taken from the FIFO
+  reg [COUNT_W-1:0] reserved_q;  // words asked for and not yet taken from the FIFO, a clock late
 
-  wire [4:0] to_edge = 5'd16 - {1'b0, addr_q[5:2]};
-  wire fits = |left_q[29:5] || left_q[4:0] >= to_edge;
+  reg [4:0] to_edge_q;  // words from addr_q to the edge, which every burst but the last ends at
+  wire fits = |left_q[29:5] || left_q[4:0] >= to_edge_q;
   wire room = {{32 - COUNT_W{1'b0}}, reserved_q} <= ROOM;
   wire issue = working & planned_q & ~arvalid_q & ~bursts_q[1] & room;
   wire taken = arvalid_q & m_axi_arready;
-  wire pop = m_valid & m_ready;
+  reg pop_q;  // a word left the FIFO a clock ago
 
   always @(posedge clk) begin
     if (run && !run_q) begin
       addr_q <= address;
       left_q <= words;
+      to_edge_q <= 5'd16 - {1'b0, address[5:2]};
     end else if (taken) begin
       addr_q <= addr_q + {25'd0, beats_q, 2'd0};
       left_q <= left_q - {25'd0, beats_q};
+      to_edge_q <= 5'd16;
     end
-    if (!planned_q) beats_q <= fits ? to_edge : left_q[4:0];
+    pop_q <= run_q & m_valid & m_ready;
+    if (!planned_q) beats_q <= fits ? to_edge_q : left_q[4:0];
     if (rst) begin
       run_q      <= 1'b0;
       planned_q  <= 1'b0;
@@ -98,8 +101,8 @@ module cchip_bitstream_fetch #(
       if (!run_q) reserved_q <= {COUNT_W{1'b0}};
       else
         // one addition: of the beats of a burst, less one if a word leaves
-        reserved_q <= reserved_q + (issue ? {{COUNT_W - 5{1'b0}}, pop ? beats_q - 5'd1 : beats_q}
-                                    : {COUNT_W{pop}});
+        reserved_q <= reserved_q + (issue ? {{COUNT_W - 5{1'b0}}, pop_q ? beats_q - 5'd1 : beats_q}
+                                    : {COUNT_W{pop_q}});
     end
   end
 

@@ -90,7 +90,11 @@ module cchip_config_controller #(
   wire fetch_valid, port_ready, transfer_done;
   wire [31:0] length, payload_crc, fetch_data, crc;
   reg crc_ok_q;
-  always @(posedge clk) crc_ok_q <= crc == payload_crc;
+  reg in_header_q;  // late at both ends, where the fetch has no words
+  always @(posedge clk) begin
+    crc_ok_q <= crc == payload_crc;
+    in_header_q <= in_header;
+  end
 
   cchip_swap_sequencer #(
       .SLOTS     (SLOTS),
@@ -151,7 +155,7 @@ module cchip_config_controller #(
       .words        (fetch_words_q),
       .limit        (memory_limit | (`CCHIP_MEMORY_LIMIT_DEFAULT & {32{no_limit_q}})),
       .m_valid      (fetch_valid),
-      .m_ready      (in_header | port_ready),
+      .m_ready      (in_header_q | port_ready),
       .m_data       (fetch_data),
       .bus_error    (bus_error),
       .timeout      (timeout),

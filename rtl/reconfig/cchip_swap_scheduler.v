@@ -246,7 +246,8 @@ module cchip_swap_scheduler #(
   wire        reject = `CCHIP_SWAP_SPOILT(s_report_code);
   integer i;
   always @(posedge clk) begin
-    if (refuse) begin
+    // also of a command that is accepted: only one that was refused is told of
+    if (command_valid) begin
       refused_slot_q   <= command_slot;
       refused_module_q <= command_module;
       refused_code_q   <= asked ? `CCHIP_SWAP_BUSY : `CCHIP_SWAP_REQUEST;

@@ -83,7 +83,7 @@ MUTANTS = [
     ("cchip_swap_sequencer prove", SEQUENCER, "(at_q[SHUTDOWN] ? clocks_q >= shutdown_bound : clocks_q >= LIMIT);", "abort_q;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "done[DECOUPLE] = decoupled_q;", "done[DECOUPLE] = quiet_q;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "refuse_q <= (accept & ~idle) | (refuse_q & reports);", "refuse_q <= accept & ~idle;"),
-    ("cchip_bitstream_fetch bounded", FETCH, "wire [4:0] to_edge = 5'd16 - {1'b0, addr_q[5:2]};", "wire [4:0] to_edge = 5'd16;"),
+    ("cchip_bitstream_fetch bounded", FETCH, "to_edge_q <= 5'd16 - {1'b0, address[5:2]};", "to_edge_q <= 5'd16;"),
     ("cchip_bitstream_fetch bounded", FETCH, "issue | (arvalid_q & ~m_axi_arready);", "issue | (arvalid_q & ~m_axi_arready & run);"),
     ("cchip_bitstream_fetch bounded", FETCH, "timeout_q <= run & (timeout_q |", "timeout_q <= run & (1'b0 |"),
     # late beats reach the next request; a place that is owed is asked for again, also if its address is taken as the request
