@@ -249,6 +249,8 @@ def simulate(bench, *options):
 
 def latency(module):
     """Clocks from a change of the inputs to the change of the output."""
+    if module not in STIMULI:
+        fail(f"{module}: scripts/datasheet.py has no line in STIMULI that says how to measure its latency; add one")
     prepare, change, output = STIMULI[module]
     _, ports = parse(module)
     names = [name for name, _, _ in ports]
