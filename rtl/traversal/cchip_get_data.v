@@ -5,10 +5,10 @@
 // cchip_get_data: fetches the two lines of a node pair or of a pair of leaves through the cache,
 // waits for both, and hands them on: node pairs to the box test, leaves to the primitive tests.
 //   rule         a pair has a place, given by who asks; its lines arrive in any order. Pairs go on
-//                in the order in which their second lines come
+//                in the order in which their second lines come to a port, the two ports in turn
 //   check        what a line says of its children, and of a header, leaves with `lookup` when the
 //                verdict of the box test comes: code, kinds and lines of the children
-//   latency      1 clock from s_valid to m_line_valid, 6 from the second line to m_pair_valid or
+//   latency      1 clock from s_valid to m_line_valid, 7 from the second line to m_pair_valid or
 //                m_leaf_valid
 //   throughput   a request per clock, a pair every third clock
 //   credit       a place is used again only after m_leaf_valid or the verdict
@@ -205,11 +205,9 @@ module cchip_get_data #(
   wire failed_a = read_codes[0+:CODE_W] != `CCHIP_READ_OK;
   wire failed_b = read_codes[CODE_W+:CODE_W] != `CCHIP_READ_OK;
   reg [1:0] failed_q;
+  reg leaf_failed_q;
   always @(posedge clk) begin
-    if (advance) begin
-      fetch_q <= from1 ? queue_place[PLACE_W+:PLACE_W] : queue_place[0+:PLACE_W];
-      turn_q  <= ~from1;
-    end
+    if (advance) fetch_q <= from1 ? queue_place[PLACE_W+:PLACE_W] : queue_place[0+:PLACE_W];
     record_q        <= records[fetch_q];
     fetch_leaf_q    <= fetch_leaf;
     no_pose_fetch_q <= record_q[AT_HEADER] & no_pose_q[fetch_context];
@@ -218,14 +216,17 @@ module cchip_get_data #(
       hold_record_q <= record_q;
       lines_q       <= read_lines;
       failed_q      <= {failed_b, failed_a};
+      leaf_failed_q <= failed_a | failed_b;
     end
     age_q <= advance ? 2'd0 : age_q[1] ? age_q : age_q + 2'd1;
     if (rst) begin
+      turn_q        <= 1'b0;
       fetch_valid_q <= 1'b0;
       pair_valid_q  <= 1'b0;
       leaf_valid_q  <= 1'b0;
       fresh_q       <= 1'b0;
     end else begin
+      if (advance) turn_q <= ~from1;
       fetch_valid_q <= advance | (fetch_valid_q & ~load);
       pair_valid_q  <= (load & ~fetch_leaf_q) | (pair_valid_q & ~m_pair_ready);
       leaf_valid_q  <= load & fetch_leaf_q;
@@ -241,7 +242,7 @@ module cchip_get_data #(
   assign m_leaf_context  = hold_record_q[RECORD_W+:CONTEXT_W];
   assign m_leaf_epoch    = hold_record_q[AT_EPOCH+:2];
   assign m_leaf_kinds    = {hold_record_q[29:28], hold_record_q[1:0]};
-  assign m_leaf_failed   = |failed_q;
+  assign m_leaf_failed   = leaf_failed_q;
   assign m_lines         = lines_q;
 
   // ---- what the lines say: the fields on the first clock, compared on the second, judged on the
@@ -276,7 +277,7 @@ module cchip_get_data #(
         kinds_q1       <= line[83+:8];
         at_q1          <= hold_record_q[28*p+:24];
         steep_q1       <= line[54+:5] > 5'd18;
-        size_q1        <= |line[121+:7] ? 25'h1000000 : line[96+:25];
+        size_q1        <= |line[120+:8] ? 25'h1000000 : {1'b0, line[96+:24]};
         failed_q1      <= failed_q[p];
         header_here_q1 <= line[0+:32] == MAGIC && line[64+:16] == VERSION;
         first_q2       <= header_q1 ? root_q1 : first_q1;

@@ -156,6 +156,9 @@ module cchip_leaf_queue #(
       `CCHIP_ASSERT(a_room, !s_valid || ready)
       `CCHIP_ASSERT(a_leaves, !s_valid || s_leaves != 16'd0)
       `CCHIP_ASSERT(a_credit, credit_q <= ALL_CREDIT[15:0])
+      `CCHIP_ASSERT(a_some, some_q == (credit_q != 16'd0))
+      `CCHIP_ASSERT(a_take, (state_q == TAKE) == (valid_q | drop_q) && !(valid_q & drop_q))
+      `CCHIP_ASSERT(a_left, !(work_q && state_q == CHOOSE) || left_q != 16'd0)
     end
 
 endmodule

@@ -49,6 +49,7 @@ WRITE = "rtl/memory/cchip_axi_write.v"
 EVENTS = "rtl/traversal/cchip_traversal_events.v"
 POOL = "rtl/common/cchip_pool.v"
 DECISION = "rtl/traversal/cchip_traversal_decision.v"
+LEAVES = "rtl/traversal/cchip_leaf_queue.v"
 # Tasks that take minutes; --quick proves the others, which take seconds.
 SLOW = {("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"), ("cchip_slot_ledger", "prove"),
         ("cchip_dispatcher", "bounded"), ("cchip_dispatcher", "bounded_2"), ("cchip_descriptor_queues", "bounded"),
@@ -137,6 +138,20 @@ MUTANTS = [
     ("cchip_traversal_decision prove", DECISION, "spill ? END_STACK : END_STEPS;", "END_STEPS;"),
     ("cchip_traversal_decision prove", DECISION, "bad_q | (live_q & (", "bad_q | ((active_q) & ("),
     ("cchip_traversal_decision prove", DECISION, "s_is_pop ? lowest_number : best_number;", "best_number;"),
+    # a pair without credit; a credit that comes as one is used is lost; of another query's epoch; half the epoch; a stall of one way
+    # ends with the other; what is offered changes its mind; room twice; the last pair is forgotten; kinds of the other side
+    ("cchip_leaf_queue bounded", LEAVES, "wire spend = judge & live & some_q;", "wire spend = judge & live;"),
+    ("cchip_leaf_queue time", LEAVES, "{15'd0, s_credit} - {15'd0, spend};", "{15'd0, s_credit & ~spend} - {15'd0, spend};"),
+    ("cchip_leaf_queue bounded", LEAVES, "{15'd0, s_credit} - {15'd0, spend};", "{15'd0, s_credit} - {15'd0, spend & ~s_credit};"),
+    ("cchip_leaf_queue bounded", LEAVES, "epochs[context_q] == epoch_q;", "epochs[epoch_context] == epoch_q;"),
+    ("cchip_leaf_queue bounded", LEAVES, "epochs[context_q] == epoch_q;", "epochs[context_q][0] == epoch_q[0];"),
+    ("cchip_leaf_queue bounded", LEAVES, "(drop_q & m_drop_ready);", "drop_q;"),
+    ("cchip_leaf_queue bounded", LEAVES, "(drop_q & ~m_drop_ready);", "(drop_q & ~m_drop_ready & ~m_ready);"),
+    ("cchip_leaf_queue bounded", LEAVES, "spend | (valid_q & ~m_ready);", "(spend | (valid_q & ~m_ready)) & live;"),
+    ("cchip_leaf_queue bounded", LEAVES, "room_q <= load & queue_valid;", "room_q <= load;"),
+    ("cchip_leaf_queue bounded", LEAVES, "last_q   <= rest == 16'd0;", "last_q   <= rest[14:0] == 15'd0;"),
+    ("cchip_leaf_queue bounded", LEAVES, "nodes_q[72+2*number_q[1:0]+:2], nodes_q[32+2*number_q[3:2]+:2]",
+     "nodes_q[72+2*number_q[3:2]+:2], nodes_q[32+2*number_q[1:0]+:2]"),
     # the turn follows requests instead of grants; passes without a grant taken; there is no turn
     ("cchip_arbiter prove", ARBITER, "behind_q <= above(grant);", "behind_q <= above(lowest(request));"),
     ("cchip_arbiter prove", ARBITER, "else if (take && |request)", "else if (|request)"),
