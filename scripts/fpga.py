@@ -639,7 +639,7 @@ def with_others(name, table, found):
     order = list(rows())
     row = lambda line: line.split("|")[1].strip(" `")
     head, lines = table.splitlines()[:2], table.splitlines()[2:]
-    if not all(row(line) in order for line in lines):
+    if not lines or not all(row(line) in order for line in lines):
         return None
     present = re.search(datasheet.BLOCK.format(f" {name}"), PAGE.read_text(), re.S)[0].splitlines()[1:-1]
     others = [line for line in present[2:] if row(line) in order and row(line) not in found] if present[:2] == head else []
