@@ -4,11 +4,11 @@
 // Proved of cchip_get_data: every line of a request is asked for once, on the next clock; a pair is offered once, only when both
 // of its lines have come, as a node pair or as leaves by its place, with its query, its record and its own lines, and not before
 // the pose of its query if it is a pair of headers; a node pair stays as it is until it is taken, leaves are there for one clock;
-// leaves of which a line could not be read say so, and the code of such a node pair is never 0, END_MEMORY if it is A's; if
+// leaves of which a line could not be read say so, and the code of such a node pair, looked up 4 clocks or more after it was offered,
+// is never 0, END_MEMORY if it is A's; if
 // nobody waits for a pose, and the box test has nothing, a pair that is whole brings about a pair within BOUND clocks.
 // Assumed, what cchip_traversal and cchip_cache keep:
 //   free      a place is asked for again only after its pair has left
-//   lookup    looked up is a node pair whose verdict has come, 4 clocks or more after it was offered
 //   asked     the cache answers each line that was asked for once, on a later clock
 // One place, any: the solver chooses it; in the task `code`, which is of codes only, it is PLACE. Bit 0 of a line stands for all of it.
 module cchip_get_data_properties #(
