@@ -16,7 +16,8 @@
 //                by a command it is. A kind that no slot serves, no valid bitstream brings and no
 //                swap is bringing for 16 clocks has `no_provider` = 1.
 //   command      refused with BUSY while a swap is under way, with REQUEST where the table has no
-//                valid bitstream
+//                valid bitstream; commands are two clocks apart at least, because a refusal that
+//                meets another report waits for a clock
 //   latency      a kind is looked at for 4 clocks, and for 9 * SLOTS + 1 more if a swap is due; a
 //                command's request leaves 3 clocks after it; 15 clocks of rest after a report
 //   cuts         every path but rst: all outputs are flip-flops, address and size of m_swap_data
