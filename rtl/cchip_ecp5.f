@@ -16,6 +16,7 @@ arith/cchip_mul_wide.v
 arith/cchip_dot3.v
 arith/cchip_cross3.v
 arith/cchip_norm1.v
+arith/cchip_round_shift.v
 memory/cchip_axi_read.v
 memory/cchip_axi_write.v
 memory/cchip_cache_fill.v
@@ -36,6 +37,9 @@ traversal/cchip_traversal_decision.v
 traversal/cchip_traversal.v
 traversal/cchip_broad_phase.v
 traversal/cchip_broad_phase_axi.v
+transform/cchip_vertex_transform.v
+transform/cchip_normaliser.v
+transform/cchip_transform.v
 sat/cchip_sat_select.v
 sat/cchip_sat_axis.v
 sat/cchip_sat_bound.v

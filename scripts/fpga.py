@@ -103,7 +103,8 @@ def rows():
                   placer="heap") for n in (1, 2, 3)]
     table += [Row(name.replace("cchip_", ""), name, shape="", seeds=3, placer="heap", block=True)
               for name in ("cchip_axi_read", "cchip_axi_write", "cchip_cache", "cchip_pose_setup", "cchip_bv_offset",
-                           "cchip_bv_lane_a", "cchip_bv_lane_b", "cchip_bv_compare", "cchip_traversal", "cchip_get_data")]
+                           "cchip_bv_lane_a", "cchip_bv_lane_b", "cchip_bv_compare", "cchip_traversal", "cchip_get_data",
+                           "cchip_transform")]
     # with the wide multiplexers of the device Yosys takes a quarter more LUTs for the whole box test
     table += [Row("bv_unit", "cchip_bv_unit", shape="", seeds=3, placer="heap", block=True, synth=" -nowidelut")]
     return {row.name: row for row in table}

@@ -303,6 +303,15 @@
 // DRAIN_BOUND of cchip_primtest_array [clock]
 `define CCHIP_ARRAY_DRAIN_BOUND(s, contexts, lanes) \
   (`CCHIP_DRAIN_BOUND((s), (contexts)) + `CCHIP_ARRAY_LATENCY((lanes)) + (lanes) * (contexts))
+// cchip_vertex_transform with PASSES = p: from a pair of leaves to the first vertex [clock]
+`define CCHIP_VERTEX_TRANSFORM_LATENCY(p) (14 + (p))
+// cchip_vertex_transform: from launch to the first vertex of a pair of primitives [clock]
+`define CCHIP_VERTEX_LAUNCH(p) (14 - (p))
+// cchip_normaliser with PASSES = p: from a vertex in to the same vertex out [clock]
+`define CCHIP_NORMALISER_LATENCY(p) (3 * (p) + 14)
+// cchip_transform: from a pair of leaves to the first vertex [clock]
+`define CCHIP_TRANSFORM_LATENCY(p) \
+  (`CCHIP_VERTEX_TRANSFORM_LATENCY((p)) + `CCHIP_NORMALISER_LATENCY((p)))
 // axes of the exhaustive programme: nA, nB, every e_k x f_l: 11, 14, 18 (paper, eq. 1) [beat]
 `define CCHIP_EXHAUSTIVE_BEATS(a, b) (2 + (a) * (b))
 

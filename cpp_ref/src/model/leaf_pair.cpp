@@ -31,48 +31,44 @@ MovedVertices move_a(const bvh::LeafLine& leaf, NodeKind kind, const std::array<
                      const Query& query) {
   const int unit = unit_of(extent);
   const int step = bvh::leaf_step(kind, leaf.extent) - query.shift;  // in B's unit
-  bool origin_lost = false;
-  bool sum_lost = false;
-  bool m_lost = false;
+  MovedVertices moved;
   Coordinates origin = {};
-  std::array<Coordinates, 3> m = {};
   for (std::size_t i = 0; i < 3; ++i) {
     Wide exact =
         query.t[i] * (Wide{1} << (22 + query.shift)) - origin_b[i] * (Wide{1} << (30 + query.shift));  // 2^-(54+shift)
-    for (std::size_t j = 0; j < 3; ++j) {
-      exact += Wide{query.m[i][j]} * leaf.origin[j];
-      m[i][j] = scaled(query.m[i][j], vertex_m_fraction - query_m_fraction, m_lost);
-    }
-    origin[i] = scaled(exact, -54 - query.shift - unit, origin_lost);
+    for (std::size_t j = 0; j < 3; ++j) exact += Wide{query.m[i][j]} * leaf.origin[j];
+    origin[i] = scaled(exact, -54 - query.shift - unit, moved.origin_lost);
   }
-  MovedVertices moved;
   for (std::size_t n = 0; n < bvh::vertices_in(kind); ++n) {
     for (std::size_t i = 0; i < 3; ++i) {
       Wide sum = 0;
-      for (std::size_t j = 0; j < 3; ++j) sum += Wide{m[i][j]} * leaf.vertex[n][j];
-      moved.vertex[n][i] = origin[i] + scaled(sum, step - vertex_m_fraction - unit, sum_lost);
+      for (std::size_t j = 0; j < 3; ++j) sum += Wide{query.m[i][j]} * leaf.vertex[n][j];
+      moved.vertex[n][i] = origin[i] + scaled(sum, step - query_m_fraction - unit, moved.lost[n]);
     }
   }
-  // Twice: the query's error; half a step of the leaf on each axis, where rows of |M| add up to less than 2; three
-  // entries of M off by half of 2^-20 times an offset of at most the extent; half a unit each.
+  // Twice: the query's error; half a step of the leaf on each axis, where rows of |M| add up to less than 2.
   moved.error = bound(query.error, 1 - query_error_fraction - unit);
   if (leaf.rounded) moved.error += bound(1, step + 1 - unit);
-  if (m_lost) moved.error += bound(3, leaf.extent - query.shift - 24 - vertex_m_fraction - unit);
-  moved.error += (origin_lost ? 1 : 0) + (sum_lost ? 1 : 0);
   return moved;
 }
 
 MovedVertices move_b(const bvh::LeafLine& leaf, NodeKind kind, int extent) {
   const int unit = unit_of(extent);
   const int step = bvh::leaf_step(kind, leaf.extent);
-  bool lost = false;
   MovedVertices moved;
   for (std::size_t n = 0; n < bvh::vertices_in(kind); ++n) {
-    for (std::size_t i = 0; i < 3; ++i) moved.vertex[n][i] = scaled(leaf.vertex[n][i], step - unit, lost);
+    for (std::size_t i = 0; i < 3; ++i) moved.vertex[n][i] = scaled(leaf.vertex[n][i], step - unit, moved.lost[n]);
   }
   if (leaf.rounded) moved.error += bound(1, step - unit);
-  moved.error += lost ? 1 : 0;
   return moved;
+}
+
+/// Bound, in units, on twice the error of the vertices first .. first + count - 1. Each rounding is off by at most half
+/// a unit.
+std::int64_t error_of(const MovedVertices& moved, std::size_t first, std::size_t count) {
+  bool lost = false;
+  for (std::size_t n = first; n < first + count; ++n) lost = lost || moved.lost[n];
+  return moved.error + (moved.origin_lost ? 1 : 0) + (lost ? 1 : 0);
 }
 
 Kind primitive_kind(NodeKind kind) { return kind == NodeKind::quad ? Kind::quad : Kind::tri; }
@@ -115,7 +111,8 @@ GridPair normalise(const MovedLeaves& leaves, NodeKind kind_a, std::size_t index
           static_cast<std::int32_t>(((x + half(n)) >> n) - (std::int64_t{1} << (coord_w - 1)));
     }
   });
-  const std::int64_t error = std::max(leaves.a.error, leaves.b.error);
+  const std::int64_t error = std::max(error_of(leaves.a, 3 * index_a, pair.a.vertex_count()),
+                                      error_of(leaves.b, 3 * index_b, pair.b.vertex_count()));
   if (leaves.open) {
     pair.eta = eta_unknown;
   } else if (error > 0 || lost) {

@@ -19,12 +19,12 @@ namespace cchip::model {
 inline constexpr int extent_least = 8;
 /// Bits of a signed coordinate in units.
 inline constexpr int moved_w = 45;
-/// Fraction bits of M for the vertices of a leaf.
-inline constexpr int vertex_m_fraction = 20;
 
 struct MovedVertices {
   std::array<std::array<std::int64_t, 3>, 6> vertex = {};  ///< units
-  /// Bound, in units, on twice the error of a coordinate; 0: all are exact.
+  std::array<bool, 6> lost = {};                           ///< rounding an offset lost a bit
+  bool origin_lost = false;                                ///< rounding the origin of A's leaf lost a bit
+  /// Bound, in units, on twice the error of a coordinate, less 1 for each of these roundings.
   std::int64_t error = 0;
 };
 
@@ -39,7 +39,8 @@ MovedLeaves move_leaves(const bvh::LeafLine& a, bvh::NodeKind kind_a, const bvh:
 
 /// Primitive `index_a` of A's leaf and `index_b` of B's on their own grid: the least shift n for which
 /// (x - min + 2^(n-1)) >> n fits coord_w bits on every axis; the middle of that range becomes 0.
-/// eta: 0 if nothing is rounded, else 1 + the error in grid steps rounded up, at most 15.
+/// eta: 0 if nothing is rounded, else 1 + the error in grid steps rounded up, at most 15. The error is that of the
+/// vertices of these primitives.
 GridPair normalise(const MovedLeaves& leaves, bvh::NodeKind kind_a, std::size_t index_a, bvh::NodeKind kind_b,
                    std::size_t index_b, int coord_w);
 

@@ -253,6 +253,14 @@ constexpr int array_place_latency() { return 3; }
 constexpr int array_wait_bound(int lanes) { return 16 * lanes; }
 /// DRAIN_BOUND of cchip_primtest_array [clock]
 constexpr int array_drain_bound(int s, int contexts, int lanes) { return drain_bound(s, contexts) + array_latency(lanes) + lanes * contexts; }
+/// cchip_vertex_transform with PASSES = p: from a pair of leaves to the first vertex [clock]
+constexpr int vertex_transform_latency(int p) { return 14 + p; }
+/// cchip_vertex_transform: from launch to the first vertex of a pair of primitives [clock]
+constexpr int vertex_launch(int p) { return 14 - p; }
+/// cchip_normaliser with PASSES = p: from a vertex in to the same vertex out [clock]
+constexpr int normaliser_latency(int p) { return 3 * p + 14; }
+/// cchip_transform: from a pair of leaves to the first vertex [clock]
+constexpr int transform_latency(int p) { return vertex_transform_latency(p) + normaliser_latency(p); }
 /// axes of the exhaustive programme: nA, nB, every e_k x f_l: 11, 14, 18 (paper, eq. 1) [beat]
 constexpr int exhaustive_beats(int a, int b) { return 2 + a * b; }
 
