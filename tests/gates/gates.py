@@ -21,9 +21,10 @@ Yosys has only the ports, are those of this folder. The netlist is simulated wit
 nothing else is done to it. Lines: `KIND TECHNOLOGY pairs=N mismatches=0 clocks=C`.
 
 prove: RTL and netlist are read back into Yosys, the cells replaced by their models. Both start with every flip-flop
-and memory 0 where the netlist does not say otherwise, get 8 clocks (of reset, where there is one) with unknown
-inputs (0 stands for what is then unknown), and from there their outputs are proved equal on every clock for all inputs
-(yosys-abc: scorr, dprove; induction, no bound on the clocks). A netlist with one LUT changed must not be proved.
+and memory 0 where the netlist does not say otherwise, get 8 clocks (of reset, where there is one) with all other inputs
+0 (unknown ones would reach some registers of the RTL and not those of the netlist, or the other way round), and from
+there their outputs are proved equal on every clock for all inputs (yosys-abc: scorr, dprove; induction, no bound on the
+clocks). A netlist with one LUT changed must not be proved.
 Lines: `MODULE PARAMETERS TECHNOLOGY equivalent flipflops=N changed=reported`.
 
 Exit codes: 0 all well, 1 a mismatch or a tool failed, 2 bad arguments."""
@@ -238,16 +239,24 @@ def simulate_changed(technology, kind, build, options):
 # ---- proofs
 
 
-def settle(top):
-    """Clocks before the comparison, of reset if the module has one."""
-    reset = f"-reset in_rst -rstlen {SETTLE}" if re.search(r"^ *input +wire +rst\b", top.read_text(), re.M) else ""
-    return f"sim -clock in_clk {reset} -n {SETTLE} -zinit -w both\n"
+def settle(gold, folder):
+    """Commands that run module `both` for the clocks before the comparison, of reset if the module `gold` (a file of
+    Yosys) has one, and keep what its flip-flops and memories hold then."""
+    inputs = re.findall(r"^  wire (?:width (\d+) )?input \d+ \\(\w+)$", gold.read_text(), re.M)
+    driven = [name for _, name in inputs if name in ("clk", "rst")]
+    connections = ", ".join(f".in_{name}({f'in_{name}' if name in driven else f'{width or 1}' + chr(39) + 'd0'})"
+                            for width, name in inputs)
+    bench = folder / "settle.v"
+    bench.write_text(f"module settle ({', '.join(f'input in_{name}' for name in driven)});\n"
+                     f"  both u_both ({connections});\nendmodule\n")
+    reset = f"-reset in_rst -rstlen {SETTLE}" if "rst" in driven else ""
+    return (f"read_verilog {bench}\nhierarchy -top settle\nasync2sync\n"
+            f"sim -clock in_clk {reset} -n {SETTLE} -zinit -w settle\nhierarchy -top both\n")
 
 
 def equivalent(technology, build, folder, module, parameters, netlist):
     """Whether netlist.v in folder does what the RTL does, and flip-flops of both together."""
     settings = " ".join(f"-chparam {name} {value}" for name, value in (p.split("=") for p in parameters.split()))
-    source = next(path for path in map(pathlib.Path, technology.sources()) if path.stem == module)
     models = technology.models(build)
     low = "proc; flatten; memory -nomap; memory_map; opt -full"
     miter = folder / f"{netlist}.aig"
@@ -255,9 +264,10 @@ def equivalent(technology, build, folder, module, parameters, netlist):
           f"read_verilog -DSYNTHESIS -I{ROOT / 'rtl' / 'include'} {files(technology.sources())}\n"
           f"hierarchy -check -top {module} {settings}\nrename -top gold\n{low}\nwrite_rtlil {folder}/gold.il\n"
           f"design -reset\nread_verilog -defer {files(models)}\nread_verilog {folder}/{netlist}.v\n"
-          f"hierarchy -check -top gate\n{low}\nwrite_rtlil {folder}/gate.il\n"
-          f"design -reset\nread_rtlil {folder}/gold.il\nread_rtlil {folder}/gate.il\n"
-          f"miter -equiv -flatten gold gate both\nhierarchy -top both\nasync2sync\n{settle(source)}"
+          f"hierarchy -check -top gate\n{low}\nwrite_rtlil {folder}/gate.il\n")
+    yosys(folder / f"{netlist}.miter.log",
+          f"read_rtlil {folder}/gold.il\nread_rtlil {folder}/gate.il\n"
+          f"miter -equiv -flatten gold gate both\n{settle(folder / 'gold.il', folder)}"
           "techmap; opt_expr; opt_clean; dffunmap\nsetundef -init -zero\nsetundef -undriven -zero\naigmap\nstat\n"
           f"write_aiger -zinit {miter}\n")
     log = folder / f"{netlist}.abc.log"
