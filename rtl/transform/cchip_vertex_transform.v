@@ -53,7 +53,7 @@ module cchip_vertex_transform #(
   localparam [1:0] QUAD = 2'd3;
   localparam [4:0] EXTENT_MAX = 5'd24;
   // Clocks from the last pass of a vertex to its output
-  localparam integer OUT = 15 - PASSES;
+  localparam integer OUT = PASSES == 1 ? 14 : 13;
 
   generate
     if (PASSES < 1 || PASSES > 2) begin : gen_illegal

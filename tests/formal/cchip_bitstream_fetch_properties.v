@@ -60,6 +60,8 @@ module cchip_bitstream_fetch_properties (
   reg [7:0] arlen_q;
   reg [1:0] bursts_q = 2'd0;
   reg [2:0] idle_q = 3'd0;  // clocks without progress while a beat is owed
+  reg [6:0] asked_for_q = 7'd0;  // words asked for since run, less those that left the FIFO
+  wire [6:0] asked_for = asked_for_q + (m_axi_arvalid & ~asked_q & run_q ? m_axi_arlen[6:0] + 7'd1 : 7'd0);
   wire taken = m_axi_arvalid & m_axi_arready;
   wire beat = m_axi_rvalid & m_axi_rready;
   wire ended = beat & m_axi_rlast & bursts_q != 2'd0;
@@ -75,6 +77,7 @@ module cchip_bitstream_fetch_properties (
     araddr_q <= m_axi_araddr;
     arlen_q <= m_axi_arlen;
     bursts_q <= rst ? 2'd0 : bursts_q + {1'b0, taken} - {1'b0, ended};
+    asked_for_q <= rst | ~run_q ? 7'd0 : asked_for - {6'd0, m_valid & m_ready};
     idle_q <= rst | ~run | ~run_q | ~busy | taken | beat ? 3'd0 : idle_q == 3'd7 ? 3'd7 : idle_q + 3'd1;
   end
 
@@ -87,6 +90,7 @@ module cchip_bitstream_fetch_properties (
       within_64: assert (!m_axi_arvalid || {4'd0, m_axi_araddr[5:2]} + m_axi_arlen <= 8'd15);
       kind: assert (m_axi_arsize == 3'b010 && m_axi_arburst == 2'b01 && m_axi_araddr[1:0] == 2'b00 || !m_axi_arvalid);
       two: assert (bursts_q != 2'd3 && !(bursts_q == 2'd2 && m_axi_arvalid));
+      room: assert (asked_for <= 7'd32);
       debt: assert (owes == busy);
       empty: assert (run_q || run_q2 || !m_valid);
       late: assert (idle_q <= LIMIT[2:0] || bus_error || timeout);

@@ -52,6 +52,20 @@ inline model::LeafJob random_job(Random& random, int corrupt) {
                            : extent();
   job.line_a = random_leaf(random, job.kind_a, extent_a);
   job.line_b = random_leaf(random, job.kind_b, extent_b);
+  if (chance(random, 50)) {
+    // The leaves lie at each other.
+    const bvh::LeafLine a = bvh::decode_leaf(job.line_a, job.kind_a);
+    const bvh::LeafLine b = bvh::decode_leaf(job.line_b, job.kind_b);
+    for (std::size_t i = 0; i < 3; ++i) {
+      double between = b.origin[i] + std::uniform_real_distribution<double>(-1, 1)(random) * std::ldexp(1.0, extent_b);
+      for (std::size_t j = 0; j < 3; ++j)
+        between -= job.query.m[i][j] * 0x1p-30 * std::ldexp(a.origin[j], -job.query.shift);
+      const int zeros = job.query.error == 0 && !a.rounded ? 20 : 0;
+      job.query.t[i] = std::clamp<std::int64_t>(std::llround(between * 0x1p8), -(std::int64_t{1} << 35),
+                                                (std::int64_t{1} << 35) - 1) >>
+                       zeros << zeros;
+    }
+  }
   return job;
 }
 
