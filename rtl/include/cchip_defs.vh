@@ -304,9 +304,9 @@
 `define CCHIP_ARRAY_DRAIN_BOUND(s, contexts, lanes) \
   (`CCHIP_DRAIN_BOUND((s), (contexts)) + `CCHIP_ARRAY_LATENCY((lanes)) + (lanes) * (contexts))
 // cchip_vertex_transform with PASSES = p: from a pair of leaves to the first vertex [clock]
-`define CCHIP_VERTEX_TRANSFORM_LATENCY(p) (14 + (p))
+`define CCHIP_VERTEX_TRANSFORM_LATENCY(p) (15 + (p))
 // cchip_vertex_transform: from launch to the first vertex of a pair of primitives [clock]
-`define CCHIP_VERTEX_LAUNCH(p) (14 - (p))
+`define CCHIP_VERTEX_LAUNCH(p) (15 - (p))
 // cchip_normaliser with PASSES = p: from a vertex in to the same vertex out [clock]
 `define CCHIP_NORMALISER_LATENCY(p) (3 * (p) + 14)
 // cchip_transform: from a pair of leaves to the first vertex [clock]

@@ -53,7 +53,7 @@ module cchip_vertex_transform #(
   localparam [1:0] QUAD = 2'd3;
   localparam [4:0] EXTENT_MAX = 5'd24;
   // Clocks from the last pass of a vertex to its output
-  localparam integer OUT = PASSES == 1 ? 14 : 13;
+  localparam integer OUT = PASSES == 1 ? 15 : 14;
 
   generate
     if (PASSES < 1 || PASSES > 2) begin : gen_illegal
@@ -105,7 +105,7 @@ module cchip_vertex_transform #(
   assign s_ready = ready_q;
   assign corrupt = corrupt_q;
 
-  // ---- clock 1: the vertex. Offsets of triangles get 24 bits as those of quads have
+  // ---- the vertex, into the registers before the multipliers. Offsets of triangles get 24 bits as those of quads have
   function [71:0] offset(input [359:0] vertices, input quad, input [2:0] place);
     reg [59:0] triangle;
     reg [71:0] corner;
@@ -149,20 +149,21 @@ module cchip_vertex_transform #(
   assign launch = launch_q1;
   assign launch_pair = pair_q1;
 
-  // ---- clocks 1 to 6: M times it
-  wire [55:0] moved6[0:2];
+  // ---- clocks 1 to 7: M times it
+  wire [55:0] moved7[0:2];
   genvar i, j;
   generate
     for (i = 0; i < 3; i = i + 1) begin : gen_row
       if (PASSES == 1) begin : gen_whole
         cchip_dot3 #(
-            .A_W(32),
-            .B_W(24)
+            .A_W         (32),
+            .B_W         (24),
+            .OPERAND_REGS(1)
         ) u_dot (
             .clk(clk),
             .a  (s_m[96*i+:96]),
             .b  (factor),
-            .q  (moved6[i])
+            .q  (moved7[i])
         );
       end else begin : gen_halves
         // 25 bits, so that the sum of three lower halves fits
@@ -177,8 +178,9 @@ module cchip_vertex_transform #(
         reg  [42:0] low_q;
         reg  [55:0] both_q;
         cchip_dot3 #(
-            .A_W(18),
-            .B_W(25)
+            .A_W         (18),
+            .B_W         (25),
+            .OPERAND_REGS(1)
         ) u_dot (
             .clk(clk),
             .a  (half),
@@ -189,7 +191,7 @@ module cchip_vertex_transform #(
           low_q  <= sum;
           both_q <= {{13{low_q[42]}}, low_q} + {sum[38:0], 17'd0};
         end
-        assign moved6[i] = both_q;
+        assign moved7[i] = both_q;
         wire unused_sum = &{1'b0, sum[42:39]};
       end
     end
@@ -284,21 +286,21 @@ module cchip_vertex_transform #(
       .q  (m_open)
   );
 
-  // ---- clocks 7 to 14: origin of A's leaf, one row after the other
-  wire [13:6] row;  // row[k]: the origin is at clock k, its row r at k + r
+  // ---- clocks 8 to 15: origin of A's leaf, one row after the other
+  wire [14:7] row;  // row[k]: the origin is at clock k, its row r at k + r
   wire row_1, row_2;  // of t and o_B
   cchip_delay #(
       .WIDTH(1),
-      .DEPTH(5),
+      .DEPTH(6),
       .RESET(1)
   ) u_row (
       .clk(clk),
       .rst(rst),
       .d  (origin_q1),
-      .q  (row[6])
+      .q  (row[7])
   );
-  reg [13:7] row_q;
-  assign row[13:7] = row_q;
+  reg [14:8] row_q;
+  assign row[14:8] = row_q;
   reg origin_q2;
   assign row_1 = origin_q1;
   assign row_2 = origin_q2;
@@ -307,45 +309,45 @@ module cchip_vertex_transform #(
   reg  [35:0] t_q1;
   reg  [23:0] origin_b_q1;
   reg  [36:0] beside_q2;
-  wire [36:0] beside7;  // t - o_B, 2^-32
-  wire [ 3:0] shift6;
-  wire [ 4:0] fine8;
+  wire [36:0] beside8;  // t - o_B, 2^-32
+  wire [ 3:0] shift7;
+  wire [ 4:0] fine9;
   cchip_delay #(
       .WIDTH (37),
-      .DEPTH (5),
+      .DEPTH (6),
       .MEMORY(1)
   ) u_beside (
       .clk(clk),
       .rst(1'b0),
       .d  (beside_q2),
-      .q  (beside7)
+      .q  (beside8)
   );
   cchip_delay #(
       .WIDTH (4),
-      .DEPTH (5),
+      .DEPTH (6),
       .MEMORY(1)
   ) u_shift (
       .clk(clk),
       .rst(1'b0),
       .d  (shift_q1),
-      .q  (shift6)
+      .q  (shift7)
   );
   cchip_delay #(
       .WIDTH (5),
-      .DEPTH (4),
+      .DEPTH (5),
       .MEMORY(1)
   ) u_fine (
       .clk(clk),
       .rst(1'b0),
       .d  (fine_q4),
-      .q  (fine8)
+      .q  (fine9)
   );
-  reg [55:0] moved_1_q7, moved_2_q7, moved_2_q8, shifted_q7;
-  reg cut_q7, cut_q8, cut_q9, cut_q10, cut_q11;
-  wire signed [55:0] of_row = row[7] ? moved_1_q7 : row[8] ? moved_2_q8 : moved6[0];
-  reg [59:0] sum_q8;
-  wire [44:0] origin11;
-  wire origin_lost11;
+  reg [55:0] moved_1_q8, moved_2_q8, moved_2_q9, shifted_q8;
+  reg cut_q8, cut_q9, cut_q10, cut_q11, cut_q12;
+  wire signed [55:0] of_row = row[8] ? moved_1_q8 : row[9] ? moved_2_q9 : moved7[0];
+  reg [59:0] sum_q9;
+  wire [44:0] origin12;
+  wire origin_lost12;
   reg [44:0] origin_0_q, origin_1_q;
   reg lost_0_q, lost_1_q, origin_lost_q;
   reg [134:0] origin_q;
@@ -356,47 +358,47 @@ module cchip_vertex_transform #(
       .Q_W      (45)
   ) u_origin (
       .clk (clk),
-      .d   (sum_q8),
-      .s   (fine8),
-      .q   (origin11),
-      .lost(origin_lost11)
+      .d   (sum_q9),
+      .s   (fine9),
+      .q   (origin12),
+      .lost(origin_lost12)
   );
-  wire lost11 = origin_lost11 | cut_q11;
+  wire lost12 = origin_lost12 | cut_q12;
   always @(posedge clk) begin
     origin_q2 <= ~rst & origin_q1;
-    row_q <= rst ? 7'd0 : row[12:6];
+    row_q <= rst ? 7'd0 : row[13:7];
     t_q1 <= t;
     origin_b_q1 <= origin_b;
     beside_q2 <= {t_q1[35], t_q1} - {{5{origin_b_q1[23]}}, origin_b_q1, 8'd0};
-    moved_1_q7 <= moved6[1];
-    moved_2_q7 <= moved6[2];
-    moved_2_q8 <= moved_2_q7;
-    shifted_q7 <= of_row >>> shift6;
-    cut_q7 <= |(of_row[14:0] & ~(15'h7FFF << shift6));
-    sum_q8 <= {{beside7[36], beside7} + {{4{shifted_q7[55]}}, shifted_q7[55:22]}, shifted_q7[21:0]};
-    cut_q8 <= cut_q7;
+    moved_1_q8 <= moved7[1];
+    moved_2_q8 <= moved7[2];
+    moved_2_q9 <= moved_2_q8;
+    shifted_q8 <= of_row >>> shift7;
+    cut_q8 <= |(of_row[14:0] & ~(15'h7FFF << shift7));
+    sum_q9 <= {{beside8[36], beside8} + {{4{shifted_q8[55]}}, shifted_q8[55:22]}, shifted_q8[21:0]};
     cut_q9 <= cut_q8;
     cut_q10 <= cut_q9;
     cut_q11 <= cut_q10;
-    if (row[11]) {lost_0_q, origin_0_q} <= {lost11, origin11};
-    if (row[12]) {lost_1_q, origin_1_q} <= {lost11, origin11};
-    if (row[13]) begin
-      origin_q      <= {origin11, origin_1_q, origin_0_q};
-      origin_lost_q <= lost11 | lost_1_q | lost_0_q;
+    cut_q12 <= cut_q11;
+    if (row[12]) {lost_0_q, origin_0_q} <= {lost12, origin12};
+    if (row[13]) {lost_1_q, origin_1_q} <= {lost12, origin12};
+    if (row[14]) begin
+      origin_q      <= {origin12, origin_1_q, origin_0_q};
+      origin_lost_q <= lost12 | lost_1_q | lost_0_q;
     end
   end
 
-  // ---- clocks 7 to OUT: offsets in the unit, and the sum
-  wire [4:0] cut_a6, cut_b;
+  // ---- clocks 8 to OUT: offsets in the unit, and the sum
+  wire [4:0] cut_a7, cut_b;
   wire [71:0] offset_b;
   cchip_delay #(
       .WIDTH(5),
-      .DEPTH(2)
+      .DEPTH(3)
   ) u_cut_a (
       .clk(clk),
       .rst(1'b0),
       .d  (cut_a_q4),
-      .q  (cut_a6)
+      .q  (cut_a7)
   );
   cchip_delay #(
       .WIDTH (5),
@@ -431,14 +433,14 @@ module cchip_vertex_transform #(
           .Q_W      (28)
       ) u_a (
           .clk (clk),
-          .d   (moved6[i]),
-          .s   (cut_a6),
+          .d   (moved7[i]),
+          .s   (cut_a7),
           .q   (rounded),
           .lost(lost)
       );
       cchip_delay #(
           .WIDTH (29),
-          .DEPTH (OUT - 10),
+          .DEPTH (OUT - 11),
           .MEMORY(1)
       ) u_offset_a (
           .clk(clk),

@@ -254,9 +254,9 @@ constexpr int array_wait_bound(int lanes) { return 16 * lanes; }
 /// DRAIN_BOUND of cchip_primtest_array [clock]
 constexpr int array_drain_bound(int s, int contexts, int lanes) { return drain_bound(s, contexts) + array_latency(lanes) + lanes * contexts; }
 /// cchip_vertex_transform with PASSES = p: from a pair of leaves to the first vertex [clock]
-constexpr int vertex_transform_latency(int p) { return 14 + p; }
+constexpr int vertex_transform_latency(int p) { return 15 + p; }
 /// cchip_vertex_transform: from launch to the first vertex of a pair of primitives [clock]
-constexpr int vertex_launch(int p) { return 14 - p; }
+constexpr int vertex_launch(int p) { return 15 - p; }
 /// cchip_normaliser with PASSES = p: from a vertex in to the same vertex out [clock]
 constexpr int normaliser_latency(int p) { return 3 * p + 14; }
 /// cchip_transform: from a pair of leaves to the first vertex [clock]
