@@ -105,7 +105,8 @@ module cchip_vertex_transform #(
   assign s_ready = ready_q;
   assign corrupt = corrupt_q;
 
-  // ---- the vertex, into the registers before the multipliers. Offsets of triangles get 24 bits as those of quads have
+  // ---- the vertex, into registers before the multipliers. Offsets of triangles get 24 bits, as
+  // those of quads have
   function [71:0] offset(input [359:0] vertices, input quad, input [2:0] place);
     reg [59:0] triangle;
     reg [71:0] corner;
