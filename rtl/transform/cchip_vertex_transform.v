@@ -203,7 +203,7 @@ module cchip_vertex_transform #(
   reg [4:0] extent_a_q1, extent_b_q1, extent_b_q2, extent_b_q3, x_q3, cut_a_q4, cut_b_q4, fine_q4;
   reg  [5:0] below_a_q4;
   reg  [3:0] shift_q1;
-  wire [4:0] greater2 = extent_b_q2 > 5'd8 ? extent_b_q2 : 5'd8;
+  reg  [4:0] greater_q2;  // of B's extent and 8
   wire [5:0] below_a3 = {1'b0, x_q3} - $unsigned(moved_extent_q3);
   wire [4:0] fine3 = x_q3 - 5'd8;
   always @(posedge clk) begin
@@ -212,9 +212,10 @@ module cchip_vertex_transform #(
     shift_q1 <= s_shift;
     moved_extent_q2 <= {1'b0, extent_a_q1} - {2'd0, shift_q1};
     extent_b_q2 <= extent_b_q1;
+    greater_q2 <= extent_b_q1 > 5'd8 ? extent_b_q1 : 5'd8;
     moved_extent_q3 <= moved_extent_q2;
     extent_b_q3 <= extent_b_q2;
-    x_q3 <= moved_extent_q2 > $signed({1'b0, greater2}) ? moved_extent_q2[4:0] : greater2;
+    x_q3 <= moved_extent_q2 > $signed({1'b0, greater_q2}) ? moved_extent_q2[4:0] : greater_q2;
     below_a_q4 <= below_a3;
     cut_a_q4 <= below_a3 > 6'd27 ? 5'd27 : below_a3[4:0];
     cut_b_q4 <= x_q3 - extent_b_q3;
