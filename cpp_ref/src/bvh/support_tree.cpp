@@ -89,21 +89,6 @@ void* allocate_bytes(std::size_t bytes) {
   return memory;
 }
 
-std::array<int, 3> support_direction(std::size_t word) {
-  std::array<int, 3> d = {0, 0, 0};
-  const auto sign = [word](std::size_t bit) { return (word >> bit & 1U) != 0 ? -1 : 1; };
-  if (word < 6) {
-    d[word / 2] = sign(0);
-  } else if (word >= first_face_word && word < first_face_word + 12) {
-    const std::size_t missing = (word - first_face_word) / 4;
-    d[(missing + 1) % 3] = sign(0);
-    d[(missing + 2) % 3] = sign(1);
-  } else if (word >= first_corner_word && word < first_face_word) {
-    d = {sign(0), sign(1), sign(2)};
-  }
-  return d;
-}
-
 SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : faces_(tree.faces) {
   const Dop26& all = tree.nodes.front().dop;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -48,18 +48,20 @@ struct Item {
 
 /// Directions of the words, normalised; 0 for words without one.
 struct Directions {
-  Directions() {
+  constexpr Directions() {
+    constexpr std::array<double, 4> root = {0, 1, 1.4142135623730951, 1.7320508075688772};
     for (std::size_t w = 0; w < words; ++w) {
       const std::array<int, 3> d = bvh::support_direction(w);
-      const double length = std::sqrt(static_cast<double>(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
-      for (std::size_t k = 0; k < 3; ++k) v[k][w] = length > 0 ? static_cast<float>(d[k] / length) : 0;
-      used[w] = length > 0;
+      const auto square = static_cast<std::size_t>(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+      used[w] = square != 0;
+      for (std::size_t k = 0; k < 3 && used[w]; ++k) v[k][w] = static_cast<float>(d[k] / root[square]);
     }
   }
-  alignas(64) std::array<std::array<float, words>, 3> v;
-  std::array<bool, words> used;
+  alignas(64) std::array<std::array<float, words>, 3> v = {};
+  std::array<bool, words> used = {};
 };
-const Directions normalised;
+// A constant of the compiler: a query may come from the constructor of any global object, before those of this file.
+constexpr Directions normalised;
 
 /// Bounds the moved object's nodes on the directions of the fixed one's words. Word w: how far the moved node reaches
 /// against direction w is at most the sum of three of its words times a factor each; `offset` adds the distance of the

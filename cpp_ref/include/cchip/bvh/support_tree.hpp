@@ -44,7 +44,20 @@ inline constexpr std::size_t support_words = 32;
 inline constexpr std::size_t first_corner_word = 8;
 inline constexpr std::size_t first_face_word = 16;
 /// Direction of a word, not normalised; 0, 0, 0 for those without one: 6, 7 (the reference) and 28..31.
-std::array<int, 3> support_direction(std::size_t word);
+constexpr std::array<int, 3> support_direction(std::size_t word) {
+  std::array<int, 3> d = {0, 0, 0};
+  const auto sign = [word](std::size_t bit) { return (word >> bit & 1U) != 0 ? -1 : 1; };
+  if (word < 6) {
+    d[word / 2] = sign(0);
+  } else if (word >= first_face_word && word < first_face_word + 12) {
+    const std::size_t missing = (word - first_face_word) / 4;
+    d[(missing + 1) % 3] = sign(0);
+    d[(missing + 2) % 3] = sign(1);
+  } else if (word >= first_corner_word && word < first_face_word) {
+    d = {sign(0), sign(1), sign(2)};
+  }
+  return d;
+}
 
 /// A node: how far it reaches along each direction from the object's centre, divided by the direction's length, in
 /// units of the object, rounded up. At most support_most in magnitude.
