@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cchip/device/device.hpp>
+#include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/csv_reader.hpp>
 #include <cchip/stimulus/pair_columns.hpp>
 #include <cchip/stimulus/progress.hpp>
@@ -95,6 +96,7 @@ Summary answer_stream(std::istream& in, const std::string& name, const PairsOpti
 }
 
 int run_pairs(const PairsOptions& options, const Streams& streams) {
+  sim::check_outputs({{"FILE", options.file}}, trace_files(options.engine));
   Summary summary;
   if (options.file == "-") {
     summary = answer_stream(streams.in, "-", options, streams);
@@ -115,6 +117,9 @@ Eigen::Isometry3d pose_of(const MeshPairsOptions& options) {
 }
 
 Summary answer_meshes(const MeshPairsOptions& options, const Streams& streams) {
+  std::vector<sim::NamedPath> outputs = trace_files(options.engine);
+  outputs.push_back({"--ply", options.ply});
+  sim::check_outputs({{"A", options.file_a}, {"B", options.file_b}}, outputs);
   const Eigen::Isometry3d pose = pose_of(options);
   const Mesh a = load_mesh_file(options.file_a, streams.err);
   const Mesh b = transformed(load_mesh_file(options.file_b, streams.err), pose);
@@ -335,6 +340,9 @@ int run_cli(std::vector<std::string> arguments, const Streams& streams) {
     if (!streams.out) throw std::runtime_error("writing the output fails; check disk space and the reader of the pipe");
     return code;
   } catch (const UsageError& error) {
+    streams.err << "cchip: " << one_line(error.what()) << '\n';
+    return exit_usage;
+  } catch (const sim::OutputError& error) {
     streams.err << "cchip: " << one_line(error.what()) << '\n';
     return exit_usage;
   } catch (const std::exception& error) {

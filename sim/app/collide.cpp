@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cchip/collide/face_pairs.hpp>
 #include <cchip/device/device.hpp>
+#include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <cerrno>
@@ -271,6 +272,7 @@ class PosesRunner {
 }  // namespace
 
 int run_collide(const CollideOptions& options, const Streams& streams) {
+  sim::check_outputs({{"A", options.file_a}, {"B", options.file_b}}, {{"--ply", options.ply}});  // --ply excludes --poses
   if (options.poses_file.empty() && !options.expect.empty()) {
     throw UsageError("--expect: there is no file of poses; name one with --poses");
   }

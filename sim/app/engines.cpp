@@ -6,7 +6,7 @@
 #include <cchip/reference/eigen_sat.hpp>
 #include <cchip/rtl/rtl_engine.hpp>
 #include <cchip/stimulus/usage_error.hpp>
-#include <fstream>
+#include <filesystem>
 
 namespace cchip::app {
 namespace {
@@ -16,10 +16,7 @@ void check(const EngineOptions& options) {
   if (options.kind != EngineKind::rtl) {
     throw UsageError(fmt::format("--trace: engine {} has no waveform; use --engine rtl", to_name(options.kind)));
   }
-  if (!std::ofstream(options.trace_path, std::ios::app)) {
-    throw UsageError(
-        fmt::format("{}: the waveform cannot be written; check folder and permissions", options.trace_path));
-  }
+  for (const sim::NamedPath& file : {trace_files(options)[0], trace_files(options)[1]}) sim::check_writable(file.path);
 }
 
 std::unique_ptr<PairEngine> make_rtl(const EngineOptions& options) {
@@ -47,6 +44,19 @@ const char* to_name(EngineKind kind) {
 }
 
 bool is_hardware(EngineKind kind) { return kind == EngineKind::rtl || kind == EngineKind::model; }
+
+std::vector<sim::NamedPath> trace_files(const EngineOptions& options) {
+  if (options.trace_path.empty()) return {};
+  const std::filesystem::path path(options.trace_path);
+  std::vector<sim::NamedPath> files;
+  for (const char* const module : {"", "_tri_tri", "_tri_quad", "_quad_quad"}) {
+    std::filesystem::path file = path;
+    file.replace_filename(path.stem().string() + module + path.extension().string());
+    files.push_back({"--trace", file.string()});
+    files.push_back({"--trace", file.replace_extension(".gtkw").string()});
+  }
+  return files;
+}
 
 std::unique_ptr<PairEngine> make_engine(const EngineOptions& options) {
   check(options);

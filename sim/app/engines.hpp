@@ -5,9 +5,11 @@
 #define CCHIP_APP_ENGINES_HPP
 
 #include <cchip/device/pair_engine.hpp>
+#include <cchip/sim/output_file.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace cchip::app {
 
@@ -28,7 +30,11 @@ const char* to_name(EngineKind kind);
 /// True for the engines whose answers carry beats, clocks and axes.
 bool is_hardware(EngineKind kind);
 
-/// \throws UsageError the options contradict each other, or the waveform cannot be written
+/// Every file that `--trace` may write: waveforms and their layouts; none without it.
+std::vector<sim::NamedPath> trace_files(const EngineOptions& options);
+
+/// \throws UsageError the options contradict each other
+/// \throws sim::OutputError the waveform cannot be written
 std::unique_ptr<PairEngine> make_engine(const EngineOptions& options);
 
 }  // namespace cchip::app

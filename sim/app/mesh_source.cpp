@@ -60,10 +60,6 @@ void for_each_candidate(const Mesh& a, const Mesh& b, std::uint64_t limit, const
   });
 }
 
-HitPicture::HitPicture(const std::string& path) : path_(path), file_(path, std::ios::binary) {
-  if (!file_) refuse();
-}
-
 void HitPicture::add_hit(const PairJob& job) {
   hits_a_.insert(std::stoull(job.passed.at(0)));
   hits_b_.insert(std::stoull(job.passed.at(1)));
@@ -74,13 +70,8 @@ void HitPicture::write(const Mesh& a, const Mesh& b) {
   std::vector<Colour> colours;
   append(a, hits_a_, orange, grey_a, all, colours);
   append(b, hits_b_, blue, grey_b, all, colours);
-  write_ply(file_, all, colours);
-  file_.close();
-  if (!file_) refuse();
-}
-
-void HitPicture::refuse() const {
-  throw UsageError(path_ + ": the PLY cannot be written; check folder, permissions and disk space");
+  write_ply(file_.stream(), all, colours);
+  file_.commit();
 }
 
 }  // namespace cchip::app

@@ -6,9 +6,9 @@
 
 #include <cchip/mesh/mesh.hpp>
 #include <cchip/mesh_io/mesh_file.hpp>
+#include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/pair_job.hpp>
 #include <cstdint>
-#include <fstream>
 #include <functional>
 #include <ostream>
 #include <set>
@@ -30,22 +30,19 @@ void for_each_candidate(const Mesh& a, const Mesh& b, std::uint64_t limit, const
 /// A PLY of both meshes: faces of A that hit are orange, those of B blue, all others light grey.
 class HitPicture {
  public:
-  /// Creates the file.
-  /// \throws UsageError it cannot be written
-  explicit HitPicture(const std::string& path);
+  /// The file appears when it is complete, see sim::OutputFile.
+  /// \throws sim::OutputError it cannot be written
+  explicit HitPicture(const std::string& path) : file_(path) {}
   /// Marks the faces of a candidate pair of for_each_candidate() that hit.
   void add_hit(const PairJob& job);
   /// The same by the faces' numbers in the meshes.
   void add_hit_a(std::size_t face) { hits_a_.insert(face); }
   void add_hit_b(std::size_t face) { hits_b_.insert(face); }
-  /// \throws UsageError as above
+  /// \throws sim::OutputError as above
   void write(const Mesh& a, const Mesh& b);
 
  private:
-  [[noreturn]] void refuse() const;
-
-  std::string path_;
-  std::ofstream file_;
+  sim::OutputFile file_;
   std::set<std::size_t> hits_a_;
   std::set<std::size_t> hits_b_;
 };

@@ -9,10 +9,10 @@
 #include <cchip/rtl/pair_port.hpp>
 #include <cchip/rtl/probes.hpp>
 #include <cchip/rtl/rtl_engine.hpp>
+#include <cchip/sim/output_file.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
 namespace cchip {
@@ -84,9 +84,7 @@ class RtlModules {
     if (trace_.empty()) return;
     std::error_code ignored;  // writing tells
     std::filesystem::create_directories(std::filesystem::path(trace_).parent_path(), ignored);
-    if (!std::ofstream(trace_, std::ios::app)) {
-      throw std::runtime_error(trace_ + ": the waveform cannot be written; check folder and permissions");
-    }
+    sim::check_writable(trace_);
   }
 
   std::unique_ptr<PrimtestMachine> make(ModuleId id) {

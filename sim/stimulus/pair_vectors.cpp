@@ -2,6 +2,7 @@
 // Pairs of every class and the results that the bit-exact model expects, for bench_primtest.v.
 //   cchip_pair_vectors KIND FILE PAIRS SEED      KIND: tri_tri, tri_quad, quad_quad; PAIRS: at most 65536
 #include <algorithm>
+#include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/campaign.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cchip/stimulus/pair_vector.hpp>
@@ -57,7 +58,7 @@ bench::Vector to_vector(const ShapeInfo& shape, const GridPair& pair, PairMode m
 
 void write_vectors(const ShapeInfo& shape, const std::string& path, int pairs, std::uint64_t seed) {
   if (pairs < 1 || pairs > tags) throw std::invalid_argument("PAIRS must be 1 to 65536: every pair has its own tag");
-  std::ofstream out(path);
+  sim::OutputFile out(path);
   stimulus::PairSource source(bench::coord_w, seed, shape.a, shape.b);
   std::mt19937_64 random(seed);
   const auto classes = stimulus::classes_of(shape.a, shape.b);
@@ -66,10 +67,9 @@ void write_vectors(const ShapeInfo& shape, const std::string& path, int pairs, s
     pair.eta = static_cast<int>(random() % 2 == 0 ? 0 : random() % 16);
     fill_unused_slot(pair.a, random);
     fill_unused_slot(pair.b, random);
-    out << to_vector(shape, pair, draw_mode(i, random), i).line() << '\n';
+    out.stream() << to_vector(shape, pair, draw_mode(i, random), i).line() << '\n';
   }
-  out.close();
-  if (!out) throw std::runtime_error(path + ": cannot be written");
+  out.commit();
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cchip/levels/level.hpp>
 #include <cchip/levels/stimulus_file.hpp>
 #include <cchip/levels/summary.hpp>
+#include <cchip/sim/output_file.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <cchip/wire/definitions.hpp>
@@ -52,10 +53,9 @@ Stimulus make_stimulus(const Options& options) {
 }
 
 void save(const Stimulus& stimulus, const std::string& path) {
-  std::ofstream out(path);
-  write_stimulus(out, stimulus);
-  out.close();
-  if (!out) throw UsageError(path + ": cannot be written; check folder, permissions and disk");
+  sim::OutputFile out(path);
+  write_stimulus(out.stream(), stimulus);
+  out.commit();
 }
 
 LevelRun run(const Level& level, const Stimulus& stimulus, const LevelOptions& options) {
@@ -69,6 +69,7 @@ LevelRun run(const Level& level, const Stimulus& stimulus, const LevelOptions& o
 }
 
 int run(const Options& options) {
+  sim::check_outputs({{"--read", options.read_from}}, {{"--write", options.write_to}});
   const Stimulus stimulus = make_stimulus(options);
   if (!options.write_to.empty()) save(stimulus, options.write_to);
   Summary summary(stimulus);
@@ -120,6 +121,9 @@ int sc_main(int argc, char** argv) {
     std::cerr << error.what() << '\n';
     return exit_usage;
   } catch (const std::invalid_argument& error) {
+    std::cerr << error.what() << '\n';
+    return exit_usage;
+  } catch (const sim::OutputError& error) {
     std::cerr << error.what() << '\n';
     return exit_usage;
   } catch (const std::exception& error) {

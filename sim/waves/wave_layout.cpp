@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cchip/sim/output_file.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <cchip/wire/pair.hpp>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <ostream>
 #include <stdexcept>
 #include <string>
@@ -266,8 +268,15 @@ struct View {
   double zoom;
 };
 
-std::filesystem::path layout_path(const std::string& fst_path) {
+std::string layout_path(const std::string& fst_path) {
   return std::filesystem::path(fst_path).replace_extension(".gtkw");
+}
+
+/// With six decimals and a point, whatever the locale.
+std::string decimal(double value) {
+  std::array<char, 400> text{};
+  const auto end = std::to_chars(text.begin(), text.end(), value, std::chars_format::fixed, 6).ptr;
+  return {text.begin(), end};
 }
 
 void begin(SaveFile& file, const std::string& title, const std::string& fst_path, const View& view) {
@@ -276,7 +285,7 @@ void begin(SaveFile& file, const std::string& title, const std::string& fst_path
   file.line("[timestart] " + std::to_string(view.start));
   file.line("[size] 1920 1080");
   file.line("[pos] -1 -1");
-  std::string zoom = "*" + std::to_string(view.zoom) + " " + std::to_string(view.start);
+  std::string zoom = "*" + decimal(view.zoom) + " " + std::to_string(view.start);
   for (int i = 0; i < 26; ++i) zoom += " -1";
   file.line(zoom);
   file.line("[sst_expanded] 0");
@@ -284,21 +293,15 @@ void begin(SaveFile& file, const std::string& title, const std::string& fst_path
   file.write({bit("clk", "clk"), bit("rst", "rst")});
 }
 
-void end(std::ofstream& out, const std::filesystem::path& path) {
-  out.close();
-  if (!out) throw std::runtime_error(path.string() + ": cannot be written; check folder and permissions");
-}
-
 }  // namespace
 
 void write_gtkw(const std::string& fst_path, ModuleId id) {
   const std::string module = std::string("cchip_primtest_") + to_name(id);
-  const std::filesystem::path path = layout_path(fst_path);
-  std::ofstream out(path);
-  SaveFile file(out, module);
+  sim::OutputFile out(layout_path(fst_path));
+  SaveFile file(out.stream(), module);
   begin(file, "Signals of " + module + " along the way of a pair", fst_path, {0, -5.9});
   file.write(primtest_layout(id));
-  end(out, path);
+  out.commit();
 }
 
 namespace {
@@ -353,25 +356,23 @@ Rows broad_phase_layout() {
 }  // namespace
 
 void write_broad_phase_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to) {
-  const std::filesystem::path path = layout_path(fst_path);
-  std::ofstream out(path);
-  SaveFile file(out, "cchip_broad_phase_axi");
+  sim::OutputFile out(layout_path(fst_path));
+  SaveFile file(out.stream(), "cchip_broad_phase_axi");
   begin(file, "Queries through the broad phase", fst_path,
         {from, -std::log2(static_cast<double>(to - from) / wave_frames)});
   file.write(broad_phase_layout());
-  end(out, path);
+  out.commit();
 }
 
 void write_swap_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to) {
-  const std::filesystem::path path = layout_path(fst_path);
-  std::ofstream out(path);
-  SaveFile file(out, "cchip_primtest_subsystem");
+  sim::OutputFile out(layout_path(fst_path));
+  SaveFile file(out.stream(), "cchip_primtest_subsystem");
   const std::uint64_t margin = (to - from) / 20;
   const std::uint64_t first = from > margin ? from - margin : 0;
   const double per_frame = static_cast<double>(to + margin - first) / wave_frames;
   begin(file, "A swap of the reconfigurable subsystem", fst_path, {first, -std::log2(per_frame)});
   file.write(subsystem_layout());
-  end(out, path);
+  out.commit();
 }
 
 }  // namespace cchip

@@ -20,7 +20,7 @@ ROOMS["device"] = set(CORE) | {"model"}
 CPP_REF = set(ROOMS)
 ROOMS["sim"] = set()  # sim/harness
 ROOMS["rc"] = set()  # sim/reconfig
-ROOMS["waves"] = {"wire"}
+ROOMS["waves"] = {"wire", "sim"}
 ROOMS["stimulus"] = CPP_REF - {"device", "reference", "mesh_io"} | {"sim"}
 ROOMS["rtl"] = CPP_REF | {"sim", "waves"}
 ROOMS["levels"] = CPP_REF | {"sim", "rc", "stimulus", "waves", "rtl"}  # sim/systemc
@@ -37,7 +37,7 @@ LINKS = {
                                                                                "reference", "rtl"},
     "cchip": {"app"}, "cchip_levels_core": {"reconfig", "core", "stimulus"},
     "cchip_levels_lib": {"levels_core", "reference", "rtl", "rtl_models", "waves", "levels_models"},
-    "cchip_levels": {"levels_lib"}, "cchip_table1_lib": {"reconfig"}, "cchip_table1": {"table1_lib"},
+    "cchip_levels": {"levels_lib"}, "cchip_table1_lib": {"reconfig"}, "cchip_table1": {"table1_lib", "stimulus"},
     "cchip_rc_bench": {"reconfig"}, "cchip_rtl_bench": {"levels_lib", "rtl", "rtl_models"}}
 
 # Folders of rtl/: each may instantiate from those before it in its line.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/judge.hpp>
 #include <cchip/stimulus/pair_source.hpp>
-#include <fstream>
+#include <optional>
 #include <random>
 
 #include "commands.hpp"
@@ -54,27 +55,23 @@ void print_row(const std::string& name, const char* mix, const RtlJudgement& r) 
 class BeatsFile {
  public:
   /// name: empty for no file.
-  explicit BeatsFile(const std::string& name) : name_(name) {
-    if (name_.empty()) return;
-    out_.open(name_);
-    out_ << "shape,class,programme,pairs,beats_least,beats_mean,beats_greatest,axes_per_clock\n";
-    check();
+  explicit BeatsFile(const std::string& name) {
+    if (name.empty()) return;
+    out_.emplace(name);
+    out_->stream() << "shape,class,programme,pairs,beats_least,beats_mean,beats_greatest,axes_per_clock\n";
   }
   void add(const ShapeInfo& shape, const std::string& name, const char* mix, const RtlJudgement& r) {
-    if (name_.empty()) return;
-    out_ << fmt::format("{},\"{}\",{},{},{},{:.4f},{},{:.4f}\n", shape.name, name, mix, r.pairs, r.beats.least,
-                        r.beats.mean(), r.beats.greatest, axes_per_clock(r));
+    if (!out_) return;
+    out_->stream() << fmt::format("{},\"{}\",{},{},{},{:.4f},{},{:.4f}\n", shape.name, name, mix, r.pairs,
+                                  r.beats.least, r.beats.mean(), r.beats.greatest, axes_per_clock(r));
   }
   /// Throws if the file could not be written.
-  void check() {
-    if (name_.empty()) return;
-    out_.flush();
-    if (!out_) throw std::runtime_error(fmt::format("{}: cannot be written; is the folder there?", name_));
+  void commit() {
+    if (out_) out_->commit();
   }
 
  private:
-  std::string name_;
-  std::ofstream out_;
+  std::optional<sim::OutputFile> out_;
 };
 
 }  // namespace
@@ -109,7 +106,7 @@ int run_classes(const ClassesOptions& options) {
     table.examples.print();
     all += table.sum();
   }
-  beats.check();
+  beats.commit();
   Goals goals;
   options.check(goals, all.pairs, all.hits);
   goals.at_least("number of axes per waiting clock", least, least_axes_per_clock);

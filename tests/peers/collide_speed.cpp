@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cchip/mesh/shapes.hpp>
+#include <cchip/sim/output_file.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/progress.hpp>
 #include <cstdlib>
@@ -552,15 +553,14 @@ class Benchmark {
   }
 
   int summary() {
-    std::ofstream file;
     if (!options_.csv.empty()) {
       std::filesystem::create_directories(std::filesystem::path(options_.csv).parent_path());
-      file.open(options_.csv);
+      sim::OutputFile file(options_.csv);
       const double gain = native_gain_.value();
-      file << rows_.text() << fmt::format("# FCL built natively is faster by: {:.2f}\n", gain);
-      file << fmt::format("# answers compared with FCL's: {}, FCL errs in: {}, differences: {}\n", compared_, fcl_errs_,
-                          differences_);
-      if (!file.flush()) throw std::runtime_error(options_.csv + ": cannot be written");
+      file.stream() << rows_.text() << fmt::format("# FCL built natively is faster by: {:.2f}\n", gain);
+      file.stream() << fmt::format("# answers compared with FCL's: {}, FCL errs in: {}, differences: {}\n", compared_,
+                                   fcl_errs_, differences_);
+      file.commit();
     }
     fmt::print("\ngeometric means, times FCL built natively:");
     for (const char* c : {"touch", "near", "deep", "far", "graze", "touch all", "deep all", "coherent", "lone"}) {

@@ -160,7 +160,9 @@ TEST_CASE("errors: command line", "[system][errors]") {
                 "cchip: --trace: engine " + engine + " has no waveform; use --engine rtl", input);
   }
   check_error({"pairs", "-", "--trace", "/no/such/folder/x.fst"},
-              "cchip: /no/such/folder/x.fst: the waveform cannot be written; check folder and permissions", input);
+              "cchip: /no/such/folder/x.fst: cannot be written (No such file or directory); check folder, permissions and disk "
+              "space",
+              input);
   const std::string cube = std::string(CCHIP_TEST_MODELS) + "/OFF/Cube.off";
   check_error({"meshpairs", cube, cube, "--pose", "1,2"},
               "cchip: --pose: got 2 numbers; write tx,ty,tz or tx,ty,tz,rx,ry,rz");

@@ -169,7 +169,8 @@ TEST_CASE("meshpairs: a PLY shows the faces that hit", "[system][meshpairs]") {
   CHECK(refused.code == exit_usage);
   CHECK(refused.out.empty());
   CHECK(refused.err ==
-        "cchip: /no/such/folder/x.ply: the PLY cannot be written; check folder, permissions and disk space\n");
+        "cchip: /no/such/folder/x.ply: cannot be written (No such file or directory); check folder, permissions and "
+        "disk space\n");
 }
 
 TEST_CASE("meshpairs: one model in four file formats", "[system][meshpairs]") {

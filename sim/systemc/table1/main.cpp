@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // cchip_table1: Table 1 of the paper from a timed simulation.
 #include <CLI/CLI.hpp>
-#include <fstream>
+#include <cchip/sim/output_file.hpp>
 #include <iostream>
+#include <optional>
 #include <systemc>
 
 #include "report.hpp"
@@ -24,13 +25,14 @@ int sc_main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
+    std::optional<cchip::sim::OutputFile> file;
+    if (!csv.empty()) file.emplace(csv);
     const cchip::table1::Figures figures = cchip::table1::run_experiments(data_bits);
     cchip::table1::print_report(figures, std::cout);
-    if (csv.empty()) return 0;
-    std::ofstream file(csv);
-    cchip::table1::write_csv(figures, file);
-    file.close();
-    if (!file) throw std::runtime_error(csv + ": cannot be written; give another file with --csv");
+    if (file) {
+      cchip::table1::write_csv(figures, file->stream());
+      file->commit();
+    }
   } catch (const std::invalid_argument& error) {
     std::cerr << "cchip_table1: " << error.what() << '\n';
     return 2;

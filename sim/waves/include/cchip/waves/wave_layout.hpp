@@ -12,18 +12,18 @@ namespace cchip {
 
 /// Writes the GTKWave save file beside the waveform of this module (same name, .gtkw): signals in the order in which
 /// the data flows, grouped by stream and macro stage, zoomed to the first pairs. The waveform need not exist yet.
-/// \throws std::runtime_error the file cannot be written
+/// \throws sim::OutputError the file cannot be written
 void write_gtkw(const std::string& fst_path, ModuleId module);
 
 /// The same for a waveform of cchip_primtest_subsystem with two slots: streams, scheduler, configuration controller and
 /// slots, zoomed to a swap.
 /// \param from,to time units of the waveform
-/// \throws std::runtime_error the file cannot be written
+/// \throws sim::OutputError the file cannot be written
 void write_swap_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to);
 
 /// The same for a waveform of cchip_broad_phase_axi with 16 queries: a query from its descriptor to its answer.
 /// \param from,to time units of the waveform
-/// \throws std::runtime_error the file cannot be written
+/// \throws sim::OutputError the file cannot be written
 void write_broad_phase_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to);
 
 }  // namespace cchip
