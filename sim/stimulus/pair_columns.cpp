@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <cchip/geometry/decimal.hpp>
 #include <cchip/stimulus/pair_columns.hpp>
 #include <cchip/stimulus/usage_error.hpp>
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
+#include <optional>
 #include <stdexcept>
 
 namespace cchip {
@@ -28,30 +28,18 @@ std::string quoted(std::string_view text) {
   return shown + (text.size() > 40 ? "...'" : "'");
 }
 
-/// from_chars says "out of range" for both ends; strtod tells them apart.
-double out_of_range(std::string_view digits) {
-  const double value = std::strtod(std::string(digits).c_str(), nullptr);
-  if (std::isfinite(value)) return value;
-  throw std::invalid_argument(quoted(digits) + " is too large for a double; scale the coordinates down");
-}
-
 }  // namespace
 
 double parse_coordinate(std::string_view text) {
-  std::string_view digits = trimmed(text);
+  const std::string_view digits = trimmed(text);
   if (digits.empty()) throw std::invalid_argument("the field is empty; write a finite decimal number");
-  if (digits.front() == '+' && digits.size() > 1 && digits[1] != '-') digits.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  const bool whole = end == digits.data() + digits.size();
-  if (error == std::errc::invalid_argument || !whole) {
-    throw std::invalid_argument(quoted(text) + " is not a number; write a finite decimal number");
+  const std::optional<double> value = read_decimal(digits);
+  if (!value) throw std::invalid_argument(quoted(text) + " is not a number; write a finite decimal number");
+  if (std::isfinite(*value)) return *value;
+  if (digits.find_first_of("0123456789") != std::string_view::npos) {
+    throw std::invalid_argument(quoted(digits) + " is too large for a double; scale the coordinates down");
   }
-  if (error == std::errc::result_out_of_range) return out_of_range(digits);
-  if (!std::isfinite(value)) {
-    throw std::invalid_argument(quoted(text) + " is not finite; write a finite decimal number");
-  }
-  return value;
+  throw std::invalid_argument(quoted(text) + " is not finite; write a finite decimal number");
 }
 
 PairColumns::PairColumns(const CsvRow& header, std::string file, const ColumnOptions& options)

@@ -7,12 +7,14 @@
 #include <catch2/catch.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/mesh_io/mesh_file.hpp>
+#include <clocale>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
 #include <limits>
+#include <locale>
 #include <sstream>
 
 using cchip::load_mesh;
@@ -686,6 +688,38 @@ TEST_CASE("mesh file: a written PLY holds the same faces and their colours", "[r
   }
   CHECK(out.str().substr(out.str().size() - 3) == "\xfa\xfb\xfc");
   CHECK_THROWS_AS(cchip::write_ply(out, mesh, {{1, 2, 3}}), std::invalid_argument);
+}
+
+TEST_CASE("mesh file: numbers are read and written the same in every locale", "[ref][mesh_file]") {
+  const std::pair<const char*, double> words[] = {{"0.5", 0.5}, {"1.5e-400", 0}, {"-2.5e-330", -0.0}, {"1234.5", 1234.5}};
+  const auto check = [&] {
+    for (const auto& [word, value] : words) {
+      INFO(word);
+      const Mesh mesh = cchip::parse_mesh("v " + std::string(word) + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "t.obj");
+      CHECK(mesh.vertices[0].x() == value);
+      CHECK(std::signbit(mesh.vertices[0].x()) == std::signbit(value));
+    }
+    CHECK_THROWS(cchip::parse_mesh("v 1.5e400 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "t.obj"));
+  };
+  check();
+  // Hosts like Qt call setlocale(). Not every computer has one of these.
+  for (const char* const name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE"}) {
+    if (std::setlocale(LC_ALL, name) != nullptr) check();
+    std::setlocale(LC_ALL, "C");
+  }
+  // A stream whose locale groups digits.
+  struct Grouping : std::numpunct<char> {
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.faces.assign(1234, {cchip::Kind::tri, {0, 1, 2, 0}});
+  std::ostringstream out;
+  out.imbue(std::locale(std::locale::classic(), new Grouping));
+  cchip::write_ply(out, mesh, std::vector<cchip::Colour>(mesh.faces.size()));
+  CHECK(out.str().find("element face 1234\n") != std::string::npos);
+  CHECK(cchip::parse_mesh(out.str(), "t.ply").faces.size() == 1234);
 }
 
 TEST_CASE("mesh file: every model of Debian's package is read or refused", "[ref][mesh_file]") {

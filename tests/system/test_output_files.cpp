@@ -7,7 +7,6 @@
 #include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <map>
-#include <map>
 #include <thread>
 
 #include "support.hpp"

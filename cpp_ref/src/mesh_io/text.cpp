@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "text.hpp"
 
+#include <algorithm>
+#include <cchip/geometry/decimal.hpp>
 #include <charconv>
-#include <cstdlib>
+#include <optional>
 
 #include "polygon_soup.hpp"
 
@@ -65,15 +67,9 @@ std::string_view Words::next() {
 }
 
 double to_number(std::string_view word, std::size_t line) {
-  const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
-  const std::string_view digits = word.substr(plus ? 1 : 0);
-  const char* const end = digits.data() + digits.size();
-  double value = 0;
-  const auto [stop, error] = std::from_chars(digits.data(), end, value);
-  if (error == std::errc::invalid_argument || stop != end) throw FormatError(quoted(word) + " is not a number", line);
-  // from_chars does not say whether the number is too large or too small
-  if (error == std::errc::result_out_of_range) return std::strtod(std::string(digits).c_str(), nullptr);
-  return value;
+  const std::optional<double> value = read_decimal(word);
+  if (!value) throw FormatError(quoted(word) + " is not a number", line);
+  return *value;
 }
 
 std::size_t to_count(std::string_view word, std::size_t line) {

@@ -25,11 +25,12 @@ void put(std::ostream& out, const Colour& colour) {
 void write_ply(std::ostream& out, const Mesh& mesh, const std::vector<Colour>& face_colours) {
   if (face_colours.size() != mesh.faces.size()) throw std::invalid_argument("write_ply: one colour for each face");
   std::size_t vertices = 0;
-  for (std::size_t i = 0; i < mesh.faces.size(); ++i) vertices += mesh.primitive(i).vertex_count();
+  for (const Mesh::Face& face : mesh.faces) vertices += face.kind == Kind::quad ? 4 : 3;
   const char* const colour = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-  out << "ply\nformat binary_little_endian 1.0\nelement vertex " << vertices
+  // as texts, because the stream's locale may group digits
+  out << "ply\nformat binary_little_endian 1.0\nelement vertex " << std::to_string(vertices)
       << "\nproperty double x\nproperty double y\nproperty double z\n"
-      << colour << "element face " << mesh.faces.size() << "\nproperty list uchar uint vertex_indices\n"
+      << colour << "element face " << std::to_string(mesh.faces.size()) << "\nproperty list uchar uint vertex_indices\n"
       << colour << "end_header\n";
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
     const Primitive face = mesh.primitive(i);
@@ -40,7 +41,7 @@ void write_ply(std::ostream& out, const Mesh& mesh, const std::vector<Colour>& f
   }
   std::uint64_t vertex = 0;
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
-    const std::size_t corners = mesh.primitive(i).vertex_count();
+    const std::size_t corners = mesh.faces[i].kind == Kind::quad ? 4 : 3;
     put(out, corners, 1);
     for (std::size_t k = 0; k < corners; ++k) put(out, vertex++, 4);
     put(out, face_colours[i]);
