@@ -6,7 +6,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cchip/device/device.hpp>
+#include <cchip/geometry/decimal.hpp>
 #include <cchip/sim/output_file.hpp>
+#include <cchip/stimulus/command_line.hpp>
 #include <cchip/stimulus/csv_reader.hpp>
 #include <cchip/stimulus/pair_columns.hpp>
 #include <cchip/stimulus/progress.hpp>
@@ -15,6 +17,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -38,6 +42,10 @@ const Choices<EngineKind> engines = {
 const Choices<EngineKind> hardware_engines = {engines[0], engines[1]};
 const Choices<PairMode> programs = {{"exhaustive", PairMode::exhaustive}, {"directed", PairMode::directed}};
 const Choices<Format> formats = {{"table", Format::table}, {"csv", Format::csv}, {"jsonl", Format::jsonl}};
+
+constexpr WholeRange at_least_1 = {1, std::numeric_limits<std::uint64_t>::max()};
+/// Of a payload: what a bitstream needs, and what the simulated memory holds three times for each slot.
+constexpr WholeRange bitstream_bits = {8 * defs::bitstream_payload_min, 8 << 24};
 
 const Choices<std::optional<bool>> contact_choices = {{"first", false}, {"all", true}};
 
@@ -148,7 +156,7 @@ int run_meshpairs(const MeshPairsOptions& options, const Streams& streams) {
 }
 
 template <class Value>
-void add_choice(CLI::App& command, const std::string& name, Value& value, const Choices<Value>& choices,
+CLI::Option* add_choice(CLI::App& command, const std::string& name, Value& value, const Choices<Value>& choices,
                 const std::string& description) {
   std::vector<std::string> words;
   for (const auto& choice : choices) words.push_back(choice.first);
@@ -157,7 +165,7 @@ void add_choice(CLI::App& command, const std::string& name, Value& value, const 
       if (choice.first == word) value = choice.second;
     }
   };
-  command.add_option_function<std::string>(name, choose, description)->check(CLI::IsMember(words));
+  return command.add_option_function<std::string>(name, choose, description)->check(CLI::IsMember(words));
 }
 
 const std::string engine_words =
@@ -170,9 +178,10 @@ void add_engine_options(CLI::App& command, EngineOptions& engine, Format& format
   add_choice(command, "--engine", engine.kind, engines, engine_words);
   add_choice(command, "--program", engine.mode, programs, "axis programme of the hardware (default exhaustive)");
   add_choice(command, "--format", format, formats, "output (default table)");
-  command.add_option("--trace", engine.trace_path, "write the waveform of the RTL (FST) and a .gtkw layout beside it");
-  command.add_option("--trace-clocks", engine.trace_clocks, "clocks in the waveform (default 0: all)");
-  command.add_option("--seed", engine.seed, seed_words);
+  auto* trace =
+      add_text(command, "--trace", engine.trace_path, "write the waveform of the RTL (FST) and a .gtkw layout beside it");
+  add_whole(command, "--trace-clocks", engine.trace_clocks, "clocks in the waveform (default 0: all)")->needs(trace);
+  add_whole(command, "--seed", engine.seed, seed_words);
 }
 
 std::string device_words() {
@@ -183,10 +192,10 @@ std::string device_words() {
 
 void add_pairs(CLI::App& app, PairsOptions& options) {
   CLI::App* command = app.add_subcommand("pairs", "Answer the pairs of primitives in a CSV file");
-  command->add_option("FILE", options.file, "CSV file with columns a0x..a2z, b0x..b2z; - reads standard input")
+  add_text(*command, "FILE", options.file, "CSV file with columns a0x..a2z, b0x..b2z; - reads standard input")
       ->required();
   add_engine_options(*command, options.engine, options.format);
-  command->add_option("--expect", options.columns.expect, "compare the answers with this column (0 or 1)");
+  add_text(*command, "--expect", options.columns.expect, "compare the answers with this column (0 or 1)");
   command->add_flag("--all-columns", options.columns.pass_all, "pass the coordinate columns through, too");
   command->footer(
       "Examples:\n"
@@ -199,14 +208,14 @@ void add_pairs(CLI::App& app, PairsOptions& options) {
 void add_meshpairs(CLI::App& app, MeshPairsOptions& options) {
   CLI::App* command = app.add_subcommand(
       "meshpairs", "Answer the candidate pairs of two meshes (OBJ, STL, PLY, OFF), B placed by a pose");
-  command->add_option("A", options.file_a, "mesh that stays")->required();
-  command->add_option("B", options.file_b, "mesh that is placed")->required();
-  auto* pose = command->add_option("--pose", options.pose,
+  add_text(*command, "A", options.file_a, "mesh that stays")->required();
+  add_text(*command, "B", options.file_b, "mesh that is placed")->required();
+  auto* pose = add_text(*command, "--pose", options.pose,
                                    "tx,ty,tz[,rx,ry,rz]: rotate B by degrees about x, then y, then z, then move it");
-  command->add_option("--pose-matrix", options.pose_matrix, "twelve numbers, the 3x4 matrix [R|t] row by row")
+  add_text(*command, "--pose-matrix", options.pose_matrix, "twelve numbers, the 3x4 matrix [R|t] row by row")
       ->excludes(pose);
-  command->add_option("--limit", options.limit, "answer the first N candidate pairs only (default 0: all)");
-  command->add_option("--ply", options.ply, "write both meshes, the faces that hit coloured, for MeshLab or Blender");
+  add_whole(*command, "--limit", options.limit, "answer the first N candidate pairs only (default 0: all)");
+  add_text(*command, "--ply", options.ply, "write both meshes, the faces that hit coloured, for MeshLab or Blender");
   add_engine_options(*command, options.engine, options.format);
   command->footer(
       "Examples:\n"
@@ -218,27 +227,26 @@ void add_meshpairs(CLI::App& app, MeshPairsOptions& options) {
 void add_collide(CLI::App& app, CollideOptions& options) {
   CLI::App* command = app.add_subcommand(
       "collide", "Do two meshes (OBJ, STL, PLY, OFF) touch, and where? B placed by one pose or by many");
-  command->add_option("A", options.file_a, "mesh that stays")->required();
-  command->add_option("B", options.file_b, "mesh that is placed")->required();
-  auto* pose = command->add_option("--pose", options.pose,
+  add_text(*command, "A", options.file_a, "mesh that stays")->required();
+  add_text(*command, "B", options.file_b, "mesh that is placed")->required();
+  auto* pose = add_text(*command, "--pose", options.pose,
                                    "tx,ty,tz[,rx,ry,rz]: rotate B by degrees about x, then y, then z, then move it");
-  auto* matrix = command->add_option("--pose-matrix", options.pose_matrix,
+  auto* matrix = add_text(*command, "--pose-matrix", options.pose_matrix,
                                      "twelve numbers, the 3x4 matrix [R|t] of any affine map row by row");
-  auto* poses = command->add_option("--poses", options.poses_file,
+  auto* poses = add_text(*command, "--poses", options.poses_file,
                                     "CSV file with columns r00..r22, tx, ty, tz: a query for each row");
   pose->excludes(matrix)->excludes(poses);
   matrix->excludes(poses);
   add_choice(*command, "--contacts", options.all_contacts, contact_choices,
              "stop at the first contact or find all (default: all, with --poses first)");
-  command->add_option("--most", options.most_contacts, "find at most N contacts of a query (default: no limit)")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--device", options.device, "what answers: " + device_words() + " (default cpu)");
+  add_whole(*command, "--most", options.most_contacts, "find at most N contacts of a query (default: no limit)",
+            at_least_1);
+  add_text(*command, "--device", options.device, "what answers: " + device_words() + " (default cpu)");
   add_choice(*command, "--format", options.format, formats, "output (default table)");
-  command
-      ->add_option("--expect", options.expect,
-                   "compare with this column of the poses: 0 or 1, with --contacts all their number")
+  add_text(*command, "--expect", options.expect,
+           "compare with this column of the poses: 0 or 1, with --contacts all their number")
       ->needs(poses);
-  command->add_option("--ply", options.ply, "write both meshes, the faces that touch coloured, for MeshLab or Blender")
+  add_text(*command, "--ply", options.ply, "write both meshes, the faces that touch coloured, for MeshLab or Blender")
       ->excludes(poses);
   command->footer(
       "Examples:\n"
@@ -250,22 +258,39 @@ void add_collide(CLI::App& app, CollideOptions& options) {
 void add_demo(CLI::App& app, DemoOptions& options) {
   CLI::App* command =
       app.add_subcommand("demo", "Torus and gear, of triangles and of quads, through the RTL, every answer checked");
-  add_choice(*command, "--engine", options.engine.kind, hardware_engines, "rtl (default) or its model");
-  command->add_option("--waves", options.wave_folder, "folder of the waveform (default build/waves)");
-  command->add_option("--ply", options.ply, "run nothing: write torus and gear, the faces that hit coloured");
-  command->add_option("--seed", options.engine.seed, seed_words);
+  auto* engine = add_choice(*command, "--engine", options.engine.kind, hardware_engines, "rtl (default) or its model");
+  auto* waves = add_text(*command, "--waves", options.wave_folder, "folder of the waveform (default build/waves)");
+  auto* seed = add_whole(*command, "--seed", options.engine.seed, seed_words);
+  add_text(*command, "--ply", options.ply, "run nothing: write torus and gear, the faces that hit coloured")
+      ->excludes(engine)
+      ->excludes(waves)
+      ->excludes(seed);
 }
 
 void add_reconfig(CLI::App& app, ReconfigJobOptions& options) {
   CLI::App* command =
       app.add_subcommand("reconfig", "Meshes through two slots whose modules are exchanged at run time");
-  command->add_option("--bitstream-bits", options.bitstream_bits,
-                      "payload of each bitstream (default 16384; the paper's: 5504088, takes minutes)");
-  command->add_option("--pairs", options.pairs, "pairs of each kind, at most (default 1500)")
-      ->check(CLI::PositiveNumber);
+  add_whole(*command, "--bitstream-bits", options.bitstream_bits,
+            "payload of each bitstream (default 16384; the paper's: 5504088, takes minutes)", bitstream_bits);
+  add_whole(*command, "--pairs", options.pairs, "pairs of each kind, at most (default 1500)", at_least_1);
   add_choice(*command, "--program", options.mode, programs, "axis programme (default exhaustive)");
-  command->add_option("--waves", options.wave_folder, "folder for sim-reconfig.fst (default build/waves)");
-  command->add_option("--seed", options.seed, seed_words);
+  add_text(*command, "--waves", options.wave_folder, "folder for sim-reconfig.fst (default build/waves)");
+  add_whole(*command, "--seed", options.seed, seed_words);
+}
+
+std::string command_names(const CLI::App& app) {
+  std::string names;
+  for (const CLI::App* command : app.get_subcommands({})) names += (names.empty() ? "" : ", ") + command->get_name();
+  return names;
+}
+
+/// True if the pose of the command seems to be written as several words.
+bool is_pose_in_words(const CLI::App& command, const std::string& word) {
+  for (const char* const name : {"--pose", "--pose-matrix"}) {
+    const CLI::Option* pose = command.get_option_no_throw(name);
+    if (pose != nullptr && pose->count() > 0) return read_decimal(word.substr(0, word.find(','))).has_value();
+  }
+  return false;
 }
 
 /// What is wrong with a command line in which `words` were not understood.
@@ -274,9 +299,11 @@ std::string unknown_words(const CLI::App& app, const std::vector<std::string>& w
       std::find_if(words.begin(), words.end(), [](const std::string& word) { return word.rfind("-", 0) == 0; });
   const auto chosen = app.get_subcommands();
   if (chosen.empty() && option != words.begin()) {
-    std::string names;
-    for (const CLI::App* command : app.get_subcommands({})) names += (names.empty() ? "" : ", ") + command->get_name();
-    return fmt::format("{}: no such command; the commands are {}", words.front(), names);
+    return fmt::format("{}: no such command; the commands are {}", words.front(), command_names(app));
+  }
+  if (!chosen.empty() && is_pose_in_words(*chosen.front(), words.front())) {
+    return fmt::format("{}: the pose is one word; write its numbers with commas and no spaces, like 0.5,0,0,0,0,90",
+                       words.front());
   }
   const std::string help = chosen.empty() ? "cchip --help" : fmt::format("cchip {} --help", chosen.front()->get_name());
   if (option != words.end()) return fmt::format("{}: no such option; see {}", *option, help);
@@ -315,6 +342,9 @@ int dispatch(std::vector<std::string> arguments, const Streams& streams) {
   } catch (const CLI::ParseError& error) {
     const std::vector<std::string> unknown = app.remaining(true);
     if (!unknown.empty()) throw UsageError(unknown_words(app, unknown));
+    if (app.get_subcommands().empty()) {
+      throw UsageError("the command is missing; the commands are " + command_names(app) + "; see cchip --help");
+    }
     throw UsageError(std::string(error.what()) + "; see cchip --help");
   }
   if (app.got_subcommand("collide")) return run_collide(collide, streams);
@@ -345,6 +375,9 @@ int run_cli(std::vector<std::string> arguments, const Streams& streams) {
   } catch (const sim::OutputError& error) {
     streams.err << "cchip: " << one_line(error.what()) << '\n';
     return exit_usage;
+  } catch (const std::bad_alloc&) {
+    streams.err << "cchip: not enough memory; give smaller input, or a smaller number to an option\n";
+    return exit_internal;
   } catch (const std::exception& error) {
     streams.err << "cchip: internal error: " << one_line(error.what()) << '\n';
     return exit_internal;

@@ -81,6 +81,9 @@ std::unique_ptr<Device> open_named_device(const std::string& name) {
 CollisionRequest request_of(const CollideOptions& options) {
   CollisionRequest request;
   const bool all = options.all_contacts.value_or(options.poses_file.empty());
+  if (!all && options.most_contacts != 0) {
+    throw UsageError("--most: each query stops at its first contact; add --contacts all, or leave --most out");
+  }
   if (all) request.contacts = CollisionRequest::Contacts::all;
   if (options.most_contacts != 0) request.most_contacts = options.most_contacts;
   return request;

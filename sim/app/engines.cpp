@@ -16,6 +16,10 @@ void check(const EngineOptions& options) {
   if (options.kind != EngineKind::rtl) {
     throw UsageError(fmt::format("--trace: engine {} has no waveform; use --engine rtl", to_name(options.kind)));
   }
+  if (std::filesystem::path(options.trace_path).extension() != ".fst") {
+    throw UsageError(
+        fmt::format("--trace {}: the waveform is an FST; give a name that ends with .fst", options.trace_path));
+  }
   for (const sim::NamedPath& file : {trace_files(options)[0], trace_files(options)[1]}) sim::check_writable(file.path);
 }
 

@@ -123,10 +123,6 @@ std::string prepare_wave(const std::string& folder) {
 int run_reconfig_job(const ReconfigJobOptions& options, std::ostream& out) {
   ReconfigOptions reconfig;
   reconfig.payload_bytes = static_cast<std::size_t>((options.bitstream_bits + 7) / 8);
-  if (reconfig.payload_bytes < defs::bitstream_payload_min) {
-    throw UsageError(fmt::format("--bitstream-bits {}: a bitstream has at least {} bits", options.bitstream_bits,
-                                 8 * defs::bitstream_payload_min));
-  }
   const std::uint64_t equation_4 =
       transfer_clocks(reconfig.payload_bytes, SimulatedSubsystem::port_w, SimulatedSubsystem::clocks_per_word);
   reconfig.seed = static_cast<std::uint32_t>(options.seed);

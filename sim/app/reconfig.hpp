@@ -12,7 +12,7 @@
 namespace cchip::app {
 
 struct ReconfigJobOptions {
-  std::uint64_t bitstream_bits = 16384;  ///< payload of each bitstream
+  std::uint64_t bitstream_bits = 16384;  ///< payload of each bitstream, at least 8 * defs::bitstream_payload_min
   std::uint64_t pairs = 1500;            ///< of each kind, at most
   PairMode mode = PairMode::exhaustive;
   std::uint64_t seed = 1;

@@ -9,6 +9,7 @@
 #include <cchip/levels/summary.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/sim/seed.hpp>
+#include <cchip/stimulus/command_line.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <cchip/wire/definitions.hpp>
 #include <fstream>
@@ -39,11 +40,8 @@ struct Options {
   std::string write_to;
 };
 
-/// 0 or a length that a bitstream can have.
-std::string check_payload(const std::string& text) {
-  if (text == "0" || CLI::Range(defs::bitstream_payload_min, 1 << 24)(text).empty()) return {};
-  return "write 0, or 16 to 16777216";
-}
+constexpr WholeRange pairs_range = {1, 100'000'000};  // they are held in memory
+constexpr WholeRange payload_range = {0, 1 << 24};
 
 Stimulus make_stimulus(const Options& options) {
   if (options.read_from.empty()) return generate(options.generator);
@@ -83,27 +81,32 @@ int run_with_arguments(int argc, char** argv) {
   Options options;
   options.generator.seed = sim::seed_from_environment();
   CLI::App command("Five refinement levels of the primitive tests on one stimulus, compared with the Eigen reference.");
-  command.add_option("--pairs", options.generator.pairs, "primitive pairs")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  command.add_option("--object-pairs", options.generator.object_pairs, "object pairs, each needs a swap")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  command.add_option("--seed", options.generator.seed, "seed of stimulus and power-up values (or CCHIP_SEED)")
-      ->capture_default_str();
-  command
-      .add_option("--bitstream", options.level.payload_bytes,
-                  "payload of a bitstream, bytes; 0: the lengths of Table 1")
-      ->capture_default_str()
-      ->check(check_payload);
+  const auto with_default = [](CLI::Option* option, std::uint64_t value) {
+    option->default_str(std::to_string(value));
+  };
+  with_default(add_whole(command, "--pairs", options.generator.pairs, "primitive pairs", pairs_range),
+               options.generator.pairs);
+  with_default(add_whole(command, "--object-pairs", options.generator.object_pairs, "object pairs, each needs a swap",
+                         pairs_range),
+               options.generator.object_pairs);
+  with_default(
+      add_whole(command, "--seed", options.generator.seed, "seed of stimulus and power-up values (or CCHIP_SEED)"),
+      options.generator.seed);
+  with_default(add_whole(command, "--bitstream", options.level.payload_bytes,
+                         "payload of a bitstream, bytes; 0: the lengths of Table 1", payload_range),
+               options.level.payload_bytes);
   command.add_flag("!--without-roc", options.level.reset_on_configuration,
                    "L3 without reset on configuration, to see what happens");
-  command.add_option("--read", options.read_from, "CSV file with the stimulus instead of a random one");
-  command.add_option("--write", options.write_to, "CSV file that gets the stimulus");
+  add_text(command, "--read", options.read_from, "CSV file with the stimulus instead of a random one");
+  add_text(command, "--write", options.write_to, "CSV file that gets the stimulus");
   try {
     command.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return command.exit(error) == 0 ? exit_ok : exit_usage;
+  }
+  if (options.level.payload_bytes != 0 && options.level.payload_bytes < defs::bitstream_payload_min) {
+    throw UsageError("--bitstream: a bitstream has at least " + std::to_string(defs::bitstream_payload_min) +
+                     " bytes; write 0, or 16 to 16777216");
   }
   options.level.seed = options.generator.seed;
   std::cout << "CCHIP_SEED=" << options.generator.seed << '\n';

@@ -137,9 +137,51 @@ TEST_CASE("errors: meshes", "[system][errors]") {
   }
 }
 
+TEST_CASE("errors: values without a meaning", "[system][errors]") {
+  const std::string cube = std::string(CCHIP_TEST_MODELS) + "/OFF/Cube.off";
+  const std::string input = header + "\n" + tri_a + "," + b_through + "\n";
+  const std::string from_0 = "; write a whole number, 0 or more";
+  const std::string from_1 = "; write a whole number, 1 or more";
+  check_error({"meshpairs", cube, cube, "--limit", "-1"}, "cchip: --limit: got '-1'" + from_0);
+  check_error({"pairs", "-", "--seed", "-3"}, "cchip: --seed: got '-3'" + from_0, input);
+  check_error({"pairs", "-", "--seed", "abc"}, "cchip: --seed: got 'abc'" + from_0, input);
+  check_error({"pairs", "-", "--seed", "18446744073709551616"}, "cchip: --seed: got '18446744073709551616'" + from_0,
+              input);
+  check_error({"pairs", "-", "--trace", "x.fst", "--trace-clocks", "-1"}, "cchip: --trace-clocks: got '-1'" + from_0,
+              input);
+  check_error({"pairs", "-", "--trace-clocks", "5"}, "cchip: --trace-clocks requires --trace; see cchip --help", input);
+  check_error({"pairs", "-", "--trace", "t.vcd"},
+              "cchip: --trace t.vcd: the waveform is an FST; give a name that ends with .fst", input);
+  check_error({"collide", cube, cube, "--most", "0"}, "cchip: --most: got '0'" + from_1);
+  check_error({"collide", cube, cube, "--contacts", "first", "--most", "2"},
+              "cchip: --most: each query stops at its first contact; add --contacts all, or leave --most out");
+  check_error({"reconfig", "--pairs", "0"}, "cchip: --pairs: got '0'" + from_1);
+  for (const std::string bits : {"1000000000000", "0", "-1", "127"}) {
+    check_error({"reconfig", "--bitstream-bits", bits},
+                "cchip: --bitstream-bits: got '" + bits + "'; write a whole number from 128 to 134217728");
+  }
+  for (const std::string option : {"--pose", "--pose-matrix", "--poses", "--ply", "--device"}) {
+    check_error({"collide", cube, cube, option, ""},
+                "cchip: " + option + ": the value is empty; write one, or leave the option out");
+  }
+  for (const std::string option : {"--trace", "--expect"}) {
+    check_error({"pairs", "-", option, ""},
+                "cchip: " + option + ": the value is empty; write one, or leave the option out", input);
+  }
+  check_error({"demo", "--ply", "x.ply", "--seed", "2"}, "cchip: --seed excludes --ply; see cchip --help");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"0,0,0", "0", "0", "90"}, {"0", "0", "0"}, {"1,", "2,", "3"}, {"1,0,0", "-2", "0"}}) {
+    std::vector<std::string> arguments = {"collide", cube, cube, "--pose"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    check_error(arguments, "cchip: " + words[1] +
+                               ": the pose is one word; write its numbers with commas and no spaces, like "
+                               "0.5,0,0,0,0,90");
+  }
+}
+
 TEST_CASE("errors: command line", "[system][errors]") {
   const std::string help = "; see cchip --help";
-  check_error({}, "cchip: A subcommand is required" + help);
+  check_error({}, "cchip: the command is missing; the commands are collide, pairs, meshpairs, demo, reconfig, version" + help);
   check_error({"pairs"}, "cchip: FILE is required" + help);
   check_error({"pairs", "f", "--engine", "abacus"}, "cchip: --engine: abacus not in {rtl,model,eigen,exact}" + help);
   check_error({"pairs", "f", "--format", "xml"}, "cchip: --format: xml not in {table,csv,jsonl}" + help);

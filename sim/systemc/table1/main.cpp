@@ -2,6 +2,7 @@
 // cchip_table1: Table 1 of the paper from a timed simulation.
 #include <CLI/CLI.hpp>
 #include <cchip/sim/output_file.hpp>
+#include <cchip/stimulus/command_line.hpp>
 #include <iostream>
 #include <optional>
 #include <systemc>
@@ -15,14 +16,19 @@ int sc_main(int argc, char** argv) {
       "cchip_table1");
   std::uint64_t data_bits = 8'388'608;
   std::string csv;
-  app.add_option("--data-bits", data_bits, "data of an object pair on the bus; the paper does not say")
-      ->capture_default_str();
-  app.add_option("--csv", csv, "file for the overhead curves");
+  constexpr cchip::WholeRange data_range = {0, std::uint64_t{1} << 40};
+  cchip::add_whole(app, "--data-bits", data_bits, "data of an object pair on the bus; the paper does not say",
+                   data_range)
+      ->default_str(std::to_string(data_bits));
+  cchip::add_text(app, "--csv", csv, "file for the overhead curves");
   app.footer("Exit codes: 0 done, 1 a file cannot be written or the simulation failed, 2 bad arguments");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
+  } catch (const cchip::UsageError& error) {
+    std::cerr << "cchip_table1: " << error.what() << '\n';
+    return 2;
   }
   try {
     std::optional<cchip::sim::OutputFile> file;
