@@ -77,10 +77,8 @@ PoseColumns::PoseColumns(const CsvRow& header, std::string file, const std::stri
   for (std::size_t i = 0; i < entry_.size(); ++i) {
     const auto column = find(header, pose_columns[i]);
     if (!column) {
-      throw row_error(file_, header.line,
-                      fmt::format("column {} is missing; the first row must name the columns r00,r01,r02 to r22 and "
-                                  "tx,ty,tz",
-                                  pose_columns[i]));
+      throw missing_column(file_, header, pose_columns[i],
+                           "the first row must name the columns r00,r01,r02 to r22 and tx,ty,tz");
     }
     entry_[i] = *column;
   }

@@ -16,6 +16,13 @@ constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 int nothing_is_space(unsigned char) { return 0; }
 
+const char* const binary_remedy = "this looks like a binary file or UTF-16: give a CSV file in UTF-8";
+
+bool is_binary(std::string_view text) {
+  return std::any_of(text.begin(), text.end(),
+                     [](char c) { return c >= 0 && c < ' ' && c != '\t' && !is_line_end(c); });
+}
+
 }  // namespace
 
 /// The libcsv parser and the record that it is filling.
@@ -82,8 +89,11 @@ void CsvReader::feed_line_piece() {
     between_rows_ = false;
   }
   row_bytes_ += size;
+  if (row_bytes_ > row_bytes_max && is_binary(buffer_))
+    fail(std::string("the row is longer than 1 MiB; ") + binary_remedy);
   if (row_bytes_ > row_bytes_max) fail("the row is longer than 1 MiB; look for a double quote that is not closed");
   if (csv_parse(&parser_->csv, &*begin, size, Parser::on_field, Parser::on_row, parser_.get()) != size) {
+    if (is_binary(buffer_)) fail(std::string("a double quote stands inside a field; ") + binary_remedy);
     fail("a double quote stands inside a field; put the field in double quotes and double those inside it");
   }
   if (parser_->complete) between_rows_ = true;
@@ -102,6 +112,17 @@ void CsvReader::feed_end() {
 }
 
 void CsvReader::fail(const std::string& message) const { throw row_error(name_, row_line_, message); }
+
+UsageError missing_column(const std::string& file, const CsvRow& header, const std::string& name,
+                          const std::string& remedy) {
+  std::string todo = remedy;
+  for (const std::string& field : header.fields) {
+    if (field.find(';') != std::string::npos) todo = "the columns seem to be separated by semicolons: write commas";
+    if (field.find('\t') != std::string::npos) todo = "the columns seem to be separated by tabs: write commas";
+  }
+  if (std::any_of(header.fields.begin(), header.fields.end(), is_binary)) todo = binary_remedy;
+  return row_error(file, header.line, "column " + name + " is missing; " + todo);
+}
 
 void append_csv_field(std::string& out, std::string_view field) {
   if (field.find_first_of(",\"\r\n") == std::string_view::npos) {

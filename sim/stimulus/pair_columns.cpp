@@ -34,6 +34,9 @@ double parse_coordinate(std::string_view text) {
   const std::string_view digits = trimmed(text);
   if (digits.empty()) throw std::invalid_argument("the field is empty; write a finite decimal number");
   const std::optional<double> value = read_decimal(digits);
+  if (!value && has_decimal_comma(digits)) {
+    throw std::invalid_argument(quoted(text) + " has a decimal comma; write a decimal point");
+  }
   if (!value) throw std::invalid_argument(quoted(text) + " is not a number; write a finite decimal number");
   if (std::isfinite(*value)) return *value;
   if (digits.find_first_of("0123456789") != std::string_view::npos) {
@@ -70,10 +73,8 @@ PairColumns::PrimitiveColumns PairColumns::find_primitive(const CsvRow& header, 
       auto& column = columns.coordinate.at(static_cast<std::size_t>(vertex)).at(static_cast<std::size_t>(component));
       column = find(header, name);
       if (!column && vertex < 3) {
-        throw row_error(file_, header.line,
-                        fmt::format("column {} is missing; the first row must name the columns a0x,a0y,a0z to a2z and "
-                                    "b0x,b0y,b0z to b2z",
-                                    name));
+        throw missing_column(file_, header, name,
+                             "the first row must name the columns a0x,a0y,a0z to a2z and b0x,b0y,b0z to b2z");
       }
     }
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mesh files, some of them from third parties (Debian package assimp-testmodels).
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include <limits>
 #include <locale>
 #include <sstream>
+#include <thread>
 
 using cchip::load_mesh;
 using cchip::Mesh;
@@ -378,31 +380,34 @@ TEST_CASE("mesh file: a count that the file cannot hold is refused at once", "[r
 
 TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[ref][mesh_file]") {
   const TemporaryFolder folder;
-  const auto check = [](const std::string& path, const std::string& place_and_cause) {
+  const auto check = [](const std::string& path, const std::string& place_and_cause, const char* remedy = "; ") {
     const std::string message = message_of(path);
     INFO(message);
-    CHECK(message.rfind(path + place_and_cause + "; ", 0) == 0);
+    CHECK(message.rfind(path + place_and_cause + remedy, 0) == 0);
     CHECK(message.find('\n') == std::string::npos);
   };
   const std::string gone = ": no such file";
   check(folder.file("absent.obj"), gone);
-  check(folder.file(""), gone);
+  check(folder.file(""), ": is a folder");
+  check("/dev/null", ": is a device, not a file or a pipe");
   check(folder.write("empty.obj", ""), ": the file is empty or cannot be read");
   check(folder.write("notes.txt", "hello\n"), ": cannot be read as a mesh");
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const auto obj = [&](const std::string& text) { return folder.write("t.obj", text); };
   check(obj("v 0 0 0\nv 1 0 0\nl 1 2\np 1\n"), ": the file holds no faces");
-  check(obj(three + "f 1 2 4\n"), ":4: face 0 names vertex 3, which is not there");
-  check(obj(three + "f 1 2 3\nf 1 2 0\n"), ":5: face 1 names a vertex that cannot be");
-  check(obj(three + "f 1 2 -4\n"), ":4: face 0 names a vertex that cannot be");
-  check(obj(three + "f 1 2 1.5\n"), ":4: face 0 names a vertex that cannot be");
+  check(obj(three + "f 1 2 4\n"), ":4: face 0: vertex index 4 is out of range (the mesh has 3 vertices)");
+  check(obj(three + "f 1 2 3\nf 1 2 0\n"),
+        ":5: face 1: vertex index 0 is out of range (the mesh has 3 vertices so far)");
+  check(obj(three + "f 1 2 -4\n"), ":4: face 0: vertex index -4 is out of range (the mesh has 3 vertices so far)");
+  check(obj(three + "f 1 2 1e30\n"), ":4: face 0: vertex index 1e+30 is out of range (the mesh has 3 vertices so far)");
+  check(obj(three + "f 1 2 1.5\n"), ":4: face 0: vertex index 1.5 is not a whole number");
   check(obj(three + "f 1 2 3x\n"), ":4: '3x' is not a number");
   check(obj(three + "f 1/1 2/2 3/x\n"), ":4: 'x' is not a number");
   check(obj(three + "\nf 1 2\n"), ":5: face 0 has fewer than three corners");
-  check(obj(three + "f 1 2 \\\n\\\n3 9\n"), ":4: face 0 names vertex 8, which is not there");
+  check(obj(three + "f 1 2 \\\n\\\n3 9\n"), ":4: face 0: vertex index 9 is out of range (the mesh has 3 vertices)");
   check(obj("v 0 0\n"), ":1: word 4 of the line is missing");
   check(obj("v 0 0 1junk\n"), ":1: '1junk' is not a number");
-  check(obj("v 0 0 1,5\n"), ":1: '1,5' is not a number");
+  check(obj("v 0 0 1,5\n"), ":1: '1,5' has a decimal comma; write a decimal point", "");
   check(obj("v 0 0 nan\n"), ":1: vertex 0 is not finite");
   check(obj("v 0 0 -inf\n"), ":1: vertex 0 is not finite");
   check(obj("v 0 0 1e400\n"), ":1: vertex 0 is not finite");
@@ -417,7 +422,8 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
   check(off("nOFF\n3\n3 1 0\n"), ":1: coordinates other than x, y, z are not read");
   check(off("OFF\n3 -1 0\n"), ":2: '-1' is not a count");
   check(off("OFF\n3\n"), ":2: the counts of vertices and faces are missing");
-  check(off("OFF\n3 1 0\n" + square + "3 0 1 3\n"), ":6: face 0 names vertex 3, which is not there");
+  check(off("OFF\n3 1 0\n" + square + "3 0 1 3\n"),
+        ":6: face 0: vertex index 3 is out of range (the mesh has 3 vertices)");
   check(off("OFF\n3 1 0\n" + square + "3 0 1\n"), ":6: word 4 of the line is missing");
   check(off("OFF\n3 1 0\n" + square + "2 0 1\n"), ":6: face 0 has fewer than three corners");
   check(off("OFF\n3 2 0\n" + square + "3 0 1 2\n"), ":6: the file ends before face 1 of 2");
@@ -427,8 +433,9 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
   const auto ply = [&](const std::string& text) { return folder.write("t.ply", text); };
   const std::string short_ply = "the file ends before the last value that the header announces";
   check(ply(ply_header("ascii", 3, 2) + square + "3 0 1 7\n3 0 1 2\n"),
-        ":13: face 0 names vertex 7, which is not there");
-  check(ply(ply_header("ascii", 3, 1) + square + "3 0 1 -1\n"), ":13: face 0 names a vertex that cannot be");
+        ":13: face 0: vertex index 7 is out of range (the mesh has 3 vertices)");
+  check(ply(ply_header("ascii", 3, 1) + square + "3 0 1 -1\n"),
+        ":13: face 0: vertex index -1 is out of range (the mesh has 3 vertices so far)");
   check(ply(ply_header("ascii", 3, 1) + square + "3 0 1\n"), ":13: " + short_ply);
   check(ply(ply_header("ascii", 3, 1) + square + "-3 0 1 2\n"), ":13: the count of a list is wrong");
   check(ply(ply_header("ascii", 3, 1) + square + "3 0 1 2\n3 0 1 2\n"),
@@ -453,6 +460,37 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
   check(stl("solid x\nfacet normal 0 0 1\n"), ":2: 'outer' is missing");
   check(stl("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendloop\n"), ":5: 'vertex' is missing");
   check(stl("solid x\nendsolid x\n"), ": the file holds no faces");
+  // formats under the names of others
+  const char* const no_obj = ":1: the line is no statement of OBJ, or one of free-form surfaces, which are not read";
+  check(obj(binary_stl(2, 2)), no_obj, "; this looks like binary STL: let the name end with .stl");
+  check(obj("solid x\nendsolid x\n"), no_obj, "; this looks like STL: let the name end with .stl");
+  check(obj("OFF\n3 1 0\n"), no_obj, "; this looks like OFF: let the name end with .off");
+  check(stl(ply_header("ascii", 3, 1)), ": the", " header announces ");
+  CHECK(message_of(folder.file("t.stl")).find("; this looks like PLY: let the name end with .ply") !=
+        std::string::npos);
+}
+
+TEST_CASE("mesh file: a pipe is read like a file", "[ref][mesh_file]") {
+  const TemporaryFolder folder;
+  const std::string pipe = folder.file("pipe.obj");
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  std::string text;  // more than a pipe holds, and than is read at once
+  for (int i = 0; i < 20000; ++i) text += "v " + std::to_string(i) + " 0 1\n";
+  text += "v 0 7 0\nf 1 2 -1\n";
+  std::thread writer([&] { std::ofstream(pipe) << text; });
+  const Mesh mesh = load_mesh(pipe);
+  writer.join();
+  CHECK(mesh.vertices.size() == 20001);
+  CHECK(mesh.primitive(0).v[2] == Vec3d(0, 7, 0));
+}
+
+TEST_CASE("mesh file: a file is held once while it is read", "[ref][mesh_file]") {
+  const TemporaryFolder folder;
+  // 40 MB of comment, which leave nothing in the mesh. The limit of 64 MB would not hold a second copy.
+  const std::string file =
+      folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" + std::string(std::size_t{40} << 20, '#') + "\n");
+  const MemoryLimit limit;
+  CHECK(load_mesh(file).faces.size() == 1);
 }
 
 TEST_CASE("mesh file: what the formats allow", "[ref][mesh_file]") {
@@ -691,7 +729,8 @@ TEST_CASE("mesh file: a written PLY holds the same faces and their colours", "[r
 }
 
 TEST_CASE("mesh file: numbers are read and written the same in every locale", "[ref][mesh_file]") {
-  const std::pair<const char*, double> words[] = {{"0.5", 0.5}, {"1.5e-400", 0}, {"-2.5e-330", -0.0}, {"1234.5", 1234.5}};
+  const std::pair<const char*, double> words[] = {
+      {"0.5", 0.5}, {"1.5e-400", 0}, {"-2.5e-330", -0.0}, {"1234.5", 1234.5}};
   const auto check = [&] {
     for (const auto& [word, value] : words) {
       INFO(word);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Wrong input and wrong command lines: one line with place and remedy, nothing on stdout, exit code 2.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 
@@ -51,6 +52,19 @@ TEST_CASE("errors: header", "[system][errors]") {
   const std::string no_b2z = folder.write("f.csv", header.substr(0, header.size() - 4) + "\n");
   check_error({"pairs", no_b2z}, "cchip: " + no_b2z + ":1: column b2z is missing" + remedy);
   check_error({"pairs", "-"}, "cchip: -:1: column a0x is missing" + remedy, tri_a + "," + b_through + "\n");
+  std::string semicolons = header;
+  std::replace(semicolons.begin(), semicolons.end(), ',', ';');
+  const std::string no_a0x = "cchip: -:1: column a0x is missing; ";
+  check_error({"pairs", "-"}, no_a0x + "the columns seem to be separated by semicolons: write commas",
+              semicolons + "\n");
+  std::replace(semicolons.begin(), semicolons.end(), ';', '\t');
+  check_error({"pairs", "-"}, no_a0x + "the columns seem to be separated by tabs: write commas", semicolons + "\n");
+  const std::string binary = "this looks like a binary file or UTF-16: give a CSV file in UTF-8";
+  check_error({"pairs", "-"}, no_a0x + binary, std::string("glTF\2\0\0\0\n", 9));
+  check_error({"pairs", "-"}, "cchip: -:1: a double quote stands inside a field; " + binary,
+              std::string("\x7f"
+                          "ELF\2\1\0x\"y\n",
+                          11));
   check_error({"pairs", "-"}, "cchip: -:1: column a1y is there twice; rename or remove one of them", header + ",a1y\n");
   check_error({"pairs", "-", "--expect", "touches"},
               "cchip: -:1: column 'touches' of --expect is missing; name a column of the file that holds 0 or 1",
@@ -66,6 +80,7 @@ TEST_CASE("errors: coordinates", "[system][errors]") {
       {"-Infinity", "'-Infinity' is not finite; write a finite decimal number"},
       {"left", "'left' is not a number; write a finite decimal number"},
       {"1.5m", "'1.5m' is not a number; write a finite decimal number"},
+      {"\"1,5\"", "'1,5' has a decimal comma; write a decimal point"},
       {"", "the field is empty; write a finite decimal number"},
       {"1e999", "'1e999' is too large for a double; scale the coordinates down"}};
   for (const auto& [text, message] : cases) {
@@ -181,7 +196,8 @@ TEST_CASE("errors: values without a meaning", "[system][errors]") {
 
 TEST_CASE("errors: command line", "[system][errors]") {
   const std::string help = "; see cchip --help";
-  check_error({}, "cchip: the command is missing; the commands are collide, pairs, meshpairs, demo, reconfig, version" + help);
+  check_error(
+      {}, "cchip: the command is missing; the commands are collide, pairs, meshpairs, demo, reconfig, version" + help);
   check_error({"pairs"}, "cchip: FILE is required" + help);
   check_error({"pairs", "f", "--engine", "abacus"}, "cchip: --engine: abacus not in {rtl,model,eigen,exact}" + help);
   check_error({"pairs", "f", "--format", "xml"}, "cchip: --format: xml not in {table,csv,jsonl}" + help);
@@ -201,10 +217,11 @@ TEST_CASE("errors: command line", "[system][errors]") {
     check_error({"pairs", "-", "--engine", engine, "--trace", "x.fst"},
                 "cchip: --trace: engine " + engine + " has no waveform; use --engine rtl", input);
   }
-  check_error({"pairs", "-", "--trace", "/no/such/folder/x.fst"},
-              "cchip: /no/such/folder/x.fst: cannot be written (No such file or directory); check folder, permissions and disk "
-              "space",
-              input);
+  check_error(
+      {"pairs", "-", "--trace", "/no/such/folder/x.fst"},
+      "cchip: /no/such/folder/x.fst: cannot be written (No such file or directory); check folder, permissions and disk "
+      "space",
+      input);
   const std::string cube = std::string(CCHIP_TEST_MODELS) + "/OFF/Cube.off";
   check_error({"meshpairs", cube, cube, "--pose", "1,2"},
               "cchip: --pose: got 2 numbers; write tx,ty,tz or tx,ty,tz,rx,ry,rz");

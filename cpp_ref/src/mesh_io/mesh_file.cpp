@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
+#include <system_error>
 
 #include "cut_polygon.hpp"
 #include "polygon_soup.hpp"
@@ -18,15 +18,50 @@ using mesh_io::FormatError;
 using mesh_io::PolygonSoup;
 using Reader = PolygonSoup (*)(std::string_view file);
 
+/// The content of a file or a pipe. Of a file no second copy is made.
 std::string read_file(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) throw std::runtime_error(path + ": no such file; check the path");
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw std::runtime_error(path + ": no such file; check the path");
+  if (std::filesystem::is_directory(status)) throw std::runtime_error(path + ": is a folder; name a file in it");
+  if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_fifo(status)) {
+    throw std::runtime_error(path + ": is a device, not a file or a pipe; name a mesh file");
+  }
+  constexpr std::size_t least_bytes = 65536;
+  const auto size = std::filesystem::is_fifo(status) ? 0 : std::filesystem::file_size(path, error);
+  std::string content(std::max<std::size_t>(error ? 0 : size + 1, least_bytes), '\0');  // one more, to meet the end
   std::ifstream in(path, std::ios::binary);
-  std::ostringstream content;
-  content << in.rdbuf();
-  if (!in || content.str().empty()) {
+  std::size_t used = 0;
+  while (in) {
+    if (used == content.size()) content.resize(2 * content.size());
+    in.read(&content[used], static_cast<std::streamsize>(content.size() - used));
+    used += static_cast<std::size_t>(in.gcount());
+  }
+  content.resize(used);
+  if (in.bad() || content.empty()) {
     throw std::runtime_error(path + ": the file is empty or cannot be read; check its content and permissions");
   }
-  return content.str();
+  return content;
+}
+
+struct Format {
+  std::string_view name;
+  std::string_view end;  ///< of a file's name
+  Reader reader;
+};
+constexpr Format stl = {"STL", ".stl", mesh_io::read_stl};
+constexpr Format binary_stl = {"binary STL", ".stl", mesh_io::read_stl};
+constexpr Format ply = {"PLY", ".ply", mesh_io::read_ply};
+constexpr Format off = {"OFF", ".off", mesh_io::read_off};
+
+/// The format that the beginning of a file shows, whatever its name says; nothing for OBJ and for what is not known.
+const Format* format_shown_by(std::string_view file) {
+  if (mesh_io::is_binary_stl(file)) return &binary_stl;
+  const std::string_view word = file.substr(0, file.find_first_of(" \t\r\n"));
+  if (word == "ply") return &ply;
+  if (word == "solid") return &stl;
+  if (word.size() >= 3 && word.substr(word.size() - 3) == "OFF") return &off;
+  return nullptr;
 }
 
 /// The reader for the extension of a name, or else the one whose first word begins the file, or else nothing.
@@ -37,11 +72,18 @@ Reader reader_of(const std::string& path, std::string_view file) {
   if (end == ".off") return mesh_io::read_off;
   if (end == ".ply") return mesh_io::read_ply;
   if (end == ".stl") return mesh_io::read_stl;
-  const std::string_view word = file.substr(0, file.find_first_of(" \t\r\n"));
-  if (word == "ply") return mesh_io::read_ply;
-  if (word == "solid") return mesh_io::read_stl;
-  if (word.size() >= 3 && word.substr(word.size() - 3) == "OFF") return mesh_io::read_off;
-  return nullptr;
+  const Format* shown = format_shown_by(file);
+  return shown == nullptr ? nullptr : shown->reader;
+}
+
+/// What to do about an error.
+std::string remedy(const FormatError& error, Reader reader, std::string_view file) {
+  const Format* shown = format_shown_by(file);
+  if (shown != nullptr && shown->reader != reader) {
+    return "; this looks like " + std::string(shown->name) + ": let the name end with " + std::string(shown->end);
+  }
+  return std::string_view(error.what()).find("; ") == std::string_view::npos ? "; repair the file or write it again"
+                                                                             : "";
 }
 
 /// Adds the polygons of a file to a mesh one by one.
@@ -70,8 +112,9 @@ class Builder {
  private:
   void add_polygon(std::size_t number) {
     for (const std::uint32_t corner : polygon_) {
-      if (corner >= soup_.points.size())
-        refuse(number, "names vertex " + std::to_string(corner) + ", which is not there");
+      if (corner < soup_.points.size()) continue;
+      refuse(number, ": vertex index " + std::to_string(corner + soup_.first_index()) +
+                         " is out of range (the mesh has " + std::to_string(soup_.points.size()) + " vertices)");
     }
     if (polygon_.size() == 3) return add_face(number, Kind::tri, {0, 1, 2, 0});
     const bool convex_quad = polygon_.size() == 4 && mesh_io::is_convex_quad({point(0), point(1), point(2), point(3)});
@@ -87,12 +130,12 @@ class Builder {
 
   void cut(std::size_t number) {
     if (polygon_.size() > mesh_io::most_corners) {
-      refuse(number, "has more than " + std::to_string(mesh_io::most_corners) + " corners");
+      refuse(number, " has more than " + std::to_string(mesh_io::most_corners) + " corners");
     }
     std::vector<Vec3d> points;
     for (std::size_t i = 0; i < polygon_.size(); ++i) points.push_back(point(i));
     const auto triangles = mesh_io::cut_polygon(points);
-    if (triangles.empty()) refuse(number, "crosses itself");
+    if (triangles.empty()) refuse(number, " crosses itself");
     for (const auto& t : triangles) add_face(number, Kind::tri, {t[0], t[1], t[2], 0});
   }
 
@@ -109,7 +152,7 @@ class Builder {
   }
 
   [[noreturn]] void refuse(std::size_t number, const std::string& what) const {
-    throw FormatError("face " + std::to_string(number) + " " + what, soup_.polygons[number].line);
+    throw FormatError("face " + std::to_string(number) + what, soup_.polygons[number].line);
   }
 
   PolygonSoup soup_;
@@ -133,8 +176,7 @@ Mesh parse_mesh(std::string_view file, const std::string& path, FaceKinds kinds)
     return mesh;
   } catch (const FormatError& error) {
     const std::string line = error.line == 0 ? "" : std::to_string(error.line) + ": ";
-    throw std::runtime_error(path + ":" + (line.empty() ? " " : line) + error.what() +
-                             "; repair the file or write it again");
+    throw std::runtime_error(path + ":" + (line.empty() ? " " : line) + error.what() + remedy(error, reader, file));
   }
 }
 

@@ -1,20 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "polygon_soup.hpp"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 
 namespace cchip::mesh_io {
+namespace {
+
+std::string to_text(double value) {
+  std::array<char, 32> text{};
+  return {text.begin(), std::to_chars(text.begin(), text.end(), value).ptr};
+}
+
+}  // namespace
 
 void PolygonSoup::add_point(const Vec3d& point, std::size_t line) {
   if (!point.allFinite()) throw FormatError("vertex " + std::to_string(points.size()) + " is not finite", line);
   points.push_back(point);
 }
 
-void PolygonSoup::add_corner(double number, std::size_t line) {
-  const bool fits = number >= 0 && number <= std::numeric_limits<std::uint32_t>::max() && number == std::floor(number);
-  if (!fits) throw FormatError("face " + std::to_string(polygons.size()) + " names a vertex that cannot be", line);
-  corners.push_back(static_cast<std::uint32_t>(number));
+void PolygonSoup::add_corner(double index, std::size_t line) {
+  const bool back = counting == Counting::from_1_or_back && index < 0;
+  const double number = index + (back ? static_cast<double>(points.size()) : -static_cast<double>(first_index()));
+  const bool whole = number == std::floor(number);
+  if (whole && number >= 0 && number <= std::numeric_limits<std::uint32_t>::max()) {
+    corners.push_back(static_cast<std::uint32_t>(number));
+    return;
+  }
+  const std::string what = "face " + std::to_string(polygons.size()) + ": vertex index " + to_text(index);
+  if (!whole) throw FormatError(what + " is not a whole number", line);
+  throw FormatError(what + " is out of range (the mesh has " + std::to_string(points.size()) + " vertices so far)",
+                    line);
 }
 
 void PolygonSoup::end_polygon(std::size_t line) {

@@ -23,6 +23,8 @@ class FormatError : public std::runtime_error {
 };
 
 struct PolygonSoup {
+  /// How the file counts vertices: from 0, or from 1 with negative numbers that count back from the last one so far.
+  enum class Counting { from_0, from_1_or_back } counting = Counting::from_0;
   std::vector<Vec3d> points;
   std::vector<std::uint32_t> corners;  ///< numbers of points, of all polygons one after the other
   struct Polygon {
@@ -33,8 +35,11 @@ struct PolygonSoup {
 
   /// \throws FormatError a coordinate is not finite
   void add_point(const Vec3d& point, std::size_t line);
-  /// \throws FormatError the number is below 0 or does not fit in 32 bits
-  void add_corner(double number, std::size_t line);
+  /// \param index as the file counts
+  /// \throws FormatError it is no whole number, or leads to a number below 0 or beyond 32 bits
+  void add_corner(double index, std::size_t line);
+  /// Index of the first vertex, as the file counts.
+  std::uint64_t first_index() const { return counting == Counting::from_0 ? 0 : 1; }
   /// Makes one polygon of the corners since the last polygon.
   /// \throws FormatError there are fewer than three
   void end_polygon(std::size_t line);
@@ -48,6 +53,9 @@ PolygonSoup read_obj(std::string_view file);
 PolygonSoup read_off(std::string_view file);
 PolygonSoup read_ply(std::string_view file);
 PolygonSoup read_stl(std::string_view file);
+
+/// True if the header of a binary STL would announce the size of this file.
+bool is_binary_stl(std::string_view file);
 
 }  // namespace cchip::mesh_io
 

@@ -22,8 +22,8 @@ void add_point(const Lines& lines, PolygonSoup& soup) {
   soup.add_point({lines.to_number(1), lines.to_number(2), lines.to_number(3)}, lines.number());
 }
 
-/// The vertex of "v", "v/vt", "v//vn" or "v/vt/vn", counted from 0. A negative number counts back from the last vertex.
-double vertex_of(std::string_view corner, const Lines& lines, std::size_t points) {
+/// The vertex index of "v", "v/vt", "v//vn" or "v/vt/vn".
+double vertex_of(std::string_view corner, const Lines& lines) {
   const auto end = std::min(corner.find('/'), corner.size());
   const double number = to_number(corner.substr(0, end), lines.number());
   for (std::size_t begin = end; begin < corner.size();) {
@@ -31,13 +31,14 @@ double vertex_of(std::string_view corner, const Lines& lines, std::size_t points
     if (next > begin + 1) to_number(corner.substr(begin + 1, next - begin - 1), lines.number());
     begin = next;
   }
-  return number < 0 ? static_cast<double>(points) + number : number - 1;
+  return number;
 }
 
 }  // namespace
 
 PolygonSoup read_obj(std::string_view file) {
   PolygonSoup soup;
+  soup.counting = PolygonSoup::Counting::from_1_or_back;
   Lines lines(file, {true, true});
   while (lines.next()) {
     const std::string_view statement = lines.words()[0];
@@ -45,7 +46,7 @@ PolygonSoup read_obj(std::string_view file) {
       add_point(lines, soup);
     } else if (statement == "f" || statement == "fo") {
       for (std::size_t i = 1; i < lines.words().size(); ++i) {
-        soup.add_corner(vertex_of(lines.words()[i], lines, soup.points.size()), lines.number());
+        soup.add_corner(vertex_of(lines.words()[i], lines), lines.number());
       }
       soup.end_polygon(lines.number());
     } else if (std::find(without_faces.begin(), without_faces.end(), statement) == without_faces.end()) {

@@ -104,10 +104,13 @@ PolygonSoup read_text(std::string_view file) {
 
 }  // namespace
 
+bool is_binary_stl(std::string_view file) {
+  return file.size() >= header_bytes && bytes_announced(file) == file.size();
+}
+
 PolygonSoup read_stl(std::string_view file) {
-  const bool exact_size = file.size() >= header_bytes && bytes_announced(file) == file.size();
   const auto first = std::min(file.find_first_not_of(" \t\r\n"), file.size());
-  return !exact_size && is_keyword(file.substr(first, 5), "solid") ? read_text(file) : read_binary(file);
+  return !is_binary_stl(file) && is_keyword(file.substr(first, 5), "solid") ? read_text(file) : read_binary(file);
 }
 
 }  // namespace cchip::mesh_io

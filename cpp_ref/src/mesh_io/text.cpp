@@ -68,6 +68,9 @@ std::string_view Words::next() {
 
 double to_number(std::string_view word, std::size_t line) {
   const std::optional<double> value = read_decimal(word);
+  if (!value && has_decimal_comma(word)) {
+    throw FormatError(quoted(word) + " has a decimal comma; write a decimal point", line);
+  }
   if (!value) throw FormatError(quoted(word) + " is not a number", line);
   return *value;
 }

@@ -4,6 +4,7 @@
 #ifndef CCHIP_STIMULUS_CSV_READER_HPP
 #define CCHIP_STIMULUS_CSV_READER_HPP
 
+#include <cchip/stimulus/usage_error.hpp>
 #include <cstdint>
 #include <istream>
 #include <memory>
@@ -55,6 +56,11 @@ class CsvReader {
   bool between_rows_ = true;
   bool after_carriage_return_ = false;
 };
+
+/// The error that a column is missing. What the header shows tells what to do: other separators, no text at all; or
+/// else it is `remedy`.
+UsageError missing_column(const std::string& file, const CsvRow& header, const std::string& name,
+                          const std::string& remedy);
 
 /// Appends `field` to `out`, quoted if RFC 4180 asks for it.
 void append_csv_field(std::string& out, std::string_view field);
