@@ -128,9 +128,10 @@ Summary answer_meshes(const MeshPairsOptions& options, const Streams& streams) {
   std::vector<sim::NamedPath> outputs = trace_files(options.engine);
   outputs.push_back({"--ply", options.ply});
   sim::check_outputs({{"A", options.file_a}, {"B", options.file_b}}, outputs);
+  check_standard_input({options.file_a, options.file_b});
   const Eigen::Isometry3d pose = pose_of(options);
-  const Mesh a = load_mesh_file(options.file_a, streams.err);
-  const Mesh b = transformed(load_mesh_file(options.file_b, streams.err), pose);
+  const Mesh a = load_mesh_file(options.file_a, streams);
+  const Mesh b = transformed(load_mesh_file(options.file_b, streams), pose);
   std::optional<HitPicture> picture;
   if (!options.ply.empty()) picture.emplace(options.ply);
   Progress progress(streams.err, streams.progress);
@@ -157,7 +158,7 @@ int run_meshpairs(const MeshPairsOptions& options, const Streams& streams) {
 
 template <class Value>
 CLI::Option* add_choice(CLI::App& command, const std::string& name, Value& value, const Choices<Value>& choices,
-                const std::string& description) {
+                        const std::string& description) {
   std::vector<std::string> words;
   for (const auto& choice : choices) words.push_back(choice.first);
   const auto choose = [&value, &choices](const std::string& word) {
@@ -178,8 +179,8 @@ void add_engine_options(CLI::App& command, EngineOptions& engine, Format& format
   add_choice(command, "--engine", engine.kind, engines, engine_words);
   add_choice(command, "--program", engine.mode, programs, "axis programme of the hardware (default exhaustive)");
   add_choice(command, "--format", format, formats, "output (default table)");
-  auto* trace =
-      add_text(command, "--trace", engine.trace_path, "write the waveform of the RTL (FST) and a .gtkw layout beside it");
+  auto* trace = add_text(command, "--trace", engine.trace_path,
+                         "write the waveform of the RTL (FST) and a .gtkw layout beside it");
   add_whole(command, "--trace-clocks", engine.trace_clocks, "clocks in the waveform (default 0: all)")->needs(trace);
   add_whole(command, "--seed", engine.seed, seed_words);
 }
@@ -208,10 +209,10 @@ void add_pairs(CLI::App& app, PairsOptions& options) {
 void add_meshpairs(CLI::App& app, MeshPairsOptions& options) {
   CLI::App* command = app.add_subcommand(
       "meshpairs", "Answer the candidate pairs of two meshes (OBJ, STL, PLY, OFF), B placed by a pose");
-  add_text(*command, "A", options.file_a, "mesh that stays")->required();
+  add_text(*command, "A", options.file_a, "mesh that stays; - reads standard input")->required();
   add_text(*command, "B", options.file_b, "mesh that is placed")->required();
   auto* pose = add_text(*command, "--pose", options.pose,
-                                   "tx,ty,tz[,rx,ry,rz]: rotate B by degrees about x, then y, then z, then move it");
+                        "tx,ty,tz[,rx,ry,rz]: rotate B by degrees about x, then y, then z, then move it");
   add_text(*command, "--pose-matrix", options.pose_matrix, "twelve numbers, the 3x4 matrix [R|t] row by row")
       ->excludes(pose);
   add_whole(*command, "--limit", options.limit, "answer the first N candidate pairs only (default 0: all)");
@@ -227,14 +228,14 @@ void add_meshpairs(CLI::App& app, MeshPairsOptions& options) {
 void add_collide(CLI::App& app, CollideOptions& options) {
   CLI::App* command = app.add_subcommand(
       "collide", "Do two meshes (OBJ, STL, PLY, OFF) touch, and where? B placed by one pose or by many");
-  add_text(*command, "A", options.file_a, "mesh that stays")->required();
+  add_text(*command, "A", options.file_a, "mesh that stays; - reads standard input")->required();
   add_text(*command, "B", options.file_b, "mesh that is placed")->required();
   auto* pose = add_text(*command, "--pose", options.pose,
-                                   "tx,ty,tz[,rx,ry,rz]: rotate B by degrees about x, then y, then z, then move it");
+                        "tx,ty,tz[,rx,ry,rz]: rotate B by degrees about x, then y, then z, then move it");
   auto* matrix = add_text(*command, "--pose-matrix", options.pose_matrix,
-                                     "twelve numbers, the 3x4 matrix [R|t] of any affine map row by row");
+                          "twelve numbers, the 3x4 matrix [R|t] of any affine map row by row");
   auto* poses = add_text(*command, "--poses", options.poses_file,
-                                    "CSV file with columns r00..r22, tx, ty, tz: a query for each row");
+                         "CSV file with columns r00..r22, tx, ty, tz: a query for each row; - reads standard input");
   pose->excludes(matrix)->excludes(poses);
   matrix->excludes(poses);
   add_choice(*command, "--contacts", options.all_contacts, contact_choices,

@@ -14,7 +14,6 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -62,7 +61,7 @@ int report(const Totals& totals, Format format, const Streams& streams) {
 }
 
 Object load_object(const std::string& path, const Streams& streams) {
-  Mesh mesh = load_mesh_file(path, streams.err);
+  Mesh mesh = load_mesh_file(path, streams);
   try {
     return Object(std::move(mesh));
   } catch (const std::invalid_argument& error) {
@@ -172,11 +171,17 @@ class PosesRunner {
       : options_(options), device_(device), streams_(streams), request_(request_of(options)) {}
 
   Totals run() {
+    if (options_.poses_file == "-") return run(streams_.in);
     std::ifstream in(options_.poses_file, std::ios::binary);
     if (!in || std::filesystem::is_directory(options_.poses_file)) {
       throw UsageError(fmt::format("{}: the file cannot be read ({}); check its name and permissions",
                                    options_.poses_file, in ? "is a directory" : std::strerror(errno)));
     }
+    return run(in);
+  }
+
+ private:
+  Totals run(std::istream& in) {
     CsvReader reader(in, options_.poses_file);
     CsvRow row;
     if (!reader.next(row)) {
@@ -186,28 +191,26 @@ class PosesRunner {
     const PoseColumns columns(row, options_.poses_file, options_.expect);
     const Object a = load_object(options_.file_a, streams_);
     const Object b = load_object(options_.file_b, streams_);
-    // The first line of a table is the answer, so its rows are collected in a text first.
-    std::ostream& out = options_.format == Format::table ? table_ : streams_.out;
-    writer_ = make_row_writer(options_.format, out, names_behind(columns.passed_names(), names()));
+    writer_ = make_row_writer(options_.format, streams_.out, names_behind(columns.passed_names(), names()));
     Progress progress(streams_.err, streams_.progress, "poses");
     std::error_code no_size;  // of a pipe
     const auto size = std::filesystem::file_size(options_.poses_file, no_size);
     while (reader.next(row)) {
       add(row, columns);
       if (rows_.size() < batch) continue;
+      progress.clear();
       answer(a, b);
       progress.update(totals_.queries,
                       no_size ? -1.0 : static_cast<double>(reader.bytes_read()) / static_cast<double>(size));
     }
-    answer(a, b);
     progress.clear();
+    answer(a, b);
     if (options_.format == Format::table) {
-      streams_.out << fmt::format("touch in {} of {} poses\n", totals_.hits, totals_.queries) << table_.str();
+      streams_.out << fmt::format("touch in {} of {} poses\n", totals_.hits, totals_.queries);
     }
     return totals_;
   }
 
- private:
   bool table_of_differences() const { return options_.format == Format::table && !options_.expect.empty(); }
 
   std::vector<std::string> names() const {
@@ -264,7 +267,6 @@ class PosesRunner {
   Device& device_;
   const Streams& streams_;
   CollisionRequest request_;
-  std::ostringstream table_;
   std::unique_ptr<RowWriter> writer_;
   std::vector<PoseColumns::Row> rows_;
   std::vector<std::uint64_t> lines_;
@@ -275,7 +277,9 @@ class PosesRunner {
 }  // namespace
 
 int run_collide(const CollideOptions& options, const Streams& streams) {
-  sim::check_outputs({{"A", options.file_a}, {"B", options.file_b}}, {{"--ply", options.ply}});  // --ply excludes --poses
+  sim::check_outputs({{"A", options.file_a}, {"B", options.file_b}},
+                     {{"--ply", options.ply}});  // --ply excludes --poses
+  check_standard_input({options.file_a, options.file_b, options.poses_file});
   if (options.poses_file.empty() && !options.expect.empty()) {
     throw UsageError("--expect: there is no file of poses; name one with --poses");
   }

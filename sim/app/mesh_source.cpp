@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cchip/mesh_io/mesh_file.hpp>
 #include <cchip/stimulus/usage_error.hpp>
+#include <iterator>
 #include <stdexcept>
 
 namespace cchip::app {
@@ -27,18 +29,30 @@ void append(const Mesh& mesh, const std::set<std::size_t>& hits, const Colour& h
   }
 }
 
+Mesh read_standard_input(std::istream& in) {
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  if (text.empty()) throw UsageError("-: standard input is empty; send a mesh");
+  return parse_mesh(text, "-", FaceKinds::triangles_and_quads);
+}
+
 }  // namespace
 
-Mesh load_mesh_file(const std::string& path, std::ostream& notices) {
+Mesh load_mesh_file(const std::string& path, const Streams& streams) {
   try {
-    Mesh mesh = load_mesh(path, FaceKinds::triangles_and_quads);
+    Mesh mesh = path == "-" ? read_standard_input(streams.in) : load_mesh(path, FaceKinds::triangles_and_quads);
     if (mesh.polygons_cut > 0) {
-      notices << fmt::format("cchip: {}: {} faces with more than four corners or a dent were cut into triangles\n",
-                             path, mesh.polygons_cut);
+      streams.err << fmt::format("cchip: {}: {} faces with more than four corners or a dent were cut into triangles\n",
+                                 path, mesh.polygons_cut);
     }
     return mesh;
   } catch (const std::runtime_error& error) {
     throw UsageError(error.what());
+  }
+}
+
+void check_standard_input(const std::vector<std::string>& paths) {
+  if (std::count(paths.begin(), paths.end(), "-") > 1) {
+    throw UsageError("-: standard input can be read once only; name a file for all but one");
   }
 }
 

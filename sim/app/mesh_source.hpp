@@ -10,16 +10,20 @@
 #include <cchip/stimulus/pair_job.hpp>
 #include <cstdint>
 #include <functional>
-#include <ostream>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "cli.hpp"
+
 namespace cchip::app {
 
-/// Triangles and quads of a file; a line on `notices` if other faces had to be cut.
+/// Triangles and quads of a file, "-": of standard input; a line on `err` if other faces had to be cut.
 /// \throws UsageError the file is missing, broken or has no faces
-Mesh load_mesh_file(const std::string& path, std::ostream& notices);
+Mesh load_mesh_file(const std::string& path, const Streams& streams);
+
+/// \throws UsageError two of the paths are "-"
+void check_standard_input(const std::vector<std::string>& paths);
 
 /// Columns of the candidate pairs: the face numbers, counted from 0.
 const std::vector<std::string>& mesh_pair_names();

@@ -5,6 +5,7 @@
 #include <cchip/reference/brute_force.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <set>
+#include <streambuf>
 
 #include "pose.hpp"
 #include "support.hpp"
@@ -107,8 +108,8 @@ TEST_CASE("collide: poses of a file, expected answers", "[system][collide]") {
   const Outcome table = collide_cubes({"--poses", wrong, "--expect", "touches"});
   CHECK(table.code == exit_mismatch);
   REQUIRE(lines(table.out).size() == 4);
-  CHECK(lines(table.out)[0] == "touch in 2 of 4 poses");
-  CHECK(lines(table.out)[2].rfind("apart  1        1               5    1         0", 0) == 0);
+  CHECK(lines(table.out)[2] == "touch in 2 of 4 poses");
+  CHECK(lines(table.out)[1].rfind("apart  1        1               5    1         0", 0) == 0);
   CHECK(count(last_line(table.out), "mismatches") == 1);
   const Outcome csv = collide_cubes({"--poses", wrong, "--expect", "contacts", "--contacts", "all", "--format", "csv"});
   CHECK(csv.code == exit_mismatch);
@@ -123,8 +124,62 @@ TEST_CASE("collide: thousands of poses", "[system][collide]") {
   }
   const Outcome outcome = collide_cubes({"--poses", folder.write("poses.csv", text), "--expect", "touches"});
   CHECK(outcome.code == exit_ok);
-  CHECK(lines(outcome.out).front() == "touch in 9 of 3000 poses");
+  REQUIRE(lines(outcome.out).size() == 3);  // names, answer, summary
+  CHECK(lines(outcome.out)[1] == "touch in 9 of 3000 poses");
   CHECK(last_line(outcome.out).rfind("queries=3000 hits=9 mismatches=0 ", 0) == 0);
+}
+
+namespace {
+
+/// A header and endless rows of poses, until some of the answers have been written.
+class EndlessPoses : public std::streambuf {
+ public:
+  explicit EndlessPoses(std::ostringstream& out) : out_(out) {}
+  int rows = 0;
+
+ protected:
+  int_type underflow() override {
+    if (rows == 100000 || out_.tellp() > std::streamoff{0}) return traits_type::eof();
+    text_ = (rows++ == 0 ? poses_header : "1,0,0,0,1,0,0,0,1,0,0,7") + "\n";
+    setg(text_.data(), text_.data(), text_.data() + text_.size());
+    return traits_type::to_int_type(text_.front());
+  }
+
+ private:
+  std::ostringstream& out_;
+  std::string text_;
+};
+
+}  // namespace
+
+TEST_CASE("collide: poses are a stream, and - is standard input", "[system][collide]") {
+  for (const std::string format : {"table", "csv", "jsonl"}) {
+    CAPTURE(format);
+    std::ostringstream out;
+    std::ostringstream err;
+    EndlessPoses poses(out);
+    std::istream in(&poses);
+    CHECK(run_cli({"collide", cube_file, cube_file, "--poses", "-", "--format", format}, {in, out, err, false}) ==
+          exit_ok);
+    CHECK(poses.rows > 1000);
+    CHECK(poses.rows < 10000);
+  }
+  const Outcome wrong = run_cchip({"collide", cube_file, cube_file, "--poses", "-"}, poses_header + "\n1\n");
+  CHECK(wrong.err == "cchip: -:2: the row has 1 fields, but the header names 12 columns; write one field per column\n");
+}
+
+TEST_CASE("collide: a mesh from standard input", "[system][collide]") {
+  const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  for (const std::string command : {"collide", "meshpairs"}) {
+    const Outcome outcome = run_cchip({command, "-", cube_file, "--format", "csv"}, off);
+    CHECK(outcome.code == exit_ok);
+    CHECK(count(last_line(outcome.err), "hits") > 0);
+    CHECK(run_cchip({command, "-", cube_file}).err == "cchip: -: standard input is empty; send a mesh\n");
+    CHECK(run_cchip({command, "-", "-"}, off).err ==
+          "cchip: -: standard input can be read once only; name a file for all but one\n");
+    CHECK(run_cchip({command, "-", cube_file}, "v 0 0 0\n").err ==
+          "cchip: -: cannot be read as a mesh; give an OBJ, OFF, PLY or STL file\n");
+  }
 }
 
 TEST_CASE("collide: picture", "[system][collide]") {

@@ -96,9 +96,8 @@ TEST_CASE("meshpairs: the engines agree on the grid of real meshes", "[system][m
   const PairMode mode = GENERATE(PairMode::exhaustive, PairMode::directed);
   CAPTURE(c.a, c.b, c.pose);
   std::vector<GridPair> pairs;
-  std::ostringstream notices;
-  const Mesh mesh_a = load_mesh_file(model(c.a), notices);
-  const Mesh mesh_b = transformed(load_mesh_file(model(c.b), notices), parse_pose(c.pose));
+  const Mesh mesh_a = load_mesh(model(c.a), FaceKinds::triangles_and_quads);
+  const Mesh mesh_b = transformed(load_mesh(model(c.b), FaceKinds::triangles_and_quads), parse_pose(c.pose));
   for_each_candidate(mesh_a, mesh_b, 3000,
                      [&](const PairJob& job) { pairs.push_back(quantise(job.a, job.b, defs::coord_w_default).pair); });
   REQUIRE_FALSE(pairs.empty());
