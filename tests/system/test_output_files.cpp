@@ -113,6 +113,18 @@ TEST_CASE("output files: a good run replaces the older file", "[system][output]"
   }
 }
 
+TEST_CASE("output files: the waveform of a run that fails is kept", "[system][output]") {
+  const TemporaryFolder folder;
+  const std::string wave = folder.path("run.fst");
+  std::string text = header + "\n";
+  for (int i = 0; i < 4096; ++i) text += tri_a + "," + b_through + "\n";
+  const Outcome outcome = run_cchip({"pairs", "-", "--trace", wave, "--trace-clocks", "100"}, text + "1,2\n");
+  CHECK(outcome.code == exit_usage);
+  CHECK(std::filesystem::file_size(wave) > 1000);
+  CHECK(folder.read("run.gtkw").find("[dumpfile] \"" + wave + "\"") != std::string::npos);
+  CHECK(files_in(folder) == 2);
+}
+
 TEST_CASE("output files: devices and pipes are written directly", "[system][output]") {
   CHECK(run_cchip({"collide", cube, cube, "--ply", "/dev/null"}).code == exit_ok);
   CHECK(std::filesystem::is_character_file("/dev/null"));

@@ -9,9 +9,11 @@
 
 #include <cchip/sim/agent.hpp>
 #include <cchip/sim/errors.hpp>
+#include <cchip/sim/output_file.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <string>
 #include <system_error>
@@ -26,7 +28,8 @@ struct SimulationOptions {
   std::uint64_t seed = seed_from_environment();
   /// step() throws SimulationTimeout after this many clocks in all; 0: never.
   std::uint64_t timeout_clocks = 1000000;
-  /// FST file to write (its folder is created); no waveform if empty.
+  /// FST file to write (its folder is created); no waveform if empty. Until the simulation ends, also by an exception,
+  /// it is called <trace_path>.part.
   std::string trace_path;
   /// First traced clock, counted from construction, resets included.
   std::uint64_t trace_from = 0;
@@ -82,7 +85,7 @@ class Simulation {
   /// Afterwards clk = 0, rst = 1, all other inputs undefined (seeded): set them, then reset().
   explicit Simulation(SimulationOptions options = {}) : options_(std::move(options)) {
     context_->randReset(2);
-    context_->randSeed(static_cast<int>(options_.seed & 0x7fffffff) | 1);
+    context_->randSeed(power_up_seed(options_.seed));
     context_->assertOn(true);
     context_->fatalOnError(false);
     context_->traceEverOn(!options_.trace_path.empty());
@@ -94,7 +97,7 @@ class Simulation {
   ~Simulation() {
     Verilated::threadContextp(context_.get());
     model_->final();
-    if (trace_) trace_->close();
+    close_trace();
     if (options_.clocks_run) *options_.clocks_run = total_;
   }
   Simulation(const Simulation&) = delete;
@@ -187,10 +190,24 @@ class Simulation {
       trace_->set_time_unit("1ns");
       trace_->set_time_resolution("1ns");
       model_->trace(trace_.get(), 99);
-      trace_->open(options_.trace_path.c_str());
-      if (!trace_->isOpen()) {
-        throw SimulationError(options_.trace_path + ": the waveform cannot be written; check folder and permissions");
+      try {
+        trace_file_ = std::make_unique<PendingFile>(options_.trace_path);
+        trace_->open(trace_file_->part().c_str());
+        if (!trace_->isOpen()) trace_file_->refuse("no waveform");
+      } catch (const OutputError& error) {
+        throw SimulationError(error.what());
       }
+    }
+  }
+
+  /// The waveform gets its name, also if the run failed: that is the one to look at.
+  void close_trace() {
+    if (!trace_) return;
+    trace_->close();
+    try {
+      trace_file_->commit();
+    } catch (const OutputError& error) {
+      std::cerr << error.what() << std::endl;
     }
   }
 
@@ -225,6 +242,7 @@ class Simulation {
   SimulationOptions options_;
   std::unique_ptr<VerilatedContext> context_ = std::make_unique<VerilatedContext>();
   std::unique_ptr<Model> model_;
+  std::unique_ptr<PendingFile> trace_file_;
   std::unique_ptr<VerilatedFstC> trace_;
   std::vector<Agent*> agents_;
   std::uint64_t clock_ = 0;
