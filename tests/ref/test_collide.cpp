@@ -370,6 +370,32 @@ TEST_CASE("collide: input that makes no sense is refused in one line", "[ref][co
   for (const std::string& name : device_names()) CHECK(open_device(name)->name() == name);
 }
 
+TEST_CASE("collide: faces that no mesh can have are refused", "[ref][collide]") {
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.faces = {{Kind::tri, {0, 1, 2, 1000}}};  // the fourth of a triangle is unused
+  const Mesh good = mesh;
+  const auto check = [&good](const Mesh& bad, const std::string& message) {
+    CHECK_THROWS_MATCHES(Object(bad), std::invalid_argument, Catch::Message(message));
+    CHECK_THROWS_MATCHES(sweep_box_pairs(bad, good, [](CandidatePair) {}), std::invalid_argument,
+                         Catch::Message(message));
+    CHECK_THROWS_MATCHES(sweep_box_pairs(good, bad, [](CandidatePair) {}), std::invalid_argument,
+                         Catch::Message(message));
+  };
+  CHECK(Object(good).mesh().faces.size() == 1);
+  mesh.faces = {{Kind::tri, {1, 2, 3, 0}}};  // counted from 1, as in an OBJ file
+  check(mesh, "face 0: vertex index 3 is out of range (the mesh has 3 vertices)");
+  mesh.faces = {{Kind::tri, {0, 1, 2, 0}}, {Kind::quad, {0, 1, 2, 4000000000}}};
+  check(mesh, "face 1: vertex index 4000000000 is out of range (the mesh has 3 vertices)");
+  mesh.faces = {{static_cast<Kind>(7), {0, 1, 2, 0}}};
+  check(mesh, "face 0: its kind is 7, neither triangle (3) nor quad (4)");
+  mesh.faces = {{Kind::tri, {0, 1, 2, 0}}, {Kind::tri, {0, 2, 1, 0}}};
+  mesh.file_face = {0};
+  check(mesh, "face 1: file_face has 1 entries for 2 faces; give one for each face or none");
+  mesh.file_face = {0, 0, 0};
+  check(mesh, "face 2: file_face has 3 entries for 2 faces; give one for each face or none");
+}
+
 TEST_CASE("collide: copies of an object are one object", "[ref][collide]") {
   const Object a(one_face({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   const Object copy = a;

@@ -261,6 +261,7 @@ Tree build_tree(const Mesh& mesh, const TreeOptions& options) {
     throw std::invalid_argument("mesh " + mesh.name + " has " + std::to_string(mesh.faces.size()) +
                                 " faces: cut it into objects of at most " + std::to_string(most));
   }
+  check_faces(mesh);
   Tree tree = Builder(mesh, options).collapse();
   enclose_all(tree, mesh);
   return tree;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cchip/mesh/mesh.hpp>
+#include <stdexcept>
+#include <string>
 
 namespace cchip {
 namespace {
@@ -70,6 +72,28 @@ Primitive Mesh::primitive(std::size_t face) const {
   return p;
 }
 
+void check_faces(const Mesh& mesh) {
+  const auto refuse = [](std::size_t face, const std::string& what) {
+    throw std::invalid_argument("face " + std::to_string(face) + ": " + what);
+  };
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const Mesh::Face& face = mesh.faces[i];
+    if (face.kind != Kind::tri && face.kind != Kind::quad) {
+      refuse(i, "its kind is " + std::to_string(static_cast<int>(face.kind)) + ", neither triangle (3) nor quad (4)");
+    }
+    for (std::size_t k = 0; k < static_cast<std::size_t>(face.kind); ++k) {
+      if (face.vertex[k] < mesh.vertices.size()) continue;
+      refuse(i, "vertex index " + std::to_string(face.vertex[k]) + " is out of range (the mesh has " +
+                    std::to_string(mesh.vertices.size()) + " vertices)");
+    }
+  }
+  if (!mesh.file_face.empty() && mesh.file_face.size() != mesh.faces.size()) {
+    refuse(std::min(mesh.file_face.size(), mesh.faces.size()),
+           "file_face has " + std::to_string(mesh.file_face.size()) + " entries for " +
+               std::to_string(mesh.faces.size()) + " faces; give one for each face or none");
+  }
+}
+
 Mesh transformed(const Mesh& mesh, const Pose& pose) {
   Mesh result = mesh;
   for (Vec3d& p : result.vertices) p = pose * p;
@@ -77,6 +101,8 @@ Mesh transformed(const Mesh& mesh, const Pose& pose) {
 }
 
 void sweep_box_pairs(const Mesh& a, const Mesh& b, const std::function<void(CandidatePair)>& visit) {
+  check_faces(a);
+  check_faces(b);
   Sweep sweep_a(a);
   Sweep sweep_b(b);
   while (!sweep_a.done() || !sweep_b.done()) {

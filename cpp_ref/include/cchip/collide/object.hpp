@@ -16,8 +16,8 @@ namespace cchip {
 class Object {
  public:
   /// Takes O(faces log(faces)) time. Degenerate faces are allowed.
-  /// \throws std::invalid_argument no faces, more than 2^24 - 2 of them, or a vertex that is not finite or beyond
-  ///         2^1000
+  /// \throws std::invalid_argument no faces, more than 2^24 - 2 of them, one that check_faces() refuses, or a vertex that
+  ///         is not finite or beyond 2^1000
   explicit Object(Mesh mesh);
 
   const Mesh& mesh() const { return data_->mesh; }

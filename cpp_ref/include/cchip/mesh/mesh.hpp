@@ -31,6 +31,11 @@ struct Mesh {
   Primitive primitive(std::size_t face) const;
 };
 
+/// Checks that faces are what primitive() takes.
+/// \throws std::invalid_argument a face is neither triangle nor quad or has a vertex index beyond the vertices, or
+///         file_face is neither empty nor as long as `faces`; one line with the number of the face
+void check_faces(const Mesh& mesh);
+
 /// Mesh whose vertices are moved by the pose, rounded.
 Mesh transformed(const Mesh& mesh, const Pose& pose);
 
@@ -42,6 +47,7 @@ struct CandidatePair {
 
 /// Calls `visit` for every pair of faces whose closed axis-aligned boxes overlap: sort and sweep
 /// along x, each pair once. The order depends on the meshes only. Memory is linear in the number of faces.
+/// \throws std::invalid_argument check_faces() refuses one of them
 void sweep_box_pairs(const Mesh& a, const Mesh& b, const std::function<void(CandidatePair)>& visit);
 
 }  // namespace cchip
