@@ -396,6 +396,28 @@ TEST_CASE("collide: faces that no mesh can have are refused", "[ref][collide]") 
   check(mesh, "face 2: file_face has 3 entries for 2 faces; give one for each face or none");
 }
 
+TEST_CASE("collide: queries without an object or a pose are refused", "[ref][collide]") {
+  const auto device = each_device();
+  const Pose here = Pose::Identity();
+  const Object a(one_face({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  Object gone = Object(a.mesh());
+  const Object kept = std::move(gone);
+  const auto check = [&](const CollisionQuery& query, const std::string& message) {
+    CollisionResult result;
+    CHECK_THROWS_MATCHES(device->collide(query, {}, result), std::invalid_argument, Catch::Message(message));
+    CHECK_THROWS_MATCHES(collide(*device, std::vector<CollisionQuery>{{&a, &here, &a, &here}, query}),
+                         std::invalid_argument, Catch::Message(message));
+  };
+  check({nullptr, &here, &a, &here}, "query: A is a null pointer; point it to an Object");
+  check({&a, &here, nullptr, &here}, "query: B is a null pointer; point it to an Object");
+  check({&a, nullptr, &a, &here}, "query: A's pose is a null pointer; point it to a Pose");
+  check({&a, &here, &a, nullptr}, "query: B's pose is a null pointer; point it to a Pose");
+  check({&a, &here, &gone, &here},  // NOLINT(bugprone-use-after-move)
+        "query: B is an Object that was moved from; use the one that it was moved to");
+  check({&gone, &here, &a, &here}, "query: A is an Object that was moved from; use the one that it was moved to");
+  CHECK(collide(*device, a, here, kept, here).hit);
+}
+
 TEST_CASE("collide: copies of an object are one object", "[ref][collide]") {
   const Object a(one_face({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   const Object copy = a;

@@ -25,15 +25,22 @@ Object::Object(Mesh mesh) {
   data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(tree)});
 }
 
+void Device::collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) {
+  check_query(query, request);
+  answer(query, request, result);
+}
+
 void Device::collide(std::size_t count, const QuerySource& query, const CollisionRequest& request,
                      const ResultSink& take) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const CollisionQuery q = query(i);
-    check_query(*q.pose_a, *q.pose_b, request);
-  }
+  for (std::size_t i = 0; i < count; ++i) check_query(query(i), request);
+  answer_all(count, query, request, take);
+}
+
+void Device::answer_all(std::size_t count, const QuerySource& query, const CollisionRequest& request,
+                        const ResultSink& take) {
   CollisionResult result;
   for (std::size_t i = 0; i < count; ++i) {
-    collide(query(i), request, result);
+    answer(query(i), request, result);
     take(i, result);
   }
 }

@@ -18,6 +18,13 @@ void check_pose(const Pose& pose, const char* name) {
   }
 }
 
+void check_placed(const Object* object, const Pose* pose, const char* name) {
+  const auto refuse = [name](const char* what) { throw std::invalid_argument(std::string("query: ") + name + what); };
+  if (object == nullptr) refuse(" is a null pointer; point it to an Object");
+  if (object->id() == nullptr) refuse(" is an Object that was moved from; use the one that it was moved to");
+  if (pose == nullptr) refuse("'s pose is a null pointer; point it to a Pose");
+}
+
 std::uint32_t file_face(const Mesh& mesh, std::uint32_t face) {
   return mesh.file_face.empty() ? face : mesh.file_face[face];
 }
@@ -30,6 +37,12 @@ void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest&
   if (request.contacts == CollisionRequest::Contacts::all && request.most_contacts == 0) {
     throw std::invalid_argument("most_contacts is 0: ask for at least one contact");
   }
+}
+
+void check_query(const CollisionQuery& query, const CollisionRequest& request) {
+  check_placed(query.a, query.pose_a, "A");
+  check_placed(query.b, query.pose_b, "B");
+  check_query(*query.pose_a, *query.pose_b, request);
 }
 
 void FacePairs::start(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) {

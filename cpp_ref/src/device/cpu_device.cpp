@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <atomic>
-#include <cchip/collide/face_pairs.hpp>
 #include <cchip/device/cpu_device.hpp>
 #include <condition_variable>
 #include <exception>
@@ -178,17 +177,13 @@ class CpuDevice final : public Device {
 
   const char* name() const override { return "cpu"; }
 
-  void collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) override {
-    check_query(*query.pose_a, *query.pose_b, request);
+ private:
+  void answer(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) override {
     workers_.front()->search().run(query, request, result);
   }
 
-  void collide(std::size_t count, const QuerySource& query, const CollisionRequest& request,
-               const ResultSink& take) override {
-    for (std::size_t i = 0; i < count; ++i) {
-      const CollisionQuery q = query(i);
-      check_query(*q.pose_a, *q.pose_b, request);
-    }
+  void answer_all(std::size_t count, const QuerySource& query, const CollisionRequest& request,
+                  const ResultSink& take) override {
     Batch batch(count, query, request, take);
     const std::size_t threads = std::min(workers_.size(), count);
     for (std::size_t i = 1; i < threads; ++i) workers_[i]->begin(batch);
@@ -197,7 +192,6 @@ class CpuDevice final : public Device {
     batch.rethrow();
   }
 
- private:
   std::vector<std::unique_ptr<Worker>> workers_;  // the first one works in the caller's thread
 };
 

@@ -54,22 +54,20 @@ class ImageCache {
 
 class ModelDevice final : public Device {
  public:
-  using Device::collide;
-
   const char* name() const override { return "model"; }
 
-  void collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) override {
-    check_query(*query.pose_a, *query.pose_b, request);
-    const std::optional<model::BroadPhaseResult> answer = ask(query, request);
-    if (!answer) return cpu_->collide(query, request, result);
+ private:
+  void answer(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) override {
+    const std::optional<model::BroadPhaseResult> from_chip = ask(query, request);
+    if (!from_chip) return cpu_->collide(query, request, result);
     CollisionCounts counts;
-    counts.steps = answer->counts.steps;
-    counts.box_tests = answer->counts.box_tests;
-    counts.pairs = answer->counts.primitive_pairs;
-    const QueryCode code = answer->done.code;
+    counts.steps = from_chip->counts.steps;
+    counts.box_tests = from_chip->counts.box_tests;
+    counts.pairs = from_chip->counts.primitive_pairs;
+    const QueryCode code = from_chip->done.code;
     if (code == QueryCode::ok || code == QueryCode::host) {
       faces_.start(query, request, result);
-      counts.open = resolve(answer->pairs, faces_);
+      counts.open = resolve(from_chip->pairs, faces_);
       if (code == QueryCode::ok || faces_.done()) {
         faces_.finish();
         result.counts = counts;
@@ -80,7 +78,6 @@ class ModelDevice final : public Device {
     result.counts += counts;
   }
 
- private:
   /// What the chip says; nothing if it does not take the query.
   std::optional<model::BroadPhaseResult> ask(const CollisionQuery& placed, const CollisionRequest& request) {
     const bvh::Image* image_a = images_.of(*placed.a);

@@ -81,11 +81,15 @@ struct CollisionQuery {
 /// Answers queries. A device takes one call at a time; objects may be shared between devices.
 class Device {
  public:
+  Device() = default;
   virtual ~Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
   virtual const char* name() const = 0;
   /// Replaces what is in `result`, whose memory is used again.
-  /// \throws std::invalid_argument an entry of a pose is not finite or beyond 2^500 in magnitude
-  virtual void collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) = 0;
+  /// \throws std::invalid_argument check_query() refuses the query: a null pointer, an object that was moved from, an
+  ///         entry of a pose that is not finite or beyond 2^500 in magnitude
+  void collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result);
 
   using QuerySource = std::function<CollisionQuery(std::size_t)>;
   using ResultSink = std::function<void(std::size_t, const CollisionResult&)>;
@@ -93,8 +97,14 @@ class Device {
   /// by several threads at a time. `take` is called with the number of a query and its result, one call at a time, in
   /// any order. A device may use all cores.
   /// \throws std::invalid_argument as above, before any result
-  virtual void collide(std::size_t count, const QuerySource& query, const CollisionRequest& request,
-                       const ResultSink& take);
+  void collide(std::size_t count, const QuerySource& query, const CollisionRequest& request, const ResultSink& take);
+
+ private:
+  /// \pre check_query() accepts the query
+  virtual void answer(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) = 0;
+  /// \pre check_query() accepts all of them. Does one after the other unless it is overridden.
+  virtual void answer_all(std::size_t count, const QuerySource& query, const CollisionRequest& request,
+                          const ResultSink& take);
 };
 
 /// One query.

@@ -43,6 +43,8 @@ class FacePairs {
 /// \throws std::invalid_argument an entry of a pose is not finite or beyond 2^500 in magnitude, or the request wants
 ///         all contacts but at most 0 of them; one line
 void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest& request);
+/// \throws std::invalid_argument as above, or a pointer of the query is null, or an object was moved from; one line
+void check_query(const CollisionQuery& query, const CollisionRequest& request);
 
 }  // namespace cchip
 

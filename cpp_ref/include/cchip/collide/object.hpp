@@ -10,13 +10,14 @@
 
 namespace cchip {
 
-/// A mesh with its tree, built once and shared by all copies of the object. Immutable, so it may be used by any number
-/// of threads at a time. It is the surface of the mesh, not the volume inside: an object wholly inside another does not
-/// touch it.
+/// A mesh with its tree, built once and shared by all copies of the object. One that was moved from has no mesh:
+/// devices refuse it, and id() is null. Immutable, so it may be used by any number of threads at a time. It is the
+/// surface of the mesh, not the volume inside: an object wholly inside another does not touch it.
 class Object {
  public:
   /// Takes O(faces log(faces)) time. Degenerate faces are allowed.
-  /// \throws std::invalid_argument no faces, more than 2^24 - 2 of them, one that check_faces() refuses, or a vertex that
+  /// \throws std::invalid_argument no faces, more than 2^24 - 2 of them, one that check_faces() refuses, or a vertex
+  /// that
   ///         is not finite or beyond 2^1000
   explicit Object(Mesh mesh);
 
