@@ -418,6 +418,65 @@ TEST_CASE("collide: queries without an object or a pose are refused", "[ref][col
   CHECK(collide(*device, a, here, kept, here).hit);
 }
 
+TEST_CASE("collide: a device that is in use says so, and works again after any exception", "[ref][collide]") {
+  const Object a(make_torus(2, 0.7, 24, 12));
+  const Pose here = Pose::Identity();
+  const std::vector<PosePair> poses(40);
+  const auto device = each_device();
+  const std::string message = std::string("device ") + device->name() +
+                              " is in use: open one device per thread, and do not call it from its result function";
+  const auto works = [&] {
+    CHECK(collide(*device, a, here, a, here).hit);
+    CHECK(collide(*device, a, a, poses).size() == poses.size());
+  };
+  SECTION("from its result function") {
+    int refused = 0;
+    collide(*device, a, a, poses, {}, [&](std::size_t, const CollisionResult&) {
+      CHECK_THROWS_MATCHES(collide(*device, a, here, a, here), std::logic_error, Catch::Message(message));
+      CHECK_THROWS_MATCHES(collide(*device, a, a, poses), std::logic_error, Catch::Message(message));
+      ++refused;
+    });
+    CHECK(refused == 40);
+    works();
+  }
+  SECTION("from its result function, which passes the exception on") {
+    const auto nested = [&](std::size_t, const CollisionResult&) { collide(*device, a, here, a, here); };
+    for (int i = 0; i < 3; ++i) {
+      CHECK_THROWS_MATCHES(collide(*device, a, a, poses, {}, nested), std::logic_error, Catch::Message(message));
+    }
+    works();
+  }
+  SECTION("from the function that gives the queries") {
+    const auto nested = [&](std::size_t) {
+      collide(*device, a, here, a, here);
+      return CollisionQuery{&a, &here, &a, &here};
+    };
+    CHECK_THROWS_MATCHES(device->collide(2, nested, {}, [](std::size_t, const CollisionResult&) {}), std::logic_error,
+                         Catch::Message(message));
+    works();
+  }
+  SECTION("from another thread") {
+    collide(*device, a, a, {PosePair{}}, {}, [&](std::size_t, const CollisionResult&) {
+      std::string said;
+      std::thread([&] {
+        try {
+          collide(*device, a, here, a, here);
+        } catch (const std::logic_error& error) {
+          said = error.what();
+        }
+      }).join();
+      CHECK(said == message);
+    });
+    works();
+  }
+  SECTION("after a query that makes no sense") {
+    CollisionResult result;
+    CHECK_THROWS_AS(device->collide({}, {}, result), std::invalid_argument);
+    CHECK_THROWS_AS(collide(*device, std::vector<CollisionQuery>(3)), std::invalid_argument);
+    works();
+  }
+}
+
 TEST_CASE("collide: copies of an object are one object", "[ref][collide]") {
   const Object a(one_face({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   const Object copy = a;

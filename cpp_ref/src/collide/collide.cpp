@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cchip/collide/collide.hpp>
 #include <cchip/collide/face_pairs.hpp>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace cchip {
@@ -25,13 +27,31 @@ Object::Object(Mesh mesh) {
   data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(tree)});
 }
 
+/// Keeps other calls off a device.
+class Device::Use {
+ public:
+  explicit Use(Device& device) : device_(device) {
+    if (!device_.in_use_.exchange(true, std::memory_order_acquire)) return;
+    throw std::logic_error(std::string("device ") + device_.name() +
+                           " is in use: open one device per thread, and do not call it from its result function");
+  }
+  ~Use() { device_.in_use_.store(false, std::memory_order_release); }
+  Use(const Use&) = delete;
+  Use& operator=(const Use&) = delete;
+
+ private:
+  Device& device_;
+};
+
 void Device::collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) {
+  const Use use(*this);
   check_query(query, request);
   answer(query, request, result);
 }
 
 void Device::collide(std::size_t count, const QuerySource& query, const CollisionRequest& request,
                      const ResultSink& take) {
+  const Use use(*this);
   for (std::size_t i = 0; i < count; ++i) check_query(query(i), request);
   answer_all(count, query, request, take);
 }

@@ -8,6 +8,7 @@
 #ifndef CCHIP_COLLIDE_COLLIDE_HPP
 #define CCHIP_COLLIDE_COLLIDE_HPP
 
+#include <atomic>
 #include <cchip/collide/object.hpp>
 #include <cchip/geometry/pose.hpp>
 #include <cstdint>
@@ -78,7 +79,9 @@ struct CollisionQuery {
   const Pose* pose_b = nullptr;
 };
 
-/// Answers queries. A device takes one call at a time; objects may be shared between devices.
+/// Answers queries. A device takes one call at a time, from any thread, and none from the functions that a call was
+/// given: open a device for each thread, and another one for queries that depend on results. Objects may be shared
+/// between devices.
 class Device {
  public:
   Device() = default;
@@ -89,6 +92,7 @@ class Device {
   /// Replaces what is in `result`, whose memory is used again.
   /// \throws std::invalid_argument check_query() refuses the query: a null pointer, an object that was moved from, an
   ///         entry of a pose that is not finite or beyond 2^500 in magnitude
+  /// \throws std::logic_error the device is in use
   void collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result);
 
   using QuerySource = std::function<CollisionQuery(std::size_t)>;
@@ -96,15 +100,21 @@ class Device {
   /// Answers `count` queries, those that `query` gives for 0..count - 1. It may be asked for a query more than once and
   /// by several threads at a time. `take` is called with the number of a query and its result, one call at a time, in
   /// any order. A device may use all cores.
+  /// Exceptions of `query` and `take` end the batch and reach the caller, who may use the device again.
   /// \throws std::invalid_argument as above, before any result
+  /// \throws std::logic_error as above
   void collide(std::size_t count, const QuerySource& query, const CollisionRequest& request, const ResultSink& take);
 
  private:
+  class Use;
+
   /// \pre check_query() accepts the query
   virtual void answer(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) = 0;
   /// \pre check_query() accepts all of them. Does one after the other unless it is overridden.
   virtual void answer_all(std::size_t count, const QuerySource& query, const CollisionRequest& request,
                           const ResultSink& take);
+
+  std::atomic<bool> in_use_ = false;
 };
 
 /// One query.
