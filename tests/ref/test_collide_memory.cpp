@@ -8,6 +8,7 @@
 #include <cchip/sim/seed.hpp>
 #include <cstdlib>
 #include <new>
+#include <thread>
 
 #include "random_poses.hpp"
 
@@ -19,8 +20,19 @@ namespace {
 
 std::atomic<std::size_t> allocations = 0;
 
+/// Whose requests for 1000 bytes and more are refused.
+enum class Refused { nobody, caller, helpers };
+std::atomic<Refused> refused = Refused::nobody;
+std::atomic<std::size_t> refusals = 0;
+const std::thread::id caller = std::this_thread::get_id();
+
 void* counted(std::size_t size, std::size_t alignment) {
   ++allocations;
+  if (refused != Refused::nobody && size >= 1000 &&
+      (refused == Refused::caller) == (std::this_thread::get_id() == caller)) {
+    ++refusals;
+    throw std::bad_alloc();
+  }
   const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
   if (void* memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded)) return memory;
   throw std::bad_alloc();
@@ -118,5 +130,37 @@ TEST_CASE("memory: a batch allocates nothing for its queries", "[ref][collide]")
         CHECK(fewest <= few);
       }
     }
+  }
+}
+
+TEST_CASE("memory: a batch for which there is none in one of its threads ends with bad_alloc", "[ref][collide]") {
+  const Queries queries;
+  constexpr std::size_t count = 20000;
+  for (const Refused who : {Refused::caller, Refused::helpers}) {
+    const auto device = open_cpu_device({2, {}});
+    std::atomic<std::size_t> asked = 0;
+    std::size_t taken = 0;
+    const Device::QuerySource query = [&](std::size_t i) {
+      // The caller's thread waits until the other one has come, once all queries are checked.
+      const bool working = ++asked > count && std::this_thread::get_id() == caller;
+      while (working && refused == Refused::helpers && refusals == 0) std::this_thread::yield();
+      return queries.at(i % queries.poses.size());
+    };
+    const Device::ResultSink take = [&taken](std::size_t, const CollisionResult&) { ++taken; };
+    bool out_of_memory = false;
+    refusals = 0;
+    refused = who;
+    try {
+      device->collide(count, query, {}, take);
+    } catch (const std::bad_alloc&) {
+      out_of_memory = true;
+    }
+    refused = Refused::nobody;
+    CAPTURE(static_cast<int>(who));
+    CHECK(refusals > 0);
+    CHECK(out_of_memory);
+    taken = 0;
+    device->collide(count, query, {}, take);
+    CHECK(taken == count);
   }
 }

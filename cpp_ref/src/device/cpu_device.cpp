@@ -6,7 +6,6 @@
 #include <exception>
 #include <mutex>
 #include <stdexcept>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -30,8 +29,8 @@ class Batch {
 
   /// What one thread does.
   void work(Search& search, std::vector<std::pair<std::size_t, CollisionResult>>& kept) {
-    Feed feed(*this, kept);
     try {
+      Feed feed(*this, kept);
       search.run(feed, request_);
       feed.hand_over();
     } catch (...) {
@@ -118,11 +117,11 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  /// Offers the batch; end() it. Does nothing if the system has no more threads.
+  /// Offers the batch; end() it. Does nothing if the system has no more threads or no memory for one.
   void begin(Batch& batch) {
     try {
       if (!thread_.joinable()) thread_ = std::thread([this] { loop(); });
-    } catch (const std::system_error&) {
+    } catch (const std::exception&) {
       return;
     }
     {
@@ -169,6 +168,25 @@ class Worker {
   std::thread thread_;
 };
 
+/// Workers that were offered a batch: it lasts until the destructor has waited for all of them.
+class Helpers {
+ public:
+  explicit Helpers(const std::vector<std::unique_ptr<Worker>>& workers) : workers_(workers) {}
+  ~Helpers() {
+    for (std::size_t i = 1; i < end_; ++i) workers_[i]->end();
+  }
+  Helpers(const Helpers&) = delete;
+  Helpers& operator=(const Helpers&) = delete;
+  /// Offers the batch to workers 1..end - 1.
+  void begin(Batch& batch, std::size_t end) {
+    for (; end_ < end; ++end_) workers_[end_]->begin(batch);
+  }
+
+ private:
+  const std::vector<std::unique_ptr<Worker>>& workers_;
+  std::size_t end_ = 1;
+};
+
 class CpuDevice final : public Device {
  public:
   CpuDevice(unsigned threads, const std::string& target) {
@@ -185,10 +203,11 @@ class CpuDevice final : public Device {
   void answer_all(std::size_t count, const QuerySource& query, const CollisionRequest& request,
                   const ResultSink& take) override {
     Batch batch(count, query, request, take);
-    const std::size_t threads = std::min(workers_.size(), count);
-    for (std::size_t i = 1; i < threads; ++i) workers_[i]->begin(batch);
-    workers_.front()->work(batch);
-    for (std::size_t i = 1; i < threads; ++i) workers_[i]->end();
+    {
+      Helpers helpers(workers_);
+      helpers.begin(batch, std::min(workers_.size(), count));
+      workers_.front()->work(batch);
+    }
     batch.rethrow();
   }
 
