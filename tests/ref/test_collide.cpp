@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Devices against brute force over exact integers.
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cchip/bvh/image.hpp>
@@ -475,6 +478,30 @@ TEST_CASE("collide: a device that is in use says so, and works again after any e
     CHECK_THROWS_AS(collide(*device, std::vector<CollisionQuery>(3)), std::invalid_argument);
     works();
   }
+}
+
+TEST_CASE("collide: a device works in a process made by fork, and can be closed there", "[ref][collide]") {
+  const Object a(make_torus(2, 0.7, 24, 12));
+  const std::vector<PosePair> poses(200);
+  auto device = open_cpu_device({3, {}});
+  REQUIRE(collide(*device, a, a, poses).size() == poses.size());  // its threads run now
+  std::cout << std::flush;
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    alarm(30);  // ends the child if it hangs
+    int hits = 0;
+    for (int i = 0; i < 3; ++i) {
+      for (const CollisionResult& result : collide(*device, a, a, poses)) hits += result.hit;
+    }
+    device.reset();
+    _exit(hits == 600 ? 0 : 1);
+  }
+  int status = -1;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 0);
+  CHECK(collide(*device, a, a, poses).size() == poses.size());
 }
 
 TEST_CASE("collide: copies of an object are one object", "[ref][collide]") {

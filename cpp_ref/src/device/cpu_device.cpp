@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cchip/device/cpu_device.hpp>
@@ -101,71 +103,92 @@ class Batch {
   std::exception_ptr error_;
 };
 
-/// A thread with its search. It waits for batches.
+/// A search and, once a batch was offered, a thread for it, which waits for batches.
 class Worker {
  public:
   explicit Worker(const std::string& target) : search_(make_search(target)) {}
   ~Worker() {
-    if (!thread_.joinable()) return;
+    leave_thread_of_parent();
+    if (!helper_) return;
     {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      end_ = true;
+      const std::lock_guard<std::mutex> lock(helper_->mutex);
+      helper_->end = true;
     }
-    changed_.notify_one();
-    thread_.join();
+    helper_->changed.notify_one();
+    helper_->thread.join();
   }
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
   /// Offers the batch; end() it. Does nothing if the system has no more threads or no memory for one.
   void begin(Batch& batch) {
+    leave_thread_of_parent();
     try {
-      if (!thread_.joinable()) thread_ = std::thread([this] { loop(); });
+      if (!helper_) start_thread();
     } catch (const std::exception&) {
       return;
     }
     {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      offered_ = &batch;
+      const std::lock_guard<std::mutex> lock(helper_->mutex);
+      helper_->offered = &batch;
     }
-    changed_.notify_one();
+    helper_->changed.notify_one();
   }
   /// Takes the offer back if the thread has not come to it yet, as on a busy computer; otherwise waits until it is
   /// done.
   void end() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    offered_ = nullptr;
-    changed_.wait(lock, [this] { return !working_; });
+    if (!helper_) return;
+    std::unique_lock<std::mutex> lock(helper_->mutex);
+    helper_->offered = nullptr;
+    helper_->changed.wait(lock, [this] { return !helper_->working; });
   }
   /// Works at the batch in the caller's thread.
   void work(Batch& batch) { batch.work(*search_, kept_); }
   Search& search() { return *search_; }
 
  private:
-  void loop() {
-    std::unique_lock<std::mutex> lock(mutex_);
+  /// The thread and what it shares with the one that offers batches.
+  struct Helper {
+    std::mutex mutex;
+    std::condition_variable changed;
+    Batch* offered = nullptr;
+    bool working = false;
+    bool end = false;
+    std::thread thread;
+  };
+
+  void start_thread() {
+    auto helper = std::make_unique<Helper>();
+    helper->thread = std::thread([this, &shared = *helper] { loop(shared); });
+    helper_ = std::move(helper);
+    process_ = getpid();
+  }
+  /// After fork() the child has what the thread shared, but not the thread: nobody can join it, and what it waits for
+  /// must not be destroyed. So the child leaves it where it is.
+  void leave_thread_of_parent() {
+    if (helper_ && process_ != getpid()) static_cast<void>(helper_.release());
+  }
+
+  void loop(Helper& shared) {
+    std::unique_lock<std::mutex> lock(shared.mutex);
     while (true) {
-      changed_.wait(lock, [this] { return offered_ != nullptr || end_; });
-      if (end_) return;
-      Batch& batch = *offered_;
-      offered_ = nullptr;
-      working_ = true;
+      shared.changed.wait(lock, [&shared] { return shared.offered != nullptr || shared.end; });
+      if (shared.end) return;
+      Batch& batch = *shared.offered;
+      shared.offered = nullptr;
+      shared.working = true;
       lock.unlock();
       work(batch);
       lock.lock();
-      working_ = false;
-      changed_.notify_one();
+      shared.working = false;
+      shared.changed.notify_one();
     }
   }
 
   std::unique_ptr<Search> search_;
   std::vector<std::pair<std::size_t, CollisionResult>> kept_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  Batch* offered_ = nullptr;
-  bool working_ = false;
-  bool end_ = false;
-  std::thread thread_;
+  std::unique_ptr<Helper> helper_;
+  pid_t process_ = 0;  // that started the thread
 };
 
 /// Workers that were offered a batch: it lasts until the destructor has waited for all of them.
