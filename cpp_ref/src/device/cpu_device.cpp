@@ -25,9 +25,9 @@ std::unique_ptr<Search> make_search(const std::string& target) {
 /// A batch that several threads answer. Each takes some queries at a time and keeps results until it has as many.
 class Batch {
  public:
-  Batch(std::size_t count, const Device::QuerySource& query, const CollisionRequest& request,
+  Batch(std::size_t count, std::size_t threads, const Device::QuerySource& query, const CollisionRequest& request,
         const Device::ResultSink& take)
-      : count_(count), query_(query), request_(request), take_(take) {}
+      : count_(count), partition_(partition_of(count, threads)), query_(query), request_(request), take_(take) {}
 
   /// What one thread does.
   void work(Search& search, std::vector<std::pair<std::size_t, CollisionResult>>& kept) {
@@ -46,17 +46,16 @@ class Batch {
   }
 
  private:
-  static constexpr std::size_t share = 32;
-
   class Feed final : public QueryFeed {
    public:
     Feed(Batch& batch, std::vector<std::pair<std::size_t, CollisionResult>>& kept) : batch_(batch), kept_(kept) {
-      kept_.resize(share);
+      if (kept_.size() < share_) kept_.resize(share_);
     }
+    std::size_t at_once() const override { return batch_.partition_.at_once; }
     bool next(CollisionQuery& query, std::size_t& number) override {
       if (at_ == end_) {
-        at_ = std::min(batch_.next_.fetch_add(share), batch_.count_);
-        end_ = std::min(at_ + share, batch_.count_);
+        at_ = std::min(batch_.next_.fetch_add(share_), batch_.count_);
+        end_ = std::min(at_ + share_, batch_.count_);
         if (at_ == end_) return false;
       }
       number = at_++;
@@ -66,7 +65,7 @@ class Batch {
     void done(std::size_t number, CollisionResult& result) override {
       kept_[kept_count_].first = number;
       std::swap(kept_[kept_count_].second, result);
-      if (++kept_count_ == share) hand_over();
+      if (++kept_count_ == share_) hand_over();
     }
     void hand_over() {
       const std::lock_guard<std::mutex> lock(batch_.taking_);
@@ -82,6 +81,7 @@ class Batch {
 
    private:
     Batch& batch_;
+    const std::size_t share_ = batch_.partition_.share;
     std::vector<std::pair<std::size_t, CollisionResult>>& kept_;
     std::size_t kept_count_ = 0;
     std::size_t at_ = 0;
@@ -95,6 +95,7 @@ class Batch {
   }
 
   const std::size_t count_;
+  const Partition partition_;
   const Device::QuerySource& query_;
   const CollisionRequest& request_;
   const Device::ResultSink& take_;
@@ -225,10 +226,12 @@ class CpuDevice final : public Device {
 
   void answer_all(std::size_t count, const QuerySource& query, const CollisionRequest& request,
                   const ResultSink& take) override {
-    Batch batch(count, query, request, take);
+    if (count == 0) return;
+    const std::size_t threads = std::min(workers_.size(), count);
+    Batch batch(count, threads, query, request, take);
     {
       Helpers helpers(workers_);
-      helpers.begin(batch, std::min(workers_.size(), count));
+      helpers.begin(batch, threads);
       workers_.front()->work(batch);
     }
     batch.rethrow();

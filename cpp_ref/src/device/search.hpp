@@ -4,18 +4,34 @@
 #ifndef CCHIP_DEVICE_SEARCH_HPP
 #define CCHIP_DEVICE_SEARCH_HPP
 
+#include <algorithm>
 #include <cchip/collide/collide.hpp>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace cchip {
 
+/// How the threads of a batch divide it.
+struct Partition {
+  std::size_t share;  ///< queries that a thread takes from the batch at a time
+  std::size_t
+      at_once;  ///< queries of a thread that are begun and not answered: full shares, within its part of the batch
+};
+/// \pre 0 < threads <= count
+inline Partition partition_of(std::size_t count, std::size_t threads) {
+  const std::size_t share = std::clamp<std::size_t>(count / (4 * threads), 1, 32);
+  return {share, count / threads / share * share};
+}
+
 /// Gives a search its queries and takes the results.
 class QueryFeed {
  public:
   virtual ~QueryFeed() = default;
+  /// Queries that the search may have begun at a time; it may do with fewer.
+  virtual std::size_t at_once() const { return std::numeric_limits<std::size_t>::max(); }
   /// The next query and its number; false: no more.
   virtual bool next(CollisionQuery& query, std::size_t& number) = 0;
   /// The result may be changed, for instance swapped with another one whose memory the search shall use.

@@ -1124,7 +1124,7 @@ class SimdSearch final : public Search {
       feed.done(tasks_[i].number, tasks_[i].own_result);
       begin(i, round);
     };
-    for (std::size_t i = 0; i < together; ++i) begin(i, 0);
+    for (std::size_t i = 0; i < std::min(together, feed.at_once()); ++i) begin(i, 0);
     for (std::size_t round = 0; inner_count[round] + leaf_count[round] > 0; round ^= 1U) {
       const std::size_t next = round ^ 1U;
       inner_count[next] = leaf_count[next] = 0;

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// How the threads of the CPU device divide a batch.
+#include <catch2/catch.hpp>
+#include <cchip/device/cpu_device.hpp>
+#include <cchip/mesh/shapes.hpp>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "device/search.hpp"
+
+using namespace cchip;
+
+TEST_CASE("CPU device: a batch has a part for every thread", "[ref][collide]") {
+  for (const std::size_t threads : {1U, 2U, 3U, 4U, 16U, 64U}) {
+    for (std::size_t count = threads; count < 300 * threads; ++count) {
+      const Partition p = partition_of(count, threads);
+      // The others' shares are left when all threads but one hold as many queries as they may.
+      const std::size_t held = p.at_once * (threads - 1);
+      if (held >= count || p.share < 1 || p.share > 32 || p.at_once < p.share || p.at_once % p.share != 0) {
+        CAPTURE(threads, count, p.share, p.at_once);
+        FAIL("a thread finds nothing to do");
+      }
+      if (count >= 128 * threads) CHECK(p.share == 32);
+    }
+  }
+  CHECK(partition_of(8, 4).share == 1);
+  CHECK(partition_of(64, 4).share == 4);
+}
+
+TEST_CASE("CPU device: a search begins no more queries at once than it may", "[ref][collide]") {
+  class Feed final : public QueryFeed {
+   public:
+    Feed(const CollisionQuery& query, std::size_t most) : query_(query), most_(most) {}
+    std::size_t at_once() const override { return most_; }
+    bool next(CollisionQuery& query, std::size_t& number) override {
+      if (begun == 40) return false;
+      query = query_;
+      number = begun++;
+      greatest = std::max(greatest, begun - ended);
+      return true;
+    }
+    void done(std::size_t, CollisionResult& result) override {
+      ++ended;
+      hits += result.hit;
+    }
+    std::size_t begun = 0;
+    std::size_t ended = 0;
+    std::size_t greatest = 0;
+    std::size_t hits = 0;
+
+   private:
+    CollisionQuery query_;
+    std::size_t most_;
+  };
+  const Object torus(make_torus(1, 0.25, 24, 12));
+  const Pose here = Pose::Identity();
+  const Pose there = make_pose({0.3, 0.1, 0.05}, {20, 10, 0});
+  for (const std::string& target : simd_targets()) {
+    const auto search = make_simd_search(target);
+    for (const std::size_t most : {std::size_t{1}, std::size_t{3}, std::size_t{1000}}) {
+      Feed feed({&torus, &here, &torus, &there}, most);
+      search->run(feed, {});
+      CAPTURE(target, most);
+      CHECK(feed.ended == 40);
+      CHECK(feed.hits == 40);
+      CHECK(feed.greatest <= most);
+      CHECK(feed.greatest >= std::min<std::size_t>(most, 2));  // otherwise nothing was in step
+    }
+  }
+}
+
+TEST_CASE("CPU device: all threads answer a batch of few queries", "[ref][collide]") {
+  constexpr std::size_t threads = 4;
+  const Object torus(make_torus(1, 0.25, 24, 12));
+  const Pose here = Pose::Identity();
+  const Pose there = make_pose({0.3, 0.1, 0.05}, {20, 10, 0});
+  for (const CollisionRequest& request : {CollisionRequest{}, CollisionRequest{CollisionRequest::Contacts::all}}) {
+    for (const std::size_t count : {4U, 8U, 32U, 64U}) {
+      const auto device = open_cpu_device({threads, {}});
+      std::mutex mutex;
+      std::condition_variable changed;
+      std::size_t asked = 0;
+      std::set<std::thread::id> seen;
+      bool late = false;
+      // Once the queries are checked, a thread that has one waits until each of the others has one.
+      const auto query = [&](std::size_t) {
+        std::unique_lock<std::mutex> lock(mutex);
+        if (++asked > count) {
+          seen.insert(std::this_thread::get_id());
+          changed.notify_all();
+          late =
+              late || !changed.wait_for(lock, std::chrono::seconds(20), [&] { return late || seen.size() == threads; });
+          if (late) changed.notify_all();
+        }
+        return CollisionQuery{&torus, &here, &torus, &there};
+      };
+      device->collide(count, query, request, [](std::size_t, const CollisionResult&) {});
+      CAPTURE(count, static_cast<int>(request.contacts));
+      CHECK(seen.size() == threads);
+    }
+  }
+}
