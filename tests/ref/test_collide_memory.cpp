@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Once a device has seen its queries, answering them again takes no memory from the heap.
+#include <malloc.h>
+
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -19,6 +21,7 @@ using cchip_test::random_pose;
 namespace {
 
 std::atomic<std::size_t> allocations = 0;
+std::atomic<std::size_t> bytes = 0;  // in use
 
 /// Whose requests for 1000 bytes and more are refused.
 enum class Refused { nobody, caller, helpers };
@@ -34,8 +37,16 @@ void* counted(std::size_t size, std::size_t alignment) {
     throw std::bad_alloc();
   }
   const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
-  if (void* memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded)) return memory;
+  if (void* memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded)) {
+    bytes += malloc_usable_size(memory);
+    return memory;
+  }
   throw std::bad_alloc();
+}
+
+void give_back(void* memory) {
+  bytes -= malloc_usable_size(memory);
+  std::free(memory);
 }
 
 constexpr std::size_t plain = alignof(std::max_align_t);
@@ -47,10 +58,10 @@ void* operator new(std::size_t size) { return counted(size, plain); }
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return counted(size, static_cast<std::size_t>(alignment));
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory) noexcept { give_back(memory); }
+void operator delete(void* memory, std::size_t) noexcept { give_back(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { give_back(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { give_back(memory); }
 
 namespace {
 
@@ -163,4 +174,17 @@ TEST_CASE("memory: a batch for which there is none in one of its threads ends wi
     device->collide(count, query, {}, take);
     CHECK(taken == count);
   }
+}
+
+TEST_CASE("memory: a device does not keep that of large results", "[ref][collide]") {
+  const Object torus(make_torus(1, 0.25, 24, 10));
+  const Pose here = Pose::Identity();
+  const auto query = [&](std::size_t) { return CollisionQuery{&torus, &here, &torus, &here}; };
+  const auto device = open_cpu_device({2, {}});
+  std::size_t contacts = 0;
+  const std::size_t before = bytes;
+  device->collide(64, query, {CollisionRequest::Contacts::all},
+                  [&contacts](std::size_t, const CollisionResult& result) { contacts = result.contacts.size(); });
+  CHECK(contacts > 4096);
+  CHECK(bytes < before + (std::size_t{1} << 20U));
 }

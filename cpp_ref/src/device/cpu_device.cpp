@@ -46,6 +46,9 @@ class Batch {
   }
 
  private:
+  /// Contacts for which a result keeps its memory from query to query and from batch to batch.
+  static constexpr std::size_t most_kept = 4096;
+
   class Feed final : public QueryFeed {
    public:
     Feed(Batch& batch, std::vector<std::pair<std::size_t, CollisionResult>>& kept) : batch_(batch), kept_(kept) {
@@ -65,12 +68,17 @@ class Batch {
     void done(std::size_t number, CollisionResult& result) override {
       kept_[kept_count_].first = number;
       std::swap(kept_[kept_count_].second, result);
-      if (++kept_count_ == share_) hand_over();
+      const bool is_large = kept_[kept_count_].second.contacts.size() > most_kept;
+      if (++kept_count_ == share_ || is_large) hand_over();
     }
     void hand_over() {
       const std::lock_guard<std::mutex> lock(batch_.taking_);
       try {
-        for (std::size_t i = 0; i < kept_count_ && !batch_.error_; ++i) batch_.take_(kept_[i].first, kept_[i].second);
+        for (std::size_t i = 0; i < kept_count_ && !batch_.error_; ++i) {
+          std::vector<Contact>& contacts = kept_[i].second.contacts;
+          batch_.take_(kept_[i].first, kept_[i].second);
+          if (contacts.capacity() > most_kept) std::vector<Contact>().swap(contacts);
+        }
       } catch (...) {
         // Noted before the lock is released: another thread may wait for it to hand over its results.
         batch_.error_ = std::current_exception();
