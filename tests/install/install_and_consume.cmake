@@ -28,6 +28,11 @@ function(consume suffix expected)
 endfunction()
 
 consume("" "touch: 0, pairs of faces: 0\ntouch: 1, pairs of faces: 708\ntouch: 1, pairs of faces: 834\n")
+# Again for another instruction set than the library's: what both exchange does not depend on it.
+set(plain_flags "${FLAGS}")
+set(FLAGS "${FLAGS} -march=native")
+consume("" "touch: 0, pairs of faces: 0\ntouch: 1, pairs of faces: 708\ntouch: 1, pairs of faces: 834\n")
+set(FLAGS "${plain_flags}")
 consume(_reconfig "41\n42\n")
 
 run(${prefix}/bin/cchip --version)

@@ -17,7 +17,7 @@ Vector cross(const Vector& x, const Vector& y) {
   return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
 }
 
-Vector column(const Eigen::Affine3d& pose, Eigen::Index i) { return {pose(0, i), pose(1, i), pose(2, i)}; }
+Vector column(const Pose& pose, Eigen::Index i) { return {pose(0, i), pose(1, i), pose(2, i)}; }
 
 /// u -> linear u + offset
 struct Map {
@@ -35,8 +35,7 @@ struct Map {
 
 /// From the frame of image A to that of image B: B's own map undone behind A's. With poses P x + p, centres c and
 /// exponents e: 2^-eB (PB^-1 (PA (cA + 2^eA u) + pA - pB) - cB).
-std::optional<Map> map_between(const HeaderLine& a, const Eigen::Affine3d& pose_a, const HeaderLine& b,
-                               const Eigen::Affine3d& pose_b) {
+std::optional<Map> map_between(const HeaderLine& a, const Pose& pose_a, const HeaderLine& b, const Pose& pose_b) {
   // Rows of the inverse of PB are cross products of its columns over the determinant.
   const Vector x = column(pose_b, 0);
   const Vector y = column(pose_b, 1);
@@ -98,8 +97,7 @@ bool fits_box_test(const std::array<std::array<std::int32_t, 3>, 3>& m30) {
 }
 
 /// Query with a finer or equal unit in the role of A.
-std::optional<Query> make_ordered(const HeaderLine& a, const Eigen::Affine3d& pose_a, const HeaderLine& b,
-                                  const Eigen::Affine3d& pose_b) {
+std::optional<Query> make_ordered(const HeaderLine& a, const Pose& pose_a, const HeaderLine& b, const Pose& pose_b) {
   const std::optional<Map> map = map_between(a, pose_a, b, pose_b);
   if (!map) return std::nullopt;
   double greatest = 0;
@@ -149,8 +147,7 @@ std::optional<Query> make_ordered(const HeaderLine& a, const Eigen::Affine3d& po
 
 }  // namespace
 
-std::optional<Query> make_query(const HeaderLine& a, const Eigen::Affine3d& pose_a, const HeaderLine& b,
-                                const Eigen::Affine3d& pose_b) {
+std::optional<Query> make_query(const HeaderLine& a, const Pose& pose_a, const HeaderLine& b, const Pose& pose_b) {
   std::optional<Query> query = make_ordered(a, pose_a, b, pose_b);
   if (query) return query;
   query = make_ordered(b, pose_b, a, pose_a);

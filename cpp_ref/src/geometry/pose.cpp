@@ -25,8 +25,8 @@ Eigen::Matrix3d rotation(double degrees, int from, int to) {
 
 }  // namespace
 
-Eigen::Isometry3d make_pose(const Eigen::Vector3d& translation, const Eigen::Vector3d& degrees) {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+RigidPose make_pose(const Eigen::Vector3d& translation, const Eigen::Vector3d& degrees) {
+  RigidPose pose = RigidPose::Identity();
   pose.linear() = rotation(degrees.z(), 0, 1) * rotation(degrees.y(), 2, 0) * rotation(degrees.x(), 1, 2);
   pose.translation() = translation;
   return pose;

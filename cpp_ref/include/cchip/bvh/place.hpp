@@ -4,8 +4,8 @@
 #ifndef CCHIP_BVH_PLACE_HPP
 #define CCHIP_BVH_PLACE_HPP
 
-#include <Eigen/Geometry>
 #include <cchip/bvh/image_line.hpp>
+#include <cchip/geometry/pose.hpp>
 #include <cchip/wire/query.hpp>
 #include <optional>
 
@@ -17,8 +17,7 @@ namespace cchip::bvh {
 /// exact) and the rounding to the query's format; it is 0 if the query is exact.
 /// \returns nothing if the chip does not take this pair: units more than 2^15 apart, a map that is singular or so
 ///          ill-conditioned that the bound does not fit, or numbers that are not finite or overflow
-std::optional<Query> make_query(const HeaderLine& a, const Eigen::Affine3d& pose_a, const HeaderLine& b,
-                                const Eigen::Affine3d& pose_b);
+std::optional<Query> make_query(const HeaderLine& a, const Pose& pose_a, const HeaderLine& b, const Pose& pose_b);
 
 }  // namespace cchip::bvh
 
