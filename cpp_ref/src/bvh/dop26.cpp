@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cchip/bvh/dop26.hpp>
-#include <cchip/bvh/rounding.hpp>
+
+#include "rounding.hpp"
 
 namespace cchip::bvh {
 namespace {

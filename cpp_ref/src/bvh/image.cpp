@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cchip/bvh/image.hpp>
-#include <cchip/bvh/rounding.hpp>
 #include <cmath>
 #include <string>
+
+#include "rounding.hpp"
 
 namespace cchip::bvh {
 namespace {

@@ -2,8 +2,9 @@
 #include <algorithm>
 #include <cchip/bvh/dop26.hpp>
 #include <cchip/bvh/place.hpp>
-#include <cchip/bvh/rounding.hpp>
 #include <cmath>
+
+#include "rounding.hpp"
 
 namespace cchip::bvh {
 namespace {

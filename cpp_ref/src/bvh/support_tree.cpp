@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/bvh/rounding.hpp>
 #include <cchip/bvh/support_tree.hpp>
 #include <cmath>
 #include <memory>
@@ -8,6 +7,8 @@
 
 #if __has_include(<sys/mman.h>)
 #include <sys/mman.h>
+
+#include "rounding.hpp"
 #endif
 
 namespace cchip::bvh {

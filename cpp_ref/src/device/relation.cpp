@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "exact/ieee.hpp"
+
 namespace cchip {
 namespace {
 

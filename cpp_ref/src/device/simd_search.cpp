@@ -21,6 +21,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "exact/ieee.hpp"
 #include "relation.hpp"
 #include "search.hpp"
 

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "exact/ieee.hpp"
+
 namespace cchip::exact {
 
 /// Represents a real number x with |x - value| <= error. Error 0 means that x is a double, and stays 0 through every

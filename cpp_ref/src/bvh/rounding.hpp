@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "exact/ieee.hpp"
+
 namespace cchip::bvh {
 
 /// a + b - fl(a + b), exactly, unless the sum overflows (Knuth's TwoSum).

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+# cmake -D SOURCE= -D SCRATCH= -D GENERATOR= -D CXX= -P ofast_inherited.cmake
+# A project that is compiled with -Ofast hands that to the libraries below it. Their own flags take it back: otherwise the
+# files below would end in an #error.
+cmake_minimum_required(VERSION 3.25)
+file(REMOVE_RECURSE ${SCRATCH})
+file(WRITE ${SCRATCH}/project/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)
+project(surrounding LANGUAGES C CXX)
+set(CMAKE_CXX_FLAGS \"-Ofast -ffp-contract=fast\")
+set(CCHIP_SIMULATION OFF)
+set(CMAKE_POLICY_DEFAULT_CMP0077 NEW)
+add_subdirectory(${SOURCE} collisionchip)
+")
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${SCRATCH}/project -B ${SCRATCH}/build -G ${GENERATOR}
+  -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_EXPORT_COMPILE_COMMANDS=ON
+  COMMAND_ERROR_IS_FATAL ANY)
+file(READ ${SCRATCH}/build/compile_commands.json commands)
+string(JSON last LENGTH ${commands})
+math(EXPR last "${last} - 1")
+set(checked 0)
+foreach(i RANGE ${last})
+  string(JSON file GET ${commands} ${i} file)
+  string(JSON command GET ${commands} ${i} command)
+  if(NOT command MATCHES " -Ofast .* -fno-fast-math -ffp-contract=off ")
+    message(FATAL_ERROR "${file}: no flags that take -Ofast back: ${command}")
+  endif()
+  if(file MATCHES "/(bvh/dop26|device/relation|device/simd_search|exact/posed_pairs)\\.cpp$")
+    separate_arguments(command UNIX_COMMAND "${command}")
+    execute_process(COMMAND ${command} -fsyntax-only WORKING_DIRECTORY ${SCRATCH}/build COMMAND_ERROR_IS_FATAL ANY)
+    math(EXPR checked "${checked} + 1")
+  endif()
+endforeach()
+if(NOT checked EQUAL 4)
+  message(FATAL_ERROR "${checked} files compiled instead of 4")
+endif()
