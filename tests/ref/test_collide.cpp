@@ -2,6 +2,9 @@
 // Devices against brute force over exact integers.
 #include <sys/wait.h>
 #include <unistd.h>
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
 
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -503,6 +506,36 @@ TEST_CASE("collide: a device works in a process made by fork, and can be closed 
   CHECK(WEXITSTATUS(status) == 0);
   CHECK(collide(*device, a, a, poses).size() == poses.size());
 }
+
+#if defined(__SSE2__)
+TEST_CASE("collide: a thread that flushes small numbers to zero is refused", "[ref][collide]") {
+  const Mesh mesh = scaled(make_torus(2, 0.7, 6, 5), 1e-150);
+  const Object a(mesh);
+  const auto device = each_device();
+  for (const unsigned bit : {0x8000U, 0x0040U}) {  // flush to zero, denormals are zero
+    const unsigned before = _mm_getcsr();
+    const auto refused = [&](const auto& work) {
+      std::string said = "nothing";
+      _mm_setcsr(before | bit);
+      try {
+        work();
+      } catch (const std::runtime_error& error) {
+        said = error.what();
+      }
+      _mm_setcsr(before);
+      CHECK_THAT(said, Catch::StartsWith("this thread flushes small numbers to zero"));
+      CHECK_THAT(said, Catch::Contains("_mm_setcsr(_mm_getcsr() & ~0x8040U)"));
+    };
+    CAPTURE(bit);
+    refused([] { open_cpu_device({1, {}}); });
+    refused([] { open_device("model"); });
+    refused([&] { Object{mesh}; });
+    refused([&] { collide(*device, a, Pose::Identity(), a, Pose::Identity()); });
+    refused([&] { collide(*device, a, a, std::vector<PosePair>(3)); });
+    CHECK(collide(*device, a, Pose::Identity(), a, Pose::Identity()).hit);
+  }
+}
+#endif
 
 TEST_CASE("collide: copies of an object are one object", "[ref][collide]") {
   const Object a(one_face({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));

@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "float_mode.hpp"
+
 namespace cchip {
 namespace {
 
@@ -23,9 +25,12 @@ Device::QuerySource in_poses(const Object& a, const Object& b, const std::vector
 }  // namespace
 
 Object::Object(Mesh mesh) {
+  check_float_mode();
   bvh::SupportTree tree(mesh, bvh::build_tree(mesh));
   data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(tree)});
 }
+
+Device::Device() { check_float_mode(); }
 
 /// Keeps other calls off a device.
 class Device::Use {
@@ -45,6 +50,7 @@ class Device::Use {
 
 void Device::collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) {
   const Use use(*this);
+  check_float_mode();
   check_query(query, request);
   answer(query, request, result);
 }
@@ -52,6 +58,7 @@ void Device::collide(const CollisionQuery& query, const CollisionRequest& reques
 void Device::collide(std::size_t count, const QuerySource& query, const CollisionRequest& request,
                      const ResultSink& take) {
   const Use use(*this);
+  check_float_mode();
   for (std::size_t i = 0; i < count; ++i) check_query(query(i), request);
   answer_all(count, query, request, take);
 }

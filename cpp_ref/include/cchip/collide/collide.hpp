@@ -84,7 +84,8 @@ struct CollisionQuery {
 /// between devices.
 class Device {
  public:
-  Device() = default;
+  /// \throws std::runtime_error the calling thread flushes small numbers to zero; so do calls of collide()
+  Device();
   virtual ~Device() = default;
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;

@@ -19,6 +19,7 @@ class Object {
   /// \throws std::invalid_argument no faces, more than 2^24 - 2 of them, one that check_faces() refuses, or a vertex
   /// that
   ///         is not finite or beyond 2^1000
+  /// \throws std::runtime_error the calling thread flushes small numbers to zero
   explicit Object(Mesh mesh);
 
   const Mesh& mesh() const { return data_->mesh; }
