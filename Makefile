@@ -35,7 +35,7 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv build sim sim-reconfig sim-levels sim-traverse wave test test-long formal test-gates test-debug \
+.PHONY: help bootstrap venv build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-swaps picture table1 table1-plot bench-reconfig bench-collide export fpga \
   fpga-quick install clean
@@ -69,6 +69,10 @@ sim-traverse: $(RELEASE)/build.ninja ## run queries of five pairs of meshes thro
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_traverse
 	$(RELEASE)/bin/cchip_traverse --wave build/waves/sim-traverse.fst $(SIM_ARGS)
 
+sim-chip: $(RELEASE)/build.ninja ## run queries of two meshes through the whole chip in RTL, check every record, write build/waves/sim-chip.fst
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip_chip_run
+	$(RELEASE)/bin/cchip_chip_run --wave build/waves/sim-chip.fst $(SIM_ARGS)
+
 sim-levels: $(RELEASE)/build.ninja ## run 10^5 pairs through every SystemC refinement level with 51 swaps, compare all answers (docs/levels.md)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_levels
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_levels $(SIM_ARGS)
@@ -80,6 +84,13 @@ wave: ## open the waveform of the last `make sim`
 
 test: build ## run the regression
 	$(CTEST) --test-dir $(RELEASE) -LE '^long$$'
+
+# as in: make wave-of MODEL=Vcchip_fifo_d5 TEST=cchip_fifo
+wave-of: $(RELEASE)/build.ninja ## waveform of a failing unit test: build its MODEL with waveforms, run the tests that match TEST again
+	@test -n '$(MODEL)' -a -n '$(TEST)' || { echo "usage: make wave-of MODEL=V<name in the message of the failure> TEST=<regular expression>" >&2; exit 2; }
+	cmake -D CCHIP_WAVES='^$(MODEL)$$' $(RELEASE)
+	cmake --build $(RELEASE) -j $(JOBS) --target unit_tests
+	$(CTEST) --test-dir $(RELEASE) -R '$(TEST)'
 
 test-long: build ## run the regression and the long tests
 	$(CTEST) --test-dir $(RELEASE)

@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 # Libraries of Verilated modules, with the Verilator of CCHIP_VERILATOR.
-#   cchip_model_library(<library> [SYSTEMC] [BRIEF])  an empty one; BRIEF: for short runs, compiled with -O1 in half the
-#       time
-#   cchip_verilate(<library> <module> [SYSTEMC] [PREFIX <class>] [PARAMETERS NAME=VALUE ...] [SOURCES file ...])
+#   cchip_model_library(<library> [SYSTEMC] [BRIEF] [WAVES])  an empty one; BRIEF: for short runs, compiled with -O1 in
+#       half the time; WAVES: its models can write waveforms
+#   cchip_verilate(<library> <module> [SYSTEMC] [WAVES] [PREFIX <class>] [PARAMETERS NAME=VALUE ...] [SOURCES file ...])
 #       adds the module as C++ class <class> (default V<module>); without SOURCES Verilator finds it and what it uses by
 #       name in the folders of rtl/cchip.f and of the models for simulation only, and reads nothing else
+# Waveforms are half of the generated code, so only models whose waves are looked at have them: those with WAVES, and those
+# that the setting CCHIP_WAVES names (make wave-of).
 # SYSTEMC, for a library and all that is in it: classes are SystemC modules, without waveforms. Such a library and one of
 # the others cannot be in one program, their runtimes differ; its users need SystemC from pkg-config (sim/reconfig).
 # include() this file in every folder that calls them.
 include_guard(DIRECTORY)
+set(CCHIP_WAVES "" CACHE STRING "Regular expression of the more models that can write waveforms, '.' for all")
 set(CCHIP_RTL_DIR ${PROJECT_SOURCE_DIR}/rtl)
 set(CCHIP_RTL_LISTS ${CCHIP_RTL_DIR}/cchip.f ${PROJECT_SOURCE_DIR}/sim/rtl_models/sim.f)
 set(CCHIP_RTL_FILES)
@@ -48,7 +51,7 @@ if(NOT EXISTS ${CCHIP_VERILATOR_ROOT}/include/verilated.cpp)
 endif()
 
 # -fno-const-bit-op-tree: 5.006 miscompiles some XOR/AND trees otherwise (upstream issue 4832).
-set(CCHIP_VERILATOR_COMMAND ${CCHIP_VERILATOR} --cc --trace-fst -Wall -fno-const-bit-op-tree --assert
+set(CCHIP_VERILATOR_COMMAND ${CCHIP_VERILATOR} --cc -Wall -fno-const-bit-op-tree --assert
     --x-assign unique --x-initial unique -I${CCHIP_RTL_DIR}/include)
 set(CCHIP_VERILATOR_WAIVER ${CCHIP_RTL_DIR}/lint/verilator_waiver.vlt)
 
@@ -92,26 +95,35 @@ endif()
 function(cchip_model_library library)
   add_library(${library} STATIC)
   cchip_foreign_code(${library})
-  cmake_parse_arguments(ARG "SYSTEMC;BRIEF" "" "" ${ARGN})
+  cmake_parse_arguments(ARG "SYSTEMC;BRIEF;WAVES" "" "" ${ARGN})
   if(ARG_BRIEF)
     target_compile_options(${library} PRIVATE -O1)
   endif()
+  set_property(TARGET ${library} PROPERTY CCHIP_WAVES ${ARG_WAVES})
   target_link_libraries(${library} PUBLIC cchip_verilated$<$<BOOL:${ARG_SYSTEMC}>:_sc>)
+  # All models of a library in one folder: a user of two hundred models would search two hundred folders for each header.
+  target_include_directories(${library} SYSTEM INTERFACE ${CMAKE_CURRENT_BINARY_DIR}/${library}.models)
+  if(NOT ARG_SYSTEMC)  # most of the time of a small model is the runtime's headers
+    target_precompile_headers(${library} PRIVATE <verilated.h> <verilated_fst_c.h>)
+  endif()
 endfunction()
 
 function(cchip_verilate library top)
-  cmake_parse_arguments(ARG "SYSTEMC" "PREFIX" "PARAMETERS;SOURCES" ${ARGN})
+  cmake_parse_arguments(ARG "SYSTEMC;WAVES" "PREFIX" "PARAMETERS;SOURCES" ${ARGN})
+  if(NOT ARG_PREFIX)
+    set(ARG_PREFIX V${top})
+  endif()
   set(command ${CCHIP_VERILATOR_COMMAND})
+  get_property(waves TARGET ${library} PROPERTY CCHIP_WAVES)
   if(ARG_SYSTEMC)
-    list(REMOVE_ITEM command --cc --trace-fst)
+    list(REMOVE_ITEM command --cc)
     list(APPEND command --sc)
     find_package(PkgConfig REQUIRED)  # newer Verilators want to know where SystemC is
     pkg_get_variable(include systemc includedir)
     pkg_get_variable(lib systemc libarchdir)
     list(PREPEND command ${CMAKE_COMMAND} -E env SYSTEMC_INCLUDE=${include} SYSTEMC_LIBDIR=${lib})
-  endif()
-  if(NOT ARG_PREFIX)
-    set(ARG_PREFIX V${top})
+  elseif(waves OR ARG_WAVES OR (CCHIP_WAVES AND ARG_PREFIX MATCHES "${CCHIP_WAVES}"))
+    list(APPEND command --trace-fst)
   endif()
   set(files ${ARG_SOURCES})
   if(NOT files)  # with all files given, a change of one would make every model anew
@@ -125,19 +137,20 @@ function(cchip_verilate library top)
     list(APPEND files ${ARG_SOURCES})
   endif()
   list(TRANSFORM ARG_PARAMETERS PREPEND -G)
-  # One translation unit per module: the common headers cost more than the code.
-  set(dir ${CMAKE_CURRENT_BINARY_DIR}/${library}.models/${ARG_PREFIX})
-  set(unit ${dir}/${ARG_PREFIX}__unit.cpp)
+  # One translation unit per module: the common headers cost more than the code. Verilator writes into a folder of its
+  # own, from which only files that differ are taken over: an edit that changes no code compiles nothing.
+  set(dir ${CMAKE_CURRENT_BINARY_DIR}/${library}.models)
+  set(fresh ${dir}/${ARG_PREFIX}.fresh)
+  set(unit ${dir}/${ARG_PREFIX}.unit.cpp)
   set(script ${PROJECT_SOURCE_DIR}/cmake/verilated_unit.cmake)
   add_custom_command(OUTPUT ${unit} BYPRODUCTS ${dir}/${ARG_PREFIX}.h ${dir}/${ARG_PREFIX}___024root.h
-    COMMAND ${CMAKE_COMMAND} -E rm -rf ${dir}
-    COMMAND ${CMAKE_COMMAND} -E make_directory ${dir}
-    COMMAND ${command} --prefix ${ARG_PREFIX} --Mdir ${dir} --top-module ${top}
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${fresh}
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${fresh}
+    COMMAND ${command} --prefix ${ARG_PREFIX} --Mdir ${fresh} --top-module ${top}
       ${ARG_PARAMETERS} ${CCHIP_VERILATOR_WAIVER} ${files}
-    COMMAND ${CMAKE_COMMAND} -D UNIT=${unit} -D PREFIX=${ARG_PREFIX} -P ${script}
+    COMMAND ${CMAKE_COMMAND} -D FRESH=${fresh} -D UNIT=${unit} -D PREFIX=${ARG_PREFIX} -P ${script}
     DEPENDS ${CCHIP_VERILATOR_WAIVER} ${ARG_SOURCES} ${script}
     DEPFILE ${unit}.d
     COMMENT "Verilator: ${ARG_PREFIX}" VERBATIM)
   target_sources(${library} PRIVATE ${unit})
-  target_include_directories(${library} SYSTEM INTERFACE ${dir})
 endfunction()

@@ -236,7 +236,14 @@ class Simulation {
 
   std::string where() const {
     return " (clock " + std::to_string(clock_) + (in_reset_ ? " in reset" : "") + ", seed " +
-           std::to_string(options_.seed) + ", wave " + (trace_ ? options_.trace_path : "none") + ")";
+           std::to_string(options_.seed) + ", wave " + wave() + ")";
+  }
+
+  /// Name of the waveform, or how to come by one.
+  std::string wave() const {
+    if (trace_) return options_.trace_path;
+    if (options_.trace_path.empty() || detail::HasTrace<Model>::value) return "none";
+    return std::string("none: built without, run: make wave-of MODEL=") + model_->modelName();
   }
 
   SimulationOptions options_;
