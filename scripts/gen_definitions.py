@@ -77,7 +77,7 @@ def verilog(data, names):
         lines += comment(c["doc"], c["unit"])
         lines += define(c["name"], str(c["value"]).replace("0x", "32'h"))
     widths = {"MODE": "MODE_W", "AXIS": "CLASS_W", "RM": "RM_ID_W", "PROG": "PROG_W", "PHASE": "PHASE_W", "SWAP": "SWAP_W", "READ": "READ_CODE_W",
-              "WRITE": "WRITE_CODE_W"}
+              "WRITE": "WRITE_CODE_W", "END": "END_W", "QUERY_ANSWER": "QUERY_ANSWER_W"}
     size = sizes(data)
     for e in data["enums"]:
         lines += ["", f"// ---- {e['doc']}"]

@@ -59,6 +59,10 @@
 `define CCHIP_READ_CODE_W 2
 // width of the code of a write [bit]
 `define CCHIP_WRITE_CODE_W 2
+// width of the code of a query's end [bit]
+`define CCHIP_END_W 3
+// width of a query's answer [bit]
+`define CCHIP_QUERY_ANSWER_W 2
 // word 0 of a bitstream's header
 `define CCHIP_BITSTREAM_MAGIC 32'h43434250
 // first word of a virtual bitstream's payload
@@ -211,6 +215,32 @@
 `define CCHIP_PROG_EXHAUSTIVE 3'd5
 // reserved mode: one idle beat
 `define CCHIP_PROG_ILLEGAL 3'd6
+
+// ---- how a query ended
+// the answer holds
+`define CCHIP_END_OK 3'd0
+// FIRST: as many open pairs as the limit says, and no definite hit
+`define CCHIP_END_HOST 3'd1
+// step limit
+`define CCHIP_END_STEPS 3'd2
+// full stack
+`define CCHIP_END_STACK 3'd3
+// a line of an image is invalid
+`define CCHIP_END_CORRUPT 3'd4
+// a node's children lie outside its image
+`define CCHIP_END_OUTSIDE 3'd5
+// bits that must be 0 but are not, |M_ij| > 1, or a line at a base that is no header
+`define CCHIP_END_BAD_DESCRIPTOR 3'd6
+// a line could not be read: an error of the bus, or no answer in time
+`define CCHIP_END_MEMORY 3'd7
+
+// ---- the answer of a query
+// the objects do not touch
+`define CCHIP_QUERY_ANSWER_NO 2'd0
+// they do
+`define CCHIP_QUERY_ANSWER_YES 2'd1
+// the open pairs decide
+`define CCHIP_QUERY_ANSWER_OPEN 2'd2
 
 // ---- functions of the parameters
 // point: three coordinates, x in the low bits [bit]
@@ -554,5 +584,91 @@
 `define CCHIP_INFO_TETRAHEDRON_WARPED_B 1+:1
 // the word of these fields, also as the target of an assignment or an output
 `define CCHIP_INFO_TETRAHEDRON_OF(warped_a, warped_b) {warped_b, warped_a}
+
+// ---- a query's line in the ring (docs/image.md): word[`CCHIP_QUERY_<field>]
+`define CCHIP_QUERY_W 512
+// line of the header of A, the finer object
+`define CCHIP_QUERY_BASE_A 0+:32
+// line of the header of B
+`define CCHIP_QUERY_BASE_B 32+:32
+// map of A's frame into B's, row by row: nine signed words with 30 fraction bits
+`define CCHIP_QUERY_M 64+:288
+// its translation: three signed words of 36 bit with 32 fraction bits
+`define CCHIP_QUERY_T 352+:108
+// bound on the map's error, 2^-38 of B's unit
+`define CCHIP_QUERY_ERROR 460+:12
+// A's unit is 2^-shift of B's
+`define CCHIP_QUERY_SHIFT 472+:4
+// 1: all contacts, 0: the first
+`define CCHIP_QUERY_ALL 476+:1
+// A is the user's second object
+`define CCHIP_QUERY_SWAPPED 477+:1
+// 0
+`define CCHIP_QUERY_RESERVED 478+:2
+// names the query in its records
+`define CCHIP_QUERY_TAG 480+:32
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_QUERY_OF(base_a, base_b, m, t, error, shift, all, swapped, reserved, tag) \
+  {tag, reserved, swapped, all, shift, error, t, m, base_b, base_a}
+
+// ---- result of a leaf pair, context numbers of c bits: word[`CCHIP_LEAF_RESULT_<field>]
+`define CCHIP_LEAF_RESULT_W(c) (0 + (c) + 2 + 3 + 3 + 3)
+// context of its query
+`define CCHIP_LEAF_RESULT_CONTEXT(c) 0+:(c)
+// epoch of its query in that context
+`define CCHIP_LEAF_RESULT_EPOCH(c) (c)+:2
+// primitive pairs that touch for certain, 0..4
+`define CCHIP_LEAF_RESULT_HITS(c) (c) + 2+:3
+// primitive pairs that the host has to decide, 0..4
+`define CCHIP_LEAF_RESULT_OPEN(c) (c) + 2 + 3+:3
+// QueryCode: OK, or why its query ends
+`define CCHIP_LEAF_RESULT_CODE(c) (c) + 2 + 3 + 3+:3
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_LEAF_RESULT_OF(context, epoch, hits, open, code) {code, open, hits, epoch, context}
+
+// ---- record of a pair of faces in contact, or for the host to decide:
+// word[`CCHIP_PAIR_RECORD_<field>]
+`define CCHIP_PAIR_RECORD_W 128
+// of the query
+`define CCHIP_PAIR_RECORD_TAG 0+:32
+// 0
+`define CCHIP_PAIR_RECORD_DONE 32+:1
+// 1: they touch, 0: the host has to decide
+`define CCHIP_PAIR_RECORD_DEFINITE 33+:1
+// 0
+`define CCHIP_PAIR_RECORD_RESERVED 34+:29
+// 1 in the first round of the ring, inverted in each that follows
+`define CCHIP_PAIR_RECORD_PHASE 63+:1
+// face of the user's first object
+`define CCHIP_PAIR_RECORD_ID_A 64+:32
+// face of the user's second object
+`define CCHIP_PAIR_RECORD_ID_B 96+:32
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_PAIR_RECORD_OF(tag, done, definite, reserved, phase, id_a, id_b) \
+  {id_b, id_a, phase, reserved, definite, done, tag}
+
+// ---- last record of a query: word[`CCHIP_DONE_RECORD_<field>]
+`define CCHIP_DONE_RECORD_W 128
+// of the query
+`define CCHIP_DONE_RECORD_TAG 0+:32
+// 1
+`define CCHIP_DONE_RECORD_DONE 32+:1
+// QueryAnswer
+`define CCHIP_DONE_RECORD_ANSWER 33+:2
+// 0
+`define CCHIP_DONE_RECORD_RESERVED 35+:5
+// QueryCode
+`define CCHIP_DONE_RECORD_CODE 40+:8
+// 0
+`define CCHIP_DONE_RECORD_RESERVED2 48+:15
+// as in PAIR_RECORD
+`define CCHIP_DONE_RECORD_PHASE 63+:1
+// node pairs expanded
+`define CCHIP_DONE_RECORD_STEPS 64+:32
+// pair records before this one
+`define CCHIP_DONE_RECORD_PAIRS 96+:32
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_DONE_RECORD_OF(tag, done, answer, reserved, code, reserved2, phase, steps, pairs) \
+  {pairs, steps, phase, reserved2, code, reserved, answer, done, tag}
 
 `endif

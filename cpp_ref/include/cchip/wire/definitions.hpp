@@ -94,6 +94,25 @@ enum class Programme : std::uint8_t {
   illegal = 6,  ///< reserved mode: one idle beat
 };
 
+/// How a query ended.
+enum class QueryCode : std::uint8_t {
+  ok = 0,  ///< the answer holds
+  host = 1,  ///< FIRST: as many open pairs as the limit says, and no definite hit
+  steps = 2,  ///< step limit
+  stack = 3,  ///< full stack
+  corrupt = 4,  ///< a line of an image is invalid
+  outside = 5,  ///< a node's children lie outside its image
+  bad_descriptor = 6,  ///< bits that must be 0 but are not, |M_ij| > 1, or a line at a base that is no header
+  memory = 7,  ///< a line could not be read: an error of the bus, or no answer in time
+};
+
+/// The answer of a query.
+enum class QueryAnswer : std::uint8_t {
+  no = 0,  ///< the objects do not touch
+  yes = 1,  ///< they do
+  open = 2,  ///< the open pairs decide
+};
+
 namespace defs {
 
 /// smallest legal COORD_W [bit]
@@ -152,6 +171,10 @@ constexpr int swap_w = 4;
 constexpr int read_code_w = 2;
 /// width of the code of a write [bit]
 constexpr int write_code_w = 2;
+/// width of the code of a query's end [bit]
+constexpr int end_w = 3;
+/// width of a query's answer [bit]
+constexpr int query_answer_w = 2;
 /// word 0 of a bitstream's header
 constexpr std::uint32_t bitstream_magic = 0x43434250;
 /// first word of a virtual bitstream's payload
@@ -463,6 +486,80 @@ constexpr int info_tetrahedron_w = 2;
 constexpr Field info_tetrahedron_warped_a = {0, 1};
 /// quad B is warped
 constexpr Field info_tetrahedron_warped_b = {1, 1};
+
+/// a query's line in the ring (docs/image.md) [bit]
+constexpr int query_w = 512;
+/// line of the header of A, the finer object
+constexpr Field query_base_a = {0, 32};
+/// line of the header of B
+constexpr Field query_base_b = {32, 32};
+/// map of A's frame into B's, row by row: nine signed words with 30 fraction bits
+constexpr Field query_m = {64, 288};
+/// its translation: three signed words of 36 bit with 32 fraction bits
+constexpr Field query_t = {352, 108};
+/// bound on the map's error, 2^-38 of B's unit
+constexpr Field query_error = {460, 12};
+/// A's unit is 2^-shift of B's
+constexpr Field query_shift = {472, 4};
+/// 1: all contacts, 0: the first
+constexpr Field query_all = {476, 1};
+/// A is the user's second object
+constexpr Field query_swapped = {477, 1};
+/// 0
+constexpr Field query_reserved = {478, 2};
+/// names the query in its records
+constexpr Field query_tag = {480, 32};
+
+/// result of a leaf pair, context numbers of c bits [bit]
+constexpr int leaf_result_w(int c) { return 0 + c + 2 + 3 + 3 + 3; }
+/// context of its query
+constexpr Field leaf_result_context(int c) { return {0, c}; }
+/// epoch of its query in that context
+constexpr Field leaf_result_epoch(int c) { return {c, 2}; }
+/// primitive pairs that touch for certain, 0..4
+constexpr Field leaf_result_hits(int c) { return {c + 2, 3}; }
+/// primitive pairs that the host has to decide, 0..4
+constexpr Field leaf_result_open(int c) { return {c + 2 + 3, 3}; }
+/// QueryCode: OK, or why its query ends
+constexpr Field leaf_result_code(int c) { return {c + 2 + 3 + 3, 3}; }
+
+/// record of a pair of faces in contact, or for the host to decide [bit]
+constexpr int pair_record_w = 128;
+/// of the query
+constexpr Field pair_record_tag = {0, 32};
+/// 0
+constexpr Field pair_record_done = {32, 1};
+/// 1: they touch, 0: the host has to decide
+constexpr Field pair_record_definite = {33, 1};
+/// 0
+constexpr Field pair_record_reserved = {34, 29};
+/// 1 in the first round of the ring, inverted in each that follows
+constexpr Field pair_record_phase = {63, 1};
+/// face of the user's first object
+constexpr Field pair_record_id_a = {64, 32};
+/// face of the user's second object
+constexpr Field pair_record_id_b = {96, 32};
+
+/// last record of a query [bit]
+constexpr int done_record_w = 128;
+/// of the query
+constexpr Field done_record_tag = {0, 32};
+/// 1
+constexpr Field done_record_done = {32, 1};
+/// QueryAnswer
+constexpr Field done_record_answer = {33, 2};
+/// 0
+constexpr Field done_record_reserved = {35, 5};
+/// QueryCode
+constexpr Field done_record_code = {40, 8};
+/// 0
+constexpr Field done_record_reserved2 = {48, 15};
+/// as in PAIR_RECORD
+constexpr Field done_record_phase = {63, 1};
+/// node pairs expanded
+constexpr Field done_record_steps = {64, 32};
+/// pair records before this one
+constexpr Field done_record_pairs = {96, 32};
 
 }  // namespace defs
 }  // namespace cchip

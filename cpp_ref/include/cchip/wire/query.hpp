@@ -5,6 +5,7 @@
 #define CCHIP_WIRE_QUERY_HPP
 
 #include <array>
+#include <cchip/wire/definitions.hpp>
 #include <cchip/wire/line.hpp>
 #include <cstdint>
 
@@ -50,20 +51,6 @@ inline constexpr std::array<Field, 9> all = {base_a, base_b, m, t, error, shift,
 
 Line encode(const Query& query);
 Query decode_query(const Line& line);
-
-/// How a query ended.
-enum class QueryCode : std::uint8_t {
-  ok = 0,
-  host = 1,            ///< FIRST: as many open pairs as the limit says, and no definite hit
-  steps = 2,           ///< step limit
-  stack = 3,           ///< full stack
-  corrupt = 4,         ///< a line of an image is invalid
-  outside = 5,         ///< a node's children lie outside its image
-  bad_descriptor = 6,  ///< bits that must be 0 but are not, |M_ij| > 1, or a line at a base that is no header
-  memory = 7,          ///< a line could not be read: an error of the bus, or no answer in time
-};
-
-enum class QueryAnswer : std::uint8_t { no = 0, yes = 1, open = 2 };
 
 /// A pair of faces in contact: proven, or for the host to decide. In the user's order.
 struct PairRecord {
