@@ -15,7 +15,9 @@
 //                with CCHIP_READ_TIMEOUT after 2 limit + 3 CLIENTS SLOTS + 10 clocks at the latest;
 //                on the last beat there are no data. While memory owes beats under that ID, or the
 //                address is not taken, a request that would have to wait for it is answered with
-//                CCHIP_READ_OWED. Beats that come after the answer, or unasked, are dropped
+//                CCHIP_READ_OWED. Beats that come after the answer, or unasked, are dropped. A client
+//                that uses a slot again only while its bit of `outstanding` is 0 is never refused
+//                because of a response that is missing
 //   latency      5 clocks from s_valid to arvalid, 3 from a beat to m_valid
 //   throughput   a beat and an address on every clock; an answer without data takes a clock of the
 //                read channel, at most every other one
@@ -46,6 +48,8 @@ module cchip_axi_read #(
     output wire [             `CCHIP_READ_CODE_W-1:0] m_code,         // while m_last = 1
     output wire [                        DATA_W-1:0] m_data,
     output wire                                      owes,
+    // of each ID, {client, slot}: its address is on offer or memory owes it a response
+    output wire                 [CLIENTS*SLOTS-1:0] outstanding,
     output wire                                      m_axi_arvalid,
     input  wire                                      m_axi_arready,
     output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] m_axi_arid,
@@ -323,6 +327,8 @@ module cchip_axi_read #(
     end
   end
 
+  reg [IDS-1:0] outstanding_q;
+  assign outstanding = outstanding_q;
   genvar i;
   generate
     for (i = 0; i < IDS; i = i + 1) begin : gen_id
@@ -333,6 +339,9 @@ module cchip_axi_read #(
       assign counted[i] = here & counts;
       assign ended[i]   = here & counts & rlast_q2;
       assign closed[i]  = here & close;
+      always @(posedge clk)
+        outstanding_q[i] <= ~rst &
+            (owed_q[i] | taken[i] | (arvalid_q && arid_q == I[ID_W-1:0]));
     end
   endgenerate
   always @(posedge clk) begin

@@ -18,7 +18,14 @@
 //   throughput   a line per port and clock; an arriving line takes a clock of port 0, an
 //                invalidation one in 7 of port 1
 //   collision    a request that meets a change of its set within 7 clocks, or both of whose ways
-//                are held, is looked up again
+//                are held, is looked up again. The places whose requests are take turns: one that
+//                has had the turn for AGE clocks is the only one to get a frame. So a request that
+//                is looked up again has its line, or a code, after at most 2 PLACES turns of
+//                AGE + T + 8 PLACES + 16 MISSES clocks each, T the longest time of a read, not
+//                counting those of invalidations
+//   silence      a slot whose read ended with CCHIP_READ_TIMEOUT or CCHIP_READ_OWED is out of use
+//                while memory owes its response. With all of them out of use a request whose line
+//                is not there is answered with CCHIP_READ_OWED
 //   cuts         every path: each output is a flip-flop
 //   reset        forgets every line; takes 2^SET_W clocks, requests wait
 module cchip_cache #(
@@ -63,6 +70,7 @@ module cchip_cache #(
     input  wire                            s_read_last,
     input  wire [  `CCHIP_READ_CODE_W-1:0] s_read_code,
     input  wire [              DATA_W-1:0] s_read_data,
+    input  wire [              MISSES-1:0] s_read_outstanding,  // its slots' bits of outstanding
     // what happens on this clock, for counters; of each port
     output wire [                     1:0] count_hit,         // answered at once
     output wire [                     1:0] count_miss,        // asks memory
@@ -77,6 +85,7 @@ module cchip_cache #(
   localparam integer TAG_W = LINE_W - SET_W;
   localparam integer CODE_W = `CCHIP_READ_CODE_W;
   localparam [31:0] ONE = 1;
+  localparam [5:0] AGE = 6'd63;
 
   generate
     if (CACHE_KB < 1 || CACHE_KB > 1024 || (1 << SET_W) != SETS) begin : gen_illegal_size
@@ -118,6 +127,7 @@ module cchip_cache #(
   wire [CODE_W-1:0] serve_code;
   wire [SET_W:0] serve_frame;
   wire [1:0] serving, serves0;
+  wire exhausted;  // no slot will come back unless memory answers a read of long ago
 
   cchip_cache_fill #(
       .MISSES (MISSES),
@@ -134,12 +144,14 @@ module cchip_cache #(
       .allocate_frame(allocate_frame_q),
       .held          (held),
       .filled        (filled),
+      .exhausted     (exhausted),
       .s_read_valid  (s_read_valid),
       .s_read_slot   (s_read_slot),
       .s_read_beat   (s_read_beat),
       .s_read_last   (s_read_last),
       .s_read_code   (s_read_code),
       .s_read_data   (s_read_data),
+      .s_read_outstanding(s_read_outstanding),
       .fill_valid    (fill_valid),
       .fill_slot     (fill_slot),
       .fill_code     (fill_code),
@@ -182,6 +194,25 @@ module cchip_cache #(
   wire [2*SET_W+1:0] data_addr;  // frames that the ports read or write in stage 5
   wire fill_write;
 
+  // ---- requests that have been looked up again take turns at being the oldest
+  wire [2*PLACES-1:0] retried;
+  reg [PLACE_W:0] oldest_q;  // {port, place}
+  reg [5:0] age_q;
+  reg alone_q;  // the oldest one alone gets a frame
+  always @(posedge clk)
+    if (rst) begin
+      oldest_q <= {PLACE_W + 1{1'b0}};
+      age_q    <= 6'd0;
+      alone_q  <= 1'b0;
+    end else if (retried[oldest_q]) begin
+      if (age_q != AGE) age_q <= age_q + 6'd1;
+      alone_q <= age_q == AGE;
+    end else begin
+      oldest_q <= oldest_q + {{PLACE_W{1'b0}}, 1'b1};
+      age_q    <= 6'd0;
+      alone_q  <= 1'b0;
+    end
+
   function [5:0] lowest(input [63:0] of);
     integer j;
     begin
@@ -193,6 +224,7 @@ module cchip_cache #(
   genvar p, w, i;
   generate
     for (p = 0; p < 2; p = p + 1) begin : gen_port
+      localparam [31:0] P = p;
       wire ask = s_valid[p];
       wire [PLACE_W-1:0] ask_place = s_place[PLACE_W*p+:PLACE_W];
       wire [LINE_W-1:0] ask_line = s_line[LINE_W*p+:LINE_W];
@@ -266,7 +298,8 @@ module cchip_cache #(
       wire [63:0] all_wake = {{64 - PLACES{1'b0}}, wake_q};
       wire [5:0] wake_place = lowest(all_wake);
       wire load_serve = ~serve_q0 | serve0;
-      assign serving[p] = |wake_q;
+      // A fill or a walk may keep the last one from its clock: its frame must stay until then.
+      assign serving[p] = (|wake_q) | (serve_q0 & own0);
       assign serves0[p] = serve_q0;
 
       wire [LOCKS-1:0] in_range;
@@ -340,8 +373,10 @@ module cchip_cache #(
       wire fresh = look_q6 & ~stale;
       wire hit = fresh & match_q6 & ~wait_q6;
       wire sleeps = (fresh & wait_q6) | grant[p];
-      assign again = look_q6 & (stale | (~match_q6 & ~grant[p]));
-      assign want[p] = fresh & ~match_q6 & may_q6 & free_valid;
+      wire refuse = fresh & ~match_q6 & exhausted;
+      wire is_oldest = oldest_q == {P[0], place_q6};
+      assign again = look_q6 & (stale | (~match_q6 & ~grant[p] & ~exhausted));
+      assign want[p] = fresh & ~match_q6 & may_q6 & free_valid & ~exhausted & (~alone_q | is_oldest);
       assign want_way[p] = victim_q6;
       assign want_locked[p] = locked_q6;
       assign want_turn[p] = new_turn_q6;
@@ -428,7 +463,13 @@ module cchip_cache #(
       for (i = 0; i < PLACES; i = i + 1) begin : gen_place
         localparam [31:0] I = i;
         wire on_line = on_q[MISS_W*i+:MISS_W] == collect_slot;
-        wire falls = sleeps && place_q6 == I[PLACE_W-1:0];
+        wire here6 = place_q6 == I[PLACE_W-1:0];
+        wire falls = sleeps & here6;
+        reg retried_q;
+        always @(posedge clk)
+          if (rst) retried_q <= 1'b0;
+          else if (look_q6 && here6) retried_q <= again;
+        assign retried[PLACES*p+i] = retried_q;
         always @(posedge clk) begin
           if (falls) on_q[MISS_W*i+:MISS_W] <= grant[p] ? free_slot : wait_slot_q6;
           if (rst) begin
@@ -448,8 +489,8 @@ module cchip_cache #(
       reg [CODE_W-1:0] code_q7;
       always @(posedge clk) begin
         place_q7 <= place_q6;
-        code_q7  <= serve_q6 ? code_q6 : `CCHIP_READ_OK;
-        valid_q7 <= ~rst & (hit | serve_q6);
+        code_q7  <= serve_q6 ? code_q6 : hit ? `CCHIP_READ_OK : `CCHIP_READ_OWED;
+        valid_q7 <= ~rst & (hit | refuse | serve_q6);
         hit_q    <= ~rst & hit;
         miss_q   <= ~rst & grant[p];
         wait_q   <= ~rst & fresh & wait_q6;
@@ -469,6 +510,9 @@ module cchip_cache #(
       always @(posedge clk)
         if (!rst) begin
           `CCHIP_ASSERT(a_collect, !collect || wake_q == {PLACES{1'b0}})
+          `CCHIP_ASSERT(a_serve, !serve_q0 ||
+              (held[collect_slot] && serve_frame_q0 == serve_frame))
+          `CCHIP_ASSERT(a_alone, !grant[p] || !alone_q || is_oldest)
           `CCHIP_ASSERT(a_one, !fresh || !(match_q6 && both_q6))
           `CCHIP_ASSERT(a_place, !ask || (!sleep_q[ask_place] && !wake_q[ask_place]))
         end

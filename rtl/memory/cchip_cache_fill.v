@@ -9,6 +9,8 @@
 //   serve        collect 8 clocks after fill_valid or later, one line after the other: a line is
 //                done, and its slot free, one clock after serving is 0 for the first time since
 //                the clock after collect
+//   silence      a slot whose read ended with CCHIP_READ_TIMEOUT or CCHIP_READ_OWED is lost: it is
+//                lent again, within MISSES + 3 clocks, when memory owes its ID nothing any more
 //   latency      2 clocks from the last beat to fill_valid
 //   throughput   a line every clock into the frames, every fourth clock if one waits for each
 //   cuts         every path
@@ -32,6 +34,7 @@ module cchip_cache_fill #(
     input  wire [           FRAME_W-1:0] allocate_frame,
     output wire [            MISSES-1:0] held,            // allocated
     output wire [            MISSES-1:0] filled,          // the data are in the frame
+    output wire                          exhausted,       // every slot is lost
     // answers of cchip_axi_read
     input  wire                          s_read_valid,
     input  wire [    $clog2(MISSES)-1:0] s_read_slot,
@@ -39,6 +42,7 @@ module cchip_cache_fill #(
     input  wire                          s_read_last,
     input  wire [`CCHIP_READ_CODE_W-1:0] s_read_code,
     input  wire [            DATA_W-1:0] s_read_data,
+    input  wire [            MISSES-1:0] s_read_outstanding,
     // a line goes into its frame; must be taken
     output wire                          fill_valid,
     output wire [    $clog2(MISSES)-1:0] fill_slot,
@@ -73,6 +77,25 @@ module cchip_cache_fill #(
   wire done;
   reg serve_q;
   reg [MISS_W-1:0] serve_slot_q;
+  // Lost slots: scan_q looks at one after the other, back_q has one that goes back to the pool.
+  wire frees;
+  reg [MISSES-1:0] lost_q;
+  reg exhausted_q, back_q;
+  reg [MISS_W-1:0] scan_q, back_slot_q;
+  wire found = ~back_q & lost_q[scan_q] & ~s_read_outstanding[scan_q];
+  assign exhausted = exhausted_q;
+  always @(posedge clk) begin
+    if (!back_q) back_slot_q <= scan_q;
+    if (rst) begin
+      exhausted_q <= 1'b0;
+      back_q      <= 1'b0;
+      scan_q      <= {MISS_W{1'b0}};
+    end else begin
+      exhausted_q <= &lost_q;
+      back_q      <= back_q ? frees : found;
+      if (!back_q) scan_q <= scan_q + {{MISS_W - 1{1'b0}}, 1'b1};
+    end
+  end
   cchip_pool #(
       .COUNT(MISSES),
       .WIDTH(MISS_W)
@@ -82,8 +105,8 @@ module cchip_cache_fill #(
       .m_valid    (free_valid),
       .m_ready    (free_take),
       .m_number   (free_slot),
-      .back_valid (done),
-      .back_number(serve_slot_q)
+      .back_valid (frees | back_q),
+      .back_number(frees ? serve_slot_q : back_slot_q)
   );
 
   // ---- lines that have come
@@ -155,6 +178,8 @@ module cchip_cache_fill #(
       .m_data ({next_slot, next_code, next_frame})
   );
   assign done = serve_q & ~collect_q & ~collect_q2 & ~serving_q;
+  wire loses = serve_code_q == `CCHIP_READ_TIMEOUT || serve_code_q == `CCHIP_READ_OWED;
+  assign frees = done & ~loses;
 
   always @(posedge clk) begin
     {slot_q1, code_q1, frame_q1} <= {fill_slot, fill_code, fill_frame};
@@ -184,25 +209,27 @@ module cchip_cache_fill #(
   generate
     for (i = 0; i < MISSES; i = i + 1) begin : gen_slot
       localparam [31:0] I = i;
-      wire frees = done && serve_slot_q == I[MISS_W-1:0];
+      wire ends = done && serve_slot_q == I[MISS_W-1:0];
       wire starts = allocate && allocate_slot == I[MISS_W-1:0];
       wire fills = fill_q5 && slot_q5 == I[MISS_W-1:0] && code_q5 == `CCHIP_READ_OK;
       always @(posedge clk)
         if (rst) begin
           held_q[i]   <= 1'b0;
           filled_q[i] <= 1'b0;
+          lost_q[i]   <= 1'b0;
         end else begin
-          held_q[i]   <= starts | (held_q[i] & ~frees);
+          lost_q[i]   <= (ends & loses) | (lost_q[i] & ~(found && scan_q == I[MISS_W-1:0]));
+          held_q[i]   <= starts | (held_q[i] & ~ends);
           filled_q[i] <= fills | (filled_q[i] & ~starts);
         end
     end
   endgenerate
-  assign held        = held_q;
-  assign filled      = filled_q;
+  assign held         = held_q;
+  assign filled       = filled_q;
   assign collect      = collect_q;
   assign collect_slot = serve_slot_q;
-  assign serve_code  = serve_code_q;
-  assign serve_frame = serve_frame_q;
+  assign serve_code   = serve_code_q;
+  assign serve_frame  = serve_frame_q;
 
   wire unused = &{1'b0, arrived_ready, serve_ready, row, write_row};
   always @(posedge clk)

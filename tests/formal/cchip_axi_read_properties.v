@@ -34,6 +34,7 @@ module cchip_axi_read_properties #(
   wire [CLIENTS-1:0] m_valid;
   wire [SLOT_W-1:0] m_slot;
   wire [2:0] m_beat;
+  wire [CLIENTS*SLOTS-1:0] outstanding;
   wire m_last, owes, m_axi_arvalid, m_axi_rready;
   wire [`CCHIP_READ_CODE_W-1:0] m_code;
   wire [DATA_W-1:0] m_data;
@@ -61,6 +62,7 @@ module cchip_axi_read_properties #(
       .m_code       (m_code),
       .m_data       (m_data),
       .owes         (owes),
+      .outstanding  (outstanding),
       .m_axi_arvalid(m_axi_arvalid),
       .m_axi_arready(m_axi_arready),
       .m_axi_arid   (m_axi_arid),

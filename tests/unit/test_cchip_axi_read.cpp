@@ -171,6 +171,14 @@ class ReadBench {
     REQUIRE(top_.m_axi_arburst == 1);
     REQUIRE((top_.m_axi_rready != 0) == model_.rready());
     REQUIRE((top_.owes != 0) == model_.owes());
+    for (std::size_t id = 0; id < clients * slots; ++id) {
+      const bool outstanding = sim::get_bits(top_.outstanding, static_cast<int>(id), 1) != 0;
+      REQUIRE(outstanding == model_.outstanding()[id]);
+      // independent of the model: a response that memory has still to give is never out of sight once its answer has
+      // gone
+      if (!asked_[id] && std::any_of(owed_.begin(), owed_.end(), [&](const Owed& read) { return read.id == id; }))
+        REQUIRE(outstanding);
+    }
   }
 
   void take_address() {

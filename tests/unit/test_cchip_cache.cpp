@@ -32,12 +32,15 @@ struct Behaviour {
   int error;       ///< of a line
   int invalidate;  ///< of a command on a clock, after a line has been written
   bool locks;
+  int gate = 0;     ///< memory rests until that many reads wait or nothing else happens for that long, then answers all
+  int silence = 0;  ///< clocks for which memory still owes its response after a time-out or refusal, at most
 };
 constexpr Behaviour behaviours[] = {
     {"hits", 100, 0, 1, 10, 100, 0, 0, false},      {"mixed", 60, 0, 4, 60, 100, 0, 0, false},
     {"one set", 100, 1, 3, 20, 100, 0, 0, false},   {"two sets", 50, 2, 5, 5, 60, 5, 3, true},
     {"three sets", 80, 3, 4, 30, 80, 20, 20, true}, {"errors", 80, 0, 2, 40, 50, 50, 0, false},
     {"written", 30, 4, 3, 10, 90, 2, 100, true},    {"slow", 10, 0, 6, 200, 20, 5, 5, true},
+    {"burst", 100, 0, 9, 60, 100, 0, 0, false},     {"silent", 60, 0, 4, 20, 80, 30, 2, false, 0, 2000},
 };
 
 template <class Config>
@@ -78,6 +81,7 @@ class CacheBench {
     simulation_.reset();
     model_.reset();
     reads_.clear();
+    owed_.assign(misses, 0);
     for (auto& port : asked_) port.assign(places, std::nullopt);
   }
 
@@ -105,6 +109,8 @@ class CacheBench {
     drain();
   }
   void set_locks(Cache::Range first) { locks_[0] = first; }
+  /// Memory never answers the first `count` reads of the next run().
+  void silent_once(int count) { silent_ = count; }
   void set_memory(int latency, int beat, int error) {
     how_.latency = latency;
     how_.beat = beat;
@@ -128,6 +134,7 @@ class CacheBench {
     std::size_t beats = 0;  // before an error
     ReadCode code = ReadCode::ok;
     std::uint64_t version = 0;
+    bool forever = false;  // memory never gives the rest
   };
 
   std::uint64_t random_line() {
@@ -179,7 +186,13 @@ class CacheBench {
     top_.invalidate_valid = pending_ ? 1 : 0;
     in.invalidate = pending_;
 
+    for (int& clocks : owed_) clocks = std::max(clocks - 1, 0);
     in.beat = memory();
+    in.outstanding.assign(misses, false);
+    for (std::size_t slot = 0; slot < misses; ++slot) in.outstanding[slot] = owed_[slot] != 0;
+    for (const Read& read : reads_) in.outstanding[read.slot] = true;
+    for (std::size_t slot = 0; slot < misses; ++slot)
+      sim::set_bits(top_.s_read_outstanding, static_cast<int>(slot), 1, in.outstanding[slot] ? 1 : 0);
     const auto& beat = in.beat;
     sim::set_random(top_.s_read_data, Config::DATA_W, random_);
     top_.s_read_valid = beat ? 1 : 0;
@@ -213,7 +226,14 @@ class CacheBench {
   std::optional<Cache::Beat> memory() {
     for (Read& read : reads_) read.latency = std::max(read.latency - 1, 0);
     if (reads_.empty() || !chance(random_, how_.beat)) return std::nullopt;
-    const auto read = reads_.begin() + static_cast<std::ptrdiff_t>(random_() % reads_.size());
+    if (how_.gate != 0) {  // in order, after a rest
+      rested_ = reads_.size() != was_reads_ ? 0 : rested_ + 1;
+      was_reads_ = reads_.size();
+      open_ = open_ ? true : rested_ >= how_.gate || reads_.size() == misses;
+      if (!open_) return std::nullopt;
+      if (reads_.size() == 1 && reads_[0].sent + 1 == beats) open_ = false;
+    }
+    const auto read = reads_.begin() + static_cast<std::ptrdiff_t>(how_.gate != 0 ? 0 : random_() % reads_.size());
     if (read->latency > 0) return std::nullopt;
     Cache::Beat beat;
     beat.slot = read->slot;
@@ -225,7 +245,12 @@ class CacheBench {
     }
     beat.code = read->code;
     ++read->sent;
-    if (beat.last) reads_.erase(read);
+    if (beat.last) {
+      if (read->forever) owed_[beat.slot] = 1 << 30;
+      if ((beat.code == ReadCode::timeout || beat.code == ReadCode::owed) && how_.silence != 0 && !read->forever)
+        owed_[beat.slot] = 1 + static_cast<int>(random_() % static_cast<unsigned>(how_.silence));
+      reads_.erase(read);
+    }
     return beat;
   }
 
@@ -291,10 +316,16 @@ class CacheBench {
     }
     if (top_.m_read_valid != 0) {
       ++reads;
+      REQUIRE(owed_[top_.m_read_slot] == 0);  // cchip_axi_read would refuse it
       REQUIRE(
           std::none_of(reads_.begin(), reads_.end(), [&](const Read& read) { return read.slot == top_.m_read_slot; }));
       Read read{top_.m_read_slot, top_.m_read_line, how_.latency};
-      if (chance(random_, how_.error)) {
+      if (silent_ > 0) {
+        --silent_;
+        read.code = ReadCode::timeout;
+        read.beats = random_() % beats;
+        read.forever = true;
+      } else if (chance(random_, how_.error)) {
         read.code = static_cast<ReadCode>(1 + random_() % 3);
         read.beats = random_() % beats;
       }
@@ -324,6 +355,10 @@ class CacheBench {
   std::array<std::optional<std::uint64_t>, 2> want_;
   std::optional<Cache::Range> pending_, forced_;
   std::vector<Read> reads_;
+  int silent_ = 0, rested_ = 0;
+  std::size_t was_reads_ = 0;
+  bool open_ = false;
+  std::vector<int> owed_;  // of each slot, clocks until memory owes it nothing
   std::map<std::uint64_t, std::uint64_t> versions_, promised_, commanded_;
 };
 
@@ -337,16 +372,80 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache: outputs are the model's on every clock; ev
       CacheBench<TestType> bench(simulation, random);
       bench.run(how, 6000);
       CAPTURE(bench.reads, bench.hits, bench.waits, bench.agains, bench.invalidations, bench.slowest);
-      REQUIRE(bench.answers[0] > 50);
+      REQUIRE(bench.answers[0] > (how.silence != 0 ? 10 : 50));
       REQUIRE(bench.reads > 5);
       if (how.sets != 0) REQUIRE(bench.waits > 0);
-      // lines of one set on all places: everybody gets on
-      if (how.sets == 1) REQUIRE(bench.slowest < static_cast<int>(CacheBench<TestType>::sets) + 300);
+      // lines of one set on all places: each has its turn
+      if (how.sets == 1)
+        REQUIRE(bench.slowest < static_cast<int>(CacheBench<TestType>::sets) + 300 + 16 * 2 * TestType::PLACES);
       REQUIRE((bench.invalidations != 0) == (how.invalidate != 0));
       REQUIRE((bench.answers[1] + bench.answers[2] + bench.answers[3] != 0) == (how.error != 0));
       if (how.sets == 0 && how.ask == 100 && TestType::PLACES >= 16 && TestType::CACHE_KB == 1)
         REQUIRE(bench.hits > 8000);
     }
+  });
+}
+
+namespace {
+
+template <class... Configs>
+std::vector<std::array<int, 4>> shapes_of(const std::tuple<Configs...>*) {
+  return {{Configs::CACHE_KB, Configs::PLACES, Configs::MISSES, Configs::DATA_W}...};
+}
+
+}  // namespace
+
+// The fault that only one pair of values shows (a run of lines, one a clock, needs the widest bus and most slots) lies
+// off the diagonal of a table.
+TEST_CASE("cchip_cache: the configurations of its test meet in every pair of values", "[unit][cchip_cache]") {
+  const auto shapes = shapes_of(static_cast<cchip_cache_configs*>(nullptr));
+  int pairs = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = i + 1; j < 4; ++j) {
+      for (const auto& a : shapes) {
+        for (const auto& b : shapes) {
+          CAPTURE(i, j, a[i], b[j]);
+          REQUIRE(
+              std::any_of(shapes.begin(), shapes.end(), [&](const auto& s) { return s[i] == a[i] && s[j] == b[j]; }));
+          ++pairs;
+        }
+      }
+    }
+  }
+  REQUIRE(pairs > 0);
+}
+
+// A run of lines that arrive one a clock keeps port 0 from the last of those who wait for a line. Its frame stays its
+// own.
+TEMPLATE_LIST_TEST_CASE("cchip_cache: lines that arrive without a gap take no line from those who wait",
+                        "[unit][cchip_cache]", cchip_cache_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
+    for (const int tags : {3, 12}) {
+      CacheBench<TestType> bench(simulation, random);
+      Behaviour how{"run", 100, 0, tags, 1, 100, 0, 0, false};
+      how.gate = 60;
+      bench.run(how, 20000);
+      REQUIRE(bench.answers[0] > 50);
+    }
+  });
+}
+
+// One read is lost for ever: nothing but that read fails. All are: each request ends with a code.
+TEMPLATE_LIST_TEST_CASE("cchip_cache: a slot whose read memory never answers is out of use", "[unit][cchip_cache]",
+                        cchip_cache_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
+    CacheBench<TestType> bench(simulation, random);
+    bench.silent_once(1);
+    bench.run({"lost", 80, 0, 8, 20, 80, 0, 0, false}, 8000);
+    REQUIRE(bench.answers[static_cast<std::size_t>(ReadCode::timeout)] >= 1);
+    REQUIRE(bench.answers[static_cast<std::size_t>(ReadCode::owed)] == 0);
+    REQUIRE(bench.answers[0] > 50);
+
+    CacheBench<TestType> dead(simulation, random);
+    dead.silent_once(TestType::MISSES);
+    dead.run({"dead", 80, 0, 8, 20, 80, 0, 0, false}, 8000);
+    REQUIRE(dead.answers[static_cast<std::size_t>(ReadCode::owed)] > 100);
+    REQUIRE(dead.reads == TestType::MISSES);
   });
 }
 

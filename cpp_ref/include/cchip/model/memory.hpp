@@ -56,14 +56,22 @@ class AxiRead {
 
   /// \param beats of a line
   AxiRead(std::size_t clients, std::size_t slots, std::size_t beats)
-      : slots_(slots), beats_(beats), queues_(clients, Fifo<Request>(slots)), reads_(clients * slots) {}
+      : slots_(slots),
+        beats_(beats),
+        queues_(clients, Fifo<Request>(slots)),
+        reads_(clients * slots),
+        outstanding_(reads_.size()) {}
 
   const std::optional<Answer>& answer() const { return answer_; }
   const std::optional<Address>& address() const { return address_; }
   bool rready() const { return rready_; }
   bool owes() const { return owes_; }
+  /// Of each ID: its address is on offer, or memory owes it a response.
+  const std::vector<bool>& outstanding() const { return outstanding_; }
 
   void clock(const Inputs& in) {
+    for (std::size_t id = 0; id < reads_.size(); ++id)
+      outstanding_[id] = reads_[id].owed || taken_ == id || (address_ && address_->id == id);
     // decisions, from the present state
     const bool dead = address_ && !address_awaited_;
     const bool issue = head_ && !head_owed_ && (!address_ || (in.arready && address_awaited_));
@@ -148,6 +156,7 @@ class AxiRead {
   void reset(std::uint32_t limit) {
     for (auto& queue : queues_) queue.reset();
     for (auto& read : reads_) read = Read{};
+    outstanding_.assign(reads_.size(), false);
     next_.reset();
     head_.reset();
     address_.reset();
@@ -218,6 +227,7 @@ class AxiRead {
   std::size_t beats_;
   std::vector<Fifo<Request>> queues_;
   std::vector<Read> reads_;
+  std::vector<bool> outstanding_;
   std::size_t served_ = 0;
   SkidBuffer<Address> next_;
   std::optional<Address> head_, address_;
@@ -466,6 +476,7 @@ class Cache {
     std::vector<Range> locks;
     std::optional<Range> invalidate;  ///< taken if invalidate_ready()
     std::optional<Beat> beat;
+    std::vector<bool> outstanding;  ///< of each slot, as cchip_axi_read says
   };
   struct Counts {
     bool hit = false, miss = false, wait = false, again = false;
@@ -477,7 +488,8 @@ class Cache {
         serve_queue_(shape.misses),
         free_(shape.misses),
         entries_(shape.sets),
-        data_(2 * shape.sets) {
+        data_(2 * shape.sets),
+        retried_(2 * shape.places) {
     reset();
   }
 
@@ -496,7 +508,8 @@ class Cache {
       fresh[p] = step.kind == Kind::look && !step.stale;
       wait[p] = fresh[p] && step.wait;
       hit[p] = fresh[p] && step.match && !step.wait;
-      want[p] = fresh[p] && !step.match && step.victim && free_.m_valid();
+      want[p] = fresh[p] && !step.match && step.victim && free_.m_valid() && !exhausted_ &&
+                (!alone_ || oldest_ == p * shape_.places + step.place);
     }
     const Step& fill6 = ports_[0].steps[5];
     const Step& walk6 = ports_[1].steps[5];
@@ -514,20 +527,24 @@ class Cache {
     const bool fills = arrived_.m_valid();
     const Arrived fill = fills ? arrived_.m_data() : Arrived{};
     const bool release = serving_ && !collect_ && !collected_ && !woken_;
-    const bool woken = !ports_[0].wake.empty() || !ports_[1].wake.empty();
+    const bool woken = !ports_[0].wake.empty() || !ports_[1].wake.empty() || (fills && ports_[0].serve) ||
+                       (walk_valid_ && ports_[1].serve);
     const bool next_serves = serve_queue_.m_valid() && (!serving_ || release);
 
     const bool walks = walk_valid_;
     const bool serves = ports_[0].serve || ports_[1].serve;
+    clock_turn();
     std::array<Step, 2> first;
     for (std::size_t p = 0; p < 2; ++p) {
       Port& port = ports_[p];
       Step& step6 = port.steps[5];
       const bool grant = granted == p;
       const bool sleeps = wait[p] || grant;
-      const bool again = step6.kind == Kind::look && (step6.stale || (!step6.match && !grant));
+      const bool again = step6.kind == Kind::look && (step6.stale || (!step6.match && !grant && !exhausted_));
+      if (step6.kind == Kind::look) retried_[p * shape_.places + step6.place] = again;
       answers_[p].reset();
       if (hit[p]) answers_[p] = Answer{step6.place, ReadCode::ok, step6.data};
+      if (fresh[p] && !step6.match && exhausted_) answers_[p] = Answer{step6.place, ReadCode::owed, {}};
       if (step6.kind == Kind::serve) answers_[p] = Answer{step6.place, step6.code, step6.data};
       counts_[p] = Counts{hit[p], grant, wait[p], again};
 
@@ -616,10 +633,26 @@ class Cache {
     clock_walk(in.invalidate, walk_seen, walk_next, serves);
 
     // the slots
-    std::optional<std::size_t> released;
+    std::optional<std::size_t> released;  // goes back to the pool
+    const bool lost = release && (serving_->code == ReadCode::timeout || serving_->code == ReadCode::owed);
+    const bool all_lost = lost_.size() == shape_.misses;
+    if (release && !lost) released = serving_->slot;
+    if (back_) {
+      if (!released) {
+        released = back_;
+        back_.reset();
+      }
+    } else {
+      if (lost_.count(scan_) != 0 && !in.outstanding[scan_]) {
+        lost_.erase(scan_);
+        back_ = scan_;
+      }
+      scan_ = (scan_ + 1) % shape_.misses;
+    }
+    exhausted_ = all_lost;
     if (release) {
-      released = serving_->slot;
-      held_[*released].held = false;
+      held_[serving_->slot].held = false;
+      if (lost) lost_.insert(serving_->slot);
       serving_.reset();
     }
     if (fill5.kind == Kind::own && fill5.code == ReadCode::ok) {
@@ -669,6 +702,12 @@ class Cache {
     read_.reset();
     answers_ = {};
     counts_ = {};
+    lost_.clear();
+    back_.reset();
+    scan_ = oldest_ = 0;
+    age_ = 0;
+    exhausted_ = alone_ = false;
+    retried_.assign(retried_.size(), false);
     favour_ = running_ = ready_ = walk_valid_ = false;
     state_ = State::clear;
     walk_set_ = 0;
@@ -764,6 +803,18 @@ class Cache {
     }
   }
 
+  /// Whose turn it is of those that are looked up again.
+  void clock_turn() {
+    if (retried_[oldest_]) {
+      alone_ = age_ == 63;
+      age_ = std::min(age_ + 1, 63);
+    } else {
+      oldest_ = (oldest_ + 1) % retried_.size();
+      age_ = 0;
+      alone_ = false;
+    }
+  }
+
   void clock_walk(const std::optional<Range>& invalidate, bool seen, bool next, bool serves) {
     const bool last = left_ == 0;
     if (state_ == State::reads) {
@@ -837,6 +888,14 @@ class Cache {
   Range walk_range_;
   std::set<std::size_t> old_;
   int clocks_ = 0;
+  std::set<std::size_t> lost_;  // slots whose reads memory may still owe
+  std::optional<std::size_t> back_;
+  std::size_t scan_ = 0;
+  bool exhausted_ = false;
+  std::vector<bool> retried_;  // of each place, of port 0 first
+  std::size_t oldest_ = 0;
+  int age_ = 0;
+  bool alone_ = false;
 };
 
 }  // namespace cchip::model
