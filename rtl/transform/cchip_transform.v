@@ -49,6 +49,7 @@ module cchip_transform #(
     output wire [                       31:0] m_face_a,  // of the image of A
     output wire [                       31:0] m_face_b,
     output wire [                   ID_W-1:0] m_id,
+    output wire [                        1:0] m_pair,    // which of its leaf pair's primitive pairs
     input  wire                               s_credit
 );
 
@@ -145,16 +146,17 @@ module cchip_transform #(
   wire quad_a_now, quad_b_now;
   wire [31:0] face_a_now, face_b_now;
   wire [ ID_W-1:0] id_now;
-  reg  [ID_W+65:0] known_q;
+  reg  [ID_W+67:0] known_q;
+  wire [1:0] pair_now;
   cchip_delay #(
-      .WIDTH (ID_W + 66),
+      .WIDTH (ID_W + 68),
       .DEPTH (`CCHIP_VERTEX_LAUNCH(PASSES) + `CCHIP_NORMALISER_LATENCY(PASSES) - 1),
       .MEMORY(1)
   ) u_known (
       .clk(clk),
       .rst(1'b0),
-      .d  ({s_id, face_b, face_a, quad_b, quad_a}),
-      .q  ({id_now, face_b_now, face_a_now, quad_b_now, quad_a_now})
+      .d  ({launch_pair, s_id, face_b, face_a, quad_b, quad_a}),
+      .q  ({pair_now, id_now, face_b_now, face_a_now, quad_b_now, quad_a_now})
   );
   wire begins;  // the first vertex is there on the next clock
   cchip_delay #(
@@ -169,9 +171,9 @@ module cchip_transform #(
   );
   always @(posedge clk)
     if (begins)
-      known_q <= {id_now, face_b_now, face_a_now, quad_b_now, quad_a_now};
+      known_q <= {pair_now, id_now, face_b_now, face_a_now, quad_b_now, quad_a_now};
   wire m_quad_a, m_quad_b;
-  assign {m_id, m_face_b, m_face_a, m_quad_b, m_quad_a} = known_q;
+  assign {m_pair, m_id, m_face_b, m_face_a, m_quad_b, m_quad_a} = known_q;
   assign m_kind = 2'd1 + {1'b0, m_quad_a} + {1'b0, m_quad_b};
   wire exchange = m_quad_a & ~m_quad_b;
   assign m_a = exchange ? b : a;

@@ -66,6 +66,10 @@ module cchip_broad_phase #(
     input  wire [                     2:0] s_result_hits,        // definite hits, 0..4
     input  wire [                     2:0] s_result_open,        // others
     input  wire [                     2:0] s_result_code,
+    // of each result, in their order: was its query still at work?
+    output wire                            m_judged_valid,
+    output wire                            m_judged_live,
+    output wire [                    31:0] m_judged_tag,
     // queries that have ended
     output wire                            m_done_valid,
     input  wire                            m_done_ready,
@@ -100,7 +104,8 @@ module cchip_broad_phase #(
     input  wire [                     2:0] s_read_beat,
     input  wire                            s_read_last,
     input  wire [  `CCHIP_READ_CODE_W-1:0] s_read_code,
-    input  wire [              DATA_W-1:0] s_read_data
+    input  wire [              DATA_W-1:0] s_read_data,
+    input  wire [              MISSES-1:0] s_read_outstanding
 );
 
   localparam integer PLACES = PAIRS + LEAVES;
@@ -172,6 +177,9 @@ module cchip_broad_phase #(
       .s_result_open    (s_result_open),
       .s_result_code    (s_result_code),
       .s_credit         (s_credit),
+      .m_judged_valid   (m_judged_valid),
+      .m_judged_live    (m_judged_live),
+      .m_judged_tag     (m_judged_tag),
       .m_done_valid     (m_done_valid),
       .m_done_ready     (m_done_ready),
       .m_done_tag       (m_done_tag),
@@ -291,6 +299,7 @@ module cchip_broad_phase #(
       .s_read_last     (s_read_last),
       .s_read_code     (s_read_code),
       .s_read_data     (s_read_data),
+      .s_read_outstanding(s_read_outstanding),
       .count_hit       (count_hit),
       .count_miss      (count_miss),
       .count_wait      (count_wait),

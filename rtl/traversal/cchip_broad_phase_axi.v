@@ -59,6 +59,9 @@ module cchip_broad_phase_axi #(
     input  wire [                     2:0] s_result_open,        // others
     input  wire [                     2:0] s_result_code,
     // queries that have ended
+    output wire                            m_judged_valid,
+    output wire                            m_judged_live,
+    output wire [                    31:0] m_judged_tag,
     output wire                            m_done_valid,
     input  wire                            m_done_ready,
     output wire [                    31:0] m_done_tag,
@@ -110,6 +113,7 @@ module cchip_broad_phase_axi #(
   wire [`CCHIP_READ_CODE_W-1:0] beat_code;
   wire [DATA_W-1:0] beat_data;
   wire owes;
+  wire [MISSES-1:0] outstanding;
 
   cchip_broad_phase #(
       .QUERIES   (QUERIES),
@@ -149,6 +153,9 @@ module cchip_broad_phase_axi #(
       .s_result_hits   (s_result_hits),
       .s_result_open   (s_result_open),
       .s_result_code   (s_result_code),
+      .m_judged_valid  (m_judged_valid),
+      .m_judged_live   (m_judged_live),
+      .m_judged_tag    (m_judged_tag),
       .m_done_valid    (m_done_valid),
       .m_done_ready    (m_done_ready),
       .m_done_tag      (m_done_tag),
@@ -178,7 +185,8 @@ module cchip_broad_phase_axi #(
       .s_read_beat     (beat),
       .s_read_last     (beat_last),
       .s_read_code     (beat_code),
-      .s_read_data     (beat_data)
+      .s_read_data     (beat_data),
+      .s_read_outstanding(outstanding)
   );
 
   cchip_axi_read #(
@@ -199,6 +207,7 @@ module cchip_broad_phase_axi #(
       .m_code       (beat_code),
       .m_data       (beat_data),
       .owes         (owes),
+      .outstanding  (outstanding),
       .m_axi_arvalid(m_axi_arvalid),
       .m_axi_arready(m_axi_arready),
       .m_axi_arid   (m_axi_arid),

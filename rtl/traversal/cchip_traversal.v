@@ -78,6 +78,12 @@ module cchip_traversal #(
     input  wire [                     2:0] s_result_open,      // others
     input  wire [                     2:0] s_result_code,
     input  wire                            s_credit,
+    // of each result, in the order of s_result: was its query still at work? On the clock on which
+    // the end that it may bring about enters the queue of m_done, which it leaves a clock later at
+    // the earliest
+    output wire                            m_judged_valid,
+    output wire                            m_judged_live,
+    output wire [                    31:0] m_judged_tag,
     // queries that have ended
     output wire                            m_done_valid,
     input  wire                            m_done_ready,
@@ -130,6 +136,7 @@ module cchip_traversal #(
 
   // ---- stage 1: an event
   wire valid1, valid5;
+  wire judge1, judge5;
   wire [3:0] is1, is5;  // {pop, start, result, verdict}
   wire [CONTEXT_W-1:0] context1, context5;
   wire [EPOCH_W-1:0] epoch1;
@@ -200,6 +207,7 @@ module cchip_traversal #(
       .m_result_event(is1[1]),
       .m_start_event(is1[2]),
       .m_pop_event(is1[3]),
+      .m_judge(judge1),
       .m_context(context1),
       .m_epoch(epoch1),
       .m_extra(extra1),
@@ -233,13 +241,13 @@ module cchip_traversal #(
       .q  (valid5)
   );
   cchip_delay #(
-      .WIDTH(4 + CONTEXT_W + PLACE_W + 9),
+      .WIDTH(5 + CONTEXT_W + PLACE_W + 9),
       .DEPTH(4)
   ) u_event (
       .clk(clk),
       .rst(1'b0),
-      .d  ({is1, context1, place1, result1}),
-      .q  ({is5, context5, place5, result5})
+      .d  ({judge1, is1, context1, place1, result1}),
+      .q  ({judge5, is5, context5, place5, result5})
   );
   cchip_delay #(
       .WIDTH(58),
@@ -405,7 +413,10 @@ module cchip_traversal #(
       .m_step         (step7),
       .m_tests        (tests7)
   );
+  reg judge_q6, judge_q7, live_q6, live_q7;
   always @(posedge clk) begin
+    {judge_q6, live_q6} <= {valid5 & judge5 & ~rst, live_q5};
+    {judge_q7, live_q7} <= {judge_q6 & ~rst, live_q6};
     {context_q6, place_q6, epoch_q6} <= {context5, place5, epoch_q5};
     {context_q7, place_q7, epoch_q7} <= {context_q6, place_q6, epoch_q6};
     if (rst) {valid_q6, valid_q7} <= 2'd0;
@@ -422,6 +433,9 @@ module cchip_traversal #(
     if (write)
       works[running_q?{context_q7, epoch_q7} : clear_q] <= running_q ? work7 : {WORK_W{1'b0}};
   end
+  assign m_judged_valid  = judge_q7;
+  assign m_judged_live   = live_q7;
+  assign m_judged_tag    = constants7[95:64];
   assign m_start_valid   = started7;
   assign m_start_context = context_q7;
   assign m_start_epoch   = epoch_q7;

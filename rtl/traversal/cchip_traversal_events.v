@@ -57,6 +57,7 @@ module cchip_traversal_events #(
     output wire                        m_result_event,
     output wire                        m_start_event,
     output wire                        m_pop_event,      // a node pair leaves the stack
+    output wire                        m_judge,          // a result that came on s_result
     output wire [ $clog2(QUERIES)-1:0] m_context,
     output wire [                 1:0] m_epoch,
     output wire                        m_extra,          // it has further room in the leaf queue
@@ -270,6 +271,7 @@ module cchip_traversal_events #(
   wire [QUERIES-1:0] locks = {{QUERIES - 1{1'b0}}, take} << taken;
   wire [QUERIES-1:0] unlocks = {{QUERIES - 1{1'b0}}, s_left_valid} << s_left_context;
 
+  reg judge_q;
   reg valid_q, is_verdict_q, is_result_q, is_start_q, is_pop_q, extra_q;
   reg [1:0] epoch_q;
   reg [CONTEXT_W-1:0] context_q;
@@ -279,6 +281,7 @@ module cchip_traversal_events #(
   always @(posedge clk) begin
     is_verdict_q <= verdict_take;
     is_result_q  <= result_take | drop_take;
+    judge_q      <= result_take;
     is_start_q   <= start_take;
     is_pop_q     <= pop_take;
     context_q    <= taken;
@@ -304,6 +307,7 @@ module cchip_traversal_events #(
   assign m_result_event = is_result_q;
   assign m_start_event = is_start_q;
   assign m_pop_event = is_pop_q;
+  assign m_judge = judge_q;
   assign m_context = context_q;
   assign m_epoch = epoch_q;
   assign m_extra = extra_q;

@@ -51,6 +51,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_transform: the model's pairs of primitives on eve
           REQUIRE(top.m_face_a == identity.face_a);
           REQUIRE(top.m_face_b == identity.face_b);
           REQUIRE(sim::get_bits(top.m_id, 0, id_w) == identity.id);
+          REQUIRE(unsigned{top.m_pair} == identity.pair);
           ++etas[static_cast<std::size_t>(got.eta)];
           if (got.last) {
             ++held;

@@ -211,6 +211,11 @@ void check(const Top& top, const Traversal& model, const Traversal::Inputs& in) 
       REQUIRE(sim::get_bits(top.m_record, 56, 3) == fetch->epoch);
     }
   }
+  REQUIRE((top.m_judged_valid != 0) == model.judged().has_value());
+  if (model.judged()) {
+    REQUIRE((top.m_judged_live != 0) == model.judged()->live);
+    if (model.judged()->live) REQUIRE(top.m_judged_tag == model.judged()->tag);
+  }
   REQUIRE((top.m_done_valid != 0) == model.done_valid());
   if (model.done_valid()) {
     REQUIRE(top.m_done_tag == model.done().tag);

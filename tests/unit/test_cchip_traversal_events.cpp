@@ -200,6 +200,7 @@ void check(const Top& top, const TraversalEvents& model, const TraversalEvents::
   if (!event) return;
   REQUIRE((top.m_verdict_event != 0) == (event->event == TraversalEvent::verdict));
   REQUIRE((top.m_result_event != 0) == (event->event == TraversalEvent::result));
+  REQUIRE((top.m_judge != 0) == event->judge);
   REQUIRE((top.m_start_event != 0) == (event->event == TraversalEvent::start));
   REQUIRE((top.m_pop_event != 0) == (event->event == TraversalEvent::pop));
   REQUIRE(std::size_t{top.m_context} == event->context);

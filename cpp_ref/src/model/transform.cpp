@@ -127,7 +127,8 @@ void Transform::clock(const LeafJob* s, std::uint32_t id, bool s_credit) {
     const Kind kind_a = s->kind_a == NodeKind::quad ? Kind::quad : Kind::tri;
     const Kind kind_b = s->kind_b == NodeKind::quad ? Kind::quad : Kind::tri;
     identities_.push_back({static_cast<int>(module_of(kind_a, kind_b)), a.id[(*launch)[0]], b.id[(*launch)[1]], id,
-                           kind_a == Kind::quad && kind_b == Kind::tri});
+                           kind_a == Kind::quad && kind_b == Kind::tri,
+                           static_cast<unsigned>(2 * (*launch)[0] + (*launch)[1])});
   }
   const bool room = room_;
   room_ = used_ <= credit_ - 4;

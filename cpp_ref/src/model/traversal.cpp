@@ -61,6 +61,7 @@ TraversalEvents::Inputs Traversal::events_inputs(const Inputs& in) const {
 
 void Traversal::decide_next(const TraversalLimits& limits) {
   decision_.reset();
+  judged_.reset();
   if (!inside_[stages - 1]) return;
   const Inside& inside = *inside_[stages - 1];
   const TraversalEvents::Event& event = inside.event;
@@ -87,6 +88,7 @@ void Traversal::decide_next(const TraversalLimits& limits) {
   TraversalLimits with_stack = limits;
   with_stack.stack = shape_.stack;
   decision_ = decide(with_stack, o);
+  if (event.judge) judged_ = Judgement{o.live, decision_->constants.tag};
 }
 
 void Traversal::clock(const Inputs& in) {
@@ -169,6 +171,7 @@ void Traversal::reset() {
   events_.reset();
   inside_ = {};
   decision_.reset();
+  judged_.reset();
   for (QueryState& state : states_) state = QueryState{};
   for (auto& work : works_) work = {};
   cleared_ = 0;

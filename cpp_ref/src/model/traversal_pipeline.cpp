@@ -208,6 +208,7 @@ void TraversalEvents::clock(const Inputs& in) {
       break;
     case Source::result:
       event->event = TraversalEvent::result;
+      event->judge = true;
       event->context = results_.m_data().context;
       event->epoch = results_.m_data().epoch;
       event->result = results_.m_data();

@@ -141,6 +141,7 @@ struct PairIdentity {
   std::uint32_t face_b = 0;
   std::uint32_t id = 0;   ///< that came with the leaves
   bool exchange = false;  ///< A is a quad and B a triangle: they change places
+  unsigned pair = 0;      ///< which of its leaf pair: 2 (second of A) + (second of B)
 };
 
 /// cchip_transform.

@@ -64,6 +64,12 @@ class Traversal {
   const std::optional<Fetch>& fetch() const { return fetch_; }
   bool lookup(const Inputs& in) const { return events_.lookup(events_inputs(in)); }
   std::optional<std::size_t> lookup_place() const { return events_.lookup_place(); }
+  /// Of a result: was its query still at work?
+  struct Judgement {
+    bool live = false;
+    std::uint32_t tag = 0;
+  };
+  const std::optional<Judgement>& judged() const { return judged_; }
   bool done_valid() const { return done_.m_valid(); }
   const DoneRecord& done() const { return done_.m_data(); }
   std::optional<unsigned> step() const { return step_; }  ///< a node pair was expanded: child pairs compared
@@ -90,6 +96,7 @@ class Traversal {
   std::array<std::optional<Inside>, stages> inside_;
   /// Of the event that is at the end of the pipeline.
   std::optional<Decision> decision_;
+  std::optional<Judgement> judged_;
   std::vector<QueryState> states_;
   std::vector<QueryConstants> constants_;
   std::vector<std::array<std::uint32_t, 4>> works_;

@@ -194,6 +194,7 @@ class TraversalEvents {
     std::size_t context = 0;
     unsigned epoch = 0;  ///< defined for verdicts and results
     bool extra = false;
+    bool judge = false;      ///< a result that came from outside
     std::size_t place = 0;   ///< defined for all but results
     BoxVerdict verdict;      ///< of verdicts
     TraversalResult result;  ///< of results; of a dropped pair all 0
