@@ -40,6 +40,7 @@ traversal/cchip_broad_phase_axi.v
 transform/cchip_vertex_transform.v
 transform/cchip_normaliser.v
 transform/cchip_transform.v
+transform/cchip_leaf_feed.v
 sat/cchip_sat_select.v
 sat/cchip_sat_axis.v
 sat/cchip_sat_bound.v
@@ -80,3 +81,7 @@ dispatch/cchip_dispatch_sequencer.v
 dispatch/cchip_slot_ledger.v
 dispatch/cchip_dispatcher.v
 dispatch/cchip_primtest_subsystem.v
+chip/cchip_query_ring.v
+chip/cchip_calc_result.v
+chip/cchip_record_ring.v
+chip/cchip_chip_core.v

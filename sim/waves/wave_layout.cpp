@@ -364,6 +364,64 @@ void write_broad_phase_gtkw(const std::string& fst_path, std::uint64_t from, std
   out.commit();
 }
 
+namespace {
+
+/// A query from the ring in memory to its done record in the other one, in the order of its way.
+Rows chip_layout() {
+  const std::string broad = "u_broad_phase.";
+  const std::string calc = "u_calc_result.";
+  return group("1 ring of queries",
+               {vector("producer", "query_producer", 16, Radix::decimal),
+                vector("consumer", "query_consumer", 16, Radix::decimal), bit("line wanted", "u_queries.m_read_valid"),
+                bit("valid", "u_queries.m_query_valid"), bit("ready", "u_queries.m_query_ready"),
+                field("tag", "u_queries.m_query_data", 512, 480, 32, Radix::decimal)}) +
+         group("2 query starts", {bit("valid", "start_valid"), vector("context", "start_context", 4, Radix::decimal),
+                                  vector("epoch", "start_epoch", 2, Radix::decimal)}) +
+         group("3 memory, reads",
+               {bit("address valid", "m_axi_arvalid"), bit("address ready", "m_axi_arready"),
+                vector("address", "m_axi_araddr", 64, Radix::hexadecimal), bit("beat valid", "m_axi_rvalid"),
+                vector("ID", "m_axi_rid", 6, Radix::decimal), bit("last", "m_axi_rlast")}) +
+         group("4 node pairs",
+               {bit("box test", broad + "u_get_data.m_pair_valid"), bit("ready", broad + "u_get_data.m_pair_ready"),
+                bit("verdict", broad + "u_traversal.s_verdict_valid"), bit("expanded", "count_step")}) +
+         group("5 leaf pairs",
+               {bit("valid", "leaf_valid"), vector("context", "leaf_context", 4, Radix::decimal),
+                vector("kinds B, A", "leaf_kinds", 4, Radix::binary), bit("gets a number", "u_feed.m_credit"),
+                vector("number", "number", 6, Radix::decimal)}) +
+         group("6 transform", {bit("leaf pair", "feed_valid"), bit("taken", "feed_ready"),
+                               bit("vertex", "vertex_valid"), bit("first", "vertex_first"), bit("last", "vertex_last"),
+                               vector("number, pair", "pair_name", 8, Radix::hexadecimal),
+                               vector("eta", "pair_err", 4, Radix::decimal)}) +
+         group("7 slot",
+               {bit("vertex", "slot_vertex_valid"), bit("first", "slot_first"), bit("result", "slot_result_valid"),
+                bit("answer", "result_valid"), bit("taken", "result_ready"),
+                field("tag", "result", 34, 0, 16, Radix::hexadecimal), field("hit", "result", 34, 16, 1, Radix::binary),
+                field("definite", "result", 34, 18, 1, Radix::binary)}) +
+         group("8 calcResult", {bit("leaf result", "leaf_result_valid"), bit("taken", "leaf_result_ready"),
+                                bit("judged", "judged_valid"), bit("live", "judged_live"),
+                                vector("tag", "judged_tag", 32, Radix::decimal),
+                                vector("state", calc + "state_q", 3, Radix::decimal), bit("done", "done_valid"),
+                                bit("done taken", "done_ready"), vector("its tag", "done_tag", 32, Radix::decimal)}) +
+         group("9 ring of records",
+               {bit("record", "record_valid"), bit("taken", "record_ready"),
+                field("tag", "record", 128, 0, 32, Radix::decimal), field("done", "record", 128, 32, 1, Radix::binary),
+                bit("write address", "m_axi_awvalid"), bit("response", "m_axi_bvalid"),
+                vector("producer", "record_producer", 32, Radix::decimal),
+                vector("consumer", "record_consumer", 32, Radix::decimal)});
+}
+
+}  // namespace
+
+void write_chip_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to) {
+  const std::filesystem::path path = layout_path(fst_path);
+  std::ofstream out(path);
+  SaveFile file(out, "cchip_chip_core");
+  begin(file, "Queries through the whole chip", fst_path,
+        {from, -std::log2(static_cast<double>(to - from) / wave_frames)});
+  file.write(chip_layout());
+  end(out, path);
+}
+
 void write_swap_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to) {
   sim::OutputFile out(layout_path(fst_path));
   SaveFile file(out.stream(), "cchip_primtest_subsystem");

@@ -1,0 +1,651 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_chip_core: the whole way of a query, from a ring in memory to records in another one, with
+// one static slot; its controls are ports. Formats: docs/image.md.
+//   way          cchip_query_ring -> cchip_broad_phase -> cchip_leaf_feed -> cchip_transform ->
+//                queues and operands -> cchip_dispatcher, slot -> cchip_calc_result ->
+//                cchip_record_ring
+//   records      a query's pair records precede its done record, whose count is theirs. FIRST ends
+//                with the first definite hit, or with open_limit open pairs
+//   kinds        the module of the slot answers for all kinds up to its own; a primitive pair of
+//                another kind comes back as an open pair
+//   order        queries end in any order
+//   errors       end one query with a code. A query that cannot be read stops the query ring, a
+//                record that cannot be written the record ring: query_failed, record_failed
+//   bound        every wait has one but those for the host: memory by memory_limit, a query by
+//                step_limit, a full record ring by nothing
+//   deadlock     each block waits only for blocks behind it, and the last one only for the host:
+//                room for leaf pairs is reserved before a node pair starts, for primitive pairs
+//                before a leaf pair starts, for results before a primitive pair is dispatched
+//   latency      of a query by its tree; 1,024 clocks after reset (CACHE_KB 128) for the first one
+//   cuts         every path from and to a port
+//   reset        forgets queries and lines; must reset the bus too
+module cchip_chip_core #(
+    // queries at once: 2, 4, 8 or 16
+    parameter integer QUERIES = 16,
+    // node pairs in flight
+    parameter integer PAIRS = 48,
+    // leaf pairs that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
+    parameter integer LEAVES = 16,
+    // entries of a query's stack: 8, 16, 32 or 64
+    parameter integer STACK = 64,
+    // entries of the queue of leaves, more than PAIRS
+    parameter integer LEAF_DEPTH = 72,
+    // leaf pairs that wait for the transform: 1..64
+    parameter integer LEAF_CREDIT = 16,
+    // size of the cache, KiB: 4, 8 ... 1024
+    parameter integer CACHE_KB = 128,
+    // lines in flight from memory: 4, 8, 16 or 32
+    parameter integer MISSES = 32,
+    // ranges of lines to lock, 1..4
+    parameter integer LOCKS = 2,
+    // width of a coordinate on the grid, bit, 4..20
+    parameter integer COORD_W = 16,
+    // registers of the primitive test's stages (see cchip_primtest)
+    parameter integer SUBSTAGES = `CCHIP_SUBSTAGES_DEFAULT,
+    // clocks a vertex in the transform: 1 or 2
+    parameter integer PASSES = 1,
+    // primitive pairs of each kind that wait: 16, 32 ... 256
+    parameter integer QUEUE_DEPTH = 64,
+    // leaf pairs between leaf feed and record: 4, 8 ... 256
+    parameter integer LEAF_NUMBERS = 64,
+    // module of the slot: 1 triangles, 2 triangle and quad, 3 quads
+    parameter integer RM_ID = 3,
+    // width of the data buses, bit: 128, 256 or 512
+    parameter integer DATA_W = 128
+) (
+    input  wire                           clk,
+    input  wire                           rst,
+    // limits (cchip_traversal, cchip_axi_read)
+    input  wire [                    2:0] pairs_each,
+    input  wire [                   31:0] step_limit,
+    input  wire [                    7:0] open_limit,
+    input  wire [                   31:0] memory_limit,      // clocks
+    // rings (cchip_query_ring, cchip_record_ring)
+    input  wire                           enable,
+    input  wire [                   57:0] query_base,        // address / 64
+    input  wire [                    3:0] query_size_log2,
+    input  wire [                   15:0] query_producer,
+    output wire [                   15:0] query_consumer,
+    output wire                           query_failed,
+    input  wire [                   59:0] record_base,       // address / 16
+    input  wire [                    4:0] record_size_log2,
+    input  wire [                   31:0] record_consumer,
+    output wire [                   31:0] record_producer,
+    output wire                           record_failed,
+    // cache (cchip_cache)
+    input  wire [           LOCKS*32-1:0] lock_first,
+    input  wire [           LOCKS*32-1:0] lock_last,
+    input  wire                           invalidate_valid,
+    output wire                           invalidate_ready,
+    input  wire [                   31:0] invalidate_first,
+    input  wire [                   31:0] invalidate_last,
+    // memory owes the response of a read or a write
+    output wire                           read_owes,
+    output wire                           write_owes,
+    // what happens on this clock, for counters
+    output wire                           count_step,        // a node pair was expanded
+    output wire                           count_leaf_pair,
+    output wire                           count_pair,        // a primitive pair has its result
+    output wire                           count_box_busy,
+    output wire [                    1:0] count_hit,         // of the cache, of each port
+    output wire [                    1:0] count_miss,
+    // memory
+    output wire                           m_axi_arvalid,
+    input  wire                           m_axi_arready,
+    output wire [       $clog2(MISSES):0] m_axi_arid,
+    output wire [                   63:0] m_axi_araddr,
+    output wire [                    7:0] m_axi_arlen,
+    output wire [                    2:0] m_axi_arsize,
+    output wire [                    1:0] m_axi_arburst,
+    output wire [                    3:0] m_axi_arcache,
+    output wire [                    2:0] m_axi_arprot,
+    input  wire                           m_axi_rvalid,
+    output wire                           m_axi_rready,
+    input  wire [       $clog2(MISSES):0] m_axi_rid,
+    input  wire [             DATA_W-1:0] m_axi_rdata,
+    input  wire [                    1:0] m_axi_rresp,
+    input  wire                           m_axi_rlast,
+    output wire                           m_axi_awvalid,
+    input  wire                           m_axi_awready,
+    output wire                           m_axi_awid,
+    output wire [                   63:0] m_axi_awaddr,
+    output wire [                    7:0] m_axi_awlen,
+    output wire [                    2:0] m_axi_awsize,
+    output wire [                    1:0] m_axi_awburst,
+    output wire [                    3:0] m_axi_awcache,
+    output wire [                    2:0] m_axi_awprot,
+    output wire                           m_axi_wvalid,
+    input  wire                           m_axi_wready,
+    output wire [             DATA_W-1:0] m_axi_wdata,
+    output wire [           DATA_W/8-1:0] m_axi_wstrb,
+    output wire                           m_axi_wlast,
+    input  wire                           m_axi_bvalid,
+    output wire                           m_axi_bready,
+    input  wire                           m_axi_bid,
+    input  wire [                    1:0] m_axi_bresp
+);
+
+  localparam integer CONTEXT_W = $clog2(QUERIES);
+  localparam integer LEAF_W = $clog2(LEAF_NUMBERS);
+  localparam integer POINT_W = `CCHIP_POINT_W(COORD_W);
+  localparam integer SLOT_W = $clog2(MISSES);
+  localparam integer KINDS = 3;
+  localparam integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES);
+  localparam integer PLACE_W = `CCHIP_KIND_W + $clog2(QUEUE_DEPTH);
+  localparam integer BEAT_ADDRESS_W = 64 - $clog2(DATA_W / 8);
+  localparam integer LEAF_RESULT_W = `CCHIP_LEAF_RESULT_W(CONTEXT_W);
+
+  generate
+    if (MISSES < 4) begin : gen_illegal_misses
+      cchip_error_chip_core_MISSES_must_be_4_8_16_or_32 u_error ();
+    end
+    if (RM_ID < 1 || RM_ID > 3) begin : gen_illegal_module
+      cchip_error_chip_core_RM_ID_must_be_1_to_3 u_error ();
+    end
+    if (QUEUE_DEPTH < 16 || QUEUE_DEPTH > 256 || (1 << $clog2(QUEUE_DEPTH)) != QUEUE_DEPTH)
+    begin : gen_illegal_depth
+      cchip_error_chip_core_QUEUE_DEPTH_must_be_a_power_of_two_16_to_256 u_error ();
+    end
+  endgenerate
+
+  // ---- memory: client 0 is the cache, client 1 the query ring
+  wire [1:0] read_valid, beat_valid;
+  wire [2*SLOT_W-1:0] read_slot;
+  wire [115:0] read_line;
+  wire [SLOT_W-1:0] beat_slot;
+  wire [2:0] beat;
+  wire beat_last;
+  wire [`CCHIP_READ_CODE_W-1:0] beat_code;
+  wire [DATA_W-1:0] beat_data;
+  wire [2*MISSES-1:0] outstanding_reads;
+  cchip_axi_read #(
+      .CLIENTS(2),
+      .SLOTS  (MISSES),
+      .DATA_W (DATA_W)
+  ) u_read (
+      .clk          (clk),
+      .rst          (rst),
+      .limit        (memory_limit),
+      .s_valid      (read_valid),
+      .s_slot       (read_slot),
+      .s_line       (read_line),
+      .m_valid      (beat_valid),
+      .m_slot       (beat_slot),
+      .m_beat       (beat),
+      .m_last       (beat_last),
+      .m_code       (beat_code),
+      .m_data       (beat_data),
+      .owes         (read_owes),
+      .outstanding  (outstanding_reads),
+      .m_axi_arvalid(m_axi_arvalid),
+      .m_axi_arready(m_axi_arready),
+      .m_axi_arid   (m_axi_arid),
+      .m_axi_araddr (m_axi_araddr),
+      .m_axi_arlen  (m_axi_arlen),
+      .m_axi_arsize (m_axi_arsize),
+      .m_axi_arburst(m_axi_arburst),
+      .m_axi_arcache(m_axi_arcache),
+      .m_axi_arprot (m_axi_arprot),
+      .m_axi_rvalid (m_axi_rvalid),
+      .m_axi_rready (m_axi_rready),
+      .m_axi_rid    (m_axi_rid),
+      .m_axi_rdata  (m_axi_rdata),
+      .m_axi_rresp  (m_axi_rresp),
+      .m_axi_rlast  (m_axi_rlast)
+  );
+
+  // ---- queries
+  wire query_valid, query_ready;
+  wire [`CCHIP_QUERY_W-1:0] query;
+  cchip_query_ring #(
+      .SLOTS (MISSES),
+      .AHEAD (4),
+      .DATA_W(DATA_W)
+  ) u_queries (
+      .clk          (clk),
+      .rst          (rst),
+      .enable       (enable),
+      .base         (query_base),
+      .size_log2    (query_size_log2),
+      .producer     (query_producer),
+      .consumer     (query_consumer),
+      .failed       (query_failed),
+      .m_read_valid (read_valid[1]),
+      .m_read_slot  (read_slot[SLOT_W+:SLOT_W]),
+      .m_read_line  (read_line[58+:58]),
+      .s_read_valid (beat_valid[1]),
+      .s_read_slot  (beat_slot),
+      .s_read_beat  (beat),
+      .s_read_last  (beat_last),
+      .s_read_code  (beat_code),
+      .s_read_data  (beat_data),
+      .m_query_valid(query_valid),
+      .m_query_ready(query_ready),
+      .m_query_data (query)
+  );
+
+  // ---- broad phase
+  wire start_valid, leaf_valid, leaf_failed, leaf_credit;
+  wire [CONTEXT_W-1:0] start_context, leaf_context;
+  wire [1:0] start_epoch, leaf_epoch;
+  wire [`CCHIP_QUERY_W-1:0] start_query;
+  wire [3:0] leaf_kinds;
+  wire [1023:0] leaf_lines;
+  wire leaf_result_valid, leaf_result_ready;
+  wire [LEAF_RESULT_W-1:0] leaf_result;
+  wire judged_valid, judged_live, done_valid, done_ready;
+  wire [31:0] judged_tag, done_tag, done_steps, done_pairs;
+  wire [`CCHIP_END_W-1:0] done_code;
+  wire [`CCHIP_QUERY_ANSWER_W-1:0] done_answer;
+  wire [4:0] count_tests;
+  wire [1:0] count_wait, count_again;
+  cchip_broad_phase #(
+      .QUERIES   (QUERIES),
+      .PAIRS     (PAIRS),
+      .LEAVES    (LEAVES),
+      .STACK     (STACK),
+      .LEAF_DEPTH(LEAF_DEPTH),
+      .CREDIT    (LEAF_CREDIT),
+      .CACHE_KB  (CACHE_KB),
+      .MISSES    (MISSES),
+      .LOCKS     (LOCKS),
+      .DATA_W    (DATA_W)
+  ) u_broad_phase (
+      .clk               (clk),
+      .rst               (rst),
+      .pairs_each        (pairs_each),
+      .step_limit        (step_limit),
+      .open_limit        (open_limit),
+      .s_query_valid     (query_valid),
+      .s_query_ready     (query_ready),
+      .s_query           (query),
+      .m_start_valid     (start_valid),
+      .m_start_context   (start_context),
+      .m_start_epoch     (start_epoch),
+      .m_start_query     (start_query),
+      .m_leaf_valid      (leaf_valid),
+      .m_leaf_context    (leaf_context),
+      .m_leaf_epoch      (leaf_epoch),
+      .m_leaf_kinds      (leaf_kinds),
+      .m_leaf_failed     (leaf_failed),
+      .m_leaf_lines      (leaf_lines),
+      .s_credit          (leaf_credit),
+      .s_result_valid    (leaf_result_valid),
+      .s_result_ready    (leaf_result_ready),
+      .s_result_context  (leaf_result[`CCHIP_LEAF_RESULT_CONTEXT(CONTEXT_W)]),
+      .s_result_epoch    (leaf_result[`CCHIP_LEAF_RESULT_EPOCH(CONTEXT_W)]),
+      .s_result_hits     (leaf_result[`CCHIP_LEAF_RESULT_HITS(CONTEXT_W)]),
+      .s_result_open     (leaf_result[`CCHIP_LEAF_RESULT_OPEN(CONTEXT_W)]),
+      .s_result_code     (leaf_result[`CCHIP_LEAF_RESULT_CODE(CONTEXT_W)]),
+      .m_judged_valid    (judged_valid),
+      .m_judged_live     (judged_live),
+      .m_judged_tag      (judged_tag),
+      .m_done_valid      (done_valid),
+      .m_done_ready      (done_ready),
+      .m_done_tag        (done_tag),
+      .m_done_code       (done_code),
+      .m_done_answer     (done_answer),
+      .m_done_steps      (done_steps),
+      .m_done_pairs      (done_pairs),
+      .lock_first        (lock_first),
+      .lock_last         (lock_last),
+      .invalidate_valid  (invalidate_valid),
+      .invalidate_ready  (invalidate_ready),
+      .invalidate_first  (invalidate_first),
+      .invalidate_last   (invalidate_last),
+      .count_step        (count_step),
+      .count_tests       (count_tests),
+      .count_leaf_pair   (count_leaf_pair),
+      .count_hit         (count_hit),
+      .count_miss        (count_miss),
+      .count_wait        (count_wait),
+      .count_again       (count_again),
+      .count_box_busy    (count_box_busy),
+      .m_read_valid      (read_valid[0]),
+      .m_read_slot       (read_slot[0+:SLOT_W]),
+      .m_read_line       (read_line[0+:58]),
+      .s_read_valid      (beat_valid[0]),
+      .s_read_slot       (beat_slot),
+      .s_read_beat       (beat),
+      .s_read_last       (beat_last),
+      .s_read_code       (beat_code),
+      .s_read_data       (beat_data),
+      .s_read_outstanding(outstanding_reads[MISSES-1:0])
+  );
+
+  // ---- leaf pairs to the transform
+  wire begin_valid, begin_ready, end_valid, end_ready, feed_valid, feed_ready, corrupt;
+  wire [CONTEXT_W-1:0] begin_context, end_context;
+  wire [1:0] begin_epoch, begin_pairs, end_epoch;
+  wire [`CCHIP_END_W-1:0] end_code;
+  wire [LEAF_W-1:0] number, end_number;
+  wire [287:0] map_m;
+  wire [107:0] map_t;
+  wire [3:0] map_shift, feed_kinds;
+  wire [11:0] map_error;
+  wire [1023:0] feed_lines;
+  wire [LEAF_W:0] feed_id;
+  cchip_leaf_feed #(
+      .CREDIT (LEAF_CREDIT),
+      .QUERIES(QUERIES),
+      .LEAF_W (LEAF_W)
+  ) u_feed (
+      .clk            (clk),
+      .rst            (rst),
+      .s_start_valid  (start_valid),
+      .s_start_context(start_context),
+      .s_start_query  (start_query),
+      .s_leaf_valid   (leaf_valid),
+      .s_leaf_context (leaf_context),
+      .s_leaf_epoch   (leaf_epoch),
+      .s_leaf_kinds   (leaf_kinds),
+      .s_leaf_failed  (leaf_failed),
+      .s_leaf_lines   (leaf_lines),
+      .m_credit       (leaf_credit),
+      .m_begin_valid  (begin_valid),
+      .m_begin_ready  (begin_ready),
+      .m_begin_context(begin_context),
+      .m_begin_epoch  (begin_epoch),
+      .m_begin_pairs  (begin_pairs),
+      .s_number       (number),
+      .m_end_valid    (end_valid),
+      .m_end_ready    (end_ready),
+      .m_end_number   (end_number),
+      .m_end_context  (end_context),
+      .m_end_epoch    (end_epoch),
+      .m_end_code     (end_code),
+      .m_valid        (feed_valid),
+      .m_ready        (feed_ready),
+      .m_m            (map_m),
+      .m_t            (map_t),
+      .m_shift        (map_shift),
+      .m_error        (map_error),
+      .m_kinds        (feed_kinds),
+      .m_lines        (feed_lines),
+      .m_id           (feed_id),
+      .s_corrupt      (corrupt)
+  );
+
+  wire vertex_valid, vertex_first, vertex_last, pop;
+  wire [POINT_W-1:0] vertex_a, vertex_b;
+  wire [`CCHIP_ERR_W-1:0] pair_err;
+  wire [`CCHIP_KIND_W-1:0] pair_kind;
+  wire [31:0] face_a, face_b;
+  wire swapped;
+  wire [LEAF_W+1:0] pair_name;  // {number, which of its primitive pairs}
+  cchip_transform #(
+      .COORD_W(COORD_W),
+      .PASSES (PASSES),
+      .CREDIT (QUEUE_DEPTH),
+      .ID_W   (LEAF_W + 1)
+  ) u_transform (
+      .clk     (clk),
+      .rst     (rst),
+      .s_valid (feed_valid),
+      .s_ready (feed_ready),
+      .s_m     (map_m),
+      .s_t     (map_t),
+      .s_shift (map_shift),
+      .s_error (map_error),
+      .s_kinds (feed_kinds),
+      .s_lines (feed_lines),
+      .s_id    (feed_id),
+      .corrupt (corrupt),
+      .m_valid (vertex_valid),
+      .m_first (vertex_first),
+      .m_last  (vertex_last),
+      .m_a     (vertex_a),
+      .m_b     (vertex_b),
+      .m_err   (pair_err),
+      .m_kind  (pair_kind),
+      .m_face_a(face_a),
+      .m_face_b(face_b),
+      .m_id    ({swapped, pair_name[LEAF_W+1:2]}),
+      .m_pair  (pair_name[1:0]),
+      .s_credit(pop)
+  );
+
+  // ---- primitive pairs wait: operands vertex by vertex, the descriptor with the last one. All kinds
+  // share the transform's credit of QUEUE_DEPTH, so every queue has room; and an operand is
+  // overwritten by a pair that began after its own had left, long after it was read
+  wire [KINDS:0] some, queue_room, kind;
+  wire [(KINDS+1)*$clog2(QUEUE_DEPTH+1)-1:0] waiting;
+  wire kind_room, look;
+  wire [PLACE_W-1:0] write_place, read_place;
+  wire [1:0] read_vertex;
+  wire [POINT_W-1:0] a, b;
+  wire [`CCHIP_DESCRIPTOR_W-1:0] descriptor;
+  wire [15:0] tag = {{14 - LEAF_W{1'b0}}, pair_name};
+  reg [1:0] vertex_q;  // number of the vertex
+  always @(posedge clk)
+    if (rst) vertex_q <= 2'd0;
+    else if (vertex_valid) vertex_q <= vertex_last ? 2'd0 : vertex_q + 2'd1;
+  cchip_descriptor_queues #(
+      .WIDTH(`CCHIP_DESCRIPTOR_W),
+      .KINDS(KINDS),
+      .DEPTH(QUEUE_DEPTH)
+  ) u_queues (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(vertex_valid & vertex_last),
+      .s_ready(kind_room),
+      .s_kind (pair_kind),
+      .s_data (`CCHIP_DESCRIPTOR_OF(tag, pair_err, `CCHIP_MODE_DIRECTED)),
+      .s_place(write_place),
+      .some   (some),
+      .waiting(waiting),
+      .room   (queue_room),
+      .kind   (kind),
+      .look   (look),
+      .pop    (pop),
+      .m_place(read_place),
+      .m_data (descriptor)
+  );
+  cchip_block_ram #(
+      .WIDTH (2 * POINT_W),
+      .ADDR_W(PLACE_W + 2)
+  ) u_operands (
+      .clk       (clk),
+      .write     (vertex_valid),
+      .write_addr({write_place, vertex_q}),
+      .write_data({vertex_b, vertex_a}),
+      .read_addr ({read_place, read_vertex}),
+      .read_data ({b, a})
+  );
+
+  // ---- the slot
+  wire slot_vertex_valid, slot_first, slot_last, slot_result_valid;
+  wire [`CCHIP_PAIR_ID_W-1:0] slot_pair;
+  wire [`CCHIP_SLOT_RESULT_W-1:0] slot_result;
+  wire [`CCHIP_RM_ID_W-1:0] rm_id, region_rm_id;
+  wire result_valid, result_ready;
+  wire [`CCHIP_KIND_W-1:0] result_kind, answered_module;
+  wire [`CCHIP_RESULT_W-1:0] result;
+  wire [`CCHIP_PAIR_COUNT_W-1:0] dispatched, lost;
+  wire quiet, decoupled, slot_decoupled, roc_busy, slot_idle;
+  wire answered, refused_kind, refused_provider;
+  cchip_dispatcher #(
+      .SLOTS (1),
+      .KINDS (KINDS),
+      .CREDIT(CONTEXTS)
+  ) u_dispatcher (
+      .clk             (clk),
+      .rst             (rst),
+      .some            (some),
+      .kind            (kind),
+      .look            (look),
+      .pop             (pop),
+      .vertex          (read_vertex),
+      .descriptor      (descriptor),
+      .no_provider     ({RM_ID < 3, RM_ID < 2, 1'b0}),
+      .m_vertex_valid  (slot_vertex_valid),
+      .m_vertex_first  (slot_first),
+      .m_vertex_last   (slot_last),
+      .m_vertex_id     (slot_pair),
+      .s_result_valid  (slot_result_valid),
+      .s_result_data   (slot_result),
+      .slot_module     (rm_id[`CCHIP_KIND_W-1:0]),
+      .m_result_valid  (result_valid),
+      .m_result_ready  (result_ready),
+      .m_result_kind   (result_kind),
+      .m_result_data   (result),
+      .stop            (1'b0),
+      .quiet           (quiet),
+      .decouple        (1'b0),
+      .decoupled       (decoupled),
+      .outstanding     (dispatched),
+      .lost            (lost),
+      .answered        (answered),
+      .answered_module (answered_module),
+      .refused_kind    (refused_kind),
+      .refused_provider(refused_provider)
+  );
+  cchip_pr_slot #(
+      .COORD_W  (COORD_W),
+      .SUBSTAGES(SUBSTAGES),
+      .CONTEXTS (CONTEXTS),
+      .RM_ID    (RM_ID),
+      .SIMULATION(0)
+  ) u_slot (
+      .clk           (clk),
+      .rst           (rst),
+      .decouple      (1'b0),
+      .decoupled     (slot_decoupled),
+      .hold_reset    (1'b0),
+      .roc_start     (1'b0),
+      .roc_busy      (roc_busy),
+      .region_rm_id  (region_rm_id),
+      .cfg_valid     (1'b0),
+      .cfg_data      (8'd0),
+      .s_vertex_valid(slot_vertex_valid),
+      .s_vertex_data (`CCHIP_VERTEX_OF(slot_first, slot_last, slot_pair,
+          descriptor[`CCHIP_DESCRIPTOR_ERR], descriptor[`CCHIP_DESCRIPTOR_MODE], a, b)),
+      .m_result_valid(slot_result_valid),
+      .m_result_data (slot_result),
+      .rm_id         (rm_id),
+      .idle          (slot_idle)
+  );
+  assign count_pair = result_valid & result_ready;
+
+  // ---- results and records
+  wire [`CCHIP_TAG_W-1:0] result_tag = result[`CCHIP_RESULT_TAG];
+  wire record_valid, record_ready, write_valid, write_ready, write_answer;
+  wire [127:0] record;
+  wire [BEAT_ADDRESS_W-1:0] write_address;
+  wire [DATA_W-1:0] write_data;
+  wire [DATA_W/8-1:0] write_strb;
+  wire [`CCHIP_WRITE_CODE_W-1:0] write_code;
+  cchip_calc_result #(
+      .LEAVES   (LEAF_NUMBERS),
+      .CONTEXT_W(CONTEXT_W),
+      .JUDGED   (16)
+  ) u_calc_result (
+      .clk              (clk),
+      .rst              (rst),
+      .s_begin_valid    (begin_valid),
+      .s_begin_ready    (begin_ready),
+      .s_begin_context  (begin_context),
+      .s_begin_epoch    (begin_epoch),
+      .s_begin_pairs    (begin_pairs),
+      .m_number         (number),
+      .s_end_valid      (end_valid),
+      .s_end_ready      (end_ready),
+      .s_end_number     (end_number),
+      .s_end_context    (end_context),
+      .s_end_epoch      (end_epoch),
+      .s_end_code       (end_code),
+      .s_faces_valid    (vertex_valid & vertex_first),
+      .s_faces_pair     (pair_name),
+      .s_faces          (swapped ? {face_a, face_b} : {face_b, face_a}),
+      .s_result_valid   (result_valid),
+      .s_result_ready   (result_ready),
+      .s_result_pair    (result_tag[LEAF_W+1:0]),
+      .s_result_hit     (result[`CCHIP_RESULT_HIT]),
+      .s_result_definite(result[`CCHIP_RESULT_DEFINITE]),
+      .m_leaf_valid     (leaf_result_valid),
+      .m_leaf_ready     (leaf_result_ready),
+      .m_leaf_data      (leaf_result),
+      .s_judged_valid   (judged_valid),
+      .s_judged_live    (judged_live),
+      .s_judged_tag     (judged_tag),
+      .s_done_valid     (done_valid),
+      .s_done_ready     (done_ready),
+      .s_done_data      (`CCHIP_DONE_RECORD_OF(done_tag, 1'b1, done_answer, 5'd0, {5'd0, done_code},
+          15'd0, 1'b0, done_steps, done_pairs)),
+      .m_record_valid   (record_valid),
+      .m_record_ready   (record_ready),
+      .m_record_data    (record)
+  );
+  cchip_record_ring #(
+      .DATA_W(DATA_W)
+  ) u_records (
+      .clk          (clk),
+      .rst          (rst),
+      .base         (record_base),
+      .size_log2    (record_size_log2),
+      .consumer     (record_consumer),
+      .producer     (record_producer),
+      .failed       (record_failed),
+      .s_valid      (record_valid),
+      .s_ready      (record_ready),
+      .s_data       (record),
+      .m_valid      (write_valid),
+      .m_ready      (write_ready),
+      .m_address    (write_address),
+      .m_data       (write_data),
+      .m_strb       (write_strb),
+      .s_answer     (write_answer),
+      .s_answer_code(write_code)
+  );
+  cchip_axi_write #(
+      .CLIENTS    (1),
+      .DATA_W     (DATA_W),
+      .OUTSTANDING(16),
+      .ID_W       (1)
+  ) u_write (
+      .clk          (clk),
+      .rst          (rst),
+      .limit        (memory_limit),
+      .s_valid      (write_valid),
+      .s_ready      (write_ready),
+      .s_last       (1'b1),
+      .s_address    (write_address),
+      .s_data       (write_data),
+      .s_strb       (write_strb),
+      .m_valid      (write_answer),
+      .m_code       (write_code),
+      .owes         (write_owes),
+      .m_axi_awvalid(m_axi_awvalid),
+      .m_axi_awready(m_axi_awready),
+      .m_axi_awid   (m_axi_awid),
+      .m_axi_awaddr (m_axi_awaddr),
+      .m_axi_awlen  (m_axi_awlen),
+      .m_axi_awsize (m_axi_awsize),
+      .m_axi_awburst(m_axi_awburst),
+      .m_axi_awcache(m_axi_awcache),
+      .m_axi_awprot (m_axi_awprot),
+      .m_axi_wvalid (m_axi_wvalid),
+      .m_axi_wready (m_axi_wready),
+      .m_axi_wdata  (m_axi_wdata),
+      .m_axi_wstrb  (m_axi_wstrb),
+      .m_axi_wlast  (m_axi_wlast),
+      .m_axi_bvalid (m_axi_bvalid),
+      .m_axi_bready (m_axi_bready),
+      .m_axi_bid    (m_axi_bid),
+      .m_axi_bresp  (m_axi_bresp)
+  );
+
+  wire unused = &{1'b0, start_epoch, count_tests, count_wait, count_again, queue_room, waiting,
+      outstanding_reads[2*MISSES-1:MISSES], rm_id, region_rm_id, result_kind, answered_module, result,
+      dispatched, lost, quiet, decoupled, slot_decoupled, roc_busy, slot_idle, answered, refused_kind,
+      refused_provider, result_tag};
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_kind_room, !(vertex_valid && vertex_last) || kind_room)
+    end
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_query_ring: fetches queries from a ring of lines in memory and hands them on in their order.
+//   ring         2^size_log2 lines from `base` on. `producer` counts the queries that the host has
+//                written, `consumer` those that have left this module; both run freely, 16 bit. The
+//                host keeps producer - consumer <= 2^size_log2, and may write a line again when
+//                `consumer` has passed it
+//   throughput   AHEAD lines are in flight, so AHEAD queries per latency of memory
+//   latency      1 clock from producer to m_read_valid, 1 from a line's last beat to m_query_valid
+//   failure      a line that could not be read is not handed on, and none after it: failed = 1
+//                until reset, consumer names the line. What was handed on before goes its way
+//   cuts         every path but one: m_query is a memory of AHEAD words behind a register
+//   reset        nothing is in flight: reads from before must not be answered
+module cchip_query_ring #(
+    // slots of cchip_axi_read: 2, 4, 8, 16 or 32, at least AHEAD
+    parameter integer SLOTS = 32,
+    // queries in flight or waiting to leave: 2, 4 or 8
+    parameter integer AHEAD = 4,
+    // width of the data bus, bit: 64, 128, 256 or 512
+    parameter integer DATA_W = 128
+) (
+    input  wire                          clk,
+    input  wire                          rst,
+    input  wire                          enable,        // 0: no further line is read
+    input  wire [                  57:0] base,          // address / 64
+    input  wire [                   3:0] size_log2,     // of the ring, lines
+    input  wire [                  15:0] producer,
+    output wire [                  15:0] consumer,
+    output wire                          failed,
+    // client of cchip_axi_read
+    output wire                          m_read_valid,
+    output wire [     $clog2(SLOTS)-1:0] m_read_slot,
+    output wire [                  57:0] m_read_line,
+    input  wire                          s_read_valid,
+    input  wire [     $clog2(SLOTS)-1:0] s_read_slot,
+    input  wire [                   2:0] s_read_beat,
+    input  wire                          s_read_last,
+    input  wire [`CCHIP_READ_CODE_W-1:0] s_read_code,
+    input  wire [            DATA_W-1:0] s_read_data,
+    // queries
+    output wire                          m_query_valid,
+    input  wire                          m_query_ready,
+    output wire [    `CCHIP_QUERY_W-1:0] m_query_data
+);
+
+  localparam integer AHEAD_W = $clog2(AHEAD);
+  localparam integer SLOT_W = $clog2(SLOTS);
+  localparam integer BEATS = 512 / DATA_W;
+  localparam [31:0] LIMIT = AHEAD;
+
+  generate
+    if (AHEAD < 2 || AHEAD > 8 || (1 << AHEAD_W) != AHEAD || SLOTS < AHEAD || SLOTS > 32 ||
+        (1 << SLOT_W) != SLOTS)
+    begin : gen_illegal_ahead
+      cchip_error_query_ring_AHEAD_must_be_2_4_or_8_and_SLOTS_a_power_of_two_AHEAD_to_32 u_error ();
+    end
+    if (DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W) begin : gen_illegal_width
+      cchip_error_query_ring_DATA_W_must_be_64_128_256_or_512 u_error ();
+    end
+  endgenerate
+
+  reg [15:0] asked_q, given_q;  // queries whose line was asked for, that have left
+  reg read_valid_q, failed_q;
+  reg [57:0] line_q;
+  reg [AHEAD_W-1:0] slot_q;
+  reg [AHEAD-1:0] here_q, bad_q;  // of each slot: its line has come, with a code other than OK
+  wire [15:0] in_flight = asked_q - given_q;
+  wire ask = enable & ~failed_q && asked_q != producer && in_flight < LIMIT[15:0];
+  wire [15:0] place = asked_q & ~(16'hFFFF << size_log2);
+  wire [AHEAD_W-1:0] head = given_q[AHEAD_W-1:0];
+  wire [AHEAD_W-1:0] came = s_read_slot[AHEAD_W-1:0];
+  wire comes = s_read_valid & s_read_last;
+  wire take = m_query_valid & m_query_ready;
+  wire [AHEAD-1:0] one = {{AHEAD - 1{1'b0}}, 1'b1};
+  always @(posedge clk) begin
+    line_q <= base + {42'd0, place};
+    slot_q <= asked_q[AHEAD_W-1:0];
+    if (comes) bad_q[came] <= s_read_code != `CCHIP_READ_OK;
+    if (rst) begin
+      asked_q      <= 16'd0;
+      given_q      <= 16'd0;
+      here_q       <= {AHEAD{1'b0}};
+      read_valid_q <= 1'b0;
+      failed_q     <= 1'b0;
+    end else begin
+      read_valid_q <= ask;
+      if (ask) asked_q <= asked_q + 16'd1;
+      if (take) given_q <= given_q + 16'd1;
+      here_q   <= (here_q | (comes ? one << came : {AHEAD{1'b0}})) &
+          ~(take ? one << head : {AHEAD{1'b0}});
+      failed_q <= failed_q | (here_q[head] & bad_q[head]);
+    end
+  end
+
+  genvar b;
+  generate
+    for (b = 0; b < BEATS; b = b + 1) begin : gen_beat
+      localparam [31:0] B = b;
+      (* ram_style = "distributed" *)
+      reg [DATA_W-1:0] beats[0:AHEAD-1];
+      always @(posedge clk) if (s_read_valid && s_read_beat == B[2:0]) beats[came] <= s_read_data;
+      assign m_query_data[DATA_W*b+:DATA_W] = beats[head];
+    end
+    if (SLOT_W > AHEAD_W) begin : gen_slot
+      wire unused = &{1'b0, s_read_slot[SLOT_W-1:AHEAD_W]};
+      assign m_read_slot = {{SLOT_W - AHEAD_W{1'b0}}, slot_q};
+    end else begin : gen_slot
+      assign m_read_slot = slot_q;
+    end
+  endgenerate
+  assign m_read_valid  = read_valid_q;
+  assign m_read_line   = line_q;
+  assign m_query_valid = here_q[head] & ~bad_q[head];
+  assign consumer      = given_q;
+  assign failed        = failed_q;
+
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_in_flight, in_flight <= LIMIT[15:0])
+      `CCHIP_ASSERT(a_answer, !s_read_valid || !here_q[came])
+    end
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_record_ring: writes records of 16 bytes into a ring in memory, in their order.
+//   ring         2^size_log2 records from `base` on. `producer` counts the records that memory has
+//                confirmed, `consumer` those that the host has read; both run freely, 32 bit.
+//                A full ring holds up s_ready and loses nothing. A consumer beyond the producer is
+//                an error of the host: the ring is then full until it is corrected
+//   phase        bit 63 of a record is 1 in the first round of the ring and inverted in each one
+//                after it, so a host that clears the ring before use needs to poll memory only
+//   throughput   a record per clock
+//   latency      2 clocks from s_valid to m_valid
+//   failure      a write with another code than OK, or any that follows it, is not counted in
+//                `producer`: failed = 1 until reset, and no further record is taken
+//   cuts         every path
+//   reset        the ring is empty, at its beginning; writes from before must not be answered
+module cchip_record_ring #(
+    // width of the data bus, bit: 128, 256 or 512
+    parameter integer DATA_W = 128
+) (
+    input  wire                           clk,
+    input  wire                           rst,
+    input  wire [                   59:0] base,          // address / 16
+    input  wire [                    4:0] size_log2,     // of the ring, records
+    input  wire [                   31:0] consumer,
+    output wire [                   31:0] producer,
+    output wire                           failed,
+    input  wire                           s_valid,
+    output wire                           s_ready,
+    input  wire [                  127:0] s_data,        // PAIR_RECORD or DONE_RECORD
+    // client of cchip_axi_write: one beat each
+    output wire                           m_valid,
+    input  wire                           m_ready,
+    output wire [64-$clog2(DATA_W/8)-1:0] m_address,     // of the beat
+    output wire [             DATA_W-1:0] m_data,
+    output wire [           DATA_W/8-1:0] m_strb,
+    input  wire                           s_answer,
+    input  wire [ `CCHIP_WRITE_CODE_W-1:0] s_answer_code
+);
+
+  localparam integer RECORDS = DATA_W / 128;  // of a beat
+  localparam integer LANE_W = RECORDS < 2 ? 1 : $clog2(RECORDS);
+
+  generate
+    if (DATA_W != 128 && DATA_W != 256 && DATA_W != 512) begin : gen_illegal
+      cchip_error_record_ring_DATA_W_must_be_128_256_or_512 u_error ();
+    end
+  endgenerate
+
+  reg [31:0] written_q, held_q;  // records given to memory, confirmed by it
+  reg room_q, failed_q;
+  wire skid_ready, skid_valid;
+  wire [127:0] record;
+  cchip_skid_buffer #(
+      .WIDTH(128)
+  ) u_in (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(s_valid),
+      .s_ready(s_ready),
+      .s_data (s_data),
+      .m_valid(skid_valid),
+      .m_ready(skid_ready),
+      .m_data (record)
+  );
+
+  reg valid_q;
+  reg [59:0] address_q;
+  reg [127:0] data_q;
+  assign skid_ready = room_q & ~failed_q & (~valid_q | m_ready);
+  wire take = skid_valid & skid_ready;
+  wire [31:0] place = written_q & ~(32'hFFFFFFFF << size_log2);
+  wire [31:0] round = written_q >> size_log2;
+  wire [31:0] unread = written_q + {31'd0, take} - consumer;
+  wire good = s_answer && s_answer_code == `CCHIP_WRITE_OK;
+  always @(posedge clk) begin
+    if (take) begin
+      data_q                       <= record;
+      data_q[`CCHIP_PAIR_RECORD_PHASE] <= ~round[0];
+      address_q                    <= base + {28'd0, place};
+    end
+    if (rst) begin
+      written_q <= 32'd0;
+      held_q    <= 32'd0;
+      room_q    <= 1'b0;
+      failed_q  <= 1'b0;
+      valid_q   <= 1'b0;
+    end else begin
+      room_q   <= unread < (32'd1 << size_log2);
+      valid_q  <= take | (valid_q & ~m_ready);
+      failed_q <= failed_q | (s_answer & ~good);
+      if (take) written_q <= written_q + 32'd1;
+      if (good && !failed_q) held_q <= held_q + 32'd1;
+    end
+  end
+  assign producer = held_q;
+  assign failed   = failed_q;
+  assign m_valid  = valid_q;
+  assign m_data   = {RECORDS{data_q}};
+  wire unused = &{1'b0, round[31:1]};
+  generate
+    if (RECORDS == 1) begin : gen_lane
+      assign m_address = address_q;
+      assign m_strb    = 16'hFFFF;
+    end else begin : gen_lane
+      wire [LANE_W-1:0] lane = address_q[LANE_W-1:0];
+      assign m_address = address_q[59:LANE_W];
+      assign m_strb    = {{DATA_W / 8 - 16{1'b0}}, 16'hFFFF} << {lane, 4'd0};
+    end
+  endgenerate
+
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_answer, !s_answer || held_q != written_q)
+    end
+
+endmodule
+`default_nettype wire

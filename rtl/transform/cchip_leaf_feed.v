@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_leaf_feed: leaf pairs from the broad phase to the vertex transform, each with the map of its
+// query and a number of cchip_calc_result.
+//   map          kept for each context, not for each epoch of it: a leaf pair of a query that has
+//                ended may meet the map of the next one. That is harmless: every map is a legal
+//                one, and the traversal calls its results dead
+//   credit       s_leaf_valid has no ready: at most CREDIT leaf pairs come for which m_credit has
+//                not been 1
+//   end          a leaf pair whose line could not be read, or is illegal, ends without primitive
+//                pairs, with CCHIP_END_MEMORY or CCHIP_END_CORRUPT
+//   throughput   a leaf pair every 2 clocks
+//   latency      4 clocks from s_leaf_valid to m_valid
+//   cuts         every path from s_leaf and s_start; m_credit follows s_begin_ready in its clock
+//   reset        leaf pairs inside are forgotten
+module cchip_leaf_feed #(
+    // leaf pairs that may wait: 1..64
+    parameter integer CREDIT = 16,
+    // contexts of queries: 2, 4, 8 or 16
+    parameter integer QUERIES = 16,
+    // width of a number of cchip_calc_result, bit
+    parameter integer LEAF_W = 6
+) (
+    input  wire                       clk,
+    input  wire                       rst,
+    // a query that has started
+    input  wire                       s_start_valid,
+    input  wire [$clog2(QUERIES)-1:0] s_start_context,
+    input  wire [ `CCHIP_QUERY_W-1:0] s_start_query,
+    // leaf pairs
+    input  wire                       s_leaf_valid,
+    input  wire [$clog2(QUERIES)-1:0] s_leaf_context,
+    input  wire [                1:0] s_leaf_epoch,
+    input  wire [                3:0] s_leaf_kinds,     // {B's, A's}
+    input  wire                       s_leaf_failed,    // a line could not be read
+    input  wire [             1023:0] s_leaf_lines,     // {B's, A's}
+    output wire                       m_credit,
+    // a number for a leaf pair; it ends without primitive pairs
+    output wire                       m_begin_valid,
+    input  wire                       m_begin_ready,
+    output wire [$clog2(QUERIES)-1:0] m_begin_context,
+    output wire [                1:0] m_begin_epoch,
+    output wire [                1:0] m_begin_pairs,    // primitive pairs - 1
+    input  wire [         LEAF_W-1:0] s_number,
+    output wire                       m_end_valid,
+    input  wire                       m_end_ready,
+    output wire [         LEAF_W-1:0] m_end_number,
+    output wire [$clog2(QUERIES)-1:0] m_end_context,
+    output wire [                1:0] m_end_epoch,
+    output wire [   `CCHIP_END_W-1:0] m_end_code,
+    // to cchip_transform
+    output wire                       m_valid,
+    input  wire                       m_ready,
+    output wire [              287:0] m_m,
+    output wire [              107:0] m_t,
+    output wire [                3:0] m_shift,
+    output wire [               11:0] m_error,
+    output wire [                3:0] m_kinds,
+    output wire [             1023:0] m_lines,
+    output wire [           LEAF_W:0] m_id,             // {swapped, number}
+    input  wire                       s_corrupt         // with m_ready: an illegal line
+);
+
+  localparam integer CONTEXT_W = $clog2(QUERIES);
+  localparam integer LEAF_PAIR_W = CONTEXT_W + 2 + 1 + 4 + 1024;
+  localparam integer MAP_W = 1 + 12 + 4 + 108 + 288;
+  localparam [1:0] TWO_TRIANGLES = 2'd2;
+
+  generate
+    if (CREDIT < 1 || CREDIT > 64 || QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES ||
+        LEAF_W < 1)
+    begin : gen_illegal
+      cchip_error_leaf_feed_CREDIT_must_be_1_to_64_QUERIES_2_4_8_or_16_and_LEAF_W_positive u_error (
+      );
+    end
+  endgenerate
+
+  (* ram_style = "distributed" *)
+  reg [MAP_W-1:0] maps[0:QUERIES-1];
+  always @(posedge clk)
+    if (s_start_valid)
+      maps[s_start_context] <= {
+        s_start_query[`CCHIP_QUERY_SWAPPED],
+        s_start_query[`CCHIP_QUERY_ERROR],
+        s_start_query[`CCHIP_QUERY_SHIFT],
+        s_start_query[`CCHIP_QUERY_T],
+        s_start_query[`CCHIP_QUERY_M]
+      };
+
+  // ---- leaf pairs that wait
+  wire room, wait_valid, wait_failed;
+  wire [CONTEXT_W-1:0] wait_context;
+  wire [1:0] wait_epoch;
+  wire [3:0] wait_kinds;
+  wire [1023:0] wait_lines;
+  cchip_fifo #(
+      .WIDTH     (LEAF_PAIR_W),
+      .DEPTH     (CREDIT),
+      .ROOM_KNOWN(1)
+  ) u_waiting (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(s_leaf_valid),
+      .s_ready(room),
+      .s_data ({s_leaf_context, s_leaf_epoch, s_leaf_failed, s_leaf_kinds, s_leaf_lines}),
+      .m_valid(wait_valid),
+      .m_ready(m_credit),
+      .m_data ({wait_context, wait_epoch, wait_failed, wait_kinds, wait_lines})
+  );
+  wire unused = &{1'b0, s_start_query};
+  wire two_a = wait_kinds[1:0] == TWO_TRIANGLES;
+  wire two_b = wait_kinds[3:2] == TWO_TRIANGLES;
+
+  // ---- the leaf pair that is with the transform, or that ends
+  localparam [1:0] EMPTY = 2'd0, TRANSFORM = 2'd1, ENDS = 2'd2;
+  reg [1:0] state_q;
+  reg [CONTEXT_W-1:0] context_q;
+  reg [1:0] epoch_q;
+  reg [3:0] kinds_q;
+  reg [1023:0] lines_q;
+  reg [MAP_W-1:0] map_q;
+  reg [LEAF_W-1:0] number_q;
+  reg [`CCHIP_END_W-1:0] code_q;
+  assign m_begin_valid   = wait_valid && state_q == EMPTY;
+  assign m_begin_context = wait_context;
+  assign m_begin_epoch   = wait_epoch;
+  assign m_begin_pairs   = {two_a & two_b, two_a | two_b};
+  assign m_credit        = m_begin_valid & m_begin_ready;
+  always @(posedge clk) begin
+    if (m_credit) begin
+      {context_q, epoch_q, kinds_q, lines_q} <= {wait_context, wait_epoch, wait_kinds, wait_lines};
+      map_q    <= maps[wait_context];
+      number_q <= s_number;
+    end
+    case (state_q)
+      EMPTY:
+      if (m_credit) begin
+        state_q <= wait_failed ? ENDS : TRANSFORM;
+        code_q  <= `CCHIP_END_MEMORY;
+      end
+      TRANSFORM:
+      if (m_ready) begin
+        state_q <= s_corrupt ? ENDS : EMPTY;
+        code_q  <= `CCHIP_END_CORRUPT;
+      end
+      default:  // ENDS
+      if (m_end_ready) state_q <= EMPTY;
+    endcase
+    if (rst) state_q <= EMPTY;
+  end
+  assign m_end_valid = state_q == ENDS;
+  assign m_end_number = number_q;
+  assign m_end_context = context_q;
+  assign m_end_epoch = epoch_q;
+  assign m_end_code = code_q;
+  assign m_valid = state_q == TRANSFORM;
+  assign {m_error, m_shift, m_t, m_m} = map_q[MAP_W-2:0];
+  assign m_kinds = kinds_q;
+  assign m_lines = lines_q;
+  assign m_id = {map_q[MAP_W-1], number_q};
+
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_credit, !s_leaf_valid || room)
+    end
+
+endmodule
+`default_nettype wire
