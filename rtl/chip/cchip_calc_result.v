@@ -58,7 +58,7 @@ module cchip_calc_result #(
     // result of a leaf pair, to the traversal; its judgement; ends of queries
     output wire                                      m_leaf_valid,
     input  wire                                      m_leaf_ready,
-    output wire [`CCHIP_LEAF_RESULT_W(CONTEXT_W)-1:0] m_leaf_data,
+    output wire [                      CONTEXT_W+10:0] m_leaf_data,        // LEAF_RESULT
     input  wire                                      s_judged_valid,
     input  wire                                      s_judged_live,
     input  wire [                              31:0] s_judged_tag,
