@@ -413,13 +413,12 @@ Rows chip_layout() {
 }  // namespace
 
 void write_chip_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to) {
-  const std::filesystem::path path = layout_path(fst_path);
-  std::ofstream out(path);
-  SaveFile file(out, "cchip_chip_core");
+  sim::OutputFile out(layout_path(fst_path));
+  SaveFile file(out.stream(), "cchip_chip_core");
   begin(file, "Queries through the whole chip", fst_path,
         {from, -std::log2(static_cast<double>(to - from) / wave_frames)});
   file.write(chip_layout());
-  end(out, path);
+  out.commit();
 }
 
 void write_swap_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to) {
