@@ -221,6 +221,9 @@ module cchip_cache #(
     end
   endfunction
 
+  // what must hold in each port: assertions are outside of the loop, Yosys wants their names once
+  wire [1:0] ok_collect, ok_serve, ok_alone, ok_one, ok_place;
+
   genvar p, w, i;
   generate
     for (p = 0; p < 2; p = p + 1) begin : gen_port
@@ -507,15 +510,11 @@ module cchip_cache #(
       reg both_q6;  // the two ways hold the same line
       always @(posedge clk) both_q6 <= &match5;
       wire unused_port = &{1'b0, wake_place, code_q6, late_ready, again_ready};
-      always @(posedge clk)
-        if (!rst) begin
-          `CCHIP_ASSERT(a_collect, !collect || wake_q == {PLACES{1'b0}})
-          `CCHIP_ASSERT(a_serve, !serve_q0 ||
-              (held[collect_slot] && serve_frame_q0 == serve_frame))
-          `CCHIP_ASSERT(a_alone, !grant[p] || !alone_q || is_oldest)
-          `CCHIP_ASSERT(a_one, !fresh || !(match_q6 && both_q6))
-          `CCHIP_ASSERT(a_place, !ask || (!sleep_q[ask_place] && !wake_q[ask_place]))
-        end
+      assign ok_collect[p] = !collect || wake_q == {PLACES{1'b0}};
+      assign ok_serve[p] = !serve_q0 || (held[collect_slot] && serve_frame_q0 == serve_frame);
+      assign ok_alone[p] = !grant[p] || !alone_q || is_oldest;
+      assign ok_one[p] = !fresh || !(match_q6 && both_q6);
+      assign ok_place[p] = !ask || (!sleep_q[ask_place] && !wake_q[ask_place]);
     end
   endgenerate
 
@@ -642,9 +641,14 @@ module cchip_cache #(
   end
   assign invalidate_ready = ready_q;
 
-  wire unused = &{1'b0, by};
+  wire unused = &{1'b0, by, ok_collect, ok_serve, ok_alone, ok_one, ok_place};
   always @(posedge clk)
     if (!rst) begin
+      `CCHIP_ASSERT(a_collect, &ok_collect)
+      `CCHIP_ASSERT(a_serve, &ok_serve)
+      `CCHIP_ASSERT(a_alone, &ok_alone)
+      `CCHIP_ASSERT(a_one, &ok_one)
+      `CCHIP_ASSERT(a_place, &ok_place)
       `CCHIP_ASSERT(a_grant, grant != 2'b11)
       `CCHIP_ASSERT(a_one_change, !(|grant) || !(kill || walk_write))
     end

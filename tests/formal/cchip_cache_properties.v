@@ -13,10 +13,24 @@
 // Assumed, what the clients and cchip_axi_read keep: a place is asked for again only after its answer; memory answers the
 // reads of its slots, once each; a slot is outstanding from its read to its answer and, after a code TIMEOUT or OWED, as long as
 // memory likes.
-// One line, any, is followed: bit 0 of its data, in memory, is 1, and that of all other lines is 0. All lines are of two sets.
+// One line, any, is followed: bit 0 of its data, in memory, is 1, and that of all other lines is 0. All lines are of
+// 2^SET_BITS sets; requests come before clock LAST_ASK, commands only in the task stale; in the task live all is answered by
+// clock END.
+`ifndef MISSES
+`define MISSES 2
+`endif
+`ifndef SET_BITS
+`define SET_BITS 0
+`endif
+`ifndef LAST_ASK
+`define LAST_ASK 200
+`endif
+`ifndef END
+`define END 200
+`endif
 module cchip_cache_properties #(
     parameter integer PLACES = 2,
-    parameter integer MISSES = 4,
+    parameter integer MISSES = `MISSES,
     parameter integer LINE_W = 5
 ) (
     input wire                      clk,
@@ -37,10 +51,6 @@ module cchip_cache_properties #(
   localparam integer SLOT_W = $clog2(MISSES);
   localparam integer CODE_W = `CCHIP_READ_CODE_W;
   localparam integer SET_W = 3;
-`ifndef LAST_ASK
-`define LAST_ASK 63
-`define END 200
-`endif
 
   reg [7:0] clock_q = 8'd0;
   always @(posedge clk) if (clock_q != 8'd255) clock_q <= clock_q + 8'd1;
@@ -104,7 +114,7 @@ module cchip_cache_properties #(
   generate
     for (p = 0; p < 2; p = p + 1) begin : gen_port
       assign asks_followed[p] = s_line[LINE_W*p+:LINE_W] == followed;
-      always @* assume (!s_valid[p] || s_line[LINE_W*p+1+:SET_W-1] == 0);
+      always @* assume (!s_valid[p] || s_line[LINE_W*p+`SET_BITS+:SET_W-`SET_BITS] == 0);
       always @* assume (!s_valid[p] || (clock_q > 8 && clock_q < `LAST_ASK));
       for (i = 0; i < PLACES; i = i + 1) begin : gen_place
         assign asks[PLACES*p+i] = s_valid[p] && s_place[PLACE_W*p+:PLACE_W] == i;
@@ -114,7 +124,7 @@ module cchip_cache_properties #(
       end
     end
   endgenerate
-  always @* assume (followed[1+:SET_W-1] == 0);
+  always @* assume (followed[`SET_BITS+:SET_W-`SET_BITS] == 0);
   always @(posedge clk) open_q <= rst ? 0 : (open_q | asks) & ~answers;
 
   // ---- memory
@@ -125,8 +135,14 @@ module cchip_cache_properties #(
 `ifndef STALE
     assume (!s_read_valid || s_read_data == comes_followed);
 `endif
-    assume (clock_q < 10 || clock_q < `LAST_ASK || (!invalidate_valid && (s_read_valid || open_read_q == 0)));
+`ifdef LIVE
+    assume (clock_q < `LAST_ASK || s_read_valid || open_read_q == 0);
+`endif
+`ifdef STALE
     assume (clock_q > 9 || !invalidate_valid);
+`else
+    assume (!invalidate_valid);
+`endif
   end
   wire [MISSES-1:0] one = {{MISSES - 1{1'b0}}, 1'b1};
   wire stops = s_read_code == `CCHIP_READ_TIMEOUT || s_read_code == `CCHIP_READ_OWED;
@@ -188,7 +204,7 @@ module cchip_cache_properties #(
     end
 
 `ifdef COVER
-  reg read_once_q, twice_q;
+  reg read_once_q;
   always @(posedge clk) begin
     read_once_q <= ~rst & (read_once_q | reads_followed);
     if (!rst && clock_q > 9)
@@ -203,6 +219,6 @@ module cchip_cache_properties #(
       endcase
   end
 `endif
-  wire unused = &{1'b0, count_miss, count_again, twice_q, writes};
+  wire unused = &{1'b0, count_miss, count_again, writes};
 endmodule
 `default_nettype wire

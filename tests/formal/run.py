@@ -50,12 +50,18 @@ EVENTS = "rtl/traversal/cchip_traversal_events.v"
 POOL = "rtl/common/cchip_pool.v"
 DECISION = "rtl/traversal/cchip_traversal_decision.v"
 LEAVES = "rtl/traversal/cchip_leaf_queue.v"
+CACHE = "rtl/memory/cchip_cache.v"
+FILL = "rtl/memory/cchip_cache_fill.v"
+QUERY_RING = "rtl/chip/cchip_query_ring.v"
+RECORD_RING = "rtl/chip/cchip_record_ring.v"
+RESULT = "rtl/chip/cchip_calc_result.v"
 # Tasks that take minutes; --quick proves the others, which take seconds.
 SLOW = {("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"), ("cchip_slot_ledger", "prove"),
         ("cchip_dispatcher", "bounded"), ("cchip_dispatcher", "bounded_2"), ("cchip_descriptor_queues", "bounded"),
         ("cchip_swap_retry", "prove"), ("cchip_axi_read", "bounded"), ("cchip_axi_write", "bounded_1"),
         ("cchip_traversal_events", "bounded"), ("cchip_get_data", "bounded"), ("cchip_get_data", "code"),
-        ("cchip_bitstream_fetch", "room")}
+        ("cchip_bitstream_fetch", "room"), ("cchip_cache", "bounded"), ("cchip_cache", "frames"), ("cchip_cache", "stale"),
+        ("cchip_cache", "live"), ("cchip_calc_result", "bounded")}
 # (task that has to fail, file, text, what takes its place); the text occurs once
 MUTANTS = [
     ("cchip_skid_buffer prove", SKID, "if (ready_q) skid_data_q <= s_data;", "skid_data_q <= s_data;"),
@@ -90,6 +96,31 @@ MUTANTS = [
     ("cchip_bitstream_fetch bounded", FETCH, "timeout_q <= run & (timeout_q |", "timeout_q <= run & (1'b0 |"),
     ("cchip_bitstream_fetch room", FETCH, "pop_q <= run_q & m_valid & m_ready;", "pop_q <= run_q & m_ready;"),
     ("cchip_bitstream_fetch room", FETCH, "localparam [31:0] ROOM = FIFO_DEPTH - 16;", "localparam [31:0] ROOM = FIFO_DEPTH - 15;"),
+    # the frame of a line is given away while its last waiter is kept from its clock; what a lookup saw has changed since; a frame
+    # in flight, a locked one is given away; an invalidation does not wait for the reads before it; with all slots lost nobody is
+    # told; a slot is used again while memory owes its response; two ports get one slot
+    ("cchip_cache frames", CACHE, "assign serving[p] = (|wake_q) | (serve_q0 & own0);", "assign serving[p] = |wake_q;"),
+    ("cchip_cache bounded", CACHE, "wire fresh = look_q6 & ~stale;", "wire fresh = look_q6;"),
+    ("cchip_cache bounded", CACHE, "wire [1:0] may5 = ~hold5 & ~locked5;", "wire [1:0] may5 = ~locked5;"),
+    ("cchip_cache bounded", CACHE, "wire [1:0] may5 = ~hold5 & ~locked5;", "wire [1:0] may5 = ~hold5;"),
+    ("cchip_cache stale", CACHE, "READS: if (old_q == {MISSES{1'b0}} && serves0 == 2'b00)", "READS: if (serves0 == 2'b00)"),
+    ("cchip_cache live", CACHE, "wire refuse = fresh & ~match_q6 & exhausted;", "wire refuse = 1'b0;"),
+    ("cchip_cache bounded", FILL, "wire loses = serve_code_q == `CCHIP_READ_TIMEOUT || serve_code_q == `CCHIP_READ_OWED;",
+     "wire loses = 1'b0;"),
+    # a line that was not written is read; more of them than there are slots; a line that could not be read goes on
+    ("cchip_query_ring bounded", QUERY_RING, "~failed_q && asked_q != producer &&", "~failed_q &&"),
+    ("cchip_query_ring bounded", QUERY_RING, "in_flight < LIMIT[15:0];", "in_flight <= LIMIT[15:0];"),
+    ("cchip_query_ring bounded", QUERY_RING, "assign m_query_valid = here_q[head] & ~bad_q[head];", "assign m_query_valid = here_q[head];"),
+    # one record too many; a write after a failed one is counted; the phase of the other round; what waits changes
+    ("cchip_record_ring bounded", RECORD_RING, "room_q   <= unread < (32'd1 << size_log2);", "room_q   <= unread <= (32'd1 << size_log2);"),
+    ("cchip_record_ring bounded", RECORD_RING, "if (good && !failed_q) held_q", "if (good) held_q"),
+    ("cchip_record_ring bounded", RECORD_RING, "<= ~round[0];", "<= round[0];"),
+    ("cchip_record_ring bounded", RECORD_RING, "room_q & ~failed_q & (~valid_q | m_ready);", "room_q & ~failed_q;"),
+    # records of a dead leaf pair; an end overtakes a judgement; a number comes back twice; a result too few
+    ("cchip_calc_result bounded", RESULT, "if (live && sent_hits != 4'd0) state_q <= CHOOSE;", "if (sent_hits != 4'd0) state_q <= CHOOSE;"),
+    ("cchip_calc_result bounded", RESULT, "if (judged_valid && !emitted_q) begin", "if (judged_valid && !emitted_q && !s_done_valid) begin"),
+    ("cchip_calc_result bounded", RESULT, "emitted_q      <= ~record_q[`CCHIP_DONE_RECORD_DONE] & left_q == 4'd0;", "emitted_q      <= left_q == 4'd0;"),
+    ("cchip_calc_result bounded", RESULT, "wire complete = count_q[9:8] == 2'd0;", "wire complete = count_q[9] == 1'b0;"),
     # late beats reach the next request; a place that is owed is asked for again, also if its address is taken as the request
     # comes; a read counts on where the one before it ended; what the beat before has closed, and its count, is not seen; an error is forgotten; a line
     # that is too long goes on; an address is taken back

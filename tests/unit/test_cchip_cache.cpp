@@ -379,8 +379,10 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache: outputs are the model's on every clock; ev
       if (how.sets == 1)
         REQUIRE(bench.slowest < static_cast<int>(CacheBench<TestType>::sets) + 300 + 16 * 2 * TestType::PLACES);
       REQUIRE((bench.invalidations != 0) == (how.invalidate != 0));
-      REQUIRE((bench.answers[1] + bench.answers[2] + bench.answers[3] != 0) == (how.error != 0));
-      if (how.sets == 0 && how.ask == 100 && TestType::PLACES >= 16 && TestType::CACHE_KB == 1)
+      const auto errors = bench.answers[1] + bench.answers[2] + bench.answers[3];
+      if (how.error == 0) REQUIRE(errors == 0);
+      if (bench.reads * static_cast<unsigned>(how.error) > 1000) REQUIRE(errors != 0);
+      if (how.tags == 1 && how.ask == 100 && TestType::PLACES >= 16 && TestType::CACHE_KB == 1)
         REQUIRE(bench.hits > 8000);
     }
   });
