@@ -163,7 +163,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
           REQUIRE(used.insert(taken->slot).second);
           REQUIRE(owed[static_cast<std::size_t>(taken->slot)] == 0);
         }
-        most = std::max(most, static_cast<int>(used.size()));
+        most = std::max(most, static_cast<int>(used.size() + lost));
         simulation.rise();
       }
       REQUIRE(lines > 6000 * busy / 100 / (beats + 9 * misses) / 4);
