@@ -5,8 +5,6 @@
 #include <cchip/wire/query.hpp>
 #include <deque>
 #include <map>
-#include <Vcalc_result_4___024root.h>
-#include <Vcalc_result_64___024root.h>
 #include <models/cchip_calc_result.hpp>
 
 #include "bench.hpp"
@@ -43,6 +41,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_calc_result: leaf pairs, judgements and records a
                         "[unit][cchip_calc_result]", cchip_calc_result_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     constexpr unsigned leaves = TestType::LEAVES, contexts = 1U << TestType::CONTEXT_W;
+    constexpr int leaf_w = leaves == 4 ? 2 : 6;
     auto& top = simulation.top();
     for (int run = 0; run < 12; ++run) {
       const int feed = run % 3 == 0 ? 100 : 40, results = run % 3 == 1 ? 100 : 50, receiver = run % 4 == 3 ? 5 : 80;
@@ -57,6 +56,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_calc_result: leaf pairs, judgements and records a
       for (unsigned c = 0; c < contexts; ++c) start(c);
       std::map<unsigned, LeafPair> numbers;                    // in use
       std::deque<std::pair<std::uint64_t, unsigned>> judging;  // clock of the judgement, number
+      std::deque<unsigned> complete;                           // numbers, in the order in which they have all results
       std::deque<Record> pair_records;
       std::deque<std::pair<std::size_t, Record>> done_records;  // pair records that must come before it, record
       std::deque<std::uint64_t> done_clocks;
@@ -98,7 +98,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_calc_result: leaf pairs, judgements and records a
         for (auto& [number, leaf] : numbers) {
           if (leaf.ends || leaf.faces_given == leaf.pairs || !chance(random, 40)) continue;
           top.s_faces_valid = 1;
-          top.s_faces_pair = static_cast<SData>(4 * number + leaf.faces_given);
+          sim::set_bits(top.s_faces_pair, 0, 2 + leaf_w, 4 * number + leaf.faces_given);
           leaf.faces[leaf.faces_given++] = top.s_faces;
           break;
         }
@@ -116,8 +116,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_calc_result: leaf pairs, judgements and records a
           }
         }
         top.s_result_valid = result_offered ? 1 : 0;
-        top.s_result_pair =
-            static_cast<SData>(result_offered ? 4 * result_number + result_pair : random() % (4 * leaves));
+        sim::set_bits(top.s_result_pair, 0, 2 + leaf_w,
+                      result_offered ? 4 * result_number + result_pair : random() % (4 * leaves));
         top.s_result_hit = result_hit ? 1 : 0;
         top.s_result_definite = result_definite ? 1 : 0;
         // the traversal
@@ -145,8 +145,9 @@ TEMPLATE_LIST_TEST_CASE("cchip_calc_result: leaf pairs, judgements and records a
             }
             if (leaf.code != 0 || (leaf.hits != 0 && chance(random, 30)) || chance(random, 3)) {
               query.live = false;
-              done_records.emplace_back(pairs_expected, Record{query.tag, 1U | (random() & 3) << 1,
-                                                               static_cast<std::uint32_t>(random()), query.records});
+              done_records.emplace_back(pairs_expected,
+                                        Record{query.tag, 1U | static_cast<std::uint32_t>(random() & 3) << 1,
+                                               static_cast<std::uint32_t>(random()), query.records});
               done_clocks.push_back(clock + 2 + random() % 3);  // as the traversal's queue of ends
               start(leaf.context);
             }
@@ -176,6 +177,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_calc_result: leaf pairs, judgements and records a
           next.reset();
           ++begun;
         } else if (ending && top.s_end_ready != 0) {
+          complete.push_back(*ending);
           ending.reset();
           ++ends;
         }
@@ -185,19 +187,20 @@ TEMPLATE_LIST_TEST_CASE("cchip_calc_result: leaf pairs, judgements and records a
           leaf.hits |= result_hit ? 1U << result_pair : 0;
           leaf.definite |= result_hit && result_definite ? 1U << result_pair : 0;
           result_offered = false;
+          if (leaf.results == (1U << leaf.pairs) - 1) complete.push_back(result_number);
         }
         if (top.m_leaf_valid != 0 && top.m_leaf_ready != 0) {
-          // the result is of a leaf pair that is complete: find it by what it says and the order of nothing else
           const std::uint64_t data = sim::get_bits(top.m_leaf_data, 0, TestType::CONTEXT_W + 11);
           const unsigned context = static_cast<unsigned>(data & (contexts - 1));
           const unsigned epoch = static_cast<unsigned>(data >> TestType::CONTEXT_W & 3);
           const unsigned definite = static_cast<unsigned>(data >> (TestType::CONTEXT_W + 2) & 7);
           const unsigned open = static_cast<unsigned>(data >> (TestType::CONTEXT_W + 5) & 7);
           const unsigned code = static_cast<unsigned>(data >> (TestType::CONTEXT_W + 8) & 7);
-          const unsigned number = simulation.top().rootp->cchip_calc_result__DOT__whole_number;
+          REQUIRE(!complete.empty());
+          const unsigned number = complete.front();
+          complete.pop_front();
           const LeafPair& leaf = numbers.at(number);
           REQUIRE(!leaf.complete);
-          for (const auto& waiting : judging) REQUIRE(waiting.second != number);
           REQUIRE(leaf.context == context);
           REQUIRE(leaf.epoch == epoch);
           REQUIRE(leaf.code == code);
