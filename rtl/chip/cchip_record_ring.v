@@ -72,7 +72,9 @@ module cchip_record_ring #(
   wire take = skid_valid & skid_ready;
   wire [31:0] place = written_q & ~(32'hFFFFFFFF << size_log2);
   wire [31:0] round = written_q >> size_log2;
+  wire [31:0] size = 32'd1 << size_log2;
   wire [31:0] unread = written_q + {31'd0, take} - consumer;
+  wire [31:0] confirmed = held_q - consumer;  // and unread; huge if the host is ahead of memory
   wire good = s_answer && s_answer_code == `CCHIP_WRITE_OK;
   always @(posedge clk) begin
     if (take) begin
@@ -87,7 +89,7 @@ module cchip_record_ring #(
       failed_q  <= 1'b0;
       valid_q   <= 1'b0;
     end else begin
-      room_q   <= unread < (32'd1 << size_log2);
+      room_q   <= unread < size && confirmed <= size;
       valid_q  <= take | (valid_q & ~m_ready);
       failed_q <= failed_q | (s_answer & ~good);
       if (take) written_q <= written_q + 32'd1;

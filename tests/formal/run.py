@@ -112,7 +112,7 @@ MUTANTS = [
     ("cchip_query_ring bounded", QUERY_RING, "in_flight < LIMIT[15:0];", "in_flight <= LIMIT[15:0];"),
     ("cchip_query_ring bounded", QUERY_RING, "assign m_query_valid = here_q[head] & ~bad_q[head];", "assign m_query_valid = here_q[head];"),
     # one record too many; a write after a failed one is counted; the phase of the other round; what waits changes
-    ("cchip_record_ring bounded", RECORD_RING, "room_q   <= unread < (32'd1 << size_log2);", "room_q   <= unread <= (32'd1 << size_log2);"),
+    ("cchip_record_ring bounded", RECORD_RING, "room_q   <= unread < size && confirmed <= size;", "room_q   <= unread <= size && confirmed <= size;"),
     ("cchip_record_ring bounded", RECORD_RING, "if (good && !failed_q) held_q", "if (good) held_q"),
     ("cchip_record_ring bounded", RECORD_RING, "<= ~round[0];", "<= round[0];"),
     ("cchip_record_ring bounded", RECORD_RING, "room_q & ~failed_q & (~valid_q | m_ready);", "room_q & ~failed_q;"),

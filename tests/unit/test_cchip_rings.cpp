@@ -157,7 +157,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_record_ring: every record once, in its place, wit
         }
         // now and then an index that cannot be: it gives no room
         const bool wrong = chance(random, 2);
-        top.consumer = static_cast<IData>(wrong ? written + 1 + random() % 5 : read);
+        top.consumer = static_cast<IData>(wrong ? held + 1 + random() % 5 : read);
         simulation.settle();
         REQUIRE(top.producer == static_cast<IData>(held));
         REQUIRE((top.failed != 0) == failed);
