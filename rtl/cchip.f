@@ -8,6 +8,7 @@ common/cchip_block_ram.v
 common/cchip_crc32.v
 common/cchip_arbiter.v
 common/cchip_count.v
+common/cchip_timeout.v
 common/cchip_pool.v
 common/cchip_counter_file.v
 arith/cchip_mul18.v

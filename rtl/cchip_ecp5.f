@@ -6,6 +6,7 @@ common/cchip_ram.v
 common/cchip_crc32.v
 common/cchip_arbiter.v
 common/cchip_count.v
+common/cchip_timeout.v
 common/cchip_pool.v
 common/cchip_counter_file.v
 vendor/ecp5/cchip_dp16kd.v

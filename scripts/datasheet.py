@@ -76,6 +76,7 @@ STIMULI = {
     "cchip_primtest_array": ("m_result_ready = 1; s_pair_mode = 2;", "s_pair_valid = 1;", "m_result_valid"),
     "cchip_arbiter": ("", "request = 1;", "grant"),
     "cchip_count": ("", "up = 1;", "some"),
+    "cchip_timeout": ("limit = 1; restart = 1; tick;", "restart = 0;", "expired"),
     "cchip_pool": ("m_ready = 1; repeat (40) tick;", "back_valid = 1;", "m_valid"),
     "cchip_counter_file": ("count = 1; tick; count = 0;", "read = 1; tick; read = 0;", "ack"),
     "cchip_vertex_collector": ("", "s_vertex_valid = 1; s_vertex_data[1:0] = 3;", "m_pair_valid"),

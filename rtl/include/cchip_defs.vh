@@ -77,7 +77,7 @@
 `define CCHIP_ROC_CLOCKS_DEFAULT 2
 // longest wait for the pairs inside a slot, unless a register says otherwise [clock]
 `define CCHIP_SHUTDOWN_LIMIT_DEFAULT 65536
-// longest wait for a beat of the bitstream's memory, unless a register says otherwise [clock]
+// longest wait for memory, unless a register says otherwise [clock]
 `define CCHIP_MEMORY_LIMIT_DEFAULT 4096
 // a module has this long from the end of its reset on configuration to show its rm_id, which must
 // then stand for as long again [clock]

@@ -15,9 +15,12 @@
 //                with CCHIP_READ_TIMEOUT after 2 limit + 3 CLIENTS SLOTS + 10 clocks at the latest;
 //                on the last beat there are no data. While memory owes beats under that ID, or the
 //                address is not taken, a request that would have to wait for it is answered with
-//                CCHIP_READ_OWED. Beats that come after the answer, or unasked, are dropped. A client
-//                that uses a slot again only while its bit of `outstanding` is 0 is never refused
-//                because of a response that is missing
+//                CCHIP_READ_OWED. Beats that come after the answer, or unasked, are dropped. A
+//                client that uses a slot again only while its bit of `outstanding` is 0 is never
+//                refused because of a response that is missing
+//   limit        1..2^32 - 1 clocks; 0 means CCHIP_MEMORY_LIMIT_DEFAULT. It may change on any
+//                clock, also during reads: a lower one ends them after 2 limit + 3 CLIENTS SLOTS +
+//                12 clocks from the change at the latest, a higher one, or 0, gives them more time
 //   latency      5 clocks from s_valid to arvalid, 3 from a beat to m_valid
 //   throughput   a beat and an address on every clock; an answer without data takes a clock of the
 //                read channel, at most every other one
@@ -35,7 +38,7 @@ module cchip_axi_read #(
 ) (
     input  wire                                      clk,
     input  wire                                      rst,
-    input  wire [                              31:0] limit,          // clocks
+    input  wire [                              31:0] limit,          // clocks; 0: default
     // requests, one of each client per clock
     input  wire [                       CLIENTS-1:0] s_valid,
     input  wire [         CLIENTS*$clog2(SLOTS)-1:0] s_slot,
@@ -221,24 +224,29 @@ module cchip_axi_read #(
   assign m_axi_arprot  = 3'b000;
 
   // ---- time: a tick every limit + 1 clocks; a read that was live at two ticks is late
-  reg [31:0] timer_q;
-  reg tick_q;
+  wire tick;
+  wire [31:0] since_tick;
+  cchip_timeout #(
+      .DEFAULT(`CCHIP_MEMORY_LIMIT_DEFAULT)
+  ) u_tick (
+      .clk    (clk),
+      .restart(rst | tick),
+      .limit  (limit),
+      .elapsed(since_tick),
+      .expired(tick)
+  );
   reg [ID_W-1:0] scan_q, found_id_q;  // scan_q looks at one read after the other
   wire [IDS-1:0] late = live_q & late_q;
-  wire timer_zero = timer_q == 32'd0;
   wire fail = (found_q | refuse) & ~failing_q;
   always @(posedge clk) begin
-    timer_q <= rst | timer_zero ? limit : timer_q - 32'd1;
     fail_id_q <= found_q ? found_id_q : head_id_q;
     fail_owed_q <= ~found_q;
     if (!found_q) found_id_q <= scan_q;
     if (rst) begin
-      tick_q    <= 1'b0;
       scan_q    <= {ID_W{1'b0}};
       found_q   <= 1'b0;
       failing_q <= 1'b0;
     end else begin
-      tick_q <= timer_zero;
       if (!found_q)
         scan_q <= scan_q == LAST_ID[ID_W-1:0] ? {ID_W{1'b0}} : scan_q + {{ID_W - 1{1'b0}}, 1'b1};
       found_q   <= found_q ? failing_q : late[scan_q];
@@ -346,8 +354,8 @@ module cchip_axi_read #(
   endgenerate
   always @(posedge clk) begin
     first_q <= (first_q & ~counted) | taken;
-    seen_q  <= (tick_q ? live_q : seen_q) & ~offered;
-    late_q  <= (tick_q ? live_q & seen_q : late_q) & ~offered;
+    seen_q  <= (tick ? live_q : seen_q) & ~offered;
+    late_q  <= (tick ? live_q & seen_q : late_q) & ~offered;
     if (rst) begin
       live_q <= {IDS{1'b0}};
       owed_q <= {IDS{1'b0}};
@@ -389,7 +397,7 @@ module cchip_axi_read #(
   assign m_data  = data_q3;
   assign owes    = owes_q;
 
-  wire unused = &{1'b0, queue_ready, one_client};
+  wire unused = &{1'b0, queue_ready, one_client, since_tick};
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_place, !(beat_q && fail_q))

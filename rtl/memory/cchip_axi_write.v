@@ -18,6 +18,9 @@
 //                offered of its data is sent without strobes. While memory owes that response, a
 //                write is not sent but answered with CCHIP_WRITE_OWED. A response that comes after
 //                the answer, or unasked, is dropped
+//   limit        1..2^32 - 1 clocks; 0 means CCHIP_MEMORY_LIMIT_DEFAULT. It may change on any
+//                clock, also during writes: a lower one ends them after 2 limit + OUTSTANDING + 10
+//                clocks from the change at the latest, a higher one, or 0, gives them more time
 //   order        one ID, so responses come in the order of addresses, and data go in that order.
 //                Addresses and data of a write are offered only when all its beats are here: no
 //                client can stall the bus
@@ -37,7 +40,7 @@ module cchip_axi_write #(
 ) (
     input  wire                                       clk,
     input  wire                                       rst,
-    input  wire [                               31:0] limit,         // clocks
+    input  wire [                               31:0] limit,         // clocks; 0: default
     // writes, beat by beat
     input  wire [                        CLIENTS-1:0] s_valid,
     output wire [                        CLIENTS-1:0] s_ready,       // one-hot or 0
@@ -374,26 +377,30 @@ module cchip_axi_write #(
   assign m_axi_bready = bready_q;
 
   // ---- time: a tick every limit + 1 clocks; a write that was under way at two ticks is late
-  reg [31:0] timer_q;
-  reg tick_q;
+  wire tick;
+  wire [31:0] since_tick;
+  cchip_timeout #(
+      .DEFAULT(`CCHIP_MEMORY_LIMIT_DEFAULT)
+  ) u_tick (
+      .clk    (clk),
+      .restart(rst | tick),
+      .limit  (limit),
+      .elapsed(since_tick),
+      .expired(tick)
+  );
   reg [COUNT_W-1:0] old_q, late_q;  // writes waited for that saw the last tick, the last two
-  wire timer_zero = timer_q == 32'd0;
   assign timeout = late_q != {COUNT_W{1'b0}} && !answered;
   wire gone = answered | timeout;
   wire [COUNT_W-1:0] less = {{COUNT_W - 1{1'b0}}, gone};
   wire [COUNT_W-1:0] old_left = old_q - (old_q == {COUNT_W{1'b0}} ? {COUNT_W{1'b0}} : less);
-  always @(posedge clk) begin
-    timer_q <= rst | timer_zero ? limit : timer_q - 32'd1;
+  always @(posedge clk)
     if (rst) begin
-      tick_q <= 1'b0;
       old_q  <= {COUNT_W{1'b0}};
       late_q <= {COUNT_W{1'b0}};
     end else begin
-      tick_q <= timer_zero;
-      old_q  <= tick_q ? waiting - less : old_left;
-      late_q <= tick_q ? old_left : late_q - (late_q == {COUNT_W{1'b0}} ? {COUNT_W{1'b0}} : less);
+      old_q  <= tick ? waiting - less : old_left;
+      late_q <= tick ? old_left : late_q - (late_q == {COUNT_W{1'b0}} ? {COUNT_W{1'b0}} : less);
     end
-  end
 
   // ---- answers, and whose they are
   localparam integer CLIENT_W = OUTSTANDING < 2 ? 1 : $clog2(OUTSTANDING);
@@ -431,7 +438,7 @@ module cchip_axi_write #(
   assign owes    = owes_q;
 
   wire unused = &{1'b0, one_client, dropped, addresses, bursts, write_ready, beat_ready,
-                  dropped_room, address_room, data_room};
+                  dropped_room, address_room, data_room, since_tick};
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_one_answer, !(refused && gone))

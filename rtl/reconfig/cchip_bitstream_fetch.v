@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_defs.vh"
 `include "cchip_assert.vh"
 // cchip_bitstream_fetch: AXI4 read master that reads consecutive words from memory into a FIFO.
 // run = 1 starts; address and words are taken on its first clock. run = 0 empties the FIFO; beats
@@ -13,9 +14,12 @@
 //   cuts         every path but m_ready to the FIFO's: each output is a flip-flop; m_axi_rready is
 //                always 1
 //   errors       bus_error: rresp other than OKAY, rlast too early or too late, a beat that was not
-//                requested; timeout: `limit` clocks without an address taken or a beat. Both stay 1
-//                until run = 0; nothing enters the FIFO any more. RLAST ends a burst, whatever the
-//                count says.
+//                requested; timeout: `limit` clocks without an address taken or a beat, 2 clocks
+//                later. Both stay 1 until run = 0; nothing enters the FIFO any more. RLAST ends a
+//                burst, whatever the count says.
+//   limit        1..2^32 - 1 clocks; 0 means CCHIP_MEMORY_LIMIT_DEFAULT. It may change on any
+//                clock, also during a wait: a lower one that has passed already ends it 3 clocks
+//                after the change, a higher one, or 0, gives more time
 //   reset        must reset the bus too: after it no beat of an earlier read may come
 module cchip_bitstream_fetch #(
     // capacity of the FIFO, words, >= 32
@@ -26,7 +30,7 @@ module cchip_bitstream_fetch #(
     input  wire        run,
     input  wire [31:0] address,        // byte, multiple of 4
     input  wire [29:0] words,
-    input  wire [31:0] limit,          // clocks, > 0
+    input  wire [31:0] limit,          // clocks; 0: default
     output wire        m_valid,
     input  wire        m_ready,
     output wire [31:0] m_data,
@@ -146,17 +150,20 @@ module cchip_bitstream_fetch #(
   assign owes = arvalid_q | owed;
 
   // ---- clocks without an address taken or a beat
-  reg [31:0] wait_q;  // 1 + clocks without progress
-  reg late_q;  // wait_q has reached `limit`
-  reg at_once_q;  // `limit` is 1
-  wire progress = taken | beat | ~owes;
-  always @(posedge clk) begin
-    at_once_q <= limit == 32'd1;
-    wait_q <= progress ? 32'd2 : wait_q + 32'd1;
-    late_q <= progress ? at_once_q : wait_q >= limit;
+  wire late;
+  wire [31:0] waited;
+  cchip_timeout #(
+      .DEFAULT(`CCHIP_MEMORY_LIMIT_DEFAULT)
+  ) u_late (
+      .clk    (clk),
+      .restart(rst | taken | beat | ~owes),
+      .limit  (limit),
+      .elapsed(waited),
+      .expired(late)
+  );
+  always @(posedge clk)
     if (rst) timeout_q <= 1'b0;
-    else timeout_q <= run & (timeout_q | (working & ~progress & late_q));
-  end
+    else timeout_q <= run & (timeout_q | (working & late));
   assign timeout = timeout_q;
 
   wire fifo_ready;
@@ -175,7 +182,7 @@ module cchip_bitstream_fetch #(
       .m_data (m_data)
   );
 
-  wire unused = &{1'b0, fifo_ready};
+  wire unused = &{1'b0, fifo_ready, waited};
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_bursts, bursts_q != 2'd3)

@@ -9,8 +9,11 @@
 //                DECOUPLE on leaves it stopped, decoupled and in reset
 //   time         payload: CFG_DIVIDER clocks per port word (the paper's eq. 4) while memory keeps
 //                up; see the datasheet for the rest; every wait has a bound: shutdown_limit for the
-//                pairs, memory_limit for each beat. A limit counts from the clock on which it is
-//                written, in a swap under way too.
+//                pairs, memory_limit for each beat
+//   limits       1..2^32 - 1 clocks; 0 means CCHIP_SHUTDOWN_LIMIT_DEFAULT and
+//                CCHIP_MEMORY_LIMIT_DEFAULT. Each counts from the clock on which it is written, in a
+//                swap under way too: a lower one also for the clocks that have passed, a higher
+//                one, or 0, gives more time
 //   busy         a request during a swap is taken and answered BUSY; every request is answered by
 //                exactly one report
 //   clocks       cfg_error may come from any clock, see cchip_swap_sequencer; the rest of the
@@ -140,9 +143,7 @@ module cchip_config_controller #(
   // ---- memory to header or port
   reg [31:0] fetch_address_q;
   reg [29:0] fetch_words_q;
-  reg no_limit_q;  // memory_limit is 0
   always @(posedge clk) begin
-    no_limit_q <= memory_limit == 32'd0;
     fetch_address_q <= address + (in_header ? 32'd0 : `CCHIP_BITSTREAM_HEADER);
     fetch_words_q   <= in_header ? 30'd4 : length[31:2] + {29'd0, length[1:0] != 2'd0};
   end
@@ -153,7 +154,7 @@ module cchip_config_controller #(
       .run          (run),
       .address      (fetch_address_q),
       .words        (fetch_words_q),
-      .limit        (memory_limit | (`CCHIP_MEMORY_LIMIT_DEFAULT & {32{no_limit_q}})),
+      .limit        (memory_limit),
       .m_valid      (fetch_valid),
       .m_ready      (in_header_q | port_ready),
       .m_data       (fetch_data),

@@ -17,6 +17,9 @@
 //                clocks later or 3
 //   bounds       SHUTDOWN: shutdown_limit; DECOUPLE, ROC, RECOUPLE: SLOT_LIMIT; HEADER and
 //                TRANSFER: error or timeout of the fetch, or their words are there; the rest: fixed
+//   limit        shutdown_limit: 1..2^32 - 1 clocks; 0 means CCHIP_SHUTDOWN_LIMIT_DEFAULT. It may
+//                change on any clock: a lower one that has passed already ends SHUTDOWN 4 clocks
+//                after the change, a higher one, or 0, gives more time
 //   clocks       cfg_error may come from any clock: it passes two flip-flops. Everything else
 //                belongs to clk.
 //   cuts         every path: each output is a flip-flop, m_report_data one of two
@@ -39,7 +42,7 @@ module cchip_swap_sequencer #(
     output wire                                 m_report_valid,
     output wire [     `CCHIP_SWAP_REPORT_W-1:0] m_report_data,
     input  wire                                 abort_swap,
-    input  wire [                         31:0] shutdown_limit,
+    input  wire [                         31:0] shutdown_limit,   // clocks; 0: default
     output wire [                    SLOTS-1:0] stop,
     output wire [                    SLOTS-1:0] decouple,
     output wire [                    SLOTS-1:0] hold_reset,
@@ -181,25 +184,29 @@ module cchip_swap_sequencer #(
   // ---- clocks of the phase and of the state, and the bound of the phase
   wire moves;  // to another state
   wire turns;  // to another phase
-  reg [31:0] clocks_q;
+  wire [31:0] clocks;
+  wire shutdown_expired;
   reg [4:0] ticks_q;  // stops at 31
   reg last_q;  // the clock on which a state of fixed length is decided
   reg error_counts_q;  // of TRANSFER: cfg_error of an earlier clock is over
-  reg expired_q;
-  reg no_limit_q;  // shutdown_limit is 0
-  wire [31:0] shutdown_bound =
-      shutdown_limit | (`CCHIP_SHUTDOWN_LIMIT_DEFAULT & {32{no_limit_q}});
+  reg expired_q;  // SLOT_LIMIT
+  cchip_timeout #(
+      .DEFAULT(`CCHIP_SHUTDOWN_LIMIT_DEFAULT)
+  ) u_shutdown (
+      .clk    (clk),
+      .restart(turns),
+      .limit  (shutdown_limit),
+      .elapsed(clocks),
+      .expired(shutdown_expired)
+  );
   always @(posedge clk) begin
-    no_limit_q <= shutdown_limit == 32'd0;
-    clocks_q <= turns ? 32'd1 : clocks_q + 32'd1;
     ticks_q <= moves ? 5'd0 : ticks_q + {4'd0, ~&ticks_q};
     last_q <= !moves && ((at_q[JUDGE] && ticks_q == JUDGE_LAST - 5'd1)
         || (at_q[CHECK] && ticks_q == CHECK_LAST - 5'd1)
         || (at_q[SETTLE] && ticks_q == SETTLE_LAST - 5'd1)
         || (at_q[MATCH] && ticks_q == MATCH_LAST - 5'd1));
     error_counts_q <= !moves && ticks_q >= ERROR_FIRST - 5'd1;
-    expired_q <= !turns
-        && (at_q[SHUTDOWN] ? clocks_q >= shutdown_bound : clocks_q >= LIMIT);
+    expired_q <= !turns && clocks >= LIMIT;
   end
 
   // ---- abort: kept until a state takes notice, dropped with the swap
@@ -233,8 +240,8 @@ module cchip_swap_sequencer #(
       phase_after = phase_after | `CCHIP_PHASE_SHUTDOWN;
     end
 
-    done[SHUTDOWN] = quiet_q | decoupled_q | (expired_q & force_q);
-    fails[SHUTDOWN] = expired_q & ~(quiet_q | decoupled_q | force_q);
+    done[SHUTDOWN] = quiet_q | decoupled_q | (shutdown_expired & force_q);
+    fails[SHUTDOWN] = shutdown_expired & ~(quiet_q | decoupled_q | force_q);
     if (at_q[SHUTDOWN]) begin
       code = code | `CCHIP_SWAP_SHUTDOWN;
       phase_after = phase_after | `CCHIP_PHASE_DECOUPLE;
@@ -389,7 +396,7 @@ module cchip_swap_sequencer #(
   assign hold_reset = hold_reset_q;
   assign roc_start = roc_start_q;
   assign phase = phase_q;
-  assign phase_clocks = clocks_q;
+  assign phase_clocks = clocks;
   assign busy = ~idle;
   assign slot = slot_q;
   assign module_id = module_q;

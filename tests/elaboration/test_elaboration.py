@@ -55,6 +55,7 @@ PLACE = "cchip_error_PLACE_W_must_be_3_to_12"
 TAKERS = "cchip_error_TAKERS_must_be_2_to_5"
 CREDIT = "cchip_error_CREDIT_must_be_1_to_256"
 ARBITER = "cchip_error_arbiter_N_must_be_1_to_32"
+TIMEOUT = "cchip_error_timeout_DEFAULT_below_1"
 COUNT = "cchip_error_count_LIMIT_must_be_1_to_65535"
 MERGE = "cchip_error_result_merge_SOURCES_not_2_to_8_or_WIDTH_below_1"
 CRC = "cchip_error_crc32_DATA_W_must_be_a_multiple_of_8"
@@ -144,6 +145,7 @@ ILLEGAL = [
     ("cchip_pr_slot", {"ROC_CYCLES": 0}, ROC),
     *(("cchip_arbiter", {"N": n}, ARBITER) for n in (0, 33)),
     *(("cchip_count", {"LIMIT": n}, COUNT) for n in (0, 65536)),
+    ("cchip_timeout", {"DEFAULT": 0}, TIMEOUT),
     *(("cchip_pool", case, POOL) for case in ({"COUNT": 0}, {"COUNT": 257, "WIDTH": 9}, {"FIRST": 1}, {"WIDTH": 0})),
     *(("cchip_vertex_collector", {"COORD_W": n}, COORD_W) for n in (3, 21)),
     *(("cchip_descriptor_queues", {"DEPTH": n}, QUEUE) for n in (8, 24, 2048)),
@@ -221,6 +223,7 @@ LEGAL = [
     *(("cchip_axi_write", {"CLIENTS": c, "DATA_W": w, "OUTSTANDING": o, "ID_W": i})
       for c, w, o, i in ((1, 512, 1, 1), (4, 64, 64, 16))),
     *(("cchip_count", {"LIMIT": n}) for n in (1, 65535)),
+    *(("cchip_timeout", {"DEFAULT": n}) for n in (1, 2147483647)),
     *(("cchip_pool", {"FIRST": f, "COUNT": n, "WIDTH": w}) for f, n, w in ((0, 1, 1), (0, 256, 8), (48, 16, 6))),
     *(("cchip_vertex_collector", {"COORD_W": n}) for n in (4, 20)),
     *(("cchip_descriptor_queues", {"DEPTH": d, "KINDS": k, "WIDTH": w}) for d, k, w in ((16, 1, 1), (1024, 3, 80))),

@@ -2,7 +2,7 @@
 `default_nettype none
 `include "cchip_defs.vh"
 // Proved of cchip_axi_read, whatever memory does (also against the rules of the bus, but for what SPEAKS_TRUE assumes) and
-// whatever clients ask for that follow the rule "again only after the last beat":
+// whatever clients ask for that follow the rule "again only after the last beat", with a `limit` that changes on any clock:
 //   addresses are stable until taken; the ID of an address is of no read that memory still owes; the address is that of the
 //   request; no beat is handed out that did not come three clocks before under this ID, for a read whose address was
 //   taken before and after the request was made, each once and in order; OK only after all beats of the line, each with OKAY, rlast on the
@@ -28,7 +28,9 @@ module cchip_axi_read_properties #(
 );
   localparam integer SLOT_W = $clog2(SLOTS);
   localparam integer ID_W = $clog2(CLIENTS) + SLOT_W;
-  localparam [31:0] LIMIT = 32'd1;
+  // changes on any clock; 0, which means the default, is a limit that no trace reaches
+  (* anyseq *) wire [1:0] any_limit;
+  wire [31:0] limit = any_limit;
   localparam [2:0] LAST_BEAT = 512 / DATA_W - 1;
 
   wire [CLIENTS-1:0] m_valid;
@@ -51,7 +53,7 @@ module cchip_axi_read_properties #(
   ) dut (
       .clk          (clk),
       .rst          (rst),
-      .limit        (LIMIT),
+      .limit        (limit),
       .s_valid      (s_valid),
       .s_slot       (s_slot),
       .s_line       (s_line),

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// Proved of cchip_axi_write, whatever memory does (also against the rules of the bus) and whatever clients offer:
+// Proved of cchip_axi_write, whatever memory does (also against the rules of the bus) and whatever clients offer, with a
+// `limit` that changes on any clock:
 //   addresses and data are stable until taken; a burst lies within a line, has as many beats as its address says, wlast on
 //   the last one only; memory never has more than OUTSTANDING writes to answer; addresses and data go in the same order;
 //   every write is answered once, after its last beat, in the order of its client's writes: OK or BUS two clocks after a
 //   response that came for it, when its address and all its data, with the strobes of the client, had been taken; TIMEOUT
 //   without such a response; OWED only for a write of which memory has seen nothing and never sees anything; and while there
-//   are writes to answer an answer comes within BOUND clocks.
+//   are writes to answer and `limit` stays 1 an answer comes within BOUND clocks.
 // One write, any: the solver chooses the client and the write that is followed. It marks its address and its strobes.
 module cchip_axi_write_properties #(
     parameter integer CLIENTS     = 2,
@@ -30,7 +31,9 @@ module cchip_axi_write_properties #(
   localparam integer STRB_W = DATA_W / 8;
   localparam integer ADDRESS_W = 64 - $clog2(STRB_W);
   localparam integer PLACE = $clog2(STRB_W);  // bit of an address: second half of the line
-  localparam [31:0] LIMIT = 32'd1;
+  // changes on any clock; 0, which means the default, is a limit that no trace reaches
+  (* anyseq *) wire [1:0] any_limit;
+  wire [31:0] limit = any_limit;
   localparam [4:0] BOUND = 5'd9;
 
   wire [CLIENTS-1:0] s_ready, m_valid;
@@ -50,7 +53,7 @@ module cchip_axi_write_properties #(
   ) dut (
       .clk          (clk),
       .rst          (rst),
-      .limit        (LIMIT),
+      .limit        (limit),
       .s_valid      (s_valid),
       .s_ready      (s_ready),
       .s_last       (s_last),
@@ -161,7 +164,7 @@ module cchip_axi_write_properties #(
   reg [3:0] w_was;
   wire [2:0] aw_is = {m_axi_awaddr[63], m_axi_awaddr[PLACE], m_axi_awlen[0]};
   wire [3:0] w_is = {m_axi_wstrb[STRB_W-1], m_axi_wstrb[0], m_axi_wdata[0], m_axi_wlast};
-  // clocks without an answer while there are writes to answer
+  // clocks without an answer while there are writes to answer and the limit is 1
   reg [4:0] waits_q;
 
   always @(posedge clk) begin
@@ -208,7 +211,7 @@ module cchip_axi_write_properties #(
       w_seen     <= w_seen | w_mine;
       sent_q     <= sent_q + {1'd0, take_data & w_mine};
       came_q     <= {came_q[0], its_response};
-      waits_q    <= open_q == 0 || m_valid != 0 ? 5'd0 : waits_q + 5'd1;
+      waits_q    <= open_q == 0 || m_valid != 0 || limit != 1 ? 5'd0 : waits_q + 5'd1;
       late_q     <= late_q | (its_response & answered_q);
     end
   end

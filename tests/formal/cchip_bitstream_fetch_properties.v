@@ -2,8 +2,8 @@
 `default_nettype none
 // Proved of cchip_bitstream_fetch, for 38 clocks from reset, whatever memory does (also against its own rules):
 //   addresses are stable until taken, bursts lie within 64 bytes, two are under way at most, the FIFO is never pushed when
-//   full (assertion a_room of the FIFO); no word appears after run = 0; after `limit` clocks without progress there is a
-//   timeout; an error or a timeout lasts until run = 0. With ROOM, for 20 clocks: never are more words asked for than the
+//   full (assertion a_room of the FIFO); no word appears after run = 0; a timeout comes after `limit` clocks
+//   without progress and never before, while `limit` changes on any clock; an error or a timeout lasts until run = 0. With ROOM, for 20 clocks: never are more words asked for than the
 //   FIFO has room for.
 module cchip_bitstream_fetch_properties (
     input wire        clk,
@@ -18,7 +18,9 @@ module cchip_bitstream_fetch_properties (
     input wire [ 1:0] m_axi_rresp,
     input wire        m_axi_rlast
 );
-  localparam [31:0] LIMIT = 32'd4;
+  // changes on any clock; 0, which means the default, is a limit that no trace reaches
+  (* anyseq *) wire [2:0] any_limit;
+  wire [31:0] limit = any_limit;
   wire m_valid, bus_error, timeout, owes, m_axi_arvalid, m_axi_rready;
   wire [31:0] m_data, m_axi_araddr;
   wire [7:0] m_axi_arlen;
@@ -31,7 +33,7 @@ module cchip_bitstream_fetch_properties (
       .run          (run),
       .address      (address),
       .words        (words),
-      .limit        (LIMIT),
+      .limit        (limit),
       .m_valid      (m_valid),
       .m_ready      (m_ready),
       .m_data       (m_data),
@@ -61,6 +63,11 @@ module cchip_bitstream_fetch_properties (
   reg [7:0] arlen_q;
   reg [1:0] bursts_q = 2'd0;
   reg [2:0] idle_q = 3'd0;  // clocks without progress while a beat is owed
+  reg [2:0] idle_q2 = 3'd0;
+  reg [2:0] limit_q, limit_q2, limit_q3;
+  reg timeout_q = 1'b0;
+  // the limit was reached 2 clocks ago, by the one of a clock before
+  wire reached = idle_q2 != 3'd0 && limit_q3 != 3'd0 && idle_q2 >= limit_q3;
   reg [6:0] asked_for_q = 7'd0;  // words asked for since run, less those that left the FIFO
   wire [6:0] asked_for = asked_for_q + (m_axi_arvalid & ~asked_q & run_q ? m_axi_arlen[6:0] + 7'd1 : 7'd0);
   wire taken = m_axi_arvalid & m_axi_arready;
@@ -78,6 +85,9 @@ module cchip_bitstream_fetch_properties (
     araddr_q <= m_axi_araddr;
     arlen_q <= m_axi_arlen;
     bursts_q <= rst ? 2'd0 : bursts_q + {1'b0, taken} - {1'b0, ended};
+    idle_q2 <= rst ? 3'd0 : idle_q;
+    {limit_q3, limit_q2, limit_q} <= {limit_q2, limit_q, any_limit};
+    timeout_q <= timeout & ~rst;
     asked_for_q <= rst | ~run_q ? 7'd0 : asked_for - {6'd0, m_valid & m_ready};
     idle_q <= rst | ~run | ~run_q | ~busy | taken | beat ? 3'd0 : idle_q == 3'd7 ? 3'd7 : idle_q + 3'd1;
   end
@@ -96,7 +106,8 @@ module cchip_bitstream_fetch_properties (
 `endif
       debt: assert (owes == busy);
       empty: assert (run_q || run_q2 || !m_valid);
-      late: assert (idle_q <= LIMIT[2:0] || bus_error || timeout);
+      late: assert (!reached || bus_error || timeout || !run_q);
+      early: assert (!timeout || timeout_q || reached);
       sticky: assert (!failed_q || bus_error || timeout || !run_q);
       awake: assert (m_axi_rready);
     end

@@ -5,7 +5,7 @@
 //   phases follow their order; during TRANSFER and CHECK the slot is stopped, seen decoupled and in reset, in ROC stopped and
 //   decoupled; the reset ends as ROC begins, on the clock on which the reset on configuration starts; decouple falls only as
 //   RECOUPLE begins, after a good check and at least SETTLED clocks after that start; the other slot is left alone; every
-//   request gets exactly one report and no report comes unasked; every phase is bounded, if the fetch ends header and
+//   request gets exactly one report and no report comes unasked; every phase is bounded, SHUTDOWN by a limit that changes on any clock and that alone fails it (80 clocks), if the fetch ends header and
 //   transfer by an event of its own (ROC: for 80 clocks from reset).
 //   Reset, decoupled, stopped imply each other (RTL assertions).
 module cchip_swap_sequencer_properties (
@@ -30,7 +30,9 @@ module cchip_swap_sequencer_properties (
     input  wire                             cfg_error
 );
   localparam [7:0] SETTLED = 8'd32;
-  localparam [31:0] LIMIT = 32'd5;
+  // changes on any clock; 0, which means the default, is a limit that no trace reaches
+  (* anyseq *) wire [2:0] any_limit;
+  wire [31:0] limit = any_limit;
   localparam [7:0] SLOT_LIMIT = 8'd16;
   wire s_swap_ready, m_report_valid, busy, run;
   wire [`CCHIP_SWAP_REPORT_W-1:0] m_report_data;
@@ -50,7 +52,7 @@ module cchip_swap_sequencer_properties (
       .m_report_valid(m_report_valid),
       .m_report_data (m_report_data),
       .abort_swap    (abort_swap),
-      .shutdown_limit(LIMIT),
+      .shutdown_limit(limit),
       .stop          (stop),
       .decouple      (decouple),
       .hold_reset    (hold_reset),
@@ -88,6 +90,9 @@ module cchip_swap_sequencer_properties (
   reg [7:0] clocks_q = 8'd0;  // in this phase
   reg [1:0] open_q = 2'd0;  // requests without report
   reg crc_ok_q, crc_ok_q2;
+  reg [2:0] limit_q;
+  reg reached_q;  // in this phase its clocks had reached the limit
+  reg zero_q;  // in this phase the limit was the default
   wire [1:0] mine = slot == 8'd0 ? 2'b01 : slot == 8'd1 ? 2'b10 : 2'b00;
   wire accept = s_swap_valid & s_swap_ready;
   wire ends = header_done | bus_error | timeout;
@@ -107,6 +112,10 @@ module cchip_swap_sequencer_properties (
     crc_ok_q2 <= crc_ok_q;
     if (phase == `CCHIP_PHASE_TRANSFER) good_q <= good_q & ~mine;
     else if (phase == `CCHIP_PHASE_ROC && phase_q == `CCHIP_PHASE_CHECK && crc_ok_q2) good_q <= good_q | mine;
+    limit_q <= any_limit;
+    reached_q <= phase != phase_q ? limit_q == 3'd1
+        : reached_q || (limit_q != 3'd0 && clocks_q + 8'd1 >= limit_q);
+    zero_q <= limit_q == 3'd0 || (zero_q && phase == phase_q);
     since_q <= roc_start != 2'b00 ? 8'd1 : since_q == 8'd255 ? since_q : since_q + 8'd1;
     clocks_q <= rst || phase != phase_q ? 8'd1 : clocks_q == 8'd255 ? clocks_q : clocks_q + 8'd1;
     open_q <= rst ? 2'd0 : open_q + {1'b0, accept} - {1'b0, m_report_valid};
@@ -139,9 +148,10 @@ module cchip_swap_sequencer_properties (
       answered: assert (open_q != 2'd3 && (phase != `CCHIP_PHASE_IDLE || open_q <= 2'd1));
       // the task `prove` leaves out the bound of ROC, which ends with a count of 31 clocks: it took too long
 `ifdef SKIP_ROC
-      bounded: assert (phase == `CCHIP_PHASE_IDLE || phase == `CCHIP_PHASE_ROC || changed || clocks_q <= SLOT_LIMIT + 8'd4);
+      bounded: assert (phase == `CCHIP_PHASE_IDLE || phase == `CCHIP_PHASE_ROC || changed || (phase == `CCHIP_PHASE_SHUTDOWN && zero_q) || clocks_q <= SLOT_LIMIT + 8'd4);
 `else
-      bounded: assert (phase == `CCHIP_PHASE_IDLE || changed || clocks_q <= SLOT_LIMIT + 8'd36);
+      early: assert (!m_report_valid || phase_q != `CCHIP_PHASE_SHUTDOWN || m_report_data[`CCHIP_SWAP_REPORT_CODE] != `CCHIP_SWAP_SHUTDOWN || reached_q);
+      bounded: assert (phase == `CCHIP_PHASE_IDLE || changed || (phase == `CCHIP_PHASE_SHUTDOWN && zero_q) || clocks_q <= SLOT_LIMIT + 8'd36);
 `endif
     end
   end

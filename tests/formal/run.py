@@ -43,6 +43,7 @@ DISPATCH = "rtl/dispatch/cchip_dispatch_sequencer.v"
 DISPATCHER = "rtl/dispatch/cchip_dispatcher.v"
 QUEUES = "rtl/dispatch/cchip_descriptor_queues.v"
 RETRY = "rtl/reconfig/cchip_swap_retry.v"
+TIMEOUT = "rtl/common/cchip_timeout.v"
 FETCH = "rtl/reconfig/cchip_bitstream_fetch.v"
 READ = "rtl/memory/cchip_axi_read.v"
 WRITE = "rtl/memory/cchip_axi_write.v"
@@ -88,7 +89,11 @@ MUTANTS = [
     ("cchip_swap_sequencer prove", SEQUENCER, "at_q <= {at_q[STATES-2:0], at_q[REPORT]};", "at_q <= at_q[TRANSFER] ? 14'd1 << PULSE : {at_q[STATES-2:0], at_q[REPORT]};"),
     ("cchip_swap_sequencer prove", SEQUENCER, "set_hold = mine_q & {SLOTS{passes[DECOUPLE]}};", "set_hold = {SLOTS{passes[DECOUPLE]}};"),
     ("cchip_swap_sequencer prove", SEQUENCER, "(hold_reset_q | set_hold) & ~start_roc;", "(hold_reset_q | set_hold) & ~recouple;"),
-    ("cchip_swap_sequencer prove", SEQUENCER, "(at_q[SHUTDOWN] ? clocks_q >= shutdown_bound : clocks_q >= LIMIT);", "abort_q;"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "expired_q <= !turns && clocks >= LIMIT;", "expired_q <= abort_q;"),
+    ("cchip_swap_sequencer bounded", SEQUENCER, ".restart(turns),", ".restart(1'b0),"),
+    ("cchip_bitstream_fetch bounded", TIMEOUT, "bound_q   <= limit == 32'd0 ? BOUND : limit;", "bound_q   <= limit;"),
+    ("cchip_bitstream_fetch bounded", TIMEOUT, "expired_q <= !restart && elapsed_q >= bound_q;", "expired_q <= !restart && elapsed_q == bound_q;"),
+    ("cchip_axi_write bounded_1", TIMEOUT, "elapsed_q >= bound_q;", "elapsed_q == bound_q;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "done[DECOUPLE] = decoupled_q;", "done[DECOUPLE] = quiet_q;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "refuse_q <= (accept & ~idle) | (refuse_q & reports);", "refuse_q <= accept & ~idle;"),
     ("cchip_bitstream_fetch bounded", FETCH, "to_edge_q <= 5'd16 - {1'b0, address[5:2]};", "to_edge_q <= 5'd16;"),

@@ -77,6 +77,22 @@ void expect(const char* what, const Got& got, const Expected& expected) {
 
 inline bool chance(Random& random, int percent) { return static_cast<int>(random() % 100) < percent; }
 
+/// A limit for something that must have `least` clocks: 0 (a default, which must be enough), near `least`, or far away.
+inline std::uint32_t any_limit(Random& random, std::uint32_t least) {
+  switch (random() % 5) {
+    case 0:
+      return 0;
+    case 1:
+      return ~std::uint32_t{0};
+    case 2:
+      return least;
+    case 3:
+      return 1U << 20;
+    default:
+      return least + static_cast<std::uint32_t>(random() % (3 * std::uint64_t{least}));
+  }
+}
+
 /// Signed numbers of `width` bits at which errors are likely.
 inline std::vector<std::int64_t> extremes(int width) {
   const std::int64_t half = std::int64_t{1} << (width - 1);

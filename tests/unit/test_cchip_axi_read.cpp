@@ -30,12 +30,14 @@ struct Behaviour {
   int unasked;       ///< a beat on a clock that nobody asked for
   int silence;       ///< periods without any address taken or beat: they begin on a clock with 1 / 2^silence; 0: none
   std::uint32_t limit;
+  bool changes = false;  ///< the limit changes: up, down, to the default and to the highest
 };
 constexpr Behaviour behaviours[] = {
     {"fast", 100, 100, true, 0, 0, 0, 0, 0, 100000},     {"in order", 50, 60, true, 0, 0, 0, 0, 0, 100000},
     {"any order", 80, 80, false, 0, 0, 0, 0, 0, 100000}, {"slow", 10, 10, false, 0, 0, 0, 0, 0, 100000},
     {"errors", 80, 80, false, 5, 10, 0, 10, 0, 100000},  {"late", 60, 60, false, 2, 5, 10, 2, 0, 150},
     {"silent", 60, 80, false, 1, 2, 5, 1, 9, 200},       {"no time", 60, 80, false, 1, 2, 5, 1, 8, 3},
+    {"changes", 60, 80, false, 1, 2, 5, 1, 8, 60, true},
 };
 
 struct Owed {
@@ -73,6 +75,8 @@ class ReadBench {
     for (int clock = 0; clock < clocks; ++clock) step(clock == 0 ? 0 : percent);
     for (Owed& read : owed_) read.lost = false;
     how_.silence = how_.lost = how_.unasked = 0;
+    how_.changes = false;
+    top_.limit = how.limit;
     silent_ = 0;
     how_.ready = how_.valid = 60;
     for (int clock = 0; clock < 40000 && (open() != 0 || !owed_.empty() || model_.owes()); ++clock) step(0);
@@ -93,7 +97,8 @@ class ReadBench {
 
   void step(int percent) {
     model::AxiRead::Inputs in;
-    in.limit = how_.limit;
+    if (how_.changes && chance(random_, 2)) top_.limit = any_limit(random_, how_.limit);
+    in.limit = top_.limit;
     if (silent_ > 0) {
       --silent_;
       if (silent_ == 0) {
@@ -324,5 +329,65 @@ TEMPLATE_LIST_TEST_CASE("cchip_axi_read: a beat on every clock; a silent bus end
     const std::uint64_t lines = bench.answers[0];
     INFO(lines << " lines of " << beats << " beats in 2000 clocks");
     if (TestType::SLOTS * TestType::CLIENTS * beats > 16) REQUIRE(lines * beats > 1900);
+  });
+}
+
+namespace {
+
+/// Clock on which the answer to a read comes whose address is taken and that memory never answers; 0: none in `clocks`.
+/// The limit changes on clock `when`; the request is on clock 0.
+template <class Config, class Simulation>
+int clock_of_timeout(Simulation& simulation, std::uint32_t before, std::uint32_t after, int when, int clocks) {
+  auto& top = simulation.top();
+  top.limit = before;
+  top.s_valid = 0;
+  top.m_axi_arready = 1;
+  top.m_axi_rvalid = 0;
+  simulation.reset();
+  if (when < 0) top.limit = after;
+  simulation.steps(20);
+  for (int clock = 0; clock < clocks; ++clock) {
+    top.s_valid = clock == 0 ? 1 : 0;
+    if (clock == when) top.limit = after;
+    simulation.settle();
+    if (top.m_valid != 0) {
+      REQUIRE(top.m_code == static_cast<unsigned>(ReadCode::timeout));
+      return clock;
+    }
+    simulation.rise();
+  }
+  return 0;
+}
+
+}  // namespace
+
+TEMPLATE_LIST_TEST_CASE("cchip_axi_read: a limit counts from the clock on which it changes, 0 is the default",
+                        "[unit][cchip_axi_read]", cchip_axi_read_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random&) {
+    constexpr int more = 3 * TestType::CLIENTS * TestType::SLOTS + 12;
+    const auto clock_of = [&](std::uint32_t before, std::uint32_t after, int when, int clocks) {
+      return clock_of_timeout<TestType>(simulation, before, after, when, clocks);
+    };
+    for (const int limit : {1, 2, 100}) {
+      const auto bound = static_cast<std::uint32_t>(limit);
+      for (const std::uint32_t high : {20000U, 0U, ~0U}) {
+        CAPTURE(limit, high);
+        for (const int when : {-1, 3, 50, 130, 700}) {  // lowered, before and during the read
+          CAPTURE(when);
+          const int clock = clock_of(high, bound, when, 20000);
+          REQUIRE(clock > limit);
+          REQUIRE(clock >= when);
+          REQUIRE(clock <= std::max(when, 0) + 2 * limit + more);
+        }
+        if (limit < 100) continue;
+        for (int when = 0; when < limit; when += 7) REQUIRE(clock_of(bound, high, when, 3000) == 0);  // raised
+      }
+    }
+    constexpr int standard = defs::memory_limit_default;
+    for (const int when : {-1, 60}) {
+      const int clock = clock_of(100, 0, when, 10000);
+      REQUIRE(clock > standard);
+      REQUIRE(clock <= std::max(when, 0) + 2 * standard + more);
+    }
   });
 }

@@ -26,19 +26,15 @@ struct Behaviour {
   int unasked;   ///< a response on a clock to no write, or with another ID
   int silence;   ///< periods in which nothing is taken or answered: they begin on a clock with 1 / 2^silence; 0: none
   std::uint32_t limit;
+  bool changes = false;  ///< the limit changes: up, down, to the default and to the highest
 };
 constexpr Behaviour behaviours[] = {
-    {"fast", 100, 100, 100, 0, 0, 0, 0, 0, 100000},
-    {"pauses", 100, 100, 100, 50, 0, 0, 0, 0, 100000},
-    {"usual", 60, 70, 60, 10, 0, 0, 0, 0, 100000},
-    {"data first", 10, 90, 60, 10, 0, 0, 0, 0, 100000},
-    {"address first", 90, 10, 60, 0, 0, 0, 0, 0, 100000},
-    {"slow", 10, 20, 10, 0, 0, 0, 0, 0, 100000},
-    {"errors", 80, 80, 80, 10, 10, 0, 10, 0, 100000},
-    {"late", 60, 60, 60, 5, 2, 5, 5, 0, 150},
-    {"silent", 60, 80, 80, 5, 1, 2, 2, 8, 200},
-    {"no time", 60, 80, 80, 5, 1, 2, 2, 8, 3},
-    {"none", 100, 100, 100, 0, 0, 0, 0, 9, 0},
+    {"fast", 100, 100, 100, 0, 0, 0, 0, 0, 100000},       {"pauses", 100, 100, 100, 50, 0, 0, 0, 0, 100000},
+    {"usual", 60, 70, 60, 10, 0, 0, 0, 0, 100000},        {"data first", 10, 90, 60, 10, 0, 0, 0, 0, 100000},
+    {"address first", 90, 10, 60, 0, 0, 0, 0, 0, 100000}, {"slow", 10, 20, 10, 0, 0, 0, 0, 0, 100000},
+    {"errors", 80, 80, 80, 10, 10, 0, 10, 0, 100000},     {"late", 60, 60, 60, 5, 2, 5, 5, 0, 150},
+    {"silent", 60, 80, 80, 5, 1, 2, 2, 8, 200},           {"no time", 60, 80, 80, 5, 1, 2, 2, 8, 3},
+    {"least", 100, 100, 100, 0, 0, 0, 0, 9, 1},           {"changes", 60, 80, 80, 5, 1, 2, 2, 8, 60, true},
 };
 
 template <class Config>
@@ -66,6 +62,8 @@ class WriteBench {
     }
     lost_.clear();
     how_.silence = how_.lost = how_.unasked = 0;
+    how_.changes = false;
+    top_.limit = how.limit;
     silent_ = 0;
     how_.address = how_.data = how_.response = 60;
     for (int clock = 0; clock < 40000 && (open() != 0 || model_.owes()); ++clock) step(0);
@@ -132,7 +130,8 @@ class WriteBench {
 
   void step(int percent) {
     model::AxiWrite::Inputs in;
-    in.limit = how_.limit;
+    if (how_.changes && chance(random_, 2)) top_.limit = any_limit(random_, how_.limit);
+    in.limit = top_.limit;
     if (silent_ > 0) {
       --silent_;
       if (silent_ == 0) lost_.clear();
@@ -424,6 +423,71 @@ TEMPLATE_LIST_TEST_CASE("cchip_axi_write: a beat on every clock; a silent bus en
       bench.run(behaviours[0], 100, 2000, most);
       INFO(bench.beats_taken << " beats in 2250 clocks");
       if (TestType::OUTSTANDING >= 16) REQUIRE(bench.beats_taken > 2200);
+    }
+  });
+}
+
+namespace {
+
+/// Clock on which the answer to a write comes that memory takes and never answers; 0: none in `clocks`. The limit
+/// changes on clock `when`; the write is offered from clock 0 on.
+template <class Config, class Simulation>
+int clock_of_timeout(Simulation& simulation, std::uint32_t before, std::uint32_t after, int when, int clocks) {
+  auto& top = simulation.top();
+  top.limit = before;
+  top.s_valid = 0;
+  top.s_last = (1 << Config::CLIENTS) - 1;
+  top.m_axi_awready = 1;
+  top.m_axi_wready = 1;
+  top.m_axi_bvalid = 0;
+  simulation.reset();
+  if (when < 0) top.limit = after;
+  simulation.steps(20);
+  bool offered = true;
+  for (int clock = 0; clock < clocks; ++clock) {
+    top.s_valid = offered ? 1 : 0;
+    if (clock == when) top.limit = after;
+    simulation.settle();
+    if (top.m_valid != 0) {
+      REQUIRE(top.m_code == static_cast<unsigned>(WriteCode::timeout));
+      return clock;
+    }
+    if ((top.s_ready & 1) != 0) offered = false;
+    simulation.rise();
+  }
+  return 0;
+}
+
+}  // namespace
+
+TEMPLATE_LIST_TEST_CASE("cchip_axi_write: a limit counts from the clock on which it changes, 0 is the default",
+                        "[unit][cchip_axi_write]", cchip_axi_write_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random&) {
+    constexpr int more = TestType::OUTSTANDING + 10;
+    const auto clock_of = [&](std::uint32_t before, std::uint32_t after, int when, int clocks) {
+      return clock_of_timeout<TestType>(simulation, before, after, when, clocks);
+    };
+    constexpr int turn = 5;  // clocks until the write's turn, when it begins to last
+    for (const int limit : {1, 2, 100}) {
+      const auto bound = static_cast<std::uint32_t>(limit);
+      for (const std::uint32_t high : {20000U, 0U, ~0U}) {
+        CAPTURE(limit, high);
+        for (const int when : {-1, 3, 50, 130, 700}) {  // lowered, before and during the write
+          CAPTURE(when);
+          const int clock = clock_of(high, bound, when, 20000);
+          REQUIRE(clock > limit);
+          REQUIRE(clock >= when);
+          REQUIRE(clock <= std::max(when, turn) + 2 * limit + more);
+        }
+        if (limit < 100) continue;
+        for (int when = 0; when < limit; when += 7) REQUIRE(clock_of(bound, high, when, 3000) == 0);  // raised
+      }
+    }
+    constexpr int standard = defs::memory_limit_default;
+    for (const int when : {-1, 60}) {
+      const int clock = clock_of(100, 0, when, 10000);
+      REQUIRE(clock > standard);
+      REQUIRE(clock <= std::max(when, turn) + 2 * standard + more);
     }
   });
 }

@@ -48,6 +48,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_fetch: every word in order, never more 
       top.run = 1;
       simulation.run_until(
           [&] {
+            if (chance(random, 10)) top.limit = any_limit(random, 500);
             most = std::max<std::size_t>(most, memory.beats() - before + memory.owed() - got.size());
             return got.size() >= enough;
           },
@@ -70,5 +71,50 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_fetch: every word in order, never more 
     }
     REQUIRE(most == TestType::FIFO_DEPTH);
     REQUIRE(memory.most_outstanding() == 2);
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_bitstream_fetch: a limit counts from the clock on which it changes, 0 is the default",
+                        "[unit][cchip_bitstream_fetch]", cchip_bitstream_fetch_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random&) {
+    auto& top = simulation.top();
+    // Clocks from an address taken to the timeout if no beat comes; 0: none in `clocks`. The limit changes after
+    // `when`.
+    const auto clocks_to_timeout = [&](std::uint32_t before, std::uint32_t after, int when, int clocks) {
+      top.limit = before;
+      top.run = 0;
+      top.words = 4;
+      top.m_axi_arready = 1;
+      top.m_axi_rvalid = 0;
+      simulation.reset();
+      simulation.steps(3);
+      top.run = 1;
+      simulation.run_until([&] { return top.m_axi_arvalid != 0; }, 20, "an address");
+      for (int clock = 1; clock < clocks; ++clock) {
+        if (clock == when) top.limit = after;
+        simulation.step();
+        if (top.timeout != 0) return clock;
+      }
+      return 0;
+    };
+    const int latency = clocks_to_timeout(10, 10, 0, 100) - 10;
+    REQUIRE(latency >= 0);
+    REQUIRE(latency <= 3);
+    for (const std::uint32_t limit : {1U, 2U, 3U, 40U}) {
+      CAPTURE(limit);
+      const int bound = static_cast<int>(limit);
+      REQUIRE(clocks_to_timeout(limit, limit, 0, 100) == bound + latency);
+      for (const std::uint32_t high : {1000U, 0U, ~0U}) {
+        CAPTURE(high);
+        for (int when = 1; when < 60; when += 3) {  // lowered
+          CAPTURE(when);
+          const int clock = clocks_to_timeout(high, limit, when, 200);
+          REQUIRE(clock >= bound + latency);
+          REQUIRE(clock <= std::max(when + 3, bound + latency));
+        }
+        for (int when = 1; when < bound; ++when) REQUIRE(clocks_to_timeout(limit, high, when, 900) == 0);  // raised
+      }
+    }
+    REQUIRE(clocks_to_timeout(40, 0, 20, 5000) == defs::memory_limit_default + latency);
   });
 }

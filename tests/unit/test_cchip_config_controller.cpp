@@ -447,6 +447,74 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: a slot that never becomes quie
   });
 }
 
+TEMPLATE_LIST_TEST_CASE(
+    "cchip_config_controller: a limit that changes during a swap counts from then on, 0 is the default",
+    "[unit][cchip_config_controller]", cchip_config_controller_configs) {
+  with_bench<TestType>([](SwapBench<TestType>& bench) {
+    bench.require_good_swap(0, tri);
+    const auto start = [&](SwapPhase phase) {
+      bench.start(bench.load(0, quad, 64));
+      bench.simulation().run_until([&] { return bench.phase() == phase; }, 100, "the phase");
+    };
+    for (const std::uint32_t high : {100000U, 0U, ~0U}) {
+      for (const std::uint32_t low : {1U, 30U}) {
+        CAPTURE(high, low);
+        // pairs
+        bench.top().shutdown_limit = high;
+        bench.behaviour().drain = -1;
+        for (const std::uint32_t other : {0U, ~0U, 5000U}) {
+          CAPTURE(other);
+          start(SwapPhase::shutdown);
+          bench.simulation().steps(40);
+          bench.top().shutdown_limit = other;  // up or down, but far away
+          bench.simulation().steps(200);
+          REQUIRE(bench.phase() == SwapPhase::shutdown);
+          bench.top().shutdown_limit = low;  // has passed
+          bench.simulation().steps(5);
+          REQUIRE(bench.reports().back().code == SwapCode::shutdown);
+          REQUIRE(bench.phase() == SwapPhase::idle);
+          bench.top().shutdown_limit = low;
+          bench.start(bench.load(0, quad, 64));
+          if (low > 10) {
+            bench.simulation().run_until([&] { return bench.phase() == SwapPhase::shutdown; }, 100, "the phase");
+            bench.simulation().steps(low - 3);
+            bench.top().shutdown_limit = other;  // just in time
+            bench.simulation().steps(200);
+            REQUIRE(bench.phase() == SwapPhase::shutdown);
+            bench.top().shutdown_limit = low;
+          }
+          REQUIRE(bench.finish().code == SwapCode::shutdown);
+          bench.top().shutdown_limit = high;
+        }
+        bench.top().shutdown_limit = 40;
+        bench.behaviour().drain = 3;
+        // memory
+        bench.top().memory_limit = high;
+        sim::AxiMemoryOptions options;
+        options.latency = 2000;
+        bench.memory().set_options(options);
+        for (const std::uint32_t other : {0U, ~0U, 5000U}) {
+          CAPTURE(other);
+          start(SwapPhase::header);
+          bench.simulation().steps(100);
+          bench.top().memory_limit = other;
+          bench.simulation().steps(200);
+          REQUIRE(bench.phase() == SwapPhase::header);
+          bench.top().memory_limit = low;
+          bench.simulation().steps(7);
+          REQUIRE(bench.reports().back().code == SwapCode::memory);
+          REQUIRE(bench.phase() == SwapPhase::idle);
+          bench.top().memory_limit = high;
+          bench.simulation().run_until([&] { return bench.memory().owed() == 0; }, 4000, "the late beats");
+          bench.simulation().steps(5);
+        }
+        bench.memory().set_options({});
+        bench.require_at_work(0, tri);
+      }
+    }
+  });
+}
+
 TEMPLATE_LIST_TEST_CASE("cchip_config_controller: force and abort together lose count of nothing",
                         "[unit][cchip_config_controller]", cchip_config_controller_configs) {
   with_bench<TestType>([](SwapBench<TestType>& bench) {
@@ -616,6 +684,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: random memories, slots and fau
       bench.simulation().run_until(
           [&] {
             bench.top().abort_swap = aborts && clocks == when ? 1 : 0;
+            if (chance(random, 5)) bench.top().memory_limit = any_limit(random, 100);
+            if (chance(random, 5)) bench.top().shutdown_limit = any_limit(random, 40);
             ++clocks;
             return bench.reports().size() > count;
           },
@@ -624,6 +694,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: random memories, slots and fau
       const SwapReport report = bench.reports().back();
       REQUIRE(report.slot == slot);
       REQUIRE(report.module_id == static_cast<int>(module_id));
+      REQUIRE(report.code != SwapCode::memory);  // whatever the limit does, it is never below 100
       ++codes[static_cast<std::size_t>(report.code)];
       bench.simulation().steps(5);
       REQUIRE(bench.reports().size() == count + 1);

@@ -89,7 +89,7 @@ class AxiRead {
     const auto place_beat = rready_ && in.beat && in.beat->id < reads_.size() ? in.beat : std::nullopt;
     owes_ = address_ || taken_ || std::any_of(reads_.begin(), reads_.end(), [](const Read& read) { return read.owed; });
 
-    if (tick_) {
+    if (timeout_.expired()) {
       for (Read& read : reads_) read.ticks = read.live ? std::min(read.ticks + 1, 2) : 0;
     }
     answer_.reset();
@@ -141,8 +141,7 @@ class AxiRead {
     }
 
     // time
-    tick_ = timer_ == 0;
-    timer_ = timer_ == 0 ? in.limit : timer_ - 1;
+    timeout_.clock(timeout_.expired(), in.limit);
     scan_ = scan;
     found_ = found;
 
@@ -169,9 +168,9 @@ class AxiRead {
     failed_.reset();
     beat_.reset();
     served_ = queues_.size() - 1;
-    timer_ = limit;
+    timeout_.clock(true, limit);
     scan_ = 0;
-    tick_ = rready_ = owes_ = address_awaited_ = head_owed_ = was_dead_ = false;
+    rready_ = owes_ = address_awaited_ = head_owed_ = was_dead_ = false;
   }
 
  private:
@@ -236,8 +235,8 @@ class AxiRead {
   bool address_awaited_ = false;
   std::optional<std::size_t> issued_, taken_;  // on the last clock
   std::optional<Answer> answer_;
-  std::uint32_t timer_ = 0;
-  bool tick_ = false, rready_ = false, owes_ = false;
+  Timeout timeout_{defs::memory_limit_default};
+  bool rready_ = false, owes_ = false;
   std::size_t scan_ = 0;
   std::optional<std::size_t> found_;
   std::optional<Failure> failing_, failed_;
@@ -345,11 +344,10 @@ class AxiWrite {
     if (issue) send_ = write.address.beats - 1;
 
     // time
-    if (tick_) {
+    if (timeout_.expired()) {
       for (Waiting& one : waiting_) one.ticks = std::min(one.ticks + 1, 2);
     }
-    tick_ = timer_ == 0;
-    timer_ = timer_ == 0 ? in.limit : timer_ - 1;
+    timeout_.clock(timeout_.expired(), in.limit);
     if (answered || timeout) waiting_.pop_front();
     if (issue) waiting_.push_back(Waiting{write.client, 0});
     if (timeout) ++dropped_;
@@ -395,7 +393,7 @@ class AxiWrite {
 
   void reset(std::uint32_t limit) {
     *this = AxiWrite(clients_, line_, outstanding_);
-    timer_ = limit;
+    timeout_.clock(true, limit);
   }
 
  private:
@@ -436,8 +434,8 @@ class AxiWrite {
   std::optional<bool> response_;                        // okay
   bool bready_ = false;
   std::optional<Answer> answer_;
-  std::uint32_t timer_ = 0;
-  bool tick_ = false, owes_ = false;
+  Timeout timeout_{defs::memory_limit_default};
+  bool owes_ = false;
 };
 
 /// cchip_cache: lines of 64 bytes, two ways, two ports. Counts what its ports do on each clock.

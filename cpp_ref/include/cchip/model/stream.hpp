@@ -149,6 +149,27 @@ class Arbiter {
   std::size_t next_ = 0;
 };
 
+/// cchip_timeout: clocks since restart; a limit of 0 is the default. A limit is seen a clock after it was given.
+class Timeout {
+ public:
+  explicit Timeout(std::uint32_t limit_of_0) : default_(limit_of_0) {}
+  /// 1 on the first clock after restart.
+  std::uint32_t elapsed() const { return elapsed_; }
+  bool expired() const { return expired_; }
+
+  void clock(bool restart, std::uint32_t limit) {
+    expired_ = !restart && elapsed_ >= bound_;
+    elapsed_ = restart ? 1 : elapsed_ + 1;
+    bound_ = limit == 0 ? default_ : limit;
+  }
+
+ private:
+  std::uint32_t default_;
+  std::uint32_t bound_ = default_;
+  std::uint32_t elapsed_ = 1;
+  bool expired_ = false;
+};
+
 /// cchip_ram: registered read of the old word; words are undefined (nullopt) until written.
 template <class T>
 class Ram {

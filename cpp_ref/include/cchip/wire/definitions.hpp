@@ -189,7 +189,7 @@ constexpr int bitstream_align = 64;
 constexpr int roc_clocks_default = 2;
 /// longest wait for the pairs inside a slot, unless a register says otherwise [clock]
 constexpr int shutdown_limit_default = 65536;
-/// longest wait for a beat of the bitstream's memory, unless a register says otherwise [clock]
+/// longest wait for memory, unless a register says otherwise [clock]
 constexpr int memory_limit_default = 4096;
 /// a module has this long from the end of its reset on configuration to show its rm_id, which must then stand for as long again [clock]
 constexpr int rm_settle_clocks = 16;
