@@ -26,7 +26,7 @@ module cchip_broad_phase #(
     parameter integer LEAF_DEPTH = 72,
     // pairs of leaves that the receiver has room for
     parameter integer CREDIT = 32,
-    // size of the cache, KiB: 4, 8 ... 1024
+    // size of the cache, KiB: 1, 2, 4 ... 1024
     parameter integer CACHE_KB = 128,
     // lines under way from memory: 2, 4, 8, 16 or 32
     parameter integer MISSES = 32,
