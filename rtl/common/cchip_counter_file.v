@@ -9,7 +9,7 @@
 //                with the value that the counter has then; no other read may come before. A low
 //                word is read at its turn, and its high word comes next: both are of one moment.
 //                `read_high` answers, 1 clock later, with the high word of the counter of 64 bits
-//                that was read last.
+//                that was read last; it may come on the clock of `ack`.
 //   throughput   an event of every counter on every clock
 //   cuts         every path: each output is a flip-flop
 //   reset        rst or clear: all counters 0. The RAM is not reset: in the first 16 clocks after
@@ -83,7 +83,9 @@ module cchip_counter_file (
     ack_q          <= ~rst & (answers | (read & read_high));
     high_follows_q <= answers & ~read_counter[2];
     if (high_follows_q) high_q <= sum[31:0];
-    read_data_q <= (sum[31:0] & {32{answers}}) | (high_q & {32{read & read_high}});
+    // on the clock of ack the high word is on its way to high_q
+    read_data_q <= (sum[31:0] & {32{answers | (read & read_high & high_follows_q)}}) |
+        (high_q & {32{read & read_high & ~high_follows_q}});
   end
 
 endmodule

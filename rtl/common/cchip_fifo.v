@@ -34,6 +34,7 @@ module cchip_fifo #(
   localparam [31:0] LAST = DEPTH - 1;
   localparam [31:0] FULL = DEPTH;
   localparam [31:0] ONE = 1;
+  localparam [BANKS-1:0] FIRST_BANK = {{BANKS - 1{1'b0}}, 1'b1};
   localparam [31:0] TWO = 2;
 
   generate
@@ -100,8 +101,8 @@ module cchip_fifo #(
     if (load) data_q <= word;
     if (rst) begin
       write_q <= 4'd0;
-      write_bank_q <= ONE[BANKS-1:0];
-      read_bank_q <= ONE[BANKS-1:0];
+      write_bank_q <= FIRST_BANK;
+      read_bank_q <= FIRST_BANK;
       count_q <= {COUNT_W{1'b0}};
       ready_q <= 1'b0;
       some_q  <= 1'b0;

@@ -13,7 +13,7 @@ module cchip_ram #(
     parameter integer WIDTH = 8,
     // words
     parameter integer DEPTH = 16,
-    // width of an address, bit: at least $clog2(DEPTH)
+    // width of an address, bit: $clog2(DEPTH); up to 4 also of a smaller memory
     parameter integer ADDR_W = 4
 ) (
     input  wire              clk,
@@ -30,6 +30,9 @@ module cchip_ram #(
   generate
     if (WIDTH < 1 || DEPTH < 1 || (1 << ADDR_W) < DEPTH) begin : gen_illegal
       cchip_error_ram_WIDTH_or_DEPTH_below_1_or_ADDR_W_too_small u_error ();
+    end
+    if (ADDR_W > 4 && (1 << (ADDR_W - 1)) >= DEPTH) begin : gen_too_wide
+      cchip_error_ram_ADDR_W_wider_than_needed u_error ();
     end
   endgenerate
 

@@ -103,7 +103,7 @@ module cchip_primtest_subsystem #(
     // configuration port of the device
     output wire                                   cfg_valid,
     output wire [                      CFG_W-1:0] cfg_data,
-    input  wire                                   cfg_error
+    input  wire                                   cfg_error  // any clock; level, or 2 clocks of clk
 );
 
   reg irq_q;

@@ -229,7 +229,8 @@
 `define CCHIP_END_CORRUPT 3'd4
 // a node's children lie outside its image
 `define CCHIP_END_OUTSIDE 3'd5
-// bits that must be 0 but are not, |M_ij| > 1, or a line at a base that is no header
+// bits that must be 0 but are not, |M_ij| > 1, a base beyond 0xFEFFFFFF, or a line at a base that
+// is no header
 `define CCHIP_END_BAD_DESCRIPTOR 3'd6
 // a line could not be read: an error of the bus, or no answer in time
 `define CCHIP_END_MEMORY 3'd7

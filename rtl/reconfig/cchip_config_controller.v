@@ -16,8 +16,9 @@
 //                one, or 0, gives more time
 //   busy         a request during a swap is taken and answered BUSY; every request is answered by
 //                exactly one report
-//   clocks       cfg_error may come from any clock, see cchip_swap_sequencer; the rest of the
-//                configuration port belongs to clk
+//   clocks       cfg_error may come from any clock, as a level or for at least two clocks of clk: a
+//                shorter pulse may be lost (see cchip_swap_sequencer). The rest of the port belongs
+//                to clk
 //   cuts         every path but read_phase to read_clocks: each output comes from flip-flops,
 //                m_report_data through a multiplexer of two, swapped and rejected through its code
 //   reset        no swap, slots at work, except one whose transfer had begun and not ended well:

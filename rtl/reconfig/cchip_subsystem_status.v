@@ -5,7 +5,7 @@
 // event, the sum of the pairs that were lost.
 //   latency      1 clock from a report to every output
 //   cuts         every path: each output is a flip-flop
-//   reset        all 0; clear: lost 0
+//   reset        all 0; clear: lost 0, a report on its clock is not in lost
 module cchip_subsystem_status (
     input  wire                            clk,
     input  wire                            rst,

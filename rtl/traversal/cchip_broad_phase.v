@@ -26,7 +26,7 @@ module cchip_broad_phase #(
     parameter integer LEAF_DEPTH = 72,
     // pairs of leaves that the receiver has room for
     parameter integer CREDIT = 32,
-    // size of the cache, KiB: 4, 8 ... 1024
+    // size of the cache, KiB: 1, 2, 4 ... 1024
     parameter integer CACHE_KB = 128,
     // lines under way from memory: 2, 4, 8, 16 or 32
     parameter integer MISSES = 32,
@@ -37,10 +37,13 @@ module cchip_broad_phase #(
 ) (
     input  wire                            clk,
     input  wire                            rst,
-    // node pairs of a query that may be under way, 1..7; half of it with pairs of leaves out
+    // limits; they may change on any clock, and count for the queries at work too.
+    // node pairs of a query in flight, 0..7; 0 counts as 1; half of it with pairs of leaves out
     input  wire [                     2:0] pairs_each,
-    input  wire [                    31:0] step_limit,           // node pairs of a query
-    input  wire [                     7:0] open_limit,           // open pairs of a FIRST query
+    // node pairs of a query, 0..2^32 - 1; 0: it ends with code STEPS at its first one
+    input  wire [                    31:0] step_limit,
+    // open pairs of a FIRST query, 0..255; 0 counts as 1
+    input  wire [                     7:0] open_limit,
     // queries (docs/image.md)
     input  wire                            s_query_valid,
     output wire                            s_query_ready,

@@ -14,7 +14,7 @@
 module cchip_leaf_queue #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
-    // entries
+    // entries, 1..1024
     parameter integer DEPTH = 72,
     // pairs that the receiver has room for, 1..65535
     parameter integer CREDIT = 32
@@ -53,6 +53,9 @@ module cchip_leaf_queue #(
   generate
     if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES) begin : gen_illegal_queries
       cchip_error_leaf_queue_QUERIES_must_be_2_4_8_or_16 u_error ();
+    end
+    if (DEPTH < 1 || DEPTH > 1024) begin : gen_illegal_depth
+      cchip_error_leaf_queue_DEPTH_must_be_1_to_1024 u_error ();
     end
     if (CREDIT < 1 || CREDIT > 65535) begin : gen_illegal_credit
       cchip_error_leaf_queue_CREDIT_must_be_1_to_65535 u_error ();
@@ -155,7 +158,7 @@ module cchip_leaf_queue #(
     if (!rst) begin
       `CCHIP_ASSERT(a_room, !s_valid || ready)
       `CCHIP_ASSERT(a_leaves, !s_valid || s_leaves != 16'd0)
-      `CCHIP_ASSERT(a_credit, credit_q <= ALL_CREDIT[15:0])
+      `CCHIP_ASSERT(a_credit, {1'b0, credit_q} <= ALL_CREDIT[16:0])
       `CCHIP_ASSERT(a_some, some_q == (credit_q != 16'd0))
       `CCHIP_ASSERT(a_take, (state_q == TAKE) == (valid_q | drop_q) && !(valid_q & drop_q))
       `CCHIP_ASSERT(a_left, !(work_q && state_q == CHOOSE) || left_q != 16'd0)

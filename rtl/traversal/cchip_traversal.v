@@ -33,15 +33,20 @@ module cchip_traversal #(
 ) (
     input  wire                            clk,
     input  wire                            rst,
-    // node pairs of a query that may be under way, 1..7; half of it with pairs of leaves out
+    // limits; they may change on any clock, and count for the queries at work too.
+    // node pairs of a query in flight, 0..7; 0 counts as 1; half of it with pairs of leaves out
     input  wire [                     2:0] pairs_each,
-    input  wire [                    31:0] step_limit,         // node pairs of a query
-    input  wire [                     7:0] open_limit,         // open pairs of a FIRST query
+    // node pairs of a query, 0..2^32 - 1; 0: it ends with code STEPS at its first one
+    input  wire [                    31:0] step_limit,
+    // open pairs of a FIRST query, 0..255; 0 counts as 1
+    input  wire [                     7:0] open_limit,
     // queries (docs/image.md)
     input  wire                            s_query_valid,
     output wire                            s_query_ready,
     input  wire [                   511:0] s_query,
-    // one that has started, for whoever needs its pose: the box test and the transform
+    // one that has started, for the box test and the transform, which need its pose. Not a stream:
+    // m_start_ready = 1 says that the receivers have room for one more, m_start_valid is a pulse
+    // some clocks later, whatever m_start_ready is then. The next one comes later still
     output wire                            m_start_valid,
     input  wire                            m_start_ready,
     output wire [     $clog2(QUERIES)-1:0] m_start_context,
@@ -105,7 +110,10 @@ module cchip_traversal #(
   localparam integer NODES_W = 67;
   localparam integer STACK_W = $clog2(STACK);
   localparam integer STATE_W = STACK_W + 81;  // cchip_traversal_decision says of what
-  localparam integer WORK_W = 12;  // pairs of one epoch of a query: LEAF_DEPTH 16 and some
+  // pairs of one epoch of a query: entries of the leaf queue and the one at work, 16 leaf pairs
+  // each; a pair at every place; what is behind cchip_get_data. At most 4,027
+  localparam [31:0] WORK_MOST = 16 * LEAF_DEPTH + 16 + PAIRS + LEAVES + 1899;
+  localparam integer WORK_W = 12;
   localparam integer ANSWERS = 2 * QUERIES;
   localparam [31:0] FULL = STACK;
   localparam [31:0] LAST_EPOCH = QUERIES * 4 - 1;
@@ -113,6 +121,10 @@ module cchip_traversal #(
   generate
     if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES) begin : gen_illegal_queries
       cchip_error_traversal_QUERIES_must_be_2_4_8_or_16 u_error ();
+    end
+    if (PAIRS < 1 || LEAVES < 1 || PAIRS + LEAVES < 8 || PAIRS + LEAVES > 64 ||
+        (1 << PLACE_W) != PAIRS + LEAVES) begin : gen_illegal_places
+      cchip_error_traversal_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together u_error ();
     end
     if (LEAF_DEPTH <= PAIRS || LEAF_DEPTH > 128) begin : gen_illegal_depth
       cchip_error_traversal_LEAF_DEPTH_must_be_over_PAIRS_to_128 u_error ();
@@ -338,7 +350,7 @@ module cchip_traversal #(
     epoch_q3 <= own_q2 ? now2 : epoch_q2;
     live_q3 <= active2 && (own_q2 || now2 == epoch_q2);
     work_q4 <= works[{context_q3, epoch_q3}];
-    over_q4 <= steps3 == step_limit;
+    over_q4 <= steps3 >= step_limit;
     full_q4 <= entries3 == FULL[STACK_W:0];
     failed_q5 <= |nodes4[NODES_W-1-:3];
     some_leaves_q5 <= |leaves4;
@@ -538,7 +550,7 @@ module cchip_traversal #(
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_done, !ends7 || done_ready)
-      `CCHIP_ASSERT(a_results, !valid_q7 || work7 < 12'd4000)
+      `CCHIP_ASSERT(a_results, !valid_q7 || work7 <= WORK_MOST[WORK_W-1:0])
       `CCHIP_ASSERT(a_pop, !(valid5 && is5[3]) || (live_q5 && |state_q5[76+:STACK_W+1]))
       `CCHIP_ASSERT(a_work, !(valid5 && (is5[0] || is5[1])) || |work_q5)
     end

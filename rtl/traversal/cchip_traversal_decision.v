@@ -6,6 +6,8 @@
 // goes to the box test.
 //   rule         a query ends with a code, or with 0 if it has nothing under way and nothing on the
 //                stack; it then has the next epoch
+//   limits       may change on any clock: of an event open_limit counts on its first clock,
+//                pairs_each on its second. 0 counts as 1
 //   latency      2 clocks
 //   throughput   an event per clock
 //   cuts         every path: each output is a flip-flop
@@ -19,8 +21,8 @@ module cchip_traversal_decision #(
 ) (
     input  wire                      clk,
     input  wire                      rst,
-    input  wire [               2:0] pairs_each,
-    input  wire [               7:0] open_limit,
+    input  wire [               2:0] pairs_each,       // 0..7
+    input  wire [               7:0] open_limit,       // 0..255
     // an event, one of four
     input  wire                      s_valid,
     input  wire                      s_is_verdict,
@@ -148,7 +150,8 @@ module cchip_traversal_decision #(
   wire leaf = step & s_some_leaves & ~spill;
   wire counts = s_is_result & s_live;
   wire [8:0] opens_now = {1'b0, opens} + {6'd0, result_open};
-  wire first_hit = ~mode & (|result_hits | opens_now >= {1'b0, open_limit});
+  wire some_open = |opens | |result_open;  // a limit of 0 counts as 1
+  wire first_hit = ~mode & (|result_hits | (some_open & opens_now >= {1'b0, open_limit}));
   wire fails = s_live & (s_is_verdict ? s_failed | (~header & s_over) | spill :
                          s_is_result & (|result_code | first_hit));
   wire [2:0] code = s_is_result ? (|result_code ? result_code : |result_hits ? END_OK : END_HOST) :
@@ -235,7 +238,7 @@ module cchip_traversal_decision #(
       is_inner_b[j] ? {4'd15, child_b + {22'd0, j}} : {4'd1 << j, parent_b};
   // a FIRST query with pairs of leaves out, one of which may end it, asks for half as much
   wire hopes = live_q && ~mode_q && work_q != {{WORK_W - 3{1'b0}}, under_q};
-  wire [2:0] most = hopes ? {1'b0, pairs_each[2:1]} : pairs_each;
+  wire [2:0] most = hopes ? {1'b0, pairs_each[2:1]} : pairs_each | {2'd0, ~|pairs_each};
 
   reg out_active_q, out_wants_q, out_start_q, out_cancel_q, out_started_q, out_goes_q, out_back_q;
   reg out_push_q, out_leaf_q, out_ends_q, out_step_q;

@@ -4,6 +4,9 @@
 // cchip_traversal_events: which event enters the pipeline of cchip_traversal. A verdict goes first,
 // then a result, a dropped pair of leaves, a query, a stack.
 //   rule         an event waits while another one of its query is in the pipeline
+//   turns        after a verdict that went before a result, the next result goes before verdicts.
+//                So a result that is first in line enters at most 16 clocks later, and so does a
+//                verdict, if an event leaves 7 clocks after it has come out on m_valid, or earlier
 //   room         a query or a stack enters with a place for its node pair, with room in the leaf
 //                queue, a query with a place for its answer, too; a verdict takes further room in
 //                the leaf queue if there is some. What was not needed comes back
@@ -175,6 +178,8 @@ module cchip_traversal_events #(
   wire start_done = s_left_valid & s_left_start;
   wire start_ends = start_done & ~s_left_cancel;
   wire query_in = s_query_valid & query_ready_q;
+  // an image has fewer than 2^24 lines: of one that begins here or later, line numbers could wrap
+  wire far = &query_q[63:56] | &query_q[31:24];
   wire [8:0] beyond;  // |M_ij| > 1
   generate
     for (n = 0; n < 9; n = n + 1) begin : gen_m
@@ -184,7 +189,7 @@ module cchip_traversal_events #(
   endgenerate
   always @(posedge clk) begin
     if (query_in) query_q <= s_query;
-    bad_q         <= |beyond | (|query_q[479:478]);
+    bad_q         <= |beyond | (|query_q[479:478]) | far;
     pop_context_q <= want_context;
     if (~idle_valid_q) idle_context_q <= idle_context;
     if (rst) begin
@@ -250,6 +255,7 @@ module cchip_traversal_events #(
   );
 
   // ---- one event is let in
+  reg result_first_q;  // a verdict has gone before a result
   wire can_verdict = verdict_valid_q & ~lock_q[lookup_context];
   wire can_result = result_valid & ~lock_q[result_context];
   wire can_drop = s_drop_valid & ~lock_q[s_drop_context];
@@ -259,8 +265,8 @@ module cchip_traversal_events #(
   wire can_pop = pop_valid_q & ~lock_q[pop_context_q] & can_go;
   wire drop_take = can_drop & ~can_verdict & ~can_result;
   wire pop_take = can_pop & ~can_verdict & ~can_result & ~can_drop & ~can_start;
-  assign verdict_take = can_verdict;
-  assign result_take  = can_result & ~can_verdict;
+  assign verdict_take = can_verdict & ~(result_first_q & can_result);
+  assign result_take  = can_result & (result_first_q | ~can_verdict);
   assign start_take   = can_start & ~can_verdict & ~can_result & ~can_drop;
   assign place_take   = start_take | pop_take;
   assign room_take    = place_take | (verdict_take & some_room_q);
@@ -292,11 +298,13 @@ module cchip_traversal_events #(
     of_result_q  <= result_take ? result : 9'd0;
     if (rst) begin
       valid_q <= 1'b0;
+      result_first_q <= 1'b0;
       lock_q  <= {QUERIES{1'b0}};
       idle_q  <= {QUERIES{1'b1}};
       want_q  <= {QUERIES{1'b0}};
     end else begin
       valid_q <= take;
+      result_first_q <= result_first_q ? ~result_take : verdict_take & can_result;
       lock_q  <= (lock_q & ~unlocks) | locks;
       idle_q  <= s_left_active ? idle_q & ~unlocks : idle_q | unlocks;
       want_q  <= s_left_wants ? want_q | unlocks : want_q & ~unlocks;
@@ -316,12 +324,21 @@ module cchip_traversal_events #(
   assign m_result = of_result_q;
   wire unused = &{1'b0, unused_answers, unused_some};
 
+  // clocks for which the first result, and the first verdict, have waited
+  reg [4:0] result_waits_q, verdict_waits_q;
+  always @(posedge clk) begin
+    result_waits_q  <= rst | ~result_valid | result_take ? 5'd0 : result_waits_q + 5'd1;
+    verdict_waits_q <= rst | ~verdict_valid_q | verdict_take ? 5'd0 : verdict_waits_q + 5'd1;
+  end
+
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_verdict, !s_verdict_valid || queue_ready)
       `CCHIP_ASSERT(a_room, room_q <= DEPTH[ROOM_W-1:0])
       `CCHIP_ASSERT(a_locked, !take || !lock_q[taken])
       `CCHIP_ASSERT(a_left, !s_left_valid || lock_q[s_left_context])
+      `CCHIP_ASSERT(a_result_waits, result_waits_q <= 5'd16)
+      `CCHIP_ASSERT(a_verdict_waits, verdict_waits_q <= 5'd16)
     end
 
 endmodule

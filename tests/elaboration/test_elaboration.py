@@ -118,6 +118,7 @@ ILLEGAL = [
     ("cchip_ram", {"WIDTH": 0}, RAM),
     ("cchip_ram", {"DEPTH": 0}, RAM),
     ("cchip_ram", {"DEPTH": 17, "ADDR_W": 4}, RAM),
+    *(("cchip_ram", {"DEPTH": d, "ADDR_W": w}, "cchip_error_ram_ADDR_W_wider_than_needed") for d, w in ((16, 5), (32, 6), (1, 8))),
     *(("cchip_dual_ram", case, BLOCK_RAM.replace("block", "dual")) for case in ({"WIDTH": 0}, {"ADDR_W": 2}, {"ADDR_W": 17})),
     ("cchip_block_ram", {"WIDTH": 0}, BLOCK_RAM),
     ("cchip_block_ram", {"ADDR_W": 17}, BLOCK_RAM),
@@ -128,7 +129,12 @@ ILLEGAL = [
     *(("cchip_get_data", {"PAIRS": n}, "cchip_error_get_data_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together")
       for n in (0, 20, 120)),
     *(("cchip_leaf_queue", {"QUERIES": n}, "cchip_error_leaf_queue_QUERIES_must_be_2_4_8_or_16") for n in (3, 32)),
-    ("cchip_leaf_queue", {"CREDIT": 0}, "cchip_error_leaf_queue_CREDIT_must_be_1_to_65535"),
+    *(("cchip_leaf_queue", {"CREDIT": n}, "cchip_error_leaf_queue_CREDIT_must_be_1_to_65535") for n in (0, 65536)),
+    *(("cchip_leaf_queue", {"DEPTH": n}, "cchip_error_leaf_queue_DEPTH_must_be_1_to_1024") for n in (0, 1025)),
+    *(("cchip_traversal", case, "cchip_error_traversal_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together")
+      for case in ({"PAIRS": 20, "LEAVES": 4}, {"LEAVES": 0}, {"PAIRS": 0, "LEAVES": 64}, {"PAIRS": 64, "LEAVES": 64})),
+    ("cchip_broad_phase", {"PAIRS": 20, "LEAVES": 4}, "cchip_error_traversal_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together"),
+    *(("cchip_broad_phase", {"CACHE_KB": n}, CACHE + "CACHE_KB_must_be_a_power_of_two_1_to_1024") for n in (0, 6, 2048)),
     *(("cchip_traversal", {"QUERIES": n}, "cchip_error_traversal_QUERIES_must_be_2_4_8_or_16") for n in (3, 32)),
     *(("cchip_traversal", case, "cchip_error_traversal_LEAF_DEPTH_must_be_over_PAIRS_to_128")
       for case in ({"LEAF_DEPTH": 48}, {"LEAF_DEPTH": 129})),
@@ -215,7 +221,7 @@ LEGAL = [
     ("cchip_mul_wide", {"A_W": 52, "B_W": 52, "PRODUCT_REGS": 3}),
     ("cchip_delay", {"DEPTH": 0, "RESET": 1}),
     *(("cchip_delay", {"DEPTH": n, "MEMORY": 1}) for n in (3, 4, 20)),
-    ("cchip_fifo", {"DEPTH": 1}),
+    *(("cchip_fifo", {"DEPTH": n}) for n in (1, 512, 513, 1024)),
     *(("cchip_arbiter", {"N": n}) for n in (1, 32)),
     ("cchip_cache", {"CACHE_KB": 1, "PLACES": 2, "MISSES": 2, "LINE_W": 4, "LOCKS": 1, "DATA_W": 512}),
     *(("cchip_cache_fill", {"MISSES": n, "FRAME_W": 1, "DATA_W": w}) for n, w in ((2, 64), (32, 256))),
@@ -235,7 +241,11 @@ LEGAL = [
     *(("cchip_primtest_subsystem", {"SLOTS": n}) for n in (1, 3, 4)),
     *(("cchip_result_merge", {"SOURCES": n}) for n in (2, 8)),
     ("cchip_fifo", {"WIDTH": 1, "DEPTH": 5}),
-    ("cchip_ram", {"WIDTH": 1, "DEPTH": 1, "ADDR_W": 1}),
+    *(("cchip_ram", {"WIDTH": 1, "DEPTH": d, "ADDR_W": w}) for d, w in ((1, 1), (5, 4), (17, 5), (256, 8))),
+    *(("cchip_leaf_queue", {"QUERIES": q, "DEPTH": d, "CREDIT": c}) for q, d, c in ((2, 1, 1), (16, 1024, 65535))),
+    *(("cchip_traversal", {"QUERIES": q, "PAIRS": p, "LEAVES": n, "STACK": s, "LEAF_DEPTH": d, "CREDIT": c})
+      for q, p, n, s, d, c in ((2, 1, 7, 8, 2, 1), (16, 63, 1, 64, 128, 65535))),
+    *(("cchip_broad_phase", {"CACHE_KB": n}) for n in (1, 1024)),
     ("cchip_dual_ram", {"WIDTH": 1, "ADDR_W": 3}),
     *(("cchip_block_ram", {"WIDTH": 1, "WORDS": n, "ADDR_W": 3}) for n in (1, 4)),
     *(("cchip_bv_unit", {"QUERIES": n, "TAG_W": t}) for n, t in ((2, 1), (8, 40))),

@@ -11,6 +11,7 @@
 //   end       a query that ends had an error, a first hit, open pairs at their limit, or nothing left; its epoch is over. One
 //             without anything under way or on the stack ends
 //   progress  a query with nothing under way asks for its stack
+//   limits    whatever they are, and however they change: 0 counts as 1
 //   stale     an event of a query that has ended changes nothing but the work of its epoch
 // Assumed: what cchip_traversal gives: one of four events, its flags as the words they tell of, a pop of a live query with an
 // entry, a start of a context without a query, a verdict or result of an epoch that has work, counts in their ranges.
@@ -19,6 +20,8 @@ module cchip_traversal_decision_properties #(
 ) (
     input wire         clk,
     input wire         rst,
+    input wire [  2:0] pairs_each,
+    input wire [  7:0] open_limit,
     input wire         s_valid,
     input wire [  1:0] kind,
     input wire [  1:0] s_epoch,
@@ -39,8 +42,6 @@ module cchip_traversal_decision_properties #(
 );
   localparam integer STACK_W = $clog2(STACK);
   localparam integer STATE_W = STACK_W + 81;
-  (* anyconst *) wire [2:0] pairs_each;
-  (* anyconst *) wire [7:0] open_limit;
   (* anyconst *) wire [3:0] c;  // a child pair
 
   // ---- the event
@@ -139,9 +140,8 @@ module cchip_traversal_decision_properties #(
       .m_tests        (m_tests)
   );
   always @(*) begin
-    assume (pairs_each != 0);
     assume (entries <= STACK);
-    assume (s_work < 12'd4000);
+    assume (s_work <= 12'd4027);
     assume (!s_live || active);
     if (start) assume (!active);
     if (pop) assume (s_live && entries != 0 && entry_waiting != 0 && under != 3'd7);
@@ -168,6 +168,9 @@ module cchip_traversal_decision_properties #(
   wire [3:0] inner_a = {s_nodes[31:30] == 0, s_nodes[29:28] == 0, s_nodes[27:26] == 0, s_nodes[25:24] == 0};
   wire [3:0] inner_b = {s_nodes[63:62] == 0, s_nodes[61:60] == 0, s_nodes[59:58] == 0, s_nodes[57:56] == 0};
   reg [51:0] a_q, a_q2, b_q, b_q2;
+  // limits of the clock on which they count, at least 1
+  reg [2:0] pairs_each_q;
+  reg [7:0] open_limit_q, open_limit_q2;
   initial {past_q, past_q2, valid_q, valid_q2} = 4'd0;
   always @(posedge clk) begin
     past_q   <= 1'b1;
@@ -184,6 +187,9 @@ module cchip_traversal_decision_properties #(
     b_q  <= pop ? s_entry[103:52] : {inner_b, s_nodes[55:32], s_record[51:28]};
     a_q2 <= a_q;
     b_q2 <= b_q;
+    pairs_each_q  <= pairs_each == 0 ? 3'd1 : pairs_each;
+    open_limit_q  <= open_limit == 0 ? 8'd1 : open_limit;
+    open_limit_q2 <= open_limit_q;
   end
   wire verdict2 = kind_q2 == 2'd0;
   wire result2 = kind_q2 == 2'd1;
@@ -235,14 +241,15 @@ module cchip_traversal_decision_properties #(
       end_code: assert (!(verdict2 && live_q2 && code_q2 != 0) || (m_ends && m_code == code_q2));
       end_result: assert (!(result2 && live_q2 && result_q2[8:6] != 0) || (m_ends && m_code == result_q2[8:6]));
       end_steps: assert (!(verdict2 && live_q2 && code_q2 == 0 && over_q2) || (m_ends && m_code == 3'd2));
-      end_open: assert (!(result2 && live_q2 && !was_mode && result_q2[8:6] == 0 && result_q2[2:0] == 0 && was_opens + result_q2[5:3] >= {1'b0, open_limit}) || (m_ends && m_code == 3'd1));
+      end_open: assert (!(result2 && live_q2 && !was_mode && result_q2[8:6] == 0 && result_q2[2:0] == 0 && was_opens + result_q2[5:3] >= {1'b0, open_limit_q2}) || (m_ends && m_code == 3'd1));
+      end_host: assert (!(m_ends && result2 && result_q2[8:6] == 0 && m_code == 3'd1) || (result_q2[2:0] == 0 && was_opens + result_q2[5:3] >= {1'b0, open_limit_q2}));
       end_hit: assert (!(result2 && live_q2 && !was_mode && result_q2[8:6] == 0 && result_q2[2:0] != 0) || (m_ends && m_code == 0 && m_answer[65:64] == 2'd1));
       end_nothing_left: assert (!((live_q2 || started) && m_work == 0 && has == 0) || m_ends);
       end_answer: assert (!m_ends || m_answer[65:0] == {is_hit ? 2'd1 : is_opens != 0 ? 2'd2 : 2'd0, is_steps, is_pairs});
       goes_on: assert (!(was_active && !start2) || is_active == !m_ends);
       begins: assert (!start2 || (m_start && m_cancel == (work_q2 != 0) && m_started == m_goes && is_active == m_goes && m_goes == (work_q2 == 0 && !bad_q2)));
       progress: assert (!(is_active && is_under == 0 && has != 0 && (!live_q2 || m_work == 0)) || m_wants);
-      wants: assert (!m_wants || (is_active && has != 0 && is_under < pairs_each));
+      wants: assert (!m_wants || (is_active && has != 0 && is_under < pairs_each_q));
       stale: assert (start2 || live_q2 || (m_state == state_q2 && !(m_push | m_leaf | m_ends | m_step | m_goes)));
     end
 endmodule

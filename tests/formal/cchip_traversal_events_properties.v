@@ -6,6 +6,7 @@
 //             of that place
 //   room      node pairs and entries of the leaf queue together never want more than the leaf queue has: a verdict always has room
 //   once      each verdict and each result enters once; a query has one start in the pipeline
+//   turns     a result enters within 18 clocks of the one before it, or of its coming, though verdicts keep coming; so does a verdict
 //   goes on   with nothing else to do and a place free, a query that waits starts within 12 clocks and a stack that wants to send a
 //             node pair does within 12
 // Assumed: an event leaves as cchip_traversal_decision lets it: it keeps or gives back its place and its room; verdicts are of
@@ -130,6 +131,7 @@ module cchip_traversal_events_properties #(
   );
 
   reg query_q;  // a query waits
+  reg [4:0] result_clocks_q, verdict_clocks_q;  // since one entered, while others wait
   reg [3:0] query_clocks_q, stack_clocks_q;  // for how long with nothing else to do
   wire quiet = ~|valid_q & ~m_valid & ~s_verdict_valid & ~|back_q & ~s_result_valid & results_q == 0 & ~s_drop_valid;
   wire free = ~&lent_q & total < LEAF_DEPTH & start_ready & answers_q == 0;
@@ -156,7 +158,11 @@ module cchip_traversal_events_properties #(
       query_q        <= 1'b0;
       query_clocks_q <= 0;
       stack_clocks_q <= 0;
+      result_clocks_q <= 0;
+      verdict_clocks_q <= 0;
     end else begin
+      result_clocks_q <= results_q == 0 || (m_valid && m_is_result && !drop_taken_q) ? 0 : result_clocks_q + 1;
+      verdict_clocks_q <= back_q == 0 || (m_valid && m_is_verdict) ? 0 : verdict_clocks_q + 1;
       valid_q <= {valid_q[LAST-1:0], m_valid};
       if (left) begin
         active_q[left_context] <= left_active;
@@ -211,6 +217,8 @@ module cchip_traversal_events_properties #(
       pop_wanted: assert (!(m_valid && m_is_pop) || wants_q[m_context]);
       start_once: assert (!(m_valid && m_is_start) || !(|(valid_q & start_q)));
       start_idle: assert (!(m_valid && m_is_start) || !active_q[m_context]);
+      result_enters: assert (result_clocks_q <= 5'd18);
+      verdict_enters: assert (verdict_clocks_q <= 5'd18);
       query_goes_on: assert (query_clocks_q < 4'd12);
       stack_goes_on: assert (stack_clocks_q < 4'd12);
     end

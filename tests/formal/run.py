@@ -151,14 +151,16 @@ MUTANTS = [
     ("cchip_axi_write bounded", WRITE, "wire refuse = write_valid & take_free & dropped_some & ~waiting_some;",
      "wire refuse = write_valid & take_free & dropped_some;"),
     # a verdict, a stack, do not wait for the query's event inside, at two places; further room that there is not; the
-    # same room twice; a result is lost behind a verdict; a context that has a query gets another; two starts of a query; a place
-    # that came back is not the one that is lent
+    # same room twice; a result is lost behind a verdict; results are never next, or always; a context that has a query gets
+    # another; two starts of a query; a place that came back is not the one that is lent
     ("cchip_traversal_events bounded", EVENTS, "verdict_valid_q & ~lock_q[lookup_context];", "verdict_valid_q;"),
     ("cchip_traversal_events bounded", EVENTS, "pop_valid_q & ~lock_q[pop_context_q] &", "pop_valid_q &"),
     ("cchip_traversal_events bounded", EVENTS, "pop_valid_q   <= |(want_q & ~lock_q);", "pop_valid_q   <= |want_q;"),
     ("cchip_traversal_events bounded", EVENTS, "extra_q      <= verdict_take & some_room_q;", "extra_q      <= verdict_take;"),
     ("cchip_traversal_events bounded", EVENTS, "place_take | (verdict_take & some_room_q);", "place_take;"),
-    ("cchip_traversal_events bounded", EVENTS, "can_result & ~can_verdict;", "can_result;"),
+    ("cchip_traversal_events bounded", EVENTS, "can_result & (result_first_q | ~can_verdict);", "can_result;"),
+    ("cchip_traversal_events bounded", EVENTS, "result_first_q ? ~result_take : verdict_take & can_result;", "1'b0;"),
+    ("cchip_traversal_events bounded", EVENTS, "result_first_q ? ~result_take : verdict_take & can_result;", "1'b1;"),
     ("cchip_traversal_events bounded", EVENTS, "s_left_active ? idle_q & ~unlocks : idle_q | unlocks;", "idle_q | unlocks;"),
     ("cchip_traversal_events bounded", EVENTS, "judged_q & ~starting_q &", "judged_q &"),
     ("cchip_traversal_events bounded", EVENTS, "idle_context_q <= idle_context;", "idle_context_q <= 1'b0;"),
@@ -177,6 +179,9 @@ MUTANTS = [
     ("cchip_traversal_decision prove", DECISION, "spill ? END_STACK : END_STEPS;", "END_STEPS;"),
     ("cchip_traversal_decision prove", DECISION, "bad_q | (live_q & (", "bad_q | ((active_q) & ("),
     ("cchip_traversal_decision prove", DECISION, "s_is_pop ? lowest_number : best_number;", "best_number;"),
+    # a limit of 0 open pairs ends a query without one; a limit of 0 node pairs lets none go
+    ("cchip_traversal_decision prove", DECISION, "(some_open & opens_now >= {1'b0, open_limit})", "(opens_now >= {1'b0, open_limit})"),
+    ("cchip_traversal_decision prove", DECISION, ": pairs_each | {2'd0, ~|pairs_each};", ": pairs_each;"),
     # a pair without credit; a credit that comes as one is used is lost; of another query's epoch; half the epoch; a stall of one way
     # ends with the other; what is offered changes its mind; room twice; the last pair is forgotten; kinds of the other side
     ("cchip_leaf_queue bounded", LEAVES, "wire spend = judge & live & some_q;", "wire spend = judge & live;"),

@@ -103,7 +103,7 @@ std::uint64_t beats_passed(const sim::SimulationOptions& options, sim::Pattern s
 
 /// Beats accepted while m_ready stays 0.
 template <class Model>
-std::uint64_t beats_until_full(const sim::SimulationOptions& options) {
+std::uint64_t beats_until_full(const sim::SimulationOptions& options, std::uint64_t clocks = 200) {
   sim::Simulation<Model> simulation(options);
   Model& top = simulation.top();
   set_stop(top, false);
@@ -116,7 +116,7 @@ std::uint64_t beats_until_full(const sim::SimulationOptions& options) {
       [&](const sim::ClockInfo& now) { accepted += !now.in_reset && top.s_ready != 0 ? 1 : 0; });
   simulation.add(bench);
   simulation.reset();
-  simulation.steps(200);
+  simulation.steps(clocks);
   return accepted;
 }
 

@@ -290,6 +290,22 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: step limit, open pairs, full sta
     }
     REQUIRE(ends.size() == 2);
   }
+  SECTION("limits that change while queries are at work") {
+    const std::vector<Query> queries = submit(bench, random, 40);
+    for (int clock = 0; bench.unanswered() > 0; ++clock) {
+      REQUIRE(clock < 3000000);
+      if (chance(random, 5)) bench.top().pairs_each = static_cast<CData>(random() % (most_each + 1));
+      bench.step();
+    }
+    for (std::size_t i = 0; i < queries.size(); ++i) check(bench, queries[i], bench.answers()[i]);
+    bench.top().pairs_each = 0;  // as 1
+    submit(bench, random, 40);
+    bench.steps(2000);
+    bench.top().step_limit = 0;
+    bench.run(1000000);
+    REQUIRE(bench.answers().back().done->code == QueryCode::steps);
+    REQUIRE(bench.answers().back().done->steps == 0);
+  }
   SECTION("descriptors") {
     for (std::size_t i = 0; i < 9; ++i) {
       Query query = bench.objects.query(random, QueryMode::first);
@@ -298,6 +314,15 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: step limit, open pairs, full sta
       bench.run(100000);
       REQUIRE(bench.answers()[at].done->code == QueryCode::bad_descriptor);
       REQUIRE(bench.answers()[at].done->steps == 0);
+    }
+    for (const std::uint32_t base : {0xff000000U, 0xffffffffU}) {  // lines whose numbers could wrap
+      for (const bool a : {true, false}) {
+        Query query = bench.objects.query(random, QueryMode::first);
+        (a ? query.base_a : query.base_b) = base;
+        const std::size_t at = bench.submit(query);
+        bench.run(100000);
+        REQUIRE(bench.answers()[at].done->code == QueryCode::bad_descriptor);
+      }
     }
     for (int bit : {478, 479}) {
       Query query = bench.objects.query(random, QueryMode::first);

@@ -21,15 +21,15 @@ class Surroundings {
  public:
   /// \param fills queries fill their stacks; else they end in every other way, if `short_of_steps` most by their limit
   Surroundings(Random& random, bool fills, bool short_of_steps) : random_(random), fills_(fills) {
-    in_.limits.pairs_each = 1 + below(random, 7);
-    in_.limits.steps = short_of_steps ? 3 + below(random, 8) : 0xffffffff;
-    in_.limits.open = 1 + below(random, 6);
+    short_of_steps_ = short_of_steps;
+    change_limits();
     waits_ = fills ? 95 : short_of_steps ? 70 : 30 + static_cast<int>(below(random, 25));
   }
   int busy = 50;  ///< chance of whatever may happen on a clock, per cent
   bool more = true;
 
   const Traversal::Inputs& next() {
+    if (chance(random_, 1)) change_limits();
     in_.start_ready = chance(random_, 95);
     in_.done_ready = chance(random_, busy);
     if (!in_.query && more && chance(random_, 50)) in_.query = query();
@@ -79,6 +79,13 @@ class Surroundings {
   std::map<QueryCode, int> codes;
 
  private:
+  /// On any clock, queries at work or not, extremes included.
+  void change_limits() {
+    in_.limits.pairs_each = below(random_, 8);
+    in_.limits.open = chance(random_, 10) ? 255 : below(random_, 7);
+    in_.limits.steps = 0xffffffff;
+    if (short_of_steps_ && !chance(random_, 20)) in_.limits.steps = below(random_, 11);
+  }
   /// Any of a list, which loses it.
   template <class T>
   std::optional<T> some(std::vector<T>& list) {
@@ -132,6 +139,7 @@ class Surroundings {
   Random& random_;
   Traversal::Inputs in_;
   bool fills_;
+  bool short_of_steps_ = false;
   int waits_;  ///< chance that child pairs wait, per cent
   std::vector<std::size_t> box_test_, leaves_;
   std::vector<model::TraversalResult> results_;
@@ -262,5 +270,123 @@ TEMPLATE_LIST_TEST_CASE("cchip_traversal: the model's outputs on every clock; ev
       CAPTURE(static_cast<int>(code), n);
       REQUIRE(n > 5);
     }
+  });
+}
+
+TEST_CASE("cchip_traversal: a step limit lowered below the steps of a query ends it, whatever the other limits",
+          "[unit][cchip_traversal]") {
+  for_two_power_ups<traversal_4::Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
+    for (int run = 0; run < 8; ++run) {
+      Traversal::Inputs in;
+      in.start_ready = in.done_ready = true;
+      in.limits.pairs_each = run % 2 == 0 ? 0 : below(random, 8);
+      drive<traversal_4>(top, in);
+      simulation.reset();
+      in.query.emplace();
+      (*in.query)[14] = 1U << 28;  // mode ALL
+      std::vector<std::size_t> places;
+      std::map<std::size_t, bool> header;
+      bool done = false;
+      int clock = 0;
+      for (; clock < 4000 && !done; ++clock) {
+        if (clock == 2000) in.limits.steps = below(random, 3);
+        in.verdict.reset();
+        if (!places.empty()) {  // one child pair goes on for ever, the others on to the stack
+          in.verdict.emplace();
+          in.verdict->place = places.back();
+          if (!header.at(places.back())) in.verdict->waiting = clock < 1000 && clock % 16 == 0 ? 3 : 1;
+          places.pop_back();
+        }
+        drive<traversal_4>(top, in);
+        simulation.settle();
+        if (top.s_query_ready != 0 && in.query) in.query.reset();
+        if (top.m_valid != 0) {
+          places.push_back(top.m_place);
+          header[top.m_place] = get_pair(top.m_record).header;
+        }
+        if (top.lookup != 0 && header.count(top.lookup_place) != 0) {
+          in.lookup_pair.header = header[top.lookup_place];
+        }
+        if (top.m_done_valid != 0) {
+          done = true;
+          REQUIRE(unsigned{top.m_done_code} == static_cast<unsigned>(QueryCode::steps));
+          REQUIRE(top.m_done_steps > 50);
+        }
+        simulation.rise();
+      }
+      REQUIRE(done);
+      REQUIRE(clock > 2000);
+    }
+  });
+}
+
+TEST_CASE("cchip_traversal: as many leaf pairs in flight as the rules allow", "[unit][cchip_traversal]") {
+  using Config = traversal_leaves;
+  for_two_power_ups<Config::Model>([](auto& simulation, Random& /*random*/) {
+    auto& top = simulation.top();
+    constexpr std::size_t receiver = 1899;  // leaf pairs behind cchip_get_data
+    Traversal::Inputs in;
+    in.start_ready = in.done_ready = true;
+    in.limits.pairs_each = 7;
+    drive<Config>(top, in);
+    simulation.reset();
+    in.query.emplace();
+    (*in.query)[14] = 1U << 28;  // mode ALL
+    std::vector<std::size_t> nodes, leaves;
+    std::map<std::size_t, bool> header;
+    int waiting = 18;  // node pairs of which all child pairs are inner ones; of the others all are leaf pairs
+    std::size_t behind = 0, most = 0, results = 0;
+    bool done = false;
+    for (int clock = 0; clock < 100000 && !done; ++clock) {
+      const bool fill = clock < 12000;
+      in.verdict.reset();
+      if (!nodes.empty()) {
+        in.verdict.emplace();
+        in.verdict->place = nodes.back();
+        if (!header.at(nodes.back())) {
+          if (waiting > 0)
+            in.verdict->waiting = 0xffff;
+          else
+            in.verdict->leaves = 0xffff;
+          --waiting;
+        }
+        nodes.pop_back();
+      }
+      in.leaf_left.reset();
+      in.credit = false;
+      if (!leaves.empty() && behind < receiver) {
+        in.leaf_left = leaves.back();
+        in.credit = true;
+        leaves.pop_back();
+        ++behind;
+      }
+      in.result.reset();
+      if (!fill && behind > 0) in.result.emplace();
+      drive<Config>(top, in);
+      simulation.settle();
+      if (top.s_query_ready != 0 && in.query) in.query.reset();
+      if (in.result && top.s_result_ready != 0) {
+        --behind;
+        ++results;
+      }
+      if (top.m_valid != 0 && top.count_leaf_pair != 0) {
+        leaves.push_back(top.m_place);
+      } else if (top.m_valid != 0) {
+        nodes.push_back(top.m_place);
+        header[top.m_place] = get_pair(top.m_record).header;
+      }
+      if (top.lookup != 0 && header.count(top.lookup_place) != 0) in.lookup_pair.header = header[top.lookup_place];
+      most = std::max(most, behind + leaves.size());
+      if (top.m_done_valid != 0) {
+        done = true;
+        REQUIRE(unsigned{top.m_done_code} == static_cast<unsigned>(QueryCode::ok));
+        REQUIRE(top.m_done_pairs == 0);
+      }
+      simulation.rise();
+    }
+    REQUIRE(done);
+    REQUIRE(most == receiver + Config::LEAVES);
+    REQUIRE(results > most + 16 * Config::LEAF_DEPTH);
   });
 }

@@ -90,7 +90,7 @@ std::uint16_t some_of(Random& random, std::uint16_t of) {
 }
 
 /// As cchip_traversal can bring it about.
-Occurrence occurrence(Random& random, const model::TraversalLimits& limits) {
+Occurrence occurrence(Random& random, const model::TraversalLimits& limits, unsigned work_w) {
   Occurrence o;
   o.event = static_cast<TraversalEvent>(below(random, 4));
   const bool start = o.event == TraversalEvent::start;
@@ -107,7 +107,8 @@ Occurrence occurrence(Random& random, const model::TraversalLimits& limits) {
   o.state.under_way = below(random, 8);
   if (pop && o.state.under_way == 7) o.state.under_way = 6;
   if (o.event == TraversalEvent::verdict && o.live && o.state.under_way == 0) o.state.under_way = 1;
-  o.state.steps = chance(random, 20) ? limits.steps : static_cast<std::uint32_t>(random());
+  o.state.steps = static_cast<std::uint32_t>(random());
+  o.over = chance(random, 20);
   o.state.pairs = static_cast<std::uint32_t>(random());
   o.state.open = below(random, 256);
   o.state.hit = chance(random, 20);
@@ -117,7 +118,7 @@ Occurrence occurrence(Random& random, const model::TraversalLimits& limits) {
   };
   o.constants = constants();
   o.query = constants();
-  o.work = chance(random, 50) ? o.state.under_way : below(random, 2000);
+  o.work = chance(random, 50) ? o.state.under_way : below(random, (1U << work_w) - 68);
   if (start && chance(random, 70)) o.work = 0;
   if ((o.event == TraversalEvent::verdict || o.event == TraversalEvent::result) && o.work == 0) o.work = 1;
   if (o.event == TraversalEvent::result && chance(random, 30)) o.state.under_way = o.work == 1 ? 0 : 1;
@@ -155,21 +156,20 @@ TEMPLATE_LIST_TEST_CASE("cchip_traversal_decision: what the model decides, two c
     auto& top = simulation.top();
     top.s_valid = 0;
     simulation.reset();
-    std::array<std::optional<Decision>, 2> expected;
-    std::array<std::size_t, 2> starts{};
+    std::optional<Decision> expected;
+    std::array<std::optional<Occurrence>, 2> inside;  // oldest last
+    unsigned open_limit_before = 0;
     std::map<QueryCode, int> codes;
     int wants = 0, pushes = 0, leaves = 0;
     model::TraversalLimits limits;
     limits.stack = TestType::STACK;
     for (int clock = 0; clock < 60000; ++clock) {
-      if (clock % 500 == 0) {  // nothing inside
-        limits.pairs_each = 1 + below(random, 7);
-        limits.open = 1 + below(random, 255);
-      }
-      limits.steps = static_cast<std::uint32_t>(random());
-      const bool valid = clock % 500 < 498 && chance(random, 80);
+      // the limits change on any clock, often to their extremes
+      if (chance(random, 30)) limits.pairs_each = below(random, 8);
+      if (chance(random, 30)) limits.open = std::array{0U, 1U, 255U, below(random, 256)}[below(random, 4)];
+      const bool valid = chance(random, 80);
       const bool reset = chance(random, 1);
-      const Occurrence o = occurrence(random, limits);
+      const Occurrence o = occurrence(random, limits, TestType::WORK_W);
       top.rst = reset ? 1 : 0;
       top.pairs_each = static_cast<CData>(limits.pairs_each);
       top.open_limit = static_cast<CData>(limits.open);
@@ -183,7 +183,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_traversal_decision: what the model decides, two c
       put_state(top.s_state, o.state, stack_w);
       put_constants(top.s_constants, o.constants);
       top.s_work = static_cast<SData>(o.work);
-      top.s_over = o.state.steps == limits.steps ? 1 : 0;
+      top.s_over = o.over ? 1 : 0;
       top.s_full = o.state.entries == limits.stack ? 1 : 0;
       put_verdict(top.s_verdict, o.verdict);
       top.s_some_wait = o.verdict.waiting != 0 ? 1 : 0;
@@ -201,8 +201,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_traversal_decision: what the model decides, two c
       put_constants(top.query_constants, o.query);
       simulation.settle();
 
-      const auto& d = expected[1];
-      const bool start = starts[1] != 0;
+      const auto& d = expected;
+      const bool start = d && inside[1]->event == TraversalEvent::start;
       REQUIRE((top.m_goes != 0) == (d && d->goes));
       REQUIRE((top.m_back != 0) == (d && d->place_free));
       REQUIRE((top.m_push != 0) == (d && d->push));
@@ -257,14 +257,54 @@ TEMPLATE_LIST_TEST_CASE("cchip_traversal_decision: what the model decides, two c
         }
         wants += d->wants ? 1 : 0;
       }
-      expected[1] = reset ? std::nullopt : expected[0];
-      expected[0] = valid && !reset ? std::optional(model::decide(limits, o)) : std::nullopt;
-      starts = {o.event == TraversalEvent::start ? std::size_t{1} : 0, starts[0]};
+      inside[1] = reset ? std::nullopt : inside[0];
+      inside[0] = valid && !reset ? std::optional(o) : std::nullopt;
+      expected.reset();
+      if (inside[1]) {  // open_limit counts on an event's first clock, pairs_each on its second
+        model::TraversalLimits then = limits;
+        then.open = open_limit_before;
+        expected = model::decide(then, *inside[1]);
+      }
+      open_limit_before = limits.open;
       simulation.rise();
     }
     REQUIRE(codes.size() == 8);
     REQUIRE(wants > 1000);
     REQUIRE(pushes > 1000);
     REQUIRE(leaves > 500);
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_traversal_decision: limits of 0 count as 1", "[unit][cchip_traversal_decision]",
+                        cchip_traversal_decision_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
+    constexpr int stack_w = log2(TestType::STACK);
+    auto& top = simulation.top();
+    top.s_valid = 0;
+    simulation.reset();
+    for (int round = 0; round < 200; ++round) {
+      const unsigned open_limit = below(random, 2);
+      const unsigned open = below(random, 2);  // of the result
+      model::QueryState state;
+      state.active = true;
+      state.mode = QueryMode::first;
+      state.entries = 3;
+      top.pairs_each = static_cast<CData>(below(random, 2));
+      top.open_limit = static_cast<CData>(open_limit);
+      top.s_is_result = 1;
+      top.s_is_verdict = top.s_is_start = top.s_is_pop = 0;
+      top.s_live = 1;
+      top.s_epoch = 0;
+      put_state(top.s_state, state, stack_w);
+      top.s_work = 1;  // the last leaf pair: the query waits for its stack
+      top.s_result = static_cast<SData>(open << 3);
+      top.s_valid = 1;
+      simulation.step();
+      top.s_valid = 0;
+      simulation.step();
+      CAPTURE(open_limit, open, unsigned{top.pairs_each});
+      REQUIRE((top.m_ends != 0) == (open == 1));
+      REQUIRE((top.m_wants != 0) == (open == 0));
+    }
   });
 }

@@ -78,6 +78,13 @@ class Surroundings {
     if (chance(random_, 90)) {
       for (std::size_t i = 2; i < 11; ++i) x[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(x[i]) / 2);
     }
+    if (chance(random_, 90)) {
+      for (std::size_t i = 0; i < 2; ++i) x[i] /= 2;
+    }
+    if (chance(random_, 20)) {
+      const std::array<std::uint32_t, 3> bases = {0xfeffffff, 0xff000000, 0xffffffff};
+      x[below(random_, 2)] = bases[below(random_, 3)];
+    }
     if (chance(random_, 20)) {
       const std::array<std::uint32_t, 4> extremes = {0x40000000, 0xc0000000, 0x40000001, 0xbfffffff};
       x[2 + below(random_, 9)] = extremes[below(random_, 4)];
@@ -255,6 +262,69 @@ TEMPLATE_LIST_TEST_CASE(
     for (const auto& [event, n] : left) {
       CAPTURE(static_cast<int>(event), n);
       REQUIRE(n > 200);
+    }
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_traversal_events: results and verdicts of a query enter in turn while both wait",
+                        "[unit][cchip_traversal_events]", cchip_traversal_events_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& /*random*/) {
+    auto& top = simulation.top();
+    TraversalEvents model({TestType::QUERIES, TestType::PAIRS, TestType::LEAF_DEPTH, TestType::ANSWERS});
+    constexpr std::size_t pairs = TestType::PAIRS < 7 ? TestType::PAIRS : 7;
+    std::array<std::optional<TraversalEvents::Event>, 6> pipeline;
+    std::deque<std::size_t> back;  // places of node pairs that are back from the box test at once
+    std::size_t context = 0;
+    std::size_t under_way = 0;
+    bool asked = false;
+    drive(top, {}, log2(TestType::QUERIES), TestType::PLACE_W);
+    simulation.reset();
+    model.reset();
+    std::map<TraversalEvent, int> last, most;  // clock of the last one, most clocks without
+    for (int clock = 0; clock < 4000; ++clock) {
+      TraversalEvents::Inputs in;
+      in.running = in.start_ready = true;
+      if (!asked) in.query.emplace();
+      if (pipeline[5]) {
+        const TraversalEvents::Event& event = *pipeline[5];
+        TraversalEvents::Left left;
+        context = left.context = event.context;
+        left.active = true;
+        left.start = event.event == TraversalEvent::start;
+        left.room = event.extra ? 1 : 0;
+        if (event.event != TraversalEvent::result) back.push_back(event.place);
+        under_way += left.start || event.event == TraversalEvent::pop ? 1 : 0;
+        left.wants = under_way < pairs;
+        in.left = left;
+      }
+      if (!back.empty()) {
+        in.verdict.emplace();
+        in.verdict->place = back.front();
+        back.pop_front();
+      }
+      in.lookup = {context, 0};
+      const bool waits = clock > 500;  // a result, always
+      if (waits) in.result = model::TraversalResult{context, 0, 0, 0, QueryCode::ok};
+      drive(top, in, log2(TestType::QUERIES), TestType::PLACE_W);
+      simulation.settle();
+      CAPTURE(clock);
+      check(top, model, in);
+      if (top.m_valid != 0) {
+        const TraversalEvent event = model.event()->event;
+        if (clock > 600) most[event] = std::max(most[event], clock - last[event]);
+        last[event] = clock;
+      }
+      asked = asked || model.query_ready();
+      for (std::size_t i = 5; i > 0; --i) pipeline[i] = pipeline[i - 1];
+      pipeline[0] = model.event();
+      model.clock(in);
+      simulation.rise();
+    }
+    REQUIRE(under_way >= 2);  // one of them waits while the other is inside
+    for (const TraversalEvent event : {TraversalEvent::result, TraversalEvent::verdict}) {
+      CAPTURE(static_cast<int>(event));
+      REQUIRE(last[event] > 4000 - 17);
+      REQUIRE(most[event] == 16);
     }
   });
 }

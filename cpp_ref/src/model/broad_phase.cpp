@@ -134,7 +134,7 @@ class Run {
   /// Tests the children of a node pair, sends pairs of leaves on, and returns the child pair to go on with; the others
   /// wait on the stack.
   std::optional<NodePair> expand(const NodePair& pair) {
-    if (result_.counts.steps == options_.step_limit) throw Stop{QueryCode::steps};
+    if (result_.counts.steps >= options_.step_limit) throw Stop{QueryCode::steps};
     ++result_.counts.steps;
     const bvh::InnerLine a = node(a_, pair.a.line);
     const bvh::InnerLine b = node(b_, pair.b.line);
@@ -188,7 +188,7 @@ class Run {
     if (outcome.definite) {
       result_.done.answer = QueryAnswer::yes;
       finished_ = query_.mode == QueryMode::first;
-    } else if (++result_.counts.open_pairs == options_.open_limit && query_.mode == QueryMode::first) {
+    } else if (++result_.counts.open_pairs >= options_.open_limit && query_.mode == QueryMode::first) {
       throw Stop{QueryCode::host};
     }
   }

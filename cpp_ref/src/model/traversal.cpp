@@ -59,7 +59,7 @@ TraversalEvents::Inputs Traversal::events_inputs(const Inputs& in) const {
   return x;
 }
 
-void Traversal::decide_next(const TraversalLimits& limits) {
+void Traversal::decide_next(const Inputs& in) {
   decision_.reset();
   judged_.reset();
   if (!inside_[stages - 1]) return;
@@ -73,6 +73,7 @@ void Traversal::decide_next(const TraversalLimits& limits) {
   o.epoch = own ? o.state.epoch : event.epoch;
   o.live = o.state.active && o.epoch == o.state.epoch;
   o.extra = event.extra;
+  o.over = inside.over;
   o.constants = constants_[context];
   o.work = works_[context][o.epoch];
   o.verdict = event.verdict;
@@ -85,9 +86,10 @@ void Traversal::decide_next(const TraversalLimits& limits) {
     o.mode = ((*query)[14] >> 28 & 1) != 0 ? QueryMode::all : QueryMode::first;
     o.query = {(*query)[0], (*query)[1], (*query)[15]};
   }
-  TraversalLimits with_stack = limits;
-  with_stack.stack = shape_.stack;
-  decision_ = decide(with_stack, o);
+  TraversalLimits limits = in.limits;
+  limits.open = inside.open_limit;
+  limits.stack = shape_.stack;
+  decision_ = decide(limits, o);
   if (event.judge) judged_ = Judgement{o.live, decision_->constants.tag};
 }
 
@@ -152,6 +154,8 @@ void Traversal::clock(const Inputs& in) {
   }
 
   // the pipeline; what is looked up counts on the clock on which its verdict enters
+  if (auto& third = inside_[1]) third->over = states_[third->event.context].steps >= in.limits.steps;
+  if (auto& fifth = inside_[3]) fifth->open_limit = in.limits.open;
   const std::optional<TraversalEvents::Event> entered = events_.event();
   for (std::size_t i = stages - 1; i > 0; --i) inside_[i] = std::move(inside_[i - 1]);
   inside_[0].reset();
@@ -164,7 +168,7 @@ void Traversal::clock(const Inputs& in) {
   done_.clock(ends, done, in.done_ready);
   events_.clock(to_events);
   if (!running) ++cleared_;
-  decide_next(in.limits);
+  decide_next(in);
 }
 
 void Traversal::reset() {

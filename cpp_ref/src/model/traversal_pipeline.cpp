@@ -85,7 +85,7 @@ Decision decide(const TraversalLimits& limits, const Occurrence& o) {
         code = o.lines.code;
       } else if (live && o.pair.header) {
         d.goes = NodePair{false, o.epoch, 15, 15, o.lines.first_a, o.lines.first_b};
-      } else if (live && o.state.steps == limits.steps) {
+      } else if (live && o.over) {
         code = QueryCode::steps;
       } else if (live) {
         d.step = o.verdict.tests;
@@ -140,7 +140,7 @@ Decision decide(const TraversalLimits& limits, const Occurrence& o) {
         code = o.result.code;
       } else if (d.state.mode == QueryMode::first && o.result.hits != 0) {
         code = QueryCode::ok;
-      } else if (d.state.mode == QueryMode::first && open >= limits.open) {
+      } else if (d.state.mode == QueryMode::first && open >= std::max(limits.open, 1U)) {
         code = QueryCode::host;
       }
       break;
@@ -158,13 +158,13 @@ Decision decide(const TraversalLimits& limits, const Occurrence& o) {
   }
   // a pair of leaves that is out may end a query for the first hit
   const bool hopes = live && d.state.mode == QueryMode::first && d.work != d.state.under_way;
-  d.wants =
-      d.state.active && d.state.entries != 0 && d.state.under_way < (hopes ? limits.pairs_each / 2 : limits.pairs_each);
+  const unsigned pairs_each = std::max(limits.pairs_each, 1U);
+  d.wants = d.state.active && d.state.entries != 0 && d.state.under_way < (hopes ? pairs_each / 2 : pairs_each);
   return d;
 }
 
 bool bad_descriptor(const std::array<std::uint32_t, 16>& query) {
-  bool bad = (query[14] >> 30) != 0;
+  bool bad = (query[14] >> 30) != 0 || query[0] > last_base || query[1] > last_base;
   for (std::size_t i = 2; i < 11; ++i) {
     const auto m = static_cast<std::int32_t>(query[i]);
     bad = bad || m > (1 << 30) || m < -(1 << 30);
@@ -175,8 +175,10 @@ bool bad_descriptor(const std::array<std::uint32_t, 16>& query) {
 TraversalEvents::Source TraversalEvents::choose(const Inputs& in) const {
   const auto may = [this](std::size_t context) { return !has(locked_, context); };
   const bool can_go = places_.m_valid() && some_room_;
+  const bool result = results_.m_valid() && may(results_.m_data().context);
+  if (result && result_first_) return Source::result;
   if (verdict_ && may(in.lookup.context)) return Source::verdict;
-  if (results_.m_valid() && may(results_.m_data().context)) return Source::result;
+  if (result) return Source::result;
   if (in.drop && may(in.drop->context)) return Source::drop;
   if (query_valid_ && judged_ && !starting_ && idle_context_ && may(*idle_context_) && can_go &&
       answers_ < shape_.answers && in.start_ready) {
@@ -188,6 +190,8 @@ TraversalEvents::Source TraversalEvents::choose(const Inputs& in) const {
 
 void TraversalEvents::clock(const Inputs& in) {
   const Source source = choose(in);
+  const bool result_waits = results_.m_valid() && !has(locked_, results_.m_data().context);
+  result_first_ = result_first_ ? source != Source::result : source == Source::verdict && result_waits;
   const bool start = source == Source::start;
   const bool goes = start || source == Source::pop;
   std::optional<Event> event;
@@ -285,7 +289,7 @@ void TraversalEvents::reset() {
   answers_ = 0;
   locked_ = wanting_ = 0;
   without_query_ = 0xffffffff;
-  query_ready_ = query_valid_ = judged_ = starting_ = false;
+  query_ready_ = query_valid_ = judged_ = starting_ = result_first_ = false;
   idle_context_.reset();
   pop_context_.reset();
   event_.reset();

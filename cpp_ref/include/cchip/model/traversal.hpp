@@ -28,7 +28,7 @@ class Traversal {
     std::size_t credit = 32;
   };
   struct Inputs {
-    TraversalLimits limits;  ///< steady while queries run; `stack` is that of the shape
+    TraversalLimits limits;  ///< of this clock; `stack` is that of the shape
     std::optional<TraversalEvents::QueryWords> query;
     bool start_ready = false;
     std::optional<std::size_t> leaf_left;  ///< place of a pair of leaves that has left cchip_get_data
@@ -85,11 +85,13 @@ class Traversal {
     TraversalEvents::Event event;
     NodePair pair;
     NodeLines lines;
+    bool over = false;        ///< steps were at their limit as it passed its third stage
+    unsigned open_limit = 0;  ///< as it passed its fifth
   };
   static constexpr std::size_t stages = 6;
 
   TraversalEvents::Inputs events_inputs(const Inputs& in) const;
-  void decide_next(const TraversalLimits& limits);
+  void decide_next(const Inputs& in);
 
   Shape shape_;
   TraversalEvents events_;

@@ -95,9 +95,9 @@ struct QueryConstants {
 enum class TraversalEvent { verdict, result, start, pop };
 
 struct TraversalLimits {
-  unsigned pairs_each = 3;  ///< node pairs of a query under way
+  unsigned pairs_each = 3;  ///< node pairs of a query in flight, 0..7; 0 counts as 1
   std::uint32_t steps = 0xffffffff;
-  unsigned open = 16;
+  unsigned open = 16;  ///< 0..255; 0 counts as 1
   std::size_t stack = 64;
 };
 
@@ -107,6 +107,7 @@ struct Occurrence {
   unsigned epoch = 0;  ///< of the event
   bool live = false;   ///< its query is still at work
   bool extra = false;  ///< a verdict that has further room in the leaf queue
+  bool over = false;   ///< the steps of its query have reached their limit
   QueryState state;
   QueryConstants constants;
   std::uint32_t work = 0;  ///< node pairs and pairs of leaves of the epoch
@@ -150,7 +151,10 @@ struct Decision {
 
 Decision decide(const TraversalLimits& limits, const Occurrence& o);
 
-/// True if bits are set that must be 0, or an entry of M is beyond 1.
+/// Last line at which an image may begin: its lines, at most 2^24 - 1, have numbers of 32 bits.
+inline constexpr std::uint32_t last_base = 0xfeffffff;
+
+/// True if bits are set that must be 0, an entry of M is beyond 1, or a base is beyond the last one.
 bool bad_descriptor(const std::array<std::uint32_t, 16>& query);
 
 /// cchip_traversal_events: which event enters.
@@ -238,6 +242,7 @@ class TraversalEvents {
   std::uint32_t locked_ = 0, without_query_ = 0, wanting_ = 0;  ///< contexts
   std::optional<QueryWords> query_;
   bool query_ready_ = false, query_valid_ = false, query_bad_ = false, judged_ = false, starting_ = false;
+  bool result_first_ = false;  ///< a verdict has entered while a result could have: the result is next
   std::optional<std::size_t> idle_context_, pop_context_;
   std::optional<Event> event_;
 };

@@ -102,7 +102,7 @@ enum class QueryCode : std::uint8_t {
   stack = 3,  ///< full stack
   corrupt = 4,  ///< a line of an image is invalid
   outside = 5,  ///< a node's children lie outside its image
-  bad_descriptor = 6,  ///< bits that must be 0 but are not, |M_ij| > 1, or a line at a base that is no header
+  bad_descriptor = 6,  ///< bits that must be 0 but are not, |M_ij| > 1, a base beyond 0xFEFFFFFF, or a line at a base that is no header
   memory = 7,  ///< a line could not be read: an error of the bus, or no answer in time
 };
 

@@ -64,7 +64,7 @@ constexpr std::uint32_t scheduler_enable_reset = 0x0;
 constexpr std::uint32_t abort_mask = 0x00000002;
 constexpr int abort_shift = 1;
 constexpr std::uint32_t abort_reset = 0x0;
-/// 1: set all counters to 0
+/// 1: set all counters, and `lost`, to 0; an event and a report on the clock of the clear are not counted
 constexpr std::uint32_t clear_mask = 0x00000004;
 constexpr int clear_shift = 2;
 constexpr std::uint32_t clear_reset = 0x0;
