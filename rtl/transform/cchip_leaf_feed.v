@@ -12,7 +12,7 @@
 //   end          a leaf pair whose line could not be read, or is illegal, ends without primitive
 //                pairs, with CCHIP_END_MEMORY or CCHIP_END_CORRUPT
 //   throughput   a leaf pair every 2 clocks
-//   latency      4 clocks from s_leaf_valid to m_valid
+//   latency      3 clocks from s_leaf_valid to m_valid
 //   cuts         every path from s_leaf and s_start; m_credit follows s_begin_ready in its clock
 //   reset        leaf pairs inside are forgotten
 module cchip_leaf_feed #(

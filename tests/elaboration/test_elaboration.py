@@ -191,6 +191,15 @@ ILLEGAL = [
     *(("cchip_normaliser", {"COORD_W": n}, COORD_W) for n in (3, 21)),
     *(("cchip_transform", {"CREDIT": n}, "cchip_error_transform_CREDIT_must_be_4_to_4096") for n in (3, 4097)),
     ("cchip_transform", {"ID_W": 0}, "cchip_error_transform_ID_W_below_1"),
+    *(("cchip_leaf_feed", case, "cchip_error_leaf_feed_CREDIT_must_be_1_to_64_QUERIES_2_4_8_or_16_and_LEAF_W_positive")
+      for case in ({"CREDIT": 0}, {"CREDIT": 65}, {"QUERIES": 3}, {"QUERIES": 32}, {"LEAF_W": 0})),
+    *(("cchip_query_ring", case, "cchip_error_query_ring_AHEAD_must_be_2_4_or_8_and_SLOTS_a_power_of_two_AHEAD_to_32")
+      for case in ({"AHEAD": 3}, {"AHEAD": 16}, {"SLOTS": 2}, {"SLOTS": 64})),
+    *(("cchip_query_ring", {"DATA_W": n}, "cchip_error_query_ring_DATA_W_must_be_64_128_256_or_512") for n in (32, 1024)),
+    *(("cchip_record_ring", {"DATA_W": n}, "cchip_error_record_ring_DATA_W_must_be_128_256_or_512") for n in (64, 1024)),
+    *(("cchip_calc_result", {"LEAVES": n}, "cchip_error_calc_result_LEAVES_must_be_a_power_of_two_4_to_256") for n in (2, 48, 512)),
+    *(("cchip_calc_result", case, "cchip_error_calc_result_JUDGED_must_be_2_to_64_and_CONTEXT_W_positive")
+      for case in ({"JUDGED": 1}, {"JUDGED": 65}, {"CONTEXT_W": 0})),
     ("cchip_swap_sequencer", {"SLOTS": 5}, SLOTS),
     ("cchip_swap_retry", {"SLOTS": 0}, SLOTS),
     ("cchip_swap_retry", {"SLOTS": 5}, SLOTS),
@@ -230,6 +239,10 @@ LEGAL = [
       for c, w, o, i in ((1, 512, 1, 1), (4, 64, 64, 16))),
     *(("cchip_count", {"LIMIT": n}) for n in (1, 65535)),
     *(("cchip_timeout", {"DEFAULT": n}) for n in (1, 2147483647)),
+    *(("cchip_leaf_feed", {"CREDIT": c, "QUERIES": q, "LEAF_W": w}) for c, q, w in ((1, 2, 1), (64, 16, 8))),
+    *(("cchip_query_ring", {"SLOTS": s, "AHEAD": a, "DATA_W": w}) for s, a, w in ((2, 2, 512), (32, 8, 64))),
+    *(("cchip_record_ring", {"DATA_W": w}) for w in (256, 512)),
+    *(("cchip_calc_result", {"LEAVES": n, "CONTEXT_W": c, "JUDGED": j}) for n, c, j in ((4, 1, 2), (256, 4, 64))),
     *(("cchip_pool", {"FIRST": f, "COUNT": n, "WIDTH": w}) for f, n, w in ((0, 1, 1), (0, 256, 8), (48, 16, 6))),
     *(("cchip_vertex_collector", {"COORD_W": n}) for n in (4, 20)),
     *(("cchip_descriptor_queues", {"DEPTH": d, "KINDS": k, "WIDTH": w}) for d, k, w in ((16, 1, 1), (1024, 3, 80))),
