@@ -200,6 +200,9 @@ ILLEGAL = [
     *(("cchip_calc_result", {"LEAVES": n}, "cchip_error_calc_result_LEAVES_must_be_a_power_of_two_4_to_256") for n in (2, 48, 512)),
     *(("cchip_calc_result", case, "cchip_error_calc_result_JUDGED_must_be_2_to_64_and_CONTEXT_W_positive")
       for case in ({"JUDGED": 1}, {"JUDGED": 65}, {"CONTEXT_W": 0})),
+    ("cchip_chip_core", {"MISSES": 2}, "cchip_error_chip_core_MISSES_must_be_4_8_16_or_32"),
+    ("cchip_chip_core", {"RM_ID": 0}, "cchip_error_chip_core_RM_ID_must_be_1_to_3"),
+    ("cchip_chip_core", {"QUEUE_DEPTH": 512}, "cchip_error_chip_core_QUEUE_DEPTH_must_be_a_power_of_two_16_to_256"),
     ("cchip_swap_sequencer", {"SLOTS": 5}, SLOTS),
     ("cchip_swap_retry", {"SLOTS": 0}, SLOTS),
     ("cchip_swap_retry", {"SLOTS": 5}, SLOTS),
