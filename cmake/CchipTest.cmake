@@ -6,16 +6,20 @@ find_package(Catch2 2.13 REQUIRED)
 include(Catch)
 
 # Half the time of the compiler: the arithmetic of a test is in the libraries, and Catch and Eigen are most of what it reads.
+# A precompiled header takes as long as two files save.
 function(cchip_test_options name)
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
-  target_precompile_headers(${name} PRIVATE <catch2/catch.hpp> <Eigen/Geometry> <string> <vector>)
+  list(LENGTH ARGN files)
+  if(files GREATER 2)
+    target_precompile_headers(${name} PRIVATE <catch2/catch.hpp> <Eigen/Geometry> <string> <vector>)
+  endif()
 endfunction()
 
 function(cchip_add_test name)
   cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE cchip_catch_main ${ARG_LIBS} cchip_warnings)
-  cchip_test_options(${name})
+  cchip_test_options(${name} ${ARG_SOURCES})
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT})
 endfunction()
 

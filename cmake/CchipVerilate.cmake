@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Libraries of Verilated modules, with the Verilator of CCHIP_VERILATOR.
-#   cchip_model_library(<library> [SYSTEMC] [BRIEF] [WAVES])  an empty one; BRIEF: for short runs, compiled with -O1 in
-#       half the time; WAVES: its models can write waveforms
+#   cchip_model_library(<library> [SYSTEMC] [BRIEF] [WAVES] [MANY])  an empty one; BRIEF: for short runs, compiled with
+#       -O1 in half the time; WAVES: its models can write waveforms; MANY: many small models, most of whose time is the
+#       headers of the runtime
 #   cchip_verilate(<library> <module> [SYSTEMC] [WAVES] [PREFIX <class>] [PARAMETERS NAME=VALUE ...] [SOURCES file ...])
 #       adds the module as C++ class <class> (default V<module>); without SOURCES Verilator finds it and what it uses by
 #       name in the folders of rtl/cchip.f and of the models for simulation only, and reads nothing else
@@ -95,7 +96,7 @@ endif()
 function(cchip_model_library library)
   add_library(${library} STATIC)
   cchip_foreign_code(${library})
-  cmake_parse_arguments(ARG "SYSTEMC;BRIEF;WAVES" "" "" ${ARGN})
+  cmake_parse_arguments(ARG "SYSTEMC;BRIEF;WAVES;MANY" "" "" ${ARGN})
   if(ARG_BRIEF)
     target_compile_options(${library} PRIVATE -O1)
   endif()
@@ -103,7 +104,7 @@ function(cchip_model_library library)
   target_link_libraries(${library} PUBLIC cchip_verilated$<$<BOOL:${ARG_SYSTEMC}>:_sc>)
   # All models of a library in one folder: a user of two hundred models would search two hundred folders for each header.
   target_include_directories(${library} SYSTEM INTERFACE ${CMAKE_CURRENT_BINARY_DIR}/${library}.models)
-  if(NOT ARG_SYSTEMC)  # most of the time of a small model is the runtime's headers
+  if(ARG_MANY)
     target_precompile_headers(${library} PRIVATE <verilated.h> <verilated_fst_c.h>)
   endif()
 endfunction()
