@@ -94,7 +94,8 @@ module cchip_calc_result_properties #(
     assume (s_begin_pairs != 2'd2);
     assume (!s_faces_valid || (pairs_q[s_faces_pair] && !faces_q[s_faces_pair]));
     assume (!s_result_valid || (faces_q[s_result_pair] && !results_q[s_result_pair]));
-    assume (!s_end_valid || (lent_q[s_end_number] && !ended_q[s_end_number] && faces_q[4*s_end_number+:4] == 4'd0));
+    assume (!s_end_valid || (lent_q[s_end_number] && !ended_q[s_end_number] && faces_q[4*s_end_number+:4] == 4'd0 &&
+        !(s_faces_valid && s_faces_pair[3:2] == s_end_number)));
   end
   always @(posedge clk) begin
     if (begins) begin

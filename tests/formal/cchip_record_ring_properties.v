@@ -5,7 +5,7 @@
 // phase of its round, to its place in the ring; none is written over one that the host has not read; producer counts the writes
 // that were confirmed before the first that failed, so consumer <= producer <= records written <= consumer + 2^size_log2; a
 // write that waits does not change.
-// Assumed: consumer never passes producer; answers come for writes that were taken, once each.
+// Assumed: a ring of at most 8 records; consumer never passes producer; answers come for writes that were taken, once each.
 // One record, any, is followed: bit 0 of its data is 1, and of all others 0.
 module cchip_record_ring_properties (
     input wire                           clk,
@@ -54,7 +54,7 @@ module cchip_record_ring_properties (
   always @(posedge clk) started_q <= 1'b1;
   always @* begin
     assume (started_q || rst);
-    assume (size_log2 <= 5'd16);
+    assume (size_log2 <= 5'd3);
     assume ({29'd0, reads} <= producer - consumer_q);
     assume (!s_answer || answered_q != written_q);
   end
