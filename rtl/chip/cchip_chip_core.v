@@ -408,7 +408,7 @@ module cchip_chip_core #(
       .s_credit(pop)
   );
 
-  // ---- primitive pairs wait: operands vertex by vertex, the descriptor with the last one. All kinds
+  // ---- primitive pairs wait: operands vertex by vertex, the descriptor with the last. All kinds
   // share the transform's credit of QUEUE_DEPTH, so every queue has room; and an operand is
   // overwritten by a pair that began after its own had left, long after it was read
   wire [KINDS:0] some, queue_room, kind;
@@ -639,9 +639,9 @@ module cchip_chip_core #(
   );
 
   wire unused = &{1'b0, start_epoch, count_tests, count_wait, count_again, queue_room, waiting,
-      outstanding_reads[2*MISSES-1:MISSES], rm_id, region_rm_id, result_kind, answered_module, result,
-      dispatched, lost, quiet, decoupled, slot_decoupled, roc_busy, slot_idle, answered, refused_kind,
-      refused_provider, result_tag};
+      outstanding_reads[2*MISSES-1:MISSES], rm_id, region_rm_id, result_kind, answered_module,
+      result, dispatched, lost, quiet, decoupled, slot_decoupled, roc_busy, slot_idle, answered,
+      refused_kind, refused_provider, result_tag};
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_kind_room, !(vertex_valid && vertex_last) || kind_room)

@@ -2,7 +2,7 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// cchip_query_ring: fetches queries from a ring of lines in memory and hands them on in their order.
+// cchip_query_ring: fetches queries from a ring of lines in memory and hands them on in order.
 //   ring         2^size_log2 lines from `base` on. `producer` counts the queries that the host has
 //                written, `consumer` those that have left this module; both run freely, 16 bit. The
 //                host keeps producer - consumer <= 2^size_log2, and may write a line again when

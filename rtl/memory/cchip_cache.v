@@ -379,7 +379,8 @@ module cchip_cache #(
       wire refuse = fresh & ~match_q6 & exhausted;
       wire is_oldest = oldest_q == {P[0], place_q6};
       assign again = look_q6 & (stale | (~match_q6 & ~grant[p] & ~exhausted));
-      assign want[p] = fresh & ~match_q6 & may_q6 & free_valid & ~exhausted & (~alone_q | is_oldest);
+      assign want[p] = fresh & ~match_q6 & may_q6 & free_valid & ~exhausted &
+          (~alone_q | is_oldest);
       assign want_way[p] = victim_q6;
       assign want_locked[p] = locked_q6;
       assign want_turn[p] = new_turn_q6;

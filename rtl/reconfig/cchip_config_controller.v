@@ -11,9 +11,9 @@
 //                up; see the datasheet for the rest; every wait has a bound: shutdown_limit for the
 //                pairs, memory_limit for each beat
 //   limits       1..2^32 - 1 clocks; 0 means CCHIP_SHUTDOWN_LIMIT_DEFAULT and
-//                CCHIP_MEMORY_LIMIT_DEFAULT. Each counts from the clock on which it is written, in a
-//                swap under way too: a lower one also for the clocks that have passed, a higher
-//                one, or 0, gives more time
+//                CCHIP_MEMORY_LIMIT_DEFAULT. Each counts from the clock on which it is written,
+//                in a swap in flight too: a lower one also for the clocks that have passed, a
+//                higher one, or 0, gives more time
 //   busy         a request during a swap is taken and answered BUSY; every request is answered by
 //                exactly one report
 //   clocks       cfg_error may come from any clock, as a level or for at least two clocks of clk: a

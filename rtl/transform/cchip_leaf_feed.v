@@ -2,8 +2,8 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// cchip_leaf_feed: leaf pairs from the broad phase to the vertex transform, each with the map of its
-// query and a number of cchip_calc_result.
+// cchip_leaf_feed: leaf pairs from the broad phase to the vertex transform, each with the map of
+// its query and a number of cchip_calc_result.
 //   map          kept for each context, not for each epoch of it: a leaf pair of a query that has
 //                ended may meet the map of the next one. That is harmless: every map is a legal
 //                one, and the traversal calls its results dead

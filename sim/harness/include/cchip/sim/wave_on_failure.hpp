@@ -21,11 +21,12 @@ inline std::string wave_folder() {
 }
 
 /// Runs body(options) without a waveform. If it throws, runs it once more with the same options and writes the waveform
-/// <wave_folder>/<name>.fst of the clocks before the failure, if the model was built with waveforms (CchipVerilate.cmake). Then throws: a SimulationError as a SimulationError, with
-/// the file's name in the message; anything else (a REQUIRE of Catch2) unchanged, with the name printed on standard
-/// error. CHECK does not throw: inside the body use REQUIRE, cchip::sim::require() or the agents' own errors. The body
-/// must behave the same when called twice, and must build its Simulation from the options it gets. If it builds
-/// several, one after the other, the wave shows the last, which is the one that failed.
+/// <wave_folder>/<name>.fst of the clocks before the failure, if the model was built with waveforms
+/// (CchipVerilate.cmake). Then throws: a SimulationError as a SimulationError, with the file's name in the message;
+/// anything else (a REQUIRE of Catch2) unchanged, with the name printed on standard error. CHECK does not throw: inside
+/// the body use REQUIRE, cchip::sim::require() or the agents' own errors. The body must behave the same when called
+/// twice, and must build its Simulation from the options it gets. If it builds several, one after the other, the wave
+/// shows the last, which is the one that failed.
 template <class Body>
 void with_wave_on_failure(const std::string& name, Body&& body, SimulationOptions options = {}) {
   options.clocks_run = std::make_shared<std::uint64_t>(0);
