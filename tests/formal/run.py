@@ -62,7 +62,10 @@ SLOW = {("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"), 
         ("cchip_swap_retry", "prove"), ("cchip_axi_read", "bounded"), ("cchip_axi_write", "bounded_1"),
         ("cchip_traversal_events", "bounded"), ("cchip_get_data", "bounded"), ("cchip_get_data", "code"),
         ("cchip_bitstream_fetch", "room"), ("cchip_cache", "bounded"), ("cchip_cache", "frames"), ("cchip_cache", "stale"),
-        ("cchip_cache", "live"), ("cchip_calc_result", "bounded")}
+        ("cchip_cache", "live"), ("cchip_cache", "cover_wait"), ("cchip_cache", "cover_locked"), ("cchip_cache", "cover_evicted"),
+        ("cchip_cache", "cover_refused"), ("cchip_cache", "cover_fresh"), ("cchip_calc_result", "bounded"),
+        ("cchip_calc_result", "cover_records"), ("cchip_calc_result", "cover_again"), ("cchip_query_ring", "bounded"),
+        ("cchip_record_ring", "bounded")}
 # (task that has to fail, file, text, what takes its place); the text occurs once
 MUTANTS = [
     ("cchip_skid_buffer prove", SKID, "if (ready_q) skid_data_q <= s_data;", "skid_data_q <= s_data;"),
