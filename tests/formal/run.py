@@ -63,7 +63,7 @@ SLOW = {("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"), 
         ("cchip_traversal_events", "bounded"), ("cchip_get_data", "bounded"), ("cchip_get_data", "code"),
         ("cchip_bitstream_fetch", "room"), ("cchip_cache", "bounded"), ("cchip_cache", "frames"), ("cchip_cache", "stale"),
         ("cchip_cache", "live"), ("cchip_cache", "cover_wait"), ("cchip_cache", "cover_locked"), ("cchip_cache", "cover_evicted"),
-        ("cchip_cache", "cover_refused"), ("cchip_cache", "cover_fresh"), ("cchip_calc_result", "bounded"),
+        ("cchip_cache", "cover_refused"), ("cchip_cache", "cover_fresh"), ("cchip_calc_result", "bounded"), ("cchip_calc_result", "order"),
         ("cchip_calc_result", "cover_records"), ("cchip_calc_result", "cover_again"), ("cchip_query_ring", "bounded"),
         ("cchip_record_ring", "bounded")}
 # (task that has to fail, file, text, what takes its place); the text occurs once
@@ -125,8 +125,8 @@ MUTANTS = [
     ("cchip_record_ring bounded", RECORD_RING, "<= ~round[0];", "<= round[0];"),
     ("cchip_record_ring bounded", RECORD_RING, "room_q & ~failed_q & (~valid_q | m_ready);", "room_q & ~failed_q;"),
     # records of a dead leaf pair; an end overtakes a judgement; a number comes back twice; a result too few
-    ("cchip_calc_result bounded", RESULT, "if (live && sent_hits != 4'd0) state_q <= CHOOSE;", "if (sent_hits != 4'd0) state_q <= CHOOSE;"),
-    ("cchip_calc_result bounded", RESULT, "if (judged_valid && !emitted_q) begin", "if (judged_valid && !emitted_q && !s_done_valid) begin"),
+    ("cchip_calc_result order", RESULT, "if (live && sent_hits != 4'd0) state_q <= CHOOSE;", "if (sent_hits != 4'd0) state_q <= CHOOSE;"),
+    ("cchip_calc_result order", RESULT, "if (judged_valid && !emitted_q) begin", "if (judged_valid && !emitted_q && !s_done_valid) begin"),
     ("cchip_calc_result bounded", RESULT, "emitted_q      <= ~record_q[`CCHIP_DONE_RECORD_DONE] & left_q == 4'd0;", "emitted_q      <= left_q == 4'd0;"),
     ("cchip_calc_result bounded", RESULT, "wire complete = count_q[9:8] == 2'd0;", "wire complete = count_q[9] == 1'b0;"),
     # late beats reach the next request; a place that is owed is asked for again, also if its address is taken as the request
