@@ -189,8 +189,7 @@ class ChipBench {
   std::uint64_t clocks_ = 0, pairs_ = 0, steps_ = 0;
 };
 
-/// What is wrong with the answer to a query, empty if nothing. `untested`: kinds of primitives that the slot's module
-/// does not test, so that all their pairs come back open.
+/// What is wrong with the answer to a query, empty if nothing.
 inline std::string compare_answer(const Query& query, const ChipAnswer& answer, const model::BroadPhaseResult& expected,
                                   std::uint32_t open_limit) {
   using Key = std::tuple<std::uint32_t, std::uint32_t, bool>;
