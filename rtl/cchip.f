@@ -85,3 +85,6 @@ chip/cchip_query_ring.v
 chip/cchip_calc_result.v
 chip/cchip_record_ring.v
 chip/cchip_chip_core.v
+regs/cchip_chip_regs.v
+chip/cchip_soft_reset.v
+chip/cchip_chip.v

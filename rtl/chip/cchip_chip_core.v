@@ -21,7 +21,11 @@
 //                before a leaf pair starts, for results before a primitive pair is dispatched
 //   latency      of a query by its tree; 1,024 clocks after reset (CACHE_KB 128) for the first one
 //   cuts         every path from and to a port
-//   reset        forgets queries and lines; must reset the bus too
+//   idle         no query is between its ring and the records that memory holds; never, once a ring
+//                has failed
+//   reset        rst forgets queries and lines, and must reset the bus too. core_rst forgets them
+//                while the bus masters work on: hold it until read_owes and write_owes have been 0
+//                for 16 clocks (cchip_soft_reset)
 module cchip_chip_core #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
@@ -58,6 +62,7 @@ module cchip_chip_core #(
 ) (
     input  wire                           clk,
     input  wire                           rst,
+    input  wire                           core_rst,          // resets all but the bus masters
     // limits (cchip_traversal, cchip_axi_read)
     input  wire [                    2:0] pairs_each,
     input  wire [                   31:0] step_limit,
@@ -85,11 +90,16 @@ module cchip_chip_core #(
     // memory owes the response of a read or a write
     output wire                           read_owes,
     output wire                           write_owes,
+    output wire                           idle,
     // what happens on this clock, for counters
     output wire                           count_step,        // a node pair was expanded
     output wire                           count_leaf_pair,
     output wire                           count_pair,        // a primitive pair has its result
     output wire                           count_box_busy,
+    output wire                           count_query,       // its done record leaves for the ring
+    output wire                           count_error,       // with a code other than ok and host
+    output wire                           count_record,      // a record leaves for the ring
+    output wire                           count_record_wait, // a record waits
     output wire [                    1:0] count_hit,         // of the cache, of each port
     output wire [                    1:0] count_miss,
     // memory
@@ -151,6 +161,8 @@ module cchip_chip_core #(
     end
   endgenerate
 
+  wire reset = rst | core_rst;
+
   // ---- memory: client 0 is the cache, client 1 the query ring
   wire [1:0] read_valid, beat_valid;
   wire [2*SLOT_W-1:0] read_slot;
@@ -198,7 +210,7 @@ module cchip_chip_core #(
   );
 
   // ---- queries
-  wire query_valid, query_ready;
+  wire query_valid, query_ready, queries_idle;
   wire [`CCHIP_QUERY_W-1:0] query;
   cchip_query_ring #(
       .SLOTS (MISSES),
@@ -206,13 +218,14 @@ module cchip_chip_core #(
       .DATA_W(DATA_W)
   ) u_queries (
       .clk          (clk),
-      .rst          (rst),
+      .rst          (reset),
       .enable       (enable),
       .base         (query_base),
       .size_log2    (query_size_log2),
       .producer     (query_producer),
       .consumer     (query_consumer),
       .failed       (query_failed),
+      .idle         (queries_idle),
       .m_read_valid (read_valid[1]),
       .m_read_slot  (read_slot[SLOT_W+:SLOT_W]),
       .m_read_line  (read_line[58+:58]),
@@ -255,7 +268,7 @@ module cchip_chip_core #(
       .DATA_W    (DATA_W)
   ) u_broad_phase (
       .clk               (clk),
-      .rst               (rst),
+      .rst               (reset),
       .pairs_each        (pairs_each),
       .step_limit        (step_limit),
       .open_limit        (open_limit),
@@ -334,7 +347,7 @@ module cchip_chip_core #(
       .LEAF_W (LEAF_W)
   ) u_feed (
       .clk            (clk),
-      .rst            (rst),
+      .rst            (reset),
       .s_start_valid  (start_valid),
       .s_start_context(start_context),
       .s_start_query  (start_query),
@@ -383,7 +396,7 @@ module cchip_chip_core #(
       .ID_W   (LEAF_W + 1)
   ) u_transform (
       .clk     (clk),
-      .rst     (rst),
+      .rst     (reset),
       .s_valid (feed_valid),
       .s_ready (feed_ready),
       .s_m     (map_m),
@@ -421,7 +434,7 @@ module cchip_chip_core #(
   wire [15:0] tag = {{14 - LEAF_W{1'b0}}, pair_name};
   reg [1:0] vertex_q;  // number of the vertex
   always @(posedge clk)
-    if (rst) vertex_q <= 2'd0;
+    if (reset) vertex_q <= 2'd0;
     else if (vertex_valid) vertex_q <= vertex_last ? 2'd0 : vertex_q + 2'd1;
   cchip_descriptor_queues #(
       .WIDTH(`CCHIP_DESCRIPTOR_W),
@@ -429,7 +442,7 @@ module cchip_chip_core #(
       .DEPTH(QUEUE_DEPTH)
   ) u_queues (
       .clk    (clk),
-      .rst    (rst),
+      .rst    (reset),
       .s_valid(vertex_valid & vertex_last),
       .s_ready(kind_room),
       .s_kind (pair_kind),
@@ -473,7 +486,7 @@ module cchip_chip_core #(
       .CREDIT(CONTEXTS)
   ) u_dispatcher (
       .clk             (clk),
-      .rst             (rst),
+      .rst             (reset),
       .some            (some),
       .kind            (kind),
       .look            (look),
@@ -511,7 +524,7 @@ module cchip_chip_core #(
       .SIMULATION(0)
   ) u_slot (
       .clk           (clk),
-      .rst           (rst),
+      .rst           (reset),
       .decouple      (1'b0),
       .decoupled     (slot_decoupled),
       .hold_reset    (1'b0),
@@ -532,7 +545,7 @@ module cchip_chip_core #(
 
   // ---- results and records
   wire [`CCHIP_TAG_W-1:0] result_tag = result[`CCHIP_RESULT_TAG];
-  wire record_valid, record_ready, write_valid, write_ready, write_answer;
+  wire record_valid, record_ready, records_idle, write_valid, write_ready, write_answer;
   wire [127:0] record;
   wire [BEAT_ADDRESS_W-1:0] write_address;
   wire [DATA_W-1:0] write_data;
@@ -544,7 +557,7 @@ module cchip_chip_core #(
       .JUDGED   (16)
   ) u_calc_result (
       .clk              (clk),
-      .rst              (rst),
+      .rst              (reset),
       .s_begin_valid    (begin_valid),
       .s_begin_ready    (begin_ready),
       .s_begin_context  (begin_context),
@@ -583,12 +596,13 @@ module cchip_chip_core #(
       .DATA_W(DATA_W)
   ) u_records (
       .clk          (clk),
-      .rst          (rst),
+      .rst          (reset),
       .base         (record_base),
       .size_log2    (record_size_log2),
       .consumer     (record_consumer),
       .producer     (record_producer),
       .failed       (record_failed),
+      .idle         (records_idle),
       .s_valid      (record_valid),
       .s_ready      (record_ready),
       .s_data       (record),
@@ -638,13 +652,34 @@ module cchip_chip_core #(
       .m_axi_bresp  (m_axi_bresp)
   );
 
+  // ---- what is in flight between the rings, and what is counted
+  wire last_record = record[`CCHIP_DONE_RECORD_DONE];
+  wire [7:0] code = record[`CCHIP_DONE_RECORD_CODE];
+  reg [7:0] in_flight_q;
+  reg idle_q;
+  always @(posedge clk)
+    if (reset) begin
+      in_flight_q <= 8'd0;
+      idle_q      <= 1'b0;
+    end else begin
+      in_flight_q <= in_flight_q + {7'd0, query_valid & query_ready} - {7'd0, count_query};
+      idle_q      <= queries_idle && in_flight_q == 8'd0 && records_idle;
+    end
+  assign idle = idle_q;
+  assign count_record = record_valid & record_ready;
+  assign count_record_wait = record_valid & ~record_ready;
+  assign count_query = count_record & last_record;
+  assign count_error = count_query && code != {5'd0, `CCHIP_END_OK} &&
+      code != {5'd0, `CCHIP_END_HOST};
+
   wire unused = &{1'b0, start_epoch, count_tests, count_wait, count_again, queue_room, waiting,
       outstanding_reads[2*MISSES-1:MISSES], rm_id, region_rm_id, result_kind, answered_module,
       result, dispatched, lost, quiet, decoupled, slot_decoupled, roc_busy, slot_idle, answered,
       refused_kind, refused_provider, result_tag};
   always @(posedge clk)
-    if (!rst) begin
+    if (!reset) begin
       `CCHIP_ASSERT(a_kind_room, !(vertex_valid && vertex_last) || kind_room)
+      `CCHIP_ASSERT(a_in_flight, in_flight_q != 8'd255 && (!count_query || in_flight_q != 8'd0))
     end
 
 endmodule

@@ -29,6 +29,7 @@ module cchip_query_ring #(
     input  wire [                  15:0] producer,
     output wire [                  15:0] consumer,
     output wire                          failed,
+    output wire                          idle,          // no line is in flight or waits to leave
     // client of cchip_axi_read
     output wire                          m_read_valid,
     output wire [     $clog2(SLOTS)-1:0] m_read_slot,
@@ -115,6 +116,7 @@ module cchip_query_ring #(
   assign m_query_valid = here_q[head] & ~bad_q[head];
   assign consumer      = given_q;
   assign failed        = failed_q;
+  assign idle          = asked_q == given_q;
 
   always @(posedge clk)
     if (!rst) begin

@@ -26,6 +26,7 @@ module cchip_record_ring #(
     input  wire [                   31:0] consumer,
     output wire [                   31:0] producer,
     output wire                           failed,
+    output wire                           idle,          // memory holds every record
     input  wire                           s_valid,
     output wire                           s_ready,
     input  wire [                  127:0] s_data,        // PAIR_RECORD or DONE_RECORD
@@ -98,6 +99,7 @@ module cchip_record_ring #(
   end
   assign producer = held_q;
   assign failed   = failed_q;
+  assign idle     = held_q == written_q && !skid_valid;
   assign m_valid  = valid_q;
   assign m_data   = {RECORDS{data_q}};
   wire unused = &{1'b0, round[31:1]};

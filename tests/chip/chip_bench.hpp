@@ -47,6 +47,7 @@ class ChipBench {
       : simulation_(std::move(options)), memory_(simulation_.top(), simulation_.seed()), chip_(chip) {
     simulation_.add(memory_);
     Model& m = simulation_.top();
+    m.core_rst = 0;
     m.pairs_each = 3;
     m.step_limit = 0xffffffff;
     m.open_limit = 16;

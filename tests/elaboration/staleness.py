@@ -11,9 +11,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 class GeneratorCopy(unittest.TestCase):
-    """Derived classes name the generator, its source and the files that it writes."""
+    """Derived classes name the generator, its source, other files that it reads, and the files that it writes."""
     generator = ""
     source = ""
+    more = []
     generated = []
 
     @classmethod
@@ -26,7 +27,7 @@ class GeneratorCopy(unittest.TestCase):
     def setUp(self):
         self.root = pathlib.Path(tempfile.mkdtemp(prefix="cchip_generator_"))
         self.addCleanup(shutil.rmtree, self.root)
-        for name in [self.generator, "scripts/generated.py", self.source]:
+        for name in [self.generator, "scripts/generated.py", self.source, *self.more]:
             (self.root / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / name, self.root / name)
         (self.root / "build").mkdir()
@@ -35,8 +36,8 @@ class GeneratorCopy(unittest.TestCase):
         self.assertEqual(self.generate(self.root)[0], 0)
         self.assertEqual(self.generate(self.root, "--check"), (0, []))
 
-    def change(self, old, new):
-        source = self.root / self.source
+    def change(self, old, new, name=None):
+        source = self.root / (name or self.source)
         text = source.read_text()
         self.assertIn(old, text)
         source.write_text(text.replace(old, new, 1))

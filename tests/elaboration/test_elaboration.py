@@ -200,6 +200,7 @@ ILLEGAL = [
     *(("cchip_calc_result", {"LEAVES": n}, "cchip_error_calc_result_LEAVES_must_be_a_power_of_two_4_to_256") for n in (2, 48, 512)),
     *(("cchip_calc_result", case, "cchip_error_calc_result_JUDGED_must_be_2_to_64_and_CONTEXT_W_positive")
       for case in ({"JUDGED": 1}, {"JUDGED": 65}, {"CONTEXT_W": 0})),
+    *(("cchip_soft_reset", {"CLOCKS": n}, "cchip_error_soft_reset_CLOCKS_must_be_2_to_256") for n in (1, 257)),
     ("cchip_chip_core", {"MISSES": 2}, "cchip_error_chip_core_MISSES_must_be_4_8_16_or_32"),
     ("cchip_chip_core", {"RM_ID": 0}, "cchip_error_chip_core_RM_ID_must_be_1_to_3"),
     ("cchip_chip_core", {"QUEUE_DEPTH": 512}, "cchip_error_chip_core_QUEUE_DEPTH_must_be_a_power_of_two_16_to_256"),
@@ -246,6 +247,7 @@ LEGAL = [
     *(("cchip_query_ring", {"SLOTS": s, "AHEAD": a, "DATA_W": w}) for s, a, w in ((2, 2, 512), (32, 8, 64))),
     *(("cchip_record_ring", {"DATA_W": w}) for w in (256, 512)),
     *(("cchip_calc_result", {"LEAVES": n, "CONTEXT_W": c, "JUDGED": j}) for n, c, j in ((4, 1, 2), (256, 4, 64))),
+    *(("cchip_soft_reset", {"CLOCKS": n}) for n in (2, 19, 256)),
     *(("cchip_pool", {"FIRST": f, "COUNT": n, "WIDTH": w}) for f, n, w in ((0, 1, 1), (0, 256, 8), (48, 16, 6))),
     *(("cchip_vertex_collector", {"COORD_W": n}) for n in (4, 20)),
     *(("cchip_descriptor_queues", {"DEPTH": d, "KINDS": k, "WIDTH": w}) for d, k, w in ((16, 1, 1), (1024, 3, 80))),

@@ -76,6 +76,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_query_ring: every query once, in order; a line th
         simulation.settle();
         CAPTURE(run, clock, size, written, asked, given);
         REQUIRE(top.consumer == static_cast<SData>(given));
+        REQUIRE((top.idle != 0) == (asked == given && top.m_read_valid == 0));
         if (top.m_read_valid != 0) {
           REQUIRE(asked < written);
           REQUIRE(asked - given < TestType::AHEAD);
@@ -161,6 +162,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_record_ring: every record once, in its place, wit
         simulation.settle();
         REQUIRE(top.producer == static_cast<IData>(held));
         REQUIRE((top.failed != 0) == failed);
+        REQUIRE((top.idle != 0) == (sent == held));
         if (top.m_valid != 0) {
           const std::uint64_t place =
               (top.base + (written & ((std::uint64_t{1} << size) - 1))) & ((std::uint64_t{1} << 60) - 1);

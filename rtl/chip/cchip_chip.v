@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+// cchip_chip: collision detection as a device. Registers on AXI4-Lite, an interrupt, an AXI4 master
+// for memory; queries from a ring in memory, records into another one. Registers:
+// docs/chip-registers.md; how a driver uses them: docs/programmers-guide.md.
+//   way          of a query: cchip_chip_core. This module adds cchip_chip_regs, counters,
+//                cchip_soft_reset and the interrupt
+//   latency      registers: 3 clocks, counters up to 21; a query by its tree
+//   interrupt    level: an event of interrupt_status that is enabled
+//   soft reset   forgets all queries and lines, clears enable, query_producer and record_consumer;
+//                the bus masters finish first what memory owes (cchip_soft_reset)
+//   counters     at most 1 a clock each, two banks of cchip_counter_file
+//   cuts         every path but from rst
+//   reset        rst resets registers and core, and must reset the bus too
+module cchip_chip #(
+    // queries at once: 2, 4, 8 or 16
+    parameter integer QUERIES = 16,
+    // node pairs in flight
+    parameter integer PAIRS = 48,
+    // leaf pairs that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
+    parameter integer LEAVES = 16,
+    // entries of a query's stack: 8, 16, 32 or 64
+    parameter integer STACK = 64,
+    // entries of the queue of leaves, more than PAIRS
+    parameter integer LEAF_DEPTH = 72,
+    // leaf pairs that wait for the transform: 1..64
+    parameter integer LEAF_CREDIT = 16,
+    // size of the cache, KiB: 4, 8 ... 1024
+    parameter integer CACHE_KB = 128,
+    // lines in flight from memory: 4, 8, 16 or 32
+    parameter integer MISSES = 32,
+    // ranges of lines to lock, 1..4
+    parameter integer LOCKS = 2,
+    // width of a coordinate on the grid, bit, 4..20
+    parameter integer COORD_W = 16,
+    // registers of the primitive test's stages (see cchip_primtest)
+    parameter integer SUBSTAGES = `CCHIP_SUBSTAGES_DEFAULT,
+    // clocks a vertex in the transform: 1 or 2
+    parameter integer PASSES = 1,
+    // primitive pairs of each kind that wait: 16, 32 ... 256
+    parameter integer QUEUE_DEPTH = 64,
+    // leaf pairs between leaf feed and record: 4, 8 ... 256
+    parameter integer LEAF_NUMBERS = 64,
+    // module of the slot: 1 triangles, 2 triangle and quad, 3 quads
+    parameter integer RM_ID = 3,
+    // width of the data buses, bit: 128, 256 or 512
+    parameter integer DATA_W = 128
+) (
+    input  wire                          clk,
+    input  wire                          rst,
+    // registers, AXI4-Lite
+    input  wire                          s_axil_awvalid,
+    output wire                          s_axil_awready,
+    input  wire [                  11:0] s_axil_awaddr,
+    input  wire [                   2:0] s_axil_awprot,
+    input  wire                          s_axil_wvalid,
+    output wire                          s_axil_wready,
+    input  wire [                  31:0] s_axil_wdata,
+    input  wire [                   3:0] s_axil_wstrb,
+    output wire                          s_axil_bvalid,
+    input  wire                          s_axil_bready,
+    output wire [                   1:0] s_axil_bresp,
+    input  wire                          s_axil_arvalid,
+    output wire                          s_axil_arready,
+    input  wire [                  11:0] s_axil_araddr,
+    input  wire [                   2:0] s_axil_arprot,
+    output wire                          s_axil_rvalid,
+    input  wire                          s_axil_rready,
+    output wire [                  31:0] s_axil_rdata,
+    output wire [                   1:0] s_axil_rresp,
+    output wire                          irq,
+    // memory, AXI4: images, queries, records
+    output wire                          m_axi_arvalid,
+    input  wire                          m_axi_arready,
+    output wire [      $clog2(MISSES):0] m_axi_arid,
+    output wire [                  63:0] m_axi_araddr,
+    output wire [                   7:0] m_axi_arlen,
+    output wire [                   2:0] m_axi_arsize,
+    output wire [                   1:0] m_axi_arburst,
+    output wire [                   3:0] m_axi_arcache,
+    output wire [                   2:0] m_axi_arprot,
+    input  wire                          m_axi_rvalid,
+    output wire                          m_axi_rready,
+    input  wire [      $clog2(MISSES):0] m_axi_rid,
+    input  wire [            DATA_W-1:0] m_axi_rdata,
+    input  wire [                   1:0] m_axi_rresp,
+    input  wire                          m_axi_rlast,
+    output wire                          m_axi_awvalid,
+    input  wire                          m_axi_awready,
+    output wire                          m_axi_awid,
+    output wire [                  63:0] m_axi_awaddr,
+    output wire [                   7:0] m_axi_awlen,
+    output wire [                   2:0] m_axi_awsize,
+    output wire [                   1:0] m_axi_awburst,
+    output wire [                   3:0] m_axi_awcache,
+    output wire [                   2:0] m_axi_awprot,
+    output wire                          m_axi_wvalid,
+    input  wire                          m_axi_wready,
+    output wire [            DATA_W-1:0] m_axi_wdata,
+    output wire [          DATA_W/8-1:0] m_axi_wstrb,
+    output wire                          m_axi_wlast,
+    input  wire                          m_axi_bvalid,
+    output wire                          m_axi_bready,
+    input  wire                          m_axi_bid,
+    input  wire [                   1:0] m_axi_bresp
+);
+
+  localparam [31:0] LOCK_COUNT = LOCKS;
+  localparam [31:0] GRID_W = COORD_W;
+  localparam [31:0] BUS_BYTES = DATA_W / 8;
+  localparam [31:0] CACHE_SIZE = CACHE_KB;
+  localparam [31:0] QUERY_COUNT = QUERIES;
+  localparam [2:0] KINDS = {RM_ID > 2, RM_ID > 1, 1'b1};  // that the module of the slot tests
+
+  // ---- registers
+  wire clear, enable, reset_request, resetting, reset_done, idle;
+  wire read_outstanding, write_outstanding;
+  wire [4:0] status, status_enable;
+  wire [31:0] step_limit, memory_limit;
+  wire [7:0] open_limit;
+  wire [2:0] pairs_each;
+  wire [57:0] query_base;
+  wire [3:0] query_size_log2;
+  wire [15:0] query_producer, query_consumer;
+  wire query_failed, record_failed;
+  wire [59:0] record_base;
+  wire [4:0] record_size_log2;
+  wire [31:0] record_consumer, record_producer;
+  wire [4*32-1:0] lock_first, lock_last;
+  wire [31:0] invalidate_first, invalidate_last;
+  wire invalidate_go, invalidate_ready;
+  wire counter_read;
+  wire [1:0] counter_ack;
+  wire [63:0] counter_data;
+  wire [9:0] read_word, unused_write_word;
+  wire [31:0] unused_write_data;
+  wire [3:0] unused_write_bytes;
+  reg [4:0] event_q;  // {invalidated, reset done, record failed, query failed, record}
+  reg invalidate_q, invalidating_q;  // a command waits; one waits or is at work
+  cchip_chip_regs u_regs (
+      .clk                                 (clk),
+      .rst                                 (rst),
+      .s_axil_awvalid                      (s_axil_awvalid),
+      .s_axil_awready                      (s_axil_awready),
+      .s_axil_awaddr                       (s_axil_awaddr),
+      .s_axil_awprot                       (s_axil_awprot),
+      .s_axil_wvalid                       (s_axil_wvalid),
+      .s_axil_wready                       (s_axil_wready),
+      .s_axil_wdata                        (s_axil_wdata),
+      .s_axil_wstrb                        (s_axil_wstrb),
+      .s_axil_bvalid                       (s_axil_bvalid),
+      .s_axil_bready                       (s_axil_bready),
+      .s_axil_bresp                        (s_axil_bresp),
+      .s_axil_arvalid                      (s_axil_arvalid),
+      .s_axil_arready                      (s_axil_arready),
+      .s_axil_araddr                       (s_axil_araddr),
+      .s_axil_arprot                       (s_axil_arprot),
+      .s_axil_rvalid                       (s_axil_rvalid),
+      .s_axil_rready                       (s_axil_rready),
+      .s_axil_rdata                        (s_axil_rdata),
+      .s_axil_rresp                        (s_axil_rresp),
+      .hwif_out_external_raddr             (read_word),
+      .hwif_in_external_ack                (counter_ack[0] | counter_ack[1]),
+      .hwif_in_external_rdata              (counter_data[31:0] | counter_data[63:32]),
+      .hwif_out_external_waddr             (unused_write_word),
+      .hwif_out_external_wdata             (unused_write_data),
+      .hwif_out_external_wstrb             (unused_write_bytes),
+      .hwif_in_capabilities_locks          (LOCK_COUNT[2:0]),
+      .hwif_in_capabilities_slots          (3'd1),
+      .hwif_in_capabilities_swaps          (1'b0),
+      .hwif_in_capabilities_kinds          (KINDS),
+      .hwif_in_capabilities_coord_w        (GRID_W[7:0]),
+      .hwif_in_capacity_bus_bytes          (BUS_BYTES[7:0]),
+      .hwif_in_capacity_cache_kb           (CACHE_SIZE[15:0]),
+      .hwif_in_capacity_queries            (QUERY_COUNT[7:0]),
+      .hwif_out_control_clear              (clear),
+      .hwif_out_control_soft_reset         (reset_request),
+      .hwif_out_control_enable             (enable),
+      .hwif_in_control_enable_hwclr        (resetting),
+      .hwif_in_status_write_outstanding    (write_outstanding),
+      .hwif_in_status_read_outstanding     (read_outstanding),
+      .hwif_in_status_invalidating         (invalidating_q),
+      .hwif_in_status_record_failed        (record_failed),
+      .hwif_in_status_query_failed         (query_failed),
+      .hwif_in_status_idle                 (idle),
+      .hwif_in_status_resetting            (resetting),
+      .hwif_out_interrupt_status_invalidated(status[4]),
+      .hwif_in_interrupt_status_invalidated_hwset(event_q[4]),
+      .hwif_out_interrupt_status_reset_done(status[3]),
+      .hwif_in_interrupt_status_reset_done_hwset(event_q[3]),
+      .hwif_out_interrupt_status_record_failed(status[2]),
+      .hwif_in_interrupt_status_record_failed_hwset(event_q[2]),
+      .hwif_out_interrupt_status_query_failed(status[1]),
+      .hwif_in_interrupt_status_query_failed_hwset(event_q[1]),
+      .hwif_out_interrupt_status_record    (status[0]),
+      .hwif_in_interrupt_status_record_hwset(event_q[0]),
+      .hwif_out_interrupt_enable_invalidated(status_enable[4]),
+      .hwif_out_interrupt_enable_reset_done(status_enable[3]),
+      .hwif_out_interrupt_enable_record_failed(status_enable[2]),
+      .hwif_out_interrupt_enable_query_failed(status_enable[1]),
+      .hwif_out_interrupt_enable_record    (status_enable[0]),
+      .hwif_out_step_limit_steps           (step_limit),
+      .hwif_out_memory_limit_clocks        (memory_limit),
+      .hwif_out_open_limit_pairs           (open_limit),
+      .hwif_out_pairs_each_pairs           (pairs_each),
+      .hwif_out_query_base_low_value       (query_base[25:0]),
+      .hwif_out_query_base_high_value      (query_base[57:26]),
+      .hwif_out_query_size_log2            (query_size_log2),
+      .hwif_out_query_producer_count       (query_producer),
+      .hwif_in_query_producer_count_hwclr  ({16{resetting}}),
+      .hwif_in_query_consumer_count        (query_consumer),
+      .hwif_out_record_base_low_value      (record_base[27:0]),
+      .hwif_out_record_base_high_value     (record_base[59:28]),
+      .hwif_out_record_size_log2           (record_size_log2),
+      .hwif_out_record_consumer_count      (record_consumer),
+      .hwif_in_record_consumer_count_hwclr ({32{resetting}}),
+      .hwif_in_record_producer_count       (record_producer),
+      .hwif_out_lock_first_line            (lock_first),
+      .hwif_out_lock_last_line             (lock_last),
+      .hwif_out_invalidate_first_line      (invalidate_first),
+      .hwif_out_invalidate_last_line       (invalidate_last),
+      .hwif_out_invalidate_go              (invalidate_go),
+      .hwif_out_counter_read               (counter_read)
+  );
+
+  // ---- events, commands
+  wire invalidating = invalidate_q | ~invalidate_ready;
+  reg irq_q, query_failed_q, record_failed_q;
+  reg [31:0] record_producer_q;
+  always @(posedge clk)
+    if (rst) begin
+      {irq_q, query_failed_q, record_failed_q} <= 3'd0;
+      {invalidate_q, invalidating_q} <= 2'd0;
+      event_q <= 5'd0;
+      record_producer_q <= 32'd0;
+    end else begin
+      irq_q             <= |(status & status_enable);
+      invalidate_q      <= ~resetting & (invalidate_go | (invalidate_q & ~invalidate_ready));
+      invalidating_q    <= ~resetting & invalidating;
+      query_failed_q    <= query_failed;
+      record_failed_q   <= record_failed;
+      record_producer_q <= record_producer;
+      event_q           <= {
+        invalidating_q & ~invalidating,
+        reset_done,
+        record_failed & ~record_failed_q,
+        query_failed & ~query_failed_q,
+        record_producer != record_producer_q && !resetting
+      };
+    end
+  assign irq = irq_q;
+
+  cchip_soft_reset u_reset (
+      .clk        (clk),
+      .rst        (rst),
+      .request    (reset_request),
+      .outstanding(read_outstanding | write_outstanding),
+      .resetting  (resetting),
+      .done       (reset_done)
+  );
+
+  // ---- counters: words 0x40 to 0x4F are eight of 64 bits, words 0x50 to 0x57 eight of 32; a bank
+  // has four of each
+  wire count_step, count_leaf_pair, count_pair, count_box_busy;
+  wire count_query, count_error, count_record, count_record_wait;
+  wire [1:0] count_hit, count_miss;
+  reg [15:0] count_q;
+  always @(posedge clk)
+    count_q <= {
+      2'd0, m_axi_arvalid & m_axi_arready, count_leaf_pair, count_miss, count_hit,
+      count_record_wait, count_record, count_error, count_query,
+      count_pair, count_step, count_box_busy, 1'b1
+    };
+  wire narrow = read_word[4];
+  wire bank = narrow ? read_word[2] : read_word[3];
+  genvar b;
+  generate
+    for (b = 0; b < 2; b = b + 1) begin : gen_bank
+      cchip_counter_file u_counters (
+          .clk         (clk),
+          .rst         (rst),
+          .clear       (clear),
+          .count       (count_q[8*b+:8]),
+          .read        (counter_read && bank == b[0]),
+          .read_high   (~narrow & read_word[0]),
+          .read_counter({narrow, narrow ? read_word[1:0] : read_word[2:1]}),
+          .ack         (counter_ack[b]),
+          .read_data   (counter_data[32*b+:32])
+      );
+    end
+  endgenerate
+
+  cchip_chip_core #(
+      .QUERIES     (QUERIES),
+      .PAIRS       (PAIRS),
+      .LEAVES      (LEAVES),
+      .STACK       (STACK),
+      .LEAF_DEPTH  (LEAF_DEPTH),
+      .LEAF_CREDIT (LEAF_CREDIT),
+      .CACHE_KB    (CACHE_KB),
+      .MISSES      (MISSES),
+      .LOCKS       (LOCKS),
+      .COORD_W     (COORD_W),
+      .SUBSTAGES   (SUBSTAGES),
+      .PASSES      (PASSES),
+      .QUEUE_DEPTH (QUEUE_DEPTH),
+      .LEAF_NUMBERS(LEAF_NUMBERS),
+      .RM_ID       (RM_ID),
+      .DATA_W      (DATA_W)
+  ) u_core (
+      .clk               (clk),
+      .rst               (rst),
+      .core_rst          (resetting),
+      .pairs_each        (pairs_each),
+      .step_limit        (step_limit),
+      .open_limit        (open_limit),
+      .memory_limit      (memory_limit),
+      .enable            (enable),
+      .query_base        (query_base),
+      .query_size_log2   (query_size_log2),
+      .query_producer    (query_producer),
+      .query_consumer    (query_consumer),
+      .query_failed      (query_failed),
+      .record_base       (record_base),
+      .record_size_log2  (record_size_log2),
+      .record_consumer   (record_consumer),
+      .record_producer   (record_producer),
+      .record_failed     (record_failed),
+      .lock_first        (lock_first[LOCKS*32-1:0]),
+      .lock_last         (lock_last[LOCKS*32-1:0]),
+      .invalidate_valid  (invalidate_q),
+      .invalidate_ready  (invalidate_ready),
+      .invalidate_first  (invalidate_first),
+      .invalidate_last   (invalidate_last),
+      .read_owes         (read_outstanding),
+      .write_owes        (write_outstanding),
+      .idle              (idle),
+      .count_step        (count_step),
+      .count_leaf_pair   (count_leaf_pair),
+      .count_pair        (count_pair),
+      .count_box_busy    (count_box_busy),
+      .count_query       (count_query),
+      .count_error       (count_error),
+      .count_record      (count_record),
+      .count_record_wait (count_record_wait),
+      .count_hit         (count_hit),
+      .count_miss        (count_miss),
+      .m_axi_arvalid     (m_axi_arvalid),
+      .m_axi_arready     (m_axi_arready),
+      .m_axi_arid        (m_axi_arid),
+      .m_axi_araddr      (m_axi_araddr),
+      .m_axi_arlen       (m_axi_arlen),
+      .m_axi_arsize      (m_axi_arsize),
+      .m_axi_arburst     (m_axi_arburst),
+      .m_axi_arcache     (m_axi_arcache),
+      .m_axi_arprot      (m_axi_arprot),
+      .m_axi_rvalid      (m_axi_rvalid),
+      .m_axi_rready      (m_axi_rready),
+      .m_axi_rid         (m_axi_rid),
+      .m_axi_rdata       (m_axi_rdata),
+      .m_axi_rresp       (m_axi_rresp),
+      .m_axi_rlast       (m_axi_rlast),
+      .m_axi_awvalid     (m_axi_awvalid),
+      .m_axi_awready     (m_axi_awready),
+      .m_axi_awid        (m_axi_awid),
+      .m_axi_awaddr      (m_axi_awaddr),
+      .m_axi_awlen       (m_axi_awlen),
+      .m_axi_awsize      (m_axi_awsize),
+      .m_axi_awburst     (m_axi_awburst),
+      .m_axi_awcache     (m_axi_awcache),
+      .m_axi_awprot      (m_axi_awprot),
+      .m_axi_wvalid      (m_axi_wvalid),
+      .m_axi_wready      (m_axi_wready),
+      .m_axi_wdata       (m_axi_wdata),
+      .m_axi_wstrb       (m_axi_wstrb),
+      .m_axi_wlast       (m_axi_wlast),
+      .m_axi_bvalid      (m_axi_bvalid),
+      .m_axi_bready      (m_axi_bready),
+      .m_axi_bid         (m_axi_bid),
+      .m_axi_bresp       (m_axi_bresp)
+  );
+
+  wire unused = &{1'b0, read_word, unused_write_word, unused_write_data, unused_write_bytes,
+      lock_first, lock_last};
+
+endmodule
+`default_nettype wire
