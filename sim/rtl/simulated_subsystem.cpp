@@ -99,6 +99,14 @@ auto guarded(const Action& action) {
   }
 }
 
+/// First address of an access on the bus.
+std::uint32_t bus_address(std::uint64_t address, std::size_t size) {
+  constexpr std::uint64_t bus_bytes = std::uint64_t{1} << 32U;
+  if (address % 4 == 0 && size <= bus_bytes && address <= bus_bytes - size) return static_cast<std::uint32_t>(address);
+  throw std::runtime_error("simulated subsystem: memory from byte " + std::to_string(address) + " on, " +
+                           std::to_string(size) + " bytes: begin at a multiple of 4 and end within 2^32 bytes");
+}
+
 }  // namespace
 
 struct SimulatedSubsystem::Parts {
@@ -139,8 +147,12 @@ void SimulatedSubsystem::write_register(std::uint32_t offset, std::uint32_t valu
   });
 }
 
-void SimulatedSubsystem::write_memory(std::uint32_t address, const Bytes& bytes) {
-  parts_->memory.write(address, bytes);
+void SimulatedSubsystem::write_memory(std::uint64_t address, const Bytes& bytes) {
+  parts_->memory.write(bus_address(address, bytes.size()), bytes);
+}
+
+Bytes SimulatedSubsystem::read_memory(std::uint64_t address, std::size_t size) {
+  return parts_->memory.read(bus_address(address, size), size);
 }
 
 bool SimulatedSubsystem::send(const KindRequest& request) { return parts_->streams.send(request); }

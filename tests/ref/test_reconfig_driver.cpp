@@ -11,7 +11,7 @@ using namespace cchip;
 namespace {
 
 /// A machine without slots' work: it keeps what is written.
-class Recorder : public Machine {
+class Recorder : public PairMachine {
  public:
   explicit Recorder(std::uint32_t port_w) : port_w_(port_w) {}
   std::uint32_t read_register(std::uint32_t offset) override {
@@ -20,14 +20,15 @@ class Recorder : public Machine {
     return 2U << c::slots_shift | port_w_ << c::cfg_w_shift | 16U << c::coord_w_shift;
   }
   void write_register(std::uint32_t offset, std::uint32_t value) override { written[offset] = value; }
-  void write_memory(std::uint32_t address, const Bytes& bytes) override { memory[address] = bytes; }
+  void write_memory(std::uint64_t address, const Bytes& bytes) override { memory[address] = bytes; }
+  Bytes read_memory(std::uint64_t, std::size_t size) override { return Bytes(size); }
   bool send(const KindRequest&) override { return false; }
   std::optional<KindResult> receive() override { return std::nullopt; }
   bool interrupt() override { return false; }
   void proceed() override {}
 
   std::map<std::uint32_t, std::uint32_t> written;
-  std::map<std::uint32_t, Bytes> memory;
+  std::map<std::uint64_t, Bytes> memory;
 
  private:
   std::uint32_t port_w_;

@@ -19,7 +19,7 @@ constexpr int epilogue = 1000;
 
 class Run {
  public:
-  Run(Machine& machine, const std::vector<PairRequest>& pairs, const ReconfigOptions& options)
+  Run(PairMachine& machine, const std::vector<PairRequest>& pairs, const ReconfigOptions& options)
       : machine_(machine), pairs_(pairs), options_(options), in_flight_(tags, nobody), last_with_(tags, nobody) {
     result_.answers.resize(pairs.size());
   }
@@ -214,7 +214,7 @@ class Run {
     std::size_t open;  ///< pairs without an answer
   };
 
-  Machine& machine_;
+  PairMachine& machine_;
   const std::vector<PairRequest>& pairs_;
   const ReconfigOptions& options_;
   ReconfigResult result_;
@@ -234,7 +234,7 @@ class Run {
 
 }  // namespace
 
-ReconfigResult run_reconfig(Machine& machine, const std::vector<PairRequest>& pairs, const ReconfigOptions& options) {
+ReconfigResult run_reconfig(PairMachine& machine, const std::vector<PairRequest>& pairs, const ReconfigOptions& options) {
   return Run(machine, pairs, options).run();
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What a host can do with a machine: registers, memory, streams of pairs, interrupt. The drivers of this folder use
-/// nothing else, so they work on the simulated RTL and on a board alike.
+/// What a host can do with a machine: registers, memory, interrupt, and for some streams of pairs. The drivers of this
+/// folder use nothing else, so they work on the simulated RTL and on a board alike.
 #ifndef CCHIP_DEVICE_MACHINE_HPP
 #define CCHIP_DEVICE_MACHINE_HPP
 
 #include <cchip/wire/bitstream.hpp>
 #include <cchip/wire/pair.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -24,19 +25,29 @@ class Machine {
   virtual std::uint32_t read_register(std::uint32_t offset) = 0;
   virtual void write_register(std::uint32_t offset, std::uint32_t value) = 0;
 
-  /// Writes bytes to the machine's memory from `address` on, a multiple of 4.
-  virtual void write_memory(std::uint32_t address, const Bytes& bytes) = 0;
-
-  /// Offers a pair on the stream s_pair.
-  /// \return false: the previous pair has not been accepted yet; try again after proceed()
-  virtual bool send(const KindRequest& request) = 0;
-  /// The next result of the stream m_result, if there is one.
-  virtual std::optional<KindResult> receive() = 0;
+  /// Writes bytes to the machine's memory from byte `address` on, a multiple of 4. If their number is none, the bytes
+  /// up to the next multiple of 4 may change, too.
+  /// \throws std::runtime_error the machine has no memory there
+  virtual void write_memory(std::uint64_t address, const Bytes& bytes) = 0;
+  /// Reads `size` bytes of the machine's memory from byte `address` on, both multiples of 4. Memory that nothing wrote
+  /// may hold anything.
+  /// \throws std::runtime_error as above
+  virtual Bytes read_memory(std::uint64_t address, std::size_t size) = 0;
 
   /// Level of the interrupt line.
   virtual bool interrupt() = 0;
   /// Advances the machine: one clock of a simulation, a short time on a board.
   virtual void proceed() = 0;
+};
+
+/// A machine whose host sends it pairs one by one.
+class PairMachine : public Machine {
+ public:
+  /// Offers a pair on the stream s_pair.
+  /// \return false: the previous pair has not been accepted yet; try again after proceed()
+  virtual bool send(const KindRequest& request) = 0;
+  /// The next result of the stream m_result, if there is one.
+  virtual std::optional<KindResult> receive() = 0;
 };
 
 }  // namespace cchip

@@ -10,6 +10,7 @@
 #include <cchip/sim/agent.hpp>
 #include <cchip/sim/errors.hpp>
 #include <cchip/sim/pattern.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -58,6 +59,16 @@ class AxiMemory : public Agent {
       const auto shift = static_cast<unsigned>(8 * (i % 4));
       word = (word & ~(0xFFU << shift)) | static_cast<std::uint32_t>(bytes[i]) << shift;
     }
+  }
+  /// \param address multiple of 4
+  /// \returns 0 for bytes of words that were never written
+  std::vector<std::uint8_t> read(std::uint32_t address, std::size_t size) const {
+    std::vector<std::uint8_t> bytes(size);
+    for (std::size_t i = 0; i < size; ++i) {
+      const auto word = words_.find(address + static_cast<std::uint32_t>(i / 4 * 4));
+      if (word != words_.end()) bytes[i] = static_cast<std::uint8_t>(word->second >> 8 * (i % 4));
+    }
+    return bytes;
   }
   void clear() { words_.clear(); }
   void set_options(AxiMemoryOptions options) { options_ = std::move(options); }

@@ -29,7 +29,7 @@ struct SubsystemObservations {
 };
 
 /// After reset slot 0 holds tri-tri and slot 1 quad-quad. Errors of the RTL or of a stream are std::runtime_error.
-class SimulatedSubsystem : public Machine {
+class SimulatedSubsystem : public PairMachine {
  public:
   /// Width of the configuration port, bit, and clocks per word of it.
   static constexpr int port_w = 8;
@@ -40,7 +40,10 @@ class SimulatedSubsystem : public Machine {
 
   std::uint32_t read_register(std::uint32_t offset) override;
   void write_register(std::uint32_t offset, std::uint32_t value) override;
-  void write_memory(std::uint32_t address, const Bytes& bytes) override;
+  /// Addresses have 32 bits.
+  void write_memory(std::uint64_t address, const Bytes& bytes) override;
+  /// 0 where nothing was written.
+  Bytes read_memory(std::uint64_t address, std::size_t size) override;
   bool send(const KindRequest& request) override;
   std::optional<KindResult> receive() override;
   bool interrupt() override;
