@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cchip/device/device.hpp>
+#include <cchip/rtl/simulated_chip.hpp>
 #include <cchip/geometry/decimal.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/command_line.hpp>
@@ -247,13 +248,16 @@ void add_collide(CLI::App& app, CollideOptions& options) {
   add_text(*command, "--expect", options.expect,
            "compare with this column of the poses: 0 or 1, with --contacts all their number")
       ->needs(poses);
+  add_text(*command, "--trace", options.trace,
+           "with --device sim: write the waveform of the chip's first 30,000 clocks (FST) and a .gtkw layout beside it");
   add_text(*command, "--ply", options.ply, "write both meshes, the faces that touch coloured, for MeshLab or Blender")
       ->excludes(poses);
   command->footer(
       "Examples:\n"
       "  cchip collide a.obj b.stl --pose 0.5,0,0\n"
       "  cchip collide a.obj b.stl --pose 0.5,0,0 --format csv > contacts.csv\n"
-      "  cchip collide a.obj b.stl --poses poses.csv --expect touches");
+      "  cchip collide a.obj b.stl --poses poses.csv --expect touches\n"
+      "  cchip collide a.obj b.stl --pose 0.5,0,0 --device sim --trace chip.fst");
 }
 
 void add_demo(CLI::App& app, DemoOptions& options) {
@@ -365,6 +369,7 @@ std::string one_line(std::string text) {
 }  // namespace
 
 int run_cli(std::vector<std::string> arguments, const Streams& streams) {
+  add_simulated_chip();
   try {
     const int code = dispatch(std::move(arguments), streams);
     streams.out.flush();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cchip/collide/face_pairs.hpp>
 #include <cchip/device/device.hpp>
+#include <cchip/rtl/simulated_chip.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>
@@ -44,19 +45,21 @@ struct Totals {
   }
 };
 
-std::string to_line(const Totals& t) {
+std::string to_line(const Totals& t, const std::string& device) {
   const auto mean = [&t](std::uint64_t count) {
     return t.queries == 0 ? 0.0 : static_cast<double>(count) / static_cast<double>(t.queries);
   };
-  return fmt::format(
+  const std::string line = fmt::format(
       "queries={} hits={} mismatches={} contacts={} open={} steps_mean={:.1f} box_tests_mean={:.1f} pairs_mean={:.1f}",
       t.queries, t.hits, t.mismatches, t.contacts, t.counts.open, mean(t.counts.steps), mean(t.counts.box_tests),
       mean(t.counts.pairs));
+  if (device == "cpu") return line;
+  return line + fmt::format(" fallbacks={} clocks_mean={:.1f}", t.counts.fallbacks, mean(t.counts.clocks));
 }
 
 /// stdout stays machine-readable: the summary of CSV and JSON lines goes to stderr.
-int report(const Totals& totals, Format format, const Streams& streams) {
-  (format == Format::table ? streams.out : streams.err) << to_line(totals) << '\n';
+int report(const Totals& totals, const CollideOptions& options, const Streams& streams) {
+  (options.format == Format::table ? streams.out : streams.err) << to_line(totals, options.device) << '\n';
   return totals.mismatches > 0 ? exit_mismatch : exit_ok;
 }
 
@@ -69,9 +72,17 @@ Object load_object(const std::string& path, const Streams& streams) {
   }
 }
 
-std::unique_ptr<Device> open_named_device(const std::string& name) {
+std::unique_ptr<Device> open_named_device(const CollideOptions& options) {
+  if (!options.trace.empty()) {
+    if (options.device != "sim") {
+      throw UsageError("--trace: device " + options.device + " has no waveform; add --device sim, or leave --trace out");
+    }
+    SimulatedChipOptions chip;
+    chip.trace_path = options.trace;
+    return open_simulated_chip(chip);
+  }
   try {
-    return open_device(name);
+    return open_device(options.device);
   } catch (const std::invalid_argument& error) {
     throw UsageError(std::string("--device: ") + error.what());
   }
@@ -161,7 +172,7 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
   }
   Totals totals;
   totals.add(result, false);
-  return report(totals, options.format, streams);
+  return report(totals, options, streams);
 }
 
 /// Answers the poses of a file, a batch at a time, and writes a row for each.
@@ -278,14 +289,14 @@ class PosesRunner {
 
 int run_collide(const CollideOptions& options, const Streams& streams) {
   sim::check_outputs({{"A", options.file_a}, {"B", options.file_b}},
-                     {{"--ply", options.ply}});  // --ply excludes --poses
+                     {{"--ply", options.ply}, {"--trace", options.trace}});  // --ply excludes --poses
   check_standard_input({options.file_a, options.file_b, options.poses_file});
   if (options.poses_file.empty() && !options.expect.empty()) {
     throw UsageError("--expect: there is no file of poses; name one with --poses");
   }
-  const auto device = open_named_device(options.device);
+  const auto device = open_named_device(options);
   if (options.poses_file.empty()) return answer_one(options, *device, streams);
-  return report(PosesRunner(options, *device, streams).run(), options.format, streams);
+  return report(PosesRunner(options, *device, streams).run(), options, streams);
 }
 
 }  // namespace cchip::app

@@ -26,6 +26,7 @@ struct CollideOptions {
   Format format = Format::table;
   std::string expect;  ///< column of the file; empty: none
   std::string ply;     ///< path of the coloured picture; empty: none
+  std::string trace;   ///< path of the waveform of device sim; empty: none
 };
 
 /// Runs it and returns the exit code.

@@ -14,9 +14,9 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <map>
 #include <random>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -51,6 +51,11 @@ class AxiLines : public Agent {
   std::function<AxiFault(std::uint64_t line)> write_fault = [](std::uint64_t) { return AxiFault::none; };
 
   Line& line(std::uint64_t number) { return lines_[number]; }
+  /// Null if it was never written.
+  const Line* find(std::uint64_t number) const {
+    const auto found = lines_.find(number);
+    return found == lines_.end() ? nullptr : &found->second;
+  }
   void write(std::uint64_t number, const std::vector<Line>& lines) {
     for (const Line& x : lines) lines_[number++] = x;
   }
@@ -210,7 +215,7 @@ class AxiLines : public Agent {
 
   Model& model_;
   std::mt19937_64 random_;
-  std::map<std::uint64_t, Line> lines_;
+  std::unordered_map<std::uint64_t, Line> lines_;
   std::deque<Read> reads_;
   Read burst_;
   std::size_t beat_ = 0;

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cchip/device/chip_driver.hpp>
+#include <cchip/wire/chip_registers.hpp>
+#include <cchip/wire/query.hpp>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+namespace cchip {
+namespace {
+
+namespace regs = chip_registers;
+
+constexpr std::uint64_t line_bytes = 64;
+constexpr std::uint64_t record_bytes = 16;
+constexpr std::uint64_t memory_end = std::uint64_t{1} << 38U;
+constexpr std::uint32_t map_major = 1;
+// proceed() from one look at the status to the next
+constexpr std::uint64_t status_every = 4096;
+
+[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("chip driver: " + what); }
+
+class ChipDriver final : public QueryPort {
+ public:
+  ChipDriver(std::unique_ptr<Machine> machine, const ChipDriverOptions& options)
+      : machine_(std::move(machine)), options_(options) {
+    if (!machine_) refuse("no machine");
+    place();
+    identify();
+    if (!restart()) throw std::runtime_error("chip driver: the chip's reset does not end; reset chip and bus");
+  }
+
+  const char* name() const override { return "chip"; }
+  ChipCapabilities capabilities() const override { return capabilities_; }
+
+  void store(std::uint32_t first_line, const std::vector<Line>& lines) override {
+    Bytes bytes;
+    bytes.reserve(lines.size() * line_bytes);
+    for (const Line& line : lines) bytes.insert(bytes.end(), line.begin(), line.end());
+    machine_->write_memory(first_line * line_bytes, bytes);
+    if (lines.empty()) return;
+    machine_->write_register(regs::invalidate_first::offset, first_line);
+    machine_->write_register(regs::invalidate_last::offset, first_line + static_cast<std::uint32_t>(lines.size()) - 1);
+    machine_->write_register(regs::invalidate::offset, regs::invalidate::go_mask);
+    if (!wait(regs::status::invalidating_mask))
+      throw std::runtime_error("chip driver: an invalidation does not end");
+  }
+
+  void lock(unsigned range, std::uint32_t first, std::uint32_t last) override {
+    if (range >= capabilities_.lock_ranges) refuse("no lock range " + std::to_string(range));
+    // empty in between: never a range that nobody asked for
+    machine_->write_register(regs::lock_last::offset(range), 0);
+    machine_->write_register(regs::lock_first::offset(range), std::max(first, 1U));
+    machine_->write_register(regs::lock_last::offset(range), first > last ? 0 : last);
+  }
+
+  bool submit(const Query& query) override {
+    const std::uint32_t size = 1U << options_.query_log2;
+    if (written_ - taken_ == size) {
+      ring_doorbell();
+      const std::uint32_t consumer = machine_->read_register(regs::query_consumer::offset);
+      taken_ += static_cast<std::uint16_t>(consumer - taken_);
+      if (written_ - taken_ == size) return false;
+    }
+    if (in_flight_ == 0) quiet_ = 0;
+    ++in_flight_;
+    const Line line = encode(query);
+    machine_->write_memory(query_base_ + line_bytes * (written_ & (size - 1)), Bytes(line.begin(), line.end()));
+    ++written_;
+    doorbell_ = true;
+    return true;
+  }
+
+  std::optional<QueryOutcome> collect() override {
+    ring_doorbell();
+    while (const std::optional<RecordBytes> record = next_record()) {
+      if (!is_done(*record)) {
+        const PairRecord pair = decode_pair(*record);
+        open_[pair.tag].push_back(pair);
+        continue;
+      }
+      if (in_flight_ > 0) --in_flight_;
+      QueryOutcome outcome;
+      outcome.done = decode_done(*record);
+      if (const auto found = open_.find(outcome.done.tag); found != open_.end()) {
+        outcome.pairs = std::move(found->second);
+        open_.erase(found);
+      }
+      return outcome;
+    }
+    give_back();
+    return std::nullopt;
+  }
+
+  bool proceed() override {
+    machine_->proceed();
+    ++quiet_;
+    if (quiet_ % status_every != 0) return true;
+    const std::uint32_t status = machine_->read_register(regs::status::offset);
+    const bool failed = (status & (regs::status::query_failed_mask | regs::status::record_failed_mask)) != 0;
+    return !failed && quiet_ < options_.patience;
+  }
+
+  bool recover() override { return restart(); }
+
+  std::uint64_t clocks() const override {
+    const std::uint64_t low = machine_->read_register(regs::counter_clocks::offset);
+    return std::uint64_t{machine_->read_register(regs::counter_clocks::offset + 4)} << 32U | low;
+  }
+
+ private:
+  /// Rings first, both at multiples of their lines, then images.
+  void place() {
+    const ChipDriverOptions& o = options_;
+    if (o.query_log2 > 15) refuse("query_log2 is " + std::to_string(o.query_log2) + ", 0..15 are legal");
+    if (o.record_log2 > 28) refuse("record_log2 is " + std::to_string(o.record_log2) + ", 0..28 are legal");
+    if (o.memory_base % line_bytes != 0) refuse("memory_base is no multiple of 64");
+    if (o.memory_base >= memory_end || o.memory_bytes > memory_end - o.memory_base)
+      refuse("the memory does not end below 2^38");
+    query_base_ = o.memory_base;
+    record_base_ = query_base_ + (line_bytes << o.query_log2);
+    const std::uint64_t records = ((record_bytes << o.record_log2) + line_bytes - 1) / line_bytes * line_bytes;
+    // line 0 belongs to no image: a lock range may be empty
+    const std::uint64_t images = std::max(record_base_ + records, line_bytes);
+    if (images + line_bytes > o.memory_base + o.memory_bytes)
+      refuse("memory of " + std::to_string(o.memory_bytes) + " bytes is too small: the rings take " +
+             std::to_string(images - o.memory_base));
+    capabilities_.image_first = static_cast<std::uint32_t>(images / line_bytes);
+    capabilities_.image_lines =
+        static_cast<std::uint32_t>((o.memory_base + o.memory_bytes) / line_bytes - images / line_bytes);
+  }
+
+  void identify() {
+    const std::uint32_t id = machine_->read_register(regs::id::offset);
+    if (id != regs::id::value_reset) throw std::runtime_error("chip driver: no chip, its register id is " + std::to_string(id));
+    const std::uint32_t version = machine_->read_register(regs::version::offset);
+    const std::uint32_t major = (version & regs::version::major_number_mask) >> regs::version::major_number_shift;
+    if (major != map_major) {
+      throw std::runtime_error("chip driver: register map " + std::to_string(major) + " is not known, " +
+                               std::to_string(map_major) + " is; use a driver of the chip's release");
+    }
+    const std::uint32_t has = machine_->read_register(regs::capabilities::offset);
+    const std::uint32_t kinds = (has & regs::capabilities::kinds_mask) >> regs::capabilities::kinds_shift;
+    capabilities_.quads = kinds == 7;
+    capabilities_.lock_ranges = (has & regs::capabilities::locks_mask) >> regs::capabilities::locks_shift;
+    capabilities_.queries_in_flight = std::size_t{1} << options_.query_log2;
+  }
+
+  /// A soft reset, empty rings, registers. \returns false: the reset does not end
+  bool restart() {
+    machine_->write_register(regs::control::offset, regs::control::soft_reset_mask);
+    if (!wait(regs::status::resetting_mask)) return false;
+    written_ = taken_ = 0;
+    read_ = told_ = 0;
+    doorbell_ = false;
+    quiet_ = 0;
+    in_flight_ = 0;
+    open_.clear();
+    machine_->write_memory(record_base_, Bytes(record_bytes << options_.record_log2));
+    const auto set = [this](std::uint32_t offset, std::uint64_t value) {
+      machine_->write_register(offset, static_cast<std::uint32_t>(value));
+    };
+    set(regs::step_limit::offset, options_.step_limit);
+    set(regs::memory_limit::offset, options_.memory_limit);
+    set(regs::open_limit::offset, options_.open_limit);
+    set(regs::pairs_each::offset, options_.pairs_each);
+    set(regs::query_base_low::offset, query_base_);
+    set(regs::query_base_high::offset, query_base_ >> 32U);
+    set(regs::query_size::offset, options_.query_log2);
+    set(regs::record_base_low::offset, record_base_);
+    set(regs::record_base_high::offset, record_base_ >> 32U);
+    set(regs::record_size::offset, options_.record_log2);
+    set(regs::control::offset, regs::control::enable_mask);
+    return true;
+  }
+
+  /// Until the bits of the status are 0. \returns false: not in time
+  bool wait(std::uint32_t mask) {
+    for (std::uint64_t i = 0; (machine_->read_register(regs::status::offset) & mask) != 0; ++i) {
+      if (i == options_.patience) return false;
+      machine_->proceed();
+    }
+    return true;
+  }
+
+  void ring_doorbell() {
+    if (!doorbell_) return;
+    doorbell_ = false;
+    machine_->write_register(regs::query_producer::offset, written_ & 0xFFFFU);
+  }
+
+  /// The next record if its phase bit says that it is there.
+  std::optional<RecordBytes> next_record() {
+    const std::uint32_t size = 1U << options_.record_log2;
+    const Bytes bytes =
+        machine_->read_memory(record_base_ + record_bytes * (read_ & (size - 1)), static_cast<std::size_t>(record_bytes));
+    const bool phase = (bytes[7] & 0x80U) != 0;
+    const bool expected = (read_ >> options_.record_log2 & 1U) == 0;
+    if (phase != expected) return std::nullopt;
+    RecordBytes record;
+    std::copy(bytes.begin(), bytes.end(), record.begin());
+    record[7] &= 0x7FU;
+    ++read_;
+    quiet_ = 0;
+    if (read_ - told_ >= std::max(size / 4, 1U)) give_back();
+    return record;
+  }
+
+  /// Room in the ring of records.
+  void give_back() {
+    if (read_ == told_) return;
+    told_ = read_;
+    machine_->write_register(regs::record_consumer::offset, read_);
+  }
+
+  std::unique_ptr<Machine> machine_;
+  ChipDriverOptions options_;
+  ChipCapabilities capabilities_;
+  std::uint64_t query_base_ = 0, record_base_ = 0;  // bytes
+  std::uint32_t written_ = 0, taken_ = 0;           // queries written by the host, known to be taken by the chip
+  std::uint32_t read_ = 0, told_ = 0;               // records read, given back
+  bool doorbell_ = false;                           // queries were written that the chip does not know of
+  std::uint64_t in_flight_ = 0;                     // queries
+  std::uint64_t quiet_ = 0;                         // proceed() since the last record, or since there was a query
+  std::unordered_map<std::uint32_t, std::vector<PairRecord>> open_;  // by tag, of queries that have not ended
+};
+
+}  // namespace
+
+std::unique_ptr<QueryPort> open_chip(std::unique_ptr<Machine> machine, const ChipDriverOptions& options) {
+  return std::make_unique<ChipDriver>(std::move(machine), options);
+}
+
+}  // namespace cchip

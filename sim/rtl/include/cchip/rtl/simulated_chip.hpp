@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The Verilated cchip_chip as a machine and as a device.
+#ifndef CCHIP_RTL_SIMULATED_CHIP_HPP
+#define CCHIP_RTL_SIMULATED_CHIP_HPP
+
+#include <cchip/collide/collide.hpp>
+#include <cchip/device/machine.hpp>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace cchip {
+
+struct SimulatedChipOptions {
+  /// Seed of what the RTL leaves undefined at power-up.
+  std::uint64_t seed = 1;
+  /// FST file, none if empty, of the first trace_clocks clocks, and the layout for GTKWave beside it.
+  std::string trace_path;
+  std::uint64_t trace_clocks = 30000;
+  /// Memory: clocks from an address to its data, and to the response of a write.
+  std::uint64_t memory_latency = 60;
+};
+
+/// cchip_chip with default parameters (quad test in its slot, buses of 128 bit) after reset, and its memory. Errors of
+/// the RTL or of a bus are std::runtime_error.
+std::unique_ptr<Machine> make_simulated_chip(const SimulatedChipOptions& options = {});
+
+/// Driver and host over make_simulated_chip(). Its memory holds images of 256 MiB in all.
+std::unique_ptr<Device> open_simulated_chip(const SimulatedChipOptions& options = {});
+
+/// Makes open_device("sim") known; a second call does nothing.
+void add_simulated_chip();
+
+}  // namespace cchip
+
+#endif
