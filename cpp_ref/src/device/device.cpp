@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cchip/device/cpu_device.hpp>
 #include <cchip/device/device.hpp>
+#include <mutex>
 #include <stdexcept>
+#include <utility>
 
 #include "model_device.hpp"
 
@@ -9,28 +12,53 @@ namespace cchip {
 namespace {
 
 struct NamedDevice {
-  const char* name;
-  std::unique_ptr<Device> (*open)();
+  std::string name;
+  DeviceOpener open;
 };
 
-constexpr NamedDevice devices[] = {
-    {"cpu", [] { return open_cpu_device(); }},
-    {"model", make_model_device},
+/// All devices, "cpu" first.
+class Registry {
+ public:
+  void add(const std::string& name, DeviceOpener open) {
+    if (name.empty() || !open) throw std::invalid_argument("a device needs a name and a function that opens it");
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto has_name = [&name](const NamedDevice& device) { return device.name == name; };
+    if (std::any_of(devices_.begin(), devices_.end(), has_name)) {
+      throw std::invalid_argument("device " + name + " is known already: choose another name");
+    }
+    devices_.push_back({name, std::move(open)});
+  }
+  std::vector<NamedDevice> all() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return devices_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<NamedDevice> devices_ = {{"cpu", [] { return open_cpu_device(); }}, {"model", make_model_device}};
 };
+
+/// Made by its first use, which may come before main().
+Registry& registry() {
+  static Registry devices;
+  return devices;
+}
 
 }  // namespace
 
+void add_device(const std::string& name, DeviceOpener open) { registry().add(name, std::move(open)); }
+
 std::vector<std::string> device_names() {
   std::vector<std::string> names;
-  for (const NamedDevice& device : devices) names.emplace_back(device.name);
+  for (const NamedDevice& device : registry().all()) names.push_back(device.name);
   return names;
 }
 
 std::unique_ptr<Device> open_device(const std::string& name) {
   std::string known;
-  for (const NamedDevice& device : devices) {
+  for (const NamedDevice& device : registry().all()) {
     if (name == device.name) return device.open();
-    known += (known.empty() ? "" : ", ") + std::string(device.name);
+    known += (known.empty() ? "" : ", ") + device.name;
   }
   throw std::invalid_argument("device " + name + " is not known: the devices are " + known);
 }

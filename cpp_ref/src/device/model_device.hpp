@@ -5,13 +5,16 @@
 #define CCHIP_DEVICE_MODEL_DEVICE_HPP
 
 #include <cchip/collide/collide.hpp>
+#include <cchip/device/query_port.hpp>
 #include <memory>
 
 namespace cchip {
 
-/// Runs each query in the chip's integers, on one core, and decides the pairs that the chip leaves open. The CPU
-/// answers what the chip does not: poses that make_query() refuses, queries that end with an error code.
+/// The host of a chip (chip_host.hpp) over the model, which runs each query in the chip's integers, on one core, when
+/// it is submitted.
 std::unique_ptr<Device> make_model_device();
+/// The model alone. A query whose images are not stored ends with QueryCode::bad_descriptor.
+std::unique_ptr<QueryPort> make_model_port();
 
 }  // namespace cchip
 

@@ -48,12 +48,15 @@ struct CollisionCounts {
   std::uint64_t pairs = 0;      ///< pairs of primitives that were tested
   std::uint64_t open = 0;       ///< those of them decided by exact arithmetic because faster arithmetic could not
   std::uint64_t clocks = 0;     ///< clocks of the device; 0 for devices without a clock
+  /// 1: the CPU answered instead of the device (device/chip_host.hpp says when); the other counts are those of both.
+  std::uint64_t fallbacks = 0;
   CollisionCounts& operator+=(const CollisionCounts& x) {
     steps += x.steps;
     box_tests += x.box_tests;
     pairs += x.pairs;
     open += x.open;
     clocks += x.clocks;
+    fallbacks += x.fallbacks;
     return *this;
   }
 };

@@ -59,7 +59,8 @@ struct ReconfigResult {
 /// be missed in `swaps`. \throws std::invalid_argument a coordinate does not fit the machine's width, the payload is
 /// too short \throws BitstreamError a bitstream is damaged, or not the one asked for; nothing was written then \throws
 /// std::runtime_error no answer in time, a register that refuses, a batch's module that cannot be loaded
-ReconfigResult run_reconfig(PairMachine& machine, const std::vector<PairRequest>& pairs, const ReconfigOptions& options);
+ReconfigResult run_reconfig(PairMachine& machine, const std::vector<PairRequest>& pairs,
+                            const ReconfigOptions& options);
 
 }  // namespace cchip
 
