@@ -104,8 +104,8 @@ class ImageStore {
     } else {
       items_.emplace_front(object);
       lines_ += items_.front().weight();
-      trim();
     }
+    trim();
     return items_.front();
   }
 
