@@ -6,8 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cchip/device/device.hpp>
-#include <cchip/rtl/simulated_chip.hpp>
 #include <cchip/geometry/decimal.hpp>
+#include <cchip/rtl/simulated_chip.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/command_line.hpp>
 #include <cchip/stimulus/csv_reader.hpp>
@@ -248,8 +248,9 @@ void add_collide(CLI::App& app, CollideOptions& options) {
   add_text(*command, "--expect", options.expect,
            "compare with this column of the poses: 0 or 1, with --contacts all their number")
       ->needs(poses);
-  add_text(*command, "--trace", options.trace,
-           "with --device sim: write the waveform of the chip's first 30,000 clocks (FST) and a .gtkw layout beside it");
+  add_text(
+      *command, "--trace", options.trace,
+      "with --device sim: write the waveform of the chip's first 30,000 clocks (FST) and a .gtkw layout beside it");
   add_text(*command, "--ply", options.ply, "write both meshes, the faces that touch coloured, for MeshLab or Blender")
       ->excludes(poses);
   command->footer(

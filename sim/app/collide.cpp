@@ -75,7 +75,8 @@ Object load_object(const std::string& path, const Streams& streams) {
 std::unique_ptr<Device> open_named_device(const CollideOptions& options) {
   if (!options.trace.empty()) {
     if (options.device != "sim") {
-      throw UsageError("--trace: device " + options.device + " has no waveform; add --device sim, or leave --trace out");
+      throw UsageError("--trace: device " + options.device +
+                       " has no waveform; add --device sim, or leave --trace out");
     }
     SimulatedChipOptions chip;
     chip.trace_path = options.trace;

@@ -414,7 +414,7 @@ Rows chip_layout() {
 
 void write_chip_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to) {
   sim::OutputFile out(layout_path(fst_path));
-  SaveFile file(out.stream(), "cchip_chip_core");
+  SaveFile file(out.stream(), "cchip_chip.u_core");
   begin(file, "Queries through the whole chip", fst_path,
         {from, -std::log2(static_cast<double>(to - from) / wave_frames)});
   file.write(chip_layout());

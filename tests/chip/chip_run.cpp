@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two meshes through cchip_chip_core: every record against the functional model, and what a query costs.
-#include <Vchip_quad.h>
+// Two meshes through cchip_chip, by its registers and rings: every record against the functional model, and what a
+// query costs.
+#include <Vcchip_chip.h>
 #include <Vchip_tri.h>
 #include <fmt/format.h>
 
@@ -11,20 +12,13 @@
 #include <cchip/waves/wave_layout.hpp>
 #include <random>
 
-#include "chip_bench.hpp"
 #include "mesh_pairs.hpp"
+#include "port_bench.hpp"
 
 namespace cchip::testing {
 namespace {
 
-struct TriangleChip {
-  using Model = Vchip_tri;
-  static constexpr int DATA_W = 128;
-};
-struct QuadChip {
-  using Model = Vchip_quad;
-  static constexpr int DATA_W = 128;
-};
+constexpr int data_w = 128;
 
 struct Settings {
   std::vector<std::string> meshes = {"limbs-limbs"};
@@ -34,7 +28,8 @@ struct Settings {
   std::string modes = "mixed";
   int module = 3;
   sim::AxiLinesOptions memory;
-  ChipOptions chip;
+  ChipDriverOptions driver;
+  std::uint64_t host_every = 1;
   std::uint64_t seed = sim::seed_from_environment();
   std::string wave;
 };
@@ -44,9 +39,11 @@ struct Totals {
   std::uint64_t clocks = 0;
 };
 
-template <class Chip>
+template <class Model>
 class Run {
  public:
+  using Bench = PortBench<Model, data_w>;
+
   explicit Run(const Settings& settings) : settings_(settings), device_(open_cpu_device({1, ""})) {}
 
   int run() {
@@ -54,8 +51,8 @@ class Run {
         "seed={} module={} latency={} jitter={} reorder={} ready={}% valid={}% query ring={} record ring={} host every "
         "{}\n",
         settings_.seed, settings_.module, settings_.memory.latency, settings_.memory.jitter, settings_.memory.reorder,
-        settings_.memory.ready_percent, settings_.memory.valid_percent, 1U << settings_.chip.query_log2,
-        1U << settings_.chip.record_log2, settings_.chip.host_every);
+        settings_.memory.ready_percent, settings_.memory.valid_percent, 1U << settings_.driver.query_log2,
+        1U << settings_.driver.record_log2, settings_.host_every);
     fmt::print("{:<12} {:<6} {:>7} {:>6} {:>9} {:>6} {:>9} {:>9} {:>9}\n", "meshes", "class", "queries", "hits",
                "contacts", "open", "steps", "pairs", "clocks");
     for (const std::string& name : settings_.meshes) run_pair(name);
@@ -83,22 +80,24 @@ class Run {
       sim::SimulationOptions options = sim::without_timeout(settings_.seed);
       if (!settings_.wave.empty()) {
         options.trace_path = settings_.wave;
-        options.trace_clocks = 7000;
-        write_chip_gtkw(settings_.wave, 10000, 30000);  // the cache is clear after 1024 clocks
+        options.trace_clocks = 12000;
+      }
+      Bench bench(options, settings_.memory, settings_.driver, settings_.host_every);
+      if (!settings_.wave.empty()) {
+        write_chip_gtkw(settings_.wave, 20000,
+                        70000);  // the cache is clear after 1024 clocks, images are stored after it
         fmt::print("waveform {}, its layout beside it\n", settings_.wave);
         settings_.wave.clear();
       }
-      ChipBench<Chip> bench(options, settings_.chip);
-      bench.memory().options = settings_.memory;
-      const std::uint64_t line_a = bench.place(image_a);
-      const std::uint64_t line_b = bench.place(image_b);
+      const std::uint32_t line_a = bench.place(image_a);
+      const std::uint32_t line_b = bench.place(image_b);
       std::vector<Query> queries;
       for (std::size_t i = 0; i < settings_.poses + settings_.warm; ++i) {
         const PosePair pose = maker.pose(maker.approach(), pose_class);
         std::optional<Query> query = bvh::make_query(image_a.header(), pose.a, image_b.header(), pose.b);
         if (!query) throw std::runtime_error("a pose that the chip does not take");
-        query->base_a = static_cast<std::uint32_t>(query->swapped ? line_b : line_a);
-        query->base_b = static_cast<std::uint32_t>(query->swapped ? line_a : line_b);
+        query->base_a = query->swapped ? line_b : line_a;
+        query->base_b = query->swapped ? line_a : line_b;
         query->mode = settings_.modes == "all" || (settings_.modes == "mixed" && random() % 2 != 0) ? QueryMode::all
                                                                                                     : QueryMode::first;
         queries.push_back(*query);
@@ -107,20 +106,23 @@ class Run {
     }
   }
 
-  void measure(const std::string& meshes, const std::string& pose_class, ChipBench<Chip>& bench,
+  void measure(const std::string& meshes, const std::string& pose_class, Bench& bench,
                const std::vector<Query>& queries, const bvh::Image& image_a, const bvh::Image& image_b) {
     const std::uint64_t most = 20000 + 4000000 * queries.size();
     for (std::size_t i = 0; i < settings_.warm; ++i) bench.submit(queries[i]);
     bool ends = bench.run(most);
-    const std::uint64_t clocks = bench.clocks(), steps = bench.count_steps(), pairs = bench.count_pairs();
+    namespace regs = chip_registers;
+    const std::uint64_t steps = bench.counter(regs::counter_node_pairs::offset);
+    const std::uint64_t pairs = bench.counter(regs::counter_primitive_pairs::offset);
+    const std::uint64_t clocks = bench.clocks();
     for (std::size_t i = settings_.warm; i < queries.size(); ++i) bench.submit(queries[i]);
     ends = ends && bench.run(most);
-    bench.steps(2000);  // nothing may follow
     Totals now;
+    now.clocks = bench.clocks() - clocks;
+    for (std::uint64_t i = 0; i < 2000; i += settings_.host_every) bench.step();  // nothing may follow
     now.queries = queries.size();
     now.lost = bench.unanswered();
     now.duplicated = bench.duplicated();
-    now.clocks = bench.clocks() - clocks - 2000;
     if (!ends) fmt::print("{} queries without an answer\n", bench.unanswered());
     for (const std::string& text : bench.wrong()) fmt::print("{}\n", text);
     now.mismatches = bench.wrong().size();
@@ -130,7 +132,7 @@ class Run {
       const Query& query = queries[i];
       const model::BroadPhaseResult expected =
           model::run_query(query, query.swapped ? image_b : image_a, query.swapped ? image_a : image_b);
-      const std::string wrong = compare_answer(query, answer, expected, bench.top().open_limit);
+      const std::string wrong = compare_answer(query, answer, expected, settings_.driver.open_limit);
       now.hits += answer.done->answer == QueryAnswer::yes ? 1 : 0;
       now.contacts += answer.pairs.size();
       for (const PairRecord& x : answer.pairs) now.open += x.definite ? 0 : 1;
@@ -143,8 +145,10 @@ class Run {
     }
     const double n = std::max(1.0, static_cast<double>(settings_.poses));
     fmt::print("{:<12} {:<6} {:>7} {:>6} {:>9} {:>6} {:>9.2f} {:>9.1f} {:>9.1f}\n", meshes, pose_class, now.queries,
-               now.hits, now.contacts, now.open, static_cast<double>(bench.count_steps() - steps) / n,
-               static_cast<double>(bench.count_pairs() - pairs) / n, static_cast<double>(now.clocks) / n);
+               now.hits, now.contacts, now.open,
+               static_cast<double>(bench.counter(regs::counter_node_pairs::offset) - steps) / n,
+               static_cast<double>(bench.counter(regs::counter_primitive_pairs::offset) - pairs) / n,
+               static_cast<double>(now.clocks) / n);
     std::fflush(stdout);
     total_.queries += now.queries;
     total_.hits += now.hits;
@@ -187,21 +191,23 @@ int main(int argc, char** argv) {
   app.add_option("--stall", stall, "per cent of the clocks on which a channel of memory rests")
       ->check(CLI::Range(0, 99))
       ->capture_default_str();
-  app.add_option("--query-ring", settings.chip.query_log2, "lines, as a power of two")
+  app.add_option("--query-ring", settings.driver.query_log2, "lines, as a power of two")
       ->check(CLI::Range(0, 15))
       ->capture_default_str();
-  app.add_option("--record-ring", settings.chip.record_log2, "records, as a power of two")
+  app.add_option("--record-ring", settings.driver.record_log2, "records, as a power of two")
       ->check(CLI::Range(3, 16))
       ->capture_default_str();
-  app.add_option("--host-every", settings.chip.host_every, "clocks from one look of the host at its rings to the next")
+  app.add_option("--host-every", settings.host_every, "clocks from one look of the host at its rings to the next")
       ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  app.add_option("--lowest-address", settings.driver.memory_base, "of the rings and images, a multiple of 64")
       ->capture_default_str();
   app.add_option("--wave", settings.wave, "waveform of the beginning, FST");
   app.footer("Exit codes: 0 nothing wrong, 3 a wrong or a lost answer, others: wrong arguments.");
   CLI11_PARSE(app, argc, argv);
   settings.memory.ready_percent = settings.memory.valid_percent = 100 - stall;
   try {
-    return settings.module == 1 ? Run<TriangleChip>(settings).run() : Run<QuadChip>(settings).run();
+    return settings.module == 1 ? Run<Vchip_tri>(settings).run() : Run<Vcchip_chip>(settings).run();
   } catch (const std::exception& error) {
     fmt::print(stderr, "cchip_chip_run: {}\n", error.what());
     return 2;

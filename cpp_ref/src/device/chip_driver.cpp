@@ -44,8 +44,7 @@ class ChipDriver final : public QueryPort {
     machine_->write_register(regs::invalidate_first::offset, first_line);
     machine_->write_register(regs::invalidate_last::offset, first_line + static_cast<std::uint32_t>(lines.size()) - 1);
     machine_->write_register(regs::invalidate::offset, regs::invalidate::go_mask);
-    if (!wait(regs::status::invalidating_mask))
-      throw std::runtime_error("chip driver: an invalidation does not end");
+    if (!wait(regs::status::invalidating_mask)) throw std::runtime_error("chip driver: an invalidation does not end");
   }
 
   void lock(unsigned range, std::uint32_t first, std::uint32_t last) override {
@@ -134,7 +133,8 @@ class ChipDriver final : public QueryPort {
 
   void identify() {
     const std::uint32_t id = machine_->read_register(regs::id::offset);
-    if (id != regs::id::value_reset) throw std::runtime_error("chip driver: no chip, its register id is " + std::to_string(id));
+    if (id != regs::id::value_reset)
+      throw std::runtime_error("chip driver: no chip, its register id is " + std::to_string(id));
     const std::uint32_t version = machine_->read_register(regs::version::offset);
     const std::uint32_t major = (version & regs::version::major_number_mask) >> regs::version::major_number_shift;
     if (major != map_major) {
@@ -194,8 +194,8 @@ class ChipDriver final : public QueryPort {
   /// The next record if its phase bit says that it is there.
   std::optional<RecordBytes> next_record() {
     const std::uint32_t size = 1U << options_.record_log2;
-    const Bytes bytes =
-        machine_->read_memory(record_base_ + record_bytes * (read_ & (size - 1)), static_cast<std::size_t>(record_bytes));
+    const Bytes bytes = machine_->read_memory(record_base_ + record_bytes * (read_ & (size - 1)),
+                                              static_cast<std::size_t>(record_bytes));
     const bool phase = (bytes[7] & 0x80U) != 0;
     const bool expected = (read_ >> options_.record_log2 & 1U) == 0;
     if (phase != expected) return std::nullopt;

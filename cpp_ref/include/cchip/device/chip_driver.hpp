@@ -16,8 +16,8 @@ struct ChipDriverOptions {
   /// queries can name. Both rings come first, images use the rest.
   std::uint64_t memory_base = 0;
   std::uint64_t memory_bytes = std::uint64_t{1} << 28U;
-  unsigned query_log2 = 8;     ///< lines of the ring of queries, logarithm to base 2: 0..15
-  unsigned record_log2 = 12;   ///< records of the other one: 0..28
+  unsigned query_log2 = 8;                ///< lines of the ring of queries, logarithm to base 2: 0..15
+  unsigned record_log2 = 12;              ///< records of the other one: 0..28
   std::uint32_t step_limit = 0xFFFFFFFF;  ///< node pairs of a query
   std::uint32_t memory_limit = 0;         ///< longest wait of the chip for memory, clocks; 0: its default
   std::uint8_t open_limit = 16;           ///< open pairs that end a query for the first hit

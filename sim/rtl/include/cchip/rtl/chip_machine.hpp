@@ -25,9 +25,7 @@ class ChipMachine : public Machine {
   using Memory = AxiLines<Model, DATA_W>;
 
   explicit ChipMachine(SimulationOptions options)
-      : simulation_(std::move(options)),
-        memory_(simulation_.top(), simulation_.seed()),
-        registers_(simulation_.top()) {
+      : simulation_(std::move(options)), memory_(simulation_.top(), simulation_.seed()), registers_(simulation_.top()) {
     simulation_.add(memory_);
     simulation_.add(registers_);
     reset();

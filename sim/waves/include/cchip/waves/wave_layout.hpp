@@ -26,7 +26,7 @@ void write_swap_gtkw(const std::string& fst_path, std::uint64_t from, std::uint6
 /// \throws sim::OutputError the file cannot be written
 void write_broad_phase_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to);
 
-/// The same for a waveform of cchip_chip_core with 16 queries: a query from its ring to its done record.
+/// The same for a waveform of cchip_chip with 16 queries: a query from its ring to its done record.
 /// \param from,to time units of the waveform
 /// \throws std::runtime_error the file cannot be written
 void write_chip_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to);
