@@ -31,7 +31,9 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_fetch: every word in order, never more 
       std::vector<std::uint8_t> bytes(4 * words);
       for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
       memory.clear();
+      REQUIRE(memory.read(address, 4) == std::vector<std::uint8_t>(4));
       memory.write(address, bytes);
+      REQUIRE(memory.read(address, bytes.size()) == bytes);
       const auto patterns = sim::standard_patterns(random());
       sim::AxiMemoryOptions behaviour;
       behaviour.latency = 1 + random() % 20;
