@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole chip, small, against the functional model: memory and hosts of every kind, faults, reset at any clock.
-#include <cchip/bvh/place.hpp>
-#include <cchip/bvh/tree.hpp>
-#include <cchip/mesh/shapes.hpp>
 #include <models/cchip_chip_core.hpp>
 
 #include "bench.hpp"
 #include "chip_bench.hpp"
+#include "chip_objects.hpp"
 
 using namespace cchip;
 using namespace cchip::test;
@@ -14,50 +12,13 @@ using cchip::testing::ChipAnswer;
 using cchip::testing::ChipBench;
 using cchip::testing::ChipOptions;
 using cchip::testing::compare_answer;
+using cchip::testing::Objects;
+using cchip::testing::queries_of;
+using cchip::testing::wild;
 
 namespace {
 
 constexpr std::uint64_t most_clocks = 3000000;
-
-bvh::Image image_of(const Mesh& mesh) { return bvh::make_image(mesh, bvh::build_tree(mesh)); }
-
-/// Two objects whose images lie in the memory of a bench, and queries of them at random poses.
-struct Objects {
-  bvh::Image a, b;
-  std::uint64_t line_a = 0, line_b = 0;
-
-  explicit Objects(Kind kind_b) : a(image_of(make_body(6, 0.3, 3))), b(image_of(make_torus(1, 0.4, 36, 24, kind_b))) {}
-
-  template <class Bench>
-  void place(Bench& bench) {
-    line_a = bench.place(a);
-    line_b = bench.place(b);
-  }
-
-  Query query(Random& random) const {
-    std::uniform_real_distribution<double> unit(-1, 1);
-    const auto turned = [&] {
-      Pose pose = Pose::Identity();
-      pose.linear() =
-          Eigen::Quaterniond(unit(random), unit(random), unit(random), unit(random)).normalized().toRotationMatrix();
-      return pose;
-    };
-    for (;;) {
-      Pose pose_b = turned();
-      pose_b.translation() = Vec3d(unit(random), unit(random), unit(random)) * 2.2;
-      std::optional<Query> query = bvh::make_query(a.header(), turned(), b.header(), pose_b);
-      if (!query) continue;
-      query->base_a = static_cast<std::uint32_t>(query->swapped ? line_b : line_a);
-      query->base_b = static_cast<std::uint32_t>(query->swapped ? line_a : line_b);
-      query->mode = chance(random, 50) ? QueryMode::all : QueryMode::first;
-      return *query;
-    }
-  }
-
-  model::BroadPhaseResult expected(const Query& query, const model::BroadPhaseOptions& options = {}) const {
-    return model::run_query(query, query.swapped ? b : a, query.swapped ? a : b, options);
-  }
-};
 
 struct Totals {
   std::size_t hits = 0, records = 0, open = 0;
@@ -88,23 +49,6 @@ Totals check(Bench& bench, const Objects& objects, const std::vector<Query>& que
     for (const PairRecord& pair : answer.pairs) totals.open += pair.definite ? 0 : 1;
   }
   return totals;
-}
-
-std::vector<Query> queries_of(const Objects& objects, Random& random, std::size_t count) {
-  std::vector<Query> queries;
-  for (std::size_t i = 0; i < count; ++i) queries.push_back(objects.query(random));
-  return queries;
-}
-
-/// A memory that does everything that AXI allows.
-sim::AxiLinesOptions wild() {
-  sim::AxiLinesOptions options;
-  options.latency = 20;
-  options.jitter = 120;
-  options.reorder = true;
-  options.ready_percent = 60;
-  options.valid_percent = 70;
-  return options;
 }
 
 constexpr Kind kind_of(int module) { return module == 3 ? Kind::quad : Kind::tri; }
