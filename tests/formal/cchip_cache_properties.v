@@ -2,7 +2,7 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// To be proved of cchip_cache, for some clocks after reset (cchip_cache.sby; docs/formal.md says how far it is):
+// Proved of cchip_cache, for some clocks after reset (cchip_cache.sby; docs/formal.md says how far):
 //   main   each request is answered at most once, and nothing else is; an answer with CCHIP_READ_OK carries data that memory
 //          gave for the line of that request; a code other than that comes only after memory has given one; no second read of a
 //          line is sent while one is in flight; a slot is not used again while memory owes its response; a locked line that has
@@ -13,9 +13,14 @@
 // Assumed, what the clients and cchip_axi_read keep: a place is asked for again only after its answer; memory answers the
 // reads of its slots, once each; a slot is outstanding from its read to its answer and, after a code TIMEOUT or OWED, as long as
 // memory likes.
-// One line, any, is followed: bit 0 of its data, in memory, is 1, and that of all other lines is 0. All lines are of
-// 2^SET_BITS sets; requests come before clock LAST_ASK, commands only in the task stale; in the task live all is answered by
-// clock END.
+// One line, any, is followed: bit 0 of its data, in memory, is 1, and that of all other lines is 0. Commands come only in the
+// task stale. Requests without a bound take too long, so each task has few, which this says:
+//   SET_BITS              all lines are of 2^SET_BITS sets
+//   LAST_ASK, LAST_ASK_1  requests of port 0, of port 1, come before this clock; the first may come on clock 9
+//   EVERY, ALONE          on every so many clocks only; of one port at a time
+//   QUICK                 memory answers on the first or second clock after the read, with CCHIP_READ_OK; three lines, and the
+//                         followed one is the first: the cache only tells whether lines are equal
+//   LIVE, END             from LAST_ASK on memory answers a read on every clock; all is answered by clock END
 `ifndef MISSES
 `define MISSES 2
 `endif
@@ -241,9 +246,9 @@ module cchip_cache_properties #(
     came_followed_q <= rst ? 22'd0 : {came_followed_q[20:0], comes && comes_followed};
     if (!rst && clock_q > 9)
       case (`COVER)
-        // a request of each port has waited, and both ports answer with the line; a locked line is hit; the line is evicted, read again and answered; every slot
-        // is lost and a request is refused; an answer after an invalidation; two lines that come keep an answer from its clock;
-        // the third line is answered
+        // a request of each port has waited, and both ports answer with the line; a locked line is hit; the line is evicted,
+        // read again and answered; every slot is lost and a request is refused; an answer after an invalidation; two lines that
+        // come keep an answer from its clock; the third line that is read is answered
         0: assert (!(&m_valid && m_code == 0 && &waited_q && m_data[0] && m_data[512]));
         1: assert (!(count_hit[0] && locked && loaded_q && !invalidated_q));
         2: assert (!(followed_0 && evicted_q));
