@@ -2,7 +2,7 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// To be proved of cchip_cache, for some clocks after reset (cchip_cache.sby; docs/formal.md says how far it is):
+// Proved of cchip_cache, for some clocks after reset (cchip_cache.sby; docs/formal.md says how far):
 //   main   each request is answered at most once, and nothing else is; an answer with CCHIP_READ_OK carries data that memory
 //          gave for the line of that request; a code other than that comes only after memory has given one; no second read of a
 //          line is sent while one is in flight; a slot is not used again while memory owes its response; a locked line that has
@@ -13,9 +13,14 @@
 // Assumed, what the clients and cchip_axi_read keep: a place is asked for again only after its answer; memory answers the
 // reads of its slots, once each; a slot is outstanding from its read to its answer and, after a code TIMEOUT or OWED, as long as
 // memory likes.
-// One line, any, is followed: bit 0 of its data, in memory, is 1, and that of all other lines is 0. All lines are of
-// 2^SET_BITS sets; requests come before clock LAST_ASK, commands only in the task stale; in the task live all is answered by
-// clock END.
+// One line, any, is followed: bit 0 of its data, in memory, is 1, and that of all other lines is 0. Commands come only in the
+// task stale. Requests without a bound take too long, so each task has few, which this says:
+//   SET_BITS              all lines are of 2^SET_BITS sets
+//   LAST_ASK, LAST_ASK_1  requests of port 0, of port 1, come before this clock; the first may come on clock 9
+//   EVERY, ALONE          on every so many clocks only; of one port at a time
+//   QUICK                 memory answers on the first or second clock after the read, with CCHIP_READ_OK; three lines, and the
+//                         followed one is the first: the cache only tells whether lines are equal
+//   LIVE, END             from LAST_ASK on memory answers a read on every clock; all is answered by clock END
 `ifndef MISSES
 `define MISSES 2
 `endif
@@ -24,6 +29,12 @@
 `endif
 `ifndef LAST_ASK
 `define LAST_ASK 200
+`endif
+`ifndef LAST_ASK_1
+`define LAST_ASK_1 `LAST_ASK
+`endif
+`ifndef EVERY
+`define EVERY 1
 `endif
 `ifndef END
 `define END 200
@@ -115,7 +126,8 @@ module cchip_cache_properties #(
     for (p = 0; p < 2; p = p + 1) begin : gen_port
       assign asks_followed[p] = s_line[LINE_W*p+:LINE_W] == followed;
       always @* assume (!s_valid[p] || s_line[LINE_W*p+`SET_BITS+:SET_W-`SET_BITS] == 0);
-      always @* assume (!s_valid[p] || (clock_q > 8 && clock_q < `LAST_ASK));
+      always @* assume (!s_valid[p] || (clock_q > 8 && clock_q < (p == 0 ? `LAST_ASK : `LAST_ASK_1)));
+      always @* assume (!s_valid[p] || clock_q % `EVERY == 9 % `EVERY);
       for (i = 0; i < PLACES; i = i + 1) begin : gen_place
         assign asks[PLACES*p+i] = s_valid[p] && s_place[PLACE_W*p+:PLACE_W] == i;
         assign answers[PLACES*p+i] = m_valid[p] && m_place[PLACE_W*p+:PLACE_W] == i;
@@ -124,16 +136,30 @@ module cchip_cache_properties #(
       end
     end
   endgenerate
+`ifdef QUICK
+  always @* assume (followed == 0);
+  always @* assume (!s_valid[0] || s_line[SET_W+:LINE_W-SET_W] != 3);
+  always @* assume (!s_valid[1] || s_line[LINE_W+SET_W+:LINE_W-SET_W] != 3);
+`endif
+`ifdef ALONE
+  always @* assume (!(&s_valid));
+`endif
   always @* assume (followed[`SET_BITS+:SET_W-`SET_BITS] == 0);
   always @(posedge clk) open_q <= rst ? 0 : (open_q | asks) & ~answers;
 
   // ---- memory
   reg failed_q, invalidated_q, loaded_q;  // a read has failed, a command was taken, the followed line has come
+  reg [MISSES-1:0] open_read_q2, open_read_q3;
+  always @(posedge clk) {open_read_q3, open_read_q2} <= rst ? 0 : {open_read_q2, open_read_q};
   wire comes_followed = of_followed_q[s_read_slot];
   always @* begin
     assume (!s_read_valid || open_read_q[s_read_slot]);
 `ifndef STALE
     assume (!s_read_valid || s_read_data == comes_followed);
+`endif
+`ifdef QUICK
+    assume (!s_read_valid || s_read_code == `CCHIP_READ_OK);
+    assume ((open_read_q & open_read_q2 & open_read_q3) == 0);
 `endif
 `ifdef LIVE
     assume (clock_q < `LAST_ASK || s_read_valid || open_read_q == 0);
@@ -204,18 +230,32 @@ module cchip_cache_properties #(
     end
 
 `ifdef COVER
-  reg read_once_q;
+  reg read_once_q, evicted_q;
+  reg [1:0] waited_q, reads_q;
+  reg third_q;  // the followed line was the third that was read
+  reg [21:0] came_q, came_followed_q;  // lines that came, 1 clock ago and more
+  wire comes = s_read_valid && s_read_code == `CCHIP_READ_OK;
+  wire followed_0 = m_valid[0] && m_code[0+:CODE_W] == `CCHIP_READ_OK && wants_followed_q[m_place[0+:PLACE_W]];
   always @(posedge clk) begin
     read_once_q <= ~rst & (read_once_q | reads_followed);
+    evicted_q <= ~rst & (evicted_q | (reads_followed && read_once_q && loaded_q && !failed_q && !invalidated_q));
+    waited_q <= rst ? 2'd0 : waited_q | count_wait;
+    reads_q <= rst ? 2'd0 : reads_q + {1'b0, m_read_valid & ~&reads_q};
+    third_q <= ~rst & (third_q | (reads_followed && reads_q == 2'd2));
+    came_q <= rst ? 22'd0 : {came_q[20:0], comes};
+    came_followed_q <= rst ? 22'd0 : {came_followed_q[20:0], comes && comes_followed};
     if (!rst && clock_q > 9)
       case (`COVER)
-        // two lines come one after the other while a request waits on each port; a locked line is hit; the line is evicted and
-        // read again; every slot is lost and a request is refused; an answer after an invalidation
-        0: assert (!(&count_wait && loaded_q));
+        // a request of each port has waited, and both ports answer with the line; a locked line is hit; the line is evicted,
+        // read again and answered; every slot is lost and a request is refused; an answer after an invalidation; two lines that
+        // come keep an answer from its clock; the third line that is read is answered
+        0: assert (!(&m_valid && m_code == 0 && &waited_q && m_data[0] && m_data[512]));
         1: assert (!(count_hit[0] && locked && loaded_q && !invalidated_q));
-        2: assert (!(reads_followed && read_once_q && loaded_q && !failed_q && !invalidated_q));
+        2: assert (!(followed_0 && evicted_q));
         3: assert (!(m_valid[0] && m_code[0+:CODE_W] == `CCHIP_READ_OWED && &owed_q));
         4: assert (!(m_valid[1] && invalidated_q && invalidate_ready && commanded_q && m_code[CODE_W+:CODE_W] == `CCHIP_READ_OK));
+        5: assert (!(followed_0 && came_followed_q[20] && came_q[10] && came_q[9] && count_hit == 0));
+        6: assert (!(followed_0 && third_q));
       endcase
   end
 `endif

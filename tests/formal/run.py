@@ -62,10 +62,11 @@ SLOW = {("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"), 
         ("cchip_swap_retry", "prove"), ("cchip_axi_read", "bounded"), ("cchip_axi_write", "bounded_1"),
         ("cchip_traversal_events", "bounded"), ("cchip_get_data", "bounded"), ("cchip_get_data", "code"),
         ("cchip_bitstream_fetch", "room"), ("cchip_cache", "bounded"), ("cchip_cache", "frames"), ("cchip_cache", "stale"),
-        ("cchip_cache", "live"), ("cchip_cache", "cover_wait"), ("cchip_cache", "cover_locked"), ("cchip_cache", "cover_evicted"),
-        ("cchip_cache", "cover_refused"), ("cchip_cache", "cover_fresh"), ("cchip_calc_result", "bounded"), ("cchip_calc_result", "order"),
-        ("cchip_calc_result", "cover_records"), ("cchip_calc_result", "cover_again"), ("cchip_query_ring", "bounded"),
-        ("cchip_record_ring", "bounded")}
+        ("cchip_cache", "evict"), ("cchip_cache", "again"), ("cchip_cache", "live"), ("cchip_cache", "cover_wait"),
+        ("cchip_cache", "cover_locked"), ("cchip_cache", "cover_evicted"), ("cchip_cache", "cover_refused"),
+        ("cchip_cache", "cover_fresh"), ("cchip_cache", "cover_kept"), ("cchip_cache", "cover_third"),
+        ("cchip_calc_result", "bounded"), ("cchip_calc_result", "order"), ("cchip_calc_result", "cover_records"),
+        ("cchip_calc_result", "cover_again"), ("cchip_query_ring", "bounded"), ("cchip_record_ring", "bounded")}
 # (task that has to fail, file, text, what takes its place); the text occurs once
 MUTANTS = [
     ("cchip_skid_buffer prove", SKID, "if (ready_q) skid_data_q <= s_data;", "skid_data_q <= s_data;"),
@@ -109,7 +110,7 @@ MUTANTS = [
     # told; a slot is used again while memory owes its response; two ports get one slot
     ("cchip_cache frames", CACHE, "assign serving[p] = (|wake_q) | (serve_q0 & own0);", "assign serving[p] = |wake_q;"),
     ("cchip_cache bounded", CACHE, "wire fresh = look_q6 & ~stale;", "wire fresh = look_q6;"),
-    ("cchip_cache bounded", CACHE, "wire [1:0] may5 = ~hold5 & ~locked5;", "wire [1:0] may5 = ~locked5;"),
+    ("cchip_cache evict", CACHE, "wire [1:0] may5 = ~hold5 & ~locked5;", "wire [1:0] may5 = ~locked5;"),
     ("cchip_cache bounded", CACHE, "wire [1:0] may5 = ~hold5 & ~locked5;", "wire [1:0] may5 = ~hold5;"),
     ("cchip_cache stale", CACHE, "READS: if (old_q == {MISSES{1'b0}} && serves0 == 2'b00)", "READS: if (serves0 == 2'b00)"),
     ("cchip_cache live", CACHE, "wire refuse = fresh & ~match_q6 & exhausted;", "wire refuse = 1'b0;"),
