@@ -234,7 +234,8 @@ class Run {
 
 }  // namespace
 
-ReconfigResult run_reconfig(PairMachine& machine, const std::vector<PairRequest>& pairs, const ReconfigOptions& options) {
+ReconfigResult run_reconfig(PairMachine& machine, const std::vector<PairRequest>& pairs,
+                            const ReconfigOptions& options) {
   return Run(machine, pairs, options).run();
 }
 
