@@ -37,7 +37,7 @@ export JOBS
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-swaps picture table1 table1-plot bench-reconfig bench-collide export fpga \
+  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults picture table1 table1-plot bench-reconfig bench-collide export fpga \
   fpga-quick install clean
 
 help: ## list the targets
@@ -158,6 +158,17 @@ SWAPS ?= 10000
 campaign-swaps: $(RELEASE)/build.ninja ## SWAPS exchanges of modules under random traffic with faults (CCHIP_SEED repeats a run)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_swaps
 	$(RELEASE)/bin/cchip_swaps --swaps $(SWAPS) --threads $(JOBS)
+
+CHIP_CAMPAIGN := $(RELEASE)/bin/cchip_chip_campaign
+campaign-chip: $(RELEASE)/build.ninja ## the simulated chip against the CPU device: ten pairs of meshes, 10^5 FIRST and 10^4 ALL queries, soft resets, soak of 10^6 (hours)
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip_chip_campaign
+	$(CHIP_CAMPAIGN) poses
+	$(CHIP_CAMPAIGN) resets --resets 1000
+	$(CHIP_CAMPAIGN) poses --meshes torus-gear,sphere-quads --first 1000000 --all 0
+
+campaign-chip-faults: $(RELEASE)/build.ninja ## 10^5 queries to the chip under faults, alone and in pairs (CCHIP_SEED repeats a run)
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip_chip_campaign
+	$(CHIP_CAMPAIGN) faults --all-bins
 
 picture: $(RELEASE)/build.ninja ## draw docs/pictures/demo.png: the demo's meshes, the faces that hit coloured
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip

@@ -18,7 +18,7 @@ class SimulatedChip final : public sim::ChipMachine<Vcchip_chip, bus_w> {
  public:
   explicit SimulatedChip(const SimulatedChipOptions& options)
       : ChipMachine(sim::without_timeout(options.seed, options.trace_path, options.trace_clocks)) {
-    memory().options.latency = memory().options.write_latency = options.memory_latency;
+    memory().options = options.memory;
     if (!options.trace_path.empty()) {
       constexpr std::uint64_t units = 10;  // of time per clock
       write_chip_gtkw(options.trace_path, 0, units * std::min<std::uint64_t>(options.trace_clocks, 5000));

@@ -8,6 +8,8 @@
 #include <cchip/device/chip_driver.hpp>
 #include <cchip/rtl/chip_machine.hpp>
 #include <cchip/wire/chip_registers.hpp>
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -26,7 +28,7 @@ class PortBench {
   /// \param host_every clocks from one look of the host at its ring to the next
   PortBench(sim::SimulationOptions simulation, const sim::AxiLinesOptions& memory, const ChipDriverOptions& driver,
             std::uint64_t host_every)
-      : host_every_(host_every) {
+      : driver_(driver), host_every_(host_every) {
     auto machine = std::make_unique<Machine>(std::move(simulation));
     machine_ = machine.get();
     machine_->memory().options = memory;
@@ -53,6 +55,10 @@ class PortBench {
     return queries_.size() - 1;
   }
   const std::vector<Query>& queries() const { return queries_; }
+  /// Called with each line of the ring once the driver has written it, before the chip may read it.
+  std::function<void(std::size_t number, Line& line)> edit;
+  /// Records of this tag are those of query `number`.
+  void rename(std::uint32_t tag, std::size_t number) { renamed_[tag] = number; }
   const std::vector<ChipAnswer>& answers() const { return answers_; }
   /// Submitted, or waiting to be.
   std::size_t unanswered() const { return queries_.size() - answered_; }
@@ -67,13 +73,20 @@ class PortBench {
   /// Gives the chip what it takes and takes what it has, then lets time pass.
   /// \returns false: the driver says that nothing more will come
   bool step() {
-    while (submitted_ < queries_.size() && port_->submit(queries_[submitted_])) ++submitted_;
+    while (!hold && submitted_ < queries_.size() && port_->submit(queries_[submitted_])) {
+      const std::uint64_t place = ring_++ & ((1U << driver_.query_log2) - 1);
+      if (edit) edit(submitted_, machine_->memory().line(driver_.memory_base / 64 + place));
+      ++submitted_;
+    }
     while (std::optional<QueryOutcome> outcome = port_->collect()) take(*outcome);
     for (std::uint64_t i = 0; i < host_every_; ++i) {
       if (!port_->proceed()) return false;
     }
     return true;
   }
+  bool hold = false;  ///< give the chip no further queries
+  /// Queries that the chip has.
+  std::size_t in_flight() const { return submitted_ - answered_; }
   /// Until every query has its answer. \returns false if that takes longer than that many clocks, or never ends
   bool run(std::uint64_t most_clocks) {
     const std::uint64_t end = clocks() + most_clocks;
@@ -87,12 +100,15 @@ class PortBench {
   bool recover() {
     answered_ = submitted_ = queries_.size();
     given_up_ = queries_.size();
+    ring_ = 0;
+    renamed_.clear();
     return port_->recover();
   }
 
  private:
   void take(QueryOutcome& outcome) {
-    const std::size_t number = outcome.done.tag;
+    const auto other = renamed_.find(outcome.done.tag);
+    const std::size_t number = other == renamed_.end() ? outcome.done.tag : other->second;
     if (number >= submitted_ || number < given_up_) {
       wrong_.push_back("done record of nobody, tag " + std::to_string(number));
       return;
@@ -112,10 +128,13 @@ class PortBench {
 
   std::unique_ptr<QueryPort> port_;
   Machine* machine_ = nullptr;  // of the port
+  ChipDriverOptions driver_;
   std::uint64_t host_every_;
   std::vector<Query> queries_;
   std::vector<ChipAnswer> answers_;
   std::vector<std::string> wrong_;
+  std::map<std::uint32_t, std::size_t> renamed_;
+  std::uint64_t ring_ = 0;  // queries written since the last reset
   std::size_t submitted_ = 0, answered_ = 0, duplicated_ = 0, given_up_ = 0;
   std::uint32_t next_line_ = 0;
 };

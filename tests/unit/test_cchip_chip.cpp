@@ -45,6 +45,7 @@ ChipDriverOptions small_rings() {
   options.query_log2 = 3;
   options.record_log2 = 5;
   options.patience = 40000;
+  options.reset_patience = 10000;
   return options;
 }
 

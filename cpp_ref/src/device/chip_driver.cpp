@@ -179,7 +179,7 @@ class ChipDriver final : public QueryPort {
   /// Until the bits of the status are 0. \returns false: not in time
   bool wait(std::uint32_t mask) {
     for (std::uint64_t i = 0; (machine_->read_register(regs::status::offset) & mask) != 0; ++i) {
-      if (i == options_.patience) return false;
+      if (i == options_.reset_patience) return false;
       machine_->proceed();
     }
     return true;

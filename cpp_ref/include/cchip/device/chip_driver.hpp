@@ -22,9 +22,10 @@ struct ChipDriverOptions {
   std::uint32_t memory_limit = 0;         ///< longest wait of the chip for memory, clocks; 0: its default
   std::uint8_t open_limit = 16;           ///< open pairs that end a query for the first hit
   std::uint8_t pairs_each = 3;            ///< node pairs of a query in flight, 1..4
-  /// QueryPort::proceed() says time-out after so many proceed() of the machine without a record, recover() and the
-  /// constructor give up after so many without an end of the reset.
+  /// QueryPort::proceed() says time-out after so many proceed() of the machine without a record.
   std::uint64_t patience = 20'000'000;
+  /// recover() and the constructor give up after so many looks at a reset that does not end, store() at an invalidation.
+  std::uint64_t reset_patience = 1'000'000;
 };
 
 /// Resets the chip softly, sets it up and enables it. Polls the ring of records in memory; registers are touched only

@@ -6,6 +6,7 @@
 
 #include <cchip/collide/collide.hpp>
 #include <cchip/device/machine.hpp>
+#include <cchip/sim/axi_lines.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -18,8 +19,7 @@ struct SimulatedChipOptions {
   /// FST file, none if empty, of the first trace_clocks clocks, and the layout for GTKWave beside it.
   std::string trace_path;
   std::uint64_t trace_clocks = 30000;
-  /// Memory: clocks from an address to its data, and to the response of a write.
-  std::uint64_t memory_latency = 60;
+  sim::AxiLinesOptions memory;
 };
 
 /// cchip_chip with default parameters (quad test in its slot, buses of 128 bit) after reset, and its memory. Errors of
