@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/mesh_io/mesh_file.hpp>
 #include <cchip/reference/brute_force.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <set>
+#include <sstream>
 #include <streambuf>
 
 #include "pose.hpp"
@@ -235,4 +237,96 @@ TEST_CASE("collide: wrong input is one line and exit code 2", "[system][collide]
   named.back() = "m";
   CHECK(collide_cubes(named).err.find("named.csv:1: column m of --expect is missing") != std::string::npos);
   CHECK(run_cchip({"collide", cube_file, folder.path("none.off")}).code == exit_usage);
+}
+
+namespace {
+
+/// Columns of a CSV text that are named.
+std::vector<std::vector<std::string>> columns_of(const std::string& text, const std::vector<std::string>& names) {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::size_t> places;
+  for (const std::string& line : lines(text)) {
+    std::vector<std::string> cells;
+    std::istringstream in(line);
+    for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+    if (rows.empty()) {
+      for (const std::string& name : names) {
+        const auto found = std::find(cells.begin(), cells.end(), name);
+        REQUIRE(found != cells.end());
+        places.push_back(static_cast<std::size_t>(found - cells.begin()));
+      }
+    }
+    rows.emplace_back();
+    for (const std::size_t place : places) rows.back().push_back(cells.at(place));
+  }
+  return rows;
+}
+
+/// Poses of a file for `--poses`: apart, touching, crossing, and one that the chip leaves to the CPU.
+std::string many_poses(double size) {
+  std::string text = poses_header + "\n";
+  for (int i = 0; i < 12; ++i) {
+    const Pose pose = make_pose({size * i / 8, size * (i % 3) / 16, 0.01 * i}, {10.0 * i, 3.0 * i, 0});
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) text += std::to_string(pose(row, column)) + ",";
+    }
+    for (int row = 0; row < 3; ++row) text += std::to_string(pose(row, 3)) + (row < 2 ? "," : "\n");
+  }
+  return text + "0,0,0,0,0,0,0,0,0,0,0,0\n";
+}
+
+}  // namespace
+
+TEST_CASE("collide: device sim answers face for face like device cpu", "[system][collide][chip]") {
+  const std::string models = CCHIP_TEST_MODELS;
+  struct Case {
+    std::string a, b, pose;
+    double size;
+  };
+  const Case c =
+      GENERATE_COPY(Case{models + "/OBJ/spider.obj", models + "/OBJ/spider.obj", "20,5,3,10,0,0", 80},     // triangles
+                    Case{models + "/OFF/Cube.off", models + "/OFF/Cube.off", "0.25,0.5,0.125,0,30,0", 1},  // quads
+                    Case{models + "/OFF/Cube.off", models + "/OFF/Wuson.off", "0.5,0,0,10,0,0", 1});
+  CAPTURE(c.a, c.b);
+  const auto run = [&](const std::string& device, std::vector<std::string> options) {
+    options.insert(options.begin(), {"collide", c.a, c.b, "--device", device, "--format", "csv"});
+    const Outcome outcome = run_cchip(options);
+    CAPTURE(device, outcome.err);
+    REQUIRE(outcome.code == exit_ok);
+    return outcome;
+  };
+  // one query, all contacts: the rows are the faces
+  const Outcome cpu = run("cpu", {"--pose", c.pose});
+  const Outcome sim = run("sim", {"--pose", c.pose});
+  CHECK(cpu.out == sim.out);
+  CHECK(lines(cpu.out).size() > 1);
+  CHECK(last_line(sim.err).find(" fallbacks=0 clocks_mean=") != std::string::npos);
+  // one query, the first contact: any of them
+  const Outcome first = run("sim", {"--pose", c.pose, "--contacts", "first"});
+  REQUIRE(lines(first.out).size() == 2);
+  const std::vector<std::string> all = lines(cpu.out);
+  CHECK(std::find(all.begin() + 1, all.end(), lines(first.out)[1]) != all.end());
+  // a batch; the singular map of its last row is the CPU's
+  const TemporaryFolder folder;
+  const std::string poses = folder.write("poses.csv", many_poses(c.size));
+  for (const std::string contacts : {"first", "all"}) {
+    CAPTURE(contacts);
+    const Outcome many_cpu = run("cpu", {"--poses", poses, "--contacts", contacts});
+    const Outcome many_sim = run("sim", {"--poses", poses, "--contacts", contacts});
+    CHECK(columns_of(many_cpu.out, {"hit", "contacts"}) == columns_of(many_sim.out, {"hit", "contacts"}));
+    CHECK(last_line(many_sim.err).find(" fallbacks=1 ") != std::string::npos);
+  }
+}
+
+TEST_CASE("collide: the waveform of device sim", "[system][collide][chip]") {
+  const TemporaryFolder folder;
+  const std::string wave = folder.path("chip.fst");
+  const Outcome outcome = collide_cubes({"--pose", "1,1,1", "--device", "sim", "--trace", wave});
+  CHECK(outcome.code == exit_ok);
+  CHECK(folder.read("chip.fst").size() > 10000);
+  CHECK(folder.read("chip.gtkw").find("TOP.cchip_chip.u_core.") != std::string::npos);
+  const Outcome cpu = collide_cubes({"--trace", wave});
+  CHECK(cpu.code == exit_usage);
+  CHECK(cpu.err == "cchip: --trace: device cpu has no waveform; add --device sim, or leave --trace out\n");
+  CHECK(collide_cubes({"--device", "sim", "--trace", cube_file}).code == exit_usage);  // an input
 }
