@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A polling driver of cchip_chip in C: see docs/programmers-guide.md. */
+#ifndef CHIP_POLL_H
+#define CHIP_POLL_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Byte offsets of the registers that this driver uses (docs/chip-registers.md). */
+enum {
+  CHIP_ID = 0x000,
+  CHIP_VERSION = 0x004,
+  CHIP_CAPABILITIES = 0x008,
+  CHIP_CONTROL = 0x010,
+  CHIP_STATUS = 0x014,
+  CHIP_MEMORY_LIMIT = 0x034,
+  CHIP_QUERY_BASE_LOW = 0x040,
+  CHIP_QUERY_BASE_HIGH = 0x044,
+  CHIP_QUERY_SIZE = 0x048,
+  CHIP_QUERY_PRODUCER = 0x04C,
+  CHIP_QUERY_CONSUMER = 0x050,
+  CHIP_RECORD_BASE_LOW = 0x060,
+  CHIP_RECORD_BASE_HIGH = 0x064,
+  CHIP_RECORD_SIZE = 0x068,
+  CHIP_RECORD_CONSUMER = 0x06C,
+  CHIP_INVALIDATE_FIRST = 0x0A0,
+  CHIP_INVALIDATE_LAST = 0x0A4,
+  CHIP_INVALIDATE = 0x0A8
+};
+
+enum {
+  CHIP_ID_VALUE = 0x43484343,
+  CHIP_CONTROL_ENABLE = 1,
+  CHIP_CONTROL_SOFT_RESET = 2,
+  CHIP_STATUS_RESETTING = 1,
+  CHIP_STATUS_QUERY_FAILED = 4,
+  CHIP_STATUS_RECORD_FAILED = 8,
+  CHIP_STATUS_INVALIDATING = 16
+};
+
+/* What a call returns. */
+enum { CHIP_OK = 0, CHIP_NO_CHIP, CHIP_TIMEOUT, CHIP_STOPPED };
+
+/* Both rings at the beginning of the memory that host and chip share, images behind them. */
+enum { CHIP_QUERY_LOG2 = 4, CHIP_RECORD_LOG2 = 6 };
+enum { CHIP_IMAGES = (64 << CHIP_QUERY_LOG2) + (16 << CHIP_RECORD_LOG2) };
+
+struct chip {
+  volatile uint32_t *registers;
+  volatile uint32_t *memory;  /* as the host sees it */
+  uint64_t address;           /* of the same memory as the chip sees it, a multiple of 64 */
+  uint32_t written, read;     /* queries, records */
+  unsigned long patience;     /* looks at a register or a record before a call gives up */
+};
+
+/* 16 bytes: pair or done. */
+struct chip_record {
+  uint32_t tag, flags, first, second;
+};
+static inline int chip_is_done(const struct chip_record *r) { return (int)(r->flags & 1); }
+/* of a pair: 1 they touch, 0 the host has to decide; faces are `first` and `second` */
+static inline int chip_is_definite(const struct chip_record *r) { return (int)(r->flags >> 1 & 1); }
+/* of done: 0 no, 1 yes, 2 open; node pairs are `first`, pair records `second` */
+static inline unsigned chip_answer(const struct chip_record *r) { return r->flags >> 1 & 3; }
+/* of done: 0 ok, 1 for the host, others: errors, the host answers the query itself */
+static inline unsigned chip_code(const struct chip_record *r) { return r->flags >> 8 & 0xFF; }
+
+int chip_start(struct chip *chip);
+int chip_store(struct chip *chip, uint32_t offset, const void *image, uint32_t bytes);
+int chip_submit(struct chip *chip, const void *query);
+int chip_next(struct chip *chip, struct chip_record *record);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
