@@ -81,7 +81,8 @@ dispatch/cchip_operand_memory.v
 dispatch/cchip_dispatch_sequencer.v
 dispatch/cchip_slot_ledger.v
 dispatch/cchip_dispatcher.v
-dispatch/cchip_primtest_subsystem.v
+dispatch/cchip_slots.v
+subsystem/cchip_primtest_subsystem.v
 chip/cchip_query_ring.v
 chip/cchip_calc_result.v
 chip/cchip_record_ring.v

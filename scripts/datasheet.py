@@ -86,6 +86,7 @@ STIMULI = {
     "cchip_dispatch_sequencer": ("serves = 1; room = 1;", "some = 1;", "launch"),
     "cchip_slot_ledger": ("repeat (60) tick; grant = 1; tick; grant = 0;", "s_result_valid = 1;", "m_valid"),
     "cchip_dispatcher": ("slot_module = 1;", "some = 2;", "m_vertex_valid"),
+    "cchip_slots": ("repeat (20) tick; m_result_ready = 1;", "some = 1;", "m_result_valid"),
     "cchip_result_merge": ("", "s_valid = 1;", "m_valid"),
     "cchip_subsystem_status": ("", "report_valid = 1;", "swap_events"),
     "cchip_swap_scheduler": ("", "command_valid = 1;", "m_report_valid"),

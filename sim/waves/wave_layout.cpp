@@ -173,8 +173,8 @@ Rows primtest_layout(ModuleId id) {
 
 Rows slot_layout(int number) {
   const std::string slot = std::to_string(number);
-  const std::string scope = "gen_slots[" + slot + "].u_slot.";
-  const std::string ledger = "u_dispatcher.gen_ledgers[" + slot + "].u_ledger.";
+  const std::string scope = "u_slots.gen_slots[" + slot + "].u_slot.";
+  const std::string ledger = "u_slots.u_dispatcher.gen_ledgers[" + slot + "].u_ledger.";
   Rows rows = {vector("module", scope + "rm_id", defs::rm_id_w, Radix::decimal),
                vector("pairs inside", ledger + "outstanding", 16, Radix::decimal), bit("room", ledger + "room"),
                bit("stop", ledger + "stop"), bit("quiet", ledger + "quiet")};
@@ -190,6 +190,7 @@ Rows slot_layout(int number) {
 
 /// The reconfigurable subsystem with two slots.
 Rows subsystem_layout() {
+  const std::string swaps = "u_slots.gen_swaps.";
   Rows waiting;
   for (int kind = 1; kind < 4; ++kind) {
     waiting.push_back(field("waiting, kind " + std::to_string(kind), "waiting", 4 * queue_count_w, queue_count_w * kind,
@@ -204,16 +205,17 @@ Rows subsystem_layout() {
                         vector("answer kind", "m_result_kind", 2, Radix::decimal),
                         vector("answer tag", "m_result_tag", defs::tag_w, Radix::hexadecimal)}) +
          group("scheduler",
-               {bit("request", "swap_valid"),
-                field("slot", "swap_data", defs::swap_request_w, defs::swap_request_slot, Radix::decimal),
-                field("module", "swap_data", defs::swap_request_w, defs::swap_request_module, Radix::decimal),
-                bit("report", "report_valid"),
-                field("code", "report_data", defs::swap_report_w, defs::swap_report_code, Radix::decimal),
+               {bit("request", swaps + "swap_valid"),
+                field("slot", swaps + "swap_data", defs::swap_request_w, defs::swap_request_slot, Radix::decimal),
+                field("module", swaps + "swap_data", defs::swap_request_w, defs::swap_request_module, Radix::decimal),
+                bit("report", swaps + "report_valid"),
+                field("code", swaps + "report_data", defs::swap_report_w, defs::swap_report_code, Radix::decimal),
                 bit("interrupt", "irq")}) +
          group("configuration controller",
-               {vector("phase", "phase", defs::phase_w, Radix::decimal), bit("memory: address", "m_axi_arvalid"),
-                bit("memory: data", "m_axi_rvalid"), bit("memory: ready", "m_axi_rready"),
-                bit("port: write", "cfg_valid"), vector("port: byte", "cfg_data", 8, Radix::hexadecimal)}) +
+               {vector("phase", swaps + "phase_now", defs::phase_w, Radix::decimal),
+                bit("memory: address", "m_axi_arvalid"), bit("memory: data", "m_axi_rvalid"),
+                bit("memory: ready", "m_axi_rready"), bit("port: write", "cfg_valid"),
+                vector("port: byte", "cfg_data", 8, Radix::hexadecimal)}) +
          slot_layout(0) + slot_layout(1);
 }
 

@@ -201,6 +201,7 @@ ILLEGAL = [
     *(("cchip_calc_result", case, "cchip_error_calc_result_JUDGED_must_be_2_to_64_and_CONTEXT_W_positive")
       for case in ({"JUDGED": 1}, {"JUDGED": 65}, {"CONTEXT_W": 0})),
     *(("cchip_soft_reset", {"CLOCKS": n}, "cchip_error_soft_reset_CLOCKS_must_be_2_to_256") for n in (1, 257)),
+    *(("cchip_slots", {"SWAPS": n}, "cchip_error_slots_SWAPS_must_be_0_or_1") for n in (-1, 2)),
     ("cchip_chip_core", {"MISSES": 2}, "cchip_error_chip_core_MISSES_must_be_4_8_16_or_32"),
     ("cchip_chip_core", {"RM_ID": 0}, "cchip_error_chip_core_RM_ID_must_be_1_to_3"),
     ("cchip_chip_core", {"QUEUE_DEPTH": 512}, "cchip_error_chip_core_QUEUE_DEPTH_must_be_a_power_of_two_16_to_256"),
@@ -257,6 +258,7 @@ LEGAL = [
     *(("cchip_dispatcher", {"SLOTS": s, "KINDS": k, "CREDIT": c}) for s, k, c in ((1, 1, 1), (4, 3, 256))),
     *((module, {"SLOTS": n}) for module in ("cchip_swap_scheduler", "cchip_bitstream_table") for n in (1, 4)),
     *(("cchip_primtest_subsystem", {"SLOTS": n}) for n in (1, 3, 4)),
+    *(("cchip_slots", {"SLOTS": n, "SWAPS": s}) for n, s in ((1, 1), (2, 0), (4, 0))),
     *(("cchip_result_merge", {"SOURCES": n}) for n in (2, 8)),
     ("cchip_fifo", {"WIDTH": 1, "DEPTH": 5}),
     *(("cchip_ram", {"WIDTH": 1, "DEPTH": d, "ADDR_W": w}) for d, w in ((1, 1), (5, 4), (17, 5), (256, 8))),

@@ -36,11 +36,11 @@ auto& counter_words(Model& top) {
 
 // cchip_primtest_subsystem: the swap in progress and its report.
 #define CCHIP_SUBSYSTEM_PROBE(name, signal) CCHIP_PROBE(name, cchip_primtest_subsystem__DOT__##signal)
-CCHIP_SUBSYSTEM_PROBE(swap_phase, u_controller__DOT__u_sequencer__DOT__phase_q)
-CCHIP_SUBSYSTEM_PROBE(swap_slot, u_scheduler__DOT__slot_of_swap_q)
-CCHIP_SUBSYSTEM_PROBE(report_valid, u_scheduler__DOT__m_report_valid_q)
-CCHIP_SUBSYSTEM_PROBE(report_data, u_scheduler__DOT__m_report_data_q)
-CCHIP_SUBSYSTEM_PROBE(bitstreams_valid, u_table__DOT__valid_q)
+CCHIP_SUBSYSTEM_PROBE(swap_phase, u_slots__DOT__gen_swaps__DOT__u_controller__DOT__u_sequencer__DOT__phase_q)
+CCHIP_SUBSYSTEM_PROBE(swap_slot, u_slots__DOT__gen_swaps__DOT__u_scheduler__DOT__slot_of_swap_q)
+CCHIP_SUBSYSTEM_PROBE(report_valid, u_slots__DOT__gen_swaps__DOT__u_scheduler__DOT__m_report_valid_q)
+CCHIP_SUBSYSTEM_PROBE(report_data, u_slots__DOT__gen_swaps__DOT__u_scheduler__DOT__m_report_data_q)
+CCHIP_SUBSYSTEM_PROBE(bitstreams_valid, u_slots__DOT__gen_swaps__DOT__u_table__DOT__valid_q)
 // A write to a register that takes effect on this clock: abort, clear, a swap by software.
 CCHIP_SUBSYSTEM_PROBE(abort_arrives, u_regs__DOT__control_abort_q)
 CCHIP_SUBSYSTEM_PROBE(clear_arrives, u_regs__DOT__control_clear_q)
@@ -51,7 +51,8 @@ CCHIP_SUBSYSTEM_PROBE(outstanding, outstanding)
 
 // A slot of it: the module that it shows, whether it is decoupled.
 #define CCHIP_SLOT_PROBE(n, name, signal) \
-  CCHIP_SUBSYSTEM_PROBE(slot##n##_##name, gen_slots__BRA__##n##__KET____DOT__u_slot__DOT__u_decoupler__DOT__##signal)
+  CCHIP_SUBSYSTEM_PROBE(slot##n##_##name, \
+                        u_slots__DOT__gen_slots__BRA__##n##__KET____DOT__u_slot__DOT__u_decoupler__DOT__##signal)
 #define CCHIP_SLOT_PROBES(n)              \
   CCHIP_SLOT_PROBE(n, module_id, rm_id_q) \
   CCHIP_SLOT_PROBE(n, decoupled, decoupled_q)

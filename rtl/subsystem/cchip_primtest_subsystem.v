@@ -15,8 +15,7 @@
 //   reset        forgets all pairs and registers; a slot whose rewriting was cut off stays
 //                decoupled until a good swap
 //   errors       codes CCHIP_SWAP_* in the register report, interrupt; see docs/registers.md
-// Pairs: cchip_operand_memory, cchip_descriptor_queues, cchip_dispatcher; modules:
-// cchip_swap_scheduler, cchip_config_controller; slots: cchip_pr_slot.
+// Pairs: cchip_operand_memory, cchip_descriptor_queues; slots and their modules: cchip_slots.
 module cchip_primtest_subsystem #(
     // width of a coordinate, bit, 4..20
     parameter integer COORD_W = 16,
@@ -111,8 +110,6 @@ module cchip_primtest_subsystem #(
 
   localparam integer KINDS = 3;
   localparam integer POINT_W = `CCHIP_POINT_W(COORD_W);
-  localparam integer VERTEX_W = `CCHIP_VERTEX_W(COORD_W);
-  localparam integer RESULT_W = `CCHIP_SLOT_RESULT_W;
   localparam integer COUNT_W = $clog2(QUEUE_DEPTH + 1);
   localparam integer PLACE_W = `CCHIP_KIND_W + $clog2(QUEUE_DEPTH);
   localparam [31:0] SLOT_COUNT = SLOTS;
@@ -170,150 +167,21 @@ module cchip_primtest_subsystem #(
       .m_data (descriptor)
   );
 
-  // ---- pairs that are tested
-  wire [SLOTS-1:0] vertex_valid, result_valid;
-  wire vertex_first, vertex_last;
-  wire [SLOTS*`CCHIP_PAIR_ID_W-1:0] vertex_id;
-  wire [SLOTS*RESULT_W-1:0] result;
-  wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module;
-  wire [KINDS:1] no_provider;
-  wire [SLOTS-1:0] stop, quiet, decouple, decoupled, hold_reset, roc_start, roc_busy, slot_idle;
-  wire [SLOTS-1:0] slot_decoupled;  // its region; `decoupled` when all its pairs are answered, too
-  wire [`CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id, rm_id;
-  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] outstanding  /* verilator public_flat_rd */;
-  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost;
-  wire answered, refused_kind, refused_provider;
-  wire [1:0] answered_module;
-
-  cchip_dispatcher #(
-      .SLOTS (SLOTS),
-      .KINDS (KINDS),
-      .CREDIT(CONTEXTS)
-  ) u_dispatcher (
-      .clk             (clk),
-      .rst             (rst),
-      .some            (some),
-      .kind            (kind),
-      .look            (look),
-      .pop             (pop),
-      .vertex          (vertex),
-      .descriptor      (descriptor),
-      .no_provider     (no_provider),
-      .m_vertex_valid  (vertex_valid),
-      .m_vertex_first  (vertex_first),
-      .m_vertex_last   (vertex_last),
-      .m_vertex_id     (vertex_id),
-      .s_result_valid  (result_valid),
-      .s_result_data   (result),
-      .slot_module     (slot_module),
-      .m_result_valid  (m_result_valid),
-      .m_result_ready  (m_result_ready),
-      .m_result_kind   (m_result_kind),
-      .m_result_data   (`CCHIP_RESULT_OF(m_result_tag, m_result_hit, m_result_grid,
-          m_result_definite, m_result_axis, m_result_beats)),
-      .stop            (stop),
-      .quiet           (quiet),
-      .decouple        (decouple),
-      .decoupled       (decoupled),
-      .outstanding     (outstanding),
-      .lost            (slot_lost),
-      .answered        (answered),
-      .answered_module (answered_module),
-      .refused_kind    (refused_kind),
-      .refused_provider(refused_provider)
-  );
-
-  // ---- slots
-  genvar slot;
-  generate
-    for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_slots
-      wire [`CCHIP_RM_ID_W-1:0] module_id;
-      wire [`CCHIP_PAIR_ID_W-1:0] id = vertex_id[`CCHIP_PAIR_ID_W*slot+:`CCHIP_PAIR_ID_W];
-      wire [VERTEX_W-1:0] vertex_data = `CCHIP_VERTEX_OF(vertex_first, vertex_last, id,
-          descriptor[`CCHIP_DESCRIPTOR_ERR], descriptor[`CCHIP_DESCRIPTOR_MODE], a, b);
-      assign rm_id[`CCHIP_RM_ID_W*slot+:`CCHIP_RM_ID_W] = module_id;
-      cchip_pr_slot #(
-          .COORD_W            (COORD_W),
-          .SUBSTAGES          (SUBSTAGES),
-          .CONTEXTS           (CONTEXTS),
-          .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
-          .WARPED_EXACT       (WARPED_EXACT),
-          .SLOT_ID            (slot),
-          .RM_ID              (slot == 0 ? SLOT0_RM_ID : slot == 1 ? SLOT1_RM_ID
-                               : slot == 2 ? SLOT2_RM_ID : SLOT3_RM_ID),
-          .ROC_CYCLES         (ROC_CYCLES),
-          .CFG_W              (CFG_W),
-          .SIMULATION         (SIMULATION),
-          .SEED               (SEED)
-      ) u_slot (
-          .clk           (clk),
-          .rst           (rst),
-          .decouple      (decouple[slot]),
-          .decoupled     (slot_decoupled[slot]),
-          .hold_reset    (hold_reset[slot]),
-          .roc_start     (roc_start[slot]),
-          .roc_busy      (roc_busy[slot]),
-          .region_rm_id  (region_rm_id[`CCHIP_RM_ID_W*slot+:`CCHIP_RM_ID_W]),
-          .cfg_valid     (cfg_valid),
-          .cfg_data      (cfg_data),
-          .s_vertex_valid(vertex_valid[slot]),
-          .s_vertex_data (vertex_data),
-          .m_result_valid(result_valid[slot]),
-          .m_result_data (result[RESULT_W*slot+:RESULT_W]),
-          .rm_id         (module_id),
-          .idle          (slot_idle[slot])
-      );
-      assign slot_module[2*slot+:2] = module_id[7:2] == 6'd0 ? module_id[1:0] : 2'd0;
-    end
-  endgenerate
-
   // ---- registers
   wire clear, abort_swap, enable, go, force_swap;
   wire [`CCHIP_RM_ID_W-1:0] command_module;
   wire [`CCHIP_SLOT_ID_W-1:0] command_slot;
   wire [31:0] shutdown_limit, memory_limit, minimum_batch, maximum_age;
-  wire [4*SLOTS-1:0] table_valid;
-  wire [3:0] table_entry;
-  wire [31:0] table_address, table_size;
-  wire table_look;
-  wire [4*SLOTS-1:0] invalidate;
-  wire report_valid;
-  wire [`CCHIP_SWAP_REPORT_W-1:0] report_data, last_report;
+  wire [`CCHIP_SWAP_REPORT_W-1:0] last_report;
   wire [4:0] status, status_enable;
   wire [31:0] lost;
-  wire [`CCHIP_PHASE_W-1:0] phase;
-  wire [`CCHIP_SLOT_ID_W-1:0] phase_slot;
   wire [2:0] swap_events;  // {lost, error, done}
-  // of four slots, those that are not there show 0
-  reg [4*`CCHIP_PAIR_COUNT_W-1:0] outstanding_of;
-  reg [4*`CCHIP_RM_ID_W-1:0] rm_id_of;
-  reg [3:0] decoupled_of;
-  reg [4*`CCHIP_PHASE_W-1:0] phase_of;
-  integer i;
-  always @(*) begin
-    outstanding_of = {4 * `CCHIP_PAIR_COUNT_W{1'b0}};
-    rm_id_of = {4 * `CCHIP_RM_ID_W{1'b0}};
-    decoupled_of = 4'd0;
-    phase_of = {4 * `CCHIP_PHASE_W{1'b0}};
-    outstanding_of[0+:SLOTS*`CCHIP_PAIR_COUNT_W] = outstanding;
-    rm_id_of[0+:SLOTS*`CCHIP_RM_ID_W] = rm_id;
-    decoupled_of[0+:SLOTS] = decoupled;
-    for (i = 0; i < SLOTS; i = i + 1)
-      if (phase_slot == i[`CCHIP_SLOT_ID_W-1:0])
-        phase_of[`CCHIP_PHASE_W*i+:`CCHIP_PHASE_W] = phase;
-  end
-  wire busy;
-
-  cchip_subsystem_status u_status (
-      .clk            (clk),
-      .rst            (rst),
-      .clear          (clear),
-      .report_valid   (report_valid),
-      .report_data(report_data),
-      .last_report    (last_report),
-      .swap_events    (swap_events),
-      .lost           (lost)
-  );
+  wire [4*`CCHIP_PAIR_COUNT_W-1:0] outstanding  /* verilator public_flat_rd */;
+  wire [4*`CCHIP_RM_ID_W-1:0] rm_id;
+  wire [3:0] decoupled;
+  wire [4*`CCHIP_PHASE_W-1:0] phase;
+  wire answered, refused_kind, refused_provider;
+  wire [`CCHIP_KIND_W-1:0] answered_module;
 
   // external registers: word 0x100/4 on are counters of 64 bits, 0x080/4 on counters of 32; the
   // clocks of phase p are in word 0x0C0/4 + p
@@ -334,25 +202,6 @@ module cchip_primtest_subsystem #(
       .read_counter(read_word[6] ? {1'b0, read_word[2:1]} : {1'b1, read_word[1:0]}),
       .ack         (counter_ack),
       .read_data   (counter_data)
-  );
-
-  cchip_bitstream_table #(
-      .SLOTS(SLOTS)
-  ) u_table (
-      .clk        (clk),
-      .rst        (rst),
-      .write      (write_table),
-      .write_word (write_word[5:0]),
-      .write_data (write_data),
-      .write_bytes(write_bytes),
-      .read_word  (read_word[5:0]),
-      .read_data  (table_data),
-      .look       (table_look),
-      .look_entry (table_entry),
-      .address    (table_address),
-      .size       (table_size),
-      .valid      (table_valid),
-      .invalidate (invalidate)
   );
 
   cchip_subsystem_regs u_regs (
@@ -418,10 +267,10 @@ module cchip_primtest_subsystem #(
       .hwif_out_memory_limit_clocks                (memory_limit),
       .hwif_out_minimum_batch_pairs                (minimum_batch),
       .hwif_out_maximum_age_clocks                 (maximum_age),
-      .hwif_in_slot_status_outstanding             (outstanding_of),
-      .hwif_in_slot_status_decoupled               (decoupled_of),
-      .hwif_in_slot_status_phase                   (phase_of),
-      .hwif_in_slot_status_module_id               (rm_id_of),
+      .hwif_in_slot_status_outstanding             (outstanding),
+      .hwif_in_slot_status_decoupled               (decoupled),
+      .hwif_in_slot_status_phase                   (phase),
+      .hwif_in_slot_status_module_id               (rm_id),
       .hwif_in_lost_value                          (lost),
       .hwif_out_swaps_read                         (read_swaps),
       .hwif_out_rejected_read                      (read_rejected),
@@ -434,109 +283,95 @@ module cchip_primtest_subsystem #(
 
   always @(posedge clk) irq_q <= ~rst & |(status & status_enable);
 
-  // ---- which slot gets which module when, and how
-  wire swap_valid, swap_ready, swap_report;
-  wire [`CCHIP_SWAP_REQUEST_W-1:0] swap_data;
-  wire [`CCHIP_SWAP_REPORT_W-1:0] swap_report_data;
-
-  wire [4*SLOTS-1:0] resting;
-  cchip_swap_retry #(
-      .SLOTS(SLOTS)
-  ) u_retry (
-      .clk         (clk),
-      .rst         (rst),
-      .report_valid(swap_report),
-      .report_data (swap_report_data),
-      .valid       (table_valid),
-      .resting     (resting)
-  );
-
-  cchip_swap_scheduler #(
-      .SLOTS  (SLOTS),
-      .COUNT_W(COUNT_W)
-  ) u_scheduler (
+  // ---- slots and swaps
+  cchip_slots #(
+      .COORD_W            (COORD_W),
+      .SUBSTAGES          (SUBSTAGES),
+      .CONTEXTS           (CONTEXTS),
+      .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
+      .WARPED_EXACT       (WARPED_EXACT),
+      .SLOTS              (SLOTS),
+      .SWAPS              (1),
+      .COUNT_W            (COUNT_W),
+      .CFG_W              (CFG_W),
+      .CFG_DIVIDER        (CFG_DIVIDER),
+      .ROC_CYCLES         (ROC_CYCLES),
+      .SLOT0_RM_ID        (SLOT0_RM_ID),
+      .SLOT1_RM_ID        (SLOT1_RM_ID),
+      .SLOT2_RM_ID        (SLOT2_RM_ID),
+      .SLOT3_RM_ID        (SLOT3_RM_ID),
+      .SIMULATION         (SIMULATION),
+      .SEED               (SEED)
+  ) u_slots (
       .clk             (clk),
       .rst             (rst),
-      .enable          (enable),
-      .min_batch       (minimum_batch),
-      .max_age         (maximum_age),
-      .table_valid     (table_valid),
-      .table_invalidate(invalidate),
-      .table_resting   (resting),
-      .table_look      (table_look),
-      .table_entry     (table_entry),
-      .table_address   (table_address),
-      .table_size      (table_size),
-      .waiting         (waiting[COUNT_W+:3*COUNT_W]),
+      .core_rst        (1'b0),
+      .some            (some),
+      .waiting         (waiting),
       .full            (~queue_room[KINDS:1]),
-      .no_provider     (no_provider),
-      .slot_module     (slot_module),
+      .kind            (kind),
+      .look            (look),
+      .pop             (pop),
+      .vertex          (vertex),
+      .descriptor      (descriptor),
+      .a               (a),
+      .b               (b),
+      .m_result_valid  (m_result_valid),
+      .m_result_ready  (m_result_ready),
+      .m_result_kind   (m_result_kind),
+      .m_result_data   (`CCHIP_RESULT_OF(m_result_tag, m_result_hit, m_result_grid,
+          m_result_definite, m_result_axis, m_result_beats)),
+      .answered        (answered),
+      .answered_module (answered_module),
+      .refused_kind    (refused_kind),
+      .refused_provider(refused_provider),
+      .outstanding     (outstanding),
+      .rm_id           (rm_id),
+      .decoupled       (decoupled),
+      .phase           (phase),
+      .clear           (clear),
+      .abort_swap      (abort_swap),
+      .enable          (enable),
       .command_valid   (go),
       .command_slot    (command_slot),
       .command_module  (command_module),
       .command_force   (force_swap),
-      .m_swap_valid    (swap_valid),
-      .m_swap_ready    (swap_ready),
-      .m_swap_data(swap_data),
-      .s_report_valid  (swap_report),
-      .s_report_data(swap_report_data),
-      .m_report_valid  (report_valid),
-      .m_report_data(report_data)
+      .shutdown_limit  (shutdown_limit),
+      .memory_limit    (memory_limit),
+      .min_batch       (minimum_batch),
+      .max_age         (maximum_age),
+      .last_report     (last_report),
+      .swap_events     (swap_events),
+      .lost            (lost),
+      .write_table     (write_table),
+      .write_word      (write_word[5:0]),
+      .write_data      (write_data),
+      .write_bytes     (write_bytes),
+      .read_word       (read_word[5:0]),
+      .table_data      (table_data),
+      .phase_clocks    (phase_clocks),
+      .swapped         (swapped),
+      .rejected        (rejected),
+      .stall           (stall),
+      .m_axi_arvalid   (m_axi_arvalid),
+      .m_axi_arready   (m_axi_arready),
+      .m_axi_araddr    (m_axi_araddr),
+      .m_axi_arlen     (m_axi_arlen),
+      .m_axi_arsize    (m_axi_arsize),
+      .m_axi_arburst   (m_axi_arburst),
+      .m_axi_arcache   (m_axi_arcache),
+      .m_axi_arprot    (m_axi_arprot),
+      .m_axi_rvalid    (m_axi_rvalid),
+      .m_axi_rready    (m_axi_rready),
+      .m_axi_rdata     (m_axi_rdata),
+      .m_axi_rresp     (m_axi_rresp),
+      .m_axi_rlast     (m_axi_rlast),
+      .cfg_valid       (cfg_valid),
+      .cfg_data        (cfg_data),
+      .cfg_error       (cfg_error)
   );
 
-  cchip_config_controller #(
-      .SLOTS      (SLOTS),
-      .CFG_W      (CFG_W),
-      .CFG_DIVIDER(CFG_DIVIDER)
-  ) u_controller (
-      .clk            (clk),
-      .rst            (rst),
-      .s_swap_valid   (swap_valid),
-      .s_swap_ready   (swap_ready),
-      .s_swap_data(swap_data),
-      .m_report_valid (swap_report),
-      .m_report_data(swap_report_data),
-      .abort_swap     (abort_swap),
-      .clear          (clear),
-      .shutdown_limit (shutdown_limit),
-      .memory_limit   (memory_limit),
-      .stop           (stop),
-      .decouple       (decouple),
-      .hold_reset     (hold_reset),
-      .roc_start      (roc_start),
-      .quiet          (quiet),
-      .decoupled      (decoupled),
-      .roc_busy       (roc_busy),
-      .region_rm_id   (region_rm_id),
-      .lost           (slot_lost),
-      .busy           (busy),
-      .phase          (phase),
-      .phase_slot     (phase_slot),
-      .m_axi_arvalid  (m_axi_arvalid),
-      .m_axi_arready  (m_axi_arready),
-      .m_axi_araddr   (m_axi_araddr),
-      .m_axi_arlen    (m_axi_arlen),
-      .m_axi_arsize   (m_axi_arsize),
-      .m_axi_arburst  (m_axi_arburst),
-      .m_axi_arcache  (m_axi_arcache),
-      .m_axi_arprot   (m_axi_arprot),
-      .m_axi_rvalid   (m_axi_rvalid),
-      .m_axi_rready   (m_axi_rready),
-      .m_axi_rdata    (m_axi_rdata),
-      .m_axi_rresp    (m_axi_rresp),
-      .m_axi_rlast    (m_axi_rlast),
-      .cfg_valid      (cfg_valid),
-      .cfg_data       (cfg_data),
-      .cfg_error      (cfg_error),
-      .swapped        (swapped),
-      .rejected       (rejected),
-      .stall          (stall),
-      .read_phase     (read_word[`CCHIP_PHASE_W-1:0]),
-      .read_clocks    (phase_clocks)
-  );
-
-  wire unused = &{1'b0, read_word, write_word, slot_idle,
-      slot_decoupled, busy, waiting[COUNT_W-1:0], queue_room[0]};
+  wire unused = &{1'b0, read_word, write_word, queue_room[0]};
 
 endmodule
 `default_nettype wire
