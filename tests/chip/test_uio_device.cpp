@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The chip through the mappings that a board would have: files instead of devices, behind them the simulated chip.
 #include <Vcchip_chip.h>
-#include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cchip/device/chip_host.hpp>
 #include <cchip/device/device.hpp>
@@ -13,6 +13,7 @@
 #include <cchip/rtl/chip_machine.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/wire/chip_registers.hpp>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -107,7 +108,7 @@ class Board {
   }
 
  private:
-  static sim::SimulationOptions options() { return sim::without_timeout(seed_from_environment()); }
+  static sim::SimulationOptions options() { return sim::without_timeout(sim::seed_from_environment()); }
 
   TemporaryFile registers_, memory_;
   Chip chip_;
@@ -116,7 +117,7 @@ class Board {
 
 struct Scene {
   explicit Scene(Kind kind) : a(make_sphere(1, 3, 0.1)), b(make_torus(1, 0.4, 14, 9, kind)) {
-    std::mt19937_64 random(seed_from_environment());
+    std::mt19937_64 random(sim::seed_from_environment());
     std::uniform_real_distribution<double> unit(-1, 1);
     const auto pose = [&](double range) {
       Pose made = Pose::Identity();
