@@ -75,13 +75,16 @@ class RegisterTrap {
     for (std::string line; std::getline(maps, line);) {
       if (line.size() < path.size() || line.compare(line.size() - path.size(), path.size(), path) != 0) continue;
       if (begin_ != unmapped) throw std::runtime_error(path + " is mapped twice");
+      void* end = nullptr;
       char dash = 0;
-      std::istringstream(line) >> std::hex >> begin_ >> dash >> end_;
+      std::istringstream(line) >> mapping_ >> dash >> end;
+      begin_ = reinterpret_cast<std::uintptr_t>(mapping_);
+      end_ = reinterpret_cast<std::uintptr_t>(end);
     }
     if (begin_ == unmapped) throw std::runtime_error(path + " is not mapped");
   }
 
-  void protect(int what) const { mprotect(reinterpret_cast<void*>(begin_), end_ - begin_, what); }
+  void protect(int what) const { mprotect(mapping_, end_ - begin_, what); }
 
   template <class Action>
   static void or_die(const Action& action) {
@@ -121,6 +124,7 @@ class RegisterTrap {
 
   Read read_;
   Write write_;
+  void* mapping_ = nullptr;  // of the process
   std::uintptr_t begin_ = unmapped, end_ = 0;
   volatile std::uint32_t* words_ = nullptr;  // the file once more, never protected
   struct sigaction old_fault_ = {}, old_step_ = {};

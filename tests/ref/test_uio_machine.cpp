@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cchip/device/uio_device.hpp>
 #include <cerrno>
@@ -35,7 +36,8 @@ struct Files {
   Files& operator=(const Files&) = delete;
 
   std::string file(const std::string& name, std::uint64_t bytes) const {
-    std::ofstream((folder / name).string());
+    std::ofstream file((folder / name).string());
+    file.close();
     std::filesystem::resize_file(folder / name, bytes);
     return (folder / name).string();
   }
@@ -143,8 +145,8 @@ TEST_CASE("uio: registers and memory are those of the files, and end with them",
 
 // A socket as the UIO file: what the other end sends is an event, what it receives is the arming.
 TEST_CASE("uio: an interrupt is reported while the line is 1, and armed when it has fallen", "[ref][uio]") {
-  int ends[2] = {};
-  REQUIRE(socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends) == 0);
+  std::array<int, 2> ends = {};
+  REQUIRE(socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends.data()) == 0);
   const auto armed = [&ends] {
     std::int32_t word = 0;
     if (recv(ends[1], &word, sizeof word, MSG_DONTWAIT) < 0) return false;

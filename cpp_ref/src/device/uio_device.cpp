@@ -72,9 +72,10 @@ class Words {
     }
     void* const at = mmap(nullptr, static_cast<std::size_t>(bytes), PROT_READ | PROT_WRITE, MAP_SHARED, file.number(),
                           static_cast<off_t>(offset));
-    if (at == MAP_FAILED)
+    if (at == MAP_FAILED) {
       fail("map " + std::to_string(bytes) + " bytes of " + name_ + " from " + std::to_string(offset),
            "compare size and offset with the device tree");
+    }
     words_ = static_cast<volatile std::uint32_t*>(at);
   }
   ~Words() { munmap(const_cast<std::uint32_t*>(words_), static_cast<std::size_t>(bytes_)); }
@@ -159,12 +160,13 @@ class UioMachine final : public Machine {
   }
 
   void proceed() override {
-    if (options_.wait)
+    if (options_.wait) {
       options_.wait();
-    else if (options_.poll.count() == 0)
+    } else if (options_.poll.count() == 0) {
       std::this_thread::yield();
-    else
+    } else {
       std::this_thread::sleep_for(options_.poll);
+    }
   }
 
  private:
@@ -180,16 +182,18 @@ class UioMachine final : public Machine {
       refuse("memory_file_offset is no multiple of the page size " + std::to_string(page));
     constexpr auto most = static_cast<std::uint64_t>(std::numeric_limits<off_t>::max());
     if (options.memory_file_offset > most || options.memory_bytes > most - options.memory_file_offset ||
-        options.memory_bytes > std::numeric_limits<std::size_t>::max())
+        options.memory_bytes > std::numeric_limits<std::size_t>::max()) {
       refuse("the memory ends beyond what a file can have");
+    }
     if (options.poll.count() < 0) refuse("poll is negative");
     return options;
   }
 
   volatile std::uint32_t* memory_at(std::uint64_t address, std::uint64_t bytes) const {
-    if (address < options_.memory_base)
+    if (address < options_.memory_base) {
       throw std::runtime_error("uio: address " + std::to_string(address) + " is before the memory, which begins at " +
                                std::to_string(options_.memory_base));
+    }
     return memory_.at(address - options_.memory_base, bytes);
   }
 
