@@ -194,11 +194,12 @@ class ChipDriver final : public QueryPort {
   /// The next record if its phase bit says that it is there.
   std::optional<RecordBytes> next_record() {
     const std::uint32_t size = 1U << options_.record_log2;
-    const Bytes bytes = machine_->read_memory(record_base_ + record_bytes * (read_ & (size - 1)),
-                                              static_cast<std::size_t>(record_bytes));
-    const bool phase = (bytes[7] & 0x80U) != 0;
+    const std::uint64_t at = record_base_ + record_bytes * (read_ & (size - 1));
+    // The word of the phase bit alone, then the record: memory may read the words of one call in any order.
+    const bool phase = (machine_->read_memory(at + 4, 4)[3] & 0x80U) != 0;
     const bool expected = (read_ >> options_.record_log2 & 1U) == 0;
     if (phase != expected) return std::nullopt;
+    const Bytes bytes = machine_->read_memory(at, static_cast<std::size_t>(record_bytes));
     RecordBytes record;
     std::copy(bytes.begin(), bytes.end(), record.begin());
     record[7] &= 0x7FU;

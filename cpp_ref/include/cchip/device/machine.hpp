@@ -13,9 +13,9 @@
 
 namespace cchip {
 
-/// A Linux UIO driver may implement it like this: registers are a mapping of the device's first region, memory is a
-/// mapping of reserved physical memory, interrupt() reads the device file without blocking, proceed() sleeps for some
-/// microseconds. Not thread-safe.
+/// Accesses to registers and memory take effect in the order of the calls: what was written to memory before a register
+/// is there when the machine sees the register, and a read returns what memory held after every earlier call returned.
+/// The words of one call have no order. Not thread-safe.
 class Machine {
  public:
   virtual ~Machine() = default;

@@ -50,14 +50,26 @@ class AxiLines : public Agent {
   std::function<AxiFault(std::uint64_t line)> read_fault = [](std::uint64_t) { return AxiFault::none; };
   std::function<AxiFault(std::uint64_t line)> write_fault = [](std::uint64_t) { return AxiFault::none; };
 
-  Line& line(std::uint64_t number) { return lines_[number]; }
+  /// Lines in memory of the caller, which outlives the last clock: line first + i is at lines[i]. Those count as
+  /// written; other lines are kept here. By default none.
+  struct Backing {
+    Line* lines = nullptr;
+    std::uint64_t first = 0, count = 0;
+    bool holds(std::uint64_t number) const { return number >= first && number - first < count; }
+  };
+  Backing backing;
+
+  Line& line(std::uint64_t number) {
+    return backing.holds(number) ? backing.lines[number - backing.first] : lines_[number];
+  }
   /// Null if it was never written.
   const Line* find(std::uint64_t number) const {
+    if (backing.holds(number)) return &backing.lines[number - backing.first];
     const auto found = lines_.find(number);
     return found == lines_.end() ? nullptr : &found->second;
   }
   void write(std::uint64_t number, const std::vector<Line>& lines) {
-    for (const Line& x : lines) lines_[number++] = x;
+    for (const Line& x : lines) line(number++) = x;
   }
   std::uint64_t read_beats() const { return read_beats_; }
   /// Reads that memory has taken and will never answer.
@@ -168,14 +180,14 @@ class AxiLines : public Agent {
     require(address % 64 == 0, "m_axi_araddr is not a multiple of 64");
     for (const Read& x : reads_) require(x.id != id, "m_axi_arid is used twice");
     const std::uint64_t number = address / 64;
-    const auto found = lines_.find(number);
+    const Line* found = find(number);
     const AxiFault fault = read_fault(number);
     if (fault == AxiFault::silence) {
       ++silent_;
       return;
     }
-    Read read{id, now.clock + options.latency + late(), fault == AxiFault::none && found != lines_.end(), {}};
-    if (found != lines_.end()) read.data = found->second;
+    Read read{id, now.clock + options.latency + late(), fault == AxiFault::none && found != nullptr, {}};
+    if (found != nullptr) read.data = *found;
     reads_.push_back(read);
   }
 
@@ -202,7 +214,7 @@ class AxiLines : public Agent {
     data_.pop_front();
     const AxiFault fault = write_fault(address.address / 64);
     if (fault == AxiFault::none) {
-      Line& to = lines_[address.address / 64];
+      Line& to = line(address.address / 64);
       for (std::size_t i = 0; i < beat_bytes; ++i) {
         if ((data.strobe >> i & 1) != 0) to[address.address % 64 + i] = data.bytes[i];
       }

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// The chip through the mappings that a board would have: files instead of devices, behind them the simulated chip.
+#include <Vcchip_chip.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cchip/device/chip_host.hpp>
+#include <cchip/device/device.hpp>
+#include <cchip/device/uio_device.hpp>
+#include <cchip/mesh/shapes.hpp>
+#include <cchip/rtl/chip_machine.hpp>
+#include <cchip/sim/seed.hpp>
+#include <cchip/wire/chip_registers.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "register_trap.hpp"
+
+using namespace cchip;
+using cchip::testing::RegisterTrap;
+namespace regs = cchip::chip_registers;
+
+namespace {
+
+using Contacts = CollisionRequest::Contacts;
+using Chip = sim::ChipMachine<Vcchip_chip, 128>;
+
+constexpr std::uint64_t memory_base = std::uint64_t{1}
+                                      << 36U;  // not where the file begins: the driver must subtract it
+constexpr std::uint64_t memory_offset = 8192;  // in the file
+constexpr std::uint64_t memory_bytes = 1 << 21;
+
+/// A new file of zeros that lives as long as this.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(std::uint64_t bytes) {
+    std::string name = (std::filesystem::temp_directory_path() / "cchip_uio_XXXXXX").string();
+    number_ = mkstemp(name.data());
+    path_ = std::filesystem::canonical(name).string();  // as /proc/self/maps names it
+    REQUIRE(number_ >= 0);
+    REQUIRE(ftruncate(number_, static_cast<off_t>(bytes)) == 0);
+  }
+  ~TemporaryFile() {
+    close(number_);
+    unlink(path_.c_str());
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  int number() const { return number_; }
+  void put(std::uint32_t offset, std::uint32_t word) const {
+    REQUIRE(pwrite(number_, &word, sizeof word, static_cast<off_t>(offset)) == sizeof word);
+  }
+  std::uint32_t get(std::uint32_t offset) const {
+    std::uint32_t word = 0;
+    REQUIRE(pread(number_, &word, sizeof word, static_cast<off_t>(offset)) == sizeof word);
+    return word;
+  }
+
+ private:
+  std::string path_;
+  int number_ = -1;
+};
+
+/// Files and the chip behind them. Outlives machine and device.
+class Board {
+ public:
+  Board() : registers_(4096), memory_(memory_offset + memory_bytes), chip_(options()) {
+    mapping_ = mmap(nullptr, memory_bytes, PROT_READ | PROT_WRITE, MAP_SHARED, memory_.number(), memory_offset);
+    REQUIRE(mapping_ != MAP_FAILED);
+    chip_.memory().backing = {static_cast<Chip::Memory::Line*>(mapping_), memory_base / 64, memory_bytes / 64};
+  }
+  ~Board() { munmap(mapping_, memory_bytes); }
+  Board(const Board&) = delete;
+  Board& operator=(const Board&) = delete;
+
+  Chip& chip() { return chip_; }
+  const TemporaryFile& registers() const { return registers_; }
+  UioOptions uio() {
+    UioOptions options;
+    options.registers = registers_.path();
+    options.memory = memory_.path();
+    options.memory_file_offset = memory_offset;
+    options.memory_base = memory_base;
+    options.memory_bytes = memory_bytes;
+    options.wait = [this] { chip_.simulation().steps(16); };
+    return options;
+  }
+  static ChipDriverOptions driver() {
+    ChipDriverOptions options;
+    options.query_log2 = 3;
+    options.record_log2 = 6;  // goes round often
+    return options;
+  }
+  /// Serves the registers of the one machine that is open. The trap goes before the machine.
+  std::unique_ptr<RegisterTrap> serve() {
+    return std::make_unique<RegisterTrap>(
+        registers_.path(), [this](std::uint32_t offset) { return chip_.read_register(offset); },
+        [this](std::uint32_t offset, std::uint32_t value) { chip_.write_register(offset, value); });
+  }
+
+ private:
+  static sim::SimulationOptions options() { return sim::without_timeout(sim::seed_from_environment()); }
+
+  TemporaryFile registers_, memory_;
+  Chip chip_;
+  void* mapping_ = MAP_FAILED;
+};
+
+struct Scene {
+  explicit Scene(Kind kind) : a(make_sphere(1, 3, 0.1)), b(make_torus(1, 0.4, 14, 9, kind)) {
+    std::mt19937_64 random(sim::seed_from_environment());
+    std::uniform_real_distribution<double> unit(-1, 1);
+    const auto pose = [&](double range) {
+      Pose made = Pose::Identity();
+      made.linear() =
+          Eigen::Quaterniond(unit(random), unit(random), unit(random), unit(random)).normalized().toRotationMatrix();
+      for (int i = 0; i < 3; ++i) made.translation()[i] = range * unit(random);
+      return made;
+    };
+    for (int i = 0; i < 12; ++i) poses.push_back({pose(0.1), pose(i < 6 ? 1.2 : 2.4)});
+    poses.push_back({Pose::Identity(), Pose(Eigen::Translation3d(5, 0, 0))});
+  }
+  Object a, b;
+  std::vector<PosePair> poses;
+};
+
+void compare(const CollisionResult& result, const CollisionResult& first_of_cpu, const CollisionResult& all_of_cpu,
+             Contacts contacts) {
+  CHECK(result.hit == first_of_cpu.hit);
+  CHECK(result.counts.fallbacks == 0);
+  if (contacts == Contacts::all) {
+    CHECK(result.contacts == all_of_cpu.contacts);
+  } else {
+    REQUIRE(result.contacts.size() == (result.hit ? 1U : 0U));
+    if (result.hit)
+      CHECK(std::binary_search(all_of_cpu.contacts.begin(), all_of_cpu.contacts.end(), result.contacts[0]));
+  }
+}
+
+/// Every pose singly and in a batch, FIRST and ALL, against the CPU.
+void check(Device& device, const Scene& scene) {
+  const std::unique_ptr<Device> cpu = open_device("cpu");
+  const std::vector<CollisionResult> first = collide(*cpu, scene.a, scene.b, scene.poses);
+  const std::vector<CollisionResult> all = collide(*cpu, scene.a, scene.b, scene.poses, {Contacts::all});
+  std::size_t hits = 0, contacts_seen = 0;
+  for (const Contacts contacts : {Contacts::first, Contacts::all}) {
+    const std::vector<CollisionResult> batch = collide(device, scene.a, scene.b, scene.poses, {contacts});
+    REQUIRE(batch.size() == scene.poses.size());
+    for (std::size_t i = 0; i < scene.poses.size(); ++i) {
+      CAPTURE(i, contacts == Contacts::all);
+      const PosePair& pose = scene.poses[i];
+      const CollisionResult single = collide(device, scene.a, pose.a, scene.b, pose.b, {contacts});
+      compare(single, first[i], all[i], contacts);
+      compare(batch[i], first[i], all[i], contacts);
+      CHECK(single.counts.clocks > 0);
+      hits += single.hit ? 1 : 0;
+      contacts_seen += single.contacts.size();
+    }
+  }
+  CHECK(hits > 0);
+  CHECK(hits < 2 * scene.poses.size());
+  CHECK(contacts_seen > 64);  // more than the ring of records holds
+}
+
+}  // namespace
+
+TEST_CASE("uio device: answers as the CPU does", "[system][uio]") {
+  for (const Kind kind : {Kind::tri, Kind::quad}) {
+    CAPTURE(kind == Kind::quad);
+    Board board;
+    std::unique_ptr<Machine> machine = open_uio_machine(board.uio());
+    const std::unique_ptr<RegisterTrap> trap = board.serve();
+    ChipDriverOptions driver = Board::driver();
+    driver.memory_base = memory_base;
+    driver.memory_bytes = memory_bytes;
+    const std::unique_ptr<Device> device = make_chip_device(open_chip(std::move(machine), driver));
+    check(*device, Scene(kind));
+    CHECK(trap->reads() > 0);
+    CHECK(trap->writes() > 0);
+  }
+}
+
+// The registers are a file at first, which takes the driver's setup and never answers a query. With the chip behind it
+// the first query times out, and the driver sets the chip up that it finds.
+TEST_CASE("uio device: a chip that lost its setup is set up again", "[system][uio]") {
+  Board board;
+  for (const std::uint32_t offset : {regs::id::offset, regs::version::offset, regs::capabilities::offset})
+    board.registers().put(offset, board.chip().read_register(offset));
+  ChipDriverOptions driver = Board::driver();
+  driver.patience = 4096;
+  const std::unique_ptr<Device> device = open_uio_device(board.uio(), driver);
+  CHECK(board.registers().get(regs::query_base_low::offset) == (memory_base & 0xFFFFFFFFU));
+  CHECK(board.registers().get(regs::query_base_high::offset) == memory_base >> 32U);
+  CHECK(board.registers().get(regs::control::offset) == regs::control::enable_mask);
+  const std::unique_ptr<RegisterTrap> trap = board.serve();
+  const Scene scene(Kind::tri);
+  const CollisionResult lost = collide(*device, scene.a, scene.poses[0].a, scene.b, scene.poses[0].b);
+  CHECK(lost.counts.fallbacks == 1);
+  check(*device, scene);
+}
+
+TEST_CASE("uio machine: registers, memory and interrupt of a chip", "[system][uio]") {
+  Board board;
+  const std::unique_ptr<Machine> machine = open_uio_machine(board.uio());
+  const std::unique_ptr<RegisterTrap> trap = board.serve();
+  CHECK(machine->read_register(regs::id::offset) == regs::id::value_reset);
+  machine->write_register(regs::step_limit::offset, 0x12345678);
+  CHECK(board.chip().read_register(regs::step_limit::offset) == 0x12345678);
+  CHECK(trap->reads() == 1);
+  CHECK(trap->writes() == 1);
+
+  const Bytes bytes = {1, 2, 3, 4, 5, 6, 7, 8};
+  machine->write_memory(memory_base + 60, bytes);
+  CHECK(board.chip().read_memory(memory_base + 60, 8) == bytes);
+  board.chip().write_memory(memory_base + memory_bytes - 8, bytes);
+  CHECK(machine->read_memory(memory_base + memory_bytes - 8, 8) == bytes);
+
+  CHECK_FALSE(machine->interrupt());
+  machine->write_register(regs::interrupt_enable::offset, regs::interrupt_enable::invalidated_mask);
+  CHECK_FALSE(machine->interrupt());
+  machine->write_register(regs::invalidate::offset, regs::invalidate::go_mask);
+  for (int i = 0; !machine->interrupt(); ++i) {
+    REQUIRE(i < 10000);
+    machine->proceed();
+  }
+  CHECK(board.chip().interrupt());
+  machine->write_register(regs::interrupt_status::offset, regs::interrupt_status::invalidated_mask);
+  CHECK_FALSE(machine->interrupt());
+}
