@@ -21,6 +21,9 @@
 #include <string>
 #include <vector>
 
+#include "chip_bench.hpp"
+#include "chip_objects.hpp"
+#include "chip_poll.h"
 #include "register_trap.hpp"
 
 using namespace cchip;
@@ -83,6 +86,7 @@ class Board {
   Board& operator=(const Board&) = delete;
 
   Chip& chip() { return chip_; }
+  void* mapping() const { return mapping_; }
   const TemporaryFile& registers() const { return registers_; }
   UioOptions uio() {
     UioOptions options;
@@ -235,4 +239,158 @@ TEST_CASE("uio machine: registers, memory and interrupt of a chip", "[system][ui
   CHECK(board.chip().interrupt());
   machine->write_register(regs::interrupt_status::offset, regs::interrupt_status::invalidated_mask);
   CHECK_FALSE(machine->interrupt());
+}
+
+namespace {
+
+/// The registers of a board, mapped and served.
+class MappedRegisters {
+ public:
+  explicit MappedRegisters(Board& board) {
+    mapping_ = mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, board.registers().number(), 0);
+    REQUIRE(mapping_ != MAP_FAILED);
+    trap_ = std::make_unique<RegisterTrap>(
+        board.registers().path(),
+        [&board](std::uint32_t offset) {
+          board.chip().simulation().steps(200);  // time passes while the driver polls
+          return board.chip().read_register(offset);
+        },
+        [&board](std::uint32_t offset, std::uint32_t value) { board.chip().write_register(offset, value); });
+  }
+  ~MappedRegisters() {
+    trap_.reset();
+    munmap(mapping_, 4096);
+  }
+  MappedRegisters(const MappedRegisters&) = delete;
+  MappedRegisters& operator=(const MappedRegisters&) = delete;
+  volatile std::uint32_t* words() const { return static_cast<volatile std::uint32_t*>(mapping_); }
+
+ private:
+  void* mapping_ = MAP_FAILED;
+  std::unique_ptr<RegisterTrap> trap_;
+};
+
+chip driver_of(Board& board, MappedRegisters& registers) {
+  chip driver = {};
+  driver.registers = registers.words();
+  driver.memory = static_cast<volatile std::uint32_t*>(board.mapping());
+  driver.address = memory_base;
+  driver.patience = 10000000;
+  return driver;
+}
+
+std::string print(const char* format, std::uint32_t a, std::uint32_t b, const char* c = "") {
+  std::array<char, 80> text{};
+  std::snprintf(text.data(), text.size(), format, a, b, c);
+  return text.data();
+}
+
+}  // namespace
+
+TEST_CASE("driver in C: the example of the programmer's guide", "[system][chip_poll]") {
+  Board board;
+  MappedRegisters registers(board);
+  chip chip = driver_of(board, registers);
+  // a roof of two triangles, and one that pierces both of them
+  Mesh roof, blade;
+  roof.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 1, 1}, {2, 1, 1}};
+  roof.faces = {{Kind::tri, {0, 1, 2}}, {Kind::tri, {1, 3, 2}}};
+  blade.vertices = {{1, -1, 0.25}, {1, 2, 0.5}, {1, 0.5, 2}};
+  blade.faces = {{Kind::tri, {0, 1, 2}}};
+  const bvh::Image a = testing::image_of(roof), b = testing::image_of(blade);
+  const auto bytes_a = static_cast<std::uint32_t>(64 * a.lines.size());
+  const auto bytes_b = static_cast<std::uint32_t>(64 * b.lines.size());
+  std::optional<Query> made = bvh::make_query(a.header(), Pose::Identity(), b.header(), Pose::Identity());
+  REQUIRE(made.has_value());
+  const auto line_a = static_cast<std::uint32_t>((memory_base + CHIP_IMAGES) / 64);
+  const std::uint32_t line_b = line_a + bytes_a / 64;
+  made->base_a = made->swapped ? line_b : line_a;
+  made->base_b = made->swapped ? line_a : line_b;
+  made->mode = QueryMode::all;
+  const Line query = encode(*made);
+
+  std::string text;
+  REQUIRE(chip_start(&chip) == CHIP_OK);
+  REQUIRE(chip_store(&chip, CHIP_IMAGES, a.lines.data(), bytes_a) == CHIP_OK);
+  REQUIRE(chip_store(&chip, CHIP_IMAGES + bytes_a, b.lines.data(), bytes_b) == CHIP_OK);
+  REQUIRE(chip_submit(&chip, query.data()) == CHIP_OK);
+  chip_record record;
+  while (chip_next(&chip, &record) == CHIP_OK && chip_is_done(&record) == 0) {
+    text += print("faces %u and %u%s\n", record.first, record.second, chip_is_definite(&record) != 0 ? "" : ", open");
+  }
+  text += print("answer %u, code %u%s\n", chip_answer(&record), chip_code(&record));
+  INFO(text);
+  CHECK(text == "faces 0 and 0\nfaces 1 and 0\nanswer 1, code 0\n");
+}
+
+TEST_CASE("driver in C: every record is the model's, round after round of its rings", "[system][chip_poll]") {
+  Board board;
+  MappedRegisters registers(board);
+  chip chip = driver_of(board, registers);
+  std::mt19937_64 random(sim::seed_from_environment());
+  testing::Objects objects(Kind::quad);
+  REQUIRE(chip_start(&chip) == CHIP_OK);
+  const auto bytes_a = static_cast<std::uint32_t>(64 * objects.a.lines.size());
+  const auto bytes_b = static_cast<std::uint32_t>(64 * objects.b.lines.size());
+  REQUIRE(chip_store(&chip, CHIP_IMAGES, objects.a.lines.data(), bytes_a) == CHIP_OK);
+  REQUIRE(chip_store(&chip, CHIP_IMAGES + bytes_a, objects.b.lines.data(), bytes_b) == CHIP_OK);
+  objects.line_a = (memory_base + CHIP_IMAGES) / 64;
+  objects.line_b = objects.line_a + objects.a.lines.size();
+  for (int round = 0; round < 30; ++round) {
+    std::vector<Query> queries = testing::queries_of(objects, random, 4);
+    std::vector<testing::ChipAnswer> answers(queries.size());
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      queries[i].tag = static_cast<std::uint32_t>(i);
+      const Line line = encode(queries[i]);
+      REQUIRE(chip_submit(&chip, line.data()) == CHIP_OK);
+    }
+    for (std::size_t left = queries.size(); left > 0;) {
+      chip_record record;
+      REQUIRE(chip_next(&chip, &record) == CHIP_OK);
+      REQUIRE(record.tag < answers.size());
+      testing::ChipAnswer& answer = answers[record.tag];
+      REQUIRE_FALSE(answer.done.has_value());
+      if (chip_is_done(&record) == 0) {
+        answer.pairs.push_back({record.tag, record.first, record.second, chip_is_definite(&record) != 0});
+        continue;
+      }
+      REQUIRE(record.second == answer.pairs.size());
+      answer.done = DoneRecord{record.tag, static_cast<QueryCode>(chip_code(&record)),
+                               static_cast<QueryAnswer>(chip_answer(&record)), record.first, record.second};
+      --left;
+    }
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      CAPTURE(round, i);
+      CHECK(testing::compare_answer(queries[i], answers[i], objects.expected(queries[i]), 16).empty());
+    }
+    if (round % 10 == 9) REQUIRE(chip_start(&chip) == CHIP_OK);
+  }
+}
+
+TEST_CASE("driver in C: offsets and bits are those of the register map", "[system][chip_poll]") {
+  CHECK(CHIP_ID == regs::id::offset);
+  CHECK(CHIP_ID_VALUE == regs::id::value_reset);
+  CHECK(CHIP_VERSION == regs::version::offset);
+  CHECK(CHIP_CAPABILITIES == regs::capabilities::offset);
+  CHECK(CHIP_CONTROL == regs::control::offset);
+  CHECK(CHIP_CONTROL_ENABLE == regs::control::enable_mask);
+  CHECK(CHIP_CONTROL_SOFT_RESET == regs::control::soft_reset_mask);
+  CHECK(CHIP_STATUS == regs::status::offset);
+  CHECK(CHIP_STATUS_RESETTING == regs::status::resetting_mask);
+  CHECK(CHIP_STATUS_QUERY_FAILED == regs::status::query_failed_mask);
+  CHECK(CHIP_STATUS_RECORD_FAILED == regs::status::record_failed_mask);
+  CHECK(CHIP_STATUS_INVALIDATING == regs::status::invalidating_mask);
+  CHECK(CHIP_MEMORY_LIMIT == regs::memory_limit::offset);
+  CHECK(CHIP_QUERY_BASE_LOW == regs::query_base_low::offset);
+  CHECK(CHIP_QUERY_BASE_HIGH == regs::query_base_high::offset);
+  CHECK(CHIP_QUERY_SIZE == regs::query_size::offset);
+  CHECK(CHIP_QUERY_PRODUCER == regs::query_producer::offset);
+  CHECK(CHIP_QUERY_CONSUMER == regs::query_consumer::offset);
+  CHECK(CHIP_RECORD_BASE_LOW == regs::record_base_low::offset);
+  CHECK(CHIP_RECORD_BASE_HIGH == regs::record_base_high::offset);
+  CHECK(CHIP_RECORD_SIZE == regs::record_size::offset);
+  CHECK(CHIP_RECORD_CONSUMER == regs::record_consumer::offset);
+  CHECK(CHIP_INVALIDATE_FIRST == regs::invalidate_first::offset);
+  CHECK(CHIP_INVALIDATE_LAST == regs::invalidate_last::offset);
+  CHECK(CHIP_INVALIDATE == regs::invalidate::offset);
 }
