@@ -6,7 +6,11 @@
 // The emulation of 128-bit vectors serves computers without any of the instruction sets, and as a check of these. GCC
 // before 12.3 miscompiles it where it vectorises, so this file is compiled without that.
 #define HWY_BROKEN_EMU128 0
+#ifdef CCHIP_SIMD_TARGETS  // a build that needs few of them (tests/ref)
+#define HWY_DISABLED_TARGETS (~(CCHIP_SIMD_TARGETS))
+#else
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_WASM | HWY_WASM_EMU256)
+#endif
 #include <hwy/foreach_target.h>
 // foreach_target.h must come before the others.
 #include <hwy/cache_control.h>
