@@ -9,8 +9,10 @@
 //   latency      registers: 3 clocks, counters up to 21; a query by its tree
 //   interrupt    level: an event of interrupt_status that is enabled
 //   soft reset   forgets all queries and lines, clears enable, query_producer and record_consumer;
-//                the bus masters finish first what memory owes (cchip_soft_reset)
-//   counters     at most 1 a clock each, two banks of cchip_counter_file
+//                the bus masters finish first what memory owes (cchip_soft_reset). A swap goes on
+//   counters     at most 1 a clock each, two banks of cchip_counter_file, with SWAPS a third
+//   swaps        with SWAPS = 1: registers from 0x400 on, m_axi_cfg and cfg; otherwise leave those
+//                ports open and their inputs 0
 //   cuts         every path but from rst
 //   reset        rst resets registers and core, and must reset the bus too
 module cchip_chip #(
@@ -42,8 +44,23 @@ module cchip_chip #(
     parameter integer QUEUE_DEPTH = 64,
     // leaf pairs between leaf feed and record: 4, 8 ... 256
     parameter integer LEAF_NUMBERS = 64,
-    // module of the slot: 1 triangles, 2 triangle and quad, 3 quads
+    // slots of primitive tests, 1..4
+    parameter integer SLOTS = 1,
+    // 1: their modules are exchanged at run time
+    parameter integer SWAPS = 0,
+    // module of slot 0: 1 triangles, 2 triangle and quad, 3 quads; at power-up with SWAPS, or 0
     parameter integer RM_ID = 3,
+    // of the others
+    parameter integer SLOT1_RM_ID = 1,
+    parameter integer SLOT2_RM_ID = 2,
+    parameter integer SLOT3_RM_ID = 1,
+    // configuration port with SWAPS: width, bit, 8 or 32; clocks a word; clocks of the reset
+    parameter integer CFG_W = 8,
+    parameter integer CFG_DIVIDER = 2,
+    parameter integer ROC_CYCLES = `CCHIP_ROC_CLOCKS_DEFAULT,
+    // 1: simulated reconfiguration (see cchip_pr_slot), and the start of its random numbers
+    parameter integer SIMULATION = 0,
+    parameter integer SEED = 1,
     // width of the data buses, bit: 128, 256 or 512
     parameter integer DATA_W = 128
 ) (
@@ -103,7 +120,25 @@ module cchip_chip #(
     input  wire                          m_axi_bvalid,
     output wire                          m_axi_bready,
     input  wire                          m_axi_bid,
-    input  wire [                   1:0] m_axi_bresp
+    input  wire [                   1:0] m_axi_bresp,
+    // configuration port of the device
+    output wire                          cfg_valid,
+    output wire [             CFG_W-1:0] cfg_data,
+    input  wire                          cfg_error,
+    // memory of the bitstreams, read only
+    output wire                          m_axi_cfg_arvalid,
+    input  wire                          m_axi_cfg_arready,
+    output wire [                  31:0] m_axi_cfg_araddr,
+    output wire [                   7:0] m_axi_cfg_arlen,
+    output wire [                   2:0] m_axi_cfg_arsize,
+    output wire [                   1:0] m_axi_cfg_arburst,
+    output wire [                   3:0] m_axi_cfg_arcache,
+    output wire [                   2:0] m_axi_cfg_arprot,
+    input  wire                          m_axi_cfg_rvalid,
+    output wire                          m_axi_cfg_rready,
+    input  wire [                  31:0] m_axi_cfg_rdata,
+    input  wire [                   1:0] m_axi_cfg_rresp,
+    input  wire                          m_axi_cfg_rlast
 );
 
   localparam [31:0] LOCK_COUNT = LOCKS;
@@ -111,12 +146,18 @@ module cchip_chip #(
   localparam [31:0] BUS_BYTES = DATA_W / 8;
   localparam [31:0] CACHE_SIZE = CACHE_KB;
   localparam [31:0] QUERY_COUNT = QUERIES;
-  localparam [2:0] KINDS = {RM_ID > 2, RM_ID > 1, 1'b1};  // that the module of the slot tests
+  localparam [31:0] SLOT_COUNT = SLOTS;
+  // what the modules test, with swaps what they can
+  localparam integer MOST_1 = SLOTS > 1 && SLOT1_RM_ID > RM_ID ? SLOT1_RM_ID : RM_ID;
+  localparam integer MOST_2 = SLOTS > 2 && SLOT2_RM_ID > MOST_1 ? SLOT2_RM_ID : MOST_1;
+  localparam integer MOST_3 = SLOTS > 3 && SLOT3_RM_ID > MOST_2 ? SLOT3_RM_ID : MOST_2;
+  localparam integer MOST = SWAPS != 0 ? 3 : MOST_3;
+  localparam [2:0] KINDS = {MOST > 2, MOST > 1, 1'b1};
 
   // ---- registers
   wire clear, enable, reset_request, resetting, reset_done, idle;
   wire read_outstanding, write_outstanding;
-  wire [4:0] status, status_enable;
+  wire [8:0] status, status_enable;
   wire [31:0] step_limit, memory_limit;
   wire [7:0] open_limit;
   wire [2:0] pairs_each;
@@ -133,10 +174,26 @@ module cchip_chip #(
   wire counter_read;
   wire [1:0] counter_ack;
   wire [63:0] counter_data;
-  wire [9:0] read_word, unused_write_word;
-  wire [31:0] unused_write_data;
-  wire [3:0] unused_write_bytes;
-  reg [4:0] event_q;  // {invalidated, reset done, record failed, query failed, record}
+  wire [9:0] read_word, write_word;
+  wire [31:0] write_data;
+  wire [3:0] write_bytes;
+  reg [4:0] chip_event_q;  // {invalidated, reset done, record failed, query failed, record}
+  // of swaps
+  wire swap_abort, swap_enable, command_go, command_force, write_table, read_table, read_phases;
+  wire read_swaps, read_rejected, read_stalls, read_pairs, swap_ack;
+  wire [`CCHIP_SLOT_ID_W-1:0] command_slot;
+  wire [`CCHIP_RM_ID_W-1:0] command_module;
+  wire [31:0] shutdown_limit, bitstream_limit, minimum_batch, maximum_age;
+  wire [`CCHIP_SWAP_REPORT_W-1:0] swap_report;
+  wire [2:0] swap_events;  // {lost, error, done}
+  wire [31:0] swap_lost, table_data, phase_clocks, swap_data;
+  wire [4*`CCHIP_PAIR_COUNT_W-1:0] slot_outstanding;
+  wire [4*`CCHIP_RM_ID_W-1:0] slot_rm_id;
+  wire [3:0] slot_decoupled;
+  wire [4*`CCHIP_PHASE_W-1:0] slot_phase;
+  wire answered, refused_kind, refused_provider, count_swap, count_rejected, count_stall;
+  wire [`CCHIP_KIND_W-1:0] answered_module;
+  wire [8:0] event_q = {refused_provider, swap_events, chip_event_q};
   reg invalidate_q, invalidating_q;  // a command waits; one waits or is at work
   cchip_chip_regs u_regs (
       .clk                                 (clk),
@@ -161,14 +218,16 @@ module cchip_chip #(
       .s_axil_rdata                        (s_axil_rdata),
       .s_axil_rresp                        (s_axil_rresp),
       .hwif_out_external_raddr             (read_word),
-      .hwif_in_external_ack                (counter_ack[0] | counter_ack[1]),
-      .hwif_in_external_rdata              (counter_data[31:0] | counter_data[63:32]),
-      .hwif_out_external_waddr             (unused_write_word),
-      .hwif_out_external_wdata             (unused_write_data),
-      .hwif_out_external_wstrb             (unused_write_bytes),
+      .hwif_in_external_ack                (counter_ack[0] | counter_ack[1] | swap_ack |
+          read_phases | read_table),
+      .hwif_in_external_rdata              (counter_data[31:0] | counter_data[63:32] | swap_data |
+          (phase_clocks & {32{read_phases}}) | (table_data & {32{read_table}})),
+      .hwif_out_external_waddr             (write_word),
+      .hwif_out_external_wdata             (write_data),
+      .hwif_out_external_wstrb             (write_bytes),
       .hwif_in_capabilities_locks          (LOCK_COUNT[2:0]),
-      .hwif_in_capabilities_slots          (3'd1),
-      .hwif_in_capabilities_swaps          (1'b0),
+      .hwif_in_capabilities_slots          (SLOT_COUNT[2:0]),
+      .hwif_in_capabilities_swaps          (SWAPS != 0),
       .hwif_in_capabilities_kinds          (KINDS),
       .hwif_in_capabilities_coord_w        (GRID_W[7:0]),
       .hwif_in_capacity_bus_bytes          (BUS_BYTES[7:0]),
@@ -185,6 +244,14 @@ module cchip_chip #(
       .hwif_in_status_query_failed         (query_failed),
       .hwif_in_status_idle                 (idle),
       .hwif_in_status_resetting            (resetting),
+      .hwif_out_interrupt_status_no_provider(status[8]),
+      .hwif_in_interrupt_status_no_provider_hwset(event_q[8]),
+      .hwif_out_interrupt_status_swap_lost (status[7]),
+      .hwif_in_interrupt_status_swap_lost_hwset(event_q[7]),
+      .hwif_out_interrupt_status_swap_error(status[6]),
+      .hwif_in_interrupt_status_swap_error_hwset(event_q[6]),
+      .hwif_out_interrupt_status_swap_done (status[5]),
+      .hwif_in_interrupt_status_swap_done_hwset(event_q[5]),
       .hwif_out_interrupt_status_invalidated(status[4]),
       .hwif_in_interrupt_status_invalidated_hwset(event_q[4]),
       .hwif_out_interrupt_status_reset_done(status[3]),
@@ -195,6 +262,10 @@ module cchip_chip #(
       .hwif_in_interrupt_status_query_failed_hwset(event_q[1]),
       .hwif_out_interrupt_status_record    (status[0]),
       .hwif_in_interrupt_status_record_hwset(event_q[0]),
+      .hwif_out_interrupt_enable_no_provider(status_enable[8]),
+      .hwif_out_interrupt_enable_swap_lost (status_enable[7]),
+      .hwif_out_interrupt_enable_swap_error(status_enable[6]),
+      .hwif_out_interrupt_enable_swap_done (status_enable[5]),
       .hwif_out_interrupt_enable_invalidated(status_enable[4]),
       .hwif_out_interrupt_enable_reset_done(status_enable[3]),
       .hwif_out_interrupt_enable_record_failed(status_enable[2]),
@@ -221,7 +292,33 @@ module cchip_chip #(
       .hwif_out_invalidate_first_line      (invalidate_first),
       .hwif_out_invalidate_last_line       (invalidate_last),
       .hwif_out_invalidate_go              (invalidate_go),
-      .hwif_out_counter_read               (counter_read)
+      .hwif_out_counter_read               (counter_read),
+      .hwif_out_swap_control_abort         (swap_abort),
+      .hwif_out_swap_control_scheduler_enable(swap_enable),
+      .hwif_out_swap_command_go            (command_go),
+      .hwif_out_swap_command_force         (command_force),
+      .hwif_out_swap_command_module_id     (command_module),
+      .hwif_out_swap_command_slot          (command_slot),
+      .hwif_in_swap_report_module_id       (swap_report[`CCHIP_SWAP_REPORT_MODULE]),
+      .hwif_in_swap_report_slot            (swap_report[`CCHIP_SWAP_REPORT_SLOT]),
+      .hwif_in_swap_report_code            (swap_report[`CCHIP_SWAP_REPORT_CODE]),
+      .hwif_in_swap_report_lost_pairs      (swap_report[`CCHIP_SWAP_REPORT_LOST]),
+      .hwif_out_swap_shutdown_limit_clocks (shutdown_limit),
+      .hwif_out_swap_memory_limit_clocks   (bitstream_limit),
+      .hwif_out_swap_minimum_batch_pairs   (minimum_batch),
+      .hwif_out_swap_maximum_age_clocks    (maximum_age),
+      .hwif_in_slot_status_outstanding     (slot_outstanding),
+      .hwif_in_slot_status_decoupled       (slot_decoupled),
+      .hwif_in_slot_status_phase           (slot_phase),
+      .hwif_in_slot_status_module_id       (slot_rm_id),
+      .hwif_in_swap_lost_value             (swap_lost),
+      .hwif_out_swaps_read                 (read_swaps),
+      .hwif_out_rejected_read              (read_rejected),
+      .hwif_out_stalls_read                (read_stalls),
+      .hwif_out_phase_clocks_read          (read_phases),
+      .hwif_out_pairs_read                 (read_pairs),
+      .hwif_out_bitstream_read             (read_table),
+      .hwif_out_bitstream_write            (write_table)
   );
 
   // ---- events, commands
@@ -232,7 +329,7 @@ module cchip_chip #(
     if (rst) begin
       {irq_q, query_failed_q, record_failed_q} <= 3'd0;
       {invalidate_q, invalidating_q} <= 2'd0;
-      event_q <= 5'd0;
+      chip_event_q <= 5'd0;
       record_producer_q <= 32'd0;
     end else begin
       irq_q             <= |(status & status_enable);
@@ -241,7 +338,7 @@ module cchip_chip #(
       query_failed_q    <= query_failed;
       record_failed_q   <= record_failed;
       record_producer_q <= record_producer;
-      event_q           <= {
+      chip_event_q      <= {
         invalidating_q & ~invalidating,
         reset_done,
         record_failed & ~record_failed_q,
@@ -291,6 +388,29 @@ module cchip_chip #(
     end
   endgenerate
 
+  wire read_swap_counter = read_swaps | read_rejected | read_stalls | read_pairs;
+  generate
+    if (SWAPS == 0) begin : gen_swap_counters
+      assign swap_ack  = read_swap_counter;
+      assign swap_data = 32'd0;
+      wire unused = &{1'b0, answered, answered_module, count_swap, count_rejected, count_stall};
+    end else begin : gen_swap_counters
+      // words 0x140 on are four of 64 bits, words 0x120 on three of 32
+      wire [3:0] answered_by = {3'd0, answered} << answered_module;
+      cchip_counter_file u_counters (
+          .clk         (clk),
+          .rst         (rst),
+          .clear       (clear),
+          .count       ({1'b0, count_stall, count_rejected, count_swap, answered_by}),
+          .read        (read_swap_counter),
+          .read_high   (read_pairs & read_word[0]),
+          .read_counter(read_word[6] ? {1'b0, read_word[2:1]} : {1'b1, read_word[1:0]}),
+          .ack         (swap_ack),
+          .read_data   (swap_data)
+      );
+    end
+  endgenerate
+
   cchip_chip_core #(
       .QUERIES     (QUERIES),
       .PAIRS       (PAIRS),
@@ -306,83 +426,140 @@ module cchip_chip #(
       .PASSES      (PASSES),
       .QUEUE_DEPTH (QUEUE_DEPTH),
       .LEAF_NUMBERS(LEAF_NUMBERS),
+      .SLOTS       (SLOTS),
+      .SWAPS       (SWAPS),
       .RM_ID       (RM_ID),
+      .SLOT1_RM_ID (SLOT1_RM_ID),
+      .SLOT2_RM_ID (SLOT2_RM_ID),
+      .SLOT3_RM_ID (SLOT3_RM_ID),
+      .CFG_W       (CFG_W),
+      .CFG_DIVIDER (CFG_DIVIDER),
+      .ROC_CYCLES  (ROC_CYCLES),
+      .SIMULATION  (SIMULATION),
+      .SEED        (SEED),
       .DATA_W      (DATA_W)
   ) u_core (
-      .clk               (clk),
-      .rst               (rst),
-      .core_rst          (resetting),
-      .pairs_each        (pairs_each),
-      .step_limit        (step_limit),
-      .open_limit        (open_limit),
-      .memory_limit      (memory_limit),
-      .enable            (enable),
-      .query_base        (query_base),
-      .query_size_log2   (query_size_log2),
-      .query_producer    (query_producer),
-      .query_consumer    (query_consumer),
-      .query_failed      (query_failed),
-      .record_base       (record_base),
-      .record_size_log2  (record_size_log2),
-      .record_consumer   (record_consumer),
-      .record_producer   (record_producer),
-      .record_failed     (record_failed),
-      .lock_first        (lock_first[LOCKS*32-1:0]),
-      .lock_last         (lock_last[LOCKS*32-1:0]),
-      .invalidate_valid  (invalidate_q),
-      .invalidate_ready  (invalidate_ready),
-      .invalidate_first  (invalidate_first),
-      .invalidate_last   (invalidate_last),
-      .read_owes         (read_outstanding),
-      .write_owes        (write_outstanding),
-      .idle              (idle),
-      .count_step        (count_step),
-      .count_leaf_pair   (count_leaf_pair),
-      .count_pair        (count_pair),
-      .count_box_busy    (count_box_busy),
-      .count_query       (count_query),
-      .count_error       (count_error),
-      .count_record      (count_record),
-      .count_record_wait (count_record_wait),
-      .count_hit         (count_hit),
-      .count_miss        (count_miss),
-      .m_axi_arvalid     (m_axi_arvalid),
-      .m_axi_arready     (m_axi_arready),
-      .m_axi_arid        (m_axi_arid),
-      .m_axi_araddr      (m_axi_araddr),
-      .m_axi_arlen       (m_axi_arlen),
-      .m_axi_arsize      (m_axi_arsize),
-      .m_axi_arburst     (m_axi_arburst),
-      .m_axi_arcache     (m_axi_arcache),
-      .m_axi_arprot      (m_axi_arprot),
-      .m_axi_rvalid      (m_axi_rvalid),
-      .m_axi_rready      (m_axi_rready),
-      .m_axi_rid         (m_axi_rid),
-      .m_axi_rdata       (m_axi_rdata),
-      .m_axi_rresp       (m_axi_rresp),
-      .m_axi_rlast       (m_axi_rlast),
-      .m_axi_awvalid     (m_axi_awvalid),
-      .m_axi_awready     (m_axi_awready),
-      .m_axi_awid        (m_axi_awid),
-      .m_axi_awaddr      (m_axi_awaddr),
-      .m_axi_awlen       (m_axi_awlen),
-      .m_axi_awsize      (m_axi_awsize),
-      .m_axi_awburst     (m_axi_awburst),
-      .m_axi_awcache     (m_axi_awcache),
-      .m_axi_awprot      (m_axi_awprot),
-      .m_axi_wvalid      (m_axi_wvalid),
-      .m_axi_wready      (m_axi_wready),
-      .m_axi_wdata       (m_axi_wdata),
-      .m_axi_wstrb       (m_axi_wstrb),
-      .m_axi_wlast       (m_axi_wlast),
-      .m_axi_bvalid      (m_axi_bvalid),
-      .m_axi_bready      (m_axi_bready),
-      .m_axi_bid         (m_axi_bid),
-      .m_axi_bresp       (m_axi_bresp)
+      .clk                 (clk),
+      .rst                 (rst),
+      .core_rst            (resetting),
+      .pairs_each          (pairs_each),
+      .step_limit          (step_limit),
+      .open_limit          (open_limit),
+      .memory_limit        (memory_limit),
+      .enable              (enable),
+      .query_base          (query_base),
+      .query_size_log2     (query_size_log2),
+      .query_producer      (query_producer),
+      .query_consumer      (query_consumer),
+      .query_failed        (query_failed),
+      .record_base         (record_base),
+      .record_size_log2    (record_size_log2),
+      .record_consumer     (record_consumer),
+      .record_producer     (record_producer),
+      .record_failed       (record_failed),
+      .lock_first          (lock_first[LOCKS*32-1:0]),
+      .lock_last           (lock_last[LOCKS*32-1:0]),
+      .invalidate_valid    (invalidate_q),
+      .invalidate_ready    (invalidate_ready),
+      .invalidate_first    (invalidate_first),
+      .invalidate_last     (invalidate_last),
+      .read_owes           (read_outstanding),
+      .write_owes          (write_outstanding),
+      .idle                (idle),
+      .count_step          (count_step),
+      .count_leaf_pair     (count_leaf_pair),
+      .count_pair          (count_pair),
+      .count_box_busy      (count_box_busy),
+      .count_query         (count_query),
+      .count_error         (count_error),
+      .count_record        (count_record),
+      .count_record_wait   (count_record_wait),
+      .count_hit           (count_hit),
+      .count_miss          (count_miss),
+      .answered            (answered),
+      .answered_module     (answered_module),
+      .refused_kind        (refused_kind),
+      .refused_provider    (refused_provider),
+      .slot_outstanding    (slot_outstanding),
+      .slot_rm_id          (slot_rm_id),
+      .slot_decoupled      (slot_decoupled),
+      .slot_phase          (slot_phase),
+      .swap_clear          (clear),
+      .swap_abort          (swap_abort),
+      .swap_enable         (swap_enable),
+      .swap_command_valid  (command_go),
+      .swap_command_slot   (command_slot),
+      .swap_command_module (command_module),
+      .swap_command_force  (command_force),
+      .swap_shutdown_limit (shutdown_limit),
+      .swap_memory_limit   (bitstream_limit),
+      .swap_min_batch      (minimum_batch),
+      .swap_max_age        (maximum_age),
+      .swap_report         (swap_report),
+      .swap_events         (swap_events),
+      .swap_lost           (swap_lost),
+      .swap_write_table    (write_table),
+      .swap_write_word     (write_word[5:0]),
+      .swap_write_data     (write_data),
+      .swap_write_bytes    (write_bytes),
+      .swap_read_word      (read_word[5:0]),
+      .swap_table_data     (table_data),
+      .swap_phase_clocks   (phase_clocks),
+      .count_swap          (count_swap),
+      .count_rejected      (count_rejected),
+      .count_stall         (count_stall),
+      .cfg_valid           (cfg_valid),
+      .cfg_data            (cfg_data),
+      .cfg_error           (cfg_error),
+      .m_axi_cfg_arvalid   (m_axi_cfg_arvalid),
+      .m_axi_cfg_arready   (m_axi_cfg_arready),
+      .m_axi_cfg_araddr    (m_axi_cfg_araddr),
+      .m_axi_cfg_arlen     (m_axi_cfg_arlen),
+      .m_axi_cfg_arsize    (m_axi_cfg_arsize),
+      .m_axi_cfg_arburst   (m_axi_cfg_arburst),
+      .m_axi_cfg_arcache   (m_axi_cfg_arcache),
+      .m_axi_cfg_arprot    (m_axi_cfg_arprot),
+      .m_axi_cfg_rvalid    (m_axi_cfg_rvalid),
+      .m_axi_cfg_rready    (m_axi_cfg_rready),
+      .m_axi_cfg_rdata     (m_axi_cfg_rdata),
+      .m_axi_cfg_rresp     (m_axi_cfg_rresp),
+      .m_axi_cfg_rlast     (m_axi_cfg_rlast),
+      .m_axi_arvalid       (m_axi_arvalid),
+      .m_axi_arready       (m_axi_arready),
+      .m_axi_arid          (m_axi_arid),
+      .m_axi_araddr        (m_axi_araddr),
+      .m_axi_arlen         (m_axi_arlen),
+      .m_axi_arsize        (m_axi_arsize),
+      .m_axi_arburst       (m_axi_arburst),
+      .m_axi_arcache       (m_axi_arcache),
+      .m_axi_arprot        (m_axi_arprot),
+      .m_axi_rvalid        (m_axi_rvalid),
+      .m_axi_rready        (m_axi_rready),
+      .m_axi_rid           (m_axi_rid),
+      .m_axi_rdata         (m_axi_rdata),
+      .m_axi_rresp         (m_axi_rresp),
+      .m_axi_rlast         (m_axi_rlast),
+      .m_axi_awvalid       (m_axi_awvalid),
+      .m_axi_awready       (m_axi_awready),
+      .m_axi_awid          (m_axi_awid),
+      .m_axi_awaddr        (m_axi_awaddr),
+      .m_axi_awlen         (m_axi_awlen),
+      .m_axi_awsize        (m_axi_awsize),
+      .m_axi_awburst       (m_axi_awburst),
+      .m_axi_awcache       (m_axi_awcache),
+      .m_axi_awprot        (m_axi_awprot),
+      .m_axi_wvalid        (m_axi_wvalid),
+      .m_axi_wready        (m_axi_wready),
+      .m_axi_wdata         (m_axi_wdata),
+      .m_axi_wstrb         (m_axi_wstrb),
+      .m_axi_wlast         (m_axi_wlast),
+      .m_axi_bvalid        (m_axi_bvalid),
+      .m_axi_bready        (m_axi_bready),
+      .m_axi_bid           (m_axi_bid),
+      .m_axi_bresp         (m_axi_bresp)
   );
 
-  wire unused = &{1'b0, read_word, unused_write_word, unused_write_data, unused_write_bytes,
-      lock_first, lock_last};
+  wire unused = &{1'b0, read_word, write_word, lock_first, lock_last, refused_kind};
 
 endmodule
 `default_nettype wire

@@ -2,15 +2,16 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// cchip_chip_core: the whole way of a query, from a ring in memory to records in another one, with
-// one static slot; its controls are ports. Formats: docs/image.md.
+// cchip_chip_core: the whole way of a query, from a ring in memory to records in another one; its
+// controls are ports. Formats: docs/image.md.
 //   way          cchip_query_ring -> cchip_broad_phase -> cchip_leaf_feed -> cchip_transform ->
-//                queues and operands -> cchip_dispatcher, slot -> cchip_calc_result ->
-//                cchip_record_ring
+//                queues and operands -> cchip_slots -> cchip_calc_result -> cchip_record_ring
 //   records      a query's pair records precede its done record, whose count is theirs. FIRST ends
 //                with the first definite hit, or with open_limit open pairs
-//   kinds        the module of the slot answers for all kinds up to its own; a primitive pair of
-//                another kind comes back as an open pair
+//   kinds        the module of a slot answers for all kinds up to its own; a primitive pair of a
+//                kind that no slot and no bitstream serves comes back as an open pair
+//   swaps        with SWAPS = 1 pairs of a kind that no slot serves wait for its module, while the
+//                broad phase works on as far as room goes
 //   order        queries end in any order
 //   errors       end one query with a code. A query that cannot be read stops the query ring, a
 //                record that cannot be written the record ring: query_failed, record_failed
@@ -55,8 +56,23 @@ module cchip_chip_core #(
     parameter integer QUEUE_DEPTH = 64,
     // leaf pairs between leaf feed and record: 4, 8 ... 256
     parameter integer LEAF_NUMBERS = 64,
-    // module of the slot: 1 triangles, 2 triangle and quad, 3 quads
+    // slots of primitive tests, 1..4
+    parameter integer SLOTS = 1,
+    // 1: their modules are exchanged at run time
+    parameter integer SWAPS = 0,
+    // module of slot 0: 1 triangles, 2 triangle and quad, 3 quads; at power-up with SWAPS, or 0
     parameter integer RM_ID = 3,
+    // of the others
+    parameter integer SLOT1_RM_ID = 1,
+    parameter integer SLOT2_RM_ID = 2,
+    parameter integer SLOT3_RM_ID = 1,
+    // configuration port with SWAPS: width, bit, 8 or 32; clocks a word; clocks of the reset
+    parameter integer CFG_W = 8,
+    parameter integer CFG_DIVIDER = 2,
+    parameter integer ROC_CYCLES = `CCHIP_ROC_CLOCKS_DEFAULT,
+    // 1: simulated reconfiguration (see cchip_pr_slot), and the start of its random numbers
+    parameter integer SIMULATION = 0,
+    parameter integer SEED = 1,
     // width of the data buses, bit: 128, 256 or 512
     parameter integer DATA_W = 128
 ) (
@@ -102,6 +118,57 @@ module cchip_chip_core #(
     output wire                           count_record_wait, // a record waits
     output wire [                    1:0] count_hit,         // of the cache, of each port
     output wire [                    1:0] count_miss,
+    // swaps, as in cchip_slots; without SWAPS inputs have no effect and outputs are 0
+    output wire                           answered,
+    output wire [      `CCHIP_KIND_W-1:0] answered_module,
+    output wire                           refused_kind,
+    output wire                           refused_provider,
+    output wire [4*`CCHIP_PAIR_COUNT_W-1:0] slot_outstanding,
+    output wire [   4*`CCHIP_RM_ID_W-1:0] slot_rm_id,
+    output wire [                    3:0] slot_decoupled,
+    output wire [   4*`CCHIP_PHASE_W-1:0] slot_phase,
+    input  wire                           swap_clear,
+    input  wire                           swap_abort,
+    input  wire                           swap_enable,
+    input  wire                           swap_command_valid,
+    input  wire [   `CCHIP_SLOT_ID_W-1:0] swap_command_slot,
+    input  wire [     `CCHIP_RM_ID_W-1:0] swap_command_module,
+    input  wire                           swap_command_force,
+    input  wire [                   31:0] swap_shutdown_limit,
+    input  wire [                   31:0] swap_memory_limit,
+    input  wire [                   31:0] swap_min_batch,
+    input  wire [                   31:0] swap_max_age,
+    output wire [`CCHIP_SWAP_REPORT_W-1:0] swap_report,
+    output wire [                    2:0] swap_events,
+    output wire [                   31:0] swap_lost,
+    input  wire                           swap_write_table,
+    input  wire [                    5:0] swap_write_word,
+    input  wire [                   31:0] swap_write_data,
+    input  wire [                    3:0] swap_write_bytes,
+    input  wire [                    5:0] swap_read_word,
+    output wire [                   31:0] swap_table_data,
+    output wire [                   31:0] swap_phase_clocks,
+    output wire                           count_swap,
+    output wire                           count_rejected,
+    output wire                           count_stall,
+    // configuration port of the device
+    output wire                           cfg_valid,
+    output wire [              CFG_W-1:0] cfg_data,
+    input  wire                           cfg_error,
+    // memory of the bitstreams, read only
+    output wire                           m_axi_cfg_arvalid,
+    input  wire                           m_axi_cfg_arready,
+    output wire [                   31:0] m_axi_cfg_araddr,
+    output wire [                    7:0] m_axi_cfg_arlen,
+    output wire [                    2:0] m_axi_cfg_arsize,
+    output wire [                    1:0] m_axi_cfg_arburst,
+    output wire [                    3:0] m_axi_cfg_arcache,
+    output wire [                    2:0] m_axi_cfg_arprot,
+    input  wire                           m_axi_cfg_rvalid,
+    output wire                           m_axi_cfg_rready,
+    input  wire [                   31:0] m_axi_cfg_rdata,
+    input  wire [                    1:0] m_axi_cfg_rresp,
+    input  wire                           m_axi_cfg_rlast,
     // memory
     output wire                           m_axi_arvalid,
     input  wire                           m_axi_arready,
@@ -152,7 +219,7 @@ module cchip_chip_core #(
     if (MISSES < 4) begin : gen_illegal_misses
       cchip_error_chip_core_MISSES_must_be_4_8_16_or_32 u_error ();
     end
-    if (RM_ID < 1 || RM_ID > 3) begin : gen_illegal_module
+    if (RM_ID < 0 || RM_ID > 3 || (SWAPS == 0 && RM_ID == 0)) begin : gen_illegal_module
       cchip_error_chip_core_RM_ID_must_be_1_to_3 u_error ();
     end
     if (QUEUE_DEPTH < 16 || QUEUE_DEPTH > 256 || (1 << $clog2(QUEUE_DEPTH)) != QUEUE_DEPTH)
@@ -469,77 +536,100 @@ module cchip_chip_core #(
       .read_data ({b, a})
   );
 
-  // ---- the slot
-  wire slot_vertex_valid, slot_first, slot_last, slot_result_valid;
-  wire [`CCHIP_PAIR_ID_W-1:0] slot_pair;
-  wire [`CCHIP_SLOT_RESULT_W-1:0] slot_result;
-  wire [`CCHIP_RM_ID_W-1:0] rm_id, region_rm_id;
+  // ---- slots. All kinds share the transform's credit: pairs of kinds that no slot serves can use
+  // it up, so that a queue that holds some is as good as full
+  localparam integer COUNT_W = $clog2(QUEUE_DEPTH + 1);
+  localparam [31:0] CREDIT_LEFT = QUEUE_DEPTH - 4;  // of a leaf pair's: more than that is used up
+  localparam [COUNT_W+1:0] MOST_WAITING = CREDIT_LEFT[COUNT_W+1:0];
+  wire [COUNT_W+1:0] waiting_in_all = {2'd0, waiting[COUNT_W+:COUNT_W]} +
+      {2'd0, waiting[2*COUNT_W+:COUNT_W]} + {2'd0, waiting[3*COUNT_W+:COUNT_W]};
+  reg crowded_q;
+  always @(posedge clk) crowded_q <= waiting_in_all > MOST_WAITING;
   wire result_valid, result_ready;
-  wire [`CCHIP_KIND_W-1:0] result_kind, answered_module;
+  wire [`CCHIP_KIND_W-1:0] result_kind;
   wire [`CCHIP_RESULT_W-1:0] result;
-  wire [`CCHIP_PAIR_COUNT_W-1:0] dispatched, lost;
-  wire quiet, decoupled, slot_decoupled, roc_busy, slot_idle;
-  wire answered, refused_kind, refused_provider;
-  cchip_dispatcher #(
-      .SLOTS (1),
-      .KINDS (KINDS),
-      .CREDIT(CONTEXTS)
-  ) u_dispatcher (
+  cchip_slots #(
+      .COORD_W    (COORD_W),
+      .SUBSTAGES  (SUBSTAGES),
+      .CONTEXTS   (CONTEXTS),
+      .SLOTS      (SLOTS),
+      .SWAPS      (SWAPS),
+      .COUNT_W    (COUNT_W),
+      .CFG_W      (CFG_W),
+      .CFG_DIVIDER(CFG_DIVIDER),
+      .ROC_CYCLES (ROC_CYCLES),
+      .SLOT0_RM_ID(RM_ID),
+      .SLOT1_RM_ID(SLOT1_RM_ID),
+      .SLOT2_RM_ID(SLOT2_RM_ID),
+      .SLOT3_RM_ID(SLOT3_RM_ID),
+      .SIMULATION (SIMULATION),
+      .SEED       (SEED)
+  ) u_slots (
       .clk             (clk),
-      .rst             (reset),
+      .rst             (rst),
+      .core_rst        (core_rst),
       .some            (some),
+      .waiting         (waiting),
+      .full            (~queue_room[KINDS:1] | ({KINDS{crowded_q}} & some[KINDS:1])),
       .kind            (kind),
       .look            (look),
       .pop             (pop),
       .vertex          (read_vertex),
       .descriptor      (descriptor),
-      .no_provider     ({RM_ID < 3, RM_ID < 2, 1'b0}),
-      .m_vertex_valid  (slot_vertex_valid),
-      .m_vertex_first  (slot_first),
-      .m_vertex_last   (slot_last),
-      .m_vertex_id     (slot_pair),
-      .s_result_valid  (slot_result_valid),
-      .s_result_data   (slot_result),
-      .slot_module     (rm_id[`CCHIP_KIND_W-1:0]),
+      .a               (a),
+      .b               (b),
       .m_result_valid  (result_valid),
       .m_result_ready  (result_ready),
       .m_result_kind   (result_kind),
       .m_result_data   (result),
-      .stop            (1'b0),
-      .quiet           (quiet),
-      .decouple        (1'b0),
-      .decoupled       (decoupled),
-      .outstanding     (dispatched),
-      .lost            (lost),
       .answered        (answered),
       .answered_module (answered_module),
       .refused_kind    (refused_kind),
-      .refused_provider(refused_provider)
-  );
-  cchip_pr_slot #(
-      .COORD_W  (COORD_W),
-      .SUBSTAGES(SUBSTAGES),
-      .CONTEXTS (CONTEXTS),
-      .RM_ID    (RM_ID),
-      .SIMULATION(0)
-  ) u_slot (
-      .clk           (clk),
-      .rst           (reset),
-      .decouple      (1'b0),
-      .decoupled     (slot_decoupled),
-      .hold_reset    (1'b0),
-      .roc_start     (1'b0),
-      .roc_busy      (roc_busy),
-      .region_rm_id  (region_rm_id),
-      .cfg_valid     (1'b0),
-      .cfg_data      (8'd0),
-      .s_vertex_valid(slot_vertex_valid),
-      .s_vertex_data (`CCHIP_VERTEX_OF(slot_first, slot_last, slot_pair,
-          descriptor[`CCHIP_DESCRIPTOR_ERR], descriptor[`CCHIP_DESCRIPTOR_MODE], a, b)),
-      .m_result_valid(slot_result_valid),
-      .m_result_data (slot_result),
-      .rm_id         (rm_id),
-      .idle          (slot_idle)
+      .refused_provider(refused_provider),
+      .outstanding     (slot_outstanding),
+      .rm_id           (slot_rm_id),
+      .decoupled       (slot_decoupled),
+      .phase           (slot_phase),
+      .clear           (swap_clear),
+      .abort_swap      (swap_abort),
+      .enable          (swap_enable),
+      .command_valid   (swap_command_valid),
+      .command_slot    (swap_command_slot),
+      .command_module  (swap_command_module),
+      .command_force   (swap_command_force),
+      .shutdown_limit  (swap_shutdown_limit),
+      .memory_limit    (swap_memory_limit),
+      .min_batch       (swap_min_batch),
+      .max_age         (swap_max_age),
+      .last_report     (swap_report),
+      .swap_events     (swap_events),
+      .lost            (swap_lost),
+      .write_table     (swap_write_table),
+      .write_word      (swap_write_word),
+      .write_data      (swap_write_data),
+      .write_bytes     (swap_write_bytes),
+      .read_word       (swap_read_word),
+      .table_data      (swap_table_data),
+      .phase_clocks    (swap_phase_clocks),
+      .swapped         (count_swap),
+      .rejected        (count_rejected),
+      .stall           (count_stall),
+      .m_axi_arvalid    (m_axi_cfg_arvalid),
+      .m_axi_arready    (m_axi_cfg_arready),
+      .m_axi_araddr     (m_axi_cfg_araddr),
+      .m_axi_arlen      (m_axi_cfg_arlen),
+      .m_axi_arsize     (m_axi_cfg_arsize),
+      .m_axi_arburst    (m_axi_cfg_arburst),
+      .m_axi_arcache    (m_axi_cfg_arcache),
+      .m_axi_arprot     (m_axi_cfg_arprot),
+      .m_axi_rvalid     (m_axi_cfg_rvalid),
+      .m_axi_rready     (m_axi_cfg_rready),
+      .m_axi_rdata      (m_axi_cfg_rdata),
+      .m_axi_rresp      (m_axi_cfg_rresp),
+      .m_axi_rlast      (m_axi_cfg_rlast),
+      .cfg_valid       (cfg_valid),
+      .cfg_data        (cfg_data),
+      .cfg_error       (cfg_error)
   );
   assign count_pair = result_valid & result_ready;
 
@@ -672,10 +762,8 @@ module cchip_chip_core #(
   assign count_error = count_query && code != {5'd0, `CCHIP_END_OK} &&
       code != {5'd0, `CCHIP_END_HOST};
 
-  wire unused = &{1'b0, start_epoch, count_tests, count_wait, count_again, queue_room, waiting,
-      outstanding_reads[2*MISSES-1:MISSES], rm_id, region_rm_id, result_kind, answered_module,
-      result, dispatched, lost, quiet, decoupled, slot_decoupled, roc_busy, slot_idle, answered,
-      refused_kind, refused_provider, result_tag};
+  wire unused = &{1'b0, start_epoch, count_tests, count_wait, count_again, waiting[COUNT_W-1:0],
+      queue_room[0], outstanding_reads[2*MISSES-1:MISSES], result_kind, result, result_tag};
   always @(posedge clk)
     if (!reset) begin
       `CCHIP_ASSERT(a_kind_room, !(vertex_valid && vertex_last) || kind_room)

@@ -4,8 +4,8 @@
 // cchip_soft_reset: resets a core while its bus masters work on, until memory owes nothing.
 //   resetting    the reset of the core: 1 from a request until `outstanding` has been 0 for CLOCKS
 //                clocks in a row, so at least CLOCKS clocks. A request meanwhile starts it anew
-//   silence      if memory never answers, resetting stays 1: only rst, with a reset of the bus, ends
-//                that
+//   silence      if memory never answers, resetting stays 1: only rst, with a reset of the bus,
+//                ends that
 //   latency      1 clock from request to resetting; done is 1 on the first clock after it
 //   cuts         every path: each output is a flip-flop
 //   reset        ends a soft reset, without done

@@ -271,7 +271,7 @@ module cchip_slots #(
           read_word, m_axi_arready, m_axi_rvalid, m_axi_rdata, m_axi_rresp, m_axi_rlast,
           cfg_error};
     end else begin : gen_swaps
-      wire [4*SLOTS-1:0] table_valid, invalidate, resting;
+      wire [4*SLOTS-1:0] table_valid, invalidate, resting, hopeless;
       wire [3:0] table_entry;
       wire [31:0] table_address, table_size;
       wire table_look, report_valid;
@@ -327,7 +327,8 @@ module cchip_slots #(
           .report_valid(swap_report),
           .report_data (swap_report_data),
           .valid       (table_valid),
-          .resting     (resting)
+          .resting     (resting),
+          .hopeless    (hopeless)
       );
 
       cchip_swap_scheduler #(
@@ -342,6 +343,7 @@ module cchip_slots #(
           .table_valid     (table_valid),
           .table_invalidate(invalidate),
           .table_resting   (resting),
+          .table_hopeless  (hopeless),
           .table_look      (table_look),
           .table_entry     (table_entry),
           .table_address   (table_address),

@@ -7,6 +7,8 @@
 //                CCHIP_RETRY_CLOCKS << level clocks from the latest failure on. After each rest
 //                level grows by one, up to CCHIP_RETRY_DOUBLINGS; it is 0 again once no failed
 //                entry is left. An entry that is no longer valid is forgotten.
+//   hopeless     entries that rest after CCHIP_RETRY_DOUBLINGS failures in a row or more: nobody
+//                should wait for them until they are tried again
 //   latency      1 clock from the report to resting
 //   cuts         every path: each output comes from flip-flops
 //   reset        nothing rests, level 0
@@ -20,13 +22,15 @@ module cchip_swap_retry #(
     input  wire [`CCHIP_SWAP_REPORT_W-1:0] report_data,
     // entry 4 * slot + module
     input  wire [             4*SLOTS-1:0] valid,         // there is a bitstream
-    output wire [             4*SLOTS-1:0] resting
+    output wire [             4*SLOTS-1:0] resting,
+    output wire [             4*SLOTS-1:0] hopeless
 );
 
   localparam integer TIMER_W = $clog2(`CCHIP_RETRY_CLOCKS + 1) + `CCHIP_RETRY_DOUBLINGS;
   localparam [TIMER_W-1:0] FIRST = `CCHIP_RETRY_CLOCKS;
   localparam [TIMER_W-1:0] ONE = 1;
   localparam [3:0] LEVEL_MAX = `CCHIP_RETRY_DOUBLINGS;
+  localparam [3:0] LEVEL_HOPELESS = LEVEL_MAX - 4'd1;  // the first failure comes at level 0
 
   generate
     if (SLOTS < 1 || SLOTS > 4) begin : gen_illegal
@@ -52,6 +56,7 @@ module cchip_swap_retry #(
   reg [TIMER_W-1:0] timer_q;  // clocks since the latest failure
   wire [TIMER_W-1:0] limit = FIRST << level_q;
   assign resting = failed_q & {4 * SLOTS{rests_q}};
+  assign hopeless = resting & {4 * SLOTS{level_q >= LEVEL_HOPELESS}};
 
   always @(posedge clk) begin
     timer_q <= put_off ? ONE : timer_q + ONE;

@@ -14,7 +14,8 @@
 //   faults       only a bad bitstream or entry (CCHIP_SWAP_SPOILT) loses its valid bit
 //                (`table_invalidate`). An entry that rests (cchip_swap_retry) is not chosen here,
 //                by a command it is. A kind that no slot serves, no valid bitstream brings and no
-//                swap is bringing for 16 clocks has `no_provider` = 1.
+//                swap is bringing for 16 clocks has `no_provider` = 1; a bitstream that is hopeless
+//                brings nothing, until it is tried again
 //   command      refused with BUSY while a swap is under way, with REQUEST where the table has no
 //                valid bitstream; commands are two clocks apart at least, because a refusal that
 //                meets another report waits for a clock
@@ -39,6 +40,7 @@ module cchip_swap_scheduler #(
     input  wire [              4*SLOTS-1:0] table_valid,
     output wire [              4*SLOTS-1:0] table_invalidate,
     input  wire [              4*SLOTS-1:0] table_resting,
+    input  wire [              4*SLOTS-1:0] table_hopeless,
     // the entry of the swap; its address and size come 2 clocks after table_look and stay
     output wire                             table_look,
     output wire [                      3:0] table_entry,
@@ -117,7 +119,8 @@ module cchip_swap_scheduler #(
       wire [SLOTS-1:0] holds, brings;
       for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_holds
         assign holds[slot]  = slot_module[2*slot+:2] >= KIND[1:0];
-        assign brings[slot] = |table_valid[4*slot+3:4*slot+kind+1];
+        assign brings[slot] = |(table_valid[4*slot+3:4*slot+kind+1] &
+            ~table_hopeless[4*slot+3:4*slot+kind+1]);
       end
       reg some_q, served_q;
       always @(posedge clk) begin
@@ -262,6 +265,7 @@ module cchip_swap_scheduler #(
           && {s_report_slot, s_report_module[1:0]} == i[9:0];
   end
 
+  wire unused = &{1'b0, table_hopeless};  // those of module 0 bring no kind
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_one_swap, {2'd0, swapping_q} + {2'd0, m_swap_valid_q}

@@ -64,6 +64,14 @@ module cchip_chip_regs (
     input  wire hwif_in_status_query_failed,
     input  wire hwif_in_status_idle,
     input  wire hwif_in_status_resetting,
+    output wire hwif_out_interrupt_status_no_provider,
+    input  wire hwif_in_interrupt_status_no_provider_hwset,
+    output wire hwif_out_interrupt_status_swap_lost,
+    input  wire hwif_in_interrupt_status_swap_lost_hwset,
+    output wire hwif_out_interrupt_status_swap_error,
+    input  wire hwif_in_interrupt_status_swap_error_hwset,
+    output wire hwif_out_interrupt_status_swap_done,
+    input  wire hwif_in_interrupt_status_swap_done_hwset,
     output wire hwif_out_interrupt_status_invalidated,
     input  wire hwif_in_interrupt_status_invalidated_hwset,
     output wire hwif_out_interrupt_status_reset_done,
@@ -74,6 +82,10 @@ module cchip_chip_regs (
     input  wire hwif_in_interrupt_status_query_failed_hwset,
     output wire hwif_out_interrupt_status_record,
     input  wire hwif_in_interrupt_status_record_hwset,
+    output wire hwif_out_interrupt_enable_no_provider,
+    output wire hwif_out_interrupt_enable_swap_lost,
+    output wire hwif_out_interrupt_enable_swap_error,
+    output wire hwif_out_interrupt_enable_swap_done,
     output wire hwif_out_interrupt_enable_invalidated,
     output wire hwif_out_interrupt_enable_reset_done,
     output wire hwif_out_interrupt_enable_record_failed,
@@ -100,7 +112,33 @@ module cchip_chip_regs (
     output wire [31:0] hwif_out_invalidate_first_line,
     output wire [31:0] hwif_out_invalidate_last_line,
     output wire hwif_out_invalidate_go,
-    output wire hwif_out_counter_read
+    output wire hwif_out_swap_control_abort,
+    output wire hwif_out_swap_control_scheduler_enable,
+    output wire hwif_out_swap_command_go,
+    output wire hwif_out_swap_command_force,
+    output wire [7:0] hwif_out_swap_command_module_id,
+    output wire [7:0] hwif_out_swap_command_slot,
+    input  wire [7:0] hwif_in_swap_report_module_id,
+    input  wire [7:0] hwif_in_swap_report_slot,
+    input  wire [3:0] hwif_in_swap_report_code,
+    input  wire [15:0] hwif_in_swap_report_lost_pairs,
+    output wire [31:0] hwif_out_swap_shutdown_limit_clocks,
+    output wire [31:0] hwif_out_swap_memory_limit_clocks,
+    output wire [31:0] hwif_out_swap_minimum_batch_pairs,
+    output wire [31:0] hwif_out_swap_maximum_age_clocks,
+    input  wire [4*16-1:0] hwif_in_slot_status_outstanding,
+    input  wire [3:0] hwif_in_slot_status_decoupled,
+    input  wire [4*4-1:0] hwif_in_slot_status_phase,
+    input  wire [4*8-1:0] hwif_in_slot_status_module_id,
+    input  wire [31:0] hwif_in_swap_lost_value,
+    output wire hwif_out_counter_read,
+    output wire hwif_out_swaps_read,
+    output wire hwif_out_rejected_read,
+    output wire hwif_out_stalls_read,
+    output wire hwif_out_phase_clocks_read,
+    output wire hwif_out_pairs_read,
+    output wire hwif_out_bitstream_read,
+    output wire hwif_out_bitstream_write
 );
 
   // ---- write: address and data are taken in any order, decoded, carried out
@@ -108,7 +146,7 @@ module cchip_chip_regs (
   reg [9:0] waddr_q;
   reg [31:0] wdata_q;
   reg [3:0] wstrb_q;
-  reg [25:0] strobe_q;  // one-hot: what is written
+  reg [32:0] strobe_q;  // one-hot: what is written
 
   wire aw = s_axil_awvalid & awready_q;
   wire w = s_axil_wvalid & wready_q;
@@ -116,13 +154,23 @@ module cchip_chip_regs (
   wire aw_d = (aw_q | aw) & ~b;
   wire w_d = (w_q | w) & ~b;
   wire decode = aw_q & w_q & ~decoded_q & ~bvalid_q;
-  wire [25:0] written;
+  wire [32:0] written;
   wire written_in_0 = decode && waddr_q[9:3] == 7'd0;
   wire written_in_1 = decode && waddr_q[9:3] == 7'd1;
   wire written_in_2 = decode && waddr_q[9:3] == 7'd2;
   wire written_in_3 = decode && waddr_q[9:3] == 7'd3;
   wire written_in_4 = decode && waddr_q[9:3] == 7'd4;
   wire written_in_5 = decode && waddr_q[9:3] == 7'd5;
+  wire written_in_32 = decode && waddr_q[9:3] == 7'd32;
+  wire written_in_33 = decode && waddr_q[9:3] == 7'd33;
+  wire written_in_48 = decode && waddr_q[9:3] == 7'd48;
+  wire written_in_49 = decode && waddr_q[9:3] == 7'd49;
+  wire written_in_50 = decode && waddr_q[9:3] == 7'd50;
+  wire written_in_51 = decode && waddr_q[9:3] == 7'd51;
+  wire written_in_52 = decode && waddr_q[9:3] == 7'd52;
+  wire written_in_53 = decode && waddr_q[9:3] == 7'd53;
+  wire written_in_54 = decode && waddr_q[9:3] == 7'd54;
+  wire written_in_55 = decode && waddr_q[9:3] == 7'd55;
   assign written[0] = (written_in_0 && waddr_q[2:0] == 3'd4);
   assign written[1] = (written_in_1 && waddr_q[2:0] == 3'd0);
   assign written[2] = (written_in_1 && waddr_q[2:0] == 3'd1);
@@ -149,6 +197,27 @@ module cchip_chip_regs (
   assign written[23] = (written_in_5 && waddr_q[2:0] == 3'd0);
   assign written[24] = (written_in_5 && waddr_q[2:0] == 3'd1);
   assign written[25] = (written_in_5 && waddr_q[2:0] == 3'd2);
+  assign written[26] = (written_in_32 && waddr_q[2:0] == 3'd4);
+  assign written[27] = (written_in_32 && waddr_q[2:0] == 3'd5);
+  assign written[28] = (written_in_33 && waddr_q[2:0] == 3'd4);
+  assign written[29] = (written_in_33 && waddr_q[2:0] == 3'd5);
+  assign written[30] = (written_in_33 && waddr_q[2:0] == 3'd6);
+  assign written[31] = (written_in_33 && waddr_q[2:0] == 3'd7);
+  assign written[32] = (written_in_48 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 ||
+      waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6))
+      || (written_in_49 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 ||
+      waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6)) || (written_in_50 &&
+      (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4
+      || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6)) || (written_in_51 && (waddr_q[2:0] == 3'd0
+      || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4 || waddr_q[2:0] ==
+      3'd5 || waddr_q[2:0] == 3'd6)) || (written_in_52 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] ==
+      3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0]
+      == 3'd6)) || (written_in_53 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0]
+      == 3'd2 || waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6)) ||
+      (written_in_54 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 ||
+      waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6)) || (written_in_55 &&
+      (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4
+      || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6));
 
   assign s_axil_awready = awready_q;
   assign s_axil_wready = wready_q;
@@ -159,7 +228,7 @@ module cchip_chip_regs (
     if (aw) waddr_q <= s_axil_awaddr[11:2];
     if (w) wdata_q <= s_axil_wdata;
     if (w) wstrb_q <= s_axil_wstrb;
-    if (decoded_q) bresp_q <= strobe_q == 26'd0;
+    if (decoded_q) bresp_q <= strobe_q == 33'd0;
     if (rst) begin
       awready_q <= 1'b0;
       wready_q  <= 1'b0;
@@ -167,7 +236,7 @@ module cchip_chip_regs (
       w_q       <= 1'b0;
       decoded_q <= 1'b0;
       bvalid_q  <= 1'b0;
-      strobe_q  <= 26'd0;
+      strobe_q  <= 33'd0;
     end else begin
       awready_q <= ~aw_d;
       wready_q  <= ~w_d;
@@ -183,11 +252,19 @@ module cchip_chip_regs (
   reg control_clear_q;
   reg control_soft_reset_q;
   reg control_enable_q;
+  reg interrupt_status_no_provider_q;
+  reg interrupt_status_swap_lost_q;
+  reg interrupt_status_swap_error_q;
+  reg interrupt_status_swap_done_q;
   reg interrupt_status_invalidated_q;
   reg interrupt_status_reset_done_q;
   reg interrupt_status_record_failed_q;
   reg interrupt_status_query_failed_q;
   reg interrupt_status_record_q;
+  reg interrupt_enable_no_provider_q;
+  reg interrupt_enable_swap_lost_q;
+  reg interrupt_enable_swap_error_q;
+  reg interrupt_enable_swap_done_q;
   reg interrupt_enable_invalidated_q;
   reg interrupt_enable_reset_done_q;
   reg interrupt_enable_record_failed_q;
@@ -210,17 +287,35 @@ module cchip_chip_regs (
   reg [31:0] invalidate_first_line_q;
   reg [31:0] invalidate_last_line_q;
   reg invalidate_go_q;
+  reg swap_control_abort_q;
+  reg swap_control_scheduler_enable_q;
+  reg swap_command_go_q;
+  reg swap_command_force_q;
+  reg [7:0] swap_command_module_id_q;
+  reg [7:0] swap_command_slot_q;
+  reg [31:0] swap_shutdown_limit_clocks_q;
+  reg [31:0] swap_memory_limit_clocks_q;
+  reg [31:0] swap_minimum_batch_pairs_q;
+  reg [31:0] swap_maximum_age_clocks_q;
 
   always @(posedge clk)
     if (rst) begin
       control_clear_q <= 1'h0;
       control_soft_reset_q <= 1'h0;
       control_enable_q <= 1'h0;
+      interrupt_status_no_provider_q <= 1'h0;
+      interrupt_status_swap_lost_q <= 1'h0;
+      interrupt_status_swap_error_q <= 1'h0;
+      interrupt_status_swap_done_q <= 1'h0;
       interrupt_status_invalidated_q <= 1'h0;
       interrupt_status_reset_done_q <= 1'h0;
       interrupt_status_record_failed_q <= 1'h0;
       interrupt_status_query_failed_q <= 1'h0;
       interrupt_status_record_q <= 1'h0;
+      interrupt_enable_no_provider_q <= 1'h0;
+      interrupt_enable_swap_lost_q <= 1'h0;
+      interrupt_enable_swap_error_q <= 1'h0;
+      interrupt_enable_swap_done_q <= 1'h0;
       interrupt_enable_invalidated_q <= 1'h0;
       interrupt_enable_reset_done_q <= 1'h0;
       interrupt_enable_record_failed_q <= 1'h0;
@@ -243,11 +338,29 @@ module cchip_chip_regs (
       invalidate_first_line_q <= 32'h0;
       invalidate_last_line_q <= 32'h0;
       invalidate_go_q <= 1'h0;
+      swap_control_abort_q <= 1'h0;
+      swap_control_scheduler_enable_q <= 1'h0;
+      swap_command_go_q <= 1'h0;
+      swap_command_force_q <= 1'h0;
+      swap_command_module_id_q <= 8'h0;
+      swap_command_slot_q <= 8'h0;
+      swap_shutdown_limit_clocks_q <= 32'h0;
+      swap_memory_limit_clocks_q <= 32'h0;
+      swap_minimum_batch_pairs_q <= 32'h1;
+      swap_maximum_age_clocks_q <= 32'h10000;
     end else begin
       control_clear_q <= wdata_q[2] & (strobe_q[0] & wstrb_q[0]);
       control_soft_reset_q <= wdata_q[1] & (strobe_q[0] & wstrb_q[0]);
       if (strobe_q[0] & wstrb_q[0]) control_enable_q <= wdata_q[0];
       else control_enable_q <= control_enable_q & ~hwif_in_control_enable_hwclr;
+      interrupt_status_no_provider_q <= (interrupt_status_no_provider_q & ~(wdata_q[8] &
+          (strobe_q[1] & wstrb_q[1]))) | hwif_in_interrupt_status_no_provider_hwset;
+      interrupt_status_swap_lost_q <= (interrupt_status_swap_lost_q & ~(wdata_q[7] & (strobe_q[1] &
+          wstrb_q[0]))) | hwif_in_interrupt_status_swap_lost_hwset;
+      interrupt_status_swap_error_q <= (interrupt_status_swap_error_q & ~(wdata_q[6] & (strobe_q[1]
+          & wstrb_q[0]))) | hwif_in_interrupt_status_swap_error_hwset;
+      interrupt_status_swap_done_q <= (interrupt_status_swap_done_q & ~(wdata_q[5] & (strobe_q[1] &
+          wstrb_q[0]))) | hwif_in_interrupt_status_swap_done_hwset;
       interrupt_status_invalidated_q <= (interrupt_status_invalidated_q & ~(wdata_q[4] &
           (strobe_q[1] & wstrb_q[0]))) | hwif_in_interrupt_status_invalidated_hwset;
       interrupt_status_reset_done_q <= (interrupt_status_reset_done_q & ~(wdata_q[3] & (strobe_q[1]
@@ -258,6 +371,10 @@ module cchip_chip_regs (
           (strobe_q[1] & wstrb_q[0]))) | hwif_in_interrupt_status_query_failed_hwset;
       interrupt_status_record_q <= (interrupt_status_record_q & ~(wdata_q[0] & (strobe_q[1] &
           wstrb_q[0]))) | hwif_in_interrupt_status_record_hwset;
+      if (strobe_q[2] & wstrb_q[1]) interrupt_enable_no_provider_q <= wdata_q[8];
+      if (strobe_q[2] & wstrb_q[0]) interrupt_enable_swap_lost_q <= wdata_q[7];
+      if (strobe_q[2] & wstrb_q[0]) interrupt_enable_swap_error_q <= wdata_q[6];
+      if (strobe_q[2] & wstrb_q[0]) interrupt_enable_swap_done_q <= wdata_q[5];
       if (strobe_q[2] & wstrb_q[0]) interrupt_enable_invalidated_q <= wdata_q[4];
       if (strobe_q[2] & wstrb_q[0]) interrupt_enable_reset_done_q <= wdata_q[3];
       if (strobe_q[2] & wstrb_q[0]) interrupt_enable_record_failed_q <= wdata_q[2];
@@ -350,16 +467,46 @@ module cchip_chip_regs (
       if (strobe_q[24] & wstrb_q[2]) invalidate_last_line_q[16+:8] <= wdata_q[16+:8];
       if (strobe_q[24] & wstrb_q[3]) invalidate_last_line_q[24+:8] <= wdata_q[24+:8];
       invalidate_go_q <= wdata_q[0] & (strobe_q[25] & wstrb_q[0]);
+      swap_control_abort_q <= wdata_q[1] & (strobe_q[26] & wstrb_q[0]);
+      if (strobe_q[26] & wstrb_q[0]) swap_control_scheduler_enable_q <= wdata_q[0];
+      swap_command_go_q <= wdata_q[31] & (strobe_q[27] & wstrb_q[3]);
+      if (strobe_q[27] & wstrb_q[2]) swap_command_force_q <= wdata_q[16];
+      if (strobe_q[27] & wstrb_q[1]) swap_command_module_id_q <= wdata_q[8+:8];
+      if (strobe_q[27] & wstrb_q[0]) swap_command_slot_q <= wdata_q[0+:8];
+      if (strobe_q[28] & wstrb_q[0]) swap_shutdown_limit_clocks_q[0+:8] <= wdata_q[0+:8];
+      if (strobe_q[28] & wstrb_q[1]) swap_shutdown_limit_clocks_q[8+:8] <= wdata_q[8+:8];
+      if (strobe_q[28] & wstrb_q[2]) swap_shutdown_limit_clocks_q[16+:8] <= wdata_q[16+:8];
+      if (strobe_q[28] & wstrb_q[3]) swap_shutdown_limit_clocks_q[24+:8] <= wdata_q[24+:8];
+      if (strobe_q[29] & wstrb_q[0]) swap_memory_limit_clocks_q[0+:8] <= wdata_q[0+:8];
+      if (strobe_q[29] & wstrb_q[1]) swap_memory_limit_clocks_q[8+:8] <= wdata_q[8+:8];
+      if (strobe_q[29] & wstrb_q[2]) swap_memory_limit_clocks_q[16+:8] <= wdata_q[16+:8];
+      if (strobe_q[29] & wstrb_q[3]) swap_memory_limit_clocks_q[24+:8] <= wdata_q[24+:8];
+      if (strobe_q[30] & wstrb_q[0]) swap_minimum_batch_pairs_q[0+:8] <= wdata_q[0+:8];
+      if (strobe_q[30] & wstrb_q[1]) swap_minimum_batch_pairs_q[8+:8] <= wdata_q[8+:8];
+      if (strobe_q[30] & wstrb_q[2]) swap_minimum_batch_pairs_q[16+:8] <= wdata_q[16+:8];
+      if (strobe_q[30] & wstrb_q[3]) swap_minimum_batch_pairs_q[24+:8] <= wdata_q[24+:8];
+      if (strobe_q[31] & wstrb_q[0]) swap_maximum_age_clocks_q[0+:8] <= wdata_q[0+:8];
+      if (strobe_q[31] & wstrb_q[1]) swap_maximum_age_clocks_q[8+:8] <= wdata_q[8+:8];
+      if (strobe_q[31] & wstrb_q[2]) swap_maximum_age_clocks_q[16+:8] <= wdata_q[16+:8];
+      if (strobe_q[31] & wstrb_q[3]) swap_maximum_age_clocks_q[24+:8] <= wdata_q[24+:8];
     end
 
   assign hwif_out_control_clear = control_clear_q;
   assign hwif_out_control_soft_reset = control_soft_reset_q;
   assign hwif_out_control_enable = control_enable_q;
+  assign hwif_out_interrupt_status_no_provider = interrupt_status_no_provider_q;
+  assign hwif_out_interrupt_status_swap_lost = interrupt_status_swap_lost_q;
+  assign hwif_out_interrupt_status_swap_error = interrupt_status_swap_error_q;
+  assign hwif_out_interrupt_status_swap_done = interrupt_status_swap_done_q;
   assign hwif_out_interrupt_status_invalidated = interrupt_status_invalidated_q;
   assign hwif_out_interrupt_status_reset_done = interrupt_status_reset_done_q;
   assign hwif_out_interrupt_status_record_failed = interrupt_status_record_failed_q;
   assign hwif_out_interrupt_status_query_failed = interrupt_status_query_failed_q;
   assign hwif_out_interrupt_status_record = interrupt_status_record_q;
+  assign hwif_out_interrupt_enable_no_provider = interrupt_enable_no_provider_q;
+  assign hwif_out_interrupt_enable_swap_lost = interrupt_enable_swap_lost_q;
+  assign hwif_out_interrupt_enable_swap_error = interrupt_enable_swap_error_q;
+  assign hwif_out_interrupt_enable_swap_done = interrupt_enable_swap_done_q;
   assign hwif_out_interrupt_enable_invalidated = interrupt_enable_invalidated_q;
   assign hwif_out_interrupt_enable_reset_done = interrupt_enable_reset_done_q;
   assign hwif_out_interrupt_enable_record_failed = interrupt_enable_record_failed_q;
@@ -382,13 +529,23 @@ module cchip_chip_regs (
   assign hwif_out_invalidate_first_line = invalidate_first_line_q;
   assign hwif_out_invalidate_last_line = invalidate_last_line_q;
   assign hwif_out_invalidate_go = invalidate_go_q;
+  assign hwif_out_swap_control_abort = swap_control_abort_q;
+  assign hwif_out_swap_control_scheduler_enable = swap_control_scheduler_enable_q;
+  assign hwif_out_swap_command_go = swap_command_go_q;
+  assign hwif_out_swap_command_force = swap_command_force_q;
+  assign hwif_out_swap_command_module_id = swap_command_module_id_q;
+  assign hwif_out_swap_command_slot = swap_command_slot_q;
+  assign hwif_out_swap_shutdown_limit_clocks = swap_shutdown_limit_clocks_q;
+  assign hwif_out_swap_memory_limit_clocks = swap_memory_limit_clocks_q;
+  assign hwif_out_swap_minimum_batch_pairs = swap_minimum_batch_pairs_q;
+  assign hwif_out_swap_maximum_age_clocks = swap_maximum_age_clocks_q;
 
   // ---- read: the address chooses a word, which is gated on its way to the bus
   reg arready_q, ar_q, read_q, done_q, missing_q, rvalid_q, rerror_q;
   reg [9:0] raddr_q;
   reg [31:0] rdata_q;
-  reg [33:0] select_q;  // one-hot for a clock: the word that is read; above: what is external
-  wire [33:0] selected;
+  reg [52:0] select_q;  // one-hot for a clock: the word that is read; above: what is external
+  wire [52:0] selected;
   wire selected_in_0 = read_q && raddr_q[9:3] == 7'd0;
   wire selected_in_1 = read_q && raddr_q[9:3] == 7'd1;
   wire selected_in_2 = read_q && raddr_q[9:3] == 7'd2;
@@ -398,6 +555,21 @@ module cchip_chip_regs (
   wire selected_in_8 = read_q && raddr_q[9:3] == 7'd8;
   wire selected_in_9 = read_q && raddr_q[9:3] == 7'd9;
   wire selected_in_10 = read_q && raddr_q[9:3] == 7'd10;
+  wire selected_in_32 = read_q && raddr_q[9:3] == 7'd32;
+  wire selected_in_33 = read_q && raddr_q[9:3] == 7'd33;
+  wire selected_in_34 = read_q && raddr_q[9:3] == 7'd34;
+  wire selected_in_36 = read_q && raddr_q[9:3] == 7'd36;
+  wire selected_in_38 = read_q && raddr_q[9:3] == 7'd38;
+  wire selected_in_39 = read_q && raddr_q[9:3] == 7'd39;
+  wire selected_in_40 = read_q && raddr_q[9:3] == 7'd40;
+  wire selected_in_48 = read_q && raddr_q[9:3] == 7'd48;
+  wire selected_in_49 = read_q && raddr_q[9:3] == 7'd49;
+  wire selected_in_50 = read_q && raddr_q[9:3] == 7'd50;
+  wire selected_in_51 = read_q && raddr_q[9:3] == 7'd51;
+  wire selected_in_52 = read_q && raddr_q[9:3] == 7'd52;
+  wire selected_in_53 = read_q && raddr_q[9:3] == 7'd53;
+  wire selected_in_54 = read_q && raddr_q[9:3] == 7'd54;
+  wire selected_in_55 = read_q && raddr_q[9:3] == 7'd55;
   assign selected[0] = (selected_in_0 && raddr_q[2:0] == 3'd0);
   assign selected[1] = (selected_in_0 && raddr_q[2:0] == 3'd1);
   assign selected[2] = (selected_in_0 && raddr_q[2:0] == 3'd2);
@@ -431,9 +603,45 @@ module cchip_chip_regs (
   assign selected[30] = (selected_in_5 && raddr_q[2:0] == 3'd0);
   assign selected[31] = (selected_in_5 && raddr_q[2:0] == 3'd1);
   assign selected[32] = (selected_in_5 && raddr_q[2:0] == 3'd2);
-  assign selected[33] = selected_in_8 || selected_in_9 || (selected_in_10 && (raddr_q[2:0] == 3'd0
+  assign selected[33] = (selected_in_32 && raddr_q[2:0] == 3'd4);
+  assign selected[34] = (selected_in_32 && raddr_q[2:0] == 3'd5);
+  assign selected[35] = (selected_in_32 && raddr_q[2:0] == 3'd6);
+  assign selected[36] = (selected_in_32 && raddr_q[2:0] == 3'd7);
+  assign selected[37] = (selected_in_33 && raddr_q[2:0] == 3'd4);
+  assign selected[38] = (selected_in_33 && raddr_q[2:0] == 3'd5);
+  assign selected[39] = (selected_in_33 && raddr_q[2:0] == 3'd6);
+  assign selected[40] = (selected_in_33 && raddr_q[2:0] == 3'd7);
+  assign selected[41] = (selected_in_34 && raddr_q[2:0] == 3'd0);
+  assign selected[42] = (selected_in_34 && raddr_q[2:0] == 3'd1);
+  assign selected[43] = (selected_in_34 && raddr_q[2:0] == 3'd2);
+  assign selected[44] = (selected_in_34 && raddr_q[2:0] == 3'd3);
+  assign selected[45] = (selected_in_36 && raddr_q[2:0] == 3'd3);
+  assign selected[46] = selected_in_8 || selected_in_9 || (selected_in_10 && (raddr_q[2:0] == 3'd0
       || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd3 || raddr_q[2:0] ==
       3'd4 || raddr_q[2:0] == 3'd5));
+  assign selected[47] = (selected_in_36 && raddr_q[2:0] == 3'd0);
+  assign selected[48] = (selected_in_36 && raddr_q[2:0] == 3'd1);
+  assign selected[49] = (selected_in_36 && raddr_q[2:0] == 3'd2);
+  assign selected[50] = (selected_in_38 && (raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 ||
+      raddr_q[2:0] == 3'd3 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6
+      || raddr_q[2:0] == 3'd7)) || (selected_in_39 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] ==
+      3'd1));
+  assign selected[51] = selected_in_40;
+  assign selected[52] = (selected_in_48 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 ||
+      raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6))
+      || (selected_in_49 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 ||
+      raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_50 &&
+      (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4
+      || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_51 && (raddr_q[2:0] == 3'd0
+      || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] ==
+      3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_52 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] ==
+      3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0]
+      == 3'd6)) || (selected_in_53 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0]
+      == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) ||
+      (selected_in_54 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 ||
+      raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_55 &&
+      (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4
+      || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6));
 
   wire ar = s_axil_arvalid & arready_q;
   wire ar_d = (ar_q | ar) & ~(rvalid_q & s_axil_rready);
@@ -456,10 +664,14 @@ module cchip_chip_regs (
       ({25'd0, hwif_in_status_write_outstanding, hwif_in_status_read_outstanding,
           hwif_in_status_invalidating, hwif_in_status_record_failed, hwif_in_status_query_failed,
           hwif_in_status_idle, hwif_in_status_resetting} & {32{select_q[5]}}) |
-      ({27'd0, interrupt_status_invalidated_q, interrupt_status_reset_done_q,
+      ({23'd0, interrupt_status_no_provider_q, interrupt_status_swap_lost_q,
+          interrupt_status_swap_error_q, interrupt_status_swap_done_q,
+          interrupt_status_invalidated_q, interrupt_status_reset_done_q,
           interrupt_status_record_failed_q, interrupt_status_query_failed_q,
           interrupt_status_record_q} & {32{select_q[6]}}) |
-      ({27'd0, interrupt_enable_invalidated_q, interrupt_enable_reset_done_q,
+      ({23'd0, interrupt_enable_no_provider_q, interrupt_enable_swap_lost_q,
+          interrupt_enable_swap_error_q, interrupt_enable_swap_done_q,
+          interrupt_enable_invalidated_q, interrupt_enable_reset_done_q,
           interrupt_enable_record_failed_q, interrupt_enable_query_failed_q,
           interrupt_enable_record_q} & {32{select_q[7]}}) |
       (step_limit_steps_q & {32{select_q[8]}}) |
@@ -487,25 +699,48 @@ module cchip_chip_regs (
       (invalidate_first_line_q & {32{select_q[30]}}) |
       (invalidate_last_line_q & {32{select_q[31]}}) |
       ({31'd0, 1'd0} & {32{select_q[32]}}) |
+      ({30'd0, 1'd0, swap_control_scheduler_enable_q} & {32{select_q[33]}}) |
+      ({1'd0, 14'd0, swap_command_force_q, swap_command_module_id_q, swap_command_slot_q} &
+          {32{select_q[34]}}) |
+      ({8'd0, hwif_in_swap_report_module_id, hwif_in_swap_report_slot, 4'd0,
+          hwif_in_swap_report_code} & {32{select_q[35]}}) |
+      ({16'd0, hwif_in_swap_report_lost_pairs} & {32{select_q[36]}}) |
+      (swap_shutdown_limit_clocks_q & {32{select_q[37]}}) |
+      (swap_memory_limit_clocks_q & {32{select_q[38]}}) |
+      (swap_minimum_batch_pairs_q & {32{select_q[39]}}) |
+      (swap_maximum_age_clocks_q & {32{select_q[40]}}) |
+      ({hwif_in_slot_status_outstanding[0+:16], 3'd0, hwif_in_slot_status_decoupled[0],
+          hwif_in_slot_status_phase[0+:4], hwif_in_slot_status_module_id[0+:8]} &
+          {32{select_q[41]}}) |
+      ({hwif_in_slot_status_outstanding[16+:16], 3'd0, hwif_in_slot_status_decoupled[1],
+          hwif_in_slot_status_phase[4+:4], hwif_in_slot_status_module_id[8+:8]} &
+          {32{select_q[42]}}) |
+      ({hwif_in_slot_status_outstanding[32+:16], 3'd0, hwif_in_slot_status_decoupled[2],
+          hwif_in_slot_status_phase[8+:4], hwif_in_slot_status_module_id[16+:8]} &
+          {32{select_q[43]}}) |
+      ({hwif_in_slot_status_outstanding[48+:16], 3'd0, hwif_in_slot_status_decoupled[3],
+          hwif_in_slot_status_phase[12+:4], hwif_in_slot_status_module_id[24+:8]} &
+          {32{select_q[44]}}) |
+      (hwif_in_swap_lost_value & {32{select_q[45]}}) |
       hwif_in_external_rdata;
 
   always @(posedge clk) begin
     if (ar) raddr_q <= s_axil_araddr[11:2];
     if (answered) rdata_q <= word;
     if (answered) rerror_q <= missing_q;
-    if (read_q) missing_q <= selected == 34'd0;
+    if (read_q) missing_q <= selected == 53'd0;
     if (rst) begin
       arready_q <= 1'b0;
       ar_q      <= 1'b0;
       read_q    <= 1'b0;
       done_q    <= 1'b0;
       rvalid_q  <= 1'b0;
-      select_q  <= 34'd0;
+      select_q  <= 53'd0;
     end else begin
       arready_q <= ~ar_d;
       ar_q      <= ar_d;
       read_q    <= ar;
-      done_q    <= read_q & ~|selected[33:33];
+      done_q    <= read_q & ~|selected[52:46];
       rvalid_q  <= answered | (rvalid_q & ~s_axil_rready);
       select_q  <= selected;
     end
@@ -516,7 +751,14 @@ module cchip_chip_regs (
   assign hwif_out_external_waddr = waddr_q;
   assign hwif_out_external_wdata = wdata_q;
   assign hwif_out_external_wstrb = wstrb_q;
-  assign hwif_out_counter_read = select_q[33];
+  assign hwif_out_counter_read = select_q[46];
+  assign hwif_out_swaps_read = select_q[47];
+  assign hwif_out_rejected_read = select_q[48];
+  assign hwif_out_stalls_read = select_q[49];
+  assign hwif_out_phase_clocks_read = select_q[50];
+  assign hwif_out_pairs_read = select_q[51];
+  assign hwif_out_bitstream_read = select_q[52];
+  assign hwif_out_bitstream_write = strobe_q[32];
 
   wire unused = &{1'b0, s_axil_awprot, s_axil_arprot, s_axil_awaddr[1:0], s_axil_araddr[1:0]};
 

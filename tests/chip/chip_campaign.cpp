@@ -507,7 +507,8 @@ class FaultRound {
       }
       if (wrong.empty()) continue;
       ++(code == QueryCode::ok || code == QueryCode::host ? totals_.wrong : totals_.unreported);
-      report(fmt::format("query {}: {}, code {}", i, wrong, static_cast<int>(code)));
+      report(fmt::format("query {}: {}, code {}, answer {}, steps {}, records {}", i, wrong, static_cast<int>(code),
+                         static_cast<int>(answer.done->answer), answer.done->steps, answer.pairs.size()));
     }
     if (!bench_.wrong().empty() && bench_.wrong().size() > seen_wrong()) {
       totals_.wrong += bench_.wrong().size() - seen_wrong();
@@ -535,6 +536,12 @@ class FaultRound {
     bench_.edit = nullptr;
     bench_.hold = false;
     active_.clear();
+    // late responses are still to come: they hold up others, and their slots are out of use
+    for (int i = 0; late_hit_ && i < 20; ++i) {
+      const std::uint32_t status = bench_.machine().read_register(regs::status::offset);
+      if (lost_response_ || (status & regs::status::read_outstanding_mask) == 0) break;
+      bench_.machine().simulation().steps(slow_limit);
+    }
     if (stopped || reset_ || lost_response_ || bench_.unanswered() > 0) {
       ++totals_.resets;
       if (!bench_.recover()) {

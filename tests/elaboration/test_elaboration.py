@@ -258,6 +258,7 @@ LEGAL = [
     *(("cchip_dispatcher", {"SLOTS": s, "KINDS": k, "CREDIT": c}) for s, k, c in ((1, 1, 1), (4, 3, 256))),
     *((module, {"SLOTS": n}) for module in ("cchip_swap_scheduler", "cchip_bitstream_table") for n in (1, 4)),
     *(("cchip_primtest_subsystem", {"SLOTS": n}) for n in (1, 3, 4)),
+    ("cchip_chip", {"SWAPS": 1, "SLOTS": 2, "RM_ID": 0}),
     *(("cchip_slots", {"SLOTS": n, "SWAPS": s}) for n, s in ((1, 1), (2, 0), (4, 0))),
     *(("cchip_result_merge", {"SOURCES": n}) for n in (2, 8)),
     ("cchip_fifo", {"WIDTH": 1, "DEPTH": 5}),

@@ -71,7 +71,7 @@ class Errors(Copy):
         self.refused("slot_status[4] @ 0x040 += 0x4", "slot_status[2][2] @ 0x040 += 0x4", "one dimension")
 
     def test_64_bits_that_are_not_external(self):
-        self.refused("external pairs[4]", "pairs[4]", "64 bits only where external")
+        self.refused("external swap_pairs", "swap_pairs", "64 bits only where external")
 
     def test_broken_syntax(self):
         self.refused("addrmap cchip_subsystem {", "addrmap cchip_subsystem (", "not SystemRDL")

@@ -426,17 +426,32 @@ class SubsystemBench {
     }
     return false;
   }
+  /// Bitstreams that have failed on their way and not ended well since, and how often any did since there were none.
+  void note_failures(const SwapReport& r) {
+    const unsigned entry = r.slot < slots && r.module_id < 4 ? 1U << (4 * r.slot + r.module_id) : 0U;
+    if (defs::swap_put_off(static_cast<int>(r.code)) != 0) {
+      failed_ |= entry;
+      ++failures_;
+    } else if (r.code == SwapCode::ok) {
+      failed_ &= ~entry;
+    }
+    failed_ &= static_cast<unsigned>(probes::bitstreams_valid(top()));
+    if (failed_ == 0) failures_ = 0;
+  }
   void watch(const sim::ClockInfo& now) {
     if (now.in_reset) return;
     if (probes::report_valid(top()) != 0) {
       SwapReport r = report_of(top());
       r.clock = now.clock;
+      note_failures(r);
       given_up_ += r.lost;
       account.given_up += r.lost;
       reports.push_back(r);
     }
     const unsigned modules = modules_of<Config::SLOTS>(top());
-    const auto valid = static_cast<unsigned>(probes::bitstreams_valid(top()));
+    const auto announced = static_cast<unsigned>(probes::bitstreams_valid(top()));
+    // nobody need wait for bitstreams that have failed on their way often enough
+    const unsigned valid = failures_ >= defs::retry_doublings ? announced & ~failed_ : announced;
     std::array<bool, 4> provided{};
     for (unsigned slot = 0; slot < static_cast<unsigned>(slots); ++slot) {
       const unsigned has = modules >> (2 * slot) & 3U;
@@ -453,6 +468,8 @@ class SubsystemBench {
   std::map<std::uint16_t, Open> open_;
   std::set<std::uint16_t> queued_, answered_;
   std::uint16_t next_tag_ = 1;
+  unsigned failed_ = 0;
+  int failures_ = 0;
   std::uint64_t given_up_ = 0;             // reported
   std::uint64_t answered_open_ = 0;        // answered as open for that reason
   std::array<std::uint64_t, 4> absent_{};  // last clock without a provider

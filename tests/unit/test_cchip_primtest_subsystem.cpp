@@ -278,7 +278,8 @@ CCHIP_CASE("faults on the way leave the entry; the scheduler tries again, later 
     s.memory.set_fault([](std::vector<sim::AxiBeat>& burst) { burst.back().response = sim::AxiResponse::slave_error; });
     for (int i = 0; i < 6; ++i) s.push(2);
     const std::size_t before = s.reports.size();
-    s.simulation.run_until([&] { return s.reports.size() == before + 8; }, 200000, "eight attempts");
+    constexpr std::size_t attempts = defs::retry_doublings - 1;  // one more and nobody waits
+    s.simulation.run_until([&] { return s.reports.size() == before + attempts; }, 200000, "seven attempts");
     for (std::size_t i = before; i < s.reports.size(); ++i) REQUIRE(s.reports[i].code == SwapCode::bus);
     for (std::size_t i = before + 1; i < s.reports.size(); ++i) {
       const std::uint64_t rest = s.reports[i].clock - s.reports[i - 1].clock;
@@ -292,6 +293,33 @@ CCHIP_CASE("faults on the way leave the entry; the scheduler tries again, later 
     s.memory.set_fault({});
     s.finish();
     REQUIRE(s.account.refused == 0);
+    s.works();
+  });
+}
+
+CCHIP_CASE("after eight failures on the way its pairs are answered as open, until a swap ends well") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<TestType> s(options, true);
+    s.only_triangles();
+    for (int slot = 0; slot < TestType::SLOTS; ++slot) {  // one entry alone brings the kind
+      for (const int module_id : {2, 3}) {
+        if (slot != 0 || module_id != 2) s.write(regs::bitstream_valid::offset(s.entry(slot, module_id)), 0);
+      }
+    }
+    s.memory.set_fault([](std::vector<sim::AxiBeat>& burst) { burst.back().response = sim::AxiResponse::slave_error; });
+    for (int i = 0; i < 6; ++i) s.push(2);
+    s.simulation.run_until([&] { return s.account.refused == 6; }, 300000, "six pairs answered as open");
+    REQUIRE(s.count(SwapCode::bus) == defs::retry_doublings);
+    REQUIRE(s.announced() != 0);  // the bitstream may be good
+    // it is tried again: while its rest lasts new pairs are answered as open, then they wait for it
+    s.memory.set_fault({});
+    s.push(2);
+    s.simulation.run_until([&] { return s.account.refused == 7; }, 1000, "a pair that does not wait");
+    s.steps(std::uint64_t{defs::retry_clocks} << (defs::retry_doublings - 1));
+    s.push(2);
+    s.simulation.run_until([&] { return s.account.pairs == 8; }, 20000, "a pair that waits");
+    REQUIRE(s.account.refused == 7);
+    s.finish();
     s.works();
   });
 }

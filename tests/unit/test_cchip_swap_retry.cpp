@@ -15,6 +15,7 @@ class RetryModel {
  public:
   explicit RetryModel(int entries) : entries_(entries) {}
   unsigned resting() const { return left_ > 0 ? failed_ : 0; }
+  unsigned hopeless() const { return level_ >= defs::retry_doublings - 1 ? resting() : 0; }
   void clock(const std::optional<SwapReport>& report, unsigned valid) {
     const int code = report ? static_cast<int>(report->code) : 0;
     const bool put_off = report && defs::swap_put_off(code) != 0;
@@ -57,6 +58,7 @@ void with_model(Body&& body) {
       simulation.step();
       model.clock(report, top.valid);
       REQUIRE(unsigned{top.resting} == model.resting());
+      REQUIRE(unsigned{top.hopeless} == model.hopeless());
     };
     body(top, random, model, step);
   });
@@ -96,11 +98,15 @@ TEMPLATE_LIST_TEST_CASE("cchip_swap_retry: the rest doubles up to its limit, and
     for (int round = 0; round < 2; ++round) {
       for (int failure = 0; failure < defs::retry_doublings + 2; ++failure) {
         step(SwapReport{slot, 2, SwapCode::bus, 0});
+        REQUIRE((top.hopeless != 0) == (failure + 1 >= defs::retry_doublings));
         std::uint64_t clocks = 0;
         for (; top.resting != 0; ++clocks) step(std::nullopt);
         REQUIRE(clocks == std::uint64_t{defs::retry_clocks} << std::min(failure, defs::retry_doublings));
       }
+      step(SwapReport{slot, 2, SwapCode::bus, 0});
+      REQUIRE(top.hopeless != 0);
       step(SwapReport{slot, 2, SwapCode::ok, 0});
+      REQUIRE(top.hopeless == 0);
       step(std::nullopt);
     }
   });

@@ -50,6 +50,7 @@ class SchedulerBench {
   std::uint32_t batch = 1, age = 1000;
   unsigned valid = (1U << entries) - 1;
   unsigned resting = 0;
+  unsigned hopeless = 0;
   std::array<std::uint32_t, entries> address{};
   std::array<int, 4> waiting{};       // by kind
   std::array<int, slots> modules{};   // 0: none
@@ -74,6 +75,7 @@ class SchedulerBench {
     top.max_age = age;
     sim::set_bits(top.table_valid, 0, static_cast<int>(entries), valid);
     sim::set_bits(top.table_resting, 0, static_cast<int>(entries), resting);
+    sim::set_bits(top.table_hopeless, 0, static_cast<int>(entries), hopeless);
     // the table answers a look 2 clocks later
     if (looks_ > 0 && --looks_ == 0) {
       top.table_address = address.at(entry_);
@@ -244,6 +246,33 @@ CCHIP_CASE("an entry that rests is not chosen, but a command takes it, and its k
     bench.steps(60);
     REQUIRE(bench.requests.size() == 2);
     REQUIRE(bench.requests[1].module_id == 2);
+  });
+}
+
+CCHIP_CASE("a kind whose bitstreams are hopeless has no provider until one is tried again") {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    SchedulerBench<TestType> bench(options);
+    bench.modules.fill(1);
+    bench.waiting = {0, 0, 5, 0};
+    bench.enable = true;
+    for (std::size_t s = 0; s < TestType::SLOTS; ++s) bench.resting |= 12U << (4 * s);  // kinds 2 and 3
+    bench.steps(100);
+    REQUIRE(bench.no_provider == 0);
+    const unsigned one = 4U;  // module 2 of slot 0
+    bench.hopeless = bench.resting & ~one;
+    bench.steps(100);
+    REQUIRE(bench.no_provider == 4);  // of kind 3; there is hope for kind 2
+    bench.hopeless = bench.resting;
+    bench.steps(14);
+    REQUIRE(bench.no_provider == 4);
+    bench.steps(10);
+    REQUIRE(bench.no_provider == 6);
+    // its rest is over: it is tried again, and its kinds wait
+    bench.hopeless = bench.resting = 0;
+    bench.steps(3);
+    REQUIRE(bench.no_provider == 0);
+    bench.steps(60);
+    REQUIRE(bench.requests.size() == 1);
   });
 }
 

@@ -37,7 +37,7 @@ constexpr std::uint32_t offset = 0x008;
 /// `COORD_W`, bit
 constexpr std::uint32_t coord_w_mask = 0x000000FF;
 constexpr int coord_w_shift = 0;
-/// primitive pairs that are tested, a bit for each `ModuleId` from 1 on: bit 0 two triangles, bit 1 triangle and quad, bit 2 two quads. Others come back as open pairs
+/// primitive pairs that are tested, with swaps those that can be, a bit for each `ModuleId` from 1 on: bit 0 two triangles, bit 1 triangle and quad, bit 2 two quads. Others come back as open pairs
 constexpr std::uint32_t kinds_mask = 0x00000700;
 constexpr int kinds_shift = 8;
 /// 1: modules are exchanged at run time
@@ -131,6 +131,22 @@ constexpr std::uint32_t reset_done_reset = 0x0;
 constexpr std::uint32_t invalidated_mask = 0x00000010;
 constexpr int invalidated_shift = 4;
 constexpr std::uint32_t invalidated_reset = 0x0;
+/// a swap ended well
+constexpr std::uint32_t swap_done_mask = 0x00000020;
+constexpr int swap_done_shift = 5;
+constexpr std::uint32_t swap_done_reset = 0x0;
+/// a swap failed or was refused
+constexpr std::uint32_t swap_error_mask = 0x00000040;
+constexpr int swap_error_shift = 6;
+constexpr std::uint32_t swap_error_reset = 0x0;
+/// a swap by force lost pairs
+constexpr std::uint32_t swap_lost_mask = 0x00000080;
+constexpr int swap_lost_shift = 7;
+constexpr std::uint32_t swap_lost_reset = 0x0;
+/// a pair was answered without a test: no slot and no bitstream has its module
+constexpr std::uint32_t no_provider_mask = 0x00000100;
+constexpr int no_provider_shift = 8;
+constexpr std::uint32_t no_provider_reset = 0x0;
 }  // namespace interrupt_status
 
 /// Interrupt enable: the line is 1 while a status bit and its enable bit are 1.
@@ -156,6 +172,22 @@ constexpr std::uint32_t reset_done_reset = 0x0;
 constexpr std::uint32_t invalidated_mask = 0x00000010;
 constexpr int invalidated_shift = 4;
 constexpr std::uint32_t invalidated_reset = 0x0;
+/// see interrupt_status
+constexpr std::uint32_t swap_done_mask = 0x00000020;
+constexpr int swap_done_shift = 5;
+constexpr std::uint32_t swap_done_reset = 0x0;
+/// see interrupt_status
+constexpr std::uint32_t swap_error_mask = 0x00000040;
+constexpr int swap_error_shift = 6;
+constexpr std::uint32_t swap_error_reset = 0x0;
+/// see interrupt_status
+constexpr std::uint32_t swap_lost_mask = 0x00000080;
+constexpr int swap_lost_shift = 7;
+constexpr std::uint32_t swap_lost_reset = 0x0;
+/// see interrupt_status
+constexpr std::uint32_t no_provider_mask = 0x00000100;
+constexpr int no_provider_shift = 8;
+constexpr std::uint32_t no_provider_reset = 0x0;
 }  // namespace interrupt_enable
 
 /// Most node pairs that a query may expand; it ends with code `step_limit` then.
@@ -440,6 +472,194 @@ constexpr std::uint32_t offset = 0x154;
 constexpr std::uint32_t value_mask = 0xFFFFFFFF;
 constexpr int value_shift = 0;
 }  // namespace counter_reads
+
+/// Control of swaps.
+namespace swap_control {
+constexpr std::uint32_t offset = 0x410;
+/// 1: the scheduler exchanges modules by itself
+constexpr std::uint32_t scheduler_enable_mask = 0x00000001;
+constexpr int scheduler_enable_shift = 0;
+constexpr std::uint32_t scheduler_enable_reset = 0x0;
+/// 1: abort the swap in flight
+constexpr std::uint32_t abort_mask = 0x00000002;
+constexpr int abort_shift = 1;
+constexpr std::uint32_t abort_reset = 0x0;
+}  // namespace swap_control
+
+/// Swap by software: `go` = 1 requests it with the other fields of the same write.
+namespace swap_command {
+constexpr std::uint32_t offset = 0x414;
+/// slot
+constexpr std::uint32_t slot_mask = 0x000000FF;
+constexpr int slot_shift = 0;
+constexpr std::uint32_t slot_reset = 0x0;
+/// `ModuleId`
+constexpr std::uint32_t module_id_mask = 0x0000FF00;
+constexpr int module_id_shift = 8;
+constexpr std::uint32_t module_id_reset = 0x0;
+/// 1: pairs that are not answered in time are given up and counted as lost
+constexpr std::uint32_t force_mask = 0x00010000;
+constexpr int force_shift = 16;
+constexpr std::uint32_t force_reset = 0x0;
+/// 1: request
+constexpr std::uint32_t go_mask = 0x80000000;
+constexpr int go_shift = 31;
+constexpr std::uint32_t go_reset = 0x0;
+}  // namespace swap_command
+
+/// Last report of the configuration controller.
+namespace swap_report {
+constexpr std::uint32_t offset = 0x418;
+/// outcome, `SwapCode`
+constexpr std::uint32_t code_mask = 0x0000000F;
+constexpr int code_shift = 0;
+/// slot
+constexpr std::uint32_t slot_mask = 0x0000FF00;
+constexpr int slot_shift = 8;
+/// module asked for, `ModuleId`
+constexpr std::uint32_t module_id_mask = 0x00FF0000;
+constexpr int module_id_shift = 16;
+}  // namespace swap_report
+
+/// Pairs lost by the swap of the last report.
+namespace swap_report_lost {
+constexpr std::uint32_t offset = 0x41C;
+/// pairs
+constexpr std::uint32_t pairs_mask = 0x0000FFFF;
+constexpr int pairs_shift = 0;
+}  // namespace swap_report_lost
+
+/// Longest wait for the pairs inside a slot.
+namespace swap_shutdown_limit {
+constexpr std::uint32_t offset = 0x430;
+/// clocks; 0: `SHUTDOWN_LIMIT_DEFAULT`
+constexpr std::uint32_t clocks_mask = 0xFFFFFFFF;
+constexpr int clocks_shift = 0;
+constexpr std::uint32_t clocks_reset = 0x0;
+}  // namespace swap_shutdown_limit
+
+/// Longest wait for a beat of the bitstream's memory.
+namespace swap_memory_limit {
+constexpr std::uint32_t offset = 0x434;
+/// clocks; 0: `MEMORY_LIMIT_DEFAULT`
+constexpr std::uint32_t clocks_mask = 0xFFFFFFFF;
+constexpr int clocks_shift = 0;
+constexpr std::uint32_t clocks_reset = 0x0;
+}  // namespace swap_memory_limit
+
+/// Least work that is worth a swap.
+namespace swap_minimum_batch {
+constexpr std::uint32_t offset = 0x438;
+/// pairs of one kind
+constexpr std::uint32_t pairs_mask = 0xFFFFFFFF;
+constexpr int pairs_shift = 0;
+constexpr std::uint32_t pairs_reset = 0x1;
+}  // namespace swap_minimum_batch
+
+/// A pair that has waited longer gets a slot whatever the batch.
+namespace swap_maximum_age {
+constexpr std::uint32_t offset = 0x43C;
+/// clocks
+constexpr std::uint32_t clocks_mask = 0xFFFFFFFF;
+constexpr int clocks_shift = 0;
+constexpr std::uint32_t clocks_reset = 0x10000;
+}  // namespace swap_maximum_age
+
+/// State of a slot; index = slot; 0 where there is no slot.
+namespace slot_status {
+constexpr std::uint32_t count = 4;
+constexpr std::uint32_t offset(std::uint32_t index) { return 0x440 + 0x4 * index; }
+/// module that works, `ModuleId`
+constexpr std::uint32_t module_id_mask = 0x000000FF;
+constexpr int module_id_shift = 0;
+/// phase of its swap, `SwapPhase`
+constexpr std::uint32_t phase_mask = 0x00000F00;
+constexpr int phase_shift = 8;
+/// 1: decoupled
+constexpr std::uint32_t decoupled_mask = 0x00001000;
+constexpr int decoupled_shift = 12;
+/// pairs inside
+constexpr std::uint32_t outstanding_mask = 0xFFFF0000;
+constexpr int outstanding_shift = 16;
+}  // namespace slot_status
+
+/// Swaps that ended well.
+namespace swaps {
+constexpr std::uint32_t offset = 0x480;
+/// swaps
+constexpr std::uint32_t value_mask = 0xFFFFFFFF;
+constexpr int value_shift = 0;
+}  // namespace swaps
+
+/// Swaps that failed or were refused.
+namespace rejected {
+constexpr std::uint32_t offset = 0x484;
+/// swaps
+constexpr std::uint32_t value_mask = 0xFFFFFFFF;
+constexpr int value_shift = 0;
+}  // namespace rejected
+
+/// Slots of the configuration port without data.
+namespace stalls {
+constexpr std::uint32_t offset = 0x488;
+/// port clocks
+constexpr std::uint32_t value_mask = 0xFFFFFFFF;
+constexpr int value_shift = 0;
+}  // namespace stalls
+
+/// Pairs lost by swaps with force.
+namespace swap_lost {
+constexpr std::uint32_t offset = 0x48C;
+/// pairs
+constexpr std::uint32_t value_mask = 0xFFFFFFFF;
+constexpr int value_shift = 0;
+}  // namespace swap_lost
+
+/// Clocks per phase of the last swap; index = `SwapPhase` - 1.
+namespace phase_clocks {
+constexpr std::uint32_t count = 9;
+constexpr std::uint32_t offset(std::uint32_t index) { return 0x4C4 + 0x4 * index; }
+/// clocks
+constexpr std::uint32_t value_mask = 0xFFFFFFFF;
+constexpr int value_shift = 0;
+}  // namespace phase_clocks
+
+/// Pairs answered per module; index = `ModuleId`, 0: without a test. A high word is that of the low word read last.
+namespace pairs {
+constexpr std::uint32_t count = 4;
+constexpr std::uint32_t offset(std::uint32_t index) { return 0x500 + 0x8 * index; }
+/// pairs (the high word follows)
+constexpr std::uint32_t value_mask = 0xFFFFFFFF;
+constexpr int value_shift = 0;
+}  // namespace pairs
+
+/// Address of a bitstream; index = 4 slot + `ModuleId`. Of a slot that is not there all three read as 0 and stay so.
+namespace bitstream_address {
+constexpr std::uint32_t count = 16;
+constexpr std::uint32_t offset(std::uint32_t index) { return 0x600 + 0x10 * index; }
+/// multiple of `BITSTREAM_ALIGN`; undefined until written
+constexpr std::uint32_t value_mask = 0xFFFFFFFF;
+constexpr int value_shift = 0;
+}  // namespace bitstream_address
+
+/// Size of a bitstream, header included.
+namespace bitstream_size {
+constexpr std::uint32_t count = 16;
+constexpr std::uint32_t offset(std::uint32_t index) { return 0x604 + 0x10 * index; }
+/// byte; undefined until written
+constexpr std::uint32_t value_mask = 0xFFFFFFFF;
+constexpr int value_shift = 0;
+}  // namespace bitstream_size
+
+/// Is there a bitstream? Hardware clears it when a swap rejects it.
+namespace bitstream_valid {
+constexpr std::uint32_t count = 16;
+constexpr std::uint32_t offset(std::uint32_t index) { return 0x608 + 0x10 * index; }
+/// 1: yes
+constexpr std::uint32_t value_mask = 0x00000001;
+constexpr int value_shift = 0;
+constexpr std::uint32_t value_reset = 0x0;
+}  // namespace bitstream_valid
 
 }  // namespace cchip::chip_registers
 
