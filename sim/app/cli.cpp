@@ -248,6 +248,10 @@ void add_collide(CLI::App& app, CollideOptions& options) {
   add_text(*command, "--expect", options.expect,
            "compare with this column of the poses: 0 or 1, with --contacts all their number")
       ->needs(poses);
+  add_whole(
+      *command, "--slots", options.slots,
+      "with --device sim: 1 or 2 slots whose modules are exchanged for the objects at hand (default 0: a static chip)",
+      WholeRange{0, 2});
   add_text(
       *command, "--trace", options.trace,
       "with --device sim: write the waveform of the chip's first 30,000 clocks (FST) and a .gtkw layout beside it");

@@ -54,7 +54,8 @@ std::string to_line(const Totals& t, const std::string& device) {
       t.queries, t.hits, t.mismatches, t.contacts, t.counts.open, mean(t.counts.steps), mean(t.counts.box_tests),
       mean(t.counts.pairs));
   if (device == "cpu") return line;
-  return line + fmt::format(" fallbacks={} clocks_mean={:.1f}", t.counts.fallbacks, mean(t.counts.clocks));
+  return line + fmt::format(" fallbacks={} swaps={} swap_clocks={} clocks_mean={:.1f}", t.counts.fallbacks,
+                            t.counts.swaps, t.counts.swap_clocks, mean(t.counts.clocks));
 }
 
 /// stdout stays machine-readable: the summary of CSV and JSON lines goes to stderr.
@@ -73,13 +74,17 @@ Object load_object(const std::string& path, const Streams& streams) {
 }
 
 std::unique_ptr<Device> open_named_device(const CollideOptions& options) {
-  if (!options.trace.empty()) {
-    if (options.device != "sim") {
-      throw UsageError("--trace: device " + options.device +
-                       " has no waveform; add --device sim, or leave --trace out");
-    }
+  const auto needs_sim = [&options](bool is_set, const char* option, const char* what) {
+    if (!is_set || options.device == "sim") return;
+    throw UsageError(std::string(option) + ": device " + options.device + " has no " + what +
+                     "; add --device sim, or leave " + option + " out");
+  };
+  needs_sim(!options.trace.empty(), "--trace", "waveform");
+  needs_sim(options.slots != 0, "--slots", "slots");
+  if (options.device == "sim") {
     SimulatedChipOptions chip;
     chip.trace_path = options.trace;
+    chip.slots = static_cast<unsigned>(options.slots);
     return open_simulated_chip(chip);
   }
   try {

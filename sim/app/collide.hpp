@@ -24,9 +24,10 @@ struct CollideOptions {
   std::size_t most_contacts = 0;  ///< 0: no limit
   std::string device = "cpu";
   Format format = Format::table;
-  std::string expect;  ///< column of the file; empty: none
-  std::string ply;     ///< path of the coloured picture; empty: none
-  std::string trace;   ///< path of the waveform of device sim; empty: none
+  std::string expect;       ///< column of the file; empty: none
+  std::string ply;          ///< path of the coloured picture; empty: none
+  std::uint64_t slots = 0;  ///< of device sim, with swaps; 0: a static chip
+  std::string trace;        ///< path of the waveform of device sim; empty: none
 };
 
 /// Runs it and returns the exit code.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Vcchip_chip.h>
+#include <Vcchip_chip_swaps1.h>
+#include <Vcchip_chip_swaps2.h>
 
 #include <algorithm>
 #include <cchip/device/chip_driver.hpp>
@@ -8,17 +10,20 @@
 #include <cchip/rtl/chip_machine.hpp>
 #include <cchip/rtl/simulated_chip.hpp>
 #include <cchip/waves/wave_layout.hpp>
+#include <stdexcept>
+#include <string>
 
 namespace cchip {
 namespace {
 
 constexpr int bus_w = 128;
 
-class SimulatedChip final : public sim::ChipMachine<Vcchip_chip, bus_w> {
+template <class Model>
+class SimulatedChip final : public sim::ChipMachine<Model, bus_w> {
  public:
   explicit SimulatedChip(const SimulatedChipOptions& options)
-      : ChipMachine(sim::without_timeout(options.seed, options.trace_path, options.trace_clocks)) {
-    memory().options = options.memory;
+      : sim::ChipMachine<Model, bus_w>(sim::without_timeout(options.seed, options.trace_path, options.trace_clocks)) {
+    this->memory().options = options.memory;
     if (!options.trace_path.empty()) {
       constexpr std::uint64_t units = 10;  // of time per clock
       write_chip_gtkw(options.trace_path, 0, units * std::min<std::uint64_t>(options.trace_clocks, 5000));
@@ -29,11 +34,23 @@ class SimulatedChip final : public sim::ChipMachine<Vcchip_chip, bus_w> {
 }  // namespace
 
 std::unique_ptr<Machine> make_simulated_chip(const SimulatedChipOptions& options) {
-  return std::make_unique<SimulatedChip>(options);
+  switch (options.slots) {
+    case 0:
+      return std::make_unique<SimulatedChip<Vcchip_chip>>(options);
+    case 1:
+      return std::make_unique<SimulatedChip<Vcchip_chip_swaps1>>(options);
+    case 2:
+      return std::make_unique<SimulatedChip<Vcchip_chip_swaps2>>(options);
+    default:
+      throw std::invalid_argument("simulated chip: " + std::to_string(options.slots) +
+                                  " slots with swaps; 1 or 2, or 0 for a static chip");
+  }
 }
 
 std::unique_ptr<Device> open_simulated_chip(const SimulatedChipOptions& options) {
-  return make_chip_device(open_chip(make_simulated_chip(options)));
+  ChipDriverOptions driver;
+  driver.payload_bytes = options.payload_bytes;
+  return make_chip_device(open_chip(make_simulated_chip(options), driver));
 }
 
 void add_simulated_chip() {

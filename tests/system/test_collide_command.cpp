@@ -300,7 +300,7 @@ TEST_CASE("collide: device sim answers face for face like device cpu", "[system]
   const Outcome sim = run("sim", {"--pose", c.pose});
   CHECK(cpu.out == sim.out);
   CHECK(lines(cpu.out).size() > 1);
-  CHECK(last_line(sim.err).find(" fallbacks=0 clocks_mean=") != std::string::npos);
+  CHECK(last_line(sim.err).find(" fallbacks=0 swaps=0 swap_clocks=0 clocks_mean=") != std::string::npos);
   // one query, the first contact: any of them
   const Outcome first = run("sim", {"--pose", c.pose, "--contacts", "first"});
   REQUIRE(lines(first.out).size() == 2);
@@ -312,9 +312,12 @@ TEST_CASE("collide: device sim answers face for face like device cpu", "[system]
   for (const std::string contacts : {"first", "all"}) {
     CAPTURE(contacts);
     const Outcome many_cpu = run("cpu", {"--poses", poses, "--contacts", contacts});
-    const Outcome many_sim = run("sim", {"--poses", poses, "--contacts", contacts});
-    CHECK(columns_of(many_cpu.out, {"hit", "contacts"}) == columns_of(many_sim.out, {"hit", "contacts"}));
-    CHECK(last_line(many_sim.err).find(" fallbacks=1 ") != std::string::npos);
+    for (const std::string slots : {"0", "1", "2"}) {  // static, and with modules that are exchanged
+      CAPTURE(slots);
+      const Outcome many_sim = run("sim", {"--poses", poses, "--contacts", contacts, "--slots", slots});
+      CHECK(columns_of(many_cpu.out, {"hit", "contacts"}) == columns_of(many_sim.out, {"hit", "contacts"}));
+      CHECK(last_line(many_sim.err).find(" fallbacks=1 ") != std::string::npos);
+    }
   }
 }
 
@@ -329,4 +332,7 @@ TEST_CASE("collide: the waveform of device sim", "[system][collide][chip]") {
   CHECK(cpu.code == exit_usage);
   CHECK(cpu.err == "cchip: --trace: device cpu has no waveform; add --device sim, or leave --trace out\n");
   CHECK(collide_cubes({"--device", "sim", "--trace", cube_file}).code == exit_usage);  // an input
+  CHECK(collide_cubes({"--slots", "1"}).err ==
+        "cchip: --slots: device cpu has no slots; add --device sim, or leave --slots out\n");
+  CHECK(collide_cubes({"--device", "sim", "--slots", "3"}).code == exit_usage);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cchip/device/chip_driver.hpp>
 #include <cchip/wire/chip_registers.hpp>
 #include <cchip/wire/query.hpp>
@@ -27,8 +28,9 @@ class ChipDriver final : public QueryPort {
   ChipDriver(std::unique_ptr<Machine> machine, const ChipDriverOptions& options)
       : machine_(std::move(machine)), options_(options) {
     if (!machine_) refuse("no machine");
-    place();
     identify();
+    place();
+    load_bitstreams();
     if (!restart()) throw std::runtime_error("chip driver: the chip's reset does not end; reset chip and bus");
   }
 
@@ -97,12 +99,37 @@ class ChipDriver final : public QueryPort {
     machine_->proceed();
     ++quiet_;
     if (quiet_ % status_every != 0) return true;
+    if (capabilities_.swap_slots != 0) note_swaps();
     const std::uint32_t status = machine_->read_register(regs::status::offset);
     const bool failed = (status & (regs::status::query_failed_mask | regs::status::record_failed_mask)) != 0;
     return !failed && quiet_ < options_.patience;
   }
 
   bool recover() override { return restart(); }
+
+  void load(ModuleId module_id) override {
+    if (capabilities_.swap_slots == 0) return;
+    const auto m = static_cast<std::uint32_t>(module_id);
+    note_swaps();
+    for (unsigned slot = 0; slot < capabilities_.swap_slots; ++slot) {
+      const std::uint32_t status = machine_->read_register(regs::slot_status::offset(slot));
+      const bool works = (status & regs::slot_status::decoupled_mask) == 0;
+      if (!works || (status & regs::slot_status::module_id_mask) >> regs::slot_status::module_id_shift != m) continue;
+      asked_[slot] = ++asks_;
+      return;
+    }
+    const auto end = asked_.begin() + capabilities_.swap_slots;
+    const auto slot = static_cast<std::uint32_t>(std::min_element(asked_.begin(), end) - asked_.begin());
+    asked_[slot] = ++asks_;
+    machine_->write_register(regs::swap_command::offset, regs::swap_command::go_mask |
+                                                             m << regs::swap_command::module_id_shift |
+                                                             slot << regs::swap_command::slot_shift);
+  }
+
+  SwapCounts swaps() override {
+    if (capabilities_.swap_slots != 0) note_swaps();
+    return swaps_;
+  }
 
   std::uint64_t clocks() const override {
     const std::uint64_t low = machine_->read_register(regs::counter_clocks::offset);
@@ -122,7 +149,20 @@ class ChipDriver final : public QueryPort {
     record_base_ = query_base_ + (line_bytes << o.query_log2);
     const std::uint64_t records = ((record_bytes << o.record_log2) + line_bytes - 1) / line_bytes * line_bytes;
     // line 0 belongs to no image: a lock range may be empty
-    const std::uint64_t images = std::max(record_base_ + records, line_bytes);
+    std::uint64_t images = std::max(record_base_ + records, line_bytes);
+    for (unsigned slot = 0; slot < capabilities_.swap_slots; ++slot) {
+      for (const ModuleId id : {ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad}) {
+        const auto place = static_cast<std::uint8_t>(slot);
+        const Bytes bytes = options_.bitstream
+                                ? options_.bitstream(place, id)
+                                : make_bitstream(place, id, make_payload(place, id, options_.payload_bytes, 1));
+        constexpr std::uint64_t align = std::max<std::uint64_t>(defs::bitstream_align, line_bytes);
+        images = (images + align - 1) / align * align;
+        bitstreams_.push_back({4 * slot + static_cast<unsigned>(id), images, bytes});
+        images = (images + bytes.size() + align - 1) / align * align;
+      }
+    }
+    if (!bitstreams_.empty() && images > std::uint64_t{1} << 32U) refuse("bitstreams do not end below 2^32");
     if (images + line_bytes > o.memory_base + o.memory_bytes)
       refuse("memory of " + std::to_string(o.memory_bytes) + " bytes is too small: the rings take " +
              std::to_string(images - o.memory_base));
@@ -144,8 +184,34 @@ class ChipDriver final : public QueryPort {
     const std::uint32_t has = machine_->read_register(regs::capabilities::offset);
     const std::uint32_t kinds = (has & regs::capabilities::kinds_mask) >> regs::capabilities::kinds_shift;
     capabilities_.quads = kinds == 7;
+    if ((has & regs::capabilities::swaps_mask) != 0)
+      capabilities_.swap_slots = (has & regs::capabilities::slots_mask) >> regs::capabilities::slots_shift;
     capabilities_.lock_ranges = (has & regs::capabilities::locks_mask) >> regs::capabilities::locks_shift;
     capabilities_.queries_in_flight = std::size_t{1} << options_.query_log2;
+  }
+
+  void load_bitstreams() {
+    for (const Loaded& x : bitstreams_) {
+      machine_->write_memory(x.address, x.bytes);
+      machine_->write_register(regs::bitstream_address::offset(x.index), static_cast<std::uint32_t>(x.address));
+      machine_->write_register(regs::bitstream_size::offset(x.index), static_cast<std::uint32_t>(x.bytes.size()));
+      machine_->write_register(regs::bitstream_valid::offset(x.index), 1);
+    }
+    if (bitstreams_.empty()) return;
+    machine_->write_register(regs::swap_minimum_batch::offset, options_.minimum_batch);
+    machine_->write_register(regs::swap_maximum_age::offset, options_.maximum_age);
+    machine_->write_register(regs::interrupt_status::offset, regs::interrupt_status::swap_done_mask);
+    machine_->write_register(regs::swap_control::offset, regs::swap_control::scheduler_enable_mask);
+  }
+
+  /// Counts a swap that has ended well since this was called last.
+  void note_swaps() {
+    const std::uint32_t done = regs::interrupt_status::swap_done_mask;
+    if ((machine_->read_register(regs::interrupt_status::offset) & done) == 0) return;
+    machine_->write_register(regs::interrupt_status::offset, done);
+    ++swaps_.swaps;
+    for (std::uint32_t phase = 0; phase < regs::phase_clocks::count; ++phase)
+      swaps_.clocks += machine_->read_register(regs::phase_clocks::offset(phase));
   }
 
   /// A soft reset, empty rings, registers. \returns false: the reset does not end
@@ -216,8 +282,18 @@ class ChipDriver final : public QueryPort {
     machine_->write_register(regs::record_consumer::offset, read_);
   }
 
+  struct Loaded {
+    unsigned index;  ///< in the table of bitstreams
+    std::uint64_t address;
+    Bytes bytes;
+  };
+
   std::unique_ptr<Machine> machine_;
   ChipDriverOptions options_;
+  std::vector<Loaded> bitstreams_;
+  std::array<std::uint64_t, 4> asked_ = {};  // when a module was asked for in this slot last
+  std::uint64_t asks_ = 0;
+  SwapCounts swaps_;
   ChipCapabilities capabilities_;
   std::uint64_t query_base_ = 0, record_base_ = 0;  // bytes
   std::uint32_t written_ = 0, taken_ = 0;           // queries written by the host, known to be taken by the chip

@@ -48,6 +48,12 @@ class Chip {
   void recover() {
     if (!call(false, [&] { return port_->recover(); })) dead_ = true;
   }
+  void load(ModuleId module_id) {
+    call(false, [&] { return port_->load(module_id), true; });
+  }
+  SwapCounts swaps() {
+    return call(SwapCounts{}, [&] { return port_->swaps(); });
+  }
   std::uint64_t clocks() {
     return call(std::uint64_t{0}, [&] { return port_->clocks(); });
   }
@@ -236,15 +242,17 @@ class ChipHost final : public Device {
   void serve(std::size_t count, const Source& query, const CollisionRequest& request, CollisionResult& result,
              const Sink& take) {
     try {
+      const Order order(count, query, chip_.capabilities().swap_slots != 0);
       std::optional<Prepared> waiting;  // for room
       for (std::size_t next = 0; next < count || !flights_.empty();) {
         while (next < count) {
-          const CollisionQuery placed = waiting ? waiting->placed : query(next);
+          if (!is_loaded(order, next)) break;
+          const CollisionQuery placed = waiting ? waiting->placed : query(order[next]);
           if (!waiting) waiting = prepare(placed, request);
-          const Submission submission = waiting ? submit(*waiting, next) : Submission::never;
+          const Submission submission = waiting ? submit(*waiting, order[next]) : Submission::never;
           if (submission == Submission::later) break;
           waiting.reset();
-          const std::size_t number = next++;
+          const std::size_t number = order[next++];
           if (submission == Submission::done) continue;
           fall_back(placed, request, {}, result);
           take(number, result);
@@ -258,7 +266,7 @@ class ChipHost final : public Device {
         } else if (!chip_.proceed()) {
           std::vector<Flight> lost = give_up();
           if (lost.empty() && waiting) {  // the chip had no room although nothing was in flight
-            lost.push_back({next++, waiting->placed, waiting->a, waiting->b});
+            lost.push_back({order[next++], waiting->placed, waiting->a, waiting->b});
             waiting.reset();
           }
           CollisionCounts counts;
@@ -273,6 +281,60 @@ class ChipHost final : public Device {
       drain();
       throw;
     }
+  }
+
+  /// The queries of a batch, for a chip with swaps sorted by the module that they need.
+  class Order {
+   public:
+    template <class Source>
+    Order(std::size_t count, const Source& query, bool sorts) {
+      if (!sorts) return;
+      std::map<const void*, bool> quads;  // by object
+      const auto has_quads = [&quads](const Object& object) {
+        const auto [found, is_new] = quads.emplace(object.id(), false);
+        if (is_new) {
+          const std::vector<Mesh::Face>& faces = object.mesh().faces;
+          found->second =
+              std::any_of(faces.begin(), faces.end(), [](const Mesh::Face& face) { return face.kind == Kind::quad; });
+        }
+        return found->second;
+      };
+      for (std::size_t i = 0; i < count; ++i) {
+        const CollisionQuery placed = query(i);
+        const int quad_objects = (has_quads(*placed.a) ? 1 : 0) + (has_quads(*placed.b) ? 1 : 0);
+        modules_.push_back(static_cast<ModuleId>(1 + quad_objects));
+        order_.push_back(i);
+      }
+      std::stable_sort(order_.begin(), order_.end(),
+                       [this](std::size_t x, std::size_t y) { return modules_[x] < modules_[y]; });
+    }
+    std::size_t operator[](std::size_t place) const { return order_.empty() ? place : order_[place]; }
+    bool sorts() const { return !order_.empty(); }
+    ModuleId module_at(std::size_t place) const { return modules_[order_[place]]; }
+    /// The module after that at this place; the same if there is none.
+    ModuleId module_after(std::size_t place) const {
+      const ModuleId now = module_at(place);
+      while (place < order_.size() && module_at(place) == now) ++place;
+      return place < order_.size() ? module_at(place) : now;
+    }
+
+   private:
+    std::vector<std::size_t> order_;
+    std::vector<ModuleId> modules_;
+  };
+
+  /// Asks for the module of the query at this place, with two slots also for the one after it.
+  /// \returns false: queries in flight need another one
+  bool is_loaded(const Order& order, std::size_t place) {
+    if (!order.sorts()) return true;
+    const ModuleId module_id = order.module_at(place);
+    if (!flights_.empty()) return module_id == module_;
+    if (place != 0 && module_id == module_) return true;
+    module_ = module_id;
+    chip_.load(module_);
+    const ModuleId next = order.module_after(place);
+    if (chip_.capabilities().swap_slots > 1 && next != module_) chip_.load(next);
+    return true;
   }
 
   /// The query as the chip takes it; none if it does not.
@@ -325,6 +387,10 @@ class ChipHost final : public Device {
     counts.box_tests = outcome.box_tests;
     counts.pairs = outcome.primitive_pairs;
     counts.clocks = clocks_since_mark();
+    const SwapCounts swaps = chip_.swaps();
+    counts.swaps = swaps.swaps - swaps_.swaps;
+    counts.swap_clocks = swaps.clocks - swaps_.clocks;
+    swaps_ = swaps;
     const QueryCode code = outcome.done.code;
     if ((code == QueryCode::ok || code == QueryCode::host) && is_well_formed(flight, outcome)) {
       faces_.start(flight.placed, request, result);
@@ -412,6 +478,8 @@ class ChipHost final : public Device {
   std::map<std::uint32_t, Flight> flights_;  // by tag
   std::uint32_t next_tag_ = 0;               // an outcome of a flight that was given up finds no other with its tag
   std::uint64_t mark_ = 0;                   // clocks
+  ModuleId module_ = ModuleId::blank;        // asked for last
+  SwapCounts swaps_;                         // told of
   std::uint64_t lost_clocks_ = 0;            // of flights that were given up
   FacePairs faces_;
   std::unique_ptr<Device> cpu_ = open_cpu_device({1, {}});

@@ -50,12 +50,16 @@ struct CollisionCounts {
   std::uint64_t clocks = 0;     ///< clocks of the device; 0 for devices without a clock
   /// 1: the CPU answered instead of the device (device/chip_host.hpp says when); the other counts are those of both.
   std::uint64_t fallbacks = 0;
+  std::uint64_t swaps = 0;        ///< exchanges of the device's modules since the result before it
+  std::uint64_t swap_clocks = 0;  ///< their clocks
   CollisionCounts& operator+=(const CollisionCounts& x) {
     steps += x.steps;
     box_tests += x.box_tests;
     pairs += x.pairs;
     open += x.open;
     clocks += x.clocks;
+    swaps += x.swaps;
+    swap_clocks += x.swap_clocks;
     fallbacks += x.fallbacks;
     return *this;
   }

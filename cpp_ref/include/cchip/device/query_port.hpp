@@ -5,6 +5,7 @@
 #ifndef CCHIP_DEVICE_QUERY_PORT_HPP
 #define CCHIP_DEVICE_QUERY_PORT_HPP
 
+#include <cchip/wire/definitions.hpp>
 #include <cchip/wire/line.hpp>
 #include <cchip/wire/query.hpp>
 #include <cstddef>
@@ -25,6 +26,14 @@ struct ChipCapabilities {
   std::uint32_t image_lines = 0;
   /// Ranges of lines that can be kept in the chip's cache.
   unsigned lock_ranges = 0;
+  /// Slots whose modules can be exchanged; 0: none.
+  unsigned swap_slots = 0;
+};
+
+/// Exchanges of modules so far.
+struct SwapCounts {
+  std::uint64_t swaps = 0;   ///< that ended well
+  std::uint64_t clocks = 0;  ///< from their beginning to their report, of all of them
 };
 
 /// The result of a query.
@@ -71,6 +80,11 @@ class QueryPort {
   /// not survive it.
   /// \return false: the chip is dead, as after an exception
   virtual bool recover() = 0;
+  /// Asks for a slot with this module; what it is for waits meanwhile. Nothing to do for a chip without swaps, or if a
+  /// slot has it. The slot that was asked for least recently gives way.
+  virtual void load(ModuleId) {}
+  /// Counted on across recover(). Swaps that follow each other within some register accesses may be missed.
+  virtual SwapCounts swaps() { return {}; }
   /// Clocks of the device so far, counted on across recover(); 0 for a device without a clock.
   virtual std::uint64_t clocks() const = 0;
 };

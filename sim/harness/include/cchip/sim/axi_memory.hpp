@@ -16,6 +16,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -71,6 +72,8 @@ class AxiMemory : public Agent {
     return bytes;
   }
   void clear() { words_.clear(); }
+  /// If set: where words are, instead of those that were written here; none: nothing wrote them.
+  std::function<std::optional<std::uint32_t>(std::uint32_t address)> backing;
   void set_options(AxiMemoryOptions options) { options_ = std::move(options); }
   void set_fault(Fault fault) { fault_ = std::move(fault); }
   /// At most this many further beats are sent until resume().
@@ -135,6 +138,12 @@ class AxiMemory : public Agent {
     if (!condition) throw StreamError(message);
   }
 
+  std::optional<std::uint32_t> at(std::uint32_t address) const {
+    if (backing) return backing(address);
+    const auto word = words_.find(address);
+    return word == words_.end() ? std::nullopt : std::optional<std::uint32_t>(word->second);
+  }
+
   void accept(const ClockInfo& now, std::uint32_t address, std::uint32_t count) {
     require(model_.m_axi_arsize == 2 && model_.m_axi_arburst == 1, "m_axi_ar: not an INCR burst of 4-byte beats");
     require(address % 4 == 0, "m_axi_araddr is not a multiple of 4");
@@ -142,10 +151,9 @@ class AxiMemory : public Agent {
     require(address / 4096 == (address + 4 * count - 1) / 4096, "burst crosses a boundary of 4 KiB");
     std::vector<AxiBeat> burst;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const auto word = words_.find(address + 4 * i);
-      const bool found = word != words_.end();
-      burst.push_back({address + 4 * i, found ? word->second : 0, found ? AxiResponse::okay : AxiResponse::decode_error,
-                       i + 1 == count});
+      const std::optional<std::uint32_t> word = at(address + 4 * i);
+      burst.push_back(
+          {address + 4 * i, word.value_or(0), word ? AxiResponse::okay : AxiResponse::decode_error, i + 1 == count});
     }
     if (fault_) fault_(burst);
     for (const AxiBeat& beat : burst) beats_.emplace_back(now.clock + options_.latency, beat);

@@ -8,13 +8,37 @@
 #include <cchip/device/machine.hpp>
 #include <cchip/sim/axi_lines.hpp>
 #include <cchip/sim/axi_lite.hpp>
+#include <cchip/sim/axi_memory.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 namespace cchip::sim {
+
+/// Pins of the port for bitstreams under the names that AxiMemory expects.
+template <class Model>
+struct BitstreamPins {
+  explicit BitstreamPins(Model& m)
+      : m_axi_arvalid(m.m_axi_cfg_arvalid),
+        m_axi_arready(m.m_axi_cfg_arready),
+        m_axi_araddr(m.m_axi_cfg_araddr),
+        m_axi_arlen(m.m_axi_cfg_arlen),
+        m_axi_arsize(m.m_axi_cfg_arsize),
+        m_axi_arburst(m.m_axi_cfg_arburst),
+        m_axi_rvalid(m.m_axi_cfg_rvalid),
+        m_axi_rready(m.m_axi_cfg_rready),
+        m_axi_rdata(m.m_axi_cfg_rdata),
+        m_axi_rresp(m.m_axi_cfg_rresp),
+        m_axi_rlast(m.m_axi_cfg_rlast) {}
+  CData &m_axi_arvalid, &m_axi_arready;
+  IData& m_axi_araddr;
+  CData &m_axi_arlen, &m_axi_arsize, &m_axi_arburst, &m_axi_rvalid, &m_axi_rready;
+  IData& m_axi_rdata;
+  CData &m_axi_rresp, &m_axi_rlast;
+};
 
 /// Host and chip see the same memory at once; memory that nothing wrote reads as 0 for the host, and is a bus error for
 /// the chip. A register takes some clocks, memory takes the host none.
@@ -25,14 +49,29 @@ class ChipMachine : public Machine {
   using Memory = AxiLines<Model, DATA_W>;
 
   explicit ChipMachine(SimulationOptions options)
-      : simulation_(std::move(options)), memory_(simulation_.top(), simulation_.seed()), registers_(simulation_.top()) {
+      : simulation_(std::move(options)),
+        memory_(simulation_.top(), simulation_.seed()),
+        registers_(simulation_.top()),
+        bitstream_pins_(simulation_.top()),
+        bitstreams_(bitstream_pins_) {
+    simulation_->cfg_error = 0;
+    bitstreams_.backing = [this](std::uint32_t address) -> std::optional<std::uint32_t> {
+      const typename Memory::Line* line = memory_.find(address / 64);
+      if (line == nullptr) return std::nullopt;
+      std::uint32_t word = 0;
+      for (std::size_t i = 4; i-- > 0;) word = word << 8U | (*line)[address % 64 + i];
+      return word;
+    };
     simulation_.add(memory_);
+    simulation_.add(bitstreams_);
     simulation_.add(registers_);
     reset();
   }
 
   Simulation<Model>& simulation() { return simulation_; }
   Memory& memory() { return memory_; }
+  /// The port for bitstreams, which reads the same memory.
+  AxiMemory<BitstreamPins<Model>>& bitstreams() { return bitstreams_; }
   /// Chip and bus.
   void reset() { simulation_.reset(2); }
 
@@ -76,6 +115,8 @@ class ChipMachine : public Machine {
   Simulation<Model> simulation_;
   Memory memory_;
   AxiLiteMaster<Model> registers_;
+  BitstreamPins<Model> bitstream_pins_;
+  AxiMemory<BitstreamPins<Model>> bitstreams_;
 };
 
 }  // namespace cchip::sim

@@ -46,6 +46,12 @@ CCHIP_SUBSYSTEM_PROBE(abort_arrives, u_regs__DOT__control_abort_q)
 CCHIP_SUBSYSTEM_PROBE(clear_arrives, u_regs__DOT__control_clear_q)
 CCHIP_SUBSYSTEM_PROBE(command_arrives, u_regs__DOT__command_go_q)
 
+// cchip_chip with swaps: the phase of the swap in progress; what is counted on this clock, bit 1 a clock of the box
+// test.
+CCHIP_PROBE(chip_swap_phase,
+            cchip_chip__DOT__u_core__DOT__u_slots__DOT__gen_swaps__DOT__u_controller__DOT__u_sequencer__DOT__phase_q)
+CCHIP_PROBE(chip_counts, cchip_chip__DOT__count_q)
+
 // Pairs inside slot n in bits [16n +: 16].
 CCHIP_SUBSYSTEM_PROBE(outstanding, outstanding)
 

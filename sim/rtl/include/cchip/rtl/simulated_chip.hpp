@@ -20,6 +20,10 @@ struct SimulatedChipOptions {
   std::string trace_path;
   std::uint64_t trace_clocks = 30000;
   sim::AxiLinesOptions memory;
+  /// 0: a static chip. 1, 2: so many slots whose modules are exchanged at run time; each begins with the triangle test.
+  unsigned slots = 0;
+  /// Payload of each bitstream of such a chip, bytes.
+  std::size_t payload_bytes = 2048;
 };
 
 /// cchip_chip with default parameters (quad test in its slot, buses of 128 bit) after reset, and its memory. Errors of
