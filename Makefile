@@ -37,7 +37,7 @@ export JOBS
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults picture table1 table1-plot bench-reconfig bench-collide export fpga \
+  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide export fpga \
   fpga-quick install clean
 
 help: ## list the targets
@@ -169,6 +169,12 @@ campaign-chip: $(RELEASE)/build.ninja ## the simulated chip against the CPU devi
 campaign-chip-faults: $(RELEASE)/build.ninja ## 10^5 queries to the chip under faults, alone and in pairs (CCHIP_SEED repeats a run)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_chip_campaign
 	$(CHIP_CAMPAIGN) faults --all-bins
+
+campaign-chip-swaps: $(RELEASE)/build.ninja ## batches of triangle and quad objects through the chip with one and two slots, without and with faults of swaps; the paper's experiment as a curve
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip_chip_campaign
+	for slots in 1 2; do for faults in "" "--faults all"; do $(CHIP_CAMPAIGN) mixed --slots $$slots --queries 10000 $$faults || exit 1; done; done
+	$(CHIP_CAMPAIGN) resets --swaps --resets 1000
+	$(CHIP_CAMPAIGN) curve
 
 picture: $(RELEASE)/build.ninja ## draw docs/pictures/demo.png: the demo's meshes, the faces that hit coloured
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Long runs of cchip_chip behind its driver: poses of many meshes against the CPU device, faults, soft resets.
 #include <Vcchip_chip.h>
+#include <Vcchip_chip_swaps1.h>
+#include <Vcchip_chip_swaps1___024root.h>
+#include <Vcchip_chip_swaps2.h>
+#include <Vcchip_chip_swaps2___024root.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -9,8 +13,11 @@
 #include <cchip/device/cpu_device.hpp>
 #include <cchip/exact/posed_pairs.hpp>
 #include <cchip/mesh/shapes.hpp>
+#include <cchip/rtl/probes.hpp>
 #include <cchip/rtl/simulated_chip.hpp>
 #include <cchip/sim/seed.hpp>
+#include <cchip/wire/bitstream.hpp>
+#include <cchip/wire/swap.hpp>
 #include <limits>
 #include <set>
 
@@ -674,10 +681,23 @@ int run_faults(const FaultSettings& settings) {
 
 // ---- soft resets
 
-int run_resets(std::size_t resets, std::uint64_t seed) {
+/// A chip with swaps: the module that answered a pair decides how certain it is, not which faces touch.
+std::string compare_ids(const Query& query, ChipAnswer answer, model::BroadPhaseResult expected) {
+  for (PairRecord& pair : answer.pairs) pair.definite = false;
+  for (PairRecord& pair : expected.pairs) pair.definite = false;
+  if (query.mode == QueryMode::first && answer.done && answer.done->answer == QueryAnswer::yes) return "";
+  return compare_answer(query, answer, expected, 16);
+}
+
+/// \param swaps resets fall into swaps as well
+template <class Bench>
+int run_resets(std::size_t resets, std::uint64_t seed, bool swaps) {
   Random random(seed);
   fmt::print("seed={}\n", seed);
-  Bench bench(sim::without_timeout(seed), {}, small_rings(), 1);
+  ChipDriverOptions driver = small_rings();
+  if (swaps) driver.memory_base = std::uint64_t{1} << 20U;  // of bitstreams, too
+  Bench bench(sim::without_timeout(seed), {}, driver, 1);
+  std::size_t in_swaps = 0;
   Objects objects(Kind::quad);
   objects.place(bench);
   std::size_t wrong = 0, hangs = 0, checked = 0;
@@ -685,7 +705,14 @@ int run_resets(std::size_t resets, std::uint64_t seed) {
     bench.machine().memory().options = any_memory(random);
     for (const Query& query : queries_of(objects, random, 12)) bench.submit(query);
     const std::uint64_t clocks = i % 2 == 0 ? random() % 3000 : random() % 100;
+    if (swaps) {
+      bench.machine().write_register(regs::swap_command::offset,
+                                     regs::swap_command::go_mask | static_cast<std::uint32_t>(1 + random() % 3)
+                                                                       << regs::swap_command::module_id_shift);
+    }
     for (std::uint64_t k = 0; k < clocks; ++k) bench.step();
+    if (swaps && (bench.machine().read_register(regs::slot_status::offset(0)) & regs::slot_status::phase_mask) != 0)
+      ++in_swaps;
     if (!bench.recover()) {
       ++hangs;
       bench.machine().reset();
@@ -697,13 +724,353 @@ int run_resets(std::size_t resets, std::uint64_t seed) {
     if (!bench.run(FaultRound::most_clocks)) ++hangs;
     for (std::size_t k = from; k < bench.queries().size(); ++k) {
       const Query& query = bench.queries()[k];
-      wrong += compare_answer(query, bench.answers()[k], objects.expected(query), 16).empty() ? 0 : 1;
+      const model::BroadPhaseResult expected = objects.expected(query);
+      wrong += (swaps ? compare_ids(query, bench.answers()[k], expected)
+                      : compare_answer(query, bench.answers()[k], expected, 16))
+                       .empty()
+                   ? 0
+                   : 1;
       ++checked;
     }
   }
   wrong += bench.wrong().size();
-  fmt::print("resets={} wrong={} hangs={} checked={}\n", resets, wrong, hangs, checked);
+  fmt::print("resets={} wrong={} hangs={} checked={}", resets, wrong, hangs, checked);
+  if (swaps) fmt::print(" in_swaps={}", in_swaps);
+  fmt::print("\n");
   return resets != 0 && wrong == 0 && hangs == 0 ? 0 : 3;
+}
+
+// ---- swaps
+
+/// A simulated chip with swaps as a device, and its machine.
+struct SwapChip {
+  template <class Model>
+  static SwapChip make(const sim::AxiLinesOptions& memory, const ChipDriverOptions& driver, std::uint64_t seed);
+
+  std::unique_ptr<Device> device;
+  Machine* machine = nullptr;                           // of the device
+  std::function<void(sim::AxiMemoryOptions)> set_port;  ///< of the bitstreams' memory
+  std::function<void(std::function<void(std::vector<sim::AxiBeat>&)>)> set_fault;
+  std::function<void(bool)> set_silent;  ///< it takes no address
+  std::function<std::uint64_t()> clocks;
+  std::shared_ptr<std::array<std::uint64_t, 2>> overlap;  ///< clocks of TRANSFER, and those of them with box tests
+};
+
+/// Counts what the registers do not show.
+template <class Model>
+class SwapObserver : public sim::Agent {
+ public:
+  SwapObserver(const Model& model, std::shared_ptr<std::array<std::uint64_t, 2>> overlap)
+      : model_(model), overlap_(std::move(overlap)) {}
+  void drive(const sim::ClockInfo&) override {}
+  void sample(const sim::ClockInfo&) override {
+    if (static_cast<SwapPhase>(probes::chip_swap_phase(model_)) != SwapPhase::transfer) return;
+    ++(*overlap_)[0];
+    (*overlap_)[1] += probes::chip_counts(model_) >> 1 & 1U;
+  }
+
+ private:
+  const Model& model_;
+  std::shared_ptr<std::array<std::uint64_t, 2>> overlap_;
+};
+
+/// ChipMachine that owns its observer.
+template <class Model>
+class ObservedChip : public sim::ChipMachine<Model, 128> {
+ public:
+  ObservedChip(std::uint64_t seed, std::shared_ptr<std::array<std::uint64_t, 2>> overlap)
+      : sim::ChipMachine<Model, 128>(sim::without_timeout(seed)),
+        observer_(this->simulation().top(), std::move(overlap)) {
+    this->simulation().add(observer_);
+  }
+
+ private:
+  SwapObserver<Model> observer_;
+};
+
+template <class Model>
+SwapChip SwapChip::make(const sim::AxiLinesOptions& memory, const ChipDriverOptions& driver, std::uint64_t seed) {
+  SwapChip made;
+  made.overlap = std::make_shared<std::array<std::uint64_t, 2>>();
+  auto machine = std::make_unique<ObservedChip<Model>>(seed, made.overlap);
+  auto* chip = machine.get();
+  chip->memory().options = memory;
+  made.machine = chip;
+  made.set_port = [chip](sim::AxiMemoryOptions options) { chip->bitstreams().set_options(std::move(options)); };
+  made.set_fault = [chip](std::function<void(std::vector<sim::AxiBeat>&)> fault) {
+    chip->bitstreams().set_fault(std::move(fault));
+  };
+  made.set_silent = [chip](bool silent) {
+    if (silent) {
+      chip->bitstreams().refuse_addresses();
+    } else {
+      chip->bitstreams().resume();
+    }
+  };
+  made.clocks = [chip] { return chip->simulation().total_clocks(); };
+  made.device = make_chip_device(open_chip(std::move(machine), driver));
+  return made;
+}
+
+SwapChip make_swap_chip(unsigned slots, const sim::AxiLinesOptions& memory, const ChipDriverOptions& driver,
+                        std::uint64_t seed) {
+  if (slots == 1) return SwapChip::make<Vcchip_chip_swaps1>(memory, driver, seed);
+  return SwapChip::make<Vcchip_chip_swaps2>(memory, driver, seed);
+}
+
+/// Objects of triangles and of quads, and random pairs of them.
+struct MixedObjects {
+  MixedObjects() {
+    objects.emplace_back(make_body(6, 0.3, 3));
+    objects.emplace_back(make_torus(1, 0.4, 36, 24));
+    objects.emplace_back(make_torus(1, 0.4, 36, 24, Kind::quad));
+    objects.emplace_back(make_torus(0.8, 0.3, 24, 18, Kind::quad));
+  }
+  struct Placed {
+    std::size_t a, b;
+    PosePair pose;
+  };
+  Placed draw(Random& random) const {
+    std::uniform_real_distribution<double> unit(-1, 1);
+    const auto pose = [&](double range) {
+      Pose made = Pose::Identity();
+      made.linear() =
+          Eigen::Quaterniond(unit(random), unit(random), unit(random), unit(random)).normalized().toRotationMatrix();
+      for (int i = 0; i < 3; ++i) made.translation()[i] = range * unit(random);
+      return made;
+    };
+    return {random() % objects.size(), random() % objects.size(), {pose(0.2), pose(2)}};
+  }
+  std::vector<Object> objects;
+};
+
+struct MixedSettings {
+  unsigned slots = 1;
+  std::size_t queries = 2000;
+  std::string faults;  ///< empty: none; all, or one of swap_faults
+  std::uint64_t seed = sim::seed_from_environment();
+};
+
+const std::vector<std::string>& swap_fault_names() {
+  static const std::vector<std::string> names = {"silent", "bus_error", "damaged", "forced",
+                                                 "abort",  "slow",      "commands"};
+  return names;
+}
+
+/// Batches of mixed objects through a chip with swaps against the CPU device.
+class MixedRun {
+ public:
+  explicit MixedRun(const MixedSettings& settings)
+      : settings_(settings), random_(settings.seed), cpu_(open_cpu_device({1, ""})) {}
+
+  int run() {
+    fmt::print("seed={} slots={}\n", settings_.seed, settings_.slots);
+    ChipDriverOptions driver;
+    driver.memory_bytes = std::uint64_t{1} << 25U;
+    driver.patience = 3000000;
+    driver.reset_patience = 100000;
+    chip_ = make_swap_chip(settings_.slots, any_memory(random_), driver, settings_.seed);
+    while (queries_ < settings_.queries) batch();
+    std::size_t bins = 0;
+    for (const auto& [name, count] : bins_) bins += count > 0 ? 1U : 0U;
+    fmt::print(
+        "queries={} hits={} mismatches={} contacts={} open={} lost={} duplicated={} swaps={} clocks_mean={:.1f} "
+        "fallbacks={} failed_swaps={} given_up={} bins={}\n",
+        queries_, hits_, mismatches_, contacts_, counts_.open, lost_, duplicated_, counts_.swaps,
+        static_cast<double>(counts_.clocks) / std::max(1.0, static_cast<double>(queries_)), counts_.fallbacks,
+        failed_swaps(), chip_.machine->read_register(regs::swap_lost::offset), bins);
+    for (const auto& [name, count] : bins_) fmt::print("  {}: {}\n", name, count);
+    return mismatches_ == 0 && lost_ == 0 && duplicated_ == 0 && queries_ > 0 ? 0 : 3;
+  }
+
+ private:
+  void set(std::uint32_t offset, std::uint32_t value) { chip_.machine->write_register(offset, value); }
+  std::uint32_t failed_swaps() { return chip_.machine->read_register(regs::rejected::offset); }
+
+  void batch() {
+    const std::size_t count = 1 + random_() % 60;
+    std::vector<MixedObjects::Placed> placed;
+    std::vector<CollisionQuery> queries;
+    for (std::size_t i = 0; i < count; ++i) placed.push_back(objects_.draw(random_));
+    for (const auto& x : placed)
+      queries.push_back({&objects_.objects[x.a], &x.pose.a, &objects_.objects[x.b], &x.pose.b});
+    CollisionRequest request;
+    if (random_() % 2 == 0) request.contacts = CollisionRequest::Contacts::all;
+    const std::vector<CollisionResult> right = collide(*cpu_, queries, request);
+    const std::string fault = begin_fault();
+    std::vector<std::size_t> taken(count);
+    std::size_t ended = 0;
+    chip_.device->collide(
+        count, [&](std::size_t i) { return queries[i]; }, request,
+        [&](std::size_t i, const CollisionResult& x) {
+          ++taken[i];
+          ++ended;
+          meddle(fault, ended);
+          const bool all = request.contacts == CollisionRequest::Contacts::all;
+          const bool same = x.hit == right[i].hit && (!all || x.contacts == right[i].contacts) &&
+                            (all || x.contacts.size() == (x.hit ? 1U : 0U));
+          if (!same) {
+            ++mismatches_;
+            fmt::print("batch with fault '{}': query {} differs, hit {} {}, contacts {} {}\n", fault, i, x.hit,
+                       right[i].hit, x.contacts.size(), right[i].contacts.size());
+          }
+          hits_ += x.hit ? 1 : 0;
+          contacts_ += x.contacts.size();
+          counts_ += x.counts;
+        });
+    for (const std::size_t times : taken) {
+      lost_ += times == 0 ? 1 : 0;
+      duplicated_ += times > 1 ? times - 1 : 0;
+    }
+    queries_ += count;
+    ++bins_[fmt::format("{} {}", fault.empty() ? "none" : fault,
+                        request.contacts == CollisionRequest::Contacts::all ? "all" : "first")];
+    end_fault();
+  }
+
+  std::string begin_fault() {
+    if (settings_.faults.empty() || random_() % 4 == 0) return "";
+    const std::vector<std::string>& names = swap_fault_names();
+    const std::string fault = settings_.faults == "all" ? names[random_() % names.size()] : settings_.faults;
+    // too short for the pairs inside: a forced swap gives them up
+    if (fault == "forced") set(regs::swap_shutdown_limit::offset, static_cast<std::uint32_t>(1 + random_() % 40));
+    if (fault == "silent") chip_.set_silent(true);
+    if (fault == "bus_error") {
+      chip_.set_fault([](std::vector<sim::AxiBeat>& burst) { burst.back().response = sim::AxiResponse::slave_error; });
+    }
+    if (fault == "damaged") {
+      chip_.set_fault([this](std::vector<sim::AxiBeat>& burst) {
+        if (random_() % 4 == 0) burst[random_() % burst.size()].data ^= 1U << random_() % 32;
+      });
+    }
+    if (fault == "slow") {
+      sim::AxiMemoryOptions slow;
+      slow.latency = 2000;
+      chip_.set_port(slow);
+    }
+    return fault;
+  }
+
+  /// While results come.
+  void meddle(const std::string& fault, std::size_t ended) {
+    if (fault == "forced" && random_() % 4 == 0) command(true);
+    if (fault == "commands" && random_() % 4 == 0) command(false);
+    if (fault == "abort" && random_() % 3 == 0) {
+      command(false);
+      for (std::uint64_t i = random_() % 3000; i-- > 0;) chip_.machine->proceed();
+      chip_.machine->write_register(regs::swap_control::offset,
+                                    regs::swap_control::abort_mask | regs::swap_control::scheduler_enable_mask);
+    }
+    if ((fault == "silent" || fault == "bus_error") && ended > 4 && random_() % 40 == 0) end_fault();
+  }
+
+  void command(bool force) {
+    const auto slot = static_cast<std::uint32_t>(random_() % settings_.slots);
+    const auto module_id = static_cast<std::uint32_t>(1 + random_() % 3);
+    chip_.machine->write_register(regs::swap_command::offset, regs::swap_command::go_mask |
+                                                                  (force ? regs::swap_command::force_mask : 0U) |
+                                                                  module_id << regs::swap_command::module_id_shift |
+                                                                  slot << regs::swap_command::slot_shift);
+  }
+
+  /// The port works again; what was rejected is announced again, as software does after it has written it anew.
+  void end_fault() {
+    chip_.set_silent(false);
+    chip_.set_fault({});
+    chip_.set_port({});
+    set(regs::swap_shutdown_limit::offset, 0);
+    for (std::uint32_t entry = 0; entry < 4 * settings_.slots; ++entry) {
+      if (entry % 4 != 0) chip_.machine->write_register(regs::bitstream_valid::offset(entry), 1);
+    }
+  }
+
+  MixedSettings settings_;
+  Random random_;
+  std::unique_ptr<Device> cpu_;
+  SwapChip chip_;
+  MixedObjects objects_;
+  std::size_t queries_ = 0, hits_ = 0, mismatches_ = 0, lost_ = 0, duplicated_ = 0;
+  std::uint64_t contacts_ = 0;
+  CollisionCounts counts_;
+  std::map<std::string, std::size_t> bins_;
+};
+
+// ---- the paper's experiment: triangles, then quads, in turn
+
+struct CurveSettings {
+  std::vector<std::size_t> queries = {1, 10, 100, 1000, 10000};
+  std::size_t rounds = 2;
+  std::size_t triangle_bytes = 688008;  ///< payload, the paper's 5,504,088 bit but for three bytes
+  std::size_t quad_bytes = 676248;      ///< 5,409,976 bit
+  std::uint64_t seed = sim::seed_from_environment();
+};
+
+/// Clocks of batches of `queries` of triangle objects and of quad objects in turn.
+struct CurvePoint {
+  double clocks = 0;  ///< of a batch, mean
+  double swaps = 0;   ///< of a batch
+  double swap_clocks = 0;
+  double transfer = 0, worked = 0;  ///< clocks of TRANSFER of a batch, and those of them with box tests
+};
+
+CurvePoint measure_curve(unsigned slots, std::size_t queries, const CurveSettings& settings) {
+  ChipDriverOptions driver;
+  driver.memory_bytes = std::uint64_t{1} << 25U;
+  driver.bitstream = [&](std::uint8_t slot, ModuleId id) {
+    const std::size_t bytes = id == ModuleId::tri_tri     ? settings.triangle_bytes
+                              : id == ModuleId::quad_quad ? settings.quad_bytes
+                                                          : (settings.triangle_bytes + settings.quad_bytes) / 8 * 4;
+    return make_bitstream(slot, id, make_payload(slot, id, bytes, 1));
+  };
+  SwapChip chip = make_swap_chip(slots, {}, driver, settings.seed);
+  const Object triangles_a(make_body(6, 0.3, 3)), triangles_b(make_torus(1, 0.4, 36, 24));
+  const Object quads_a(make_torus(0.8, 0.3, 24, 18, Kind::quad)), quads_b(make_torus(1, 0.4, 36, 24, Kind::quad));
+  Random random(settings.seed);
+  const MixedObjects poses;
+  CurvePoint point;
+  std::size_t batches = 0;
+  std::array<std::uint64_t, 2> before = {};
+  for (std::size_t round = 0; round < settings.rounds + 1; ++round) {
+    // the first round loads what is there from then on, and fills the cache
+    for (const bool quads : {false, true}) {
+      std::vector<PosePair> batch;
+      for (std::size_t i = 0; i < (round == 0 ? 1 : queries); ++i) batch.push_back(poses.draw(random).pose);
+      const Object& a = quads ? quads_a : triangles_a;
+      const Object& b = quads ? quads_b : triangles_b;
+      const std::uint64_t from = chip.clocks();
+      CollisionCounts counts;
+      collide(*chip.device, a, b, batch, {}, [&](std::size_t, const CollisionResult& x) { counts += x.counts; });
+      if (round == 0) continue;
+      ++batches;
+      point.clocks += static_cast<double>(chip.clocks() - from);
+      point.swaps += static_cast<double>(counts.swaps);
+      point.swap_clocks += static_cast<double>(counts.swap_clocks);
+    }
+    if (round == 0) before = *chip.overlap;
+  }
+  const auto n = static_cast<double>(batches);
+  point.transfer = static_cast<double>((*chip.overlap)[0] - before[0]) / n;
+  point.worked = static_cast<double>((*chip.overlap)[1] - before[1]) / n;
+  for (double* x : {&point.clocks, &point.swaps, &point.swap_clocks}) *x /= n;
+  return point;
+}
+
+int run_curve(const CurveSettings& settings) {
+  // eq. (4): a word of 8 bit takes 2 clocks, 100 MHz and a port of 50 MHz
+  const double equation4 = static_cast<double>(settings.triangle_bytes + settings.quad_bytes);
+  fmt::print("eq. (4): {:.0f} clocks a swap, mean of both bitstreams\n", equation4);
+  fmt::print("{:>8} {:>14} {:>14} {:>7} {:>12} {:>11} {:>11}\n", "queries", "both stay", "one slot", "swaps",
+             "swap clocks", "overhead %", "eq. (5) %");
+  for (const std::size_t queries : settings.queries) {
+    const CurvePoint both = measure_curve(2, queries, settings);
+    const CurvePoint one = measure_curve(1, queries, settings);
+    fmt::print("{:>8} {:>14.1f} {:>14.1f} {:>7.2f} {:>12.1f} {:>11.3f} {:>11.3f}\n", queries, both.clocks, one.clocks,
+               one.swaps, one.swap_clocks, 100 * (one.clocks - both.clocks) / both.clocks,
+               100 * equation4 / both.clocks);
+    if (both.swaps != 0) fmt::print("both stay, yet {:.2f} swaps a batch\n", both.swaps);
+    std::fflush(stdout);
+  }
+  return 0;
 }
 
 }  // namespace
@@ -731,12 +1098,32 @@ int main(int argc, char** argv) {
   auto* resets_command = app.add_subcommand("resets", "soft resets at any clock, each followed by right queries");
   resets_command->add_option("--resets", resets, "how many")->capture_default_str();
   resets_command->add_option("--seed", seed, "of everything")->capture_default_str();
+  bool swaps = false;
+  resets_command->add_flag("--swaps", swaps, "a slot whose module is exchanged meanwhile");
+  MixedSettings mixed;
+  auto* mixed_command = app.add_subcommand("mixed", "batches of triangle and quad objects through a chip with swaps");
+  mixed_command->add_option("--slots", mixed.slots, "1 or 2")->check(CLI::Range(1, 2))->capture_default_str();
+  mixed_command->add_option("--queries", mixed.queries, "in all")->capture_default_str();
+  mixed_command->add_option("--faults", mixed.faults,
+                            "of bitstreams and swaps: all, or one of silent, bus_error, "
+                            "damaged, forced, abort, slow, commands");
+  mixed_command->add_option("--seed", mixed.seed, "of everything")->capture_default_str();
+  CurveSettings curve;
+  auto* curve_command = app.add_subcommand("curve", "triangles and quads in turn: overhead against queries per swap");
+  curve_command->add_option("--queries", curve.queries, "per swap")->delimiter(',')->capture_default_str();
+  curve_command->add_option("--rounds", curve.rounds, "swaps of each kind that are measured")->capture_default_str();
+  curve_command->add_option("--triangle-bytes", curve.triangle_bytes, "payload")->capture_default_str();
+  curve_command->add_option("--quad-bytes", curve.quad_bytes, "payload")->capture_default_str();
+  curve_command->add_option("--seed", curve.seed, "of poses and power-up")->capture_default_str();
   app.footer("Exit codes: 0 nothing wrong, 3 a wrong or lost answer, others: wrong arguments.");
   CLI11_PARSE(app, argc, argv);
   try {
     if (*poses_command) return PosesCampaign(poses).run();
     if (*faults_command) return run_faults(faults);
-    return run_resets(resets, seed);
+    if (*mixed_command) return MixedRun(mixed).run();
+    if (*curve_command) return run_curve(curve);
+    if (swaps) return run_resets<PortBench<Vcchip_chip_swaps1, 128>>(resets, seed, true);
+    return run_resets<Bench>(resets, seed, false);
   } catch (const std::exception& error) {
     fmt::print(stderr, "cchip_chip_campaign: {}\n", error.what());
     return 2;
