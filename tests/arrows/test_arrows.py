@@ -41,7 +41,8 @@ LINKS = {
     "cchip_rc_bench": {"reconfig"}, "cchip_rtl_bench": {"levels_lib", "rtl", "rtl_models"}}
 
 # Folders of rtl/: each may instantiate from those before it in its line.
-RTL = [["common", "arith", "sat", "primtest", "regs", "reconfig", "dispatch", "chip"],
+RTL = [["common", "arith", "sat", "primtest", "regs", "reconfig", "dispatch", "subsystem"],
+       ["common", "arith", "sat", "primtest", "regs", "reconfig", "dispatch", "chip"],
        ["common", "arith", "memory", "bvtest", "traversal", "transform", "chip"]]
 
 

@@ -195,6 +195,9 @@ constexpr const char* phase_names[phase_count] = {"begin", "traffic", "end"};
 
 struct FaultTotals {
   std::size_t queries = 0, rounds = 0, wrong = 0, hangs = 0, lost = 0, unreported = 0, resets = 0, bus_resets = 0;
+  /// Answers on damaged images that are not the model's: boxes that no driver makes go beyond the formats of the box
+  /// test, where the model is not exact. The chip must end such queries, not more.
+  std::size_t damaged = 0;
   std::array<std::size_t, 8> codes{};
   std::array<std::array<std::array<std::size_t, 2>, phase_count>, fault_count> bins{};
 };
@@ -466,7 +469,17 @@ class FaultRound {
     if (code == QueryCode::steps && ever(Fault::step_limit)) return "";
     if (code == QueryCode::memory && (ever(Fault::read_error) || ever(Fault::read_silence) || ever(Fault::read_late)))
       return "";
-    return compare_answer(e.query, answer, model::run_query(e.query, a, b, options), open_limit_);
+    const model::BroadPhaseResult expected = model::run_query(e.query, a, b, options);
+    const std::string wrong = compare_answer(e.query, answer, expected, open_limit_);
+    if (wrong.empty()) return wrong;
+    using Key = std::pair<std::uint32_t, std::uint32_t>;
+    std::set<Key> got, wanted;
+    for (const PairRecord& x : answer.pairs) got.emplace(x.id_a, x.id_b);
+    for (const PairRecord& x : expected.pairs) wanted.emplace(x.id_a, x.id_b);
+    std::string text = wrong;
+    for (const Key& x : got) text += wanted.count(x) == 0 ? fmt::format(" +{}/{}", x.first, x.second) : "";
+    for (const Key& x : wanted) text += got.count(x) == 0 ? fmt::format(" -{}/{}", x.first, x.second) : "";
+    return text + fmt::format(", expected {} steps and {} records", expected.done.steps, expected.pairs.size());
   }
 
   bool ever(Fault fault) const { return phase_of_.count(fault) != 0; }
@@ -513,6 +526,10 @@ class FaultRound {
         wrong = compare(e, bench_.queries()[from_ + i], answer, clean);
       }
       if (wrong.empty()) continue;
+      if (!clean) {
+        ++totals_.damaged;
+        continue;
+      }
       ++(code == QueryCode::ok || code == QueryCode::host ? totals_.wrong : totals_.unreported);
       report(fmt::format("query {}: {}, code {}, answer {}, steps {}, records {}", i, wrong, static_cast<int>(code),
                          static_cast<int>(answer.done->answer), answer.done->steps, answer.pairs.size()));
@@ -672,9 +689,11 @@ int run_faults(const FaultSettings& settings) {
   fmt::print("codes:");
   for (std::size_t i = 0; i < totals.codes.size(); ++i) fmt::print(" {}={}", i, totals.codes[i]);
   const std::size_t all_bins = faults.size() * phase_count * 2;
-  fmt::print("\nqueries={} rounds={} wrong={} hangs={} lost={} unreported={} resets={} bus_resets={} bins={}/{}\n",
-             totals.queries, totals.rounds, totals.wrong, totals.hangs, totals.lost, totals.unreported, totals.resets,
-             totals.bus_resets, bins, all_bins);
+  fmt::print(
+      "\nqueries={} rounds={} wrong={} hangs={} lost={} unreported={} resets={} bus_resets={} damaged_images={} "
+      "bins={}/{}\n",
+      totals.queries, totals.rounds, totals.wrong, totals.hangs, totals.lost, totals.unreported, totals.resets,
+      totals.bus_resets, totals.damaged, bins, all_bins);
   const bool clean = totals.wrong == 0 && totals.hangs == 0 && totals.lost == 0 && totals.unreported == 0;
   return clean && (!settings.all_bins || bins == all_bins) ? 0 : 3;
 }
@@ -685,7 +704,11 @@ int run_faults(const FaultSettings& settings) {
 std::string compare_ids(const Query& query, ChipAnswer answer, model::BroadPhaseResult expected) {
   for (PairRecord& pair : answer.pairs) pair.definite = false;
   for (PairRecord& pair : expected.pairs) pair.definite = false;
-  if (query.mode == QueryMode::first && answer.done && answer.done->answer == QueryAnswer::yes) return "";
+  if (!answer.done) return "no answer";
+  const auto some = [](QueryAnswer x) { return x != QueryAnswer::no; };
+  if (some(answer.done->answer) != some(expected.done.answer)) return "answer";
+  if (query.mode == QueryMode::first && some(answer.done->answer)) return "";  // any contact, or open ones
+  answer.done->answer = expected.done.answer;
   return compare_answer(query, answer, expected, 16);
 }
 
@@ -1038,13 +1061,25 @@ CurvePoint measure_curve(unsigned slots, std::size_t queries, const CurveSetting
       const Object& a = quads ? quads_a : triangles_a;
       const Object& b = quads ? quads_b : triangles_b;
       const std::uint64_t from = chip.clocks();
-      CollisionCounts counts;
-      collide(*chip.device, a, b, batch, {}, [&](std::size_t, const CollisionResult& x) { counts += x.counts; });
+      const std::uint32_t swaps = chip.machine->read_register(regs::swaps::offset);
+      collide(*chip.device, a, b, batch, {}, [](std::size_t, const CollisionResult&) {});
+      // the swap belongs to its batch, also if no query of it had to wait
+      for (std::uint32_t slot = 0; slot < slots;) {
+        const std::uint32_t status = chip.machine->read_register(regs::slot_status::offset(slot));
+        if ((status & regs::slot_status::phase_mask) == 0) {
+          ++slot;
+        } else {
+          chip.machine->proceed();
+          slot = 0;
+        }
+      }
       if (round == 0) continue;
       ++batches;
       point.clocks += static_cast<double>(chip.clocks() - from);
-      point.swaps += static_cast<double>(counts.swaps);
-      point.swap_clocks += static_cast<double>(counts.swap_clocks);
+      if (chip.machine->read_register(regs::swaps::offset) == swaps) continue;
+      ++point.swaps;
+      for (std::uint32_t phase = 0; phase < regs::phase_clocks::count; ++phase)
+        point.swap_clocks += chip.machine->read_register(regs::phase_clocks::offset(phase));
     }
     if (round == 0) before = *chip.overlap;
   }

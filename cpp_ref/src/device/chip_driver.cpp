@@ -4,6 +4,7 @@
 #include <cchip/device/chip_driver.hpp>
 #include <cchip/wire/chip_registers.hpp>
 #include <cchip/wire/query.hpp>
+#include <deque>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
@@ -20,6 +21,8 @@ constexpr std::uint64_t memory_end = std::uint64_t{1} << 38U;
 constexpr std::uint32_t map_major = 1;
 // proceed() from one look at the status to the next
 constexpr std::uint64_t status_every = 4096;
+// and to the next attempt at a swap
+constexpr std::uint64_t swaps_every = 64;
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("chip driver: " + what); }
 
@@ -98,6 +101,7 @@ class ChipDriver final : public QueryPort {
   bool proceed() override {
     machine_->proceed();
     ++quiet_;
+    if (!wanted_.empty() && quiet_ % swaps_every == 0) ask_for_modules();
     if (quiet_ % status_every != 0) return true;
     if (capabilities_.swap_slots != 0) note_swaps();
     const std::uint32_t status = machine_->read_register(regs::status::offset);
@@ -109,21 +113,8 @@ class ChipDriver final : public QueryPort {
 
   void load(ModuleId module_id) override {
     if (capabilities_.swap_slots == 0) return;
-    const auto m = static_cast<std::uint32_t>(module_id);
-    note_swaps();
-    for (unsigned slot = 0; slot < capabilities_.swap_slots; ++slot) {
-      const std::uint32_t status = machine_->read_register(regs::slot_status::offset(slot));
-      const bool works = (status & regs::slot_status::decoupled_mask) == 0;
-      if (!works || (status & regs::slot_status::module_id_mask) >> regs::slot_status::module_id_shift != m) continue;
-      asked_[slot] = ++asks_;
-      return;
-    }
-    const auto end = asked_.begin() + capabilities_.swap_slots;
-    const auto slot = static_cast<std::uint32_t>(std::min_element(asked_.begin(), end) - asked_.begin());
-    asked_[slot] = ++asks_;
-    machine_->write_register(regs::swap_command::offset, regs::swap_command::go_mask |
-                                                             m << regs::swap_command::module_id_shift |
-                                                             slot << regs::swap_command::slot_shift);
+    wanted_.push_back(module_id);
+    ask_for_modules();
   }
 
   SwapCounts swaps() override {
@@ -202,6 +193,34 @@ class ChipDriver final : public QueryPort {
     machine_->write_register(regs::swap_maximum_age::offset, options_.maximum_age);
     machine_->write_register(regs::interrupt_status::offset, regs::interrupt_status::swap_done_mask);
     machine_->write_register(regs::swap_control::offset, regs::swap_control::scheduler_enable_mask);
+  }
+
+  /// Asks for modules that are wanted, one swap at a time: a command during a swap is refused.
+  void ask_for_modules() {
+    note_swaps();
+    while (!wanted_.empty()) {
+      const auto m = static_cast<std::uint32_t>(wanted_.front());
+      bool loaded = false;
+      for (unsigned slot = 0; slot < capabilities_.swap_slots; ++slot) {
+        const std::uint32_t status = machine_->read_register(regs::slot_status::offset(slot));
+        if ((status & regs::slot_status::phase_mask) != 0) return;  // a swap is in flight
+        const bool works = (status & regs::slot_status::decoupled_mask) == 0;
+        const bool has = (status & regs::slot_status::module_id_mask) >> regs::slot_status::module_id_shift == m;
+        if (!works || !has) continue;
+        asked_[slot] = ++asks_;
+        loaded = true;
+        break;
+      }
+      wanted_.pop_front();
+      if (loaded) continue;
+      const auto end = asked_.begin() + capabilities_.swap_slots;
+      const auto slot = static_cast<std::uint32_t>(std::min_element(asked_.begin(), end) - asked_.begin());
+      asked_[slot] = ++asks_;
+      machine_->write_register(regs::swap_command::offset, regs::swap_command::go_mask |
+                                                               m << regs::swap_command::module_id_shift |
+                                                               slot << regs::swap_command::slot_shift);
+      return;
+    }
   }
 
   /// Counts a swap that has ended well since this was called last.
@@ -293,6 +312,7 @@ class ChipDriver final : public QueryPort {
   std::vector<Loaded> bitstreams_;
   std::array<std::uint64_t, 4> asked_ = {};  // when a module was asked for in this slot last
   std::uint64_t asks_ = 0;
+  std::deque<ModuleId> wanted_;  // that were not asked for yet
   SwapCounts swaps_;
   ChipCapabilities capabilities_;
   std::uint64_t query_base_ = 0, record_base_ = 0;  // bytes
