@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 `default_nettype none
-// bench_block_ram: a leaf of cchip_block_ram beside the portable one, which test_block_ram.py calls portable_block_ram. Both get
-// the same accesses; reads follow writes, and writes reads, at the same address at all short distances. Words not yet
-// written, and words read on the clock on which they are written, are not compared.
+// bench_block_ram: a leaf of cchip_block_ram beside the portable one, which test_block_ram.py calls portable_block_ram.
+// Both get the same accesses; reads follow writes, and writes reads, at the same address at all short distances. Words
+// not yet written, and words read on the clock on which they are written, are not compared.
 //   CCHIP_BENCH_NETLIST  macro: the leaf is the netlist `gate` of these parameters
 //   +clocks=N            (default 3000)
 //   +seed=N              of the accesses (default 1)

@@ -26,7 +26,7 @@ BENCH = gates.HERE / "bench_block_ram.v"
 MODEL = gates.HERE / "DP16KD.v"
 SEED = int(os.environ.get("CCHIP_SEED") or 1) % 2**31
 
-# WIDTH, WORDS, ADDR_W: blocks. None: distributed RAM, or left to inference
+# WIDTH, WORDS, ADDR_W: blocks; none in distributed RAM, or where memory is left to inference
 SHAPES = {
     # the chip with default parameters
     (128, 1, 5): 4,  # cchip_cache_fill
@@ -80,8 +80,8 @@ CHANGES = [
     ("block without output registers", BLOCK, '"OUTREG"', '"NOREG"', (36, 1, 6)),
     ("LUTs read a clock earlier", LEAF, "mem[read_addr_q]", "mem[read_addr]", (36, 1, 4)),
     ("LUTs lose an address bit", LEAF, "read_addr_q <= read_addr;", "read_addr_q <= read_addr & 4'd7;", (36, 1, 4)),
-    ("LUTs always written", LEAF, "if (write) mem[write_addr] <= write_data;\n      always", "mem[write_addr] <= write_data;\n      always",
-     (36, 1, 4)),
+    ("LUTs always written", LEAF, "if (write) mem[write_addr] <= write_data;\n      always",
+     "mem[write_addr] <= write_data;\n      always", (36, 1, 4)),
 ]
 
 
@@ -97,8 +97,8 @@ def bench(folder, shape, sources, *options):
     portable.write_text(PORTABLE.read_text().replace("module cchip_block_ram", "module portable_block_ram"))
     program = folder / "bench.vvp"
     parameters = (f"-Pbench_block_ram.{name}={value}" for name, value in zip(("WIDTH", "WORDS", "ADDR_W"), shape))
-    code, text = run(tool("iverilog"), "-g2005", *options, *parameters, "-s", "bench_block_ram", "-o", program, BENCH, portable,
-                     *sources)
+    code, text = run(tool("iverilog"), "-g2005", *options, *parameters, "-s", "bench_block_ram", "-o", program, BENCH,
+                     portable, *sources)
     return text if code else run("vvp", "-n", program, f"+seed={SEED}", f"+clocks={clocks(shape)}")[1]
 
 
@@ -121,13 +121,19 @@ class Shapes(Case):
             with self.subTest(shape=shape):
                 self.assert_passes(shape, [LEAF, BLOCK, MODEL])
 
+    def test_reads_what_four_portable_banks_read(self):
+        for shape in ((1, 4, 3), (10, 4, 4), (30, 4, 6)):
+            with self.subTest(shape=shape):
+                self.assert_passes(shape, [LEAF, BLOCK, MODEL], "-Pbench_block_ram.MIXED_WIDTH=0")
+
     def test_takes_as_many_blocks_as_it_should(self):
         for shape, blocks in SHAPES.items():
             width, words, addr_w = shape
             with self.subTest(shape=shape):
-                code, text = run(tool("yosys"), "-q", "-p", f"read_verilog {LEAF} {BLOCK}; read_verilog -lib +/ecp5/cells_bb.v; "
-                                 f"hierarchy -top cchip_block_ram -chparam WIDTH {width} -chparam WORDS {words} "
-                                 f"-chparam ADDR_W {addr_w}; proc; flatten; select -assert-count {blocks} t:DP16KD")
+                code, text = run(tool("yosys"), "-q", "-p", f"read_verilog {LEAF} {BLOCK}; read_verilog -lib "
+                                 f"+/ecp5/cells_bb.v; hierarchy -top cchip_block_ram -chparam WIDTH {width} "
+                                 f"-chparam WORDS {words} -chparam ADDR_W {addr_w}; proc; flatten; "
+                                 f"select -assert-count {blocks} t:DP16KD")
                 self.assertEqual(code, 0, text)
 
 
@@ -139,10 +145,10 @@ class Netlists(Case):
             with self.subTest(shape=shape):
                 width, words, addr_w = shape
                 gates.synthesise(ecp5, self.folder, "cchip_block_ram", f"WIDTH={width} WORDS={words} ADDR_W={addr_w}")
-                netlist = (self.folder / "netlist.v").read_text()
-                memories = re.findall(r"^  (DP16KD|TRELLIS_DPR16X4)\b", netlist, re.M)
+                netlist = self.folder / "netlist.v"
+                memories = re.findall(r"^  (DP16KD|TRELLIS_DPR16X4)\b", netlist.read_text(), re.M)
                 self.assertEqual({name: memories.count(name) for name in memories}, cells)
-                self.assert_passes(shape, [self.folder / "netlist.v", *ecp5.models(self.folder)], "-DCCHIP_BENCH_NETLIST")
+                self.assert_passes(shape, [netlist, *ecp5.models(self.folder)], "-DCCHIP_BENCH_NETLIST")
 
 
 class Changes(Case):
