@@ -3,9 +3,9 @@
 // cchip_block_ram for Lattice ECP5: blocks DP16KD with their own output registers, which Yosys does
 // not pack. Takes the place of common/cchip_block_ram.v in rtl/cchip_ecp5.f.
 //   LUTs         WORDS = 1 and ADDR_W up to 4: distributed RAM, of which a block would hold 3 %
-//   blocks       bits of a word in one: 36 with WORDS = 1 and ADDR_W up to 9, both ports as one pair
-//                for writing and reading; 18 with ADDR_W = 10; 9 with WORDS = 4 and ADDR_W up to
-//                11, written 36 bits wide
+//   blocks       one for 36 bits of a word with WORDS = 1 and ADDR_W up to 9, its ports as one pair
+//                for writing and reading; for 18 bits with ADDR_W = 10; for 9 bits with WORDS = 4
+//                and ADDR_W up to 11, written 36 bits wide
 //   inference    larger memories; their output register is made of flip-flops
 //   latency, throughput, collision, cuts, reset   those of common/cchip_block_ram.v
 module cchip_block_ram #(
