@@ -4,7 +4,7 @@
 // ports, in the modes that are taken for the memories here, where a byte has 9 bits and an address is that of a bit:
 //   inferred     512 words of 36 bits, read through port B one clock after the address
 //   rtl/vendor/ecp5/cchip_dp16kd.v   both ports with their output registers, read two clocks after the address: 2,048 words
-//                of 9 bits, 1,024 of 18, or 512 of 36 written through A and 2,048 of 9 read through B
+//                of 9 bits, 1,024 of 18, or 512 of 36 written through A and 512 of 36 or 2,048 of 9 read through B
 //   write        CEA and WEA; byte i of the word if ADA<i>; data {DIB, DIA}
 //   read         CEB; data {DOB, DOA} of 36 bits, DOB of fewer
 //   both at one word on one clock: undefined here (Yosys counts on nothing)
@@ -106,8 +106,8 @@ module DP16KD #(
 
   generate
     if (REGMODE_B == "NOREG" ? DATA_WIDTH_A != 36 || DATA_WIDTH_B != 36
-        : !(DATA_WIDTH_A == 36 && DATA_WIDTH_B == 9 || DATA_WIDTH_A == DATA_WIDTH_B && DATA_WIDTH_B <= 18
-            && DATA_WIDTH_B % 9 == 0)) begin : gen_width
+        : !(DATA_WIDTH_A == 36 && (DATA_WIDTH_B == 9 || DATA_WIDTH_B == 36)
+            || DATA_WIDTH_A == DATA_WIDTH_B && DATA_WIDTH_B <= 18 && DATA_WIDTH_B % 9 == 0)) begin : gen_width
       dp16kd_model_does_not_know_these_widths u_error ();
     end
     if (REGMODE_A != REGMODE_B || CSDECODE_A != "0b000" || CSDECODE_B != "0b000" || CLKAMUX != "CLKA" || CLKBMUX != "CLKB")
@@ -165,7 +165,8 @@ module DP16KD #(
     if (CEB) word <= |(bytes & bytes_read) && write_word == read_word ? 36'bx : mem[read_word] >> 9 * read_byte;
     if (OCEB) registered <= word;
   end
-  wire [35:0] read_data = REGMODE_B == "OUTREG" ? {registered[17:0], registered_a[17:0]} : word;
+  wire [35:0] outputs = REGMODE_B == "OUTREG" ? registered : word;
+  wire [35:0] read_data = READ == 4 ? outputs : {outputs[17:0], registered_a[17:0]};
 
   assign {DOB17, DOB16, DOB15, DOB14, DOB13, DOB12, DOB11, DOB10, DOB9, DOB8, DOB7, DOB6, DOB5, DOB4,
       DOB3, DOB2, DOB1, DOB0, DOA17, DOA16, DOA15, DOA14, DOA13, DOA12, DOA11, DOA10, DOA9, DOA8,
@@ -179,7 +180,7 @@ module DP16KD #(
     end
 `endif
 
-  wire unused = &{1'b0, write_bit[4:2], read_bit[4:0], registered[35:18], registered_a[35:18]};
+  wire unused = &{1'b0, write_bit[4:2], read_bit[4:0], outputs, registered_a[35:18]};
 
 endmodule
 `default_nettype wire

@@ -2,9 +2,11 @@
 `default_nettype none
 // cchip_block_ram for Lattice ECP5: blocks DP16KD with their own output registers, which Yosys does
 // not pack. Takes the place of common/cchip_block_ram.v in rtl/cchip_ecp5.f.
-//   blocks       WORDS = 1: one for 18 bits of a word, up to ADDR_W = 10; WORDS = 4: one for 9
-//                bits, written 36 bits wide, up to ADDR_W = 11. Larger memories are left to
-//                inference, their output register is made of flip-flops
+//   LUTs         WORDS = 1 and ADDR_W up to 4: distributed RAM, of which a block would hold 3 %
+//   blocks       one for 36 bits of a word with WORDS = 1 and ADDR_W up to 9, its ports as one pair
+//                for writing and reading; for 18 bits with ADDR_W = 10; for 9 bits with WORDS = 4
+//                and ADDR_W up to 11, written 36 bits wide
+//   inference    larger memories; their output register is made of flip-flops
 //   latency, throughput, collision, cuts, reset   those of common/cchip_block_ram.v
 module cchip_block_ram #(
     // see common/cchip_block_ram.v
@@ -21,9 +23,10 @@ module cchip_block_ram #(
     output wire [                      WIDTH-1:0] read_data
 );
 
-  localparam integer LEAST = WORDS == 4 ? 9 : 18;  // bits of a word in a block
-  localparam integer BLOCKS = (WIDTH + LEAST - 1) / LEAST;
-  localparam integer FITS = WORDS == 4 ? 11 : 10;  // address bits of a block
+  localparam integer BITS = WORDS == 4 ? 9 : ADDR_W <= 9 ? 36 : 18;  // of a word in a block
+  localparam integer BLOCKS = (WIDTH + BITS - 1) / BITS;
+  localparam integer FITS = BITS == 9 ? 11 : BITS == 36 ? 9 : 10;  // address bits of a block
+  localparam integer WRITTEN = BITS == 18 ? 18 : 36;  // bits of a block that are written at once
 
   generate
     if (WIDTH < 1 || ADDR_W < 3 || ADDR_W > 16) begin : gen_illegal
@@ -33,51 +36,66 @@ module cchip_block_ram #(
       cchip_error_block_ram_WORDS_must_be_1_or_4 u_error ();
     end
 
-    if (ADDR_W <= FITS) begin : gen_blocks
+    if (WORDS == 1 && ADDR_W <= 4) begin : gen_distributed
+      // the first register holds the address, which is narrower than the word
+      (* ram_style = "distributed" *)
+      reg [WIDTH-1:0] mem[0:(1<<ADDR_W)-1];
+      reg [ADDR_W-1:0] read_addr_q;
+      reg [WIDTH-1:0] read_data_q;
+      always @(posedge clk) if (write) mem[write_addr] <= write_data;
+      always @(posedge clk) begin
+        read_addr_q <= read_addr;
+        read_data_q <= mem[read_addr_q];
+      end
+      assign read_data = read_data_q;
+      wire unused = &{1'b0, MIXED_WIDTH};
+    end else if (ADDR_W <= FITS) begin : gen_blocks
       // the address of a block is that of a bit; the lowest bits of the port for writing enable
       // the bytes
       wire [13:0] write_bit, read_bit;
-      if (WORDS == 4) begin : gen_wide
-        assign write_bit = {{FITS - ADDR_W{1'b0}}, write_addr, 1'b0, 4'b1111};
-        assign read_bit  = {{FITS - ADDR_W{1'b0}}, read_addr, 3'd0};
-      end else begin : gen_same
+      if (WRITTEN == 36) begin : gen_four_bytes
+        assign write_bit = {{FITS - ADDR_W{1'b0}}, write_addr, 5'b01111};
+      end else begin : gen_two_bytes
         assign write_bit = {{FITS - ADDR_W{1'b0}}, write_addr, 4'b0011};
-        assign read_bit  = {{FITS - ADDR_W{1'b0}}, read_addr, 4'd0};
       end
-      wire [WORDS*BLOCKS*LEAST-1:0] padded;  // words, each filled up to whole blocks
-      wire [BLOCKS*LEAST-1:0] found;
+      assign read_bit = {{FITS - ADDR_W{1'b0}}, read_addr, {14 - FITS{1'b0}}};
+      wire [WORDS*BLOCKS*BITS-1:0] padded;  // words, each filled up to whole blocks
+      wire [BLOCKS*BITS-1:0] found;
       assign read_data = found[WIDTH-1:0];
       genvar w, b;
       for (w = 0; w < WORDS; w = w + 1) begin : gen_padded
-        assign padded[BLOCKS*LEAST*w+:WIDTH] = write_data[WIDTH*w+:WIDTH];
-        if (BLOCKS * LEAST > WIDTH) begin : gen_rest
-          assign padded[BLOCKS*LEAST*w+WIDTH+:BLOCKS*LEAST-WIDTH] = {BLOCKS * LEAST - WIDTH{1'b0}};
+        assign padded[BLOCKS*BITS*w+:WIDTH] = write_data[WIDTH*w+:WIDTH];
+        if (BLOCKS * BITS > WIDTH) begin : gen_rest
+          assign padded[BLOCKS*BITS*w+WIDTH+:BLOCKS*BITS-WIDTH] = {BLOCKS * BITS - WIDTH{1'b0}};
         end
       end
       for (b = 0; b < BLOCKS; b = b + 1) begin : gen_block
-        wire [35:0] d;
-        wire [17:0] q, unused_a;
+        wire [35:0] d, q;
         for (w = 0; w < WORDS; w = w + 1) begin : gen_words
-          assign d[LEAST*w+:LEAST] = padded[BLOCKS*LEAST*w+LEAST*b+:LEAST];
+          assign d[BITS*w+:BITS] = padded[BLOCKS*BITS*w+BITS*b+:BITS];
         end
-        if (WORDS == 1) begin : gen_upper
+        if (WRITTEN < 36) begin : gen_upper
           assign d[35:18] = 18'd0;
         end
-        assign found[LEAST*b+:LEAST] = q[LEAST-1:0];
+        if (BITS == 36) begin : gen_both
+          assign found[36*b+:36] = q;
+        end else begin : gen_port_b
+          assign found[BITS*b+:BITS] = q[18+:BITS];
+        end
         cchip_dp16kd #(
-            .WIDTH_A(WORDS == 4 ? 36 : 18),
-            .WIDTH_B(LEAST)
+            .WIDTH_A(WRITTEN),
+            .WIDTH_B(BITS)
         ) u_block (
             .clk   (clk),
             .write (write),
             .addr_a(write_bit),
             .d_a   (d[17:0]),
             .d_b   (d[35:18]),
-            .q_a   (unused_a),
+            .q_a   (q[17:0]),
             .addr_b(read_bit),
-            .q_b   (q)
+            .q_b   (q[35:18])
         );
-        wire unused = &{1'b0, q, unused_a};
+        wire unused = &{1'b0, q};
       end
       wire unused = &{1'b0, found, MIXED_WIDTH};
     end else begin : gen_inferred
