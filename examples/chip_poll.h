@@ -1,4 +1,4 @@
-/* SPDX-License-Identifier: Apache-2.0 */
+// SPDX-License-Identifier: Apache-2.0
 /* A polling driver of cchip_chip in C: see docs/programmers-guide.md. */
 #ifndef CHIP_POLL_H
 #define CHIP_POLL_H

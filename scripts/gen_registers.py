@@ -472,6 +472,8 @@ def cpp(name, registers):
             if f["reset"] is not None:
                 lines.append(f"constexpr std::uint32_t {f['name']}_reset = 0x{f['reset']:X};")
         lines += [f"}}  // namespace {r['name']}", ""]
+    lines = [part for line in lines for part in (textwrap.wrap(line, 120, subsequent_indent="/// ", break_long_words=False,
+             break_on_hyphens=False) if line.startswith("/// ") and len(line) > 120 else [line])]
     return "\n".join(lines + [f"}}  // namespace cchip::{namespace}", "", "#endif", ""])
 
 

@@ -193,7 +193,7 @@ module cchip_chip #(
   wire [4*`CCHIP_PHASE_W-1:0] slot_phase;
   wire answered, refused_kind, refused_provider, count_swap, count_rejected, count_stall;
   wire [`CCHIP_KIND_W-1:0] answered_module;
-  wire [8:0] event_q = {refused_provider, swap_events, chip_event_q};
+  wire [8:0] events = {refused_provider, swap_events, chip_event_q};
   reg invalidate_q, invalidating_q;  // a command waits; one waits or is at work
   cchip_chip_regs u_regs (
       .clk                                 (clk),
@@ -245,23 +245,23 @@ module cchip_chip #(
       .hwif_in_status_idle                 (idle),
       .hwif_in_status_resetting            (resetting),
       .hwif_out_interrupt_status_no_provider(status[8]),
-      .hwif_in_interrupt_status_no_provider_hwset(event_q[8]),
+      .hwif_in_interrupt_status_no_provider_hwset(events[8]),
       .hwif_out_interrupt_status_swap_lost (status[7]),
-      .hwif_in_interrupt_status_swap_lost_hwset(event_q[7]),
+      .hwif_in_interrupt_status_swap_lost_hwset(events[7]),
       .hwif_out_interrupt_status_swap_error(status[6]),
-      .hwif_in_interrupt_status_swap_error_hwset(event_q[6]),
+      .hwif_in_interrupt_status_swap_error_hwset(events[6]),
       .hwif_out_interrupt_status_swap_done (status[5]),
-      .hwif_in_interrupt_status_swap_done_hwset(event_q[5]),
+      .hwif_in_interrupt_status_swap_done_hwset(events[5]),
       .hwif_out_interrupt_status_invalidated(status[4]),
-      .hwif_in_interrupt_status_invalidated_hwset(event_q[4]),
+      .hwif_in_interrupt_status_invalidated_hwset(events[4]),
       .hwif_out_interrupt_status_reset_done(status[3]),
-      .hwif_in_interrupt_status_reset_done_hwset(event_q[3]),
+      .hwif_in_interrupt_status_reset_done_hwset(events[3]),
       .hwif_out_interrupt_status_record_failed(status[2]),
-      .hwif_in_interrupt_status_record_failed_hwset(event_q[2]),
+      .hwif_in_interrupt_status_record_failed_hwset(events[2]),
       .hwif_out_interrupt_status_query_failed(status[1]),
-      .hwif_in_interrupt_status_query_failed_hwset(event_q[1]),
+      .hwif_in_interrupt_status_query_failed_hwset(events[1]),
       .hwif_out_interrupt_status_record    (status[0]),
-      .hwif_in_interrupt_status_record_hwset(event_q[0]),
+      .hwif_in_interrupt_status_record_hwset(events[0]),
       .hwif_out_interrupt_enable_no_provider(status_enable[8]),
       .hwif_out_interrupt_enable_swap_lost (status_enable[7]),
       .hwif_out_interrupt_enable_swap_error(status_enable[6]),
@@ -393,7 +393,8 @@ module cchip_chip #(
     if (SWAPS == 0) begin : gen_swap_counters
       assign swap_ack  = read_swap_counter;
       assign swap_data = 32'd0;
-      wire unused = &{1'b0, answered, answered_module, count_swap, count_rejected, count_stall};
+      wire unused_counts = &{1'b0, answered, answered_module, count_swap, count_rejected,
+          count_stall};
     end else begin : gen_swap_counters
       // words 0x140 on are four of 64 bits, words 0x120 on three of 32
       wire [3:0] answered_by = {3'd0, answered} << answered_module;

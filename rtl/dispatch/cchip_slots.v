@@ -265,8 +265,9 @@ module cchip_slots #(
       assign m_axi_rready  = 1'b0;
       assign cfg_valid     = 1'b0;
       assign cfg_data      = {CFG_W{1'b0}};
-      wire unused = &{1'b0, waiting, full, quiet, region_rm_id, roc_busy, slot_lost, clear,
-          abort_swap, enable, command_valid, command_slot, command_module, command_force, shutdown_limit,
+      wire unused_of_swaps = &{1'b0, waiting, full, quiet, region_rm_id, roc_busy, slot_lost, clear,
+          abort_swap, enable, command_valid, command_slot, command_module, command_force,
+          shutdown_limit,
           memory_limit, min_batch, max_age, write_table, write_word, write_data, write_bytes,
           read_word, m_axi_arready, m_axi_rvalid, m_axi_rdata, m_axi_rresp, m_axi_rlast,
           cfg_error};
@@ -415,7 +416,7 @@ module cchip_slots #(
           .read_phase    (read_word[PHASE_W-1:0]),
           .read_clocks   (phase_clocks)
       );
-      wire unused = &{1'b0, busy, waiting[COUNT_W-1:0]};
+      wire unused_of_swaps = &{1'b0, busy, waiting[COUNT_W-1:0]};
     end
   endgenerate
 

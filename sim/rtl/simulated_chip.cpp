@@ -26,7 +26,8 @@ class SimulatedChip final : public sim::ChipMachine<Model, bus_w> {
     this->memory().options = options.memory;
     if (!options.trace_path.empty()) {
       constexpr std::uint64_t units = 10;  // of time per clock
-      write_chip_gtkw(options.trace_path, 0, units * std::min<std::uint64_t>(options.trace_clocks, 5000));
+      write_chip_gtkw(options.trace_path, 0, units * std::min<std::uint64_t>(options.trace_clocks, 5000),
+                      options.slots);
     }
   }
 };

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/waves/wave_layout.hpp>
@@ -369,7 +370,8 @@ void write_broad_phase_gtkw(const std::string& fst_path, std::uint64_t from, std
 namespace {
 
 /// A query from the ring in memory to its done record in the other one, in the order of its way.
-Rows chip_layout() {
+Rows chip_layout(unsigned slot_count) {
+  const int slots = static_cast<int>(slot_count);
   const std::string broad = "u_broad_phase.";
   const std::string calc = "u_calc_result.";
   return group("1 ring of queries",
@@ -395,9 +397,11 @@ Rows chip_layout() {
                                vector("number, pair", "pair_name", 8, Radix::hexadecimal),
                                vector("eta", "pair_err", 4, Radix::decimal)}) +
          group("7 slot",
-               {bit("vertex", "slot_vertex_valid"), bit("first", "slot_first"), bit("result", "slot_result_valid"),
-                bit("answer", "result_valid"), bit("taken", "result_ready"),
-                field("tag", "result", 34, 0, 16, Radix::hexadecimal), field("hit", "result", 34, 16, 1, Radix::binary),
+               {vector("vertex, slot", "u_slots.vertex_valid", slots, Radix::binary),
+                bit("first", "u_slots.vertex_first"),
+                vector("result, slot", "u_slots.result_valid", slots, Radix::binary), bit("answer", "result_valid"),
+                bit("taken", "result_ready"), field("tag", "result", 34, 0, 16, Radix::hexadecimal),
+                field("hit", "result", 34, 16, 1, Radix::binary),
                 field("definite", "result", 34, 18, 1, Radix::binary)}) +
          group("8 calcResult", {bit("leaf result", "leaf_result_valid"), bit("taken", "leaf_result_ready"),
                                 bit("judged", "judged_valid"), bit("live", "judged_live"),
@@ -412,14 +416,38 @@ Rows chip_layout() {
                 vector("consumer", "record_consumer", 32, Radix::decimal)});
 }
 
+/// What the exchange of modules adds.
+Rows chip_swap_layout(unsigned slots) {
+  const std::string swaps = "u_slots.gen_swaps.";
+  Rows rows = {vector("waiting, all kinds", "waiting", 28, Radix::hexadecimal),
+               vector("no provider of kinds 3 to 1", "u_slots.no_provider", 3, Radix::binary),
+               bit("request", swaps + "swap_valid"),
+               field("slot", swaps + "swap_data", defs::swap_request_w, defs::swap_request_slot, Radix::decimal),
+               field("module", swaps + "swap_data", defs::swap_request_w, defs::swap_request_module, Radix::decimal),
+               vector("phase", swaps + "phase_now", defs::phase_w, Radix::decimal),
+               bit("bitstream: address", "m_axi_cfg_arvalid"),
+               bit("bitstream: data", "m_axi_cfg_rvalid"),
+               bit("port: write", "cfg_valid"),
+               bit("report", swaps + "report_valid"),
+               field("code", swaps + "report_data", defs::swap_report_w, defs::swap_report_code, Radix::decimal)};
+  for (unsigned slot = 0; slot < slots; ++slot) {
+    const std::string number = std::to_string(slot);
+    const std::string scope = "u_slots.gen_slots[" + number + "].u_slot.";
+    rows.push_back(vector("slot " + number + ": module", scope + "rm_id", defs::rm_id_w, Radix::decimal));
+    rows.push_back(bit("slot " + number + ": decoupled", scope + "decoupled"));
+  }
+  return group("10 exchange of modules", rows);
+}
+
 }  // namespace
 
-void write_chip_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to) {
+void write_chip_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to, unsigned swap_slots) {
   sim::OutputFile out(layout_path(fst_path));
   SaveFile file(out.stream(), "cchip_chip.u_core");
   begin(file, "Queries through the whole chip", fst_path,
         {from, -std::log2(static_cast<double>(to - from) / wave_frames)});
-  file.write(chip_layout());
+  file.write(chip_layout(std::max(swap_slots, 1U)));
+  if (swap_slots != 0) file.write(chip_swap_layout(swap_slots));
   out.commit();
 }
 

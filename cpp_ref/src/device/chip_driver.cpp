@@ -153,7 +153,8 @@ class ChipDriver final : public QueryPort {
         images = (images + bytes.size() + align - 1) / align * align;
       }
     }
-    if (!bitstreams_.empty() && images > std::uint64_t{1} << 32U) refuse("bitstreams do not end below 2^32; choose a lower memory_base");
+    if (!bitstreams_.empty() && images > std::uint64_t{1} << 32U)
+      refuse("bitstreams do not end below 2^32; choose a lower memory_base");
     if (images + line_bytes > o.memory_base + o.memory_bytes)
       refuse("memory of " + std::to_string(o.memory_bytes) + " bytes is too small: the rings take " +
              std::to_string(images - o.memory_base));

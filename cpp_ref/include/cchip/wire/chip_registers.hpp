@@ -37,7 +37,8 @@ constexpr std::uint32_t offset = 0x008;
 /// `COORD_W`, bit
 constexpr std::uint32_t coord_w_mask = 0x000000FF;
 constexpr int coord_w_shift = 0;
-/// primitive pairs that are tested, with swaps those that can be, a bit for each `ModuleId` from 1 on: bit 0 two triangles, bit 1 triangle and quad, bit 2 two quads. Others come back as open pairs
+/// primitive pairs that are tested, with swaps those that can be, a bit for each `ModuleId` from 1 on: bit 0 two
+/// triangles, bit 1 triangle and quad, bit 2 two quads. Others come back as open pairs
 constexpr std::uint32_t kinds_mask = 0x00000700;
 constexpr int kinds_shift = 8;
 /// 1: modules are exchanged at run time
@@ -68,11 +69,13 @@ constexpr int bus_bytes_shift = 24;
 /// Control.
 namespace control {
 constexpr std::uint32_t offset = 0x010;
-/// 1: queries are read from their ring. 0: no further one is, those that were read are answered (drain: wait for `status.idle`). A soft reset clears it
+/// 1: queries are read from their ring. 0: no further one is, those that were read are answered (drain: wait for
+/// `status.idle`). A soft reset clears it
 constexpr std::uint32_t enable_mask = 0x00000001;
 constexpr int enable_shift = 0;
 constexpr std::uint32_t enable_reset = 0x0;
-/// 1: soft reset, see `status.resetting`. Every query in flight is forgotten; limits, bases, sizes, lock ranges and interrupts stay
+/// 1: soft reset, see `status.resetting`. Every query in flight is forgotten; limits, bases, sizes, lock ranges and
+/// interrupts stay
 constexpr std::uint32_t soft_reset_mask = 0x00000002;
 constexpr int soft_reset_shift = 1;
 constexpr std::uint32_t soft_reset_reset = 0x0;
@@ -85,7 +88,8 @@ constexpr std::uint32_t clear_reset = 0x0;
 /// Status.
 namespace status {
 constexpr std::uint32_t offset = 0x014;
-/// 1: a soft reset is at work; it ends when memory has answered all reads and writes. If memory has lost one it stays 1, and only a reset of chip and bus helps
+/// 1: a soft reset is at work; it ends when memory has answered all reads and writes. If memory has lost one it stays
+/// 1, and only a reset of chip and bus helps
 constexpr std::uint32_t resetting_mask = 0x00000001;
 constexpr int resetting_shift = 0;
 /// 1: no query is in flight and every record is in memory
@@ -94,7 +98,8 @@ constexpr int idle_shift = 1;
 /// 1: query number `query_consumer` could not be read. No further one is; a soft reset clears it
 constexpr std::uint32_t query_failed_mask = 0x00000004;
 constexpr int query_failed_shift = 2;
-/// 1: a record could not be written. No further one is; `record_producer` counts those before it. A soft reset clears it
+/// 1: a record could not be written. No further one is; `record_producer` counts those before it. A soft reset clears
+/// it
 constexpr std::uint32_t record_failed_mask = 0x00000008;
 constexpr int record_failed_shift = 3;
 /// 1: an invalidation is at work
@@ -352,7 +357,8 @@ constexpr int line_shift = 0;
 constexpr std::uint32_t line_reset = 0x0;
 }  // namespace invalidate_last
 
-/// Invalidation of a range of lines; ends when `status.invalidating` is 0. One that is asked for meanwhile follows, with the range of that time.
+/// Invalidation of a range of lines; ends when `status.invalidating` is 0. One that is asked for meanwhile follows,
+/// with the range of that time.
 namespace invalidate {
 constexpr std::uint32_t offset = 0x0A8;
 /// 1: start

@@ -28,8 +28,9 @@ void write_broad_phase_gtkw(const std::string& fst_path, std::uint64_t from, std
 
 /// The same for a waveform of cchip_chip with 16 queries: a query from its ring to its done record.
 /// \param from,to time units of the waveform
-/// \throws std::runtime_error the file cannot be written
-void write_chip_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to);
+/// \param swap_slots slots of a chip with swaps, 0: a static one
+/// \throws sim::OutputError the file cannot be written
+void write_chip_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to, unsigned swap_slots = 0);
 
 }  // namespace cchip
 
