@@ -420,7 +420,6 @@ Rows chip_layout(unsigned slot_count) {
 Rows chip_swap_layout(unsigned slots) {
   const std::string swaps = "u_slots.gen_swaps.";
   Rows rows = {vector("waiting, all kinds", "waiting", 28, Radix::hexadecimal),
-               vector("no provider of kinds 3 to 1", "u_slots.no_provider", 3, Radix::binary),
                bit("request", swaps + "swap_valid"),
                field("slot", swaps + "swap_data", defs::swap_request_w, defs::swap_request_slot, Radix::decimal),
                field("module", swaps + "swap_data", defs::swap_request_w, defs::swap_request_module, Radix::decimal),
