@@ -31,8 +31,9 @@ class ChipDriver final : public QueryPort {
   ChipDriver(std::unique_ptr<Machine> machine, const ChipDriverOptions& options)
       : machine_(std::move(machine)), options_(options) {
     if (!machine_) refuse("no machine");
-    identify();
     place();
+    identify();
+    place_bitstreams();
     load_bitstreams();
     if (!restart()) throw std::runtime_error("chip driver: the chip's reset does not end; reset chip and bus");
   }
@@ -140,7 +141,23 @@ class ChipDriver final : public QueryPort {
     record_base_ = query_base_ + (line_bytes << o.query_log2);
     const std::uint64_t records = ((record_bytes << o.record_log2) + line_bytes - 1) / line_bytes * line_bytes;
     // line 0 belongs to no image: a lock range may be empty
-    std::uint64_t images = std::max(record_base_ + records, line_bytes);
+    place_images(std::max(record_base_ + records, line_bytes), "rings take ");
+  }
+
+  /// Images begin at this byte.
+  void place_images(std::uint64_t images, const char* before_them) {
+    const std::uint64_t end = options_.memory_base + options_.memory_bytes;
+    if (images + line_bytes > end)
+      refuse("memory of " + std::to_string(options_.memory_bytes) + " bytes is too small: the " + before_them +
+             std::to_string(images - options_.memory_base));
+    capabilities_.image_first = static_cast<std::uint32_t>(images / line_bytes);
+    capabilities_.image_lines = static_cast<std::uint32_t>(end / line_bytes - images / line_bytes);
+  }
+
+  /// Of a chip with swaps, between rings and images.
+  void place_bitstreams() {
+    if (capabilities_.swap_slots == 0) return;
+    std::uint64_t at = capabilities_.image_first * line_bytes;
     for (unsigned slot = 0; slot < capabilities_.swap_slots; ++slot) {
       for (const ModuleId id : {ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad}) {
         const auto place = static_cast<std::uint8_t>(slot);
@@ -148,19 +165,13 @@ class ChipDriver final : public QueryPort {
                                 ? options_.bitstream(place, id)
                                 : make_bitstream(place, id, make_payload(place, id, options_.payload_bytes, 1));
         constexpr std::uint64_t align = std::max<std::uint64_t>(defs::bitstream_align, line_bytes);
-        images = (images + align - 1) / align * align;
-        bitstreams_.push_back({4 * slot + static_cast<unsigned>(id), images, bytes});
-        images = (images + bytes.size() + align - 1) / align * align;
+        at = (at + align - 1) / align * align;
+        bitstreams_.push_back({4 * slot + static_cast<unsigned>(id), at, bytes});
+        at = (at + bytes.size() + align - 1) / align * align;
       }
     }
-    if (!bitstreams_.empty() && images > std::uint64_t{1} << 32U)
-      refuse("bitstreams do not end below 2^32; choose a lower memory_base");
-    if (images + line_bytes > o.memory_base + o.memory_bytes)
-      refuse("memory of " + std::to_string(o.memory_bytes) + " bytes is too small: the rings take " +
-             std::to_string(images - o.memory_base));
-    capabilities_.image_first = static_cast<std::uint32_t>(images / line_bytes);
-    capabilities_.image_lines =
-        static_cast<std::uint32_t>((o.memory_base + o.memory_bytes) / line_bytes - images / line_bytes);
+    if (at > std::uint64_t{1} << 32U) refuse("bitstreams do not end below 2^32; choose a lower memory_base");
+    place_images(at, "rings and bitstreams take ");
   }
 
   void identify() {
