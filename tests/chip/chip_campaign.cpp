@@ -1053,7 +1053,7 @@ struct CurvePoint {
   double clocks = 0;  ///< of a batch, mean
   double swaps = 0;   ///< of a batch
   double swap_clocks = 0;
-  double transfer = 0, worked = 0;  ///< clocks of TRANSFER of a batch, and those of them with box tests
+  double worked = 0;  ///< clocks of TRANSFER of a batch on which the box test worked
 };
 
 CurvePoint measure_curve(unsigned slots, std::size_t queries, const CurveSettings& settings) {
@@ -1104,7 +1104,6 @@ CurvePoint measure_curve(unsigned slots, std::size_t queries, const CurveSetting
     if (round == 0) before = *chip.overlap;
   }
   const auto n = static_cast<double>(batches);
-  point.transfer = static_cast<double>((*chip.overlap)[0] - before[0]) / n;
   point.worked = static_cast<double>((*chip.overlap)[1] - before[1]) / n;
   for (double* x : {&point.clocks, &point.swaps, &point.swap_clocks}) *x /= n;
   return point;
