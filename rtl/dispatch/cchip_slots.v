@@ -14,7 +14,8 @@
 //   registers    as cchip_primtest_subsystem has them, docs/registers.md
 //   cuts         every path but the reads of table_data and phase_clocks, rst and core_rst
 //   reset        rst: no pair, no swap; a slot whose rewriting was cut off stays decoupled until a
-//                good swap. core_rst: no pair; a swap, the table and its bitstreams stay
+//                good swap. core_rst: no pair; a swap, the table and its bitstreams stay; a slot
+//                that is decoupled keeps the reset that the swap gives it
 module cchip_slots #(
     // width of a coordinate, bit, 4..20
     parameter integer COORD_W = 16,
@@ -188,6 +189,10 @@ module cchip_slots #(
   generate
     for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_slots
       wire [ID_W-1:0] module_id;
+      // A slot that is decoupled for a swap has no pairs, and its reset is the controller's alone:
+      // one that lasts over the end of a transfer would hide the new module's reset on
+      // configuration, which has to begin once the module is whole
+      wire slot_rst = rst | (core_rst & ~decouple[slot]);
       wire [`CCHIP_PAIR_ID_W-1:0] id = vertex_id[`CCHIP_PAIR_ID_W*slot+:`CCHIP_PAIR_ID_W];
       wire [`CCHIP_VERTEX_W(COORD_W)-1:0] vertex_data = `CCHIP_VERTEX_OF(vertex_first, vertex_last,
           id, descriptor[`CCHIP_DESCRIPTOR_ERR], descriptor[`CCHIP_DESCRIPTOR_MODE], a, b);
@@ -207,7 +212,7 @@ module cchip_slots #(
           .SEED               (SEED)
       ) u_slot (
           .clk           (clk),
-          .rst           (reset),
+          .rst           (slot_rst),
           .decouple      (decouple[slot]),
           .decoupled     (region_decoupled[slot]),
           .hold_reset    (hold_reset[slot]),

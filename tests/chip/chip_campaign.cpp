@@ -725,9 +725,10 @@ std::string compare_ids(const Query& query, const ChipAnswer& answer, const mode
   return std::includes(got.begin(), got.end(), wanted.begin(), wanted.end()) ? "" : "a contact is missing";
 }
 
-/// \param swaps resets fall into swaps as well
+/// \param slots of a chip with swaps, whose modules are exchanged meanwhile; 0: a chip without
 template <class Bench>
-int run_resets(std::size_t resets, std::uint64_t seed, bool swaps) {
+int run_resets(std::size_t resets, std::uint64_t seed, std::uint32_t slots) {
+  const bool swaps = slots > 0;
   Random random(seed);
   fmt::print("seed={}\n", seed);
   ChipDriverOptions driver = small_rings();
@@ -737,18 +738,35 @@ int run_resets(std::size_t resets, std::uint64_t seed, bool swaps) {
   Objects objects(Kind::quad);
   objects.place(bench);
   std::size_t wrong = 0, hangs = 0, checked = 0;
+  constexpr std::uint32_t transfer = 5;     // phase of a swap
+  constexpr std::uint64_t port_clocks = 2;  // of a word of the configuration port, a byte
+  constexpr std::uint64_t longest_swap = 20000;
   for (std::size_t i = 0; i < resets; ++i) {
     bench.machine().memory().options = any_memory(random);
     for (const Query& query : queries_of(objects, random, 12)) bench.submit(query);
     const std::uint64_t clocks = i % 2 == 0 ? random() % 3000 : random() % 100;
+    const std::uint32_t slot = slots > 1 ? static_cast<std::uint32_t>(random() % slots) : 0;
+    const auto field = [&](std::uint32_t mask, int shift) {
+      return (bench.machine().read_register(regs::slot_status::offset(slot)) & mask) >> shift;
+    };
+    const auto phase = [&] { return field(regs::slot_status::phase_mask, regs::slot_status::phase_shift); };
     if (swaps) {
-      bench.machine().write_register(regs::swap_command::offset,
-                                     regs::swap_command::go_mask | static_cast<std::uint32_t>(1 + random() % 3)
-                                                                       << regs::swap_command::module_id_shift);
+      const std::uint32_t now = field(regs::slot_status::module_id_mask, regs::slot_status::module_id_shift);
+      const std::uint32_t other = 1 + (now + static_cast<std::uint32_t>(random() % 2)) % 3;
+      bench.machine().write_register(regs::swap_command::offset, regs::swap_command::go_mask |
+                                                                     slot << regs::swap_command::slot_shift |
+                                                                     other << regs::swap_command::module_id_shift);
     }
-    for (std::uint64_t k = 0; k < clocks; ++k) bench.step();
-    if (swaps && (bench.machine().read_register(regs::slot_status::offset(0)) & regs::slot_status::phase_mask) != 0)
-      ++in_swaps;
+    std::uint64_t wait = clocks;
+    if (swaps && i % 4 >= 2) {
+      // Nearly all of a swap is its transfer: a quarter of the resets looks for one of the phases before it, another
+      // begins about where it ends, and goes on while the new module is reset and taken into operation.
+      const std::uint32_t wanted = i % 4 == 2 ? 1 + static_cast<std::uint32_t>(random() % 4) : transfer;
+      for (std::uint64_t k = 0; k < longest_swap && phase() < wanted; ++k) bench.step();
+      wait = i % 4 == 2 ? clocks % 16 : driver.payload_bytes * port_clocks - 48 + clocks % 64;
+    }
+    for (std::uint64_t k = 0; k < wait; ++k) bench.step();
+    if (swaps && phase() != 0) ++in_swaps;
     if (!bench.recover()) {
       ++hangs;
       bench.machine().reset();
@@ -1152,8 +1170,10 @@ int main(int argc, char** argv) {
   auto* resets_command = app.add_subcommand("resets", "soft resets at any clock, each followed by right queries");
   resets_command->add_option("--resets", resets, "how many")->capture_default_str();
   resets_command->add_option("--seed", seed, "of everything")->capture_default_str();
-  bool swaps = false;
-  resets_command->add_flag("--swaps", swaps, "a slot whose module is exchanged meanwhile");
+  std::uint32_t slots = 0;
+  resets_command->add_option("--slots", slots, "1 or 2 slots, whose modules are exchanged meanwhile; 0: no swaps")
+      ->check(CLI::Range(0, 2))
+      ->capture_default_str();
   MixedSettings mixed;
   auto* mixed_command = app.add_subcommand("mixed", "batches of triangle and quad objects through a chip with swaps");
   mixed_command->add_option("--slots", mixed.slots, "1 or 2")->check(CLI::Range(1, 2))->capture_default_str();
@@ -1176,8 +1196,9 @@ int main(int argc, char** argv) {
     if (*faults_command) return run_faults(faults);
     if (*mixed_command) return MixedRun(mixed).run();
     if (*curve_command) return run_curve(curve);
-    if (swaps) return run_resets<PortBench<Vcchip_chip_swaps1, 128>>(resets, seed, true);
-    return run_resets<Bench>(resets, seed, false);
+    if (slots == 1) return run_resets<PortBench<Vcchip_chip_swaps1, 128>>(resets, seed, slots);
+    if (slots == 2) return run_resets<PortBench<Vcchip_chip_swaps2, 128>>(resets, seed, slots);
+    return run_resets<Bench>(resets, seed, slots);
   } catch (const std::exception& error) {
     fmt::print(stderr, "cchip_chip_campaign: {}\n", error.what());
     return 2;
