@@ -1074,7 +1074,7 @@ struct CurvePoint {
   double worked = 0;  ///< clocks of TRANSFER of a batch on which the box test worked
 };
 
-CurvePoint measure_curve(unsigned slots, std::size_t queries, const CurveSettings& settings) {
+SwapChip make_curve_chip(unsigned slots, const CurveSettings& settings) {
   ChipDriverOptions driver;
   driver.memory_bytes = std::uint64_t{1} << 25U;
   driver.bitstream = [&](std::uint8_t slot, ModuleId id) {
@@ -1083,7 +1083,24 @@ CurvePoint measure_curve(unsigned slots, std::size_t queries, const CurveSetting
                                                           : (settings.triangle_bytes + settings.quad_bytes) / 8 * 4;
     return make_bitstream(slot, id, make_payload(slot, id, bytes, 1));
   };
-  SwapChip chip = make_swap_chip(slots, {}, driver, settings.seed);
+  return make_swap_chip(slots, {}, driver, settings.seed);
+}
+
+/// The swap under way ends: it belongs to its batch, also if no query of it had to wait.
+void end_swaps(SwapChip& chip, unsigned slots) {
+  for (std::uint32_t slot = 0; slot < slots;) {
+    const std::uint32_t status = chip.machine->read_register(regs::slot_status::offset(slot));
+    if ((status & regs::slot_status::phase_mask) == 0) {
+      ++slot;
+    } else {
+      chip.machine->proceed();
+      slot = 0;
+    }
+  }
+}
+
+CurvePoint measure_curve(unsigned slots, std::size_t queries, const CurveSettings& settings) {
+  SwapChip chip = make_curve_chip(slots, settings);
   const Object triangles_a(make_body(6, 0.3, 3)), triangles_b(make_torus(1, 0.4, 36, 24));
   const Object quads_a(make_torus(0.8, 0.3, 24, 18, Kind::quad)), quads_b(make_torus(1, 0.4, 36, 24, Kind::quad));
   Random random(settings.seed);
@@ -1101,16 +1118,7 @@ CurvePoint measure_curve(unsigned slots, std::size_t queries, const CurveSetting
       const std::uint64_t from = chip.clocks();
       const std::uint32_t swaps = chip.machine->read_register(regs::swaps::offset);
       collide(*chip.device, a, b, batch, {}, [](std::size_t, const CollisionResult&) {});
-      // the swap belongs to its batch, also if no query of it had to wait
-      for (std::uint32_t slot = 0; slot < slots;) {
-        const std::uint32_t status = chip.machine->read_register(regs::slot_status::offset(slot));
-        if ((status & regs::slot_status::phase_mask) == 0) {
-          ++slot;
-        } else {
-          chip.machine->proceed();
-          slot = 0;
-        }
-      }
+      end_swaps(chip, slots);
       if (round == 0) continue;
       ++batches;
       point.clocks += static_cast<double>(chip.clocks() - from);
@@ -1125,6 +1133,50 @@ CurvePoint measure_curve(unsigned slots, std::size_t queries, const CurveSetting
   point.worked = static_cast<double>((*chip.overlap)[1] - before[1]) / n;
   for (double* x : {&point.clocks, &point.swaps, &point.swap_clocks}) *x /= n;
   return point;
+}
+
+/// A batch of `queries` each of triangles, of triangles against quads and of quads: three modules, each for its part.
+/// With two slots the host asks for the next one while the one before works. \returns clocks, swaps of a batch
+CurvePoint measure_three(unsigned slots, std::size_t queries, const CurveSettings& settings) {
+  SwapChip chip = make_curve_chip(slots, settings);
+  const std::array<Object, 3> objects = {Object(make_body(6, 0.3, 3)), Object(make_torus(1, 0.4, 36, 24)),
+                                         Object(make_torus(1, 0.4, 36, 24, Kind::quad))};
+  const Object quads(make_torus(0.8, 0.3, 24, 18, Kind::quad));
+  Random random(settings.seed);
+  const MixedObjects poses;
+  CurvePoint point;
+  for (std::size_t round = 0; round < settings.rounds + 1; ++round) {
+    std::vector<CollisionQuery> batch;
+    std::vector<PosePair> placed;
+    const std::size_t each = round == 0 ? 1 : queries;
+    for (std::size_t i = 0; i < 3 * each; ++i) placed.push_back(poses.draw(random).pose);
+    for (std::size_t i = 0; i < 3 * each; ++i) {
+      const std::size_t part = i / each;
+      const Object& first = part == 2 ? quads : objects[0];
+      const Object& second = part == 1 ? objects[2] : objects[part];
+      batch.push_back({&first, &placed[i].a, &second, &placed[i].b});
+    }
+    const std::uint64_t from = chip.clocks();
+    const std::uint32_t swaps = chip.machine->read_register(regs::swaps::offset);
+    collide(*chip.device, batch);
+    end_swaps(chip, slots);
+    if (round == 0) continue;
+    point.clocks += static_cast<double>(chip.clocks() - from) / static_cast<double>(settings.rounds);
+    point.swaps += static_cast<double>(chip.machine->read_register(regs::swaps::offset) - swaps) /
+                   static_cast<double>(settings.rounds);
+  }
+  return point;
+}
+
+int run_three(const CurveSettings& settings) {
+  fmt::print("{:>8} {:>14} {:>7} {:>14} {:>7}\n", "queries", "one slot", "swaps", "two slots", "swaps");
+  for (const std::size_t queries : settings.queries) {
+    const CurvePoint one = measure_three(1, queries, settings);
+    const CurvePoint two = measure_three(2, queries, settings);
+    fmt::print("{:>8} {:>14.1f} {:>7.2f} {:>14.1f} {:>7.2f}\n", queries, one.clocks, one.swaps, two.clocks, two.swaps);
+    std::fflush(stdout);
+  }
+  return 0;
 }
 
 int run_curve(const CurveSettings& settings) {
@@ -1186,6 +1238,8 @@ int main(int argc, char** argv) {
   auto* curve_command = app.add_subcommand("curve", "triangles and quads in turn: overhead against queries per swap");
   curve_command->add_option("--queries", curve.queries, "per swap")->delimiter(',')->capture_default_str();
   curve_command->add_option("--rounds", curve.rounds, "swaps of each kind that are measured")->capture_default_str();
+  bool three = false;
+  curve_command->add_flag("--three", three, "three modules in turn, on one slot and on two");
   curve_command->add_option("--triangle-bytes", curve.triangle_bytes, "payload")->capture_default_str();
   curve_command->add_option("--quad-bytes", curve.quad_bytes, "payload")->capture_default_str();
   curve_command->add_option("--seed", curve.seed, "of poses and power-up")->capture_default_str();
@@ -1195,7 +1249,7 @@ int main(int argc, char** argv) {
     if (*poses_command) return PosesCampaign(poses).run();
     if (*faults_command) return run_faults(faults);
     if (*mixed_command) return MixedRun(mixed).run();
-    if (*curve_command) return run_curve(curve);
+    if (*curve_command) return three ? run_three(curve) : run_curve(curve);
     if (slots == 1) return run_resets<PortBench<Vcchip_chip_swaps1, 128>>(resets, seed, slots);
     if (slots == 2) return run_resets<PortBench<Vcchip_chip_swaps2, 128>>(resets, seed, slots);
     return run_resets<Bench>(resets, seed, slots);
