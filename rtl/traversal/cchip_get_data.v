@@ -114,14 +114,16 @@ module cchip_get_data #(
   assign m_line_place = {2{ask_place_q}};
   assign m_line       = ask_lines_q;
 
-  // ---- lines that have come, by place. The port of a pair's second line puts it in its queue
-  wire [2*PLACES-1:0] came;
+  // ---- places one of whose lines has come. Each line comes once, so the next one is the second,
+  // and its port puts the pair in its queue. A line inverts the bit of its place: no bit depends on
+  // what the others are
+  reg  [PLACES-1:0] came_q;
   wire [1023:0] read_lines;
   wire [2*CODE_W-1:0] read_codes;
   reg fetch_valid_q;
   reg [PLACE_W-1:0] fetch_q;
   wire [1:0] whole;  // this line is the second
-  wire [PLACES-1:0] spot[0:1];
+  wire [2*PLACES-1:0] comes;  // a line, by place
   wire [PLACE_W-1:0] place0 = s_line_place[0+:PLACE_W];
   wire [PLACE_W-1:0] place1 = s_line_place[PLACE_W+:PLACE_W];
   wire both = &s_line_valid && place0 == place1;
@@ -130,18 +132,14 @@ module cchip_get_data #(
   genvar p;
   generate
     for (p = 0; p < 2; p = p + 1) begin : gen_port
-      localparam integer OTHER = 1 - p;
       wire [PLACE_W-1:0] place = p == 0 ? place0 : place1;
-      reg [PLACES-1:0] came_q;
       reg whole_q;
       reg [PLACE_W-1:0] whole_place_q;
       (* ram_style = "distributed" *)
       reg [CODE_W-1:0] codes[0:PLACES-1];
       reg [CODE_W-1:0] code_q;
-      wire [PLACES-1:0] of_other = came[PLACES*OTHER+:PLACES];
-      wire set = s_line_valid[p] & ~whole[p] & ~both;
-      assign whole[p] = s_line_valid[p] & (of_other[place] | (both & (p == 0)));
-      assign spot[p]  = {{PLACES - 1{1'b0}}, 1'b1} << place;
+      assign whole[p] = s_line_valid[p] & (came_q[place] | (both & (p == 0)));
+      assign comes[PLACES*p+:PLACES] = {{PLACES - 1{1'b0}}, s_line_valid[p]} << place;
       cchip_block_ram #(
           .WIDTH (512),
           .ADDR_W(PLACE_W)
@@ -171,18 +169,14 @@ module cchip_get_data #(
         if (s_line_valid[p]) codes[place] <= s_line_code[CODE_W*p+:CODE_W];
         code_q        <= codes[fetch_q];
         whole_place_q <= place;
-        if (rst) begin
-          came_q  <= {PLACES{1'b0}};
-          whole_q <= 1'b0;
-        end else begin
-          came_q <= (came_q & ~(spot[OTHER] & {PLACES{whole[OTHER]}})) | (spot[p] & {PLACES{set}});
-          whole_q <= whole[p];
-        end
+        whole_q       <= ~rst & whole[p];
       end
-      assign came[PLACES*p+:PLACES] = came_q;
       assign read_codes[CODE_W*p+:CODE_W] = code_q;
     end
   endgenerate
+  always @(posedge clk)
+    if (rst) came_q <= {PLACES{1'b0}};
+    else came_q <= came_q ^ comes[PLACES+:PLACES] ^ comes[0+:PLACES];
   // the two queues in turn
   reg turn_q;
   wire from1 = queue_valid[1] & (turn_q | ~queue_valid[0]);
@@ -197,6 +191,10 @@ module cchip_get_data #(
   wire fetch_leaf = {{32 - PLACE_W{1'b0}}, fetch_q} >= FIRST_LEAF;
   reg fetch_leaf_q;
   reg pair_valid_q, leaf_valid_q, fresh_q;
+  // ~pair_valid_q once more, for the lines alone: the wires to them would slow down what picks the
+  // next pair. Synthesis does not join it with pair_valid_q as it would join an equal register
+  reg empty_q;
+  wire room = empty_q | m_pair_ready;
   wire load = fetch_valid_q & age_q[1] & ~no_pose_fetch_q & (~pair_valid_q | m_pair_ready);
   assign advance = |queue_valid & (~fetch_valid_q | load);
   reg [PLACE_W-1:0] place_q;
@@ -211,7 +209,9 @@ module cchip_get_data #(
     record_q        <= records[fetch_q];
     fetch_leaf_q    <= fetch_leaf;
     no_pose_fetch_q <= record_q[AT_HEADER] & no_pose_q[fetch_context];
-    if (load) begin
+    // A pair that is not complete may be loaded, too: what is loaded counts only with pair_valid_q
+    // or leaf_valid_q. So the condition of these thousand flip-flops is a short one.
+    if (room) begin
       place_q       <= fetch_q;
       hold_record_q <= record_q;
       lines_q       <= read_lines;
@@ -223,12 +223,14 @@ module cchip_get_data #(
       turn_q        <= 1'b0;
       fetch_valid_q <= 1'b0;
       pair_valid_q  <= 1'b0;
+      empty_q       <= 1'b1;
       leaf_valid_q  <= 1'b0;
       fresh_q       <= 1'b0;
     end else begin
       if (advance) turn_q <= ~from1;
       fetch_valid_q <= advance | (fetch_valid_q & ~load);
       pair_valid_q  <= (load & ~fetch_leaf_q) | (pair_valid_q & ~m_pair_ready);
+      empty_q       <= ~((load & ~fetch_leaf_q) | (pair_valid_q & ~m_pair_ready));
       leaf_valid_q  <= load & fetch_leaf_q;
       fresh_q       <= load;
     end
@@ -262,18 +264,17 @@ module cchip_get_data #(
     for (p = 0; p < 2; p = p + 1) begin : gen_check
       wire [511:0] line = lines_q[512*p+:512];
       reg [23:0] first_q1, root_q1, at_q1, first_q2, first_q3;
+      reg [24:0] last_q1;  // line of the last child
       reg [7:0] kinds_q1, kinds_q2, kinds_q3;
-      reg [1:0] more_q1;
       reg [24:0] size_q1, size_q2;
       reg steep_q1, steep_q2, failed_q1, failed_q2, header_here_q1, header_here_q2, outside_q2;
       reg [END_W-1:0] end_q3;
       reg no_header_q3;
-      wire [24:0] last = {1'b0, first_q1} + {23'd0, more_q1};
       wire [24:0] limit = sizes_q1[25*p+:25];
       always @(posedge clk) begin
         first_q1       <= line[59+:24];
         root_q1        <= line[128+:24];
-        more_q1        <= line[91+:2];
+        last_q1        <= {1'b0, line[59+:24]} + {23'd0, line[91+:2]};
         kinds_q1       <= line[83+:8];
         at_q1          <= hold_record_q[28*p+:24];
         steep_q1       <= line[54+:5] > 5'd18;
@@ -287,7 +288,7 @@ module cchip_get_data #(
         failed_q2      <= failed_q1;
         header_here_q2 <= header_here_q1;
         outside_q2     <= header_q1 ? {1'b0, root_q1} >= size_q1 :
-            first_q1 <= at_q1 || last >= limit;
+            first_q1 <= at_q1 || last_q1 >= limit;
         first_q3       <= first_q2;
         kinds_q3       <= kinds_q2;
         no_header_q3   <= header_q2 & ~failed_q2 & ~header_here_q2;
