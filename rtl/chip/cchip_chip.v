@@ -26,8 +26,6 @@ module cchip_chip #(
     parameter integer STACK = 64,
     // entries of the queue of leaves, more than PAIRS
     parameter integer LEAF_DEPTH = 72,
-    // leaf pairs that wait for the transform: 1..64
-    parameter integer LEAF_CREDIT = 16,
     // size of the cache, KiB: 4, 8 ... 1024
     parameter integer CACHE_KB = 128,
     // lines in flight from memory: 4, 8, 16 or 32
@@ -418,7 +416,6 @@ module cchip_chip #(
       .LEAVES      (LEAVES),
       .STACK       (STACK),
       .LEAF_DEPTH  (LEAF_DEPTH),
-      .LEAF_CREDIT (LEAF_CREDIT),
       .CACHE_KB    (CACHE_KB),
       .MISSES      (MISSES),
       .LOCKS       (LOCKS),

@@ -38,8 +38,6 @@ module cchip_chip_core #(
     parameter integer STACK = 64,
     // entries of the queue of leaves, more than PAIRS
     parameter integer LEAF_DEPTH = 72,
-    // leaf pairs that wait for the transform: 1..64
-    parameter integer LEAF_CREDIT = 16,
     // size of the cache, KiB: 4, 8 ... 1024
     parameter integer CACHE_KB = 128,
     // lines in flight from memory: 4, 8, 16 or 32
@@ -328,7 +326,6 @@ module cchip_chip_core #(
       .LEAVES    (LEAVES),
       .STACK     (STACK),
       .LEAF_DEPTH(LEAF_DEPTH),
-      .CREDIT    (LEAF_CREDIT),
       .CACHE_KB  (CACHE_KB),
       .MISSES    (MISSES),
       .LOCKS     (LOCKS),
@@ -409,7 +406,6 @@ module cchip_chip_core #(
   wire [1023:0] feed_lines;
   wire [LEAF_W:0] feed_id;
   cchip_leaf_feed #(
-      .CREDIT (LEAF_CREDIT),
       .QUERIES(QUERIES),
       .LEAF_W (LEAF_W)
   ) u_feed (

@@ -7,17 +7,15 @@
 //   map          kept for each context, not for each epoch of it: a leaf pair of a query that has
 //                ended may meet the map of the next one. That is harmless: every map is a legal
 //                one, and the traversal calls its results dead
-//   credit       s_leaf_valid has no ready: at most CREDIT leaf pairs come for which m_credit has
-//                not been 1
+//   credit       s_leaf_valid has no ready: at most two leaf pairs come for which m_credit has not
+//                been 1; the others wait in cchip_get_data, which has memory for their lines
 //   end          a leaf pair whose line could not be read, or is illegal, ends without primitive
 //                pairs, with CCHIP_END_MEMORY or CCHIP_END_CORRUPT
 //   throughput   a leaf pair every 2 clocks
-//   latency      3 clocks from s_leaf_valid to m_valid
+//   latency      2 clocks from s_leaf_valid to m_valid
 //   cuts         every path from s_leaf and s_start; m_credit follows s_begin_ready in its clock
 //   reset        leaf pairs inside are forgotten
 module cchip_leaf_feed #(
-    // leaf pairs that may wait: 1..64
-    parameter integer CREDIT = 16,
     // contexts of queries: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
     // width of a number of cchip_calc_result, bit
@@ -69,11 +67,10 @@ module cchip_leaf_feed #(
   localparam [1:0] TWO_TRIANGLES = 2'd2;
 
   generate
-    if (CREDIT < 1 || CREDIT > 64 || QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES ||
+    if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES ||
         LEAF_W < 1)
     begin : gen_illegal
-      cchip_error_leaf_feed_CREDIT_must_be_1_to_64_QUERIES_2_4_8_or_16_and_LEAF_W_positive u_error (
-      );
+      cchip_error_leaf_feed_QUERIES_must_be_2_4_8_or_16_and_LEAF_W_positive u_error ();
     end
   endgenerate
 
@@ -95,10 +92,8 @@ module cchip_leaf_feed #(
   wire [1:0] wait_epoch;
   wire [3:0] wait_kinds;
   wire [1023:0] wait_lines;
-  cchip_fifo #(
-      .WIDTH     (LEAF_PAIR_W),
-      .DEPTH     (CREDIT),
-      .ROOM_KNOWN(1)
+  cchip_skid_buffer #(
+      .WIDTH(LEAF_PAIR_W)
   ) u_waiting (
       .clk    (clk),
       .rst    (rst),

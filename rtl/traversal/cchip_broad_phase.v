@@ -24,8 +24,6 @@ module cchip_broad_phase #(
     parameter integer STACK = 64,
     // entries of the queue of leaves, more than PAIRS
     parameter integer LEAF_DEPTH = 72,
-    // pairs of leaves that the receiver has room for
-    parameter integer CREDIT = 32,
     // size of the cache, KiB: 1, 2, 4 ... 1024
     parameter integer CACHE_KB = 128,
     // lines under way from memory: 2, 4, 8, 16 or 32
@@ -53,7 +51,7 @@ module cchip_broad_phase #(
     output wire [     $clog2(QUERIES)-1:0] m_start_context,
     output wire [                     1:0] m_start_epoch,
     output wire [                   511:0] m_start_query,
-    // pairs of leaves; CREDIT of them at most until s_credit says that one has left
+    // pairs of leaves; two of them at most until s_credit says that one has left
     output wire                            m_leaf_valid,
     output wire [     $clog2(QUERIES)-1:0] m_leaf_context,
     output wire [                     1:0] m_leaf_epoch,
@@ -138,7 +136,7 @@ module cchip_broad_phase #(
       .LEAVES    (LEAVES),
       .STACK     (STACK),
       .LEAF_DEPTH(LEAF_DEPTH),
-      .CREDIT    (CREDIT)
+      .CREDIT    (LEAVES)
   ) u_traversal (
       .clk              (clk),
       .rst              (rst),
@@ -221,6 +219,7 @@ module cchip_broad_phase #(
       .m_pair_place   (pair_place),
       .m_pair_context (pair_context),
       .m_pair_children(pair_children),
+      .s_leaf_taken   (s_credit),
       .m_leaf_valid   (m_leaf_valid),
       .m_leaf_place   (leaf_place),
       .m_leaf_context (m_leaf_context),

@@ -16,8 +16,6 @@ module cchip_broad_phase_axi #(
     parameter integer STACK = 64,
     // entries of the queue of leaves, more than PAIRS
     parameter integer LEAF_DEPTH = 72,
-    // pairs of leaves that the receiver has room for
-    parameter integer CREDIT = 32,
     // size of the cache, KiB: 1, 2, 4 ... 1024
     parameter integer CACHE_KB = 128,
     // lines under way from memory: 2, 4, 8, 16 or 32
@@ -45,7 +43,7 @@ module cchip_broad_phase_axi #(
     output wire [     $clog2(QUERIES)-1:0] m_start_context,
     output wire [                     1:0] m_start_epoch,
     output wire [                   511:0] m_start_query,
-    // pairs of leaves; CREDIT of them at most until s_credit says that one has left
+    // pairs of leaves; two of them at most until s_credit says that one has left
     output wire                            m_leaf_valid,
     output wire [     $clog2(QUERIES)-1:0] m_leaf_context,
     output wire [                     1:0] m_leaf_epoch,
@@ -124,7 +122,6 @@ module cchip_broad_phase_axi #(
       .LEAVES    (LEAVES),
       .STACK     (STACK),
       .LEAF_DEPTH(LEAF_DEPTH),
-      .CREDIT    (CREDIT),
       .CACHE_KB  (CACHE_KB),
       .MISSES    (MISSES),
       .LOCKS     (LOCKS),

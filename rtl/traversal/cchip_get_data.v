@@ -4,8 +4,11 @@
 `include "cchip_assert.vh"
 // cchip_get_data: fetches the two lines of a node pair or of a pair of leaves through the cache,
 // waits for both, and hands them on: node pairs to the box test, leaves to the primitive tests.
-//   rule         a pair has a place, given by who asks; its lines arrive in any order. Pairs go on
-//                in the order in which their second lines come to a port, the two ports in turn
+//   rule         a pair has a place, given by who asks; its lines arrive in any order. Node pairs go
+//                on in the order in which their second lines come to a port, the two ports in turn;
+//                so do pairs of leaves, which go first where there is room for them
+//   room         pairs of leaves wait in their places: LEAF_ROOM of them at most leave for which
+//                s_leaf_taken has not been 1
 //   check        what a line says of its children, and of a header, leaves with `lookup` when the
 //                verdict of the box test comes: code, kinds and lines of the children
 //   latency      1 clock from s_valid to m_line_valid, 7 from the second line to m_pair_valid or
@@ -20,7 +23,9 @@ module cchip_get_data #(
     // node pairs under way
     parameter integer PAIRS = 48,
     // pairs of leaves under way; PAIRS + LEAVES is 8, 16, 32 or 64
-    parameter integer LEAVES = 16
+    parameter integer LEAVES = 16,
+    // pairs of leaves that their receiver has room for, 1..3
+    parameter integer LEAF_ROOM = 2
 ) (
     input  wire                                                 clk,
     input  wire                                                 rst,
@@ -47,7 +52,8 @@ module cchip_get_data #(
     output wire [                     $clog2(PAIRS+LEAVES)-1:0] m_pair_place,
     output wire [                          $clog2(QUERIES)-1:0] m_pair_context,
     output wire [                                          7:0] m_pair_children,  // {B's, A's}
-    // pairs of leaves; no ready
+    // pairs of leaves; no ready: their receiver has taken one, and has room for another
+    input  wire                                                 s_leaf_taken,
     output wire                                                 m_leaf_valid,
     output wire [                     $clog2(PAIRS+LEAVES)-1:0] m_leaf_place,
     output wire [                          $clog2(QUERIES)-1:0] m_leaf_context,
@@ -77,6 +83,7 @@ module cchip_get_data #(
   localparam [31:0] MAGIC = 32'h4D494343;
   localparam [15:0] VERSION = 16'd1;
   localparam [31:0] FIRST_LEAF = PAIRS;
+  localparam [31:0] ROOM_AT_FIRST = LEAF_ROOM;
 
   generate
     if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES) begin : gen_illegal_queries
@@ -85,6 +92,9 @@ module cchip_get_data #(
     if (PAIRS < 1 || LEAVES < 1 || PLACES < 8 || PLACES > 64 || (1 << PLACE_W) != PLACES)
     begin : gen_illegal_places
       cchip_error_get_data_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together u_error ();
+    end
+    if (LEAF_ROOM < 1 || LEAF_ROOM > 3) begin : gen_illegal_room
+      cchip_error_get_data_LEAF_ROOM_must_be_1_2_or_3 u_error ();
     end
   endgenerate
 
@@ -128,7 +138,8 @@ module cchip_get_data #(
   wire [PLACE_W-1:0] place1 = s_line_place[PLACE_W+:PLACE_W];
   wire both = &s_line_valid && place0 == place1;
   wire [1:0] queue_valid, queue_ready, queue_take;
-  wire [2*PLACE_W-1:0] queue_place;
+  wire [1:0] leaf_queue_valid, leaf_queue_ready, leaf_queue_take;
+  wire [2*PLACE_W-1:0] queue_place, leaf_queue_place;
   genvar p;
   generate
     for (p = 0; p < 2; p = p + 1) begin : gen_port
@@ -151,19 +162,34 @@ module cchip_get_data #(
           .read_addr (fetch_q),
           .read_data (read_lines[512*p+:512])
       );
+      wire whole_leaf = {{32 - PLACE_W{1'b0}}, whole_place_q} >= FIRST_LEAF;
       cchip_fifo #(
           .WIDTH     (PLACE_W),
-          .DEPTH     (PLACES),
+          .DEPTH     (PAIRS),
           .ROOM_KNOWN(1)
       ) u_whole (
           .clk    (clk),
           .rst    (rst),
-          .s_valid(whole_q),
+          .s_valid(whole_q & ~whole_leaf),
           .s_ready(queue_ready[p]),
           .s_data (whole_place_q),
           .m_valid(queue_valid[p]),
           .m_ready(queue_take[p]),
           .m_data (queue_place[PLACE_W*p+:PLACE_W])
+      );
+      cchip_fifo #(
+          .WIDTH     (PLACE_W),
+          .DEPTH     (LEAVES),
+          .ROOM_KNOWN(1)
+      ) u_whole_leaves (
+          .clk    (clk),
+          .rst    (rst),
+          .s_valid(whole_q & whole_leaf),
+          .s_ready(leaf_queue_ready[p]),
+          .s_data (whole_place_q),
+          .m_valid(leaf_queue_valid[p]),
+          .m_ready(leaf_queue_take[p]),
+          .m_data (leaf_queue_place[PLACE_W*p+:PLACE_W])
       );
       always @(posedge clk) begin
         if (s_line_valid[p]) codes[place] <= s_line_code[CODE_W*p+:CODE_W];
@@ -177,11 +203,31 @@ module cchip_get_data #(
   always @(posedge clk)
     if (rst) came_q <= {PLACES{1'b0}};
     else came_q <= came_q ^ comes[PLACES+:PLACES] ^ comes[0+:PLACES];
-  // the two queues in turn
-  reg turn_q;
-  wire from1 = queue_valid[1] & (turn_q | ~queue_valid[0]);
+  // leaves first, while there is room for them; of each kind the two queues in turn
+  reg turn_q, leaf_turn_q;
+  reg [1:0] room_left_q;  // pairs of leaves that may be picked
+  reg some_room_q;  // it is not 0
   wire advance;
-  assign queue_take = {from1, queue_valid[0] & ~from1} & {2{advance}};
+  wire pick_leaf = |leaf_queue_valid & some_room_q;
+  wire pick_pair = |queue_valid & ~pick_leaf;
+  wire from1 = queue_valid[1] & (turn_q | ~queue_valid[0]);
+  wire leaf_from1 = leaf_queue_valid[1] & (leaf_turn_q | ~leaf_queue_valid[0]);
+  assign queue_take = {from1, queue_valid[0] & ~from1} & {2{advance & pick_pair}};
+  assign leaf_queue_take = {leaf_from1, leaf_queue_valid[0] & ~leaf_from1} & {2{advance & pick_leaf}};
+  wire [1:0] room_left = room_left_q + {1'b0, s_leaf_taken} - {1'b0, advance & pick_leaf};
+  wire [PLACE_W-1:0] pair_picked = from1 ? queue_place[PLACE_W+:PLACE_W] : queue_place[0+:PLACE_W];
+  wire [PLACE_W-1:0] leaf_picked =
+      leaf_from1 ? leaf_queue_place[PLACE_W+:PLACE_W] : leaf_queue_place[0+:PLACE_W];
+  always @(posedge clk)
+    if (rst) begin
+      room_left_q <= ROOM_AT_FIRST[1:0];
+      some_room_q <= 1'b1;
+      leaf_turn_q <= 1'b0;
+    end else begin
+      room_left_q <= room_left;
+      some_room_q <= room_left != 2'd0;
+      if (advance && pick_leaf) leaf_turn_q <= ~leaf_from1;
+    end
 
   // ---- the picked pair's lines: memory answers 2 clocks after fetch_q
   reg [1:0] age_q;
@@ -196,7 +242,7 @@ module cchip_get_data #(
   reg empty_q;
   wire room = empty_q | m_pair_ready;
   wire load = fetch_valid_q & age_q[1] & ~no_pose_fetch_q & (~pair_valid_q | m_pair_ready);
-  assign advance = |queue_valid & (~fetch_valid_q | load);
+  assign advance = (pick_leaf | pick_pair) & (~fetch_valid_q | load);
   reg [PLACE_W-1:0] place_q;
   reg [CONTEXT_W+RECORD_W-1:0] hold_record_q;
   reg [1023:0] lines_q;
@@ -205,7 +251,7 @@ module cchip_get_data #(
   reg [1:0] failed_q;
   reg leaf_failed_q;
   always @(posedge clk) begin
-    if (advance) fetch_q <= from1 ? queue_place[PLACE_W+:PLACE_W] : queue_place[0+:PLACE_W];
+    if (advance) fetch_q <= pick_leaf ? leaf_picked : pair_picked;
     record_q        <= records[fetch_q];
     fetch_leaf_q    <= fetch_leaf;
     no_pose_fetch_q <= record_q[AT_HEADER] & no_pose_q[fetch_context];
@@ -227,7 +273,7 @@ module cchip_get_data #(
       leaf_valid_q  <= 1'b0;
       fresh_q       <= 1'b0;
     end else begin
-      if (advance) turn_q <= ~from1;
+      if (advance && pick_pair) turn_q <= ~from1;
       fetch_valid_q <= advance | (fetch_valid_q & ~load);
       pair_valid_q  <= (load & ~fetch_leaf_q) | (pair_valid_q & ~m_pair_ready);
       empty_q       <= ~((load & ~fetch_leaf_q) | (pair_valid_q & ~m_pair_ready));
@@ -339,7 +385,8 @@ module cchip_get_data #(
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_whole, (whole & ~queue_ready) == 2'd0)
+      `CCHIP_ASSERT(a_whole, (whole & ~(queue_ready & leaf_queue_ready)) == 2'd0)
+      `CCHIP_ASSERT(a_room, {30'd0, room_left_q} <= ROOM_AT_FIRST)
       `CCHIP_ASSERT(a_place, !(s_valid && pair_valid_q && place_q == s_place))
     end
 

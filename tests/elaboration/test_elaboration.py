@@ -128,6 +128,7 @@ ILLEGAL = [
     *(("cchip_get_data", {"QUERIES": n}, "cchip_error_get_data_QUERIES_must_be_2_4_8_or_16") for n in (3, 32)),
     *(("cchip_get_data", {"PAIRS": n}, "cchip_error_get_data_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together")
       for n in (0, 20, 120)),
+    *(("cchip_get_data", {"LEAF_ROOM": n}, "cchip_error_get_data_LEAF_ROOM_must_be_1_2_or_3") for n in (0, 4)),
     *(("cchip_leaf_queue", {"QUERIES": n}, "cchip_error_leaf_queue_QUERIES_must_be_2_4_8_or_16") for n in (3, 32)),
     *(("cchip_leaf_queue", {"CREDIT": n}, "cchip_error_leaf_queue_CREDIT_must_be_1_to_65535") for n in (0, 65536)),
     *(("cchip_leaf_queue", {"DEPTH": n}, "cchip_error_leaf_queue_DEPTH_must_be_1_to_1024") for n in (0, 1025)),
@@ -191,8 +192,8 @@ ILLEGAL = [
     *(("cchip_normaliser", {"COORD_W": n}, COORD_W) for n in (3, 21)),
     *(("cchip_transform", {"CREDIT": n}, "cchip_error_transform_CREDIT_must_be_4_to_4096") for n in (3, 4097)),
     ("cchip_transform", {"ID_W": 0}, "cchip_error_transform_ID_W_below_1"),
-    *(("cchip_leaf_feed", case, "cchip_error_leaf_feed_CREDIT_must_be_1_to_64_QUERIES_2_4_8_or_16_and_LEAF_W_positive")
-      for case in ({"CREDIT": 0}, {"CREDIT": 65}, {"QUERIES": 3}, {"QUERIES": 32}, {"LEAF_W": 0})),
+    *(("cchip_leaf_feed", case, "cchip_error_leaf_feed_QUERIES_must_be_2_4_8_or_16_and_LEAF_W_positive")
+      for case in ({"QUERIES": 3}, {"QUERIES": 32}, {"LEAF_W": 0})),
     *(("cchip_query_ring", case, "cchip_error_query_ring_AHEAD_must_be_2_4_or_8_and_SLOTS_a_power_of_two_AHEAD_to_32")
       for case in ({"AHEAD": 3}, {"AHEAD": 16}, {"SLOTS": 2}, {"SLOTS": 64})),
     *(("cchip_query_ring", {"DATA_W": n}, "cchip_error_query_ring_DATA_W_must_be_64_128_256_or_512") for n in (32, 1024)),

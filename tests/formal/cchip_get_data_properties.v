@@ -6,10 +6,11 @@
 // the pose of its query if it is a pair of headers; a node pair stays as it is until it is taken, leaves are there for one clock;
 // leaves of which a line could not be read say so, and the code of such a node pair, looked up 4 clocks or more after it was offered,
 // is never 0, END_MEMORY if it is A's; if
-// nobody waits for a pose, and the box test has nothing, a pair that is whole brings about a pair within BOUND clocks.
+// nobody waits for a pose, and neither the box test nor the receiver of leaves has anything, a pair that is whole brings about a pair within BOUND clocks.
 // Assumed, what cchip_traversal and cchip_cache keep:
 //   free      a place is asked for again only after its pair has left
 //   asked     the cache answers each line that was asked for once, on a later clock
+//   taken     the receiver of leaves takes no more than it was given; it never has more than it has room for
 // One place, any: the solver chooses it; in the task `code`, which is of codes only, it is PLACE. Bit 0 of a line stands for all of it.
 module cchip_get_data_properties #(
     parameter integer QUERIES = 2,
@@ -30,6 +31,7 @@ module cchip_get_data_properties #(
     input wire [       2*`CCHIP_READ_CODE_W-1:0] s_line_code,
     input wire [                         1023:0] s_line_data,
     input wire                                   m_pair_ready,
+    input wire                                   s_leaf_taken,
     input wire                                   lookup,
     input wire [       $clog2(PAIRS+LEAVES)-1:0] lookup_place
 );
@@ -77,6 +79,7 @@ module cchip_get_data_properties #(
       .m_pair_place   (m_pair_place),
       .m_pair_context (m_pair_context),
       .m_pair_children(m_pair_children),
+      .s_leaf_taken   (s_leaf_taken),
       .m_leaf_valid   (m_leaf_valid),
       .m_leaf_place   (m_leaf_place),
       .m_leaf_context (m_leaf_context),
@@ -112,6 +115,10 @@ module cchip_get_data_properties #(
         ~(s_line_valid[1] ? one << place_b : 0);
     if (rst) {busy_q, open_a_q, open_b_q} <= {3 * PLACES{1'b0}};
   end
+  // leaves with their receiver
+  localparam [1:0] LEAF_ROOM = 2'd2;
+  reg [1:0] there_q;
+  always @(posedge clk) there_q <= rst ? 2'd0 : there_q + {1'b0, m_leaf_valid} - {1'b0, s_leaf_taken};
   // contexts whose pose is not there
   reg [QUERIES-1:0] no_pose_q;
   always @(posedge clk) begin
@@ -164,7 +171,7 @@ module cchip_get_data_properties #(
       known_q  <= ~mine & (known_q | is_pair);
       age_q    <= mine ? 3'd0 : age_q[2] | ~(known_q | is_pair) ? age_q : age_q + 3'd1;
       looked_q <= lookup && lookup_place == place && age_q[2] && !mine;
-      waits_q  <= ~(came_a_q & came_b_q) | m_pair_valid | m_leaf_valid | |no_pose_q ? 4'd0 : waits_q + 4'd1;
+      waits_q  <= ~(came_a_q & came_b_q) | m_pair_valid | m_leaf_valid | |no_pose_q | there_q != 2'd0 ? 4'd0 : waits_q + 4'd1;
     end
   end
 
@@ -173,6 +180,7 @@ module cchip_get_data_properties #(
     if (s_valid) free: assume (!busy_q[s_place]);
     if (s_line_valid[0]) asked_a: assume (open_a_q[place_a]);
     if (s_line_valid[1]) asked_b: assume (open_b_q[place_b]);
+    if (s_leaf_taken) taken: assume (there_q != 2'd0);
   end
 `ifdef COVER
   reg again_q, both_q;  // the place was asked for again; its lines came on one clock
@@ -203,6 +211,7 @@ module cchip_get_data_properties #(
       own_pair: assert (!is_pair || (m_pair_context == context_q && m_pair_children == {record_q[55:52], record_q[27:24]}));
       own_leaf: assert (!is_leaf || (m_leaf_context == context_q && m_leaf_epoch == record_q[57:56] &&
           m_leaf_kinds == {record_q[29:28], record_q[1:0]}));
+      room: assert (there_q <= LEAF_ROOM);
       failed: assert (!is_leaf || m_leaf_failed == (failed_a_q || failed_b_q));
       stable: assert (!stays_q || (m_pair_valid && is == was_q));
       in_time: assert (waits_q != BOUND);

@@ -24,21 +24,22 @@ struct Behaviour {
   bool oldest;    ///< it answers in order, else in any
   bool together;  ///< its ports answer alike
   int ready;      ///< of the box test
+  int taken;      ///< a pair of leaves by its receiver
   int pose;       ///< a context that waits gets its pose
   int error;      ///< of a line: could not be read
   int wrong;      ///< of a line: a field is not what it should be
   int reset;      ///< per mille
 };
 constexpr Behaviour behaviours[] = {
-    {"fast", 100, 30, 100, true, true, 100, 100, 0, 0, 0},
-    {"usual", 40, 30, 60, false, false, 60, 20, 5, 10, 2},
-    {"box test", 60, 10, 80, false, false, 10, 30, 5, 20, 2},
-    {"slow cache", 60, 30, 10, false, false, 60, 30, 5, 20, 2},
-    {"poses late", 50, 30, 60, false, false, 70, 2, 0, 5, 2},
-    {"leaves", 100, 90, 100, false, false, 100, 50, 30, 10, 0},
-    {"hits", 100, 40, 90, true, true, 90, 50, 10, 10, 3},
-    {"errors", 40, 30, 60, false, false, 60, 40, 20, 25, 2},
-    {"resets", 50, 30, 60, false, true, 60, 40, 10, 20, 25},
+    {"fast", 100, 30, 100, true, true, 100, 100, 100, 0, 0, 0},
+    {"usual", 40, 30, 60, false, false, 60, 50, 20, 5, 10, 2},
+    {"box test", 60, 10, 80, false, false, 10, 80, 30, 5, 20, 2},
+    {"slow cache", 60, 30, 10, false, false, 60, 30, 30, 5, 20, 2},
+    {"poses late", 50, 30, 60, false, false, 70, 50, 2, 0, 5, 2},
+    {"leaves", 100, 90, 100, false, false, 100, 100, 50, 30, 10, 0},
+    {"hits", 100, 40, 90, true, true, 90, 5, 50, 10, 10, 3},
+    {"errors", 40, 30, 60, false, false, 60, 50, 40, 20, 25, 2},
+    {"resets", 50, 30, 60, false, true, 60, 50, 40, 10, 20, 25},
 };
 
 void set_field(LineData& data, std::size_t lsb, std::size_t width, std::uint64_t value) {
@@ -54,6 +55,7 @@ class GetDataBench {
   static constexpr std::size_t contexts = Config::QUERIES;
   static constexpr std::size_t pairs = Config::PAIRS;
   static constexpr std::size_t places = Config::PAIRS + Config::LEAVES;
+  static constexpr int leaf_room = 2;
   static constexpr int log2(std::size_t n) { return n == 1 ? 0 : 1 + log2(n / 2); }
   static constexpr int context_w = log2(contexts);
   static constexpr int place_w = log2(places);
@@ -74,10 +76,11 @@ class GetDataBench {
       }
       any_lines();
       in_.pair_ready = chance(random_, how.ready);
+      in_.leaf_taken = leaves_there_ > 0 && chance(random_, how.taken);
       if (chance(random_, 30)) in_.lookup = random_() % places;
       step(static_cast<int>(random_() % 1000) < how.reset);
     }
-    how_.answer = how_.ready = how_.pose = 100;  // what is under way ends
+    how_.answer = how_.ready = how_.pose = how_.taken = 100;  // what is under way ends
     how_.request = how_.reset = 0;
     for (int clock = 0; clock < 40 * static_cast<int>(places) && under_way() != 0; ++clock) {
       in_ = GetData::Inputs{};
@@ -86,6 +89,7 @@ class GetDataBench {
       }
       any_lines();
       in_.pair_ready = true;
+      in_.leaf_taken = leaves_there_ > 0;
       step(false);
     }
     REQUIRE(under_way() == 0);
@@ -128,6 +132,7 @@ class GetDataBench {
   int looked = 0;                    ///< lookups of nodes that were known
   std::map<GetData::End, int> ends;  ///< of those
   int stalled = 0;
+  int fullest = 0;  ///< leaves with their receiver, at most
   int closest = 1000;  ///< clocks from pair to pair, at least
 
  private:
@@ -152,6 +157,7 @@ class GetDataBench {
     asked_[0].clear();
     asked_[1].clear();
     stays_ = false;
+    leaves_there_ = 0;
   }
 
   // ---- who asks
@@ -283,6 +289,7 @@ class GetDataBench {
       for (std::size_t w = 0; w < 16; ++w) top_.s_line_data.at(16 * static_cast<std::size_t>(p) + w) = line->data[w];
     }
     top_.m_pair_ready = in_.pair_ready ? 1 : 0;
+    top_.s_leaf_taken = in_.leaf_taken ? 1 : 0;
     top_.lookup = in_.lookup ? 1 : 0;
     if (in_.lookup) sim::set_bits(top_.lookup_place, 0, place_w, *in_.lookup);
   }
@@ -366,7 +373,12 @@ class GetDataBench {
     stays_ = top_.m_pair_valid != 0 && !in_.pair_ready;
     stalled += stays_ ? 1 : 0;
     if (top_.m_pair_valid != 0 && in_.pair_ready) leave(top_.m_pair_place, Use::out);
-    if (top_.m_leaf_valid != 0) leave(top_.m_leaf_place, Use::free);
+    leaves_there_ -= in_.leaf_taken ? 1 : 0;
+    if (top_.m_leaf_valid != 0) {
+      leave(top_.m_leaf_place, Use::free);
+      REQUIRE(++leaves_there_ <= leaf_room);
+      fullest = std::max(fullest, leaves_there_);
+    }
   }
   void leave(std::size_t place, Use use) {
     Expected& one = expected_[place];
@@ -415,6 +427,7 @@ class GetDataBench {
     top_.s_line_valid = 3;
     top_.lookup = random_() % 2;
     top_.m_pair_ready = random_() % 2;
+    top_.s_leaf_taken = random_() % 2;
     top_.eval();
     REQUIRE(outputs() == before);
     in_ = in;
@@ -436,6 +449,7 @@ class GetDataBench {
   std::vector<std::array<std::uint64_t, 2>> sizes_;  // by context: near what its headers say
   std::array<std::vector<std::size_t>, 2> asked_;    // places
   bool stays_ = false;
+  int leaves_there_ = 0;  // with their receiver
   int clocks_ = 0, last_out_ = -1000;
   bool defined_ = false;
 };
@@ -453,6 +467,7 @@ TEMPLATE_LIST_TEST_CASE(
       bench.run(how, 4000);
       REQUIRE(bench.pairs_out > 50);
       REQUIRE(bench.leaves_out > 20);
+      REQUIRE(bench.fullest == 2);
       REQUIRE(bench.looked > 50);
       REQUIRE((bench.failed_out > 0) == (how.error > 0));
       REQUIRE(bench.ends[GetData::End::ok] > 0);

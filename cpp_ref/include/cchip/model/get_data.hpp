@@ -38,6 +38,7 @@ class GetData {
     std::optional<std::size_t> pose;  ///< of this context
     std::array<std::optional<Line>, 2> lines;
     bool pair_ready = false;
+    bool leaf_taken = false;  ///< the receiver of leaves has room for one more
     std::optional<std::size_t> lookup;  ///< of this place
   };
   struct Ask {
@@ -65,9 +66,11 @@ class GetData {
     std::optional<Nodes> nodes;
   };
 
-  GetData(std::size_t contexts, std::size_t pairs, std::size_t leaves) : pairs_(pairs), places_(pairs + leaves) {
+  /// \param leaf_room pairs of leaves that their receiver has room for
+  GetData(std::size_t contexts, std::size_t pairs, std::size_t leaves, int leaf_room = 2)
+      : pairs_(pairs), places_(pairs + leaves), leaf_room_(leaf_room), room_left_(leaf_room) {
     const std::size_t places = pairs + leaves;
-    for (Port& port : ports_) port = Port(places);
+    for (Port& port : ports_) port = Port(pairs, leaves);
     requests_.resize(places);
     nodes_.resize(places);
     no_pose_.resize(contexts);
@@ -83,8 +86,10 @@ class GetData {
 
   void clock(const Inputs& in) {
     const bool go = fetch_ && fetch_->age == 2 && !held_ && (!pair_valid_ || in.pair_ready);
-    const bool pick = (!fetch_ || go) && (ports_[0].whole.m_valid() || ports_[1].whole.m_valid());
-    const std::size_t from = ports_[1].whole.m_valid() && (turn_ == 1 || !ports_[0].whole.m_valid()) ? 1 : 0;
+    const auto waits = [&](Kind kind, std::size_t p) { return ports_[p].whole[kind].m_valid(); };
+    const Kind kind = room_left_ > 0 && (waits(leaf, 0) || waits(leaf, 1)) ? leaf : node;
+    const bool pick = (!fetch_ || go) && (waits(kind, 0) || waits(kind, 1));
+    const std::size_t from = waits(kind, 1) && (turn_[kind] == 1 || !waits(kind, 0)) ? 1 : 0;
     const bool held = fetch_ && is_header(*requests_[fetch_->place]) && no_pose_[requests_[fetch_->place]->context];
 
     if (in.lookup) known_ = Known{requests_[*in.lookup], nodes_[*in.lookup]};
@@ -110,9 +115,10 @@ class GetData {
     }
     if (fetch_) fetch_->age = std::min(fetch_->age + 1, 2);
     if (pick) {
-      fetch_ = Fetch{ports_[from].whole.m_data(), 0};
-      turn_ = 1 - from;
+      fetch_ = Fetch{ports_[from].whole[kind].m_data(), 0};
+      turn_[kind] = 1 - from;
     }
+    room_left_ += (in.leaf_taken ? 1 : 0) - (pick && kind == leaf ? 1 : 0);
     held_ = held;
 
     // lines come: the port of the second one has the pair
@@ -126,7 +132,10 @@ class GetData {
     }
     for (std::size_t p = 0; p < 2; ++p) {
       Port& port = ports_[p];
-      port.whole.clock(port.second.has_value(), port.second.value_or(0), pick && from == p);
+      for (const Kind k : {node, leaf}) {
+        const bool push = port.second && (*port.second >= pairs_) == (k == leaf);
+        port.whole[k].clock(push, port.second.value_or(0), pick && kind == k && from == p);
+      }
       port.second = second[p];
       if (!in.lines[p]) continue;
       port.lines[in.lines[p]->place] = in.lines[p];
@@ -147,15 +156,17 @@ class GetData {
   }
 
   /// One clock with rst = 1. What was known of places and images is undefined.
-  void reset() { *this = GetData(no_pose_.size(), pairs_, places_ - pairs_); }
+  void reset() { *this = GetData(no_pose_.size(), pairs_, places_ - pairs_, leaf_room_); }
 
  private:
+  enum Kind { node, leaf };
   struct Port {
-    explicit Port(std::size_t places) : lines(places), came(places), whole(places) {}
+    Port(std::size_t pairs, std::size_t leaves)
+        : lines(pairs + leaves), came(pairs + leaves), whole{Fifo<std::size_t>(pairs), Fifo<std::size_t>(leaves)} {}
     std::vector<std::optional<Line>> lines;  // by place
     std::vector<bool> came;                  // and the other port's has not
     std::optional<std::size_t> second;       // came on the last clock
-    Fifo<std::size_t> whole;
+    std::array<Fifo<std::size_t>, 2> whole;  // by kind
   };
   struct Fetch {
     std::size_t place;
@@ -212,7 +223,8 @@ class GetData {
   }
 
   std::size_t pairs_, places_;
-  std::array<Port, 2> ports_{Port(1), Port(1)};
+  int leaf_room_, room_left_;
+  std::array<Port, 2> ports_{Port(1, 1), Port(1, 1)};
   std::vector<std::optional<Request>> requests_;  // by place
   std::vector<std::optional<Nodes>> nodes_;       // by place
   std::vector<bool> no_pose_;                     // by context
@@ -220,7 +232,7 @@ class GetData {
   std::optional<Ask> ask_;
   std::optional<Fetch> fetch_;
   bool held_ = false;  // the pair that is fetched waited for its pose a clock ago
-  std::size_t turn_ = 0;
+  std::array<std::size_t, 2> turn_{};  // by kind
   bool pair_valid_ = false, leaf_valid_ = false, fresh_ = false;
   Pair pair_;
   std::array<std::optional<Check>, 3> checks_;
