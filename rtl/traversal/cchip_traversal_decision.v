@@ -289,7 +289,8 @@ module cchip_traversal_decision #(
     opens_q2 <= start_q ? 8'd0 : opens_q[8] ? 8'd255 : opens_q[7:0];
     constants_q2 <= constants_q;
     leaf_nodes_q2 <= {
-      kinds_b_q, {8'd0, child_b} + constants_q[63:32], kinds_a_q, {8'd0, child_a} + constants_q[31:0]
+      kinds_b_q, {8'd0, child_b} + constants_q[63:32],
+      kinds_a_q, {8'd0, child_a} + constants_q[31:0]
     };
     tests_q2 <= tests_q;
   end

@@ -281,7 +281,8 @@ module cchip_traversal_events #(
   reg [CONTEXT_W-1:0] idle_context_q, pop_context_q;
   wire asks = ~choose_q & ~rst;
   wire can_go = place_valid & some_room;
-  wire can_start = query_valid_q & judged_q & ~starting_q & idle_valid_q & answer_room & start_ready;
+  wire can_start = query_valid_q & judged_q & ~starting_q & idle_valid_q & answer_room &
+      start_ready;
   localparam [QUERIES-1:0] FIRST_CONTEXT = 1;
   always @(posedge clk) begin
     choose_q       <= asks;

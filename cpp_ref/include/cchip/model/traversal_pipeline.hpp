@@ -247,9 +247,10 @@ class TraversalEvents {
   bool some_room_ = true;
   std::size_t answers_ = 0;
   std::uint32_t locked_ = 0, inside_ = 0, without_query_ = 0, wanting_ = 0;  ///< contexts
-  std::uint32_t free_idle_ = 0, free_want_ = 0;                  ///< a clock ago
+  std::uint32_t free_idle_ = 0, free_want_ = 0;                              ///< a clock ago
   std::optional<QueryWords> query_;
-  bool query_ready_ = false, query_valid_ = false, query_bad_ = false, bad_next_ = false, judging_ = false, judged_ = false, starting_ = false;
+  bool query_ready_ = false, query_valid_ = false, query_bad_ = false, bad_next_ = false, judging_ = false,
+       judged_ = false, starting_ = false;
   bool result_first_ = false;  ///< a verdict has entered while a result could have: the result is next
   std::optional<std::size_t> idle_context_, want_context_, pop_context_;
   std::optional<Event> event_;
