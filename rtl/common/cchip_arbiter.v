@@ -39,7 +39,8 @@ module cchip_arbiter #(
       end
     end
   endfunction
-  function [N-1:0] above(input [N-1:0] one);
+  // sources behind the lowest one: found without waiting for the grant
+  function [N-1:0] above(input [N-1:0] of);
     integer i;
     reg found;
     begin
@@ -47,7 +48,7 @@ module cchip_arbiter #(
       found = 1'b0;
       for (i = 0; i < N; i = i + 1) begin
         above[i] = found;
-        found = found | one[i];
+        found = found | of[i];
       end
     end
   endfunction
@@ -57,7 +58,7 @@ module cchip_arbiter #(
 
   always @(posedge clk)
     if (rst) behind_q <= {N{1'b0}};
-    else if (take && |request) behind_q <= above(grant);
+    else if (take && |request) behind_q <= |next ? above(next) : above(request);
 
   always @(posedge clk)
     if (!rst) begin

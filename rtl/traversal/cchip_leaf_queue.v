@@ -7,7 +7,7 @@
 //                it; one of a query that has ended is dropped, and told
 //   credit       the receiver has room for CREDIT pairs; s_credit = 1 when one has left it
 //   latency      5 clocks from s_valid to m_valid
-//   throughput   a pair every third clock
+//   throughput   a pair every third clock, a clock more between entries
 //   capacity     DEPTH entries; the sender counts them: m_room = 1 when one has left
 //   cuts         every path: each output is a flip-flop
 //   reset        empty, all credit back
@@ -48,7 +48,6 @@ module cchip_leaf_queue #(
   localparam integer CONTEXT_W = $clog2(QUERIES);
   localparam integer EPOCH_W = 2;
   localparam integer ENTRY_W = CONTEXT_W + EPOCH_W + 96;
-  localparam [31:0] ALL_CREDIT = CREDIT;
 
   generate
     if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES) begin : gen_illegal_queries
@@ -92,24 +91,49 @@ module cchip_leaf_queue #(
   reg valid_q, drop_q, room_q;
   reg [3:0] kinds_q;
   reg [63:0] lines_q;
-  wire [15:0] one = left_q & (~left_q + 16'd1);
-  wire [15:0] rest = left_q & ~one;
-  wire [3:0] number;
-  assign number[3] = |one[15:8];
-  assign number[2] = |{one[15:12], one[7:4]};
-  assign number[1] = |{one[15:14], one[11:10], one[7:6], one[3:2]};
-  assign number[0] = |{one[15], one[13], one[11], one[9], one[7], one[5], one[3], one[1]};
+  // the lowest pair, found among the four children of B for each child of A, then among these rows:
+  // a carry chain over 16 bit is slower
+  wire [15:0] rest;  // without it
+  wire [3:0] row_some, row_two;
+  wire [7:0] row_number;
+  genvar n;
+  generate
+    for (n = 0; n < 4; n = n + 1) begin : gen_row
+      wire [3:0] here = left_q[4*n+:4];
+      wire [3:0] rest_here = {here[3] & |here[2:0], here[2] & |here[1:0], &here[1:0], 1'b0};
+      wire first;
+      if (n == 0) assign first = 1'b1;
+      else assign first = ~|row_some[n-1:0];
+      assign row_some[n] = |here;
+      assign row_two[n] = |rest_here;
+      assign row_number[2*n+:2] = {~|here[1:0], ~here[0] & (here[1] | ~here[2])};
+      assign rest[4*n+:4] = first ? rest_here : here;
+    end
+  endgenerate
+  wire [1:0] row = {~|row_some[1:0], ~row_some[0] & (row_some[1] | ~row_some[2])};
+  wire [3:0] number = {row, row_number[2*row+:2]};
+  wire more = |row_two | (|row_some[1:0] & |row_some[3:2]) | &row_some[1:0] | &row_some[3:2];
   wire taken = (valid_q & m_ready) | (drop_q & m_drop_ready);
-  assign load = ~work_q | (taken & last_q);
+  assign load = ~work_q;
 
   (* ram_style = "distributed" *)
   reg [EPOCH_W-1:0] epochs[0:QUERIES-1];
   wire live = epochs[context_q] == epoch_q;
-  reg [15:0] credit_q;
-  reg some_q;
   wire judge = work_q && state_q == JUDGE;
-  wire spend = judge & live & some_q;
-  wire [15:0] credit = credit_q + {15'd0, s_credit} - {15'd0, spend};
+  wire credit, unused_outside;
+  wire [$clog2(CREDIT+1)-1:0] unused_count;
+  wire spend = judge & live & credit;
+  cchip_count #(
+      .LIMIT(CREDIT)
+  ) u_credit (
+      .clk  (clk),
+      .rst  (rst),
+      .up   (spend),
+      .down (s_credit),
+      .count(unused_count),
+      .some (unused_outside),
+      .room (credit)
+  );
 
   always @(posedge clk) begin
     if (epoch_write) epochs[epoch_context] <= epoch;
@@ -118,7 +142,7 @@ module cchip_leaf_queue #(
     else if (state_q == CHOOSE) left_q <= rest;
     if (state_q == CHOOSE) begin
       number_q <= number;
-      last_q   <= rest == 16'd0;
+      last_q   <= ~more;
     end
     kinds_q <= {nodes_q[72+2*number_q[1:0]+:2], nodes_q[32+2*number_q[3:2]+:2]};
     lines_q <= {nodes_q[71:40] + {30'd0, number_q[1:0]}, nodes_q[31:0] + {30'd0, number_q[3:2]}};
@@ -128,22 +152,18 @@ module cchip_leaf_queue #(
       valid_q  <= 1'b0;
       drop_q   <= 1'b0;
       room_q   <= 1'b0;
-      credit_q <= ALL_CREDIT[15:0];
-      some_q   <= 1'b1;
     end else begin
-      work_q <= load ? queue_valid : 1'b1;
+      work_q <= load ? queue_valid : ~(taken & last_q);
       room_q <= load & queue_valid;
       if (load) state_q <= CHOOSE;
       else
         case (state_q)
           CHOOSE: state_q <= JUDGE;
-          JUDGE: if (~live | some_q) state_q <= TAKE;
+          JUDGE: if (~live | credit) state_q <= TAKE;
           default: if (taken) state_q <= CHOOSE;
         endcase
       valid_q  <= spend | (valid_q & ~m_ready);
       drop_q   <= (judge & ~live) | (drop_q & ~m_drop_ready);
-      credit_q <= credit;
-      some_q   <= credit != 16'd0;
     end
   end
   assign m_room       = room_q;
@@ -153,13 +173,12 @@ module cchip_leaf_queue #(
   assign m_epoch      = epoch_q;
   assign m_kinds      = kinds_q;
   assign m_lines      = lines_q;
+  wire unused = &{1'b0, unused_count, unused_outside};
 
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_room, !s_valid || ready)
       `CCHIP_ASSERT(a_leaves, !s_valid || s_leaves != 16'd0)
-      `CCHIP_ASSERT(a_credit, {1'b0, credit_q} <= ALL_CREDIT[16:0])
-      `CCHIP_ASSERT(a_some, some_q == (credit_q != 16'd0))
       `CCHIP_ASSERT(a_take, (state_q == TAKE) == (valid_q | drop_q) && !(valid_q & drop_q))
       `CCHIP_ASSERT(a_left, !(work_q && state_q == CHOOSE) || left_q != 16'd0)
     end

@@ -13,9 +13,9 @@
 //   room         a verdict always has room: a node pair is under way only with a place in the leaf
 //                queue; a query starts only with a place for its answer
 //   rules        fewer than 1,900 pairs of leaves are without a result behind cchip_get_data
-//   latency      12 clocks from s_verdict_valid to m_valid
-//   throughput   an event per clock, of one query one in 9 clocks
-//   cuts         every path but lookup_context -> lookup: each other output is a flip-flop
+//   latency      14 or 15 clocks from s_verdict_valid to m_valid
+//   throughput   an event every second clock, of one query one in 8 clocks
+//   cuts         every path: each output depends on flip-flops only
 //   reset        forgets all queries; takes 4 QUERIES clocks, events wait
 module cchip_traversal #(
     // queries at once: 2, 4, 8 or 16
@@ -152,9 +152,9 @@ module cchip_traversal #(
   wire [3:0] is1, is5;  // {pop, start, result, verdict}
   wire [CONTEXT_W-1:0] context1, context5;
   wire [EPOCH_W-1:0] epoch1;
-  wire extra1, extra4, extra5;
+  wire extra1, extra3;
   wire [PLACE_W-1:0] place1, place5;
-  wire [56:0] verdict1, verdict4, verdict5;
+  wire [56:0] verdict1, verdict3;
   wire [8:0] result1, result5;
   wire query_bad;
   wire [511:0] query;
@@ -162,22 +162,22 @@ module cchip_traversal #(
   wire [CONTEXT_W-1:0] drop_context;
   wire [  EPOCH_W-1:0] drop_epoch;
   // what the last stage says
-  reg valid_q6, valid_q7;
-  reg [CONTEXT_W-1:0] context_q6, context_q7;
-  reg [PLACE_W-1:0] place_q6, place_q7;
-  reg [EPOCH_W-1:0] epoch_q6, epoch_q7;
-  wire active7, wants7, start7, cancel7, started7, goes7, back7, push7, leaf7, ends7, step7;
-  wire [1:0] room7;
-  wire [STATE_W-1:0] state7;
-  wire [95:0] constants7;
-  wire [WORK_W-1:0] work7;
-  wire [RECORD_W-1:0] record7;
-  wire [STACK_W-1:0] at7;
-  wire [135:0] entry7;
-  wire [79:0] leaf_nodes7;
-  wire [15:0] leaf_set7;
-  wire [68:0] answer7;
-  wire [4:0] tests7;
+  reg valid_q6, valid_q7, valid_q8;
+  reg [CONTEXT_W-1:0] context_q6, context_q7, context_q8;
+  reg [PLACE_W-1:0] place_q6, place_q7, place_q8;
+  reg [EPOCH_W-1:0] epoch_q6, epoch_q7, epoch_q8;
+  wire active8, wants8, start8, cancel8, started6, goes8, back8, push8, leaf8, ends8, step8;
+  wire [1:0] room8;
+  wire [STATE_W-1:0] state8;
+  wire [95:0] constants8;
+  wire [WORK_W-1:0] work8;
+  wire [RECORD_W-1:0] record8;
+  wire [STACK_W-1:0] at8;
+  wire [140:0] entry8;
+  wire [79:0] leaf_nodes8;
+  wire [15:0] leaf_set8;
+  wire [68:0] answer8;
+  wire [4:0] tests8;
   cchip_traversal_events #(
       .QUERIES   (QUERIES),
       .PAIRS     (PAIRS),
@@ -226,22 +226,24 @@ module cchip_traversal #(
       .m_place(place1),
       .m_verdict(verdict1),
       .m_result(result1),
-      .s_left_valid(valid_q7),
-      .s_left_context(context_q7),
-      .s_left_active(active7),
-      .s_left_wants(wants7),
-      .s_left_start(start7),
-      .s_left_cancel(cancel7),
-      .s_left_back(back7),
-      .s_left_place(place_q7),
-      .s_left_room(room7),
+      .s_leaving_valid(valid_q6),
+      .s_leaving_context(context_q6),
+      .s_left_valid(valid_q8),
+      .s_left_context(context_q8),
+      .s_left_active(active8),
+      .s_left_wants(wants8),
+      .s_left_start(start8),
+      .s_left_cancel(cancel8),
+      .s_left_back(back8),
+      .s_left_place(place_q8),
+      .s_left_room(room8),
       .s_leaf_room(leaf_room),
       .s_answer_room(m_done_valid & m_done_ready)
   );
 
   // ---- stages 2 to 5: it passes on
   wire [RECORD_W-1:0] record5;
-  wire [NODES_W-1:0] nodes4, nodes5;
+  wire [NODES_W-1:0] nodes4;
   cchip_delay #(
       .WIDTH(1),
       .DEPTH(4),
@@ -263,12 +265,12 @@ module cchip_traversal #(
   );
   cchip_delay #(
       .WIDTH(58),
-      .DEPTH(3)
+      .DEPTH(2)
   ) u_verdict (
       .clk(clk),
       .rst(1'b0),
       .d  ({extra1, verdict1}),
-      .q  ({extra4, verdict4})
+      .q  ({extra3, verdict3})
   );
   // a clock later than what is looked up
   cchip_delay #(
@@ -289,15 +291,6 @@ module cchip_traversal #(
       .d  (lookup_nodes),
       .q  (nodes4)
   );
-  cchip_delay #(
-      .WIDTH(58 + NODES_W)
-  ) u_compared (
-      .clk(clk),
-      .rst(1'b0),
-      .d  ({extra4, verdict4, nodes4}),
-      .q  ({extra5, verdict5, nodes5})
-  );
-
   // ---- stages 1 to 5: the query, the last entry of its stack, what its epoch has under way
   (* ram_style = "distributed" *)
   reg [STATE_W-1:0] states[0:QUERIES-1];
@@ -324,21 +317,31 @@ module cchip_traversal #(
   wire [39:0] unused_counts3;
   assign {now2, active2, unused_mode2, entries2, unused_under2, unused_state2} = state_q2;
   assign {unused_state3, entries3, unused_under3, steps3, unused_counts3, unused_hit3} = state_q3;
-  wire [135:0] entry5;
+  wire [140:0] entry5;
   cchip_block_ram #(
-      .WIDTH (136),
+      .WIDTH (141),
       .ADDR_W(CONTEXT_W + STACK_W)
   ) u_stack (
       .clk       (clk),
-      .write     (push7),
-      .write_addr({context_q7, at7}),
-      .write_data(entry7),
+      .write     (push8),
+      .write_addr({context_q8, at8}),
+      .write_data(entry8),
       .read_addr ({context_q3, top_q3}),
       .read_data (entry5)
   );
   reg over_q4, over_q5, full_q4, full_q5, failed_q5, some_leaves_q5, some_wait_q5, room_q5;
-  reg  [ 4:0] leaves_q5;
-  wire [15:0] leaves4 = verdict4[31:16];
+  reg extra_q4, extra_q5, rest_q5;
+  reg [56:0] verdict_q4, verdict_q5;
+  reg [NODES_W-1:0] nodes_q5;
+  wire [15:0] waiting4 = verdict_q4[15:0];
+  wire [15:0] leaves4 = verdict_q4[31:16];
+  wire [3:0] best4 = verdict_q4[51:48];
+  // leaf pairs are counted in two steps: of each child of A, then of all
+  reg [11:0] row_q4;
+  reg [4:0] leaves_q5;
+  function [2:0] ones(input [3:0] of);
+    ones = {2'd0, of[0]} + {2'd0, of[1]} + {2'd0, of[2]} + {2'd0, of[3]};
+  endfunction
   always @(posedge clk) begin
     state_q2 <= states[context1];
     constants_q2 <= constants[context1];
@@ -352,22 +355,24 @@ module cchip_traversal #(
     work_q4 <= works[{context_q3, epoch_q3}];
     over_q4 <= steps3 >= step_limit;
     full_q4 <= entries3 == FULL[STACK_W:0];
+    {extra_q4, verdict_q4} <= {extra3, verdict3};
+    {extra_q5, verdict_q5, nodes_q5} <= {extra_q4, verdict_q4, nodes4};
     failed_q5 <= |nodes4[NODES_W-1-:3];
     some_leaves_q5 <= |leaves4;
-    some_wait_q5 <= |verdict4[15:0];
-    room_q5 <= ~|leaves4 | extra4;
-    leaves_q5      <= {4'd0, leaves4[0]} + {4'd0, leaves4[1]} + {4'd0, leaves4[2]} +
-        {4'd0, leaves4[3]} + {4'd0, leaves4[4]} + {4'd0, leaves4[5]} + {4'd0, leaves4[6]} +
-        {4'd0, leaves4[7]} + {4'd0, leaves4[8]} + {4'd0, leaves4[9]} + {4'd0, leaves4[10]} +
-        {4'd0, leaves4[11]} + {4'd0, leaves4[12]} + {4'd0, leaves4[13]} + {4'd0, leaves4[14]} +
-        {4'd0, leaves4[15]};
+    some_wait_q5 <= |waiting4;
+    rest_q5 <= |(waiting4 & ~(16'd1 << best4));
+    room_q5 <= ~|leaves4 | extra_q4;
+    row_q4 <= {ones(verdict3[31:28]), ones(verdict3[27:24]), ones(verdict3[23:20]),
+               ones(verdict3[19:16])};
+    leaves_q5 <= ({2'd0, row_q4[11:9]} + {2'd0, row_q4[8:6]}) +
+        ({2'd0, row_q4[5:3]} + {2'd0, row_q4[2:0]});
     {over_q5, full_q5, live_q4, live_q5, work_q5} <= {over_q4, full_q4, live_q3, live_q4, work_q4};
     {epoch_q4, epoch_q5} <= {epoch_q3, epoch_q4};
     {state_q3, state_q4, state_q5} <= {state_q2, state_q3, state_q4};
     {constants_q3, constants_q4, constants_q5} <= {constants_q2, constants_q3, constants_q4};
   end
 
-  // ---- stages 5 and 6: what happens
+  // ---- stages 5 to 7: what happens
   cchip_traversal_decision #(
       .STACK (STACK),
       .WORK_W(WORK_W)
@@ -388,69 +393,73 @@ module cchip_traversal #(
       .s_work         (work_q5),
       .s_over         (over_q5),
       .s_full         (full_q5),
-      .s_verdict      (verdict5),
+      .s_verdict      (verdict_q5),
       .s_some_wait    (some_wait_q5),
+      .s_rest         (rest_q5),
       .s_some_leaves  (some_leaves_q5),
       .s_leaves       (leaves_q5),
-      .s_extra        (extra5),
+      .s_extra        (extra_q5),
       .s_room         (room_q5),
       .s_record       (record5),
-      .s_nodes        (nodes5),
+      .s_nodes        (nodes_q5),
       .s_failed       (failed_q5),
       .s_result       (result5),
       .s_entry        (entry5),
       .query_bad      (query_bad),
       .query_mode     (query[476]),
       .query_constants({query[511:480], query[63:0]}),
-      .m_state        (state7),
-      .m_constants    (constants7),
-      .m_work         (work7),
-      .m_active       (active7),
-      .m_wants        (wants7),
-      .m_start        (start7),
-      .m_cancel       (cancel7),
-      .m_started      (started7),
-      .m_goes         (goes7),
-      .m_record       (record7),
-      .m_back         (back7),
-      .m_room         (room7),
-      .m_push         (push7),
-      .m_at           (at7),
-      .m_entry        (entry7),
-      .m_leaf         (leaf7),
-      .m_leaf_nodes   (leaf_nodes7),
-      .m_leaf_set     (leaf_set7),
-      .m_ends         (ends7),
-      .m_answer       (answer7),
-      .m_step         (step7),
-      .m_tests        (tests7)
+      .m_state        (state8),
+      .m_constants    (constants8),
+      .m_work         (work8),
+      .m_active       (active8),
+      .m_wants        (wants8),
+      .m_start        (start8),
+      .m_cancel       (cancel8),
+      .m_started      (started6),
+      .m_goes         (goes8),
+      .m_record       (record8),
+      .m_back         (back8),
+      .m_room         (room8),
+      .m_push         (push8),
+      .m_at           (at8),
+      .m_entry        (entry8),
+      .m_leaf         (leaf8),
+      .m_leaf_nodes   (leaf_nodes8),
+      .m_leaf_set     (leaf_set8),
+      .m_ends         (ends8),
+      .m_answer       (answer8),
+      .m_step         (step8),
+      .m_tests        (tests8)
   );
-  reg judge_q6, judge_q7, live_q6, live_q7;
+  reg judge_q6, judge_q7, judge_q8, live_q6, live_q7, live_q8;
   always @(posedge clk) begin
-    {judge_q6, live_q6} <= {valid5 & judge5 & ~rst, live_q5};
-    {judge_q7, live_q7} <= {judge_q6 & ~rst, live_q6};
-    {context_q6, place_q6, epoch_q6} <= {context5, place5, epoch_q5};
-    {context_q7, place_q7, epoch_q7} <= {context_q6, place_q6, epoch_q6};
-    if (rst) {valid_q6, valid_q7} <= 2'd0;
-    else {valid_q6, valid_q7} <= {valid5, valid_q6};
+    {context_q6, context_q7, context_q8} <= {context5, context_q6, context_q7};
+    {place_q6, place_q7, place_q8} <= {place5, place_q6, place_q7};
+    {epoch_q6, epoch_q7, epoch_q8} <= {epoch_q5, epoch_q6, epoch_q7};
+    {live_q6, live_q7, live_q8} <= {live_q5, live_q6, live_q7};
+    if (rst) {valid_q6, valid_q7, valid_q8, judge_q6, judge_q7, judge_q8} <= 6'd0;
+    else begin
+      {valid_q6, valid_q7, valid_q8} <= {valid5, valid_q6, valid_q7};
+      {judge_q6, judge_q7, judge_q8} <= {valid5 & judge5, judge_q6, judge_q7};
+    end
   end
 
-  // ---- stage 7: everything is written
-  wire [CONTEXT_W-1:0] write_context = running_q ? context_q7 : clear_q[CONTEXT_W-1:0];
-  wire write = valid_q7 | ~running_q;
-  wire [STATE_W-1:0] write_state = running_q ? state7 : {STATE_W{1'b0}};
+  // ---- stage 8: everything is written
+  wire [CONTEXT_W-1:0] write_context = running_q ? context_q8 : clear_q[CONTEXT_W-1:0];
+  wire write = valid_q8 | ~running_q;
+  wire [STATE_W-1:0] write_state = running_q ? state8 : {STATE_W{1'b0}};
   always @(posedge clk) begin
     if (write) states[write_context] <= write_state;
-    if (valid_q7) constants[context_q7] <= constants7;
+    if (valid_q8) constants[context_q8] <= constants8;
     if (write)
-      works[running_q?{context_q7, epoch_q7} : clear_q] <= running_q ? work7 : {WORK_W{1'b0}};
+      works[running_q?{context_q8, epoch_q8} : clear_q] <= running_q ? work8 : {WORK_W{1'b0}};
   end
-  assign m_judged_valid  = judge_q7;
-  assign m_judged_live   = live_q7;
-  assign m_judged_tag    = constants7[95:64];
-  assign m_start_valid   = started7;
-  assign m_start_context = context_q7;
-  assign m_start_epoch   = epoch_q7;
+  assign m_judged_valid  = judge_q8;
+  assign m_judged_live   = live_q8;
+  assign m_judged_tag    = constants8[95:64];
+  assign m_start_valid   = started6;
+  assign m_start_context = context_q6;
+  assign m_start_epoch   = epoch_q6;
   assign m_start_query   = query;
 
   wire done_ready;
@@ -461,9 +470,9 @@ module cchip_traversal #(
   ) u_done (
       .clk    (clk),
       .rst    (rst),
-      .s_valid(ends7),
+      .s_valid(ends8),
       .s_ready(done_ready),
-      .s_data ({constants7[95:64], answer7}),
+      .s_data ({constants8[95:64], answer8}),
       .m_valid(m_done_valid),
       .m_ready(m_done_ready),
       .m_data ({m_done_tag, m_done_code, m_done_answer, m_done_steps, m_done_pairs})
@@ -473,7 +482,7 @@ module cchip_traversal #(
   wire [PLACE_W-1:0] leaf_place;
   wire [3:0] fetch_kinds;
   wire [63:0] fetch_lines;
-  wire fetch_ready = leaf_place_valid & ~goes7;
+  wire fetch_ready = leaf_place_valid & ~goes8;
   wire fetch = fetch_valid & fetch_ready;
   cchip_leaf_queue #(
       .QUERIES(QUERIES),
@@ -482,12 +491,12 @@ module cchip_traversal #(
   ) u_leaves (
       .clk          (clk),
       .rst          (rst),
-      .s_valid      (leaf7),
-      .s_context    (context_q7),
-      .s_epoch      (epoch_q7),
-      .s_a          (leaf_nodes7[39:0]),
-      .s_b          (leaf_nodes7[79:40]),
-      .s_leaves     (leaf_set7),
+      .s_valid      (leaf8),
+      .s_context    (context_q8),
+      .s_epoch      (epoch_q8),
+      .s_a          (leaf_nodes8[39:0]),
+      .s_b          (leaf_nodes8[79:40]),
+      .s_leaves     (leaf_set8),
       .m_room       (leaf_room),
       .epoch_write  (write),
       .epoch_context(write_context),
@@ -524,16 +533,16 @@ module cchip_traversal #(
   reg [63:0] out_lines_q;
   reg [4:0] out_tests_q;
   always @(posedge clk) begin
-    out_place_q <= goes7 ? place_q7 : leaf_place;
-    out_context_q <= goes7 ? context_q7 : drop_context;
-    out_record_q  <= goes7 ? record7 :
+    out_place_q <= goes8 ? place_q8 : leaf_place;
+    out_context_q <= goes8 ? context_q8 : drop_context;
+    out_record_q  <= goes8 ? record8 :
         {1'b0, drop_epoch, 26'd0, fetch_kinds[3:2], 26'd0, fetch_kinds[1:0]};
-    out_lines_q   <= goes7 ? {
-      constants7[63:32] + {8'd0, record7[51:28]}, constants7[31:0] + {8'd0, record7[23:0]}
+    out_lines_q   <= goes8 ? {
+      constants8[63:32] + {8'd0, record8[51:28]}, constants8[31:0] + {8'd0, record8[23:0]}
     } : fetch_lines;
-    out_tests_q <= tests7;
-    out_q <= ~rst & (goes7 | fetch);
-    out_step_q <= ~rst & step7;
+    out_tests_q <= tests8;
+    out_q <= ~rst & (goes8 | fetch);
+    out_step_q <= ~rst & step8;
     out_fetch_q <= ~rst & fetch;
   end
   assign m_valid         = out_q;
@@ -549,8 +558,8 @@ module cchip_traversal #(
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_done, !ends7 || done_ready)
-      `CCHIP_ASSERT(a_results, !valid_q7 || work7 <= WORK_MOST[WORK_W-1:0])
+      `CCHIP_ASSERT(a_done, !ends8 || done_ready)
+      `CCHIP_ASSERT(a_results, !valid_q8 || work8 <= WORK_MOST[WORK_W-1:0])
       `CCHIP_ASSERT(a_pop, !(valid5 && is5[3]) || (live_q5 && |state_q5[76+:STACK_W+1]))
       `CCHIP_ASSERT(a_work, !(valid5 && (is5[0] || is5[1])) || |work_q5)
     end

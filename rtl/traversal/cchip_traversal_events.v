@@ -4,17 +4,19 @@
 // cchip_traversal_events: which event enters the pipeline of cchip_traversal. A verdict goes first,
 // then a result, a dropped pair of leaves, a query, a stack.
 //   rule         an event waits while another one of its query is in the pipeline
+//   two clocks   an event is let in on every second clock at most: on the first clock each source
+//                asks whether its query has no event inside, on the second one of those enters.
+//                A node pair takes the box test four clocks, so this costs no throughput
 //   turns        after a verdict that went before a result, the next result goes before verdicts.
 //                So a result that is first in line enters at most 16 clocks later, and so does a
-//                verdict, if an event leaves 7 clocks after it has come out on m_valid, or earlier
+//                verdict, if an event leaves 7 clocks after m_valid, or earlier
 //   room         a query or a stack enters with a place for its node pair, with room in the leaf
 //                queue, a query with a place for its answer, too; a verdict takes further room in
 //                the leaf queue if there is some. What was not needed comes back
-//   latency      1 clock from what enters to m_valid; a verdict is a clock in its queue, another
-//                one before it
-//   throughput   an event per clock
-//   cuts         every path but s_drop_valid -> s_drop_ready, lookup_context -> s_drop_ready and
-//                -> lookup
+//   latency      2 or 3 clocks from what enters to m_valid; a verdict is a clock in its queue,
+//                another one before it
+//   throughput   an event every second clock
+//   cuts         every path: each output depends on flip-flops only
 //   reset        forgets all; all places and all room are free
 module cchip_traversal_events #(
     // queries at once: 2, 4, 8 or 16
@@ -67,6 +69,9 @@ module cchip_traversal_events #(
     output wire [         PLACE_W-1:0] m_place,
     output wire [                56:0] m_verdict,
     output wire [                 8:0] m_result,
+    // an event leaves the pipeline in two clocks: the next one of its query may ask
+    input  wire                        s_leaving_valid,
+    input  wire [ $clog2(QUERIES)-1:0] s_leaving_context,
     // an event leaves the pipeline
     input  wire                        s_left_valid,
     input  wire [ $clog2(QUERIES)-1:0] s_left_context,
@@ -86,9 +91,14 @@ module cchip_traversal_events #(
   localparam integer ROOM_W = $clog2(LEAF_DEPTH + 1);
   localparam [31:0] DEPTH = LEAF_DEPTH;
 
-  reg [QUERIES-1:0] lock_q;  // has an event in the pipeline
+  reg [QUERIES-1:0] lock_q;  // has an event in the pipeline that does not leave in the next clock
+  reg [QUERIES-1:0] inside_q;  // has an event in the pipeline: idle_q and want_q may change
   reg [QUERIES-1:0] idle_q;  // has no query
-  reg [QUERIES-1:0] want_q;  // has a stack and may have another node pair under way
+  reg [QUERIES-1:0] want_q;  // has a stack and may have another node pair in flight
+  reg [QUERIES-1:0] idle_free_q, want_free_q;  // and has none in the pipeline but a new one
+
+  // 0: sources ask whether they may enter; 1: one of them does
+  reg choose_q;
 
   // ---- verdicts, with what is known of their node pairs
   reg verdict_valid_q;
@@ -135,29 +145,36 @@ module cchip_traversal_events #(
       .m_data ({result_context, result_epoch, result})
   );
 
+  reg starting_q;  // a start is in the pipeline
+
   // ---- contexts: one without a query, one with a stack
+  // An idle context stays the candidate until a query starts in it: only a start ends that it is
+  // idle, and no other start is in the pipeline meanwhile. What waits to leave the stack is chosen
+  // anew each time; two clocks later, when it would enter, only an event that has entered since
+  // could have changed that, and that one is inside still.
   wire [QUERIES-1:0] idle_grant, want_grant;
-  wire [CONTEXT_W-1:0] idle_context, want_context;
-  reg idle_valid_q, pop_valid_q;
-  reg [CONTEXT_W-1:0] idle_context_q, pop_context_q;
+  reg idle_valid_q;
+  wire idle_load = ~idle_valid_q & running & ~starting_q;
+  reg [QUERIES-1:0] idle_one_q, want_one_q;  // one-hot
   cchip_arbiter #(
       .N(QUERIES)
   ) u_idle (
       .clk    (clk),
       .rst    (rst),
-      .request(idle_q & ~lock_q),
+      .request(idle_free_q),
       .grant  (idle_grant),
-      .take   (~idle_valid_q)
+      .take   (idle_load)
   );
   cchip_arbiter #(
       .N(QUERIES)
   ) u_want (
       .clk    (clk),
       .rst    (rst),
-      .request(want_q & ~lock_q),
+      .request(want_free_q),
       .grant  (want_grant),
-      .take   (1'b1)
+      .take   (choose_q)
   );
+  wire [CONTEXT_W-1:0] idle_context, want_context;
   genvar n, b;
   generate
     for (b = 0; b < CONTEXT_W; b = b + 1) begin : gen_context
@@ -166,13 +183,14 @@ module cchip_traversal_events #(
         localparam [31:0] N = n;
         assign with_bit[n] = N[b];
       end
-      assign idle_context[b] = |(idle_grant & with_bit);
-      assign want_context[b] = |(want_grant & with_bit);
+      assign idle_context[b] = |(idle_one_q & with_bit);
+      assign want_context[b] = |(want_one_q & with_bit);
     end
   endgenerate
 
   // ---- the next query
-  reg query_valid_q, query_ready_q, bad_q, judged_q, starting_q;
+  reg query_valid_q, query_ready_q, bad_q, judging_q, judged_q;
+  reg [8:0] beyond_q;
   reg [511:0] query_q;
   wire start_take;
   wire start_done = s_left_valid & s_left_start;
@@ -189,22 +207,23 @@ module cchip_traversal_events #(
   endgenerate
   always @(posedge clk) begin
     if (query_in) query_q <= s_query;
-    bad_q         <= |beyond | (|query_q[479:478]) | far;
-    pop_context_q <= want_context;
-    if (~idle_valid_q) idle_context_q <= idle_context;
+    beyond_q      <= beyond;
+    bad_q         <= |beyond_q | (|query_q[479:478]) | far;
+    want_one_q    <= want_grant;
+    if (idle_load) idle_one_q <= idle_grant;
     if (rst) begin
       query_valid_q <= 1'b0;
       query_ready_q <= 1'b0;
+      judging_q     <= 1'b0;
       judged_q      <= 1'b0;
       idle_valid_q  <= 1'b0;
-      pop_valid_q   <= 1'b0;
       starting_q    <= 1'b0;
     end else begin
       query_valid_q <= query_valid_q ? ~start_ends : query_in;
       query_ready_q <= query_valid_q ? start_ends : ~query_in;
-      judged_q      <= query_valid_q & ~start_done;
-      idle_valid_q  <= idle_valid_q ? ~start_take : running & |(idle_q & ~lock_q);
-      pop_valid_q   <= |(want_q & ~lock_q);
+      judging_q     <= query_valid_q & ~start_done;
+      judged_q      <= judging_q & ~start_done;
+      idle_valid_q  <= idle_valid_q ? ~start_take : idle_load & |idle_free_q;
       starting_q    <= start_take | (starting_q & ~start_done);
     end
   end
@@ -228,18 +247,20 @@ module cchip_traversal_events #(
       .back_number(s_left_place)
   );
   reg [ROOM_W-1:0] room_q;  // of the leaf queue, that no node pair has
-  reg some_room_q;
+  reg [1:0] room_back_q;
+  reg some_room_q;  // as it was while sources asked; none is taken before one is let in
+  wire some_room = |room_q;
   wire room_take;
-  wire [ROOM_W-1:0] room = room_q + {{ROOM_W - 2{1'b0}}, s_left_room} +
-      {{ROOM_W - 1{1'b0}}, s_leaf_room} - {{ROOM_W - 1{1'b0}}, room_take};
-  always @(posedge clk)
+  always @(posedge clk) begin
+    some_room_q <= some_room;
     if (rst) begin
       room_q      <= DEPTH[ROOM_W-1:0];
-      some_room_q <= 1'b1;
+      room_back_q <= 2'd0;
     end else begin
-      room_q      <= room;
-      some_room_q <= room != {ROOM_W{1'b0}};
+      room_back_q <= s_left_room + {1'b0, s_leaf_room};
+      room_q      <= room_q + {{ROOM_W - 2{1'b0}}, room_back_q} - {{ROOM_W - 1{1'b0}}, room_take};
     end
+  end
   wire answer_room, unused_some;
   wire [$clog2(ANSWERS+1)-1:0] unused_answers;
   cchip_count #(
@@ -254,28 +275,49 @@ module cchip_traversal_events #(
       .room (answer_room)
   );
 
-  // ---- one event is let in
+  // ---- first clock: which sources may enter?
+  reg may_verdict_q, may_result_q, may_drop_q, may_start_q, may_pop_q;
+  reg [QUERIES-1:0] verdict_lock_q, result_lock_q, drop_lock_q, start_lock_q, pop_lock_q;
+  reg [CONTEXT_W-1:0] idle_context_q, pop_context_q;
+  wire asks = ~choose_q & ~rst;
+  wire can_go = place_valid & some_room;
+  wire can_start = query_valid_q & judged_q & ~starting_q & idle_valid_q & answer_room &
+      start_ready;
+  localparam [QUERIES-1:0] FIRST_CONTEXT = 1;
+  always @(posedge clk) begin
+    choose_q       <= asks;
+    may_verdict_q  <= asks & verdict_valid_q & ~lock_q[lookup_context];
+    may_result_q   <= asks & result_valid & ~lock_q[result_context];
+    may_drop_q     <= asks & s_drop_valid & ~lock_q[s_drop_context];
+    may_start_q    <= asks & can_start & can_go & |(idle_one_q & ~inside_q);
+    may_pop_q      <= asks & can_go & |(want_one_q & ~inside_q);
+    verdict_lock_q <= FIRST_CONTEXT << lookup_context;
+    result_lock_q  <= FIRST_CONTEXT << result_context;
+    drop_lock_q    <= FIRST_CONTEXT << s_drop_context;
+    start_lock_q   <= idle_one_q;
+    pop_lock_q     <= want_one_q;
+    idle_context_q <= idle_context;
+    pop_context_q  <= want_context;
+  end
+
+  // ---- second clock: one event is let in
   reg result_first_q;  // a verdict has gone before a result
-  wire can_verdict = verdict_valid_q & ~lock_q[lookup_context];
-  wire can_result = result_valid & ~lock_q[result_context];
-  wire can_drop = s_drop_valid & ~lock_q[s_drop_context];
-  wire can_go = place_valid & some_room_q;
-  wire can_start = query_valid_q & judged_q & ~starting_q & idle_valid_q & can_go & answer_room &
-      start_ready & ~lock_q[idle_context_q];
-  wire can_pop = pop_valid_q & ~lock_q[pop_context_q] & can_go;
-  wire drop_take = can_drop & ~can_verdict & ~can_result;
-  wire pop_take = can_pop & ~can_verdict & ~can_result & ~can_drop & ~can_start;
-  assign verdict_take = can_verdict & ~(result_first_q & can_result);
-  assign result_take  = can_result & (result_first_q | ~can_verdict);
-  assign start_take   = can_start & ~can_verdict & ~can_result & ~can_drop;
+  wire drop_take = may_drop_q & ~may_verdict_q & ~may_result_q;
+  wire pop_take = may_pop_q & ~may_verdict_q & ~may_result_q & ~may_drop_q & ~may_start_q;
+  assign verdict_take = may_verdict_q & ~(result_first_q & may_result_q);
+  assign result_take  = may_result_q & (result_first_q | ~may_verdict_q);
+  assign start_take   = may_start_q & ~may_verdict_q & ~may_result_q & ~may_drop_q;
   assign place_take   = start_take | pop_take;
   assign room_take    = place_take | (verdict_take & some_room_q);
   assign s_drop_ready = drop_take;
-  wire take = verdict_take | result_take | drop_take | start_take | pop_take;
+  wire take = may_verdict_q | may_result_q | may_drop_q | may_start_q | may_pop_q;
   wire [CONTEXT_W-1:0] taken = verdict_take ? lookup_context : result_take ? result_context :
       drop_take ? s_drop_context : start_take ? idle_context_q : pop_context_q;
-  wire [QUERIES-1:0] locks = {{QUERIES - 1{1'b0}}, take} << taken;
-  wire [QUERIES-1:0] unlocks = {{QUERIES - 1{1'b0}}, s_left_valid} << s_left_context;
+  wire [QUERIES-1:0] locks = (verdict_lock_q & {QUERIES{verdict_take}}) |
+      (result_lock_q & {QUERIES{result_take}}) | (drop_lock_q & {QUERIES{drop_take}}) |
+      (start_lock_q & {QUERIES{start_take}}) | (pop_lock_q & {QUERIES{pop_take}});
+  wire [QUERIES-1:0] unlocks = {{QUERIES - 1{1'b0}}, s_leaving_valid} << s_leaving_context;
+  wire [QUERIES-1:0] leaves = {{QUERIES - 1{1'b0}}, s_left_valid} << s_left_context;
 
   reg judge_q;
   reg valid_q, is_verdict_q, is_result_q, is_start_q, is_pop_q, extra_q;
@@ -300,14 +342,20 @@ module cchip_traversal_events #(
       valid_q <= 1'b0;
       result_first_q <= 1'b0;
       lock_q  <= {QUERIES{1'b0}};
+      inside_q <= {QUERIES{1'b0}};
       idle_q  <= {QUERIES{1'b1}};
       want_q  <= {QUERIES{1'b0}};
+      idle_free_q <= {QUERIES{1'b0}};
+      want_free_q <= {QUERIES{1'b0}};
     end else begin
+      idle_free_q <= (idle_q & ~inside_q) | (leaves & {QUERIES{~s_left_active}});
+      want_free_q <= (want_q & ~inside_q) | (leaves & {QUERIES{s_left_wants}});
       valid_q <= take;
-      result_first_q <= result_first_q ? ~result_take : verdict_take & can_result;
+      result_first_q <= result_first_q ? ~result_take : verdict_take & may_result_q;
       lock_q  <= (lock_q & ~unlocks) | locks;
-      idle_q  <= s_left_active ? idle_q & ~unlocks : idle_q | unlocks;
-      want_q  <= s_left_wants ? want_q | unlocks : want_q & ~unlocks;
+      inside_q <= (inside_q & ~leaves) | locks;
+      idle_q  <= s_left_active ? idle_q & ~leaves : idle_q | leaves;
+      want_q  <= s_left_wants ? want_q | leaves : want_q & ~leaves;
     end
   end
   assign m_valid = valid_q;
@@ -336,7 +384,10 @@ module cchip_traversal_events #(
       `CCHIP_ASSERT(a_verdict, !s_verdict_valid || queue_ready)
       `CCHIP_ASSERT(a_room, room_q <= DEPTH[ROOM_W-1:0])
       `CCHIP_ASSERT(a_locked, !take || !lock_q[taken])
-      `CCHIP_ASSERT(a_left, !s_left_valid || lock_q[s_left_context])
+      `CCHIP_ASSERT(a_left, !s_left_valid || inside_q[s_left_context])
+      `CCHIP_ASSERT(a_inside, !(start_take || pop_take) || !inside_q[taken])
+      `CCHIP_ASSERT(a_wants, !pop_take || want_q[taken])
+      `CCHIP_ASSERT(a_idle, !start_take || idle_q[taken])
       `CCHIP_ASSERT(a_result_waits, result_waits_q <= 5'd16)
       `CCHIP_ASSERT(a_verdict_waits, verdict_waits_q <= 5'd16)
     end

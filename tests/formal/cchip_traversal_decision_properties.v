@@ -6,7 +6,7 @@
 //   leaves    the pairs of leaves of a node pair are in the leaf queue's entry, or the query ends
 //   place     the place of a node pair is kept by the one that goes, or free
 //   room      each entry of the leaf queue that an event had is kept, used or given back
-//   stack     an entry is written within the stack, on top; the count follows
+//   stack     an entry is written within the stack, on top; the count follows; it says what a pop takes first, and whether others stay
 //   work      the epoch counts what goes, what is left, and what has come back, one by one
 //   end       a query that ends had an error, a first hit, open pairs at their limit, or nothing left; its epoch is over. One
 //             without anything under way or on the stack ends
@@ -35,7 +35,7 @@ module cchip_traversal_decision_properties #(
     input wire [ 58:0] s_record,
     input wire [ 66:0] s_nodes,
     input wire [  8:0] s_result,
-    input wire [135:0] s_entry,
+    input wire [135:0] stack_entry,
     input wire         query_bad,
     input wire         query_mode,
     input wire [ 95:0] query_constants
@@ -60,9 +60,18 @@ module cchip_traversal_decision_properties #(
   wire [15:0] leaves = s_verdict[31:16];
   wire [15:0] strong = s_verdict[47:32];
   wire [3:0] best = s_verdict[51:48];
-  wire [15:0] entry_waiting = s_entry[119:104];
-  wire [15:0] entry_strong = s_entry[135:120];
+  wire [15:0] entry_waiting = stack_entry[119:104];
+  wire [15:0] entry_strong = stack_entry[135:120];
   wire [2:0] code = s_nodes[66:64];
+  // {others wait besides the first, first}: of {strong, waiting} the lowest strong one, else the lowest one
+  function [4:0] ahead(input [31:0] of);
+    integer k;
+    begin
+      ahead = 5'd0;
+      for (k = 15; k >= 0; k = k - 1) if (of[31:16] != 0 ? of[16+k] : of[k]) ahead[3:0] = k[3:0];
+      ahead[4] = (of[15:0] & ~(16'd1 << ahead[3:0])) != 0;
+    end
+  endfunction
   reg [4:0] count;
   integer i;
   always @(*) begin
@@ -77,7 +86,7 @@ module cchip_traversal_decision_properties #(
   wire [58:0] m_record;
   wire [1:0] m_room;
   wire [STACK_W-1:0] m_at;
-  wire [135:0] m_entry;
+  wire [140:0] m_entry;
   wire [79:0] m_leaf_nodes;
   wire [15:0] m_leaf_set;
   wire [68:0] m_answer;
@@ -104,6 +113,7 @@ module cchip_traversal_decision_properties #(
       .s_full         (entries == STACK),
       .s_verdict      (s_verdict),
       .s_some_wait    (waiting != 0),
+      .s_rest         ((waiting & ~(16'd1 << best)) != 0),
       .s_some_leaves  (leaves != 0),
       .s_leaves       (count),
       .s_extra        (s_extra),
@@ -112,7 +122,7 @@ module cchip_traversal_decision_properties #(
       .s_nodes        (s_nodes),
       .s_failed       (code != 0),
       .s_result       (s_result),
-      .s_entry        (s_entry),
+      .s_entry        ({ahead(stack_entry[135:104]), stack_entry}),
       .query_bad      (query_bad),
       .query_mode     (query_mode),
       .query_constants(query_constants),
@@ -152,41 +162,40 @@ module cchip_traversal_decision_properties #(
     if (waiting != 0) assume (((waiting >> best) & 16'd1) != 0);
   end
 
-  // ---- what is expected, two clocks later
+  // ---- what is expected, three clocks later
   wire step = verdict & s_live & code == 0 & ~s_record[58] & ~s_over;
-  reg past_q, past_q2, valid_q, valid_q2;
-  reg [1:0] kind_q, kind_q2;
-  reg live_q, live_q2, step_q, step_q2, over_q, over_q2, extra_q, extra_q2, bad_q, bad_q2;
-  reg [STATE_W-1:0] state_q, state_q2;
-  reg [11:0] work_q, work_q2;
-  reg [15:0] leaves_q, leaves_q2, waiting_q, waiting_q2;
-  reg [4:0] count_q, count_q2;
-  reg [8:0] result_q, result_q2;
-  reg [2:0] code_q, code_q2;
-  reg [135:0] entry_q, entry_q2;
+  reg past_q0, past_q, past_q2, valid_q0, valid_q, valid_q2, started_q, started_q2;
+  reg [1:0] kind_q0, kind_q, kind_q2;
+  reg live_q0, live_q, live_q2, step_q0, step_q, step_q2, over_q0, over_q, over_q2, extra_q0, extra_q, extra_q2, bad_q0, bad_q, bad_q2;
+  reg [STATE_W-1:0] state_q0, state_q, state_q2;
+  reg [11:0] work_q0, work_q, work_q2;
+  reg [15:0] leaves_q0, leaves_q, leaves_q2, waiting_q0, waiting_q, waiting_q2;
+  reg [4:0] count_q0, count_q, count_q2;
+  reg [8:0] result_q0, result_q, result_q2;
+  reg [2:0] code_q0, code_q, code_q2;
   // sides of the node pair whose child pairs wait: {inner, first, node}
   wire [3:0] inner_a = {s_nodes[31:30] == 0, s_nodes[29:28] == 0, s_nodes[27:26] == 0, s_nodes[25:24] == 0};
   wire [3:0] inner_b = {s_nodes[63:62] == 0, s_nodes[61:60] == 0, s_nodes[59:58] == 0, s_nodes[57:56] == 0};
-  reg [51:0] a_q, a_q2, b_q, b_q2;
+  reg [51:0] a_q0, a_q, a_q2, b_q0, b_q, b_q2;
   // limits of the clock on which they count, at least 1
   reg [2:0] pairs_each_q;
   reg [7:0] open_limit_q, open_limit_q2;
-  initial {past_q, past_q2, valid_q, valid_q2} = 4'd0;
+  initial {past_q0, past_q, past_q2, valid_q0, valid_q, valid_q2} = 6'd0;
   always @(posedge clk) begin
-    past_q   <= 1'b1;
-    past_q2  <= past_q;
-    valid_q  <= s_valid & ~rst;
-    valid_q2 <= valid_q & ~rst;
-    {kind_q, live_q, step_q, over_q, extra_q, bad_q, state_q, work_q} <= {kind, s_live, step, s_over & ~s_record[58], s_extra, query_bad, s_state, s_work};
+    {past_q0, past_q, past_q2} <= {1'b1, past_q0, past_q};
+    {valid_q0, valid_q, valid_q2} <= {s_valid & ~rst, valid_q0 & ~rst, valid_q & ~rst};
+    {started_q, started_q2} <= {m_started, started_q};
+    {kind_q0, live_q0, step_q0, over_q0, extra_q0, bad_q0, state_q0, work_q0} <= {kind, s_live, step, s_over & ~s_record[58], s_extra, query_bad, s_state, s_work};
+    {kind_q, live_q, step_q, over_q, extra_q, bad_q, state_q, work_q} <= {kind_q0, live_q0, step_q0, over_q0, extra_q0, bad_q0, state_q0, work_q0};
     {kind_q2, live_q2, step_q2, over_q2, extra_q2, bad_q2, state_q2, work_q2} <= {kind_q, live_q, step_q, over_q, extra_q, bad_q, state_q, work_q};
-    {leaves_q, count_q, result_q, code_q, entry_q} <= {leaves, count, s_result, code, s_entry};
-    {leaves_q2, count_q2, result_q2, code_q2, entry_q2} <= {leaves_q, count_q, result_q, code_q, entry_q};
-    waiting_q <= pop ? entry_waiting : step ? waiting : 16'd0;
-    waiting_q2 <= waiting_q;
-    a_q  <= pop ? s_entry[51:0] : {inner_a, s_nodes[23:0], s_record[23:0]};
-    b_q  <= pop ? s_entry[103:52] : {inner_b, s_nodes[55:32], s_record[51:28]};
-    a_q2 <= a_q;
-    b_q2 <= b_q;
+    {leaves_q0, count_q0, result_q0, code_q0} <= {leaves, count, s_result, code};
+    {leaves_q, count_q, result_q, code_q} <= {leaves_q0, count_q0, result_q0, code_q0};
+    {leaves_q2, count_q2, result_q2, code_q2} <= {leaves_q, count_q, result_q, code_q};
+    waiting_q0 <= pop ? entry_waiting : step ? waiting : 16'd0;
+    a_q0 <= pop ? stack_entry[51:0] : {inner_a, s_nodes[23:0], s_record[23:0]};
+    b_q0 <= pop ? stack_entry[103:52] : {inner_b, s_nodes[55:32], s_record[51:28]};
+    {waiting_q, a_q, b_q} <= {waiting_q0, a_q0, b_q0};
+    {waiting_q2, a_q2, b_q2} <= {waiting_q, a_q, b_q};
     pairs_each_q  <= pairs_each == 0 ? 3'd1 : pairs_each;
     open_limit_q  <= open_limit == 0 ? 8'd1 : open_limit;
     open_limit_q2 <= open_limit_q;
@@ -220,9 +229,11 @@ module cchip_traversal_decision_properties #(
 
   always @(*)
     if (past_q2 && !valid_q2)
-      nothing: assert (!(m_start | m_cancel | m_started | m_goes | m_back | m_push | m_leaf | m_ends | m_step | m_active | m_wants) && m_room == 0 && m_tests == 0);
+      nothing: assert (!(m_start | m_cancel | m_goes | m_back | m_push | m_leaf | m_ends | m_step | m_active | m_wants) && m_room == 0 && m_tests == 0);
+  always @(*) if (past_q0 && !valid_q0) no_start: assert (!m_started);
   always @(*)
     if (past_q2 && valid_q2) begin
+      first: assert (!m_push || m_entry[140:136] == ahead(m_entry[135:104]));
       pairs_left: assert (!c_waits || c_goes || c_stays || spilt);
       pairs_once: assert (!(c_waits && c_goes && c_stays));
       pairs_known: assert (!c_stays || c_waits);
@@ -247,7 +258,7 @@ module cchip_traversal_decision_properties #(
       end_nothing_left: assert (!((live_q2 || started) && m_work == 0 && has == 0) || m_ends);
       end_answer: assert (!m_ends || m_answer[65:0] == {is_hit ? 2'd1 : is_opens != 0 ? 2'd2 : 2'd0, is_steps, is_pairs});
       goes_on: assert (!(was_active && !start2) || is_active == !m_ends);
-      begins: assert (!start2 || (m_start && m_cancel == (work_q2 != 0) && m_started == m_goes && is_active == m_goes && m_goes == (work_q2 == 0 && !bad_q2)));
+      begins: assert (!start2 || (m_start && m_cancel == (work_q2 != 0) && started_q2 == m_goes && is_active == m_goes && m_goes == (work_q2 == 0 && !bad_q2)));
       progress: assert (!(is_active && is_under == 0 && has != 0 && (!live_q2 || m_work == 0)) || m_wants);
       wants: assert (!m_wants || (is_active && has != 0 && is_under < pairs_each_q));
       stale: assert (start2 || live_q2 || (m_state == state_q2 && !(m_push | m_leaf | m_ends | m_step | m_goes)));

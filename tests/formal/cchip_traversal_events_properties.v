@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// Proved of cchip_traversal_events, with a pipeline of 6 clocks behind it that decides at will and a box test that answers at will:
+// Proved of cchip_traversal_events, with a pipeline of 7 clocks behind it that decides at will and a box test that answers at will:
 //   lock      while an event of a query is in the pipeline none enters
 //   places    a start or a node pair from a stack gets a place that nobody has; a verdict has the place it came for, and the query
 //             of that place
@@ -35,7 +35,7 @@ module cchip_traversal_events_properties #(
     input wire         s_leaf_room,
     input wire         s_answer_room
 );
-  localparam integer STAGES = 6;
+  localparam integer STAGES = 7;
   wire s_query_ready, lookup, s_result_ready, s_drop_ready;
   wire [1:0] lookup_place;
   wire m_valid, m_is_verdict, m_is_result, m_is_start, m_is_pop, m_context, m_extra;
@@ -117,6 +117,8 @@ module cchip_traversal_events_properties #(
       .m_place        (m_place),
       .m_verdict      (),
       .m_result       (),
+      .s_leaving_valid(valid_q[LAST-2]),
+      .s_leaving_context(context_q[LAST-2]),
       .s_left_valid   (left),
       .s_left_context (left_context),
       .s_left_active  (left_active),

@@ -38,7 +38,7 @@ SHAPES = {
     (36, 1, 4): 0,
     (15, 1, 4): 0,
     (512, 1, 6): 15,  # cchip_get_data
-    (136, 1, 10): 8,  # cchip_traversal: stack
+    (141, 1, 10): 8,  # cchip_traversal: stack
     (96, 1, 10): 6,  # cchip_chip_core: operands
     (64, 1, 8): 2,  # cchip_calc_result: faces
     (22, 1, 8): 1,  # cchip_descriptor_queues

@@ -47,6 +47,13 @@ template <class Port>
 void put_constants(Port& port, const model::QueryConstants& x) {
   Fields<Port>(port).put(32, x.base_a).put(32, x.base_b).put(32, x.tag);
 }
+/// The child pair that a pop takes first.
+unsigned first_of(const model::StackEntry& x) {
+  const unsigned of = x.strong != 0 ? x.strong : x.waiting;
+  unsigned n = 0;
+  while (n < 15 && (of >> n & 1) == 0) ++n;
+  return n;
+}
 template <class Port>
 void put_entry(Port& port, const model::StackEntry& x) {
   Fields<Port>(port)
@@ -57,11 +64,15 @@ void put_entry(Port& port, const model::StackEntry& x) {
       .put(24, x.b.first)
       .put(4, x.b.inner)
       .put(16, x.waiting)
-      .put(16, x.strong);
+      .put(16, x.strong)
+      .put(4, first_of(x))
+      .put(1, (x.waiting & (x.waiting - 1)) != 0 ? 1 : 0);
 }
 template <class Port>
 model::StackEntry get_entry(const Port& port) {
   model::StackEntry x;
+  unsigned first = 0;
+  bool others = false;
   Fields<const Port>(port)
       .get(24, x.a.line)
       .get(24, x.a.first)
@@ -70,7 +81,11 @@ model::StackEntry get_entry(const Port& port) {
       .get(24, x.b.first)
       .get(4, x.b.inner)
       .get(16, x.waiting)
-      .get(16, x.strong);
+      .get(16, x.strong)
+      .get(4, first)
+      .get(1, others);
+  REQUIRE(first == first_of(x));
+  REQUIRE(others == ((x.waiting & (x.waiting - 1)) != 0));
   return x;
 }
 
@@ -149,7 +164,7 @@ Occurrence occurrence(Random& random, const model::TraversalLimits& limits, unsi
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("cchip_traversal_decision: what the model decides, two clocks after every event",
+TEMPLATE_LIST_TEST_CASE("cchip_traversal_decision: what the model decides, three clocks after every event",
                         "[unit][cchip_traversal_decision]", cchip_traversal_decision_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     constexpr int stack_w = log2(TestType::STACK);
@@ -157,7 +172,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_traversal_decision: what the model decides, two c
     top.s_valid = 0;
     simulation.reset();
     std::optional<Decision> expected;
-    std::array<std::optional<Occurrence>, 2> inside;  // oldest last
+    std::array<std::optional<Occurrence>, 3> inside;  // oldest last
     unsigned open_limit_before = 0;
     std::map<QueryCode, int> codes;
     int wants = 0, pushes = 0, leaves = 0;
@@ -187,6 +202,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_traversal_decision: what the model decides, two c
       top.s_full = o.state.entries == limits.stack ? 1 : 0;
       put_verdict(top.s_verdict, o.verdict);
       top.s_some_wait = o.verdict.waiting != 0 ? 1 : 0;
+      top.s_rest = (o.verdict.waiting & ~(1U << o.verdict.best)) != 0 ? 1 : 0;
       top.s_some_leaves = o.verdict.leaves != 0 ? 1 : 0;
       top.s_leaves = static_cast<CData>(ones(o.verdict.leaves));
       top.s_extra = o.extra ? 1 : 0;
@@ -202,7 +218,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_traversal_decision: what the model decides, two c
       simulation.settle();
 
       const auto& d = expected;
-      const bool start = d && inside[1]->event == TraversalEvent::start;
+      const bool start = d && inside[2]->event == TraversalEvent::start;
       REQUIRE((top.m_goes != 0) == (d && d->goes));
       REQUIRE((top.m_back != 0) == (d && d->place_free));
       REQUIRE((top.m_push != 0) == (d && d->push));
@@ -215,7 +231,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_traversal_decision: what the model decides, two c
       REQUIRE((top.m_wants != 0) == (d && d->wants));
       REQUIRE((top.m_start != 0) == (d && start));
       REQUIRE((top.m_cancel != 0) == (d && d->cancelled));
-      REQUIRE((top.m_started != 0) == (d && start && d->goes));
+      const bool starts = inside[0] && inside[0]->event == TraversalEvent::start;  // after one clock
+      REQUIRE((top.m_started != 0) == (starts && model::decide(limits, *inside[0]).goes.has_value()));
       if (d) {
         REQUIRE(unsigned{top.m_work} == d->work);
         REQUIRE(get_state(top.m_state, stack_w) == d->state);
@@ -257,13 +274,14 @@ TEMPLATE_LIST_TEST_CASE("cchip_traversal_decision: what the model decides, two c
         }
         wants += d->wants ? 1 : 0;
       }
+      inside[2] = reset ? std::nullopt : inside[1];
       inside[1] = reset ? std::nullopt : inside[0];
       inside[0] = valid && !reset ? std::optional(o) : std::nullopt;
       expected.reset();
-      if (inside[1]) {  // open_limit counts on an event's first clock, pairs_each on its second
+      if (inside[2]) {  // open_limit counts on an event's second clock, pairs_each on its third
         model::TraversalLimits then = limits;
         then.open = open_limit_before;
-        expected = model::decide(then, *inside[1]);
+        expected = model::decide(then, *inside[2]);
       }
       open_limit_before = limits.open;
       simulation.rise();
@@ -301,6 +319,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_traversal_decision: limits of 0 count as 1", "[un
       top.s_valid = 1;
       simulation.step();
       top.s_valid = 0;
+      simulation.step();
       simulation.step();
       CAPTURE(open_limit, open, unsigned{top.pairs_each});
       REQUIRE((top.m_ends != 0) == (open == 1));

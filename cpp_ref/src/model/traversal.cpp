@@ -28,9 +28,12 @@ Traversal::Traversal(const Shape& shape)
 }
 
 std::optional<Traversal::Start> Traversal::start() const {
-  const auto& last = inside_[stages - 1];
-  if (!decision_ || last->event.event != TraversalEvent::start || !decision_->goes) return std::nullopt;
-  return Start{last->event.context, decision_->goes->epoch};
+  const auto& inside = inside_[leaving];
+  if (!inside || inside->event.event != TraversalEvent::start || events_.query_bad()) return std::nullopt;
+  const std::size_t context = inside->event.context;
+  const unsigned epoch = states_[context].epoch;
+  if (works_[context][epoch] != 0) return std::nullopt;
+  return Start{context, epoch};
 }
 
 TraversalEvents::Inputs Traversal::events_inputs(const Inputs& in) const {
@@ -42,6 +45,7 @@ TraversalEvents::Inputs Traversal::events_inputs(const Inputs& in) const {
   x.lookup = {in.lookup_context, in.lookup_pair.epoch};
   x.result = in.result;
   if (leaf_queue_.drop_valid()) x.drop = TraversalEvents::Of{leaf_queue_.pair().context, leaf_queue_.pair().epoch};
+  if (inside_[leaving]) x.leaving = inside_[leaving]->event.context;
   if (decision_) {
     const TraversalEvents::Event& event = inside_[stages - 1]->event;
     TraversalEvents::Left left;
@@ -139,7 +143,7 @@ void Traversal::clock(const Inputs& in) {
   const bool goes = fetch_.has_value();
   to_leaves.credit = in.credit;
   to_leaves.ready = leaf_places_.m_valid() && !goes;
-  to_leaves.drop_ready = events_.drop_ready(to_events);
+  to_leaves.drop_ready = events_.drop_ready();
   const bool leaves = leaf_queue_.valid() && to_leaves.ready;
   if (leaves) {
     const LeafQueue::Pair& pair = leaf_queue_.pair();
@@ -155,7 +159,7 @@ void Traversal::clock(const Inputs& in) {
 
   // the pipeline; what is looked up counts on the clock on which its verdict enters
   if (auto& third = inside_[1]) third->over = states_[third->event.context].steps >= in.limits.steps;
-  if (auto& fifth = inside_[3]) fifth->open_limit = in.limits.open;
+  if (auto& sixth = inside_[4]) sixth->open_limit = in.limits.open;
   const std::optional<TraversalEvents::Event> entered = events_.event();
   for (std::size_t i = stages - 1; i > 0; --i) inside_[i] = std::move(inside_[i - 1]);
   inside_[0].reset();

@@ -62,6 +62,7 @@ class LeafQueue {
 
   void clock(const Inputs& in) {
     const bool taken = (valid() && in.ready) || (drop_valid() && in.drop_ready);
+    const bool next = state_ == State::none;
     bool spent = false;
     switch (state_) {
       case State::none:
@@ -81,7 +82,6 @@ class LeafQueue {
         pairs_.pop_front();
         state_ = pairs_.empty() ? State::none : State::choose;
     }
-    const bool next = state_ == State::none;
     room_ = next && queue_.m_valid();
     if (room_) begin(queue_.m_data());
     queue_.clock(in.entry.has_value(), in.entry.value_or(Entry{}), next);

@@ -62,7 +62,7 @@ class Traversal {
   const std::optional<TraversalEvents::QueryWords>& query() const { return events_.query(); }
   std::optional<Start> start() const;
   const std::optional<Fetch>& fetch() const { return fetch_; }
-  bool lookup(const Inputs& in) const { return events_.lookup(events_inputs(in)); }
+  bool lookup() const { return events_.lookup(); }
   std::optional<std::size_t> lookup_place() const { return events_.lookup_place(); }
   /// Of a result: was its query still at work?
   struct Judgement {
@@ -86,9 +86,10 @@ class Traversal {
     NodePair pair;
     NodeLines lines;
     bool over = false;        ///< steps were at their limit as it passed its third stage
-    unsigned open_limit = 0;  ///< as it passed its fifth
+    unsigned open_limit = 0;  ///< as it passed its sixth
   };
-  static constexpr std::size_t stages = 6;
+  static constexpr std::size_t stages = 7;
+  static constexpr std::size_t leaving = 4;  ///< two clocks from the end
 
   TraversalEvents::Inputs events_inputs(const Inputs& in) const;
   void decide_next(const Inputs& in);

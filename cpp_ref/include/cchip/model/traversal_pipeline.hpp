@@ -189,6 +189,7 @@ class TraversalEvents {
     Of lookup;  ///< of the verdict that waits
     std::optional<TraversalResult> result;
     std::optional<Of> drop;
+    std::optional<std::size_t> leaving;  ///< context of the event that leaves in two clocks
     std::optional<Left> left;
     bool leaf_room = false;
     bool answer_room = false;
@@ -218,15 +219,19 @@ class TraversalEvents {
   std::optional<std::size_t> lookup_place() const {
     return verdicts_.m_valid() ? std::optional(verdicts_.m_data().place) : std::nullopt;
   }
-  bool lookup(const Inputs& in) const { return !verdict_ || choose(in) == Source::verdict; }
-  bool drop_ready(const Inputs& in) const { return choose(in) == Source::drop; }
+  bool lookup() const { return !verdict_ || choose() == Source::verdict; }
+  bool drop_ready() const { return choose() == Source::drop; }
 
   void clock(const Inputs& in);
   void reset();
 
  private:
   enum class Source { nobody, verdict, result, drop, start, pop };
-  Source choose(const Inputs& in) const;
+  struct May {
+    bool verdict = false, result = false, drop = false, start = false, pop = false;
+  };
+  May ask(const Inputs& in) const;
+  Source choose() const;
   static bool has(std::uint32_t set, std::size_t bit) { return (set >> bit & 1) != 0; }
 
   Shape shape_;
@@ -236,14 +241,18 @@ class TraversalEvents {
   std::optional<BoxVerdict> verdict_;
   SkidBuffer<TraversalResult> results_;
   Pool places_;
-  std::size_t room_ = 0;
+  bool choose_ = false;  ///< on every second clock an event may enter; on the others sources ask
+  May may_;
+  std::size_t room_ = 0, room_back_ = 0;
   bool some_room_ = true;
   std::size_t answers_ = 0;
-  std::uint32_t locked_ = 0, without_query_ = 0, wanting_ = 0;  ///< contexts
+  std::uint32_t locked_ = 0, inside_ = 0, without_query_ = 0, wanting_ = 0;  ///< contexts
+  std::uint32_t free_idle_ = 0, free_want_ = 0;                              ///< a clock ago
   std::optional<QueryWords> query_;
-  bool query_ready_ = false, query_valid_ = false, query_bad_ = false, judged_ = false, starting_ = false;
+  bool query_ready_ = false, query_valid_ = false, query_bad_ = false, bad_next_ = false, judging_ = false,
+       judged_ = false, starting_ = false;
   bool result_first_ = false;  ///< a verdict has entered while a result could have: the result is next
-  std::optional<std::size_t> idle_context_, pop_context_;
+  std::optional<std::size_t> idle_context_, want_context_, pop_context_;
   std::optional<Event> event_;
 };
 
