@@ -117,6 +117,7 @@ module cchip_cache #(
   reg [SET_W:0] allocate_frame_q;  // {set, way}
   reg [LINE_W-1:0] allocate_line_q;
   wire [1:0] grant;
+  wire granted;
   wire fill_valid;  // takes a clock of port 0
   wire [MISS_W-1:0] fill_slot;
   wire [CODE_W-1:0] fill_code;
@@ -138,7 +139,7 @@ module cchip_cache #(
       .rst           (rst),
       .free_valid    (free_valid),
       .free_slot     (free_slot),
-      .free_take     (|grant),
+      .free_take     (granted),
       .allocate      (allocate_q),
       .allocate_slot (allocate_slot_q),
       .allocate_frame(allocate_frame_q),
@@ -183,12 +184,13 @@ module cchip_cache #(
   // what stage 6 of the ports wants
   wire [1:0] want, want_way, want_locked, want_turn;  // a frame for a line
   wire [2*LINE_W-1:0] line6;
-  wire [1:0] own6;  // a fill or a walk
+  wire walk6;
   wire walk_stale6;
   wire [1:0] fill_way6;
-  wire [CODE_W-1:0] fill_code6;
+  wire kill;  // a fill without data: its line is forgotten
   wire [MISS_W-1:0] fill_slot6;
   wire [1:0] walk_ways6;  // ways to forget
+  wire walk_forgets6;  // a walk, and there are any
   wire [2*(MISS_W+1)-1:0] walk_keep6;  // their {turn, slot}
 
   wire [2*SET_W+1:0] data_addr;  // frames that the ports read or write in stage 5
@@ -213,11 +215,12 @@ module cchip_cache #(
       alone_q  <= 1'b0;
     end
 
-  function [5:0] lowest(input [63:0] of);
+  // the lowest bit that is 1, alone
+  function [15:0] lowest(input [15:0] of);
     integer j;
     begin
-      lowest = 6'd0;
-      for (j = 63; j >= 0; j = j - 1) if (of[j]) lowest = j[5:0];
+      lowest = of;
+      for (j = 1; j < 16; j = j + 1) if (|(of & ((16'd1 << j) - 16'd1))) lowest[j] = 1'b0;
     end
   endfunction
 
@@ -265,7 +268,7 @@ module cchip_cache #(
       ) u_late (
           .clk    (clk),
           .rst    (rst),
-          .s_valid(ask & ~(go0 & ~use_again & ~late_valid)),
+          .s_valid(ask & (~go0 | late_valid | (again_valid & again_first_q))),
           .s_ready(late_ready),
           .s_data ({ask_place, ask_line}),
           .m_valid(late_valid),
@@ -298,8 +301,28 @@ module cchip_cache #(
       reg [PLACE_W-1:0] serve_place_q0;
       reg [CODE_W-1:0] serve_code_q0;
       reg [SET_W:0] serve_frame_q0;
+      // the lowest place, by groups of four: the first group that has one, and the first in each
       wire [63:0] all_wake = {{64 - PLACES{1'b0}}, wake_q};
-      wire [5:0] wake_place = lowest(all_wake);
+      wire [63:0] wake_first;  // one-hot
+      wire [15:0] group;  // has one
+      wire [15:0] group_first = lowest(group);
+      wire [31:0] in_group;  // number of the first in each group, of the first group alone
+      for (i = 0; i < 16; i = i + 1) begin : gen_group
+        wire [3:0] four = all_wake[4*i+:4];
+        assign group[i] = |four;
+        assign wake_first[4*i+:4] = {
+          four[3] & ~(|four[2:0]), four[2] & ~(|four[1:0]), four[1] & ~four[0], four[0]
+        } & {4{group_first[i]}};
+        assign in_group[2*i+:2] = {~(|four[1:0]), ~four[0] & (four[1] | ~four[2])} &
+            {2{group_first[i]}};
+      end
+      reg [5:0] wake_place;
+      integer j;
+      always @* begin
+        wake_place = 6'd0;
+        for (j = 0; j < 16; j = j + 1)
+          wake_place = wake_place | {j[3:0] & {4{group_first[j]}}, in_group[2*j+:2]};
+      end
       wire load_serve = ~serve_q0 | serve0;
       // A fill or a walk may keep the last one from its clock: its frame must stay until then.
       assign serving[p] = (|wake_q) | (serve_q0 & own0);
@@ -313,7 +336,8 @@ module cchip_cache #(
 
       // of each way
       wire [2*MISS_W-1:0] miss5, miss6;
-      wire [1:0] match4, match5, valid5, locked5, turn5, turn6, hold5, full5, forget6;
+      wire [1:0] match4, match5, valid5, locked5, turn5, turn6, hold5, full5;
+      wire [1:0] forget5, forget6;
       for (w = 0; w < 2; w = w + 1) begin : gen_way
         localparam [31:0] W = w;
         wire [ENTRY_W-1:0] entry3;
@@ -359,6 +383,7 @@ module cchip_cache #(
         assign locked5[w] = locked_q5;
         assign turn5[w]   = turn_q5;
         assign turn6[w]   = turn_q6;
+        assign forget5[w] = forget_q5;
         assign forget6[w] = forget_q6;
         assign miss5[MISS_W*w+:MISS_W] = miss_q5;
         assign miss6[MISS_W*w+:MISS_W] = miss_q6;
@@ -368,33 +393,40 @@ module cchip_cache #(
 
       wire [1:0] wait5 = match5 & hold5 & ~full5;  // the line is under way
       wire [1:0] may5 = ~hold5 & ~locked5;  // frames that may be given away
-      wire victim5 = &may5 ? (&valid5 ? ^turn5 : valid5[0]) : may5[1];
-      reg match_q6, wait_q6, may_q6, victim_q6, locked_q6, new_turn_q6;
+      reg match_q6, wait_q6, lacks_q6, prefer_q6, lock_q6;
+      reg [1:0] may_q6, locked_q6;
       reg [MISS_W-1:0] wait_slot_q6;
+      // the way to replace is found beside the decision whether any is
+      wire victim6 = &may_q6 ? prefer_q6 : may_q6[1];
 
       wire stale = stale_q6 | (|(change_by_q & same_q6));
       wire fresh = look_q6 & ~stale;
       wire hit = fresh & match_q6 & ~wait_q6;
       wire sleeps = (fresh & wait_q6) | grant[p];
       wire refuse = fresh & ~match_q6 & exhausted;
-      wire is_oldest = oldest_q == {P[0], place_q6};
+      // compared a clock before: oldest_q does not change while alone_q is 1
+      reg is_oldest_q6;
       assign again = look_q6 & (stale | (~match_q6 & ~grant[p] & ~exhausted));
-      assign want[p] = fresh & ~match_q6 & may_q6 & free_valid & ~exhausted &
-          (~alone_q | is_oldest);
-      assign want_way[p] = victim_q6;
-      assign want_locked[p] = locked_q6;
-      assign want_turn[p] = new_turn_q6;
+      assign want[p] = lacks_q6 & ~stale & free_valid & (~alone_q | is_oldest_q6);
+      assign want_way[p] = victim6;
+      assign want_locked[p] = lock_q6 & ~(victim6 ? locked_q6[0] : locked_q6[1]);
+      assign want_turn[p] = ~victim6 ^ (victim6 ? turn6[0] : turn6[1]);
       assign line6[LINE_W*p+:LINE_W] = line_q6;
-      assign own6[p] = own_q6;
       assign data_addr[(SET_W+1)*p+:SET_W+1] = {line_q5[SET_W-1:0], way_q5};
       if (p == 0) begin : gen_fill
         assign fill_write = own_q5 && code_q5 == `CCHIP_READ_OK;
-        assign fill_code6 = code_q6;
+        reg kill_q6;
+        always @(posedge clk) kill_q6 <= ~rst & own_q5 & (code_q5 != `CCHIP_READ_OK);
+        assign kill = kill_q6;
         assign fill_slot6 = slot_q6;
         assign fill_way6  = {way_q6, ~way_q6};
-        wire unused_fill = &{1'b0, forget6, turn6, miss6};
+        wire unused_fill = &{1'b0, own_q6, forget5, forget6, miss6};
       end else begin : gen_walk
+        reg forgets_q6;
+        always @(posedge clk) forgets_q6 <= ~rst & own_q5 & (|forget5);
+        assign walk6 = own_q6;
         assign walk_stale6 = stale;
+        assign walk_forgets6 = forgets_q6;
         assign walk_ways6  = forget6;
         assign walk_keep6 = {turn6[1], miss6[MISS_W+:MISS_W], turn6[0], miss6[0+:MISS_W]};
         wire unused_walk = &{1'b0, slot_q6, way_q6};
@@ -432,13 +464,16 @@ module cchip_cache #(
         lock_q3 <= lock_q2;
         lock_q4 <= lock_q3;
         lock_q5 <= lock_q4;
+        lock_q6 <= lock_q5;
         match_q6 <= |match5;
+        // not reset: no slot is free on the clocks after reset
+        lacks_q6 <= look_q5 & ~(|match5) & (|may5);
         wait_q6 <= |wait5;
         wait_slot_q6 <= match5[1] ? miss5[MISS_W+:MISS_W] : miss5[0+:MISS_W];
-        may_q6 <= |may5;
-        victim_q6 <= victim5;
-        locked_q6 <= lock_q5 & ~(victim5 ? locked5[0] : locked5[1]);
-        new_turn_q6 <= ~victim5 ^ (victim5 ? turn5[0] : turn5[1]);
+        may_q6 <= may5;
+        prefer_q6 <= &valid5 ? ^turn5 : valid5[0];
+        locked_q6 <= locked5;
+        is_oldest_q6 <= oldest_q == {P[0], place_q5};
         if (load_serve) begin
           serve_place_q0 <= wake_place[PLACE_W-1:0];
           serve_code_q0  <= serve_code;
@@ -467,22 +502,23 @@ module cchip_cache #(
       for (i = 0; i < PLACES; i = i + 1) begin : gen_place
         localparam [31:0] I = i;
         wire on_line = on_q[MISS_W*i+:MISS_W] == collect_slot;
-        wire here6 = place_q6 == I[PLACE_W-1:0];
-        wire falls = sleeps & here6;
-        reg retried_q;
+        reg here_q6, retried_q;  // stage 6 has this place
+        wire falls = sleeps & here_q6;
         always @(posedge clk)
           if (rst) retried_q <= 1'b0;
-          else if (look_q6 && here6) retried_q <= again;
+          else if (here_q6) retried_q <= again;
         assign retried[PLACES*p+i] = retried_q;
         always @(posedge clk) begin
-          if (falls) on_q[MISS_W*i+:MISS_W] <= grant[p] ? free_slot : wait_slot_q6;
+          here_q6 <= ~rst & look_q5 & (place_q5 == I[PLACE_W-1:0]);
+          // it counts only if the place falls asleep now, which comes too late to be asked here
+          if (here_q6) on_q[MISS_W*i+:MISS_W] <= wait_q6 ? wait_slot_q6 : free_slot;
           if (rst) begin
             sleep_q[i] <= 1'b0;
             wake_q[i]  <= 1'b0;
           end else begin
             sleep_q[i] <= falls | (sleep_q[i] & ~(collect & on_line));
             wake_q[i] <= collect ? sleep_q[i] & on_line :
-                wake_q[i] & ~(load_serve && wake_place[PLACE_W-1:0] == I[PLACE_W-1:0]);
+                wake_q[i] & ~(load_serve & wake_first[i]);
           end
         end
       end
@@ -510,10 +546,10 @@ module cchip_cache #(
 
       reg both_q6;  // the two ways hold the same line
       always @(posedge clk) both_q6 <= &match5;
-      wire unused_port = &{1'b0, wake_place, code_q6, late_ready, again_ready};
+      wire unused_port = &{1'b0, wake_place, wake_first, code_q6, late_ready, again_ready};
       assign ok_collect[p] = !collect || wake_q == {PLACES{1'b0}};
       assign ok_serve[p] = !serve_q0 || (held[collect_slot] && serve_frame_q0 == serve_frame);
-      assign ok_alone[p] = !grant[p] || !alone_q || is_oldest;
+      assign ok_alone[p] = !grant[p] || !alone_q || oldest_q == {P[0], place_q6};
       assign ok_one[p] = !fresh || !(match_q6 && both_q6);
       assign ok_place[p] = !ask || (!sleep_q[ask_place] && !wake_q[ask_place]);
     end
@@ -536,27 +572,29 @@ module cchip_cache #(
   // ---- changes of the entries: a line that could not be read is forgotten, then the walk, then
   // frames for lines. Who cannot have his change is looked up again
   reg favour_q;  // port that gets a frame if both want one
-  wire kill = own6[0] && fill_code6 != `CCHIP_READ_OK;
-  wire walk_write = own6[1] & ~walk_stale6 & (|walk_ways6) & ~kill;
-  wire walk_next = own6[1] & ~walk_stale6 & ~(kill & (|walk_ways6));
+  wire walk_write = walk_forgets6 & ~walk_stale6 & ~kill;
+  wire walk_next = walk6 & ~walk_stale6 & ~(kill & walk_forgets6);
   assign grant[0] = want[0] & ~walk_write & ~(want[1] & favour_q);
   assign grant[1] = want[1] & ~kill & ~(want[0] & ~favour_q);
-  wire by = grant[1];
+  // Whether any is granted does not depend on whose turn it is: of two that want, one has it.
+  assign granted = (want[0] & ~walk_write) | (want[1] & ~kill);
+  // whose line it is; any, if none is granted
+  wire by = want[1] & (favour_q | ~want[0]);
   wire [LINE_W-1:0] line = by ? line6[LINE_W+:LINE_W] : line6[0+:LINE_W];
   wire way = by ? want_way[1] : want_way[0];
-  wire [ENTRY_W-1:0] entry = {
-    1'b1,
-    by ? want_locked[1] : want_locked[0],
-    by ? want_turn[1] : want_turn[0],
-    free_slot,
-    line[LINE_W-1:SET_W]
+  // The tag of an entry without a line may be any. It is that of `line` in every change, so that
+  // the choice among the changes is not on the path to it.
+  wire [ENTRY_W-TAG_W-1:0] entry = {
+    1'b1, by ? want_locked[1] : want_locked[0], by ? want_turn[1] : want_turn[0], free_slot
   };
   generate
     for (w = 0; w < 2; w = w + 1) begin : gen_entry
       always @(posedge clk)
-        entry_data_q[ENTRY_W*w+:ENTRY_W] <= !running_q ? {ENTRY_W{1'b0}} :
-            kill ? {3'b000, fill_slot6, {TAG_W{1'b0}}} :
-            walk_write ? {2'b00, walk_keep6[(MISS_W+1)*w+:MISS_W+1], {TAG_W{1'b0}}} : entry;
+        entry_data_q[ENTRY_W*w+:ENTRY_W] <= {
+          !running_q ? {ENTRY_W - TAG_W{1'b0}} : kill ? {3'b000, fill_slot6} :
+              walk_write ? {2'b00, walk_keep6[(MISS_W+1)*w+:MISS_W+1]} : entry,
+          line[LINE_W-1:SET_W]
+        };
     end
   endgenerate
   always @(posedge clk) begin
@@ -572,9 +610,9 @@ module cchip_cache #(
       favour_q      <= 1'b0;
     end else begin
       entry_write_q <= !running_q ? 2'b11 : kill ? fill_way6 : walk_write ? walk_ways6 :
-          {way, ~way} & {2{|grant}};
+          {way, ~way} & {2{granted}};
       change_by_q <= {grant[1] | walk_write, grant[0] | kill};
-      allocate_q  <= |grant;
+      allocate_q  <= granted;
       if (&want) favour_q <= ~favour_q;
     end
   end
@@ -586,7 +624,8 @@ module cchip_cache #(
   reg [SET_W-1:0] left_q;  // sets after this one
   reg [MISSES-1:0] old_q;  // reads under way
   reg [2:0] clocks_q;
-  wire [LINE_W-1:0] more = invalidate_last - invalidate_first;
+  reg [LINE_W-1:0] more_q;  // lines after the first one
+  reg count_q;  // left_q is to be loaded: long before the first set has been seen
   wire set_last = left_q == {SET_W{1'b0}};
   reg ready_q;
   always @(posedge clk) begin
@@ -594,6 +633,7 @@ module cchip_cache #(
       first_q <= invalidate_first;
       last_q  <= invalidate_last;
     end
+    more_q   <= last_q - first_q;
     old_q    <= state_q == READS ? old_q & held : held;
     clocks_q <= state_q == ANSWERS ? clocks_q - 3'd1 : ANSWER_CLOCKS;
     if (rst) begin
@@ -601,6 +641,7 @@ module cchip_cache #(
       running_q    <= 1'b0;
       ready_q      <= 1'b0;
       walk_valid_q <= 1'b0;
+      count_q      <= 1'b0;
       walk_set_q   <= {SET_W{1'b0}};
       left_q       <= {SET_W{1'b1}};
     end else begin
@@ -615,7 +656,7 @@ module cchip_cache #(
         end
         IDLE: begin
           walk_set_q <= invalidate_first[SET_W-1:0];
-          left_q     <= |more[LINE_W-1:SET_W] ? {SET_W{1'b1}} : more[SET_W-1:0];
+          count_q    <= 1'b1;
           ready_q    <= ~invalidate_valid;
           if (invalidate_valid) state_q <= ASK;
         end
@@ -624,7 +665,10 @@ module cchip_cache #(
           state_q      <= SEE;
         end
         SEE:
-        if (own6[1]) begin
+        if (count_q) begin
+          left_q  <= |more_q[LINE_W-1:SET_W] ? {SET_W{1'b1}} : more_q[SET_W-1:0];
+          count_q <= 1'b0;
+        end else if (walk6) begin
           if (walk_next) begin
             walk_set_q <= walk_set_q + ONE[SET_W-1:0];
             left_q     <= left_q - ONE[SET_W-1:0];
@@ -642,7 +686,7 @@ module cchip_cache #(
   end
   assign invalidate_ready = ready_q;
 
-  wire unused = &{1'b0, by, ok_collect, ok_serve, ok_alone, ok_one, ok_place};
+  wire unused = &{1'b0, ok_collect, ok_serve, ok_alone, ok_one, ok_place};
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_collect, &ok_collect)
@@ -650,7 +694,8 @@ module cchip_cache #(
       `CCHIP_ASSERT(a_alone, &ok_alone)
       `CCHIP_ASSERT(a_one, &ok_one)
       `CCHIP_ASSERT(a_place, &ok_place)
-      `CCHIP_ASSERT(a_grant, grant != 2'b11)
+      `CCHIP_ASSERT(a_grant, grant != 2'b11 && granted == |grant)
+      `CCHIP_ASSERT(a_free, !(free_valid && exhausted))
       `CCHIP_ASSERT(a_one_change, !(|grant) || !(kill || walk_write))
     end
 

@@ -211,6 +211,8 @@ module cchip_cache_fill #(
       localparam [31:0] I = i;
       wire ends = done && serve_slot_q == I[MISS_W-1:0];
       wire starts = allocate && allocate_slot == I[MISS_W-1:0];
+      // found, and this is the slot: of its own bits alone
+      wire gone = ~back_q & ~s_read_outstanding[i] & (scan_q == I[MISS_W-1:0]);
       wire fills = fill_q5 && slot_q5 == I[MISS_W-1:0] && code_q5 == `CCHIP_READ_OK;
       always @(posedge clk)
         if (rst) begin
@@ -218,7 +220,7 @@ module cchip_cache_fill #(
           filled_q[i] <= 1'b0;
           lost_q[i]   <= 1'b0;
         end else begin
-          lost_q[i]   <= (ends & loses) | (lost_q[i] & ~(found && scan_q == I[MISS_W-1:0]));
+          lost_q[i]   <= (ends & loses) | (lost_q[i] & ~gone);
           held_q[i]   <= starts | (held_q[i] & ~ends);
           filled_q[i] <= fills | (filled_q[i] & ~starts);
         end
