@@ -67,6 +67,8 @@ class Row:
     placer: str = "static"  # of nextpnr: static, or heap where it is the better one
     block: bool = False  # has other ports than a primitive test
     synth: str = ""  # further options of synth_ecp5
+    router: str = "router1"  # of nextpnr
+    owners: tuple = ()  # modules whose hierarchy is kept in synthesis: the bill by block
 
     @property
     def coord_w(self):
@@ -89,6 +91,12 @@ class Row:
         return [f"-DCCHIP_FPGA_{name}={value}" for name, value in named.items()]
 
 
+# blocks of cchip_chip that its bill names; what is in none of them is the chip's own
+CHIP_BLOCKS = ("cchip_cache", "cchip_traversal", "cchip_get_data", "cchip_bv_unit", "cchip_leaf_feed", "cchip_transform",
+               "cchip_descriptor_queues", "cchip_dispatcher", "cchip_pr_slot", "cchip_calc_result", "cchip_query_ring",
+               "cchip_record_ring", "cchip_axi_read", "cchip_axi_write", "cchip_chip_regs")
+
+
 def rows():
     tri_tri = "cchip_primtest_tri_tri"
     table = [Row(name, f"cchip_primtest_{name}", families=True, shape=name.replace("_", "-"), placer=placer)
@@ -104,9 +112,13 @@ def rows():
     table += [Row(name.replace("cchip_", ""), name, shape="", seeds=3, placer="heap", block=True)
               for name in ("cchip_axi_read", "cchip_axi_write", "cchip_cache", "cchip_pose_setup", "cchip_bv_offset",
                            "cchip_bv_lane_a", "cchip_bv_lane_b", "cchip_bv_compare", "cchip_traversal", "cchip_get_data",
-                           "cchip_transform")]
+                           "cchip_transform", "cchip_leaf_feed", "cchip_query_ring", "cchip_calc_result", "cchip_record_ring",
+                          "cchip_descriptor_queues")]
     # with the wide multiplexers of the device Yosys takes a quarter more LUTs for the whole box test
     table += [Row("bv_unit", "cchip_bv_unit", shape="", seeds=3, placer="heap", block=True, synth=" -nowidelut")]
+    # the whole chip: its bill by block, then flat; a third fewer multiplexers of LUTs without the device's wide ones
+    table += [Row(name, "cchip_chip", (("RM_ID", module),), shape="", seeds=3, block=True, synth=" -nowidelut", router="router2",
+                  owners=CHIP_BLOCKS) for name, module in (("chip_tri", 1), ("chip", 3))]
     return {row.name: row for row in table}
 
 
@@ -243,8 +255,9 @@ def synthesise(row, options):
     """Synthesis for ECP5 within the harness: folder with netlist.json and stat.json (cells by module)."""
     text = sources(row)
     made = {"harness.v": text.pop(HARNESS)} if row.block else {}
+    kept = " ".join(f"*{name}*" for name in (REGION, *row.owners))
     script = read_verilog([*text, *("{}/" + name for name in made)], *row.macros()) + (
-        f"hierarchy -top fpga_harness\nsetattr -mod -set keep_hierarchy 1 *{REGION}*\n"
+        f"hierarchy -top fpga_harness\nsetattr -mod -set keep_hierarchy 1 {kept}\n"
         f"synth_ecp5 {options.synth}{row.synth} -top fpga_harness\n"
         "tee -q -o {}/stat.json stat -json\n"
         "setattr -unset keep_hierarchy */t:*\nsetattr -mod -unset keep_hierarchy *\nflatten\nopt_clean\n"
@@ -308,6 +321,8 @@ def place(row, synthesis, seed, options):
     netlist = synthesis / "netlist.json"
     choices = [*DEVICE, "--placer", options.placer or row.placer, "--freq", str(options.freq), "--seed", str(seed),
                "--timing-allow-fail", "--detailed-timing-report"]
+    if row.router != "router1":
+        choices += ["--router", row.router]
     command = [str(options.nextpnr), *choices, "--json", str(netlist.relative_to(ROOT)), "--report", "{}/report.json"]
     depends = [choices, hashlib.sha256(netlist.read_bytes()).hexdigest(), version(options.nextpnr, "--version")]
     folder = step(f"{row.name}.seed{seed}", command, {}, depends, "report.json")
@@ -401,6 +416,24 @@ def module_cells(modules):
     return module, regions, harness
 
 
+def owned_cells(modules, owners):
+    """Cells by the innermost module of `owners` that they are in, {module: cells}; others under "": statistics as in cells()."""
+    found = {name: collections.Counter() for name in ("", *owners)}
+
+    def add(name, times, owner):
+        inside = re.search(r"cchip_\w+", name)
+        owner = inside[0] if inside and inside[0] in owners else None if "fpga_" in name else owner
+        for cell, n in modules[name].items():
+            if cell in modules:
+                add(cell, times * n, owner if owner is not None else "")
+            elif owner is not None:
+                found[owner][cell] += times * n
+
+    for top in set(modules) - {cell for inside in modules.values() for cell in inside}:
+        add(top, 1, None)
+    return found
+
+
 def figures(row, synthesis, reports, beats):
     """What fpga.json holds of a row; reports by seed; beats as in mean_beats."""
     static, regions, harness = module_cells(cells((synthesis / "stat.json").read_text()))
@@ -420,7 +453,9 @@ def figures(row, synthesis, reports, beats):
         "fmax_median": fmax_median, "fmax_max": max(clocks.values()),
         "critical_path": in_words(critical_path(reports[seed])), "synthesis": synthesis.name,
         "block": row.block,
-        "static": {name: static[cell] for name, cell in COLUMNS.items()} if regions else {},
+        "bill": {name: {column: n[cell] for column, cell in COLUMNS.items()}
+                 for name, n in owned_cells(cells((synthesis / "stat.json").read_text()), row.owners).items()} if row.owners else {},
+        "static": {name: static[cell] for name, cell in COLUMNS.items()} if regions and not row.block else {},
         "endpoints": endpoints(reports[seed], 5),
         "mean_beats": beats,
         "pairs_per_s": {name: {programme: rate(mean) for programme, mean in means.items()}
@@ -530,6 +565,22 @@ def blocks_table(found):
                             "Fmax, MHz: min / median / max", "critical path of the median"], body)
 
 
+def sites(counts):
+    """LUT4 sites of the device: a carry takes two, a distributed RAM six with its port for writing."""
+    return counts["LUT4, logic"] + 2 * counts["carry"] + 6 * counts["distributed RAM"]
+
+
+def owners_table(found):
+    body = []
+    for name, row in found.items():
+        for owner, counts in [*sorted(row["bill"].items(), key=lambda item: -sites(item[1]))]:
+            body.append([f"`{name}`", f"`{owner}`" if owner else "the chip's own", *counts.values(), sites(counts)])
+        if row["bill"]:
+            whole = {column: sum(counts[column] for counts in row["bill"].values()) for column in COLUMNS}
+            body.append([f"`{name}`", "all", *whole.values(), sites(whole)])
+    return datasheet.table(["row", "block", *COLUMNS, "sites"], body)
+
+
 def endpoints_table(found):
     body = [[f"`{name}`", f"`{end}`", f"{delay:.2f}"] for name, r in found.items() for end, delay in r["endpoints"]]
     return datasheet.table(["row", "end", "ns"], body)
@@ -537,14 +588,15 @@ def endpoints_table(found):
 
 # table -> what makes it; of rows of subsystems, of blocks that are no primitive test, of the other rows
 BLOCKS = {"blocks": blocks_table}
+CHIPS = {"chip": blocks_table, "chip_bill": owners_table, "chip_endpoints": endpoints_table}
 SUBSYSTEMS = {"subsystems": subsystems_table, "endpoints": endpoints_table}
 TABLES = {"ecp5": area_table, "choices": choices_table, "classes": classes_table, "families": families_table}
 
 
 def tables(found):
     """Every table with a row of this run, [(name, text)]."""
-    kind = lambda row: "subsystem" if row["static"] else "block" if row["block"] else "test"
-    for made, rows_of in ((TABLES, "test"), (SUBSYSTEMS, "subsystem"), (BLOCKS, "block")):
+    kind = lambda row: "chip" if row["bill"] else "subsystem" if row["static"] else "block" if row["block"] else "test"
+    for made, rows_of in ((TABLES, "test"), (SUBSYSTEMS, "subsystem"), (BLOCKS, "block"), (CHIPS, "chip")):
         wanted = {name: row for name, row in found.items() if kind(row) == rows_of}
         if wanted:
             yield from ((name, make(wanted)) for name, make in made.items())
@@ -664,7 +716,7 @@ def main():
         found, failures = measure(chosen, options)
     save(found)
     made = {name: text for name, text in tables(found) if name != "families" or options.families}
-    for name in ("ecp5", "subsystems", "endpoints", "blocks", "families"):
+    for name in ("ecp5", "subsystems", "endpoints", "blocks", "chip", "chip_bill", "chip_endpoints", "families"):
         if name in made:
             print(made[name])
     if options.write and not failures:
