@@ -201,7 +201,8 @@ def sources(row):
 def block_harness(row):
     """scripts/fpga_harness.v for a block with any ports: each input and each output is at a register of its own."""
     parameters, ports = datasheet.parse(row.top)
-    values = "".join(f"  localparam integer {name} = {dict(row.parameters).get(name, value)};\n" for name, value in parameters)
+    macro = lambda value: re.sub(r"\bCCHIP_\w+", r"`\g<0>", str(value))  # as the RTL has it, the datasheet does not
+    values = "".join(f"  localparam integer {name} = {macro(dict(row.parameters).get(name, value))};\n" for name, value in parameters)
     widths, pins = {"input": "0", "output": "0"}, ["    .clk(clk)"]
     for name, direction, width in ports:
         if name != "clk":

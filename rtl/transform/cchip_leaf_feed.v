@@ -7,8 +7,8 @@
 //   map          kept for each context, not for each epoch of it: a leaf pair of a query that has
 //                ended may meet the map of the next one. That is harmless: every map is a legal
 //                one, and the traversal calls its results dead
-//   credit       s_leaf_valid has no ready: at most two leaf pairs come for which m_credit has not
-//                been 1; the others wait in cchip_get_data, which has memory for their lines
+//   credit       s_leaf_valid has no ready: a leaf pair comes only if m_credit has been 1 for
+//                the one before it; the others wait in cchip_get_data, which has memory for them
 //   end          a leaf pair whose line could not be read, or is illegal, ends without primitive
 //                pairs, with CCHIP_END_MEMORY or CCHIP_END_CORRUPT
 //   throughput   a leaf pair every 2 clocks
@@ -62,7 +62,6 @@ module cchip_leaf_feed #(
 );
 
   localparam integer CONTEXT_W = $clog2(QUERIES);
-  localparam integer LEAF_PAIR_W = CONTEXT_W + 2 + 1 + 4 + 1024;
   localparam integer MAP_W = 1 + 12 + 4 + 108 + 288;
   localparam [1:0] TWO_TRIANGLES = 2'd2;
 
@@ -86,27 +85,23 @@ module cchip_leaf_feed #(
         s_start_query[`CCHIP_QUERY_M]
       };
 
-  // ---- leaf pairs that wait
-  wire room, wait_valid, wait_failed;
-  wire [CONTEXT_W-1:0] wait_context;
-  wire [1:0] wait_epoch;
-  wire [3:0] wait_kinds;
-  wire [1023:0] wait_lines;
-  cchip_skid_buffer #(
-      .WIDTH(LEAF_PAIR_W)
-  ) u_waiting (
-      .clk    (clk),
-      .rst    (rst),
-      .s_valid(s_leaf_valid),
-      .s_ready(room),
-      .s_data ({s_leaf_context, s_leaf_epoch, s_leaf_failed, s_leaf_kinds, s_leaf_lines}),
-      .m_valid(wait_valid),
-      .m_ready(m_credit),
-      .m_data ({wait_context, wait_epoch, wait_failed, wait_kinds, wait_lines})
-  );
+  // ---- the leaf pair that waits
+  reg wait_valid_q, wait_failed_q;
+  reg [CONTEXT_W-1:0] wait_context_q;
+  reg [1:0] wait_epoch_q;
+  reg [3:0] wait_kinds_q;
+  reg [1023:0] wait_lines_q;
+  always @(posedge clk) begin
+    // what is in them counts only with wait_valid_q: a short condition for a thousand flip-flops
+    if (!wait_valid_q) begin
+      {wait_context_q, wait_epoch_q, wait_failed_q, wait_kinds_q, wait_lines_q} <=
+          {s_leaf_context, s_leaf_epoch, s_leaf_failed, s_leaf_kinds, s_leaf_lines};
+    end
+    wait_valid_q <= ~rst & (s_leaf_valid | (wait_valid_q & ~m_credit));
+  end
   wire unused = &{1'b0, s_start_query};
-  wire two_a = wait_kinds[1:0] == TWO_TRIANGLES;
-  wire two_b = wait_kinds[3:2] == TWO_TRIANGLES;
+  wire two_a = wait_kinds_q[1:0] == TWO_TRIANGLES;
+  wire two_b = wait_kinds_q[3:2] == TWO_TRIANGLES;
 
   // ---- the leaf pair that is with the transform, or that ends
   localparam [1:0] EMPTY = 2'd0, TRANSFORM = 2'd1, ENDS = 2'd2;
@@ -118,21 +113,23 @@ module cchip_leaf_feed #(
   reg [MAP_W-1:0] map_q;
   reg [LEAF_W-1:0] number_q;
   reg [`CCHIP_END_W-1:0] code_q;
-  assign m_begin_valid   = wait_valid && state_q == EMPTY;
-  assign m_begin_context = wait_context;
-  assign m_begin_epoch   = wait_epoch;
+  assign m_begin_valid   = wait_valid_q && state_q == EMPTY;
+  assign m_begin_context = wait_context_q;
+  assign m_begin_epoch   = wait_epoch_q;
   assign m_begin_pairs   = {two_a & two_b, two_a | two_b};
   assign m_credit        = m_begin_valid & m_begin_ready;
   always @(posedge clk) begin
-    if (m_credit) begin
-      {context_q, epoch_q, kinds_q, lines_q} <= {wait_context, wait_epoch, wait_kinds, wait_lines};
-      map_q    <= maps[wait_context];
+    if (state_q == EMPTY) begin  // whether there is one or not, as above
+      {context_q, epoch_q, kinds_q, lines_q} <= {
+        wait_context_q, wait_epoch_q, wait_kinds_q, wait_lines_q
+      };
+      map_q    <= maps[wait_context_q];
       number_q <= s_number;
     end
     case (state_q)
       EMPTY:
       if (m_credit) begin
-        state_q <= wait_failed ? ENDS : TRANSFORM;
+        state_q <= wait_failed_q ? ENDS : TRANSFORM;
         code_q  <= `CCHIP_END_MEMORY;
       end
       TRANSFORM:
@@ -158,7 +155,7 @@ module cchip_leaf_feed #(
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_credit, !s_leaf_valid || room)
+      `CCHIP_ASSERT(a_credit, !s_leaf_valid || !wait_valid_q)
     end
 
 endmodule

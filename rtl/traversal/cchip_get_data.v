@@ -25,7 +25,7 @@ module cchip_get_data #(
     // pairs of leaves under way; PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 16,
     // pairs of leaves that their receiver has room for, 1..3
-    parameter integer LEAF_ROOM = 2
+    parameter integer LEAF_ROOM = 1
 ) (
     input  wire                                                 clk,
     input  wire                                                 rst,
@@ -140,6 +140,7 @@ module cchip_get_data #(
   wire [1:0] queue_valid, queue_ready, queue_take;
   wire [1:0] leaf_queue_valid, leaf_queue_ready, leaf_queue_take;
   wire [2*PLACE_W-1:0] queue_place, leaf_queue_place;
+  wire [1:0] no_room;  // for a pair in its queue: never
   genvar p;
   generate
     for (p = 0; p < 2; p = p + 1) begin : gen_port
@@ -198,6 +199,7 @@ module cchip_get_data #(
         whole_q       <= ~rst & whole[p];
       end
       assign read_codes[CODE_W*p+:CODE_W] = code_q;
+      assign no_room[p] = whole_q & ~(whole_leaf ? leaf_queue_ready[p] : queue_ready[p]);
     end
   endgenerate
   always @(posedge clk)
@@ -385,7 +387,7 @@ module cchip_get_data #(
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_whole, (whole & ~(queue_ready & leaf_queue_ready)) == 2'd0)
+      `CCHIP_ASSERT(a_whole, no_room == 2'd0)
       `CCHIP_ASSERT(a_room, {30'd0, room_left_q} <= ROOM_AT_FIRST)
       `CCHIP_ASSERT(a_place, !(s_valid && pair_valid_q && place_q == s_place))
     end

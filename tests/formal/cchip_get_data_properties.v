@@ -15,7 +15,8 @@
 module cchip_get_data_properties #(
     parameter integer QUERIES = 2,
     parameter integer PAIRS   = 5,
-    parameter integer LEAVES  = 3
+    parameter integer LEAVES  = 3,
+    parameter integer LEAF_ROOM = 2
 ) (
     input wire                                   clk,
     input wire                                   rst,
@@ -56,7 +57,8 @@ module cchip_get_data_properties #(
   cchip_get_data #(
       .QUERIES(QUERIES),
       .PAIRS  (PAIRS),
-      .LEAVES (LEAVES)
+      .LEAVES (LEAVES),
+      .LEAF_ROOM(LEAF_ROOM)
   ) dut (
       .clk            (clk),
       .rst            (rst),
@@ -116,7 +118,6 @@ module cchip_get_data_properties #(
     if (rst) {busy_q, open_a_q, open_b_q} <= {3 * PLACES{1'b0}};
   end
   // leaves with their receiver
-  localparam [1:0] LEAF_ROOM = 2'd2;
   reg [1:0] there_q;
   always @(posedge clk) there_q <= rst ? 2'd0 : there_q + {1'b0, m_leaf_valid} - {1'b0, s_leaf_taken};
   // contexts whose pose is not there

@@ -390,11 +390,11 @@ class TraverseBench {
         }
       }
     }
+    credits_.push_back(std::max(lane_free_, now));  // it leaves the receiver's waiting places when the lane turns to it
     lane_free_ = std::max(lane_free_, now + receiver.transform) + beats;
     counters_.lane_busy += beats;
     result.due = lane_free_ + receiver.first + receiver.others * (most - 1);
     if (receiver.jitter != 0) result.due += random_() % (receiver.jitter + 1);
-    credits_.push_back(lane_free_);
     const auto place = std::upper_bound(results_.begin(), results_.end(), result.due,
                                         [](std::uint64_t due, const Result& r) { return due < r.due; });
     results_.insert(place, result);

@@ -67,7 +67,7 @@ class GetData {
   };
 
   /// \param leaf_room pairs of leaves that their receiver has room for
-  GetData(std::size_t contexts, std::size_t pairs, std::size_t leaves, int leaf_room = 2)
+  GetData(std::size_t contexts, std::size_t pairs, std::size_t leaves, int leaf_room = 1)
       : pairs_(pairs), places_(pairs + leaves), leaf_room_(leaf_room), room_left_(leaf_room) {
     const std::size_t places = pairs + leaves;
     for (Port& port : ports_) port = Port(pairs, leaves);
@@ -87,7 +87,7 @@ class GetData {
   void clock(const Inputs& in) {
     const bool go = fetch_ && fetch_->age == 2 && !held_ && (!pair_valid_ || in.pair_ready);
     const auto waits = [&](Kind kind, std::size_t p) { return ports_[p].whole[kind].m_valid(); };
-    const Kind kind = room_left_ > 0 && (waits(leaf, 0) || waits(leaf, 1)) ? leaf : node;
+    const Kind kind = room_left_ > 0 && (waits(leaves_of, 0) || waits(leaves_of, 1)) ? leaves_of : nodes_of;
     const bool pick = (!fetch_ || go) && (waits(kind, 0) || waits(kind, 1));
     const std::size_t from = waits(kind, 1) && (turn_[kind] == 1 || !waits(kind, 0)) ? 1 : 0;
     const bool held = fetch_ && is_header(*requests_[fetch_->place]) && no_pose_[requests_[fetch_->place]->context];
@@ -118,7 +118,7 @@ class GetData {
       fetch_ = Fetch{ports_[from].whole[kind].m_data(), 0};
       turn_[kind] = 1 - from;
     }
-    room_left_ += (in.leaf_taken ? 1 : 0) - (pick && kind == leaf ? 1 : 0);
+    room_left_ += (in.leaf_taken ? 1 : 0) - (pick && kind == leaves_of ? 1 : 0);
     held_ = held;
 
     // lines come: the port of the second one has the pair
@@ -132,8 +132,8 @@ class GetData {
     }
     for (std::size_t p = 0; p < 2; ++p) {
       Port& port = ports_[p];
-      for (const Kind k : {node, leaf}) {
-        const bool push = port.second && (*port.second >= pairs_) == (k == leaf);
+      for (const Kind k : {nodes_of, leaves_of}) {
+        const bool push = port.second && (*port.second >= pairs_) == (k == leaves_of);
         port.whole[k].clock(push, port.second.value_or(0), pick && kind == k && from == p);
       }
       port.second = second[p];
@@ -159,7 +159,7 @@ class GetData {
   void reset() { *this = GetData(no_pose_.size(), pairs_, places_ - pairs_, leaf_room_); }
 
  private:
-  enum Kind { node, leaf };
+  enum Kind { nodes_of, leaves_of };
   struct Port {
     Port(std::size_t pairs, std::size_t leaves)
         : lines(pairs + leaves), came(pairs + leaves), whole{Fifo<std::size_t>(pairs), Fifo<std::size_t>(leaves)} {}
