@@ -154,10 +154,10 @@ TEMPLATE_LIST_TEST_CASE("cchip_chip_core: an error of the bus or a silent read e
     const Totals after = check(bench, objects, queries_of(objects, random, 20));
     REQUIRE(after.codes[static_cast<std::size_t>(QueryCode::memory)] == 0);
 
-    // all slots are lost: every query ends with the code, at once
+    // all slots are lost: every query ends with the code, at once, unless the cache has its lines
     bench.memory().read_fault = [&](std::uint64_t line) { return image(line) ? AxiFault::silence : AxiFault::none; };
     const Totals dead = check(bench, objects, queries_of(objects, random, 20), {QueryCode::memory});
-    REQUIRE(dead.codes[static_cast<std::size_t>(QueryCode::memory)] > 15);
+    REQUIRE(dead.codes[static_cast<std::size_t>(QueryCode::memory)] > 10);
   });
 }
 

@@ -52,6 +52,17 @@ CCHIP_PROBE(chip_swap_phase,
             cchip_chip__DOT__u_core__DOT__u_slots__DOT__gen_swaps__DOT__u_controller__DOT__u_sequencer__DOT__phase_q)
 CCHIP_PROBE(chip_counts, cchip_chip__DOT__count_q)
 
+// cchip_chip: a node pair is at the box test; a vertex leaves the transform, bit 0; an axis leaves the controller of
+// the test in slot 0; memory owes a line.
+#define CCHIP_CHIP_PROBE(name, signal) CCHIP_PROBE(name, cchip_chip__DOT__u_core__DOT__##signal)
+CCHIP_CHIP_PROBE(chip_box_test, u_broad_phase__DOT__u_get_data__DOT__pair_valid_q)
+CCHIP_CHIP_PROBE(chip_transform, u_transform__DOT__u_normaliser__DOT__valid_q)
+CCHIP_CHIP_PROBE(
+    chip_lane,
+    u_slots__DOT__gen_slots__BRA__0__KET____DOT__u_slot__DOT__gen_partition__DOT__u_region__DOT__gen_test__DOT__u_test__DOT__u_controller__DOT__beat_valid_q)
+CCHIP_CHIP_PROBE(chip_read_owes, u_read__DOT__owes_q)
+#undef CCHIP_CHIP_PROBE
+
 // Pairs inside slot n in bits [16n +: 16].
 CCHIP_SUBSYSTEM_PROBE(outstanding, outstanding)
 
