@@ -34,6 +34,7 @@ struct MemoryOptions {
 
 struct ReceiverOptions {
   std::uint64_t transform = 28;  ///< clocks from a pair of leaves to the first axis of its first primitives
+  std::uint64_t ahead = 64;      ///< clocks of work that wait in front of the lane
   std::uint64_t first = 41;      ///< clocks from an axis to what becomes of it, of a pair's first one and of the others
   std::uint64_t others = 35;
   std::uint64_t jitter = 0;  ///< up to so many more, at random
@@ -390,7 +391,8 @@ class TraverseBench {
         }
       }
     }
-    credits_.push_back(std::max(lane_free_, now));  // it leaves the receiver's waiting places when the lane turns to it
+    // it makes room for the next one as soon as not too much waits in front of the lane
+    credits_.push_back(std::max(lane_free_, now + receiver.ahead) - receiver.ahead);
     lane_free_ = std::max(lane_free_, now + receiver.transform) + beats;
     counters_.lane_busy += beats;
     result.due = lane_free_ + receiver.first + receiver.others * (most - 1);
