@@ -37,7 +37,7 @@ export JOBS
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide export fpga \
+  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-chip export fpga \
   fpga-quick install clean
 
 help: ## list the targets
@@ -201,6 +201,13 @@ bench-collide: $(RELEASE)/build.ninja ## queries per second of collide() and of 
 	$(if $(NATIVE_FCL),cmake -D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))' $(RELEASE))
 	cmake --build $(RELEASE) -j $(JOBS) --target collide_speed
 	$(RELEASE)/bin/collide_speed $(BENCH_ARGS)
+
+# clock of the chip, MHz: row chip in docs/fpga.md
+CHIP_MHZ ?= 50
+bench-chip: $(RELEASE)/build.ninja ## queries per second of the simulated chip at CHIP_MHZ, of collide() and of FCL in the same poses (twenty minutes); build/bench/chip.csv
+	$(if $(NATIVE_FCL),cmake -D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))' $(RELEASE))
+	cmake --build $(RELEASE) -j $(JOBS) --target chip_speed
+	$(RELEASE)/bin/chip_speed --chip-mhz $(CHIP_MHZ) $(BENCH_ARGS)
 
 fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEEDS places and routes each (hours), into docs/fpga.md
 	scripts/fpga.py --seeds $(SEEDS) --jobs $(JOBS) --campaign $(CAMPAIGN) --write

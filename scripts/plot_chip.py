@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""docs/chip-speed.md and its plot from the CSV file that chip_speed writes (make bench-chip).
+
+usage: plot_chip.py [--csv PATH | --check | --check-plot]
+  --csv PATH    take this run: copy it to docs/figures/chip_speed.csv, rewrite page and plot
+  --check       write nothing: compare the tables of the page with the checked-in CSV
+  --check-plot  write nothing: compare the plot with one drawn from the checked-in CSV
+
+Without an option page and plot are rewritten from the checked-in CSV. Drawing needs matplotlib, installed by `make venv`.
+Exit codes: 0 done or up to date, 1 stale or no such file, 2 bad arguments, 77 no matplotlib."""
+import argparse
+import csv
+import math
+import pathlib
+import sys
+
+from generated_page import ROOT, compare, fail, page_with, plain_number, start_plot, svg_text, write
+
+PAGE = ROOT / "docs" / "chip-speed.md"
+RUN = ROOT / "docs" / "figures" / "chip_speed.csv"
+PLOT = ROOT / "docs" / "pictures" / "chip_speed.svg"
+OUTSIDE = ("body-tiny",)  # pairs of meshes outside the means
+SHARES = ("box", "bus", "transform", "lane", "memory_wait", "inside")
+FAST = "128 bit, 60 clocks"
+
+
+def mean(values):
+    values = list(values)
+    return math.exp(sum(map(math.log, values)) / len(values)) if values and min(values) > 0 else 0
+
+
+class Run:
+    """The notes and rows of one run, and the means of a class."""
+
+    def __init__(self, text):
+        lines = text.splitlines()
+        self.notes = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
+        self.rows = list(csv.DictReader(line for line in lines if not line.startswith("# ")))
+        self.classes = list(dict.fromkeys(row["class"] for row in self.rows))
+        self.memories = list(dict.fromkeys(row["memory"] for row in self.rows))
+        self.has_native = any(float(row["fcl_native"]) > 0 for row in self.rows)
+
+    def of(self, name, memory):
+        return [row for row in self.rows if (row["class"], row["memory"]) == (name, memory) and row["meshes"] not in OUTSIDE]
+
+    def rate(self, name, memory, column):
+        return mean(float(row[column]) for row in self.of(name, memory))
+
+    def share(self, name, memory, column):
+        found = [float(row[column]) for row in self.of(name, memory)]
+        return sum(found) / len(found)
+
+
+def tables(run):
+    out = [f"- {key}: {value}" for key, value in run.notes.items()]
+    peers = ["FCL Debian"] + (["FCL native"] if run.has_native else [])
+    out += ["", "Queries per second, geometric means of the pairs of meshes; in brackets times Debian's FCL.", "",
+            "| class | " + " | ".join(peers) + " | CPU single | CPU batch | " +
+            " | ".join(f"chip, {memory}: clocks | queries/s" for memory in run.memories) + " |",
+            "|---" * (1 + len(peers) + 2 + 2 * len(run.memories)) + "|"]
+    for name in run.classes:
+        fcl = run.rate(name, run.memories[0], "fcl_debian")
+        shown = lambda rate: f"{rate:,.0f} ({rate / fcl:.1f})" if rate else "-"
+        cells = [name, f"{fcl:,.0f}"] + ([shown(run.rate(name, run.memories[0], "fcl_native"))] if run.has_native else [])
+        cells += [shown(run.rate(name, run.memories[0], column)) for column in ("single", "batch")]
+        for memory in run.memories:
+            cells += [f"{run.rate(name, memory, 'clocks'):,.0f}", shown(run.rate(name, memory, "chip"))]
+        out.append("| " + " | ".join(cells) + " |")
+    out += ["", "What the chip's blocks do, % of its clocks, means of the pairs of meshes, memory of " + FAST + ".", "",
+            "| class | box test | bus | transform | lane | idle: memory owes a line | idle: work in flight |", "|---" * 7 + "|"]
+    out += ["| " + " | ".join([name] + [f"{run.share(name, FAST, column):.0f}" for column in SHARES]) + " |" for name in run.classes]
+    return "\n".join(out) + "\n"
+
+
+def draw(run):
+    """The plot as SVG text: what each way answers, times Debian's FCL; a dot for each pair of meshes. Readable in grey."""
+    plt = start_plot("chip_speed")
+    from matplotlib.ticker import FuncFormatter
+    figure, axes = plt.subplots(figsize=(7.2, 4.2))
+    ways = {"CPU device, one core": ("single", FAST, "#2f7fbc", "o", -0.22), "chip, " + FAST: ("chip", FAST, "#08306b", "s", 0),
+            "chip, 64 bit, 100 clocks": ("chip", "64 bit, 100 clocks", "#a63603", "^", 0.22)}
+    for label, (column, memory, colour, marker, shift) in ways.items():
+        for i, name in enumerate(run.classes):
+            values = [float(row[column]) / float(row["fcl_debian"]) for row in run.of(name, memory)]
+            axes.plot([i + shift] * len(values), values, marker, color=colour, markersize=4, markerfacecolor="none",
+                      label=label if i == 0 else None)
+            axes.plot([i + shift - 0.1, i + shift + 0.1], [mean(values)] * 2, color=colour, linewidth=2.2)
+    axes.axhline(1, color="0.45", linewidth=0.9, linestyle=":")
+    axes.set_yscale("log")
+    axes.set_xticks(range(len(run.classes)), [name.replace(" all", ",\nall") for name in run.classes])
+    axes.set_xlim(-0.5, len(run.classes) - 0.5)
+    axes.yaxis.set_major_formatter(FuncFormatter(plain_number))
+    axes.set_ylabel("queries per second, times Debian's FCL")
+    axes.grid(axis="y", color="0.9", linewidth=0.6, which="both")
+    axes.legend(loc="lower left", frameon=False)
+    figure.subplots_adjust(left=0.09, right=0.99, bottom=0.12, top=0.97)
+    return svg_text(figure)
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__, add_help=False)
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--csv", type=pathlib.Path)
+    what.add_argument("--check", action="store_true")
+    what.add_argument("--check-plot", action="store_true")
+    parser.add_argument("-h", "--help", action="store_true")
+    arguments = parser.parse_args()
+    if arguments.help:
+        print(__doc__)
+        return 0
+    source = arguments.csv or RUN
+    if not source.is_file():
+        fail(f"{source} is not there; make bench-chip writes build/bench/chip.csv")
+    text = source.read_text()
+    run = Run(text)
+    if arguments.check:
+        return compare(PAGE, page_with(PAGE, tables(run)), "scripts/plot_chip.py")
+    if arguments.check_plot:
+        return compare(PLOT, draw(run), "scripts/plot_chip.py")
+    write({RUN: text, PAGE: page_with(PAGE, tables(run)), PLOT: draw(run)})
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
