@@ -274,8 +274,10 @@ module cchip_traversal_events #(
   wire take = verdict_take | result_take | drop_take | start_take | pop_take;
   wire [CONTEXT_W-1:0] taken = verdict_take ? lookup_context : result_take ? result_context :
       drop_take ? s_drop_context : start_take ? idle_context_q : pop_context_q;
-  wire [QUERIES-1:0] locks = {{QUERIES - 1{1'b0}}, take} << taken;
-  wire [QUERIES-1:0] unlocks = {{QUERIES - 1{1'b0}}, s_left_valid} << s_left_context;
+  // a context counts only while it is valid: before, it may be unknown in simulation
+  localparam [QUERIES-1:0] ONE_CONTEXT = 1;
+  wire [QUERIES-1:0] locks = take ? ONE_CONTEXT << taken : {QUERIES{1'b0}};
+  wire [QUERIES-1:0] unlocks = s_left_valid ? ONE_CONTEXT << s_left_context : {QUERIES{1'b0}};
 
   reg judge_q;
   reg valid_q, is_verdict_q, is_result_q, is_start_q, is_pop_q, extra_q;
