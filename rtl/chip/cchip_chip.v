@@ -395,7 +395,7 @@ module cchip_chip #(
           count_stall};
     end else begin : gen_swap_counters
       // words 0x140 on are four of 64 bits, words 0x120 on three of 32
-      wire [3:0] answered_by = {3'd0, answered} << answered_module;
+      wire [3:0] answered_by = answered ? 4'd1 << answered_module : 4'd0;
       cchip_counter_file u_counters (
           .clk         (clk),
           .rst         (rst),

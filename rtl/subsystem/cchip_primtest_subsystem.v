@@ -190,7 +190,7 @@ module cchip_primtest_subsystem #(
   wire [3:0] write_bytes;
   wire read_swaps, read_rejected, read_stalls, read_pairs, read_phases, read_table, write_table;
   wire swapped, rejected, stall, counter_ack;
-  wire [3:0] answered_by = {3'd0, answered} << answered_module;
+  wire [3:0] answered_by = answered ? 4'd1 << answered_module : 4'd0;
 
   cchip_counter_file u_counters (
       .clk         (clk),

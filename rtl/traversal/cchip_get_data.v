@@ -103,9 +103,12 @@ module cchip_get_data #(
   reg [PLACE_W-1:0] ask_place_q;
   reg [63:0] ask_lines_q;
   reg [QUERIES-1:0] no_pose_q;  // contexts whose pose is not set up yet
-  wire [QUERIES-1:0] asks_header = {{QUERIES - 1{1'b0}}, s_valid & s_record[AT_HEADER]}
-      << s_context;
-  wire [QUERIES-1:0] posed = {{QUERIES - 1{1'b0}}, s_pose_valid} << s_pose_context;
+  // a number counts only while it is valid: before, it may be unknown in simulation
+  localparam [QUERIES-1:0] ONE_CONTEXT = 1;
+  localparam [PLACES-1:0] ONE_PLACE = 1;
+  wire [QUERIES-1:0] asks_header = s_valid && s_record[AT_HEADER] ? ONE_CONTEXT << s_context :
+      {QUERIES{1'b0}};
+  wire [QUERIES-1:0] posed = s_pose_valid ? ONE_CONTEXT << s_pose_context : {QUERIES{1'b0}};
   (* ram_style = "distributed" *)
   reg [CONTEXT_W+RECORD_W-1:0] records[0:PLACES-1];
   always @(posedge clk) begin
@@ -151,7 +154,7 @@ module cchip_get_data #(
       reg [CODE_W-1:0] codes[0:PLACES-1];
       reg [CODE_W-1:0] code_q;
       assign whole[p] = s_line_valid[p] & (came_q[place] | (both & (p == 0)));
-      assign comes[PLACES*p+:PLACES] = {{PLACES - 1{1'b0}}, s_line_valid[p]} << place;
+      assign comes[PLACES*p+:PLACES] = s_line_valid[p] ? ONE_PLACE << place : {PLACES{1'b0}};
       cchip_block_ram #(
           .WIDTH (512),
           .ADDR_W(PLACE_W)

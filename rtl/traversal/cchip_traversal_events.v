@@ -316,8 +316,10 @@ module cchip_traversal_events #(
   wire [QUERIES-1:0] locks = (verdict_lock_q & {QUERIES{verdict_take}}) |
       (result_lock_q & {QUERIES{result_take}}) | (drop_lock_q & {QUERIES{drop_take}}) |
       (start_lock_q & {QUERIES{start_take}}) | (pop_lock_q & {QUERIES{pop_take}});
-  wire [QUERIES-1:0] unlocks = {{QUERIES - 1{1'b0}}, s_leaving_valid} << s_leaving_context;
-  wire [QUERIES-1:0] leaves = {{QUERIES - 1{1'b0}}, s_left_valid} << s_left_context;
+  // a context counts only while it is valid: before, it may be unknown in simulation
+  localparam [QUERIES-1:0] ONE_CONTEXT = 1;
+  wire [QUERIES-1:0] unlocks = s_leaving_valid ? ONE_CONTEXT << s_leaving_context : {QUERIES{1'b0}};
+  wire [QUERIES-1:0] leaves = s_left_valid ? ONE_CONTEXT << s_left_context : {QUERIES{1'b0}};
 
   reg judge_q;
   reg valid_q, is_verdict_q, is_result_q, is_start_q, is_pop_q, extra_q;
