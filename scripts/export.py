@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes folders to hand to an FPGA project: one self-contained Verilog file per top module and all that goes with it.
 
-usage: export.py [--out FOLDER] [--vectors PROGRAM] [--pairs N] [--seed N] [--mhz F] [TOP...]
+usage: export.py [--out FOLDER] [--programs FOLDER] [--pairs N] [--seed N] [--mhz F] [TOP...]
   --out FOLDER       default build/export; FOLDER/TOP is deleted and written anew
-  --vectors PROGRAM  cchip_pair_vectors, default build/release/bin/cchip_pair_vectors
-  --pairs N          vectors of the bench, default 2000
+  --programs FOLDER  of cchip_pair_vectors and cchip_query_vectors, default build/release/bin
+  --pairs N          vectors of the bench of a primitive test, default 2000
   --seed N           of the vectors, default 1
   --mhz F            clock of the constraint templates, default 150
   TOP                default: every primitive test of rtl/cchip.f, the array, the reconfigurable
-                     subsystem and the blank module
+                     subsystem, the blank module and the whole chip
 
 FOLDER/TOP holds TOP.v, with every list rtl/cchip_DEVICE.f a variant TOP_DEVICE.v with the multiplier leaf of that
 device, file lists, constraints, datasheets, licences, vectors, a self-checking bench and README.md. Modules are found
@@ -28,13 +28,22 @@ MODELS = ROOT / "sim" / "rtl_models" / "sim.f"  # for simulation only
 INCLUDES = ("cchip_defs.vh", "cchip_assert.vh")
 BLANK = "cchip_primtest_blank"
 SUBSYSTEM = "cchip_primtest_subsystem"
+CHIP = "cchip_chip"
 # Pairs of the vectors: the default parameters of each top.
 KINDS = {"cchip_primtest_tri_tri": "tri_tri", "cchip_primtest_tri_quad": "tri_quad",
          "cchip_primtest_quad_quad": "quad_quad", "cchip_primtest_array": "tri_tri",
          SUBSYSTEM: "tri_tri"}
 # Simulation models of the blocks that the leaves of a device instantiate, and what the blocks are.
 CELLS = {"_ecp5": {"MULT18X18D": "multiplier block", "DP16KD": "block RAM"}}
+# Pages below docs/: of every top, and of some.
 PAGES = ("architecture.md", "definitions.md")
+MORE_PAGES = {SUBSYSTEM: ("registers.md",), CHIP: ("chip.md", "chip-registers.md", "image.md", "programmers-guide.md")}
+# Bench of a top, the first of its files, and what else is copied.
+BENCH = "tests/icarus/bench_primtest.v"
+WIRE = "cpp_ref/include/cchip/wire"
+FILES = {BLANK: ("tests/icarus/bench_blank.v",),
+         SUBSYSTEM: (BENCH, "tests/icarus/bench_subsystem.v", f"{WIRE}/registers.hpp"),
+         CHIP: ("tests/icarus/bench_chip.v", f"{WIRE}/chip_registers.hpp", "examples/chip_poll.h", "examples/chip_poll.c")}
 
 
 class ExportError(Exception):
@@ -185,8 +194,8 @@ def page(path, exported):
 
 def write_pages(folder, names):
     pages = [*PAGES, *(f"modules/{name}.md" for name in names)]
-    if SUBSYSTEM in names:
-        pages.append("registers.md")
+    for name in names:
+        pages += MORE_PAGES.get(name, ())
     (folder / "docs" / "modules").mkdir(parents=True)
     for name in pages:
         if not (ROOT / "docs" / name).exists():
@@ -204,16 +213,19 @@ def readme(top, files, pairs, mhz):
                      f"{' and '.join(CELLS[s][name] for name in blocks(s, text))}, whose registers synthesis does not find "
                      f"otherwise. Simulate it with {' and '.join(f'`{name}.v`' for name in blocks(s, text))}, our models.\n"
                      for s, text in files if s)
-    if top == BLANK:
-        bench, run = "bench_blank", "vvp -n bench.vvp"
-        compiled = f"iverilog -g2005 -s bench_blank -o bench.vvp bench_blank.v {top}.v"
-    else:
-        bench, run = "bench_primtest", f"vvp -n bench.vvp +vectors=vectors.hex +pairs={pairs}"
-        wrapped = "bench_subsystem" if top == SUBSYSTEM else top
-        compiled = (f"iverilog -g2005 -DCCHIP_BENCH_TOP={wrapped} -s bench_primtest -o bench.vvp bench_primtest.v "
-                    f"{'bench_subsystem.v ' if top == SUBSYSTEM else ''}{top}.v")
-    more = """- [Registers](docs/registers.md), for C++ `registers.hpp`. `simulation_models.v` with parameter `SIMULATION` = 1: a slot holds all modules, bitstreams exchange them.
-""" if top == SUBSYSTEM else ""
+    bench = pathlib.Path(FILES.get(top, (BENCH,))[0]).stem
+    macro, wrapper, run, verdict = "", "", "vvp -n bench.vvp", "`PASS`"
+    if top == CHIP:
+        run += " +memory=memory.hex +records=records.hex"
+        verdict = "`wrong=0` in its last line"
+    elif top != BLANK:
+        run += f" +vectors=vectors.hex +pairs={pairs}"
+        macro = f"-DCCHIP_BENCH_TOP={'bench_subsystem' if top == SUBSYSTEM else top} "
+        wrapper = "bench_subsystem.v " if top == SUBSYSTEM else ""
+    compiled = f"iverilog -g2005 {macro}-s {bench} -o bench.vvp {bench}.v {wrapper}{top}.v"
+    more = {SUBSYSTEM: """- [Registers](docs/registers.md), for C++ `registers.hpp`. `simulation_models.v` with parameter `SIMULATION` = 1: a slot holds all modules, bitstreams exchange them.
+""", CHIP: """- [Programmer's guide](docs/programmers-guide.md), [registers](docs/chip-registers.md), [images and records](docs/image.md); for C++ `chip_registers.hpp`, a driver in C `chip_poll.c`. `simulation_models.v` is for `SWAPS` = 1 with `SIMULATION` = 1.
+"""}.get(top, "")
     return f"""<!-- SPDX-License-Identifier: Apache-2.0 -->
 # {top}, collisionchip {version()}
 
@@ -221,7 +233,7 @@ def readme(top, files, pairs, mhz):
 {device}{more}- [Datasheet](docs/modules/{top}.md): ports, parameters, timing, area.
 - `constraints/`: templates for ECP5 (LPF), Vivado (XDC), Quartus and others (SDC), clock {mhz:g} MHz; each says what to change.
 - Licence of the RTL: [Solderpad 2.1](LICENSES/SHL-2.1.txt), or take it as [Apache-2.0](LICENSES/Apache-2.0.txt) like all the rest.
-- Check with Icarus; other simulators take the same macro and plusargs, `{bench}.v` explains them. It must print `PASS`:
+- Check with Icarus; other simulators take the same macro and plusargs, `{bench}.v` explains them. It must print {verdict}:
 
       {compiled}
       {run}
@@ -231,10 +243,9 @@ def readme(top, files, pairs, mhz):
 # ---- all of it
 
 
-def write_vectors(program, kind, path, pairs, seed):
+def write_vectors(program, *arguments):
     try:
-        result = subprocess.run([program, kind, path, str(pairs), str(seed)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                text=True)
+        result = subprocess.run([program, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     except OSError:
         raise ExportError(f"{program} is missing: make export builds it")
     if result.returncode:
@@ -259,26 +270,26 @@ def export(top, options):
         (folder / "constraints" / f"{top}.{kind}").write_text(text)
     write_pages(folder, closure(top, read_list(RTL / "cchip.f") | (read_list(MODELS) if models else {})))
     shutil.copytree(ROOT / "LICENSES", folder / "LICENSES")
-    bench = "bench_blank.v" if top == BLANK else "bench_primtest.v"
-    shutil.copy(ROOT / "tests" / "icarus" / bench, folder)
-    if top == SUBSYSTEM:
-        shutil.copy(ROOT / "tests" / "icarus" / "bench_subsystem.v", folder)
-        shutil.copy(ROOT / "cpp_ref" / "include" / "cchip" / "wire" / "registers.hpp", folder)
-    if top != BLANK:
-        write_vectors(options.vectors, KINDS[top], folder / "vectors.hex", options.pairs, options.seed)
+    for name in FILES.get(top, (BENCH,)):
+        shutil.copy(ROOT / name, folder)
+    programs = pathlib.Path(options.programs)
+    if top == CHIP:
+        write_vectors(programs / "cchip_query_vectors", folder / "memory.hex", folder / "records.hex")
+    elif top != BLANK:
+        write_vectors(programs / "cchip_pair_vectors", KINDS[top], folder / "vectors.hex", options.pairs, options.seed)
     (folder / "README.md").write_text(readme(top, files, options.pairs, options.mhz))
     print(f"wrote {os.path.relpath(folder)}")
 
 
 def main():
     listed = read_list(RTL / "cchip.f")
-    tops = [top for top in (*KINDS, BLANK) if top in listed]
+    tops = [top for top in (*KINDS, BLANK, CHIP) if top in listed]
     if {"-h", "--help"} & set(sys.argv[1:]):
         print(__doc__)
         return 0
     parser = argparse.ArgumentParser(usage=re.search("usage: (.*)", __doc__).group(1), add_help=False)
     parser.add_argument("--out", default=ROOT / "build" / "export")
-    parser.add_argument("--vectors", default=ROOT / "build" / "release" / "bin" / "cchip_pair_vectors")
+    parser.add_argument("--programs", default=ROOT / "build" / "release" / "bin")
     parser.add_argument("--pairs", default=2000, type=int)
     parser.add_argument("--seed", default=1, type=int)
     parser.add_argument("--mhz", default=150.0, type=float)

@@ -3,7 +3,7 @@
 # NOT RUN BY THIS PROJECT: it has no Quartus. tests/vendor runs this file against recording stubs only.
 #
 #   quartus_sh -t scripts/quartus/synth.tcl [NAME=VALUE...]
-#     top=cchip_primtest_tri_tri        module of rtl/cchip.f
+#     top=cchip_primtest_tri_tri        module of rtl/cchip.f; cchip_chip is the whole chip
 #     family="Arria 10"  device=10AX115S2F45I1SG
 #     parameters=                       as COORD_W=18,SUBSTAGES=12
 #     out=build/quartus/synth           folder of the project
@@ -36,7 +36,7 @@ set_global_assignment -name SDC_FILE [cchip::path scripts/quartus/module.sdc]
 foreach parameter [split $parameters ,] {
   set_parameter -name {*}[split $parameter =]
 }
-foreach port {rst s_* m_* rm_id* idle} {
+foreach port {rst s_* m_* rm_id* idle irq cfg_*} {
   set_instance_assignment -name VIRTUAL_PIN ON -to $port
 }
 export_assignments

@@ -3,7 +3,7 @@
 # NOT RUN BY THIS PROJECT: it has no Vivado. tests/vendor runs this file against recording stubs only.
 #
 #   vivado -mode batch -source scripts/vivado/synth.tcl [-tclargs NAME=VALUE...]
-#     top=cchip_primtest_tri_tri   module of rtl/cchip.f
+#     top=cchip_primtest_tri_tri   module of rtl/cchip.f; cchip_chip is the whole chip
 #     part=xc7k160tffg676-2        any 7 series, UltraScale or UltraScale+ part
 #     parameters=                  as COORD_W=18,SUBSTAGES=12
 #     out=build/vivado/synth       folder of checkpoint and reports

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """An exported folder alone, far from the repository: its files are clean for three tools, its README's commands work.
 
-usage: test_export.py TOP VECTORS_PROGRAM SCRATCH
+usage: test_export.py TOP PROGRAMS SCRATCH      PROGRAMS: folder of the programs that write vectors
 
 Environment: VERILATOR, IVERILOG, YOSYS = commands (default: found on PATH)."""
 import pathlib
@@ -16,14 +16,22 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 from tools import run, tool  # noqa: E402
 
-TOP, VECTORS, SCRATCH = "", "", ""
+TOP, PROGRAMS, SCRATCH = "", "", ""
 BLANK = "cchip_primtest_blank"
 SUBSYSTEM = "cchip_primtest_subsystem"
-PASS = r"\APASS [^\n]*\n\Z"  # and nothing else
+CHIP = "cchip_chip"
+# What a bench prints if all is well, and nothing else; how it names the first fault.
+PASS = r"\APASS [^\n]*\n\Z"
+PASS_CHIP = r"\Aquery=1 records=[1-9]\d* wrong=0 clocks=[1-9]\d*\n\Z"
+FAIL = r"(?m)^FAIL clock "
+FAIL_CHIP = r"(?m)^clock \d+: a record that is not expected$(.*\n)*^query=1 records=\d+ wrong=[1-9]\d* clocks=\d+$"
+# Parameters of more elaborations: together they use every module below the top.
+MORE = {SUBSYSTEM: ("-chparam SIMULATION 1",),
+        CHIP: ("-chparam SWAPS 1", "-chparam SWAPS 1 -chparam SIMULATION 1")}
 
 
 def export(top, out):
-    code, text = run(sys.executable, "-B", str(ROOT / "scripts" / "export.py"), "--vectors", VECTORS, "--out", out,
+    code, text = run(sys.executable, "-B", str(ROOT / "scripts" / "export.py"), "--programs", PROGRAMS, "--out", out,
                      "--pairs", "500", top, cwd=out)
     assert code == 0, text
 
@@ -37,6 +45,7 @@ class Export(unittest.TestCase):
         cls.folder = pathlib.Path(cls.temporary.name) / "alone"
         shutil.copytree(pathlib.Path(SCRATCH) / TOP, cls.folder)
         cls.file = f"{TOP}.v"
+        cls.passes = PASS_CHIP if TOP == CHIP else PASS
         cls.verilator = (tool("verilator"), "--lint-only", "-Wall", "--top-module", TOP)
         cls.icarus = (tool("iverilog"), "-g2005", "-Wall", "-t", "null", "-s", TOP)
 
@@ -75,12 +84,12 @@ class Export(unittest.TestCase):
         self.yosys(self.file)
 
     def test_only_what_the_top_needs(self):
-        files = [self.file, *(["simulation_models.v"] if TOP == SUBSYSTEM else [])]
+        files = [self.file, *(["simulation_models.v"] if TOP in MORE else [])]
         modules = [name for file in files for name in re.findall(r"^module (\w+)", (self.folder / file).read_text(), re.M)]
         self.assertEqual(len(modules), len(set(modules)))
         self.assertIn(TOP, modules)
         used = set()
-        for parameters in ("", "-chparam SIMULATION 1") if TOP == SUBSYSTEM else ("",):
+        for parameters in ("", *MORE.get(TOP, ())):
             code, text = run(tool("yosys"), "-p", f"read_verilog {' '.join(files)}; "
                              f"hierarchy -check -top {TOP} {parameters}", cwd=self.folder)
             self.assertEqual(code, 0, text)
@@ -93,12 +102,14 @@ class Export(unittest.TestCase):
         if TOP == BLANK:
             return
         portable, device = self.sections(self.file), self.sections(f"{TOP}_ecp5.v")
-        leaves = {"arith/cchip_mul18.v": "MULT18X18D", **({"common/cchip_block_ram.v": "DP16KD"} if TOP == SUBSYSTEM else {})}
+        leaves = {"arith/cchip_mul18.v": "MULT18X18D", **({"common/cchip_block_ram.v": "DP16KD"} if TOP in MORE else {})}
         expected = set()
         for leaf in leaves:
             expected |= {f"rtl/{leaf}", f"rtl/vendor/ecp5/{pathlib.Path(leaf).name}"}
-        if TOP == SUBSYSTEM:
+        if TOP in MORE:
             expected.add("rtl/vendor/ecp5/cchip_dp16kd.v")  # the block under the leaf
+        if TOP == CHIP:
+            expected |= {"rtl/common/cchip_dual_ram.v", "rtl/vendor/ecp5/cchip_dual_ram.v"}
         self.assertEqual(set(portable) ^ set(device), expected)
         self.assertEqual([name for name in set(portable) & set(device) if portable[name] != device[name]], [])
         blocks = [f"{block}.v" for block in leaves.values()]
@@ -106,7 +117,7 @@ class Export(unittest.TestCase):
                    *(f"select -assert-any t:{block}" for block in leaves.values()))
         self.clean(*self.icarus, f"{TOP}_ecp5.v", *blocks)
         commands = [line.replace(self.file, " ".join([f"{TOP}_ecp5.v", *blocks])) for line in self.commands()]
-        self.assertRegex(self.bench(commands[0], commands[1].replace("+pairs=500", "+pairs=100")), PASS)
+        self.assertRegex(self.bench(commands[0], commands[1].replace("+pairs=500", "+pairs=100")), self.passes)
 
     def test_file_lists(self):
         lists = sorted(self.folder.glob("*.f"))
@@ -147,17 +158,17 @@ class Export(unittest.TestCase):
         self.assertEqual(len(found), 2)
         return found
 
-    def bench(self, *commands):
-        """Output of the two commands."""
+    def bench(self, *commands, expected=0):
+        """Output of the two commands, which end with that code."""
         code, text = run("sh", "-e", "-c", "\n".join(commands), cwd=self.folder)
-        self.assertEqual(code, 0, text)
+        self.assertEqual(code, expected, text)
         return text
 
     def test_readme_is_short(self):
         self.assertLessEqual(len((self.folder / "README.md").read_text().splitlines()), 14)
 
     def test_bench_passes(self):
-        self.assertRegex(self.bench(*self.commands()), PASS)
+        self.assertRegex(self.bench(*self.commands()), self.passes)
 
     def test_bench_can_fail(self):
         """A multiplier, or the blank module's constant, that is wrong in one bit."""
@@ -168,7 +179,7 @@ class Export(unittest.TestCase):
         self.assertEqual(count, 1)
         path.write_text(broken)
         try:
-            self.assertRegex(self.bench(*self.commands()), r"(?m)^FAIL clock ")
+            self.assertRegex(self.bench(*self.commands(), expected=int(TOP == CHIP)), FAIL_CHIP if TOP == CHIP else FAIL)
         finally:
             path.write_text(text)
 
@@ -186,5 +197,5 @@ class TwoTops(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    TOP, VECTORS, SCRATCH = sys.argv[1:4]
+    TOP, PROGRAMS, SCRATCH = sys.argv[1:4]
     unittest.main(argv=[sys.argv[0], *sys.argv[4:]])

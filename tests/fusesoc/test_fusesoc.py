@@ -4,7 +4,7 @@
 
 usage: test_fusesoc.py Files | Lint | Sim | Ecp5
 
-Environment: PAIR_VECTORS = the program cchip_pair_vectors; FUSESOC = the command (default: build/venv/bin/fusesoc,
+Environment: PAIR_VECTORS, QUERY_VECTORS = the programs cchip_pair_vectors, cchip_query_vectors; FUSESOC = the command (default: build/venv/bin/fusesoc,
 installed by `make venv`). Without FuseSoC all but Files end with code 77 (skipped)."""
 import collections
 import json
@@ -23,6 +23,7 @@ VENV = ROOT / "build/venv/bin"
 FUSESOC = os.environ.get("FUSESOC", str(VENV / "fusesoc"))
 VECTORS = ROOT / "tests/fusesoc/vectors_tri_tri.hex"
 PAIRS = 600  # lines of it
+QUERY = [ROOT / f"tests/fusesoc/{name}_chip.hex" for name in ("memory", "records")]
 SEED = 1
 
 
@@ -66,6 +67,13 @@ class Files(unittest.TestCase):
             self.assertEqual(VECTORS.read_text(), made.read_text(),
                              f"run: cchip_pair_vectors tri_tri {VECTORS} {PAIRS} {SEED}")
 
+    def test_query_is_up_to_date(self):
+        with tempfile.TemporaryDirectory() as folder:
+            made = [pathlib.Path(folder) / path.name for path in QUERY]
+            subprocess.run([os.environ["QUERY_VECTORS"], *made], check=True)
+            for path, new in zip(QUERY, made):
+                self.assertEqual(path.read_text(), new.read_text(), f"run: cchip_query_vectors {QUERY[0]} {QUERY[1]}")
+
 
 class Runs(unittest.TestCase):
     def setUp(self):
@@ -93,11 +101,13 @@ class Runs(unittest.TestCase):
 
 class Lint(Runs):
     def test_verilator_has_nothing_to_say(self):
-        text, work = self.fusesoc("lint")
-        self.assertNotIn("Warning", text)
-        options = next(work.glob("*.vc")).read_text().split()
-        self.assertIn("-Wall", options)
-        self.assertIn("--lint-only", options)
+        for target, top in (("lint", "cchip_primtest_tri_tri"), ("lint_chip", "cchip_chip")):
+            text, work = self.fusesoc(target)
+            self.assertNotIn("Warning", text)
+            options = next(work.glob("*.vc")).read_text().split()
+            self.assertIn("-Wall", options)
+            self.assertIn("--lint-only", options)
+            self.assertIn(top, options)
 
 
 class Sim(Runs):
@@ -107,6 +117,10 @@ class Sim(Runs):
 
     def test_icarus(self):
         self.check("sim", PAIRS)
+
+    def test_chip(self):
+        text, _ = self.fusesoc("sim_chip")
+        self.assertRegex(text, r"(?m)^query=1 records=[1-9]\d* wrong=0 clocks=[1-9]\d*$")
 
     def test_verilator(self):
         self.check("sim_verilator", PAIRS)

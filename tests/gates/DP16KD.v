@@ -139,9 +139,8 @@ module DP16KD #(
   wire [1:0] write_byte = WRITTEN == 4 ? 2'd0 : WRITTEN == 2 ? {write_bit[4], 1'b0} : write_bit[4:3];
   wire [1:0] read_byte = READ == 4 ? 2'd0 : READ == 2 ? {read_bit[4], 1'b0} : read_bit[4:3];
   wire [3:0] bytes_read = (READ == 4 ? 4'd15 : READ == 2 ? 4'd3 : 4'd1) << read_byte;
-  wire [3:0] enabled = (WRITTEN == 4 ? write_bit[3:0] : WRITTEN == 2 ? {2'd0, write_bit[1:0]} : 4'd1) &
-      {4{CEA & WEA}};
-  wire [3:0] bytes = enabled << write_byte;
+  wire [3:0] enabled = WRITTEN == 4 ? write_bit[3:0] : WRITTEN == 2 ? {2'd0, write_bit[1:0]} : 4'd1;
+  wire [3:0] bytes = CEA & WEA ? enabled << write_byte : 4'd0;  // the address may be unknown otherwise
   wire [35:0] placed = write_data << 9 * write_byte;
 
   reg [35:0] mem[0:511];

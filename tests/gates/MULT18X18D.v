@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 `default_nettype none
-// Simulation model of Lattice ECP5's multiplier block (FPGA-TN-02205), for netlists, in the one mode in which
-// rtl/vendor/ecp5/cchip_mul18.v uses it: P = A * B, signed, 18 bits each, input registers and output register on CLK0,
-// always enabled, never reset. Other modes are refused. Ports of the shift chain and the outputs of the input registers
+// Simulation model of Lattice ECP5's multiplier block (FPGA-TN-02205), for netlists, in the modes in which
+// rtl/vendor/ecp5/cchip_mul18.v uses it: P = A * B, 18 bits each, both signed or both unsigned, input registers and output
+// register on CLK0, always enabled, never reset. Other modes are refused. Ports of the shift chain and the outputs of the input registers
 // are left out: a netlist that connects them does not elaborate.
 /* verilator lint_off DECLFILENAME */
 /* verilator lint_off UNUSEDPARAM */
@@ -50,11 +50,11 @@ module MULT18X18D #(
     end
   endgenerate
 
-  reg signed [17:0] a_q, b_q;
+  reg signed [18:0] a_q, b_q;
   reg signed [35:0] p_q;
   always @(posedge CLK0) begin
-    a_q <= {A17, A16, A15, A14, A13, A12, A11, A10, A9, A8, A7, A6, A5, A4, A3, A2, A1, A0};
-    b_q <= {B17, B16, B15, B14, B13, B12, B11, B10, B9, B8, B7, B6, B5, B4, B3, B2, B1, B0};
+    a_q <= {SIGNEDA & A17, A17, A16, A15, A14, A13, A12, A11, A10, A9, A8, A7, A6, A5, A4, A3, A2, A1, A0};
+    b_q <= {SIGNEDB & B17, B17, B16, B15, B14, B13, B12, B11, B10, B9, B8, B7, B6, B5, B4, B3, B2, B1, B0};
     p_q <= a_q * b_q;
   end
   assign {P35, P34, P33, P32, P31, P30, P29, P28, P27, P26, P25, P24, P23, P22, P21, P20, P19, P18, P17,
@@ -62,8 +62,8 @@ module MULT18X18D #(
 
 `ifndef YOSYS
   always @*
-    if (!SIGNEDA || !SIGNEDB || SOURCEA || SOURCEB || !CE0 || RST0) begin
-      $display("MULT18X18D %m: this model is signed, always enabled, never reset, without shift chain");
+    if (SIGNEDA != SIGNEDB || SOURCEA || SOURCEB || !CE0 || RST0) begin
+      $display("MULT18X18D %m: this model is signed or unsigned, always enabled, never reset, without shift chain");
       $finish;
     end
 `endif

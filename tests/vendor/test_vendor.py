@@ -6,6 +6,7 @@ the partition, and the static side in simulation. Broken copies of the scripts m
 usage: test_vendor.py [Ports|Static|Vivado|Quartus|Mutations]...
 
 Environment: TCLSH, VERILATOR, YOSYS, IVERILOG, VVP = commands (default: found on PATH)."""
+import fnmatch
 import functools
 import json
 import os
@@ -21,6 +22,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 from tools import run, tool  # noqa: E402
 HERE = pathlib.Path(__file__).resolve().parent
 REGION = "cchip_pr_region"
+CHIP = "cchip_chip"
 STATIC = "scripts/vendor/cchip_pr_static.v"
 VIVADO = "scripts/vivado/dfx.tcl"
 QUARTUS = "scripts/quartus/pr.tcl"
@@ -67,7 +69,7 @@ def check_ports(root=ROOT):
 
 @functools.lru_cache(None)
 def port_names():
-    tops = ("cchip_pr_static", "cchip_pr_region", "cchip_primtest_tri_tri")
+    tops = ("cchip_pr_static", "cchip_pr_region", "cchip_primtest_tri_tri", CHIP)
     return " ".join(f"{top} {{{' '.join(name for name, _, _ in ports(top))}}}" for top in tops)
 
 
@@ -216,6 +218,11 @@ class Vivado(unittest.TestCase):
         self.assertEqual(set(written), {f"cchip_primtest_tri_tri{end}" for end in
                                         (".dcp", "_utilization.rpt", "_timing.rpt")})
 
+    def test_whole_chip(self):
+        calls, written = tcl("vivado_stubs.tcl", "scripts/vivado/synth.tcl", f"top={CHIP}", "parameters=QUERIES=8")
+        self.assertEqual(after(named(calls, "synth_design")[0], "-top"), CHIP)
+        self.assertIn(f"{CHIP}_timing.rpt", written)
+
 
 class Quartus(unittest.TestCase):
     def test_every_persona_whatever_the_base(self):
@@ -233,6 +240,13 @@ class Quartus(unittest.TestCase):
         self.assertEqual(len(named(calls, "qexec")), 1)
         self.assertEqual([call[1:] for call in named(calls, "set_parameter")],
                          [["-name", "COORD_W", "18"], ["-name", "SUBSTAGES", "12"]])
+
+    def test_every_port_but_the_clock_is_virtual(self):
+        for top in ("cchip_primtest_tri_tri", CHIP):
+            calls, _ = tcl("quartus_stubs.tcl", "scripts/quartus/synth.tcl", f"top={top}")
+            virtual = [after(call, "-to") for call in named(calls, "set_instance_assignment") if "VIRTUAL_PIN" in call]
+            pins = [name for name, _, _ in ports(top) if not any(fnmatch.fnmatch(name, pattern) for pattern in virtual)]
+            self.assertEqual(pins, ["clk"], top)
 
 
 # file, what is there once, what is written instead; None: the file is renamed

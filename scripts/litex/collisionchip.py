@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""cchip_chip as a LiteX core: one slot with the quad test, nothing is exchanged at run time.
+
+    chip = CollisionChip(platform)
+    self.chip = chip
+    self.bus.add_slave("chip", chip.bus, SoCRegion(origin=0x9000_0000, size=0x1000, cached=False))
+    self.bus.add_master("chip", chip.memory)
+    self.irq.add("chip", use_loc_if_exists=True)
+
+Registers: docs/chip-registers.md; how a driver uses them: docs/programmers-guide.md. The memory that `memory` reaches has to be
+coherent with the CPU's view of it."""
+import pathlib
+
+from litex.gen import LiteXModule
+from litex.soc.interconnect.axi import AXIInterface, AXILiteInterface
+from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourceLevel
+from migen import ClockSignal, Constant, Instance, ResetSignal
+
+RTL = pathlib.Path(__file__).resolve().parents[2] / "rtl"
+
+
+class CollisionChip(LiteXModule):
+    """bus: registers, 4 KiB on AXI4-Lite. memory: AXI4 master for images, queries and records. ev: the interrupt.
+    file_list: rtl/cchip.f, or rtl/cchip_DEVICE.f with the leaves of a device. parameters: of cchip_chip, as QUERIES=8."""
+
+    def __init__(self, platform, file_list="cchip.f", **parameters):
+        data_width = parameters.get("DATA_W", 128)
+        id_width = (parameters.get("MISSES", 32) - 1).bit_length() + 1
+        self.bus = bus = AXILiteInterface(data_width=32, address_width=32)
+        self.memory = memory = AXIInterface(data_width=data_width, address_width=64, id_width=id_width)
+        self.ev = EventManager()
+        self.ev.chip = EventSourceLevel(description="Interrupt of the chip: see its interrupt_status.")
+        self.ev.finalize()
+
+        ports = {"i_clk": ClockSignal("sys"), "i_rst": ResetSignal("sys"), "o_irq": self.ev.chip.trigger}
+        for name, channel, fields, outputs in (
+                ("s_axil_aw", bus.aw, ("addr", "prot"), False), ("s_axil_w", bus.w, ("data", "strb"), False),
+                ("s_axil_b", bus.b, ("resp",), True), ("s_axil_ar", bus.ar, ("addr", "prot"), False),
+                ("s_axil_r", bus.r, ("data", "resp"), True),
+                ("m_axi_ar", memory.ar, ("id", "addr", "len", "size", "burst", "cache", "prot"), True),
+                ("m_axi_r", memory.r, ("id", "data", "resp", "last"), False),
+                ("m_axi_aw", memory.aw, ("addr", "len", "size", "burst", "cache", "prot"), True),
+                ("m_axi_w", memory.w, ("data", "strb", "last"), True), ("m_axi_b", memory.b, ("resp",), False)):
+            forward, back = ("o", "i") if outputs else ("i", "o")
+            ports[f"{forward}_{name}valid"] = channel.valid
+            ports[f"{back}_{name}ready"] = channel.ready
+            for field in fields:
+                ports[f"{forward}_{name}{field}"] = getattr(channel, field)
+        for name, channel in (("aw", bus.aw), ("ar", bus.ar)):
+            ports[f"i_s_axil_{name}addr"] = channel.addr[:12]
+        ports["i_m_axi_bid"] = 0  # m_axi_awid is 0, as memory.aw.id is
+        for name, width in (("cfg_error", 1), ("m_axi_cfg_arready", 1), ("m_axi_cfg_rvalid", 1), ("m_axi_cfg_rdata", 32),
+                            ("m_axi_cfg_rresp", 2), ("m_axi_cfg_rlast", 1)):
+            ports[f"i_{name}"] = Constant(0, width)
+        # to LiteX an address is a packet of one beat
+        self.comb += [channel.last.eq(1) for channel in (memory.ar, memory.aw)]
+        self.specials += Instance("cchip_chip", **{f"p_{name}": value for name, value in parameters.items()}, **ports)
+        self.add_sources(platform, file_list)
+
+    @staticmethod
+    def add_sources(platform, file_list="cchip.f"):
+        """The RTL of the whole chip and its include folder."""
+        platform.add_verilog_include_path(str(RTL / "include"))
+        for line in (RTL / file_list).read_text().splitlines():
+            if line.strip().endswith(".v"):
+                platform.add_source(str(RTL / line.strip()))
