@@ -28,6 +28,7 @@ import os
 import pathlib
 import re
 import shutil
+import subprocess
 import sys
 
 import datasheet
@@ -528,6 +529,24 @@ def save(name, found):
     path.write_text(json.dumps({**kept, **found}, indent=2) + "\n")
 
 
+def tree():
+    """What was measured, for the page."""
+    git = lambda *command: subprocess.run(["git", "-C", str(ROOT), *command], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
+    changed = " with changes" if git("status", "--porcelain", "rtl") else ""
+    return f"git tree `{git('rev-parse', 'HEAD:rtl')}` of `rtl/` (commit {git('rev-parse', '--short', 'HEAD')}){changed}"
+
+
+def write(name, found):
+    if f"generated: begin {name} " not in PAGE.read_text():
+        say(f"asic.py: docs/asic.md has no tables of library {name}; it is as it was")
+        return
+    first = next(iter(found.values()))
+    head = f"RTL: {tree()}. FO4: {first['fo4_ps']} ps.\n\n"
+    for table, make in TABLES.items():
+        datasheet.rewrite(PAGE, f"{name} {table}", head + make(found))
+        head = ""
+
+
 def main():
     if set(sys.argv) & {"-h", "--help"}:
         print(__doc__)
@@ -551,8 +570,7 @@ def main():
     name = library(options.liberty)[0].name
     save(name, found)
     if options.write and not failures:
-        for table, make in TABLES.items():
-            datasheet.rewrite(PAGE, f"{name} {table}", make(found))
+        write(name, found)
     for failure in failures:
         print(f"asic.py: {failure}", file=sys.stderr)
     for line, figures in found.items():
