@@ -82,14 +82,14 @@ class Cell:
 def truth(function, pins):
     """Values of a function of a Liberty file for all values of the pins, or None if it has other variables."""
     tokens = re.findall(r"\w+|[()!&*|+^']", function)
-    words = {"!": " not ", "&": " and ", "*": " and ", "|": " or ", "+": " or ", "^": " != "}
+    words = {"!": "~", "&": "&", "*": "&", "|": "|", "+": "|", "^": "^"}
     if set(tokens) - {*words, "(", ")", *pins}:
         return None
     text = ""
     for before, token in zip(["", *tokens], tokens):
         both = re.fullmatch(r"\w+|\)", before) and re.fullmatch(r"\w+|\(|!", token)  # `A B` is A and B
-        text += (" and " if both else "") + words.get(token, token)
-    return [bool(eval(text, {}, {pin: bool(i >> k & 1) for k, pin in enumerate(pins)})) for i in range(1 << len(pins))]
+        text += ("&" if both else "") + words.get(token, token)
+    return [bool(eval(text, {}, {pin: i >> k & 1 for k, pin in enumerate(pins)}) & 1) for i in range(1 << len(pins))]
 
 
 def cell(text):
@@ -127,7 +127,7 @@ class Library:
     def smallest(self, inputs, values, pattern=""):
         """Cell with this function and the least area, one whose name has the pattern if there is one."""
         fitting = [(not re.search(pattern, name), cell.area, name) for name, cell in self.cells.items()
-                   if len(cell.inputs) == inputs and cell.output and truth(cell.function, list(cell.inputs)) == values]
+                   if len(cell.inputs) == inputs and cell.function and truth(cell.function, list(cell.inputs)) == values]
         if not fitting:
             raise fpga.ToolError(f"library {self.name}: no cell with {inputs} inputs and function {values}")
         return min(fitting)[2]

@@ -24,7 +24,7 @@ CELLS = {
     "INVp5": ("1", {"A": 0.5}, "!A", ""), "INV_1": ("1", {"A": 1.0}, "(!A)", ""), "INV_2": ("1.5", {"A": 2.0}, "A'", ""),
     "BUF_2": ("2", {"A": 1.0}, "A", ""), "AND2_1": ("2", {"A": 1.0, "B": 1.0}, "(A B)", ""),
     "NAND2_1": ("1.25", {"A": 1.0, "B": 1.25}, "(!A) | (!B)", ""), "NAND2_2": ("3", {"A": 2.0, "B": 2.0}, "!(A&B)", ""),
-    "DFF_1": ("6", {"D": 1.0, "CLK": 1.0}, "IQ", 'ff (IQ, IQN) { clocked_on : "CLK"; next_state : "D"; }'),
+    "TIE": ("1", {"A": 1.0}, "", ""), "DFF_1": ("6", {"D": 1.0, "CLK": 1.0}, "IQ", 'ff (IQ, IQN) { clocked_on : "CLK"; next_state : "D"; }'),
 }
 
 
@@ -98,6 +98,7 @@ class Reading(unittest.TestCase):
         for function in ("!(A&B)", "(!(A B))", "(!A) | (!B)", "!A+!B", "!(A * B)"):
             self.assertEqual(asic.truth(function, ["A", "B"]), nand, function)
         self.assertEqual(asic.truth("(A^B)", ["A", "B"]), [False, True, True, False])
+        self.assertEqual(asic.truth("(A ^ !B)", ["A", "B"]), [True, False, False, True])
         self.assertIsNone(asic.truth("IQ", ["A", "B"]))
 
     def test_library(self):
