@@ -11,6 +11,8 @@ SIM_ARGS ?=
 SEEDS ?= 5
 # as in: make export EXPORT_ARGS="--mhz 200 cchip_primtest_tri_tri"
 EXPORT_ARGS ?=
+# another cell library for make asic, as in: make asic LIBERTY=cells.lib.gz
+LIBERTY ?=
 # meshes of campaign-leaves, each against itself (Debian: assimp-testmodels)
 MODELS ?= /usr/share/assimp/models
 LEAVES ?= $(addprefix $(MODELS)/,OBJ/WusonOBJ.obj OBJ/spider.obj STL/Spider_binary.stl) \
@@ -38,7 +40,7 @@ export JOBS
 .PHONY: help bootstrap venv build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-chip export fpga \
-  fpga-quick install clean
+  fpga-quick asic asic-quick install clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
@@ -214,6 +216,12 @@ fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEE
 
 fpga-quick: bootstrap venv ## area and clock of the triangle test, one place and route
 	scripts/fpga.py tri_tri --seeds 1 --jobs $(JOBS) --campaign $(CAMPAIGN)
+
+asic: campaign-build ## area, clock and power of primitive tests, blocks and chip in standard cells, by synthesis (ten minutes; LIBERTY=another library), into docs/asic.md
+	scripts/asic.py $(if $(LIBERTY),--liberty '$(LIBERTY)') --campaign $(CAMPAIGN) --write
+
+asic-quick: campaign-build ## the same of the triangle test alone
+	scripts/asic.py tri_tri $(if $(LIBERTY),--liberty '$(LIBERTY)') --campaign $(CAMPAIGN)
 
 lint: bootstrap ## static checks of RTL, C++, scripts and texts
 	scripts/lint

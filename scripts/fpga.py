@@ -142,17 +142,18 @@ def say(text):
 # ---- tools and their outputs
 
 
-def step(name, command, files, depends, product):
+def step(name, command, files, depends, product, build=None):
     """Folder with the outputs of a tool run, made unless it is there already.
 
     command and the texts of files, which are written into the folder first: `{}` stands for the folder; depends: what
-    else the outputs depend on; product: the file that proves success. Tools run in ROOT and get names relative to it:
-    the tools of YoWASP do not see every absolute path."""
+    else the outputs depend on; product: the file that proves success; build: another folder than BUILD. Tools run in ROOT
+    and get names relative to it: the tools of YoWASP do not see every absolute path."""
+    build = build or BUILD
     key = hashlib.sha256(json.dumps([files, depends]).encode()).hexdigest()[:12]
-    folder = BUILD / f"{name}-{key}"
+    folder = build / f"{name}-{key}"
     if (folder / product).exists():
         return folder
-    partial = BUILD / f"{name}-{key}.{os.getpid()}"
+    partial = build / f"{name}-{key}.{os.getpid()}"
     shutil.rmtree(partial, ignore_errors=True)
     partial.mkdir(parents=True)
     place_in = lambda text: text.replace("{}", str(partial.relative_to(ROOT)))
@@ -165,7 +166,7 @@ def step(name, command, files, depends, product):
         shutil.rmtree(folder, ignore_errors=True)
         partial.rename(folder)
         return folder
-    failed = BUILD / f"{name}.failed"
+    failed = build / f"{name}.failed"
     shutil.rmtree(failed, ignore_errors=True)
     partial.rename(failed)
     errors = re.findall(r"^.*ERROR:? .*$", (failed / "log").read_text(), re.M)
@@ -185,10 +186,15 @@ def version(tool, option):
 
 def sources(row):
     """Text of every file that synthesis of the row reads, by name: those of the file list that the harness needs."""
-    listed = (ROOT / "rtl" / row.files).read_text().splitlines()
-    modules = {pathlib.Path(line).stem: f"rtl/{line.strip()}" for line in listed if line.strip().endswith(".v")}
-    modules["fpga_subsystem"] = SUBSYSTEM
-    text, wanted = {HARNESS: block_harness(row) if row.block else (ROOT / HARNESS).read_text()}, [row.top]
+    harness = block_harness(row) if row.block else (ROOT / HARNESS).read_text()
+    return {HARNESS: harness, **needed(row.top, row.files, {"fpga_subsystem": SUBSYSTEM})}
+
+
+def needed(top, files, more=None):
+    """Text of the files of a file list that the module needs, by name, with the headers; more: files besides, by module."""
+    listed = (ROOT / "rtl" / files).read_text().splitlines()
+    modules = {pathlib.Path(line).stem: f"rtl/{line.strip()}" for line in listed if line.strip().endswith(".v")} | (more or {})
+    text, wanted = {}, [top]
     while wanted:
         name = modules[wanted.pop()]
         if name not in text:

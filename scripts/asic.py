@@ -1,0 +1,581 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Area, clock and power of the primitive tests, of the chip and of its blocks in standard cells, by synthesis with open tools.
+
+usage: asic.py [ROW]... [options]     without ROW all rows; `asic.py --list` names them
+  --liberty PATH    cell library, .lib or .lib.gz, typical corner (default: OSU 0.18 um of Debian's qflow-tech-osu018)
+  --campaign PATH   cchip_campaign, which counts the mean beats (default build/release/bin/cchip_campaign, built by
+                    `make campaign-build`); without it there are no pairs per second and no energy of a pair
+  --pairs N         pairs of each class for the mean beats (default 20000)
+  --write           rewrite the tables of this library in docs/asic.md; needs all rows
+  --list            print the rows
+
+Tools: Debian's Yosys 0.23 with its ABC, OpenSTA. Synthesis only: ideal clock, no wires, no clock tree, no scan, no clock
+gating; paths from register to register. Memories are boxes: their bits are counted, apart from the logic, and their delay is
+assumed (docs/asic.md). Power is that of the cells at the clock of the row, with 0.1 and with 0.5 transitions a clock at every
+cell. Outputs are kept below build/asic by the hash of what they depend on: a second run repeats only what changed.
+build/asic/LIBRARY.json holds the figures of all rows run so far. The last lines are `ROW um2=X nand2=N ff=N bits=N ns=X
+fo4=X mhz=X [mw=X/X] [mpairs=X pj=X/X]`. The row chip prints a line for each of its blocks besides.
+Exit codes: 0 done, 1 a tool failed, 2 bad arguments."""
+import argparse
+import collections
+import dataclasses
+import functools
+import gzip
+import hashlib
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+import datasheet
+import fpga
+import progress
+
+ROOT = fpga.ROOT
+BUILD = ROOT / "build" / "asic"
+PAGE = ROOT / "docs" / "asic.md"
+LIBERTY = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib"
+LEAF = "cchip_mul18"
+# memories of fewer bits become flip-flops
+BOX_BITS = 64
+# memories of at least so many words and bits count as SRAM
+SRAM_WORDS, SRAM_BITS = 64, 4096
+# transitions of a cell in a clock, for power
+ACTIVITIES = 0.1, 0.5
+
+
+@dataclasses.dataclass(frozen=True)
+class Row:
+    name: str
+    top: str
+    shape: str = ""  # of a primitive test, as cchip_campaign names it
+    blocks: tuple = ()  # modules that are not flattened and have a line of their own
+    boxes: bool = True  # memories are boxes, or else flip-flops
+
+
+def rows():
+    tests = [Row(name, f"cchip_primtest_{name}", name.replace("_", "-")) for name in ("tri_tri", "tri_quad", "quad_quad")]
+    blocks = ("bv_unit", "cache", "traversal", "get_data", "transform", "leaf_feed", "axi_read", "axi_write", "calc_result",
+              "query_ring", "record_ring", "descriptor_queues", "dispatcher", "primtest", "chip_regs")
+    return {row.name: row for row in (
+        Row("mul18", LEAF), *tests, Row("tri_tri_registers", "cchip_primtest_tri_tri", "tri-tri", boxes=False),
+        Row("chip", "cchip_chip", blocks=tuple(f"cchip_{block}" for block in blocks)))}
+
+
+# ---- cell library
+
+
+@dataclasses.dataclass(frozen=True)
+class Cell:
+    text: str
+    area: float
+    inputs: dict  # capacitance by pin
+    output: str  # the only one, or empty
+    function: str  # of that output
+    register: bool
+
+
+def truth(function, pins):
+    """Values of a function of a Liberty file for all values of the pins, or None if it has other variables."""
+    tokens = re.findall(r"\w+|[()!&*|+^']", function)
+    words = {"!": "~", "&": "&", "*": "&", "|": "|", "+": "|", "^": "^"}
+    if set(tokens) - {*words, "(", ")", *pins}:
+        return None
+    text = ""
+    for before, token in zip(["", *tokens], tokens):
+        both = re.fullmatch(r"\w+|\)", before) and re.fullmatch(r"\w+|\(|!", token)  # `A B` is A and B
+        text += ("&" if both else "") + words.get(token, token)
+    return [bool(eval(text, {}, {pin: i >> k & 1 for k, pin in enumerate(pins)}) & 1) for i in range(1 << len(pins))]
+
+
+def cell(text):
+    pins = re.split(r"(?<!\w)pin\s*\(\s*\"?(\w+)\"?\s*\)", text)[1:]
+    number = lambda name, body: float((re.search(rf"(?<!\w){name}\s*:\s*\"?([-+.\deE]+)", body) or [0, 0])[1])
+    inputs, outputs = {}, {}
+    for pin, body in zip(pins[::2], pins[1::2]):
+        direction = re.search(r"(?<!\w)direction\s*:\s*\"?(\w+)", body)
+        if direction and direction[1] == "input":
+            inputs[pin] = number("capacitance", body)
+        elif direction and direction[1] == "output":
+            outputs[pin] = (re.search(r"(?<!\w)function\s*:\s*\"([^\"]*)\"", body) or ["", ""])[1]
+    [(output, function)] = outputs.items() if len(outputs) == 1 else [("", "")]
+    return Cell(text, number("area", text), inputs, output, function, bool(re.search(r"(?<!\w)ff\s*\(", text)))
+
+
+class Library:
+    """A Liberty file, read as far as this flow needs it."""
+
+    def __init__(self, text):
+        starts = [found.start() for found in re.finditer(r"^[ \t]*cell[ \t]*\(", text, re.M)]
+        self.head = text[:starts[0]]
+        self.name = re.search(r"^\s*library\s*\(\s*\"?(\w+)", self.head, re.M)[1]
+        bodies = [text[a:b] for a, b in zip(starts, [*starts[1:], text.rstrip().rfind("}")])]
+        self.cells = {re.match(r"\s*cell\s*\(\s*\"?([\w$]+)", body)[1]: cell(body) for body in bodies}
+        of = lambda pattern: re.search(pattern, self.head)
+        time = of(r"time_unit\s*:\s*\"?([\d.]+)\s*(ps|ns)")
+        self.ns = float(time[1]) * {"ps": 1e-3, "ns": 1}[time[2]]  # unit of time
+        load = of(r"(?i)capacitive_load_unit\s*\(\s*([\d.]+)\s*,\s*\"?(ff|pf)")
+        self.pf = float(load[1]) * {"ff": 1e-3, "pf": 1}[load[2].lower()]  # unit of capacitance
+        self.inverter = self.smallest(1, [True, False], r"(?i)(x|_)1(_|$)")  # of the unit strength
+        self.buffer = self.smallest(1, [False, True])
+        self.nand2 = self.smallest(2, [True, True, True, False])
+
+    def smallest(self, inputs, values, pattern=""):
+        """Cell with this function and the least area, one whose name has the pattern if there is one."""
+        fitting = [(not re.search(pattern, name), cell.area, name) for name, cell in self.cells.items()
+                   if len(cell.inputs) == inputs and cell.function and truth(cell.function, list(cell.inputs)) == values]
+        if not fitting:
+            raise fpga.ToolError(f"library {self.name}: no cell with {inputs} inputs and function {values}")
+        return min(fitting)[2]
+
+    def only(self, names):
+        """The file with these cells alone, which OpenSTA reads in a fraction of the time."""
+        return self.head + "".join(self.cells[name].text for name in sorted(names)) + "\n}\n"
+
+    def units(self):
+        """Lines of the head with units and thresholds."""
+        return "".join(re.findall(r"^[ \t]*(?:\w+_unit|\w+threshold_pct\w*)\s*[:(].*\n", self.head, re.M))
+
+
+@functools.lru_cache(None)
+def library(path):
+    """(library, name of its uncompressed file as Yosys gets it)"""
+    data = pathlib.Path(path).read_bytes()
+    text = (gzip.decompress(data) if path.endswith(".gz") else data).decode()
+    BUILD.mkdir(parents=True, exist_ok=True)
+    copy = BUILD / f"{hashlib.sha256(text.encode()).hexdigest()[:12]}.lib"
+    if not copy.exists():
+        copy.write_text(text)
+    return Library(text), str(copy.relative_to(ROOT))
+
+
+# ---- tools
+
+bar = progress.Progress(0, "rows")
+
+
+def say(text):
+    bar.say(text, sys.stderr)
+
+
+def run(name, tool, files, depends, product):
+    command, option = {"yosys": (["yosys", "-q", "-T", "-s", "{}/run.ys"], "-V"),
+                       "sta": (["sta", "-no_splash", "-exit", "{}/run.tcl"], "-version")}[tool]
+    if not shutil.which(tool):
+        sys.exit(f"asic.py: no {tool}; run: scripts/bootstrap --dev")
+    return fpga.step(name, command, files, [depends, fpga.version(tool, option)], product, BUILD)
+
+
+def memories(netlist):
+    """Memories of the JSON of Yosys, [{module, cell, words, width, ports..}]; kind: name of the box."""
+    number = lambda value: int(value, 2) if isinstance(value, str) else value
+    found = []
+    for module, body in json.loads(netlist)["modules"].items():
+        for name, cell in body["cells"].items():
+            if cell["type"] != "$mem_v2":
+                continue
+            value = {key: number(cell["parameters"][key]) for key in ("SIZE", "WIDTH", "RD_PORTS", "WR_PORTS")}
+            clocked = cell["parameters"]["RD_CLK_ENABLE"][-1] == "1"  # a digit for each port
+            ports = {port: len(bits) for port, bits in cell["connections"].items()}
+            one = {"module": module, "cell": name, "words": value["SIZE"], "width": value["WIDTH"],
+                   "bits": value["SIZE"] * value["WIDTH"], "reads": value["RD_PORTS"], "writes": value["WR_PORTS"],
+                   "clocked": clocked, "ports": ports, "parameters": sorted(cell["parameters"])}
+            shape = json.dumps([one["clocked"], ports], sort_keys=True)
+            one["kind"] = f"mem_{one['words']}x{one['width']}_{hashlib.sha256(shape.encode()).hexdigest()[:6]}"
+            found.append(one)
+    return found
+
+
+def is_sram(memory):
+    return memory["words"] >= SRAM_WORDS and memory["bits"] >= SRAM_BITS
+
+
+def generic(row):
+    """(folder with generic.il, the boxes): synthesis that does not depend on the library."""
+    text = fpga.needed(row.top, "cchip.f")
+    keep = [f"*{LEAF}*"] if row.top != LEAF else []
+    keep += [f"*{block}{rest}" for block in row.blocks for rest in ("", "?[A-Z]*")]
+    script = fpga.read_verilog(text) + f"hierarchy -check -top {row.top}\nrename -top {row.top}\n" + (
+        "setattr -mod -unset keep_hierarchy *\n" + "".join(f"setattr -mod -set keep_hierarchy 1 {k}\n" for k in keep) +
+        f"synth -top {row.top} -flatten -run begin:fine\nwrite_json {{}}/coarse.json\nwrite_ilang {{}}/coarse.il\n")
+    coarse = run(f"{row.name}.coarse", "yosys", {"run.ys": script}, text, "coarse.il")
+    boxes = [memory for memory in memories((coarse / "coarse.json").read_text())
+             if row.boxes and memory["bits"] >= BOX_BITS and memory["writes"]]
+    # brackets in names are patterns
+    script = f"read_ilang {coarse.relative_to(ROOT)}/coarse.il\nhierarchy -top {row.top}\n" + "".join(
+        f"cd {box['module']}\nchtype -set {box['kind']} c:{re.sub(r'[][]', '?', box['cell'])}\ncd\n" for box in boxes)
+    script += "".join(f"setparam -unset {name} t:mem_*\n" for name in sorted({p for box in boxes for p in box["parameters"]}))
+    script += ("opt -fast -full\nmemory_map\nopt -full\ntechmap\nopt -fast\nabc -fast\nopt -fast\n"
+               # cchip_delay has initial values, which cells do not have
+               "setattr -unset init\nopt_clean -purge\nwrite_ilang {}/generic.il\n")
+    return run(f"{row.name}.generic", "yosys", {"run.ys": script}, [], "generic.il"), boxes
+
+
+# The script that Yosys gives ABC undoes fast adders.
+ABC = "strash\n&get -n\n&st\n&dch\n&nf\n&put\nbuffer -c\ntopo\nupsize {D}\ndnsize {D}\n"
+
+
+def mapped(row, path):
+    """(folder with netlist.v, the boxes): cells of the library."""
+    lib, file = library(path)
+    folder, boxes = generic(row)
+    fo4_ns = fo4(path)
+    inverter = lib.cells[lib.inverter]
+    load = 4 * sum(inverter.inputs.values()) * lib.pf * 1000
+    script = (f"read_ilang {folder.relative_to(ROOT)}/generic.il\n"
+              # registers keep their names, for the critical path
+              "dfflegalize -cell $_DFF_P_ x\nsimplemap\nopt_clean\nrename -wire t:$_DFF_*\n"
+              f"dfflibmap -liberty {file}\n"
+              f"abc -liberty {file} -constr {{}}/constraints -D {10000 * fo4_ns:.0f} -script {{}}/abc.script\n"
+              "setundef -zero\nopt_clean -purge\nwrite_verilog -noattr -noexpr -simple-lhs {}/raw.v\n")
+    files = {"run.ys": script, "abc.script": ABC, "constraints": f"set_driving_cell {lib.buffer}\nset_load {load:.3g}\n"}
+    folder = run(f"{row.name}.{lib.name}", "yosys", files, file, "raw.v")
+    if not (folder / "netlist.v").exists():
+        text, names = plain((folder / "raw.v").read_text())
+        (folder / "names.json").write_text(json.dumps(names))
+        (folder / "cells.lib").write_text(lib.only(set(instances(text)) & set(lib.cells)))
+        (folder / "boxes.lib").write_text(box_library(lib, fo4_ns, {box["kind"]: box for box in boxes}))
+        (folder / "netlist.v").write_text(text)
+    names = json.loads((folder / "names.json").read_text())
+    return folder, [{**box, "module": names.get(box["module"], box["module"])} for box in boxes]
+
+
+# ---- netlists
+
+
+def bits(expression, wide):
+    """Every bit of an expression of a netlist; wide: (high, low) of the vectors."""
+    expression = expression.strip()
+    escaped = lambda name: name + " " if name.startswith("\\") else name
+    if expression.startswith("{"):
+        return [bit for part in expression[1:-1].split(",") for bit in bits(part, wide)]
+    if found := re.fullmatch(r"(\S+?)\s*\[(\d+):(\d+)\]", expression):
+        if found[1] in wide:
+            return [f"{escaped(found[1])}[{i}]" for i in range(int(found[2]), int(found[3]) - 1, -1)]
+    if found := re.fullmatch(r"(\d+)'h([0-9a-fx]+)", expression):
+        value = int(found[2].replace("x", "0"), 16)
+        return [f"1'b{value >> i & 1}" for i in range(int(found[1]) - 1, -1, -1)]
+    if found := re.fullmatch(r"(\d+)'b([01xz]+)", expression):
+        return [f"1'b{int(c == '1')}" for c in found[2].rjust(int(found[1]), "0")]
+    if expression in wide:
+        return [f"{escaped(expression)}[{i}]" for i in range(wide[expression][0], wide[expression][1] - 1, -1)]
+    if (found := re.fullmatch(r"(\S+?)\s*\[(\d+)\]", expression)) and found[1] in wide:
+        return [f"{escaped(found[1])}[{found[2]}]"]
+    return [escaped(expression)]
+
+
+def plain(text):
+    """(netlist as OpenSTA of 2019 reads it, new names of the modules): assignments bit by bit, names without parameters."""
+    made = []
+    for module in re.split(r"(?<=^endmodule\n)", text, flags=re.M):
+        declared = re.finditer(r"^\s*(?:input|output|wire|reg)\s+(?:signed\s+)?\[(\d+):(\d+)\]\s+(\S+?)\s*;", module, re.M)
+        wide = {found[3]: (int(found[1]), int(found[2])) for found in declared}
+
+        def single(found):
+            left, right = bits(found[1], wide), bits(found[2], wide)
+            if len(left) != len(right):
+                raise fpga.ToolError(f"netlist: {len(left)} and {len(right)} bits in '{found[0].strip()[:100]}'")
+            return "".join(f"  assign {a} = {b};\n" for a, b in zip(left, right))
+        made.append(re.sub(r"^  assign (.*?) = (.*?);\n", single, module, flags=re.M))
+    names, used = {}, collections.Counter()
+
+    def short(found):
+        old = found[0].strip()[1:]
+        if old not in names:
+            names[old] = f"{found[1]}__{used[found[1]]}"
+            used[found[1]] += 1
+        return names[old] + " "
+    return re.sub(r"\\\$paramod\S*\\(cchip_\w+?)(?:\\\S*)? ", short, "".join(made)), names
+
+
+def modules(text):
+    """Cells and modules inside every module, {module: {type: count}}."""
+    return {re.match(r"\s*([^\s(]+)", module)[1]: instances(module)
+            for module in re.split(r"^module ", text, flags=re.M)[1:]}
+
+
+def instances(text):
+    kinds = re.findall(r"^  (\w+) (?:\\\S+|\w+) +\($", text, re.M)
+    return collections.Counter(kind for kind in kinds if kind not in ("assign", "input", "output", "wire", "module"))
+
+
+def totals(inside, top, lib, boxes):
+    """Area, flip-flops, multiplier leaves and memory bits below a module."""
+    sums = collections.Counter()
+    for box in boxes:
+        if box["module"] == top:
+            sums["sram" if is_sram(box) else "small"] += box["bits"]
+    for kind, count in inside[top].items():
+        if kind in lib.cells:
+            sums["um2"] += count * lib.cells[kind].area
+            sums["ff"] += count * lib.cells[kind].register
+        elif kind in inside:
+            for key, value in totals(inside, kind, lib, boxes).items():
+                sums[key] += count * value
+            sums["leaves"] += count * kind.startswith(LEAF)
+        elif not kind.startswith("mem_"):
+            raise fpga.ToolError(f"netlist: cell {kind} in {top}, which library {lib.name} does not have")
+    return sums
+
+
+# ---- timing
+
+
+def box_library(lib, fo4_ns, kinds):
+    """Liberty file of the memories with the delays that docs/asic.md assumes, in FO4."""
+    delay = lambda n: f"{n * fo4_ns / lib.ns:.5f}"
+
+    def arc(related, kind, n):
+        tables = ("rise_constraint", "fall_constraint") if "setup" in kind else (
+            "cell_rise", "cell_fall", "rise_transition", "fall_transition")
+        kind = f"timing_type : {kind};" if kind else "timing_sense : non_unate;"
+        return f'timing() {{ related_pin : "{related}"; {kind} ' + " ".join(
+            f'{table}(scalar) {{ values("{delay(n)}"); }}' for table in tables) + " }"
+
+    widths = sorted({width for box in kinds.values() for width in box["ports"].values() if width > 1})
+    out = ["library (boxes) {", "delay_model : table_lookup;", lib.units()]
+    out += [f"type (b{w}) {{ base_type : array; data_type : bit; bit_width : {w}; bit_from : {w - 1}; bit_to : 0; "
+            "downto : true; }" for w in widths]
+    for kind, box in kinds.items():
+        out.append(f"cell ({kind}) {{ area : 0; is_macro_cell : true; interface_timing : true;")
+        clock = lambda port: port if box["ports"][port] == 1 else f"{port}[0]"
+        for port, width in box["ports"].items():
+            if port == "RD_CLK" and not box["clocked"]:
+                continue
+            head, arcs = f"direction : input; capacitance : {0.002 / lib.pf:g};", []
+            if port == "RD_DATA":
+                head = "direction : output;"
+                if box["clocked"]:
+                    arcs = [arc(clock("RD_CLK"), "rising_edge", 14 if is_sram(box) else 4)]
+                else:
+                    arcs = [arc("RD_ADDR", "", 8), arc(clock("WR_CLK"), "rising_edge", 11)]
+            elif port.endswith("CLK"):
+                head = "direction : input; capacitance : 0;" + (" clock : true;" if width == 1 else "")
+            elif port.startswith("WR"):
+                arcs = [arc(clock("WR_CLK"), "setup_rising", 3 if port == "WR_DATA" else 5)]
+                if port == "WR_EN":  # a pin a bit in Yosys, a pin a word in silicon
+                    head = f"direction : input; capacitance : {0.002 / lib.pf / width:g};"
+            elif box["clocked"] and port in ("RD_ADDR", "RD_EN"):
+                arcs = [arc(clock("RD_CLK"), "setup_rising", 5 if is_sram(box) else 11)]
+            bus = f"bus ({port}) {{ bus_type : b{width};" if width > 1 else f"pin ({port}) {{"
+            out.append(f"  {bus} {head} {' '.join(arcs)} }}")
+        out.append("}")
+    return "\n".join([*out, "}"]) + "\n"
+
+
+@functools.lru_cache(None)
+def fo4(path):
+    """ns of an inverter of the least size that drives four like it, mean of both edges."""
+    lib, file = library(path)
+    name, stages = lib.inverter, 24
+    [pin], out = lib.cells[name].inputs, lib.cells[name].output
+    lines = [f"module chain(input i, output o); wire [{stages}:0] w; assign w[0] = i; assign o = w[{stages}];"]
+    for k in range(stages):
+        lines.append(f"{name} s{k} (.{pin}(w[{k}]), .{out}(w[{k + 1}]));")
+        lines += [f"wire d{k}_{j}; {name} l{k}_{j} (.{pin}(w[{k}]), .{out}(d{k}_{j}));" for j in range(3)]
+    script = ("read_liberty {}/cells.lib\nread_verilog {}/chain.v\nlink_design chain\n"
+              "set_max_delay 100000 -from [get_ports i] -to [get_ports o]\nset_input_delay 0 [get_ports i]\n"
+              "report_checks -digits 6 > {}/report\n")
+    files = {"run.tcl": script, "chain.v": "\n".join([*lines, "endmodule\n"]), "cells.lib": lib.only({name})}
+    report = (run(f"fo4.{lib.name}", "sta", files, [], "report") / "report").read_text()
+    at = {found[2]: float(found[1]) for found in re.finditer(rf"([\d.]+) [v^] (s\d+)/{out}", report)}
+    return (at["s22"] - at["s6"]) / 16 * lib.ns
+
+
+def signal(pin):
+    """What OpenSTA's start or end of a path is called in the RTL: the bits of a register have one name."""
+    return re.sub(r"\[\d+\]$", "", re.sub(r"\$?_\$?_?S?DFF\w*$", "", pin.replace("\\", ""))).rstrip("$")
+
+
+def path_of(report):
+    """(start, end, slack, cells) of a report of OpenSTA's slowest path."""
+    ends = [re.search(rf"^{what}: (\S+)", report, re.M) for what in ("Startpoint", "Endpoint")]
+    slack = re.search(r"^\s+([-\d.]+)\s+slack", report, re.M)
+    if not (slack and all(ends)):
+        raise fpga.ToolError("OpenSTA: no path from register to register in its report")
+    pins = re.findall(r"^\s+[-\d.]+\s+[-\d.]+ [v^] (\S+)/\S+ \(", report, re.M)
+    return signal(ends[0][1]), signal(ends[1][1]), float(slack[1]), len(dict.fromkeys(pins))
+
+
+def power_of(report):
+    """(watts that follow the clock, watts of leakage) of a report of OpenSTA."""
+    internal, switching, leakage, _ = map(float, re.search(r"^Total((?:\s+[-+.\deE]+){4})", report, re.M)[1].split())
+    return internal + switching, leakage
+
+
+def sta(name, folder, top, period, ask, boxes):
+    here = folder.relative_to(ROOT)
+    script = (f"read_liberty {here}/cells.lib\n" + (f"read_liberty {here}/boxes.lib\n" if boxes else "") +
+              f"read_verilog {here}/netlist.v\nlink_design {top}\ncreate_clock -name clk -period {period:g} [get_ports clk]\n"
+              f"{ask}")
+    return run(name, "sta", {"run.tcl": script}, folder.name, "report")
+
+
+def analyse(row, path, beats, top, name):
+    """Figures of one module of a mapped row."""
+    lib, _ = library(path)
+    folder, boxes = mapped(row, path)
+    inside = modules((folder / "netlist.v").read_text())
+    sums = totals(inside, top, lib, boxes)
+    period = 400 * fo4(path) / lib.ns
+    label = f"{name}.{lib.name}"
+    report = sta(f"{label}.sta", folder, top, period, "report_checks -path_delay max -format full -digits 5 > {}/report\n", boxes)
+    start, end, slack, cells = path_of((report / "report").read_text())
+    ns = (period - slack) * lib.ns
+    mhz = 1000 / ns
+    made = {"library": lib.name, "top": row.top, "module": top, "um2": round(sums["um2"], 1),
+            "nand2": round(sums["um2"] / lib.cells[lib.nand2].area), "ff": sums["ff"], "leaves": sums["leaves"],
+            "small_bits": sums["small"], "sram_bits": sums["sram"], "ns": round(ns, 4), "fo4": round(ns / fo4(path), 1),
+            "fo4_ps": round(1000 * fo4(path), 1), "mhz": round(mhz, 1), "start": start, "end": end, "cells": cells}
+    if not row.blocks or top != row.top:  # OpenSTA of 2019 dies in a design of three levels
+        ask = "".join(f"set_power_activity -global -activity {a}\nreport_power -digits 6 > {{}}/power{a}\n" for a in ACTIVITIES)
+        report = sta(f"{label}.power", folder, top, period, ask + "report_checks > {}/report\n", boxes)
+        made["mw"] = {}
+        for a in ACTIVITIES:
+            clocked, leakage = power_of((report / f"power{a}").read_text())
+            made["mw"][str(a)] = 1000 * (clocked * period * lib.ns / ns + leakage)
+    if beats:
+        rate = mhz / beats
+        made.update(beats=beats, mpairs=rate, pj={a: 1000 * mw / rate for a, mw in made["mw"].items()})
+    return made
+
+
+def measure(row, options):
+    """Figures by line of the table."""
+    beats = 0
+    if row.shape:
+        beats = fpga.mean_beats(row.shape, options).get(fpga.TYPICAL, {}).get("directed", 0)
+    found = {row.name: analyse(row, options.liberty, beats, row.top, row.name)}
+    say(last_line(row.name, found[row.name]))
+    folder, _ = mapped(row, options.liberty)
+    kept = modules((folder / "netlist.v").read_text())
+    for block in row.blocks:
+        for top in sorted(module for module in kept if re.fullmatch(rf"{block}(__\d+)?", module)):
+            name = f"{row.name}.{top.replace('cchip_', '').replace('__0', '')}"
+            found[name] = analyse(row, options.liberty, 0, top, name)
+            say(last_line(name, found[name]))
+    return found
+
+
+# ---- output
+
+
+def last_line(name, r):
+    watts = "/".join(f"{mw:.4g}" for mw in r.get("mw", {}).values())
+    energy = "/".join(f"{pj:.4g}" for pj in r.get("pj", {}).values())
+    return (f"{name} um2={r['um2']:.0f} nand2={r['nand2']} ff={r['ff']} bits={r['small_bits'] + r['sram_bits']} ns={r['ns']:.3f} "
+            f"fo4={r['fo4']:.1f} mhz={r['mhz']:.1f}" + (f" mw={watts}" if watts else "") +
+            (f" mpairs={r['mpairs']:.1f} pj={energy}" if energy else ""))
+
+
+def cells_of(name, r):
+    return [f"`{name}`", r["leaves"], r["ff"], r["small_bits"], r["sram_bits"], f"{r['um2']:,.0f}", f"{r['nand2']:,}",
+            f"{r['ns']:.2f}" if r["ns"] >= 1 else f"{r['ns']:.3f}", f"{r['fo4']:.1f}", f"{r['mhz']:.0f}"]
+
+
+HEAD = ["row", "leaves", "FF", "small memories, bit", "large memories, bit", "um2", "NAND2", "ns", "FO4", "MHz"]
+WATTS = " / ".join(f"{a}" for a in ACTIVITIES)
+
+
+def several(figures):
+    return " / ".join(f"{value:,.0f}" if value >= 100 else f"{value:.3g}" for value in figures.values()) or "-"
+
+
+def critical(r):
+    return f"`{r['start']}` -> `{r['end']}`: {r['cells']} cells"
+
+
+def tests_table(found):
+    body = [[*cells_of(name, r), f"{r['mpairs']:.1f}" if "mpairs" in r else "-", several(r.get("mw", {})), several(r.get("pj", {})),
+             critical(r)] for name, r in found.items() if not name.startswith("chip")]
+    return datasheet.table([*HEAD, "10^6 pairs/s", f"mW at {WATTS}", f"pJ a pair at {WATTS}", "critical path"], body)
+
+
+def chip_table(found):
+    body = [[*cells_of(name, r), several(r.get("mw", {})), critical(r)] for name, r in found.items() if name.startswith("chip")]
+    return datasheet.table([*HEAD, f"mW at {WATTS}", "critical path"], body)
+
+
+TABLES = {"tests": tests_table, "chip": chip_table}
+
+
+def arguments():
+    parser = argparse.ArgumentParser(usage=argparse.SUPPRESS, add_help=False)
+    parser.add_argument("rows", nargs="*")
+    parser.add_argument("--liberty", type=os.path.abspath, default=LIBERTY)
+    parser.add_argument("--campaign", type=os.path.abspath, default=ROOT / "build/release/bin/cchip_campaign")
+    parser.add_argument("--pairs", type=int, default=20000)
+    for flag in ("--write", "--list"):
+        parser.add_argument(flag, action="store_true")
+    options = parser.parse_args()
+    unknown = sorted(set(options.rows) - set(rows()))
+    if unknown:
+        parser.error(f"no row {unknown[0]}, one of: {' '.join(rows())}")
+    if options.write and options.rows:
+        parser.error("--write needs all rows")
+    if not options.list and not os.path.exists(options.liberty):
+        parser.error(f"no {options.liberty}; Debian's qflow-tech-osu018 has the default: scripts/bootstrap --dev")
+    return options
+
+
+def save(name, found):
+    path = BUILD / f"{name}.json"
+    kept = json.loads(path.read_text()) if path.exists() else {}
+    path.write_text(json.dumps({**kept, **found}, indent=2) + "\n")
+
+
+def tree():
+    """What was measured, for the page."""
+    git = lambda *command: subprocess.run(["git", "-C", str(ROOT), *command], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
+    changed = " with changes" if git("status", "--porcelain", "rtl") else ""
+    return f"git tree `{git('rev-parse', 'HEAD:rtl')}` of `rtl/` (commit {git('rev-parse', '--short', 'HEAD')}){changed}"
+
+
+def write(name, found):
+    if f"generated: begin {name} " not in PAGE.read_text():
+        say(f"asic.py: docs/asic.md has no tables of library {name}; it is as it was")
+        return
+    first = next(iter(found.values()))
+    head = f"RTL: {tree()}. FO4: {first['fo4_ps']} ps.\n\n"
+    for table, make in TABLES.items():
+        datasheet.rewrite(PAGE, f"{name} {table}", head + make(found))
+        head = ""
+
+
+def main():
+    if set(sys.argv) & {"-h", "--help"}:
+        print(__doc__)
+        return 0
+    options = arguments()
+    if options.list:
+        print("\n".join(rows()))
+        return 0
+    chosen = [row for name, row in rows().items() if not options.rows or name in options.rows]
+    if not pathlib.Path(options.campaign).exists():
+        say(f"asic.py: no {options.campaign}, so no pairs per second; run: make campaign-build")
+    found, failures = {}, []
+    bar.total = len(chosen)
+    with bar:
+        for row in chosen:
+            try:
+                found |= bar.counted(measure)(row, options)
+            except fpga.ToolError as error:
+                failures.append(f"{row.name}: {error}")
+                say(f"asic.py: {failures[-1]}")
+    name = library(options.liberty)[0].name
+    save(name, found)
+    if options.write and not failures:
+        write(name, found)
+    for failure in failures:
+        print(f"asic.py: {failure}", file=sys.stderr)
+    for line, figures in found.items():
+        print(last_line(line, figures))
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
