@@ -245,7 +245,7 @@ LEGAL = [
       for c, w, o, i in ((1, 512, 1, 1), (4, 64, 64, 16))),
     *(("cchip_count", {"LIMIT": n}) for n in (1, 65535)),
     *(("cchip_timeout", {"DEFAULT": n}) for n in (1, 2147483647)),
-    *(("cchip_leaf_feed", {"CREDIT": c, "QUERIES": q, "LEAF_W": w}) for c, q, w in ((1, 2, 1), (64, 16, 8))),
+    *(("cchip_leaf_feed", {"QUERIES": q, "LEAF_W": w}) for q, w in ((2, 1), (16, 8))),
     *(("cchip_query_ring", {"SLOTS": s, "AHEAD": a, "DATA_W": w}) for s, a, w in ((2, 2, 512), (32, 8, 64))),
     *(("cchip_record_ring", {"DATA_W": w}) for w in (256, 512)),
     *(("cchip_calc_result", {"LEAVES": n, "CONTEXT_W": c, "JUDGED": j}) for n, c, j in ((4, 1, 2), (256, 4, 64))),
