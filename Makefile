@@ -217,7 +217,7 @@ fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEE
 fpga-quick: bootstrap venv ## area and clock of the triangle test, one place and route
 	scripts/fpga.py tri_tri --seeds 1 --jobs $(JOBS) --campaign $(CAMPAIGN)
 
-asic: campaign-build ## area, clock and power of primitive tests, blocks and chip in standard cells, by synthesis (ten minutes; LIBERTY=another library), into docs/asic.md
+asic: campaign-build ## area, clock and power of primitive tests, blocks and chip in standard cells, by synthesis (LIBERTY=another library), into docs/asic.md
 	scripts/asic.py $(if $(LIBERTY),--liberty '$(LIBERTY)') --campaign $(CAMPAIGN) --write
 
 asic-quick: campaign-build ## the same of the triangle test alone

@@ -7,7 +7,8 @@ usage: asic.py [ROW]... [options]     without ROW all rows; `asic.py --list` nam
   --campaign PATH   cchip_campaign, which counts the mean beats (default build/release/bin/cchip_campaign, built by
                     `make campaign-build`); without it there are no pairs per second and no energy of a pair
   --pairs N         pairs of each class for the mean beats (default 20000)
-  --write           rewrite the tables of this library in docs/asic.md; needs all rows
+  --write           rewrite the rows of this run in the tables of this library in docs/asic.md; other rows stay if they were
+                    measured on the same rtl/
   --list            print the rows
 
 Tools: Debian's Yosys 0.23 with its ABC, OpenSTA. Synthesis only: ideal clock, no wires, no clock tree, no scan, no clock
@@ -515,8 +516,6 @@ def arguments():
     unknown = sorted(set(options.rows) - set(rows()))
     if unknown:
         parser.error(f"no row {unknown[0]}, one of: {' '.join(rows())}")
-    if options.write and options.rows:
-        parser.error("--write needs all rows")
     if not options.list and not os.path.exists(options.liberty):
         parser.error(f"no {options.liberty}; Debian's qflow-tech-osu018 has the default: scripts/bootstrap --dev")
     return options
@@ -532,18 +531,31 @@ def tree():
     """What was measured, for the page."""
     git = lambda *command: subprocess.run(["git", "-C", str(ROOT), *command], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
     changed = " with changes" if git("status", "--porcelain", "rtl") else ""
-    return f"git tree `{git('rev-parse', 'HEAD:rtl')}` of `rtl/` (commit {git('rev-parse', '--short', 'HEAD')}){changed}"
+    return f"git tree `{git('rev-parse', 'HEAD:rtl')}` of `rtl/` (commit {git('log', '-1', '--format=%h', '--', 'rtl')}){changed}"
+
+
+def with_others(block, head, made):
+    """The block with the rows of the page that are not in the table made, if they have the same head."""
+    row = lambda line: line.split("`")[1].split(".")[0]
+    title, lines = made.splitlines()[:2], made.splitlines()[2:]
+    new = {row(line) for line in lines}
+    others = [line for line in block.splitlines() if line.startswith("| `") and row(line) not in new]
+    if others and (head not in block or title[0] not in block):
+        say(f"asic.py: dropped from the page, measured on another rtl/: {' '.join(map(row, others))}")
+        others = []
+    order = list(rows())
+    return "\n".join([head, "", *title, *sorted(others + lines, key=lambda line: order.index(row(line)))]) + "\n"
 
 
 def write(name, found):
-    if f"generated: begin {name} " not in PAGE.read_text():
-        say(f"asic.py: docs/asic.md has no tables of library {name}; it is as it was")
-        return
-    first = next(iter(found.values()))
-    head = f"RTL: {tree()}. FO4: {first['fo4_ps']} ps.\n\n"
+    """Rewrites the tables of the library; rows of the page that are not in found stay if the RTL is the same."""
+    head = f"RTL: {tree()}. FO4: {next(iter(found.values()))['fo4_ps']} ps."
     for table, make in TABLES.items():
-        datasheet.rewrite(PAGE, f"{name} {table}", head + make(found))
-        head = ""
+        block = re.search(datasheet.BLOCK.format(f" {name} {table}"), PAGE.read_text(), re.S)
+        if not block:
+            say(f"asic.py: docs/asic.md has no table {name} {table}; it is as it was")
+        elif make(found).count("\n") > 2:
+            datasheet.rewrite(PAGE, f"{name} {table}", with_others(block[0], head, make(found)))
 
 
 def main():

@@ -186,6 +186,14 @@ class Reading(unittest.TestCase):
                          "mhz=229.9 mw=805.1/2134 mpairs=94.0 pj=8569/2.271e+04")
         self.assertTrue(asic.last_line("chip", row).endswith("mhz=229.9"))
 
+    def test_rows_of_the_page_stay_if_the_rtl_is_the_same(self):
+        table = lambda *names: datasheet.table(["row", "ns"], [[f"`{name}`", 1] for name in names])
+        block = f"RTL: a.\n\n{table('mul18', 'quad_quad')}"
+        names = lambda text: re.findall(r"`(\w+)`", text)
+        self.assertEqual(names(asic.with_others(block, "RTL: a.", table("tri_tri"))), ["mul18", "tri_tri", "quad_quad"])
+        self.assertEqual(names(asic.with_others(block, "RTL: b.", table("tri_tri"))), ["tri_tri"])
+        self.assertEqual(names(asic.with_others(block, "RTL: a.", table("mul18"))), ["mul18", "quad_quad"])
+
     def test_page_has_a_place_for_every_table(self):
         text = asic.PAGE.read_text()
         for name in asic.TABLES:
