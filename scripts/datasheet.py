@@ -113,7 +113,7 @@ STIMULI = {
     "cchip_vertex_transform": ("s_kinds = 5; room = 1;", "s_valid = 1;", "m_valid"),
     "cchip_normaliser": ("", "s_valid = 1;", "m_valid"),
     "cchip_transform": ("s_kinds = 5; repeat (4) tick;", "s_valid = 1;", "m_valid"),
-    "cchip_leaf_feed": ("m_begin_ready = 1;", "s_leaf_valid = 1;", "m_valid"),
+    "cchip_leaf_feed": ("m_begin_ready = 1;", "s_leaf_valid = 1; s_leaf_valid <= #2 0;", "m_valid"),  # room for two
     "cchip_query_ring": ("", "enable = 1; producer = 1;", "m_read_valid"),
     "cchip_record_ring": ("size_log2 = 4; tick;", "s_valid = 1;", "m_valid"),
     "cchip_calc_result": ("repeat (8) tick;", "s_end_valid = 1;", "m_leaf_valid"),

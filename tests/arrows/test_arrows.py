@@ -32,7 +32,7 @@ FOLDERS = {"sim/harness": "sim", "sim/reconfig": "rc", "sim/waves": "waves", "si
 LINKS = {
     "cchip_core": set(), "cchip_mesh_io": {"core"}, "cchip_reference": {"core"}, "cchip_model": {"core"},
     "cchip_device": {"core", "model"}, "cchip_harness": {"verilated"}, "cchip_reconfig": set(), "cchip_waves": {"core"},
-    "cchip_stimulus": {"core", "model"}, "cchip_pair_vectors": {"stimulus"}, "cchip_rtl_ports": {"core", "harness"},
+    "cchip_stimulus": {"core", "model"}, "cchip_pair_vectors": {"stimulus"}, "cchip_query_vectors": {"stimulus"}, "cchip_rtl_ports": {"core", "harness"},
     "cchip_rtl": {"device", "rtl_ports", "rtl_models", "waves"}, "cchip_app": {"device", "mesh_io", "stimulus",
                                                                                "reference", "rtl"},
     "cchip": {"app"}, "cchip_levels_core": {"reconfig", "core", "stimulus"},
