@@ -4,9 +4,9 @@
 `include "cchip_assert.vh"
 // cchip_get_data: fetches the two lines of a node pair or of a pair of leaves through the cache,
 // waits for both, and hands them on: node pairs to the box test, leaves to the primitive tests.
-//   rule         a pair has a place, given by who asks; its lines arrive in any order. Node pairs go
-//                on in the order in which their second lines come to a port, the two ports in turn;
-//                so do pairs of leaves, which go first where there is room for them
+//   rule         a pair has a place, given by who asks; its lines arrive in any order. Node pairs
+//                go on in the order in which their second lines come to a port, the two ports in
+//                turn; so do pairs of leaves, which go first where there is room for them
 //   room         pairs of leaves wait in their places: LEAF_ROOM of them at most leave for which
 //                s_leaf_taken has not been 1
 //   check        what a line says of its children, and of a header, leaves with `lookup` when the
@@ -218,7 +218,8 @@ module cchip_get_data #(
   wire from1 = queue_valid[1] & (turn_q | ~queue_valid[0]);
   wire leaf_from1 = leaf_queue_valid[1] & (leaf_turn_q | ~leaf_queue_valid[0]);
   assign queue_take = {from1, queue_valid[0] & ~from1} & {2{advance & pick_pair}};
-  assign leaf_queue_take = {leaf_from1, leaf_queue_valid[0] & ~leaf_from1} & {2{advance & pick_leaf}};
+  assign leaf_queue_take = {leaf_from1, leaf_queue_valid[0] & ~leaf_from1} &
+      {2{advance & pick_leaf}};
   wire [1:0] room_left = room_left_q + {1'b0, s_leaf_taken} - {1'b0, advance & pick_leaf};
   wire [PLACE_W-1:0] pair_picked = from1 ? queue_place[PLACE_W+:PLACE_W] : queue_place[0+:PLACE_W];
   wire [PLACE_W-1:0] leaf_picked =

@@ -61,7 +61,10 @@ class GetDataBench {
   static constexpr int place_w = log2(places);
 
   GetDataBench(sim::Simulation<typename Config::Model>& simulation, Random& random)
-      : simulation_(simulation), top_(simulation.top()), random_(random), model_(contexts, pairs, Config::LEAVES, leaf_room) {
+      : simulation_(simulation),
+        top_(simulation.top()),
+        random_(random),
+        model_(contexts, pairs, Config::LEAVES, leaf_room) {
     clear();
     step(true);
   }
@@ -132,7 +135,7 @@ class GetDataBench {
   int looked = 0;                    ///< lookups of nodes that were known
   std::map<GetData::End, int> ends;  ///< of those
   int stalled = 0;
-  int fullest = 0;  ///< leaves with their receiver, at most
+  int fullest = 0;     ///< leaves with their receiver, at most
   int closest = 1000;  ///< clocks from pair to pair, at least
 
  private:

@@ -38,7 +38,7 @@ class GetData {
     std::optional<std::size_t> pose;  ///< of this context
     std::array<std::optional<Line>, 2> lines;
     bool pair_ready = false;
-    bool leaf_taken = false;  ///< the receiver of leaves has room for one more
+    bool leaf_taken = false;            ///< the receiver of leaves has room for one more
     std::optional<std::size_t> lookup;  ///< of this place
   };
   struct Ask {
@@ -231,7 +231,7 @@ class GetData {
   std::vector<std::optional<Sizes>> sizes_;       // by context
   std::optional<Ask> ask_;
   std::optional<Fetch> fetch_;
-  bool held_ = false;  // the pair that is fetched waited for its pose a clock ago
+  bool held_ = false;                  // the pair that is fetched waited for its pose a clock ago
   std::array<std::size_t, 2> turn_{};  // by kind
   bool pair_valid_ = false, leaf_valid_ = false, fresh_ = false;
   Pair pair_;
