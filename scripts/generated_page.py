@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the scripts share that write a page of docs/ with a generated block and a plot."""
+import argparse
 import io
 import os
 import pathlib
@@ -67,3 +68,31 @@ def svg_text(figure):
     text = io.StringIO()
     figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
     return re.sub(r" +$", "", text.getvalue(), flags=re.M)
+
+
+def page_and_plot(usage, page, run, plot, producer, read, tables, draw):
+    """Command line of a script whose page and plot come from the CSV file of one run: --csv PATH, --check, --check-plot.
+
+    run: the checked-in CSV; producer: what to say if there is none; read: its text -> what tables and draw take."""
+    script = f"scripts/{pathlib.Path(sys.argv[0]).name}"
+    parser = argparse.ArgumentParser(usage=usage, add_help=False)
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--csv", type=pathlib.Path)
+    what.add_argument("--check", action="store_true")
+    what.add_argument("--check-plot", action="store_true")
+    parser.add_argument("-h", "--help", action="store_true")
+    arguments = parser.parse_args()
+    if arguments.help:
+        print(usage)
+        return 0
+    source = arguments.csv or run
+    if not source.is_file():
+        fail(f"{source} is not there; {producer}")
+    text = source.read_text()
+    found = read(text)
+    if arguments.check:
+        return compare(page, page_with(page, tables(found)), script)
+    if arguments.check_plot:
+        return compare(plot, draw(found), script)
+    write({run: text, page: page_with(page, tables(found)), plot: draw(found)})
+    return 0

@@ -9,13 +9,11 @@ usage: plot_chip.py [--csv PATH | --check | --check-plot]
 
 Without an option page and plot are rewritten from the checked-in CSV. Drawing needs matplotlib, installed by `make venv`.
 Exit codes: 0 done or up to date, 1 stale or no such file, 2 bad arguments, 77 no matplotlib."""
-import argparse
 import csv
 import math
-import pathlib
 import sys
 
-from generated_page import ROOT, compare, fail, page_with, plain_number, start_plot, svg_text, write
+from generated_page import ROOT, page_and_plot, plain_number, start_plot, svg_text
 
 PAGE = ROOT / "docs" / "chip-speed.md"
 RUN = ROOT / "docs" / "figures" / "chip_speed.csv"
@@ -98,29 +96,5 @@ def draw(run):
     return svg_text(figure)
 
 
-def main():
-    parser = argparse.ArgumentParser(usage=__doc__, add_help=False)
-    what = parser.add_mutually_exclusive_group()
-    what.add_argument("--csv", type=pathlib.Path)
-    what.add_argument("--check", action="store_true")
-    what.add_argument("--check-plot", action="store_true")
-    parser.add_argument("-h", "--help", action="store_true")
-    arguments = parser.parse_args()
-    if arguments.help:
-        print(__doc__)
-        return 0
-    source = arguments.csv or RUN
-    if not source.is_file():
-        fail(f"{source} is not there; make bench-chip writes build/bench/chip.csv")
-    text = source.read_text()
-    run = Run(text)
-    if arguments.check:
-        return compare(PAGE, page_with(PAGE, tables(run)), "scripts/plot_chip.py")
-    if arguments.check_plot:
-        return compare(PLOT, draw(run), "scripts/plot_chip.py")
-    write({RUN: text, PAGE: page_with(PAGE, tables(run)), PLOT: draw(run)})
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(page_and_plot(__doc__, PAGE, RUN, PLOT, "make bench-chip writes build/bench/chip.csv", Run, tables, draw))
