@@ -102,8 +102,11 @@ module cchip_leaf_queue #(
       wire [3:0] here = left_q[4*n+:4];
       wire [3:0] rest_here = {here[3] & |here[2:0], here[2] & |here[1:0], &here[1:0], 1'b0};
       wire first;
-      if (n == 0) assign first = 1'b1;
-      else assign first = ~|row_some[n-1:0];
+      if (n == 0) begin : gen_first
+        assign first = 1'b1;
+      end else begin : gen_later
+        assign first = ~|row_some[n-1:0];
+      end
       assign row_some[n] = |here;
       assign row_two[n] = |rest_here;
       assign row_number[2*n+:2] = {~|here[1:0], ~here[0] & (here[1] | ~here[2])};
