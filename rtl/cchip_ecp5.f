@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 common/cchip_delay.v
+common/cchip_reset_copy.v
 common/cchip_skid_buffer.v
 common/cchip_fifo.v
 common/cchip_ram.v

@@ -49,6 +49,7 @@ RESERVED_PAIR = ("s_vertex_valid = 1; s_vertex_data[`CCHIP_VERTEX_FIRST] = 1; s_
 # How a change of the inputs is made visible: (what is prepared, what changes, the output that answers).
 STIMULI = {
     "cchip_delay": ("", "d = 1;", "q"),
+    "cchip_reset_copy": ("", "rst = 1;", "rst_copy"),
     "cchip_skid_buffer": ("", "s_valid = 1;", "m_valid"),
     "cchip_fifo": ("", "s_valid = 1;", "m_valid"),
     "cchip_ram": ("write = 1; tick; write_addr = 1; tick; write_data = 1; write = 0; tick;", "read_addr = 1;", "read_data"),

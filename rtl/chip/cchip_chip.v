@@ -14,7 +14,8 @@
 //   swaps        with SWAPS = 1: registers from 0x400 on, m_axi_cfg and cfg; otherwise leave those
 //                ports open and their inputs 0
 //   cuts         every path but from rst
-//   reset        rst resets registers and core, and must reset the bus too
+//   reset        rst resets registers and core, and must reset the bus too; hold it for 2 clocks or
+//                more
 module cchip_chip #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,

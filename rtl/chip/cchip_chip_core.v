@@ -26,7 +26,8 @@
 //                has failed
 //   reset        rst forgets queries and lines, and must reset the bus too. core_rst forgets them
 //                while the bus masters work on: hold it until read_owes and write_owes have been 0
-//                for 16 clocks (cchip_soft_reset)
+//                for 16 clocks (cchip_soft_reset). Both act a clock later: hold rst for 2 clocks or
+//                more
 module cchip_chip_core #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
@@ -226,7 +227,22 @@ module cchip_chip_core #(
     end
   endgenerate
 
+  // ---- resets: a flip-flop for each block, because one net would have thousands of pins. All
+  // blocks leave their reset on the same clock; cchip_broad_phase has flip-flops of its own
   wire reset = rst | core_rst;
+  localparam integer QUERY_RING = 0, FEED = 1, TRANSFORM = 2, QUEUES = 3, RESULTS = 4, RECORDS = 5,
+      REST = 6, READ = 7, WRITE = 8, SLOTS_RST = 9, SLOTS_CORE = 10, RESETS = 11;
+  wire [RESETS-1:0] block_rst;
+  genvar n;
+  generate
+    for (n = 0; n < RESETS; n = n + 1) begin : gen_reset
+      cchip_reset_copy u_reset (
+          .clk     (clk),
+          .rst     (n < READ ? reset : n == SLOTS_CORE ? core_rst : rst),
+          .rst_copy(block_rst[n])
+      );
+    end
+  endgenerate
 
   // ---- memory: client 0 is the cache, client 1 the query ring
   wire [1:0] read_valid, beat_valid;
@@ -244,7 +260,7 @@ module cchip_chip_core #(
       .DATA_W (DATA_W)
   ) u_read (
       .clk          (clk),
-      .rst          (rst),
+      .rst          (block_rst[READ]),
       .limit        (memory_limit),
       .s_valid      (read_valid),
       .s_slot       (read_slot),
@@ -283,7 +299,7 @@ module cchip_chip_core #(
       .DATA_W(DATA_W)
   ) u_queries (
       .clk          (clk),
-      .rst          (reset),
+      .rst          (block_rst[QUERY_RING]),
       .enable       (enable),
       .base         (query_base),
       .size_log2    (query_size_log2),
@@ -410,7 +426,7 @@ module cchip_chip_core #(
       .LEAF_W (LEAF_W)
   ) u_feed (
       .clk            (clk),
-      .rst            (reset),
+      .rst            (block_rst[FEED]),
       .s_start_valid  (start_valid),
       .s_start_context(start_context),
       .s_start_query  (start_query),
@@ -459,7 +475,7 @@ module cchip_chip_core #(
       .ID_W   (LEAF_W + 1)
   ) u_transform (
       .clk     (clk),
-      .rst     (reset),
+      .rst     (block_rst[TRANSFORM]),
       .s_valid (feed_valid),
       .s_ready (feed_ready),
       .s_m     (map_m),
@@ -497,7 +513,7 @@ module cchip_chip_core #(
   wire [15:0] tag = {{14 - LEAF_W{1'b0}}, pair_name};
   reg [1:0] vertex_q;  // number of the vertex
   always @(posedge clk)
-    if (reset) vertex_q <= 2'd0;
+    if (block_rst[REST]) vertex_q <= 2'd0;
     else if (vertex_valid) vertex_q <= vertex_last ? 2'd0 : vertex_q + 2'd1;
   cchip_descriptor_queues #(
       .WIDTH(`CCHIP_DESCRIPTOR_W),
@@ -505,7 +521,7 @@ module cchip_chip_core #(
       .DEPTH(QUEUE_DEPTH)
   ) u_queues (
       .clk    (clk),
-      .rst    (reset),
+      .rst    (block_rst[QUEUES]),
       .s_valid(vertex_valid & vertex_last),
       .s_ready(kind_room),
       .s_kind (pair_kind),
@@ -562,8 +578,8 @@ module cchip_chip_core #(
       .SEED       (SEED)
   ) u_slots (
       .clk             (clk),
-      .rst             (rst),
-      .core_rst        (core_rst),
+      .rst             (block_rst[SLOTS_RST]),
+      .core_rst        (block_rst[SLOTS_CORE]),
       .some            (some),
       .waiting         (waiting),
       .full            (~queue_room[KINDS:1] | ({KINDS{crowded_q}} & some[KINDS:1])),
@@ -643,7 +659,7 @@ module cchip_chip_core #(
       .JUDGED   (16)
   ) u_calc_result (
       .clk              (clk),
-      .rst              (reset),
+      .rst              (block_rst[RESULTS]),
       .s_begin_valid    (begin_valid),
       .s_begin_ready    (begin_ready),
       .s_begin_context  (begin_context),
@@ -682,7 +698,7 @@ module cchip_chip_core #(
       .DATA_W(DATA_W)
   ) u_records (
       .clk          (clk),
-      .rst          (reset),
+      .rst          (block_rst[RECORDS]),
       .base         (record_base),
       .size_log2    (record_size_log2),
       .consumer     (record_consumer),
@@ -707,7 +723,7 @@ module cchip_chip_core #(
       .ID_W       (1)
   ) u_write (
       .clk          (clk),
-      .rst          (rst),
+      .rst          (block_rst[WRITE]),
       .limit        (memory_limit),
       .s_valid      (write_valid),
       .s_ready      (write_ready),
@@ -744,7 +760,7 @@ module cchip_chip_core #(
   reg [7:0] in_flight_q;
   reg idle_q;
   always @(posedge clk)
-    if (reset) begin
+    if (block_rst[REST]) begin
       in_flight_q <= 8'd0;
       idle_q      <= 1'b0;
     end else begin
@@ -761,7 +777,7 @@ module cchip_chip_core #(
   wire unused = &{1'b0, start_epoch, count_tests, count_wait, count_again, waiting[COUNT_W-1:0],
       queue_room[0], outstanding_reads[2*MISSES-1:MISSES], result_kind, result, result_tag};
   always @(posedge clk)
-    if (!reset) begin
+    if (!block_rst[REST]) begin
       `CCHIP_ASSERT(a_kind_room, !(vertex_valid && vertex_last) || kind_room)
       `CCHIP_ASSERT(a_in_flight, in_flight_q != 8'd255 && (!count_query || in_flight_q != 8'd0))
     end

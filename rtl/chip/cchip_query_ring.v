@@ -7,11 +7,14 @@
 //                written, `consumer` those that have left this module; both run freely, 16 bit. The
 //                host keeps producer - consumer <= 2^size_log2, and may write a line again when
 //                `consumer` has passed it
-//   throughput   AHEAD lines are in flight, so AHEAD queries per latency of memory
-//   latency      1 clock from producer to m_read_valid, 1 from a line's last beat to m_query_valid
+//   throughput   AHEAD lines are in flight, so AHEAD queries per latency of memory; at most a read
+//                in 2 clocks and a query in 512 / DATA_W + 1
+//   latency      2 clocks from producer to m_read_valid, 512 / DATA_W + 1 from a line's last beat
+//                to m_query_valid
 //   failure      a line that could not be read is not handed on, and none after it: failed = 1
 //                until reset, consumer names the line. What was handed on before goes its way
-//   cuts         every path but one: m_query is a memory of AHEAD words behind a register
+//   memory       one of AHEAD lines, a beat wide; a query is gathered from it in a register
+//   cuts         every path
 //   reset        nothing is in flight: reads from before must not be answered
 module cchip_query_ring #(
     // slots of cchip_axi_read: 2, 4, 8, 16 or 32, at least AHEAD
@@ -63,12 +66,12 @@ module cchip_query_ring #(
   endgenerate
 
   reg [15:0] asked_q, given_q;  // queries whose line was asked for, that have left
-  reg read_valid_q, failed_q;
+  reg due_q, read_valid_q, failed_q;
   reg [57:0] line_q;
   reg [AHEAD_W-1:0] slot_q;
   reg [AHEAD-1:0] here_q, bad_q;  // of each slot: its line has come, with a code other than OK
-  wire [15:0] in_flight = asked_q - given_q;
-  wire ask = enable & ~failed_q && asked_q != producer && in_flight < LIMIT[15:0];
+  wire [AHEAD_W:0] in_flight = asked_q[AHEAD_W:0] - given_q[AHEAD_W:0];  // at most AHEAD
+  wire ask = enable & due_q & ~read_valid_q & ~failed_q;  // due_q is a clock late, hence not twice
   wire [15:0] place = asked_q & ~(16'hFFFF << size_log2);
   wire [AHEAD_W-1:0] head = given_q[AHEAD_W-1:0];
   wire [AHEAD_W-1:0] came = s_read_slot[AHEAD_W-1:0];
@@ -83,9 +86,11 @@ module cchip_query_ring #(
       asked_q      <= 16'd0;
       given_q      <= 16'd0;
       here_q       <= {AHEAD{1'b0}};
+      due_q        <= 1'b0;
       read_valid_q <= 1'b0;
       failed_q     <= 1'b0;
     end else begin
+      due_q        <= asked_q != producer && in_flight < LIMIT[AHEAD_W:0];
       read_valid_q <= ask;
       if (ask) asked_q <= asked_q + 16'd1;
       if (take) given_q <= given_q + 16'd1;
@@ -95,14 +100,35 @@ module cchip_query_ring #(
     end
   end
 
-  genvar b;
+  // ---- the query that leaves
+  (* ram_style = "distributed" *)
+  reg [DATA_W-1:0] beats[0:AHEAD*BEATS-1];
+  reg [511:0] query_q;
+  reg query_valid_q;
+  wire gather = here_q[head] & ~bad_q[head] & ~query_valid_q;
+  wire gathered;
+  always @(posedge clk) query_valid_q <= ~rst & (gathered | (query_valid_q & ~m_query_ready));
   generate
-    for (b = 0; b < BEATS; b = b + 1) begin : gen_beat
-      localparam [31:0] B = b;
-      (* ram_style = "distributed" *)
-      reg [DATA_W-1:0] beats[0:AHEAD-1];
-      always @(posedge clk) if (s_read_valid && s_read_beat == B[2:0]) beats[came] <= s_read_data;
-      assign m_query_data[DATA_W*b+:DATA_W] = beats[head];
+    if (BEATS == 1) begin : gen_beats
+      assign gathered = gather;
+      always @(posedge clk) begin
+        if (s_read_valid) beats[came] <= s_read_data;
+        if (gather) query_q <= beats[head];
+      end
+      wire unused_beat = &{1'b0, s_read_beat};
+    end else begin : gen_beats
+      localparam integer BEAT_W = $clog2(BEATS);
+      reg [BEAT_W-1:0] beat_q;
+      assign gathered = gather & (&beat_q);
+      always @(posedge clk) begin
+        if (s_read_valid) beats[{came, s_read_beat[BEAT_W-1:0]}] <= s_read_data;
+        if (gather) query_q <= {beats[{head, beat_q}], query_q[511:DATA_W]};
+        if (rst) beat_q <= {BEAT_W{1'b0}};
+        else if (gather) beat_q <= beat_q + {{BEAT_W - 1{1'b0}}, 1'b1};
+      end
+      if (BEAT_W < 3) begin : gen_unused
+        wire unused_beat = &{1'b0, s_read_beat[2:BEAT_W]};
+      end
     end
     if (SLOT_W > AHEAD_W) begin : gen_slot
       wire unused = &{1'b0, s_read_slot[SLOT_W-1:AHEAD_W]};
@@ -113,14 +139,15 @@ module cchip_query_ring #(
   endgenerate
   assign m_read_valid  = read_valid_q;
   assign m_read_line   = line_q;
-  assign m_query_valid = here_q[head] & ~bad_q[head];
+  assign m_query_valid = query_valid_q;
+  assign m_query_data  = query_q;
   assign consumer      = given_q;
   assign failed        = failed_q;
   assign idle          = asked_q == given_q;
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_in_flight, in_flight <= LIMIT[15:0])
+      `CCHIP_ASSERT(a_in_flight, asked_q - given_q <= LIMIT[15:0])
       `CCHIP_ASSERT(a_answer, !s_read_valid || !here_q[came])
     end
 

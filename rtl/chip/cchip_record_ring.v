@@ -6,7 +6,8 @@
 //   ring         2^size_log2 records from `base` on. `producer` counts the records that memory has
 //                confirmed, `consumer` those that the host has read; both run freely, 32 bit.
 //                A full ring holds up s_ready and loses nothing. A consumer beyond the producer is
-//                an error of the host: the ring is then full until it is corrected
+//                an error of the host: the ring is then full until it is corrected. A consumer
+//                gives room 3 clocks after it has changed
 //   phase        bit 63 of a record is 1 in the first round of the ring and inverted in each one
 //                after it, so a host that clears the ring before use needs to poll memory only
 //   throughput   a record per clock
@@ -50,7 +51,7 @@ module cchip_record_ring #(
   endgenerate
 
   reg [31:0] written_q, held_q;  // records given to memory, confirmed by it
-  reg room_q, failed_q;
+  reg failed_q;
   wire skid_ready, skid_valid;
   wire [127:0] record;
   cchip_skid_buffer #(
@@ -69,13 +70,30 @@ module cchip_record_ring #(
   reg valid_q;
   reg [59:0] address_q;
   reg [127:0] data_q;
-  assign skid_ready = room_q & ~failed_q & (~valid_q | m_ready);
+  // ---- room, in three stages, because a sum and a comparison of 32 bits do not fit into a clock:
+  // how far the consumer has moved, the records that are not read, whether there is room. The last
+  // one knows nothing of a record taken on the clock before: then a second place must be free
+  reg [31:0] mask_q;              // size of the ring - 1
+  reg [31:0] consumer_q, back_q;  // -(how far it has moved)
+  reg [31:0] unread_q, confirmed_q;  // confirmed and unread; huge if the host is ahead of memory
+  reg took_q, room_q, room_2_q, host_q;
+  wire beyond = |(unread_q & ~mask_q);
+  assign skid_ready = room_q & (room_2_q | ~took_q) & host_q & ~failed_q & (~valid_q | m_ready);
   wire take = skid_valid & skid_ready;
-  wire [31:0] place = written_q & ~(32'hFFFFFFFF << size_log2);
+  always @(posedge clk) begin
+    mask_q      <= ~(32'hFFFFFFFF << size_log2);
+    consumer_q  <= rst ? 32'd0 : consumer;
+    back_q      <= rst ? 32'd0 : consumer_q - consumer;
+    unread_q    <= rst ? 32'd0 : unread_q + back_q + {31'd0, take};
+    confirmed_q <= held_q - consumer_q;
+    took_q      <= take;
+    room_q      <= ~rst & ~beyond;
+    room_2_q    <= ~beyond & |(~unread_q & mask_q);
+    host_q      <= ~|(confirmed_q & ~mask_q);
+  end
+
+  wire [31:0] place = written_q & mask_q;
   wire [31:0] round = written_q >> size_log2;
-  wire [31:0] size = 32'd1 << size_log2;
-  wire [31:0] unread = written_q + {31'd0, take} - consumer;
-  wire [31:0] confirmed = held_q - consumer;  // and unread; huge if the host is ahead of memory
   wire good = s_answer && s_answer_code == `CCHIP_WRITE_OK;
   always @(posedge clk) begin
     if (take) begin
@@ -86,11 +104,9 @@ module cchip_record_ring #(
     if (rst) begin
       written_q <= 32'd0;
       held_q    <= 32'd0;
-      room_q    <= 1'b0;
       failed_q  <= 1'b0;
       valid_q   <= 1'b0;
     end else begin
-      room_q   <= unread < size && confirmed <= size;
       valid_q  <= take | (valid_q & ~m_ready);
       failed_q <= failed_q | (s_answer & ~good);
       if (take) written_q <= written_q + 32'd1;

@@ -7,12 +7,12 @@
 //   map          kept for each context, not for each epoch of it: a leaf pair of a query that has
 //                ended may meet the map of the next one. That is harmless: every map is a legal
 //                one, and the traversal calls its results dead
-//   credit       s_leaf_valid has no ready: at most two leaf pairs come for which m_credit has not
+//   credit       s_leaf_valid has no ready: at most one leaf pair comes for which m_credit has not
 //                been 1; the others wait in cchip_get_data, which has memory for their lines
 //   end          a leaf pair whose line could not be read, or is illegal, ends without primitive
 //                pairs, with CCHIP_END_MEMORY or CCHIP_END_CORRUPT
 //   throughput   a leaf pair every 2 clocks
-//   latency      3 clocks from s_leaf_valid to m_valid
+//   latency      2 clocks from s_leaf_valid to m_valid
 //   cuts         every path from s_leaf and s_start; m_credit follows s_begin_ready in its clock
 //   reset        leaf pairs inside are forgotten
 module cchip_leaf_feed #(
@@ -62,7 +62,6 @@ module cchip_leaf_feed #(
 );
 
   localparam integer CONTEXT_W = $clog2(QUERIES);
-  localparam integer LEAF_PAIR_W = CONTEXT_W + 2 + 1 + 4 + 1024;
   localparam integer MAP_W = 1 + 12 + 4 + 108 + 288;
   localparam [1:0] TWO_TRIANGLES = 2'd2;
 
@@ -86,21 +85,19 @@ module cchip_leaf_feed #(
         s_start_query[`CCHIP_QUERY_M]
       };
 
-  // ---- leaf pairs that wait, two registers in a row. What is in them counts only with their valid
-  // bit, so the condition of their thousand flip-flops is that bit alone
-  reg come_valid_q, wait_valid_q, wait_failed_q;
-  reg [LEAF_PAIR_W-1:0] come_q;
+  // ---- the leaf pair that waits. What is in its register counts only with its valid bit, so the
+  // condition of the thousand flip-flops is that bit alone
+  reg wait_valid_q, wait_failed_q;
   reg [CONTEXT_W-1:0] wait_context_q;
   reg [1:0] wait_epoch_q;
   reg [3:0] wait_kinds_q;
   reg [1023:0] wait_lines_q;
   always @(posedge clk) begin
-    if (!come_valid_q)
-      come_q <= {s_leaf_context, s_leaf_epoch, s_leaf_failed, s_leaf_kinds, s_leaf_lines};
     if (!wait_valid_q)
-      {wait_context_q, wait_epoch_q, wait_failed_q, wait_kinds_q, wait_lines_q} <= come_q;
-    come_valid_q <= ~rst & (s_leaf_valid | (come_valid_q & wait_valid_q));
-    wait_valid_q <= ~rst & (wait_valid_q ? ~m_credit : come_valid_q);
+      {wait_context_q, wait_epoch_q, wait_failed_q, wait_kinds_q, wait_lines_q} <= {
+        s_leaf_context, s_leaf_epoch, s_leaf_failed, s_leaf_kinds, s_leaf_lines
+      };
+    wait_valid_q <= ~rst & (wait_valid_q ? ~m_credit : s_leaf_valid);
   end
   wire unused = &{1'b0, s_start_query};
   wire two_a = wait_kinds_q[1:0] == TWO_TRIANGLES;
@@ -158,7 +155,7 @@ module cchip_leaf_feed #(
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_credit, !s_leaf_valid || !come_valid_q)
+      `CCHIP_ASSERT(a_credit, !s_leaf_valid || !wait_valid_q)
     end
 
 endmodule

@@ -12,7 +12,8 @@
 //   bound        every wait has one: a read by the limit of cchip_axi_read, a query by step_limit;
 //                results and the receiver of answers are waited for
 //   cuts         every path: each output is a flip-flop
-//   reset        forgets queries and lines; takes 2^SET_W clocks of the cache
+//   reset        forgets queries and lines; takes 2^SET_W clocks of the cache. It acts a clock
+//                later: hold rst for 2 clocks or more
 module cchip_broad_phase #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
@@ -51,7 +52,7 @@ module cchip_broad_phase #(
     output wire [     $clog2(QUERIES)-1:0] m_start_context,
     output wire [                     1:0] m_start_epoch,
     output wire [                   511:0] m_start_query,
-    // pairs of leaves; two of them at most until s_credit says that one has left
+    // leaf pairs; one of them at most until s_credit says that it has left
     output wire                            m_leaf_valid,
     output wire [     $clog2(QUERIES)-1:0] m_leaf_context,
     output wire [                     1:0] m_leaf_epoch,
@@ -130,6 +131,19 @@ module cchip_broad_phase #(
   wire [3:0] verdict_best;
   wire [4:0] verdict_tests;
 
+  // a flip-flop of the reset for each block: one net would have the pins of all
+  wire [3:0] block_rst;
+  genvar n;
+  generate
+    for (n = 0; n < 4; n = n + 1) begin : gen_reset
+      cchip_reset_copy u_reset (
+          .clk     (clk),
+          .rst     (rst),
+          .rst_copy(block_rst[n])
+      );
+    end
+  endgenerate
+
   cchip_traversal #(
       .QUERIES   (QUERIES),
       .PAIRS     (PAIRS),
@@ -139,7 +153,7 @@ module cchip_broad_phase #(
       .CREDIT    (LEAVES)
   ) u_traversal (
       .clk              (clk),
-      .rst              (rst),
+      .rst              (block_rst[0]),
       .pairs_each       (pairs_each),
       .step_limit       (step_limit),
       .open_limit       (open_limit),
@@ -199,7 +213,7 @@ module cchip_broad_phase #(
       .LEAVES (LEAVES)
   ) u_get_data (
       .clk            (clk),
-      .rst            (rst),
+      .rst            (block_rst[1]),
       .s_valid        (get_valid),
       .s_place        (get_place),
       .s_context      (get_context),
@@ -242,7 +256,7 @@ module cchip_broad_phase #(
       .TAG_W  (PLACE_W)
   ) u_bv_unit (
       .clk           (clk),
-      .rst           (rst),
+      .rst           (block_rst[2]),
       .s_pose_valid  (m_start_valid),
       .s_pose_ready  (start_ready),
       .s_pose_context(m_start_context),
@@ -278,7 +292,7 @@ module cchip_broad_phase #(
       .DATA_W  (DATA_W)
   ) u_cache (
       .clk             (clk),
-      .rst             (rst),
+      .rst             (block_rst[3]),
       .s_valid         (line_valid),
       .s_place         (line_place),
       .s_line          (line),

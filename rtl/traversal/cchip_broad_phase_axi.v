@@ -43,7 +43,7 @@ module cchip_broad_phase_axi #(
     output wire [     $clog2(QUERIES)-1:0] m_start_context,
     output wire [                     1:0] m_start_epoch,
     output wire [                   511:0] m_start_query,
-    // pairs of leaves; two of them at most until s_credit says that one has left
+    // leaf pairs; one of them at most until s_credit says that it has left
     output wire                            m_leaf_valid,
     output wire [     $clog2(QUERIES)-1:0] m_leaf_context,
     output wire [                     1:0] m_leaf_epoch,

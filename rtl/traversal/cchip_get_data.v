@@ -25,7 +25,7 @@ module cchip_get_data #(
     // pairs of leaves under way; PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 16,
     // pairs of leaves that their receiver has room for, 1..3
-    parameter integer LEAF_ROOM = 2
+    parameter integer LEAF_ROOM = 1
 ) (
     input  wire                                                 clk,
     input  wire                                                 rst,

@@ -16,7 +16,7 @@ module cchip_get_data_properties #(
     parameter integer QUERIES = 2,
     parameter integer PAIRS   = 5,
     parameter integer LEAVES  = 3,
-    parameter integer LEAF_ROOM = 2
+    parameter integer LEAF_ROOM = 1
 ) (
     input wire                                   clk,
     input wire                                   rst,

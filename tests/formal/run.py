@@ -117,14 +117,15 @@ MUTANTS = [
     ("cchip_cache bounded", FILL, "wire loses = serve_code_q == `CCHIP_READ_TIMEOUT || serve_code_q == `CCHIP_READ_OWED;",
      "wire loses = 1'b0;"),
     # a line that was not written is read; more of them than there are slots; a line that could not be read goes on
-    ("cchip_query_ring bounded", QUERY_RING, "~failed_q && asked_q != producer &&", "~failed_q &&"),
-    ("cchip_query_ring bounded", QUERY_RING, "in_flight < LIMIT[15:0];", "in_flight <= LIMIT[15:0];"),
-    ("cchip_query_ring bounded", QUERY_RING, "assign m_query_valid = here_q[head] & ~bad_q[head];", "assign m_query_valid = here_q[head];"),
+    ("cchip_query_ring bounded", QUERY_RING, "asked_q != producer && in_flight", "in_flight"),
+    ("cchip_query_ring bounded", QUERY_RING, "in_flight < LIMIT[AHEAD_W:0];", "in_flight <= LIMIT[AHEAD_W:0];"),
+    ("cchip_query_ring bounded", QUERY_RING, "due_q & ~read_valid_q &", "due_q &"),
+    ("cchip_query_ring bounded", QUERY_RING, "gather = here_q[head] & ~bad_q[head] &", "gather = here_q[head] &"),
     # one record too many; a write after a failed one is counted; the phase of the other round; what waits changes
-    ("cchip_record_ring bounded", RECORD_RING, "room_q   <= unread < size && confirmed <= size;", "room_q   <= unread <= size && confirmed <= size;"),
+    ("cchip_record_ring bounded", RECORD_RING, "room_q & (room_2_q | ~took_q) & host_q &", "room_q & host_q &"),
     ("cchip_record_ring bounded", RECORD_RING, "if (good && !failed_q) held_q", "if (good) held_q"),
     ("cchip_record_ring bounded", RECORD_RING, "<= ~round[0];", "<= round[0];"),
-    ("cchip_record_ring bounded", RECORD_RING, "room_q & ~failed_q & (~valid_q | m_ready);", "room_q & ~failed_q;"),
+    ("cchip_record_ring bounded", RECORD_RING, "host_q & ~failed_q & (~valid_q | m_ready);", "host_q & ~failed_q;"),
     # records of a dead leaf pair; an end overtakes a judgement; a number comes back twice; a result too few
     ("cchip_calc_result order", RESULT, "if (live && sent_hits != 4'd0) state_q <= CHOOSE;", "if (sent_hits != 4'd0) state_q <= CHOOSE;"),
     ("cchip_calc_result order", RESULT, "if (judged_valid && !emitted_q) begin", "if (judged_valid && !emitted_q && !s_done_valid) begin"),
