@@ -207,7 +207,7 @@ bench-reconfig: $(RELEASE)/build.ninja ## cost of cchip::rc: portals against dir
 # Coal takes part after make peers
 NATIVE_FCL ?=
 BENCH_ARGS ?=
-bench-collide: $(RELEASE)/build.ninja ## queries per second of collide(), FCL and Coal, the same poses in turns (ten minutes); build/bench/collide.csv
+bench-collide: $(RELEASE)/build.ninja ## queries per second of collide(), FCL, Coal and CGAL, the same poses in turns (ten minutes); build/bench/collide.csv
 	$(if $(NATIVE_FCL),cmake -D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))' $(RELEASE))
 	cmake --build $(RELEASE) -j $(JOBS) --target collide_speed
 	$(RELEASE)/bin/collide_speed $(BENCH_ARGS)

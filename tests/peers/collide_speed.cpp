@@ -32,7 +32,8 @@ struct Peer {
   const char* module;  ///< empty: not found
   const char* remedy;
 };
-constexpr Peer other_peers[] = {{"Coal", CCHIP_COAL_MODULE, "make peers"}};
+constexpr Peer other_peers[] = {{"Coal", CCHIP_COAL_MODULE, "make peers"},
+                                {"CGAL", CCHIP_CGAL_MODULE, "scripts/bootstrap"}};
 
 constexpr const char* table_classes[] = {"touch",     "near",     "deep",     "far", "graze",
                                          "touch all", "deep all", "coherent", "lone"};
@@ -688,7 +689,7 @@ class Benchmark {
 int main(int argc, char** argv) try {
   cchip::testing::Options o;
   CLI::App app{
-      "Queries per second of the CPU device, FCL and Coal, the same poses in turns.\n"
+      "Queries per second of the CPU device, FCL, Coal and CGAL, the same poses in turns.\n"
       "Exit codes: 0 done, 3 an answer differs from another library's and exact integers say that ours is wrong, 2 the "
       "run could "
       "not be made."};
