@@ -204,10 +204,10 @@ bench-reconfig: $(RELEASE)/build.ninja ## cost of cchip::rc: portals against dir
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_rtl_bench
 
 # an FCL that was built for this computer (docs/speed.md), as in: make bench-collide NATIVE_FCL=/opt/fcl BENCH_ARGS=--quick;
-# Coal takes part after make peers
+# Coal takes part after make peers, ODE after scripts/bootstrap --dev
 NATIVE_FCL ?=
 BENCH_ARGS ?=
-bench-collide: $(RELEASE)/build.ninja ## queries per second of collide(), FCL, Coal and CGAL, the same poses in turns (ten minutes); build/bench/collide.csv
+bench-collide: $(RELEASE)/build.ninja ## queries per second of collide(), FCL, CGAL, Coal and ODE, the same poses in turns (ten minutes); build/bench/collide.csv
 	$(if $(NATIVE_FCL),cmake -D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))' $(RELEASE))
 	cmake --build $(RELEASE) -j $(JOBS) --target collide_speed
 	$(RELEASE)/bin/collide_speed $(BENCH_ARGS)

@@ -33,7 +33,8 @@ struct Peer {
   const char* remedy;
 };
 constexpr Peer other_peers[] = {{"Coal", CCHIP_COAL_MODULE, "make peers"},
-                                {"CGAL", CCHIP_CGAL_MODULE, "scripts/bootstrap"}};
+                                {"CGAL", CCHIP_CGAL_MODULE, "scripts/bootstrap"},
+                                {"ODE", CCHIP_ODE_MODULE, "scripts/bootstrap --dev"}};
 
 constexpr const char* table_classes[] = {"touch",     "near",     "deep",     "far", "graze",
                                          "touch all", "deep all", "coherent", "lone"};
@@ -689,7 +690,7 @@ class Benchmark {
 int main(int argc, char** argv) try {
   cchip::testing::Options o;
   CLI::App app{
-      "Queries per second of the CPU device, FCL, Coal and CGAL, the same poses in turns.\n"
+      "Queries per second of the CPU device, FCL, Coal, CGAL and ODE, the same poses in turns.\n"
       "Exit codes: 0 done, 3 an answer differs from another library's and exact integers say that ours is wrong, 2 the "
       "run could "
       "not be made."};
