@@ -38,6 +38,7 @@ size_t collide(void* a, const double* pose_a, void* b, const double* pose_b, siz
   coal::CollisionRequest request;
   request.num_max_contacts = most;
   request.enable_contact = false;  // Coal's default is true, FCL's false
+  request.break_distance = 0;      // by default boxes apart by up to 0.001 are opened, for a bound of the distance
   return coal::collide(static_cast<const Model*>(a), transform(pose_a), static_cast<const Model*>(b), transform(pose_b),
                        request, result);
 }
