@@ -37,7 +37,7 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
+.PHONY: help bootstrap venv peers build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-chip export fpga \
   fpga-quick asic asic-quick install clean
@@ -54,6 +54,13 @@ venv: build/venv/requirements.txt ## install the tools from PyPI that make lint 
 build/venv/requirements.txt: scripts/requirements.txt
 	python3 -m venv build/venv || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
 	build/venv/bin/pip install --quiet --disable-pip-version-check --requirement $<
+	cp $< $@
+
+peers: build/peers/requirements.txt ## install Coal from PyPI below build/peers, for make bench-collide
+
+build/peers/requirements.txt: tests/peers/requirements.txt
+	python3 -m venv build/peers || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	build/peers/bin/pip install --quiet --disable-pip-version-check --no-deps --only-binary :all: --requirement $<
 	cp $< $@
 
 build: $(RELEASE)/build.ninja ## build everything, optimised
@@ -196,10 +203,11 @@ bench-reconfig: $(RELEASE)/build.ninja ## cost of cchip::rc: portals against dir
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_rc_bench
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_rtl_bench
 
-# an FCL that was built for this computer (docs/speed.md), as in: make bench-collide NATIVE_FCL=/opt/fcl BENCH_ARGS=--quick
+# an FCL that was built for this computer (docs/speed.md), as in: make bench-collide NATIVE_FCL=/opt/fcl BENCH_ARGS=--quick;
+# Coal takes part after make peers, ODE after scripts/bootstrap --dev
 NATIVE_FCL ?=
 BENCH_ARGS ?=
-bench-collide: $(RELEASE)/build.ninja ## queries per second of collide() and of FCL, the same poses in turns (ten minutes); build/bench/collide.csv
+bench-collide: $(RELEASE)/build.ninja ## queries per second of collide(), FCL, CGAL, Coal and ODE, the same poses in turns (ten minutes); build/bench/collide.csv
 	$(if $(NATIVE_FCL),cmake -D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))' $(RELEASE))
 	cmake --build $(RELEASE) -j $(JOBS) --target collide_speed
 	$(RELEASE)/bin/collide_speed $(BENCH_ARGS)

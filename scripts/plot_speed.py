@@ -22,6 +22,12 @@ ASSUMED_GAIN = 2.3  # collide_speed.cpp has the same
 # ratios that the project aims at, of the means that count: classes -> variant -> ratio
 AIMS = {("touch", "near", "deep"): {"single": 10, "batch": 20}, ("touch all", "deep all"): {"single": 10}}
 BOOLEAN = ("touch", "near", "deep", "far", "graze")
+# rows of the tables of means: classes, title
+MEANS = [((name,), name) for name in BOOLEAN] + [
+    (("touch", "near", "deep"), "**touch, near and deep**"), (("touch all",), "touch, all contacts"),
+    (("deep all",), "deep, all contacts"), (("touch all", "deep all"), "**all contacts**"),
+    (("coherent",), "coherent"), (("lone",), "lone")]
+LIBRARIES = ("FCL Debian", "FCL native", "Coal", "CGAL", "ODE")  # one that is not in the run has no column
 
 
 class Run:
@@ -47,6 +53,14 @@ class Run:
 
     def ratio(self, cell, variant):
         return self.seconds(cell, "native") / self.seconds(cell, variant)
+
+    def differ(self, names, variant):
+        """Answers that are not ours, over all meshes; None if the variant gave none."""
+        counts = [int(cell[variant]["differ"]) for (_, name), cell in self.cells.items() if name in names and variant in cell]
+        return sum(counts) if counts else None
+
+    def answers(self, names):
+        return sum(int(cell["single"]["queries"]) for (_, name), cell in self.cells.items() if name in names)
 
     def counts_in_means(self, meshes):
         return meshes not in ("body-tiny", "scene")
@@ -91,14 +105,21 @@ def tables(run):
         out.append("| " + " | ".join(columns) + " |")
     out += ["", "### Geometric means of the six pairs", "", "Times FCL built natively; in brackets what this project aims at.", "",
             "| class | single | batch | all cores |", "|---|---|---|---|"]
-    for names, title in [((name,), name) for name in BOOLEAN] + [
-            (("touch", "near", "deep"), "**touch, near and deep**"), (("touch all",), "touch, all contacts"),
-            (("deep all",), "deep, all contacts"), (("touch all", "deep all"), "**all contacts**"),
-            (("coherent",), "coherent"), (("lone",), "lone")]:
+    for names, title in MEANS:
         aims = AIMS.get(names, {})
         cells = [times(run.mean(names, variant)) + (f" (aim {aims[variant]})" if variant in aims else "")
                  for variant in ("single", "batch", "cores")]
         out.append(f"| {title} | " + " | ".join(cells) + " |")
+    libraries = [name for name in LIBRARIES if name in run.variants]
+    out += ["", "### Other libraries", "",
+            "How many times faster our single query is, geometric means of the six pairs; in brackets how many of the answers, which",
+            "include those about *body-tiny*, are not the exact ones.", "",
+            "| class | answers | " + " | ".join(libraries) + " |", "|---" * (len(libraries) + 2) + "|"]
+    for names, title in MEANS:
+        ours = run.mean(names, "single")
+        means = [(run.mean(names, library), run.differ(names, library)) for library in libraries]
+        cells = [f"{times(ours / mean)} ({differ:,})" if mean else "-" for mean, differ in means]
+        out.append(f"| {title} | {run.answers(names):,} | " + " | ".join(cells) + " |")
     out += ["", "### Instruction sets", "", "Single query, batch on one thread; times FCL built natively, geometric means.", "",
             "| | " + " | ".join(BOOLEAN) + " |", "|---" * (len(BOOLEAN) + 1) + "|"]
     for i, target in enumerate(run.notes["instruction sets"].split(", ")):

@@ -129,8 +129,8 @@ class Benchmark {
  public:
   explicit Benchmark(const Options& options)
       : options_(options),
-        debian_(FclLibrary::debian()),
-        native_(FclLibrary::native()),
+        debian_(PeerLibrary::fcl_debian()),
+        native_(PeerLibrary::fcl_native()),
         cpu_(open_cpu_device({1, ""})) {}
 
   int run() {
@@ -172,8 +172,8 @@ class Benchmark {
 
   void run_pair(const std::string& name) {
     const Bodies bodies(mesh_pair(name), debian_);
-    std::optional<FclMesh> native_a;
-    std::optional<FclMesh> native_b;
+    std::optional<PeerMesh> native_a;
+    std::optional<PeerMesh> native_b;
     if (native_) {
       native_a.emplace(native_->mesh(bodies.a.mesh()));
       native_b.emplace(native_->mesh(bodies.b.mesh()));
@@ -224,7 +224,7 @@ class Benchmark {
     const bool all = request.contacts == CollisionRequest::Contacts::all;
     CollisionResult result;
     std::vector<Variant> ways;
-    const auto fcl = [&](const std::string& name, const FclMesh& a, const FclMesh& b) {
+    const auto fcl = [&](const std::string& name, const PeerMesh& a, const PeerMesh& b) {
       ways.push_back({name, Clock::cpu, [&, all](std::size_t first, std::size_t count) {
                         for (std::size_t i = first; i < first + count; ++i) {
                           const bool hit =
@@ -336,9 +336,9 @@ class Benchmark {
   }
 
   Options options_;
-  FclLibrary debian_;
-  std::unique_ptr<FclLibrary> native_;
-  std::pair<const FclMesh*, const FclMesh*> natives_ = {nullptr, nullptr};
+  PeerLibrary debian_;
+  std::unique_ptr<PeerLibrary> native_;
+  std::pair<const PeerMesh*, const PeerMesh*> natives_ = {nullptr, nullptr};
   std::unique_ptr<Device> cpu_;
   std::ostringstream text_;
   std::map<std::string, Means> means_;

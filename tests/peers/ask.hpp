@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "fcl_library.hpp"
 #include "mesh_pairs.hpp"
+#include "peer_library.hpp"
 
 namespace cchip::testing {
 
@@ -33,7 +33,7 @@ struct Difference {
 
 /// One pair of meshes for both libraries.
 struct Bodies {
-  Bodies(MeshPair meshes, const FclLibrary& debian)
+  Bodies(MeshPair meshes, const PeerLibrary& debian)
       : name(meshes.name),
         counts(meshes.counts),
         a(std::move(meshes.a)),
@@ -69,8 +69,8 @@ struct Bodies {
   bool counts;
   Object a;
   Object b;
-  FclMesh fcl_a;
-  FclMesh fcl_b;
+  PeerMesh fcl_a;
+  PeerMesh fcl_b;
 };
 
 }  // namespace cchip::testing

@@ -31,7 +31,7 @@ struct Totals {
 
 class Agreement {
  public:
-  Agreement() : debian_(FclLibrary::debian()), progress_("poses") {
+  Agreement() : debian_(PeerLibrary::fcl_debian()), progress_("poses") {
     for (const std::string& target : cpu_targets()) devices_.push_back({target, open_cpu_device({1, target})});
     devices_.push_back({"all cores", open_cpu_device()});
   }
@@ -144,7 +144,7 @@ class Agreement {
     fmt::print("{}: {} differs in pose {}\n", bodies.name, who, pose);
   }
 
-  FclLibrary debian_;
+  PeerLibrary debian_;
   std::vector<OurDevice> devices_;
   CollisionResult result_;
   Totals totals_;
@@ -154,7 +154,7 @@ class Agreement {
 int run(const Options& options) {
   std::string names;
   for (const std::string& target : cpu_targets()) names += (names.empty() ? "" : ", ") + target;
-  fmt::print("seed {}; instruction sets {}; FCL {}\n", options.seed, names, FclLibrary::debian().description());
+  fmt::print("seed {}; instruction sets {}; FCL {}\n", options.seed, names, PeerLibrary::fcl_debian().description());
   const Totals t = Agreement().run(options);
   fmt::print("poses={} hits={} answers={} contact_queries={} contacts={} fcl_errs={} differences={}\n", t.poses, t.hits,
              t.answers, t.contact_queries, t.contacts, t.fcl_errs, t.differences);

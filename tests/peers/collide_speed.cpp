@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Queries per second of the CPU device and of FCL (OBBRSS) in the same run, in turns, in the same poses: docs/speed.md.
+// Queries per second of the CPU device and of other libraries in the same run, in turns, in the same poses:
+// docs/speed.md.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -25,6 +26,21 @@ namespace {
 /// a native FCL where there is none.
 constexpr double assumed_native_gain = 2.3;
 
+/// Libraries beside FCL, and what brings one that the build did not find.
+struct Peer {
+  const char* name;
+  const char* module;  ///< empty: not found
+  const char* remedy;
+};
+constexpr Peer other_peers[] = {{"Coal", CCHIP_COAL_MODULE, "make peers"},
+                                {"CGAL", CCHIP_CGAL_MODULE, "scripts/bootstrap"},
+                                {"ODE", CCHIP_ODE_MODULE, "scripts/bootstrap --dev"}};
+
+constexpr const char* table_classes[] = {"touch",     "near",     "deep",     "far", "graze",
+                                         "touch all", "deep all", "coherent", "lone"};
+
+bool is_fcl(const std::string& variant) { return variant.rfind("FCL", 0) == 0; }
+
 #ifdef __clang__
 constexpr const char* compiler = __VERSION__;
 #else
@@ -44,15 +60,17 @@ struct Options {
 class Rows {
  public:
   void note(const std::string& key, const std::string& value) { text_ << "# " << key << ": " << value << '\n'; }
-  void head() { text_ << "table,meshes,class,variant,queries,hits,seconds_each,steps,box_tests,pairs,open,bytes\n"; }
+  void head() {
+    text_ << "table,meshes,class,variant,queries,hits,seconds_each,steps,box_tests,pairs,open,bytes,differ\n";
+  }
   void add(const std::string& table, const std::string& meshes, const std::string& pose_class,
            const std::string& variant, std::size_t queries, std::size_t hits, double seconds_each,
-           const CollisionCounts& counts = {}, double bytes = 0) {
+           const CollisionCounts& counts = {}, double bytes = 0, std::size_t differ = 0) {
     const double n = std::max(1.0, static_cast<double>(queries));
-    text_ << fmt::format("{},{},{},{},{},{},{:.4g},{:.5g},{:.5g},{:.5g},{:.5g},{:.4g}\n", table, meshes, pose_class,
+    text_ << fmt::format("{},{},{},{},{},{},{:.4g},{:.5g},{:.5g},{:.5g},{:.5g},{:.4g},{}\n", table, meshes, pose_class,
                          variant, queries, hits, seconds_each, static_cast<double>(counts.steps) / n,
                          static_cast<double>(counts.box_tests) / n, static_cast<double>(counts.pairs) / n,
-                         static_cast<double>(counts.open) / n, bytes);
+                         static_cast<double>(counts.open) / n, bytes, differ);
   }
   std::string text() const { return text_.str(); }
 
@@ -86,8 +104,17 @@ std::string caches() {
   return text;
 }
 
-/// Our answers of one pass. They outlive the clock's run, so nothing of them may be optimised away.
+/// The present pair of meshes in another library.
+struct PeerPair {
+  std::string name;
+  bool has_contacts;
+  PeerMesh a;
+  PeerMesh b;
+};
+
+/// The answers of one variant in one pass. They outlive the clock's run, so nothing of them may be optimised away.
 struct Answers {
+  const PeerPair* peer = nullptr;  ///< null: ours
   std::vector<char> hit;
   std::vector<Contact> witness;
   std::size_t contacts = 0;
@@ -99,12 +126,21 @@ struct Answers {
     contacts += result.contacts.size();
     counts += result.counts;
   }
+  std::size_t differ_from(const Answers& ours) const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < hit.size(); ++i) count += hit[i] != ours.hit[i] ? 1 : 0;
+    return count;
+  }
 };
 
 class Benchmark {
  public:
-  explicit Benchmark(const Options& options)
-      : options_(options), debian_(FclLibrary::debian()), native_(FclLibrary::native()), progress_("queries") {
+  explicit Benchmark(const Options& options) : options_(options), progress_("queries") {
+    libraries_.push_back({"FCL Debian", PeerLibrary::fcl_debian()});
+    if (const auto native = PeerLibrary::fcl_native()) libraries_.push_back({"FCL native", *native});
+    for (const Peer& peer : other_peers) {
+      if (*peer.module != 0) libraries_.push_back({peer.name, PeerLibrary(peer.module)});
+    }
     const std::vector<std::string> targets = cpu_targets();
     for (std::size_t i = 0; i < targets.size(); ++i) {
       targets_.push_back({targets[i], open_cpu_device({1, targets[i]})});
@@ -118,8 +154,14 @@ class Benchmark {
     rows_.note("compiler", compiler);
     double load = 0;
     if (getloadavg(&load, 1) == 1) rows_.note("load before the run", fmt::format("{:.1f}", load));
-    rows_.note("Debian's FCL", debian_.description());
-    rows_.note("native FCL", native_ ? native_->description() : "none, Debian's time divided by 2.3 instead");
+    rows_.note("Debian's FCL", debian().description());
+    rows_.note("native FCL", find("FCL native") != nullptr ? find("FCL native")->description()
+                                                           : "none, Debian's time divided by 2.3 instead");
+    for (const Peer& peer : other_peers) {
+      const PeerLibrary* library = find(peer.name);
+      rows_.note(peer.name, library != nullptr ? library->description()
+                                               : fmt::format("not in this run; {} brings it", peer.remedy));
+    }
     std::string names;
     for (const Target& target : targets_) names += (names.empty() ? "" : ", ") + target.name;
     rows_.note("instruction sets", names);
@@ -130,11 +172,12 @@ class Benchmark {
     fmt::print(
         "\nqueries/s, in brackets times FCL built natively{}; batch: one thread; cores: batch on all, wall clock\n"
         "{:<14}{:<12}{:>6}{:>9}{:>9}{:>18}{:>18}{:>11}{:>7}{:>8}{:>8}{:>7}\n",
-        native_ ? "" : " (Debian's time / 2.3)", "meshes", "class", "hits", "Debian", "native", "single", "batch",
-        "cores", "steps", "boxes", "pairs", "open");
+        find("FCL native") != nullptr ? "" : " (Debian's time / 2.3)", "meshes", "class", "hits", "Debian", "native",
+        "single", "batch", "cores", "steps", "boxes", "pairs", "open");
     for (const std::string& name : options_.pairs) run_pair(name);
     run_scene();
     print_targets();
+    print_libraries();
     print_objects();
     return summary();
   }
@@ -145,6 +188,19 @@ class Benchmark {
     std::unique_ptr<Device> device;
   };
 
+  struct Library {
+    std::string name;
+    PeerLibrary library;
+  };
+
+  const PeerLibrary& debian() const { return libraries_.front().library; }
+  /// Null: not in this run.
+  const PeerLibrary* find(const std::string& name) const {
+    for (const Library& x : libraries_) {
+      if (x.name == name) return &x.library;
+    }
+    return nullptr;
+  }
   std::size_t all_poses() const { return std::max<std::size_t>(4, options_.poses / 30); }
   Device& best() { return *targets_.front().device; }
   std::function<void(std::size_t)> tick() {
@@ -163,14 +219,12 @@ class Benchmark {
   void run_pair(const std::string& name) {
     MeshPair meshes = mesh_pair(name);
     print_build(meshes);
-    const Bodies bodies(std::move(meshes), debian_);
-    std::optional<FclMesh> native_a;
-    std::optional<FclMesh> native_b;
-    if (native_) {
-      native_a.emplace(native_->mesh(bodies.a.mesh()));
-      native_b.emplace(native_->mesh(bodies.b.mesh()));
+    const Bodies bodies(std::move(meshes), debian());
+    peers_.clear();
+    for (const auto& [library_name, library] : libraries_) {
+      peers_.push_back(
+          {library_name, library.has_contacts(), library.mesh(bodies.a.mesh()), library.mesh(bodies.b.mesh())});
     }
-    natives_ = {native_a ? &*native_a : nullptr, native_b ? &*native_b : nullptr};
     PoseMaker maker(best(), bodies.a, bodies.b, options_.seed);
     std::vector<std::vector<Approach>> approaches(static_cast<std::size_t>(options_.passes));
     for (auto& pass : approaches) {
@@ -218,7 +272,7 @@ class Benchmark {
     const bool all = request.contacts == CollisionRequest::Contacts::all;
     std::vector<Variant> result;
     answers.clear();
-    answers.reserve(3 * targets_.size() + 4);  // the variants refer to its elements
+    answers.reserve(2 * targets_.size() + 1 + peers_.size());  // the variants refer to its elements
     const auto ours = [&](const std::string& name, Clock clock, Device& device, bool batch) {
       Answers& mine = answers.emplace_back(poses.size());
       const auto query = [&bodies, &poses](std::size_t i) {
@@ -239,24 +293,26 @@ class Benchmark {
                           }});
       }
     };
-    const auto fcl = [&](const std::string& name, const FclMesh& a, const FclMesh& b) {
+    const auto theirs = [&](const PeerPair& peer) {
+      if (all && !peer.has_contacts) return;
       Answers& mine = answers.emplace_back(poses.size());
-      result.push_back({name, Clock::cpu, [&, all](std::size_t first, std::size_t count) {
+      mine.peer = &peer;
+      result.push_back({peer.name, Clock::cpu, [&, all](std::size_t first, std::size_t count) {
                           for (std::size_t i = first; i < first + count; ++i) {
                             if (all) {
-                              const std::size_t found = a.count_contacts(poses[i].a, b, poses[i].b);
+                              const std::size_t found = peer.a.count_contacts(poses[i].a, peer.b, poses[i].b);
                               mine.hit[i] = static_cast<char>(found > 0);
                               mine.contacts += found;
                             } else {
-                              mine.hit[i] = static_cast<char>(a.hit(poses[i].a, b, poses[i].b));
+                              mine.hit[i] = static_cast<char>(peer.a.hit(poses[i].a, peer.b, poses[i].b));
                             }
                           }
                         }});
     };
     ours("single", Clock::cpu, best(), false);
-    fcl("FCL Debian", bodies.fcl_a, bodies.fcl_b);
+    theirs(peers_.front());
     ours("batch", Clock::cpu, best(), true);
-    if (natives_.first != nullptr) fcl("FCL native", *natives_.first, *natives_.second);
+    for (std::size_t i = 1; i < peers_.size(); ++i) theirs(peers_[i]);
     ours("cores", Clock::wall, *all_cores_, true);
     for (std::size_t i = 1; all_targets && i < targets_.size(); ++i) {
       ours("single " + targets_[i].name, Clock::cpu, *targets_[i].device, false);
@@ -271,7 +327,7 @@ class Benchmark {
     std::vector<std::string> names;
     std::size_t queries = 0;
     std::size_t hits = 0;
-    std::size_t open = 0;
+    std::map<std::string, std::size_t> differ;
     CollisionCounts counts;
     for (int pass = 0; pass < options_.passes; ++pass) {
       const std::vector<PosePair> poses = make_poses(pass);
@@ -283,16 +339,16 @@ class Benchmark {
       for (std::size_t i = 0; i < ways.size(); ++i) {
         names.push_back(ways[i].name);
         passes[i].push_back(ways[i].passes.front());
+        differ[ways[i].name] += answers[i].differ_from(answers.front());
       }
       queries += poses.size();
       counts += answers.front().counts;
-      open += answers.front().counts.open;
       hits += static_cast<std::size_t>(std::count(answers.front().hit.begin(), answers.front().hit.end(), 1));
       compare(bodies, class_name, request, poses, ways, answers);
     }
     std::map<std::string, double> seconds;
     for (std::size_t i = 0; i < names.size(); ++i) seconds[names[i]] = median(passes[i]);
-    report("query", bodies.name, class_name, queries, hits, names, seconds, counts, bodies.counts);
+    report(bodies.name, class_name, queries, hits, names, seconds, differ, counts, bodies.counts);
   }
 
   /// Counts the answers that are not ours, and those that exact integers do not explain.
@@ -305,11 +361,14 @@ class Benchmark {
         ++compared_;
         if (answers[k].hit[i] == first.hit[i]) continue;
         Difference difference = {0, 1};  // two variants of ours must not differ
-        if (ways[k].name.rfind("FCL", 0) == 0) {
-          const FclMesh& a = ways[k].name == "FCL native" ? *natives_.first : bodies.fcl_a;
-          const FclMesh& b = ways[k].name == "FCL native" ? *natives_.second : bodies.fcl_b;
-          difference = first.hit[i] != 0 ? bodies.judge(poses[i], true, first.witness[i])
-                                         : bodies.judge(poses[i], {}, a.contacts(poses[i].a, b, poses[i].b));
+        if (const PeerPair* peer = answers[k].peer) {
+          if (first.hit[i] != 0) {
+            difference = bodies.judge(poses[i], true, first.witness[i]);
+          } else if (peer->has_contacts) {
+            difference = bodies.judge(poses[i], {}, peer->a.contacts(poses[i].a, peer->b, poses[i].b));
+          } else {
+            difference = bodies.judge(poses[i], false, {});
+          }
         }
         note(difference, bodies.name, class_name, ways[k].name, i);
       }
@@ -320,7 +379,7 @@ class Benchmark {
            bodies.name, class_name, "contacts", i);
     }
     for (std::size_t k = 1; k < answers.size(); ++k) {
-      const bool same = ways[k].name.rfind("FCL", 0) == 0 || answers[k].contacts == first.contacts ||
+      const bool same = answers[k].peer != nullptr || answers[k].contacts == first.contacts ||
                         request.contacts != CollisionRequest::Contacts::all;
       if (!same) note({0, 1}, bodies.name, class_name, ways[k].name + ", number of contacts", 0);
     }
@@ -328,7 +387,9 @@ class Benchmark {
 
   void note(const Difference& difference, const std::string& meshes, const std::string& class_name,
             const std::string& variant, std::size_t pose) {
-    fcl_errs_ += difference.asked - std::min(difference.asked, difference.unexplained);
+    if (is_fcl(variant) || variant == "contacts") {
+      fcl_errs_ += difference.asked - std::min(difference.asked, difference.unexplained);
+    }
     differences_ += difference.unexplained;
     if (difference.unexplained == 0) return;
     progress_.clear();
@@ -336,12 +397,15 @@ class Benchmark {
                difference.unexplained);
   }
 
-  void report(const std::string& table, const std::string& meshes, const std::string& class_name, std::size_t queries,
-              std::size_t hits, const std::vector<std::string>& names, const std::map<std::string, double>& seconds,
-              const CollisionCounts& counts, bool in_means) {
+  /// \param differ answers of each variant that are not ours
+  void report(const std::string& meshes, const std::string& class_name, std::size_t queries, std::size_t hits,
+              const std::vector<std::string>& names, const std::map<std::string, double>& seconds,
+              const std::map<std::string, std::size_t>& differ, const CollisionCounts& counts, bool in_means) {
     for (const std::string& name : names) {
-      rows_.add(table, meshes, class_name, name, queries, hits, seconds.at(name), counts);
+      rows_.add("query", meshes, class_name, name, queries, hits, seconds.at(name), counts, 0, differ.at(name));
+      differ_[class_name][name] += differ.at(name);
     }
+    queries_[class_name] += queries;
     const double reference = native_seconds(seconds);
     const bool boolean = class_name == "touch" || class_name == "near" || class_name == "deep";
     if (in_means) {
@@ -391,14 +455,16 @@ class Benchmark {
       tick()(1);
     }
     std::map<std::string, double> each;
+    std::map<std::string, std::size_t> differ;
     std::vector<std::string> names;
     for (std::size_t k = 0; k < ways.size(); ++k) {
       if (times[k].empty()) continue;
       names.push_back(ways[k].name);
       each[ways[k].name] = median(times[k]);
+      differ[ways[k].name] = answers[k].differ_from(answers.front());
     }
     const auto hits = static_cast<std::size_t>(std::count(answers[0].hit.begin(), answers[0].hit.end(), 1));
-    report("query", bodies.name, "lone", count, hits, names, each, answers[0].counts, bodies.counts);
+    report(bodies.name, "lone", count, hits, names, each, differ, answers[0].counts, bodies.counts);
   }
 
   /// One object that moves against a scene of several: a batch of one query with each of them.
@@ -423,28 +489,27 @@ class Benchmark {
       places.emplace_back(make_pose(corner, vector(180)));
     }
     struct Scene {
-      std::vector<FclMesh> objects;
-      FclMesh mover;
+      std::string name;
+      std::vector<PeerMesh> objects;
+      PeerMesh mover;
     };
-    const auto scene = [&](const FclLibrary& library) {
-      Scene result = {{}, library.mesh(mover.mesh())};
-      for (const Object& object : objects) result.objects.push_back(library.mesh(object.mesh()));
-      return result;
-    };
-    const Scene debian = scene(debian_);
-    std::optional<Scene> native;
-    if (native_) native.emplace(scene(*native_));
+    std::vector<Scene> scenes;
+    for (const auto& [name, library] : libraries_) {
+      Scene& scene = scenes.emplace_back(Scene{name, {}, library.mesh(mover.mesh())});
+      for (const Object& object : objects) scene.objects.push_back(library.mesh(object.mesh()));
+    }
     const std::size_t n = objects.size();
     const std::size_t poses = std::max<std::size_t>(8, options_.poses / 4);
     std::vector<std::vector<double>> passes;
     std::vector<std::string> names;
     std::size_t hits = 0;
+    std::map<std::string, std::size_t> differ;
     CollisionCounts counts;
     for (int pass = 0; pass < options_.passes; ++pass) {
       std::vector<Pose> moves;
       for (std::size_t i = 0; i < poses; ++i) moves.emplace_back(make_pose(vector(0.4), vector(180)));
       std::vector<Answers> answers;
-      answers.reserve(5);
+      answers.reserve(3 + scenes.size());
       std::vector<Variant> ways;
       const auto ours = [&](const std::string& name, Clock clock, Device& device, bool batch) {
         Answers& mine = answers.emplace_back(n * poses);
@@ -465,9 +530,9 @@ class Benchmark {
                           }
                         }});
       };
-      const auto fcl = [&](const std::string& name, const Scene& s) {
+      const auto theirs = [&](const Scene& s) {
         Answers& mine = answers.emplace_back(n * poses);
-        ways.push_back({name, Clock::cpu, [&](std::size_t first, std::size_t count) {
+        ways.push_back({s.name, Clock::cpu, [&](std::size_t first, std::size_t count) {
                           for (std::size_t i = first; i < first + count; ++i) {
                             for (std::size_t k = 0; k < n; ++k) {
                               mine.hit[n * i + k] = static_cast<char>(s.mover.hit(moves[i], s.objects[k], places[k]));
@@ -476,9 +541,9 @@ class Benchmark {
                         }});
       };
       ours("single", Clock::cpu, best(), false);
-      fcl("FCL Debian", debian);
+      theirs(scenes.front());
       ours("batch", Clock::cpu, best(), true);
-      if (native) fcl("FCL native", *native);
+      for (std::size_t i = 1; i < scenes.size(); ++i) theirs(scenes[i]);
       ours("cores", Clock::wall, *all_cores_, true);
       measure_pass(ways, poses, 8, tick());
       passes.resize(ways.size());
@@ -486,14 +551,15 @@ class Benchmark {
       for (std::size_t i = 0; i < ways.size(); ++i) {
         names.push_back(ways[i].name);
         passes[i].push_back(ways[i].passes.front() / static_cast<double>(n));
+        differ[ways[i].name] += answers[i].differ_from(answers.front());
       }
       counts += answers.front().counts;
       hits += static_cast<std::size_t>(std::count(answers.front().hit.begin(), answers.front().hit.end(), 1));
     }
     std::map<std::string, double> seconds;
     for (std::size_t i = 0; i < names.size(); ++i) seconds[names[i]] = median(passes[i]);
-    report("query", "scene", fmt::format("{} objects", n), n * poses * static_cast<std::size_t>(options_.passes), hits,
-           names, seconds, counts, false);
+    report("scene", fmt::format("{} objects", n), n * poses * static_cast<std::size_t>(options_.passes), hits, names,
+           seconds, differ, counts, false);
   }
 
   struct Built {
@@ -517,7 +583,7 @@ class Benchmark {
       }
       const double between = heap_bytes();
       start = seconds(Clock::cpu);
-      const FclMesh fcl = debian_.mesh(mesh);
+      const PeerMesh fcl = debian().mesh(mesh);
       built.fcl_milliseconds = 1000 * (seconds(Clock::cpu) - start);
       built.fcl_bytes = (heap_bytes() - between) / n;
       rows_.add("object", built.meshes, built.side + " " + built.faces, "ours", 0, 0, built.milliseconds / 1000, {},
@@ -552,6 +618,26 @@ class Benchmark {
     fmt::print("\n");
   }
 
+  /// How many times faster a single query is than in each other library, and its answers that are not ours.
+  void print_libraries() {
+    fmt::print(
+        "\nother libraries: single is faster by, geometric means of the meshes; their answers that "
+        "differ\n{:<12}{:>10}",
+        "", "answers");
+    for (const Library& x : libraries_) fmt::print("{:>18}", x.name);
+    for (const char* c : table_classes) {
+      fmt::print("\n{:<12}{:>10}", c, queries_[c]);
+      for (const Library& x : libraries_) {
+        auto& means = means_[c];
+        const bool has = means.count(x.name) != 0;
+        fmt::print(
+            "{:>18}",
+            has ? fmt::format("{:.1f}, {}", means["single"].value() / means[x.name].value(), differ_[c][x.name]) : "-");
+      }
+    }
+    fmt::print("\n");
+  }
+
   int summary() {
     if (!options_.csv.empty()) {
       std::filesystem::create_directories(std::filesystem::path(options_.csv).parent_path());
@@ -563,14 +649,15 @@ class Benchmark {
       file.commit();
     }
     fmt::print("\ngeometric means, times FCL built natively:");
-    for (const char* c : {"touch", "near", "deep", "far", "graze", "touch all", "deep all", "coherent", "lone"}) {
+    for (const char* c : table_classes) {
       fmt::print("\n  {:<12} single {:>6.1f}", c, means_[c]["single"].value());
       if (means_[c].count("batch") != 0) {
         fmt::print("  batch {:>6.1f}  cores {:>6.1f}", means_[c]["batch"].value(), means_[c]["cores"].value());
       }
     }
     fmt::print("\n");
-    if (native_) fmt::print("FCL built natively is {:.2f} times as fast as Debian's here\n", native_gain_.value());
+    if (find("FCL native") != nullptr)
+      fmt::print("FCL built natively is {:.2f} times as fast as Debian's here\n", native_gain_.value());
     fmt::print("answers and sets of contacts compared: {}; pairs of faces in which FCL errs by exact integers: {}\n",
                compared_, fcl_errs_);
     fmt::print("single={:.1f} batch={:.1f} all_contacts={:.1f} differences={}\n", means_["booleans"]["single"].value(),
@@ -579,15 +666,16 @@ class Benchmark {
   }
 
   Options options_;
-  FclLibrary debian_;
-  std::unique_ptr<FclLibrary> native_;
-  std::pair<const FclMesh*, const FclMesh*> natives_ = {nullptr, nullptr};  ///< of the present pair
-  std::vector<Target> targets_;                                             ///< one thread each, the best first
+  std::vector<Library> libraries_;  ///< Debian's FCL first
+  std::vector<PeerPair> peers_;     ///< the present pair in each of them
+  std::vector<Target> targets_;     ///< one thread each, the best first
   std::unique_ptr<Device> all_cores_;
   CollisionResult result_;  ///< reused, as a user does
   Rows rows_;
   std::vector<Built> built_;
   std::map<std::string, std::map<std::string, GeometricMean>> means_;  ///< class, variant
+  std::map<std::string, std::map<std::string, std::size_t>> differ_;   ///< class, variant
+  std::map<std::string, std::size_t> queries_;                         ///< class
   GeometricMean native_gain_;
   std::size_t compared_ = 0;
   std::size_t fcl_errs_ = 0;
@@ -602,8 +690,9 @@ class Benchmark {
 int main(int argc, char** argv) try {
   cchip::testing::Options o;
   CLI::App app{
-      "Queries per second of the CPU device and of FCL, the same poses in turns.\n"
-      "Exit codes: 0 done, 3 an answer differs from FCL's and exact integers say that FCL is right, 2 the run could "
+      "Queries per second of the CPU device, FCL, Coal, CGAL and ODE, the same poses in turns.\n"
+      "Exit codes: 0 done, 3 an answer differs from another library's and exact integers say that ours is wrong, 2 the "
+      "run could "
       "not be made."};
   app.add_option("--poses", o.poses, "poses of each class and pair of meshes in a pass")
       ->check(CLI::Range(8, 1000000))

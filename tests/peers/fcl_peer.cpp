@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fcl_peer.hpp"
-
 #include <fcl/config.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>
@@ -10,6 +8,8 @@
 
 #include <algorithm>
 #include <vector>
+
+#include "peer.hpp"
 
 namespace {
 
@@ -37,14 +37,14 @@ void* make(const double* vertices, size_t vertex_count, const uint32_t* triangle
 
 void destroy(void* mesh) { delete static_cast<Model*>(mesh); }
 
-int hit(const void* a, const double* pose_a, const void* b, const double* pose_b) {
+int hit(void* a, const double* pose_a, void* b, const double* pose_b) {
   const fcl::CollisionRequest<double> request(1, false);
   fcl::CollisionResult<double> result;
   return fcl::collide(static_cast<const Model*>(a), transform(pose_a), static_cast<const Model*>(b), transform(pose_b),
                       request, result) > 0;
 }
 
-size_t contacts(const void* a, const double* pose_a, const void* b, const double* pose_b, size_t most, uint32_t* pairs,
+size_t contacts(void* a, const double* pose_a, void* b, const double* pose_b, size_t most, uint32_t* pairs,
                 size_t room) {
   const fcl::CollisionRequest<double> request(most, false);
   fcl::CollisionResult<double> result;
@@ -59,7 +59,7 @@ size_t contacts(const void* a, const double* pose_a, const void* b, const double
   return count;
 }
 
-constexpr CchipFclPeer peer = {
+constexpr CchipPeer peer = {
 #if defined(__AVX512F__)
     FCL_VERSION ", compiled with AVX-512",
 #elif defined(__AVX2__)
@@ -71,4 +71,4 @@ constexpr CchipFclPeer peer = {
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) const CchipFclPeer* cchip_fcl_peer() { return &peer; }
+extern "C" __attribute__((visibility("default"))) const CchipPeer* cchip_peer() { return &peer; }

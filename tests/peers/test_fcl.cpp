@@ -91,7 +91,7 @@ TEST_CASE("FCL answers the same, except where it errs", "[ref][fcl]") {
 }
 
 TEST_CASE("The judge of bench-collide and collide_agreement finds wrong answers", "[ref][fcl]") {
-  const FclLibrary debian = FclLibrary::debian();
+  const PeerLibrary debian = PeerLibrary::fcl_debian();
   const Bodies bodies(
       {"torus and gear", make_torus(1, 0.25, 48, 24, Kind::quad), make_gear(1.25, 1.5, 0.5, 0.5, 24, 4)}, debian);
   const PosePair poses = {Pose::Identity(), Pose(make_pose({0, 0.1, 0.4}, {7, 8, 9}))};

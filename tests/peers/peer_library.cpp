@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fcl_library.hpp"
+#include "peer_library.hpp"
 
 #include <dlfcn.h>
 
@@ -8,28 +8,29 @@
 
 namespace cchip::testing {
 
-FclLibrary::FclLibrary(const std::string& path) {
+PeerLibrary::PeerLibrary(const std::string& path) {
   // Never closed: the code of a mesh may be needed until the process ends.
   void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (module == nullptr) throw std::runtime_error(std::string(dlerror()) + "; build the target of that name");
-  void* function = dlsym(module, "cchip_fcl_peer");
-  if (function == nullptr) throw std::runtime_error(path + ": no function cchip_fcl_peer");
-  peer_ = reinterpret_cast<CchipFclPeerFunction*>(function)();
+  void* function = dlsym(module, "cchip_peer");
+  if (function == nullptr) throw std::runtime_error(path + ": no function cchip_peer");
+  peer_ = reinterpret_cast<CchipPeerFunction*>(function)();
+  if (peer_ == nullptr) throw std::runtime_error(path + ": the library does not start; leave it out of the build");
 }
 
-FclLibrary FclLibrary::debian() { return FclLibrary(CCHIP_FCL_DEBIAN_MODULE); }
+PeerLibrary PeerLibrary::fcl_debian() { return PeerLibrary(CCHIP_FCL_DEBIAN_MODULE); }
 
-std::unique_ptr<FclLibrary> FclLibrary::native() {
+std::unique_ptr<PeerLibrary> PeerLibrary::fcl_native() {
 #ifdef CCHIP_FCL_NATIVE_MODULE
-  return std::unique_ptr<FclLibrary>(new FclLibrary(CCHIP_FCL_NATIVE_MODULE));
+  return std::unique_ptr<PeerLibrary>(new PeerLibrary(CCHIP_FCL_NATIVE_MODULE));
 #else
   return nullptr;
 #endif
 }
 
-FclMesh FclLibrary::mesh(const Mesh& mesh) const { return FclMesh(peer_, mesh); }
+PeerMesh PeerLibrary::mesh(const Mesh& mesh) const { return PeerMesh(peer_, mesh); }
 
-FclMesh::FclMesh(const CchipFclPeer* peer, const Mesh& mesh) : peer_(peer), model_(nullptr, peer->destroy) {
+PeerMesh::PeerMesh(const CchipPeer* peer, const Mesh& mesh) : peer_(peer), model_(nullptr, peer->destroy) {
   std::vector<double> vertices;
   for (const Vec3d& v : mesh.vertices) vertices.insert(vertices.end(), v.begin(), v.end());
   std::vector<std::uint32_t> triangles;
@@ -44,7 +45,8 @@ FclMesh::FclMesh(const CchipFclPeer* peer, const Mesh& mesh) : peer_(peer), mode
   model_.reset(peer->make(vertices.data(), mesh.vertices.size(), triangles.data(), face_of_.size()));
 }
 
-std::vector<Contact> FclMesh::contacts(const Pose& pose, const FclMesh& b, const Pose& pose_b, std::size_t most) const {
+std::vector<Contact> PeerMesh::contacts(const Pose& pose, const PeerMesh& b, const Pose& pose_b,
+                                        std::size_t most) const {
   const auto find = [&](std::vector<std::uint32_t>& pairs) {
     return peer_->contacts(model_.get(), pose.data(), b.model_.get(), pose_b.data(), most, pairs.data(),
                            pairs.size() / 2);
