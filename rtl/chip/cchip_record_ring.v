@@ -74,7 +74,8 @@ module cchip_record_ring #(
   // how far the consumer has moved, the records that are not read, whether there is room. The last
   // one knows nothing of a record taken on the clock before: then a second place must be free
   reg [31:0] mask_q;              // size of the ring - 1
-  reg [31:0] consumer_q, back_q;  // -(how far it has moved)
+  reg [31:0] consumer_q, held_q2;  // of the same clock
+  reg [31:0] back_q;              // -(how far the consumer has moved)
   reg [31:0] unread_q, confirmed_q;  // confirmed and unread; huge if the host is ahead of memory
   reg took_q, room_q, room_2_q, host_q;
   wire beyond = |(unread_q & ~mask_q);
@@ -85,7 +86,8 @@ module cchip_record_ring #(
     consumer_q  <= rst ? 32'd0 : consumer;
     back_q      <= rst ? 32'd0 : consumer_q - consumer;
     unread_q    <= rst ? 32'd0 : unread_q + back_q + {31'd0, take};
-    confirmed_q <= held_q - consumer_q;
+    held_q2     <= held_q;
+    confirmed_q <= held_q2 - consumer_q;
     took_q      <= take;
     room_q      <= ~rst & ~beyond;
     room_2_q    <= ~beyond & |(~unread_q & mask_q);
