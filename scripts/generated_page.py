@@ -9,7 +9,6 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 VENV = ROOT / "build" / "venv"
-BLOCK = re.compile(r"(<!-- generated: begin -->\n).*?(<!-- generated: end -->)", re.S)
 
 
 def fail(text, code=1):
@@ -18,12 +17,14 @@ def fail(text, code=1):
     sys.exit(code)
 
 
-def page_with(page, block):
-    """Text of a page with another block between its two `generated` lines."""
+def page_with(page, block, name=""):
+    """Text of a page with another block between its two `generated` lines, those of a name if it has several blocks."""
     text = page.read_text()
-    if not BLOCK.search(text):
-        fail(f"{page.relative_to(ROOT)} has no lines '<!-- generated: begin -->' and '<!-- generated: end -->'")
-    return BLOCK.sub(lambda found: found[1] + block + found[2], text)
+    begin = f"<!-- generated: begin {name} -->" if name else "<!-- generated: begin -->"
+    pattern = re.compile(rf"({begin}\n).*?(<!-- generated: end -->)", re.S)
+    if not pattern.search(text):
+        fail(f"{page.relative_to(ROOT)} has no lines '{begin}' and '<!-- generated: end -->'")
+    return pattern.sub(lambda found: found[1] + block + found[2], text)
 
 
 def compare(path, fresh, command):

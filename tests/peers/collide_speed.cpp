@@ -14,10 +14,11 @@
 #include <map>
 #include <optional>
 #include <sstream>
-#include <thread>
 
 #include "ask.hpp"
+#include "machine.hpp"
 #include "measure.hpp"
+#include "other_libraries.hpp"
 
 namespace cchip::testing {
 namespace {
@@ -26,26 +27,10 @@ namespace {
 /// a native FCL where there is none.
 constexpr double assumed_native_gain = 2.3;
 
-/// Libraries beside FCL, and what brings one that the build did not find.
-struct Peer {
-  const char* name;
-  const char* module;  ///< empty: not found
-  const char* remedy;
-};
-constexpr Peer other_peers[] = {{"Coal", CCHIP_COAL_MODULE, "make peers"},
-                                {"CGAL", CCHIP_CGAL_MODULE, "scripts/bootstrap"},
-                                {"ODE", CCHIP_ODE_MODULE, "scripts/bootstrap --dev"}};
-
 constexpr const char* table_classes[] = {"touch",     "near",     "deep",     "far", "graze",
                                          "touch all", "deep all", "coherent", "lone"};
 
 bool is_fcl(const std::string& variant) { return variant.rfind("FCL", 0) == 0; }
-
-#ifdef __clang__
-constexpr const char* compiler = __VERSION__;
-#else
-constexpr const char* compiler = "GCC " __VERSION__;
-#endif
 
 struct Options {
   std::size_t poses = 3000;
@@ -78,32 +63,6 @@ class Rows {
   std::ostringstream text_;
 };
 
-std::string first_line_after(const std::string& path, const std::string& key) {
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);) {
-    if (line.rfind(key, 0) != 0) continue;
-    const std::size_t colon = line.find(": ");
-    return colon == std::string::npos ? line : line.substr(colon + 2);
-  }
-  return "unknown";
-}
-
-std::string caches() {
-  std::string text;
-  for (int i = 0; i < 4; ++i) {
-    const std::string folder = fmt::format("/sys/devices/system/cpu/cpu0/cache/index{}/", i);
-    std::ifstream level(folder + "level");
-    std::ifstream type(folder + "type");
-    std::ifstream size(folder + "size");
-    std::string l;
-    std::string t;
-    std::string s;
-    if (!(level >> l && type >> t && size >> s)) continue;
-    if (t != "Instruction") text += fmt::format("{}L{} {}", text.empty() ? "" : ", ", l, s);
-  }
-  return text;
-}
-
 /// The present pair of meshes in another library.
 struct PeerPair {
   std::string name;
@@ -135,12 +94,7 @@ struct Answers {
 
 class Benchmark {
  public:
-  explicit Benchmark(const Options& options) : options_(options), progress_("queries") {
-    libraries_.push_back({"FCL Debian", PeerLibrary::fcl_debian()});
-    if (const auto native = PeerLibrary::fcl_native()) libraries_.push_back({"FCL native", *native});
-    for (const Peer& peer : other_peers) {
-      if (*peer.module != 0) libraries_.push_back({peer.name, PeerLibrary(peer.module)});
-    }
+  explicit Benchmark(const Options& options) : options_(options), libraries_(open_libraries()), progress_("queries") {
     const std::vector<std::string> targets = cpu_targets();
     for (std::size_t i = 0; i < targets.size(); ++i) {
       targets_.push_back({targets[i], open_cpu_device({1, targets[i]})});
@@ -149,18 +103,16 @@ class Benchmark {
   }
 
   int run() {
-    rows_.note("machine", fmt::format("{}, {} cores; {}", first_line_after("/proc/cpuinfo", "model name"),
-                                      std::thread::hardware_concurrency(), caches()));
+    rows_.note("machine", machine_description());
     rows_.note("compiler", compiler);
-    double load = 0;
-    if (getloadavg(&load, 1) == 1) rows_.note("load before the run", fmt::format("{:.1f}", load));
+    rows_.note("load before the run", load_description());
     rows_.note("Debian's FCL", debian().description());
     rows_.note("native FCL", find("FCL native") != nullptr ? find("FCL native")->description()
                                                            : "none, Debian's time divided by 2.3 instead");
-    for (const Peer& peer : other_peers) {
-      const PeerLibrary* library = find(peer.name);
-      rows_.note(peer.name, library != nullptr ? library->description()
-                                               : fmt::format("not in this run; {} brings it", peer.remedy));
+    for (const OtherLibrary& other : other_libraries) {
+      const PeerLibrary* library = find(other.name);
+      rows_.note(other.name, library != nullptr ? library->description()
+                                                : fmt::format("not in this run; {} brings it", other.remedy));
     }
     std::string names;
     for (const Target& target : targets_) names += (names.empty() ? "" : ", ") + target.name;
@@ -188,15 +140,10 @@ class Benchmark {
     std::unique_ptr<Device> device;
   };
 
-  struct Library {
-    std::string name;
-    PeerLibrary library;
-  };
-
   const PeerLibrary& debian() const { return libraries_.front().library; }
   /// Null: not in this run.
   const PeerLibrary* find(const std::string& name) const {
-    for (const Library& x : libraries_) {
+    for (const NamedLibrary& x : libraries_) {
       if (x.name == name) return &x.library;
     }
     return nullptr;
@@ -624,10 +571,10 @@ class Benchmark {
         "\nother libraries: single is faster by, geometric means of the meshes; their answers that "
         "differ\n{:<12}{:>10}",
         "", "answers");
-    for (const Library& x : libraries_) fmt::print("{:>18}", x.name);
+    for (const NamedLibrary& x : libraries_) fmt::print("{:>18}", x.name);
     for (const char* c : table_classes) {
       fmt::print("\n{:<12}{:>10}", c, queries_[c]);
-      for (const Library& x : libraries_) {
+      for (const NamedLibrary& x : libraries_) {
         auto& means = means_[c];
         const bool has = means.count(x.name) != 0;
         fmt::print(
@@ -666,9 +613,9 @@ class Benchmark {
   }
 
   Options options_;
-  std::vector<Library> libraries_;  ///< Debian's FCL first
-  std::vector<PeerPair> peers_;     ///< the present pair in each of them
-  std::vector<Target> targets_;     ///< one thread each, the best first
+  std::vector<NamedLibrary> libraries_;  ///< Debian's FCL first
+  std::vector<PeerPair> peers_;          ///< the present pair in each of them
+  std::vector<Target> targets_;          ///< one thread each, the best first
   std::unique_ptr<Device> all_cores_;
   CollisionResult result_;  ///< reused, as a user does
   Rows rows_;

@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The table "A robot cell" of docs/speed.md from the CSV file that robot_speed writes (make bench-robot).
+
+usage: robot_table.py [--csv PATH | --check]
+  --csv PATH    take this run: copy it to docs/figures/robot_speed.csv and rewrite the table
+  --check       write nothing: compare the table with the checked-in CSV
+
+Without an option the table is rewritten from the checked-in CSV.
+Exit codes: 0 done or up to date, 1 stale or no such file, 2 bad arguments."""
+import argparse
+import csv
+import pathlib
+import sys
+
+from generated_page import ROOT, compare, fail, page_with, write
+
+PAGE = ROOT / "docs" / "speed.md"
+RUN = ROOT / "docs" / "figures" / "robot_speed.csv"
+VARIANTS = ("single", "batch", "FCL Debian", "FCL native", "Coal", "CGAL", "ODE")  # one that is not in the run has no row
+ARMS = {"panda": "Panda", "ur3": "UR3", "ur5": "UR5", "ur10": "UR10"}
+
+
+def table(text):
+    lines = text.splitlines()
+    notes = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
+    cells = {(row["arm"], row["mode"], row["variant"]): row
+             for row in csv.DictReader(line for line in lines if not line.startswith("# "))}
+    arms = list(dict.fromkeys(arm for arm, _, _ in cells))
+    out = [f"- {key}: {notes[key]}" for key in ("machine", "load before the run", "run", *arms) if key in notes]
+    out += ["", "| | " + " | ".join(f"{ARMS[arm]}: checks/s | pair queries/s" for arm in arms) + " | not exact |",
+            "|---" * (2 * len(arms) + 2) + "|"]
+    for variant in VARIANTS:
+        columns = []
+        wrong = 0
+        for arm in arms:
+            for mode in ("check", "all pairs"):
+                row = cells.get((arm, mode, variant))
+                if row is None:
+                    columns.append("-")
+                    continue
+                each = float(row["seconds_each"])
+                count = 1 if mode == "check" else int(row["asked"]) / int(row["configurations"])
+                ahead = each / float(cells[arm, mode, "single"]["seconds_each"])
+                columns.append(f"{count / each:,.0f}" + ("" if variant == "single" else f" ({ahead:.1f})"))
+                wrong += int(row["differ"]) if mode == "all pairs" else 0
+        if set(columns) != {"-"}:
+            out.append(f"| {variant} | " + " | ".join(columns) + f" | {wrong:,} |")
+    return "\n".join(out) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__, add_help=False)
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--csv", type=pathlib.Path)
+    what.add_argument("--check", action="store_true")
+    parser.add_argument("-h", "--help", action="store_true")
+    arguments = parser.parse_args()
+    if arguments.help:
+        print(__doc__)
+        return 0
+    source = arguments.csv or RUN
+    if not source.is_file():
+        fail(f"{source} is not there; make bench-robot writes build/bench/robot.csv")
+    text = source.read_text()
+    page = page_with(PAGE, table(text), "robot")
+    if arguments.check:
+        return compare(PAGE, page, "scripts/robot_table.py")
+    write({RUN: text, PAGE: page})
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
