@@ -71,10 +71,11 @@ def svg_text(figure):
     return re.sub(r" +$", "", text.getvalue(), flags=re.M)
 
 
-def page_and_plot(usage, page, run, plot, producer, read, tables, draw):
-    """Command line of a script whose page and plot come from the CSV file of one run: --csv PATH, --check, --check-plot.
+def page_and_plots(usage, page, run, plots, producer, read, tables):
+    """Command line of a script whose page and plots come from the CSV file of one run: --csv PATH, --check, --check-plot.
 
-    run: the checked-in CSV; producer: what to say if there is none; read: its text -> what tables and draw take."""
+    run: the checked-in CSV; plots: path -> function that draws it; producer: what to say if there is no CSV; read: its
+    text -> what tables and the functions of plots take."""
     script = f"scripts/{pathlib.Path(sys.argv[0]).name}"
     parser = argparse.ArgumentParser(usage=usage, add_help=False)
     what = parser.add_mutually_exclusive_group()
@@ -94,6 +95,6 @@ def page_and_plot(usage, page, run, plot, producer, read, tables, draw):
     if arguments.check:
         return compare(page, page_with(page, tables(found)), script)
     if arguments.check_plot:
-        return compare(plot, draw(found), script)
-    write({run: text, page: page_with(page, tables(found)), plot: draw(found)})
+        return max(compare(plot, draw(found), script) for plot, draw in plots.items())
+    write({run: text, page: page_with(page, tables(found)), **{plot: draw(found) for plot, draw in plots.items()}})
     return 0

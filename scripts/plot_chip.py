@@ -13,7 +13,7 @@ import csv
 import math
 import sys
 
-from generated_page import ROOT, page_and_plot, plain_number, start_plot, svg_text
+from generated_page import ROOT, page_and_plots, plain_number, start_plot, svg_text
 
 PAGE = ROOT / "docs" / "chip-speed.md"
 RUN = ROOT / "docs" / "figures" / "chip_speed.csv"
@@ -97,4 +97,4 @@ def draw(run):
 
 
 if __name__ == "__main__":
-    sys.exit(page_and_plot(__doc__, PAGE, RUN, PLOT, "make bench-chip writes build/bench/chip.csv", Run, tables, draw))
+    sys.exit(page_and_plots(__doc__, PAGE, RUN, {PLOT: draw}, "make bench-chip writes build/bench/chip.csv", Run, tables))

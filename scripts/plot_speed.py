@@ -1,23 +1,24 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/speed.md and its plot from the CSV file that collide_speed writes (make bench-collide).
+"""docs/speed.md, its plot and the small one of README.md from the CSV file that collide_speed writes (make bench-collide).
 
 usage: plot_speed.py [--csv PATH | --check | --check-plot]
-  --csv PATH    take this run: copy it to docs/figures/collide_speed.csv, rewrite page and plot
+  --csv PATH    take this run: copy it to docs/figures/collide_speed.csv, rewrite page and plots
   --check       write nothing: compare the tables of the page with the checked-in CSV
-  --check-plot  write nothing: compare the plot with one drawn from the checked-in CSV
+  --check-plot  write nothing: compare the plots with those drawn from the checked-in CSV
 
-Without an option page and plot are rewritten from the checked-in CSV. Drawing needs matplotlib, installed by `make venv`.
+Without an option page and plots are rewritten from the checked-in CSV. Drawing needs matplotlib, installed by `make venv`.
 Exit codes: 0 done or up to date, 1 stale or no such file, 2 bad arguments, 77 no matplotlib."""
 import csv
 import math
 import sys
 
-from generated_page import ROOT, page_and_plot, plain_number, start_plot, svg_text
+from generated_page import ROOT, page_and_plots, plain_number, start_plot, svg_text
 
 PAGE = ROOT / "docs" / "speed.md"
 RUN = ROOT / "docs" / "figures" / "collide_speed.csv"
 PLOT = ROOT / "docs" / "pictures" / "collide_speed.svg"
+SMALL = ROOT / "docs" / "pictures" / "collide_speed_small.svg"  # for README.md
 ASSUMED_GAIN = 2.3  # collide_speed.cpp has the same
 # ratios that the project aims at, of the means that count: classes -> variant -> ratio
 AIMS = {("touch", "near", "deep"): {"single": 10, "batch": 20}, ("touch all", "deep all"): {"single": 10}}
@@ -175,5 +176,30 @@ def draw(run):
     return svg_text(figure)
 
 
+def draw_small(run):
+    """The plot of README.md: single queries of four classes, a dot for each pair of meshes, a bar for their mean."""
+    plt = start_plot("collide_speed_small")
+    classes = {"touch": ("touch",), "near": ("near",), "deep": ("deep",), "all contacts": ("touch all", "deep all")}
+    figure, axes = plt.subplots(figsize=(4.6, 3.4))
+    for i, names in enumerate(classes.values()):
+        values = [run.ratio(cell, "single") for (meshes, name), cell in run.cells.items()
+                  if name in names and run.counts_in_means(meshes)]
+        mean = run.mean(names, "single")
+        axes.bar(i, mean, width=0.62, color="#9cc4e4")
+        axes.plot([i] * len(values), values, "o", color="#08306b", markersize=4, markerfacecolor="none")
+        axes.annotate(f"{mean:.1f}", (i, 1), xytext=(0, 14), textcoords="offset points", ha="center", fontsize=15,
+                      fontweight="bold", color="#08306b")
+    axes.axhline(1, color="0.3", linewidth=1.1, linestyle="--")
+    axes.annotate("FCL = 1", (len(classes) + 0.03, 1), xytext=(0, 4), textcoords="offset points", ha="right", fontsize=9,
+                  color="0.2")
+    axes.set_xticks(range(len(classes)), list(classes))
+    axes.set_xlim(-0.5, len(classes) + 0.05)
+    axes.set_ylim(0, None)
+    axes.set_ylabel("queries per second, times FCL")
+    figure.subplots_adjust(left=0.12, right=0.99, bottom=0.09, top=0.97)
+    return svg_text(figure)
+
+
 if __name__ == "__main__":
-    sys.exit(page_and_plot(__doc__, PAGE, RUN, PLOT, "make bench-collide writes build/bench/collide.csv", Run, tables, draw))
+    sys.exit(page_and_plots(__doc__, PAGE, RUN, {PLOT: draw, SMALL: draw_small},
+                            "make bench-collide writes build/bench/collide.csv", Run, tables))
