@@ -133,12 +133,50 @@ struct Tally {
   std::uint64_t hits = 0;
   CollisionCounts counts;         ///< of the queries for all contacts
   std::uint64_t first_pairs = 0;  ///< tested by the queries for the first one
+  std::array<std::uint64_t, 3> relations = {};
 
   void print(const Device& device) const {
     std::cout << device.name() << ": queries=" << queries << " hits=" << hits << " pairs=" << counts.pairs
               << " open=" << counts.open << '\n';
   }
 };
+
+/// What requests that tell touching from crossing must be answered with.
+void check_relations(Device& device, const Object& a, const Object& b, const PosePair& poses,
+                     const std::vector<Contact>& expected, Tally& tally) {
+  std::vector<Contact> crossing;
+  for (const Contact& x : expected) {
+    if (x.relation == Relation::crossing) crossing.push_back(x);
+  }
+  const Relation relation = !crossing.empty()   ? Relation::crossing
+                            : !expected.empty() ? Relation::touching
+                                                : Relation::apart;
+  ++tally.relations[static_cast<std::size_t>(relation)];
+  for (const CollisionRequest::Counts counts :
+       {CollisionRequest::Counts::touching, CollisionRequest::Counts::crossing}) {
+    CollisionRequest request;
+    request.counts = counts;
+    request.relation = counts == CollisionRequest::Counts::touching;
+    const std::vector<Contact>& wanted = request.relation ? expected : crossing;
+    const CollisionResult first = collide(device, a, poses.a, b, poses.b, request);
+    request.contacts = CollisionRequest::Contacts::all;
+    const CollisionResult found = collide(device, a, poses.a, b, poses.b, request);
+    const auto same = [](const Contact& x, const Contact& y) { return x == y && x.relation == y.relation; };
+    const bool all_right = found.hit == !wanted.empty() && found.relation == relation &&
+                           std::equal(found.contacts.begin(), found.contacts.end(), wanted.begin(), wanted.end(), same);
+    // One that crosses if there is one.
+    const bool first_right = first.hit == found.hit && first.relation == relation &&
+                             first.contacts.size() == (found.hit ? 1 : 0) &&
+                             (!found.hit || (first.contacts[0].relation == relation &&
+                                             std::binary_search(wanted.begin(), wanted.end(), first.contacts[0])));
+    if (all_right && first_right) continue;
+    FAIL(device.name() << ": relation " << static_cast<int>(found.relation.value_or(Relation::apart)) << " and "
+                       << static_cast<int>(first.relation.value_or(Relation::apart)) << " instead of "
+                       << static_cast<int>(relation) << ", " << found.contacts.size() << " contacts instead of "
+                       << wanted.size() << ", counts " << static_cast<int>(counts) << '\n'
+                       << describe(poses));
+  }
+}
 
 /// First and all contacts of a query must be the expected ones.
 void check_answers(Device& device, const Object& a, const Object& b, const PosePair& poses,
@@ -156,6 +194,9 @@ void check_answers(Device& device, const Object& a, const Object& b, const PoseP
                        << first.hit << '\n'
                        << describe(poses));
   }
+  const auto told = [](const Contact& x) { return x.relation.has_value(); };
+  REQUIRE((!found.relation && std::none_of(found.contacts.begin(), found.contacts.end(), told)));
+  check_relations(device, a, b, poses, expected, tally);
 }
 
 }  // namespace
@@ -190,6 +231,7 @@ TEST_CASE("collide: first and all contacts are those of brute force", "[ref][col
     CHECK(tally.hits < tally.queries * 9 / 10);
     CHECK(tally.counts.open > 0);
     CHECK(tally.first_pairs < tally.counts.pairs);
+    for (const std::uint64_t queries : tally.relations) CHECK(queries > 500);
   }
 }
 

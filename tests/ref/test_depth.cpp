@@ -21,7 +21,8 @@ namespace {
 /// Steps of the fine grid in one grid step.
 constexpr int fine = 64;
 
-/// The cube of half-width `reach` / fine lies in A - B: convex, so its corners are enough.
+/// The cube of half-width `reach` / fine lies in the interior of A - B: convex, so its corners are enough. Then the
+/// primitives cross, whatever an error within the cube.
 bool cube_inside(const GridPair& pair, int reach) {
   for (unsigned corner = 0; corner < 8; ++corner) {
     GridPair moved = pair;
@@ -31,7 +32,7 @@ bool cube_inside(const GridPair& pair, int reach) {
         moved.b.v[i][d] = fine * pair.b.v[i][d];
       }
     }
-    if (!exact_intersects(moved)) return false;
+    if (exact_relation(moved) != Relation::crossing) return false;
   }
   return true;
 }

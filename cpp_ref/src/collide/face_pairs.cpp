@@ -48,9 +48,14 @@ void check_query(const CollisionQuery& query, const CollisionRequest& request) {
 void FacePairs::start(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) {
   query_ = query;
   result_ = &result;
+  request_ = request;
   result.hit = false;
+  result.relation.reset();
   result.contacts.clear();
   result.counts = {};
+  done_ = false;
+  seen_ = Relation::apart;
+  tells_ = request.relation || request.counts == CollisionRequest::Counts::crossing;
   most_ = request.contacts == CollisionRequest::Contacts::first ? 1 : request.most_contacts;
   cut_ = !query.a->mesh().file_face.empty() || !query.b->mesh().file_face.empty();
   if (cut_) contacts_.clear();
@@ -59,21 +64,42 @@ void FacePairs::start(const CollisionQuery& query, const CollisionRequest& reque
 
 void FacePairs::test(std::uint32_t face_a, std::uint32_t face_b) {
   if (!pairs_) pairs_.emplace(*query_.pose_a, *query_.pose_b);
-  const PosedPairs::Answer answer =
-      pairs_->decide(query_.a->mesh().primitive(face_a), query_.b->mesh().primitive(face_b));
+  const Primitive a = query_.a->mesh().primitive(face_a);
+  const Primitive b = query_.b->mesh().primitive(face_b);
+  const PosedPairs::Answer answer = pairs_->decide(a, b);
   ++result_->counts.pairs;
   result_->counts.open += answer.open;
-  if (answer.hit) add(face_a, face_b);
+  if (!answer.hit) return;
+  add(face_a, face_b, tells_ && pairs_->cross(a, b) ? Relation::crossing : Relation::touching);
 }
 
-void FacePairs::add(std::uint32_t face_a, std::uint32_t face_b) {
-  const Contact contact = {file_face(query_.a->mesh(), face_a), file_face(query_.b->mesh(), face_b)};
-  if (cut_ && most_ > 1 && !contacts_.insert(contact).second) return;
-  result_->contacts.push_back(contact);
+void FacePairs::add(std::uint32_t face_a, std::uint32_t face_b, Relation relation) {
+  const bool crosses = relation == Relation::crossing;
+  seen_ = std::max(seen_, relation);
+  if (!crosses && request_.counts == CollisionRequest::Counts::crossing) return;
+  Contact contact = {file_face(query_.a->mesh(), face_a), file_face(query_.b->mesh(), face_b), std::nullopt};
+  if (tells_) contact.relation = relation;
+  std::vector<Contact>& contacts = result_->contacts;
+  if (request_.contacts == CollisionRequest::Contacts::first) {
+    if (contacts.empty() || crosses) contacts.assign(1, contact);  // one that touches is kept until one crosses
+    done_ = crosses || !tells_;
+    return;
+  }
+  if (cut_ && most_ > 1) {
+    const auto [found, is_new] = contacts_.emplace(contact, contacts.size());
+    if (!is_new) {
+      if (crosses && tells_) contacts[found->second].relation = relation;
+      return;
+    }
+  }
+  contacts.push_back(contact);
+  done_ = contacts.size() >= most_;
 }
 
 void FacePairs::finish() {
-  result_->hit = !result_->contacts.empty();
+  std::vector<Contact>& contacts = result_->contacts;
+  result_->hit = !contacts.empty();
+  if (tells_ && (seen_ == Relation::crossing || !done_)) result_->relation = seen_;
   if (result_->contacts.size() > 1) std::sort(result_->contacts.begin(), result_->contacts.end());
 }
 

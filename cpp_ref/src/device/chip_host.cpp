@@ -223,6 +223,7 @@ class ChipHost final : public Device {
     CollisionQuery placed;
     Stored* a;
     Stored* b;
+    bool exact;  ///< the chip's map has no error, so primitives that the chip calls a definite contact may only touch
   };
   enum class Submission { done, later, never };
 
@@ -266,7 +267,7 @@ class ChipHost final : public Device {
         } else if (!chip_.proceed()) {
           std::vector<Flight> lost = give_up();
           if (lost.empty() && waiting) {  // the chip had no room although nothing was in flight
-            lost.push_back({order[next++], waiting->placed, waiting->a, waiting->b});
+            lost.push_back({order[next++], waiting->placed, waiting->a, waiting->b, false});
             waiting.reset();
           }
           CollisionCounts counts;
@@ -362,7 +363,7 @@ class ChipHost final : public Device {
     x.query.base_b = x.query.swapped ? *x.a->first : *x.b->first;
     x.query.tag = next_tag_;
     if (!chip_.submit(x.query)) return chip_.is_dead() ? Submission::never : Submission::later;
-    flights_.emplace(next_tag_++, Flight{number, x.placed, x.a, x.b});
+    flights_.emplace(next_tag_++, Flight{number, x.placed, x.a, x.b, x.query.error == 0});
     ++x.a->in_flight;
     ++x.b->in_flight;
     return Submission::done;
@@ -394,8 +395,12 @@ class ChipHost final : public Device {
     const QueryCode code = outcome.done.code;
     if ((code == QueryCode::ok || code == QueryCode::host) && is_well_formed(flight, outcome)) {
       faces_.start(flight.placed, request, result);
-      counts.open = resolve(outcome.pairs, faces_);
-      if (code == QueryCode::ok || faces_.done()) {
+      const bool tells = request.relation || request.counts == CollisionRequest::Counts::crossing;
+      counts.open = resolve(outcome.pairs, tells && flight.exact, faces_);
+      // The chip ends a FIRST query with a definite contact, which may only touch where the request wants a crossing.
+      const bool cut_short =
+          tells && outcome.done.answer == QueryAnswer::yes && request.contacts == CollisionRequest::Contacts::first;
+      if (faces_.done() || (code == QueryCode::ok && !cut_short)) {
         faces_.finish();
         result.counts = counts;
         return;
@@ -414,12 +419,12 @@ class ChipHost final : public Device {
   }
 
   /// Decides open pairs exactly until the request is fulfilled. The last pair goes first: the chip ends a FIRST query
-  /// with the pair that is in contact for certain.
-  /// \returns how many pairs were open
-  static std::uint64_t resolve(const std::vector<PairRecord>& pairs, FacePairs& faces) {
+  /// with the pair that is in contact for certain, and that crosses unless its numbers are exact.
+  /// \returns how many pairs were decided here
+  static std::uint64_t resolve(const std::vector<PairRecord>& pairs, bool definite_may_touch, FacePairs& faces) {
     std::uint64_t open = 0;
     for (auto pair = pairs.rbegin(); pair != pairs.rend() && !faces.done(); ++pair) {
-      if (pair->definite) {
+      if (pair->definite && !definite_may_touch) {
         faces.add(pair->id_a, pair->id_b);
       } else {
         faces.test(pair->id_a, pair->id_b);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "relation.hpp"
+#include "relative_pose.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +54,7 @@ Centre centre_of(const Object& object, const Matrix& linear, double norm, const 
 
 }  // namespace
 
-bool relate(const CollisionQuery& query, Relation& r) {
+bool relate(const CollisionQuery& query, RelativePose& r) {
   const Object* moved = query.a;
   const Object* fixed = query.b;
   const Pose* pose_m = query.pose_a;

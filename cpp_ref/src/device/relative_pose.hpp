@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// How two placed objects lie to each other, in units of one of them, with what rounding may cost.
-#ifndef CCHIP_DEVICE_RELATION_HPP
-#define CCHIP_DEVICE_RELATION_HPP
+#ifndef CCHIP_DEVICE_RELATIVE_POSE_HPP
+#define CCHIP_DEVICE_RELATIVE_POSE_HPP
 
 #include <array>
 #include <cchip/collide/collide.hpp>
@@ -12,7 +12,7 @@ namespace cchip {
 /// The object with the finer unit plays `moved`, the other one `fixed`. A point y of the moved one, relative to its
 /// centre and in its units, lies at m y + t relative to the fixed one's centre, in that one's units.
 /// docs/collide.md derives the bounds.
-struct Relation {
+struct RelativePose {
   bool swapped = false;     ///< the moved object is B of the query
   std::array<double, 9> m;  ///< row by row
   std::array<double, 3> t;
@@ -26,7 +26,7 @@ struct Relation {
 
 /// \returns false if the relation cannot be computed well: a map that has no good inverse, or numbers that are so great
 ///          or small that products of three of them leave the range of doubles
-bool relate(const CollisionQuery& query, Relation& relation);
+bool relate(const CollisionQuery& query, RelativePose& relation);
 
 }  // namespace cchip
 

@@ -26,7 +26,7 @@
 #include <stdexcept>
 
 #include "exact/ieee.hpp"
-#include "relation.hpp"
+#include "relative_pose.hpp"
 #include "search.hpp"
 
 // What does not depend on the instruction set.
@@ -114,7 +114,8 @@ struct LeafSide {
   alignas(32) std::array<float, 8> size;        ///< what its error grows with, in lane 4 i
 };
 
-enum class Verdict { apart, touch, open };
+/// Bounds on rounding are strict, so that two primitives in certain contact cross.
+enum class Verdict { apart, cross, open };
 
 /// The two edges of a triangle that decide, by the mask of its vertices on the negative side: from the positive to the
 /// negative side and back, in the order of the vertices. Lanes 0 and 1 of where they begin and of where they end.
@@ -440,7 +441,7 @@ HWY_INLINE void widen(const SupportTree& tree, NodeRef leaf, const Margins& marg
   for (std::size_t j = 1; j < 4; ++j) node.plane[j] = node.plane[0];
 }
 
-HWY_INLINE void make_planes(const Relation& r, const Margins& margins, Planes& planes) {
+HWY_INLINE void make_planes(const RelativePose& r, const Margins& margins, Planes& planes) {
   using DP = hn::CappedTag<float, 16>;
   using DI = hn::Rebind<std::int32_t, DP>;
   const DP d;
@@ -727,7 +728,7 @@ HWY_INLINE Verdict cross_test(const LeafSide& p, std::size_t at_p, unsigned nega
   const unsigned negative = bits[0] & 3U;
   // Axis 0 separates if its volume is negative, axis 1 if its is positive.
   if ((negative & 1U) != 0 || (positive & 2U) != 0) return Verdict::apart;
-  return positive == 1 && negative == 2 ? Verdict::touch : Verdict::open;
+  return positive == 1 && negative == 2 ? Verdict::cross : Verdict::open;
 }
 
 using D4F = hn::FixedTag<float, 4>;
@@ -880,7 +881,7 @@ class SimdSearch final : public Search {
   /// Prepares a query.
   /// \returns false if the result is complete
   bool start(Task& task, const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) {
-    Relation relation;
+    RelativePose relation;
     if (!relate(query, relation)) {
       plain_->run(query, request, result);
       return false;
@@ -989,7 +990,7 @@ class SimdSearch final : public Search {
         for (std::size_t k = 0; k < count_q; ++k) {
           const AxisTest test(p, 4 * i, q, 4 * k, place.moved_error + place.fixed_error);
           if (test.normals_separate(p, 4 * i, q, 4 * k)) continue;
-          if (quads_touch(p, 4 * i, item.moved.is_quad(), q, 4 * k, item.fixed.is_quad(), place)) {
+          if (quads_cross(p, 4 * i, item.moved.is_quad(), q, 4 * k, item.fixed.is_quad(), place)) {
             task.add(faces_p[i], faces_q[k]);
           } else if (!test.sides_separate()) {
             task.keep_open(faces_p[i], faces_q[k]);
@@ -1000,7 +1001,7 @@ class SimdSearch final : public Search {
       return false;
     }
     return visit_triangles(p, count_p, q, count_q, place, [&](std::size_t i, std::size_t k, Verdict verdict) {
-      if (verdict == Verdict::touch) {
+      if (verdict == Verdict::cross) {
         task.add(faces_p[i], faces_q[k]);
       } else {
         task.keep_open(faces_p[i], faces_q[k]);
@@ -1041,15 +1042,15 @@ class SimdSearch final : public Search {
     return false;
   }
 
-  /// True only if a triangle of one touches a triangle of the other.
-  static bool quads_touch(const LeafSide& p, std::size_t at_p, bool quad_p, const LeafSide& q, std::size_t at_q,
+  /// True only if a triangle of one crosses a triangle of the other.
+  static bool quads_cross(const LeafSide& p, std::size_t at_p, bool quad_p, const LeafSide& q, std::size_t at_q,
                           bool quad_q, const Placement& place) {
     alignas(64) LeafSide halves_p;
     alignas(64) LeafSide halves_q;
     halve(p, at_p, place.moved_error, halves_p);
     halve(q, at_q, place.fixed_error, halves_q);
     return visit_triangles(halves_p, quad_p ? 2 : 1, halves_q, quad_q ? 2 : 1, place,
-                           [](std::size_t, std::size_t, Verdict verdict) { return verdict == Verdict::touch; });
+                           [](std::size_t, std::size_t, Verdict verdict) { return verdict == Verdict::cross; });
   }
 
   /// One query for its first contact, one item at a time.

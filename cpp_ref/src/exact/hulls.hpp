@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Do two hulls of three or four points share a point? Decided by signs of polynomials in the coordinates, over any
-/// number type Num with +, -, *, sign() and comparison.
+/// Do two hulls of three or four points share a point, and do they cross? Decided by signs of polynomials in the
+/// coordinates, over any number type Num with +, -, *, sign() and comparison.
 //
 // Exact intersection of triangles by orientation signs, no separating axes.
 //
@@ -163,6 +163,8 @@ struct Hull {
     for (std::size_t i = 0; i < 4; ++i) face[i] = Triangle<Num>(v[(i + 1) % 4], v[(i + 2) % 4], v[(i + 3) % 4]);
   }
 
+  std::size_t count() const { return solid ? 4 : 3; }
+
   /// True if this is a tetrahedron with a volume and p is in it.
   bool solid_holds(const Vec<Num>& p) const {
     if (!solid) return false;
@@ -187,6 +189,57 @@ bool hulls_meet(const Hull<Num>& a, const Hull<Num>& b) {
     }
   }
   return a.solid_holds(b.v[0]) || b.solid_holds(a.v[0]);
+}
+
+// Two hulls cross if 0 lies in the interior of A - B, so that every small enough translation leaves them in contact.
+// 0 lies outside the interior if and only if a linear function that is not zero is nowhere positive on A - B, or
+// nowhere negative. If A - B has a volume, the normals of its facets suffice: a facet is the sum of a face of A and one
+// of -B, so its normal is that of a face of one hull or is orthogonal to an edge of each. If it is flat, the normal of
+// its plane is among these, too, and zero on all of A - B; if it is a segment or a point, all of them are zero vectors.
+// Segments of two vertices that are no edges, and triangles of three that are no faces, only add functions.
+
+/// True if the axis is not zero and some vertex of A lies farther along it than some vertex of B, and some less far.
+template <class Num>
+bool overlaps_both_ways(const Vec<Num>& axis, const Hull<Num>& a, const Hull<Num>& b) {
+  bool before = false;
+  bool behind = false;
+  for (std::size_t i = 0; i < a.count(); ++i) {
+    for (std::size_t k = 0; k < b.count(); ++k) {
+      const int s = sign_of_dot(axis, a.v[i] - b.v[k]);
+      before = before || s < 0;
+      behind = behind || s > 0;
+      if (before && behind) return true;
+    }
+  }
+  return false;
+}
+
+/// True if 0 lies in the interior of A - B.
+template <class Num>
+bool hulls_cross(const Hull<Num>& a, const Hull<Num>& b) {
+  bool some = false;  // an axis that is not zero
+  const auto allows = [&](const Vec<Num>& axis) {
+    if (!overlaps_both_ways(axis, a, b)) return is_zero(axis);
+    some = true;
+    return true;
+  };
+  for (std::size_t i = 0; i < a.faces; ++i) {
+    if (!allows(a.face[i].normal)) return false;
+  }
+  for (std::size_t k = 0; k < b.faces; ++k) {
+    if (!allows(b.face[k].normal)) return false;
+  }
+  for (std::size_t i = 0; i < a.count(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Vec<Num> edge = a.v[i] - a.v[j];
+      for (std::size_t k = 0; k < b.count(); ++k) {
+        for (std::size_t l = 0; l < k; ++l) {
+          if (!allows(cross(edge, b.v[k] - b.v[l]))) return false;
+        }
+      }
+    }
+  }
+  return some;
 }
 
 }  // namespace cchip::exact

@@ -77,6 +77,12 @@ Hull<BigInt> scaled_hull(const Primitive& p, const Pose& pose, int exponent) {
   return {points, p.vertex_count()};
 }
 
+template <class Num>
+Relation relation_of(const Hull<Num>& a, const Hull<Num>& b) {
+  if (!hulls_meet(a, b)) return Relation::apart;
+  return hulls_cross(a, b) ? Relation::crossing : Relation::touching;
+}
+
 }  // namespace
 
 bool exact_intersects(const GridPair& pair) { return hulls_meet(grid_hull(pair.a), grid_hull(pair.b)); }
@@ -88,6 +94,17 @@ bool exact_intersects(const Primitive& a, const Primitive& b) {
 bool exact_intersects(const Primitive& a, const Pose& pose_a, const Primitive& b, const Pose& pose_b) {
   const int exponent = common_exponent(b, pose_b, common_exponent(a, pose_a, std::numeric_limits<int>::max()));
   return hulls_meet(scaled_hull(a, pose_a, exponent), scaled_hull(b, pose_b, exponent));
+}
+
+Relation exact_relation(const GridPair& pair) { return relation_of(grid_hull(pair.a), grid_hull(pair.b)); }
+
+Relation exact_relation(const Primitive& a, const Primitive& b) {
+  return exact_relation(a, Pose::Identity(), b, Pose::Identity());
+}
+
+Relation exact_relation(const Primitive& a, const Pose& pose_a, const Primitive& b, const Pose& pose_b) {
+  const int exponent = common_exponent(b, pose_b, common_exponent(a, pose_a, std::numeric_limits<int>::max()));
+  return relation_of(scaled_hull(a, pose_a, exponent), scaled_hull(b, pose_b, exponent));
 }
 
 }  // namespace cchip

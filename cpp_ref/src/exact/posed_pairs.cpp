@@ -84,6 +84,10 @@ Hull<Filter> filter_hull(const Primitive& p, const Eigen::Matrix3d& linear, cons
   return {points, p.vertex_count()};
 }
 
+Vec<Filter> filter_offset(const Vec3d& offset, const Vec3d& error) {
+  return {Filter(offset.x(), error.x()), Filter(offset.y(), error.y()), Filter(offset.z(), error.z())};
+}
+
 }  // namespace
 
 PosedPairs::PosedPairs(const Pose& pose_a, const Pose& pose_b)
@@ -122,15 +126,19 @@ PosedPairs::Answer PosedPairs::decide(const Primitive& a, const Primitive& b) co
   r.error = 8 * unit * magnitude + lost;
   if (magnitude < 0x1p1000 && separated(r)) return {false, false};
 
-  Vec<Filter> offset;
-  for (std::size_t k = 0; k < 3; ++k) {
-    offset[k] = {offset_[static_cast<Eigen::Index>(k)], offset_error_[static_cast<Eigen::Index>(k)]};
-  }
   Filter::reset();
-  const bool hit =
-      hulls_meet(filter_hull(a, pose_a_.linear(), offset), filter_hull(b, pose_b_.linear(), Vec<Filter>{}));
+  const bool hit = hulls_meet(filter_hull(a, pose_a_.linear(), filter_offset(offset_, offset_error_)),
+                              filter_hull(b, pose_b_.linear(), Vec<Filter>{}));
   if (!Filter::gave_up()) return {hit, false};
   return {exact_intersects(a, pose_a_, b, pose_b_), true};
+}
+
+bool PosedPairs::cross(const Primitive& a, const Primitive& b) const {
+  Filter::reset();
+  const bool crosses = hulls_cross(filter_hull(a, pose_a_.linear(), filter_offset(offset_, offset_error_)),
+                                   filter_hull(b, pose_b_.linear(), Vec<Filter>{}));
+  if (!Filter::gave_up()) return crosses;
+  return exact_relation(a, pose_a_, b, pose_b_) == Relation::crossing;
 }
 
 }  // namespace cchip

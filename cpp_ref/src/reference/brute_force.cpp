@@ -12,12 +12,13 @@ std::vector<Contact> brute_force_contacts(const Mesh& a, const Pose& pose_a, con
   std::vector<Contact> contacts;
   for (std::size_t i = 0; i < a.faces.size(); ++i) {
     for (std::size_t k = 0; k < b.faces.size(); ++k) {
-      if (exact_intersects(a.primitive(i), pose_a, b.primitive(k), pose_b)) {
-        contacts.push_back({in_file(a, i), in_file(b, k)});
-      }
+      const Relation relation = exact_relation(a.primitive(i), pose_a, b.primitive(k), pose_b);
+      if (relation != Relation::apart) contacts.push_back({in_file(a, i), in_file(b, k), relation});
     }
   }
-  std::sort(contacts.begin(), contacts.end());
+  // Of those that name the same faces the one that crosses stays.
+  std::sort(contacts.begin(), contacts.end(),
+            [](const Contact& x, const Contact& y) { return x == y ? x.relation > y.relation : x < y; });
   contacts.erase(std::unique(contacts.begin(), contacts.end()), contacts.end());
   return contacts;
 }

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Do two objects touch, and where?
+/// Do two objects touch or cross, and where?
 ///
 /// The answer is exact: for closed faces with the double coordinates of the meshes, and both poses as given, in real
-/// arithmetic without rounding. Touching counts. Objects are surfaces, not volumes: one wholly inside another does not
-/// touch it. A quad is the hull of its four vertices. There is no distance, no depth and no contact point.
+/// arithmetic without rounding. Touching counts, unless the request asks for crossings. Objects are surfaces, not
+/// volumes: one wholly inside another does not touch it. A quad is the hull of its four vertices. There is no distance,
+/// no depth and no contact point.
 #ifndef CCHIP_COLLIDE_COLLIDE_HPP
 #define CCHIP_COLLIDE_COLLIDE_HPP
 
 #include <atomic>
 #include <cchip/collide/object.hpp>
 #include <cchip/geometry/pose.hpp>
+#include <cchip/geometry/relation.hpp>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace cchip {
@@ -22,18 +25,31 @@ namespace cchip {
 struct CollisionRequest {
   enum class Contacts {
     first,  ///< whether there is one; the device may name any
-    all     ///< every pair of faces that touch
+    all     ///< every pair of faces in contact
   };
   Contacts contacts = Contacts::first;
   /// With Contacts::all: the search ends once this many are found.
   std::size_t most_contacts = std::numeric_limits<std::size_t>::max();
+  /// The least relation of two faces that counts as a contact.
+  enum class Counts {
+    touching,  ///< every pair of faces that share a point
+    crossing   ///< only pairs that cross: flush and grazing faces are no contacts
+  };
+  Counts counts = Counts::touching;
+  /// Tell touching from crossing: fills CollisionResult::relation and Contact::relation, which Counts::crossing does in
+  /// any case. With Contacts::first the search goes on after a contact that only touches, until one crosses or none is
+  /// left.
+  bool relation = false;
 };
 
-/// A face of A and a face of B that touch, by their numbers in the files (Mesh::file_face). A polygon that was cut into
+/// A face of A and a face of B in contact, by their numbers in the files (Mesh::file_face). A polygon that was cut into
 /// triangles is one face here.
 struct Contact {
   std::uint32_t face_a = 0;
   std::uint32_t face_b = 0;
+  /// Touching or crossing; of a polygon that was cut, crossing if one of its triangles crosses. Empty if the request
+  /// does not tell them apart.
+  std::optional<Relation> relation = std::nullopt;
   friend bool operator==(const Contact& x, const Contact& y) { return x.face_a == y.face_a && x.face_b == y.face_b; }
   friend bool operator<(const Contact& x, const Contact& y) { return x.key() < y.key(); }
 
@@ -66,7 +82,10 @@ struct CollisionCounts {
 };
 
 struct CollisionResult {
-  bool hit = false;
+  bool hit = false;  ///< there is a contact that counts
+  /// Of the two objects. Empty if the request does not tell touching from crossing, or if the search ended at
+  /// CollisionRequest::most_contacts before a pair crossed.
+  std::optional<Relation> relation;
   /// In ascending order, without duplicates. With Contacts::first at most one.
   std::vector<Contact> contacts;
   CollisionCounts counts;

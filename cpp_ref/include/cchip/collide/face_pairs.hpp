@@ -7,8 +7,8 @@
 #include <cchip/collide/collide.hpp>
 #include <cchip/exact/posed_pairs.hpp>
 #include <cstddef>
+#include <map>
 #include <optional>
-#include <set>
 
 namespace cchip {
 
@@ -21,10 +21,10 @@ class FacePairs {
 
   /// Tests a face of A against a face of B, by their numbers in the meshes.
   void test(std::uint32_t face_a, std::uint32_t face_b);
-  /// Records a face of A and a face of B that are known to touch; counts nothing.
-  void add(std::uint32_t face_a, std::uint32_t face_b);
+  /// Records a face of A and a face of B that are known to cross; counts nothing.
+  void add(std::uint32_t face_a, std::uint32_t face_b) { add(face_a, face_b, Relation::crossing); }
   /// True once the request is fulfilled: no pair needs to be tested any more.
-  bool done() const { return result_->contacts.size() >= most_; }
+  bool done() const { return done_; }
 
   /// What the search cost; test() counts `pairs` and `open`.
   CollisionCounts& counts() { return result_->counts; }
@@ -32,12 +32,18 @@ class FacePairs {
   void finish();
 
  private:
+  void add(std::uint32_t face_a, std::uint32_t face_b, Relation relation);
+
   CollisionQuery query_;
+  CollisionRequest request_;
   CollisionResult* result_ = nullptr;
   std::size_t most_ = 1;
-  bool cut_ = false;                 ///< some faces of a file are several faces of a mesh, so contacts may repeat
-  std::set<Contact> contacts_;       ///< in use if cut_ and more than one is wanted
-  std::optional<PosedPairs> pairs_;  ///< made when it is needed first
+  bool done_ = false;
+  bool tells_ = false;                       ///< the request tells touching from crossing
+  Relation seen_ = Relation::apart;          ///< the greatest of a pair so far
+  bool cut_ = false;                         ///< some faces of a file are several of a mesh, so contacts may repeat
+  std::map<Contact, std::size_t> contacts_;  ///< places in the result; in use if cut_ and more than one is wanted
+  std::optional<PosedPairs> pairs_;          ///< made when it is needed first
 };
 
 /// \throws std::invalid_argument an entry of a pose is not finite or beyond 2^500 in magnitude, or the request wants

@@ -7,6 +7,7 @@
 
 #include <cchip/geometry/pose.hpp>
 #include <cchip/geometry/primitive.hpp>
+#include <cchip/geometry/relation.hpp>
 
 namespace cchip {
 
@@ -21,6 +22,14 @@ bool exact_intersects(const Primitive& a, const Primitive& b);
 /// The same for primitives under poses, in real arithmetic without rounding: a vertex v lies at linear() v +
 /// translation(). PosedPairs answers the same faster.
 bool exact_intersects(const Primitive& a, const Pose& pose_a, const Primitive& b, const Pose& pose_b);
+
+/// Whether the closed primitives are apart, touch or cross (docs/touching.md), for any 32-bit coordinates.
+Relation exact_relation(const GridPair& pair);
+/// The same for any finite doubles.
+/// \throws std::invalid_argument if a coordinate is not finite
+Relation exact_relation(const Primitive& a, const Primitive& b);
+/// The same under poses.
+Relation exact_relation(const Primitive& a, const Pose& pose_a, const Primitive& b, const Pose& pose_b);
 
 }  // namespace cchip
 

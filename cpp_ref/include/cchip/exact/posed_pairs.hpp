@@ -26,6 +26,11 @@ class PosedPairs {
   /// \throws std::invalid_argument a coordinate is not finite
   Answer decide(const Primitive& a, const Primitive& b) const;
 
+  /// Of two primitives that share a point: whether they cross (docs/touching.md). The answer is that of
+  /// exact_relation().
+  /// \throws std::invalid_argument a coordinate is not finite
+  bool cross(const Primitive& a, const Primitive& b) const;
+
  private:
   Pose pose_a_;
   Pose pose_b_;
