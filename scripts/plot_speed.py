@@ -11,6 +11,7 @@ Without an option page and plots are rewritten from the checked-in CSV. Drawing 
 Exit codes: 0 done or up to date, 1 stale or no such file, 2 bad arguments, 77 no matplotlib."""
 import csv
 import math
+import statistics
 import sys
 
 from generated_page import ROOT, page_and_plots, plain_number, start_plot, svg_text
@@ -73,17 +74,8 @@ class Run:
         return math.exp(sum(logs) / len(logs)) if logs else None
 
 
-def rate(seconds):
-    return f"{1 / seconds:,.0f}"
-
-
 def times(value):
     return "-" if value is None else f"{value:.1f}"
-
-
-def number(text):
-    value = float(text)
-    return f"{value:,.0f}" if value >= 100 else f"{value:.1f}"
 
 
 def tables(run):
@@ -91,19 +83,8 @@ def tables(run):
     out = []
     for key, value in run.notes.items():
         out.append(f"- {key}: {value}")
-    native = "FCL native" if run.has_native else f"FCL native (Debian's / {ASSUMED_GAIN})"
-    out += ["", "### Queries", "",
-            f"| meshes | class | hits, % | FCL Debian | {native} | single | batch | all cores | steps | box tests | pairs | open |",
-            "|---|---|---|---|---|---|---|---|---|---|---|---|"]
-    for (meshes, name), cell in run.cells.items():
-        first = cell["single"]
-        columns = [meshes, name, f"{100 * float(first['hits']) / max(1, int(first['queries'])):.0f}",
-                   rate(run.seconds(cell, "FCL Debian")), rate(run.seconds(cell, "native"))]
-        for variant in ("single", "batch"):
-            columns.append(f"{rate(run.seconds(cell, variant))} ({times(run.ratio(cell, variant))})" if variant in cell else "-")
-        columns.append(rate(run.seconds(cell, "cores")) if "cores" in cell else "-")
-        columns += [number(first[key]) for key in ("steps", "box_tests", "pairs", "open")]
-        out.append("| " + " | ".join(columns) + " |")
+    out += ["", "The rows of every pair of meshes, with counts of nodes, boxes and pairs of faces, are in",
+            "[collide_speed.csv](figures/collide_speed.csv)."]
     out += ["", "### Geometric means of the six pairs", "", "Times FCL built natively; in brackets what this project aims at.", "",
             "| class | single | batch | all cores |", "|---|---|---|---|"]
     for names, title in MEANS:
@@ -121,6 +102,13 @@ def tables(run):
         means = [(run.mean(names, library), run.differ(names, library)) for library in libraries]
         cells = [f"{times(ours / mean)} ({differ:,})" if mean else "-" for mean, differ in means]
         out.append(f"| {title} | {run.answers(names):,} | " + " | ".join(cells) + " |")
+    if "relation" in run.variants:
+        out += ["", "### Touching or crossing", "",
+                "What it costs to ask for the [relation](touching.md), too: seconds of a single query, times those without.", "",
+                "| " + " | ".join(title for _, title in MEANS[:9]) + " |", "|---" * 9 + "|"]
+        costs = [run.mean(names, "single") / run.mean(names, "relation") if run.mean(names, "relation") else None
+                 for names, _ in MEANS[:9]]
+        out.append("| " + " | ".join("-" if cost is None else f"{cost:.2f}" for cost in costs) + " |")
     out += ["", "### Instruction sets", "", "Single query, batch on one thread; times FCL built natively, geometric means.", "",
             "| | " + " | ".join(BOOLEAN) + " |", "|---" * (len(BOOLEAN) + 1) + "|"]
     for i, target in enumerate(run.notes["instruction sets"].split(", ")):
@@ -128,16 +116,14 @@ def tables(run):
         cells = [f"{times(run.mean((name,), 'single' + suffix))}, {times(run.mean((name,), 'batch' + suffix))}"
                  for name in BOOLEAN]
         out.append(f"| {target} | " + " | ".join(cells) + " |")
-    out += ["", "### Objects", "", "Memory and build time, mesh and what the device derives from it included.", "",
-            "| meshes | object, faces | bytes a face | ms | FCL: bytes a face | ms |", "|---|---|---|---|---|---|"]
-    objects = {}
-    for row in run.rows:
-        if row["table"] == "object":
-            objects.setdefault((row["meshes"], row["class"]), {})[row["variant"]] = row
-    for (meshes, name), both in objects.items():
-        ours, fcl = both["ours"], both["FCL Debian"]
-        out.append(f"| {meshes} | {name} | {float(ours['bytes']):.0f} | {1000 * float(ours['seconds_each']):.0f} | "
-                   f"{float(fcl['bytes']):.0f} | {1000 * float(fcl['seconds_each']):.0f} |")
+    out += ["", "### Objects", "", "Memory and build time, mesh and what the device derives from it included; least, median and greatest object.", "",
+            "| | bytes a face | microseconds a face |", "|---|---|---|"]
+    for variant in ("ours", "FCL Debian"):
+        rows = [row for row in run.rows if row["table"] == "object" and row["variant"] == variant]
+        spread = lambda values: " / ".join(f"{value:.{0 if value >= 100 else 2}f}" for value in
+                                           (min(values), statistics.median(values), max(values)))
+        out.append(f"| {variant} | {spread([float(row['bytes']) for row in rows])} | "
+                   f"{spread([1e6 * float(row['seconds_each']) / int(row['class'].split()[1]) for row in rows])} |")
     return "\n".join(out) + "\n"
 
 
