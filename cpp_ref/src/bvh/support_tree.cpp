@@ -112,6 +112,7 @@ SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : faces_(tree.faces
     lines_.push_back(make_line(tree.nodes[n].dop, centre_, unit_, ref_of(tree.nodes[n])));
   }
   lines_.push_back(make_line(all, centre_, unit_, root_));
+  whole_words_ = lines_.back().word;
   lines_.resize(size_ + 4);
 
   vertices_.resize(12 * faces_.size() + 12);  // two primitives can always be read

@@ -34,33 +34,13 @@ double square(const Matrix& m) { return dot(m[0], m[0]) + dot(m[1], m[1]) + dot(
 /// Not for NaN.
 bool is_moderate(double square) { return square > 0x1p-400 && square < 0x1p400; }
 
-/// Where the centre of an object is, and a bound on the numbers that were added up for a coordinate of it.
-struct Centre {
-  Vector at;
-  double size;
-};
-
-Centre centre_of(const Object& object, const Matrix& linear, double norm, const Pose& pose) {
-  const Vec3d& c = object.tree().centre();
-  const double* const p = pose.data() + 12;
-  Centre centre;
-  for (std::size_t i = 0; i < 3; ++i) {
-    centre.at[i] = linear[0][i] * c[0] + linear[1][i] * c[1] + linear[2][i] * c[2] + p[i];
-  }
-  centre.size =
-      norm * (std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2])) + std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]);
-  return centre;
-}
-
 }  // namespace
 
-bool relate(const CollisionQuery& query, RelativePose& r) {
+bool relate(const CollisionQuery& query, const CentreLine& line, RelativePose& r) {
   const Object* moved = query.a;
   const Object* fixed = query.b;
-  const Pose* pose_m = query.pose_a;
-  const Pose* pose_f = query.pose_b;
-  Matrix lm = linear_of(*pose_m);
-  Matrix lf = linear_of(*pose_f);
+  Matrix lm = linear_of(*query.pose_a);
+  Matrix lf = linear_of(*query.pose_b);
   double square_m = square(lm);
   double square_f = square(lf);
   double unit_m = moved->tree().unit();
@@ -68,7 +48,6 @@ bool relate(const CollisionQuery& query, RelativePose& r) {
   r.swapped = square_m * (unit_m * unit_m) > square_f * (unit_f * unit_f);
   if (r.swapped) {
     std::swap(moved, fixed);
-    std::swap(pose_m, pose_f);
     std::swap(lm, lf);
     std::swap(square_m, square_f);
     std::swap(unit_m, unit_f);
@@ -110,12 +89,10 @@ bool relate(const CollisionQuery& query, RelativePose& r) {
     row = std::max(row, square_row);
   }
   const double m_error = 24 * u * norm_w * norm_m * ratio;
-  const Centre centre_m = centre_of(*moved, lm, norm_m, *pose_m);
-  const Centre centre_f = centre_of(*fixed, lf, norm_f, *pose_f);
-  const Vector between = {centre_m.at[0] - centre_f.at[0], centre_m.at[1] - centre_f.at[1],
-                          centre_m.at[2] - centre_f.at[2]};
+  const double towards = r.swapped ? 1 : -1;  // from the fixed centre to the moved one
+  const Vector between = {towards * line.between[0], towards * line.between[1], towards * line.between[2]};
   for (std::size_t i = 0; i < 3; ++i) r.t[i] = dot(w[i], between) / unit_f;
-  const double t_error = 32 * u * norm_w * (centre_m.size + centre_f.size) / unit_f;
+  const double t_error = 32 * u * norm_w * line.size / unit_f;
 
   r.norm = std::sqrt(square_r);
   r.row = std::sqrt(row);

@@ -26,6 +26,7 @@
 #include <stdexcept>
 
 #include "exact/ieee.hpp"
+#include "far_test.hpp"
 #include "relative_pose.hpp"
 #include "search.hpp"
 
@@ -844,6 +845,50 @@ HWY_INLINE void prefetch(const Task& task, Item item) {
   }
 }
 
+/// Axes of a box test, a lane each, and what bounds their rounding.
+constexpr std::size_t box_axes = 8;
+
+/// True only if the boxes of the objects, in their own frames, are apart along an edge of one of them. As is_far(), it
+/// takes every map; edges are normals of faces only for rotations and scales.
+HWY_INLINE bool boxes_apart(const CollisionQuery& query, const CentreLine& line, double margin) {
+  using DD = hn::CappedTag<double, box_axes>;
+  using VD = hn::Vec<DD>;
+  const DD d;
+  const double* const a = query.pose_a->data();  // columns of four
+  const double* const b = query.pose_b->data();
+  alignas(64) std::array<std::array<double, box_axes>, 3> axis;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t n = 0; n < box_axes; ++n) axis[i][n] = n < 3 ? a[4 * n + i] : b[4 * (n % 3) + i];
+  }
+  const VD limit = hn::Set(d, margin * far_limit * line.size);
+  const VD least = hn::Set(d, far_axis_least);
+  bool apart = false;
+  for (std::size_t at = 0; at < box_axes; at += hn::MaxLanes(d)) {
+    const VD x = hn::Load(d, axis[0].data() + at);
+    const VD y = hn::Load(d, axis[1].data() + at);
+    const VD z = hn::Load(d, axis[2].data() + at);
+    VD reach = hn::Zero(d);
+    const auto add_reach = [&](const SupportTree& tree, const double* linear) {
+      const std::array<std::int16_t, words>& word = tree.whole_words();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const VD m =
+            hn::MulAdd(x, hn::Set(d, linear[4 * k]),
+                       hn::MulAdd(y, hn::Set(d, linear[4 * k + 1]), hn::Mul(z, hn::Set(d, linear[4 * k + 2]))));
+        const double half = tree.unit() * std::max(word[2 * k], word[2 * k + 1]);
+        reach = hn::MulAdd(hn::Abs(m), hn::Set(d, half), reach);
+      }
+    };
+    add_reach(query.a->tree(), a);
+    add_reach(query.b->tree(), b);
+    const VD along = hn::MulAdd(x, hn::Set(d, line.between[0]),
+                                hn::MulAdd(y, hn::Set(d, line.between[1]), hn::Mul(z, hn::Set(d, line.between[2]))));
+    const VD longest = hn::Max(hn::Abs(x), hn::Max(hn::Abs(y), hn::Abs(z)));
+    const VD gap = hn::Sub(hn::Abs(along), reach);
+    apart |= !hn::AllFalse(d, hn::And(hn::Gt(gap, hn::Mul(longest, limit)), hn::Gt(longest, least)));
+  }
+  return apart && line.moderate;
+}
+
 /// One thread's search.
 class SimdSearch final : public Search {
  public:
@@ -881,8 +926,14 @@ class SimdSearch final : public Search {
   /// Prepares a query.
   /// \returns false if the result is complete
   bool start(Task& task, const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) {
+    const CentreLine line = centre_line(query);
+    if (is_far(query, line, margins_.far) || boxes_apart(query, line, margins_.far)) {
+      FacePairs::answer_apart(request, result);
+      result.counts.box_tests = 1;
+      return false;
+    }
     RelativePose relation;
-    if (!relate(query, relation)) {
+    if (!relate(query, line, relation)) {
       plain_->run(query, request, result);
       return false;
     }
@@ -902,6 +953,7 @@ class SimdSearch final : public Search {
     const double of_plane = margins_.wide * ulp * (radius * (3 + 12 * relation.norm) + 5 * relation.distance);
     task.planes.side_error = static_cast<float>(1.01 * of_plane + of_relation) + task.place.fixed_error;
     task.counts = {};
+    task.counts.box_tests = 1;  // of the whole objects, above
     task.open_count = 0;
     task.stack[0] = {task.planes.tiny ? task.moved->whole() : task.moved->root(), task.fixed->root()};
     task.size = 1;
