@@ -12,7 +12,6 @@ namespace {
 using bvh::SupportTree;
 using Vector = std::array<double, 3>;
 
-constexpr double radius = bvh::support_most;
 constexpr double moderate_most = 0x1p100;
 constexpr double moderate_least = 0x1p-100;
 
@@ -22,7 +21,6 @@ double sum_of_magnitudes(const double* v) { return std::abs(v[0]) + std::abs(v[1
 struct Placed {
   Vector centre;
   double entries;  ///< sum of the magnitudes of the map's entries
-  double extent;   ///< bound on the coordinates of the object's points
   double size;     ///< bound on the sum of what is added up for a point
 };
 
@@ -32,8 +30,7 @@ Placed place(const SupportTree& tree, const Pose& pose) {
   Placed placed;
   for (std::size_t i = 0; i < 3; ++i) placed.centre[i] = p[i] * c[0] + p[4 + i] * c[1] + p[8 + i] * c[2] + p[12 + i];
   placed.entries = sum_of_magnitudes(p) + sum_of_magnitudes(p + 4) + sum_of_magnitudes(p + 8);
-  placed.extent = std::max({std::abs(c[0]), std::abs(c[1]), std::abs(c[2])}) + radius * tree.unit();
-  placed.size = placed.entries * placed.extent + sum_of_magnitudes(p + 12);
+  placed.size = placed.entries * tree.extent() + sum_of_magnitudes(p + 12);
   return placed;
 }
 
@@ -79,9 +76,12 @@ CentreLine centre_line(const CollisionQuery& query) {
   CentreLine line;
   for (std::size_t i = 0; i < 3; ++i) line.between[i] = b.centre[i] - a.centre[i];
   line.size = a.size + b.size;
+  line.entries_a = a.entries;
+  line.entries_b = b.entries;
   // NaN is not moderate. Magnitudes of translations are parts of the size.
-  line.moderate = (line.size > moderate_least) & (line.size < moderate_most) & (a.extent < moderate_most) &
-                  (b.extent < moderate_most) & (a.entries < moderate_most) & (b.entries < moderate_most);
+  const bool finite = (line.size < moderate_most) & (a.entries < moderate_most) & (b.entries < moderate_most) &
+                      (query.a->tree().extent() < moderate_most) & (query.b->tree().extent() < moderate_most);
+  line.moderate = finite & (line.size > moderate_least);
   return line;
 }
 

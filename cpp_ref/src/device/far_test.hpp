@@ -14,7 +14,9 @@ namespace cchip {
 struct CentreLine {
   std::array<double, 3> between;  ///< that of B minus that of A; each component off by at most 6 u size
   double size;                    ///< bound on the sum of the magnitudes that are added up for any point of the objects
-  bool moderate;                  ///< no product of the tests below overflows, and what underflows is within the limit
+  double entries_a;               ///< sum of the magnitudes of the entries of the linear map of A
+  double entries_b;
+  bool moderate;  ///< no product of the tests below overflows, and what underflows is within the limit
 };
 
 /// Bound on the rounding of a gap along an axis, in units of `size` and of the axis's greatest component: 24 u. 13.4 u

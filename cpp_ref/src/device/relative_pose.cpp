@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "exact/ieee.hpp"
 
@@ -31,27 +30,29 @@ Vector cross(const Vector& p, const Vector& q) {
 /// Square of the Frobenius norm.
 double square(const Matrix& m) { return dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2]); }
 
+double sum_of_magnitudes(const Matrix& m) {
+  double sum = 0;
+  for (const Vector& v : m) sum += std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]);
+  return sum;
+}
+
 /// Not for NaN.
 bool is_moderate(double square) { return square > 0x1p-400 && square < 0x1p400; }
 
 }  // namespace
 
 bool relate(const CollisionQuery& query, const CentreLine& line, RelativePose& r) {
-  const Object* moved = query.a;
-  const Object* fixed = query.b;
-  Matrix lm = linear_of(*query.pose_a);
-  Matrix lf = linear_of(*query.pose_b);
-  double square_m = square(lm);
-  double square_f = square(lf);
-  double unit_m = moved->tree().unit();
-  double unit_f = fixed->tree().unit();
-  r.swapped = square_m * (unit_m * unit_m) > square_f * (unit_f * unit_f);
-  if (r.swapped) {
-    std::swap(moved, fixed);
-    std::swap(lm, lf);
-    std::swap(square_m, square_f);
-    std::swap(unit_m, unit_f);
-  }
+  const double unit_a = query.a->tree().unit();
+  const double unit_b = query.b->tree().unit();
+  const double square_a = square(linear_of(*query.pose_a));
+  const double square_b = square(linear_of(*query.pose_b));
+  r.swapped = square_a * (unit_a * unit_a) > square_b * (unit_b * unit_b);
+  const Matrix lm = linear_of(r.swapped ? *query.pose_b : *query.pose_a);
+  const Matrix lf = linear_of(r.swapped ? *query.pose_a : *query.pose_b);
+  const double square_m = r.swapped ? square_b : square_a;
+  const double square_f = r.swapped ? square_a : square_b;
+  const double unit_m = r.swapped ? unit_b : unit_a;
+  const double unit_f = r.swapped ? unit_a : unit_b;
   if (!(unit_f > 0x1p-200 && unit_f < 0x1p200) || !is_moderate(square_f) || !(unit_m < 0x1p200) ||
       !(square_m < 0x1p400)) {
     return false;
@@ -64,9 +65,10 @@ bool relate(const CollisionQuery& query, const CentreLine& line, RelativePose& r
   for (Vector& column : w) {
     for (double& x : column) x *= inverse_determinant;
   }
-  const double norm_w = std::sqrt(square(w));
-  const double norm_m = std::sqrt(square_m);
-  const double norm_f = std::sqrt(square_f);
+  // Sums of magnitudes are bounds on the norms that cost no square roots.
+  const double norm_w = sum_of_magnitudes(w);
+  const double norm_m = r.swapped ? line.entries_b : line.entries_a;
+  const double norm_f = r.swapped ? line.entries_a : line.entries_b;
   double off = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) off += std::abs(dot(lf[i], w[k]) - (i == k ? 1 : 0));
@@ -75,7 +77,8 @@ bool relate(const CollisionQuery& query, const CentreLine& line, RelativePose& r
   const double inverse_error = off + 24 * u * norm_f * norm_w;
   if (!(inverse_error <= 0x1p-20)) return false;  // NaN, too
 
-  const double ratio = unit_m / unit_f;
+  const double per_unit = 1 / unit_f;
+  const double ratio = unit_m * per_unit;
   double square_r = 0;
   double row = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -91,8 +94,8 @@ bool relate(const CollisionQuery& query, const CentreLine& line, RelativePose& r
   const double m_error = 24 * u * norm_w * norm_m * ratio;
   const double towards = r.swapped ? 1 : -1;  // from the fixed centre to the moved one
   const Vector between = {towards * line.between[0], towards * line.between[1], towards * line.between[2]};
-  for (std::size_t i = 0; i < 3; ++i) r.t[i] = dot(w[i], between) / unit_f;
-  const double t_error = 32 * u * norm_w * line.size / unit_f;
+  for (std::size_t i = 0; i < 3; ++i) r.t[i] = dot(w[i], between) * per_unit;
+  const double t_error = 32 * u * norm_w * line.size * per_unit;
 
   r.norm = std::sqrt(square_r);
   r.row = std::sqrt(row);

@@ -845,37 +845,42 @@ HWY_INLINE void prefetch(const Task& task, Item item) {
   }
 }
 
-/// Axes of a box test, a lane each, and what bounds their rounding.
-constexpr std::size_t box_axes = 8;
-
 /// True only if the boxes of the objects, in their own frames, are apart along an edge of one of them. As is_far(), it
 /// takes every map; edges are normals of faces only for rotations and scales.
 HWY_INLINE bool boxes_apart(const CollisionQuery& query, const CentreLine& line, double margin) {
-  using DD = hn::CappedTag<double, box_axes>;
+  constexpr std::size_t axes = 6;
+  using DD = hn::CappedTag<double, 8>;
   using VD = hn::Vec<DD>;
   const DD d;
   const double* const a = query.pose_a->data();  // columns of four
   const double* const b = query.pose_b->data();
-  alignas(64) std::array<std::array<double, box_axes>, 3> axis;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t n = 0; n < box_axes; ++n) axis[i][n] = n < 3 ? a[4 * n + i] : b[4 * (n % 3) + i];
-  }
+  // Component i of each axis. Blends: what was stored number by number could not be loaded at once without a stall.
+  const auto component = [&](std::size_t i, std::size_t at) {
+    VD v = hn::Set(d, b[8 + i]);
+    const auto put = [&](std::size_t n, double x) {
+      if (n >= at) v = hn::IfThenElse(hn::FirstN(d, n - at + 1), hn::Set(d, x), v);
+    };
+    put(4, b[4 + i]);
+    put(3, b[i]);
+    put(2, a[8 + i]);
+    put(1, a[4 + i]);
+    put(0, a[i]);
+    return v;
+  };
   const VD limit = hn::Set(d, margin * far_limit * line.size);
   const VD least = hn::Set(d, far_axis_least);
   bool apart = false;
-  for (std::size_t at = 0; at < box_axes; at += hn::MaxLanes(d)) {
-    const VD x = hn::Load(d, axis[0].data() + at);
-    const VD y = hn::Load(d, axis[1].data() + at);
-    const VD z = hn::Load(d, axis[2].data() + at);
+  for (std::size_t at = 0; at < axes; at += hn::MaxLanes(d)) {
+    const VD x = component(0, at);
+    const VD y = component(1, at);
+    const VD z = component(2, at);
     VD reach = hn::Zero(d);
     const auto add_reach = [&](const SupportTree& tree, const double* linear) {
-      const std::array<std::int16_t, words>& word = tree.whole_words();
       for (std::size_t k = 0; k < 3; ++k) {
         const VD m =
             hn::MulAdd(x, hn::Set(d, linear[4 * k]),
                        hn::MulAdd(y, hn::Set(d, linear[4 * k + 1]), hn::Mul(z, hn::Set(d, linear[4 * k + 2]))));
-        const double half = tree.unit() * std::max(word[2 * k], word[2 * k + 1]);
-        reach = hn::MulAdd(hn::Abs(m), hn::Set(d, half), reach);
+        reach = hn::MulAdd(hn::Abs(m), hn::Set(d, tree.half(k)), reach);
       }
     };
     add_reach(query.a->tree(), a);
