@@ -30,12 +30,6 @@ Vector cross(const Vector& p, const Vector& q) {
 /// Square of the Frobenius norm.
 double square(const Matrix& m) { return dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2]); }
 
-double sum_of_magnitudes(const Matrix& m) {
-  double sum = 0;
-  for (const Vector& v : m) sum += std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]);
-  return sum;
-}
-
 /// Not for NaN.
 bool is_moderate(double square) { return square > 0x1p-400 && square < 0x1p400; }
 
@@ -65,8 +59,8 @@ bool relate(const CollisionQuery& query, const CentreLine& line, RelativePose& r
   for (Vector& column : w) {
     for (double& x : column) x *= inverse_determinant;
   }
-  // Sums of magnitudes are bounds on the norms that cost no square roots.
-  const double norm_w = sum_of_magnitudes(w);
+  const double norm_w = std::sqrt(square(w));
+  // Sums of magnitudes are bounds on the norms, known already. That of w would be too coarse for great distances.
   const double norm_m = r.swapped ? line.entries_b : line.entries_a;
   const double norm_f = r.swapped ? line.entries_a : line.entries_b;
   double off = 0;
