@@ -38,7 +38,7 @@ export JOBS
 
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
-  test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-classes campaign-certainty \
+  test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-chip export fpga \
   fpga-quick asic asic-quick install clean
 
@@ -146,6 +146,10 @@ campaign-grid: campaign-build ## all triangle pairs of the grid -1..1, 10^7 with
 	$(CAMPAIGN) grid --shape tri-tri --rtl 1000000
 	$(CAMPAIGN) grid --shape tri-quad --pairs 10000000 --rtl 100000
 	$(CAMPAIGN) grid --shape quad-quad --pairs 10000000 --rtl 100000
+
+campaign-relation: campaign-build ## apart, touching, crossing: all triangle pairs of the grid -1..1, 10^7 random ones of each shape
+	$(CAMPAIGN) relation --shape tri-tri
+	$(CAMPAIGN) relation --random --pairs 10000000
 
 campaign-classes: campaign-build ## RTL against model and exact oracle, 10^5 pairs per class, with beats and throughput
 	$(CAMPAIGN) classes

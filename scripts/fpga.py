@@ -68,9 +68,7 @@ class Row:
     placer: str = "static"  # of nextpnr: static, or heap where it is the better one
     block: bool = False  # has other ports than a primitive test
     synth: str = ""  # further options of synth_ecp5
-    router: str = "router1"  # of nextpnr
     owners: tuple = ()  # modules whose hierarchy is kept in synthesis: the bill by block
-    wide: tuple = ()  # those of them that may take the device's wide multiplexers of LUTs; the others may not
 
     @property
     def coord_w(self):
@@ -115,12 +113,12 @@ def rows():
               for name in ("cchip_axi_read", "cchip_axi_write", "cchip_cache", "cchip_pose_setup", "cchip_bv_offset",
                            "cchip_bv_lane_a", "cchip_bv_lane_b", "cchip_bv_compare", "cchip_traversal", "cchip_get_data",
                            "cchip_transform", "cchip_leaf_feed", "cchip_query_ring", "cchip_calc_result", "cchip_record_ring",
-                          "cchip_descriptor_queues")]
+                          "cchip_descriptor_queues", "cchip_dispatcher", "cchip_chip_regs")]
     # with the wide multiplexers of the device Yosys takes a quarter more LUTs for the whole box test
     table += [Row("bv_unit", "cchip_bv_unit", shape="", seeds=3, placer="heap", block=True, synth=" -nowidelut")]
-    # the whole chip: its bill by block, then flat; without the device's wide multiplexers of LUTs it takes a third fewer of
-    # them, but the cache, which takes a third more
-    table += [Row(name, "cchip_chip", (("RM_ID", module),), shape="", seeds=3, block=True, owners=CHIP_BLOCKS, wide=("cchip_cache",)) for name, module in (("chip_tri", 1), ("chip", 3))]
+    # the whole chip: its bill by block, then flat; a third fewer multiplexers of LUTs without the device's wide ones
+    table += [Row(name, "cchip_chip", (("RM_ID", module),), shape="", seeds=3, block=True, synth=" -nowidelut", owners=CHIP_BLOCKS)
+              for name, module in (("chip_tri", 1), ("chip", 3))]
     return {row.name: row for row in table}
 
 
@@ -260,17 +258,6 @@ def yosys(name, script, depends, product, files=None):
                 [depends, version("yosys", "-V")], product)
 
 
-def synth_ecp5(row, options):
-    """Commands of the synthesis itself: one, or the pass by hand in which some modules differ from the others."""
-    command = f"synth_ecp5 {options.synth}{row.synth} -top fpga_harness"
-    if not row.wide:
-        return command + "\n"
-    wide = " ".join(f"*{name}*" for name in row.wide)
-    return (f"{command} -nowidelut -run :map_luts\ntechmap -map +/ecp5/latches_map.v\nselect -set wide {wide}\n"
-            f"select @wide\nabc9 -W 300\nselect -clear\nselect * @wide %d\nabc9 -maxlut 4 -W 300\nselect -clear\nclean\n"
-            f"{command} -nowidelut -run map_cells:\n")
-
-
 def synthesise(row, options):
     """Synthesis for ECP5 within the harness: folder with netlist.json and stat.json (cells by module)."""
     text = sources(row)
@@ -278,7 +265,7 @@ def synthesise(row, options):
     kept = " ".join(f"*{name}*" for name in (REGION, *row.owners))
     script = read_verilog([*text, *("{}/" + name for name in made)], *row.macros()) + (
         f"hierarchy -top fpga_harness\nsetattr -mod -set keep_hierarchy 1 {kept}\n"
-        f"{synth_ecp5(row, options)}"
+        f"synth_ecp5 {options.synth}{row.synth} -top fpga_harness\n"
         "tee -q -o {}/stat.json stat -json\n"
         "setattr -unset keep_hierarchy */t:*\nsetattr -mod -unset keep_hierarchy *\nflatten\nopt_clean\n"
         # without the places in the sources a new comment does not mean a new place and route
@@ -341,8 +328,6 @@ def place(row, synthesis, seed, options):
     netlist = synthesis / "netlist.json"
     choices = [*DEVICE, "--placer", options.placer or row.placer, "--freq", str(options.freq), "--seed", str(seed),
                "--timing-allow-fail", "--detailed-timing-report"]
-    if row.router != "router1":
-        choices += ["--router", row.router]
     command = [str(options.nextpnr), *choices, "--json", str(netlist.relative_to(ROOT)), "--report", "{}/report.json"]
     depends = [choices, hashlib.sha256(netlist.read_bytes()).hexdigest(), version(options.nextpnr, "--version")]
     folder = step(f"{row.name}.seed{seed}", command, {}, depends, "report.json")

@@ -7,6 +7,7 @@ usage: pictures.py [--check]
   devices.svg  collide() and the devices that answer
   stages.svg   the four macro stages of a primitive test; clocks from scripts/definitions.json
   rooms.svg    folders of RTL and C++ and which may use which, from the tables of tests/arrows
+  touching.svg two bodies that cross, touch or are apart, in cross-section; relations from the table of docs/touching.md
 
 Without an option the pictures are written; with --check nothing is written and the exit code is 1 if one is stale."""
 import html
@@ -21,6 +22,7 @@ FOLDER = ROOT / "docs" / "pictures"
 INK, GREY, PALE = "#1c2733", "#5b6b7b", "#eef2f6"
 DONE, PARTLY, PLANNED = ("#d5efd9", "#2e7d3c"), ("#fdeec5", "#a87400"), ("#f1f1f1", "#8a8a8a")
 PLAIN, BLUE = ("#ffffff", "#5b6b7b"), ("#dbe9f7", "#2f6fae")
+CONTACT = "#c62828"
 
 
 class Picture:
@@ -54,6 +56,21 @@ class Picture:
         dash = ' stroke-dasharray="5 4"' if dashed else ""
         path = " ".join(f"{x:g},{y:g}" for x, y in points)
         self.parts.append(f'<polyline points="{path}" fill="none" stroke="{GREY}" stroke-width="1.5"{start}{end}{dash}/>')
+
+    def body(self, points, colours):
+        """A closed polygon that lets others shine through."""
+        path = " ".join(f"{x:g},{y:g}" for x, y in points)
+        self.parts.append(f'<polygon points="{path}" fill="{colours[0]}" fill-opacity="0.75" stroke="{colours[1]}" '
+                          'stroke-width="1.5"/>')
+
+    def contact(self, *points):
+        """A point, or a thick line through several."""
+        if len(points) == 1:
+            self.parts.append(f'<circle cx="{points[0][0]:g}" cy="{points[0][1]:g}" r="4.5" fill="{CONTACT}"/>')
+            return
+        path = " ".join(f"{x:g},{y:g}" for x, y in points)
+        self.parts.append(f'<polyline points="{path}" fill="none" stroke="{CONTACT}" stroke-width="4" '
+                          'stroke-linecap="round" stroke-linejoin="round"/>')
 
     def key(self, x, y, entries):
         for colours, words, width in entries:
@@ -344,7 +361,49 @@ def rooms():
     return picture.svg()
 
 
-PICTURES = {"chip": chip, "devices": devices, "stages": stages, "rooms": rooms}
+def rectangle(x, y, w, h):
+    return [(x, y), (x + w, y), (x + w, y + h), (x, y + h)]
+
+
+def touching():
+    """Case, row of docs/touching.md that is drawn, relation, note, bodies of A, bodies of B, contacts."""
+    slab, diamond = rectangle(20, 74, 160, 36), [(100, 74), (130, 44), (100, 14), (70, 44)]
+    left, right = rectangle(20, 30, 74, 80), rectangle(94, 46, 80, 48)
+    ring = rectangle(44, 22, 112, 86)
+    cases = [
+        ("pierced", "flush boxes, pressed in by 2^-53", "one passes through the other",
+         [left], [rectangle(66, 46, 108, 48)], [[(94, 46)], [(94, 94)]]),
+        ("flush", "flush boxes", "a part of two faces in common", [left], [right], [[(94, 46), (94, 94)]]),
+        ("edge on face", "box on its edge on a face", "no area in common", [slab], [diamond], [[(100, 74)]]),
+        ("peg in its hole", "peg in its hole", "no clearance, all around",
+         [rectangle(20, 40, 52, 50), rectangle(128, 40, 52, 50)], [rectangle(72, 12, 56, 106)],
+         [[(72, 40), (72, 90)], [(128, 40), (128, 90)]]),
+        ("identical", "identical objects", "every face on its copy", [ring], [ring], [ring + ring[:1]]),
+        ("pushed along", "bars of one section, pushed into each other", "no face passes through another",
+         [rectangle(20, 40, 100, 50)], [rectangle(80, 40, 100, 50)],
+         [[(80, 40), (120, 40)], [(80, 90), (120, 90)], [(80, 40), (80, 90)], [(120, 40), (120, 90)]]),
+        ("nested", "nested boxes", "surfaces, not volumes", [ring], [rectangle(74, 44, 52, 42)], []),
+        ("last bit", "flush boxes, pulled off by 2^-52", "a gap of 2^-52 is a gap",
+         [left], [rectangle(98, 46, 80, 48)], []),
+    ]
+    rows = dict(re.findall(r"^\| ([^|]+) \| (apart|touching|crossing) \|", (ROOT / "docs" / "touching.md").read_text(), re.M))
+    picture = Picture("Crossing, touching, apart", 880, 420)
+    for number, (name, row, note, bodies_a, bodies_b, contacts) in enumerate(cases):
+        if row not in rows:
+            raise SystemExit(f"pictures.py: docs/touching.md has no row '{row}'")
+        x, y = 16 + 214 * (number % 4), 14 + 190 * (number // 4)
+        for bodies, colours in ((bodies_a, BLUE), (bodies_b, PARTLY)):
+            for body in bodies:
+                picture.body([(x + px, y + py) for px, py in body], colours)
+        for points in contacts:
+            picture.contact(*((x + px, y + py) for px, py in points))
+        picture.text(x + 100, y + 140, f"{name}: {rows[row]}", 13, weight="bold")
+        picture.text(x + 100, y + 157, note, 11, GREY)
+    picture.key(30, 404, [(BLUE, "A", 60), (PARTLY, "B", 60), ((CONTACT, CONTACT), "points in common where the surfaces meet", 280)])
+    return picture.svg()
+
+
+PICTURES = {"chip": chip, "devices": devices, "stages": stages, "rooms": rooms, "touching": touching}
 
 
 def main():

@@ -49,6 +49,7 @@ constexpr WholeRange at_least_1 = {1, std::numeric_limits<std::uint64_t>::max()}
 constexpr WholeRange bitstream_bits = {8 * defs::bitstream_payload_min, 8 << 24};
 
 const Choices<std::optional<bool>> contact_choices = {{"first", false}, {"all", true}};
+const Choices<bool> count_choices = {{"touching", false}, {"crossing", true}};
 
 struct PairsOptions {
   std::string file;
@@ -243,6 +244,10 @@ void add_collide(CLI::App& app, CollideOptions& options) {
              "stop at the first contact or find all (default: all, with --poses first)");
   add_whole(*command, "--most", options.most_contacts, "find at most N contacts of a query (default: no limit)",
             at_least_1);
+  add_choice(*command, "--counts", options.only_crossing, count_choices,
+             "the least that counts as a contact: touching (default) or crossing");
+  command->add_flag("--relation", options.relation,
+                    "tell touching from crossing (a single query for all contacts does in any case)");
   add_text(*command, "--device", options.device, "what answers: " + device_words() + " (default cpu)");
   add_choice(*command, "--format", options.format, formats, "output (default table)");
   add_text(*command, "--expect", options.expect,
@@ -255,13 +260,14 @@ void add_collide(CLI::App& app, CollideOptions& options) {
   add_text(
       *command, "--trace", options.trace,
       "with --device sim: write the waveform of the chip's first 30,000 clocks (FST) and a .gtkw layout beside it");
-  add_text(*command, "--ply", options.ply, "write both meshes, the faces that touch coloured, for MeshLab or Blender")
+  add_text(*command, "--ply", options.ply, "write both meshes, the faces that cross and those that touch coloured")
       ->excludes(poses);
   command->footer(
       "Examples:\n"
       "  cchip collide a.obj b.stl --pose 0.5,0,0\n"
       "  cchip collide a.obj b.stl --pose 0.5,0,0 --format csv > contacts.csv\n"
       "  cchip collide a.obj b.stl --poses poses.csv --expect touches\n"
+      "  cchip collide a.obj b.stl --poses poses.csv --counts crossing\n"
       "  cchip collide a.obj b.stl --pose 0.5,0,0 --device sim --trace chip.fst");
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cchip/collide/face_pairs.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/rtl/simulated_chip.hpp>
@@ -34,11 +35,13 @@ struct Totals {
   std::uint64_t hits = 0;
   std::uint64_t mismatches = 0;
   std::uint64_t contacts = 0;
+  std::uint64_t crossing = 0;  ///< queries whose objects cross, if that was asked for
   CollisionCounts counts;
 
   void add(const CollisionResult& result, bool differs) {
     ++queries;
     hits += result.hit;
+    crossing += result.relation == Relation::crossing;
     mismatches += differs;
     contacts += result.contacts.size();
     counts += result.counts;
@@ -102,6 +105,8 @@ CollisionRequest request_of(const CollideOptions& options) {
   }
   if (all) request.contacts = CollisionRequest::Contacts::all;
   if (options.most_contacts != 0) request.most_contacts = options.most_contacts;
+  if (options.only_crossing) request.counts = CollisionRequest::Counts::crossing;
+  request.relation = options.relation || options.only_crossing || (all && options.poses_file.empty());
   return request;
 }
 
@@ -114,36 +119,50 @@ void for_each_face_of(const Mesh& mesh, const std::set<std::uint32_t>& in_file, 
   }
 }
 
-/// Faces of each object that touch the other one.
+bool crosses(const Contact& contact) { return contact.relation == Relation::crossing; }
+
+/// Faces of each object that are in contact with the other one.
 struct FacesHit {
-  explicit FacesHit(const std::vector<Contact>& contacts) {
-    for (const Contact& contact : contacts) {
-      a.insert(contact.face_a);
-      b.insert(contact.face_b);
-    }
+  void add(const Contact& contact) {
+    a.insert(contact.face_a);
+    b.insert(contact.face_b);
   }
   std::set<std::uint32_t> a;
   std::set<std::uint32_t> b;
 };
 
+/// Of a contact or of two objects, in a row of a table.
+std::string to_word(const std::optional<Relation>& relation) {
+  if (!relation) return "";
+  return *relation == Relation::apart ? "apart" : *relation == Relation::touching ? "touching" : "crossing";
+}
+
 /// The answer in words.
 std::string to_words(const CollisionResult& result, const CollisionRequest& request) {
-  if (!result.hit) return "apart";
+  if (!result.hit) return result.relation == Relation::touching ? "touch: no faces cross" : "apart";
+  const char* verb = std::any_of(result.contacts.begin(), result.contacts.end(), crosses) ? "cross" : "touch";
   if (request.contacts == CollisionRequest::Contacts::first) {
-    return fmt::format("touch: face {} of A meets face {} of B", result.contacts[0].face_a, result.contacts[0].face_b);
+    return fmt::format("{}: face {} of A meets face {} of B", verb, result.contacts[0].face_a,
+                       result.contacts[0].face_b);
   }
-  const FacesHit hit(result.contacts);
+  FacesHit hit;
+  for (const Contact& contact : result.contacts) hit.add(contact);
   const bool more = result.contacts.size() == request.most_contacts;
-  return fmt::format("touch: {}{} face{} of A meet{} {} of B", more ? "at least " : "", hit.a.size(),
+  return fmt::format("{}: {}{} face{} of A meet{} {} of B", verb, more ? "at least " : "", hit.a.size(),
                      hit.a.size() == 1 ? "" : "s", hit.a.size() == 1 ? "s" : "", hit.b.size());
 }
 
-void write_contacts(const std::vector<Contact>& contacts, Format format, std::ostream& out) {
+/// \param relation with a column for it
+void write_contacts(const std::vector<Contact>& contacts, bool relation, Format format, std::ostream& out) {
   if (contacts.empty() && format == Format::table) return;
-  const auto writer = make_row_writer(format, out, mesh_pair_names());
+  std::vector<std::string> names = mesh_pair_names();
+  if (relation) names.emplace_back("relation");
+  const auto writer = make_row_writer(format, out, names);
   const std::size_t shown = format == Format::table ? std::min(contacts.size(), contacts_shown) : contacts.size();
   for (std::size_t i = 0; i < shown; ++i) {
-    writer->write({std::uint64_t{contacts[i].face_a}, std::uint64_t{contacts[i].face_b}});
+    std::vector<Cell> cells = {std::uint64_t{contacts[i].face_a}, std::uint64_t{contacts[i].face_b}};
+    if (relation) cells.emplace_back(to_word(contacts[i].relation));
+    writer->write(cells);
   }
   writer->flush();
   if (shown < contacts.size()) {
@@ -168,12 +187,16 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
   const CollisionResult result = collide(device, a, Pose::Identity(), b, pose, request);
   if (options.format == Format::table) streams.out << to_words(result, request) << '\n';
   if (options.format != Format::table || request.contacts == CollisionRequest::Contacts::all) {
-    write_contacts(result.contacts, options.format, streams.out);
+    write_contacts(result.contacts, request.relation, options.format, streams.out);
   }
   if (picture) {
-    const FacesHit hit(result.contacts);
-    for_each_face_of(a.mesh(), hit.a, [&picture](std::size_t face) { picture->add_hit_a(face); });
-    for_each_face_of(b.mesh(), hit.b, [&picture](std::size_t face) { picture->add_hit_b(face); });
+    // Without relations every contact counts as one that crosses.
+    std::array<FacesHit, 2> hit;
+    for (const Contact& contact : result.contacts) hit[crosses(contact) || !request.relation ? 1 : 0].add(contact);
+    for (const bool cross : {false, true}) {
+      for_each_face_of(a.mesh(), hit[cross].a, [&](std::size_t face) { picture->add_hit_a(face, cross); });
+      for_each_face_of(b.mesh(), hit[cross].b, [&](std::size_t face) { picture->add_hit_b(face, cross); });
+    }
     picture->write(a.mesh(), transformed(b.mesh(), pose));
   }
   Totals totals;
@@ -223,7 +246,12 @@ class PosesRunner {
     progress.clear();
     answer(a, b);
     if (options_.format == Format::table) {
-      streams_.out << fmt::format("touch in {} of {} poses\n", totals_.hits, totals_.queries);
+      if (options_.only_crossing) {
+        streams_.out << fmt::format("cross in {} of {} poses\n", totals_.hits, totals_.queries);
+      } else {
+        streams_.out << fmt::format("touch in {} of {} poses", totals_.hits, totals_.queries)
+                     << (request_.relation ? fmt::format(", cross in {} of these\n", totals_.crossing) : "\n");
+      }
     }
     return totals_;
   }
@@ -232,6 +260,7 @@ class PosesRunner {
 
   std::vector<std::string> names() const {
     std::vector<std::string> names = {"hit", "contacts", "steps", "box_tests", "pairs", "open"};
+    if (request_.relation) names.emplace_back("relation");
     if (table_of_differences()) names.insert(names.begin(), {"row", "expected"});
     return names;
   }
@@ -277,6 +306,7 @@ class PosesRunner {
                                        counts.box_tests, counts.pairs, counts.open}) {
       cells.emplace_back(number);
     }
+    if (request_.relation) cells.emplace_back(to_word(result.relation));
     writer_->write(cells);
   }
 

@@ -16,16 +16,26 @@ constexpr Colour grey_a = {216, 218, 222};
 constexpr Colour grey_b = {188, 194, 204};
 constexpr Colour orange = {235, 94, 40};
 constexpr Colour blue = {30, 110, 210};
+constexpr Colour yellow = {245, 190, 50};
+constexpr Colour cyan = {110, 200, 225};
 
-void append(const Mesh& mesh, const std::set<std::size_t>& hits, const Colour& hit, const Colour& other, Mesh& all,
-            std::vector<Colour>& colours) {
+/// Faces in colour: those that hit, and those that only touch.
+struct Coloured {
+  const std::set<std::size_t>& hits;
+  Colour hit;
+  const std::set<std::size_t>& touches;
+  Colour touch;
+  Colour other;
+};
+
+void append(const Mesh& mesh, const Coloured& x, Mesh& all, std::vector<Colour>& colours) {
   const auto first = static_cast<std::uint32_t>(all.vertices.size());
   all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
     Mesh::Face face = mesh.faces[i];
     for (std::uint32_t& vertex : face.vertex) vertex += first;
     all.faces.push_back(face);
-    colours.push_back(hits.count(i) != 0 ? hit : other);
+    colours.push_back(x.hits.count(i) != 0 ? x.hit : x.touches.count(i) != 0 ? x.touch : x.other);
   }
 }
 
@@ -82,8 +92,8 @@ void HitPicture::add_hit(const PairJob& job) {
 void HitPicture::write(const Mesh& a, const Mesh& b) {
   Mesh all;
   std::vector<Colour> colours;
-  append(a, hits_a_, orange, grey_a, all, colours);
-  append(b, hits_b_, blue, grey_b, all, colours);
+  append(a, {hits_a_, orange, touches_a_, yellow, grey_a}, all, colours);
+  append(b, {hits_b_, blue, touches_b_, cyan, grey_b}, all, colours);
   write_ply(file_.stream(), all, colours);
   file_.commit();
 }

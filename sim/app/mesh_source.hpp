@@ -39,9 +39,9 @@ class HitPicture {
   explicit HitPicture(const std::string& path) : file_(path) {}
   /// Marks the faces of a candidate pair of for_each_candidate() that hit.
   void add_hit(const PairJob& job);
-  /// The same by the faces' numbers in the meshes.
-  void add_hit_a(std::size_t face) { hits_a_.insert(face); }
-  void add_hit_b(std::size_t face) { hits_b_.insert(face); }
+  /// The same by the faces' numbers in the meshes; those that only touch get a colour of their own.
+  void add_hit_a(std::size_t face, bool crosses) { (crosses ? hits_a_ : touches_a_).insert(face); }
+  void add_hit_b(std::size_t face, bool crosses) { (crosses ? hits_b_ : touches_b_).insert(face); }
   /// \throws sim::OutputError as above
   void write(const Mesh& a, const Mesh& b);
 
@@ -49,6 +49,8 @@ class HitPicture {
   sim::OutputFile file_;
   std::set<std::size_t> hits_a_;
   std::set<std::size_t> hits_b_;
+  std::set<std::size_t> touches_a_;
+  std::set<std::size_t> touches_b_;
 };
 
 }  // namespace cchip::app

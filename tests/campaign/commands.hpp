@@ -26,6 +26,14 @@ struct GridOptions : CommonOptions {
 /// Primitives of the grid -1..1: all pairs of triangles up to symmetry, samples of pairs with quads.
 int run_grid(const GridOptions& options);
 
+struct RelationOptions : CommonOptions {
+  std::uint64_t pairs = 0;  ///< per shape; 0: all triangle pairs of the grid
+  bool random = false;      ///< random pairs of all classes instead of the grid -1..1
+  int coord_w = defs::coord_w_default;
+};
+/// Whether primitives are apart, touch or cross: exact predicates against the definition.
+int run_relation(const RelationOptions& options);
+
 struct ClassesOptions : CommonOptions {
   std::uint64_t pairs = 100000;  ///< per class, shape and programme
   std::string csv;               ///< file for the mean beats; empty: none

@@ -51,6 +51,11 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
   add_pairs(*grid, g->pairs, "pairs per shape; 0: all of triangles, none with quads");
   grid->add_option("--rtl", g->rtl, "pairs per shape that also go through the RTL, in both programmes")
       ->capture_default_str();
+  const auto [relation, n] = add("relation", "apart, touching or crossing: exact predicates against the definition",
+                                 RelationOptions{}, run_relation);
+  add_pairs(*relation, n->pairs, "pairs per shape; 0: all triangle pairs of the grid -1..1, none with quads");
+  relation->add_flag("--random", n->random, "random pairs of all classes instead of the grid -1..1");
+  add_coord_w(*relation, n->coord_w);
   const auto [classes, c] = add("classes", "RTL against model and exact oracle, class by class, with throughput",
                                 ClassesOptions{}, run_classes);
   add_pairs(*classes, c->pairs, "pairs per class and shape");

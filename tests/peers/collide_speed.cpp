@@ -130,6 +130,7 @@ class Benchmark {
     run_scene();
     print_targets();
     print_libraries();
+    print_relation();
     print_objects();
     return summary();
   }
@@ -219,26 +220,32 @@ class Benchmark {
     const bool all = request.contacts == CollisionRequest::Contacts::all;
     std::vector<Variant> result;
     answers.clear();
-    answers.reserve(2 * targets_.size() + 1 + peers_.size());  // the variants refer to its elements
-    const auto ours = [&](const std::string& name, Clock clock, Device& device, bool batch) {
+    answers.reserve(2 * targets_.size() + 2 + peers_.size());  // the variants refer to its elements
+    CollisionRequest telling = request;
+    telling.relation = true;
+    const auto ask = [&](const std::string& name, Clock clock, Device& device, bool batch,
+                         const CollisionRequest& asked) {
       Answers& mine = answers.emplace_back(poses.size());
       const auto query = [&bodies, &poses](std::size_t i) {
         return CollisionQuery{&bodies.a, &poses[i].a, &bodies.b, &poses[i].b};
       };
       if (batch) {
-        result.push_back({name, clock, [&, query, request](std::size_t first, std::size_t count) {
+        result.push_back({name, clock, [&, query, asked](std::size_t first, std::size_t count) {
                             device.collide(
-                                count, [&](std::size_t i) { return query(first + i); }, request,
+                                count, [&](std::size_t i) { return query(first + i); }, asked,
                                 [&](std::size_t i, const CollisionResult& r) { mine.take(first + i, r); });
                           }});
       } else {
-        result.push_back({name, clock, [&, query, request](std::size_t first, std::size_t count) {
+        result.push_back({name, clock, [&, query, asked](std::size_t first, std::size_t count) {
                             for (std::size_t i = first; i < first + count; ++i) {
-                              device.collide(query(i), request, result_);
+                              device.collide(query(i), asked, result_);
                               mine.take(i, result_);
                             }
                           }});
       }
+    };
+    const auto ours = [&](const std::string& name, Clock clock, Device& device, bool batch) {
+      ask(name, clock, device, batch, request);
     };
     const auto theirs = [&](const PeerPair& peer) {
       if (all && !peer.has_contacts) return;
@@ -258,6 +265,7 @@ class Benchmark {
     };
     ours("single", Clock::cpu, best(), false);
     theirs(peers_.front());
+    ask("relation", Clock::cpu, best(), false, telling);
     ours("batch", Clock::cpu, best(), true);
     for (std::size_t i = 1; i < peers_.size(); ++i) theirs(peers_[i]);
     ours("cores", Clock::wall, *all_cores_, true);
@@ -583,6 +591,16 @@ class Benchmark {
       }
     }
     fmt::print("\n");
+  }
+
+  /// What it costs to tell touching from crossing.
+  void print_relation() {
+    fmt::print("\nwith relation: seconds of a single query, times those without; geometric means of the meshes\n");
+    for (const char* c : table_classes) {
+      auto& means = means_[c];
+      if (means.count("relation") == 0) continue;
+      fmt::print("  {:<12} {:>6.2f}\n", c, means["single"].value() / means["relation"].value());
+    }
   }
 
   int summary() {

@@ -5,6 +5,8 @@
 #include <cchip/mesh_io/mesh_file.hpp>
 #include <cchip/reference/brute_force.hpp>
 #include <cchip/stimulus/usage_error.hpp>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <streambuf>
@@ -27,8 +29,11 @@ Outcome collide_cubes(std::vector<std::string> options) {
 }
 
 std::vector<std::string> rows_of(const std::vector<Contact>& contacts) {
-  std::vector<std::string> rows = {"face_a,face_b"};
-  for (const Contact& c : contacts) rows.push_back(std::to_string(c.face_a) + "," + std::to_string(c.face_b));
+  std::vector<std::string> rows = {"face_a,face_b,relation"};
+  for (const Contact& c : contacts) {
+    rows.push_back(std::to_string(c.face_a) + "," + std::to_string(c.face_b) +
+                   (c.relation == Relation::crossing ? ",crossing" : ",touching"));
+  }
   return rows;
 }
 
@@ -44,7 +49,7 @@ TEST_CASE("collide: the first line is the answer, the last one the summary", "[s
   // They share the corner (0.5, 0.5, 0.5), where three faces of each meet.
   const Outcome corner = collide_cubes({"--pose", "1,1,1"});
   CHECK(lines(corner.out).front() == "touch: 3 faces of A meet 3 of B");
-  CHECK(lines(corner.out).at(1) == "face_a  face_b");
+  CHECK(lines(corner.out).at(1) == "face_a  face_b  relation");
   CHECK(last_line(corner.out).rfind("queries=1 hits=1 mismatches=0 contacts=9 ", 0) == 0);
   const Outcome first = collide_cubes({"--pose", "1,1,1", "--contacts", "first"});
   CHECK(lines(first.out).size() == 2);
@@ -68,7 +73,8 @@ TEST_CASE("collide: contacts are those of brute force", "[system][collide]") {
   const Outcome json = run_cchip({"collide", spider, cube_file, "--pose-matrix", matrix, "--format", "jsonl"});
   CHECK(lines(json.out).size() == expected.size());
   CHECK(lines(json.out).front() == "{\"face_a\":" + std::to_string(expected[0].face_a) +
-                                       ",\"face_b\":" + std::to_string(expected[0].face_b) + "}");
+                                       ",\"face_b\":" + std::to_string(expected[0].face_b) + ",\"relation\":\"" +
+                                       (expected[0].relation == Relation::crossing ? "crossing" : "touching") + "\"}");
 }
 
 TEST_CASE("collide: the functional model of the chip gives the same contacts", "[system][collide]") {
@@ -116,6 +122,53 @@ TEST_CASE("collide: poses of a file, expected answers", "[system][collide]") {
   const Outcome csv = collide_cubes({"--poses", wrong, "--expect", "contacts", "--contacts", "all", "--format", "csv"});
   CHECK(csv.code == exit_mismatch);
   CHECK(lines(csv.err).front() == "cchip: " + wrong + ":5: expected contacts 1, got 0");
+}
+
+TEST_CASE("collide: touching is told from crossing", "[system][collide]") {
+  const Outcome flush = collide_cubes({"--pose", "1,0,0"});
+  CHECK(lines(flush.out).front() == "touch: 5 faces of A meet 5 of B");
+  CHECK(flush.out.find("crossing") == std::string::npos);
+  const Outcome deep = collide_cubes({"--pose", "0.5,0.25,0.125"});
+  CHECK(lines(deep.out).front().rfind("cross: ", 0) == 0);
+  const Outcome only = collide_cubes({"--pose", "1,0,0", "--counts", "crossing"});
+  CHECK(only.code == exit_ok);
+  CHECK(lines(only.out).front() == "touch: no faces cross");
+  CHECK(last_line(only.out).rfind("queries=1 hits=0 mismatches=0 contacts=0 ", 0) == 0);
+  CHECK(lines(collide_cubes({"--pose", "1.5,0,0", "--counts", "crossing"}).out).front() == "apart");
+  const Outcome first = collide_cubes({"--pose", "0.5,0.25,0.125", "--contacts", "first", "--relation"});
+  CHECK(lines(first.out).front().rfind("cross: face ", 0) == 0);
+
+  const TemporaryFolder folder;
+  const std::string poses = folder.write("poses.csv", poses_header +
+                                                          "\n1,0,0,0,1,0,0,0,1,1,0,0"           // flush
+                                                          "\n1,0,0,0,1,0,0,0,1,0.5,0.25,0.125"  // crossing
+                                                          "\n1,0,0,0,1,0,0,0,1,2,0,0\n");       // apart
+  const Outcome table = collide_cubes({"--poses", poses, "--relation"});
+  CHECK(lines(table.out)[4] == "touch in 2 of 3 poses, cross in 1 of these");
+  CHECK(lines(collide_cubes({"--poses", poses, "--counts", "crossing"}).out)[4] == "cross in 1 of 3 poses");
+  const Outcome csv = collide_cubes({"--poses", poses, "--relation", "--format", "csv"});
+  CHECK(lines(csv.out)[0] == "hit,contacts,steps,box_tests,pairs,open,relation");
+  CHECK(lines(csv.out)[1].substr(lines(csv.out)[1].rfind(',')) == ",touching");
+  CHECK(lines(csv.out)[2].substr(lines(csv.out)[2].rfind(',')) == ",crossing");
+  CHECK(lines(csv.out)[3].substr(lines(csv.out)[3].rfind(',')) == ",apart");
+}
+
+TEST_CASE("collide: the faces that touch and those that cross are coloured apart", "[system][collide]") {
+  const TemporaryFolder folder;
+  const auto colours = [&](const std::string& pose) {
+    const std::string path = folder.path("hits.ply");
+    CHECK(collide_cubes({"--pose", pose, "--ply", path}).code == exit_ok);
+    std::ifstream in(path, std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    const auto has = [&text](int r, int g, int b) {
+      const std::string bytes = {static_cast<char>(r), static_cast<char>(g), static_cast<char>(b)};
+      const std::string words = std::to_string(r) + " " + std::to_string(g) + " " + std::to_string(b);
+      return text.find(bytes) != std::string::npos || text.find(words) != std::string::npos;
+    };
+    return std::pair(has(245, 190, 50) && has(110, 200, 225), has(235, 94, 40) && has(30, 110, 210));
+  };
+  CHECK(colours("1,0,0") == std::pair(true, false));           // touching only
+  CHECK(colours("0.5,0.25,0.125") == std::pair(false, true));  // crossing only
 }
 
 TEST_CASE("collide: thousands of poses", "[system][collide]") {
@@ -305,7 +358,8 @@ TEST_CASE("collide: device sim answers face for face like device cpu", "[system]
   const Outcome first = run("sim", {"--pose", c.pose, "--contacts", "first"});
   REQUIRE(lines(first.out).size() == 2);
   const std::vector<std::string> all = lines(cpu.out);
-  CHECK(std::find(all.begin() + 1, all.end(), lines(first.out)[1]) != all.end());
+  const std::string faces = lines(first.out)[1] + ",";
+  CHECK(std::any_of(all.begin() + 1, all.end(), [&](const std::string& row) { return row.rfind(faces, 0) == 0; }));
   // a batch; the singular map of its last row is the CPU's
   const TemporaryFolder folder;
   const std::string poses = folder.write("poses.csv", many_poses(c.size));

@@ -349,7 +349,9 @@ class ChipHost final : public Device {
     if (!chip.quads && (a.header.has_quads || b.header.has_quads)) return std::nullopt;
     std::optional<Query> query = bvh::make_query(a.header, *placed.pose_a, b.header, *placed.pose_b);
     if (!query) return std::nullopt;
-    query->mode = request.contacts == CollisionRequest::Contacts::all ? QueryMode::all : QueryMode::first;
+    // A FIRST query ends with a definite contact. If the numbers are exact, that one may only touch.
+    const bool needs_all = request.contacts == CollisionRequest::Contacts::all || (tells(request) && query->error == 0);
+    query->mode = needs_all ? QueryMode::all : QueryMode::first;
     return Prepared{placed, *query, &a, &b};
   }
 
@@ -395,18 +397,19 @@ class ChipHost final : public Device {
     const QueryCode code = outcome.done.code;
     if ((code == QueryCode::ok || code == QueryCode::host) && is_well_formed(flight, outcome)) {
       faces_.start(flight.placed, request, result);
-      const bool tells = request.relation || request.counts == CollisionRequest::Counts::crossing;
-      counts.open = resolve(outcome.pairs, tells && flight.exact, faces_);
-      // The chip ends a FIRST query with a definite contact, which may only touch where the request wants a crossing.
-      const bool cut_short =
-          tells && outcome.done.answer == QueryAnswer::yes && request.contacts == CollisionRequest::Contacts::first;
-      if (faces_.done() || (code == QueryCode::ok && !cut_short)) {
+      counts.open = resolve(outcome.pairs, tells(request) && flight.exact, faces_);
+      if (code == QueryCode::ok || faces_.done()) {
         faces_.finish();
         result.counts = counts;
         return;
       }
     }
     fall_back(flight.placed, request, counts, result);
+  }
+
+  /// The request tells touching from crossing.
+  static bool tells(const CollisionRequest& request) {
+    return request.relation || request.counts == CollisionRequest::Counts::crossing;
   }
 
   static bool is_well_formed(const Flight& flight, const QueryOutcome& outcome) {

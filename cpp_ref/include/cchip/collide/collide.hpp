@@ -33,7 +33,10 @@ struct CollisionRequest {
   /// The least relation of two faces that counts as a contact.
   enum class Counts {
     touching,  ///< every pair of faces that share a point
-    crossing   ///< only pairs that cross: flush and grazing faces are no contacts
+    /// Only pairs that cross: flush and grazing faces are no contacts. Faces are judged pair by pair, so solids that
+    /// overlap can do without: two bars of one section, one pushed into the other, have no faces that cross
+    /// (docs/touching.md).
+    crossing
   };
   Counts counts = Counts::touching;
   /// Tell touching from crossing: fills CollisionResult::relation and Contact::relation, which Counts::crossing does in
