@@ -4,7 +4,9 @@
 // Queries in which the objects only just touch: the pose of B is the last one in doubles, on a line away from A, in
 // which the plain search, which shares no arithmetic with the others but exact predicates, finds a contact. Spindles
 // that point at each other touch where bounding planes are as tight as they can be: their tips lie on a direction of
-// the volumes of both.
+// the volumes of both. Bounds of whole objects in doubles are so fine that only what is far from the origin needs their
+// margin: spindles for the line of the centres, a corner of a cube in a face of the other one for the edges of boxes.
+#include <array>
 #include <catch2/catch.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/seed.hpp>
@@ -13,26 +15,34 @@
 #include <random>
 
 #include "device/search.hpp"
+#include "random_poses.hpp"
 
 using namespace cchip;
+using cchip_test::pose_classes;
+using cchip_test::PoseClass;
+using cchip_test::random_pose;
 
 namespace {
 
+enum class Shape { sphere, spindle, cube };
+
 struct Case {
   const char* name;
-  bool spindles;    ///< or uneven spheres
+  Shape shape;
   double size_b;    ///< A has size 1
   double distance;  ///< of both from the origin
   int count;
 };
-constexpr Case cases[] = {{"spheres", false, 1, 1, 40},
-                          {"spheres far from the origin", false, 1, 1e13, 30},
-                          {"spheres, 100 : 1", false, 0.01, 1, 30},
-                          {"spheres, 1000000 : 1", false, 1e-6, 1, 20},
-                          {"spindles", true, 1, 1, 300},
-                          {"spindles, 10 : 9", true, 0.9, 1, 300},
-                          {"spindles, 100 : 1", true, 0.01, 1, 60},
-                          {"spindles, 100000 : 1", true, 1e-5, 1, 60}};
+constexpr Case cases[] = {{"spheres", Shape::sphere, 1, 1, 40},
+                          {"spheres far from the origin", Shape::sphere, 1, 1e13, 30},
+                          {"spheres, 100 : 1", Shape::sphere, 0.01, 1, 30},
+                          {"spheres, 1000000 : 1", Shape::sphere, 1e-6, 1, 20},
+                          {"spindles", Shape::spindle, 1, 1, 300},
+                          {"spindles, 10 : 9", Shape::spindle, 0.9, 1, 300},
+                          {"spindles, 100 : 1", Shape::spindle, 0.01, 1, 60},
+                          {"spindles, 100000 : 1", Shape::spindle, 1e-5, 1, 60},
+                          {"spindles far from the origin", Shape::spindle, 1, 1e13, 300},
+                          {"cubes far from the origin", Shape::cube, 1, 1e13, 300}};
 
 /// Tips at +-size along the direction, a ring of half that radius around the middle.
 Mesh make_spindle(const Vec3d& direction, double size) {
@@ -48,6 +58,22 @@ Mesh make_spindle(const Vec3d& direction, double size) {
     for (std::uint32_t tip : {0U, 1U}) {
       mesh.faces.push_back({Kind::tri, {tip, 2 + i, 2 + (i + 1) % sides, 0}});
     }
+  }
+  return mesh;
+}
+
+Mesh make_cube(double size) {
+  Mesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.vertices.push_back(size * Vec3d((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1));
+  }
+  for (const std::array<std::uint32_t, 4>& face : {std::array<std::uint32_t, 4>{0, 2, 3, 1},
+                                                   {4, 5, 7, 6},
+                                                   {0, 1, 5, 4},
+                                                   {2, 6, 7, 3},
+                                                   {0, 4, 6, 2},
+                                                   {1, 3, 7, 5}}) {
+    mesh.faces.push_back({Kind::quad, face});
   }
   return mesh;
 }
@@ -90,7 +116,7 @@ std::vector<Touching> make_touching(const Case& c, const Object& a, const Object
     Pose turn(make_pose(Vec3d::Zero(), Vec3d(degrees(random), degrees(random), degrees(random))));
     // Outward from a vertex of A, where the surface of a small B crosses A's; or along the spindles.
     Vec3d from = t.a.linear() * a.mesh().vertices[random() % a.mesh().vertices.size()];
-    if (c.spindles) {
+    if (c.shape == Shape::spindle) {
       turn.linear() = t.a.linear() * Eigen::AngleAxisd(degrees(random), along.normalized()).toRotationMatrix();
       from = t.a.linear() * (1 + 0.9 * c.size_b) * along.normalized();
     }
@@ -122,7 +148,8 @@ TEST_CASE("CPU device: bounds on rounding are enough, and none can be left out",
     double Margins::*bound;
     std::size_t missed = 0;
   };
-  Mutant mutants[] = {{"narrow", &Margins::narrow},
+  Mutant mutants[] = {{"far", &Margins::far},
+                      {"narrow", &Margins::narrow},
                       {"wide", &Margins::wide},
                       {"vertex", &Margins::vertex},
                       {"relation", &Margins::relation}};
@@ -130,8 +157,14 @@ TEST_CASE("CPU device: bounds on rounding are enough, and none can be left out",
   for (const Case& c : cases) {
     const Vec3d along(random() % 2 == 0 ? 1 : 0, random() % 2 == 0 ? 1 : 0, 1);
     const Vec3d shift(0.3, 0.2, 0.1);
-    const Object a(c.spindles ? make_spindle(along, 1) : shifted(make_sphere(1, 12, 0.1, 1), shift));
-    const Object b(c.spindles ? make_spindle(along, c.size_b) : make_sphere(c.size_b, 10, 0.1 * c.size_b, 2));
+    const auto make = [&](bool is_a) {
+      const double size = is_a ? 1 : c.size_b;
+      if (c.shape == Shape::spindle) return make_spindle(along, size);
+      if (c.shape == Shape::cube) return is_a ? shifted(make_cube(size), shift) : make_cube(size);
+      return is_a ? shifted(make_sphere(1, 12, 0.1, 1), shift) : make_sphere(size, 10, 0.1 * size, 2);
+    };
+    const Object a(make(true));
+    const Object b(make(false));
     const std::vector<Touching> queries = make_touching(c, a, b, along, random);
     const auto missed = [&](const std::string& name, const Margins& margins) {
       const auto search = make_simd_search(name, margins);
@@ -149,13 +182,76 @@ TEST_CASE("CPU device: bounds on rounding are enough, and none can be left out",
     for (Mutant& mutant : mutants) {
       Margins margins;
       margins.*mutant.bound = 0;
-      mutant.missed += missed(target, margins);
+      const std::size_t count = missed(target, margins);
+      mutant.missed += count;
+      // Each of the two tests of whole objects needs it.
+      if (mutant.bound == &Margins::far && c.distance > 1) {
+        INFO(c.name);
+        CHECK((count > 0 || c.shape == Shape::sphere));
+        std::printf("%s, without the bound 'far': %zu hits missed\n", c.name, count);
+      }
     }
   }
   for (const Mutant& mutant : mutants) {
     INFO("without the bound '" << mutant.name << "'");
     CHECK(mutant.missed > 0);
     std::printf("without the bound '%s': %zu hits missed\n", mutant.name, mutant.missed);
+  }
+}
+
+TEST_CASE("CPU device: no map or size of objects that only just touch passes for apart", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  const std::vector<Object> objects = {Object(make_spindle({1, 1, 0}, 1)), Object(make_cube(1)),
+                                       Object(shifted(make_sphere(1, 1, 0.1, 1), {5, -3, 2}))};
+  const auto plain = make_plain_search();
+  const auto search = make_simd_search(simd_targets().front());
+  // Beyond 2^+-100 the first look must not decide.
+  for (const int exponent : {0, -40, 40, -90, 90, -98, 97, -150, 150, -400, 400}) {
+    std::size_t asked = 0;
+    std::size_t missed = 0;
+    std::size_t wrong = 0;
+    std::size_t at_a_look = 0;
+    for (const PoseClass class_a : pose_classes) {
+      for (const PoseClass class_b : pose_classes) {
+        const Object& a = objects[random() % objects.size()];
+        const Object& b = objects[random() % objects.size()];
+        const auto scaled = [exponent](Pose pose) {
+          for (int k = 0; k < 12; ++k) pose.data()[k + k / 3] = std::ldexp(pose.data()[k + k / 3], exponent);
+          return pose;
+        };
+        const Pose pose_a = scaled(random_pose(class_a, 1, random));
+        const Pose turn = scaled(random_pose(class_b, 1, random));
+        const Vec3d on_a = pose_a * a.mesh().vertices[random() % a.mesh().vertices.size()];
+        const Vec3d on_b = turn.linear() * b.mesh().vertices[random() % b.mesh().vertices.size()];
+        const Vec3d direction = std::ldexp(20, exponent) * random_vector(random).normalized();
+        const auto at = [&](double distance) {
+          Pose pose = turn;
+          pose.translation() = on_a - on_b + distance * direction;
+          return pose;
+        };
+        double in = 0;
+        double out = 1;
+        if (!hits(*plain, a, pose_a, b, at(in)) || hits(*plain, a, pose_a, b, at(out))) continue;
+        for (int step = 0; step < 60; ++step) {
+          const double middle = (in + out) / 2;
+          (hits(*plain, a, pose_a, b, at(middle)) ? in : out) = middle;
+        }
+        const Pose inside = at(in);
+        missed += hits(*search, a, pose_a, b, inside) && hits(*search, b, inside, a, pose_a) ? 0U : 1U;
+        const Pose outside = at(1);
+        CollisionResult result;
+        search->run({&a, &pose_a, &b, &outside}, {}, result);
+        wrong += result.hit ? 1U : 0U;
+        at_a_look += result.counts.steps == 0 ? 1U : 0U;
+        ++asked;
+      }
+    }
+    INFO("2^" << exponent << ": " << asked << " pairs of poses, " << at_a_look << " apart at the first look");
+    CHECK(asked > 30);
+    CHECK(missed == 0);
+    CHECK(wrong == 0);
+    if (std::abs(exponent) <= 40) CHECK(2 * at_a_look > asked);
+    if (std::abs(exponent) > 100) CHECK(at_a_look == 0);
   }
 }
 

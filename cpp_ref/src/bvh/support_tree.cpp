@@ -112,6 +112,9 @@ SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : faces_(tree.faces
     lines_.push_back(make_line(tree.nodes[n].dop, centre_, unit_, ref_of(tree.nodes[n])));
   }
   lines_.push_back(make_line(all, centre_, unit_, root_));
+  whole_words_ = lines_.back().word;
+  extent_ = centre_.cwiseAbs().maxCoeff() + support_most * unit_;
+  for (std::size_t k = 0; k < 3; ++k) half_[k] = unit_ * std::max(whole_words_[2 * k], whole_words_[2 * k + 1]);
   lines_.resize(size_ + 4);
 
   vertices_.resize(12 * faces_.size() + 12);  // two primitives can always be read

@@ -55,11 +55,19 @@ void FacePairs::start(const CollisionQuery& query, const CollisionRequest& reque
   result.counts = {};
   done_ = false;
   seen_ = Relation::apart;
-  tells_ = request.relation || request.counts == CollisionRequest::Counts::crossing;
+  tells_ = tells_relation(request);
   most_ = request.contacts == CollisionRequest::Contacts::first ? 1 : request.most_contacts;
   cut_ = !query.a->mesh().file_face.empty() || !query.b->mesh().file_face.empty();
   if (cut_) contacts_.clear();
   pairs_.reset();
+}
+
+void FacePairs::answer_apart(const CollisionRequest& request, CollisionResult& result) {
+  result.hit = false;
+  result.relation.reset();
+  if (tells_relation(request)) result.relation = Relation::apart;
+  result.contacts.clear();
+  result.counts = {};
 }
 
 void FacePairs::test(std::uint32_t face_a, std::uint32_t face_b) {

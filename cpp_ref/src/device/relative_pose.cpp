@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "exact/ieee.hpp"
 
@@ -34,45 +33,20 @@ double square(const Matrix& m) { return dot(m[0], m[0]) + dot(m[1], m[1]) + dot(
 /// Not for NaN.
 bool is_moderate(double square) { return square > 0x1p-400 && square < 0x1p400; }
 
-/// Where the centre of an object is, and a bound on the numbers that were added up for a coordinate of it.
-struct Centre {
-  Vector at;
-  double size;
-};
-
-Centre centre_of(const Object& object, const Matrix& linear, double norm, const Pose& pose) {
-  const Vec3d& c = object.tree().centre();
-  const double* const p = pose.data() + 12;
-  Centre centre;
-  for (std::size_t i = 0; i < 3; ++i) {
-    centre.at[i] = linear[0][i] * c[0] + linear[1][i] * c[1] + linear[2][i] * c[2] + p[i];
-  }
-  centre.size =
-      norm * (std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2])) + std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]);
-  return centre;
-}
-
 }  // namespace
 
-bool relate(const CollisionQuery& query, RelativePose& r) {
-  const Object* moved = query.a;
-  const Object* fixed = query.b;
-  const Pose* pose_m = query.pose_a;
-  const Pose* pose_f = query.pose_b;
-  Matrix lm = linear_of(*pose_m);
-  Matrix lf = linear_of(*pose_f);
-  double square_m = square(lm);
-  double square_f = square(lf);
-  double unit_m = moved->tree().unit();
-  double unit_f = fixed->tree().unit();
-  r.swapped = square_m * (unit_m * unit_m) > square_f * (unit_f * unit_f);
-  if (r.swapped) {
-    std::swap(moved, fixed);
-    std::swap(pose_m, pose_f);
-    std::swap(lm, lf);
-    std::swap(square_m, square_f);
-    std::swap(unit_m, unit_f);
-  }
+bool relate(const CollisionQuery& query, const CentreLine& line, RelativePose& r) {
+  const double unit_a = query.a->tree().unit();
+  const double unit_b = query.b->tree().unit();
+  const double square_a = square(linear_of(*query.pose_a));
+  const double square_b = square(linear_of(*query.pose_b));
+  r.swapped = square_a * (unit_a * unit_a) > square_b * (unit_b * unit_b);
+  const Matrix lm = linear_of(r.swapped ? *query.pose_b : *query.pose_a);
+  const Matrix lf = linear_of(r.swapped ? *query.pose_a : *query.pose_b);
+  const double square_m = r.swapped ? square_b : square_a;
+  const double square_f = r.swapped ? square_a : square_b;
+  const double unit_m = r.swapped ? unit_b : unit_a;
+  const double unit_f = r.swapped ? unit_a : unit_b;
   if (!(unit_f > 0x1p-200 && unit_f < 0x1p200) || !is_moderate(square_f) || !(unit_m < 0x1p200) ||
       !(square_m < 0x1p400)) {
     return false;
@@ -86,8 +60,9 @@ bool relate(const CollisionQuery& query, RelativePose& r) {
     for (double& x : column) x *= inverse_determinant;
   }
   const double norm_w = std::sqrt(square(w));
-  const double norm_m = std::sqrt(square_m);
-  const double norm_f = std::sqrt(square_f);
+  // Sums of magnitudes are bounds on the norms, known already. That of w would be too coarse for great distances.
+  const double norm_m = r.swapped ? line.entries_b : line.entries_a;
+  const double norm_f = r.swapped ? line.entries_a : line.entries_b;
   double off = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) off += std::abs(dot(lf[i], w[k]) - (i == k ? 1 : 0));
@@ -96,7 +71,8 @@ bool relate(const CollisionQuery& query, RelativePose& r) {
   const double inverse_error = off + 24 * u * norm_f * norm_w;
   if (!(inverse_error <= 0x1p-20)) return false;  // NaN, too
 
-  const double ratio = unit_m / unit_f;
+  const double per_unit = 1 / unit_f;
+  const double ratio = unit_m * per_unit;
   double square_r = 0;
   double row = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -110,12 +86,10 @@ bool relate(const CollisionQuery& query, RelativePose& r) {
     row = std::max(row, square_row);
   }
   const double m_error = 24 * u * norm_w * norm_m * ratio;
-  const Centre centre_m = centre_of(*moved, lm, norm_m, *pose_m);
-  const Centre centre_f = centre_of(*fixed, lf, norm_f, *pose_f);
-  const Vector between = {centre_m.at[0] - centre_f.at[0], centre_m.at[1] - centre_f.at[1],
-                          centre_m.at[2] - centre_f.at[2]};
-  for (std::size_t i = 0; i < 3; ++i) r.t[i] = dot(w[i], between) / unit_f;
-  const double t_error = 32 * u * norm_w * (centre_m.size + centre_f.size) / unit_f;
+  const double towards = r.swapped ? 1 : -1;  // from the fixed centre to the moved one
+  const Vector between = {towards * line.between[0], towards * line.between[1], towards * line.between[2]};
+  for (std::size_t i = 0; i < 3; ++i) r.t[i] = dot(w[i], between) * per_unit;
+  const double t_error = 32 * u * norm_w * line.size * per_unit;
 
   r.norm = std::sqrt(square_r);
   r.row = std::sqrt(row);

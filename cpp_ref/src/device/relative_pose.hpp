@@ -7,6 +7,8 @@
 #include <array>
 #include <cchip/collide/collide.hpp>
 
+#include "far_test.hpp"
+
 namespace cchip {
 
 /// The object with the finer unit plays `moved`, the other one `fixed`. A point y of the moved one, relative to its
@@ -24,9 +26,10 @@ struct RelativePose {
       0;  ///< bound on how far m y + t lies from the exact place in each coordinate, |y| <= support_most
 };
 
+/// \param line centre_line() of the query
 /// \returns false if the relation cannot be computed well: a map that has no good inverse, or numbers that are so great
 ///          or small that products of three of them leave the range of doubles
-bool relate(const CollisionQuery& query, RelativePose& relation);
+bool relate(const CollisionQuery& query, const CentreLine& line, RelativePose& relation);
 
 }  // namespace cchip
 

@@ -51,6 +51,7 @@ class Search {
 /// Factors on the bounds that make the answers exact (docs/collide.md); 1 but in tests, which show that the answers are
 /// wrong without them.
 struct Margins {
+  double far = 1;       ///< whole objects along an axis, in doubles
   double narrow = 1;    ///< planes in 16 bits
   double wide = 1;      ///< planes in single precision
   double vertex = 1;    ///< vertices in single precision

@@ -26,6 +26,7 @@
 #include <stdexcept>
 
 #include "exact/ieee.hpp"
+#include "far_test.hpp"
 #include "relative_pose.hpp"
 #include "search.hpp"
 
@@ -844,6 +845,55 @@ HWY_INLINE void prefetch(const Task& task, Item item) {
   }
 }
 
+/// True only if the boxes of the objects, in their own frames, are apart along an edge of one of them. As is_far(), it
+/// takes every map; edges are normals of faces only for rotations and scales.
+HWY_INLINE bool boxes_apart(const CollisionQuery& query, const CentreLine& line, double margin) {
+  constexpr std::size_t axes = 6;
+  using DD = hn::CappedTag<double, 8>;
+  using VD = hn::Vec<DD>;
+  const DD d;
+  const double* const a = query.pose_a->data();  // columns of four
+  const double* const b = query.pose_b->data();
+  // Component i of each axis. Blends: what was stored number by number could not be loaded at once without a stall.
+  const auto component = [&](std::size_t i, std::size_t at) {
+    VD v = hn::Set(d, b[8 + i]);
+    const auto put = [&](std::size_t n, double x) {
+      if (n >= at) v = hn::IfThenElse(hn::FirstN(d, n - at + 1), hn::Set(d, x), v);
+    };
+    put(4, b[4 + i]);
+    put(3, b[i]);
+    put(2, a[8 + i]);
+    put(1, a[4 + i]);
+    put(0, a[i]);
+    return v;
+  };
+  const VD limit = hn::Set(d, margin * far_limit * line.size);
+  const VD least = hn::Set(d, far_axis_least);
+  bool apart = false;
+  for (std::size_t at = 0; at < axes; at += hn::MaxLanes(d)) {
+    const VD x = component(0, at);
+    const VD y = component(1, at);
+    const VD z = component(2, at);
+    VD reach = hn::Zero(d);
+    const auto add_reach = [&](const SupportTree& tree, const double* linear) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const VD m =
+            hn::MulAdd(x, hn::Set(d, linear[4 * k]),
+                       hn::MulAdd(y, hn::Set(d, linear[4 * k + 1]), hn::Mul(z, hn::Set(d, linear[4 * k + 2]))));
+        reach = hn::MulAdd(hn::Abs(m), hn::Set(d, tree.half(k)), reach);
+      }
+    };
+    add_reach(query.a->tree(), a);
+    add_reach(query.b->tree(), b);
+    const VD along = hn::MulAdd(x, hn::Set(d, line.between[0]),
+                                hn::MulAdd(y, hn::Set(d, line.between[1]), hn::Mul(z, hn::Set(d, line.between[2]))));
+    const VD longest = hn::Max(hn::Abs(x), hn::Max(hn::Abs(y), hn::Abs(z)));
+    const VD gap = hn::Sub(hn::Abs(along), reach);
+    apart |= !hn::AllFalse(d, hn::And(hn::Gt(gap, hn::Mul(longest, limit)), hn::Gt(longest, least)));
+  }
+  return apart && line.moderate;
+}
+
 /// One thread's search.
 class SimdSearch final : public Search {
  public:
@@ -881,8 +931,14 @@ class SimdSearch final : public Search {
   /// Prepares a query.
   /// \returns false if the result is complete
   bool start(Task& task, const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) {
+    const CentreLine line = centre_line(query);
+    if (is_far(query, line, margins_.far) || boxes_apart(query, line, margins_.far)) {
+      FacePairs::answer_apart(request, result);
+      result.counts.box_tests = 1;
+      return false;
+    }
     RelativePose relation;
-    if (!relate(query, relation)) {
+    if (!relate(query, line, relation)) {
       plain_->run(query, request, result);
       return false;
     }
@@ -902,6 +958,7 @@ class SimdSearch final : public Search {
     const double of_plane = margins_.wide * ulp * (radius * (3 + 12 * relation.norm) + 5 * relation.distance);
     task.planes.side_error = static_cast<float>(1.01 * of_plane + of_relation) + task.place.fixed_error;
     task.counts = {};
+    task.counts.box_tests = 1;  // of the whole objects, above
     task.open_count = 0;
     task.stack[0] = {task.planes.tiny ? task.moved->whole() : task.moved->root(), task.fixed->root()};
     task.size = 1;

@@ -107,6 +107,13 @@ class SupportTree {
   NodeRef root() const { return root_; }
   /// The whole object as one node, whose line refers to the root.
   NodeRef whole() const { return NodeRef::inner(static_cast<std::uint32_t>(size_), 1); }
+  /// Sum of the centre's greatest coordinate in magnitude and of the ball's radius, rounded.
+  double extent() const { return extent_; }
+  /// How far the object reaches from the centre along an axis, either way, at most; up to a rounding of the product of
+  /// a word and the unit.
+  double half(std::size_t axis) const { return half_[axis]; }
+  /// Words of the line of whole(), beside the centre and the unit: what a first look at the object needs.
+  const std::array<std::int16_t, support_words>& whole_words() const { return whole_words_; }
   /// Lines below the root. That of whole() follows, and three that nothing refers to, so that four can always be read.
   std::size_t size() const { return size_; }
   const SupportLine* lines() const { return lines_.data(); }
@@ -119,6 +126,9 @@ class SupportTree {
  private:
   Vec3d centre_;
   double unit_;
+  double extent_;
+  std::array<double, 3> half_;
+  std::array<std::int16_t, support_words> whole_words_;
   NodeRef root_;
   std::size_t size_;
   std::vector<SupportLine, LargePages<SupportLine>> lines_;
