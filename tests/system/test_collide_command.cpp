@@ -4,9 +4,13 @@
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/mesh_io/mesh_file.hpp>
 #include <cchip/reference/brute_force.hpp>
+#include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/usage_error.hpp>
+#include <cmath>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <random>
 #include <set>
 #include <sstream>
 #include <streambuf>
@@ -151,6 +155,54 @@ TEST_CASE("collide: touching is told from crossing", "[system][collide]") {
   CHECK(lines(csv.out)[1].substr(lines(csv.out)[1].rfind(',')) == ",touching");
   CHECK(lines(csv.out)[2].substr(lines(csv.out)[2].rfind(',')) == ",crossing");
   CHECK(lines(csv.out)[3].substr(lines(csv.out)[3].rfind(',')) == ",apart");
+}
+
+TEST_CASE("collide: cpu, model and simulated chip tell touching from crossing alike in 10,000 poses",
+          "[system][collide]") {
+  // Every second pose turns by quarters and moves by quarters of an edge: flush faces, edges and corners, exact
+  // numbers.
+  std::mt19937_64 random(sim::seed_from_environment());
+  std::uniform_real_distribution<double> angle(-180, 180), shift(-1.1, 1.1);
+  std::string text = poses_header + "\n";
+  for (int n = 0; n < 10000; ++n) {
+    std::string pose;
+    for (int i = 0; i < 3; ++i) {
+      const double quarter = 0.25 * static_cast<double>(random() % 10) - 1;
+      pose += std::to_string(n % 2 == 0 ? quarter : shift(random)) + ",";
+    }
+    for (int i = 0; i < 3; ++i)
+      pose +=
+          (i == 0 ? "" : ",") + std::to_string(n % 2 == 0 ? 90.0 * static_cast<double>(random() % 4) : angle(random));
+    const Pose placed = parse_pose(pose);
+    for (Eigen::Index row = 0; row < 3; ++row)
+      for (Eigen::Index column = 0; column < 3; ++column) {
+        const double entry = placed(row, column);
+        std::ostringstream number;
+        number.precision(17);
+        number << (n % 2 == 0 ? std::round(entry) : entry);
+        text += number.str() + ",";
+      }
+    for (Eigen::Index row = 0; row < 3; ++row) text += std::to_string(placed(row, 3)) + (row < 2 ? "," : "\n");
+  }
+  const TemporaryFolder folder;
+  const std::string poses = folder.write("poses.csv", text);
+  std::map<std::string, int> found;
+  std::vector<std::string> expected;
+  for (const std::string device : {"cpu", "model", "sim"}) {
+    CAPTURE(device);
+    const Outcome outcome = collide_cubes({"--poses", poses, "--relation", "--format", "csv", "--device", device});
+    REQUIRE(outcome.code == exit_ok);
+    std::vector<std::string> relations;
+    for (const std::string& row : lines(outcome.out))
+      relations.push_back(row.substr(0, row.find(',')) + row.substr(row.rfind(',')));
+    REQUIRE(relations.size() == 10001);
+    if (device == "cpu") {
+      expected = relations;
+      for (const std::string& relation : relations) ++found[relation];
+    }
+    CHECK(relations == expected);
+  }
+  for (const char* relation : {"0,apart", "1,touching", "1,crossing"}) CHECK(found[relation] > 1000);
 }
 
 TEST_CASE("collide: the faces that touch and those that cross are coloured apart", "[system][collide]") {
