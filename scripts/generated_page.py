@@ -71,11 +71,11 @@ def svg_text(figure):
     return re.sub(r" +$", "", text.getvalue(), flags=re.M)
 
 
-def page_and_plots(usage, page, run, plots, producer, read, tables):
+def page_and_plots(usage, page, run, plots, producer, read, tables, block=""):
     """Command line of a script whose page and plots come from the CSV file of one run: --csv PATH, --check, --check-plot.
 
     run: the checked-in CSV; plots: path -> function that draws it; producer: what to say if there is no CSV; read: its
-    text -> what tables and the functions of plots take."""
+    text -> what tables and the functions of plots take; block: name of the page's generated block."""
     script = f"scripts/{pathlib.Path(sys.argv[0]).name}"
     parser = argparse.ArgumentParser(usage=usage, add_help=False)
     what = parser.add_mutually_exclusive_group()
@@ -93,8 +93,8 @@ def page_and_plots(usage, page, run, plots, producer, read, tables):
     text = source.read_text()
     found = read(text)
     if arguments.check:
-        return compare(page, page_with(page, tables(found)), script)
+        return compare(page, page_with(page, tables(found), block), script)
     if arguments.check_plot:
-        return max(compare(plot, draw(found), script) for plot, draw in plots.items())
-    write({run: text, page: page_with(page, tables(found)), **{plot: draw(found) for plot, draw in plots.items()}})
+        return max((compare(plot, draw(found), script) for plot, draw in plots.items()), default=0)
+    write({run: text, page: page_with(page, tables(found), block), **{plot: draw(found) for plot, draw in plots.items()}})
     return 0

@@ -8,12 +8,10 @@ usage: robot_table.py [--csv PATH | --check]
 
 Without an option the table is rewritten from the checked-in CSV.
 Exit codes: 0 done or up to date, 1 stale or no such file, 2 bad arguments."""
-import argparse
 import csv
-import pathlib
 import sys
 
-from generated_page import ROOT, compare, fail, page_with, write
+from generated_page import ROOT, page_and_plots
 
 PAGE = ROOT / "docs" / "speed.md"
 RUN = ROOT / "docs" / "figures" / "robot_speed.csv"
@@ -49,26 +47,5 @@ def table(text):
     return "\n".join(out) + "\n"
 
 
-def main():
-    parser = argparse.ArgumentParser(usage=__doc__, add_help=False)
-    what = parser.add_mutually_exclusive_group()
-    what.add_argument("--csv", type=pathlib.Path)
-    what.add_argument("--check", action="store_true")
-    parser.add_argument("-h", "--help", action="store_true")
-    arguments = parser.parse_args()
-    if arguments.help:
-        print(__doc__)
-        return 0
-    source = arguments.csv or RUN
-    if not source.is_file():
-        fail(f"{source} is not there; make bench-robot writes build/bench/robot.csv")
-    text = source.read_text()
-    page = page_with(PAGE, table(text), "robot")
-    if arguments.check:
-        return compare(PAGE, page, "scripts/robot_table.py")
-    write({RUN: text, PAGE: page})
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(page_and_plots(__doc__, PAGE, RUN, {}, "make bench-robot writes build/bench/robot.csv", str, table, "robot"))

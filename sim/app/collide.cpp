@@ -106,7 +106,7 @@ CollisionRequest request_of(const CollideOptions& options) {
   if (all) request.contacts = CollisionRequest::Contacts::all;
   if (options.most_contacts != 0) request.most_contacts = options.most_contacts;
   if (options.only_crossing) request.counts = CollisionRequest::Counts::crossing;
-  request.relation = options.relation || options.only_crossing || (all && options.poses_file.empty());
+  request.relation = options.relation || (all && options.poses_file.empty());
   return request;
 }
 
@@ -187,12 +187,13 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
   const CollisionResult result = collide(device, a, Pose::Identity(), b, pose, request);
   if (options.format == Format::table) streams.out << to_words(result, request) << '\n';
   if (options.format != Format::table || request.contacts == CollisionRequest::Contacts::all) {
-    write_contacts(result.contacts, request.relation, options.format, streams.out);
+    write_contacts(result.contacts, request.tells_relation(), options.format, streams.out);
   }
   if (picture) {
     // Without relations every contact counts as one that crosses.
     std::array<FacesHit, 2> hit;
-    for (const Contact& contact : result.contacts) hit[crosses(contact) || !request.relation ? 1 : 0].add(contact);
+    for (const Contact& contact : result.contacts)
+      hit[crosses(contact) || !request.tells_relation() ? 1 : 0].add(contact);
     for (const bool cross : {false, true}) {
       for_each_face_of(a.mesh(), hit[cross].a, [&](std::size_t face) { picture->add_hit_a(face, cross); });
       for_each_face_of(b.mesh(), hit[cross].b, [&](std::size_t face) { picture->add_hit_b(face, cross); });
@@ -250,7 +251,7 @@ class PosesRunner {
         streams_.out << fmt::format("cross in {} of {} poses\n", totals_.hits, totals_.queries);
       } else {
         streams_.out << fmt::format("touch in {} of {} poses", totals_.hits, totals_.queries)
-                     << (request_.relation ? fmt::format(", cross in {} of these\n", totals_.crossing) : "\n");
+                     << (request_.tells_relation() ? fmt::format(", cross in {} of these\n", totals_.crossing) : "\n");
       }
     }
     return totals_;
@@ -260,7 +261,7 @@ class PosesRunner {
 
   std::vector<std::string> names() const {
     std::vector<std::string> names = {"hit", "contacts", "steps", "box_tests", "pairs", "open"};
-    if (request_.relation) names.emplace_back("relation");
+    if (request_.tells_relation()) names.emplace_back("relation");
     if (table_of_differences()) names.insert(names.begin(), {"row", "expected"});
     return names;
   }
@@ -306,7 +307,7 @@ class PosesRunner {
                                        counts.box_tests, counts.pairs, counts.open}) {
       cells.emplace_back(number);
     }
-    if (request_.relation) cells.emplace_back(to_word(result.relation));
+    if (request_.tells_relation()) cells.emplace_back(to_word(result.relation));
     writer_->write(cells);
   }
 

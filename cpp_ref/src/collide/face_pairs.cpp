@@ -29,6 +29,14 @@ std::uint32_t file_face(const Mesh& mesh, std::uint32_t face) {
   return mesh.file_face.empty() ? face : mesh.file_face[face];
 }
 
+/// Empties a result and keeps its memory.
+void clear(CollisionResult& result) {
+  result.hit = false;
+  result.relation.reset();
+  result.contacts.clear();
+  result.counts = {};
+}
+
 }  // namespace
 
 void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest& request) {
@@ -49,13 +57,9 @@ void FacePairs::start(const CollisionQuery& query, const CollisionRequest& reque
   query_ = query;
   result_ = &result;
   request_ = request;
-  result.hit = false;
-  result.relation.reset();
-  result.contacts.clear();
-  result.counts = {};
+  clear(result);
   done_ = false;
   seen_ = Relation::apart;
-  tells_ = tells_relation(request);
   most_ = request.contacts == CollisionRequest::Contacts::first ? 1 : request.most_contacts;
   cut_ = !query.a->mesh().file_face.empty() || !query.b->mesh().file_face.empty();
   if (cut_) contacts_.clear();
@@ -63,11 +67,8 @@ void FacePairs::start(const CollisionQuery& query, const CollisionRequest& reque
 }
 
 void FacePairs::answer_apart(const CollisionRequest& request, CollisionResult& result) {
-  result.hit = false;
-  result.relation.reset();
-  if (tells_relation(request)) result.relation = Relation::apart;
-  result.contacts.clear();
-  result.counts = {};
+  clear(result);
+  if (request.tells_relation()) result.relation = Relation::apart;
 }
 
 void FacePairs::test(std::uint32_t face_a, std::uint32_t face_b) {
@@ -78,7 +79,7 @@ void FacePairs::test(std::uint32_t face_a, std::uint32_t face_b) {
   ++result_->counts.pairs;
   result_->counts.open += answer.open;
   if (!answer.hit) return;
-  add(face_a, face_b, tells_ && pairs_->cross(a, b) ? Relation::crossing : Relation::touching);
+  add(face_a, face_b, request_.tells_relation() && pairs_->cross(a, b) ? Relation::crossing : Relation::touching);
 }
 
 void FacePairs::add(std::uint32_t face_a, std::uint32_t face_b, Relation relation) {
@@ -86,17 +87,17 @@ void FacePairs::add(std::uint32_t face_a, std::uint32_t face_b, Relation relatio
   seen_ = std::max(seen_, relation);
   if (!crosses && request_.counts == CollisionRequest::Counts::crossing) return;
   Contact contact = {file_face(query_.a->mesh(), face_a), file_face(query_.b->mesh(), face_b), std::nullopt};
-  if (tells_) contact.relation = relation;
+  if (request_.tells_relation()) contact.relation = relation;
   std::vector<Contact>& contacts = result_->contacts;
   if (request_.contacts == CollisionRequest::Contacts::first) {
     if (contacts.empty() || crosses) contacts.assign(1, contact);  // one that touches is kept until one crosses
-    done_ = crosses || !tells_;
+    done_ = crosses || !request_.tells_relation();
     return;
   }
   if (cut_ && most_ > 1) {
     const auto [found, is_new] = contacts_.emplace(contact, contacts.size());
     if (!is_new) {
-      if (crosses && tells_) contacts[found->second].relation = relation;
+      if (crosses && request_.tells_relation()) contacts[found->second].relation = relation;
       return;
     }
   }
@@ -107,7 +108,7 @@ void FacePairs::add(std::uint32_t face_a, std::uint32_t face_b, Relation relatio
 void FacePairs::finish() {
   std::vector<Contact>& contacts = result_->contacts;
   result_->hit = !contacts.empty();
-  if (tells_ && (seen_ == Relation::crossing || !done_)) result_->relation = seen_;
+  if (request_.tells_relation() && (seen_ == Relation::crossing || !done_)) result_->relation = seen_;
   if (result_->contacts.size() > 1) std::sort(result_->contacts.begin(), result_->contacts.end());
 }
 

@@ -350,7 +350,8 @@ class ChipHost final : public Device {
     std::optional<Query> query = bvh::make_query(a.header, *placed.pose_a, b.header, *placed.pose_b);
     if (!query) return std::nullopt;
     // A FIRST query ends with a definite contact. If the numbers are exact, that one may only touch.
-    const bool needs_all = request.contacts == CollisionRequest::Contacts::all || (tells(request) && query->error == 0);
+    const bool needs_all =
+        request.contacts == CollisionRequest::Contacts::all || (request.tells_relation() && query->error == 0);
     query->mode = needs_all ? QueryMode::all : QueryMode::first;
     return Prepared{placed, *query, &a, &b};
   }
@@ -397,7 +398,7 @@ class ChipHost final : public Device {
     const QueryCode code = outcome.done.code;
     if ((code == QueryCode::ok || code == QueryCode::host) && is_well_formed(flight, outcome)) {
       faces_.start(flight.placed, request, result);
-      counts.open = resolve(outcome.pairs, tells(request) && flight.exact, faces_);
+      counts.open = resolve(outcome.pairs, request.tells_relation() && flight.exact, faces_);
       if (code == QueryCode::ok || faces_.done()) {
         faces_.finish();
         result.counts = counts;
@@ -405,11 +406,6 @@ class ChipHost final : public Device {
       }
     }
     fall_back(flight.placed, request, counts, result);
-  }
-
-  /// The request tells touching from crossing.
-  static bool tells(const CollisionRequest& request) {
-    return request.relation || request.counts == CollisionRequest::Counts::crossing;
   }
 
   static bool is_well_formed(const Flight& flight, const QueryOutcome& outcome) {

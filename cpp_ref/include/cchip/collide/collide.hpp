@@ -43,6 +43,8 @@ struct CollisionRequest {
   /// any case. With Contacts::first the search goes on after a contact that only touches, until one crosses or none is
   /// left.
   bool relation = false;
+
+  bool tells_relation() const { return relation || counts == Counts::crossing; }
 };
 
 /// A face of A and a face of B in contact, by their numbers in the files (Mesh::file_face). A polygon that was cut into

@@ -35,9 +35,6 @@ class FacePairs {
   void finish();
 
  private:
-  static bool tells_relation(const CollisionRequest& request) {
-    return request.relation || request.counts == CollisionRequest::Counts::crossing;
-  }
   void add(std::uint32_t face_a, std::uint32_t face_b, Relation relation);
 
   CollisionQuery query_;
@@ -45,7 +42,6 @@ class FacePairs {
   CollisionResult* result_ = nullptr;
   std::size_t most_ = 1;
   bool done_ = false;
-  bool tells_ = false;                       ///< the request tells touching from crossing
   Relation seen_ = Relation::apart;          ///< the greatest of a pair so far
   bool cut_ = false;                         ///< some faces of a file are several of a mesh, so contacts may repeat
   std::map<Contact, std::size_t> contacts_;  ///< places in the result; in use if cut_ and more than one is wanted
