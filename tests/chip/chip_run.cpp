@@ -64,6 +64,10 @@ class Run {
   }
 
  private:
+  static constexpr std::uint64_t traced = 30000;    // clocks of the waveform
+  static constexpr std::uint64_t viewed = 5000;     // of these at first sight
+  static constexpr std::uint64_t nanoseconds = 10;  // of a clock
+
   void run_pair(const std::string& name) {
     const MeshPair meshes = mesh_pair(name);
     fmt::print("{}: {} against {} faces\n", name, describe_faces(meshes.a), describe_faces(meshes.b));
@@ -80,17 +84,20 @@ class Run {
       sim::SimulationOptions options = sim::without_timeout(settings_.seed);
       if (!settings_.wave.empty()) {
         options.trace_path = settings_.wave;
-        options.trace_clocks = 12000;
+        options.trace_clocks = traced;
       }
       Bench bench(options, settings_.memory, settings_.driver, settings_.host_every);
+      const std::uint32_t line_a = bench.place(image_a);
+      const std::uint32_t line_b = bench.place(image_b);
       if (!settings_.wave.empty()) {
-        write_chip_gtkw(settings_.wave, 20000,
-                        70000);  // the cache is clear after 1024 clocks, images are stored after it
+        // The view begins with the first query: before it the cache is cleared and forgets the lines of both images.
+        const std::uint64_t first = bench.clocks();
+        if (first + viewed > traced)
+          throw std::runtime_error("the waveform ends before the first queries; trace more clocks");
+        write_chip_gtkw(settings_.wave, nanoseconds * first, nanoseconds * (first + viewed));
         fmt::print("waveform {}, its layout beside it\n", settings_.wave);
         settings_.wave.clear();
       }
-      const std::uint32_t line_a = bench.place(image_a);
-      const std::uint32_t line_b = bench.place(image_b);
       std::vector<Query> queries;
       for (std::size_t i = 0; i < settings_.poses + settings_.warm; ++i) {
         const PosePair pose = maker.pose(maker.approach(), pose_class);
