@@ -231,7 +231,7 @@ bench-robot: $(RELEASE)/build.ninja robots ## collision checks per second of rob
 
 # clock of the chip, MHz: row chip in docs/fpga.md
 CHIP_MHZ ?= 50
-bench-chip: $(RELEASE)/build.ninja ## queries per second of the simulated chip at CHIP_MHZ, of collide() and of FCL in the same poses (twenty minutes); build/bench/chip.csv
+bench-chip: $(RELEASE)/build.ninja ## queries per second of the simulated chip at CHIP_MHZ, of collide(), FCL, Coal, CGAL and ODE in the same poses (half an hour); build/bench/chip.csv
 	$(if $(NATIVE_FCL),cmake -D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))' $(RELEASE))
 	cmake --build $(RELEASE) -j $(JOBS) --target chip_speed
 	$(RELEASE)/bin/chip_speed --chip-mhz $(CHIP_MHZ) $(BENCH_ARGS)

@@ -21,6 +21,7 @@ PLOT = ROOT / "docs" / "pictures" / "chip_speed.svg"
 OUTSIDE = ("body-tiny",)  # pairs of meshes outside the means
 SHARES = ("box", "bus", "transform", "lane", "memory_wait", "inside")
 FAST = "128 bit, 60 clocks"
+LIBRARIES = ("FCL Debian", "FCL native", "Coal", "CGAL", "ODE")  # one that is not in the run has no column
 
 
 def mean(values):
@@ -37,13 +38,15 @@ class Run:
         self.rows = list(csv.DictReader(line for line in lines if not line.startswith("# ")))
         self.classes = list(dict.fromkeys(row["class"] for row in self.rows))
         self.memories = list(dict.fromkeys(row["memory"] for row in self.rows))
-        self.has_native = any(float(row["fcl_native"]) > 0 for row in self.rows)
+        self.libraries = [name for name in LIBRARIES if name in self.rows[0]]
+        self.reference = "FCL native" if "FCL native" in self.libraries else "FCL Debian"
 
     def of(self, name, memory):
         return [row for row in self.rows if (row["class"], row["memory"]) == (name, memory) and row["meshes"] not in OUTSIDE]
 
     def rate(self, name, memory, column):
-        return mean(float(row[column]) for row in self.of(name, memory))
+        """0: the column has no answers of this class."""
+        return mean(float(row[column] or 0) for row in self.of(name, memory))
 
     def share(self, name, memory, column):
         found = [float(row[column]) for row in self.of(name, memory)]
@@ -52,19 +55,20 @@ class Run:
 
 def tables(run):
     out = [f"- {key}: {value}" for key, value in run.notes.items()]
-    peers = ["FCL Debian"] + (["FCL native"] if run.has_native else [])
-    out += ["", "Queries per second, geometric means of the pairs of meshes; in brackets times Debian's FCL.", "",
-            "| class | " + " | ".join(peers) + " | CPU single | CPU batch | " +
-            " | ".join(f"chip, {memory}: clocks | queries/s" for memory in run.memories) + " |",
-            "|---" * (1 + len(peers) + 2 + 2 * len(run.memories)) + "|"]
+    ways = run.libraries + ["single", "batch"]
+    first = run.memories[0]
+    out += ["", f"Queries per second, geometric means of the pairs of meshes; in brackets times {run.reference}.", "",
+            "| class | " + " | ".join(run.libraries + ["CPU single", "CPU batch"] + [f"chip, {m}" for m in run.memories]) + " |",
+            "|---" * (1 + len(ways) + len(run.memories)) + "|"]
     for name in run.classes:
-        fcl = run.rate(name, run.memories[0], "fcl_debian")
-        shown = lambda rate: f"{rate:,.0f} ({rate / fcl:.1f})" if rate else "-"
-        cells = [name, f"{fcl:,.0f}"] + ([shown(run.rate(name, run.memories[0], "fcl_native"))] if run.has_native else [])
-        cells += [shown(run.rate(name, run.memories[0], column)) for column in ("single", "batch")]
-        for memory in run.memories:
-            cells += [f"{run.rate(name, memory, 'clocks'):,.0f}", shown(run.rate(name, memory, "chip"))]
-        out.append("| " + " | ".join(cells) + " |")
+        reference = run.rate(name, first, run.reference)
+        shown = lambda rate: f"{rate:,.0f} ({rate / reference:.2g})" if rate else "-"
+        cells = [name] + [shown(run.rate(name, first, way)) for way in ways]
+        out.append("| " + " | ".join(cells + [shown(run.rate(name, memory, "chip")) for memory in run.memories]) + " |")
+    out += ["", "Clocks that the chip needs for a query, geometric means of the pairs of meshes.", "",
+            "| memory | " + " | ".join(run.classes) + " |", "|---" * (1 + len(run.classes)) + "|"]
+    for memory in run.memories:
+        out.append(f"| {memory} | " + " | ".join(f"{run.rate(name, memory, 'clocks'):,.0f}" for name in run.classes) + " |")
     out += ["", "What the chip's blocks do, % of its clocks, means of the pairs of meshes, memory of " + FAST + ".", "",
             "| class | box test | bus | transform | lane | idle: memory owes a line | idle: work in flight |", "|---" * 7 + "|"]
     out += ["| " + " | ".join([name] + [f"{run.share(name, FAST, column):.0f}" for column in SHARES]) + " |" for name in run.classes]
@@ -72,15 +76,16 @@ def tables(run):
 
 
 def draw(run):
-    """The plot as SVG text: what each way answers, times Debian's FCL; a dot for each pair of meshes. Readable in grey."""
+    """The plot as SVG text: what each way answers, times FCL; a dot for each pair of meshes. Readable in grey."""
     plt = start_plot("chip_speed")
     from matplotlib.ticker import FuncFormatter
     figure, axes = plt.subplots(figsize=(7.2, 4.2))
-    ways = {"CPU device, one core": ("single", FAST, "#2f7fbc", "o", -0.22), "chip, " + FAST: ("chip", FAST, "#08306b", "s", 0),
-            "chip, 64 bit, 100 clocks": ("chip", "64 bit, 100 clocks", "#a63603", "^", 0.22)}
+    ways = {"Coal": ("Coal", FAST, "0.55", "x", -0.3), "CPU device, one core": ("single", FAST, "#2f7fbc", "o", -0.1),
+            "chip, " + FAST: ("chip", FAST, "#08306b", "s", 0.1), "chip, 64 bit, 100 clocks": ("chip", "64 bit, 100 clocks", "#a63603", "^", 0.3)}
+    ways = {label: way for label, way in ways.items() if way[0] in run.rows[0]}
     for label, (column, memory, colour, marker, shift) in ways.items():
         for i, name in enumerate(run.classes):
-            values = [float(row[column]) / float(row["fcl_debian"]) for row in run.of(name, memory)]
+            values = [float(row[column]) / float(row[run.reference]) for row in run.of(name, memory)]
             axes.plot([i + shift] * len(values), values, marker, color=colour, markersize=4, markerfacecolor="none",
                       label=label if i == 0 else None)
             axes.plot([i + shift - 0.1, i + shift + 0.1], [mean(values)] * 2, color=colour, linewidth=2.2)
@@ -89,7 +94,7 @@ def draw(run):
     axes.set_xticks(range(len(run.classes)), [name.replace(" all", ",\nall") for name in run.classes])
     axes.set_xlim(-0.5, len(run.classes) - 0.5)
     axes.yaxis.set_major_formatter(FuncFormatter(plain_number))
-    axes.set_ylabel("queries per second, times Debian's FCL")
+    axes.set_ylabel(f"queries per second, times {run.reference}")
     axes.grid(axis="y", color="0.9", linewidth=0.6, which="both")
     axes.legend(loc="lower left", frameon=False)
     figure.subplots_adjust(left=0.09, right=0.99, bottom=0.12, top=0.97)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Queries per second of the simulated chip, of the CPU device and of FCL in the same poses: docs/chip-speed.md.
+// Queries per second of the simulated chip, of the CPU device and of other libraries in the same poses:
+// docs/chip-speed.md.
 #include <Vcchip_chip.h>
 #include <Vcchip_chip___024root.h>
 #include <fmt/format.h>
@@ -18,7 +19,9 @@
 #include <sstream>
 
 #include "ask.hpp"
+#include "machine.hpp"
 #include "measure.hpp"
+#include "other_libraries.hpp"
 
 namespace cchip::testing {
 namespace {
@@ -128,31 +131,38 @@ std::vector<Chip> chips(std::uint64_t seed) {
 class Benchmark {
  public:
   explicit Benchmark(const Options& options)
-      : options_(options),
-        debian_(PeerLibrary::fcl_debian()),
-        native_(PeerLibrary::fcl_native()),
-        cpu_(open_cpu_device({1, ""})) {}
+      : options_(options), libraries_(open_libraries()), cpu_(open_cpu_device({1, ""})) {}
 
   int run() {
-    text_ << fmt::format("# chip: {:g} MHz\n# run: seed {}, {} poses of each class\n# Debian's FCL: {}\n",
-                         options_.chip_mhz, options_.seed, options_.poses, debian_.description());
-    text_ << fmt::format("# native FCL: {}\n", native_ ? native_->description() : "none");
+    text_ << fmt::format("# machine: {}\n# compiler: {}\n# load before the run: {}\n", machine_description(), compiler,
+                         load_description());
+    text_ << fmt::format("# chip: {:g} MHz\n# run: seed {}, {} poses of each class\n", options_.chip_mhz, options_.seed,
+                         options_.poses);
+    for (const NamedLibrary& x : libraries_) text_ << fmt::format("# {}: {}\n", x.name, x.library.description());
+    for (const OtherLibrary& other : other_libraries) {
+      if (*other.module == 0) text_ << fmt::format("# {}: not in this run; {} brings it\n", other.name, other.remedy);
+    }
     fmt::print("{}", text_.str());
-    fmt::print("\nqueries/s; chip: clocks a query, and queries/s at {:g} MHz; shares of the chip's clocks in %\n{}",
-               options_.chip_mhz,
-               fmt::format("{:<14}{:<11}{:<20}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10} {:>5}{:>5}{:>6}{:>6}{:>8}{:>7}\n",
-                           "meshes", "class", "memory", "FCL", "native", "single", "batch", "clocks", "chip", "box",
-                           "bus", "trans", "lane", "memory", "inside"));
-    text_ << "meshes,class,memory,queries,hits,fcl_debian,fcl_native,single,batch,clocks,chip,box,bus,transform,lane,"
-             "memory_wait,inside\n";
+    fmt::print(
+        "\nqueries/s; chip: clocks a query, and queries/s at {:g} MHz; shares of the chip's clocks in "
+        "%\n{:<14}{:<11}{:<20}",
+        options_.chip_mhz, "meshes", "class", "memory");
+    text_ << "meshes,class,memory,queries,hits";
+    for (const std::string& name : ways()) {
+      fmt::print("{:>11}", name);
+      text_ << ',' << name;
+    }
+    fmt::print("{:>10}{:>11} {:>5}{:>5}{:>6}{:>6}{:>8}{:>7}\n", "clocks", "chip", "box", "bus", "trans", "lane",
+               "memory", "inside");
+    text_ << ",clocks,chip,box,bus,transform,lane,memory_wait,inside\n";
     for (const std::string& name : options_.pairs) run_pair(name);
-    fmt::print("\ngeometric means, times FCL (Debian's{}):\n", native_ ? ", built natively in brackets" : "");
-    for (const auto& [key, mean] : means_) {
-      fmt::print("  {:<34} chip {:>7.2f}  single {:>7.2f}  batch {:>7.2f}", key, mean.chip.value(), mean.single.value(),
-                 mean.batch.value());
-      if (native_)
-        fmt::print("  ({:.2f}, {:.2f}, {:.2f})", mean.chip_native.value(), mean.single_native.value(),
-                   mean.batch_native.value());
+    fmt::print("\ngeometric means, times {}:\n", reference());
+    for (const auto& [key, means] : means_) {
+      fmt::print("  {:<34} chip {:>7.2f}", key, means.at("chip").value());
+      for (const std::string& name : ways()) {
+        const auto mean = means.find(name);
+        if (mean != means.end() && name != reference()) fmt::print("  {} {:.2f}", name, mean->second.value());
+      }
       fmt::print("\n");
     }
     if (!options_.csv.empty()) {
@@ -166,19 +176,33 @@ class Benchmark {
   }
 
  private:
-  struct Means {
-    GeometricMean chip, single, batch, chip_native, single_native, batch_native;
+  /// The present pair of meshes in another library.
+  struct PeerPair {
+    std::string name;
+    bool has_contacts;
+    PeerMesh a;
+    PeerMesh b;
   };
 
+  /// All that answer beside the chip: "single" and "batch" are the CPU device.
+  std::vector<std::string> ways() const {
+    std::vector<std::string> result;
+    for (const NamedLibrary& x : libraries_) result.push_back(x.name);
+    result.insert(result.end(), {"single", "batch"});
+    return result;
+  }
+  /// FCL built natively if there is one, else Debian's.
+  const std::string& reference() const {
+    return libraries_.size() > 1 && libraries_[1].name == "FCL native" ? libraries_[1].name : libraries_[0].name;
+  }
+
   void run_pair(const std::string& name) {
-    const Bodies bodies(mesh_pair(name), debian_);
-    std::optional<PeerMesh> native_a;
-    std::optional<PeerMesh> native_b;
-    if (native_) {
-      native_a.emplace(native_->mesh(bodies.a.mesh()));
-      native_b.emplace(native_->mesh(bodies.b.mesh()));
+    const Bodies bodies(mesh_pair(name), libraries_.front().library);
+    peers_.clear();
+    for (const auto& [library_name, library] : libraries_) {
+      peers_.push_back(
+          {library_name, library.has_contacts(), library.mesh(bodies.a.mesh()), library.mesh(bodies.b.mesh())});
     }
-    natives_ = {native_a ? &*native_a : nullptr, native_b ? &*native_b : nullptr};
     PoseMaker maker(*cpu_, bodies.a, bodies.b, options_.seed);
     std::vector<Approach> approaches;
     for (std::size_t i = 0; i < options_.poses; ++i) approaches.push_back(maker.approach());
@@ -199,12 +223,13 @@ class Benchmark {
   void run_class(const Bodies& bodies, const std::string& class_name, const CollisionRequest& request,
                  const std::vector<PosePair>& poses, const std::vector<Chip>& made, bool lone) {
     std::vector<CollisionResult> right(poses.size());
-    std::vector<char> theirs(poses.size());
-    std::map<std::string, double> seconds_each = time_peers(bodies, request, poses, right, theirs, lone);
+    std::vector<std::vector<char>> theirs(peers_.size(), std::vector<char>(poses.size()));
+    const std::map<std::string, double> seconds_each = time_peers(bodies, request, poses, right, theirs, lone);
     std::size_t hits = 0;
     for (std::size_t i = 0; i < poses.size(); ++i) {
       hits += right[i].hit ? 1 : 0;
-      if ((theirs[i] != 0) == right[i].hit) continue;
+      // FCL's yes or no; the others' wrong answers are counted by collide_speed
+      if ((theirs.front()[i] != 0) == right[i].hit) continue;
       const Difference x = bodies.judge(poses[i], right[i].hit, right[i].hit ? right[i].contacts.front() : Contact{});
       fcl_errs_ += x.unexplained == 0 ? 1 : 0;
       differences_ += x.unexplained;
@@ -217,19 +242,21 @@ class Benchmark {
     }
   }
 
-  /// Seconds a query of FCL and of the CPU device; their answers.
+  /// Seconds a query of the CPU device and of each library; their answers.
   std::map<std::string, double> time_peers(const Bodies& bodies, const CollisionRequest& request,
                                            const std::vector<PosePair>& poses, std::vector<CollisionResult>& right,
-                                           std::vector<char>& theirs, bool lone) {
+                                           std::vector<std::vector<char>>& theirs, bool lone) {
     const bool all = request.contacts == CollisionRequest::Contacts::all;
     CollisionResult result;
     std::vector<Variant> ways;
-    const auto fcl = [&](const std::string& name, const PeerMesh& a, const PeerMesh& b) {
-      ways.push_back({name, Clock::cpu, [&, all](std::size_t first, std::size_t count) {
+    const auto ask = [&, all](std::size_t k) {
+      const PeerPair& peer = peers_[k];
+      if (all && !peer.has_contacts) return;
+      ways.push_back({peer.name, Clock::cpu, [&, all, k](std::size_t first, std::size_t count) {
                         for (std::size_t i = first; i < first + count; ++i) {
-                          const bool hit =
-                              all ? a.count_contacts(poses[i].a, b, poses[i].b) != 0 : a.hit(poses[i].a, b, poses[i].b);
-                          theirs[i] = static_cast<char>(hit);
+                          const bool hit = all ? peer.a.count_contacts(poses[i].a, peer.b, poses[i].b) != 0
+                                               : peer.a.hit(poses[i].a, peer.b, poses[i].b);
+                          theirs[k][i] = static_cast<char>(hit);
                         }
                       }});
     };
@@ -237,7 +264,7 @@ class Benchmark {
                       for (std::size_t i = first; i < first + count; ++i)
                         cpu_->collide({&bodies.a, &poses[i].a, &bodies.b, &poses[i].b}, request, right[i]);
                     }});
-    fcl("FCL", bodies.fcl_a, bodies.fcl_b);
+    ask(0);
     if (!lone) {
       ways.push_back({"batch", Clock::cpu, [&](std::size_t first, std::size_t count) {
                         cpu_->collide(
@@ -249,7 +276,7 @@ class Benchmark {
                             request, [&](std::size_t, const CollisionResult&) {});
                       }});
     }
-    if (natives_.first != nullptr) fcl("native", *natives_.first, *natives_.second);
+    for (std::size_t k = 1; k < peers_.size(); ++k) ask(k);
     std::map<std::string, double> seconds_each;
     if (lone) {
       std::vector<unsigned char> unrelated(std::size_t{96} << 20U);
@@ -302,46 +329,39 @@ class Benchmark {
 
   void report(const Bodies& bodies, const std::string& class_name, const std::string& memory, std::size_t queries,
               std::size_t hits, const std::map<std::string, double>& seconds_each, double clocks, const Use& use) {
-    const auto rate = [&](const char* name) {
-      const auto found = seconds_each.find(name);
-      return found == seconds_each.end() ? 0.0 : 1 / found->second;
-    };
     const double chip = options_.chip_mhz * 1e6 / clocks;
     const auto share = [&](std::uint64_t part) {
       return 100 * static_cast<double>(part) / static_cast<double>(use.clocks);
     };
-    const auto shown = [&](const char* name) {
-      return rate(name) == 0 ? std::string("-") : fmt::format("{:.0f}", rate(name));
-    };
-    fmt::print(
-        "{:<14}{:<11}{:<20}{:>10}{:>10}{:>10}{:>10}{:>10.1f}{:>10.0f} "
-        "{:>5.0f}{:>5.0f}{:>6.0f}{:>6.0f}{:>8.0f}{:>7.0f}\n",
-        bodies.name, class_name, memory, shown("FCL"), shown("native"), shown("single"), shown("batch"), clocks, chip,
-        share(use.box), share(use.bus), share(use.transform), share(use.lane), share(use.memory), share(use.inside));
+    fmt::print("{:<14}{:<11}{:<20}", bodies.name, class_name, memory);
+    text_ << fmt::format("{},{},\"{}\",{},{}", bodies.name, class_name, memory, queries, hits);
+    const double reference_seconds = seconds_each.at(reference());
+    std::map<std::string, GeometricMean>& means = means_[class_name + ", " + memory];
+    for (const std::string& name : ways()) {
+      const auto found = seconds_each.find(name);
+      if (found == seconds_each.end()) {
+        fmt::print("{:>11}", "-");
+        text_ << ',';
+        continue;
+      }
+      fmt::print("{:>11.0f}", 1 / found->second);
+      text_ << fmt::format(",{:.5g}", 1 / found->second);
+      if (bodies.counts) means[name].add(reference_seconds / found->second);
+    }
+    if (bodies.counts) means["chip"].add(chip * reference_seconds);
+    fmt::print("{:>10.1f}{:>11.0f} {:>5.0f}{:>5.0f}{:>6.0f}{:>6.0f}{:>8.0f}{:>7.0f}\n", clocks, chip, share(use.box),
+               share(use.bus), share(use.transform), share(use.lane), share(use.memory), share(use.inside));
     std::fflush(stdout);
-    text_ << fmt::format(
-        "{},{},\"{}\",{},{},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g}\n",
-        bodies.name, class_name, memory, queries, hits, rate("FCL"), rate("native"), rate("single"), rate("batch"),
-        clocks, chip, share(use.box), share(use.bus), share(use.transform), share(use.lane), share(use.memory),
-        share(use.inside));
-    if (!bodies.counts) return;
-    Means& mean = means_[class_name + ", " + memory];
-    mean.chip.add(chip / rate("FCL"));
-    mean.single.add(rate("single") / rate("FCL"));
-    if (rate("batch") != 0) mean.batch.add(rate("batch") / rate("FCL"));
-    if (rate("native") == 0) return;
-    mean.chip_native.add(chip / rate("native"));
-    mean.single_native.add(rate("single") / rate("native"));
-    if (rate("batch") != 0) mean.batch_native.add(rate("batch") / rate("native"));
+    text_ << fmt::format(",{:.5g},{:.5g},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g},{:.3g}\n", clocks, chip, share(use.box),
+                         share(use.bus), share(use.transform), share(use.lane), share(use.memory), share(use.inside));
   }
 
   Options options_;
-  PeerLibrary debian_;
-  std::unique_ptr<PeerLibrary> native_;
-  std::pair<const PeerMesh*, const PeerMesh*> natives_ = {nullptr, nullptr};
+  std::vector<NamedLibrary> libraries_;  ///< Debian's FCL first
+  std::vector<PeerPair> peers_;          ///< the present pair in each of them
   std::unique_ptr<Device> cpu_;
   std::ostringstream text_;
-  std::map<std::string, Means> means_;
+  std::map<std::string, std::map<std::string, GeometricMean>> means_;  ///< class and memory, way
   std::size_t queries_ = 0, differences_ = 0, fcl_errs_ = 0;
 };
 
@@ -351,7 +371,7 @@ class Benchmark {
 int main(int argc, char** argv) try {
   cchip::testing::Options o;
   CLI::App app{
-      "Queries per second of the simulated chip, of the CPU device and of FCL in the same poses.\n"
+      "Queries per second of the simulated chip, of the CPU device, FCL, Coal, CGAL and ODE in the same poses.\n"
       "Exit codes: 0 done, 3 an answer is not the exact one, 2 the run could not be made."};
   app.add_option("--chip-mhz", o.chip_mhz, "clock of the chip: row chip in docs/fpga.md")
       ->check(CLI::PositiveNumber)
