@@ -529,8 +529,8 @@ def classes_table(found):
             columns = [(f"{means[programme]:.3f}", millions(row, name, programme))
                        for programme in ("exhaustive", "directed")]
             body.append([f"`{row['label']}`", name, *columns[0], *columns[1]])
-    return datasheet.table(["row", "class", "EXHAUSTIVE: mean beats", "10^6 pairs/s", "DIRECTED: mean beats",
-                            "10^6 pairs/s"], body)
+    return datasheet.table(["row", "class", "mean beats, EXHAUSTIVE", "10^6 pairs/s, EXHAUSTIVE", "mean beats, DIRECTED",
+                            "10^6 pairs/s, DIRECTED"], body)
 
 
 def families_table(found):
@@ -601,6 +601,65 @@ BLOCKS = {"blocks": blocks_table}
 CHIPS = {"chip": blocks_table, "chip_bill": owners_table, "chip_endpoints": endpoints_table}
 SUBSYSTEMS = {"subsystems": subsystems_table, "endpoints": endpoints_table}
 TABLES = {"ecp5": area_table, "choices": choices_table, "classes": classes_table, "families": families_table}
+
+
+def few_blocks(rows):
+    """The slowest twelve."""
+    clock = "Fmax, MHz: min / median / max"
+    median = lambda row: float(row[clock].split(" / ")[1])
+    slowest = sorted(rows, key=median)[:12]
+    return (["row", "LUT4 + 2 carry", "FF", "DSP", "block RAM", "Fmax, MHz"],
+            [[f"`{r['row']}`", r["LUT4 + 2 carry"], r["FF"], r["DSP"], r["block RAM"], median(r)] for r in slowest])
+
+
+def few_classes(rows):
+    """Classes by shape, 10^6 pairs/s by either programme; of random pairs in general position those of the full range."""
+    shapes = [*dict.fromkeys(r["row"] for r in rows)]
+    classes = [name for name in dict.fromkeys(r["class"] for r in rows) if not name.startswith("general ") or name == TYPICAL]
+    rate = {(r["row"], r["class"]): [r["10^6 pairs/s, EXHAUSTIVE"], r["10^6 pairs/s, DIRECTED"]] for r in rows}
+    return (["class", *(f"`{shape}`: {programme}" for shape in shapes for programme in ("EXHAUSTIVE", "DIRECTED"))],
+            [[name, *(x for shape in shapes for x in rate.get((shape, name), ["-", "-"]))] for name in classes])
+
+
+def few_owners(rows):
+    """Sites of the largest nine blocks, of the others together, and of all."""
+    chips = [*dict.fromkeys(r["row"] for r in rows)]
+    found = {(r["row"], r["block"]): r for r in rows}
+    of = lambda chip, names, column: sum(int(found[chip, name][column]) for name in names if (chip, name) in found)
+    blocks = sorted({r["block"] for r in rows} - {"all"}, key=lambda name: -of(chips[-1], [name], "sites"))
+    line = lambda title, names: [title, *(of(chip, names, "sites") for chip in chips),
+                                 *(of(chips[-1], names, column) for column in ("FF", "DSP", "block RAM"))]
+    return (["block", *(f"`{chip}`: sites" for chip in chips), *(f"`{chips[-1]}`: {c}" for c in ("FF", "DSP", "block RAM"))],
+            [*(line(f"`{name}`" if name.startswith("cchip_") else name, [name]) for name in blocks[:9]),
+             line(f"{len(blocks) - 9} others", blocks[9:]), line("all", ["all"])])
+
+
+# tables that are too long for the page, which shows what these make of their lines; all lines are in docs/figures/fpga_NAME.csv
+LONG = {"blocks": few_blocks, "classes": few_classes, "chip_bill": few_owners}
+
+
+def csv_of(name):
+    return ROOT / "docs" / "figures" / f"fpga_{name}.csv"
+
+
+def write_table(name, table):
+    """Writes a table into the page, a long one into its CSV file as well."""
+    if name in LONG:
+        lines = [[cell.strip(" `") for cell in line.split("|")[1:-1]] for line in table.splitlines()]
+        with csv_of(name).open("w", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows([lines[0], *lines[2:]])
+        print(f"wrote {csv_of(name).relative_to(ROOT)}", flush=True)
+        table = datasheet.table(*LONG[name]([dict(zip(lines[0], line)) for line in lines[2:]]))
+    datasheet.rewrite(PAGE, name, table)
+
+
+def present_table(name):
+    """Lines of a table as it is now."""
+    if name not in LONG:
+        return re.search(datasheet.BLOCK.format(f" {name}"), PAGE.read_text(), re.S)[0].splitlines()[1:-1]
+    with csv_of(name).open(newline="") as file:
+        head, *body = csv.reader(file)
+    return datasheet.table(head, body).splitlines()
 
 
 def tables(found):
@@ -697,14 +756,14 @@ def name_tree():
 
 
 def with_others(name, table, found):
-    """The table with the lines that the page has of rows that are not in found, in the order of rows(); None if its lines do
+    """The table with the lines that the page, or the file of a long one, has of rows that are not in found, in the order of rows(); None if its lines do
     not begin with the name of their row."""
     order = list(rows())
     row = lambda line: line.split("|")[1].strip(" `")
     head, lines = table.splitlines()[:2], table.splitlines()[2:]
     if not lines or not all(row(line) in order for line in lines):
         return None
-    present = re.search(datasheet.BLOCK.format(f" {name}"), PAGE.read_text(), re.S)[0].splitlines()[1:-1]
+    present = present_table(name)
     others = [line for line in present[2:] if row(line) in order and row(line) not in found] if present[:2] == head else []
     return "\n".join([*head, *sorted(others + lines, key=lambda line: order.index(row(line)))]) + "\n"
 
@@ -724,7 +783,7 @@ def main():
         table = owners_table(found)
         print(table)
         if options.write:
-            datasheet.rewrite(PAGE, "chip_bill", with_others("chip_bill", table, found) or table)
+            write_table("chip_bill", with_others("chip_bill", table, found) or table)
         return 0
     version(options.nextpnr, "--version")
     if not pathlib.Path(options.campaign).exists():
@@ -742,7 +801,7 @@ def main():
         for name, text in made.items():
             block = with_others(name, text, found) if options.rows else text
             if block:
-                datasheet.rewrite(PAGE, name, block)
+                write_table(name, block)
             else:
                 say(f"fpga.py: the table {name} of docs/fpga.md needs all rows; it is as it was")
         if options.families:  # every row is of this run
