@@ -391,6 +391,26 @@ TEST_CASE("collide: results of a batch come one call at a time, and an exception
   }
 }
 
+TEST_CASE("collide: a batch ends when its result function returns false", "[ref][collide]") {
+  const Object torus(make_torus(1, 0.25, 12, 8));
+  const std::vector<PosePair> poses(200, {Pose::Identity(), make_pose({0.5, 0, 0}, {0, 0, 0})});
+  const auto device = each_device();
+  for (const std::size_t most : {std::size_t{1}, std::size_t{7}, std::size_t{199}, std::size_t{200}}) {
+    std::size_t taken = 0;
+    collide(*device, torus, torus, poses, all, [&](std::size_t, const CollisionResult& result) {
+      CHECK(result.hit);
+      return ++taken < most;
+    });
+    CHECK(taken == most);
+  }
+  // Nothing, or anything that is not bool, goes on.
+  std::size_t taken = 0;
+  const auto count = [&taken](std::size_t, const CollisionResult&) -> int { return ++taken == 0; };
+  collide(*device, torus, torus, poses, all, count);
+  collide(*device, torus, torus, poses, all, [&taken](std::size_t, const CollisionResult&) { ++taken; });
+  CHECK(taken == 2 * poses.size());
+}
+
 TEST_CASE("collide: input that makes no sense is refused in one line", "[ref][collide]") {
   const Object a(one_face({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
   const auto device = each_device();

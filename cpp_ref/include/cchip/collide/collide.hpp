@@ -17,6 +17,8 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace cchip {
@@ -128,10 +130,35 @@ class Device {
   void collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result);
 
   using QuerySource = std::function<CollisionQuery(std::size_t)>;
-  using ResultSink = std::function<void(std::size_t, const CollisionResult&)>;
+  /// A function that takes the number of a query and its result. One that returns bool says whether the batch goes on;
+  /// after one that returns anything else, or nothing, it does.
+  class ResultSink {
+   public:
+    template <class Function, class = std::enable_if_t<
+                                  !std::is_same_v<std::decay_t<Function>, ResultSink> &&
+                                  std::is_invocable_v<std::decay_t<Function>&, std::size_t, const CollisionResult&>>>
+    ResultSink(Function&& function) {  // NOLINT: functions convert
+      using Stored = std::decay_t<Function>;
+      if constexpr (std::is_same_v<std::invoke_result_t<Stored&, std::size_t, const CollisionResult&>, bool>) {
+        function_ = std::forward<Function>(function);
+      } else {
+        function_ = [stored = Stored(std::forward<Function>(function))](std::size_t number,
+                                                                        const CollisionResult& result) mutable {
+          stored(number, result);
+          return true;
+        };
+      }
+    }
+    /// \returns whether the batch goes on
+    bool operator()(std::size_t number, const CollisionResult& result) const { return function_(number, result); }
+
+   private:
+    std::function<bool(std::size_t, const CollisionResult&)> function_;
+  };
   /// Answers `count` queries, those that `query` gives for 0..count - 1. It may be asked for a query more than once and
   /// by several threads at a time. `take` is called with the number of a query and its result, one call at a time, in
-  /// any order. A device may use all cores.
+  /// any order. A device may use all cores. Once `take` has returned false it is not called again: queries that are in
+  /// flight are dropped, and the call returns.
   /// Exceptions of `query` and `take` end the batch and reach the caller, who may use the device again.
   /// \throws std::invalid_argument as above, before any result
   /// \throws std::logic_error as above
@@ -142,7 +169,8 @@ class Device {
 
   /// \pre check_query() accepts the query
   virtual void answer(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) = 0;
-  /// \pre check_query() accepts all of them. Does one after the other unless it is overridden.
+  /// \pre check_query() accepts all of them. Does one after the other unless it is overridden. An exception of `take`
+  /// must end the batch and reach the caller; its result says nothing here.
   virtual void answer_all(std::size_t count, const QuerySource& query, const CollisionRequest& request,
                           const ResultSink& take);
 
@@ -157,7 +185,7 @@ inline CollisionResult collide(Device& device, const Object& a, const Pose& pose
   return result;
 }
 
-/// The same objects in many poses; each result as it is ready.
+/// The same objects in many poses; each result as it is ready, until `take` returns false.
 void collide(Device& device, const Object& a, const Object& b, const std::vector<PosePair>& poses,
              const CollisionRequest& request, const Device::ResultSink& take);
 /// The same; results in the order of the poses.
