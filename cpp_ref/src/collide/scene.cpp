@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "box_pairs.hpp"
 #include "bvh/reach.hpp"
 #include "exact/ieee.hpp"
 #include "float_mode.hpp"
@@ -25,36 +26,14 @@ void check_object(const Object& object) {
   throw std::invalid_argument("scene: the object was moved from; use the one that it was moved to");
 }
 
-/// The axis along which the boxes' middles vary most: there a sweep meets the fewest at a time. Any axis is correct.
-template <class Boxes>
-std::size_t widest_axis(const Boxes& boxes) {
-  std::array<double, 3> variance = {};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    double sum = 0;
-    double squares = 0;
-    double count = 0;
-    for (const auto& box : boxes) {
-      const double middle = box.least[axis] / 2 + box.greatest[axis] / 2;
-      if (!std::isfinite(middle)) continue;
-      sum += middle;
-      squares += middle * middle;
-      ++count;
-    }
-    if (count != 0) variance[axis] = squares / count - (sum / count) * (sum / count);
-  }
-  return static_cast<std::size_t>(std::max_element(variance.begin(), variance.end()) - variance.begin());
-}
-
-}  // namespace
-
 // A point of the object is c + y, c the centre of its ball and y within what the tree says. A coordinate of it in the
 // world is row . c + t + row . y, and row . y is at most the reach along the row. With u = 2^-53 and size the sum of
 // the magnitudes that are added up for any point, row . c + t is off by 4u size, the reach by 7.95u size, their sum by
 // two more roundings of at most 1.13 size: 14.4u size.
-Scene::Box Scene::world_box(const Object& object, const Pose& pose) {
+WorldBox world_box(const Object& object, const Pose& pose) {
   const bvh::SupportTree& tree = object.tree();
   const Vec3d& c = tree.centre();
-  Box box = {};
+  WorldBox box = {};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<Eigen::Index>(axis);
     const std::array<double, 3> row = {pose(i, 0), pose(i, 1), pose(i, 2)};
@@ -74,13 +53,7 @@ Scene::Box Scene::world_box(const Object& object, const Pose& pose) {
   return box;
 }
 
-bool Scene::overlap(const Box& p, const Box& q) {
-  bool all = true;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    all = all && p.least[axis] <= q.greatest[axis] && q.least[axis] <= p.greatest[axis];
-  }
-  return all;
-}
+}  // namespace
 
 Scene::Id Scene::add(Object object, const Pose& pose, const CollisionGroups& groups) {
   check_float_mode();
@@ -89,7 +62,7 @@ Scene::Id Scene::add(Object object, const Pose& pose, const CollisionGroups& gro
   if (entries_.size() == std::numeric_limits<std::uint32_t>::max()) {
     throw std::length_error("scene: it holds at most 2^32 - 1 objects; use several scenes");
   }
-  const Box box = world_box(object, pose);
+  const WorldBox box = world_box(object, pose);
   entries_.push_back({next_, std::move(object), pose, groups, box});
   try {
     places_.emplace(next_, entries_.size() - 1);
@@ -161,36 +134,15 @@ bool Scene::is_wanted(const Entry& x, const Entry& y) const {
   return !filter_ || filter_(pair.first, pair.second);
 }
 
-std::vector<Scene::Candidate> Scene::sweep() const {
-  struct Placed {
-    std::array<double, 3> least;
-    std::array<double, 3> greatest;
-    std::uint32_t number;
-  };
-  std::vector<Placed> order;
-  order.reserve(entries_.size());
-  for (const Entry& x : entries_) {
-    order.push_back({x.box.least, x.box.greatest, static_cast<std::uint32_t>(order.size())});
-  }
-  const std::size_t first = widest_axis(order);
-  const std::size_t second = (first + 1) % 3;
-  const std::size_t third = (first + 2) % 3;
-  std::sort(order.begin(), order.end(), [this, first](const Placed& p, const Placed& q) {
-    if (p.least[first] != q.least[first]) return p.least[first] < q.least[first];
-    return entries_[p.number].id < entries_[q.number].id;
-  });
+std::vector<Scene::Candidate> Scene::find_candidates() const {
+  std::vector<WorldBox> boxes;
+  boxes.reserve(entries_.size());
+  for (const Entry& x : entries_) boxes.push_back(x.box);
   std::vector<Candidate> found;
-  for (auto p = order.begin(); p != order.end(); ++p) {
-    for (auto q = p + 1; q != order.end() && q->least[first] <= p->greatest[first]; ++q) {
-      if (p->least[second] > q->greatest[second] || q->least[second] > p->greatest[second] ||
-          p->least[third] > q->greatest[third] || q->least[third] > p->greatest[third]) {
-        continue;
-      }
-      const bool in_order = entries_[p->number].id < entries_[q->number].id;
-      const Candidate pair = in_order ? Candidate{p->number, q->number} : Candidate{q->number, p->number};
-      if (is_wanted(entries_[pair.first], entries_[pair.second])) found.push_back(pair);
-    }
-  }
+  visit_box_pairs(boxes, [this, &found](std::uint32_t i, std::uint32_t k) {
+    const Candidate pair = entries_[i].id < entries_[k].id ? Candidate{i, k} : Candidate{k, i};
+    if (is_wanted(entries_[pair.first], entries_[pair.second])) found.push_back(pair);
+  });
   return found;
 }
 
@@ -205,14 +157,14 @@ std::vector<std::uint32_t> Scene::near(const Entry& one) const {
 
 std::vector<std::pair<Scene::Id, Scene::Id>> Scene::candidates() const {
   std::vector<std::pair<Id, Id>> pairs;
-  for (const auto& [a, b] : sweep()) pairs.emplace_back(entries_[a].id, entries_[b].id);
+  for (const auto& [a, b] : find_candidates()) pairs.emplace_back(entries_[a].id, entries_[b].id);
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 
 void Scene::for_each_touching(Device& device, const PairSink& take, const CollisionRequest& request) const {
   check_query(Pose::Identity(), Pose::Identity(), request);  // whether or not there are pairs
-  const std::vector<Candidate> pairs = sweep();
+  const std::vector<Candidate> pairs = find_candidates();
   device.collide(
       pairs.size(),
       [this, &pairs](std::size_t i) {

@@ -138,22 +138,24 @@ class Device {
                                   !std::is_same_v<std::decay_t<Function>, ResultSink> &&
                                   std::is_invocable_v<std::decay_t<Function>&, std::size_t, const CollisionResult&>>>
     ResultSink(Function&& function) {  // NOLINT: functions convert
-      using Stored = std::decay_t<Function>;
-      if constexpr (std::is_same_v<std::invoke_result_t<Stored&, std::size_t, const CollisionResult&>, bool>) {
-        function_ = std::forward<Function>(function);
+      if constexpr (std::is_same_v<std::invoke_result_t<std::decay_t<Function>&, std::size_t, const CollisionResult&>,
+                                   bool>) {
+        asks_ = std::forward<Function>(function);
       } else {
-        function_ = [stored = Stored(std::forward<Function>(function))](std::size_t number,
-                                                                        const CollisionResult& result) mutable {
-          stored(number, result);
-          return true;
-        };
+        goes_on_ = std::forward<Function>(function);
       }
     }
     /// \returns whether the batch goes on
-    bool operator()(std::size_t number, const CollisionResult& result) const { return function_(number, result); }
+    bool operator()(std::size_t number, const CollisionResult& result) const {
+      if (!goes_on_) return asks_(number, result);
+      goes_on_(number, result);
+      return true;
+    }
 
    private:
-    std::function<bool(std::size_t, const CollisionResult&)> function_;
+    // One of them is set. A std::function that the caller has becomes one of these without memory from the heap.
+    std::function<bool(std::size_t, const CollisionResult&)> asks_;
+    std::function<void(std::size_t, const CollisionResult&)> goes_on_;
   };
   /// Answers `count` queries, those that `query` gives for 0..count - 1. It may be asked for a query more than once and
   /// by several threads at a time. `take` is called with the number of a query and its result, one call at a time, in

@@ -24,6 +24,12 @@ struct CollisionGroups {
   std::uint64_t mask = ~std::uint64_t{0};
 };
 
+/// Closed, in the coordinates of the world. An axis along which no bound could be computed has infinities.
+struct WorldBox {
+  std::array<double, 3> least;
+  std::array<double, 3> greatest;
+};
+
 /// Objects with poses, and a broad phase over their boxes, so that a device is asked only about pairs that are close.
 ///
 /// Answers are exact like those of collide(): boxes are rounded outwards, so no pair that touches is left out. The
@@ -79,6 +85,8 @@ class Scene {
   const Object& object(Id id) const { return entry(id).object; }
   const Pose& pose(Id id) const { return entry(id).pose; }
   const CollisionGroups& groups(Id id) const { return entry(id).groups; }
+  /// A box that contains the object in its pose, whatever was rounded; not always the least one.
+  const WorldBox& box(Id id) const { return entry(id).box; }
 
   /// Leaves a pair out, such as two links of a robot that a joint connects; or takes it in again.
   /// \throws std::invalid_argument no object has one of the ids, or both are the same
@@ -88,8 +96,8 @@ class Scene {
   void set_filter(Filter filter) { filter_ = std::move(filter); }
 
   /// The pairs that a device would be asked about, ascending, the lower id first: those whose boxes overlap and that
-  /// groups, ignored pairs and filter let through. Sorts and sweeps along one axis: O(n log n) for n objects, plus the
-  /// pairs that overlap along it.
+  /// groups, ignored pairs and filter let through. Builds a tree of the boxes and descends it against itself:
+  /// O(n log n) for n objects that are spread out, plus the pairs that overlap.
   /// \throws as the filter
   std::vector<std::pair<Id, Id>> candidates() const;
 
@@ -123,27 +131,20 @@ class Scene {
                          const CollisionRequest& request = {}, const CollisionGroups& groups = {}) const;
 
  private:
-  /// Closed, in the world.
-  struct Box {
-    std::array<double, 3> least;
-    std::array<double, 3> greatest;
-  };
   struct Entry {
     Id id;
     Object object;
     Pose pose;
     CollisionGroups groups;
-    Box box;
+    WorldBox box;
   };
   /// Numbers in entries_ of two objects, the lower id first.
   using Candidate = std::pair<std::uint32_t, std::uint32_t>;
 
-  static Box world_box(const Object& object, const Pose& pose);
-  static bool overlap(const Box& p, const Box& q);
   std::size_t place(Id id) const;
   const Entry& entry(Id id) const { return entries_[place(id)]; }
   bool is_wanted(const Entry& x, const Entry& y) const;
-  std::vector<Candidate> sweep() const;
+  std::vector<Candidate> find_candidates() const;
   std::vector<std::uint32_t> near(const Entry& one) const;
   void ask(Device& device, const Object& object, const Pose& pose, const std::vector<std::uint32_t>& others,
            const HitSink& take, const CollisionRequest& request) const;
