@@ -13,6 +13,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "bvh/rounding.hpp"
 #include "bvh_meshes.hpp"
 #include "random_poses.hpp"
 
@@ -154,6 +155,36 @@ TEST_CASE("scene: objects of any magnitude", "[ref][scene]") {
     }
     CAPTURE(exponent);
     check_scene(scene, *device);
+  }
+}
+
+TEST_CASE("scene: the box of an object holds all its vertices, and little else", "[ref][scene]") {
+  std::mt19937_64 random(5);
+  for (int round = 0; round < 200; ++round) {
+    Mesh torus = make_torus(1, 0.4, 5, 4);
+    const double scale = std::ldexp(1.0, static_cast<int>(random() % 2000) - 1050);
+    for (Vec3d& v : torus.vertices) v = (v + random_vector(random, 10)) * scale;
+    const auto pose_class = cchip_test::pose_classes[random() % std::size(cchip_test::pose_classes)];
+    Pose pose = random_pose(pose_class, 3, random);
+    pose.linear() *= std::ldexp(1.0, static_cast<int>(random() % 900) - 450);
+    Scene scene;
+    const WorldBox box = scene.box(scene.add(Object(torus), pose));
+    for (const Vec3d& v : torus.vertices) {
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        bvh::Interval at = pose(i, 3);
+        for (Eigen::Index k = 0; k < 3; ++k) at = at + bvh::Interval(pose(i, k)) * v[k];
+        const auto axis = static_cast<std::size_t>(i);
+        if (box.least[axis] <= at.least && at.greatest <= box.greatest[axis]) continue;
+        CAPTURE(round, static_cast<int>(pose_class), scale, pose.matrix(), v, i);
+        FAIL("a vertex may lie outside of the box");
+      }
+    }
+  }
+  Scene scene;
+  const WorldBox cube = scene.box(scene.add(Object(box({1, 1, 1})), at(1, 2, 3)));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    CHECK(cube.least[axis] > static_cast<double>(axis) + 0.999);
+    CHECK(cube.greatest[axis] < static_cast<double>(axis) + 2.001);
   }
 }
 
