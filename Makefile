@@ -39,7 +39,7 @@ export JOBS
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-chip export fpga \
+  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip export fpga \
   fpga-quick asic asic-quick install clean
 
 help: ## list the targets
@@ -228,6 +228,10 @@ bench-robot: $(RELEASE)/build.ninja robots ## collision checks per second of rob
 	cmake $(if $(NATIVE_FCL),-D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))') $(RELEASE)
 	cmake --build $(RELEASE) -j $(JOBS) --target robot_speed
 	$(RELEASE)/bin/robot_speed $(BENCH_ARGS)
+
+bench-scene: $(RELEASE)/build.ninja ## frames of scenes of 10 to 10,000 moving objects: cchip::Scene and FCL's manager in turns (two minutes)
+	cmake --build $(RELEASE) -j $(JOBS) --target scene_speed
+	$(RELEASE)/bin/scene_speed $(BENCH_ARGS)
 
 # clock of the chip, MHz: row chip in docs/fpga.md
 CHIP_MHZ ?= 50

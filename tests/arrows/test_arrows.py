@@ -18,6 +18,7 @@ ROOMS["reference"] = {"wire", "geometry", "mesh", "exact", "bvh", "collide"}
 ROOMS["model"] = {"wire", "geometry", "mesh", "bvh"}
 ROOMS["device"] = set(CORE) | {"model"}
 CPP_REF = set(ROOMS)
+ROOMS["cchip.hpp"] = CPP_REF  # the one header for users
 ROOMS["sim"] = set()  # sim/harness
 ROOMS["rc"] = set()  # sim/reconfig
 ROOMS["waves"] = {"wire", "sim"}
@@ -54,9 +55,9 @@ def files(pattern):
 
 def room_of(name):
     """Room of a C++ file, None if it has none."""
-    found = re.match(r"cpp_ref/(?:include/cchip|src)/(\w+)/", name)
+    found = re.match(r"cpp_ref/(?:include/cchip|src)/(?:(\w+)/|cchip\.hpp$)", name)
     if found:
-        return found.group(1)
+        return found.group(1) or "cchip.hpp"
     return next((room for folder, room in FOLDERS.items() if name.startswith(folder + "/")), None)
 
 

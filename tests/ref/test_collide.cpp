@@ -316,6 +316,25 @@ TEST_CASE("collide: faces that were cut count once, by their number in the file"
   CHECK(collide(*device, b, Pose::Identity(), a, Pose::Identity(), one).contacts.size() == 1);
 }
 
+TEST_CASE("collide: without a device, from any number of threads", "[ref][collide]") {
+  const Object torus(make_torus(1, 0.25, 12, 8));
+  const Pose pose = make_pose({0.5, 0, 0}, {10, 20, 30});
+  const auto device = open_device("cpu");
+  const CollisionResult expected = collide(*device, torus, Pose::Identity(), torus, pose, all);
+  std::atomic<int> same = 0;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i) {
+    threads.emplace_back([&] {
+      for (int k = 0; k < 10; ++k) {
+        same += collide(torus, Pose::Identity(), torus, pose, all).contacts == expected.contacts;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  CHECK(same == 40);
+  CHECK_THROWS_AS(collide(torus, pose, torus, pose, {CollisionRequest::Contacts::all, 0}), std::invalid_argument);
+}
+
 TEST_CASE("collide: most contacts", "[ref][collide]") {
   const Object gear(make_gear(1.4, 2, 0.6, 0.8, 12, 2));
   const auto device = each_device();
@@ -389,6 +408,26 @@ TEST_CASE("collide: results of a batch come one call at a time, and an exception
     CHECK_THROWS_WITH(collide(*threads, a, a, poses, {}, stop), "enough");
     CHECK(calls == 3);
   }
+}
+
+TEST_CASE("collide: a batch ends when its result function returns false", "[ref][collide]") {
+  const Object torus(make_torus(1, 0.25, 12, 8));
+  const std::vector<PosePair> poses(200, {Pose::Identity(), make_pose({0.5, 0, 0}, {0, 0, 0})});
+  const auto device = each_device();
+  for (const std::size_t most : {std::size_t{1}, std::size_t{7}, std::size_t{199}, std::size_t{200}}) {
+    std::size_t taken = 0;
+    collide(*device, torus, torus, poses, all, [&](std::size_t, const CollisionResult& result) {
+      CHECK(result.hit);
+      return ++taken < most;
+    });
+    CHECK(taken == most);
+  }
+  // Nothing, or anything that is not bool, goes on.
+  std::size_t taken = 0;
+  const auto count = [&taken](std::size_t, const CollisionResult&) -> int { return ++taken == 0; };
+  collide(*device, torus, torus, poses, all, count);
+  collide(*device, torus, torus, poses, all, [&taken](std::size_t, const CollisionResult&) { ++taken; });
+  CHECK(taken == 2 * poses.size());
 }
 
 TEST_CASE("collide: input that makes no sense is refused in one line", "[ref][collide]") {

@@ -95,6 +95,44 @@ Pairs brute_force(const Mesh& a, const Mesh& b) {
 
 }  // namespace
 
+TEST_CASE("mesh: from arrays and matrices", "[ref][mesh]") {
+  const double positions[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0.5};
+  const std::uint32_t corners[] = {0, 1, 2, 0, 2, 3};
+  const Mesh triangles = cchip::make_mesh(positions, 4, corners, 2);
+  CHECK(triangles.vertices.size() == 4);
+  CHECK(triangles.vertices[3] == Vec3d(0, 1, 0.5));
+  REQUIRE(triangles.faces.size() == 2);
+  CHECK(triangles.faces[1].kind == cchip::Kind::tri);
+  CHECK(triangles.faces[1].vertex == std::array<std::uint32_t, 4>{0, 2, 3, 0});
+
+  const Eigen::MatrixXd vertices = Eigen::Map<const Eigen::Matrix<double, 4, 3, Eigen::RowMajor>>(positions);
+  Eigen::MatrixXi quad(1, 4);
+  quad << 0, 1, 2, 3;
+  const Mesh quads = cchip::make_mesh(vertices, quad);
+  CHECK(quads.vertices == triangles.vertices);
+  REQUIRE(quads.faces.size() == 1);
+  CHECK(quads.faces[0].kind == cchip::Kind::quad);
+  CHECK(quads.faces[0].vertex == std::array<std::uint32_t, 4>{0, 1, 2, 3});
+
+  const auto refuses = [](const std::string& message, const auto& action) {
+    CHECK_THROWS_MATCHES(action(), std::invalid_argument, Catch::Message(message));
+  };
+  refuses("vertices have 2 columns; give three, x, y and z, a row for each vertex",
+          [&] { cchip::make_mesh(vertices.leftCols(2), quad); });
+  refuses("faces have 2 columns; give three for triangles or four for quads, a row for each face",
+          [&] { cchip::make_mesh(vertices, quad.leftCols(2)); });
+  for (const int wrong : {-1, 4}) {
+    quad(0, 2) = wrong;
+    refuses("face 0: vertex index " + std::to_string(wrong) + " is out of range (there are 4 vertices, from 0)",
+            [&] { cchip::make_mesh(vertices, quad); });
+  }
+  refuses("vertices are a null pointer; point it to the first one", [&] { cchip::make_mesh(nullptr, 4, corners, 2); });
+  refuses("faces are a null pointer; point it to the first one", [&] { cchip::make_mesh(positions, 4, nullptr, 2); });
+  refuses("faces have 5 columns; give three for triangles or four for quads, a row for each face",
+          [&] { cchip::make_mesh(positions, 4, corners, 1, 5); });
+  CHECK(cchip::make_mesh(nullptr, 0, nullptr, 0).faces.empty());
+}
+
 TEST_CASE("mesh: torus is closed, faces outwards, has one hole", "[ref][mesh]") {
   const Mesh torus = cchip::make_torus(3, 1, 48, 24);
   CHECK(torus.faces.size() == 2 * 48 * 24);

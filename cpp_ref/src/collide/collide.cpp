@@ -22,6 +22,9 @@ Device::QuerySource in_poses(const Object& a, const Object& b, const std::vector
   return [&a, &b, &poses](std::size_t i) { return CollisionQuery{&a, &poses[i].a, &b, &poses[i].b}; };
 }
 
+/// Ends a batch whose sink has returned false.
+struct Enough {};
+
 }  // namespace
 
 Object::Object(Mesh mesh) {
@@ -60,7 +63,14 @@ void Device::collide(std::size_t count, const QuerySource& query, const Collisio
   const Use use(*this);
   check_float_mode();
   for (std::size_t i = 0; i < count; ++i) check_query(query(i), request);
-  answer_all(count, query, request, take);
+  // Every device must end a batch when its sink throws, so this stops all of them alike.
+  const ResultSink stop_or_go_on = [&take](std::size_t i, const CollisionResult& result) {
+    if (!take(i, result)) throw Enough();
+  };
+  try {
+    answer_all(count, query, request, stop_or_go_on);
+  } catch (const Enough&) {  // NOLINT: it is no error
+  }
 }
 
 void Device::answer_all(std::size_t count, const QuerySource& query, const CollisionRequest& request,

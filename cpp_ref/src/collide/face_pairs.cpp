@@ -8,16 +8,6 @@
 namespace cchip {
 namespace {
 
-void check_pose(const Pose& pose, const char* name) {
-  for (Eigen::Index row = 0; row < 3; ++row) {
-    for (Eigen::Index column = 0; column < 4; ++column) {
-      if (std::abs(pose(row, column)) <= 0x1p500) continue;
-      throw std::invalid_argument(std::string("pose of ") + name + ": row " + std::to_string(row) + ", column " +
-                                  std::to_string(column) + " is not finite or beyond 2^500; check it or scale it");
-    }
-  }
-}
-
 void check_placed(const Object* object, const Pose* pose, const char* name) {
   const auto refuse = [name](const char* what) { throw std::invalid_argument(std::string("query: ") + name + what); };
   if (object == nullptr) refuse(" is a null pointer; point it to an Object");
@@ -38,6 +28,16 @@ void clear(CollisionResult& result) {
 }
 
 }  // namespace
+
+void check_pose(const Pose& pose, const char* name) {
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    for (Eigen::Index column = 0; column < 4; ++column) {
+      if (std::abs(pose(row, column)) <= 0x1p500) continue;
+      throw std::invalid_argument(std::string("pose of ") + name + ": row " + std::to_string(row) + ", column " +
+                                  std::to_string(column) + " is not finite or beyond 2^500; check it or scale it");
+    }
+  }
+}
 
 void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest& request) {
   check_pose(pose_a, "A");

@@ -94,6 +94,49 @@ void check_faces(const Mesh& mesh) {
   }
 }
 
+Mesh make_mesh(const Eigen::Ref<const Eigen::MatrixXd>& vertices, const FaceMatrix& faces) {
+  if (vertices.cols() != 3) {
+    throw std::invalid_argument("vertices have " + std::to_string(vertices.cols()) +
+                                " columns; give three, x, y and z, a row for each vertex");
+  }
+  if (faces.cols() != 3 && faces.cols() != 4) {
+    throw std::invalid_argument("faces have " + std::to_string(faces.cols()) +
+                                " columns; give three for triangles or four for quads, a row for each face");
+  }
+  Mesh mesh;
+  mesh.vertices.reserve(static_cast<std::size_t>(vertices.rows()));
+  for (Eigen::Index i = 0; i < vertices.rows(); ++i) mesh.vertices.emplace_back(vertices.row(i).transpose());
+  mesh.faces.reserve(static_cast<std::size_t>(faces.rows()));
+  for (Eigen::Index i = 0; i < faces.rows(); ++i) {
+    Mesh::Face& face = mesh.faces.emplace_back();
+    face.kind = faces.cols() == 4 ? Kind::quad : Kind::tri;
+    for (Eigen::Index k = 0; k < faces.cols(); ++k) {
+      if (faces(i, k) < 0 || faces(i, k) >= vertices.rows()) {
+        throw std::invalid_argument("face " + std::to_string(i) + ": vertex index " + std::to_string(faces(i, k)) +
+                                    " is out of range (there are " + std::to_string(vertices.rows()) +
+                                    " vertices, from 0)");
+      }
+      face.vertex[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(faces(i, k));
+    }
+  }
+  return mesh;
+}
+
+Mesh make_mesh(const double* vertices, std::size_t vertex_count, const std::uint32_t* faces, std::size_t face_count,
+               std::size_t corners) {
+  const auto check = [](const void* pointer, std::size_t count, const char* what) {
+    if (pointer != nullptr || count == 0) return;
+    throw std::invalid_argument(std::string(what) + " are a null pointer; point it to the first one");
+  };
+  check(vertices, vertex_count, "vertices");
+  check(faces, face_count, "faces");
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+  using Indices = Eigen::Matrix<std::uint32_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto index = [](std::size_t count) { return static_cast<Eigen::Index>(count); };
+  return make_mesh(Eigen::Map<const Rows>(vertices, index(vertex_count), 3),
+                   Eigen::Map<const Indices>(faces, index(face_count), index(corners)));
+}
+
 Mesh transformed(const Mesh& mesh, const Pose& pose) {
   Mesh result = mesh;
   for (Vec3d& p : result.vertices) p = pose * p;

@@ -17,6 +17,8 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace cchip {
@@ -128,10 +130,37 @@ class Device {
   void collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result);
 
   using QuerySource = std::function<CollisionQuery(std::size_t)>;
-  using ResultSink = std::function<void(std::size_t, const CollisionResult&)>;
+  /// A function that takes the number of a query and its result. One that returns bool says whether the batch goes on;
+  /// after one that returns anything else, or nothing, it does.
+  class ResultSink {
+   public:
+    template <class Function, class = std::enable_if_t<
+                                  !std::is_same_v<std::decay_t<Function>, ResultSink> &&
+                                  std::is_invocable_v<std::decay_t<Function>&, std::size_t, const CollisionResult&>>>
+    ResultSink(Function&& function) {  // NOLINT: functions convert
+      if constexpr (std::is_same_v<std::invoke_result_t<std::decay_t<Function>&, std::size_t, const CollisionResult&>,
+                                   bool>) {
+        asks_ = std::forward<Function>(function);
+      } else {
+        goes_on_ = std::forward<Function>(function);
+      }
+    }
+    /// \returns whether the batch goes on
+    bool operator()(std::size_t number, const CollisionResult& result) const {
+      if (!goes_on_) return asks_(number, result);
+      goes_on_(number, result);
+      return true;
+    }
+
+   private:
+    // One of them is set. A std::function that the caller has becomes one of these without memory from the heap.
+    std::function<bool(std::size_t, const CollisionResult&)> asks_;
+    std::function<void(std::size_t, const CollisionResult&)> goes_on_;
+  };
   /// Answers `count` queries, those that `query` gives for 0..count - 1. It may be asked for a query more than once and
   /// by several threads at a time. `take` is called with the number of a query and its result, one call at a time, in
-  /// any order. A device may use all cores.
+  /// any order. A device may use all cores. Once `take` has returned false it is not called again: queries that are in
+  /// flight are dropped, and the call returns.
   /// Exceptions of `query` and `take` end the batch and reach the caller, who may use the device again.
   /// \throws std::invalid_argument as above, before any result
   /// \throws std::logic_error as above
@@ -142,7 +171,8 @@ class Device {
 
   /// \pre check_query() accepts the query
   virtual void answer(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) = 0;
-  /// \pre check_query() accepts all of them. Does one after the other unless it is overridden.
+  /// \pre check_query() accepts all of them. Does one after the other unless it is overridden. An exception of `take`
+  /// must end the batch and reach the caller; its result says nothing here.
   virtual void answer_all(std::size_t count, const QuerySource& query, const CollisionRequest& request,
                           const ResultSink& take);
 
@@ -157,7 +187,7 @@ inline CollisionResult collide(Device& device, const Object& a, const Pose& pose
   return result;
 }
 
-/// The same objects in many poses; each result as it is ready.
+/// The same objects in many poses; each result as it is ready, until `take` returns false.
 void collide(Device& device, const Object& a, const Object& b, const std::vector<PosePair>& poses,
              const CollisionRequest& request, const Device::ResultSink& take);
 /// The same; results in the order of the poses.

@@ -48,6 +48,9 @@ class FacePairs {
   std::optional<PosedPairs> pairs_;          ///< made when it is needed first
 };
 
+/// \param name of the object, for the message: "A"
+/// \throws std::invalid_argument an entry of the pose is not finite or beyond 2^500 in magnitude; one line
+void check_pose(const Pose& pose, const char* name);
 /// \throws std::invalid_argument an entry of a pose is not finite or beyond 2^500 in magnitude, or the request wants
 ///         all contacts but at most 0 of them; one line
 void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest& request);

@@ -23,6 +23,13 @@ std::vector<std::string> cpu_targets();
 /// \throws std::invalid_argument no target of this name; the message lists the names
 std::unique_ptr<Device> open_cpu_device(const CpuOptions& options = {});
 
+/// One query without a device of one's own: each thread that calls this has a CPU device of one thread, opened by its
+/// first call and closed when the thread ends. So any number of threads may call it at a time. For many queries a batch
+/// on a device is faster: it has several queries in flight, and all cores.
+/// \throws as Device::collide()
+CollisionResult collide(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
+                        const CollisionRequest& request = {});
+
 }  // namespace cchip
 
 #endif

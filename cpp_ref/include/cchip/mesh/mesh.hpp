@@ -36,6 +36,25 @@ struct Mesh {
 ///         file_face is neither empty nor as long as `faces`; one line with the number of the face
 void check_faces(const Mesh& mesh);
 
+/// Numbers of vertices, a row for each face.
+using FaceMatrix = Eigen::Matrix<std::int64_t, Eigen::Dynamic, Eigen::Dynamic>;
+/// Mesh from matrices.
+/// \param vertices n x 3: x, y, z of each, in length units
+/// \param faces m x 3 for triangles or m x 4 for quads: numbers of vertices, from 0
+/// \throws std::invalid_argument another number of columns, or a number below 0 or beyond the vertices; one line with
+///         the row. Object refuses what else makes no sense, such as NaN.
+Mesh make_mesh(const Eigen::Ref<const Eigen::MatrixXd>& vertices, const FaceMatrix& faces);
+/// The same with any other integers, such as Eigen::MatrixXi of libigl.
+template <class Faces>
+Mesh make_mesh(const Eigen::Ref<const Eigen::MatrixXd>& vertices, const Eigen::MatrixBase<Faces>& faces) {
+  static_assert(Eigen::NumTraits<typename Faces::Scalar>::IsInteger, "faces are numbers of vertices");
+  return make_mesh(vertices, FaceMatrix(faces.template cast<std::int64_t>()));
+}
+/// The same from arrays, row by row: 3 doubles a vertex, `corners` numbers a face, 3 for triangles or 4 for quads.
+/// \throws std::invalid_argument as above, and a null pointer to more than nothing
+Mesh make_mesh(const double* vertices, std::size_t vertex_count, const std::uint32_t* faces, std::size_t face_count,
+               std::size_t corners = 3);
+
 /// Mesh whose vertices are moved by the pose, rounded.
 Mesh transformed(const Mesh& mesh, const Pose& pose);
 

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Many placed objects: which of them touch?
+#ifndef CCHIP_COLLIDE_SCENE_HPP
+#define CCHIP_COLLIDE_SCENE_HPP
+
+#include <array>
+#include <cchip/collide/collide.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <set>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace cchip {
+
+/// The groups that an object belongs to and those that it collides with, a bit each. Two objects are tested if each
+/// one's `mask` has a group of the other, as with Bullet's filter groups.
+struct CollisionGroups {
+  std::uint64_t groups = 1;
+  std::uint64_t mask = ~std::uint64_t{0};
+};
+
+/// Closed, in the coordinates of the world. An axis along which no bound could be computed has infinities.
+struct WorldBox {
+  std::array<double, 3> least;
+  std::array<double, 3> greatest;
+};
+
+/// Objects with poses, and a broad phase over their boxes, so that a device is asked only about pairs that are close.
+///
+/// Answers are exact like those of collide(): boxes are rounded outwards, so no pair that touches is left out. The
+/// scene keeps a copy of each Object, which is a handle: copies share one mesh, and the caller may drop his own. Copies
+/// of a scene have the same ids.
+///
+/// Const functions may be called by several threads at a time, each with its own device; a change must not happen
+/// meanwhile, and not from the functions that a call was given. A function that throws has changed nothing.
+class Scene {
+ public:
+  /// Names an object. Ids are given in ascending order from 1 and never again after remove(); 0 is never one.
+  using Id = std::uint64_t;
+  /// Is this pair to be tested? It is called with ids in ascending order, and only for pairs whose boxes overlap.
+  using Filter = std::function<bool(Id, Id)>;
+
+  /// Two objects in contact, a < b. In the result `a` is object A.
+  struct Pair {
+    Id a = 0;
+    Id b = 0;
+    CollisionResult result;
+  };
+  /// An object in contact with the one that was asked about. In the result that one is A, this one B.
+  struct Hit {
+    Id id = 0;
+    CollisionResult result;
+  };
+  /// Takes a pair in contact and returns whether to go on.
+  using PairSink = std::function<bool(const Pair&)>;
+  using HitSink = std::function<bool(const Hit&)>;
+
+  /// Takes constant time.
+  /// \throws std::invalid_argument the object was moved from, or an entry of the pose is not finite or beyond 2^500 in
+  ///         magnitude
+  /// \throws std::runtime_error the calling thread flushes small numbers to zero
+  Id add(Object object, const Pose& pose = Pose::Identity(), const CollisionGroups& groups = {});
+  /// Moves an object. Takes constant time.
+  /// \throws std::invalid_argument no object has this id, or as add() for the pose
+  /// \throws std::runtime_error as add()
+  void set_pose(Id id, const Pose& pose);
+  /// \throws std::invalid_argument no object has this id
+  void set_groups(Id id, const CollisionGroups& groups);
+  /// Takes an object out, and what set_ignored() noted about it. Takes constant time but for a look at all ignored
+  /// pairs.
+  /// \throws std::invalid_argument no object has this id
+  void remove(Id id);
+
+  std::size_t size() const { return entries_.size(); }
+  bool contains(Id id) const { return places_.count(id) != 0; }
+  /// All ids, ascending.
+  std::vector<Id> ids() const;
+  /// The handle and the pose stay valid until the scene changes.
+  /// \throws std::invalid_argument no object has this id
+  const Object& object(Id id) const { return entry(id).object; }
+  const Pose& pose(Id id) const { return entry(id).pose; }
+  const CollisionGroups& groups(Id id) const { return entry(id).groups; }
+  /// A box that contains the object in its pose, whatever was rounded; not always the least one.
+  const WorldBox& box(Id id) const { return entry(id).box; }
+
+  /// Leaves a pair out, such as two links of a robot that a joint connects; or takes it in again.
+  /// \throws std::invalid_argument no object has one of the ids, or both are the same
+  void set_ignored(Id a, Id b, bool ignored = true);
+  /// Called for pairs that groups and ignored pairs have let through, by the thread that asks; an empty one lets all
+  /// through.
+  void set_filter(Filter filter) { filter_ = std::move(filter); }
+
+  /// The pairs that a device would be asked about, ascending, the lower id first: those whose boxes overlap and that
+  /// groups, ignored pairs and filter let through. Builds a tree of the boxes and descends it against itself:
+  /// O(n log n) for n objects that are spread out, plus the pairs that overlap.
+  /// \throws as the filter
+  std::vector<std::pair<Id, Id>> candidates() const;
+
+  /// All pairs in contact, ascending by ids whatever the device and the number of its threads.
+  /// \throws std::invalid_argument the request wants at most 0 contacts
+  /// \throws std::logic_error the device is in use
+  /// \throws std::runtime_error the calling thread flushes small numbers to zero
+  /// \throws as the filter
+  std::vector<Pair> touching(Device& device, const CollisionRequest& request = {}) const;
+  /// All objects in contact with one of them, ascending. Looks at the boxes of all.
+  /// \throws as above, and std::invalid_argument: no object has this id
+  std::vector<Hit> touching(Device& device, Id id, const CollisionRequest& request = {}) const;
+  /// All objects in contact with one that is not in the scene, ascending. The filter, which takes ids, is not asked.
+  /// \throws as above, and std::invalid_argument as add()
+  std::vector<Hit> touching(Device& device, const Object& object, const Pose& pose,
+                            const CollisionRequest& request = {}, const CollisionGroups& groups = {}) const;
+
+  /// Stops at a contact and returns it; none if nothing touches. Of several contacts any may be returned.
+  /// \throws as touching()
+  std::optional<Pair> find_touching(Device& device, const CollisionRequest& request = {}) const;
+  std::optional<Hit> find_touching(Device& device, Id id, const CollisionRequest& request = {}) const;
+  std::optional<Hit> find_touching(Device& device, const Object& object, const Pose& pose,
+                                   const CollisionRequest& request = {}, const CollisionGroups& groups = {}) const;
+
+  /// Calls `take` for the contacts of touching() until it returns false: one call at a time, in any order, by any
+  /// thread. It must neither change the scene nor use the device.
+  /// \throws as touching(), and as `take`
+  void for_each_touching(Device& device, const PairSink& take, const CollisionRequest& request = {}) const;
+  void for_each_touching(Device& device, Id id, const HitSink& take, const CollisionRequest& request = {}) const;
+  void for_each_touching(Device& device, const Object& object, const Pose& pose, const HitSink& take,
+                         const CollisionRequest& request = {}, const CollisionGroups& groups = {}) const;
+
+ private:
+  struct Entry {
+    Id id;
+    Object object;
+    Pose pose;
+    CollisionGroups groups;
+    WorldBox box;
+  };
+  /// Numbers in entries_ of two objects, the lower id first.
+  using Candidate = std::pair<std::uint32_t, std::uint32_t>;
+
+  std::size_t place(Id id) const;
+  const Entry& entry(Id id) const { return entries_[place(id)]; }
+  bool is_wanted(const Entry& x, const Entry& y) const;
+  std::vector<Candidate> find_candidates() const;
+  std::vector<std::uint32_t> near(const Entry& one) const;
+  void ask(Device& device, const Object& object, const Pose& pose, const std::vector<std::uint32_t>& others,
+           const HitSink& take, const CollisionRequest& request) const;
+
+  std::vector<Entry> entries_;
+  std::unordered_map<Id, std::size_t> places_;  ///< in entries_
+  std::set<std::pair<Id, Id>> ignored_;         ///< the lower id first
+  Filter filter_;
+  Id next_ = 1;
+};
+
+}  // namespace cchip
+
+#endif

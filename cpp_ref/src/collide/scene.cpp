@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cchip/collide/face_pairs.hpp>
+#include <cchip/collide/scene.hpp>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "box_pairs.hpp"
+#include "bvh/reach.hpp"
+#include "exact/ieee.hpp"
+#include "float_mode.hpp"
+
+namespace cchip {
+namespace {
+
+/// Bound on the rounding of a box, in units of the magnitudes that are added up for one of its coordinates; 14.4 u are
+/// needed. Twice that for rounding modes that are not to nearest.
+constexpr double box_limit = 32 * 0x1p-53;
+/// Sizes from here on might overflow.
+constexpr double most_size = 0x1p1000;
+
+void check_object(const Object& object) {
+  if (object.id() != nullptr) return;
+  throw std::invalid_argument("scene: the object was moved from; use the one that it was moved to");
+}
+
+// A point of the object is c + y, c the centre of its ball and y within what the tree says. A coordinate of it in the
+// world is row . c + t + row . y, and row . y is at most the reach along the row. With u = 2^-53 and size the sum of
+// the magnitudes that are added up for any point, row . c + t is off by 4u size, the reach by 7.95u size, their sum by
+// two more roundings of at most 1.13 size: 14.4u size.
+WorldBox world_box(const Object& object, const Pose& pose) {
+  const bvh::SupportTree& tree = object.tree();
+  const Vec3d& c = tree.centre();
+  WorldBox box = {};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    const std::array<double, 3> row = {pose(i, 0), pose(i, 1), pose(i, 2)};
+    const double t = pose(i, 3);
+    const double size = (std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2])) * tree.extent() + std::abs(t);
+    if (!(size < most_size)) {
+      box.least[axis] = -std::numeric_limits<double>::infinity();
+      box.greatest[axis] = std::numeric_limits<double>::infinity();
+      continue;
+    }
+    const double centre = row[0] * c[0] + row[1] * c[1] + row[2] * c[2] + t;
+    // The second term is for what underflows, in the reach before it is multiplied by the object's unit.
+    const double slack = box_limit * size + 0x1p-1060 * (1 + tree.extent());
+    box.least[axis] = centre - (bvh::reach_along(tree, {-row[0], -row[1], -row[2]}) + slack);
+    box.greatest[axis] = centre + (bvh::reach_along(tree, row) + slack);
+  }
+  return box;
+}
+
+}  // namespace
+
+Scene::Id Scene::add(Object object, const Pose& pose, const CollisionGroups& groups) {
+  check_float_mode();
+  check_object(object);
+  check_pose(pose, "the object");
+  if (entries_.size() == std::numeric_limits<std::uint32_t>::max()) {
+    throw std::length_error("scene: it holds at most 2^32 - 1 objects; use several scenes");
+  }
+  const WorldBox box = world_box(object, pose);
+  entries_.push_back({next_, std::move(object), pose, groups, box});
+  try {
+    places_.emplace(next_, entries_.size() - 1);
+  } catch (...) {
+    entries_.pop_back();
+    throw;
+  }
+  return next_++;
+}
+
+void Scene::set_pose(Id id, const Pose& pose) {
+  Entry& moved = entries_[place(id)];
+  check_float_mode();
+  check_pose(pose, ("object " + std::to_string(id)).c_str());
+  moved.box = world_box(moved.object, pose);
+  moved.pose = pose;
+}
+
+void Scene::set_groups(Id id, const CollisionGroups& groups) { entries_[place(id)].groups = groups; }
+
+void Scene::remove(Id id) {
+  const std::size_t at = place(id);
+  for (auto pair = ignored_.begin(); pair != ignored_.end();) {
+    pair = pair->first == id || pair->second == id ? ignored_.erase(pair) : std::next(pair);
+  }
+  if (at + 1 != entries_.size()) {
+    entries_[at] = std::move(entries_.back());
+    places_.find(entries_[at].id)->second = at;
+  }
+  entries_.pop_back();
+  places_.erase(id);
+}
+
+std::vector<Scene::Id> Scene::ids() const {
+  std::vector<Id> all;
+  all.reserve(entries_.size());
+  for (const Entry& x : entries_) all.push_back(x.id);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+void Scene::set_ignored(Id a, Id b, bool ignored) {
+  place(a);
+  place(b);
+  if (a == b) {
+    throw std::invalid_argument("scene: object " + std::to_string(a) +
+                                " is never tested against itself; give the ids of two objects");
+  }
+  const auto pair = std::minmax(a, b);
+  if (ignored) {
+    ignored_.insert(pair);
+  } else {
+    ignored_.erase(pair);
+  }
+}
+
+std::size_t Scene::place(Id id) const {
+  const auto found = places_.find(id);
+  if (found != places_.end()) return found->second;
+  throw std::invalid_argument("scene: no object has the id " + std::to_string(id) + ": " +
+                              (id != 0 && id < next_ ? "it was removed" : "add() has not returned it"));
+}
+
+bool Scene::is_wanted(const Entry& x, const Entry& y) const {
+  if ((x.groups.groups & y.groups.mask) == 0 || (y.groups.groups & x.groups.mask) == 0) return false;
+  if (x.id == 0 || y.id == 0) return true;  // one is not in the scene
+  const auto pair = std::minmax(x.id, y.id);
+  if (!ignored_.empty() && ignored_.count(pair) != 0) return false;
+  return !filter_ || filter_(pair.first, pair.second);
+}
+
+std::vector<Scene::Candidate> Scene::find_candidates() const {
+  std::vector<WorldBox> boxes;
+  boxes.reserve(entries_.size());
+  for (const Entry& x : entries_) boxes.push_back(x.box);
+  std::vector<Candidate> found;
+  visit_box_pairs(boxes, [this, &found](std::uint32_t i, std::uint32_t k) {
+    const Candidate pair = entries_[i].id < entries_[k].id ? Candidate{i, k} : Candidate{k, i};
+    if (is_wanted(entries_[pair.first], entries_[pair.second])) found.push_back(pair);
+  });
+  return found;
+}
+
+std::vector<std::uint32_t> Scene::near(const Entry& one) const {
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+    const Entry& x = entries_[i];
+    if (x.id != one.id && overlap(x.box, one.box) && is_wanted(x, one)) found.push_back(i);
+  }
+  return found;
+}
+
+std::vector<std::pair<Scene::Id, Scene::Id>> Scene::candidates() const {
+  std::vector<std::pair<Id, Id>> pairs;
+  for (const auto& [a, b] : find_candidates()) pairs.emplace_back(entries_[a].id, entries_[b].id);
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+void Scene::for_each_touching(Device& device, const PairSink& take, const CollisionRequest& request) const {
+  check_query(Pose::Identity(), Pose::Identity(), request);  // whether or not there are pairs
+  const std::vector<Candidate> pairs = find_candidates();
+  device.collide(
+      pairs.size(),
+      [this, &pairs](std::size_t i) {
+        const Entry& a = entries_[pairs[i].first];
+        const Entry& b = entries_[pairs[i].second];
+        return CollisionQuery{&a.object, &a.pose, &b.object, &b.pose};
+      },
+      request,
+      [this, &pairs, &take](std::size_t i, const CollisionResult& result) {
+        return !result.hit || take({entries_[pairs[i].first].id, entries_[pairs[i].second].id, result});
+      });
+}
+
+void Scene::ask(Device& device, const Object& object, const Pose& pose, const std::vector<std::uint32_t>& others,
+                const HitSink& take, const CollisionRequest& request) const {
+  check_query(Pose::Identity(), Pose::Identity(), request);  // whether or not there are others
+  device.collide(
+      others.size(),
+      [&](std::size_t i) {
+        const Entry& b = entries_[others[i]];
+        return CollisionQuery{&object, &pose, &b.object, &b.pose};
+      },
+      request,
+      [&](std::size_t i, const CollisionResult& result) {
+        return !result.hit || take({entries_[others[i]].id, result});
+      });
+}
+
+void Scene::for_each_touching(Device& device, Id id, const HitSink& take, const CollisionRequest& request) const {
+  const Entry& one = entry(id);
+  ask(device, one.object, one.pose, near(one), take, request);
+}
+
+void Scene::for_each_touching(Device& device, const Object& object, const Pose& pose, const HitSink& take,
+                              const CollisionRequest& request, const CollisionGroups& groups) const {
+  check_float_mode();
+  check_object(object);
+  check_pose(pose, "the object");
+  ask(device, object, pose, near({0, object, pose, groups, world_box(object, pose)}), take, request);
+}
+
+namespace {
+
+/// Everything that a call of for_each_touching() finds, in the order of `less`.
+template <class Found, class Less, class Call>
+std::vector<Found> gather(const Less& less, const Call& call) {
+  std::vector<Found> all;
+  call([&all](const Found& found) {
+    all.push_back(found);
+    return true;
+  });
+  std::sort(all.begin(), all.end(), less);
+  return all;
+}
+
+/// The first that it finds.
+template <class Found, class Call>
+std::optional<Found> first(const Call& call) {
+  std::optional<Found> one;
+  call([&one](const Found& found) {
+    one = found;
+    return false;
+  });
+  return one;
+}
+
+bool pair_less(const Scene::Pair& x, const Scene::Pair& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; }
+bool hit_less(const Scene::Hit& x, const Scene::Hit& y) { return x.id < y.id; }
+
+}  // namespace
+
+std::vector<Scene::Pair> Scene::touching(Device& device, const CollisionRequest& request) const {
+  return gather<Pair>(pair_less, [&](const PairSink& take) { for_each_touching(device, take, request); });
+}
+
+std::vector<Scene::Hit> Scene::touching(Device& device, Id id, const CollisionRequest& request) const {
+  return gather<Hit>(hit_less, [&](const HitSink& take) { for_each_touching(device, id, take, request); });
+}
+
+std::vector<Scene::Hit> Scene::touching(Device& device, const Object& object, const Pose& pose,
+                                        const CollisionRequest& request, const CollisionGroups& groups) const {
+  return gather<Hit>(hit_less,
+                     [&](const HitSink& take) { for_each_touching(device, object, pose, take, request, groups); });
+}
+
+std::optional<Scene::Pair> Scene::find_touching(Device& device, const CollisionRequest& request) const {
+  return first<Pair>([&](const PairSink& take) { for_each_touching(device, take, request); });
+}
+
+std::optional<Scene::Hit> Scene::find_touching(Device& device, Id id, const CollisionRequest& request) const {
+  return first<Hit>([&](const HitSink& take) { for_each_touching(device, id, take, request); });
+}
+
+std::optional<Scene::Hit> Scene::find_touching(Device& device, const Object& object, const Pose& pose,
+                                               const CollisionRequest& request, const CollisionGroups& groups) const {
+  return first<Hit>([&](const HitSink& take) { for_each_touching(device, object, pose, take, request, groups); });
+}
+
+}  // namespace cchip

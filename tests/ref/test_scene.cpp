@@ -1,0 +1,408 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes against all pairs of their objects.
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cchip/collide/scene.hpp>
+#include <cchip/device/cpu_device.hpp>
+#include <cchip/device/device.hpp>
+#include <cchip/mesh/shapes.hpp>
+#include <cchip/sim/seed.hpp>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+#include "bvh/rounding.hpp"
+#include "bvh_meshes.hpp"
+#include "random_poses.hpp"
+
+using namespace cchip;
+using namespace cchip::testing;
+using cchip_test::random_pose;
+using Id = Scene::Id;
+
+namespace {
+
+/// From a corner at the origin to `size`, of quads.
+Mesh box(const Vec3d& size) {
+  Mesh mesh;
+  for (std::size_t i = 0; i < 8; ++i) {
+    mesh.vertices.emplace_back((i & 1U) != 0 ? size.x() : 0, (i & 2U) != 0 ? size.y() : 0,
+                               (i & 4U) != 0 ? size.z() : 0);
+  }
+  for (const auto& face : {std::array<std::uint32_t, 4>{0, 2, 3, 1},
+                           {4, 5, 7, 6},
+                           {0, 1, 5, 4},
+                           {2, 6, 7, 3},
+                           {0, 4, 6, 2},
+                           {1, 3, 7, 5}}) {
+    mesh.faces.push_back({Kind::quad, face});
+  }
+  return mesh;
+}
+
+Pose at(double x, double y, double z) { return make_pose({x, y, z}, {0, 0, 0}); }
+
+using Pairs = std::vector<std::pair<Id, Id>>;
+
+Pairs ids_of(const std::vector<Scene::Pair>& found) {
+  Pairs pairs;
+  for (const Scene::Pair& pair : found) pairs.emplace_back(pair.a, pair.b);
+  return pairs;
+}
+
+std::vector<Id> ids_of(const std::vector<Scene::Hit>& found) {
+  std::vector<Id> ids;
+  for (const Scene::Hit& hit : found) ids.push_back(hit.id);
+  return ids;
+}
+
+void check_same(const CollisionResult& x, const CollisionResult& y) {
+  CHECK(x.hit == y.hit);
+  CHECK(x.relation == y.relation);
+  CHECK(x.contacts == y.contacts);
+}
+
+/// Every pair of the scene, one by one.
+std::vector<Scene::Pair> all_pairs(const Scene& scene, Device& device, const CollisionRequest& request) {
+  std::vector<Scene::Pair> found;
+  const std::vector<Id> ids = scene.ids();
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    for (std::size_t k = i + 1; k < ids.size(); ++k) {
+      CollisionResult result =
+          collide(device, scene.object(ids[i]), scene.pose(ids[i]), scene.object(ids[k]), scene.pose(ids[k]), request);
+      if (result.hit) found.push_back({ids[i], ids[k], std::move(result)});
+    }
+  }
+  return found;
+}
+
+void check_scene(const Scene& scene, Device& device) {
+  const CollisionRequest all = {CollisionRequest::Contacts::all};
+  const std::vector<Scene::Pair> expected = all_pairs(scene, device, all);
+  const std::vector<Scene::Pair> found = scene.touching(device, all);
+  CHECK(ids_of(found) == ids_of(expected));
+  if (found.size() != expected.size()) return;
+  for (std::size_t i = 0; i < found.size(); ++i) check_same(found[i].result, expected[i].result);
+
+  const std::optional<Scene::Pair> one = scene.find_touching(device);
+  CHECK(one.has_value() == !expected.empty());
+  for (const Id id : scene.ids()) {
+    std::vector<Id> others;
+    for (const Scene::Pair& pair : expected) {
+      if (pair.a == id) others.push_back(pair.b);
+      if (pair.b == id) others.push_back(pair.a);
+    }
+    std::sort(others.begin(), others.end());
+    CHECK(ids_of(scene.touching(device, id)) == others);
+    CHECK(scene.find_touching(device, id).has_value() == !others.empty());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("scene: what all pairs give, in poses of every class", "[ref][scene]") {
+  const std::uint64_t seed = sim::seed_from_environment();
+  std::cout << "CCHIP_SEED=" << seed << '\n';
+  std::mt19937_64 random(seed);
+  const std::string name = GENERATE("cpu", "model");
+  const auto device = open_device(name);
+  const std::vector<Object> objects = {Object(make_torus(1, 0.4, 5, 4)), Object(box({1, 0.5, 0.25})),
+                                       Object(make_torus(1e-3, 4e-4, 4, 3)), Object(box({40, 40, 0.5})),
+                                       Object(noisy(make_torus(1, 0.4, 4, 3, Kind::quad), 0.05, random))};
+  std::size_t contacts = 0;
+  std::size_t candidates = 0;
+  for (int round = 0; round < (name == "cpu" ? 40 : 6); ++round) {
+    Scene scene;
+    const std::size_t count = 5 + random() % 30;
+    const double range = std::ldexp(1.0, static_cast<int>(random() % 4));
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto pose_class = cchip_test::pose_classes[random() % std::size(cchip_test::pose_classes)];
+      scene.add(objects[random() % objects.size()], random_pose(pose_class, range, random));
+    }
+    check_scene(scene, *device);
+    contacts += scene.touching(*device).size();
+    candidates += scene.candidates().size();
+    // Moved and removed, at random.
+    for (const Id id : scene.ids()) {
+      if (random() % 4 == 0) {
+        scene.remove(id);
+      } else if (random() % 2 == 0) {
+        scene.set_pose(id, random_pose(cchip_test::PoseClass::rigid, range, random));
+      }
+    }
+    check_scene(scene, *device);
+  }
+  CHECK(contacts > 40);
+  CHECK(candidates >= contacts);
+}
+
+TEST_CASE("scene: objects of any magnitude", "[ref][scene]") {
+  std::mt19937_64 random(3);
+  const auto device = open_device("cpu");
+  for (const int exponent : {-1070, -1000, -500, -60, 60, 400, 900}) {
+    Mesh torus = make_torus(1, 0.4, 5, 4);
+    for (Vec3d& v : torus.vertices) v *= std::ldexp(1.0, exponent);
+    const Object object(torus);
+    Scene scene;
+    for (int i = 0; i < 12; ++i) {
+      const double scale = std::ldexp(1.0, std::clamp(-exponent, -490, 490));
+      Pose pose = random_pose(cchip_test::PoseClass::affine, 2, random);
+      pose.linear() *= scale;
+      pose.translation() *= std::ldexp(1.0, std::clamp(exponent + std::clamp(-exponent, -490, 490), -1060, 490));
+      scene.add(object, pose);
+    }
+    CAPTURE(exponent);
+    check_scene(scene, *device);
+  }
+}
+
+TEST_CASE("scene: the box of an object holds all its vertices, and little else", "[ref][scene]") {
+  std::mt19937_64 random(5);
+  for (int round = 0; round < 200; ++round) {
+    Mesh torus = make_torus(1, 0.4, 5, 4);
+    const double scale = std::ldexp(1.0, static_cast<int>(random() % 2000) - 1050);
+    for (Vec3d& v : torus.vertices) v = (v + random_vector(random, 10)) * scale;
+    const auto pose_class = cchip_test::pose_classes[random() % std::size(cchip_test::pose_classes)];
+    Pose pose = random_pose(pose_class, 3, random);
+    pose.linear() *= std::ldexp(1.0, static_cast<int>(random() % 900) - 450);
+    Scene scene;
+    const WorldBox box = scene.box(scene.add(Object(torus), pose));
+    for (const Vec3d& v : torus.vertices) {
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        bvh::Interval at = pose(i, 3);
+        for (Eigen::Index k = 0; k < 3; ++k) at = at + bvh::Interval(pose(i, k)) * v[k];
+        const auto axis = static_cast<std::size_t>(i);
+        if (box.least[axis] <= at.least && at.greatest <= box.greatest[axis]) continue;
+        CAPTURE(round, static_cast<int>(pose_class), scale, pose.matrix(), v, i);
+        FAIL("a vertex may lie outside of the box");
+      }
+    }
+  }
+  Scene scene;
+  const WorldBox cube = scene.box(scene.add(Object(box({1, 1, 1})), at(1, 2, 3)));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    CHECK(cube.least[axis] > static_cast<double>(axis) + 0.999);
+    CHECK(cube.greatest[axis] < static_cast<double>(axis) + 2.001);
+  }
+}
+
+TEST_CASE("scene: boxes that touch exactly, and by a last bit do not", "[ref][scene]") {
+  const auto device = open_device("cpu");
+  const Object cube(box({1, 1, 1}));
+  Scene scene;
+  for (int x = 0; x < 3; ++x) {
+    for (int y = 0; y < 3; ++y) {
+      for (int z = 0; z < 3; ++z) scene.add(cube, at(x, y, z));
+    }
+  }
+  // Each cube touches those beside it, along edges and corners too.
+  CHECK(scene.touching(*device).size() == 158);
+  CollisionRequest relation;
+  relation.relation = true;
+  for (const Scene::Pair& pair : scene.touching(*device, relation)) {
+    CHECK(pair.result.relation == Relation::touching);
+  }
+  Scene two;
+  const Id fixed = two.add(cube);
+  const Id moved = two.add(cube);
+  for (const double scale : {1.0, 3.0, 0.1, 1e-140, 1e140}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double sign : {-1.0, 1.0}) {
+        Pose pose = Pose::Identity();
+        pose.linear() *= scale;
+        two.set_pose(fixed, pose);
+        pose.translation()[axis] = sign * scale;
+        two.set_pose(moved, pose);
+        CAPTURE(scale, axis, sign);
+        CHECK(two.touching(*device).size() == 1);
+        pose.translation()[axis] = std::nextafter(sign * scale, sign * std::numeric_limits<double>::infinity());
+        two.set_pose(moved, pose);
+        CHECK(two.touching(*device).empty());
+      }
+    }
+  }
+}
+
+TEST_CASE("scene: the answer is in the order of ids with any number of threads", "[ref][scene]") {
+  std::mt19937_64 random(11);
+  const Object torus(make_torus(1, 0.4, 9, 7));
+  Scene scene;
+  for (int i = 0; i < 200; ++i) scene.add(torus, random_pose(cchip_test::PoseClass::rigid, 5, random));
+  const CollisionRequest all = {CollisionRequest::Contacts::all};
+  const auto one = open_cpu_device({1, {}});
+  const std::vector<Scene::Pair> expected = scene.touching(*one, all);
+  CHECK(expected.size() > 100);
+  CHECK(std::is_sorted(expected.begin(), expected.end(), [](const Scene::Pair& x, const Scene::Pair& y) {
+    return std::make_pair(x.a, x.b) < std::make_pair(y.a, y.b);
+  }));
+  for (const unsigned threads : {2U, 5U}) {
+    const auto many = open_cpu_device({threads, {}});
+    for (int i = 0; i < 3; ++i) {
+      const std::vector<Scene::Pair> found = scene.touching(*many, all);
+      REQUIRE(ids_of(found) == ids_of(expected));
+      for (std::size_t k = 0; k < found.size(); ++k) check_same(found[k].result, expected[k].result);
+    }
+  }
+}
+
+TEST_CASE("scene: filter, groups and ignored pairs", "[ref][scene]") {
+  const auto device = open_device("cpu");
+  const Object cube(box({1, 1, 1}));
+  Scene scene;
+  std::vector<Id> ids;
+  for (int i = 0; i < 4; ++i) ids.push_back(scene.add(cube, at(0.25 * i, 0.25 * i, 0.25 * i)));
+  REQUIRE(ids == std::vector<Id>{1, 2, 3, 4});
+  CHECK(ids_of(scene.touching(*device)) == Pairs{{1, 2}, {1, 3}, {1, 4}, {2, 3}, {2, 4}, {3, 4}});
+
+  scene.set_ignored(2, 1);
+  scene.set_ignored(3, 4);
+  CHECK(ids_of(scene.touching(*device)) == Pairs{{1, 3}, {1, 4}, {2, 3}, {2, 4}});
+  CHECK(ids_of(scene.touching(*device, 2)) == std::vector<Id>{3, 4});
+  scene.set_ignored(4, 3, false);
+  CHECK(ids_of(scene.touching(*device)) == Pairs{{1, 3}, {1, 4}, {2, 3}, {2, 4}, {3, 4}});
+
+  scene.set_filter([](Id a, Id b) {
+    CHECK(a < b);
+    return b != 4;
+  });
+  CHECK(ids_of(scene.touching(*device)) == Pairs{{1, 3}, {2, 3}});
+  CHECK(scene.candidates() == Pairs{{1, 3}, {2, 3}});
+  CHECK(scene.touching(*device, 4).empty());
+  scene.set_filter({});
+
+  // Both masks must agree.
+  scene.set_groups(1, {2, 2});
+  CHECK(scene.touching(*device, 1).empty());
+  scene.set_groups(3, {3, 2});
+  CHECK(ids_of(scene.touching(*device)) == Pairs{{1, 3}, {2, 4}});
+  scene.set_groups(3, {1, 3});
+  CHECK(ids_of(scene.touching(*device)) == Pairs{{2, 3}, {2, 4}, {3, 4}});
+  CHECK(scene.groups(3).mask == 3);
+
+  const Pose pose = at(0.1, 0.1, 0.1);
+  CHECK(ids_of(scene.touching(*device, cube, pose)) == std::vector<Id>{2, 3, 4});
+  CHECK(ids_of(scene.touching(*device, cube, pose, {}, {2, 2})) == std::vector<Id>{1});
+  CHECK(ids_of(scene.touching(*device, cube, pose, {}, {3, 3})) == std::vector<Id>{1, 2, 3, 4});
+}
+
+TEST_CASE("scene: the object asked about is A", "[ref][scene]") {
+  const auto device = open_device("cpu");
+  const Object torus(make_torus(1, 0.4, 9, 7));
+  const Object cube(box({1, 1, 1}));
+  const CollisionRequest all = {CollisionRequest::Contacts::all};
+  Scene scene;
+  const Id a = scene.add(torus);
+  const Id b = scene.add(cube);
+  check_same(scene.touching(*device, all).at(0).result,
+             collide(*device, torus, Pose::Identity(), cube, Pose::Identity(), all));
+  for (const Scene::Hit& hit : {scene.touching(*device, b, all).at(0), *scene.find_touching(*device, b, all)}) {
+    CHECK(hit.id == a);
+    check_same(hit.result, collide(*device, cube, Pose::Identity(), torus, Pose::Identity(), all));
+  }
+  const auto hits = scene.touching(*device, cube, Pose::Identity(), all);
+  CHECK(ids_of(hits) == std::vector<Id>{a, b});
+  check_same(hits[0].result, collide(*device, cube, Pose::Identity(), torus, Pose::Identity(), all));
+  CHECK(scene.find_touching(*device, cube, at(9, 9, 9)) == std::nullopt);
+}
+
+TEST_CASE("scene: ids are never used again", "[ref][scene]") {
+  const auto device = open_device("cpu");
+  Scene scene;
+  const Object cube(box({1, 1, 1}));
+  const Id a = scene.add(cube);
+  const Id b = scene.add(cube, at(0.5, 0, 0));
+  const Id c = scene.add(cube, at(1, 0, 0));
+  scene.set_ignored(b, c);
+  scene.remove(b);
+  CHECK(scene.size() == 2);
+  CHECK_FALSE(scene.contains(b));
+  CHECK(ids_of(scene.touching(*device)) == Pairs{{a, c}});
+  const Id d = scene.add(cube, at(0.5, 0, 0));
+  CHECK(d > c);
+  CHECK(scene.ids() == std::vector<Id>{a, c, d});
+  CHECK(ids_of(scene.touching(*device)) == Pairs{{a, c}, {a, d}, {c, d}});
+  const Scene copy = scene;
+  scene.remove(a);
+  scene.remove(c);
+  scene.remove(d);
+  CHECK(scene.size() == 0);
+  CHECK(scene.touching(*device).empty());
+  CHECK(copy.touching(*device).size() == 3);
+  CHECK(scene.add(cube) > d);
+}
+
+TEST_CASE("scene: stops when it is told to", "[ref][scene]") {
+  const auto device = open_cpu_device({3, {}});
+  const Object cube(box({1, 1, 1}));
+  Scene scene;
+  for (int i = 0; i < 60; ++i) scene.add(cube, at(0.01 * i, 0.01 * i, 0.01 * i));
+  for (const std::size_t most : {std::size_t{1}, std::size_t{5}}) {
+    std::size_t taken = 0;
+    scene.for_each_touching(*device, [&](const Scene::Pair& pair) {
+      CHECK(pair.a < pair.b);
+      return ++taken < most;
+    });
+    CHECK(taken == most);
+    taken = 0;
+    scene.for_each_touching(*device, 7, [&](const Scene::Hit&) { return ++taken < most; });
+    CHECK(taken == most);
+    taken = 0;
+    scene.for_each_touching(*device, cube, Pose::Identity(), [&](const Scene::Hit&) { return ++taken < most; });
+    CHECK(taken == most);
+  }
+  struct Mine {};
+  CHECK_THROWS_AS(scene.for_each_touching(*device, [](const Scene::Pair&) -> bool { throw Mine(); }), Mine);
+  scene.set_filter([](Id, Id) -> bool { throw Mine(); });
+  CHECK_THROWS_AS(scene.touching(*device), Mine);
+  scene.set_filter({});
+  CHECK(scene.touching(*device).size() == 60 * 59 / 2);
+}
+
+TEST_CASE("scene: what makes no sense is refused in one line, and changes nothing", "[ref][scene]") {
+  const auto device = open_device("cpu");
+  Object cube(box({1, 1, 1}));
+  Scene scene;
+  const Id a = scene.add(cube);
+  const Id b = scene.add(cube, at(0.5, 0, 0));
+  const auto refuses = [&](const std::string& message, const auto& action) {
+    CHECK_THROWS_MATCHES(action(), std::invalid_argument, Catch::Message(message));
+    CHECK(scene.ids() == std::vector<Id>{a, b});
+    CHECK(ids_of(scene.touching(*device)) == Pairs{{a, b}});
+  };
+  const Pose pose = at(0.5, 0, 0);
+  const std::string unknown = "scene: no object has the id 3: add() has not returned it";
+  refuses(unknown, [&] { scene.remove(3); });
+  refuses(unknown, [&] { scene.set_pose(3, pose); });
+  refuses(unknown, [&] { scene.set_groups(3, {}); });
+  refuses(unknown, [&] { scene.set_ignored(1, 3); });
+  refuses(unknown, [&] { scene.object(3); });
+  refuses(unknown, [&] { scene.pose(3); });
+  refuses(unknown, [&] { scene.touching(*device, 3); });
+  refuses("scene: no object has the id 0: add() has not returned it", [&] { scene.remove(0); });
+  refuses("scene: object 2 is never tested against itself; give the ids of two objects",
+          [&] { scene.set_ignored(2, 2); });
+  Pose bad = pose;
+  bad(1, 3) = std::numeric_limits<double>::quiet_NaN();
+  const std::string where = "row 1, column 3 is not finite or beyond 2^500; check it or scale it";
+  refuses("pose of object 2: " + where, [&] { scene.set_pose(b, bad); });
+  refuses("pose of the object: " + where, [&] { scene.add(cube, bad); });
+  refuses("pose of the object: " + where, [&] { scene.touching(*device, cube, bad); });
+  refuses("most_contacts is 0: ask for at least one contact", [&] {
+    scene.touching(*device, {CollisionRequest::Contacts::all, 0});
+  });
+  const Object moved = std::move(cube);
+  const std::string gone = "scene: the object was moved from; use the one that it was moved to";
+  refuses(gone, [&] { scene.add(cube); });                      // NOLINT: that is the test
+  refuses(gone, [&] { scene.touching(*device, cube, pose); });  // NOLINT
+  CHECK(scene.add(moved) == 3);
+  scene.remove(3);
+  refuses("scene: no object has the id 3: it was removed", [&] { scene.remove(3); });
+
+  // A device in use says so; the scene is as it was.
+  scene.for_each_touching(*device, [&](const Scene::Pair&) {
+    CHECK_THROWS_AS(scene.touching(*device), std::logic_error);
+    return true;
+  });
+}
