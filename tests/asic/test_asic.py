@@ -132,6 +132,7 @@ class Reading(unittest.TestCase):
         self.assertEqual(names, {r"$paramod\cchip_mul18\SIGNED=s32'0": "cchip_mul18__0"})
         self.assertNotIn("$paramod", text)
         self.assertEqual(asic.bits("10'h2a1", {}), [f"1'b{bit}" for bit in "1010100001"])
+        self.assertEqual(asic.bits("4'd5", {}), ["1'b0", "1'b1", "1'b0", "1'b1"])
         self.assertEqual(asic.bits("3'b1x0", {}), ["1'b1", "1'b0", "1'b0"])
 
     def test_totals_go_down_into_modules(self):
