@@ -134,11 +134,12 @@ class Library:
 
     def smallest(self, inputs, values, pattern=""):
         """Cell with this function and the least area, one whose name has the pattern if there is one."""
-        fitting = [(not re.search(pattern, name), cell.area, name) for name, cell in self.cells.items()
+        # of cells alike, the plain one has the shortest name: inv_1, not clkinv_1
+        fitting = [(not re.search(pattern, name), cell.area, len(name), name) for name, cell in self.cells.items()
                    if len(cell.inputs) == inputs and cell.function and truth(cell.function, list(cell.inputs)) == values]
         if not fitting:
             raise fpga.ToolError(f"library {self.name}: no cell with {inputs} inputs and function {values}")
-        return min(fitting)[2]
+        return min(fitting)[-1]
 
     def only(self, names):
         """The file with these cells alone, which OpenSTA reads in a fraction of the time."""
@@ -309,7 +310,7 @@ def modules(text):
 
 
 def instances(text):
-    kinds = re.findall(r"^  (\w+) (?:\\\S+|\w+) +\($", text, re.M)
+    kinds = re.findall(r"^  (\w+) +(?:\\\S+|\w+) +\($", text, re.M)
     return collections.Counter(kind for kind in kinds if kind not in ("assign", "input", "output", "wire", "module"))
 
 

@@ -59,7 +59,7 @@ NETLIST = r"""module top(clk, a, y);
   \$paramod\cchip_mul18\SIGNED=s32'0 u_m (
     .clk(clk)
   );
-  \$paramod\cchip_mul18\SIGNED=s32'0 u_n (
+  \$paramod\cchip_mul18\SIGNED=s32'0  \u_n.u  (
     .clk(clk)
   );
   assign { y[1], \u_x.v[0] [1] } = { 1'h0, a[3] };
