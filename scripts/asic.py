@@ -8,7 +8,7 @@ usage: asic.py [ROW]... [options]     without ROW all rows; `asic.py --list` nam
                     `make campaign-build`); without it there are no pairs per second and no energy of a pair
   --pairs N         pairs of each class for the mean beats (default 20000)
   --write           rewrite the rows of this run in the tables of this library in docs/asic.md; other rows stay if they were
-                    measured on the same rtl/
+                    measured on the same rtl/. docs/figures/asic.csv has the critical paths with their instances
   --list            print the rows
 
 Tools: Debian's Yosys 0.23 with its ABC, OpenSTA. Synthesis only: ideal clock, no wires, no clock tree, no scan, no clock
@@ -20,6 +20,7 @@ fo4=X mhz=X [mw=X/X] [mpairs=X pj=X/X]`. The row chip prints a line for each of 
 Exit codes: 0 done, 1 a tool failed, 2 bad arguments."""
 import argparse
 import collections
+import csv
 import dataclasses
 import functools
 import gzip
@@ -39,6 +40,7 @@ import progress
 ROOT = fpga.ROOT
 BUILD = ROOT / "build" / "asic"
 PAGE = ROOT / "docs" / "asic.md"
+CSV = ROOT / "docs" / "figures" / "asic.csv"
 LIBERTY = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib"
 LEAF = "cchip_mul18"
 # memories of fewer bits become flip-flops
@@ -56,14 +58,19 @@ class Row:
     shape: str = ""  # of a primitive test, as cchip_campaign names it
     blocks: tuple = ()  # modules that are not flattened and have a line of their own
     boxes: bool = True  # memories are boxes, or else flip-flops
+    files: str = "cchip.f"
+    macros: tuple = ()
 
 
 def rows():
     tests = [Row(name, f"cchip_primtest_{name}", name.replace("_", "-")) for name in ("tri_tri", "tri_quad", "quad_quad")]
     blocks = ("bv_unit", "cache", "traversal", "get_data", "transform", "leaf_feed", "axi_read", "axi_write", "calc_result",
               "query_ring", "record_ring", "descriptor_queues", "dispatcher", "primtest", "chip_regs")
+    leaf3 = {"files": "cchip_asic.f", "macros": ("-DCCHIP_MUL18_LATENCY=3",)}
     return {row.name: row for row in (
-        Row("mul18", LEAF), *tests, Row("tri_tri_registers", "cchip_primtest_tri_tri", "tri-tri", boxes=False),
+        Row("mul18", LEAF), Row("mul18_leaf3", LEAF, **leaf3), *tests,
+        Row("tri_tri_leaf3", "cchip_primtest_tri_tri", "tri-tri", **leaf3),
+        Row("tri_tri_registers", "cchip_primtest_tri_tri", "tri-tri", boxes=False),
         Row("chip", "cchip_chip", blocks=tuple(f"cchip_{block}" for block in blocks)))}
 
 
@@ -127,11 +134,12 @@ class Library:
 
     def smallest(self, inputs, values, pattern=""):
         """Cell with this function and the least area, one whose name has the pattern if there is one."""
-        fitting = [(not re.search(pattern, name), cell.area, name) for name, cell in self.cells.items()
+        # of cells alike, the plain one has the shortest name: inv_1, not clkinv_1
+        fitting = [(not re.search(pattern, name), cell.area, len(name), name) for name, cell in self.cells.items()
                    if len(cell.inputs) == inputs and cell.function and truth(cell.function, list(cell.inputs)) == values]
         if not fitting:
             raise fpga.ToolError(f"library {self.name}: no cell with {inputs} inputs and function {values}")
-        return min(fitting)[2]
+        return min(fitting)[-1]
 
     def only(self, names):
         """The file with these cells alone, which OpenSTA reads in a fraction of the time."""
@@ -197,10 +205,10 @@ def is_sram(memory):
 
 def generic(row):
     """(folder with generic.il, the boxes): synthesis that does not depend on the library."""
-    text = fpga.needed(row.top, "cchip.f")
+    text = fpga.needed(row.top, row.files)
     keep = [f"*{LEAF}*"] if row.top != LEAF else []
     keep += [f"*{block}{rest}" for block in row.blocks for rest in ("", "?[A-Z]*")]
-    script = fpga.read_verilog(text) + f"hierarchy -check -top {row.top}\nrename -top {row.top}\n" + (
+    script = fpga.read_verilog(text, *row.macros) + f"hierarchy -check -top {row.top}\nrename -top {row.top}\n" + (
         "setattr -mod -unset keep_hierarchy *\n" + "".join(f"setattr -mod -set keep_hierarchy 1 {k}\n" for k in keep) +
         f"synth -top {row.top} -flatten -run begin:fine\nwrite_json {{}}/coarse.json\nwrite_ilang {{}}/coarse.il\n")
     coarse = run(f"{row.name}.coarse", "yosys", {"run.ys": script}, text, "coarse.il")
@@ -260,6 +268,8 @@ def bits(expression, wide):
     if found := re.fullmatch(r"(\d+)'h([0-9a-fx]+)", expression):
         value = int(found[2].replace("x", "0"), 16)
         return [f"1'b{value >> i & 1}" for i in range(int(found[1]) - 1, -1, -1)]
+    if found := re.fullmatch(r"(\d+)'d(\d+)", expression):
+        return [f"1'b{int(found[2]) >> i & 1}" for i in range(int(found[1]) - 1, -1, -1)]
     if found := re.fullmatch(r"(\d+)'b([01xz]+)", expression):
         return [f"1'b{int(c == '1')}" for c in found[2].rjust(int(found[1]), "0")]
     if expression in wide:
@@ -300,7 +310,7 @@ def modules(text):
 
 
 def instances(text):
-    kinds = re.findall(r"^  (\w+) (?:\\\S+|\w+) +\($", text, re.M)
+    kinds = re.findall(r"^  (\w+) +(?:\\\S+|\w+) +\($", text, re.M)
     return collections.Counter(kind for kind in kinds if kind not in ("assign", "input", "output", "wire", "module"))
 
 
@@ -487,7 +497,9 @@ def several(figures):
 
 
 def critical(r):
-    return f"`{r['start']}` -> `{r['end']}`: {r['cells']} cells"
+    """The registers of the path; their instances are in the CSV file."""
+    short = lambda name: name.split(".")[-1]
+    return f"`{short(r['start'])}` -> `{short(r['end'])}`: {r['cells']} cells"
 
 
 def tests_table(found):
@@ -547,6 +559,23 @@ def with_others(block, head, made):
     return "\n".join([head, "", *title, *sorted(others + lines, key=lambda line: order.index(row(line)))]) + "\n"
 
 
+def write_csv(name, found):
+    """All figures of all libraries with the critical paths by their instances; rows of this run replace older ones."""
+    columns = ["library", "row", "rtl", "leaves", "ff", "small_bits", "sram_bits", "um2", "nand2", "ns", "fo4", "fo4_ps", "mhz", "start", "end",
+               "cells"]
+    kept = {}
+    if CSV.exists():
+        with open(CSV, newline="") as file:
+            kept = {(line["library"], line["row"]): line for line in csv.DictReader(file)}
+    for row, r in found.items():
+        kept[name, row] = {"rtl": tree().split("`")[1], **r, "library": name, "row": row}
+    order = list(rows())
+    with open(CSV, "w", newline="") as file:
+        lines = csv.DictWriter(file, columns, extrasaction="ignore", lineterminator="\n")
+        lines.writeheader()
+        lines.writerows(line for _, line in sorted(kept.items(), key=lambda one: (one[0][0], order.index(one[0][1].split(".")[0]))))
+
+
 def write(name, found):
     """Rewrites the tables of the library; rows of the page that are not in found stay if the RTL is the same."""
     head = f"RTL: {tree()}. FO4: {next(iter(found.values()))['fo4_ps']} ps."
@@ -582,6 +611,7 @@ def main():
     save(name, found)
     if options.write and not failures:
         write(name, found)
+        write_csv(name, found)
     for failure in failures:
         print(f"asic.py: {failure}", file=sys.stderr)
     for line, figures in found.items():

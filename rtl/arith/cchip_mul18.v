@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_defs.vh"
 // cchip_mul18: 18x18 multiplier leaf, one multiplier block. p = a * b.
 //   latency      2 clocks (input register, output register)
 //   throughput   one product per clock, never stalls
@@ -7,6 +8,7 @@
 //                unsigned
 //   reset        none (data only): the registers can move into the block
 // Every multiplication of the chip goes through this module; a device-specific twin may replace it.
+// A twin of another latency says so by the macro CCHIP_MUL18_LATENCY.
 module cchip_mul18 #(
     // 1: a, b and p are signed; 0: they are not
     parameter integer SIGNED = 1
@@ -20,6 +22,9 @@ module cchip_mul18 #(
   generate
     if (SIGNED != 0 && SIGNED != 1) begin : gen_illegal
       cchip_error_mul18_SIGNED_must_be_0_or_1 u_error ();
+    end
+    if (`CCHIP_MUL18_LATENCY != 2) begin : gen_illegal_latency
+      cchip_error_mul18_needs_CCHIP_MUL18_LATENCY_2 u_error ();
     end
   endgenerate
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_defs.vh"
 // cchip_bv_lane_a: planes of one child of a node of A in the directions of B.
 //   rule         a plane of m = M^T d is that of the box, m centre +- |m| half, less (b - c) times
 //                a face cut less c times a corner cut, m = (a - b) axis + (b - c) face + c corner
@@ -27,6 +28,13 @@ module cchip_bv_lane_a (
     // clock 9
     output wire [331:0] planes           // of 3 axes, then of 10 diagonals: {lower, upper}
 );
+
+  // The clocks below are counted for a leaf of two.
+  generate
+    if (`CCHIP_MUL18_LATENCY != 2) begin : gen_illegal_latency
+      cchip_error_bv_lane_a_needs_CCHIP_MUL18_LATENCY_2 u_error ();
+    end
+  endgenerate
 
   // ---- clock 0: sum and difference of opposite corners are centre and half size in half steps
   wire [41:0] box = child[41:0];

@@ -48,7 +48,9 @@
 // unsigned limb of a wide factor on an 18x18 multiplier block [bit]
 `define CCHIP_LIMB_W 17
 // input and output register of cchip_mul18 [clock]
+`ifndef CCHIP_MUL18_LATENCY
 `define CCHIP_MUL18_LATENCY 2
+`endif
 // width of a programme code [bit]
 `define CCHIP_PROG_W 3
 // width of a swap's phase [bit]

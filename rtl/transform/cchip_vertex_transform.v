@@ -59,6 +59,10 @@ module cchip_vertex_transform #(
     if (PASSES < 1 || PASSES > 2) begin : gen_illegal
       cchip_error_PASSES_must_be_1_or_2 u_error ();
     end
+    // the clocks below are counted for a leaf of two
+    if (`CCHIP_MUL18_LATENCY != 2) begin : gen_illegal_latency
+      cchip_error_vertex_transform_needs_CCHIP_MUL18_LATENCY_2 u_error ();
+    end
   endgenerate
 
   // ---- which vertex: origin of A's leaf, then pair by pair

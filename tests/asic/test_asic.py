@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/asic.py: reading of libraries, netlists and reports; the multiplier leaf through the whole flow.
+"""scripts/asic.py: reading of libraries, netlists and reports; the multiplier leaf through the whole flow; the leaf of
+rtl/cchip_asic.f beside the portable one.
 
 Leaf needs yosys, sta and the default library, else it ends with exit code 77 and says what is missing.
-Environment: IVERILOG."""
+Environment: IVERILOG, YOSYS, VERILATOR, CCHIP_SEED."""
 import collections
 import json
 import os
@@ -11,7 +12,9 @@ import pathlib
 import re
 import shutil
 import sys
+import tempfile
 import unittest
+import unittest.mock
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -56,7 +59,7 @@ NETLIST = r"""module top(clk, a, y);
   \$paramod\cchip_mul18\SIGNED=s32'0 u_m (
     .clk(clk)
   );
-  \$paramod\cchip_mul18\SIGNED=s32'0 u_n (
+  \$paramod\cchip_mul18\SIGNED=s32'0  \u_n.u  (
     .clk(clk)
   );
   assign { y[1], \u_x.v[0] [1] } = { 1'h0, a[3] };
@@ -129,6 +132,7 @@ class Reading(unittest.TestCase):
         self.assertEqual(names, {r"$paramod\cchip_mul18\SIGNED=s32'0": "cchip_mul18__0"})
         self.assertNotIn("$paramod", text)
         self.assertEqual(asic.bits("10'h2a1", {}), [f"1'b{bit}" for bit in "1010100001"])
+        self.assertEqual(asic.bits("4'd5", {}), ["1'b0", "1'b1", "1'b0", "1'b1"])
         self.assertEqual(asic.bits("3'b1x0", {}), ["1'b1", "1'b0", "1'b0"])
 
     def test_totals_go_down_into_modules(self):
@@ -244,6 +248,68 @@ class Leaf(unittest.TestCase):
         self.assertEqual(run(tool("iverilog"), "-g2005", "-s", "bench", "-o", folder / "bench.vvp", folder / "bench.v",
                              folder / "netlist.v", models)[0], 0)
         self.assertIn("wrong 0 of 2000", run("vvp", "-n", folder / "bench.vvp")[1])
+
+
+class Products(unittest.TestCase):
+    """The leaf for standard cells against the portable one: the same bench, the same products."""
+
+    LEAVES = {"portable": ["arith/cchip_mul18.v"], "asic": ["vendor/asic/cchip_mul18.v"]}
+    CASES = {("portable", 2): 20000, ("asic", 3): 20000, ("asic", 2): 20000, ("asic", 4): 20000}  # random products
+
+    def elaborate(self, leaf, latency, signed, output):
+        return run(tool("iverilog"), "-g2005", "-Wall", "-I", ROOT / "rtl/include", f"-DCCHIP_MUL18_LATENCY={latency}",
+                   f"-DBENCH_SIGNED={signed}", "-s", "bench_mul18", "-o", output, ROOT / "tests/asic/bench_mul18.v",
+                   *(ROOT / "rtl" / name for name in self.LEAVES[leaf]))
+
+    def test_both_leaves_multiply_alike(self):
+        seed = int(os.environ.get("CCHIP_SEED", "1"))
+        print(f"CCHIP_SEED={seed}")
+        with tempfile.TemporaryDirectory() as folder:
+            for signed in (1, 0):
+                for (leaf, latency), products in self.CASES.items():
+                    with self.subTest(leaf=leaf, latency=latency, signed=signed):
+                        program = pathlib.Path(folder) / "bench.vvp"
+                        self.assertEqual(self.elaborate(leaf, latency, signed, program), (0, ""))
+                        code, text = run("vvp", "-n", program, f"+products={products}", f"+seed={seed}")
+                        self.assertEqual((code, text), (0, f"PASS products={products + 12 * 12 - latency} latency={latency}\n"))
+
+    def test_bench_sees_another_latency_and_another_sign(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(folder) / "bench.vvp"
+            text = (ROOT / "rtl/vendor/asic/cchip_mul18.v").read_text()
+            for right, wrong in (("STAGES >= 3", "STAGES >= 4"), ("i == 0 || i == 17", "i == 17"), ("18'h1ffff :", "18'h3ffff :")):
+                with self.subTest(wrong=wrong):
+                    changed = pathlib.Path(folder) / "cchip_mul18.v"
+                    changed.write_text(text.replace(right, wrong))
+                    self.assertNotEqual(changed.read_text(), text)
+                    with unittest.mock.patch.dict(self.LEAVES, asic=[changed]):
+                        self.assertEqual(self.elaborate("asic", 3, 1, program), (0, ""))
+                    self.assertIn("FAIL", run("vvp", "-n", program)[1])
+
+    def test_other_latencies_and_signs_are_refused(self):
+        for latency, signed, name in ((1, 1, "for_standard_cells_has_CCHIP_MUL18_LATENCY_2_to_4"), (3, 2, "SIGNED_must_be_0_or_1"),
+                                      (5, 1, "for_standard_cells_has_CCHIP_MUL18_LATENCY_2_to_4")):
+            with self.subTest(latency=latency, signed=signed):
+                code, text = self.elaborate("asic", latency, signed, os.devnull)
+                self.assertNotEqual(code, 0)
+                self.assertIn(f"cchip_error_mul18_{name}", text)
+
+    def test_file_list_is_the_portable_one_but_for_the_leaf(self):
+        listed = lambda name: (ROOT / "rtl" / name).read_text().replace("\n".join(self.LEAVES["asic"]), self.LEAVES["portable"][0])
+        self.assertEqual(listed("cchip_asic.f"), listed("cchip.f"), "update rtl/cchip_asic.f: rtl/cchip.f changed")
+
+    def test_tools_accept_the_leaf(self):
+        files = [ROOT / "rtl" / name for name in self.LEAVES["asic"]]
+        for latency in (2, 3, 4):
+            macro = f"-DCCHIP_MUL18_LATENCY={latency}"
+            for signed in (0, 1):
+                with self.subTest(latency=latency, signed=signed):
+                    self.assertEqual(run(tool("verilator"), "--lint-only", "-Wall", f"-I{ROOT}/rtl/include", macro,
+                                         ROOT / "rtl/lint/verilator_waiver.vlt", f"-GSIGNED={signed}", "--top-module",
+                                         "cchip_mul18", *files), (0, ""))
+                    self.assertEqual(run(tool("yosys"), "-q", "-p", f"read_verilog -DSYNTHESIS {macro} -I{ROOT}/rtl/include "
+                                         f"{' '.join(map(str, files))}; hierarchy -check -top cchip_mul18 -chparam SIGNED {signed}; "
+                                         "proc; check -assert; select -assert-none t:$dlatch"), (0, ""))
 
 
 if __name__ == "__main__":

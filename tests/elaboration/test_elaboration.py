@@ -215,6 +215,11 @@ ILLEGAL = [
     ("cchip_config_port", {"CFG_DIVIDER": 0}, PORT),
 ]
 
+# Modules that take a multiplier leaf of two clocks only. It is a macro of the command line, not a parameter.
+LEAF_LATENCY = "CCHIP_MUL18_LATENCY"
+ILLEGAL += [(f"cchip_{module}", {LEAF_LATENCY: n}, f"cchip_error_{module}_needs_{LEAF_LATENCY}_2")
+            for module in ("mul18", "bv_offset", "bv_lane_a", "vertex_transform") for n in (1, 3)]
+
 # module, parameters
 LEGAL = [
     *((TOP, {"COORD_W": w, "SUBSTAGES": smallest_substages(w), "ABSOLUTE_PROJECTION": absolute})
@@ -298,6 +303,15 @@ def files_of(module):
     return found
 
 
+def macros_of(parameters):
+    """Macros of the command line; the other parameters are those of the module."""
+    return [f"-D{name}={value}" for name, value in parameters.items() if name == LEAF_LATENCY]
+
+
+def own(parameters):
+    return {name: value for name, value in parameters.items() if name != LEAF_LATENCY}
+
+
 class Cases:
     legal = LEGAL
 
@@ -322,7 +336,7 @@ class Cases:
 
 class Verilator(Cases, unittest.TestCase):
     def elaborate(self, module, parameters):
-        values = (f"-G{name}={value}" for name, value in parameters.items())
+        values = [f"-G{name}={value}" for name, value in own(parameters).items()] + macros_of(parameters)
         return run(tool("verilator"), "--lint-only", "-Wall", f"-I{RTL}/include",
                    f"{RTL}/lint/verilator_waiver.vlt", *values, "--top-module", module, *files_of(module))
 
@@ -335,15 +349,17 @@ class Verilator(Cases, unittest.TestCase):
 class Icarus(Cases, unittest.TestCase):
     def elaborate(self, module, parameters):
         return run(tool("iverilog"), "-g2005", "-Wall", "-t", "null", "-I", f"{RTL}/include", "-s", module,
-                   *(f"-P{module}.{name}={value}" for name, value in parameters.items()), *files_of(module))
+                   *(f"-P{module}.{name}={value}" for name, value in own(parameters).items()), *macros_of(parameters),
+                   *files_of(module))
 
 
 class Yosys(Cases, unittest.TestCase):
     legal = LEGAL_FEW
 
     def elaborate(self, module, parameters):
-        values = "".join(f" -chparam {name} 32'h{value & 0xffffffff:08x}" for name, value in parameters.items())
-        return run(tool("yosys"), "-q", "-p", f"read_verilog -DSYNTHESIS -I{RTL}/include {' '.join(files_of(module))}; "
+        values = "".join(f" -chparam {name} 32'h{value & 0xffffffff:08x}" for name, value in own(parameters).items())
+        return run(tool("yosys"), "-q", "-p", f"read_verilog -DSYNTHESIS {' '.join(macros_of(parameters))} -I{RTL}/include "
+                   f"{' '.join(files_of(module))}; "
                    f"hierarchy -check -top {module}{values}; proc; check -assert")
 
 
