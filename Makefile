@@ -98,7 +98,7 @@ sim-chip: $(RELEASE)/build.ninja ## run queries of two meshes through the whole 
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_chip_run
 	$(RELEASE)/bin/cchip_chip_run --wave build/waves/sim-chip.fst $(SIM_ARGS)
 
-sim-levels: $(RELEASE)/build.ninja ## run 10^5 pairs through every SystemC refinement level with 51 swaps, compare all answers (docs/levels.md)
+sim-levels: $(RELEASE)/build.ninja ## run 10^5 pairs through every SystemC refinement level with 51 swaps, compare all answers (docs/paper/levels.md)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_levels
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_levels $(SIM_ARGS)
 
@@ -215,7 +215,7 @@ table1: $(RELEASE)/build.ninja ## Table 1 of the paper from a timed simulation, 
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_table1
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(TABLE1)
 
-table1-plot: table1 venv ## the same into docs/table1.md with its curves as CSV and SVG
+table1-plot: table1 venv ## the same into docs/paper/table1.md with its curves as CSV and SVG
 	scripts/plot_table1.py --program $(TABLE1)
 
 bench-reconfig: $(RELEASE)/build.ninja ## cost of cchip::rc: portals against direct binding, exchanges per second
@@ -223,7 +223,7 @@ bench-reconfig: $(RELEASE)/build.ninja ## cost of cchip::rc: portals against dir
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_rc_bench
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_rtl_bench
 
-# an FCL that was built for this computer (docs/speed.md), as in: make bench-collide NATIVE_FCL=/opt/fcl BENCH_ARGS=--quick;
+# an FCL that was built for this computer (docs/cpp/speed.md), as in: make bench-collide NATIVE_FCL=/opt/fcl BENCH_ARGS=--quick;
 # Coal takes part after make peers, ODE after scripts/bootstrap --dev
 NATIVE_FCL ?=
 BENCH_ARGS ?=
@@ -242,20 +242,20 @@ bench-scene: $(RELEASE)/build.ninja ## frames of scenes of 10 to 10,000 moving o
 	cmake --build $(RELEASE) -j $(JOBS) --target scene_speed
 	$(RELEASE)/bin/scene_speed $(BENCH_ARGS)
 
-# clock of the chip, MHz: row chip in docs/fpga.md
+# clock of the chip, MHz: row chip in docs/hardware/fpga.md
 CHIP_MHZ ?= 50
 bench-chip: $(RELEASE)/build.ninja ## queries per second of the simulated chip at CHIP_MHZ, of collide(), FCL, Coal, CGAL and ODE in the same poses (half an hour); build/bench/chip.csv
 	$(if $(NATIVE_FCL),cmake -D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))' $(RELEASE))
 	cmake --build $(RELEASE) -j $(JOBS) --target chip_speed
 	$(RELEASE)/bin/chip_speed --chip-mhz $(CHIP_MHZ) $(BENCH_ARGS)
 
-fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEEDS places and routes each (hours), into docs/fpga.md
+fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEEDS places and routes each (hours), into docs/hardware/fpga.md
 	scripts/fpga.py --seeds $(SEEDS) --jobs $(JOBS) --campaign $(CAMPAIGN) --write
 
 fpga-quick: bootstrap venv ## area and clock of the triangle test, one place and route
 	scripts/fpga.py tri_tri --seeds 1 --jobs $(JOBS) --campaign $(CAMPAIGN)
 
-asic: campaign-build ## area, clock and power of primitive tests, blocks and chip in standard cells, by synthesis (LIBERTY=another library), into docs/asic.md
+asic: campaign-build ## area, clock and power of primitive tests, blocks and chip in standard cells, by synthesis (LIBERTY=another library), into docs/hardware/asic.md
 	scripts/asic.py $(if $(LIBERTY),--liberty '$(LIBERTY)') --campaign $(CAMPAIGN) --write
 
 asic-quick: campaign-build ## the same of the triangle test alone
