@@ -37,7 +37,7 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
+.PHONY: help bootstrap venv docs peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb export fpga \
   fpga-quick asic asic-quick install clean
@@ -54,6 +54,15 @@ venv: build/venv/requirements.txt ## install the tools from PyPI that make lint 
 build/venv/requirements.txt: scripts/requirements.txt
 	python3 -m venv build/venv || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
 	build/venv/bin/pip install --quiet --disable-pip-version-check --requirement $<
+	cp $< $@
+
+docs: build/docs-venv/docs_requirements.txt ## these pages as a site with search, in build/site; a link that leads nowhere is an error
+	build/docs-venv/bin/mkdocs build --quiet --strict
+	@echo 'open build/site/index.html; for the search: python3 -m http.server, then http://localhost:8000/build/site/'
+
+build/docs-venv/docs_requirements.txt: scripts/docs_requirements.txt
+	python3 -m venv build/docs-venv || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	build/docs-venv/bin/pip install --quiet --disable-pip-version-check --requirement $<
 	cp $< $@
 
 peers: build/peers/requirements.txt ## install Coal from PyPI below build/peers, for make bench-collide
@@ -89,7 +98,7 @@ sim-chip: $(RELEASE)/build.ninja ## run queries of two meshes through the whole 
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_chip_run
 	$(RELEASE)/bin/cchip_chip_run --wave build/waves/sim-chip.fst $(SIM_ARGS)
 
-sim-levels: $(RELEASE)/build.ninja ## run 10^5 pairs through every SystemC refinement level with 51 swaps, compare all answers (docs/levels.md)
+sim-levels: $(RELEASE)/build.ninja ## run 10^5 pairs through every SystemC refinement level with 51 swaps, compare all answers (docs/paper/levels.md)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_levels
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_levels $(SIM_ARGS)
 
@@ -206,7 +215,7 @@ table1: $(RELEASE)/build.ninja ## Table 1 of the paper from a timed simulation, 
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_table1
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(TABLE1)
 
-table1-plot: table1 venv ## the same into docs/table1.md with its curves as CSV and SVG
+table1-plot: table1 venv ## the same into docs/paper/table1.md with its curves as CSV and SVG
 	scripts/plot_table1.py --program $(TABLE1)
 
 bench-reconfig: $(RELEASE)/build.ninja ## cost of cchip::rc: portals against direct binding, exchanges per second
@@ -214,7 +223,7 @@ bench-reconfig: $(RELEASE)/build.ninja ## cost of cchip::rc: portals against dir
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_rc_bench
 	SYSTEMC_DISABLE_COPYRIGHT_MESSAGE=1 $(RELEASE)/bin/cchip_rtl_bench
 
-# an FCL that was built for this computer (docs/speed.md), as in: make bench-collide NATIVE_FCL=/opt/fcl BENCH_ARGS=--quick;
+# an FCL that was built for this computer (docs/cpp/speed.md), as in: make bench-collide NATIVE_FCL=/opt/fcl BENCH_ARGS=--quick;
 # Coal takes part after make peers, ODE after scripts/bootstrap --dev
 NATIVE_FCL ?=
 BENCH_ARGS ?=
@@ -233,20 +242,20 @@ bench-scene: $(RELEASE)/build.ninja ## frames of scenes of 10 to 10,000 moving o
 	cmake --build $(RELEASE) -j $(JOBS) --target scene_speed
 	$(RELEASE)/bin/scene_speed $(BENCH_ARGS)
 
-# clock of the chip, MHz: row chip in docs/fpga.md
+# clock of the chip, MHz: row chip in docs/hardware/fpga.md
 CHIP_MHZ ?= 50
 bench-chip: $(RELEASE)/build.ninja ## queries per second of the simulated chip at CHIP_MHZ, of collide(), FCL, Coal, CGAL and ODE in the same poses (half an hour); build/bench/chip.csv
 	$(if $(NATIVE_FCL),cmake -D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))' $(RELEASE))
 	cmake --build $(RELEASE) -j $(JOBS) --target chip_speed
 	$(RELEASE)/bin/chip_speed --chip-mhz $(CHIP_MHZ) $(BENCH_ARGS)
 
-fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEEDS places and routes each (hours), into docs/fpga.md
+fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEEDS places and routes each (hours), into docs/hardware/fpga.md
 	scripts/fpga.py --seeds $(SEEDS) --jobs $(JOBS) --campaign $(CAMPAIGN) --write
 
 fpga-quick: bootstrap venv ## area and clock of the triangle test, one place and route
 	scripts/fpga.py tri_tri --seeds 1 --jobs $(JOBS) --campaign $(CAMPAIGN)
 
-asic: campaign-build ## area, clock and power of primitive tests, blocks and chip in standard cells, by synthesis (LIBERTY=another library), into docs/asic.md
+asic: campaign-build ## area, clock and power of primitive tests, blocks and chip in standard cells, by synthesis (LIBERTY=another library), into docs/hardware/asic.md
 	scripts/asic.py $(if $(LIBERTY),--liberty '$(LIBERTY)') --campaign $(CAMPAIGN) --write
 
 asic-quick: campaign-build ## the same of the triangle test alone

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same queries through FCL and through this library, side by side: docs/from_fcl.md.
+// The same queries through FCL and through this library, side by side: docs/cpp/from_fcl.md.
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/* A polling driver of cchip_chip in C: see docs/programmers-guide.md. */
+/* A polling driver of cchip_chip in C: see docs/hardware/programmers-guide.md. */
 #ifndef CHIP_POLL_H
 #define CHIP_POLL_H
 
@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-/* Byte offsets of the registers that this driver uses (docs/chip-registers.md). */
+/* Byte offsets of the registers that this driver uses (docs/hardware/chip-registers.md). */
 enum {
   CHIP_ID = 0x000,
   CHIP_VERSION = 0x004,

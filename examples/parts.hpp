@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Parts that fit together exactly, for touching.cpp and the tests of docs/touching.md.
+/// Parts that fit together exactly, for touching.cpp and the tests of docs/cpp/touching.md.
 #ifndef CCHIP_EXAMPLES_PARTS_HPP
 #define CCHIP_EXAMPLES_PARTS_HPP
 

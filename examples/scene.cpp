@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An arm of three links reaches into a box of parts: docs/scenes.md.
+// An arm of three links reaches into a box of parts: docs/cpp/scenes.md.
 #include <cchip/cchip.hpp>
 #include <iostream>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts that are apart, touch or cross: docs/touching.md.
+// Parts that are apart, touch or cross: docs/cpp/touching.md.
 #include <cchip/device/device.hpp>
 #include <cmath>
 #include <iostream>

@@ -7,13 +7,13 @@ usage: asic.py [ROW]... [options]     without ROW all rows; `asic.py --list` nam
   --campaign PATH   cchip_campaign, which counts the mean beats (default build/release/bin/cchip_campaign, built by
                     `make campaign-build`); without it there are no pairs per second and no energy of a pair
   --pairs N         pairs of each class for the mean beats (default 20000)
-  --write           rewrite the rows of this run in the tables of this library in docs/asic.md; other rows stay if they were
+  --write           rewrite the rows of this run in the tables of this library in docs/hardware/asic.md; other rows stay if they were
                     measured on the same rtl/. docs/figures/asic.csv has the critical paths with their instances
   --list            print the rows
 
 Tools: Debian's Yosys 0.23 with its ABC, OpenSTA. Synthesis only: ideal clock, no wires, no clock tree, no scan, no clock
 gating; paths from register to register. Memories are boxes: their bits are counted, apart from the logic, and their delay is
-assumed (docs/asic.md). Power is that of the cells at the clock of the row, with 0.1 and with 0.5 transitions a clock at every
+assumed (docs/hardware/asic.md). Power is that of the cells at the clock of the row, with 0.1 and with 0.5 transitions a clock at every
 cell. Outputs are kept below build/asic by the hash of what they depend on: a second run repeats only what changed.
 build/asic/LIBRARY.json holds the figures of all rows run so far. The last lines are `ROW um2=X nand2=N ff=N bits=N ns=X
 fo4=X mhz=X [mw=X/X] [mpairs=X pj=X/X]`. The row chip prints a line for each of its blocks besides.
@@ -39,7 +39,7 @@ import progress
 
 ROOT = fpga.ROOT
 BUILD = ROOT / "build" / "asic"
-PAGE = ROOT / "docs" / "asic.md"
+PAGE = ROOT / "docs" / "hardware" / "asic.md"
 CSV = ROOT / "docs" / "figures" / "asic.csv"
 LIBERTY = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib"
 LEAF = "cchip_mul18"
@@ -337,7 +337,7 @@ def totals(inside, top, lib, boxes):
 
 
 def box_library(lib, fo4_ns, kinds):
-    """Liberty file of the memories with the delays that docs/asic.md assumes, in FO4."""
+    """Liberty file of the memories with the delays that docs/hardware/asic.md assumes, in FO4."""
     delay = lambda n: f"{n * fo4_ns / lib.ns:.5f}"
 
     def arc(related, kind, n):
@@ -582,7 +582,7 @@ def write(name, found):
     for table, make in TABLES.items():
         block = re.search(datasheet.BLOCK.format(f" {name} {table}"), PAGE.read_text(), re.S)
         if not block:
-            say(f"asic.py: docs/asic.md has no table {name} {table}; it is as it was")
+            say(f"asic.py: docs/hardware/asic.md has no table {name} {table}; it is as it was")
         elif make(found).count("\n") > 2:
             datasheet.rewrite(PAGE, f"{name} {table}", with_others(block[0], head, make(found)))
 

@@ -38,8 +38,8 @@ RTL = ROOT / "rtl"
 MODELS = ROOT / "sim" / "rtl_models" / "sim.f"  # for simulation only
 MODULES = ROOT / "docs" / "modules"
 README = ROOT / "README.md"
-ARCHITECTURE = ROOT / "docs" / "architecture.md"
-VERIFICATION = ROOT / "docs" / "verification.md"
+ARCHITECTURE = ROOT / "docs" / "develop" / "architecture.md"
+VERIFICATION = ROOT / "docs" / "develop" / "verification.md"
 BLOCK = r"(<!-- generated: begin{} -->\n).*?(<!-- generated: end -->)"
 
 # A pair of one vertex with a reserved mode, which is answered at once.
@@ -147,7 +147,7 @@ STIMULI = {
     "cchip_pr_slot": ("", RESERVED_PAIR, "m_result_valid"),
 }
 
-# Yosys takes too long for these; docs/fpga.md has their area, placed and routed.
+# Yosys takes too long for these; docs/hardware/fpga.md has their area, placed and routed.
 PLACED_ONLY = ("cchip_primtest_array",)
 # Modules around reconfigurable regions, and the parameters of their area: the regions are empty cells, as in the static
 # design of a user. A tool that sees what is in them looks through the partition and counts neither side rightly.
@@ -450,7 +450,7 @@ def synthesised(module):
 
 
 def area(module):
-    text = "Fmax: whole primitive tests are placed and routed, see [fpga.md](../fpga.md).\n\n"
+    text = "Fmax: whole primitive tests are placed and routed, see [fpga.md](../hardware/fpga.md).\n\n"
     kinds = list(next(iter(TARGETS.values()))[1])
     rows = []
     targets = {t: of for t, of in TARGETS.items() if module not in STATIC_SIDE or t == "Lattice ECP5"}
@@ -616,7 +616,7 @@ def check():
     found += [f"docs/README.md: no link to modules/{module}.md" for module in rtl_files()
               if f"(modules/{module}.md)" not in index.read_text()]
     folders = [ROOT / name / "README.md" for name in ("rtl", "sim", "cpp_ref", "tests")]
-    for path in [README, ROOT / "CONTRIBUTING.md", *folders, *sorted((ROOT / "docs").glob("*.md")), *sorted(MODULES.glob("*.md"))]:
+    for path in [README, ROOT / "CONTRIBUTING.md", *folders, *sorted((ROOT / "docs").rglob("*.md"))]:
         for name in re.findall(r"`(tests/[\w/]+\.cpp)`", path.read_text()):
             if not (ROOT / name).exists():
                 found.append(f"{path.relative_to(ROOT)}: names {name}, which does not exist")

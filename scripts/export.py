@@ -36,8 +36,9 @@ KINDS = {"cchip_primtest_tri_tri": "tri_tri", "cchip_primtest_tri_quad": "tri_qu
 # Simulation models of the blocks that the leaves of a device instantiate, and what the blocks are.
 CELLS = {"_ecp5": {"MULT18X18D": "multiplier block", "DP16KD": "block RAM"}}
 # Pages below docs/: of every top, and of some.
-PAGES = ("architecture.md", "definitions.md")
-MORE_PAGES = {SUBSYSTEM: ("registers.md",), CHIP: ("chip.md", "chip-registers.md", "image.md", "programmers-guide.md")}
+PAGES = ("develop/architecture.md", "hardware/definitions.md")
+MORE_PAGES = {SUBSYSTEM: ("hardware/registers.md",),
+              CHIP: tuple(f"hardware/{name}.md" for name in ("chip", "chip-registers", "image", "programmers-guide"))}
 # Bench of a top, the first of its files, and what else is copied.
 BENCH = "tests/icarus/bench_primtest.v"
 WIRE = "cpp_ref/include/cchip/wire"
@@ -196,10 +197,10 @@ def write_pages(folder, names):
     pages = [*PAGES, *(f"modules/{name}.md" for name in names)]
     for name in names:
         pages += MORE_PAGES.get(name, ())
-    (folder / "docs" / "modules").mkdir(parents=True)
     for name in pages:
         if not (ROOT / "docs" / name).exists():
             raise ExportError(f"docs/{name} is missing: every module has a datasheet")
+        (folder / "docs" / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / "docs" / name).write_text(page(ROOT / "docs" / name, pages))
 
 
@@ -223,8 +224,8 @@ def readme(top, files, pairs, mhz):
         macro = f"-DCCHIP_BENCH_TOP={'bench_subsystem' if top == SUBSYSTEM else top} "
         wrapper = "bench_subsystem.v " if top == SUBSYSTEM else ""
     compiled = f"iverilog -g2005 {macro}-s {bench} -o bench.vvp {bench}.v {wrapper}{top}.v"
-    more = {SUBSYSTEM: """- [Registers](docs/registers.md), for C++ `registers.hpp`. `simulation_models.v` with parameter `SIMULATION` = 1: a slot holds all modules, bitstreams exchange them.
-""", CHIP: """- [Programmer's guide](docs/programmers-guide.md), [registers](docs/chip-registers.md), [images and records](docs/image.md); for C++ `chip_registers.hpp`, a driver in C `chip_poll.c`. `simulation_models.v` is for `SWAPS` = 1 with `SIMULATION` = 1.
+    more = {SUBSYSTEM: """- [Registers](docs/hardware/registers.md), for C++ `registers.hpp`. `simulation_models.v` with parameter `SIMULATION` = 1: a slot holds all modules, bitstreams exchange them.
+""", CHIP: """- [Programmer's guide](docs/hardware/programmers-guide.md), [registers](docs/hardware/chip-registers.md), [images and records](docs/hardware/image.md); for C++ `chip_registers.hpp`, a driver in C `chip_poll.c`. `simulation_models.v` is for `SWAPS` = 1 with `SIMULATION` = 1.
 """}.get(top, "")
     return f"""<!-- SPDX-License-Identifier: Apache-2.0 -->
 # {top}, collisionchip {version()}

@@ -14,7 +14,7 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
                     `make campaign-build`); without it there are no pairs per second
   --pairs N         pairs of each class for the mean beats (default 20000)
   --families        count the blocks of Xilinx 7 and of Intel Cyclone V, too
-  --write           rewrite the rows of this run in the generated tables of docs/fpga.md; other rows stay;
+  --write           rewrite the rows of this run in the generated tables of docs/hardware/fpga.md; other rows stay;
                     all rows: the families, too
   --bill            only the bills by block of the rows that have one (chip_tri, chip): synthesis, without place and route
   --list            print the rows
@@ -52,7 +52,7 @@ HARNESS = "scripts/fpga_harness.v"
 SUBSYSTEM = "scripts/fpga_subsystem.v"
 REGION = "cchip_pr_region"
 DEVICE = ("--85k", "--speed", "6", "--package", "CABGA756")
-PAGE = ROOT / "docs" / "fpga.md"
+PAGE = ROOT / "docs" / "hardware" / "fpga.md"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -748,7 +748,7 @@ def name_tree():
     """Writes into the page which RTL was measured; changes of rtl/ that are not committed have no name."""
     git = lambda *command: subprocess.run(["git", "-C", str(ROOT), *command], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
     if git("status", "--porcelain", "rtl"):
-        say("fpga.py: rtl/ has changes that are not committed; docs/fpga.md still names the tree measured before")
+        say("fpga.py: rtl/ has changes that are not committed; docs/hardware/fpga.md still names the tree measured before")
         return
     text = re.sub(r"git tree `[0-9a-f]{40}` of `rtl/`\n\(commit \w+;",
                   f"git tree `{git('rev-parse', 'HEAD:rtl')}` of `rtl/`\n(commit {git('rev-parse', '--short', 'HEAD')};", PAGE.read_text())
@@ -803,7 +803,7 @@ def main():
             if block:
                 write_table(name, block)
             else:
-                say(f"fpga.py: the table {name} of docs/fpga.md needs all rows; it is as it was")
+                say(f"fpga.py: the table {name} of docs/hardware/fpga.md needs all rows; it is as it was")
         if options.families:  # every row is of this run
             name_tree()
     for failure in failures:

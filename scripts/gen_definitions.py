@@ -181,7 +181,7 @@ def main():
     return generated.finish({
         "rtl/include/cchip_defs.vh": verilog(data, names),
         "cpp_ref/include/cchip/wire/definitions.hpp": cpp(data, names),
-        "docs/definitions.md": page(data, names),
+        "docs/hardware/definitions.md": page(data, names),
     }, "gen_definitions.py")
 
 

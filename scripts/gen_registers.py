@@ -30,8 +30,8 @@ except ImportError:
     sys.exit(77)
 
 # of each map: the module that has the registers, C++ namespace, header, page
-MAPS = {"cchip_subsystem": ("cchip_primtest_subsystem", "registers", "registers.hpp", "registers.md"),
-        "cchip_chip": ("cchip_chip", "chip_registers", "chip_registers.hpp", "chip-registers.md")}
+MAPS = {"cchip_subsystem": ("cchip_primtest_subsystem", "registers", "registers.hpp", "hardware/registers.md"),
+        "cchip_chip": ("cchip_chip", "chip_registers", "chip_registers.hpp", "hardware/chip-registers.md")}
 FLAGS = ("singlepulse", "hwset", "hwclr", "woclr")
 ADDR_W = 12
 
@@ -485,7 +485,7 @@ def page(name, title, registers):
     _, namespace, header, _ = MAPS[name]
     lines = ["<!-- SPDX-License-Identifier: Apache-2.0 -->", f"<!-- {note(name)} -->", f"# {title}", "",
              f"AXI4-Lite, 32-bit words, little endian. C++: `cchip::{namespace}` of `<cchip/wire/{header}>`. RTL: "
-             f"[{name}_regs](modules/{name}_regs.md). A read where no register is and a write where nothing can "
+             f"[{name}_regs](../modules/{name}_regs.md). A read where no register is and a write where nothing can "
              "be written are answered `SLVERR`. Bits that are not listed read 0; writing them does nothing.", "",
              "| offset | register | what |", "|---|---|---|"]
     for r in registers:

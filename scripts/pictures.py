@@ -3,11 +3,11 @@
 """The drawn pictures of docs/pictures, as SVG.
 
 usage: pictures.py [--check]
-  chip.svg     the whole chip as in the paper's figure 2; a block is green if docs/fpga.md has a row of it with an Fmax
+  chip.svg     the whole chip as in the paper's figure 2; a block is green if docs/hardware/fpga.md has a row of it with an Fmax
   devices.svg  collide() and the devices that answer
   stages.svg   the four macro stages of a primitive test; clocks from scripts/definitions.json
   rooms.svg    folders of RTL and C++ and which may use which, from the tables of tests/arrows
-  touching.svg two bodies that cross, touch or are apart, in cross-section; relations from the table of docs/touching.md
+  touching.svg two bodies that cross, touch or are apart, in cross-section; relations from the table of docs/cpp/touching.md
 
 Without an option the pictures are written; with --check nothing is written and the exit code is 1 if one is stale."""
 import html
@@ -89,8 +89,8 @@ class Picture:
 
 
 def routed():
-    """Rows of docs/fpga.md and of the file of its blocks that have an Fmax: what was placed and routed."""
-    rows = re.findall(r"^\| `(\w+)` \|(.*)$", (ROOT / "docs" / "fpga.md").read_text(), re.M)
+    """Rows of docs/hardware/fpga.md and of the file of its blocks that have an Fmax: what was placed and routed."""
+    rows = re.findall(r"^\| `(\w+)` \|(.*)$", (ROOT / "docs" / "hardware" / "fpga.md").read_text(), re.M)
     rows += re.findall(r"^(\w+),(.*)$", (ROOT / "docs" / "figures" / "fpga_blocks.csv").read_text(), re.M)
     return {name for name, cells in rows if re.search(r"[\d.]+ / [\d.]+ / [\d.]+, \d+ seed", cells)}
 
@@ -367,7 +367,7 @@ def rectangle(x, y, w, h):
 
 
 def touching():
-    """Case, row of docs/touching.md that is drawn, relation, note, bodies of A, bodies of B, contacts."""
+    """Case, row of docs/cpp/touching.md that is drawn, relation, note, bodies of A, bodies of B, contacts."""
     slab, diamond = rectangle(20, 74, 160, 36), [(100, 74), (130, 44), (100, 14), (70, 44)]
     left, right = rectangle(20, 30, 74, 80), rectangle(94, 46, 80, 48)
     ring = rectangle(44, 22, 112, 86)
@@ -387,11 +387,11 @@ def touching():
         ("last bit", "flush boxes, pulled off by 2^-52", "a gap of 2^-52 is a gap",
          [left], [rectangle(98, 46, 80, 48)], []),
     ]
-    rows = dict(re.findall(r"^\| ([^|]+) \| (apart|touching|crossing) \|", (ROOT / "docs" / "touching.md").read_text(), re.M))
+    rows = dict(re.findall(r"^\| ([^|]+) \| (apart|touching|crossing) \|", (ROOT / "docs" / "cpp" / "touching.md").read_text(), re.M))
     picture = Picture("Crossing, touching, apart", 880, 420)
     for number, (name, row, note, bodies_a, bodies_b, contacts) in enumerate(cases):
         if row not in rows:
-            raise SystemExit(f"pictures.py: docs/touching.md has no row '{row}'")
+            raise SystemExit(f"pictures.py: docs/cpp/touching.md has no row '{row}'")
         x, y = 16 + 214 * (number % 4), 14 + 190 * (number // 4)
         for bodies, colours in ((bodies_a, BLUE), (bodies_b, PARTLY)):
             for body in bodies:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/chip-speed.md and its plot from the CSV file that chip_speed writes (make bench-chip).
+"""docs/hardware/chip-speed.md and its plot from the CSV file that chip_speed writes (make bench-chip).
 
 usage: plot_chip.py [--csv PATH | --check | --check-plot]
   --csv PATH    take this run: copy it to docs/figures/chip_speed.csv, rewrite page and plot
@@ -15,7 +15,7 @@ import sys
 
 from generated_page import ROOT, page_and_plots, plain_number, start_plot, svg_text
 
-PAGE = ROOT / "docs" / "chip-speed.md"
+PAGE = ROOT / "docs" / "hardware" / "chip-speed.md"
 RUN = ROOT / "docs" / "figures" / "chip_speed.csv"
 PLOT = ROOT / "docs" / "pictures" / "chip_speed.svg"
 OUTSIDE = ("body-tiny",)  # pairs of meshes outside the means

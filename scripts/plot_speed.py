@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/speed.md, its plot and the small one of README.md from the CSV file that collide_speed writes (make bench-collide).
+"""docs/cpp/speed.md, its plot and the small one of README.md from the CSV file that collide_speed writes (make bench-collide).
 
 usage: plot_speed.py [--csv PATH | --check | --check-plot]
   --csv PATH    take this run: copy it to docs/figures/collide_speed.csv, rewrite page and plots
@@ -16,7 +16,7 @@ import sys
 
 from generated_page import ROOT, page_and_plots, plain_number, start_plot, svg_text
 
-PAGE = ROOT / "docs" / "speed.md"
+PAGE = ROOT / "docs" / "cpp" / "speed.md"
 RUN = ROOT / "docs" / "figures" / "collide_speed.csv"
 PLOT = ROOT / "docs" / "pictures" / "collide_speed.svg"
 SMALL = ROOT / "docs" / "pictures" / "collide_speed_small.svg"  # for README.md
@@ -84,7 +84,7 @@ def tables(run):
     for key, value in run.notes.items():
         out.append(f"- {key}: {value}")
     out += ["", "The rows of every pair of meshes, with counts of nodes, boxes and pairs of faces, are in",
-            "[collide_speed.csv](figures/collide_speed.csv)."]
+            "[collide_speed.csv](../figures/collide_speed.csv)."]
     out += ["", "### Geometric means of the six pairs", "", "Times FCL built natively; in brackets what this project aims at.", "",
             "| class | single | batch | all cores |", "|---|---|---|---|"]
     for names, title in MEANS:

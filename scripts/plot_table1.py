@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/table1.md from the program cchip_table1: its output, the overhead curves as CSV, and their plot.
+"""docs/paper/table1.md from the program cchip_table1: its output, the overhead curves as CSV, and their plot.
 
 usage: plot_table1.py [--program PATH] [--check | --check-plot]
   --program PATH  cchip_table1 (default build/release/bin/cchip_table1, built by `make table1`)
   --check         write nothing: compare page and CSV with a fresh run of the program
   --check-plot    write nothing: compare the plot with one drawn from the checked-in CSV and page
 
-Without an option docs/table1.md (between its `generated` lines), docs/figures/table1_overhead.csv and
+Without an option docs/paper/table1.md (between its `generated` lines), docs/figures/table1_overhead.csv and
 docs/figures/table1_overhead.svg are rewritten. Drawing needs matplotlib, installed by `make venv`.
 Exit codes: 0 done or up to date, 1 stale or the program failed, 2 bad arguments, 77 no matplotlib."""
 import argparse
@@ -21,7 +21,7 @@ import tempfile
 
 from generated_page import ROOT, compare, fail, page_with, plain_number, start_plot, svg_text, write
 
-PAGE = ROOT / "docs" / "table1.md"
+PAGE = ROOT / "docs" / "paper" / "table1.md"
 CURVES = ROOT / "docs" / "figures" / "table1_overhead.csv"
 PLOT = CURVES.with_suffix(".svg")
 COMMAND = "make table1-plot"

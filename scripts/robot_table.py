@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The table "A robot cell" of docs/speed.md from the CSV file that robot_speed writes (make bench-robot).
+"""The table "A robot cell" of docs/cpp/speed.md from the CSV file that robot_speed writes (make bench-robot).
 
 usage: robot_table.py [--csv PATH | --check]
   --csv PATH    take this run: copy it to docs/figures/robot_speed.csv and rewrite the table
@@ -13,7 +13,7 @@ import sys
 
 from generated_page import ROOT, page_and_plots
 
-PAGE = ROOT / "docs" / "speed.md"
+PAGE = ROOT / "docs" / "cpp" / "speed.md"
 RUN = ROOT / "docs" / "figures" / "robot_speed.csv"
 VARIANTS = ("single", "batch", "FCL Debian", "FCL native", "Coal", "CGAL", "ODE")  # one that is not in the run has no row
 ARMS = {"panda": "Panda", "ur3": "UR3", "ur5": "UR5", "ur10": "UR10"}

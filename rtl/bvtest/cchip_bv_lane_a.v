@@ -10,7 +10,7 @@
 //   throughput   a child on every clock
 //   cuts         every path
 //   reset        none
-// Bit for bit model::planes_of_a (docs/image.md, "Box test").
+// Bit for bit model::planes_of_a (docs/hardware/image.md, "Box test").
 module cchip_bv_lane_a (
     input  wire         clk,
     // clock 0

@@ -9,7 +9,7 @@
 //   throughput   a child on every clock
 //   cuts         every path
 //   reset        none
-// Bit for bit model::planes_of_b (docs/image.md, "Box test").
+// Bit for bit model::planes_of_b (docs/hardware/image.md, "Box test").
 module cchip_bv_lane_b (
     input  wire         clk,
     // clock 0

@@ -10,7 +10,7 @@
 //   throughput   a node pair every third clock; origins stay for the three clocks from start on
 //   cuts         every path
 //   reset        none: a start that is not used does no harm
-// Bit for bit model::grid_of (docs/image.md, "Box test").
+// Bit for bit model::grid_of (docs/hardware/image.md, "Box test").
 module cchip_bv_offset (
     input  wire         clk,
     input  wire         start,

@@ -3,7 +3,7 @@
 `include "cchip_defs.vh"
 // cchip_chip: collision detection as a device. Registers on AXI4-Lite, an interrupt, an AXI4 master
 // for memory; queries from a ring in memory, records into another one. Registers:
-// docs/chip-registers.md; how a driver uses them: docs/programmers-guide.md.
+// docs/hardware/chip-registers.md; how a driver uses them: docs/hardware/programmers-guide.md.
 //   way          of a query: cchip_chip_core. This module adds cchip_chip_regs, counters,
 //                cchip_soft_reset and the interrupt
 //   latency      registers: 3 clocks, counters up to 21; a query by its tree

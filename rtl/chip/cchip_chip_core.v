@@ -3,7 +3,7 @@
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
 // cchip_chip_core: the whole way of a query, from a ring in memory to records in another one; its
-// controls are ports. Formats: docs/image.md.
+// controls are ports. Formats: docs/hardware/image.md.
 //   way          cchip_query_ring -> cchip_broad_phase -> cchip_leaf_feed -> cchip_transform ->
 //                queues and operands -> cchip_slots -> cchip_calc_result -> cchip_record_ring
 //   records      a query's pair records precede its done record, whose count is theirs. FIRST ends

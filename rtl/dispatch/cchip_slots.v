@@ -11,7 +11,7 @@
 //   latency      6 clocks from `some` to the slot, that of the test, 6 to m_result
 //   throughput   a pair every 3 clocks, with quads every 4
 //   swaps        cchip_swap_scheduler; one at a time, while the other slots work
-//   registers    as cchip_primtest_subsystem has them, docs/registers.md
+//   registers    as cchip_primtest_subsystem has them, docs/hardware/registers.md
 //   cuts         every path but the reads of table_data and phase_clocks, rst and core_rst
 //   reset        rst: no pair, no swap; a slot whose rewriting was cut off stays decoupled until a
 //                good swap. core_rst: no pair; a swap, the table and its bitstreams stay; a slot

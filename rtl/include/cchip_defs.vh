@@ -588,7 +588,7 @@
 // the word of these fields, also as the target of an assignment or an output
 `define CCHIP_INFO_TETRAHEDRON_OF(warped_a, warped_b) {warped_b, warped_a}
 
-// ---- a query's line in the ring (docs/image.md): word[`CCHIP_QUERY_<field>]
+// ---- a query's line in the ring (docs/hardware/image.md): word[`CCHIP_QUERY_<field>]
 `define CCHIP_QUERY_W 512
 // line of the header of A, the finer object
 `define CCHIP_QUERY_BASE_A 0+:32

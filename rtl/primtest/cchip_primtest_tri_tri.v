@@ -8,7 +8,7 @@
 //   throughput   one axis per clock; EXHAUSTIVE: one pair per 11 clocks; DIRECTED: at most 4 axes
 //                for pairs that are planar on the grid, not coplanar, not degenerate, and with err
 //                1..14 up to 9 more for a hit that only its depth can make definite
-//                (docs/architecture.md, The depth rule)
+//                (docs/develop/architecture.md, The depth rule)
 //   in flight    at most CONTEXTS pairs between the handshakes of s_pair and m_result
 //   cuts         every path: each output, s_pair_ready included, is a flip-flop
 //   reset        no pair accepted before is ever answered; s_pair_ready is 0 while rst is 1

@@ -17,13 +17,13 @@
 //   COPLANAR     else if none is warped and B lies in A's plane: in-plane axes of A, then of B
 //   CROSSING     else: zeros count as negative if the primitive has no negative vertex, else as
 //                positive; the edges of A and of B from + to -, then those from - to +. A warped
-//                quad is hit only if every sign is certain (docs/architecture.md), else TETRAHEDRON
-//                decides
+//                quad is hit only if every sign is certain (docs/develop/architecture.md), else
+//                TETRAHEDRON decides
 //   TETRAHEDRON  also for a hit of CROSSING without a warped quad that only depth can prove: all
 //                e_k x f_l, until one of them is not deep
-// The state is the record STATE of docs/definitions.md. Its field info holds a record of its own
-// for each programme: INFO_NORMALS (after nA), INFO_CROSSING, INFO_COPLANAR, INFO_DEGENERATE,
-// INFO_TETRAHEDRON.
+// The state is the record STATE of docs/hardware/definitions.md. Its field info holds a record of
+// its own for each programme: INFO_NORMALS (after nA), INFO_CROSSING, INFO_COPLANAR,
+// INFO_DEGENERATE, INFO_TETRAHEDRON.
 // The verdicts of an EXHAUSTIVE pair come on consecutive clocks.
 module cchip_axis_programme #(
     // vertices of A and of B: 3 3, 3 4 or 4 4

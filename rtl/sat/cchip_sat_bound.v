@@ -4,8 +4,8 @@
 // cchip_sat_bound: how far the projections of the unrounded vertices can lie from those of the
 // grid.
 // Part of macro stage 3; shifts and adds, no multiplier. a, b are the edges whose cross product is
-// the axis, c the point whose sign is asked, relative to the reference (docs/architecture.md,
-// certainty):
+// the axis, c the point whose sign is asked, relative to the reference
+// (docs/develop/architecture.md, certainty):
 //   m_gap_bound  = E |axis|_1, E = 2^s_error_shift >= eta
 //   m_sign_bound = E (|axis|_1 + (|a|_1 + |b|_1 + 2 E) 2^n), n smallest with 2^n >= |c|_1 + 2 E
 //   latency      SUBSTAGES + CCHIP_BOUND_LAG clocks from s_axis, s_edge_norm, s_error_shift; one

@@ -14,7 +14,8 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        forgets all pairs and registers; a slot whose rewriting was cut off stays
 //                decoupled until a good swap
-//   errors       codes CCHIP_SWAP_* in the register report, interrupt; see docs/registers.md
+//   errors       codes CCHIP_SWAP_* in the register report, interrupt; see
+//                docs/hardware/registers.md
 // Pairs: cchip_operand_memory, cchip_descriptor_queues; slots and their modules: cchip_slots.
 module cchip_primtest_subsystem #(
     // width of a coordinate, bit, 4..20

@@ -11,7 +11,7 @@
 //   throughput   a leaf pair every PASSES (1 + vertices) clocks, from its first pair of
 //                primitives to the last without a gap; a corrupt one every 2 clocks
 //   s_valid      until s_ready, nothing of s_* changes; a leaf pair begins while room = 1
-//   numbers      units of the leaf pair, two's complement (docs/image.md)
+//   numbers      units of the leaf pair, two's complement (docs/hardware/image.md)
 //   multipliers  36 blocks of 18x18 bit, with PASSES = 2 half as many
 //   cuts         every path: each output is a flip-flop
 //   reset        what is inside is forgotten
@@ -29,7 +29,7 @@ module cchip_vertex_transform #(
     input  wire [ 107:0] s_t,          // 32 fraction bits
     input  wire [   3:0] s_shift,      // M is M 2^-shift
     input  wire [  11:0] s_error,      // bound on the error of a position, 2^-38
-    // leaves (docs/image.md)
+    // leaves (docs/hardware/image.md)
     input  wire [   3:0] s_kinds,      // {B's, A's}
     input  wire [1023:0] s_lines,      // {B's, A's}
     input  wire          room,         // for the pairs of primitives of a leaf pair

@@ -3,8 +3,8 @@
 `include "cchip_defs.vh"
 // cchip_broad_phase: from queries to leaf pairs: cache, box test and traversal. Memory is read
 // as a client of cchip_axi_read.
-//   query        a line as docs/image.md describes it; its answer comes when every leaf pair
-//                that the query still waited for has its result
+//   query        a line as docs/hardware/image.md describes it; its answer comes when every pair
+//                of leaves that the query still waited for has its result
 //   leaves       leaf pairs of which nothing is known but that their volumes overlap, with
 //                their lines. The receiver tests the primitives and answers each with one
 //                result; fewer than 1,900 are without one at any time
@@ -43,7 +43,7 @@ module cchip_broad_phase #(
     input  wire [                    31:0] step_limit,
     // open pairs of a FIRST query, 0..255; 0 counts as 1
     input  wire [                     7:0] open_limit,
-    // queries (docs/image.md)
+    // queries (docs/hardware/image.md)
     input  wire                            s_query_valid,
     output wire                            s_query_ready,
     input  wire [                   511:0] s_query,

@@ -34,7 +34,7 @@ module cchip_broad_phase_axi #(
     input  wire [                    31:0] step_limit,
     // open pairs of a FIRST query, 0..255; 0 counts as 1
     input  wire [                     7:0] open_limit,
-    // queries (docs/image.md)
+    // queries (docs/hardware/image.md)
     input  wire                            s_query_valid,
     output wire                            s_query_ready,
     input  wire [                   511:0] s_query,

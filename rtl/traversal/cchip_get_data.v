@@ -69,7 +69,7 @@ module cchip_get_data #(
     output wire [                                         66:0] lookup_nodes
 );
 
-  // how a query ended (docs/image.md)
+  // how a query ended (docs/hardware/image.md)
   localparam [2:0] END_OK = 3'd0, END_CORRUPT = 3'd4, END_OUTSIDE = 3'd5;
   localparam [2:0] END_BAD_DESCRIPTOR = 3'd6, END_MEMORY = 3'd7;
   localparam integer PLACES = PAIRS + LEAVES;

@@ -82,7 +82,7 @@ module cchip_traversal_decision #(
     output wire [               4:0] m_tests
 );
 
-  // how a query ended (docs/image.md)
+  // how a query ended (docs/hardware/image.md)
   localparam [2:0] END_OK = 3'd0, END_HOST = 3'd1, END_STEPS = 3'd2, END_STACK = 3'd3;
   localparam [2:0] END_BAD_DESCRIPTOR = 3'd6;
   localparam integer STACK_W = $clog2(STACK);

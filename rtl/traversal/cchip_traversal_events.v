@@ -33,7 +33,7 @@ module cchip_traversal_events #(
     input  wire                        clk,
     input  wire                        rst,
     input  wire                        running,          // contexts may take queries
-    // queries (docs/image.md); the one that waits or is at its start, and whether it is valid
+    // queries (docs/hardware/image.md); the one that waits or is at its start, whether valid
     input  wire                        s_query_valid,
     output wire                        s_query_ready,
     input  wire [               511:0] s_query,

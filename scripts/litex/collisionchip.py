@@ -7,7 +7,7 @@
     self.bus.add_master("chip", chip.memory)
     self.irq.add("chip", use_loc_if_exists=True)
 
-Registers: docs/chip-registers.md; how a driver uses them: docs/programmers-guide.md. The memory that `memory` reaches has to be
+Registers: docs/hardware/chip-registers.md; how a driver uses them: docs/hardware/programmers-guide.md. The memory that `memory` reaches has to be
 coherent with the CPU's view of it."""
 import pathlib
 

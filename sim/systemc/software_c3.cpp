@@ -33,7 +33,8 @@ void SoftwareC3::configure(ModuleId module_id) {
   write(regs::interrupt_status::offset, events);
   const std::uint32_t code = (report & regs::report::code_mask) >> regs::report::code_shift;
   if (code != static_cast<std::uint32_t>(SwapCode::ok)) {
-    throw std::runtime_error(fmt::format("the swap to module {} ended with code {}; see docs/registers.md", id, code));
+    throw std::runtime_error(
+        fmt::format("the swap to module {} ended with code {}; see docs/hardware/registers.md", id, code));
   }
 }
 

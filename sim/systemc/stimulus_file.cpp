@@ -92,7 +92,7 @@ std::map<std::string, std::size_t> find_columns(const CsvRow& header, const std:
   for (std::size_t i = 0; i < header.fields.size(); ++i) columns.emplace(header.fields[i], i);
   for (const std::string& name : column_names()) {
     if (columns.count(name) != 0) continue;
-    throw missing_column(file, header, name, "see docs/levels.md, or write a file with --write");
+    throw missing_column(file, header, name, "see docs/paper/levels.md, or write a file with --write");
   }
   return columns;
 }

@@ -74,7 +74,7 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
       ->add_option("--least-definite-hits", e->least_definite_hits,
                    "goal: definite hits, % of the pairs with eta 1, shape and programme each")
       ->capture_default_str();
-  certainty->add_flag("!--signs-only", e->depth, "without the depth rule (docs/architecture.md, certainty)");
+  certainty->add_flag("!--signs-only", e->depth, "without the depth rule (docs/develop/architecture.md, certainty)");
   certainty->add_option("--eta", e->eta, "eta of every pair; 0: drawn, 15 included")
       ->check(CLI::Range(0, 14))
       ->capture_default_str();
@@ -86,7 +86,7 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
       ->capture_default_str();
   leaves->add_option("--pairs", l->pairs_max, "most leaf pairs per mesh and pose")->capture_default_str();
   leaves->add_flag("--quads", l->quads, "keep the quads of the files");
-  leaves->add_flag("!--signs-only", l->depth, "without the depth rule (docs/architecture.md, certainty)");
+  leaves->add_flag("!--signs-only", l->depth, "without the depth rule (docs/develop/architecture.md, certainty)");
   leaves->add_option("--eta", l->eta, "eta of a pair that was rounded; the chip's own vertex transform has 2 to 4")
       ->check(CLI::Range(1, 14))
       ->capture_default_str();

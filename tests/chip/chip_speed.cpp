@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Queries per second of the simulated chip, of the CPU device and of other libraries in the same poses:
-// docs/chip-speed.md.
+// docs/hardware/chip-speed.md.
 #include <Vcchip_chip.h>
 #include <Vcchip_chip___024root.h>
 #include <fmt/format.h>
@@ -373,7 +373,7 @@ int main(int argc, char** argv) try {
   CLI::App app{
       "Queries per second of the simulated chip, of the CPU device, FCL, Coal, CGAL and ODE in the same poses.\n"
       "Exit codes: 0 done, 3 an answer is not the exact one, 2 the run could not be made."};
-  app.add_option("--chip-mhz", o.chip_mhz, "clock of the chip: row chip in docs/fpga.md")
+  app.add_option("--chip-mhz", o.chip_mhz, "clock of the chip: row chip in docs/hardware/fpga.md")
       ->check(CLI::PositiveNumber)
       ->required();
   app.add_option("--poses", o.poses, "poses of each class and pair of meshes; of all contacts and lone a twentieth")

@@ -25,24 +25,24 @@ def squeezed(text):
 
 expect(readme.count("\n") <= MOST_LINES, f"{readme.count(chr(10))} lines; at most {MOST_LINES}")
 
-# Rows "[..](docs/modules/cchip_primtest_<row>.md) | MHz | LUT4 | DSP | pairs" against docs/fpga.md.
+# Rows "[..](docs/modules/cchip_primtest_<row>.md) | MHz | LUT4 | DSP | pairs" against docs/hardware/fpga.md.
 rows = re.findall(r"cchip_primtest_(\w+)\.md\) \| ([\d.]+) \| (\d+) \| (\d+) \| ([\d.]+) \|$", readme, re.M)
 expect(len(rows) == 3, f"{len(rows)} rows of primitive tests; there should be 3")
-fpga = (root / "docs/fpga.md").read_text()
+fpga = (root / "docs/hardware/fpga.md").read_text()
 for name, *figures in rows:
     cells = re.search(rf"^\| `{name}` \| 16 \|(.*)$", fpga, re.M)
-    expect(cells, f"docs/fpga.md has no row {name}")
+    expect(cells, f"docs/hardware/fpga.md has no row {name}")
     if cells:
         _, lut, _, _, dsp, _, _, clock, _, pairs = [cell.strip() for cell in cells[1].split("|")][:10]
         median = clock.split(" / ")[1]
-        expect(figures == [median, lut, dsp, pairs], f"{name}: {figures}, docs/fpga.md has {[median, lut, dsp, pairs]}")
+        expect(figures == [median, lut, dsp, pairs], f"{name}: {figures}, docs/hardware/fpga.md has {[median, lut, dsp, pairs]}")
 
-# The ratio to FCL and the number of answers compared, against docs/speed.md.
-speed = (root / "docs/speed.md").read_text()
+# The ratio to FCL and the number of answers compared, against docs/cpp/speed.md.
+speed = (root / "docs/cpp/speed.md").read_text()
 mean = re.search(r"^\| \*\*touch, near and deep\*\* \| ([\d.]+)", speed, re.M)
-expect(mean and f": {mean[1]} times as fast for touch, near and deep" in readme, "not the mean of docs/speed.md")
+expect(mean and f": {mean[1]} times as fast for touch, near and deep" in readme, "not the mean of docs/cpp/speed.md")
 compared = re.search(r"answers compared with FCL's: (\d+), FCL errs in: 0, differences: 0$", speed, re.M)
-expect(compared and f"{int(compared[1]):,} answers compared, no difference" in readme, "not the answers of docs/speed.md")
+expect(compared and f"{int(compared[1]):,} answers compared, no difference" in readme, "not the answers of docs/cpp/speed.md")
 
 verilog = re.findall(r"^```verilog\n(.*?)^```$", readme, re.S | re.M)
 example = squeezed((root / "examples/tri_tri_instance.v").read_text())

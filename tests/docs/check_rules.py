@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Compares the rules of docs/reconfiguration-library.md with the test cases of test_rc, both ways.
+"""Compares the rules of docs/paper/reconfiguration-library.md with the test cases of test_rc, both ways.
 
 usage: check_rules.py PAGE TEST_PROGRAM
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/touching.md: its table is what touching_table prints, every row is a test of test_touching and every test a row;
+"""docs/cpp/touching.md: its table is what touching_table prints, every row is a test of test_touching and every test a row;
 its code is part of examples/touching.cpp, whose output it shows.
 
 usage: check_touching.py [--write] ROOT TOUCHING_TABLE TEST_TOUCHING EXAMPLE
@@ -22,7 +22,7 @@ def output(*command, check=True):
 def main():
     arguments = [argument for argument in sys.argv[1:] if argument != "--write"]
     root, table_program, test_program, example = arguments
-    page = pathlib.Path(root) / "docs" / "touching.md"
+    page = pathlib.Path(root) / "docs" / "cpp" / "touching.md"
     text = page.read_text()
     table = output(table_program)
     fresh = TABLE.sub(lambda found: found[1] + table + found[2], text, count=1)
@@ -47,7 +47,7 @@ def main():
     if not blocks or not all(block in source for block in blocks):
         wrong.append("the C++ in it is not in examples/touching.cpp")
 
-    print("\n".join(f"docs/touching.md: {line}" for line in wrong) if wrong else f"{len(rows)} rows, each with its test")
+    print("\n".join(f"docs/cpp/touching.md: {line}" for line in wrong) if wrong else f"{len(rows)} rows, each with its test")
     sys.exit(1 if wrong else 0)
 
 

@@ -12,7 +12,7 @@ import staleness
 class Staleness(staleness.StalenessTests, staleness.GeneratorCopy):
     generator = "scripts/gen_definitions.py"
     source = "scripts/definitions.json"
-    generated = ["rtl/include/cchip_defs.vh", "cpp_ref/include/cchip/wire/definitions.hpp", "docs/definitions.md"]
+    generated = ["rtl/include/cchip_defs.vh", "cpp_ref/include/cchip/wire/definitions.hpp", "docs/hardware/definitions.md"]
 
     def change_source(self, change):
         source = self.root / self.source

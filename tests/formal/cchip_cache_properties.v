@@ -2,7 +2,7 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// Proved of cchip_cache, for some clocks after reset (cchip_cache.sby; docs/formal.md says how far):
+// Proved of cchip_cache, for some clocks after reset (cchip_cache.sby; docs/develop/formal.md says how far):
 //   main   each request is answered at most once, and nothing else is; an answer with CCHIP_READ_OK carries data that memory
 //          gave for the line of that request; a code other than that comes only after memory has given one; no second read of a
 //          line is sent while one is in flight; a slot is not used again while memory owes its response; a locked line that has

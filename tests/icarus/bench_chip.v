@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 `default_nettype none
 // bench_chip: one query through cchip_chip, from the ring of queries to the ring of records; the order of register
-// accesses is that of docs/programmers-guide.md. Verilog-2005, no package.
+// accesses is that of docs/hardware/programmers-guide.md. Verilog-2005, no package.
 //   +memory=FILE   contents of the memory from address 0 on, 16 bytes a line, hexadecimal: the query, then the images
 //   +records=FILE  expected records, the done record last; pair records may come in any order
 //   +start=S       state of the generator of memory's idle clocks, not 0 (default 1)
@@ -20,7 +20,7 @@ module bench_chip;
   localparam integer PATIENCE = 20000;
   // reads that wait in memory: every ID has one
   localparam integer READS = 1 << ID_W;
-  // registers: docs/chip-registers.md
+  // registers: docs/hardware/chip-registers.md
   localparam [11:0] REG_ID = 12'h000, REG_CONTROL = 12'h010, REG_STATUS = 12'h014;
   localparam [11:0] REG_QUERY_BASE_LOW = 12'h040, REG_QUERY_BASE_HIGH = 12'h044;
   localparam [11:0] REG_QUERY_SIZE = 12'h048, REG_QUERY_PRODUCER = 12'h04C;

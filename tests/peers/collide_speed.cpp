@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Queries per second of the CPU device and of other libraries in the same run, in turns, in the same poses:
-// docs/speed.md.
+// docs/cpp/speed.md.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

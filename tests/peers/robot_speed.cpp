@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Collision checks per second of a robot arm in front of a shelf, by the CPU device and other libraries in the same
-// run, in turns, in the same configurations: docs/speed.md, "A robot cell".
+// run, in turns, in the same configurations: docs/cpp/speed.md, "A robot cell".
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes of moving objects: cchip::Scene and FCL's DynamicAABBTreeCollisionManager, the same frames in turns:
-// docs/scenes.md.
+// docs/cpp/scenes.md.
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/config.h>
 #include <fmt/format.h>

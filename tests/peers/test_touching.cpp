@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every row of the table in docs/touching.md, answered by each device and by the exact oracle, face by face.
+// Every row of the table in docs/cpp/touching.md, answered by each device and by the exact oracle, face by face.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cchip/device/device.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The rows of the table in docs/touching.md.
+/// The rows of the table in docs/cpp/touching.md.
 #ifndef CCHIP_TESTS_PEERS_TOUCHING_CASES_HPP
 #define CCHIP_TESTS_PEERS_TOUCHING_CASES_HPP
 

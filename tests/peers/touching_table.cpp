@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints the table of docs/touching.md: the cases, answered by the CPU device and by FCL.
+// Prints the table of docs/cpp/touching.md: the cases, answered by the CPU device and by FCL.
 #include <algorithm>
 #include <cchip/device/device.hpp>
 #include <iostream>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The depth rule of docs/architecture.md (certainty) against the exact oracle. A hit may be called definite exactly if
-// the cube of half-width eta lies in A - B: every translation of A by a corner of the cube, which is an error that eta
-// allows, must still meet B. The oracle answers that for each of the eight corners and knows no axis.
+// The depth rule of docs/develop/architecture.md (certainty) against the exact oracle. A hit may be called definite
+// exactly if the cube of half-width eta lies in A - B: every translation of A by a corner of the cube, which is an
+// error that eta allows, must still meet B. The oracle answers that for each of the eight corners and knows no axis.
 #include <catch2/catch.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/geometry/canonical.hpp>

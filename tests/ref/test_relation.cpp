@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Apart, touching, crossing (docs/touching.md): exact predicates against the definition and against small translations.
+// Apart, touching, crossing (docs/cpp/touching.md): exact predicates against the definition and against small
+// translations.
 #include <catch2/catch.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/exact/posed_pairs.hpp>

@@ -4,7 +4,7 @@
 
 usage: doc_examples.py [--update] <program> <text.md>
 An example is an indented line "$ command" and the indented lines below it: standard output and standard error.
-Examples run in the folder above that of <text.md>; --update writes the real output into the text.
+Examples run in the root of the repository, which holds the folder docs/ of <text.md>; --update writes the real output into the text.
 """
 import os
 import subprocess
@@ -24,7 +24,7 @@ def run(command, program, folder):
 def main():
     update = "--update" in sys.argv
     program, text = [a for a in sys.argv[1:] if a != "--update"]
-    folder = os.path.dirname(os.path.dirname(os.path.abspath(text)))
+    folder = os.path.abspath(text).rsplit(f"{os.sep}docs{os.sep}", 1)[0]
     with open(text, encoding="utf-8") as f:
         lines = f.read().splitlines()
     result, examples, stale = [], 0, 0

@@ -133,7 +133,8 @@ TEST_CASE("levels subsystem: the empty slot gets a module, which answers", "[sys
     CHECK(result.tag == 77);
     CHECK(result.grid);
     CHECK(result.definite);
-    CHECK(error_of(b.c3, ModuleId::tri_tri) == "the swap to module 1 ended with code 1; see docs/registers.md");
+    CHECK(error_of(b.c3, ModuleId::tri_tri) ==
+          "the swap to module 1 ended with code 1; see docs/hardware/registers.md");
   });
 }
 

@@ -28,7 +28,7 @@ constexpr std::uint64_t most_clocks = 3000000;
 struct Register {
   std::uint32_t offset, reset, writable;
 };
-// As docs/chip-registers.md lists them, without those that a write makes work.
+// As docs/hardware/chip-registers.md lists them, without those that a write makes work.
 const std::vector<Register> plain = {
     {0x024, 0, 0x1FF},      {0x030, 0xFFFFFFFF, 0xFFFFFFFF}, {0x034, 0, 0xFFFFFFFF}, {0x038, 16, 0xFF},
     {0x03C, 3, 0x7},        {0x040, 0, 0xFFFFFFC0},          {0x044, 0, 0xFFFFFFFF}, {0x048, 0, 0xF},

@@ -197,7 +197,7 @@ bool set_vertices(LeafLine& leaf, NodeKind kind, const std::array<Vec3d, 6>& ver
 }
 
 /// True if the quad, seen along the cross product of its diagonals, is clearly convex. Only then is it also canonical
-/// (docs/architecture.md) after a small change of its vertices, or warped.
+/// (docs/develop/architecture.md) after a small change of its vertices, or warped.
 bool clearly_convex(const Primitive& quad) {
   const Vec3d across = quad.v[2] - quad.v[0];
   const Vec3d normal = across.cross(quad.v[3] - quad.v[1]);

@@ -206,7 +206,7 @@ class Run {
     if (swap.code == SwapCode::ok || swap.code == SwapCode::same) return;
     throw std::runtime_error(std::string("module ") + to_name(swap.module_id) + " cannot be loaded into slot " +
                              std::to_string(swap.slot) + ": swap code " + std::to_string(static_cast<int>(swap.code)) +
-                             "; see SwapCode in docs/definitions.md");
+                             "; see SwapCode in docs/hardware/definitions.md");
   }
 
   struct Batch {

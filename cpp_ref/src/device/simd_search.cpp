@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once for each instruction set by Highway's foreach_target.h. Bounds: docs/collide.md.
+// Compiled once for each instruction set by Highway's foreach_target.h. Bounds: docs/cpp/collide.md.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "device/simd_search.cpp"
 // Vectors of a size that only the machine knows cannot be kept in arrays.
@@ -674,7 +674,7 @@ HWY_INLINE void compare(const LeafSide& p, std::size_t i, float error_p, const L
 }
 
 /// Two triangles whose vertices all lie on certain sides of the other's plane, not all on one: the two axes that decide
-/// (docs/architecture.md, "Two axes decide"), in lanes 0 and 1.
+/// (docs/develop/architecture.md, "Two axes decide"), in lanes 0 and 1.
 HWY_INLINE Verdict cross_test(const LeafSide& p, std::size_t at_p, unsigned negative_p, const LeafSide& q,
                               std::size_t at_q, unsigned negative_q, const Placement& place) {
   const hn::FixedTag<float, 4> d;

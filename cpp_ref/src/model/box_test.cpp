@@ -17,7 +17,7 @@ std::int64_t slack_of(const NodeGrid& grid, int step, const PoseSetup& pose) {
   // In half steps of the grid, per unit of |d|_1, rounded up to a quarter:
   //   2 epsilon / 2^step: the position of A's points;
   //   1/8: floors of A's planes, 1 of the offset, 3 of M centre, 3 of |m| half, each of 6 fraction bits; and those of
-  //   B's corners, 2 fraction bits (docs/image.md says why they need no more).
+  //   B's corners, 2 fraction bits (docs/hardware/image.md says why they need no more).
   const int g = step + 1;  // >= 0
   std::int64_t slack =
       (1024 * std::int64_t{pose.epsilon} + (std::int64_t{32} << g) + (std::int64_t{64} << g) - 1) >> (g + 6);

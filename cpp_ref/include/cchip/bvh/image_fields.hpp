@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Where each field of an image lies in its line of 64 bytes; docs/image.md shows the same as a table.
+/// Where each field of an image lies in its line of 64 bytes; docs/hardware/image.md shows the same as a table.
 #ifndef CCHIP_BVH_IMAGE_FIELDS_HPP
 #define CCHIP_BVH_IMAGE_FIELDS_HPP
 

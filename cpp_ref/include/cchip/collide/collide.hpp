@@ -37,7 +37,7 @@ struct CollisionRequest {
     touching,  ///< every pair of faces that share a point
     /// Only pairs that cross: flush and grazing faces are no contacts. Faces are judged pair by pair, so solids that
     /// overlap can do without: two bars of one section, one pushed into the other, have no faces that cross
-    /// (docs/touching.md).
+    /// (docs/cpp/touching.md).
     crossing
   };
   Counts counts = Counts::touching;

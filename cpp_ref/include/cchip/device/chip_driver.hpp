@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Driver of cchip_chip: registers, rings and images in memory (docs/programmers-guide.md).
+/// Driver of cchip_chip: registers, rings and images in memory (docs/hardware/programmers-guide.md).
 #ifndef CCHIP_DEVICE_CHIP_DRIVER_HPP
 #define CCHIP_DEVICE_CHIP_DRIVER_HPP
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// cchip_chip on a Linux board, without a kernel driver of its own: registers and interrupt through the UIO framework,
-/// memory through a file that maps it (docs/uio.md). Linux only.
+/// memory through a file that maps it (docs/hardware/uio.md). Linux only.
 #ifndef CCHIP_DEVICE_UIO_DEVICE_HPP
 #define CCHIP_DEVICE_UIO_DEVICE_HPP
 

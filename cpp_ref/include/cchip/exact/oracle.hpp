@@ -23,7 +23,7 @@ bool exact_intersects(const Primitive& a, const Primitive& b);
 /// translation(). PosedPairs answers the same faster.
 bool exact_intersects(const Primitive& a, const Pose& pose_a, const Primitive& b, const Pose& pose_b);
 
-/// Whether the closed primitives are apart, touch or cross (docs/touching.md), for any 32-bit coordinates.
+/// Whether the closed primitives are apart, touch or cross (docs/cpp/touching.md), for any 32-bit coordinates.
 Relation exact_relation(const GridPair& pair);
 /// The same for any finite doubles.
 /// \throws std::invalid_argument if a coordinate is not finite

@@ -11,8 +11,8 @@ namespace cchip {
 
 /// Decides pairs of a primitive of A and one of B. The answers are those of exact_intersects(), for any finite numbers:
 /// first separating axes in doubles with a bound on the rounding, then the predicates of the exact oracle in doubles
-/// with an error bound each, then, where a sign is open, the exact oracle (docs/collide.md). Immutable: any number of
-/// threads may use it at a time.
+/// with an error bound each, then, where a sign is open, the exact oracle (docs/cpp/collide.md). Immutable: any number
+/// of threads may use it at a time.
 class PosedPairs {
  public:
   struct Answer {
@@ -26,7 +26,7 @@ class PosedPairs {
   /// \throws std::invalid_argument a coordinate is not finite
   Answer decide(const Primitive& a, const Primitive& b) const;
 
-  /// Of two primitives that share a point: whether they cross (docs/touching.md). The answer is that of
+  /// Of two primitives that share a point: whether they cross (docs/cpp/touching.md). The answer is that of
   /// exact_relation().
   /// \throws std::invalid_argument a coordinate is not finite
   bool cross(const Primitive& a, const Primitive& b) const;

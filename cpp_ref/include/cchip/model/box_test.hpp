@@ -4,7 +4,7 @@
 ///
 /// All quantities are in half steps of the pair's own grid, a power of two that is A's step unless B's is much coarser.
 /// All roundings are floors. One slack per node pair, added to the corners of B's boxes, covers all of them
-/// (docs/image.md, "Box test").
+/// (docs/hardware/image.md, "Box test").
 #ifndef CCHIP_MODEL_BOX_TEST_HPP
 #define CCHIP_MODEL_BOX_TEST_HPP
 

@@ -65,7 +65,7 @@ struct Axis {
 /// Outputs of macro stage 3 (cchip_sat_project).
 struct Projections {
   std::array<std::int64_t, max_points> p = {};
-  /// Bound on the error of p[sign_slot(shape)] (docs/architecture.md, certainty).
+  /// Bound on the error of p[sign_slot(shape)] (docs/develop/architecture.md, certainty).
   std::int64_t sign_bound = 0;
   /// Bound on the error of the difference of two projections onto this axis: 2^error_shift |axis|_1.
   std::int64_t gap_bound = 0;

@@ -487,7 +487,7 @@ constexpr Field info_tetrahedron_warped_a = {0, 1};
 /// quad B is warped
 constexpr Field info_tetrahedron_warped_b = {1, 1};
 
-/// a query's line in the ring (docs/image.md) [bit]
+/// a query's line in the ring (docs/hardware/image.md) [bit]
 constexpr int query_w = 512;
 /// line of the header of A, the finer object
 constexpr Field query_base_a = {0, 32};

@@ -10,7 +10,7 @@
 
 namespace cchip {
 
-/// Exit codes of `cchip`, documented in docs/cli.md.
+/// Exit codes of `cchip`, documented in docs/cpp/cli.md.
 enum ExitCode : int { exit_ok = 0, exit_internal = 1, exit_usage = 2, exit_mismatch = 3 };
 
 /// Wrong input or wrong command line. what() is one line "<where>: <what>; <remedy>".

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Witnesses checked by hand: the axis of a code from the definitions in docs/architecture.md, written out in wide
-/// integers, and the intervals of all vertices on it.
+/// Witnesses checked by hand: the axis of a code from the definitions in docs/develop/architecture.md, written out in
+/// wide integers, and the intervals of all vertices on it.
 #ifndef CCHIP_STIMULUS_WITNESS_HPP
 #define CCHIP_STIMULUS_WITNESS_HPP
 
