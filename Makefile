@@ -39,7 +39,7 @@ export JOBS
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv docs peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip export fpga \
+  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb export fpga \
   fpga-quick asic asic-quick install clean
 
 help: ## list the targets
@@ -269,6 +269,11 @@ tidy: build ## clang-tidy over our own C++ (slow)
 
 format: ## format our own C++
 	git ls-files -z --cached --others --exclude-standard '*.cpp' '*.hpp' ':!cpp_ref/include/cchip/wire/definitions.hpp' | xargs -0 -r clang-format -i
+
+deb: ## a Debian package of the library alone, shared, in build/deb
+	cmake -S . -B build/deb -G Ninja -D CMAKE_BUILD_TYPE=Release -D CCHIP_SIMULATION=OFF -D BUILD_SHARED_LIBS=ON -D CMAKE_INSTALL_PREFIX=/usr
+	cmake --build build/deb -j $(JOBS)
+	cd build/deb && cpack
 
 export: $(RELEASE)/build.ninja ## one Verilog file per top with constraints, datasheet and bench in build/export (EXPORT_ARGS=--help)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_pair_vectors cchip_query_vectors

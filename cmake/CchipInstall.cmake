@@ -1,18 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installed tree below the prefix:
 #   bin/cchip                     command line (if built)
-#   lib/libcchip_*.a              with include/cchip/ and lib/cmake/collisionchip/: find_package(collisionchip) gives
-#                                 collisionchip::core, ::mesh_io, ::reference, ::model and ::device
+#   lib/libcchip_*.a              or .so with BUILD_SHARED_LIBS, with include/cchip/ and lib/cmake/collisionchip/:
+#                                 find_package(collisionchip) gives collisionchip::core, ::mesh_io, ::reference,
+#                                 ::model and ::device
+#   lib/pkgconfig/collisionchip.pc   the same for pkg-config: core, mesh_io, model and device
 #   lib/libcchip_reconfig.a       with include/cchip/rc/ (if built): find_package(collisionchip COMPONENTS reconfig) gives
 #                                 collisionchip::reconfig alone, which needs SystemC and nothing of the above
 #   share/collisionchip/rtl       Verilog sources, include folder and file list cchip.f
 #   share/collisionchip/sim/rtl_models   Verilog for simulations only, file list sim.f
 #   share/doc/collisionchip       licences
+# cpack makes a Debian package of that tree: make deb.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(CCHIP_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/collisionchip)
 
-install(TARGETS cchip_core cchip_mesh_io cchip_reference cchip_model cchip_device EXPORT collisionchip ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS cchip_core cchip_mesh_io cchip_reference cchip_model cchip_device EXPORT collisionchip
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+file(RELATIVE_PATH CCHIP_LIBDIR_TO_INCLUDEDIR /${CMAKE_INSTALL_LIBDIR} /${CMAKE_INSTALL_INCLUDEDIR})
+if(NOT BUILD_SHARED_LIBS)
+  set(CCHIP_PC_STATIC_REQUIRES " libhwy")
+  set(CCHIP_PC_STATIC_LIBS " -pthread")
+endif()
+configure_file(${CMAKE_CURRENT_LIST_DIR}/collisionchip.pc.in ${PROJECT_BINARY_DIR}/collisionchip.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/collisionchip.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/cpp_ref/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.hpp")
 if(CCHIP_SIMULATION)
@@ -37,3 +48,18 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/collisionchipConfigVersio
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/collisionchipConfig.cmake ${PROJECT_BINARY_DIR}/collisionchipConfigVersion.cmake
   DESTINATION ${CCHIP_PACKAGE_DIR})
+
+if(PROJECT_IS_TOP_LEVEL)
+  set(CPACK_GENERATOR DEB)
+  set(CPACK_PACKAGE_NAME collisionchip)
+  set(CPACK_PACKAGE_CONTACT "the authors of collisionchip")
+  set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+  set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
+  # What the commands and shared libraries need is read from them; headers and static libraries need these besides.
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PACKAGE_DEPENDS "libeigen3-dev, libhwy-dev")
+  set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+  set(CPACK_STRIP_FILES ON)
+  set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+  include(CPack)
+endif()

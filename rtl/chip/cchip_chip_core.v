@@ -25,9 +25,9 @@
 //   idle         no query is between its ring and the records that memory holds; never, once a ring
 //                has failed
 //   reset        rst forgets queries and lines, and must reset the bus too. core_rst forgets them
-//                while the bus masters work on: hold it until read_owes and write_owes have been 0
-//                for 16 clocks (cchip_soft_reset). Both act a clock later: hold rst for 2 clocks or
-//                more
+//                while the bus masters work on: hold it until read_outstanding and
+//                write_outstanding have been 0 for 16 clocks (cchip_soft_reset). Both act a clock
+//                later: hold rst for 2 clocks or more
 module cchip_chip_core #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
@@ -103,8 +103,8 @@ module cchip_chip_core #(
     input  wire [                   31:0] invalidate_first,
     input  wire [                   31:0] invalidate_last,
     // memory owes the response of a read or a write
-    output wire                           read_owes,
-    output wire                           write_owes,
+    output wire                           read_outstanding,
+    output wire                           write_outstanding,
     output wire                           idle,
     // what happens on this clock, for counters
     output wire                           count_step,        // a node pair was expanded
@@ -271,7 +271,7 @@ module cchip_chip_core #(
       .m_last       (beat_last),
       .m_code       (beat_code),
       .m_data       (beat_data),
-      .owes         (read_owes),
+      .any_outstanding(read_outstanding),
       .outstanding  (outstanding_reads),
       .m_axi_arvalid(m_axi_arvalid),
       .m_axi_arready(m_axi_arready),
@@ -733,7 +733,7 @@ module cchip_chip_core #(
       .s_strb       (write_strb),
       .m_valid      (write_answer),
       .m_code       (write_code),
-      .owes         (write_owes),
+      .any_outstanding(write_outstanding),
       .m_axi_awvalid(m_axi_awvalid),
       .m_axi_awready(m_axi_awready),
       .m_axi_awid   (m_axi_awid),

@@ -11,7 +11,7 @@
 //   garbage      a result whose number is not that of a pair inside is dropped
 //   latency      5 clocks from a result to m_valid of an empty ledger
 //   throughput   a result on every clock; a grant on every third
-//   stop         quiet = 1: stop has lasted long enough for every grant under way, and no pair is
+//   stop         quiet = 1: stop has lasted long enough for every grant in flight, and no pair is
 //                inside. Answers that wait for the receiver do not matter
 //   decouple     after SETTLE_CLOCKS the pairs inside are counted in `lost` and answered as open,
 //                one per clock; then decoupled rises. It falls one clock after decouple

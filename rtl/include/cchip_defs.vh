@@ -153,7 +153,7 @@
 `define CCHIP_SWAP_OK 4'd0
 // the slot held the module already: nothing done
 `define CCHIP_SWAP_SAME 4'd1
-// a swap was under way: request refused
+// a swap was in progress: request refused
 `define CCHIP_SWAP_BUSY 4'd2
 // no such slot or module, no bitstream for it, or its address is not aligned: request refused
 `define CCHIP_SWAP_REQUEST 4'd3
@@ -336,13 +336,13 @@
 // DRAIN_BOUND of cchip_primtest_array [clock]
 `define CCHIP_ARRAY_DRAIN_BOUND(s, contexts, lanes) \
   (`CCHIP_DRAIN_BOUND((s), (contexts)) + `CCHIP_ARRAY_LATENCY((lanes)) + (lanes) * (contexts))
-// cchip_vertex_transform with PASSES = p: from a pair of leaves to the first vertex [clock]
+// cchip_vertex_transform with PASSES = p: from a leaf pair to the first vertex [clock]
 `define CCHIP_VERTEX_TRANSFORM_LATENCY(p) (15 + (p))
 // cchip_vertex_transform: from launch to the first vertex of a pair of primitives [clock]
 `define CCHIP_VERTEX_LAUNCH(p) (15 - (p))
 // cchip_normaliser with PASSES = p: from a vertex in to the same vertex out [clock]
 `define CCHIP_NORMALISER_LATENCY(p) (3 * (p) + 14)
-// cchip_transform: from a pair of leaves to the first vertex [clock]
+// cchip_transform: from a leaf pair to the first vertex [clock]
 `define CCHIP_TRANSFORM_LATENCY(p) \
   (`CCHIP_VERTEX_TRANSFORM_LATENCY((p)) + `CCHIP_NORMALISER_LATENCY((p)))
 // axes of the exhaustive programme: nA, nB, every e_k x f_l: 11, 14, 18 (paper, eq. 1) [beat]
@@ -473,7 +473,7 @@
 `define CCHIP_SWAP_REQUEST_OF(slot, module, address, size, force) \
   {force, size, address, module, slot}
 
-// ---- beat of s_report and m_report: what became of a request: word[`CCHIP_SWAP_REPORT_<field>]
+// ---- beat of s_report and m_report: outcome of a request: word[`CCHIP_SWAP_REPORT_<field>]
 `define CCHIP_SWAP_REPORT_W 36
 // slot of the request
 `define CCHIP_SWAP_REPORT_SLOT 0+:8

@@ -50,7 +50,7 @@ module cchip_axi_read #(
     output wire                                      m_last,
     output wire [             `CCHIP_READ_CODE_W-1:0] m_code,         // while m_last = 1
     output wire [                        DATA_W-1:0] m_data,
-    output wire                                      owes,
+    output wire                                      any_outstanding,
     // of each ID, {client, slot}: its address is on offer or memory owes it a response
     output wire                 [CLIENTS*SLOTS-1:0] outstanding,
     output wire                                      m_axi_arvalid,
@@ -92,7 +92,7 @@ module cchip_axi_read #(
     end
   endgenerate
 
-  // ---- what is under way. A request that waits for its address to be offered is in neither vector
+  // ---- what is in flight. A request that waits for its address to be offered is in neither vector
   reg [IDS-1:0] live_q;  // the address is or was offered, the client waits for the answer
   reg [IDS-1:0] owed_q;  // the address was taken, its rlast has not come
   reg [IDS-1:0] first_q;  // no beat of it has come
@@ -372,7 +372,7 @@ module cchip_axi_read #(
   reg last_q;
   reg [CODE_W-1:0] code_q;
   reg [DATA_W-1:0] data_q3;
-  reg owes_q;
+  reg any_outstanding_q;
   wire [31:0] one_client = 32'd1 << ({{32 - ID_W{1'b0}}, place_id_q2} >> SLOT_W);
   always @(posedge clk) begin
     slot_q  <= place_id_q2[SLOT_W-1:0];
@@ -383,10 +383,10 @@ module cchip_axi_read #(
     data_q3 <= data_q2;
     if (rst) begin
       valid_q <= {CLIENTS{1'b0}};
-      owes_q  <= 1'b0;
+      any_outstanding_q <= 1'b0;
     end else begin
       valid_q <= deliver ? one_client[CLIENTS-1:0] : {CLIENTS{1'b0}};
-      owes_q  <= arvalid_q | taken_q | (|owed_q);
+      any_outstanding_q <= arvalid_q | taken_q | (|owed_q);
     end
   end
   assign m_valid = valid_q;
@@ -395,7 +395,7 @@ module cchip_axi_read #(
   assign m_last  = last_q;
   assign m_code  = code_q;
   assign m_data  = data_q3;
-  assign owes    = owes_q;
+  assign any_outstanding = any_outstanding_q;
 
   wire unused = &{1'b0, queue_ready, one_client, since_tick};
   always @(posedge clk)

@@ -52,7 +52,7 @@ module cchip_axi_write #(
     // answers
     output wire [                        CLIENTS-1:0] m_valid,       // one-hot or 0
     output wire [             `CCHIP_WRITE_CODE_W-1:0] m_code,
-    output wire                                       owes,
+    output wire                                       any_outstanding,
     output wire                                       m_axi_awvalid,
     input  wire                                       m_axi_awready,
     output wire [                           ID_W-1:0] m_axi_awid,
@@ -223,7 +223,7 @@ module cchip_axi_write #(
       .m_data ({beat_strb, beat_data})
   );
 
-  // ---- writes under way: those that a client waits for, and in front of them those that were
+  // ---- writes in flight: those that a client waits for, and in front of them those that were
   // given up and whose response memory owes
   wire waiting_some, waiting_room, dropped_some, dropped_room;
   wire [COUNT_W-1:0] waiting, dropped;
@@ -376,7 +376,7 @@ module cchip_axi_write #(
   end
   assign m_axi_bready = bready_q;
 
-  // ---- time: a tick every limit + 1 clocks; a write that was under way at two ticks is late
+  // ---- time: a tick every limit + 1 clocks; a write that was in flight at two ticks is late
   wire tick;
   wire [31:0] since_tick;
   cchip_timeout #(
@@ -420,22 +420,22 @@ module cchip_axi_write #(
   end
   reg [CLIENTS-1:0] valid_q;
   reg [CODE_W-1:0] code_q;
-  reg owes_q;
+  reg any_outstanding_q;
   wire [3:0] one_client = 4'd1 << (refused ? refused_client_q : first_client);
   always @(posedge clk) begin
     code_q <= refused ? `CCHIP_WRITE_OWED : timeout ? `CCHIP_WRITE_TIMEOUT :
         b_bad_q ? `CCHIP_WRITE_BUS : `CCHIP_WRITE_OK;
     if (rst) begin
       valid_q <= {CLIENTS{1'b0}};
-      owes_q  <= 1'b0;
+      any_outstanding_q <= 1'b0;
     end else begin
       valid_q <= refused | gone ? one_client[CLIENTS-1:0] : {CLIENTS{1'b0}};
-      owes_q  <= waiting_some | dropped_some;
+      any_outstanding_q <= waiting_some | dropped_some;
     end
   end
   assign m_valid = valid_q;
   assign m_code  = code_q;
-  assign owes    = owes_q;
+  assign any_outstanding = any_outstanding_q;
 
   wire unused = &{1'b0, one_client, dropped, addresses, bursts, write_ready, beat_ready,
                   dropped_room, address_room, data_room, since_tick};

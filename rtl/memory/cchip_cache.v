@@ -6,7 +6,7 @@
 //   credit       a port has PLACES places. It asks for a line and names the place, and asks again
 //                for a place only after the answer. There is no ready: every request is taken, and
 //                every answer must be
-//   answer       a line, or a code of cchip_axi_read without data, in any order. Lines under way
+//   answer       a line, or a code of cchip_axi_read without data, in any order. Lines in flight
 //                (MISSES of them) hold up nobody but those who ask for them; all of these get the
 //                line as it arrives, before its frame is given away
 //   lock         lines in a lock range stay once they are loaded, at most one way of a set, until
@@ -33,7 +33,7 @@ module cchip_cache #(
     parameter integer CACHE_KB = 128,
     // places of a port: 2, 4, 8, 16, 32 or 64
     parameter integer PLACES = 32,
-    // lines under way: 2, 4, 8, 16 or 32
+    // lines in flight: 2, 4, 8, 16 or 32
     parameter integer MISSES = 32,
     // width of a line's number (address / 64), bit, more than SET_W and at most 58
     parameter integer LINE_W = 32,
@@ -74,7 +74,7 @@ module cchip_cache #(
     // what happens on this clock, for counters; of each port
     output wire [                     1:0] count_hit,         // answered at once
     output wire [                     1:0] count_miss,        // asks memory
-    output wire [                     1:0] count_wait,        // waits for a line under way
+    output wire [                     1:0] count_wait,        // waits for a line in flight
     output wire [                     1:0] count_again        // is looked up again
 );
 
@@ -108,7 +108,7 @@ module cchip_cache #(
   localparam integer AT_MISS = TAG_W, AT_TURN = TAG_W + MISS_W;
   localparam integer AT_LOCKED = AT_TURN + 1, AT_VALID = AT_TURN + 2;
 
-  // ---- lines under way
+  // ---- lines in flight
   wire [MISSES-1:0] held, filled;  // has a frame; its data are in the frame
   wire free_valid;
   wire [MISS_W-1:0] free_slot;
@@ -295,7 +295,7 @@ module cchip_cache #(
           late_valid ? late_data : {ask_place, ask_line};
       wire [SET_W-1:0] own_set0 = p == 0 ? fill_frame[SET_W:1] : walk_set_q;
 
-      // ---- who waits for a line under way, and for which; whose line has come; who is served next
+      // ---- who waits for a line in flight, and for which; whose line has come; who is served next
       reg [PLACES-1:0] sleep_q, wake_q;
       reg [MISS_W*PLACES-1:0] on_q;
       reg [PLACE_W-1:0] serve_place_q0;
@@ -391,7 +391,7 @@ module cchip_cache #(
         assign full5[w] = filled_q5;
       end
 
-      wire [1:0] wait5 = match5 & hold5 & ~full5;  // the line is under way
+      wire [1:0] wait5 = match5 & hold5 & ~full5;  // the line is in flight
       wire [1:0] may5 = ~hold5 & ~locked5;  // frames that may be given away
       reg match_q6, wait_q6, lacks_q6, prefer_q6, lock_q6;
       reg [1:0] may_q6, locked_q6;
@@ -617,12 +617,12 @@ module cchip_cache #(
     end
   end
 
-  // ---- the walk. It is over when the reads that were under way at its last set have answered
+  // ---- the walk. It is over when the reads that were in flight at its last set have answered
   localparam [2:0] CLEAR = 3'd0, IDLE = 3'd1, ASK = 3'd2, SEE = 3'd3, READS = 3'd4, ANSWERS = 3'd5;
   localparam [2:0] ANSWER_CLOCKS = 3'd7;
   reg [2:0] state_q;
   reg [SET_W-1:0] left_q;  // sets after this one
-  reg [MISSES-1:0] old_q;  // reads under way
+  reg [MISSES-1:0] old_q;  // reads in flight
   reg [2:0] clocks_q;
   reg [LINE_W-1:0] more_q;  // lines after the first one
   reg count_q;  // left_q is to be loaded: long before the first set has been seen

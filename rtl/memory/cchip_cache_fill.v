@@ -2,7 +2,7 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// cchip_cache_fill: the lines under way of cchip_cache. A line has a slot, the one of its read,
+// cchip_cache_fill: the lines in flight of cchip_cache. A line has a slot, the one of its read,
 // from allocation until all who wait for it have been served.
 //   fill         lines leave in the order of their last beats; fill_data 5 clocks after fill_valid,
 //                filled on the next clock if the code is CCHIP_READ_OK

@@ -4,8 +4,8 @@
 `include "cchip_assert.vh"
 // cchip_bitstream_fetch: AXI4 read master that reads consecutive words from memory into a FIFO.
 // run = 1 starts; address and words are taken on its first clock. run = 0 empties the FIFO; beats
-// that memory still owes are dropped when they come. owes is 1 until then, and run must stay 0 as
-// long.
+// that memory still owes are dropped when they come. outstanding is 1 until then, and run must
+// stay 0 as long.
 //   latency      m_valid 5 clocks after run plus the memory's, counted from arvalid = 1, arready =
 //                1 to rvalid = 1
 //   throughput   one word per clock if a read takes less than 13 clocks
@@ -36,7 +36,7 @@ module cchip_bitstream_fetch #(
     output wire [31:0] m_data,
     output wire        bus_error,
     output wire        timeout,
-    output wire        owes,
+    output wire        outstanding,
     output wire        m_axi_arvalid,
     input  wire        m_axi_arready,
     output wire [31:0] m_axi_araddr,
@@ -147,7 +147,7 @@ module cchip_bitstream_fetch #(
 
   assign m_axi_rready = rready_q;
   assign bus_error = error_q;
-  assign owes = arvalid_q | owed;
+  assign outstanding = arvalid_q | owed;
 
   // ---- clocks without an address taken or a beat
   wire late;
@@ -156,7 +156,7 @@ module cchip_bitstream_fetch #(
       .DEFAULT(`CCHIP_MEMORY_LIMIT_DEFAULT)
   ) u_late (
       .clk    (clk),
-      .restart(rst | taken | beat | ~owes),
+      .restart(rst | taken | beat | ~outstanding),
       .limit  (limit),
       .elapsed(waited),
       .expired(late)
@@ -186,7 +186,7 @@ module cchip_bitstream_fetch #(
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_bursts, bursts_q != 2'd3)
-      `CCHIP_ASSERT(a_start, !run || run_q || !owes)
+      `CCHIP_ASSERT(a_start, !run || run_q || !outstanding)
     end
 
 endmodule

@@ -88,7 +88,7 @@ module cchip_config_controller #(
   wire [31:0] address, size, clocks;
   wire in_header = phase == `CCHIP_PHASE_HEADER;
   wire in_transfer = phase == `CCHIP_PHASE_TRANSFER;
-  wire run, owes, bus_error, timeout;
+  wire run, outstanding, bus_error, timeout;
   wire header_done, header_ok;
   wire [`CCHIP_SWAP_W-1:0] header_code;
   wire fetch_valid, port_ready, transfer_done;
@@ -133,7 +133,7 @@ module cchip_config_controller #(
       .header_done   (header_done),
       .header_ok     (header_ok),
       .header_code   (header_code),
-      .owes          (owes),
+      .outstanding   (outstanding),
       .bus_error     (bus_error),
       .timeout       (timeout),
       .transfer_done (transfer_done),
@@ -161,7 +161,7 @@ module cchip_config_controller #(
       .m_data       (fetch_data),
       .bus_error    (bus_error),
       .timeout      (timeout),
-      .owes         (owes),
+      .outstanding  (outstanding),
       .m_axi_arvalid(m_axi_arvalid),
       .m_axi_arready(m_axi_arready),
       .m_axi_araddr (m_axi_araddr),

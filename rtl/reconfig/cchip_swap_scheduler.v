@@ -16,7 +16,7 @@
 //                by a command it is. A kind that no slot serves, no valid bitstream brings and no
 //                swap is bringing for 16 clocks has `no_provider` = 1; a bitstream that is hopeless
 //                brings nothing, until it is tried again
-//   command      refused with BUSY while a swap is under way, with REQUEST where the table has no
+//   command      refused with BUSY while a swap is in progress, with REQUEST where the table has no
 //                valid bitstream; commands are two clocks apart at least, because a refusal that
 //                meets another report waits for a clock
 //   latency      a kind is looked at for 4 clocks, and for 9 * SLOTS + 1 more if a swap is due; a
@@ -105,7 +105,7 @@ module cchip_swap_scheduler #(
   wire [ENTRIES-1:0] valid_of = {{ENTRIES - 4 * SLOTS{1'b0}}, table_valid};
   wire [ENTRIES-1:0] ready_of = {{ENTRIES - 4 * SLOTS{1'b0}}, table_valid & ~table_resting};
 
-  // ---- swap under way: chosen, requested, or accepted by the controller
+  // ---- swap in progress: chosen, requested, or accepted by the controller
   reg swapping_q, chosen_q, chosen_q2;
   wire asked = swapping_q | m_swap_valid_q | chosen_q | chosen_q2;
 

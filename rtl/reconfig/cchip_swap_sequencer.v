@@ -64,7 +64,7 @@ module cchip_swap_sequencer #(
     input  wire                                 header_done,
     input  wire                                 header_ok,
     input  wire [            `CCHIP_SWAP_W-1:0] header_code,
-    input  wire                                 owes,
+    input  wire                                 outstanding,
     input  wire                                 bus_error,
     input  wire                                 timeout,
     input  wire                                 transfer_done,
@@ -226,7 +226,7 @@ module cchip_swap_sequencer #(
     if (at_q[IDLE]) phase_after = phase_after | `CCHIP_PHASE_HEADER;
 
     done[JUDGE] = last_q;
-    fails[JUDGE] = last_q & (illegal_q | same_q | owes);
+    fails[JUDGE] = last_q & (illegal_q | same_q | outstanding);
     if (at_q[JUDGE]) begin
       code = code
           | (illegal_q ? `CCHIP_SWAP_REQUEST : same_q ? `CCHIP_SWAP_SAME : `CCHIP_SWAP_OWED);

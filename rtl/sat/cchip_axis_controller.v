@@ -18,7 +18,7 @@
 // The programme state {context, programme, code, beats, ...} travels with the beat (m_beat_user)
 // and comes back with the verdict; which axis follows is decided by cchip_axis_programme.
 // EXHAUSTIVE: nA, nB, all e_k x f_l (l runs first) whatever they find, the first separating axis is
-// reported; a special case that none separates goes on with its programme. Its verdicts come back
+// reported; a special case that none separates continues with its programme. Its verdicts come back
 // to back too, so one accumulator serves all. Reserved modes: one idle beat, then axis class
 // ILLEGAL.
 module cchip_axis_controller #(

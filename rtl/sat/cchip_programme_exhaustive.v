@@ -8,7 +8,7 @@
 //   cuts         every path from an input
 //   reset        m_valid; what is remembered is overwritten by the first verdicts of the next pair
 module cchip_programme_exhaustive #(
-    // 1: a hit of a warped quad that is not certain goes on with TETRAHEDRON, 0: never
+    // 1: a hit of a warped quad that is not certain continues with TETRAHEDRON, 0: never
     parameter integer TETRAHEDRON = 0
 ) (
     input  wire                          clk,
@@ -30,7 +30,7 @@ module cchip_programme_exhaustive #(
     input  wire [     `CCHIP_PLAN_W-1:0] s_plan,
     output wire                          m_valid,
     output wire                          m_outcome,        // the pair is decided
-    output wire                          m_proceed,        // it goes on with m_plan
+    output wire                          m_proceed,        // it continues with m_plan
     output wire                          m_separated,
     output wire [`CCHIP_AXIS_CODE_W-1:0] m_witness,        // first axis that separates, 0: none
     output wire                          m_certain,

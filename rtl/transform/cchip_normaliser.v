@@ -8,7 +8,7 @@
 //   throughput   one vertex of A and one of B every PASSES clocks, never stalls
 //   input        3 or 4 vertices a pair, PASSES clocks apart, first and last marked; pairs follow
 //                each other at that rate or later
-//   numbers      units of the pair of leaves, two's complement (docs/hardware/image.md)
+//   numbers      units of the leaf pair, two's complement (docs/hardware/image.md)
 //   eta          0: nothing was rounded; 15 for an open pair; else
 //                min(15, 1 + ceil(max(error of A, error of B) / 2^n)), where an error is s_error_*
 //                and 1 for each flag of s_lost that a vertex of the pair has

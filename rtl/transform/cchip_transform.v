@@ -2,10 +2,10 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// cchip_transform: pairs of leaves into pairs of primitives, each on its own grid, vertex by vertex
+// cchip_transform: leaf pairs into pairs of primitives, each on its own grid, vertex by vertex
 // as a slot takes them: cchip_vertex_transform and cchip_normaliser.
 //   latency      CCHIP_TRANSFORM_LATENCY(PASSES) clocks from s_valid to the first vertex
-//   throughput   a pair of leaves every PASSES (1 + vertices) clocks; 3 vertices a pair of
+//   throughput   a leaf pair every PASSES (1 + vertices) clocks; 3 vertices a pair of
 //                primitives, with a quad 4
 //   kinds        m_kind is the ModuleId of the test; a triangle goes first: a quad of A and a
 //                triangle of B change places
@@ -27,7 +27,7 @@ module cchip_transform #(
 ) (
     input  wire                               clk,
     input  wire                               rst,
-    // a pair of leaves and the map of its query
+    // a leaf pair and the map of its query
     input  wire                               s_valid,
     output wire                               s_ready,
     input  wire [                      287:0] s_m,
@@ -68,7 +68,7 @@ module cchip_transform #(
     end
   endgenerate
 
-  // ---- credit: a pair of leaves is up to four pairs of primitives
+  // ---- credit: a leaf pair is up to four pairs of primitives
   reg [COUNT_W-1:0] used_q;
   reg room_q;
   wire launch;

@@ -2,16 +2,16 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// cchip_vertex_transform: the vertices of a pair of leaves relative to the origin of B's leaf:
+// cchip_vertex_transform: the vertices of a leaf pair relative to the origin of B's leaf:
 // those of A moved by the map of the query, M o_A + t - o_B and M times the offset of a vertex,
 // each exact and rounded once; those of B in the same unit.
 //   order        primitive 0 of A with 0, then 1 of B, then 1 of A with 0 and 1 of B; a vertex of
 //                each at a time, 3 a pair or with a quad 4, where a triangle's last one comes twice
 //   latency      CCHIP_VERTEX_TRANSFORM_LATENCY(PASSES) clocks from s_valid to the first vertex
-//   throughput   a pair of leaves every PASSES (1 + vertices) clocks, from its first pair of
+//   throughput   a leaf pair every PASSES (1 + vertices) clocks, from its first pair of
 //                primitives to the last without a gap; a corrupt one every 2 clocks
-//   s_valid      until s_ready, nothing of s_* changes; a pair of leaves begins while room = 1
-//   numbers      units of the pair of leaves, two's complement (docs/hardware/image.md)
+//   s_valid      until s_ready, nothing of s_* changes; a leaf pair begins while room = 1
+//   numbers      units of the leaf pair, two's complement (docs/hardware/image.md)
 //   multipliers  36 blocks of 18x18 bit, with PASSES = 2 half as many
 //   cuts         every path: each output is a flip-flop
 //   reset        what is inside is forgotten
@@ -32,7 +32,7 @@ module cchip_vertex_transform #(
     // leaves (docs/hardware/image.md)
     input  wire [   3:0] s_kinds,      // {B's, A's}
     input  wire [1023:0] s_lines,      // {B's, A's}
-    input  wire          room,         // for the pairs of primitives of a pair of leaves
+    input  wire          room,         // for the pairs of primitives of a leaf pair
     output wire          corrupt,      // with s_ready: an illegal extent, so there are no vertices
     // a pair of primitives begins: its vertices come in CCHIP_VERTEX_LAUNCH clocks
     output wire          launch,

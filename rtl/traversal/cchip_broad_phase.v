@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// cchip_broad_phase: from queries to pairs of leaves: cache, box test and traversal. Memory is read
+// cchip_broad_phase: from queries to leaf pairs: cache, box test and traversal. Memory is read
 // as a client of cchip_axi_read.
 //   query        a line as docs/hardware/image.md describes it; its answer comes when every pair
 //                of leaves that the query still waited for has its result
-//   leaves       pairs of leaves of which nothing is known but that their volumes overlap, with
+//   leaves       leaf pairs of which nothing is known but that their volumes overlap, with
 //                their lines. The receiver tests the primitives and answers each with one
 //                result; fewer than 1,900 are without one at any time
 //   errors       end one query with a code, and leave the others alone
@@ -17,9 +17,9 @@
 module cchip_broad_phase #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
-    // node pairs under way
+    // node pairs in flight
     parameter integer PAIRS = 48,
-    // pairs of leaves that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
+    // leaf pairs that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 16,
     // entries of a query's stack: 8, 16, 32 or 64
     parameter integer STACK = 64,
@@ -27,7 +27,7 @@ module cchip_broad_phase #(
     parameter integer LEAF_DEPTH = 72,
     // size of the cache, KiB: 1, 2, 4 ... 1024
     parameter integer CACHE_KB = 128,
-    // lines under way from memory: 2, 4, 8, 16 or 32
+    // lines in flight from memory: 2, 4, 8, 16 or 32
     parameter integer MISSES = 32,
     // ranges of lines to lock, 1..4
     parameter integer LOCKS = 2,
@@ -37,7 +37,7 @@ module cchip_broad_phase #(
     input  wire                            clk,
     input  wire                            rst,
     // limits; they may change on any clock, and count for the queries at work too.
-    // node pairs of a query in flight, 0..7; 0 counts as 1; half of it with pairs of leaves out
+    // node pairs of a query in flight, 0..7; 0 counts as 1; half of it with leaf pairs out
     input  wire [                     2:0] pairs_each,
     // node pairs of a query, 0..2^32 - 1; 0: it ends with code STEPS at its first one
     input  wire [                    31:0] step_limit,
@@ -60,7 +60,7 @@ module cchip_broad_phase #(
     output wire                            m_leaf_failed,        // a line could not be read
     output wire [                  1023:0] m_leaf_lines,         // {B's, A's}
     input  wire                            s_credit,
-    // what became of each
+    // outcome of each
     input  wire                            s_result_valid,
     output wire                            s_result_ready,
     input  wire [     $clog2(QUERIES)-1:0] s_result_context,

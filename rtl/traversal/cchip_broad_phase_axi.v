@@ -8,9 +8,9 @@
 module cchip_broad_phase_axi #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
-    // node pairs under way
+    // node pairs in flight
     parameter integer PAIRS = 48,
-    // pairs of leaves that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
+    // leaf pairs that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 16,
     // entries of a query's stack: 8, 16, 32 or 64
     parameter integer STACK = 64,
@@ -18,7 +18,7 @@ module cchip_broad_phase_axi #(
     parameter integer LEAF_DEPTH = 72,
     // size of the cache, KiB: 1, 2, 4 ... 1024
     parameter integer CACHE_KB = 128,
-    // lines under way from memory: 2, 4, 8, 16 or 32
+    // lines in flight from memory: 2, 4, 8, 16 or 32
     parameter integer MISSES = 32,
     // ranges of lines to lock, 1..4
     parameter integer LOCKS = 2,
@@ -28,7 +28,7 @@ module cchip_broad_phase_axi #(
     input  wire                            clk,
     input  wire                            rst,
     // limits; they may change on any clock, and count for the queries at work too.
-    // node pairs of a query in flight, 0..7; 0 counts as 1; half of it with pairs of leaves out
+    // node pairs of a query in flight, 0..7; 0 counts as 1; half of it with leaf pairs out
     input  wire [                     2:0] pairs_each,
     // node pairs of a query, 0..2^32 - 1; 0: it ends with code STEPS at its first one
     input  wire [                    31:0] step_limit,
@@ -51,7 +51,7 @@ module cchip_broad_phase_axi #(
     output wire                            m_leaf_failed,        // a line could not be read
     output wire [                  1023:0] m_leaf_lines,         // {B's, A's}
     input  wire                            s_credit,
-    // what became of each
+    // outcome of each
     input  wire                            s_result_valid,
     output wire                            s_result_ready,
     input  wire [     $clog2(QUERIES)-1:0] s_result_context,
@@ -113,7 +113,7 @@ module cchip_broad_phase_axi #(
   wire [2:0] beat;
   wire [`CCHIP_READ_CODE_W-1:0] beat_code;
   wire [DATA_W-1:0] beat_data;
-  wire owes;
+  wire any_outstanding;
   wire [MISSES-1:0] outstanding;
 
   cchip_broad_phase #(
@@ -206,7 +206,7 @@ module cchip_broad_phase_axi #(
       .m_last       (beat_last),
       .m_code       (beat_code),
       .m_data       (beat_data),
-      .owes         (owes),
+      .any_outstanding(any_outstanding),
       .outstanding  (outstanding),
       .m_axi_arvalid(m_axi_arvalid),
       .m_axi_arready(m_axi_arready),
@@ -224,7 +224,7 @@ module cchip_broad_phase_axi #(
       .m_axi_rresp  (m_axi_rresp),
       .m_axi_rlast  (m_axi_rlast)
   );
-  wire unused = owes;
+  wire unused = any_outstanding;
 
 endmodule
 `default_nettype wire

@@ -2,12 +2,12 @@
 `default_nettype none
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
-// cchip_get_data: fetches the two lines of a node pair or of a pair of leaves through the cache,
+// cchip_get_data: fetches the two lines of a node pair or of a leaf pair through the cache,
 // waits for both, and hands them on: node pairs to the box test, leaves to the primitive tests.
 //   rule         a pair has a place, given by who asks; its lines arrive in any order. Node pairs
 //                go on in the order in which their second lines come to a port, the two ports in
-//                turn; so do pairs of leaves, which go first where there is room for them
-//   room         pairs of leaves wait in their places: LEAF_ROOM of them at most leave for which
+//                turn; so do leaf pairs, which go first where there is room for them
+//   room         leaf pairs wait in their places: LEAF_ROOM of them at most leave for which
 //                s_leaf_taken has not been 1
 //   check        what a line says of its children, and of a header, leaves with `lookup` when the
 //                verdict of the box test comes: code, kinds and lines of the children
@@ -20,11 +20,11 @@
 module cchip_get_data #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
-    // node pairs under way
+    // node pairs in flight
     parameter integer PAIRS = 48,
-    // pairs of leaves under way; PAIRS + LEAVES is 8, 16, 32 or 64
+    // leaf pairs in flight; PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 16,
-    // pairs of leaves that their receiver has room for, 1..3
+    // leaf pairs that their receiver has room for, 1..3
     parameter integer LEAF_ROOM = 1
 ) (
     input  wire                                                 clk,
@@ -52,7 +52,7 @@ module cchip_get_data #(
     output wire [                     $clog2(PAIRS+LEAVES)-1:0] m_pair_place,
     output wire [                          $clog2(QUERIES)-1:0] m_pair_context,
     output wire [                                          7:0] m_pair_children,  // {B's, A's}
-    // pairs of leaves; no ready: their receiver has taken one, and has room for another
+    // leaf pairs; no ready: their receiver has taken one, and has room for another
     input  wire                                                 s_leaf_taken,
     output wire                                                 m_leaf_valid,
     output wire [                     $clog2(PAIRS+LEAVES)-1:0] m_leaf_place,
@@ -210,7 +210,7 @@ module cchip_get_data #(
     else came_q <= came_q ^ comes[PLACES+:PLACES] ^ comes[0+:PLACES];
   // leaves first, while there is room for them; of each kind the two queues in turn
   reg turn_q, leaf_turn_q;
-  reg [1:0] room_left_q;  // pairs of leaves that may be picked
+  reg [1:0] room_left_q;  // leaf pairs that may be picked
   reg some_room_q;  // it is not 0
   wire advance;
   wire pick_leaf = |leaf_queue_valid & some_room_q;

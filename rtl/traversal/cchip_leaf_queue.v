@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_assert.vh"
-// cchip_leaf_queue: pairs of leaves that wait for a primitive test. One entry holds all of a node
+// cchip_leaf_queue: leaf pairs that wait for a primitive test. One entry holds all of a node
 // pair; they leave one by one.
 //   rule         a pair of a query that is still at work is fetched when the receiver has room for
 //                it; one of a query that has ended is dropped, and told
@@ -21,7 +21,7 @@ module cchip_leaf_queue #(
 ) (
     input  wire                       clk,
     input  wire                       rst,
-    // the pairs of leaves among the children of a node pair: i of A and j of B is bit 4 i + j
+    // the leaf pairs among the children of a node pair: i of A and j of B is bit 4 i + j
     input  wire                       s_valid,
     input  wire [$clog2(QUERIES)-1:0] s_context,
     input  wire [                1:0] s_epoch,

@@ -3,16 +3,16 @@
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
 // cchip_traversal: walks the trees of two objects. Of a node pair whose boxes the box test has
-// compared, the child pair that overlaps most goes on at once; the others wait on the query's
-// stack; pairs of leaves go to cchip_leaf_queue.
-//   rule         every event of a query (start, a verdict, a result of a pair of leaves, a pair
+// compared, the child pair that overlaps most continues at once; the others wait on the query's
+// stack; leaf pairs go to cchip_leaf_queue.
+//   rule         every event of a query (start, a verdict, a result of a leaf pair, a pair
 //                taken from the stack) passes one pipeline, the events of one query one at a time
-//   epochs       a query that ends leaves node pairs and pairs of leaves behind. They carry the
+//   epochs       a query that ends leaves node pairs and leaf pairs behind. They carry the
 //                epoch of their query, are counted, and are forgotten as they come back; an epoch
 //                is used again when its count is 0
-//   room         a verdict always has room: a node pair is under way only with a place in the leaf
+//   room         a verdict always has room: a node pair is in flight only with a place in the leaf
 //                queue; a query starts only with a place for its answer
-//   rules        fewer than 1,900 pairs of leaves are without a result behind cchip_get_data
+//   rules        fewer than 1,900 leaf pairs are without a result behind cchip_get_data
 //   latency      14 or 15 clocks from s_verdict_valid to m_valid
 //   throughput   an event every second clock, of one query one in 8 clocks
 //   cuts         every path: each output depends on flip-flops only
@@ -20,21 +20,21 @@
 module cchip_traversal #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
-    // node pairs under way
+    // node pairs in flight
     parameter integer PAIRS = 48,
-    // pairs of leaves that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
+    // leaf pairs that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 16,
     // entries of a query's stack: 8, 16, 32 or 64
     parameter integer STACK = 64,
     // entries of the leaf queue, more than PAIRS
     parameter integer LEAF_DEPTH = 72,
-    // pairs of leaves that the receiver has room for
+    // leaf pairs that the receiver has room for
     parameter integer CREDIT = 32
 ) (
     input  wire                            clk,
     input  wire                            rst,
     // limits; they may change on any clock, and count for the queries at work too.
-    // node pairs of a query in flight, 0..7; 0 counts as 1; half of it with pairs of leaves out
+    // node pairs of a query in flight, 0..7; 0 counts as 1; half of it with leaf pairs out
     input  wire [                     2:0] pairs_each,
     // node pairs of a query, 0..2^32 - 1; 0: it ends with code STEPS at its first one
     input  wire [                    31:0] step_limit,
@@ -58,7 +58,7 @@ module cchip_traversal #(
     output wire [     $clog2(QUERIES)-1:0] m_context,
     output wire [                    58:0] m_record,
     output wire [                    63:0] m_lines,
-    // a pair of leaves has left there
+    // a leaf pair has left there
     input  wire                            s_leaf_valid,
     input  wire [$clog2(PAIRS+LEAVES)-1:0] s_leaf_place,
     // verdicts of cchip_bv_unit, and what cchip_get_data knows of the node pair
@@ -74,7 +74,7 @@ module cchip_traversal #(
     input  wire [     $clog2(QUERIES)-1:0] lookup_context,
     input  wire [                    58:0] lookup_record,
     input  wire [                    66:0] lookup_nodes,
-    // what became of a pair of leaves, and room for another one
+    // outcome of a leaf pair, and room for another one
     input  wire                            s_result_valid,
     output wire                            s_result_ready,
     input  wire [     $clog2(QUERIES)-1:0] s_result_context,
@@ -291,13 +291,13 @@ module cchip_traversal #(
       .d  (lookup_nodes),
       .q  (nodes4)
   );
-  // ---- stages 1 to 5: the query, the last entry of its stack, what its epoch has under way
+  // ---- stages 1 to 5: the query, the last entry of its stack, what its epoch has in flight
   (* ram_style = "distributed" *)
   reg [STATE_W-1:0] states[0:QUERIES-1];
   (* ram_style = "distributed" *)
   reg [95:0] constants[0:QUERIES-1];  // {tag, line of B, line of A}
   (* ram_style = "distributed" *)
-  reg [WORK_W-1:0] works[0:4*QUERIES-1];  // node pairs and pairs of leaves of each epoch
+  reg [WORK_W-1:0] works[0:4*QUERIES-1];  // node pairs and leaf pairs of each epoch
   reg [STATE_W-1:0] state_q2, state_q3, state_q4, state_q5;
   reg [95:0] constants_q2, constants_q3, constants_q4, constants_q5;
   reg [CONTEXT_W-1:0] context_q2, context_q3;
@@ -525,7 +525,7 @@ module cchip_traversal #(
       .back_number(s_leaf_place)
   );
 
-  // ---- to cchip_get_data: node pairs, else pairs of leaves
+  // ---- to cchip_get_data: node pairs, else leaf pairs
   reg out_q, out_step_q, out_fetch_q;
   reg [PLACE_W-1:0] out_place_q;
   reg [CONTEXT_W-1:0] out_context_q;

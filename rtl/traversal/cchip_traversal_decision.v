@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 // cchip_traversal_decision: what an event does to its query. Of a node pair whose boxes have been
-// compared the best child pair goes on in the place of its parent and the others wait on the stack;
-// a result ends a query for the first hit, or is counted; a start or a node pair from the stack
-// goes to the box test.
-//   rule         a query ends with a code, or with 0 if it has nothing under way and nothing on the
+// compared the best child pair continues in the place of its parent and the others wait on the
+// stack; a result ends a query for the first hit, or is counted; a start or a node pair from the
+// stack goes to the box test.
+//   rule         a query ends with a code, or with 0 if it has nothing in flight and nothing on the
 //                stack; it then has the next epoch
 //   limits       may change on any clock: of an event open_limit counts on its second clock,
 //                pairs_each on its third. 0 counts as 1
@@ -16,7 +16,7 @@
 module cchip_traversal_decision #(
     // entries of a query's stack: 8, 16, 32 or 64
     parameter integer STACK  = 64,
-    // width of the count of what an epoch has under way, bit
+    // width of the count of what an epoch has in flight, bit
     parameter integer WORK_W = 12
 ) (
     input  wire                      clk,
@@ -31,11 +31,11 @@ module cchip_traversal_decision #(
     input  wire                      s_is_pop,
     input  wire [               1:0] s_epoch,
     input  wire                      s_live,           // its query is still at work
-    // the query: {epoch, has a query, mode, entries of the stack, node pairs under way, steps, hits
+    // the query: {epoch, has a query, mode, entries of the stack, node pairs in flight, steps, hits
     // and open pairs, open pairs, hit}
     input  wire [$clog2(STACK)+80:0] s_state,
     input  wire [              95:0] s_constants,      // {tag, line of B, line of A}
-    input  wire [        WORK_W-1:0] s_work,           // what the epoch has under way
+    input  wire [        WORK_W-1:0] s_work,           // what the epoch has in flight
     input  wire                      s_over,           // steps have reached their limit
     input  wire                      s_full,           // the stack is full
     // a verdict: {tests, best, strong, leaves, waiting}
@@ -62,7 +62,7 @@ module cchip_traversal_decision #(
     output wire [              95:0] m_constants,
     output wire [        WORK_W-1:0] m_work,
     output wire                      m_active,         // the context has a query
-    output wire                      m_wants,          // that may have another node pair under way
+    output wire                      m_wants,          // that may have another node pair in flight
     output wire                      m_start,          // it was a start,
     output wire                      m_cancel,         // too early for this context
     output wire                      m_started,        // a start that goes well, two clocks before
@@ -194,7 +194,7 @@ module cchip_traversal_decision #(
     constants_q <= s_is_start ? query_constants : s_constants;
     work_q <= s_work;
 
-    // the child pair that goes on: of a verdict the best, from the stack the first
+    // the child pair that continues: of a verdict the best, from the stack the first
     number_q <= s_is_pop ? stack_first : best_number;
     waiting_q <= s_is_pop ? stack_waiting : box_waiting;
     strong_q <= s_is_pop ? stack_strong : box_strong;
@@ -299,7 +299,7 @@ module cchip_traversal_decision #(
   wire ends = bad_q2 | (live_q2 & (fails_q2 | (~|work_q2 & ~|entries_q2)));
   wire still = active_q2 & ~ends;
   wire [1:0] next_epoch = now_q2 + {1'b0, ends};
-  // a child that is a leaf goes on with its parent's line and a mask of one child
+  // a child that is a leaf continues with its parent's line and a mask of one child
   wire [27:0] next_a = inner_a_q2 ? {4'd15, child_a_q2} : {one_a_q2, half_a_q2[23:0]};
   wire [27:0] next_b = inner_b_q2 ? {4'd15, child_b_q2} : {one_b_q2, half_b_q2[23:0]};
   // a FIRST query with leaf pairs out, one of which may end it, asks for half as many. Both

@@ -2,7 +2,7 @@
 `default_nettype none
 `include "cchip_assert.vh"
 // cchip_traversal_events: which event enters the pipeline of cchip_traversal. A verdict goes first,
-// then a result, a dropped pair of leaves, a query, a stack.
+// then a result, a dropped leaf pair, a query, a stack.
 //   rule         an event waits while another one of its query is in the pipeline
 //   two clocks   an event is let in on every second clock at most: on the first clock each source
 //                asks whether its query has no event inside, on the second one of those enters.
@@ -21,7 +21,7 @@
 module cchip_traversal_events #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
-    // node pairs under way
+    // node pairs in flight
     parameter integer PAIRS = 48,
     // width of a place's number, bit
     parameter integer PLACE_W = 6,
@@ -51,7 +51,7 @@ module cchip_traversal_events #(
     input  wire                        s_result_valid,
     output wire                        s_result_ready,
     input  wire [$clog2(QUERIES)+10:0] s_result,
-    // pairs of leaves that nobody waits for any more
+    // leaf pairs that nobody waits for any more
     input  wire                        s_drop_valid,
     output wire                        s_drop_ready,
     input  wire [ $clog2(QUERIES)-1:0] s_drop_context,

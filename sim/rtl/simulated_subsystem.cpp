@@ -84,7 +84,7 @@ class Observer : public sim::Agent {
 
  private:
   const Model& model_;
-  std::uint64_t begun_ = 0;  // the swap under way; 0: none
+  std::uint64_t begun_ = 0;  // the swap in progress; 0: none
   bool transfers_ = false;   // its module is or was written
 };
 

@@ -65,7 +65,7 @@ module cchip_pr_config_memory #(
 
   wire [31:0] word;  // the last four bytes
   wire [31:0] crc_next;
-  wire match;  // goes on with it
+  wire match;  // continues with it
   wire next;  // perhaps the beginning of the next payload
   generate
     if (CFG_W == 8) begin : gen_bytes

@@ -129,7 +129,7 @@ Rows primtest_layout(ModuleId id) {
                                     Rows{vector("pairs inside", top + "pairs_q", context_w, Radix::decimal)}) +
          group("axis controller",
                Rows{bit("pair waits", controller + "pair_waits"), bit("pair starts", controller + "start_valid"),
-                    bit("pair goes on", controller + "ready_valid"), bit("beat valid", top + "beat_valid")} +
+                    bit("pair continues", controller + "ready_valid"), bit("beat valid", top + "beat_valid")} +
                    folded("programme state of the beat", programme_state(top + "beat_user")) +
                    Rows{vector(axis_label, top + "beat_code", defs::axis_code_w, Radix::octal),
                         bit("allow above, a clock later", top + "beat_allow_above"),

@@ -760,7 +760,7 @@ int run_resets(std::size_t resets, std::uint64_t seed, std::uint32_t slots) {
     std::uint64_t wait = clocks;
     if (swaps && i % 4 >= 2) {
       // Nearly all of a swap is its transfer: a quarter of the resets looks for one of the phases before it, another
-      // begins about where it ends, and goes on while the new module is reset and taken into operation.
+      // begins about where it ends, and continues while the new module is reset and taken into operation.
       const std::uint32_t wanted = i % 4 == 2 ? 1 + static_cast<std::uint32_t>(random() % 4) : transfer;
       for (std::uint64_t k = 0; k < longest_swap && phase() < wanted; ++k) bench.step();
       wait = i % 4 == 2 ? clocks % 16 : driver.payload_bytes * port_clocks - 48 + clocks % 64;
@@ -1086,7 +1086,7 @@ SwapChip make_curve_chip(unsigned slots, const CurveSettings& settings) {
   return make_swap_chip(slots, {}, driver, settings.seed);
 }
 
-/// The swap under way ends: it belongs to its batch, also if no query of it had to wait.
+/// The swap in progress ends: it belongs to its batch, also if no query of it had to wait.
 void end_swaps(SwapChip& chip, unsigned slots) {
   for (std::uint32_t slot = 0; slot < slots;) {
     const std::uint32_t status = chip.machine->read_register(regs::slot_status::offset(slot));

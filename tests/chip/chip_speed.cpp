@@ -64,15 +64,15 @@ class UseObserver : public sim::Agent {
     const bool bus = model_.m_axi_rvalid != 0 && model_.m_axi_rready != 0;
     const bool transform = (probes::chip_transform(model_) & 1U) != 0;
     const bool lane = probes::chip_lane(model_) != 0;
-    const bool owes = probes::chip_read_owes(model_) != 0;
+    const bool outstanding = probes::chip_read_outstanding(model_) != 0;
     const bool idle = !box && !bus && !transform && !lane;
     ++use_.clocks;
     use_.box += box ? 1 : 0;
     use_.bus += bus ? 1 : 0;
     use_.transform += transform ? 1 : 0;
     use_.lane += lane ? 1 : 0;
-    use_.memory += idle && owes ? 1 : 0;
-    use_.inside += idle && !owes ? 1 : 0;
+    use_.memory += idle && outstanding ? 1 : 0;
+    use_.inside += idle && !outstanding ? 1 : 0;
   }
   const Use& use() const { return use_; }
 

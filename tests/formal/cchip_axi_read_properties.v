@@ -37,7 +37,7 @@ module cchip_axi_read_properties #(
   wire [SLOT_W-1:0] m_slot;
   wire [2:0] m_beat;
   wire [CLIENTS*SLOTS-1:0] outstanding;
-  wire m_last, owes, m_axi_arvalid, m_axi_rready;
+  wire m_last, any_outstanding, m_axi_arvalid, m_axi_rready;
   wire [`CCHIP_READ_CODE_W-1:0] m_code;
   wire [DATA_W-1:0] m_data;
   wire [ID_W-1:0] m_axi_arid;
@@ -63,7 +63,7 @@ module cchip_axi_read_properties #(
       .m_last       (m_last),
       .m_code       (m_code),
       .m_data       (m_data),
-      .owes         (owes),
+      .any_outstanding(any_outstanding),
       .outstanding  (outstanding),
       .m_axi_arvalid(m_axi_arvalid),
       .m_axi_arready(m_axi_arready),

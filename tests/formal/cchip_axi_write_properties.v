@@ -38,7 +38,7 @@ module cchip_axi_write_properties #(
 
   wire [CLIENTS-1:0] s_ready, m_valid;
   wire [`CCHIP_WRITE_CODE_W-1:0] m_code;
-  wire owes, m_axi_awvalid, m_axi_wvalid, m_axi_wlast, m_axi_bready, m_axi_awid;
+  wire any_outstanding, m_axi_awvalid, m_axi_wvalid, m_axi_wlast, m_axi_bready, m_axi_awid;
   wire [63:0] m_axi_awaddr;
   wire [7:0] m_axi_awlen;
   wire [2:0] m_axi_awsize, m_axi_awprot;
@@ -62,7 +62,7 @@ module cchip_axi_write_properties #(
       .s_strb       (s_strb),
       .m_valid      (m_valid),
       .m_code       (m_code),
-      .owes         (owes),
+      .any_outstanding(any_outstanding),
       .m_axi_awvalid(m_axi_awvalid),
       .m_axi_awready(m_axi_awready),
       .m_axi_awid   (m_axi_awid),

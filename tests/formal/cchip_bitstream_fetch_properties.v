@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 // Proved of cchip_bitstream_fetch, for 38 clocks from reset, whatever memory does (also against its own rules):
-//   addresses are stable until taken, bursts lie within 64 bytes, two are under way at most, the FIFO is never pushed when
+//   addresses are stable until taken, bursts lie within 64 bytes, two are in flight at most, the FIFO is never pushed when
 //   full (assertion a_room of the FIFO); no word appears after run = 0; a timeout comes after `limit` clocks
 //   without progress and never before, while `limit` changes on any clock; an error or a timeout lasts until run = 0. With ROOM, for 20 clocks: never are more words asked for than the
 //   FIFO has room for.
@@ -21,7 +21,7 @@ module cchip_bitstream_fetch_properties (
   // changes on any clock; 0, which means the default, is a limit that no trace reaches
   (* anyseq *) wire [2:0] any_limit;
   wire [31:0] limit = any_limit;
-  wire m_valid, bus_error, timeout, owes, m_axi_arvalid, m_axi_rready;
+  wire m_valid, bus_error, timeout, outstanding, m_axi_arvalid, m_axi_rready;
   wire [31:0] m_data, m_axi_araddr;
   wire [7:0] m_axi_arlen;
   wire [2:0] m_axi_arsize, m_axi_arprot;
@@ -39,7 +39,7 @@ module cchip_bitstream_fetch_properties (
       .m_data       (m_data),
       .bus_error    (bus_error),
       .timeout      (timeout),
-      .owes         (owes),
+      .outstanding  (outstanding),
       .m_axi_arvalid(m_axi_arvalid),
       .m_axi_arready(m_axi_arready),
       .m_axi_araddr (m_axi_araddr),
@@ -94,7 +94,7 @@ module cchip_bitstream_fetch_properties (
 
   always @(*) begin
     assume (started_q || rst);
-    assume (!run || run_q || !owes);
+    assume (!run || run_q || !outstanding);
     assume (address[1:0] == 2'b00);
     if (started_q && !rst_q) begin
       stable: assert (!asked_q || (m_axi_arvalid && m_axi_araddr == araddr_q && m_axi_arlen == arlen_q));
@@ -104,7 +104,7 @@ module cchip_bitstream_fetch_properties (
 `ifdef ROOM
       room: assert (asked_for <= 7'd32);
 `endif
-      debt: assert (owes == busy);
+      debt: assert (outstanding == busy);
       empty: assert (run_q || run_q2 || !m_valid);
       late: assert (!reached || bus_error || timeout || !run_q);
       early: assert (!timeout || timeout_q || reached);

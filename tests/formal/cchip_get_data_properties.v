@@ -103,7 +103,7 @@ module cchip_get_data_properties #(
     rst_q <= rst;
   end
 
-  // ---- all places: under way, and lines that the cache has to answer
+  // ---- all places: in flight, and lines that the cache has to answer
   reg [PLACES-1:0] busy_q, open_a_q, open_b_q;
   wire pair_taken = m_pair_valid & m_pair_ready;
   wire [PLACES-1:0] one = {{PLACES - 1{1'b0}}, 1'b1};

@@ -3,14 +3,14 @@
 // Proved of cchip_traversal_decision, of any event in any state, for all time (it has no loop):
 //   pairs     each child pair that waits goes to the box test or is on the stack, one of both; else the query ends with the code
 //             of a full stack. What goes is the child pair it should be
-//   leaves    the pairs of leaves of a node pair are in the leaf queue's entry, or the query ends
+//   leaves    the leaf pairs of a node pair are in the leaf queue's entry, or the query ends
 //   place     the place of a node pair is kept by the one that goes, or free
 //   room      each entry of the leaf queue that an event had is kept, used or given back
 //   stack     an entry is written within the stack, on top; the count follows; it says what a pop takes first, and whether others stay
 //   work      the epoch counts what goes, what is left, and what has come back, one by one
 //   end       a query that ends had an error, a first hit, open pairs at their limit, or nothing left; its epoch is over. One
-//             without anything under way or on the stack ends
-//   progress  a query with nothing under way asks for its stack
+//             without anything in flight or on the stack ends
+//   progress  a query with nothing in flight asks for its stack
 //   limits    whatever they are, and however they change: 0 counts as 1
 //   stale     an event of a query that has ended changes nothing but the work of its epoch
 // Assumed: what cchip_traversal gives: one of four events, its flags as the words they tell of, a pop of a live query with an

@@ -7,7 +7,7 @@
 //   room      node pairs and entries of the leaf queue together never want more than the leaf queue has: a verdict always has room
 //   once      each verdict and each result enters once; a query has one start in the pipeline
 //   turns     a result enters within 18 clocks of the one before it, or of its coming, though verdicts keep coming; so does a verdict
-//   goes on   with nothing else to do and a place free, a query that waits starts within 12 clocks and a stack that wants to send a
+//   continues   with nothing else to do and a place free, a query that waits starts within 12 clocks and a stack that wants to send a
 //             node pair does within 12
 // Assumed: an event leaves as cchip_traversal_decision lets it: it keeps or gives back its place and its room; verdicts are of
 // places whose node pair is with the box test; an answer is taken after its query has ended.

@@ -116,7 +116,7 @@ MUTANTS = [
     ("cchip_cache live", CACHE, "wire refuse = fresh & ~match_q6 & exhausted;", "wire refuse = 1'b0;"),
     ("cchip_cache bounded", FILL, "wire loses = serve_code_q == `CCHIP_READ_TIMEOUT || serve_code_q == `CCHIP_READ_OWED;",
      "wire loses = 1'b0;"),
-    # a line that was not written is read; more of them than there are slots; a line that could not be read goes on
+    # a line that was not written is read; more of them than there are slots; a line that could not be read continues
     ("cchip_query_ring bounded", QUERY_RING, "asked_q != producer && in_flight", "in_flight"),
     ("cchip_query_ring bounded", QUERY_RING, "in_flight < LIMIT[AHEAD_W:0];", "in_flight <= LIMIT[AHEAD_W:0];"),
     ("cchip_query_ring bounded", QUERY_RING, "due_q & ~read_valid_q &", "due_q &"),
@@ -133,7 +133,7 @@ MUTANTS = [
     ("cchip_calc_result bounded", RESULT, "wire complete = count_q[9:8] == 2'd0;", "wire complete = count_q[9] == 1'b0;"),
     # late beats reach the next request; a place that is owed is asked for again, also if its address is taken as the request
     # comes; a read counts on where the one before it ended; what the beat before has closed, and its count, is not seen; an error is forgotten; a line
-    # that is too long goes on; an address is taken back
+    # that is too long continues; an address is taken back
     ("cchip_axi_read bounded", READ, "wire deliver = (counts & wanted) |", "wire deliver = counts |"),
     ("cchip_axi_read bounded", READ, "wire issue = head_valid_q & ~head_owed_q &", "wire issue = head_valid_q &"),
     ("cchip_axi_read bounded", READ, "owed_q[next_id] | dead | dead_q :", "owed_q[next_id] | dead :"),
@@ -173,7 +173,7 @@ MUTANTS = [
     ("cchip_traversal_events bounded", POOL, "back_valid ? back_number : next_q", "next_q"),
     # work of a former query makes the present one wait; what is left of an entry is lost, of its weak pairs; a pair from the stack
     # is not counted, nor that the place of a bad query is free; room for leaves is given back though they are there; leaves of a
-    # query that has ended; its epoch goes on; another code; an old event ends the new query; the child pair of another number
+    # query that has ended; its epoch continues; another code; an old event ends the new query; the child pair of another number
     ("cchip_traversal_decision prove", DECISION, "wire hopes = live_q2 && ~mode_q2", "wire hopes = ~mode_q2"),
     ("cchip_traversal_decision prove", DECISION, "(push & ~s_full) | (s_is_pop & stack_rest);", "push & ~s_full;"),
     ("cchip_traversal_decision prove", DECISION, "waiting_q & ~(chosen & {16{clears_q}});", "waiting_q & ~chosen;"),

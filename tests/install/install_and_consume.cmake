@@ -35,6 +35,17 @@ consume("" "touch: 0, pairs of faces: 0\ntouch: 1, pairs of faces: 708\ntouch: 1
 set(FLAGS "${plain_flags}")
 consume(_reconfig "41\n42\n")
 
+# The same by pkg-config.
+file(GLOB_RECURSE pc ${prefix}/lib/collisionchip.pc)
+cmake_path(GET pc PARENT_PATH pc_folder)
+run(${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${pc_folder} pkg-config --cflags --libs collisionchip)
+separate_arguments(pc_flags UNIX_COMMAND "${FLAGS} ${out}")
+run(${CXX} -std=c++17 ${CONSUMER}/../../../examples/collide.cpp ${pc_flags} -o ${SCRATCH}/by_pkg_config)
+run(${SCRATCH}/by_pkg_config)
+if(NOT out STREQUAL "touch: 0, pairs of faces: 0\ntouch: 1, pairs of faces: 708\ntouch: 1, pairs of faces: 834\n")
+  message(FATAL_ERROR "the program that pkg-config helped to build printed\n${out}")
+endif()
+
 run(${prefix}/bin/cchip --version)
 
 foreach(list IN ITEMS rtl/cchip.f sim/rtl_models/sim.f)

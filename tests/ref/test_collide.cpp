@@ -422,7 +422,7 @@ TEST_CASE("collide: a batch ends when its result function returns false", "[ref]
     });
     CHECK(taken == most);
   }
-  // Nothing, or anything that is not bool, goes on.
+  // Nothing, or anything that is not bool, continues.
   std::size_t taken = 0;
   const auto count = [&taken](std::size_t, const CollisionResult&) -> int { return ++taken == 0; };
   collide(*device, torus, torus, poses, all, count);

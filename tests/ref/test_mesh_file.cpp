@@ -428,7 +428,7 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
   check(off("OFF\n3 1 0\n" + square + "2 0 1\n"), ":6: face 0 has fewer than three corners");
   check(off("OFF\n3 2 0\n" + square + "3 0 1 2\n"), ":6: the file ends before face 1 of 2");
   check(off("OFF\n3 1 0\n" + square + "3 0 1 2\n3 0 1 2\n"),
-        ":7: the file goes on after the last face that it announces");
+        ":7: the file continues after the last face that it announces");
   check(off("OFF\n3 1 0\n0 0 0\n1 nan 0\n"), ":4: vertex 1 is not finite");
   const auto ply = [&](const std::string& text) { return folder.write("t.ply", text); };
   const std::string short_ply = "the file ends before the last value that the header announces";
@@ -439,7 +439,7 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
   check(ply(ply_header("ascii", 3, 1) + square + "3 0 1\n"), ":13: " + short_ply);
   check(ply(ply_header("ascii", 3, 1) + square + "-3 0 1 2\n"), ":13: the count of a list is wrong");
   check(ply(ply_header("ascii", 3, 1) + square + "3 0 1 2\n3 0 1 2\n"),
-        ":14: the file goes on after the last value that the header announces");
+        ":14: the file continues after the last value that the header announces");
   check(ply(ply_header("binary_big_endian", 3, 1) + square), ": " + short_ply);
   check(ply(ply_header("ebcdic", 3, 1)), ":2: the format is unknown");
   check(ply(ply_header("ascii", 3, 1, "half")), ":4: the type of the property is unknown");

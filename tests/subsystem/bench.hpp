@@ -290,7 +290,7 @@ class SubsystemBench {
     driver.push(r);
   }
   std::size_t in_flight() const { return open_.size(); }
-  /// Steps until every pair is answered and no swap is under way; then every remaining one is an error, and no more
+  /// Steps until every pair is answered and no swap is in progress; then every remaining one is an error, and no more
   /// pairs may be left open than were reported as given up.
   /// \returns false if that does not happen: a hang
   bool drain(std::uint64_t most_clocks) {

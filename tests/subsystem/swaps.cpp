@@ -536,7 +536,7 @@ class Part {
   int pause_ = 0;
   bool cfg_error_ = false;
   std::uint64_t resume_at_ = 0;
-  // the encounter to come, or under way
+  // the encounter to come, or in progress
   enum class Stage { waits, meets, arrives, lasts, lingers };
   Stage stage_ = Stage::waits;
   Encounter next_{};

@@ -147,11 +147,11 @@ TEST_CASE("rule of transfers: data stay in the FIFO for the next module", "[rc][
     deltas(2);
     s.control.unload(s.other);
     s.control.activate(s.m);
-    CHECK(s.b.read() == 13);  // the blocked call goes on
+    CHECK(s.b.read() == 13);  // the blocked call continues
   });
 }
 
-TEST_CASE("a blocking call into a closed portal waits for the activation and then goes on", "[rc][fifo]") {
+TEST_CASE("a blocking call into a closed portal waits for the activation and then continues", "[rc][fifo]") {
   System<Idle> s;
   Thread reader("reader", [&] {
     CHECK(s.m.in.read() == 5);
@@ -194,7 +194,7 @@ TEST_CASE("a module that waits at an empty input can leave, and finds what came 
   });
 }
 
-TEST_CASE("a module that waits at a full output can leave, and goes on later", "[rc][fifo]") {
+TEST_CASE("a module that waits at a full output can leave, and continues later", "[rc][fifo]") {
   System<Idle> s;
   s.set_rule(fifo_rule::transfers);
   Thread writer("writer", [&] {
@@ -215,7 +215,7 @@ TEST_CASE("a module that waits at a full output can leave, and goes on later", "
   });
 }
 
-TEST_CASE("a module that is moved while it waits at a FIFO goes on at the new one", "[rc][fifo]") {
+TEST_CASE("a module that is moved while it waits at a FIFO continues at the new one", "[rc][fifo]") {
   System<Idle> s;
   sc_core::sc_fifo<int> c("c"), d("d");
   AdderGroup elsewhere("elsewhere");

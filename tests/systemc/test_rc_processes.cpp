@@ -457,7 +457,7 @@ TEST_CASE("a resettable FIFO has neither data nor room while its module is not a
   });
 }
 
-TEST_CASE("a process that waits at a resettable FIFO goes on after the activation", "[rc][members]") {
+TEST_CASE("a process that waits at a resettable FIFO continues after the activation", "[rc][members]") {
   struct M : rc::reconfigurable<Bare> {
     rc::fifo<int> full{"full", 1}, data{"data", 1};
     explicit M(const sc_core::sc_module_name& n) : reconfigurable(n) { data.write(9); }

@@ -199,7 +199,7 @@ TEST_CASE("a static call into a closed portal is answered with an error, or wait
   });
 }
 
-TEST_CASE("a static call that is under way holds the module, the next one finds it gone", "[rc][tlm]") {
+TEST_CASE("a static call that is in progress holds the module, the next one finds it gone", "[rc][tlm]") {
   MemorySystem s;
   s.control.activate(s.m);
   Thread caller("caller", [&] {
@@ -263,7 +263,7 @@ TEST_CASE("a module that waits for a static call to let it go gets it", "[rc][tl
   });
 }
 
-TEST_CASE("a module that calls without pause can leave, and goes on later", "[rc][tlm]") {
+TEST_CASE("a module that calls without pause can leave, and continues later", "[rc][tlm]") {
   MasterSystem s;
   Access write(tlm::TLM_WRITE_COMMAND, 7);  // outside: the thread does not end
   Thread caller("caller", [&] {

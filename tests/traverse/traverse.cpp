@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two meshes of real size through cchip_broad_phase_axi: pairs of leaves and answers against the functional model, and
+// Two meshes of real size through cchip_broad_phase_axi: leaf pairs and answers against the functional model, and
 // what it costs.
 #include <Vbroad_phase.h>
 #include <fmt/format.h>
@@ -193,7 +193,7 @@ class Run {
     total_.counters += spent;
   }
 
-  /// 0 if the answer is the model's: all of it in mode ALL; whether they meet, and no pair of leaves that the model
+  /// 0 if the answer is the model's: all of it in mode ALL; whether they meet, and no leaf pair that the model
   /// does not have, in mode FIRST.
   std::size_t compare(const Query& query, const Answer& answer, const Placed& image_a, const Placed& image_b,
                       bool counts) {
@@ -227,7 +227,7 @@ class Run {
     const Pairs seen(answer.leaf_pairs.begin(), answer.leaf_pairs.end());
     const bool whole = query.mode == QueryMode::all || expected.done.answer == QueryAnswer::no;
     if (whole) {
-      if (seen != leaves || answer.leaf_pairs.size() != lines.size()) wrong = "pairs of leaves";
+      if (seen != leaves || answer.leaf_pairs.size() != lines.size()) wrong = "leaf pairs";
       if (answer.done->steps != expected.done.steps) wrong = "steps";
     } else if (answer.done->answer == QueryAnswer::yes && !definite) {
       wrong = "no definite hit";
@@ -243,7 +243,7 @@ class Run {
   Settings settings_;
   std::unique_ptr<Device> device_;
   Totals total_;
-  std::uint64_t steps_alone_ = 0;  ///< of the model, which has one node pair under way
+  std::uint64_t steps_alone_ = 0;  ///< of the model, which has one node pair in flight
 };
 
 }  // namespace
@@ -264,7 +264,7 @@ int main(int argc, char** argv) {
   app.add_option("--beat-every", settings.memory.beat_every, "clocks from one beat to the next")->capture_default_str();
   app.add_flag("--reorder", settings.memory.reorder, "memory answers in any order");
   app.add_option("--at-once", settings.at_once, "queries that may be unanswered; 0: no limit")->capture_default_str();
-  app.add_option("--pairs-each", settings.pairs_each, "node pairs of a query under way")
+  app.add_option("--pairs-each", settings.pairs_each, "node pairs of a query in flight")
       ->check(CLI::Range(1, 7))
       ->capture_default_str();
   app.add_option("--lock", settings.lock, "lines of each image that stay in the cache")->capture_default_str();

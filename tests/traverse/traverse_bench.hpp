@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// cchip_broad_phase_axi between a memory that holds images and a receiver that tests pairs of leaves as the functional
+/// cchip_broad_phase_axi between a memory that holds images and a receiver that tests leaf pairs as the functional
 /// model does.
 #ifndef CCHIP_TESTS_TRAVERSE_BENCH_HPP
 #define CCHIP_TESTS_TRAVERSE_BENCH_HPP
@@ -33,7 +33,7 @@ struct MemoryOptions {
 };
 
 struct ReceiverOptions {
-  std::uint64_t transform = 28;  ///< clocks from a pair of leaves to the first axis of its first primitives
+  std::uint64_t transform = 28;  ///< clocks from a leaf pair to the first axis of its first primitives
   std::uint64_t ahead = 64;      ///< clocks of work that wait in front of the lane
   std::uint64_t first = 41;      ///< clocks from an axis to what becomes of it, of a pair's first one and of the others
   std::uint64_t others = 35;
@@ -43,7 +43,7 @@ struct ReceiverOptions {
   bool all_open = false;     ///< no hit is definite
 };
 
-/// What became of a query.
+/// Outcome of a query.
 struct Answer {
   std::optional<DoneRecord> done;
   std::vector<PairRecord> pairs;
@@ -144,7 +144,7 @@ class TraverseBench {
   void clear_counters() { counters_ = {}; }
   std::size_t unanswered() const { return open_ + waiting_.size(); }
 
-  /// Forgets everything under way.
+  /// Forgets everything in flight.
   void reset() {
     waiting_.clear();
     offering_ = false;
@@ -310,7 +310,7 @@ class TraverseBench {
       if (++beat_ == beats_of_line) burst_.reset();
     }
     if (m.invalidate_valid != 0 && m.invalidate_ready != 0) invalidate_.reset();
-    // pairs of leaves
+    // leaf pairs
     if (m.m_leaf_valid != 0) take_leaves(m, now);
     if (m.s_result_valid != 0 && m.s_result_ready != 0) given_.reset();
     // answers
@@ -339,7 +339,7 @@ class TraverseBench {
 
   static unsigned ones(unsigned x) { return (x & 1U) + (x >> 1U & 1U); }
 
-  /// The primitive tests of a pair of leaves: what the functional model says, after the clocks of a lane that takes an
+  /// The primitive tests of a leaf pair: what the functional model says, after the clocks of a lane that takes an
   /// axis per clock.
   void take_leaves(Model& m, std::uint64_t now) {
     const unsigned context = m.m_leaf_context;

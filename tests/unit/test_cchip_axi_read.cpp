@@ -79,10 +79,10 @@ class ReadBench {
     top_.limit = how.limit;
     silent_ = 0;
     how_.ready = how_.valid = 60;
-    for (int clock = 0; clock < 40000 && (open() != 0 || !owed_.empty() || model_.owes()); ++clock) step(0);
+    for (int clock = 0; clock < 40000 && (open() != 0 || !owed_.empty() || model_.any_outstanding()); ++clock) step(0);
     REQUIRE(open() == 0);
     for (int clock = 0; clock < 4; ++clock) step(0);
-    REQUIRE(top_.owes == 0);
+    REQUIRE(top_.any_outstanding == 0);
   }
 
   std::array<std::uint64_t, 4> answers{};  ///< of each code
@@ -175,7 +175,7 @@ class ReadBench {
     REQUIRE((1U << top_.m_axi_arsize) == 4 * words);
     REQUIRE(top_.m_axi_arburst == 1);
     REQUIRE((top_.m_axi_rready != 0) == model_.rready());
-    REQUIRE((top_.owes != 0) == model_.owes());
+    REQUIRE((top_.any_outstanding != 0) == model_.any_outstanding());
     for (std::size_t id = 0; id < clients * slots; ++id) {
       const bool outstanding = sim::get_bits(top_.outstanding, static_cast<int>(id), 1) != 0;
       REQUIRE(outstanding == model_.outstanding()[id]);
@@ -320,7 +320,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_axi_read: a beat on every clock; a silent bus end
       REQUIRE(first > static_cast<int>(limit));
       REQUIRE(timeouts == (taken ? ids : 1));
       REQUIRE(refused == (taken ? 0 : ids - 1));
-      REQUIRE(top.owes == 1);
+      REQUIRE(top.any_outstanding == 1);
     }
 
     // as fast as the bus

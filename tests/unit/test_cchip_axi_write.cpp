@@ -56,7 +56,7 @@ class WriteBench {
   /// \param most beats of a write
   void run(const Behaviour& how, int percent, int clocks, std::size_t most = beats) {
     most_ = most;
-    for (const bool whole : {false, true}) {  // reset also with writes under way
+    for (const bool whole : {false, true}) {  // reset also with writes in flight
       reset(how);
       for (int clock = 0; clock < (whole ? clocks : clocks / 8); ++clock) step(percent);
     }
@@ -66,10 +66,10 @@ class WriteBench {
     top_.limit = how.limit;
     silent_ = 0;
     how_.address = how_.data = how_.response = 60;
-    for (int clock = 0; clock < 40000 && (open() != 0 || model_.owes()); ++clock) step(0);
+    for (int clock = 0; clock < 40000 && (open() != 0 || model_.any_outstanding()); ++clock) step(0);
     REQUIRE(open() == 0);
     for (int clock = 0; clock < 8; ++clock) step(0);
-    REQUIRE(top_.owes == 0);
+    REQUIRE(top_.any_outstanding == 0);
     REQUIRE(top_.m_axi_awvalid == 0);
     REQUIRE(top_.m_axi_wvalid == 0);
     REQUIRE(addresses_.empty());
@@ -193,7 +193,7 @@ class WriteBench {
   }
 
   void begin_write(std::size_t c) {
-    // a line of its own, so that what memory holds tells what became of this write
+    // a line of its own, so that what memory holds tells outcome of this write
     std::uint64_t line = 0;
     do {
       line = random_() >> 6;
@@ -328,7 +328,7 @@ class WriteBench {
         REQUIRE(sim::get_bits(top_.m_axi_wdata, static_cast<int>(32 * w), 32) == (*data.data)[w]);
     }
     REQUIRE((top_.m_axi_bready != 0) == model_.bready());
-    REQUIRE((top_.owes != 0) == model_.owes());
+    REQUIRE((top_.any_outstanding != 0) == model_.any_outstanding());
   }
 
   sim::Simulation<typename Config::Model>& simulation_;
@@ -414,7 +414,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_axi_write: a beat on every clock; a silent bus en
       REQUIRE(timeouts >= 1);
       if (taken) REQUIRE(timeouts == std::min<int>(TestType::OUTSTANDING, writes));
       if (!taken) REQUIRE(timeouts <= 4);
-      REQUIRE(top.owes == 1);
+      REQUIRE(top.any_outstanding == 1);
     }
 
     // as fast as the bus

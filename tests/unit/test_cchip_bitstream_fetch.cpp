@@ -66,7 +66,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_fetch: every word in order, never more 
         REQUIRE(got[i] == word);
       }
       if (!stops) REQUIRE(memory.beats() - before == words);
-      simulation.run_until([&] { return top.owes == 0; }, 2000, "late beats");
+      simulation.run_until([&] { return top.outstanding == 0; }, 2000, "late beats");
       simulation.steps(3);
       REQUIRE(memory.owed() == 0);
       REQUIRE(top.m_valid == 0);

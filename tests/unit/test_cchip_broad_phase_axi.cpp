@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint32_t line_a = 0x1000;
 constexpr std::uint32_t line_b = 0x2000;
-constexpr std::size_t most_each = 7;  ///< node pairs of a query under way
+constexpr std::size_t most_each = 7;  ///< node pairs of a query in flight
 
 bvh::Image image_of(const Mesh& mesh) { return bvh::make_image(mesh, bvh::build_tree(mesh)); }
 
@@ -75,7 +75,7 @@ Pairs pairs_of(const std::vector<PairRecord>& records) {
   return pairs;
 }
 
-/// The answer is the model's; or the stack was full, to which every node pair under way adds.
+/// The answer is the model's; or the stack was full, to which every node pair in flight adds.
 template <class Machine>
 void check(const Machine& bench, const Query& query, const Answer& answer) {
   REQUIRE(answer.done);
@@ -247,7 +247,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: step limit, open pairs, full sta
       REQUIRE(answer.done->steps <= 7);
       if (answer.done->code == QueryCode::steps) {
         REQUIRE(answer.done->steps == 7);
-        // a query for the first hit may have gone on while its hit was under way
+        // a query for the first hit may have gone on while its hit was in flight
         if (queries[i].mode == QueryMode::all) REQUIRE(expected(bench.objects, queries[i]).counts.steps > 7);
         ++limited;
       } else {
@@ -345,7 +345,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: contexts start anew while result
   Broad<TestType> bench(random());
   bench.memory.latency = 5;
   std::vector<Query> queries;
-  while (queries.size() < 60) {  // in contact, with pairs of leaves that are not
+  while (queries.size() < 60) {  // in contact, with leaf pairs that are not
     Query query = bench.objects.query(random, QueryMode::first);
     if (expected(bench.objects, query).done.answer != QueryAnswer::yes) continue;
     queries.push_back(query);

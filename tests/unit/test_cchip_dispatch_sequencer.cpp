@@ -110,7 +110,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_dispatch_sequencer: a pair only from a queue that
     const std::uint64_t all = (std::uint64_t{1} << (Bench::queues * Bench::takers)) - 1;
     for (int part = 0; part < 40; ++part) {
       bench.serves = random() & all & (part % 2 == 0 ? all : random());
-      bench.served_before_ = true;  // what is under way when it changes
+      bench.served_before_ = true;  // what is in flight when it changes
       for (int i = 0; i < 8; ++i) bench.clock();
       bench.served_before_ = false;
       const int arrivals = static_cast<int>(random() % 60);

@@ -24,7 +24,7 @@ struct Behaviour {
   bool oldest;    ///< it answers in order, else in any
   bool together;  ///< its ports answer alike
   int ready;      ///< of the box test
-  int taken;      ///< a pair of leaves by its receiver
+  int taken;      ///< a leaf pair by its receiver
   int pose;       ///< a context that waits gets its pose
   int error;      ///< of a line: could not be read
   int wrong;      ///< of a line: a field is not what it should be
@@ -83,7 +83,7 @@ class GetDataBench {
       if (chance(random_, 30)) in_.lookup = random_() % places;
       step(static_cast<int>(random_() % 1000) < how.reset);
     }
-    how_.answer = how_.ready = how_.pose = how_.taken = 100;  // what is under way ends
+    how_.answer = how_.ready = how_.pose = how_.taken = 100;  // what is in flight ends
     how_.request = how_.reset = 0;
     for (int clock = 0; clock < 40 * static_cast<int>(places) && under_way() != 0; ++clock) {
       in_ = GetData::Inputs{};
@@ -184,7 +184,7 @@ class GetDataBench {
     GetData::Request request = header_request(context, place);
     if (!leaf && header_out_[context]) return std::nullopt;
     if (!leaf && (!has_header_[context] || random_() % 16 == 0)) {
-      // node pairs of the query before may still be under way; what is found out about them nobody asks
+      // node pairs of the query before may still be in flight; what is found out about them nobody asks
       header_out_[context] = true;
       return request;
     }

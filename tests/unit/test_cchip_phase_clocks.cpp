@@ -35,7 +35,7 @@ TEST_CASE("cchip_phase_clocks: clocks of the phases of random swaps", "[unit][cc
           simulation.step();
           clocks[phase] = clock;
           if (top.clear != 0) clocks.fill(0);
-          // the phase under way can be read as well
+          // the phase in progress can be read as well
           top.read_phase = static_cast<CData>(phase);
         }
         top.clear = 0;

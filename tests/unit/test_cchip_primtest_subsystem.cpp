@@ -413,7 +413,7 @@ CCHIP_CASE("a receiver that is gone does not stop a swap: the answers wait outsi
   });
 }
 
-CCHIP_CASE("pairs inside for longer than the limit: the slot goes on; by force they are left open and reported") {
+CCHIP_CASE("pairs inside for longer than the limit: the slot continues; by force they are left open and reported") {
   with_wave([](const sim::SimulationOptions& options) {
     for (const bool force : {false, true}) {
       System<TestType> s(options);

@@ -292,7 +292,7 @@ TEST_CASE("cchip_traversal: a step limit lowered below the steps of a query ends
       for (; clock < 4000 && !done; ++clock) {
         if (clock == 2000) in.limits.steps = below(random, 3);
         in.verdict.reset();
-        if (!places.empty()) {  // one child pair goes on for ever, the others on to the stack
+        if (!places.empty()) {  // one child pair continues for ever, the others on to the stack
           in.verdict.emplace();
           in.verdict->place = places.back();
           if (!header.at(places.back())) in.verdict->waiting = clock < 1000 && clock % 16 == 0 ? 3 : 1;

@@ -30,7 +30,7 @@ inline Line random_leaf(Random& random, bvh::NodeKind kind, int extent) {
   return encode(leaf, kind);
 }
 
-/// A pair of leaves with any kinds and extents; `corrupt` of 100 have an illegal one.
+/// A leaf pair with any kinds and extents; `corrupt` of 100 have an illegal one.
 inline model::LeafJob random_job(Random& random, int corrupt) {
   model::LeafJob job;
   job.query = random_query(random);
@@ -91,11 +91,11 @@ Vec3i get_point(const Port& port, int coord_w) {
   return {static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2])};
 }
 
-/// A sender that holds a pair of leaves until it is taken, and then shows another one at once or later.
+/// A sender that holds a leaf pair until it is taken, and then shows another one at once or later.
 class JobSource {
  public:
   explicit JobSource(int corrupt) : corrupt_(corrupt) {}
-  /// The pair of leaves of this clock, if any.
+  /// The leaf pair of this clock, if any.
   const model::LeafJob* next(Random& random, int percent) {
     if (!job_ && chance(random, percent)) job_ = random_job(random, corrupt_);
     return job_ ? &*job_ : nullptr;

@@ -14,7 +14,7 @@ namespace regs = registers;
 constexpr std::size_t tags = std::size_t{1} << defs::tag_w;
 constexpr std::size_t nobody = ~std::size_t{0};
 constexpr std::uint32_t swap_events = regs::interrupt_status::done_mask | regs::interrupt_status::error_mask;
-/// The driver goes on for this long after the last answer, to catch a surplus answer.
+/// The driver continues for this long after the last answer, to catch a surplus answer.
 constexpr int epilogue = 1000;
 
 class Run {

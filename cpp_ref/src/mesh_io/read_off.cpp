@@ -46,7 +46,7 @@ PolygonSoup read_off(std::string_view file) {
     for (std::size_t i = 1; i <= corners; ++i) soup.add_corner(lines.to_number(i), lines.number());
     soup.end_polygon(lines.number());
   }
-  if (lines.next()) throw FormatError("the file goes on after the last face that it announces", lines.number());
+  if (lines.next()) throw FormatError("the file continues after the last face that it announces", lines.number());
   return soup;
 }
 

@@ -246,7 +246,7 @@ PolygonSoup read_ply(std::string_view file) {
     }
   }
   if (!values->at_end()) {
-    throw FormatError("the file goes on after the last value that the header announces", values->line());
+    throw FormatError("the file continues after the last value that the header announces", values->line());
   }
   return soup;
 }

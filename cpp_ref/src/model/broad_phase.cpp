@@ -131,7 +131,7 @@ class Run {
     return {child(a_, pair.a, number / 4), child(b_, pair.b, number % 4)};
   }
 
-  /// Tests the children of a node pair, sends pairs of leaves on, and returns the child pair to go on with; the others
+  /// Tests the children of a node pair, sends leaf pairs on, and returns the child pair to go on with; the others
   /// wait on the stack.
   std::optional<NodePair> expand(const NodePair& pair) {
     if (result_.counts.steps >= options_.step_limit) throw Stop{QueryCode::steps};

@@ -156,7 +156,7 @@ Decision decide(const TraversalLimits& limits, const Occurrence& o) {
                                            : QueryAnswer::no,
                         d.state.steps, d.state.pairs};
   }
-  // a pair of leaves that is out may end a query for the first hit
+  // a leaf pair that is out may end a query for the first hit
   const bool hopes = live && d.state.mode == QueryMode::first && d.work != d.state.under_way;
   const unsigned pairs_each = std::max(limits.pairs_each, 1U);
   d.wants = d.state.active && d.state.entries != 0 && d.state.under_way < (hopes ? pairs_each / 2 : pairs_each);

@@ -192,7 +192,7 @@ class System : public sc_core::sc_module {
       tests_->ready(0, pairs[0].kind);
     }
     const unsigned loads_before = tests_->loads();
-    const sc_time start = sc_core::sc_time_stamp();  // NOLINT(performance-*): what is referred to goes on
+    const sc_time start = sc_core::sc_time_stamp();  // NOLINT(performance-*): what is referred to continues
     JobResult result;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (i == 0 || !ahead) tests_->request(i, pairs[i].kind);

@@ -42,8 +42,8 @@ struct CollisionRequest {
   };
   Counts counts = Counts::touching;
   /// Tell touching from crossing: fills CollisionResult::relation and Contact::relation, which Counts::crossing does in
-  /// any case. With Contacts::first the search goes on after a contact that only touches, until one crosses or none is
-  /// left.
+  /// any case. With Contacts::first the search continues after a contact that only touches, until one crosses or none
+  /// is left.
   bool relation = false;
 
   bool tells_relation() const { return relation || counts == Counts::crossing; }
@@ -130,8 +130,8 @@ class Device {
   void collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result);
 
   using QuerySource = std::function<CollisionQuery(std::size_t)>;
-  /// A function that takes the number of a query and its result. One that returns bool says whether the batch goes on;
-  /// after one that returns anything else, or nothing, it does.
+  /// A function that takes the number of a query and its result. One that returns bool says whether the batch
+  /// continues; after one that returns anything else, or nothing, it does.
   class ResultSink {
    public:
     template <class Function, class = std::enable_if_t<
@@ -145,7 +145,7 @@ class Device {
         goes_on_ = std::forward<Function>(function);
       }
     }
-    /// \returns whether the batch goes on
+    /// \returns whether the batch continues
     bool operator()(std::size_t number, const CollisionResult& result) const {
       if (!goes_on_) return asks_(number, result);
       goes_on_(number, result);

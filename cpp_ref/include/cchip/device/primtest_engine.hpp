@@ -32,7 +32,7 @@ class PrimtestMachine {
   virtual void clock() = 0;
 };
 
-/// Pairs for one machine, and who is told what became of them. Number n counts from 0.
+/// Pairs for one machine, and who is told their outcome. Number n counts from 0.
 struct PrimtestTraffic {
   std::size_t pairs = 0;
   /// Request n; no other pair in flight has its tag.

@@ -21,14 +21,14 @@ struct BroadPhaseOptions {
   std::uint32_t step_limit = 0xffffffff;    ///< node pairs
   std::uint32_t open_limit = 16;            ///< open pairs at which a FIRST query goes to the host
   std::mt19937_64* random_order = nullptr;  ///< visit node pairs in any order instead of the best first
-  /// If set: gets every pair of leaves whose boxes overlap, as lines of A and B.
+  /// If set: gets every leaf pair whose boxes overlap, as lines of A and B.
   std::vector<std::pair<std::uint32_t, std::uint32_t>>* leaf_pairs = nullptr;
 };
 
 struct BroadPhaseCounts {
   std::uint64_t steps = 0;            ///< node pairs expanded
   std::uint64_t box_tests = 0;        ///< pairs of children compared
-  std::uint64_t leaf_pairs = 0;       ///< pairs of leaves whose boxes overlap
+  std::uint64_t leaf_pairs = 0;       ///< leaf pairs whose boxes overlap
   std::uint64_t primitive_pairs = 0;  ///< sent to a primitive test
   std::uint64_t beats = 0;            ///< axes of the primitive tests
   std::uint64_t open_pairs = 0;       ///< hits that are not definite

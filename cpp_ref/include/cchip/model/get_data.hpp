@@ -66,7 +66,7 @@ class GetData {
     std::optional<Nodes> nodes;
   };
 
-  /// \param leaf_room pairs of leaves that their receiver has room for
+  /// \param leaf_room leaf pairs that their receiver has room for
   GetData(std::size_t contexts, std::size_t pairs, std::size_t leaves, int leaf_room = 1)
       : pairs_(pairs), places_(pairs + leaves), leaf_room_(leaf_room), room_left_(leaf_room) {
     const std::size_t places = pairs + leaves;

@@ -15,7 +15,7 @@
 
 namespace cchip::model {
 
-/// The unit of a pair of leaves is not finer than 2^(8 - 48): the error of a query is about 2^-30, and coordinates fit.
+/// The unit of a leaf pair is not finer than 2^(8 - 48): the error of a query is about 2^-30, and coordinates fit.
 inline constexpr int extent_least = 8;
 /// Bits of a signed coordinate in units.
 inline constexpr int moved_w = 45;

@@ -14,7 +14,7 @@
 
 namespace cchip::model {
 
-/// cchip_leaf_queue: pairs of leaves that wait for a primitive test, an entry for all of a node pair.
+/// cchip_leaf_queue: leaf pairs that wait for a primitive test, an entry for all of a node pair.
 class LeafQueue {
  public:
   /// The children of a node.

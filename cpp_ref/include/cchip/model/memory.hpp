@@ -65,7 +65,7 @@ class AxiRead {
   const std::optional<Answer>& answer() const { return answer_; }
   const std::optional<Address>& address() const { return address_; }
   bool rready() const { return rready_; }
-  bool owes() const { return owes_; }
+  bool any_outstanding() const { return any_outstanding_; }
   /// Of each ID: its address is on offer, or memory owes it a response.
   const std::vector<bool>& outstanding() const { return outstanding_; }
 
@@ -87,7 +87,8 @@ class AxiRead {
     const auto found = found_ ? (failing_ ? found_ : std::nullopt) : late(scan_) ? std::optional(scan_) : std::nullopt;
     const std::size_t scan = found_ ? scan_ : (scan_ + 1) % reads_.size();
     const auto place_beat = rready_ && in.beat && in.beat->id < reads_.size() ? in.beat : std::nullopt;
-    owes_ = address_ || taken_ || std::any_of(reads_.begin(), reads_.end(), [](const Read& read) { return read.owed; });
+    any_outstanding_ =
+        address_ || taken_ || std::any_of(reads_.begin(), reads_.end(), [](const Read& read) { return read.owed; });
 
     if (timeout_.expired()) {
       for (Read& read : reads_) read.ticks = read.live ? std::min(read.ticks + 1, 2) : 0;
@@ -170,7 +171,7 @@ class AxiRead {
     served_ = queues_.size() - 1;
     timeout_.clock(true, limit);
     scan_ = 0;
-    rready_ = owes_ = address_awaited_ = head_owed_ = was_dead_ = false;
+    rready_ = any_outstanding_ = address_awaited_ = head_owed_ = was_dead_ = false;
   }
 
  private:
@@ -236,7 +237,7 @@ class AxiRead {
   std::optional<std::size_t> issued_, taken_;  // on the last clock
   std::optional<Answer> answer_;
   Timeout timeout_{defs::memory_limit_default};
-  bool rready_ = false, owes_ = false;
+  bool rready_ = false, any_outstanding_ = false;
   std::size_t scan_ = 0;
   std::optional<std::size_t> found_;
   std::optional<Failure> failing_, failed_;
@@ -290,10 +291,10 @@ class AxiWrite {
   bool wvalid() const { return data_.m_valid(); }
   const Data& data() const { return data_.m_data(); }
   bool bready() const { return bready_; }
-  bool owes() const { return owes_; }
+  bool any_outstanding() const { return any_outstanding_; }
 
   void clock(const Inputs& in) {
-    // what becomes of the writes under way
+    // what becomes of the writes in flight
     const bool counts = response_ && addresses_taken_ != 0 && bursts_taken_ != 0;
     const bool answered = counts && dropped_ == 0;
     const bool timeout = !answered && !waiting_.empty() && waiting_.front().ticks == 2;
@@ -310,7 +311,7 @@ class AxiWrite {
     const Write write = writes_.m_valid() ? writes_.m_data() : Write{};
     const Data word = beats_.m_valid() ? beats_.m_data() : Data{};
 
-    owes_ = awaited || dropped_ != 0;
+    any_outstanding_ = awaited || dropped_ != 0;
     answer_.reset();
     if (refused) {
       answer_ = Answer{take_->client, WriteCode::owed};
@@ -435,7 +436,7 @@ class AxiWrite {
   bool bready_ = false;
   std::optional<Answer> answer_;
   Timeout timeout_{defs::memory_limit_default};
-  bool owes_ = false;
+  bool any_outstanding_ = false;
 };
 
 /// cchip_cache: lines of 64 bytes, two ways, two ports. Counts what its ports do on each clock.
@@ -521,7 +522,7 @@ class Cache {
     if (want[1] && !kill && !(want[0] && !favour_)) granted = 1;
     if (want[0] && want[1]) favour_ = !favour_;
 
-    // the lines under way: what they show on this clock
+    // the lines in flight: what they show on this clock
     const bool fills = arrived_.m_valid();
     const Arrived fill = fills ? arrived_.m_data() : Arrived{};
     const bool release = serving_ && !collect_ && !collected_ && !woken_;
@@ -731,7 +732,7 @@ class Cache {
     ReadCode code = ReadCode::ok;
     bool stale = false;
     std::array<Entry, 2> entries{};
-    std::array<bool, 2> holds{}, filled{};  // of the lines under way that the entries name
+    std::array<bool, 2> holds{}, filled{};  // of the lines in flight that the entries name
     bool match = false, wait = false;
     std::size_t wait_slot = 0;
     std::optional<std::size_t> victim;

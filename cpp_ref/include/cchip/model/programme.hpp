@@ -62,7 +62,7 @@ std::optional<State> following_beat(const Options& options, const State& state);
 /// What the verdict on nA (on nB) says, written to `sides`.
 void record_normal_a(Sides& sides, const Shape& shape, const Verdict& verdict);
 void record_normal_b(Sides& sides, const Shape& shape, const Verdict& verdict);
-/// First state of the programme that goes on with a pair when neither normal separates.
+/// First state of the programme that continues with a pair when neither normal separates.
 State plan(const Options& options, const Sides& sides, int beats);
 
 /// What follows a verdict: an outcome, or a state with the next beat, or (EXHAUSTIVE, not the last

@@ -84,7 +84,7 @@ struct GridVertex {
   }
 };
 
-/// A pair of leaves and the map of its query.
+/// A leaf pair and the map of its query.
 struct LeafJob {
   Query query;  ///< m, t, shift and error
   bvh::NodeKind kind_a = bvh::NodeKind::triangle;

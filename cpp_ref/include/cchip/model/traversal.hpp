@@ -16,7 +16,7 @@
 
 namespace cchip::model {
 
-/// cchip_traversal: from queries and verdicts to node pairs, pairs of leaves and answers.
+/// cchip_traversal: from queries and verdicts to node pairs, leaf pairs and answers.
 class Traversal {
  public:
   struct Shape {
@@ -31,7 +31,7 @@ class Traversal {
     TraversalLimits limits;  ///< of this clock; `stack` is that of the shape
     std::optional<TraversalEvents::QueryWords> query;
     bool start_ready = false;
-    std::optional<std::size_t> leaf_left;  ///< place of a pair of leaves that has left cchip_get_data
+    std::optional<std::size_t> leaf_left;  ///< place of a leaf pair that has left cchip_get_data
     std::optional<BoxVerdict> verdict;
     // what cchip_get_data knows of the place looked up last
     std::size_t lookup_context = 0;
@@ -49,8 +49,8 @@ class Traversal {
   struct Fetch {
     std::size_t place = 0;
     std::size_t context = 0;
-    std::optional<NodePair> pair;  ///< without: a pair of leaves
-    unsigned epoch = 0;            ///< of a pair of leaves
+    std::optional<NodePair> pair;  ///< without: a leaf pair
+    unsigned epoch = 0;            ///< of a leaf pair
     unsigned leaf_kind_a = 0, leaf_kind_b = 0;
     std::uint32_t line_a = 0, line_b = 0;  ///< from address 0
   };

@@ -110,7 +110,7 @@ struct Occurrence {
   bool over = false;   ///< the steps of its query have reached their limit
   QueryState state;
   QueryConstants constants;
-  std::uint32_t work = 0;  ///< node pairs and pairs of leaves of the epoch
+  std::uint32_t work = 0;  ///< node pairs and leaf pairs of the epoch
   BoxVerdict verdict;
   NodePair pair;
   NodeLines lines;
@@ -137,8 +137,8 @@ struct Decision {
   QueryState state;
   QueryConstants constants;
   std::uint32_t work = 0;
-  bool wants = false;            ///< the query may have another node pair of its stack under way
-  bool cancelled = false;        ///< a start: the epoch has something under way
+  bool wants = false;            ///< the query may have another node pair of its stack in flight
+  bool cancelled = false;        ///< a start: the epoch has something in flight
   std::optional<NodePair> goes;  ///< to the box test
   bool place_free = false;
   unsigned room = 0;   ///< entries of the leaf queue that are free again

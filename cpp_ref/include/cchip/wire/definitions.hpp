@@ -51,7 +51,7 @@ enum class SwapPhase : std::uint8_t {
 enum class SwapCode : std::uint8_t {
   ok = 0,  ///< the module asked for works
   same = 1,  ///< the slot held the module already: nothing done
-  busy = 2,  ///< a swap was under way: request refused
+  busy = 2,  ///< a swap was in progress: request refused
   request = 3,  ///< no such slot or module, no bitstream for it, or its address is not aligned: request refused
   magic = 4,  ///< not a bitstream; the slot works on with its former module
   slot = 5,  ///< bitstream for another slot; the slot works on
@@ -276,13 +276,13 @@ constexpr int array_place_latency() { return 3; }
 constexpr int array_wait_bound(int lanes) { return 16 * lanes; }
 /// DRAIN_BOUND of cchip_primtest_array [clock]
 constexpr int array_drain_bound(int s, int contexts, int lanes) { return drain_bound(s, contexts) + array_latency(lanes) + lanes * contexts; }
-/// cchip_vertex_transform with PASSES = p: from a pair of leaves to the first vertex [clock]
+/// cchip_vertex_transform with PASSES = p: from a leaf pair to the first vertex [clock]
 constexpr int vertex_transform_latency(int p) { return 15 + p; }
 /// cchip_vertex_transform: from launch to the first vertex of a pair of primitives [clock]
 constexpr int vertex_launch(int p) { return 15 - p; }
 /// cchip_normaliser with PASSES = p: from a vertex in to the same vertex out [clock]
 constexpr int normaliser_latency(int p) { return 3 * p + 14; }
-/// cchip_transform: from a pair of leaves to the first vertex [clock]
+/// cchip_transform: from a leaf pair to the first vertex [clock]
 constexpr int transform_latency(int p) { return vertex_transform_latency(p) + normaliser_latency(p); }
 /// axes of the exhaustive programme: nA, nB, every e_k x f_l: 11, 14, 18 (paper, eq. 1) [beat]
 constexpr int exhaustive_beats(int a, int b) { return 2 + a * b; }
@@ -393,7 +393,7 @@ constexpr Field swap_request_size = {48, 32};
 /// pairs not answered in time are given up
 constexpr Field swap_request_force = {80, 1};
 
-/// beat of s_report and m_report: what became of a request [bit]
+/// beat of s_report and m_report: outcome of a request [bit]
 constexpr int swap_report_w = 36;
 /// slot of the request
 constexpr Field swap_report_slot = {0, 8};

@@ -60,7 +60,7 @@ constexpr std::uint32_t offset = 0x010;
 constexpr std::uint32_t scheduler_enable_mask = 0x00000001;
 constexpr int scheduler_enable_shift = 0;
 constexpr std::uint32_t scheduler_enable_reset = 0x0;
-/// 1: abort the swap under way
+/// 1: abort the swap in progress
 constexpr std::uint32_t abort_mask = 0x00000002;
 constexpr int abort_shift = 1;
 constexpr std::uint32_t abort_reset = 0x0;

@@ -60,7 +60,7 @@ CCHIP_CHIP_PROBE(chip_transform, u_transform__DOT__u_normaliser__DOT__valid_q)
 CCHIP_CHIP_PROBE(
     chip_lane,
     u_slots__DOT__gen_slots__BRA__0__KET____DOT__u_slot__DOT__gen_partition__DOT__u_region__DOT__gen_test__DOT__u_test__DOT__u_controller__DOT__beat_valid_q)
-CCHIP_CHIP_PROBE(chip_read_owes, u_read__DOT__owes_q)
+CCHIP_CHIP_PROBE(chip_read_outstanding, u_read__DOT__any_outstanding_q)
 #undef CCHIP_CHIP_PROBE
 
 // Pairs inside slot n in bits [16n +: 16].
