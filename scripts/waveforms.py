@@ -51,9 +51,11 @@ def simulate(name):
     files = [ROOT / "rtl" / line.strip() for line in (ROOT / "rtl/cchip.f").read_text().splitlines() if line.strip().endswith(".v")]
     with tempfile.TemporaryDirectory() as folder:
         program = pathlib.Path(folder) / "bench.vvp"
-        subprocess.run([os.environ.get("IVERILOG") or "iverilog", "-g2005", "-I", ROOT / "rtl/include", "-s", "bench", "-o", program,
-                        ROOT / f"scripts/waves/{name}.v", *files], check=True)
-        subprocess.run(["vvp", "-n", program], check=True, cwd=folder, stdout=subprocess.DEVNULL, timeout=120)
+        for command in ([os.environ.get("IVERILOG") or "iverilog", "-g2005", "-I", ROOT / "rtl/include", "-s", "bench", "-o", program,
+                         ROOT / f"scripts/waves/{name}.v", *files], ["vvp", "-n", program]):
+            result = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=100)
+            if result.returncode or "Assert" in result.stdout:
+                raise SystemExit(f"waveforms.py: {name}.v: {command[0]} says\n{result.stdout}")
         return (pathlib.Path(folder) / "dump.vcd").read_text()
 
 
