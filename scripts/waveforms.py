@@ -6,6 +6,7 @@ usage: waveforms.py [--check] [NAME...]      NAME (default: all):
   pair    two pairs through cchip_primtest_tri_tri, the second overtakes, its result is stalled
   cache   a line through cchip_cache: miss, wait, hit
   read    a read of cchip_axi_read that times out, one that is refused, one that works
+  swap    a swap by cchip_config_controller in a simulated slot
 
 Runs scripts/waves/NAME.v with Icarus Verilog (command: IVERILOG) and reads the signals of its top from the clock on which its
 `show` is 1. A column is what a rising edge of clk sees; columns in which nothing changes are left out, with a gap for them.
@@ -43,18 +44,26 @@ WAVES = {
         ["m_axi", "m_axi_arvalid", "m_axi_rvalid", "m_axi_rready", "m_axi_rlast while m_axi_rvalid"],
         "outstanding",
         ["m", "m_valid", "m_beat while m_valid", "m_last while m_valid", "m_code while answered as ReadCode"]]),
+    "swap": ("A swap: TRI_QUAD into a slot that holds TRI_TRI", [
+        ["s_swap", "s_swap_valid", "s_swap_ready", "s_swap_module while s_swap_valid as ModuleId"],
+        "phase as SwapPhase",
+        ["memory", "m_axi_arvalid", "m_axi_rvalid"],
+        ["slot", "stop", "quiet", "decouple", "decoupled", "hold_reset", "roc_start", "roc_busy", "region_rm_id while coupled as ModuleId"],
+        ["port", "cfg_valid"],
+        ["m_report", "m_report_valid", "m_report_code while m_report_valid as SwapCode"]]),
 }
 
 
 def simulate(name):
     """The VCD of a bench."""
-    files = [ROOT / "rtl" / line.strip() for line in (ROOT / "rtl/cchip.f").read_text().splitlines() if line.strip().endswith(".v")]
+    files = [(ROOT / path).parent / line for path in ("rtl/cchip.f", "sim/rtl_models/sim.f")
+             for line in (ROOT / path).read_text().splitlines() if line.endswith(".v")]
     with tempfile.TemporaryDirectory() as folder:
         program = pathlib.Path(folder) / "bench.vvp"
         for command in ([os.environ.get("IVERILOG") or "iverilog", "-g2005", "-I", ROOT / "rtl/include", "-s", "bench", "-o", program,
                          ROOT / f"scripts/waves/{name}.v", *files], ["vvp", "-n", program]):
             result = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=100)
-            if result.returncode or "Assert" in result.stdout:
+            if result.returncode or "ASSERT failed" in result.stdout:
                 raise SystemExit(f"waveforms.py: {name}.v: {command[0]} says\n{result.stdout}")
         return (pathlib.Path(folder) / "dump.vcd").read_text()
 
