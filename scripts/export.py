@@ -185,12 +185,12 @@ create_clock -name clk -period {period} [get_ports clk]
 
 
 def page(path, exported):
-    """A page of docs/; links to what is not exported become text. `exported`: names of pages below docs/."""
+    """A page of docs/; links to what is not exported, and pictures, become text. `exported`: names of pages below docs/."""
     def keep(match):
         target = match.group(2).split("#")[0]
         name = os.path.relpath((path.parent / target).resolve(), ROOT / "docs") if target else ""
         return match.group(0) if not target or ":" in target or name in exported else match.group(1)
-    return re.sub(r"\[([^\]]*)\]\(([^)]*)\)", keep, path.read_text())
+    return re.sub(r"!?\[([^\]]*)\]\(([^)]*)\)", keep, path.read_text())
 
 
 def write_pages(folder, names):
