@@ -2,14 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Timing diagrams of docs/pictures from simulations: wave_NAME.json (WaveJSON) and wave_NAME.svg.
 
-usage: waveforms.py [--check] [NAME...]      NAME (default: all):
+usage: waveforms.py [--check] [--programs FOLDER] [NAME...]
+  --programs FOLDER  of cchip_query_vectors, for `query`, default build/release/bin
+  NAME               default: all
   pair    two pairs through cchip_primtest_tri_tri, the second overtakes, its result is stalled
   cache   a line through cchip_cache: miss, wait, hit
   read    a read of cchip_axi_read that times out, one that is refused, one that works
+  swap    a swap by cchip_config_controller in a simulated slot
+  query   a query through cchip_chip; a column is 100 clocks, values are numbers of events
 
 Runs scripts/waves/NAME.v with Icarus Verilog (command: IVERILOG) and reads the signals of its top from the clock on which its
 `show` is 1. A column is what a rising edge of clk sees; columns in which nothing changes are left out, with a gap for them.
 With --check nothing is written, and the exit code is 1 if a file is stale."""
+import argparse
 import json
 import os
 import pathlib
@@ -24,6 +29,7 @@ from pictures import BLUE, FOLDER, GREY, INK, PALE, Picture
 KEEP = 2  # a gap stands for at least so many clocks
 LEFT, TOP, ROW, COLUMN, GAP = 150, 56, 26, 22, 18  # pixels
 
+WINDOW = {"query": 100}  # clocks of a column that counts events
 # name: title, rows. A row: signal, or "signal while qualifier", whose value matters only while the qualifier is 1, or
 # "signal while qualifier as Enum" with names of scripts/definitions.json. A list begins with the group's name.
 WAVES = {
@@ -43,18 +49,38 @@ WAVES = {
         ["m_axi", "m_axi_arvalid", "m_axi_rvalid", "m_axi_rready", "m_axi_rlast while m_axi_rvalid"],
         "outstanding",
         ["m", "m_valid", "m_beat while m_valid", "m_last while m_valid", "m_code while answered as ReadCode"]]),
+    "swap": ("A swap: TRI_QUAD into a slot that holds TRI_TRI", [
+        ["s_swap", "s_swap_valid", "s_swap_ready", "s_swap_module while s_swap_valid as ModuleId"],
+        "phase as SwapPhase",
+        ["memory", "m_axi_arvalid", "m_axi_rvalid"],
+        ["slot", "stop", "quiet", "decouple", "decoupled", "hold_reset", "roc_start", "roc_busy", "region_rm_id while coupled as ModuleId"],
+        ["port", "cfg_valid"],
+        ["m_report", "m_report_valid", "m_report_code while m_report_valid as SwapCode"]]),
+    "query": ("A query: events in each 100 clocks from the doorbell on", [
+        ["memory", "read_beat", "write_beat"],
+        ["cache", "cache_miss", "cache_hit"],
+        ["pairs", "node_pair", "leaf_pair", "primitive_pair"],
+        "record"]),
 }
 
 
-def simulate(name):
+def simulate(name, programs):
     """The VCD of a bench."""
-    files = [ROOT / "rtl" / line.strip() for line in (ROOT / "rtl/cchip.f").read_text().splitlines() if line.strip().endswith(".v")]
+    files = [(ROOT / path).parent / line for path in ("rtl/cchip.f", "sim/rtl_models/sim.f")
+             for line in (ROOT / path).read_text().splitlines() if line.endswith(".v")]
     with tempfile.TemporaryDirectory() as folder:
         program = pathlib.Path(folder) / "bench.vvp"
+        more, plusargs = [], []
+        if name == "query":
+            more, plusargs = [ROOT / "tests/icarus/bench_chip.v"], ["+memory=memory.hex", "+records=records.hex"]
+            vectors = pathlib.Path(programs).resolve() / "cchip_query_vectors"
+            if not vectors.exists():
+                raise SystemExit(f"waveforms.py: no {vectors}, run: make build")
+            subprocess.run([vectors, "memory.hex", "records.hex"], cwd=folder, check=True)
         for command in ([os.environ.get("IVERILOG") or "iverilog", "-g2005", "-I", ROOT / "rtl/include", "-s", "bench", "-o", program,
-                         ROOT / f"scripts/waves/{name}.v", *files], ["vvp", "-n", program]):
+                         ROOT / f"scripts/waves/{name}.v", *more, *files], ["vvp", "-n", program, *plusargs]):
             result = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=100)
-            if result.returncode or "Assert" in result.stdout:
+            if result.returncode or "ASSERT failed" in result.stdout:
                 raise SystemExit(f"waveforms.py: {name}.v: {command[0]} says\n{result.stdout}")
         return (pathlib.Path(folder) / "dump.vcd").read_text()
 
@@ -107,20 +133,27 @@ def value(row, clock, names):
     return names[enum][int(bits, 2)] if enum else int(bits, 2)
 
 
-def wave_json(name):
+def wave_json(name, programs):
     """The text of wave_NAME.json."""
     definitions = json.loads((ROOT / "scripts/definitions.json").read_text())
     names = {}
     for enum in definitions["enums"]:
         names[enum["name"]] = {one["value"]: one["name"] for one in enum["values"]}
     title, rows = WAVES[name]
-    vcd = simulate(name)
+    vcd = simulate(name, programs)
     wide = {signal for bits, signal in re.findall(r"\$var \w+ (\d+) \S+ (\w+)", vcd) if bits != "1"}
     seen = list(clocks(vcd))
-    columns = [[value(row, clock, names) for row in leaves(rows)] for clock in seen]
+    window = WINDOW.get(name)
+    if window:  # the last column may be shorter
+        columns = [[sum(clock[row].count("1") for clock in seen[at:at + window]) or None for row in leaves(rows)]
+                   for at in range(0, len(seen), window)]
+    else:
+        columns = [[value(row, clock, names) for row in leaves(rows)] for clock in seen]
     if not columns:
         raise SystemExit(f"waveforms.py: {name}.v never sets show")
     moving = [at for at in range(len(columns)) if at in (0, len(columns) - 1) or columns[at] != columns[at - 1]]
+    if window:
+        moving = range(len(columns))
     shown = sorted({near for at in moving for near in (at - 1, at) if near >= 0})
     picks = []  # numbers of clocks; None is a gap
     for at in shown:
@@ -135,13 +168,13 @@ def wave_json(name):
             now = before if at is None else columns[at][index]
             if at is None:
                 wave += "|"
-            elif now == before:
+            elif now == before and not (window and now):
                 wave += "."
             elif now is None:
                 wave += "x"
-            elif signal in wide or enum:
+            elif window or signal in wide or enum:
                 wave += "="
-                data.append(now if enum else f"{now:#x}" if now > 9 else str(now))
+                data.append(now if enum else f"{now:#x}" if now > 9 and not window else str(now))
             else:
                 wave += str(now)
             before = now
@@ -152,10 +185,11 @@ def wave_json(name):
     def lines(rows):
         return [[row[0], *lines(row[1:])] if isinstance(row, list) else line(next(index), row) for row in rows]
 
-    signals = [{"name": "clk", "wave": "".join("|" if at is None else "p" if column == 0 else "." for column, at in enumerate(picks))}]
+    clk = "".join("|" if at is None else "p" if column == 0 else "." for column, at in enumerate(picks))
+    signals = [] if window else [{"name": "clk", "wave": clk}]
     for row in lines(rows):
         signals += [{}, row] if isinstance(row, list) else [row]
-    labels = " ".join("-" if at is None else str(at) for at in picks)
+    labels = " ".join("-" if at is None else str(at * (window or 1)) for at in picks)
     parts = [json.dumps(signal) for signal in signals]
     return ('{"head": {"text": ' + json.dumps(title) + ', "tock": ' + json.dumps(labels) + '},\n "signal": [\n  '
             + ",\n  ".join(parts).replace(", {\"name\"", ",\n    {\"name\"") + "]}\n")
@@ -164,7 +198,6 @@ def wave_json(name):
 def drawn(text):
     """The picture of such a text: what it uses of WaveJSON."""
     source = json.loads(text)
-    gaps = [label == "-" for label in source["head"]["tock"].split()]
     rows = []  # group or None, row or None for an empty line
     for entry in source["signal"]:
         group = isinstance(entry, list)
@@ -180,7 +213,9 @@ def drawn(text):
                 found.append([column, column + 1, sign, next(data) if sign == "=" else ""])
         return found
 
-    widths = [GAP if gap else COLUMN for gap in gaps]
+    labels = source["head"]["tock"].split()
+    gaps = [label == "-" for label in labels]
+    widths = [GAP if label == "-" else max(COLUMN, 7 * len(label) + 6) for label in labels]
     for _, row in rows:
         for begin, end, _, words in runs(row) if row else ():
             widths[begin] += max(0, 7 * len(words) + 10 - sum(widths[begin:end]))
@@ -190,7 +225,7 @@ def drawn(text):
     height = TOP + sum(ROW if row else ROW / 2 for _, row in rows) + 12
     picture = Picture(source["head"]["text"], round(edges[-1] + 14), round(height))
     picture.text(14, 24, source["head"]["text"], 14, weight="bold", anchor="start")
-    for column, label in enumerate(source["head"]["tock"].split()):
+    for column, label in enumerate(labels):
         middle = (edges[column] + edges[column + 1]) / 2
         picture.text(middle, TOP - 10, "..." if gaps[column] else label, 10, GREY)
         if gaps[column]:
@@ -226,18 +261,17 @@ def drawn(text):
 
 
 def main():
-    arguments = sys.argv[1:]
-    check = "--check" in arguments
-    chosen = [argument for argument in arguments if argument != "--check"] or list(WAVES)
-    if not set(chosen) <= set(WAVES):
-        print(__doc__, file=sys.stderr)
-        return 2
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter, usage=argparse.SUPPRESS)
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--programs", default=ROOT / "build/release/bin")
+    parser.add_argument("names", nargs="*", choices=[[], *WAVES], metavar="NAME")
+    options = parser.parse_args()
     fresh = {}
-    for name in chosen:
-        text = wave_json(name)
+    for name in options.names or WAVES:
+        text = wave_json(name, options.programs)
         fresh[FOLDER / f"wave_{name}.json"] = text
         fresh[FOLDER / f"wave_{name}.svg"] = drawn(text)
-    if check:
+    if options.check:
         return max(compare(path, text, "scripts/waveforms.py") for path, text in fresh.items())
     write(fresh)
     return 0
