@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The same random scenes through collisionchip.CollisionManager and trimesh.collision.CollisionManager over python-fcl.
 
-usage: beside_trimesh.py [SCENES]      (default 300; CCHIP_SEED repeats a run)
+usage: beside_trimesh.py [SCENES]      (default 2000; CCHIP_SEED repeats a run)
 
 Compares the names of in_collision_internal(), in_collision_single() and in_collision_other(), and the faces in contact of
 pairs of meshes that are not convex. Where the two differ, integers of any size decide over all pairs of faces. In half of
@@ -79,7 +79,7 @@ class Comparison:
 
 
 def main():
-    scenes = int(sys.argv[1]) if len(sys.argv) > 1 else 300
+    scenes = int(sys.argv[1]) if len(sys.argv) > 1 else 2000
     random = np.random.default_rng(SEED)
     flat, every = meshes()
     made = {id(mesh): collisionchip.Object(mesh.vertices, mesh.faces) for mesh in every}
