@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Objects, single queries and batches."""
+import os
 import pathlib
 import threading
 import time
@@ -212,6 +213,15 @@ def test_threads_at_once_and_the_gil_is_released():
         time.sleep(0.001)
     thread.join()
     assert ticks > 20 and refused > 0
+
+
+def test_a_child_process_continues_with_the_objects_of_its_parent():
+    batch = poses(np.random.default_rng(SEED), 500, 1)
+    expected = collide_many(TORUS, None, TORUS, batch)  # starts threads, which the child does not have
+    child = os.fork()
+    if child == 0:
+        os._exit(0 if (collide_many(TORUS, None, TORUS, batch) == expected).all() else 1)
+    assert os.waitpid(child, 0)[1] == 0
 
 
 def test_names():

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes."""
 import gc
+import threading
 import weakref
 
 import numpy as np
@@ -100,6 +101,28 @@ def test_exceptions_of_the_filter_and_changes_in_it():
         scene.find_touching()
     scene.set_filter(None)
     assert len(scene.touching()) == 2
+
+
+def test_a_change_during_a_query_of_another_thread():
+    scene, _ = row_of_cubes(3)
+    inside, go_on = threading.Event(), threading.Event()
+
+    def wait(a, b):
+        inside.set()
+        return go_on.wait(10)
+
+    scene.set_filter(wait)
+    found = []
+    thread = threading.Thread(target=lambda: found.extend(scene.touching()))
+    thread.start()
+    assert inside.wait(10)
+    with pytest.raises(RuntimeError, match="in use"):
+        scene.set_pose(1, shift(5))
+    assert len(scene) == 3  # reading is allowed
+    go_on.set()
+    thread.join()
+    assert len(found) == 2
+    scene.set_pose(1, shift(5))
 
 
 def test_a_filter_that_refers_to_its_scene_is_collected():
