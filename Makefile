@@ -39,7 +39,7 @@ export JOBS
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv docs peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb export fpga \
+  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb wheel test-python bench-python export fpga \
   fpga-quick asic asic-quick install clean
 
 help: ## list the targets
@@ -241,6 +241,26 @@ bench-robot: $(RELEASE)/build.ninja robots ## collision checks per second of rob
 bench-scene: $(RELEASE)/build.ninja ## frames of scenes of 10 to 10,000 moving objects: cchip::Scene and FCL's manager in turns (two minutes)
 	cmake --build $(RELEASE) -j $(JOBS) --target scene_speed
 	$(RELEASE)/bin/scene_speed $(BENCH_ARGS)
+
+# pip brings scikit-build-core and nanobind, of the versions that python/pyproject.toml names.
+wheel: | bootstrap ## build the Python package, a wheel in build/wheel (build tools from PyPI)
+	test -x build/python/tools/bin/pip || python3 -m venv build/python/tools || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	rm -rf build/wheel
+	CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) build/python/tools/bin/pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir build/wheel ./python
+	@ls build/wheel/*.whl
+
+# a fresh environment below build: what a user gets who installs the wheel
+build/python/venv/installed: wheel python/tests/requirements.txt
+	python3 -m venv --clear build/python/venv
+	build/python/venv/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement python/tests/requirements.txt build/wheel/*.whl
+	touch $@
+
+test-python: build/python/venv/installed ## test the Python package; the same scenes through trimesh over python-fcl (PyPI; CCHIP_SEED repeats a run)
+	build/python/venv/bin/python -m pytest --quiet -p no:cacheprovider python/tests
+	build/python/venv/bin/python python/tests/beside_trimesh.py
+
+bench-python: build/python/venv/installed ## collide_many() and CollisionManager beside python-fcl and trimesh over it (a minute)
+	build/python/venv/bin/python python/tests/bench.py
 
 # clock of the chip, MHz: row chip in docs/hardware/fpga.md
 CHIP_MHZ ?= 50

@@ -31,15 +31,19 @@ std::array<Bounds, directions.size()> positions(const Vec3d& point) {
 
 }  // namespace
 
-Dop26 make_dop26(const Primitive& p) {
+Dop26 make_dop26(const Vec3d& point) {
+  const auto at = positions(point);
   Dop26 dop;
-  for (std::size_t i = 0; i < p.vertex_count(); ++i) {
-    const auto at = positions(p.v[i]);
-    for (std::size_t d = 0; d < directions.size(); ++d) {
-      dop.least[d] = i == 0 ? at[d].least : std::min(dop.least[d], at[d].least);
-      dop.greatest[d] = i == 0 ? at[d].greatest : std::max(dop.greatest[d], at[d].greatest);
-    }
+  for (std::size_t d = 0; d < directions.size(); ++d) {
+    dop.least[d] = at[d].least;
+    dop.greatest[d] = at[d].greatest;
   }
+  return dop;
+}
+
+Dop26 make_dop26(const Primitive& p) {
+  Dop26 dop = make_dop26(p.v[0]);
+  for (std::size_t i = 1; i < p.vertex_count(); ++i) dop = enclose(dop, make_dop26(p.v[i]));
   return dop;
 }
 

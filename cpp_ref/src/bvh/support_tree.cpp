@@ -50,22 +50,39 @@ double sum_slack(const Vec3d& centre, double unit) {
   return 0x1p-49 * (centre.cwiseAbs().sum() + 4.0 * support_most * unit) + 0x1p-1060;
 }
 
-SupportLine make_line(const Dop26& dop, const Vec3d& centre, double unit, NodeRef ref) {
-  SupportLine line;
-  const double slack = sum_slack(centre, unit);
-  for (const Word& w : words()) {
-    const double at = along(directions[w.direction], centre);
-    const double reach = (w.negative ? at - dop.least[w.direction] : dop.greatest[w.direction] - at) + slack;
-    // The division and its operands are off by a few units in the last place of a number below 2^16.
-    const double steps = reach / (w.length * unit) + 0x1p-30;
-    // The object lies in the ball, so the bound may be cut off there. An overflow leaves the ball, too.
-    const double most = support_most;
-    line.word[w.word] = static_cast<std::int16_t>(steps < most ? std::max(std::ceil(steps), -most) : most);
+/// Makes the lines of an object.
+class LineMaker {
+ public:
+  LineMaker(const Vec3d& centre, double unit) : slack_(sum_slack(centre, unit)) {
+    for (const Word& w : words()) {
+      centre_[w.word] = along(directions[w.direction], centre);
+      step_[w.word] = w.length * unit;
+    }
   }
-  const std::uint32_t bits = ref.bits();
-  std::memcpy(&line.word[6], &bits, sizeof bits);
-  return line;
-}
+
+  SupportLine line(const Dop26& dop, NodeRef ref) const {
+    SupportLine line;
+    for (const Word& w : words()) {
+      const double at = centre_[w.word];
+      const double reach = (w.negative ? at - dop.least[w.direction] : dop.greatest[w.direction] - at) + slack_;
+      // The division and its operands are off by a few units in the last place of a number below 2^16.
+      const double steps = reach / step_[w.word] + 0x1p-30;
+      // The object lies in the ball, so the bound may be cut off there. An overflow leaves the ball, too.
+      const double most = support_most;
+      const double cut = steps < most ? std::max(steps, -most) : most;
+      const int whole = static_cast<int>(cut);  // towards zero; ceil() would be a call
+      line.word[w.word] = static_cast<std::int16_t>(whole + (whole < cut ? 1 : 0));
+    }
+    const std::uint32_t bits = ref.bits();
+    std::memcpy(&line.word[6], &bits, sizeof bits);
+    return line;
+  }
+
+ private:
+  double slack_;
+  std::array<double, support_words> centre_ = {};
+  std::array<double, support_words> step_ = {};
+};
 
 NodeRef ref_of(const TreeNode& node) {
   // The root has no line, so the children of node n begin at the line one before their number.
@@ -90,7 +107,7 @@ void* allocate_bytes(std::size_t bytes) {
   return memory;
 }
 
-SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : faces_(tree.faces) {
+SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : depth_(tree.depth), faces_(tree.faces) {
   const Dop26& all = tree.nodes.front().dop;
   for (std::size_t k = 0; k < 3; ++k) {
     centre_[static_cast<Eigen::Index>(k)] = all.least[k] / 2 + all.greatest[k] / 2;
@@ -108,10 +125,11 @@ SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : faces_(tree.faces
   root_ = ref_of(tree.nodes.front());
   size_ = tree.nodes.size() - 1;
   lines_.reserve(size_ + 4);
+  const LineMaker maker(centre_, unit_);
   for (std::size_t n = 1; n < tree.nodes.size(); ++n) {
-    lines_.push_back(make_line(tree.nodes[n].dop, centre_, unit_, ref_of(tree.nodes[n])));
+    lines_.push_back(maker.line(tree.nodes[n].dop, ref_of(tree.nodes[n])));
   }
-  lines_.push_back(make_line(all, centre_, unit_, root_));
+  lines_.push_back(maker.line(all, root_));
   whole_words_ = lines_.back().word;
   extent_ = centre_.cwiseAbs().maxCoeff() + support_most * unit_;
   for (std::size_t k = 0; k < 3; ++k) half_[k] = unit_ * std::max(whole_words_[2 * k], whole_words_[2 * k + 1]);
@@ -131,6 +149,27 @@ SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : faces_(tree.faces
       }
     }
   }
+}
+
+Tree SupportTree::topology() const {
+  Tree tree;
+  tree.faces = faces_;
+  tree.depth = depth_;
+  tree.nodes.resize(size_ + 1);
+  const auto node_of = [](NodeRef ref) {
+    TreeNode node;
+    node.count = static_cast<std::uint8_t>(ref.count());
+    node.first = ref.first();
+    if (ref.is_leaf()) {
+      node.kind = ref.is_quad() ? NodeKind::quad : ref.count() == 2 ? NodeKind::two_triangles : NodeKind::triangle;
+    } else {
+      node.first += 1;  // see ref_of()
+    }
+    return node;
+  };
+  tree.nodes[0] = node_of(root_);
+  for (std::size_t n = 1; n < tree.nodes.size(); ++n) tree.nodes[n] = node_of(lines_[n - 1].ref());
+  return tree;
 }
 
 Dop26 dop_of(const SupportTree& tree, const SupportLine& line) {

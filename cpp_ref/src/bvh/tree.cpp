@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cchip/bvh/tree.hpp>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -47,6 +48,22 @@ int ceil_log2(std::size_t n) {
   return bits;
 }
 
+/// Areas may become infinite within 2^1000; a split then falls back to the median.
+void check_vertices(const Mesh& mesh) {
+  // NaN is not at most 2^1000.
+  const auto is_good = [](const Vec3d& v) {
+    return std::abs(v[0]) <= 0x1p1000 && std::abs(v[1]) <= 0x1p1000 && std::abs(v[2]) <= 0x1p1000;
+  };
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const Mesh::Face& face = mesh.faces[i];
+    for (std::size_t v = 0; v < static_cast<std::size_t>(face.kind); ++v) {
+      if (is_good(mesh.vertices[face.vertex[v]])) continue;
+      throw std::invalid_argument("face " + std::to_string(i) + ": vertex " + std::to_string(v) +
+                                  " is not finite or beyond 2^1000; scale the mesh");
+    }
+  }
+}
+
 Item make_item(const Mesh& mesh, std::size_t face) {
   const Primitive p = mesh.primitive(face);
   Item item;
@@ -54,11 +71,6 @@ Item make_item(const Mesh& mesh, std::size_t face) {
   item.kind = p.kind;
   item.centre = Vec3d::Zero();
   for (std::size_t i = 0; i < p.vertex_count(); ++i) {
-    // Areas may become infinite within 2^1000; the split then falls back to the median.
-    if (!p.v[i].allFinite() || p.v[i].cwiseAbs().maxCoeff() > 0x1p1000) {
-      throw std::invalid_argument("face " + std::to_string(face) + ": vertex " + std::to_string(i) +
-                                  " is not finite or beyond 2^1000; scale the mesh");
-    }
     item.box.add({p.v[i], p.v[i]});
     item.centre += p.v[i] / static_cast<double>(p.vertex_count());
   }
@@ -239,15 +251,25 @@ class Builder {
   std::vector<BinaryNode> nodes_;
 };
 
-/// Children come behind their parent, so one pass from the end sees them first.
+/// Children come behind their parent, so one pass from the end sees them first. Faces share vertices, whose positions
+/// on the directions are the larger part of the work, so these come first.
 void enclose_all(Tree& tree, const Mesh& mesh) {
+  std::vector<Dop26> points;
+  points.reserve(mesh.vertices.size());
+  for (const Vec3d& vertex : mesh.vertices) points.push_back(make_dop26(vertex));
   for (std::size_t i = tree.nodes.size(); i-- > 0;) {
     TreeNode& node = tree.nodes[i];
-    for (std::size_t k = 0; k < node.count; ++k) {
-      const std::size_t part = node.first + k;
-      const Dop26 dop =
-          node.kind == NodeKind::inner ? tree.nodes[part].dop : make_dop26(mesh.primitive(tree.faces[part]));
-      node.dop = k == 0 ? dop : enclose(node.dop, dop);
+    const bool inner = node.kind == NodeKind::inner;
+    node.dop = inner ? tree.nodes[node.first].dop : points[mesh.faces[tree.faces[node.first]].vertex[0]];
+    for (std::size_t k = inner ? 1 : 0; k < node.count; ++k) {
+      if (inner) {
+        node.dop = enclose(node.dop, tree.nodes[node.first + k].dop);
+        continue;
+      }
+      const Mesh::Face& face = mesh.faces[tree.faces[node.first + k]];
+      for (std::size_t v = 0; v < static_cast<std::size_t>(face.kind); ++v) {
+        node.dop = enclose(node.dop, points[face.vertex[v]]);
+      }
     }
   }
 }
@@ -262,9 +284,20 @@ Tree build_tree(const Mesh& mesh, const TreeOptions& options) {
                                 " faces: cut it into objects of at most " + std::to_string(most));
   }
   check_faces(mesh);
+  check_vertices(mesh);
   Tree tree = Builder(mesh, options).collapse();
   enclose_all(tree, mesh);
   return tree;
+}
+
+void refit(Tree& tree, const Mesh& mesh) {
+  if (mesh.faces.size() != tree.faces.size()) {
+    throw std::invalid_argument("mesh " + mesh.name + " has " + std::to_string(mesh.faces.size()) +
+                                " faces, the tree was built over " + std::to_string(tree.faces.size()));
+  }
+  check_faces(mesh);
+  check_vertices(mesh);
+  enclose_all(tree, mesh);
 }
 
 }  // namespace cchip::bvh

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cchip/collide/collide.hpp>
 #include <cchip/collide/face_pairs.hpp>
+#include <cchip/exact/posed_pairs.hpp>
+#include <map>
+#include <numeric>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "float_mode.hpp"
@@ -31,6 +36,29 @@ Object::Object(Mesh mesh) {
   check_float_mode();
   bvh::SupportTree tree(mesh, bvh::build_tree(mesh));
   data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(tree)});
+}
+
+Object::Object(Mesh mesh, const bvh::Tree& tree) {
+  bvh::SupportTree support(mesh, tree);
+  data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(support)});
+}
+
+Object Object::moved(std::vector<Vec3d> vertices) const {
+  check_float_mode();
+  Mesh mesh;
+  const Mesh& old = this->mesh();
+  if (vertices.size() != old.vertices.size()) {
+    throw std::invalid_argument("moved: " + std::to_string(vertices.size()) + " vertices, the object has " +
+                                std::to_string(old.vertices.size()));
+  }
+  mesh.name = old.name;
+  mesh.vertices = std::move(vertices);
+  mesh.faces = old.faces;
+  mesh.polygons_cut = old.polygons_cut;
+  mesh.file_face = old.file_face;
+  bvh::Tree tree = data_->tree.topology();
+  bvh::refit(tree, mesh);
+  return {std::move(mesh), tree};
 }
 
 Device::Device() { check_float_mode(); }
@@ -96,6 +124,60 @@ std::vector<CollisionResult> collide(Device& device, const std::vector<Collision
                                      const CollisionRequest& request) {
   return gather(
       device, queries.size(), [&queries](std::size_t i) { return queries[i]; }, request);
+}
+
+std::vector<Contact> self_contacts(const Object& object, std::size_t most_contacts) {
+  check_float_mode();
+  if (object.id() == nullptr)
+    throw std::invalid_argument("self_contacts: the Object was moved from; use the other one");
+  if (most_contacts == 0)
+    throw std::invalid_argument("self_contacts: most_contacts is 0: ask for at least one contact");
+  const Mesh& mesh = object.mesh();
+  // Vertices at one position have one number.
+  std::vector<std::uint32_t> order(mesh.vertices.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto before = [&mesh](std::uint32_t i, std::uint32_t k) {
+    const Vec3d& p = mesh.vertices[i];
+    const Vec3d& q = mesh.vertices[k];
+    return std::tie(p.x(), p.y(), p.z()) < std::tie(q.x(), q.y(), q.z());
+  };
+  std::sort(order.begin(), order.end(), before);
+  std::vector<std::uint32_t> number(order.size());
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    number[order[i]] = number[order[i - 1]] + (before(order[i - 1], order[i]) ? 1U : 0U);
+  }
+  const auto are_neighbours = [&](const Mesh::Face& f, const Mesh::Face& g) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(f.kind); ++i) {
+      for (std::size_t k = 0; k < static_cast<std::size_t>(g.kind); ++k) {
+        if (number[f.vertex[i]] == number[g.vertex[k]]) return true;
+      }
+    }
+    return false;
+  };
+  const PosedPairs pairs(Pose::Identity(), Pose::Identity());
+  std::map<Contact, Relation> found;
+  try {
+    sweep_box_pairs(mesh, mesh, [&](CandidatePair pair) {
+      if (pair.face_a >= pair.face_b || are_neighbours(mesh.faces[pair.face_a], mesh.faces[pair.face_b])) return;
+      const auto file_face = [&mesh](std::uint32_t face) {
+        return mesh.file_face.empty() ? face : mesh.file_face[face];
+      };
+      const auto [low, high] = std::minmax({file_face(pair.face_a), file_face(pair.face_b)});  // by value
+      if (low == high) return;                                                                 // parts of one polygon
+      const Primitive a = mesh.primitive(pair.face_a);
+      const Primitive b = mesh.primitive(pair.face_b);
+      if (!pairs.decide(a, b).hit) return;
+      const Relation relation = pairs.cross(a, b) ? Relation::crossing : Relation::touching;
+      Relation& known = found.emplace(Contact{low, high, {}}, relation).first->second;
+      known = std::max(known, relation);
+      if (found.size() == most_contacts) throw Enough();
+    });
+  } catch (const Enough&) {  // NOLINT: it is no error
+  }
+  std::vector<Contact> contacts;
+  contacts.reserve(found.size());
+  for (const auto& [faces, relation] : found) contacts.push_back({faces.face_a, faces.face_b, relation});
+  return contacts;
 }
 
 }  // namespace cchip

@@ -79,7 +79,9 @@ class Chip {
 struct Stored {
   explicit Stored(const Object& of) : object(of) {
     try {
-      image = bvh::make_image(of.mesh(), bvh::build_tree(of.mesh()));
+      bvh::Tree tree = of.tree().topology();
+      bvh::refit(tree, of.mesh());
+      image = bvh::make_image(of.mesh(), tree);
       header = image->header();
     } catch (const std::invalid_argument&) {  // more lines than an image holds
     }

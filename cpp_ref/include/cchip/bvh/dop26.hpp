@@ -38,6 +38,7 @@ struct Dop26 {
 
 /// The smallest 26-DOP of the hull of the vertices, up to rounding: at most two units in the last place of the sums.
 Dop26 make_dop26(const Primitive& p);
+Dop26 make_dop26(const Vec3d& point);
 
 /// The smallest 26-DOP that contains both.
 Dop26 enclose(const Dop26& p, const Dop26& q);

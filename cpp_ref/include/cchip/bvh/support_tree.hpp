@@ -100,6 +100,9 @@ class SupportTree {
   /// \param tree of this mesh
   SupportTree(const Mesh& mesh, const Tree& tree);
 
+  /// The nodes that the tree was made from, without their volumes, which refit() computes from a mesh.
+  Tree topology() const;
+
   const Vec3d& centre() const { return centre_; }
   /// Length of a unit; at least 2^-1000.
   double unit() const { return unit_; }
@@ -130,6 +133,7 @@ class SupportTree {
   std::array<double, 3> half_;
   std::array<std::int16_t, support_words> whole_words_;
   NodeRef root_;
+  int depth_;
   std::size_t size_;
   std::vector<SupportLine, LargePages<SupportLine>> lines_;
   std::vector<float, LargePages<float>> vertices_;

@@ -197,6 +197,15 @@ std::vector<CollisionResult> collide(Device& device, const Object& a, const Obje
 std::vector<CollisionResult> collide(Device& device, const std::vector<CollisionQuery>& queries,
                                      const CollisionRequest& request = {});
 
+/// Pairs of faces of one object that share a point and are no neighbours: they have no vertex in common, by its
+/// position. Ascending, face_a < face_b, none twice, each with its relation; faces that were cut count as one. For a
+/// check of a mesh or of a deformed body; it takes the time of sweeping the boxes of all faces.
+/// \param most_contacts the search ends once this many are found
+/// \throws std::invalid_argument the object was moved from, or most_contacts is 0
+/// \throws std::runtime_error the calling thread flushes small numbers to zero
+std::vector<Contact> self_contacts(const Object& object,
+                                   std::size_t most_contacts = std::numeric_limits<std::size_t>::max());
+
 }  // namespace cchip
 
 #endif

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The interface of trimesh.collision.CollisionManager over Scene. trimesh itself is not needed."""
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ._core import Device, Object, Result, Scene
+
+_EXTERNAL = "__external"  # trimesh's name for the object of in_collision_single()
+_NO_DISTANCE = ("collisionchip has no distances: it answers exactly whether surfaces touch. Use "
+                "trimesh.collision.CollisionManager for this call")
+
+
+class ContactData:
+    """Two faces in contact."""
+
+    def __init__(self, names: tuple[Any, Any], faces: tuple[int, int]) -> None:
+        self.names = set(names)
+        self._faces = dict(zip(names, faces))
+
+    def index(self, name: Any) -> int:
+        """The number of the face of the object with this name."""
+        return self._faces[name]
+
+    @property
+    def normal(self) -> Any:
+        """Not offered: raises NotImplementedError."""
+        raise NotImplementedError("collisionchip has no contact normals: it answers which faces touch")
+
+    @property
+    def point(self) -> Any:
+        """Not offered: raises NotImplementedError."""
+        raise NotImplementedError("collisionchip has no contact points: it answers which faces touch")
+
+    @property
+    def depth(self) -> Any:
+        """Not offered: raises NotImplementedError."""
+        raise NotImplementedError("collisionchip has no penetration depth: it answers which faces touch")
+
+
+class CollisionManager:
+    """Named objects with transforms, and which of them collide: the interface of trimesh.collision.CollisionManager.
+
+    A mesh is an Object, or anything with `vertices`, (n, 3) float, and `faces`, (m, 3) or (m, 4) integers, such as a
+    trimesh.Trimesh. All meshes are surfaces, while trimesh makes a solid of one that is convex: here an object wholly
+    inside another does not collide with it. Transforms are float64, (4, 4) or (3, 4), and any affine map.
+
+    device: who answers, see open_device(); by default the CPU with all cores.
+    """
+
+    def __init__(self, device: Device | None = None) -> None:
+        self._scene = Scene()
+        self._ids: dict[Any, int] = {}
+        self._names: dict[int, Any] = {}
+        self._device = device
+
+    def add_object(self, name: Any, mesh: Any, transform: Any = None) -> Object:
+        """Adds a mesh, or replaces the one of this name. Returns the Object that was made of the mesh; to add one mesh
+        many times, pass this Object.
+
+        name: anything hashable.
+        transform: (4, 4) float; None is the identity.
+
+        Raises ValueError: as Object and collide().
+        """
+        made = _to_object(mesh)
+        number = self._scene.add(made, transform)
+        if name in self._ids:
+            self.remove_object(name)
+        self._ids[name] = number
+        self._names[number] = name
+        return made
+
+    def remove_object(self, name: Any) -> None:
+        """Takes an object out. Raises ValueError: no object has this name."""
+        number = self._id(name)
+        self._scene.remove(number)
+        del self._ids[name], self._names[number]
+
+    def set_transform(self, name: Any, transform: Any) -> None:
+        """Moves an object. transform: (4, 4) float. Raises ValueError: no object has this name, or as collide()."""
+        self._scene.set_pose(self._id(name), transform)
+
+    def in_collision_single(self, mesh: Any, transform: Any = None, return_names: bool = False,
+                            return_data: bool = False) -> Any:
+        """Does a mesh that is not in the manager collide with any object of it?
+
+        Returns a bool; with return_names the set of names of the objects that it collides with; with return_data a list
+        of ContactData, in which the mesh has the name "__external". With one of the two a tuple of two, with both a
+        tuple of three.
+        """
+        made = _to_object(mesh)
+        if not (return_names or return_data):
+            return self._scene.find_touching(made, transform, device=self._device) is not None
+        found = self._scene.touching(made, transform, contacts=_wanted(return_data), device=self._device)
+        named = [((_EXTERNAL, self._names[number]), result) for number, result in found]
+        return _answer({names[1] for names, _ in named}, named, return_names, return_data)
+
+    def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
+        """Does any object of the manager collide with another one?
+
+        Returns as in_collision_single(); the names are pairs, each in alphabetical order.
+        """
+        if not (return_names or return_data):
+            return self._scene.find_touching(device=self._device) is not None
+        found = self._scene.touching(contacts=_wanted(return_data), device=self._device)
+        named = [((self._names[a], self._names[b]), result) for a, b, result in found]
+        return _answer({tuple(sorted(names)) for names, _ in named}, named, return_names, return_data)
+
+    def in_collision_other(self, other_manager: CollisionManager, return_names: bool = False,
+                           return_data: bool = False) -> Any:
+        """Does any object of this manager collide with one of another manager?
+
+        Returns as in_collision_single(); the names are pairs, the one of this manager first. If both managers use a
+        name, ContactData.index() of that name is the face of the other manager's object, as in trimesh.
+        """
+        named = []
+        for number, name in self._names.items():
+            place = (self._scene.object(number), self._scene.pose(number))
+            if not (return_names or return_data):
+                if other_manager._scene.find_touching(*place, device=self._device):
+                    return True
+                continue
+            found = other_manager._scene.touching(*place, contacts=_wanted(return_data), device=self._device)
+            named += [((name, other_manager._names[other]), result) for other, result in found]
+        return _answer({names for names, _ in named}, named, return_names, return_data)
+
+    def min_distance_single(self, mesh: Any, transform: Any = None, return_name: bool = False,
+                            return_data: bool = False) -> Any:
+        """Not offered: raises NotImplementedError."""
+        raise NotImplementedError(_NO_DISTANCE)
+
+    def min_distance_internal(self, name: Any = None, return_names: bool = False, return_data: bool = False) -> Any:
+        """Not offered: raises NotImplementedError."""
+        raise NotImplementedError(_NO_DISTANCE)
+
+    def min_distance_other(self, other_manager: CollisionManager, return_names: bool = False,
+                           return_data: bool = False) -> Any:
+        """Not offered: raises NotImplementedError."""
+        raise NotImplementedError(_NO_DISTANCE)
+
+    def _id(self, name: Any) -> int:
+        if name not in self._ids:
+            raise ValueError(f"{name} not in collision manager!")
+        return self._ids[name]
+
+
+def _to_object(mesh: Any) -> Object:
+    return mesh if isinstance(mesh, Object) else Object(np.asarray(mesh.vertices), np.asarray(mesh.faces))
+
+
+def _wanted(return_data: bool) -> str:
+    return "all" if return_data else "first"
+
+
+def _answer(names: set[Any], found: list[tuple[tuple[Any, Any], Result]], return_names: bool, return_data: bool) -> Any:
+    """What trimesh returns: a bool, and what was asked for."""
+    answer: list[Any] = [bool(found)]
+    if return_names:
+        answer.append(names)
+    if return_data:
+        answer.append([ContactData(pair, (int(a), int(b))) for pair, result in found for a, b in result.contacts])
+    return tuple(answer) if len(answer) > 1 else answer[0]

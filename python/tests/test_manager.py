@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""CollisionManager: names, arguments and return values of trimesh's."""
+import inspect
+
+import numpy as np
+import pytest
+
+import collisionchip
+from collisionchip import CollisionManager, Object
+from shapes import cube, shift, torus
+
+
+class Mesh:
+    """Not trimesh: vertices and faces are enough."""
+    vertices, faces = cube()
+
+
+def row(count, first="a"):
+    manager = CollisionManager()
+    for i in range(count):
+        manager.add_object(chr(ord(first) + i), Mesh, shift(i))
+    return manager
+
+
+def test_internal():
+    manager = row(3)
+    assert manager.in_collision_internal() is True
+    hit, names = manager.in_collision_internal(return_names=True)
+    assert hit is True and names == {("a", "b"), ("b", "c")}
+    hit, data = manager.in_collision_internal(return_data=True)
+    assert hit is True and {frozenset(x.names) for x in data} == {frozenset("ab"), frozenset("bc")}
+    hit, names, data = manager.in_collision_internal(return_names=True, return_data=True)
+    assert all(type(x.index("b")) is int and 0 <= x.index("b") < 12 for x in data)
+    manager.set_transform("b", shift(10))
+    assert manager.in_collision_internal(True, True) == (False, set(), [])
+
+
+def test_single_and_other():
+    manager = row(3)
+    assert manager.in_collision_single(Mesh, shift(3)) is True
+    assert manager.in_collision_single(Mesh, shift(3), return_names=True) == (True, {"c"})
+    hit, data = manager.in_collision_single(Object(*torus()), return_data=True)
+    assert hit and data[0].names <= {"__external", "a", "b"} and data[0].index("__external") >= 0
+    assert manager.in_collision_single(Mesh, shift(9), True, True) == (False, set(), [])
+    other = row(2, "x")
+    other.set_transform("y", shift(3))
+    assert manager.in_collision_other(other) is True
+    hit, names, data = manager.in_collision_other(other, return_names=True, return_data=True)
+    assert names == {("a", "x"), ("b", "x"), ("c", "y")} and len(data) >= 3
+    assert manager.in_collision_other(CollisionManager()) is False
+
+
+def test_replace_and_remove():
+    manager = row(2)
+    assert isinstance(manager.add_object("b", Mesh, shift(5)), Object)
+    assert not manager.in_collision_internal()
+    manager.remove_object("a")
+    for call in (manager.remove_object, lambda name: manager.set_transform(name, None)):
+        with pytest.raises(ValueError, match="a not in collision manager!"):
+            call("a")
+    with pytest.raises(ValueError):
+        manager.add_object("b", Mesh, np.eye(2))
+    assert manager.in_collision_single(Mesh, shift(5))  # b is still there
+
+
+def test_what_is_not_offered():
+    manager = row(1)
+    for call in (lambda: manager.min_distance_single(Mesh), manager.min_distance_internal,
+                 lambda: manager.min_distance_other(manager)):
+        with pytest.raises(NotImplementedError, match="no distances"):
+            call()
+    contact = manager.in_collision_single(Mesh, return_data=True)[1][0]
+    for name in ("normal", "point", "depth"):
+        with pytest.raises(NotImplementedError):
+            getattr(contact, name)
+
+
+def test_the_methods_are_those_of_trimesh():
+    theirs = pytest.importorskip("trimesh").collision.CollisionManager
+    for name, method in inspect.getmembers(theirs, inspect.isfunction):
+        if not name.startswith("_"):
+            ours = inspect.signature(getattr(collisionchip.CollisionManager, name)).parameters.values()
+            assert [(p.name, p.default) for p in ours] == [
+                (p.name, p.default) for p in inspect.signature(method).parameters.values()], name
