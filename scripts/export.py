@@ -210,10 +210,15 @@ def blocks(suffix, text):
 
 
 def readme(top, files, pairs, mhz):
-    device = "".join(f"- `{top}{s}.v` instead on {s[1:].upper()}: with that device's "
-                     f"{' and '.join(CELLS[s][name] for name in blocks(s, text))}, whose registers synthesis does not find "
-                     f"otherwise. Simulate it with {' and '.join(f'`{name}.v`' for name in blocks(s, text))}, our models.\n"
-                     for s, text in files if s)
+    def variant(suffix, text):
+        cells = blocks(suffix, text)
+        if not cells:
+            return f"- `{top}{suffix}.v` instead on {suffix[1:].upper()}: the leaves that rtl/cchip{suffix}.f names, without cells of a device.\n"
+        return (f"- `{top}{suffix}.v` instead on {suffix[1:].upper()}: with that device's {' and '.join(CELLS[suffix][name] for name in cells)}, "
+                "whose registers synthesis does not find otherwise. Simulate it with "
+                f"{' and '.join(f'`{name}.v`' for name in cells)}, our models.\n")
+
+    device = "".join(variant(s, text) for s, text in files if s)
     bench = pathlib.Path(FILES.get(top, (BENCH,))[0]).stem
     macro, wrapper, run, verdict = "", "", "vvp -n bench.vvp", "`PASS`"
     if top == CHIP:
