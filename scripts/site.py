@@ -12,7 +12,6 @@ import re
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
-DOORS = ("C++ library", "Hardware", "Paper", "Develop", "Datasheets")
 log = logging.getLogger("mkdocs.hooks.site")
 
 
@@ -22,10 +21,9 @@ def anchor(heading, separator):
 
 def on_config(config):
     sections = re.split(r"^## (.*)\n", (DOCS / "README.md").read_text(), flags=re.M)
-    sections = dict(zip(sections[1::2], sections[2::2]))
     config.nav = [{"Start": "README.md"}]
-    for door in DOORS:
-        pages = re.findall(r"^\|.*?\]\(([\w/-]+\.md)\)", sections[door], re.M)
+    for door, text in zip(sections[1::2], sections[2::2]):
+        pages = re.findall(r"^\|.*?\]\(([\w/-]+\.md)\)", text, re.M)
         config.nav.append({door: list(dict.fromkeys(pages))})
     config.mdx_configs["toc"] = {"slugify": anchor}
     return config

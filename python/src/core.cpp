@@ -473,7 +473,7 @@ Raises OSError: the file cannot be opened. Raises ValueError: it is no mesh; the
             d["fallbacks"] = x.counts.fallbacks;
             return d;
           },
-          nb::sig("def counts(self) -> dict[str, int]"), "What the query cost (docs/collide.md).")
+          nb::sig("def counts(self) -> dict[str, int]"), "What the query cost (docs/cpp/collide.md).")
       .def("__bool__", [](const Result& x) { return x.hit; })
       .def("__repr__", [](const Result& x) {
         return "<collisionchip.Result: " + std::string(x.hit ? "hit" : "no hit") +
