@@ -54,7 +54,7 @@ int main() {
 
     cchip::CollisionRequest request;
     request.contacts = cchip::CollisionRequest::Contacts::all;
-    request.most_contacts = 100000;
+    request.max_contacts = 100000;
     const cchip::CollisionResult result =
         cchip::collide(*device, our_torus, cchip::Pose(pose_torus), our_gear, cchip::Pose(pose_gear), request);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two closed modules take turns at one place: docs/paper/tutorial-reconfigurable-module.md.
+// Two closed modules share one reconfigurable region: docs/paper/tutorial-reconfigurable-module.md.
 #include <cchip/rc/rc.hpp>
 #include <iostream>
 

@@ -166,7 +166,7 @@ CollisionRequest to_request(const std::string& contacts, bool relation, const st
     throw std::invalid_argument("counts is '" + counts + "'; give 'touching' or 'crossing'");
   }
   request.relation = relation;
-  if (max_contacts) request.most_contacts = *max_contacts;
+  if (max_contacts) request.max_contacts = *max_contacts;
   return request;
 }
 

@@ -242,7 +242,7 @@ void add_collide(CLI::App& app, CollideOptions& options) {
   matrix->excludes(poses);
   add_choice(*command, "--contacts", options.all_contacts, contact_choices,
              "stop at the first contact or find all (default: all, with --poses first)");
-  add_whole(*command, "--most", options.most_contacts, "find at most N contacts of a query (default: no limit)",
+  add_whole(*command, "--most", options.max_contacts, "find at most N contacts of a query (default: no limit)",
             at_least_1);
   add_choice(*command, "--counts", options.only_crossing, count_choices,
              "the least that counts as a contact: touching (default) or crossing");

@@ -100,11 +100,11 @@ std::unique_ptr<Device> open_named_device(const CollideOptions& options) {
 CollisionRequest request_of(const CollideOptions& options) {
   CollisionRequest request;
   const bool all = options.all_contacts.value_or(options.poses_file.empty());
-  if (!all && options.most_contacts != 0) {
+  if (!all && options.max_contacts != 0) {
     throw UsageError("--most: each query stops at its first contact; add --contacts all, or leave --most out");
   }
   if (all) request.contacts = CollisionRequest::Contacts::all;
-  if (options.most_contacts != 0) request.most_contacts = options.most_contacts;
+  if (options.max_contacts != 0) request.max_contacts = options.max_contacts;
   if (options.only_crossing) request.counts = CollisionRequest::Counts::crossing;
   request.relation = options.relation || (all && options.poses_file.empty());
   return request;
@@ -147,7 +147,7 @@ std::string to_words(const CollisionResult& result, const CollisionRequest& requ
   }
   FacesHit hit;
   for (const Contact& contact : result.contacts) hit.add(contact);
-  const bool more = result.contacts.size() == request.most_contacts;
+  const bool more = result.contacts.size() == request.max_contacts;
   return fmt::format("{}: {}{} face{} of A meet{} {} of B", verb, more ? "at least " : "", hit.a.size(),
                      hit.a.size() == 1 ? "" : "s", hit.a.size() == 1 ? "s" : "", hit.b.size());
 }

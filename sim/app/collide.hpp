@@ -21,9 +21,9 @@ struct CollideOptions {
   std::string poses_file;   ///< CSV; empty: one query
   /// True: all contacts. Nothing: all contacts of a single query, but only the first of each of many.
   std::optional<bool> all_contacts;
-  std::size_t most_contacts = 0;  ///< 0: no limit
-  bool only_crossing = false;     ///< contacts that only touch do not count
-  bool relation = false;          ///< tell touching from crossing; a single query for all contacts does in any case
+  std::size_t max_contacts = 0;  ///< 0: no limit
+  bool only_crossing = false;    ///< contacts that only touch do not count
+  bool relation = false;         ///< tell touching from crossing; a single query for all contacts does in any case
   std::string device = "cpu";
   Format format = Format::table;
   std::string expect;       ///< column of the file; empty: none

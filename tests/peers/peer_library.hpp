@@ -44,16 +44,16 @@ class PeerMesh {
   }
   /// The number of contacts by the library's count; no result is kept. Only if the library has_contacts().
   std::size_t count_contacts(const Pose& pose, const PeerMesh& b, const Pose& pose_b) const {
-    return peer_->contacts(model_.get(), pose.data(), b.model_.get(), pose_b.data(), most_contacts, nullptr, 0);
+    return peer_->contacts(model_.get(), pose.data(), b.model_.get(), pose_b.data(), max_contacts, nullptr, 0);
   }
   /// Pairs of faces in ascending order, none twice; at most `most` before duplicates go. Only if the library
   /// has_contacts().
   std::vector<Contact> contacts(const Pose& pose, const PeerMesh& b, const Pose& pose_b,
-                                std::size_t most = most_contacts) const;
+                                std::size_t most = max_contacts) const;
 
  private:
   friend class PeerLibrary;
-  static constexpr std::size_t most_contacts = 10000000;
+  static constexpr std::size_t max_contacts = 10000000;
   PeerMesh(const CchipPeer* peer, const Mesh& mesh);
 
   const CchipPeer* peer_;

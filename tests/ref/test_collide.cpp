@@ -312,7 +312,7 @@ TEST_CASE("collide: faces that were cut count once, by their number in the file"
   CHECK(brute_force_contacts(cut, Pose::Identity(), wall, Pose::Identity()) == result.contacts);
   CHECK(result.counts.pairs == 4);
   CollisionRequest one = all;
-  one.most_contacts = 1;
+  one.max_contacts = 1;
   CHECK(collide(*device, b, Pose::Identity(), a, Pose::Identity(), one).contacts.size() == 1);
 }
 
@@ -343,7 +343,7 @@ TEST_CASE("collide: most contacts", "[ref][collide]") {
   REQUIRE(everything.contacts.size() > 20);
   for (const std::size_t most : {std::size_t{1}, std::size_t{7}, everything.contacts.size(), std::size_t{100000}}) {
     CollisionRequest request = all;
-    request.most_contacts = most;
+    request.max_contacts = most;
     const CollisionResult some = collide(*device, gear, Pose::Identity(), gear, pose, request);
     CHECK(some.hit);
     CHECK(some.contacts.size() == std::min(most, everything.contacts.size()));
@@ -447,7 +447,7 @@ TEST_CASE("collide: input that makes no sense is refused in one line", "[ref][co
                   std::invalid_argument);
   CHECK(calls == 0);
   CollisionRequest none = all;
-  none.most_contacts = 0;
+  none.max_contacts = 0;
   CHECK_THROWS_AS(collide(*device, a, Pose::Identity(), a, Pose::Identity(), none), std::invalid_argument);
   CHECK_THROWS_AS(Object(Mesh{}), std::invalid_argument);
   CHECK_THROWS_WITH(Object(one_face({{0, 0, 0}, {1, 0, std::numeric_limits<double>::infinity()}, {0, 1, 0}})),

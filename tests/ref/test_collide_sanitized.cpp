@@ -28,7 +28,7 @@ TEST_CASE("CPU device: every instruction set gives the answers of the plain sear
   }
   CollisionRequest all;
   all.contacts = CollisionRequest::Contacts::all;
-  all.most_contacts = 2000;
+  all.max_contacts = 2000;
   const auto plain = open_cpu_device({1, "plain"});
   const std::vector<CollisionResult> expected = collide(*plain, queries);
   const std::vector<CollisionResult> contacts = collide(*plain, queries, all);
@@ -44,7 +44,7 @@ TEST_CASE("CPU device: every instruction set gives the answers of the plain sear
       REQUIRE(first[i].hit == expected[i].hit);
       REQUIRE(every[i].contacts.size() == contacts[i].contacts.size());
       // Which contacts a search finds before there are too many is its own choice.
-      if (contacts[i].contacts.size() < all.most_contacts) REQUIRE((every[i].contacts == contacts[i].contacts));
+      if (contacts[i].contacts.size() < all.max_contacts) REQUIRE((every[i].contacts == contacts[i].contacts));
       device->collide(queries[i], {}, result);
       REQUIRE(result.hit == expected[i].hit);
     }

@@ -389,7 +389,7 @@ TEST_CASE("scene: what makes no sense is refused in one line, and changes nothin
   refuses("pose of object 2: " + where, [&] { scene.set_pose(b, bad); });
   refuses("pose of the object: " + where, [&] { scene.add(cube, bad); });
   refuses("pose of the object: " + where, [&] { scene.touching(*device, cube, bad); });
-  refuses("most_contacts is 0: ask for at least one contact", [&] {
+  refuses("max_contacts is 0: ask for at least one contact", [&] {
     scene.touching(*device, {CollisionRequest::Contacts::all, 0});
   });
   const Object moved = std::move(cube);

@@ -126,12 +126,11 @@ std::vector<CollisionResult> collide(Device& device, const std::vector<Collision
       device, queries.size(), [&queries](std::size_t i) { return queries[i]; }, request);
 }
 
-std::vector<Contact> self_contacts(const Object& object, std::size_t most_contacts) {
+std::vector<Contact> self_contacts(const Object& object, std::size_t max_contacts) {
   check_float_mode();
   if (object.id() == nullptr)
     throw std::invalid_argument("self_contacts: the Object was moved from; use the other one");
-  if (most_contacts == 0)
-    throw std::invalid_argument("self_contacts: most_contacts is 0: ask for at least one contact");
+  if (max_contacts == 0) throw std::invalid_argument("self_contacts: max_contacts is 0: ask for at least one contact");
   const Mesh& mesh = object.mesh();
   // Vertices at one position have one number.
   std::vector<std::uint32_t> order(mesh.vertices.size());
@@ -170,7 +169,7 @@ std::vector<Contact> self_contacts(const Object& object, std::size_t most_contac
       const Relation relation = pairs.cross(a, b) ? Relation::crossing : Relation::touching;
       Relation& known = found.emplace(Contact{low, high, {}}, relation).first->second;
       known = std::max(known, relation);
-      if (found.size() == most_contacts) throw Enough();
+      if (found.size() == max_contacts) throw Enough();
     });
   } catch (const Enough&) {  // NOLINT: it is no error
   }

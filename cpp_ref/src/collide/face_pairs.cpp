@@ -42,8 +42,8 @@ void check_pose(const Pose& pose, const char* name) {
 void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest& request) {
   check_pose(pose_a, "A");
   check_pose(pose_b, "B");
-  if (request.contacts == CollisionRequest::Contacts::all && request.most_contacts == 0) {
-    throw std::invalid_argument("most_contacts is 0: ask for at least one contact");
+  if (request.contacts == CollisionRequest::Contacts::all && request.max_contacts == 0) {
+    throw std::invalid_argument("max_contacts is 0: ask for at least one contact");
   }
 }
 
@@ -60,7 +60,7 @@ void FacePairs::start(const CollisionQuery& query, const CollisionRequest& reque
   clear(result);
   done_ = false;
   seen_ = Relation::apart;
-  most_ = request.contacts == CollisionRequest::Contacts::first ? 1 : request.most_contacts;
+  most_ = request.contacts == CollisionRequest::Contacts::first ? 1 : request.max_contacts;
   cut_ = !query.a->mesh().file_face.empty() || !query.b->mesh().file_face.empty();
   if (cut_) contacts_.clear();
   pairs_.reset();

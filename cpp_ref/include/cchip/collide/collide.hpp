@@ -31,7 +31,7 @@ struct CollisionRequest {
   };
   Contacts contacts = Contacts::first;
   /// With Contacts::all: the search ends once this many are found.
-  std::size_t most_contacts = std::numeric_limits<std::size_t>::max();
+  std::size_t max_contacts = std::numeric_limits<std::size_t>::max();
   /// The least relation of two faces that counts as a contact.
   enum class Counts {
     touching,  ///< every pair of faces that share a point
@@ -91,7 +91,7 @@ struct CollisionCounts {
 struct CollisionResult {
   bool hit = false;  ///< there is a contact that counts
   /// Of the two objects. Empty if the request does not tell touching from crossing, or if the search ended at
-  /// CollisionRequest::most_contacts before a pair crossed.
+  /// CollisionRequest::max_contacts before a pair crossed.
   std::optional<Relation> relation;
   /// In ascending order, without duplicates. With Contacts::first at most one.
   std::vector<Contact> contacts;
@@ -200,11 +200,11 @@ std::vector<CollisionResult> collide(Device& device, const std::vector<Collision
 /// Pairs of faces of one object that share a point and are no neighbours: they have no vertex in common, by its
 /// position. Ascending, face_a < face_b, none twice, each with its relation; faces that were cut count as one. For a
 /// check of a mesh or of a deformed body; it takes the time of sweeping the boxes of all faces.
-/// \param most_contacts the search ends once this many are found
-/// \throws std::invalid_argument the object was moved from, or most_contacts is 0
+/// \param max_contacts the search ends once this many are found
+/// \throws std::invalid_argument the object was moved from, or max_contacts is 0
 /// \throws std::runtime_error the calling thread flushes small numbers to zero
 std::vector<Contact> self_contacts(const Object& object,
-                                   std::size_t most_contacts = std::numeric_limits<std::size_t>::max());
+                                   std::size_t max_contacts = std::numeric_limits<std::size_t>::max());
 
 }  // namespace cchip
 
