@@ -37,7 +37,6 @@ traversal/cchip_traversal_events.v
 traversal/cchip_traversal_decision.v
 traversal/cchip_traversal.v
 traversal/cchip_broad_phase.v
-traversal/cchip_broad_phase_axi.v
 transform/cchip_vertex_transform.v
 transform/cchip_normaliser.v
 transform/cchip_transform.v

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
-// Models for simulation only, to be read after rtl/cchip.f: cchip_pr_slot with SIMULATION = 1 instantiates them.
+// For simulation only, to be read after rtl/cchip.f: what cchip_pr_slot with SIMULATION = 1 instantiates, and the broad
+// phase with an AXI4 master of its own.
+cchip_broad_phase_axi.v
 cchip_pr_config_memory.v
 cchip_pr_virtual.v
