@@ -398,7 +398,7 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
 
 NB_MODULE(_core, m) {
   m.doc() = "Exact collision detection for triangle and quad meshes; import collisionchip instead.";
-  m.attr("__version__") = CCHIP_VERSION;
+  m.attr("version") = CCHIP_VERSION;  // stubs leave out __version__
 
   nb::class_<Object>(m, "Object", R"(A mesh made ready for collision tests; immutable, any number of threads may use it.
 

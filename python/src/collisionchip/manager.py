@@ -18,7 +18,7 @@ class ContactData:
 
     def __init__(self, names: tuple[Any, Any], faces: tuple[int, int]) -> None:
         self.names = set(names)
-        self._faces = dict(zip(names, faces))
+        self._faces: dict[Any, int] = dict(zip(names, faces))
 
     def index(self, name: Any) -> int:
         """The number of the face of the object with this name."""
