@@ -228,3 +228,25 @@ def test_names():
     assert open_device().name == "cpu" and collisionchip.device_names()[0] == "cpu"
     assert collisionchip.__version__ in (pathlib.Path(__file__).parents[2] / "CMakeLists.txt").read_text()
     assert "12 faces" in repr(CUBE) and "no hit" in repr(collide(CUBE, None, CUBE, shift(2)))
+
+
+def test_an_object_with_other_vertices():
+    vertices, faces = torus()
+    made = Object(vertices, faces)
+    grown = made.moved(2 * vertices)
+    assert made.vertex_count == grown.vertex_count
+    batch = poses(np.random.default_rng(SEED), 50, 2)
+    assert (collide_many(grown, None, CUBE, batch) == collide_many(Object(2 * vertices, faces), None, CUBE, batch)).all()
+    with pytest.raises(ValueError, match="vertices, the object has"):
+        made.moved(vertices[1:])
+    with pytest.raises(ValueError, match=r"give \(n, 3\)"):
+        made.moved(vertices[:, :2])
+
+
+def test_faces_of_one_object_that_touch():
+    assert TORUS.self_contacts().shape == (0, 2)
+    vertices, faces = cube()
+    both = Object(np.concatenate([vertices, vertices + 0.25]), np.concatenate([faces, faces + len(vertices)]))
+    found = both.self_contacts()
+    assert len(found) > 0 and (found[:, 0] < 12).all() and (found[:, 1] >= 12).all()
+    assert len(both.self_contacts(max_contacts=1)) == 1
