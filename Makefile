@@ -39,7 +39,7 @@ export JOBS
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv docs peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb wheel test-python bench-python export fpga \
+  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb wheel test-python bench-python export fpga \
   fpga-quick asic asic-quick install clean
 
 help: ## list the targets
@@ -187,6 +187,26 @@ SWAPS ?= 10000
 campaign-swaps: $(RELEASE)/build.ninja ## SWAPS exchanges of modules under random traffic with faults (CCHIP_SEED repeats a run)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_swaps
 	$(RELEASE)/bin/cchip_swaps --swaps $(SWAPS) --threads $(JOBS)
+
+# jobs in shards, JOBS at a time on this machine or as jobs of a cluster (PROFILE=slurm): docs/develop/scaling.md
+PROFILE ?= local
+SNAKEMAKE = build/workflow/bin/snakemake --profile workflow/profiles/$(PROFILE) --cores $(JOBS)
+build/workflow/requirements.txt: workflow/requirements.txt
+	python3 -m venv build/workflow || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	build/workflow/bin/pip install --quiet --disable-pip-version-check --requirement $<
+	cp $< $@
+
+CAMPAIGN_KIND ?= random
+SHARDS ?= 100
+QUERIES ?= 100000
+# SHAPE=tri-tri, tri-quad or quad-quad
+SHAPE ?=
+CLUSTER_AMOUNT = $(if $(filter swaps,$(CAMPAIGN_KIND)),$(SWAPS),$(if $(filter chip faults,$(CAMPAIGN_KIND)),$(QUERIES),$(PAIRS)))
+CLUSTER_PROGRAM = $(if $(filter swaps,$(CAMPAIGN_KIND)),cchip_swaps,$(if $(filter chip faults,$(CAMPAIGN_KIND)),cchip_chip_campaign,cchip_campaign))
+campaign-cluster: $(RELEASE)/build.ninja build/workflow/requirements.txt ## CAMPAIGN_KIND (random, grid, relation, certainty, swaps, chip, faults) in SHARDS jobs, PROFILE=local or slurm; a table in build/campaign
+	cmake --build $(RELEASE) -j $(JOBS) --target $(CLUSTER_PROGRAM)
+	$(SNAKEMAKE) --snakefile workflow/Snakefile --config kind=$(CAMPAIGN_KIND) amount=$(CLUSTER_AMOUNT) shards=$(SHARDS) \
+	  shape=$(SHAPE) seed=$(or $(CCHIP_SEED),1) bin=$(RELEASE)/bin
 
 CHIP_CAMPAIGN := $(RELEASE)/bin/cchip_chip_campaign
 campaign-chip: $(RELEASE)/build.ninja ## the simulated chip against the CPU device: ten pairs of meshes, 10^5 FIRST and 10^4 ALL queries, soft resets, soak of 10^6 (hours)
