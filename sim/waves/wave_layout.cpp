@@ -285,6 +285,9 @@ std::string decimal(double value) {
 void begin(SaveFile& file, const std::string& title, const std::string& fst_path, const View& view) {
   file.line("[*] " + title);
   file.line("[dumpfile] \"" + std::filesystem::absolute(fst_path).lexically_normal().string() + "\"");
+  // GTKWave finds the waveform beside the layout, too, if both were moved: it compares where it reads the layout with
+  // this.
+  file.line("[savefile] \"" + std::filesystem::absolute(layout_path(fst_path)).lexically_normal().string() + "\"");
   file.line("[timestart] " + std::to_string(view.start));
   file.line("[size] 1920 1080");
   file.line("[pos] -1 -1");
@@ -293,6 +296,7 @@ void begin(SaveFile& file, const std::string& title, const std::string& fst_path
   file.line(zoom);
   file.line("[sst_expanded] 0");
   file.line("[signals_width] 230");
+  file.line("@200\n-data are random until the first valid: flip-flops power up anyhow");
   file.write({bit("clk", "clk"), bit("rst", "rst")});
 }
 

@@ -56,8 +56,10 @@ TEST_CASE("harness: the layout names signals that exist", "[unit][harness]") {
   int named = 0;
   std::set<std::string> groups;
   bool dumpfile = false;
+  bool savefile = false;
   for (std::string line; std::getline(file, line);) {
     dumpfile = dumpfile || line == "[dumpfile] \"" + options.trace_path + "\"";
+    savefile = savefile || line == "[savefile] \"" + sim::wave_folder() + "/harness_layout_" + to_name(id) + ".gtkw\"";
     if (line.front() == '-') groups.insert(line.substr(1));
     if (line.front() != '+' && line.front() != '#') continue;
     std::istringstream words(line);
@@ -70,6 +72,7 @@ TEST_CASE("harness: the layout names signals that exist", "[unit][harness]") {
     }
   }
   CHECK(dumpfile);
+  CHECK(savefile);
   CHECK(named > 100);
   for (const char* group : {"stream s_pair", "axis controller", "macro stage 1 select", "macro stage 2 axis",
                             "macro stage 3 project", "macro stage 4 compare", "stream m_result"}) {

@@ -15,7 +15,8 @@ namespace cchip {
 inline bool overlap(const WorldBox& p, const WorldBox& q) {
   bool apart = false;  // without branches, which would be mispredicted
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    apart |= (p.least[axis] > q.greatest[axis]) | (q.least[axis] > p.greatest[axis]);
+    apart |= p.least[axis] > q.greatest[axis];
+    apart |= q.least[axis] > p.greatest[axis];
   }
   return !apart;
 }

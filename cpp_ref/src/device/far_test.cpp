@@ -54,10 +54,14 @@ CentreLine centre_line(const CollisionQuery& query) {
   line.size = a.size + b.size;
   line.entries_a = a.entries;
   line.entries_b = b.entries;
-  // NaN is not moderate. Magnitudes of translations are parts of the size.
-  const bool finite = (line.size < moderate_most) & (a.entries < moderate_most) & (b.entries < moderate_most) &
-                      (query.a->tree().extent() < moderate_most) & (query.b->tree().extent() < moderate_most);
-  line.moderate = finite & (line.size > moderate_least);
+  // NaN is not moderate. Magnitudes of translations are parts of the size. Without branches, which would be
+  // mispredicted.
+  line.moderate = line.size < moderate_most;
+  line.moderate &= a.entries < moderate_most;
+  line.moderate &= b.entries < moderate_most;
+  line.moderate &= query.a->tree().extent() < moderate_most;
+  line.moderate &= query.b->tree().extent() < moderate_most;
+  line.moderate &= line.size > moderate_least;
   return line;
 }
 
