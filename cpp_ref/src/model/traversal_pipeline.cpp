@@ -205,7 +205,7 @@ void TraversalEvents::clock(const Inputs& in) {
   const bool takes_room = goes || (source == Source::verdict && some_room_);
   std::optional<Event> event;
   if (source != Source::nobody) {
-    event.emplace();
+    event = Event();  // clang 14 does not take emplace() here
     if (goes) event->place = places_.m_number();
   }
   switch (source) {

@@ -147,8 +147,7 @@ struct PairIdentity {
 /// cchip_transform.
 class Transform {
  public:
-  Transform(int coord_w, int passes, int credit)
-      : credit_(credit), passes_(passes), vertices_(passes), normaliser_(coord_w, passes) {}
+  Transform(int coord_w, int passes, int credit) : credit_(credit), vertices_(passes), normaliser_(coord_w, passes) {}
   bool s_ready() const { return vertices_.s_ready(); }
   bool corrupt() const { return vertices_.corrupt(); }
   /// The vertex with A and B as they leave.
@@ -163,7 +162,6 @@ class Transform {
 
  private:
   int credit_;
-  int passes_;
   int used_ = 0;
   bool room_ = false;
   VertexTransform vertices_;
