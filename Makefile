@@ -39,7 +39,7 @@ export JOBS
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv docs peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb wheel test-python bench-python export fpga \
+  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb wheel test-python test-dask bench-python export fpga \
   fpga-quick fpga-sweep asic asic-quick install clean
 
 help: ## list the targets
@@ -281,6 +281,14 @@ test-python: build/python/venv/installed ## test the Python package; the same sc
 
 bench-python: build/python/venv/installed ## collide_many() and CollisionManager beside python-fcl and trimesh over it (a minute)
 	build/python/venv/bin/python python/tests/bench.py
+
+build/dask/installed: wheel python/tests/dask_requirements.txt
+	python3 -m venv --clear build/dask
+	build/dask/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement python/tests/dask_requirements.txt build/wheel/*.whl
+	touch $@
+
+test-dask: build/dask/installed ## collisionchip.distributed over a Dask scheduler and two workers on loopback, with workers killed in the middle (CCHIP_SEED repeats a run)
+	build/dask/bin/python python/tests/over_dask.py
 
 # clock of the chip, MHz: row chip in docs/hardware/fpga.md
 CHIP_MHZ ?= 50
