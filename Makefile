@@ -39,8 +39,8 @@ export JOBS
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv docs peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb wheel test-python bench-python export fpga \
-  fpga-quick asic asic-quick install clean
+  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb wheel test-python test-dask bench-python export fpga \
+  fpga-quick fpga-sweep asic asic-quick install clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
@@ -282,6 +282,14 @@ test-python: build/python/venv/installed ## test the Python package; the same sc
 bench-python: build/python/venv/installed ## collide_many() and CollisionManager beside python-fcl and trimesh over it (a minute)
 	build/python/venv/bin/python python/tests/bench.py
 
+build/dask/installed: wheel python/tests/dask_requirements.txt
+	python3 -m venv --clear build/dask
+	build/dask/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement python/tests/dask_requirements.txt build/wheel/*.whl
+	touch $@
+
+test-dask: build/dask/installed ## collisionchip.distributed over a Dask scheduler and two workers on loopback, with workers killed in the middle (CCHIP_SEED repeats a run)
+	build/dask/bin/python python/tests/over_dask.py
+
 # clock of the chip, MHz: row chip in docs/hardware/fpga.md
 CHIP_MHZ ?= 50
 bench-chip: $(RELEASE)/build.ninja ## queries per second of the simulated chip at CHIP_MHZ, of collide(), FCL, Coal, CGAL and ODE in the same poses (half an hour); build/bench/chip.csv
@@ -291,6 +299,11 @@ bench-chip: $(RELEASE)/build.ninja ## queries per second of the simulated chip a
 
 fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEEDS places and routes each (hours), into docs/hardware/fpga.md
 	scripts/fpga.py --seeds $(SEEDS) --jobs $(JOBS) --campaign $(CAMPAIGN) --write
+
+ROWS ?= tri_tri_substages6 tri_tri_substages8 tri_tri tri_tri_substages12
+PARAMETER ?= SUBSTAGES
+fpga-sweep: bootstrap venv build/workflow/requirements.txt ## clock of ROWS of scripts/fpga.py over SEEDS, a job for each place and route, PROFILE=local or slurm; table and plot against PARAMETER in build/sweep (hours)
+	$(SNAKEMAKE) --snakefile workflow/fpga.smk --config rows='$(ROWS)' seeds=$(SEEDS) parameter=$(PARAMETER)
 
 fpga-quick: bootstrap venv ## area and clock of the triangle test, one place and route
 	scripts/fpga.py tri_tri --seeds 1 --jobs $(JOBS) --campaign $(CAMPAIGN)

@@ -49,6 +49,8 @@ PartitionName=test Nodes=$host Default=YES MaxTime=INFINITE State=UP
 END
 export SLURM_CONF="$folder/slurm.conf"
 pids=
+# called by trap
+# shellcheck disable=SC2317
 stop() {
   test -z "$pids" || scancel --user="$user" > /dev/null 2>&1 || true # SLURM_CONF names this controller and no other
   for pid in $pids; do kill "$pid" 2> /dev/null || true; done

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A campaign in shards, with shards killed in the middle, has the counts of the campaign in one piece.
 
-usage: test_campaign.py [Merge|Local|Slurm]      environment: CCHIP_BIN, the folder with cchip_campaign
-Merge needs no Snakemake. Exit codes: 0 passed, 1 failed, 77 skipped."""
+usage: test_campaign.py [Merge|Local|Slurm|Sweep|Dask]      environment: CCHIP_BIN, the folder with cchip_campaign
+Sweep: the table of make fpga-sweep from made-up clocks. Dask: make test-dask, with fewer queries. Merge and Sweep need neither Snakemake nor Dask. Exit codes: 0 passed, 1 failed, 77 skipped."""
 import json
 import os
 import pathlib
@@ -164,6 +164,39 @@ class Slurm(Case):
         self.assertIn("Trying to restart", made.stdout)
         table = next(self.folder.glob("*-in8/table.csv"))
         self.assertEqual(table.read_text(), self.piece(*self.settings(kind, amount, shards)))
+
+
+class Sweep(Case):
+    """What make fpga-sweep merges."""
+
+    def merge(self, shards, seeds=2):
+        files = []
+        for number, (row, seed, clock) in enumerate(shards):
+            files.append(self.folder / f"{number}.json")
+            files[-1].write_text(json.dumps({"row": row, "synthesis": "", "seed": seed, "fmax_mhz": clock}))
+        return subprocess.run([sys.executable, "-B", ROOT / "workflow/fpga_sweep.py", "merge", self.folder / "t.csv", *files, "--seeds", str(seeds),
+                               "--parameter", "SUBSTAGES"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+    def test_table(self):
+        made = self.merge([("tri_tri", 1, 100.0), ("tri_tri_substages6", 1, 90.0), ("tri_tri", 2, 110.5), ("tri_tri_substages6", 2, 80.0)])
+        self.assertEqual(made.returncode, 0, made.stdout)
+        lines = (self.folder / "t.csv").read_text().splitlines()[1:]
+        self.assertEqual(lines, ["tri_tri,SUBSTAGES,10,2,110.5,105.25,100.0", "tri_tri_substages6,SUBSTAGES,6,2,90.0,85.0,80.0"])
+
+    def test_refused(self):
+        for shards, why in (([("tri_tri", 1, 1.0)], "not one result for each"), ([("tri_tri", 1, 1.0)] * 2, "there twice")):
+            made = self.merge(shards)
+            self.assertEqual((made.returncode, why in made.stdout), (1, True), made.stdout)
+        self.assertFalse((self.folder / "t.csv").exists())
+
+
+@unittest.skipUnless((ROOT / "build/dask/installed").exists(), "no build/dask: make test-dask")
+class Dask(unittest.TestCase):
+    def test_workers_killed(self):
+        made = subprocess.run([ROOT / "build/dask/bin/python", "-B", ROOT / "python/tests/over_dask.py", "50000"], stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, timeout=500)
+        self.assertEqual(made.returncode, 0, made.stdout)
+        self.assertRegex(made.stdout.splitlines()[-1], r"^queries=[0-9]+ differing=0 lost=0$")
 
 
 def run_and_kill(command):

@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""collisionchip.distributed over a scheduler and two worker processes on loopback, workers killed in the middle.
+
+usage: over_dask.py [QUERIES] [--speed]      (default 200000; CCHIP_SEED repeats a run)
+
+Compares collide_many() over Dask with collide_many() here: hits, and every contact of a tenth of the queries; then
+clash_many.py with all pairs here. --speed only measures, one worker and two in turns. The last line is
+`queries=N differing=N lost=N`. Exit code 1 if an answer differs or is missing, or no worker was killed."""
+import csv
+import os
+import pathlib
+import signal
+import statistics
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+import numpy as np
+import trimesh
+from distributed import Client, LocalCluster
+
+import collisionchip
+from collisionchip import distributed
+from shapes import SEED, poses, torus
+
+EXAMPLE = pathlib.Path(__file__).parents[1] / "examples/clash_many.py"
+
+
+def cluster(workers):
+    return LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None)
+
+
+def kill(client, running, count):
+    """Kills worker processes once they have some of the results; their nannies start others, without the meshes."""
+    def busy(dask_scheduler):
+        return sum(ts.state == "memory" and "_many" in key for key, ts in dask_scheduler.tasks.items())
+    while running.is_set():
+        if client.run_on_scheduler(busy) >= 3:
+            pids = sorted(client.run(os.getpid).values())[:count]
+            for pid in pids:
+                os.kill(pid, signal.SIGKILL)
+            return pids
+        time.sleep(0.01)
+    return []
+
+
+def over_dask(client, count, *arguments, **options):
+    """The answer, and the processes that were killed meanwhile, `count` of them."""
+    running, killed = threading.Event(), []
+    running.set()
+    killer = threading.Thread(target=lambda: killed.append(kill(client, running, count)))
+    killer.start()
+    found = distributed.collide_many(client, *arguments, **options)
+    running.clear()
+    killer.join()
+    return found, killed[0]
+
+
+def clashes(client, random):
+    """Differences between clash_many.py and all pairs here, and the number of pairs."""
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        mesh = trimesh.Trimesh(*torus(1, 0.3, 16, 6), process=False)
+        for i, pose in enumerate(poses(random, 30, 3)):
+            mesh.copy().apply_transform(pose).export(folder / f"part{i:02}.stl")
+        done = subprocess.run([sys.executable, EXAMPLE, folder, folder / "clashes.csv", client.scheduler.address],
+                              stdout=subprocess.PIPE, text=True)
+        print(done.stdout, end="")
+        with open(folder / "clashes.csv", newline="") as file:
+            found = {(line["a"], line["b"]): (line["relation"], int(line["contacts"])) for line in csv.DictReader(file)}
+        parts = {path.name: collisionchip.Object.load(path) for path in sorted(folder.glob("*.stl"))}
+        names, expected = list(parts), {}
+        for i, a in enumerate(names):
+            for b in names[i + 1:]:
+                result = collisionchip.collide(parts[a], None, parts[b], None, contacts="all", relation=True)
+                if result.relation != "apart":
+                    expected[a, b] = result.relation, len(result.contacts)
+        assert expected
+        return len(found.items() ^ expected.items()), len(names) * (len(names) - 1) // 2
+
+
+def speed(mesh, where_a, where_b):
+    times = {1: [], 2: []}
+    with cluster(1) as one, cluster(2) as two, Client(one) as client1, Client(two) as client2:
+        for _ in range(4):
+            for workers, client in ((1, client1), (2, client2)):
+                start = time.perf_counter()
+                distributed.collide_many(client, mesh, where_a, mesh, where_b)
+                times[workers].append(time.perf_counter() - start)
+    one, two = (statistics.median(times[workers][1:]) for workers in (1, 2))  # the first builds the objects
+    print(f"queries={len(where_a)} one_worker={one:.2f}s two_workers={two:.2f}s ratio={one / two:.2f} load={os.getloadavg()[0]:.1f}")
+
+
+def main():
+    words = [word for word in sys.argv[1:] if word != "--speed"]
+    count = int(words[0]) if words else 200000
+    random = np.random.default_rng(SEED)
+    mesh = torus(1, 0.3, 64, 24)
+    where_a, where_b = poses(random, count, 1), poses(random, count, 1)
+    if "--speed" in sys.argv:
+        speed(mesh, where_a, where_b)
+        return 0
+    here = collisionchip.Object(*mesh)
+    expected = collisionchip.collide_many(here, where_a, here, where_b)
+    tenth = slice(0, count // 10)
+    expected_faces = collisionchip.collide_many(here, where_a[tenth], here, where_b[tenth], contacts=True)
+    with cluster(2) as workers, Client(workers) as client:
+        hits, killed = over_dask(client, 1, mesh, where_a, mesh, where_b, chunk=max(1, count // 100))
+        print(f"seed={SEED} hits={int(hits.sum())} killed_workers={len(killed)}", flush=True)
+        # both: the meshes are nowhere any more and are sent again
+        again, all_killed = over_dask(client, 2, mesh, where_a, mesh, where_b, chunk=max(1, count // 100))
+        print(f"seed={SEED} hits={int(again.sum())} killed_workers={len(all_killed)}", flush=True)
+        faces = distributed.collide_many(client, mesh, where_a[tenth], mesh, where_b[tenth], contacts=True, chunk=max(1, count // 100))
+        one = distributed.collide_many(client, mesh, None, mesh, where_b[:10], chunk=3)
+        unlike, pairs = clashes(client, random)
+    lost = abs(len(hits) - count) + abs(len(again) - count)
+    differing = int((hits != expected).sum()) + int((again != expected).sum()) + unlike if not lost else 0
+    differing += not all(np.array_equal(x, y) for x, y in zip(faces, expected_faces))
+    differing += not np.array_equal(one, collisionchip.collide_many(here, None, here, where_b[:10]))
+    print(f"queries={2 * count + count // 10 + pairs + 10} differing={differing} lost={lost}")
+    if (len(killed), len(all_killed)) != (1, 2):
+        print("too few workers were killed: try more queries", file=sys.stderr)
+        return 1
+    return 1 if differing or lost else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
