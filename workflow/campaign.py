@@ -3,7 +3,7 @@
 """One shard of a campaign, and the sum of all shards. workflow/Snakefile calls this; it also works by hand.
 
 usage: campaign.py run   --kind KIND --amount N --shards N --shard I --bin FOLDER --output FILE [options]
-       campaign.py merge --kind KIND --amount N --shards N --output FILE SHARD... [options]
+       campaign.py merge --kind KIND --amount N --shards N --output FILE SHARD... [options]     (a folder: its shard*.json)
        campaign.py check FILE
        campaign.py piece --kind KIND --amount N --shards N --bin FOLDER --output FILE [options]
   --kind NAME    random, grid, relation, certainty, swaps, chip, faults
@@ -189,7 +189,9 @@ def load(path, o):
 
 def merge(o):
     found, programs, counts = {}, set(), {}
-    for path in o.files:
+    # a folder, because the names of many shards are too long for a command
+    files = [file for path in map(pathlib.Path, o.files) for file in (sorted(path.glob("shard*.json")) if path.is_dir() else [path])]
+    for path in files:
         shard = load(path, o)
         if shard["shard"] in found:
             raise Refused(f"{path}: shard {shard['shard']} is in {found[shard['shard']]}, too")

@@ -5,7 +5,7 @@
 usage: over_dask.py [QUERIES] [--speed]      (default 200000; CCHIP_SEED repeats a run)
 
 Compares collide_many() over Dask with collide_many() here: hits, and every contact of a tenth of the queries; then
-clash_many.py with all pairs here. --speed only measures, one worker and two in turns. The last line is
+clash_many.py with all pairs here. --speed only measures, with all contacts: one thread here, one worker and two in turns. The last line is
 `queries=N differing=N lost=N`. Exit code 1 if an answer differs or is missing, or no worker was killed."""
 import csv
 import os
@@ -83,15 +83,40 @@ def clashes(client, random):
 
 
 def speed(mesh, where_a, where_b):
-    times = {1: [], 2: []}
+    """One thread here, one worker and two in turns; then what a task costs beside its queries."""
+    here, device = collisionchip.Object(*mesh), collisionchip.open_device("cpu", threads=1)
+    times = {0: [], 1: [], 2: []}
+
+    def run(workers, client):
+        start = time.perf_counter()
+        if client is None:
+            collisionchip.collide_many(here, where_a, here, where_b, contacts=True, device=device)
+        else:
+            distributed.collide_many(client, mesh, where_a, mesh, where_b, contacts=True, chunk=-(-len(where_a) // 20))
+        times[workers].append(time.perf_counter() - start)
+
     with cluster(1) as one, cluster(2) as two, Client(one) as client1, Client(two) as client2:
         for _ in range(4):
-            for workers, client in ((1, client1), (2, client2)):
-                start = time.perf_counter()
-                distributed.collide_many(client, mesh, where_a, mesh, where_b)
-                times[workers].append(time.perf_counter() - start)
-    one, two = (statistics.median(times[workers][1:]) for workers in (1, 2))  # the first builds the objects
-    print(f"queries={len(where_a)} one_worker={one:.2f}s two_workers={two:.2f}s ratio={one / two:.2f} load={os.getloadavg()[0]:.1f}")
+            for workers, client in ((0, None), (1, client1), (2, client2)):
+                run(workers, client)
+        start = time.perf_counter()
+        distributed.collide_many(client2, mesh, None, mesh, where_b[:2000], chunk=1)
+        tasks = 2000 / (time.perf_counter() - start)
+    none, one, two = (statistics.median(times[workers][1:]) for workers in (0, 1, 2))  # the first builds the objects
+    print(f"queries={len(where_a)} us_per_query={none / len(where_a) * 1e6:.1f} one_thread={none:.2f}s one_worker={one:.2f}s two_workers={two:.2f}s "
+          f"one_worker/one_thread={one / none:.2f} one_worker/two_workers={one / two:.2f} tasks_per_s={tasks:.0f} load={os.getloadavg()[0]:.1f}")
+
+
+def memory():
+    """What an object takes, from the growth of this process."""
+    def resident():
+        lines = pathlib.Path("/proc/self/status").read_text().splitlines()
+        return 1024 * int(next(line.split()[1] for line in lines if line.startswith("VmRSS:")))
+    vertices, faces = torus(1, 0.3, 1000, 500)
+    before = resident()
+    kept = collisionchip.Object(vertices, faces)
+    print(f"triangles={kept.face_count} arrays={(vertices.nbytes + faces.nbytes) / len(faces):.0f} object={(resident() - before) / len(faces):.0f} "
+          "bytes per triangle")
 
 
 def main():
@@ -101,6 +126,7 @@ def main():
     mesh = torus(1, 0.3, 64, 24)
     where_a, where_b = poses(random, count, 1), poses(random, count, 1)
     if "--speed" in sys.argv:
+        memory()
         speed(mesh, where_a, where_b)
         return 0
     here = collisionchip.Object(*mesh)

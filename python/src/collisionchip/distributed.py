@@ -85,7 +85,7 @@ def _part(poses, chunk):
     return poses[chunk] if poses is not None and np.ndim(poses) == 3 else poses
 
 
-def collide_many(client, a, poses_a, b, poses_b, *, contacts=False, chunk=4096, retries=3, **options):
+def collide_many(client, a, poses_a, b, poses_b, *, contacts=False, chunk=16384, retries=3, **options):
     """As collisionchip.collide_many(), with meshes for objects; the results are in the order of the poses.
 
     chunk: queries of one task. retries: attempts after all workers with a chunk's meshes have died."""
