@@ -563,12 +563,12 @@ def write_csv(name, found):
     """All figures of all libraries with the critical paths by their instances; rows of this run replace older ones."""
     columns = ["library", "row", "rtl", "leaves", "ff", "small_bits", "sram_bits", "um2", "nand2", "ns", "fo4", "fo4_ps", "mhz", "start", "end",
                "cells"]
-    kept = {}
+    kept, rtl = {}, tree().split("`")[1]
     if CSV.exists():
         with open(CSV, newline="") as file:
             kept = {(line["library"], line["row"]): line for line in csv.DictReader(file)}
     for row, r in found.items():
-        kept[name, row] = {"rtl": tree().split("`")[1], **r, "library": name, "row": row}
+        kept[name, row] = {"rtl": rtl, **r, "library": name, "row": row}
     order = list(rows())
     with open(CSV, "w", newline="") as file:
         lines = csv.DictWriter(file, columns, extrasaction="ignore", lineterminator="\n")

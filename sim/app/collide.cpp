@@ -114,7 +114,7 @@ CollisionRequest request_of(const CollideOptions& options) {
 template <class Take>
 void for_each_face_of(const Mesh& mesh, const std::set<std::uint32_t>& in_file, const Take& take) {
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
-    const std::uint32_t number = mesh.file_face.empty() ? static_cast<std::uint32_t>(i) : mesh.file_face[i];
+    const std::uint32_t number = mesh.number_in_file(static_cast<std::uint32_t>(i));
     if (in_file.count(number) != 0) take(i);
   }
 }

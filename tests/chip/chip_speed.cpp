@@ -176,14 +176,6 @@ class Benchmark {
   }
 
  private:
-  /// The present pair of meshes in another library.
-  struct PeerPair {
-    std::string name;
-    bool has_contacts;
-    PeerMesh a;
-    PeerMesh b;
-  };
-
   /// All that answer beside the chip: "single" and "batch" are the CPU device.
   std::vector<std::string> ways() const {
     std::vector<std::string> result;
@@ -198,11 +190,7 @@ class Benchmark {
 
   void run_pair(const std::string& name) {
     const Bodies bodies(mesh_pair(name), libraries_.front().library);
-    peers_.clear();
-    for (const auto& [library_name, library] : libraries_) {
-      peers_.push_back(
-          {library_name, library.has_contacts(), library.mesh(bodies.a.mesh()), library.mesh(bodies.b.mesh())});
-    }
+    peers_ = peer_pairs(libraries_, bodies.a.mesh(), bodies.b.mesh());
     PoseMaker maker(*cpu_, bodies.a, bodies.b, options_.seed);
     std::vector<Approach> approaches;
     for (std::size_t i = 0; i < options_.poses; ++i) approaches.push_back(maker.approach());

@@ -63,14 +63,6 @@ class Rows {
   std::ostringstream text_;
 };
 
-/// The present pair of meshes in another library.
-struct PeerPair {
-  std::string name;
-  bool has_contacts;
-  PeerMesh a;
-  PeerMesh b;
-};
-
 /// The answers of one variant in one pass. They outlive the clock's run, so nothing of them may be optimised away.
 struct Answers {
   const PeerPair* peer = nullptr;  ///< null: ours
@@ -168,11 +160,7 @@ class Benchmark {
     MeshPair meshes = mesh_pair(name);
     print_build(meshes);
     const Bodies bodies(std::move(meshes), debian());
-    peers_.clear();
-    for (const auto& [library_name, library] : libraries_) {
-      peers_.push_back(
-          {library_name, library.has_contacts(), library.mesh(bodies.a.mesh()), library.mesh(bodies.b.mesh())});
-    }
+    peers_ = peer_pairs(libraries_, bodies.a.mesh(), bodies.b.mesh());
     PoseMaker maker(best(), bodies.a, bodies.b, options_.seed);
     std::vector<std::vector<Approach>> approaches(static_cast<std::size_t>(options_.passes));
     for (auto& pass : approaches) {

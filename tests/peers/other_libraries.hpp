@@ -38,6 +38,23 @@ inline std::vector<NamedLibrary> open_libraries() {
   return result;
 }
 
+/// A pair of meshes in one library.
+struct PeerPair {
+  std::string name;
+  bool has_contacts;
+  PeerMesh a;
+  PeerMesh b;
+};
+
+/// The meshes in each of the libraries.
+inline std::vector<PeerPair> peer_pairs(const std::vector<NamedLibrary>& libraries, const Mesh& a, const Mesh& b) {
+  std::vector<PeerPair> result;
+  for (const auto& [name, library] : libraries) {
+    result.push_back({name, library.has_contacts(), library.mesh(a), library.mesh(b)});
+  }
+  return result;
+}
+
 }  // namespace cchip::testing
 
 #endif

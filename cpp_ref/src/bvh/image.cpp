@@ -25,9 +25,7 @@ Frame frame_of(const Dop26& object) {
     frame.centre[static_cast<Eigen::Index>(i)] = middle;
     half = std::max({half, sum_up(object.greatest[i], -middle), sum_up(middle, -object.least[i])});
   }
-  Primitive point;
-  point.v = {frame.centre, frame.centre, frame.centre, frame.centre};
-  frame.centre_dop = make_dop26(point);
+  frame.centre_dop = make_dop26(frame.centre);
   if (half == 0) return frame;  // a single point has no size
   // The least exponent for which half <= (1/2 - 2^-24) 2^exponent; at least -1000, so that a step of a leaf is a
   // double.

@@ -45,17 +45,12 @@ Object::Object(Mesh mesh, const bvh::Tree& tree) {
 
 Object Object::moved(std::vector<Vec3d> vertices) const {
   check_float_mode();
-  Mesh mesh;
-  const Mesh& old = this->mesh();
-  if (vertices.size() != old.vertices.size()) {
+  if (vertices.size() != this->mesh().vertices.size()) {
     throw std::invalid_argument("moved: " + std::to_string(vertices.size()) + " vertices, the object has " +
-                                std::to_string(old.vertices.size()));
+                                std::to_string(this->mesh().vertices.size()));
   }
-  mesh.name = old.name;
+  Mesh mesh = this->mesh();
   mesh.vertices = std::move(vertices);
-  mesh.faces = old.faces;
-  mesh.polygons_cut = old.polygons_cut;
-  mesh.file_face = old.file_face;
   bvh::Tree tree = data_->tree.topology();
   bvh::refit(tree, mesh);
   return {std::move(mesh), tree};
@@ -158,11 +153,9 @@ std::vector<Contact> self_contacts(const Object& object, std::size_t max_contact
   try {
     sweep_box_pairs(mesh, mesh, [&](CandidatePair pair) {
       if (pair.face_a >= pair.face_b || are_neighbours(mesh.faces[pair.face_a], mesh.faces[pair.face_b])) return;
-      const auto file_face = [&mesh](std::uint32_t face) {
-        return mesh.file_face.empty() ? face : mesh.file_face[face];
-      };
-      const auto [low, high] = std::minmax({file_face(pair.face_a), file_face(pair.face_b)});  // by value
-      if (low == high) return;                                                                 // parts of one polygon
+      const auto [low, high] =
+          std::minmax({mesh.number_in_file(pair.face_a), mesh.number_in_file(pair.face_b)});  // by value
+      if (low == high) return;                                                                // parts of one polygon
       const Primitive a = mesh.primitive(pair.face_a);
       const Primitive b = mesh.primitive(pair.face_b);
       if (!pairs.decide(a, b).hit) return;

@@ -15,10 +15,6 @@ void check_placed(const Object* object, const Pose* pose, const char* name) {
   if (pose == nullptr) refuse("'s pose is a null pointer; point it to a Pose");
 }
 
-std::uint32_t file_face(const Mesh& mesh, std::uint32_t face) {
-  return mesh.file_face.empty() ? face : mesh.file_face[face];
-}
-
 /// Empties a result and keeps its memory.
 void clear(CollisionResult& result) {
   result.hit = false;
@@ -86,7 +82,7 @@ void FacePairs::add(std::uint32_t face_a, std::uint32_t face_b, Relation relatio
   const bool crosses = relation == Relation::crossing;
   seen_ = std::max(seen_, relation);
   if (!crosses && request_.counts == CollisionRequest::Counts::crossing) return;
-  Contact contact = {file_face(query_.a->mesh(), face_a), file_face(query_.b->mesh(), face_b), std::nullopt};
+  Contact contact = {query_.a->mesh().number_in_file(face_a), query_.b->mesh().number_in_file(face_b), std::nullopt};
   if (request_.tells_relation()) contact.relation = relation;
   std::vector<Contact>& contacts = result_->contacts;
   if (request_.contacts == CollisionRequest::Contacts::first) {

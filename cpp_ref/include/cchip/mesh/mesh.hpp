@@ -27,6 +27,8 @@ struct Mesh {
   std::size_t polygons_cut = 0;
   /// For each face, the number of the file's face that it is or was cut from; empty if no face was cut.
   std::vector<std::uint32_t> file_face;
+  /// Number in the file of face `face`, less than faces.size().
+  std::uint32_t number_in_file(std::uint32_t face) const { return file_face.empty() ? face : file_face[face]; }
   /// Face number `face` (less than faces.size()) with its vertex positions.
   Primitive primitive(std::size_t face) const;
 };
