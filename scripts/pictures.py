@@ -213,7 +213,7 @@ def clocks():
 
 
 def definitions():
-    """All entries of scripts/definitions.json that have a name, in whatever list they are."""
+    """All entries of scripts/definitions.json that have a name, from all of its lists."""
     pending, entries = [json.loads((ROOT / "scripts" / "definitions.json").read_text())], []
     while pending:
         item = pending.pop()

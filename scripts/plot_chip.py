@@ -70,7 +70,7 @@ def tables(run):
     for memory in run.memories:
         out.append(f"| {memory} | " + " | ".join(f"{run.rate(name, memory, 'clocks'):,.0f}" for name in run.classes) + " |")
     out += ["", "What the chip's blocks do, % of its clocks, means of the pairs of meshes, memory of " + FAST + ".", "",
-            "| class | box test | bus | transform | lane | idle: memory owes a line | idle: work in flight |", "|---" * 7 + "|"]
+            "| class | box test | bus | transform | lane | idle: a line outstanding | idle: work in flight |", "|---" * 7 + "|"]
     out += ["| " + " | ".join([name] + [f"{run.share(name, FAST, column):.0f}" for column in SHARES]) + " |" for name in run.classes]
     return "\n".join(out) + "\n"
 

@@ -26,7 +26,7 @@ import tempfile
 from generated_page import ROOT, compare, write
 from pictures import BLUE, FOLDER, GREY, INK, PALE, Picture
 
-KEEP = 2  # a gap stands for at least so many clocks
+KEEP = 2  # a gap stands for at least this number of clocks
 LEFT, TOP, ROW, COLUMN, GAP = 150, 56, 26, 22, 18  # pixels
 
 WINDOW = {"query": 100}  # clocks of a column that counts events

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two modules as they come from elsewhere: nobody will change them, and they know nothing of reconfiguration.
+// Two modules as they come from elsewhere: they will not be changed, and they know nothing of reconfiguration.
 #ifndef CLOSED_MODULES_HPP
 #define CLOSED_MODULES_HPP
 

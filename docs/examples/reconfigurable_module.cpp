@@ -37,7 +37,7 @@ struct Top : sc_core::sc_module {
     control.unload(doubler);  // step 5: at run time
     control.activate(squarer);
     ask(21);
-    to.write(5);  // nobody fetches the result
+    to.write(5);  // no process fetches the result
     try {
       control.unload(squarer);
     } catch (const rc::error& held) {

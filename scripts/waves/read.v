@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 `default_nettype none
 // Reads of one slot of cchip_axi_read for scripts/waveforms.py: memory does not answer the first one in time, so it ends with a
-// time-out; the slot's next request is refused while memory owes the answer; the late beats are dropped; then a read that works.
+// time-out; the slot's next request is refused while the answer is outstanding; the late beats are dropped; then a read that works.
 module bench;
   `include "cchip_defs.vh"
 

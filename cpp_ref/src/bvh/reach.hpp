@@ -16,7 +16,7 @@ namespace cchip::bvh {
 
 /// How far the object reaches along a vector of its frame, at most: three words of its 26-DOP, a factor each. Without
 /// branches, which would be mispredicted. With the magnitudes of m adding up to s, m as given, and the radius R of the
-/// object's ball: off by at most 7.95 x 2^-53 R s, and by what underflows (docs/cpp/collide.md, "Far apart").
+/// object's ball: off by at most 7.95 x 2^-53 R s, and by what underflows (docs/cpp/exactness.md, "Far apart").
 inline double reach_along(const SupportTree& tree, const std::array<double, 3>& m) {
   const double x = std::abs(m[0]);
   const double y = std::abs(m[1]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A first look at two placed objects, before their poses are related: are they apart along the line of their centres?
-/// docs/cpp/collide.md, "Far apart", derives the bounds.
+/// docs/cpp/exactness.md, "Far apart", derives the bounds.
 #ifndef CCHIP_DEVICE_FAR_TEST_HPP
 #define CCHIP_DEVICE_FAR_TEST_HPP
 

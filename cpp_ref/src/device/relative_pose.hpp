@@ -13,7 +13,7 @@ namespace cchip {
 
 /// The object with the finer unit plays `moved`, the other one `fixed`. A point y of the moved one, relative to its
 /// centre and in its units, lies at m y + t relative to the fixed one's centre, in that one's units.
-/// docs/cpp/collide.md derives the bounds.
+/// docs/cpp/exactness.md derives the bounds.
 struct RelativePose {
   bool swapped = false;     ///< the moved object is B of the query
   std::array<double, 9> m;  ///< row by row

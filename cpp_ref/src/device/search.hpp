@@ -48,8 +48,8 @@ class Search {
   virtual void run(QueryFeed& feed, const CollisionRequest& request) = 0;
 };
 
-/// Factors on the bounds that make the answers exact (docs/cpp/collide.md); 1 but in tests, which show that the answers
-/// are wrong without them.
+/// Factors on the bounds that make the answers exact (docs/cpp/exactness.md); 1 but in tests, which show that the
+/// answers are wrong without them.
 struct Margins {
   double far = 1;       ///< whole objects along an axis, in doubles
   double narrow = 1;    ///< planes in 16 bits

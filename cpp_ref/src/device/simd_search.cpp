@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once for each instruction set by Highway's foreach_target.h. Bounds: docs/cpp/collide.md.
+// Compiled once for each instruction set by Highway's foreach_target.h. Bounds: docs/cpp/exactness.md.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "device/simd_search.cpp"
 // Vectors of a size that only the machine knows cannot be kept in arrays.

@@ -12,7 +12,7 @@ namespace cchip::exact {
 
 /// Represents a real number x with |x - value| <= error. Error 0 means that x is a double, and stays 0 through every
 /// operation whose result is a double again, so that whole numbers of moderate size are decided here. An overflow
-/// leaves an error that is infinite or NaN. docs/cpp/collide.md derives the bounds.
+/// leaves an error that is infinite or NaN. docs/cpp/exactness.md derives the bounds.
 class Filter {
  public:
   Filter() = default;

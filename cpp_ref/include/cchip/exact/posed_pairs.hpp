@@ -11,8 +11,8 @@ namespace cchip {
 
 /// Decides pairs of a primitive of A and one of B. The answers are those of exact_intersects(), for any finite numbers:
 /// first separating axes in doubles with a bound on the rounding, then the predicates of the exact oracle in doubles
-/// with an error bound each, then, where a sign is open, the exact oracle (docs/cpp/collide.md). Immutable: any number
-/// of threads may use it at a time.
+/// with an error bound each, then, where a sign is open, the exact oracle (docs/cpp/exactness.md). Immutable: any
+/// number of threads may use it at a time.
 class PosedPairs {
  public:
   struct Answer {
