@@ -92,28 +92,38 @@ module cchip_descriptor_queues #(
     end
   endgenerate
 
-  function [PTR_W-1:0] pointer_of(input [PTR_W*QUEUES-1:0] of, input [QUEUES-1:0] one);
-    integer i;
-    begin
-      pointer_of = {PTR_W{1'b0}};
-      for (i = 0; i < QUEUES; i = i + 1)
-        pointer_of = pointer_of | (of[PTR_W*i+:PTR_W] & {PTR_W{one[i]}});
-    end
-  endfunction
-  function [KIND_W-1:0] code_of(input [QUEUES-1:0] one);
-    integer i;
-    begin
-      code_of = {KIND_W{1'b0}};
-      for (i = 0; i < QUEUES; i = i + 1) code_of = code_of | (i[KIND_W-1:0] & {KIND_W{one[i]}});
-    end
-  endfunction
+  wire [PTR_W-1:0] write_pointer, read_pointer;  // of the kind that comes, of the kind that leaves
+  wire [KIND_W-1:0] read_kind;
+  cchip_onehot_mux #(
+      .N    (QUEUES),
+      .WIDTH(PTR_W)
+  ) u_write (
+      .select(kind_of_push),
+      .s_data(write),
+      .m_data(write_pointer)
+  );
+  cchip_onehot_mux #(
+      .N    (QUEUES),
+      .WIDTH(PTR_W)
+  ) u_read (
+      .select(kind),
+      .s_data(read),
+      .m_data(read_pointer)
+  );
+  cchip_onehot_index #(
+      .N    (QUEUES),
+      .WIDTH(KIND_W)
+  ) u_kind (
+      .select(kind),
+      .index (read_kind)
+  );
   assign s_ready = |(room & kind_of_push);
-  assign s_place = {s_kind, pointer_of(write, kind_of_push)};
+  assign s_place = {s_kind, write_pointer};
 
   // ---- memory
   reg [PLACE_W-1:0] place_q;
   assign m_place = place_q;
-  always @(posedge clk) if (look) place_q <= {code_of(kind), pointer_of(read, kind)};
+  always @(posedge clk) if (look) place_q <= {read_kind, read_pointer};
 
   cchip_block_ram #(
       .WIDTH (WIDTH),

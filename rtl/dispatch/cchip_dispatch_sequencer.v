@@ -146,14 +146,14 @@ module cchip_dispatch_sequencer #(
   assign grant  = grant_q;
 
   // ---- read
-  function [`CCHIP_KIND_W-1:0] code_of(input [QUEUES-1:0] one);
-    integer i;
-    begin
-      code_of = {`CCHIP_KIND_W{1'b0}};
-      for (i = 0; i < QUEUES; i = i + 1)
-        code_of = code_of | (i[`CCHIP_KIND_W-1:0] & {`CCHIP_KIND_W{one[i]}});
-    end
-  endfunction
+  wire [`CCHIP_KIND_W-1:0] kind_code;
+  cchip_onehot_index #(
+      .N    (QUEUES),
+      .WIDTH(`CCHIP_KIND_W)
+  ) u_kind (
+      .select(kind_q),
+      .index (kind_code)
+  );
   reg [1:0] vertex_q;
   reg four_q;  // the pair that is read has four vertices
   reg valid_q, first_q, last_q;  // a clock after m_vertex
@@ -169,7 +169,7 @@ module cchip_dispatch_sequencer #(
     last_q  <= last;
     if (launch_q) begin
       four_q      <= four;
-      kind_read_q <= code_of(kind_q);
+      kind_read_q <= kind_code;
       taker_q     <= grant_q;
     end
     m_first_q <= first_q;

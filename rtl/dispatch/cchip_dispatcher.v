@@ -179,7 +179,7 @@ module cchip_dispatcher #(
   wire [KIND_W-1:0] module_of_answer;
   reg answered_q;
   reg [KIND_W-1:0] answered_module_q;
-  cchip_result_merge #(
+  cchip_stream_merge #(
       .SOURCES(TAKERS),
       .WIDTH  (ANSWER_W)
   ) u_merge (

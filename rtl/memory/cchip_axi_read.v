@@ -74,11 +74,8 @@ module cchip_axi_read #(
   localparam integer ID_W = $clog2(CLIENTS) + SLOT_W;
   localparam integer IDS = CLIENTS * SLOTS;
   localparam integer CODE_W = `CCHIP_READ_CODE_W;
-  localparam [31:0] BEATS = 512 / DATA_W;
-  localparam [31:0] LAST_BEAT = BEATS - 1;
-  localparam [31:0] LAST_ID = IDS - 1;
-  localparam [31:0] STRIDE = SLOTS;  // from a client's IDs to the next one's
-  localparam [31:0] BYTES_LOG2 = $clog2(DATA_W / 8);
+  localparam [31:0] LAST_BEAT = 512 / DATA_W - 1;
+  localparam [31:0] NUMBER = IDS;
 
   generate
     if (CLIENTS < 1 || CLIENTS > 8) begin : gen_illegal_clients
@@ -92,181 +89,85 @@ module cchip_axi_read #(
     end
   endgenerate
 
-  // ---- what is in flight. A request that waits for its address to be offered is in neither vector
+  // ---- what is in flight. Life of an ID: free, offered (live), taken (live and owed), free again
+  // behind its last beat. A read that is given up is not live any more; its ID is free when memory
+  // has sent the last beat. A request that waits for its address to be offered is in neither vector
   reg [IDS-1:0] live_q;  // the address is or was offered, the client waits for the answer
   reg [IDS-1:0] owed_q;  // the address was taken, its rlast has not come
   reg [IDS-1:0] first_q;  // no beat of it has come
-  reg [IDS-1:0] seen_q, late_q;  // the read was live at the last tick, at the last two ticks
   wire [IDS-1:0] offered, taken, closed, ended, counted;  // what happens to them on this clock
 
-  // ---- requests: one queue per client, then the one whose turn it is
-  wire [CLIENTS-1:0] waiting, grant;
-  wire [CLIENTS-1:0] queue_ready;
-  wire [(SLOT_W+58)*CLIENTS-1:0] waiting_data;
-  wire turn_ready;
-  wire next_valid;
-  wire [ID_W-1:0] next_id;
-  wire [57:0] next_line;
-  wire load_head;
-
-  genvar c;
-  generate
-    for (c = 0; c < CLIENTS; c = c + 1) begin : gen_client
-      cchip_fifo #(
-          .WIDTH     (SLOT_W + 58),
-          .DEPTH     (SLOTS),
-          .ROOM_KNOWN(1)
-      ) u_queue (
-          .clk    (clk),
-          .rst    (rst),
-          .s_valid(s_valid[c]),
-          .s_ready(queue_ready[c]),
-          .s_data ({s_slot[SLOT_W*c+:SLOT_W], s_line[58*c+:58]}),
-          .m_valid(waiting[c]),
-          .m_ready(grant[c] & turn_ready),
-          .m_data (waiting_data[(SLOT_W+58)*c+:SLOT_W+58])
-      );
-    end
-  endgenerate
-  cchip_arbiter #(
-      .N(CLIENTS)
-  ) u_turn (
-      .clk    (clk),
-      .rst    (rst),
-      .request(waiting),
-      .grant  (grant),
-      .take   (turn_ready)
-  );
-
-  // {id, line} of the client that is granted
-  function [ID_W+57:0] choose(input [(SLOT_W+58)*CLIENTS-1:0] from, input [CLIENTS-1:0] one);
-    integer j;
-    reg [ID_W-1:0] id;
-    begin
-      choose = {ID_W + 58{1'b0}};
-      for (j = 0; j < CLIENTS; j = j + 1)
-      if (one[j]) begin
-        id = j[ID_W-1:0] * STRIDE[ID_W-1:0];
-        id[SLOT_W-1:0] = from[(SLOT_W+58)*j+58+:SLOT_W];
-        choose = choose | {id, from[(SLOT_W+58)*j+:58]};
-      end
-    end
-  endfunction
-
-  cchip_skid_buffer #(
-      .WIDTH(ID_W + 58)
-  ) u_next (
-      .clk    (clk),
-      .rst    (rst),
-      .s_valid(|waiting),
-      .s_ready(turn_ready),
-      .s_data (choose(waiting_data, grant)),
-      .m_valid(next_valid),
-      .m_ready(load_head),
-      .m_data ({next_id, next_line})
-  );
-
-  // ---- addresses. The head of the requests is one that has to be refused if memory owed its place
-  // as it came here, or if the address in front of it was given up then or since: it may be an
-  // earlier one of the same place
-  reg head_valid_q, head_owed_q;
-  reg [ID_W-1:0] head_id_q;
-  reg [57:0] head_line_q;
-  reg arvalid_q;
-  reg ar_live_q;  // the client still waits for the read whose address is offered
-  reg [ID_W-1:0] arid_q;
-  reg [57:0] line_q;
-  reg failing_q;  // an answer without data is on its way to the read channel's place
-  reg [ID_W-1:0] fail_id_q;
-  reg fail_owed_q;  // 1: refused, 0: out of time
-
-  reg found_q;  // there is a late read, found_id_q
-  reg dead_q;  // the address that was offered on the last clock had been given up
-  reg issued_q, taken_q;  // an address was put on offer, was taken
-  reg [ID_W-1:0] taken_id_q;
-  wire dead = arvalid_q & ~ar_live_q;
-  wire issue = head_valid_q & ~head_owed_q & (~arvalid_q | (m_axi_arready & ar_live_q));
-  wire refuse = head_valid_q & head_owed_q & ~failing_q & ~found_q;
-  assign load_head = issue | refuse | ~head_valid_q;
-
+  // ---- requests and addresses. `owed` tells which of them has to be refused
+  wire issue;  // an address is put on offer
+  wire refuse;  // the head of the requests is refused
+  wire [ID_W-1:0] head_id;  // whose request that is
+  wire offer, taken_valid;
+  wire [ID_W-1:0] taken_id;
   wire place_timeout;
   reg [ID_W-1:0] place_id_q, place_id_q2;
-  always @(posedge clk) begin
-    if (load_head) {head_id_q, head_line_q} <= {next_id, next_line};
-    head_owed_q <= load_head ? owed_q[next_id] | dead | dead_q : head_owed_q | dead;
-    dead_q <= dead;
-    taken_id_q <= arid_q;
-    if (issue) begin
-      arid_q <= head_id_q;
-      line_q <= head_line_q;
-    end
-    if (rst) begin
-      head_valid_q <= 1'b0;
-      arvalid_q    <= 1'b0;
-      ar_live_q    <= 1'b0;
-      issued_q     <= 1'b0;
-      taken_q      <= 1'b0;
-    end else begin
-      if (load_head) head_valid_q <= next_valid;
-      arvalid_q <= issue | (arvalid_q & ~m_axi_arready);
-      ar_live_q <= issue | (ar_live_q & ~(place_timeout && place_id_q2 == arid_q));
-      issued_q  <= issue;
-      taken_q   <= arvalid_q & m_axi_arready;
-    end
-  end
-  assign m_axi_arvalid = arvalid_q;
-  assign m_axi_arid    = arid_q;
-  assign m_axi_araddr  = {line_q, 6'd0};
-  assign m_axi_arlen   = LAST_BEAT[7:0];
-  assign m_axi_arsize  = BYTES_LOG2[2:0];
-  assign m_axi_arburst = 2'b01;
-  assign m_axi_arcache = 4'b0011;
-  assign m_axi_arprot  = 3'b000;
-
-  // ---- time: a tick every limit + 1 clocks; a read that was live at two ticks is late
-  wire tick;
-  wire [31:0] since_tick;
-  cchip_timeout #(
-      .DEFAULT(`CCHIP_MEMORY_LIMIT_DEFAULT)
-  ) u_tick (
-      .clk    (clk),
-      .restart(rst | tick),
-      .limit  (limit),
-      .elapsed(since_tick),
-      .expired(tick)
+  reg failing_q;  // an answer without data is on its way to the read channel's stage
+  wire found;  // there is a late read, found_id
+  cchip_axi_read_address #(
+      .CLIENTS(CLIENTS),
+      .SLOTS  (SLOTS),
+      .DATA_W (DATA_W)
+  ) u_address (
+      .clk          (clk),
+      .rst          (rst),
+      .s_valid      (s_valid),
+      .s_slot       (s_slot),
+      .s_line       (s_line),
+      .owed         (owed_q),
+      .give_up      (place_timeout),
+      .give_up_id   (place_id_q2),
+      .refuse_ready (~failing_q & ~found),
+      .refuse       (refuse),
+      .issue        (issue),
+      .head_id      (head_id),
+      .offer        (offer),
+      .taken        (taken_valid),
+      .taken_id     (taken_id),
+      .m_axi_arvalid(m_axi_arvalid),
+      .m_axi_arready(m_axi_arready),
+      .m_axi_arid   (m_axi_arid),
+      .m_axi_araddr (m_axi_araddr),
+      .m_axi_arlen  (m_axi_arlen),
+      .m_axi_arsize (m_axi_arsize),
+      .m_axi_arburst(m_axi_arburst),
+      .m_axi_arcache(m_axi_arcache),
+      .m_axi_arprot (m_axi_arprot)
   );
-  reg [ID_W-1:0] scan_q, found_id_q;  // scan_q looks at one read after the other
-  wire [IDS-1:0] late = live_q & late_q;
-  wire fail = (found_q | refuse) & ~failing_q;
+
+  // ---- time: one late read after the other takes the read channel's stage for a clock
+  wire [ID_W-1:0] found_id;
+  cchip_axi_read_late #(
+      .IDS (IDS),
+      .ID_W(ID_W)
+  ) u_late (
+      .clk     (clk),
+      .rst     (rst),
+      .limit   (limit),
+      .live    (live_q),
+      .fresh   (offered),
+      .found   (found),
+      .found_id(found_id),
+      .busy    (failing_q)
+  );
+  reg [ID_W-1:0] fail_id_q;
+  reg fail_owed_q;  // 1: refused, 0: out of time
+  wire fail = (found | refuse) & ~failing_q;
   always @(posedge clk) begin
-    fail_id_q <= found_q ? found_id_q : head_id_q;
-    fail_owed_q <= ~found_q;
-    if (!found_q) found_id_q <= scan_q;
-    if (rst) begin
-      scan_q    <= {ID_W{1'b0}};
-      found_q   <= 1'b0;
-      failing_q <= 1'b0;
-    end else begin
-      if (!found_q)
-        scan_q <= scan_q == LAST_ID[ID_W-1:0] ? {ID_W{1'b0}} : scan_q + {{ID_W - 1{1'b0}}, 1'b1};
-      found_q   <= found_q ? failing_q : late[scan_q];
-      failing_q <= fail;
-    end
+    fail_id_q   <= found ? found_id : head_id;
+    fail_owed_q <= ~found;
+    failing_q   <= ~rst & fail;
   end
 
-  // ---- the read channel's place: a beat, or an answer without data, for which rready was 0
+  // ---- the read channel's stage: a beat, or an answer without data, for which rready was 0
   reg rready_q;
   reg beat_q, fail_q, owed_fail_q;
   reg [DATA_W-1:0] data_q;
   reg bad_q, rlast_q;
-  wire known;  // there is a read of this ID
-  generate
-    if (IDS == 1 << ID_W) begin : gen_all_known
-      assign known = 1'b1;
-    end else begin : gen_known
-      assign known = m_axi_rid <= LAST_ID[ID_W-1:0];
-    end
-  endgenerate
+  wire known = {1'b0, m_axi_rid} < NUMBER[ID_W:0];  // there is a read of this ID
   always @(posedge clk) begin
     place_id_q <= failing_q ? fail_id_q : m_axi_rid;
     owed_fail_q <= fail_owed_q;
@@ -342,20 +243,18 @@ module cchip_axi_read #(
     for (i = 0; i < IDS; i = i + 1) begin : gen_id
       localparam [31:0] I = i;
       wire here = place_id_q2 == I[ID_W-1:0];
-      assign offered[i] = issued_q && arid_q == I[ID_W-1:0];
-      assign taken[i]   = taken_q && taken_id_q == I[ID_W-1:0];
+      assign offered[i] = offer && m_axi_arid == I[ID_W-1:0];
+      assign taken[i]   = taken_valid && taken_id == I[ID_W-1:0];
       assign counted[i] = here & counts;
       assign ended[i]   = here & counts & rlast_q2;
       assign closed[i]  = here & close;
       always @(posedge clk)
         outstanding_q[i] <= ~rst &
-            (owed_q[i] | taken[i] | (arvalid_q && arid_q == I[ID_W-1:0]));
+            (owed_q[i] | taken[i] | (m_axi_arvalid && m_axi_arid == I[ID_W-1:0]));
     end
   endgenerate
   always @(posedge clk) begin
     first_q <= (first_q & ~counted) | taken;
-    seen_q  <= (tick ? live_q : seen_q) & ~offered;
-    late_q  <= (tick ? live_q & seen_q : late_q) & ~offered;
     if (rst) begin
       live_q <= {IDS{1'b0}};
       owed_q <= {IDS{1'b0}};
@@ -386,7 +285,7 @@ module cchip_axi_read #(
       any_outstanding_q <= 1'b0;
     end else begin
       valid_q <= deliver ? one_client[CLIENTS-1:0] : {CLIENTS{1'b0}};
-      any_outstanding_q <= arvalid_q | taken_q | (|owed_q);
+      any_outstanding_q <= m_axi_arvalid | taken_valid | (|owed_q);
     end
   end
   assign m_valid = valid_q;
@@ -397,11 +296,11 @@ module cchip_axi_read #(
   assign m_data  = data_q3;
   assign any_outstanding = any_outstanding_q;
 
-  wire unused = &{1'b0, queue_ready, one_client, since_tick};
+  wire unused = &{1'b0, one_client};
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_place, !(beat_q && fail_q))
-      `CCHIP_ASSERT(a_free, !issue || !live_q[head_id_q])
+      `CCHIP_ASSERT(a_free, !issue || !live_q[head_id])
     end
 
 endmodule

@@ -55,9 +55,11 @@ PLACE = "cchip_error_PLACE_W_must_be_3_to_12"
 TAKERS = "cchip_error_TAKERS_must_be_2_to_5"
 CREDIT = "cchip_error_CREDIT_must_be_1_to_256"
 ARBITER = "cchip_error_arbiter_N_must_be_1_to_32"
+ONEHOT_MUX = "cchip_error_onehot_mux_N_must_be_1_to_32_and_WIDTH_at_least_1"
+ONEHOT_INDEX = "cchip_error_onehot_index_N_must_be_1_to_64_and_fit_in_WIDTH_bit"
 TIMEOUT = "cchip_error_timeout_DEFAULT_below_1"
 COUNT = "cchip_error_count_LIMIT_must_be_1_to_65535"
-MERGE = "cchip_error_result_merge_SOURCES_not_2_to_8_or_WIDTH_below_1"
+MERGE = "cchip_error_stream_merge_SOURCES_not_1_to_8_or_WIDTH_below_1"
 CRC = "cchip_error_crc32_DATA_W_must_be_a_multiple_of_8"
 FETCH = "cchip_error_bitstream_fetch_FIFO_DEPTH_below_32"
 READ = "cchip_error_axi_read_"
@@ -150,6 +152,9 @@ ILLEGAL = [
     ("cchip_pr_slot", {"SLOT_ID": 256}, SLOT_ID),
     ("cchip_pr_slot", {"SIMULATION": 2}, SIMULATION),
     ("cchip_pr_slot", {"ROC_CYCLES": 0}, ROC),
+    *(("cchip_onehot_mux", {"N": n}, ONEHOT_MUX) for n in (0, 33)),
+    ("cchip_onehot_mux", {"WIDTH": 0}, ONEHOT_MUX),
+    *(("cchip_onehot_index", {"N": n, "WIDTH": w}, ONEHOT_INDEX) for n, w in ((0, 2), (65, 7), (5, 2), (1, 0))),
     *(("cchip_arbiter", {"N": n}, ARBITER) for n in (0, 33)),
     *(("cchip_count", {"LIMIT": n}, COUNT) for n in (0, 65536)),
     ("cchip_timeout", {"DEFAULT": 0}, TIMEOUT),
@@ -166,7 +171,7 @@ ILLEGAL = [
     *((module, {"SLOTS": n}, SLOTS) for module in ("cchip_dispatcher", "cchip_swap_scheduler") for n in (0, 5)),
     *(("cchip_primtest_subsystem", {"SLOTS": n}, SLOTS) for n in (0, 5)),
     *(("cchip_bitstream_table", {"SLOTS": n}, SLOTS) for n in (0, 5)),
-    *(("cchip_result_merge", {"SOURCES": n}, MERGE) for n in (1, 9)),
+    *(("cchip_stream_merge", {"SOURCES": n}, MERGE) for n in (0, 9)),
     ("cchip_crc32", {"DATA_W": 12}, CRC),
     ("cchip_bitstream_fetch", {"FIFO_DEPTH": 31}, FETCH),
     *(("cchip_cache", {"CACHE_KB": n}, CACHE + "CACHE_KB_must_be_a_power_of_two_1_to_1024") for n in (0, 3, 2048)),
@@ -242,6 +247,8 @@ LEGAL = [
     ("cchip_delay", {"DEPTH": 0, "RESET": 1}),
     *(("cchip_delay", {"DEPTH": n, "MEMORY": 1}) for n in (3, 4, 20)),
     *(("cchip_fifo", {"DEPTH": n}) for n in (1, 512, 513, 1024)),
+    *(("cchip_onehot_mux", {"N": n, "WIDTH": w}) for n, w in ((1, 1), (32, 8))),
+    *(("cchip_onehot_index", {"N": n, "WIDTH": w}) for n, w in ((1, 1), (4, 2), (64, 6))),
     *(("cchip_arbiter", {"N": n}) for n in (1, 32)),
     ("cchip_cache", {"CACHE_KB": 1, "PLACES": 2, "MISSES": 2, "LINE_W": 4, "LOCKS": 1, "DATA_W": 512}),
     *(("cchip_cache_fill", {"MISSES": n, "FRAME_W": 1, "DATA_W": w}) for n, w in ((2, 64), (32, 256))),
@@ -266,7 +273,7 @@ LEGAL = [
     *(("cchip_primtest_subsystem", {"SLOTS": n}) for n in (1, 3, 4)),
     ("cchip_chip", {"SWAPS": 1, "SLOTS": 2, "RM_ID": 0}),
     *(("cchip_slots", {"SLOTS": n, "SWAPS": s}) for n, s in ((1, 1), (2, 0), (4, 0))),
-    *(("cchip_result_merge", {"SOURCES": n}) for n in (2, 8)),
+    *(("cchip_stream_merge", {"SOURCES": n}) for n in (1, 8)),
     ("cchip_fifo", {"WIDTH": 1, "DEPTH": 5}),
     *(("cchip_ram", {"WIDTH": 1, "DEPTH": d, "ADDR_W": w}) for d, w in ((1, 1), (5, 4), (17, 5), (256, 8))),
     *(("cchip_leaf_queue", {"QUERIES": q, "DEPTH": d, "CREDIT": c}) for q, d, c in ((2, 1, 1), (16, 1024, 65535))),

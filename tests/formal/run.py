@@ -46,12 +46,17 @@ RETRY = "rtl/reconfig/cchip_swap_retry.v"
 TIMEOUT = "rtl/common/cchip_timeout.v"
 FETCH = "rtl/reconfig/cchip_bitstream_fetch.v"
 READ = "rtl/memory/cchip_axi_read.v"
+READ_ADDRESS = "rtl/memory/cchip_axi_read_address.v"
 WRITE = "rtl/memory/cchip_axi_write.v"
+WRITE_COLLECT = "rtl/memory/cchip_axi_write_collect.v"
+WRITE_SEND = "rtl/memory/cchip_axi_write_send.v"
 EVENTS = "rtl/traversal/cchip_traversal_events.v"
 POOL = "rtl/common/cchip_pool.v"
 DECISION = "rtl/traversal/cchip_traversal_decision.v"
 LEAVES = "rtl/traversal/cchip_leaf_queue.v"
-CACHE = "rtl/memory/cchip_cache.v"
+CACHE_PORT = "rtl/memory/cchip_cache_port.v"
+CACHE_WAITERS = "rtl/memory/cchip_cache_waiters.v"
+CACHE_INVALIDATE = "rtl/memory/cchip_cache_invalidate.v"
 FILL = "rtl/memory/cchip_cache_fill.v"
 QUERY_RING = "rtl/chip/cchip_query_ring.v"
 RECORD_RING = "rtl/chip/cchip_record_ring.v"
@@ -108,12 +113,12 @@ MUTANTS = [
     # the frame of a line is given away while its last waiter is kept from its clock; what a lookup saw has changed since; a frame
     # in flight, a locked one is given away; an invalidation does not wait for the reads before it; with all slots lost nobody is
     # told; a slot is used again while memory owes its response; two ports get one slot
-    ("cchip_cache frames", CACHE, "assign serving[p] = (|wake_q) | (serve_q0 & own0);", "assign serving[p] = |wake_q;"),
-    ("cchip_cache bounded", CACHE, "wire fresh = look_q6 & ~stale;", "wire fresh = look_q6;"),
-    ("cchip_cache evict", CACHE, "wire [1:0] may5 = ~hold5 & ~locked5;", "wire [1:0] may5 = ~locked5;"),
-    ("cchip_cache bounded", CACHE, "wire [1:0] may5 = ~hold5 & ~locked5;", "wire [1:0] may5 = ~hold5;"),
-    ("cchip_cache stale", CACHE, "READS: if (old_q == {MISSES{1'b0}} && serves0 == 2'b00)", "READS: if (serves0 == 2'b00)"),
-    ("cchip_cache live", CACHE, "wire refuse = fresh & ~match_q6 & exhausted;", "wire refuse = 1'b0;"),
+    ("cchip_cache frames", CACHE_WAITERS, "(|awake_q) | (serve_q & ~serve_ready);", "|awake_q;"),
+    ("cchip_cache bounded", CACHE_PORT, "wire fresh = look_q[6] & ~stale;", "wire fresh = look_q[6];"),
+    ("cchip_cache evict", CACHE_PORT, "wire [1:0] may5 = ~hold5 & ~locked5;", "wire [1:0] may5 = ~locked5;"),
+    ("cchip_cache bounded", CACHE_PORT, "wire [1:0] may5 = ~hold5 & ~locked5;", "wire [1:0] may5 = ~hold5;"),
+    ("cchip_cache stale", CACHE_INVALIDATE, "READS: if (old_q == {MISSES{1'b0}} && !serving)", "READS: if (!serving)"),
+    ("cchip_cache live", CACHE_PORT, "wire refuse = fresh & ~match_q6 & exhausted;", "wire refuse = 1'b0;"),
     ("cchip_cache bounded", FILL, "wire loses = serve_code_q == `CCHIP_READ_TIMEOUT || serve_code_q == `CCHIP_READ_OWED;",
      "wire loses = 1'b0;"),
     # a line that was not written is read; more of them than there are slots; a line that could not be read continues
@@ -135,26 +140,26 @@ MUTANTS = [
     # comes; a read counts on where the one before it ended; what the beat before has closed, and its count, is not seen; an error is forgotten; a line
     # that is too long continues; an address is taken back
     ("cchip_axi_read bounded", READ, "wire deliver = (counts & wanted) |", "wire deliver = counts |"),
-    ("cchip_axi_read bounded", READ, "wire issue = head_valid_q & ~head_owed_q &", "wire issue = head_valid_q &"),
-    ("cchip_axi_read bounded", READ, "owed_q[next_id] | dead | dead_q :", "owed_q[next_id] | dead :"),
+    ("cchip_axi_read bounded", READ_ADDRESS, "assign issue = head_valid_q & ~head_owed_q &", "assign issue = head_valid_q &"),
+    ("cchip_axi_read bounded", READ_ADDRESS, "owed[next_id] | abandoned | abandoned_q :", "owed[next_id] | abandoned :"),
     ("cchip_axi_read bounded", READ, "first_q <= (first_q & ~counted) | taken;", "first_q <= first_q & ~counted;"),
     ("cchip_axi_read bounded", READ, "wire wanted = live_q2 & ~closed_q2;", "wire wanted = live_q2;"),
     ("cchip_axi_read bounded", READ, "counted_q2  <= same & counts;", "counted_q2  <= 1'b0;"),
     ("cchip_axi_read bounded", READ, "wire bad = bad_q2 | (~none_yet & progress_now[3]);", "wire bad = bad_q2;"),
     ("cchip_axi_read bounded", READ, "wire last = rlast_q2 || count == LAST_BEAT[2:0];", "wire last = rlast_q2;"),
-    ("cchip_axi_read bounded", READ, "issue | (arvalid_q & ~m_axi_arready);", "issue | (arvalid_q & ~m_axi_arready & ar_live_q);"),
+    ("cchip_axi_read bounded", READ_ADDRESS, "issue | (arvalid_q & ~m_axi_arready);", "issue | (arvalid_q & ~m_axi_arready & ar_live_q);"),
     # a response that comes late answers the next write; one that comes before the data is taken for theirs; a burst leaves its
     # line; more writes than can be counted; data of another write end a burst; writes of two clients are mixed; a refused
     # write is answered at once
     ("cchip_axi_write bounded", WRITE, "assign answered = b_counts & ~dropped_some;", "assign answered = b_counts;"),
     ("cchip_axi_write bounded", WRITE, "wire b_counts = b_valid_q & address_some & data_some;", "wire b_counts = b_valid_q & address_some;"),
-    ("cchip_axi_write bounded", WRITE, "wire ends = last || place == LAST_BEAT[2:0];", "wire ends = last;"),
-    ("cchip_axi_write bounded", WRITE, "assign issue = write_valid & take_free & ~dropped_some & waiting_room & aw_ready;",
-     "assign issue = write_valid & take_free & ~dropped_some & aw_ready;"),
-    ("cchip_axi_write bounded_1", WRITE, "beat_strb & {STRB_W{waiting_some}}", "beat_strb"),
-    ("cchip_axi_write bounded", WRITE, "turn_d = begun_d ? turn_q : grant;", "turn_d = grant;"),
-    ("cchip_axi_write bounded", WRITE, "wire refuse = write_valid & take_free & dropped_some & ~waiting_some;",
-     "wire refuse = write_valid & take_free & dropped_some;"),
+    ("cchip_axi_write bounded", WRITE_COLLECT, "wire ends = last || place == LAST_BEAT[2:0];", "wire ends = last;"),
+    ("cchip_axi_write bounded", WRITE_SEND, "assign issue = s_write_valid & take_free & ~owed & room & aw_ready;",
+     "assign issue = s_write_valid & take_free & ~owed & aw_ready;"),
+    ("cchip_axi_write bounded_1", WRITE_SEND, "s_beat_strb & {STRB_W{awaited}}", "s_beat_strb"),
+    ("cchip_axi_write bounded", WRITE_COLLECT, "turn_d = begun_d ? turn_q : grant;", "turn_d = grant;"),
+    ("cchip_axi_write bounded", WRITE_SEND, "wire refuse = s_write_valid & take_free & owed & ~awaited;",
+     "wire refuse = s_write_valid & take_free & owed;"),
     # a verdict, a stack, do not wait for the query's event inside, at two places; further room that there is not; the
     # same room twice; a result is lost behind a verdict; results are never next, or always; a context that has a query gets
     # another; two starts of a query; a place that came back is not the one that is lent
@@ -212,7 +217,7 @@ MUTANTS = [
     # a full queue is offered room of another; a pop moves all queues; a push goes to the head
     ("cchip_descriptor_queues bounded", QUEUES, "assign s_ready = |(room & kind_of_push);", "assign s_ready = |room;"),
     ("cchip_descriptor_queues bounded", QUEUES, "wire pop_here = pop & kind[k];", "wire pop_here = pop;"),
-    ("cchip_descriptor_queues bounded", QUEUES, "{s_kind, pointer_of(write, kind_of_push)};", "{s_kind, pointer_of(read, kind_of_push)};"),
+    ("cchip_descriptor_queues bounded", QUEUES, "{s_kind, write_pointer};", "{s_kind, read_pointer};"),
     # an entry of another slot; an entry that ended well; an entry that is no longer valid; a new failure does not begin anew
     ("cchip_swap_retry prove", RETRY, "entry[i] = {slot, module_id} == {i[9:2], 6'd0, i[1:0]};", "entry[i] = module_id == {6'd0, i[1:0]};"),
     ("cchip_swap_retry prove", RETRY, "& ~(ended_well ? entry : {4 * SLOTS{1'b0}}));", ");"),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <models/cchip_result_merge.hpp>
+#include <models/cchip_stream_merge.hpp>
 
 #include "bench.hpp"
 
@@ -42,8 +42,8 @@ class MergeModel {
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("cchip_result_merge: every output on every clock is the model's", "[unit][cchip_result_merge]",
-                        cchip_result_merge_configs) {
+TEMPLATE_LIST_TEST_CASE("cchip_stream_merge: every output on every clock is the model's", "[unit][cchip_stream_merge]",
+                        cchip_stream_merge_configs) {
   constexpr int sources = TestType::SOURCES;
   constexpr int width = TestType::WIDTH;
   for_two_power_ups([](const sim::SimulationOptions& options) {

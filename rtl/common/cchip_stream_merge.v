@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// cchip_result_merge: several streams into one, in turn.
+// cchip_stream_merge: several streams into one, in turn.
 //   latency      1 clock
 //   throughput   one beat per clock
 //   fair         a beat that is offered lets at most SOURCES - 1 others leave before it
@@ -8,8 +8,8 @@
 //                m_ready
 //   reset        empty; s_ready = 0 while rst is 1 and one clock longer
 //   errors       none. A source may take an offer back: what was not accepted does not appear.
-module cchip_result_merge #(
-    // streams, 2..8
+module cchip_stream_merge #(
+    // streams, 1..8
     parameter integer SOURCES = 3,
     // width of the payload, bit
     parameter integer WIDTH = 36
@@ -25,8 +25,8 @@ module cchip_result_merge #(
 );
 
   generate
-    if (SOURCES < 2 || SOURCES > 8 || WIDTH < 1) begin : gen_illegal
-      cchip_error_result_merge_SOURCES_not_2_to_8_or_WIDTH_below_1 u_error ();
+    if (SOURCES < 1 || SOURCES > 8 || WIDTH < 1) begin : gen_illegal
+      cchip_error_stream_merge_SOURCES_not_1_to_8_or_WIDTH_below_1 u_error ();
     end
   endgenerate
 
@@ -44,15 +44,15 @@ module cchip_result_merge #(
 
   assign s_ready = next & {SOURCES{ready}};
 
-  function [WIDTH-1:0] choose(input [SOURCES*WIDTH-1:0] from, input [SOURCES-1:0] source);
-    integer i;
-    begin
-      choose = {WIDTH{1'b0}};
-      for (i = 0; i < SOURCES; i = i + 1) choose = choose
-          | (from[WIDTH*i+:WIDTH] & {WIDTH{source[i]}});
-    end
-  endfunction
-
+  wire [WIDTH-1:0] data;
+  cchip_onehot_mux #(
+      .N    (SOURCES),
+      .WIDTH(WIDTH)
+  ) u_choose (
+      .select(next),
+      .s_data(s_data),
+      .m_data(data)
+  );
   cchip_skid_buffer #(
       .WIDTH(WIDTH)
   ) u_out (
@@ -60,7 +60,7 @@ module cchip_result_merge #(
       .rst    (rst),
       .s_valid(|s_valid),
       .s_ready(ready),
-      .s_data (choose(s_data, next)),
+      .s_data (data),
       .m_valid(m_valid),
       .m_ready(m_ready),
       .m_data (m_data)

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_onehot_index: number of the bit that is 1 in a one-hot vector.
+//   rule         index is i for select[i] = 1, and 0 if select is 0; two bits of select must not be
+//                1 at once
+//   latency      0 clocks: index follows select
+//   cuts         nothing
+module cchip_onehot_index #(
+    // bits of the vector, 1..64
+    parameter integer N = 4,
+    // width of the number, bit, >= 1 and at least log2(N)
+    parameter integer WIDTH = 2
+) (
+    input  wire [    N-1:0] select,
+    output wire [WIDTH-1:0] index
+);
+
+  generate
+    if (N < 1 || N > 64 || WIDTH < 1 || WIDTH > 30 || (1 << WIDTH) < N) begin : gen_illegal
+      cchip_error_onehot_index_N_must_be_1_to_64_and_fit_in_WIDTH_bit u_error ();
+    end
+  endgenerate
+
+  function [WIDTH-1:0] number(input [N-1:0] one);
+    integer i;
+    begin
+      number = {WIDTH{1'b0}};
+      for (i = 0; i < N; i = i + 1) number = number | (i[WIDTH-1:0] & {WIDTH{one[i]}});
+    end
+  endfunction
+  assign index = number(select);
+
+endmodule
+`default_nettype wire

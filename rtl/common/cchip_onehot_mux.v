@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_onehot_mux: the word of the source that a one-hot vector selects, as an AND-OR tree.
+//   rule         m_data is the word i with select[i] = 1, and 0 if select is 0; two bits of select
+//                must not be 1 at once
+//   latency      0 clocks: m_data follows select and s_data
+//   cuts         nothing
+module cchip_onehot_mux #(
+    // sources, 1..32
+    parameter integer N = 4,
+    // width of a word, bit, >= 1
+    parameter integer WIDTH = 8
+) (
+    input  wire [      N-1:0] select,
+    input  wire [N*WIDTH-1:0] s_data,  // word i in bits [WIDTH*i +: WIDTH]
+    output wire [  WIDTH-1:0] m_data
+);
+
+  generate
+    if (N < 1 || N > 32 || WIDTH < 1) begin : gen_illegal
+      cchip_error_onehot_mux_N_must_be_1_to_32_and_WIDTH_at_least_1 u_error ();
+    end
+  endgenerate
+
+  function [WIDTH-1:0] choose(input [N*WIDTH-1:0] words, input [N-1:0] one);
+    integer i;
+    begin
+      choose = {WIDTH{1'b0}};
+      for (i = 0; i < N; i = i + 1) choose = choose | (words[WIDTH*i+:WIDTH] & {WIDTH{one[i]}});
+    end
+  endfunction
+  assign m_data = choose(s_data, select);
+
+endmodule
+`default_nettype wire

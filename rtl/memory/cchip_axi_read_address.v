@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_axi_read_address: requests and read addresses of cchip_axi_read: a queue per client, one
+// stream of all of them in turn, and the address that is on offer. A request whose ID memory may
+// still answer for an earlier read is refused instead.
+//   refused      a request is refused if memory owed beats under its ID as it became the head of
+//                the requests, or if an address that was on offer then or since has been given up:
+//                that address may carry the same ID
+//   give_up      give_up = 1: the client of the read give_up_id has been answered. If its address
+//                is on offer it stays there, as AXI demands, and nothing else is issued until it
+//                has been taken
+//   latency      5 clocks from s_valid to m_axi_arvalid
+//   throughput   an address on every clock
+//   cuts         all but refuse_ready to refuse and m_axi_arready to issue
+//   reset        no request, no address
+module cchip_axi_read_address #(
+    // clients, 1..8
+    parameter integer CLIENTS = 3,
+    // lines that a client may be waiting for: 2, 4, 8, 16 or 32
+    parameter integer SLOTS = 16,
+    // width of the data bus, bit: 64, 128, 256 or 512
+    parameter integer DATA_W = 128
+) (
+    input  wire                                      clk,
+    input  wire                                      rst,
+    // requests, one of each client per clock
+    input  wire [                       CLIENTS-1:0] s_valid,
+    input  wire [         CLIENTS*$clog2(SLOTS)-1:0] s_slot,
+    input  wire [                    CLIENTS*58-1:0] s_line,        // address / 64
+    input  wire [                 CLIENTS*SLOTS-1:0] owed,          // of each ID: memory owes beats
+    input  wire                                      give_up,
+    input  wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] give_up_id,
+    input  wire                                      refuse_ready,
+    output wire                                      refuse,        // head_id is refused
+    output wire                                      issue,         // head_id is offered next
+    output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] head_id,
+    output wire                                      offer,         // first clock of m_axi_arid
+    output wire                                      taken,         // taken_id was accepted
+    output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] taken_id,
+    output wire                                      m_axi_arvalid,
+    input  wire                                      m_axi_arready,
+    output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] m_axi_arid,
+    output wire [                              63:0] m_axi_araddr,
+    output wire [                               7:0] m_axi_arlen,
+    output wire [                               2:0] m_axi_arsize,
+    output wire [                               1:0] m_axi_arburst,
+    output wire [                               3:0] m_axi_arcache,
+    output wire [                               2:0] m_axi_arprot
+);
+
+  localparam integer SLOT_W = $clog2(SLOTS);
+  localparam integer ID_W = $clog2(CLIENTS) + SLOT_W;
+  localparam [31:0] LAST_BEAT = 512 / DATA_W - 1;
+  localparam [31:0] BYTES_LOG2 = $clog2(DATA_W / 8);
+
+  // ---- a queue per client, then one stream of {ID, line}
+  wire [CLIENTS-1:0] waiting, granted, queue_ready;
+  wire [(ID_W+58)*CLIENTS-1:0] waiting_data;
+  wire next_valid;
+  wire [ID_W-1:0] next_id;
+  wire [57:0] next_line;
+  wire load_head;
+  genvar c;
+  generate
+    for (c = 0; c < CLIENTS; c = c + 1) begin : gen_client
+      localparam [31:0] FIRST_ID = c * SLOTS;
+      wire [SLOT_W-1:0] slot;
+      wire [57:0] line;
+      cchip_fifo #(
+          .WIDTH     (SLOT_W + 58),
+          .DEPTH     (SLOTS),
+          .ROOM_KNOWN(1)
+      ) u_queue (
+          .clk    (clk),
+          .rst    (rst),
+          .s_valid(s_valid[c]),
+          .s_ready(queue_ready[c]),
+          .s_data ({s_slot[SLOT_W*c+:SLOT_W], s_line[58*c+:58]}),
+          .m_valid(waiting[c]),
+          .m_ready(granted[c]),
+          .m_data ({slot, line})
+      );
+      wire [ID_W-1:0] id = FIRST_ID[ID_W-1:0] | {{ID_W - SLOT_W{1'b0}}, slot};
+      assign waiting_data[(ID_W+58)*c+:ID_W+58] = {id, line};
+    end
+  endgenerate
+  cchip_stream_merge #(
+      .SOURCES(CLIENTS),
+      .WIDTH  (ID_W + 58)
+  ) u_next (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(waiting),
+      .s_ready(granted),
+      .s_data (waiting_data),
+      .m_valid(next_valid),
+      .m_ready(load_head),
+      .m_data ({next_id, next_line})
+  );
+
+  // ---- the head of the requests, and the address on offer
+  reg head_valid_q, head_owed_q;
+  reg [ID_W-1:0] head_id_q;
+  reg [57:0] head_line_q;
+  reg arvalid_q;
+  reg ar_live_q;  // the client still waits for the read whose address is offered
+  reg [ID_W-1:0] arid_q;
+  reg [57:0] line_q;
+  reg abandoned_q;  // the address that was offered on the last clock had been given up
+  reg offer_q, taken_q;
+  reg [ID_W-1:0] taken_id_q;
+  wire abandoned = arvalid_q & ~ar_live_q;
+  assign issue = head_valid_q & ~head_owed_q & (~arvalid_q | (m_axi_arready & ar_live_q));
+  assign refuse = head_valid_q & head_owed_q & refuse_ready;
+  assign load_head = issue | refuse | ~head_valid_q;
+  always @(posedge clk) begin
+    if (load_head) {head_id_q, head_line_q} <= {next_id, next_line};
+    head_owed_q <= load_head ? owed[next_id] | abandoned | abandoned_q : head_owed_q | abandoned;
+    abandoned_q <= abandoned;
+    taken_id_q  <= arid_q;
+    if (issue) begin
+      arid_q <= head_id_q;
+      line_q <= head_line_q;
+    end
+    if (rst) begin
+      head_valid_q <= 1'b0;
+      arvalid_q    <= 1'b0;
+      ar_live_q    <= 1'b0;
+      offer_q      <= 1'b0;
+      taken_q      <= 1'b0;
+    end else begin
+      if (load_head) head_valid_q <= next_valid;
+      arvalid_q <= issue | (arvalid_q & ~m_axi_arready);
+      ar_live_q <= issue | (ar_live_q & ~(give_up && give_up_id == arid_q));
+      offer_q   <= issue;
+      taken_q   <= arvalid_q & m_axi_arready;
+    end
+  end
+  assign head_id       = head_id_q;
+  assign offer         = offer_q;
+  assign taken         = taken_q;
+  assign taken_id      = taken_id_q;
+  assign m_axi_arvalid = arvalid_q;
+  assign m_axi_arid    = arid_q;
+  assign m_axi_araddr  = {line_q, 6'd0};
+  assign m_axi_arlen   = LAST_BEAT[7:0];
+  assign m_axi_arsize  = BYTES_LOG2[2:0];
+  assign m_axi_arburst = 2'b01;
+  assign m_axi_arcache = 4'b0011;
+  assign m_axi_arprot  = 3'b000;
+
+  wire unused = &{1'b0, queue_ready};
+
+endmodule
+`default_nettype wire

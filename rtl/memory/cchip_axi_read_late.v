@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+// cchip_axi_read_late: finds the reads of cchip_axi_read that have lasted too long, one after the
+// other. A tick comes every limit + 1 clocks; a read that was live at two ticks is late.
+//   latency      a read is late after more than limit, and at most 2 limit + 2, clocks of waiting.
+//                One ID is looked at per clock, none while a late read waits to be accepted
+//   limit        1..2^32 - 1 clocks; 0 means CCHIP_MEMORY_LIMIT_DEFAULT. It may change on any clock
+//                (cchip_timeout)
+//   cuts         every path: each output is a flip-flop
+//   reset        no read is late
+module cchip_axi_read_late #(
+    // reads that may be live, 2..256
+    parameter integer IDS  = 48,
+    // width of the number of a read, bit: IDS <= 2^ID_W
+    parameter integer ID_W = 6
+) (
+    input  wire            clk,
+    input  wire            rst,
+    input  wire [    31:0] limit,     // clocks; 0: default
+    input  wire [ IDS-1:0] live,      // of each read: its client waits
+    input  wire [ IDS-1:0] fresh,     // it becomes live on this clock
+    output wire            found,     // found_id is late;
+    output wire [ID_W-1:0] found_id,
+    input  wire            busy       // it cannot be accepted on this clock
+);
+
+  localparam [31:0] LAST_ID = IDS - 1;
+
+  wire tick;
+  wire [31:0] unused_elapsed;
+  cchip_timeout #(
+      .DEFAULT(`CCHIP_MEMORY_LIMIT_DEFAULT)
+  ) u_tick (
+      .clk    (clk),
+      .restart(rst | tick),
+      .limit  (limit),
+      .elapsed(unused_elapsed),
+      .expired(tick)
+  );
+
+  reg [IDS-1:0] seen_q, late_q;  // live at the last tick, at the last two ticks
+  reg [ID_W-1:0] scan_q;  // the read that is looked at
+  reg found_q;
+  reg [ID_W-1:0] found_id_q;
+  wire [IDS-1:0] late = live & late_q;
+  always @(posedge clk) begin
+    seen_q <= (tick ? live : seen_q) & ~fresh;
+    late_q <= (tick ? live & seen_q : late_q) & ~fresh;
+    if (!found_q) found_id_q <= scan_q;
+    if (rst) begin
+      scan_q  <= {ID_W{1'b0}};
+      found_q <= 1'b0;
+    end else begin
+      if (!found_q)
+        scan_q <= scan_q == LAST_ID[ID_W-1:0] ? {ID_W{1'b0}} : scan_q + {{ID_W - 1{1'b0}}, 1'b1};
+      found_q <= found_q ? busy : late[scan_q];
+    end
+  end
+  assign found    = found_q;
+  assign found_id = found_id_q;
+
+endmodule
+`default_nettype wire

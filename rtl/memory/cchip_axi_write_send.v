@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_assert.vh"
+// cchip_axi_write_send: sends the writes of cchip_axi_write_collect, address and data, or refuses
+// them while memory owes a response.
+//   send         a write is sent if no response is owed, there is room and the address can leave;
+//                its beats follow, one per clock
+//   answered     once no client waits any more (awaited = 0), the beats that are left are taken
+//                from their queue at once, and what memory still has to be offered goes out
+//                without strobes
+//   refuse       while a response is owed and no client waits, the write is taken from its queues
+//                and refused, after its last beat
+//   latency      1 clock from s_write_valid to m_axi_awvalid, 2 to m_axi_wvalid
+//   throughput   a beat and an address on every clock
+//   cuts         the AXI side: its outputs are flip-flops, and no ready goes on within its clock
+//   reset        nothing is sent
+module cchip_axi_write_send #(
+    // width of the data bus, bit: 64, 128, 256 or 512
+    parameter integer DATA_W = 128
+) (
+    input  wire                              clk,
+    input  wire                              rst,
+    // a write whose beats are all here
+    input  wire                              s_write_valid,
+    output wire                              s_write_ready,
+    input  wire [                       1:0] s_write_client,
+    input  wire [                       2:0] s_write_length,  // beats - 1
+    input  wire [64-$clog2(DATA_W/8)-1:0] s_write_address,
+    input  wire                              s_beat_valid,
+    output wire                              s_beat_ready,
+    input  wire [              DATA_W/8-1:0] s_beat_strb,
+    input  wire [                DATA_W-1:0] s_beat_data,
+    input  wire                              awaited,         // a client waits for a write
+    input  wire                              room,            // another one may be issued
+    input  wire                              owed,            // memory owes a response of long ago
+    output wire                              issue,           // this write is sent
+    output wire                              refused,         // a write is refused, that of
+    output wire [                       1:0] refused_client,
+    output wire                              m_axi_awvalid,
+    input  wire                              m_axi_awready,
+    output wire [                      63:0] m_axi_awaddr,
+    output wire [                       7:0] m_axi_awlen,
+    output wire                              m_axi_wvalid,
+    input  wire                              m_axi_wready,
+    output wire [                DATA_W-1:0] m_axi_wdata,
+    output wire [              DATA_W/8-1:0] m_axi_wstrb,
+    output wire                              m_axi_wlast
+);
+
+  localparam integer STRB_W = DATA_W / 8;
+  localparam integer BYTES_LOG2 = $clog2(STRB_W);
+  localparam integer ADDRESS_W = 64 - BYTES_LOG2;
+
+  // Beats leave their queue as they are sent; if their client has been answered (awaited = 0), at
+  // once
+  wire aw_ready, w_ready;
+  reg take_q, take_last_q;  // a beat of this write is to leave the queue; it is the last one
+  reg send_q, send_last_q;  // a beat is to be sent; it is the last one
+  reg [2:0] take_left_q, send_left_q;  // beats behind it
+  reg refused_q;  // the write is refused
+  reg [1:0] refused_client_q;
+  wire send = send_q & w_ready & (s_beat_valid | ~awaited);
+  assign s_beat_ready = take_q & (w_ready | ~awaited);
+  wire pop = s_beat_valid & s_beat_ready;  // a beat leaves its queue
+  wire take_free = ~take_q | (pop & take_last_q);
+  wire refuse = s_write_valid & take_free & owed & ~awaited;
+  assign issue = s_write_valid & take_free & ~owed & room & aw_ready;
+  assign s_write_ready = take_free & (owed ? ~awaited : room & aw_ready);
+  assign refused = pop & take_last_q & refused_q;
+  always @(posedge clk) begin
+    if (issue | refuse) begin
+      take_left_q      <= s_write_length;
+      take_last_q      <= s_write_length == 3'd0;
+      refused_q        <= refuse;
+      refused_client_q <= s_write_client;
+    end else if (pop) begin
+      take_left_q <= take_left_q - 3'd1;
+      take_last_q <= take_left_q == 3'd1;
+    end
+    if (issue) begin
+      send_left_q <= s_write_length;
+      send_last_q <= s_write_length == 3'd0;
+    end else if (send) begin
+      send_left_q <= send_left_q - 3'd1;
+      send_last_q <= send_left_q == 3'd1;
+    end
+    if (rst) begin
+      take_q <= 1'b0;
+      send_q <= 1'b0;
+    end else begin
+      take_q <= issue | refuse | (take_q & ~(pop & take_last_q));
+      send_q <= issue | (send_q & ~(send & send_last_q));
+    end
+  end
+
+  wire [2:0] m_length;
+  wire [ADDRESS_W-1:0] m_address;
+  cchip_skid_buffer #(
+      .WIDTH(3 + ADDRESS_W)
+  ) u_address (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(issue),
+      .s_ready(aw_ready),
+      .s_data ({s_write_length, s_write_address}),
+      .m_valid(m_axi_awvalid),
+      .m_ready(m_axi_awready),
+      .m_data ({m_length, m_address})
+  );
+  cchip_skid_buffer #(
+      .WIDTH(1 + STRB_W + DATA_W)
+  ) u_data (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(send),
+      .s_ready(w_ready),
+      .s_data ({send_last_q, s_beat_strb & {STRB_W{awaited}}, s_beat_data}),
+      .m_valid(m_axi_wvalid),
+      .m_ready(m_axi_wready),
+      .m_data ({m_axi_wlast, m_axi_wstrb, m_axi_wdata})
+  );
+  assign m_axi_awaddr   = {m_address, {BYTES_LOG2{1'b0}}};
+  assign m_axi_awlen    = {5'd0, m_length};
+  assign refused_client = refused_client_q;
+
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_refuse, !(refused_q && take_q && awaited))
+      `CCHIP_ASSERT(a_send, !issue || !send_q || (send && send_last_q))
+      `CCHIP_ASSERT(a_step, !send_q || !awaited || (take_q && take_left_q == send_left_q))
+    end
+
+endmodule
+`default_nettype wire

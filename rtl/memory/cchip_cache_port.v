@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_cache_port: one port of cchip_cache, a pipeline of seven stages. 0 chooses who has the
+// clock, 1 to 4 read the entries of both ways and compare their tags, 5 addresses the data, 6
+// decides, 7 is the answer.
+//   stage 0      in this order: a line that arrives or a set to invalidate (own), a request whose
+//                line has come, a deferred or new request, a request to be looked up again; the
+//                last two alternate if both wait
+//   stage 6      a lookup is a hit, falls asleep on a line in flight, wants a frame, is refused, or
+//                is looked up again: if its set has changed since stage 1, if no frame may be
+//                given away, or if its wish is not granted
+//   answers      7 clocks after s_valid of an idle port, in any order; m_data comes from the memory
+//                that data_addr addresses in stage 5
+//   throughput   a lookup per clock
+//   cuts         all but grant to what stage 6 does with it
+//   own          of port 0 a fill, of port 1 a set to invalidate: each port leaves the outputs of
+//                the other kind at values that mean nothing
+//   reset        nothing inside
+module cchip_cache_port #(
+    // places: 2, 4, 8, 16, 32 or 64
+    parameter integer PLACES = 32,
+    // slots of lines in flight: 2, 4, 8, 16 or 32
+    parameter integer MISSES = 32,
+    // width of a set's number, bit
+    parameter integer SET_W = 10,
+    // width of a line's number, bit, more than SET_W
+    parameter integer LINE_W = 32,
+    // ranges of lines to lock, 1..4
+    parameter integer LOCKS = 2
+) (
+    input  wire                                     clk,
+    input  wire                                     rst,
+    input  wire                                     running,         // 0: entries are cleared
+    // requests and answers
+    input  wire                                     s_valid,
+    input  wire [               $clog2(PLACES)-1:0] s_place,
+    input  wire [                       LINE_W-1:0] s_line,
+    output wire                                     m_valid,
+    output wire [               $clog2(PLACES)-1:0] m_place,
+    output wire [           `CCHIP_READ_CODE_W-1:0] m_code,
+    output wire [                              3:0] count,           // {again, wait, miss, hit}
+    input  wire [                 LOCKS*LINE_W-1:0] lock_first,
+    input  wire [                 LOCKS*LINE_W-1:0] lock_last,
+    // what the port has to do on its own: a fill, or a set to invalidate
+    input  wire                                     own_valid,
+    input  wire [                        SET_W-1:0] own_set,
+    input  wire                                     fill_way,
+    input  wire [               $clog2(MISSES)-1:0] fill_slot,
+    input  wire [           `CCHIP_READ_CODE_W-1:0] fill_code,
+    input  wire [                       LINE_W-1:0] invalidate_first,
+    input  wire [                       LINE_W-1:0] invalidate_last,
+    // lines in flight
+    input  wire                                     free_valid,
+    input  wire [               $clog2(MISSES)-1:0] free_slot,
+    input  wire                                     exhausted,
+    input  wire [                       MISSES-1:0] held,
+    input  wire [                       MISSES-1:0] filled,
+    input  wire                                     allocate,
+    input  wire [               $clog2(MISSES)-1:0] allocate_slot,
+    input  wire [                          SET_W:0] allocate_frame,  // {set, way}
+    input  wire                                     collect,
+    input  wire [               $clog2(MISSES)-1:0] collect_slot,
+    input  wire [           `CCHIP_READ_CODE_W-1:0] collect_code,
+    input  wire [                          SET_W:0] collect_frame,
+    output wire                                     serving,
+    output wire                                     serve_valid,
+    // the one write to the entries, {valid, locked, turn, slot, tag} of each way
+    input  wire [                              1:0] entry_write,
+    input  wire [                        SET_W-1:0] entry_set,
+    input  wire [2*(3+$clog2(MISSES)+LINE_W-SET_W)-1:0] entry_data,
+    input  wire [                              1:0] change_by,       // by stage 6 of these ports
+    input  wire [                      2*SET_W-1:0] sets6,           // of stage 6 of the ports
+    // requests that are looked up again take turns
+    output wire [                       PLACES-1:0] retried,
+    input  wire                                     oldest_here,     // it is the turn of one here,
+    input  wire [               $clog2(PLACES)-1:0] oldest_place,
+    input  wire                                     alone,           // which alone gets a frame
+    // stage 5: the frame to read or to write
+    output wire [                          SET_W:0] data_addr,
+    output wire                                     fill_write,
+    // stage 6: a frame is wanted for line6
+    output wire                                     want,
+    output wire                                     want_way,
+    output wire                                     want_locked,
+    output wire                                     want_turn,
+    output wire [                       LINE_W-1:0] line6,
+    input  wire                                     grant,
+    // a fill without data, whose line is to be invalidated
+    output wire                                     kill6,
+    output wire [               $clog2(MISSES)-1:0] fill_slot6,
+    output wire [                              1:0] fill_way6,       // one-hot
+    // a set has been looked up: ways to invalidate, and what stays in their entries
+    output wire                                     walk6,
+    output wire                                     walk_stale6,
+    output wire                                     walk_hits6,
+    output wire [                              1:0] walk_ways6,
+    output wire [           2*($clog2(MISSES)+1)-1:0] walk_keep6      // {turn, slot}
+);
+
+  localparam integer PLACE_W = $clog2(PLACES);
+  localparam integer SLOT_W = $clog2(MISSES);
+  localparam integer TAG_W = LINE_W - SET_W;
+  localparam integer CODE_W = `CCHIP_READ_CODE_W;
+  localparam integer ENTRY_W = 3 + SLOT_W + TAG_W;
+
+  // ---- stage 0: who has this clock
+  wire [PLACE_W-1:0] serve_place;
+  wire [CODE_W-1:0] serve_code;
+  wire [SET_W:0] serve_frame;
+  wire look0;
+  wire [PLACE_W-1:0] look_place0;
+  wire [LINE_W-1:0] look_line0;
+  wire again;  // of stage 6
+  wire [PLACE_W-1:0] place6;
+  cchip_cache_requests #(
+      .PLACES(PLACES),
+      .LINE_W(LINE_W)
+  ) u_requests (
+      .clk        (clk),
+      .rst        (rst),
+      .s_valid    (s_valid),
+      .s_place    (s_place),
+      .s_line     (s_line),
+      .again      (again),
+      .again_place(place6),
+      .again_line (line6),
+      .free       (running & ~own_valid & ~serve_valid),
+      .look       (look0),
+      .look_place (look_place0),
+      .look_line  (look_line0)
+  );
+
+  // ---- what goes through the stages: bit i is that of stage i
+  reg [6:1] look_q, serve_q, own_q;
+  always @(posedge clk)
+    if (rst) begin
+      look_q  <= 6'd0;
+      serve_q <= 6'd0;
+      own_q   <= 6'd0;
+    end else begin
+      look_q  <= {look_q[5:1], look0};
+      serve_q <= {serve_q[5:1], serve_valid & ~own_valid};
+      own_q   <= {own_q[5:1], own_valid};
+    end
+
+  wire [PLACE_W-1:0] place5;
+  wire [CODE_W-1:0] code5;
+  wire [SLOT_W-1:0] slot5;
+  wire way4;
+  reg [PLACE_W-1:0] place_q6;
+  reg [CODE_W-1:0] code_q6;
+  reg [SLOT_W-1:0] slot_q6;
+  reg way_q5, way_q6;
+  cchip_delay #(
+      .WIDTH(PLACE_W + CODE_W + SLOT_W),
+      .DEPTH(5)
+  ) u_to_5 (
+      .clk(clk),
+      .rst(rst),
+      .d  ({serve_valid | own_valid ? serve_place : look_place0,
+            own_valid ? fill_code : serve_code, fill_slot}),
+      .q  ({place5, code5, slot5})
+  );
+  cchip_delay #(
+      .DEPTH(4)
+  ) u_way_to_4 (
+      .clk(clk),
+      .rst(rst),
+      .d  (own_valid ? fill_way : serve_frame[0]),
+      .q  (way4)
+  );
+  reg [LINE_W-1:0] line_q1, line_q2, line_q3, line_q4, line_q5, line_q6;
+  reg stale_q2, stale_q3, stale_q4, stale_q5, stale_q6;  // the set has changed since
+  wire change = |entry_write;
+  wire [1:0] match4;
+  always @(posedge clk) begin
+    line_q1 <= {
+      look_line0[LINE_W-1:SET_W],
+      own_valid ? own_set : serve_valid ? serve_frame[SET_W:1] : look_line0[SET_W-1:0]
+    };
+    line_q2  <= line_q1;
+    line_q3  <= line_q2;
+    line_q4  <= line_q3;
+    line_q5  <= line_q4;
+    line_q6  <= line_q5;
+    stale_q2 <= change && entry_set == line_q1[SET_W-1:0];
+    stale_q3 <= stale_q2 | (change && entry_set == line_q2[SET_W-1:0]);
+    stale_q4 <= stale_q3 | (change && entry_set == line_q3[SET_W-1:0]);
+    stale_q5 <= stale_q4 | (change && entry_set == line_q4[SET_W-1:0]);
+    stale_q6 <= stale_q5 | (change && entry_set == line_q5[SET_W-1:0]);
+    way_q5   <= look_q[4] ? match4[1] : way4;
+    way_q6   <= way_q5;
+    place_q6 <= place5;
+    code_q6  <= code5;
+    slot_q6  <= slot5;
+  end
+  assign place6    = place_q6;
+  assign line6     = line_q6;
+  assign data_addr = {line_q5[SET_W-1:0], way_q5};
+
+  // ---- the entries of the two ways
+  wire [1:0] match5, valid5, locked5, turn5, turn6, hold5, full5, forget5, forget6;
+  wire [2*SLOT_W-1:0] slots5, slots6;
+  genvar w;
+  generate
+    for (w = 0; w < 2; w = w + 1) begin : gen_way
+      cchip_cache_way #(
+          .WAY   (w),
+          .MISSES(MISSES),
+          .SET_W (SET_W),
+          .LINE_W(LINE_W)
+      ) u_way (
+          .clk           (clk),
+          .write         (entry_write[w]),
+          .write_set     (entry_set),
+          .write_data    (entry_data[ENTRY_W*w+:ENTRY_W]),
+          .allocate      (allocate),
+          .allocate_slot (allocate_slot),
+          .allocate_frame(allocate_frame),
+          .held          (held),
+          .filled        (filled),
+          .set1          (line_q1[SET_W-1:0]),
+          .line4         (line_q4),
+          .set5          (line_q5[SET_W-1:0]),
+          .first         (invalidate_first),
+          .last          (invalidate_last),
+          .match4        (match4[w]),
+          .match5        (match5[w]),
+          .valid5        (valid5[w]),
+          .locked5       (locked5[w]),
+          .turn5         (turn5[w]),
+          .hold5         (hold5[w]),
+          .full5         (full5[w]),
+          .slot5         (slots5[SLOT_W*w+:SLOT_W]),
+          .forget5       (forget5[w]),
+          .forget6       (forget6[w]),
+          .turn6         (turn6[w]),
+          .slot6         (slots6[SLOT_W*w+:SLOT_W])
+      );
+    end
+  endgenerate
+
+  // lines to lock
+  wire [LOCKS-1:0] in_range;
+  genvar i;
+  generate
+    for (i = 0; i < LOCKS; i = i + 1) begin : gen_lock
+      assign in_range[i] = line_q1 >= lock_first[LINE_W*i+:LINE_W] &&
+          line_q1 <= lock_last[LINE_W*i+:LINE_W];
+    end
+  endgenerate
+  wire lock5;
+  cchip_delay #(
+      .DEPTH(4)
+  ) u_lock (
+      .clk(clk),
+      .rst(rst),
+      .d  (|in_range),
+      .q  (lock5)
+  );
+
+  // ---- stage 5 to 6: what the decision needs
+  wire [1:0] wait5 = match5 & hold5 & ~full5;  // the line is in flight
+  wire [1:0] may5 = ~hold5 & ~locked5;  // frames that may be given away
+  reg match_q6, both_q6, wait_q6, lacks_q6, prefer_q6, lock_q6;
+  reg [1:0] may_q6, locked_q6, same_q6;
+  reg [SLOT_W-1:0] wait_slot_q6;
+  reg is_oldest_q6;  // compared a clock before: the oldest does not change while it is alone
+  reg kill_q6, walk_hits_q6;
+  always @(posedge clk) begin
+    // the lookup of each port that is a clock ahead has the same set
+    same_q6 <= {
+      sets6[SET_W+:SET_W] == line_q5[SET_W-1:0], sets6[0+:SET_W] == line_q5[SET_W-1:0]
+    };
+    match_q6 <= |match5;
+    both_q6  <= &match5;
+    // not reset: no slot is free on the clocks after reset
+    lacks_q6     <= look_q[5] & ~(|match5) & (|may5);
+    wait_q6      <= |wait5;
+    wait_slot_q6 <= match5[1] ? slots5[SLOT_W+:SLOT_W] : slots5[0+:SLOT_W];
+    may_q6       <= may5;
+    prefer_q6    <= &valid5 ? ^turn5 : valid5[0];
+    locked_q6    <= locked5;
+    lock_q6      <= lock5;
+    is_oldest_q6 <= oldest_here && oldest_place == place5;
+    kill_q6      <= ~rst & own_q[5] & (code5 != `CCHIP_READ_OK);
+    walk_hits_q6 <= ~rst & own_q[5] & (|forget5);
+  end
+
+  // ---- stage 6
+  wire stale = stale_q6 | (|(change_by & same_q6));
+  wire fresh = look_q[6] & ~stale;
+  wire hit = fresh & match_q6 & ~wait_q6;
+  wire sleep = (fresh & wait_q6) | grant;
+  wire refuse = fresh & ~match_q6 & exhausted;
+  assign again = look_q[6] & (stale | (~match_q6 & ~grant & ~exhausted));
+  // the way to replace is found beside the decision whether any is
+  wire victim = &may_q6 ? prefer_q6 : may_q6[1];
+  assign want = lacks_q6 & ~stale & free_valid & (~alone | is_oldest_q6);
+  assign want_way = victim;
+  assign want_locked = lock_q6 & ~(victim ? locked_q6[0] : locked_q6[1]);
+  assign want_turn = ~victim ^ (victim ? turn6[0] : turn6[1]);
+  assign fill_write = own_q[5] && code5 == `CCHIP_READ_OK;
+  assign kill6 = kill_q6;
+  assign fill_slot6 = slot_q6;
+  assign fill_way6 = {way_q6, ~way_q6};
+  assign walk6 = own_q[6];
+  assign walk_stale6 = stale;
+  assign walk_hits6 = walk_hits_q6;
+  assign walk_ways6 = forget6;
+  assign walk_keep6 = {turn6[1], slots6[SLOT_W+:SLOT_W], turn6[0], slots6[0+:SLOT_W]};
+
+  // ---- requests that wait for a line
+  wire [PLACES-1:0] waiting;
+  cchip_cache_waiters #(
+      .PLACES (PLACES),
+      .MISSES (MISSES),
+      .FRAME_W(SET_W + 1)
+  ) u_waiters (
+      .clk          (clk),
+      .rst          (rst),
+      .look         (look_q[5]),
+      .look_place   (place5),
+      .sleep        (sleep),
+      .sleep_slot   (wait_q6 ? wait_slot_q6 : free_slot),
+      .retry        (again),
+      .retried      (retried),
+      .collect      (collect),
+      .collect_slot (collect_slot),
+      .collect_code (collect_code),
+      .collect_frame(collect_frame),
+      .serving      (serving),
+      .serve_valid  (serve_valid),
+      .serve_ready  (~own_valid),
+      .serve_place  (serve_place),
+      .serve_code   (serve_code),
+      .serve_frame  (serve_frame),
+      .waiting      (waiting)
+  );
+
+  // ---- answers and counts
+  reg valid_q7;
+  reg [PLACE_W-1:0] place_q7;
+  reg [CODE_W-1:0] code_q7;
+  reg [3:0] count_q;
+  always @(posedge clk) begin
+    place_q7 <= place_q6;
+    code_q7  <= serve_q[6] ? code_q6 : hit ? `CCHIP_READ_OK : `CCHIP_READ_OWED;
+    valid_q7 <= ~rst & (hit | refuse | serve_q[6]);
+    count_q  <= {4{~rst}} & {again, fresh & wait_q6, grant, hit};
+  end
+  assign m_valid = valid_q7;
+  assign m_place = place_q7;
+  assign m_code  = code_q7;
+  assign count   = count_q;
+
+  wire unused = &{1'b0, waiting, both_q6, match4[0]};
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_held, !serve_valid || held[collect_slot])
+      `CCHIP_ASSERT(a_alone, !grant || !alone || (oldest_here && oldest_place == place_q6))
+      `CCHIP_ASSERT(a_one, !fresh || !(match_q6 && both_q6))
+      `CCHIP_ASSERT(a_place, !s_valid || !waiting[s_place])
+    end
+
+endmodule
+`default_nettype wire

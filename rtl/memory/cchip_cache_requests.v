@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_cache_requests: which request of one port of cchip_cache is looked up next. New requests
+// that find the port taken are deferred, in order; those to be looked up again have a queue of
+// their own.
+//   turns        if requests of both queues wait, they alternate; a new request is looked up at
+//                once if none is deferred and it is not the turn of the other queue
+//   latency      0 clocks: look follows free and s_valid
+//   throughput   a lookup on each clock with free = 1
+//   cuts         all but free and the new request to the lookup
+//   reset        no request. Room is known: at most PLACES requests are with a port at a time
+module cchip_cache_requests #(
+    // places: 2, 4, 8, 16, 32 or 64
+    parameter integer PLACES = 32,
+    // width of a line's number, bit
+    parameter integer LINE_W = 32
+) (
+    input  wire                      clk,
+    input  wire                      rst,
+    // a new request
+    input  wire                      s_valid,
+    input  wire [$clog2(PLACES)-1:0] s_place,
+    input  wire [        LINE_W-1:0] s_line,
+    // one to be looked up again
+    input  wire                      again,
+    input  wire [$clog2(PLACES)-1:0] again_place,
+    input  wire [        LINE_W-1:0] again_line,
+    // the lookup
+    input  wire                      free,         // a request may have this clock
+    output wire                      look,
+    output wire [$clog2(PLACES)-1:0] look_place,
+    output wire [        LINE_W-1:0] look_line
+);
+
+  localparam integer WIDTH = $clog2(PLACES) + LINE_W;
+
+  wire deferred_valid, again_valid, deferred_ready, again_ready;
+  wire [WIDTH-1:0] deferred_data, again_data;
+  reg again_first_q;  // the queue of those to be looked up again has its turn
+  wire use_again = again_valid & (again_first_q | ~(deferred_valid | s_valid));
+  cchip_fifo #(
+      .WIDTH     (WIDTH),
+      .DEPTH     (PLACES),
+      .ROOM_KNOWN(1)
+  ) u_deferred (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(s_valid & (~free | deferred_valid | (again_valid & again_first_q))),
+      .s_ready(deferred_ready),
+      .s_data ({s_place, s_line}),
+      .m_valid(deferred_valid),
+      .m_ready(free & ~use_again),
+      .m_data (deferred_data)
+  );
+  cchip_fifo #(
+      .WIDTH     (WIDTH),
+      .DEPTH     (PLACES),
+      .ROOM_KNOWN(1)
+  ) u_again (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(again),
+      .s_ready(again_ready),
+      .s_data ({again_place, again_line}),
+      .m_valid(again_valid),
+      .m_ready(free & use_again),
+      .m_data (again_data)
+  );
+  always @(posedge clk)
+    if (rst) again_first_q <= 1'b0;
+    else if (free && again_valid && (deferred_valid || s_valid)) again_first_q <= ~again_first_q;
+  assign look = free & (again_valid | deferred_valid | s_valid);
+  assign {look_place, look_line} = use_again ? again_data :
+      deferred_valid ? deferred_data : {s_place, s_line};
+
+  wire unused = &{1'b0, deferred_ready, again_ready};
+
+endmodule
+`default_nettype wire

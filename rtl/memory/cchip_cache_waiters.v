@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_cache_waiters: the requests of one port of cchip_cache that wait for a line in flight, and
+// those whose line has come. Of each place: asleep (on which slot), awake (to be served), neither.
+//   sleep        sleep = 1: the request that was on look_place a clock before waits for sleep_slot
+//   collect      all that wait for collect_slot are awake from the next clock on; not while one is
+//   serve        one after the other, the lowest place first; serve_valid, serve_place, serve_code
+//                and serve_frame stay until serve_ready. serving = 0 says that none is left whose
+//                frame is needed after this clock
+//   retry        retried tells of each place whether its request was to be looked up again when it
+//                was decided upon last
+//   latency      1 clock from collect to serving, 2 to serve_valid
+//   throughput   one request per clock
+//   cuts         all but serve_ready to serving
+//   reset        no request waits
+module cchip_cache_waiters #(
+    // places: 2, 4, 8, 16, 32 or 64
+    parameter integer PLACES = 32,
+    // slots of lines in flight: 2, 4, 8, 16 or 32
+    parameter integer MISSES = 32,
+    // width of a frame's number, bit
+    parameter integer FRAME_W = 12
+) (
+    input  wire                          clk,
+    input  wire                          rst,
+    // a lookup, a clock before it is decided upon
+    input  wire                          look,
+    input  wire [    $clog2(PLACES)-1:0] look_place,
+    // the decision: one of these, or neither
+    input  wire                          sleep,
+    input  wire [    $clog2(MISSES)-1:0] sleep_slot,
+    input  wire                          retry,
+    output wire [            PLACES-1:0] retried,
+    // a line has come
+    input  wire                          collect,
+    input  wire [    $clog2(MISSES)-1:0] collect_slot,
+    input  wire [`CCHIP_READ_CODE_W-1:0] collect_code,
+    input  wire [           FRAME_W-1:0] collect_frame,
+    // a request whose line has come
+    output wire                          serving,
+    output wire                          serve_valid,
+    input  wire                          serve_ready,
+    output wire [    $clog2(PLACES)-1:0] serve_place,
+    output wire [`CCHIP_READ_CODE_W-1:0] serve_code,
+    output wire [           FRAME_W-1:0] serve_frame,
+    output wire [            PLACES-1:0] waiting         // asleep or awake
+);
+
+  localparam integer PLACE_W = $clog2(PLACES);
+  localparam integer SLOT_W = $clog2(MISSES);
+  localparam integer CODE_W = `CCHIP_READ_CODE_W;
+
+  reg [PLACES-1:0] asleep_q, awake_q, retried_q;
+  reg serve_q;
+  wire load = ~serve_q | serve_ready;
+
+  // ---- the lowest place that is awake, by groups of four: the first group with one, and the first
+  // in each group
+  function [15:0] lowest(input [15:0] of);
+    integer j;
+    begin
+      lowest = of;
+      for (j = 1; j < 16; j = j + 1) if (|(of & ((16'd1 << j) - 16'd1))) lowest[j] = 1'b0;
+    end
+  endfunction
+  wire [63:0] awake = {{64 - PLACES{1'b0}}, awake_q};
+  wire [63:0] first;  // one-hot
+  wire [15:0] group;  // has one
+  wire [15:0] group_first = lowest(group);
+  wire [31:0] in_group;  // number of the first in each group, of the first group alone
+  genvar i;
+  generate
+    for (i = 0; i < 16; i = i + 1) begin : gen_group
+      wire [3:0] four = awake[4*i+:4];
+      assign group[i] = |four;
+      assign first[4*i+:4] = {
+        four[3] & ~(|four[2:0]), four[2] & ~(|four[1:0]), four[1] & ~four[0], four[0]
+      } & {4{group_first[i]}};
+      assign in_group[2*i+:2] = {~(|four[1:0]), ~four[0] & (four[1] | ~four[2])} &
+          {2{group_first[i]}};
+    end
+  endgenerate
+  reg [5:0] next_place;
+  integer j;
+  always @* begin
+    next_place = 6'd0;
+    for (j = 0; j < 16; j = j + 1)
+      next_place = next_place | {j[3:0] & {4{group_first[j]}}, in_group[2*j+:2]};
+  end
+
+  reg [PLACE_W-1:0] serve_place_q;
+  reg [CODE_W-1:0] serve_code_q;
+  reg [FRAME_W-1:0] serve_frame_q;
+  always @(posedge clk) begin
+    if (load) begin
+      serve_place_q <= next_place[PLACE_W-1:0];
+      serve_code_q  <= collect_code;
+      serve_frame_q <= collect_frame;
+    end
+    if (rst) serve_q <= 1'b0;
+    else if (load) serve_q <= |awake_q;
+  end
+  assign serving     = (|awake_q) | (serve_q & ~serve_ready);
+  assign serve_valid = serve_q;
+  assign serve_place = serve_place_q;
+  assign serve_code  = serve_code_q;
+  assign serve_frame = serve_frame_q;
+
+  // ---- the places
+  generate
+    for (i = 0; i < PLACES; i = i + 1) begin : gen_place
+      localparam [31:0] I = i;
+      reg here_q;  // the lookup that is decided upon is of this place
+      reg [SLOT_W-1:0] slot_q;  // that it waits for
+      wire comes = collect & (slot_q == collect_slot);
+      always @(posedge clk) begin
+        here_q <= ~rst & look & (look_place == I[PLACE_W-1:0]);
+        // It counts only if the place falls asleep now, which is known too late to ask for it here.
+        if (here_q) slot_q <= sleep_slot;
+        if (rst) begin
+          retried_q[i] <= 1'b0;
+          asleep_q[i]  <= 1'b0;
+          awake_q[i]   <= 1'b0;
+        end else begin
+          if (here_q) retried_q[i] <= retry;
+          asleep_q[i] <= (sleep & here_q) | (asleep_q[i] & ~comes);
+          awake_q[i]  <= collect ? asleep_q[i] & comes : awake_q[i] & ~(load & first[i]);
+        end
+      end
+    end
+  endgenerate
+  assign retried = retried_q;
+  assign waiting = asleep_q | awake_q;
+
+  wire unused = &{1'b0, next_place, first};
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_collect, !collect || awake_q == {PLACES{1'b0}})
+      `CCHIP_ASSERT(a_serve, !serve_q || serve_frame_q == collect_frame)
+    end
+
+endmodule
+`default_nettype wire

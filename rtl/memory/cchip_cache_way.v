@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+// cchip_cache_way: the entries of one way as one port of cchip_cache sees them, in the stages of
+// cchip_cache_port: read in 1 to 3, compared in 4, in 5 it is known whether the line is in flight.
+//   entry        {valid, locked, turn, slot, tag}: slot is that of the read that filled the frame
+//                or will. If the record of that slot still names this frame, the frame is held, and
+//                the line is in flight until the slot is filled
+//   latency      3 clocks from line1 to match4, 4 to the values of stage 5
+//   throughput   a lookup per clock
+//   cuts         line4 reaches match4, line5 reaches hold5 within the clock; all else is cut
+//   reset        none: entries are unknown until they have been written
+module cchip_cache_way #(
+    // this way: 0 or 1
+    parameter integer WAY = 0,
+    // slots of lines in flight: 2, 4, 8, 16 or 32
+    parameter integer MISSES = 32,
+    // width of a set's number, bit
+    parameter integer SET_W = 10,
+    // width of a line's number, bit, more than SET_W
+    parameter integer LINE_W = 32
+) (
+    input  wire                                      clk,
+    // the one write to the entries
+    input  wire                                      write,
+    input  wire [                         SET_W-1:0] write_set,
+    input  wire [3+$clog2(MISSES)+LINE_W-SET_W-1:0] write_data,
+    // a line that gets a frame
+    input  wire                                      allocate,
+    input  wire [                $clog2(MISSES)-1:0] allocate_slot,
+    input  wire [                           SET_W:0] allocate_frame,  // {set, way}
+    // of each slot: it has a frame; its data are in the frame
+    input  wire [                        MISSES-1:0] held,
+    input  wire [                        MISSES-1:0] filled,
+    // the lookup, at stages 1, 4 and 5
+    input  wire [                         SET_W-1:0] set1,
+    input  wire [                        LINE_W-1:0] line4,
+    input  wire [                         SET_W-1:0] set5,
+    // lines to invalidate
+    input  wire [                        LINE_W-1:0] first,
+    input  wire [                        LINE_W-1:0] last,
+    output wire                                      match4,          // the line is in this way
+    output wire                                      match5,
+    output wire                                      valid5,
+    output wire                                      locked5,
+    output wire                                      turn5,
+    output wire                                      hold5,           // the frame is held,
+    output wire                                      full5,           // and the data are here
+    output wire [                $clog2(MISSES)-1:0] slot5,
+    output wire                                      forget5,         // the line is in the range
+    output wire                                      forget6,
+    output wire                                      turn6,
+    output wire [                $clog2(MISSES)-1:0] slot6
+);
+
+  localparam integer SLOT_W = $clog2(MISSES);
+  localparam integer TAG_W = LINE_W - SET_W;
+  localparam integer ENTRY_W = 3 + SLOT_W + TAG_W;
+  localparam [31:0] NUMBER = WAY;
+
+  wire [ENTRY_W-1:0] entry3;
+  cchip_block_ram #(
+      .WIDTH (ENTRY_W),
+      .ADDR_W(SET_W)
+  ) u_entries (
+      .clk       (clk),
+      .write     (write),
+      .write_addr(write_set),
+      .write_data(write_data),
+      .read_addr (set1),
+      .read_data (entry3)
+  );
+
+  reg [ENTRY_W-1:0] entry_q4;
+  wire valid4, locked4, turn4;
+  wire [SLOT_W-1:0] slot4;
+  wire [TAG_W-1:0] tag4;
+  assign {valid4, locked4, turn4, slot4, tag4} = entry_q4;
+  wire [LINE_W-1:0] kept4 = {tag4, line4[SET_W-1:0]};  // the line in this way
+  assign match4 = valid4 && kept4 == line4;
+
+  (* ram_style = "distributed" *)
+  reg [SET_W:0] frames[0:MISSES-1];
+  reg match_q5, valid_q5, locked_q5, turn_q5, held_q5, filled_q5, forget_q5;
+  reg [SLOT_W-1:0] slot_q5;
+  reg [SET_W:0] frame_q5;
+  reg turn_q6, forget_q6;
+  reg [SLOT_W-1:0] slot_q6;
+  always @(posedge clk) begin
+    entry_q4 <= entry3;
+    if (allocate) frames[allocate_slot] <= allocate_frame;
+    frame_q5  <= frames[slot4];
+    held_q5   <= held[slot4];
+    filled_q5 <= filled[slot4];
+    match_q5  <= match4;
+    valid_q5  <= valid4;
+    locked_q5 <= locked4;
+    turn_q5   <= turn4;
+    slot_q5   <= slot4;
+    forget_q5 <= valid4 && kept4 >= first && kept4 <= last;
+    forget_q6 <= forget_q5;
+    turn_q6   <= turn_q5;
+    slot_q6   <= slot_q5;
+  end
+  assign match5  = match_q5;
+  assign valid5  = valid_q5;
+  assign locked5 = locked_q5;
+  assign turn5   = turn_q5;
+  assign hold5   = held_q5 && frame_q5 == {set5, NUMBER[0]};
+  assign full5   = filled_q5;
+  assign slot5   = slot_q5;
+  assign forget5 = forget_q5;
+  assign forget6 = forget_q6;
+  assign turn6   = turn_q6;
+  assign slot6   = slot_q6;
+
+endmodule
+`default_nettype wire
