@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The CPU as a device.
-#ifndef CCHIP_DEVICE_CPU_DEVICE_HPP
-#define CCHIP_DEVICE_CPU_DEVICE_HPP
+#ifndef CCHIP_CPU_CPU_DEVICE_HPP
+#define CCHIP_CPU_CPU_DEVICE_HPP
 
 #include <cchip/collide/collide.hpp>
 #include <memory>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Driver of cchip_primtest_subsystem: pairs of three kinds through slots whose modules are exchanged at run time.
-#ifndef CCHIP_DEVICE_RECONFIG_DRIVER_HPP
-#define CCHIP_DEVICE_RECONFIG_DRIVER_HPP
+#ifndef CCHIP_DRIVER_RECONFIG_DRIVER_HPP
+#define CCHIP_DRIVER_RECONFIG_DRIVER_HPP
 
 #include <array>
-#include <cchip/device/machine.hpp>
+#include <cchip/driver/machine.hpp>
 #include <cchip/wire/bitstream.hpp>
 #include <cstdint>
 #include <functional>

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <condition_variable>
 #include <exception>
 #include <mutex>

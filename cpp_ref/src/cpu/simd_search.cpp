@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compiled once for each instruction set by Highway's foreach_target.h. Bounds: docs/cpp/collide.md.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "device/simd_search.cpp"
+#define HWY_TARGET_INCLUDE "cpu/simd_search.cpp"
 // Vectors of a size that only the machine knows cannot be kept in arrays.
 // The emulation of 128-bit vectors serves computers without any of the instruction sets, and as a check of these. GCC
 // before 12.3 miscompiles it where it vectorises, so this file is compiled without that.

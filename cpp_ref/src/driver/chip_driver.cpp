@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <cchip/device/chip_driver.hpp>
+#include <cchip/driver/chip_driver.hpp>
 #include <cchip/wire/chip_registers.hpp>
 #include <cchip/wire/query.hpp>
 #include <deque>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Lines of a chip's memory, given out in ranges.
-#ifndef CCHIP_DEVICE_LINE_ALLOCATOR_HPP
-#define CCHIP_DEVICE_LINE_ALLOCATOR_HPP
+#ifndef CCHIP_DRIVER_LINE_ALLOCATOR_HPP
+#define CCHIP_DRIVER_LINE_ALLOCATOR_HPP
 
 #include <cstdint>
 #include <map>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// What the SIMD search has in memory, the same for all instruction sets: a query on its way, planes, leaves.
-#ifndef CCHIP_DEVICE_SIMD_TASK_HPP
-#define CCHIP_DEVICE_SIMD_TASK_HPP
+#ifndef CCHIP_CPU_SIMD_TASK_HPP
+#define CCHIP_CPU_SIMD_TASK_HPP
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <cchip/device/reconfig_driver.hpp>
+#include <cchip/driver/reconfig_driver.hpp>
 #include <cchip/wire/registers.hpp>
 #include <stdexcept>
 #include <string>

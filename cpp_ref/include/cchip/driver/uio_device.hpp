@@ -2,12 +2,12 @@
 /// \file
 /// cchip_chip on a Linux board, without a kernel driver of its own: registers and interrupt through the UIO framework,
 /// memory through a file that maps it (docs/hardware/uio.md). Linux only.
-#ifndef CCHIP_DEVICE_UIO_DEVICE_HPP
-#define CCHIP_DEVICE_UIO_DEVICE_HPP
+#ifndef CCHIP_DRIVER_UIO_DEVICE_HPP
+#define CCHIP_DRIVER_UIO_DEVICE_HPP
 
 #include <cchip/collide/collide.hpp>
-#include <cchip/device/chip_driver.hpp>
-#include <cchip/device/machine.hpp>
+#include <cchip/driver/chip_driver.hpp>
+#include <cchip/driver/machine.hpp>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>

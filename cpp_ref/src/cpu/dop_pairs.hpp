@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// 26-DOPs of two objects under two poses, made comparable.
-#ifndef CCHIP_DEVICE_DOP_PAIRS_HPP
-#define CCHIP_DEVICE_DOP_PAIRS_HPP
+#ifndef CCHIP_CPU_DOP_PAIRS_HPP
+#define CCHIP_CPU_DOP_PAIRS_HPP
 
 #include <array>
 #include <cchip/bvh/dop26.hpp>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The host's side of the primitive tests: any pairs in, the right module for each.
-#ifndef CCHIP_DEVICE_PRIMTEST_ENGINE_HPP
-#define CCHIP_DEVICE_PRIMTEST_ENGINE_HPP
+#ifndef CCHIP_DRIVER_PRIMTEST_ENGINE_HPP
+#define CCHIP_DRIVER_PRIMTEST_ENGINE_HPP
 
-#include <cchip/device/pair_engine.hpp>
+#include <cchip/driver/pair_engine.hpp>
 #include <cstdint>
 #include <functional>
 #include <memory>

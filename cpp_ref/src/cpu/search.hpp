@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Searches for faces that touch: what one thread of the CPU device runs.
-#ifndef CCHIP_DEVICE_SEARCH_HPP
-#define CCHIP_DEVICE_SEARCH_HPP
+#ifndef CCHIP_CPU_SEARCH_HPP
+#define CCHIP_CPU_SEARCH_HPP
 
 #include <algorithm>
 #include <cchip/collide/collide.hpp>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A chip and its host as a device.
-#ifndef CCHIP_DEVICE_CHIP_HOST_HPP
-#define CCHIP_DEVICE_CHIP_HOST_HPP
+#ifndef CCHIP_DRIVER_CHIP_HOST_HPP
+#define CCHIP_DRIVER_CHIP_HOST_HPP
 
 #include <cchip/collide/collide.hpp>
-#include <cchip/device/query_port.hpp>
+#include <cchip/driver/query_port.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <memory>

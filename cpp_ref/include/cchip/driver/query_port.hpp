@@ -2,8 +2,8 @@
 /// \file
 /// What a host needs of one chip that answers queries: memory for images, queries in, records out. The functional model
 /// implements it, and so does a driver of registers and rings.
-#ifndef CCHIP_DEVICE_QUERY_PORT_HPP
-#define CCHIP_DEVICE_QUERY_PORT_HPP
+#ifndef CCHIP_DRIVER_QUERY_PORT_HPP
+#define CCHIP_DRIVER_QUERY_PORT_HPP
 
 #include <cchip/wire/definitions.hpp>
 #include <cchip/wire/line.hpp>

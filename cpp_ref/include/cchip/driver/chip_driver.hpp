@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Driver of cchip_chip: registers, rings and images in memory (docs/hardware/programmers-guide.md).
-#ifndef CCHIP_DEVICE_CHIP_DRIVER_HPP
-#define CCHIP_DEVICE_CHIP_DRIVER_HPP
+#ifndef CCHIP_DRIVER_CHIP_DRIVER_HPP
+#define CCHIP_DRIVER_CHIP_DRIVER_HPP
 
-#include <cchip/device/machine.hpp>
-#include <cchip/device/query_port.hpp>
+#include <cchip/driver/machine.hpp>
+#include <cchip/driver/query_port.hpp>
 #include <cchip/wire/bitstream.hpp>
 #include <cstdint>
 #include <functional>

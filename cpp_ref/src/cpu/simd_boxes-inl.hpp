@@ -2,11 +2,11 @@
 /// \file
 /// Bounding volumes of up to four by four nodes against each other, in 16 bits or in single precision.
 /// Included by simd_search.cpp once for each instruction set.
-#if defined(CCHIP_DEVICE_SIMD_BOXES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef CCHIP_DEVICE_SIMD_BOXES_INL_HPP
-#undef CCHIP_DEVICE_SIMD_BOXES_INL_HPP
+#if defined(CCHIP_CPU_SIMD_BOXES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef CCHIP_CPU_SIMD_BOXES_INL_HPP
+#undef CCHIP_CPU_SIMD_BOXES_INL_HPP
 #else
-#define CCHIP_DEVICE_SIMD_BOXES_INL_HPP
+#define CCHIP_CPU_SIMD_BOXES_INL_HPP
 #endif
 
 #include <hwy/highway.h>
@@ -348,4 +348,4 @@ HWY_INLINE void make_planes(const RelativePose& r, const Margins& margins, Plane
 }  // namespace HWY_NAMESPACE
 }  // namespace cchip
 HWY_AFTER_NAMESPACE();
-#endif  // CCHIP_DEVICE_SIMD_BOXES_INL_HPP
+#endif  // CCHIP_CPU_SIMD_BOXES_INL_HPP

@@ -2,8 +2,8 @@
 /// \file
 /// A first look at two placed objects, before their poses are related: are they apart along the line of their centres?
 /// docs/cpp/collide.md, "Far apart", derives the bounds.
-#ifndef CCHIP_DEVICE_FAR_TEST_HPP
-#define CCHIP_DEVICE_FAR_TEST_HPP
+#ifndef CCHIP_CPU_FAR_TEST_HPP
+#define CCHIP_CPU_FAR_TEST_HPP
 
 #include <array>
 #include <cchip/collide/collide.hpp>

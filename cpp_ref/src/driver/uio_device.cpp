@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cchip/device/chip_host.hpp>
-#include <cchip/device/uio_device.hpp>
+#include <cchip/driver/chip_host.hpp>
+#include <cchip/driver/uio_device.hpp>
 #include <cchip/wire/chip_registers.hpp>
 #include <cerrno>
 #include <filesystem>

@@ -4,8 +4,8 @@
 #include <cchip/bvh/image.hpp>
 #include <cchip/bvh/place.hpp>
 #include <cchip/collide/face_pairs.hpp>
-#include <cchip/device/chip_host.hpp>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
+#include <cchip/driver/chip_host.hpp>
 #include <iterator>
 #include <list>
 #include <map>

@@ -2,8 +2,8 @@
 /// \file
 /// One interface in front of everything that answers pairs: the Verilated RTL, its clock-exact
 /// model, the Eigen reference and the exact oracle.
-#ifndef CCHIP_DEVICE_PAIR_ENGINE_HPP
-#define CCHIP_DEVICE_PAIR_ENGINE_HPP
+#ifndef CCHIP_DRIVER_PAIR_ENGINE_HPP
+#define CCHIP_DRIVER_PAIR_ENGINE_HPP
 
 #include <cchip/wire/pair.hpp>
 #include <cstdint>
@@ -58,8 +58,6 @@ std::unique_ptr<PairEngine> make_function_engine(const char* name, int coord_w,
                                                  std::function<bool(const GridPair&)> intersects);
 /// exact_intersects()
 std::unique_ptr<PairEngine> make_exact_engine(int coord_w);
-/// The clock-exact model of the primitive tests with default parameters.
-std::unique_ptr<PairEngine> make_model_engine(int coord_w);
 
 }  // namespace cchip
 

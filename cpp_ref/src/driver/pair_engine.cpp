@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/device/pair_engine.hpp>
+#include <cchip/driver/pair_engine.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <stdexcept>
 #include <utility>

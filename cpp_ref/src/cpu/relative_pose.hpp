@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// How two placed objects lie to each other, in units of one of them, with what rounding may cost.
-#ifndef CCHIP_DEVICE_RELATIVE_POSE_HPP
-#define CCHIP_DEVICE_RELATIVE_POSE_HPP
+#ifndef CCHIP_CPU_RELATIVE_POSE_HPP
+#define CCHIP_CPU_RELATIVE_POSE_HPP
 
 #include <array>
 #include <cchip/collide/collide.hpp>

@@ -2,11 +2,11 @@
 /// \file
 /// Primitives of two leaves against each other in single precision, with a bound on every rounding.
 /// Included by simd_search.cpp once for each instruction set.
-#if defined(CCHIP_DEVICE_SIMD_FACES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef CCHIP_DEVICE_SIMD_FACES_INL_HPP
-#undef CCHIP_DEVICE_SIMD_FACES_INL_HPP
+#if defined(CCHIP_CPU_SIMD_FACES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef CCHIP_CPU_SIMD_FACES_INL_HPP
+#undef CCHIP_CPU_SIMD_FACES_INL_HPP
 #else
-#define CCHIP_DEVICE_SIMD_FACES_INL_HPP
+#define CCHIP_CPU_SIMD_FACES_INL_HPP
 #endif
 
 #include <hwy/highway.h>
@@ -289,4 +289,4 @@ HWY_INLINE void halve(const LeafSide& quads, std::size_t at, float error, LeafSi
 }  // namespace HWY_NAMESPACE
 }  // namespace cchip
 HWY_AFTER_NAMESPACE();
-#endif  // CCHIP_DEVICE_SIMD_FACES_INL_HPP
+#endif  // CCHIP_CPU_SIMD_FACES_INL_HPP

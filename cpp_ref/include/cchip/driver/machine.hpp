@@ -2,8 +2,8 @@
 /// \file
 /// What a host can do with a machine: registers, memory, interrupt, and for some streams of pairs. The drivers of this
 /// folder use nothing else, so they work on the simulated RTL and on a board alike.
-#ifndef CCHIP_DEVICE_MACHINE_HPP
-#define CCHIP_DEVICE_MACHINE_HPP
+#ifndef CCHIP_DRIVER_MACHINE_HPP
+#define CCHIP_DRIVER_MACHINE_HPP
 
 #include <cchip/wire/bitstream.hpp>
 #include <cchip/wire/pair.hpp>
