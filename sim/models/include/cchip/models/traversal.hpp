@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Clock-exact model of cchip_traversal. A Moore machine, like those in stream.hpp.
-#ifndef CCHIP_MODEL_TRAVERSAL_HPP
-#define CCHIP_MODEL_TRAVERSAL_HPP
+#ifndef CCHIP_MODELS_TRAVERSAL_HPP
+#define CCHIP_MODELS_TRAVERSAL_HPP
 
 #include <array>
-#include <cchip/model/leaf_queue.hpp>
 #include <cchip/model/stream.hpp>
-#include <cchip/model/traversal_pipeline.hpp>
+#include <cchip/models/leaf_queue.hpp>
+#include <cchip/models/traversal_pipeline.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <optional>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Clock-exact model of cchip_leaf_queue. A Moore machine, like those in stream.hpp.
-#ifndef CCHIP_MODEL_LEAF_QUEUE_HPP
-#define CCHIP_MODEL_LEAF_QUEUE_HPP
+#ifndef CCHIP_MODELS_LEAF_QUEUE_HPP
+#define CCHIP_MODELS_LEAF_QUEUE_HPP
 
 #include <array>
 #include <cchip/model/stream.hpp>

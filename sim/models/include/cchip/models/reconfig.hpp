@@ -2,8 +2,8 @@
 /// \file
 /// Clock-exact models of the blocks in rtl/reconfig between a region and the rest. Moore machines, like those in
 /// stream.hpp.
-#ifndef CCHIP_MODEL_RECONFIG_HPP
-#define CCHIP_MODEL_RECONFIG_HPP
+#ifndef CCHIP_MODELS_RECONFIG_HPP
+#define CCHIP_MODELS_RECONFIG_HPP
 
 #include <cstdint>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Clock-exact model of cchip_get_data. A Moore machine, like those in stream.hpp.
-#ifndef CCHIP_MODEL_GET_DATA_HPP
-#define CCHIP_MODEL_GET_DATA_HPP
+#ifndef CCHIP_MODELS_GET_DATA_HPP
+#define CCHIP_MODELS_GET_DATA_HPP
 
 #include <algorithm>
 #include <array>
-#include <cchip/model/memory.hpp>
 #include <cchip/model/stream.hpp>
+#include <cchip/models/memory.hpp>
 #include <cchip/wire/definitions.hpp>
 #include <cstddef>
 #include <cstdint>

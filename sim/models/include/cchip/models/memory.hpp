@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Clock-exact models of the blocks in rtl/memory. Moore machines, like those in stream.hpp.
-#ifndef CCHIP_MODEL_MEMORY_HPP
-#define CCHIP_MODEL_MEMORY_HPP
+#ifndef CCHIP_MODELS_MEMORY_HPP
+#define CCHIP_MODELS_MEMORY_HPP
 
 #include <algorithm>
 #include <array>

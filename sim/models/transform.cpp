@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cchip/bvh/image_line.hpp>
-#include <cchip/model/transform.hpp>
+#include <cchip/models/transform.hpp>
 
 namespace cchip::model {
 

@@ -2,8 +2,8 @@
 /// \file
 /// Clock-exact models of rtl/transform: what leaf_pair.hpp computes, and when. Every model is a Moore machine: its
 /// accessors show the outputs during the present clock, clock() is the rising edge that ends it.
-#ifndef CCHIP_MODEL_TRANSFORM_HPP
-#define CCHIP_MODEL_TRANSFORM_HPP
+#ifndef CCHIP_MODELS_TRANSFORM_HPP
+#define CCHIP_MODELS_TRANSFORM_HPP
 
 #include <array>
 #include <cchip/bvh/tree.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/model/traversal_pipeline.hpp>
+#include <cchip/models/traversal_pipeline.hpp>
 
 namespace cchip::model {
 

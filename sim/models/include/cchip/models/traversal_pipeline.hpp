@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Clock-exact models of cchip_traversal_events and cchip_traversal_decision. Moore machines, like those in stream.hpp.
-#ifndef CCHIP_MODEL_TRAVERSAL_PIPELINE_HPP
-#define CCHIP_MODEL_TRAVERSAL_PIPELINE_HPP
+#ifndef CCHIP_MODELS_TRAVERSAL_PIPELINE_HPP
+#define CCHIP_MODELS_TRAVERSAL_PIPELINE_HPP
 
 #include <array>
 #include <cchip/model/stream.hpp>
