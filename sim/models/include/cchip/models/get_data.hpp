@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cchip/model/stream.hpp>
-#include <cchip/models/memory.hpp>
+#include <cchip/models/line_data.hpp>
 #include <cchip/wire/definitions.hpp>
 #include <cstddef>
 #include <cstdint>

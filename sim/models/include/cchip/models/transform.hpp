@@ -8,6 +8,7 @@
 #include <array>
 #include <cchip/bvh/tree.hpp>
 #include <cchip/model/leaf_pair.hpp>
+#include <cchip/models/tie.hpp>
 #include <cchip/wire/definitions.hpp>
 #include <cchip/wire/line.hpp>
 #include <cchip/wire/pair.hpp>
@@ -65,11 +66,7 @@ struct MovedVertex {
   std::int64_t error_a = 0;
   std::int64_t error_b = 0;
   bool open = false;
-  friend bool operator==(const MovedVertex& x, const MovedVertex& y) {
-    return x.first == y.first && x.last == y.last && x.a == y.a && x.b == y.b && x.origin_lost == y.origin_lost &&
-           x.lost_a == y.lost_a && x.lost_b == y.lost_b && x.error_a == y.error_a && x.error_b == y.error_b &&
-           x.open == y.open;
-  }
+  auto tie() const { return std::tie(first, last, a, b, origin_lost, lost_a, lost_b, error_a, error_b, open); }
 };
 
 /// A vertex of A and one of B on the grid of their pair.
@@ -79,9 +76,7 @@ struct GridVertex {
   Vec3i a = Vec3i::Zero();
   Vec3i b = Vec3i::Zero();
   int eta = 0;
-  friend bool operator==(const GridVertex& x, const GridVertex& y) {
-    return x.first == y.first && x.last == y.last && x.a == y.a && x.b == y.b && x.eta == y.eta;
-  }
+  auto tie() const { return std::tie(first, last, a, b, eta); }
 };
 
 /// A leaf pair and the map of its query.

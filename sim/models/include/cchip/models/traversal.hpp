@@ -7,7 +7,7 @@
 #include <array>
 #include <cchip/model/stream.hpp>
 #include <cchip/models/leaf_queue.hpp>
-#include <cchip/models/traversal_pipeline.hpp>
+#include <cchip/models/traversal_events.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
