@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cchip/device/model_engine.hpp>
 #include <cchip/reference/eigen_sat.hpp>
 #include <cchip/rtl/rtl_engine.hpp>
 #include <cchip/stimulus/usage_error.hpp>

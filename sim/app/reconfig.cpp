@@ -5,7 +5,7 @@
 #include <fmt/ostream.h>
 
 #include <algorithm>
-#include <cchip/device/reconfig_driver.hpp>
+#include <cchip/driver/reconfig_driver.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/geometry/canonical.hpp>
 #include <cchip/geometry/grid.hpp>

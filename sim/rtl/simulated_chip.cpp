@@ -4,9 +4,9 @@
 #include <Vcchip_chip_swaps2.h>
 
 #include <algorithm>
-#include <cchip/device/chip_driver.hpp>
-#include <cchip/device/chip_host.hpp>
 #include <cchip/device/device.hpp>
+#include <cchip/driver/chip_driver.hpp>
+#include <cchip/driver/chip_host.hpp>
 #include <cchip/rtl/chip_machine.hpp>
 #include <cchip/rtl/simulated_chip.hpp>
 #include <cchip/waves/wave_layout.hpp>

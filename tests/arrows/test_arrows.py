@@ -16,23 +16,27 @@ ROOMS = {room: set(CORE[:i]) for i, room in enumerate(CORE)}
 ROOMS["mesh_io"] = {"wire", "geometry", "mesh"}
 ROOMS["reference"] = {"wire", "geometry", "mesh", "exact", "bvh", "collide"}
 ROOMS["model"] = {"wire", "geometry", "mesh", "bvh"}
-ROOMS["device"] = set(CORE) | {"model"}
+ROOMS["cpu"] = set(CORE)  # the CPU's searches
+ROOMS["driver"] = set(CORE) | {"cpu"}  # what speaks to hardware; its host gives the CPU what the chip leaves
+ROOMS["device"] = set(CORE) | {"cpu", "driver", "model"}  # what users open: any of the three by its name
 CPP_REF = set(ROOMS)
 ROOMS["cchip.hpp"] = CPP_REF  # the one header for users
 ROOMS["sim"] = set()  # sim/harness
 ROOMS["rc"] = set()  # sim/reconfig
 ROOMS["waves"] = {"wire", "sim"}
-ROOMS["stimulus"] = CPP_REF - {"device", "reference", "mesh_io"} | {"sim"}
+ROOMS["stimulus"] = CPP_REF - {"cpu", "driver", "device", "reference", "mesh_io"} | {"sim"}
+ROOMS["models"] = ROOMS["model"] | {"model"}  # the RTL's blocks clock by clock, for tests
 ROOMS["rtl"] = CPP_REF | {"sim", "waves"}
 ROOMS["levels"] = CPP_REF | {"sim", "rc", "stimulus", "waves", "rtl"}  # sim/systemc
 ROOMS["app"] = CPP_REF | {"sim", "stimulus", "waves", "rtl"}
-FOLDERS = {"sim/harness": "sim", "sim/reconfig": "rc", "sim/waves": "waves", "sim/stimulus": "stimulus", "sim/rtl": "rtl",
-           "sim/systemc": "levels", "sim/app": "app"}
+FOLDERS = {"sim/harness": "sim", "sim/reconfig": "rc", "sim/waves": "waves", "sim/stimulus": "stimulus",
+           "sim/models": "models", "sim/rtl": "rtl", "sim/systemc": "levels", "sim/app": "app"}
 
 # CMake target: the targets of this project that it may link, directly.
 LINKS = {
     "cchip_core": set(), "cchip_mesh_io": {"core"}, "cchip_reference": {"core"}, "cchip_model": {"core"},
     "cchip_device": {"core", "model"}, "cchip_harness": {"verilated"}, "cchip_reconfig": set(), "cchip_waves": {"core"},
+    "cchip_models": {"core", "model"},
     "cchip_stimulus": {"core", "model"}, "cchip_pair_vectors": {"stimulus"}, "cchip_query_vectors": {"stimulus"}, "cchip_rtl_ports": {"core", "harness"},
     "cchip_rtl": {"device", "rtl_ports", "rtl_models", "waves"}, "cchip_app": {"device", "mesh_io", "stimulus",
                                                                                "reference", "rtl"},

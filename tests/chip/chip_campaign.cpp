@@ -9,8 +9,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cchip/device/chip_host.hpp>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
+#include <cchip/driver/chip_host.hpp>
 #include <cchip/exact/posed_pairs.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/rtl/probes.hpp>

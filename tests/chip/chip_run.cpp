@@ -7,7 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cchip/bvh/place.hpp>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <random>

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cchip/device/chip_driver.hpp>
-#include <cchip/device/chip_host.hpp>
+#include <cchip/driver/chip_driver.hpp>
+#include <cchip/driver/chip_host.hpp>
 #include <cchip/rtl/chip_machine.hpp>
 #include <cchip/rtl/probes.hpp>
 #include <cchip/sim/output_file.hpp>

@@ -5,7 +5,7 @@
 #define CCHIP_TESTS_PORT_BENCH_HPP
 
 #include <cchip/bvh/image.hpp>
-#include <cchip/device/chip_driver.hpp>
+#include <cchip/driver/chip_driver.hpp>
 #include <cchip/rtl/chip_machine.hpp>
 #include <cchip/wire/chip_registers.hpp>
 #include <functional>

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/device/chip_host.hpp>
 #include <cchip/device/device.hpp>
-#include <cchip/device/uio_device.hpp>
+#include <cchip/driver/chip_host.hpp>
+#include <cchip/driver/uio_device.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/rtl/chip_machine.hpp>
 #include <cchip/sim/seed.hpp>

@@ -5,7 +5,7 @@
 #define CCHIP_TESTS_PEERS_ASK_HPP
 
 #include <algorithm>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <iterator>
 #include <memory>

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/output_file.hpp>

@@ -7,7 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cchip/collide/scene.hpp>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/reference/brute_force.hpp>
 #include <cchip/sim/seed.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Queries from the constructors of global objects, which run before main(): the answers are those of later.
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <iostream>

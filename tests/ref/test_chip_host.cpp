@@ -4,8 +4,8 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cchip/bvh/image.hpp>
-#include <cchip/device/chip_host.hpp>
 #include <cchip/device/device.hpp>
+#include <cchip/driver/chip_host.hpp>
 #include <cchip/model/broad_phase.hpp>
 #include <cchip/sim/seed.hpp>
 #include <functional>

@@ -10,7 +10,7 @@
 #include <catch2/catch.hpp>
 #include <cchip/bvh/image.hpp>
 #include <cchip/bvh/place.hpp>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/model/broad_phase.hpp>
 #include <cchip/reference/brute_force.hpp>

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Answers of all instruction sets, of single queries and of batches, in a program that watches memory and arithmetic.
 #include <catch2/catch.hpp>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/seed.hpp>
 #include <random>

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/seed.hpp>

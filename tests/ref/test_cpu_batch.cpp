@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the threads of the CPU device divide a batch.
 #include <catch2/catch.hpp>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <chrono>
 #include <condition_variable>
@@ -9,7 +9,7 @@
 #include <set>
 #include <thread>
 
-#include "device/search.hpp"
+#include "cpu/search.hpp"
 
 using namespace cchip;
 

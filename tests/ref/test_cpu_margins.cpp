@@ -14,7 +14,7 @@
 #include <cstdio>
 #include <random>
 
-#include "device/search.hpp"
+#include "cpu/search.hpp"
 #include "random_poses.hpp"
 
 using namespace cchip;

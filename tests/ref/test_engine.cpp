@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/device/pair_engine.hpp>
+#include <cchip/driver/pair_engine.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/reference/eigen_sat.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the driver of the reconfigurable subsystem hands to a machine before the first pair.
 #include <catch2/catch.hpp>
-#include <cchip/device/reconfig_driver.hpp>
+#include <cchip/driver/reconfig_driver.hpp>
 #include <cchip/wire/registers.hpp>
 #include <map>
 #include <string>

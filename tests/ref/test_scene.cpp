@@ -3,7 +3,7 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cchip/collide/scene.hpp>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/seed.hpp>

@@ -6,10 +6,10 @@
 
 #include <array>
 #include <catch2/catch.hpp>
-#include <cchip/device/uio_device.hpp>
+#include <cchip/driver/uio_device.hpp>
 #include <cerrno>
 #include <cstdlib>
-#include <device/uio_interrupt.hpp>
+#include <driver/uio_interrupt.hpp>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>

@@ -9,7 +9,7 @@
 #include <verilated.h>
 
 #include <array>
-#include <cchip/device/primtest_engine.hpp>
+#include <cchip/driver/primtest_engine.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/model/programme.hpp>
 #include <cchip/rtl/pair_port.hpp>

@@ -6,7 +6,7 @@
 
 #include <unistd.h>
 
-#include <cchip/device/pair_engine.hpp>
+#include <cchip/driver/pair_engine.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>

@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cchip/bvh/place.hpp>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <cchip/model/broad_phase.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/waves/wave_layout.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/model/get_data.hpp>
+#include <cchip/models/get_data.hpp>
 #include <deque>
 #include <map>
 #include <models/cchip_get_data.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The checks of the whole modules on their ports: clock by clock against the model, and the rules of
 // docs/modules/cchip_primtest.md by counting, without the model's clocks.
-#include <cchip/device/primtest_engine.hpp>
+#include <cchip/driver/primtest_engine.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/geometry/canonical.hpp>
 #include <cchip/sim/scoreboard.hpp>

@@ -6,7 +6,7 @@
 #include <Vpa_l3___024root.h>
 
 #include <algorithm>
-#include <cchip/device/primtest_engine.hpp>
+#include <cchip/driver/primtest_engine.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/model/primtest.hpp>
 #include <cchip/rtl/probes.hpp>

@@ -3,7 +3,7 @@
 #include <gtkwave/fstapi.h>
 
 #include <catch2/catch.hpp>
-#include <cchip/device/primtest_engine.hpp>
+#include <cchip/driver/primtest_engine.hpp>
 #include <cchip/rtl/rtl_engine.hpp>
 #include <cchip/sim/wave_on_failure.hpp>
 #include <cchip/waves/wave_layout.hpp>

@@ -5,7 +5,7 @@
 #define CCHIP_TESTS_UNIT_TRANSFORM_TOOLS_HPP
 
 #include <cchip/bvh/image_line.hpp>
-#include <cchip/model/transform.hpp>
+#include <cchip/models/transform.hpp>
 
 #include "bv_tools.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <cchip/collide/collide.hpp>
 #include <cchip/collide/scene.hpp>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/mesh/mesh.hpp>
 #include <cchip/mesh/shapes.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/device/cpu_device.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <cchip/device/device.hpp>
 #include <mutex>
 #include <stdexcept>

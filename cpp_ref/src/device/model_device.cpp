@@ -2,7 +2,7 @@
 #include "model_device.hpp"
 
 #include <cchip/bvh/image.hpp>
-#include <cchip/device/chip_host.hpp>
+#include <cchip/driver/chip_host.hpp>
 #include <cchip/model/broad_phase.hpp>
 #include <deque>
 #include <iterator>

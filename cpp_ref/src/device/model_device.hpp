@@ -5,7 +5,7 @@
 #define CCHIP_DEVICE_MODEL_DEVICE_HPP
 
 #include <cchip/collide/collide.hpp>
-#include <cchip/device/query_port.hpp>
+#include <cchip/driver/query_port.hpp>
 #include <memory>
 
 namespace cchip {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/device/primtest_engine.hpp>
+#include <cchip/device/model_engine.hpp>
+#include <cchip/driver/primtest_engine.hpp>
 #include <cchip/model/primtest.hpp>
 
 namespace cchip {

@@ -71,7 +71,7 @@ struct CollisionCounts {
   std::uint64_t pairs = 0;      ///< pairs of primitives that were tested
   std::uint64_t open = 0;       ///< those of them decided by exact arithmetic because faster arithmetic could not
   std::uint64_t clocks = 0;     ///< clocks of the device; 0 for devices without a clock
-  /// 1: the CPU answered instead of the device (device/chip_host.hpp says when); the other counts are those of both.
+  /// 1: the CPU answered instead of the device (driver/chip_host.hpp says when); the other counts are those of both.
   std::uint64_t fallbacks = 0;
   std::uint64_t swaps = 0;        ///< exchanges of the device's modules since the result before it
   std::uint64_t swap_clocks = 0;  ///< their clocks

@@ -5,7 +5,7 @@
 #define CCHIP_RTL_CHIP_MACHINE_HPP
 
 #include <algorithm>
-#include <cchip/device/machine.hpp>
+#include <cchip/driver/machine.hpp>
 #include <cchip/sim/axi_lines.hpp>
 #include <cchip/sim/axi_lite.hpp>
 #include <cchip/sim/axi_memory.hpp>

@@ -4,7 +4,7 @@
 #ifndef CCHIP_RTL_RTL_ENGINE_HPP
 #define CCHIP_RTL_RTL_ENGINE_HPP
 
-#include <cchip/device/primtest_engine.hpp>
+#include <cchip/driver/primtest_engine.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>

@@ -5,7 +5,7 @@
 #define CCHIP_RTL_SIMULATED_CHIP_HPP
 
 #include <cchip/collide/collide.hpp>
-#include <cchip/device/machine.hpp>
+#include <cchip/driver/machine.hpp>
 #include <cchip/sim/axi_lines.hpp>
 #include <cstdint>
 #include <memory>

@@ -4,7 +4,7 @@
 #ifndef CCHIP_RTL_SIMULATED_SUBSYSTEM_HPP
 #define CCHIP_RTL_SIMULATED_SUBSYSTEM_HPP
 
-#include <cchip/device/machine.hpp>
+#include <cchip/driver/machine.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>
