@@ -81,6 +81,8 @@ reconfig/cchip_bitstream_fetch.v
 reconfig/cchip_bitstream_header.v
 reconfig/cchip_config_port.v
 reconfig/cchip_phase_clocks.v
+reconfig/cchip_swap_signals.v
+reconfig/cchip_swap_request.v
 reconfig/cchip_swap_sequencer.v
 reconfig/cchip_config_controller.v
 regs/cchip_subsystem_regs.v

@@ -99,6 +99,8 @@ STIMULI = {
     "cchip_swap_scheduler": ("", "command_valid = 1;", "m_report_valid"),
     "cchip_primtest_subsystem": ("m_result_ready = 1; s_pair_mode = 2; s_pair_kind = 1;", "s_pair_valid = 1;", "m_result_valid"),
     "cchip_pr_region": ("", RESERVED_PAIR, "m_result_valid"),
+    "cchip_swap_request": ("", "s_swap_data = 1 << `CCHIP_SLOT_ID_W; begins = 1;", "module_id"),
+    "cchip_swap_signals": ("slot = 1;", "to_stop = 1;", "stop"),
     "cchip_crc32": ("clear = 1; tick; clear = 0;", "valid = 1;", "crc"),
     "cchip_bitstream_fetch": ("words = 4; limit = 100;", "run = 1;", "m_axi_arvalid"),
     "cchip_axi_read": ("limit = 100; tick;", "s_valid = 1;", "m_axi_arvalid"),

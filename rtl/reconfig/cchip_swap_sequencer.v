@@ -23,11 +23,8 @@
 //   clocks       cfg_error may come from any clock: it passes two flip-flops. Everything else
 //                belongs to clk.
 //   cuts         every path: each output is a flip-flop, m_report_data one of two
-//   reset        no swap, slots at work, except one whose transfer had begun and not ended well:
-//                half_q outlives rst and keeps it stopped, decoupled and in reset until a good
-//                transfer. Its value at power-up is an initial value, because no reset can tell a
-//                power-up, after which every slot holds a whole module, from a reset in the middle
-//                of a transfer.
+//   reset        no swap, slots at work, except one whose transfer had begun and not ended well
+//                (cchip_swap_signals)
 module cchip_swap_sequencer #(
     // slots, 1..4
     parameter integer SLOTS = 1,
@@ -72,27 +69,21 @@ module cchip_swap_sequencer #(
     input  wire                                 cfg_error
 );
 
-  // states, one bit each; each leads to the next one, the last to the first, a failure to REPORT
-  localparam integer IDLE = 0;
-  localparam integer JUDGE = 1;  // phase HEADER
-  localparam integer FETCH = 2;  // HEADER
-  localparam integer SHUTDOWN = 3;
-  localparam integer DECOUPLE = 4;
-  localparam integer RESET = 5;
-  localparam integer TRANSFER = 6;
-  localparam integer CHECK = 7;
-  localparam integer PULSE = 8;  // ROC
-  localparam integer PULSED = 9;  // ROC
-  localparam integer SETTLE = 10;  // ROC
-  localparam integer MATCH = 11;  // ROC
-  localparam integer RECOUPLE = 12;
-  localparam integer REPORT = 13;
-  localparam integer STATES = 14;
-  localparam [STATES-1:0] ABORTABLE =
-      ~(14'd1 << IDLE | 14'd1 << DECOUPLE | 14'd1 << RECOUPLE | 14'd1 << REPORT);
-  // the next state is in the same phase
-  localparam [STATES-1:0] SAME_PHASE =
-      14'd1 << JUDGE | 14'd1 << PULSE | 14'd1 << PULSED | 14'd1 << SETTLE;
+  // states; a failure of any of them leads to REPORT
+  localparam [3:0] IDLE = 4'd0;
+  localparam [3:0] JUDGE = 4'd1;  // phase HEADER
+  localparam [3:0] FETCH = 4'd2;  // HEADER
+  localparam [3:0] SHUTDOWN = 4'd3;
+  localparam [3:0] DECOUPLE = 4'd4;
+  localparam [3:0] RESET = 4'd5;
+  localparam [3:0] TRANSFER = 4'd6;
+  localparam [3:0] CHECK = 4'd7;
+  localparam [3:0] PULSE = 4'd8;  // ROC
+  localparam [3:0] PULSED = 4'd9;  // ROC
+  localparam [3:0] SETTLE = 4'd10;  // ROC
+  localparam [3:0] MATCH = 4'd11;  // ROC
+  localparam [3:0] RECOUPLE = 4'd12;
+  localparam [3:0] REPORT = 4'd13;
 
   // the clock of a state on which it is decided, from 0; the next state begins 2 clocks later
   localparam [4:0] JUDGE_LAST = 5'd2;  // slot and request have passed their registers
@@ -112,72 +103,53 @@ module cchip_swap_sequencer #(
   endgenerate
 
   reg [`CCHIP_PHASE_W-1:0] phase_q;
-  reg [STATES-1:0] at_q;  // one-hot
-  wire idle = at_q[IDLE];
+  reg [3:0] state_q;
+  wire idle = state_q == IDLE;
 
   // ---- request; one that comes during a swap waits in the refusal for a clock without report
   reg ready_q, refuse_q;
-  reg [`CCHIP_SLOT_ID_W-1:0] slot_q, refuse_slot_q;
-  reg [`CCHIP_RM_ID_W-1:0] module_q, refuse_module_q;
-  reg [31:0] address_q, size_q;
-  reg force_q;
-  wire [`CCHIP_SLOT_ID_W-1:0] s_swap_slot;
-  wire [`CCHIP_RM_ID_W-1:0] s_swap_module;
-  wire [31:0] s_swap_address, s_swap_size;
-  wire s_swap_force;
-  assign `CCHIP_SWAP_REQUEST_OF(s_swap_slot, s_swap_module, s_swap_address, s_swap_size,
-      s_swap_force) = s_swap_data;
   wire accept = s_swap_valid & ready_q;
   wire begins = accept & idle;
+  wire [`CCHIP_SLOT_ID_W-1:0] refuse_slot;
+  wire [`CCHIP_RM_ID_W-1:0] refuse_module;
+  wire forced;
+  wire [SLOTS-1:0] mine;  // the request's slot, one-hot; 0 if there is no such slot
+  wire [`CCHIP_PAIR_COUNT_W-1:0] given_up;
+  wire quiet_q, decoupled_q, roc_busy_q, match_q, same_q, illegal_q;
+  cchip_swap_request #(
+      .SLOTS(SLOTS)
+  ) u_request (
+      .clk          (clk),
+      .s_swap_data  (s_swap_data),
+      .begins       (begins),
+      .accept       (accept),
+      .quiet        (quiet),
+      .decoupled    (decoupled),
+      .roc_busy     (roc_busy),
+      .region_rm_id (region_rm_id),
+      .lost         (lost),
+      .slot         (slot),
+      .module_id    (module_id),
+      .address      (address),
+      .size         (size),
+      .forced       (forced),
+      .mine         (mine),
+      .refuse_slot  (refuse_slot),
+      .refuse_module(refuse_module),
+      .is_quiet     (quiet_q),
+      .is_decoupled (decoupled_q),
+      .is_roc_busy  (roc_busy_q),
+      .match        (match_q),
+      .same         (same_q),
+      .illegal      (illegal_q),
+      .given_up     (given_up)
+  );
 
-  reg [SLOTS-1:0] mine_q;  // its slot, one-hot; 0 if there is no such slot
-  integer s;
-  always @(posedge clk) begin
-    if (begins) begin
-      for (s = 0; s < SLOTS; s = s + 1) mine_q[s] <= s_swap_slot == s[`CCHIP_SLOT_ID_W-1:0];
-      slot_q <= s_swap_slot;
-      module_q <= s_swap_module;
-      address_q <= s_swap_address;
-      size_q <= s_swap_size;
-      force_q <= s_swap_force;
-    end
-    if (accept) refuse_slot_q <= s_swap_slot;
-    if (accept) refuse_module_q <= s_swap_module;
-  end
-
-  // ---- the slot of the request, through registers
-  reg [`CCHIP_RM_ID_W-1:0] shown;
-  reg [`CCHIP_PAIR_COUNT_W-1:0] given_up;
-  integer i;
-  always @(*) begin
-    shown = {`CCHIP_RM_ID_W{1'b0}};
-    given_up = {`CCHIP_PAIR_COUNT_W{1'b0}};
-    for (i = 0; i < SLOTS; i = i + 1) begin
-      shown = shown
-          | (region_rm_id[`CCHIP_RM_ID_W*i+:`CCHIP_RM_ID_W] & {`CCHIP_RM_ID_W{mine_q[i]}});
-      given_up = given_up
-          | (lost[`CCHIP_PAIR_COUNT_W*i+:`CCHIP_PAIR_COUNT_W] & {`CCHIP_PAIR_COUNT_W{mine_q[i]}});
-    end
-  end
-
-  reg quiet_q, decoupled_q, roc_busy_q, match_q;  // match: the region shows the module asked for
-  reg same_q, illegal_q;
-  wire [32:0] past = {1'b0, address_q} + {1'b0, size_q};  // the byte behind the file
-  reg over_q;  // it lies beyond 4 GiB, unless its lower 32 bits, of which rest_q knows, are 0
-  reg [3:0] rest_q;
+  // ---- errors that the device reports
   (* ASYNC_REG = "TRUE" *) reg [1:0] cfg_error_q;
   reg cfg_error_q3;  // a clock later, so that CHECK sees that of TRANSFER's last clock
   always @(posedge clk) begin
-    quiet_q <= |(quiet & mine_q);
-    decoupled_q <= |(decoupled & mine_q);
-    roc_busy_q <= |(roc_busy & mine_q);
-    match_q <= shown == module_q;
-    same_q <= ~decoupled_q & match_q;
-    over_q <= past[32];
-    rest_q <= {|past[31:24], |past[23:16], |past[15:8], |past[7:0]};
-    illegal_q <= mine_q == {SLOTS{1'b0}} || module_q > `CCHIP_RM_QUAD_QUAD
-        || address_q[5:0] != 6'd0 || size_q == 32'd0 || (over_q && rest_q != 4'd0);
-    cfg_error_q <= {cfg_error_q[0], cfg_error};
+    cfg_error_q  <= {cfg_error_q[0], cfg_error};
     cfg_error_q3 <= cfg_error_q[1];
   end
 
@@ -201,118 +173,148 @@ module cchip_swap_sequencer #(
   );
   always @(posedge clk) begin
     ticks_q <= moves ? 5'd0 : ticks_q + {4'd0, ~&ticks_q};
-    last_q <= !moves && ((at_q[JUDGE] && ticks_q == JUDGE_LAST - 5'd1)
-        || (at_q[CHECK] && ticks_q == CHECK_LAST - 5'd1)
-        || (at_q[SETTLE] && ticks_q == SETTLE_LAST - 5'd1)
-        || (at_q[MATCH] && ticks_q == MATCH_LAST - 5'd1));
+    last_q <= !moves && ((state_q == JUDGE && ticks_q == JUDGE_LAST - 5'd1)
+        || (state_q == CHECK && ticks_q == CHECK_LAST - 5'd1)
+        || (state_q == SETTLE && ticks_q == SETTLE_LAST - 5'd1)
+        || (state_q == MATCH && ticks_q == MATCH_LAST - 5'd1));
     error_counts_q <= !moves && ticks_q >= ERROR_FIRST - 5'd1;
     expired_q <= !turns && clocks >= LIMIT;
   end
 
-  // ---- abort: kept until a state takes notice, dropped with the swap
-  reg abort_q;
-
-  // ---- states: what ends them well or badly, with which code, in which phase the next one is
-  reg [STATES-1:0] done, fails;
-  reg [`CCHIP_SWAP_W-1:0] code;  // of the failure of the state
-  reg [`CCHIP_PHASE_W-1:0] phase_after;  // of the state behind this one
-
+  // ---- states: what ends each of them well or badly, with which code, and what follows
+  reg done, fails;
+  reg [`CCHIP_SWAP_W-1:0] code;  // of its failure
+  reg [3:0] next;
+  reg [`CCHIP_PHASE_W-1:0] next_phase;
+  reg same_phase;  // the next state is in the same phase
+  reg abortable;
+  reg shut;  // a failure leaves the slot shut
+  wire fetch_fails = bus_error | timeout;
+  wire [`CCHIP_SWAP_W-1:0] fetch_code = bus_error ? `CCHIP_SWAP_BUS : `CCHIP_SWAP_MEMORY;
   always @(*) begin
-    done = {STATES{1'b0}};
-    fails = {STATES{1'b0}};
-    code = `CCHIP_SWAP_OK;
-    phase_after = `CCHIP_PHASE_IDLE;
-
-    if (at_q[IDLE]) phase_after = phase_after | `CCHIP_PHASE_HEADER;
-
-    done[JUDGE] = last_q;
-    fails[JUDGE] = last_q & (illegal_q | same_q | outstanding);
-    if (at_q[JUDGE]) begin
-      code = code
-          | (illegal_q ? `CCHIP_SWAP_REQUEST : same_q ? `CCHIP_SWAP_SAME : `CCHIP_SWAP_OWED);
-      phase_after = phase_after | `CCHIP_PHASE_HEADER;
-    end
-
-    done[FETCH] = header_done;
-    fails[FETCH] = bus_error | timeout | (header_done & ~header_ok);
-    if (at_q[FETCH]) begin
-      code = code | (bus_error ? `CCHIP_SWAP_BUS : timeout ? `CCHIP_SWAP_MEMORY : header_code);
-      phase_after = phase_after | `CCHIP_PHASE_SHUTDOWN;
-    end
-
-    done[SHUTDOWN] = quiet_q | decoupled_q | (shutdown_expired & force_q);
-    fails[SHUTDOWN] = shutdown_expired & ~(quiet_q | decoupled_q | force_q);
-    if (at_q[SHUTDOWN]) begin
-      code = code | `CCHIP_SWAP_SHUTDOWN;
-      phase_after = phase_after | `CCHIP_PHASE_DECOUPLE;
-    end
-
-    // never aborted: the number of pairs given up is known only at its end
-    done[DECOUPLE] = decoupled_q;
-    fails[DECOUPLE] = expired_q & ~decoupled_q;
-    if (at_q[DECOUPLE]) begin
-      code = code | `CCHIP_SWAP_DEVICE;
-      phase_after = phase_after | `CCHIP_PHASE_RESET;
-    end
-
-    done[RESET] = 1'b1;  // two clocks
-    if (at_q[RESET]) phase_after = phase_after | `CCHIP_PHASE_TRANSFER;
-
-    done[TRANSFER] = transfer_done;
-    fails[TRANSFER] = bus_error | timeout | (cfg_error_q[1] & error_counts_q);
-    if (at_q[TRANSFER]) begin
-      code = code
-          | (bus_error ? `CCHIP_SWAP_BUS : timeout ? `CCHIP_SWAP_MEMORY : `CCHIP_SWAP_DEVICE);
-      phase_after = phase_after | `CCHIP_PHASE_CHECK;
-    end
-
-    done[CHECK] = last_q;
-    fails[CHECK] = cfg_error_q[1] | cfg_error_q3 | (last_q & ~crc_ok);
-    if (at_q[CHECK]) begin
-      code = code | (cfg_error_q[1] | cfg_error_q3 ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_CRC);
-      phase_after = phase_after | `CCHIP_PHASE_ROC;
-    end
-
-    done[PULSE] = 1'b1;  // two clocks, then roc_busy is seen
-    if (at_q[PULSE]) phase_after = phase_after | `CCHIP_PHASE_ROC;
-
-    done[PULSED] = ~roc_busy_q;
-    fails[PULSED] = expired_q & roc_busy_q;
-    if (at_q[PULSED]) begin
-      code = code | `CCHIP_SWAP_DEVICE;
-      phase_after = phase_after | `CCHIP_PHASE_ROC;
-    end
-
-    done[SETTLE] = last_q;
-    if (at_q[SETTLE]) phase_after = phase_after | `CCHIP_PHASE_ROC;
-
-    done[MATCH] = last_q;
-    fails[MATCH] = ~match_q;
-    if (at_q[MATCH]) begin
-      code = code | `CCHIP_SWAP_WRONG_MODULE;
-      phase_after = phase_after | `CCHIP_PHASE_RECOUPLE;
-    end
-
-    done[RECOUPLE] = ~decoupled_q;
-    fails[RECOUPLE] = expired_q & decoupled_q;
-    if (at_q[RECOUPLE]) begin
-      code = code | `CCHIP_SWAP_DEVICE;
-      phase_after = phase_after | `CCHIP_PHASE_REPORT;
-    end
+    done       = 1'b0;
+    fails      = 1'b0;
+    code       = `CCHIP_SWAP_OK;
+    same_phase = 1'b0;
+    abortable  = 1'b1;
+    shut       = 1'b0;
+    case (state_q)
+      IDLE: begin
+        abortable  = 1'b0;
+        next       = JUDGE;
+        next_phase = `CCHIP_PHASE_HEADER;
+      end
+      JUDGE: begin
+        done       = last_q;
+        fails      = last_q & (illegal_q | same_q | outstanding);
+        code       = illegal_q ? `CCHIP_SWAP_REQUEST : same_q ? `CCHIP_SWAP_SAME : `CCHIP_SWAP_OWED;
+        next       = FETCH;
+        next_phase = `CCHIP_PHASE_HEADER;
+        same_phase = 1'b1;
+      end
+      FETCH: begin
+        done       = header_done;
+        fails      = fetch_fails | (header_done & ~header_ok);
+        code       = fetch_fails ? fetch_code : header_code;
+        next       = SHUTDOWN;
+        next_phase = `CCHIP_PHASE_SHUTDOWN;
+      end
+      SHUTDOWN: begin
+        done       = quiet_q | decoupled_q | (shutdown_expired & forced);
+        fails      = shutdown_expired & ~(quiet_q | decoupled_q | forced);
+        code       = `CCHIP_SWAP_SHUTDOWN;
+        next       = DECOUPLE;
+        next_phase = `CCHIP_PHASE_DECOUPLE;
+      end
+      DECOUPLE: begin
+        done       = decoupled_q;
+        fails      = expired_q & ~decoupled_q;
+        code       = `CCHIP_SWAP_DEVICE;
+        abortable  = 1'b0;  // the number of pairs given up is known only at its end
+        shut       = 1'b1;
+        next       = RESET;
+        next_phase = `CCHIP_PHASE_RESET;
+      end
+      RESET: begin
+        done       = 1'b1;  // two clocks
+        shut       = 1'b1;
+        next       = TRANSFER;
+        next_phase = `CCHIP_PHASE_TRANSFER;
+      end
+      TRANSFER: begin
+        done       = transfer_done;
+        fails      = fetch_fails | (cfg_error_q[1] & error_counts_q);
+        code       = fetch_fails ? fetch_code : `CCHIP_SWAP_DEVICE;
+        shut       = 1'b1;
+        next       = CHECK;
+        next_phase = `CCHIP_PHASE_CHECK;
+      end
+      CHECK: begin
+        done       = last_q;
+        fails      = cfg_error_q[1] | cfg_error_q3 | (last_q & ~crc_ok);
+        code       = cfg_error_q[1] | cfg_error_q3 ? `CCHIP_SWAP_DEVICE : `CCHIP_SWAP_CRC;
+        shut       = 1'b1;
+        next       = PULSE;
+        next_phase = `CCHIP_PHASE_ROC;
+      end
+      PULSE: begin
+        done       = 1'b1;  // two clocks, then roc_busy is seen
+        shut       = 1'b1;
+        next       = PULSED;
+        next_phase = `CCHIP_PHASE_ROC;
+        same_phase = 1'b1;
+      end
+      PULSED: begin
+        done       = ~roc_busy_q;
+        fails      = expired_q & roc_busy_q;
+        code       = `CCHIP_SWAP_DEVICE;
+        shut       = 1'b1;
+        next       = SETTLE;
+        next_phase = `CCHIP_PHASE_ROC;
+        same_phase = 1'b1;
+      end
+      SETTLE: begin
+        done       = last_q;
+        shut       = 1'b1;
+        next       = MATCH;
+        next_phase = `CCHIP_PHASE_ROC;
+        same_phase = 1'b1;
+      end
+      MATCH: begin
+        done       = last_q;
+        fails      = ~match_q;
+        code       = `CCHIP_SWAP_WRONG_MODULE;
+        shut       = 1'b1;
+        next       = RECOUPLE;
+        next_phase = `CCHIP_PHASE_RECOUPLE;
+      end
+      RECOUPLE: begin
+        done       = ~decoupled_q;
+        fails      = expired_q & decoupled_q;
+        code       = `CCHIP_SWAP_DEVICE;
+        abortable  = 1'b0;
+        shut       = 1'b1;
+        next       = REPORT;
+        next_phase = `CCHIP_PHASE_REPORT;
+      end
+      default: begin  // REPORT
+        abortable  = 1'b0;
+        next       = IDLE;
+        next_phase = `CCHIP_PHASE_IDLE;
+      end
+    endcase
   end
 
   // ---- decision, and a clock later what follows from it: that is wide, so it starts at registers.
   // IDLE and REPORT have nothing to decide.
   reg failing_q, ending_q;
   wire deciding = ~failing_q & ~ending_q;
-  wire aborted = abort_q & (|(at_q & ABORTABLE));
-  wire fails_now = aborted | (|(at_q & fails));
-  wire goes = ending_q | begins | at_q[REPORT];
-  wire [STATES-1:0] passes = at_q & {STATES{ending_q}};  // unless it fails
-  wire reports = failing_q | passes[RECOUPLE];
-  wire late = |at_q[RECOUPLE:DECOUPLE];  // a failure leaves the slot shut
-  assign moves = failing_q | goes;
-  assign turns = failing_q | (goes & ~(|(at_q & SAME_PHASE)));
+  reg abort_q;  // kept until a state takes notice, dropped with the swap
+  wire aborted = abort_q & abortable;
+  wire leaves = ending_q | begins | state_q == REPORT;  // unless it fails
+  wire reports = failing_q | (ending_q && state_q == RECOUPLE);
+  assign moves = failing_q | leaves;
+  assign turns = failing_q | (leaves & ~same_phase);
 
   // ---- phase and report
   reg run_q, report_valid_q, refused_q, forced_q;
@@ -321,12 +323,12 @@ module cchip_swap_sequencer #(
   wire refuses = refuse_q & ~reports;
   always @(posedge clk) begin
     if (idle) lost_q <= {`CCHIP_PAIR_COUNT_W{1'b0}};
-    else if (at_q[DECOUPLE] && forced_q && decoupled_q) lost_q <= given_up;
-    if (at_q[SHUTDOWN]) forced_q <= ~quiet_q & ~decoupled_q;
-    if (deciding) code_q <= aborted ? `CCHIP_SWAP_ABORTED : fails_now ? code : `CCHIP_SWAP_OK;
+    else if (state_q == DECOUPLE && forced_q && decoupled_q) lost_q <= given_up;
+    if (state_q == SHUTDOWN) forced_q <= ~quiet_q & ~decoupled_q;
+    if (deciding) code_q <= aborted ? `CCHIP_SWAP_ABORTED : fails ? code : `CCHIP_SWAP_OK;
     refused_q <= refuses;
     if (rst) begin
-      at_q <= {{STATES - 1{1'b0}}, 1'b1};
+      state_q <= IDLE;
       phase_q <= `CCHIP_PHASE_IDLE;
       abort_q <= 1'b0;
       run_q <= 1'b0;
@@ -336,81 +338,60 @@ module cchip_swap_sequencer #(
       failing_q <= 1'b0;
       ending_q <= 1'b0;
     end else begin
-      failing_q <= deciding & fails_now;
-      ending_q <= deciding & (|(at_q & done));
+      failing_q <= deciding & (aborted | fails);
+      ending_q <= deciding & done;
       if (failing_q) begin
-        at_q <= {1'b1, {STATES - 1{1'b0}}};
+        state_q <= REPORT;
         phase_q <= `CCHIP_PHASE_REPORT;
-      end else if (goes) begin
-        at_q <= {at_q[STATES-2:0], at_q[REPORT]};
-        phase_q <= phase_after;
+      end else if (leaves) begin
+        state_q <= next;
+        phase_q <= next_phase;
       end
-      abort_q <= (abort_q | abort_swap) & (|at_q[MATCH:JUDGE]) & ~failing_q;
-      run_q <= ~failing_q & (goes ? at_q[JUDGE] | at_q[RESET] : run_q);
+      abort_q <= (abort_q | abort_swap) && state_q >= JUDGE && state_q <= MATCH && !failing_q;
+      run_q <= ~failing_q & (leaves ? next == FETCH || next == TRANSFER : run_q);
       refuse_q <= (accept & ~idle) | (refuse_q & reports);
       ready_q <= ~((accept & ~idle) | (refuse_q & reports));
       report_valid_q <= reports | refuses;
     end
   end
 
-  // ---- what the slots are told
-  reg [SLOTS-1:0] stop_q, decouple_q, hold_reset_q, roc_start_q;
-  reg [SLOTS-1:0] half_q;  // the region holds no whole module
-  initial half_q = {SLOTS{1'b0}};
-  wire [SLOTS-1:0] set_stop = mine_q & {SLOTS{passes[FETCH]}};
-  wire [SLOTS-1:0] set_decouple = mine_q & {SLOTS{passes[SHUTDOWN]}};
-  wire [SLOTS-1:0] set_hold = mine_q & {SLOTS{passes[DECOUPLE]}};
-  wire [SLOTS-1:0] transfer = mine_q & {SLOTS{passes[RESET]}};
-  wire [SLOTS-1:0] start_roc = mine_q & {SLOTS{passes[CHECK]}};
-  wire [SLOTS-1:0] recouple = mine_q & {SLOTS{passes[MATCH]}};
-  wire [SLOTS-1:0] shut = mine_q & {SLOTS{late}};
-  always @(posedge clk) begin
-    if (!rst && !failing_q) half_q <= (half_q | transfer) & ~recouple;
-    if (rst) begin
-      stop_q       <= half_q;
-      decouple_q   <= half_q;
-      hold_reset_q <= half_q;
-      roc_start_q  <= {SLOTS{1'b0}};
-    end else if (failing_q) begin
-      if (!late) stop_q <= decouple_q;
-      decouple_q   <= decouple_q | shut;
-      hold_reset_q <= hold_reset_q | shut;
-      roc_start_q  <= {SLOTS{1'b0}};
-    end else begin
-      stop_q       <= passes[RECOUPLE] ? decouple_q : stop_q | set_stop;
-      decouple_q   <= (decouple_q | set_decouple) & ~recouple;
-      hold_reset_q <= (hold_reset_q | set_hold) & ~start_roc;
-      roc_start_q  <= start_roc;
-    end
-  end
+  // ---- what the slot is told as a state ends
+  cchip_swap_signals #(
+      .SLOTS(SLOTS)
+  ) u_signals (
+      .clk       (clk),
+      .rst       (rst),
+      .slot      (mine),
+      .fails     (failing_q),
+      .shut      (shut),
+      .to_stop    (ending_q && state_q == FETCH),
+      .to_decouple(ending_q && state_q == SHUTDOWN),
+      .to_hold    (ending_q && state_q == DECOUPLE),
+      .to_write   (ending_q && state_q == RESET),
+      .to_roc     (ending_q && state_q == CHECK),
+      .to_recouple(ending_q && state_q == MATCH),
+      .to_work    (ending_q && state_q == RECOUPLE),
+      .stop      (stop),
+      .decouple  (decouple),
+      .hold_reset(hold_reset),
+      .roc_start (roc_start)
+  );
 
   assign s_swap_ready = ready_q;
   assign m_report_valid = report_valid_q;
-  // slot_q, module_q and lost_q do not change in REPORT
+  // slot, module_id and lost_q do not change in REPORT
   assign m_report_data = refused_q
-      ? `CCHIP_SWAP_REPORT_OF(refuse_slot_q, refuse_module_q, `CCHIP_SWAP_BUSY,
+      ? `CCHIP_SWAP_REPORT_OF(refuse_slot, refuse_module, `CCHIP_SWAP_BUSY,
           {`CCHIP_PAIR_COUNT_W{1'b0}})
-      : `CCHIP_SWAP_REPORT_OF(slot_q, module_q, code_q, lost_q);
-  assign stop = stop_q;
-  assign decouple = decouple_q;
-  assign hold_reset = hold_reset_q;
-  assign roc_start = roc_start_q;
+      : `CCHIP_SWAP_REPORT_OF(slot, module_id, code_q, lost_q);
   assign phase = phase_q;
   assign phase_clocks = clocks;
   assign busy = ~idle;
-  assign slot = slot_q;
-  assign module_id = module_q;
-  assign address = address_q;
-  assign size = size_q;
   assign run = run_q;
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_one, at_q != {STATES{1'b0}} && (at_q & (at_q - 14'd1)) == {STATES{1'b0}})
-      `CCHIP_ASSERT(a_order, (hold_reset_q & ~decouple_q) == {SLOTS{1'b0}})
-      `CCHIP_ASSERT(a_stopped, (decouple_q & ~stop_q) == {SLOTS{1'b0}})
-      `CCHIP_ASSERT(a_half, (half_q & ~decouple_q) == {SLOTS{1'b0}})
-      `CCHIP_ASSERT(a_roc, (roc_start_q & hold_reset_q) == {SLOTS{1'b0}})
+      `CCHIP_ASSERT(a_state, state_q <= REPORT)
     end
 
 endmodule

@@ -37,6 +37,7 @@ ROC = "rtl/reconfig/cchip_roc_generator.v"
 DECOUPLER = "rtl/reconfig/cchip_pr_decoupler.v"
 SLOT = "rtl/reconfig/cchip_pr_slot.v"
 SEQUENCER = "rtl/reconfig/cchip_swap_sequencer.v"
+SIGNALS = "rtl/reconfig/cchip_swap_signals.v"
 ARBITER = "rtl/common/cchip_arbiter.v"
 LEDGER = "rtl/dispatch/cchip_slot_ledger.v"
 DISPATCH = "rtl/dispatch/cchip_dispatch_sequencer.v"
@@ -94,16 +95,16 @@ MUTANTS = [
     ("cchip_pr_slot prove", SLOT, "rst | hold_reset | roc;", "rst | hold_reset;"),
     ("cchip_pr_slot prove", SLOT, "rst | roc_start | roc;", "rst | roc_start;"),
     # a bad check recouples; a phase goes back; both slots are told; no bound; decoupling is not awaited; a refusal is lost
-    ("cchip_swap_sequencer prove", SEQUENCER, "fails[CHECK] = cfg_error_q[1] | cfg_error_q3 | (last_q & ~crc_ok);", "fails[CHECK] = cfg_error_q[1] | cfg_error_q3;"),
-    ("cchip_swap_sequencer prove", SEQUENCER, "at_q <= {at_q[STATES-2:0], at_q[REPORT]};", "at_q <= at_q[TRANSFER] ? 14'd1 << PULSE : {at_q[STATES-2:0], at_q[REPORT]};"),
-    ("cchip_swap_sequencer prove", SEQUENCER, "set_hold = mine_q & {SLOTS{passes[DECOUPLE]}};", "set_hold = {SLOTS{passes[DECOUPLE]}};"),
-    ("cchip_swap_sequencer prove", SEQUENCER, "(hold_reset_q | set_hold) & ~start_roc;", "(hold_reset_q | set_hold) & ~recouple;"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "cfg_error_q[1] | cfg_error_q3 | (last_q & ~crc_ok);", "cfg_error_q[1] | cfg_error_q3;"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "next       = CHECK;", "next       = PULSE;"),
+    ("cchip_swap_sequencer prove", SIGNALS, "(hold_reset_q | (slot & {SLOTS{to_hold}}))", "(hold_reset_q | {SLOTS{to_hold}})"),
+    ("cchip_swap_sequencer prove", SIGNALS, "{SLOTS{to_hold}})) & ~start_roc;", "{SLOTS{to_hold}})) & ~recouple;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "expired_q <= !turns && clocks >= LIMIT;", "expired_q <= abort_q;"),
     ("cchip_swap_sequencer bounded", SEQUENCER, ".restart(turns),", ".restart(1'b0),"),
     ("cchip_bitstream_fetch bounded", TIMEOUT, "bound_q   <= limit == 32'd0 ? BOUND : limit;", "bound_q   <= limit;"),
     ("cchip_bitstream_fetch bounded", TIMEOUT, "expired_q <= !restart && elapsed_q >= bound_q;", "expired_q <= !restart && elapsed_q == bound_q;"),
     ("cchip_axi_write bounded_1", TIMEOUT, "elapsed_q >= bound_q;", "elapsed_q == bound_q;"),
-    ("cchip_swap_sequencer prove", SEQUENCER, "done[DECOUPLE] = decoupled_q;", "done[DECOUPLE] = quiet_q;"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "done       = decoupled_q;", "done       = quiet_q;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "refuse_q <= (accept & ~idle) | (refuse_q & reports);", "refuse_q <= accept & ~idle;"),
     ("cchip_bitstream_fetch bounded", FETCH, "to_edge_q <= 5'd16 - {1'b0, address[5:2]};", "to_edge_q <= 5'd16;"),
     ("cchip_bitstream_fetch bounded", FETCH, "issue | (arvalid_q & ~m_axi_arready);", "issue | (arvalid_q & ~m_axi_arready & run);"),
