@@ -45,6 +45,8 @@ bvtest/cchip_bv_cell.v
 bvtest/cchip_bv_feed.v
 bvtest/cchip_bv_pose.v
 bvtest/cchip_bv_unit.v
+traversal/cchip_line_pairs.v
+traversal/cchip_node_check.v
 traversal/cchip_get_data.v
 traversal/cchip_leaf_queue.v
 traversal/cchip_traversal_events.v

@@ -144,6 +144,8 @@ STIMULI = {
     "cchip_chip_regs": ("", "s_axil_arvalid = 1;", "s_axil_rvalid"),
     "cchip_chip": ("", "s_axil_arvalid = 1;", "s_axil_rvalid"),
     "cchip_chip_core": ("enable = 1; pairs_each = 1;", "query_producer = 1;", "m_axi_arvalid"),
+    "cchip_line_pairs": ("s_place = 1;", "s_valid = 3; s_place = 1 | 1 << dut.PLACE_W;", "m_pair_valid"),
+    "cchip_node_check": ("s_valid = 1; tick; s_valid = 0;", "lookup = 1;", "lookup_nodes"),
     "cchip_get_data": ("", "s_valid = 1;", "m_line_valid"),
     "cchip_leaf_queue": ("epoch_write = 1; tick; epoch_write = 0;", "s_valid = 1; s_leaves = 1;", "m_valid"),
     "cchip_traversal": ("m_start_ready = 1; pairs_each = 1; repeat (100) tick;", "s_query_valid = 1;", "m_start_valid"),

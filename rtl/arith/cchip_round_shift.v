@@ -11,7 +11,7 @@
 module cchip_round_shift #(
     // width of d, bit, 2..64
     parameter integer D_W = 56,
-    // bits that are cut whatever s is, 0..D_W - 1
+    // bits that are cut for every s, 0..D_W - 1
     parameter integer BASE = 29,
     // greatest s, 2..63
     parameter integer SHIFT_MAX = 27,

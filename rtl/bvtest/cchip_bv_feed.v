@@ -9,7 +9,7 @@
 //   latency      clocks from the first one of a node pair are in the names: x10 comes 10 after it
 //   memory       block RAM keeps the children until the lanes take them
 //   cuts         every path but the context to row_context0, which a block RAM takes
-//   reset        forgets the node pairs
+//   reset        drops the node pairs
 module cchip_bv_feed #(
     // queries at work, 2, 4, 8 or 16
     parameter integer QUERIES = 16,

@@ -8,7 +8,7 @@
 //   memory       block RAM: the rows of M and t one after the other for cchip_bv_offset, and M and
 //                the 13 directions side by side for cchip_bv_lane_a
 //   cuts         every path
-//   reset        forgets the pose at work, keeps those in memory
+//   reset        drops the pose at work, keeps those in memory
 module cchip_bv_pose #(
     // queries at work, 2, 4, 8 or 16
     parameter integer QUERIES = 16

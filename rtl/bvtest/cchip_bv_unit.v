@@ -8,7 +8,7 @@
 //                back; a pose every 13 clocks, beside the node pairs
 //   rule         a context's pose may be replaced when no node pair of it is without a verdict
 //   cuts         every path but s_context to a block RAM; no ready from behind
-//   reset        forgets poses and node pairs at work; poses in memory stay
+//   reset        drops poses and node pairs at work; poses in memory stay
 // Bit for bit model::test_boxes and model::sort_children (docs/hardware/image.md, "Box test").
 module cchip_bv_unit #(
     // queries at work, each with a pose: 2, 4, 8 or 16

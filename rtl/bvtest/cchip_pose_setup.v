@@ -9,7 +9,7 @@
 //   throughput   a direction on every clock, a query every 13 clocks
 //   numbers      |m| up to 9 fraction bits; b - c and c down to 6 and 7, at most 127
 //   cuts         every path
-//   reset        forgets the query at work
+//   reset        drops the query at work
 // Bit for bit model::set_up (docs/hardware/image.md).
 module cchip_pose_setup (
     input  wire         clk,

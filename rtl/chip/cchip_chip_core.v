@@ -24,7 +24,7 @@
 //   cuts         every path from and to a port
 //   idle         no query is between its ring and the records that memory holds; never, once a ring
 //                has failed
-//   reset        rst forgets queries and lines, and must reset the bus too. core_rst forgets them
+//   reset        rst drops queries and lines, and must reset the bus too. core_rst drops them
 //                while the bus masters work on: hold it until read_outstanding and
 //                write_outstanding have been 0 for 16 clocks (cchip_soft_reset). Both act a clock
 //                later: hold rst for 2 clocks or more
@@ -102,7 +102,7 @@ module cchip_chip_core #(
     output wire                           invalidate_ready,
     input  wire [                   31:0] invalidate_first,
     input  wire [                   31:0] invalidate_last,
-    // memory owes the response of a read or a write
+    // the response to a read or a write is outstanding
     output wire                           read_outstanding,
     output wire                           write_outstanding,
     output wire                           idle,

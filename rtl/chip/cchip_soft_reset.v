@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_assert.vh"
-// cchip_soft_reset: resets a core while its bus masters work on, until memory owes nothing.
+// cchip_soft_reset: resets a core while its bus masters work on, until nothing is outstanding.
 //   resetting    the reset of the core: 1 from a request until `outstanding` has been 0 for CLOCKS
 //                clocks in a row, so at least CLOCKS clocks. A request meanwhile starts it anew
 //   silence      if memory never answers, resetting stays 1: only rst, with a reset of the bus,
@@ -16,7 +16,7 @@ module cchip_soft_reset #(
     input  wire clk,
     input  wire rst,
     input  wire request,
-    input  wire outstanding,  // memory owes a response
+    input  wire outstanding,  // a response is outstanding
     output wire resetting,
     output wire done
 );

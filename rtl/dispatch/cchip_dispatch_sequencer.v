@@ -5,11 +5,11 @@
 // cchip_dispatch_sequencer: which kind of pair goes where, and when its vertices are read. One pair
 // at a time: a kind is chosen among those that wait and that some taker with room serves, then one
 // of these takers, then the pair leaves its queue and its vertices are read, one per clock.
-//   takers       the slots and, last, the one that answers pairs nobody can test
+//   takers       the slots and, last, the one that answers pairs no slot can test
 //   latency      4 clocks from `some` to `launch` in an idle dispatcher
 //   throughput   a pair every 3 clocks, of a kind with quads every 4
-//   fair         kinds take turns, and so do takers: a kind that can be dispatched waits for at
-//                most KINDS + 2 pairs of other kinds
+//   fair         kinds are served in turn, and so are takers: a kind that can be dispatched waits
+//                for at most KINDS + 2 pairs of other kinds
 //   order        look (where is the head of `kind`?); a clock later launch, with m_vertex = 0; on
 //                the next clocks m_vertex = 1, 2 (and 3)
 //   data         what m_vertex reads arrives 2 clocks later, together with m_valid, m_first and

@@ -4,7 +4,7 @@
 `include "cchip_assert.vh"
 // cchip_dispatcher: gives the pairs that wait in queues of descriptors to the slots whose module
 // can answer for their kind, and collects the answers. A pair of the illegal kind 0, or of a kind
-// that nobody provides, is answered as an open pair (see cchip_slot_ledger), and so is a pair that
+// that no slot provides, is answered as an open pair (see cchip_slot_ledger), and so is a pair that
 // a swap by force gives up: every pair that enters the queues is answered exactly once.
 //   serves       module m answers for the kinds 1..m: a test of quads takes a triangle as a quad
 //   latency      6 clocks from `some` to m_vertex_valid of an idle dispatcher; 6 clocks from a
@@ -12,7 +12,7 @@
 //   throughput   a pair every 3 clocks, of a kind with quads every 4; an answer every clock
 //   credit       no ready runs back from a slot: at most CREDIT of its pairs lie between dispatch
 //                and answer
-//   fair         kinds take turns, and so do slots; answers leave in turn
+//   fair         kinds are served in turn, and so are slots and answers
 //   cuts         every path: each output comes from flip-flops
 //   reset        no pair inside any slot, no answer
 module cchip_dispatcher #(
@@ -32,7 +32,7 @@ module cchip_dispatcher #(
     output wire                                  pop,
     output wire [                           1:0] vertex,
     input  wire [       `CCHIP_DESCRIPTOR_W-1:0] descriptor,   // 2 clocks after pop, for 2 clocks
-    input  wire [                       KINDS:1] no_provider,  // nobody can serve the kind
+    input  wire [                       KINDS:1] no_provider,  // no slot can serve the kind
     // to the slots: record VERTEX but for its vertices, which go with it
     output wire [                     SLOTS-1:0] m_vertex_valid,
     output wire                                  m_vertex_first,
@@ -54,8 +54,8 @@ module cchip_dispatcher #(
     output wire [                     SLOTS-1:0] decoupled,
     output wire [ SLOTS*`CCHIP_PAIR_COUNT_W-1:0] outstanding,
     output wire [ SLOTS*`CCHIP_PAIR_COUNT_W-1:0] lost,
-    // events, one clock: an answer of this module left, 0: of nobody; a pair of kind 0, or one that
-    // nobody provides, was taken
+    // events, one clock: an answer of this module left, 0: of none; a pair of kind 0, or one that
+    // no slot provides, was taken
     output wire                                  answered,
     output wire [             `CCHIP_KIND_W-1:0] answered_module,
     output wire                                  refused_kind,
@@ -150,7 +150,7 @@ module cchip_dispatcher #(
     end
   endgenerate
 
-  // ---- pairs that nobody can test, one at a time
+  // ---- pairs that no slot can test, one at a time
   reg refusing_q, refused_q;  // one was taken; its tag is here
   reg [`CCHIP_TAG_W-1:0] refused_tag_q;
   reg [KIND_W-1:0] refused_kind_q;

@@ -7,7 +7,7 @@
 // when the slot is decoupled before that, as an open pair: hit 1, grid 1, definite 0, axis class
 // CCHIP_AXIS_ILLEGAL, beats 0.
 //   credit       room = 1: another pair may be granted. A pair uses a credit from its grant until
-//                its answer has left, so there is room for every answer, whatever the receiver does
+//                its answer has left, so there is always room for every answer
 //   garbage      a result whose number is not that of a pair inside is dropped
 //   latency      5 clocks from a result to m_valid of an empty ledger
 //   throughput   a result on every clock; a grant on every third

@@ -6,7 +6,7 @@
 // of bitstreams, back-off, configuration controller. With SWAPS = 0 they are what SLOTn_RM_ID
 // says, the inputs of swaps have no effect and their outputs are 0.
 //   pairs        cchip_dispatcher: module m answers for the kinds 1..m; a pair of the illegal kind
-//                0, of a kind that nobody provides, or that a swap by force gives up, is answered
+//                0, of a kind that no slot provides, or that a swap by force gives up, is answered
 //                as open: hit 1, grid 1, definite 0
 //   latency      6 clocks from `some` to the slot, that of the test, 6 to m_result
 //   throughput   a pair every 3 clocks, with quads every 4
@@ -65,7 +65,7 @@ module cchip_slots #(
     input  wire                              m_result_ready,
     output wire [         `CCHIP_KIND_W-1:0] m_result_kind,
     output wire [       `CCHIP_RESULT_W-1:0] m_result_data,
-    // events, one clock: an answer of this module left, 0: of nobody; a pair was refused
+    // events, one clock: an answer of this module left, 0: of none; a pair was refused
     output wire                              answered,
     output wire [         `CCHIP_KIND_W-1:0] answered_module,
     output wire                              refused_kind,

@@ -179,7 +179,7 @@
 `define CCHIP_SWAP_SHUTDOWN 4'd13
 // aborted: the slot works on if it was not decoupled yet, else decoupled, in reset
 `define CCHIP_SWAP_ABORTED 4'd14
-// memory still owes beats of an earlier read: request refused, try again later
+// beats of an earlier read are still outstanding: request refused, try again later
 `define CCHIP_SWAP_OWED 4'd15
 
 // ---- outcome of a read (cchip_axi_read)
@@ -189,7 +189,7 @@
 `define CCHIP_READ_BUS 2'd1
 // memory did not answer in time
 `define CCHIP_READ_TIMEOUT 2'd2
-// not sent: memory still owes an earlier read, or does not take its address
+// not sent: an earlier read is still outstanding, or its address has not been accepted
 `define CCHIP_READ_OWED 2'd3
 
 // ---- outcome of a write (cchip_axi_write)
@@ -199,7 +199,7 @@
 `define CCHIP_WRITE_BUS 2'd1
 // memory did not answer in time; it may hold all data, parts or none
 `define CCHIP_WRITE_TIMEOUT 2'd2
-// not sent: memory still owes the response to an earlier write
+// not sent: the response to an earlier write is still outstanding
 `define CCHIP_WRITE_OWED 2'd3
 
 // ---- programme of a pair in the axis controller
@@ -410,7 +410,7 @@
 // ---- beat of s_vertex, the way into a slot: one vertex of A and one of B, coordinates of w bits:
 // word[`CCHIP_VERTEX_<field>]
 `define CCHIP_VERTEX_W(w) (16 + `CCHIP_POINT_W((w)) + `CCHIP_POINT_W((w)))
-// vertex 0: a pair begins, whatever came before
+// vertex 0: a pair begins, regardless of what came before
 `define CCHIP_VERTEX_FIRST 0+:1
 // the pair is complete
 `define CCHIP_VERTEX_LAST 1+:1
@@ -452,7 +452,7 @@
 `define CCHIP_ANSWER_RESULT 0+:34
 // kind of the pair
 `define CCHIP_ANSWER_KIND 34+:2
-// module that gave it, 0: nobody, the pair is left open
+// module that gave it, 0: none, the pair is left open
 `define CCHIP_ANSWER_MODULE 36+:2
 // the word of these fields, also as the target of an assignment or an output
 `define CCHIP_ANSWER_OF(result, kind, module) {module, kind, result}
@@ -628,6 +628,135 @@
 `define CCHIP_LEAF_RESULT_CODE(c) (c) + 2 + 3 + 3+:3
 // the word of these fields, also as the target of an assignment or an output
 `define CCHIP_LEAF_RESULT_OF(context, epoch, hits, open, code) {code, open, hits, epoch, context}
+
+// ---- a node and its children, as cchip_traversal_decision sees them:
+// word[`CCHIP_TREE_NODE_<field>]
+`define CCHIP_TREE_NODE_W 52
+// line of the node in its image
+`define CCHIP_TREE_NODE_LINE 0+:24
+// line of its first child
+`define CCHIP_TREE_NODE_FIRST 24+:24
+// bit i: child i is a node, not a leaf
+`define CCHIP_TREE_NODE_INNER 48+:4
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_TREE_NODE_OF(line, first, inner) {inner, first, line}
+
+// ---- a node pair of a query, or a leaf pair, in flight: word[`CCHIP_NODE_PAIR_<field>]
+`define CCHIP_NODE_PAIR_W 59
+// line of A's node in its image; of a leaf pair the kind of A's leaf
+`define CCHIP_NODE_PAIR_LINE_A 0+:24
+// children of A that count
+`define CCHIP_NODE_PAIR_CHILDREN_A 24+:4
+// line of B's node in its image; of a leaf pair the kind of B's leaf
+`define CCHIP_NODE_PAIR_LINE_B 28+:24
+// children of B that count
+`define CCHIP_NODE_PAIR_CHILDREN_B 52+:4
+// epoch of its query
+`define CCHIP_NODE_PAIR_EPOCH 56+:2
+// 1: the headers of both images
+`define CCHIP_NODE_PAIR_HEADER 58+:1
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_NODE_PAIR_OF(line_a, children_a, line_b, children_b, epoch, header) \
+  {header, epoch, children_b, line_b, children_a, line_a}
+
+// ---- what the lines of a node pair say: word[`CCHIP_NODES_<field>]
+`define CCHIP_NODES_W 67
+// line of A's first child; of a header that of the root
+`define CCHIP_NODES_FIRST_A 0+:24
+// kinds of A's children, 2 bits each, 0: a node
+`define CCHIP_NODES_KINDS_A 24+:8
+// line of B's first child; of a header that of the root
+`define CCHIP_NODES_FIRST_B 32+:24
+// kinds of B's children
+`define CCHIP_NODES_KINDS_B 56+:8
+// QueryCode: OK, or why its query ends
+`define CCHIP_NODES_CODE 64+:3
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_NODES_OF(first_a, kinds_a, first_b, kinds_b, code) \
+  {code, kinds_b, first_b, kinds_a, first_a}
+
+// ---- what the box test says of the child pairs of a node pair; pair 4 i + j is child i of A with
+// child j of B: word[`CCHIP_BOX_VERDICT_<field>]
+`define CCHIP_BOX_VERDICT_W 57
+// child pairs to descend into
+`define CCHIP_BOX_VERDICT_WAITING 0+:16
+// leaf pairs to test
+`define CCHIP_BOX_VERDICT_LEAVES 16+:16
+// of those to descend into, the ones that overlap much
+`define CCHIP_BOX_VERDICT_STRONG 32+:16
+// the one that overlaps most
+`define CCHIP_BOX_VERDICT_BEST 48+:4
+// pairs of volumes that were compared
+`define CCHIP_BOX_VERDICT_TESTS 52+:5
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_BOX_VERDICT_OF(waiting, leaves, strong, best, tests) \
+  {tests, best, strong, leaves, waiting}
+
+// ---- child pairs of a node pair that wait on a query's stack: word[`CCHIP_STACK_ENTRY_<field>]
+`define CCHIP_STACK_ENTRY_W 141
+// TREE_NODE of A
+`define CCHIP_STACK_ENTRY_A 0+:52
+// TREE_NODE of B
+`define CCHIP_STACK_ENTRY_B 52+:52
+// child pairs that wait
+`define CCHIP_STACK_ENTRY_WAITING 104+:16
+// of these, the ones that overlap much
+`define CCHIP_STACK_ENTRY_STRONG 120+:16
+// the one to descend into first
+`define CCHIP_STACK_ENTRY_FIRST 136+:4
+// others wait, too
+`define CCHIP_STACK_ENTRY_REST 140+:1
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_STACK_ENTRY_OF(a, b, waiting, strong, first, rest) \
+  {rest, first, strong, waiting, b, a}
+
+// ---- what does not change of a query at work: word[`CCHIP_QUERY_LINES_<field>]
+`define CCHIP_QUERY_LINES_W 96
+// line of the header of A
+`define CCHIP_QUERY_LINES_BASE_A 0+:32
+// line of the header of B
+`define CCHIP_QUERY_LINES_BASE_B 32+:32
+// names the query in its records
+`define CCHIP_QUERY_LINES_TAG 64+:32
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_QUERY_LINES_OF(base_a, base_b, tag) {tag, base_b, base_a}
+
+// ---- a context of cchip_traversal, stack of 2^s entries: word[`CCHIP_QUERY_STATE_<field>]
+`define CCHIP_QUERY_STATE_W(s) (76 + (s) + 1 + 1 + 1 + 2)
+// a pair touches for certain
+`define CCHIP_QUERY_STATE_HIT 0+:1
+// open pairs, 255: or more
+`define CCHIP_QUERY_STATE_OPENS 1+:8
+// hits and open pairs
+`define CCHIP_QUERY_STATE_PAIRS 9+:32
+// node pairs expanded
+`define CCHIP_QUERY_STATE_STEPS 41+:32
+// node pairs in flight
+`define CCHIP_QUERY_STATE_NODES 73+:3
+// entries of the stack
+`define CCHIP_QUERY_STATE_ENTRIES(s) 76+:(s) + 1
+// 1: all contacts, 0: the first
+`define CCHIP_QUERY_STATE_ALL(s) 76 + (s) + 1+:1
+// the context has a query
+`define CCHIP_QUERY_STATE_ACTIVE(s) 76 + (s) + 1 + 1+:1
+// its epoch
+`define CCHIP_QUERY_STATE_EPOCH(s) 76 + (s) + 1 + 1 + 1+:2
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_QUERY_STATE_OF(hit, opens, pairs, steps, nodes, entries, all, active, epoch) \
+  {epoch, active, all, entries, nodes, steps, pairs, opens, hit}
+
+// ---- how a query of cchip_traversal has ended: word[`CCHIP_QUERY_END_<field>]
+`define CCHIP_QUERY_END_W 69
+// hits and open pairs
+`define CCHIP_QUERY_END_PAIRS 0+:32
+// node pairs expanded
+`define CCHIP_QUERY_END_STEPS 32+:32
+// QueryAnswer
+`define CCHIP_QUERY_END_ANSWER 64+:2
+// QueryCode
+`define CCHIP_QUERY_END_CODE 66+:3
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_QUERY_END_OF(pairs, steps, answer, code) {code, answer, steps, pairs}
 
 // ---- record of a pair of faces in contact, or for the host to decide:
 // word[`CCHIP_PAIR_RECORD_<field>]

@@ -13,9 +13,9 @@
 //                early or too late, is CCHIP_READ_BUS
 //   silence      a read that lasts longer than `limit` clocks, its address included, is answered
 //                with CCHIP_READ_TIMEOUT after 2 limit + 3 CLIENTS SLOTS + 10 clocks at the latest;
-//                on the last beat there are no data. While memory owes beats under that ID, or the
-//                address is not taken, a request that would have to wait for it is answered with
-//                CCHIP_READ_OWED. Beats that come after the answer, or unasked, are dropped. A
+//                on the last beat there are no data. While beats are outstanding under that ID, or
+//                the address is not taken, a request that would have to wait for it is answered
+//                with CCHIP_READ_OWED. Beats that come after the answer, or unasked, are dropped. A
 //                client that uses a slot again only while its bit of `outstanding` is 0 is never
 //                refused because of a response that is missing
 //   limit        1..2^32 - 1 clocks; 0 means CCHIP_MEMORY_LIMIT_DEFAULT. It may change on any
@@ -51,7 +51,7 @@ module cchip_axi_read #(
     output wire [             `CCHIP_READ_CODE_W-1:0] m_code,         // while m_last = 1
     output wire [                        DATA_W-1:0] m_data,
     output wire                                      any_outstanding,
-    // of each ID, {client, slot}: its address is on offer or memory owes it a response
+    // of each ID, {client, slot}: its address is on offer or a response is outstanding
     output wire                 [CLIENTS*SLOTS-1:0] outstanding,
     output wire                                      m_axi_arvalid,
     input  wire                                      m_axi_arready,
@@ -200,7 +200,7 @@ module cchip_axi_read #(
   reg [3:0] progress_q3;  // after the beat before
   wire same = place_id_q == place_id_q2;
   wire wanted = live_q2 & ~closed_q2;
-  wire counts = beat_q2 & owed_q2 & ~ended_q2;  // memory owes this beat
+  wire counts = beat_q2 & owed_q2 & ~ended_q2;  // this beat is outstanding
   wire none_yet = first_q2 & ~counted_q2;
   wire [3:0] progress_now = counted_q2 ? progress_q3 : progress_q2;
   wire [2:0] count = none_yet ? 3'd0 : progress_now[2:0];

@@ -27,7 +27,7 @@ module cchip_axi_read_address #(
     input  wire [                       CLIENTS-1:0] s_valid,
     input  wire [         CLIENTS*$clog2(SLOTS)-1:0] s_slot,
     input  wire [                    CLIENTS*58-1:0] s_line,        // address / 64
-    input  wire [                 CLIENTS*SLOTS-1:0] owed,          // of each ID: memory owes beats
+    input  wire [                 CLIENTS*SLOTS-1:0] owed,          // of each ID: beats outstanding
     input  wire                                      give_up,
     input  wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] give_up_id,
     input  wire                                      refuse_ready,

@@ -5,7 +5,7 @@
 // cchip_axi_write: AXI4 write master, shared by several clients, for writes that lie within a line
 // of 64 bytes: one beat, or several that follow one another.
 //   write        its beats in order, the address with the first one. It ends with s_last, or with
-//                the last beat of the line whatever s_last is: no burst leaves a line, so none
+//                the last beat of the line regardless of s_last: no burst leaves a line, so none
 //                crosses 4 KiB. Writes of several clients are served in turn, never mixed. A client
 //                must offer the rest of a write that it has begun without waiting for anything but
 //                s_ready
@@ -15,7 +15,7 @@
 //   silence      a write that lasts longer than `limit` clocks, its address and data included, is
 //                answered with CCHIP_WRITE_TIMEOUT after 2 limit + OUTSTANDING + 8 clocks at the
 //                latest; memory may hold all of it, parts or nothing. What memory has not been
-//                offered of its data is sent without strobes. While memory owes that response, a
+//                offered of its data is sent without strobes. While that response is outstanding, a
 //                write is not sent but answered with CCHIP_WRITE_OWED. A response that comes after
 //                the answer, or unasked, is dropped
 //   limit        1..2^32 - 1 clocks; 0 means CCHIP_MEMORY_LIMIT_DEFAULT. It may change on any
@@ -128,7 +128,7 @@ module cchip_axi_write #(
   );
 
   // ---- writes in flight: those that a client waits for, and in front of them those that were
-  // given up and whose response memory owes
+  // given up and whose response is outstanding
   wire waiting_some, waiting_room, dropped_some, dropped_room;
   wire [COUNT_W-1:0] waiting, dropped;
   wire issue;
@@ -158,7 +158,7 @@ module cchip_axi_write #(
       .room (dropped_room)
   );
 
-  // ---- the first write is sent, or refused while memory owes a response
+  // ---- the first write is sent, or refused while a response is outstanding that was given up
   wire refused;
   wire [1:0] refused_client;
   cchip_axi_write_send #(

@@ -2,7 +2,7 @@
 `default_nettype none
 `include "cchip_assert.vh"
 // cchip_axi_write_send: sends the writes of cchip_axi_write_collect, address and data, or refuses
-// them while memory owes a response.
+// them while the response to a write that was given up is outstanding.
 //   send         a write is sent if no response is owed, there is room and the address can leave;
 //                its beats follow, one per clock
 //   answered     once no client waits any more (awaited = 0), the beats that are left are taken
@@ -32,7 +32,7 @@ module cchip_axi_write_send #(
     input  wire [                DATA_W-1:0] s_beat_data,
     input  wire                              awaited,         // a client waits for a write
     input  wire                              room,            // another one may be issued
-    input  wire                              owed,            // memory owes a response of long ago
+    input  wire                              owed,            // the response to one given up is due
     output wire                              issue,           // this write is sent
     output wire                              refused,         // a write is refused, that of
     output wire [                       1:0] refused_client,

@@ -7,7 +7,7 @@
 //                for a place only after the answer. There is no ready: every request is taken, and
 //                every answer must be
 //   answer       a line, or a code of cchip_axi_read without data, in any order. Lines in flight
-//                (MISSES of them) hold up nobody but those who ask for them; all of these get the
+//                (MISSES of them) hold up only the requests for them; all of these get the
 //                line as it arrives, before its frame is given away
 //   lock         lines in a lock range stay once they are loaded, at most one way of a set, until
 //                they are invalidated
@@ -18,16 +18,16 @@
 //   throughput   a line per port and clock; an arriving line takes a clock of port 0, an
 //                invalidation one in 7 of port 1
 //   collision    a request that meets a change of its set within 7 clocks, or both of whose ways
-//                are held, is looked up again. The places whose requests are take turns: one that
-//                has had the turn for AGE clocks is the only one to get a frame. So a request that
-//                is looked up again has its line, or a code, after at most 2 PLACES turns of
+//                are held, is looked up again. The places whose requests are have their turn: one
+//                that has had the turn for AGE clocks is the only one to get a frame. So a request
+//                that is looked up again has its line, or a code, after at most 2 PLACES turns of
 //                AGE + T + 8 PLACES + 16 MISSES clocks each, T the longest time of a read, not
 //                counting those of invalidations
 //   silence      a slot whose read ended with CCHIP_READ_TIMEOUT or CCHIP_READ_OWED is out of use
-//                while memory owes its response. With all of them out of use a request whose line
-//                is not there is answered with CCHIP_READ_OWED
+//                while its response is outstanding. With all of them out of use a request whose
+//                line is not there is answered with CCHIP_READ_OWED
 //   cuts         every path: each output is a flip-flop
-//   reset        forgets every line; takes 2^SET_W clocks, requests wait
+//   reset        invalidates every line; takes 2^SET_W clocks, requests wait
 module cchip_cache #(
     // size of the data, KiB: 1, 2, 4 ... 1024
     parameter integer CACHE_KB = 128,
@@ -55,7 +55,7 @@ module cchip_cache #(
     // lines to lock; none if first > last
     input  wire [        LOCKS*LINE_W-1:0] lock_first,
     input  wire [        LOCKS*LINE_W-1:0] lock_last,
-    // lines to forget
+    // lines to invalidate
     input  wire                            invalidate_valid,
     output wire                            invalidate_ready,
     input  wire [              LINE_W-1:0] invalidate_first,

@@ -10,7 +10,7 @@
 //                done, and its slot free, one clock after serving is 0 for the first time since
 //                the clock after collect
 //   silence      a slot whose read ended with CCHIP_READ_TIMEOUT or CCHIP_READ_OWED is lost: it is
-//                lent again, within MISSES + 3 clocks, when memory owes its ID nothing any more
+//                lent again, within MISSES + 3 clocks, when nothing is outstanding under its ID
 //   latency      2 clocks from the last beat to fill_valid
 //   throughput   a line every clock into the frames, every fourth clock if one waits for each
 //   cuts         every path

@@ -72,7 +72,7 @@ module cchip_cache_port #(
     input  wire [2*(3+$clog2(MISSES)+LINE_W-SET_W)-1:0] entry_data,
     input  wire [                              1:0] change_by,       // by stage 6 of these ports
     input  wire [                      2*SET_W-1:0] sets6,           // of stage 6 of the ports
-    // requests that are looked up again take turns
+    // of requests that are looked up again one is the oldest, each in turn
     output wire [                       PLACES-1:0] retried,
     input  wire                                     oldest_here,     // it is the turn of one here,
     input  wire [               $clog2(PLACES)-1:0] oldest_place,

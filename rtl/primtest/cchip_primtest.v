@@ -6,7 +6,7 @@
 // pipeline, result FIFO. Wrapped by cchip_primtest_tri_tri, _tri_quad and _quad_quad, whose
 // headers describe it for the user. The streams are records REQUEST and RESULT.
 //   latency      lone pair, handshake of s_pair to handshake of m_result with ready = 1:
-//                EXHAUSTIVE without special case CCHIP_PAIR_LATENCY(SUBSTAGES, beats), whatever the
+//                EXHAUSTIVE without special case CCHIP_PAIR_LATENCY(SUBSTAGES, beats), for any
 //                data; each beat that waits for a verdict adds CCHIP_BEAT_LATENCY(SUBSTAGES)
 //   throughput   one axis per clock
 //   in flight    at most CONTEXTS pairs between the handshakes of s_pair and m_result

@@ -4,7 +4,7 @@
 `include "cchip_assert.vh"
 // cchip_bitstream_fetch: AXI4 read master that reads consecutive words from memory into a FIFO.
 // run = 1 starts; address and words are taken on its first clock. run = 0 empties the FIFO; beats
-// that memory still owes are dropped when they come. outstanding is 1 until then, and run must
+// that are still outstanding are dropped when they come. outstanding is 1 until then, and run must
 // stay 0 as long.
 //   latency      m_valid 5 clocks after run plus the memory's, counted from arvalid = 1, arready =
 //                1 to rvalid = 1
@@ -16,7 +16,7 @@
 //   errors       bus_error: rresp other than OKAY, rlast too early or too late, a beat that was not
 //                requested; timeout: `limit` clocks without an address taken or a beat, 2 clocks
 //                later. Both stay 1 until run = 0; nothing enters the FIFO any more. RLAST ends a
-//                burst, whatever the count says.
+//                burst, regardless of the count.
 //   limit        1..2^32 - 1 clocks; 0 means CCHIP_MEMORY_LIMIT_DEFAULT. It may change on any
 //                clock, also during a wait: a lower one that has passed already ends it 3 clocks
 //                after the change, a higher one, or 0, gives more time

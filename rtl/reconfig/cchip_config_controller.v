@@ -5,7 +5,7 @@
 // cchip_config_controller: exchanges the module of a slot: fetches a bitstream, streams it into the
 // configuration port and sequences the slot. Phases CCHIP_PHASE_*, outcomes CCHIP_SWAP_*.
 //   order        HEADER, SHUTDOWN, DECOUPLE, RESET, TRANSFER, CHECK, ROC, RECOUPLE, REPORT; a bad
-//                header or a shutdown that fails leaves the slot at work; whatever fails from
+//                header or a shutdown that fails leaves the slot at work; any failure from
 //                DECOUPLE on leaves it stopped, decoupled and in reset
 //   time         payload: CFG_DIVIDER clocks per port word (the paper's eq. 4) while memory keeps
 //                up; see the datasheet for the rest; every wait has a bound: shutdown_limit for the

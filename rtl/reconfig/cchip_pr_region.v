@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// cchip_pr_region: the reconfigurable partition: one cell, one module name, the same ports whatever
-// is in it. RM_ID chooses the persona: blank, which never answers, or the test of two triangles, of
+// cchip_pr_region: the reconfigurable partition: one cell, one module name, the same ports for any
+// module in it. RM_ID chooses the persona: blank, which never answers, or the test of two triangles, of
 // a triangle and a quad, or of two quads behind a cchip_vertex_collector. Vendor flows synthesise
 // this module out of context once per RM_ID and exchange the results in the static design. The
 // streams are records VERTEX and SLOT_RESULT.

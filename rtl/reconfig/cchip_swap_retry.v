@@ -7,7 +7,7 @@
 //                CCHIP_RETRY_CLOCKS << level clocks from the latest failure on. After each rest
 //                level grows by one, up to CCHIP_RETRY_DOUBLINGS; it is 0 again once no failed
 //                entry is left. An entry that is no longer valid is forgotten.
-//   hopeless     entries that rest after CCHIP_RETRY_DOUBLINGS failures in a row or more: nobody
+//   hopeless     entries that rest after CCHIP_RETRY_DOUBLINGS failures in a row or more: no one
 //                should wait for them until they are tried again
 //   latency      1 clock from the report to resting
 //   cuts         every path: each output comes from flip-flops

@@ -7,9 +7,10 @@
 //   serves       module m answers for the kinds 1..m
 //   rule         a swap is due for a kind that no slot serves and of which pairs wait: `min_batch`
 //                of them, a full queue, or any once some kind has waited unserved for `max_age`
-//                clocks. The kinds take turns. The module is the kind's own, else the next larger
-//                one with a valid bitstream; the slot is the one that holds least: it had served
-//                nothing that the new module does not, so a swap never takes a kind from the pairs
+//                clocks. Kinds are served in turn. The module is the kind's own, else the next
+//                larger one with a valid bitstream; the slot is the one that holds least: it had
+//                served nothing that the new module does not, so a swap never takes a kind from the
+//                pairs
 //   age          clocks since pairs of some unserved kind wait; starts again after every report
 //   faults       only a bad bitstream or entry (CCHIP_SWAP_SPOILT) loses its valid bit
 //                (`table_invalidate`). An entry that rests (cchip_swap_retry) is not chosen here,

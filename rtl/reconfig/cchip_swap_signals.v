@@ -6,8 +6,8 @@
 //   order        stop, decouple, hold_reset rise one after the other; hold_reset falls as roc_start
 //                rises, then decouple falls, then stop. No slot is decoupled that is not stopped,
 //                none held in reset that is not decoupled
-//   failure      fails = 1 ends the swap: with shut = 0 the slot goes back to work, with shut = 1 it
-//                stays stopped, decoupled and in reset
+//   failure      fails = 1 ends the swap: with shut = 0 the slot goes back to work, with shut = 1
+//                it stays stopped, decoupled and in reset
 //   latency      1 clock
 //   throughput   one step per clock
 //   cuts         every path: each output is a flip-flop

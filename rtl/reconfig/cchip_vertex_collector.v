@@ -6,7 +6,7 @@
 //   throughput   a vertex on every clock: the next pair may follow at once
 //   fewer        a vertex is written to its place and to all places behind it, so a triangle that
 //                comes as three vertices is complete as a quad: V3 = V2
-//   first        begins a pair, whatever came before; vertices before the first `first`, and behind
+//   first        begins a pair in any state; vertices before the first `first`, and behind
 //                `last`, are ignored
 //   cuts         every path: each output is a flip-flop
 //   reset        no pair begun. m_pair_valid has no ready: the sender's credit says that there is

@@ -7,7 +7,7 @@
 //   pair in      never stalls, from the third clock after rst: the owner accepts at most CONTEXTS
 //                pairs whose result has not left at least three clocks ago
 //   beats        one per clock while a pair waits: beats of an EXHAUSTIVE pair leave back to back;
-//                otherwise pairs that start and pairs that continue take turns
+//                otherwise pairs that start and pairs that continue alternate
 //   latency      s_pair to its first beat 4 clocks; verdict to m_result CCHIP_PROGRAMME_LATENCY
 //                clocks, to the next beat of its pair 3 more
 //   cuts         every path
@@ -17,7 +17,7 @@
 // beat.
 // The programme state {context, programme, code, beats, ...} travels with the beat (m_beat_user)
 // and comes back with the verdict; which axis follows is decided by cchip_axis_programme.
-// EXHAUSTIVE: nA, nB, all e_k x f_l (l runs first) whatever they find, the first separating axis is
+// EXHAUSTIVE: nA, nB, all e_k x f_l (l runs first) to the end; the first separating axis is
 // reported; a special case that none separates continues with its programme. Its verdicts come back
 // to back too, so one accumulator serves all. Reserved modes: one idle beat, then axis class
 // ILLEGAL.

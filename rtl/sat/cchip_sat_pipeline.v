@@ -5,7 +5,7 @@
 // select -> axis -> project -> compare; the box comparison runs beside them.
 //   latency      CCHIP_PIPE_LATENCY(SUBSTAGES) clocks, beat to verdict; the operands of a beat come
 //                CCHIP_RAM_LATENCY clocks after it, from the memory that its context addresses
-//   throughput   one axis per clock, never stalls: whoever issues a beat keeps room for its verdict
+//   throughput   one axis per clock, never stalls: the issuer of a beat keeps room for its verdict
 //   cuts         every path (registered outputs; the first register of a vertex is behind the
 //                multiplexers of select)
 //   reset        valid bits; data on its way is lost

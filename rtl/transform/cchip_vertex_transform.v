@@ -14,7 +14,7 @@
 //   numbers      units of the leaf pair, two's complement (docs/hardware/image.md)
 //   multipliers  36 blocks of 18x18 bit, with PASSES = 2 half as many
 //   cuts         every path: each output is a flip-flop
-//   reset        what is inside is forgotten
+//   reset        what is inside is dropped
 // Bit for bit model::move_leaves.
 module cchip_vertex_transform #(
     // clocks a vertex, 1 or 2

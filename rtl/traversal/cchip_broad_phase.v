@@ -12,7 +12,7 @@
 //   bound        every wait has one: a read by the limit of cchip_axi_read, a query by step_limit;
 //                results and the receiver of answers are waited for
 //   cuts         every path: each output is a flip-flop
-//   reset        forgets queries and lines; takes 2^SET_W clocks of the cache. It acts a clock
+//   reset        drops queries and lines; takes 2^SET_W clocks of the cache. It acts a clock
 //                later: hold rst for 2 clocks or more
 module cchip_broad_phase #(
     // queries at once: 2, 4, 8 or 16
@@ -83,7 +83,7 @@ module cchip_broad_phase #(
     // lines to lock; none if first > last
     input  wire [            LOCKS*32-1:0] lock_first,
     input  wire [            LOCKS*32-1:0] lock_last,
-    // lines to forget
+    // lines to invalidate
     input  wire                            invalidate_valid,
     output wire                            invalidate_ready,
     input  wire [                    31:0] invalidate_first,

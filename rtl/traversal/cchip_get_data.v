@@ -16,7 +16,7 @@
 //   throughput   a request per clock, a pair every third clock
 //   credit       a place is used again only after m_leaf_valid or the verdict
 //   cuts         every path: each output is a flip-flop
-//   reset        forgets all; no line of before may come
+//   reset        drops all pairs; no line of an earlier request may come
 module cchip_get_data #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
@@ -69,19 +69,12 @@ module cchip_get_data #(
     output wire [                                         66:0] lookup_nodes
 );
 
-  // how a query ended (docs/hardware/image.md)
-  localparam [2:0] END_OK = 3'd0, END_CORRUPT = 3'd4, END_OUTSIDE = 3'd5;
-  localparam [2:0] END_BAD_DESCRIPTOR = 3'd6, END_MEMORY = 3'd7;
   localparam integer PLACES = PAIRS + LEAVES;
   localparam integer PLACE_W = $clog2(PLACES);
   localparam integer CONTEXT_W = $clog2(QUERIES);
   localparam integer RECORD_W = 59;
-  localparam integer NODES_W = 67;
-  localparam integer END_W = 3;
   localparam integer CODE_W = `CCHIP_READ_CODE_W;
   localparam integer AT_EPOCH = 56, AT_HEADER = 58;
-  localparam [31:0] MAGIC = 32'h4D494343;
-  localparam [15:0] VERSION = 16'd1;
   localparam [31:0] FIRST_LEAF = PAIRS;
   localparam [31:0] ROOM_AT_FIRST = LEAF_ROOM;
 
@@ -105,7 +98,6 @@ module cchip_get_data #(
   reg [QUERIES-1:0] no_pose_q;  // contexts whose pose is not set up yet
   // a number counts only while it is valid: before, it may be unknown in simulation
   localparam [QUERIES-1:0] ONE_CONTEXT = 1;
-  localparam [PLACES-1:0] ONE_PLACE = 1;
   wire [QUERIES-1:0] asks_header = s_valid && s_record[AT_HEADER] ? ONE_CONTEXT << s_context :
       {QUERIES{1'b0}};
   wire [QUERIES-1:0] posed = s_pose_valid ? ONE_CONTEXT << s_pose_context : {QUERIES{1'b0}};
@@ -127,88 +119,38 @@ module cchip_get_data #(
   assign m_line_place = {2{ask_place_q}};
   assign m_line       = ask_lines_q;
 
-  // ---- places one of whose lines has come. Each line comes once, so the next one is the second,
-  // and its port puts the pair in its queue. A line inverts the bit of its place: no bit depends on
-  // what the others are
-  reg  [PLACES-1:0] came_q;
+  // ---- the lines as they come, and the pairs both of whose lines are here: a queue of node pairs
+  // and one of leaf pairs for each port
   wire [1023:0] read_lines;
   wire [2*CODE_W-1:0] read_codes;
   reg fetch_valid_q;
   reg [PLACE_W-1:0] fetch_q;
-  wire [1:0] whole;  // this line is the second
-  wire [2*PLACES-1:0] comes;  // a line, by place
-  wire [PLACE_W-1:0] place0 = s_line_place[0+:PLACE_W];
-  wire [PLACE_W-1:0] place1 = s_line_place[PLACE_W+:PLACE_W];
-  wire both = &s_line_valid && place0 == place1;
-  wire [1:0] queue_valid, queue_ready, queue_take;
-  wire [1:0] leaf_queue_valid, leaf_queue_ready, leaf_queue_take;
+  wire [1:0] queue_valid, queue_take, leaf_queue_valid, leaf_queue_take;
   wire [2*PLACE_W-1:0] queue_place, leaf_queue_place;
-  wire [1:0] no_room;  // for a pair in its queue: never
-  genvar p;
-  generate
-    for (p = 0; p < 2; p = p + 1) begin : gen_port
-      wire [PLACE_W-1:0] place = p == 0 ? place0 : place1;
-      reg whole_q;
-      reg [PLACE_W-1:0] whole_place_q;
-      (* ram_style = "distributed" *)
-      reg [CODE_W-1:0] codes[0:PLACES-1];
-      reg [CODE_W-1:0] code_q;
-      assign whole[p] = s_line_valid[p] & (came_q[place] | (both & (p == 0)));
-      assign comes[PLACES*p+:PLACES] = s_line_valid[p] ? ONE_PLACE << place : {PLACES{1'b0}};
-      cchip_block_ram #(
-          .WIDTH (512),
-          .ADDR_W(PLACE_W)
-      ) u_lines (
-          .clk       (clk),
-          .write     (s_line_valid[p]),
-          .write_addr(place),
-          .write_data(s_line_data[512*p+:512]),
-          .read_addr (fetch_q),
-          .read_data (read_lines[512*p+:512])
-      );
-      wire whole_leaf = {{32 - PLACE_W{1'b0}}, whole_place_q} >= FIRST_LEAF;
-      cchip_fifo #(
-          .WIDTH     (PLACE_W),
-          .DEPTH     (PAIRS),
-          .ROOM_KNOWN(1)
-      ) u_whole (
-          .clk    (clk),
-          .rst    (rst),
-          .s_valid(whole_q & ~whole_leaf),
-          .s_ready(queue_ready[p]),
-          .s_data (whole_place_q),
-          .m_valid(queue_valid[p]),
-          .m_ready(queue_take[p]),
-          .m_data (queue_place[PLACE_W*p+:PLACE_W])
-      );
-      cchip_fifo #(
-          .WIDTH     (PLACE_W),
-          .DEPTH     (LEAVES),
-          .ROOM_KNOWN(1)
-      ) u_whole_leaves (
-          .clk    (clk),
-          .rst    (rst),
-          .s_valid(whole_q & whole_leaf),
-          .s_ready(leaf_queue_ready[p]),
-          .s_data (whole_place_q),
-          .m_valid(leaf_queue_valid[p]),
-          .m_ready(leaf_queue_take[p]),
-          .m_data (leaf_queue_place[PLACE_W*p+:PLACE_W])
-      );
-      always @(posedge clk) begin
-        if (s_line_valid[p]) codes[place] <= s_line_code[CODE_W*p+:CODE_W];
-        code_q        <= codes[fetch_q];
-        whole_place_q <= place;
-        whole_q       <= ~rst & whole[p];
-      end
-      assign read_codes[CODE_W*p+:CODE_W] = code_q;
-      assign no_room[p] = whole_q & ~(whole_leaf ? leaf_queue_ready[p] : queue_ready[p]);
-    end
-  endgenerate
-  always @(posedge clk)
-    if (rst) came_q <= {PLACES{1'b0}};
-    else came_q <= came_q ^ comes[PLACES+:PLACES] ^ comes[0+:PLACES];
-  // leaves first, while there is room for them; of each kind the two queues in turn
+  cchip_line_pairs #(
+      .PAIRS  (PAIRS),
+      .LEAVES (LEAVES),
+      .PLACE_W(PLACE_W)
+  ) u_pairs (
+      .clk         (clk),
+      .rst         (rst),
+      .s_valid     (s_line_valid),
+      .s_place     (s_line_place),
+      .s_code      (s_line_code),
+      .s_data      (s_line_data),
+      .m_pair_valid(queue_valid),
+      .m_pair_take (queue_take),
+      .m_pair_place(queue_place),
+      .m_leaf_valid(leaf_queue_valid),
+      .m_leaf_take (leaf_queue_take),
+      .m_leaf_place(leaf_queue_place),
+      .read_place  (fetch_q),
+      .read_lines  (read_lines),
+      .read_codes  (read_codes)
+  );
+
+  // ---- which pair is next: leaves first, while there is room for them; of each kind the two
+  // queues in turn
   reg turn_q, leaf_turn_q;
   reg [1:0] room_left_q;  // leaf pairs that may be picked
   reg some_room_q;  // it is not 0
@@ -299,99 +241,30 @@ module cchip_get_data #(
   assign m_leaf_failed   = leaf_failed_q;
   assign m_lines         = lines_q;
 
-  // ---- what the lines say: the fields on the first clock, compared on the second, judged on the
-  // third
-  (* ram_style = "distributed" *)
-  reg [49:0] sizes[0:QUERIES-1];  // lines of each image, {B's, A's}, at most 2^24
-  reg [49:0] sizes_q1;
-  reg check_q1, check_q2, check_q3;
-  reg header_q1, header_q2;
-  reg [PLACE_W-1:0] place_q1, place_q2, place_q3;
-  reg [CONTEXT_W-1:0] context_q1, context_q2;
-  wire [2*END_W-1:0] end3;  // of a node
-  wire [1:0] no_header3;
-  wire [49:0] size2;
-  wire [63:0] node3;
-  generate
-    for (p = 0; p < 2; p = p + 1) begin : gen_check
-      wire [511:0] line = lines_q[512*p+:512];
-      reg [23:0] first_q1, root_q1, at_q1, first_q2, first_q3;
-      reg [24:0] last_q1;  // line of the last child
-      reg [7:0] kinds_q1, kinds_q2, kinds_q3;
-      reg [24:0] size_q1, size_q2;
-      reg steep_q1, steep_q2, failed_q1, failed_q2, header_here_q1, header_here_q2, outside_q2;
-      reg [END_W-1:0] end_q3;
-      reg no_header_q3;
-      wire [24:0] limit = sizes_q1[25*p+:25];
-      always @(posedge clk) begin
-        first_q1       <= line[59+:24];
-        root_q1        <= line[128+:24];
-        last_q1        <= {1'b0, line[59+:24]} + {23'd0, line[91+:2]};
-        kinds_q1       <= line[83+:8];
-        at_q1          <= hold_record_q[28*p+:24];
-        steep_q1       <= line[54+:5] > 5'd18;
-        size_q1        <= |line[120+:8] ? 25'h1000000 : {1'b0, line[96+:24]};
-        failed_q1      <= failed_q[p];
-        header_here_q1 <= line[0+:32] == MAGIC && line[64+:16] == VERSION;
-        first_q2       <= header_q1 ? root_q1 : first_q1;
-        kinds_q2       <= kinds_q1;
-        size_q2        <= size_q1;
-        steep_q2       <= steep_q1;
-        failed_q2      <= failed_q1;
-        header_here_q2 <= header_here_q1;
-        outside_q2     <= header_q1 ? {1'b0, root_q1} >= size_q1 :
-            first_q1 <= at_q1 || last_q1 >= limit;
-        first_q3       <= first_q2;
-        kinds_q3       <= kinds_q2;
-        no_header_q3   <= header_q2 & ~failed_q2 & ~header_here_q2;
-        end_q3 <= failed_q2 ? END_MEMORY : steep_q2 & ~header_q2 ? END_CORRUPT :
-            outside_q2 ? END_OUTSIDE : END_OK;
-      end
-      wire unused = &{1'b0, line[511:152], line[95:93], line[53:32]};
-      assign size2[25*p+:25] = size_q2;
-      assign node3[32*p+:32] = {kinds_q3, first_q3};
-      assign end3[END_W*p+:END_W] = end_q3;
-      assign no_header3[p] = no_header_q3;
-    end
-  endgenerate
-  wire [END_W-1:0] code3 = end3[0+:END_W] == END_MEMORY ? END_MEMORY :
-      |no_header3 ? END_BAD_DESCRIPTOR :
-      end3[0+:END_W] != END_OK ? end3[0+:END_W] : end3[END_W+:END_W];
-  (* ram_style = "distributed" *)
-  reg [NODES_W-1:0] nodes[0:PLACES-1];
-  reg [NODES_W-1:0] nodes_q;
+  // ---- what the lines say, and the record of the pair whose verdict has come
+  cchip_node_check #(
+      .QUERIES(QUERIES),
+      .PLACE_W(PLACE_W)
+  ) u_check (
+      .clk         (clk),
+      .rst         (rst),
+      .s_valid     (fresh_q & pair_valid_q),
+      .s_place     (place_q),
+      .s_context   (hold_record_q[RECORD_W+:CONTEXT_W]),
+      .s_header    (hold_record_q[AT_HEADER]),
+      .s_numbers   ({hold_record_q[28+:24], hold_record_q[0+:24]}),
+      .s_failed    (failed_q),
+      .s_lines     (lines_q),
+      .lookup      (lookup),
+      .lookup_place(lookup_place),
+      .lookup_nodes(lookup_nodes)
+  );
   reg [CONTEXT_W+RECORD_W-1:0] lookup_q;
-  always @(posedge clk) begin
-    sizes_q1   <= sizes[hold_record_q[RECORD_W+:CONTEXT_W]];
-    header_q1  <= hold_record_q[AT_HEADER];
-    header_q2  <= header_q1;
-    place_q1   <= place_q;
-    place_q2   <= place_q1;
-    place_q3   <= place_q2;
-    context_q1 <= hold_record_q[RECORD_W+:CONTEXT_W];
-    context_q2 <= context_q1;
-    if (check_q2 & header_q2) sizes[context_q2] <= size2;
-    if (check_q3) nodes[place_q3] <= {code3, node3};
-    if (lookup) begin
-      nodes_q  <= nodes[lookup_place];
-      lookup_q <= records[lookup_place];
-    end
-    if (rst) begin
-      check_q1 <= 1'b0;
-      check_q2 <= 1'b0;
-      check_q3 <= 1'b0;
-    end else begin
-      check_q1 <= fresh_q & pair_valid_q;
-      check_q2 <= check_q1;
-      check_q3 <= check_q2;
-    end
-  end
+  always @(posedge clk) if (lookup) lookup_q <= records[lookup_place];
   assign {lookup_context, lookup_record} = lookup_q;
-  assign lookup_nodes = nodes_q;
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_whole, no_room == 2'd0)
       `CCHIP_ASSERT(a_room, {30'd0, room_left_q} <= ROOM_AT_FIRST)
       `CCHIP_ASSERT(a_place, !(s_valid && pair_valid_q && place_q == s_place))
     end

@@ -33,7 +33,7 @@ module cchip_leaf_queue #(
     input  wire                       epoch_write,
     input  wire [$clog2(QUERIES)-1:0] epoch_context,
     input  wire [                1:0] epoch,
-    // a pair to fetch, or to forget
+    // a pair to fetch, or to drop
     input  wire                       s_credit,
     output wire                       m_valid,
     input  wire                       m_ready,

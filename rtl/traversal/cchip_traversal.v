@@ -8,7 +8,7 @@
 //   rule         every event of a query (start, a verdict, a result of a leaf pair, a pair
 //                taken from the stack) passes one pipeline, the events of one query one at a time
 //   epochs       a query that ends leaves node pairs and leaf pairs behind. They carry the
-//                epoch of their query, are counted, and are forgotten as they come back; an epoch
+//                epoch of their query, are counted, and are dropped as they come back; an epoch
 //                is used again when its count is 0
 //   room         a verdict always has room: a node pair is in flight only with a place in the leaf
 //                queue; a query starts only with a place for its answer
@@ -16,7 +16,7 @@
 //   latency      14 or 15 clocks from s_verdict_valid to m_valid
 //   throughput   an event every second clock, of one query one in 8 clocks
 //   cuts         every path: each output depends on flip-flops only
-//   reset        forgets all queries; takes 4 QUERIES clocks, events wait
+//   reset        drops all queries; takes 4 QUERIES clocks, events wait
 module cchip_traversal #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
@@ -46,7 +46,7 @@ module cchip_traversal #(
     input  wire [                   511:0] s_query,
     // one that has started, for the box test and the transform, which need its pose. Not a stream:
     // m_start_ready = 1 says that the receivers have room for one more, m_start_valid is a pulse
-    // some clocks later, whatever m_start_ready is then. The next one comes later still
+    // some clocks later, even if m_start_ready is 0 then. The next one comes later still
     output wire                            m_start_valid,
     input  wire                            m_start_ready,
     output wire [     $clog2(QUERIES)-1:0] m_start_context,

@@ -11,7 +11,7 @@
 //   latency      3 clocks; m_started comes after 1
 //   throughput   an event per clock
 //   cuts         every path: each output is a flip-flop
-//   reset        forgets the events inside. Without an event all outputs that say what happens
+//   reset        drops the events inside. Without an event all outputs that say what happens
 //                are 0
 module cchip_traversal_decision #(
     // entries of a query's stack: 8, 16, 32 or 64

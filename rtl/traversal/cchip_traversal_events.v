@@ -17,7 +17,7 @@
 //                another one before it
 //   throughput   an event every second clock
 //   cuts         every path: each output depends on flip-flops only
-//   reset        forgets all; all places and all room are free
+//   reset        drops all events; all places and all room are free
 module cchip_traversal_events #(
     // queries at once: 2, 4, 8 or 16
     parameter integer QUERIES = 16,
@@ -39,7 +39,7 @@ module cchip_traversal_events #(
     input  wire [               511:0] s_query,
     output wire [               511:0] query,
     output wire                        query_bad,
-    input  wire                        start_ready,      // somebody takes its pose
+    input  wire                        start_ready,      // there is room for its pose
     // verdicts: {place, tests, best, strong, leaves, waiting}
     input  wire                        s_verdict_valid,
     input  wire [        PLACE_W+56:0] s_verdict,
@@ -51,7 +51,7 @@ module cchip_traversal_events #(
     input  wire                        s_result_valid,
     output wire                        s_result_ready,
     input  wire [$clog2(QUERIES)+10:0] s_result,
-    // leaf pairs that nobody waits for any more
+    // leaf pairs whose query has ended
     input  wire                        s_drop_valid,
     output wire                        s_drop_ready,
     input  wire [ $clog2(QUERIES)-1:0] s_drop_context,

@@ -73,7 +73,7 @@ module cchip_broad_phase_axi #(
     // lines to lock; none if first > last
     input  wire [            LOCKS*32-1:0] lock_first,
     input  wire [            LOCKS*32-1:0] lock_last,
-    // lines to forget
+    // lines to invalidate
     input  wire                            invalidate_valid,
     output wire                            invalidate_ready,
     input  wire [                    31:0] invalidate_first,

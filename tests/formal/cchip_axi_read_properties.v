@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// Proved of cchip_axi_read, whatever memory does (also against the rules of the bus, but for what SPEAKS_TRUE assumes) and
-// whatever clients ask for that follow the rule "again only after the last beat", with a `limit` that changes on any clock:
+// Proved of cchip_axi_read, for any behaviour of memory (also against the rules of the bus, but for what SPEAKS_TRUE assumes) and
+// any requests of clients that follow the rule "again only after the last beat", with a `limit` that changes on any clock:
 //   addresses are stable until taken; the ID of an address is of no read that memory still owes; the address is that of the
 //   request; no beat is handed out that did not come three clocks before under this ID, for a read whose address was
 //   taken before and after the request was made, each once and in order; OK only after all beats of the line, each with OKAY, rlast on the

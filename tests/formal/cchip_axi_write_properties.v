@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// Proved of cchip_axi_write, whatever memory does (also against the rules of the bus) and whatever clients offer, with a
+// Proved of cchip_axi_write, for any behaviour of memory (also against the rules of the bus) and any offers of clients, with a
 // `limit` that changes on any clock:
 //   addresses and data are stable until taken; a burst lies within a line, has as many beats as its address says, wlast on
 //   the last one only; memory never has more than OUTSTANDING writes to answer; addresses and data go in the same order;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// Proved of cchip_bitstream_fetch, for 38 clocks from reset, whatever memory does (also against its own rules):
+// Proved of cchip_bitstream_fetch, for 38 clocks from reset, for any behaviour of memory (also against its own rules):
 //   addresses are stable until taken, bursts lie within 64 bytes, two are in flight at most, the FIFO is never pushed when
 //   full (assertion a_room of the FIFO); no word appears after run = 0; a timeout comes after `limit` clocks
 //   without progress and never before, while `limit` changes on any clock; an error or a timeout lasts until run = 0. With ROOM, for 20 clocks: never are more words asked for than the

@@ -17,7 +17,7 @@
 // task stale. Requests without a bound take too long, so each task has few, which this says:
 //   SET_BITS              all lines are of 2^SET_BITS sets
 //   LAST_ASK, LAST_ASK_1  requests of port 0, of port 1, come before this clock; the first may come on clock 9
-//   EVERY, ALONE          on every so many clocks only; of one port at a time
+//   EVERY, ALONE          on every N-th clock only; of one port at a time
 //   QUICK                 memory answers on the first or second clock after the read, with CCHIP_READ_OK; three lines, and the
 //                         followed one is the first: the cache only tells whether lines are equal
 //   LIVE, END             from LAST_ASK on memory answers a read on every clock; all is answered by clock END

@@ -6,7 +6,7 @@
 //   once      one pair, any, is followed: its answer leaves at most once, never before it was taken from its queue, with its tag
 //             and kind
 //   not lost  with no pair inside the slot, none taken for 6 clocks and no answer offered for 6, every pair has been answered
-//   reason    it is answered as open only if a slot was closed meanwhile, its kind is illegal or nobody provides it
+//   reason    it is answered as open only if a slot was closed meanwhile, its kind is illegal or no slot provides it
 //   slot      no vertex enters the region in reset; a number is given again only when the pair before has left it; a pair's
 //             three vertices come in step; pairs are taken 3 clocks apart or more, each from a queue that is not empty
 //   swaps     quiet and decoupled say that no pair is inside
@@ -160,7 +160,7 @@ module cchip_dispatcher_properties #(
   localparam [1:0] ANSWERED = 2'd2;
   reg [1:0] pair_q;
   reg illegal_q;  // it is of kind 0
-  reg excused_q;  // the slot was closed, or nobody provided its kind, since it was taken or shortly before
+  reg excused_q;  // the slot was closed, or no slot provided its kind, since it was taken or shortly before
   reg [2:0] excuse_q;  // clocks since
   wire excuse = (|decouple) || no_provider;
   wire ours = m_data[`CCHIP_RESULT_TAG] == 16'd1;

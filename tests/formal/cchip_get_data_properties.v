@@ -6,7 +6,7 @@
 // the pose of its query if it is a pair of headers; a node pair stays as it is until it is taken, leaves are there for one clock;
 // leaves of which a line could not be read say so, and the code of such a node pair, looked up 4 clocks or more after it was offered,
 // is never 0, END_MEMORY if it is A's; if
-// nobody waits for a pose, and neither the box test nor the receiver of leaves has anything, a pair that is whole brings about a pair within BOUND clocks.
+// no pair waits for a pose, and neither the box test nor the receiver of leaves has anything, a pair that is whole brings about a pair within BOUND clocks.
 // Assumed, what cchip_traversal and cchip_cache keep:
 //   free      a place is asked for again only after its pair has left
 //   asked     the cache answers each line that was asked for once, on a later clock

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// Proved of cchip_pr_decoupler, the region doing whatever it likes:
+// Proved of cchip_pr_decoupler, for any behaviour of the region:
 //   while decoupled every output is its constant
 //   decoupled follows decouple one clock later, also during reset
 //   otherwise each output is the input of the other side one clock ago, and idle = 1 only with no vertex on its way

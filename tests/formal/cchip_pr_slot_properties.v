@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// Proved of cchip_pr_slot around a region that does whatever it likes (cchip_pr_slot_region.v):
+// Proved of cchip_pr_slot around a region of any behaviour (cchip_pr_slot_region.v):
 //   while decoupled the static side is constant, and decoupled follows decouple one clock later
 //   the region's reset: after rst, hold_reset and for ROC_CYCLES clocks from roc_start or rst on, and never otherwise;
 //   roc_busy is 1 until the last clock of that reset

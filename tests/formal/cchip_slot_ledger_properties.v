@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// Proved of cchip_slot_ledger, whatever the slot sends and whenever (any order, any number, garbage), decoupled at any moment:
+// Proved of cchip_slot_ledger, for anything that the slot sends at any time (any order, any number, garbage), decoupled at any moment:
 //   credit    room says whether fewer than CREDIT pairs lie between grant and the leaving of their answer; outstanding is never
 //             more than that
 //   once      one pair, any, is followed: it is answered at most once, never before its grant, with its tag and kind; by the

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `include "cchip_defs.vh"
 `default_nettype none
-// Proved of cchip_swap_sequencer, two slots, whatever slots, memory and device do:
+// Proved of cchip_swap_sequencer, two slots, for any behaviour of slots, memory and device:
 //   phases follow their order; during TRANSFER and CHECK the slot is stopped, seen decoupled and in reset, in ROC stopped and
 //   decoupled; the reset ends as ROC begins, on the clock on which the reset on configuration starts; decouple falls only as
 //   RECOUPLE begins, after a good check and at least SETTLED clocks after that start; the other slot is left alone; every

@@ -11,7 +11,7 @@
 //   end       a query that ends had an error, a first hit, open pairs at their limit, or nothing left; its epoch is over. One
 //             without anything in flight or on the stack ends
 //   progress  a query with nothing in flight asks for its stack
-//   limits    whatever they are, and however they change: 0 counts as 1
+//   limits    of any value, changing at any time: 0 counts as 1
 //   stale     an event of a query that has ended changes nothing but the work of its epoch
 // Assumed: what cchip_traversal gives: one of four events, its flags as the words they tell of, a pop of a live query with an
 // entry, a start of a context without a query, a verdict or result of an epoch that has work, counts in their ranges.

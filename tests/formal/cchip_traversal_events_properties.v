@@ -2,7 +2,7 @@
 `default_nettype none
 // Proved of cchip_traversal_events, with a pipeline of 7 clocks behind it that decides at will and a box test that answers at will:
 //   lock      while an event of a query is in the pipeline none enters
-//   places    a start or a node pair from a stack gets a place that nobody has; a verdict has the place it came for, and the query
+//   places    a start or a node pair from a stack gets a place that no other has; a verdict has the place it came for, and the query
 //             of that place
 //   room      node pairs and entries of the leaf queue together never want more than the leaf queue has: a verdict always has room
 //   once      each verdict and each result enters once; a query has one start in the pipeline

@@ -2,7 +2,7 @@
 `default_nettype none
 `include "cchip_defs.vh"
 // Stands for the region in the proof of cchip_dispatcher: module 1, which answers the pairs that it holds in any order and
-// after any time, each once. In reset it forgets them and every output is anything, as while it is rewritten.
+// after any time, each once. In reset it drops them and every output is anything, as while it is rewritten.
 // Proved here: it never gets a vertex in reset, nor a number that it holds already.
 module cchip_pr_region #(
     parameter integer RM_ID = 0,

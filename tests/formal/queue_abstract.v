@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_assert.vh"
-// Stands for cchip_fifo in the proofs of modules that hold queues: whatever keeps what is proved of cchip_fifo. It is a queue
+// Stands for cchip_fifo in the proofs of modules that hold queues: anything with the properties proved of cchip_fifo. It is a queue
 // of DEPTH beats, ready while there is room; the beat at its head is offered one clock after it is inside or two, at will.
 module cchip_fifo #(
     parameter integer WIDTH = 8,

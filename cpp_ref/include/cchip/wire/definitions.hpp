@@ -64,7 +64,7 @@ enum class SwapCode : std::uint8_t {
   memory = 12,  ///< memory did not answer in time: decoupled if the transfer had begun
   shutdown = 13,  ///< pairs inside were not answered in time; the slot works on with its former module
   aborted = 14,  ///< aborted: the slot works on if it was not decoupled yet, else decoupled, in reset
-  owed = 15,  ///< memory still owes beats of an earlier read: request refused, try again later
+  owed = 15,  ///< beats of an earlier read are still outstanding: request refused, try again later
 };
 
 /// Outcome of a read (cchip_axi_read).
@@ -72,7 +72,7 @@ enum class ReadCode : std::uint8_t {
   ok = 0,  ///< every beat of the line came, without an error
   bus = 1,  ///< error response or wrong burst length from memory
   timeout = 2,  ///< memory did not answer in time
-  owed = 3,  ///< not sent: memory still owes an earlier read, or does not take its address
+  owed = 3,  ///< not sent: an earlier read is still outstanding, or its address has not been accepted
 };
 
 /// Outcome of a write (cchip_axi_write).
@@ -80,7 +80,7 @@ enum class WriteCode : std::uint8_t {
   ok = 0,  ///< memory has answered that it holds the data
   bus = 1,  ///< error response from memory
   timeout = 2,  ///< memory did not answer in time; it may hold all data, parts or none
-  owed = 3,  ///< not sent: memory still owes the response to an earlier write
+  owed = 3,  ///< not sent: the response to an earlier write is still outstanding
 };
 
 /// Programme of a pair in the axis controller.
@@ -341,7 +341,7 @@ constexpr Field descriptor_mode = {20, 2};
 
 /// beat of s_vertex, the way into a slot: one vertex of A and one of B, coordinates of w bits [bit]
 constexpr int vertex_w(int w) { return 16 + point_w(w) + point_w(w); }
-/// vertex 0: a pair begins, whatever came before
+/// vertex 0: a pair begins, regardless of what came before
 constexpr Field vertex_first = {0, 1};
 /// the pair is complete
 constexpr Field vertex_last = {1, 1};
@@ -377,7 +377,7 @@ constexpr int answer_w = 38;
 constexpr Field answer_result = {0, 34};
 /// kind of the pair
 constexpr Field answer_kind = {34, 2};
-/// module that gave it, 0: nobody, the pair is left open
+/// module that gave it, 0: none, the pair is left open
 constexpr Field answer_module = {36, 2};
 
 /// beat of s_swap and m_swap: put this module into this slot [bit]
@@ -522,6 +522,112 @@ constexpr Field leaf_result_hits(int c) { return {c + 2, 3}; }
 constexpr Field leaf_result_open(int c) { return {c + 2 + 3, 3}; }
 /// QueryCode: OK, or why its query ends
 constexpr Field leaf_result_code(int c) { return {c + 2 + 3 + 3, 3}; }
+
+/// a node and its children, as cchip_traversal_decision sees them [bit]
+constexpr int tree_node_w = 52;
+/// line of the node in its image
+constexpr Field tree_node_line = {0, 24};
+/// line of its first child
+constexpr Field tree_node_first = {24, 24};
+/// bit i: child i is a node, not a leaf
+constexpr Field tree_node_inner = {48, 4};
+
+/// a node pair of a query, or a leaf pair, in flight [bit]
+constexpr int node_pair_w = 59;
+/// line of A's node in its image; of a leaf pair the kind of A's leaf
+constexpr Field node_pair_line_a = {0, 24};
+/// children of A that count
+constexpr Field node_pair_children_a = {24, 4};
+/// line of B's node in its image; of a leaf pair the kind of B's leaf
+constexpr Field node_pair_line_b = {28, 24};
+/// children of B that count
+constexpr Field node_pair_children_b = {52, 4};
+/// epoch of its query
+constexpr Field node_pair_epoch = {56, 2};
+/// 1: the headers of both images
+constexpr Field node_pair_header = {58, 1};
+
+/// what the lines of a node pair say [bit]
+constexpr int nodes_w = 67;
+/// line of A's first child; of a header that of the root
+constexpr Field nodes_first_a = {0, 24};
+/// kinds of A's children, 2 bits each, 0: a node
+constexpr Field nodes_kinds_a = {24, 8};
+/// line of B's first child; of a header that of the root
+constexpr Field nodes_first_b = {32, 24};
+/// kinds of B's children
+constexpr Field nodes_kinds_b = {56, 8};
+/// QueryCode: OK, or why its query ends
+constexpr Field nodes_code = {64, 3};
+
+/// what the box test says of the child pairs of a node pair; pair 4 i + j is child i of A with child j of B [bit]
+constexpr int box_verdict_w = 57;
+/// child pairs to descend into
+constexpr Field box_verdict_waiting = {0, 16};
+/// leaf pairs to test
+constexpr Field box_verdict_leaves = {16, 16};
+/// of those to descend into, the ones that overlap much
+constexpr Field box_verdict_strong = {32, 16};
+/// the one that overlaps most
+constexpr Field box_verdict_best = {48, 4};
+/// pairs of volumes that were compared
+constexpr Field box_verdict_tests = {52, 5};
+
+/// child pairs of a node pair that wait on a query's stack [bit]
+constexpr int stack_entry_w = 141;
+/// TREE_NODE of A
+constexpr Field stack_entry_a = {0, 52};
+/// TREE_NODE of B
+constexpr Field stack_entry_b = {52, 52};
+/// child pairs that wait
+constexpr Field stack_entry_waiting = {104, 16};
+/// of these, the ones that overlap much
+constexpr Field stack_entry_strong = {120, 16};
+/// the one to descend into first
+constexpr Field stack_entry_first = {136, 4};
+/// others wait, too
+constexpr Field stack_entry_rest = {140, 1};
+
+/// what does not change of a query at work [bit]
+constexpr int query_lines_w = 96;
+/// line of the header of A
+constexpr Field query_lines_base_a = {0, 32};
+/// line of the header of B
+constexpr Field query_lines_base_b = {32, 32};
+/// names the query in its records
+constexpr Field query_lines_tag = {64, 32};
+
+/// a context of cchip_traversal, stack of 2^s entries [bit]
+constexpr int query_state_w(int s) { return 76 + s + 1 + 1 + 1 + 2; }
+/// a pair touches for certain
+constexpr Field query_state_hit = {0, 1};
+/// open pairs, 255: or more
+constexpr Field query_state_opens = {1, 8};
+/// hits and open pairs
+constexpr Field query_state_pairs = {9, 32};
+/// node pairs expanded
+constexpr Field query_state_steps = {41, 32};
+/// node pairs in flight
+constexpr Field query_state_nodes = {73, 3};
+/// entries of the stack
+constexpr Field query_state_entries(int s) { return {76, s + 1}; }
+/// 1: all contacts, 0: the first
+constexpr Field query_state_all(int s) { return {76 + s + 1, 1}; }
+/// the context has a query
+constexpr Field query_state_active(int s) { return {76 + s + 1 + 1, 1}; }
+/// its epoch
+constexpr Field query_state_epoch(int s) { return {76 + s + 1 + 1 + 1, 2}; }
+
+/// how a query of cchip_traversal has ended [bit]
+constexpr int query_end_w = 69;
+/// hits and open pairs
+constexpr Field query_end_pairs = {0, 32};
+/// node pairs expanded
+constexpr Field query_end_steps = {32, 32};
+/// QueryAnswer
+constexpr Field query_end_answer = {64, 2};
+/// QueryCode
+constexpr Field query_end_code = {66, 3};
 
 /// record of a pair of faces in contact, or for the host to decide [bit]
 constexpr int pair_record_w = 128;

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+`include "cchip_assert.vh"
+// cchip_line_pairs: lines that come in any order, and the pairs both of whose lines are here. Lines
+// of A come through port 0, those of B through port 1, each once; a pair has a place.
+//   order        the port of the second line puts the pair in its queue; if both lines come on one
+//                clock, port 0 does. Node pairs and leaf pairs have queues of their own
+//   latency      3 clocks from the second line to m_pair_valid or m_leaf_valid; read_lines and
+//                read_codes 2 clocks after read_place
+//   throughput   a line per port and clock
+//   credit       a place is used again only after its pair has left its queue
+//   cuts         every path: each output is a flip-flop
+//   reset        no line of before may come; the queues are empty
+module cchip_line_pairs #(
+    // node pairs in flight: places 0..PAIRS-1
+    parameter integer PAIRS   = 48,
+    // leaf pairs in flight: the places behind them
+    parameter integer LEAVES  = 16,
+    // width of a place, bit: PAIRS + LEAVES is 2^PLACE_W
+    parameter integer PLACE_W = 6
+) (
+    input  wire                            clk,
+    input  wire                            rst,
+    // lines, {B's, A's}
+    input  wire [                     1:0] s_valid,
+    input  wire [           2*PLACE_W-1:0] s_place,
+    input  wire [2*`CCHIP_READ_CODE_W-1:0] s_code,
+    input  wire [                  1023:0] s_data,
+    // pairs that are complete, in the queue of each port
+    output wire [                     1:0] m_pair_valid,
+    input  wire [                     1:0] m_pair_take,
+    output wire [           2*PLACE_W-1:0] m_pair_place,
+    output wire [                     1:0] m_leaf_valid,
+    input  wire [                     1:0] m_leaf_take,
+    output wire [           2*PLACE_W-1:0] m_leaf_place,
+    // the lines of a pair, {B's, A's}
+    input  wire [             PLACE_W-1:0] read_place,
+    output wire [                  1023:0] read_lines,
+    output wire [2*`CCHIP_READ_CODE_W-1:0] read_codes
+);
+
+  localparam integer PLACES = 1 << PLACE_W;
+  localparam integer CODE_W = `CCHIP_READ_CODE_W;
+  localparam [31:0] FIRST_LEAF = PAIRS;
+  localparam [PLACES-1:0] ONE_PLACE = 1;
+
+  // Places one of whose lines has come. Each line comes once, so the next one is the second. A line
+  // inverts the bit of its place: no bit depends on what the others are.
+  reg [PLACES-1:0] came_q;
+  wire [2*PLACES-1:0] comes;  // a line, by place
+  wire [PLACE_W-1:0] place0 = s_place[0+:PLACE_W];
+  wire [PLACE_W-1:0] place1 = s_place[PLACE_W+:PLACE_W];
+  wire both = &s_valid && place0 == place1;
+  wire [1:0] no_room;  // for a pair in its queue: never
+  genvar p;
+  generate
+    for (p = 0; p < 2; p = p + 1) begin : gen_port
+      wire [PLACE_W-1:0] place = p == 0 ? place0 : place1;
+      assign comes[PLACES*p+:PLACES] = s_valid[p] ? ONE_PLACE << place : {PLACES{1'b0}};
+      reg whole_q;  // this line is the second
+      reg [PLACE_W-1:0] whole_place_q;
+      wire whole_leaf = {{32 - PLACE_W{1'b0}}, whole_place_q} >= FIRST_LEAF;
+      wire pair_ready, leaf_ready;
+      cchip_fifo #(
+          .WIDTH     (PLACE_W),
+          .DEPTH     (PAIRS),
+          .ROOM_KNOWN(1)
+      ) u_pairs (
+          .clk    (clk),
+          .rst    (rst),
+          .s_valid(whole_q & ~whole_leaf),
+          .s_ready(pair_ready),
+          .s_data (whole_place_q),
+          .m_valid(m_pair_valid[p]),
+          .m_ready(m_pair_take[p]),
+          .m_data (m_pair_place[PLACE_W*p+:PLACE_W])
+      );
+      cchip_fifo #(
+          .WIDTH     (PLACE_W),
+          .DEPTH     (LEAVES),
+          .ROOM_KNOWN(1)
+      ) u_leaves (
+          .clk    (clk),
+          .rst    (rst),
+          .s_valid(whole_q & whole_leaf),
+          .s_ready(leaf_ready),
+          .s_data (whole_place_q),
+          .m_valid(m_leaf_valid[p]),
+          .m_ready(m_leaf_take[p]),
+          .m_data (m_leaf_place[PLACE_W*p+:PLACE_W])
+      );
+      cchip_block_ram #(
+          .WIDTH (512),
+          .ADDR_W(PLACE_W)
+      ) u_lines (
+          .clk       (clk),
+          .write     (s_valid[p]),
+          .write_addr(place),
+          .write_data(s_data[512*p+:512]),
+          .read_addr (read_place),
+          .read_data (read_lines[512*p+:512])
+      );
+      (* ram_style = "distributed" *)
+      reg [CODE_W-1:0] codes[0:PLACES-1];
+      reg [CODE_W-1:0] code_q;
+      always @(posedge clk) begin
+        if (s_valid[p]) codes[place] <= s_code[CODE_W*p+:CODE_W];
+        code_q        <= codes[read_place];
+        whole_place_q <= place;
+        whole_q       <= ~rst & s_valid[p] & (came_q[place] | (both & (p == 0)));
+      end
+      assign read_codes[CODE_W*p+:CODE_W] = code_q;
+      assign no_room[p] = whole_q & ~(whole_leaf ? leaf_ready : pair_ready);
+    end
+  endgenerate
+  always @(posedge clk)
+    if (rst) came_q <= {PLACES{1'b0}};
+    else came_q <= came_q ^ comes[PLACES+:PLACES] ^ comes[0+:PLACES];
+
+  wire unused = &{1'b0, no_room};
+  always @(posedge clk)
+    if (!rst) begin
+      `CCHIP_ASSERT(a_whole, no_room == 2'd0)
+    end
+
+endmodule
+`default_nettype wire

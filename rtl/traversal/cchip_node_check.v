@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+`default_nettype none
+`include "cchip_defs.vh"
+// cchip_node_check: judges the two lines of a node pair, or of two headers, and keeps what they say
+// of the children until the verdict of the box test comes.
+//   node         its extent must be at most 18; its children must lie behind it and inside the
+//                image (docs/hardware/image.md)
+//   header       magic and version must be right, and the root inside the image; the number of
+//                lines of both images is kept for the nodes of that context
+//   code         the first that holds: MEMORY of A, BAD_DESCRIPTOR, the end of A, the end of B
+//   latency      4 clocks from s_valid until lookup finds it; 1 clock from lookup to lookup_nodes
+//   throughput   a pair per clock
+//   cuts         every path: each output is a flip-flop
+//   reset        nothing inside; what is kept is unknown until it has been written
+module cchip_node_check #(
+    // queries at once: 2, 4, 8 or 16
+    parameter integer QUERIES = 16,
+    // width of the number of a pair, bit
+    parameter integer PLACE_W = 6
+) (
+    input  wire                       clk,
+    input  wire                       rst,
+    // a pair of lines, {B's, A's} each
+    input  wire                       s_valid,
+    input  wire [        PLACE_W-1:0] s_place,
+    input  wire [$clog2(QUERIES)-1:0] s_context,
+    input  wire                       s_header,      // two headers, not two nodes
+    input  wire [               47:0] s_numbers,     // numbers of the lines in their images
+    input  wire [                1:0] s_failed,      // a line could not be read
+    input  wire [             1023:0] s_lines,
+    // {code, {kinds, first line} of the children of B's node, of A's}
+    input  wire                       lookup,
+    input  wire [        PLACE_W-1:0] lookup_place,
+    output wire [               66:0] lookup_nodes
+);
+
+  // how a query ended (docs/hardware/image.md)
+  localparam [2:0] END_OK = 3'd0, END_CORRUPT = 3'd4, END_OUTSIDE = 3'd5;
+  localparam [2:0] END_BAD_DESCRIPTOR = 3'd6, END_MEMORY = 3'd7;
+  localparam integer CONTEXT_W = $clog2(QUERIES);
+  localparam integer END_W = `CCHIP_END_W;
+  localparam integer NODES_W = 67;
+  localparam [31:0] MAGIC = 32'h4D494343;
+  localparam [15:0] VERSION = 16'd1;
+  localparam [4:0] EXTENT_MAX = 5'd18;
+
+  // ---- the fields on the first clock, compared on the second, judged on the third
+  (* ram_style = "distributed" *)
+  reg [49:0] sizes[0:QUERIES-1];  // lines of each image, {B's, A's}, at most 2^24
+  reg [49:0] sizes_q1;
+  reg valid_q1, valid_q2, valid_q3;
+  reg header_q1, header_q2;
+  reg [PLACE_W-1:0] place_q1, place_q2, place_q3;
+  reg [CONTEXT_W-1:0] context_q1, context_q2;
+  wire [2*END_W-1:0] end3;  // of a node
+  wire [1:0] no_header3;
+  wire [49:0] size2;
+  wire [63:0] node3;
+  genvar p;
+  generate
+    for (p = 0; p < 2; p = p + 1) begin : gen_line
+      wire [511:0] line = s_lines[512*p+:512];
+      wire [4:0] extent = line[54+:5];
+      wire [23:0] first = line[59+:24];  // line of the first child
+      wire [7:0] kinds = line[83+:8];  // of the children
+      wire [1:0] others = line[91+:2];  // children behind the first
+      // of a header
+      wire [31:0] magic = line[0+:32];
+      wire [15:0] version = line[64+:16];
+      wire [31:0] size = line[96+:32];
+      wire [23:0] root = line[128+:24];
+
+      reg [23:0] first_q1, root_q1, at_q1, first_q2, first_q3;
+      reg [24:0] last_q1;  // line of the last child
+      reg [7:0] kinds_q1, kinds_q2, kinds_q3;
+      reg [24:0] size_q1, size_q2;
+      reg steep_q1, steep_q2, failed_q1, failed_q2, header_here_q1, header_here_q2, outside_q2;
+      reg [END_W-1:0] end_q3;
+      reg no_header_q3;
+      wire [24:0] limit = sizes_q1[25*p+:25];
+      always @(posedge clk) begin
+        first_q1       <= first;
+        root_q1        <= root;
+        last_q1        <= {1'b0, first} + {23'd0, others};
+        kinds_q1       <= kinds;
+        at_q1          <= s_numbers[24*p+:24];
+        steep_q1       <= extent > EXTENT_MAX;
+        size_q1        <= |size[31:24] ? 25'h1000000 : {1'b0, size[23:0]};
+        failed_q1      <= s_failed[p];
+        header_here_q1 <= magic == MAGIC && version == VERSION;
+        first_q2       <= header_q1 ? root_q1 : first_q1;
+        kinds_q2       <= kinds_q1;
+        size_q2        <= size_q1;
+        steep_q2       <= steep_q1;
+        failed_q2      <= failed_q1;
+        header_here_q2 <= header_here_q1;
+        outside_q2     <= header_q1 ? {1'b0, root_q1} >= size_q1 :
+            first_q1 <= at_q1 || last_q1 >= limit;
+        first_q3       <= first_q2;
+        kinds_q3       <= kinds_q2;
+        no_header_q3   <= header_q2 & ~failed_q2 & ~header_here_q2;
+        end_q3         <= failed_q2 ? END_MEMORY : steep_q2 & ~header_q2 ? END_CORRUPT :
+            outside_q2 ? END_OUTSIDE : END_OK;
+      end
+      wire unused = &{1'b0, line[511:152], line[95:93], line[53:32]};
+      assign size2[25*p+:25] = size_q2;
+      assign node3[32*p+:32] = {kinds_q3, first_q3};
+      assign end3[END_W*p+:END_W] = end_q3;
+      assign no_header3[p] = no_header_q3;
+    end
+  endgenerate
+  wire [END_W-1:0] end_a3 = end3[0+:END_W];
+  wire [END_W-1:0] end_b3 = end3[END_W+:END_W];
+  wire [END_W-1:0] code3 = end_a3 == END_MEMORY ? END_MEMORY : |no_header3 ? END_BAD_DESCRIPTOR :
+      end_a3 != END_OK ? end_a3 : end_b3;
+
+  (* ram_style = "distributed" *)
+  reg [NODES_W-1:0] nodes[0:(1<<PLACE_W)-1];
+  reg [NODES_W-1:0] nodes_q;
+  always @(posedge clk) begin
+    sizes_q1   <= sizes[s_context];
+    header_q1  <= s_header;
+    header_q2  <= header_q1;
+    place_q1   <= s_place;
+    place_q2   <= place_q1;
+    place_q3   <= place_q2;
+    context_q1 <= s_context;
+    context_q2 <= context_q1;
+    if (valid_q2 & header_q2) sizes[context_q2] <= size2;
+    if (valid_q3) nodes[place_q3] <= {code3, node3};
+    if (lookup) nodes_q <= nodes[lookup_place];
+    if (rst) begin
+      valid_q1 <= 1'b0;
+      valid_q2 <= 1'b0;
+      valid_q3 <= 1'b0;
+    end else begin
+      valid_q1 <= s_valid;
+      valid_q2 <= valid_q1;
+      valid_q3 <= valid_q2;
+    end
+  end
+  assign lookup_nodes = nodes_q;
+
+endmodule
+`default_nettype wire
