@@ -3,21 +3,19 @@
 """Pictures of windows, without a screen: GTKWave with marks, a page of the site in a browser.
 
 usage: scripts/screenshot.py gtkwave [FOLDER]         docs/pictures/gtkwave.png from build/waves (after make sim)
-       scripts/screenshot.py page FILE.png [README.md] a Markdown file as the site would show it, after make docs;
-                                                      [--width PIXELS] of the window
+       scripts/screenshot.py readme FILE.png          README.md as the site would show it; needs make docs, once
 
-Needs xvfb, xauth, gtkwave and imagemagick (scripts/bootstrap --dev); the page needs Debian's chromium, which bootstrap does not install.
+The first needs xvfb, xauth, gtkwave and imagemagick (scripts/bootstrap --dev); the second imagemagick and Debian's chromium, which
+bootstrap does not install: apt-get install chromium.
 Exit codes: 0 done, 1 something is missing or failed, 2 wrong command line.
 """
 import argparse
-import html
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
-import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PICTURE = ROOT / "docs" / "pictures" / "gtkwave.png"
@@ -126,13 +124,40 @@ def left_of_waves(picture):
     return next(x for x in range(len(shade) - 50) if max(shade[x + 2:x + 50]) < 90)
 
 
+def readme(picture):
+    need("chromium", "chromium")
+    need("convert", "imagemagick")
+    mkdocs = ROOT / "build" / "docs-venv" / "bin" / "mkdocs"
+    if not mkdocs.exists():
+        raise SystemExit("screenshot.py: no MkDocs yet, run: make docs")
+    with tempfile.TemporaryDirectory() as scratch:
+        root = pathlib.Path(scratch)
+        shutil.copytree(ROOT / "docs" / "pictures", root / "docs" / "docs" / "pictures")
+        shutil.copy(ROOT / "README.md", root / "docs" / "index.md")
+        # The links to other pages lead nowhere here, so this build is not strict; make docs checks links.
+        (root / "mkdocs.yml").write_text("site_name: collisionchip\ntheme: {name: readthedocs, highlightjs: false}\n"
+                                         "use_directory_urls: false\nplugins: []\n")
+        subprocess.run([mkdocs, "build", "--quiet", "--config-file", root / "mkdocs.yml"], check=True, stderr=subprocess.DEVNULL)
+        shot = root / "page.png"
+        subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", f"--user-data-dir={root / 'profile'}",
+                        "--window-size=1300,3600", f"--screenshot={shot}", f"file://{root / 'site' / 'index.html'}"], check=True, timeout=120,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        subprocess.run(["convert", shot, "-trim", "+repage", picture], check=True)
+    print(f"wrote {picture}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     commands = parser.add_subparsers(dest="command", required=True)
     of_wave = commands.add_parser("gtkwave")
     of_wave.add_argument("folder", nargs="?", type=pathlib.Path, default=ROOT / "build" / "waves")
+    of_page = commands.add_parser("readme")
+    of_page.add_argument("picture", type=pathlib.Path)
     options = parser.parse_args()
-    gtkwave(options.folder.resolve())
+    if options.command == "gtkwave":
+        gtkwave(options.folder.resolve())
+    else:
+        readme(options.picture)
 
 
 if __name__ == "__main__":
