@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the Verilog header, the C++ header and the documentation page of all shared constants.
+"""Writes the Verilog header, the C++ headers and the documentation page of all shared constants.
 
 usage: gen_definitions.py [--check]
 
-Source: scripts/definitions.json. Without an option the three files are written; with --check nothing
+Source: scripts/definitions.json. Without an option the four files are written; with --check nothing
 is written and the exit code is 1 if one of them is stale (the line printed says which)."""
 import json
 import pathlib
@@ -142,6 +142,18 @@ def cpp(data, names):
     return "\n".join(lines)
 
 
+def code_names(data):
+    lines = ["// SPDX-License-Identifier: Apache-2.0", f"// {NOTE}", "/// \\file", "/// Codes of the hardware as text, by their names in definitions.hpp.",
+             "#ifndef CCHIP_WIRE_CODE_NAMES_HPP", "#define CCHIP_WIRE_CODE_NAMES_HPP", "", "#include <cchip/wire/definitions.hpp>", "", "namespace cchip {", "",
+             "// nullptr: there is no such code."]
+    for e in data["enums"]:
+        lines += ["", f"constexpr const char* name_of({e['name']} code) {{", "  switch (code) {"]
+        for v in e["values"]:
+            lines += [f"    case {e['name']}::{v['name'].lower()}:", f'      return "{v["name"].lower()}";']
+        lines += ["  }", "  return nullptr;", "}"]
+    return "\n".join([*lines, "", "}  // namespace cchip", "", "#endif", ""])
+
+
 def page(data, names):
     lines = ["<!-- SPDX-License-Identifier: Apache-2.0 -->", f"<!-- {NOTE} -->", "# Shared definitions", "",
              "Verilog: `` `CCHIP_<NAME> `` of `rtl/include/cchip_defs.vh`. C++: `cchip::defs::<name>` of `<cchip/wire/definitions.hpp>`.", "",
@@ -181,6 +193,7 @@ def main():
     return generated.finish({
         "rtl/include/cchip_defs.vh": verilog(data, names),
         "cpp_ref/include/cchip/wire/definitions.hpp": cpp(data, names),
+        "cpp_ref/include/cchip/wire/code_names.hpp": code_names(data),
         "docs/hardware/definitions.md": page(data, names),
     }, "gen_definitions.py")
 

@@ -7,10 +7,18 @@
 #include <cchip/reference/eigen_sat.hpp>
 #include <cchip/rtl/rtl_engine.hpp>
 #include <cchip/stimulus/usage_error.hpp>
+#include <cchip/waves/wave_layout.hpp>
 #include <filesystem>
 
 namespace cchip::app {
 namespace {
+
+/// A waveform and the files of its layout.
+std::vector<std::string> files_of_wave(const std::string& fst_path) {
+  std::vector<std::string> files = gtkw_files(fst_path, ModuleId::tri_tri);  // all modules have the same
+  files.insert(files.begin(), fst_path);
+  return files;
+}
 
 void check(const EngineOptions& options) {
   if (options.trace_path.empty()) return;
@@ -21,7 +29,7 @@ void check(const EngineOptions& options) {
     throw UsageError(
         fmt::format("--trace {}: the waveform is an FST; give a name that ends with .fst", options.trace_path));
   }
-  for (const sim::NamedPath& file : {trace_files(options)[0], trace_files(options)[1]}) sim::check_writable(file.path);
+  for (const std::string& file : files_of_wave(options.trace_path)) sim::check_writable(file);
 }
 
 std::unique_ptr<PairEngine> make_rtl(const EngineOptions& options) {
@@ -57,8 +65,7 @@ std::vector<sim::NamedPath> trace_files(const EngineOptions& options) {
   for (const char* const module : {"", "_tri_tri", "_tri_quad", "_quad_quad"}) {
     std::filesystem::path file = path;
     file.replace_filename(path.stem().string() + module + path.extension().string());
-    files.push_back({"--trace", file.string()});
-    files.push_back({"--trace", file.replace_extension(".gtkw").string()});
+    for (const std::string& name : files_of_wave(file.string())) files.push_back({"--trace", name});
   }
   return files;
 }

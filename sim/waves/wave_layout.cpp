@@ -3,11 +3,15 @@
 #include <array>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/waves/wave_layout.hpp>
+#include <cchip/wire/axis.hpp>
+#include <cchip/wire/code_names.hpp>
 #include <cchip/wire/pair.hpp>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <iomanip>
 #include <ostream>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -27,6 +31,34 @@ constexpr int queue_count_w = 8;  ///< of QUEUE_DEPTH = 128
 /// Flags of a trace in a GTKWave save file (right-justified).
 enum class Radix : unsigned { hexadecimal = 0x22, decimal = 0x24, binary = 0x28, octal = 0x30, signed_decimal = 0x420 };
 
+constexpr unsigned translated = 0x2000;  ///< flag of a trace: texts of a file in place of its values
+
+/// The texts of a code's values, which GTKWave shows in place of the numbers.
+struct Names {
+  const char* ending;                   ///< of the file that holds them
+  int width;                            ///< of the code, bit
+  Radix radix;                          ///< octal: with leading zeros
+  std::string (*text)(unsigned value);  ///< empty: this value has none
+};
+
+template <class Code>
+std::string text_of(unsigned value) {
+  const char* name = name_of(static_cast<Code>(value));
+  return name == nullptr ? "" : name;
+}
+
+const Names axis_names = {"axis", defs::axis_code_w, Radix::octal, [](unsigned value) {
+                            return to_symbol(axis_code_from_bits(static_cast<std::uint16_t>(value)));
+                          }};
+const Names mode_names = {"mode", defs::mode_w, Radix::decimal, text_of<PairMode>};
+const Names programme_names = {"programme", defs::prog_w, Radix::decimal, text_of<Programme>};
+const Names kind_names = {"kind", defs::kind_w, Radix::decimal, text_of<ModuleId>};
+const Names module_names = {"module", defs::rm_id_w, Radix::decimal, text_of<ModuleId>};
+const Names phase_names = {"phase", defs::phase_w, Radix::decimal, text_of<SwapPhase>};
+const Names swap_names = {"swap", defs::swap_w, Radix::decimal, text_of<SwapCode>};
+const Names end_names = {"end", defs::end_w, Radix::decimal, text_of<QueryCode>};
+const Names answer_names = {"answer", defs::query_answer_w, Radix::decimal, text_of<QueryAnswer>};
+
 /// One row of a layout: what GTKWave shows, in the order of the window.
 struct Row {
   enum class What { open, open_folded, close, close_folded, signal, field } what;
@@ -36,12 +68,19 @@ struct Row {
   Radix radix = Radix::binary;
   int lsb = 0;  ///< of a field
   int field_width = 0;
+  const Names* names = nullptr;  ///< of its values
 };
 using Rows = std::vector<Row>;
 
 Row bit(std::string label, std::string name) { return {Row::What::signal, std::move(label), std::move(name)}; }
 Row vector(std::string label, std::string name, int width, Radix radix) {
   return {Row::What::signal, std::move(label), std::move(name), width, radix};
+}
+/// A code that is shown by name.
+Row vector(std::string label, std::string name, const Names& names) {
+  Row row = vector(std::move(label), std::move(name), names.width, names.radix);
+  row.names = &names;
+  return row;
 }
 /// Bits [lsb +: field_width] of a vector as a separate signal.
 Row field(std::string label, const std::string& name, int width, int lsb, int field_width, Radix radix) {
@@ -50,6 +89,13 @@ Row field(std::string label, const std::string& name, int width, int lsb, int fi
 /// A field of a record.
 Row field(std::string label, const std::string& name, int width, defs::Field f, Radix radix) {
   return field(std::move(label), name, width, f.lsb, f.width, radix);
+}
+
+/// A field that is a code, shown by name.
+Row field(std::string label, const std::string& name, int width, defs::Field f, const Names& names) {
+  Row row = field(std::move(label), name, width, f, names.radix);
+  row.names = &names;
+  return row;
 }
 
 Rows operator+(Rows rows, const Rows& more) {
@@ -88,16 +134,14 @@ Rows points(const std::string& label, const std::string& name, int shown, int po
   return rows;
 }
 
-/// {class, k, l} of an axis code: its three octal digits.
-const char* const axis_label = "axis (class k l)";
 /// The programme state that travels with a beat (header of cchip_axis_programme), the context above it.
 Rows programme_state(const std::string& name) {
   const auto part = [&](const char* label, defs::Field of, Radix radix) {
     return field(label, name, user_w, of.lsb, of.width, radix);
   };
   return {part("context", {defs::state_w, context_w}, Radix::decimal),
-          part("programme", defs::state_programme, Radix::decimal),
-          part(axis_label, defs::state_code, Radix::octal),
+          field("programme", name, user_w, defs::state_programme, programme_names),
+          field("axis", name, user_w, defs::state_code, axis_names),
           part("info", defs::state_info, Radix::binary),
           part("beats before", defs::state_beats, Radix::decimal),
           part("open", defs::state_open, Radix::binary),
@@ -122,7 +166,7 @@ Rows primtest_layout(ModuleId id) {
   const int after_select = defs::select_latency();
   return group("stream s_pair", Rows{bit("valid", "s_pair_valid"), bit("ready", "s_pair_ready"),
                                      vector("tag", "s_pair_tag", defs::tag_w, Radix::hexadecimal),
-                                     vector("mode", "s_pair_mode", defs::mode_w, Radix::decimal),
+                                     vector("mode", "s_pair_mode", mode_names),
                                      vector("err", "s_pair_err", defs::err_w, Radix::decimal)} +
                                     folded("coordinates", points("V", "s_pair_a", verts_a, defs::vertices) +
                                                               points("W", "s_pair_b", verts_b, defs::vertices)) +
@@ -131,7 +175,7 @@ Rows primtest_layout(ModuleId id) {
                Rows{bit("pair waits", controller + "pair_waits"), bit("pair starts", controller + "start_valid"),
                     bit("pair continues", controller + "ready_valid"), bit("beat valid", top + "beat_valid")} +
                    folded("programme state of the beat", programme_state(top + "beat_user")) +
-                   Rows{vector(axis_label, top + "beat_code", defs::axis_code_w, Radix::octal),
+                   Rows{vector("axis", top + "beat_code", axis_names),
                         bit("allow above, a clock later", top + "beat_allow_above"),
                         bit("allow below, a clock later", top + "beat_allow_below")}) +
          group("macro stage 1 select",
@@ -157,7 +201,7 @@ Rows primtest_layout(ModuleId id) {
          group("macro stage 4 compare",
                Rows{bit("valid", top + "verdict_valid")} +
                    folded("programme state of the verdict", programme_state(top + "verdict_user")) +
-                   Rows{field(axis_label, top + "verdict_user", user_w, 3, defs::axis_code_w, Radix::octal),
+                   Rows{field("axis", top + "verdict_user", user_w, defs::state_code, axis_names),
                         bit("separated", top + "verdict_separated"), bit("certain gap", top + "verdict_certain_gap"),
                         vector("points < 0", top + "verdict_negative", projected, Radix::binary),
                         vector("points = 0", top + "verdict_zero", projected, Radix::binary),
@@ -168,7 +212,7 @@ Rows primtest_layout(ModuleId id) {
                {bit("valid", "m_result_valid"), bit("ready", "m_result_ready"),
                 vector("tag", "m_result_tag", defs::tag_w, Radix::hexadecimal), bit("hit", "m_result_hit"),
                 bit("grid", "m_result_grid"), bit("definite", "m_result_definite"),
-                vector(axis_label, "m_result_axis", defs::axis_code_w, Radix::octal),
+                vector("axis", "m_result_axis", axis_names),
                 vector("beats", "m_result_beats", defs::beats_w, Radix::decimal), bit("idle", "idle")});
 }
 
@@ -176,7 +220,7 @@ Rows slot_layout(int number) {
   const std::string slot = std::to_string(number);
   const std::string scope = "u_slots.gen_slots[" + slot + "].u_slot.";
   const std::string ledger = "u_slots.u_dispatcher.gen_ledgers[" + slot + "].u_ledger.";
-  Rows rows = {vector("module", scope + "rm_id", defs::rm_id_w, Radix::decimal),
+  Rows rows = {vector("module", scope + "rm_id", module_names),
                vector("pairs inside", ledger + "outstanding", 16, Radix::decimal), bit("room", ledger + "room"),
                bit("stop", ledger + "stop"), bit("quiet", ledger + "quiet")};
   for (const char* name : {"decouple", "decoupled", "hold_reset", "roc_start", "roc_busy"}) {
@@ -184,7 +228,7 @@ Rows slot_layout(int number) {
   }
   return group("slot " + slot,
                rows + Rows{bit("pairs answered", ledger + "decoupled"),
-                           vector("region: module", scope + "r_rm_id", defs::rm_id_w, Radix::hexadecimal),
+                           vector("region: module", scope + "r_rm_id", module_names),
                            bit("region: vertex", scope + "r_vertex_valid"),
                            bit("region: result", scope + "r_result_valid"), bit("answer", ledger + "m_valid")});
 }
@@ -199,31 +243,62 @@ Rows subsystem_layout() {
   }
   return group("pairs and answers",
                Rows{bit("pair valid", "s_pair_valid"), bit("pair ready", "s_pair_ready"),
-                    vector("pair kind", "s_pair_kind", 2, Radix::decimal),
+                    vector("pair kind", "s_pair_kind", kind_names),
                     vector("pair tag", "s_pair_tag", defs::tag_w, Radix::hexadecimal)} +
                    waiting +
                    Rows{bit("answer valid", "m_result_valid"), bit("answer ready", "m_result_ready"),
-                        vector("answer kind", "m_result_kind", 2, Radix::decimal),
+                        vector("answer kind", "m_result_kind", kind_names),
                         vector("answer tag", "m_result_tag", defs::tag_w, Radix::hexadecimal)}) +
          group("scheduler",
                {bit("request", swaps + "swap_valid"),
                 field("slot", swaps + "swap_data", defs::swap_request_w, defs::swap_request_slot, Radix::decimal),
-                field("module", swaps + "swap_data", defs::swap_request_w, defs::swap_request_module, Radix::decimal),
+                field("module", swaps + "swap_data", defs::swap_request_w, defs::swap_request_module, module_names),
                 bit("report", swaps + "report_valid"),
-                field("code", swaps + "report_data", defs::swap_report_w, defs::swap_report_code, Radix::decimal),
+                field("code", swaps + "report_data", defs::swap_report_w, defs::swap_report_code, swap_names),
                 bit("interrupt", "irq")}) +
          group("configuration controller",
-               {vector("phase", swaps + "phase_now", defs::phase_w, Radix::decimal),
-                bit("memory: address", "m_axi_arvalid"), bit("memory: data", "m_axi_rvalid"),
-                bit("memory: ready", "m_axi_rready"), bit("port: write", "cfg_valid"),
-                vector("port: byte", "cfg_data", 8, Radix::hexadecimal)}) +
+               {vector("phase", swaps + "phase_now", phase_names), bit("memory: address", "m_axi_arvalid"),
+                bit("memory: data", "m_axi_rvalid"), bit("memory: ready", "m_axi_rready"),
+                bit("port: write", "cfg_valid"), vector("port: byte", "cfg_data", 8, Radix::hexadecimal)}) +
          slot_layout(0) + slot_layout(1);
+}
+
+std::string layout_path(const std::string& fst_path) {
+  return std::filesystem::path(fst_path).replace_extension(".gtkw");
+}
+std::string names_path(const std::string& fst_path, const Names& names) {
+  return layout_path(fst_path) + '.' + names.ending;
+}
+std::string absolute(const std::string& path) { return std::filesystem::absolute(path).lexically_normal().string(); }
+
+/// The codes that these rows show by name.
+std::set<const Names*> names_in(const Rows& rows) {
+  std::set<const Names*> found;
+  for (const Row& row : rows) {
+    if (row.names != nullptr) found.insert(row.names);
+  }
+  return found;
+}
+
+/// Writes the file of a code's names: a line for each value that has one, as GTKWave prints the value.
+void write_names(const std::string& fst_path, const Names& names) {
+  sim::OutputFile out(names_path(fst_path, names));
+  for (unsigned value = 0; value < 1U << names.width; ++value) {
+    const std::string text = names.text(value);
+    if (text.empty()) continue;
+    if (names.radix == Radix::octal) {
+      out.stream() << std::oct << std::setfill('0') << std::setw((names.width + 2) / 3);
+    }
+    out.stream() << value << ' ' << text << '\n';
+  }
+  out.commit();
 }
 
 /// Writes rows in GTKWave's format.
 class SaveFile {
  public:
-  SaveFile(std::ostream& out, const std::string& module) : out_(out), prefix_("TOP." + module + ".") {
+  SaveFile(std::ostream& out, const std::string& module, std::string fst_path)
+      : out_(out), prefix_("TOP." + module + "."), fst_path_(std::move(fst_path)) {
     out_ << std::hex;
   }
   void line(const std::string& text) { out_ << text << '\n'; }
@@ -243,15 +318,22 @@ class SaveFile {
       case Row::What::close_folded:
         return line("@1401200\n-" + row.label);
       case Row::What::signal:
-        out_ << '@' << static_cast<unsigned>(row.radix) << "\n+{" << row.label << "} " << full_name(row) << '\n';
+        flags(row);
+        out_ << "+{" << row.label << "} " << full_name(row) << '\n';
         return;
       case Row::What::field:
-        out_ << '@' << static_cast<unsigned>(row.radix) << "\n#{" << row.label << '}';
+        flags(row);
+        out_ << "#{" << row.label << '}';
         for (int i = row.lsb + row.field_width - 1; i >= row.lsb; --i) {  // GTKWave counts bits from the left
           out_ << " (" << std::dec << row.width - 1 - i << std::hex << ')' << full_name(row);
         }
         out_ << '\n';
     }
+  }
+  void flags(const Row& row) {
+    const unsigned names = row.names == nullptr ? 0 : translated;
+    out_ << '@' << (static_cast<unsigned>(row.radix) | names) << '\n';
+    if (row.names != nullptr) out_ << "^1 " << absolute(names_path(fst_path_, *row.names)) << '\n';
   }
   std::string full_name(const Row& row) const {
     return prefix_ + row.name + (row.width == 1 ? "" : "[" + std::to_string(row.width - 1) + ":0]");
@@ -259,6 +341,7 @@ class SaveFile {
 
   std::ostream& out_;
   std::string prefix_;
+  std::string fst_path_;
 };
 
 // ---- files
@@ -271,10 +354,6 @@ struct View {
   double zoom;
 };
 
-std::string layout_path(const std::string& fst_path) {
-  return std::filesystem::path(fst_path).replace_extension(".gtkw");
-}
-
 /// With six decimals and a point, whatever the locale.
 std::string decimal(double value) {
   std::array<char, 400> text{};
@@ -284,10 +363,10 @@ std::string decimal(double value) {
 
 void begin(SaveFile& file, const std::string& title, const std::string& fst_path, const View& view) {
   file.line("[*] " + title);
-  file.line("[dumpfile] \"" + std::filesystem::absolute(fst_path).lexically_normal().string() + "\"");
-  // GTKWave finds the waveform beside the layout, too, if both were moved: it compares where it reads the layout with
-  // this.
-  file.line("[savefile] \"" + std::filesystem::absolute(layout_path(fst_path)).lexically_normal().string() + "\"");
+  file.line("[dumpfile] \"" + absolute(fst_path) + "\"");
+  // GTKWave finds the waveform and the files of names beside the layout, too, if all were moved: it compares where it
+  // reads the layout with this.
+  file.line("[savefile] \"" + absolute(layout_path(fst_path)) + "\"");
   file.line("[timestart] " + std::to_string(view.start));
   file.line("[size] 1920 1080");
   file.line("[pos] -1 -1");
@@ -300,15 +379,39 @@ void begin(SaveFile& file, const std::string& title, const std::string& fst_path
   file.write({bit("clk", "clk"), bit("rst", "rst")});
 }
 
+/// What the window shows of a module's signals.
+struct Layout {
+  std::string module;
+  std::string title;
+  View view;
+  Rows rows;
+};
+
+void write(const std::string& fst_path, const Layout& layout) {
+  sim::OutputFile out(layout_path(fst_path));
+  SaveFile file(out.stream(), layout.module, fst_path);
+  begin(file, layout.title, fst_path, layout.view);
+  file.write(layout.rows);
+  for (const Names* names : names_in(layout.rows)) write_names(fst_path, *names);
+  out.commit();
+}
+
+/// From one time to another, which fill the window.
+View view_of(std::uint64_t from, std::uint64_t to) {
+  return {from, -std::log2(static_cast<double>(to - from) / wave_frames)};
+}
+
 }  // namespace
 
 void write_gtkw(const std::string& fst_path, ModuleId id) {
   const std::string module = std::string("cchip_primtest_") + to_name(id);
-  sim::OutputFile out(layout_path(fst_path));
-  SaveFile file(out.stream(), module);
-  begin(file, "Signals of " + module + " along the way of a pair", fst_path, {0, -5.9});
-  file.write(primtest_layout(id));
-  out.commit();
+  write(fst_path, {module, "Signals of " + module + " along the way of a pair", {0, -4.8}, primtest_layout(id)});
+}
+
+std::vector<std::string> gtkw_files(const std::string& fst_path, ModuleId id) {
+  std::vector<std::string> files{layout_path(fst_path)};
+  for (const Names* names : names_in(primtest_layout(id))) files.push_back(names_path(fst_path, *names));
+  return files;
 }
 
 namespace {
@@ -354,21 +457,16 @@ Rows broad_phase_layout() {
                             vector("kinds B, A", "m_leaf_kinds", 4, Radix::binary), bit("result", "s_result_valid"),
                             vector("of context", "s_result_context", 4, Radix::decimal),
                             vector("hits", "s_result_hits", 3, Radix::decimal)}) +
-         group("9 answer",
-               {bit("valid", "m_done_valid"), vector("tag", "m_done_tag", 32, Radix::decimal),
-                vector("code", "m_done_code", 3, Radix::decimal), vector("answer", "m_done_answer", 2, Radix::decimal),
-                vector("steps", "m_done_steps", 32, Radix::decimal)});
+         group("9 answer", {bit("valid", "m_done_valid"), vector("tag", "m_done_tag", 32, Radix::decimal),
+                            vector("code", "m_done_code", end_names), vector("answer", "m_done_answer", answer_names),
+                            vector("steps", "m_done_steps", 32, Radix::decimal)});
 }
 
 }  // namespace
 
 void write_broad_phase_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to) {
-  sim::OutputFile out(layout_path(fst_path));
-  SaveFile file(out.stream(), "cchip_broad_phase_axi");
-  begin(file, "Queries through the broad phase", fst_path,
-        {from, -std::log2(static_cast<double>(to - from) / wave_frames)});
-  file.write(broad_phase_layout());
-  out.commit();
+  write(fst_path,
+        {"cchip_broad_phase_axi", "Queries through the broad phase", view_of(from, to), broad_phase_layout()});
 }
 
 namespace {
@@ -426,17 +524,17 @@ Rows chip_swap_layout(unsigned slots) {
   Rows rows = {vector("waiting, all kinds", "waiting", 28, Radix::hexadecimal),
                bit("request", swaps + "swap_valid"),
                field("slot", swaps + "swap_data", defs::swap_request_w, defs::swap_request_slot, Radix::decimal),
-               field("module", swaps + "swap_data", defs::swap_request_w, defs::swap_request_module, Radix::decimal),
-               vector("phase", swaps + "phase_now", defs::phase_w, Radix::decimal),
+               field("module", swaps + "swap_data", defs::swap_request_w, defs::swap_request_module, module_names),
+               vector("phase", swaps + "phase_now", phase_names),
                bit("bitstream: address", "m_axi_cfg_arvalid"),
                bit("bitstream: data", "m_axi_cfg_rvalid"),
                bit("port: write", "cfg_valid"),
                bit("report", swaps + "report_valid"),
-               field("code", swaps + "report_data", defs::swap_report_w, defs::swap_report_code, Radix::decimal)};
+               field("code", swaps + "report_data", defs::swap_report_w, defs::swap_report_code, swap_names)};
   for (unsigned slot = 0; slot < slots; ++slot) {
     const std::string number = std::to_string(slot);
     const std::string scope = "u_slots.gen_slots[" + number + "].u_slot.";
-    rows.push_back(vector("slot " + number + ": module", scope + "rm_id", defs::rm_id_w, Radix::decimal));
+    rows.push_back(vector("slot " + number + ": module", scope + "rm_id", module_names));
     rows.push_back(bit("slot " + number + ": decoupled", scope + "decoupled"));
   }
   return group("10 exchange of modules", rows);
@@ -445,24 +543,16 @@ Rows chip_swap_layout(unsigned slots) {
 }  // namespace
 
 void write_chip_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to, unsigned swap_slots) {
-  sim::OutputFile out(layout_path(fst_path));
-  SaveFile file(out.stream(), "cchip_chip.u_core");
-  begin(file, "Queries through the whole chip", fst_path,
-        {from, -std::log2(static_cast<double>(to - from) / wave_frames)});
-  file.write(chip_layout(std::max(swap_slots, 1U)));
-  if (swap_slots != 0) file.write(chip_swap_layout(swap_slots));
-  out.commit();
+  Rows rows = chip_layout(std::max(swap_slots, 1U));
+  if (swap_slots != 0) rows = rows + chip_swap_layout(swap_slots);
+  write(fst_path, {"cchip_chip.u_core", "Queries through the whole chip", view_of(from, to), rows});
 }
 
 void write_swap_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to) {
-  sim::OutputFile out(layout_path(fst_path));
-  SaveFile file(out.stream(), "cchip_primtest_subsystem");
   const std::uint64_t margin = (to - from) / 20;
   const std::uint64_t first = from > margin ? from - margin : 0;
-  const double per_frame = static_cast<double>(to + margin - first) / wave_frames;
-  begin(file, "A swap of the reconfigurable subsystem", fst_path, {first, -std::log2(per_frame)});
-  file.write(subsystem_layout());
-  out.commit();
+  write(fst_path, {"cchip_primtest_subsystem", "A swap of the reconfigurable subsystem", view_of(first, to + margin),
+                   subsystem_layout()});
 }
 
 }  // namespace cchip

@@ -39,7 +39,7 @@ LINKS = {
     "cchip_models": {"core", "model"},
     "cchip_stimulus": {"core", "model"}, "cchip_pair_vectors": {"stimulus"}, "cchip_query_vectors": {"stimulus"}, "cchip_rtl_ports": {"core", "harness"},
     "cchip_rtl": {"device", "rtl_ports", "rtl_models", "waves"}, "cchip_app": {"device", "mesh_io", "stimulus",
-                                                                               "reference", "rtl"},
+                                                                               "reference", "rtl", "waves"},
     "cchip": {"app"}, "cchip_levels_core": {"reconfig", "core", "stimulus"},
     "cchip_levels_lib": {"levels_core", "reference", "rtl", "rtl_models", "waves", "levels_models"},
     "cchip_levels": {"levels_lib"}, "cchip_table1_lib": {"reconfig"}, "cchip_table1": {"table1_lib", "stimulus"},

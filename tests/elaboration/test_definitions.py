@@ -12,24 +12,32 @@ import staleness
 class Staleness(staleness.StalenessTests, staleness.GeneratorCopy):
     generator = "scripts/gen_definitions.py"
     source = "scripts/definitions.json"
-    generated = ["rtl/include/cchip_defs.vh", "cpp_ref/include/cchip/wire/definitions.hpp", "docs/hardware/definitions.md"]
+    numbers = ["rtl/include/cchip_defs.vh", "cpp_ref/include/cchip/wire/definitions.hpp"]
+    names = "cpp_ref/include/cchip/wire/code_names.hpp"
+    page = "docs/hardware/definitions.md"
+    generated = [*numbers, names, page]
 
-    def change_source(self, change):
+    def change_source(self, change, stale):
         source = self.root / self.source
         data = json.loads(source.read_text())
         change(data)
         source.write_text(json.dumps(data))
-        self.assert_stale(self.generated)
+        self.assert_stale(stale)
 
     def test_changed_constant(self):
         def change(data):
             data["constants"][0]["value"] += 1
-        self.change_source(change)
+        self.change_source(change, [*self.numbers, self.page])
 
     def test_changed_formula(self):
         def change(data):
             data["functions"][0]["expr"] += " + 1"
-        self.change_source(change)
+        self.change_source(change, [*self.numbers, self.page])
+
+    def test_changed_name(self):
+        def change(data):
+            data["enums"][0]["values"][0]["name"] += "LY"
+        self.change_source(change, self.generated)
 
 
 if __name__ == "__main__":

@@ -3,11 +3,16 @@
 #include <cchip/driver/pair_engine.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/reference/eigen_sat.hpp>
+#include <cchip/wire/axis.hpp>
+#include <map>
+#include <set>
+#include <string>
 
 #include "random_pairs.hpp"
 
 using namespace cchip_test;
 using cchip::AxisClass;
+using cchip::to_symbol;
 using cchip::to_words;
 
 namespace {
@@ -60,4 +65,23 @@ TEST_CASE("engine: witness axes in words", "[ref][engine]") {
   CHECK(to_words({AxisClass::in_plane_b, 2, 0}) == "edge 2 of B x direction x");
   CHECK(to_words({AxisClass::box, 0, 2}) == "box z");
   CHECK(to_words({AxisClass::illegal, 0, 0}) == "illegal request");
+}
+
+TEST_CASE("engine: witness axes in a few letters", "[ref][engine]") {
+  CHECK(to_symbol({AxisClass::normal_a, 0, 0}) == "normal A");
+  CHECK(to_symbol({AxisClass::normal_b, 3, 0}) == "face B2");
+  CHECK(to_symbol({AxisClass::cross, 4, 2}) == "e4 x f2");
+  CHECK(to_symbol({AxisClass::in_plane_a, 1, 1}) == "e1 x uy");
+  CHECK(to_symbol({AxisClass::in_plane_b, 2, 0}) == "f2 x ux");
+  CHECK(to_symbol({AxisClass::box, 0, 2}) == "box z");
+  // Two codes share a symbol exactly if they share their words.
+  std::map<std::string, std::string> words;
+  std::set<std::string> different;
+  for (std::uint16_t code = 0; code < 1 << cchip::defs::axis_code_w; ++code) {
+    const cchip::AxisCode axis = cchip::axis_code_from_bits(code);
+    CAPTURE(code);
+    CHECK(words.emplace(to_symbol(axis), to_words(axis)).first->second == to_words(axis));
+    different.insert(to_words(axis));
+  }
+  CHECK(words.size() == different.size());
 }

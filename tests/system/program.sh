@@ -39,7 +39,7 @@ expect "lines on stderr" 1 "$(wc -l < "$folder/err")"
 
 "$cchip" pairs "$folder/pairs.csv" --trace "$folder/run.fst" > "$folder/out" 2> "$folder/err"
 expect "exit code with a waveform" 0 $?
-expect "waveform and layout" "run.fst run.gtkw" "$(cd "$folder" && echo run.*)"
+expect "waveform and layout" "run.fst run.gtkw run.gtkw.axis run.gtkw.mode run.gtkw.programme" "$(cd "$folder" && echo run.*)"
 
 # Enough pairs for a progress bar, which a pipe must not see.
 awk 'NR == 1 { print } NR == 2 { for (i = 0; i < 20000; i++) print }' "$folder/pairs.csv" > "$folder/many.csv"

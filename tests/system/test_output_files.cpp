@@ -73,6 +73,9 @@ TEST_CASE("output files: an output that is an input is refused before anything i
   const std::string layout = folder.write("run.gtkw", pair_file);
   check_refused(folder, {"pairs", layout, "--trace", wave},
                 "--trace " + layout + ": this is the file that FILE reads; give another name");
+  const std::string names = folder.write("run.gtkw.axis", pair_file);
+  check_refused(folder, {"pairs", names, "--trace", wave},
+                "--trace " + names + ": this is the file that FILE reads; give another name");
   const std::string second = folder.write("run_quad_quad.fst", pair_file);
   check_refused(folder, {"pairs", second, "--trace", wave},
                 "--trace " + second + ": this is the file that FILE reads; give another name");
@@ -122,7 +125,8 @@ TEST_CASE("output files: the waveform of a run that fails is kept", "[system][ou
   CHECK(outcome.code == exit_usage);
   CHECK(std::filesystem::file_size(wave) > 1000);
   CHECK(folder.read("run.gtkw").find("[dumpfile] \"" + wave + "\"") != std::string::npos);
-  CHECK(files_in(folder) == 2);
+  CHECK(folder.read("run.gtkw.mode") == "0 exhaustive\n1 directed\n");
+  CHECK(files_in(folder) == 5);  // and the names of axes and of programmes
 }
 
 TEST_CASE("output files: devices and pipes are written directly", "[system][output]") {

@@ -25,6 +25,10 @@ std::string in_plane(const char* primitive, const AxisCode& axis) {
   return edge_of(primitive, axis.k) + " x direction " + component(axis.l);
 }
 
+[[noreturn]] void refuse(const AxisCode& axis) {
+  throw std::invalid_argument("axis class " + std::to_string(static_cast<int>(axis.cls)) + " is not in 0..7");
+}
+
 }  // namespace
 
 std::uint16_t to_bits(const AxisCode& axis) {
@@ -55,7 +59,32 @@ std::string to_words(const AxisCode& axis) {
     case AxisClass::illegal:
       return "illegal request";
   }
-  throw std::invalid_argument("axis class " + std::to_string(static_cast<int>(axis.cls)) + " is not in 0..7");
+  refuse(axis);
+}
+
+std::string to_symbol(const AxisCode& axis) {
+  const std::string k = std::to_string(axis.k);
+  switch (axis.cls) {
+    case AxisClass::none:
+      return "none";
+    case AxisClass::normal_a:
+    case AxisClass::normal_b: {
+      const char* primitive = axis.cls == AxisClass::normal_a ? "A" : "B";
+      return axis.k == 0 ? std::string("normal ") + primitive
+                         : std::string("face ") + primitive + std::to_string(axis.k - 1);
+    }
+    case AxisClass::cross:
+      return "e" + k + " x f" + std::to_string(axis.l);
+    case AxisClass::in_plane_a:
+      return "e" + k + " x u" + component(axis.l);
+    case AxisClass::in_plane_b:
+      return "f" + k + " x u" + component(axis.l);
+    case AxisClass::box:
+      return "box " + component(axis.l);
+    case AxisClass::illegal:
+      return "illegal";
+  }
+  refuse(axis);
 }
 
 }  // namespace cchip

@@ -27,6 +27,9 @@ AxisCode axis_code_from_bits(std::uint16_t bits);
 /// "edge 0 of A x edge 2 of B", "diagonal V0V2 of A x edge 1 of B", "edge 1 of A x direction z" (an axis in A's
 /// plane), "box x", ...
 std::string to_words(const AxisCode& axis);
+/// The same in a few letters, for waveforms: "none", "normal A", "face B2" (its normal), "e0 x f2" (e: edges of A, f:
+/// of B; 4 = V0V2, 5 = V1V3), "e1 x uz" (u: unit vectors), "box x", ...
+std::string to_symbol(const AxisCode& axis);
 
 }  // namespace cchip
 

@@ -7,13 +7,18 @@
 #include <cchip/wire/definitions.hpp>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace cchip {
 
 /// Writes the GTKWave save file beside the waveform of this module (same name, .gtkw): signals in the order in which
 /// the data flows, grouped by stream and macro stage, zoomed to the first pairs. The waveform need not exist yet.
-/// \throws sim::OutputError the file cannot be written
+/// Beside the layout it writes the names that GTKWave shows in place of codes, a file for each kind of code:
+/// .gtkw.axis, ... Whoever moves the layout moves these and the waveform with it. \throws sim::OutputError the file
+/// cannot be written
 void write_gtkw(const std::string& fst_path, ModuleId module);
+/// The files that write_gtkw() writes, the layout first.
+std::vector<std::string> gtkw_files(const std::string& fst_path, ModuleId module);
 
 /// The same for a waveform of cchip_primtest_subsystem with two slots: streams, scheduler, configuration controller and
 /// slots, zoomed to a swap.
