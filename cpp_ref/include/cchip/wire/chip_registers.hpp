@@ -105,10 +105,10 @@ constexpr int record_failed_shift = 3;
 /// 1: an invalidation is at work
 constexpr std::uint32_t invalidating_mask = 0x00000010;
 constexpr int invalidating_shift = 4;
-/// 1: memory owes the response to a read, or has lost it
+/// 1: the response to a read is outstanding, or lost
 constexpr std::uint32_t read_outstanding_mask = 0x00000020;
 constexpr int read_outstanding_shift = 5;
-/// 1: memory owes the response to a write, or has lost it
+/// 1: the response to a write is outstanding, or lost
 constexpr std::uint32_t write_outstanding_mask = 0x00000040;
 constexpr int write_outstanding_shift = 6;
 }  // namespace status
@@ -562,7 +562,7 @@ constexpr int pairs_shift = 0;
 constexpr std::uint32_t pairs_reset = 0x1;
 }  // namespace swap_minimum_batch
 
-/// A pair that has waited longer gets a slot whatever the batch.
+/// A pair that has waited longer gets a slot regardless of the batch.
 namespace swap_maximum_age {
 constexpr std::uint32_t offset = 0x43C;
 /// clocks

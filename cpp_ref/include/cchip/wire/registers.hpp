@@ -190,7 +190,7 @@ constexpr int pairs_shift = 0;
 constexpr std::uint32_t pairs_reset = 0x1;
 }  // namespace minimum_batch
 
-/// A pair that has waited longer gets a slot whatever the batch.
+/// A pair that has waited longer gets a slot regardless of the batch.
 namespace maximum_age {
 constexpr std::uint32_t offset = 0x03C;
 /// clocks
