@@ -49,9 +49,14 @@ bvtest/cchip_bv_unit.v
 traversal/cchip_line_pairs.v
 traversal/cchip_node_check.v
 traversal/cchip_get_data.v
+traversal/cchip_first_pair.v
 traversal/cchip_leaf_queue.v
+traversal/cchip_query_check.v
 traversal/cchip_traversal_events.v
 traversal/cchip_traversal_decision.v
+traversal/cchip_verdict_view.v
+traversal/cchip_traversal_contexts.v
+traversal/cchip_traversal_fetch.v
 traversal/cchip_traversal.v
 traversal/cchip_broad_phase.v
 transform/cchip_vertex_transform.v

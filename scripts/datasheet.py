@@ -146,6 +146,12 @@ STIMULI = {
     "cchip_chip_core": ("enable = 1; pairs_each = 1;", "query_producer = 1;", "m_axi_arvalid"),
     "cchip_line_pairs": ("s_place = 1;", "s_valid = 3; s_place = 1 | 1 << dut.PLACE_W;", "m_pair_valid"),
     "cchip_node_check": ("s_valid = 1; tick; s_valid = 0;", "lookup = 1;", "lookup_nodes"),
+    "cchip_first_pair": ("", "pairs = 2;", "first"),
+    "cchip_verdict_view": ("", "s_verdict = 1;", "m_some_wait"),
+    "cchip_traversal_contexts": (
+        "repeat (80) tick; write8 = 1; state8 = {1024{1'b1}}; context8 = 1; tick; write8 = 0;", "s_context = 1;", "state5"),
+    "cchip_query_check": ("repeat (3) tick;", "s_valid = 1;", "waits"),
+    "cchip_traversal_fetch": ("repeat (40) tick;", "s_goes = 1;", "m_valid"),
     "cchip_get_data": ("", "s_valid = 1;", "m_line_valid"),
     "cchip_leaf_queue": ("epoch_write = 1; tick; epoch_write = 0;", "s_valid = 1; s_leaves = 1;", "m_valid"),
     "cchip_traversal": ("m_start_ready = 1; pairs_each = 1; repeat (100) tick;", "s_query_valid = 1;", "m_start_valid"),

@@ -2,10 +2,10 @@
 `default_nettype none
 `include "cchip_defs.vh"
 // cchip_pr_region: the reconfigurable partition: one cell, one module name, the same ports for any
-// module in it. RM_ID chooses the persona: blank, which never answers, or the test of two triangles, of
-// a triangle and a quad, or of two quads behind a cchip_vertex_collector. Vendor flows synthesise
-// this module out of context once per RM_ID and exchange the results in the static design. The
-// streams are records VERTEX and SLOT_RESULT.
+// module in it. RM_ID chooses the persona: blank, which never answers, or the test of two
+// triangles, of a triangle and a quad, or of two quads behind a cchip_vertex_collector. Vendor
+// flows synthesise this module out of context once per RM_ID and exchange the results in the static
+// design. The streams are records VERTEX and SLOT_RESULT.
 //   latency      from the last vertex: that of the test + 1 clock
 //   throughput   that of the test, a pair per 3 or 4 clocks at most
 //   credit       no ready: at most CONTEXTS pairs may lie between their first vertex and their

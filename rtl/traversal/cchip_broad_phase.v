@@ -113,14 +113,14 @@ module cchip_broad_phase #(
   localparam integer PLACES = PAIRS + LEAVES;
   localparam integer PLACE_W = $clog2(PLACES);
   localparam integer CONTEXT_W = $clog2(QUERIES);
-  localparam integer RECORD_W = 59;
+  localparam integer RECORD_W = `CCHIP_NODE_PAIR_W;
 
   wire start_ready, get_valid, lookup, posed;
   wire [PLACE_W-1:0] get_place, lookup_place, leaf_place, pair_place, verdict_place;
   wire [CONTEXT_W-1:0] get_context, lookup_context, posed_context, pair_context;
   wire [RECORD_W-1:0] get_record, lookup_record;
   wire [63:0] get_lines, line;
-  wire [66:0] lookup_nodes;
+  wire [`CCHIP_NODES_W-1:0] lookup_nodes;
   wire [1:0] line_valid, came_valid;
   wire [2*PLACE_W-1:0] line_place, came_place;
   wire [2*`CCHIP_READ_CODE_W-1:0] came_code;
@@ -260,10 +260,10 @@ module cchip_broad_phase #(
       .s_pose_valid  (m_start_valid),
       .s_pose_ready  (start_ready),
       .s_pose_context(m_start_context),
-      .s_pose_m      (m_start_query[351:64]),
-      .s_pose_t      (m_start_query[459:352]),
-      .s_pose_shift  (m_start_query[475:472]),
-      .s_pose_error  (m_start_query[471:460]),
+      .s_pose_m      (m_start_query[`CCHIP_QUERY_M]),
+      .s_pose_t      (m_start_query[`CCHIP_QUERY_T]),
+      .s_pose_shift  (m_start_query[`CCHIP_QUERY_SHIFT]),
+      .s_pose_error  (m_start_query[`CCHIP_QUERY_ERROR]),
       .m_pose_valid  (posed),
       .m_pose_context(posed_context),
       .s_valid       (pair_valid),

@@ -33,7 +33,7 @@ module cchip_get_data #(
     input  wire                                                 s_valid,
     input  wire [                     $clog2(PAIRS+LEAVES)-1:0] s_place,   // >= PAIRS: leaves
     input  wire [                 $clog2(QUERIES)-1:0] s_context,
-    input  wire [                                 58:0] s_record,
+    input  wire [             `CCHIP_NODE_PAIR_W-1:0] s_record,
     input  wire [                                         63:0] s_lines,   // {B's, A's}
     // the poses: node pairs wait for theirs
     input  wire                                                 s_pose_valid,
@@ -65,16 +65,15 @@ module cchip_get_data #(
     input  wire                                                 lookup,
     input  wire [                     $clog2(PAIRS+LEAVES)-1:0] lookup_place,
     output wire [                 $clog2(QUERIES)-1:0] lookup_context,
-    output wire [                                 58:0] lookup_record,
-    output wire [                                         66:0] lookup_nodes
+    output wire [             `CCHIP_NODE_PAIR_W-1:0] lookup_record,
+    output wire [                     `CCHIP_NODES_W-1:0] lookup_nodes
 );
 
   localparam integer PLACES = PAIRS + LEAVES;
   localparam integer PLACE_W = $clog2(PLACES);
   localparam integer CONTEXT_W = $clog2(QUERIES);
-  localparam integer RECORD_W = 59;
+  localparam integer RECORD_W = `CCHIP_NODE_PAIR_W;
   localparam integer CODE_W = `CCHIP_READ_CODE_W;
-  localparam integer AT_EPOCH = 56, AT_HEADER = 58;
   localparam [31:0] FIRST_LEAF = PAIRS;
   localparam [31:0] ROOM_AT_FIRST = LEAF_ROOM;
 
@@ -98,8 +97,8 @@ module cchip_get_data #(
   reg [QUERIES-1:0] no_pose_q;  // contexts whose pose is not set up yet
   // a number counts only while it is valid: before, it may be unknown in simulation
   localparam [QUERIES-1:0] ONE_CONTEXT = 1;
-  wire [QUERIES-1:0] asks_header = s_valid && s_record[AT_HEADER] ? ONE_CONTEXT << s_context :
-      {QUERIES{1'b0}};
+  wire header = s_record[`CCHIP_NODE_PAIR_HEADER];
+  wire [QUERIES-1:0] asks_header = s_valid && header ? ONE_CONTEXT << s_context : {QUERIES{1'b0}};
   wire [QUERIES-1:0] posed = s_pose_valid ? ONE_CONTEXT << s_pose_context : {QUERIES{1'b0}};
   (* ram_style = "distributed" *)
   reg [CONTEXT_W+RECORD_W-1:0] records[0:PLACES-1];
@@ -202,7 +201,7 @@ module cchip_get_data #(
     if (advance) fetch_q <= pick_leaf ? leaf_picked : pair_picked;
     record_q        <= records[fetch_q];
     fetch_leaf_q    <= fetch_leaf;
-    no_pose_fetch_q <= record_q[AT_HEADER] & no_pose_q[fetch_context];
+    no_pose_fetch_q <= record_q[`CCHIP_NODE_PAIR_HEADER] & no_pose_q[fetch_context];
     // A pair that is not complete may be loaded, too: what is loaded counts only with pair_valid_q
     // or leaf_valid_q. So the condition of these thousand flip-flops is a short one.
     if (room) begin
@@ -229,15 +228,19 @@ module cchip_get_data #(
       fresh_q       <= load;
     end
   end
+  wire [23:0] line_a = hold_record_q[`CCHIP_NODE_PAIR_LINE_A];
+  wire [23:0] line_b = hold_record_q[`CCHIP_NODE_PAIR_LINE_B];
   assign m_pair_valid    = pair_valid_q;
   assign m_pair_place    = place_q;
   assign m_pair_context  = hold_record_q[RECORD_W+:CONTEXT_W];
-  assign m_pair_children = {hold_record_q[55:52], hold_record_q[27:24]};
+  assign m_pair_children = {
+    hold_record_q[`CCHIP_NODE_PAIR_CHILDREN_B], hold_record_q[`CCHIP_NODE_PAIR_CHILDREN_A]
+  };
   assign m_leaf_valid    = leaf_valid_q;
   assign m_leaf_place    = place_q;
   assign m_leaf_context  = hold_record_q[RECORD_W+:CONTEXT_W];
-  assign m_leaf_epoch    = hold_record_q[AT_EPOCH+:2];
-  assign m_leaf_kinds    = {hold_record_q[29:28], hold_record_q[1:0]};
+  assign m_leaf_epoch    = hold_record_q[`CCHIP_NODE_PAIR_EPOCH];
+  assign m_leaf_kinds    = {line_b[1:0], line_a[1:0]};
   assign m_leaf_failed   = leaf_failed_q;
   assign m_lines         = lines_q;
 
@@ -251,8 +254,8 @@ module cchip_get_data #(
       .s_valid     (fresh_q & pair_valid_q),
       .s_place     (place_q),
       .s_context   (hold_record_q[RECORD_W+:CONTEXT_W]),
-      .s_header    (hold_record_q[AT_HEADER]),
-      .s_numbers   ({hold_record_q[28+:24], hold_record_q[0+:24]}),
+      .s_header    (hold_record_q[`CCHIP_NODE_PAIR_HEADER]),
+      .s_numbers   ({line_b, line_a}),
       .s_failed    (failed_q),
       .s_lines     (lines_q),
       .lookup      (lookup),

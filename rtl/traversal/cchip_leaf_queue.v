@@ -91,31 +91,15 @@ module cchip_leaf_queue #(
   reg valid_q, drop_q, room_q;
   reg [3:0] kinds_q;
   reg [63:0] lines_q;
-  // the lowest pair, found among the four children of B for each child of A, then among these rows:
-  // a carry chain over 16 bit is slower
-  wire [15:0] rest;  // without it
-  wire [3:0] row_some, row_two;
-  wire [7:0] row_number;
-  genvar n;
-  generate
-    for (n = 0; n < 4; n = n + 1) begin : gen_row
-      wire [3:0] here = left_q[4*n+:4];
-      wire [3:0] rest_here = {here[3] & |here[2:0], here[2] & |here[1:0], &here[1:0], 1'b0};
-      wire first;
-      if (n == 0) begin : gen_first
-        assign first = 1'b1;
-      end else begin : gen_later
-        assign first = ~|row_some[n-1:0];
-      end
-      assign row_some[n] = |here;
-      assign row_two[n] = |rest_here;
-      assign row_number[2*n+:2] = {~|here[1:0], ~here[0] & (here[1] | ~here[2])};
-      assign rest[4*n+:4] = first ? rest_here : here;
-    end
-  endgenerate
-  wire [1:0] row = {~|row_some[1:0], ~row_some[0] & (row_some[1] | ~row_some[2])};
-  wire [3:0] number = {row, row_number[2*row+:2]};
-  wire more = |row_two | (|row_some[1:0] & |row_some[3:2]) | &row_some[1:0] | &row_some[3:2];
+  wire [15:0] rest;  // without its first pair
+  wire [3:0] number;  // of that
+  wire more;  // there are others
+  cchip_first_pair u_first (
+      .pairs  (left_q),
+      .first  (number),
+      .rest   (rest),
+      .several(more)
+  );
   wire taken = (valid_q & m_ready) | (drop_q & m_drop_ready);
   assign load = ~work_q;
 

@@ -28,18 +28,15 @@ module cchip_node_check #(
     input  wire [               47:0] s_numbers,     // numbers of the lines in their images
     input  wire [                1:0] s_failed,      // a line could not be read
     input  wire [             1023:0] s_lines,
-    // {code, {kinds, first line} of the children of B's node, of A's}
+    // record NODES of a pair
     input  wire                       lookup,
     input  wire [        PLACE_W-1:0] lookup_place,
-    output wire [               66:0] lookup_nodes
+    output wire [ `CCHIP_NODES_W-1:0] lookup_nodes
 );
 
-  // how a query ended (docs/hardware/image.md)
-  localparam [2:0] END_OK = 3'd0, END_CORRUPT = 3'd4, END_OUTSIDE = 3'd5;
-  localparam [2:0] END_BAD_DESCRIPTOR = 3'd6, END_MEMORY = 3'd7;
   localparam integer CONTEXT_W = $clog2(QUERIES);
   localparam integer END_W = `CCHIP_END_W;
-  localparam integer NODES_W = 67;
+  localparam integer NODES_W = `CCHIP_NODES_W;
   localparam [31:0] MAGIC = 32'h4D494343;
   localparam [15:0] VERSION = 16'd1;
   localparam [4:0] EXTENT_MAX = 5'd18;
@@ -99,8 +96,9 @@ module cchip_node_check #(
         first_q3       <= first_q2;
         kinds_q3       <= kinds_q2;
         no_header_q3   <= header_q2 & ~failed_q2 & ~header_here_q2;
-        end_q3         <= failed_q2 ? END_MEMORY : steep_q2 & ~header_q2 ? END_CORRUPT :
-            outside_q2 ? END_OUTSIDE : END_OK;
+        end_q3         <= failed_q2 ? `CCHIP_END_MEMORY :
+            steep_q2 & ~header_q2 ? `CCHIP_END_CORRUPT :
+            outside_q2 ? `CCHIP_END_OUTSIDE : `CCHIP_END_OK;
       end
       wire unused = &{1'b0, line[511:152], line[95:93], line[53:32]};
       assign size2[25*p+:25] = size_q2;
@@ -111,8 +109,9 @@ module cchip_node_check #(
   endgenerate
   wire [END_W-1:0] end_a3 = end3[0+:END_W];
   wire [END_W-1:0] end_b3 = end3[END_W+:END_W];
-  wire [END_W-1:0] code3 = end_a3 == END_MEMORY ? END_MEMORY : |no_header3 ? END_BAD_DESCRIPTOR :
-      end_a3 != END_OK ? end_a3 : end_b3;
+  wire [END_W-1:0] code3 = end_a3 == `CCHIP_END_MEMORY ? `CCHIP_END_MEMORY :
+      |no_header3 ? `CCHIP_END_BAD_DESCRIPTOR :
+      end_a3 != `CCHIP_END_OK ? end_a3 : end_b3;
 
   (* ram_style = "distributed" *)
   reg [NODES_W-1:0] nodes[0:(1<<PLACE_W)-1];

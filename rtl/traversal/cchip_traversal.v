@@ -106,17 +106,15 @@ module cchip_traversal #(
   localparam integer PLACE_W = $clog2(PAIRS + LEAVES);
   localparam integer CONTEXT_W = $clog2(QUERIES);
   localparam integer EPOCH_W = 2;
-  localparam integer RECORD_W = 59;
-  localparam integer NODES_W = 67;
+  localparam integer RECORD_W = `CCHIP_NODE_PAIR_W;
+  localparam integer NODES_W = `CCHIP_NODES_W;
   localparam integer STACK_W = $clog2(STACK);
-  localparam integer STATE_W = STACK_W + 81;  // cchip_traversal_decision says of what
+  localparam integer STATE_W = `CCHIP_QUERY_STATE_W(STACK_W);
   // pairs of one epoch of a query: entries of the leaf queue and the one at work, 16 leaf pairs
   // each; a pair at every place; what is behind cchip_get_data. At most 4,027
   localparam [31:0] WORK_MOST = 16 * LEAF_DEPTH + 16 + PAIRS + LEAVES + 1899;
   localparam integer WORK_W = 12;
   localparam integer ANSWERS = 2 * QUERIES;
-  localparam [31:0] FULL = STACK;
-  localparam [31:0] LAST_EPOCH = QUERIES * 4 - 1;
 
   generate
     if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES) begin : gen_illegal_queries
@@ -134,28 +132,17 @@ module cchip_traversal #(
     end
   endgenerate
 
-  // ---- after reset every context and every epoch is written once
-  reg running_q;
-  reg [CONTEXT_W+EPOCH_W-1:0] clear_q;
-  always @(posedge clk)
-    if (rst) begin
-      running_q <= 1'b0;
-      clear_q   <= {CONTEXT_W + EPOCH_W{1'b0}};
-    end else if (!running_q) begin
-      running_q <= clear_q == LAST_EPOCH[CONTEXT_W+EPOCH_W-1:0];
-      clear_q   <= clear_q + {{CONTEXT_W + EPOCH_W - 1{1'b0}}, 1'b1};
-    end
-
   // ---- stage 1: an event
   wire valid1, valid5;
   wire judge1, judge5;
   wire [3:0] is1, is5;  // {pop, start, result, verdict}
   wire [CONTEXT_W-1:0] context1, context5;
   wire [EPOCH_W-1:0] epoch1;
-  wire extra1, extra3;
+  wire extra1;
   wire [PLACE_W-1:0] place1, place5;
-  wire [56:0] verdict1, verdict3;
+  wire [`CCHIP_BOX_VERDICT_W-1:0] verdict1;
   wire [8:0] result1, result5;
+  wire running;
   wire query_bad;
   wire [511:0] query;
   wire drop_valid, drop_ready, leaf_room;
@@ -169,14 +156,14 @@ module cchip_traversal #(
   wire active8, wants8, start8, cancel8, started6, goes8, back8, push8, leaf8, ends8, step8;
   wire [1:0] room8;
   wire [STATE_W-1:0] state8;
-  wire [95:0] constants8;
+  wire [`CCHIP_QUERY_LINES_W-1:0] constants8;
   wire [WORK_W-1:0] work8;
   wire [RECORD_W-1:0] record8;
   wire [STACK_W-1:0] at8;
-  wire [140:0] entry8;
+  wire [`CCHIP_STACK_ENTRY_W-1:0] entry8;
   wire [79:0] leaf_nodes8;
   wire [15:0] leaf_set8;
-  wire [68:0] answer8;
+  wire [`CCHIP_QUERY_END_W-1:0] answer8;
   wire [4:0] tests8;
   cchip_traversal_events #(
       .QUERIES   (QUERIES),
@@ -187,7 +174,7 @@ module cchip_traversal #(
   ) u_events (
       .clk(clk),
       .rst(rst),
-      .running(running_q),
+      .running(running),
       .s_query_valid(s_query_valid),
       .s_query_ready(s_query_ready),
       .s_query(s_query),
@@ -197,16 +184,13 @@ module cchip_traversal #(
       .s_verdict_valid(s_verdict_valid),
       .s_verdict({
         s_verdict_place,
-        s_verdict_tests,
-        s_verdict_best,
-        s_verdict_strong,
-        s_verdict_leaves,
-        s_verdict_waiting
+        `CCHIP_BOX_VERDICT_OF(s_verdict_waiting, s_verdict_leaves, s_verdict_strong, s_verdict_best,
+            s_verdict_tests)
       }),
       .lookup(lookup),
       .lookup_place(lookup_place),
       .lookup_context(lookup_context),
-      .lookup_epoch(lookup_record[57:56]),
+      .lookup_epoch(lookup_record[`CCHIP_NODE_PAIR_EPOCH]),
       .s_result_valid(s_result_valid),
       .s_result_ready(s_result_ready),
       .s_result({s_result_context, s_result_epoch, s_result_code, s_result_open, s_result_hits}),
@@ -263,14 +247,20 @@ module cchip_traversal #(
       .d  ({judge1, is1, context1, place1, result1}),
       .q  ({judge5, is5, context5, place5, result5})
   );
-  cchip_delay #(
-      .WIDTH(58),
-      .DEPTH(2)
-  ) u_verdict (
-      .clk(clk),
-      .rst(1'b0),
-      .d  ({extra1, verdict1}),
-      .q  ({extra3, verdict3})
+  wire [`CCHIP_BOX_VERDICT_W-1:0] verdict5;
+  wire extra5, some_wait5, rest5, some_leaves5, room5;
+  wire [4:0] leaves5;
+  cchip_verdict_view u_verdict (
+      .clk          (clk),
+      .s_verdict    (verdict1),
+      .s_extra      (extra1),
+      .m_verdict    (verdict5),
+      .m_extra      (extra5),
+      .m_some_wait  (some_wait5),
+      .m_rest       (rest5),
+      .m_some_leaves(some_leaves5),
+      .m_leaves     (leaves5),
+      .m_room       (room5)
   );
   // a clock later than what is looked up
   cchip_delay #(
@@ -291,86 +281,56 @@ module cchip_traversal #(
       .d  (lookup_nodes),
       .q  (nodes4)
   );
-  // ---- stages 1 to 5: the query, the last entry of its stack, what its epoch has in flight
-  (* ram_style = "distributed" *)
-  reg [STATE_W-1:0] states[0:QUERIES-1];
-  (* ram_style = "distributed" *)
-  reg [95:0] constants[0:QUERIES-1];  // {tag, line of B, line of A}
-  (* ram_style = "distributed" *)
-  reg [WORK_W-1:0] works[0:4*QUERIES-1];  // node pairs and leaf pairs of each epoch
-  reg [STATE_W-1:0] state_q2, state_q3, state_q4, state_q5;
-  reg [95:0] constants_q2, constants_q3, constants_q4, constants_q5;
-  reg [CONTEXT_W-1:0] context_q2, context_q3;
-  reg [EPOCH_W-1:0] epoch_q2, epoch_q3, epoch_q4, epoch_q5;
-  reg own_q2;  // the event is of the query as it is
-  reg live_q3, live_q4, live_q5;
-  reg [STACK_W-1:0] top_q3;
-  reg [WORK_W-1:0] work_q4, work_q5;
-  wire [EPOCH_W-1:0] now2;
-  wire active2;
-  wire [STACK_W:0] entries2, entries3;
-  wire [31:0] steps3;
-  wire unused_mode2, unused_hit3;
-  wire [2:0] unused_under2, unused_under3;
-  wire [72:0] unused_state2;
-  wire [EPOCH_W+1:0] unused_state3;
-  wire [39:0] unused_counts3;
-  assign {now2, active2, unused_mode2, entries2, unused_under2, unused_state2} = state_q2;
-  assign {unused_state3, entries3, unused_under3, steps3, unused_counts3, unused_hit3} = state_q3;
-  wire [140:0] entry5;
-  cchip_block_ram #(
-      .WIDTH (141),
-      .ADDR_W(CONTEXT_W + STACK_W)
-  ) u_stack (
-      .clk       (clk),
-      .write     (push8),
-      .write_addr({context_q8, at8}),
-      .write_data(entry8),
-      .read_addr ({context_q3, top_q3}),
-      .read_data (entry5)
-  );
-  reg over_q4, over_q5, full_q4, full_q5, failed_q5, some_leaves_q5, some_wait_q5, room_q5;
-  reg extra_q4, extra_q5, rest_q5;
-  reg [56:0] verdict_q4, verdict_q5;
   reg [NODES_W-1:0] nodes_q5;
-  wire [15:0] waiting4 = verdict_q4[15:0];
-  wire [15:0] leaves4 = verdict_q4[31:16];
-  wire [3:0] best4 = verdict_q4[51:48];
-  // leaf pairs are counted in two steps: of each child of A, then of all
-  reg [11:0] row_q4;
-  reg [4:0] leaves_q5;
-  function [2:0] ones(input [3:0] of);
-    ones = {2'd0, of[0]} + {2'd0, of[1]} + {2'd0, of[2]} + {2'd0, of[3]};
-  endfunction
+  reg failed_q5;
   always @(posedge clk) begin
-    state_q2 <= states[context1];
-    constants_q2 <= constants[context1];
-    own_q2 <= is1[2] | is1[3];
-    epoch_q2 <= epoch1;
-    context_q2 <= context1;
-    context_q3 <= context_q2;
-    top_q3 <= entries2[STACK_W-1:0] - {{STACK_W - 1{1'b0}}, 1'b1};
-    epoch_q3 <= own_q2 ? now2 : epoch_q2;
-    live_q3 <= active2 && (own_q2 || now2 == epoch_q2);
-    work_q4 <= works[{context_q3, epoch_q3}];
-    over_q4 <= steps3 >= step_limit;
-    full_q4 <= entries3 == FULL[STACK_W:0];
-    {extra_q4, verdict_q4} <= {extra3, verdict3};
-    {extra_q5, verdict_q5, nodes_q5} <= {extra_q4, verdict_q4, nodes4};
-    failed_q5 <= |nodes4[NODES_W-1-:3];
-    some_leaves_q5 <= |leaves4;
-    some_wait_q5 <= |waiting4;
-    rest_q5 <= |(waiting4 & ~(16'd1 << best4));
-    room_q5 <= ~|leaves4 | extra_q4;
-    row_q4 <= {ones(verdict3[31:28]), ones(verdict3[27:24]), ones(verdict3[23:20]),
-               ones(verdict3[19:16])};
-    leaves_q5 <= ({2'd0, row_q4[11:9]} + {2'd0, row_q4[8:6]}) +
-        ({2'd0, row_q4[5:3]} + {2'd0, row_q4[2:0]});
-    {over_q5, full_q5, live_q4, live_q5, work_q5} <= {over_q4, full_q4, live_q3, live_q4, work_q4};
-    {epoch_q4, epoch_q5} <= {epoch_q3, epoch_q4};
-    {state_q3, state_q4, state_q5} <= {state_q2, state_q3, state_q4};
-    {constants_q3, constants_q4, constants_q5} <= {constants_q2, constants_q3, constants_q4};
+    nodes_q5  <= nodes4;
+    failed_q5 <= |nodes4[`CCHIP_NODES_CODE];
   end
+
+  // ---- stages 1 to 5: the query, the last entry of its stack, what its epoch has in flight
+  wire [EPOCH_W-1:0] epoch5;
+  wire live5, over5, full5;
+  wire [STATE_W-1:0] state5;
+  wire [`CCHIP_QUERY_LINES_W-1:0] constants5;
+  wire [WORK_W-1:0] work5;
+  wire [`CCHIP_STACK_ENTRY_W-1:0] entry5;
+  wire epoch_write;
+  wire [CONTEXT_W-1:0] epoch_context;
+  wire [EPOCH_W-1:0] epoch;
+  cchip_traversal_contexts #(
+      .QUERIES(QUERIES),
+      .STACK  (STACK),
+      .WORK_W (WORK_W)
+  ) u_contexts (
+      .clk          (clk),
+      .rst          (rst),
+      .running      (running),
+      .step_limit   (step_limit),
+      .s_context    (context1),
+      .s_epoch      (epoch1),
+      .s_own        (is1[2] | is1[3]),
+      .epoch5       (epoch5),
+      .live5        (live5),
+      .state5       (state5),
+      .constants5   (constants5),
+      .work5        (work5),
+      .over5        (over5),
+      .full5        (full5),
+      .entry5       (entry5),
+      .write8       (valid_q8),
+      .context8     (context_q8),
+      .epoch8       (epoch_q8),
+      .state8       (state8),
+      .constants8   (constants8),
+      .work8        (work8),
+      .push8        (push8),
+      .at8          (at8),
+      .entry8       (entry8),
+      .epoch_write  (epoch_write),
+      .epoch_context(epoch_context),
+      .epoch        (epoch)
+  );
 
   // ---- stages 5 to 7: what happens
   cchip_traversal_decision #(
@@ -386,28 +346,29 @@ module cchip_traversal #(
       .s_is_result    (is5[1]),
       .s_is_start     (is5[2]),
       .s_is_pop       (is5[3]),
-      .s_epoch        (epoch_q5),
-      .s_live         (live_q5),
-      .s_state        (state_q5),
-      .s_constants    (constants_q5),
-      .s_work         (work_q5),
-      .s_over         (over_q5),
-      .s_full         (full_q5),
-      .s_verdict      (verdict_q5),
-      .s_some_wait    (some_wait_q5),
-      .s_rest         (rest_q5),
-      .s_some_leaves  (some_leaves_q5),
-      .s_leaves       (leaves_q5),
-      .s_extra        (extra_q5),
-      .s_room         (room_q5),
+      .s_epoch        (epoch5),
+      .s_live         (live5),
+      .s_state        (state5),
+      .s_constants    (constants5),
+      .s_work         (work5),
+      .s_over         (over5),
+      .s_full         (full5),
+      .s_verdict      (verdict5),
+      .s_some_wait    (some_wait5),
+      .s_rest         (rest5),
+      .s_some_leaves  (some_leaves5),
+      .s_leaves       (leaves5),
+      .s_extra        (extra5),
+      .s_room         (room5),
       .s_record       (record5),
       .s_nodes        (nodes_q5),
       .s_failed       (failed_q5),
       .s_result       (result5),
       .s_entry        (entry5),
       .query_bad      (query_bad),
-      .query_mode     (query[476]),
-      .query_constants({query[511:480], query[63:0]}),
+      .query_mode     (query[`CCHIP_QUERY_ALL]),
+      .query_constants(`CCHIP_QUERY_LINES_OF(query[`CCHIP_QUERY_BASE_A], query[`CCHIP_QUERY_BASE_B],
+          query[`CCHIP_QUERY_TAG])),
       .m_state        (state8),
       .m_constants    (constants8),
       .m_work         (work8),
@@ -435,8 +396,8 @@ module cchip_traversal #(
   always @(posedge clk) begin
     {context_q6, context_q7, context_q8} <= {context5, context_q6, context_q7};
     {place_q6, place_q7, place_q8} <= {place5, place_q6, place_q7};
-    {epoch_q6, epoch_q7, epoch_q8} <= {epoch_q5, epoch_q6, epoch_q7};
-    {live_q6, live_q7, live_q8} <= {live_q5, live_q6, live_q7};
+    {epoch_q6, epoch_q7, epoch_q8} <= {epoch5, epoch_q6, epoch_q7};
+    {live_q6, live_q7, live_q8} <= {live5, live_q6, live_q7};
     if (rst) {valid_q6, valid_q7, valid_q8, judge_q6, judge_q7, judge_q8} <= 6'd0;
     else begin
       {valid_q6, valid_q7, valid_q8} <= {valid5, valid_q6, valid_q7};
@@ -444,19 +405,10 @@ module cchip_traversal #(
     end
   end
 
-  // ---- stage 8: everything is written
-  wire [CONTEXT_W-1:0] write_context = running_q ? context_q8 : clear_q[CONTEXT_W-1:0];
-  wire write = valid_q8 | ~running_q;
-  wire [STATE_W-1:0] write_state = running_q ? state8 : {STATE_W{1'b0}};
-  always @(posedge clk) begin
-    if (write) states[write_context] <= write_state;
-    if (valid_q8) constants[context_q8] <= constants8;
-    if (write)
-      works[running_q?{context_q8, epoch_q8} : clear_q] <= running_q ? work8 : {WORK_W{1'b0}};
-  end
+  // ---- stage 8: what comes of it
   assign m_judged_valid  = judge_q8;
   assign m_judged_live   = live_q8;
-  assign m_judged_tag    = constants8[95:64];
+  assign m_judged_tag    = constants8[`CCHIP_QUERY_LINES_TAG];
   assign m_start_valid   = started6;
   assign m_start_context = context_q6;
   assign m_start_epoch   = epoch_q6;
@@ -464,7 +416,7 @@ module cchip_traversal #(
 
   wire done_ready;
   cchip_fifo #(
-      .WIDTH     (101),
+      .WIDTH     (32 + `CCHIP_QUERY_END_W),
       .DEPTH     (ANSWERS),
       .ROOM_KNOWN(1)
   ) u_done (
@@ -472,96 +424,61 @@ module cchip_traversal #(
       .rst    (rst),
       .s_valid(ends8),
       .s_ready(done_ready),
-      .s_data ({constants8[95:64], answer8}),
+      .s_data ({constants8[`CCHIP_QUERY_LINES_TAG], answer8}),
       .m_valid(m_done_valid),
       .m_ready(m_done_ready),
       .m_data ({m_done_tag, m_done_code, m_done_answer, m_done_steps, m_done_pairs})
   );
 
-  wire fetch_valid, leaf_place_valid;
-  wire [PLACE_W-1:0] leaf_place;
-  wire [3:0] fetch_kinds;
-  wire [63:0] fetch_lines;
-  wire fetch_ready = leaf_place_valid & ~goes8;
-  wire fetch = fetch_valid & fetch_ready;
-  cchip_leaf_queue #(
-      .QUERIES(QUERIES),
-      .DEPTH  (LEAF_DEPTH),
-      .CREDIT (CREDIT)
-  ) u_leaves (
-      .clk          (clk),
-      .rst          (rst),
-      .s_valid      (leaf8),
-      .s_context    (context_q8),
-      .s_epoch      (epoch_q8),
-      .s_a          (leaf_nodes8[39:0]),
-      .s_b          (leaf_nodes8[79:40]),
-      .s_leaves     (leaf_set8),
-      .m_room       (leaf_room),
-      .epoch_write  (write),
-      .epoch_context(write_context),
-      .epoch        (write_state[STATE_W-1-:EPOCH_W]),
-      .s_credit     (s_credit),
-      .m_valid      (fetch_valid),
-      .m_ready      (fetch_ready),
-      .m_drop_valid (drop_valid),
-      .m_drop_ready (drop_ready),
-      .m_context    (drop_context),
-      .m_epoch      (drop_epoch),
-      .m_kinds      (fetch_kinds),
-      .m_lines      (fetch_lines)
-  );
-  cchip_pool #(
-      .FIRST(PAIRS),
-      .COUNT(LEAVES),
-      .WIDTH(PLACE_W)
-  ) u_leaf_places (
-      .clk        (clk),
-      .rst        (rst),
-      .m_valid    (leaf_place_valid),
-      .m_ready    (fetch),
-      .m_number   (leaf_place),
-      .back_valid (s_leaf_valid),
-      .back_number(s_leaf_place)
-  );
-
   // ---- to cchip_get_data: node pairs, else leaf pairs
-  reg out_q, out_step_q, out_fetch_q;
-  reg [PLACE_W-1:0] out_place_q;
-  reg [CONTEXT_W-1:0] out_context_q;
-  reg [RECORD_W-1:0] out_record_q;
-  reg [63:0] out_lines_q;
-  reg [4:0] out_tests_q;
-  always @(posedge clk) begin
-    out_place_q <= goes8 ? place_q8 : leaf_place;
-    out_context_q <= goes8 ? context_q8 : drop_context;
-    out_record_q  <= goes8 ? record8 :
-        {1'b0, drop_epoch, 26'd0, fetch_kinds[3:2], 26'd0, fetch_kinds[1:0]};
-    out_lines_q   <= goes8 ? {
-      constants8[63:32] + {8'd0, record8[51:28]}, constants8[31:0] + {8'd0, record8[23:0]}
-    } : fetch_lines;
-    out_tests_q <= tests8;
-    out_q <= ~rst & (goes8 | fetch);
-    out_step_q <= ~rst & step8;
-    out_fetch_q <= ~rst & fetch;
-  end
-  assign m_valid         = out_q;
-  assign m_place         = out_place_q;
-  assign m_context       = out_context_q;
-  assign m_record        = out_record_q;
-  assign m_lines         = out_lines_q;
-  assign count_step      = out_step_q;
-  assign count_tests     = out_tests_q;
-  assign count_leaf_pair = out_fetch_q;
-  wire unused = &{1'b0, unused_mode2, unused_under2, unused_state2, unused_state3, unused_under3,
-                  unused_counts3, unused_hit3, entries2[STACK_W]};
+  cchip_traversal_fetch #(
+      .QUERIES   (QUERIES),
+      .PAIRS     (PAIRS),
+      .LEAVES    (LEAVES),
+      .LEAF_DEPTH(LEAF_DEPTH),
+      .CREDIT    (CREDIT)
+  ) u_fetch (
+      .clk            (clk),
+      .rst            (rst),
+      .s_context      (context_q8),
+      .s_epoch        (epoch_q8),
+      .s_lines        (constants8),
+      .s_goes         (goes8),
+      .s_place        (place_q8),
+      .s_record       (record8),
+      .s_leaf         (leaf8),
+      .s_leaf_nodes   (leaf_nodes8),
+      .s_leaf_set     (leaf_set8),
+      .s_step         (step8),
+      .s_tests        (tests8),
+      .epoch_write    (epoch_write),
+      .epoch_context  (epoch_context),
+      .epoch          (epoch),
+      .s_credit       (s_credit),
+      .leaf_room      (leaf_room),
+      .m_drop_valid   (drop_valid),
+      .m_drop_ready   (drop_ready),
+      .m_drop_context (drop_context),
+      .m_drop_epoch   (drop_epoch),
+      .s_back_valid   (s_leaf_valid),
+      .s_back_place   (s_leaf_place),
+      .m_valid        (m_valid),
+      .m_place        (m_place),
+      .m_context      (m_context),
+      .m_record       (m_record),
+      .m_lines        (m_lines),
+      .count_step     (count_step),
+      .count_tests    (count_tests),
+      .count_leaf_pair(count_leaf_pair)
+  );
 
+  wire [STACK_W:0] entries5 = state5[`CCHIP_QUERY_STATE_ENTRIES(STACK_W)];
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_done, !ends8 || done_ready)
       `CCHIP_ASSERT(a_results, !valid_q8 || work8 <= WORK_MOST[WORK_W-1:0])
-      `CCHIP_ASSERT(a_pop, !(valid5 && is5[3]) || (live_q5 && |state_q5[76+:STACK_W+1]))
-      `CCHIP_ASSERT(a_work, !(valid5 && (is5[0] || is5[1])) || |work_q5)
+      `CCHIP_ASSERT(a_pop, !(valid5 && is5[3]) || (live5 && |entries5))
+      `CCHIP_ASSERT(a_work, !(valid5 && (is5[0] || is5[1])) || |work5)
     end
 
 endmodule

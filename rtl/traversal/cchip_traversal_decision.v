@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_defs.vh"
 // cchip_traversal_decision: what an event does to its query. Of a node pair whose boxes have been
 // compared the best child pair continues in the place of its parent and the others wait on the
 // stack; a result ends a query for the first hit, or is counted; a start or a node pair from the
@@ -31,35 +32,34 @@ module cchip_traversal_decision #(
     input  wire                      s_is_pop,
     input  wire [               1:0] s_epoch,
     input  wire                      s_live,           // its query is still at work
-    // the query: {epoch, has a query, mode, entries of the stack, node pairs in flight, steps, hits
-    // and open pairs, open pairs, hit}
+    // the query: records QUERY_STATE and QUERY_LINES
     input  wire [$clog2(STACK)+80:0] s_state,
-    input  wire [              95:0] s_constants,      // {tag, line of B, line of A}
+    input  wire [`CCHIP_QUERY_LINES_W-1:0] s_constants,
     input  wire [        WORK_W-1:0] s_work,           // what the epoch has in flight
     input  wire                      s_over,           // steps have reached their limit
     input  wire                      s_full,           // the stack is full
-    // a verdict: {tests, best, strong, leaves, waiting}
-    input  wire [              56:0] s_verdict,
+    // a verdict: record BOX_VERDICT
+    input  wire [`CCHIP_BOX_VERDICT_W-1:0] s_verdict,
     input  wire                      s_some_wait,      // waiting is not 0
     input  wire                      s_rest,           // nor is it without the best
     input  wire                      s_some_leaves,    // leaves is not 0
     input  wire [               4:0] s_leaves,         // how many
     input  wire                      s_extra,          // it has further room in the leaf queue
     input  wire                      s_room,           // for its leaves and those of the next one
-    // what is known of its node pair
-    input  wire [              58:0] s_record,
-    input  wire [              66:0] s_nodes,
+    // its node pair, and what the lines say: records NODE_PAIR and NODES
+    input  wire [`CCHIP_NODE_PAIR_W-1:0] s_record,
+    input  wire [`CCHIP_NODES_W-1:0] s_nodes,
     input  wire                      s_failed,         // its code is not 0
     input  wire [               8:0] s_result,         // {code, open, hits}
-    // last of the stack: {others wait besides the first, first, strong, waiting, B, A}
-    input  wire [             140:0] s_entry,
+    // last of the stack: record STACK_ENTRY
+    input  wire [`CCHIP_STACK_ENTRY_W-1:0] s_entry,
     // the query that starts
     input  wire                      query_bad,
     input  wire                      query_mode,
-    input  wire [              95:0] query_constants,
+    input  wire [`CCHIP_QUERY_LINES_W-1:0] query_constants,
     // what is written, and what comes of it
     output wire [$clog2(STACK)+80:0] m_state,
-    output wire [              95:0] m_constants,
+    output wire [`CCHIP_QUERY_LINES_W-1:0] m_constants,
     output wire [        WORK_W-1:0] m_work,
     output wire                      m_active,         // the context has a query
     output wire                      m_wants,          // that may have another node pair in flight
@@ -67,52 +67,42 @@ module cchip_traversal_decision #(
     output wire                      m_cancel,         // too early for this context
     output wire                      m_started,        // a start that goes well, two clocks before
     output wire                      m_goes,           // a node pair goes to its place,
-    output wire [              58:0] m_record,         // this one
+    output wire [`CCHIP_NODE_PAIR_W-1:0] m_record,     // this one
     output wire                      m_back,           // its place is free
     output wire [               1:0] m_room,           // entries of the leaf queue that are free
     output wire                      m_push,           // an entry of the stack
     output wire [ $clog2(STACK)-1:0] m_at,
-    output wire [             140:0] m_entry,
+    output wire [`CCHIP_STACK_ENTRY_W-1:0] m_entry,
     output wire                      m_leaf,           // an entry of the leaf queue
     output wire [              79:0] m_leaf_nodes,
     output wire [              15:0] m_leaf_set,
     output wire                      m_ends,           // an answer:
-    output wire [              68:0] m_answer,         // {code, answer, steps, pairs}
+    output wire [`CCHIP_QUERY_END_W-1:0] m_answer,     // record QUERY_END
     output wire                      m_step,           // a node pair was expanded
     output wire [               4:0] m_tests
 );
 
-  // how a query ended (docs/hardware/image.md)
-  localparam [2:0] END_OK = 3'd0, END_HOST = 3'd1, END_STEPS = 3'd2, END_STACK = 3'd3;
-  localparam [2:0] END_BAD_DESCRIPTOR = 3'd6;
   localparam integer STACK_W = $clog2(STACK);
+  localparam integer NODE_W = `CCHIP_TREE_NODE_W;
 
   // ---- the first clock: which way the event takes
   wire [1:0] now;
-  wire active, mode, hit;
+  wire active, all, hit;
   wire [STACK_W:0] entries;
-  wire [2:0] under;
+  wire [2:0] nodes;  // in flight
   wire [31:0] steps, pairs;
   wire [7:0] opens;
-  assign {now, active, mode, entries, under, steps, pairs, opens, hit} = s_state;
+  assign `CCHIP_QUERY_STATE_OF(hit, opens, pairs, steps, nodes, entries, all, active, now) =
+      s_state;
   wire [4:0] tests;
   wire [3:0] best_number;
   wire [15:0] box_strong, box_leaves, box_waiting;
-  assign {tests, best_number, box_strong, box_leaves, box_waiting} = s_verdict;
-  wire header;
-  wire [1:0] unused_epoch;
-  wire [3:0] unused_children_b, unused_children_a;
-  wire [23:0] line_a, line_b, first_a, first_b;
-  wire [2:0] data_code, result_code, result_open, result_hits;
-  wire [7:0] kinds_a, kinds_b;
-  assign {header, unused_epoch, unused_children_b, line_b, unused_children_a, line_a} = s_record;
-  assign {data_code, kinds_b, first_b, kinds_a, first_a} = s_nodes;
+  assign `CCHIP_BOX_VERDICT_OF(box_waiting, box_leaves, box_strong, best_number, tests) = s_verdict;
+  wire header = s_record[`CCHIP_NODE_PAIR_HEADER];
+  wire [7:0] kinds_a = s_nodes[`CCHIP_NODES_KINDS_A];
+  wire [7:0] kinds_b = s_nodes[`CCHIP_NODES_KINDS_B];
+  wire [2:0] result_code, result_open, result_hits;
   assign {result_code, result_open, result_hits} = s_result;
-  wire stack_rest;
-  wire [3:0] stack_first;
-  wire [15:0] stack_strong, stack_waiting;
-  wire [51:0] stack_a, stack_b;  // {inner children, first child, node}
-  assign {stack_rest, stack_first, stack_strong, stack_waiting, stack_b, stack_a} = s_entry;
 
   wire known = s_is_verdict & s_live & ~s_failed;
   wire step = known & ~header & ~s_over;
@@ -140,17 +130,17 @@ module cchip_traversal_decision #(
   reg step_q, roots_q, goes_q, leaf_q, cancel_q, bad_q, box_fails_q, clears_q;
   reg push_q, entry_more_q, entry_less_q;
   // its query
-  reg active_q, mode_q, hit_q;
+  reg active_q, all_q, hit_q;
   reg [1:0] now_q, epoch_q;
   reg [STACK_W:0] entries_q;
-  reg [2:0] under_q;
+  reg [2:0] nodes_q;
   reg [31:0] steps_q, pairs_q;
   reg [8:0] opens_q;
   reg some_open_q;
-  reg [95:0] constants_q;
+  reg [`CCHIP_QUERY_LINES_W-1:0] constants_q;
   reg [WORK_W-1:0] work_q;
   // its node pair, or that of its leaf pair
-  reg [51:0] half_a_q, half_b_q;
+  reg [NODE_W-1:0] node_a_q, node_b_q;
   reg [7:0] kinds_a_q, kinds_b_q;
   reg [3:0] number_q;
   reg [15:0] waiting_q, strong_q, leaf_set_q;
@@ -176,17 +166,17 @@ module cchip_traversal_decision #(
     bad_q <= s_is_start & ~busy & query_bad;
     box_fails_q <= s_is_verdict & s_live & (s_failed | (~header & s_over) | spill);
     clears_q <= s_is_pop | onward;
-    push_q <= (push & ~s_full) | (s_is_pop & stack_rest);
+    push_q <= (push & ~s_full) | (s_is_pop & s_entry[`CCHIP_STACK_ENTRY_REST]);
     entry_more_q <= push;
-    entry_less_q <= s_is_pop & ~stack_rest;
+    entry_less_q <= s_is_pop & ~s_entry[`CCHIP_STACK_ENTRY_REST];
 
     active_q <= s_is_start ? start_ok : active;
-    mode_q <= s_is_start ? query_mode : mode;
+    all_q <= s_is_start ? query_mode : all;
     hit_q <= ~s_is_start & (hit | (counts & |result_hits));
     now_q <= now;
     epoch_q <= s_epoch;
     entries_q <= s_is_start ? {STACK_W + 1{1'b0}} : entries;
-    under_q <= s_is_start ? 3'd1 : under;
+    nodes_q <= s_is_start ? 3'd1 : nodes;
     steps_q <= s_is_start ? 32'd0 : steps;
     pairs_q <= s_is_start ? 32'd0 : pairs;
     opens_q <= {1'b0, opens} + (counts ? {6'd0, result_open} : 9'd0);
@@ -195,11 +185,15 @@ module cchip_traversal_decision #(
     work_q <= s_work;
 
     // the child pair that continues: of a verdict the best, from the stack the first
-    number_q <= s_is_pop ? stack_first : best_number;
-    waiting_q <= s_is_pop ? stack_waiting : box_waiting;
-    strong_q <= s_is_pop ? stack_strong : box_strong;
-    half_a_q <= s_is_pop ? stack_a : {inner_a, first_a, line_a};
-    half_b_q <= s_is_pop ? stack_b : {inner_b, first_b, line_b};
+    number_q <= s_is_pop ? s_entry[`CCHIP_STACK_ENTRY_FIRST] : best_number;
+    waiting_q <= s_is_pop ? s_entry[`CCHIP_STACK_ENTRY_WAITING] : box_waiting;
+    strong_q <= s_is_pop ? s_entry[`CCHIP_STACK_ENTRY_STRONG] : box_strong;
+    node_a_q <= s_is_pop ? s_entry[`CCHIP_STACK_ENTRY_A] :
+        `CCHIP_TREE_NODE_OF(s_record[`CCHIP_NODE_PAIR_LINE_A], s_nodes[`CCHIP_NODES_FIRST_A],
+            inner_a);
+    node_b_q <= s_is_pop ? s_entry[`CCHIP_STACK_ENTRY_B] :
+        `CCHIP_TREE_NODE_OF(s_record[`CCHIP_NODE_PAIR_LINE_B], s_nodes[`CCHIP_NODES_FIRST_B],
+            inner_b);
     kinds_a_q <= kinds_a;
     kinds_b_q <= kinds_b;
     leaf_set_q <= box_leaves;
@@ -209,42 +203,60 @@ module cchip_traversal_decision #(
     counted_q <= counts ? {1'b0, result_hits} + {1'b0, result_open} : 4'd0;
     some_code_q <= |result_code;
     some_hits_q <= |result_hits;
-    code_q <= s_is_result ? (|result_code ? result_code : |result_hits ? END_OK : END_HOST) :
-        s_failed ? data_code : spill ? END_STACK : END_STEPS;
+    code_q <= s_is_result ?
+        (|result_code ? result_code : |result_hits ? `CCHIP_END_OK : `CCHIP_END_HOST) :
+        s_failed ? s_nodes[`CCHIP_NODES_CODE] : spill ? `CCHIP_END_STACK : `CCHIP_END_STEPS;
   end
 
   // ---- the second clock: counts, the child pair's lines, what stays on the stack
   // a limit of 0 open pairs counts as 1
-  wire first_hit = ~mode_q & (some_hits_q | (some_open_q & opens_q >= {1'b0, open_limit}));
-  // what is added to the work of the epoch: leaf pairs, and the node pair itself
-  wire one_more = goes_q & ~verdict_q;
-  wire one_less = result_q | (verdict_q & ~goes_q);
-  wire [4:0] leaf_work = goes_q ? leaves_q : leaves_less_q;
-  wire [WORK_W-1:0] more = leaf_q ? {{WORK_W - 5{1'b0}}, leaf_work} :
-      {{WORK_W - 1{one_less}}, one_less | one_more};
+  wire first_hit = ~all_q & (some_hits_q | (some_open_q & opens_q >= {1'b0, open_limit}));
+  // what the event adds to the work of its epoch, takes from the room in the leaf queue, changes of
+  // the node pairs of its query in flight, and of the entries of the stack
+  reg [WORK_W-1:0] more_work;
+  reg [1:0] free_room;
+  reg [2:0] nodes_next;
+  always @* begin
+    more_work  = {WORK_W{1'b0}};
+    free_room  = 2'd0;
+    nodes_next = nodes_q;
+    if (verdict_q) begin
+      // its leaf pairs come; the node pair goes, unless a child pair continues in its place
+      more_work = leaf_q ? {{WORK_W - 5{1'b0}}, goes_q ? leaves_q : leaves_less_q} :
+          {WORK_W{~goes_q}};
+      free_room = 2'd1 + {1'b0, extra_q} - {1'b0, leaf_q} - {1'b0, goes_q};
+      if (live_q && !goes_q) nodes_next = nodes_q - 3'd1;
+    end else if (result_q) begin
+      more_work = {WORK_W{1'b1}};
+    end else begin  // a start or a pop
+      more_work = {{WORK_W - 1{1'b0}}, goes_q};
+      free_room = {1'b0, ~goes_q};
+      if (pop_q) nodes_next = nodes_q + 3'd1;
+    end
+  end
   wire [15:0] chosen = 16'd1 << number_q;
   wire [15:0] kept_strong = clears_q ? strong_q & ~chosen : strong_q | chosen;
-  wire [23:0] child_a = half_a_q[47:24];
-  wire [23:0] child_b = half_b_q[47:24];
-  wire [3:0] is_inner_a = half_a_q[51:48];
-  wire [3:0] is_inner_b = half_b_q[51:48];
+  wire [23:0] child_a = node_a_q[`CCHIP_TREE_NODE_FIRST];
+  wire [23:0] child_b = node_b_q[`CCHIP_TREE_NODE_FIRST];
+  wire [3:0] is_inner_a = node_a_q[`CCHIP_TREE_NODE_INNER];
+  wire [3:0] is_inner_b = node_b_q[`CCHIP_TREE_NODE_INNER];
   wire [1:0] i = number_q[3:2];
   wire [1:0] j = number_q[1:0];
 
   reg valid_q2, start_q2, cancel_q2, goes_q2, back_q2, push_q2, leaf_q2, fails_q2, bad_q2, live_q2;
-  reg step_q2, active_q2, mode_q2, hit_q2, inner_a_q2, inner_b_q2, any_strong_q2;
+  reg step_q2, active_q2, all_q2, hit_q2, inner_a_q2, inner_b_q2, any_strong_q2;
   reg [1:0] room_q2, now_q2, epoch_q2;
   reg [23:0] child_a_q2, child_b_q2;
   reg [3:0] one_a_q2, one_b_q2;
-  reg [51:0] half_a_q2, half_b_q2;
+  reg [NODE_W-1:0] node_a_q2, node_b_q2;
   reg [15:0] waiting_q2, strong_q2, leaf_set_q2;
-  reg [2:0] code_q2, under_q2;
+  reg [2:0] code_q2, nodes_q2;
   reg [WORK_W-1:0] work_q2;
   reg [STACK_W:0] entries_q2;
   reg [STACK_W-1:0] at_q2;
   reg [31:0] steps_q2, pairs_q2;
   reg [7:0] opens_q2;
-  reg [95:0] constants_q2;
+  reg [`CCHIP_QUERY_LINES_W-1:0] constants_q2;
   reg [79:0] leaf_nodes_q2;
   reg [4:0] tests_q2;
   always @(posedge clk) begin
@@ -260,10 +272,9 @@ module cchip_traversal_decision #(
     live_q2 <= live_q;
     step_q2 <= step_q;
     active_q2 <= active_q;
-    mode_q2 <= mode_q;
+    all_q2 <= all_q;
     hit_q2 <= hit_q;
-    room_q2 <= result_q ? 2'd0 : start_q | pop_q ? {1'b0, ~goes_q} :
-        2'd1 + {1'b0, extra_q} - {1'b0, leaf_q} - {1'b0, goes_q};
+    room_q2 <= free_room;
     now_q2 <= now_q;
     epoch_q2 <= epoch_q;
     inner_a_q2 <= roots_q | is_inner_a[i];
@@ -272,16 +283,15 @@ module cchip_traversal_decision #(
     child_b_q2 <= child_b + {22'd0, j & ~{2{roots_q}}};
     one_a_q2 <= 4'd1 << i;
     one_b_q2 <= 4'd1 << j;
-    half_a_q2 <= half_a_q;
-    half_b_q2 <= half_b_q;
+    node_a_q2 <= node_a_q;
+    node_b_q2 <= node_b_q;
     waiting_q2 <= waiting_q & ~(chosen & {16{clears_q}});
     strong_q2 <= kept_strong;
     any_strong_q2 <= |kept_strong;
     leaf_set_q2 <= leaf_set_q;
     code_q2 <= code_q;
-    under_q2 <= pop_q ? under_q + 3'd1 :
-        verdict_q & live_q & ~goes_q ? under_q - 3'd1 : under_q;
-    work_q2 <= work_q + more;
+    nodes_q2 <= nodes_next;
+    work_q2 <= work_q + more_work;
     entries_q2 <= entries_q + ({STACK_W + 1{entry_less_q}} | {{STACK_W{1'b0}}, entry_more_q});
     at_q2 <= entries_q[STACK_W-1:0] - {{STACK_W - 1{1'b0}}, pop_q};
     steps_q2 <= steps_q + {31'd0, step_q};
@@ -289,8 +299,8 @@ module cchip_traversal_decision #(
     opens_q2 <= start_q ? 8'd0 : opens_q[8] ? 8'd255 : opens_q[7:0];
     constants_q2 <= constants_q;
     leaf_nodes_q2 <= {
-      kinds_b_q, {8'd0, child_b} + constants_q[63:32],
-      kinds_a_q, {8'd0, child_a} + constants_q[31:0]
+      kinds_b_q, {8'd0, child_b} + constants_q[`CCHIP_QUERY_LINES_BASE_B],
+      kinds_a_q, {8'd0, child_a} + constants_q[`CCHIP_QUERY_LINES_BASE_A]
     };
     tests_q2 <= tests_q;
   end
@@ -300,45 +310,48 @@ module cchip_traversal_decision #(
   wire still = active_q2 & ~ends;
   wire [1:0] next_epoch = now_q2 + {1'b0, ends};
   // a child that is a leaf continues with its parent's line and a mask of one child
-  wire [27:0] next_a = inner_a_q2 ? {4'd15, child_a_q2} : {one_a_q2, half_a_q2[23:0]};
-  wire [27:0] next_b = inner_b_q2 ? {4'd15, child_b_q2} : {one_b_q2, half_b_q2[23:0]};
-  // a FIRST query with leaf pairs out, one of which may end it, asks for half as many. Both
-  // comparisons are made, because it is known late which one counts
-  wire hopes = live_q2 && ~mode_q2 && work_q2 != {{WORK_W - 3{1'b0}}, under_q2};
-  wire below_half = under_q2 < {1'b0, pairs_each[2:1]};
-  wire below_all = under_q2 < (pairs_each | {2'd0, ~|pairs_each});
-  // a strong child pair before others, the lowest number first
-  wire [15:0] of = any_strong_q2 ? strong_q2 : waiting_q2;
-  wire [3:0] of_row, two_of_row, row_waits;  // child i of A with any of B
-  wire [7:0] lowest_of_row;
-  generate
-    for (n = 0; n < 4; n = n + 1) begin : gen_row
-      wire [3:0] of_here = of[4*n+:4];
-      wire [3:0] waits = waiting_q2[4*n+:4];
-      assign of_row[n] = |of_here;
-      assign lowest_of_row[2*n+:2] = {~|of_here[1:0], ~of_here[0] & (of_here[1] | ~of_here[2])};
-      assign row_waits[n] = |waits;
-      assign two_of_row[n] = (|waits[1:0] & |waits[3:2]) | &waits[1:0] | &waits[3:2];
-    end
-  endgenerate
-  wire [1:0] row = {~|of_row[1:0], ~of_row[0] & (of_row[1] | ~of_row[2])};
-  wire [3:0] first = {row, lowest_of_row[2*row+:2]};
-  wire first_rest = |two_of_row | (|row_waits[1:0] & |row_waits[3:2]) | &row_waits[1:0] |
-      &row_waits[3:2];
+  wire [23:0] line_a = inner_a_q2 ? child_a_q2 : node_a_q2[`CCHIP_TREE_NODE_LINE];
+  wire [23:0] line_b = inner_b_q2 ? child_b_q2 : node_b_q2[`CCHIP_TREE_NODE_LINE];
+  wire [3:0] children_a = inner_a_q2 ? 4'd15 : one_a_q2;
+  wire [3:0] children_b = inner_b_q2 ? 4'd15 : one_b_q2;
+  // While a leaf pair in flight may end a FIRST query, keep half as many node pairs in flight: work
+  // begun before its hit is known is wasted. Both comparisons are made: which one counts is known
+  // late in the clock
+  wire result_pending = live_q2 && ~all_q2 && work_q2 != {{WORK_W - 3{1'b0}}, nodes_q2};
+  wire below_half = nodes_q2 < {1'b0, pairs_each[2:1]};
+  wire below_all = nodes_q2 < (pairs_each | {2'd0, ~|pairs_each});
+  // strong child pairs first, of these the lowest number
+  wire [3:0] first;
+  wire first_rest;
+  wire [15:0] unused_rest, unused_waiting;
+  wire unused_several;
+  wire [3:0] unused_first;
+  cchip_first_pair u_first (
+      .pairs  (any_strong_q2 ? strong_q2 : waiting_q2),
+      .first  (first),
+      .rest   (unused_rest),
+      .several(unused_several)
+  );
+  cchip_first_pair u_others (
+      .pairs  (waiting_q2),
+      .first  (unused_first),
+      .rest   (unused_waiting),
+      .several(first_rest)
+  );
 
   reg out_active_q, out_wants_q, out_start_q, out_cancel_q, out_goes_q, out_back_q;
   reg out_push_q, out_leaf_q, out_ends_q, out_step_q;
   reg [1:0] out_room_q;
   reg [STACK_W+80:0] out_state_q;
   wire valid = valid_q2 & ~rst;
-  reg [95:0] out_constants_q;
+  reg [`CCHIP_QUERY_LINES_W-1:0] out_constants_q;
   reg [WORK_W-1:0] out_work_q;
-  reg [58:0] out_record_q;
+  reg [`CCHIP_NODE_PAIR_W-1:0] out_record_q;
   reg [STACK_W-1:0] out_at_q;
-  reg [140:0] out_entry_q;
+  reg [`CCHIP_STACK_ENTRY_W-1:0] out_entry_q;
   reg [79:0] out_leaf_nodes_q;
   reg [15:0] out_leaf_set_q;
-  reg [68:0] out_answer_q;
+  reg [`CCHIP_QUERY_END_W-1:0] out_answer_q;
   reg [4:0] out_tests_q;
   always @(posedge clk) begin
     out_start_q <= valid & start_q2;
@@ -351,23 +364,23 @@ module cchip_traversal_decision #(
     out_step_q <= valid & step_q2;
     out_room_q <= valid ? room_q2 : 2'd0;
     out_active_q <= valid & still;
-    out_wants_q <= valid && still && |entries_q2 && (hopes ? below_half : below_all);
-    out_state_q <= {
-      next_epoch, still, mode_q2, entries_q2, under_q2, steps_q2, pairs_q2, opens_q2, hit_q2
-    };
+    out_wants_q <= valid && still && |entries_q2 && (result_pending ? below_half : below_all);
+    out_state_q <= `CCHIP_QUERY_STATE_OF(hit_q2, opens_q2, pairs_q2, steps_q2, nodes_q2,
+        entries_q2, all_q2, still, next_epoch);
     out_work_q <= work_q2;
     out_constants_q <= constants_q2;
-    out_record_q <= start_q2 ? {1'b1, next_epoch, 56'd0} : {1'b0, epoch_q2, next_b, next_a};
+    out_record_q <= start_q2 ?
+        `CCHIP_NODE_PAIR_OF(24'd0, 4'd0, 24'd0, 4'd0, next_epoch, 1'b1) :
+        `CCHIP_NODE_PAIR_OF(line_a, children_a, line_b, children_b, epoch_q2, 1'b0);
     out_at_q <= at_q2;
-    out_entry_q <= {first_rest, first, strong_q2, waiting_q2, half_b_q2, half_a_q2};
+    out_entry_q <= `CCHIP_STACK_ENTRY_OF(node_a_q2, node_b_q2, waiting_q2, strong_q2, first,
+        first_rest);
     out_leaf_nodes_q <= leaf_nodes_q2;
     out_leaf_set_q <= leaf_set_q2;
-    out_answer_q <= {
-      bad_q2 ? END_BAD_DESCRIPTOR : fails_q2 ? code_q2 : END_OK,
-      hit_q2 ? 2'd1 : |opens_q2 ? 2'd2 : 2'd0,
-      steps_q2,
-      pairs_q2
-    };
+    out_answer_q <= `CCHIP_QUERY_END_OF(pairs_q2, steps_q2,
+        hit_q2 ? `CCHIP_QUERY_ANSWER_YES : |opens_q2 ? `CCHIP_QUERY_ANSWER_OPEN :
+            `CCHIP_QUERY_ANSWER_NO,
+        bad_q2 ? `CCHIP_END_BAD_DESCRIPTOR : fails_q2 ? code_q2 : `CCHIP_END_OK);
     out_tests_q <= valid & step_q2 ? tests_q2 : 5'd0;
   end
   assign m_state      = out_state_q;
@@ -392,7 +405,8 @@ module cchip_traversal_decision #(
   assign m_answer     = out_answer_q;
   assign m_step       = out_step_q;
   assign m_tests      = out_tests_q;
-  wire unused = &{1'b0, unused_epoch, unused_children_a, unused_children_b, of_row[3]};
+  wire unused = &{1'b0, s_record, s_nodes[`CCHIP_NODES_CODE], unused_rest, unused_waiting,
+                  unused_several, unused_first};
 
 endmodule
 `default_nettype wire

@@ -175,61 +175,49 @@ module cchip_traversal_events #(
       .take   (choose_q)
   );
   wire [CONTEXT_W-1:0] idle_context, want_context;
-  genvar n, b;
-  generate
-    for (b = 0; b < CONTEXT_W; b = b + 1) begin : gen_context
-      wire [QUERIES-1:0] with_bit;
-      for (n = 0; n < QUERIES; n = n + 1) begin : gen_with
-        localparam [31:0] N = n;
-        assign with_bit[n] = N[b];
-      end
-      assign idle_context[b] = |(idle_one_q & with_bit);
-      assign want_context[b] = |(want_one_q & with_bit);
-    end
-  endgenerate
+  cchip_onehot_index #(
+      .N    (QUERIES),
+      .WIDTH(CONTEXT_W)
+  ) u_idle_context (
+      .select(idle_one_q),
+      .index (idle_context)
+  );
+  cchip_onehot_index #(
+      .N    (QUERIES),
+      .WIDTH(CONTEXT_W)
+  ) u_want_context (
+      .select(want_one_q),
+      .index (want_context)
+  );
 
   // ---- the next query
-  reg query_valid_q, query_ready_q, bad_q, judging_q, judged_q;
-  reg [8:0] beyond_q;
-  reg [511:0] query_q;
+  wire query_waits;  // it may start
   wire start_take;
   wire start_done = s_left_valid & s_left_start;
   wire start_ends = start_done & ~s_left_cancel;
-  wire query_in = s_query_valid & query_ready_q;
-  // an image has fewer than 2^24 lines: of one that begins here or later, line numbers could wrap
-  wire far = &query_q[63:56] | &query_q[31:24];
-  wire [8:0] beyond;  // |M_ij| > 1
-  generate
-    for (n = 0; n < 9; n = n + 1) begin : gen_m
-      wire [31:0] m = query_q[64+32*n+:32];
-      assign beyond[n] = m[31] ? ~m[30] : m[30] & |m[29:0];
-    end
-  endgenerate
+  cchip_query_check u_query (
+      .clk    (clk),
+      .rst    (rst),
+      .s_valid(s_query_valid),
+      .s_ready(s_query_ready),
+      .s_query(s_query),
+      .waits  (query_waits),
+      .query  (query),
+      .bad    (query_bad),
+      .tried  (start_done),
+      .started(start_ends)
+  );
   always @(posedge clk) begin
-    if (query_in) query_q <= s_query;
-    beyond_q      <= beyond;
-    bad_q         <= |beyond_q | (|query_q[479:478]) | far;
-    want_one_q    <= want_grant;
+    want_one_q <= want_grant;
     if (idle_load) idle_one_q <= idle_grant;
     if (rst) begin
-      query_valid_q <= 1'b0;
-      query_ready_q <= 1'b0;
-      judging_q     <= 1'b0;
-      judged_q      <= 1'b0;
-      idle_valid_q  <= 1'b0;
-      starting_q    <= 1'b0;
+      idle_valid_q <= 1'b0;
+      starting_q   <= 1'b0;
     end else begin
-      query_valid_q <= query_valid_q ? ~start_ends : query_in;
-      query_ready_q <= query_valid_q ? start_ends : ~query_in;
-      judging_q     <= query_valid_q & ~start_done;
-      judged_q      <= judging_q & ~start_done;
-      idle_valid_q  <= idle_valid_q ? ~start_take : idle_load & |idle_free_q;
-      starting_q    <= start_take | (starting_q & ~start_done);
+      idle_valid_q <= idle_valid_q ? ~start_take : idle_load & |idle_free_q;
+      starting_q   <= start_take | (starting_q & ~start_done);
     end
   end
-  assign s_query_ready = query_ready_q;
-  assign query         = query_q;
-  assign query_bad     = bad_q;
 
   // ---- a place, room in the leaf queue, room for the answer
   wire place_valid, place_take;
@@ -281,7 +269,7 @@ module cchip_traversal_events #(
   reg [CONTEXT_W-1:0] idle_context_q, pop_context_q;
   wire asks = ~choose_q & ~rst;
   wire can_go = place_valid & some_room;
-  wire can_start = query_valid_q & judged_q & ~starting_q & idle_valid_q & answer_room &
+  wire can_start = query_waits & ~starting_q & idle_valid_q & answer_room &
       start_ready;
   localparam [QUERIES-1:0] FIRST_CONTEXT = 1;
   always @(posedge clk) begin

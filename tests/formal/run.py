@@ -55,6 +55,7 @@ EVENTS = "rtl/traversal/cchip_traversal_events.v"
 POOL = "rtl/common/cchip_pool.v"
 DECISION = "rtl/traversal/cchip_traversal_decision.v"
 LEAVES = "rtl/traversal/cchip_leaf_queue.v"
+FIRST = "rtl/traversal/cchip_first_pair.v"
 CACHE_PORT = "rtl/memory/cchip_cache_port.v"
 CACHE_WAITERS = "rtl/memory/cchip_cache_waiters.v"
 CACHE_INVALIDATE = "rtl/memory/cchip_cache_invalidate.v"
@@ -173,27 +174,27 @@ MUTANTS = [
     ("cchip_traversal_events bounded", EVENTS, "result_first_q ? ~result_take : verdict_take & may_result_q;", "1'b0;"),
     ("cchip_traversal_events bounded", EVENTS, "result_first_q ? ~result_take : verdict_take & may_result_q;", "1'b1;"),
     ("cchip_traversal_events bounded", EVENTS, "s_left_active ? idle_q & ~leaves : idle_q | leaves;", "idle_q | leaves;"),
-    ("cchip_traversal_events bounded", EVENTS, "judged_q & ~starting_q &", "judged_q &"),
+    ("cchip_traversal_events bounded", EVENTS, "query_waits & ~starting_q &", "query_waits &"),
     ("cchip_traversal_events bounded", EVENTS, "idle_context_q <= idle_context;", "idle_context_q <= 1'b0;"),
     ("cchip_traversal_events bounded", EVENTS, "~idle_valid_q & running & ~starting_q;", "~idle_valid_q & running;"),
     ("cchip_traversal_events bounded", POOL, "back_valid ? back_number : next_q", "next_q"),
     # work of a former query makes the present one wait; what is left of an entry is lost, of its weak pairs; a pair from the stack
     # is not counted, nor that the place of a bad query is free; room for leaves is given back though they are there; leaves of a
     # query that has ended; its epoch continues; another code; an old event ends the new query; the child pair of another number
-    ("cchip_traversal_decision prove", DECISION, "wire hopes = live_q2 && ~mode_q2", "wire hopes = ~mode_q2"),
-    ("cchip_traversal_decision prove", DECISION, "(push & ~s_full) | (s_is_pop & stack_rest);", "push & ~s_full;"),
+    ("cchip_traversal_decision prove", DECISION, "wire result_pending = live_q2 && ~all_q2", "wire result_pending = ~all_q2"),
+    ("cchip_traversal_decision prove", DECISION, "(push & ~s_full) | (s_is_pop & s_entry[`CCHIP_STACK_ENTRY_REST]);", "push & ~s_full;"),
     ("cchip_traversal_decision prove", DECISION, "waiting_q & ~(chosen & {16{clears_q}});", "waiting_q & ~chosen;"),
-    ("cchip_traversal_decision prove", DECISION, "any_strong_q2 ? strong_q2 : waiting_q2;", "waiting_q2;"),
-    ("cchip_traversal_decision prove", DECISION, "wire first_rest = |two_of_row |", "wire first_rest = two_of_row[0] |"),
-    ("cchip_traversal_decision prove", DECISION, "one_less | one_more};", "one_less};"),
-    ("cchip_traversal_decision prove", DECISION, "goes_q ? leaves_q : leaves_less_q;", "leaves_q;"),
+    ("cchip_traversal_decision prove", DECISION, "(any_strong_q2 ? strong_q2 : waiting_q2)", "(waiting_q2)"),
+    ("cchip_traversal_decision prove", FIRST, "assign several = |row_two |", "assign several = row_two[0] |"),
+    ("cchip_traversal_decision prove", DECISION, "more_work = {{WORK_W - 1{1'b0}}, goes_q};", "more_work = {WORK_W{1'b0}};"),
+    ("cchip_traversal_decision prove", DECISION, "goes_q ? leaves_q : leaves_less_q}", "leaves_q}"),
     ("cchip_traversal_decision prove", DECISION, "~goes_q & ~result_q;", "~goes_q & verdict_q;"),
     ("cchip_traversal_decision prove", DECISION, "- {1'b0, leaf_q} - {1'b0, goes_q};", "- {1'b0, goes_q};"),
     ("cchip_traversal_decision prove", DECISION, "wire leaf = step & s_some_leaves & ~spill;", "wire leaf = s_is_verdict & s_some_leaves & ~spill;"),
     ("cchip_traversal_decision prove", DECISION, "now_q2 + {1'b0, ends};", "now_q2;"),
-    ("cchip_traversal_decision prove", DECISION, "spill ? END_STACK : END_STEPS;", "END_STEPS;"),
+    ("cchip_traversal_decision prove", DECISION, "spill ? `CCHIP_END_STACK : `CCHIP_END_STEPS;", "`CCHIP_END_STEPS;"),
     ("cchip_traversal_decision prove", DECISION, "bad_q2 | (live_q2 & (", "bad_q2 | (active_q2 & ("),
-    ("cchip_traversal_decision prove", DECISION, "s_is_pop ? stack_first : best_number;", "best_number;"),
+    ("cchip_traversal_decision prove", DECISION, "s_is_pop ? s_entry[`CCHIP_STACK_ENTRY_FIRST] : best_number;", "best_number;"),
     # a limit of 0 open pairs ends a query without one; a limit of 0 node pairs lets none go
     ("cchip_traversal_decision prove", DECISION, "(some_open_q & opens_q >= {1'b0, open_limit})", "(opens_q >= {1'b0, open_limit})"),
     ("cchip_traversal_decision prove", DECISION, "(pairs_each | {2'd0, ~|pairs_each});", "pairs_each;"),
@@ -208,7 +209,7 @@ MUTANTS = [
     ("cchip_leaf_queue bounded", LEAVES, "(drop_q & ~m_drop_ready);", "(drop_q & ~m_drop_ready & ~m_ready);"),
     ("cchip_leaf_queue bounded", LEAVES, "spend | (valid_q & ~m_ready);", "(spend | (valid_q & ~m_ready)) & live;"),
     ("cchip_leaf_queue bounded", LEAVES, "room_q <= load & queue_valid;", "room_q <= load;"),
-    ("cchip_leaf_queue bounded", LEAVES, "last_q   <= ~more;", "last_q   <= ~|row_two;"),
+    ("cchip_leaf_queue bounded", LEAVES, "last_q   <= ~more;", "last_q   <= ~|rest[15:8];"),
     ("cchip_leaf_queue bounded", LEAVES, "nodes_q[72+2*number_q[1:0]+:2], nodes_q[32+2*number_q[3:2]+:2]",
      "nodes_q[72+2*number_q[3:2]+:2], nodes_q[32+2*number_q[1:0]+:2]"),
     # the turn follows requests instead of grants; passes without a grant taken; there is no turn
