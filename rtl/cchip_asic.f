@@ -58,6 +58,9 @@ traversal/cchip_traversal_contexts.v
 traversal/cchip_traversal_fetch.v
 traversal/cchip_traversal.v
 traversal/cchip_broad_phase.v
+transform/cchip_leaf_sequencer.v
+transform/cchip_leaf_unit.v
+transform/cchip_leaf_origin.v
 transform/cchip_vertex_transform.v
 transform/cchip_normaliser.v
 transform/cchip_transform.v
