@@ -4,7 +4,7 @@
 #include <Vlevel4_subsystem.h>
 
 #include <cchip/levels/stimulus.hpp>
-#include <cchip/rtl/pair_port.hpp>
+#include <cchip/machines/pair_port.hpp>
 #include <cchip/sim/axi_lite.hpp>
 #include <cchip/sim/axi_memory.hpp>
 #include <cchip/sim/simulation.hpp>

@@ -4,7 +4,7 @@
 #ifndef CCHIP_CAMPAIGN_RTL_STREAM_HPP
 #define CCHIP_CAMPAIGN_RTL_STREAM_HPP
 
-#include <cchip/rtl/rtl_engine.hpp>
+#include <cchip/machines/rtl_engine.hpp>
 #include <vector>
 
 #include "commands.hpp"

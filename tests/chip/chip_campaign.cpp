@@ -12,9 +12,9 @@
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/driver/chip_host.hpp>
 #include <cchip/exact/posed_pairs.hpp>
+#include <cchip/machines/probes.hpp>
+#include <cchip/machines/simulated_chip.hpp>
 #include <cchip/mesh/shapes.hpp>
-#include <cchip/rtl/probes.hpp>
-#include <cchip/rtl/simulated_chip.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/wire/bitstream.hpp>
 #include <cchip/wire/swap.hpp>

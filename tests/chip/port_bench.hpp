@@ -6,7 +6,7 @@
 
 #include <cchip/bvh/image.hpp>
 #include <cchip/driver/chip_driver.hpp>
-#include <cchip/rtl/chip_machine.hpp>
+#include <cchip/machines/chip_machine.hpp>
 #include <cchip/wire/chip_registers.hpp>
 #include <functional>
 #include <map>

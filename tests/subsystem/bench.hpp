@@ -11,10 +11,10 @@
 #include <array>
 #include <cchip/driver/primtest_engine.hpp>
 #include <cchip/exact/oracle.hpp>
+#include <cchip/machines/pair_port.hpp>
+#include <cchip/machines/probes.hpp>
+#include <cchip/machines/swap_port.hpp>
 #include <cchip/model/programme.hpp>
-#include <cchip/rtl/pair_port.hpp>
-#include <cchip/rtl/probes.hpp>
-#include <cchip/rtl/swap_port.hpp>
 #include <cchip/sim/axi_lite.hpp>
 #include <cchip/sim/axi_memory.hpp>
 #include <cchip/sim/simulation.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The streams s_pair and m_result as values.
-#ifndef CCHIP_RTL_PAIR_PORT_HPP
-#define CCHIP_RTL_PAIR_PORT_HPP
+#ifndef CCHIP_MACHINES_PAIR_PORT_HPP
+#define CCHIP_MACHINES_PAIR_PORT_HPP
 
 #include <cchip/sim/bits.hpp>
 #include <cchip/sim/stream.hpp>

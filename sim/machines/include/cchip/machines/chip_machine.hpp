@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A Verilated cchip_chip with its memory as a machine.
-#ifndef CCHIP_RTL_CHIP_MACHINE_HPP
-#define CCHIP_RTL_CHIP_MACHINE_HPP
+#ifndef CCHIP_MACHINES_CHIP_MACHINE_HPP
+#define CCHIP_MACHINES_CHIP_MACHINE_HPP
 
 #include <algorithm>
 #include <cchip/driver/machine.hpp>

@@ -3,9 +3,9 @@
 #include <Vcchip_primtest_subsystem___024root.h>
 
 #include <algorithm>
-#include <cchip/rtl/pair_port.hpp>
-#include <cchip/rtl/probes.hpp>
-#include <cchip/rtl/simulated_subsystem.hpp>
+#include <cchip/machines/pair_port.hpp>
+#include <cchip/machines/probes.hpp>
+#include <cchip/machines/simulated_subsystem.hpp>
 #include <cchip/sim/axi_lite.hpp>
 #include <cchip/sim/axi_memory.hpp>
 #include <cchip/sim/simulation.hpp>

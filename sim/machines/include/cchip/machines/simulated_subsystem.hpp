@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The Verilated cchip_primtest_subsystem as a machine: two slots, real swaps.
-#ifndef CCHIP_RTL_SIMULATED_SUBSYSTEM_HPP
-#define CCHIP_RTL_SIMULATED_SUBSYSTEM_HPP
+#ifndef CCHIP_MACHINES_SIMULATED_SUBSYSTEM_HPP
+#define CCHIP_MACHINES_SIMULATED_SUBSYSTEM_HPP
 
 #include <cchip/driver/machine.hpp>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The streams s_swap and m_report, records SWAP_REQUEST and SWAP_REPORT, as values.
-#ifndef CCHIP_RTL_SWAP_PORT_HPP
-#define CCHIP_RTL_SWAP_PORT_HPP
+#ifndef CCHIP_MACHINES_SWAP_PORT_HPP
+#define CCHIP_MACHINES_SWAP_PORT_HPP
 
 #include <cchip/sim/bits.hpp>
 #include <cchip/wire/swap.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The Verilated cchip_chip as a machine and as a device.
-#ifndef CCHIP_RTL_SIMULATED_CHIP_HPP
-#define CCHIP_RTL_SIMULATED_CHIP_HPP
+#ifndef CCHIP_MACHINES_SIMULATED_CHIP_HPP
+#define CCHIP_MACHINES_SIMULATED_CHIP_HPP
 
 #include <cchip/collide/collide.hpp>
 #include <cchip/driver/machine.hpp>

@@ -4,8 +4,8 @@
 /// its user includes <V...___024root.h> of the model.
 ///
 /// A function template takes every model that has the signal, whatever the name of its class.
-#ifndef CCHIP_RTL_PROBES_HPP
-#define CCHIP_RTL_PROBES_HPP
+#ifndef CCHIP_MACHINES_PROBES_HPP
+#define CCHIP_MACHINES_PROBES_HPP
 
 namespace cchip::probes {
 

@@ -7,8 +7,8 @@
 #include <cchip/device/device.hpp>
 #include <cchip/driver/chip_driver.hpp>
 #include <cchip/driver/chip_host.hpp>
-#include <cchip/rtl/chip_machine.hpp>
-#include <cchip/rtl/simulated_chip.hpp>
+#include <cchip/machines/chip_machine.hpp>
+#include <cchip/machines/simulated_chip.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <stdexcept>
 #include <string>

@@ -6,9 +6,9 @@
 #include <Vcchip_primtest_tri_tri.h>
 #include <Vcchip_primtest_tri_tri___024root.h>
 
-#include <cchip/rtl/pair_port.hpp>
-#include <cchip/rtl/probes.hpp>
-#include <cchip/rtl/rtl_engine.hpp>
+#include <cchip/machines/pair_port.hpp>
+#include <cchip/machines/probes.hpp>
+#include <cchip/machines/rtl_engine.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cchip/waves/wave_layout.hpp>

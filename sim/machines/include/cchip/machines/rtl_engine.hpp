@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The Verilated primitive tests as an engine.
-#ifndef CCHIP_RTL_RTL_ENGINE_HPP
-#define CCHIP_RTL_RTL_ENGINE_HPP
+#ifndef CCHIP_MACHINES_RTL_ENGINE_HPP
+#define CCHIP_MACHINES_RTL_ENGINE_HPP
 
 #include <cchip/driver/primtest_engine.hpp>
 #include <cstdint>
