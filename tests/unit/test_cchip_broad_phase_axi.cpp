@@ -7,7 +7,7 @@
 #include <models/cchip_broad_phase_axi.hpp>
 #include <set>
 
-#include "../traverse/traverse_bench.hpp"
+#include "../../bench/traverse/traverse_bench.hpp"
 #include "bench.hpp"
 
 using namespace cchip;

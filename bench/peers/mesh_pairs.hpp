@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Pairs of meshes of the sizes that users have, for comparisons with other libraries, and poses of them by class.
-#ifndef CCHIP_TESTS_PEERS_MESH_PAIRS_HPP
-#define CCHIP_TESTS_PEERS_MESH_PAIRS_HPP
+#ifndef CCHIP_BENCH_MESH_PAIRS_HPP
+#define CCHIP_BENCH_MESH_PAIRS_HPP
 
 #include <cchip/collide/collide.hpp>
 #include <cchip/mesh/mesh.hpp>

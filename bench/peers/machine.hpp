@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// What a benchmark says about the computer that it ran on.
-#ifndef CCHIP_TESTS_PEERS_MACHINE_HPP
-#define CCHIP_TESTS_PEERS_MACHINE_HPP
+#ifndef CCHIP_BENCH_MACHINE_HPP
+#define CCHIP_BENCH_MACHINE_HPP
 
 #include <fmt/format.h>
 

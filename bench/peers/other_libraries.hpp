@@ -2,8 +2,8 @@
 /// \file
 /// All libraries that a benchmark asks. CMakeLists.txt defines the names of the modules for the programs that include
 /// this.
-#ifndef CCHIP_TESTS_PEERS_OTHER_LIBRARIES_HPP
-#define CCHIP_TESTS_PEERS_OTHER_LIBRARIES_HPP
+#ifndef CCHIP_BENCH_OTHER_LIBRARIES_HPP
+#define CCHIP_BENCH_OTHER_LIBRARIES_HPP
 
 #include <string>
 #include <vector>

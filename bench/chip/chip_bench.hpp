@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// cchip_chip_core between a memory that holds images and both rings, and a host that submits and collects.
-#ifndef CCHIP_TESTS_CHIP_BENCH_HPP
-#define CCHIP_TESTS_CHIP_BENCH_HPP
+#ifndef CCHIP_BENCH_CHIP_BENCH_HPP
+#define CCHIP_BENCH_CHIP_BENCH_HPP
 
 #include <cchip/bvh/image.hpp>
 #include <cchip/model/broad_phase.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Pairs of primitives on the grid -1..1: 27 points, 27^3 ordered triangles.
-#ifndef CCHIP_TESTS_CAMPAIGN_GRID_PAIRS_HPP
-#define CCHIP_TESTS_CAMPAIGN_GRID_PAIRS_HPP
+#ifndef CCHIP_BENCH_GRID_PAIRS_HPP
+#define CCHIP_BENCH_GRID_PAIRS_HPP
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 /// \file
 /// cchip_broad_phase_axi between a memory that holds images and a receiver that tests leaf pairs as the functional
 /// model does.
-#ifndef CCHIP_TESTS_TRAVERSE_BENCH_HPP
-#define CCHIP_TESTS_TRAVERSE_BENCH_HPP
+#ifndef CCHIP_BENCH_TRAVERSE_BENCH_HPP
+#define CCHIP_BENCH_TRAVERSE_BENCH_HPP
 
 #include <algorithm>
 #include <cchip/bvh/image.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Time of several ways to answer the same queries, measured in turns.
-#ifndef CCHIP_TESTS_PEERS_MEASURE_HPP
-#define CCHIP_TESTS_PEERS_MEASURE_HPP
+#ifndef CCHIP_BENCH_MEASURE_HPP
+#define CCHIP_BENCH_MEASURE_HPP
 
 #include <malloc.h>
 

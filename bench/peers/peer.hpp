@@ -3,8 +3,8 @@
 /// Another library behind a C interface: fcl_peer.cpp, coal_peer.cpp, cgal_peer.cpp, ode_peer.cpp. Each is a module
 /// that exports one function, so that one process can hold several, even two builds of FCL: as C++ libraries they would
 /// share the symbols of their templates, and each brings its own versions of Boost and octomap.
-#ifndef CCHIP_TESTS_PEERS_PEER_HPP
-#define CCHIP_TESTS_PEERS_PEER_HPP
+#ifndef CCHIP_BENCH_PEER_HPP
+#define CCHIP_BENCH_PEER_HPP
 
 #include <cstddef>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Our CPU device and FCL asked the same, and exact integers where they differ.
-#ifndef CCHIP_TESTS_PEERS_ASK_HPP
-#define CCHIP_TESTS_PEERS_ASK_HPP
+#ifndef CCHIP_BENCH_ASK_HPP
+#define CCHIP_BENCH_ASK_HPP
 
 #include <algorithm>
 #include <cchip/cpu/cpu_device.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Other libraries and their meshes, all asked in the same way.
-#ifndef CCHIP_TESTS_PEERS_PEER_LIBRARY_HPP
-#define CCHIP_TESTS_PEERS_PEER_LIBRARY_HPP
+#ifndef CCHIP_BENCH_PEER_LIBRARY_HPP
+#define CCHIP_BENCH_PEER_LIBRARY_HPP
 
 #include <cchip/collide/collide.hpp>
 #include <cchip/mesh/mesh.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The rows of the table in docs/cpp/touching.md.
-#ifndef CCHIP_TESTS_PEERS_TOUCHING_CASES_HPP
-#define CCHIP_TESTS_PEERS_TOUCHING_CASES_HPP
+#ifndef CCHIP_BENCH_TOUCHING_CASES_HPP
+#define CCHIP_BENCH_TOUCHING_CASES_HPP
 
 #include <cchip/geometry/pose.hpp>
 #include <cchip/mesh/mesh.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A mesh of triangles as FCL takes it.
-#ifndef CCHIP_TESTS_PEERS_FCL_MODEL_HPP
-#define CCHIP_TESTS_PEERS_FCL_MODEL_HPP
+#ifndef CCHIP_BENCH_FCL_MODEL_HPP
+#define CCHIP_BENCH_FCL_MODEL_HPP
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A robot as its URDF describes it: links with their collision meshes, joints, forward kinematics.
-#ifndef CCHIP_TESTS_PEERS_ROBOT_HPP
-#define CCHIP_TESTS_PEERS_ROBOT_HPP
+#ifndef CCHIP_BENCH_ROBOT_HPP
+#define CCHIP_BENCH_ROBOT_HPP
 
 #include <cchip/geometry/pose.hpp>
 #include <cchip/mesh/mesh.hpp>

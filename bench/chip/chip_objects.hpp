@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Two small objects for tests of the chip, queries of them, and a memory that is hard to live with.
-#ifndef CCHIP_TESTS_CHIP_OBJECTS_HPP
-#define CCHIP_TESTS_CHIP_OBJECTS_HPP
+#ifndef CCHIP_BENCH_CHIP_OBJECTS_HPP
+#define CCHIP_BENCH_CHIP_OBJECTS_HPP
 
 #include <cchip/bvh/image.hpp>
 #include <cchip/bvh/place.hpp>

@@ -3,8 +3,8 @@
 /// cchip_primtest_subsystem with its surroundings: pairs of three kinds, a sink, memory with bitstreams, registers.
 /// Tests, campaign and command share the account of the pairs: every tag once, with the right answer, or as open where
 /// a report says so.
-#ifndef CCHIP_TESTS_SUBSYSTEM_BENCH_HPP
-#define CCHIP_TESTS_SUBSYSTEM_BENCH_HPP
+#ifndef CCHIP_BENCH_SUBSYSTEM_BENCH_HPP
+#define CCHIP_BENCH_SUBSYSTEM_BENCH_HPP
 
 #include <verilated.h>
 
@@ -28,7 +28,7 @@
 #include <random>
 #include <set>
 
-#include "models.hpp"
+#include "subsystem_models.hpp"
 
 namespace cchip::subsystem {
 

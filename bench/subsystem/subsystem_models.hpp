@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The subsystems that CMakeLists.txt here builds: small, with simulated reconfiguration.
-#ifndef CCHIP_TESTS_SUBSYSTEM_MODELS_HPP
-#define CCHIP_TESTS_SUBSYSTEM_MODELS_HPP
+#ifndef CCHIP_BENCH_SUBSYSTEM_MODELS_HPP
+#define CCHIP_BENCH_SUBSYSTEM_MODELS_HPP
 
 #include <Vsubsystem_s1.h>
 #include <Vsubsystem_s1___024root.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// cchip_chip behind its driver: queries go in by ring and doorbell, records come back by their phase bit.
-#ifndef CCHIP_TESTS_PORT_BENCH_HPP
-#define CCHIP_TESTS_PORT_BENCH_HPP
+#ifndef CCHIP_BENCH_PORT_BENCH_HPP
+#define CCHIP_BENCH_PORT_BENCH_HPP
 
 #include <cchip/bvh/image.hpp>
 #include <cchip/driver/chip_driver.hpp>

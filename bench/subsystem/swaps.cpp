@@ -13,7 +13,7 @@
 #include <cchip/stimulus/campaign.hpp>
 #include <cstdio>
 
-#include "bench.hpp"
+#include "subsystem_bench.hpp"
 
 namespace cchip::subsystem {
 namespace {
