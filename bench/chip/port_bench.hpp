@@ -6,6 +6,7 @@
 
 #include <cchip/bvh/image.hpp>
 #include <cchip/driver/chip_driver.hpp>
+#include <cchip/machines/chip_answer.hpp>
 #include <cchip/machines/chip_machine.hpp>
 #include <cchip/wire/chip_registers.hpp>
 #include <functional>
@@ -15,9 +16,10 @@
 #include <utility>
 #include <vector>
 
-#include "chip_bench.hpp"
-
 namespace cchip::testing {
+
+using sim::ChipAnswer;
+using sim::compare_answer;
 
 /// Scoreboard of a driver. A query's number is its tag.
 template <class Model, int DATA_W>

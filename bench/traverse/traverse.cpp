@@ -7,13 +7,13 @@
 #include <CLI/CLI.hpp>
 #include <cchip/bvh/place.hpp>
 #include <cchip/cpu/cpu_device.hpp>
+#include <cchip/machines/simulated_broad_phase.hpp>
 #include <cchip/model/broad_phase.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <set>
 
 #include "mesh_pairs.hpp"
-#include "traverse_bench.hpp"
 
 namespace cchip::testing {
 namespace {
@@ -30,7 +30,7 @@ struct Settings {
   std::size_t poses = 100;
   std::size_t warm = 20;
   std::uint64_t seed = sim::seed_from_environment();
-  MemoryOptions memory;
+  sim::AxiLinesOptions memory;
   std::size_t at_once = 0;
   unsigned pairs_each = 3;
   std::uint32_t lock = 512;  ///< lines of each image, from its first one
@@ -69,7 +69,7 @@ struct Totals {
   std::size_t mismatches = 0;
   std::size_t lost = 0;
   std::uint64_t hits = 0;
-  Counters counters;
+  sim::BroadPhaseCounters counters;
 };
 
 class Run {
@@ -95,8 +95,8 @@ class Run {
   }
 
  private:
-  static std::uint64_t bytes(const Counters& c) { return c.beats * BroadPhase::DATA_W / 8; }
-  static double hit_rate(const Counters& c) {
+  static std::uint64_t bytes(const sim::BroadPhaseCounters& c) { return c.beats * BroadPhase::DATA_W / 8; }
+  static double hit_rate(const sim::BroadPhaseCounters& c) {
     const auto all = static_cast<double>(c.hits + c.misses + c.waits);
     return all == 0 ? 0 : static_cast<double>(c.hits) / all;
   }
@@ -141,8 +141,8 @@ class Run {
       fmt::print("waveform {}, its layout beside it\n", settings_.wave);
     }
     settings_.wave.clear();
-    TraverseBench<BroadPhase> bench(options);
-    bench.memory = settings_.memory;
+    sim::SimulatedBroadPhase<BroadPhase> bench(options);
+    bench.memory().options = settings_.memory;
     bench.at_once = settings_.at_once;
     bench.top().pairs_each = static_cast<CData>(settings_.pairs_each);
     bench.place(image_a.line, image_a.image.lines);
@@ -167,7 +167,7 @@ class Run {
     run(0, settings_.warm);
     bench.clear_counters();
     if (lost == 0) run(settings_.warm, queries.size());
-    const Counters& spent = bench.counters();
+    const sim::BroadPhaseCounters& spent = bench.counters();
     std::size_t hits = 0;
     std::size_t mismatches = 0;
     steps_alone_ = 0;
@@ -195,8 +195,8 @@ class Run {
 
   /// 0 if the answer is the model's: all of it in mode ALL; whether they meet, and no leaf pair that the model
   /// does not have, in mode FIRST.
-  std::size_t compare(const Query& query, const Answer& answer, const Placed& image_a, const Placed& image_b,
-                      bool counts) {
+  std::size_t compare(const Query& query, const sim::BroadPhaseAnswer& answer, const Placed& image_a,
+                      const Placed& image_b, bool counts) {
     const Placed& moved = query.swapped ? image_b : image_a;
     const Placed& fixed = query.swapped ? image_a : image_b;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> lines;

@@ -3,7 +3,7 @@
 #include <Vcchip_primtest_subsystem___024root.h>
 
 #include <algorithm>
-#include <cchip/machines/pair_port.hpp>
+#include <cchip/machines/pair_streams.hpp>
 #include <cchip/machines/probes.hpp>
 #include <cchip/machines/simulated_subsystem.hpp>
 #include <cchip/sim/axi_lite.hpp>
@@ -21,37 +21,6 @@ using Model = Vcchip_primtest_subsystem;
 
 constexpr std::uint64_t time_units_per_clock = 10;
 constexpr std::uint64_t reset_clocks = 2;
-
-/// The two streams of pairs.
-class Streams : public sim::Agent {
- public:
-  explicit Streams(Model& model) : model_(model), port_(model, defs::coord_w_default) {}
-
-  bool send(const KindRequest& request) {
-    if (offers_) return false;
-    port_.put(request.request);
-    model_.s_pair_kind = static_cast<CData>(request.kind);
-    offers_ = true;
-    return true;
-  }
-
-  void drive(const sim::ClockInfo& now) override {
-    model_.m_result_ready = 1;
-    model_.s_pair_valid = offers_ && !now.in_reset ? 1 : 0;
-  }
-  void sample(const sim::ClockInfo& now) override {
-    if (now.in_reset) return;
-    if (model_.s_pair_ready != 0) offers_ = false;
-    if (model_.m_result_valid != 0) results.push_back({port_.result(), static_cast<int>(model_.m_result_kind)});
-  }
-
-  std::deque<KindResult> results;
-
- private:
-  Model& model_;
-  sim::PairPort<Model> port_;
-  bool offers_ = false;
-};
 
 /// Counts what the registers do not show.
 class Observer : public sim::Agent {
@@ -121,7 +90,7 @@ struct SimulatedSubsystem::Parts {
 
   SimulatedSubsystemOptions options;
   sim::Simulation<Model> simulation;
-  Streams streams{simulation.top()};
+  sim::PairStreams<Model> streams{simulation.top(), defs::coord_w_default};
   Observer observer{simulation.top()};
   sim::AxiMemory<Model> memory{simulation.top()};
   sim::AxiLiteMaster<Model> registers{simulation.top()};

@@ -38,6 +38,7 @@ LINKS = {
     "cchip_device": {"core", "model"}, "cchip_harness": {"verilated"}, "cchip_reconfig": set(), "cchip_waves": {"core"},
     "cchip_models": {"core", "model"},
     "cchip_stimulus": {"core", "model"}, "cchip_pair_vectors": {"stimulus"}, "cchip_query_vectors": {"stimulus"}, "cchip_rtl_ports": {"core", "harness"},
+    "cchip_rtl_receiver": {"rtl_ports", "model"},
     "cchip_rtl": {"device", "rtl_ports", "rtl_models", "waves"}, "cchip_app": {"device", "mesh_io", "stimulus",
                                                                                "reference", "rtl"},
     "cchip": {"app"}, "cchip_levels_core": {"reconfig", "core", "stimulus"},

@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// cchip_chip_core between a memory that holds images and both rings, and a host that submits and collects.
-#ifndef CCHIP_BENCH_CHIP_BENCH_HPP
-#define CCHIP_BENCH_CHIP_BENCH_HPP
+/// A Verilated cchip_chip_core between a memory that holds images and both rings, and a host that submits and collects.
+#ifndef CCHIP_MACHINES_SIMULATED_CHIP_CORE_HPP
+#define CCHIP_MACHINES_SIMULATED_CHIP_CORE_HPP
 
 #include <cchip/bvh/image.hpp>
-#include <cchip/model/broad_phase.hpp>
+#include <cchip/machines/chip_answer.hpp>
 #include <cchip/sim/axi_lines.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cstring>
-#include <deque>
-#include <optional>
-#include <set>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
-namespace cchip::testing {
+namespace cchip::sim {
 
 struct ChipOptions {
   unsigned query_log2 = 8;       ///< lines of the ring of queries
@@ -26,24 +22,18 @@ struct ChipOptions {
   std::uint32_t generation = 0;  ///< upper byte of all tags
 };
 
-/// What came back for a query.
-struct ChipAnswer {
-  std::optional<DoneRecord> done;
-  std::vector<PairRecord> pairs;
-};
-
 /// Scoreboard of the rings: every record is looked at when it is read, and what is wrong with it is kept.
 /// \tparam Config names the Verilated class `Model` and DATA_W
 template <class Config>
-class ChipBench {
+class SimulatedChipCore {
  public:
   using Model = typename Config::Model;
-  using Memory = sim::AxiLines<Model, Config::DATA_W>;
+  using Memory = AxiLines<Model, Config::DATA_W>;
   static constexpr std::uint64_t query_line = 0x1000;
   static constexpr std::uint64_t record_line = 0x80000000;
   static constexpr std::uint64_t first_image = 0x10000;
 
-  explicit ChipBench(sim::SimulationOptions options, ChipOptions chip = {})
+  explicit SimulatedChipCore(SimulationOptions options, ChipOptions chip = {})
       : simulation_(std::move(options)), memory_(simulation_.top(), simulation_.seed()), chip_(chip) {
     simulation_.add(memory_);
     Model& m = simulation_.top();
@@ -62,7 +52,7 @@ class ChipBench {
     reset();
   }
 
-  sim::Simulation<Model>& simulation() { return simulation_; }
+  Simulation<Model>& simulation() { return simulation_; }
   Model& top() { return simulation_.top(); }
   Memory& memory() { return memory_; }
   ChipOptions& chip() { return chip_; }
@@ -177,7 +167,7 @@ class ChipBench {
       wrong_.push_back("number of pairs of query " + std::to_string(number));
   }
 
-  sim::Simulation<Model> simulation_;
+  Simulation<Model> simulation_;
   Memory memory_;
   ChipOptions chip_;
   std::vector<Line> descriptors_;
@@ -190,35 +180,6 @@ class ChipBench {
   std::uint64_t clocks_ = 0, pairs_ = 0, steps_ = 0;
 };
 
-/// What is wrong with the answer to a query, empty if nothing.
-inline std::string compare_answer(const Query& query, const ChipAnswer& answer, const model::BroadPhaseResult& expected,
-                                  std::uint32_t open_limit) {
-  using Key = std::tuple<std::uint32_t, std::uint32_t, bool>;
-  if (!answer.done) return "no answer";
-  std::multiset<Key> got, wanted;
-  bool definite = false;
-  for (const PairRecord& x : answer.pairs) {
-    got.emplace(x.id_a, x.id_b, x.definite);
-    definite = definite || x.definite;
-  }
-  for (const PairRecord& x : expected.pairs) wanted.emplace(x.id_a, x.id_b, x.definite);
-  const DoneRecord& done = *answer.done;
-  const bool first = query.mode == QueryMode::first;
-  // A query for the first hit ends at a definite one or at the limit of open ones, whichever comes first: that depends
-  // on the order when there are both.
-  if (first && (done.code == QueryCode::host || expected.done.code == QueryCode::host)) {
-    const bool ends_by_hit = done.answer == QueryAnswer::yes && done.code == QueryCode::ok && definite;
-    const bool ends_by_limit = done.code == QueryCode::host && answer.pairs.size() >= open_limit && !definite;
-    return ends_by_hit || ends_by_limit ? "" : "end at the limit of open pairs";
-  }
-  if (done.code != expected.done.code) return "code";
-  if (done.answer != expected.done.answer) return "answer";
-  if (first && done.answer == QueryAnswer::yes) return definite ? "" : "no definite hit";
-  if (got != wanted) return "records";
-  if (done.steps != expected.done.steps) return "steps";
-  return "";
-}
-
-}  // namespace cchip::testing
+}  // namespace cchip::sim
 
 #endif
