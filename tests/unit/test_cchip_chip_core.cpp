@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole chip, small, against the functional model: memory and hosts of every kind, faults, reset at any clock.
+#include <cchip/machines/simulated_chip_core.hpp>
 #include <models/cchip_chip_core.hpp>
 
 #include "bench.hpp"
