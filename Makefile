@@ -67,14 +67,14 @@ build/docs-venv/docs_requirements.txt: scripts/docs_requirements.txt
 
 peers: build/peers/requirements.txt ## install Coal from PyPI below build/peers, for make bench-collide
 
-build/peers/requirements.txt: tests/peers/requirements.txt
+build/peers/requirements.txt: bench/peers/requirements.txt
 	python3 -m venv build/peers || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
 	build/peers/bin/pip install --quiet --disable-pip-version-check --no-deps --only-binary :all: --requirement $<
 	cp $< $@
 
 robots: build/robots/requirements.txt ## install robots and their meshes from PyPI below build/robots (430 MB), for make bench-robot
 
-build/robots/requirements.txt: tests/peers/robot_requirements.txt
+build/robots/requirements.txt: bench/peers/robot_requirements.txt
 	python3 -m venv build/robots || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
 	build/robots/bin/pip install --quiet --disable-pip-version-check --no-deps --only-binary :all: --upgrade --target build/robots/data --requirement $<
 	cp $< $@
@@ -318,7 +318,7 @@ lint: bootstrap ## static checks of RTL, C++, scripts and texts
 	scripts/lint
 
 tidy: build ## clang-tidy over our own C++ (slow)
-	run-clang-tidy -quiet -j $(JOBS) -p $(RELEASE) '^$(CURDIR)/(cpp_ref|sim|tests)/'
+	run-clang-tidy -quiet -j $(JOBS) -p $(RELEASE) '^$(CURDIR)/(cpp_ref|sim|bench|tests)/'
 
 format: ## format our own C++
 	git ls-files -z --cached --others --exclude-standard '*.cpp' '*.hpp' ':!cpp_ref/include/cchip/wire/definitions.hpp' | xargs -0 -r clang-format -i

@@ -733,9 +733,9 @@ def check():
     index = ROOT / "docs" / "README.md"
     found += [f"docs/README.md: no link to modules/{module}.md" for module in rtl_files()
               if f"(modules/{module}.md)" not in index.read_text()]
-    folders = [ROOT / name / "README.md" for name in ("rtl", "sim", "cpp_ref", "tests")]
+    folders = [ROOT / name / "README.md" for name in ("rtl", "sim", "cpp_ref", "bench", "tests")]
     for path in [README, ROOT / "CONTRIBUTING.md", *folders, *sorted((ROOT / "docs").rglob("*.md"))]:
-        for name in re.findall(r"`(tests/[\w/]+\.cpp)`", path.read_text()):
+        for name in re.findall(r"`((?:tests|bench)/[\w/]+\.cpp)`", path.read_text()):
             if not (ROOT / name).exists():
                 found.append(f"{path.relative_to(ROOT)}: names {name}, which does not exist")
         for link in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", path.read_text()):

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cchip/device/device.hpp>
 #include <cchip/geometry/decimal.hpp>
-#include <cchip/rtl/simulated_chip.hpp>
+#include <cchip/machines/simulated_chip.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/command_line.hpp>
 #include <cchip/stimulus/csv_reader.hpp>

@@ -7,7 +7,7 @@
 #include <array>
 #include <cchip/collide/face_pairs.hpp>
 #include <cchip/device/device.hpp>
-#include <cchip/rtl/simulated_chip.hpp>
+#include <cchip/machines/simulated_chip.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>

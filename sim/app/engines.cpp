@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <cchip/device/model_engine.hpp>
+#include <cchip/machines/rtl_engine.hpp>
 #include <cchip/reference/eigen_sat.hpp>
-#include <cchip/rtl/rtl_engine.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <filesystem>

@@ -9,7 +9,7 @@
 #include <cchip/exact/oracle.hpp>
 #include <cchip/geometry/canonical.hpp>
 #include <cchip/geometry/grid.hpp>
-#include <cchip/rtl/simulated_subsystem.hpp>
+#include <cchip/machines/simulated_subsystem.hpp>
 #include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <chrono>

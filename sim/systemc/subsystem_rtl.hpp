@@ -40,8 +40,8 @@ class SubsystemRtl {
   void offer(const PairRequest& request);
   /// m_result_ready of the next clock.
   void set_result_ready(bool ready);
-  /// Answer handed over on the last clock.
-  std::optional<PairResult> result() const;
+  /// Oldest answer not yet taken.
+  std::optional<PairResult> result();
 
   /// AXI4-Lite, one access at a time.
   void write_register(std::uint32_t address, std::uint32_t data);

@@ -26,11 +26,11 @@ ROOMS["rc"] = set()  # sim/reconfig
 ROOMS["waves"] = {"wire", "sim"}
 ROOMS["stimulus"] = CPP_REF - {"cpu", "driver", "device", "reference", "mesh_io"} | {"sim"}
 ROOMS["models"] = ROOMS["model"] | {"model"}  # the RTL's blocks clock by clock, for tests
-ROOMS["rtl"] = CPP_REF | {"sim", "waves"}
-ROOMS["levels"] = CPP_REF | {"sim", "rc", "stimulus", "waves", "rtl"}  # sim/systemc
-ROOMS["app"] = CPP_REF | {"sim", "stimulus", "waves", "rtl"}
+ROOMS["machines"] = CPP_REF | {"sim", "waves"}
+ROOMS["levels"] = CPP_REF | {"sim", "rc", "stimulus", "waves", "machines"}  # sim/systemc
+ROOMS["app"] = CPP_REF | {"sim", "stimulus", "waves", "machines"}
 FOLDERS = {"sim/harness": "sim", "sim/reconfig": "rc", "sim/waves": "waves", "sim/stimulus": "stimulus",
-           "sim/models": "models", "sim/rtl": "rtl", "sim/systemc": "levels", "sim/app": "app"}
+           "sim/models": "models", "sim/machines": "machines", "sim/systemc": "levels", "sim/app": "app"}
 
 # CMake target: the targets of this project that it may link, directly.
 LINKS = {
@@ -38,6 +38,7 @@ LINKS = {
     "cchip_device": {"core", "model"}, "cchip_harness": {"verilated"}, "cchip_reconfig": set(), "cchip_waves": {"core"},
     "cchip_models": {"core", "model"},
     "cchip_stimulus": {"core", "model"}, "cchip_pair_vectors": {"stimulus"}, "cchip_query_vectors": {"stimulus"}, "cchip_rtl_ports": {"core", "harness"},
+    "cchip_rtl_receiver": {"rtl_ports", "model"},
     "cchip_rtl": {"device", "rtl_ports", "rtl_models", "waves"}, "cchip_app": {"device", "mesh_io", "stimulus",
                                                                                "reference", "rtl", "waves"},
     "cchip": {"app"}, "cchip_levels_core": {"reconfig", "core", "stimulus"},
@@ -96,7 +97,7 @@ class Arrows(unittest.TestCase):
 
     def test_signals_inside_the_rtl_are_named_in_one_file(self):
         naming = [name for name in files(r"\.(cpp|hpp)$") if "rootp" in (ROOT / name).read_text()]
-        self.assertEqual(naming, ["sim/rtl/include/cchip/rtl/probes.hpp"])
+        self.assertEqual(naming, ["sim/machines/include/cchip/machines/probes.hpp"])
 
     def test_instances(self):
         folder = {pathlib.Path(name).stem: name.split("/")[1] for name in files(r"^rtl/\w+/\w+\.v$")}

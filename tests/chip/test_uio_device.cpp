@@ -9,8 +9,9 @@
 #include <cchip/device/device.hpp>
 #include <cchip/driver/chip_host.hpp>
 #include <cchip/driver/uio_device.hpp>
+#include <cchip/machines/chip_answer.hpp>
+#include <cchip/machines/chip_machine.hpp>
 #include <cchip/mesh/shapes.hpp>
-#include <cchip/rtl/chip_machine.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/wire/chip_registers.hpp>
 #include <cstdlib>
@@ -21,7 +22,6 @@
 #include <string>
 #include <vector>
 
-#include "chip_bench.hpp"
 #include "chip_objects.hpp"
 #include "chip_poll.h"
 #include "register_trap.hpp"
@@ -338,7 +338,7 @@ TEST_CASE("driver in C: every record is the model's, round after round of its ri
   objects.line_b = objects.line_a + objects.a.lines.size();
   for (int round = 0; round < 30; ++round) {
     std::vector<Query> queries = testing::queries_of(objects, random, 4);
-    std::vector<testing::ChipAnswer> answers(queries.size());
+    std::vector<sim::ChipAnswer> answers(queries.size());
     for (std::size_t i = 0; i < queries.size(); ++i) {
       queries[i].tag = static_cast<std::uint32_t>(i);
       const Line line = encode(queries[i]);
@@ -348,7 +348,7 @@ TEST_CASE("driver in C: every record is the model's, round after round of its ri
       chip_record record;
       REQUIRE(chip_next(&chip, &record) == CHIP_OK);
       REQUIRE(record.tag < answers.size());
-      testing::ChipAnswer& answer = answers[record.tag];
+      sim::ChipAnswer& answer = answers[record.tag];
       REQUIRE_FALSE(answer.done.has_value());
       if (chip_is_done(&record) == 0) {
         answer.pairs.push_back({record.tag, record.first, record.second, chip_is_definite(&record) != 0});
@@ -361,7 +361,7 @@ TEST_CASE("driver in C: every record is the model's, round after round of its ri
     }
     for (std::size_t i = 0; i < queries.size(); ++i) {
       CAPTURE(round, i);
-      CHECK(testing::compare_answer(queries[i], answers[i], objects.expected(queries[i]), 16).empty());
+      CHECK(sim::compare_answer(queries[i], answers[i], objects.expected(queries[i]), 16).empty());
     }
     if (round % 10 == 9) REQUIRE(chip_start(&chip) == CHIP_OK);
   }

@@ -5,7 +5,7 @@
 #include <Vcchip_primtest_tri_quad.h>
 #include <Vcchip_primtest_tri_tri.h>
 
-#include <cchip/rtl/pair_port.hpp>
+#include <cchip/machines/pair_port.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cchip/stimulus/pair_vector.hpp>
 #include <iostream>

@@ -4,7 +4,7 @@
 #ifndef CCHIP_TESTS_UNIT_SWAP_BENCH_HPP
 #define CCHIP_TESTS_UNIT_SWAP_BENCH_HPP
 
-#include <cchip/rtl/swap_port.hpp>
+#include <cchip/machines/swap_port.hpp>
 #include <cchip/sim/axi_memory.hpp>
 #include <cchip/wire/bitstream.hpp>
 #include <cchip/wire/swap.hpp>

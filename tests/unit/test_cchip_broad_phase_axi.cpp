@@ -2,18 +2,18 @@
 // The broad phase whole, under faults: queries end with their code, the others with their answers, nothing hangs.
 #include <cchip/bvh/place.hpp>
 #include <cchip/bvh/tree.hpp>
+#include <cchip/machines/simulated_broad_phase.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/model/broad_phase.hpp>
 #include <models/cchip_broad_phase_axi.hpp>
 #include <set>
 
-#include "../traverse/traverse_bench.hpp"
 #include "bench.hpp"
 
 using namespace cchip;
 using namespace cchip::test;
-using testing::Answer;
-using testing::ReadFault;
+using Answer = sim::BroadPhaseAnswer;
+using sim::AxiFault;
 
 namespace {
 
@@ -52,8 +52,8 @@ struct Objects {
 };
 
 template <class Config>
-struct Broad : testing::TraverseBench<Config> {
-  using Base = testing::TraverseBench<Config>;
+struct Broad : sim::SimulatedBroadPhase<Config> {
+  using Base = sim::SimulatedBroadPhase<Config>;
   static constexpr std::size_t stack = Config::STACK;
   Objects objects;
   explicit Broad(std::uint64_t seed) : Base(sim::without_timeout(seed)) { restore(); }
@@ -113,9 +113,13 @@ TEMPLATE_LIST_TEST_CASE(
   Broad<TestType> bench(random());
   std::size_t from = 0;
   for (int round = 0; round < 6; ++round) {
-    bench.memory = {static_cast<std::uint64_t>(round == 0 ? 1 : random() % 150), round < 2 ? 0U : 60U, round % 2 == 1,
-                    round == 3 ? 3U : 1U, round == 4 ? 30U : 100U};
-    bench.receiver.jitter = round >= 3 ? 400 : 0;
+    sim::AxiLinesOptions& memory = bench.memory().options;
+    memory.latency = round == 0 ? 1 : random() % 150;
+    memory.jitter = round < 2 ? 0 : 60;
+    memory.reorder = round % 2 == 1;
+    memory.beat_every = round == 3 ? 3 : 1;
+    memory.ready_percent = round == 4 ? 30 : 100;
+    bench.receiver().jitter = round >= 3 ? 400 : 0;
     bench.done_percent = round == 5 ? 2 : 100;
     bench.at_once = round == 2 ? 1 : 0;
     bench.top().pairs_each = static_cast<CData>(1 + random() % most_each);
@@ -131,12 +135,12 @@ TEMPLATE_LIST_TEST_CASE(
     "[unit][cchip_broad_phase_axi]", cchip_broad_phase_axi_configs) {
   Random random(sim::seed_from_environment());
   Broad<TestType> bench(random());
-  bench.memory.latency = 20;
+  bench.memory().options.latency = 20;
   bench.top().memory_limit = 500;
-  for (const ReadFault fault : {ReadFault::slave_error, ReadFault::silence}) {
+  for (const AxiFault fault : {AxiFault::slave_error, AxiFault::silence}) {
     const std::size_t from = bench.answers().size();
     unsigned share = 50;  // one of so many reads
-    bench.fault = [&](std::uint64_t) { return random() % share == 0 ? fault : ReadFault::none; };
+    bench.memory().read_fault = [&](std::uint64_t) { return random() % share == 0 ? fault : AxiFault::none; };
     std::vector<Query> queries = submit(bench, random, 60);
     bench.run(3000000);
     int failed = 0;
@@ -150,7 +154,7 @@ TEMPLATE_LIST_TEST_CASE(
     }
     REQUIRE(failed > 0);
     REQUIRE(failed < 60);
-    bench.fault = [](std::uint64_t) { return ReadFault::none; };
+    bench.memory().read_fault = [](std::uint64_t) { return AxiFault::none; };
     bench.reset();
     const std::size_t after = bench.answers().size();
     queries = submit(bench, random, 10);
@@ -163,7 +167,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: a corrupt line has the model's c
                         "[unit][cchip_broad_phase_axi]", cchip_broad_phase_axi_configs) {
   Random random(sim::seed_from_environment());
   Broad<TestType> bench(random());
-  bench.memory.latency = 10;
+  bench.memory().options.latency = 10;
   const Query query = [&] {  // one that visits much
     for (;;) {
       const Query q = bench.objects.query(random, QueryMode::all);
@@ -236,7 +240,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: step limit, open pairs, full sta
                         "[unit][cchip_broad_phase_axi]", cchip_broad_phase_axi_configs) {
   Random random(sim::seed_from_environment());
   Broad<TestType> bench(random());
-  bench.memory.latency = 10;
+  bench.memory().options.latency = 10;
   SECTION("steps") {
     bench.top().step_limit = 7;
     const std::vector<Query> queries = submit(bench, random, 40);
@@ -257,7 +261,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: step limit, open pairs, full sta
     REQUIRE(limited > 5);
   }
   SECTION("stack") {
-    bench.receiver.jitter = 50;
+    bench.receiver().jitter = 50;
     const std::vector<Query> queries = submit(bench, random, 100);
     bench.run(5000000);
     int full = 0;
@@ -273,7 +277,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: step limit, open pairs, full sta
   }
   SECTION("open pairs") {
     bench.top().open_limit = 3;
-    bench.receiver.all_open = true;
+    bench.receiver().all_open = true;
     std::map<QueryCode, int> ends;
     for (int i = 0; i < 40; ++i) {
       Query query = bench.objects.query(random, QueryMode::all);
@@ -343,7 +347,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: contexts start anew while result
                         "[unit][cchip_broad_phase_axi]", cchip_broad_phase_axi_configs) {
   Random random(sim::seed_from_environment());
   Broad<TestType> bench(random());
-  bench.memory.latency = 5;
+  bench.memory().options.latency = 5;
   std::vector<Query> queries;
   while (queries.size() < 60) {  // in contact, with leaf pairs that are not
     Query query = bench.objects.query(random, QueryMode::first);
@@ -351,20 +355,20 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: contexts start anew while result
     queries.push_back(query);
     bench.submit(query);
   }
-  bench.receiver.only_hits = true;
+  bench.receiver().only_hits = true;
   bench.steps(1000000);
   const std::size_t held = bench.unanswered();
-  bench.receiver.only_hits = false;
+  bench.receiver().only_hits = false;
   bench.run(3000000);
   INFO("answered while results were held back: " << 60 - held);
   REQUIRE(held < 60);
   for (std::size_t i = 0; i < queries.size(); ++i) check(bench, queries[i], bench.answers()[i]);
 
-  bench.receiver.held = true;  // everything
+  bench.receiver().held = true;  // everything
   const std::size_t from = bench.answers().size();
   queries = submit(bench, random, 30);
   bench.steps(100000);
-  bench.receiver.held = false;
+  bench.receiver().held = false;
   bench.run(3000000);
   for (std::size_t i = 0; i < queries.size(); ++i) check(bench, queries[i], bench.answers()[from + i]);
 
@@ -382,16 +386,16 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: any number of node pairs of a qu
                         "[unit][cchip_broad_phase_axi]", cchip_broad_phase_axi_configs) {
   Random random(sim::seed_from_environment());
   Broad<TestType> bench(random());
-  bench.memory.latency = 5;
-  bench.receiver.jitter = 500;
+  bench.memory().options.latency = 5;
+  bench.receiver().jitter = 500;
   for (unsigned pairs_each = 1; pairs_each <= 7; ++pairs_each) {
     bench.top().pairs_each = static_cast<CData>(pairs_each);
     for (int burst = 0; burst < 3; ++burst) {
       const std::size_t from = bench.answers().size();
       const std::vector<Query> queries = submit(bench, random, 20);
-      bench.receiver.only_hits = true;
+      bench.receiver().only_hits = true;
       bench.steps(1000);
-      bench.receiver.only_hits = false;  // what was held back comes at once, in any order
+      bench.receiver().only_hits = false;  // what was held back comes at once, in any order
       bench.run(1000000);
       for (std::size_t i = 0; i < queries.size(); ++i) check(bench, queries[i], bench.answers()[from + i]);
     }
@@ -402,7 +406,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: locks and invalidation during tr
                         cchip_broad_phase_axi_configs) {
   Random random(sim::seed_from_environment());
   Broad<TestType> bench(random());
-  bench.memory = {20, 30, true};
+  bench.memory().options = {20, 0, 30, true};
   const std::vector<Query> queries = submit(bench, random, 80);
   for (std::uint64_t i = 0; bench.unanswered() > 0; ++i) {
     REQUIRE(i < 3000000);
@@ -424,7 +428,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: reset at any clock of a query", 
                         cchip_broad_phase_axi_configs) {
   Random random(sim::seed_from_environment());
   Broad<TestType> bench(random());
-  bench.memory = {8, 8, true};
+  bench.memory().options = {8, 0, 8, true};
   const Query query = bench.objects.query(random, QueryMode::all);
   const Query other = bench.objects.query(random, QueryMode::first);
   bench.clear_counters();

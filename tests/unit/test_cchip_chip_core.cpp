@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole chip, small, against the functional model: memory and hosts of every kind, faults, reset at any clock.
+#include <cchip/machines/simulated_chip_core.hpp>
 #include <models/cchip_chip_core.hpp>
 
 #include "bench.hpp"
-#include "chip_bench.hpp"
 #include "chip_objects.hpp"
 
 using namespace cchip;
 using namespace cchip::test;
-using cchip::testing::ChipAnswer;
-using cchip::testing::ChipBench;
-using cchip::testing::ChipOptions;
-using cchip::testing::compare_answer;
+using cchip::sim::ChipAnswer;
+using cchip::sim::ChipOptions;
+using cchip::sim::compare_answer;
+using cchip::sim::SimulatedChipCore;
 using cchip::testing::Objects;
 using cchip::testing::queries_of;
 using cchip::testing::wild;
@@ -57,7 +57,7 @@ constexpr Kind kind_of(int module) { return module == 3 ? Kind::quad : Kind::tri
 
 TEMPLATE_LIST_TEST_CASE("cchip_chip_core: every record is the model's, with any memory, ring and host",
                         "[unit][cchip_chip_core]", cchip_chip_core_configs) {
-  using Bench = ChipBench<TestType>;
+  using Bench = SimulatedChipCore<TestType>;
   const Objects meshes(kind_of(TestType::RM_ID));
   for_two_power_ups([&](const sim::SimulationOptions& options) {
     Random random(options.seed);
@@ -90,7 +90,7 @@ TEST_CASE("cchip_chip_core: quads without their test come back as open pairs, no
   for_two_power_ups([&](const sim::SimulationOptions& options) {
     Random random(options.seed);
     Objects objects = meshes;
-    ChipBench<chip_core_tri> bench(options);
+    SimulatedChipCore<chip_core_tri> bench(options);
     objects.place(bench);
     bench.memory().options = wild();
     std::size_t records = 0;
@@ -129,12 +129,12 @@ TEMPLATE_LIST_TEST_CASE("cchip_chip_core: an error of the bus or a silent read e
   for_two_power_ups([&](const sim::SimulationOptions& options) {
     Random random(options.seed);
     Objects objects = meshes;
-    ChipBench<TestType> bench(options);
+    SimulatedChipCore<TestType> bench(options);
     objects.place(bench);
     bench.memory().options = wild();
     bench.top().memory_limit = 3000;
     using sim::AxiFault;
-    const auto image = [](std::uint64_t line) { return line >= ChipBench<TestType>::first_image; };
+    const auto image = [](std::uint64_t line) { return line >= SimulatedChipCore<TestType>::first_image; };
     bench.memory().read_fault = [&](std::uint64_t line) {
       return image(line) && chance(random, 1) ? AxiFault::slave_error : AxiFault::none;
     };
@@ -167,12 +167,12 @@ TEMPLATE_LIST_TEST_CASE("cchip_chip_core: a ring stops at what it cannot read or
   for_two_power_ups([&](const sim::SimulationOptions& options) {
     Random random(options.seed);
     Objects objects = meshes;
-    ChipBench<TestType> bench(options);
+    SimulatedChipCore<TestType> bench(options);
     objects.place(bench);
     int ring_reads = 0;
     bench.memory().read_fault = [&](std::uint64_t line) {
-      return line < ChipBench<TestType>::first_image && ++ring_reads == 6 ? sim::AxiFault::slave_error
-                                                                          : sim::AxiFault::none;
+      return line < SimulatedChipCore<TestType>::first_image && ++ring_reads == 6 ? sim::AxiFault::slave_error
+                                                                                  : sim::AxiFault::none;
     };
     for (const Query& query : queries_of(objects, random, 12)) bench.submit(query);
     REQUIRE_FALSE(bench.run(400000));
@@ -220,7 +220,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_chip_core: garbage in an image ends its queries w
           line[random() % line.size()] ^= static_cast<std::uint8_t>(1U << random() % 8);
         }
       }
-      ChipBench<TestType> bench(options);
+      SimulatedChipCore<TestType> bench(options);
       bench.top().step_limit = 2000;
       objects.place(bench);
       const std::vector<Query> queries = queries_of(objects, random, 12);
@@ -259,7 +259,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_chip_core: reset at any clock leaves nothing of b
   for_two_power_ups([&](const sim::SimulationOptions& options) {
     Random random(options.seed);
     Objects objects = meshes;
-    ChipBench<TestType> bench(options);
+    SimulatedChipCore<TestType> bench(options);
     objects.place(bench);
     bench.memory().options = wild();
     for (int i = 0; i < 30; ++i) {

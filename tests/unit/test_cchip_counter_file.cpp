@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every value read is compared with what was counted. A probe sets the words close to a carry: no run counts so far.
 #include <array>
-#include <cchip/rtl/probes.hpp>
+#include <cchip/machines/probes.hpp>
 #include <cstdint>
 #include <models/cchip_counter_file.hpp>
 

@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cchip/driver/primtest_engine.hpp>
 #include <cchip/exact/oracle.hpp>
+#include <cchip/machines/probes.hpp>
 #include <cchip/model/primtest.hpp>
-#include <cchip/rtl/probes.hpp>
 #include <cchip/sim/scoreboard.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cchip/stimulus/witness.hpp>

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cchip/sim/wave_on_failure.hpp>
 
-#include "../subsystem/bench.hpp"
+#include "subsystem_bench.hpp"
 
 using namespace cchip;
 using namespace cchip::subsystem;

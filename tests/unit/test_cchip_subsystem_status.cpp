@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the registers of the subsystem show of swaps.
-#include <cchip/rtl/swap_port.hpp>
+#include <cchip/machines/swap_port.hpp>
 #include <models/cchip_subsystem_status.hpp>
 
 #include "bench.hpp"

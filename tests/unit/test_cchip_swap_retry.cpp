@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which entries rest, on every clock, after random reports; and that the rests are exact and double up to their limit.
-#include <cchip/rtl/swap_port.hpp>
+#include <cchip/machines/swap_port.hpp>
 #include <models/cchip_swap_retry.hpp>
 
 #include "bench.hpp"

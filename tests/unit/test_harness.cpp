@@ -3,7 +3,7 @@
 #include <Vbad_stream.h>
 
 #include <catch2/catch.hpp>
-#include <cchip/rtl/pair_port.hpp>
+#include <cchip/machines/pair_port.hpp>
 #include <cchip/sim/bits.hpp>
 #include <cchip/sim/scoreboard.hpp>
 #include <cchip/sim/simulation.hpp>

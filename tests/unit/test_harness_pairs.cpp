@@ -2,8 +2,8 @@
 // Pair streams and the engine `rtl`: they must carry what they are given. test_cchip_primtest_tri_tri.cpp checks the
 // answers of the hardware.
 #include <catch2/catch.hpp>
-#include <cchip/rtl/pair_port.hpp>
-#include <cchip/rtl/rtl_engine.hpp>
+#include <cchip/machines/pair_port.hpp>
+#include <cchip/machines/rtl_engine.hpp>
 #include <cchip/sim/scoreboard.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cchip/sim/wave_on_failure.hpp>

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 #include <cchip/driver/primtest_engine.hpp>
-#include <cchip/rtl/rtl_engine.hpp>
+#include <cchip/machines/rtl_engine.hpp>
 #include <cchip/sim/wave_on_failure.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <cchip/wire/axis.hpp>

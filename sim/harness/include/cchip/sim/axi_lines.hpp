@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Memory of 64-byte lines behind an AXI4 master with pins m_axi_*, reads and writes, with delays and faults.
+/// Memory of 64-byte lines behind an AXI4 master with pins m_axi_*, with delays and faults: reads, and writes if the
+/// master has their pins.
 #ifndef CCHIP_SIM_AXI_LINES_HPP
 #define CCHIP_SIM_AXI_LINES_HPP
 
@@ -16,6 +17,7 @@
 #include <functional>
 #include <random>
 #include <string>
+#include <type_traits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -31,7 +33,17 @@ struct AxiLinesOptions {
   bool reorder = false;              ///< reads that are due are answered in any order
   unsigned ready_percent = 100;      ///< clocks on which an address or a beat is taken
   unsigned valid_percent = 100;      ///< clocks on which a new beat or response is offered
+  std::uint64_t beat_every = 1;      ///< clocks from one beat of a read to the next, at least
 };
+
+namespace detail {
+
+template <class Model, class = void>
+struct HasWrites : std::false_type {};
+template <class Model>
+struct HasWrites<Model, std::void_t<decltype(std::declval<Model&>().m_axi_awvalid)>> : std::true_type {};
+
+}  // namespace detail
 
 /// Reads: one burst of a whole line each, as cchip_axi_read sends them; a line's beats stay together, lines are
 /// answered in the order of their addresses unless reorder is set. Writes: one beat each, answered in order. Lines that
@@ -78,10 +90,13 @@ class AxiLines : public Agent {
   void drive(const ClockInfo& now) override {
     if (now.in_reset) drop();
     model_.m_axi_arready = !now.in_reset && chance(options.ready_percent) ? 1 : 0;
-    model_.m_axi_awready = !now.in_reset && chance(options.ready_percent) ? 1 : 0;
-    model_.m_axi_wready = !now.in_reset && chance(options.ready_percent) ? 1 : 0;
-    if (!bursting_) choose(now.clock);
-    if (bursting_ && !offered_) offered_ = chance(options.valid_percent);
+    if constexpr (detail::HasWrites<Model>::value) {
+      model_.m_axi_awready = !now.in_reset && chance(options.ready_percent) ? 1 : 0;
+      model_.m_axi_wready = !now.in_reset && chance(options.ready_percent) ? 1 : 0;
+    }
+    const bool may_offer = now.clock >= next_beat_;
+    if (!bursting_ && may_offer) choose(now.clock);
+    if (bursting_ && !offered_ && may_offer) offered_ = chance(options.valid_percent);
     model_.m_axi_rvalid = offered_ ? 1 : 0;
     if (offered_) {
       model_.m_axi_rid = static_cast<CData>(burst_.id);
@@ -92,11 +107,7 @@ class AxiLines : public Agent {
     } else {
       set_random(model_.m_axi_rdata, DATA_W, random_);
     }
-    if (!answering_ && !responses_.empty() && responses_.front().due <= now.clock)
-      answering_ = chance(options.valid_percent);
-    model_.m_axi_bvalid = answering_ ? 1 : 0;
-    model_.m_axi_bid = answering_ ? static_cast<CData>(responses_.front().id) : 0;
-    model_.m_axi_bresp = answering_ && !responses_.front().okay ? 2 : 0;
+    if constexpr (detail::HasWrites<Model>::value) drive_responses(now.clock);
   }
 
   /// \throws StreamError the master breaks a rule
@@ -105,20 +116,15 @@ class AxiLines : public Agent {
     if (offered_ && model_.m_axi_rready != 0) {
       offered_ = false;
       ++read_beats_;
+      next_beat_ = now.clock + options.beat_every;
       if (++beat_ == beats) bursting_ = false;
-    }
-    if (answering_ && model_.m_axi_bready != 0) {
-      answering_ = false;
-      responses_.pop_front();
     }
     const std::pair<std::uint64_t, unsigned> read(model_.m_axi_araddr, model_.m_axi_arid);
     require(!read_asked_ || (model_.m_axi_arvalid != 0 && read == read_), "m_axi_ar changed before it was accepted");
     read_asked_ = model_.m_axi_arvalid != 0 && model_.m_axi_arready == 0;
     read_ = read;
     if (model_.m_axi_arvalid != 0 && model_.m_axi_arready != 0) take_read(now, read.first, read.second);
-    if (model_.m_axi_awvalid != 0 && model_.m_axi_awready != 0) take_address();
-    if (model_.m_axi_wvalid != 0 && model_.m_axi_wready != 0) take_data();
-    while (!addresses_.empty() && !data_.empty()) finish_write(now);
+    if constexpr (detail::HasWrites<Model>::value) sample_writes(now);
   }
 
   std::string waits_for() const override {
@@ -152,6 +158,22 @@ class AxiLines : public Agent {
   bool chance(unsigned percent) { return percent >= 100 || random_() % 100 < percent; }
   std::uint64_t late() { return options.jitter == 0 ? 0 : random_() % (options.jitter + 1); }
 
+  void drive_responses(std::uint64_t now) {
+    if (!answering_ && !responses_.empty() && responses_.front().due <= now) answering_ = chance(options.valid_percent);
+    model_.m_axi_bvalid = answering_ ? 1 : 0;
+    model_.m_axi_bid = answering_ ? static_cast<CData>(responses_.front().id) : 0;
+    model_.m_axi_bresp = answering_ && !responses_.front().okay ? 2 : 0;
+  }
+  void sample_writes(const ClockInfo& now) {
+    if (answering_ && model_.m_axi_bready != 0) {
+      answering_ = false;
+      responses_.pop_front();
+    }
+    if (model_.m_axi_awvalid != 0 && model_.m_axi_awready != 0) take_address();
+    if (model_.m_axi_wvalid != 0 && model_.m_axi_wready != 0) take_data();
+    while (!addresses_.empty() && !data_.empty()) finish_write(now);
+  }
+
   void drop() {
     reads_.clear();
     addresses_.clear();
@@ -159,6 +181,7 @@ class AxiLines : public Agent {
     responses_.clear();
     bursting_ = offered_ = answering_ = read_asked_ = false;
     silent_ = 0;
+    next_beat_ = 0;
   }
 
   void choose(std::uint64_t now) {
@@ -236,7 +259,7 @@ class AxiLines : public Agent {
   std::deque<Address> addresses_;
   std::deque<Data> data_;
   std::deque<Response> responses_;
-  std::uint64_t read_beats_ = 0;
+  std::uint64_t read_beats_ = 0, next_beat_ = 0;
   std::size_t silent_ = 0;
 };
 

@@ -74,6 +74,10 @@ class AxiMemory : public Agent {
   void clear() { words_.clear(); }
   /// If set: where words are, instead of those that were written here; none: nothing wrote them.
   std::function<std::optional<std::uint32_t>(std::uint32_t address)> backing;
+  /// If set: gets the bursts, which then are not answered from words here, but by answer(), in their order.
+  std::function<void(std::uint32_t address, std::uint32_t beats)> elsewhere;
+  /// Next beat of the bursts that went elsewhere, without further delay.
+  void answer(const AxiBeat& beat) { beats_.emplace_back(0, beat); }
   void set_options(AxiMemoryOptions options) { options_ = std::move(options); }
   void set_fault(Fault fault) { fault_ = std::move(fault); }
   /// At most this many further beats are sent until resume().
@@ -149,6 +153,9 @@ class AxiMemory : public Agent {
     require(address % 4 == 0, "m_axi_araddr is not a multiple of 4");
     require(count <= 16, "m_axi_arlen: more than 16 beats");
     require(address / 4096 == (address + 4 * count - 1) / 4096, "burst crosses a boundary of 4 KiB");
+    ++bursts_;
+    most_outstanding_ = std::max(most_outstanding_, ++outstanding_);
+    if (elsewhere) return elsewhere(address, count);
     std::vector<AxiBeat> burst;
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::optional<std::uint32_t> word = at(address + 4 * i);
@@ -157,8 +164,6 @@ class AxiMemory : public Agent {
     }
     if (fault_) fault_(burst);
     for (const AxiBeat& beat : burst) beats_.emplace_back(now.clock + options_.latency, beat);
-    ++bursts_;
-    most_outstanding_ = std::max(most_outstanding_, ++outstanding_);
   }
 
   Model& model_;

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Another library behind a C interface: fcl_peer.cpp, coal_peer.cpp, cgal_peer.cpp, ode_peer.cpp. Each is a module
+/// that exports one function, so that one process can hold several, even two builds of FCL: as C++ libraries they would
+/// share the symbols of their templates, and each brings its own versions of Boost and octomap.
+#ifndef CCHIP_BENCH_PEER_HPP
+#define CCHIP_BENCH_PEER_HPP
+
+#include <cstddef>
+#include <cstdint>
+
+struct CchipPeer {
+  /// Version, how the module was compiled and which of the library's ways it uses, for example "0.7.0, compiled with
+  /// AVX2".
+  const char* description;
+  /// A mesh of triangles with the library's tree. `vertices`: x, y, z of each; `triangles`: three numbers each.
+  void* (*make)(const double* vertices, std::size_t vertex_count, const std::uint32_t* triangles,
+                std::size_t triangle_count);
+  void (*destroy)(void* mesh);
+  /// Yes or no. Poses are 4 x 4 matrices, column by column, rigid. One call at a time.
+  int (*hit)(void* a, const double* pose_a, void* b, const double* pose_b);
+  /// At most `most` contacts; returns their number. The first `room` of them, triangle of A and triangle of B, are
+  /// written to `pairs`. A library may report a pair twice. Null: the library has no such answer.
+  std::size_t (*contacts)(void* a, const double* pose_a, void* b, const double* pose_b, std::size_t most,
+                          std::uint32_t* pairs, std::size_t room);
+};
+
+/// The one exported function, `cchip_peer`.
+using CchipPeerFunction = const CchipPeer*();
+
+#endif
