@@ -265,7 +265,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_chip_core: reset at any clock leaves nothing of b
     for (int i = 0; i < 30; ++i) {
       for (const Query& query : queries_of(objects, random, 6)) bench.submit(query);
       bench.steps(random() % 6000);
-      ++bench.chip().generation;  // a record of before is one of nobody
+      ++bench.chip().generation;  // earlier records belong to no query
       bench.reset();
       REQUIRE(bench.wrong().empty());
     }

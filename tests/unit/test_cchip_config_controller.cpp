@@ -254,12 +254,12 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: faults of the bus", "[unit][cc
         burst.resize(i + 1);
         burst[i].last = true;
         break;
-      case 4:  // ends late
+      case 4:  // ends after the last word
         burst.back().last = false;
         burst.push_back(burst.back());
         burst.back().last = true;
         break;
-      default:  // ends much late
+      default:  // ends long after it
         burst.back().last = false;
         for (int extra = 0; extra < 40; ++extra) burst.push_back(burst.back());
         burst.back().last = true;
@@ -694,7 +694,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: random memories, slots and fau
       const SwapReport report = bench.reports().back();
       REQUIRE(report.slot == slot);
       REQUIRE(report.module_id == static_cast<int>(module_id));
-      REQUIRE(report.code != SwapCode::memory);  // whatever the limit does, it is never below 100
+      REQUIRE(report.code != SwapCode::memory);  // the changing limit is never below 100
       ++codes[static_cast<std::size_t>(report.code)];
       bench.simulation().steps(5);
       REQUIRE(bench.reports().size() == count + 1);

@@ -130,7 +130,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: recoupled two words too early, garbage g
   REQUIRE(leaks > 0);
 }
 
-TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: without reset after a swap, answers to pairs nobody sent",
+TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: without reset after a swap, answers to pairs never sent",
                         "[unit][cchip_pr_slot]", Simulated) {
   for_two_power_ups([](const sim::SimulationOptions& options) {
     for (const ModuleId id : tests) {

@@ -22,7 +22,7 @@ unsigned below(Random& random, std::size_t n) { return static_cast<unsigned>(ran
 class Surroundings {
  public:
   Surroundings(std::size_t queries, Random& random) : active_(queries), random_(random) {}
-  int busy = 50;  ///< chance of whatever may happen on a clock, per cent
+  int busy = 50;  ///< chance of any event that may happen on a clock, per cent
 
   TraversalEvents::Inputs next() {
     TraversalEvents::Inputs in;

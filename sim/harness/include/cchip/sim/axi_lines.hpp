@@ -122,7 +122,7 @@ class AxiLines : public Agent {
   }
 
   std::string waits_for() const override {
-    return reads_.empty() ? "" : "memory owes " + std::to_string(reads_.size()) + " reads";
+    return reads_.empty() ? "" : std::to_string(reads_.size()) + " reads outstanding";
   }
 
  private:
@@ -150,7 +150,7 @@ class AxiLines : public Agent {
     if (!condition) throw StreamError(message);
   }
   bool chance(unsigned percent) { return percent >= 100 || random_() % 100 < percent; }
-  std::uint64_t late() { return options.jitter == 0 ? 0 : random_() % (options.jitter + 1); }
+  std::uint64_t random_delay() { return options.jitter == 0 ? 0 : random_() % (options.jitter + 1); }
 
   void drop() {
     reads_.clear();
@@ -186,7 +186,7 @@ class AxiLines : public Agent {
       ++silent_;
       return;
     }
-    Read read{id, now.clock + options.latency + late(), fault == AxiFault::none && found != nullptr, {}};
+    Read read{id, now.clock + options.latency + random_delay(), fault == AxiFault::none && found != nullptr, {}};
     if (found != nullptr) read.data = *found;
     reads_.push_back(read);
   }
@@ -220,7 +220,7 @@ class AxiLines : public Agent {
       }
     }
     if (fault == AxiFault::silence) return;
-    const std::uint64_t due = now.clock + options.write_latency + late();
+    const std::uint64_t due = now.clock + options.write_latency + random_delay();
     responses_.push_back(
         {responses_.empty() ? due : std::max(due, responses_.back().due), address.id, fault == AxiFault::none});
   }
