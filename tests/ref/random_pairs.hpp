@@ -23,6 +23,13 @@ using cchip::Vec3i;
 /// Seed of this process.
 inline std::uint64_t seed() { return cchip::sim::seed_from_environment(); }
 
+template <class P, class Vertex = typename decltype(P::v)::value_type>
+P make_triangle(const Vertex& v0, const Vertex& v1, const Vertex& v2) {
+  P p;
+  p.v = {v0, v1, v2, Vertex::Zero()};
+  return p;
+}
+
 /// Grid primitive times 2^exponent.
 inline cchip::Primitive scaled(const GridPrimitive& g, int exponent) {
   cchip::Primitive p;

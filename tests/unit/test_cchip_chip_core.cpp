@@ -53,45 +53,47 @@ Totals check(Bench& bench, const Objects& objects, const std::vector<Query>& que
 
 constexpr Kind kind_of(int module) { return module == 3 ? Kind::quad : Kind::tri; }
 
+/// After each power-up: body(bench, objects, random), with two meshes of this kind in the memory.
+template <class Config, class Body>
+void with_objects(Kind kind, Body body) {
+  const Objects meshes(kind);
+  for_two_power_ups([&](const sim::SimulationOptions& options) {
+    Random random(options.seed);
+    Objects objects = meshes;
+    ChipBench<Config> bench(options);
+    objects.place(bench);
+    body(bench, objects, random);
+  });
+}
+
 }  // namespace
 
 TEMPLATE_LIST_TEST_CASE("cchip_chip_core: every record is the model's, with any memory, ring and host",
                         "[unit][cchip_chip_core]", cchip_chip_core_configs) {
-  using Bench = ChipBench<TestType>;
-  const Objects meshes(kind_of(TestType::RM_ID));
-  for_two_power_ups([&](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    Objects objects = meshes;
-    ChipOptions chip;
-    Bench bench(options, chip);
-    objects.place(bench);
-    Totals all;
-    const auto add = [&](const Totals& x) {
-      all.hits += x.hits;
-      all.records += x.records;
-    };
-    add(check(bench, objects, queries_of(objects, random, 24)));
-    bench.memory().options = wild();
-    for (const unsigned ring : {4U, 3U, 0U}) {
-      bench.chip().record_log2 = ring;
-      bench.chip().query_log2 = ring == 0 ? 0 : 2;
-      bench.chip().host_every = ring == 4 ? 997 : 61;
-      ++bench.chip().generation;
-      bench.reset();
-      add(check(bench, objects, queries_of(objects, random, 12)));
-    }
-    REQUIRE(all.hits > 5);
-    REQUIRE(all.records > 100);
-  });
+  with_objects<TestType>(kind_of(TestType::RM_ID),
+                         [&](ChipBench<TestType>& bench, const Objects& objects, Random& random) {
+                           Totals all;
+                           const auto add = [&](const Totals& x) {
+                             all.hits += x.hits;
+                             all.records += x.records;
+                           };
+                           add(check(bench, objects, queries_of(objects, random, 24)));
+                           bench.memory().options = wild();
+                           for (const unsigned ring : {4U, 3U, 0U}) {
+                             bench.chip().record_log2 = ring;
+                             bench.chip().query_log2 = ring == 0 ? 0 : 2;
+                             bench.chip().host_every = ring == 4 ? 997 : 61;
+                             ++bench.chip().generation;
+                             bench.reset();
+                             add(check(bench, objects, queries_of(objects, random, 12)));
+                           }
+                           REQUIRE(all.hits > 5);
+                           REQUIRE(all.records > 100);
+                         });
 }
 
 TEST_CASE("cchip_chip_core: quads without their test come back as open pairs, none lost", "[unit][cchip_chip_core]") {
-  const Objects meshes(Kind::quad);
-  for_two_power_ups([&](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    Objects objects = meshes;
-    ChipBench<chip_core_tri> bench(options);
-    objects.place(bench);
+  with_objects<chip_core_tri>(Kind::quad, [&](ChipBench<chip_core_tri>& bench, const Objects& objects, Random& random) {
     bench.memory().options = wild();
     std::size_t records = 0;
     const std::vector<Query> queries = queries_of(objects, random, 20);
@@ -125,12 +127,8 @@ TEST_CASE("cchip_chip_core: quads without their test come back as open pairs, no
 
 TEMPLATE_LIST_TEST_CASE("cchip_chip_core: an error of the bus or a silent read ends its queries and no other",
                         "[unit][cchip_chip_core]", cchip_chip_core_configs) {
-  const Objects meshes(kind_of(TestType::RM_ID));
-  for_two_power_ups([&](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    Objects objects = meshes;
-    ChipBench<TestType> bench(options);
-    objects.place(bench);
+  with_objects<TestType>(kind_of(TestType::RM_ID), [&](ChipBench<TestType>& bench, const Objects& objects,
+                                                       Random& random) {
     bench.memory().options = wild();
     bench.top().memory_limit = 3000;
     using sim::AxiFault;
@@ -163,43 +161,39 @@ TEMPLATE_LIST_TEST_CASE("cchip_chip_core: an error of the bus or a silent read e
 
 TEMPLATE_LIST_TEST_CASE("cchip_chip_core: a ring stops at what it cannot read or write", "[unit][cchip_chip_core]",
                         cchip_chip_core_configs) {
-  const Objects meshes(kind_of(TestType::RM_ID));
-  for_two_power_ups([&](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    Objects objects = meshes;
-    ChipBench<TestType> bench(options);
-    objects.place(bench);
-    int ring_reads = 0;
-    bench.memory().read_fault = [&](std::uint64_t line) {
-      return line < ChipBench<TestType>::first_image && ++ring_reads == 6 ? sim::AxiFault::slave_error
-                                                                          : sim::AxiFault::none;
-    };
-    for (const Query& query : queries_of(objects, random, 12)) bench.submit(query);
-    REQUIRE_FALSE(bench.run(400000));
-    REQUIRE(bench.top().query_failed == 1);
-    REQUIRE(bench.top().query_consumer == 5);
-    REQUIRE(bench.unanswered() == 7);  // those before it have their answers
-    REQUIRE(bench.wrong().empty());
+  with_objects<TestType>(
+      kind_of(TestType::RM_ID), [&](ChipBench<TestType>& bench, const Objects& objects, Random& random) {
+        int ring_reads = 0;
+        bench.memory().read_fault = [&](std::uint64_t line) {
+          return line < ChipBench<TestType>::first_image && ++ring_reads == 6 ? sim::AxiFault::slave_error
+                                                                              : sim::AxiFault::none;
+        };
+        for (const Query& query : queries_of(objects, random, 12)) bench.submit(query);
+        REQUIRE_FALSE(bench.run(400000));
+        REQUIRE(bench.top().query_failed == 1);
+        REQUIRE(bench.top().query_consumer == 5);
+        REQUIRE(bench.unanswered() == 7);  // those before it have their answers
+        REQUIRE(bench.wrong().empty());
 
-    bench.memory().read_fault = [](std::uint64_t) { return sim::AxiFault::none; };
-    ++bench.chip().generation;
-    bench.reset();
-    REQUIRE(bench.top().query_failed == 0);
-    int writes = 0;
-    bench.memory().write_fault = [&](std::uint64_t) {
-      return ++writes == 9 ? sim::AxiFault::slave_error : sim::AxiFault::none;
-    };
-    for (const Query& query : queries_of(objects, random, 12)) bench.submit(query);
-    REQUIRE_FALSE(bench.run(400000));
-    REQUIRE(bench.top().record_failed == 1);
-    REQUIRE(bench.top().record_producer == 8);
-    REQUIRE(bench.wrong().empty());
+        bench.memory().read_fault = [](std::uint64_t) { return sim::AxiFault::none; };
+        ++bench.chip().generation;
+        bench.reset();
+        REQUIRE(bench.top().query_failed == 0);
+        int writes = 0;
+        bench.memory().write_fault = [&](std::uint64_t) {
+          return ++writes == 9 ? sim::AxiFault::slave_error : sim::AxiFault::none;
+        };
+        for (const Query& query : queries_of(objects, random, 12)) bench.submit(query);
+        REQUIRE_FALSE(bench.run(400000));
+        REQUIRE(bench.top().record_failed == 1);
+        REQUIRE(bench.top().record_producer == 8);
+        REQUIRE(bench.wrong().empty());
 
-    bench.memory().write_fault = [](std::uint64_t) { return sim::AxiFault::none; };
-    ++bench.chip().generation;
-    bench.reset();
-    check(bench, objects, queries_of(objects, random, 8));
-  });
+        bench.memory().write_fault = [](std::uint64_t) { return sim::AxiFault::none; };
+        ++bench.chip().generation;
+        bench.reset();
+        check(bench, objects, queries_of(objects, random, 8));
+      });
 }
 
 TEMPLATE_LIST_TEST_CASE("cchip_chip_core: garbage in an image ends its queries with a code or not at all",
@@ -255,20 +249,16 @@ TEMPLATE_LIST_TEST_CASE("cchip_chip_core: garbage in an image ends its queries w
 
 TEMPLATE_LIST_TEST_CASE("cchip_chip_core: reset at any clock leaves nothing of before", "[unit][cchip_chip_core]",
                         cchip_chip_core_configs) {
-  const Objects meshes(kind_of(TestType::RM_ID));
-  for_two_power_ups([&](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    Objects objects = meshes;
-    ChipBench<TestType> bench(options);
-    objects.place(bench);
-    bench.memory().options = wild();
-    for (int i = 0; i < 30; ++i) {
-      for (const Query& query : queries_of(objects, random, 6)) bench.submit(query);
-      bench.steps(random() % 6000);
-      ++bench.chip().generation;  // earlier records belong to no query
-      bench.reset();
-      REQUIRE(bench.wrong().empty());
-    }
-    check(bench, objects, queries_of(objects, random, 12));
-  });
+  with_objects<TestType>(kind_of(TestType::RM_ID),
+                         [&](ChipBench<TestType>& bench, const Objects& objects, Random& random) {
+                           bench.memory().options = wild();
+                           for (int i = 0; i < 30; ++i) {
+                             for (const Query& query : queries_of(objects, random, 6)) bench.submit(query);
+                             bench.steps(random() % 6000);
+                             ++bench.chip().generation;  // earlier records belong to no query
+                             bench.reset();
+                             REQUIRE(bench.wrong().empty());
+                           }
+                           check(bench, objects, queries_of(objects, random, 12));
+                         });
 }
