@@ -23,10 +23,13 @@ using cchip::Vec3i;
 /// Seed of this process.
 inline std::uint64_t seed() { return cchip::sim::seed_from_environment(); }
 
-template <class P, class Vertex = typename decltype(P::v)::value_type>
-P make_triangle(const Vertex& v0, const Vertex& v1, const Vertex& v2) {
+template <class P>
+using VertexOf = typename decltype(P::v)::value_type;
+
+template <class P>
+P make_triangle(const VertexOf<P>& v0, const VertexOf<P>& v1, const VertexOf<P>& v2) {
   P p;
-  p.v = {v0, v1, v2, Vertex::Zero()};
+  p.v = {v0, v1, v2, VertexOf<P>::Zero()};
   return p;
 }
 
