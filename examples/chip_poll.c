@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /*
- * A polling driver of cchip_chip in C11, without an operating system: registers and memory are two pointers. It shows the
- * order of events; docs/hardware/programmers-guide.md explains it. Images and queries come from the host library
+ * A polling driver of cchip_chip in C11, without an operating system: registers and memory are two pointers. It shows
+ * the order of events; docs/hardware/programmers-guide.md explains it. Images and queries come from the host library
  * (cchip/bvh/image.hpp, cchip/bvh/place.hpp).
  */
 #include "chip_poll.h"
@@ -9,23 +9,23 @@
 #include <stdatomic.h>
 #include <string.h>
 
-static uint32_t get(const struct chip *chip, unsigned offset) { return chip->registers[offset / 4]; }
+static uint32_t get(const struct chip* chip, unsigned offset) { return chip->registers[offset / 4]; }
 
 /* Everything that was written to memory is there before a register says so. */
-static void set(struct chip *chip, unsigned offset, uint32_t value) {
+static void set(struct chip* chip, unsigned offset, uint32_t value) {
   atomic_thread_fence(memory_order_seq_cst);
   chip->registers[offset / 4] = value;
 }
 
-static void copy(volatile uint32_t *to, const void *from, uint32_t bytes) {
+static void copy(volatile uint32_t* to, const void* from, uint32_t bytes) {
   for (uint32_t i = 0; i < bytes / 4; ++i) {
     uint32_t word;
-    memcpy(&word, (const char *)from + 4 * i, 4);
+    memcpy(&word, (const char*)from + 4 * i, 4);
     to[i] = word;
   }
 }
 
-static int wait_for(struct chip *chip, uint32_t status) {
+static int wait_for(struct chip* chip, uint32_t status) {
   for (unsigned long i = 0; i < chip->patience; ++i) {
     if ((get(chip, CHIP_STATUS) & status) == 0) return CHIP_OK;
   }
@@ -33,7 +33,7 @@ static int wait_for(struct chip *chip, uint32_t status) {
 }
 
 /* Resets the chip, makes both rings empty, enables it. Also the way back after CHIP_STOPPED. */
-int chip_start(struct chip *chip) {
+int chip_start(struct chip* chip) {
   const uint64_t records = chip->address + (64 << CHIP_QUERY_LOG2);
   if (get(chip, CHIP_ID) != CHIP_ID_VALUE || get(chip, CHIP_VERSION) >> 8 != 1) return CHIP_NO_CHIP;
   set(chip, CHIP_CONTROL, CHIP_CONTROL_SOFT_RESET);
@@ -51,8 +51,9 @@ int chip_start(struct chip *chip) {
   return CHIP_OK;
 }
 
-/* Writes an image `offset` bytes into the memory; no query in flight uses these lines. The chip forgets what it knew of them. */
-int chip_store(struct chip *chip, uint32_t offset, const void *image, uint32_t bytes) {
+/* Writes an image `offset` bytes into the memory; no query in flight uses these lines. The chip drops its copies of
+ * them. */
+int chip_store(struct chip* chip, uint32_t offset, const void* image, uint32_t bytes) {
   const uint32_t line = (uint32_t)((chip->address + offset) / 64);
   copy(chip->memory + offset / 4, image, bytes);
   set(chip, CHIP_INVALIDATE_FIRST, line);
@@ -62,7 +63,7 @@ int chip_store(struct chip *chip, uint32_t offset, const void *image, uint32_t b
 }
 
 /* Hands over a query of 64 bytes; waits for room in the ring. */
-int chip_submit(struct chip *chip, const void *query) {
+int chip_submit(struct chip* chip, const void* query) {
   const uint32_t place = chip->written & ((1U << CHIP_QUERY_LOG2) - 1);
   for (unsigned long i = 0; (uint16_t)(chip->written - get(chip, CHIP_QUERY_CONSUMER)) >> CHIP_QUERY_LOG2 != 0; ++i) {
     if (i == chip->patience) return CHIP_TIMEOUT;
@@ -74,9 +75,9 @@ int chip_submit(struct chip *chip, const void *query) {
 }
 
 /* Waits for the next record. Pair records of a query come before its done record; queries end in any order. */
-int chip_next(struct chip *chip, struct chip_record *record) {
+int chip_next(struct chip* chip, struct chip_record* record) {
   const uint32_t place = chip->read & ((1U << CHIP_RECORD_LOG2) - 1);
-  volatile uint32_t *at = chip->memory + (64U << CHIP_QUERY_LOG2) / 4 + 4 * place;
+  volatile uint32_t* at = chip->memory + (64U << CHIP_QUERY_LOG2) / 4 + 4 * place;
   const uint32_t phase = (chip->read >> CHIP_RECORD_LOG2 & 1) == 0; /* 1 in the first round of the ring */
   for (unsigned long i = 0; at[1] >> 31 != phase; ++i) {
     const uint32_t failed = CHIP_STATUS_QUERY_FAILED | CHIP_STATUS_RECORD_FAILED;

@@ -588,12 +588,8 @@ def write(name, found):
 
 
 def main():
-    if set(sys.argv) & {"-h", "--help"}:
-        print(__doc__)
-        return 0
-    options = arguments()
-    if options.list:
-        print("\n".join(rows()))
+    options = fpga.command_line(__doc__, arguments, rows)
+    if not options:
         return 0
     chosen = [row for name, row in rows().items() if not options.rows or name in options.rows]
     if not pathlib.Path(options.campaign).exists():

@@ -791,13 +791,21 @@ def with_others(name, table, found):
     return "\n".join([*head, *sorted(others + lines, key=lambda line: order.index(row(line)))]) + "\n"
 
 
-def main():
+def command_line(usage, arguments, rows):
+    """The options of the command line; None after --help and --list, which are done then."""
     if set(sys.argv) & {"-h", "--help"}:
-        print(__doc__)
-        return 0
+        print(usage)
+        return None
     options = arguments()
     if options.list:
         print("\n".join(rows()))
+        return None
+    return options
+
+
+def main():
+    options = command_line(__doc__, arguments, rows)
+    if not options:
         return 0
     if options.check:
         return 1 if check() else 0

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the scripts share that write a page of docs/ with a generated block and a plot."""
 import argparse
+import csv
 import io
 import os
 import pathlib
@@ -40,6 +41,13 @@ def write(contents):
     for path, text in contents.items():
         path.parent.mkdir(exist_ok=True)
         path.write_text(text)
+
+
+def notes_and_rows(text):
+    """Of the text of a CSV file: its lines `# key: value` as a dictionary, and a dictionary for each row."""
+    lines = text.splitlines()
+    notes = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
+    return notes, list(csv.DictReader(line for line in lines if not line.startswith("# ")))
 
 
 def start_plot(salt):

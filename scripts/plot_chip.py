@@ -9,11 +9,10 @@ usage: plot_chip.py [--csv PATH | --check | --check-plot]
 
 Without an option page and plot are rewritten from the checked-in CSV. Drawing needs matplotlib, installed by `make venv`.
 Exit codes: 0 done or up to date, 1 stale or no such file, 2 bad arguments, 77 no matplotlib."""
-import csv
 import math
 import sys
 
-from generated_page import ROOT, page_and_plots, plain_number, start_plot, svg_text
+from generated_page import ROOT, notes_and_rows, page_and_plots, plain_number, start_plot, svg_text
 
 PAGE = ROOT / "docs" / "hardware" / "chip-speed.md"
 RUN = ROOT / "docs" / "figures" / "chip_speed.csv"
@@ -33,9 +32,7 @@ class Run:
     """The notes and rows of one run, and the means of a class."""
 
     def __init__(self, text):
-        lines = text.splitlines()
-        self.notes = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
-        self.rows = list(csv.DictReader(line for line in lines if not line.startswith("# ")))
+        self.notes, self.rows = notes_and_rows(text)
         self.classes = list(dict.fromkeys(row["class"] for row in self.rows))
         self.memories = list(dict.fromkeys(row["memory"] for row in self.rows))
         self.libraries = [name for name in LIBRARIES if name in self.rows[0]]

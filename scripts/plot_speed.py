@@ -9,12 +9,11 @@ usage: plot_speed.py [--csv PATH | --check | --check-plot]
 
 Without an option page and plots are rewritten from the checked-in CSV. Drawing needs matplotlib, installed by `make venv`.
 Exit codes: 0 done or up to date, 1 stale or no such file, 2 bad arguments, 77 no matplotlib."""
-import csv
 import math
 import statistics
 import sys
 
-from generated_page import ROOT, page_and_plots, plain_number, start_plot, svg_text
+from generated_page import ROOT, notes_and_rows, page_and_plots, plain_number, start_plot, svg_text
 
 PAGE = ROOT / "docs" / "cpp" / "speed.md"
 RUN = ROOT / "docs" / "figures" / "collide_speed.csv"
@@ -36,9 +35,7 @@ class Run:
     """The notes and rows of one run."""
 
     def __init__(self, text):
-        lines = text.splitlines()
-        self.notes = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
-        self.rows = list(csv.DictReader(line for line in lines if not line.startswith("# ")))
+        self.notes, self.rows = notes_and_rows(text)
         self.cells = {}  # (meshes, class): {variant: row}
         for row in self.rows:
             if row["table"] == "query":

@@ -8,10 +8,9 @@ usage: robot_table.py [--csv PATH | --check]
 
 Without an option the table is rewritten from the checked-in CSV.
 Exit codes: 0 done or up to date, 1 stale or no such file, 2 bad arguments."""
-import csv
 import sys
 
-from generated_page import ROOT, page_and_plots
+from generated_page import ROOT, notes_and_rows, page_and_plots
 
 PAGE = ROOT / "docs" / "cpp" / "speed.md"
 RUN = ROOT / "docs" / "figures" / "robot_speed.csv"
@@ -20,10 +19,8 @@ ARMS = {"panda": "Panda", "ur3": "UR3", "ur5": "UR5", "ur10": "UR10"}
 
 
 def table(text):
-    lines = text.splitlines()
-    notes = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
-    cells = {(row["arm"], row["mode"], row["variant"]): row
-             for row in csv.DictReader(line for line in lines if not line.startswith("# "))}
+    notes, rows = notes_and_rows(text)
+    cells = {(row["arm"], row["mode"], row["variant"]): row for row in rows}
     arms = list(dict.fromkeys(arm for arm, _, _ in cells))
     out = [f"- {key}: {notes[key]}" for key in ("machine", "load before the run", "run", *arms) if key in notes]
     out += ["", "| | " + " | ".join(f"{ARMS[arm]}: checks/s | pair queries/s" for arm in arms) + " | not exact |",

@@ -193,6 +193,15 @@ std::string device_words() {
   return words;
 }
 
+/// Two meshes and the option --pose, which is returned.
+template <class Options>
+CLI::Option* add_meshes(CLI::App& command, Options& options) {
+  add_text(command, "A", options.file_a, "mesh that stays; - reads standard input")->required();
+  add_text(command, "B", options.file_b, "mesh that is placed")->required();
+  return add_text(command, "--pose", options.pose,
+                  "tx,ty,tz[,rx,ry,rz]: rotate B by degrees about x, then y, then z, then move it");
+}
+
 void add_pairs(CLI::App& app, PairsOptions& options) {
   CLI::App* command = app.add_subcommand("pairs", "Answer the pairs of primitives in a CSV file");
   add_text(*command, "FILE", options.file, "CSV file with columns a0x..a2z, b0x..b2z; - reads standard input")
@@ -211,10 +220,7 @@ void add_pairs(CLI::App& app, PairsOptions& options) {
 void add_meshpairs(CLI::App& app, MeshPairsOptions& options) {
   CLI::App* command = app.add_subcommand(
       "meshpairs", "Answer the candidate pairs of two meshes (OBJ, STL, PLY, OFF), B placed by a pose");
-  add_text(*command, "A", options.file_a, "mesh that stays; - reads standard input")->required();
-  add_text(*command, "B", options.file_b, "mesh that is placed")->required();
-  auto* pose = add_text(*command, "--pose", options.pose,
-                        "tx,ty,tz[,rx,ry,rz]: rotate B by degrees about x, then y, then z, then move it");
+  auto* pose = add_meshes(*command, options);
   add_text(*command, "--pose-matrix", options.pose_matrix, "twelve numbers, the 3x4 matrix [R|t] row by row")
       ->excludes(pose);
   add_whole(*command, "--limit", options.limit, "answer the first N candidate pairs only (default 0: all)");
@@ -230,10 +236,7 @@ void add_meshpairs(CLI::App& app, MeshPairsOptions& options) {
 void add_collide(CLI::App& app, CollideOptions& options) {
   CLI::App* command = app.add_subcommand(
       "collide", "Do two meshes (OBJ, STL, PLY, OFF) touch, and where? B placed by one pose or by many");
-  add_text(*command, "A", options.file_a, "mesh that stays; - reads standard input")->required();
-  add_text(*command, "B", options.file_b, "mesh that is placed")->required();
-  auto* pose = add_text(*command, "--pose", options.pose,
-                        "tx,ty,tz[,rx,ry,rz]: rotate B by degrees about x, then y, then z, then move it");
+  auto* pose = add_meshes(*command, options);
   auto* matrix = add_text(*command, "--pose-matrix", options.pose_matrix,
                           "twelve numbers, the 3x4 matrix [R|t] of any affine map row by row");
   auto* poses = add_text(*command, "--poses", options.poses_file,

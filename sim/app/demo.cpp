@@ -97,12 +97,10 @@ void print_explanation(std::ostream& out, const DemoCounts& total) {
 }
 
 void add(DemoCounts& total, const DemoCounts& c) {
-  total.pairs += c.pairs;
-  total.hits += c.hits;
-  total.mismatches += c.mismatches;
-  total.indefinite += c.indefinite;
-  total.beats += c.beats;
-  total.clocks += c.clocks;
+  using C = DemoCounts;
+  for (const auto count : {&C::pairs, &C::hits, &C::mismatches, &C::indefinite, &C::beats, &C::clocks}) {
+    total.*count += c.*count;
+  }
   total.engine_seconds += c.engine_seconds;
 }
 

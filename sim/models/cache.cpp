@@ -92,10 +92,10 @@ Cache::Decisions Cache::decide() {
   const Step& fill6 = ports_[0].steps[5];
   const Step& walk6 = ports_[1].steps[5];
   now.kill = fill6.kind == Kind::own && fill6.code != ReadCode::ok;
-  const bool forgets = walk6.forget[0] || walk6.forget[1];
+  const bool drops = walk6.forget[0] || walk6.forget[1];
   now.walk_seen = walk6.kind == Kind::own;
-  now.walk_next = now.walk_seen && !walk6.stale && !(now.kill && forgets);
-  now.walk_write = now.walk_next && forgets;
+  now.walk_next = now.walk_seen && !walk6.stale && !(now.kill && drops);
+  now.walk_write = now.walk_next && drops;
   if (want[0] && !now.walk_write && !(want[1] && favour_)) now.granted = 0;
   if (want[1] && !now.kill && !(want[0] && !favour_)) now.granted = 1;
   if (want[0] && want[1]) favour_ = !favour_;

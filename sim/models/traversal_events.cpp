@@ -34,7 +34,7 @@ TraversalEvents::Source TraversalEvents::choose() const {
   if (may_.drop) return Source::drop;
   if (may_.start) return Source::start;
   if (may_.pop) return Source::pop;
-  return Source::nobody;
+  return Source::none;
 }
 
 void TraversalEvents::clock(const Inputs& in) {
@@ -44,12 +44,12 @@ void TraversalEvents::clock(const Inputs& in) {
   const bool goes = start || source == Source::pop;
   const bool takes_room = goes || (source == Source::verdict && some_room_);
   std::optional<Event> event;
-  if (source != Source::nobody) {
+  if (source != Source::none) {
     event = Event();  // clang 14 does not take emplace() here
     if (goes) event->place = places_.m_number();
   }
   switch (source) {
-    case Source::nobody:
+    case Source::none:
       break;
     case Source::verdict:
       event->event = TraversalEvent::verdict;

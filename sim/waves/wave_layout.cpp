@@ -354,7 +354,7 @@ struct View {
   double zoom;
 };
 
-/// With six decimals and a point, whatever the locale.
+/// With six decimals and a point, in any locale.
 std::string decimal(double value) {
   std::array<char, 400> text{};
   const auto end = std::to_chars(text.begin(), text.end(), value, std::chars_format::fixed, 6).ptr;

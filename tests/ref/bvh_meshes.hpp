@@ -4,6 +4,7 @@
 #ifndef CCHIP_TESTS_BVH_MESHES_HPP
 #define CCHIP_TESTS_BVH_MESHES_HPP
 
+#include <array>
 #include <cchip/mesh/mesh.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/seed.hpp>
@@ -24,6 +25,24 @@ inline void add_face(Mesh& mesh, const std::vector<Vec3d>& vertices) {
     mesh.vertices.push_back(vertices[i]);
   }
   mesh.faces.push_back(face);
+}
+
+/// A box of quads along the axes.
+inline Mesh make_box(const Vec3d& low, const Vec3d& high) {
+  Mesh mesh;
+  for (unsigned i = 0; i < 8; ++i) {
+    mesh.vertices.emplace_back(((i & 1U) != 0 ? high : low).x(), ((i & 2U) != 0 ? high : low).y(),
+                               ((i & 4U) != 0 ? high : low).z());
+  }
+  for (const auto& face : {std::array<std::uint32_t, 4>{0, 2, 3, 1},
+                           {4, 5, 7, 6},
+                           {0, 1, 5, 4},
+                           {2, 6, 7, 3},
+                           {0, 4, 6, 2},
+                           {1, 3, 7, 5}}) {
+    mesh.faces.push_back({Kind::quad, face});
+  }
+  return mesh;
 }
 
 inline Vec3d random_vector(std::mt19937_64& random, double range) {

@@ -27,7 +27,8 @@ struct Contacts {
   std::vector<std::size_t> counts;
 };
 
-// Before all objects of the libraries, whatever the order in which they are linked; and where this file's turn comes.
+// Before all objects of the libraries, regardless of the order in which they are linked; and where this file's turn
+// comes.
 __attribute__((init_priority(101))) const Contacts first;
 const Contacts before_main;
 

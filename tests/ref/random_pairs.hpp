@@ -23,6 +23,16 @@ using cchip::Vec3i;
 /// Seed of this process.
 inline std::uint64_t seed() { return cchip::sim::seed_from_environment(); }
 
+template <class P>
+using VertexOf = typename decltype(P::v)::value_type;
+
+template <class P>
+P make_triangle(const VertexOf<P>& v0, const VertexOf<P>& v1, const VertexOf<P>& v2) {
+  P p;
+  p.v = {v0, v1, v2, VertexOf<P>::Zero()};
+  return p;
+}
+
 /// Grid primitive times 2^exponent.
 inline cchip::Primitive scaled(const GridPrimitive& g, int exponent) {
   cchip::Primitive p;

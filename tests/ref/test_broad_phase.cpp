@@ -553,7 +553,7 @@ TEST_CASE("broad phase: limits and lines that make no sense end a query with a c
   REQUIRE(changed(1, inner_field::step, 19) == QueryCode::corrupt);
   REQUIRE(changed(1, inner_field::first, 1) == QueryCode::outside);
   REQUIRE(changed(1, inner_field::first, 0xffffff) == QueryCode::outside);
-  // whatever the bits are, a query ends
+  // a query ends for any bits
   for (int n = 0; n < 300; ++n) {
     Image image = torus.image;
     for (int i = 0; i < 20; ++i) {

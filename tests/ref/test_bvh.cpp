@@ -138,7 +138,7 @@ TEST_CASE("dop26: every vertex is inside, and no plane is further out than round
   REQUIRE(rounded > 1000);
 }
 
-TEST_CASE("dop26: primitives that meet overlap, whatever their scale", "[ref]") {
+TEST_CASE("dop26: primitives that meet overlap at any scale", "[ref]") {
   std::mt19937_64 random(sim::seed_from_environment());
   int hits = 0;
   int apart = 0;
@@ -529,7 +529,7 @@ TEST_CASE("image: damaged images are refused with line and field", "[ref]") {
     refused(with_field(image, quad, f::id, 1, 1), std::to_string(quad), "reserved");
   }
   SECTION("any bits") {
-    // Whatever the lines contain, reading ends with an image or with a message.
+    // With any content of the lines, reading ends with an image or with a message.
     int read = 0;
     for (int n = 0; n < 4000; ++n) {
       Image changed = image;

@@ -129,7 +129,7 @@ TEST_CASE("canonical: what becomes of some quads", "[ref][canonical]") {
   CHECK(canonical_order(quad(o, x, xy, y)) == Order{0, 1, 2, 3});
   CHECK(canonical_order(quad(o, y, xy, x)) == Order{0, 1, 2, 3});
   CHECK(canonical_order(quad(o, x, xy, xy)) == Order{0, 1, 2, 3});  // the triangle as a quad
-  CHECK(canonical_order(quad(o, x, y, z)) == Order{0, 1, 2, 3});    // warped, in whatever order
+  CHECK(canonical_order(quad(o, x, y, z)) == Order{0, 1, 2, 3});    // warped, in any order
   CHECK(canonical_order(quad(o, o, x, x)) == Order{0, 1, 2, 3});    // a segment
   CHECK(canonical_order(quad(o, xy, x, y)) != Order{0, 1, 2, 3});   // crosses itself
   CHECK(is_canonical(canonical_quad(quad(o, xy, x, y))));

@@ -36,7 +36,7 @@ struct Bench {
   std::size_t slots = 4;                       ///< submit() returns false beyond
   std::function<void(QueryOutcome&)> corrupt;  ///< changes outcomes
   std::set<std::uint64_t> hang;                ///< numbers of submissions that never end
-  std::uint64_t full = 0;                      ///< so many times proceed() passes before a slot is free
+  std::uint64_t full = 0;                      ///< number of proceed() before a slot is free
   std::string dies_in;                         ///< name of a call that throws ...
   std::uint64_t dies_at = 0;                   ///< ... when it comes for the time of this number, from 1 on
   bool recovers = true;
@@ -126,10 +126,10 @@ class FakePort final : public QueryPort {
     const bool hangs = !flights_.empty() && std::all_of(flights_.begin(), flights_.end(), [this](const Flight& x) {
       return bench_.hang.count(x.number) != 0;
     });
-    const bool late = std::any_of(flights_.begin(), flights_.end(), [this](const Flight& x) {
+    const bool overdue = std::any_of(flights_.begin(), flights_.end(), [this](const Flight& x) {
       return bench_.hang.count(x.number) != 0 && bench_.submitted > x.number + bench_.slots - 2;
     });
-    return !hangs && !late && (!flights_.empty() || bench_.full > 0);
+    return !hangs && !overdue && (!flights_.empty() || bench_.full > 0);
   }
 
   bool recover() override {

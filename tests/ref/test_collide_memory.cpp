@@ -24,14 +24,14 @@ std::atomic<std::size_t> allocations = 0;
 std::atomic<std::size_t> bytes = 0;  // in use
 
 /// Whose requests for 1000 bytes and more are refused.
-enum class Refused { nobody, caller, helpers };
-std::atomic<Refused> refused = Refused::nobody;
+enum class Refused { none, caller, helpers };
+std::atomic<Refused> refused = Refused::none;
 std::atomic<std::size_t> refusals = 0;
 const std::thread::id caller = std::this_thread::get_id();
 
 void* counted(std::size_t size, std::size_t alignment) {
   ++allocations;
-  if (refused != Refused::nobody && size >= 1000 &&
+  if (refused != Refused::none && size >= 1000 &&
       (refused == Refused::caller) == (std::this_thread::get_id() == caller)) {
     ++refusals;
     throw std::bad_alloc();
@@ -166,7 +166,7 @@ TEST_CASE("memory: a batch for which there is none in one of its threads ends wi
     } catch (const std::bad_alloc&) {
       out_of_memory = true;
     }
-    refused = Refused::nobody;
+    refused = Refused::none;
     CAPTURE(static_cast<int>(who));
     CHECK(refusals > 0);
     CHECK(out_of_memory);

@@ -84,16 +84,16 @@ TEST_CASE("CPU device: all threads answer a batch of few queries", "[ref][collid
       std::condition_variable changed;
       std::size_t asked = 0;
       std::set<std::thread::id> seen;
-      bool late = false;
+      bool timed_out = false;
       // Once the queries are checked, a thread that has one waits until each of the others has one.
       const auto query = [&](std::size_t) {
         std::unique_lock<std::mutex> lock(mutex);
         if (++asked > count) {
           seen.insert(std::this_thread::get_id());
           changed.notify_all();
-          late =
-              late || !changed.wait_for(lock, std::chrono::seconds(20), [&] { return late || seen.size() == threads; });
-          if (late) changed.notify_all();
+          timed_out = timed_out || !changed.wait_for(lock, std::chrono::seconds(20),
+                                                     [&] { return timed_out || seen.size() == threads; });
+          if (timed_out) changed.notify_all();
         }
         return CollisionQuery{&torus, &here, &torus, &there};
       };

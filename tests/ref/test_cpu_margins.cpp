@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <random>
 
+#include "bvh_meshes.hpp"
 #include "cpu/search.hpp"
 #include "random_poses.hpp"
 
@@ -62,21 +63,7 @@ Mesh make_spindle(const Vec3d& direction, double size) {
   return mesh;
 }
 
-Mesh make_cube(double size) {
-  Mesh mesh;
-  for (int i = 0; i < 8; ++i) {
-    mesh.vertices.push_back(size * Vec3d((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1));
-  }
-  for (const std::array<std::uint32_t, 4>& face : {std::array<std::uint32_t, 4>{0, 2, 3, 1},
-                                                   {4, 5, 7, 6},
-                                                   {0, 1, 5, 4},
-                                                   {2, 6, 7, 3},
-                                                   {0, 4, 6, 2},
-                                                   {1, 3, 7, 5}}) {
-    mesh.faces.push_back({Kind::quad, face});
-  }
-  return mesh;
-}
+Mesh make_cube(double size) { return make_box(Vec3d::Constant(-size), Vec3d::Constant(size)); }
 
 /// The middle of the mesh away from its origin, so that placing it takes sums that round.
 Mesh shifted(Mesh mesh, const Vec3d& by) {

@@ -22,7 +22,7 @@ namespace {
 constexpr int fine = 64;
 
 /// The cube of half-width `reach` / fine lies in the interior of A - B: convex, so its corners are enough. Then the
-/// primitives cross, whatever an error within the cube.
+/// primitives cross, for any error within the cube.
 bool cube_inside(const GridPair& pair, int reach) {
   for (unsigned corner = 0; corner < 8; ++corner) {
     GridPair moved = pair;

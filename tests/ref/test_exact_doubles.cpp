@@ -13,16 +13,6 @@ using cchip::exact_intersects;
 using cchip::Primitive;
 using cchip::Vec3d;
 
-namespace {
-
-Primitive triangle(const Vec3d& v0, const Vec3d& v1, const Vec3d& v2) {
-  Primitive p;
-  p.v = {v0, v1, v2, Vec3d::Zero()};
-  return p;
-}
-
-}  // namespace
-
 TEST_CASE("exact doubles: grid pairs at every magnitude", "[ref][exact_doubles]") {
   for (const PairClass c : pair_classes) {
     PairSource source(-200, 200, static_cast<std::uint64_t>(c));
@@ -57,36 +47,37 @@ TEST_CASE("exact doubles: coordinates of unlike magnitudes agree with linear pro
 }
 
 TEST_CASE("exact doubles: one unit in the last place decides", "[ref][exact_doubles]") {
-  const Primitive floor = triangle({0, 0, 0.1}, {1, 0, 0.1}, {0, 1, 0.1});
+  const Primitive floor = make_triangle<Primitive>({0, 0, 0.1}, {1, 0, 0.1}, {0, 1, 0.1});
   const double above = std::nextafter(0.1, 1.0);
-  CHECK(exact_intersects(floor, triangle({0.25, 0.25, 0.1}, {0.25, 0.5, 1}, {0.5, 0.25, 1})));
-  CHECK_FALSE(exact_intersects(floor, triangle({0.25, 0.25, above}, {0.25, 0.5, 1}, {0.5, 0.25, 1})));
+  CHECK(exact_intersects(floor, make_triangle<Primitive>({0.25, 0.25, 0.1}, {0.25, 0.5, 1}, {0.5, 0.25, 1})));
+  CHECK_FALSE(exact_intersects(floor, make_triangle<Primitive>({0.25, 0.25, above}, {0.25, 0.5, 1}, {0.5, 0.25, 1})));
   // 0.1 + 0.2 > 0.3 in exact arithmetic on the doubles, 0.3 < 1 - 0.7.
-  const Primitive slope = triangle({0.3, 0, -1}, {0.3, 0, 1}, {0.3, 1, 0});
-  CHECK(exact_intersects(slope, triangle({0.1, 0, 0}, {0.1 + 0.2, 0, 0}, {0.1, -1, 0})));
-  CHECK_FALSE(exact_intersects(slope, triangle({0.1, 0, 0}, {std::nextafter(0.3, 0.0), 0, 0}, {0.1, -1, 0})));
+  const Primitive slope = make_triangle<Primitive>({0.3, 0, -1}, {0.3, 0, 1}, {0.3, 1, 0});
+  CHECK(exact_intersects(slope, make_triangle<Primitive>({0.1, 0, 0}, {0.1 + 0.2, 0, 0}, {0.1, -1, 0})));
+  CHECK_FALSE(
+      exact_intersects(slope, make_triangle<Primitive>({0.1, 0, 0}, {std::nextafter(0.3, 0.0), 0, 0}, {0.1, -1, 0})));
 }
 
 TEST_CASE("exact doubles: smallest and largest numbers", "[ref][exact_doubles]") {
   const double tiny = std::numeric_limits<double>::denorm_min();
   const double huge = std::numeric_limits<double>::max();
-  const Primitive big = triangle({-huge, -huge, 0}, {huge, -huge, 0}, {0, huge, 0});
-  CHECK(exact_intersects(big, triangle({0, 0, 0}, {0, 1, huge}, {1, 0, huge})));
-  CHECK_FALSE(exact_intersects(big, triangle({0, 0, tiny}, {0, 1, huge}, {1, 0, huge})));
-  CHECK(exact_intersects(big, triangle({0, 0, tiny}, {0, tiny, -tiny}, {tiny, 0, -tiny})));
-  CHECK_FALSE(
-      exact_intersects(triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0}), triangle({tiny, 0, 0}, {huge, 0, 0}, {1, 0, 0})));
+  const Primitive big = make_triangle<Primitive>({-huge, -huge, 0}, {huge, -huge, 0}, {0, huge, 0});
+  CHECK(exact_intersects(big, make_triangle<Primitive>({0, 0, 0}, {0, 1, huge}, {1, 0, huge})));
+  CHECK_FALSE(exact_intersects(big, make_triangle<Primitive>({0, 0, tiny}, {0, 1, huge}, {1, 0, huge})));
+  CHECK(exact_intersects(big, make_triangle<Primitive>({0, 0, tiny}, {0, tiny, -tiny}, {tiny, 0, -tiny})));
+  CHECK_FALSE(exact_intersects(make_triangle<Primitive>({0, 0, 0}, {0, 0, 0}, {0, 0, 0}),
+                               make_triangle<Primitive>({tiny, 0, 0}, {huge, 0, 0}, {1, 0, 0})));
 }
 
 TEST_CASE("exact doubles: zeros only, and minus zero", "[ref][exact_doubles]") {
-  const Primitive origin = triangle(Vec3d::Zero(), Vec3d::Zero(), Vec3d::Zero());
-  CHECK(exact_intersects(origin, triangle({-0.0, 0, -0.0}, {0, -0.0, 0}, {0, 0, 0})));
+  const Primitive origin = make_triangle<Primitive>(Vec3d::Zero(), Vec3d::Zero(), Vec3d::Zero());
+  CHECK(exact_intersects(origin, make_triangle<Primitive>({-0.0, 0, -0.0}, {0, -0.0, 0}, {0, 0, 0})));
 }
 
 TEST_CASE("exact doubles: refuses what is not a number", "[ref][exact_doubles]") {
-  const Primitive fine = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  const Primitive fine = make_triangle<Primitive>({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    const Primitive broken = triangle({0, 0, 0}, {1, bad, 0}, {0, 1, 0});
+    const Primitive broken = make_triangle<Primitive>({0, 0, 0}, {1, bad, 0}, {0, 1, 0});
     CHECK_THROWS_AS(exact_intersects(fine, broken), std::invalid_argument);
     CHECK_THROWS_AS(exact_intersects(broken, fine), std::invalid_argument);
   }

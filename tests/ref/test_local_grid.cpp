@@ -169,12 +169,6 @@ double draw(PairSource& source, Magnitude magnitude, int scale) {
   return 0;
 }
 
-Primitive triangle(const Vec3d& v0, const Vec3d& v1, const Vec3d& v2) {
-  Primitive p;
-  p.v = {v0, v1, v2, Vec3d::Zero()};
-  return p;
-}
-
 }  // namespace
 
 TEST_CASE("local grid: random pairs keep every promise", "[ref][local_grid]") {
@@ -215,8 +209,8 @@ TEST_CASE("local grid: boxes at and around a full range", "[ref][local_grid]") {
         for (const int scale : {0, -30, 200}) {
           const double low = std::ldexp(from, scale);
           const double high = std::ldexp(from + extent, scale);
-          check_pair(triangle({low, 0, 0}, {low, high, 0}, {low, 0, low}),
-                     triangle({high, 0, 0}, {0, low, 0}, {0, 0, 0}), w, exact, rounded, refused);
+          check_pair(make_triangle<Primitive>({low, 0, 0}, {low, high, 0}, {low, 0, low}),
+                     make_triangle<Primitive>({high, 0, 0}, {0, low, 0}, {0, 0, 0}), w, exact, rounded, refused);
         }
       }
     }
@@ -256,30 +250,32 @@ TEST_CASE("local grid: integers in range go in verbatim", "[ref][local_grid]") {
 }
 
 TEST_CASE("local grid: points, zeros and equal primitives", "[ref][local_grid]") {
-  const Primitive zero = triangle(Vec3d::Zero(), Vec3d::Zero(), Vec3d::Zero());
+  const Primitive zero = make_triangle<Primitive>(Vec3d::Zero(), Vec3d::Zero(), Vec3d::Zero());
   CHECK(quantise(zero, zero, 16).pair.eta == 0);
   const Vec3d p(0.1, -0.7, 1e9);
   int exact = 0;
   int rounded = 0;
   int refused = 0;
-  check_pair(triangle(p, p, p), triangle(p, p, p), 16, exact, rounded, refused);
-  check_pair(triangle(p, p, p), triangle(p, p, p), 4, exact, rounded, refused);
-  check_pair(zero, triangle(p, p, p), 16, exact, rounded, refused);
+  check_pair(make_triangle<Primitive>(p, p, p), make_triangle<Primitive>(p, p, p), 16, exact, rounded, refused);
+  check_pair(make_triangle<Primitive>(p, p, p), make_triangle<Primitive>(p, p, p), 4, exact, rounded, refused);
+  check_pair(zero, make_triangle<Primitive>(p, p, p), 16, exact, rounded, refused);
   CHECK(rounded == 1);
 }
 
 TEST_CASE("local grid: pairs that no grid holds are refused in one line", "[ref][local_grid]") {
-  const Primitive fine = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  const Primitive fine = make_triangle<Primitive>({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
-    CHECK_THROWS_WITH(quantise(fine, triangle({0, 0, 0}, {1, bad, 0}, {0, 1, 0}), 16),
+    CHECK_THROWS_WITH(quantise(fine, make_triangle<Primitive>({0, 0, 0}, {1, bad, 0}, {0, 1, 0}), 16),
                       Catch::Contains("vertex b1") && Catch::Contains("finite"));
-    CHECK_THROWS_AS(quantise(triangle({bad, 0, 0}, {1, 0, 0}, {0, 1, 0}), fine, 16), cchip::GridError);
+    CHECK_THROWS_AS(quantise(make_triangle<Primitive>({bad, 0, 0}, {1, 0, 0}, {0, 1, 0}), fine, 16), cchip::GridError);
   }
   const auto remedy = Catch::Contains("move both primitives nearer to the origin");
-  const Primitive far = triangle({1e6, 0, 0}, {1e6, 1.1e-12, 0}, {1e6, 0, 1e-12});
+  const Primitive far = make_triangle<Primitive>({1e6, 0, 0}, {1e6, 1.1e-12, 0}, {1e6, 0, 1e-12});
   CHECK_THROWS_WITH(quantise(far, far, 20), remedy);
   const Vec3d spread(1e300, 1e-300, 0);
-  CHECK_THROWS_WITH(quantise(triangle(spread, spread, spread), triangle(spread, spread, spread), 16), remedy);
+  CHECK_THROWS_WITH(
+      quantise(make_triangle<Primitive>(spread, spread, spread), make_triangle<Primitive>(spread, spread, spread), 16),
+      remedy);
   CHECK_THROWS_AS(quantise(fine, fine, 3), std::invalid_argument);
   CHECK_THROWS_AS(quantise(fine, fine, 21), std::invalid_argument);
 }

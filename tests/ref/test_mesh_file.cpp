@@ -646,7 +646,7 @@ TEST_CASE("mesh file: concave polygons keep their outline", "[ref][mesh_file]") 
   }
 }
 
-TEST_CASE("mesh file: a polygon is cut the same way whatever its unit", "[ref][mesh_file]") {
+TEST_CASE("mesh file: a polygon is cut the same way in any unit", "[ref][mesh_file]") {
   // Where areas underflow or overflow, integers of any size decide about every ear.
   const TemporaryFolder folder;
   std::vector<Vec3d> comb;

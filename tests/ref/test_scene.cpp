@@ -24,23 +24,8 @@ using Id = Scene::Id;
 
 namespace {
 
-/// From a corner at the origin to `size`, of quads.
-Mesh box(const Vec3d& size) {
-  Mesh mesh;
-  for (std::size_t i = 0; i < 8; ++i) {
-    mesh.vertices.emplace_back((i & 1U) != 0 ? size.x() : 0, (i & 2U) != 0 ? size.y() : 0,
-                               (i & 4U) != 0 ? size.z() : 0);
-  }
-  for (const auto& face : {std::array<std::uint32_t, 4>{0, 2, 3, 1},
-                           {4, 5, 7, 6},
-                           {0, 1, 5, 4},
-                           {2, 6, 7, 3},
-                           {0, 4, 6, 2},
-                           {1, 3, 7, 5}}) {
-    mesh.faces.push_back({Kind::quad, face});
-  }
-  return mesh;
-}
+/// From a corner at the origin to `size`.
+Mesh box(const Vec3d& size) { return make_box(Vec3d::Zero(), size); }
 
 Pose at(double x, double y, double z) { return make_pose({x, y, z}, {0, 0, 0}); }
 

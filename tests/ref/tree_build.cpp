@@ -31,7 +31,7 @@ double peak_megabytes() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-/// About so many triangles.
+/// A mesh of about `faces` triangles.
 Mesh large_mesh(int faces, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const int across = static_cast<int>(std::sqrt(faces / 6.0));

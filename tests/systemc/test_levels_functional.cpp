@@ -102,7 +102,7 @@ TEST_CASE("levels functional: a module answers through FIFOs, one for one and in
   CHECK(script.hits == std::vector<int>{1, 0, 1, 0, 0, 1, 1});
 }
 
-TEST_CASE("levels functional: the API ends with an error if nobody answers", "[systemc][levels]") {
+TEST_CASE("levels functional: the API ends with an error if no answer comes", "[systemc][levels]") {
   const Stimulus stimulus = generate({50, 1, 1});
   FunctionalApi api("api", stimulus, sc_core::sc_time(1, sc_core::SC_MS), 1);
   FunctionalChannels channels("channel");

@@ -97,7 +97,7 @@ LevelResult run_directly(const Stimulus& stimulus) {
 
 }  // namespace
 
-TEST_CASE("levels verilator --sc: models take turns behind one group of portals", "[systemc][levels][A.7]") {
+TEST_CASE("levels verilator --sc: models alternate behind one group of portals", "[systemc][levels][A.7]") {
   power_up();
   const Stimulus stimulus = stimulus_of({ModuleId::tri_tri, ModuleId::quad_quad});
   Reconfigurable<Vsc_tri_tri> tri_tri("tri_tri");

@@ -175,7 +175,7 @@ TEST_CASE("RC_METHOD with dont_initialize runs on its events only, and only whil
   });
 }
 
-TEST_CASE("RC_METHOD forgets its next_trigger when the module is deactivated", "[rc][process]") {
+TEST_CASE("RC_METHOD drops its next_trigger when the module is deactivated", "[rc][process]") {
   struct M : rc::reconfigurable<Bare> {
     std::vector<sc_time> runs;
     explicit M(const sc_core::sc_module_name& n) : reconfigurable(n) { RC_METHOD(run); }

@@ -315,7 +315,7 @@ TEST_CASE("a closing portal writes an undefined value: the caller's, or keeps th
   });
 }
 
-TEST_CASE("modules take turns at a signal with one writer", "[rc][signal]") {
+TEST_CASE("modules alternate at a signal with one writer", "[rc][signal]") {
   System<int> s;  // sc_signal checks its writer
   Thread write_a("write_a", [&] {
     for (int i = 0;; ++i) {

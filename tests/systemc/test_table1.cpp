@@ -59,7 +59,7 @@ std::vector<Picoseconds> expected_answers(const table1::Platform& platform, cons
 
 }  // namespace
 
-TEST_CASE("table1: one configuration per object pair adds eq. (4), whatever the amount of data", "[systemc][table1]") {
+TEST_CASE("table1: one configuration per object pair adds eq. (4) for any amount of data", "[systemc][table1]") {
   std::mt19937_64 random(sim::seed_from_environment());
   const auto data_bits = random() % 200'000'000;
   CAPTURE(data_bits);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The primitive tests on their ports, whatever their shape and parameters: what the tests of the three modules
+/// The primitive tests on their ports, for any shape and parameters: what the tests of the three modules
 /// share. The checks are in test_cchip_primtest.cpp.
 #ifndef CCHIP_TESTS_UNIT_PRIMTEST_BENCH_HPP
 #define CCHIP_TESTS_UNIT_PRIMTEST_BENCH_HPP
@@ -128,7 +128,7 @@ PrimtestConfig primtest_config(ModuleId id) {
           }};
 }
 
-/// Outputs of an empty module, whatever the inputs are and whether a rising edge has passed.
+/// Outputs of an empty module, for any inputs, before and after a rising edge.
 template <class Config>
 void require_never_answers() {
   for_two_power_ups<typename Config::Model>([](auto& simulation, Random& random) {

@@ -10,7 +10,7 @@
 
 namespace cchip::test {
 
-/// Any verdict that the pipeline can give, whatever the axis: a zero has no sign, a certain sign is not zero, a certain
+/// Any verdict that the pipeline can give, for any axis: a zero has no sign, a certain sign is not zero, a certain
 /// gap is a gap. Deep verdicts are likely, so that pairs stay deep through many of them.
 /// \param zero_axes components that are zero in both normals of the pair, bit mask 0..6: where the programme looks at a
 /// component of both, it is the largest of one and they are parallel

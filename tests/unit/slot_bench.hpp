@@ -30,14 +30,14 @@ class SlotBench : public sim::Agent {
     port.on_result = [this](const PairResult& result, bool known) {
       ++returned;
       if (on_result) return on_result(result);
-      sim::require(known, "a result that nobody asked for");
+      sim::require(known, "a result without a request");
       scoreboard.got(result.tag, result, simulation.clock());
     };
     simulation.add(port);
     simulation.add(*this);
   }
 
-  /// Rules for every clock, whatever the region does.
+  /// Rules for every clock, regardless of the region.
   void sample(const sim::ClockInfo& now) override {
     if (now.in_reset) return;
     if (top.decoupled != 0) {

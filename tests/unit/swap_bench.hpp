@@ -104,7 +104,7 @@ class SwapBench : public sim::Agent {
     start(request);
     return finish();
   }
-  /// A good swap must work, whatever happened before.
+  /// A good swap must work after any other one.
   void require_good_swap(int slot, ModuleId module_id, std::size_t bytes = 64) {
     const SwapRequest request = load(slot, module_id, bytes);
     behaviour(slot) = SlotBehaviour{};

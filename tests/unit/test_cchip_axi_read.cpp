@@ -27,7 +27,7 @@ struct Behaviour {
   int error;         ///< of rresp, on a beat
   int wrong_length;  ///< of a line
   int lost;          ///< of a line: not answered before `silence` ends
-  int unasked;       ///< a beat on a clock that nobody asked for
+  int unasked;       ///< an unrequested beat on a clock
   int silence;       ///< periods without any address taken or beat: they begin on a clock with 1 / 2^silence; 0: none
   std::uint32_t limit;
   bool changes = false;  ///< the limit changes: up, down, to the default and to the highest
@@ -265,21 +265,21 @@ TEMPLATE_LIST_TEST_CASE(
         ReadBench<TestType> bench(simulation, random);
         bench.run(how, percent, 6000);
         const auto count = [&](ReadCode code) { return bench.answers[static_cast<std::size_t>(code)]; };
-        const bool late = how.limit < 100000;
-        if (how.limit > 100) REQUIRE(count(ReadCode::ok) > (late ? 0 : 50));
+        const bool times_out = how.limit < 100000;
+        if (how.limit > 100) REQUIRE(count(ReadCode::ok) > (times_out ? 0 : 50));
         const bool faulty = how.error != 0;
-        if (!faulty || !late) REQUIRE((count(ReadCode::bus) != 0) == faulty);
-        REQUIRE((count(ReadCode::timeout) != 0) == late);
+        if (!faulty || !times_out) REQUIRE((count(ReadCode::bus) != 0) == faulty);
+        REQUIRE((count(ReadCode::timeout) != 0) == times_out);
         // a line that is too long is owed still when the place is used again
-        if (late) REQUIRE(count(ReadCode::owed) != 0);
-        if (!late && !faulty) REQUIRE(count(ReadCode::owed) == 0);
-        if (percent == 100 && !late) REQUIRE(bench.most_open == TestType::CLIENTS * TestType::SLOTS);
+        if (times_out) REQUIRE(count(ReadCode::owed) != 0);
+        if (!times_out && !faulty) REQUIRE(count(ReadCode::owed) == 0);
+        if (percent == 100 && !times_out) REQUIRE(bench.most_open == TestType::CLIENTS * TestType::SLOTS);
       }
     }
   });
 }
 
-// Nobody asks twice, memory is silent for ever: each request ends by itself, and after the silence the place works
+// No client asks twice, memory is silent for ever: each request ends by itself, and after the silence the place works
 // again.
 TEMPLATE_LIST_TEST_CASE("cchip_axi_read: a beat on every clock; a silent bus ends in time-outs",
                         "[unit][cchip_axi_read]", cchip_axi_read_configs) {

@@ -362,13 +362,13 @@ TEMPLATE_LIST_TEST_CASE(
         WriteBench<TestType> bench(simulation, random);
         bench.run(how, percent, 6000);
         const auto count = [&](WriteCode code) { return bench.answers[static_cast<std::size_t>(code)]; };
-        const bool late = how.limit < 100000;
+        const bool times_out = how.limit < 100000;
         if (how.limit > 100) REQUIRE(count(WriteCode::ok) > 50);
         const bool faulty = how.error != 0;
-        if (!faulty || !late) REQUIRE((count(WriteCode::bus) != 0) == faulty);
-        REQUIRE((count(WriteCode::timeout) != 0) == late);
-        REQUIRE((count(WriteCode::owed) != 0) == late);
-        if (!late) REQUIRE(bench.blank == 0);
+        if (!faulty || !times_out) REQUIRE((count(WriteCode::bus) != 0) == faulty);
+        REQUIRE((count(WriteCode::timeout) != 0) == times_out);
+        REQUIRE((count(WriteCode::owed) != 0) == times_out);
+        if (!times_out) REQUIRE(bench.blank == 0);
         REQUIRE(bench.most_open <= TestType::OUTSTANDING);
       }
     }

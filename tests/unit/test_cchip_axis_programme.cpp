@@ -56,7 +56,7 @@ class Walk {
         bits = with_code(bits, state);
         continue;
       }
-      // without valid nothing happens, whatever the verdict
+      // without valid nothing happens, for any verdict
       for (int clock = 1; clock < defs::programme_latency(); ++clock) {
         present(random_verdict(random_, 50, 0), random_() & ((1ULL << defs::state_w) - 1), false);
       }

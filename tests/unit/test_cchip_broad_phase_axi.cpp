@@ -107,7 +107,7 @@ std::vector<Query> submit(Machine& bench, Random& random, int count) {
 }  // namespace
 
 TEMPLATE_LIST_TEST_CASE(
-    "cchip_broad_phase_axi: answers and counts are the functional model's, whatever memory and receiver do",
+    "cchip_broad_phase_axi: answers and counts are the functional model's with any memory and receiver",
     "[unit][cchip_broad_phase_axi]", cchip_broad_phase_axi_configs) {
   Random random(sim::seed_from_environment());
   Broad<TestType> bench(random());
@@ -139,7 +139,7 @@ TEMPLATE_LIST_TEST_CASE(
   bench.top().memory_limit = 500;
   for (const AxiFault fault : {AxiFault::slave_error, AxiFault::silence}) {
     const std::size_t from = bench.answers().size();
-    unsigned share = 50;  // one of so many reads
+    unsigned share = 50;  // one read in this many
     bench.memory().read_fault = [&](std::uint64_t) { return random() % share == 0 ? fault : AxiFault::none; };
     std::vector<Query> queries = submit(bench, random, 60);
     bench.run(3000000);
@@ -372,7 +372,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: contexts start anew while result
   bench.run(3000000);
   for (std::size_t i = 0; i < queries.size(); ++i) check(bench, queries[i], bench.answers()[from + i]);
 
-  bench.done_percent = 0;  // nobody takes an answer
+  bench.done_percent = 0;  // no answer is taken
   const std::size_t last = bench.answers().size();
   queries = submit(bench, random, 60);
   bench.steps(100000);

@@ -52,7 +52,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_bv_offset: grids are the functional model's, a no
         top.shift = static_cast<CData>(random() % 16);  // counts with start only
         top.epsilon = static_cast<CData>(random() % 128);
         --rest;
-      } else {  // nobody looks
+      } else {  // the result is not read
         sim::set_random(top.a_origin, 54, random);
         sim::set_random(top.row_m, 57, random);
         sim::set_random(top.row_t, 29, random);

@@ -33,7 +33,7 @@ struct Behaviour {
   int invalidate;  ///< of a command on a clock, after a line has been written
   bool locks;
   int gate = 0;     ///< memory rests until that many reads wait or nothing else happens for that long, then answers all
-  int silence = 0;  ///< clocks for which memory still owes its response after a time-out or refusal, at most
+  int silence = 0;  ///< clocks for which a response is outstanding after a time-out or refusal, at most
 };
 constexpr Behaviour behaviours[] = {
     {"hits", 100, 0, 1, 10, 100, 0, 0, false},      {"mixed", 60, 0, 4, 60, 100, 0, 0, false},
@@ -170,7 +170,7 @@ class CacheBench {
       sim::set_bits(top_.s_line, line_w * bit, line_w, line);
     }
 
-    // the host writes a line, then has it forgotten; nobody else is told
+    // the host writes a line, then invalidates it; no other module is told
     if (percent != 0 && random_() % 1000 < static_cast<std::uint64_t>(how_.invalidate)) {
       const std::uint64_t line = random_line();
       ++versions_[line];
@@ -287,7 +287,7 @@ class CacheBench {
     REQUIRE((top_.invalidate_ready != 0) == model_.invalidate_ready());
   }
 
-  /// What must hold whatever the model says: who asked for what, what memory holds, what the host has been promised.
+  /// What must hold regardless of the model: who asked for what, what memory holds, what the host has been promised.
   void watch() {
     for (std::size_t p = 0; p < 2; ++p) {
       for (auto& place : asked_[p]) {
@@ -358,7 +358,7 @@ class CacheBench {
   int silent_ = 0, rested_ = 0;
   std::size_t was_reads_ = 0;
   bool open_ = false;
-  std::vector<int> owed_;  // of each slot, clocks until memory owes it nothing
+  std::vector<int> owed_;  // of each slot, clocks until its response is no longer outstanding
   std::map<std::uint64_t, std::uint64_t> versions_, promised_, commanded_;
 };
 
@@ -485,7 +485,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache: clocks of a hit and of a miss; a locked li
     REQUIRE_FALSE(fetches(line(1, 3)));
     REQUIRE(fetches(line(2, 3)));
 
-    // a command forgets what is in its range, the locked line too, and nothing else
+    // a command invalidates the lines in its range, the locked one too, and no others
     REQUIRE(fetches(line(0, 4)));
     bench.invalidate({line(0, 6), line(1, 2)});
     REQUIRE_FALSE(fetches(line(0, 4)));
@@ -498,7 +498,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache: clocks of a hit and of a miss; a locked li
     REQUIRE(fetches(line(1, 3)));
     REQUIRE(fetches(line(0, 4)));
 
-    // an error is handed on and kept by nobody
+    // an error is handed on and not kept
     bench.set_memory(1, 100, 100);
     REQUIRE(fetches(line(0, 7)));
     REQUIRE(bench.answers[0] + bench.answers[1] + bench.answers[2] + bench.answers[3] != bench.answers[0]);

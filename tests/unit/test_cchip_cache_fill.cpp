@@ -33,7 +33,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
       simulation.reset();
       std::set<int> used;                        // slots
       std::optional<Line> taken;                 // on the clock before
-      std::vector<Line> reads;                   // memory owes
+      std::vector<Line> reads;                   // outstanding
       std::deque<std::pair<int, Line>> filling;  // clock of fill_valid
       model::Fifo<Line> queue(misses);
       std::optional<Line> served;
@@ -42,7 +42,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
           some_lost = 0;                    // reads that memory kept; clocks for which all slots, no slot are lost
       int serves = 0, lines = 0, most = 0;  // clocks left, lines done
       std::array<bool, misses> held{}, filled{};
-      std::array<int, misses> owed{};  // clocks until memory owes the slot nothing
+      std::array<int, misses> owed{};  // clocks until the slot's response is no longer outstanding
       std::size_t lost = 0;            // slots out of use
       for (int clock = 0; clock < 6000; ++clock) {
         // the slot taken a clock ago gets its frame

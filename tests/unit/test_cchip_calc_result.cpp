@@ -152,7 +152,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_calc_result: leaf pairs, judgements and records a
               start(leaf.context);
             }
           }
-          // the number is in use until its records have left: the scoreboard forgets the rest
+          // the number is in use until its records have left: the scoreboard drops the rest
           leaf.complete = true;
         }
         const bool done =

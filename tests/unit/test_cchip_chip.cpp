@@ -298,7 +298,7 @@ TEST_CASE("cchip_chip: a soft reset waits for memory, however long that takes", 
       const std::uint32_t owed = reads ? regs::status::read_outstanding_mask : regs::status::write_outstanding_mask;
       CHECK((s.status() & regs::status::resetting_mask) != 0);
       CHECK((s.status() & owed) != 0);
-      // these stay 0 meanwhile, whatever is written
+      // these stay 0 meanwhile in spite of writes
       s.write(regs::control::offset, regs::control::enable_mask);
       s.write(regs::query_producer::offset, 5);
       s.write(regs::record_consumer::offset, 5);

@@ -53,84 +53,83 @@ Totals check(Bench& bench, const Objects& objects, const std::vector<Query>& que
 
 constexpr Kind kind_of(int module) { return module == 3 ? Kind::quad : Kind::tri; }
 
+/// After each power-up: body(bench, objects, random), with two meshes of this kind in the memory.
+template <class Config, class Body>
+void with_objects(Kind kind, Body body) {
+  const Objects meshes(kind);
+  for_two_power_ups([&](const sim::SimulationOptions& options) {
+    Random random(options.seed);
+    Objects objects = meshes;
+    SimulatedChipCore<Config> bench(options);
+    objects.place(bench);
+    body(bench, objects, random);
+  });
+}
+
 }  // namespace
 
 TEMPLATE_LIST_TEST_CASE("cchip_chip_core: every record is the model's, with any memory, ring and host",
                         "[unit][cchip_chip_core]", cchip_chip_core_configs) {
-  using Bench = SimulatedChipCore<TestType>;
-  const Objects meshes(kind_of(TestType::RM_ID));
-  for_two_power_ups([&](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    Objects objects = meshes;
-    ChipOptions chip;
-    Bench bench(options, chip);
-    objects.place(bench);
-    Totals all;
-    const auto add = [&](const Totals& x) {
-      all.hits += x.hits;
-      all.records += x.records;
-    };
-    add(check(bench, objects, queries_of(objects, random, 24)));
-    bench.memory().options = wild();
-    for (const unsigned ring : {4U, 3U, 0U}) {
-      bench.chip().record_log2 = ring;
-      bench.chip().query_log2 = ring == 0 ? 0 : 2;
-      bench.chip().host_every = ring == 4 ? 997 : 61;
-      ++bench.chip().generation;
-      bench.reset();
-      add(check(bench, objects, queries_of(objects, random, 12)));
-    }
-    REQUIRE(all.hits > 5);
-    REQUIRE(all.records > 100);
-  });
+  with_objects<TestType>(kind_of(TestType::RM_ID),
+                         [&](SimulatedChipCore<TestType>& bench, const Objects& objects, Random& random) {
+                           Totals all;
+                           const auto add = [&](const Totals& x) {
+                             all.hits += x.hits;
+                             all.records += x.records;
+                           };
+                           add(check(bench, objects, queries_of(objects, random, 24)));
+                           bench.memory().options = wild();
+                           for (const unsigned ring : {4U, 3U, 0U}) {
+                             bench.chip().record_log2 = ring;
+                             bench.chip().query_log2 = ring == 0 ? 0 : 2;
+                             bench.chip().host_every = ring == 4 ? 997 : 61;
+                             ++bench.chip().generation;
+                             bench.reset();
+                             add(check(bench, objects, queries_of(objects, random, 12)));
+                           }
+                           REQUIRE(all.hits > 5);
+                           REQUIRE(all.records > 100);
+                         });
 }
 
 TEST_CASE("cchip_chip_core: quads without their test come back as open pairs, none lost", "[unit][cchip_chip_core]") {
-  const Objects meshes(Kind::quad);
-  for_two_power_ups([&](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    Objects objects = meshes;
-    SimulatedChipCore<chip_core_tri> bench(options);
-    objects.place(bench);
-    bench.memory().options = wild();
-    std::size_t records = 0;
-    const std::vector<Query> queries = queries_of(objects, random, 20);
-    for (const Query& query : queries) bench.submit(query);
-    REQUIRE(bench.run(most_clocks));
-    REQUIRE(bench.wrong().empty());
-    for (std::size_t i = 0; i < queries.size(); ++i) {
-      const ChipAnswer& answer = bench.answers()[i];
-      const model::BroadPhaseResult expected = objects.expected(queries[i]);
-      std::set<std::pair<std::uint32_t, std::uint32_t>> got;
-      for (const PairRecord& pair : answer.pairs) {
-        REQUIRE_FALSE(pair.definite);
-        got.emplace(pair.id_a, pair.id_b);
-      }
-      records += got.size();
-      if (queries[i].mode == QueryMode::first) {
-        // one leaf pair at a time may cross the limit
-        const bool limit = answer.done->code == QueryCode::host && answer.pairs.size() >= bench.top().open_limit;
-        REQUIRE((limit || answer.done->code == QueryCode::ok));
-        continue;
-      }
-      REQUIRE(answer.done->code == QueryCode::ok);
-      REQUIRE(answer.pairs.size() == expected.counts.primitive_pairs);
-      REQUIRE(got.size() == answer.pairs.size());
-      REQUIRE(answer.done->answer == (got.empty() ? QueryAnswer::no : QueryAnswer::open));
-      for (const PairRecord& pair : expected.pairs) REQUIRE(got.count({pair.id_a, pair.id_b}) == 1);
-    }
-    REQUIRE(records > 100);
-  });
+  with_objects<chip_core_tri>(
+      Kind::quad, [&](SimulatedChipCore<chip_core_tri>& bench, const Objects& objects, Random& random) {
+        bench.memory().options = wild();
+        std::size_t records = 0;
+        const std::vector<Query> queries = queries_of(objects, random, 20);
+        for (const Query& query : queries) bench.submit(query);
+        REQUIRE(bench.run(most_clocks));
+        REQUIRE(bench.wrong().empty());
+        for (std::size_t i = 0; i < queries.size(); ++i) {
+          const ChipAnswer& answer = bench.answers()[i];
+          const model::BroadPhaseResult expected = objects.expected(queries[i]);
+          std::set<std::pair<std::uint32_t, std::uint32_t>> got;
+          for (const PairRecord& pair : answer.pairs) {
+            REQUIRE_FALSE(pair.definite);
+            got.emplace(pair.id_a, pair.id_b);
+          }
+          records += got.size();
+          if (queries[i].mode == QueryMode::first) {
+            // one leaf pair at a time may cross the limit
+            const bool limit = answer.done->code == QueryCode::host && answer.pairs.size() >= bench.top().open_limit;
+            REQUIRE((limit || answer.done->code == QueryCode::ok));
+            continue;
+          }
+          REQUIRE(answer.done->code == QueryCode::ok);
+          REQUIRE(answer.pairs.size() == expected.counts.primitive_pairs);
+          REQUIRE(got.size() == answer.pairs.size());
+          REQUIRE(answer.done->answer == (got.empty() ? QueryAnswer::no : QueryAnswer::open));
+          for (const PairRecord& pair : expected.pairs) REQUIRE(got.count({pair.id_a, pair.id_b}) == 1);
+        }
+        REQUIRE(records > 100);
+      });
 }
 
 TEMPLATE_LIST_TEST_CASE("cchip_chip_core: an error of the bus or a silent read ends its queries and no other",
                         "[unit][cchip_chip_core]", cchip_chip_core_configs) {
-  const Objects meshes(kind_of(TestType::RM_ID));
-  for_two_power_ups([&](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    Objects objects = meshes;
-    SimulatedChipCore<TestType> bench(options);
-    objects.place(bench);
+  with_objects<TestType>(kind_of(TestType::RM_ID), [&](SimulatedChipCore<TestType>& bench, const Objects& objects,
+                                                       Random& random) {
     bench.memory().options = wild();
     bench.top().memory_limit = 3000;
     using sim::AxiFault;
@@ -163,43 +162,39 @@ TEMPLATE_LIST_TEST_CASE("cchip_chip_core: an error of the bus or a silent read e
 
 TEMPLATE_LIST_TEST_CASE("cchip_chip_core: a ring stops at what it cannot read or write", "[unit][cchip_chip_core]",
                         cchip_chip_core_configs) {
-  const Objects meshes(kind_of(TestType::RM_ID));
-  for_two_power_ups([&](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    Objects objects = meshes;
-    SimulatedChipCore<TestType> bench(options);
-    objects.place(bench);
-    int ring_reads = 0;
-    bench.memory().read_fault = [&](std::uint64_t line) {
-      return line < SimulatedChipCore<TestType>::first_image && ++ring_reads == 6 ? sim::AxiFault::slave_error
-                                                                                  : sim::AxiFault::none;
-    };
-    for (const Query& query : queries_of(objects, random, 12)) bench.submit(query);
-    REQUIRE_FALSE(bench.run(400000));
-    REQUIRE(bench.top().query_failed == 1);
-    REQUIRE(bench.top().query_consumer == 5);
-    REQUIRE(bench.unanswered() == 7);  // those before it have their answers
-    REQUIRE(bench.wrong().empty());
+  with_objects<TestType>(
+      kind_of(TestType::RM_ID), [&](SimulatedChipCore<TestType>& bench, const Objects& objects, Random& random) {
+        int ring_reads = 0;
+        bench.memory().read_fault = [&](std::uint64_t line) {
+          return line < SimulatedChipCore<TestType>::first_image && ++ring_reads == 6 ? sim::AxiFault::slave_error
+                                                                                      : sim::AxiFault::none;
+        };
+        for (const Query& query : queries_of(objects, random, 12)) bench.submit(query);
+        REQUIRE_FALSE(bench.run(400000));
+        REQUIRE(bench.top().query_failed == 1);
+        REQUIRE(bench.top().query_consumer == 5);
+        REQUIRE(bench.unanswered() == 7);  // those before it have their answers
+        REQUIRE(bench.wrong().empty());
 
-    bench.memory().read_fault = [](std::uint64_t) { return sim::AxiFault::none; };
-    ++bench.chip().generation;
-    bench.reset();
-    REQUIRE(bench.top().query_failed == 0);
-    int writes = 0;
-    bench.memory().write_fault = [&](std::uint64_t) {
-      return ++writes == 9 ? sim::AxiFault::slave_error : sim::AxiFault::none;
-    };
-    for (const Query& query : queries_of(objects, random, 12)) bench.submit(query);
-    REQUIRE_FALSE(bench.run(400000));
-    REQUIRE(bench.top().record_failed == 1);
-    REQUIRE(bench.top().record_producer == 8);
-    REQUIRE(bench.wrong().empty());
+        bench.memory().read_fault = [](std::uint64_t) { return sim::AxiFault::none; };
+        ++bench.chip().generation;
+        bench.reset();
+        REQUIRE(bench.top().query_failed == 0);
+        int writes = 0;
+        bench.memory().write_fault = [&](std::uint64_t) {
+          return ++writes == 9 ? sim::AxiFault::slave_error : sim::AxiFault::none;
+        };
+        for (const Query& query : queries_of(objects, random, 12)) bench.submit(query);
+        REQUIRE_FALSE(bench.run(400000));
+        REQUIRE(bench.top().record_failed == 1);
+        REQUIRE(bench.top().record_producer == 8);
+        REQUIRE(bench.wrong().empty());
 
-    bench.memory().write_fault = [](std::uint64_t) { return sim::AxiFault::none; };
-    ++bench.chip().generation;
-    bench.reset();
-    check(bench, objects, queries_of(objects, random, 8));
-  });
+        bench.memory().write_fault = [](std::uint64_t) { return sim::AxiFault::none; };
+        ++bench.chip().generation;
+        bench.reset();
+        check(bench, objects, queries_of(objects, random, 8));
+      });
 }
 
 TEMPLATE_LIST_TEST_CASE("cchip_chip_core: garbage in an image ends its queries with a code or not at all",
@@ -255,20 +250,16 @@ TEMPLATE_LIST_TEST_CASE("cchip_chip_core: garbage in an image ends its queries w
 
 TEMPLATE_LIST_TEST_CASE("cchip_chip_core: reset at any clock leaves nothing of before", "[unit][cchip_chip_core]",
                         cchip_chip_core_configs) {
-  const Objects meshes(kind_of(TestType::RM_ID));
-  for_two_power_ups([&](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    Objects objects = meshes;
-    SimulatedChipCore<TestType> bench(options);
-    objects.place(bench);
-    bench.memory().options = wild();
-    for (int i = 0; i < 30; ++i) {
-      for (const Query& query : queries_of(objects, random, 6)) bench.submit(query);
-      bench.steps(random() % 6000);
-      ++bench.chip().generation;  // a record of before is one of nobody
-      bench.reset();
-      REQUIRE(bench.wrong().empty());
-    }
-    check(bench, objects, queries_of(objects, random, 12));
-  });
+  with_objects<TestType>(kind_of(TestType::RM_ID),
+                         [&](SimulatedChipCore<TestType>& bench, const Objects& objects, Random& random) {
+                           bench.memory().options = wild();
+                           for (int i = 0; i < 30; ++i) {
+                             for (const Query& query : queries_of(objects, random, 6)) bench.submit(query);
+                             bench.steps(random() % 6000);
+                             ++bench.chip().generation;  // earlier records belong to no query
+                             bench.reset();
+                             REQUIRE(bench.wrong().empty());
+                           }
+                           check(bench, objects, queries_of(objects, random, 12));
+                         });
 }

@@ -110,41 +110,22 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: bad headers", "[unit][cchip_co
                         cchip_config_controller_configs) {
   const Bytes payload = make_payload(0, quad, 64);
   const BitstreamHeader good{defs::bitstream_magic, 0, quad, 64, crc32(payload)};
-  BitstreamHeader bad = good;
-  SECTION("magic") {
-    bad.magic ^= 0x100;
-    require_header_refused<TestType>(bad, 80, SwapCode::magic);
-  }
-  SECTION("slot") {
-    bad.slot = 1;
-    require_header_refused<TestType>(bad, 80, SwapCode::slot);
-  }
-  SECTION("module") {
-    bad.module_id = tri;
-    require_header_refused<TestType>(bad, 80, SwapCode::module);
-  }
-  SECTION("length beyond the end: truncated") {
-    bad.length = 68;
-    require_header_refused<TestType>(bad, 80, SwapCode::length);
-  }
-  SECTION("length before the end: over-long") {
-    bad.length = 60;
-    require_header_refused<TestType>(bad, 80, SwapCode::length);
-  }
-  SECTION("payload too short") {
-    bad.length = 12;
-    require_header_refused<TestType>(bad, 28, SwapCode::length);
-  }
-  SECTION("less than a header") {
-    bad.length = 0xFFFFFFFC;
-    require_header_refused<TestType>(bad, 12, SwapCode::length);
-  }
-  if (TestType::CFG_W == 32) {
-    SECTION("no whole words") {
-      bad.length = 63;
-      require_header_refused<TestType>(bad, 79, SwapCode::length);
+  const auto refused = [&](const char* what, auto BitstreamHeader::*field, auto value, std::uint32_t size,
+                           SwapCode code) {
+    DYNAMIC_SECTION(what) {
+      BitstreamHeader bad = good;
+      bad.*field = static_cast<std::decay_t<decltype(bad.*field)>>(value);
+      require_header_refused<TestType>(bad, size, code);
     }
-  }
+  };
+  refused("magic", &BitstreamHeader::magic, good.magic ^ 0x100, 80, SwapCode::magic);
+  refused("slot", &BitstreamHeader::slot, 1, 80, SwapCode::slot);
+  refused("module", &BitstreamHeader::module_id, tri, 80, SwapCode::module);
+  refused("length beyond the end: truncated", &BitstreamHeader::length, 68, 80, SwapCode::length);
+  refused("length before the end: over-long", &BitstreamHeader::length, 60, 80, SwapCode::length);
+  refused("payload too short", &BitstreamHeader::length, 12, 28, SwapCode::length);
+  refused("less than a header", &BitstreamHeader::length, 0xFFFFFFFC, 12, SwapCode::length);
+  if (TestType::CFG_W == 32) refused("no whole words", &BitstreamHeader::length, 63, 79, SwapCode::length);
 }
 
 TEMPLATE_LIST_TEST_CASE("cchip_config_controller: requests refused", "[unit][cchip_config_controller]",
@@ -254,12 +235,12 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: faults of the bus", "[unit][cc
         burst.resize(i + 1);
         burst[i].last = true;
         break;
-      case 4:  // ends late
+      case 4:  // ends after the last word
         burst.back().last = false;
         burst.push_back(burst.back());
         burst.back().last = true;
         break;
-      default:  // ends much late
+      default:  // ends long after it
         burst.back().last = false;
         for (int extra = 0; extra < 40; ++extra) burst.push_back(burst.back());
         burst.back().last = true;
@@ -694,7 +675,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: random memories, slots and fau
       const SwapReport report = bench.reports().back();
       REQUIRE(report.slot == slot);
       REQUIRE(report.module_id == static_cast<int>(module_id));
-      REQUIRE(report.code != SwapCode::memory);  // whatever the limit does, it is never below 100
+      REQUIRE(report.code != SwapCode::memory);  // the changing limit is never below 100
       ++codes[static_cast<std::size_t>(report.code)];
       bench.simulation().steps(5);
       REQUIRE(bench.reports().size() == count + 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The queues of all kinds in one memory: each in order, whatever the others do.
+// The queues of all kinds in one memory: each in order, regardless of the others.
 #include <deque>
 #include <models/cchip_descriptor_queues.hpp>
 #include <set>

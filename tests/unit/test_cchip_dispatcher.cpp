@@ -148,7 +148,7 @@ class DispatcherBench {
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("cchip_dispatcher: every pair is answered once, whatever is exchanged by force or not",
+TEMPLATE_LIST_TEST_CASE("cchip_dispatcher: every pair is answered once, with any exchanges, by force or not",
                         "[unit][cchip_dispatcher]", cchip_dispatcher_configs) {
   constexpr int slots = TestType::SLOTS;
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
@@ -203,7 +203,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_dispatcher: every pair is answered once, whatever
   });
 }
 
-TEMPLATE_LIST_TEST_CASE("cchip_dispatcher: a kind that nobody provides is left open, the others are tested",
+TEMPLATE_LIST_TEST_CASE("cchip_dispatcher: a kind without a module is left open, the others are tested",
                         "[unit][cchip_dispatcher]", cchip_dispatcher_configs) {
   constexpr int slots = TestType::SLOTS;
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {

@@ -184,7 +184,7 @@ class GetDataBench {
     GetData::Request request = header_request(context, place);
     if (!leaf && header_out_[context]) return std::nullopt;
     if (!leaf && (!has_header_[context] || random_() % 16 == 0)) {
-      // node pairs of the query before may still be in flight; what is found out about them nobody asks
+      // node pairs of the query before may still be in flight; their results are not used
       header_out_[context] = true;
       return request;
     }

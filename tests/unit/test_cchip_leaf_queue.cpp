@@ -21,14 +21,14 @@ struct Behaviour {
   int dead;    ///< of an entry: its query has ended already
   int epoch;   ///< an epoch changes
   int ready;   ///< of pairs to fetch
-  int drop;    ///< ready of those to forget
+  int drop;    ///< ready of those to drop
   int credit;  ///< a pair leaves the receiver
   int reset;   ///< per mille
 };
 constexpr Behaviour behaviours[] = {
     {"fast", 100, 50, 0, 0, 100, 100, 100, 0},    {"usual", 20, 50, 20, 5, 60, 60, 40, 5},
     {"seldom", 5, 20, 20, 2, 50, 50, 50, 20},     {"no credit", 30, 50, 10, 2, 100, 100, 5, 3},
-    {"nobody takes", 30, 50, 30, 5, 5, 5, 50, 3}, {"epochs change", 30, 50, 30, 60, 40, 40, 60, 10},
+    {"none taken", 30, 50, 30, 5, 5, 5, 50, 3},   {"epochs change", 30, 50, 30, 60, 40, 40, 60, 10},
     {"all ended", 50, 50, 100, 0, 50, 100, 0, 0}, {"all ended, not taken", 50, 50, 100, 10, 100, 10, 20, 5},
 };
 

@@ -70,7 +70,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_normaliser: the model's vertices on every clock",
       std::size_t at = 0;
       int pause = 0;
       for (int clock = 0; clock < 30000; ++clock) {
-        // A reset in the middle forgets what is inside.
+        // A reset in the middle drops what is inside.
         const bool reset = clock % 5000 == 4999;
         if (at == pair.size() && pause == 0 && chance(random, percent)) {
           pair = random_pair(random);

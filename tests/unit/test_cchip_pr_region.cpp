@@ -24,7 +24,7 @@ void check_persona() {
         scoreboard.expect(r.tag, requests.answer(r, id), simulation.clock());
       };
       port.on_result = [&](const PairResult& r, bool known) {
-        sim::require(known, "a result that nobody asked for");
+        sim::require(known, "a result without a request");
         scoreboard.got(r.tag, r, simulation.clock());
       };
       simulation.add(port);

@@ -15,6 +15,29 @@ using Simulated = std::tuple<slot_8, slot_32>;
 constexpr ModuleId tests[] = {ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad};
 constexpr ModuleId modules[] = {ModuleId::blank, ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad};
 
+/// A swap to every module, decoupled, without any pair: answers come afterwards if and only if `transfer(bench,
+/// payload, reset)` makes no reset on configuration.
+template <class Config, class Transfer>
+void for_answers_never_requested(Transfer transfer) {
+  for_two_power_ups([&](const sim::SimulationOptions& options) {
+    for (const ModuleId id : tests) {
+      for (const bool reset : {false, true}) {
+        SlotBench<Config> bench(options);
+        bench.power_up();
+        int unrequested = 0;
+        bench.on_result = [&](const PairResult&) { ++unrequested; };
+        bench.stop();
+        bench.decouple();
+        transfer(bench, bench.payload(id), reset);
+        bench.recouple();
+        bench.steps(2000);
+        INFO("module " << static_cast<int>(id) << ", reset on configuration " << reset);
+        REQUIRE((unrequested > 0) == !reset);
+      }
+    }
+  });
+}
+
 }  // namespace
 
 TEST_CASE("cchip_pr_slot: the partition answers pairs like the model, two clocks later than its module",
@@ -130,51 +153,23 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: recoupled two words too early, garbage g
   REQUIRE(leaks > 0);
 }
 
-TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: without reset after a swap, answers to pairs nobody sent",
+TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: without reset after a swap, answers to pairs never sent",
                         "[unit][cchip_pr_slot]", Simulated) {
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    for (const ModuleId id : tests) {
-      for (const bool reset : {false, true}) {
-        SlotBench<TestType> bench(options);
-        bench.power_up();
-        int unasked = 0;
-        bench.on_result = [&](const PairResult&) { ++unasked; };
-        bench.stop();
-        bench.decouple();
-        bench.transfer(bench.payload(id));
-        if (reset) bench.reset_on_configuration();
-        bench.recouple();
-        bench.steps(2000);
-        INFO("module " << static_cast<int>(id) << ", reset " << reset);
-        REQUIRE((unasked > 0) == !reset);
-      }
-    }
+  for_answers_never_requested<TestType>([](SlotBench<TestType>& bench, const Bytes& payload, bool reset) {
+    bench.transfer(payload);
+    if (reset) bench.reset_on_configuration();
   });
 }
 
 TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: the reset of the transfer does not stand in for that on configuration",
                         "[unit][cchip_pr_slot]", Simulated) {
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    for (const ModuleId id : tests) {
-      for (const bool roc : {false, true}) {
-        SlotBench<TestType> bench(options);
-        bench.power_up();
-        int unasked = 0;
-        bench.on_result = [&](const PairResult&) { ++unasked; };
-        bench.stop();
-        bench.decouple();
-        bench.hold_reset();
-        bench.transfer(bench.payload(id));
-        bench.steps(8);
-        bench.top.hold_reset = 0;
-        if (roc) bench.reset_on_configuration();
-        bench.steps(8);
-        bench.recouple();
-        bench.steps(2000);
-        INFO("module " << static_cast<int>(id) << ", reset on configuration " << roc);
-        REQUIRE((unasked > 0) == !roc);
-      }
-    }
+  for_answers_never_requested<TestType>([](SlotBench<TestType>& bench, const Bytes& payload, bool reset) {
+    bench.hold_reset();
+    bench.transfer(payload);
+    bench.steps(8);
+    bench.top.hold_reset = 0;
+    if (reset) bench.reset_on_configuration();
+    bench.steps(8);
   });
 }
 

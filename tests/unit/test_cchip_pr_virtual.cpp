@@ -117,7 +117,7 @@ TEST_CASE(
   });
 }
 
-TEST_CASE("cchip_pr_virtual: SEED chooses the garbage, whatever the flip-flops held at power-up",
+TEST_CASE("cchip_pr_virtual: SEED chooses the garbage, regardless of the flip-flops at power-up",
           "[unit][cchip_pr_virtual]") {
   sim::SimulationOptions options;
   const auto first = garbage<virtual_8>(options);

@@ -92,7 +92,7 @@ class RequestSource {
   unsigned tag_ = 0;
 };
 
-/// The answer of the functional model, without clocks, and the rules that every answer obeys, whatever the model.
+/// The answer of the functional model, without clocks, and the rules that every answer obeys, for any model.
 PairResult answer(const PrimtestConfig& config, const PairRequest& request) {
   if (request.mode > directed) return {request.tag, true, true, false, {AxisClass::illegal, 0, 0}, 0};
   const PairResult r =
@@ -417,7 +417,7 @@ void check_lone_pair_latency(const PrimtestConfig& config) {
       const int waited = request.mode > directed ? 0 : beats - together;
       REQUIRE(waited >= 0);
       const bool special = !is_general_position(request.pair);
-      if (request.mode == exhaustive && !special) REQUIRE(waited == 0);  // whatever the data
+      if (request.mode == exhaustive && !special) REQUIRE(waited == 0);  // for any data
       const int clocks = lone_latency(bench, request);
       INFO(to_text(request.pair) << " mode " << static_cast<int>(request.mode) << " beats " << beats);
       REQUIRE(clocks == defs::pair_latency(s, together) + waited * defs::beat_latency(s));
@@ -532,7 +532,7 @@ void check_no_old_tags(const PrimtestConfig& config) {
       for (int i = 0; i < 8; ++i) bench.driver.push(requests.draw());
       bench.steps(moment);
       bench.driver.clear();
-      bench.pins.reset(1);  // the scoreboard forgets: any earlier result is an error
+      bench.pins.reset(1);  // the scoreboard is empty: any earlier result is an error
       bench.steps(moment % 2 == 0 ? 120 : 0);
       bench.driver.push(requests.draw());
       bench.run();

@@ -272,7 +272,7 @@ CCHIP_CASE("long traffic, every lane has its share") {
   });
 }
 
-CCHIP_CASE("latency of a lone pair is the same in every lane, lanes take turns") {
+CCHIP_CASE("latency of a lone pair is the same in every lane, lanes are served in turn") {
   for_two_power_ups([](const sim::SimulationOptions& options) {
     RequestSource<TestType> requests(options.seed);
     ArrayBench<TestType> bench(options);
@@ -487,7 +487,7 @@ CCHIP_CASE("no old tag after reset, whenever it comes") {
     for (std::uint64_t moment = 1; moment < moments; ++moment) {  // a pair or several at every place of the array
       for (int i = 0; i < 16; ++i) bench.push(requests.draw());
       bench.steps(moment);
-      bench.reset(moment % 3 == 0 ? 2 : 1);  // the scoreboard forgets: any earlier result is an error
+      bench.reset(moment % 3 == 0 ? 2 : 1);  // the scoreboard is empty: any earlier result is an error
       bench.steps(moment % 2 == 0 ? 120 : moment % 5);
       bench.push(requests.draw());
       bench.run();

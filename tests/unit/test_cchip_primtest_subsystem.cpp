@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subsystem as a whole: every tag is answered once and correctly, whatever happens to the swaps; each fault has its
+// The subsystem as a whole: every tag is answered once and correctly, even if swaps fail; each fault has its
 // code and leaves the slot in the documented state. Answers come from the exact oracle and the model of the tests.
 #include <catch2/catch.hpp>
 #include <cchip/sim/wave_on_failure.hpp>
@@ -278,7 +278,7 @@ CCHIP_CASE("faults on the way leave the entry; the scheduler tries again, later 
     s.memory.set_fault([](std::vector<sim::AxiBeat>& burst) { burst.back().response = sim::AxiResponse::slave_error; });
     for (int i = 0; i < 6; ++i) s.push(2);
     const std::size_t before = s.reports.size();
-    constexpr std::size_t attempts = defs::retry_doublings - 1;  // one more and nobody waits
+    constexpr std::size_t attempts = defs::retry_doublings - 1;  // one more would take too long to simulate
     s.simulation.run_until([&] { return s.reports.size() == before + attempts; }, 200000, "seven attempts");
     for (std::size_t i = before; i < s.reports.size(); ++i) REQUIRE(s.reports[i].code == SwapCode::bus);
     for (std::size_t i = before + 1; i < s.reports.size(); ++i) {

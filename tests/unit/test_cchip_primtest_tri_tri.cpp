@@ -24,7 +24,7 @@ TEMPLATE_TEST_CASE("cchip_primtest_tri_tri: an axis on 99 % of the clocks while 
 
 namespace {
 
-/// Directed pairs whose answer is known by construction: `gap` < 0 deep, 0 touching, > 0 missed by so many steps.
+/// Directed pairs whose answer is known by construction: `gap` < 0 deep, 0 touching, > 0 missed by that many steps.
 struct KnownPair {
   GridPair pair;
   int gap;

@@ -11,7 +11,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_ram: registered read of the old word", "[unit][cc
   for_two_power_ups<Model>([](auto& simulation, Random& random) {
     auto& top = simulation.top();
     model::Ram<std::uint64_t> model(TestType::DEPTH);
-    // the model gets the address one clock late and reads at once
+    // the model gets the address with a delay of one clock and reads at once
     model::Delay<std::optional<std::uint64_t>> out(static_cast<std::size_t>(defs::ram_latency() - 1));
     bool write = false;  // on the clock before: its data come now
     std::size_t write_addr = 0;

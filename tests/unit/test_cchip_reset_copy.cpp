@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The copy of a reset: a clock late, and 1 after power-up.
+// The copy of a reset: delayed by a clock, and 1 after power-up.
 #include <models/cchip_reset_copy.hpp>
 
 #include "bench.hpp"

@@ -39,7 +39,7 @@ class LedgerBench {
       top.s_tag = static_cast<SData>(random());
       top.s_kind = static_cast<CData>(random() & 3U);
     }
-    // a result of a pair that has been inside for a while, or one that nobody asked for
+    // a result of a pair that has been inside for a while, or one without a request
     top.s_result_valid = 0;
     int answered = -1;
     sim::set_random(top.s_result_data, defs::slot_result_w, random);
@@ -146,7 +146,7 @@ class LedgerBench {
 }  // namespace
 
 TEMPLATE_LIST_TEST_CASE(
-    "cchip_slot_ledger: every pair is answered once, with its tag and kind; what nobody asked for is dropped",
+    "cchip_slot_ledger: every pair is answered once, with its tag and kind; an answer without a request is dropped",
     "[unit][cchip_slot_ledger]", cchip_slot_ledger_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     LedgerBench<TestType> bench(simulation, random);
@@ -217,7 +217,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_slot_ledger: stop and quiet; decoupled with pairs
   });
 }
 
-TEMPLATE_LIST_TEST_CASE("cchip_slot_ledger: a reset forgets all pairs; a slot that was decoupled stays so",
+TEMPLATE_LIST_TEST_CASE("cchip_slot_ledger: a reset drops all pairs; a slot that was decoupled stays so",
                         "[unit][cchip_slot_ledger]", cchip_slot_ledger_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     for (int round = 0; round < 20; ++round) {

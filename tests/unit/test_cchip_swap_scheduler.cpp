@@ -123,6 +123,15 @@ class SchedulerBench {
 #define CCHIP_CASE(name) \
   TEMPLATE_LIST_TEST_CASE("cchip_swap_scheduler: " name, "[unit][cchip_swap_scheduler]", cchip_swap_scheduler_configs)
 
+/// body(bench) after each power-up.
+template <class Config, class Body>
+void with_bench(Body body) {
+  for_two_power_ups([&](const sim::SimulationOptions& options) {
+    SchedulerBench<Config> bench(options);
+    body(bench);
+  });
+}
+
 }  // namespace
 
 CCHIP_CASE("the choice in a still picture is that of the rules") {
@@ -226,8 +235,7 @@ CCHIP_CASE("one swap at a time; a rejected bitstream is forgotten, an interrupte
 }
 
 CCHIP_CASE("an entry that rests is not chosen, but a command takes it, and its kind keeps its provider") {
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    SchedulerBench<TestType> bench(options);
+  with_bench<TestType>([](SchedulerBench<TestType>& bench) {
     bench.modules.fill(1);
     bench.waiting = {0, 0, 5, 0};
     bench.enable = true;
@@ -250,8 +258,7 @@ CCHIP_CASE("an entry that rests is not chosen, but a command takes it, and its k
 }
 
 CCHIP_CASE("a kind whose bitstreams are hopeless has no provider until one is tried again") {
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    SchedulerBench<TestType> bench(options);
+  with_bench<TestType>([](SchedulerBench<TestType>& bench) {
     bench.modules.fill(1);
     bench.waiting = {0, 0, 5, 0};
     bench.enable = true;
@@ -320,8 +327,7 @@ CCHIP_CASE("commands: passed on, busy, no such bitstream") {
 }
 
 CCHIP_CASE("a kind has no provider after 16 clocks without slot, bitstream and swap, and at once one again") {
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    SchedulerBench<TestType> bench(options);
+  with_bench<TestType>([](SchedulerBench<TestType>& bench) {
     bench.modules.fill(1);
     bench.ready = false;
     bench.steps(40);

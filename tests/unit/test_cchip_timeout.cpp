@@ -7,7 +7,7 @@
 using namespace cchip;
 using namespace cchip::test;
 
-TEMPLATE_LIST_TEST_CASE("cchip_timeout: outputs are the model's on every clock, whatever the limit does",
+TEMPLATE_LIST_TEST_CASE("cchip_timeout: outputs are the model's on every clock while the limit changes",
                         "[unit][cchip_timeout]", cchip_timeout_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     auto& top = simulation.top();

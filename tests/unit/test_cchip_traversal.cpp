@@ -25,7 +25,7 @@ class Surroundings {
     change_limits();
     waits_ = fills ? 95 : short_of_steps ? 70 : 30 + static_cast<int>(below(random, 25));
   }
-  int busy = 50;  ///< chance of whatever may happen on a clock, per cent
+  int busy = 50;  ///< chance of any event that may happen on a clock, per cent
   bool more = true;
 
   const Traversal::Inputs& next() {
@@ -273,7 +273,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_traversal: the model's outputs on every clock; ev
   });
 }
 
-TEST_CASE("cchip_traversal: a step limit lowered below the steps of a query ends it, whatever the other limits",
+TEST_CASE("cchip_traversal: a step limit lowered below the steps of a query ends it, regardless of the other limits",
           "[unit][cchip_traversal]") {
   for_two_power_ups<traversal_4::Model>([](auto& simulation, Random& random) {
     auto& top = simulation.top();

@@ -2,6 +2,7 @@
 #include <array>
 #include <map>
 #include <models/cchip_traversal_decision.hpp>
+#include <utility>
 
 #include "bench.hpp"
 #include "traversal_ports.hpp"
@@ -15,37 +16,24 @@ using model::Decision;
 using model::Occurrence;
 using model::TraversalEvent;
 
+template <class Port, class State>
+void state_fields(Fields<Port> fields, State& x, int stack_w) {
+  fields.field(1, x.hit).field(8, x.open).field(32, x.pairs).field(32, x.steps).field(3, x.under_way);
+  fields.field(stack_w + 1, x.entries).field(1, x.mode).field(1, x.active).field(2, x.epoch);
+}
 template <class Port>
 void put_state(Port& port, const model::QueryState& x, int stack_w) {
-  Fields<Port>(port)
-      .put(1, x.hit ? 1 : 0)
-      .put(8, x.open)
-      .put(32, x.pairs)
-      .put(32, x.steps)
-      .put(3, x.under_way)
-      .put(stack_w + 1, x.entries)
-      .put(1, static_cast<unsigned>(x.mode))
-      .put(1, x.active ? 1 : 0)
-      .put(2, x.epoch);
+  state_fields(Fields(port), x, stack_w);
 }
 template <class Port>
 model::QueryState get_state(const Port& port, int stack_w) {
   model::QueryState x;
-  Fields<const Port>(port)
-      .get(1, x.hit)
-      .get(8, x.open)
-      .get(32, x.pairs)
-      .get(32, x.steps)
-      .get(3, x.under_way)
-      .get(stack_w + 1, x.entries)
-      .get(1, x.mode)
-      .get(1, x.active)
-      .get(2, x.epoch);
+  state_fields(Fields(port), x, stack_w);
   return x;
 }
 template <class Port>
 void put_constants(Port& port, const model::QueryConstants& x) {
-  Fields<Port>(port).put(32, x.base_a).put(32, x.base_b).put(32, x.tag);
+  Fields(port).field(32, x.base_a).field(32, x.base_b).field(32, x.tag);
 }
 /// The child pair that a pop takes first.
 unsigned first_of(const model::StackEntry& x) {
@@ -54,38 +42,28 @@ unsigned first_of(const model::StackEntry& x) {
   while (n < 15 && (of >> n & 1) == 0) ++n;
   return n;
 }
+bool has_others(const model::StackEntry& x) { return (x.waiting & (x.waiting - 1)) != 0; }
+/// {others besides the first, first, strong, waiting, B, A}: fields of `x`, and of what the module works out of it.
+template <class Port, class Entry, class First, class Others>
+void entry_fields(Fields<Port> fields, Entry& x, First& first, Others& others) {
+  fields.field(24, x.a.line).field(24, x.a.first).field(4, x.a.inner);
+  fields.field(24, x.b.line).field(24, x.b.first).field(4, x.b.inner);
+  fields.field(16, x.waiting).field(16, x.strong).field(4, first).field(1, others);
+}
 template <class Port>
 void put_entry(Port& port, const model::StackEntry& x) {
-  Fields<Port>(port)
-      .put(24, x.a.line)
-      .put(24, x.a.first)
-      .put(4, x.a.inner)
-      .put(24, x.b.line)
-      .put(24, x.b.first)
-      .put(4, x.b.inner)
-      .put(16, x.waiting)
-      .put(16, x.strong)
-      .put(4, first_of(x))
-      .put(1, (x.waiting & (x.waiting - 1)) != 0 ? 1 : 0);
+  const unsigned first = first_of(x);
+  const bool others = has_others(x);
+  entry_fields(Fields(port), x, first, others);
 }
 template <class Port>
 model::StackEntry get_entry(const Port& port) {
   model::StackEntry x;
   unsigned first = 0;
   bool others = false;
-  Fields<const Port>(port)
-      .get(24, x.a.line)
-      .get(24, x.a.first)
-      .get(4, x.a.inner)
-      .get(24, x.b.line)
-      .get(24, x.b.first)
-      .get(4, x.b.inner)
-      .get(16, x.waiting)
-      .get(16, x.strong)
-      .get(4, first)
-      .get(1, others);
+  entry_fields(Fields(port), x, first, others);
   REQUIRE(first == first_of(x));
-  REQUIRE(others == ((x.waiting & (x.waiting - 1)) != 0));
+  REQUIRE(others == has_others(x));
   return x;
 }
 
@@ -237,10 +215,10 @@ TEMPLATE_LIST_TEST_CASE("cchip_traversal_decision: what the model decides, three
         REQUIRE(unsigned{top.m_work} == d->work);
         REQUIRE(get_state(top.m_state, stack_w) == d->state);
         model::QueryConstants constants;
-        Fields<decltype(top.m_constants)>(top.m_constants)
-            .get(32, constants.base_a)
-            .get(32, constants.base_b)
-            .get(32, constants.tag);
+        Fields(std::as_const(top.m_constants))
+            .field(32, constants.base_a)
+            .field(32, constants.base_b)
+            .field(32, constants.tag);
         REQUIRE(constants == d->constants);
         if (d->goes) REQUIRE(get_pair(top.m_record) == *d->goes);
         if (d->push) {
@@ -250,22 +228,22 @@ TEMPLATE_LIST_TEST_CASE("cchip_traversal_decision: what the model decides, three
         }
         if (d->leaf) {
           model::LeafEntry leaf;
-          Fields<decltype(top.m_leaf_nodes)>(top.m_leaf_nodes)
-              .get(32, leaf.first_a)
-              .get(8, leaf.kinds_a)
-              .get(32, leaf.first_b)
-              .get(8, leaf.kinds_b);
+          Fields(std::as_const(top.m_leaf_nodes))
+              .field(32, leaf.first_a)
+              .field(8, leaf.kinds_a)
+              .field(32, leaf.first_b)
+              .field(8, leaf.kinds_b);
           leaf.leaves = static_cast<std::uint16_t>(top.m_leaf_set);
           REQUIRE(leaf == *d->leaf);
           ++leaves;
         }
         if (d->done) {
           DoneRecord done;
-          Fields<decltype(top.m_answer)>(top.m_answer)
-              .get(32, done.pairs)
-              .get(32, done.steps)
-              .get(2, done.answer)
-              .get(3, done.code);
+          Fields(std::as_const(top.m_answer))
+              .field(32, done.pairs)
+              .field(32, done.steps)
+              .field(2, done.answer)
+              .field(3, done.code);
           REQUIRE(done.pairs == d->done->pairs);
           REQUIRE(done.steps == d->done->steps);
           REQUIRE(done.answer == d->done->answer);

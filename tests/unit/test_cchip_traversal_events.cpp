@@ -22,7 +22,7 @@ unsigned below(Random& random, std::size_t n) { return static_cast<unsigned>(ran
 class Surroundings {
  public:
   Surroundings(std::size_t queries, Random& random) : active_(queries), random_(random) {}
-  int busy = 50;  ///< chance of whatever may happen on a clock, per cent
+  int busy = 50;  ///< chance of any event that may happen on a clock, per cent
 
   TraversalEvents::Inputs next() {
     TraversalEvents::Inputs in;
@@ -166,12 +166,12 @@ void drive(Top& top, const TraversalEvents::Inputs& in, int context_w, int place
   top.lookup_epoch = static_cast<CData>(in.lookup.epoch);
   top.s_result_valid = in.result ? 1 : 0;
   if (in.result) {
-    Fields<decltype(top.s_result)>(top.s_result)
-        .put(3, in.result->hits)
-        .put(3, in.result->open)
-        .put(3, static_cast<unsigned>(in.result->code))
-        .put(2, in.result->epoch)
-        .put(context_w, in.result->context);
+    Fields(top.s_result)
+        .field(3, in.result->hits)
+        .field(3, in.result->open)
+        .field(3, in.result->code)
+        .field(2, in.result->epoch)
+        .field(context_w, in.result->context);
   }
   top.s_drop_valid = in.drop ? 1 : 0;
   if (in.drop) {

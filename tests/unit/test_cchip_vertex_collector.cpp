@@ -7,7 +7,7 @@
 using namespace cchip;
 using namespace cchip::test;
 
-TEMPLATE_LIST_TEST_CASE("cchip_vertex_collector: the request of every complete pair, whatever came before it",
+TEMPLATE_LIST_TEST_CASE("cchip_vertex_collector: the request of every complete pair, regardless of earlier ones",
                         "[unit][cchip_vertex_collector]", cchip_vertex_collector_configs) {
   constexpr int w = TestType::COORD_W;
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {

@@ -23,11 +23,9 @@ using namespace cchip;
 
 namespace {
 
-/// Full names of all signals, "TOP.module.name[7:0]".
-std::set<std::string> signals_of(const std::string& fst) {
-  std::set<std::string> names;
-  void* reader = fstReaderOpen(fst.c_str());
-  REQUIRE(reader != nullptr);
+/// f(handle, full name) of every signal, a name like "TOP.module.name[7:0]".
+template <class F>
+void for_each_signal(void* reader, F f) {
   std::vector<std::string> scopes{""};
   while (const fstHier* entry = fstReaderIterateHier(reader)) {
     if (entry->htyp == FST_HT_SCOPE) scopes.push_back(scopes.back() + entry->u.scope.name + ".");
@@ -36,8 +34,15 @@ std::set<std::string> signals_of(const std::string& fst) {
     std::string name = entry->u.var.name;
     const auto space = name.find(' ');  // "name [7:0]"
     if (space != std::string::npos) name.erase(space, 1);
-    names.insert(scopes.back() + name);
+    f(entry->u.var.handle, scopes.back() + name);
   }
+}
+
+std::set<std::string> signals_of(const std::string& fst) {
+  std::set<std::string> names;
+  void* reader = fstReaderOpen(fst.c_str());
+  REQUIRE(reader != nullptr);
+  for_each_signal(reader, [&](fstHandle, const std::string& name) { names.insert(name); });
   fstReaderClose(reader);
   return names;
 }
@@ -94,16 +99,7 @@ std::map<std::string, std::set<std::string>> values_of(const std::string& fst) {
   std::multimap<std::uint32_t, std::string> names;  // aliases share a handle
   void* reader = fstReaderOpen(fst.c_str());
   REQUIRE(reader != nullptr);
-  std::vector<std::string> scopes{""};
-  while (const fstHier* entry = fstReaderIterateHier(reader)) {
-    if (entry->htyp == FST_HT_SCOPE) scopes.push_back(scopes.back() + entry->u.scope.name + ".");
-    if (entry->htyp == FST_HT_UPSCOPE) scopes.pop_back();
-    if (entry->htyp != FST_HT_VAR) continue;
-    std::string name = entry->u.var.name;
-    const auto space = name.find(' ');
-    if (space != std::string::npos) name.erase(space, 1);
-    names.emplace(entry->u.var.handle, scopes.back() + name);
-  }
+  for_each_signal(reader, [&](fstHandle handle, const std::string& name) { names.emplace(handle, name); });
   fstReaderSetFacProcessMaskAll(reader);
   fstReaderIterBlocks(
       reader,

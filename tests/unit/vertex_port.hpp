@@ -73,7 +73,7 @@ class VertexPort : public sim::Agent {
   std::size_t inside() const { return inside_.size(); }
   /// No further pair is begun.
   void stop(bool yes) { stopped_ = yes; }
-  /// Forgets the pairs inside and outside.
+  /// Drops the pairs inside and outside.
   void clear() {
     waiting_.clear();
     inside_.clear();

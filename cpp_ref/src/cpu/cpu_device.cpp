@@ -172,7 +172,7 @@ class Worker {
     helper_ = std::move(helper);
     process_ = getpid();
   }
-  /// After fork() the child has what the thread shared, but not the thread: nobody can join it, and what it waits for
+  /// After fork() the child has what the thread shared, but not the thread: it cannot be joined, and what it waits for
   /// must not be destroyed. So the child leaves it where it is.
   void leave_thread_of_parent() {
     if (helper_ && process_ != getpid()) static_cast<void>(helper_.release());

@@ -40,7 +40,7 @@ class Realignment {
 
 /// Compares volumes of A with volumes of B on 13 directions of the world. Which ones is free, so they are chosen such
 /// that B, whose pose maps them to the directions of its own volumes, needs no work. If B's pose has no good inverse
-/// they are the 13 directions themselves. Bounds are outward of the exact ones whatever was rounded, see
+/// they are the 13 directions themselves. Bounds are outward of the exact ones in spite of rounding, see
 /// docs/cpp/exactness.md.
 class DopPairs {
  public:

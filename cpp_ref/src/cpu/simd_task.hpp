@@ -125,7 +125,8 @@ inline std::array<float, 3> cross_product(const std::array<float, 3>& p, const s
 /// Entries that a stack needs: each step replaces one item by at most 16 that are a level deeper in one of the trees.
 inline constexpr std::size_t stack_most = 15 * 2 * bvh::tree_depth_max + 16;
 
-/// Pairs that single precision leaves open wait until so many have come, or until the search ends without another hit.
+/// Pairs that single precision leaves open wait until this many have come, or until the search ends without another
+/// hit.
 inline constexpr std::size_t open_most = 16;
 
 /// One query on its way.

@@ -55,7 +55,7 @@ class ChipDriver final : public QueryPort {
 
   void lock(unsigned range, std::uint32_t first, std::uint32_t last) override {
     if (range >= capabilities_.lock_ranges) refuse("no lock range " + std::to_string(range));
-    // empty in between: never a range that nobody asked for
+    // empty in between: never a range that was not requested
     machine_->write_register(regs::lock_last::offset(range), 0);
     machine_->write_register(regs::lock_first::offset(range), std::max(first, 1U));
     machine_->write_register(regs::lock_last::offset(range), first > last ? 0 : last);

@@ -12,7 +12,7 @@ namespace {
 namespace regs = registers;
 
 constexpr std::size_t tags = std::size_t{1} << defs::tag_w;
-constexpr std::size_t nobody = ~std::size_t{0};
+constexpr std::size_t no_pair = ~std::size_t{0};
 constexpr std::uint32_t swap_events = regs::interrupt_status::done_mask | regs::interrupt_status::error_mask;
 /// The driver continues for this long after the last answer, to catch a surplus answer.
 constexpr int epilogue = 1000;
@@ -20,7 +20,7 @@ constexpr int epilogue = 1000;
 class Run {
  public:
   Run(PairMachine& machine, const std::vector<PairRequest>& pairs, const ReconfigOptions& options)
-      : machine_(machine), pairs_(pairs), options_(options), in_flight_(tags, nobody), last_with_(tags, nobody) {
+      : machine_(machine), pairs_(pairs), options_(options), in_flight_(tags, no_pair), last_with_(tags, no_pair) {
     result_.answers.resize(pairs.size());
   }
 
@@ -155,7 +155,7 @@ class Run {
   /// A pair waits while one with its tag is inside, tags are unique in flight, and until the module of its batch is
   /// there.
   void send() {
-    if (sent_ == pairs_.size() || in_flight_[tag_of(sent_)] != nobody || ready_ <= batch_to_send()) return;
+    if (sent_ == pairs_.size() || in_flight_[tag_of(sent_)] != no_pair || ready_ <= batch_to_send()) return;
     const std::size_t index = order_[sent_];
     KindRequest request{pairs_[index], static_cast<int>(module_of(pairs_[index].pair))};
     request.request.tag = tag_of(sent_);
@@ -173,15 +173,15 @@ class Run {
 
   void take(const KindResult& beat) {
     const std::size_t index = in_flight_[beat.beat.tag];
-    if (index != nobody) {
+    if (index != no_pair) {
       result_.answers[index] = {beat, 1};
-      in_flight_[beat.beat.tag] = nobody;
+      in_flight_[beat.beat.tag] = no_pair;
       last_with_[beat.beat.tag] = index;
       --batches_[batch_of_[index]].open;
       ++answered_;
       idle_ = 0;
       if (options_.progress) options_.progress(answered_);
-    } else if (last_with_[beat.beat.tag] != nobody) {
+    } else if (last_with_[beat.beat.tag] != no_pair) {
       ++result_.answers[last_with_[beat.beat.tag]].answers;
     } else {
       ++result_.foreign_answers;

@@ -54,7 +54,7 @@ constexpr Format binary_stl = {"binary STL", ".stl", mesh_io::read_stl};
 constexpr Format ply = {"PLY", ".ply", mesh_io::read_ply};
 constexpr Format off = {"OFF", ".off", mesh_io::read_off};
 
-/// The format that the beginning of a file shows, whatever its name says; nothing for OBJ and for what is not known.
+/// The format that the beginning of a file shows, regardless of its name; nothing for OBJ and for what is not known.
 const Format* format_shown_by(std::string_view file) {
   if (mesh_io::is_binary_stl(file)) return &binary_stl;
   const std::string_view word = file.substr(0, file.find_first_of(" \t\r\n"));

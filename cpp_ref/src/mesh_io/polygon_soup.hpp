@@ -45,9 +45,9 @@ struct PolygonSoup {
   void end_polygon(std::size_t line);
 };
 
-// The readers take the whole file. Whatever counts the file announces, they keep only what they have read, so time and
-// memory are at most proportional to its size.
-// \throws FormatError the text is not of the format, or ends too early
+// The readers take the whole file. Regardless of the counts the file announces, they keep only what they have read, so
+// time and memory are at most proportional to its size. \throws FormatError the text is not of the format, or ends too
+// early
 
 PolygonSoup read_obj(std::string_view file);
 PolygonSoup read_off(std::string_view file);

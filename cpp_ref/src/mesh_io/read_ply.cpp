@@ -125,7 +125,7 @@ class Values {
 class TextValues : public Values {
  public:
   TextValues(std::string_view text, std::size_t lines_before) : words_(text, lines_before) {}
-  /// The number as it is written, whatever precision the type announces.
+  /// The number as it is written, regardless of the precision of the announced type.
   double next(const Type&) override {
     const std::string_view word = words_.next();
     if (word.empty()) throw FormatError("the file ends before the last value that the header announces", line());

@@ -34,7 +34,7 @@ void AxisController::clock(const std::optional<PairHeader>& pair, const std::opt
   }
   programme_.clock(verdict);
 
-  // the next beat: the present EXHAUSTIVE pair; otherwise pairs that start and pairs that continue take turns
+  // the next beat: the present EXHAUSTIVE pair; otherwise pairs that start and pairs that continue alternate
   const auto following = beat_ ? following_beat(options_, beat_->state) : std::nullopt;
   const bool take_start = start_.m_valid() && (!ready_.m_valid() || !started_);
   const bool ready_pop = !following && !take_start;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cchip/wire/code_names.hpp>
 #include <cchip/wire/pair.hpp>
 
 namespace cchip {
@@ -20,17 +21,8 @@ ModuleId module_of(Kind a, Kind b) {
 }
 
 const char* to_name(ModuleId id) {
-  switch (id) {
-    case ModuleId::tri_tri:
-      return "tri_tri";
-    case ModuleId::tri_quad:
-      return "tri_quad";
-    case ModuleId::quad_quad:
-      return "quad_quad";
-    case ModuleId::blank:
-      break;
-  }
-  return "blank";
+  const char* const name = name_of(id);
+  return name == nullptr ? name_of(ModuleId::blank) : name;
 }
 
 }  // namespace cchip

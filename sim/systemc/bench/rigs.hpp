@@ -214,7 +214,7 @@ class FifoRig : public Rig {
 
 // ---- exchanges
 
-/// Two modules take turns behind the same portals; a value and its answer after each exchange prove that the new one
+/// Two modules alternate behind the same portals; a value and its answer after each exchange prove that the new one
 /// works.
 template <class M>
 class SwapRig : public Rig {

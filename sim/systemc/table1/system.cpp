@@ -46,7 +46,7 @@ class Stations : public sc_core::sc_module {
   virtual void request(std::size_t index, std::size_t kind) = 0;
   /// Waits until that test can work.
   virtual Channels& ready(std::size_t index, std::size_t kind) = 0;
-  /// Forgets all loaded tests.
+  /// Drops all loaded tests.
   virtual void clear() = 0;
   virtual unsigned loads() const = 0;
 };

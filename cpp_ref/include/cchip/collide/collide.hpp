@@ -76,14 +76,11 @@ struct CollisionCounts {
   std::uint64_t swaps = 0;        ///< exchanges of the device's modules since the result before it
   std::uint64_t swap_clocks = 0;  ///< their clocks
   CollisionCounts& operator+=(const CollisionCounts& x) {
-    steps += x.steps;
-    box_tests += x.box_tests;
-    pairs += x.pairs;
-    open += x.open;
-    clocks += x.clocks;
-    swaps += x.swaps;
-    swap_clocks += x.swap_clocks;
-    fallbacks += x.fallbacks;
+    using C = CollisionCounts;
+    for (const auto count :
+         {&C::steps, &C::box_tests, &C::pairs, &C::open, &C::clocks, &C::fallbacks, &C::swaps, &C::swap_clocks}) {
+      this->*count += x.*count;
+    }
     return *this;
   }
 };

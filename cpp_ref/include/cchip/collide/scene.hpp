@@ -85,7 +85,7 @@ class Scene {
   const Object& object(Id id) const { return entry(id).object; }
   const Pose& pose(Id id) const { return entry(id).pose; }
   const CollisionGroups& groups(Id id) const { return entry(id).groups; }
-  /// A box that contains the object in its pose, whatever was rounded; not always the least one.
+  /// A box that contains the object in its pose in spite of rounding; not always the least one.
   const WorldBox& box(Id id) const { return entry(id).box; }
 
   /// Leaves a pair out, such as two links of a robot that a joint connects; or takes it in again.
@@ -101,7 +101,7 @@ class Scene {
   /// \throws as the filter
   std::vector<std::pair<Id, Id>> candidates() const;
 
-  /// All pairs in contact, ascending by ids whatever the device and the number of its threads.
+  /// All pairs in contact, ascending by ids on every device and with any number of threads.
   /// \throws std::invalid_argument the request wants at most 0 contacts
   /// \throws std::logic_error the device is in use
   /// \throws std::runtime_error the calling thread flushes small numbers to zero

@@ -25,15 +25,15 @@ struct ChipDriverOptions {
   std::uint8_t open_limit = 16;           ///< open pairs that end a query for the first hit
   std::uint8_t pairs_each = 3;            ///< node pairs of a query in flight, 1..4
   /// The bitstream that makes `module_id` of slot `slot`, for a chip with swaps; without it, virtual ones for the
-  /// simulated chip, of so many bytes of payload each. They lie before the images, below 2^32.
+  /// simulated chip, each with this many bytes of payload. They lie before the images, below 2^32.
   std::function<Bytes(std::uint8_t slot, ModuleId module_id)> bitstream;
   std::size_t payload_bytes = 2048;
-  /// Registers of the scheduler, which swaps by itself for pairs that nobody asked a module for: pairs, clocks.
+  /// Registers of the scheduler, which swaps by itself for pairs without a requested module: pairs, clocks.
   std::uint32_t minimum_batch = 64;
   std::uint32_t maximum_age = 4096;
-  /// QueryPort::proceed() says time-out after so many proceed() of the machine without a record.
+  /// QueryPort::proceed() says time-out after this many proceed() of the machine without a record.
   std::uint64_t patience = 20'000'000;
-  /// recover() and the constructor give up after so many looks at a reset that does not end, store() at an
+  /// recover() and the constructor give up after this many looks at a reset that does not end, store() at an
   /// invalidation.
   std::uint64_t reset_patience = 1'000'000;
 };

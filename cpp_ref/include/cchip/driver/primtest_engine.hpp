@@ -44,7 +44,7 @@ struct PrimtestTraffic {
   /// Longest time without a pair accepted or answered, clocks.
   std::uint64_t answer_bound = 0;
 };
-/// An answer that nobody asked for, or none.
+/// An answer without a request, or a request without an answer.
 struct PrimtestStreamError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -20,7 +20,7 @@ struct ReconfigOptions {
   /// Payload of each virtual bitstream, bytes, >= defs::bitstream_payload_min.
   std::size_t payload_bytes = 2048;
   /// 0: pairs are sent in their order and the machine's scheduler exchanges modules. Else they are sorted by kind into
-  /// batches of so many pairs, and the driver loads the module of the next batch into one slot while the other works.
+  /// batches of this many pairs, and the driver loads the module of the next batch into one slot while the other works.
   std::size_t batch = 0;
   /// Registers of the scheduler: pairs, clocks.
   std::uint32_t minimum_batch = 64;
@@ -50,7 +50,7 @@ struct ReconfigSwap {
 struct ReconfigResult {
   std::vector<ReconfigAnswer> answers;  ///< in the order of the pairs
   std::vector<ReconfigSwap> swaps;
-  std::uint64_t foreign_answers = 0;  ///< answers with a tag that nobody sent
+  std::uint64_t foreign_answers = 0;  ///< answers with a tag that was never sent
 };
 
 /// Checks all bitstreams, writes them and their table, sends the pairs, exchanges modules as `batch` says and returns

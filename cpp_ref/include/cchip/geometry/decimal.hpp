@@ -37,7 +37,7 @@ inline bool is_too_large(std::string_view digits) {
 
 }  // namespace detail
 
-/// Nearest double of a decimal number, whatever the locale: `3`, `-0.25`, `+1e-9`; infinite if it is too large, 0 if it
+/// Nearest double of a decimal number, in any locale: `3`, `-0.25`, `+1e-9`; infinite if it is too large, 0 if it
 /// is too small; "inf" and "nan" as they are. Nothing if the text is not a number as a whole.
 inline std::optional<double> read_decimal(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);

@@ -10,7 +10,7 @@ namespace cchip {
 
 /// Where an object is: any affine map, x -> linear() x + translation(). Shears, mirrors, scales and singular maps are
 /// allowed. make_pose() makes rigid ones. Converts from and to Eigen::Affine3d; unlike that, it has the alignment of a
-/// double whatever instruction set the caller is compiled for, which may be another one than the library's.
+/// double regardless of the instruction set the caller is compiled for, which may differ from the library's.
 using Pose = Eigen::Transform<double, 3, Eigen::Affine, Eigen::DontAlign>;
 /// A rotation and a translation. Converts from and to Eigen::Isometry3d, and to Pose.
 using RigidPose = Eigen::Transform<double, 3, Eigen::Isometry, Eigen::DontAlign>;

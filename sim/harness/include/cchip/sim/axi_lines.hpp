@@ -128,7 +128,7 @@ class AxiLines : public Agent {
   }
 
   std::string waits_for() const override {
-    return reads_.empty() ? "" : "memory owes " + std::to_string(reads_.size()) + " reads";
+    return reads_.empty() ? "" : std::to_string(reads_.size()) + " reads outstanding";
   }
 
  private:
@@ -156,7 +156,7 @@ class AxiLines : public Agent {
     if (!condition) throw StreamError(message);
   }
   bool chance(unsigned percent) { return percent >= 100 || random_() % 100 < percent; }
-  std::uint64_t late() { return options.jitter == 0 ? 0 : random_() % (options.jitter + 1); }
+  std::uint64_t random_delay() { return options.jitter == 0 ? 0 : random_() % (options.jitter + 1); }
 
   void drive_responses(std::uint64_t now) {
     if (!answering_ && !responses_.empty() && responses_.front().due <= now) answering_ = chance(options.valid_percent);
@@ -209,7 +209,7 @@ class AxiLines : public Agent {
       ++silent_;
       return;
     }
-    Read read{id, now.clock + options.latency + late(), fault == AxiFault::none && found != nullptr, {}};
+    Read read{id, now.clock + options.latency + random_delay(), fault == AxiFault::none && found != nullptr, {}};
     if (found != nullptr) read.data = *found;
     reads_.push_back(read);
   }
@@ -243,7 +243,7 @@ class AxiLines : public Agent {
       }
     }
     if (fault == AxiFault::silence) return;
-    const std::uint64_t due = now.clock + options.write_latency + late();
+    const std::uint64_t due = now.clock + options.write_latency + random_delay();
     responses_.push_back(
         {responses_.empty() ? due : std::max(due, responses_.back().due), address.id, fault == AxiFault::none});
   }

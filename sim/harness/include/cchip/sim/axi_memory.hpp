@@ -134,7 +134,7 @@ class AxiMemory : public Agent {
   }
 
   std::string waits_for() const override {
-    return beats_.empty() ? "" : "memory owes " + std::to_string(beats_.size()) + " beats";
+    return beats_.empty() ? "" : std::to_string(beats_.size()) + " beats outstanding";
   }
 
  private:

@@ -78,7 +78,7 @@ class PendingFile {
     }
     return path;
   }
-  /// /dev/stdout and its like: a name of something that is open, whatever that is.
+  /// /dev/stdout and its like: a name of something that is open already, of any kind.
   static bool is_of_system(const std::filesystem::path& path) {
     const std::string whole = std::filesystem::absolute(path).lexically_normal().string();
     const auto is_below = [&whole](const char* folder) { return whole.rfind(folder, 0) == 0; };

@@ -58,7 +58,7 @@ class TagScoreboard {
                           to_text(entry.value));
   }
 
-  /// Forgets everything, for a reset in mid traffic: results requested before count as never requested.
+  /// Drops everything, for a reset in mid traffic: results requested before count as never requested.
   void clear() {
     open_.clear();
     answered_.clear();

@@ -45,7 +45,7 @@ class StreamDriver : public Agent {
   /// Items not yet accepted.
   std::size_t waiting() const { return queue_.size(); }
   std::uint64_t accepted() const { return accepted_; }
-  /// Forgets all items not yet accepted. Only during reset: valid must not drop otherwise.
+  /// Drops all items not yet accepted. Only during reset: valid must not drop otherwise.
   void clear() { queue_.clear(); }
 
   void drive(const ClockInfo& now) override {

@@ -58,7 +58,7 @@ class AxiRead {
   const std::optional<Address>& address() const { return address_; }
   bool rready() const { return rready_; }
   bool any_outstanding() const { return any_outstanding_; }
-  /// Of each ID: its address is on offer, or memory owes it a response.
+  /// Of each ID: its address is on offer, or its response is outstanding.
   const std::vector<bool>& outstanding() const { return outstanding_; }
 
   void clock(const Inputs& in);
@@ -89,7 +89,7 @@ class AxiRead {
     bool refuse = false;  // the head is answered without having been offered
     bool load = false;    // the place of the head is free
     bool taken = false;
-    bool next_owed = false;  // memory owes the place of the one behind the head
+    bool next_owed = false;  // the place of the one behind the head has a response outstanding
   };
 
   bool late(std::size_t id) const { return reads_[id].live && reads_[id].ticks == 2; }

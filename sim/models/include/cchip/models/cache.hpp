@@ -113,7 +113,7 @@ class Cache {
     bool kill = false;                   // a fill without data: its line is forgotten
     bool walk_seen = false;              // a set of the walk
     bool walk_next = false;              // that need not be looked at again
-    bool walk_write = false;             // and has lines to forget
+    bool walk_write = false;             // and has lines to invalidate
     std::optional<std::size_t> granted;  // port that gets a frame
   };
 

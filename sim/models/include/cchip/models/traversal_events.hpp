@@ -88,7 +88,7 @@ class TraversalEvents {
   void reset();
 
  private:
-  enum class Source { nobody, verdict, result, drop, start, pop };
+  enum class Source { none, verdict, result, drop, start, pop };
   struct May {
     bool verdict = false, result = false, drop = false, start = false, pop = false;
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What turns a closed SystemC module into a reconfigurable one: states, delays, hooks, and whatever holds the module
+/// What turns a closed SystemC module into a reconfigurable one: states, delays, hooks, and what holds the module
 /// when its deactivation is requested.
 ///
 ///     unloaded --load--> inactive --activate--> active --deactivate--> inactive --unload--> unloaded

@@ -14,7 +14,7 @@ namespace cchip {
 /// Writes the GTKWave save file beside the waveform of this module (same name, .gtkw): signals in the order in which
 /// the data flows, grouped by stream and macro stage, zoomed to the first pairs. The waveform need not exist yet.
 /// Beside the layout it writes the names that GTKWave shows in place of codes, a file for each kind of code:
-/// .gtkw.axis, ... Whoever moves the layout moves these and the waveform with it. \throws sim::OutputError the file
+/// .gtkw.axis, ... A layout that is moved needs these and the waveform beside it. \throws sim::OutputError the file
 /// cannot be written
 void write_gtkw(const std::string& fst_path, ModuleId module);
 /// The files that write_gtkw() writes, the layout first.
