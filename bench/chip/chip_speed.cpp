@@ -43,8 +43,8 @@ struct Use {
   std::uint64_t bus = 0;        ///< a beat of a read is on the bus
   std::uint64_t transform = 0;  ///< a vertex leaves the transform
   std::uint64_t lane = 0;       ///< an axis leaves the primitive test's controller
-  std::uint64_t memory = 0;     ///< none of these, while memory owes a line
-  std::uint64_t inside = 0;     ///< none of these, memory owes nothing: results and events are on their way
+  std::uint64_t memory = 0;     ///< none of these, while a line is outstanding
+  std::uint64_t inside = 0;     ///< none of these, nothing is outstanding: results and events are on their way
   Use operator-(const Use& x) const {
     return {clocks - x.clocks, box - x.box,       bus - x.bus,      transform - x.transform,
             lane - x.lane,     memory - x.memory, inside - x.inside};
@@ -107,8 +107,8 @@ struct Chip {
     device = make_chip_device(open_chip(std::move(made), driver));
   }
 
-  /// The cache forgets every line.
-  void forget() const {
+  /// The cache invalidates every line.
+  void invalidate() const {
     machine->write_register(regs::invalidate_first::offset, 0);
     machine->write_register(regs::invalidate_last::offset, 0xFFFFFFFF);
     machine->write_register(regs::invalidate::offset, regs::invalidate::go_mask);
@@ -306,7 +306,7 @@ class Benchmark {
     }
     Use sum;
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      chip.forget();
+      chip.invalidate();
       const Use start = chip.machine->use();
       chip.device->collide({&bodies.a, &poses[i].a, &bodies.b, &poses[i].b}, request, result);
       sum = sum + (chip.machine->use() - start);

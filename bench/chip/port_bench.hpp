@@ -112,7 +112,7 @@ class PortBench {
     const auto other = renamed_.find(outcome.done.tag);
     const std::size_t number = other == renamed_.end() ? outcome.done.tag : other->second;
     if (number >= submitted_ || number < given_up_) {
-      wrong_.push_back("done record of nobody, tag " + std::to_string(number));
+      wrong_.push_back("done record of no query, tag " + std::to_string(number));
       return;
     }
     ChipAnswer& answer = answers_[number];

@@ -39,7 +39,7 @@ inline bool chance(Random& random, int percent) { return static_cast<int>(random
 constexpr std::array<Kind, 4> kind_a = {Kind::tri, Kind::tri, Kind::tri, Kind::quad};
 constexpr std::array<Kind, 4> kind_b = {Kind::tri, Kind::tri, Kind::quad, Kind::quad};
 
-/// The expected answer for a pair that nobody tests.
+/// The expected answer for a pair that no module tests.
 inline KindResult refused_answer(const KindRequest& r) {
   return {{r.request.tag, true, true, false, {AxisClass::illegal, 0, 0}, 0}, r.kind};
 }
@@ -109,7 +109,7 @@ enum class Spoilt {
 };
 
 /// The payload's words before this byte, synchronisation and name of the slot, are not corrupted: a device that is told
-/// to rewrite another slot does so, and nobody outside can know.
+/// to rewrite another slot does so, and that cannot be seen from outside.
 constexpr std::size_t name_end = 8;
 
 /// Bytes of a bitstream for this slot and module, corrupted in this way.
@@ -161,7 +161,7 @@ unsigned decoupled_of(const Model& top) {
 /// What went wrong; the first failure in words.
 struct Account {
   std::uint64_t pairs = 0;     ///< answered
-  std::uint64_t refused = 0;   ///< of them left open because nobody serves their kind
+  std::uint64_t refused = 0;   ///< of them left open because no slot serves their kind
   std::uint64_t open = 0;      ///< of them left open because a swap by force gave them up
   std::uint64_t given_up = 0;  ///< by swaps with force, reported
   std::uint64_t lost = 0;      ///< not answered
@@ -204,7 +204,7 @@ class SubsystemBench {
   void step() { simulation.step(); }
   void steps(std::uint64_t clocks) { simulation.steps(clocks); }
 
-  /// Forgets all pairs: none of their tags may come back.
+  /// Drops all pairs: none of their tags may come back.
   void reset(int clocks = 2) {
     driver.clear();
     queued_.clear();
@@ -397,7 +397,7 @@ class SubsystemBench {
       if (answered_.count(got.beat.tag) != 0) {
         fail(account.duplicated, "answered twice: " + sim::to_text(got));
       } else {
-        fail(account.wrong, "an answer that nobody asked for: " + sim::to_text(got));
+        fail(account.wrong, "an answer without a request: " + sim::to_text(got));
       }
       return;
     }
@@ -450,7 +450,7 @@ class SubsystemBench {
     }
     const unsigned modules = modules_of<Config::SLOTS>(top());
     const auto announced = static_cast<unsigned>(probes::bitstreams_valid(top()));
-    // nobody need wait for bitstreams that have failed on their way often enough
+    // there is no need to wait for bitstreams that have failed on their way often enough
     const unsigned valid = failures_ >= defs::retry_doublings ? announced & ~failed_ : announced;
     std::array<bool, 4> provided{};
     for (unsigned slot = 0; slot < static_cast<unsigned>(slots); ++slot) {

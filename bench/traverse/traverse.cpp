@@ -260,7 +260,7 @@ int main(int argc, char** argv) {
   app.add_option("--modes", settings.modes, "first, all")->delimiter(',')->capture_default_str();
   app.add_option("--latency", settings.memory.latency, "clocks from an address to its first beat")
       ->capture_default_str();
-  app.add_option("--jitter", settings.memory.jitter, "up to so many more, at random")->capture_default_str();
+  app.add_option("--jitter", settings.memory.jitter, "up to this many more, at random")->capture_default_str();
   app.add_option("--beat-every", settings.memory.beat_every, "clocks from one beat to the next")->capture_default_str();
   app.add_flag("--reorder", settings.memory.reorder, "memory answers in any order");
   app.add_option("--at-once", settings.at_once, "queries that may be unanswered; 0: no limit")->capture_default_str();

@@ -9,7 +9,7 @@
 //   latency      registers: 3 clocks, counters up to 21; a query by its tree
 //   interrupt    level: an event of interrupt_status that is enabled
 //   soft reset   drops all queries and lines, clears enable, query_producer and record_consumer;
-//                the bus masters first await what is outstanding (cchip_soft_reset). A swap goes on
+//                the bus masters await what is outstanding (cchip_soft_reset). A swap continues
 //   counters     at most 1 a clock each, two banks of cchip_counter_file, with SWAPS a third
 //   swaps        with SWAPS = 1: registers from 0x400 on, m_axi_cfg and cfg; otherwise leave those
 //                ports open and their inputs 0

@@ -3,7 +3,7 @@
 `include "cchip_defs.vh"
 // Proved of cchip_axi_read, for any behaviour of memory (also against the rules of the bus, but for what SPEAKS_TRUE assumes) and
 // any requests of clients that follow the rule "again only after the last beat", with a `limit` that changes on any clock:
-//   addresses are stable until taken; the ID of an address is of no read that memory still owes; the address is that of the
+//   addresses are stable until taken; the ID of an address is of no read that is still outstanding; the address is that of the
 //   request; no beat is handed out that did not come three clocks before under this ID, for a read whose address was
 //   taken before and after the request was made, each once and in order; OK only after all beats of the line, each with OKAY, rlast on the
 //   last one only; a place is answered only while its client waits, once; rready is
@@ -116,7 +116,7 @@ module cchip_axi_read_properties #(
   reg rst_q = 1'b1;
   reg rready_q = 1'b1;
   reg line_q;  // asked for
-  reg owed_q;  // memory owes it beats
+  reg owed_q;  // beats of it are outstanding
   reg mine_q;  // and they are the answer to the present request
   reg given_up_q;  // the address that is offered is that of an earlier request
   reg [2:0] beats_q;  // that came

@@ -5,7 +5,7 @@
 // Proved of cchip_cache, for some clocks after reset (cchip_cache.sby; docs/develop/formal.md says how far):
 //   main   each request is answered at most once, and nothing else is; an answer with CCHIP_READ_OK carries data that memory
 //          gave for the line of that request; a code other than that comes only after memory has given one; no second read of a
-//          line is sent while one is in flight; a slot is not used again while memory owes its response; a locked line that has
+//          line is sent while one is in flight; a slot is not used again while its response is outstanding; a locked line that has
 //          come is never read again, so it was not evicted. The assertions of cchip_cache and cchip_cache_fill hold, among them
 //          that no two ways hold one line and that the frame of a line stays its own until all who wait for it are served
 //   stale  an answer after an invalidation is over is not of data that memory held before its command
@@ -55,7 +55,7 @@ module cchip_cache_properties #(
     input wire [$clog2(MISSES)-1:0] s_read_slot,
     input wire [`CCHIP_READ_CODE_W-1:0] s_read_code,
     input wire                      s_read_data,
-    input wire [        MISSES-1:0] stays,      // memory owes this slot's response after its answer
+    input wire [        MISSES-1:0] stays,      // this slot's response stays outstanding after its answer
     input wire                      writes      // the followed line changes in memory (task stale)
 );
   localparam integer PLACE_W = $clog2(PLACES);

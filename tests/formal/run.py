@@ -113,8 +113,8 @@ MUTANTS = [
     ("cchip_bitstream_fetch room", FETCH, "pop_q <= run_q & m_valid & m_ready;", "pop_q <= run_q & m_ready;"),
     ("cchip_bitstream_fetch room", FETCH, "localparam [31:0] ROOM = FIFO_DEPTH - 16;", "localparam [31:0] ROOM = FIFO_DEPTH - 15;"),
     # the frame of a line is given away while its last waiter is kept from its clock; what a lookup saw has changed since; a frame
-    # in flight, a locked one is given away; an invalidation does not wait for the reads before it; with all slots lost nobody is
-    # told; a slot is used again while memory owes its response; two ports get one slot
+    # in flight, a locked one is given away; an invalidation does not wait for the reads before it; with all slots lost no
+    # request is answered; a slot is used again while its response is outstanding; two ports get one slot
     ("cchip_cache frames", CACHE_WAITERS, "(|awake_q) | (serve_q & ~serve_ready);", "|awake_q;"),
     ("cchip_cache bounded", CACHE_PORT, "wire fresh = look_q[6] & ~stale;", "wire fresh = look_q[6];"),
     ("cchip_cache evict", CACHE_PORT, "wire [1:0] may5 = ~hold5 & ~locked5;", "wire [1:0] may5 = ~locked5;"),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 `default_nettype none
-// bench_blank: self-checking bench of cchip_primtest_blank: whatever goes in, the outputs are its constants.
+// bench_blank: self-checking bench of cchip_primtest_blank: for any input the outputs are its constants.
 // Ends with "PASS clocks=C" or "FAIL ...". Verilog-2005, no package.
 module bench_blank;
 

@@ -5,7 +5,7 @@
 //   CCHIP_BENCH_TOP  macro: the module under test, as in -DCCHIP_BENCH_TOP=cchip_primtest_tri_tri
 //   +vectors=FILE    one pair per line, hexadecimal: {rm_id, beats, axis, definite, grid, hit, err, mode, tag, b, a},
 //                    the first six of them expected of the module; tags differ within 65536 lines
-//   +pairs=N         so many of its lines
+//   +pairs=N         this many of its lines
 //   +start=S         state of the generator of idle clocks, back-pressure and resets, not 0 (default 1)
 //   +steady          pairs always offered, results always taken, reset at the start only: every pair is answered
 //   +lines=FILE      written, if given: "in CLOCK TAG IDLE" and "out CLOCK TAG HIT GRID DEFINITE AXIS BEATS IDLE" for
@@ -149,7 +149,7 @@ module bench_primtest;
       if (lines != 0)
         $fdisplay(lines, "out %0d %0d %0d %0d %0d %0d %0d %0d", clock, m_result_tag, m_result_hit, m_result_grid,
                   m_result_definite, m_result_axis, m_result_beats, idle);
-      if (waiting[m_result_tag] !== 1'b1) fail("result with a tag that nobody waits for");
+      if (waiting[m_result_tag] !== 1'b1) fail("result with a tag that is not in flight");
       else if (result[RESULT_W+15:16] !== expected[m_result_tag]) fail_by_tag("wrong result");
       if (idle !== 1'b0) fail("idle with a pair inside");
       waiting[m_result_tag] = 0;

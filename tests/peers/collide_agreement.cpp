@@ -87,7 +87,7 @@ class Agreement {
       expected[i] = static_cast<char>(result_.hit);
       if (result_.hit) witness[i] = result_.contacts.front();
       totals_.hits += result_.hit;
-      // A contact that we name must be one, whatever FCL says.
+      // A contact that we name must be one, regardless of FCL.
       if (result_.hit && i % 16 == 0) note(bodies, "witness", i, bodies.judge(poses[i], true, witness[i]));
       const bool theirs = bodies.fcl_a.hit(poses[i].a, bodies.fcl_b, poses[i].b);
       if (theirs != result_.hit) note(bodies, "FCL", i, bodies.judge(poses[i], result_.hit, witness[i]));

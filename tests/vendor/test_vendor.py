@@ -57,7 +57,7 @@ def ports(top, root=ROOT, parameters=(), define=""):
 
 
 def check_ports(root=ROOT):
-    """The primitive tests and the blank module have the same ports, and so has the partition, whatever is in it."""
+    """The primitive tests and the blank module have the same ports, and so has the partition with any of them in it."""
     for parameters in ((), (("COORD_W", 8),)):
         test = ports("cchip_primtest_tri_tri", root, parameters)
         empty = ports(REGION, root, parameters, "-DCCHIP_PR_BLACK_BOX")

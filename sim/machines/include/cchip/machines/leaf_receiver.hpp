@@ -21,7 +21,7 @@ struct LeafReceiverOptions {
   std::uint64_t ahead = 64;      ///< clocks of work that wait in front of the lane
   std::uint64_t first = 41;      ///< clocks from an axis to what becomes of it, of a pair's first one and of the others
   std::uint64_t others = 35;
-  std::uint64_t jitter = 0;  ///< up to so many more, at random
+  std::uint64_t jitter = 0;  ///< up to this many more, at random
   bool held = false;         ///< gives no results
   bool only_hits = false;    ///< holds back the results without a definite hit, and their room
   bool all_open = false;     ///< no hit is definite
@@ -68,7 +68,7 @@ class LeafReceiver {
   void taken() { given_.reset(); }
   /// Is there room for one more leaf pair from this clock on? True once for each that was taken.
   bool credit(std::uint64_t now);
-  /// Forgets what is in flight.
+  /// Drops what is in flight.
   void clear();
 
  private:

@@ -20,7 +20,7 @@ class PairStreams : public Agent {
     port_.put({});
   }
 
-  /// \returns false, and forgets this request, while offers()
+  /// \returns false, and drops this request, while offers()
   bool send(const KindRequest& request) {
     if (offers_) return false;
     port_.put(request.request);

@@ -3,7 +3,7 @@
 /// Signals inside the Verilated RTL, by name. This is the only file that knows where a signal lies in the hierarchy;
 /// its user includes <V...___024root.h> of the model.
 ///
-/// A function template takes every model that has the signal, whatever the name of its class.
+/// A function template takes every model that has the signal, regardless of the name of its class.
 #ifndef CCHIP_MACHINES_PROBES_HPP
 #define CCHIP_MACHINES_PROBES_HPP
 
@@ -53,7 +53,7 @@ CCHIP_PROBE(chip_swap_phase,
 CCHIP_PROBE(chip_counts, cchip_chip__DOT__count_q)
 
 // cchip_chip: a node pair is at the box test; a vertex leaves the transform, bit 0; an axis leaves the controller of
-// the test in slot 0; memory owes a line.
+// the test in slot 0; a line is outstanding.
 #define CCHIP_CHIP_PROBE(name, signal) CCHIP_PROBE(name, cchip_chip__DOT__u_core__DOT__##signal)
 CCHIP_CHIP_PROBE(chip_box_test, u_broad_phase__DOT__u_get_data__DOT__pair_valid_q)
 CCHIP_CHIP_PROBE(chip_transform, u_transform__DOT__u_normaliser__DOT__valid_q)

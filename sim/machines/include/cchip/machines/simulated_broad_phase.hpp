@@ -104,7 +104,7 @@ class SimulatedBroadPhase : private Agent {
   void clear_counters() { counters_ = {}; }
   std::size_t unanswered() const { return open_ + waiting_.size(); }
 
-  /// Forgets everything in flight.
+  /// Drops everything in flight.
   void reset() {
     waiting_.clear();
     offering_ = false;
@@ -197,7 +197,7 @@ class SimulatedBroadPhase : private Agent {
     done.steps = m.m_done_steps;
     done.pairs = m.m_done_pairs;
     if (done.tag >= answers_.size() || answers_[done.tag].done)
-      throw StreamError("an answer that nobody waits for, tag " + std::to_string(done.tag));
+      throw StreamError("an answer that no query waits for, tag " + std::to_string(done.tag));
     answers_[done.tag].done = done;
     answers_[done.tag].ended = simulation_.total_clocks();
     --open_;

@@ -80,14 +80,14 @@ class SimulatedChipCore {
   }
   const std::vector<ChipAnswer>& answers() const { return answers_; }
   std::size_t unanswered() const { return unanswered_; }
-  /// Records of nobody, done records that came twice, pair records after theirs, wrong phase bits.
+  /// Records of no query, done records that came twice, pair records after theirs, wrong phase bits.
   const std::vector<std::string>& wrong() const { return wrong_; }
   std::size_t duplicated() const { return duplicated_; }
   std::uint64_t clocks() const { return clocks_; }
   std::uint64_t count_pairs() const { return pairs_; }
   std::uint64_t count_steps() const { return steps_; }
 
-  /// Chip and bus are reset; the host forgets its queries and takes a new generation of tags.
+  /// Chip and bus are reset; the host drops its queries and takes a new generation of tags.
   void reset() {
     descriptors_.clear();
     answers_.clear();
@@ -148,7 +148,7 @@ class SimulatedChipCore {
     const std::uint32_t tag = decode_pair(bytes).tag;
     const std::size_t number = tag & 0xffffff;
     if (tag >> 24 != chip_.generation || number >= answers_.size()) {
-      wrong_.push_back("record of nobody, tag " + std::to_string(tag));
+      wrong_.push_back("record of no query, tag " + std::to_string(tag));
       return;
     }
     ChipAnswer& answer = answers_[number];
