@@ -90,7 +90,8 @@ class Run {
       const std::uint32_t line_a = bench.place(image_a);
       const std::uint32_t line_b = bench.place(image_b);
       if (!settings_.wave.empty()) {
-        // The view begins with the first query: before it the cache is cleared and invalidates the lines of both images.
+        // The view begins with the first query: before it the cache is cleared and invalidates the lines of both
+        // images.
         const std::uint64_t first = bench.clocks();
         if (first + viewed > traced)
           throw std::runtime_error("the waveform ends before the first queries; trace more clocks");

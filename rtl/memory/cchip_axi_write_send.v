@@ -12,7 +12,8 @@
 //                and refused, after its last beat
 //   latency      1 clock from s_write_valid to m_axi_awvalid, 2 to m_axi_wvalid
 //   throughput   a beat and an address on every clock
-//   cuts         the AXI side: its outputs are flip-flops, and m_axi_awready and m_axi_wready end in one
+//   cuts         the AXI side: its outputs are flip-flops, and m_axi_awready and m_axi_wready end
+//                in one
 //   reset        nothing is sent
 module cchip_axi_write_send #(
     // width of the data bus, bit: 64, 128, 256 or 512

@@ -20,7 +20,8 @@ struct SimulatedChipOptions {
   std::string trace_path;
   std::uint64_t trace_clocks = 30000;
   sim::AxiLinesOptions memory;
-  /// 0: a static chip. 1, 2: the number of slots whose modules are exchanged at run time; each begins with the triangle test.
+  /// 0: a static chip. 1, 2: the number of slots whose modules are exchanged at run time; each begins with the triangle
+  /// test.
   unsigned slots = 0;
   /// Payload of each bitstream of such a chip, bytes.
   std::size_t payload_bytes = 2048;
