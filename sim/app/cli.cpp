@@ -48,7 +48,8 @@ constexpr WholeRange at_least_1 = {1, std::numeric_limits<std::uint64_t>::max()}
 /// Of a payload: what a bitstream needs, and what the simulated memory holds three times for each slot.
 constexpr WholeRange bitstream_bits = {8 * defs::bitstream_payload_min, 8 << 24};
 
-const Choices<std::optional<bool>> contact_choices = {{"first", false}, {"all", true}};
+using Contacts = CollisionRequest::Contacts;
+const Choices<std::optional<Contacts>> contact_choices = {{"first", Contacts::first}, {"all", Contacts::all}};
 const Choices<bool> count_choices = {{"touching", false}, {"crossing", true}};
 
 struct PairsOptions {
@@ -243,7 +244,7 @@ void add_collide(CLI::App& app, CollideOptions& options) {
                          "CSV file with columns r00..r22, tx, ty, tz: a query for each row; - reads standard input");
   pose->excludes(matrix)->excludes(poses);
   matrix->excludes(poses);
-  add_choice(*command, "--contacts", options.all_contacts, contact_choices,
+  add_choice(*command, "--contacts", options.contacts, contact_choices,
              "stop at the first contact or find all (default: all, with --poses first)");
   add_whole(*command, "--most", options.max_contacts, "find at most N contacts of a query (default: no limit)",
             at_least_1);

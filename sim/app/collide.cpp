@@ -99,11 +99,12 @@ std::unique_ptr<Device> open_named_device(const CollideOptions& options) {
 
 CollisionRequest request_of(const CollideOptions& options) {
   CollisionRequest request;
-  const bool all = options.all_contacts.value_or(options.poses_file.empty());
+  using Contacts = CollisionRequest::Contacts;
+  request.contacts = options.contacts.value_or(options.poses_file.empty() ? Contacts::all : Contacts::first);
+  const bool all = request.contacts == Contacts::all;
   if (!all && options.max_contacts != 0) {
     throw UsageError("--most: each query stops at its first contact; add --contacts all, or leave --most out");
   }
-  if (all) request.contacts = CollisionRequest::Contacts::all;
   if (options.max_contacts != 0) request.max_contacts = options.max_contacts;
   if (options.only_crossing) request.counts = CollisionRequest::Counts::crossing;
   request.relation = options.relation || (all && options.poses_file.empty());

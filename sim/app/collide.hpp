@@ -4,6 +4,7 @@
 #ifndef CCHIP_APP_COLLIDE_HPP
 #define CCHIP_APP_COLLIDE_HPP
 
+#include <cchip/collide/collide.hpp>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -19,8 +20,8 @@ struct CollideOptions {
   std::string pose;         ///< of B: see parse_pose(); empty: none
   std::string pose_matrix;  ///< of B: see parse_affine_matrix(); empty: none
   std::string poses_file;   ///< CSV; empty: one query
-  /// True: all contacts. Nothing: all contacts of a single query, but only the first of each of many.
-  std::optional<bool> all_contacts;
+  /// Nothing: all contacts of a single query, but only the first of each of many.
+  std::optional<CollisionRequest::Contacts> contacts;
   std::size_t max_contacts = 0;  ///< 0: no limit
   bool only_crossing = false;    ///< contacts that only touch do not count
   bool relation = false;         ///< tell touching from crossing; a single query for all contacts does in any case

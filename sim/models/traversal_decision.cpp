@@ -157,9 +157,10 @@ Decision decide(const TraversalLimits& limits, const Occurrence& o) {
                         d.state.steps, d.state.pairs};
   }
   // a leaf pair that is out may end a query for the first hit
-  const bool hopes = live && d.state.mode == QueryMode::first && d.work != d.state.under_way;
+  const bool result_pending = live && d.state.mode == QueryMode::first && d.work != d.state.under_way;
   const unsigned pairs_each = std::max(limits.pairs_each, 1U);
-  d.wants = d.state.active && d.state.entries != 0 && d.state.under_way < (hopes ? pairs_each / 2 : pairs_each);
+  d.wants =
+      d.state.active && d.state.entries != 0 && d.state.under_way < (result_pending ? pairs_each / 2 : pairs_each);
   return d;
 }
 

@@ -75,6 +75,15 @@ void expect(const char* what, const Got& got, const Expected& expected) {
   throw sim::SimulationError(std::string(what) + " is " + sim::to_text(got) + ", expected " + sim::to_text(expected));
 }
 
+/// The default settings of a test, with a name and some numbers changed.
+template <class Settings>
+Settings changed(const char* name, std::initializer_list<std::pair<int Settings::*, int>> changes) {
+  Settings settings;
+  settings.name = name;
+  for (const auto& [field, value] : changes) settings.*field = value;
+  return settings;
+}
+
 inline bool chance(Random& random, int percent) { return static_cast<int>(random() % 100) < percent; }
 
 /// A limit for something that must have `least` clocks: 0 (a default, which must be enough), near `least`, or far away.

@@ -20,24 +20,62 @@ std::uint32_t word_at(std::uint64_t line, std::size_t word) {
 
 /// How memory behaves; chances in per cent.
 struct Behaviour {
-  const char* name;
-  int ready;         ///< arready on a clock
-  int valid;         ///< a beat on a clock
-  bool in_order;     ///< whole lines, in the order of their addresses
-  int error;         ///< of rresp, on a beat
-  int wrong_length;  ///< of a line
-  int lost;          ///< of a line: not answered before `silence` ends
-  int unasked;       ///< an unrequested beat on a clock
-  int silence;       ///< periods without any address taken or beat: they begin on a clock with 1 / 2^silence; 0: none
-  std::uint32_t limit;
-  bool changes = false;  ///< the limit changes: up, down, to the default and to the highest
+  const char* name = "errors";
+  int ready = 80;         ///< arready on a clock
+  int valid = 80;         ///< a beat on a clock
+  int in_order = 0;       ///< whole lines, in the order of their addresses
+  int error = 5;          ///< of rresp, on a beat
+  int wrong_length = 10;  ///< of a line
+  int lost = 0;           ///< of a line: not answered before `silence` ends
+  int unasked = 10;       ///< an unrequested beat on a clock
+  /// periods without any address taken or beat: they begin on a clock with 1 / 2^silence; 0: none
+  int silence = 0;
+  int limit = 100000;
+  int changes = 0;  ///< the limit changes: up, down, to the default and to the highest
 };
-constexpr Behaviour behaviours[] = {
-    {"fast", 100, 100, true, 0, 0, 0, 0, 0, 100000},     {"in order", 50, 60, true, 0, 0, 0, 0, 0, 100000},
-    {"any order", 80, 80, false, 0, 0, 0, 0, 0, 100000}, {"slow", 10, 10, false, 0, 0, 0, 0, 0, 100000},
-    {"errors", 80, 80, false, 5, 10, 0, 10, 0, 100000},  {"late", 60, 60, false, 2, 5, 10, 2, 0, 150},
-    {"silent", 60, 80, false, 1, 2, 5, 1, 9, 200},       {"no time", 60, 80, false, 1, 2, 5, 1, 8, 3},
-    {"changes", 60, 80, false, 1, 2, 5, 1, 8, 60, true},
+using B = Behaviour;
+const std::vector<B> behaviours = {
+    changed<B>("fast", {{&B::ready, 100},
+                        {&B::valid, 100},
+                        {&B::in_order, 1},
+                        {&B::error, 0},
+                        {&B::wrong_length, 0},
+                        {&B::unasked, 0}}),
+    changed<B>(
+        "in order",
+        {{&B::ready, 50}, {&B::valid, 60}, {&B::in_order, 1}, {&B::error, 0}, {&B::wrong_length, 0}, {&B::unasked, 0}}),
+    changed<B>("any order", {{&B::error, 0}, {&B::wrong_length, 0}, {&B::unasked, 0}}),
+    changed<B>("slow", {{&B::ready, 10}, {&B::valid, 10}, {&B::error, 0}, {&B::wrong_length, 0}, {&B::unasked, 0}}),
+    B{},
+    changed<B>("late", {{&B::ready, 60},
+                        {&B::valid, 60},
+                        {&B::error, 2},
+                        {&B::wrong_length, 5},
+                        {&B::lost, 10},
+                        {&B::unasked, 2},
+                        {&B::limit, 150}}),
+    changed<B>("silent", {{&B::ready, 60},
+                          {&B::error, 1},
+                          {&B::wrong_length, 2},
+                          {&B::lost, 5},
+                          {&B::unasked, 1},
+                          {&B::silence, 9},
+                          {&B::limit, 200}}),
+    changed<B>("no time", {{&B::ready, 60},
+                           {&B::error, 1},
+                           {&B::wrong_length, 2},
+                           {&B::lost, 5},
+                           {&B::unasked, 1},
+                           {&B::silence, 8},
+                           {&B::limit, 3}}),
+    changed<B>("changes", {{&B::ready, 60},
+                           {&B::error, 1},
+                           {&B::wrong_length, 2},
+                           {&B::lost, 5},
+                           {&B::unasked, 1},
+                           {&B::silence, 8},
+                           {&B::limit, 60},
+                           {&B::changes, 1}}),
 };
 
 struct Owed {

@@ -16,25 +16,58 @@ using model::LineData;
 
 /// How memory and clients behave; chances in per cent.
 struct Behaviour {
-  const char* name;
-  int address;   ///< awready on a clock
-  int data;      ///< wready on a clock
-  int response;  ///< a response on a clock
-  int pause;     ///< a client does not offer the next beat of its write
-  int error;     ///< of bresp
-  int lost;      ///< of a write: not answered before `silence` ends, or for long
-  int unasked;   ///< a response on a clock to no write, or with another ID
-  int silence;   ///< periods in which nothing is taken or answered: they begin on a clock with 1 / 2^silence; 0: none
-  std::uint32_t limit;
-  bool changes = false;  ///< the limit changes: up, down, to the default and to the highest
+  const char* name = "usual";
+  int address = 60;   ///< awready on a clock
+  int data = 70;      ///< wready on a clock
+  int response = 60;  ///< a response on a clock
+  int pause = 10;     ///< a client does not offer the next beat of its write
+  int error = 0;      ///< of bresp
+  int lost = 0;       ///< of a write: not answered before `silence` ends, or for long
+  int unasked = 0;    ///< a response on a clock to no write, or with another ID
+  /// periods in which nothing is taken or answered: they begin on a clock with 1 / 2^silence; 0: none
+  int silence = 0;
+  int limit = 100000;
+  int changes = 0;  ///< the limit changes: up, down, to the default and to the highest
 };
-constexpr Behaviour behaviours[] = {
-    {"fast", 100, 100, 100, 0, 0, 0, 0, 0, 100000},       {"pauses", 100, 100, 100, 50, 0, 0, 0, 0, 100000},
-    {"usual", 60, 70, 60, 10, 0, 0, 0, 0, 100000},        {"data first", 10, 90, 60, 10, 0, 0, 0, 0, 100000},
-    {"address first", 90, 10, 60, 0, 0, 0, 0, 0, 100000}, {"slow", 10, 20, 10, 0, 0, 0, 0, 0, 100000},
-    {"errors", 80, 80, 80, 10, 10, 0, 10, 0, 100000},     {"late", 60, 60, 60, 5, 2, 5, 5, 0, 150},
-    {"silent", 60, 80, 80, 5, 1, 2, 2, 8, 200},           {"no time", 60, 80, 80, 5, 1, 2, 2, 8, 3},
-    {"least", 100, 100, 100, 0, 0, 0, 0, 9, 1},           {"changes", 60, 80, 80, 5, 1, 2, 2, 8, 60, true},
+using B = Behaviour;
+const std::vector<B> behaviours = {
+    changed<B>("fast", {{&B::address, 100}, {&B::data, 100}, {&B::response, 100}, {&B::pause, 0}}),
+    changed<B>("pauses", {{&B::address, 100}, {&B::data, 100}, {&B::response, 100}, {&B::pause, 50}}),
+    B{},
+    changed<B>("data first", {{&B::address, 10}, {&B::data, 90}}),
+    changed<B>("address first", {{&B::address, 90}, {&B::data, 10}, {&B::pause, 0}}),
+    changed<B>("slow", {{&B::address, 10}, {&B::data, 20}, {&B::response, 10}, {&B::pause, 0}}),
+    changed<B>("errors", {{&B::address, 80}, {&B::data, 80}, {&B::response, 80}, {&B::error, 10}, {&B::unasked, 10}}),
+    changed<B>("late",
+               {{&B::data, 60}, {&B::pause, 5}, {&B::error, 2}, {&B::lost, 5}, {&B::unasked, 5}, {&B::limit, 150}}),
+    changed<B>("silent", {{&B::data, 80},
+                          {&B::response, 80},
+                          {&B::pause, 5},
+                          {&B::error, 1},
+                          {&B::lost, 2},
+                          {&B::unasked, 2},
+                          {&B::silence, 8},
+                          {&B::limit, 200}}),
+    changed<B>("no time", {{&B::data, 80},
+                           {&B::response, 80},
+                           {&B::pause, 5},
+                           {&B::error, 1},
+                           {&B::lost, 2},
+                           {&B::unasked, 2},
+                           {&B::silence, 8},
+                           {&B::limit, 3}}),
+    changed<B>(
+        "least",
+        {{&B::address, 100}, {&B::data, 100}, {&B::response, 100}, {&B::pause, 0}, {&B::silence, 9}, {&B::limit, 1}}),
+    changed<B>("changes", {{&B::data, 80},
+                           {&B::response, 80},
+                           {&B::pause, 5},
+                           {&B::error, 1},
+                           {&B::lost, 2},
+                           {&B::unasked, 2},
+                           {&B::silence, 8},
+                           {&B::limit, 60},
+                           {&B::changes, 1}}),
 };
 
 template <class Config>

@@ -23,24 +23,57 @@ std::uint32_t word_at(std::uint64_t line, std::uint64_t version, std::size_t wor
 
 /// Chances in per cent, but for `invalidate`, per thousand.
 struct Behaviour {
-  const char* name;
-  int ask;         ///< of a request per port and clock
-  int sets;        ///< that the lines are of; 0: all
-  int tags;        ///< lines of a set
-  int latency;     ///< clocks until memory may answer
-  int beat;        ///< of a beat on a clock
-  int error;       ///< of a line
-  int invalidate;  ///< of a command on a clock, after a line has been written
-  bool locks;
+  const char* name = "mixed";
+  int ask = 60;        ///< of a request per port and clock
+  int sets = 0;        ///< that the lines are of; 0: all
+  int tags = 4;        ///< lines of a set
+  int latency = 60;    ///< clocks until memory may answer
+  int beat = 100;      ///< of a beat on a clock
+  int error = 0;       ///< of a line
+  int invalidate = 0;  ///< of a command on a clock, after a line has been written
+  int locks = 0;
   int gate = 0;     ///< memory rests until that many reads wait or nothing else happens for that long, then answers all
   int silence = 0;  ///< clocks for which a response is outstanding after a time-out or refusal, at most
 };
-constexpr Behaviour behaviours[] = {
-    {"hits", 100, 0, 1, 10, 100, 0, 0, false},      {"mixed", 60, 0, 4, 60, 100, 0, 0, false},
-    {"one set", 100, 1, 3, 20, 100, 0, 0, false},   {"two sets", 50, 2, 5, 5, 60, 5, 3, true},
-    {"three sets", 80, 3, 4, 30, 80, 20, 20, true}, {"errors", 80, 0, 2, 40, 50, 50, 0, false},
-    {"written", 30, 4, 3, 10, 90, 2, 100, true},    {"slow", 10, 0, 6, 200, 20, 5, 5, true},
-    {"burst", 100, 0, 9, 60, 100, 0, 0, false},     {"silent", 60, 0, 4, 20, 80, 30, 2, false, 0, 2000},
+using B = Behaviour;
+const std::vector<B> behaviours = {
+    changed<B>("hits", {{&B::ask, 100}, {&B::tags, 1}, {&B::latency, 10}}),
+    B{},
+    changed<B>("one set", {{&B::ask, 100}, {&B::sets, 1}, {&B::tags, 3}, {&B::latency, 20}}),
+    changed<B>("two sets", {{&B::ask, 50},
+                            {&B::sets, 2},
+                            {&B::tags, 5},
+                            {&B::latency, 5},
+                            {&B::beat, 60},
+                            {&B::error, 5},
+                            {&B::invalidate, 3},
+                            {&B::locks, 1}}),
+    changed<B>("three sets", {{&B::ask, 80},
+                              {&B::sets, 3},
+                              {&B::latency, 30},
+                              {&B::beat, 80},
+                              {&B::error, 20},
+                              {&B::invalidate, 20},
+                              {&B::locks, 1}}),
+    changed<B>("errors", {{&B::ask, 80}, {&B::tags, 2}, {&B::latency, 40}, {&B::beat, 50}, {&B::error, 50}}),
+    changed<B>("written", {{&B::ask, 30},
+                           {&B::sets, 4},
+                           {&B::tags, 3},
+                           {&B::latency, 10},
+                           {&B::beat, 90},
+                           {&B::error, 2},
+                           {&B::invalidate, 100},
+                           {&B::locks, 1}}),
+    changed<B>("slow", {{&B::ask, 10},
+                        {&B::tags, 6},
+                        {&B::latency, 200},
+                        {&B::beat, 20},
+                        {&B::error, 5},
+                        {&B::invalidate, 5},
+                        {&B::locks, 1}}),
+    changed<B>("burst", {{&B::ask, 100}, {&B::tags, 9}}),
+    changed<B>("silent",
+               {{&B::latency, 20}, {&B::beat, 80}, {&B::error, 30}, {&B::invalidate, 2}, {&B::silence, 2000}}),
 };
 
 template <class Config>

@@ -17,29 +17,63 @@ using model::LineData;
 
 /// Chances in per cent on a clock.
 struct Behaviour {
-  const char* name;
-  int request;
-  int leaf;       ///< of a request: leaves
-  int answer;     ///< the cache answers, at each port
-  bool oldest;    ///< it answers in order, else in any
-  bool together;  ///< its ports answer alike
-  int ready;      ///< of the box test
-  int taken;      ///< a leaf pair by its receiver
-  int pose;       ///< a context that waits gets its pose
-  int error;      ///< of a line: could not be read
-  int wrong;      ///< of a line: a field is not what it should be
-  int reset;      ///< per mille
+  const char* name = "usual";
+  int request = 40;
+  int leaf = 30;     ///< of a request: leaves
+  int answer = 60;   ///< the cache answers, at each port
+  int oldest = 0;    ///< it answers in order, else in any
+  int together = 0;  ///< its ports answer alike
+  int ready = 60;    ///< of the box test
+  int taken = 50;    ///< a leaf pair by its receiver
+  int pose = 20;     ///< a context that waits gets its pose
+  int error = 5;     ///< of a line: could not be read
+  int wrong = 10;    ///< of a line: a field is not what it should be
+  int reset = 2;     ///< per mille
 };
-constexpr Behaviour behaviours[] = {
-    {"fast", 100, 30, 100, true, true, 100, 100, 100, 0, 0, 0},
-    {"usual", 40, 30, 60, false, false, 60, 50, 20, 5, 10, 2},
-    {"box test", 60, 10, 80, false, false, 10, 80, 30, 5, 20, 2},
-    {"slow cache", 60, 30, 10, false, false, 60, 30, 30, 5, 20, 2},
-    {"poses late", 50, 30, 60, false, false, 70, 50, 2, 0, 5, 2},
-    {"leaves", 100, 90, 100, false, false, 100, 100, 50, 30, 10, 0},
-    {"hits", 100, 40, 90, true, true, 90, 5, 50, 10, 10, 3},
-    {"errors", 40, 30, 60, false, false, 60, 50, 40, 20, 25, 2},
-    {"resets", 50, 30, 60, false, true, 60, 50, 40, 10, 20, 25},
+using B = Behaviour;
+const std::vector<B> behaviours = {
+    changed<B>("fast", {{&B::request, 100},
+                        {&B::answer, 100},
+                        {&B::oldest, 1},
+                        {&B::together, 1},
+                        {&B::ready, 100},
+                        {&B::taken, 100},
+                        {&B::pose, 100},
+                        {&B::error, 0},
+                        {&B::wrong, 0},
+                        {&B::reset, 0}}),
+    B{},
+    changed<B>("box test", {{&B::request, 60},
+                            {&B::leaf, 10},
+                            {&B::answer, 80},
+                            {&B::ready, 10},
+                            {&B::taken, 80},
+                            {&B::pose, 30},
+                            {&B::wrong, 20}}),
+    changed<B>("slow cache", {{&B::request, 60}, {&B::answer, 10}, {&B::taken, 30}, {&B::pose, 30}, {&B::wrong, 20}}),
+    changed<B>("poses late", {{&B::request, 50}, {&B::ready, 70}, {&B::pose, 2}, {&B::error, 0}, {&B::wrong, 5}}),
+    changed<B>("leaves", {{&B::request, 100},
+                          {&B::leaf, 90},
+                          {&B::answer, 100},
+                          {&B::ready, 100},
+                          {&B::taken, 100},
+                          {&B::pose, 50},
+                          {&B::error, 30},
+                          {&B::reset, 0}}),
+    changed<B>("hits", {{&B::request, 100},
+                        {&B::leaf, 40},
+                        {&B::answer, 90},
+                        {&B::oldest, 1},
+                        {&B::together, 1},
+                        {&B::ready, 90},
+                        {&B::taken, 5},
+                        {&B::pose, 50},
+                        {&B::error, 10},
+                        {&B::reset, 3}}),
+    changed<B>("errors", {{&B::pose, 40}, {&B::error, 20}, {&B::wrong, 25}}),
+    changed<B>(
+        "resets",
+        {{&B::request, 50}, {&B::together, 1}, {&B::pose, 40}, {&B::error, 10}, {&B::wrong, 20}, {&B::reset, 25}}),
 };
 
 void set_field(LineData& data, std::size_t lsb, std::size_t width, std::uint64_t value) {

@@ -101,7 +101,7 @@ void* allocate_bytes(std::size_t bytes) {
   constexpr std::size_t page = std::size_t{1} << 16U;        // the others are as large or smaller
   void* begin = memory;
   std::size_t left = bytes;
-  // A wish: it does no harm if the system refuses.
+  // Best effort: madvise() may fail.
   if (bytes >= large_page && std::align(page, 1, begin, left) != nullptr) madvise(begin, left, MADV_HUGEPAGE);
 #endif
   return memory;

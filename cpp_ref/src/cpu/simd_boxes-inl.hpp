@@ -194,14 +194,14 @@ HWY_NOINLINE unsigned wide_test(const SupportLine* moved, const WideNode& fixed,
 }
 
 /// Planes of the lines in single precision.
-HWY_INLINE void widen(const SupportLine* lines, WideNode& node) {
+HWY_INLINE void planes_of_lines(const SupportLine* lines, WideNode& node) {
   for (std::size_t j = 0; j < 4; ++j) {
     for (std::size_t w = 0; w < words; ++w) node.plane[j][w] = lines[j].word[w];
   }
 }
 
 /// Planes of a leaf from its vertices: finer than its line, which matters if the moved object is much smaller.
-HWY_INLINE void widen(const SupportTree& tree, NodeRef leaf, const Margins& margins, WideNode& node) {
+HWY_INLINE void planes_of_leaf(const SupportTree& tree, NodeRef leaf, const Margins& margins, WideNode& node) {
   const float* const v = tree.vertices(leaf.first());
   const std::size_t stride = 4 * leaf.count();
   // Each term is off by 3 ulp of a coordinate, their sum by 2 more; normalised, so |x| + |y| + |z| <= sqrt(3) radius.

@@ -180,9 +180,9 @@ class SimdSearch final : public Search {
     const NodeRef first = fixed->ref();
     const bool leaf = item.fixed.count() == 1 && first.is_leaf();
     if (leaf) {
-      widen(*task.fixed, first, margins_, wide_);
+      planes_of_leaf(*task.fixed, first, margins_, wide_);
     } else {
-      widen(fixed, wide_);
+      planes_of_lines(fixed, wide_);
     }
     unsigned hits = item.moved.count() == 1 ? wide_test<1>(moved, wide_, task.planes, keys)
                                             : wide_test<4>(moved, wide_, task.planes, keys);
