@@ -63,7 +63,7 @@ Mesh make_spindle(const Vec3d& direction, double size) {
   return mesh;
 }
 
-Mesh make_cube(double size) { return make_box(Vec3d::Constant(-size), Vec3d::Constant(size)); }
+Mesh make_cube(double size) { return testing::make_box(Vec3d::Constant(-size), Vec3d::Constant(size)); }
 
 /// The middle of the mesh away from its origin, so that placing it takes sums that round.
 Mesh shifted(Mesh mesh, const Vec3d& by) {

@@ -72,7 +72,7 @@ class context::updater : public sc_core::sc_prim_channel {
 context::context(sc_core::sc_module& module) : module_(module), updater_(std::make_unique<updater>(*this)) {}
 
 context::~context() {
-  if (control_ != nullptr) control_->remove(*this);
+  if (control_ != nullptr) control_->drop(*this);
 }
 
 context* context::of(const sc_core::sc_object* object) {

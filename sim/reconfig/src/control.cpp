@@ -35,7 +35,7 @@ control::~control() {
   for (context* module : modules_) module->control_ = nullptr;
 }
 
-void control::remove(context& module) {
+void control::drop(context& module) {
   modules_.erase(std::remove(modules_.begin(), modules_.end(), &module), modules_.end());
   module.control_ = nullptr;
 }
@@ -61,7 +61,7 @@ void control::remove(const module_set& set) {
                   "; only its own unloaded modules can be removed");
     }
   }
-  for (context* module : set.modules()) remove(*module);
+  for (context* module : set.modules()) drop(*module);
 }
 
 void control::load(const module_set& set) { run(action::load, set); }

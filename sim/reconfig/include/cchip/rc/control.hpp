@@ -69,7 +69,7 @@ class control : public sc_core::sc_module {
 
  private:
   friend class context;
-  void remove(context& module);
+  void drop(context& module);
   bool is_mine() const;
   void run(action a, const module_set& set);
   void run_side_by_side(action a, const module_set& set);
