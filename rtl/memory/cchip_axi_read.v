@@ -73,7 +73,6 @@ module cchip_axi_read #(
   localparam integer SLOT_W = $clog2(SLOTS);
   localparam integer ID_W = $clog2(CLIENTS) + SLOT_W;
   localparam integer IDS = CLIENTS * SLOTS;
-  localparam integer CODE_W = `CCHIP_READ_CODE_W;
   localparam [31:0] LAST_BEAT = 512 / DATA_W - 1;
   localparam [31:0] NUMBER = IDS;
 
@@ -89,18 +88,16 @@ module cchip_axi_read #(
     end
   endgenerate
 
-  // ---- what is in flight. Life of an ID: free, offered (live), taken (live and owed), free again
-  // behind its last beat. A read that is given up is not live any more; its ID is free when memory
-  // has sent the last beat. A request that waits for its address to be offered is in neither vector
+  // ---- what is in flight. Life of an ID: free, offered (live), taken (live and owed), free behind
+  // its last beat. A read that is given up is not live any more; its ID is free after the last beat
   reg [IDS-1:0] live_q;  // the address is or was offered, the client waits for the answer
   reg [IDS-1:0] owed_q;  // the address was taken, its rlast has not come
   reg [IDS-1:0] first_q;  // no beat of it has come
   wire [IDS-1:0] offered, taken, closed, ended, counted;  // what happens to them on this clock
 
   // ---- requests and addresses. `owed` tells which of them has to be refused
-  wire issue;  // an address is put on offer
-  wire refuse;  // the head of the requests is refused
-  wire [ID_W-1:0] head_id;  // whose request that is
+  wire issue, refuse;  // the first request is put on offer, is refused
+  wire [ID_W-1:0] head_id;  // of that request
   wire offer, taken_valid;
   wire [ID_W-1:0] taken_id;
   wire place_timeout;
@@ -163,10 +160,8 @@ module cchip_axi_read #(
   end
 
   // ---- the read channel's stage: a beat, or an answer without data, for which rready was 0
-  reg rready_q;
-  reg beat_q, fail_q, owed_fail_q;
+  reg rready_q, beat_q, fail_q, owed_fail_q, bad_q, rlast_q;
   reg [DATA_W-1:0] data_q;
-  reg bad_q, rlast_q;
   wire known = {1'b0, m_axi_rid} < NUMBER[ID_W:0];  // there is a read of this ID
   always @(posedge clk) begin
     place_id_q <= failing_q ? fail_id_q : m_axi_rid;
@@ -191,8 +186,7 @@ module cchip_axi_read #(
   reg [3:0] progress[0:(1<<ID_W)-1];
 
   // ---- what is known of its read, a clock later. What the clock before changes in it is added
-  reg beat_q2, timeout_q2, refused_q2;
-  reg bad_q2, rlast_q2;
+  reg beat_q2, timeout_q2, refused_q2, bad_q2, rlast_q2;
   reg [DATA_W-1:0] data_q2;
   reg live_q2, owed_q2, first_q2;
   reg [3:0] progress_q2;
@@ -268,10 +262,9 @@ module cchip_axi_read #(
   reg [CLIENTS-1:0] valid_q;
   reg [SLOT_W-1:0] slot_q;
   reg [2:0] count_q;
-  reg last_q;
-  reg [CODE_W-1:0] code_q;
+  reg last_q, any_outstanding_q;
+  reg [`CCHIP_READ_CODE_W-1:0] code_q;
   reg [DATA_W-1:0] data_q3;
-  reg any_outstanding_q;
   wire [31:0] one_client = 32'd1 << ({{32 - ID_W{1'b0}}, place_id_q2} >> SLOT_W);
   always @(posedge clk) begin
     slot_q  <= place_id_q2[SLOT_W-1:0];

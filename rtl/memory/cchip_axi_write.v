@@ -76,8 +76,7 @@ module cchip_axi_write #(
   localparam integer STRB_W = DATA_W / 8;
   localparam integer BYTES_LOG2 = $clog2(STRB_W);
   localparam integer ADDRESS_W = 64 - BYTES_LOG2;
-  localparam integer COUNT_W = $clog2(OUTSTANDING + 1);
-  localparam integer CODE_W = `CCHIP_WRITE_CODE_W;
+  localparam integer COUNT_W = OUTSTANDING < 1 ? 1 : $clog2(OUTSTANDING + 1);
   localparam [31:0] SIZE = BYTES_LOG2;
 
   generate
@@ -131,10 +130,8 @@ module cchip_axi_write #(
   // given up and whose response is outstanding
   wire waiting_some, waiting_room, dropped_some, dropped_room;
   wire [COUNT_W-1:0] waiting, dropped;
-  wire issue;
-  wire answered;  // the response to the first write that is waited for
-  wire stale;  // a response that comes after the answer
-  wire timeout;  // the first write that is waited for is given up
+  wire issue, timeout;  // the first write that is waited for is given up
+  wire answered, stale;  // a response comes: to that write; to one that was given up
   cchip_count #(
       .LIMIT(OUTSTANDING)
   ) u_waiting (
@@ -274,7 +271,7 @@ module cchip_axi_write #(
     end
   end
   reg [CLIENTS-1:0] valid_q;
-  reg [CODE_W-1:0] code_q;
+  reg [`CCHIP_WRITE_CODE_W-1:0] code_q;
   reg any_outstanding_q;
   wire [3:0] one_client = 4'd1 << (refused ? refused_client : first_client);
   always @(posedge clk) begin
