@@ -28,14 +28,14 @@ module cchip_axi_read_late #(
   localparam [31:0] LAST_ID = IDS - 1;
 
   wire tick;
-  wire [31:0] unused_elapsed;
+  wire [31:0] elapsed;
   cchip_timeout #(
       .DEFAULT(`CCHIP_MEMORY_LIMIT_DEFAULT)
   ) u_tick (
       .clk    (clk),
       .restart(rst | tick),
       .limit  (limit),
-      .elapsed(unused_elapsed),
+      .elapsed(elapsed),
       .expired(tick)
   );
 
@@ -59,6 +59,8 @@ module cchip_axi_read_late #(
   end
   assign found    = found_q;
   assign found_id = found_id_q;
+
+  wire unused = &{1'b0, elapsed};
 
 endmodule
 `default_nettype wire

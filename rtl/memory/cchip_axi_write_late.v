@@ -24,14 +24,14 @@ module cchip_axi_write_late #(
 );
 
   wire tick;
-  wire [31:0] unused_elapsed;
+  wire [31:0] elapsed;
   cchip_timeout #(
       .DEFAULT(`CCHIP_MEMORY_LIMIT_DEFAULT)
   ) u_tick (
       .clk    (clk),
       .restart(rst | tick),
       .limit  (limit),
-      .elapsed(unused_elapsed),
+      .elapsed(elapsed),
       .expired(tick)
   );
 
@@ -48,6 +48,8 @@ module cchip_axi_write_late #(
       old_q  <= tick ? waiting - leaves : old_left;
       late_q <= tick ? old_left : late_q == NONE ? NONE : late_q - leaves;
     end
+
+  wire unused = &{1'b0, elapsed};
 
 endmodule
 `default_nettype wire

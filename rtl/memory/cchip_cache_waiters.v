@@ -59,10 +59,10 @@ module cchip_cache_waiters #(
   // ---- the lowest place that is awake, by groups of four: the first group with one, and the first
   // in each group
   function [15:0] lowest(input [15:0] of);
-    integer j;
+    integer k;
     begin
       lowest = of;
-      for (j = 1; j < 16; j = j + 1) if (|(of & ((16'd1 << j) - 16'd1))) lowest[j] = 1'b0;
+      for (k = 1; k < 16; k = k + 1) if (|(of & ((16'd1 << k) - 16'd1))) lowest[k] = 1'b0;
     end
   endfunction
   wire [63:0] awake = {{64 - PLACES{1'b0}}, awake_q};
