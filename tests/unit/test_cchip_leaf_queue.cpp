@@ -15,21 +15,58 @@ using model::LeafQueue;
 
 /// Chances in per cent on a clock.
 struct Behaviour {
-  const char* name;
-  int entry;   ///< the sender has an entry
-  int many;    ///< of an entry: any set of pairs, else one pair
-  int dead;    ///< of an entry: its query has ended already
-  int epoch;   ///< an epoch changes
-  int ready;   ///< of pairs to fetch
-  int drop;    ///< ready of those to drop
-  int credit;  ///< a pair leaves the receiver
-  int reset;   ///< per mille
+  const char* name = "usual";
+  int entry = 20;   ///< the sender has an entry
+  int many = 50;    ///< of an entry: any set of pairs, else one pair
+  int dead = 20;    ///< of an entry: its query has ended already
+  int epoch = 5;    ///< an epoch changes
+  int ready = 60;   ///< of pairs to fetch
+  int drop = 60;    ///< ready of those to drop
+  int credit = 40;  ///< a pair leaves the receiver
+  int reset = 5;    ///< per mille
 };
-constexpr Behaviour behaviours[] = {
-    {"fast", 100, 50, 0, 0, 100, 100, 100, 0},    {"usual", 20, 50, 20, 5, 60, 60, 40, 5},
-    {"seldom", 5, 20, 20, 2, 50, 50, 50, 20},     {"no credit", 30, 50, 10, 2, 100, 100, 5, 3},
-    {"none taken", 30, 50, 30, 5, 5, 5, 50, 3},   {"epochs change", 30, 50, 30, 60, 40, 40, 60, 10},
-    {"all ended", 50, 50, 100, 0, 50, 100, 0, 0}, {"all ended, not taken", 50, 50, 100, 10, 100, 10, 20, 5},
+using B = Behaviour;
+const std::vector<B> behaviours = {
+    changed<B>("fast", {{&B::entry, 100},
+                        {&B::dead, 0},
+                        {&B::epoch, 0},
+                        {&B::ready, 100},
+                        {&B::drop, 100},
+                        {&B::credit, 100},
+                        {&B::reset, 0}}),
+    B{},
+    changed<B>("seldom", {{&B::entry, 5},
+                          {&B::many, 20},
+                          {&B::epoch, 2},
+                          {&B::ready, 50},
+                          {&B::drop, 50},
+                          {&B::credit, 50},
+                          {&B::reset, 20}}),
+    changed<B>("no credit", {{&B::entry, 30},
+                             {&B::dead, 10},
+                             {&B::epoch, 2},
+                             {&B::ready, 100},
+                             {&B::drop, 100},
+                             {&B::credit, 5},
+                             {&B::reset, 3}}),
+    changed<B>("none taken",
+               {{&B::entry, 30}, {&B::dead, 30}, {&B::ready, 5}, {&B::drop, 5}, {&B::credit, 50}, {&B::reset, 3}}),
+    changed<B>("epochs change", {{&B::entry, 30},
+                                 {&B::dead, 30},
+                                 {&B::epoch, 60},
+                                 {&B::ready, 40},
+                                 {&B::drop, 40},
+                                 {&B::credit, 60},
+                                 {&B::reset, 10}}),
+    changed<B>("all ended", {{&B::entry, 50},
+                             {&B::dead, 100},
+                             {&B::epoch, 0},
+                             {&B::ready, 50},
+                             {&B::drop, 100},
+                             {&B::credit, 0},
+                             {&B::reset, 0}}),
+    changed<B>("all ended, not taken",
+               {{&B::entry, 50}, {&B::dead, 100}, {&B::epoch, 10}, {&B::ready, 100}, {&B::drop, 10}, {&B::credit, 20}}),
 };
 
 template <class Config>
