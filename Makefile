@@ -209,9 +209,10 @@ campaign-cluster: $(RELEASE)/build.ninja build/workflow/requirements.txt ## CAMP
 	  shape=$(SHAPE) seed=$(or $(CCHIP_SEED),1) bin=$(RELEASE)/bin
 
 CHIP_CAMPAIGN := $(RELEASE)/bin/cchip_chip_campaign
-campaign-chip: $(RELEASE)/build.ninja ## the simulated chip against the CPU device: ten pairs of meshes, 10^5 FIRST and 10^4 ALL queries, soft resets, soak of 10^6 (hours)
+campaign-chip: $(RELEASE)/build.ninja ## the simulated chip against the CPU device: ten pairs of meshes, 10^5 FIRST and 10^4 ALL queries, 10^6 in adversarial scenes, soft resets, soak of 10^6 (hours)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_chip_campaign
 	$(CHIP_CAMPAIGN) poses
+	$(CHIP_CAMPAIGN) adversarial --scenes 2800 --poses 350
 	$(CHIP_CAMPAIGN) resets --resets 1000
 	$(CHIP_CAMPAIGN) poses --meshes torus-gear,sphere-quads --first 1000000 --all 0
 

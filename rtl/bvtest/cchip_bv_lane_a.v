@@ -93,7 +93,8 @@ module cchip_bv_lane_a (
   wire signed [17:0] moved6[0:2], moved7[0:2];
   generate
     for (i = 0; i < 3; i = i + 1) begin : gen_axis
-      wire signed [13:0] term4[0:2];  // M_ij centre_j, 6 fraction bits
+      // M_ij centre_j, 6 fraction bits: -1 times a centre of -128 half steps is +128, a bit more
+      wire signed [14:0] term4[0:2];
       for (j = 0; j < 3; j = j + 1) begin : gen_term
         wire [18:0] m = pose_m[19*(3*i+j)+:19];
         wire signed [35:0] p;
@@ -108,16 +109,16 @@ module cchip_bv_lane_a (
             .b  (centre2[j]),
             .p  (p)
         );
-        assign term4[j] = one_q4 ? {centre4[j], 1'b0} : p[29:16];
-        wire unused = &{1'b0, p[35:30], p[15:0]};
+        assign term4[j] = one_q4 ? {centre4[j][12], centre4[j], 1'b0} : p[30:16];
+        wire unused = &{1'b0, p[35:31], p[15:0]};
       end
       reg signed [17:0] first_q5, rest_q5, moved_q6, moved_q7;
       assign moved6[i] = moved_q6;
       assign moved7[i] = moved_q7;
       wire [16:0] at = offset[17*i+:17];
       always @(posedge clk) begin
-        first_q5 <= {{4{term4[0][13]}}, term4[0]} + {{4{term4[1][13]}}, term4[1]};
-        rest_q5 <= {{4{term4[2][13]}}, term4[2]} + {at[16], at};
+        first_q5 <= {{3{term4[0][14]}}, term4[0]} + {{3{term4[1][14]}}, term4[1]};
+        rest_q5 <= {{3{term4[2][14]}}, term4[2]} + {at[16], at};
         moved_q6 <= first_q5 + rest_q5;
         moved_q7 <= moved_q6;
       end

@@ -3,8 +3,8 @@
 `include "cchip_defs.vh"
 // cchip_node_check: judges the two lines of a node pair, or of two headers, and keeps what they say
 // of the children until the verdict of the box test comes.
-//   node         its extent must be at most 18; its children must lie behind it and inside the
-//                image (docs/hardware/image.md)
+//   node         its extent must be at most 18; no box of a child may be inverted; its children
+//                must lie behind it and inside the image (docs/hardware/image.md)
 //   header       magic and version must be right, and the root inside the image; the number of
 //                lines of both images is kept for the nodes of that context
 //   code         the first that holds: MEMORY of A, BAD_DESCRIPTOR, the end of A, the end of B
@@ -53,7 +53,7 @@ module cchip_node_check #(
   wire [1:0] no_header3;
   wire [49:0] size2;
   wire [63:0] node3;
-  genvar p;
+  genvar p, i;
   generate
     for (p = 0; p < 2; p = p + 1) begin : gen_line
       wire [511:0] line = s_lines[512*p+:512];
@@ -67,11 +67,20 @@ module cchip_node_check #(
       wire [31:0] size = line[96+:32];
       wire [23:0] root = line[128+:24];
 
+      // greatest < least on an axis of a child. Children that are absent have boxes of 0.
+      wire [11:0] inverted;
+      for (i = 0; i < 12; i = i + 1) begin : gen_interval
+        wire signed [6:0] least = line[96+102*(i/3)+14*(i%3)+:7];
+        wire signed [6:0] greatest = line[103+102*(i/3)+14*(i%3)+:7];
+        assign inverted[i] = greatest < least;
+      end
+
+      reg [11:0] inverted_q1;
       reg [23:0] first_q1, root_q1, at_q1, first_q2, first_q3;
       reg [24:0] last_q1;  // line of the last child
       reg [7:0] kinds_q1, kinds_q2, kinds_q3;
       reg [24:0] size_q1, size_q2;
-      reg steep_q1, steep_q2, failed_q1, failed_q2, header_here_q1, header_here_q2, outside_q2;
+      reg steep_q1, corrupt_q2, failed_q1, failed_q2, header_here_q1, header_here_q2, outside_q2;
       reg [END_W-1:0] end_q3;
       reg no_header_q3;
       wire [24:0] limit = sizes_q1[25*p+:25];
@@ -82,13 +91,14 @@ module cchip_node_check #(
         kinds_q1       <= kinds;
         at_q1          <= s_numbers[24*p+:24];
         steep_q1       <= extent > EXTENT_MAX;
+        inverted_q1    <= inverted;
         size_q1        <= |size[31:24] ? 25'h1000000 : {1'b0, size[23:0]};
         failed_q1      <= s_failed[p];
         header_here_q1 <= magic == MAGIC && version == VERSION;
         first_q2       <= header_q1 ? root_q1 : first_q1;
         kinds_q2       <= kinds_q1;
         size_q2        <= size_q1;
-        steep_q2       <= steep_q1;
+        corrupt_q2     <= (steep_q1 | (|inverted_q1)) & ~header_q1;
         failed_q2      <= failed_q1;
         header_here_q2 <= header_here_q1;
         outside_q2     <= header_q1 ? {1'b0, root_q1} >= size_q1 :
@@ -97,7 +107,7 @@ module cchip_node_check #(
         kinds_q3       <= kinds_q2;
         no_header_q3   <= header_q2 & ~failed_q2 & ~header_here_q2;
         end_q3         <= failed_q2 ? `CCHIP_END_MEMORY :
-            steep_q2 & ~header_q2 ? `CCHIP_END_CORRUPT :
+            corrupt_q2 ? `CCHIP_END_CORRUPT :
             outside_q2 ? `CCHIP_END_OUTSIDE : `CCHIP_END_OK;
       end
       wire unused = &{1'b0, line[511:152], line[95:93], line[53:32]};

@@ -542,15 +542,17 @@ TEST_CASE("broad phase: limits and lines that make no sense end a query with a c
   Query wrong = query;
   wrong.m[1][1] = (1 << query_m_fraction) + 1;
   REQUIRE(model::run_query(wrong, torus.image, torus.image).done.code == QueryCode::bad_descriptor);
-  const auto changed = [&](std::size_t line, const Field& field, std::int64_t value) {
+  const auto changed = [&](std::size_t line, const Field& field, std::int64_t value, std::size_t index = 0,
+                           std::size_t base = 0) {
     Image image = torus.image;
-    put(image.lines[line], field, value);
+    put(image.lines[line], field, value, index, base);
     return code(image);
   };
   REQUIRE(changed(0, header_field::magic, 0) == QueryCode::bad_descriptor);
   REQUIRE(changed(0, header_field::version, 9) == QueryCode::bad_descriptor);
   REQUIRE(changed(0, header_field::root, 0xffffff) == QueryCode::outside);
   REQUIRE(changed(1, inner_field::step, 19) == QueryCode::corrupt);
+  REQUIRE(changed(1, child_field::box, -64, 1, inner_field::child.lsb) == QueryCode::corrupt);  // greatest < least
   REQUIRE(changed(1, inner_field::first, 1) == QueryCode::outside);
   REQUIRE(changed(1, inner_field::first, 0xffffff) == QueryCode::outside);
   // a query ends for any bits

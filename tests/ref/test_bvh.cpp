@@ -486,6 +486,9 @@ TEST_CASE("image: damaged images are refused with line and field", "[ref]") {
     refused(with_field(image, 1, Field{"", 94, 1}, 1), "1", "reserved");
     refused(with_field(image, 1, Field{"", 511, 1}, 1), "1", "reserved");
     refused(with_field(image, 1, child_field::box, 63, 2, f::child.lsb), "1", "box");
+    Image flat = image;  // legal but for chips whose box test had a bit too few
+    put(flat.lines[1], child_field::box, -64, 0, f::child.lsb);
+    refused(with_field(flat, 1, child_field::box, -64, 1, f::child.lsb), "1", "box");
     // the root's last inner child given the children of the one before
     const InnerLine root = decode_inner(image.lines[1]);
     REQUIRE(root.kind[0] == NodeKind::inner);
@@ -548,4 +551,45 @@ TEST_CASE("image: damaged images are refused with line and field", "[ref]") {
     REQUIRE(read > 200);   // vertices, cuts
     REQUIRE(read < 3800);  // everything else
   }
+}
+
+// A part on a dyadic grid whose detail has its flat face where the least number of its node's boxes lies.
+TEST_CASE("image: no box is flat at the least number", "[ref]") {
+  Mesh mesh;
+  const auto triangle = [&mesh](const Vec3d& p, const Vec3d& q, const Vec3d& r) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {p, q, r});
+    mesh.faces.push_back({Kind::tri, {first, first + 1, first + 2, 0}});
+  };
+  for (const double side : {-0.4, 0.4}) {  // the frame: the middle of the part is the origin
+    triangle({side, side / 4, side}, {side * 0.9, side / 4, side}, {side, side / 8, side});
+    triangle({side / 2, side, side / 4}, {side / 3, side, side / 4}, {side / 2, side * 0.9, side / 4});
+  }
+  const auto detail = [&triangle](const std::array<int, 9>& v) {
+    const auto at = [&v](std::size_t i) { return Vec3d(Vec3d(v[i], v[i + 1], v[i + 2]) * 0x1p-24); };
+    triangle(at(0), at(3), at(6));
+  };
+  detail({-2048, -512, -256, -2048, 512, -256, -2048, 0, 512});
+  detail({1500, -300, -300, 2016, -200, 100, 1700, 300, 200});
+  detail({1600, 300, -100, 1900, 100, 300, 1400, -300, 200});
+  detail({900, 400, -300, 1300, -100, 400, 1200, -400, -200});
+  detail({700, 300, 200, 1000, 250, -300, 800, -250, 100});
+  const Image image = make_image(mesh, build_tree(mesh));
+  REQUIRE_NOTHROW(parse_image(to_bytes(image)));
+  int at_least = 0;
+  std::vector<std::pair<std::uint32_t, NodeKind>> open = {{image.header().root, NodeKind::inner}};
+  while (!open.empty()) {
+    const auto [line, kind] = open.back();
+    open.pop_back();
+    if (kind != NodeKind::inner) continue;
+    const InnerLine node = decode_inner(image.lines[line]);
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(node.children); ++i) {
+      open.emplace_back(node.first + i, node.kind[i]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        at_least += node.child[i].least[axis] == box_least ? 1 : 0;
+        REQUIRE(node.child[i].greatest[axis] > box_least);
+      }
+    }
+  }
+  REQUIRE(at_least > 0);  // else the mesh no longer shows it
 }

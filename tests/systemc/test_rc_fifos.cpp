@@ -374,7 +374,7 @@ TEST_CASE("an open transaction holds its module", "[rc][transaction]") {
   });
 }
 
-TEST_CASE("a transaction counter may be negative; the module is held unless it is 0", "[rc][transaction]") {
+TEST_CASE("a transaction counter may be negative, the module is held unless it is 0", "[rc][transaction]") {
   System<Idle> s;
   rc::transaction_counter owed("results owed");
   s.m.add(owed);

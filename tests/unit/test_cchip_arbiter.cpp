@@ -29,7 +29,7 @@ struct ArbiterModel {
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("cchip_arbiter: grant is the model's on every clock; no port waits for more than the others",
+TEMPLATE_LIST_TEST_CASE("cchip_arbiter: grant is the model's on every clock, no port waits for more than the others",
                         "[unit][cchip_arbiter]", cchip_arbiter_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     constexpr int n = TestType::N;

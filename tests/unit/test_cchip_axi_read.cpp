@@ -294,7 +294,7 @@ class ReadBench {
 }  // namespace
 
 TEMPLATE_LIST_TEST_CASE(
-    "cchip_axi_read: outputs are the model's on every clock; every request is answered, by its own line",
+    "cchip_axi_read: outputs are the model's on every clock, every request is answered, by its own line",
     "[unit][cchip_axi_read]", cchip_axi_read_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     for (const Behaviour& how : behaviours) {
@@ -319,7 +319,7 @@ TEMPLATE_LIST_TEST_CASE(
 
 // No client asks twice, memory is silent for ever: each request ends by itself, and after the silence the place works
 // again.
-TEMPLATE_LIST_TEST_CASE("cchip_axi_read: a beat on every clock; a silent bus ends in time-outs",
+TEMPLATE_LIST_TEST_CASE("cchip_axi_read: a beat on every clock, a silent bus ends in time-outs",
                         "[unit][cchip_axi_read]", cchip_axi_read_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     constexpr std::size_t beats = 512 / TestType::DATA_W;

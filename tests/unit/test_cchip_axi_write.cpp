@@ -384,7 +384,7 @@ class WriteBench {
 }  // namespace
 
 TEMPLATE_LIST_TEST_CASE(
-    "cchip_axi_write: outputs are the model's on every clock; every write is answered, and memory holds what its "
+    "cchip_axi_write: outputs are the model's on every clock, every write is answered, and memory holds what its "
     "answer "
     "says",
     "[unit][cchip_axi_write]", cchip_axi_write_configs) {
@@ -408,7 +408,7 @@ TEMPLATE_LIST_TEST_CASE(
   });
 }
 
-TEMPLATE_LIST_TEST_CASE("cchip_axi_write: a beat on every clock; a silent bus ends in time-outs",
+TEMPLATE_LIST_TEST_CASE("cchip_axi_write: a beat on every clock, a silent bus ends in time-outs",
                         "[unit][cchip_axi_write]", cchip_axi_write_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     auto& top = simulation.top();

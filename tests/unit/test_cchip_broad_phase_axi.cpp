@@ -198,6 +198,12 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: a corrupt line has the model's c
   REQUIRE(run(0, [&](Line& x) { put(x, header_field::root, lines); }) == QueryCode::outside);
   REQUIRE(run(root, [](Line& x) { put(x, inner_field::step, 19); }) == QueryCode::corrupt);
   REQUIRE(run(root, [](Line& x) { put(x, inner_field::step, 31); }) == QueryCode::corrupt);
+  for (std::size_t axis = 0; axis < 3; ++axis) {  // greatest < least
+    REQUIRE(run(root, [axis](Line& x) {
+              put(x, child_field::box, 63, 2 * axis, inner_field::child.lsb);
+              put(x, child_field::box, 62, 2 * axis + 1, inner_field::child.lsb);
+            }) == QueryCode::corrupt);
+  }
   REQUIRE(run(root, [&](Line& x) { put(x, inner_field::first, root); }) == QueryCode::outside);
   REQUIRE(run(root, [](Line& x) { put(x, inner_field::first, 0); }) == QueryCode::outside);
   REQUIRE(run(root, [&](Line& x) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <deque>
+#include <iostream>
 #include <models/cchip_bv_compare.hpp>
 
 #include "bv_tools.hpp"
@@ -14,8 +15,8 @@ model::Planes random_planes(Random& random, int most) {
   model::Planes planes{};
   for (std::size_t d = 0; d < bvh::directions.size(); ++d) {
     const int limit = most == 0 ? (1 << (plane_width(d) - 1)) - 1 : most;
-    planes.upper[d] = number(random, most == 0 ? -limit - 1 : -1, limit);
-    planes.lower[d] = number(random, -limit, most == 0 ? limit : 1);
+    planes.upper[d] = edge(random, most == 0 ? -limit - 1 : -1, limit);
+    planes.lower[d] = edge(random, most == 0 ? -limit - 1 : -limit, most == 0 ? limit : 1);
   }
   return planes;
 }
@@ -45,10 +46,20 @@ TEMPLATE_LIST_TEST_CASE("cchip_bv_compare: separation after 2 clocks, least over
     std::deque<Expected> expected;  // newest first
     std::array<int, 16> keys{};
     int separations = 0;
+    stimulus::Bins bins;
     for (int clock = 0; clock < 60000; ++clock) {
       const int most = chance(random, 10) ? 0 : 1 << number(random, 0, 9);
       const model::Planes a = random_planes(random, most);
       const model::Planes b = random_planes(random, most);
+      for (std::size_t d = 0; d < bvh::directions.size(); ++d) {
+        const std::int64_t end = std::int64_t{1} << (plane_width(d) - 1);
+        const std::string direction = std::to_string(d);
+        bins.see("upper of A " + direction, a.upper[d], -end, end - 1);
+        bins.see("lower of A " + direction, a.lower[d], -end, end - 1);
+        bins.see("upper of B " + direction, b.upper[d], -end, end - 1);
+        bins.see("lower of B " + direction, b.lower[d], -end, end - 1);
+      }
+      bins.end();
       set_planes(top.a, a);
       set_planes(top.b, b);
       expected.push_front(compare(a, b));
@@ -66,6 +77,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_bv_compare: separation after 2 clocks, least over
       }
       simulation.rise();
     }
+    std::cout << "cchip_bv_compare: " << bins.summary() << '\n';
+    REQUIRE(bins.missing().empty());
     REQUIRE(separations > 1000);
     for (const std::size_t key : {0, 1, 2, 4, 8}) REQUIRE(keys[key] > 0);
   });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <deque>
+#include <iostream>
 #include <models/cchip_bv_lane_a.hpp>
 
 #include "bv_tools.hpp"
@@ -19,6 +20,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_bv_lane_a: planes are the functional model's, a c
     auto& top = simulation.top();
     std::deque<Item> items;  // newest first
     int coarse = 0;
+    stimulus::Bins bins;
     for (int clock = 0; clock < 30000; ++clock) {
       Item item{random_node(random), random() % 4, {}, {}};
       // a pose serves several children, as in the traversal
@@ -28,8 +30,17 @@ TEMPLATE_LIST_TEST_CASE("cchip_bv_lane_a: planes are the functional model's, a c
       item.grid.a_is_point = scale == 3;
       item.grid.use_a_cuts = scale == 0;
       coarse += scale != 0 ? 1 : 0;
-      for (auto& offset : item.grid.offset) offset = number(random, -65536, 65535);
+      for (auto& offset : item.grid.offset) offset = edge(random, -65536, 65535);
       items.push_front(item);
+      see_child(bins, item.node.child[item.child]);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::string row = std::to_string(i);
+        bins.see("offset " + row, item.grid.offset[i], -65536, 65535);
+        for (std::size_t j = 0; j < 3; ++j)
+          bins.see("M " + row + std::to_string(j), item.pose.m[i][j], -(1 << 17), 1 << 17);
+      }
+      bins.see("scale", scale, 0, 3);
+      bins.end();
 
       set_child(top.child, item.node, item.child);
       top.scale = static_cast<CData>(scale);
@@ -75,5 +86,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_bv_lane_a: planes are the functional model's, a c
       simulation.rise();
     }
     REQUIRE(coarse > 5000);
+    std::cout << "cchip_bv_lane_a: " << bins.summary() << '\n';
+    // the magnitudes of a row of M add up to less than 2, those of a column of M^T d too
+    REQUIRE(bins.missing(std::string(impossible_child) + "|M ..=\\w+ with M ..=\\w+").empty());
   });
 }

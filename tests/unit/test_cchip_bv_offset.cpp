@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <iostream>
 #include <models/cchip_bv_offset.hpp>
 
 #include "bv_tools.hpp"
@@ -19,6 +20,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_bv_offset: grids are the functional model's, a no
     int far = 0;
     int near = 0;
     int rest = 0;
+    stimulus::Bins bins;
     model::PoseSetup pose;  // of the node pair that was started last
     const auto show_row = [&](std::size_t i) {
       for (std::size_t j = 0; j < 3; ++j)
@@ -38,6 +40,18 @@ TEMPLATE_LIST_TEST_CASE("cchip_bv_offset: grids are the functional model's, a no
           for (std::size_t i = 0; i < 3; ++i) b.origin[i] = std::clamp(pose.t[i] / 64, -131072, 131071);
         }
         items.push_back({clock, grid_of(a, b, pose)});
+        for (std::size_t i = 0; i < 3; ++i) {
+          const std::string axis = std::to_string(i);
+          bins.see("origin of A " + axis, a.origin[i], -131072, 131071);
+          bins.see("origin of B " + axis, b.origin[i], -131072, 131071);
+          bins.see("t " + axis, pose.t[i], -(1 << 27), 1 << 27);
+          for (std::size_t j = 0; j < 3; ++j)
+            bins.see("M " + axis + std::to_string(j), pose.m[i][j], -(1 << 17), 1 << 17);
+        }
+        bins.see("step of A", a.step, 0, bvh::step_max);
+        bins.see("step of B", b.step, 0, bvh::step_max);
+        bins.see("shift", pose.shift, 0, query_shift_max);
+        bins.end();
         for (std::size_t i = 0; i < 3; ++i) {
           sim::set_bits(top.a_origin, static_cast<int>(18 * i), 18, static_cast<std::uint64_t>(a.origin[i]));
           sim::set_bits(top.b_origin, static_cast<int>(18 * i), 18, static_cast<std::uint64_t>(b.origin[i]));
@@ -85,6 +99,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_bv_offset: grids are the functional model's, a no
       while (items.size() > 1 && items[1].start + 12 <= clock) items.erase(items.begin());
       simulation.rise();
     }
+    std::cout << "cchip_bv_offset: " << bins.summary() << '\n';
+    REQUIRE(bins.missing("M ..=\\w+ with M ..=\\w+").empty());
     for (const int count : seen) REQUIRE(count > 200);
     REQUIRE(far > 2000);
     REQUIRE(far < 50000);

@@ -74,7 +74,7 @@ NodePair random_pair(Random& random, const model::PoseSetup& pose) {
   }
   const int e = chance(random, 60) ? number(random, -3, 6) : number(random, -24, 24);
   if (chance(random, 80)) pair.b.step = std::clamp(pair.a.step - pose.shift + e, 0, bvh::step_max);
-  const bool fine = chance(random, 10);  // the slack may not fit
+  const bool fine = chance(random, 20);  // the slack may not fit
   if (fine) pair.a.step = pair.b.step = 0;
   if (fine || chance(random, 80)) {
     for (auto& o : pair.a.origin) o = fine ? 0 : number(random, -32, 32);

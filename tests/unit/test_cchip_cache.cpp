@@ -397,7 +397,7 @@ class CacheBench {
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("cchip_cache: outputs are the model's on every clock; every answer is what memory holds",
+TEMPLATE_LIST_TEST_CASE("cchip_cache: outputs are the model's on every clock, every answer is what memory holds",
                         "[unit][cchip_cache]", cchip_cache_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     for (const Behaviour& how : behaviours) {
@@ -485,7 +485,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache: a slot whose read memory never answers is 
 }
 
 // Memory answers on the clock after the request.
-TEMPLATE_LIST_TEST_CASE("cchip_cache: clocks of a hit and of a miss; a locked line stays, an invalidated one goes",
+TEMPLATE_LIST_TEST_CASE("cchip_cache: clocks of a hit and of a miss, a locked line stays, an invalidated one goes",
                         "[unit][cchip_cache]", cchip_cache_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     using Bench = CacheBench<TestType>;

@@ -23,7 +23,7 @@ struct Line {
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of their last beats; a slot is one line's",
+TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of their last beats, a slot is one line's",
                         "[unit][cchip_cache_fill]", cchip_cache_fill_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     constexpr int misses = TestType::MISSES, width = TestType::DATA_W, beats = 512 / width, words = width / 32;

@@ -6,7 +6,7 @@
 using namespace cchip;
 using namespace cchip::test;
 
-TEMPLATE_LIST_TEST_CASE("cchip_delay: q is d DEPTH clocks later; reset clears what it shall, nothing else",
+TEMPLATE_LIST_TEST_CASE("cchip_delay: q is d DEPTH clocks later, reset clears what it shall, nothing else",
                         "[unit][cchip_delay]", cchip_delay_configs) {
   using Model = typename TestType::Model;
   for_two_power_ups<Model>([](auto& simulation, Random& random) {

@@ -14,7 +14,7 @@ constexpr int bits_of(int number) { return number == 0 ? 0 : 1 + bits_of(number 
 }  // namespace
 
 TEMPLATE_LIST_TEST_CASE(
-    "cchip_descriptor_queues: every queue keeps its order; places are used by one descriptor at once",
+    "cchip_descriptor_queues: every queue keeps its order, places are used by one descriptor at once",
     "[unit][cchip_descriptor_queues]", cchip_descriptor_queues_configs) {
   constexpr int queues = TestType::KINDS + 1;
   constexpr int count_w = bits_of(TestType::DEPTH);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cchip/models/get_data.hpp>
+#include <cchip/stimulus/boundary.hpp>
 #include <deque>
 #include <map>
 #include <models/cchip_get_data.hpp>
@@ -268,6 +269,19 @@ class GetDataBench {
     } else {
       if (right()) set_field(line.data, 54, 5, any_of({0, 17, 18}));
       if (!right()) set_field(line.data, 54, 5, any_of({19, 24, 31}));
+      for (std::size_t i = 0; i < 12; ++i) {  // boxes: most are legal, a point at an end of the range included
+        std::int64_t least = stimulus::draw(random_, -64, 63);
+        std::int64_t greatest = chance(random_, 20) ? least : stimulus::draw(random_, -64, 63);
+        if (least > greatest) std::swap(least, greatest);
+        if (chance(random_, how_.wrong) && chance(random_, 10)) {  // inverted by 1, or by as much as there is
+          const bool far = chance(random_, 50);
+          least = far ? 63 : stimulus::draw(random_, -63, 63);
+          greatest = far ? -64 : least - 1;
+        }
+        const std::size_t at = 96 + 102 * (i / 3) + 14 * (i % 3);
+        set_field(line.data, at, 7, static_cast<std::uint64_t>(least) & 127);
+        set_field(line.data, at + 7, 7, static_cast<std::uint64_t>(greatest) & 127);
+      }
       const std::uint64_t more = random_() % 4;
       set_field(line.data, 91, 2, more);
       const std::uint64_t at = request.record >> (28 * p) & 0xffffff;
@@ -494,7 +508,7 @@ class GetDataBench {
 }  // namespace
 
 TEMPLATE_LIST_TEST_CASE(
-    "cchip_get_data: outputs are the model's on every clock; every pair leaves once, when both of its lines have come, "
+    "cchip_get_data: outputs are the model's on every clock, every pair leaves once, when both of its lines have come, "
     "with both",
     "[unit][cchip_get_data]", cchip_get_data_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {

@@ -284,7 +284,7 @@ LeafQueue::Entry entry_of(std::uint16_t leaves, std::size_t context, unsigned ep
 }  // namespace
 
 TEMPLATE_LIST_TEST_CASE(
-    "cchip_leaf_queue: outputs are the model's on every clock; every pair leaves once, in order, with its lines",
+    "cchip_leaf_queue: outputs are the model's on every clock, every pair leaves once, in order, with its lines",
     "[unit][cchip_leaf_queue]", cchip_leaf_queue_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     for (const Behaviour& how : behaviours) {

@@ -7,7 +7,7 @@
 using namespace cchip;
 using namespace cchip::test;
 
-TEMPLATE_LIST_TEST_CASE("cchip_pool: each number has one borrower; the numbers are the model's on every clock",
+TEMPLATE_LIST_TEST_CASE("cchip_pool: each number has one borrower, the numbers are the model's on every clock",
                         "[unit][cchip_pool]", cchip_pool_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     constexpr std::size_t first = TestType::FIRST;

@@ -62,7 +62,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_config_memory: every clock like a judge of the
   });
 }
 
-TEMPLATE_LIST_TEST_CASE("cchip_pr_config_memory: at power-up RM_ID is in the slot; words without a name change nothing",
+TEMPLATE_LIST_TEST_CASE("cchip_pr_config_memory: at power-up RM_ID is in the slot, words without a name change nothing",
                         "[unit][cchip_pr_config_memory]", cchip_pr_config_memory_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     auto& top = simulation.top();

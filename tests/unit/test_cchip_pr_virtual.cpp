@@ -87,7 +87,7 @@ TEST_CASE("cchip_pr_virtual: every output is random from the name of the slot to
 }
 
 TEST_CASE(
-    "cchip_pr_virtual: the modules' state is scrambled even while rst is 1; only an rst that begins afterwards clears "
+    "cchip_pr_virtual: the modules' state is scrambled even while rst is 1, only an rst that begins afterwards clears "
     "it",
     "[unit][cchip_pr_virtual]") {
   for_two_power_ups([](const sim::SimulationOptions& options) {

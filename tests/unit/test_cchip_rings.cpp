@@ -21,7 +21,7 @@ std::uint32_t word_of(std::uint64_t query, int word) {
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("cchip_query_ring: every query once, in order; a line that cannot be read stops the ring",
+TEMPLATE_LIST_TEST_CASE("cchip_query_ring: every query once, in order, a line that cannot be read stops the ring",
                         "[unit][cchip_query_ring]", cchip_query_ring_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     constexpr int width = TestType::DATA_W, beats = 512 / width, words = width / 32;

@@ -146,7 +146,7 @@ class LedgerBench {
 }  // namespace
 
 TEMPLATE_LIST_TEST_CASE(
-    "cchip_slot_ledger: every pair is answered once, with its tag and kind; an answer without a request is dropped",
+    "cchip_slot_ledger: every pair is answered once, with its tag and kind, an answer without a request is dropped",
     "[unit][cchip_slot_ledger]", cchip_slot_ledger_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     LedgerBench<TestType> bench(simulation, random);
@@ -166,7 +166,7 @@ TEMPLATE_LIST_TEST_CASE(
   });
 }
 
-TEMPLATE_LIST_TEST_CASE("cchip_slot_ledger: stop and quiet; decoupled with pairs inside they are left open and counted",
+TEMPLATE_LIST_TEST_CASE("cchip_slot_ledger: stop and quiet, decoupled with pairs inside they are left open and counted",
                         "[unit][cchip_slot_ledger]", cchip_slot_ledger_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     LedgerBench<TestType> bench(simulation, random);
@@ -217,7 +217,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_slot_ledger: stop and quiet; decoupled with pairs
   });
 }
 
-TEMPLATE_LIST_TEST_CASE("cchip_slot_ledger: a reset drops all pairs; a slot that was decoupled stays so",
+TEMPLATE_LIST_TEST_CASE("cchip_slot_ledger: a reset drops all pairs, a slot that was decoupled stays so",
                         "[unit][cchip_slot_ledger]", cchip_slot_ledger_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     for (int round = 0; round < 20; ++round) {

@@ -236,7 +236,7 @@ void check(const Top& top, const Traversal& model) {
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("cchip_traversal: the model's outputs on every clock; every query is answered",
+TEMPLATE_LIST_TEST_CASE("cchip_traversal: the model's outputs on every clock, every query is answered",
                         "[unit][cchip_traversal]", cchip_traversal_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     auto& top = simulation.top();

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cchip/exact/posed_pairs.hpp>
+
 namespace cchip::testing {
 
 sim::AxiLinesOptions any_memory(Random& random) {
@@ -23,6 +28,60 @@ ChipDriverOptions small_rings() {
   options.patience = 200000;
   options.reset_patience = 4000;
   return options;
+}
+
+Totals& Totals::operator+=(const Totals& other) {
+  queries += other.queries;
+  hits += other.hits;
+  differences += other.differences;
+  contacts += other.contacts;
+  open += other.open;
+  fallbacks += other.fallbacks;
+  clocks += other.clocks;
+  return *this;
+}
+
+std::string Totals::summary() const {
+  return fmt::format("queries={} hits={} differences={} contacts={} open={} fallbacks={} clocks_mean={:.1f}", queries,
+                     hits, differences, contacts, open, fallbacks,
+                     static_cast<double>(clocks) / std::max(1.0, static_cast<double>(queries)));
+}
+
+namespace {
+
+/// The device may name any contact.
+bool named_contact_holds(const Object& a, const Object& b, const PosePair& pose, const CollisionResult& x) {
+  if (!x.hit) return x.contacts.empty();
+  if (x.contacts.size() != 1) return false;
+  if (!a.mesh().file_face.empty() || !b.mesh().file_face.empty()) return true;  // numbers of cut polygons
+  return PosedPairs(pose.a, pose.b)
+      .decide(a.mesh().primitive(x.contacts[0].face_a), b.mesh().primitive(x.contacts[0].face_b))
+      .hit;
+}
+
+}  // namespace
+
+void compare(Device& right, Device& tried, const Object& a, const Object& b, const std::vector<PosePair>& poses,
+             bool all, Totals& totals) {
+  CollisionRequest request;
+  if (all) request.contacts = CollisionRequest::Contacts::all;
+  const std::vector<CollisionResult> expected = collide(right, a, b, poses, request);
+  const std::vector<CollisionResult> got = collide(tried, a, b, poses, request);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const CollisionResult& x = got[i];
+    ++totals.queries;
+    totals.hits += x.hit ? 1 : 0;
+    totals.contacts += x.contacts.size();
+    totals.open += x.counts.open;
+    totals.fallbacks += x.counts.fallbacks;
+    totals.clocks += x.counts.clocks;
+    const bool same = all ? x.hit == expected[i].hit && x.contacts == expected[i].contacts
+                          : x.hit == expected[i].hit && named_contact_holds(a, b, poses[i], x);
+    if (same) continue;
+    ++totals.differences;
+    fmt::print("a query differs: hit {} {}, contacts {} {}\n", x.hit, expected[i].hit, x.contacts.size(),
+               expected[i].contacts.size());
+  }
 }
 
 }  // namespace cchip::testing

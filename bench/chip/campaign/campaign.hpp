@@ -4,6 +4,7 @@
 #ifndef CCHIP_BENCH_CHIP_CAMPAIGN_HPP
 #define CCHIP_BENCH_CHIP_CAMPAIGN_HPP
 
+#include <cchip/collide/collide.hpp>
 #include <cchip/driver/chip_driver.hpp>
 #include <cchip/sim/axi_lines.hpp>
 #include <cchip/sim/seed.hpp>
@@ -26,6 +27,21 @@ sim::AxiLinesOptions any_memory(Random& random);
 /// Rings so small that they are full all the time.
 ChipDriverOptions small_rings();
 
+/// What a campaign has compared.
+struct Totals {
+  std::size_t queries = 0, hits = 0, differences = 0;
+  std::uint64_t contacts = 0, open = 0, fallbacks = 0, clocks = 0;
+
+  Totals& operator+=(const Totals& other);
+  /// As "queries=10 hits=3 differences=0 ...".
+  std::string summary() const;
+};
+
+/// Queries of two objects to a device whose answers are right and to one on trial: the same answer, with all contacts
+/// the same ones, with the first any that holds.
+void compare(Device& right, Device& tried, const Object& a, const Object& b, const std::vector<PosePair>& poses,
+             bool all, Totals& totals);
+
 struct PosesSettings {
   std::vector<std::string> meshes;
   std::size_t first = 100000;  ///< FIRST queries in all
@@ -35,6 +51,17 @@ struct PosesSettings {
 
 /// Poses of many meshes against the CPU device, face for face.
 int run_poses(const PosesSettings& settings);
+
+struct AdversarialSettings {
+  std::size_t scenes = 1000;       ///< of all kinds in turn
+  std::size_t poses = 100;         ///< of each; a tenth with all contacts
+  std::size_t faces = 100000;      ///< of the largest object
+  std::vector<std::string> kinds;  ///< only these; empty: all
+  std::uint64_t seed = sim::seed_from_environment();
+};
+
+/// Scenes made to break rounding: dyadic grids, flush faces, slivers, units far apart, degenerate quads.
+int run_adversarial(const AdversarialSettings& settings);
 
 struct FaultSettings {
   std::size_t queries = 100000;

@@ -16,6 +16,17 @@ int main(int argc, char** argv) {
   poses_command->add_option("--first", poses.first, "queries for the first contact, in all")->capture_default_str();
   poses_command->add_option("--all", poses.all, "queries for all contacts, in all")->capture_default_str();
   poses_command->add_option("--seed", poses.seed, "of poses, memory, power-up")->capture_default_str();
+  AdversarialSettings adversarial;
+  auto* adversarial_command =
+      app.add_subcommand("adversarial", "scenes made to break rounding, against the CPU device");
+  adversarial_command->add_option("--scenes", adversarial.scenes, "pairs of objects, all kinds in turn")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  adversarial_command->add_option("--poses", adversarial.poses, "of each scene; a tenth of them with all contacts")
+      ->capture_default_str();
+  adversarial_command->add_option("--faces", adversarial.faces, "of the largest object")->capture_default_str();
+  adversarial_command->add_option("--kinds", adversarial.kinds, "only these")->delimiter(',');
+  adversarial_command->add_option("--seed", adversarial.seed, "of the first scene")->capture_default_str();
   FaultSettings faults;
   auto* faults_command = app.add_subcommand("faults", "queries under faults, alone and in pairs");
   faults_command->add_option("--queries", faults.queries, "in all")->capture_default_str();
@@ -52,6 +63,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     if (*poses_command) return run_poses(poses);
+    if (*adversarial_command) return run_adversarial(adversarial);
     if (*faults_command) return run_faults(faults);
     if (*mixed_command) return run_mixed(mixed);
     if (*curve_command) return three ? run_three(curve) : run_curve(curve);

@@ -57,14 +57,16 @@ std::int32_t origin_of(double least, double greatest, int unit, const Field& fie
 constexpr int origin_unit = unit_bits - 18;  // 2^-18 in 2^-24
 
 /// Box in steps, rounded outward: the box holds every vertex. False if it does not fit into the field.
+/// A box that is flat at the least number becomes one step thick: the box test of bitstreams made before its terms had
+/// 15 bits takes -1 times such a box for its opposite and separates what touches (CHANGELOG.md).
 bool set_box(ChildVolume& child, const Dop26& dop, const InnerLine& node) {
   for (std::size_t i = 0; i < 3; ++i) {
     const double origin = std::ldexp(node.origin[i], origin_unit);
     const double least = std::floor(scale_down(sum_down(dop.least[i], -origin), -node.step));
     const double greatest = std::ceil(scale_up(sum_up(dop.greatest[i], -origin), -node.step));
-    if (least < -64 || greatest > 63) return false;
+    if (least < box_least || greatest > box_most) return false;
     child.least[i] = static_cast<int>(least);
-    child.greatest[i] = static_cast<int>(greatest);
+    child.greatest[i] = std::max(static_cast<int>(greatest), box_least + 1);
   }
   return true;
 }

@@ -118,7 +118,12 @@ class Checker {
     check_reserved(number, line, encode(used));
     for (std::size_t i = 0; i < static_cast<std::size_t>(node.children); ++i) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        check_range(number, child_field::box, node.child[i].greatest[axis], node.child[i].least[axis], 63);
+        const int greatest = node.child[i].greatest[axis];
+        check_range(number, child_field::box, greatest, node.child[i].least[axis], box_most);
+        if (greatest == box_least) {
+          fail(number, child_field::box.name,
+               "is flat at " + std::to_string(box_least) + ", which older chips get wrong; build the image again");
+        }
       }
     }
     return node;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cchip/bvh/image_line.hpp>
 #include <cstring>
+#include <functional>
 
 namespace cchip::bvh {
 
@@ -74,6 +76,12 @@ Line encode(const InnerLine& node) {
     }
   }
   return line;
+}
+
+bool has_inverted_box(const InnerLine& node) {
+  return std::any_of(node.child.begin(), node.child.end(), [](const ChildVolume& child) {
+    return !std::equal(child.least.begin(), child.least.end(), child.greatest.begin(), std::less_equal<>());
+  });
 }
 
 InnerLine decode_inner(const Line& line) {

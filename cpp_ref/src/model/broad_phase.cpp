@@ -110,7 +110,7 @@ class Run {
   bvh::InnerLine node(const bvh::Image& image, std::uint32_t line) const {
     if (line >= image.lines.size()) throw Stop{QueryCode::outside};
     const bvh::InnerLine node = bvh::decode_inner(image.lines[line]);
-    if (node.step > bvh::step_max) throw Stop{QueryCode::corrupt};
+    if (node.step > bvh::step_max || has_inverted_box(node)) throw Stop{QueryCode::corrupt};
     if (node.first <= line || node.first + static_cast<std::uint32_t>(node.children) > image.lines.size()) {
       throw Stop{QueryCode::outside};
     }

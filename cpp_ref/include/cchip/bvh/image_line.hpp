@@ -30,10 +30,14 @@ struct HeaderLine {
   Vec3d centre = Vec3d::Zero();
 };
 
+/// Ends of a box, in steps from the node's origin.
+inline constexpr int box_least = -64;
+inline constexpr int box_most = 63;
+
 /// Box minus cuts: the plane of direction d on the upper side lies at (sum of the box corner that is furthest along d)
 /// - cut, on the lower side likewise.
 struct ChildVolume {
-  std::array<int, 3> least = {};     ///< steps from the node's origin, -64..63
+  std::array<int, 3> least = {};     ///< steps from the node's origin, box_least..box_most
   std::array<int, 3> greatest = {};  ///< the same
   /// As stored, 0..7, of directions 3..12: {upper, lower}. Half steps: shift left by k for face diagonals, by k + 1 for
   /// cube diagonals.
@@ -76,6 +80,9 @@ Line encode(const LeafLine& leaf, NodeKind kind);
 /// Any line can be decoded; check_image() says whether it makes sense.
 HeaderLine decode_header(const Line& line);
 InnerLine decode_inner(const Line& line);
+
+/// A child has a box with greatest < least on an axis. Absent children, whose bits are 0, have none.
+bool has_inverted_box(const InnerLine& node);
 LeafLine decode_leaf(const Line& line, NodeKind kind);
 
 }  // namespace cchip::bvh

@@ -189,6 +189,18 @@ class GetData {
     return value;
   }
 
+  /// A child of a node has a box with greatest < least on an axis.
+  static bool inverted(const LineData& data) {
+    for (std::size_t child = 0; child < 4; ++child) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t at = 96 + 102 * child + 14 * axis;
+        const auto offset = [&data](std::size_t lsb) { return field(data, lsb, 7) ^ 64; };  // keeps the order of signed
+        if (offset(at + 7) < offset(at)) return true;
+      }
+    }
+    return false;
+  }
+
   std::optional<Check> check(const Pair& pair) const {
     Check check{pair.place, pair.context, (pair.record >> 58 & 1) != 0, {}, {}};
     const auto& sizes = sizes_[pair.context];
@@ -211,8 +223,8 @@ class GetData {
         const std::uint32_t at = pair.record >> (28 * p) & 0xffffff;
         outside = node.first <= at || node.first + field(data, 91, 2) >= (*sizes)[p];
       }
-      const bool steep = !check.header && field(data, 54, 5) > 18;
-      ends[p] = failed ? End::memory : steep ? End::corrupt : outside ? End::outside : End::ok;
+      const bool corrupt = !check.header && (field(data, 54, 5) > 18 || inverted(data));
+      ends[p] = failed ? End::memory : corrupt ? End::corrupt : outside ? End::outside : End::ok;
     }
     nodes.end = ends[0] == End::memory ? End::memory
                 : no_header            ? End::bad_descriptor

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Numbers for tests: any number of a range, or, for a known share of the draws, one at which arithmetic errs more
+/// often than chance would draw it; and bins that say which ends of which ranges a test has met.
+#ifndef CCHIP_STIMULUS_BOUNDARY_HPP
+#define CCHIP_STIMULUS_BOUNDARY_HPP
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <random>
+#include <regex>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cchip::stimulus {
+
+/// The boundary values of a range: its ends and their neighbours, 0, 1 and -1, powers of two of either sign and their
+/// neighbours; ascending, each once.
+inline std::vector<std::int64_t> boundaries(std::int64_t least, std::int64_t most) {
+  std::set<std::int64_t> values;
+  const auto add = [&](std::int64_t value) {
+    if (value >= least && value <= most) values.insert(value);
+  };
+  for (const std::int64_t near : {-1, 0, 1}) {
+    add(near);
+    if (least < INT64_MAX) add(least + (near > 0 ? 1 : 0));
+    if (most > INT64_MIN) add(most - (near > 0 ? 1 : 0));
+    for (int bit = 1; bit < 62; ++bit) {
+      add((std::int64_t{1} << bit) + near);
+      add(-(std::int64_t{1} << bit) + near);
+    }
+  }
+  return {values.begin(), values.end()};
+}
+
+/// Percentage of draws that are boundary values, in every test that does not say otherwise. Half of these are the two
+/// ends of the range.
+inline constexpr int boundary_percent = 40;
+
+/// A number of least..most: uniform, or a boundary value.
+template <class Engine>
+std::int64_t draw(Engine& random, std::int64_t least, std::int64_t most, int percent = boundary_percent) {
+  const std::uint64_t span = static_cast<std::uint64_t>(most) - static_cast<std::uint64_t>(least);
+  const auto any = [&] {
+    const std::uint64_t offset = span == UINT64_MAX ? random() : random() % (span + 1);
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(least) + offset);
+  };
+  if (static_cast<int>(random() % 100) >= percent) return any();
+  if (random() % 2 == 0) return random() % 2 == 0 ? least : most;
+  const std::vector<std::int64_t> values = boundaries(least, most);
+  return values[random() % values.size()];
+}
+
+/// Counts how often each field of a test's inputs was at each end of its range, and how often two fields were at each
+/// pair of ends in the same input.
+class Bins {
+ public:
+  /// One input: see() each of its fields once, then end().
+  void see(const std::string& field, std::int64_t value, std::int64_t least, std::int64_t most) {
+    const auto number = numbers_.emplace(field, numbers_.size()).first->second;
+    if (number >= ends_.size()) {
+      ends_.resize(number + 1);
+      names_.push_back(field);
+    }
+    if (value == least) met(number, 0);
+    if (value == most) met(number, 1);
+  }
+  void end() {
+    for (std::size_t i = 0; i < now_.size(); ++i) {
+      for (std::size_t j = i + 1; j < now_.size(); ++j) ++pairs_[std::minmax(now_[i], now_[j])];
+    }
+    now_.clear();
+  }
+
+  /// The bins that no input has met, as "field=least" or "field=most with other=most"; empty if all were.
+  /// \param impossible regular expression of the pairs that no legal input has
+  std::string missing(const std::string& impossible = "(?!)") const {
+    std::string text;
+    const std::regex skip(impossible);
+    const auto add = [&](const std::string& bin) {
+      if (!std::regex_match(bin, skip)) text += (text.empty() ? "" : ", ") + bin;
+    };
+    for (std::size_t i = 0; i < 2 * ends_.size(); ++i) {
+      if (ends_[i / 2][i % 2] == 0) add(name(i));
+    }
+    for (std::size_t i = 0; i < 2 * ends_.size(); ++i) {
+      for (std::size_t j = (i | 1U) + 1; j < 2 * ends_.size(); ++j) {
+        if (pairs_.count({i, j}) == 0) add(name(i) + " with " + name(j));
+      }
+    }
+    return text;
+  }
+  /// As "fields=9 bins=18 pairs=144".
+  std::string summary() const {
+    std::size_t bins = 0;
+    for (const auto& ends : ends_) bins += (ends[0] > 0 ? 1 : 0) + (ends[1] > 0 ? 1 : 0);
+    return "fields=" + std::to_string(ends_.size()) + " bins=" + std::to_string(bins) +
+           " pairs=" + std::to_string(pairs_.size());
+  }
+
+ private:
+  void met(std::size_t number, std::size_t side) {
+    ++ends_[number][side];
+    now_.push_back(2 * number + side);
+  }
+  std::string name(std::size_t bin) const { return names_[bin / 2] + (bin % 2 == 0 ? "=least" : "=most"); }
+
+  std::map<std::string, std::size_t> numbers_;
+  std::vector<std::string> names_;
+  std::vector<std::array<std::uint64_t, 2>> ends_;
+  std::map<std::pair<std::size_t, std::size_t>, std::uint64_t> pairs_;
+  std::vector<std::size_t> now_;  // ends met by the present input: 2 field + side
+};
+
+}  // namespace cchip::stimulus
+
+#endif
