@@ -17,7 +17,8 @@ endfunction()
 
 file(REMOVE_RECURSE ${SCRATCH})
 set(ENV{LD_LIBRARY_PATH})
-set(options -G ${GENERATOR} -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER=${CXX} -D CCHIP_CCACHE=OFF)
+set(options -G ${GENERATOR} -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER=${CXX} -D CCHIP_CCACHE=OFF
+  -D CMAKE_FIND_USE_PACKAGE_REGISTRY=OFF)
 string(TIMESTAMP start %s)
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/fetch -B ${SCRATCH}/fetch ${options})
 run(${CMAKE_COMMAND} --build ${SCRATCH}/fetch --parallel 2 --target fetch)
@@ -47,5 +48,10 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${SCRATCH}/consume
 run(${CMAKE_COMMAND} --build ${SCRATCH}/consumer)
 run(${SCRATCH}/consumer/consumer)
 expect(consumer)
+
+# examples/ as a project of its own over them; it runs its programs
+run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${SCRATCH}/examples ${options} -D CMAKE_PREFIX_PATH=${SCRATCH}/prefix)
+run(${CMAKE_COMMAND} --build ${SCRATCH}/examples)
+run(${CMAKE_COMMAND} -E chdir ${SCRATCH}/examples ${CMAKE_CTEST_COMMAND} --no-tests=error --output-on-failure)
 cmake_path(GET package FILENAME name)
 message(STATUS "fetched, configured and built in ${seconds} s; ${name}")
