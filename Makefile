@@ -38,7 +38,7 @@ export JOBS
 
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv docs peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
-  test-asan fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
+  test-asan test-arm64 fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb wheel test-python test-dask bench-python export fpga \
   fpga-quick fpga-sweep asic asic-quick install clean
 
@@ -135,6 +135,9 @@ test-debug: build/debug$(OTHER)/build.ninja ## build without optimisation and ru
 test-asan: build/asan$(OTHER)/build.ninja ## build with AddressSanitizer and UBSan and run the regression
 	cmake --build build/asan$(OTHER) -j $(JOBS)
 	LSAN_OPTIONS=suppressions=$(CURDIR)/tests/lsan.supp $(CTEST) --test-dir build/asan$(OTHER) -LE '^long$$'
+
+test-arm64: ## the C++ library for 64-bit ARM and tests of it, by emulation (Debian's g++-aarch64-linux-gnu and qemu-user-static)
+	tests/arm64/run.sh build/arm64
 
 RUNS ?= 10000000
 fuzz-tools:

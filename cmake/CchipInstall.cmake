@@ -27,6 +27,14 @@ install(FILES ${PROJECT_BINARY_DIR}/collisionchip.pc DESTINATION ${CMAKE_INSTALL
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/cpp_ref/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.hpp")
 if(CCHIP_SIMULATION)
+  file(RELATIVE_PATH libdir_from_bindir /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
+  if(NOT DEFINED CMAKE_INSTALL_RPATH)  # as cpp_ref/CMakeLists.txt for the libraries
+    set(here "$ORIGIN")
+    if(APPLE)
+      set(here "@loader_path")
+    endif()
+    set_target_properties(cchip PROPERTIES INSTALL_RPATH "${here}/${libdir_from_bindir}")
+  endif()
   install(TARGETS cchip RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   set_target_properties(cchip_reconfig PROPERTIES EXPORT_NAME reconfig)
   install(TARGETS cchip_reconfig EXPORT collisionchipReconfig ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})

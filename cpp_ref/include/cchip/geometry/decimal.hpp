@@ -13,9 +13,47 @@
 #include <string_view>
 #include <system_error>
 
+#ifndef __cpp_lib_to_chars  // libc++ reads whole numbers only
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#ifdef __APPLE__
+#include <xlocale.h>
+#else
+#include <locale.h>
+#endif
+#endif
+
 namespace cchip {
 
 namespace detail {
+
+#ifdef __cpp_lib_to_chars
+inline std::from_chars_result read_double(const char* first, const char* last, double& value) {
+  return std::from_chars(first, last, value);
+}
+#else
+/// The same by strtod in the locale "C", less what strtod reads beyond std::from_chars: spaces, a plus sign,
+/// hexadecimals.
+inline std::from_chars_result read_double(const char* first, const char* last, double& value) {
+  static const locale_t c_locale = newlocale(LC_ALL_MASK, "C", nullptr);
+  const std::string text(first, last);
+  const std::size_t start = text.find_first_not_of('-');
+  if (start > 1 || std::string_view("0123456789.iInN").find(text[start]) == std::string_view::npos ||
+      text.find_first_of("xX") != std::string::npos) {
+    return {first, std::errc::invalid_argument};
+  }
+  const int errno_before = errno;
+  errno = 0;
+  char* stop = nullptr;
+  const double read = strtod_l(text.c_str(), &stop, c_locale);
+  const bool out_of_range = errno == ERANGE && (std::isinf(read) || read == 0);  // not for a subnormal number
+  errno = errno_before;
+  if (stop == text.c_str()) return {first, std::errc::invalid_argument};
+  if (!out_of_range) value = read;
+  return {first + (stop - text.c_str()), out_of_range ? std::errc::result_out_of_range : std::errc()};
+}
+#endif
 
 /// Of a decimal number that no double holds: is it too large, not too small?
 inline bool is_too_large(std::string_view digits) {
@@ -43,7 +81,7 @@ inline std::optional<double> read_decimal(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   double value = 0;
   const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  const auto [stop, error] = detail::read_double(text.data(), end, value);
   if (error == std::errc::invalid_argument || stop != end) return std::nullopt;
   if (error != std::errc::result_out_of_range) return value;
   // from_chars does not say whether the number is too large or too small, and strtod obeys the locale
