@@ -702,13 +702,6 @@ TEST_CASE("mesh file: odd polygons", "[ref][mesh_file]") {
   CHECK(dent.faces.size() == 3);
   CHECK_FALSE(covers(dent, 2, 4 - e / 2));
   CHECK(covers(dent, 2, 4 - e));
-  // more corners than the cutter accepts
-  std::vector<Vec3d> many;
-  for (int i = 0; i < 1025; ++i) many.emplace_back(std::cos(i * 0.006), std::sin(i * 0.006), 0);
-  CHECK(message_of(folder.write("t.obj", polygon_obj(many))).find("face 0 has more than 1024 corners") !=
-        std::string::npos);
-  many.pop_back();
-  CHECK(load(many).faces.size() == 1022);
 }
 
 TEST_CASE("mesh file: a written PLY holds the same faces and their colours", "[ref][mesh_file]") {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "cut_polygon.hpp"
+#include "mesh/cut_polygon.hpp"
 #include "polygon_soup.hpp"
 
 namespace cchip {
@@ -116,39 +116,19 @@ class Builder {
       refuse(number, ": vertex index " + std::to_string(corner + soup_.first_index()) +
                          " is out of range (the mesh has " + std::to_string(soup_.points.size()) + " vertices)");
     }
-    if (polygon_.size() == 3) return add_face(number, Kind::tri, {0, 1, 2, 0});
-    const bool convex_quad = polygon_.size() == 4 && mesh_io::is_convex_quad({point(0), point(1), point(2), point(3)});
-    if (convex_quad && kinds_ == FaceKinds::triangles_and_quads) return add_face(number, Kind::quad, {0, 1, 2, 3});
-    ++mesh_.polygons_cut;
-    if (convex_quad) {
-      add_face(number, Kind::tri, {0, 1, 2, 0});
-      add_face(number, Kind::tri, {0, 2, 3, 0});
-    } else {
-      cut(number);
+    outline_.clear();
+    for (const std::uint32_t corner : polygon_) outline_.push_back(soup_.points[corner]);
+    const outline::Faces made = outline::faces_of(outline_, kinds_ == FaceKinds::triangles_and_quads);
+    if (!made.error.empty()) refuse(number, made.error);
+    mesh_.polygons_cut += made.cut;
+    for (const outline::Faces::Face& from : made.faces) {
+      Mesh::Face face;
+      face.kind = from.kind;
+      const std::size_t count = from.kind == Kind::quad ? 4 : 3;
+      for (std::size_t i = 0; i < count; ++i) face.vertex[i] = polygon_[from.corner[i]];
+      mesh_.faces.push_back(face);
+      mesh_.file_face.push_back(static_cast<std::uint32_t>(number));
     }
-  }
-
-  void cut(std::size_t number) {
-    if (polygon_.size() > mesh_io::most_corners) {
-      refuse(number, " has more than " + std::to_string(mesh_io::most_corners) + " corners");
-    }
-    std::vector<Vec3d> points;
-    for (std::size_t i = 0; i < polygon_.size(); ++i) points.push_back(point(i));
-    const auto triangles = mesh_io::cut_polygon(points);
-    if (triangles.empty()) refuse(number, " crosses itself");
-    for (const auto& t : triangles) add_face(number, Kind::tri, {t[0], t[1], t[2], 0});
-  }
-
-  const Vec3d& point(std::size_t corner) const { return soup_.points[polygon_[corner]]; }
-
-  /// A face of corners of the polygon. Unused ones must be 0.
-  void add_face(std::size_t number, Kind kind, const std::array<std::size_t, 4>& corners) {
-    Mesh::Face face;
-    face.kind = kind;
-    const std::size_t count = kind == Kind::quad ? 4 : 3;
-    for (std::size_t i = 0; i < count; ++i) face.vertex[i] = polygon_[corners[i]];
-    mesh_.faces.push_back(face);
-    mesh_.file_face.push_back(static_cast<std::uint32_t>(number));
   }
 
   [[noreturn]] void refuse(std::size_t number, const std::string& what) const {
@@ -158,6 +138,7 @@ class Builder {
   PolygonSoup soup_;
   FaceKinds kinds_;
   std::vector<std::uint32_t> polygon_;  ///< the present one
+  std::vector<Vec3d> outline_;          ///< its corners
   Mesh mesh_;
 };
 

@@ -17,7 +17,7 @@ namespace cchip {
 /// What load_mesh() keeps as it is; other polygons are cut into triangles.
 enum class FaceKinds {
   triangles,
-  /// and convex quads. A quad whose outline has a dent is cut: as a primitive it would be the hull of its vertices.
+  /// and quads. One whose outline has a dent or a spike is cut: as a primitive it would be the hull of its vertices.
   triangles_and_quads
 };
 
@@ -26,7 +26,8 @@ enum class FaceKinds {
 ///
 /// Positions are doubles: the nearest one of each decimal number; binary STL and PLY's `float` hold single precision.
 /// Points and lines of OBJ are left out. Free-form surfaces, PLY's triangle strips, binary OFF and homogeneous
-/// coordinates are refused. Polygons of up to 1024 corners are cut into triangles; all corners stay in use.
+/// coordinates are refused. Polygons of up to 65536 corners are cut into triangles, by the even-odd rule and exactly;
+/// sides that cross are an error (docs/cpp/mesh_files.md).
 ///
 /// A truncated or damaged file is refused where this can be detected: counts must match, numbers must be whole words,
 /// and vertices must exist. OBJ announces no counts, so a file that lacks whole lines at its end may pass.
