@@ -551,6 +551,58 @@ TEST_CASE("mesh file: what the formats allow", "[ref][mesh_file]") {
   corners("stl_without_end", "solid a\n" + stl + "endsolid a\n");
 }
 
+TEST_CASE("mesh file: line ends, byte order marks and padding mean nothing", "[ref][mesh_file]") {
+  const auto with_ends = [](const std::string& text, const std::vector<std::string>& ends) {
+    std::string result;
+    std::size_t line = 0;
+    for (const char c : text) result += c == '\n' ? ends[line++ % ends.size()] : std::string(1, c);
+    return result;
+  };
+  const std::string corner_lines = "0 0 1\n4 0 1\n0 4 1\n";
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"t.obj", "# made by hand\nv 0 0 1\n\nv 4 0 1\nv 0 4 1\nf 1 2\\\n3\n"},
+      {"t.off", "OFF # key\n3 1 0\n" + corner_lines + "3 0 1 2\n"},
+      {"t.ply", ply_header("ascii", 3, 1) + corner_lines + "3 0 1 2\n"},
+      {"binary.ply", ply_header("binary_little_endian", 3, 1)},
+      {"t.stl",
+       "solid a solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 4 0 1\nvertex 0 4 1\nendloop\n"
+       "endfacet\nendsolid of facets\n"}};
+  const std::string binary = binary_ply_of(ground, false).substr(ply_header("binary_little_endian", 3, 1).size());
+  for (const auto& [name, text] : files) {
+    for (const std::vector<std::string>& ends : std::vector<std::vector<std::string>>{
+             {"\n"}, {"\r\n"}, {"\r"}, {"\r", "\n"}, {"\n", "\r", "\r\n"}, {"\r\n", "\r"}}) {
+      for (const std::string mark : {"", "\xef\xbb\xbf"}) {
+        for (const std::string& padding :
+             {std::string(), std::string("\x1a"), std::string(500, '\0'), std::string("\r\n \x1a\0\0\n", 7)}) {
+          INFO(name << " " << ends.size() << " " << mark.size() << " " << padding.size());
+          const bool is_binary = name == "binary.ply";
+          if (is_binary && (ends.size() > 1 || !padding.empty())) continue;
+          const std::string content = mark + with_ends(text, ends) + (is_binary ? binary : padding);
+          const Mesh mesh = cchip::parse_mesh(content, name);
+          REQUIRE(mesh.faces.size() == 1);
+          for (std::size_t i = 0; i < 3; ++i) CHECK(mesh.primitive(0).v[i] == ground[i]);
+          if (name != "t.obj") CHECK(cchip::parse_mesh(content, "-").faces.size() == 1);  // by its first word
+        }
+      }
+    }
+  }
+  // The first byte of binary values is no end of a line that ends with CR.
+  std::string values = to_bytes(std::uint8_t{10}) + std::string(11, '\1');
+  const std::string header =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty uchar x\nproperty uchar y\n"
+      "property uchar z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
+  values += std::string("\3\0\1\2", 4);
+  CHECK(cchip::parse_mesh(with_ends(header, {"\r"}) + values, "t.ply").vertices[0] == Vec3d(10, 1, 1));
+  CHECK(cchip::parse_mesh(with_ends(header, {"\n"}) + values, "t.ply").vertices[0] == Vec3d(10, 1, 1));
+  // Lines are counted by any end.
+  try {
+    cchip::parse_mesh("v 0 0 0\rv 1 0 0\r\nv 0 1 0\n\rf 1 2 4\r", "t.obj");
+    FAIL("no error");
+  } catch (const std::runtime_error& error) {
+    CHECK(std::string(error.what()).rfind("t.obj:5: face 0: vertex index 4", 0) == 0);
+  }
+}
+
 TEST_CASE("mesh file: binary numbers of all types and both byte orders", "[ref][mesh_file]") {
   const TemporaryFolder folder;
   for (const bool big : {false, true}) {

@@ -10,6 +10,7 @@
 
 #include "mesh/cut_polygon.hpp"
 #include "polygon_soup.hpp"
+#include "text.hpp"
 
 namespace cchip {
 namespace {
@@ -146,7 +147,8 @@ class Builder {
 
 Mesh load_mesh(const std::string& path, FaceKinds kinds) { return parse_mesh(read_file(path), path, kinds); }
 
-Mesh parse_mesh(std::string_view file, const std::string& path, FaceKinds kinds) {
+Mesh parse_mesh(std::string_view content, const std::string& path, FaceKinds kinds) {
+  const std::string_view file = mesh_io::is_binary_stl(content) ? content : mesh_io::without_mark(content);
   const Reader reader = reader_of(path, file);
   if (reader == nullptr) {
     throw std::runtime_error(path + ": cannot be read as a mesh; give an OBJ, OFF, PLY or STL file");

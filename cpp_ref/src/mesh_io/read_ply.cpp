@@ -73,19 +73,18 @@ Property to_property(const std::vector<std::string_view>& words, std::size_t lin
   throw FormatError("the property is not complete", line);
 }
 
-/// Takes one line off the front of the file; the last one need not end with a line break.
-std::string_view take_line(std::string_view& file) {
-  const std::string_view line = file.substr(0, file.find('\n'));
-  file.remove_prefix(std::min(line.size() + 1, file.size()));
-  return line;
-}
-
 /// Takes the header off the front of the file.
 Header take_header(std::string_view& file) {
   Header header;
   bool has_format = false;
+  const auto first_end = std::min(file.find_first_of("\r\n"), file.size());
+  const bool ends_with_cr = file.substr(first_end, 1) == "\r" && file.substr(first_end, 2) != "\r\n";
   while (!file.empty()) {
-    Lines line(take_line(file), {});
+    const std::string_view rest = file;
+    const std::string_view text = take_line(file);
+    // Where lines end with CR alone, an LF behind the last one is the first byte of binary values.
+    if (ends_with_cr) file = rest.substr(std::min(text.size() + 1, rest.size()));
+    Lines line(text, {});
     ++header.lines;
     const bool empty = !line.next();
     const auto& words = line.words();
