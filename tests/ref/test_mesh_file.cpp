@@ -408,10 +408,11 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
   check(obj("v 0 0\n"), ":1: word 4 of the line is missing");
   check(obj("v 0 0 1junk\n"), ":1: '1junk' is not a number");
   check(obj("v 0 0 1,5\n"), ":1: '1,5' has a decimal comma; write a decimal point", "");
-  check(obj("v 0 0 nan\n"), ":1: vertex 0 is not finite");
-  check(obj("v 0 0 -inf\n"), ":1: vertex 0 is not finite");
-  check(obj("v 0 0 1e400\n"), ":1: vertex 0 is not finite");
-  check(obj("v 0 0 0 2\n"), ":1: a weight other than 1 is not read");
+  const std::string fourth = three + "f 1 2 3\nv ";
+  check(obj(fourth + "0 0 nan\nf 1 2 4\n"), ":5: vertex 3 is not finite, and face 1 uses it");
+  check(obj(fourth + "0 0 -inf\nf 1 2 4\n"), ":5: vertex 3 is not finite, and face 1 uses it");
+  check(obj(fourth + "0 0 1e400\nf 1 2 4\n"), ":5: vertex 3 is not finite, and face 1 uses it");
+  check(obj(fourth + "0 0 0 2\nf 1 2 4\n"), ":5: vertex 3 has a weight other than 1, and face 1 uses it");
   check(obj(three + "surf 0 1 0 1\n"),
         ":4: the line is no statement of OBJ, or one of free-form surfaces, which are not read");
   const auto off = [&](const std::string& text) { return folder.write("t.off", text); };
@@ -425,11 +426,11 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
   check(off("OFF\n3 1 0\n" + square + "3 0 1 3\n"),
         ":6: face 0: vertex index 3 is out of range (the mesh has 3 vertices)");
   check(off("OFF\n3 1 0\n" + square + "3 0 1\n"), ":6: word 4 of the line is missing");
-  check(off("OFF\n3 1 0\n" + square + "2 0 1\n"), ":6: face 0 has fewer than three corners");
+  check(off("OFF\n3 1 0\n" + square + "2 0 1\n"), ": the file holds no faces");
   check(off("OFF\n3 2 0\n" + square + "3 0 1 2\n"), ":6: the file ends before face 1 of 2");
   check(off("OFF\n3 1 0\n" + square + "3 0 1 2\n3 0 1 2\n"),
         ":7: the file continues after the last face that it announces");
-  check(off("OFF\n3 1 0\n0 0 0\n1 nan 0\n"), ":4: vertex 1 is not finite");
+  check(off("OFF\n3 1 0\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"), ":4: vertex 1 is not finite, and face 0 uses it");
   const auto ply = [&](const std::string& text) { return folder.write("t.ply", text); };
   const std::string short_ply = "the file ends before the last value that the header announces";
   check(ply(ply_header("ascii", 3, 2) + square + "3 0 1 7\n3 0 1 2\n"),
@@ -450,12 +451,11 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
         ": the vertices need one property y");
   check(ply("ply\nformat ascii 1.0\nelement face 1\nproperty int x\nend_header\n1\n"),
         ": the faces need one list vertex_indices");
-  check(ply(ply_header("binary_little_endian", 1, 0) + to_bytes(0.0) + to_bytes(0.0) +
-            to_bytes(std::numeric_limits<double>::infinity())),
-        ": vertex 0 is not finite");
+  check(ply(ply_header("binary_little_endian", 1, 1) + to_bytes(0.0) + to_bytes(0.0) +
+            to_bytes(std::numeric_limits<double>::infinity()) + '\3' + std::string(12, '\0')),
+        ": vertex 0 is not finite, and face 0 uses it");
   const auto stl = [&](const std::string& text) { return folder.write("t.stl", text); };
   check(stl(binary_stl(3, 2)), ": the header announces 234 bytes, the file has 184");
-  check(stl(binary_stl(1, 2)), ": the header announces 134 bytes, the file has 184");
   check(stl("short"), ": the file ends within the header of a binary STL");
   check(stl("solid x\nfacet normal 0 0 1\n"), ":2: 'outer' is missing");
   check(stl("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendloop\n"), ":5: 'vertex' is missing");
@@ -601,6 +601,126 @@ TEST_CASE("mesh file: line ends, byte order marks and padding mean nothing", "[r
   } catch (const std::runtime_error& error) {
     CHECK(std::string(error.what()).rfind("t.obj:5: face 0: vertex index 4", 0) == 0);
   }
+}
+
+TEST_CASE("mesh file: what other programs write, too", "[ref][mesh_file]") {
+  // Two triangles, one above the other; which vertex is where is checked for both.
+  const auto both = [](const std::string& name, const std::string& content) {
+    INFO(name << "\n" << content.substr(0, 300));
+    const Mesh mesh = cchip::parse_mesh(content, name);
+    REQUIRE(mesh.faces.size() == 2);
+    for (std::size_t face = 0; face < 2; ++face) {
+      const double z = face == 0 ? 0 : 2;
+      CHECK(mesh.primitive(face).v[0] == Vec3d(0, 0, z));
+      CHECK(mesh.primitive(face).v[1] == Vec3d(4, 0, z));
+      CHECK(mesh.primitive(face).v[2] == Vec3d(0, 4, z));
+    }
+    return mesh;
+  };
+  const std::vector<std::string> corners = {"0 0 0", "4 0 0", "0 4 0", "0 0 2", "4 0 2", "0 4 2"};
+  const auto vertices = [&](const std::string& before, const std::string& behind) {
+    std::string text;
+    for (const std::string& corner : corners) text += before + corner + behind;
+    return text;
+  };
+  const std::string faces = "3 0 1 2\n3 3 4 5\n";
+  // OFF
+  for (const std::string keyword :
+       {"OFF6 2 0\n", "OFF 6 2\n", "6 2 0\n", "OFF\n6\n2\n0\n", "OFF\n6 2\n0\n", "OFF 6\n2 0\n"}) {
+    both("t.off", keyword + vertices("", "\n") + faces);
+    both("t.off", keyword + vertices("", " ") + faces);
+    both("t.off", keyword + vertices("", " ") + "\n3 0 1 2 255 0 0\n3 3 4 5 0.5\n");
+    both("t.off", keyword + vertices("", "\n") + "3 0 1 2 3 3\n4 5\n");
+  }
+  both("t.off", "OFF\n6 2 0\n0 0 0 4 0 0\n0 4 0\n0 0 2\n4 0 2 0 4 2\n" + faces);
+  for (const std::string keyword :
+       {"COFF", "CNOFF", "NCOFF", "NOFF", "STOFF", "NSTOFF", "CSTOFF", "STCNOFF", "STNCOFF"}) {
+    std::string more;
+    if (keyword.find('N') != std::string::npos) more += " 0 0 1";
+    if (keyword.find('C') != std::string::npos) more += " 255 0 0 255";
+    if (keyword.find("ST") != std::string::npos) more += " 0.5 0.5";
+    both("t.off", keyword + "\n6 2 0\n" + vertices("", more + "\n") + faces);
+    both("t.off", keyword + "\n6 2 0\n" + vertices("", more + " ") + faces);
+    both("-", keyword + " 6 2 0\n" + vertices("", more + "\n") + faces);
+  }
+  // points and lines among the faces keep their numbers
+  const std::string with_lines = "2 0 1\n1 3\n3 0 1 2\n0\n3 3 4 5\n";
+  CHECK(both("t.off", "OFF 6 5 0\n" + vertices("", "\n") + with_lines).file_face == std::vector<std::uint32_t>{2, 4});
+  CHECK(both("t.ply", ply_header("ascii", 6, 5) + vertices("", "\n") + with_lines).file_face ==
+        std::vector<std::uint32_t>{2, 4});
+  // STL
+  const auto stl = [&](const std::string& normal, const std::string& loop, const std::string& facet,
+                       const std::string& solid) {
+    std::string text = "solid s\n";
+    for (std::size_t i = 0; i < 6; ++i) {
+      if (i % 3 == 0) text += "facet normal " + normal + "\nouter loop\n";
+      text += "vertex " + corners[i] + "\n";
+      if (i % 3 == 2) text += loop + "\n" + facet + "\n";
+    }
+    return text + solid + " s\n";
+  };
+  for (const std::string normal : {"0 0 1", "1.#QNAN -1.#IND 1.#INF", "nan -nan(ind) inf", "0,5 0 0"}) {
+    both("t.stl", stl(normal, "endloop", "endfacet", "endsolid"));
+    both("t.stl", stl(normal, "end loop", "end facet", "end solid"));
+    both("t.stl", stl(normal, "ENDLOOP", "End Facet", "END SOLID"));
+  }
+  for (const std::string header : {"made by hand", "solid of somebody", "solid\n"}) {
+    for (const std::string& behind :
+         {std::string(), std::string("xy"), std::string(50, '\1'), std::string(3000, '\0')}) {
+      std::string content =
+          header + std::string(80 - header.size(), header == "solid\n" ? ' ' : '\0') + to_bytes(std::uint32_t{2});
+      for (const float z : {0.F, 2.F}) {
+        for (const float x : {0.F, 0.F, 1.F, 0.F, 0.F, z, 4.F, 0.F, z, 0.F, 4.F, z}) content += to_bytes(x);
+        content += std::string(2, '\0');
+      }
+      both("t.stl", content + behind);
+    }
+  }
+  // OBJ
+  const std::string v = vertices("v ", "\n");
+  both("t.obj", v + "f 1 2\\\n3\nf 4\\\n5\\\n6\n");
+  const Mesh curves =
+      both("t.obj", v + "v 0 0 nan\nv 1 1 1 0.5\ncstype rat bspline\ndeg 3\ncurv 0 1 1 2 7 8\nparm u 0 0 1 1\n"
+                        "ctech cparm 1\nend\nf 1 2 3\nf 4 5 6\n");
+  REQUIRE(curves.notes.size() == 1);
+  CHECK(curves.notes[0] == "1 curves were left out, the first in line 11");
+  // a vertex that no face uses
+  const std::string unused = ply_header("ascii", 7, 2) + vertices("", "\n") + "nan inf 0\n" + faces;
+  CHECK(both("t.ply", unused).vertices[6] == Vec3d(0, 0, 0));
+  // PLY
+  const std::string integers =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty int64 x\nproperty int64 y\nproperty int64 z\n"
+      "element face 2\nproperty list uint64 int64 vertex_indices\nend_header\n";
+  both("t.ply", integers + vertices("", "\n") + faces);
+  for (const bool big : {false, true}) {
+    std::string content = integers;
+    content.replace(content.find("ascii"), 5, big ? "binary_big_endian" : "binary_little_endian");
+    for (const std::int64_t z : {0, 2}) {
+      for (const std::int64_t x : {std::int64_t{0}, std::int64_t{0}, z, std::int64_t{4}, std::int64_t{0}, z,
+                                   std::int64_t{0}, std::int64_t{4}, z}) {
+        content += to_bytes(x, big);
+      }
+    }
+    for (const std::int64_t first : {0, 3}) {
+      content += to_bytes(std::uint64_t{3}, big);
+      for (std::int64_t i = 0; i < 3; ++i) content += to_bytes(first + i, big);
+    }
+    both("t.ply", content);
+    std::string below = content;
+    below.replace(below.size() - 24, 8, to_bytes(std::int64_t{-3}, big));
+    CHECK_THROWS_WITH(cchip::parse_mesh(below, "t.ply"), Catch::Contains("vertex index -3 is out of range"));
+  }
+  const auto strips = [&](const std::string& text) {
+    return "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\nelement "
+           "tristrips 1\n"
+           "property list int int vertex_indices\nend_header\n" +
+           vertices("", "\n") + text;
+  };
+  both("t.ply", strips("7 0 1 2 -1 3 4 5\n"));
+  const Mesh strip = cchip::parse_mesh(strips("10 0 1 2 4 4 4 -1 1 3 5\n"), "t.ply");
+  REQUIRE(strip.faces.size() == 3);
+  CHECK(strip.faces[1].vertex == std::array<std::uint32_t, 4>{2, 1, 4, 0});
+  CHECK(strip.faces[2].vertex == std::array<std::uint32_t, 4>{1, 3, 5, 0});
 }
 
 TEST_CASE("mesh file: binary numbers of all types and both byte orders", "[ref][mesh_file]") {

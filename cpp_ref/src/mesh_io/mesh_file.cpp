@@ -61,7 +61,7 @@ const Format* format_shown_by(std::string_view file) {
   const std::string_view word = file.substr(0, file.find_first_of(" \t\r\n"));
   if (word == "ply") return &ply;
   if (word == "solid") return &stl;
-  if (word.size() >= 3 && word.substr(word.size() - 3) == "OFF") return &off;
+  if (mesh_io::is_off_keyword(word)) return &off;
   return nullptr;
 }
 
@@ -105,8 +105,12 @@ class Builder {
       begin = soup_.polygons[i].end;
     }
     if (mesh_.faces.empty()) throw FormatError("the file holds no faces");
-    if (mesh_.polygons_cut == 0) mesh_.file_face.clear();
+    if (mesh_.polygons_cut == 0 && !left_out_) mesh_.file_face.clear();
     mesh_.vertices = std::move(soup_.points);
+    for (const auto& [point, why] : soup_.unusable) {
+      if (!mesh_.vertices[point].allFinite()) mesh_.vertices[point].setZero();  // no face uses it
+    }
+    mesh_.notes = std::move(soup_.notes);
     return std::move(mesh_);
   }
 
@@ -117,8 +121,15 @@ class Builder {
       refuse(number, ": vertex index " + std::to_string(corner + soup_.first_index()) +
                          " is out of range (the mesh has " + std::to_string(soup_.points.size()) + " vertices)");
     }
+    if (polygon_.size() < 3) {
+      left_out_ = true;
+      return;
+    }
     outline_.clear();
-    for (const std::uint32_t corner : polygon_) outline_.push_back(soup_.points[corner]);
+    for (const std::uint32_t corner : polygon_) {
+      if (!soup_.unusable.empty()) check_usable(number, corner);
+      outline_.push_back(soup_.points[corner]);
+    }
     const outline::Faces made = outline::faces_of(outline_, kinds_ == FaceKinds::triangles_and_quads);
     if (!made.error.empty()) refuse(number, made.error);
     mesh_.polygons_cut += made.cut;
@@ -132,6 +143,14 @@ class Builder {
     }
   }
 
+  void check_usable(std::size_t number, std::uint32_t corner) const {
+    const auto found = soup_.unusable.find(corner);
+    if (found == soup_.unusable.end()) return;
+    throw FormatError("vertex " + std::to_string(corner) + " " + found->second.what + ", and face " +
+                          std::to_string(number) + " uses it",
+                      found->second.line);
+  }
+
   [[noreturn]] void refuse(std::size_t number, const std::string& what) const {
     throw FormatError("face " + std::to_string(number) + what, soup_.polygons[number].line);
   }
@@ -140,6 +159,7 @@ class Builder {
   FaceKinds kinds_;
   std::vector<std::uint32_t> polygon_;  ///< the present one
   std::vector<Vec3d> outline_;          ///< its corners
+  bool left_out_ = false;               ///< polygons that are points or lines
   Mesh mesh_;
 };
 

@@ -17,7 +17,7 @@ std::string to_text(double value) {
 }  // namespace
 
 void PolygonSoup::add_point(const Vec3d& point, std::size_t line) {
-  if (!point.allFinite()) throw FormatError("vertex " + std::to_string(points.size()) + " is not finite", line);
+  if (!point.allFinite()) unusable[points.size()] = {"is not finite", line};
   points.push_back(point);
 }
 
@@ -35,12 +35,6 @@ void PolygonSoup::add_corner(double index, std::size_t line) {
                     line);
 }
 
-void PolygonSoup::end_polygon(std::size_t line) {
-  const std::size_t begin = polygons.empty() ? 0 : polygons.back().end;
-  if (corners.size() - begin < 3) {
-    throw FormatError("face " + std::to_string(polygons.size()) + " has fewer than three corners", line);
-  }
-  polygons.push_back({corners.size(), line});
-}
+void PolygonSoup::end_polygon(std::size_t line) { polygons.push_back({corners.size(), line}); }
 
 }  // namespace cchip::mesh_io

@@ -29,6 +29,8 @@ struct Mesh {
   std::vector<std::uint32_t> file_face;
   /// Number in the file of face `face`, less than faces.size().
   std::uint32_t number_in_file(std::uint32_t face) const { return file_face.empty() ? face : file_face[face]; }
+  /// What load_mesh() left out, a line each; empty if that is nothing but points, lines and unused vertices.
+  std::vector<std::string> notes;
   /// Face number `face` (less than faces.size()) with its vertex positions.
   Primitive primitive(std::size_t face) const;
 };

@@ -25,9 +25,9 @@ enum class FaceKinds {
 /// byte orders), STL (text, binary). The extension of the name decides the format, or else the beginning of the file.
 ///
 /// Positions are doubles: the nearest one of each decimal number; binary STL and PLY's `float` hold single precision.
-/// Points and lines of OBJ are left out. Free-form surfaces, PLY's triangle strips, binary OFF and homogeneous
-/// coordinates are refused. Polygons of up to 65536 corners are cut into triangles, by the even-odd rule and exactly;
-/// sides that cross are an error (docs/cpp/mesh_files.md).
+/// Points, lines and curves are left out. Free-form surfaces, binary OFF and homogeneous coordinates are refused.
+/// Polygons of up to 65536 corners are cut into triangles, by the even-odd rule and exactly; sides that cross are an
+/// error (docs/cpp/mesh_files.md).
 ///
 /// A truncated or damaged file is refused where this can be detected: counts must match, numbers must be whole words,
 /// and vertices must exist. OBJ announces no counts, so a file that lacks whole lines at its end may pass.
