@@ -723,6 +723,32 @@ TEST_CASE("mesh file: what other programs write, too", "[ref][mesh_file]") {
   CHECK(strip.faces[2].vertex == std::array<std::uint32_t, 4>{1, 3, 5, 0});
 }
 
+TEST_CASE("mesh file: faces that cannot be used are left out if asked for", "[ref][mesh_file]") {
+  const std::string text =
+      "v 0 0 0\nv 2 2 0\nv 2 1 0\nv 2 0 0\nv 0 2 0\nv nan 0 0\nf 1 2 3 4 5\nf 1 4 5\nf 1 2 99\nf 1 2 -99\nf 1 2 6\nf 1 "
+      "4 2\n";
+  CHECK_THROWS_WITH(cchip::parse_mesh(text, "t.obj"), Catch::Contains("t.obj:7: face 0: its sides 0 and 3 cross"));
+  cchip::LoadOptions options;
+  options.lenient = true;
+  const Mesh mesh = cchip::parse_mesh(text, "t.obj", options);
+  CHECK(mesh.file_face == std::vector<std::uint32_t>{1, 5});
+  REQUIRE(mesh.notes.size() == 5);
+  CHECK(mesh.notes[0].rfind("line 7: face 0: its sides 0 and 3 cross", 0) == 0);
+  CHECK(mesh.notes[1] == "line 9: face 2: vertex index 99 is out of range (the mesh has 6 vertices)");
+  CHECK(mesh.notes[2] == "line 10: face 3: vertex index -99 is out of range (the mesh has 6 vertices so far)");
+  CHECK(mesh.notes[3] == "line 6: vertex 5 is not finite, and face 4 uses it");
+  CHECK(mesh.notes[4] == "4 faces were left out because they cannot be used");
+  CHECK_THROWS_WITH(cchip::parse_mesh("v 0 0 0\nf 1 2 3\n", "t.obj", options),
+                    Catch::Contains("the file holds no faces"));
+  CHECK_THROWS_WITH(cchip::parse_mesh(text + "f 1 x 2\n", "t.obj", options), Catch::Contains("'x' is not a number"));
+}
+
+TEST_CASE("mesh file: packed files are named", "[ref][mesh_file]") {
+  CHECK_THROWS_WITH(cchip::parse_mesh("\x1f\x8b\x08 and so on", "t.obj.gz"),
+                    "t.obj.gz: is packed with gzip; unpack it first");
+  CHECK_THROWS_WITH(cchip::parse_mesh("PK\3\4 and so on", "t.obj"), Catch::Contains("packed with zip"));
+}
+
 TEST_CASE("mesh file: binary numbers of all types and both byte orders", "[ref][mesh_file]") {
   const TemporaryFolder folder;
   for (const bool big : {false, true}) {

@@ -39,12 +39,14 @@ struct PolygonSoup {
     std::size_t line;
   };
   std::map<std::size_t, Unusable> unusable;
+  /// What is wrong with the corners of polygons, by their number; only the first of many.
+  std::map<std::size_t, std::string> bad_polygons;
   std::vector<std::string> notes;  ///< what was left out
 
   /// A point that is not finite is unusable.
   void add_point(const Vec3d& point, std::size_t line);
-  /// \param index as the file counts
-  /// \throws FormatError it is no whole number, or leads to a number below 0 or beyond 32 bits
+  /// If the index leads to a number below 0 or beyond 32 bits, the polygon is bad. \param index as the file counts
+  /// \throws FormatError it is no whole number
   void add_corner(double index, std::size_t line);
   /// Index of the first vertex, as the file counts.
   std::uint64_t first_index() const { return counting == Counting::from_0 ? 0 : 1; }

@@ -21,6 +21,14 @@ enum class FaceKinds {
   triangles_and_quads
 };
 
+struct LoadOptions {
+  FaceKinds kinds = FaceKinds::triangles;
+  /// Faces that cannot be used are left out and not an error: with vertices that are not there or not finite, with
+  /// sides that cross. Mesh::notes names the first hundred, with their lines, and says how many there are. A file that
+  /// is truncated or no mesh is an error all the same, and so is one without any face that can be used.
+  bool lenient = false;
+};
+
 /// Reads a mesh in the file's order and unit: Wavefront OBJ, Geomview OFF (text), Stanford PLY (text, binary of both
 /// byte orders), STL (text, binary). The extension of the name decides the format, or else the beginning of the file.
 ///
@@ -39,8 +47,12 @@ enum class FaceKinds {
 /// \throws std::runtime_error one line: file, line number if it has one, what is wrong, what to do
 Mesh load_mesh(const std::string& path, FaceKinds kinds = FaceKinds::triangles);
 
+Mesh load_mesh(const std::string& path, const LoadOptions& options);
+
 /// The same for the content of a file. `name` stands for its path: its end says the format, and messages begin with it.
 Mesh parse_mesh(std::string_view file, const std::string& name, FaceKinds kinds = FaceKinds::triangles);
+
+Mesh parse_mesh(std::string_view file, const std::string& name, const LoadOptions& options);
 
 /// Red, green, blue.
 using Colour = std::array<std::uint8_t, 3>;
