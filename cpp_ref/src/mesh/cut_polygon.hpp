@@ -16,7 +16,7 @@ namespace cchip::outline {
 
 /// Most corners that cut_polygon() takes, and most points at which sides may touch: its memory is proportional to
 /// both, its time to the pairs of sides whose extents overlap along one axis.
-constexpr std::size_t most_corners = 65536;
+constexpr std::size_t most_corners = 16384;
 constexpr std::size_t most_touches = std::size_t{1} << 20;
 
 /// The order in which the corners of a face of four follow each other around the hull that it is; nothing if the

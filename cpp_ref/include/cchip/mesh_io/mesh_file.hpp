@@ -34,7 +34,7 @@ struct LoadOptions {
 ///
 /// Positions are doubles: the nearest one of each decimal number; binary STL and PLY's `float` hold single precision.
 /// Points, lines and curves are left out. Free-form surfaces, binary OFF and homogeneous coordinates are refused.
-/// Polygons of up to 65536 corners are cut into triangles, by the even-odd rule and exactly; sides that cross are an
+/// Polygons of up to 16384 corners are cut into triangles, by the even-odd rule and exactly; sides that cross are an
 /// error (docs/cpp/mesh_files.md).
 ///
 /// A truncated or damaged file is refused where this can be detected: counts must match, numbers must be whole words,
