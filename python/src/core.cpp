@@ -416,14 +416,14 @@ An object is the surface of the mesh, not the volume inside: one wholly inside a
 
 vertices: (n, 3) float64, x, y and z of each in any length unit.
 faces: (m, 3) for triangles or (m, 4) for quads, integers of any kind: numbers of vertices from 0. A quad is the hull
-of its four vertices.
+of its four vertices; one with a dent or a spike is cut into triangles, which are one face.
 
 Raises ValueError: another shape, faces that are not integers, a number beyond the vertices, no faces or more than
 2^24 - 2, a vertex that is not finite or beyond 2^1000.)")
       .def_static(
           "load", &load, "path"_a, "quads"_a = false,
           nb::sig("def load(path: str | os.PathLike[str], quads: bool = False) -> Object"),
-          R"(From a file: OBJ, OFF, PLY or STL. Polygons are cut into triangles, with quads=True all but convex quads;
+          R"(From a file: OBJ, OFF, PLY or STL. Polygons are cut into triangles, with quads=True all but quads without a dent;
 contacts have the numbers of the file's faces all the same.
 
 Raises OSError: the file cannot be opened. Raises ValueError: it is no mesh; the message has file, line and reason.)")

@@ -54,6 +54,7 @@ Mesh load_mesh_file(const std::string& path, const Streams& streams) {
       streams.err << fmt::format("cchip: {}: {} faces with more than four corners or a dent were cut into triangles\n",
                                  path, mesh.polygons_cut);
     }
+    for (const std::string& note : mesh.notes) streams.err << fmt::format("cchip: {}: {}\n", path, note);
     return mesh;
   } catch (const std::runtime_error& error) {
     throw UsageError(error.what());

@@ -408,10 +408,11 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
   check(obj("v 0 0\n"), ":1: word 4 of the line is missing");
   check(obj("v 0 0 1junk\n"), ":1: '1junk' is not a number");
   check(obj("v 0 0 1,5\n"), ":1: '1,5' has a decimal comma; write a decimal point", "");
-  check(obj("v 0 0 nan\n"), ":1: vertex 0 is not finite");
-  check(obj("v 0 0 -inf\n"), ":1: vertex 0 is not finite");
-  check(obj("v 0 0 1e400\n"), ":1: vertex 0 is not finite");
-  check(obj("v 0 0 0 2\n"), ":1: a weight other than 1 is not read");
+  const std::string fourth = three + "f 1 2 3\nv ";
+  check(obj(fourth + "0 0 nan\nf 1 2 4\n"), ":5: vertex 3 is not finite, and face 1 uses it");
+  check(obj(fourth + "0 0 -inf\nf 1 2 4\n"), ":5: vertex 3 is not finite, and face 1 uses it");
+  check(obj(fourth + "0 0 1e400\nf 1 2 4\n"), ":5: vertex 3 is not finite, and face 1 uses it");
+  check(obj(fourth + "0 0 0 2\nf 1 2 4\n"), ":5: vertex 3 has a weight other than 1, and face 1 uses it");
   check(obj(three + "surf 0 1 0 1\n"),
         ":4: the line is no statement of OBJ, or one of free-form surfaces, which are not read");
   const auto off = [&](const std::string& text) { return folder.write("t.off", text); };
@@ -425,11 +426,11 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
   check(off("OFF\n3 1 0\n" + square + "3 0 1 3\n"),
         ":6: face 0: vertex index 3 is out of range (the mesh has 3 vertices)");
   check(off("OFF\n3 1 0\n" + square + "3 0 1\n"), ":6: word 4 of the line is missing");
-  check(off("OFF\n3 1 0\n" + square + "2 0 1\n"), ":6: face 0 has fewer than three corners");
+  check(off("OFF\n3 1 0\n" + square + "2 0 1\n"), ": the file holds no faces");
   check(off("OFF\n3 2 0\n" + square + "3 0 1 2\n"), ":6: the file ends before face 1 of 2");
   check(off("OFF\n3 1 0\n" + square + "3 0 1 2\n3 0 1 2\n"),
         ":7: the file continues after the last face that it announces");
-  check(off("OFF\n3 1 0\n0 0 0\n1 nan 0\n"), ":4: vertex 1 is not finite");
+  check(off("OFF\n3 1 0\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"), ":4: vertex 1 is not finite, and face 0 uses it");
   const auto ply = [&](const std::string& text) { return folder.write("t.ply", text); };
   const std::string short_ply = "the file ends before the last value that the header announces";
   check(ply(ply_header("ascii", 3, 2) + square + "3 0 1 7\n3 0 1 2\n"),
@@ -450,12 +451,11 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
         ": the vertices need one property y");
   check(ply("ply\nformat ascii 1.0\nelement face 1\nproperty int x\nend_header\n1\n"),
         ": the faces need one list vertex_indices");
-  check(ply(ply_header("binary_little_endian", 1, 0) + to_bytes(0.0) + to_bytes(0.0) +
-            to_bytes(std::numeric_limits<double>::infinity())),
-        ": vertex 0 is not finite");
+  check(ply(ply_header("binary_little_endian", 1, 1) + to_bytes(0.0) + to_bytes(0.0) +
+            to_bytes(std::numeric_limits<double>::infinity()) + '\3' + std::string(12, '\0')),
+        ": vertex 0 is not finite, and face 0 uses it");
   const auto stl = [&](const std::string& text) { return folder.write("t.stl", text); };
   check(stl(binary_stl(3, 2)), ": the header announces 234 bytes, the file has 184");
-  check(stl(binary_stl(1, 2)), ": the header announces 134 bytes, the file has 184");
   check(stl("short"), ": the file ends within the header of a binary STL");
   check(stl("solid x\nfacet normal 0 0 1\n"), ":2: 'outer' is missing");
   check(stl("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendloop\n"), ":5: 'vertex' is missing");
@@ -549,6 +549,204 @@ TEST_CASE("mesh file: what the formats allow", "[ref][mesh_file]") {
   corners("two.stl", "solid a\nendsolid a\n\n  solid b\n" + stl + "endsolid\n");
   corners("dos.stl", with("solid a\n" + stl + "endsolid a\n", "\n", "\r\n"));
   corners("stl_without_end", "solid a\n" + stl + "endsolid a\n");
+}
+
+TEST_CASE("mesh file: line ends, byte order marks and padding mean nothing", "[ref][mesh_file]") {
+  const auto with_ends = [](const std::string& text, const std::vector<std::string>& ends) {
+    std::string result;
+    std::size_t line = 0;
+    for (const char c : text) result += c == '\n' ? ends[line++ % ends.size()] : std::string(1, c);
+    return result;
+  };
+  const std::string corner_lines = "0 0 1\n4 0 1\n0 4 1\n";
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"t.obj", "# made by hand\nv 0 0 1\n\nv 4 0 1\nv 0 4 1\nf 1 2\\\n3\n"},
+      {"t.off", "OFF # key\n3 1 0\n" + corner_lines + "3 0 1 2\n"},
+      {"t.ply", ply_header("ascii", 3, 1) + corner_lines + "3 0 1 2\n"},
+      {"binary.ply", ply_header("binary_little_endian", 3, 1)},
+      {"t.stl",
+       "solid a solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 4 0 1\nvertex 0 4 1\nendloop\n"
+       "endfacet\nendsolid of facets\n"}};
+  const std::string binary = binary_ply_of(ground, false).substr(ply_header("binary_little_endian", 3, 1).size());
+  for (const auto& [name, text] : files) {
+    for (const std::vector<std::string>& ends : std::vector<std::vector<std::string>>{
+             {"\n"}, {"\r\n"}, {"\r"}, {"\r", "\n"}, {"\n", "\r", "\r\n"}, {"\r\n", "\r"}}) {
+      for (const std::string mark : {"", "\xef\xbb\xbf"}) {
+        for (const std::string& padding :
+             {std::string(), std::string("\x1a"), std::string(500, '\0'), std::string("\r\n \x1a\0\0\n", 7)}) {
+          INFO(name << " " << ends.size() << " " << mark.size() << " " << padding.size());
+          const bool is_binary = name == "binary.ply";
+          if (is_binary && (ends.size() > 1 || !padding.empty())) continue;
+          const std::string content = mark + with_ends(text, ends) + (is_binary ? binary : padding);
+          const Mesh mesh = cchip::parse_mesh(content, name);
+          REQUIRE(mesh.faces.size() == 1);
+          for (std::size_t i = 0; i < 3; ++i) CHECK(mesh.primitive(0).v[i] == ground[i]);
+          if (name != "t.obj") CHECK(cchip::parse_mesh(content, "-").faces.size() == 1);  // by its first word
+        }
+      }
+    }
+  }
+  // The first byte of binary values is no end of a line that ends with CR.
+  std::string values = to_bytes(std::uint8_t{10}) + std::string(11, '\1');
+  const std::string header =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty uchar x\nproperty uchar y\n"
+      "property uchar z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
+  values += std::string("\3\0\1\2", 4);
+  CHECK(cchip::parse_mesh(with_ends(header, {"\r"}) + values, "t.ply").vertices[0] == Vec3d(10, 1, 1));
+  CHECK(cchip::parse_mesh(with_ends(header, {"\n"}) + values, "t.ply").vertices[0] == Vec3d(10, 1, 1));
+  // Lines are counted by any end.
+  try {
+    cchip::parse_mesh("v 0 0 0\rv 1 0 0\r\nv 0 1 0\n\rf 1 2 4\r", "t.obj");
+    FAIL("no error");
+  } catch (const std::runtime_error& error) {
+    CHECK(std::string(error.what()).rfind("t.obj:5: face 0: vertex index 4", 0) == 0);
+  }
+}
+
+TEST_CASE("mesh file: what other programs write, too", "[ref][mesh_file]") {
+  // Two triangles, one above the other; which vertex is where is checked for both.
+  const auto both = [](const std::string& name, const std::string& content) {
+    INFO(name << "\n" << content.substr(0, 300));
+    const Mesh mesh = cchip::parse_mesh(content, name);
+    REQUIRE(mesh.faces.size() == 2);
+    for (std::size_t face = 0; face < 2; ++face) {
+      const double z = face == 0 ? 0 : 2;
+      CHECK(mesh.primitive(face).v[0] == Vec3d(0, 0, z));
+      CHECK(mesh.primitive(face).v[1] == Vec3d(4, 0, z));
+      CHECK(mesh.primitive(face).v[2] == Vec3d(0, 4, z));
+    }
+    return mesh;
+  };
+  const std::vector<std::string> corners = {"0 0 0", "4 0 0", "0 4 0", "0 0 2", "4 0 2", "0 4 2"};
+  const auto vertices = [&](const std::string& before, const std::string& behind) {
+    std::string text;
+    for (const std::string& corner : corners) text += before + corner + behind;
+    return text;
+  };
+  const std::string faces = "3 0 1 2\n3 3 4 5\n";
+  // OFF
+  for (const std::string keyword :
+       {"OFF6 2 0\n", "OFF 6 2\n", "6 2 0\n", "OFF\n6\n2\n0\n", "OFF\n6 2\n0\n", "OFF 6\n2 0\n"}) {
+    both("t.off", keyword + vertices("", "\n") + faces);
+    both("t.off", keyword + vertices("", " ") + faces);
+    both("t.off", keyword + vertices("", " ") + "\n3 0 1 2 255 0 0\n3 3 4 5 0.5\n");
+    both("t.off", keyword + vertices("", "\n") + "3 0 1 2 3 3\n4 5\n");
+  }
+  both("t.off", "OFF\n6 2 0\n0 0 0 4 0 0\n0 4 0\n0 0 2\n4 0 2 0 4 2\n" + faces);
+  for (const std::string keyword :
+       {"COFF", "CNOFF", "NCOFF", "NOFF", "STOFF", "NSTOFF", "CSTOFF", "STCNOFF", "STNCOFF"}) {
+    std::string more;
+    if (keyword.find('N') != std::string::npos) more += " 0 0 1";
+    if (keyword.find('C') != std::string::npos) more += " 255 0 0 255";
+    if (keyword.find("ST") != std::string::npos) more += " 0.5 0.5";
+    both("t.off", keyword + "\n6 2 0\n" + vertices("", more + "\n") + faces);
+    both("t.off", keyword + "\n6 2 0\n" + vertices("", more + " ") + faces);
+    both("-", keyword + " 6 2 0\n" + vertices("", more + "\n") + faces);
+  }
+  // points and lines among the faces keep their numbers
+  const std::string with_lines = "2 0 1\n1 3\n3 0 1 2\n0\n3 3 4 5\n";
+  CHECK(both("t.off", "OFF 6 5 0\n" + vertices("", "\n") + with_lines).file_face == std::vector<std::uint32_t>{2, 4});
+  CHECK(both("t.ply", ply_header("ascii", 6, 5) + vertices("", "\n") + with_lines).file_face ==
+        std::vector<std::uint32_t>{2, 4});
+  // STL
+  const auto stl = [&](const std::string& normal, const std::string& loop, const std::string& facet,
+                       const std::string& solid) {
+    std::string text = "solid s\n";
+    for (std::size_t i = 0; i < 6; ++i) {
+      if (i % 3 == 0) text += "facet normal " + normal + "\nouter loop\n";
+      text += "vertex " + corners[i] + "\n";
+      if (i % 3 == 2) text += loop + "\n" + facet + "\n";
+    }
+    return text + solid + " s\n";
+  };
+  for (const std::string normal : {"0 0 1", "1.#QNAN -1.#IND 1.#INF", "nan -nan(ind) inf", "0,5 0 0"}) {
+    both("t.stl", stl(normal, "endloop", "endfacet", "endsolid"));
+    both("t.stl", stl(normal, "end loop", "end facet", "end solid"));
+    both("t.stl", stl(normal, "ENDLOOP", "End Facet", "END SOLID"));
+  }
+  for (const std::string header : {"made by hand", "solid of somebody", "solid\n"}) {
+    for (const std::string& behind :
+         {std::string(), std::string("xy"), std::string(50, '\1'), std::string(3000, '\0')}) {
+      std::string content =
+          header + std::string(80 - header.size(), header == "solid\n" ? ' ' : '\0') + to_bytes(std::uint32_t{2});
+      for (const float z : {0.F, 2.F}) {
+        for (const float x : {0.F, 0.F, 1.F, 0.F, 0.F, z, 4.F, 0.F, z, 0.F, 4.F, z}) content += to_bytes(x);
+        content += std::string(2, '\0');
+      }
+      both("t.stl", content + behind);
+    }
+  }
+  // OBJ
+  const std::string v = vertices("v ", "\n");
+  both("t.obj", v + "f 1 2\\\n3\nf 4\\\n5\\\n6\n");
+  const Mesh curves =
+      both("t.obj", v + "v 0 0 nan\nv 1 1 1 0.5\ncstype rat bspline\ndeg 3\ncurv 0 1 1 2 7 8\nparm u 0 0 1 1\n"
+                        "ctech cparm 1\nend\nf 1 2 3\nf 4 5 6\n");
+  REQUIRE(curves.notes.size() == 1);
+  CHECK(curves.notes[0] == "1 curves were left out, the first in line 11");
+  // a vertex that no face uses
+  const std::string unused = ply_header("ascii", 7, 2) + vertices("", "\n") + "nan inf 0\n" + faces;
+  CHECK(both("t.ply", unused).vertices[6] == Vec3d(0, 0, 0));
+  // PLY
+  const std::string integers =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty int64 x\nproperty int64 y\nproperty int64 z\n"
+      "element face 2\nproperty list uint64 int64 vertex_indices\nend_header\n";
+  both("t.ply", integers + vertices("", "\n") + faces);
+  for (const bool big : {false, true}) {
+    std::string content = integers;
+    content.replace(content.find("ascii"), 5, big ? "binary_big_endian" : "binary_little_endian");
+    for (const std::int64_t z : {0, 2}) {
+      for (const std::int64_t x : {std::int64_t{0}, std::int64_t{0}, z, std::int64_t{4}, std::int64_t{0}, z,
+                                   std::int64_t{0}, std::int64_t{4}, z}) {
+        content += to_bytes(x, big);
+      }
+    }
+    for (const std::int64_t first : {0, 3}) {
+      content += to_bytes(std::uint64_t{3}, big);
+      for (std::int64_t i = 0; i < 3; ++i) content += to_bytes(first + i, big);
+    }
+    both("t.ply", content);
+    std::string below = content;
+    below.replace(below.size() - 24, 8, to_bytes(std::int64_t{-3}, big));
+    CHECK_THROWS_WITH(cchip::parse_mesh(below, "t.ply"), Catch::Contains("vertex index -3 is out of range"));
+  }
+  const auto strips = [&](const std::string& text) {
+    return "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\nelement "
+           "tristrips 1\n"
+           "property list int int vertex_indices\nend_header\n" +
+           vertices("", "\n") + text;
+  };
+  both("t.ply", strips("7 0 1 2 -1 3 4 5\n"));
+  const Mesh strip = cchip::parse_mesh(strips("10 0 1 2 4 4 4 -1 1 3 5\n"), "t.ply");
+  REQUIRE(strip.faces.size() == 3);
+  CHECK(strip.faces[1].vertex == std::array<std::uint32_t, 4>{2, 1, 4, 0});
+  CHECK(strip.faces[2].vertex == std::array<std::uint32_t, 4>{1, 3, 5, 0});
+}
+
+TEST_CASE("mesh file: faces that cannot be used are left out if asked for", "[ref][mesh_file]") {
+  const std::string text =
+      "v 0 0 0\nv 2 2 0\nv 2 1 0\nv 2 0 0\nv 0 2 0\nv nan 0 0\nf 1 2 3 4 5\nf 1 4 5\nf 1 2 99\nf 1 2 -99\nf 1 2 6\nf 1 "
+      "4 2\n";
+  CHECK_THROWS_WITH(cchip::parse_mesh(text, "t.obj"), Catch::Contains("t.obj:7: face 0: its sides 0 and 3 cross"));
+  cchip::LoadOptions options;
+  options.lenient = true;
+  const Mesh mesh = cchip::parse_mesh(text, "t.obj", options);
+  CHECK(mesh.file_face == std::vector<std::uint32_t>{1, 5});
+  REQUIRE(mesh.notes.size() == 5);
+  CHECK(mesh.notes[0].rfind("line 7: face 0: its sides 0 and 3 cross", 0) == 0);
+  CHECK(mesh.notes[1] == "line 9: face 2: vertex index 99 is out of range (the mesh has 6 vertices)");
+  CHECK(mesh.notes[2] == "line 10: face 3: vertex index -99 is out of range (the mesh has 6 vertices so far)");
+  CHECK(mesh.notes[3] == "line 6: vertex 5 is not finite, and face 4 uses it");
+  CHECK(mesh.notes[4] == "4 faces were left out because they cannot be used");
+  CHECK_THROWS_WITH(cchip::parse_mesh("v 0 0 0\nf 1 2 3\n", "t.obj", options),
+                    Catch::Contains("the file holds no faces"));
+  CHECK_THROWS_WITH(cchip::parse_mesh(text + "f 1 x 2\n", "t.obj", options), Catch::Contains("'x' is not a number"));
+}
+
+TEST_CASE("mesh file: packed files are named", "[ref][mesh_file]") {
+  CHECK_THROWS_WITH(cchip::parse_mesh("\x1f\x8b\x08 and so on", "t.obj.gz"),
+                    "t.obj.gz: is packed with gzip; unpack it first");
+  CHECK_THROWS_WITH(cchip::parse_mesh("PK\3\4 and so on", "t.obj"), Catch::Contains("packed with zip"));
 }
 
 TEST_CASE("mesh file: binary numbers of all types and both byte orders", "[ref][mesh_file]") {
@@ -702,13 +900,6 @@ TEST_CASE("mesh file: odd polygons", "[ref][mesh_file]") {
   CHECK(dent.faces.size() == 3);
   CHECK_FALSE(covers(dent, 2, 4 - e / 2));
   CHECK(covers(dent, 2, 4 - e));
-  // more corners than the cutter accepts
-  std::vector<Vec3d> many;
-  for (int i = 0; i < 1025; ++i) many.emplace_back(std::cos(i * 0.006), std::sin(i * 0.006), 0);
-  CHECK(message_of(folder.write("t.obj", polygon_obj(many))).find("face 0 has more than 1024 corners") !=
-        std::string::npos);
-  many.pop_back();
-  CHECK(load(many).faces.size() == 1022);
 }
 
 TEST_CASE("mesh file: a written PLY holds the same faces and their colours", "[ref][mesh_file]") {

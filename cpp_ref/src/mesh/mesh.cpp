@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cchip/mesh/mesh.hpp>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
+
+#include "mesh/cut_polygon.hpp"
 
 namespace cchip {
 namespace {
@@ -63,6 +66,25 @@ class Sweep {
   std::size_t next_ = 0;
 };
 
+/// Adds row `number` of an array; a quad with a dent becomes triangles.
+void add_row(Mesh& mesh, const Mesh::Face& face, std::uint32_t number) {
+  std::array<Vec3d, 4> quad;
+  for (std::size_t k = 0; k < 4; ++k) quad[k] = mesh.vertices[face.vertex[k]];
+  const auto is_finite = [](const Vec3d& v) { return v.allFinite(); };  // Object refuses others
+  if (face.kind != Kind::quad || !std::all_of(quad.begin(), quad.end(), is_finite) || outline::hull_order(quad)) {
+    mesh.faces.push_back(face);
+    mesh.file_face.push_back(number);
+    return;
+  }
+  ++mesh.polygons_cut;
+  for (const auto& triangle : outline::cut_polygon({quad.begin(), quad.end()}).triangles) {
+    Mesh::Face part;
+    for (std::size_t k = 0; k < 3; ++k) part.vertex[k] = face.vertex[triangle[k]];
+    mesh.faces.push_back(part);
+    mesh.file_face.push_back(number);
+  }
+}
+
 }  // namespace
 
 Primitive Mesh::primitive(std::size_t face) const {
@@ -108,7 +130,7 @@ Mesh make_mesh(const Eigen::Ref<const Eigen::MatrixXd>& vertices, const FaceMatr
   for (Eigen::Index i = 0; i < vertices.rows(); ++i) mesh.vertices.emplace_back(vertices.row(i).transpose());
   mesh.faces.reserve(static_cast<std::size_t>(faces.rows()));
   for (Eigen::Index i = 0; i < faces.rows(); ++i) {
-    Mesh::Face& face = mesh.faces.emplace_back();
+    Mesh::Face face;
     face.kind = faces.cols() == 4 ? Kind::quad : Kind::tri;
     for (Eigen::Index k = 0; k < faces.cols(); ++k) {
       if (faces(i, k) < 0 || faces(i, k) >= vertices.rows()) {
@@ -118,7 +140,9 @@ Mesh make_mesh(const Eigen::Ref<const Eigen::MatrixXd>& vertices, const FaceMatr
       }
       face.vertex[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(faces(i, k));
     }
+    add_row(mesh, face, static_cast<std::uint32_t>(i));
   }
+  if (mesh.polygons_cut == 0) mesh.file_face.clear();
   return mesh;
 }
 

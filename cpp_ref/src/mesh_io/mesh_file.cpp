@@ -7,9 +7,11 @@
 #include <limits>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
-#include "cut_polygon.hpp"
+#include "mesh/cut_polygon.hpp"
 #include "polygon_soup.hpp"
+#include "text.hpp"
 
 namespace cchip {
 namespace {
@@ -60,7 +62,7 @@ const Format* format_shown_by(std::string_view file) {
   const std::string_view word = file.substr(0, file.find_first_of(" \t\r\n"));
   if (word == "ply") return &ply;
   if (word == "solid") return &stl;
-  if (word.size() >= 3 && word.substr(word.size() - 3) == "OFF") return &off;
+  if (mesh_io::is_off_keyword(word)) return &off;
   return nullptr;
 }
 
@@ -76,6 +78,22 @@ Reader reader_of(const std::string& path, std::string_view file) {
   return shown == nullptr ? nullptr : shown->reader;
 }
 
+/// The program that packed a file, by its first bytes; none of them is text.
+const char* packer_of(std::string_view file) {
+  using namespace std::string_view_literals;
+  constexpr std::pair<std::string_view, const char*> packers[] = {{"\x1f\x8b"sv, "gzip"},
+                                                                  {"PK\3\4"sv, "zip"},
+                                                                  {"BZh"sv, "bzip2"},
+                                                                  {"\xfd"
+                                                                   "7zXZ\0"sv,
+                                                                   "xz"},
+                                                                  {"\x28\xb5\x2f\xfd"sv, "zstd"}};
+  for (const auto& [begin, name] : packers) {
+    if (!mesh_io::is_binary_stl(file) && file.substr(0, begin.size()) == begin) return name;
+  }
+  return nullptr;
+}
+
 /// What to do about an error.
 std::string remedy(const FormatError& error, Reader reader, std::string_view file) {
   const Format* shown = format_shown_by(file);
@@ -89,7 +107,7 @@ std::string remedy(const FormatError& error, Reader reader, std::string_view fil
 /// Adds the polygons of a file to a mesh one by one.
 class Builder {
  public:
-  Builder(PolygonSoup soup, FaceKinds kinds) : soup_(std::move(soup)), kinds_(kinds) {}
+  Builder(PolygonSoup soup, const LoadOptions& options) : soup_(std::move(soup)), options_(options) {}
 
   Mesh build() {
     if (std::max(soup_.points.size(), soup_.polygons.size()) > std::numeric_limits<std::uint32_t>::max()) {
@@ -100,55 +118,73 @@ class Builder {
       const auto corners = soup_.corners.begin();
       polygon_.assign(corners + static_cast<std::ptrdiff_t>(begin),
                       corners + static_cast<std::ptrdiff_t>(soup_.polygons[i].end));
-      add_polygon(i);
+      try {
+        add_polygon(i);
+      } catch (const FormatError& error) {
+        if (!options_.lenient) throw;
+        leave_out(error);
+      }
       begin = soup_.polygons[i].end;
     }
+    if (faces_left_out_ > 0) {
+      soup_.notes.push_back(std::to_string(faces_left_out_) + " faces were left out because they cannot be used");
+    }
     if (mesh_.faces.empty()) throw FormatError("the file holds no faces");
-    if (mesh_.polygons_cut == 0) mesh_.file_face.clear();
+    if (mesh_.polygons_cut == 0 && !left_out_) mesh_.file_face.clear();
     mesh_.vertices = std::move(soup_.points);
+    for (const auto& [point, why] : soup_.unusable) {
+      if (!mesh_.vertices[point].allFinite()) mesh_.vertices[point].setZero();  // no face uses it
+    }
+    mesh_.notes = std::move(soup_.notes);
     return std::move(mesh_);
   }
 
  private:
   void add_polygon(std::size_t number) {
+    const auto bad = soup_.bad_polygons.find(number);
+    if (bad != soup_.bad_polygons.end()) throw FormatError(bad->second, soup_.polygons[number].line);
     for (const std::uint32_t corner : polygon_) {
       if (corner < soup_.points.size()) continue;
       refuse(number, ": vertex index " + std::to_string(corner + soup_.first_index()) +
                          " is out of range (the mesh has " + std::to_string(soup_.points.size()) + " vertices)");
     }
-    if (polygon_.size() == 3) return add_face(number, Kind::tri, {0, 1, 2, 0});
-    const bool convex_quad = polygon_.size() == 4 && mesh_io::is_convex_quad({point(0), point(1), point(2), point(3)});
-    if (convex_quad && kinds_ == FaceKinds::triangles_and_quads) return add_face(number, Kind::quad, {0, 1, 2, 3});
-    ++mesh_.polygons_cut;
-    if (convex_quad) {
-      add_face(number, Kind::tri, {0, 1, 2, 0});
-      add_face(number, Kind::tri, {0, 2, 3, 0});
-    } else {
-      cut(number);
+    if (polygon_.size() < 3) {
+      left_out_ = true;
+      return;
+    }
+    outline_.clear();
+    for (const std::uint32_t corner : polygon_) {
+      if (!soup_.unusable.empty()) check_usable(number, corner);
+      outline_.push_back(soup_.points[corner]);
+    }
+    const outline::Faces made = outline::faces_of(outline_, options_.kinds == FaceKinds::triangles_and_quads);
+    if (!made.error.empty()) refuse(number, made.error);
+    mesh_.polygons_cut += made.cut;
+    for (const outline::Faces::Face& from : made.faces) {
+      Mesh::Face face;
+      face.kind = from.kind;
+      const std::size_t count = from.kind == Kind::quad ? 4 : 3;
+      for (std::size_t i = 0; i < count; ++i) face.vertex[i] = polygon_[from.corner[i]];
+      mesh_.faces.push_back(face);
+      mesh_.file_face.push_back(static_cast<std::uint32_t>(number));
     }
   }
 
-  void cut(std::size_t number) {
-    if (polygon_.size() > mesh_io::most_corners) {
-      refuse(number, " has more than " + std::to_string(mesh_io::most_corners) + " corners");
-    }
-    std::vector<Vec3d> points;
-    for (std::size_t i = 0; i < polygon_.size(); ++i) points.push_back(point(i));
-    const auto triangles = mesh_io::cut_polygon(points);
-    if (triangles.empty()) refuse(number, " crosses itself");
-    for (const auto& t : triangles) add_face(number, Kind::tri, {t[0], t[1], t[2], 0});
+  /// Notes why a face cannot be used: the first ones one by one, all by their number.
+  void leave_out(const FormatError& error) {
+    constexpr std::size_t most_notes = 100;
+    left_out_ = true;
+    if (++faces_left_out_ > most_notes) return;
+    const std::string line = error.line == 0 ? "" : "line " + std::to_string(error.line) + ": ";
+    soup_.notes.push_back(line + error.what());
   }
 
-  const Vec3d& point(std::size_t corner) const { return soup_.points[polygon_[corner]]; }
-
-  /// A face of corners of the polygon. Unused ones must be 0.
-  void add_face(std::size_t number, Kind kind, const std::array<std::size_t, 4>& corners) {
-    Mesh::Face face;
-    face.kind = kind;
-    const std::size_t count = kind == Kind::quad ? 4 : 3;
-    for (std::size_t i = 0; i < count; ++i) face.vertex[i] = polygon_[corners[i]];
-    mesh_.faces.push_back(face);
-    mesh_.file_face.push_back(static_cast<std::uint32_t>(number));
+  void check_usable(std::size_t number, std::uint32_t corner) const {
+    const auto found = soup_.unusable.find(corner);
+    if (found == soup_.unusable.end()) return;
+    throw FormatError("vertex " + std::to_string(corner) + " " + found->second.what + ", and face " +
+                          std::to_string(number) + " uses it",
+                      found->second.line);
   }
 
   [[noreturn]] void refuse(std::size_t number, const std::string& what) const {
@@ -156,22 +192,37 @@ class Builder {
   }
 
   PolygonSoup soup_;
-  FaceKinds kinds_;
+  LoadOptions options_;
   std::vector<std::uint32_t> polygon_;  ///< the present one
+  std::vector<Vec3d> outline_;          ///< its corners
+  bool left_out_ = false;               ///< some polygons are no faces
+  std::size_t faces_left_out_ = 0;      ///< because they cannot be used
   Mesh mesh_;
 };
 
 }  // namespace
 
-Mesh load_mesh(const std::string& path, FaceKinds kinds) { return parse_mesh(read_file(path), path, kinds); }
+Mesh load_mesh(const std::string& path, FaceKinds kinds) { return load_mesh(path, LoadOptions{kinds, false}); }
 
-Mesh parse_mesh(std::string_view file, const std::string& path, FaceKinds kinds) {
+Mesh load_mesh(const std::string& path, const LoadOptions& options) {
+  return parse_mesh(read_file(path), path, options);
+}
+
+Mesh parse_mesh(std::string_view file, const std::string& name, FaceKinds kinds) {
+  return parse_mesh(file, name, LoadOptions{kinds, false});
+}
+
+Mesh parse_mesh(std::string_view content, const std::string& path, const LoadOptions& options) {
+  const std::string_view file = mesh_io::is_binary_stl(content) ? content : mesh_io::without_mark(content);
+  if (const char* const packer = packer_of(file)) {
+    throw std::runtime_error(path + ": is packed with " + packer + "; unpack it first");
+  }
   const Reader reader = reader_of(path, file);
   if (reader == nullptr) {
     throw std::runtime_error(path + ": cannot be read as a mesh; give an OBJ, OFF, PLY or STL file");
   }
   try {
-    Mesh mesh = Builder(reader(file), kinds).build();
+    Mesh mesh = Builder(reader(file), options).build();
     mesh.name = path;
     return mesh;
   } catch (const FormatError& error) {

@@ -17,7 +17,7 @@ std::string to_text(double value) {
 }  // namespace
 
 void PolygonSoup::add_point(const Vec3d& point, std::size_t line) {
-  if (!point.allFinite()) throw FormatError("vertex " + std::to_string(points.size()) + " is not finite", line);
+  if (!point.allFinite()) unusable[points.size()] = {"is not finite", line};
   points.push_back(point);
 }
 
@@ -31,16 +31,13 @@ void PolygonSoup::add_corner(double index, std::size_t line) {
   }
   const std::string what = "face " + std::to_string(polygons.size()) + ": vertex index " + to_text(index);
   if (!whole) throw FormatError(what + " is not a whole number", line);
-  throw FormatError(what + " is out of range (the mesh has " + std::to_string(points.size()) + " vertices so far)",
-                    line);
+  corners.push_back(std::numeric_limits<std::uint32_t>::max());  // no mesh has so many vertices
+  constexpr std::size_t most_bad = 1000;
+  if (bad_polygons.size() == most_bad) return;
+  bad_polygons.emplace(polygons.size(),
+                       what + " is out of range (the mesh has " + std::to_string(points.size()) + " vertices so far)");
 }
 
-void PolygonSoup::end_polygon(std::size_t line) {
-  const std::size_t begin = polygons.empty() ? 0 : polygons.back().end;
-  if (corners.size() - begin < 3) {
-    throw FormatError("face " + std::to_string(polygons.size()) + " has fewer than three corners", line);
-  }
-  polygons.push_back({corners.size(), line});
-}
+void PolygonSoup::end_polygon(std::size_t line) { polygons.push_back({corners.size(), line}); }
 
 }  // namespace cchip::mesh_io

@@ -7,6 +7,7 @@
 #include <cchip/geometry/primitive.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -32,16 +33,25 @@ struct PolygonSoup {
     std::size_t line;  ///< of the file; 0: binary file
   };
   std::vector<Polygon> polygons;
+  /// Points that no face may use: what is wrong with them, and where.
+  struct Unusable {
+    std::string what;
+    std::size_t line;
+  };
+  std::map<std::size_t, Unusable> unusable;
+  /// What is wrong with the corners of polygons, by their number; only the first of many.
+  std::map<std::size_t, std::string> bad_polygons;
+  std::vector<std::string> notes;  ///< what was left out
 
-  /// \throws FormatError a coordinate is not finite
+  /// A point that is not finite is unusable.
   void add_point(const Vec3d& point, std::size_t line);
-  /// \param index as the file counts
-  /// \throws FormatError it is no whole number, or leads to a number below 0 or beyond 32 bits
+  /// If the index leads to a number below 0 or beyond 32 bits, the polygon is bad. \param index as the file counts
+  /// \throws FormatError it is no whole number
   void add_corner(double index, std::size_t line);
   /// Index of the first vertex, as the file counts.
   std::uint64_t first_index() const { return counting == Counting::from_0 ? 0 : 1; }
-  /// Makes one polygon of the corners since the last polygon.
-  /// \throws FormatError there are fewer than three
+  /// Makes one polygon of the corners since the last polygon. With fewer than three it is a point or a line, which is
+  /// no face but keeps its number.
   void end_polygon(std::size_t line);
 };
 
@@ -53,6 +63,9 @@ PolygonSoup read_obj(std::string_view file);
 PolygonSoup read_off(std::string_view file);
 PolygonSoup read_ply(std::string_view file);
 PolygonSoup read_stl(std::string_view file);
+
+/// True for OFF with any of its prefixes, and if the first count follows without a blank.
+bool is_off_keyword(std::string_view word);
 
 /// True if the header of a binary STL would announce the size of this file.
 bool is_binary_stl(std::string_view file);

@@ -9,7 +9,11 @@
 namespace cchip::mesh_io {
 namespace {
 
-/// Statements that add no face: texture, normals, names, materials, display, points and lines.
+/// Curves; their points are vertices that no face uses.
+constexpr std::array<std::string_view, 14> of_curves = {"cstype", "deg",  "bmat", "step", "curv",  "curv2", "parm",
+                                                        "trim",   "hole", "scrv", "sp",   "ctech", "stech", "con"};
+
+/// Other statements that add no face: texture, normals, names, materials, display, points and lines.
 constexpr std::array<std::string_view, 20> without_faces = {
     "vt",     "vn",     "vp",     "g",        "o",        "s",     "mg",  "l",          "p",         "usemtl",
     "mtllib", "usemap", "maplib", "c_interp", "d_interp", "bevel", "lod", "shadow_obj", "trace_obj", "end"};
@@ -17,9 +21,10 @@ constexpr std::array<std::string_view, 20> without_faces = {
 void add_point(const Lines& lines, PolygonSoup& soup) {
   const std::size_t numbers = lines.words().size() - 1;
   // a fourth number alone is a weight, which only free-form surfaces have; with more behind it they are colours
-  if (numbers == 4 && lines.to_number(4) != 1) throw FormatError("a weight other than 1 is not read", lines.number());
+  const bool weighted = numbers == 4 && lines.to_number(4) != 1;
   for (std::size_t i = 1; i <= numbers; ++i) lines.to_number(i);
   soup.add_point({lines.to_number(1), lines.to_number(2), lines.to_number(3)}, lines.number());
+  if (weighted) soup.unusable[soup.points.size() - 1] = {"has a weight other than 1", lines.number()};
 }
 
 /// The vertex index of "v", "v/vt", "v//vn" or "v/vt/vn".
@@ -40,6 +45,8 @@ PolygonSoup read_obj(std::string_view file) {
   PolygonSoup soup;
   soup.counting = PolygonSoup::Counting::from_1_or_back;
   Lines lines(file, {true, true});
+  std::size_t curves = 0;
+  std::size_t first_curve = 0;
   while (lines.next()) {
     const std::string_view statement = lines.words()[0];
     if (statement == "v") {
@@ -48,11 +55,22 @@ PolygonSoup read_obj(std::string_view file) {
       for (std::size_t i = 1; i < lines.words().size(); ++i) {
         soup.add_corner(vertex_of(lines.words()[i], lines), lines.number());
       }
+      if (lines.words().size() < 4) {
+        throw FormatError("face " + std::to_string(soup.polygons.size()) + " has fewer than three corners",
+                          lines.number());
+      }
       soup.end_polygon(lines.number());
+    } else if (std::find(of_curves.begin(), of_curves.end(), statement) != of_curves.end()) {
+      const bool is_curve = statement == "curv" || statement == "curv2";
+      if (is_curve && curves++ == 0) first_curve = lines.number();
     } else if (std::find(without_faces.begin(), without_faces.end(), statement) == without_faces.end()) {
       throw FormatError("the line is no statement of OBJ, or one of free-form surfaces, which are not read",
                         lines.number());
     }
+  }
+  if (curves > 0) {
+    soup.notes.push_back(std::to_string(curves) + " curves were left out, the first in line " +
+                         std::to_string(first_curve));
   }
   return soup;
 }

@@ -20,14 +20,16 @@ struct Type {
   enum class Is { signed_integer, unsigned_integer, floating } is;
 };
 
-constexpr std::array<Type, 8> types = {{{"char", "int8", 1, Type::Is::signed_integer},
-                                        {"uchar", "uint8", 1, Type::Is::unsigned_integer},
-                                        {"short", "int16", 2, Type::Is::signed_integer},
-                                        {"ushort", "uint16", 2, Type::Is::unsigned_integer},
-                                        {"int", "int32", 4, Type::Is::signed_integer},
-                                        {"uint", "uint32", 4, Type::Is::unsigned_integer},
-                                        {"float", "float32", 4, Type::Is::floating},
-                                        {"double", "float64", 8, Type::Is::floating}}};
+constexpr std::array<Type, 10> types = {{{"char", "int8", 1, Type::Is::signed_integer},
+                                         {"uchar", "uint8", 1, Type::Is::unsigned_integer},
+                                         {"short", "int16", 2, Type::Is::signed_integer},
+                                         {"ushort", "uint16", 2, Type::Is::unsigned_integer},
+                                         {"int", "int32", 4, Type::Is::signed_integer},
+                                         {"uint", "uint32", 4, Type::Is::unsigned_integer},
+                                         {"int64", "longlong", 8, Type::Is::signed_integer},
+                                         {"uint64", "ulonglong", 8, Type::Is::unsigned_integer},
+                                         {"float", "float32", 4, Type::Is::floating},
+                                         {"double", "float64", 8, Type::Is::floating}}};
 
 struct Property {
   std::string name;
@@ -73,19 +75,18 @@ Property to_property(const std::vector<std::string_view>& words, std::size_t lin
   throw FormatError("the property is not complete", line);
 }
 
-/// Takes one line off the front of the file; the last one need not end with a line break.
-std::string_view take_line(std::string_view& file) {
-  const std::string_view line = file.substr(0, file.find('\n'));
-  file.remove_prefix(std::min(line.size() + 1, file.size()));
-  return line;
-}
-
 /// Takes the header off the front of the file.
 Header take_header(std::string_view& file) {
   Header header;
   bool has_format = false;
+  const auto first_end = std::min(file.find_first_of("\r\n"), file.size());
+  const bool ends_with_cr = file.substr(first_end, 1) == "\r" && file.substr(first_end, 2) != "\r\n";
   while (!file.empty()) {
-    Lines line(take_line(file), {});
+    const std::string_view rest = file;
+    const std::string_view text = take_line(file);
+    // Where lines end with CR alone, an LF behind the last one is the first byte of binary values.
+    if (ends_with_cr) file = rest.substr(std::min(text.size() + 1, rest.size()));
+    Lines line(text, {});
     ++header.lines;
     const bool empty = !line.next();
     const auto& words = line.words();
@@ -159,6 +160,10 @@ class BinaryValues : public Values {
     if (type.is == Type::Is::floating) {
       return type.bytes == 8 ? to_float<double>(bits) : to_float<float>(static_cast<std::uint32_t>(bits));
     }
+    if (type.bytes == 8) {  // the nearest double
+      return type.is == Type::Is::signed_integer ? static_cast<double>(static_cast<std::int64_t>(bits))
+                                                 : static_cast<double>(bits);
+    }
     const double range = std::ldexp(1.0, static_cast<int>(8 * type.bytes));
     const auto value = static_cast<double>(bits);  // exact, at most 32 bits
     return type.is == Type::Is::signed_integer && value >= range / 2 ? value - range : value;
@@ -203,6 +208,27 @@ void read_face(const Element& element, Values& values, PolygonSoup& soup) {
   soup.end_polygon(values.line());
 }
 
+/// Strips of triangles, with -1 between them. Triangles with two equal corners only lead from one strip to the next.
+void read_strips(const Element& element, Values& values, PolygonSoup& soup) {
+  std::array<double, 2> last{};
+  std::size_t length = 0;  // of the present strip
+  read_item(element, values, [&](const Property& property, double value) {
+    if (!is_corners(property)) return;
+    if (value == -1) {
+      length = 0;
+      return;
+    }
+    if (++length > 2 && last[0] != last[1] && last[1] != value && last[0] != value) {
+      const bool turned = length % 2 == 0;
+      for (const double corner : {last[turned ? 1 : 0], last[turned ? 0 : 1], value}) {
+        soup.add_corner(corner, values.line());
+      }
+      soup.end_polygon(values.line());
+    }
+    last = {last[1], value};
+  });
+}
+
 void require_properties(const Element& element) {
   const auto count_if = [&](auto is) {
     return std::count_if(element.properties.begin(), element.properties.end(), is);
@@ -219,7 +245,9 @@ void require_properties(const Element& element) {
   if (element.name == "face" && count_if(is_corners) != 1) {
     throw FormatError("the faces need one list vertex_indices");
   }
-  if (element.name == "tristrips" && element.items > 0) throw FormatError("strips of triangles are not read");
+  if (element.name == "tristrips" && count_if(is_corners) != 1) {
+    throw FormatError("the strips of triangles need one list vertex_indices");
+  }
 }
 
 }  // namespace
@@ -240,6 +268,8 @@ PolygonSoup read_ply(std::string_view file) {
         read_vertex(element, *values, soup);
       } else if (element.name == "face") {
         read_face(element, *values, soup);
+      } else if (element.name == "tristrips") {
+        read_strips(element, *values, soup);
       } else {
         read_item(element, *values, [](const Property&, double) {});
       }

@@ -40,11 +40,12 @@ void add_triangle(PolygonSoup& soup, const std::array<Vec3d, 3>& vertices, std::
 
 PolygonSoup read_binary(std::string_view file) {
   if (file.size() < header_bytes) throw FormatError("the file ends within the header of a binary STL");
-  if (bytes_announced(file) != file.size()) {
+  if (bytes_announced(file) > file.size()) {
     throw FormatError("the header announces " + std::to_string(bytes_announced(file)) + " bytes, the file has " +
                       std::to_string(file.size()));
   }
   PolygonSoup soup;
+  file = file.substr(0, bytes_announced(file));  // some programs write colours or other data behind the triangles
   for (file.remove_prefix(header_bytes); !file.empty(); file.remove_prefix(triangle_bytes)) {
     std::array<Vec3d, 3> vertices;
     for (std::size_t i = 0; i < 9; ++i) {
@@ -67,6 +68,18 @@ void require(Words& words, std::string_view keyword) {
   }
 }
 
+/// "endloop" or "end loop".
+bool is_end(Words& words, std::string_view word, std::string_view what) {
+  if (is_keyword(word, "end")) return is_keyword(words.next(), what);
+  return is_keyword(word.substr(0, 3), "end") && is_keyword(word.substr(std::min<std::size_t>(3, word.size())), what);
+}
+
+void require_end(Words& words, std::string_view what) {
+  if (!is_end(words, words.next(), what)) {
+    throw FormatError("'end" + std::string(what) + "' is missing", words.line());
+  }
+}
+
 double require_number(Words& words) {
   const std::string_view word = words.next();
   if (word.empty()) throw FormatError("the file ends where a number must follow", words.line());
@@ -76,7 +89,7 @@ double require_number(Words& words) {
 /// A facet, its first word read.
 void read_facet(Words& words, PolygonSoup& soup) {
   require(words, "normal");
-  for (int i = 0; i < 3; ++i) require_number(words);
+  for (int i = 0; i < 3; ++i) words.next();  // the normal is not used, and often is no number
   require(words, "outer");
   require(words, "loop");
   std::array<Vec3d, 3> vertices;
@@ -85,8 +98,8 @@ void read_facet(Words& words, PolygonSoup& soup) {
     for (Eigen::Index i = 0; i < 3; ++i) vertex[i] = require_number(words);
   }
   add_triangle(soup, vertices, words.line());
-  require(words, "endloop");
-  require(words, "endfacet");
+  require_end(words, "loop");
+  require_end(words, "facet");
 }
 
 PolygonSoup read_text(std::string_view file) {
@@ -96,7 +109,7 @@ PolygonSoup read_text(std::string_view file) {
     if (!is_keyword(word, "solid")) throw FormatError("'solid' is missing", words.line());
     words.skip_line();
     for (word = words.next(); is_keyword(word, "facet"); word = words.next()) read_facet(words, soup);
-    if (!is_keyword(word, "endsolid")) throw FormatError("'facet' or 'endsolid' is missing", words.line());
+    if (!is_end(words, word, "solid")) throw FormatError("'facet' or 'endsolid' is missing", words.line());
     words.skip_line();
   }
   return soup;
@@ -110,7 +123,13 @@ bool is_binary_stl(std::string_view file) {
 
 PolygonSoup read_stl(std::string_view file) {
   const auto first = std::min(file.find_first_not_of(" \t\r\n"), file.size());
-  return !is_binary_stl(file) && is_keyword(file.substr(first, 5), "solid") ? read_text(file) : read_binary(file);
+  if (is_binary_stl(file) || !is_keyword(file.substr(first, 5), "solid")) return read_binary(file);
+  // Many binary files begin with "solid", too. Text holds no NUL bytes, and the header of one with triangles would have
+  // to announce more bytes than there are.
+  const bool has_room =
+      file.size() > header_bytes && bytes_announced(file) > header_bytes && bytes_announced(file) <= file.size();
+  const bool has_nul = file.substr(0, header_bytes + triangle_bytes).find('\0') != std::string_view::npos;
+  return has_room && has_nul ? read_binary(file) : read_text(file);
 }
 
 }  // namespace cchip::mesh_io

@@ -11,7 +11,7 @@
 namespace cchip::mesh_io {
 namespace {
 
-constexpr std::string_view blanks = " \t\r\f\v";
+constexpr std::string_view blanks = " \t\f\v";
 
 void append_words(std::string_view line, std::vector<std::string_view>& words) {
   for (auto begin = line.find_first_not_of(blanks); begin != std::string_view::npos;) {
@@ -30,19 +30,36 @@ std::string quoted(std::string_view word) {
 
 }  // namespace
 
+std::string_view without_mark(std::string_view file) {
+  constexpr std::string_view mark = "\xef\xbb\xbf";
+  return file.substr(0, mark.size()) == mark ? file.substr(mark.size()) : file;
+}
+
+std::string_view without_padding(std::string_view text) {
+  using namespace std::string_view_literals;
+  return text.substr(0, text.find_last_not_of(" \t\f\v\r\n\0\x1a"sv) + 1);  // + 1 makes 0 of npos
+}
+
+std::string_view take_line(std::string_view& text) {
+  std::size_t end = 0;
+  while (end < text.size() && text[end] != '\n' && text[end] != '\r') ++end;
+  const std::string_view line = text.substr(0, end);
+  const std::size_t line_end = text.substr(end, 2) == "\r\n" ? 2 : 1;
+  text.remove_prefix(std::min(end + line_end, text.size()));
+  return line;
+}
+
 bool Lines::next() {
   words_.clear();
   bool continued = false;
   while (!text_.empty() && (words_.empty() || continued)) {
-    const auto end = std::min(text_.find('\n'), text_.size());
-    std::string_view line = text_.substr(0, end);
-    text_.remove_prefix(std::min(end + 1, text_.size()));
+    std::string_view line = take_line(text_);
     ++last_;
     if (words_.empty()) first_ = last_;
     if (rules_.comments) line = line.substr(0, line.find('#'));
-    append_words(line, words_);
-    continued = rules_.continuation && !words_.empty() && words_.back() == "\\";
-    if (continued) words_.pop_back();
+    const auto last = line.find_last_not_of(blanks);
+    continued = rules_.continuation && last != std::string_view::npos && line[last] == '\\';
+    append_words(continued ? line.substr(0, last) : line, words_);
   }
   return !words_.empty();
 }

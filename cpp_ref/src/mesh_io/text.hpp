@@ -11,14 +11,23 @@
 
 namespace cchip::mesh_io {
 
-/// Lines of a text, cut into words. Blank lines are skipped; a carriage return counts as a blank.
+/// The file without a UTF-8 byte order mark.
+std::string_view without_mark(std::string_view file);
+
+/// The text without what editors and downloads leave behind its end: blanks, line ends, NUL and Ctrl-Z.
+std::string_view without_padding(std::string_view text);
+
+/// Takes a line off the front of a text that is not empty, and its end: LF, CR LF or CR. The last line needs none.
+std::string_view take_line(std::string_view& text);
+
+/// Lines of a text, cut into words. Blank lines are skipped. Padding behind the text is none of it.
 class Lines {
  public:
   struct Rules {
     bool comments = false;      ///< '#' and what follows it is no part of the line
-    bool continuation = false;  ///< the word '\' at the end of a line joins the next line to it
+    bool continuation = false;  ///< '\' at the end of a line joins the next line to it, as another word
   };
-  Lines(std::string_view text, Rules rules) : text_(text), rules_(rules) {}
+  Lines(std::string_view text, Rules rules) : text_(without_padding(text)), rules_(rules) {}
 
   /// Goes to the next line with a word in it; false if there is none.
   bool next();

@@ -23,12 +23,14 @@ struct Mesh {
     std::array<std::uint32_t, 4> vertex = {0, 0, 0, 0};
   };
   std::vector<Face> faces;
-  /// Faces of the file that load_mesh() cut into triangles.
+  /// Faces of the file or the array that were cut into triangles.
   std::size_t polygons_cut = 0;
-  /// For each face, the number of the file's face that it is or was cut from; empty if no face was cut.
+  /// For each face, the number of the file's or the array's face that it is or was cut from; empty if none was cut.
   std::vector<std::uint32_t> file_face;
   /// Number in the file of face `face`, less than faces.size().
   std::uint32_t number_in_file(std::uint32_t face) const { return file_face.empty() ? face : file_face[face]; }
+  /// What load_mesh() left out, a line each; empty if that is nothing but points, lines and unused vertices.
+  std::vector<std::string> notes;
   /// Face number `face` (less than faces.size()) with its vertex positions.
   Primitive primitive(std::size_t face) const;
 };
@@ -42,7 +44,9 @@ void check_faces(const Mesh& mesh);
 using FaceMatrix = Eigen::Matrix<std::int64_t, Eigen::Dynamic, Eigen::Dynamic>;
 /// Mesh from matrices.
 /// \param vertices n x 3: x, y, z of each, in length units
-/// \param faces m x 3 for triangles or m x 4 for quads: numbers of vertices, from 0
+/// \param faces m x 3 for triangles or m x 4 for quads: numbers of vertices, from 0. A quad whose outline has a dent or
+/// a
+///        spike is cut into triangles, as load_mesh() does
 /// \throws std::invalid_argument another number of columns, or a number below 0 or beyond the vertices; one line with
 ///         the row. Object refuses what else makes no sense, such as NaN.
 Mesh make_mesh(const Eigen::Ref<const Eigen::MatrixXd>& vertices, const FaceMatrix& faces);

@@ -17,16 +17,25 @@ namespace cchip {
 /// What load_mesh() keeps as it is; other polygons are cut into triangles.
 enum class FaceKinds {
   triangles,
-  /// and convex quads. A quad whose outline has a dent is cut: as a primitive it would be the hull of its vertices.
+  /// and quads. One whose outline has a dent or a spike is cut: as a primitive it would be the hull of its vertices.
   triangles_and_quads
+};
+
+struct LoadOptions {
+  FaceKinds kinds = FaceKinds::triangles;
+  /// Faces that cannot be used are left out and not an error: with vertices that are not there or not finite, with
+  /// sides that cross. Mesh::notes names the first hundred, with their lines, and says how many there are. A file that
+  /// is truncated or no mesh is an error all the same, and so is one without any face that can be used.
+  bool lenient = false;
 };
 
 /// Reads a mesh in the file's order and unit: Wavefront OBJ, Geomview OFF (text), Stanford PLY (text, binary of both
 /// byte orders), STL (text, binary). The extension of the name decides the format, or else the beginning of the file.
 ///
 /// Positions are doubles: the nearest one of each decimal number; binary STL and PLY's `float` hold single precision.
-/// Points and lines of OBJ are left out. Free-form surfaces, PLY's triangle strips, binary OFF and homogeneous
-/// coordinates are refused. Polygons of up to 1024 corners are cut into triangles; all corners stay in use.
+/// Points, lines and curves are left out. Free-form surfaces, binary OFF and homogeneous coordinates are refused.
+/// Polygons of up to 16384 corners are cut into triangles, by the even-odd rule and exactly; sides that cross are an
+/// error (docs/cpp/mesh_files.md).
 ///
 /// A truncated or damaged file is refused where this can be detected: counts must match, numbers must be whole words,
 /// and vertices must exist. OBJ announces no counts, so a file that lacks whole lines at its end may pass.
@@ -38,8 +47,12 @@ enum class FaceKinds {
 /// \throws std::runtime_error one line: file, line number if it has one, what is wrong, what to do
 Mesh load_mesh(const std::string& path, FaceKinds kinds = FaceKinds::triangles);
 
+Mesh load_mesh(const std::string& path, const LoadOptions& options);
+
 /// The same for the content of a file. `name` stands for its path: its end says the format, and messages begin with it.
 Mesh parse_mesh(std::string_view file, const std::string& name, FaceKinds kinds = FaceKinds::triangles);
+
+Mesh parse_mesh(std::string_view file, const std::string& name, const LoadOptions& options);
 
 /// Red, green, blue.
 using Colour = std::array<std::uint8_t, 3>;
