@@ -182,9 +182,8 @@ campaign-leaves: campaign-build $(LEAVES) $(QUAD_LEAVES) ## leaf pairs of meshes
 	$(CAMPAIGN) leaves --most-beats 10 $(LEAF_ARGS) --quads $(QUAD_LEAVES)
 
 CASES ?= 10000000
-campaign-boxes: $(RELEASE)/build.ninja ## box test: CASES touching volumes with every rounding error at its worst (CCHIP_SEED repeats a run)
-	cmake --build $(RELEASE) -j $(JOBS) --target test_ref
-	CCHIP_BOX_CASES=$(CASES) $(RELEASE)/bin/test_ref 'box test: volumes that share a point are never separated'
+campaign-boxes: campaign-build ## box test in RTL: CASES touching volumes with every rounding error at its worst (CCHIP_SEED repeats a run)
+	$(CAMPAIGN) boxes --pairs $(CASES) --threads $(JOBS)
 
 SWAPS ?= 10000
 campaign-swaps: $(RELEASE)/build.ninja ## SWAPS exchanges of modules under random traffic with faults (CCHIP_SEED repeats a run)
@@ -206,7 +205,7 @@ QUERIES ?= 100000
 SHAPE ?=
 CLUSTER_AMOUNT = $(if $(filter swaps,$(CAMPAIGN_KIND)),$(SWAPS),$(if $(filter chip faults,$(CAMPAIGN_KIND)),$(QUERIES),$(PAIRS)))
 CLUSTER_PROGRAM = $(if $(filter swaps,$(CAMPAIGN_KIND)),cchip_swaps,$(if $(filter chip faults,$(CAMPAIGN_KIND)),cchip_chip_campaign,cchip_campaign))
-campaign-cluster: $(RELEASE)/build.ninja build/workflow/requirements.txt ## CAMPAIGN_KIND (random, grid, relation, certainty, swaps, chip, faults) in SHARDS jobs, PROFILE=local or slurm; a table in build/campaign
+campaign-cluster: $(RELEASE)/build.ninja build/workflow/requirements.txt ## CAMPAIGN_KIND (random, grid, relation, certainty, boxes, swaps, chip, faults) in SHARDS jobs, PROFILE=local or slurm; a table in build/campaign
 	cmake --build $(RELEASE) -j $(JOBS) --target $(CLUSTER_PROGRAM)
 	$(SNAKEMAKE) --snakefile workflow/Snakefile --config kind=$(CAMPAIGN_KIND) amount=$(CLUSTER_AMOUNT) shards=$(SHARDS) \
 	  shape=$(SHAPE) seed=$(or $(CCHIP_SEED),1) bin=$(RELEASE)/bin

@@ -367,7 +367,7 @@ class Netlist:
         key = ("slice", id(word), low + count)
         interval = self.word_range(word)
         self.places[key] = {"what": f"bits {low + count - 1}:{low} of {self.title(word)}", "range": interval, "has": low + count,
-                            "source": self.source(word), "proved": not self.lost(word, low, count)}
+                            "source": self.source(word), "proved": self.fits(interval, low + count), "rest": not self.lost(word, low, count)}
 
     def title(self, word):
         """Name of a word, or of the register that it is written to; the number of a generate block is left out."""
@@ -541,6 +541,8 @@ def judge(netlist, place):
     if place["proved"]:
         limit = netlist.limits.get(place["what"])
         return f"at most so: {limit[2]}" if limit else "interval"
+    if place.get("rest"):
+        return "a part: the bits above are read too"
     for where, what, why in REASONS:
         if where in ("", netlist.module) and re.fullmatch(what, place["what"]):
             return why

@@ -6,8 +6,8 @@ usage: campaign.py run   --kind KIND --amount N --shards N --shard I --bin FOLDE
        campaign.py merge --kind KIND --amount N --shards N --output FILE SHARD... [options]     (a folder: its shard*.json)
        campaign.py check FILE
        campaign.py piece --kind KIND --amount N --shards N --bin FOLDER --output FILE [options]
-  --kind NAME    random, grid, relation, certainty, swaps, chip, faults
-  --amount N     pairs (random, grid, relation, certainty), swaps (swaps) or queries (chip, faults), in all
+  --kind NAME    random, grid, relation, certainty, boxes, swaps, chip, faults
+  --amount N     pairs (random, grid, relation, certainty, boxes), swaps (swaps) or queries (chip, faults), in all
   --shape NAME   of pairs: tri-tri, tri-quad or quad-quad (default tri-tri; grid: tri-quad)
   --seed N       of the campaign (default 1)
 
@@ -51,13 +51,14 @@ KINDS = {"random": ("cchip_campaign", PART_PAIRS, JUDGED + [None] * 3, "pairs"),
          "grid": ("cchip_campaign", PART_PAIRS, JUDGED + [None] * 3, "pairs"),
          "relation": ("cchip_campaign", PART_PAIRS, RELATED, "pairs"),
          "certainty": ("cchip_campaign", PART_PAIRS, CERTAIN, "pairs"),
+         "boxes": ("cchip_campaign", PART_PAIRS, None, "pairs"),
          "swaps": ("cchip_swaps", PART_SWAPS, None, "swaps"),
          "chip": ("cchip_chip_campaign", 1, CHIP, "queries"),
          "faults": ("cchip_chip_campaign", 1, None, "queries")}
 BY_SEED = ("chip", "faults")
 NO_COUNTS = {"seconds", "seed", "bins", "clocks_mean"}  # of a last line
 GOOD = {"pairs", "hits", "queries", "swaps", "contacts", "open", "fallbacks", "rounds", "resets", "bus_resets",
-        "damaged_images", "faults", "apart", "touching", "crossing", "bound_cases", "rtl_results"}  # may be over 0
+        "damaged_images", "faults", "near", "points", "with_cuts", "apart", "touching", "crossing", "bound_cases", "rtl_results"}  # may be over 0
 
 
 class Refused(Exception):
@@ -210,7 +211,7 @@ def table(o, counts):
     """Writes the table and prints its total; the exit code."""
     total = counts["total"]
     got = total[KINDS[o.kind][3]]
-    if o.kind in ("random", "grid", "relation", "certainty") and got != o.amount or got < o.amount:
+    if o.kind in ("random", "grid", "relation", "certainty", "boxes") and got != o.amount or got < o.amount:
         raise Refused(f"{KINDS[o.kind][3]} is {got}, not {o.amount}")
     lines = [["row", "column", "count"]]
     lines += [[row, column, value] for row, columns in counts.items() if row != "total" for column, value in columns.items()]

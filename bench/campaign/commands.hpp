@@ -34,6 +34,12 @@ struct RelationOptions : CommonOptions {
 /// Whether primitives are apart, touch or cross: exact predicates against the definition.
 int run_relation(const RelationOptions& options);
 
+struct BoxesOptions : CommonOptions {
+  std::uint64_t pairs = 10000000;  ///< of volumes that touch
+};
+/// Volumes that touch in a point through the RTL of the box test: none may be separated.
+int run_boxes(const BoxesOptions& options);
+
 struct ClassesOptions : CommonOptions {
   std::uint64_t pairs = 100000;  ///< per class, shape and programme
   std::string csv;               ///< file for the mean beats; empty: none

@@ -56,6 +56,9 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
   add_pairs(*relation, n->pairs, "pairs per shape; 0: all triangle pairs of the grid -1..1, none with quads");
   relation->add_flag("--random", n->random, "random pairs of all classes instead of the grid -1..1");
   add_coord_w(*relation, n->coord_w);
+  const auto [boxes, b] = add("boxes", "box test in RTL: volumes that touch in a point, every rounding at its worst",
+                              BoxesOptions{}, run_boxes);
+  add_pairs(*boxes, b->pairs, "pairs of volumes");
   const auto [classes, c] = add("classes", "RTL against model and exact oracle, class by class, with throughput",
                                 ClassesOptions{}, run_classes);
   add_pairs(*classes, c->pairs, "pairs per class and shape");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_bv_lane_a: planes of one child of a node of A in the directions of B.
 //   rule         a plane of m = M^T d is that of the box, m centre +- |m| half, less (b - c) times
 //                a face cut less c times a corner cut, m = (a - b) axis + (b - c) face + c corner
@@ -89,6 +90,12 @@ module cchip_bv_lane_a (
     end
   endgenerate
 
+`ifndef SYNTHESIS
+  reg [1:0] settled_q;  // the products' flip-flops no longer hold what they had at power-up
+  initial settled_q = 2'd0;
+  always @(posedge clk) settled_q <= {settled_q[0], 1'b1};
+`endif
+
   // ---- clocks 2 to 6: M centre + offset, of each axis of B
   wire signed [17:0] moved6[0:2], moved7[0:2];
   generate
@@ -111,6 +118,14 @@ module cchip_bv_lane_a (
         );
         assign term4[j] = one_q4 ? {centre4[j][12], centre4[j], 1'b0} : p[30:16];
         wire unused = &{1'b0, p[35:31], p[15:0]};
+`ifndef SYNTHESIS
+        // Holds for any entry: the multiplier takes 18 bits of it, -1 to 1 - 2^-17
+        always @(posedge clk) begin
+          if (settled_q[1]) begin
+            `CCHIP_NARROW(a_term, p[35:30])
+          end
+        end
+`endif
       end
       reg signed [17:0] first_q5, rest_q5, moved_q6, moved_q7;
       assign moved6[i] = moved_q6;

@@ -3,8 +3,16 @@
 //   always @(posedge clk) if (!rst) begin `CCHIP_ASSERT(a_no_overflow, !(push && full)) end
 // With Verilator (--assert) and Yosys (-formal) it is an assertion, with Icarus a message that ends
 // the run, in synthesis nothing.
+//
+// CCHIP_NARROW(label, bits) asserts that a narrowing loses nothing: bits are the ones that are left
+// out and the highest one that is kept, all of which must be copies of the sign.
+// CCHIP_NARROW_UNSIGNED(label, bits): those that are left out of an unsigned number, which must be 0.
+// Both are statements like CCHIP_ASSERT. Where only legal inputs keep the promise, a condition in
+// front of them says so. scripts/widths.py bounds every narrowing, with and without an assertion.
 `ifndef CCHIP_ASSERT_VH
 `define CCHIP_ASSERT_VH
+`define CCHIP_NARROW(label, bits) `CCHIP_ASSERT(label, (&(bits)) || !(|(bits)))
+`define CCHIP_NARROW_UNSIGNED(label, bits) `CCHIP_ASSERT(label, !(|(bits)))
 `ifdef VERILATOR
 `define CCHIP_ASSERT(label, condition) label: assert (condition);
 `else

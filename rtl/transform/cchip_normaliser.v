@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_normaliser: a pair of primitives on its own grid. The least n for which
 // (x - min + half) >> n fits COORD_W bits on all three axes, the coordinates on that grid with the
 // middle of the range at 0, and eta, the bound on what all roundings together may have moved.
@@ -258,21 +259,28 @@ module cchip_normaliser #(
         assign vertex = {{A_W - B_W{out_b[B_W*(i-3)+B_W-1]}}, out_b[B_W*(i-3)+:B_W]};
       end
       always @(posedge clk) from_least_q <= vertex - least[A_W*(i%3)+:A_W];
-      wire [COORD_W-1:0] rounded;
+      wire [COORD_W:0] rounded_more;
+      wire [COORD_W-1:0] rounded = rounded_more[COORD_W-1:0];
       wire inexact;
       cchip_round_shift #(
           .D_W      (A_W + 1),
           .BASE     (0),
           .SHIFT_MAX(SPANS),
-          .Q_W      (COORD_W)
+          .Q_W      (COORD_W + 1)
       ) u_round (
           .clk (clk),
           .d   ({1'b0, from_least_q}),
           .s   (shift_q),
-          .q   (rounded),
+          .q   (rounded_more),
           .lost(inexact)
       );
-      wire unused = &{1'b0, inexact};
+      wire unused = &{1'b0, inexact, rounded_more[COORD_W]};
+      // n is the least shift for which the pair fits, rounding included
+      always @(posedge clk) begin
+        if (m_valid) begin
+          `CCHIP_NARROW_UNSIGNED(a_rounded, rounded_more[COORD_W])
+        end
+      end
       wire [COORD_W-1:0] middle = rounded ^ {1'b1, {COORD_W - 1{1'b0}}};
       if (i < 3) begin : gen_m_a
         assign m_a[COORD_W*i+:COORD_W] = middle;

@@ -76,7 +76,7 @@ class Merge(Case):
 
     def test_kinds(self):
         for kind, amount, shards in (("random", PART + 100, 2), ("grid", PART + 100, 2), ("relation", PART + 100, 2),
-                                     ("certainty", PART + 100, 2), ("swaps", 100, 2), ("chip", 20, 2), ("faults", 20, 2)):
+                                     ("certainty", PART + 100, 2), ("boxes", PART + 100, 2), ("swaps", 100, 2), ("chip", 20, 2), ("faults", 20, 2)):
             program = {"swaps": "cchip_swaps", "chip": "cchip_chip_campaign", "faults": "cchip_chip_campaign"}.get(kind)
             if program and not (BIN / program).exists():
                 continue

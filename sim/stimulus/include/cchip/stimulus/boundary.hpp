@@ -69,30 +69,43 @@ class Bins {
     if (value == least) met(number, 0);
     if (value == most) met(number, 1);
   }
-  void end() {
-    for (std::size_t i = 0; i < now_.size(); ++i) {
+  /// \param pairs count the pairs of ends, too
+  void end(bool pairs = true) {
+    for (std::size_t i = 0; pairs && i < now_.size(); ++i) {
       for (std::size_t j = i + 1; j < now_.size(); ++j) ++pairs_[std::minmax(now_[i], now_[j])];
     }
     now_.clear();
   }
 
-  /// The bins that no input has met, as "field=least" or "field=most with other=most"; empty if all were.
+  /// The ends that no input has met, as "field=least, field=most"; empty if all were.
+  std::string missing_ends() const {
+    std::string text;
+    for (std::size_t i = 0; i < 2 * ends_.size(); ++i) {
+      if (ends_[i / 2][i % 2] == 0) add(text, name(i));
+    }
+    return text;
+  }
+  /// The same with the pairs of ends, as "field=least with other=most".
   /// \param impossible regular expression of the pairs that no legal input has
   std::string missing(const std::string& impossible = "(?!)") const {
-    std::string text;
+    std::string text = missing_ends();
     const std::regex skip(impossible);
-    const auto add = [&](const std::string& bin) {
-      if (!std::regex_match(bin, skip)) text += (text.empty() ? "" : ", ") + bin;
-    };
-    for (std::size_t i = 0; i < 2 * ends_.size(); ++i) {
-      if (ends_[i / 2][i % 2] == 0) add(name(i));
-    }
     for (std::size_t i = 0; i < 2 * ends_.size(); ++i) {
       for (std::size_t j = (i | 1U) + 1; j < 2 * ends_.size(); ++j) {
-        if (pairs_.count({i, j}) == 0) add(name(i) + " with " + name(j));
+        const std::string pair = name(i) + " with " + name(j);
+        if (pairs_.count({i, j}) == 0 && !std::regex_match(pair, skip)) add(text, pair);
       }
     }
     return text;
+  }
+  /// Adds the bins of the same fields, seen in the same order.
+  Bins& operator+=(const Bins& other) {
+    if (numbers_.empty()) return *this = other;
+    for (std::size_t i = 0; i < other.ends_.size(); ++i) {
+      for (std::size_t side = 0; side < 2; ++side) ends_.at(i)[side] += other.ends_[i][side];
+    }
+    for (const auto& [pair, count] : other.pairs_) pairs_[pair] += count;
+    return *this;
   }
   /// As "fields=9 bins=18 pairs=144".
   std::string summary() const {
@@ -107,6 +120,7 @@ class Bins {
     ++ends_[number][side];
     now_.push_back(2 * number + side);
   }
+  static void add(std::string& text, const std::string& bin) { text += (text.empty() ? "" : ", ") + bin; }
   std::string name(std::size_t bin) const { return names_[bin / 2] + (bin % 2 == 0 ? "=least" : "=most"); }
 
   std::map<std::string, std::size_t> numbers_;
