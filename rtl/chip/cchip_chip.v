@@ -194,6 +194,8 @@ module cchip_chip #(
   wire [`CCHIP_KIND_W-1:0] answered_module;
   wire [8:0] events = {refused_provider, swap_events, chip_event_q};
   reg invalidate_q, invalidating_q;  // a command waits; one waits or is at work
+  // it is a command: after a reset the cache clears itself, which ends without an event
+  reg commanded_q;
   cchip_chip_regs u_regs (
       .clk                                 (clk),
       .rst                                 (rst),
@@ -327,18 +329,19 @@ module cchip_chip #(
   always @(posedge clk)
     if (rst) begin
       {irq_q, query_failed_q, record_failed_q} <= 3'd0;
-      {invalidate_q, invalidating_q} <= 2'd0;
+      {invalidate_q, invalidating_q, commanded_q} <= 3'd0;
       chip_event_q <= 5'd0;
       record_producer_q <= 32'd0;
     end else begin
       irq_q             <= |(status & status_enable);
       invalidate_q      <= ~resetting & (invalidate_go | (invalidate_q & ~invalidate_ready));
       invalidating_q    <= ~resetting & invalidating;
+      commanded_q       <= ~resetting & (invalidate_q | (commanded_q & invalidating_q));
       query_failed_q    <= query_failed;
       record_failed_q   <= record_failed;
       record_producer_q <= record_producer;
       chip_event_q      <= {
-        invalidating_q & ~invalidating,
+        commanded_q & invalidating_q & ~invalidating,
         reset_done,
         record_failed & ~record_failed_q,
         query_failed & ~query_failed_q,

@@ -11,9 +11,11 @@
 //   answer       the beats of the line in order, the last one marked and with a code. Data count
 //                only if that is CCHIP_READ_OK: rresp other than OKAY on any beat, or rlast too
 //                early or too late, is CCHIP_READ_BUS
-//   silence      a read that lasts longer than `limit` clocks, its address included, is answered
-//                with CCHIP_READ_TIMEOUT after 2 limit + 3 CLIENTS SLOTS + 10 clocks at the latest;
-//                on the last beat there are no data. While beats are outstanding under that ID, or
+//   silence      a read that lasts longer than `limit` clocks from the offer of its address on is
+//                answered with CCHIP_READ_TIMEOUT 2 limit + 3 CLIENTS SLOTS + 10 clocks after the
+//                offer at the latest. Until then it waits behind the addresses requested before
+//                it, at most CLIENTS SLOTS - 1, each of which is taken or given up in that time.
+//                The last beat of a timeout has no data. While beats are outstanding under that ID, or
 //                the address is not taken, a request that would have to wait for it is answered
 //                with CCHIP_READ_OWED. Beats that come after the answer, or unasked, are dropped. A
 //                client that uses a slot again only while its bit of `outstanding` is 0 is never

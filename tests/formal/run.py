@@ -36,6 +36,9 @@ FIFO = "rtl/common/cchip_fifo.v"
 ROC = "rtl/reconfig/cchip_roc_generator.v"
 DECOUPLER = "rtl/reconfig/cchip_pr_decoupler.v"
 SLOT = "rtl/reconfig/cchip_pr_slot.v"
+LANE_B = "rtl/bvtest/cchip_bv_lane_b.v"
+COMPARE = "rtl/bvtest/cchip_bv_compare.v"
+NORM1 = "rtl/arith/cchip_norm1.v"
 SEQUENCER = "rtl/reconfig/cchip_swap_sequencer.v"
 SIGNALS = "rtl/reconfig/cchip_swap_signals.v"
 ARBITER = "rtl/common/cchip_arbiter.v"
@@ -81,6 +84,16 @@ MUTANTS = [
     ("cchip_fifo prove", FIFO, "up ? count_q != LAST[COUNT_W-1:0]", "up ? count_q != FULL[COUNT_W-1:0]"),
     ("cchip_fifo prove", FIFO, "load | (valid_q & ~m_ready);", "load | valid_q;"),
     ("cchip_fifo prove", FIFO, "was_read_q <= load & read_bank_q[b];", "was_read_q <= load;"),
+    # a bit less of a corner, of a sum, of an overlap, of a magnitude
+    ("cchip_bv_lane_b bounded", LANE_B, "greatest_q2 <= {greatest_q1[10], greatest_q1} + {4'd0, slack};",
+     "greatest_q2 <= {1'b0, greatest_q1} + {4'd0, slack};"),
+    ("cchip_bv_lane_b bounded", LANE_B, "upper0_q3 <= widen(greatest2[0]) + widen(greatest2[1]);",
+     "upper0_q3 <= {1'b0, greatest2[0][11], greatest2[0]} + widen(greatest2[1]);"),
+    ("cchip_bv_compare bounded", COMPARE, "over_q <= {upper[W-1], upper} - {lower[W-1], lower};",
+     "over_q <= {1'b0, upper} - {lower[W-1], lower};"),
+    ("cchip_bv_compare bounded", COMPARE, "over_15_q2 <= |over_q[W-1:LOW+4];", "over_15_q2 <= |over_q[W-2:LOW+4];"),
+    ("cchip_norm1 bounded_17", NORM1, "z_q  <= {1'b0, size_q[2*(V_W-1)+:V_W-1]} + rest[V_W-1:0];",
+     "z_q  <= {1'b0, size_q[2*(V_W-1)+:V_W-1] + rest[V_W-2:0]};"),
     ("cchip_roc_generator prove_5", ROC, "left_q << 1", "left_q << 2"),
     ("cchip_roc_generator prove_2", ROC, "rst || configured ?", "configured ?"),
     # closed, and opened, one clock late

@@ -11,6 +11,7 @@
 #include <cchip/sim/bits.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cchip/sim/wave_on_failure.hpp>
+#include <cchip/stimulus/boundary.hpp>
 #include <cctype>
 #include <functional>
 #include <optional>
@@ -108,18 +109,11 @@ inline std::vector<std::int64_t> extremes(int width) {
   return {-half, -half + 1, -1, 0, 1, half - 1};
 }
 
-/// Signed number of `width` (up to 64) bits: an extreme one, a small one or any other.
+/// Signed number of `width` (up to 64) bits: a boundary value, a small one or any other.
 inline std::int64_t random_word(Random& random, int width) {
-  switch (random() % 4) {
-    case 0: {
-      const auto list = extremes(width);
-      return list[random() % list.size()];
-    }
-    case 1:
-      return model::wrap(random() % 5 - 2, width);
-    default:
-      return model::wrap(random(), width);
-  }
+  if (random() % 4 == 0) return model::wrap(random() % 5 - 2, width);
+  const std::int64_t half = width == 64 ? INT64_MAX : (std::int64_t{1} << (width - 1)) - 1;
+  return stimulus::draw(random, -half - 1, half);
 }
 inline model::Word3 random_word3(Random& random, int width) {
   return {random_word(random, width), random_word(random, width), random_word(random, width)};

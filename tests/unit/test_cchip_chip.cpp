@@ -137,6 +137,30 @@ TEST_CASE("cchip_chip: registers after reset, what can be written, what is refus
   });
 }
 
+TEST_CASE("cchip_chip: an invalidation that ended is one that was asked for", "[unit][cchip_chip]") {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    SmallChip machine(options);
+    const auto wait = [&machine] {  // the cache clears itself after a reset
+      while ((machine.read_register(regs::status::offset) & regs::status::invalidating_mask) != 0) machine.proceed();
+      for (int i = 0; i < 50; ++i) machine.proceed();
+    };
+    const auto invalidated = [&machine] {
+      return (machine.read_register(regs::interrupt_status::offset) & regs::interrupt_status::invalidated_mask) != 0;
+    };
+    const auto clear = [&machine] { machine.write_register(regs::interrupt_status::offset, 0x1F); };
+    for (int round = 0; round < 3; ++round) {
+      wait();
+      CHECK_FALSE(invalidated());
+      machine.write_register(regs::invalidate::offset, regs::invalidate::go_mask);
+      wait();
+      CHECK(invalidated());
+      clear();
+      if (round == 0) machine.write_register(regs::control::offset, regs::control::soft_reset_mask);
+      if (round == 1) machine.reset();
+    }
+  });
+}
+
 TEST_CASE("cchip_chip: counters are what was submitted and answered", "[unit][cchip_chip]") {
   for_two_power_ups_of_setup([](Setup& s) {
     s.write(regs::control::offset, regs::control::clear_mask | regs::control::enable_mask);

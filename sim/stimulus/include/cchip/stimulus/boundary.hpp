@@ -18,41 +18,27 @@
 
 namespace cchip::stimulus {
 
-/// The boundary values of a range: its ends and their neighbours, 0, 1 and -1, powers of two of either sign and their
-/// neighbours; ascending, each once.
-inline std::vector<std::int64_t> boundaries(std::int64_t least, std::int64_t most) {
-  std::set<std::int64_t> values;
-  const auto add = [&](std::int64_t value) {
-    if (value >= least && value <= most) values.insert(value);
-  };
-  for (const std::int64_t near : {-1, 0, 1}) {
-    add(near);
-    if (least < INT64_MAX) add(least + (near > 0 ? 1 : 0));
-    if (most > INT64_MIN) add(most - (near > 0 ? 1 : 0));
-    for (int bit = 1; bit < 62; ++bit) {
-      add((std::int64_t{1} << bit) + near);
-      add(-(std::int64_t{1} << bit) + near);
-    }
-  }
-  return {values.begin(), values.end()};
-}
-
 /// Percentage of draws that are boundary values, in every test that does not say otherwise. Half of these are the two
 /// ends of the range.
 inline constexpr int boundary_percent = 40;
 
-/// A number of least..most: uniform, or a boundary value.
+/// A number of least..most: uniform, or a boundary value: an end of the range or its neighbour, 0, 1, -1, a power of
+/// two of either sign or its neighbour.
 template <class Engine>
 std::int64_t draw(Engine& random, std::int64_t least, std::int64_t most, int percent = boundary_percent) {
   const std::uint64_t span = static_cast<std::uint64_t>(most) - static_cast<std::uint64_t>(least);
-  const auto any = [&] {
+  if (static_cast<int>(random() % 100) >= percent) {
     const std::uint64_t offset = span == UINT64_MAX ? random() : random() % (span + 1);
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(least) + offset);
-  };
-  if (static_cast<int>(random() % 100) >= percent) return any();
-  if (random() % 2 == 0) return random() % 2 == 0 ? least : most;
-  const std::vector<std::int64_t> values = boundaries(least, most);
-  return values[random() % values.size()];
+  }
+  const std::uint64_t kind = random() % 8;
+  if (kind < 4 || span < 2) return kind % 2 == 0 ? least : most;
+  if (kind == 4) return random() % 2 == 0 ? least + 1 : most - 1;
+  const std::uint64_t bit = random() % 64;
+  const std::int64_t power = bit > 62 ? 0 : std::int64_t{1} << bit;
+  const std::int64_t value = (random() % 2 == 0 ? power : -power) + static_cast<std::int64_t>(random() % 3) - 1;
+  if (value >= least && value <= most) return value;
+  return least <= 0 && most >= 0 ? 0 : least;  // of small ranges, which 0 fits best
 }
 
 /// Counts how often each field of a test's inputs was at each end of its range, and how often two fields were at each
