@@ -11,8 +11,9 @@
 namespace cchip::exact {
 
 /// Represents a real number x with |x - value| <= error. Error 0 means that x is a double, and stays 0 through every
-/// operation whose result is a double again, so that whole numbers of moderate size are decided here. An overflow
-/// leaves an error that is infinite or NaN. docs/cpp/exactness.md derives the bounds.
+/// operation whose result is a double again, so that whole numbers of moderate size are decided here. A product with
+/// an exact 0 is an exact 0, so that faces in one plane across an axis are decided here, too. An overflow leaves an
+/// error that is infinite or NaN. docs/cpp/exactness.md derives the bounds.
 class Filter {
  public:
   Filter() = default;
@@ -26,7 +27,7 @@ class Filter {
 
   int sign() const {
     if (std::abs(value_) > error_) return value_ > 0 ? 1 : -1;
-    if (!(value_ == 0 && error_ == 0)) gave_up_ = true;
+    if (!is_zero()) gave_up_ = true;
     return 0;
   }
 
@@ -38,6 +39,8 @@ class Filter {
   }
   friend Filter operator-(const Filter& x, const Filter& y) { return x + Filter(-y.value_, y.error_); }
   friend Filter operator*(const Filter& x, const Filter& y) {
+    // 0 times any real number is 0, even if the bound on that number is infinite.
+    if (x.is_zero() || y.is_zero()) return {};
     const double product = x.value_ * y.value_;
     const double rest = std::fma(x.value_, y.value_, -product);
     const double size_x = std::abs(x.value_);
@@ -57,6 +60,7 @@ class Filter {
  private:
   /// What underflows of one product may take from its value and from its error bound.
   static constexpr double lost = 0x1p-1072;
+  bool is_zero() const { return value_ == 0 && error_ == 0; }
   /// Covers the rounding of the few operations that made the bound; keeps 0.
   static double inflated(double bound) { return bound * (1 + 0x1p-49); }
 

@@ -88,19 +88,30 @@ Vec<Filter> filter_offset(const Vec3d& offset, const Vec3d& error) {
   return {Filter(offset.x(), error.x()), Filter(offset.y(), error.y()), Filter(offset.z(), error.z())};
 }
 
+/// True only if the map has an inverse. The product of the columns' sums of magnitudes bounds all that is added up for
+/// the determinant; its rounding errors are below 2^-49 of it.
+bool is_regular(const Pose& pose) {
+  const Vec3d columns = pose.linear().cwiseAbs().colwise().sum();
+  if (!(columns.minCoeff() > 0x1p-200 && columns.maxCoeff() < 0x1p200)) return false;
+  return std::abs(pose.linear().determinant()) > 0x1p-40 * columns.prod();
+}
+
 }  // namespace
 
-PosedPairs::PosedPairs(const Pose& pose_a, const Pose& pose_b)
-    : pose_a_(pose_a),
-      pose_b_(pose_b),
-      row_sum_a_(pose_a.linear().cwiseAbs().rowwise().sum().maxCoeff()),
-      row_sum_b_(pose_b.linear().cwiseAbs().rowwise().sum().maxCoeff()) {
+PosedPairs::PosedPairs(const Pose& pose_a, const Pose& pose_b) : pose_a_(pose_a), pose_b_(pose_b) {
   if (!pose_a.affine().allFinite() || !pose_b.affine().allFinite()) {
     throw std::invalid_argument("pose: an entry is not finite: replace NaN and infinities by numbers");
   }
+  if (pose_a.affine() == pose_b.affine() && is_regular(pose_a)) {
+    // A map that has an inverse keeps common points and inner points, so the primitives meet and cross as they lie.
+    pose_a_ = Pose::Identity();
+    pose_b_ = Pose::Identity();
+  }
+  row_sum_a_ = pose_a_.linear().cwiseAbs().rowwise().sum().maxCoeff();
+  row_sum_b_ = pose_b_.linear().cwiseAbs().rowwise().sum().maxCoeff();
   for (Eigen::Index k = 0; k < 3; ++k) {
-    const double to = pose_a.translation()[k];
-    const double from = pose_b.translation()[k];
+    const double to = pose_a_.translation()[k];
+    const double from = pose_b_.translation()[k];
     offset_[k] = to - from;
     const double part = offset_[k] - to;
     offset_error_[k] = std::abs((to - (offset_[k] - part)) - (from + part));  // TwoSum
