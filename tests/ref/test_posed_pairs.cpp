@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Filtered answers against integers of any size.
+#include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/exact/posed_pairs.hpp>
@@ -7,6 +8,7 @@
 #include <iostream>
 #include <limits>
 
+#include "exact/posed_ints.hpp"
 #include "random_pairs.hpp"
 #include "random_poses.hpp"
 
@@ -102,7 +104,128 @@ void compare_and_count(int rounds) {
   }
 }
 
+using Integer = boost::multiprecision::cpp_int;
+
+/// Of up to 127 bits, often with long runs of equal bits.
+template <class Random>
+exact::SInt128 random_int128(Random& random) {
+  const auto word = [&random]() -> std::uint64_t {
+    const std::uint64_t w = random();
+    switch (random() % 4) {
+      case 0:
+        return 0;
+      case 1:
+        return ~std::uint64_t{0};
+      default:
+        return w;
+    }
+  };
+  const auto value = static_cast<exact::SInt128>(exact::UInt128{word()} << 64U | word());
+  return value >> (1 + random() % 127);
+}
+
+Integer integer_of(exact::SInt128 value) {
+  const bool negative = value < 0;
+  const exact::UInt128 size = negative ? -static_cast<exact::UInt128>(value) : static_cast<exact::UInt128>(value);
+  const Integer result = (Integer(static_cast<std::uint64_t>(size >> 64U)) << 64U) + static_cast<std::uint64_t>(size);
+  return negative ? Integer(-result) : result;
+}
+
+template <std::size_t N>
+void check_arithmetic(std::mt19937_64& random) {
+  using Wide = exact::WideInt<N>;
+  constexpr int shift_most = Wide::bits / 3 - 66;
+  for (int i = 0; i < 20000; ++i) {
+    std::array<Wide, 3> wide;
+    std::array<Integer, 3> any;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const exact::SInt128 value = random_int128(random) >> 64;
+      const int shift = static_cast<int>(random() % static_cast<unsigned>(shift_most + 1));
+      wide[k] = Wide(value, shift);
+      any[k] = integer_of(value) * (Integer(1) << shift);
+    }
+    const auto& [x, y, z] = wide;
+    const auto& [p, q, r] = any;
+    REQUIRE(x.sign() == p.sign());
+    REQUIRE((x < y) == (p < q));
+    REQUIRE((x <= y) == (p <= q));
+    REQUIRE((x * y * z - x * z + y).sign() == Integer(p * q * r - p * r + q).sign());
+    REQUIRE((x * y - y * x).sign() == 0);
+    // A number less its own value, however it was made, is 0; one more is positive.
+    const exact::SInt128 value = random_int128(random);
+    const int shift = static_cast<int>(random() % static_cast<unsigned>(Wide::bits - 128));
+    Wide sum(0, 0);
+    for (int bit = 0; bit < 128; ++bit) {
+      if ((static_cast<exact::UInt128>(value) >> bit & 1U) == 0) continue;
+      sum = bit == 127 ? sum - Wide(1, shift + bit) : sum + Wide(1, shift + bit);
+    }
+    REQUIRE((Wide(value, shift) - sum).sign() == 0);
+    REQUIRE((Wide(value, shift) - sum + Wide(1, 0)).sign() == 1);
+    REQUIRE((sum - Wide(value, shift) - Wide(1, 0)).sign() == -1);
+  }
+}
+
+/// Pairs whose coordinates need as many bits as N words can take, of the greatest magnitudes and of the least.
+template <std::size_t N>
+void check_at_limit(std::mt19937_64& random, std::array<int, 3>& seen) {
+  using exact::PosedInts;
+  const int most = (exact::WideInt<N>::bits - 7) / 3;
+  REQUIRE(exact::fits<N>(most));
+  REQUIRE_FALSE(exact::fits<N>(most + 1));
+  for (int i = 0; i < 3000; ++i) {
+    const int low = -static_cast<int>(random() % 200);
+    const int high = low + most;
+    const auto coordinate = [&]() -> double {
+      const double sign = random() % 2 == 0 ? 1 : -1;
+      switch (random() % 6) {
+        case 0:
+          return 0;
+        case 1:
+          return sign * std::ldexp(1.0, low);
+        case 2:
+          return sign * std::ldexp(1.0, high - 1);
+        default:
+          return sign * std::ldexp(1 - 0x1p-53, high);
+      }
+    };
+    Primitive a;
+    Primitive b;
+    a.kind = random() % 2 == 0 ? Kind::tri : Kind::quad;
+    b.kind = random() % 2 == 0 ? Kind::tri : Kind::quad;
+    for (Primitive* p : {&a, &b}) {
+      for (std::size_t k = 0; k < p->vertex_count(); ++k) p->v[k] = Vec3d(coordinate(), coordinate(), coordinate());
+    }
+    a.v[0] = Vec3d(std::ldexp(1 - 0x1p-53, high), std::ldexp(1.0, low), 0);  // both ends of the range are in use
+    const PosedInts ints_a(a, Pose::Identity());
+    const PosedInts ints_b(b, Pose::Identity());
+    const int exponent = std::min(ints_a.exponent(), ints_b.exponent());
+    REQUIRE(std::max(ints_a.top(), ints_b.top()) - exponent == most);
+    const auto hull_a = ints_a.hull<N>(exponent);
+    const auto hull_b = ints_b.hull<N>(exponent);
+    const Relation relation = exact_relation(a, b);
+    REQUIRE(hulls_meet(hull_a, hull_b) == (relation != Relation::apart));
+    if (relation != Relation::apart) REQUIRE(hulls_cross(hull_a, hull_b) == (relation == Relation::crossing));
+    ++seen[static_cast<std::size_t>(relation)];
+  }
+}
+
 }  // namespace
+
+TEST_CASE("posed pairs: integers of fixed width agree with those of any size", "[ref][posed_pairs]") {
+  std::mt19937_64 random(seed() + 17);
+  check_arithmetic<4>(random);
+  check_arithmetic<6>(random);
+  check_arithmetic<8>(random);
+}
+
+TEST_CASE("posed pairs: integers of fixed width hold what they are asked to", "[ref][posed_pairs]") {
+  std::mt19937_64 random(seed() + 19);
+  std::array<int, 3> seen = {};
+  check_at_limit<4>(random, seen);
+  check_at_limit<6>(random, seen);
+  check_at_limit<8>(random, seen);
+  for (const int count : seen) CHECK(count > 100);
+}
 
 TEST_CASE("posed pairs: 10^5 agree with integers of any size", "[ref][posed_pairs]") { compare_and_count(4000); }
 

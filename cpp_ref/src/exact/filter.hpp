@@ -26,10 +26,20 @@ class Filter {
   static void reset() { gave_up_ = false; }
 
   int sign() const {
-    if (std::abs(value_) > error_) return value_ > 0 ? 1 : -1;
-    if (!is_zero()) gave_up_ = true;
+    bool open = false;
+    const int known = sign_if_known(*this, open);
+    gave_up_ = gave_up_ || open;
+    return known;
+  }
+
+  /// The hooks of hulls.hpp for numbers that may not know their sign.
+  friend int sign_if_known(const Filter& x, bool& open) {
+    if (std::abs(x.value_) > x.error_) return x.value_ > 0 ? 1 : -1;
+    if (!x.is_zero()) open = true;
     return 0;
   }
+  friend void give_up(const Filter&) { gave_up_ = true; }
+  friend bool is_pointless(const Filter&) { return gave_up_; }
 
   friend Filter operator+(const Filter& x, const Filter& y) {
     const double sum = x.value_ + y.value_;

@@ -5,16 +5,20 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "filter.hpp"
 #include "hulls.hpp"
+#include "posed_ints.hpp"
 
 namespace cchip {
 namespace {
 
 using exact::Filter;
+using exact::fits;
 using exact::Hull;
+using exact::PosedInts;
 using exact::Vec;
 
 constexpr double unit = std::numeric_limits<double>::epsilon() / 2;  // greatest relative error of one operation
@@ -118,7 +122,7 @@ PosedPairs::PosedPairs(const Pose& pose_a, const Pose& pose_b) : pose_a_(pose_a)
   }
 }
 
-PosedPairs::Answer PosedPairs::decide(const Primitive& a, const Primitive& b) const {
+PosedPairs::Answer PosedPairs::decide(const Primitive& a, const Primitive& b, bool tell_crossing) const {
   Rounded r;
   r.count_a = a.vertex_count();
   r.count_b = b.vertex_count();
@@ -135,13 +139,21 @@ PosedPairs::Answer PosedPairs::decide(const Primitive& a, const Primitive& b) co
   const double magnitude =
       row_sum_a_ * greatest_component(a) + row_sum_b_ * greatest_component(b) + offset_.cwiseAbs().maxCoeff();
   r.error = 8 * unit * magnitude + lost;
-  if (magnitude < 0x1p1000 && separated(r)) return {false, false};
+  if (magnitude < 0x1p1000 && separated(r)) return {};
 
+  const Hull<Filter> hull_a = filter_hull(a, pose_a_.linear(), filter_offset(offset_, offset_error_));
+  const Hull<Filter> hull_b = filter_hull(b, pose_b_.linear(), Vec<Filter>{});
   Filter::reset();
-  const bool hit = hulls_meet(filter_hull(a, pose_a_.linear(), filter_offset(offset_, offset_error_)),
-                              filter_hull(b, pose_b_.linear(), Vec<Filter>{}));
-  if (!Filter::gave_up()) return {hit, false};
-  return {exact_intersects(a, pose_a_, b, pose_b_), true};
+  Answer answer;
+  answer.hit = hulls_meet(hull_a, hull_b);
+  bool known = !Filter::gave_up();
+  if (known && (!answer.hit || !tell_crossing)) return answer;
+  if (known) {
+    answer.crosses = hulls_cross(hull_a, hull_b);
+    known = !Filter::gave_up();
+    if (known) return answer;
+  }
+  return decide_in_integers(a, b, tell_crossing);
 }
 
 bool PosedPairs::cross(const Primitive& a, const Primitive& b) const {
@@ -149,7 +161,34 @@ bool PosedPairs::cross(const Primitive& a, const Primitive& b) const {
   const bool crosses = hulls_cross(filter_hull(a, pose_a_.linear(), filter_offset(offset_, offset_error_)),
                                    filter_hull(b, pose_b_.linear(), Vec<Filter>{}));
   if (!Filter::gave_up()) return crosses;
-  return exact_relation(a, pose_a_, b, pose_b_) == Relation::crossing;
+  return decide_in_integers(a, b, true).crosses;
+}
+
+PosedPairs::Answer PosedPairs::decide_in_integers(const Primitive& a, const Primitive& b, bool tell_crossing) const {
+  Pose pose_a = pose_a_;
+  Pose pose_b = pose_b_;
+  if (offset_error_.isZero(0)) {  // what is left of the translations has fewer bits
+    pose_a.translation() = offset_;
+    pose_b.translation().setZero();
+  }
+  const PosedInts ints_a(a, pose_a);
+  const PosedInts ints_b(b, pose_b);
+  const auto answer = [&](const auto& hull_a, const auto& hull_b) -> Answer {
+    const bool hit = hulls_meet(hull_a, hull_b);
+    return {hit, true, hit && tell_crossing && hulls_cross(hull_a, hull_b)};
+  };
+  const int exponent = std::min(ints_a.exponent(), ints_b.exponent());
+  const int bits = std::max(ints_a.top(), ints_b.top()) - exponent;
+  const auto wide = [&](auto width) {
+    constexpr std::size_t words = decltype(width)::value;
+    return answer(ints_a.hull<words>(exponent), ints_b.hull<words>(exponent));
+  };
+  if (fits<4>(bits)) return wide(std::integral_constant<std::size_t, 4>());
+  if (fits<6>(bits)) return wide(std::integral_constant<std::size_t, 6>());
+  if (fits<8>(bits)) return wide(std::integral_constant<std::size_t, 8>());
+  if (!tell_crossing) return {exact_intersects(a, pose_a, b, pose_b), true, false};
+  const Relation relation = exact_relation(a, pose_a, b, pose_b);
+  return {relation != Relation::apart, true, relation == Relation::crossing};
 }
 
 }  // namespace cchip
