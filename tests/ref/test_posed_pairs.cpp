@@ -365,4 +365,17 @@ TEST_CASE("posed pairs: refuse what is not finite", "[ref][posed_pairs]") {
   CHECK_THROWS_AS(PosedPairs(Pose::Identity(), pose), std::invalid_argument);
   Primitive p;
   CHECK_THROWS_AS(exact_intersects(p, pose, p, Pose::Identity()), std::invalid_argument);
+  // In a coordinate that the pose multiplies by 0, too.
+  Pose flat = Pose::Identity();
+  flat.linear()(2, 2) = 0;
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      Primitive odd;
+      odd.v[1][k] = bad;
+      for (const Pose& place : {Pose(Pose::Identity()), flat}) {
+        CHECK_THROWS_AS(PosedPairs(place, Pose::Identity()).decide(odd, p), std::invalid_argument);
+        CHECK_THROWS_AS(PosedPairs(Pose::Identity(), place).decide(p, odd), std::invalid_argument);
+      }
+    }
+  }
 }

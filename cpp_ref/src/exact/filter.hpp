@@ -42,6 +42,7 @@ class Filter {
   friend bool is_pointless(const Filter&) { return gave_up_; }
 
   friend Filter operator+(const Filter& x, const Filter& y) {
+    if (x.is_zero()) return y;
     const double sum = x.value_ + y.value_;
     const double y_part = sum - x.value_;
     const double rest = (x.value_ - (sum - y_part)) + (y.value_ - y_part);  // Knuth's TwoSum

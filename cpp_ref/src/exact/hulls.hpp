@@ -201,10 +201,9 @@ inline bool are_zero(const std::array<int, 3>& s) { return s[0] == 0 && s[1] == 
 template <class Num>
 bool triangles_meet(const Triangle<Num>& a, const Triangle<Num>& b) {
   const std::array<int, 3> sides_b = a.sides(b);
-  if (!both_sides(sides_b)) return false;
+  if (!both_sides(sides_b) || is_pointless(a.normal[0])) return false;
   const std::array<int, 3> sides_a = b.sides(a);
-  if (!both_sides(sides_a)) return false;
-  if (is_pointless(a.normal[0])) return false;
+  if (!both_sides(sides_a) || is_pointless(b.normal[0])) return false;
   if (are_zero(sides_a) && are_zero(sides_b)) {
     const std::size_t d = nonzero_component(a.normal);
     if (d < 3 && !is_zero(b.normal)) return coplanar_triangles_meet(a, d, b);

@@ -9,6 +9,7 @@
 #include <cchip/geometry/pose.hpp>
 #include <cchip/geometry/primitive.hpp>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
@@ -26,12 +27,16 @@ struct OddDouble {
       throw std::invalid_argument("exact: a coordinate is not finite: replace NaN and infinities by numbers");
     }
     constexpr int digits = std::numeric_limits<double>::digits;
-    mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), digits));
-    exponent -= digits;
-    const int zeros = __builtin_ctzll(static_cast<std::uint64_t>(mantissa));
-    mantissa /= std::int64_t{1} << zeros;
-    exponent += zeros;
-    top = mantissa == 1 || mantissa == -1 ? exponent : exponent + digits - zeros;
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    const auto biased = static_cast<int>(bits >> (digits - 1) & 0x7FFU);
+    std::uint64_t size = bits & ((std::uint64_t{1} << (digits - 1)) - 1);
+    if (biased != 0) size |= std::uint64_t{1} << (digits - 1);  // all but subnormal numbers
+    const int zeros = __builtin_ctzll(size);
+    size >>= zeros;
+    mantissa = value < 0 ? -static_cast<std::int64_t>(size) : static_cast<std::int64_t>(size);
+    exponent = std::max(biased, 1) - 1074 - 1 + zeros;
+    top = size == 1 ? exponent : exponent + 64 - __builtin_clzll(size);
   }
   std::int64_t mantissa = 0;
   int exponent = 0;
@@ -51,14 +56,7 @@ class PosedInts {
     for (std::size_t i = 0; i < count_; ++i) {
       for (std::size_t c = 0; c < 3; ++c) vertex_[i][c] = OddDouble(p.v[i][static_cast<Eigen::Index>(c)]);
       vertex_[i][3] = OddDouble(1);
-      std::array<int, 3> terms = {};
-      std::array<int, 3> tops = {-limit, -limit, -limit};
-      for_each_product(i, [&](std::size_t k, const OddDouble& x, const OddDouble& y) {
-        exponent_ = std::min(exponent_, x.exponent + y.exponent);
-        tops[k] = std::max(tops[k], x.top + y.top);
-        ++terms[k];
-      });
-      for (std::size_t k = 0; k < 3; ++k) top_ = std::max(top_, tops[k] + (terms[k] > 2 ? 2 : terms[k] == 2 ? 1 : 0));
+      for (std::size_t k = 0; k < 3; ++k) add_up(coordinate_[i][k], i, k);
     }
   }
 
@@ -73,27 +71,61 @@ class PosedInts {
     std::array<Vec<WideInt<N>>, 4> points;
     for (Vec<WideInt<N>>& point : points) point.fill(WideInt<N>(0, 0));
     for (std::size_t i = 0; i < count_; ++i) {
-      for_each_product(i, [&](std::size_t k, const OddDouble& x, const OddDouble& y) {
-        points[i][k] += WideInt<N>(SInt128{x.mantissa} * y.mantissa, x.exponent + y.exponent - exponent);
-      });
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Coordinate& c = coordinate_[i][k];
+        if (c.is_narrow) {
+          if (c.sum != 0) points[i][k].add(c.sum, c.exponent - exponent);
+          continue;
+        }
+        for_each_product(i, k, [&](const OddDouble& x, const OddDouble& y) {
+          points[i][k].add(SInt128{x.mantissa} * y.mantissa, x.exponent + y.exponent - exponent);
+        });
+      }
     }
     return {points, count_};
   }
 
  private:
-  /// Calls take(component, factor, factor) for every product that is not zero.
+  /// The common exponent of a coordinate's products, and their sum in these units if it fits.
+  struct Coordinate {
+    int exponent;
+    bool is_narrow;
+    SInt128 sum;
+  };
+
+  /// Calls take(factor, factor) for every product that is not zero.
   template <class Take>
-  void for_each_product(std::size_t i, const Take& take) const {
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t c = 0; c < 4; ++c) {
-        if (entry_[k][c].mantissa != 0 && vertex_[i][c].mantissa != 0) take(k, entry_[k][c], vertex_[i][c]);
-      }
+  void for_each_product(std::size_t i, std::size_t k, const Take& take) const {
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (entry_[k][c].mantissa != 0 && vertex_[i][c].mantissa != 0) take(entry_[k][c], vertex_[i][c]);
     }
+  }
+
+  void add_up(Coordinate& c, std::size_t i, std::size_t k) {
+    c.exponent = limit;
+    int top = -limit;
+    int terms = 0;
+    for_each_product(i, k, [&](const OddDouble& x, const OddDouble& y) {
+      c.exponent = std::min(c.exponent, x.exponent + y.exponent);
+      top = std::max(top, x.top + y.top);
+      ++terms;
+    });
+    top += terms > 2 ? 2 : terms == 2 ? 1 : 0;
+    exponent_ = std::min(exponent_, c.exponent);
+    top_ = std::max(top_, top);
+    c.is_narrow = top - c.exponent <= 126;
+    c.sum = 0;
+    if (!c.is_narrow) return;
+    for_each_product(i, k, [&](const OddDouble& x, const OddDouble& y) {
+      const SInt128 factor = SInt128{1} << (x.exponent + y.exponent - c.exponent);
+      c.sum += SInt128{x.mantissa} * y.mantissa * factor;
+    });
   }
 
   std::size_t count_;
   std::array<std::array<OddDouble, 4>, 3> entry_;
   std::array<std::array<OddDouble, 4>, 4> vertex_;
+  std::array<std::array<Coordinate, 3>, 4> coordinate_;
   static constexpr int limit = 1 << 20;  // beyond the exponent of any product
   int exponent_ = limit;
   int top_ = -limit;

@@ -36,7 +36,12 @@ struct Rounded {
 
 double greatest_component(const Primitive& p) {
   double greatest = 0;
-  for (std::size_t i = 0; i < p.vertex_count(); ++i) greatest = std::max(greatest, p.v[i].cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < p.vertex_count(); ++i) {
+    if (!p.v[i].allFinite()) {
+      throw std::invalid_argument("primitive: a coordinate is not finite: replace NaN and infinities by numbers");
+    }
+    greatest = std::max(greatest, p.v[i].cwiseAbs().maxCoeff());
+  }
   return greatest;
 }
 
@@ -64,9 +69,22 @@ bool separates(const Vec3d& axis, const Rounded& r) {
 /// Normal of a triangle, or of the plane along both diagonals of a quad.
 Vec3d normal(const std::array<Vec3d, 4>& v, std::size_t count) { return (v[2] - v[0]).cross(v[count - 1] - v[1]); }
 
-/// The axes of the separating axis test for planar primitives that are not coplanar.
+/// Directions of the separating axis test for planar primitives: both normals, then the cross products of their edges
+/// or, if the planes are nearly parallel, the normals of the edges within the plane.
 bool separated(const Rounded& r) {
-  if (separates(normal(r.a, r.count_a), r) || separates(normal(r.b, r.count_b), r)) return true;
+  const Vec3d normal_a = normal(r.a, r.count_a);
+  const Vec3d normal_b = normal(r.b, r.count_b);
+  if (separates(normal_a, r) || separates(normal_b, r)) return true;
+  const auto size = [](const Vec3d& v) { return v.cwiseAbs().sum(); };
+  if (size(normal_a.cross(normal_b)) < 0x1p-20 * size(normal_a) * size(normal_b)) {
+    for (std::size_t i = 0; i < r.count_a; ++i) {
+      if (separates(normal_a.cross(r.a[(i + 1) % r.count_a] - r.a[i]), r)) return true;
+    }
+    for (std::size_t k = 0; k < r.count_b; ++k) {
+      if (separates(normal_a.cross(r.b[(k + 1) % r.count_b] - r.b[k]), r)) return true;
+    }
+    return false;
+  }
   for (std::size_t i = 0; i < r.count_a; ++i) {
     const Vec3d edge = r.a[(i + 1) % r.count_a] - r.a[i];
     for (std::size_t k = 0; k < r.count_b; ++k) {
@@ -80,9 +98,13 @@ Hull<Filter> filter_hull(const Primitive& p, const Eigen::Matrix3d& linear, cons
   std::array<Vec<Filter>, 4> points;
   for (std::size_t i = 0; i < p.vertex_count(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto row = static_cast<Eigen::Index>(k);
-      points[i][k] = offset[k] + Filter(linear(row, 0)) * Filter(p.v[i].x()) +
-                     Filter(linear(row, 1)) * Filter(p.v[i].y()) + Filter(linear(row, 2)) * Filter(p.v[i].z());
+      // Most poses of assemblies have zeros and ones, which spare a product.
+      points[i][k] = offset[k];
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        const double entry = linear(static_cast<Eigen::Index>(k), c);
+        if (entry == 0) continue;
+        points[i][k] += entry == 1 ? Filter(p.v[i][c]) : Filter(entry) * Filter(p.v[i][c]);
+      }
     }
   }
   return {points, p.vertex_count()};

@@ -23,20 +23,25 @@ class WideInt {
   WideInt() = default;  // not initialised: hulls hold many that are never read
   /// value * 2^shift. \pre 0 <= shift < bits
   WideInt(SInt128 value, int shift) {
-    const auto words = static_cast<std::size_t>(shift / 64);
+    word_.fill(0);
+    add(value, shift);
+  }
+
+  /// Adds value * 2^shift. \pre 0 <= shift < bits
+  void add(SInt128 value, int shift) {
     const int rest = shift % 64;
     const auto low = static_cast<std::uint64_t>(value);
     const auto high = static_cast<std::uint64_t>(value >> 64);
     const std::uint64_t sign = value < 0 ? ~std::uint64_t{0} : 0;
-    const auto word = [&](std::size_t i) { return i == 0 ? low : i == 1 ? high : sign; };
-    for (std::size_t i = 0; i < N; ++i) {
-      if (i < words) {
-        word_[i] = 0;
-        continue;
-      }
-      const std::size_t from = i - words;
-      const std::uint64_t below = rest == 0 || from == 0 ? 0 : word(from - 1) >> (64 - rest);
-      word_[i] = word(from) << rest | below;
+    // 192 bits, and the sign above them. A shift by 64 is none that C++ defines, so it is made of two.
+    const std::array<std::uint64_t, 3> part = {low << rest, high << rest | low >> 1U >> (63 - rest),
+                                               sign << rest | high >> 1U >> (63 - rest)};
+    UInt128 carry = 0;
+    std::size_t from = 0;
+    for (std::size_t i = static_cast<std::size_t>(shift / 64); i < N; ++i, ++from) {
+      carry += UInt128{word_[i]} + (from < 3 ? part[from] : sign);
+      word_[i] = static_cast<std::uint64_t>(carry);
+      carry >>= 64;
     }
   }
 
