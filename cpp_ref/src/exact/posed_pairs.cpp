@@ -94,6 +94,30 @@ bool separated(const Rounded& r) {
   return false;
 }
 
+/// True if rounding hides on which side of A's plane each vertex of B lies.
+bool is_flush_but_for_rounding(const Rounded& r) {
+  const Vec3d axis = normal(r.a, r.count_a);
+  const double bound = axis.cwiseAbs().sum() * (2.5 * r.error + 16 * unit * r.greatest);
+  return std::all_of(r.b.begin(), r.b.begin() + static_cast<std::ptrdiff_t>(r.count_b),
+                     [&](const Vec3d& v) { return std::abs(axis.dot(v - r.a[0])) <= bound; });
+}
+
+/// True if coordinates under the pose are sums of products that no double holds, as a rule.
+bool rounds(const Pose& pose) {
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    int terms = 0;
+    bool is_long = false;
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const double entry = pose(row, c);
+      if (entry == 0) continue;
+      ++terms;
+      is_long = is_long || std::abs(std::remainder(entry, 0x1p-20)) > 0;
+    }
+    if (terms > 1 && is_long) return true;
+  }
+  return false;
+}
+
 Hull<Filter> filter_hull(const Primitive& p, const Eigen::Matrix3d& linear, const Vec<Filter>& offset) {
   std::array<Vec<Filter>, 4> points;
   for (std::size_t i = 0; i < p.vertex_count(); ++i) {
@@ -133,6 +157,7 @@ PosedPairs::PosedPairs(const Pose& pose_a, const Pose& pose_b) : pose_a_(pose_a)
     pose_a_ = Pose::Identity();
     pose_b_ = Pose::Identity();
   }
+  rounds_ = rounds(pose_a_) || rounds(pose_b_);
   row_sum_a_ = pose_a_.linear().cwiseAbs().rowwise().sum().maxCoeff();
   row_sum_b_ = pose_b_.linear().cwiseAbs().rowwise().sum().maxCoeff();
   for (Eigen::Index k = 0; k < 3; ++k) {
@@ -162,6 +187,8 @@ PosedPairs::Answer PosedPairs::decide(const Primitive& a, const Primitive& b, bo
       row_sum_a_ * greatest_component(a) + row_sum_b_ * greatest_component(b) + offset_.cwiseAbs().maxCoeff();
   r.error = 8 * unit * magnitude + lost;
   if (magnitude < 0x1p1000 && separated(r)) return {};
+  // Doubles with an error bound would know no side either, so that stage is left out.
+  if (rounds_ && is_flush_but_for_rounding(r)) return decide_in_integers(a, b, tell_crossing);
 
   const Hull<Filter> hull_a = filter_hull(a, pose_a_.linear(), filter_offset(offset_, offset_error_));
   const Hull<Filter> hull_b = filter_hull(b, pose_b_.linear(), Vec<Filter>{});

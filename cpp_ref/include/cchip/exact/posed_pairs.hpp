@@ -40,6 +40,7 @@ class PosedPairs {
   Pose pose_b_;
   Vec3d offset_;        ///< translation of A relative to B, rounded
   Vec3d offset_error_;  ///< bound on its error; exactly 0 where it is exact
+  bool rounds_;         ///< coordinates under a pose need more bits than a double has, as a rule
   double row_sum_a_;    ///< greatest sum of magnitudes in a row of the linear part
   double row_sum_b_;
 };
