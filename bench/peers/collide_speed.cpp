@@ -30,6 +30,8 @@ constexpr double assumed_native_gain = 2.3;
 constexpr const char* table_classes[] = {"touch",     "near",     "deep",     "far", "graze",
                                          "touch all", "deep all", "coherent", "lone"};
 
+bool is_flush(const std::string& class_name) { return class_name.rfind("flush", 0) == 0; }
+
 bool is_fcl(const std::string& variant) { return variant.rfind("FCL", 0) == 0; }
 
 struct Options {
@@ -120,9 +122,11 @@ class Benchmark {
         "single", "batch", "cores", "steps", "boxes", "pairs", "open");
     for (const std::string& name : options_.pairs) run_pair(name);
     run_scene();
+    run_flush();
     print_targets();
     print_libraries();
     print_relation();
+    print_flush();
     print_objects();
     return summary();
   }
@@ -345,10 +349,13 @@ class Benchmark {
               const std::vector<std::string>& names, const std::map<std::string, double>& seconds,
               const std::map<std::string, std::size_t>& differ, const CollisionCounts& counts, bool in_means) {
     for (const std::string& name : names) {
-      rows_.add("query", meshes, class_name, name, queries, hits, seconds.at(name), counts, 0, differ.at(name));
+      // A table of its own keeps what is never in the means apart.
+      rows_.add(is_flush(class_name) ? "flush" : "query", meshes, class_name, name, queries, hits, seconds.at(name),
+                counts, 0, differ.at(name));
       differ_[class_name][name] += differ.at(name);
     }
     queries_[class_name] += queries;
+    if (is_flush(class_name)) flush_.push_back({meshes, class_name, queries, differ.at("FCL Debian"), 0, seconds});
     const double reference = native_seconds(seconds);
     const bool boolean = class_name == "touch" || class_name == "near" || class_name == "deep";
     if (in_means) {
@@ -376,6 +383,29 @@ class Benchmark {
                static_cast<double>(counts.steps) / n, static_cast<double>(counts.box_tests) / n,
                static_cast<double>(counts.pairs) / n, static_cast<double>(counts.open) / n);
     std::fflush(stdout);
+  }
+
+  /// Flush faces, the normal case of assemblies: first and all contacts.
+  void run_flush() {
+    for (MeshPair& meshes : flush_pairs()) {
+      const Bodies bodies(std::move(meshes), debian());
+      peers_ = peer_pairs(libraries_, bodies.a.mesh(), bodies.b.mesh());
+      for (const FlushPlace place : flush_places) {
+        for (const CollisionRequest& request : {CollisionRequest{}, all_contacts}) {
+          std::mt19937_64 random(options_.seed);
+          const auto poses = [&](int) {
+            std::vector<PosePair> result;
+            for (std::size_t i = 0; i < all_poses(); ++i) result.push_back(flush_poses(place, random));
+            return result;
+          };
+          const std::size_t errs_before = fcl_errs_;
+          const bool all = request.contacts == CollisionRequest::Contacts::all;
+          const std::string name = fmt::format("flush {}{}", name_of(place), all ? " all" : "");
+          run_class(bodies, name, request, poses, 4, false);
+          flush_.back().fcl_errs = fcl_errs_ - errs_before;
+        }
+      }
+    }
   }
 
   /// One query alone, after the caches were filled with something else.
@@ -589,6 +619,30 @@ class Benchmark {
     fmt::print("\n");
   }
 
+  struct Flush {
+    std::string meshes, class_name;
+    std::size_t queries, fcl_differs, fcl_errs;
+    std::map<std::string, double> seconds;  ///< variant
+  };
+
+  /// FCL's times beside ours, and how often it is wrong about faces that are flush.
+  void print_flush() {
+    fmt::print(
+        "\nflush faces, not in the means: microseconds a query; FCL's wrong answers to yes or no, and pairs of faces "
+        "that "
+        "exact integers decide otherwise\n{:<10}{:<22}{:>10}{:>10}{:>10}{:>10}{:>8}{:>9}{:>9}{:>10}\n",
+        "meshes", "class", "Debian", "native", "single", "relation", "times", "queries", "wrong", "in pairs");
+    for (const Flush& x : flush_) {
+      const auto us = [&x](const char* name) {
+        const auto found = x.seconds.find(name);
+        return found == x.seconds.end() ? std::string("-") : fmt::format("{:.1f}", 1e6 * found->second);
+      };
+      fmt::print("{:<10}{:<22}{:>10}{:>10}{:>10}{:>10}{:>8.1f}{:>9}{:>9}{:>10}\n", x.meshes, x.class_name,
+                 us("FCL Debian"), us("FCL native"), us("single"), us("relation"),
+                 x.seconds.at("FCL Debian") / x.seconds.at("single"), x.queries, x.fcl_differs, x.fcl_errs);
+    }
+  }
+
   /// What it costs to tell touching from crossing.
   void print_relation() {
     fmt::print("\nwith relation: seconds of a single query, times those without; geometric means of the meshes\n");
@@ -634,6 +688,7 @@ class Benchmark {
   CollisionResult result_;  ///< reused, as a user does
   Rows rows_;
   std::vector<Built> built_;
+  std::vector<Flush> flush_;
   std::map<std::string, std::map<std::string, GeometricMean>> means_;  ///< class, variant
   std::map<std::string, std::map<std::string, std::size_t>> differ_;   ///< class, variant
   std::map<std::string, std::size_t> queries_;                         ///< class

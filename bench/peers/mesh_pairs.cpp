@@ -36,7 +36,80 @@ Mesh unit_segment() {
   return mesh;
 }
 
+/// Adds n x n squares of two triangles each; corner and sides in space.
+void add_plate(Mesh& mesh, const Vec3d& corner, const Vec3d& u, const Vec3d& v, int n) {
+  const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (int i = 0; i <= n; ++i) {
+    for (int k = 0; k <= n; ++k) mesh.vertices.emplace_back(corner + i / double(n) * u + k / double(n) * v);
+  }
+  const auto number = [base, n](int i, int k) { return base + static_cast<std::uint32_t>(i * (n + 1) + k); };
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < n; ++k) {
+      mesh.faces.push_back({Kind::tri, {number(i, k), number(i + 1, k), number(i + 1, k + 1), 0}});
+      mesh.faces.push_back({Kind::tri, {number(i, k), number(i + 1, k + 1), number(i, k + 1), 0}});
+    }
+  }
+}
+
+Mesh plate(const Vec3d& corner, int n) {
+  Mesh mesh;
+  mesh.name = "plate";
+  add_plate(mesh, corner, Vec3d::UnitX(), Vec3d::UnitY(), n);
+  return mesh;
+}
+
+Mesh box(const Vec3d& corner, const Vec3d& size, int n) {
+  Mesh mesh;
+  mesh.name = "box";
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3d u = size[(axis + 1) % 3] * Vec3d::Unit((axis + 1) % 3);
+    const Vec3d v = size[(axis + 2) % 3] * Vec3d::Unit((axis + 2) % 3);
+    add_plate(mesh, corner, v, u, n);
+    add_plate(mesh, corner + size[axis] * Vec3d::Unit(axis), u, v, n);
+  }
+  return mesh;
+}
+
 }  // namespace
+
+const char* name_of(FlushPlace place) {
+  switch (place) {
+    case FlushPlace::together:
+      return "together";
+    case FlushPlace::shifted:
+      return "shifted";
+    case FlushPlace::turned:
+      return "turned";
+    case FlushPlace::apart:
+      break;
+  }
+  return "apart";
+}
+
+std::vector<MeshPair> flush_pairs() {
+  return {{"plates", plate({0, 0, 0}, 24), plate({0.01, 0.01, 0}, 24), false},
+          {"boxes", box({-0.5, -0.4, -0.3}, {1, 0.8, 0.3}, 12), box({-0.2, -0.3, 0}, {0.5, 0.7, 0.6}, 12), false}};
+}
+
+PosePair flush_poses(FlushPlace place, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto vector = [&](double range) {
+    const double x = range * unit(random);
+    const double y = range * unit(random);
+    return Vec3d(x, y, range * unit(random));
+  };
+  const bool is_turned = place == FlushPlace::turned || place == FlushPlace::apart;
+  const Vec3d translation = vector(1);
+  PosePair poses;
+  poses.a = make_pose(translation, is_turned ? vector(180) : Vec3d(0, 0, 0));
+  poses.b = poses.a;
+  if (place == FlushPlace::shifted || place == FlushPlace::apart) {
+    Vec3d along = vector(0.1);
+    along.z() = 0;
+    poses.b.translation() += poses.a.linear() * along;
+  }
+  return poses;
+}
 
 const std::vector<std::string>& mesh_pair_names() {
   static const std::vector<std::string> names = {"body-body",   "limbs-limbs",   "gear-ring", "body-animal",

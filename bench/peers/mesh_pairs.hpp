@@ -26,6 +26,23 @@ const std::vector<std::string>& mesh_pair_names();
 /// \throws std::runtime_error a mesh file is missing
 MeshPair mesh_pair(const std::string& name);
 
+/// How two meshes with flush faces are placed. All poses have a translation of their own.
+enum class FlushPlace {
+  together,  ///< equal poses, axes along the world's
+  shifted,   ///< B moved along the common plane
+  turned,    ///< equal poses, turned at random
+  apart      ///< turned alike, B moved along the common plane: entries of poses are rounded, so faces are flush but for
+             ///< that
+};
+inline constexpr FlushPlace flush_places[] = {FlushPlace::together, FlushPlace::shifted, FlushPlace::turned,
+                                              FlushPlace::apart};
+const char* name_of(FlushPlace place);
+
+/// Meshes with flush faces in the plane z = 0, outside the geometric means: two plates of small triangles, offset along
+/// the plane; two boxes, one standing on the other.
+std::vector<MeshPair> flush_pairs();
+PosePair flush_poses(FlushPlace place, std::mt19937_64& random);
+
 /// Faces with more than three vertices, and all of them.
 std::string describe_faces(const Mesh& mesh);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Filtered answers against integers of any size.
+#include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/exact/posed_pairs.hpp>
@@ -7,6 +8,7 @@
 #include <iostream>
 #include <limits>
 
+#include "exact/posed_ints.hpp"
 #include "random_pairs.hpp"
 #include "random_poses.hpp"
 
@@ -102,7 +104,128 @@ void compare_and_count(int rounds) {
   }
 }
 
+using Integer = boost::multiprecision::cpp_int;
+
+/// Of up to 127 bits, often with long runs of equal bits.
+template <class Random>
+exact::SInt128 random_int128(Random& random) {
+  const auto word = [&random]() -> std::uint64_t {
+    const std::uint64_t w = random();
+    switch (random() % 4) {
+      case 0:
+        return 0;
+      case 1:
+        return ~std::uint64_t{0};
+      default:
+        return w;
+    }
+  };
+  const auto value = static_cast<exact::SInt128>(exact::UInt128{word()} << 64U | word());
+  return value >> (1 + random() % 127);
+}
+
+Integer integer_of(exact::SInt128 value) {
+  const bool negative = value < 0;
+  const exact::UInt128 size = negative ? -static_cast<exact::UInt128>(value) : static_cast<exact::UInt128>(value);
+  const Integer result = (Integer(static_cast<std::uint64_t>(size >> 64U)) << 64U) + static_cast<std::uint64_t>(size);
+  return negative ? Integer(-result) : result;
+}
+
+template <std::size_t N>
+void check_arithmetic(std::mt19937_64& random) {
+  using Wide = exact::WideInt<N>;
+  constexpr int shift_most = Wide::bits / 3 - 66;
+  for (int i = 0; i < 20000; ++i) {
+    std::array<Wide, 3> wide;
+    std::array<Integer, 3> any;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const exact::SInt128 value = random_int128(random) >> 64;
+      const int shift = static_cast<int>(random() % static_cast<unsigned>(shift_most + 1));
+      wide[k] = Wide(value, shift);
+      any[k] = integer_of(value) * (Integer(1) << shift);
+    }
+    const auto& [x, y, z] = wide;
+    const auto& [p, q, r] = any;
+    REQUIRE(x.sign() == p.sign());
+    REQUIRE((x < y) == (p < q));
+    REQUIRE((x <= y) == (p <= q));
+    REQUIRE((x * y * z - x * z + y).sign() == Integer(p * q * r - p * r + q).sign());
+    REQUIRE((x * y - y * x).sign() == 0);
+    // A number less its own value, however it was made, is 0; one more is positive.
+    const exact::SInt128 value = random_int128(random);
+    const int shift = static_cast<int>(random() % static_cast<unsigned>(Wide::bits - 128));
+    Wide sum(0, 0);
+    for (int bit = 0; bit < 128; ++bit) {
+      if ((static_cast<exact::UInt128>(value) >> bit & 1U) == 0) continue;
+      sum = bit == 127 ? sum - Wide(1, shift + bit) : sum + Wide(1, shift + bit);
+    }
+    REQUIRE((Wide(value, shift) - sum).sign() == 0);
+    REQUIRE((Wide(value, shift) - sum + Wide(1, 0)).sign() == 1);
+    REQUIRE((sum - Wide(value, shift) - Wide(1, 0)).sign() == -1);
+  }
+}
+
+/// Pairs whose coordinates need as many bits as N words can take, of the greatest magnitudes and of the least.
+template <std::size_t N>
+void check_at_limit(std::mt19937_64& random, std::array<int, 3>& seen) {
+  using exact::PosedInts;
+  const int most = (exact::WideInt<N>::bits - 7) / 3;
+  REQUIRE(exact::fits<N>(most));
+  REQUIRE_FALSE(exact::fits<N>(most + 1));
+  for (int i = 0; i < 3000; ++i) {
+    const int low = -static_cast<int>(random() % 200);
+    const int high = low + most;
+    const auto coordinate = [&]() -> double {
+      const double sign = random() % 2 == 0 ? 1 : -1;
+      switch (random() % 6) {
+        case 0:
+          return 0;
+        case 1:
+          return sign * std::ldexp(1.0, low);
+        case 2:
+          return sign * std::ldexp(1.0, high - 1);
+        default:
+          return sign * std::ldexp(1 - 0x1p-53, high);
+      }
+    };
+    Primitive a;
+    Primitive b;
+    a.kind = random() % 2 == 0 ? Kind::tri : Kind::quad;
+    b.kind = random() % 2 == 0 ? Kind::tri : Kind::quad;
+    for (Primitive* p : {&a, &b}) {
+      for (std::size_t k = 0; k < p->vertex_count(); ++k) p->v[k] = Vec3d(coordinate(), coordinate(), coordinate());
+    }
+    a.v[0] = Vec3d(std::ldexp(1 - 0x1p-53, high), std::ldexp(1.0, low), 0);  // both ends of the range are in use
+    const PosedInts ints_a(a, Pose::Identity());
+    const PosedInts ints_b(b, Pose::Identity());
+    const int exponent = std::min(ints_a.exponent(), ints_b.exponent());
+    REQUIRE(std::max(ints_a.top(), ints_b.top()) - exponent == most);
+    const auto hull_a = ints_a.hull<N>(exponent);
+    const auto hull_b = ints_b.hull<N>(exponent);
+    const Relation relation = exact_relation(a, b);
+    REQUIRE(hulls_meet(hull_a, hull_b) == (relation != Relation::apart));
+    if (relation != Relation::apart) REQUIRE(hulls_cross(hull_a, hull_b) == (relation == Relation::crossing));
+    ++seen[static_cast<std::size_t>(relation)];
+  }
+}
+
 }  // namespace
+
+TEST_CASE("posed pairs: integers of fixed width agree with those of any size", "[ref][posed_pairs]") {
+  std::mt19937_64 random(seed() + 17);
+  check_arithmetic<4>(random);
+  check_arithmetic<6>(random);
+  check_arithmetic<8>(random);
+}
+
+TEST_CASE("posed pairs: integers of fixed width hold what they are asked to", "[ref][posed_pairs]") {
+  std::mt19937_64 random(seed() + 19);
+  std::array<int, 3> seen = {};
+  check_at_limit<4>(random, seen);
+  check_at_limit<6>(random, seen);
+  check_at_limit<8>(random, seen);
+  for (const int count : seen) CHECK(count > 100);
+}
 
 TEST_CASE("posed pairs: 10^5 agree with integers of any size", "[ref][posed_pairs]") { compare_and_count(4000); }
 
@@ -124,6 +247,76 @@ TEST_CASE("posed pairs: whole numbers are decided without integers of any size",
     }
     CHECK(open == 0);
   }
+}
+
+TEST_CASE("posed pairs: flush faces across an axis are decided without integers of any size", "[ref][posed_pairs]") {
+  std::mt19937_64 random(seed() + 11);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  int hits = 0;
+  int open = 0;
+  constexpr int rounds = 3000;
+  for (int i = 0; i < rounds; ++i) {
+    const int axis = i % 3;
+    const double height = unit(random);
+    Pose pose_a = random_pose(PoseClass::quarter_turns, 1, random);
+    Pose pose_b = pose_a;
+    pose_b.translation() += pose_b.linear() * Vec3d::Unit((axis + 1) % 3) * unit(random);
+    Primitive a;
+    Primitive b;
+    a.kind = i % 5 == 0 ? Kind::quad : Kind::tri;
+    b.kind = i % 4 == 0 ? Kind::quad : Kind::tri;
+    for (Primitive* p : {&a, &b}) {
+      for (std::size_t k = 0; k < p->vertex_count(); ++k) {
+        p->v[k] = Vec3d(unit(random), unit(random), unit(random));
+        p->v[k][axis] = height;
+      }
+    }
+    const PosedPairs pairs(pose_a, pose_b);
+    const PosedPairs::Answer answer = pairs.decide(a, b);
+    open += answer.open;
+    hits += answer.hit;
+    REQUIRE(answer.hit == exact_intersects(a, pose_a, b, pose_b));
+    if (answer.hit) REQUIRE_FALSE(pairs.cross(a, b));
+  }
+  CAPTURE(hits);
+  CHECK(open == 0);
+  CHECK(hits > rounds / 3);
+  CHECK(hits < rounds);
+}
+
+TEST_CASE("posed pairs: equal poses that have an inverse do not matter", "[ref][posed_pairs]") {
+  std::mt19937_64 random(seed() + 13);
+  std::array<int, 3> seen = {};
+  for (const PairClass c : pair_classes) {
+    PairSource source(-40, 40, static_cast<std::uint64_t>(c) + 70);
+    for (int i = 0; i < 400; ++i) {
+      const PoseClass pose_class = pose_classes[static_cast<std::size_t>(i) % std::size(pose_classes)];
+      Pose pose = random_pose(pose_class, 2, random);
+      if (i % 7 == 0) pose.linear().row(i % 3).setZero();  // singular
+      if (i % 11 == 0) pose.linear() *= std::array<double, 4>{0x1p-400, 0x1p400, 0x1p-199, 0x1p199}[random() % 4];
+      if (i % 13 == 0) pose.linear().col(i % 3) *= 0x1p-100;
+      const GridPair grid = source.pair(c, i % 3 == 0 ? Kind::quad : Kind::tri);
+      const Primitive a = scaled(grid.a, -3);
+      const Primitive b = scaled(grid.b, -3);
+      const PosedPairs pairs(pose, pose);
+      const bool hit = pairs.decide(a, b).hit;
+      const Relation relation = exact_relation(a, pose, b, pose);
+      REQUIRE(hit == (relation != Relation::apart));
+      if (hit) REQUIRE(pairs.cross(a, b) == (relation == Relation::crossing));
+      ++seen[static_cast<std::size_t>(relation)];
+    }
+  }
+  for (const int count : seen) CHECK(count > 100);
+
+  // Turned together, flush faces lie as they do unturned: whole numbers stay whole.
+  const Pose turned = make_pose({0.1, 0.2, 0.3}, {30, 40, 50});
+  Primitive a;
+  a.v = {Vec3d(0, 0, 1), Vec3d(4, 0, 1), Vec3d(0, 4, 1), Vec3d::Zero()};
+  Primitive b = a;
+  for (Vec3d& v : b.v) v += Vec3d(1, 1, 0);
+  const PosedPairs::Answer answer = PosedPairs(turned, turned).decide(a, b);
+  CHECK(answer.hit);
+  CHECK_FALSE(answer.open);
 }
 
 TEST_CASE("posed pairs: a product that no double holds decides", "[ref][posed_pairs]") {
@@ -152,8 +345,9 @@ TEST_CASE("posed pairs: common translations do not matter", "[ref][posed_pairs]"
     const GridPair grid = source.pair(PairClass::general);
     Pose pose_a = random_pose(PoseClass::rigid, 1, random);
     Pose pose_b = pose_a;
+    pose_b.linear() *= 2;  // equal poses would leave the question
     const Primitive a = scaled(grid.a, -5);
-    const Primitive b = scaled(grid.b, -5);
+    const Primitive b = scaled(grid.b, -6);
     const bool hit = PosedPairs(pose_a, pose_b).decide(a, b).hit;
     pose_a.translation().array() += 0x1p80;
     pose_b.translation() = pose_a.translation();
@@ -171,4 +365,17 @@ TEST_CASE("posed pairs: refuse what is not finite", "[ref][posed_pairs]") {
   CHECK_THROWS_AS(PosedPairs(Pose::Identity(), pose), std::invalid_argument);
   Primitive p;
   CHECK_THROWS_AS(exact_intersects(p, pose, p, Pose::Identity()), std::invalid_argument);
+  // In a coordinate that the pose multiplies by 0, too.
+  Pose flat = Pose::Identity();
+  flat.linear()(2, 2) = 0;
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      Primitive odd;
+      odd.v[1][k] = bad;
+      for (const Pose& place : {Pose(Pose::Identity()), flat}) {
+        CHECK_THROWS_AS(PosedPairs(place, Pose::Identity()).decide(odd, p), std::invalid_argument);
+        CHECK_THROWS_AS(PosedPairs(Pose::Identity(), place).decide(p, odd), std::invalid_argument);
+      }
+    }
+  }
 }

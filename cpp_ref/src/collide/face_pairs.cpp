@@ -71,11 +71,11 @@ void FacePairs::test(std::uint32_t face_a, std::uint32_t face_b) {
   if (!pairs_) pairs_.emplace(*query_.pose_a, *query_.pose_b);
   const Primitive a = query_.a->mesh().primitive(face_a);
   const Primitive b = query_.b->mesh().primitive(face_b);
-  const PosedPairs::Answer answer = pairs_->decide(a, b);
+  const PosedPairs::Answer answer = pairs_->decide(a, b, request_.tells_relation());
   ++result_->counts.pairs;
   result_->counts.open += answer.open;
   if (!answer.hit) return;
-  add(face_a, face_b, request_.tells_relation() && pairs_->cross(a, b) ? Relation::crossing : Relation::touching);
+  add(face_a, face_b, answer.crosses ? Relation::crossing : Relation::touching);
 }
 
 void FacePairs::add(std::uint32_t face_a, std::uint32_t face_b, Relation relation) {

@@ -99,7 +99,8 @@ bool relate(const CollisionQuery& query, const CentreLine& line, RelativePose& r
   // What may underflow is far below a unit: see the bounds on the numbers above.
   r.plane_error += 0x1p-100;
   r.vertex_error += 0x1p-100;
-  return r.norm < 0x1p60 && r.distance < 0x1p60 && r.plane_error < 0x1p60 && r.vertex_error < 0x1p60;
+  // Within these limits no product of the search leaves single precision: docs/cpp/exactness.md derives them.
+  return r.norm < 0x1p26 && r.distance < 0x1p40 && r.plane_error < 0x1p36 && r.vertex_error < 0x1p36;
 }
 
 }  // namespace cchip

@@ -11,8 +11,9 @@
 namespace cchip::exact {
 
 /// Represents a real number x with |x - value| <= error. Error 0 means that x is a double, and stays 0 through every
-/// operation whose result is a double again, so that whole numbers of moderate size are decided here. An overflow
-/// leaves an error that is infinite or NaN. docs/cpp/exactness.md derives the bounds.
+/// operation whose result is a double again, so that whole numbers of moderate size are decided here. A product with
+/// an exact 0 is an exact 0, so that faces in one plane across an axis are decided here, too. An overflow leaves an
+/// error that is infinite or NaN. docs/cpp/exactness.md derives the bounds.
 class Filter {
  public:
   Filter() = default;
@@ -25,12 +26,23 @@ class Filter {
   static void reset() { gave_up_ = false; }
 
   int sign() const {
-    if (std::abs(value_) > error_) return value_ > 0 ? 1 : -1;
-    if (!(value_ == 0 && error_ == 0)) gave_up_ = true;
-    return 0;
+    bool open = false;
+    const int known = sign_if_known(*this, open);
+    gave_up_ = gave_up_ || open;
+    return known;
   }
 
+  /// The hooks of hulls.hpp for numbers that may not know their sign.
+  friend int sign_if_known(const Filter& x, bool& open) {
+    if (std::abs(x.value_) > x.error_) return x.value_ > 0 ? 1 : -1;
+    if (!x.is_zero()) open = true;
+    return 0;
+  }
+  friend void give_up(const Filter&) { gave_up_ = true; }
+  friend bool is_pointless(const Filter&) { return gave_up_; }
+
   friend Filter operator+(const Filter& x, const Filter& y) {
+    if (x.is_zero()) return y;
     const double sum = x.value_ + y.value_;
     const double y_part = sum - x.value_;
     const double rest = (x.value_ - (sum - y_part)) + (y.value_ - y_part);  // Knuth's TwoSum
@@ -38,6 +50,8 @@ class Filter {
   }
   friend Filter operator-(const Filter& x, const Filter& y) { return x + Filter(-y.value_, y.error_); }
   friend Filter operator*(const Filter& x, const Filter& y) {
+    // 0 times any real number is 0, even if the bound on that number is infinite.
+    if (x.is_zero() || y.is_zero()) return {};
     const double product = x.value_ * y.value_;
     const double rest = std::fma(x.value_, y.value_, -product);
     const double size_x = std::abs(x.value_);
@@ -57,6 +71,7 @@ class Filter {
  private:
   /// What underflows of one product may take from its value and from its error bound.
   static constexpr double lost = 0x1p-1072;
+  bool is_zero() const { return value_ == 0 && error_ == 0; }
   /// Covers the rounding of the few operations that made the bound; keeps 0.
   static double inflated(double bound) { return bound * (1 + 0x1p-49); }
 

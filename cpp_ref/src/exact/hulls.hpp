@@ -27,6 +27,22 @@ namespace cchip::exact {
 template <class Num>
 using Vec = std::array<Num, 3>;
 
+// Numbers that may not know their sign overload these; filter.hpp does.
+
+/// Sign of x; where it is not known, 0, and `open` becomes true.
+template <class Num>
+int sign_if_known(const Num& x, bool& /*open*/) {
+  return x.sign();
+}
+/// Makes the answer invalid: it depends on a sign that is not known.
+template <class Num>
+void give_up(const Num& /*any*/) {}
+/// True if the answer is invalid already.
+template <class Num>
+bool is_pointless(const Num& /*any*/) {
+  return false;
+}
+
 template <class Num>
 Vec<Num> operator-(const Vec<Num>& p, const Vec<Num>& q) {
   return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
@@ -45,8 +61,12 @@ int sign_of_dot(const Vec<Num>& p, const Vec<Num>& q) {
 /// Index of a component that is not zero; 3 if there is none.
 template <class Num>
 std::size_t nonzero_component(const Vec<Num>& p) {
-  return static_cast<std::size_t>(std::find_if(p.begin(), p.end(), [](const Num& c) { return c.sign() != 0; }) -
-                                  p.begin());
+  bool open = false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (sign_if_known(p[k], open) != 0) return k;
+  }
+  if (open) give_up(p[0]);
+  return 3;
 }
 
 template <class Num>
@@ -137,12 +157,57 @@ bool segment_meets(const Vec<Num>& p, int side_p, const Vec<Num>& q, int side_q,
   return least == 0 || greatest == 0;
 }
 
+/// True if all of q lies beyond an edge of p, which is not collapsed, in their common plane. d: a component of p's
+/// normal that is not zero, so leaving it out maps the plane one to one. One known vertex on the inner side is enough
+/// to rule an edge out; `open` becomes true where that takes a sign that is not known.
+template <class Num>
+bool is_beyond_edge(const Triangle<Num>& p, std::size_t d, const Triangle<Num>& q, bool& open) {
+  const std::size_t e = (d + 1) % 3;
+  const std::size_t f = (d + 2) % 3;
+  const int turn = p.normal[d].sign();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec<Num>& from = p.v[k];
+    const Vec<Num>& to = p.v[(k + 1) % 3];
+    const Num along_e = to[e] - from[e];
+    const Num along_f = to[f] - from[f];
+    bool beyond = true;
+    bool unknown = false;
+    for (std::size_t i = 0; i < 3 && beyond; ++i) {
+      bool open_here = false;
+      const int s = sign_if_known(Num(along_e * (q.v[i][f] - from[f]) - along_f * (q.v[i][e] - from[e])), open_here);
+      unknown = unknown || open_here;
+      beyond = open_here || s * turn < 0;
+    }
+    if (!beyond) continue;
+    if (!unknown) return true;
+    open = true;
+  }
+  return false;
+}
+
+/// Triangles in one plane, neither collapsed. Two convex polygons have no point in common if and only if one lies
+/// beyond an edge of the other: their difference is a polygon, too, each of whose edges is parallel to an edge of one
+/// of them.
+template <class Num>
+bool coplanar_triangles_meet(const Triangle<Num>& a, std::size_t d, const Triangle<Num>& b) {
+  bool open = false;
+  if (is_beyond_edge(a, d, b, open) || is_beyond_edge(b, d, a, open)) return false;
+  if (open) give_up(a.normal[d]);
+  return true;
+}
+
+inline bool are_zero(const std::array<int, 3>& s) { return s[0] == 0 && s[1] == 0 && s[2] == 0; }
+
 template <class Num>
 bool triangles_meet(const Triangle<Num>& a, const Triangle<Num>& b) {
   const std::array<int, 3> sides_b = a.sides(b);
-  if (!both_sides(sides_b)) return false;
+  if (!both_sides(sides_b) || is_pointless(a.normal[0])) return false;
   const std::array<int, 3> sides_a = b.sides(a);
-  if (!both_sides(sides_a)) return false;
+  if (!both_sides(sides_a) || is_pointless(b.normal[0])) return false;
+  if (are_zero(sides_a) && are_zero(sides_b)) {
+    const std::size_t d = nonzero_component(a.normal);
+    if (d < 3 && !is_zero(b.normal)) return coplanar_triangles_meet(a, d, b);
+  }
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t n = (k + 1) % 3;
     if (segment_meets(a.v[k], sides_a[k], a.v[n], sides_a[n], b)) return true;
@@ -223,12 +288,22 @@ bool hulls_cross(const Hull<Num>& a, const Hull<Num>& b) {
     some = true;
     return true;
   };
-  for (std::size_t i = 0; i < a.faces; ++i) {
-    if (!allows(a.face[i].normal)) return false;
-  }
-  for (std::size_t k = 0; k < b.faces; ++k) {
-    if (!allows(b.face[k].normal)) return false;
-  }
+  const auto normals_allow = [&](const Hull<Num>& own, const Hull<Num>& other) {
+    if (own.solid) {
+      return std::all_of(own.face.begin(), own.face.end(), [&](const Triangle<Num>& t) { return allows(t.normal); });
+    }
+    bool before = false;  // all of a triangle lies in its plane, so only the other's vertices tell
+    bool behind = false;
+    for (std::size_t i = 0; i < other.count(); ++i) {
+      const int s = own.face[0].side(other.v[i]);
+      before = before || s < 0;
+      behind = behind || s > 0;
+    }
+    if (!before || !behind) return is_zero(own.face[0].normal);
+    some = true;
+    return true;
+  };
+  if (!normals_allow(a, b) || !normals_allow(b, a)) return false;
   for (std::size_t i = 0; i < a.count(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const Vec<Num> edge = a.v[i] - a.v[j];

@@ -5,16 +5,20 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "filter.hpp"
 #include "hulls.hpp"
+#include "posed_ints.hpp"
 
 namespace cchip {
 namespace {
 
 using exact::Filter;
+using exact::fits;
 using exact::Hull;
+using exact::PosedInts;
 using exact::Vec;
 
 constexpr double unit = std::numeric_limits<double>::epsilon() / 2;  // greatest relative error of one operation
@@ -32,7 +36,12 @@ struct Rounded {
 
 double greatest_component(const Primitive& p) {
   double greatest = 0;
-  for (std::size_t i = 0; i < p.vertex_count(); ++i) greatest = std::max(greatest, p.v[i].cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < p.vertex_count(); ++i) {
+    if (!p.v[i].allFinite()) {
+      throw std::invalid_argument("primitive: a coordinate is not finite: replace NaN and infinities by numbers");
+    }
+    greatest = std::max(greatest, p.v[i].cwiseAbs().maxCoeff());
+  }
   return greatest;
 }
 
@@ -60,9 +69,22 @@ bool separates(const Vec3d& axis, const Rounded& r) {
 /// Normal of a triangle, or of the plane along both diagonals of a quad.
 Vec3d normal(const std::array<Vec3d, 4>& v, std::size_t count) { return (v[2] - v[0]).cross(v[count - 1] - v[1]); }
 
-/// The axes of the separating axis test for planar primitives that are not coplanar.
+/// Directions of the separating axis test for planar primitives: both normals, then the cross products of their edges
+/// or, if the planes are nearly parallel, the normals of the edges within the plane.
 bool separated(const Rounded& r) {
-  if (separates(normal(r.a, r.count_a), r) || separates(normal(r.b, r.count_b), r)) return true;
+  const Vec3d normal_a = normal(r.a, r.count_a);
+  const Vec3d normal_b = normal(r.b, r.count_b);
+  if (separates(normal_a, r) || separates(normal_b, r)) return true;
+  const auto size = [](const Vec3d& v) { return v.cwiseAbs().sum(); };
+  if (size(normal_a.cross(normal_b)) < 0x1p-20 * size(normal_a) * size(normal_b)) {
+    for (std::size_t i = 0; i < r.count_a; ++i) {
+      if (separates(normal_a.cross(r.a[(i + 1) % r.count_a] - r.a[i]), r)) return true;
+    }
+    for (std::size_t k = 0; k < r.count_b; ++k) {
+      if (separates(normal_a.cross(r.b[(k + 1) % r.count_b] - r.b[k]), r)) return true;
+    }
+    return false;
+  }
   for (std::size_t i = 0; i < r.count_a; ++i) {
     const Vec3d edge = r.a[(i + 1) % r.count_a] - r.a[i];
     for (std::size_t k = 0; k < r.count_b; ++k) {
@@ -72,13 +94,41 @@ bool separated(const Rounded& r) {
   return false;
 }
 
+/// True if rounding hides on which side of A's plane each vertex of B lies.
+bool is_flush_but_for_rounding(const Rounded& r) {
+  const Vec3d axis = normal(r.a, r.count_a);
+  const double bound = axis.cwiseAbs().sum() * (2.5 * r.error + 16 * unit * r.greatest);
+  return std::all_of(r.b.begin(), r.b.begin() + static_cast<std::ptrdiff_t>(r.count_b),
+                     [&](const Vec3d& v) { return std::abs(axis.dot(v - r.a[0])) <= bound; });
+}
+
+/// True if coordinates under the pose are sums of products that no double holds, as a rule.
+bool rounds(const Pose& pose) {
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    int terms = 0;
+    bool is_long = false;
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const double entry = pose(row, c);
+      if (entry == 0) continue;
+      ++terms;
+      is_long = is_long || std::abs(std::remainder(entry, 0x1p-20)) > 0;
+    }
+    if (terms > 1 && is_long) return true;
+  }
+  return false;
+}
+
 Hull<Filter> filter_hull(const Primitive& p, const Eigen::Matrix3d& linear, const Vec<Filter>& offset) {
   std::array<Vec<Filter>, 4> points;
   for (std::size_t i = 0; i < p.vertex_count(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto row = static_cast<Eigen::Index>(k);
-      points[i][k] = offset[k] + Filter(linear(row, 0)) * Filter(p.v[i].x()) +
-                     Filter(linear(row, 1)) * Filter(p.v[i].y()) + Filter(linear(row, 2)) * Filter(p.v[i].z());
+      // Most poses of assemblies have zeros and ones, which spare a product.
+      points[i][k] = offset[k];
+      for (Eigen::Index c = 0; c < 3; ++c) {
+        const double entry = linear(static_cast<Eigen::Index>(k), c);
+        if (entry == 0) continue;
+        points[i][k] += entry == 1 ? Filter(p.v[i][c]) : Filter(entry) * Filter(p.v[i][c]);
+      }
     }
   }
   return {points, p.vertex_count()};
@@ -88,26 +138,38 @@ Vec<Filter> filter_offset(const Vec3d& offset, const Vec3d& error) {
   return {Filter(offset.x(), error.x()), Filter(offset.y(), error.y()), Filter(offset.z(), error.z())};
 }
 
+/// True only if the map has an inverse. The product of the columns' sums of magnitudes bounds all that is added up for
+/// the determinant; its rounding errors are below 2^-49 of it.
+bool is_regular(const Pose& pose) {
+  const Vec3d columns = pose.linear().cwiseAbs().colwise().sum();
+  if (!(columns.minCoeff() > 0x1p-200 && columns.maxCoeff() < 0x1p200)) return false;
+  return std::abs(pose.linear().determinant()) > 0x1p-40 * columns.prod();
+}
+
 }  // namespace
 
-PosedPairs::PosedPairs(const Pose& pose_a, const Pose& pose_b)
-    : pose_a_(pose_a),
-      pose_b_(pose_b),
-      row_sum_a_(pose_a.linear().cwiseAbs().rowwise().sum().maxCoeff()),
-      row_sum_b_(pose_b.linear().cwiseAbs().rowwise().sum().maxCoeff()) {
+PosedPairs::PosedPairs(const Pose& pose_a, const Pose& pose_b) : pose_a_(pose_a), pose_b_(pose_b) {
   if (!pose_a.affine().allFinite() || !pose_b.affine().allFinite()) {
     throw std::invalid_argument("pose: an entry is not finite: replace NaN and infinities by numbers");
   }
+  if (pose_a.affine() == pose_b.affine() && is_regular(pose_a)) {
+    // A map that has an inverse keeps common points and inner points, so the primitives meet and cross as they lie.
+    pose_a_ = Pose::Identity();
+    pose_b_ = Pose::Identity();
+  }
+  rounds_ = rounds(pose_a_) || rounds(pose_b_);
+  row_sum_a_ = pose_a_.linear().cwiseAbs().rowwise().sum().maxCoeff();
+  row_sum_b_ = pose_b_.linear().cwiseAbs().rowwise().sum().maxCoeff();
   for (Eigen::Index k = 0; k < 3; ++k) {
-    const double to = pose_a.translation()[k];
-    const double from = pose_b.translation()[k];
+    const double to = pose_a_.translation()[k];
+    const double from = pose_b_.translation()[k];
     offset_[k] = to - from;
     const double part = offset_[k] - to;
     offset_error_[k] = std::abs((to - (offset_[k] - part)) - (from + part));  // TwoSum
   }
 }
 
-PosedPairs::Answer PosedPairs::decide(const Primitive& a, const Primitive& b) const {
+PosedPairs::Answer PosedPairs::decide(const Primitive& a, const Primitive& b, bool tell_crossing) const {
   Rounded r;
   r.count_a = a.vertex_count();
   r.count_b = b.vertex_count();
@@ -124,13 +186,23 @@ PosedPairs::Answer PosedPairs::decide(const Primitive& a, const Primitive& b) co
   const double magnitude =
       row_sum_a_ * greatest_component(a) + row_sum_b_ * greatest_component(b) + offset_.cwiseAbs().maxCoeff();
   r.error = 8 * unit * magnitude + lost;
-  if (magnitude < 0x1p1000 && separated(r)) return {false, false};
+  if (magnitude < 0x1p1000 && separated(r)) return {};
+  // Doubles with an error bound would know no side either, so that stage is left out.
+  if (rounds_ && is_flush_but_for_rounding(r)) return decide_in_integers(a, b, tell_crossing);
 
+  const Hull<Filter> hull_a = filter_hull(a, pose_a_.linear(), filter_offset(offset_, offset_error_));
+  const Hull<Filter> hull_b = filter_hull(b, pose_b_.linear(), Vec<Filter>{});
   Filter::reset();
-  const bool hit = hulls_meet(filter_hull(a, pose_a_.linear(), filter_offset(offset_, offset_error_)),
-                              filter_hull(b, pose_b_.linear(), Vec<Filter>{}));
-  if (!Filter::gave_up()) return {hit, false};
-  return {exact_intersects(a, pose_a_, b, pose_b_), true};
+  Answer answer;
+  answer.hit = hulls_meet(hull_a, hull_b);
+  bool known = !Filter::gave_up();
+  if (known && (!answer.hit || !tell_crossing)) return answer;
+  if (known) {
+    answer.crosses = hulls_cross(hull_a, hull_b);
+    known = !Filter::gave_up();
+    if (known) return answer;
+  }
+  return decide_in_integers(a, b, tell_crossing);
 }
 
 bool PosedPairs::cross(const Primitive& a, const Primitive& b) const {
@@ -138,7 +210,34 @@ bool PosedPairs::cross(const Primitive& a, const Primitive& b) const {
   const bool crosses = hulls_cross(filter_hull(a, pose_a_.linear(), filter_offset(offset_, offset_error_)),
                                    filter_hull(b, pose_b_.linear(), Vec<Filter>{}));
   if (!Filter::gave_up()) return crosses;
-  return exact_relation(a, pose_a_, b, pose_b_) == Relation::crossing;
+  return decide_in_integers(a, b, true).crosses;
+}
+
+PosedPairs::Answer PosedPairs::decide_in_integers(const Primitive& a, const Primitive& b, bool tell_crossing) const {
+  Pose pose_a = pose_a_;
+  Pose pose_b = pose_b_;
+  if (offset_error_.isZero(0)) {  // what is left of the translations has fewer bits
+    pose_a.translation() = offset_;
+    pose_b.translation().setZero();
+  }
+  const PosedInts ints_a(a, pose_a);
+  const PosedInts ints_b(b, pose_b);
+  const auto answer = [&](const auto& hull_a, const auto& hull_b) -> Answer {
+    const bool hit = hulls_meet(hull_a, hull_b);
+    return {hit, true, hit && tell_crossing && hulls_cross(hull_a, hull_b)};
+  };
+  const int exponent = std::min(ints_a.exponent(), ints_b.exponent());
+  const int bits = std::max(ints_a.top(), ints_b.top()) - exponent;
+  const auto wide = [&](auto width) {
+    constexpr std::size_t words = decltype(width)::value;
+    return answer(ints_a.hull<words>(exponent), ints_b.hull<words>(exponent));
+  };
+  if (fits<4>(bits)) return wide(std::integral_constant<std::size_t, 4>());
+  if (fits<6>(bits)) return wide(std::integral_constant<std::size_t, 6>());
+  if (fits<8>(bits)) return wide(std::integral_constant<std::size_t, 8>());
+  if (!tell_crossing) return {exact_intersects(a, pose_a, b, pose_b), true, false};
+  const Relation relation = exact_relation(a, pose_a, b, pose_b);
+  return {relation != Relation::apart, true, relation == Relation::crossing};
 }
 
 }  // namespace cchip
