@@ -10,6 +10,7 @@
 #include <catch2/catch.hpp>
 #include <cchip/bvh/image.hpp>
 #include <cchip/bvh/place.hpp>
+#include <cchip/collide/gradual_underflow.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/model/broad_phase.hpp>
@@ -693,6 +694,15 @@ TEST_CASE("collide: a thread that flushes small numbers to zero is refused", "[r
     refused([&] { collide(*device, a, Pose::Identity(), a, Pose::Identity()); });
     refused([&] { collide(*device, a, a, std::vector<PosePair>(3)); });
     CHECK(collide(*device, a, Pose::Identity(), a, Pose::Identity()).hit);
+    _mm_setcsr(before | bit);
+    {
+      const GradualUnderflow mode;
+      CHECK(_mm_getcsr() == before);
+      CHECK(collide(*open_cpu_device({1, {}}), Object{mesh}, Pose::Identity(), a, Pose::Identity()).hit);
+      const GradualUnderflow again;
+    }
+    CHECK((_mm_getcsr() & 0x8040U) == bit);
+    _mm_setcsr(before);
   }
 }
 #endif

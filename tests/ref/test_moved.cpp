@@ -257,3 +257,39 @@ TEST_CASE("self-contacts: neighbours that share more than a vertex or an edge", 
   CHECK(found({quad, {u, {3, 2, 0}, {1, 1, 5}, {1, 1, -5}}}) == Relation::crossing);  // through its diagonal
   CHECK(found({{u, v, {3, 2, 1}, {0, 2, -1}}, {u, v, {3, 1, 0}, {0, 1, 0}}}) == Relation::crossing);  // warped
 }
+
+TEST_CASE("self-contacts: a flat quad has those of its two triangles, in any order", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  const auto whole = [&random](int n) { return static_cast<double>(random() % static_cast<unsigned>(n)); };
+  std::array<int, 2> answers = {};
+  for (int round = 0; round < 2000; ++round) {
+    const double shift = whole(3);
+    std::vector<Vec3d> quad = {{0, 0, 0}, {2, 0, 0}, {2 + shift, 2, 0}, {shift, 2, 0}};
+    // Another face, collapsed or not, with vertices of the quad or on its edges.
+    std::vector<Vec3d> other;
+    for (int i = 0; i < (round % 2 == 0 ? 3 : 4); ++i) {
+      other.push_back(random() % 2 == 0 ? quad[random() % 4]
+                                        : Vec3d(whole(6) - 1, whole(5) - 1, round % 3 == 0 ? 0.0 : whole(3) - 1));
+    }
+    // What stands on the diagonal that the triangles do not have shares more than a vertex with each of them.
+    const auto has = [&other](const Vec3d& v) { return std::find(other.begin(), other.end(), v) != other.end(); };
+    if (has(quad[1]) && has(quad[3])) continue;
+    const auto touches = [](const std::vector<std::vector<Vec3d>>& faces, const std::vector<std::uint32_t>& numbers) {
+      Mesh mesh;
+      for (const std::vector<Vec3d>& face : faces) add_face(mesh, face);
+      mesh.file_face = numbers;
+      return !self_contacts(Object(mesh)).empty();
+    };
+    const bool expected = touches({{quad[0], quad[1], quad[2]}, {quad[0], quad[2], quad[3]}, other}, {0, 0, 1});
+    ++answers[expected ? 1 : 0];
+    CAPTURE(round, shift, other);
+    for (int turn = 0; turn < 4; ++turn) {
+      std::rotate(quad.begin(), quad.begin() + 1, quad.end());
+      if (turn % 2 == 0) std::reverse(quad.begin(), quad.end());
+      std::shuffle(other.begin(), other.end(), random);
+      REQUIRE(touches({quad, other}, {}) == expected);
+      REQUIRE(touches({other, quad}, {}) == expected);
+    }
+  }
+  for (const int count : answers) CHECK(count > 200);
+}

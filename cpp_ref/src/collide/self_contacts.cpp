@@ -16,7 +16,9 @@
 #include <cchip/collide/collide.hpp>
 #include <cchip/exact/posed_pairs.hpp>
 #include <cmath>
+#include <cstring>
 #include <initializer_list>
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -45,6 +47,12 @@ class Points {
     for (std::size_t k = 0; k < size_; ++k) {
       if (k != i) result.add(v_[k]);
     }
+    return result;
+  }
+  /// Vectors from a point to these.
+  Points from(const Vec3d& origin) const {
+    Points result;
+    for (std::size_t k = 0; k < size_; ++k) result.add(v_[k] - origin);
     return result;
   }
   std::size_t size() const { return size_; }
@@ -197,9 +205,13 @@ bool separates(const Vec3d& axis, const Points& x, const Points& y) {
 /// True only if hulls with one common vertex are certain to meet nowhere else; x, y: from there to their other
 /// vertices, rounded.
 bool are_apart_beyond_vertex(const Points& x, const Points& y) {
+  Vec3d axis = Vec3d::Zero();
+  for (std::size_t i = 0; i < x.size(); ++i) axis += x[i];
+  for (std::size_t k = 0; k < y.size(); ++k) axis -= y[k];
+  if (separates(axis, x, y)) return true;
   std::array<Vec3d, 3> unit_x;
   std::array<Vec3d, 3> unit_y;
-  Vec3d axis = Vec3d::Zero();
+  axis.setZero();
   for (std::size_t i = 0; i < x.size(); ++i) axis += unit_x[i] = x[i] / std::sqrt(x[i].squaredNorm());
   for (std::size_t k = 0; k < y.size(); ++k) axis -= unit_y[k] = y[k] / std::sqrt(y[k].squaredNorm());
   if (separates(axis, x, y)) return true;
@@ -240,6 +252,46 @@ bool are_apart_beyond_edge(const Vec3d& edge, const Points& x, const Points& y) 
   return true;
 }
 
+/// True only if an axis certainly separates the hulls of x and y; both from one origin, rounded.
+bool separates_hulls(const Vec3d& axis, const Points& x, const Points& y) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto interval = [&axis, infinity](const Points& points, double& size) {
+    std::pair<double, double> range = {infinity, -infinity};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Sum at = dot(axis, points[i]);
+      range = {std::min(range.first, at.value), std::max(range.second, at.value)};
+      size = std::max(size, at.size);
+    }
+    return range;
+  };
+  double size = 0;
+  const auto at_x = interval(x, size);
+  const auto at_y = interval(y, size);
+  const double gap = std::max(at_y.first - at_x.second, at_x.first - at_y.second);
+  return Sum{gap, 2 * size}.is_positive();
+}
+
+/// True only if hulls without a common vertex are certain to be apart; x, y: from one vertex of x to all of both,
+/// rounded. Looks along the line between their centres and, for faces in one plane, along its normals to their edges:
+/// PosedPairs decides all others well.
+bool are_apart(const Points& x, const Points& y) {
+  const auto centre = [](const Points& points) {
+    Vec3d sum = Vec3d::Zero();
+    for (std::size_t i = 0; i < points.size(); ++i) sum += points[i];
+    return Vec3d(sum / static_cast<double>(points.size()));
+  };
+  if (separates_hulls(centre(x) - centre(y), x, y)) return true;
+  const auto across_edges = [](const Points& points, const Points& others) {
+    const Vec3d normal = (points[1] - points[0]).cross(points[2] - points[0]);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3d edge = points[(i + 1) % points.size()] - points[i];
+      if (separates_hulls(normal.cross(edge), points, others)) return true;
+    }
+    return false;
+  };
+  return (x.size() > 2 && across_edges(x, y)) || (y.size() > 2 && across_edges(y, x));
+}
+
 struct Box {
   Vec3d least;
   Vec3d greatest;
@@ -258,6 +310,9 @@ void enclose(Box& box, const Box& other) {
 /// Ends the search.
 struct Enough {};
 
+/// Vertices of a face, of those at one position always the same one; a triangle's first one twice.
+using Corners = std::array<std::uint32_t, 4>;
+
 class SelfSearch {
  public:
   SelfSearch(const Object& object, std::size_t most, Neighbours neighbours)
@@ -266,8 +321,10 @@ class SelfSearch {
         tree_(object.tree()),
         most_(most),
         neighbours_(neighbours),
+        numbers_(tree_.faces().size()),
         face_boxes_(tree_.faces().size()),
         boxes_(tree_.size()) {
+    number_positions();
     for (std::size_t i = 0; i < face_boxes_.size(); ++i) face_boxes_[i] = box_of(mesh_.faces[tree_.faces()[i]]);
     // Lines come after the one that refers to them.
     for (std::size_t line = boxes_.size(); line-- > 0;) {
@@ -299,6 +356,36 @@ class SelfSearch {
       enclose(box, {v, v});
     }
     return box;
+  }
+
+  /// Gives the vertices of all faces numbers: one vertex for each position.
+  void number_positions() {
+    constexpr std::uint32_t none = ~std::uint32_t{0};
+    std::size_t size = 16;  // of a table with open addressing
+    while (size < 2 * mesh_.vertices.size()) size *= 2;
+    std::vector<std::uint32_t> table(size, none);
+    std::vector<std::uint32_t> number(mesh_.vertices.size(), none);
+    const auto number_of = [&](std::uint32_t vertex) {
+      if (number[vertex] != none) return number[vertex];
+      const Vec3d& v = mesh_.vertices[vertex];
+      std::uint64_t hash = 0;
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const double x = v[k] + 0.0;  // not -0, which equals 0
+        std::uint64_t bits = 0;
+        std::memcpy(&bits, &x, sizeof bits);
+        hash = (hash ^ bits) * 0x9E3779B97F4A7C15U;
+        hash ^= hash >> 32U;
+      }
+      std::size_t at = hash & (size - 1);
+      while (table[at] != none && !(mesh_.vertices[table[at]] == v)) at = (at + 1) & (size - 1);
+      if (table[at] == none) table[at] = vertex;
+      return number[vertex] = table[at];
+    };
+    for (std::size_t i = 0; i < numbers_.size(); ++i) {
+      const Mesh::Face& face = mesh_.faces[tree_.faces()[i]];
+      const std::size_t corners = static_cast<std::size_t>(face.kind);
+      for (std::size_t k = 0; k < 4; ++k) numbers_[i][k] = number_of(face.vertex[k < corners ? k : 0]);
+    }
   }
 
   /// Pairs of faces below one node.
@@ -337,7 +424,7 @@ class SelfSearch {
     const std::pair<std::uint32_t, std::uint32_t> faces =
         std::minmax({mesh_.number_in_file(i), mesh_.number_in_file(k)});  // by value
     if (faces.first == faces.second) return;                              // parts of one polygon
-    const Relation relation = relate(i, k);
+    const Relation relation = relate(i, k, numbers_[p], numbers_[q]);
     if (relation == Relation::apart) return;
     const auto known = found_.find(faces);
     if (known != found_.end()) {
@@ -348,54 +435,42 @@ class SelfSearch {
     found_.emplace(faces, relation);
   }
 
-  Relation relate(std::uint32_t i, std::uint32_t k) const {
-    const Mesh::Face& f = mesh_.faces[i];
-    const Mesh::Face& g = mesh_.faces[k];
+  /// Two faces by their numbers in the mesh, and their vertices.
+  Relation relate(std::uint32_t i, std::uint32_t k, const Corners& f, const Corners& g) const {
     Points common;
     Points beside_f;
     Points beside_g;
-    for (std::size_t a = 0; a < static_cast<std::size_t>(f.kind); ++a) {
-      const Vec3d& v = mesh_.vertices[f.vertex[a]];
-      add_new(has(g, v) ? common : beside_f, v);
+    for (std::size_t a = 0; a < 4; ++a) {
+      if (is_first(f, a)) (has(g, f[a]) ? common : beside_f).add(mesh_.vertices[f[a]]);
+    }
+    if (common.size() != 0 && neighbours_ == Neighbours::left_out) return Relation::apart;
+    for (std::size_t a = 0; a < 4; ++a) {
+      if (is_first(g, a) && !has(f, g[a])) beside_g.add(mesh_.vertices[g[a]]);
     }
     if (common.size() == 0) {
+      const Points x = beside_f.from(beside_f[0]);
+      const Points y = beside_g.from(beside_f[0]);
+      if (are_moderate(x) && are_moderate(y) && are_apart(x, y)) return Relation::apart;
       if (!hulls_.meet(mesh_.primitive(i), mesh_.primitive(k))) return Relation::apart;
-    } else {
-      if (neighbours_ == Neighbours::left_out) return Relation::apart;
-      for (std::size_t a = 0; a < static_cast<std::size_t>(g.kind); ++a) {
-        const Vec3d& v = mesh_.vertices[g.vertex[a]];
-        if (!has(f, v)) add_new(beside_g, v);
-      }
-      if (!meet_beyond(common, beside_f, beside_g)) return Relation::apart;
+    } else if (!meet_beyond(common, beside_f, beside_g)) {
+      return Relation::apart;
     }
     return hulls_.cross(mesh_.primitive(i), mesh_.primitive(k)) ? Relation::crossing : Relation::touching;
   }
 
-  bool has(const Mesh::Face& face, const Vec3d& v) const {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(face.kind); ++i) {
-      const Vec3d& w = mesh_.vertices[face.vertex[i]];
-      if (w.x() == v.x() && w.y() == v.y() && w.z() == v.z()) return true;
-    }
-    return false;
+  static bool has(const Corners& x, std::uint32_t number) {
+    return (x[0] == number) | (x[1] == number) | (x[2] == number) | (x[3] == number);
   }
-  static void add_new(Points& points, const Vec3d& v) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (points[i] == v) return;
-    }
-    points.add(v);
+  static bool is_first(const Corners& x, std::size_t a) {
+    return std::find(x.begin(), x.begin() + a, x[a]) == x.begin() + a;
   }
 
   /// Do neighbours meet elsewhere than in their common vertex or on their common edge?
   bool meet_beyond(const Points& common, const Points& f, const Points& g) const {
     if (common.size() > 2) return true;
     if (f.size() == 0 || g.size() == 0) return false;  // collapsed
-    const auto from_common = [&common](const Points& points) {
-      Points vectors;
-      for (std::size_t i = 0; i < points.size(); ++i) vectors.add(points[i] - common[0]);
-      return vectors;
-    };
-    const Points x = from_common(f);
-    const Points y = from_common(g);
+    const Points x = f.from(common[0]);
+    const Points y = g.from(common[0]);
     const bool is_moderate = are_moderate(x) && are_moderate(y);
     if (common.size() == 1) {
       return !(is_moderate && are_apart_beyond_vertex(x, y)) && hulls_.meet_beyond(common[0], f, g);
@@ -408,11 +483,14 @@ class SelfSearch {
   /// The search ended before it met all parts of polygons that were cut: those that only touch so far may cross.
   void relate_all_parts() {
     if (mesh_.file_face.empty()) return;
+    std::vector<std::uint32_t> place(mesh_.faces.size());  // in the tree
+    for (std::uint32_t p = 0; p < place.size(); ++p) place[tree_.faces()[p]] = p;
     for (auto& [faces, relation] : found_) {
       const std::vector<std::uint32_t> others = object_.parts(faces.second);
       for (const std::uint32_t i : object_.parts(faces.first)) {
         for (const std::uint32_t k : others) {
-          if (relation != Relation::crossing) relation = std::max(relation, relate(i, k));
+          if (relation == Relation::crossing) continue;
+          relation = std::max(relation, relate(i, k, numbers_[place[i]], numbers_[place[k]]));
         }
       }
     }
@@ -424,8 +502,9 @@ class SelfSearch {
   std::size_t most_;
   Neighbours neighbours_;
   Hulls hulls_;
-  std::vector<Box> face_boxes_;  ///< in the order of the tree
-  std::vector<Box> boxes_;       ///< of each line
+  std::vector<Corners> numbers_;  ///< in the order of the tree
+  std::vector<Box> face_boxes_;   ///< in the order of the tree
+  std::vector<Box> boxes_;        ///< of each line
   std::map<std::pair<std::uint32_t, std::uint32_t>, Relation> found_;
 };
 
