@@ -529,7 +529,7 @@ TEST_CASE("collide: input that makes no sense is refused in one line", "[ref][co
   none = {};
   none.max_contacts = 0;
   CHECK_THROWS_AS(collide(*device, a, Pose::Identity(), a, Pose::Identity(), none), std::invalid_argument);
-  CHECK_THROWS_AS(Object(Mesh{}), std::invalid_argument);
+  CHECK_THROWS_WITH(Object(Mesh{}), "mesh has no faces");
   CHECK_THROWS_WITH(Object(one_face({{0, 0, 0}, {1, 0, std::numeric_limits<double>::infinity()}, {0, 1, 0}})),
                     Catch::Contains("vertex 1 is not finite"));
   CHECK_THROWS_WITH(open_device("gpu"), Catch::Contains("device gpu is not known: the devices are cpu, model"));
