@@ -4,19 +4,27 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <atomic>
 #include <cchip/cchip.hpp>
 #include <cchip/reference/brute_force.hpp>
+#include <cerrno>
+#include <cmath>
 #include <cstdint>
-#include <cstdio>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -28,6 +36,7 @@ namespace {
 using cchip::CollisionRequest;
 using cchip::CollisionResult;
 using cchip::Device;
+using cchip::GradualUnderflow;
 using cchip::Object;
 using cchip::Pose;
 using cchip::Scene;
@@ -45,19 +54,40 @@ std::string shape_of(const Array<double>& x) {
   return text + (x.ndim() == 1 ? ",)" : ")");
 }
 
-/// As it is if it is a contiguous array of this type already, or else what numpy makes of it.
-template <class Scalar>
-Array<Scalar> to_array(nb::handle x, const char* type) {
-  Array<Scalar> array;
-  if (!nb::try_cast(x, array, false)) {
-    array = nb::cast<Array<Scalar>>(nb::module_::import_("numpy").attr("array")(x, type, "order"_a = "C"));
+/// What numpy makes of it, if nothing is lost by that.
+/// \param name of the argument, for the message
+nb::object plain_array(nb::handle x, const char* name) {
+  const nb::module_ numpy = nb::module_::import_("numpy");
+  if (nb::isinstance(x, numpy.attr("ma").attr("MaskedArray"))) {
+    throw std::invalid_argument(std::string(name) + " is a masked array; fill it first, as with numpy.ma.filled()");
+  }
+  nb::object array = numpy.attr("asarray")(x);
+  if (nb::cast<std::string>(array.attr("dtype").attr("kind")) == "c") {
+    throw std::invalid_argument(std::string(name) + " has complex numbers; give real ones");
   }
   return array;
 }
 
-Pose to_pose(const double* rows, std::size_t count) {
+/// As it is if it is a contiguous array of this type already, or else what numpy makes of it.
+template <class Scalar>
+Array<Scalar> to_array(nb::handle x, const char* type, const char* name) {
+  static const nb::handle array_type = nb::object(nb::module_::import_("numpy").attr("ndarray")).release();  // for good
+  Array<Scalar> array;
+  if (!x.type().is(array_type) || !nb::try_cast(x, array, false)) {
+    array = nb::cast<Array<Scalar>>(
+        nb::module_::import_("numpy").attr("array")(plain_array(x, name), type, "order"_a = "C"));
+  }
+  return array;
+}
+
+Pose to_pose(const double* rows, std::size_t count, const std::string& name) {
+  for (std::size_t i = 0; i < 4 * count; ++i) {
+    if (std::isfinite(rows[i])) continue;
+    throw std::invalid_argument(name + ": row " + std::to_string(i / 4) + ", column " + std::to_string(i % 4) +
+                                " is not finite; give numbers");
+  }
   if (count == 4 && (rows[12] != 0 || rows[13] != 0 || rows[14] != 0 || rows[15] != 1)) {
-    throw std::invalid_argument("the last row of a 4 x 4 pose must be 0 0 0 1");
+    throw std::invalid_argument("" + name + ": the last row of a 4 x 4 pose must be 0 0 0 1");
   }
   Pose pose;
   pose.affine() = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(rows);
@@ -72,8 +102,12 @@ class Poses {
       poses_.push_back(Pose::Identity());
       return;
     }
-    const auto array = to_array<double>(x, "float64");
+    const auto array = to_array<double>(x, "float64", name);
     const std::size_t n = array.ndim();
+    if (many_allowed && n == 1 && array.shape(0) == 0) {  // an empty list
+      many_ = true;
+      return;
+    }
     many_ = n == 3;
     if (!(n == 2 || (many_ && many_allowed)) || array.shape(n - 1) != 4 ||
         (array.shape(n - 2) != 3 && array.shape(n - 2) != 4)) {
@@ -83,7 +117,10 @@ class Poses {
     const std::size_t rows = array.shape(n - 2);
     const std::size_t count = many_ ? array.shape(0) : 1;
     poses_.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) poses_.push_back(to_pose(array.data() + 4 * rows * i, rows));
+    for (std::size_t i = 0; i < count; ++i) {
+      poses_.push_back(to_pose(array.data() + 4 * rows * i, rows,
+                               many_ ? name + ("[" + std::to_string(i) + "]") : std::string(name)));
+    }
   }
   bool many() const { return many_; }
   std::size_t size() const { return poses_.size(); }
@@ -114,14 +151,24 @@ nb::object to_bools(std::vector<std::uint8_t>&& values) {  // std::vector<bool> 
 // Objects.
 
 cchip::Mesh mesh_of(nb::handle vertices, nb::handle faces) {
-  const auto points = to_array<double>(vertices, "float64");
-  const nb::object numbers = nb::module_::import_("numpy").attr("asarray")(faces);
+  const auto points = to_array<double>(vertices, "float64", "vertices");
+  const nb::object numbers = plain_array(faces, "faces");
+  if (nb::cast<std::size_t>(numbers.attr("size")) == 0) {
+    throw std::invalid_argument("there are no faces; give at least one, a row of three or four vertex numbers");
+  }
   const std::string kind = nb::cast<std::string>(numbers.attr("dtype").attr("kind"));
   if (kind != "i" && kind != "u") {
     throw std::invalid_argument("faces are " + nb::cast<std::string>(numbers.attr("dtype").attr("name")) +
                                 "; give integers, the numbers of vertices from 0");
   }
-  const auto indices = to_array<std::int64_t>(numbers, "int64");
+  if (kind == "u") {  // which int64 may not hold
+    const auto greatest = nb::cast<std::uint64_t>(nb::int_(nb::object(numbers.attr("max")())));
+    if (greatest > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
+      throw std::invalid_argument("faces: vertex index " + std::to_string(greatest) + " is out of range (there are " +
+                                  std::to_string(points.ndim() > 0 ? points.shape(0) : 0) + " vertices, from 0)");
+    }
+  }
+  const auto indices = to_array<std::int64_t>(numbers, "int64", "faces");
   const auto matrix = [](const auto& x, const char* name) {
     using Scalar = std::remove_const_t<std::remove_pointer_t<decltype(x.data())>>;
     if (x.ndim() != 2) {
@@ -134,20 +181,126 @@ cchip::Mesh mesh_of(nb::handle vertices, nb::handle faces) {
   return cchip::make_mesh(matrix(points, "vertices"), cchip::FaceMatrix(matrix(indices, "faces")));
 }
 
+/// A path as the system has it, any bytes.
+nb::object to_text(const std::string& bytes) {
+  return nb::steal(PyUnicode_DecodeFSDefaultAndSize(bytes.data(), static_cast<Py_ssize_t>(bytes.size())));
+}
+
+[[noreturn]] void raise_os_error(int number, nb::handle path) {
+  errno = number;
+  PyErr_SetFromErrnoWithFilenameObject(PyExc_OSError, path.ptr());
+  throw nb::python_error();
+}
+
 Object load(nb::handle path, bool quads) {
-  const std::string name = nb::cast<std::string>(nb::module_::import_("os").attr("fspath")(path));
-  if (std::FILE* file = std::fopen(name.c_str(), "rb")) {
-    std::fclose(file);
-  } else {
-    PyErr_SetFromErrnoWithFilename(PyExc_OSError, name.c_str());
-    throw nb::python_error();
+  PyObject* converted = nullptr;
+  if (PyUnicode_FSConverter(path.ptr(), &converted) == 0) throw nb::python_error();
+  const nb::bytes bytes = nb::steal<nb::bytes>(converted);
+  const std::string name(bytes.c_str(), bytes.size());
+  struct stat status = {};
+  if (stat(name.c_str(), &status) != 0) raise_os_error(errno, path);
+  if (S_ISDIR(status.st_mode)) raise_os_error(EISDIR, path);
+  if (access(name.c_str(), R_OK) != 0) raise_os_error(errno, path);
+  std::string wrong;
+  {
+    const nb::gil_scoped_release release;
+    const GradualUnderflow mode;
+    try {
+      return Object(
+          cchip::load_mesh(name, quads ? cchip::FaceKinds::triangles_and_quads : cchip::FaceKinds::triangles));
+    } catch (const std::runtime_error& error) {
+      wrong = error.what();
+    } catch (const std::invalid_argument& error) {
+      wrong = error.what();
+    }
   }
+  PyErr_SetObject(PyExc_ValueError, to_text(wrong).ptr());
+  throw nb::python_error();
+}
+
+// Parts of an object, also for pickle.
+
+using Doubles = nb::ndarray<nb::numpy, const double, nb::shape<-1, 3>>;
+
+Doubles vertices_of(const Object& x) {
+  static_assert(sizeof(cchip::Vec3d) == 3 * sizeof(double), "vertices are rows of an array");
+  const std::vector<cchip::Vec3d>& vertices = x.mesh().vertices;
+  return {vertices.front().data(), {vertices.size(), 3}};
+}
+
+/// Three columns, or four if there are quads: a triangle has its last vertex twice then.
+nb::object faces_of(const Object& x) {
+  const std::vector<cchip::Mesh::Face>& faces = x.mesh().faces;
+  const auto is_quad = [](const cchip::Mesh::Face& face) { return face.kind == cchip::Kind::quad; };
+  const std::size_t columns = std::any_of(faces.begin(), faces.end(), is_quad) ? 4 : 3;
+  std::vector<std::uint32_t> rows;
+  rows.reserve(columns * faces.size());
+  for (const cchip::Mesh::Face& face : faces) {
+    rows.insert(rows.end(), face.vertex.begin(), face.vertex.begin() + 3);
+    if (columns == 4) rows.push_back(face.vertex[is_quad(face) ? 3 : 2]);
+  }
+  return nb::cast(owned<std::uint32_t>(std::move(rows), {faces.size(), columns}));
+}
+
+nb::object numbers_of(const Object& x) {
+  std::vector<std::uint32_t> numbers(x.mesh().faces.size());
+  for (std::uint32_t i = 0; i < numbers.size(); ++i) numbers[i] = x.mesh().number_in_file(i);
+  const std::size_t n = numbers.size();
+  return nb::cast(owned<std::uint32_t>(std::move(numbers), {n}));
+}
+
+template <class T>
+nb::bytes to_bytes(const std::vector<T>& values) {
+  return nb::bytes(reinterpret_cast<const char*>(values.data()), sizeof(T) * values.size());
+}
+template <class T>
+std::vector<T> from_bytes(const nb::bytes& bytes) {
+  if (bytes.size() % sizeof(T) != 0) throw std::invalid_argument("Object: this is not what pickle made of an Object");
+  std::vector<T> values(bytes.size() / sizeof(T));
+  if (!values.empty()) std::memcpy(static_cast<void*>(values.data()), bytes.c_str(), bytes.size());
+  return values;
+}
+
+/// Version, name, vertices, faces (kind and four numbers each), numbers in the file, polygons that were cut.
+using State = std::tuple<int, nb::bytes, nb::bytes, nb::bytes, nb::bytes, std::size_t>;
+constexpr int state_version = 1;
+
+State state_of(const Object& x) {
+  const cchip::Mesh& mesh = x.mesh();
+  std::vector<std::uint32_t> faces;
+  faces.reserve(5 * mesh.faces.size());
+  for (const cchip::Mesh::Face& face : mesh.faces) {
+    faces.push_back(static_cast<std::uint32_t>(face.kind));
+    faces.insert(faces.end(), face.vertex.begin(), face.vertex.end());
+  }
+  return {state_version,
+          nb::bytes(mesh.name.data(), mesh.name.size()),
+          to_bytes(mesh.vertices),
+          to_bytes(faces),
+          to_bytes(mesh.file_face),
+          mesh.polygons_cut};
+}
+
+void set_state(Object& self, const State& state) {
+  const auto& [version, name, vertices, faces, numbers, polygons_cut] = state;
+  if (version != state_version) {
+    throw std::invalid_argument("Object: pickled as version " + std::to_string(version) + ", version " +
+                                std::to_string(state_version) + " is known; pickle it with this version");
+  }
+  cchip::Mesh mesh;
+  mesh.name = std::string(name.c_str(), name.size());
+  mesh.vertices = from_bytes<cchip::Vec3d>(vertices);
+  const std::vector<std::uint32_t> words = from_bytes<std::uint32_t>(faces);
+  for (std::size_t i = 0; i + 5 <= words.size(); i += 5) {
+    cchip::Mesh::Face& face = mesh.faces.emplace_back();
+    face.kind = static_cast<cchip::Kind>(words[i]);
+    std::copy_n(words.begin() + static_cast<std::ptrdiff_t>(i) + 1, 4, face.vertex.begin());
+  }
+  mesh.file_face = from_bytes<std::uint32_t>(numbers);
+  mesh.polygons_cut = polygons_cut;
   const nb::gil_scoped_release release;
-  try {
-    return Object(cchip::load_mesh(name, quads ? cchip::FaceKinds::triangles_and_quads : cchip::FaceKinds::triangles));
-  } catch (const std::runtime_error& error) {
-    throw std::invalid_argument(error.what());
-  }
+  const GradualUnderflow mode;
+  new (&self) Object(std::move(mesh));
 }
 
 // Requests and results.
@@ -167,6 +320,7 @@ CollisionRequest to_request(const std::string& contacts, bool relation, const st
   }
   request.relation = relation;
   if (max_contacts) request.max_contacts = *max_contacts;
+  if (request.max_contacts == 0) throw std::invalid_argument("max_contacts is 0: ask for at least one contact");
   return request;
 }
 
@@ -192,12 +346,38 @@ struct Result {
   cchip::CollisionCounts counts;
 };
 
-/// The device that was given, or one of the calling thread's own that uses all cores for batches.
-Device& device_or_own(Device* device) {
-  if (device != nullptr) return *device;
-  thread_local const std::unique_ptr<Device> own = cchip::open_cpu_device();
-  return *own;
-}
+/// The device that was given, or else one with all cores, which the process has once; if it is in use, one of a single
+/// thread that the calling thread has. Use it with the GIL released.
+class DeviceUse {
+ public:
+  explicit DeviceUse(Device* device) : device_(device) {
+    if (device_ != nullptr) return;
+    static std::atomic<bool> in_use = false;
+    if (!in_use.exchange(true)) {
+      in_use_ = &in_use;
+      try {
+        static Device* const all_cores = cchip::open_cpu_device().release();  // for good: its threads may wait
+        device_ = all_cores;
+      } catch (...) {
+        in_use = false;
+        throw;
+      }
+    } else {
+      thread_local const std::unique_ptr<Device> own = cchip::open_cpu_device({1, {}});
+      device_ = own.get();
+    }
+  }
+  ~DeviceUse() {
+    if (in_use_ != nullptr) *in_use_ = false;
+  }
+  DeviceUse(const DeviceUse&) = delete;
+  DeviceUse& operator=(const DeviceUse&) = delete;
+  Device& operator*() const { return *device_; }
+
+ private:
+  Device* device_;
+  std::atomic<bool>* in_use_ = nullptr;
+};
 
 Result collide(const Object& a, nb::handle pose_a, const Object& b, nb::handle pose_b, const std::string& contacts,
                bool relation, const std::string& counts, std::optional<std::size_t> max_contacts, Device* device) {
@@ -205,6 +385,7 @@ Result collide(const Object& a, nb::handle pose_a, const Object& b, nb::handle p
   const Pose place_b = one_pose(pose_b, "pose_b");
   const CollisionRequest request = to_request(contacts, relation, counts, max_contacts);
   const nb::gil_scoped_release release;
+  const GradualUnderflow mode;
   return Result(device != nullptr ? cchip::collide(*device, a, place_a, b, place_b, request)
                                   : cchip::collide(a, place_a, b, place_b, request));
 }
@@ -214,16 +395,33 @@ template <class Each>
 void collide_each(const Object& a, const Poses& poses_a, const Object& b, const Poses& poses_b, std::size_t count,
                   const CollisionRequest& request, Device* device, const Each& each) {
   const nb::gil_scoped_release release;
-  device_or_own(device).collide(
-      count,
-      [&](std::size_t i) {
-        return cchip::CollisionQuery{&a, &poses_a[i], &b, &poses_b[i]};
-      },
-      request, each);
+  const GradualUnderflow mode;
+  (*DeviceUse(device))
+      .collide(
+          count,
+          [&](std::size_t i) {
+            return cchip::CollisionQuery{&a, &poses_a[i], &b, &poses_b[i]};
+          },
+          request, each);
+}
+
+constexpr std::uint8_t unknown = 3;
+
+/// An array of words, empty where the search ended too early.
+nb::object to_words(std::vector<std::uint8_t>&& relations) {
+  using cchip::Relation;
+  const auto word = [](Relation relation) { return name_of(relation); };
+  static_assert(static_cast<int>(Relation::apart) == 0 && static_cast<int>(Relation::touching) == 1 &&
+                static_cast<int>(Relation::crossing) == 2);
+  const nb::object words = nb::module_::import_("numpy").attr("array")(
+      nb::make_tuple(word(Relation::apart), word(Relation::touching), word(Relation::crossing), ""));
+  const std::size_t n = relations.size();
+  return words[nb::cast(owned<std::uint8_t>(std::move(relations), {n}))];
 }
 
 nb::object collide_many(const Object& a, nb::handle poses_a, const Object& b, nb::handle poses_b, bool contacts,
-                        const std::string& counts, std::optional<std::size_t> max_contacts, Device* device) {
+                        bool relation, const std::string& counts, std::optional<std::size_t> max_contacts,
+                        Device* device) {
   const Poses places_a(poses_a, "poses_a", true);
   const Poses places_b(poses_b, "poses_b", true);
   if (places_a.many() && places_b.many() && places_a.size() != places_b.size()) {
@@ -232,22 +430,31 @@ nb::object collide_many(const Object& a, nb::handle poses_a, const Object& b, nb
   }
   const std::size_t count = places_a.many() ? places_a.size() : places_b.size();
   if (count > std::numeric_limits<std::uint32_t>::max()) throw std::invalid_argument("more than 2^32 - 1 poses");
-  const CollisionRequest request = to_request(contacts ? "all" : "first", false, counts, max_contacts);
+  const CollisionRequest request = to_request(contacts ? "all" : "first", relation, counts, max_contacts);
   std::vector<std::uint8_t> hits(count);
+  std::vector<std::uint8_t> relations(relation ? count : 0);
   std::vector<std::vector<cchip::Contact>> found(contacts ? count : 0);
   collide_each(a, places_a, b, places_b, count, request, device, [&](std::size_t i, const CollisionResult& result) {
     hits[i] = result.hit ? 1 : 0;
     if (contacts) found[i] = result.contacts;
+    if (relation) relations[i] = result.relation ? static_cast<std::uint8_t>(*result.relation) : unknown;
   });
-  if (!contacts) return to_bools(std::move(hits));
+  const nb::object hit = to_bools(std::move(hits));
+  if (!contacts && !relation) return hit;
+  const nb::object words = relation ? to_words(std::move(relations)) : nb::none();
+  if (!contacts) return nb::make_tuple(hit, words);
   std::vector<std::uint32_t> rows;
+  std::vector<std::uint8_t> crossing;
   for (std::size_t i = 0; i < count; ++i) {
     for (const cchip::Contact& contact : found[i]) {
+      if (relation) crossing.push_back(contact.relation == cchip::Relation::crossing ? 1 : 0);
       rows.insert(rows.end(), {static_cast<std::uint32_t>(i), contact.face_a, contact.face_b});
     }
   }
   const std::size_t n = rows.size() / 3;
-  return nb::make_tuple(to_bools(std::move(hits)), owned<std::uint32_t>(std::move(rows), {n, 3}));
+  const auto triples = owned<std::uint32_t>(std::move(rows), {n, 3});
+  if (!relation) return nb::make_tuple(hit, triples);
+  return nb::make_tuple(hit, triples, words, to_bools(std::move(crossing)));
 }
 
 /// By asking about every pair of faces in integers of any size: for tests.
@@ -297,6 +504,7 @@ class PyScene {
   auto ask(const Query& query) {
     const Count count(queries_);
     const nb::gil_scoped_release release;
+    const GradualUnderflow mode;
     return query(static_cast<const Scene&>(scene_));
   }
 
@@ -358,7 +566,7 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
       [call](PyScene& self, const std::string& contacts, bool relation, const std::string& counts,
              std::optional<std::size_t> max_contacts, Device* device) {
         const CollisionRequest request = to_request(contacts, relation, counts, max_contacts);
-        return to_object(self.ask([&](const Scene& s) { return call(s, device_or_own(device), request); }));
+        return to_object(self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), request); }));
       },
       nb::kw_only(), "contacts"_a = "first", "relation"_a = false, "counts"_a = "touching",
       "max_contacts"_a = nb::none(), "device"_a = nb::none(), nb::sig(sig("", "tuple[int, int, Result]").c_str()),
@@ -368,7 +576,7 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
       [call](PyScene& self, Scene::Id id, const std::string& contacts, bool relation, const std::string& counts,
              std::optional<std::size_t> max_contacts, Device* device) {
         const CollisionRequest request = to_request(contacts, relation, counts, max_contacts);
-        return to_object(self.ask([&](const Scene& s) { return call(s, device_or_own(device), id, request); }));
+        return to_object(self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), id, request); }));
       },
       "id"_a, nb::kw_only(), "contacts"_a = "first", "relation"_a = false, "counts"_a = "touching",
       "max_contacts"_a = nb::none(), "device"_a = nb::none(), nb::sig(sig(", id: int", "tuple[int, Result]").c_str()),
@@ -382,7 +590,7 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
         const Pose place = one_pose(pose, "pose");
         const cchip::CollisionGroups bits = {groups, mask};
         return to_object(
-            self.ask([&](const Scene& s) { return call(s, device_or_own(device), object, place, request, bits); }));
+            self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), object, place, request, bits); }));
       },
       "object"_a, "pose"_a = nb::none(), "groups"_a = 1, "mask"_a = all_groups, nb::kw_only(), "contacts"_a = "first",
       "relation"_a = false, "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
@@ -400,7 +608,8 @@ NB_MODULE(_core, m) {
   m.doc() = "Exact collision detection for triangle and quad meshes; import collisionchip instead.";
   m.attr("version") = CCHIP_VERSION;  // stubs leave out __version__
 
-  nb::class_<Object>(m, "Object", R"(A mesh made ready for collision tests; immutable, any number of threads may use it.
+  nb::class_<Object>(m, "Object", nb::is_weak_referenceable(),
+                     R"(A mesh made ready for collision tests; immutable, any number of threads may use it.
 
 An object is the surface of the mesh, not the volume inside: one wholly inside another does not touch it.)")
       .def(
@@ -408,6 +617,7 @@ An object is the surface of the mesh, not the volume inside: one wholly inside a
           [](Object* self, nb::handle vertices, nb::handle faces) {
             cchip::Mesh mesh = mesh_of(vertices, faces);
             const nb::gil_scoped_release release;
+            const GradualUnderflow mode;
             new (self) Object(std::move(mesh));
           },
           "vertices"_a, "faces"_a,
@@ -419,18 +629,18 @@ faces: (m, 3) for triangles or (m, 4) for quads, integers of any kind: numbers o
 of its four vertices; one with a dent or a spike is cut into triangles, which are one face.
 
 Raises ValueError: another shape, faces that are not integers, a number beyond the vertices, no faces or more than
-2^24 - 2, a vertex that is not finite or beyond 2^1000.)")
+2^24 - 2, a vertex of a face that is not finite or beyond 2^1000, a masked array, complex numbers.)")
       .def_static(
           "load", &load, "path"_a, "quads"_a = false,
-          nb::sig("def load(path: str | os.PathLike[str], quads: bool = False) -> Object"),
+          nb::sig("def load(path: str | bytes | os.PathLike[str] | os.PathLike[bytes], quads: bool = False) -> Object"),
           R"(From a file: OBJ, OFF, PLY or STL. Polygons are cut into triangles, with quads=True all but quads without a dent;
 contacts have the numbers of the file's faces all the same.
 
-Raises OSError: the file cannot be opened. Raises ValueError: it is no mesh; the message has file, line and reason.)")
+Raises OSError: the file cannot be opened; FileNotFoundError, IsADirectoryError. Raises ValueError: it is no mesh; the message has file, line and reason.)")
       .def(
           "moved",
           [](const Object& x, nb::handle vertices) {
-            const auto points = to_array<double>(vertices, "float64");
+            const auto points = to_array<double>(vertices, "float64", "vertices");
             if (points.ndim() != 2 || points.shape(1) != 3) {
               throw std::invalid_argument("vertices have shape " + shape_of(points) + "; give (n, 3)");
             }
@@ -438,6 +648,7 @@ Raises OSError: the file cannot be opened. Raises ValueError: it is no mesh; the
             for (std::size_t i = 0; i < moved.size(); ++i)
               moved[i] = Eigen::Map<const cchip::Vec3d>(points.data() + 3 * i);
             const nb::gil_scoped_release release;
+            const GradualUnderflow mode;
             return x.moved(std::move(moved));
           },
           "vertices"_a, nb::sig("def moved(self, vertices: numpy.typing.ArrayLike) -> Object"),
@@ -448,23 +659,55 @@ vertices: (vertex_count, 3) float64, in the order of this object's.
 Raises ValueError: another shape, a vertex that is not finite or beyond 2^1000.)")
       .def(
           "self_contacts",
-          [](const Object& x, std::optional<std::size_t> max_contacts) {
+          [](const Object& x, std::optional<std::size_t> max_contacts, bool relation, bool neighbours) -> nb::object {
             std::vector<std::uint32_t> faces;
+            std::vector<std::uint8_t> crossing;
             {
               const nb::gil_scoped_release release;
+              const GradualUnderflow mode;
               const std::size_t most = max_contacts.value_or(std::numeric_limits<std::size_t>::max());
-              for (const auto& contact : cchip::self_contacts(x, most)) {
+              for (const auto& contact : cchip::self_contacts(
+                       x, most, neighbours ? cchip::Neighbours::tested : cchip::Neighbours::left_out)) {
                 faces.insert(faces.end(), {contact.face_a, contact.face_b});
+                crossing.push_back(contact.relation == cchip::Relation::crossing ? 1 : 0);
               }
             }
-            const std::size_t count = faces.size() / 2;
-            return owned<std::uint32_t>(std::move(faces), {count, 2});
+            const std::size_t count = crossing.size();
+            const nb::object pairs = nb::cast(owned<std::uint32_t>(std::move(faces), {count, 2}));
+            if (!relation) return pairs;
+            return nb::make_tuple(pairs, to_bools(std::move(crossing)));
           },
-          nb::kw_only(), "max_contacts"_a = nb::none(),
-          nb::sig("def self_contacts(self, *, max_contacts: int | None = None) -> numpy.typing.NDArray[numpy.uint32]"),
-          R"((k, 2) uint32: pairs of this object's faces that share a point and no vertex, ascending, none twice.)")
+          nb::kw_only(), "max_contacts"_a = nb::none(), "relation"_a = false, "neighbours"_a = true,
+          nb::sig(
+              "def self_contacts(self, *, max_contacts: int | None = None, relation: bool = False, neighbours: bool = "
+              "True) -> typing.Any"),
+          R"((k, 2) uint32: pairs of this object's faces that share a point, ascending, none twice.
+
+Neighbours have a vertex or an edge in common. They are a pair if they share more than that: faces that coincide, fold
+onto each other or pierce each other at a vertex. A closed mesh without faults has none.
+
+max_contacts: the search ends when it meets one more than this many.
+relation: return a tuple of the pairs and (k,) bool, whether they cross.
+neighbours: False leaves out all pairs with a common vertex.)")
       .def_prop_ro(
-          "name", [](const Object& x) { return x.mesh().name; }, "Path of the file; empty for arrays.")
+          "name", [](const Object& x) { return to_text(x.mesh().name); }, nb::sig("def name(self) -> str"),
+          "Path of the file; empty for arrays.")
+      .def_prop_ro("vertices", &vertices_of, nb::rv_policy::reference_internal,
+                   "(n, 3) float64, read-only: all vertices, those that no face uses, too.")
+      .def_prop_ro(
+          "faces", &faces_of,
+          "(m, 3) uint32, or (m, 4) if there are quads: numbers of vertices, after polygons were cut. Among quads "
+          "a triangle has its last vertex twice.")
+      .def_prop_ro(
+          "face_numbers", &numbers_of,
+          "(m,) uint32: for each of `faces` the number of the file's or the array's face that it is or was cut "
+          "from, as in contacts.")
+      .def("__getstate__", &state_of)
+      .def("__setstate__", &set_state)
+      .def("__copy__", [](nb::handle self) { return nb::borrow(self); })
+      .def(
+          "__deepcopy__", [](nb::handle self, nb::handle) { return nb::borrow(self); }, "memo"_a,
+          "Itself: an object never changes.")
       .def_prop_ro(
           "vertex_count", [](const Object& x) { return x.mesh().vertices.size(); }, "Number of vertices.")
       .def_prop_ro(
@@ -472,12 +715,13 @@ Raises ValueError: another shape, a vertex that is not finite or beyond 2^1000.)
           "Number of faces, after polygons were cut.")
       .def("__repr__", [](const Object& x) {
         const std::string& name = x.mesh().name;
-        return "<collisionchip.Object" + (name.empty() ? name : " " + name) + ": " +
-               std::to_string(x.mesh().vertices.size()) + " vertices, " + std::to_string(x.mesh().faces.size()) +
-               " faces>";
+        return to_text("<collisionchip.Object" + (name.empty() ? name : " " + name) + ": " +
+                       std::to_string(x.mesh().vertices.size()) + " vertices, " +
+                       std::to_string(x.mesh().faces.size()) + " faces>");
       });
 
-  nb::class_<Result>(m, "Result", "The answer to a query. True in a condition if there is a contact.")
+  nb::class_<Result>(m, "Result", nb::is_weak_referenceable(),
+                     "The answer to a query. True in a condition if there is a contact.")
       .def_ro("hit", &Result::hit, "bool: there is a contact that counts.")
       .def_ro("relation", &Result::relation,
               "'apart', 'touching' or 'crossing'; None if it was not asked for, or if max_contacts ended the search "
@@ -507,6 +751,8 @@ Raises ValueError: another shape, a vertex that is not finite or beyond 2^1000.)
             d["open"] = x.counts.open;
             d["clocks"] = x.counts.clocks;
             d["fallbacks"] = x.counts.fallbacks;
+            d["swaps"] = x.counts.swaps;
+            d["swap_clocks"] = x.counts.swap_clocks;
             return d;
           },
           nb::sig("def counts(self) -> dict[str, int]"), "What the query cost (docs/cpp/collide.md).")
@@ -517,13 +763,14 @@ Raises ValueError: another shape, a vertex that is not finite or beyond 2^1000.)
                " contacts>";
       });
 
-  nb::class_<Device>(m, "Device", R"(Answers queries; open_device() makes one.
+  nb::class_<Device>(m, "Device", nb::is_weak_referenceable(), R"(Answers queries; open_device() makes one.
 
 It takes one call at a time, from any thread: a device in use raises RuntimeError. Open one for each thread.)")
       .def_prop_ro("name", &Device::name, "Its name, such as 'cpu'.");
   m.def(
       "open_device",
       [](const std::string& name, unsigned threads, const std::string& target) {
+        const GradualUnderflow mode;
         if (name == "cpu") return cchip::open_cpu_device({threads, target});
         if (threads != 0 || !target.empty())
           throw std::invalid_argument("only the device 'cpu' has threads and target");
@@ -555,28 +802,32 @@ counts: what counts as a contact: 'touching', faces that share a point; or 'cros
 device: by default one thread of the CPU, one for each calling thread.
 
 Raises ValueError: a pose of another shape or with an entry that is not finite or beyond 2^500, an unknown word,
-max_contacts of 0. Raises RuntimeError: the device is in use, or the thread flushes small numbers to zero.)");
+max_contacts of 0. Raises RuntimeError: the device is in use.)");
   m.def("collide_many", &collide_many, "a"_a, "poses_a"_a.none(), "b"_a, "poses_b"_a.none(), "contacts"_a = false,
-        "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
+        "relation"_a = false, "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
         nb::sig("def collide_many(a: Object, poses_a: numpy.typing.ArrayLike | None, b: Object, poses_b: "
-                "numpy.typing.ArrayLike | None, contacts: bool = False, counts: str = 'touching', max_contacts: int | "
+                "numpy.typing.ArrayLike | None, contacts: bool = False, relation: bool = False, counts: str = "
+                "'touching', max_contacts: int | "
                 "None = None, device: Device | None = None) -> typing.Any"),
         R"(The same two objects in n pairs of poses, on all cores, with the GIL released.
 
 poses_a, poses_b: (n, 4, 4) or (n, 3, 4), as collide() takes them; or one pose, (4, 4), (3, 4) or None, for all.
 contacts: return all contacts as well, at most max_contacts a query.
+relation: tell touching from crossing, as collide().
 counts: as collide().
-device: by default the CPU with all cores, one for each calling thread.
+device: by default the CPU with all cores, one for the process; while another thread uses it, one core.
 
-Returns hits, (n,) bool; with contacts=True a tuple of hits and contacts, (k, 3) uint32, in each row the number of the
-query, a face of A and a face of B, ascending.
+Returns hits, (n,) bool. With contacts=True a tuple of hits and contacts, (k, 3) uint32, in each row the number of the
+query, a face of A and a face of B, ascending. With relation=True the tuple continues with relations, (n,) str, as
+Result.relation with '' for None; with both there follows crossing, (k,) bool, as Result.crossing.
 
 Raises as collide(), and ValueError if there are not as many poses of A as of B. Ctrl-C takes effect after the call.)");
   m.def("_exact", &exact, "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(),
         nb::sig("def _exact(a: Object, pose_a: typing.Any, b: Object, pose_b: typing.Any) -> Result"),
         "For tests: all contacts by asking about every pair of faces in integers of any size. Slow.");
 
-  nb::class_<PyScene> scene(m, "Scene", nb::type_slots(scene_slots), R"(Placed objects, and which of them touch.
+  nb::class_<PyScene> scene(m, "Scene", nb::type_slots(scene_slots), nb::is_weak_referenceable(),
+                            R"(Placed objects, and which of them touch.
 
 Objects have ids: 1, 2, 3, ... in the order of add(), none given twice. Queries may run in several threads at a time,
 each with its own device; a change meanwhile raises RuntimeError. Methods that take an id raise ValueError if no object
@@ -586,6 +837,7 @@ has it.)");
           "add",
           [](PyScene& self, const Object& object, nb::handle pose, std::uint64_t groups, std::uint64_t mask) {
             const Pose place = one_pose(pose, "pose");
+            const GradualUnderflow mode;
             return self.change().add(object, place, {groups, mask});
           },
           "object"_a, "pose"_a = nb::none(), "groups"_a = 1, "mask"_a = all_groups,
@@ -599,6 +851,7 @@ groups, mask: 64 bits each. Two objects are tested if the mask of each has a gro
           "set_pose",
           [](PyScene& self, Scene::Id id, nb::handle pose) {
             const Pose place = one_pose(pose, "pose");
+            const GradualUnderflow mode;
             self.change().set_pose(id, place);
           },
           "id"_a, "pose"_a.none(), nb::sig("def set_pose(self, id: int, pose: numpy.typing.ArrayLike | None) -> None"),

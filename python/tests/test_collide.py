@@ -1,9 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Objects, single queries and batches."""
+import copy
+import gc
 import os
 import pathlib
+import pickle
+import platform
+import subprocess
+import sys
 import threading
 import time
+import weakref
 
 import numpy as np
 import pytest
@@ -73,7 +80,14 @@ def test_lists_and_quads():
     (np.zeros((3, 3)), [[0, 1]], "columns"),
     (np.zeros((3, 3)), [[0, 1, 3]], "face 0: vertex index 3 is out of range"),
     (np.zeros((3, 3)), [[0, 1, -1]], "face 0: vertex index -1"),
-    (np.zeros((3, 3)), np.zeros((0, 3), int), "face"),
+    (np.zeros((3, 3)), np.zeros((0, 3), int), "no faces"),
+    (np.zeros((3, 3)), [], "no faces"),
+    (np.zeros((3, 3)), np.array([[0, 1, 2**64 - 1]], np.uint64), "vertex index 18446744073709551615 is out of range"),
+    (np.zeros((3, 3)), np.array([[0, 1, 2**63]], np.uint64), "vertex index 9223372036854775808 is out of range"),
+    (np.ma.masked_array(np.zeros((3, 3)), mask=np.eye(3)), [[0, 1, 2]], "vertices is a masked array"),
+    (np.zeros((3, 3)), np.ma.masked_array([[0, 1, 2]], mask=[[0, 0, 1]]), "faces is a masked array"),
+    (np.full((3, 3), 1j), [[0, 1, 2]], "vertices has complex numbers"),
+    ([[0, 0, 1j]] * 3, [[0, 1, 2]], "vertices has complex numbers"),
     (np.zeros((3, 3)), [[0.0, 1.0, 2.0]], "integers"),
     (np.zeros((3, 3)), [[True, False, True]], "integers"),
     (np.full((3, 3), np.nan), [[0, 1, 2]], "finite"),
@@ -93,9 +107,43 @@ def test_files(tmp_path):
     assert Object.load(path).name == str(path)
     with pytest.raises(FileNotFoundError):
         Object.load(tmp_path / "none.obj")
+    with pytest.raises(IsADirectoryError):
+        Object.load(tmp_path)
     path.write_text("v 0 0 0\nf 1 2 3\n")
     with pytest.raises(ValueError, match="square.obj:2"):
         Object.load(path)
+
+
+def test_names_of_files_that_are_any_bytes(tmp_path):
+    text = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+    for name in (b"plain.off", b"\xc3\xa4.off", b"\xff\xfe.off"):
+        path = os.path.join(os.fsencode(tmp_path), name)
+        with open(path, "w") as file:
+            file.write(text)
+        for given in (path, os.fsdecode(path), pathlib.Path(os.fsdecode(path))):
+            made = Object.load(given)
+            assert made.face_count == 1
+            assert os.fsencode(made.name) == path
+            assert os.fsdecode(path) in repr(made)
+            assert pickle.loads(pickle.dumps(made)).name == made.name
+        with open(path, "w") as file:
+            file.write("no mesh")
+        with pytest.raises(ValueError) as raised:
+            Object.load(path)
+        assert os.fsdecode(path) in str(raised.value)
+        with pytest.raises(FileNotFoundError) as raised:
+            Object.load(path + b".none")
+        assert raised.value.filename == path + b".none"
+    with pytest.raises(TypeError):
+        Object.load(3.5)
+
+
+def test_vertices_that_no_face_uses_may_be_anything():
+    vertices = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (np.nan,) * 3]
+    made = Object(vertices, [(0, 1, 2)])
+    assert made.face_count == 1 and len(made.self_contacts()) == 0
+    with pytest.raises(ValueError, match="not finite"):
+        Object(vertices, [(0, 1, 3)])
 
 
 @pytest.mark.parametrize("pose, message", [
@@ -104,7 +152,11 @@ def test_files(tmp_path):
     (np.zeros((1, 4, 4)), "shape"),
     (np.diag([1.0, 1, 1, 2]), "0 0 0 1"),
     (np.eye(4)[::-1], "0 0 0 1"),
-    (np.diag([1.0, 1, np.nan, 1]), "finite"),
+    (np.diag([1.0, 1, np.nan, 1]), "pose_b: row 2, column 2 is not finite"),
+    (np.full((4, 4), np.nan), "pose_b: row 0, column 0 is not finite"),
+    (np.diag([1.0, 1, 1, np.nan]), "pose_b: row 3, column 3 is not finite"),
+    (np.ma.masked_array(np.eye(4), mask=np.eye(4)), "pose_b is a masked array"),
+    (np.eye(4) * 1j, "pose_b has complex numbers"),
     (np.diag([1.0, 1, 1e200, 1]), "2\\^500"),
 ])
 def test_poses_that_are_refused(pose, message):
@@ -119,7 +171,7 @@ def test_poses_of_three_rows():
 
 
 def test_words_that_are_refused():
-    for arguments in ({"contacts": "some"}, {"counts": "near"}, {"contacts": "all", "max_contacts": 0}):
+    for arguments in ({"contacts": "some"}, {"counts": "near"}, {"contacts": "all", "max_contacts": 0}, {"max_contacts": 0}):
         with pytest.raises(ValueError):
             collide(CUBE, None, CUBE, None, **arguments)
     with pytest.raises(ValueError, match="cpu"):
@@ -250,3 +302,157 @@ def test_faces_of_one_object_that_touch():
     found = both.self_contacts()
     assert len(found) > 0 and (found[:, 0] < 12).all() and (found[:, 1] >= 12).all()
     assert len(both.self_contacts(max_contacts=1)) == 1
+    pairs, crossing = both.self_contacts(relation=True)
+    assert (pairs == found).all() and crossing.shape == (len(found),) and crossing.dtype == bool and crossing.any()
+    with pytest.raises(ValueError, match="max_contacts"):
+        both.self_contacts(max_contacts=0)
+
+
+def test_neighbours_that_pierce_or_fold():
+    pierce = Object([(0, 0, 0), (2, 0, 0), (0, 2, 0), (1, 1, -1), (1, 1, 1)], [(0, 1, 2), (0, 3, 4)])
+    pairs, crossing = pierce.self_contacts(relation=True)
+    assert pairs.tolist() == [[0, 1]] and crossing.tolist() == [True]
+    fold = Object([(0, 0, 0), (2, 0, 0), (0, 2, 0), (1, 1, 0)], [(0, 1, 2), (0, 1, 3)])
+    pairs, crossing = fold.self_contacts(relation=True)
+    assert pairs.tolist() == [[0, 1]] and crossing.tolist() == [False]
+    for made in (pierce, fold):
+        assert made.self_contacts(neighbours=False).tolist() == []
+
+
+def test_vertices_and_faces_of_an_object(tmp_path):
+    vertices, faces = cube()
+    made = Object(vertices, faces)
+    assert (made.vertices == vertices).all() and made.vertices.dtype == np.float64
+    assert (made.faces == faces).all() and made.faces.dtype == np.uint32
+    assert made.face_numbers.tolist() == list(range(len(faces)))
+    with pytest.raises(ValueError):
+        made.vertices[0, 0] = 1
+    kept = made.vertices
+    del made
+    gc.collect()
+    assert (kept == vertices).all()
+    path = tmp_path / "mixed.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 .5 0\nf 1 2 3 4\nf 1 2 5\nf 1 2 3 4 5\n")
+    mixed = Object.load(path, quads=True)
+    assert mixed.faces[:2].tolist() == [[0, 1, 2, 3], [0, 1, 4, 4]]
+    assert mixed.face_numbers.tolist() == [0, 1, 2, 2, 2] and len(mixed.faces) == 5
+
+
+def test_pickle_and_copies(tmp_path):
+    path = tmp_path / "mixed.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 .5 0\nf 1 2 3 4\nf 1 2 5\nf 1 2 3 4 5\n")
+    for made in (CUBE, TORUS, Object.load(path, quads=True), TORUS.moved(TORUS.vertices * [1, 2, 1])):
+        for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
+            again = pickle.loads(pickle.dumps(made, protocol))
+            assert again.name == made.name and (again.vertices == made.vertices).all()
+            assert (again.faces == made.faces).all() and (again.face_numbers == made.face_numbers).all()
+            place = shift(0.3, 0.1)
+            found, expected = (collide(x, None, CUBE, place, contacts="all") for x in (again, made))
+            assert found.contacts.tolist() == expected.contacts.tolist()
+        assert copy.copy(made) is made and copy.deepcopy([made])[0] is made
+    with pytest.raises(ValueError):
+        Object.__new__(Object).__setstate__((1, b"", b"1", b"", b"", 0))
+    with pytest.raises(ValueError, match="version 2"):
+        Object.__new__(Object).__setstate__((2, b"", b"", b"", b"", 0))
+
+
+def test_weak_references():
+    made = Object(*cube())
+    device, result = open_device("cpu", threads=1), collide(made, None, made, None)
+    references = [weakref.ref(x) for x in (made, device, result)]
+    assert [x() is not None for x in references] == [True] * 3
+    del made, device, result
+    gc.collect()
+    assert [x() for x in references] == [None] * 3
+
+
+def test_relations_of_a_batch():
+    batch = np.tile(shift(0, 0.25, 0.5), (4, 1, 1))
+    batch[:, 0, 3] = [0.5, 1, 1 + 2**-52, 3]
+    hits, relations = collide_many(CUBE, None, CUBE, batch, relation=True)
+    assert hits.tolist() == [True, True, False, False]
+    assert relations.tolist() == ["crossing", "touching", "apart", "apart"]
+    hits, contacts, relations, crossing = collide_many(CUBE, None, CUBE, batch, contacts=True, relation=True)
+    assert relations.tolist() == ["crossing", "touching", "apart", "apart"]
+    for i, pose in enumerate(batch):
+        one = collide(CUBE, None, CUBE, pose, contacts="all", relation=True)
+        mine = contacts[:, 0] == i
+        assert contacts[mine, 1:].tolist() == one.contacts.tolist() and (crossing[mine] == one.crossing).all()
+    relations = collide_many(CUBE, None, CUBE, batch[1], contacts=True, relation=True, max_contacts=1)[2]
+    assert relations.tolist() == [""]
+
+
+def test_batches_without_poses():
+    for none in ([], np.zeros((0, 4, 4)), np.zeros((0, 3, 4)), np.zeros(0)):
+        assert collide_many(CUBE, None, CUBE, none).shape == (0,)
+        assert collide_many(CUBE, none, CUBE, None).shape == (0,)
+        hits, contacts = collide_many(CUBE, None, CUBE, none, contacts=True)
+        assert hits.shape == (0,) and contacts.shape == (0, 3)
+        assert [len(x) for x in collide_many(CUBE, None, CUBE, none, contacts=True, relation=True)] == [0] * 4
+    with pytest.raises(ValueError, match="max_contacts"):
+        collide_many(CUBE, None, CUBE, [], max_contacts=0)
+    with pytest.raises(ValueError, match="shape"):
+        collide(CUBE, None, CUBE, [])
+    with pytest.raises(ValueError, match=r"poses_b\[1\]: row 0, column 3 is not finite"):
+        collide_many(CUBE, None, CUBE, [np.eye(4), shift(np.nan)])
+
+
+def test_all_counts():
+    counts = collide(CUBE, None, CUBE, None).counts
+    assert {"steps", "box_tests", "pairs", "open", "clocks", "fallbacks", "swaps", "swap_clocks"} == set(counts)
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc/self/task"), reason="counts threads as Linux shows them")
+def test_threads_share_the_device_of_all_cores():
+    program = """
+import os, sys, threading
+sys.path[:0] = {path!r}
+import numpy as np
+from collisionchip import Object, collide_many
+cube = Object([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)],
+              [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+poses = np.tile(np.eye(4), (1000, 1, 1))
+before, ready, wrong = len(os.listdir("/proc/self/task")), threading.Barrier(9), []
+def work():
+    for _ in range(20):
+        if not collide_many(cube, None, cube, poses).all(): wrong.append(1)
+    ready.wait()
+    ready.wait()
+threads = [threading.Thread(target=work) for _ in range(8)]
+for thread in threads: thread.start()
+ready.wait()
+print(len(os.listdir("/proc/self/task")) - before - 8 < (os.cpu_count() or 1), wrong)
+ready.wait()
+for thread in threads: thread.join()
+""".format(path=sys.path)
+    assert subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout == "True []\n"
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="switches the mode of x86")
+def test_threads_that_flush_small_numbers_to_zero(tmp_path):
+    # the constructor of a library that was linked with -ffast-math does this
+    code = "#include <xmmintrin.h>\nvoid flush(void) {{ _mm_setcsr(_mm_getcsr() | 0x8040u); }}\n"
+    code += "unsigned flushes(void) {{ return _mm_getcsr() & 0x8040u; }}\n"
+    (tmp_path / "flush.c").write_text(code.format())
+    library = tmp_path / "flush.so"
+    if subprocess.run(["cc", "-shared", "-fPIC", "-o", library, tmp_path / "flush.c"], check=False).returncode:
+        pytest.skip("no C compiler")
+    program = """
+import ctypes, sys
+sys.path[:0] = {path!r}
+import numpy as np
+from collisionchip import CollisionManager, Object, Scene, collide, collide_many, open_device
+vertices = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * 2.0**-400
+faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+library = ctypes.CDLL({library!r})
+library.flush()
+cube = Object(vertices, faces)
+scene = Scene()
+ids = [scene.add(cube), scene.add(cube)]
+scene.set_pose(ids[0], None)
+print(collide(cube, None, cube, None).hit, collide_many(cube, None, cube, [np.eye(4)] * 100).all(),
+      len(scene.touching()), len(cube.self_contacts()), cube.moved(vertices).face_count,
+      collide(cube, None, cube, None, device=open_device("cpu", threads=2)).hit, library.flushes() == 0x8040)
+""".format(path=sys.path, library=str(library))
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert (done.stdout, done.stderr) == ("True True 1 0 6 True True\n", "")

@@ -82,3 +82,44 @@ def test_the_methods_are_those_of_trimesh():
             ours = inspect.signature(getattr(collisionchip.CollisionManager, name)).parameters.values()
             assert [(p.name, p.default) for p in ours] == [
                 (p.name, p.default) for p in inspect.signature(method).parameters.values()], name
+
+
+def test_names_that_cannot_be_ordered():
+    manager = CollisionManager()
+    manager.add_object(1, Mesh)
+    manager.add_object("b", Mesh, shift(0.25))
+    manager.add_object(None, Mesh, shift(9))
+    assert manager.in_collision_internal(return_names=True) == (True, {(1, "b")})
+    assert manager.in_collision_internal(return_data=True)[1][0].names == {1, "b"}
+    assert manager.in_collision_single(Mesh, shift(9), return_names=True) == (True, {None})
+
+
+def test_ignored_pairs():
+    manager = row(3)
+    manager.set_pair_ignored("b", "a")
+    assert manager.in_collision_internal(return_names=True)[1] == {("b", "c")}
+    manager.add_object("a", Mesh, shift(0))  # replaced: still ignored
+    assert manager.in_collision_internal(return_names=True)[1] == {("b", "c")}
+    manager.set_pair_ignored("a", "b", False)
+    assert manager.in_collision_internal(return_names=True)[1] == {("a", "b"), ("b", "c")}
+    manager.set_pair_ignored("b", "c")
+    manager.remove_object("c")
+    manager.add_object("c", Mesh, shift(2))  # another one of this name
+    assert manager.in_collision_internal(return_names=True)[1] == {("a", "b"), ("b", "c")}
+    with pytest.raises(ValueError, match="x not in collision manager!"):
+        manager.set_pair_ignored("a", "x")
+    with pytest.raises(ValueError):
+        manager.set_pair_ignored("a", "a")
+
+
+def test_a_scene_of_trimesh():
+    trimesh = pytest.importorskip("trimesh")
+    box = trimesh.creation.box()
+    scene = trimesh.Scene()
+    for i in range(3):
+        scene.add_geometry(box, node_name=f"box {i}", geom_name="box", transform=shift(i))
+    scene.add_geometry(trimesh.creation.icosphere(radius=0.25), node_name="ball", geom_name="ball", transform=shift(9))
+    manager, objects = collisionchip.scene_to_collision(scene)
+    assert set(objects) == set(scene.graph.nodes_geometry)
+    touching = {("box 0", "box 1"), ("box 1", "box 2")}
+    assert manager.in_collision_internal(return_names=True) == (True, touching)

@@ -277,7 +277,7 @@ module cchip_normaliser #(
       wire unused = &{1'b0, inexact, rounded_more[COORD_W]};
       // n is the least shift for which the pair fits, rounding included
       always @(posedge clk) begin
-        if (m_valid) begin
+        if (m_valid && !rst) begin
           `CCHIP_NARROW_UNSIGNED(a_rounded, rounded_more[COORD_W])
         end
       end

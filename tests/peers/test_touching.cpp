@@ -19,8 +19,6 @@ const TouchingCase& case_named(const std::string& name) {
   return *found;
 }
 
-bool same(const Contact& x, const Contact& y) { return x == y && x.relation == y.relation; }
-
 /// Contacts of the other order of the objects.
 std::vector<Contact> turned_round(std::vector<Contact> contacts) {
   for (Contact& contact : contacts) std::swap(contact.face_a, contact.face_b);
@@ -38,7 +36,7 @@ void expect(Device& device, const Object& a, const Pose& pose_a, const Object& b
   request.contacts = CollisionRequest::Contacts::all;
   const CollisionResult all = collide(device, a, pose_a, b, pose_b, request);
   CHECK(all.relation == relation);
-  CHECK(std::equal(all.contacts.begin(), all.contacts.end(), contacts.begin(), contacts.end(), same));
+  CHECK(std::equal(all.contacts.begin(), all.contacts.end(), contacts.begin(), contacts.end()));
   request = {};
   request.counts = CollisionRequest::Counts::crossing;
   CHECK(collide(device, a, pose_a, b, pose_b, request).hit == (relation == Relation::crossing));

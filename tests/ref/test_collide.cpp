@@ -10,6 +10,7 @@
 #include <catch2/catch.hpp>
 #include <cchip/bvh/image.hpp>
 #include <cchip/bvh/place.hpp>
+#include <cchip/collide/gradual_underflow.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/model/broad_phase.hpp>
@@ -161,9 +162,7 @@ void check_relations(Device& device, const Object& a, const Object& b, const Pos
     const CollisionResult first = collide(device, a, poses.a, b, poses.b, request);
     request.contacts = CollisionRequest::Contacts::all;
     const CollisionResult found = collide(device, a, poses.a, b, poses.b, request);
-    const auto same = [](const Contact& x, const Contact& y) { return x == y && x.relation == y.relation; };
-    const bool all_right = found.hit == !wanted.empty() && found.relation == relation &&
-                           std::equal(found.contacts.begin(), found.contacts.end(), wanted.begin(), wanted.end(), same);
+    const bool all_right = found.hit == !wanted.empty() && found.relation == relation && found.contacts == wanted;
     // One that crosses if there is one.
     const bool first_right = first.hit == found.hit && first.relation == relation &&
                              first.contacts.size() == (found.hit ? 1 : 0) &&
@@ -187,7 +186,7 @@ void check_answers(Device& device, const Object& a, const Object& b, const PoseP
   tally.hits += found.hit;
   tally.counts += found.counts;
   tally.first_pairs += first.counts.pairs;
-  if (found.contacts != expected || found.hit != !expected.empty() || first.hit != found.hit ||
+  if (!same_faces(found.contacts, expected) || found.hit != !expected.empty() || first.hit != found.hit ||
       first.contacts.size() != (found.hit ? 1 : 0) ||
       (found.hit && !std::binary_search(expected.begin(), expected.end(), first.contacts[0]))) {
     FAIL(device.name() << ": " << found.contacts.size() << " contacts instead of " << expected.size() << ", first "
@@ -309,11 +308,89 @@ TEST_CASE("collide: faces that were cut count once, by their number in the file"
   const Object b(wall);
   const CollisionResult result = collide(*device, a, Pose::Identity(), b, Pose::Identity(), all);
   CHECK(result.contacts == std::vector<Contact>{{3, 0}, {7, 0}});
-  CHECK(brute_force_contacts(cut, Pose::Identity(), wall, Pose::Identity()) == result.contacts);
+  CHECK(same_faces(brute_force_contacts(cut, Pose::Identity(), wall, Pose::Identity()), result.contacts));
   CHECK(result.counts.pairs == 4);
   CollisionRequest one = all;
   one.max_contacts = 1;
   CHECK(collide(*device, b, Pose::Identity(), a, Pose::Identity(), one).contacts.size() == 1);
+}
+
+TEST_CASE("collide: at most contacts, a face that was cut crosses if one of its parts does", "[ref][collide]") {
+  // B touches one half of the square and crosses the other.
+  const Mesh b = one_face({{0.5, 0.5, 0}, {0.25, 0.75, -0.5}, {0.25, 0.75, 1}});
+  for (const int order : {0, 1, 2}) {
+    Mesh a;
+    if (order != 1) add_face(a, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}});
+    if (order == 2) add_face(a, {{0.5, 0.5, 0}, {0.4, 0.5, 1}, {0.5, 0.4, 1}});  // another one that touches B
+    add_face(a, {{0, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+    if (order == 1) add_face(a, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}});
+    a.file_face = order == 2 ? std::vector<std::uint32_t>{1, 0, 1} : std::vector<std::uint32_t>{0, 0};
+    const Object object_a(a);
+    const Object object_b(b);
+    for (const std::string& target : cpu_targets()) {
+      const auto device = open_cpu_device({1, target});
+      for (const std::size_t most : {1, 2, 3}) {
+        for (const bool swapped : {false, true}) {
+          CAPTURE(order, target, most, swapped);
+          CollisionRequest request = all;
+          request.relation = true;
+          request.max_contacts = most;
+          const CollisionResult found =
+              swapped ? collide(*device, object_b, Pose::Identity(), object_a, Pose::Identity(), request)
+                      : collide(*device, object_a, Pose::Identity(), object_b, Pose::Identity(), request);
+          REQUIRE(found.contacts.size() == (order == 2 ? std::min(most, std::size_t{2}) : 1));
+          for (const Contact& contact : found.contacts) {
+            const bool is_square = (swapped ? contact.face_b : contact.face_a) == (order == 2 ? 1U : 0U);
+            CHECK(contact.relation == (is_square ? Relation::crossing : Relation::touching));
+          }
+          // All contacts are known unless there is one more than were wanted.
+          if (order != 2 || most > 1) CHECK(found.relation == Relation::crossing);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("collide: the relation is known if there are no more contacts than were wanted", "[ref][collide]") {
+  const Object a(one_face({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  const Object b(one_face({{0, 0, 0}, {-1, 0, 1}, {0, -1, 1}}));
+  CollisionRequest request = all;
+  request.relation = true;
+  request.max_contacts = 1;
+  const auto device = each_device();
+  const CollisionResult found = collide(*device, a, Pose::Identity(), b, Pose::Identity(), request);
+  CHECK(found.contacts == std::vector<Contact>{{0, 0, Relation::touching}});
+  CHECK(found.relation == Relation::touching);
+}
+
+TEST_CASE("collide: contacts are equal with their relations, or by their faces alone", "[ref][collide]") {
+  const Contact touching = {3, 4, Relation::touching};
+  const Contact crossing = {3, 4, Relation::crossing};
+  CHECK(touching == Contact{3, 4, Relation::touching});
+  CHECK(touching != crossing);
+  CHECK(touching != Contact{3, 4});
+  CHECK(same_faces(touching, crossing));
+  CHECK_FALSE(same_faces(touching, Contact{3, 5, Relation::touching}));
+  CHECK(same_faces(std::vector<Contact>{touching}, std::vector<Contact>{crossing}));
+  CHECK_FALSE(same_faces(std::vector<Contact>{touching}, std::vector<Contact>{}));
+}
+
+TEST_CASE("collide: pairs whose crossing took exact arithmetic are counted as open", "[ref][collide]") {
+  CollisionRequest request = all;
+  // An edge of B goes right through A, so doubles see that they meet. Another one is parallel to an edge of A: whether
+  // their cross product, rounded in these poses, is 0 takes exact arithmetic.
+  const Pose pose_a = make_pose({0.1, 0.2, 0.3}, {10, 20, 30});
+  const Pose pose_b = make_pose({0.11, 0.19, 0.3}, {10, 20, 30});
+  const Object a(one_face({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  const Object b(one_face({{0.25, 0.25, -1}, {0.25, 0.25, 1}, {1.25, 0.25, -1}}));
+  const auto device = open_cpu_device({1, "plain"});
+  request.relation = false;
+  CHECK(collide(*device, a, pose_a, b, pose_b, request).counts.open == 0);
+  request.relation = true;
+  const CollisionResult found = collide(*device, a, pose_a, b, pose_b, request);
+  CHECK(found.relation == Relation::crossing);
+  CHECK(found.counts.open == 1);
+  CHECK(found.counts.pairs == 1);
 }
 
 TEST_CASE("collide: without a device, from any number of threads", "[ref][collide]") {
@@ -449,7 +526,10 @@ TEST_CASE("collide: input that makes no sense is refused in one line", "[ref][co
   CollisionRequest none = all;
   none.max_contacts = 0;
   CHECK_THROWS_AS(collide(*device, a, Pose::Identity(), a, Pose::Identity(), none), std::invalid_argument);
-  CHECK_THROWS_AS(Object(Mesh{}), std::invalid_argument);
+  none = {};
+  none.max_contacts = 0;
+  CHECK_THROWS_AS(collide(*device, a, Pose::Identity(), a, Pose::Identity(), none), std::invalid_argument);
+  CHECK_THROWS_WITH(Object(Mesh{}), "mesh has no faces");
   CHECK_THROWS_WITH(Object(one_face({{0, 0, 0}, {1, 0, std::numeric_limits<double>::infinity()}, {0, 1, 0}})),
                     Catch::Contains("vertex 1 is not finite"));
   CHECK_THROWS_WITH(open_device("gpu"), Catch::Contains("device gpu is not known: the devices are cpu, model"));
@@ -614,6 +694,15 @@ TEST_CASE("collide: a thread that flushes small numbers to zero is refused", "[r
     refused([&] { collide(*device, a, Pose::Identity(), a, Pose::Identity()); });
     refused([&] { collide(*device, a, a, std::vector<PosePair>(3)); });
     CHECK(collide(*device, a, Pose::Identity(), a, Pose::Identity()).hit);
+    _mm_setcsr(before | bit);
+    {
+      const GradualUnderflow mode;
+      CHECK(_mm_getcsr() == before);
+      CHECK(collide(*open_cpu_device({1, {}}), Object{mesh}, Pose::Identity(), a, Pose::Identity()).hit);
+      const GradualUnderflow again;
+    }
+    CHECK((_mm_getcsr() & 0x8040U) == bit);
+    _mm_setcsr(before);
   }
 }
 #endif

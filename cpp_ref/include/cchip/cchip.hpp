@@ -5,6 +5,7 @@
 #define CCHIP_CCHIP_HPP
 
 #include <cchip/collide/collide.hpp>
+#include <cchip/collide/gradual_underflow.hpp>
 #include <cchip/collide/scene.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/device/device.hpp>

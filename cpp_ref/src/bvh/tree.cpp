@@ -278,7 +278,8 @@ void enclose_all(Tree& tree, const Mesh& mesh) {
 
 Tree build_tree(const Mesh& mesh, const TreeOptions& options) {
   constexpr std::size_t most = (std::size_t{1} << 24U) - 2;
-  if (mesh.faces.empty()) throw std::invalid_argument("mesh " + mesh.name + " has no faces");
+  if (mesh.faces.empty())
+    throw std::invalid_argument("mesh" + (mesh.name.empty() ? "" : " " + mesh.name) + " has no faces");
   if (mesh.faces.size() > most) {
     throw std::invalid_argument("mesh " + mesh.name + " has " + std::to_string(mesh.faces.size()) +
                                 " faces: cut it into objects of at most " + std::to_string(most));

@@ -2,12 +2,9 @@
 #include <algorithm>
 #include <cchip/collide/collide.hpp>
 #include <cchip/collide/face_pairs.hpp>
-#include <cchip/exact/posed_pairs.hpp>
-#include <map>
 #include <numeric>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "float_mode.hpp"
@@ -27,6 +24,17 @@ Device::QuerySource in_poses(const Object& a, const Object& b, const std::vector
   return [&a, &b, &poses](std::size_t i) { return CollisionQuery{&a, &poses[i].a, &b, &poses[i].b}; };
 }
 
+/// What Object::parts() looks up: none if file_face serves as it is.
+std::vector<std::uint32_t> faces_by_file(const Mesh& mesh) {
+  const std::vector<std::uint32_t>& number = mesh.file_face;
+  if (std::is_sorted(number.begin(), number.end())) return {};
+  std::vector<std::uint32_t> faces(number.size());
+  std::iota(faces.begin(), faces.end(), 0U);
+  std::stable_sort(faces.begin(), faces.end(),
+                   [&number](std::uint32_t i, std::uint32_t k) { return number[i] < number[k]; });
+  return faces;
+}
+
 /// Ends a batch whose sink has returned false.
 struct Enough {};
 
@@ -35,12 +43,35 @@ struct Enough {};
 Object::Object(Mesh mesh) {
   check_float_mode();
   bvh::SupportTree tree(mesh, bvh::build_tree(mesh));
-  data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(tree)});
+  std::vector<std::uint32_t> by_file = faces_by_file(mesh);
+  data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(tree), std::move(by_file)});
 }
 
 Object::Object(Mesh mesh, const bvh::Tree& tree) {
   bvh::SupportTree support(mesh, tree);
-  data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(support)});
+  std::vector<std::uint32_t> by_file = faces_by_file(mesh);
+  data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(support), std::move(by_file)});
+}
+
+void Object::refuse_moved_from() {
+  throw std::invalid_argument("object: it was moved from and has no mesh; use the Object that it was moved to");
+}
+
+std::vector<std::uint32_t> Object::parts(std::uint32_t number) const {
+  const std::vector<std::uint32_t>& numbers = mesh().file_face;
+  std::vector<std::uint32_t> parts;
+  if (numbers.empty()) {
+    if (number < mesh().faces.size()) parts.push_back(number);
+  } else if (data().by_file.empty()) {
+    const auto [first, last] = std::equal_range(numbers.begin(), numbers.end(), number);
+    for (auto i = first; i != last; ++i) parts.push_back(static_cast<std::uint32_t>(i - numbers.begin()));
+  } else {
+    const std::vector<std::uint32_t>& faces = data().by_file;
+    auto i = std::lower_bound(faces.begin(), faces.end(), number,
+                              [&numbers](std::uint32_t face, std::uint32_t wanted) { return numbers[face] < wanted; });
+    for (; i != faces.end() && numbers[*i] == number; ++i) parts.push_back(*i);
+  }
+  return parts;
 }
 
 Object Object::moved(std::vector<Vec3d> vertices) const {
@@ -119,57 +150,6 @@ std::vector<CollisionResult> collide(Device& device, const std::vector<Collision
                                      const CollisionRequest& request) {
   return gather(
       device, queries.size(), [&queries](std::size_t i) { return queries[i]; }, request);
-}
-
-std::vector<Contact> self_contacts(const Object& object, std::size_t max_contacts) {
-  check_float_mode();
-  if (object.id() == nullptr)
-    throw std::invalid_argument("self_contacts: the Object was moved from; use the other one");
-  if (max_contacts == 0) throw std::invalid_argument("self_contacts: max_contacts is 0: ask for at least one contact");
-  const Mesh& mesh = object.mesh();
-  // Vertices at one position have one number.
-  std::vector<std::uint32_t> order(mesh.vertices.size());
-  std::iota(order.begin(), order.end(), 0U);
-  const auto before = [&mesh](std::uint32_t i, std::uint32_t k) {
-    const Vec3d& p = mesh.vertices[i];
-    const Vec3d& q = mesh.vertices[k];
-    return std::tie(p.x(), p.y(), p.z()) < std::tie(q.x(), q.y(), q.z());
-  };
-  std::sort(order.begin(), order.end(), before);
-  std::vector<std::uint32_t> number(order.size());
-  for (std::size_t i = 1; i < order.size(); ++i) {
-    number[order[i]] = number[order[i - 1]] + (before(order[i - 1], order[i]) ? 1U : 0U);
-  }
-  const auto are_neighbours = [&](const Mesh::Face& f, const Mesh::Face& g) {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(f.kind); ++i) {
-      for (std::size_t k = 0; k < static_cast<std::size_t>(g.kind); ++k) {
-        if (number[f.vertex[i]] == number[g.vertex[k]]) return true;
-      }
-    }
-    return false;
-  };
-  const PosedPairs pairs(Pose::Identity(), Pose::Identity());
-  std::map<Contact, Relation> found;
-  try {
-    sweep_box_pairs(mesh, mesh, [&](CandidatePair pair) {
-      if (pair.face_a >= pair.face_b || are_neighbours(mesh.faces[pair.face_a], mesh.faces[pair.face_b])) return;
-      const auto [low, high] =
-          std::minmax({mesh.number_in_file(pair.face_a), mesh.number_in_file(pair.face_b)});  // by value
-      if (low == high) return;                                                                // parts of one polygon
-      const Primitive a = mesh.primitive(pair.face_a);
-      const Primitive b = mesh.primitive(pair.face_b);
-      if (!pairs.decide(a, b).hit) return;
-      const Relation relation = pairs.cross(a, b) ? Relation::crossing : Relation::touching;
-      Relation& known = found.emplace(Contact{low, high, {}}, relation).first->second;
-      known = std::max(known, relation);
-      if (found.size() == max_contacts) throw Enough();
-    });
-  } catch (const Enough&) {  // NOLINT: it is no error
-  }
-  std::vector<Contact> contacts;
-  contacts.reserve(found.size());
-  for (const auto& [faces, relation] : found) contacts.push_back({faces.face_a, faces.face_b, relation});
-  return contacts;
 }
 
 }  // namespace cchip

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "exact/filter.hpp"
+
 namespace cchip {
 namespace {
 
@@ -38,7 +40,7 @@ void check_pose(const Pose& pose, const char* name) {
 void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest& request) {
   check_pose(pose_a, "A");
   check_pose(pose_b, "B");
-  if (request.contacts == CollisionRequest::Contacts::all && request.max_contacts == 0) {
+  if (request.max_contacts == 0) {
     throw std::invalid_argument("max_contacts is 0: ask for at least one contact");
   }
 }
@@ -67,15 +69,19 @@ void FacePairs::answer_apart(const CollisionRequest& request, CollisionResult& r
   if (request.tells_relation()) result.relation = Relation::apart;
 }
 
-void FacePairs::test(std::uint32_t face_a, std::uint32_t face_b) {
+Relation FacePairs::relate(std::uint32_t face_a, std::uint32_t face_b) {
   if (!pairs_) pairs_.emplace(*query_.pose_a, *query_.pose_b);
   const Primitive a = query_.a->mesh().primitive(face_a);
   const Primitive b = query_.b->mesh().primitive(face_b);
   const PosedPairs::Answer answer = pairs_->decide(a, b, request_.tells_relation());
   ++result_->counts.pairs;
   result_->counts.open += answer.open;
-  if (!answer.hit) return;
-  add(face_a, face_b, answer.crosses ? Relation::crossing : Relation::touching);
+  return answer.crosses ? Relation::crossing : answer.hit ? Relation::touching : Relation::apart;
+}
+
+void FacePairs::test(std::uint32_t face_a, std::uint32_t face_b) {
+  const Relation relation = relate(face_a, face_b);
+  if (relation != Relation::apart) add(face_a, face_b, relation);
 }
 
 void FacePairs::add(std::uint32_t face_a, std::uint32_t face_b, Relation relation) {
@@ -90,20 +96,41 @@ void FacePairs::add(std::uint32_t face_a, std::uint32_t face_b, Relation relatio
     done_ = crosses || !request_.tells_relation();
     return;
   }
-  if (cut_ && most_ > 1) {
-    const auto [found, is_new] = contacts_.emplace(contact, contacts.size());
-    if (!is_new) {
+  if (cut_) {
+    if (const auto found = contacts_.find(contact); found != contacts_.end()) {
       if (crosses && request_.tells_relation()) contacts[found->second].relation = relation;
       return;
     }
   }
+  // Only one contact more than are wanted ends the search: until then it may find that it has met all of them.
+  if (contacts.size() == most_) {
+    done_ = true;
+    return;
+  }
+  if (cut_) contacts_.emplace(contact, contacts.size());
   contacts.push_back(contact);
-  done_ = contacts.size() >= most_;
+}
+
+/// The search ended before it met all parts of two faces that were cut, and those that it met only touch.
+void FacePairs::relate_all_parts(Contact& contact) {
+  const std::vector<std::uint32_t> parts_b = query_.b->parts(contact.face_b);
+  for (const std::uint32_t face_a : query_.a->parts(contact.face_a)) {
+    for (const std::uint32_t face_b : parts_b) {
+      if (relate(face_a, face_b) != Relation::crossing) continue;
+      contact.relation = seen_ = Relation::crossing;
+      return;
+    }
+  }
 }
 
 void FacePairs::finish() {
   std::vector<Contact>& contacts = result_->contacts;
   result_->hit = !contacts.empty();
+  if (cut_ && done_ && request_.contacts == CollisionRequest::Contacts::all && request_.tells_relation()) {
+    for (Contact& contact : contacts) {
+      if (contact.relation == Relation::touching) relate_all_parts(contact);
+    }
+  }
   if (request_.tells_relation() && (seen_ == Relation::crossing || !done_)) result_->relation = seen_;
   if (result_->contacts.size() > 1) std::sort(result_->contacts.begin(), result_->contacts.end());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "float_mode.hpp"
 
+#include <cchip/collide/gradual_underflow.hpp>
 #include <stdexcept>
 #if defined(__SSE2__)
 #include <xmmintrin.h>
@@ -11,11 +12,28 @@
 namespace cchip {
 namespace {
 
+// Bits of the control register that flush results, and on x86 operands, to zero; and access to it.
+#if defined(__SSE2__)
+constexpr std::uint64_t flush_bits = 0x8040;  // FTZ and DAZ
+std::uint64_t control() { return _mm_getcsr(); }
+void set_control(std::uint64_t bits) { _mm_setcsr(static_cast<unsigned>(bits)); }
+#elif defined(__aarch64__)
+constexpr std::uint64_t flush_bits = std::uint64_t{1} << 24U;  // FZ
+std::uint64_t control() {
+  std::uint64_t bits = 0;
+  __asm__ volatile("mrs %0, fpcr" : "=r"(bits));
+  return bits;
+}
+void set_control(std::uint64_t bits) { __asm__ volatile("msr fpcr, %0" : : "r"(bits)); }
+#else
+constexpr std::uint64_t flush_bits = 0;
+std::uint64_t control() { return 0; }
+void set_control(std::uint64_t) {}
+#endif
+
 bool flushes_to_zero() {
 #if defined(__SSE2__)
-  constexpr unsigned flush_to_zero = 0x8000;
-  constexpr unsigned denormals_are_zero = 0x0040;
-  return (_mm_getcsr() & (flush_to_zero | denormals_are_zero)) != 0;
+  return (control() & flush_bits) != 0;
 #else
   volatile double least = std::numeric_limits<double>::min();
   volatile double half = least / 2;
@@ -29,8 +47,15 @@ void check_float_mode() {
   if (!flushes_to_zero()) return;
   throw std::runtime_error(
       "this thread flushes small numbers to zero, which makes answers wrong: link without -ffast-math and -Ofast, or "
-      "clear "
-      "FTZ and DAZ, on x86 with _mm_setcsr(_mm_getcsr() & ~0x8040U)");
+      "clear FTZ and DAZ, for a while with cchip::GradualUnderflow, on x86 with _mm_setcsr(_mm_getcsr() & ~0x8040U)");
+}
+
+GradualUnderflow::GradualUnderflow() : flushes_(control() & flush_bits) {
+  if (flushes_ != 0) set_control(control() & ~flush_bits);
+}
+
+GradualUnderflow::~GradualUnderflow() {
+  if (flushes_ != 0) set_control(control() | flushes_);
 }
 
 }  // namespace cchip

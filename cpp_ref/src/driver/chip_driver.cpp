@@ -189,6 +189,11 @@ class ChipDriver final : public QueryPort {
     capabilities_.quads = kinds == 7;
     if ((has & regs::capabilities::swaps_mask) != 0)
       capabilities_.swap_slots = (has & regs::capabilities::slots_mask) >> regs::capabilities::slots_shift;
+    if (capabilities_.swap_slots > regs::slot_status::count) {
+      throw std::runtime_error("chip driver: the register capabilities says " +
+                               std::to_string(capabilities_.swap_slots) + " slots, a chip has at most " +
+                               std::to_string(regs::slot_status::count) + "; check the bus and the chip's release");
+    }
     capabilities_.lock_ranges = (has & regs::capabilities::locks_mask) >> regs::capabilities::locks_shift;
     capabilities_.queries_in_flight = std::size_t{1} << options_.query_log2;
   }
@@ -322,7 +327,7 @@ class ChipDriver final : public QueryPort {
   std::unique_ptr<Machine> machine_;
   ChipDriverOptions options_;
   std::vector<Loaded> bitstreams_;
-  std::array<std::uint64_t, 4> asked_ = {};  // when a module was asked for in this slot last
+  std::array<std::uint64_t, regs::slot_status::count> asked_ = {};  // when a module was asked for in this slot last
   std::uint64_t asks_ = 0;
   std::deque<ModuleId> wanted_;  // that were not asked for yet
   SwapCounts swaps_;

@@ -18,8 +18,10 @@ std::vector<Contact> brute_force_contacts(const Mesh& a, const Pose& pose_a, con
   }
   // Of those that name the same faces the one that crosses stays.
   std::sort(contacts.begin(), contacts.end(),
-            [](const Contact& x, const Contact& y) { return x == y ? x.relation > y.relation : x < y; });
-  contacts.erase(std::unique(contacts.begin(), contacts.end()), contacts.end());
+            [](const Contact& x, const Contact& y) { return same_faces(x, y) ? x.relation > y.relation : x < y; });
+  contacts.erase(std::unique(contacts.begin(), contacts.end(),
+                             [](const Contact& x, const Contact& y) { return same_faces(x, y); }),
+                 contacts.end());
   return contacts;
 }
 

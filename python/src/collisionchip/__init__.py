@@ -6,7 +6,7 @@ many objects. CollisionManager has the methods of trimesh.collision.CollisionMan
 """
 from ._core import Device, Object, Result, Scene, collide, collide_many, cpu_targets, device_names, open_device
 from ._core import version as __version__
-from .manager import CollisionManager, ContactData
+from .manager import CollisionManager, ContactData, scene_to_collision
 
 __all__ = ["CollisionManager", "ContactData", "Device", "Object", "Result", "Scene", "__version__", "collide",
-           "collide_many", "cpu_targets", "device_names", "open_device"]
+           "collide_many", "cpu_targets", "device_names", "open_device", "scene_to_collision"]

@@ -89,6 +89,8 @@ def collide_many(client, a, poses_a, b, poses_b, *, contacts=False, chunk=16384,
     """As collisionchip.collide_many(), with meshes for objects; the results are in the order of the poses.
 
     chunk: queries of one task. retries: attempts after all workers with a chunk's meshes have died."""
+    if options.get("relation"):
+        raise ValueError("relation: collide_many() over Dask tells hits and contacts only; use collide_pairs()")
     poses_a, poses_b = (None if poses is None else np.asarray(poses, float) for poses in (poses_a, poses_b))
     counts = {len(poses) for poses in (poses_a, poses_b) if poses is not None and poses.ndim == 3}
     if len(counts) > 1:

@@ -54,6 +54,7 @@ class CollisionManager:
         self._scene = Scene()
         self._ids: dict[Any, int] = {}
         self._names: dict[int, Any] = {}
+        self._ignored: set[frozenset[Any]] = set()
         self._device = device
 
     def add_object(self, name: Any, mesh: Any, transform: Any = None) -> Object:
@@ -68,9 +69,14 @@ class CollisionManager:
         made = _to_object(mesh)
         number = self._scene.add(made, transform)
         if name in self._ids:
-            self.remove_object(name)
+            before = self._ids[name]
+            self._scene.remove(before)
+            del self._names[before]
         self._ids[name] = number
         self._names[number] = name
+        for pair in self._ignored:  # of the object that was replaced
+            if name in pair:
+                self._scene.set_ignored(*(self._ids[x] for x in pair))
         return made
 
     def remove_object(self, name: Any) -> None:
@@ -78,10 +84,25 @@ class CollisionManager:
         number = self._id(name)
         self._scene.remove(number)
         del self._ids[name], self._names[number]
+        self._ignored = {pair for pair in self._ignored if name not in pair}
 
     def set_transform(self, name: Any, transform: Any) -> None:
         """Moves an object. transform: (4, 4) float. Raises ValueError: no object has this name, or as collide()."""
         self._scene.set_pose(self._id(name), transform)
+
+    def set_pair_ignored(self, name_a: Any, name_b: Any, ignored: bool = True) -> None:
+        """Leaves a pair out of in_collision_internal(), such as two links that a joint connects; or takes it in again.
+
+        Replacing an object keeps its ignored pairs, removing it drops them. trimesh does not have this method.
+
+        Raises ValueError: no object has one of the names, or both are the same.
+        """
+        self._scene.set_ignored(self._id(name_a), self._id(name_b), ignored)
+        pair = frozenset((name_a, name_b))
+        if ignored:
+            self._ignored.add(pair)
+        else:
+            self._ignored.discard(pair)
 
     def in_collision_single(self, mesh: Any, transform: Any = None, return_names: bool = False,
                             return_data: bool = False) -> Any:
@@ -101,13 +122,14 @@ class CollisionManager:
     def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
         """Does any object of the manager collide with another one?
 
-        Returns as in_collision_single(); the names are pairs, each in alphabetical order.
+        Returns as in_collision_single(); the names are pairs, each in alphabetical order, or in the order of
+        add_object() if Python cannot order them.
         """
         if not (return_names or return_data):
             return self._scene.find_touching(device=self._device) is not None
         found = self._scene.touching(contacts=_wanted(return_data), device=self._device)
         named = [((self._names[a], self._names[b]), result) for a, b, result in found]
-        return _answer({tuple(sorted(names)) for names, _ in named}, named, return_names, return_data)
+        return _answer({_in_order(names) for names, _ in named}, named, return_names, return_data)
 
     def in_collision_other(self, other_manager: CollisionManager, return_names: bool = False,
                            return_data: bool = False) -> Any:
@@ -145,6 +167,30 @@ class CollisionManager:
         if name not in self._ids:
             raise ValueError(f"{name} not in collision manager!")
         return self._ids[name]
+
+
+def scene_to_collision(scene: Any, device: Device | None = None) -> tuple[CollisionManager, dict[Any, Object]]:
+    """A manager with all meshes of a trimesh.Scene in their places, by the names of the scene's nodes, and the Object of
+    each node. Nodes that show one mesh share its Object.
+
+    device: as CollisionManager.
+    """
+    manager = CollisionManager(device)
+    made: dict[Any, Object] = {}
+    objects: dict[Any, Object] = {}
+    for node in scene.graph.nodes_geometry:
+        transform, geometry = scene.graph[node]
+        if geometry not in made:
+            made[geometry] = _to_object(scene.geometry[geometry])
+        objects[node] = manager.add_object(node, made[geometry], transform)
+    return manager, objects
+
+
+def _in_order(names: tuple[Any, Any]) -> tuple[Any, Any]:
+    try:
+        return (names[1], names[0]) if names[1] < names[0] else names
+    except TypeError:
+        return names
 
 
 def _to_object(mesh: Any) -> Object:

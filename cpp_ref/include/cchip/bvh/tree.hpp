@@ -53,7 +53,7 @@ Tree build_tree(const Mesh& mesh, const TreeOptions& options = {});
 /// Gives the nodes of a tree the volumes of a mesh with the same faces and other vertices. Takes O(faces) time. A query
 /// stays exact and gets slower the further the faces have moved against each other.
 /// \param tree of a mesh with the same faces; its volumes do not matter
-/// 	hrows std::invalid_argument another number of faces, or a vertex as above
+/// \throws std::invalid_argument another number of faces, or a vertex as above
 void refit(Tree& tree, const Mesh& mesh);
 
 }  // namespace cchip::bvh

@@ -9,6 +9,7 @@
 #ifndef CCHIP_COLLIDE_COLLIDE_HPP
 #define CCHIP_COLLIDE_COLLIDE_HPP
 
+#include <algorithm>
 #include <atomic>
 #include <cchip/collide/object.hpp>
 #include <cchip/geometry/pose.hpp>
@@ -30,7 +31,7 @@ struct CollisionRequest {
     all     ///< every pair of faces in contact
   };
   Contacts contacts = Contacts::first;
-  /// With Contacts::all: the search ends once this many are found.
+  /// With Contacts::all: the search ends when it meets one contact more than this many. At least 1.
   std::size_t max_contacts = std::numeric_limits<std::size_t>::max();
   /// The least relation of two faces that counts as a contact.
   enum class Counts {
@@ -57,20 +58,32 @@ struct Contact {
   /// Touching or crossing; of a polygon that was cut, crossing if one of its triangles crosses. Empty if the request
   /// does not tell them apart.
   std::optional<Relation> relation = std::nullopt;
-  friend bool operator==(const Contact& x, const Contact& y) { return x.face_a == y.face_a && x.face_b == y.face_b; }
+  friend bool operator==(const Contact& x, const Contact& y) { return same_faces(x, y) && x.relation == y.relation; }
+  friend bool operator!=(const Contact& x, const Contact& y) { return !(x == y); }
+  /// Equal but for the relation, which one of them may tell and the other not.
+  friend bool same_faces(const Contact& x, const Contact& y) { return x.face_a == y.face_a && x.face_b == y.face_b; }
+  /// By the faces alone.
   friend bool operator<(const Contact& x, const Contact& y) { return x.key() < y.key(); }
 
  private:
   std::uint64_t key() const { return std::uint64_t{face_a} << 32U | face_b; }  // one comparison, for long sorts
 };
 
+/// The same faces in the same order, whatever is known of their relations.
+inline bool same_faces(const std::vector<Contact>& x, const std::vector<Contact>& y) {
+  return std::equal(x.begin(), x.end(), y.begin(), y.end(),
+                    [](const Contact& p, const Contact& q) { return same_faces(p, q); });
+}
+
 /// What a query cost.
 struct CollisionCounts {
   std::uint64_t steps = 0;      ///< pairs of tree nodes that were expanded
   std::uint64_t box_tests = 0;  ///< pairs of bounding volumes that were compared
   std::uint64_t pairs = 0;      ///< pairs of primitives that were tested
-  std::uint64_t open = 0;       ///< those of them decided by exact arithmetic because faster arithmetic could not
-  std::uint64_t clocks = 0;     ///< clocks of the device; 0 for devices without a clock
+  /// Those of them for which faster arithmetic could not tell whether they meet, or whether they cross, so that exact
+  /// arithmetic did.
+  std::uint64_t open = 0;
+  std::uint64_t clocks = 0;  ///< clocks of the device; 0 for devices without a clock
   /// 1: the CPU answered instead of the device (driver/chip_host.hpp says when); the other counts are those of both.
   std::uint64_t fallbacks = 0;
   std::uint64_t swaps = 0;        ///< exchanges of the device's modules since the result before it
@@ -87,8 +100,8 @@ struct CollisionCounts {
 
 struct CollisionResult {
   bool hit = false;  ///< there is a contact that counts
-  /// Of the two objects. Empty if the request does not tell touching from crossing, or if the search ended at
-  /// CollisionRequest::max_contacts before a pair crossed.
+  /// Of the two objects. Empty if the request does not tell touching from crossing, or if there are more contacts than
+  /// CollisionRequest::max_contacts and the search ended before a pair crossed.
   std::optional<Relation> relation;
   /// In ascending order, without duplicates. With Contacts::first at most one.
   std::vector<Contact> contacts;
@@ -194,14 +207,22 @@ std::vector<CollisionResult> collide(Device& device, const Object& a, const Obje
 std::vector<CollisionResult> collide(Device& device, const std::vector<CollisionQuery>& queries,
                                      const CollisionRequest& request = {});
 
-/// Pairs of faces of one object that share a point and are no neighbours: they have no vertex in common, by its
-/// position. Ascending, face_a < face_b, none twice, each with its relation; faces that were cut count as one. For a
-/// check of a mesh or of a deformed body; it takes the time of sweeping the boxes of all faces.
-/// \param max_contacts the search ends once this many are found
+/// What self_contacts() makes of two faces that have a vertex in common, by its position.
+enum class Neighbours {
+  tested,   ///< a contact if they share more than that vertex, or more than the edge between two of them
+  left_out  ///< no contact
+};
+
+/// Pairs of faces of one object that share a point, without the one vertex or the one edge that neighbours have in
+/// common: so faces that coincide, fold onto each other over an edge or pierce each other at a vertex are contacts, and
+/// a closed mesh without faults has none. Ascending, face_a < face_b, none twice, each with its relation; faces that
+/// were cut count as one. For a check of a mesh or of a deformed body; descends the object's tree against itself.
+/// \param max_contacts the search ends when it meets one more than this many
 /// \throws std::invalid_argument the object was moved from, or max_contacts is 0
 /// \throws std::runtime_error the calling thread flushes small numbers to zero
 std::vector<Contact> self_contacts(const Object& object,
-                                   std::size_t max_contacts = std::numeric_limits<std::size_t>::max());
+                                   std::size_t max_contacts = std::numeric_limits<std::size_t>::max(),
+                                   Neighbours neighbours = Neighbours::tested);
 
 }  // namespace cchip
 

@@ -36,6 +36,9 @@ class FacePairs {
 
  private:
   void add(std::uint32_t face_a, std::uint32_t face_b, Relation relation);
+  /// Exactly, and counts it.
+  Relation relate(std::uint32_t face_a, std::uint32_t face_b);
+  void relate_all_parts(Contact& contact);
 
   CollisionQuery query_;
   CollisionRequest request_;
@@ -44,7 +47,7 @@ class FacePairs {
   bool done_ = false;
   Relation seen_ = Relation::apart;          ///< the greatest of a pair so far
   bool cut_ = false;                         ///< some faces of a file are several of a mesh, so contacts may repeat
-  std::map<Contact, std::size_t> contacts_;  ///< places in the result; in use if cut_ and more than one is wanted
+  std::map<Contact, std::size_t> contacts_;  ///< places in the result; in use if cut_ and all contacts are wanted
   std::optional<PosedPairs> pairs_;          ///< made when it is needed first
 };
 
@@ -52,7 +55,7 @@ class FacePairs {
 /// \throws std::invalid_argument an entry of the pose is not finite or beyond 2^500 in magnitude; one line
 void check_pose(const Pose& pose, const char* name);
 /// \throws std::invalid_argument an entry of a pose is not finite or beyond 2^500 in magnitude, or the request wants
-///         all contacts but at most 0 of them; one line
+///         at most 0 contacts; one line
 void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest& request);
 /// \throws std::invalid_argument as above, or a pointer of the query is null, or an object was moved from; one line
 void check_query(const CollisionQuery& query, const CollisionRequest& request);

@@ -6,42 +6,55 @@
 
 #include <cchip/bvh/support_tree.hpp>
 #include <cchip/mesh/mesh.hpp>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
 namespace cchip {
 
 /// A mesh with its tree, built once and shared by all copies of the object. One that was moved from has no mesh:
-/// devices refuse it, and id() is null. Immutable, so it may be used by any number of threads at a time. It is the
-/// surface of the mesh, not the volume inside: an object wholly inside another does not touch it.
+/// calls that need it throw, devices refuse it, and id() is null. Immutable, so it may be used by any number of threads
+/// at a time. It is the surface of the mesh, not the volume inside: an object wholly inside another does not touch it.
 class Object {
  public:
   /// Takes O(faces log(faces)) time. Degenerate faces are allowed.
   /// \throws std::invalid_argument no faces, more than 2^24 - 2 of them, one that check_faces() refuses, or a vertex
-  /// that
-  ///         is not finite or beyond 2^1000
+  ///         that a face uses and that is not finite or beyond 2^1000
   /// \throws std::runtime_error the calling thread flushes small numbers to zero
   explicit Object(Mesh mesh);
 
   /// The object with the same faces and other vertices, such as the next shape of a soft body. The tree keeps its nodes
   /// and gets new volumes, which takes O(faces) time, less than building it. Answers are as exact as those of a new
   /// Object; they take longer the further faces have moved against each other, so build anew once in a while. Faces
-  /// that load_mesh() cut into triangles stay cut along the same lines. \param vertices as many as mesh().vertices, in
-  /// the same order \throws std::invalid_argument another number of vertices, or one that is not finite or beyond
-  /// 2^1000 \throws std::runtime_error as the constructor
+  /// that load_mesh() cut into triangles stay cut along the same lines.
+  /// \param vertices as many as mesh().vertices, in the same order
+  /// \throws std::invalid_argument this object was moved from; another number of vertices; one that a face uses and
+  ///         that is not finite or beyond 2^1000
+  /// \throws std::runtime_error as the constructor
   Object moved(std::vector<Vec3d> vertices) const;
 
-  const Mesh& mesh() const { return data_->mesh; }
+  /// \throws std::invalid_argument the object was moved from; so does tree()
+  const Mesh& mesh() const { return data().mesh; }
   /// What a CPU traverses. The chip's image is made from the same nodes: bvh::refit(tree().topology(), mesh()).
-  const bvh::SupportTree& tree() const { return data_->tree; }
+  const bvh::SupportTree& tree() const { return data().tree; }
   /// Identity: equal only for copies of one object. Devices use it as the key of what they derive from an object.
   const void* id() const { return data_.get(); }
+  /// Faces of the mesh that are face `number` of the file or were cut from it; none if it has no such face.
+  /// \throws std::invalid_argument the object was moved from
+  std::vector<std::uint32_t> parts(std::uint32_t number) const;
 
  private:
   struct Data {
     Mesh mesh;
     bvh::SupportTree tree;
+    /// Faces by their number in the file, if some were cut and file_face is not ascending; else empty.
+    std::vector<std::uint32_t> by_file;
   };
+  const Data& data() const {
+    if (!data_) refuse_moved_from();
+    return *data_;
+  }
+  [[noreturn]] static void refuse_moved_from();
   Object(Mesh mesh, const bvh::Tree& tree);
 
   std::shared_ptr<const Data> data_;
