@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "touching_cases.hpp"
 
+#include <algorithm>
 #include <cchip/mesh/shapes.hpp>
+#include <cmath>
+#include <utility>
 
 #include "parts.hpp"
 
@@ -104,6 +107,48 @@ std::vector<TouchingCase> touching_cases() {
   cases.push_back({"sheet through the common edge of two faces", floor, sheet});
   cases.push_back({"sheet beside the common edge of two faces", floor, sheet, moved(0x1p-53, 0, 0)});
   cases.push_back({"sheet through the same floor as one face", whole_floor, sheet});
+  return cases;
+}
+
+std::vector<FarCase> far_cases() {
+  // Whole millimetres, so that parts that are flush at the origin are flush everywhere, exactly.
+  const parts::Outline octagon = {{60, 25},   {25, 60},   {-25, 60}, {-60, 25},
+                                  {-60, -25}, {-25, -60}, {25, -60}, {60, -25}};
+  const parts::Outline rim = {{120, 50},   {50, 120},   {-50, 120}, {-120, 50},
+                              {-120, -50}, {-50, -120}, {50, -120}, {120, -50}};
+  // Two wedges that lie on each other on a plane that has no axis in it: x + 2 y + 3 z = 0.
+  const Mesh slope =
+      tetrahedron({0, 0, 0}, {Vec3d(60, 0, -20), Vec3d(-40, 50, -20), Vec3d(-10, -40, 30), Vec3d(-20, -40, -60)});
+  const Mesh wedge =
+      tetrahedron({0, 0, 0}, {Vec3d(20, 5, -10), Vec3d(-10, 20, -10), Vec3d(0, -15, 10), Vec3d(20, 30, 80)});
+  struct Part {
+    const char* name;
+    Mesh a, b;
+    Vec3d out;  ///< moves B away from A, along one axis
+  };
+  const std::vector<Part> list = {
+      {"box on a box", parts::box({0, 0, 0}, {100, 50, 20}), parts::box({100, 10, 5}, {150, 40, 15}), {1, 0, 0}},
+      {"wedge on a slope", slope, wedge, {0, 0, 1}},
+      {"bar across a hole", parts::prism(rim, 0, 20, octagon), parts::box({-100, -20, 20}, {100, 20, 30}), {0, 0, 1}}};
+  std::vector<FarCase> cases;
+  for (const Part& part : list) {
+    for (const auto& [place, distance] : {std::pair{"origin", 0.0}, std::pair{"5 km", 5e6}, std::pair{"50 km", 5e7}}) {
+      for (const auto& [state, side] :
+           {std::pair{"one bit apart", 1}, std::pair{"flush", 0}, std::pair{"one bit in", -1}}) {
+        const auto put = [distance = distance](Mesh mesh) {
+          for (Vec3d& v : mesh.vertices) v += Vec3d(distance, distance, distance);
+          return mesh;
+        };
+        FarCase one = {part.name, place, state, side <= 0, put(part.a), put(part.b)};
+        // one bit of the largest coordinate of B: every vertex can take it
+        double largest = 0;
+        for (const Vec3d& v : one.b.vertices) largest = std::max(largest, v.cwiseAbs().maxCoeff());
+        const double bit = std::nextafter(largest, 2 * largest) - largest;
+        for (Vec3d& v : one.b.vertices) v += side * bit * part.out;
+        cases.push_back(std::move(one));
+      }
+    }
+  }
   return cases;
 }
 

@@ -23,6 +23,19 @@ struct TouchingCase {
 /// In the order of the table.
 std::vector<TouchingCase> touching_cases();
 
+/// The same parts, in millimetres, at the origin, 5 km and 50 km away from it: one bit of a coordinate apart, flush, one
+/// bit pressed into each other. Their coordinates are those of the place, as a site model has them; both poses are the
+/// identity.
+struct FarCase {
+  const char* part;
+  const char* place;
+  const char* state;
+  bool meets;
+  Mesh a;
+  Mesh b;
+};
+std::vector<FarCase> far_cases();
+
 }  // namespace cchip::testing
 
 #endif

@@ -1,16 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints the table of docs/cpp/touching.md: the cases, answered by the CPU device and by FCL.
+// Prints the table of docs/cpp/touching.md: the cases, answered by the CPU device and by FCL. With --far that of
+// docs/cpp/touching_stays.md: the same parts at the origin and far away from it, by every library that the build found.
 #include <algorithm>
 #include <cchip/device/device.hpp>
 #include <iostream>
+#include <string>
+#include <vector>
 
-#include "peer_library.hpp"
+#include "other_libraries.hpp"
 #include "touching_cases.hpp"
 
 using namespace cchip;
 using namespace cchip::testing;
 
-int main() {
+namespace {
+
+/// The table of docs/cpp/touching_stays.md: each library's yes or no where it is right, and where it is wrong.
+int far_table() {
+  const std::vector<NamedLibrary> libraries = open_libraries();
+  const auto device = open_device("cpu");
+  std::cout << "| parts | place | state | right | ours |";
+  for (const auto& [name, library] : libraries) std::cout << ' ' << name << " |";
+  std::cout << "\n|---|---|---|---|---|";
+  for (std::size_t i = 0; i < libraries.size(); ++i) std::cout << "---|";
+  std::cout << '\n';
+  std::vector<std::size_t> wrong(libraries.size() + 1);
+  std::size_t cases = 0;
+  const auto cell = [&wrong](std::size_t column, bool hit, bool right) {
+    wrong[column] += hit != right ? 1 : 0;
+    std::cout << ' ' << (hit == right ? "" : "**") << (hit ? "yes" : "no") << (hit == right ? "" : "**") << " |";
+  };
+  const Pose here = Pose::Identity();
+  for (const FarCase& c : far_cases()) {
+    ++cases;
+    std::cout << "| " << c.part << " | " << c.place << " | " << c.state << " | " << (c.meets ? "yes" : "no") << " |";
+    cell(0, collide(*device, Object(c.a), here, Object(c.b), here).hit, c.meets);
+    for (std::size_t i = 0; i < libraries.size(); ++i) {
+      const PeerLibrary& library = libraries[i].library;
+      cell(i + 1, library.mesh(c.a).hit(here, library.mesh(c.b), here), c.meets);
+    }
+    std::cout << '\n';
+  }
+  std::cout << "cases=" << cases << " ours_wrong=" << wrong[0];
+  for (std::size_t i = 0; i < libraries.size(); ++i) {
+    std::string key = libraries[i].name;
+    std::replace(key.begin(), key.end(), ' ', '_');
+    std::cout << ' ' << key << "_wrong=" << wrong[i + 1];
+  }
+  std::cout << '\n';
+  return wrong[0] == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc > 1 && std::string(argv[1]) == "--far") return far_table();
   const PeerLibrary fcl = PeerLibrary::fcl_debian();
   const auto device = open_device("cpu");
   CollisionRequest request;

@@ -89,3 +89,22 @@ TEST_CASE("cubes cut on one raster, a corner of one at the centre of the other",
 TEST_CASE("sheet through the common edge of two faces", "[ref][touching]") { expect(Relation::touching); }
 TEST_CASE("sheet beside the common edge of two faces", "[ref][touching]") { expect(Relation::crossing); }
 TEST_CASE("sheet through the same floor as one face", "[ref][touching]") { expect(Relation::crossing); }
+
+TEST_CASE("the same parts at the origin and far away: apart, flush and pressed in stay what they are",
+          "[ref][touching]") {
+  const Pose here = Pose::Identity();
+  const auto device = open_device("cpu");
+  std::size_t cases = 0;
+  for (const FarCase& c : far_cases()) {
+    CAPTURE(c.part, c.place, c.state);
+    ++cases;
+    const std::vector<Contact> contacts = brute_force_contacts(c.a, here, c.b, here);
+    CHECK(contacts.empty() == !c.meets);
+    CollisionRequest request;
+    request.relation = true;
+    const CollisionResult result = collide(*device, Object(c.a), here, Object(c.b), here, request);
+    const bool flush = std::string(c.state) == "flush";
+    CHECK(result.relation == (!c.meets ? Relation::apart : flush ? Relation::touching : Relation::crossing));
+  }
+  CHECK(cases == 27);
+}
