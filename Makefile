@@ -37,7 +37,7 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv docs peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
+.PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan test-arm64 fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb wheel test-python test-dask bench-python export fpga \
   fpga-quick fpga-sweep asic asic-quick install clean
@@ -57,8 +57,11 @@ build/venv/requirements.txt: scripts/requirements.txt
 	cp $< $@
 
 docs: build/docs-venv/docs_requirements.txt ## these pages as a site with search, in build/site; a link that leads nowhere is an error
-	build/docs-venv/bin/mkdocs build --quiet --strict
+	NO_MKDOCS_2_WARNING=1 build/docs-venv/bin/mkdocs build --quiet --strict
 	@echo 'open build/site/index.html; for the search: python3 -m http.server, then http://localhost:8000/build/site/'
+
+docs-layout: docs ## every page in a browser at 1300 and 400 px (Debian's chromium): no table or figure wider than its page
+	tests/docs/check_layout.py build/site
 
 build/docs-venv/docs_requirements.txt: scripts/docs_requirements.txt
 	python3 -m venv build/docs-venv || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
