@@ -37,13 +37,39 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv docs peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
+.PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan test-arm64 fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb wheel test-python test-dask bench-python export fpga \
   fpga-quick fpga-sweep asic asic-quick install clean
 
+# Groups of make help: a heading, then its targets. A target may be followed by /minutes on two cores after the build, as far as a page
+# of docs/ has measured it. tests/docs/check_help.py fails at a target in no group.
+define HELP_GROUPS
+Try it (make sim installs and builds first, eight minutes in all)
+  sim sim-reconfig/18_s sim-traverse sim-chip/17_s sim-levels/11_s table1/1_s table1-plot wave picture
+Use the library
+  build install deb wheel export
+Read
+  help docs docs-layout/3_min
+Check a change
+  test test-long wave-of test-python test-dask test-debug test-asan test-arm64 test-gates formal fuzz lint tidy format
+Check for long
+  campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
+  campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps
+Measure
+  bench-reconfig bench-collide/10_min bench-robot bench-scene/2_min bench-python/1_min bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
+Tools
+  bootstrap venv peers robots clean
+endef
+
+help: export HELP = $(HELP_GROUPS)
 help: ## list the targets
-	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 27
+	@printf '%s\n' "$$HELP" | awk 'NR == FNR { if (match($$0, /^[a-z][a-z0-9-]*:.*## /)) { split($$0, name, ":"); text[name[1]] = substr($$0, RLENGTH + 1) } next } \
+	  /^[^ ]/ { print (FNR > 1 ? "\n" : "") $$0; next } \
+	  { for (i = 1; i <= NF; i++) { split($$i "/", part, "/"); gsub("_", " ", part[2]); \
+	    printf "  make %-21s %-9s %s\n", part[1], part[2], text[part[1]]; } }' $(firstword $(MAKEFILE_LIST)) -
+	@echo
+	@echo "times: two cores, after the build; none: not measured"
 	@echo "settings: JOBS=$(JOBS) PREFIX=$(PREFIX) DESTDIR=$(DESTDIR) PAIRS=$(PAIRS) SIM_ARGS=$(SIM_ARGS) VERILATOR=$(VERILATOR)"
 
 bootstrap: ## install the Debian packages that are missing (all other targets do this first)
@@ -57,8 +83,11 @@ build/venv/requirements.txt: scripts/requirements.txt
 	cp $< $@
 
 docs: build/docs-venv/docs_requirements.txt ## these pages as a site with search, in build/site; a link that leads nowhere is an error
-	build/docs-venv/bin/mkdocs build --quiet --strict
+	NO_MKDOCS_2_WARNING=1 build/docs-venv/bin/mkdocs build --quiet --strict
 	@echo 'open build/site/index.html; for the search: python3 -m http.server, then http://localhost:8000/build/site/'
+
+docs-layout: docs ## every page in a browser at 1300 and 400 px (Debian's chromium): no table or figure wider than its page
+	tests/docs/check_layout.py build/site
 
 build/docs-venv/docs_requirements.txt: scripts/docs_requirements.txt
 	python3 -m venv build/docs-venv || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }

@@ -4,12 +4,17 @@
 #include <iostream>
 
 int main() {  // a gear comes down on a torus
-  const cchip::Object torus(cchip::make_torus(1, 0.25, 64, 32)), gear(cchip::make_gear(1.25, 1.5, 0.5, 0.5, 36, 6));
+  const cchip::Object torus(cchip::make_torus(1, 0.25, 64, 32));
+  const cchip::Object gear(cchip::make_gear(1.25, 1.5, 0.5, 0.5, 36, 6));
+  const cchip::Pose origin = cchip::Pose::Identity();
   const auto device = cchip::open_device("cpu");
-  const cchip::CollisionRequest all = {cchip::CollisionRequest::Contacts::all};
-  for (const double height : {0.5 + 0x1p-50, 0.5, 0.4}) {  // at 0.5 the torus' highest ring lies in the gear's face
+  cchip::CollisionRequest all;
+  all.contacts = cchip::CollisionRequest::Contacts::all;
+  // At 0.5 the torus' highest ring lies in the gear's face.
+  for (const double height : {0.5 + 0x1p-50, 0.5, 0.4}) {
     const auto pose = cchip::make_pose({0, 0, height}, {0, 0, 0});
-    const auto result = cchip::collide(*device, torus, cchip::Pose::Identity(), gear, pose, all);
-    std::cout << "touch: " << result.hit << ", pairs of faces: " << result.contacts.size() << '\n';
+    const auto found = cchip::collide(*device, torus, origin, gear, pose, all);
+    std::cout << "touch: " << found.hit;
+    std::cout << ", pairs of faces: " << found.contacts.size() << '\n';
   }
 }

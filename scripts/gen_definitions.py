@@ -154,14 +154,19 @@ def code_names(data):
     return "\n".join([*lines, "", "}  // namespace cchip", "", "#endif", ""])
 
 
+def row(*cells):
+    """A row of a table of a page; GitHub ends a cell at every | without a backslash, in code, too."""
+    return f"| {' | '.join(str(cell).replace('|', chr(92) + '|') for cell in cells)} |"
+
+
 def page(data, names):
     lines = ["<!-- SPDX-License-Identifier: Apache-2.0 -->", f"<!-- {NOTE} -->", "# Shared definitions", "",
              "Verilog: `` `CCHIP_<NAME> `` of `rtl/include/cchip_defs.vh`. C++: `cchip::defs::<name>` of `<cchip/wire/definitions.hpp>`.", "",
              "## Constants", "", "| name | value | unit | meaning |", "|---|---|---|---|"]
-    lines += [f"| `{c['name']}` | {c['value']} | {c['unit']} | {c['doc']} |" for c in data["constants"]]
+    lines += [row(f"`{c['name']}`", c["value"], c["unit"], c["doc"]) for c in data["constants"]]
     for e in data["enums"]:
         lines += ["", f"## `{e['name']}`", "", e["doc"][0].upper() + e["doc"][1:] + ".", "", "| name | code | meaning |", "|---|---|---|"]
-        lines += [f"| `{e['prefix']}_{v['name']}` | {v['value']} | {v['doc']} |" for v in e["values"]]
+        lines += [row(f"`{e['prefix']}_{v['name']}`", v["value"], v["doc"]) for v in e["values"]]
     size = sizes(data)
     for r in data["records"]:
         args = f"({', '.join(r['args'])})" if r["args"] else ""
@@ -171,13 +176,12 @@ def page(data, names):
             lines += [f"`` `CCHIP_{r['name']}_OF({', '.join(f['name'].lower() for f, *_ in found)}) `` is the word of these fields."]
         lines += ["",
                   "| field | lowest bit | width | meaning |", "|---|---|---|---|"]
-        lines += [f"| `{r['name']}_{f['name']}` | `{lsb}` | `{w}` | {f['doc']} |" for f, _, lsb, w in found]
+        lines += [row(f"`{r['name']}_{f['name']}`", f"`{lsb}`", f"`{w}`", f["doc"]) for f, _, lsb, w in found]
     lines += ["", "## Functions of the parameters", "", "`w` = `COORD_W`, `s` = `SUBSTAGES`.", "",
               "| name | value | unit | meaning |", "|---|---|---|---|"]
     for f in data["functions"]:
         args = f"({', '.join(f['args'])})" if f["args"] else ""
-        doc, expr = (f[key].replace("|", "\\|") for key in ("doc", "expr"))
-        lines.append(f"| `{f['name']}{args}` | `{expr}` | {f['unit']} | {doc} |")
+        lines.append(row(f"`{f['name']}{args}`", f"`{f['expr']}`", f["unit"], f["doc"]))
     return "\n".join(lines) + "\n"
 
 

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What mkdocs.yml adds to MkDocs (make docs):
 
-- The navigation is docs/README.md: a door for each of its headings, in it the pages that the tables below link to, in this order.
+- The navigation is docs/README.md: a tab for each of its headings, in it the pages that the tables below link to, in this order. Rows
+  whose first cell names a folder (datasheets) are grouped by it.
+- The title of a page is its first heading; MkDocs takes it from the file's name if a comment (SPDX) precedes it.
 - A heading gets the anchor that GitHub gives it, which is the one that the pages link to.
 - A link to a file or folder outside docs/ leads to it in the checkout that holds build/site; a missing one is a warning, so
-  that the strict build fails."""
+  that the strict build fails.
+- Long names in tables may break after _ and the like; drawings of text get the class `drawing` (docs/site.css)."""
 import logging
 import os
 import pathlib
@@ -12,6 +15,7 @@ import re
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
+DRAWING = re.compile("[\u2500-\u257f]")  # lines of boxes
 log = logging.getLogger("mkdocs.hooks.site")
 
 
@@ -23,13 +27,22 @@ def on_config(config):
     sections = re.split(r"^## (.*)\n", (DOCS / "README.md").read_text(), flags=re.M)
     config.nav = [{"Start": "README.md"}]
     for door, text in zip(sections[1::2], sections[2::2]):
-        pages = re.findall(r"^\|.*?\]\(([\w/-]+\.md)\)", text, re.M)
-        config.nav.append({door: list(dict.fromkeys(pages))})
+        entries, folders, folder = [], {}, None
+        for cell, page in re.findall(r"^\| *(`[\w/]+`)?.*?\]\(([\w/-]+\.md)\)", text, re.M):
+            folder = cell.strip("`") or folder
+            if folder and folder not in folders:
+                folders[folder] = []
+                entries.append({folder: folders[folder]})
+            group = folders[folder] if folder else entries
+            if page not in group:
+                group.append(page)
+        config.nav.append({door: entries})
     config.mdx_configs["toc"] = {"slugify": anchor}
     return config
 
 
 def on_page_markdown(markdown, page, **_):
+    markdown = re.sub(r"\A(?:<!--.*?-->\s*)+", "", markdown, flags=re.S)
     folder = (DOCS / page.file.src_uri).parent
 
     def outside(link):
@@ -43,6 +56,12 @@ def on_page_markdown(markdown, page, **_):
     return re.sub(r"\]\(([^()#:\s]+)(#[^)\s]*)?\)", outside, markdown)
 
 
+def breakable(code):
+    return re.sub(r"(?<=\w)([_*/,.(-]+)(?=\w)", r"\1<wbr>", code[0])
+
+
 def on_page_content(html, page, config, **_):
+    html = re.sub(r"<td\b.*?</td>", lambda cell: re.sub(r"(?<=<code>)[^<]+(?=</code>)", breakable, cell[0]), html, flags=re.S)
+    html = re.sub(r"<pre>(.*?)</pre>", lambda pre: f'<pre class="drawing">{pre[1]}</pre>' if DRAWING.search(pre[1]) else pre[0], html, flags=re.S)
     folder = (pathlib.Path(config.site_dir) / page.url).parent
     return re.sub('"repository:([^"#]*)', lambda link: f'"{os.path.relpath(ROOT / link[1], folder)}', html)
