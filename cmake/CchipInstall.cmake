@@ -13,6 +13,7 @@
 # cpack makes a Debian package of that tree: make deb.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
+find_package(ZLIB QUIET)  # ZLIB_FOUND of cpp_ref is not seen here
 set(CCHIP_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/collisionchip)
 
 install(TARGETS cchip_core cchip_mesh_io cchip_reference cchip_model cchip_device EXPORT collisionchip
@@ -21,6 +22,9 @@ file(RELATIVE_PATH CCHIP_LIBDIR_TO_INCLUDEDIR /${CMAKE_INSTALL_LIBDIR} /${CMAKE_
 if(NOT BUILD_SHARED_LIBS)
   set(CCHIP_PC_STATIC_REQUIRES " libhwy")
   set(CCHIP_PC_STATIC_LIBS " -pthread")
+  if(ZLIB_FOUND)
+    string(APPEND CCHIP_PC_STATIC_REQUIRES " zlib")
+  endif()
 endif()
 configure_file(${CMAKE_CURRENT_LIST_DIR}/collisionchip.pc.in ${PROJECT_BINARY_DIR}/collisionchip.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/collisionchip.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
@@ -66,6 +70,9 @@ if(PROJECT_IS_TOP_LEVEL)
   # What the commands and shared libraries need is read from them; headers and static libraries need these besides.
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PACKAGE_DEPENDS "libeigen3-dev, libhwy-dev")
+  if(ZLIB_FOUND)
+    string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", zlib1g-dev")
+  endif()
   set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
   set(CPACK_STRIP_FILES ON)
   set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which of very many parts clash? Like clash_check.py, over a Dask cluster.
 
-usage: clash_many.py FOLDER RESULT [SCHEDULER]
-
 Every mesh file of FOLDER is a part, in the coordinates of the assembly. A sweep over their boxes finds the pairs that may
 touch, the workers test them. RESULT gets a line for each pair that touches: a, b, relation, face pairs in contact; as
 Parquet if its name ends in .parquet and pyarrow is there, as CSV otherwise. SCHEDULER is the address of a Dask
 scheduler; without it two workers are started here. Needs collisionchip, distributed and trimesh (which reads the files).
-Exit codes: 0 no two parts cross, 1 some do, 2 fewer than two mesh files."""
+Exit codes: 0 no two parts cross, 1 some do, 2 wrong arguments, fewer than two mesh files, no scheduler or no place for RESULT, 3 some files cannot be
+used and were left out."""
+import argparse
 import csv
 import pathlib
 import sys
@@ -46,12 +46,34 @@ def write(path, lines):
         csv.writer(file, lineterminator="\n").writerows([("a", "b", "relation", "contacts"), *lines])
 
 
-def main(folder, result, scheduler=None):
-    files = sorted(path for path in pathlib.Path(folder).iterdir() if path.suffix.lower() in (".obj", ".off", ".ply", ".stl"))
+def load(files):
+    """Those that can be used, and their meshes; the others are named."""
+    loaded = []
+    for path in files:
+        try:
+            part = trimesh.load_mesh(path, process=False)
+            if len(part.faces) == 0:
+                raise ValueError("no faces")
+            loaded.append((path, part))
+        except Exception as error:  # trimesh raises what its readers happen to meet
+            print(f"left out: {path}: {error or type(error).__name__}", file=sys.stderr)
+    return [path for path, _ in loaded], [part for _, part in loaded]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path)
+    parser.add_argument("result", metavar="RESULT", type=pathlib.Path)
+    parser.add_argument("scheduler", metavar="SCHEDULER", nargs="?")
+    options = parser.parse_args()
+    folder, scheduler = options.folder, options.scheduler
+    if not folder.is_dir():
+        parser.error(f"{folder}: no such folder")
+    found = sorted(path for path in folder.iterdir() if path.suffix.lower() in (".obj", ".off", ".ply", ".stl"))
+    files, parts = load(found)
     if len(files) < 2:
-        print(f"{folder}: fewer than two mesh files", file=sys.stderr)
+        print(f"{folder}: fewer than two mesh files that can be used", file=sys.stderr)
         return 2
-    parts = [trimesh.load_mesh(path, process=False) for path in files]
     bounds = np.array([part.bounds for part in parts])
     pairs = [(int(a), int(b)) for a, b in box_pairs(bounds[:, 0], bounds[:, 1])]
     touching = []
@@ -65,13 +87,17 @@ def main(folder, result, scheduler=None):
                 touching.append((files[a].name, files[b].name, relation, contacts))
         if not scheduler:
             client.cluster.close()
-    write(pathlib.Path(result), sorted(touching))
+    write(options.result, sorted(touching))
     crossing = sum(line[2] == "crossing" for line in touching)
     print(f"parts={len(parts)} box_pairs={len(pairs)} touching={len(touching)} crossing={crossing}")
+    if len(files) < len(found):
+        return 3
     return 1 if crossing else 0
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (3, 4):
-        sys.exit(__doc__)
-    sys.exit(main(*sys.argv[1:]))
+    try:
+        sys.exit(main())
+    except OSError as error:  # no scheduler at that address, no folder for the result
+        print(f"clash_many.py: {error}", file=sys.stderr)
+        sys.exit(2)

@@ -31,7 +31,17 @@ def test_clash_check(tmp_path):
     (tmp_path / "d.obj").write_text("v 0.5 0.5 -1\nv 0.5 0.6 -1\nv 0.5 0.5 2\nf 1 2 3\n")
     code, text = run(EXAMPLES / "clash_check.py", tmp_path)
     assert code == 1 and "a.obj d.obj crossing" in text
+    (tmp_path / "e.obj").write_text("v 0 0 0\nf 1 2 3\n")
+    code, text = run(EXAMPLES / "clash_check.py", tmp_path)
+    assert code == 3 and f"left out: {tmp_path / 'e.obj'}:2: " in text and "parts=4 crossing=1\n" in text
     assert run(EXAMPLES / "clash_check.py", tmp_path / "..")[0] == 2
+
+
+def test_clash_check_command_line(tmp_path):
+    code, text = run(EXAMPLES / "clash_check.py", "--help")
+    assert code == 0 and "FOLDER" in text and "Exit codes" in text
+    code, text = run(EXAMPLES / "clash_check.py", tmp_path / "none")
+    assert code == 2 and "no such folder" in text and "Traceback" not in text
 
 
 def test_robot():

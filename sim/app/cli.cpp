@@ -65,7 +65,8 @@ struct MeshPairsOptions {
   std::string pose;
   std::string pose_matrix;
   std::uint64_t limit = 0;
-  std::string ply;  ///< path of the coloured picture; empty: none
+  std::string ply;       ///< path of the coloured picture; empty: none
+  bool lenient = false;  ///< faces that cannot be used are left out
   EngineOptions engine;
   Format format = Format::table;
 };
@@ -73,7 +74,8 @@ struct MeshPairsOptions {
 /// stdout stays machine-readable: the summary of CSV and JSON lines goes to stderr.
 int report(const Summary& summary, Format format, const Streams& streams) {
   (format == Format::table ? streams.out : streams.err) << to_line(summary) << '\n';
-  return summary.mismatches > 0 ? exit_mismatch : exit_ok;
+  if (summary.mismatches > 0) return exit_mismatch;
+  return summary.left_out.value_or(0) > 0 ? exit_left_out : exit_ok;
 }
 
 /// Part of the file that is read; negative if it has no size.
@@ -131,10 +133,12 @@ Summary answer_meshes(const MeshPairsOptions& options, const Streams& streams) {
   std::vector<sim::NamedPath> outputs = trace_files(options.engine);
   outputs.push_back({"--ply", options.ply});
   sim::check_outputs({{"A", options.file_a}, {"B", options.file_b}}, outputs);
+  check_picture_name(options.ply);
   check_standard_input({options.file_a, options.file_b});
   const Eigen::Isometry3d pose = pose_of(options);
-  const Mesh a = load_mesh_file(options.file_a, streams);
-  const Mesh b = transformed(load_mesh_file(options.file_b, streams), pose);
+  MeshReader reader(streams, options.lenient);
+  const Mesh a = reader.read(options.file_a);
+  const Mesh b = transformed(reader.read(options.file_b), pose);
   std::optional<HitPicture> picture;
   if (!options.ply.empty()) picture.emplace(options.ply);
   Progress progress(streams.err, streams.progress);
@@ -149,7 +153,8 @@ Summary answer_meshes(const MeshPairsOptions& options, const Streams& streams) {
     runner.add(std::move(job));
     if (runner.pairs_taken() % 1024 == 0) progress.update(runner.pairs_taken(), -1.0);
   });
-  const Summary summary = runner.finish();
+  Summary summary = runner.finish();
+  if (options.lenient) summary.left_out = reader.faces_left_out();
   if (picture) picture->write(a, b);
   return summary;
 }
@@ -194,11 +199,17 @@ std::string device_words() {
   return words;
 }
 
-/// Two meshes and the option --pose, which is returned.
+const std::string exit_codes =
+    "Exit codes: 0 done, 1 internal error or the output cannot be written, 2 wrong input or command line,\n"
+    "3 answers differ, 4 answered without faces that cannot be used.\n";
+
+/// Two meshes, --lenient, and the option --pose, which is returned.
 template <class Options>
 CLI::Option* add_meshes(CLI::App& command, Options& options) {
   add_text(command, "A", options.file_a, "mesh that stays; - reads standard input")->required();
   add_text(command, "B", options.file_b, "mesh that is placed")->required();
+  command.add_flag("--lenient", options.lenient,
+                   "leave out faces that cannot be used, name them on standard error, and end with exit code 4");
   return add_text(command, "--pose", options.pose,
                   "tx,ty,tz[,rx,ry,rz]: rotate B by degrees about x, then y, then z, then move it");
 }
@@ -210,36 +221,38 @@ void add_pairs(CLI::App& app, PairsOptions& options) {
   add_engine_options(*command, options.engine, options.format);
   add_text(*command, "--expect", options.columns.expect, "compare the answers with this column (0 or 1)");
   command->add_flag("--all-columns", options.columns.pass_all, "pass the coordinate columns through, too");
-  command->footer(
-      "Examples:\n"
-      "  cchip pairs pairs.csv\n"
-      "  cchip pairs pairs.csv --engine exact --expect touches\n"
-      "  generate | cchip pairs - --format jsonl > answers.jsonl\n"
-      "  cchip pairs pairs.csv --trace run.fst && gtkwave run.fst run.gtkw");
+  command->footer(exit_codes +
+                  "Examples:\n"
+                  "  cchip pairs pairs.csv\n"
+                  "  cchip pairs pairs.csv --engine exact --expect touches\n"
+                  "  generate | cchip pairs - --format jsonl > answers.jsonl\n"
+                  "  cchip pairs pairs.csv --trace run.fst && gtkwave run.fst run.gtkw");
 }
 
 void add_meshpairs(CLI::App& app, MeshPairsOptions& options) {
   CLI::App* command = app.add_subcommand(
       "meshpairs", "Answer the candidate pairs of two meshes (OBJ, STL, PLY, OFF), B placed by a pose");
   auto* pose = add_meshes(*command, options);
-  add_text(*command, "--pose-matrix", options.pose_matrix, "twelve numbers, the 3x4 matrix [R|t] row by row")
+  add_text(*command, "--pose-matrix", options.pose_matrix,
+           "twelve numbers, the 3x4 matrix [R|t] row by row; or the sixteen of a 4x4 matrix")
       ->excludes(pose);
   add_whole(*command, "--limit", options.limit, "answer the first N candidate pairs only (default 0: all)");
   add_text(*command, "--ply", options.ply, "write both meshes, the faces that hit coloured, for MeshLab or Blender");
   add_engine_options(*command, options.engine, options.format);
-  command->footer(
-      "Examples:\n"
-      "  cchip meshpairs a.obj b.stl --pose 0.5,0,0\n"
-      "  cchip meshpairs a.off a.off --pose 0,0,1,0,0,90 --format csv > hits.csv\n"
-      "  cchip meshpairs a.obj b.stl --ply hits.ply > pairs.txt && meshlab hits.ply");
+  command->footer(exit_codes +
+                  "Examples:\n"
+                  "  cchip meshpairs a.obj b.stl --pose 0.5,0,0\n"
+                  "  cchip meshpairs a.off a.off --pose 0,0,1,0,0,90 --format csv > hits.csv\n"
+                  "  cchip meshpairs a.obj b.stl --ply hits.ply > pairs.txt && meshlab hits.ply");
 }
 
 void add_collide(CLI::App& app, CollideOptions& options) {
   CLI::App* command = app.add_subcommand(
       "collide", "Do two meshes (OBJ, STL, PLY, OFF) touch, and where? B placed by one pose or by many");
   auto* pose = add_meshes(*command, options);
-  auto* matrix = add_text(*command, "--pose-matrix", options.pose_matrix,
-                          "twelve numbers, the 3x4 matrix [R|t] of any affine map row by row");
+  auto* matrix =
+      add_text(*command, "--pose-matrix", options.pose_matrix,
+               "twelve numbers, the 3x4 matrix [R|t] of any affine map row by row; or the sixteen of a 4x4 matrix");
   auto* poses = add_text(*command, "--poses", options.poses_file,
                          "CSV file with columns r00..r22, tx, ty, tz: a query for each row; - reads standard input");
   pose->excludes(matrix)->excludes(poses);
@@ -266,13 +279,13 @@ void add_collide(CLI::App& app, CollideOptions& options) {
       "with --device sim: write the waveform of the chip's first 30,000 clocks (FST) and a .gtkw layout beside it");
   add_text(*command, "--ply", options.ply, "write both meshes, the faces that cross and those that touch coloured")
       ->excludes(poses);
-  command->footer(
-      "Examples:\n"
-      "  cchip collide a.obj b.stl --pose 0.5,0,0\n"
-      "  cchip collide a.obj b.stl --pose 0.5,0,0 --format csv > contacts.csv\n"
-      "  cchip collide a.obj b.stl --poses poses.csv --expect touches\n"
-      "  cchip collide a.obj b.stl --poses poses.csv --counts crossing\n"
-      "  cchip collide a.obj b.stl --pose 0.5,0,0 --device sim --trace chip.fst");
+  command->footer(exit_codes +
+                  "Examples:\n"
+                  "  cchip collide a.obj b.stl --pose 0.5,0,0\n"
+                  "  cchip collide a.obj b.stl --pose 0.5,0,0 --format csv > contacts.csv\n"
+                  "  cchip collide a.obj b.stl --poses poses.csv --expect touches\n"
+                  "  cchip collide a.obj b.stl --poses poses.csv --counts crossing\n"
+                  "  cchip collide a.obj b.stl --pose 0.5,0,0 --device sim --trace chip.fst");
 }
 
 void add_demo(CLI::App& app, DemoOptions& options) {
@@ -285,6 +298,7 @@ void add_demo(CLI::App& app, DemoOptions& options) {
       ->excludes(engine)
       ->excludes(waves)
       ->excludes(seed);
+  command->footer(exit_codes);
 }
 
 void add_reconfig(CLI::App& app, ReconfigJobOptions& options) {
@@ -296,6 +310,7 @@ void add_reconfig(CLI::App& app, ReconfigJobOptions& options) {
   add_choice(*command, "--program", options.mode, programs, "axis programme (default exhaustive)");
   add_text(*command, "--waves", options.wave_folder, "folder for sim-reconfig.fst (default build/waves)");
   add_whole(*command, "--seed", options.seed, seed_words);
+  command->footer(exit_codes);
 }
 
 std::string command_names(const CLI::App& app) {
@@ -313,36 +328,110 @@ bool is_pose_in_words(const CLI::App& command, const std::string& word) {
   return false;
 }
 
+/// Letters that have to be put in, left out or changed to make one word of the other.
+std::size_t distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t k = 0; k <= b.size(); ++k) row[k] = k;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t k = 1; k <= b.size(); ++k) {
+      const std::size_t changed = diagonal + (a[i - 1] == b[k - 1] ? 0 : 1);
+      diagonal = row[k];
+      row[k] = std::min({changed, row[k] + 1, row[k - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+/// " did you mean X?" for the name that the word is most like, if it is like one at all.
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& names) {
+  constexpr std::size_t most_letters_wrong = 2;
+  std::size_t least = most_letters_wrong + 1;
+  std::string best;
+  for (const std::string& name : names) {
+    const std::size_t wrong = distance(word, name);
+    const std::size_t letters = name.size() - name.find_first_not_of('-');
+    if (wrong < least && wrong < letters) {
+      least = wrong;
+      best = name;
+    }
+  }
+  return best.empty() ? "" : " did you mean " + best + "?";
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+std::string help_of(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? "cchip --help" : fmt::format("cchip {} --help", chosen.front()->get_name());
+}
+
+std::vector<std::string> list_commands(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+std::string no_such_command(const CLI::App& app, const std::string& word) {
+  return fmt::format("{}: no such command;{} the commands are {}", word, did_you_mean(word, list_commands(app)),
+                     command_names(app));
+}
+
+/// What is wrong with a command line that CLI11 refuses.
+std::string unreadable(const CLI::App& app, const CLI::ParseError& error) {
+  std::string what = error.what();
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError)) {
+    const std::string name = what.substr(0, what.find(' '));
+    what = name == "A"      ? "the first mesh, A, is missing"
+           : name == "B"    ? "the second mesh, B, is missing"
+           : name == "FILE" ? "the file of the pairs, FILE, is missing"
+                            : what;
+  }
+  return what + "; see " + help_of(app);
+}
+
 /// What is wrong with a command line in which `words` were not understood.
 std::string unknown_words(const CLI::App& app, const std::vector<std::string>& words) {
   const auto option =
       std::find_if(words.begin(), words.end(), [](const std::string& word) { return word.rfind("-", 0) == 0; });
   const auto chosen = app.get_subcommands();
   if (chosen.empty() && option != words.begin()) {
-    return fmt::format("{}: no such command; the commands are {}", words.front(), command_names(app));
+    return no_such_command(app, words.front());
   }
   if (!chosen.empty() && is_pose_in_words(*chosen.front(), words.front())) {
     return fmt::format("{}: the pose is one word; write its numbers with commas and no spaces, like 0.5,0,0,0,0,90",
                        words.front());
   }
-  const std::string help = chosen.empty() ? "cchip --help" : fmt::format("cchip {} --help", chosen.front()->get_name());
-  if (option != words.end()) return fmt::format("{}: no such option; see {}", *option, help);
-  return fmt::format("{}: one argument too many; see {}", words.front(), help);
+  if (option != words.end()) {
+    const std::string name = option->substr(0, option->find('='));
+    const std::string guess = did_you_mean(name, option_names(chosen.empty() ? app : *chosen.front()));
+    return fmt::format("{}: no such option;{} see {}", name, guess, help_of(app));
+  }
+  return fmt::format("{}: one argument too many; see {}", words.front(), help_of(app));
 }
 
 int dispatch(std::vector<std::string> arguments, const Streams& streams) {
-  CLI::App app("Collision detection hardware, simulated: do these primitives touch?", "cchip");
+  CLI::App app(
+      "Exact collision detection: do these meshes or primitives touch? On this computer, by the library collisionchip, "
+      "or on its hardware, simulated.",
+      "cchip");
   const std::string version = "cchip " CCHIP_VERSION;
-  app.set_version_flag("--version", version);
+  app.set_version_flag("-v,--version", version);
   app.require_subcommand(1);
-  app.footer(
-      "Exit codes: 0 done, 1 internal error, 2 wrong input or command line, 3 answers differ.\n"
-      "Examples:\n"
-      "  cchip demo\n"
-      "  cchip collide a.obj b.stl --pose 0.5,0,0\n"
-      "  cchip pairs pairs.csv --expect touches\n"
-      "  cchip meshpairs a.obj b.stl --pose 0.5,0,0\n"
-      "\"cchip COMMAND --help\" lists the options of a command.");
+  app.footer(exit_codes +
+             "Examples:\n"
+             "  cchip demo\n"
+             "  cchip collide a.obj b.stl --pose 0.5,0,0\n"
+             "  cchip pairs pairs.csv --expect touches\n"
+             "  cchip meshpairs a.obj b.stl --pose 0.5,0,0\n"
+             "\"cchip COMMAND --help\" lists the options of a command.");
   CollideOptions collide;
   PairsOptions pairs;
   MeshPairsOptions meshpairs;
@@ -353,7 +442,18 @@ int dispatch(std::vector<std::string> arguments, const Streams& streams) {
   add_demo(app, demo);
   ReconfigJobOptions reconfig;
   add_reconfig(app, reconfig);
-  app.add_subcommand("version", "Print the version");
+  app.add_subcommand("version", "Print the version")->footer("");
+  app.add_subcommand("help", "Print the options of a command: cchip help COMMAND")->footer("");
+  if (!arguments.empty() && arguments.front() == "help") {
+    arguments.erase(arguments.begin());
+    const std::vector<std::string> names = list_commands(app);
+    if (!arguments.empty() && arguments.front().rfind("-", 0) != 0 &&
+        std::find(names.begin(), names.end(), arguments.front()) == names.end()) {
+      throw UsageError(no_such_command(app, arguments.front()));
+    }
+    arguments.resize(std::min<std::size_t>(arguments.size(), 1));
+    arguments.emplace_back("--help");
+  }
   try {
     std::reverse(arguments.begin(), arguments.end());
     app.parse(std::move(arguments));
@@ -365,7 +465,7 @@ int dispatch(std::vector<std::string> arguments, const Streams& streams) {
     if (app.get_subcommands().empty()) {
       throw UsageError("the command is missing; the commands are " + command_names(app) + "; see cchip --help");
     }
-    throw UsageError(std::string(error.what()) + "; see cchip --help");
+    throw UsageError(unreadable(app, error));
   }
   if (app.got_subcommand("collide")) return run_collide(collide, streams);
   if (app.got_subcommand("pairs")) return run_pairs(pairs, streams);
@@ -388,8 +488,15 @@ int run_cli(std::vector<std::string> arguments, const Streams& streams) {
   try {
     const int code = dispatch(std::move(arguments), streams);
     streams.out.flush();
-    if (!streams.out) throw std::runtime_error("writing the output fails; check disk space and the reader of the pipe");
-    return code;
+    if (streams.out) return code;
+    // What could not be written waits in the buffer; the cause is that of another attempt.
+    streams.out.clear();
+    errno = 0;
+    streams.out.flush();
+    const char* const cause = errno == 0 ? "the stream is closed or full" : std::strerror(errno);
+    streams.err << "cchip: cannot write standard output: " << cause
+                << "; check the disk space and the program that reads the pipe\n";
+    return exit_internal;
   } catch (const UsageError& error) {
     streams.err << "cchip: " << one_line(error.what()) << '\n';
     return exit_usage;

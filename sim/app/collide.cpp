@@ -20,6 +20,7 @@
 #include <system_error>
 #include <utility>
 
+#include "engines.hpp"
 #include "mesh_source.hpp"
 #include "pose.hpp"
 
@@ -37,6 +38,7 @@ struct Totals {
   std::uint64_t contacts = 0;
   std::uint64_t crossing = 0;  ///< queries whose objects cross, if that was asked for
   CollisionCounts counts;
+  std::uint64_t left_out = 0;  ///< faces that could not be used
 
   void add(const CollisionResult& result, bool differs) {
     ++queries;
@@ -48,27 +50,29 @@ struct Totals {
   }
 };
 
-std::string to_line(const Totals& t, const std::string& device) {
+std::string to_line(const Totals& t, const CollideOptions& options) {
   const auto mean = [&t](std::uint64_t count) {
     return t.queries == 0 ? 0.0 : static_cast<double>(count) / static_cast<double>(t.queries);
   };
-  const std::string line = fmt::format(
+  std::string line = fmt::format(
       "queries={} hits={} mismatches={} contacts={} open={} steps_mean={:.1f} box_tests_mean={:.1f} pairs_mean={:.1f}",
       t.queries, t.hits, t.mismatches, t.contacts, t.counts.open, mean(t.counts.steps), mean(t.counts.box_tests),
       mean(t.counts.pairs));
-  if (device == "cpu") return line;
+  if (options.lenient) line += fmt::format(" left_out={}", t.left_out);
+  if (options.device == "cpu") return line;
   return line + fmt::format(" fallbacks={} swaps={} swap_clocks={} clocks_mean={:.1f}", t.counts.fallbacks,
                             t.counts.swaps, t.counts.swap_clocks, mean(t.counts.clocks));
 }
 
 /// stdout stays machine-readable: the summary of CSV and JSON lines goes to stderr.
 int report(const Totals& totals, const CollideOptions& options, const Streams& streams) {
-  (options.format == Format::table ? streams.out : streams.err) << to_line(totals, options.device) << '\n';
-  return totals.mismatches > 0 ? exit_mismatch : exit_ok;
+  (options.format == Format::table ? streams.out : streams.err) << to_line(totals, options) << '\n';
+  if (totals.mismatches > 0) return exit_mismatch;
+  return totals.left_out > 0 ? exit_left_out : exit_ok;
 }
 
-Object load_object(const std::string& path, const Streams& streams) {
-  Mesh mesh = load_mesh_file(path, streams);
+Object load_object(const std::string& path, MeshReader& reader) {
+  Mesh mesh = reader.read(path);
   try {
     return Object(std::move(mesh));
   } catch (const std::invalid_argument& error) {
@@ -85,6 +89,7 @@ std::unique_ptr<Device> open_named_device(const CollideOptions& options) {
   needs_sim(!options.trace.empty(), "--trace", "waveform");
   needs_sim(options.slots != 0, "--slots", "slots");
   if (options.device == "sim") {
+    if (!options.trace.empty()) check_wave_name(options.trace);
     SimulatedChipOptions chip;
     chip.trace_path = options.trace;
     chip.slots = static_cast<unsigned>(options.slots);
@@ -183,8 +188,9 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
-  const Object a = load_object(options.file_a, streams);
-  const Object b = load_object(options.file_b, streams);
+  MeshReader reader(streams, options.lenient);
+  const Object a = load_object(options.file_a, reader);
+  const Object b = load_object(options.file_b, reader);
   const CollisionResult result = collide(device, a, Pose::Identity(), b, pose, request);
   if (options.format == Format::table) streams.out << to_words(result, request) << '\n';
   if (options.format != Format::table || request.contacts == CollisionRequest::Contacts::all) {
@@ -203,6 +209,7 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
   }
   Totals totals;
   totals.add(result, false);
+  totals.left_out = reader.faces_left_out();
   return report(totals, options, streams);
 }
 
@@ -231,8 +238,10 @@ class PosesRunner {
                       "the file is empty; write a first row with the column names r00 to r22, tx, ty, tz");
     }
     const PoseColumns columns(row, options_.poses_file, options_.expect);
-    const Object a = load_object(options_.file_a, streams_);
-    const Object b = load_object(options_.file_b, streams_);
+    MeshReader meshes(streams_, options_.lenient);
+    const Object a = load_object(options_.file_a, meshes);
+    const Object b = load_object(options_.file_b, meshes);
+    totals_.left_out = meshes.faces_left_out();
     writer_ = make_row_writer(options_.format, streams_.out, names_behind(columns.passed_names(), names()));
     Progress progress(streams_.err, streams_.progress, "poses");
     std::error_code no_size;  // of a pipe
@@ -328,6 +337,7 @@ class PosesRunner {
 int run_collide(const CollideOptions& options, const Streams& streams) {
   sim::check_outputs({{"A", options.file_a}, {"B", options.file_b}},
                      {{"--ply", options.ply}, {"--trace", options.trace}});  // --ply excludes --poses
+  check_picture_name(options.ply);
   check_standard_input({options.file_a, options.file_b, options.poses_file});
   if (options.poses_file.empty() && !options.expect.empty()) {
     throw UsageError("--expect: there is no file of poses; name one with --poses");

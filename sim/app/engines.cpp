@@ -25,10 +25,7 @@ void check(const EngineOptions& options) {
   if (options.kind != EngineKind::rtl) {
     throw UsageError(fmt::format("--trace: engine {} has no waveform; use --engine rtl", to_name(options.kind)));
   }
-  if (std::filesystem::path(options.trace_path).extension() != ".fst") {
-    throw UsageError(
-        fmt::format("--trace {}: the waveform is an FST; give a name that ends with .fst", options.trace_path));
-  }
+  check_wave_name(options.trace_path);
   for (const std::string& file : files_of_wave(options.trace_path)) sim::check_writable(file);
 }
 
@@ -57,6 +54,11 @@ const char* to_name(EngineKind kind) {
 }
 
 bool is_hardware(EngineKind kind) { return kind == EngineKind::rtl || kind == EngineKind::model; }
+
+void check_wave_name(const std::string& path) {
+  if (std::filesystem::path(path).extension() == ".fst") return;
+  throw UsageError(fmt::format("--trace {}: the waveform is an FST; give a name that ends with .fst", path));
+}
 
 std::vector<sim::NamedPath> trace_files(const EngineOptions& options) {
   if (options.trace_path.empty()) return {};

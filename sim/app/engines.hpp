@@ -33,6 +33,9 @@ bool is_hardware(EngineKind kind);
 /// Every file that `--trace` may write: waveforms and their layouts; none without it.
 std::vector<sim::NamedPath> trace_files(const EngineOptions& options);
 
+/// \throws UsageError the name of a waveform does not end with .fst
+void check_wave_name(const std::string& path);
+
 /// \throws UsageError the options contradict each other
 /// \throws sim::OutputError the waveform cannot be written
 std::unique_ptr<PairEngine> make_engine(const EngineOptions& options);

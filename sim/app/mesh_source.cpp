@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cchip/mesh_io/mesh_file.hpp>
 #include <cchip/stimulus/usage_error.hpp>
+#include <filesystem>
 #include <iterator>
 #include <stdexcept>
 
@@ -39,22 +40,28 @@ void append(const Mesh& mesh, const Coloured& x, Mesh& all, std::vector<Colour>&
   }
 }
 
-Mesh read_standard_input(std::istream& in) {
+Mesh read_standard_input(std::istream& in, const LoadOptions& options) {
   const std::string text(std::istreambuf_iterator<char>(in), {});
   if (text.empty()) throw UsageError("-: standard input is empty; send a mesh");
-  return parse_mesh(text, "-", FaceKinds::triangles_and_quads);
+  return parse_mesh(text, "-", options);
 }
 
 }  // namespace
 
-Mesh load_mesh_file(const std::string& path, const Streams& streams) {
+Mesh MeshReader::read(const std::string& path) {
+  std::size_t left_out = 0;
+  LoadOptions options;
+  options.kinds = FaceKinds::triangles_and_quads;
+  options.lenient = lenient_;
+  options.faces_left_out = &left_out;
   try {
-    Mesh mesh = path == "-" ? read_standard_input(streams.in) : load_mesh(path, FaceKinds::triangles_and_quads);
+    Mesh mesh = path == "-" ? read_standard_input(streams_.in, options) : load_mesh(path, options);
+    faces_left_out_ += left_out;
     if (mesh.polygons_cut > 0) {
-      streams.err << fmt::format("cchip: {}: {} faces with more than four corners or a dent were cut into triangles\n",
-                                 path, mesh.polygons_cut);
+      streams_.err << fmt::format("cchip: {}: {} faces with more than four corners or a dent were cut into triangles\n",
+                                  path, mesh.polygons_cut);
     }
-    for (const std::string& note : mesh.notes) streams.err << fmt::format("cchip: {}: {}\n", path, note);
+    for (const std::string& note : mesh.notes) streams_.err << fmt::format("cchip: {}: {}\n", path, note);
     return mesh;
   } catch (const std::runtime_error& error) {
     throw UsageError(error.what());
@@ -65,6 +72,12 @@ void check_standard_input(const std::vector<std::string>& paths) {
   if (std::count(paths.begin(), paths.end(), "-") > 1) {
     throw UsageError("-: standard input can be read once only; name a file for all but one");
   }
+}
+
+void check_picture_name(const std::string& path) {
+  const std::string end = std::filesystem::path(path).extension().string();
+  if (end.empty() || end == ".ply" || end == ".PLY") return;
+  throw UsageError(fmt::format("--ply {}: the picture is a PLY file; give a name that ends with .ply", path));
 }
 
 const std::vector<std::string>& mesh_pair_names() {

@@ -18,12 +18,30 @@
 
 namespace cchip::app {
 
-/// Triangles and quads of a file, "-": of standard input; a line on `err` if other faces had to be cut.
-/// \throws UsageError the file is missing, broken or has no faces
-Mesh load_mesh_file(const std::string& path, const Streams& streams);
+/// Reads the meshes of a command.
+class MeshReader {
+ public:
+  /// \param lenient faces that cannot be used are left out, with a line on `err` for each
+  MeshReader(const Streams& streams, bool lenient) : streams_(streams), lenient_(lenient) {}
+  /// Triangles and quads of a file, "-": of standard input; a line on `err` if other faces had to be cut.
+  /// \throws UsageError the file is missing, broken or has no faces
+  Mesh read(const std::string& path);
+  /// Of all meshes so far.
+  std::uint64_t faces_left_out() const { return faces_left_out_; }
+  bool lenient() const { return lenient_; }
+
+ private:
+  const Streams& streams_;
+  bool lenient_;
+  std::uint64_t faces_left_out_ = 0;
+};
 
 /// \throws UsageError two of the paths are "-"
 void check_standard_input(const std::vector<std::string>& paths);
+
+/// Accepts an empty path, which stands for no picture, and names without an extension, such as those of pipes.
+/// \throws UsageError the name of a picture has another extension than .ply
+void check_picture_name(const std::string& path);
 
 /// Columns of the candidate pairs: the face numbers, counted from 0.
 const std::vector<std::string>& mesh_pair_names();

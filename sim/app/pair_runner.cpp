@@ -34,8 +34,9 @@ void append_hardware(std::vector<Cell>& cells, const EngineAnswer& answer) {
 
 std::string to_line(const Summary& s) {
   const double mean = s.pairs == 0 ? 0.0 : static_cast<double>(s.beats) / static_cast<double>(s.pairs);
-  return fmt::format("pairs={} hits={} mismatches={} indefinite={} beats_mean={:.2f} clocks={}", s.pairs, s.hits,
-                     s.mismatches, s.indefinite, mean, s.clocks);
+  const std::string line = fmt::format("pairs={} hits={} mismatches={} indefinite={} beats_mean={:.2f} clocks={}",
+                                       s.pairs, s.hits, s.mismatches, s.indefinite, mean, s.clocks);
+  return s.left_out ? line + fmt::format(" left_out={}", *s.left_out) : line;
 }
 
 PairRunner::PairRunner(PairEngine& engine, const RunOptions& options, const std::vector<std::string>& passed_names,

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,12 +23,13 @@ struct Summary {
   std::uint64_t pairs = 0;
   std::uint64_t hits = 0;
   std::uint64_t mismatches = 0;
-  std::uint64_t indefinite = 0;  ///< answers that the engine left open and the host resolved
-  std::uint64_t beats = 0;       ///< axes of all pairs
-  std::uint64_t clocks = 0;      ///< clocks that the engine simulated; 0 without hardware
+  std::uint64_t indefinite = 0;                ///< answers that the engine left open and the host resolved
+  std::uint64_t beats = 0;                     ///< axes of all pairs
+  std::uint64_t clocks = 0;                    ///< clocks that the engine simulated; 0 without hardware
+  std::optional<std::uint64_t> left_out = {};  ///< faces that could not be used, if such are left out
 };
 
-/// "pairs=N hits=H mismatches=M indefinite=I beats_mean=B clocks=C"
+/// "pairs=N hits=H mismatches=M indefinite=I beats_mean=B clocks=C", then " left_out=L" if such faces are left out
 std::string to_line(const Summary& summary);
 
 struct RunOptions {

@@ -25,6 +25,10 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::vector<double> parse_numbers(const std::string& option, std::string_view text) {
+  if (text.find(',') == std::string_view::npos && trimmed(text).find_first_of(" \t;") != std::string_view::npos) {
+    throw UsageError(
+        fmt::format("{}: '{}' has no commas; write commas between the numbers, like 0.5,0,0", option, text));
+  }
   std::vector<double> numbers;
   while (true) {
     const auto comma = text.find(',');
@@ -49,9 +53,16 @@ Eigen::Isometry3d parse_pose(const std::string& text) {
 
 Pose parse_affine_matrix(const std::string& text) {
   const std::vector<double> n = parse_numbers("--pose-matrix", text);
-  if (n.size() != 12) {
-    throw UsageError(
-        fmt::format("--pose-matrix: got {} numbers; write the twelve of the 3x4 matrix row by row", n.size()));
+  if (n.size() != 12 && n.size() != 16) {
+    throw UsageError(fmt::format(
+        "--pose-matrix: got {} numbers; write the twelve of the 3x4 matrix row by row, or the sixteen of a 4x4 matrix",
+        n.size()));
+  }
+  if (n.size() == 16 && (n[12] != 0 || n[13] != 0 || n[14] != 0 || n[15] != 1)) {
+    throw UsageError(fmt::format(
+        "--pose-matrix: the last row of the 4x4 matrix is {},{},{},{}, but must be 0,0,0,1; write the numbers row by "
+        "row (transpose a matrix that is written column by column)",
+        n[12], n[13], n[14], n[15]));
   }
   Pose pose = Pose::Identity();
   auto next = n.begin();

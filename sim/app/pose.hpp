@@ -19,11 +19,11 @@ namespace cchip::app {
 /// \throws UsageError
 Eigen::Isometry3d parse_pose(const std::string& text);
 
-/// Twelve numbers, the rows of the 3x4 matrix [R | t].
-/// \throws UsageError not twelve numbers
+/// Twelve numbers, the rows of the 3x4 matrix [R | t], or sixteen with a last row of 0, 0, 0, 1.
+/// \throws UsageError other numbers
 Pose parse_affine_matrix(const std::string& text);
 /// The same for a rigid pose.
-/// \throws UsageError not twelve numbers, or R is not a rotation within 1e-9
+/// \throws UsageError other numbers, or R is not a rotation within 1e-9
 Eigen::Isometry3d parse_pose_matrix(const std::string& text);
 
 /// Columns r00..r22 and tx, ty, tz of a CSV file: x -> R x + t, row by row.

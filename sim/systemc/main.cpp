@@ -121,13 +121,13 @@ int sc_main(int argc, char** argv) {
   try {
     return levels::run_with_arguments(argc, argv);
   } catch (const UsageError& error) {
-    std::cerr << error.what() << '\n';
+    std::cerr << "cchip_levels: " << error.what() << '\n';
     return exit_usage;
   } catch (const std::invalid_argument& error) {
-    std::cerr << error.what() << '\n';
+    std::cerr << "cchip_levels: " << error.what() << '\n';
     return exit_usage;
   } catch (const sim::OutputError& error) {
-    std::cerr << error.what() << '\n';
+    std::cerr << "cchip_levels: " << error.what() << '\n';
     return exit_usage;
   } catch (const std::exception& error) {
     std::cerr << "cchip_levels: " << error.what() << '\n';

@@ -36,6 +36,6 @@ fi
 cmake -S "$root/tests/arm64" -B "$folder/build" -D CMAKE_TOOLCHAIN_FILE="$root/tests/arm64/toolchain.cmake" \
   -D CMAKE_BUILD_TYPE=Release -D Eigen3_DIR=/usr/share/eigen3/cmake -D Boost_NO_BOOST_CMAKE=ON \
   -D Boost_INCLUDE_DIR="$folder/include" -D CCHIP_CATCH_INCLUDE_DIR="$folder/include" \
-  -D hwy_DIR="$folder/highway/usr/lib/aarch64-linux-gnu/cmake/hwy"
+  -D CMAKE_DISABLE_FIND_PACKAGE_ZLIB=ON -D hwy_DIR="$folder/highway/usr/lib/aarch64-linux-gnu/cmake/hwy"
 cmake --build "$folder/build" --parallel "${JOBS:-1}"
 ctest --test-dir "$folder/build" --no-tests=error --output-on-failure

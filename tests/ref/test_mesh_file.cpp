@@ -390,7 +390,9 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
   check(folder.file("absent.obj"), gone);
   check(folder.file(""), ": is a folder");
   check("/dev/null", ": is a device, not a file or a pipe");
-  check(folder.write("empty.obj", ""), ": the file is empty or cannot be read");
+  check(folder.write("empty.obj", ""), ": the file is empty (0 bytes)");
+  check(folder.write("part.step", "ISO-10303-21;"), ": holds surfaces of CAD, not a mesh", "; mesh it first");
+  check(folder.write("scene.glb", "glTF"), ": meshes of this format are not read", "; convert it");
   check(folder.write("notes.txt", "hello\n"), ": cannot be read as a mesh");
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const auto obj = [&](const std::string& text) { return folder.write("t.obj", text); };
@@ -730,6 +732,8 @@ TEST_CASE("mesh file: faces that cannot be used are left out if asked for", "[re
   CHECK_THROWS_WITH(cchip::parse_mesh(text, "t.obj"), Catch::Contains("t.obj:7: face 0: its sides 0 and 3 cross"));
   cchip::LoadOptions options;
   options.lenient = true;
+  std::size_t left_out = 99;
+  options.faces_left_out = &left_out;
   const Mesh mesh = cchip::parse_mesh(text, "t.obj", options);
   CHECK(mesh.file_face == std::vector<std::uint32_t>{1, 5});
   REQUIRE(mesh.notes.size() == 5);
@@ -737,15 +741,58 @@ TEST_CASE("mesh file: faces that cannot be used are left out if asked for", "[re
   CHECK(mesh.notes[1] == "line 9: face 2: vertex index 99 is out of range (the mesh has 6 vertices)");
   CHECK(mesh.notes[2] == "line 10: face 3: vertex index -99 is out of range (the mesh has 6 vertices so far)");
   CHECK(mesh.notes[3] == "line 6: vertex 5 is not finite, and face 4 uses it");
+  CHECK(left_out == 4);
   CHECK(mesh.notes[4] == "4 faces were left out because they cannot be used");
+  cchip::parse_mesh("v 0 0 0\nv 2 2 0\nv 2 1 0\nf 1 2 3\n", "t.obj", options);
+  CHECK(left_out == 0);
   CHECK_THROWS_WITH(cchip::parse_mesh("v 0 0 0\nf 1 2 3\n", "t.obj", options),
                     Catch::Contains("the file holds no faces"));
   CHECK_THROWS_WITH(cchip::parse_mesh(text + "f 1 x 2\n", "t.obj", options), Catch::Contains("'x' is not a number"));
 }
 
+TEST_CASE("mesh file: gzip is unpacked", "[ref][mesh_file]") {
+  // Python's gzip.compress() of "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n".
+  const char bytes[] =
+      "\x1f\x8b\x08\x00\x00\x00\x00\x00\x02\xff\x2b\x53\x30\x00\x41\xae\x32\x05\x13\x28\x6d\x00"
+      "\x62\x71\xa5\x29\x18\x2a\x18\x29\x18\x73\x01\x00\x93\x79\x44\xf9\x20\x00\x00\x00";
+  const std::string packed(bytes, sizeof bytes - 1);
+  // The name may end with .gz or not; what counts is the content.
+  for (const char* const name : {"t.obj.gz", "folder.x/t.OBJ.GZ", "t.obj"}) {
+    CAPTURE(name);
+    const Mesh mesh = cchip::parse_mesh(packed, name);
+    REQUIRE(mesh.faces.size() == 1);
+    CHECK(mesh.primitive(0).v[2] == Vec3d(0, 4, 0));
+    CHECK(mesh.name == name);
+  }
+  const TemporaryFolder folder;
+  CHECK(load_mesh(folder.write("t.obj.gz", packed)).faces.size() == 1);
+  // Two members are one content: of the same points and a face twice. What is behind the last one does not count.
+  CHECK(cchip::parse_mesh(packed + packed, "t.obj.gz").faces.size() == 2);
+  CHECK(cchip::parse_mesh(packed + std::string(512, '\0'), "t.obj.gz").faces.size() == 1);
+
+  for (std::size_t length = 2; length < packed.size(); ++length) {
+    CAPTURE(length);
+    CHECK_THROWS_WITH(cchip::parse_mesh(packed.substr(0, length), "t.obj.gz"),
+                      "t.obj.gz: the gzip file is truncated; copy or download it again");
+  }
+  for (const std::size_t place : {std::size_t{2}, std::size_t{12}, packed.size() - 8, packed.size() - 1}) {
+    CAPTURE(place);
+    std::string damaged = packed;
+    damaged[place] = static_cast<char>(damaged[place] ^ 0x5a);
+    CHECK_THROWS_WITH(cchip::parse_mesh(damaged, "t.obj.gz"), Catch::StartsWith("t.obj.gz: the gzip file is "));
+  }
+  cchip::LoadOptions options;
+  options.most_unpacked_bytes = 32;
+  CHECK(cchip::parse_mesh(packed, "t.obj.gz", options).faces.size() == 1);
+  options.most_unpacked_bytes = 31;
+  CHECK_THROWS_WITH(cchip::parse_mesh(packed, "t.obj.gz", options),
+                    Catch::StartsWith("t.obj.gz: the gzip file holds more than 31 bytes, which is the limit; "));
+  // A message about the content names the packed file and the line inside; the extension before .gz counts.
+  CHECK_THROWS_WITH(cchip::parse_mesh(packed, "t.off.gz"), Catch::StartsWith("t.off.gz:1: "));
+  CHECK_THROWS_WITH(cchip::parse_mesh(packed, "t.gz"), Catch::Contains("cannot be read as a mesh"));
+}
+
 TEST_CASE("mesh file: packed files are named", "[ref][mesh_file]") {
-  CHECK_THROWS_WITH(cchip::parse_mesh("\x1f\x8b\x08 and so on", "t.obj.gz"),
-                    "t.obj.gz: is packed with gzip; unpack it first");
   CHECK_THROWS_WITH(cchip::parse_mesh("PK\3\4 and so on", "t.obj"), Catch::Contains("packed with zip"));
 }
 

@@ -81,6 +81,14 @@ TEST_CASE("collide: contacts are those of brute force", "[system][collide]") {
                                        (expected[0].relation == Relation::crossing ? "crossing" : "touching") + "\"}");
 }
 
+TEST_CASE("collide: a pose of sixteen numbers", "[system][collide]") {
+  const std::string twelve = "0,-1,0,1,1,0,0,0.25,0,0,1,0.125";
+  const Outcome outcome = collide_cubes({"--pose-matrix", twelve + ",0,0,-0,1", "--format", "csv"});
+  CHECK(outcome.code == exit_ok);
+  CHECK(lines(outcome.out).size() > 1);
+  CHECK(outcome.out == collide_cubes({"--pose-matrix", twelve, "--format", "csv"}).out);
+}
+
 TEST_CASE("collide: the functional model of the chip gives the same contacts", "[system][collide]") {
   for (const char* pose : {"1,1,1", "0.5,0.25,0.125,10,20,30", "1.0000000000000002,0,0"}) {
     CAPTURE(pose);
@@ -287,6 +295,42 @@ TEST_CASE("collide: a mesh from standard input", "[system][collide]") {
     CHECK(run_cchip({command, "-", cube_file}, "v 0 0 0\n").err ==
           "cchip: -: cannot be read as a mesh; give an OBJ, OFF, PLY or STL file\n");
   }
+}
+
+TEST_CASE("collide: faces that cannot be used are left out if asked for", "[system][collide]") {
+  // Face 0 of the square is good and holds the corner of the other mesh; face 1 names a vertex that is not there, the
+  // sides 0 and 3 of face 2 cross.
+  const TemporaryFolder folder;
+  const std::string bad = folder.write("bad.obj",
+                                       "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 2 1 0\nf 1 2 3 4\nf 1 2 9\n"
+                                       "f 1 3 5 2 4\n");
+  const std::string other = folder.write("other.obj", "v 1 0.5 0\nv 1 0.5 5\nv 2 0.5 5\nf 1 2 3\n");
+  for (const std::string command : {"collide", "meshpairs"}) {
+    CAPTURE(command);
+    const Outcome strict = run_cchip({command, bad, other, "--format", "csv"});
+    CHECK(strict.code == exit_usage);
+    CHECK(strict.out.empty());
+    const Outcome lenient = run_cchip({command, bad, other, "--lenient", "--format", "csv"});
+    CHECK(lenient.code == exit_left_out);
+    REQUIRE(lines(lenient.out).size() == 2);
+    CHECK(lines(lenient.out)[1].rfind("0,0,", 0) == 0);
+    REQUIRE(lines(lenient.err).size() == 4);
+    CHECK(lines(lenient.err)[0] ==
+          "cchip: " + bad + ": line 7: face 1: vertex index 9 is out of range (the mesh has 5 vertices)");
+    CHECK(lines(lenient.err)[1].rfind("cchip: " + bad + ": line 8: face 2: its sides ", 0) == 0);
+    CHECK(lines(lenient.err)[2] == "cchip: " + bad + ": 2 faces were left out because they cannot be used");
+    CHECK(count(lines(lenient.err)[3], "hits") == 1);
+    CHECK(count(lines(lenient.err)[3], "left_out") == 2);
+    // Nothing to leave out: the answer is complete.
+    const Outcome good = run_cchip({command, other, other, "--lenient", "--format", "csv"});
+    CHECK(good.code == exit_ok);
+    CHECK(count(last_line(good.err), "left_out") == 0);
+  }
+  const std::string poses = folder.write("poses.csv", poses_header + ",touches\n1,0,0,0,1,0,0,0,1,0,0,0,1\n");
+  std::vector<std::string> many = {"collide", bad, other, "--lenient", "--poses", poses, "--expect", "touches"};
+  CHECK(run_cchip(many).code == exit_left_out);
+  folder.write("poses.csv", poses_header + ",touches\n1,0,0,0,1,0,0,0,1,0,0,0,0\n");
+  CHECK(run_cchip(many).code == exit_mismatch);  // that answers differ says more
 }
 
 TEST_CASE("collide: picture", "[system][collide]") {

@@ -164,7 +164,8 @@ TEST_CASE("errors: values without a meaning", "[system][errors]") {
               input);
   check_error({"pairs", "-", "--trace", "x.fst", "--trace-clocks", "-1"}, "cchip: --trace-clocks: got '-1'" + from_0,
               input);
-  check_error({"pairs", "-", "--trace-clocks", "5"}, "cchip: --trace-clocks requires --trace; see cchip --help", input);
+  check_error({"pairs", "-", "--trace-clocks", "5"}, "cchip: --trace-clocks requires --trace; see cchip pairs --help",
+              input);
   check_error({"pairs", "-", "--trace", "t.vcd"},
               "cchip: --trace t.vcd: the waveform is an FST; give a name that ends with .fst", input);
   check_error({"collide", cube, cube, "--most", "0"}, "cchip: --most: got '0'" + from_1);
@@ -183,7 +184,7 @@ TEST_CASE("errors: values without a meaning", "[system][errors]") {
     check_error({"pairs", "-", option, ""},
                 "cchip: " + option + ": the value is empty; write one, or leave the option out", input);
   }
-  check_error({"demo", "--ply", "x.ply", "--seed", "2"}, "cchip: --seed excludes --ply; see cchip --help");
+  check_error({"demo", "--ply", "x.ply", "--seed", "2"}, "cchip: --seed excludes --ply; see cchip demo --help");
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"0,0,0", "0", "0", "90"}, {"0", "0", "0"}, {"1,", "2,", "3"}, {"1,0,0", "-2", "0"}}) {
     std::vector<std::string> arguments = {"collide", cube, cube, "--pose"};
@@ -196,23 +197,28 @@ TEST_CASE("errors: values without a meaning", "[system][errors]") {
 
 TEST_CASE("errors: command line", "[system][errors]") {
   const std::string help = "; see cchip --help";
+  const std::string pairs_help = "; see cchip pairs --help";
   check_error(
-      {}, "cchip: the command is missing; the commands are collide, pairs, meshpairs, demo, reconfig, version" + help);
-  check_error({"pairs"}, "cchip: FILE is required" + help);
-  check_error({"pairs", "f", "--engine", "abacus"}, "cchip: --engine: abacus not in {rtl,model,eigen,exact}" + help);
-  check_error({"pairs", "f", "--format", "xml"}, "cchip: --format: xml not in {table,csv,jsonl}" + help);
-  const std::string commands = ": no such command; the commands are collide, pairs, meshpairs, demo, reconfig, version";
+      {}, "cchip: the command is missing; the commands are collide, pairs, meshpairs, demo, reconfig, version, help" +
+              help);
+  check_error({"pairs"}, "cchip: the file of the pairs, FILE, is missing; see cchip pairs --help");
+  check_error({"pairs", "f", "--engine", "abacus"},
+              "cchip: --engine: abacus not in {rtl,model,eigen,exact}" + pairs_help);
+  check_error({"pairs", "f", "--format", "xml"}, "cchip: --format: xml not in {table,csv,jsonl}" + pairs_help);
+  const std::string commands =
+      ": no such command; the commands are collide, pairs, meshpairs, demo, reconfig, version, help";
   check_error({"foo"}, "cchip: foo" + commands);
   check_error({"foo", "--engine", "model"}, "cchip: foo" + commands);
   check_error({"--foo"}, "cchip: --foo: no such option; see cchip --help");
   check_error({"--foo", "foo"}, "cchip: --foo: no such option; see cchip --help");
   check_error({"pairs", "f", "--nonsense"}, "cchip: --nonsense: no such option; see cchip pairs --help");
-  check_error({"meshpairs", "f", "--limits", "7"}, "cchip: --limits: no such option; see cchip meshpairs --help");
+  check_error({"meshpairs", "f", "--limits", "7"},
+              "cchip: --limits: no such option; did you mean --limit? see cchip meshpairs --help");
   check_error({"pairs", "f", "g"}, "cchip: g: one argument too many; see cchip pairs --help");
 
   const std::string input = header + "\n" + tri_a + "," + b_through + "\n";
-  check_error({"pairs", "-", "--program", "clever"}, "cchip: --program: clever not in {exhaustive,directed}" + help,
-              input);
+  check_error({"pairs", "-", "--program", "clever"},
+              "cchip: --program: clever not in {exhaustive,directed}" + pairs_help, input);
   for (const std::string engine : {"model", "eigen", "exact"}) {
     check_error({"pairs", "-", "--engine", engine, "--trace", "x.fst"},
                 "cchip: --trace: engine " + engine + " has no waveform; use --engine rtl", input);
@@ -231,4 +237,74 @@ TEST_CASE("errors: command line", "[system][errors]") {
       {"meshpairs", cube, cube, "--pose-matrix", "2,0,0,0,0,1,0,0,0,0,1,0"},
       "cchip: --pose-matrix: the left 3x3 part is not a rotation; write an orthonormal matrix with determinant 1 "
       "(to 1e-9)");
+}
+
+TEST_CASE("errors: what is missing or misspelt is named", "[system][errors]") {
+  const std::string cube = std::string(CCHIP_TEST_MODELS) + "/OFF/Cube.off";
+  for (const std::string command : {"collide", "meshpairs"}) {
+    check_error({command}, "cchip: the first mesh, A, is missing; see cchip " + command + " --help");
+    check_error({command, cube}, "cchip: the second mesh, B, is missing; see cchip " + command + " --help");
+    check_error({command, cube, cube, "--format", "CSV"},
+                "cchip: --format: CSV not in {table,csv,jsonl}; see cchip " + command + " --help");
+    check_error({command, cube, cube, "--pos", "1,2,3"},
+                "cchip: --pos: no such option; did you mean --pose? see cchip " + command + " --help");
+    check_error({command, cube, cube, "--psoe=1,2,3"},
+                "cchip: --psoe: no such option; did you mean --pose? see cchip " + command + " --help");
+  }
+  check_error({"collide", cube, cube, "--expect", "touches"},
+              "cchip: --expect requires --poses; see cchip collide --help");
+  const std::string commands = " the commands are collide, pairs, meshpairs, demo, reconfig, version, help";
+  check_error({"colide", cube, cube}, "cchip: colide: no such command; did you mean collide?" + commands);
+  check_error({"mehspairs"}, "cchip: mehspairs: no such command; did you mean meshpairs?" + commands);
+  check_error({"help", "pair"}, "cchip: pair: no such command; did you mean pairs?" + commands);
+  check_error({"--verison"}, "cchip: --verison: no such option; did you mean --version? see cchip --help");
+}
+
+TEST_CASE("errors: values that look right", "[system][errors]") {
+  const std::string cube = std::string(CCHIP_TEST_MODELS) + "/OFF/Cube.off";
+  const TemporaryFolder folder;
+  check_error({"collide", cube, cube, "--device", "sim", "--trace", "x.vcd"},
+              "cchip: --trace x.vcd: the waveform is an FST; give a name that ends with .fst");
+  for (const std::string command : {"collide", "meshpairs"}) {
+    check_error({command, cube, cube, "--ply", "out.txt"},
+                "cchip: --ply out.txt: the picture is a PLY file; give a name that ends with .ply");
+    check_error({command, cube, cube, "--pose", "1 2 3"},
+                "cchip: --pose: '1 2 3' has no commas; write commas between the numbers, like 0.5,0,0");
+    check_error({command, cube, cube, "--pose-matrix", "1,0,0,0,0,1,0,0,0,0,1,0,5,0,0,1"},
+                "cchip: --pose-matrix: the last row of the 4x4 matrix is 5,0,0,1, but must be 0,0,0,1; write the "
+                "numbers row by row (transpose a matrix that is written column by column)");
+  }
+  const std::string empty = folder.write("empty.obj", "");
+  check_error({"collide", cube, empty}, "cchip: " + empty + ": the file is empty (0 bytes); write the mesh again");
+  const std::string part = folder.write("part.STEP", "ISO-10303-21;");
+  check_error({"collide", part, cube}, "cchip: " + part +
+                                           ": holds surfaces of CAD, not a mesh; mesh it first, for example with "
+                                           "`gmsh -2 part.step -o part.stl` or with FreeCAD");
+  for (const std::string end : {"dae", "gltf", "3mf"}) {
+    const std::string scene = folder.write("scene." + end, "<xml/>");
+    check_error({"collide", scene, cube},
+                "cchip: " + scene +
+                    ": meshes of this format are not read; convert it to OBJ, OFF, PLY or STL, for example with "
+                    "`assimp export mesh." +
+                    end + " mesh.obj` or with Blender");
+  }
+}
+
+TEST_CASE("help: every command has its own, with exit codes", "[system][errors]") {
+  for (const std::string command : {"collide", "pairs", "meshpairs", "demo", "reconfig"}) {
+    CAPTURE(command);
+    const Outcome help = run_cchip({command, "--help"});
+    CHECK(help.code == cchip::exit_ok);
+    CHECK(help.out.find("Exit codes: 0 done,") != std::string::npos);
+    // Not all of it: CLI11 lists what an option excludes in the order of addresses.
+    const std::vector<std::string> same = lines(run_cchip({"help", command}).out);
+    CHECK(same.size() == lines(help.out).size());
+    CHECK(same.at(1) == "Usage: cchip " + command + lines(help.out).at(1).substr(13 + command.size()));
+  }
+  CHECK(run_cchip({"help"}).out == run_cchip({"--help"}).out);
+  CHECK(run_cchip({"help"}).out.find("library") != std::string::npos);
+  CHECK(run_cchip({"-v"}).out == run_cchip({"version"}).out);
+  const Outcome version = run_cchip({"version", "--help"});
+  CHECK(version.out.find("Print the version") != std::string::npos);
+  CHECK(version.out.find("cchip collide") == std::string::npos);
 }

@@ -60,7 +60,18 @@ int main(int argc, char** argv) {
   curve_command->add_option("--quad-bytes", curve.quad_bytes, "payload")->capture_default_str();
   curve_command->add_option("--seed", curve.seed, "of poses and power-up")->capture_default_str();
   app.footer("Exit codes: 0 nothing wrong, 3 a wrong or lost answer, others: wrong arguments.");
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0 && app.get_subcommands().empty()) {
+      std::string names;
+      for (const CLI::App* command : app.get_subcommands({}))
+        names += (names.empty() ? "" : ", ") + command->get_name();
+      fmt::print(stderr, "cchip_chip_campaign: {}; the first argument is a campaign: {}\n", error.what(), names);
+      return 2;
+    }
+    return app.exit(error);
+  }
   try {
     if (*poses_command) return run_poses(poses);
     if (*adversarial_command) return run_adversarial(adversarial);

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cchip/mesh_io/mesh_file.hpp>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -12,6 +14,7 @@
 #include "mesh/cut_polygon.hpp"
 #include "polygon_soup.hpp"
 #include "text.hpp"
+#include "unpack.hpp"
 
 namespace cchip {
 namespace {
@@ -32,7 +35,13 @@ std::string read_file(const std::string& path) {
   constexpr std::size_t least_bytes = 65536;
   const auto size = std::filesystem::is_fifo(status) ? 0 : std::filesystem::file_size(path, error);
   std::string content(std::max<std::size_t>(error ? 0 : size + 1, least_bytes), '\0');  // one more, to meet the end
+  errno = 0;
   std::ifstream in(path, std::ios::binary);
+  const auto unreadable = [&path] {
+    const std::string cause = errno == 0 ? "an error of the disk" : std::strerror(errno);
+    return std::runtime_error(path + ": the file cannot be read (" + cause + "); check its permissions");
+  };
+  if (!in) throw unreadable();
   std::size_t used = 0;
   while (in) {
     if (used == content.size()) content.resize(2 * content.size());
@@ -40,9 +49,8 @@ std::string read_file(const std::string& path) {
     used += static_cast<std::size_t>(in.gcount());
   }
   content.resize(used);
-  if (in.bad() || content.empty()) {
-    throw std::runtime_error(path + ": the file is empty or cannot be read; check its content and permissions");
-  }
+  if (in.bad()) throw unreadable();
+  if (content.empty()) throw std::runtime_error(path + ": the file is empty (0 bytes); write the mesh again");
   return content;
 }
 
@@ -78,20 +86,43 @@ Reader reader_of(const std::string& path, std::string_view file) {
   return shown == nullptr ? nullptr : shown->reader;
 }
 
+constexpr std::string_view gzip = "gzip";
+
 /// The program that packed a file, by its first bytes; none of them is text.
-const char* packer_of(std::string_view file) {
+std::string_view packer_of(std::string_view file) {
   using namespace std::string_view_literals;
-  constexpr std::pair<std::string_view, const char*> packers[] = {{"\x1f\x8b"sv, "gzip"},
-                                                                  {"PK\3\4"sv, "zip"},
-                                                                  {"BZh"sv, "bzip2"},
-                                                                  {"\xfd"
-                                                                   "7zXZ\0"sv,
-                                                                   "xz"},
-                                                                  {"\x28\xb5\x2f\xfd"sv, "zstd"}};
+  constexpr std::pair<std::string_view, std::string_view> packers[] = {{"\x1f\x8b"sv, gzip},
+                                                                       {"PK\3\4"sv, "zip"},
+                                                                       {"BZh"sv, "bzip2"},
+                                                                       {"\xfd"
+                                                                        "7zXZ\0"sv,
+                                                                        "xz"},
+                                                                       {"\x28\xb5\x2f\xfd"sv, "zstd"}};
   for (const auto& [begin, name] : packers) {
     if (!mesh_io::is_binary_stl(file) && file.substr(0, begin.size()) == begin) return name;
   }
-  return nullptr;
+  return {};
+}
+
+/// What to do about a file whose format is not read, by its extension.
+std::string not_read(const std::string& name) {
+  std::string end = std::filesystem::path(name).extension();
+  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
+  for (const char* const cad : {".step", ".stp", ".iges", ".igs", ".brep"}) {
+    if (end == cad) {
+      return ": holds surfaces of CAD, not a mesh; mesh it first, for example with `gmsh -2 part" + end +
+             " -o part.stl` or with FreeCAD";
+    }
+  }
+  for (const char* const other :
+       {".dae", ".gltf", ".glb", ".fbx", ".3ds", ".3mf", ".amf", ".blend", ".wrl", ".x3d", ".ifc", ".x"}) {
+    if (end == other) {
+      return ": meshes of this format are not read; convert it to OBJ, OFF, PLY or STL, for example with `assimp "
+             "export mesh" +
+             end + " mesh.obj` or with Blender";
+    }
+  }
+  return ": cannot be read as a mesh; give an OBJ, OFF, PLY or STL file";
 }
 
 /// What to do about an error.
@@ -126,6 +157,7 @@ class Builder {
       }
       begin = soup_.polygons[i].end;
     }
+    if (options_.faces_left_out != nullptr) *options_.faces_left_out = faces_left_out_;
     if (faces_left_out_ > 0) {
       soup_.notes.push_back(std::to_string(faces_left_out_) + " faces were left out because they cannot be used");
     }
@@ -200,26 +232,36 @@ class Builder {
   Mesh mesh_;
 };
 
+LoadOptions options_for(FaceKinds kinds) {
+  LoadOptions options;
+  options.kinds = kinds;
+  return options;
+}
+
 }  // namespace
 
-Mesh load_mesh(const std::string& path, FaceKinds kinds) { return load_mesh(path, LoadOptions{kinds, false}); }
+Mesh load_mesh(const std::string& path, FaceKinds kinds) { return load_mesh(path, options_for(kinds)); }
 
 Mesh load_mesh(const std::string& path, const LoadOptions& options) {
   return parse_mesh(read_file(path), path, options);
 }
 
 Mesh parse_mesh(std::string_view file, const std::string& name, FaceKinds kinds) {
-  return parse_mesh(file, name, LoadOptions{kinds, false});
+  return parse_mesh(file, name, options_for(kinds));
 }
 
-Mesh parse_mesh(std::string_view content, const std::string& path, const LoadOptions& options) {
+namespace {
+
+/// \param name of the file; its extension says the format, messages begin with `path`
+Mesh parse_unpacked(std::string_view content, const std::string& name, const std::string& path,
+                    const LoadOptions& options) {
   const std::string_view file = mesh_io::is_binary_stl(content) ? content : mesh_io::without_mark(content);
-  if (const char* const packer = packer_of(file)) {
-    throw std::runtime_error(path + ": is packed with " + packer + "; unpack it first");
+  if (const std::string_view packer = packer_of(file); !packer.empty()) {
+    throw std::runtime_error(path + ": is packed with " + std::string(packer) + "; unpack it first");
   }
-  const Reader reader = reader_of(path, file);
+  const Reader reader = reader_of(name, file);
   if (reader == nullptr) {
-    throw std::runtime_error(path + ": cannot be read as a mesh; give an OBJ, OFF, PLY or STL file");
+    throw std::runtime_error(path + not_read(name));
   }
   try {
     Mesh mesh = Builder(reader(file), options).build();
@@ -229,6 +271,28 @@ Mesh parse_mesh(std::string_view content, const std::string& path, const LoadOpt
     const std::string line = error.line == 0 ? "" : std::to_string(error.line) + ": ";
     throw std::runtime_error(path + ":" + (line.empty() ? " " : line) + error.what() + remedy(error, reader, file));
   }
+}
+
+/// The name without `.gz`.
+std::string name_inside(const std::string& name) {
+  const std::filesystem::path path(name);
+  std::string end = path.extension();
+  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
+  return end == ".gz" ? path.stem().string() : name;
+}
+
+}  // namespace
+
+Mesh parse_mesh(std::string_view file, const std::string& name, const LoadOptions& options) {
+  if (packer_of(file) != gzip || !mesh_io::can_unpack_gzip()) return parse_unpacked(file, name, name, options);
+  std::string content;
+  try {
+    content = mesh_io::unpack_gzip(file, options.most_unpacked_bytes);
+  } catch (const FormatError& error) {
+    throw std::runtime_error(name + ": " + error.what());
+  }
+  if (content.empty()) throw std::runtime_error(name + ": the gzip file holds nothing; pack a mesh file");
+  return parse_unpacked(content, name_inside(name), name, options);
 }
 
 }  // namespace cchip

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cchip/mesh/mesh.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <ostream>
 #include <string>
@@ -27,10 +28,15 @@ struct LoadOptions {
   /// sides that cross. Mesh::notes names the first hundred, with their lines, and says how many there are. A file that
   /// is truncated or no mesh is an error all the same, and so is one without any face that can be used.
   bool lenient = false;
+  /// If not null, set to the number of faces that were left out because they cannot be used.
+  std::size_t* faces_left_out = nullptr;
+  /// Bytes that the content of a packed file may have: a small file may hold one that exhausts the memory.
+  std::uint64_t most_unpacked_bytes = std::uint64_t{1} << 32;
 };
 
 /// Reads a mesh in the file's order and unit: Wavefront OBJ, Geomview OFF (text), Stanford PLY (text, binary of both
 /// byte orders), STL (text, binary). The extension of the name decides the format, or else the beginning of the file.
+/// A file packed with gzip is unpacked first, if the library was built with zlib; its name may end with `.gz` besides.
 ///
 /// Positions are doubles: the nearest one of each decimal number; binary STL and PLY's `float` hold single precision.
 /// Points, lines and curves are left out. Free-form surfaces, binary OFF and homogeneous coordinates are refused.
@@ -39,7 +45,7 @@ struct LoadOptions {
 ///
 /// A truncated or damaged file is refused where this can be detected: counts must match, numbers must be whole words,
 /// and vertices must exist. OBJ announces no counts, so a file that lacks whole lines at its end may pass.
-/// Memory and time are bounded by multiples of the file's size: counts that the file cannot hold are refused first.
+/// Memory and time are bounded by multiples of the (unpacked) file's size: counts that the file cannot hold are refused first.
 ///
 /// The readers are our own because none of Debian's passed tests/ref/test_mesh_file.cpp: assimp rounds to single
 /// precision and does not terminate on a truncated PLY; CGAL loses corners that tabs separate in OBJ, refuses its `l`

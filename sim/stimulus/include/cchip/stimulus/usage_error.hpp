@@ -11,7 +11,13 @@
 namespace cchip {
 
 /// Exit codes of `cchip`, documented in docs/cpp/cli.md.
-enum ExitCode : int { exit_ok = 0, exit_internal = 1, exit_usage = 2, exit_mismatch = 3 };
+enum ExitCode : int {
+  exit_ok = 0,
+  exit_internal = 1,
+  exit_usage = 2,
+  exit_mismatch = 3,
+  exit_left_out = 4  ///< answered without the faces that could not be used (--lenient)
+};
 
 /// Wrong input or wrong command line. what() is one line "<where>: <what>; <remedy>".
 class UsageError : public std::runtime_error {
