@@ -279,10 +279,14 @@ void add_collide(CLI::App& app, CollideOptions& options) {
       "with --device sim: write the waveform of the chip's first 30,000 clocks (FST) and a .gtkw layout beside it");
   add_text(*command, "--ply", options.ply, "write both meshes, the faces that cross and those that touch coloured")
       ->excludes(poses);
+  add_text(*command, "--html", options.html,
+           "write a page for a browser: both meshes to turn, cut and click, with the list of their contacts")
+      ->excludes(poses);
   command->footer(exit_codes +
                   "Examples:\n"
                   "  cchip collide a.obj b.stl --pose 0.5,0,0\n"
                   "  cchip collide a.obj b.stl --pose 0.5,0,0 --format csv > contacts.csv\n"
+                  "  cchip collide a.obj b.stl --pose 0.5,0,0 --html contacts.html && xdg-open contacts.html\n"
                   "  cchip collide a.obj b.stl --poses poses.csv --expect touches\n"
                   "  cchip collide a.obj b.stl --poses poses.csv --counts crossing\n"
                   "  cchip collide a.obj b.stl --pose 0.5,0,0 --device sim --trace chip.fst");

@@ -21,6 +21,7 @@
 #include <utility>
 
 #include "engines.hpp"
+#include "html_view.hpp"
 #include "mesh_source.hpp"
 #include "pose.hpp"
 
@@ -179,6 +180,8 @@ void write_contacts(const std::vector<Contact>& contacts, bool relation, Format 
 int answer_one(const CollideOptions& options, Device& device, const Streams& streams) {
   std::optional<HitPicture> picture;
   if (!options.ply.empty()) picture.emplace(options.ply);
+  std::optional<HtmlView> view;
+  if (!options.html.empty()) view.emplace(options.html);
   Pose pose = Pose::Identity();
   if (!options.pose.empty()) pose = parse_pose(options.pose);
   if (!options.pose_matrix.empty()) pose = parse_affine_matrix(options.pose_matrix);
@@ -207,6 +210,7 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
     }
     picture->write(a.mesh(), transformed(b.mesh(), pose));
   }
+  if (view) view->write(a.mesh(), transformed(b.mesh(), pose), to_words(result, request), result.contacts);
   Totals totals;
   totals.add(result, false);
   totals.left_out = reader.faces_left_out();
@@ -336,8 +340,9 @@ class PosesRunner {
 
 int run_collide(const CollideOptions& options, const Streams& streams) {
   sim::check_outputs({{"A", options.file_a}, {"B", options.file_b}},
-                     {{"--ply", options.ply}, {"--trace", options.trace}});  // --ply excludes --poses
+                     {{"--ply", options.ply}, {"--html", options.html}, {"--trace", options.trace}});
   check_picture_name(options.ply);
+  check_view_name(options.html);
   check_standard_input({options.file_a, options.file_b, options.poses_file});
   if (options.poses_file.empty() && !options.expect.empty()) {
     throw UsageError("--expect: there is no file of poses; name one with --poses");

@@ -7,6 +7,8 @@
 #include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -347,6 +349,35 @@ TEST_CASE("collide: picture", "[system][collide]") {
   REQUIRE(collide_cubes({"--pose", "1,1,1", "--contacts", "first", "--ply", one}).code == exit_ok);
   CHECK(folder.read("one.ply").size() == folder.read("hits.ply").size());
   CHECK(folder.read("one.ply") != folder.read("hits.ply"));
+}
+
+TEST_CASE("collide: the view for a browser", "[system][collide]") {
+  const TemporaryFolder folder;
+  CHECK(collide_cubes({"--html", "view.txt"}).err ==
+        "cchip: --html view.txt: the view is an HTML file; give a name that ends with .html\n");
+  CHECK(collide_cubes({"--html", folder.path("v.html"), "--poses", "-"}).code == exit_usage);
+  // A folder that stands for the library: the view holds what is in it.
+  std::filesystem::create_directories(folder.path("examples/js/controls"));
+  setenv("CCHIP_THREE", folder.path("").c_str(), 1);
+  const Outcome missing = collide_cubes({"--html", folder.path("v.html")});
+  CHECK(missing.code == exit_usage);
+  CHECK(missing.err == "cchip: --html: the library three.js is missing (" + folder.path("three.min.js") +
+                           "); install Debian's package libjs-three, or name the folder of three.js 0.111 in "
+                           "CCHIP_THREE\n");
+  CHECK_FALSE(std::filesystem::exists(folder.path("v.html")));
+  folder.write("three.min.js", "three @DATA@;");
+  folder.write("examples/js/controls/OrbitControls.js", "controls;");
+  const Outcome good = collide_cubes({"--html", folder.path("v.html"), "--pose", "1,1,1"});
+  unsetenv("CCHIP_THREE");
+  CHECK(good.code == exit_ok);
+  const std::string page = folder.read("v.html");
+  CHECK(page.find("<script>three @DATA@;</script>") != std::string::npos);
+  CHECK(page.find("<script>controls;</script>") != std::string::npos);
+  CHECK(page.find("\"answer\":\"touch: 3 faces of A meet 3 of B\"") != std::string::npos);
+  // Six squares of two triangles and four edges each; nine contacts that touch.
+  CHECK(page.find("\"faces\":[0,0,1,1,2,2,3,3,4,4,5,5]") != std::string::npos);
+  const std::string contacts = page.substr(page.find("\"contacts\":["));
+  CHECK(std::count(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(contacts.find("]]")), '[') == 10);
 }
 
 TEST_CASE("collide: wrong input is one line and exit code 2", "[system][collide]") {
