@@ -50,19 +50,57 @@ TEST_CASE("collide: the first line is the answer, the last one the summary", "[s
   CHECK(apart.code == exit_ok);
   CHECK(lines(apart.out).size() == 2);
   CHECK(lines(apart.out).front() == "apart");
-  CHECK(last_line(apart.out).rfind("queries=1 hits=0 mismatches=0 contacts=0 ", 0) == 0);
+  CHECK(last_line(apart.out) == "1 query, 0 contacts");
   CHECK(apart.err.empty());
   // They share the corner (0.5, 0.5, 0.5), where three faces of each meet.
   const Outcome corner = collide_cubes({"--pose", "1,1,1"});
   CHECK(lines(corner.out).front() == "touch: 3 faces of A meet 3 of B");
   CHECK(lines(corner.out).at(1) == "face_a  face_b  relation");
-  CHECK(last_line(corner.out).rfind("queries=1 hits=1 mismatches=0 contacts=9 ", 0) == 0);
+  CHECK(last_line(corner.out) == "1 query, 9 contacts");
   const Outcome first = collide_cubes({"--pose", "1,1,1", "--contacts", "first"});
   CHECK(lines(first.out).size() == 2);
   CHECK(lines(first.out).front().rfind("touch: face ", 0) == 0);
   const Outcome two = collide_cubes({"--pose", "1,1,1", "--most", "2"});
   CHECK(lines(two.out).front().rfind("touch: at least ", 0) == 0);
-  CHECK(last_line(two.out).rfind("queries=1 hits=1 mismatches=0 contacts=2 ", 0) == 0);
+  CHECK(last_line(two.out) == "1 query, 2 contacts");
+  CHECK(last_line(first.out) == "1 query, 1 contact");
+  // The lines for programs: mismatches only where something was compared.
+  CHECK(last_line(collide_cubes({"--pose", "1,1,1", "--format", "csv"}).err)
+            .rfind("queries=1 hits=1 contacts=9 open=", 0) == 0);
+}
+
+TEST_CASE("collide: times and colours are for a terminal", "[system][collide]") {
+  const auto run = [](const std::string& pose, bool person, bool colour) {
+    std::istringstream in;
+    std::ostringstream out, err;
+    CHECK(run_cli({"collide", cube_file, cube_file, "--pose", pose}, {in, out, err, false, person, colour}) == exit_ok);
+    return lines(out.str());
+  };
+  CHECK(run("5,0,0", true, true).front() == "\x1b[1;32mapart\x1b[0m");
+  CHECK(run("1,1,1", true, true).front() == "\x1b[1;33mtouch: 3 faces of A meet 3 of B\x1b[0m");
+  CHECK(run("0.5,0.25,0.125", true, true).front().rfind("\x1b[1;31mcross: ", 0) == 0);
+  CHECK(run("5,0,0", true, false).front() == "apart");
+  CHECK_THAT(run("5,0,0", true, false).back(), Catch::Matchers::Matches("1 query, 0 contacts, [0-9.e-]+ m?s"));
+  CHECK(run("5,0,0", false, false).back() == "1 query, 0 contacts");
+}
+
+TEST_CASE("collide: JSON lines tell that there is no contact", "[system][collide]") {
+  CHECK(collide_cubes({"--pose", "5,0,0", "--format", "jsonl"}).out == "{\"hit\":0,\"relation\":\"apart\"}\n");
+  CHECK(collide_cubes({"--pose", "1,0,0", "--counts", "crossing", "--format", "jsonl"}).out ==
+        "{\"hit\":0,\"relation\":\"touching\"}\n");
+  CHECK(collide_cubes({"--pose", "5,0,0", "--contacts", "first", "--format", "jsonl"}).out == "{\"hit\":0}\n");
+}
+
+TEST_CASE("collide: the exit code tells of contacts if asked for", "[system][collide]") {
+  CHECK(collide_cubes({"--pose", "1,1,1"}).code == exit_ok);
+  CHECK(collide_cubes({"--pose", "1,1,1", "--exit-code"}).code == exit_contact);
+  CHECK(collide_cubes({"--pose", "5,0,0", "--exit-code"}).code == exit_ok);
+  CHECK(collide_cubes({"--pose", "1,1,1", "--counts", "crossing", "--exit-code"}).code == exit_ok);
+  const TemporaryFolder folder;
+  const std::string rows = poses_header + ",touches\n1,0,0,0,1,0,0,0,1,5,0,0,0\n1,0,0,0,1,0,0,0,1,1,1,1,";
+  CHECK(collide_cubes({"--poses", folder.write("p.csv", rows + "1\n"), "--exit-code"}).code == exit_contact);
+  CHECK(collide_cubes({"--poses", folder.write("p.csv", rows + "0\n"), "--exit-code", "--expect", "touches"}).code ==
+        exit_mismatch);
 }
 
 TEST_CASE("collide: contacts are those of brute force", "[system][collide]") {
@@ -132,7 +170,7 @@ TEST_CASE("collide: poses of a file, expected answers", "[system][collide]") {
   REQUIRE(lines(table.out).size() == 4);
   CHECK(lines(table.out)[2] == "touch in 2 of 4 poses");
   CHECK(lines(table.out)[1].rfind("apart  1        1               5    1         0", 0) == 0);
-  CHECK(count(last_line(table.out), "mismatches") == 1);
+  CHECK(last_line(table.out) == "4 queries, 2 contacts, 1 differs from column touches");
   const Outcome csv = collide_cubes({"--poses", wrong, "--expect", "contacts", "--contacts", "all", "--format", "csv"});
   CHECK(csv.code == exit_mismatch);
   CHECK(lines(csv.err).front() == "cchip: " + wrong + ":5: expected contacts 1, got 0");
@@ -147,7 +185,7 @@ TEST_CASE("collide: touching is told from crossing", "[system][collide]") {
   const Outcome only = collide_cubes({"--pose", "1,0,0", "--counts", "crossing"});
   CHECK(only.code == exit_ok);
   CHECK(lines(only.out).front() == "touch: no faces cross");
-  CHECK(last_line(only.out).rfind("queries=1 hits=0 mismatches=0 contacts=0 ", 0) == 0);
+  CHECK(last_line(only.out) == "1 query, 0 contacts");
   CHECK(lines(collide_cubes({"--pose", "1.5,0,0", "--counts", "crossing"}).out).front() == "apart");
   const Outcome first = collide_cubes({"--pose", "0.5,0.25,0.125", "--contacts", "first", "--relation"});
   CHECK(lines(first.out).front().rfind("cross: face ", 0) == 0);
@@ -243,7 +281,7 @@ TEST_CASE("collide: thousands of poses", "[system][collide]") {
   CHECK(outcome.code == exit_ok);
   REQUIRE(lines(outcome.out).size() == 3);  // names, answer, summary
   CHECK(lines(outcome.out)[1] == "touch in 9 of 3000 poses");
-  CHECK(last_line(outcome.out).rfind("queries=3000 hits=9 mismatches=0 ", 0) == 0);
+  CHECK(last_line(outcome.out) == "3000 queries, 9 contacts, 0 differ from column touches");
 }
 
 namespace {
