@@ -260,7 +260,7 @@ campaign-chip-swaps: $(RELEASE)/build.ninja ## batches of triangle and quad obje
 picture: $(RELEASE)/build.ninja ## draw docs/pictures/demo.png: the demo's meshes, the faces that hit coloured
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip
 	$(RELEASE)/bin/cchip demo --ply build/demo.ply
-	scripts/picture.py build/demo.ply docs/pictures/demo.png
+	scripts/picture.py build/demo.ply docs/pictures/demo.png --demo
 
 TABLE1 := $(RELEASE)/bin/cchip_table1
 table1: $(RELEASE)/build.ninja ## Table 1 of the paper from a timed simulation, and the overhead of swaps against work per swap

@@ -1,12 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Draws the meshes of a PLY that `cchip demo --ply` or `cchip meshpairs --ply` wrote, as PNG on a transparent ground.
-
-usage: scripts/picture.py MESHES.ply PICTURE.png          draw
-       scripts/picture.py MESHES.ply PICTURE.png --check  compare: exit 1 if the picture is not of these meshes
-
-Needs Python's standard library only. Exit codes: 0 done, 1 the picture is stale or missing, 2 wrong command line.
-"""
+"""Draws the meshes of a PLY that `cchip ... --ply` wrote, as PNG on a transparent ground. The camera stands back until all
+is in the picture. Needs Python's standard library only; some seconds for each 10,000 faces.
+Exit codes: 0 done, 1 the picture is stale or missing, 2 wrong command line or a file that is not such a PLY."""
 import argparse
 import math
 import struct
@@ -15,11 +11,9 @@ import zlib
 
 WIDTH, HEIGHT = 880, 600
 SAMPLES = 2           # of a pixel's side
-# The demo's pose deep from below, where the gear cuts through the tube. Lengths are in the meshes' unit.
-VIEW = (2.0, -3.0, -1.5)     # from the target to the camera
-TARGET = (0.55, 0.23, 0.02)
-DISTANCE = 9.0               # of the camera
-SPAN = 4.15                  # width of the picture at the target
+VIEW = (1.0, -1.6, 1.1)      # from the target to the camera
+MARGIN = 0.04                # of the picture's width and height, on each side
+ANGLE = 26.0                 # degrees that the picture's width takes
 KEY_LIGHT = (-0.35, 0.5, 0.8)   # to the right, up, to the camera
 FILL_LIGHT = (0.5, -0.8, 0.5)
 CREASE = math.cos(math.radians(40))  # faces that meet at less look smooth
@@ -45,14 +39,32 @@ def unit(a):
     return (a[0] / length, a[1] / length, a[2] / length)
 
 
+def normalised(faces):
+    """The same faces about the origin, with a box of side 1: lengths of any unit can be multiplied then."""
+    corners = [corner for corners, _ in faces for corner in corners]
+    least, greatest = (tuple(f(axis) for axis in zip(*corners)) for f in (min, max))
+    size = max(g / 2 - l / 2 for g, l in zip(greatest, least)) or 1.0   # of half the box: the whole may overflow
+    return [([tuple((x / 2 - g / 4 - l / 4) / size for x, l, g in zip(corner, least, greatest)) for corner in corners], colour)
+            for corners, colour in faces]
+
+
+class NotOurs(Exception):
+    """A file that is not a PLY of cchip."""
+
+
 def read_ply(path):
     """Faces as (corners, colour) of the one layout that cchip writes."""
     with open(path, "rb") as file:
         content = file.read()
     head, _, body = content.partition(b"end_header\n")
-    counts = [int(line.split()[2]) for line in head.decode().splitlines() if line.startswith("element")]
-    if b"binary_little_endian" not in head or len(counts) != 2:
-        sys.exit(f"picture.py: {path}: not written by cchip; make it with cchip demo --ply")
+    lines = head.decode("latin-1").splitlines()
+    names = [line.split()[1:] for line in lines if line.startswith("element")]
+    properties = [line.split()[-1] for line in lines if line.startswith("property")]
+    colours = ["red", "green", "blue"]
+    if ("format binary_little_endian 1.0" not in lines or [name[0] for name in names] != ["vertex", "face"]
+            or properties != ["x", "y", "z", *colours, "vertex_indices", *colours]):
+        raise NotOurs
+    counts = [int(name[1]) for name in names]
     vertex = struct.Struct("<3d3B")
     points = [vertex.unpack_from(body, i * vertex.size)[:3] for i in range(counts[0])]
     at = counts[0] * vertex.size
@@ -63,6 +75,8 @@ def read_ply(path):
         at += 1 + 4 * corners
         faces.append(([points[i] for i in numbers], tuple(body[at:at + 3])))
         at += 3
+    if not faces:
+        raise NotOurs
     return faces
 
 
@@ -76,7 +90,9 @@ def corner_normals(faces):
     result = []
     for i, (corners, _) in enumerate(faces):
         own = normals[i]
-        result.append([unit(tuple(map(sum, zip(*[n for n in around[c] if dot(n, own) > CREASE])))) for c in corners])
+        # A face without area has no normal: it keeps the zero that unit() gives, and is not drawn.
+        near = [[n for n in around[c] if dot(n, own) > CREASE] or [own] for c in corners]
+        result.append([unit(tuple(map(sum, zip(*normals_near)))) for normals_near in near])
     return result
 
 
@@ -89,29 +105,58 @@ def triangles_of(faces):
             yield [corners[i] for i in pick], [normals[i] for i in pick], colour, (True, k + 1 == last, k == 1)
 
 
-def shade(normal, colour, edge):
+def shade(normal, colour, edge, camera):
     """Colour of a point: two lights and a highlight."""
-    key = max(0.0, dot(normal, LIGHTS[0]))
-    fill = max(0.0, dot(normal, LIGHTS[1]))
+    key = max(0.0, dot(normal, camera.lights[0]))
+    fill = max(0.0, dot(normal, camera.lights[1]))
     light = (0.45 + 0.50 * key + 0.30 * fill) * (1 - edge)
-    shine = 30 * max(0.0, dot(normal, HALF)) ** 40
+    shine = 30 * max(0.0, dot(normal, camera.half)) ** 40
     return [min(255.0, c * light + shine) for c in colour]
 
 
-BACK = unit(VIEW)
-RIGHT = unit(cross((0, 0, 1), BACK))
-UP = cross(BACK, RIGHT)
-LIGHTS = [unit([sum(l * axis[i] for l, axis in zip(light, (RIGHT, UP, BACK))) for i in range(3)])
-          for light in (KEY_LIGHT, FILL_LIGHT)]
-HALF = unit(tuple(a + b for a, b in zip(LIGHTS[0], BACK)))
+class Camera:
+    """Looks at a target from a distance. All lengths are in the meshes' unit."""
+
+    def __init__(self, view, target=None, distance=None, span=None):
+        """view: from the target to the camera; span: width of the picture at the target. The last three: see fit()."""
+        self.back = unit(view)
+        upright = abs(self.back[2]) < 0.999
+        self.right = unit(cross((0, 0, 1) if upright else (0, 1, 0), self.back))
+        self.up = cross(self.back, self.right)
+        self.lights = [unit([sum(l * axis[i] for l, axis in zip(light, (self.right, self.up, self.back))) for i in range(3)])
+                       for light in (KEY_LIGHT, FILL_LIGHT)]
+        self.half = unit(tuple(a + b for a, b in zip(self.lights[0], self.back)))
+        self.target, self.distance, self.span = target, distance, span
+
+    def fit(self, points):
+        """Goes to where all points are in the picture, each side of it as near as the others allow."""
+        half_width = math.tan(math.radians(ANGLE / 2))
+        axes = [(self.right, half_width * (1 - 2 * MARGIN)), (self.up, half_width * HEIGHT / WIDTH * (1 - 2 * MARGIN))]
+        depths = [dot(p, self.back) for p in points]
+        # A point at depth z is in the picture if |place - middle| <= slope * (eye - z), for the eye's place along `back`.
+        eye, middles = max(depths), []
+        for axis, slope in axes:
+            most = max(dot(p, axis) + slope * z for p, z in zip(points, depths))
+            least = min(dot(p, axis) - slope * z for p, z in zip(points, depths))
+            middles.append((most + least) / 2)
+            eye = max(eye, (most - least) / 2 / slope)
+        size = max(max(depths) - min(depths), *(max(c) - min(c) for c in zip(*points)))
+        eye = max(eye, max(depths) + 0.01 * size) if size > 0 else eye + 1   # no point in the eye
+        nearest = max(depths)
+        self.distance = eye - nearest
+        self.target = tuple(middles[0] * r + middles[1] * u + nearest * b for r, u, b in zip(self.right, self.up, self.back))
+        self.span = 2 * half_width * self.distance
+
+    def project(self, point):
+        """Column, row and 1 / depth of a point."""
+        p = sub(point, self.target)
+        depth = self.distance - dot(p, self.back)
+        scale = WIDTH * SAMPLES / self.span * self.distance / depth
+        return (WIDTH * SAMPLES / 2 + scale * dot(p, self.right), HEIGHT * SAMPLES / 2 - scale * dot(p, self.up), 1 / depth)
 
 
-def project(point):
-    """Column, row and 1 / depth of a point."""
-    p = sub(point, TARGET)
-    depth = DISTANCE - dot(p, BACK)
-    scale = WIDTH * SAMPLES / SPAN * DISTANCE / depth
-    return (WIDTH * SAMPLES / 2 + scale * dot(p, RIGHT), HEIGHT * SAMPLES / 2 - scale * dot(p, UP), 1 / depth)
+# The demo's pose deep from below, where the gear cuts through the tube.
+DEMO = Camera((2.0, -3.0, -1.5), (0.55, 0.23, 0.02), 9.0, 4.15)
 
 
 def span(start, slope, least, greatest):
@@ -123,16 +168,20 @@ def span(start, slope, least, greatest):
     return (least, greatest) if start >= 0 else (1, 0)
 
 
-def draw(faces):
+def draw(faces, camera):
     """Samples row by row, each None or a colour; the nearest surface wins."""
     width, height = WIDTH * SAMPLES, HEIGHT * SAMPLES
     nearest = [0.0] * (width * height)
     owner = [None] * (width * height)
     for triangle in triangles_of(faces):
-        (x0, y0, z0), (x1, y1, z1), (x2, y2, z2) = map(project, triangle[0])
+        (x0, y0, z0), (x1, y1, z1), (x2, y2, z2) = map(camera.project, triangle[0])
         area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
-        if area >= 0:   # seen from behind, because rows count downwards
+        if area == 0 or not math.isfinite(area):
             continue
+        if area > 0:   # seen from behind, because rows count downwards; faces have two sides
+            corners, (n0, n1, n2), colour, (s0, s1, s2) = triangle
+            triangle = corners, [tuple(-c for c in n) for n in (n0, n2, n1)], colour, (s0, s2, s1)
+            (x1, y1, z1), (x2, y2, z2), area = (x2, y2, z2), (x1, y1, z1), -area
         heights = [-area / math.dist(a, b) for a, b in
                    (((x1, y1), (x2, y2)), ((x2, y2), (x0, y0)), ((x0, y0), (x1, y1)))]
         step0, step1 = (y1 - y2) / area, (y2 - y0) / area
@@ -150,16 +199,16 @@ def draw(faces):
                 if z > nearest[y * width + x]:
                     nearest[y * width + x] = z
                     owner[y * width + x] = (triangle, heights, a, b)
-    return [sample and shade_sample(*sample) for sample in owner]
+    return [sample and shade_sample(*sample, camera) for sample in owner]
 
 
-def shade_sample(triangle, heights, a, b):
+def shade_sample(triangle, heights, a, b, camera):
     _, (n0, n1, n2), colour, sides = triangle
     c = 1 - a - b
     near = min([w * h for w, h, side in zip((a, b, c), heights, sides) if side], default=9)
     normal = unit((a * n0[0] + b * n1[0] + c * n2[0], a * n0[1] + b * n1[1] + c * n2[1],
                    a * n0[2] + b * n1[2] + c * n2[2]))
-    return shade(normal, colour, EDGE * max(0.0, 1.6 - near))
+    return shade(normal, colour, EDGE * max(0.0, 1.6 - near), camera)
 
 
 def to_pixels(image):
@@ -227,14 +276,33 @@ def read_png(path):
 
 
 def main():
-    parser = argparse.ArgumentParser(usage=__doc__)
-    parser.add_argument("meshes")
-    parser.add_argument("picture")
-    parser.add_argument("--check", action="store_true")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("meshes", metavar="MESHES.ply")
+    parser.add_argument("picture", metavar="PICTURE.png")
+    parser.add_argument("--check", action="store_true", help="compare: exit code 1 if the picture is not of these meshes")
+    parser.add_argument("--view", metavar=("X", "Y", "Z"), type=float, nargs=3, default=VIEW,
+                        help="direction from the meshes to the camera (default: %s %s %s)" % VIEW)
+    parser.add_argument("--demo", action="store_true", help="the camera of the documents' picture of cchip demo")
     options = parser.parse_args()
-    rows = to_pixels(draw(read_ply(options.meshes)))
+    if not 0 < math.hypot(*options.view) < math.inf:
+        parser.error("--view: the direction has no length; write one like 1 -1.6 1.1")
+    try:
+        faces = read_ply(options.meshes)
+    except OSError as error:
+        parser.error(f"{options.meshes}: cannot be read ({error.strerror}); check its name and permissions")
+    except (NotOurs, struct.error, IndexError, ValueError):
+        parser.error(f"{options.meshes}: not written by cchip; make it with the option --ply of cchip collide, meshpairs or demo")
+    camera = DEMO
+    if not options.demo:
+        camera = Camera(options.view)
+        faces = normalised(faces)
+        camera.fit([corner for corners, _ in faces for corner in corners])
+    rows = to_pixels(draw(faces, camera))
     if not options.check:
-        write_png(options.picture, rows)
+        try:
+            write_png(options.picture, rows)
+        except OSError as error:
+            parser.error(f"{options.picture}: cannot be written ({error.strerror}); check the folder")
         return
     try:
         old = read_png(options.picture)

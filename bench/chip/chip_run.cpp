@@ -53,8 +53,6 @@ class Run {
         settings_.seed, settings_.module, settings_.memory.latency, settings_.memory.jitter, settings_.memory.reorder,
         settings_.memory.ready_percent, settings_.memory.valid_percent, 1U << settings_.driver.query_log2,
         1U << settings_.driver.record_log2, settings_.host_every);
-    fmt::print("{:<12} {:<6} {:>7} {:>6} {:>9} {:>6} {:>9} {:>9} {:>9}\n", "meshes", "class", "queries", "hits",
-               "contacts", "open", "steps", "pairs", "clocks");
     for (const std::string& name : settings_.meshes) run_pair(name);
     fmt::print("queries={} hits={} mismatches={} contacts={} open={} lost={} duplicated={} clocks_mean={:.1f}\n",
                total_.queries, total_.hits, total_.mismatches, total_.contacts, total_.open, total_.lost,
@@ -77,6 +75,7 @@ class Run {
     const bvh::Image image_b = bvh::make_image(meshes.b, bvh::build_tree(meshes.b));
     PoseMaker maker(*device_, a, b, settings_.seed);
     std::mt19937_64 random(settings_.seed);
+    bool has_head = false;
     for (const PoseClass pose_class : {PoseClass::touch, PoseClass::near, PoseClass::deep, PoseClass::far}) {
       const std::string class_name = name_of(pose_class);
       if (std::find(settings_.classes.begin(), settings_.classes.end(), class_name) == settings_.classes.end())
@@ -110,8 +109,15 @@ class Run {
                                                                                                     : QueryMode::first;
         queries.push_back(*query);
       }
+      if (!has_head) print_head();  // below what is said about the meshes and the waveform
+      has_head = true;
       measure(name, class_name, bench, queries, image_a, image_b);
     }
+  }
+
+  static void print_head() {
+    fmt::print("{:<12} {:<6} {:>7} {:>6} {:>9} {:>6} {:>9} {:>9} {:>9}\n", "meshes", "class", "queries", "hits",
+               "contacts", "open", "steps", "pairs", "clocks");
   }
 
   void measure(const std::string& meshes, const std::string& pose_class, Bench& bench,

@@ -201,7 +201,7 @@ std::string device_words() {
 
 const std::string exit_codes =
     "Exit codes: 0 done, 1 internal error or the output cannot be written, 2 wrong input or command line,\n"
-    "3 answers differ, 4 answered without faces that cannot be used.\n";
+    "3 answers differ, 4 answered without faces that cannot be used, 5 a contact (collide --exit-code).\n";
 
 /// Two meshes, --lenient, and the option --pose, which is returned.
 template <class Options>
@@ -265,6 +265,7 @@ void add_collide(CLI::App& app, CollideOptions& options) {
              "the least that counts as a contact: touching (default) or crossing");
   command->add_flag("--relation", options.relation,
                     "tell touching from crossing (a single query for all contacts does in any case)");
+  command->add_flag("--exit-code", options.exit_code, "end with exit code 5 if there is a contact");
   add_text(*command, "--device", options.device, "what answers: " + device_words() + " (default cpu)");
   add_choice(*command, "--format", options.format, formats, "output (default table)");
   add_text(*command, "--expect", options.expect,
@@ -279,10 +280,14 @@ void add_collide(CLI::App& app, CollideOptions& options) {
       "with --device sim: write the waveform of the chip's first 30,000 clocks (FST) and a .gtkw layout beside it");
   add_text(*command, "--ply", options.ply, "write both meshes, the faces that cross and those that touch coloured")
       ->excludes(poses);
+  add_text(*command, "--html", options.html,
+           "write a page for a browser: both meshes to turn, cut and click, with the list of their contacts")
+      ->excludes(poses);
   command->footer(exit_codes +
                   "Examples:\n"
                   "  cchip collide a.obj b.stl --pose 0.5,0,0\n"
                   "  cchip collide a.obj b.stl --pose 0.5,0,0 --format csv > contacts.csv\n"
+                  "  cchip collide a.obj b.stl --pose 0.5,0,0 --html contacts.html && xdg-open contacts.html\n"
                   "  cchip collide a.obj b.stl --poses poses.csv --expect touches\n"
                   "  cchip collide a.obj b.stl --poses poses.csv --counts crossing\n"
                   "  cchip collide a.obj b.stl --pose 0.5,0,0 --device sim --trace chip.fst");

@@ -17,6 +17,10 @@ struct Streams {
   std::ostream& err;
   /// True if `err` is a terminal: draw a progress bar.
   bool progress = false;
+  /// True if a person reads `out` on a terminal: show times.
+  bool person = false;
+  /// The answer in colour.
+  bool colour = false;
 };
 
 /// Runs `cchip` with the arguments after the program name; returns the exit code. Does not throw.

@@ -12,6 +12,7 @@
 #include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -21,6 +22,7 @@
 #include <utility>
 
 #include "engines.hpp"
+#include "html_view.hpp"
 #include "mesh_source.hpp"
 #include "pose.hpp"
 
@@ -38,7 +40,8 @@ struct Totals {
   std::uint64_t contacts = 0;
   std::uint64_t crossing = 0;  ///< queries whose objects cross, if that was asked for
   CollisionCounts counts;
-  std::uint64_t left_out = 0;  ///< faces that could not be used
+  std::uint64_t left_out = 0;            ///< faces that could not be used
+  std::chrono::duration<double> time{};  ///< of the queries alone, without files
 
   void add(const CollisionResult& result, bool differs) {
     ++queries;
@@ -54,20 +57,46 @@ std::string to_line(const Totals& t, const CollideOptions& options) {
   const auto mean = [&t](std::uint64_t count) {
     return t.queries == 0 ? 0.0 : static_cast<double>(count) / static_cast<double>(t.queries);
   };
-  std::string line = fmt::format(
-      "queries={} hits={} mismatches={} contacts={} open={} steps_mean={:.1f} box_tests_mean={:.1f} pairs_mean={:.1f}",
-      t.queries, t.hits, t.mismatches, t.contacts, t.counts.open, mean(t.counts.steps), mean(t.counts.box_tests),
-      mean(t.counts.pairs));
+  std::string line = fmt::format("queries={} hits={}", t.queries, t.hits);
+  if (!options.expect.empty()) line += fmt::format(" mismatches={}", t.mismatches);
+  line += fmt::format(" contacts={} open={} steps_mean={:.1f} box_tests_mean={:.1f} pairs_mean={:.1f}", t.contacts,
+                      t.counts.open, mean(t.counts.steps), mean(t.counts.box_tests), mean(t.counts.pairs));
   if (options.lenient) line += fmt::format(" left_out={}", t.left_out);
   if (options.device == "cpu") return line;
   return line + fmt::format(" fallbacks={} swaps={} swap_clocks={} clocks_mean={:.1f}", t.counts.fallbacks,
                             t.counts.swaps, t.counts.swap_clocks, mean(t.counts.clocks));
 }
 
+std::string counted(std::uint64_t count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+/// The same for people. \param with_time times differ from run to run
+std::string to_sentence(const Totals& t, const CollideOptions& options, bool with_time) {
+  std::string line = counted(t.queries, "query", "queries") + ", " + counted(t.contacts, "contact", "contacts");
+  if (!options.expect.empty()) {
+    line += fmt::format(", {} differ{} from column {}", t.mismatches, t.mismatches == 1 ? "s" : "", options.expect);
+  }
+  if (t.left_out > 0) line += ", " + counted(t.left_out, "face", "faces") + " left out";
+  if (t.counts.clocks > 0) line += ", " + counted(t.counts.clocks, "clock", "clocks");
+  if (t.counts.swaps > 0) line += ", " + counted(t.counts.swaps, "swap", "swaps");
+  if (t.counts.fallbacks > 0) line += ", " + counted(t.counts.fallbacks, "query", "queries") + " left to the CPU";
+  if (with_time) {
+    const double seconds = t.time.count();
+    line += seconds < 1 ? fmt::format(", {:.3g} ms", 1000 * seconds) : fmt::format(", {:.3g} s", seconds);
+  }
+  return line;
+}
+
 /// stdout stays machine-readable: the summary of CSV and JSON lines goes to stderr.
 int report(const Totals& totals, const CollideOptions& options, const Streams& streams) {
-  (options.format == Format::table ? streams.out : streams.err) << to_line(totals, options) << '\n';
+  if (options.format == Format::table) {
+    streams.out << to_sentence(totals, options, streams.person) << '\n';
+  } else {
+    streams.err << to_line(totals, options) << '\n';
+  }
   if (totals.mismatches > 0) return exit_mismatch;
+  if (options.exit_code && totals.hits > 0) return exit_contact;
   return totals.left_out > 0 ? exit_left_out : exit_ok;
 }
 
@@ -158,6 +187,21 @@ std::string to_words(const CollisionResult& result, const CollisionRequest& requ
                      hit.a.size() == 1 ? "" : "s", hit.a.size() == 1 ? "s" : "", hit.b.size());
 }
 
+/// The answer in words for a terminal: red, yellow or green.
+std::string coloured(const std::string& answer) {
+  const char* const colour = answer.rfind("cross", 0) == 0 ? "31" : answer == "apart" ? "32" : "33";
+  return fmt::format("\x1b[1;{}m{}\x1b[0m", colour, answer);
+}
+
+/// Adds the time that a function takes to `time`.
+template <class Function>
+auto timed(std::chrono::duration<double>& time, const Function& function) {
+  const auto start = std::chrono::steady_clock::now();
+  auto result = function();
+  time += std::chrono::steady_clock::now() - start;
+  return result;
+}
+
 /// \param relation with a column for it
 void write_contacts(const std::vector<Contact>& contacts, bool relation, Format format, std::ostream& out) {
   if (contacts.empty() && format == Format::table) return;
@@ -176,9 +220,24 @@ void write_contacts(const std::vector<Contact>& contacts, bool relation, Format 
   }
 }
 
+/// In JSON lines an answer without contacts is a line, too.
+void write_no_contact(const CollisionResult& result, const CollisionRequest& request, std::ostream& out) {
+  std::vector<std::string> names = {"hit"};
+  std::vector<Cell> cells = {std::uint64_t{0}};
+  if (request.tells_relation()) {
+    names.emplace_back("relation");
+    cells.emplace_back(to_word(result.relation));
+  }
+  const auto writer = make_row_writer(Format::jsonl, out, names);
+  writer->write(cells);
+  writer->flush();
+}
+
 int answer_one(const CollideOptions& options, Device& device, const Streams& streams) {
   std::optional<HitPicture> picture;
   if (!options.ply.empty()) picture.emplace(options.ply);
+  std::optional<HtmlView> view;
+  if (!options.html.empty()) view.emplace(options.html);
   Pose pose = Pose::Identity();
   if (!options.pose.empty()) pose = parse_pose(options.pose);
   if (!options.pose_matrix.empty()) pose = parse_affine_matrix(options.pose_matrix);
@@ -191,11 +250,17 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
   MeshReader reader(streams, options.lenient);
   const Object a = load_object(options.file_a, reader);
   const Object b = load_object(options.file_b, reader);
-  const CollisionResult result = collide(device, a, Pose::Identity(), b, pose, request);
-  if (options.format == Format::table) streams.out << to_words(result, request) << '\n';
+  Totals totals;
+  const CollisionResult result =
+      timed(totals.time, [&] { return collide(device, a, Pose::Identity(), b, pose, request); });
+  if (options.format == Format::table) {
+    const std::string answer = to_words(result, request);
+    streams.out << (streams.colour ? coloured(answer) : answer) << '\n';
+  }
   if (options.format != Format::table || request.contacts == CollisionRequest::Contacts::all) {
     write_contacts(result.contacts, request.tells_relation(), options.format, streams.out);
   }
+  if (options.format == Format::jsonl && !result.hit) write_no_contact(result, request, streams.out);
   if (picture) {
     // Without relations every contact counts as one that crosses.
     std::array<FacesHit, 2> hit;
@@ -207,7 +272,7 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
     }
     picture->write(a.mesh(), transformed(b.mesh(), pose));
   }
-  Totals totals;
+  if (view) view->write(a.mesh(), transformed(b.mesh(), pose), to_words(result, request), result.contacts);
   totals.add(result, false);
   totals.left_out = reader.faces_left_out();
   return report(totals, options, streams);
@@ -288,7 +353,8 @@ class PosesRunner {
   }
 
   void answer(const Object& a, const Object& b) {
-    const std::vector<CollisionResult> results = collide(device_, a, b, poses_, request_);
+    const std::vector<CollisionResult> results =
+        timed(totals_.time, [&] { return collide(device_, a, b, poses_, request_); });
     for (std::size_t i = 0; i < rows_.size(); ++i) write(i, results[i]);
     writer_->flush();
     rows_.clear();
@@ -336,8 +402,9 @@ class PosesRunner {
 
 int run_collide(const CollideOptions& options, const Streams& streams) {
   sim::check_outputs({{"A", options.file_a}, {"B", options.file_b}},
-                     {{"--ply", options.ply}, {"--trace", options.trace}});  // --ply excludes --poses
+                     {{"--ply", options.ply}, {"--html", options.html}, {"--trace", options.trace}});
   check_picture_name(options.ply);
+  check_view_name(options.html);
   check_standard_input({options.file_a, options.file_b, options.poses_file});
   if (options.poses_file.empty() && !options.expect.empty()) {
     throw UsageError("--expect: there is no file of poses; name one with --poses");

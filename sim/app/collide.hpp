@@ -25,11 +25,13 @@ struct CollideOptions {
   std::size_t max_contacts = 0;  ///< 0: no limit
   bool only_crossing = false;    ///< contacts that only touch do not count
   bool relation = false;         ///< tell touching from crossing; a single query for all contacts does in any case
+  bool exit_code = false;        ///< exit code 5 if a query found a contact
   bool lenient = false;          ///< faces that cannot be used are left out
   std::string device = "cpu";
   Format format = Format::table;
   std::string expect;       ///< column of the file; empty: none
   std::string ply;          ///< path of the coloured picture; empty: none
+  std::string html;         ///< path of the view for a browser; empty: none
   std::uint64_t slots = 0;  ///< of device sim, with swaps; 0: a static chip
   std::string trace;        ///< path of the waveform of device sim; empty: none
 };

@@ -17,6 +17,13 @@ std::string duration(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
+constexpr double first_estimate = 2;  // seconds; before, the start of the work distorts it
+
+/// "1 pair", "2 pairs", of a unit in the plural.
+std::string counted(std::uint64_t count, const std::string& unit) {
+  return fmt::format("{} {}", count, count == 1 && unit.back() == 's' ? unit.substr(0, unit.size() - 1) : unit);
+}
+
 }  // namespace
 
 Progress::Progress(std::string unit) : Progress(std::cerr, isatty(STDERR_FILENO) == 1, std::move(unit)) {}
@@ -28,14 +35,15 @@ void Progress::update(std::uint64_t count, double fraction) {
   last_ = now;
   drawn_ = true;
   if (fraction < 0) {
-    out_ << fmt::format("\r\x1b[K{} {}", count, unit_) << std::flush;
+    out_ << "\r\x1b[K" << counted(count, unit_) << std::flush;
     return;
   }
   const double done = std::min(fraction, 1.0);
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  const std::string left = done > 0 ? fmt::format(", {} left", duration(elapsed * (1 - done) / done)) : "";
-  out_ << fmt::format("\r\x1b[K[{:<40}] {:3.0f} %  {} {}{}", std::string(static_cast<std::size_t>(40 * done), '#'),
-                      100 * done, count, unit_, left)
+  const std::string left =
+      done > 0 && elapsed > first_estimate ? fmt::format(", {} left", duration(elapsed * (1 - done) / done)) : "";
+  out_ << fmt::format("\r\x1b[K[{:<40}] {:3.0f} %  {}{}", std::string(static_cast<std::size_t>(40 * done), '#'),
+                      100 * done, counted(count, unit_), left)
        << std::flush;
 }
 

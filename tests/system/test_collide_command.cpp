@@ -7,6 +7,8 @@
 #include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -48,19 +50,57 @@ TEST_CASE("collide: the first line is the answer, the last one the summary", "[s
   CHECK(apart.code == exit_ok);
   CHECK(lines(apart.out).size() == 2);
   CHECK(lines(apart.out).front() == "apart");
-  CHECK(last_line(apart.out).rfind("queries=1 hits=0 mismatches=0 contacts=0 ", 0) == 0);
+  CHECK(last_line(apart.out) == "1 query, 0 contacts");
   CHECK(apart.err.empty());
   // They share the corner (0.5, 0.5, 0.5), where three faces of each meet.
   const Outcome corner = collide_cubes({"--pose", "1,1,1"});
   CHECK(lines(corner.out).front() == "touch: 3 faces of A meet 3 of B");
   CHECK(lines(corner.out).at(1) == "face_a  face_b  relation");
-  CHECK(last_line(corner.out).rfind("queries=1 hits=1 mismatches=0 contacts=9 ", 0) == 0);
+  CHECK(last_line(corner.out) == "1 query, 9 contacts");
   const Outcome first = collide_cubes({"--pose", "1,1,1", "--contacts", "first"});
   CHECK(lines(first.out).size() == 2);
   CHECK(lines(first.out).front().rfind("touch: face ", 0) == 0);
   const Outcome two = collide_cubes({"--pose", "1,1,1", "--most", "2"});
   CHECK(lines(two.out).front().rfind("touch: at least ", 0) == 0);
-  CHECK(last_line(two.out).rfind("queries=1 hits=1 mismatches=0 contacts=2 ", 0) == 0);
+  CHECK(last_line(two.out) == "1 query, 2 contacts");
+  CHECK(last_line(first.out) == "1 query, 1 contact");
+  // The lines for programs: mismatches only where something was compared.
+  CHECK(last_line(collide_cubes({"--pose", "1,1,1", "--format", "csv"}).err)
+            .rfind("queries=1 hits=1 contacts=9 open=", 0) == 0);
+}
+
+TEST_CASE("collide: times and colours are for a terminal", "[system][collide]") {
+  const auto run = [](const std::string& pose, bool person, bool colour) {
+    std::istringstream in;
+    std::ostringstream out, err;
+    CHECK(run_cli({"collide", cube_file, cube_file, "--pose", pose}, {in, out, err, false, person, colour}) == exit_ok);
+    return lines(out.str());
+  };
+  CHECK(run("5,0,0", true, true).front() == "\x1b[1;32mapart\x1b[0m");
+  CHECK(run("1,1,1", true, true).front() == "\x1b[1;33mtouch: 3 faces of A meet 3 of B\x1b[0m");
+  CHECK(run("0.5,0.25,0.125", true, true).front().rfind("\x1b[1;31mcross: ", 0) == 0);
+  CHECK(run("5,0,0", true, false).front() == "apart");
+  CHECK_THAT(run("5,0,0", true, false).back(), Catch::Matchers::Matches("1 query, 0 contacts, [0-9.e-]+ m?s"));
+  CHECK(run("5,0,0", false, false).back() == "1 query, 0 contacts");
+}
+
+TEST_CASE("collide: JSON lines tell that there is no contact", "[system][collide]") {
+  CHECK(collide_cubes({"--pose", "5,0,0", "--format", "jsonl"}).out == "{\"hit\":0,\"relation\":\"apart\"}\n");
+  CHECK(collide_cubes({"--pose", "1,0,0", "--counts", "crossing", "--format", "jsonl"}).out ==
+        "{\"hit\":0,\"relation\":\"touching\"}\n");
+  CHECK(collide_cubes({"--pose", "5,0,0", "--contacts", "first", "--format", "jsonl"}).out == "{\"hit\":0}\n");
+}
+
+TEST_CASE("collide: the exit code tells of contacts if asked for", "[system][collide]") {
+  CHECK(collide_cubes({"--pose", "1,1,1"}).code == exit_ok);
+  CHECK(collide_cubes({"--pose", "1,1,1", "--exit-code"}).code == exit_contact);
+  CHECK(collide_cubes({"--pose", "5,0,0", "--exit-code"}).code == exit_ok);
+  CHECK(collide_cubes({"--pose", "1,1,1", "--counts", "crossing", "--exit-code"}).code == exit_ok);
+  const TemporaryFolder folder;
+  const std::string rows = poses_header + ",touches\n1,0,0,0,1,0,0,0,1,5,0,0,0\n1,0,0,0,1,0,0,0,1,1,1,1,";
+  CHECK(collide_cubes({"--poses", folder.write("p.csv", rows + "1\n"), "--exit-code"}).code == exit_contact);
+  CHECK(collide_cubes({"--poses", folder.write("p.csv", rows + "0\n"), "--exit-code", "--expect", "touches"}).code ==
+        exit_mismatch);
 }
 
 TEST_CASE("collide: contacts are those of brute force", "[system][collide]") {
@@ -130,7 +170,7 @@ TEST_CASE("collide: poses of a file, expected answers", "[system][collide]") {
   REQUIRE(lines(table.out).size() == 4);
   CHECK(lines(table.out)[2] == "touch in 2 of 4 poses");
   CHECK(lines(table.out)[1].rfind("apart  1        1               5    1         0", 0) == 0);
-  CHECK(count(last_line(table.out), "mismatches") == 1);
+  CHECK(last_line(table.out) == "4 queries, 2 contacts, 1 differs from column touches");
   const Outcome csv = collide_cubes({"--poses", wrong, "--expect", "contacts", "--contacts", "all", "--format", "csv"});
   CHECK(csv.code == exit_mismatch);
   CHECK(lines(csv.err).front() == "cchip: " + wrong + ":5: expected contacts 1, got 0");
@@ -145,7 +185,7 @@ TEST_CASE("collide: touching is told from crossing", "[system][collide]") {
   const Outcome only = collide_cubes({"--pose", "1,0,0", "--counts", "crossing"});
   CHECK(only.code == exit_ok);
   CHECK(lines(only.out).front() == "touch: no faces cross");
-  CHECK(last_line(only.out).rfind("queries=1 hits=0 mismatches=0 contacts=0 ", 0) == 0);
+  CHECK(last_line(only.out) == "1 query, 0 contacts");
   CHECK(lines(collide_cubes({"--pose", "1.5,0,0", "--counts", "crossing"}).out).front() == "apart");
   const Outcome first = collide_cubes({"--pose", "0.5,0.25,0.125", "--contacts", "first", "--relation"});
   CHECK(lines(first.out).front().rfind("cross: face ", 0) == 0);
@@ -241,7 +281,7 @@ TEST_CASE("collide: thousands of poses", "[system][collide]") {
   CHECK(outcome.code == exit_ok);
   REQUIRE(lines(outcome.out).size() == 3);  // names, answer, summary
   CHECK(lines(outcome.out)[1] == "touch in 9 of 3000 poses");
-  CHECK(last_line(outcome.out).rfind("queries=3000 hits=9 mismatches=0 ", 0) == 0);
+  CHECK(last_line(outcome.out) == "3000 queries, 9 contacts, 0 differ from column touches");
 }
 
 namespace {
@@ -347,6 +387,35 @@ TEST_CASE("collide: picture", "[system][collide]") {
   REQUIRE(collide_cubes({"--pose", "1,1,1", "--contacts", "first", "--ply", one}).code == exit_ok);
   CHECK(folder.read("one.ply").size() == folder.read("hits.ply").size());
   CHECK(folder.read("one.ply") != folder.read("hits.ply"));
+}
+
+TEST_CASE("collide: the view for a browser", "[system][collide]") {
+  const TemporaryFolder folder;
+  CHECK(collide_cubes({"--html", "view.txt"}).err ==
+        "cchip: --html view.txt: the view is an HTML file; give a name that ends with .html\n");
+  CHECK(collide_cubes({"--html", folder.path("v.html"), "--poses", "-"}).code == exit_usage);
+  // A folder that stands for the library: the view holds what is in it.
+  std::filesystem::create_directories(folder.path("examples/js/controls"));
+  setenv("CCHIP_THREE", folder.path("").c_str(), 1);
+  const Outcome missing = collide_cubes({"--html", folder.path("v.html")});
+  CHECK(missing.code == exit_usage);
+  CHECK(missing.err == "cchip: --html: the library three.js is missing (" + folder.path("three.min.js") +
+                           "); install Debian's package libjs-three, or name the folder of three.js 0.111 in "
+                           "CCHIP_THREE\n");
+  CHECK_FALSE(std::filesystem::exists(folder.path("v.html")));
+  folder.write("three.min.js", "three @DATA@;");
+  folder.write("examples/js/controls/OrbitControls.js", "controls;");
+  const Outcome good = collide_cubes({"--html", folder.path("v.html"), "--pose", "1,1,1"});
+  unsetenv("CCHIP_THREE");
+  CHECK(good.code == exit_ok);
+  const std::string page = folder.read("v.html");
+  CHECK(page.find("<script>three @DATA@;</script>") != std::string::npos);
+  CHECK(page.find("<script>controls;</script>") != std::string::npos);
+  CHECK(page.find("\"answer\":\"touch: 3 faces of A meet 3 of B\"") != std::string::npos);
+  // Six squares of two triangles and four edges each; nine contacts that touch.
+  CHECK(page.find("\"faces\":[0,0,1,1,2,2,3,3,4,4,5,5]") != std::string::npos);
+  const std::string contacts = page.substr(page.find("\"contacts\":["));
+  CHECK(std::count(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(contacts.find("]]")), '[') == 10);
 }
 
 TEST_CASE("collide: wrong input is one line and exit code 2", "[system][collide]") {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cchip/exact/oracle.hpp>
+#include <cchip/stimulus/progress.hpp>
+#include <chrono>
 #include <sstream>
+#include <thread>
 
 #include "pair_runner.hpp"
 #include "support.hpp"
@@ -148,4 +151,16 @@ TEST_CASE("pair_runner: the table shows control characters harmlessly", "[system
   run.runner.add(std::move(job));
   run.runner.finish();
   CHECK(lines(run.out.str()).at(1) == "two\\x0alines\\x1b[31m  1");
+}
+
+TEST_CASE("progress: one is singular", "[system][pair_runner]") {
+  for (const double fraction : {-1.0, 0.5}) {
+    for (const int number : {1, 2}) {
+      std::ostringstream out;
+      cchip::Progress progress(out, true);
+      std::this_thread::sleep_for(std::chrono::milliseconds(150));  // the line is drawn ten times a second at most
+      progress.update(static_cast<std::uint64_t>(number), fraction);
+      CHECK((out.str() + ",").find(number == 1 ? "1 pair," : "2 pairs,") != std::string::npos);
+    }
+  }
 }

@@ -11,11 +11,11 @@
 
 namespace cchip {
 
-/// One line with a bar, a count and an estimate of the time left. It is redrawn at most ten times a second and removed
-/// at the end. Not thread-safe.
+/// One line with a bar, a count and, after two seconds, an estimate of the time left. It is redrawn at most ten times a
+/// second and removed at the end. Not thread-safe.
 class Progress {
  public:
-  /// \param unit what is counted, for example "pairs"
+  /// \param unit what is counted, in the plural, for example "pairs"
   Progress(std::ostream& out, bool enabled, std::string unit = "pairs")
       : out_(out), enabled_(enabled), unit_(std::move(unit)) {}
   /// On standard error; silent unless that is a terminal.

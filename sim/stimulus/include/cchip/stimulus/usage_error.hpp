@@ -16,7 +16,8 @@ enum ExitCode : int {
   exit_internal = 1,
   exit_usage = 2,
   exit_mismatch = 3,
-  exit_left_out = 4  ///< answered without the faces that could not be used (--lenient)
+  exit_left_out = 4,  ///< answered without the faces that could not be used (--lenient)
+  exit_contact = 5    ///< a query found a contact (--exit-code)
 };
 
 /// Wrong input or wrong command line. what() is one line "<where>: <what>; <remedy>".
