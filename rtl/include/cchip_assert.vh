@@ -6,7 +6,7 @@
 //
 // CCHIP_NARROW(label, bits) asserts that a narrowing loses nothing: bits are the ones that are left
 // out and the highest one that is kept, all of which must be copies of the sign.
-// CCHIP_NARROW_UNSIGNED(label, bits): those that are left out of an unsigned number, which must be 0.
+// CCHIP_NARROW_UNSIGNED(label, bits): those that are left out of an unsigned number, all 0.
 // Both are statements like CCHIP_ASSERT. Where only legal inputs keep the promise, a condition in
 // front of them says so. scripts/widths.py bounds every narrowing, with and without an assertion.
 `ifndef CCHIP_ASSERT_VH

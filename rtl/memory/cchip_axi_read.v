@@ -15,8 +15,8 @@
 //                answered with CCHIP_READ_TIMEOUT 2 limit + 3 CLIENTS SLOTS + 10 clocks after the
 //                offer at the latest. Until then it waits behind the addresses requested before
 //                it, at most CLIENTS SLOTS - 1, each of which is taken or given up in that time.
-//                The last beat of a timeout has no data. While beats are outstanding under that ID, or
-//                the address is not taken, a request that would have to wait for it is answered
+//                The last beat of a timeout has no data. While beats are outstanding under that ID,
+//                or the address is not taken, a request that would have to wait for it is answered
 //                with CCHIP_READ_OWED. Beats that come after the answer, or unasked, are dropped. A
 //                client that uses a slot again only while its bit of `outstanding` is 0 is never
 //                refused because of a response that is missing
