@@ -132,20 +132,27 @@ std::vector<FarCase> far_cases() {
       {"bar across a hole", parts::prism(rim, 0, 20, octagon), parts::box({-100, -20, 20}, {100, 20, 30}), {0, 0, 1}}};
   std::vector<FarCase> cases;
   for (const Part& part : list) {
-    for (const auto& [place, distance] : {std::pair{"origin", 0.0}, std::pair{"5 km", 5e6}, std::pair{"50 km", 5e7}}) {
-      for (const auto& [state, side] :
-           {std::pair{"one bit apart", 1}, std::pair{"flush", 0}, std::pair{"one bit in", -1}}) {
-        const auto put = [distance = distance](Mesh mesh) {
-          for (Vec3d& v : mesh.vertices) v += Vec3d(distance, distance, distance);
-          return mesh;
-        };
-        FarCase one = {part.name, place, state, side <= 0, put(part.a), put(part.b)};
-        // one bit of the largest coordinate of B: every vertex can take it
-        double largest = 0;
-        for (const Vec3d& v : one.b.vertices) largest = std::max(largest, v.cwiseAbs().maxCoeff());
-        const double bit = std::nextafter(largest, 2 * largest) - largest;
-        for (Vec3d& v : one.b.vertices) v += side * bit * part.out;
-        cases.push_back(std::move(one));
+    for (const bool posed : {false, true}) {
+      for (const auto& [place, distance] :
+           {std::pair{"origin", 0.0}, std::pair{"5 km", 5e6}, std::pair{"50 km", 5e7}}) {
+        for (const auto& [state, side] :
+             {std::pair{"one bit apart", 1}, std::pair{"flush", 0}, std::pair{"one bit in", -1}}) {
+          FarCase one = {part.name, place, posed ? "pose" : "coordinates", state, side <= 0, part.a, part.b};
+          const Vec3d away(distance, distance, distance);
+          if (posed) {
+            one.pose = make_pose(away, {10, 20, 30});
+          } else {
+            for (Mesh* mesh : {&one.a, &one.b}) {
+              for (Vec3d& v : mesh->vertices) v += away;
+            }
+          }
+          // one bit of the largest coordinate of B: every vertex can take it
+          double largest = 0;
+          for (const Vec3d& v : one.b.vertices) largest = std::max(largest, v.cwiseAbs().maxCoeff());
+          const double bit = std::nextafter(largest, 2 * largest) - largest;
+          for (Vec3d& v : one.b.vertices) v += side * bit * part.out;
+          cases.push_back(std::move(one));
+        }
       }
     }
   }

@@ -24,15 +24,17 @@ struct TouchingCase {
 std::vector<TouchingCase> touching_cases();
 
 /// The same parts, in millimetres, at the origin, 5 km and 50 km away from it: one bit of a coordinate apart, flush, one
-/// bit pressed into each other. Their coordinates are those of the place, as a site model has them; both poses are the
-/// identity.
+/// bit pressed into each other. Either their coordinates are those of the place, as in a site model, or one pose, which
+/// turns and moves, places both, as in an assembly.
 struct FarCase {
   const char* part;
   const char* place;
+  const char* how;  ///< coordinates, or pose
   const char* state;
   bool meets;
   Mesh a;
   Mesh b;
+  Pose pose = Pose::Identity();  ///< of both
 };
 std::vector<FarCase> far_cases();
 

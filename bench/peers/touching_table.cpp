@@ -19,9 +19,9 @@ namespace {
 int far_table() {
   const std::vector<NamedLibrary> libraries = open_libraries();
   const auto device = open_device("cpu");
-  std::cout << "| parts | place | state | right | ours |";
+  std::cout << "| parts | place | by | state | right | ours |";
   for (const auto& [name, library] : libraries) std::cout << ' ' << name << " |";
-  std::cout << "\n|---|---|---|---|---|";
+  std::cout << "\n|---|---|---|---|---|---|";
   for (std::size_t i = 0; i < libraries.size(); ++i) std::cout << "---|";
   std::cout << '\n';
   std::vector<std::size_t> wrong(libraries.size() + 1);
@@ -30,14 +30,14 @@ int far_table() {
     wrong[column] += hit != right ? 1 : 0;
     std::cout << ' ' << (hit == right ? "" : "**") << (hit ? "yes" : "no") << (hit == right ? "" : "**") << " |";
   };
-  const Pose here = Pose::Identity();
   for (const FarCase& c : far_cases()) {
     ++cases;
-    std::cout << "| " << c.part << " | " << c.place << " | " << c.state << " | " << (c.meets ? "yes" : "no") << " |";
-    cell(0, collide(*device, Object(c.a), here, Object(c.b), here).hit, c.meets);
+    std::cout << "| " << c.part << " | " << c.place << " | " << c.how << " | " << c.state << " | "
+              << (c.meets ? "yes" : "no") << " |";
+    cell(0, collide(*device, Object(c.a), c.pose, Object(c.b), c.pose).hit, c.meets);
     for (std::size_t i = 0; i < libraries.size(); ++i) {
       const PeerLibrary& library = libraries[i].library;
-      cell(i + 1, library.mesh(c.a).hit(here, library.mesh(c.b), here), c.meets);
+      cell(i + 1, library.mesh(c.a).hit(c.pose, library.mesh(c.b), c.pose), c.meets);
     }
     std::cout << '\n';
   }

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """docs/cpp/touching.md: its table is what touching_table prints, every row is a test of test_touching and every test a row;
-its code is part of examples/touching.cpp, whose output it shows.
+its code is part of examples/touching.cpp, whose output it shows. docs/cpp/touching_stays.md: its table is what
+touching_table --far prints, in the columns of the libraries that this build has.
 
 usage: check_touching.py [--write] ROOT TOUCHING_TABLE TEST_TOUCHING EXAMPLE
 
@@ -11,12 +12,37 @@ import re
 import subprocess
 import sys
 
+FAR_TEST = "the same parts at the origin and far away"  # every row of the other page at once
 TABLE = re.compile(r"(<!-- generated: begin -->\n).*?(<!-- generated: end -->)", re.S)
 OUTPUT = re.compile(r"(```text\n).*?(```\n)", re.S)
 
 
 def output(*command, check=True):
     return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=check).stdout
+
+
+def columns(table, names):
+    """Rows of a table as lists of the cells of these columns."""
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines() if line.startswith("| ")]
+    return [[row[rows[0].index(name)] for name in names] for row in rows]
+
+
+def check_far(root, table_program, write):
+    """What is wrong with docs/cpp/touching_stays.md."""
+    page = root / "docs" / "cpp" / "touching_stays.md"
+    printed = output(table_program, "--far")
+    table, last = printed.rstrip("\n").rsplit("\n", 1)
+    if write:
+        page.write_text(TABLE.sub(lambda found: f"{found[1]}{table}\n\n    {last}\n{found[2]}", page.read_text(), count=1))
+    shown = TABLE.search(page.read_text())
+    names = [cell.strip() for cell in table.splitlines()[0].strip("|").split("|")]
+    if not shown:
+        return ["docs/cpp/touching_stays.md has no table"]
+    head = [cell.strip() for cell in next(line for line in shown[0].splitlines() if line.startswith("| ")).strip("|").split("|")]
+    both = [name for name in names if name in head]
+    if len(both) < 7 or columns(shown[0], both) != columns(table, both):
+        return ["docs/cpp/touching_stays.md: the table is stale, run this script with --write after make peers"]
+    return []
 
 
 def main():
@@ -36,11 +62,13 @@ def main():
 
     rows = re.findall(r"^\| ([^|]+) \| (?:apart|touching|crossing) \|", table, re.M)
     listed = output(test_program, "--list-test-names-only", check=False)  # its exit code is the number of tests
-    tests = [name.strip() for name in listed.splitlines() if name.strip()]
+    tests = [name.strip() for name in listed.splitlines() if name.strip() and not name.startswith(FAR_TEST)]
     if len(rows) < 10 or len(set(rows)) != len(rows):
         wrong.append(f"{len(rows)} rows, {len(set(rows))} names; there should be many, each once")
     wrong += [f"no test of the row '{name}'" for name in sorted(set(rows) - set(tests))]
     wrong += [f"no row of the test '{name}'" for name in sorted(set(tests) - set(rows))]
+
+    wrong += check_far(pathlib.Path(root), table_program, "--write" in sys.argv)
 
     source = (pathlib.Path(root) / "examples" / "touching.cpp").read_text()
     blocks = re.findall(r"^```cpp\n(.*?)^```$", text, re.S | re.M)
