@@ -102,7 +102,8 @@ int run_with_arguments(int argc, char** argv) {
   try {
     command.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return command.exit(error) == 0 ? exit_ok : exit_usage;
+    if (error.get_exit_code() == 0) return command.exit(error);  // --help
+    throw UsageError(std::string(error.what()) + "; see cchip_levels --help");
   }
   if (options.level.payload_bytes != 0 && options.level.payload_bytes < defs::bitstream_payload_min) {
     throw UsageError("--bitstream: a bitstream has at least " + std::to_string(defs::bitstream_payload_min) +

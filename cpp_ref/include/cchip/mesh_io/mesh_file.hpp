@@ -45,7 +45,8 @@ struct LoadOptions {
 ///
 /// A truncated or damaged file is refused where this can be detected: counts must match, numbers must be whole words,
 /// and vertices must exist. OBJ announces no counts, so a file that lacks whole lines at its end may pass.
-/// Memory and time are bounded by multiples of the (unpacked) file's size: counts that the file cannot hold are refused first.
+/// Memory and time are bounded by multiples of the (unpacked) file's size: counts that the file cannot hold are refused
+/// first.
 ///
 /// The readers are our own because none of Debian's passed tests/ref/test_mesh_file.cpp: assimp rounds to single
 /// precision and does not terminate on a truncated PLY; CGAL loses corners that tabs separate in OBJ, refuses its `l`
