@@ -142,7 +142,7 @@ CCHIP_CASE("all patterns of senders and receivers") {
   });
 }
 
-CCHIP_CASE("spoilt bitstreams: code, slot at work or decoupled, valid bit gone, interrupt; then a good one") {
+CCHIP_CASE("spoilt bitstreams: code, slot at work or decoupled, valid bit gone, interrupt, then a good one") {
   const std::map<Spoilt, SwapCode> codes = {{Spoilt::magic, SwapCode::magic},
                                             {Spoilt::slot, SwapCode::slot},
                                             {Spoilt::module_id, SwapCode::module},
@@ -263,7 +263,7 @@ CCHIP_CASE("a read that comes too late costs time, not the bitstreams: header ne
   });
 }
 
-CCHIP_CASE("faults on the way leave the entry; the scheduler tries again, later and later, until one ends well") {
+CCHIP_CASE("faults on the way leave the entry, the scheduler tries again, later and later, until one ends well") {
   with_wave([](const sim::SimulationOptions& options) {
     System<TestType> s(options, true);
     s.only_triangles();
@@ -413,7 +413,7 @@ CCHIP_CASE("a receiver that is gone does not stop a swap: the answers wait outsi
   });
 }
 
-CCHIP_CASE("pairs inside for longer than the limit: the slot continues; by force they are left open and reported") {
+CCHIP_CASE("pairs inside for longer than the limit: the slot continues, by force they are left open and reported") {
   with_wave([](const sim::SimulationOptions& options) {
     for (const bool force : {false, true}) {
       System<TestType> s(options);

@@ -205,7 +205,7 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
   });
 }
 
-CCHIP_CASE("one swap at a time; a rejected bitstream is forgotten, an interrupted one is not") {
+CCHIP_CASE("one swap at a time, a rejected bitstream is forgotten, an interrupted one is not") {
   for_two_power_ups([](const sim::SimulationOptions& options) {
     for (unsigned code = 0; code < 16; ++code) {
       SchedulerBench<TestType> bench(options);
