@@ -2,7 +2,7 @@
 // Immediate assertion, to be used as a statement in a clocked block:
 //   always @(posedge clk) if (!rst) begin `CCHIP_ASSERT(a_no_overflow, !(push && full)) end
 // With Verilator (--assert) and Yosys (-formal) it is an assertion, with Icarus a message that ends
-// the run, in synthesis nothing.
+// the run with exit code 1, in synthesis nothing.
 //
 // CCHIP_NARROW(label, bits) asserts that a narrowing loses nothing: bits are the ones that are left
 // out and the highest one that is kept, all of which must be copies of the sign.
@@ -22,9 +22,15 @@
 `ifdef SYNTHESIS
 `define CCHIP_ASSERT(label, condition)
 `else
+// $finish ends with exit code 0, which a script would take for a pass
+`ifdef __ICARUS__
+`define CCHIP_ASSERT_END $finish_and_return(1)
+`else
+`define CCHIP_ASSERT_END $finish
+`endif
 `define CCHIP_ASSERT(label, condition) \
   begin : label \
-    if (!(condition)) begin $display("CCHIP_ASSERT failed: %m"); $finish; end \
+    if (!(condition)) begin $display("CCHIP_ASSERT failed: %m"); `CCHIP_ASSERT_END; end \
   end
 `endif
 `endif
