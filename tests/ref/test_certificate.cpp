@@ -3,11 +3,13 @@
 // where it is true as well, by a judge that shares nothing with the checker.
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
+#include <cchip/certificate/certificate_file.hpp>
 #include <cchip/certificate/certify.hpp>
 #include <cchip/certificate/check.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/exact/posed_pairs.hpp>
 #include <cchip/sim/seed.hpp>
+#include <fstream>
 #include <iostream>
 #include <set>
 #include <sstream>
@@ -538,5 +540,130 @@ TEST_CASE("certificate: coordinates at the ends of the doubles", "[ref][certific
     CHECK(check(pair, c).accepted);
     REQUIRE(c.contacts.size() == 1);
     CHECK(c.contacts[0].relation == Relation::touching);  // the vertex at z = 0 is on an edge of the triangle
+  }
+}
+
+namespace {
+
+std::string written(const Certificate& certificate) {
+  std::ostringstream out;
+  write_certificate(certificate, out);
+  return out.str();
+}
+
+Certificate read(const std::string& text) {
+  std::istringstream in(text);
+  return read_certificate(in);
+}
+
+/// Two boxes side by side, B moved by the pose; the page prints their certificate.
+std::array<Placed, 2> boxes_of_the_page(double gap) {
+  std::array<Placed, 2> pair = {{{make_box({0, 0, 0}, {1, 1, 1})}, {make_box({0, 0, 0}, {1, 1, 1})}}};
+  pair[1].pose.translation() = Vec3d(1 + gap, 0, 0);
+  return pair;
+}
+
+}  // namespace
+
+TEST_CASE("certificate: a file keeps it, and a damaged one is refused or still true", "[ref][certificate]") {
+  std::mt19937_64 random = generator(4);
+  int unread = 0, refused = 0, accepted = 0;
+  for (int n = 0; n < 60; ++n) {
+    const std::array<Placed, 2> pair = random_pair(random);
+    const Object a(pair[0].mesh), b(pair[1].mesh);
+    const Certificate c = certify({&a, &pair[0].pose, &b, &pair[1].pose}, requests[random() % requests.size()]);
+    const std::string text = written(c);
+    CHECK(written(read(text)) == text);
+    CHECK(check(pair, read(text)).accepted);
+    Judge judge(pair[0], pair[1]);
+    for (int m = 0; m < 20; ++m) {
+      std::string damaged = text;
+      damaged[random() % damaged.size()] = "0123456789-\",[]{}:\nabx"[random() % 22];
+      if (random() % 8 == 0) damaged.resize(random() % damaged.size());
+      try {
+        const Certificate changed = read(damaged);
+        const bool accepts = check(pair, changed).accepted;
+        ++(accepts ? accepted : refused);
+        if (accepts && !judge.holds(changed)) FAIL("accepted although it does not hold: " << damaged);
+      } catch (const std::runtime_error& error) {
+        ++unread;
+        CHECK(std::string(error.what()).rfind("certificate, line ", 0) == 0);
+      }
+    }
+  }
+  CHECK(unread > 0);
+  CHECK(refused > 0);
+  for (const std::string& text :
+       {std::string(), std::string("{}"), std::string("[1]\n"), std::string("{\"collisionchip_certificate\":2}"),
+        std::string(100000, '['), std::string("\xff\xfe")}) {
+    CHECK_THROWS_WITH(read(text), Catch::StartsWith("certificate, line 1: "));
+  }
+}
+
+TEST_CASE("certificate: the page prints those of two boxes", "[ref][certificate]") {
+  std::ifstream file(CCHIP_CERTIFICATE_PAGE);
+  REQUIRE(file);
+  const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  for (const auto& [gap, r] :
+       {std::make_pair(0.5, request(Contacts::all, false)), std::make_pair(-0.5, request(Contacts::first, false))}) {
+    const std::array<Placed, 2> pair = boxes_of_the_page(gap);
+    const Object a(pair[0].mesh), b(pair[1].mesh);
+    const Certificate c = certify({&a, &pair[0].pose, &b, &pair[1].pose}, r);
+    CHECK(check(pair, c).accepted);
+    INFO(written(c));
+    CHECK(page.find(written(c)) != std::string::npos);
+  }
+}
+
+// For check_agrees.py: a line of JSON for each case.
+TEST_CASE("certificate: cases for the checker in Python", "[.cases]") {
+  std::mt19937_64 random = generator(5);
+  std::cout.precision(17);
+  for (int n = 0; n < 60; ++n) {
+    const std::array<Placed, 2> pair = random_pair(random);
+    const Object a(pair[0].mesh), b(pair[1].mesh);
+    const Certificate truth = certify({&a, &pair[0].pose, &b, &pair[1].pose}, requests[random() % requests.size()]);
+    for (int m = 0; m < 10; ++m) {
+      Certificate c = truth;
+      if (m > 0) mutate(c, random);
+      std::cout << "{\"meshes\":[";
+      for (const std::size_t s : {0U, 1U}) {
+        const Mesh& mesh = pair[s].mesh;
+        std::cout << (s == 0 ? "[[" : ",[[");
+        for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+          const Vec3d& v = mesh.vertices[i];
+          std::cout << (i == 0 ? "[" : ",[") << v[0] << ',' << v[1] << ',' << v[2] << ']';
+        }
+        std::cout << "],[";
+        for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+          std::cout << (i == 0 ? "[" : ",[") << mesh.faces[i].vertex[0];
+          for (std::size_t k = 1; k < std::size_t(mesh.faces[i].kind); ++k) std::cout << ',' << mesh.faces[i].vertex[k];
+          std::cout << ']';
+        }
+        std::cout << "],[";
+        for (std::uint32_t i = 0; i < mesh.faces.size(); ++i)
+          std::cout << (i == 0 ? "" : ",") << mesh.number_in_file(i);
+        std::cout << "]]";
+      }
+      std::cout << "],\"poses\":[";
+      const char* comma = "";
+      for (const Placed& p : pair) {
+        for (int row = 0; row < 3; ++row) {
+          for (int column = 0; column < 4; ++column) {
+            std::cout << comma << p.pose(row, column);
+            comma = ",";
+          }
+        }
+      }
+      std::cout << "],\"accepted\":" << (check(pair, c).accepted ? "true" : "false") << ",\"lines\":[";
+      std::istringstream lines(written(c));
+      comma = "";
+      for (std::string line; std::getline(lines, line); comma = ",") {
+        std::cout << comma << '"';
+        for (const char x : line) std::cout << (x == '"' ? "\\\"" : std::string(1, x));
+        std::cout << '"';
+      }
+      std::cout << "]}\n";
+    }
   }
 }

@@ -84,6 +84,7 @@ class CertificateHash {
     for (int i = 0; i < bytes; ++i) value_ = (value_ ^ (number >> (8 * i) & 0xffU)) * 0x100000001b3U;
   }
   void add(double number) {
+    number = number == 0 ? 0 : number;  // -0 is 0
     std::uint64_t bits = 0;
     std::memcpy(&bits, &number, sizeof bits);
     add(bits);
