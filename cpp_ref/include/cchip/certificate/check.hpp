@@ -6,11 +6,10 @@
 #define CCHIP_CERTIFICATE_CHECK_HPP
 
 #include <algorithm>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <cchip/certificate/certificate.hpp>
-#include <cmath>
+#include <cchip/certificate/exact_points.hpp>
 #include <map>
-#include <stdexcept>
+#include <set>
 #include <utility>
 
 namespace cchip {
@@ -22,53 +21,6 @@ struct CertificateVerdict {
 };
 
 namespace certificate_check {
-
-using Int = boost::multiprecision::cpp_int;
-using Point = std::array<Int, 3>;
-
-inline void require(bool holds, const char* otherwise) {
-  if (!holds) throw std::invalid_argument(otherwise);
-}
-
-/// The vertices of the faces of both meshes in their poses, all multiplied by the same power of two; exact.
-inline std::array<std::vector<Point>, 2> place(const std::array<const Mesh*, 2>& mesh,
-                                               const std::array<const Pose*, 2>& pose) {
-  using Rational = boost::multiprecision::cpp_rational;
-  const auto exact = [](double x) {
-    require(std::isfinite(x), "a number of a mesh or a pose is not finite");
-    return Rational(x);
-  };
-  std::array<std::vector<std::array<Rational, 3>>, 2> placed;
-  Int scale = 1;  // denominators are powers of two, so the greatest is a multiple of all
-  for (const std::size_t side : {0U, 1U}) {
-    const std::vector<Vec3d>& vertices = mesh[side]->vertices;
-    std::vector<bool> used(vertices.size());
-    for (const Mesh::Face& face : mesh[side]->faces) {
-      require(face.kind == Kind::tri || face.kind == Kind::quad, "a face is neither triangle nor quad");
-      for (std::size_t k = 0; k < static_cast<std::size_t>(face.kind); ++k) {
-        require(face.vertex[k] < used.size(), "a face has a vertex that does not exist");
-        used[face.vertex[k]] = true;
-      }
-    }
-    placed[side].resize(used.size());
-    for (std::size_t v = 0; v < used.size(); ++v) {
-      for (int row = 0; used[v] && row < 3; ++row) {
-        Rational& x = placed[side][v][static_cast<std::size_t>(row)];
-        x = exact((*pose[side])(row, 3));
-        for (int i = 0; i < 3; ++i) x += exact((*pose[side])(row, i)) * exact(vertices[v][i]);
-        scale = std::max(scale, Int(denominator(x)));
-      }
-    }
-  }
-  const auto whole = [&](const Rational& x) { return Int(numerator(x) * (scale / denominator(x))); };
-  std::array<std::vector<Point>, 2> points;
-  for (const std::size_t side : {0U, 1U}) {
-    for (const auto& x : placed[side]) {
-      points[side].push_back({whole(x[0]), whole(x[1]), whole(x[2])});
-    }
-  }
-  return points;
-}
 
 inline std::vector<Int> integers(const std::vector<Digits>& texts, std::size_t count) {
   require(texts.size() == count, "wrong number of weights or components");
@@ -101,18 +53,14 @@ struct Checker {
   Int overlap(const std::vector<Digits>& direction, const std::array<std::vector<std::uint32_t>, 2>& faces) const {
     const std::vector<Int> d = integers(direction, 3);
     require(d[0] != 0 || d[1] != 0 || d[2] != 0, "the direction is 0");
-    std::array<Int, 2> end;
+    std::array<std::vector<Int>, 2> values;
     for (const std::size_t side : {0U, 1U}) {
-      bool first = true;
       for (const std::uint32_t face : faces[side]) {
-        for (std::size_t k = 0; k < corners(side, face); ++k) {
-          const Int value = dot(d, corner(side, face, k));
-          if (first || (side == 0 ? value > end[0] : value < end[1])) end[side] = value;
-          first = false;
-        }
+        for (std::size_t k = 0; k < corners(side, face); ++k) values[side].push_back(dot(d, corner(side, face, k)));
       }
     }
-    return end[0] - end[1];
+    return *std::max_element(values[0].begin(), values[0].end()) -
+           *std::min_element(values[1].begin(), values[1].end());
   }
 
   void check_point(const CertificateCell& cell) const {
@@ -158,12 +106,6 @@ inline void check_order(const std::vector<std::uint32_t>& order, std::size_t fac
   }
 }
 
-/// What the cells say of two faces of the files.
-struct Finding {
-  bool crosses = false;
-  bool told = true;  ///< of each pair of their parts that meets, whether it crosses
-};
-
 }  // namespace certificate_check
 
 /// Does the claim of the certificate follow from its cells, and do these hold for the meshes in their poses? Never
@@ -173,87 +115,71 @@ inline CertificateVerdict check_certificate(const Mesh& a, const Pose& pose_a, c
   using namespace certificate_check;
   using CellKind = CertificateCell::Kind;
   const Certificate& c = certificate;
+  const char* const other_contacts = "other contacts than claimed";
   std::size_t number = 0;
   try {
     require(c.version == Certificate::current_version, "unknown version");
-    require((a.file_face.empty() || a.file_face.size() == a.faces.size()) &&
-                (b.file_face.empty() || b.file_face.size() == b.faces.size()),
-            "file_face has another length than faces");
+    for (const Mesh* m : {&a, &b})
+      require(m->file_face.empty() || m->file_face.size() == m->faces.size(), "a broken mesh");
     const Checker checker = {{&a, &b}, place({&a, &b}, {&pose_a, &pose_b})};
     require(c.hash_a == hash_mesh(a) && c.hash_b == hash_mesh(b), "the certificate is of other meshes");
     require(c.hash_poses == hash_poses(pose_a, pose_b), "the certificate is of other poses");
-    std::map<std::pair<std::uint32_t, std::uint32_t>, Finding> found;
-    struct Range {
-      std::size_t begin, end;
-    };
-    std::vector<std::array<Range, 2>> open;  // sets whose cells are to come
+    // Of two faces of the files: kinds of the cells that name a point of their parts.
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::set<CellKind>> found;
+    using Sets = std::array<std::array<std::size_t, 2>, 2>;  // of A and of B: begin and end in the order
+    std::vector<Sets> open;                                  // cells that are to come
     if (c.all) {
       check_order(c.order_a, a.faces.size());
       check_order(c.order_b, b.faces.size());
       open.push_back({{{0, a.faces.size()}, {0, b.faces.size()}}});
-    } else {
-      require(c.order_a.empty() && c.order_b.empty() && c.cells.size() == 1,
-              "a claim of one contact has one cell and no orders");
     }
+    require(c.all || (c.order_a.size() + c.order_b.size() == 0 && c.cells.size() == 1), "one contact is one cell");
     for (const CertificateCell& cell : c.cells) {
-      std::array<Range, 2> sets = {};
-      if (c.all) {
-        require(!open.empty(), "a cell too many");
-        sets = open.back();
-        open.pop_back();
-      }
+      require(!c.all || !open.empty(), "a cell too many");
+      const Sets sets = c.all ? open.back() : Sets{};
+      if (c.all) open.pop_back();
       if (cell.kind == CellKind::split_a || cell.kind == CellKind::split_b) {
-        std::array<Range, 2> first = sets, second = sets;
+        Sets first = sets, second = sets;
         const std::size_t side = cell.kind == CellKind::split_b;
-        require(c.all && sets[side].begin < cell.at && cell.at < sets[side].end, "a split leaves one half empty");
-        first[side].end = second[side].begin = cell.at;
-        open.push_back(second);
-        open.push_back(first);
+        require(sets[side][0] < cell.at && cell.at < sets[side][1], "a split leaves one half empty");
+        first[side][1] = second[side][0] = cell.at;
+        open.insert(open.end(), {second, first});
       } else if (cell.kind == CellKind::separated) {
         require(c.all, "a claim of one contact needs a point");
-        const auto part = [](const std::vector<std::uint32_t>& order, Range set) {
-          const auto from = order.begin();
-          return std::vector<std::uint32_t>(from + static_cast<std::ptrdiff_t>(set.begin),
-                                            from + static_cast<std::ptrdiff_t>(set.end));
-        };
-        require(checker.overlap(cell.direction, {part(c.order_a, sets[0]), part(c.order_b, sets[1])}) < 0,
+        const auto in_a = c.order_a.begin(), in_b = c.order_b.begin();
+        const auto at = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
+        require(checker.overlap(cell.direction, {{{in_a + at(sets[0][0]), in_a + at(sets[0][1])},
+                                                  {in_b + at(sets[1][0]), in_b + at(sets[1][1])}}}) < 0,
                 "A is not strictly below B");
       } else {
         require(cell.kind <= CellKind::cross, "unknown kind of cell");
-        if (c.all) {
-          require(sets[0].end - sets[0].begin == 1 && sets[1].end - sets[1].begin == 1,
-                  "a point for more than one pair of faces");
-          require(cell.face_a == c.order_a[sets[0].begin] && cell.face_b == c.order_b[sets[1].begin],
-                  "the point of other faces");
-        }
+        const bool single = sets[0][1] - sets[0][0] == 1 && sets[1][1] - sets[1][0] == 1;
+        require(!c.all || (single && cell.face_a == c.order_a[sets[0][0]] && cell.face_b == c.order_b[sets[1][0]]),
+                "the point of other faces");
         checker.check_point(cell);
-        Finding& finding = found[{a.number_in_file(cell.face_a), b.number_in_file(cell.face_b)}];
-        finding.crosses |= cell.kind == CellKind::cross;
-        finding.told &= c.all && cell.kind != CellKind::meet;
+        found[{a.number_in_file(cell.face_a), b.number_in_file(cell.face_b)}].insert(cell.kind);
       }
       ++number;
     }
     require(open.empty(), "cells are missing");
     Relation strongest = Relation::apart;
-    bool told = c.all;
-    require(c.least == Relation::touching || c.least == Relation::crossing,
-            "contacts that are neither touching nor crossing");
-    auto contact = c.contacts.begin();
-    for (const auto& [faces, finding] : found) {
-      strongest = std::max(strongest, finding.crosses ? Relation::crossing : Relation::touching);
-      told = told && (finding.crosses || finding.told);
-      if (c.least == Relation::crossing) require(finding.crosses || finding.told, "not told whether two faces cross");
-      if (c.least == Relation::crossing && !finding.crosses) continue;
-      require(contact != c.contacts.end() && faces == std::make_pair(contact->face_a, contact->face_b),
-              "other contacts than claimed");
-      const bool relation_told = finding.crosses || finding.told;
-      const Relation relation = finding.crosses ? Relation::crossing : Relation::touching;
-      require(!contact->relation || (relation_told && *contact->relation == relation), "two faces are not so related");
-      ++contact;
+    bool all_told = c.all;
+    require(c.least == Relation::touching || c.least == Relation::crossing, "unknown kind of contacts");
+    auto claimed = c.contacts.begin();
+    for (const auto& [faces, kinds] : found) {
+      const Relation relation = kinds.count(CellKind::cross) != 0 ? Relation::crossing : Relation::touching;
+      const bool told = relation == Relation::crossing || (c.all && kinds.count(CellKind::meet) == 0);
+      strongest = std::max(strongest, relation);
+      all_told = all_told && told;
+      require(told || c.least == Relation::touching, "not told whether two faces cross");
+      if (relation < c.least) continue;
+      require(claimed != c.contacts.end() && faces == std::pair(claimed->face_a, claimed->face_b), other_contacts);
+      require(!claimed->relation || (told && *claimed->relation == relation), "two faces are not so related");
+      ++claimed;
     }
-    require(contact == c.contacts.end(), "other contacts than claimed");
-    if (c.relation)
-      require(strongest == *c.relation && (told || strongest == Relation::crossing), "another relation than claimed");
+    require(claimed == c.contacts.end(), other_contacts);
+    all_told = all_told || strongest == Relation::crossing;
+    require(!c.relation || (all_told && strongest == *c.relation), "another relation than claimed");
   } catch (const std::invalid_argument& error) {
     return {false, error.what(), number};
   }

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The vertices of two meshes in their poses as integers: what check.hpp computes with.
+#ifndef CCHIP_CERTIFICATE_EXACT_POINTS_HPP
+#define CCHIP_CERTIFICATE_EXACT_POINTS_HPP
+
+#include <algorithm>
+#include <array>
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cchip/mesh/mesh.hpp>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace cchip::certificate_check {
+
+using Int = boost::multiprecision::cpp_int;
+using Point = std::array<Int, 3>;
+
+inline void require(bool holds, const char* otherwise) {
+  if (!holds) throw std::invalid_argument(otherwise);
+}
+
+/// The vertices of the faces of both meshes in their poses, all multiplied by the same power of two; exact.
+inline std::array<std::vector<Point>, 2> place(const std::array<const Mesh*, 2>& mesh,
+                                               const std::array<const Pose*, 2>& pose) {
+  using Rational = boost::multiprecision::cpp_rational;
+  const auto exact = [](double x) {
+    require(std::isfinite(x), "a number of a mesh or a pose is not finite");
+    return Rational(x);
+  };
+  std::array<std::vector<std::array<Rational, 3>>, 2> placed;
+  Int scale = 1;  // denominators are powers of two, so the greatest is a multiple of all
+  for (const std::size_t side : {0U, 1U}) {
+    const std::vector<Vec3d>& vertices = mesh[side]->vertices;
+    std::vector<bool> used(vertices.size());
+    for (const Mesh::Face& face : mesh[side]->faces) {
+      require(face.kind == Kind::tri || face.kind == Kind::quad, "a face is neither triangle nor quad");
+      for (std::size_t k = 0; k < static_cast<std::size_t>(face.kind); ++k) {
+        require(face.vertex[k] < used.size(), "a face has a vertex that does not exist");
+        used[face.vertex[k]] = true;
+      }
+    }
+    placed[side].resize(used.size());
+    for (std::size_t v = 0; v < used.size(); ++v) {
+      for (int row = 0; used[v] && row < 3; ++row) {
+        Rational& x = placed[side][v][static_cast<std::size_t>(row)];
+        x = exact((*pose[side])(row, 3));
+        for (int i = 0; i < 3; ++i) x += exact((*pose[side])(row, i)) * exact(vertices[v][i]);
+        scale = std::max(scale, Int(denominator(x)));
+      }
+    }
+  }
+  const auto whole = [&](const Rational& x) { return Int(numerator(x) * (scale / denominator(x))); };
+  std::array<std::vector<Point>, 2> points;
+  for (const std::size_t side : {0U, 1U}) {
+    for (const auto& x : placed[side]) {
+      points[side].push_back({whole(x[0]), whole(x[1]), whole(x[2])});
+    }
+  }
+  return points;
+}
+
+}  // namespace cchip::certificate_check
+
+#endif
