@@ -33,8 +33,8 @@ def fnv(data, value=0xcbf29ce484222325):
 
 
 def hash_mesh(vertices, faces, numbers):
-    return fnv(b"".join(struct.pack("<II", n, len(f)) + b"".join(struct.pack("<3d", *(x + 0.0 for x in vertices[v])) for v in f)
-                        for f, n in zip(faces, numbers)))
+    pack = lambda v: struct.pack("<3d", *(x + 0.0 for x in vertices[v]))
+    return fnv(b"".join(struct.pack("<II", n, len(f)) + b"".join(map(pack, f)) for f, n in zip(faces, numbers)))
 
 
 def placed(vertices, pose):

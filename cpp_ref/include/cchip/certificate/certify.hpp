@@ -11,7 +11,7 @@ namespace cchip {
 
 /// The answer to a query with its proof, found without a device. With Contacts::first and a hit, the proof of one
 /// contact; otherwise of all contacts. So is that of a relation that is touching, because it says that none crosses.
-/// max_contacts is ignored. Takes milliseconds for each pair of faces that are close, far more than collide().
+/// max_contacts is ignored. Takes far longer than collide(), see the page.
 /// \throws std::invalid_argument check_query() refuses the query
 Certificate certify(const CollisionQuery& query, const CollisionRequest& request = {});
 

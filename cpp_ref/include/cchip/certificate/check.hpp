@@ -22,22 +22,6 @@ struct CertificateVerdict {
 
 namespace certificate_check {
 
-inline std::vector<Int> integers(const std::vector<Digits>& texts, std::size_t count) {
-  require(texts.size() == count, "wrong number of weights or components");
-  std::vector<Int> result;
-  for (const Digits& text : texts) {
-    const std::size_t sign = !text.empty() && text[0] == '-';
-    require(text.size() > sign && text.size() <= 20000 &&
-                text.find_first_not_of("0123456789", sign) == std::string::npos &&
-                (text[sign] != '0' || text.size() == 1),
-            "not an integer of at most 20000 digits");
-    result.emplace_back(text);
-  }
-  return result;
-}
-
-inline Int dot(const std::vector<Int>& d, const Point& p) { return d[0] * p[0] + d[1] * p[1] + d[2] * p[2]; }
-
 struct Checker {
   std::array<const Mesh*, 2> mesh;
   std::array<std::vector<Point>, 2> points;
@@ -83,28 +67,19 @@ struct Checker {
     if (cell.kind == CellKind::touch)
       require(overlap(cell.direction, {{{face[0]}, {face[1]}}}) <= 0, "A is not below B");
     if (cell.kind != CellKind::cross) return;
-    std::array<Point, 3> e;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t side = cell.span[i].of_b, vertex = cell.span[i].vertex;
-      require(vertex < corners(side, face[side]), "an edge ends at no vertex");
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        e[i][axis] = corner(side, face[side], vertex)[axis] - corner(side, face[side], 0)[axis];
+    std::vector<Point> e;
+    for (const CertificateCell::Edge edge : cell.span) {
+      const std::size_t side = edge.of_b;
+      require(edge.vertex < corners(side, face[side]), "an edge ends at no vertex");
+      const Point &p = corner(side, face[side], 0), &q = corner(side, face[side], edge.vertex);
+      e.push_back({q[0] - p[0], q[1] - p[1], q[2] - p[2]});
     }
-    const Int determinant = e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
-                            e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
-                            e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+    Int determinant = 0;
+    for (std::size_t x = 0, y = 1, z = 2; x < 3; ++x, y = (x + 1) % 3, z = (x + 2) % 3)
+      determinant += e[0][x] * (e[1][y] * e[2][z] - e[1][z] * e[2][y]);
     require(determinant != 0, "the edges do not span space");
   }
 };
-
-inline void check_order(const std::vector<std::uint32_t>& order, std::size_t faces) {
-  require(faces > 0 && order.size() == faces, "an order does not hold each face once");
-  std::vector<bool> seen(faces);
-  for (const std::uint32_t face : order) {
-    require(face < faces && !seen[face], "an order does not hold each face once");
-    seen[face] = true;
-  }
-}
 
 }  // namespace certificate_check
 
@@ -129,8 +104,12 @@ inline CertificateVerdict check_certificate(const Mesh& a, const Pose& pose_a, c
     using Sets = std::array<std::array<std::size_t, 2>, 2>;  // of A and of B: begin and end in the order
     std::vector<Sets> open;                                  // cells that are to come
     if (c.all) {
-      check_order(c.order_a, a.faces.size());
-      check_order(c.order_b, b.faces.size());
+      for (auto [order, count] : {std::pair(c.order_a, a.faces.size()), std::pair(c.order_b, b.faces.size())}) {
+        std::sort(order.begin(), order.end());
+        const bool once = std::adjacent_find(order.begin(), order.end()) == order.end();
+        require(count > 0 && order.size() == count && once && order.back() < count,
+                "an order does not hold each face once");
+      }
       open.push_back({{{0, a.faces.size()}, {0, b.faces.size()}}});
     }
     require(c.all || (c.order_a.size() + c.order_b.size() == 0 && c.cells.size() == 1), "one contact is one cell");

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The vertices of two meshes in their poses as integers: what check.hpp computes with.
+/// What check.hpp computes with: the vertices of two meshes in their poses and the numbers of certificates, as
+/// integers.
 #ifndef CCHIP_CERTIFICATE_EXACT_POINTS_HPP
 #define CCHIP_CERTIFICATE_EXACT_POINTS_HPP
 
 #include <algorithm>
 #include <array>
 #include <boost/multiprecision/cpp_int.hpp>
-#include <cchip/mesh/mesh.hpp>
+#include <cchip/certificate/certificate.hpp>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -60,6 +61,23 @@ inline std::array<std::vector<Point>, 2> place(const std::array<const Mesh*, 2>&
   }
   return points;
 }
+
+/// Reads integers of a certificate.
+inline std::vector<Int> integers(const std::vector<Digits>& texts, std::size_t count) {
+  require(texts.size() == count, "wrong number of weights or components");
+  std::vector<Int> result;
+  for (const Digits& text : texts) {
+    const std::size_t sign = !text.empty() && text[0] == '-';
+    require(text.size() > sign && text.size() <= 20000 &&
+                text.find_first_not_of("0123456789", sign) == std::string::npos &&
+                (text[sign] != '0' || text.size() == 1),
+            "not an integer of at most 20000 digits");
+    result.emplace_back(text);
+  }
+  return result;
+}
+
+inline Int dot(const std::vector<Int>& d, const Point& p) { return d[0] * p[0] + d[1] * p[1] + d[2] * p[2]; }
 
 }  // namespace cchip::certificate_check
 
