@@ -2,7 +2,7 @@
 # Installed tree below the prefix:
 #   bin/cchip                     command line (if built)
 #   lib/libcchip_*.a              or .so with BUILD_SHARED_LIBS, with include/cchip/ and lib/cmake/collisionchip/:
-#                                 find_package(collisionchip) gives collisionchip::core, ::mesh_io, ::reference,
+#                                 find_package(collisionchip) gives collisionchip::core, ::mesh_io, ::certificate, ::reference,
 #                                 ::model and ::device
 #   lib/pkgconfig/collisionchip.pc   the same for pkg-config: core, mesh_io, model and device
 #   lib/libcchip_reconfig.a       with include/cchip/rc/ (if built): find_package(collisionchip COMPONENTS reconfig) gives
@@ -16,7 +16,7 @@ include(CMakePackageConfigHelpers)
 find_package(ZLIB QUIET)  # ZLIB_FOUND of cpp_ref is not seen here
 set(CCHIP_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/collisionchip)
 
-install(TARGETS cchip_core cchip_mesh_io cchip_reference cchip_model cchip_device EXPORT collisionchip
+install(TARGETS cchip_core cchip_mesh_io cchip_certificate cchip_reference cchip_model cchip_device EXPORT collisionchip
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 file(RELATIVE_PATH CCHIP_LIBDIR_TO_INCLUDEDIR /${CMAKE_INSTALL_LIBDIR} /${CMAKE_INSTALL_INCLUDEDIR})
 if(NOT BUILD_SHARED_LIBS)

@@ -14,6 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 CORE = ["wire", "geometry", "mesh", "exact", "bvh", "collide"]  # each may use those before it
 ROOMS = {room: set(CORE[:i]) for i, room in enumerate(CORE)}
 ROOMS["mesh_io"] = {"wire", "geometry", "mesh"}
+ROOMS["certificate"] = set(CORE)
 ROOMS["reference"] = {"wire", "geometry", "mesh", "exact", "bvh", "collide"}
 ROOMS["model"] = {"wire", "geometry", "mesh", "bvh"}
 ROOMS["cpu"] = set(CORE)  # the CPU's searches
@@ -34,7 +35,7 @@ FOLDERS = {"sim/harness": "sim", "sim/reconfig": "rc", "sim/waves": "waves", "si
 
 # CMake target: the targets of this project that it may link, directly.
 LINKS = {
-    "cchip_core": set(), "cchip_mesh_io": {"core"}, "cchip_reference": {"core"}, "cchip_model": {"core"},
+    "cchip_core": set(), "cchip_mesh_io": {"core"}, "cchip_reference": {"core"}, "cchip_certificate": {"core"}, "cchip_model": {"core"},
     "cchip_device": {"core", "model"}, "cchip_harness": {"verilated"}, "cchip_reconfig": set(), "cchip_waves": {"core"},
     "cchip_models": {"core", "model"},
     "cchip_stimulus": {"core", "model"}, "cchip_pair_vectors": {"stimulus"}, "cchip_query_vectors": {"stimulus"}, "cchip_rtl_ports": {"core", "harness"},

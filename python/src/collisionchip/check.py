@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Checks a certificate (docs/cpp/certificates.md) with exact arithmetic and nothing of the library.
+
+    python check.py A B POSES CERTIFICATE
+
+A, B: OFF or OBJ files of triangles and quads. POSES: 24 numbers, the matrix [R | t] of A row by row, then that of B.
+Exit code 0: accepted, and the claim is printed; 1: refused, with the first cell that fails; 2: a file cannot be read."""
+import json
+import re
+import struct
+import sys
+from fractions import Fraction
+
+getattr(sys, "set_int_max_str_digits", int)(20001)
+dot = lambda d, p: sum(x * y for x, y in zip(d, p))
+RANK = {"apart": 0, "touching": 1, "crossing": 2}
+
+
+class Refused(Exception): ...
+
+
+def require(holds, otherwise):
+    if not holds:
+        raise Refused(otherwise)
+
+
+def fnv(data, value=0xcbf29ce484222325):
+    for byte in data:
+        value = (value ^ byte) * 0x100000001b3 & 0xffffffffffffffff
+    return format(value, "016x")
+
+
+def hash_mesh(vertices, faces, numbers):
+    pack = lambda v: struct.pack("<3d", *(x + 0.0 for x in vertices[v]))
+    return fnv(b"".join(struct.pack("<II", n, len(f)) + b"".join(map(pack, f)) for f, n in zip(faces, numbers)))
+
+
+def placed(vertices, pose):
+    rows = [[Fraction(x) for x in pose[4 * r:4 * r + 4]] for r in range(3)]
+    return [[sum((r[i] * Fraction(v[i]) for i in range(3)), r[3]) for r in rows] for v in vertices]
+
+
+def integers(texts, count):
+    require(isinstance(texts, list) and len(texts) == count, "wrong number of weights or components")
+    require(all(isinstance(t, str) and len(t) <= 20000 and re.fullmatch("0|-?[1-9][0-9]*", t) for t in texts),
+            "not an integer of at most 20000 digits")
+    return [int(t) for t in texts]
+
+
+def overlap(direction, points):
+    """The greatest value of A minus the least of B."""
+    d = integers(direction, 3)
+    require(any(d), "the direction is 0")
+    return max(dot(d, p) for p in points[0]) - min(dot(d, p) for p in points[1])
+
+
+def check_point(cell, corners):
+    kind, place = cell["cell"], []
+    for points, texts in zip(corners, (cell["a"], cell["b"])):
+        weights = integers(texts, len(points))
+        require(min(weights) >= (kind == "cross") and sum(weights) > 0, "a weight is too small")
+        place.append([Fraction(1, sum(weights)) * dot(weights, axis) for axis in zip(*points)])
+    require(place[0] == place[1], "the points differ")
+    if kind == "touch":
+        require(overlap(cell["direction"], corners) <= 0, "A is not below B")
+    if kind == "cross":
+        edges = {s + str(k): [p - q for p, q in zip(f[k], f[0])] for s, f in zip("ab", corners) for k in range(1, len(f))}
+        x, y, z = (edges[name] for name in cell["span"])
+        normal = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]]
+        require(dot(normal, z) != 0, "the edges do not span space")
+
+
+def check_claim(c, found):
+    """found: of two faces of the files, the set of kinds of the cells that name a point of them."""
+    strongest, all_told, contacts = 0, c["all"], []
+    for faces, kinds in sorted(found.items()):
+        told = "cross" in kinds or (c["all"] and "meet" not in kinds)
+        rank = 2 if "cross" in kinds else 1
+        strongest, all_told = max(strongest, rank), all_told and told
+        require(told or c["least"] != "crossing", "not told whether two faces cross")
+        contacts += [(list(faces), rank if told else None)] if rank >= RANK[c["least"]] else []
+    require([x[:2] for x in c["contacts"]] == [x[0] for x in contacts], "other contacts than claimed")
+    for (_, _, claimed), (_, rank) in zip(c["contacts"], contacts):
+        require(claimed is None or RANK[claimed] == rank, "two faces are not so related")
+    proved = strongest if all_told or strongest == 2 else None
+    require(c["relation"] is None or RANK[c["relation"]] == proved, "another relation than claimed")
+
+
+def check(meshes, poses, lines):
+    """meshes: of A and B (vertices, faces, number in the file of each face). Returns the claim or raises Refused."""
+    number = "claim"
+    try:
+        c, cells = json.loads(lines[0]), lines[1:]
+        require(c["collisionchip_certificate"] == 1, "no certificate of version 1")
+        require(type(c["all"]) is bool and c["least"] in ("touching", "crossing"), "an unknown claim")
+        hashes = [hash_mesh(*m) for m in meshes] + [fnv(struct.pack("<24d", *(x + 0.0 for x in poses)))]
+        require([c["mesh_a"], c["mesh_b"], c["poses"]] == hashes, "the certificate is of other meshes or poses")
+        points, found, orders = [placed(m[0], p) for m, p in zip(meshes, (poses[:12], poses[12:]))], {}, (c["order_a"], c["order_b"])
+        once = [all(type(x) is int for x in o) and sorted(o) == [*range(c["all"] * len(m[1]))] for o, m in zip(orders, meshes)]
+        require(all(once), "an order does not hold each face once")
+        require(all(orders) if c["all"] else len(cells) == 1, "no faces, or other than one cell for one contact")
+        todo = [[(0, len(order)) for order in orders]]
+        corners = lambda side, face: [points[side][v] for v in meshes[side][1][face]]
+        for number, line in enumerate(cells):
+            cell = json.loads(line)
+            require(todo, "a cell too many")
+            sets, kind = todo.pop(), cell["cell"]
+            if kind in ("split_a", "split_b"):
+                side = kind == "split_b"
+                (begin, end), at = sets[side], cell["at"]
+                require(type(at) is int and begin < at < end, "a split leaves one half empty")
+                todo += [[sets[0], half] if side else [half, sets[1]] for half in ((at, end), (begin, at))]
+            elif kind == "separated":
+                sides = [[p for f in orders[s][slice(*sets[s])] for p in corners(s, f)] for s in (0, 1)]
+                require(overlap(cell["direction"], sides) < 0, "A is not strictly below B")
+            else:
+                require(kind in ("meet", "touch", "cross"), "unknown kind of cell")
+                require(all(type(f) is int and 0 <= f < len(m[1]) for f, m in zip(cell["faces"], meshes)), "no such face")
+                require(not c["all"] or all([f] == o[slice(*x)] for f, o, x in zip(cell["faces"], orders, sets)), "other faces")
+                check_point(cell, [corners(s, cell["faces"][s]) for s in (0, 1)])
+                found.setdefault(tuple(m[2][f] for f, m in zip(cell["faces"], meshes)), set()).add(kind)
+        number = "claim"
+        require(not c["all"] or not todo, "cells are missing")
+        check_claim(c, found)
+        return c
+    except (Refused, ValueError, KeyError, TypeError, IndexError, RecursionError, OverflowError, struct.error) as error:
+        raise Refused(f"cell {number}: {error}") from None
+
+
+def read_mesh(text):
+    lines = [words for words in (line.split("#")[0].split() for line in text.splitlines()) if words]
+    if lines[0] == ["OFF"]:
+        n, m = int(lines[1][0]), int(lines[1][1])
+        vertices, faces = lines[2:2 + n], [[int(x) for x in line[1:1 + int(line[0])]] for line in lines[2 + n:2 + n + m]]
+    else:
+        vertices = [line[1:] for line in lines if line[0] == "v"]
+        faces = [[int(x.split("/")[0]) - 1 for x in line[1:]] for line in lines if line[0] == "f"]
+    if not all(len(f) in (3, 4) and 0 <= min(f) and max(f) < len(vertices) for f in faces):
+        raise ValueError("faces must be triangles and quads of vertices that the file has")
+    return [[float(x) for x in v[:3]] for v in vertices], faces, list(range(len(faces)))
+
+
+def main(arguments):
+    try:
+        require(len(arguments) == 4, "usage:" + __doc__)
+        texts = [open(path, encoding="utf-8").read() for path in arguments]
+        meshes, poses = [read_mesh(text) for text in texts[:2]], [float(x) for x in texts[2].split()]
+        c = check(meshes, poses, texts[3].splitlines())
+    except Refused as error:
+        sys.exit(print(f"refused, {error}") or 1)
+    except (OSError, ValueError, IndexError) as error:
+        sys.exit(print(f"check.py: {error}", file=sys.stderr) or 2)
+    print("accepted:", f"{len(c['contacts'])} contacts" if c["all"] else "a contact", "and no others" if c["all"] else "")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
