@@ -1,4 +1,4 @@
-/* SPDX-License-Identifier: Apache-2.0 */
+// SPDX-License-Identifier: Apache-2.0
 /* From two triangles in doubles to the ports of cchip_primtest_tri_tri with COORD_W = 16. */
 #ifndef CCHIP_EXAMPLES_TRI_TRI_WORDS_H
 #define CCHIP_EXAMPLES_TRI_TRI_WORDS_H

@@ -23,9 +23,9 @@ struct TouchingCase {
 /// In the order of the table.
 std::vector<TouchingCase> touching_cases();
 
-/// The same parts, in millimetres, at the origin, 5 km and 50 km away from it: one bit of a coordinate apart, flush, one
-/// bit pressed into each other. Either their coordinates are those of the place, as in a site model, or one pose, which
-/// turns and moves, places both, as in an assembly.
+/// The same parts, in millimetres, at the origin, 5 km and 50 km away from it: one bit of a coordinate apart, flush,
+/// one bit pressed into each other. Either their coordinates are those of the place, as in a site model, or one pose,
+/// which turns and moves, places both, as in an assembly.
 struct FarCase {
   const char* part;
   const char* place;
