@@ -459,7 +459,8 @@ class SelfSearch {
   }
 
   static bool has(const Corners& x, std::uint32_t number) {
-    return (x[0] == number) | (x[1] == number) | (x[2] == number) | (x[3] == number);
+    const auto is = [number](auto other) { return static_cast<unsigned>(other == number); };
+    return (is(x[0]) | is(x[1]) | is(x[2]) | is(x[3])) != 0;  // without branches
   }
   static bool is_first(const Corners& x, std::size_t a) {
     return std::find(x.begin(), x.begin() + a, x[a]) == x.begin() + a;
