@@ -317,7 +317,6 @@ class Netlist:
         while len(bits) > 1 and bits[-1] in ("0", "x"):
             bits.pop()
             declared_signed = extended = False
-            zero_top = True
         if all(isinstance(bit, str) for bit in bits):
             value = sum(1 << i for i, bit in enumerate(bits) if bit == "1")
             if (declared_signed or extended) and bits[-1] == "1":
