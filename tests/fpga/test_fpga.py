@@ -20,6 +20,7 @@ ROOT = HERE.parent.parent
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests")]
 import datasheet  # noqa: E402
 import fpga  # noqa: E402
+import placed  # noqa: E402
 from tools import run, tool  # noqa: E402
 
 
@@ -140,6 +141,67 @@ class OwnFolder(unittest.TestCase):
 
     def restore(self):
         fpga.ROOT, fpga.BUILD = self.root, self.build
+
+
+class Placement(unittest.TestCase):
+    """A register a, a LUT behind it, a register b; a block RAM that b addresses: placed by hand, delays made up."""
+    NETLIST = {"modules": {"unused": {"cells": {}}, "top": {"cells": {
+        name: {"type": kind, "attributes": {"NEXTPNR_BEL": place}} for name, kind, place in (
+            ("u_dut.u_core.u_x.a_TRELLIS_FF_Q", "TRELLIS_FF", "X2/Y3/SLICEA.FF0"), ("u_dut.u_core.u_x.a_LUT4_A", "TRELLIS_COMB", "X5/Y9/SLICEA.LUT0"),
+            ("u_dut.u_core.u_y.b_TRELLIS_FF_Q_1", "TRELLIS_FF", "X70/Y60/SLICEA.FF0"), ("u_dut.u_core.u_y.u_ram.mem.0.0", "DP16KD", "X71/Y61/EBR0"))}}}}
+    DELAYS = """
+        (INTERCONNECT u_dut.u_core.u_x.a_TRELLIS_FF_Q/Q u_dut.u_core.u_x.a_LUT4_A/A (1000:1000:1000) (900:900:900))
+        (INTERCONNECT u_dut.u_core.u_x.a_LUT4_A/F u_dut.u_core.u_y.b_TRELLIS_FF_Q_1/DI (6000:6000:6000) (6000:6000:6000))
+        (INTERCONNECT u_dut.u_core.u_y.b_TRELLIS_FF_Q_1/Q u_dut.u_core.u_y.u_ram.mem.0.0/ADA3 (800:800:800) (800:800:800))
+      (INSTANCE u_dut.u_core.u_x.a_TRELLIS_FF_Q)
+        (IOPATH CLK Q (400:450:525) (400:450:525))
+      (INSTANCE u_dut.u_core.u_x.a_LUT4_A)
+        (IOPATH A F (100:200:240) (100:200:240))
+      (INSTANCE u_dut.u_core.u_y.b_TRELLIS_FF_Q_1)
+        (IOPATH CLK Q (400:450:525) (400:450:525))
+      (SETUPHOLD (posedge DI) (posedge CLK) (10:20:35) (0:0:0))
+      (INSTANCE u_dut.u_core.u_y.u_ram.mem.0.0)
+      (SETUPHOLD (posedge ADA3) (posedge CLKA) (100:100:100) (0:0:0))
+"""
+
+    def setUp(self):
+        self.timing = placed.Placed(json.dumps(self.NETLIST), self.DELAYS)
+
+    def test_the_latest_arrival_counts_cells_wires_and_set_up(self):
+        (slow, end), (fast, other) = self.timing.ends()
+        self.assertAlmostEqual(slow, 0.525 + 1.0 + 0.24 + 6.0 + 0.035)
+        self.assertAlmostEqual(fast, 0.525 + 0.8 + 0.1)
+        path = self.timing.path(slow, end)
+        self.assertEqual((fpga.name_of(path.source), path.pin, self.timing.look_up_tables(path)), ("u_core.u_x.a", "DI", 1))
+        self.assertAlmostEqual(path.wire_ns, 7.0)
+        self.assertEqual(other, ("u_dut.u_core.u_y.u_ram.mem.0.0", "ADA3"))
+
+    def test_sources_are_ranked_and_blocks_have_a_place(self):
+        sources = placed.ranking(self.timing, fpga.name_of, 5)
+        self.assertEqual([(fpga.name_of(path.source), behind) for path, behind in sources], [("u_core.u_x.a", 1), ("u_core.u_y.b", 0)])
+        self.assertEqual(placed.spread(self.timing, fpga.block_in)["u_y"], (2, [[70, 71, 71], [60, 61, 61]]))
+
+    def test_estimate_of_several_seeds(self):
+        line = fpga.estimate_line("x", {1: self.timing, 2: self.timing}, 200)
+        self.assertEqual(line, "x estimate_mhz=128.2 min=128.2 max=128.2 ends_behind_200_mhz=1 seeds=2")
+
+    def test_rows_of_blocks_have_the_parameters_of_the_chip(self):
+        # what each instance in the chip sets to a number is what its row says
+        text = "".join((ROOT / "rtl" / file).read_text() for file in ("chip/cchip_chip_core.v", "traversal/cchip_broad_phase.v"))
+        chip = dict(datasheet.parse("cchip_chip")[0])
+        chip.update(PLACES=int(chip["PAIRS"]) + int(chip["LEAVES"]), LEAF_W=6, CONTEXT_W=4, KINDS=3, PLACE_W=6)
+        compared = 0
+        for name, parameters in fpga.CHIP_PARAMETERS.items():
+            instance = re.search(rf"{name} #\((.*?)\n\s*\) u_", text, re.S)
+            if not instance:
+                continue
+            own = dict(datasheet.parse(name)[0]) | dict(parameters)
+            for parameter, value in re.findall(r"\.(\w+) *\(([^()]*)\)", instance[1]):
+                value = eval(value, {}, {key: int(n) for key, n in chip.items() if str(n).isdigit()}) if "`" not in value else None
+                if value is not None:
+                    self.assertEqual(int(own[parameter]), value, f"{name}.{parameter}")
+                    compared += 1
+        self.assertGreater(compared, 25)
 
 
 class Steps(OwnFolder):
