@@ -117,8 +117,8 @@ class SimdSearch final : public Search {
   void run(QueryFeed& feed, const CollisionRequest& request) override {
     if (request.contacts == CollisionRequest::Contacts::all) {
       Task& task = tasks_[0];
-      for (CollisionQuery query; feed.next(query, task.number);) {
-        run(query, request, task.own_result);
+      while (feed.next(task.number)) {
+        run(feed.query(task.number), request, task.own_result);
         feed.done(task.number, task.own_result);
       }
     } else {
@@ -379,10 +379,10 @@ class SimdSearch final : public Search {
     bool more = true;
     const auto begin = [&](std::size_t i, std::size_t round) {
       Task& task = tasks_[i];
-      for (CollisionQuery query; more;) {
-        more = feed.next(query, task.number);
+      while (more) {
+        more = feed.next(task.number);
         if (!more) return;
-        if (start(task, query, request, task.own_result)) return pop(i, round);
+        if (start(task, feed.query(task.number), request, task.own_result)) return pop(i, round);
         feed.done(task.number, task.own_result);
       }
     };
