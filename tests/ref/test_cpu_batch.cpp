@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the threads of the CPU device divide a batch.
+#include <hwy/targets.h>
+
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -155,4 +157,35 @@ TEST_CASE("CPU device: the first query of a batch that is refused ends it", "[re
     device->collide(7, query, {}, take);
     CHECK(taken == 7);
   }
+}
+
+namespace {
+
+void ask_all_targets() {
+  const Object torus(make_torus(1, 0.25, 24, 12));
+  const Pose here = Pose::Identity();
+  for (const std::string& target : cpu_targets()) {
+    CHECK(collide(*open_cpu_device({1, target}), torus, here, torus, here).hit);
+  }
+}
+
+}  // namespace
+
+// What is looked up once for a process happens in the first of these: ctest runs each in a process of its own.
+TEST_CASE("CPU device: another user's choice of Highway's target stays", "[ref][collide]") {
+  hwy::ChosenTarget& chosen = hwy::GetChosenTarget();
+  std::int64_t targets = hwy::SupportedTargets();
+  chosen.Update(targets);
+  const std::size_t best = chosen.GetIndex();
+  for (; targets != 0 && chosen.GetIndex() == best; chosen.Update(targets)) targets &= targets - 1;
+  const std::size_t mine = chosen.GetIndex();
+  REQUIRE(mine != best);  // not the best one, which any call of Highway's chooses
+  ask_all_targets();
+  CHECK(chosen.GetIndex() == mine);
+}
+
+TEST_CASE("CPU device: makes no choice of Highway's target for others", "[ref][collide]") {
+  hwy::GetChosenTarget().DeInit();
+  ask_all_targets();
+  CHECK_FALSE(hwy::GetChosenTarget().IsInitialized());
 }
