@@ -426,7 +426,7 @@ def touching_stays():
                     fill, edge = (CONTACT, CONTACT) if wrong[part, place, way, state, name] else DONE
                     picture.body(rectangle(left + width * k + side * column, y + side * row, side - 3, side - 3), (fill, edge))
     bottom = top + step * len(places) * len(ways) + 26
-    picture.text(left, bottom, f"each square: {', '.join(parts)} (downwards); {', '.join(states)} (to the right)", 11, GREY, anchor="start")
+    picture.text(left, bottom, f"downwards: {', '.join(parts)}; to the right: {', '.join(states)}", 11, GREY, anchor="start")
     picture.key(left, bottom + 24, [(DONE, "right", 60), ((CONTACT, CONTACT), "wrong", 70)])
     return picture.svg()
 
