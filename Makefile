@@ -94,7 +94,12 @@ build/docs-venv/docs_requirements.txt: scripts/docs_requirements.txt
 	build/docs-venv/bin/pip install --quiet --disable-pip-version-check --requirement $<
 	cp $< $@
 
-peers: build/peers/requirements.txt ## install Coal from PyPI below build/peers, for make bench-collide
+peers: build/peers/requirements.txt build/touching/touching_requirements.txt ## install Coal from PyPI below build/peers, for make bench-collide; trimesh and trueform below build/touching
+
+build/touching/touching_requirements.txt: bench/peers/touching_requirements.txt
+	python3 -m venv build/touching || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	build/touching/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement $<
+	cp $< $@
 
 build/peers/requirements.txt: bench/peers/requirements.txt
 	python3 -m venv build/peers || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }

@@ -8,6 +8,7 @@ usage: pictures.py [--check]
   stages.svg   the four macro stages of a primitive test; clocks from scripts/definitions.json
   rooms.svg    folders of RTL and C++ and which may use which, from the tables of tests/arrows
   touching.svg two bodies that cross, touch or are apart, in cross-section; relations from the table of docs/cpp/touching.md
+  touching_stays.svg right and wrong answers of the libraries; from the table of docs/cpp/touching_stays.md
 
 Without an option the pictures are written; with --check nothing is written and the exit code is 1 if one is stale."""
 import html
@@ -404,7 +405,34 @@ def touching():
     return picture.svg()
 
 
-PICTURES = {"chip": chip, "devices": devices, "stages": stages, "rooms": rooms, "touching": touching}
+def touching_stays():
+    """The table of docs/cpp/touching_stays.md: for each library and place a square of three parts by three states."""
+    page = (ROOT / "docs" / "cpp" / "touching_stays.md").read_text()
+    head, _, *rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in page.splitlines() if line.startswith("|")]
+    parts, places, states = ([*dict.fromkeys(row[column] for row in rows)] for column in (0, 1, 3))
+    ways = [*dict.fromkeys(row[2] for row in rows)]
+    wrong = {(*row[:4], name): cell.startswith("**") for row in rows for name, cell in zip(head[5:], row[5:])}
+    width, left, top, side, step = 90, 120, 44, 18, 62
+    picture = Picture("Do they meet? Right and wrong answers", left + width * len(head[5:]) + 10, top + 6 * step + 66)
+    for k, name in enumerate(head[5:]):
+        picture.text(left + width * k + 27, 28, name, 13, weight="bold")
+    for i, (way, place) in enumerate((way, place) for way in ways for place in places):
+        y = top + step * i + (10 if i >= len(places) else 0)
+        picture.text(left - 20, y + 25, place, 13, weight="bold", anchor="end")
+        picture.text(left - 20, y + 41, f"by {way}", 11, GREY, anchor="end")
+        for k, name in enumerate(head[5:]):
+            for row, part in enumerate(parts):
+                for column, state in enumerate(states):
+                    fill, edge = (CONTACT, CONTACT) if wrong[part, place, way, state, name] else DONE
+                    picture.body(rectangle(left + width * k + side * column, y + side * row, side - 3, side - 3), (fill, edge))
+    bottom = top + step * len(places) * len(ways) + 26
+    picture.text(left, bottom, f"downwards: {', '.join(parts)}; to the right: {', '.join(states)}", 11, GREY, anchor="start")
+    picture.key(left, bottom + 24, [(DONE, "right", 60), ((CONTACT, CONTACT), "wrong", 70)])
+    return picture.svg()
+
+
+PICTURES = {"chip": chip, "devices": devices, "stages": stages, "rooms": rooms, "touching": touching,
+            "touching_stays": touching_stays}
 
 
 def main():

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Prints the table of docs/cpp/touching.md: the cases, answered by the CPU device and by FCL. With --far that of
-// docs/cpp/touching_stays.md: the same parts at the origin and far away from it, by every library that the build found.
+// docs/cpp/touching_stays.md: the same parts at the origin and far away from it, by every library that the build found;
+// --far-cases prints these cases for Python's libraries.
 #include <algorithm>
 #include <cchip/device/device.hpp>
 #include <iostream>
@@ -51,9 +52,40 @@ int far_table() {
   return wrong[0] == 0 ? 0 : 1;
 }
 
+/// The same cases for bench/peers/touching_python.py, one a line: whether they meet, the rows of the pose, and of each
+/// mesh the number of vertices, the vertices, and the triangles. Numbers as the doubles that they are.
+void print_far_cases() {
+  std::cout << std::hexfloat;
+  const auto print_mesh = [](const Mesh& mesh) {
+    std::cout << ' ' << std::dec << mesh.vertices.size() << std::hexfloat;
+    for (const Vec3d& v : mesh.vertices) std::cout << ' ' << v.x() << ' ' << v.y() << ' ' << v.z();
+    std::size_t triangles = 0;
+    for (const Mesh::Face& face : mesh.faces) triangles += face.kind == Kind::quad ? 2 : 1;
+    std::cout << ' ' << triangles;
+    for (const Mesh::Face& face : mesh.faces) {
+      const auto& v = face.vertex;
+      std::cout << ' ' << v[0] << ' ' << v[1] << ' ' << v[2];
+      if (face.kind == Kind::quad) std::cout << ' ' << v[0] << ' ' << v[2] << ' ' << v[3];
+    }
+  };
+  for (const FarCase& c : far_cases()) {
+    std::cout << (c.meets ? 1 : 0);
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 4; ++column) std::cout << ' ' << c.pose(row, column);
+    }
+    print_mesh(c.a);
+    print_mesh(c.b);
+    std::cout << '\n';
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string(argv[1]) == "--far-cases") {
+    print_far_cases();
+    return 0;
+  }
   if (argc > 1 && std::string(argv[1]) == "--far") return far_table();
   const PeerLibrary fcl = PeerLibrary::fcl_debian();
   const auto device = open_device("cpu");

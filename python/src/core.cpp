@@ -192,7 +192,7 @@ nb::object to_text(const std::string& bytes) {
   throw nb::python_error();
 }
 
-Object load(nb::handle path, bool quads) {
+Object load(nb::handle path, bool quads, bool lenient) {
   PyObject* converted = nullptr;
   if (PyUnicode_FSConverter(path.ptr(), &converted) == 0) throw nb::python_error();
   const nb::bytes bytes = nb::steal<nb::bytes>(converted);
@@ -206,8 +206,10 @@ Object load(nb::handle path, bool quads) {
     const nb::gil_scoped_release release;
     const GradualUnderflow mode;
     try {
-      return Object(
-          cchip::load_mesh(name, quads ? cchip::FaceKinds::triangles_and_quads : cchip::FaceKinds::triangles));
+      cchip::LoadOptions options;
+      options.kinds = quads ? cchip::FaceKinds::triangles_and_quads : cchip::FaceKinds::triangles;
+      options.lenient = lenient;
+      return Object(cchip::load_mesh(name, options));
     } catch (const std::runtime_error& error) {
       wrong = error.what();
     } catch (const std::invalid_argument& error) {
@@ -247,6 +249,12 @@ nb::object numbers_of(const Object& x) {
   for (std::uint32_t i = 0; i < numbers.size(); ++i) numbers[i] = x.mesh().number_in_file(i);
   const std::size_t n = numbers.size();
   return nb::cast(owned<std::uint32_t>(std::move(numbers), {n}));
+}
+
+nb::tuple notes_of(const Object& x) {
+  nb::list notes;
+  for (const std::string& note : x.mesh().notes) notes.append(to_text(note));
+  return nb::tuple(notes);
 }
 
 template <class T>
@@ -631,10 +639,14 @@ of its four vertices; one with a dent or a spike is cut into triangles, which ar
 Raises ValueError: another shape, faces that are not integers, a number beyond the vertices, no faces or more than
 2^24 - 2, a vertex of a face that is not finite or beyond 2^1000, a masked array, complex numbers.)")
       .def_static(
-          "load", &load, "path"_a, "quads"_a = false,
-          nb::sig("def load(path: str | bytes | os.PathLike[str] | os.PathLike[bytes], quads: bool = False) -> Object"),
+          "load", &load, "path"_a, "quads"_a = false, nb::kw_only(), "lenient"_a = false,
+          nb::sig("def load(path: str | bytes | os.PathLike[str] | os.PathLike[bytes], quads: bool = False, *, "
+                  "lenient: bool = False) -> Object"),
           R"(From a file: OBJ, OFF, PLY or STL. Polygons are cut into triangles, with quads=True all but quads without a dent;
 contacts have the numbers of the file's faces all the same.
+
+lenient: faces that cannot be used are left out and not an error: with vertices that are not there or not finite, or
+with sides that cross. `notes` names them. The other faces keep their numbers.
 
 Raises OSError: the file cannot be opened; FileNotFoundError, IsADirectoryError. Raises ValueError: it is no mesh; the message has file, line and reason.)")
       .def(
@@ -692,6 +704,10 @@ neighbours: False leaves out all pairs with a common vertex.)")
       .def_prop_ro(
           "name", [](const Object& x) { return to_text(x.mesh().name); }, nb::sig("def name(self) -> str"),
           "Path of the file; empty for arrays.")
+      .def_prop_ro("notes", &notes_of, nb::sig("def notes(self) -> tuple[str, ...]"),
+                   "What load() left out of the file, a line each: with lenient=True the first hundred faces that "
+                   "cannot be used "
+                   "and their number. Empty for arrays; pickle does not keep it.")
       .def_prop_ro("vertices", &vertices_of, nb::rv_policy::reference_internal,
                    "(n, 3) float64, read-only: all vertices, those that no face uses, too.")
       .def_prop_ro(

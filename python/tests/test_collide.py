@@ -114,6 +114,32 @@ def test_files(tmp_path):
         Object.load(path)
 
 
+def test_files_with_faces_that_cannot_be_used(tmp_path):
+    path = tmp_path / "damaged.obj"
+    square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv nan 0 0\n"
+    path.write_text(square + "f 1 2 9\nf 1 2 3\nf 1 2 5\nf 1 3 4\n")
+    with pytest.raises(ValueError, match="damaged.obj:6"):
+        Object.load(path)
+    with pytest.raises(TypeError):
+        Object.load(path, False, True)
+    for quads in (False, True):
+        left = Object.load(path, quads, lenient=True)
+        assert left.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
+        assert left.face_numbers.tolist() == [1, 3]
+        assert isinstance(left.notes, tuple) and len(left.notes) == 3
+        assert left.notes[0].startswith("line 6: face 0") and "face 2 uses it" in left.notes[1]
+        assert left.notes[2] == "2 faces were left out because they cannot be used"
+    path.write_text(square + 120 * "f 1 2 9\n" + "f 1 2 3\n")
+    many = Object.load(path, lenient=True)
+    assert len(many.notes) == 101 and many.notes[-1].startswith("120 faces")
+    path.write_text(square + "f 1 2 3\n")
+    assert Object.load(path, lenient=True).notes == ()
+    assert Object([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).notes == ()
+    path.write_text(square + "f 1 2 9\n")  # no face is left
+    with pytest.raises(ValueError, match="damaged.obj"):
+        Object.load(path, lenient=True)
+
+
 def test_names_of_files_that_are_any_bytes(tmp_path):
     text = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
     for name in (b"plain.off", b"\xc3\xa4.off", b"\xff\xfe.off"):

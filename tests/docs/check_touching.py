@@ -27,11 +27,32 @@ def columns(table, names):
     return [[row[rows[0].index(name)] for name in names] for row in rows]
 
 
+def with_python(root, table_program, table, last):
+    """The table and its last line with the columns of Python's libraries, if `make peers` has installed these."""
+    python = root / "build" / "touching" / "bin" / "python"
+    if not (root / "build" / "touching" / "touching_requirements.txt").exists():
+        return table, last
+    cases = output(table_program, "--far-cases")
+    answers = subprocess.run([python, root / "bench" / "peers" / "touching_python.py"], input=cases, stdout=subprocess.PIPE, text=True,
+                             check=True).stdout.splitlines()
+    names = answers[0].split("\t")
+    lines = table.splitlines()
+    lines[0] += "".join(f" {name} |" for name in names)
+    lines[1] += "---|" * len(names)
+    wrong = [0] * len(names)
+    for i, (case, line) in enumerate(zip(cases.splitlines(), answers[1:], strict=True), start=2):
+        right = "yes" if case[0] == "1" else "no"
+        for k, answer in enumerate(line.split("\t")):
+            wrong[k] += answer != right
+            lines[i] += f" {answer} |" if answer == right else f" **{answer}** |"
+    return "\n".join(lines), last + "".join(f" {name}_wrong={count}" for name, count in zip(names, wrong))
+
+
 def check_far(root, table_program, write):
     """What is wrong with docs/cpp/touching_stays.md."""
     page = root / "docs" / "cpp" / "touching_stays.md"
     printed = output(table_program, "--far")
-    table, last = printed.rstrip("\n").rsplit("\n", 1)
+    table, last = with_python(root, table_program, *printed.rstrip("\n").rsplit("\n", 1))
     if write:
         page.write_text(TABLE.sub(lambda found: f"{found[1]}{table}\n\n    {last}\n{found[2]}", page.read_text(), count=1))
     shown = TABLE.search(page.read_text())

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the threads of the CPU device divide a batch.
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <chrono>
 #include <condition_variable>
+#include <limits>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -35,13 +40,13 @@ TEST_CASE("CPU device: a search begins no more queries at once than it may", "[r
    public:
     Feed(const CollisionQuery& query, std::size_t most) : query_(query), most_(most) {}
     std::size_t at_once() const override { return most_; }
-    bool next(CollisionQuery& query, std::size_t& number) override {
+    bool next(std::size_t& number) override {
       if (begun == 40) return false;
-      query = query_;
       number = begun++;
       greatest = std::max(greatest, begun - ended);
       return true;
     }
+    CollisionQuery query(std::size_t) override { return query_; }
     void done(std::size_t, CollisionResult& result) override {
       ++ended;
       hits += result.hit;
@@ -82,19 +87,16 @@ TEST_CASE("CPU device: all threads answer a batch of few queries", "[ref][collid
       const auto device = open_cpu_device({threads, {}});
       std::mutex mutex;
       std::condition_variable changed;
-      std::size_t asked = 0;
       std::set<std::thread::id> seen;
       bool timed_out = false;
-      // Once the queries are checked, a thread that has one waits until each of the others has one.
+      // A thread that has a query waits until each of the others has one.
       const auto query = [&](std::size_t) {
         std::unique_lock<std::mutex> lock(mutex);
-        if (++asked > count) {
-          seen.insert(std::this_thread::get_id());
-          changed.notify_all();
-          timed_out = timed_out || !changed.wait_for(lock, std::chrono::seconds(20),
-                                                     [&] { return timed_out || seen.size() == threads; });
-          if (timed_out) changed.notify_all();
-        }
+        seen.insert(std::this_thread::get_id());
+        changed.notify_all();
+        timed_out = timed_out || !changed.wait_for(lock, std::chrono::seconds(20),
+                                                   [&] { return timed_out || seen.size() == threads; });
+        if (timed_out) changed.notify_all();
         return CollisionQuery{&torus, &here, &torus, &there};
       };
       device->collide(count, query, request, [](std::size_t, const CollisionResult&) {});
@@ -102,4 +104,88 @@ TEST_CASE("CPU device: all threads answer a batch of few queries", "[ref][collid
       CHECK(seen.size() == threads);
     }
   }
+}
+
+TEST_CASE("CPU device: a batch fetches each query once", "[ref][collide]") {
+  constexpr std::size_t count = 500;
+  const Object torus(make_torus(1, 0.25, 24, 12));
+  const Pose here = Pose::Identity();
+  const Pose far = make_pose({5, 0, 0}, {20, 10, 0});
+  const Pose there = make_pose({0.3, 0.1, 0.05}, {20, 10, 0});
+  for (const CollisionRequest& request : {CollisionRequest{}, CollisionRequest{CollisionRequest::Contacts::all}}) {
+    for (const std::string& target : cpu_targets()) {
+      for (const unsigned threads : {1U, 3U}) {
+        const auto device = open_cpu_device({threads, target});
+        std::vector<std::atomic<int>> fetched(count);
+        std::vector<int> taken(count, 0);
+        std::size_t wrong = 0;
+        const auto query = [&](std::size_t i) {
+          ++fetched[i];
+          return CollisionQuery{&torus, &here, &torus, i % 3 == 0 ? &there : &far};
+        };
+        device->collide(count, query, request, [&](std::size_t i, const CollisionResult& result) {
+          ++taken[i];
+          const bool touches = i % 3 == 0;
+          wrong += result.hit != touches || result.contacts.empty() == touches || result.counts.box_tests == 0 ||
+                   (!touches && result.counts.pairs != 0);
+        });
+        CAPTURE(target, threads, static_cast<int>(request.contacts));
+        CHECK(wrong == 0);
+        CHECK(std::all_of(fetched.begin(), fetched.end(), [](const std::atomic<int>& n) { return n == 1; }));
+        CHECK(std::all_of(taken.begin(), taken.end(), [](int n) { return n == 1; }));
+      }
+    }
+  }
+}
+
+TEST_CASE("CPU device: the first query of a batch that is refused ends it", "[ref][collide]") {
+  const Object torus(make_torus(1, 0.25, 24, 12));
+  const Pose here = Pose::Identity();
+  const Pose far = make_pose({5, 0, 0}, {20, 10, 0});
+  Pose bad = Pose::Identity();
+  bad(1, 2) = std::numeric_limits<double>::quiet_NaN();
+  for (const std::string& target : cpu_targets()) {
+    const auto device = open_cpu_device({1, target});
+    std::size_t taken = 0;
+    const auto query = [&](std::size_t i) { return CollisionQuery{&torus, &here, &torus, i == 7 ? &bad : &far}; };
+    const auto take = [&taken](std::size_t i, const CollisionResult&) { taken += i < 7 ? 1 : 100; };
+    CAPTURE(target);
+    CHECK_THROWS_WITH(device->collide(20, query, {}, take),
+                      "pose of B: row 1, column 2 is not finite or beyond 2^500; check it or scale it");
+    CHECK(taken <= 7);
+    taken = 0;
+    device->collide(7, query, {}, take);
+    CHECK(taken == 7);
+  }
+}
+
+namespace {
+
+void ask_all_targets() {
+  const Object torus(make_torus(1, 0.25, 24, 12));
+  const Pose here = Pose::Identity();
+  for (const std::string& target : cpu_targets()) {
+    CHECK(collide(*open_cpu_device({1, target}), torus, here, torus, here).hit);
+  }
+}
+
+}  // namespace
+
+// What is looked up once for a process happens in the first of these: ctest runs each in a process of its own.
+TEST_CASE("CPU device: another user's choice of Highway's target stays", "[ref][collide]") {
+  hwy::ChosenTarget& chosen = hwy::GetChosenTarget();
+  std::int64_t targets = hwy::SupportedTargets();
+  chosen.Update(targets);
+  const std::size_t best = chosen.GetIndex();
+  for (; targets != 0 && chosen.GetIndex() == best; chosen.Update(targets)) targets &= targets - 1;
+  const std::size_t mine = chosen.GetIndex();
+  REQUIRE(mine != best);  // not the best one, which any call of Highway's chooses
+  ask_all_targets();
+  CHECK(chosen.GetIndex() == mine);
+}
+
+TEST_CASE("CPU device: makes no choice of Highway's target for others", "[ref][collide]") {
+  hwy::GetChosenTarget().DeInit();
+  ask_all_targets();
+  CHECK_FALSE(hwy::GetChosenTarget().IsInitialized());
 }

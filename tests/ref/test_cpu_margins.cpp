@@ -12,9 +12,12 @@
 #include <cchip/sim/seed.hpp>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <random>
 
 #include "bvh_meshes.hpp"
+#include "cpu/far_test.hpp"
+#include "cpu/relative_pose.hpp"
 #include "cpu/search.hpp"
 #include "random_poses.hpp"
 
@@ -278,5 +281,119 @@ TEST_CASE("CPU device: normals so short that products with them underflow separa
     }
     INFO(name);
     CHECK(missed == 0);
+  }
+}
+
+namespace {
+
+/// \returns whether the SIMD search takes the query
+bool relates(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b, RelativePose& relation) {
+  const CollisionQuery query = {&a, &pose_a, &b, &pose_b};
+  return relate(query, centre_line(query), relation);
+}
+
+}  // namespace
+
+TEST_CASE("CPU device: maps whose products would leave single precision go to the plain search", "[ref][collide]") {
+  const Object cube(make_cube(1));
+  Pose half = Pose::Identity();
+  half.linear() *= 0.5;
+  const auto flattened = [](double factor) {
+    Pose pose = Pose::Identity();
+    pose(2, 2) = factor;
+    return pose;
+  };
+  // M = diag(1/2, 1/2, 1/2 / factor); its norm is the last entry, but for less than half a unit in the last place.
+  RelativePose r;
+  CHECK(relates(cube, half, cube, flattened(0x1p-25), r));
+  CHECK(r.norm >= 0x1p24);
+  CHECK(r.norm < 0x1p24 + 1);
+  CHECK(relates(cube, half, cube, flattened(std::nextafter(0x1p-27, 1)), r));
+  CHECK(r.norm < 0x1p26);
+  CHECK(r.norm > 0x1.fffffp25);
+  // The greatest triple product of the search at this bound: two edges of the moved object and a vector between
+  // vertices of both, at the greatest distance.
+  const double edge = 2.0 * bvh::support_most * r.norm;
+  CHECK(edge * edge * (bvh::support_most * (r.norm + 1) + 0x1p40) < std::numeric_limits<float>::max());
+  for (const double factor : {0x1p-27, 0x1p-28, 0x1p-42, 0x1p-61}) {
+    CAPTURE(factor);
+    CHECK_FALSE(relates(cube, half, cube, flattened(factor), r));
+    CHECK_FALSE(relates(cube, flattened(factor), cube, half, r));
+  }
+}
+
+TEST_CASE("CPU device: answers are exact on both sides of the bound on maps", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  const std::vector<Object> objects = {Object(make_spindle({1, 1, 0}, 1)), Object(make_cube(1)),
+                                       Object(shifted(make_sphere(1, 4, 0.1, 1), {0.5, -0.3, 0.2}))};
+  const auto plain = make_plain_search();
+  std::vector<std::unique_ptr<Search>> searches;
+  for (const std::string& name : simd_targets()) searches.push_back(make_simd_search(name));
+  const auto turn = [&random] {
+    return Eigen::AngleAxisd(random_vector(random).norm(), random_vector(random).normalized()).toRotationMatrix();
+  };
+  CollisionRequest all_contacts{CollisionRequest::Contacts::all};
+  all_contacts.relation = true;
+  for (const int exponent : {20, 24, 25, 26, 27, 28, 41, 60}) {
+    std::size_t asked = 0;
+    std::size_t taken = 0;
+    std::size_t wrong = 0;
+    double greatest = 0;
+    for (int i = 0; i < 40; ++i) {
+      // Flattened to a plate or drawn to a needle, with and without rotations beside it.
+      const Object& flat = objects[random() % objects.size()];
+      const Object& other = objects[random() % objects.size()];
+      const double least = std::ldexp(1, -exponent);
+      Pose pose = Pose::Identity();
+      pose.linear() = Vec3d(1, random() % 2 == 0 ? 1 : least, least).asDiagonal();
+      if (i % 2 == 0) pose.linear() = turn() * pose.linear() * turn();
+      Pose turned = Pose::Identity();
+      turned.linear() = (i % 4 < 2 ? Eigen::Matrix3d(turn()) : Eigen::Matrix3d::Identity()) * 0.5;
+      const Vec3d on_flat = pose * flat.mesh().vertices[random() % flat.mesh().vertices.size()];
+      const Vec3d on_other = turned.linear() * other.mesh().vertices[random() % other.mesh().vertices.size()];
+      const Vec3d direction = 8 * random_vector(random).normalized();
+      const auto at = [&](double distance) {
+        Pose moved = turned;
+        moved.translation() = on_flat - on_other + distance * direction;
+        return moved;
+      };
+      double in = 0;
+      double out = 1;
+      if (!hits(*plain, flat, pose, other, at(in)) || hits(*plain, flat, pose, other, at(out))) continue;
+      for (int step = 0; step < 60; ++step) {
+        const double middle = (in + out) / 2;
+        (hits(*plain, flat, pose, other, at(middle)) ? in : out) = middle;
+      }
+      ++asked;
+      RelativePose relation;
+      if (relates(flat, pose, other, at(in), relation)) {
+        taken += relation.swapped ? 1U : 0U;  // otherwise the flat one moves, and the map is small
+        greatest = std::max(greatest, relation.norm);
+        for (const double x : relation.m) wrong += std::isfinite(x) ? 0U : 1U;
+      }
+      for (const double distance : {0.0, in / 2, in, out}) {
+        const Pose there = at(distance);
+        for (const bool swapped : {false, true}) {
+          const CollisionQuery query =
+              swapped ? CollisionQuery{&other, &there, &flat, &pose} : CollisionQuery{&flat, &pose, &other, &there};
+          CollisionResult expected;
+          plain->run(query, all_contacts, expected);
+          for (const auto& search : searches) {
+            CollisionResult result;
+            search->run(query, all_contacts, result);
+            wrong += result.contacts == expected.contacts && result.relation == expected.relation ? 0U : 1U;
+            search->run(query, {}, result);
+            wrong += result.hit == expected.hit ? 0U : 1U;
+          }
+        }
+      }
+    }
+    INFO("2^" << exponent << ": " << asked << " pairs of poses, " << taken << " taken");
+    CHECK(asked > 10);
+    CHECK(wrong == 0);
+    CHECK(greatest < 0x1p26);
+    if (exponent < 26) CHECK(greatest > std::ldexp(1, exponent - 3));
+    if (exponent < 26) CHECK(2 * taken > asked);
+    if (exponent > 28) CHECK(taken == 0);
   }
 }

@@ -392,7 +392,10 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
   check("/dev/null", ": is a device, not a file or a pipe");
   check(folder.write("empty.obj", ""), ": the file is empty (0 bytes)");
   check(folder.write("part.step", "ISO-10303-21;"), ": holds surfaces of CAD, not a mesh", "; mesh it first");
-  check(folder.write("scene.glb", "glTF"), ": meshes of this format are not read", "; convert it");
+  check(folder.write("scene.dae", "<COLLADA>"), ": meshes of this format are not read", "; convert it");
+  for (const char* const name : {"scene.glb", "scene.gltf", "part.3mf", "PART.3MF"}) {
+    check(folder.write(name, "glTF"), ": meshes of this format are not read", "; in Python load it with trimesh");
+  }
   check(folder.write("notes.txt", "hello\n"), ": cannot be read as a mesh");
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const auto obj = [&](const std::string& text) { return folder.write("t.obj", text); };

@@ -22,12 +22,18 @@ std::unique_ptr<Search> make_search(const std::string& target) {
   return target == plain ? make_plain_search() : make_simd_search(target);
 }
 
-/// A batch that several threads answer. Each takes some queries at a time and keeps results until it has as many.
+/// A batch that one or several threads answer. Several take some queries each at a time and keep results until they
+/// have as many.
 class Batch {
  public:
   Batch(std::size_t count, std::size_t threads, const Device::QuerySource& query, const CollisionRequest& request,
         const Device::ResultSink& take)
-      : count_(count), partition_(partition_of(count, threads)), query_(query), request_(request), take_(take) {}
+      : count_(count),
+        alone_(threads == 1),
+        partition_(partition_of(count, threads)),
+        query_(query),
+        request_(request),
+        take_(take) {}
 
   /// What one thread does.
   void work(Search& search, std::vector<std::pair<std::size_t, CollisionResult>>& kept) {
@@ -52,33 +58,38 @@ class Batch {
   class Feed final : public QueryFeed {
    public:
     Feed(Batch& batch, std::vector<std::pair<std::size_t, CollisionResult>>& kept) : batch_(batch), kept_(kept) {
-      if (kept_.size() < share_) kept_.resize(share_);
+      if (!batch_.alone_ && kept_.size() < share_) kept_.resize(share_);
     }
     std::size_t at_once() const override { return batch_.partition_.at_once; }
-    bool next(CollisionQuery& query, std::size_t& number) override {
+    bool next(std::size_t& number) override {
       if (at_ == end_) {
         at_ = std::min(batch_.next_.fetch_add(share_), batch_.count_);
         end_ = std::min(at_ + share_, batch_.count_);
         if (at_ == end_) return false;
       }
       number = at_++;
-      query = batch_.query_(number);
       return true;
     }
+    CollisionQuery query(std::size_t number) override { return batch_.query_(number); }
     void done(std::size_t number, CollisionResult& result) override {
+      if (batch_.alone_) return give(number, result);
+      CollisionResult& mine = kept_[kept_count_].second;
       kept_[kept_count_].first = number;
-      std::swap(kept_[kept_count_].second, result);
-      const bool is_large = kept_[kept_count_].second.contacts.size() > most_kept;
-      if (++kept_count_ == share_ || is_large) hand_over();
+      if (result.contacts.empty()) {  // as of most pairs that are far apart: a copy costs less than a swap
+        mine.hit = result.hit;
+        mine.relation = result.relation;
+        mine.contacts.clear();
+        mine.counts = result.counts;
+      } else {
+        std::swap(mine, result);
+      }
+      if (++kept_count_ == share_ || mine.contacts.size() > most_kept) hand_over();
     }
     void hand_over() {
+      if (kept_count_ == 0) return;
       const std::lock_guard<std::mutex> lock(batch_.taking_);
       try {
-        for (std::size_t i = 0; i < kept_count_ && !batch_.error_; ++i) {
-          std::vector<Contact>& contacts = kept_[i].second.contacts;
-          batch_.take_(kept_[i].first, kept_[i].second);
-          if (contacts.capacity() > most_kept) std::vector<Contact>().swap(contacts);
-        }
+        for (std::size_t i = 0; i < kept_count_ && !batch_.error_; ++i) give(kept_[i].first, kept_[i].second);
       } catch (...) {
         // Noted before the lock is released: another thread may wait for it to hand over its results.
         batch_.error_ = std::current_exception();
@@ -88,6 +99,11 @@ class Batch {
     }
 
    private:
+    void give(std::size_t number, CollisionResult& result) {
+      batch_.take_(number, result);
+      if (result.contacts.capacity() > most_kept) std::vector<Contact>().swap(result.contacts);
+    }
+
     Batch& batch_;
     const std::size_t share_ = batch_.partition_.share;
     std::vector<std::pair<std::size_t, CollisionResult>>& kept_;
@@ -103,6 +119,7 @@ class Batch {
   }
 
   const std::size_t count_;
+  const bool alone_;  // one thread: nothing to keep, no lock
   const Partition partition_;
   const Device::QuerySource& query_;
   const CollisionRequest& request_;

@@ -43,9 +43,8 @@ class PlainSearch final : public Search {
   }
 
   void run(QueryFeed& feed, const CollisionRequest& request) override {
-    CollisionQuery query;
-    for (std::size_t number = 0; feed.next(query, number);) {
-      run(query, request, result_);
+    for (std::size_t number = 0; feed.next(number);) {
+      run(feed.query(number), request, result_);
       feed.done(number, result_);
     }
   }

@@ -32,8 +32,10 @@ class QueryFeed {
   virtual ~QueryFeed() = default;
   /// Queries that the search may have begun at a time; it may do with fewer.
   virtual std::size_t at_once() const { return std::numeric_limits<std::size_t>::max(); }
-  /// The next query and its number; false: no more.
-  virtual bool next(CollisionQuery& query, std::size_t& number) = 0;
+  /// The number of the next query; false: no more.
+  virtual bool next(std::size_t& number) = 0;
+  /// The query. Returned where it is used: a copy of what was just written number by number stalls the processor.
+  virtual CollisionQuery query(std::size_t number) = 0;
   /// The result may be changed, for instance swapped with another one whose memory the search shall use.
   virtual void done(std::size_t number, CollisionResult& result) = 0;
 };

@@ -20,7 +20,7 @@
 #include <cchip/collide/face_pairs.hpp>
 #include <cmath>
 #include <cstdint>
-#include <mutex>
+#include <iterator>
 #include <stdexcept>
 
 #include "exact/ieee.hpp"
@@ -117,8 +117,8 @@ class SimdSearch final : public Search {
   void run(QueryFeed& feed, const CollisionRequest& request) override {
     if (request.contacts == CollisionRequest::Contacts::all) {
       Task& task = tasks_[0];
-      for (CollisionQuery query; feed.next(query, task.number);) {
-        run(query, request, task.own_result);
+      while (feed.next(task.number)) {
+        run(feed.query(task.number), request, task.own_result);
         feed.done(task.number, task.own_result);
       }
     } else {
@@ -379,10 +379,10 @@ class SimdSearch final : public Search {
     bool more = true;
     const auto begin = [&](std::size_t i, std::size_t round) {
       Task& task = tasks_[i];
-      for (CollisionQuery query; more;) {
-        more = feed.next(query, task.number);
+      while (more) {
+        more = feed.next(task.number);
         if (!more) return;
-        if (start(task, query, request, task.own_result)) return pop(i, round);
+        if (start(task, feed.query(task.number), request, task.own_result)) return pop(i, round);
         feed.done(task.number, task.own_result);
       }
     };
@@ -433,10 +433,30 @@ namespace {
 
 HWY_EXPORT(make);
 
+/// Instruction sets that this computer has. To find them Highway replaces the choice of the process by all of them, so
+/// it is asked once, and the choice of another user of Highway is put back.
+std::int64_t supported_targets() {
+  static const std::int64_t targets = [] {
+    hwy::ChosenTarget& chosen = hwy::GetChosenTarget();
+    const bool initialised = chosen.IsInitialized();
+    const std::size_t index = chosen.GetIndex();
+    const std::int64_t all = hwy::SupportedTargets();
+    if (!initialised) {
+      chosen.DeInit();
+    } else {
+      std::int64_t left = all;  // without the best ones, until the choice is the same; better sets have lower bits
+      for (; chosen.GetIndex() != index && left != 0; chosen.Update(left)) left &= left - 1;
+      if (left == 0) chosen.Update(all);  // none of those that are compiled in here
+    }
+    return all;
+  }();
+  return targets;
+}
+
 /// Bits of the instruction sets that are compiled in and that this computer has, best first.
 std::vector<std::int64_t> target_bits() {
   std::vector<std::int64_t> bits;
-  for (std::int64_t all = hwy::SupportedTargets() & HWY_TARGETS; all != 0; all &= all - 1) bits.push_back(all & -all);
+  for (std::int64_t all = supported_targets() & HWY_TARGETS; all != 0; all &= all - 1) bits.push_back(all & -all);
   return bits;
 }
 
@@ -449,15 +469,14 @@ std::vector<std::string> simd_targets() {
 }
 
 std::unique_ptr<Search> make_simd_search(const std::string& target, const Margins& margins) {
-  static std::mutex choosing;
-  const std::lock_guard<std::mutex> lock(choosing);
   for (const std::int64_t bit : target_bits()) {
     if (target != hwy::TargetName(bit)) continue;
-    // The table of HWY_EXPORT is read at the chosen target; nothing else is chosen by it meanwhile.
-    hwy::GetChosenTarget().Update(bit);
-    std::unique_ptr<Search> search = HWY_DYNAMIC_DISPATCH(make)(margins);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    return search;
+    // A choice of our own looks up the table of HWY_EXPORT: hwy::GetChosenTarget() is that of the whole process, where
+    // other users of Highway have chosen, too.
+    hwy::ChosenTarget chosen;
+    chosen.Update(bit);
+    constexpr std::size_t entries = std::size(HWY_DISPATCH_TABLE(make));  // 1 if a single target is compiled in
+    return HWY_DISPATCH_TABLE(make)[entries > 1 ? chosen.GetIndex() : 0](margins);
   }
   throw std::invalid_argument("instruction set " + target + " is not one that this computer and this program have");
 }

@@ -114,8 +114,14 @@ std::string not_read(const std::string& name) {
              " -o part.stl` or with FreeCAD";
     }
   }
-  for (const char* const other :
-       {".dae", ".gltf", ".glb", ".fbx", ".3ds", ".3mf", ".amf", ".blend", ".wrl", ".x3d", ".ifc", ".x"}) {
+  for (const char* const tree : {".3mf", ".gltf", ".glb"}) {
+    if (end == tree) {
+      return ": meshes of this format are not read; in Python load it with trimesh, which keeps its numbers, and pass "
+             "vertices and faces to collisionchip.Object, or convert it to OBJ, OFF, PLY or STL, for example with "
+             "Blender, which rounds them";
+    }
+  }
+  for (const char* const other : {".dae", ".fbx", ".3ds", ".amf", ".blend", ".wrl", ".x3d", ".ifc", ".x"}) {
     if (end == other) {
       return ": meshes of this format are not read; convert it to OBJ, OFF, PLY or STL, for example with `assimp "
              "export mesh" +

@@ -172,7 +172,7 @@ class Device {
   /// any order. A device may use all cores. Once `take` has returned false it is not called again: queries that are in
   /// flight are dropped, and the call returns.
   /// Exceptions of `query` and `take` end the batch and reach the caller, who may use the device again.
-  /// \throws std::invalid_argument as above, before any result
+  /// \throws std::invalid_argument as above; results of other queries may have come before, none comes after
   /// \throws std::logic_error as above
   void collide(std::size_t count, const QuerySource& query, const CollisionRequest& request, const ResultSink& take);
 
@@ -181,8 +181,8 @@ class Device {
 
   /// \pre check_query() accepts the query
   virtual void answer(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) = 0;
-  /// \pre check_query() accepts all of them. Does one after the other unless it is overridden. An exception of `take`
-  /// must end the batch and reach the caller; its result says nothing here.
+  /// Does one after the other unless it is overridden. An exception of `query`, which refuses what check_query() does
+  /// not accept, or of `take` must end the batch and reach the caller; the result of `take` says nothing here.
   virtual void answer_all(std::size_t count, const QuerySource& query, const CollisionRequest& request,
                           const ResultSink& take);
 
