@@ -33,12 +33,13 @@ ifneq ($(VERILATOR),)
   OTHER := -verilator-$(firstword $(shell printf %s '$(VERILATOR_PATH)' | cksum))
 endif
 RELEASE := build/release$(OTHER)
+PYTHON_TOOLS := build/python/tools
 CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
-  test-asan test-arm64 fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
+  test-asan test-arm64 cross-windows fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb wheel sdist test-sdist test-python test-dask bench-python export fpga \
   fpga-quick fpga-sweep asic asic-quick install clean
 
@@ -52,7 +53,7 @@ Use the library
 Read
   help docs docs-layout/3_min
 Check a change
-  test test-long wave-of test-python test-sdist test-dask test-debug test-asan test-arm64 test-gates formal fuzz lint tidy format
+  test test-long wave-of test-python test-sdist test-dask test-debug test-asan test-arm64 cross-windows test-gates formal fuzz lint tidy format
 Check for long
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
   campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps
@@ -167,6 +168,10 @@ test-asan: build/asan$(OTHER)/build.ninja ## build with AddressSanitizer and UBS
 
 test-arm64: ## the C++ library for 64-bit ARM and tests of it, by emulation (Debian's g++-aarch64-linux-gnu and qemu-user-static)
 	tests/arm64/run.sh build/arm64
+
+cross-windows: $(PYTHON_TOOLS)/requirements.txt ## the C++ library and the sources of the Python module for Windows, compiled, not run (Debian's g++-mingw-w64-x86-64-posix and dpkg-dev)
+	$(PYTHON_TOOLS)/bin/pip install --quiet --disable-pip-version-check --no-deps "$$(sed -n 's/.*"\(nanobind==[^"]*\)".*/\1/p' pyproject.toml)"
+	NANOBIND=$$($(PYTHON_TOOLS)/bin/python -c 'import nanobind; print(nanobind.__path__[0])') tests/windows/run.sh build/windows
 
 RUNS ?= 10000000
 fuzz-tools:
@@ -295,7 +300,6 @@ bench-scene: $(RELEASE)/build.ninja ## frames of scenes of 10 to 10,000 moving o
 	$(RELEASE)/bin/scene_speed $(BENCH_ARGS)
 
 # pip brings scikit-build-core and nanobind, of the versions that pyproject.toml names.
-PYTHON_TOOLS := build/python/tools
 $(PYTHON_TOOLS)/requirements.txt: python/build_requirements.txt
 	python3 -m venv $(PYTHON_TOOLS) || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
 	$(PYTHON_TOOLS)/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement $<

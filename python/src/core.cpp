@@ -7,8 +7,6 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -197,10 +195,10 @@ Object load(nb::handle path, bool quads) {
   if (PyUnicode_FSConverter(path.ptr(), &converted) == 0) throw nb::python_error();
   const nb::bytes bytes = nb::steal<nb::bytes>(converted);
   const std::string name(bytes.c_str(), bytes.size());
-  struct stat status = {};
-  if (stat(name.c_str(), &status) != 0) raise_os_error(errno, path);
-  if (S_ISDIR(status.st_mode)) raise_os_error(EISDIR, path);
-  if (access(name.c_str(), R_OK) != 0) raise_os_error(errno, path);
+  const nb::module_ os = nb::module_::import_("os");  // knows what the errors of each system mean
+  const nb::object kind = os.attr("stat")(path).attr("st_mode");
+  if (nb::cast<bool>(nb::module_::import_("stat").attr("S_ISDIR")(kind))) raise_os_error(EISDIR, path);
+  if (!nb::cast<bool>(os.attr("access")(path, os.attr("R_OK")))) raise_os_error(EACCES, path);
   std::string wrong;
   {
     const nb::gil_scoped_release release;
