@@ -22,6 +22,7 @@ LICENCES = {
     "highway.txt": "Copyright 2019-2022 Google LLC",
     "nanobind.txt": "Redistributions in binary form must reproduce",
     "robin_map.txt": "MIT License",
+    "three.txt": "Copyright (c) 2010-2019 three.js authors",
     "zlib.txt": "This software is provided 'as-is'",
     "LICENSE": "Apache License",
 }

@@ -1,5 +1,5 @@
-/* SPDX-License-Identifier: Apache-2.0 */
-/* What CPython's headers ask of Windows on x86-64, for a compiler alone: sizes of its types, and what the system has. */
+// SPDX-License-Identifier: Apache-2.0
+// What CPython's headers ask of Windows on x86-64, for a compiler alone: sizes of its types, and what the system has.
 #ifndef CCHIP_PYCONFIG_H
 #define CCHIP_PYCONFIG_H
 #define MS_WIN32
