@@ -71,9 +71,10 @@ struct MeshPairsOptions {
   Format format = Format::table;
 };
 
-/// stdout stays machine-readable: the summary of CSV and JSON lines goes to stderr.
+/// stdout stays machine-readable: the summary of CSV and JSON lines goes to stderr. A terminal gets a sentence.
 int report(const Summary& summary, Format format, const Streams& streams) {
-  (format == Format::table ? streams.out : streams.err) << to_line(summary) << '\n';
+  const bool sentence = format == Format::table && streams.person;
+  (format == Format::table ? streams.out : streams.err) << (sentence ? to_sentence(summary) : to_line(summary)) << '\n';
   if (summary.mismatches > 0) return exit_mismatch;
   return summary.left_out.value_or(0) > 0 ? exit_left_out : exit_ok;
 }

@@ -153,6 +153,13 @@ TEST_CASE("pair_runner: the table shows control characters harmlessly", "[system
   CHECK(lines(run.out.str()).at(1) == "two\\x0alines\\x1b[31m  1");
 }
 
+TEST_CASE("pair_runner: a summary for people", "[system][pair_runner]") {
+  CHECK(to_sentence({}) == "0 pairs, 0 touch");
+  CHECK(to_sentence({1, 1, 1, 1, 3, 1, 1}) ==
+        "1 pair, 1 touches, 1 answer differs, 1 left to the host, 3.00 axes a pair, 1 clock, 1 face left out");
+  CHECK(to_sentence({4, 2, 2, 0, 10, 300, 0}) == "4 pairs, 2 touch, 2 answers differ, 2.50 axes a pair, 300 clocks");
+}
+
 TEST_CASE("progress: one is singular", "[system][pair_runner]") {
   for (const double fraction : {-1.0, 0.5}) {
     for (const int number : {1, 2}) {
