@@ -150,9 +150,10 @@ Summary answer_meshes(const MeshPairsOptions& options, const Streams& streams) {
     return fmt::format("{} face {}, {} face {}", options.file_a, job.passed[0], options.file_b, job.passed[1]);
   };
   PairRunner runner(*engine, run, mesh_pair_names(), locate, streams.out, streams.err);
+  const std::uint64_t total = progress.enabled() ? count_candidates(a, b, options.limit) : 0;
   for_each_candidate(a, b, options.limit, [&](PairJob job) {
     runner.add(std::move(job));
-    if (runner.pairs_taken() % 1024 == 0) progress.update(runner.pairs_taken(), -1.0);
+    if (runner.pairs_taken() % 256 == 0) progress.update_of(runner.pairs_taken(), total);
   });
   Summary summary = runner.finish();
   if (options.lenient) summary.left_out = reader.faces_left_out();
