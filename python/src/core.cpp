@@ -621,8 +621,8 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
       [call](PyScene& self, const std::string& contacts, bool relation, const std::string& counts,
              std::optional<std::size_t> max_contacts, Device* device) {
         const CollisionRequest request = to_request(contacts, relation, counts, max_contacts);
-        const auto found = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), request); });
-        return to_object(found, self.scene());
+        const auto answers = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), request); });
+        return to_object(answers, self.scene());
       },
       nb::kw_only(), "contacts"_a = "first", "relation"_a = false, "counts"_a = "touching",
       "max_contacts"_a = nb::none(), "device"_a = nb::none(), nb::sig(sig("", "tuple[int, int, Result]").c_str()),
@@ -632,8 +632,8 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
       [call](PyScene& self, Scene::Id id, const std::string& contacts, bool relation, const std::string& counts,
              std::optional<std::size_t> max_contacts, Device* device) {
         const CollisionRequest request = to_request(contacts, relation, counts, max_contacts);
-        const auto found = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), id, request); });
-        return to_object(found, self.scene(), asked_for(self.scene(), id));
+        const auto answers = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), id, request); });
+        return to_object(answers, self.scene(), asked_for(self.scene(), id));
       },
       "id"_a, nb::kw_only(), "contacts"_a = "first", "relation"_a = false, "counts"_a = "touching",
       "max_contacts"_a = nb::none(), "device"_a = nb::none(), nb::sig(sig(", id: int", "tuple[int, Result]").c_str()),
@@ -646,9 +646,9 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
         const CollisionRequest request = to_request(contacts, relation, counts, max_contacts);
         const Pose place = one_pose(pose, "pose");
         const cchip::CollisionGroups bits = {groups, mask};
-        const auto found =
+        const auto answers =
             self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), object, place, request, bits); });
-        return to_object(found, self.scene(), Asked{object, place});
+        return to_object(answers, self.scene(), Asked{object, place});
       },
       "object"_a, "pose"_a = nb::none(), "groups"_a = 1, "mask"_a = all_groups, nb::kw_only(), "contacts"_a = "first",
       "relation"_a = false, "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
