@@ -33,13 +33,14 @@ ifneq ($(VERILATOR),)
   OTHER := -verilator-$(firstword $(shell printf %s '$(VERILATOR_PATH)' | cksum))
 endif
 RELEASE := build/release$(OTHER)
+PYTHON_TOOLS := build/python/tools
 CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
-  test-asan test-arm64 fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb wheel test-python test-dask bench-python export fpga \
+  test-asan test-arm64 cross-windows fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
+  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb wheel sdist test-sdist test-python test-dask bench-python export fpga \
   fpga-quick fpga-sweep asic asic-quick install clean
 
 # Groups of make help: a heading, then its targets. A target may be followed by /minutes on two cores after the build, as far as a page
@@ -48,11 +49,11 @@ define HELP_GROUPS
 Try it (make sim installs and builds first, eight minutes in all)
   sim sim-reconfig/18_s sim-traverse sim-chip/17_s sim-levels/11_s table1/1_s table1-plot wave picture
 Use the library
-  build install deb wheel export
+  build install deb wheel sdist export
 Read
   help docs docs-layout/3_min
 Check a change
-  test test-long wave-of test-python test-dask test-debug test-asan test-arm64 test-gates formal fuzz lint tidy format
+  test test-long wave-of test-python test-sdist test-dask test-debug test-asan test-arm64 cross-windows test-gates formal fuzz lint tidy format
 Check for long
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
   campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps
@@ -172,6 +173,10 @@ test-asan: build/asan$(OTHER)/build.ninja ## build with AddressSanitizer and UBS
 
 test-arm64: ## the C++ library for 64-bit ARM and tests of it, by emulation (Debian's g++-aarch64-linux-gnu and qemu-user-static)
 	tests/arm64/run.sh build/arm64
+
+cross-windows: $(PYTHON_TOOLS)/requirements.txt ## the C++ library and the sources of the Python module for Windows, compiled, not run (Debian's g++-mingw-w64-x86-64-posix and dpkg-dev)
+	$(PYTHON_TOOLS)/bin/pip install --quiet --disable-pip-version-check --no-deps "$$(sed -n 's/.*"\(nanobind==[^"]*\)".*/\1/p' pyproject.toml)"
+	NANOBIND=$$($(PYTHON_TOOLS)/bin/python -c 'import nanobind; print(nanobind.__path__[0])') tests/windows/run.sh build/windows
 
 RUNS ?= 10000000
 fuzz-tools:
@@ -299,17 +304,33 @@ bench-scene: $(RELEASE)/build.ninja ## frames of scenes of 10 to 10,000 moving o
 	cmake --build $(RELEASE) -j $(JOBS) --target scene_speed
 	$(RELEASE)/bin/scene_speed $(BENCH_ARGS)
 
-# pip brings scikit-build-core and nanobind, of the versions that python/pyproject.toml names.
-wheel: | bootstrap ## build the Python package, a wheel in build/wheel (build tools from PyPI)
-	test -x build/python/tools/bin/pip || python3 -m venv build/python/tools || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
-	rm -rf build/wheel
-	CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) build/python/tools/bin/pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir build/wheel ./python
-	@ls build/wheel/*.whl
+# pip brings scikit-build-core and nanobind, of the versions that pyproject.toml names.
+$(PYTHON_TOOLS)/requirements.txt: python/build_requirements.txt
+	python3 -m venv $(PYTHON_TOOLS) || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	$(PYTHON_TOOLS)/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement $<
+	cp $< $@
+
+# auditwheel puts the libraries into the wheel that not every Linux has, and names the oldest Linux that can load it.
+wheel: $(PYTHON_TOOLS)/requirements.txt | bootstrap ## build the Python package, a wheel in dist that other computers can install (build tools from PyPI)
+	rm -rf build/wheel dist/*.whl
+	CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) $(PYTHON_TOOLS)/bin/pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir build/wheel .
+	PATH="$(CURDIR)/$(PYTHON_TOOLS)/bin:$$PATH" auditwheel repair --strip --wheel-dir dist build/wheel/*.whl
+	@ls dist/*.whl
+
+sdist: $(PYTHON_TOOLS)/requirements.txt ## pack the sources of the Python package, in dist; pip builds them, where Eigen, Boost and Highway are
+	rm -f dist/*.tar.gz
+	$(PYTHON_TOOLS)/bin/python -m build --sdist > /dev/null
+	@ls dist/*.tar.gz
+
+test-sdist: sdist ## build and install the packed sources in a fresh environment and ask a query
+	python3 -m venv --clear build/python/sdist
+	CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) build/python/sdist/bin/pip install --quiet --disable-pip-version-check dist/*.tar.gz
+	cd build/python/sdist && bin/python ../../../python/examples/robot.py
 
 # a fresh environment below build: what a user gets who installs the wheel
 build/python/venv/installed: wheel python/tests/requirements.txt
 	python3 -m venv --clear build/python/venv
-	build/python/venv/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement python/tests/requirements.txt build/wheel/*.whl
+	build/python/venv/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement python/tests/requirements.txt dist/*.whl
 	touch $@
 
 test-python: build/python/venv/installed ## test the Python package; the same scenes through trimesh over python-fcl (PyPI; CCHIP_SEED repeats a run)
@@ -321,7 +342,7 @@ bench-python: build/python/venv/installed ## collide_many() and CollisionManager
 
 build/dask/installed: wheel python/tests/dask_requirements.txt
 	python3 -m venv --clear build/dask
-	build/dask/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement python/tests/dask_requirements.txt build/wheel/*.whl
+	build/dask/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement python/tests/dask_requirements.txt dist/*.whl
 	touch $@
 
 test-dask: build/dask/installed ## collisionchip.distributed over a Dask scheduler and two workers on loopback, with workers killed in the middle (CCHIP_SEED repeats a run)
@@ -370,11 +391,11 @@ export: $(RELEASE)/build.ninja ## one Verilog file per top with constraints, dat
 	scripts/export.py $(EXPORT_ARGS)
 
 install: $(RELEASE)/build.ninja ## install command, libraries, headers and RTL below DESTDIR/PREFIX
-	cmake --build $(RELEASE) -j $(JOBS) --target cchip cchip_core cchip_mesh_io cchip_reference cchip_model cchip_device
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip cchip_shell_files cchip_core cchip_mesh_io cchip_certificate cchip_reference cchip_model cchip_device cchip_reconfig
 	$(if $(DESTDIR),DESTDIR="$(abspath $(DESTDIR))") cmake --install $(RELEASE) --prefix "$(PREFIX)"
 
-clean: ## delete the build folder
-	rm -rf build
+clean: ## delete what was built
+	rm -rf build dist
 
 # Ninja runs CMake again when a CMake file changes; this is for the first time only.
 build/%$(OTHER)/build.ninja: | bootstrap

@@ -9,6 +9,7 @@
 #                                 collisionchip::reconfig alone, which needs SystemC and nothing of the above
 #   share/collisionchip/rtl       Verilog sources, include folder and file list cchip.f
 #   share/collisionchip/sim/rtl_models   Verilog for simulations only, file list sim.f
+#   share/bash-completion/completions/cchip, share/man/man1/cchip*.1   if cchip is built, the pages with help2man
 #   share/doc/collisionchip       licences
 # cpack makes a Debian package of that tree: make deb.
 include(GNUInstallDirs)
@@ -40,6 +41,9 @@ if(CCHIP_SIMULATION)
     set_target_properties(cchip PROPERTIES INSTALL_RPATH "${here}/${libdir_from_bindir}")
   endif()
   install(TARGETS cchip RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/shell/completion/
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/shell/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)
   set_target_properties(cchip_reconfig PROPERTIES EXPORT_NAME reconfig)
   install(TARGETS cchip_reconfig EXPORT collisionchipReconfig ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/sim/reconfig/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}

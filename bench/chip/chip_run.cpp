@@ -9,6 +9,7 @@
 #include <cchip/bvh/place.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/sim/seed.hpp>
+#include <cchip/stimulus/progress.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <random>
 
@@ -53,7 +54,9 @@ class Run {
         settings_.seed, settings_.module, settings_.memory.latency, settings_.memory.jitter, settings_.memory.reorder,
         settings_.memory.ready_percent, settings_.memory.valid_percent, 1U << settings_.driver.query_log2,
         1U << settings_.driver.record_log2, settings_.host_every);
+    all_ = settings_.meshes.size() * settings_.classes.size() * (settings_.poses + settings_.warm);
     for (const std::string& name : settings_.meshes) run_pair(name);
+    progress_.clear();
     fmt::print("queries={} hits={} mismatches={} contacts={} open={} lost={} duplicated={} clocks_mean={:.1f}\n",
                total_.queries, total_.hits, total_.mismatches, total_.contacts, total_.open, total_.lost,
                total_.duplicated,
@@ -120,17 +123,26 @@ class Run {
                "contacts", "open", "steps", "pairs", "clocks");
   }
 
+  bool run_to_end(Bench& bench, std::uint64_t most) {
+    std::uint64_t steps = 0;
+    return bench.run(most, [&] {
+      if (++steps % 1024 == 0) progress_.update_of(done_ + bench.answers().size() - bench.unanswered(), all_);
+    });
+  }
+
   void measure(const std::string& meshes, const std::string& pose_class, Bench& bench,
                const std::vector<Query>& queries, const bvh::Image& image_a, const bvh::Image& image_b) {
     const std::uint64_t most = 20000 + 4000000 * queries.size();
     for (std::size_t i = 0; i < settings_.warm; ++i) bench.submit(queries[i]);
-    bool ends = bench.run(most);
+    bool ends = run_to_end(bench, most);
     namespace regs = chip_registers;
     const std::uint64_t steps = bench.counter(regs::counter_node_pairs::offset);
     const std::uint64_t pairs = bench.counter(regs::counter_primitive_pairs::offset);
     const std::uint64_t clocks = bench.clocks();
     for (std::size_t i = settings_.warm; i < queries.size(); ++i) bench.submit(queries[i]);
-    ends = ends && bench.run(most);
+    ends = ends && run_to_end(bench, most);
+    done_ += queries.size();
+    progress_.clear();
     Totals now;
     now.clocks = bench.clocks() - clocks;
     for (std::uint64_t i = 0; i < 2000; i += settings_.host_every) bench.step();  // nothing may follow
@@ -177,6 +189,9 @@ class Run {
   Settings settings_;
   std::unique_ptr<Device> device_;
   Totals total_;
+  Progress progress_{"queries"};  // on a terminal
+  std::uint64_t done_ = 0;        // queries of the classes before
+  std::uint64_t all_ = 0;
 };
 
 }  // namespace

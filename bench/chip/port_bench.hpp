@@ -91,9 +91,15 @@ class PortBench {
   std::size_t in_flight() const { return submitted_ - answered_; }
   /// Until every query has its answer. \returns false if that takes longer than that many clocks, or never ends
   bool run(std::uint64_t most_clocks) {
+    return run(most_clocks, [] {});
+  }
+  /// The same. \param each called after each step
+  template <class Each>
+  bool run(std::uint64_t most_clocks, const Each& each) {
     const std::uint64_t end = clocks() + most_clocks;
     while (unanswered() > 0) {
       if (clocks() > end || !step()) return false;
+      each();
     }
     return true;
   }

@@ -7,17 +7,17 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <atomic>
 #include <cchip/cchip.hpp>
+#include <cchip/mesh_io/html_page.hpp>
 #include <cchip/reference/brute_force.hpp>
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -197,10 +197,10 @@ Object load(nb::handle path, bool quads, bool lenient) {
   if (PyUnicode_FSConverter(path.ptr(), &converted) == 0) throw nb::python_error();
   const nb::bytes bytes = nb::steal<nb::bytes>(converted);
   const std::string name(bytes.c_str(), bytes.size());
-  struct stat status = {};
-  if (stat(name.c_str(), &status) != 0) raise_os_error(errno, path);
-  if (S_ISDIR(status.st_mode)) raise_os_error(EISDIR, path);
-  if (access(name.c_str(), R_OK) != 0) raise_os_error(errno, path);
+  const nb::module_ os = nb::module_::import_("os");  // knows what the errors of each system mean
+  const nb::object kind = os.attr("stat")(path).attr("st_mode");
+  if (nb::cast<bool>(nb::module_::import_("stat").attr("S_ISDIR")(kind))) raise_os_error(EISDIR, path);
+  if (!nb::cast<bool>(os.attr("access")(path, os.attr("R_OK")))) raise_os_error(EACCES, path);
   std::string wrong;
   {
     const nb::gil_scoped_release release;
@@ -337,8 +337,16 @@ const char* name_of(cchip::Relation relation) {
   return relation == cchip::Relation::touching ? "touching" : "crossing";
 }
 
+/// The objects of a query in their poses.
+struct Places {
+  Object a;
+  Pose pose_a;
+  Object b;
+  Pose pose_b;
+};
+
 struct Result {
-  explicit Result(const CollisionResult& x) : hit(x.hit), counts(x.counts) {
+  Result(const CollisionResult& x, Places asked) : hit(x.hit), counts(x.counts), places(std::move(asked)) {
     if (x.relation) relation = name_of(*x.relation);
     for (const cchip::Contact& contact : x.contacts) {
       faces.insert(faces.end(), {contact.face_a, contact.face_b});
@@ -352,7 +360,36 @@ struct Result {
   std::vector<std::uint8_t> crossing;
   bool tells_crossing;
   cchip::CollisionCounts counts;
+  Places places;
 };
+
+/// What the result looks like, see cchip::html_page(); UTF-8, but for names of files.
+nb::bytes page_of(const Result& x) {
+  std::vector<cchip::PageContact> contacts;
+  for (std::size_t i = 0; i < x.faces.size() / 2; ++i) {
+    std::optional<cchip::Relation> relation;
+    if (x.tells_crossing) relation = x.crossing[i] != 0 ? cchip::Relation::crossing : cchip::Relation::touching;
+    contacts.push_back({x.faces[2 * i], x.faces[2 * i + 1], relation});
+  }
+  std::string answer = x.relation ? *x.relation : x.hit ? "touch" : "apart";
+  if (x.hit) answer += ": " + std::to_string(contacts.size()) + (contacts.size() == 1 ? " contact" : " contacts");
+  std::string folder;
+  const char* const mine = std::getenv("CCHIP_THREE");
+  if (mine == nullptr)
+    folder = nb::cast<std::string>(nb::module_::import_("collisionchip.view").attr("three_folder")());
+  std::string page;
+  {
+    const nb::gil_scoped_release release;
+    const GradualUnderflow mode;
+    const cchip::PageScripts scripts = cchip::read_page_scripts(folder);
+    cchip::Mesh a = cchip::transformed(x.places.a.mesh(), x.places.pose_a);
+    cchip::Mesh b = cchip::transformed(x.places.b.mesh(), x.places.pose_b);
+    if (a.name.empty()) a.name = "A";
+    if (b.name.empty()) b.name = "B";
+    page = cchip::html_page(a, b, answer, contacts, scripts);
+  }
+  return nb::bytes(page.data(), page.size());
+}
 
 /// The device that was given, or else one with all cores, which the process has once; if it is in use, one of a single
 /// thread that the calling thread has. Use it with the GIL released.
@@ -395,7 +432,8 @@ Result collide(const Object& a, nb::handle pose_a, const Object& b, nb::handle p
   const nb::gil_scoped_release release;
   const GradualUnderflow mode;
   return Result(device != nullptr ? cchip::collide(*device, a, place_a, b, place_b, request)
-                                  : cchip::collide(a, place_a, b, place_b, request));
+                                  : cchip::collide(a, place_a, b, place_b, request),
+                {a, place_a, b, place_b});
 }
 
 /// Calls `each` for the result of every pose, with the GIL released.
@@ -467,15 +505,16 @@ nb::object collide_many(const Object& a, nb::handle poses_a, const Object& b, nb
 
 /// By asking about every pair of faces in integers of any size: for tests.
 Result exact(const Object& a, nb::handle pose_a, const Object& b, nb::handle pose_b) {
+  const Pose place_a = one_pose(pose_a, "pose_a");
+  const Pose place_b = one_pose(pose_b, "pose_b");
   CollisionResult result;
-  result.contacts =
-      cchip::brute_force_contacts(a.mesh(), one_pose(pose_a, "pose_a"), b.mesh(), one_pose(pose_b, "pose_b"));
+  result.contacts = cchip::brute_force_contacts(a.mesh(), place_a, b.mesh(), place_b);
   result.hit = !result.contacts.empty();
   result.relation = cchip::Relation::apart;
   for (const cchip::Contact& contact : result.contacts) {
     result.relation = std::max(*result.relation, contact.relation.value_or(cchip::Relation::touching));
   }
-  return Result(result);
+  return Result(result, {a, place_a, b, place_b});
 }
 
 // Scenes.
@@ -542,17 +581,33 @@ PyType_Slot scene_slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(traverse_s
                              {Py_tp_clear, reinterpret_cast<void*>(clear_scene)},
                              {0, nullptr}};
 
-nb::object to_tuple(const Scene::Pair& x) { return nb::make_tuple(x.a, x.b, Result(x.result)); }
-nb::object to_tuple(const Scene::Hit& x) { return nb::make_tuple(x.id, Result(x.result)); }
-template <class Found>
-nb::object to_object(const std::vector<Found>& found) {
+/// An object and its pose: one of the scene, or one outside.
+struct Asked {
+  Object object;
+  Pose pose;
+};
+Asked asked_for(const Scene& scene, Scene::Id id) { return {scene.object(id), scene.pose(id)}; }
+
+Result placed(const CollisionResult& x, const Asked& a, const Asked& b) {
+  return {x, {a.object, a.pose, b.object, b.pose}};
+}
+
+nb::object to_tuple(const Scene& scene, const Scene::Pair& x) {
+  return nb::make_tuple(x.a, x.b, placed(x.result, asked_for(scene, x.a), asked_for(scene, x.b)));
+}
+nb::object to_tuple(const Scene& scene, const Asked& a, const Scene::Hit& x) {
+  return nb::make_tuple(x.id, placed(x.result, a, asked_for(scene, x.id)));
+}
+/// \param found a list or an optional one; \param args of to_tuple() before it
+template <class Found, class... Args>
+nb::object to_object(const std::vector<Found>& found, const Args&... args) {
   nb::list list;
-  for (const Found& x : found) list.append(to_tuple(x));
+  for (const Found& x : found) list.append(to_tuple(args..., x));
   return list;
 }
-template <class Found>
-nb::object to_object(const std::optional<Found>& found) {
-  return found ? to_tuple(*found) : nb::none();
+template <class Found, class... Args>
+nb::object to_object(const std::optional<Found>& found, const Args&... args) {
+  return found ? to_tuple(args..., *found) : nb::none();
 }
 
 constexpr std::uint64_t all_groups = ~std::uint64_t{0};
@@ -574,7 +629,8 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
       [call](PyScene& self, const std::string& contacts, bool relation, const std::string& counts,
              std::optional<std::size_t> max_contacts, Device* device) {
         const CollisionRequest request = to_request(contacts, relation, counts, max_contacts);
-        return to_object(self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), request); }));
+        const auto answers = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), request); });
+        return to_object(answers, self.scene());
       },
       nb::kw_only(), "contacts"_a = "first", "relation"_a = false, "counts"_a = "touching",
       "max_contacts"_a = nb::none(), "device"_a = nb::none(), nb::sig(sig("", "tuple[int, int, Result]").c_str()),
@@ -584,7 +640,8 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
       [call](PyScene& self, Scene::Id id, const std::string& contacts, bool relation, const std::string& counts,
              std::optional<std::size_t> max_contacts, Device* device) {
         const CollisionRequest request = to_request(contacts, relation, counts, max_contacts);
-        return to_object(self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), id, request); }));
+        const auto answers = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), id, request); });
+        return to_object(answers, self.scene(), asked_for(self.scene(), id));
       },
       "id"_a, nb::kw_only(), "contacts"_a = "first", "relation"_a = false, "counts"_a = "touching",
       "max_contacts"_a = nb::none(), "device"_a = nb::none(), nb::sig(sig(", id: int", "tuple[int, Result]").c_str()),
@@ -597,8 +654,9 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
         const CollisionRequest request = to_request(contacts, relation, counts, max_contacts);
         const Pose place = one_pose(pose, "pose");
         const cchip::CollisionGroups bits = {groups, mask};
-        return to_object(
-            self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), object, place, request, bits); }));
+        const auto answers =
+            self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), object, place, request, bits); });
+        return to_object(answers, self.scene(), Asked{object, place});
       },
       "object"_a, "pose"_a = nb::none(), "groups"_a = 1, "mask"_a = all_groups, nb::kw_only(), "contacts"_a = "first",
       "relation"_a = false, "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
@@ -772,6 +830,20 @@ neighbours: False leaves out all pairs with a common vertex.)")
             return d;
           },
           nb::sig("def counts(self) -> dict[str, int]"), "What the query cost (docs/cpp/collide.md).")
+      .def(
+          "show",
+          [](const Result& x, nb::object path) {
+            return nb::module_::import_("collisionchip.view").attr("show")(page_of(x), path);
+          },
+          "path"_a = nb::none(),
+          nb::sig("def show(self, path: str | os.PathLike[str] | None = None) -> collisionchip.view.View"),
+          R"(Shows both objects and the contacts that the result has: opens a page in the browser, or in a notebook returns it to
+the cell. For all contacts and which of them cross, ask collide() with contacts='all', relation=True.
+
+path: write the page into this file instead, HTML.
+
+Raises RuntimeError: three.js, which draws, is neither in the package nor on this computer. Raises OSError: the file
+cannot be written.)")
       .def("__bool__", [](const Result& x) { return x.hit; })
       .def("__repr__", [](const Result& x) {
         return "<collisionchip.Result: " + std::string(x.hit ? "hit" : "no hit") +

@@ -71,9 +71,10 @@ struct MeshPairsOptions {
   Format format = Format::table;
 };
 
-/// stdout stays machine-readable: the summary of CSV and JSON lines goes to stderr.
+/// stdout stays machine-readable: the summary of CSV and JSON lines goes to stderr. A terminal gets a sentence.
 int report(const Summary& summary, Format format, const Streams& streams) {
-  (format == Format::table ? streams.out : streams.err) << to_line(summary) << '\n';
+  const bool sentence = format == Format::table && streams.person;
+  (format == Format::table ? streams.out : streams.err) << (sentence ? to_sentence(summary) : to_line(summary)) << '\n';
   if (summary.mismatches > 0) return exit_mismatch;
   return summary.left_out.value_or(0) > 0 ? exit_left_out : exit_ok;
 }
@@ -149,9 +150,10 @@ Summary answer_meshes(const MeshPairsOptions& options, const Streams& streams) {
     return fmt::format("{} face {}, {} face {}", options.file_a, job.passed[0], options.file_b, job.passed[1]);
   };
   PairRunner runner(*engine, run, mesh_pair_names(), locate, streams.out, streams.err);
+  const std::uint64_t total = progress.enabled() ? count_candidates(a, b, options.limit) : 0;
   for_each_candidate(a, b, options.limit, [&](PairJob job) {
     runner.add(std::move(job));
-    if (runner.pairs_taken() % 1024 == 0) progress.update(runner.pairs_taken(), -1.0);
+    if (runner.pairs_taken() % 256 == 0) progress.update_of(runner.pairs_taken(), total);
   });
   Summary summary = runner.finish();
   if (options.lenient) summary.left_out = reader.faces_left_out();

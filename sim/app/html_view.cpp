@@ -3,152 +3,19 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cchip/stimulus/usage_error.hpp>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <string_view>
-#include <utility>
-
-#include "viewer.hpp"
+#include <stdexcept>
 
 namespace cchip::app {
 namespace {
 
-std::string read_three(const char* name) {
-  const char* const chosen = std::getenv("CCHIP_THREE");
-  const std::filesystem::path folder = chosen != nullptr ? chosen : "/usr/share/javascript/three";
-  std::ifstream in(folder / name, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(in), {});
-  if (!text.empty()) return text;
-  throw UsageError(fmt::format(
-      "--html: the library three.js is missing ({}); install Debian's package libjs-three, or name the folder of "
-      "three.js 0.111 in CCHIP_THREE",
-      (folder / name).string()));
-}
-
-/// A text as JavaScript in a page: "</script>" in it would end the script.
-std::string quoted(const std::string& text) {
-  const std::string json = nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  std::string safe;
-  for (const char c : json) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return safe;
-}
-
-/// A text as HTML.
-std::string escaped(const std::string& text) {
-  std::string html;
-  for (const char c : text) {
-    if (c == '&' || c == '<') {
-      html += c == '&' ? "&amp;" : "&lt;";
-    } else {
-      html += c;
-    }
+PageScripts read_scripts() {
+  try {
+    return read_page_scripts();
+  } catch (const std::runtime_error& error) {
+    throw UsageError(std::string("--html: ") + error.what());
   }
-  return html;
-}
-
-/// Numbers with commas, in brackets.
-class List {
- public:
-  explicit List(std::ostream& out) : out_(out) { out_ << '['; }
-  template <class Item>
-  void add(const Item& item) {
-    out_ << (first_ ? "" : ",") << item;
-    first_ = false;
-  }
-  void end() { out_ << ']'; }
-
- private:
-  std::ostream& out_;
-  bool first_ = true;
-};
-
-std::size_t corners(const Mesh::Face& face) { return face.kind == Kind::quad ? 4 : 3; }
-
-/// Sides of the file's faces: those inside a polygon that was cut belong to two of its triangles.
-void write_edges(const Mesh& mesh, std::ostream& out) {
-  List edges(out);
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
-  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
-    const Mesh::Face& face = mesh.faces[i];
-    for (std::size_t k = 0; k < corners(face); ++k) {
-      const std::uint32_t from = face.vertex[k];
-      const std::uint32_t to = face.vertex[(k + 1) % corners(face)];
-      ++sides[{std::min(from, to), std::max(from, to)}];
-    }
-    const auto number = [&mesh](std::size_t n) { return mesh.number_in_file(static_cast<std::uint32_t>(n)); };
-    if (i + 1 < mesh.faces.size() && number(i + 1) == number(i)) continue;
-    for (const auto& [side, count] : sides) {
-      if (count % 2 == 0) continue;
-      edges.add(side.first);
-      edges.add(side.second);
-    }
-    sides.clear();
-  }
-  edges.end();
-}
-
-/// \param centre subtracted from all points, so that single precision is enough to draw them
-void write_mesh(const Mesh& mesh, const Vec3d& centre, std::ostream& out) {
-  out << "{\"name\":" << quoted(mesh.name) << ",\"vertices\":";
-  List vertices(out);
-  for (const Vec3d& vertex : mesh.vertices) {
-    for (Eigen::Index i = 0; i < 3; ++i) vertices.add(fmt::format("{:.9g}", vertex[i] - centre[i]));
-  }
-  vertices.end();
-  out << ",\"triangles\":";
-  List triangles(out);
-  for (const Mesh::Face& face : mesh.faces) {
-    for (std::size_t k = 2; k < corners(face); ++k) {
-      for (const std::size_t corner : {std::size_t{0}, k - 1, k}) triangles.add(face.vertex[corner]);
-    }
-  }
-  triangles.end();
-  out << ",\"faces\":";
-  List faces(out);
-  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
-    for (std::size_t k = 2; k < corners(mesh.faces[i]); ++k) {
-      faces.add(mesh.number_in_file(static_cast<std::uint32_t>(i)));
-    }
-  }
-  faces.end();
-  out << ",\"edges\":";
-  write_edges(mesh, out);
-  out << '}';
-}
-
-/// Middle of the box around the faces of both.
-Vec3d centre_of(const Mesh& a, const Mesh& b) {
-  Eigen::AlignedBox3d box;
-  for (const Mesh* mesh : {&a, &b}) {
-    for (const Mesh::Face& face : mesh->faces) {
-      for (std::size_t k = 0; k < corners(face); ++k) box.extend(mesh->vertices[face.vertex[k]]);
-    }
-  }
-  return box.center();
-}
-
-void write_data(const Mesh& a, const Mesh& b, const std::string& answer, const std::vector<Contact>& contacts,
-                std::ostream& out) {
-  const Vec3d centre = centre_of(a, b);
-  out << "{\"answer\":" << quoted(answer) << ",\"meshes\":[";
-  write_mesh(a, centre, out);
-  out << ',';
-  write_mesh(b, centre, out);
-  out << "],\"contacts\":";
-  List list(out);
-  for (const Contact& contact : contacts) {
-    const int relation = !contact.relation ? 0 : *contact.relation == Relation::crossing ? 2 : 1;
-    list.add(fmt::format("[{},{},{}]", contact.face_a, contact.face_b, relation));
-  }
-  list.end();
-  out << '}';
 }
 
 }  // namespace
@@ -159,34 +26,13 @@ void check_view_name(const std::string& path) {
   throw UsageError(fmt::format("--html {}: the view is an HTML file; give a name that ends with .html", path));
 }
 
-HtmlView::HtmlView(const std::string& path)
-    : three_(read_three("three.min.js")), controls_(read_three("examples/js/controls/OrbitControls.js")), file_(path) {}
+HtmlView::HtmlView(const std::string& path) : scripts_(read_scripts()), file_(path) {}
 
 void HtmlView::write(const Mesh& a, const Mesh& b, const std::string& answer, const std::vector<Contact>& contacts) {
-  std::ostream& out = file_.stream();
-  std::string_view rest = viewer_page;
-  while (!rest.empty()) {
-    // @NAME@ stands for a part; another @ is a letter
-    const std::size_t mark = rest.find('@');
-    out << rest.substr(0, mark);
-    rest.remove_prefix(std::min(mark, rest.size()));
-    const std::size_t end = rest.find('@', 1);
-    const std::string_view name = end == std::string_view::npos ? "" : rest.substr(0, end + 1);
-    if (name == "@TITLE@") {
-      out << escaped(answer);
-    } else if (name == "@THREE@") {
-      out << three_;
-    } else if (name == "@CONTROLS@") {
-      out << controls_;
-    } else if (name == "@DATA@") {
-      write_data(a, b, answer, contacts, out);
-    } else {
-      out << rest.substr(0, 1);
-      rest.remove_prefix(std::min<std::size_t>(1, rest.size()));
-      continue;
-    }
-    rest.remove_prefix(name.size());
-  }
+  std::vector<PageContact> rows;
+  rows.reserve(contacts.size());
+  for (const Contact& contact : contacts) rows.push_back({contact.face_a, contact.face_b, contact.relation});
+  file_.stream() << html_page(a, b, answer, rows, scripts_);
   file_.commit();
 }
 

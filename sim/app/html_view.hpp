@@ -6,6 +6,7 @@
 
 #include <cchip/collide/collide.hpp>
 #include <cchip/mesh/mesh.hpp>
+#include <cchip/mesh_io/html_page.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <string>
 #include <vector>
@@ -31,8 +32,7 @@ class HtmlView {
   void write(const Mesh& a, const Mesh& b, const std::string& answer, const std::vector<Contact>& contacts);
 
  private:
-  std::string three_;
-  std::string controls_;
+  PageScripts scripts_;
   sim::OutputFile file_;
 };
 

@@ -98,6 +98,12 @@ void for_each_candidate(const Mesh& a, const Mesh& b, std::uint64_t limit, const
   });
 }
 
+std::uint64_t count_candidates(const Mesh& a, const Mesh& b, std::uint64_t limit) {
+  std::uint64_t count = 0;
+  sweep_box_pairs(a, b, [&](CandidatePair) { ++count; });
+  return limit == 0 ? count : std::min(count, limit);
+}
+
 void HitPicture::add_hit(const PairJob& job) {
   hits_a_.insert(std::stoull(job.passed.at(0)));
   hits_b_.insert(std::stoull(job.passed.at(1)));

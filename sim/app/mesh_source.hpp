@@ -48,6 +48,8 @@ const std::vector<std::string>& mesh_pair_names();
 
 /// Calls `take` for every pair of faces whose boxes overlap, at most `limit` times (0: no limit).
 void for_each_candidate(const Mesh& a, const Mesh& b, std::uint64_t limit, const std::function<void(PairJob)>& take);
+/// How often for_each_candidate() calls `take`.
+std::uint64_t count_candidates(const Mesh& a, const Mesh& b, std::uint64_t limit);
 
 /// A PLY of both meshes: faces of A that hit are orange, those of B blue, all others light grey.
 class HitPicture {

@@ -39,6 +39,21 @@ std::string to_line(const Summary& s) {
   return s.left_out ? line + fmt::format(" left_out={}", *s.left_out) : line;
 }
 
+std::string to_sentence(const Summary& s) {
+  const auto counted = [](std::uint64_t count, const char* one, const char* many) {
+    return fmt::format("{} {}", count, count == 1 ? one : many);
+  };
+  std::string line = counted(s.pairs, "pair", "pairs") + ", " + counted(s.hits, "touches", "touch");
+  if (s.mismatches > 0) line += ", " + counted(s.mismatches, "answer differs", "answers differ");
+  if (s.indefinite > 0) line += fmt::format(", {} left to the host", s.indefinite);
+  if (s.beats > 0 && s.pairs > 0) {
+    line += fmt::format(", {:.2f} axes a pair", static_cast<double>(s.beats) / static_cast<double>(s.pairs));
+  }
+  if (s.clocks > 0) line += ", " + counted(s.clocks, "clock", "clocks");
+  if (s.left_out.value_or(0) > 0) line += ", " + counted(*s.left_out, "face", "faces") + " left out";
+  return line;
+}
+
 PairRunner::PairRunner(PairEngine& engine, const RunOptions& options, const std::vector<std::string>& passed_names,
                        Locate locate, std::ostream& out, std::ostream& messages)
     : engine_(engine),

@@ -31,6 +31,8 @@ struct Summary {
 
 /// "pairs=N hits=H mismatches=M indefinite=I beats_mean=B clocks=C", then " left_out=L" if such faces are left out
 std::string to_line(const Summary& summary);
+/// The same for people: "2 pairs, 1 touches, 4.50 axes a pair, 12 clocks". What did not happen is left out.
+std::string to_sentence(const Summary& summary);
 
 struct RunOptions {
   PairMode mode = PairMode::exhaustive;

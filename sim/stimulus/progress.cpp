@@ -17,7 +17,7 @@ std::string duration(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
-constexpr double first_estimate = 2;  // seconds; before, the start of the work distorts it
+constexpr double first_estimate = 1;  // seconds; before, the start of the work distorts it
 
 /// "1 pair", "2 pairs", of a unit in the plural.
 std::string counted(std::uint64_t count, const std::string& unit) {

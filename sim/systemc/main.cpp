@@ -10,6 +10,7 @@
 #include <cchip/sim/output_file.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/command_line.hpp>
+#include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <cchip/wire/definitions.hpp>
 #include <fstream>
@@ -71,8 +72,14 @@ int run(const Options& options) {
   const Stimulus stimulus = make_stimulus(options);
   if (!options.write_to.empty()) save(stimulus, options.write_to);
   Summary summary(stimulus);
-  for (const Level& level : all_levels) summary.add(run(level, stimulus, options.level));
+  Progress progress("levels");
+  std::uint64_t done = 0;
+  for (const Level& level : all_levels) {
+    summary.add(run(level, stimulus, options.level));
+    progress.update(++done, -1);  // levels take too different times for an estimate
+  }
   if (summary.good()) summary.set_added_deltas(added_deltas(stimulus, options.level));
+  progress.clear();
   summary.print(std::cout);
   return summary.good() ? exit_ok : exit_mismatch;
 }

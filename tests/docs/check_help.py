@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""make help shows every target of the Makefile that has a text, once, with that text.
+"""make help shows every target of the Makefile that has a text, once, with that text; make install builds all that CMake installs.
 
 usage: check_help.py ROOT"""
 import collections
@@ -20,5 +20,8 @@ count = collections.Counter(name for name, _ in listed)
 wrong = [f"make help shows {name} {count[name]} times" for name in targets if count[name] != 1]
 wrong += [f"make help shows {name}, which is no target with a text" for name in count if name not in targets]
 wrong += [f"make help, {name}: '{text}'" for name, text in listed if name in targets and text != targets[name]]
+installed = re.findall(r"install\(TARGETS ((?:cchip\w* )+)", (root / "cmake/CchipInstall.cmake").read_text())
+built = re.search(r"^install:.*\n\tcmake --build .* --target (.*)$", (root / "Makefile").read_text(), re.M)[1].split()
+wrong += [f"make install does not build {name}, which CMake installs" for names in installed for name in names.split() if name not in built]
 print("\n".join(wrong) if wrong else f"{len(targets)} targets")
 sys.exit(bool(wrong) or len(targets) < 40)

@@ -39,10 +39,10 @@ expect("collisionchip.core", r"^name: ::collisionchip:(.*)$", version)
 expect("CHANGELOG.md", r"^## \[(\d[^\]]*)\]", version)
 expect("CHANGELOG.md", r"^## \[\d[^\]]*\] - (.*)$", read("CITATION.cff", r"^date-released: (.*)$"))
 # The Python package reads CMakeLists.txt by a pattern of its own.
-python = (root / "python/pyproject.toml").read_text()
-pattern = read("python/pyproject.toml", r"^regex = '(.*)'$")
-if not re.search(r'^dynamic = \["version"\]$', python, re.M) or 'input = "../CMakeLists.txt"' not in python:
-    wrong.append("python/pyproject.toml: does not read the version from CMakeLists.txt")
+python = (root / "pyproject.toml").read_text()
+pattern = read("pyproject.toml", r"^regex = '(.*)'$")
+if not re.search(r'^dynamic = \["version"\]$', python, re.M) or 'input = "CMakeLists.txt"' not in python:
+    wrong.append("pyproject.toml: does not read the version from CMakeLists.txt")
 else:
     expect("CMakeLists.txt", pattern.replace("?P<value>", ""), version)
 if options.tag and options.tag != f"v{version}":

@@ -153,6 +153,24 @@ TEST_CASE("pair_runner: the table shows control characters harmlessly", "[system
   CHECK(lines(run.out.str()).at(1) == "two\\x0alines\\x1b[31m  1");
 }
 
+TEST_CASE("pair_runner: a summary for people", "[system][pair_runner]") {
+  CHECK(to_sentence({}) == "0 pairs, 0 touch");
+  CHECK(to_sentence({1, 1, 1, 1, 3, 1, 1}) ==
+        "1 pair, 1 touches, 1 answer differs, 1 left to the host, 3.00 axes a pair, 1 clock, 1 face left out");
+  CHECK(to_sentence({4, 2, 2, 0, 10, 300, 0}) == "4 pairs, 2 touch, 2 answers differ, 2.50 axes a pair, 300 clocks");
+}
+
+TEST_CASE("progress: an estimate after a second", "[system][pair_runner]") {
+  std::ostringstream out;
+  cchip::Progress progress(out, true);
+  std::this_thread::sleep_for(std::chrono::milliseconds(150));
+  progress.update_of(1, 2);
+  CHECK(out.str().find("left") == std::string::npos);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+  progress.update_of(1, 2);
+  CHECK(out.str().find(" 50 %  1 pair, 1 s left") != std::string::npos);
+}
+
 TEST_CASE("progress: one is singular", "[system][pair_runner]") {
   for (const double fraction : {-1.0, 0.5}) {
     for (const int number : {1, 2}) {

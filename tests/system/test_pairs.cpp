@@ -254,6 +254,17 @@ TEST_CASE("pairs: a header alone is no pair and no error", "[system][pairs]") {
   CHECK(last_line(outcome.out) == "pairs=0 hits=0 mismatches=0 indefinite=0 beats_mean=0.00 clocks=0");
 }
 
+TEST_CASE("pairs: a terminal gets a sentence, programs the line", "[system][pairs]") {
+  const auto run = [](const std::string& format) {
+    std::istringstream in(mixed_file());
+    std::ostringstream out, err;
+    run_cli({"pairs", "-", "--engine", "exact", "--format", format}, {in, out, err, false, true, false});
+    return format == "table" ? last_line(out.str()) : last_line(err.str());
+  };
+  CHECK_THAT(run("table"), Catch::Matchers::Matches("[0-9]+ pairs, [0-9]+ touch(es)?"));
+  CHECK(run("csv").rfind("pairs=", 0) == 0);
+}
+
 TEST_CASE("pairs: more than one batch, every row once and in order", "[system][pairs]") {
   const std::size_t pairs = 10000;
   std::string input = "id," + header + "\n";

@@ -7,14 +7,15 @@
 
 #if __has_include(<sys/mman.h>)
 #include <sys/mman.h>
+#endif
 
 #include "rounding.hpp"
-#endif
 
 namespace cchip::bvh {
 namespace {
 
 constexpr double least_unit = 0x1p-1000;
+constexpr std::size_t cache_line = 64;
 
 /// A word, the number of its direction among the 13, which way it points along that, and the direction's length.
 struct Word {
@@ -93,9 +94,7 @@ NodeRef ref_of(const TreeNode& node) {
 }  // namespace
 
 void* allocate_bytes(std::size_t bytes) {
-  constexpr std::size_t line = 64;
-  void* const memory = std::aligned_alloc(line, (bytes + line - 1) / line * line);
-  if (memory == nullptr) throw std::bad_alloc();
+  void* const memory = ::operator new (bytes, std::align_val_t{cache_line});
 #ifdef MADV_HUGEPAGE
   constexpr std::size_t large_page = std::size_t{1} << 21U;  // of x86-64 and of most Arm systems
   constexpr std::size_t page = std::size_t{1} << 16U;        // the others are as large or smaller
@@ -106,6 +105,8 @@ void* allocate_bytes(std::size_t bytes) {
 #endif
   return memory;
 }
+
+void free_bytes(void* memory) noexcept { ::operator delete (memory, std::align_val_t{cache_line}); }
 
 SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : depth_(tree.depth), faces_(tree.faces) {
   const Dop26& all = tree.nodes.front().dop;

@@ -36,7 +36,7 @@ std::string read_file(const std::string& path) {
   const auto size = std::filesystem::is_fifo(status) ? 0 : std::filesystem::file_size(path, error);
   std::string content(std::max<std::size_t>(error ? 0 : size + 1, least_bytes), '\0');  // one more, to meet the end
   errno = 0;
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in(std::filesystem::path(path), std::ios::binary);  // on Windows, too, a name is UTF-8 then
   const auto unreadable = [&path] {
     const std::string cause = errno == 0 ? "an error of the disk" : std::strerror(errno);
     return std::runtime_error(path + ": the file cannot be read (" + cause + "); check its permissions");
@@ -76,7 +76,7 @@ const Format* format_shown_by(std::string_view file) {
 
 /// The reader for the extension of a name, or else the one whose first word begins the file, or else nothing.
 Reader reader_of(const std::string& path, std::string_view file) {
-  std::string end = std::filesystem::path(path).extension();
+  std::string end = std::filesystem::path(path).extension().string();
   std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
   if (end == ".obj") return mesh_io::read_obj;
   if (end == ".off") return mesh_io::read_off;
@@ -106,7 +106,7 @@ std::string_view packer_of(std::string_view file) {
 
 /// What to do about a file whose format is not read, by its extension.
 std::string not_read(const std::string& name) {
-  std::string end = std::filesystem::path(name).extension();
+  std::string end = std::filesystem::path(name).extension().string();
   std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
   for (const char* const cad : {".step", ".stp", ".iges", ".igs", ".brep"}) {
     if (end == cad) {
@@ -282,7 +282,7 @@ Mesh parse_unpacked(std::string_view content, const std::string& name, const std
 /// The name without `.gz`.
 std::string name_inside(const std::string& name) {
   const std::filesystem::path path(name);
-  std::string end = path.extension();
+  std::string end = path.extension().string();
   std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
   return end == ".gz" ? path.stem().string() : name;
 }

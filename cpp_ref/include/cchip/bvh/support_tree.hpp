@@ -8,7 +8,6 @@
 #include <cchip/bvh/tree.hpp>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <vector>
 
@@ -71,9 +70,10 @@ struct alignas(64) SupportLine {
 };
 inline constexpr int support_most = 29000;
 
-/// Aligned to a cache line; free() takes it back.
+/// Aligned to a cache line; free_bytes() takes it back.
 /// \throws std::bad_alloc
 void* allocate_bytes(std::size_t bytes);
+void free_bytes(void* memory) noexcept;
 
 /// Memory in large pages where the system has them to give: a search jumps through all of a tree.
 template <class T>
@@ -83,7 +83,7 @@ struct LargePages {
   template <class U>
   LargePages(const LargePages<U>&) {}  // NOLINT: allocators convert
   T* allocate(std::size_t count) { return static_cast<T*>(allocate_bytes(count * sizeof(T))); }
-  void deallocate(T* memory, std::size_t) { std::free(memory); }
+  void deallocate(T* memory, std::size_t) { free_bytes(memory); }
   template <class U>
   bool operator==(const LargePages<U>&) const {
     return true;

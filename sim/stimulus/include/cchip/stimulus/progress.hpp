@@ -11,7 +11,7 @@
 
 namespace cchip {
 
-/// One line with a bar, a count and, after two seconds, an estimate of the time left. It is redrawn at most ten times a
+/// One line with a bar, a count and, after a second, an estimate of the time left. It is redrawn at most ten times a
 /// second and removed at the end. Not thread-safe.
 class Progress {
  public:
