@@ -196,9 +196,15 @@ module cchip_chip #(
   reg invalidate_q, invalidating_q;  // a command waits; one waits or is at work
   // it is a command: after a reset the cache clears itself, which ends without an event
   reg commanded_q;
+  wire regs_rst;  // a clock later, as those of the other blocks
+  cchip_reset_copy u_regs_reset (
+      .clk     (clk),
+      .rst     (rst),
+      .rst_copy(regs_rst)
+  );
   cchip_chip_regs u_regs (
       .clk                                 (clk),
-      .rst                                 (rst),
+      .rst                                 (regs_rst),
       .s_axil_awvalid                      (s_axil_awvalid),
       .s_axil_awready                      (s_axil_awready),
       .s_axil_awaddr                       (s_axil_awaddr),

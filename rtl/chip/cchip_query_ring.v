@@ -8,8 +8,8 @@
 //                host keeps producer - consumer <= 2^size_log2, and may write a line again when
 //                `consumer` has passed it
 //   throughput   AHEAD lines are in flight, so AHEAD queries per latency of memory; at most a read
-//                in 2 clocks and a query in 512 / DATA_W + 1
-//   latency      2 clocks from producer to m_read_valid, 512 / DATA_W + 1 from a line's last beat
+//                in 2 clocks and a query in 512 / DATA_W + 3
+//   latency      2 clocks from producer to m_read_valid, 512 / DATA_W + 2 from a line's last beat
 //                to m_query_valid
 //   failure      a line that could not be read is not handed on, and none after it: failed = 1
 //                until reset, consumer names the line. What was handed on before goes its way
@@ -105,7 +105,11 @@ module cchip_query_ring #(
   reg [DATA_W-1:0] beats[0:AHEAD*BEATS-1];
   reg [511:0] query_q;
   reg query_valid_q;
-  wire gather = here_q[head] & ~bad_q[head] & ~query_valid_q;
+  // from a flip-flop, because 512 others depend on it: a clock later, and not that of the slot which
+  // has just left
+  reg head_good_q;
+  always @(posedge clk) head_good_q <= ~rst & ~take & here_q[head] & ~bad_q[head];
+  wire gather = head_good_q & ~query_valid_q;
   wire gathered;
   always @(posedge clk) query_valid_q <= ~rst & (gathered | (query_valid_q & ~m_query_ready));
   generate

@@ -10,7 +10,7 @@
 //                gives room 3 clocks after it has changed
 //   phase        bit 63 of a record is 1 in the first round of the ring and inverted in each one
 //                after it, so a host that clears the ring before use needs to poll memory only
-//   throughput   a record per clock
+//   throughput   a record in 3 clocks, 4 behind cchip_axi_write: far more than pairs have results
 //   latency      2 clocks from s_valid to m_valid
 //   failure      a write with another code than OK, or any that follows it, is not counted in
 //                `producer`: failed = 1 until reset, and no further record is taken
@@ -52,45 +52,29 @@ module cchip_record_ring #(
 
   reg [31:0] written_q, held_q;  // records given to memory, confirmed by it
   reg failed_q;
-  wire skid_ready, skid_valid;
-  wire [127:0] record;
-  cchip_skid_buffer #(
-      .WIDTH(128)
-  ) u_in (
-      .clk    (clk),
-      .rst    (rst),
-      .s_valid(s_valid),
-      .s_ready(s_ready),
-      .s_data (s_data),
-      .m_valid(skid_valid),
-      .m_ready(skid_ready),
-      .m_data (record)
-  );
 
-  reg valid_q;
+  // ---- one record: empty -> here, until there is room -> valid, until memory takes it. s_ready,
+  // and all that 128 flip-flops depend on, is a flip-flop: no handshake spans the chip
+  reg empty_q, here_q, valid_q;
   reg [59:0] address_q;
   reg [127:0] data_q;
+  reg phase_q;
   // ---- room, in three stages, because a sum and a comparison of 32 bits do not fit into a clock:
-  // how far the consumer has moved, the records that are not read, whether there is room. The last
-  // one knows nothing of a record taken on the clock before: then a second place must be free
+  // the consumer, the records that are not read, whether there is room. Records are 3 clocks or
+  // more apart, so the last stage knows of all of them
   reg [31:0] mask_q;              // size of the ring - 1
   reg [31:0] consumer_q, held_q2;  // of the same clock
-  reg [31:0] back_q;              // -(how far the consumer has moved)
   reg [31:0] unread_q, confirmed_q;  // confirmed and unread; huge if the host is ahead of memory
-  reg took_q, room_q, room_2_q, host_q;
-  wire beyond = |(unread_q & ~mask_q);
-  assign skid_ready = room_q & (room_2_q | ~took_q) & host_q & ~failed_q & (~valid_q | m_ready);
-  wire take = skid_valid & skid_ready;
+  reg room_q, host_q;
+  wire take = here_q & room_q & host_q & ~failed_q;
+  wire sent = valid_q & m_ready;
   always @(posedge clk) begin
     mask_q      <= ~(32'hFFFFFFFF << size_log2);
     consumer_q  <= rst ? 32'd0 : consumer;
-    back_q      <= rst ? 32'd0 : consumer_q - consumer;
-    unread_q    <= rst ? 32'd0 : unread_q + back_q + {31'd0, take};
     held_q2     <= held_q;
+    unread_q    <= rst ? 32'd0 : written_q - consumer_q;
     confirmed_q <= held_q2 - consumer_q;
-    took_q      <= take;
-    room_q      <= ~rst & ~beyond;
-    room_2_q    <= ~beyond & |(~unread_q & mask_q);
+    room_q      <= ~rst & ~|(unread_q & ~mask_q);
     host_q      <= ~|(confirmed_q & ~mask_q);
   end
 
@@ -98,17 +82,21 @@ module cchip_record_ring #(
   wire [31:0] round = written_q >> size_log2;
   wire good = s_answer && s_answer_code == `CCHIP_WRITE_OK;
   always @(posedge clk) begin
-    if (take) begin
-      data_q                       <= record;
-      data_q[`CCHIP_PAIR_RECORD_PHASE] <= ~round[0];
-      address_q                    <= base + {28'd0, place};
+    if (empty_q) data_q <= s_data;
+    if (!valid_q) begin
+      phase_q   <= ~round[0];
+      address_q <= base + {28'd0, place};
     end
     if (rst) begin
       written_q <= 32'd0;
       held_q    <= 32'd0;
       failed_q  <= 1'b0;
+      empty_q   <= 1'b1;
+      here_q    <= 1'b0;
       valid_q   <= 1'b0;
     end else begin
+      empty_q  <= empty_q ? ~s_valid : sent;
+      here_q   <= (empty_q & s_valid) | (here_q & ~take);
       valid_q  <= take | (valid_q & ~m_ready);
       failed_q <= failed_q | (s_answer & ~good);
       if (take) written_q <= written_q + 32'd1;
@@ -117,9 +105,15 @@ module cchip_record_ring #(
   end
   assign producer = held_q;
   assign failed   = failed_q;
-  assign idle     = held_q == written_q && !skid_valid;
+  assign idle     = held_q == written_q && !here_q;
+  assign s_ready  = empty_q;
   assign m_valid  = valid_q;
-  assign m_data   = {RECORDS{data_q}};
+  reg [127:0] record;
+  always @* begin
+    record                           = data_q;
+    record[`CCHIP_PAIR_RECORD_PHASE] = phase_q;
+  end
+  assign m_data = {RECORDS{record}};
   wire unused = &{1'b0, round[31:1]};
   generate
     if (RECORDS == 1) begin : gen_lane

@@ -108,11 +108,12 @@ module cchip_axi_read_address #(
   reg [57:0] line_q;
   reg abandoned_q;  // the address that was offered on the last clock had been given up
   reg offer_q, taken_q;
+  reg refused_q;  // the head was refused on the last clock: whether it is comes from far
   reg [ID_W-1:0] taken_id_q;
   wire abandoned = arvalid_q & ~ar_live_q;
   assign issue = head_valid_q & ~head_owed_q & (~arvalid_q | (m_axi_arready & ar_live_q));
-  assign refuse = head_valid_q & head_owed_q & refuse_ready;
-  assign load_head = issue | refuse | ~head_valid_q;
+  assign refuse = head_valid_q & head_owed_q & refuse_ready & ~refused_q;
+  assign load_head = issue | refused_q | ~head_valid_q;
   always @(posedge clk) begin
     if (load_head) {head_id_q, head_line_q} <= {next_id, next_line};
     head_owed_q <= load_head ? owed[next_id] | abandoned | abandoned_q : head_owed_q | abandoned;
@@ -124,12 +125,14 @@ module cchip_axi_read_address #(
     end
     if (rst) begin
       head_valid_q <= 1'b0;
+      refused_q    <= 1'b0;
       arvalid_q    <= 1'b0;
       ar_live_q    <= 1'b0;
       offer_q      <= 1'b0;
       taken_q      <= 1'b0;
     end else begin
       if (load_head) head_valid_q <= next_valid;
+      refused_q <= refuse;
       arvalid_q <= issue | (arvalid_q & ~m_axi_arready);
       ar_live_q <= issue | (ar_live_q & ~(give_up && give_up_id == arid_q));
       offer_q   <= issue;

@@ -39,14 +39,16 @@ module cchip_axi_read_late #(
       .expired(tick)
   );
 
+  reg tick_q;  // a clock later: it comes from far, and many flip-flops depend on it
   reg [IDS-1:0] seen_q, late_q;  // live at the last tick, at the last two ticks
   reg [ID_W-1:0] scan_q;  // the read that is looked at
   reg found_q;
   reg [ID_W-1:0] found_id_q;
   wire [IDS-1:0] late = live & late_q;
   always @(posedge clk) begin
-    seen_q <= (tick ? live : seen_q) & ~fresh;
-    late_q <= (tick ? live & seen_q : late_q) & ~fresh;
+    tick_q <= ~rst & tick;
+    seen_q <= (tick_q ? live : seen_q) & ~fresh;
+    late_q <= (tick_q ? live & seen_q : late_q) & ~fresh;
     if (!found_q) found_id_q <= scan_q;
     if (rst) begin
       scan_q  <= {ID_W{1'b0}};

@@ -14,7 +14,7 @@
 //   invalidate   lines first..last. invalidate_ready = 1 again: no later answer is of data that
 //                memory held before the command
 //   latency      7 clocks from s_valid to m_valid for a line that is there and a port that is free,
-//                7 from s_valid to m_read_valid, 19 from a line's last beat to m_valid
+//                7 from s_valid to m_read_valid, 20 from a line's last beat to m_valid
 //   throughput   a line per port and clock; an arriving line takes a clock of port 0, an
 //                invalidation one in 7 of port 1
 //   collision    a request that meets a change of its set within 7 clocks, or both of whose ways
@@ -83,7 +83,7 @@ module cchip_cache #(
   localparam integer SETS = 8 * CACHE_KB;
   localparam integer SET_W = $clog2(SETS);
   localparam integer CODE_W = `CCHIP_READ_CODE_W;
-  localparam [5:0] AGE = 6'd63;
+  localparam [4:0] AGE = 5'd31;
 
   generate
     if (CACHE_KB < 1 || CACHE_KB > 1024 || (1 << SET_W) != SETS) begin : gen_illegal_size
@@ -241,27 +241,42 @@ module cchip_cache #(
 
   // ---- of the requests that have been looked up again one is the oldest, each in turn
   wire [2*PLACES-1:0] retried;
+  // One is looked at for two clocks, because it is one of many: on the first its flag is read, on
+  // the second, told by look_q, it follows what becomes of it.
   reg [PLACE_W:0] oldest_q;  // {port, place}
-  reg [5:0] age_q;
+  reg look_q, retried_q;
+  reg [4:0] age_q;
   reg alone_q;  // the oldest one alone gets a frame
-  always @(posedge clk)
+  always @(posedge clk) begin
+    retried_q <= retried[oldest_q];
     if (rst) begin
+      look_q   <= 1'b0;
       oldest_q <= {PLACE_W + 1{1'b0}};
-      age_q    <= 6'd0;
+      age_q    <= 5'd0;
       alone_q  <= 1'b0;
-    end else if (retried[oldest_q]) begin
-      if (age_q != AGE) age_q <= age_q + 6'd1;
-      alone_q <= age_q == AGE;
     end else begin
-      oldest_q <= oldest_q + {{PLACE_W{1'b0}}, 1'b1};
-      age_q    <= 6'd0;
-      alone_q  <= 1'b0;
+      look_q <= ~look_q;
+      if (look_q && retried_q) begin
+        if (age_q != AGE) age_q <= age_q + 5'd1;
+        alone_q <= age_q == AGE;
+      end else if (look_q) begin
+        oldest_q <= oldest_q + {{PLACE_W{1'b0}}, 1'b1};
+        age_q    <= 5'd0;
+        alone_q  <= 1'b0;
+      end
     end
+  end
 
   // ---- the ports. Port 0 fills frames, port 1 walks through sets
   wire [2*SET_W-1:0] sets6 = {line6[LINE_W+:SET_W], line6[0+:SET_W]};
   wire [2*SET_W+1:0] data_addr;  // frames that the ports read or write in stage 5
   wire [1:0] fill_write;
+  reg walk_valid_q;  // a clock later: they come from far
+  reg [SET_W-1:0] walk_set_q;
+  always @(posedge clk) begin
+    walk_valid_q <= ~rst & walk_valid;
+    walk_set_q   <= walk_set;
+  end
   genvar p;
   generate
     for (p = 0; p < 2; p = p + 1) begin : gen_port
@@ -285,8 +300,8 @@ module cchip_cache #(
           .count           ({count_again[p], count_wait[p], count_miss[p], count_hit[p]}),
           .lock_first      (lock_first),
           .lock_last       (lock_last),
-          .own_valid       (p == 0 ? fill_valid : walk_valid),
-          .own_set         (p == 0 ? fill_frame[SET_W:1] : walk_set),
+          .own_valid       (p == 0 ? fill_valid : walk_valid_q),
+          .own_set         (p == 0 ? fill_frame[SET_W:1] : walk_set_q),
           .fill_way        (fill_frame[0]),
           .fill_slot       (fill_slot),
           .fill_code       (fill_code),

@@ -130,10 +130,12 @@ module cchip_cache_fill #(
   always @(posedge clk) if (allocate) frames[allocate_slot] <= allocate_frame;
   assign fill_frame = frames[fill_slot];
 
-  reg fill_q1, fill_q2, fill_q3, fill_q4, fill_q5;
-  reg [MISS_W-1:0] slot_q1, slot_q2, slot_q3, slot_q4, slot_q5;
-  reg [CODE_W-1:0] code_q1, code_q2, code_q3, code_q4, code_q5;
-  reg [FRAME_W-1:0] frame_q1, frame_q2, frame_q3, frame_q4, frame_q5;
+  // Stage 6 is for requests that a port puts to sleep a clock after it decides: they are there
+  // before all who wait for the line are collected.
+  reg fill_q1, fill_q2, fill_q3, fill_q4, fill_q5, fill_q6;
+  reg [MISS_W-1:0] slot_q1, slot_q2, slot_q3, slot_q4, slot_q5, slot_q6;
+  reg [CODE_W-1:0] code_q1, code_q2, code_q3, code_q4, code_q5, code_q6;
+  reg [FRAME_W-1:0] frame_q1, frame_q2, frame_q3, frame_q4, frame_q5, frame_q6;
   wire [31:0] row = {{32 - MISS_W{1'b0}}, slot_q3};
   wire [31:0] write_row = {{32 - MISS_W{1'b0}}, s_read_slot};
   genvar b;
@@ -170,9 +172,9 @@ module cchip_cache_fill #(
   ) u_serve (
       .clk    (clk),
       .rst    (rst),
-      .s_valid(fill_q5),
+      .s_valid(fill_q6),
       .s_ready(serve_ready),
-      .s_data ({slot_q5, code_q5, frame_q5}),
+      .s_data ({slot_q6, code_q6, frame_q6}),
       .m_valid(waiting),
       .m_ready(~serve_q | done),
       .m_data ({next_slot, next_code, next_frame})
@@ -187,17 +189,18 @@ module cchip_cache_fill #(
     {slot_q3, code_q3, frame_q3} <= {slot_q2, code_q2, frame_q2};
     {slot_q4, code_q4, frame_q4} <= {slot_q3, code_q3, frame_q3};
     {slot_q5, code_q5, frame_q5} <= {slot_q4, code_q4, frame_q4};
+    {slot_q6, code_q6, frame_q6} <= {slot_q5, code_q5, frame_q5};
     if (~serve_q | done)
       {serve_slot_q, serve_code_q, serve_frame_q} <= {next_slot, next_code, next_frame};
     if (rst) begin
-      {fill_q1, fill_q2, fill_q3, fill_q4, fill_q5} <= 5'd0;
+      {fill_q1, fill_q2, fill_q3, fill_q4, fill_q5, fill_q6} <= 6'd0;
       serve_q <= 1'b0;
       collect_q <= 1'b0;
       collect_q2 <= 1'b0;
       serving_q <= 1'b0;
     end else begin
-      {fill_q1, fill_q2, fill_q3, fill_q4, fill_q5} <= {
-        fill_valid, fill_q1, fill_q2, fill_q3, fill_q4
+      {fill_q1, fill_q2, fill_q3, fill_q4, fill_q5, fill_q6} <= {
+        fill_valid, fill_q1, fill_q2, fill_q3, fill_q4, fill_q5
       };
       serve_q <= waiting | (serve_q & ~done);
       collect_q <= waiting & (~serve_q | done);

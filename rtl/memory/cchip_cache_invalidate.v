@@ -6,7 +6,7 @@
 //   command      ready = 1 again when the last set has been changed, the reads that were in flight
 //                at that time have been answered, their requests served and 7 clocks have passed:
 //                answers from then on are of data that memory held after the command
-//   latency      7 clocks for each set of the range, at most 2^SET_W of them
+//   latency      8 clocks for each set of the range, at most 2^SET_W of them
 //   cuts         every path
 //   reset        clears the entries, one set per clock: running = 0 meanwhile
 module cchip_cache_invalidate #(
@@ -49,13 +49,15 @@ module cchip_cache_invalidate #(
   reg [SET_W-1:0] left_q;  // sets after this one
   reg [MISSES-1:0] old_q;  // reads in flight at the last set that are still in flight
   reg [2:0] clocks_q;
+  reg serving_q;  // a clock later: it comes from far, and those clocks have one to spare
   wire set_last = left_q == {SET_W{1'b0}};
   always @(posedge clk) begin
     if (state_q == IDLE) begin
       first_q <= s_first;
       last_q  <= s_last;
     end
-    more_q   <= last_q - first_q;
+    more_q    <= last_q - first_q;
+    serving_q <= serving;
     old_q    <= state_q == READS ? old_q & held : held;
     clocks_q <= state_q == ANSWERS ? clocks_q - 3'd1 : ANSWER_CLOCKS;
     if (rst) begin
@@ -97,7 +99,7 @@ module cchip_cache_invalidate #(
           end
           state_q <= walk_next && set_last ? READS : ASK;
         end
-        READS: if (old_q == {MISSES{1'b0}} && !serving) state_q <= ANSWERS;
+        READS: if (old_q == {MISSES{1'b0}} && !serving_q) state_q <= ANSWERS;
         default:  // ANSWERS
         if (clocks_q == 3'd0) begin
           state_q <= IDLE;

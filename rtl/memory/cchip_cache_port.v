@@ -112,8 +112,13 @@ module cchip_cache_port #(
   wire look0;
   wire [PLACE_W-1:0] look_place0;
   wire [LINE_W-1:0] look_line0;
-  wire again;  // of stage 6
-  wire [PLACE_W-1:0] place6;
+  reg running_q;  // a clock later: it comes from far
+  always @(posedge clk) running_q <= ~rst & running;
+  // of stage 7: what becomes of a request that is not answered is known after many gates, and is
+  // needed far from them
+  reg again_q7;
+  reg [PLACE_W-1:0] place_q7;
+  reg [LINE_W-1:0] line_q7;
   cchip_cache_requests #(
       .PLACES(PLACES),
       .LINE_W(LINE_W)
@@ -123,10 +128,10 @@ module cchip_cache_port #(
       .s_valid    (s_valid),
       .s_place    (s_place),
       .s_line     (s_line),
-      .again      (again),
-      .again_place(place6),
-      .again_line (line6),
-      .free       (running & ~own_valid & ~serve_valid),
+      .again      (again_q7),
+      .again_place(place_q7),
+      .again_line (line_q7),
+      .free       (running_q & ~own_valid & ~serve_valid),
       .look       (look0),
       .look_place (look_place0),
       .look_line  (look_line0)
@@ -196,7 +201,6 @@ module cchip_cache_port #(
     code_q6  <= code5;
     slot_q6  <= slot5;
   end
-  assign place6    = place_q6;
   assign line6     = line_q6;
   assign data_addr = {line_q5[SET_W-1:0], way_q5};
 
@@ -295,7 +299,7 @@ module cchip_cache_port #(
   wire hit = fresh & match_q6 & ~wait_q6;
   wire sleep = (fresh & wait_q6) | grant;
   wire refuse = fresh & ~match_q6 & exhausted;
-  assign again = look_q[6] & (stale | (~match_q6 & ~grant & ~exhausted));
+  wire again = look_q[6] & (stale | (~match_q6 & ~grant & ~exhausted));
   // the way to replace is found beside the decision whether any is
   wire victim = &may_q6 ? prefer_q6 : may_q6[1];
   assign want = lacks_q6 & ~stale & free_valid & (~alone | is_oldest_q6);
@@ -312,7 +316,16 @@ module cchip_cache_port #(
   assign walk_ways6 = forget6;
   assign walk_keep6 = {turn6[1], slots6[SLOT_W+:SLOT_W], turn6[0], slots6[0+:SLOT_W]};
 
-  // ---- requests that wait for a line
+  // ---- requests that wait for a line: told of in stage 7
+  reg sleep_q7;
+  reg [SLOT_W-1:0] sleep_slot_q7;
+  always @(posedge clk) begin
+    place_q7      <= place_q6;
+    line_q7       <= line_q6;
+    again_q7      <= ~rst & again;
+    sleep_q7      <= ~rst & sleep;
+    sleep_slot_q7 <= wait_q6 ? wait_slot_q6 : free_slot;
+  end
   wire [PLACES-1:0] waiting;
   cchip_cache_waiters #(
       .PLACES (PLACES),
@@ -321,11 +334,11 @@ module cchip_cache_port #(
   ) u_waiters (
       .clk          (clk),
       .rst          (rst),
-      .look         (look_q[5]),
-      .look_place   (place5),
-      .sleep        (sleep),
-      .sleep_slot   (wait_q6 ? wait_slot_q6 : free_slot),
-      .retry        (again),
+      .look         (look_q[6]),
+      .look_place   (place_q6),
+      .sleep        (sleep_q7),
+      .sleep_slot   (sleep_slot_q7),
+      .retry        (again_q7),
       .retried      (retried),
       .collect      (collect),
       .collect_slot (collect_slot),
@@ -342,11 +355,9 @@ module cchip_cache_port #(
 
   // ---- answers and counts
   reg valid_q7;
-  reg [PLACE_W-1:0] place_q7;
   reg [CODE_W-1:0] code_q7;
   reg [3:0] count_q;
   always @(posedge clk) begin
-    place_q7 <= place_q6;
     code_q7  <= serve_q[6] ? code_q6 : hit ? `CCHIP_READ_OK : `CCHIP_READ_OWED;
     valid_q7 <= ~rst & (hit | refuse | serve_q[6]);
     count_q  <= {4{~rst}} & {again, fresh & wait_q6, grant, hit};

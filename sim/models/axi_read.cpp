@@ -18,6 +18,8 @@ void AxiRead::clock(const Inputs& in) {
   clock_place();
   clock_addresses(now);
   clock_requests(in.requests, now.load);
+  refused_ = now.refuse;
+  tick_ = timeout_.expired();
   timeout_.clock(timeout_.expired(), in.limit);
   found_ = found;
 
@@ -46,15 +48,15 @@ void AxiRead::reset(std::uint32_t limit) {
   served_ = queues_.size() - 1;
   timeout_.clock(true, limit);
   scan_ = 0;
-  rready_ = any_outstanding_ = address_awaited_ = head_owed_ = was_dead_ = false;
+  rready_ = any_outstanding_ = address_awaited_ = head_owed_ = was_dead_ = refused_ = tick_ = false;
 }
 
 AxiRead::Addresses AxiRead::decide(bool arready) const {
   Addresses now;
   now.dead = address_ && !address_awaited_;
   now.issue = head_ && !head_owed_ && (!address_ || (arready && address_awaited_));
-  now.refuse = head_ && head_owed_ && !failing_ && !found_;
-  now.load = !head_ || now.issue || now.refuse;
+  now.refuse = head_ && head_owed_ && !failing_ && !found_ && !refused_;
+  now.load = !head_ || now.issue || refused_;
   now.taken = address_ && arready;
   now.next_owed = next_.m_valid() && reads_[next_.m_data().id].owed;
   return now;
@@ -74,7 +76,7 @@ void AxiRead::clock_outstanding() {
 }
 
 void AxiRead::clock_ticks() {
-  if (!timeout_.expired()) return;
+  if (!tick_) return;
   for (Read& read : reads_) read.ticks = read.live ? std::min(read.ticks + 1, 2) : 0;
 }
 

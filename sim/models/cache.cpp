@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cchip/models/cache.hpp>
 #include <iterator>
+#include <utility>
 
 namespace cchip::model {
 
@@ -27,8 +28,9 @@ void Cache::clock(const Inputs& in) {
   clock_turn();
   std::array<Step, 2> first;
   for (std::size_t p = 0; p < 2; ++p) {
+    const Request decided = ports_[p].decided.value_or(Request{});
     const bool again = answer(p, now);
-    first[p] = enter(p, in.requests[p], again);
+    first[p] = enter(p, in.requests[p], again, decided);
     clock_waiters(p, now, first[p].kind == Kind::serve);
     clock_steps(p, in.locks);
   }
@@ -38,7 +40,11 @@ void Cache::clock(const Inputs& in) {
     if (fill5.code == ReadCode::ok) data_[to_fill.filled->frame] = fill_.data(fill5.slot);
   }
   clock_entries(now);
-  clock_walk(in.invalidate, now, serves);
+  was_running_ = running_;
+  walk_enters_ = walk_valid_;
+  entering_set_ = walk_set_;
+  clock_walk(in.invalidate, now);
+  served_ = serves;
 
   read_.reset();
   if (now.granted) {
@@ -65,6 +71,7 @@ void Cache::reset() {
   alone_ = false;
   retried_.assign(retried_.size(), false);
   favour_ = running_ = ready_ = walk_valid_ = false;
+  look_ = seen_retried_ = was_running_ = walk_enters_ = served_ = false;
   state_ = State::clear;
   walk_set_ = 0;
   left_ = shape_.sets - 1;
@@ -73,7 +80,7 @@ void Cache::reset() {
 /// Ports that have not served all who wait.
 bool Cache::serving() const {
   return !ports_[0].wake.empty() || !ports_[1].wake.empty() || (fill_.fill() && ports_[0].serve) ||
-         (walk_valid_ && ports_[1].serve);
+         (walk_enters_ && ports_[1].serve);
 }
 
 /// Stage 6.
@@ -104,9 +111,13 @@ Cache::Decisions Cache::decide() {
 
 /// Whose turn it is of those that are looked up again.
 void Cache::clock_turn() {
-  if (retried_[oldest_]) {
-    alone_ = age_ == 63;
-    age_ = std::min(age_ + 1, 63);
+  // a flag is read on one clock, and acted upon on the next
+  const bool retried = std::exchange(seen_retried_, retried_[oldest_]);
+  look_ = !look_;
+  if (look_) return;
+  if (retried) {
+    alone_ = age_ == 31;
+    age_ = std::min(age_ + 1, 31);
   } else {
     oldest_ = (oldest_ + 1) % retried_.size();
     age_ = 0;
@@ -114,27 +125,30 @@ void Cache::clock_turn() {
   }
 }
 
-/// Stage 7. Returns whether the request of stage 6 is to be looked up again.
+/// Stage 7. Returns whether its request is to be looked up again, as stage 6 decided on the last clock.
 bool Cache::answer(std::size_t p, const Decisions& now) {
   const Step& step = ports_[p].steps[5];
   const bool grant = now.granted == p;
   const bool exhausted = fill_.exhausted();
   const bool again = step.kind == Kind::look && (step.stale || (!step.match && !grant && !exhausted));
-  if (step.kind == Kind::look) retried_[p * shape_.places + step.place] = again;
+  Port& port = ports_[p];
+  if (port.decided) retried_[p * shape_.places + port.decided->place] = port.looks_again;
+  port.decided.reset();
+  if (step.kind == Kind::look) port.decided = Request{step.place, step.line};
   answers_[p].reset();
   if (now.hit[p]) answers_[p] = Answer{step.place, ReadCode::ok, step.data};
   if (now.fresh[p] && !step.match && exhausted) answers_[p] = Answer{step.place, ReadCode::owed, {}};
   if (step.kind == Kind::serve) answers_[p] = Answer{step.place, step.code, step.data};
   counts_[p] = Counts{now.hit[p], grant, now.wait[p], again};
-  return again;
+  return std::exchange(port.looks_again, again);
 }
 
 /// Stage 0: who has this clock.
-Cache::Step Cache::enter(std::size_t p, const std::optional<Request>& ask, bool again) {
+Cache::Step Cache::enter(std::size_t p, const std::optional<Request>& ask, bool again, const Request& again7) {
   Port& port = ports_[p];
   const std::optional<CacheFill::Fill> fill = fill_.fill();
-  const bool own = p == 0 ? fill.has_value() : walk_valid_;
-  const bool go = running_ && !own && !port.serve;
+  const bool own = p == 0 ? fill.has_value() : walk_enters_;
+  const bool go = was_running_ && !own && !port.serve;
   const bool late = port.late.m_valid();
   const bool use_again = port.again.m_valid() && (port.again_first || !(late || ask));
   const bool use_late = !use_again && late;
@@ -143,7 +157,7 @@ Cache::Step Cache::enter(std::size_t p, const std::optional<Request>& ask, bool 
   Step step;
   if (own) {
     step.kind = Kind::own;
-    step.line = walk_set_;
+    step.line = entering_set_;
     if (p == 0) {
       step.line = fill->frame / 2;
       step.way = fill->frame % 2;
@@ -158,9 +172,8 @@ Cache::Step Cache::enter(std::size_t p, const std::optional<Request>& ask, bool 
     step.place = request.place;
     step.line = request.line;
   }
-  const Step& step6 = port.steps[5];
   port.late.clock(ask && !(go && use_ask), ask.value_or(Request{}), go && !use_again);
-  port.again.clock(again, Request{step6.place, step6.line}, go && use_again);
+  port.again.clock(again, again7, go && use_again);
   return step;
 }
 
@@ -188,7 +201,9 @@ void Cache::clock_waiters(std::size_t p, const Decisions& now, bool served) {
   }
   const Step& step6 = port.steps[5];
   const bool grant = now.granted == p;
-  if (now.wait[p] || grant) port.asleep[step6.place] = grant ? *fill_.free_slot() : step6.wait_slot;
+  if (port.sleeps) port.asleep[port.sleeps->first] = port.sleeps->second;
+  port.sleeps.reset();
+  if (now.wait[p] || grant) port.sleeps.emplace(step6.place, grant ? *fill_.free_slot() : step6.wait_slot);
 }
 
 /// Stages 1 to 5: the entries are read in 1.
@@ -264,10 +279,10 @@ void Cache::clock_entries(const Decisions& now) {
 
 /// The walk of an invalidation: one set after the other. It is over when the reads that were in flight at its last set
 /// have answered.
-void Cache::clock_walk(const std::optional<Range>& invalidate, const Decisions& now, bool serves) {
+void Cache::clock_walk(const std::optional<Range>& invalidate, const Decisions& now) {
   const bool last = left_ == 0;
   if (state_ == State::reads) {
-    if (old_.empty() && !serves) state_ = State::answers;
+    if (old_.empty() && !served_) state_ = State::answers;
     for (auto slot = old_.begin(); slot != old_.end();) slot = fill_.held(*slot) ? std::next(slot) : old_.erase(slot);
     clocks_ = 7;
     return;

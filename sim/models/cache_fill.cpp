@@ -29,6 +29,7 @@ void CacheFill::reset() {
   arrived_.reset();
   serve_queue_.reset();
   serves_.reset();
+  filled_.reset();
   collect_ = collected_ = serving_ = exhausted_ = false;
   lost_.clear();
   back_.reset();
@@ -77,7 +78,8 @@ void CacheFill::clock_serves(const Inputs& in, bool release) {
   collected_ = collect_;
   collect_ = next;
   serving_ = in.serving;
-  serve_queue_.clock(in.filled.has_value(), in.filled.value_or(Fill{}), take);
+  serve_queue_.clock(filled_.has_value(), filled_.value_or(Fill{}), take);
+  filled_ = in.filled;
 }
 
 }  // namespace cchip::model

@@ -93,10 +93,11 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
         simulation.settle();
 
         std::optional<Line> fill;
-        std::optional<Line> written;
+        std::optional<Line> written, queued;
         for (const auto& [at, line] : filling) {
           if (at == clock) fill = line;
           if (at + 5 == clock) written = line;
+          if (at + 6 == clock) queued = line;
         }
         // every slot is lost, and has been for two clocks; none is, and the last one has had time to come back
         all_lost = lost == misses ? all_lost + 1 : 0;
@@ -155,8 +156,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
           served = queue.m_data();
           serves = chance(random, 70) ? 1 : static_cast<int>(random() % 8);
         }
-        queue.clock(written.has_value(), written.value_or(Line{}), next);
-        while (!filling.empty() && filling.front().first + 5 <= clock) filling.pop_front();
+        queue.clock(queued.has_value(), queued.value_or(Line{}), next);
+        while (!filling.empty() && filling.front().first + 6 <= clock) filling.pop_front();
         if (comes) filling.emplace_back(clock + 2, *comes);
         if (take) {
           taken = Line{top.free_slot};

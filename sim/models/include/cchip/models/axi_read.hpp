@@ -115,10 +115,12 @@ class AxiRead {
   std::optional<Address> head_, address_;
   bool head_owed_ = false;  // or an address in front of it was given up
   bool was_dead_ = false;
+  bool refused_ = false;  // the head, on the last clock
   bool address_awaited_ = false;
   std::optional<std::size_t> issued_, taken_;  // on the last clock
   std::optional<Answer> answer_;
   Timeout timeout_{defs::memory_limit_default};
+  bool tick_ = false;  // it expired on the last clock
   bool rready_ = false, any_outstanding_ = false;
   std::size_t scan_ = 0;
   std::optional<std::size_t> found_;

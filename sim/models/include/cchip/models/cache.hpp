@@ -14,6 +14,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 namespace cchip::model {
@@ -99,6 +100,11 @@ class Cache {
     std::optional<Step> serve;
     std::map<std::size_t, std::size_t> asleep;  // place, slot of the line it waits for
     std::array<Step, 6> steps;                  // stages 1 to 6
+    // what stage 6 decided on the last clock: of which lookup, whether it is made again, which place falls asleep on
+    // which slot
+    std::optional<Request> decided;
+    bool looks_again = false;
+    std::optional<std::pair<std::size_t, std::size_t>> sleeps;
   };
   struct Change {
     std::size_t set = 0;
@@ -124,13 +130,13 @@ class Cache {
   Decisions decide();
   void clock_turn();
   bool answer(std::size_t p, const Decisions& now);
-  Step enter(std::size_t p, const std::optional<Request>& ask, bool again);
+  Step enter(std::size_t p, const std::optional<Request>& ask, bool again, const Request& again7);
   void clock_waiters(std::size_t p, const Decisions& now, bool served);
   void clock_steps(std::size_t p, const std::vector<Range>& locks);
   void look_up(Step& step) const;
   void judge(Step& step) const;
   void clock_entries(const Decisions& now);
-  void clock_walk(const std::optional<Range>& invalidate, const Decisions& now, bool serves);
+  void clock_walk(const std::optional<Range>& invalidate, const Decisions& now);
   void next_set();
 
   Shape shape_;
@@ -154,6 +160,9 @@ class Cache {
   std::size_t oldest_ = 0;
   int age_ = 0;
   bool alone_ = false;
+  bool look_ = false, seen_retried_ = false;
+  bool was_running_ = false, walk_enters_ = false, served_ = false;  // a clock later than what they follow
+  std::size_t entering_set_ = 0;
 };
 
 }  // namespace cchip::model

@@ -80,6 +80,7 @@ class CacheFill {
   Pool free_;
   Fifo<Fill> arrived_;      // the frame is that of its slot
   Fifo<Fill> serve_queue_;  // lines whose waiters are to be served
+  std::optional<Fill> filled_;  // on the last clock
   std::optional<Fill> serves_;
   bool collect_ = false, collected_ = false, serving_ = false;
   std::set<std::size_t> lost_;  // slots whose reads memory may still owe
