@@ -2,20 +2,30 @@
 # SPDX-License-Identifier: Apache-2.0
 """A page shows what a program prints: the text block behind the line `<!-- output of NAME -->`.
 
-usage: check_output.py [--write] PAGE PROGRAM    (NAME is the program's file name)"""
+usage: check_output.py [--write] [--but REGEX] PAGE PROGRAM    (NAME is the program's file name)
+  --write      put the output into the page
+  --but REGEX  what depends on the machine, such as times, and may differ"""
+import argparse
 import pathlib
 import re
 import subprocess
 import sys
 
-page, program = (pathlib.Path(argument) for argument in [a for a in sys.argv[1:] if a != "--write"])
+parser = argparse.ArgumentParser(usage=__doc__, add_help=False)
+parser.add_argument("--write", action="store_true")
+parser.add_argument("--but", default="(?!)")
+parser.add_argument("page", type=pathlib.Path)
+parser.add_argument("program", type=pathlib.Path)
+options = parser.parse_args()
+page, program = options.page, options.program
 text = page.read_text()
 block = re.compile(rf"(<!-- output of {re.escape(program.name)} -->\n```text\n).*?(```\n)", re.S)
 printed = subprocess.run([program], stdout=subprocess.PIPE, text=True, check=True).stdout
 fresh, found = block.subn(lambda match: match[1] + printed + match[2], text)
-if "--write" in sys.argv:
+same = lambda either: re.sub(options.but, "", either)
+if options.write:
     page.write_text(fresh)
     text = fresh
-if found != 1 or text != fresh:
+if found != 1 or same(text) != same(fresh):
     sys.exit(f"{page}: the output of {program.name} is {'missing' if found != 1 else 'stale'}; run {sys.argv[0]} --write {page} {program}")
 print(f"{page.name}: as {program.name} prints it")
