@@ -8,7 +8,7 @@
 //   throughput   a node pair in max(3, children that count) clocks; so long its lines stay
 //   latency      clocks from the first one of a node pair are in the names: x10 comes 10 after it
 //   memory       block RAM keeps the children until the lanes take them
-//   cuts         every path but the context to row_context0, which a block RAM takes
+//   cuts         every path but s_valid to s_soon, and the context to row_context0, which a block RAM takes
 //   reset        drops the node pairs
 module cchip_bv_feed #(
     // queries at work, 2, 4, 8 or 16
@@ -18,9 +18,10 @@ module cchip_bv_feed #(
 ) (
     input  wire                       clk,
     input  wire                       rst,
-    // a node pair; its lines stay until s_ready
+    // a node pair; its lines stay until s_ready, which s_soon tells a clock ahead
     input  wire                       s_valid,
     output wire                       s_ready,
+    output wire                       s_soon,
     input  wire [          TAG_W-1:0] s_tag,
     input  wire [$clog2(QUERIES)-1:0] s_context,
     input  wire [              511:0] s_a,
@@ -60,6 +61,7 @@ module cchip_bv_feed #(
   wire [3:0] a_counts, b_counts;
   wire [7:0] a_inner;  // and of B
   assign s_ready = ready_q;
+  assign s_soon  = s_valid && (count_q == 2'd1 ? !four_q : count_q == 2'd2 && !ready_q);
   wire taken = s_valid & ready_q;
   always @(posedge clk) begin
     four_q <= &a_counts | &b_counts;
@@ -68,7 +70,7 @@ module cchip_bv_feed #(
       ready_q <= 1'b0;
     end else begin
       if (s_valid) count_q <= ready_q ? 2'd0 : count_q + 2'd1;
-      ready_q <= s_valid && (count_q == 2'd1 ? !four_q : count_q == 2'd2 && !ready_q);
+      ready_q <= s_soon;
     end
   end
 

@@ -28,9 +28,11 @@ module cchip_bv_unit #(
     input  wire [               11:0] s_pose_error,
     output wire                       m_pose_valid,    // node pairs of it may come from now on
     output wire [$clog2(QUERIES)-1:0] m_pose_context,
-    // a node pair: lines of inner nodes, and which children count; they stay until s_ready
+    // a node pair: lines of inner nodes, and which children count; they stay until s_ready, which
+    // s_soon tells a clock ahead
     input  wire                       s_valid,
     output wire                       s_ready,
+    output wire                       s_soon,
     input  wire [          TAG_W-1:0] s_tag,
     input  wire [$clog2(QUERIES)-1:0] s_context,
     input  wire [              511:0] s_a,
@@ -71,6 +73,7 @@ module cchip_bv_unit #(
       .rst          (rst),
       .s_valid      (s_valid),
       .s_ready      (s_ready),
+      .s_soon       (s_soon),
       .s_tag        (s_tag),
       .s_context    (s_context),
       .s_a          (s_a),

@@ -461,13 +461,33 @@ module cchip_chip_core #(
       .s_corrupt      (corrupt)
   );
 
-  wire vertex_valid, vertex_first, vertex_last, pop;
+  // what leaves the transform, and a clock later: the queues, the operands and the faces lie far
+  // from it and from each other
+  localparam integer VERTEX_W = 2 + 2 * POINT_W + `CCHIP_ERR_W + `CCHIP_KIND_W + 65 + LEAF_W + 2;
+  wire vertex_valid_d;
+  wire [VERTEX_W-1:0] vertex_d;
+  reg vertex_valid;
+  reg [VERTEX_W-1:0] vertex_of_q;
+  always @(posedge clk) begin
+    vertex_valid <= ~block_rst[TRANSFORM] & vertex_valid_d;
+    vertex_of_q  <= vertex_d;
+  end
+  wire vertex_first, vertex_last, pop;
   wire [POINT_W-1:0] vertex_a, vertex_b;
   wire [`CCHIP_ERR_W-1:0] pair_err;
   wire [`CCHIP_KIND_W-1:0] pair_kind;
   wire [31:0] face_a, face_b;
   wire swapped;
   wire [LEAF_W+1:0] pair_name;  // {number, which of its primitive pairs}
+  assign {vertex_first, vertex_last, vertex_a, vertex_b, pair_err, pair_kind, face_a, face_b,
+          swapped, pair_name} = vertex_of_q;
+  wire [POINT_W-1:0] a_d, b_d;
+  wire [`CCHIP_ERR_W-1:0] err_d;
+  wire [`CCHIP_KIND_W-1:0] kind_d;
+  wire [31:0] face_a_d, face_b_d;
+  wire first_d, last_d, swapped_d;
+  wire [LEAF_W+1:0] name_d;
+  assign vertex_d = {first_d, last_d, a_d, b_d, err_d, kind_d, face_a_d, face_b_d, swapped_d, name_d};
   cchip_transform #(
       .COORD_W(COORD_W),
       .PASSES (PASSES),
@@ -486,17 +506,17 @@ module cchip_chip_core #(
       .s_lines (feed_lines),
       .s_id    (feed_id),
       .corrupt (corrupt),
-      .m_valid (vertex_valid),
-      .m_first (vertex_first),
-      .m_last  (vertex_last),
-      .m_a     (vertex_a),
-      .m_b     (vertex_b),
-      .m_err   (pair_err),
-      .m_kind  (pair_kind),
-      .m_face_a(face_a),
-      .m_face_b(face_b),
-      .m_id    ({swapped, pair_name[LEAF_W+1:2]}),
-      .m_pair  (pair_name[1:0]),
+      .m_valid (vertex_valid_d),
+      .m_first (first_d),
+      .m_last  (last_d),
+      .m_a     (a_d),
+      .m_b     (b_d),
+      .m_err   (err_d),
+      .m_kind  (kind_d),
+      .m_face_a(face_a_d),
+      .m_face_b(face_b_d),
+      .m_id    ({swapped_d, name_d[LEAF_W+1:2]}),
+      .m_pair  (name_d[1:0]),
       .s_credit(pop)
   );
 

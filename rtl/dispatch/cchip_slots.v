@@ -192,7 +192,17 @@ module cchip_slots #(
       // A slot that is decoupled for a swap has no pairs, and its reset is the controller's alone:
       // one that lasts over the end of a transfer would hide the new module's reset on
       // configuration, which has to begin once the module is whole
-      wire slot_rst = rst | (core_rst & ~decouple[slot]);
+      wire slot_rst;
+      if (SWAPS == 0) begin : gen_reset
+        // from a flip-flop beside the slot
+        cchip_reset_copy u_reset (
+            .clk     (clk),
+            .rst     (reset),
+            .rst_copy(slot_rst)
+        );
+      end else begin : gen_reset
+        assign slot_rst = rst | (core_rst & ~decouple[slot]);
+      end
       wire [`CCHIP_PAIR_ID_W-1:0] id = vertex_id[`CCHIP_PAIR_ID_W*slot+:`CCHIP_PAIR_ID_W];
       wire [`CCHIP_VERTEX_W(COORD_W)-1:0] vertex_data = `CCHIP_VERTEX_OF(vertex_first, vertex_last,
           id, descriptor[`CCHIP_DESCRIPTOR_ERR], descriptor[`CCHIP_DESCRIPTOR_MODE], a, b);

@@ -14,7 +14,7 @@
 //   invalidate   lines first..last. invalidate_ready = 1 again: no later answer is of data that
 //                memory held before the command
 //   latency      7 clocks from s_valid to m_valid for a line that is there and a port that is free,
-//                7 from s_valid to m_read_valid, 20 from a line's last beat to m_valid
+//                7 from s_valid to m_read_valid, 21 from a line's last beat to m_valid
 //   throughput   a line per port and clock; an arriving line takes a clock of port 0, an
 //                invalidation one in 7 of port 1
 //   collision    a request that meets a change of its set within 7 clocks, or both of whose ways
@@ -126,6 +126,21 @@ module cchip_cache #(
   wire [1:0] serving, serve_valid;
   wire exhausted;  // no slot will come back unless memory answers a read of long ago
 
+  // Beats take a register: the read master lies where the bus is, the memories of lines where the
+  // cache is.
+  reg beat_valid_q, beat_last_q;
+  reg [MISS_W-1:0] beat_slot_q;
+  reg [2:0] beat_q;
+  reg [CODE_W-1:0] beat_code_q;
+  reg [DATA_W-1:0] beat_data_q;
+  always @(posedge clk) begin
+    beat_valid_q <= ~rst & s_read_valid;
+    beat_last_q  <= s_read_last;
+    beat_slot_q  <= s_read_slot;
+    beat_q       <= s_read_beat;
+    beat_code_q  <= s_read_code;
+    beat_data_q  <= s_read_data;
+  end
   cchip_cache_fill #(
       .MISSES (MISSES),
       .FRAME_W(SET_W + 1),
@@ -142,12 +157,12 @@ module cchip_cache #(
       .held          (held),
       .filled        (filled),
       .exhausted     (exhausted),
-      .s_read_valid  (s_read_valid),
-      .s_read_slot   (s_read_slot),
-      .s_read_beat   (s_read_beat),
-      .s_read_last   (s_read_last),
-      .s_read_code   (s_read_code),
-      .s_read_data   (s_read_data),
+      .s_read_valid  (beat_valid_q),
+      .s_read_slot   (beat_slot_q),
+      .s_read_beat   (beat_q),
+      .s_read_last   (beat_last_q),
+      .s_read_code   (beat_code_q),
+      .s_read_data   (beat_data_q),
       .s_read_outstanding(s_read_outstanding),
       .fill_valid    (fill_valid),
       .fill_slot     (fill_slot),

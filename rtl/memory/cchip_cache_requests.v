@@ -4,7 +4,7 @@
 // that find the port taken are deferred, in order; those to be looked up again have a queue of
 // their own.
 //   turns        if requests of both queues wait, they alternate; a new request is looked up at
-//                once if none is deferred and it is not the turn of the other queue
+//                once if both queues are empty
 //   latency      0 clocks: look follows free and s_valid
 //   throughput   a lookup on each clock with free = 1
 //   cuts         all but free and the new request to the lookup
@@ -36,8 +36,10 @@ module cchip_cache_requests #(
 
   wire deferred_valid, again_valid, deferred_ready, again_ready;
   wire [WIDTH-1:0] deferred_data, again_data;
-  reg again_first_q;  // the queue of those to be looked up again has its turn
-  wire use_again = again_valid & (again_first_q | ~(deferred_valid | s_valid));
+  // The queue of those to be looked up again has its turn. Whether it is read does not depend on a
+  // request that comes on this clock, which would cross the chip to its flip-flops.
+  reg again_first_q;
+  wire use_again = again_valid & (again_first_q | ~deferred_valid);
   cchip_fifo #(
       .WIDTH     (WIDTH),
       .DEPTH     (PLACES),
@@ -45,7 +47,7 @@ module cchip_cache_requests #(
   ) u_deferred (
       .clk    (clk),
       .rst    (rst),
-      .s_valid(s_valid & (~free | deferred_valid | (again_valid & again_first_q))),
+      .s_valid(s_valid & (~free | deferred_valid | again_valid)),
       .s_ready(deferred_ready),
       .s_data ({s_place, s_line}),
       .m_valid(deferred_valid),
@@ -68,7 +70,7 @@ module cchip_cache_requests #(
   );
   always @(posedge clk)
     if (rst) again_first_q <= 1'b0;
-    else if (free && again_valid && (deferred_valid || s_valid)) again_first_q <= ~again_first_q;
+    else if (free && again_valid) again_first_q <= ~use_again;
   assign look = free & (again_valid | deferred_valid | s_valid);
   assign {look_place, look_line} = use_again ? again_data :
       deferred_valid ? deferred_data : {s_place, s_line};

@@ -13,7 +13,7 @@
 //                pairs, with CCHIP_END_MEMORY or CCHIP_END_CORRUPT
 //   throughput   a leaf pair every 2 clocks
 //   latency      2 clocks from s_leaf_valid to m_valid
-//   cuts         every path from s_leaf and s_start; m_credit follows s_begin_ready in its clock
+//   cuts         every path from s_leaf and s_start, and to m_credit
 //   reset        leaf pairs inside are forgotten
 module cchip_leaf_feed #(
     // contexts of queries: 2, 4, 8 or 16
@@ -88,6 +88,8 @@ module cchip_leaf_feed #(
   // ---- the leaf pair that waits. What is in its register counts only with its valid bit, so the
   // condition of the thousand flip-flops is that bit alone
   reg wait_valid_q, wait_failed_q;
+  wire leaves;  // it goes to the transform, or ends
+  reg credit_q;  // a clock later: who gives the next one is far
   reg [CONTEXT_W-1:0] wait_context_q;
   reg [1:0] wait_epoch_q;
   reg [3:0] wait_kinds_q;
@@ -97,7 +99,8 @@ module cchip_leaf_feed #(
       {wait_context_q, wait_epoch_q, wait_failed_q, wait_kinds_q, wait_lines_q} <= {
         s_leaf_context, s_leaf_epoch, s_leaf_failed, s_leaf_kinds, s_leaf_lines
       };
-    wait_valid_q <= ~rst & (wait_valid_q ? ~m_credit : s_leaf_valid);
+    wait_valid_q <= ~rst & (wait_valid_q ? ~leaves : s_leaf_valid);
+    credit_q     <= ~rst & leaves;
   end
   wire unused = &{1'b0, s_start_query};
   wire two_a = wait_kinds_q[1:0] == TWO_TRIANGLES;
@@ -117,7 +120,8 @@ module cchip_leaf_feed #(
   assign m_begin_context = wait_context_q;
   assign m_begin_epoch   = wait_epoch_q;
   assign m_begin_pairs   = {two_a & two_b, two_a | two_b};
-  assign m_credit        = m_begin_valid & m_begin_ready;
+  assign m_credit        = credit_q;
+  assign leaves          = m_begin_valid & m_begin_ready;
   always @(posedge clk) begin
     if (state_q == EMPTY) begin  // whether there is one or not, as above
       {context_q, epoch_q, kinds_q, lines_q} <= {
@@ -128,7 +132,7 @@ module cchip_leaf_feed #(
     end
     case (state_q)
       EMPTY:
-      if (m_credit) begin
+      if (leaves) begin
         state_q <= wait_failed_q ? ENDS : TRANSFORM;
         code_q  <= `CCHIP_END_MEMORY;
       end

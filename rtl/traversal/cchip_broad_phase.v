@@ -125,7 +125,7 @@ module cchip_broad_phase #(
   wire [2*PLACE_W-1:0] line_place, came_place;
   wire [2*`CCHIP_READ_CODE_W-1:0] came_code;
   wire [1023:0] came_data, lines;
-  wire pair_valid, pair_ready, verdict_valid;
+  wire pair_valid, pair_ready, pair_soon, verdict_valid;
   wire [7:0] pair_children;
   wire [15:0] verdict_waiting, verdict_leaves, verdict_strong;
   wire [3:0] verdict_best;
@@ -229,7 +229,7 @@ module cchip_broad_phase #(
       .s_line_code    (came_code),
       .s_line_data    (came_data),
       .m_pair_valid   (pair_valid),
-      .m_pair_ready   (pair_ready),
+      .m_pair_soon    (pair_soon),
       .m_pair_place   (pair_place),
       .m_pair_context (pair_context),
       .m_pair_children(pair_children),
@@ -250,6 +250,7 @@ module cchip_broad_phase #(
 
   assign m_leaf_lines   = lines;
   assign count_box_busy = pair_valid;
+  wire unused = &{1'b0, pair_ready};
 
   cchip_bv_unit #(
       .QUERIES(QUERIES),
@@ -268,6 +269,7 @@ module cchip_broad_phase #(
       .m_pose_context(posed_context),
       .s_valid       (pair_valid),
       .s_ready       (pair_ready),
+      .s_soon        (pair_soon),
       .s_tag         (pair_place),
       .s_context     (pair_context),
       .s_a           (lines[511:0]),

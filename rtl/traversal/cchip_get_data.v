@@ -11,7 +11,7 @@
 //                s_leaf_taken has not been 1
 //   check        what a line says of its children, and of a header, leaves with `lookup` when the
 //                verdict of the box test comes: code, kinds and lines of the children
-//   latency      1 clock from s_valid to m_line_valid, 7 from the second line to m_pair_valid or
+//   latency      1 clock from s_valid to m_line_valid, 8 from the second line to m_pair_valid or
 //                m_leaf_valid
 //   throughput   a request per clock, a pair every third clock
 //   credit       a place is used again only after m_leaf_valid or the verdict
@@ -46,9 +46,10 @@ module cchip_get_data #(
     input  wire [                   2*$clog2(PAIRS+LEAVES)-1:0] s_line_place,
     input  wire [                     2*`CCHIP_READ_CODE_W-1:0] s_line_code,
     input  wire [                                       1023:0] s_line_data,
-    // node pairs, with the children that count: none if these are headers
+    // node pairs, with the children that count: none if these are headers; a pair that is taken
+    // on the next clock is told of on this one
     output wire                                                 m_pair_valid,
-    input  wire                                                 m_pair_ready,
+    input  wire                                                 m_pair_soon,   // on the next clock
     output wire [                     $clog2(PAIRS+LEAVES)-1:0] m_pair_place,
     output wire [                          $clog2(QUERIES)-1:0] m_pair_context,
     output wire [                                          7:0] m_pair_children,  // {B's, A's}
@@ -184,11 +185,12 @@ module cchip_get_data #(
   wire fetch_leaf = {{32 - PLACE_W{1'b0}}, fetch_q} >= FIRST_LEAF;
   reg fetch_leaf_q;
   reg pair_valid_q, leaf_valid_q, fresh_q;
-  // ~pair_valid_q once more, for the lines alone: the wires to them would slow down what picks the
-  // next pair. Synthesis does not join it with pair_valid_q as it would join an equal register
-  reg empty_q;
-  wire room = empty_q | m_pair_ready;
-  wire load = fetch_valid_q & age_q[1] & ~no_pose_fetch_q & (~pair_valid_q | m_pair_ready);
+  // The box test tells a clock ahead that it takes the pair, so both of these are flip-flops: that it
+  // is taken on this clock, for what picks the next pair, and that there is room for lines, for more
+  // than a thousand flip-flops that lie far apart
+  reg ready_q, room_q;
+  wire load = fetch_valid_q & age_q[1] & ~no_pose_fetch_q & (~pair_valid_q | ready_q);
+  wire pair_valid = (load & ~fetch_leaf_q) | (pair_valid_q & ~ready_q);  // on the next clock
   assign advance = (pick_leaf | pick_pair) & (~fetch_valid_q | load);
   reg [PLACE_W-1:0] place_q;
   reg [CONTEXT_W+RECORD_W-1:0] hold_record_q;
@@ -204,7 +206,7 @@ module cchip_get_data #(
     no_pose_fetch_q <= record_q[`CCHIP_NODE_PAIR_HEADER] & no_pose_q[fetch_context];
     // A pair that is not complete may be loaded, too: what is loaded counts only with pair_valid_q
     // or leaf_valid_q. So the condition of these thousand flip-flops is a short one.
-    if (room) begin
+    if (room_q) begin
       place_q       <= fetch_q;
       hold_record_q <= record_q;
       lines_q       <= read_lines;
@@ -216,14 +218,16 @@ module cchip_get_data #(
       turn_q        <= 1'b0;
       fetch_valid_q <= 1'b0;
       pair_valid_q  <= 1'b0;
-      empty_q       <= 1'b1;
+      ready_q       <= 1'b0;
+      room_q        <= 1'b1;
       leaf_valid_q  <= 1'b0;
       fresh_q       <= 1'b0;
     end else begin
       if (advance && pick_pair) turn_q <= ~from1;
       fetch_valid_q <= advance | (fetch_valid_q & ~load);
-      pair_valid_q  <= (load & ~fetch_leaf_q) | (pair_valid_q & ~m_pair_ready);
-      empty_q       <= ~((load & ~fetch_leaf_q) | (pair_valid_q & ~m_pair_ready));
+      pair_valid_q  <= pair_valid;
+      ready_q       <= m_pair_soon;
+      room_q        <= ~pair_valid | m_pair_soon;
       leaf_valid_q  <= load & fetch_leaf_q;
       fresh_q       <= load;
     end

@@ -6,7 +6,7 @@
 // of A come through port 0, those of B through port 1, each once; a pair has a place.
 //   order        the port of the second line puts the pair in its queue; if both lines come on one
 //                clock, port 0 does. Node pairs and leaf pairs have queues of their own
-//   latency      3 clocks from the second line to m_pair_valid or m_leaf_valid; read_lines and
+//   latency      4 clocks from the second line to m_pair_valid or m_leaf_valid; read_lines and
 //                read_codes 2 clocks after read_place
 //   throughput   a line per port and clock
 //   credit       a place is used again only after its pair has left its queue
@@ -49,15 +49,21 @@ module cchip_line_pairs #(
   // inverts the bit of its place: no bit depends on what the others are.
   reg [PLACES-1:0] came_q;
   wire [2*PLACES-1:0] comes;  // a line, by place
-  wire [PLACE_W-1:0] place0 = s_place[0+:PLACE_W];
-  wire [PLACE_W-1:0] place1 = s_place[PLACE_W+:PLACE_W];
-  wire both = &s_valid && place0 == place1;
+  // a clock after the data, which go to their memories at once: the cache is far, and which of the
+  // places is meant takes many gates
+  reg [1:0] valid_q;
+  reg [PLACE_W-1:0] place0, place1;
+  always @(posedge clk) begin
+    valid_q          <= {2{~rst}} & s_valid;
+    {place1, place0} <= s_place;
+  end
+  wire both = &valid_q && place0 == place1;
   wire [1:0] no_room;  // for a pair in its queue: never
   genvar p;
   generate
     for (p = 0; p < 2; p = p + 1) begin : gen_port
       wire [PLACE_W-1:0] place = p == 0 ? place0 : place1;
-      assign comes[PLACES*p+:PLACES] = s_valid[p] ? ONE_PLACE << place : {PLACES{1'b0}};
+      assign comes[PLACES*p+:PLACES] = valid_q[p] ? ONE_PLACE << place : {PLACES{1'b0}};
       reg whole_q;  // this line is the second
       reg [PLACE_W-1:0] whole_place_q;
       wire whole_leaf = {{32 - PLACE_W{1'b0}}, whole_place_q} >= FIRST_LEAF;
@@ -96,7 +102,7 @@ module cchip_line_pairs #(
       ) u_lines (
           .clk       (clk),
           .write     (s_valid[p]),
-          .write_addr(place),
+          .write_addr(s_place[PLACE_W*p+:PLACE_W]),
           .write_data(s_data[512*p+:512]),
           .read_addr (read_place),
           .read_data (read_lines[512*p+:512])
@@ -105,10 +111,10 @@ module cchip_line_pairs #(
       reg [CODE_W-1:0] codes[0:PLACES-1];
       reg [CODE_W-1:0] code_q;
       always @(posedge clk) begin
-        if (s_valid[p]) codes[place] <= s_code[CODE_W*p+:CODE_W];
+        if (s_valid[p]) codes[s_place[PLACE_W*p+:PLACE_W]] <= s_code[CODE_W*p+:CODE_W];
         code_q        <= codes[read_place];
         whole_place_q <= place;
-        whole_q       <= ~rst & s_valid[p] & (came_q[place] | (both & (p == 0)));
+        whole_q       <= ~rst & valid_q[p] & (came_q[place] | (both & (p == 0)));
       end
       assign read_codes[CODE_W*p+:CODE_W] = code_q;
       assign no_room[p] = whole_q & ~(whole_leaf ? leaf_ready : pair_ready);

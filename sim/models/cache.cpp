@@ -22,7 +22,7 @@ void Cache::clock(const Inputs& in) {
   to_fill.serving = serving();
   to_fill.free_take = now.granted.has_value();
   if (read_) to_fill.allocate = CacheFill::Allocation{read_->place, allocate_frame_};
-  to_fill.beat = in.beat;
+  to_fill.beat = std::exchange(beat_, in.beat);
   to_fill.outstanding = in.outstanding;
 
   clock_turn();
@@ -65,6 +65,7 @@ void Cache::reset() {
   change_.reset();
   read_.reset();
   answers_ = {};
+  beat_.reset();
   counts_ = {};
   oldest_ = 0;
   age_ = 0;
@@ -150,10 +151,10 @@ Cache::Step Cache::enter(std::size_t p, const std::optional<Request>& ask, bool 
   const bool own = p == 0 ? fill.has_value() : walk_enters_;
   const bool go = was_running_ && !own && !port.serve;
   const bool late = port.late.m_valid();
-  const bool use_again = port.again.m_valid() && (port.again_first || !(late || ask));
+  const bool use_again = port.again.m_valid() && (port.again_first || !late);
   const bool use_late = !use_again && late;
   const bool use_ask = !use_again && !late && ask;
-  if (go && port.again.m_valid() && (late || ask)) port.again_first = !port.again_first;
+  if (go && port.again.m_valid()) port.again_first = !use_again;
   Step step;
   if (own) {
     step.kind = Kind::own;

@@ -31,7 +31,7 @@ module cchip_get_data_properties #(
     input wire [     2*$clog2(PAIRS+LEAVES)-1:0] s_line_place,
     input wire [       2*`CCHIP_READ_CODE_W-1:0] s_line_code,
     input wire [                         1023:0] s_line_data,
-    input wire                                   m_pair_ready,
+    input wire                                   m_pair_soon,
     input wire                                   s_leaf_taken,
     input wire                                   lookup,
     input wire [       $clog2(PAIRS+LEAVES)-1:0] lookup_place
@@ -41,7 +41,7 @@ module cchip_get_data_properties #(
   localparam integer CONTEXT_W = $clog2(QUERIES);
   localparam integer CODE_W = `CCHIP_READ_CODE_W;
   localparam [2:0] END_OK = 3'd0, END_MEMORY = 3'd7;
-  localparam [3:0] BOUND = 4'd7;
+  localparam [3:0] BOUND = 4'd8;
   wire [1:0] m_line_valid;
   wire [2*PLACE_W-1:0] m_line_place;
   wire [63:0] m_line;
@@ -77,7 +77,7 @@ module cchip_get_data_properties #(
       .s_line_code    (s_line_code),
       .s_line_data    (s_line_data),
       .m_pair_valid   (m_pair_valid),
-      .m_pair_ready   (m_pair_ready),
+      .m_pair_soon    (m_pair_soon),
       .m_pair_place   (m_pair_place),
       .m_pair_context (m_pair_context),
       .m_pair_children(m_pair_children),
@@ -105,6 +105,8 @@ module cchip_get_data_properties #(
 
   // ---- all places: in flight, and lines that the cache has to answer
   reg [PLACES-1:0] busy_q, open_a_q, open_b_q;
+  reg m_pair_ready;
+  always @(posedge clk) m_pair_ready <= ~rst & m_pair_soon;
   wire pair_taken = m_pair_valid & m_pair_ready;
   wire [PLACES-1:0] one = {{PLACES - 1{1'b0}}, 1'b1};
   wire [PLACE_W-1:0] place_a = s_line_place[0+:PLACE_W];

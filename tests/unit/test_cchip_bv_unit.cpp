@@ -235,6 +235,7 @@ void run(Simulation& simulation, Random& random, const std::vector<bvh::Image>& 
       ++busy;
       --left;
       REQUIRE((top.s_ready != 0) == (left == 0));
+      REQUIRE((top.s_soon != 0) == (left == 1));
       if (left == 0) {
         ++contexts[offered->context].at_work;
         verdicts.push_back(*offered);

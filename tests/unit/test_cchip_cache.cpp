@@ -502,9 +502,9 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache: clocks of a hit and of a miss, a locked li
     };
 
     bench.fetch(0, line(0, 1));  // on the clock on which the entries have been cleared a request waits for a moment
-    // 7 clocks to memory's request, one for memory, the beats, 20 from the last of them
+    // 7 clocks to memory's request, one for memory, the beats, 21 from the last of them
     for (const std::size_t port : {0, 1}) {
-      REQUIRE(bench.fetch(port, line(port, 5)) == 7 + static_cast<int>(Bench::beats) + 20);
+      REQUIRE(bench.fetch(port, line(port, 5)) == 7 + static_cast<int>(Bench::beats) + 21);
       REQUIRE(bench.fetch(0, line(port, 5)) == 7);
       REQUIRE(bench.fetch(1, line(port, 5)) == 7);
     }

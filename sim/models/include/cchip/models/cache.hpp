@@ -147,6 +147,7 @@ class Cache {
   std::optional<Change> change_;
   std::size_t allocate_frame_ = 0;
   std::optional<Request> read_;
+  std::optional<Beat> beat_;  // that came on the last clock
   std::array<std::optional<Answer>, 2> answers_;
   std::array<Counts, 2> counts_{};
   bool favour_ = false, running_ = false, ready_ = false, walk_valid_ = false;

@@ -121,13 +121,12 @@ class GetData {
     room_left_ += (in.leaf_taken ? 1 : 0) - (pick && kind == leaves_of ? 1 : 0);
     held_ = held;
 
-    // lines come: the port of the second one has the pair
+    // lines come: the port of the second one has the pair, found a clock later
     std::array<std::optional<std::size_t>, 2> second;
     for (std::size_t p = 0; p < 2; ++p) {
-      if (!in.lines[p]) continue;
-      const auto& other = in.lines[1 - p];
-      const std::size_t place = in.lines[p]->place;
-      const bool together = other && other->place == place;
+      if (!came_[p]) continue;
+      const std::size_t place = *came_[p];
+      const bool together = came_[1 - p] == place;
       if (together ? p == 0 : ports_[1 - p].came[place]) second[p] = place;
     }
     for (std::size_t p = 0; p < 2; ++p) {
@@ -137,9 +136,11 @@ class GetData {
         port.whole[k].clock(push, port.second.value_or(0), pick && kind == k && from == p);
       }
       port.second = second[p];
+      if (came_[p]) port.came[*came_[p]] = true;
+      came_[p].reset();
       if (!in.lines[p]) continue;
       port.lines[in.lines[p]->place] = in.lines[p];
-      port.came[in.lines[p]->place] = true;
+      came_[p] = in.lines[p]->place;
     }
     for (const auto& place : second) {
       if (place) ports_[0].came[*place] = ports_[1].came[*place] = false;
@@ -237,6 +238,7 @@ class GetData {
   std::size_t pairs_, places_;
   int leaf_room_, room_left_;
   std::array<Port, 2> ports_{Port(1, 1), Port(1, 1)};
+  std::array<std::optional<std::size_t>, 2> came_;  // places of the lines of the last clock
   std::vector<std::optional<Request>> requests_;  // by place
   std::vector<std::optional<Nodes>> nodes_;       // by place
   std::vector<bool> no_pose_;                     // by context
