@@ -178,25 +178,41 @@ CertificateCell read_cell(const json& line) {
 
 }  // namespace
 
-Certificate read_certificate(std::istream& in) {
-  std::string text;
-  std::size_t count = 0;
+std::optional<Certificate> CertificateReader::next() {
+  const auto read_line = [this] {
+    ++number_;
+    ended_ = !std::getline(in_, line_);
+    if (in_.bad()) throw std::runtime_error("cannot be read");
+    return !ended_;
+  };
   try {
-    ++count;
-    require(static_cast<bool>(std::getline(in, text)), "the file is empty");
-    Certificate certificate = read_claim(parse(text));
-    while (++count, std::getline(in, text)) certificate.cells.push_back(read_cell(parse(text)));
+    if (number_ == 0) read_line();
+    if (ended_) return std::nullopt;
+    Certificate certificate = read_claim(parse(line_));
+    while (read_line()) {
+      const json line = parse(line_);
+      if (line.is_object() && line.contains("collisionchip_certificate")) break;  // of the next one
+      certificate.cells.push_back(read_cell(line));
+    }
     return certificate;
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {  // JSON's errors too
-    throw std::runtime_error("certificate, line " + std::to_string(count) + ": " + error.what());
+    throw std::runtime_error("certificate, line " + std::to_string(number_) + ": " + error.what());
   }
 }
 #else
-Certificate read_certificate(std::istream& /*in*/) {
+std::optional<Certificate> CertificateReader::next() {
   throw std::runtime_error("certificate: this library was built without nlohmann-json; build it with");
 }
 #endif
+
+Certificate read_certificate(std::istream& in) {
+  CertificateReader reader(in);
+  std::optional<Certificate> certificate = reader.next();
+  if (!certificate) throw std::runtime_error("certificate, line 1: the file is empty");
+  if (reader.next()) throw std::runtime_error("certificate: the file holds more than one; use CertificateReader");
+  return *std::move(certificate);
+}
 
 }  // namespace cchip
