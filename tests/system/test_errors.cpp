@@ -198,9 +198,10 @@ TEST_CASE("errors: values without a meaning", "[system][errors]") {
 TEST_CASE("errors: command line", "[system][errors]") {
   const std::string help = "; see cchip --help";
   const std::string pairs_help = "; see cchip pairs --help";
-  check_error(
-      {}, "cchip: the command is missing; the commands are collide, check, pairs, meshpairs, demo, reconfig, version, help" +
-              help);
+  check_error({},
+              "cchip: the command is missing; the commands are collide, check, pairs, meshpairs, demo, reconfig, "
+              "version, help" +
+                  help);
   check_error({"pairs"}, "cchip: the file of the pairs, FILE, is missing; see cchip pairs --help");
   check_error({"pairs", "f", "--engine", "abacus"},
               "cchip: --engine: abacus not in {rtl,model,eigen,exact}" + pairs_help);
