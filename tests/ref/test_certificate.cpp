@@ -469,7 +469,7 @@ TEST_CASE("certificate: what was changed is accepted only where it is true", "[r
 
 TEST_CASE("certificate: a hundred thousand changes", "[.mutations]") {
   std::mt19937_64 random = generator(8);
-  mutate_certificates(4100, random);
+  mutate_certificates(4300, random);
 }
 
 TEST_CASE("certificate: lies are refused", "[ref][certificate]") {
