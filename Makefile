@@ -40,7 +40,7 @@ export JOBS
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
   test-asan test-arm64 cross-windows fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-chip deb wheel sdist test-sdist test-python test-dask bench-python export fpga \
+  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-certificate bench-chip deb wheel sdist test-sdist test-python test-dask bench-python export fpga \
   fpga-quick fpga-sweep asic asic-quick install clean
 
 # Groups of make help: a heading, then its targets. A target may be followed by /minutes on two cores after the build, as far as a page
@@ -58,7 +58,7 @@ Check for long
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
   campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps
 Measure
-  bench-reconfig bench-collide/10_min bench-robot bench-scene/2_min bench-python/1_min bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
+  bench-reconfig bench-collide/10_min bench-robot bench-scene/2_min bench-certificate bench-python/1_min bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
 Tools
   bootstrap venv peers robots clean
 endef
@@ -299,6 +299,10 @@ bench-robot: $(RELEASE)/build.ninja robots ## collision checks per second of rob
 	cmake $(if $(NATIVE_FCL),-D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))') $(RELEASE)
 	cmake --build $(RELEASE) -j $(JOBS) --target robot_speed
 	$(RELEASE)/bin/robot_speed $(BENCH_ARGS)
+
+bench-certificate: $(RELEASE)/build.ninja ## certificates of answers for pairs of large meshes: all checked, their sizes and times; BENCH_ARGS="--poses 200" for more
+	cmake --build $(RELEASE) -j $(JOBS) --target bench_certificate
+	$(RELEASE)/bin/bench_certificate $(BENCH_ARGS)
 
 bench-scene: $(RELEASE)/build.ninja ## frames of scenes of 10 to 10,000 moving objects: cchip::Scene and FCL's manager in turns (two minutes)
 	cmake --build $(RELEASE) -j $(JOBS) --target scene_speed

@@ -14,6 +14,7 @@ using namespace stimulus;
 
 struct RandomOptions : CommonOptions {
   std::uint64_t pairs = 1000000;  ///< per shape
+  std::uint64_t certify = 0;      ///< of them, whose answers prove themselves (certify_sample.hpp)
   int coord_w = defs::coord_w_default;
 };
 /// Random pairs of all classes: both programmes of the model against the exact oracle.
@@ -27,8 +28,9 @@ struct GridOptions : CommonOptions {
 int run_grid(const GridOptions& options);
 
 struct RelationOptions : CommonOptions {
-  std::uint64_t pairs = 0;  ///< per shape; 0: all triangle pairs of the grid
-  bool random = false;      ///< random pairs of all classes instead of the grid -1..1
+  std::uint64_t pairs = 0;    ///< per shape; 0: all triangle pairs of the grid
+  std::uint64_t certify = 0;  ///< of them, as above
+  bool random = false;        ///< random pairs of all classes instead of the grid -1..1
   int coord_w = defs::coord_w_default;
 };
 /// Whether primitives are apart, touch or cross: exact predicates against the definition.

@@ -32,6 +32,13 @@ void add_pairs(CLI::App& command, std::uint64_t& pairs, const char* what) {
   command.add_option("--pairs", pairs, what)->capture_default_str();
 }
 
+void add_certify(CLI::App& command, std::uint64_t& certify) {
+  command
+      .add_option("--certify", certify,
+                  "pairs per shape whose answers by the CPU device are certified, and the certificates checked")
+      ->capture_default_str();
+}
+
 /// The chosen subcommand is stored in `chosen`.
 void add_commands(CLI::App& app, std::function<int()>& chosen) {
   const auto add = [&](const char* name, const char* what, auto options, int (*run)(const decltype(options)&)) {
@@ -44,6 +51,7 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
   const auto [random, r] =
       add("random", "both programmes of the model against the exact oracle, random pairs", RandomOptions{}, run_random);
   add_pairs(*random, r->pairs, "pairs per shape");
+  add_certify(*random, r->certify);
   add_coord_w(*random, r->coord_w);
   const auto [grid, g] =
       add("grid", "the same on the grid -1..1: all triangle pairs up to symmetry, samples with quads", GridOptions{},
@@ -54,6 +62,7 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
   const auto [relation, n] = add("relation", "apart, touching or crossing: exact predicates against the definition",
                                  RelationOptions{}, run_relation);
   add_pairs(*relation, n->pairs, "pairs per shape; 0: all triangle pairs of the grid -1..1, none with quads");
+  add_certify(*relation, n->certify);
   relation->add_flag("--random", n->random, "random pairs of all classes instead of the grid -1..1");
   add_coord_w(*relation, n->coord_w);
   const auto [boxes, b] = add("boxes", "box test in RTL: volumes that touch in a point, every rounding at its worst",

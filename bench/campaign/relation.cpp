@@ -4,6 +4,7 @@
 #include <cchip/stimulus/pair_source.hpp>
 #include <cchip/stimulus/pair_vector.hpp>
 
+#include "certify_sample.hpp"
 #include "commands.hpp"
 #include "grid_pairs.hpp"
 #include "ref/difference_oracle.hpp"
@@ -44,16 +45,21 @@ int run_relation(const RelationOptions& options) {
              options.random ? fmt::format("random pairs of all classes, coord_w={}", options.coord_w) : "grid -1..1",
              "shape", "pairs", "apart", "touching", "crossing", "wrong");
   Counted sum;
+  std::uint64_t certified = 0;
+  std::uint64_t refused = 0;
   for (const ShapeInfo& shape : options.shapes()) {
     const bool all = !options.random && shape.b == Kind::tri && options.pairs == 0;
     const std::uint64_t count = all ? firsts.size() * triangles : options.pairs;
     const GridPairs grid(shape, count, firsts);
     const auto classes = classes_of(shape.a, shape.b);
+    CertifySample sample(options.certify, count, part_count(count));
     const auto table = sum_of_parts<Table<Counted>>(part_count(count), options.threads, [&](std::uint64_t part) {
       Table<Counted> counted(1);
+      std::uint64_t to_certify = sample.of_part(part);
       const auto take = [&](const GridPair& pair) {
         const Counted one = judge_relation(pair);
-        if (one.wrong != 0) counted.examples.add(part, to_text(pair));
+        const bool proven = to_certify == 0 || (--to_certify, sample.add(pair));
+        if (one.wrong != 0 || !proven) counted.examples.add(part, to_text(pair));
         counted.rows[0] += one;
       };
       if (options.random) {
@@ -70,12 +76,16 @@ int run_relation(const RelationOptions& options) {
                row.relations[2], row.wrong);
     table.examples.print();
     sum += row;
+    certified += sample.certified();
+    refused += sample.refused();
   }
-  fmt::print("pairs={} apart={} touching={} crossing={} wrong={} seconds={:.1f} seed={}\n", sum.pairs, sum.relations[0],
-             sum.relations[1], sum.relations[2], sum.wrong, watch.seconds(), options.seed);
+  fmt::print("pairs={} apart={} touching={} crossing={} wrong={}{} seconds={:.1f} seed={}\n", sum.pairs,
+             sum.relations[0], sum.relations[1], sum.relations[2], sum.wrong,
+             options.certify == 0 ? "" : fmt::format(" certified={} refused={}", certified, refused), watch.seconds(),
+             options.seed);
   Goals goals;
   options.check(goals, sum.pairs, sum.relations[1] + sum.relations[2]);
-  return sum.wrong != 0 || goals.missed() ? wrong_result : 0;
+  return sum.wrong != 0 || refused != 0 || goals.missed() ? wrong_result : 0;
 }
 
 }  // namespace cchip::campaign

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cchip/cchip.hpp>
+#include <cchip/certificate/certificate_file.hpp>
 #include <cchip/mesh_io/html_page.hpp>
 #include <cchip/reference/brute_force.hpp>
 #include <cerrno>
@@ -22,6 +23,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -314,7 +316,7 @@ void set_state(Object& self, const State& state) {
 // Requests and results.
 
 CollisionRequest to_request(const std::string& contacts, bool relation, const std::string& counts,
-                            std::optional<std::size_t> max_contacts) {
+                            std::optional<std::size_t> max_contacts, bool certificate) {
   CollisionRequest request;
   if (contacts == "all") {
     request.contacts = CollisionRequest::Contacts::all;
@@ -327,6 +329,7 @@ CollisionRequest to_request(const std::string& contacts, bool relation, const st
     throw std::invalid_argument("counts is '" + counts + "'; give 'touching' or 'crossing'");
   }
   request.relation = relation;
+  request.certificate = certificate;
   if (max_contacts) request.max_contacts = *max_contacts;
   if (request.max_contacts == 0) throw std::invalid_argument("max_contacts is 0: ask for at least one contact");
   return request;
@@ -345,8 +348,15 @@ struct Places {
   Pose pose_b;
 };
 
+/// An answer with its proof, and what it was asked about.
+struct Proof {
+  std::shared_ptr<const cchip::Certificate> certificate;
+  Places places;
+};
+
 struct Result {
-  Result(const CollisionResult& x, Places asked) : hit(x.hit), counts(x.counts), places(std::move(asked)) {
+  Result(const CollisionResult& x, Places asked)
+      : hit(x.hit), counts(x.counts), certificate(x.certificate), places(std::move(asked)) {
     if (x.relation) relation = name_of(*x.relation);
     for (const cchip::Contact& contact : x.contacts) {
       faces.insert(faces.end(), {contact.face_a, contact.face_b});
@@ -360,8 +370,43 @@ struct Result {
   std::vector<std::uint8_t> crossing;
   bool tells_crossing;
   cchip::CollisionCounts counts;
+  std::shared_ptr<const cchip::Certificate> certificate;  ///< null: not asked for
   Places places;
 };
+
+std::string text_of(const Proof& x) {
+  std::ostringstream out;
+  cchip::write_certificate(*x.certificate, out);
+  return out.str();
+}
+
+/// A mesh as check.py takes it.
+nb::tuple mesh_for_check(const Object& x) {
+  const cchip::Mesh& mesh = x.mesh();
+  nb::list vertices, faces, numbers;
+  for (const cchip::Vec3d& v : mesh.vertices) vertices.append(nb::make_tuple(v[0], v[1], v[2]));
+  for (std::uint32_t i = 0; i < mesh.faces.size(); ++i) {
+    const cchip::Mesh::Face& face = mesh.faces[i];
+    nb::list corners;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(face.kind); ++k) corners.append(face.vertex[k]);
+    faces.append(corners);
+    numbers.append(mesh.number_in_file(i));
+  }
+  return nb::make_tuple(vertices, faces, numbers);
+}
+
+/// By the checker in Python, which shares no code with the answer.
+nb::object check_proof(const Proof& x) {
+  nb::list poses;
+  for (const Pose* pose : {&x.places.pose_a, &x.places.pose_b}) {
+    for (Eigen::Index row = 0; row < 3; ++row) {
+      for (Eigen::Index column = 0; column < 4; ++column) poses.append((*pose)(row, column));
+    }
+  }
+  const nb::object lines = nb::cast(text_of(x)).attr("splitlines")();
+  return nb::module_::import_("collisionchip.check")
+      .attr("check")(nb::make_tuple(mesh_for_check(x.places.a), mesh_for_check(x.places.b)), poses, lines);
+}
 
 /// What the result looks like, see cchip::html_page(); UTF-8, but for names of files.
 nb::bytes page_of(const Result& x) {
@@ -425,10 +470,11 @@ class DeviceUse {
 };
 
 Result collide(const Object& a, nb::handle pose_a, const Object& b, nb::handle pose_b, const std::string& contacts,
-               bool relation, const std::string& counts, std::optional<std::size_t> max_contacts, Device* device) {
+               bool relation, const std::string& counts, std::optional<std::size_t> max_contacts, Device* device,
+               bool certificate) {
   const Pose place_a = one_pose(pose_a, "pose_a");
   const Pose place_b = one_pose(pose_b, "pose_b");
-  const CollisionRequest request = to_request(contacts, relation, counts, max_contacts);
+  const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate);
   const nb::gil_scoped_release release;
   const GradualUnderflow mode;
   return Result(device != nullptr ? cchip::collide(*device, a, place_a, b, place_b, request)
@@ -467,7 +513,7 @@ nb::object to_words(std::vector<std::uint8_t>&& relations) {
 
 nb::object collide_many(const Object& a, nb::handle poses_a, const Object& b, nb::handle poses_b, bool contacts,
                         bool relation, const std::string& counts, std::optional<std::size_t> max_contacts,
-                        Device* device) {
+                        Device* device, bool certificate) {
   const Poses places_a(poses_a, "poses_a", true);
   const Poses places_b(poses_b, "poses_b", true);
   if (places_a.many() && places_b.many() && places_a.size() != places_b.size()) {
@@ -476,31 +522,51 @@ nb::object collide_many(const Object& a, nb::handle poses_a, const Object& b, nb
   }
   const std::size_t count = places_a.many() ? places_a.size() : places_b.size();
   if (count > std::numeric_limits<std::uint32_t>::max()) throw std::invalid_argument("more than 2^32 - 1 poses");
-  const CollisionRequest request = to_request(contacts ? "all" : "first", relation, counts, max_contacts);
+  const CollisionRequest request = to_request(contacts ? "all" : "first", relation, counts, max_contacts, certificate);
   std::vector<std::uint8_t> hits(count);
   std::vector<std::uint8_t> relations(relation ? count : 0);
   std::vector<std::vector<cchip::Contact>> found(contacts ? count : 0);
+  std::vector<std::shared_ptr<const cchip::Certificate>> proofs(certificate ? count : 0);
   collide_each(a, places_a, b, places_b, count, request, device, [&](std::size_t i, const CollisionResult& result) {
     hits[i] = result.hit ? 1 : 0;
     if (contacts) found[i] = result.contacts;
     if (relation) relations[i] = result.relation ? static_cast<std::uint8_t>(*result.relation) : unknown;
+    if (certificate) proofs[i] = result.certificate;
   });
-  const nb::object hit = to_bools(std::move(hits));
-  if (!contacts && !relation) return hit;
+  nb::list answer;
+  answer.append(to_bools(std::move(hits)));
   const nb::object words = relation ? to_words(std::move(relations)) : nb::none();
-  if (!contacts) return nb::make_tuple(hit, words);
-  std::vector<std::uint32_t> rows;
-  std::vector<std::uint8_t> crossing;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (const cchip::Contact& contact : found[i]) {
-      if (relation) crossing.push_back(contact.relation == cchip::Relation::crossing ? 1 : 0);
-      rows.insert(rows.end(), {static_cast<std::uint32_t>(i), contact.face_a, contact.face_b});
+  if (contacts) {
+    std::vector<std::uint32_t> rows;
+    std::vector<std::uint8_t> crossing;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (const cchip::Contact& contact : found[i]) {
+        if (relation) crossing.push_back(contact.relation == cchip::Relation::crossing ? 1 : 0);
+        rows.insert(rows.end(), {static_cast<std::uint32_t>(i), contact.face_a, contact.face_b});
+      }
     }
+    const std::size_t n = rows.size() / 3;
+    answer.append(owned<std::uint32_t>(std::move(rows), {n, 3}));
+    if (relation) {
+      answer.append(words);
+      answer.append(to_bools(std::move(crossing)));
+    }
+  } else if (relation) {
+    answer.append(words);
   }
-  const std::size_t n = rows.size() / 3;
-  const auto triples = owned<std::uint32_t>(std::move(rows), {n, 3});
-  if (!relation) return nb::make_tuple(hit, triples);
-  return nb::make_tuple(hit, triples, words, to_bools(std::move(crossing)));
+  if (certificate) {
+    nb::list list;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (proofs[i]) {
+        list.append(Proof{proofs[i], {a, places_a[i], b, places_b[i]}});
+      } else {
+        list.append(nb::none());
+      }
+    }
+    answer.append(list);
+  }
+  if (nb::len(answer) == 1) return answer[0];
+  return nb::tuple(answer);
 }
 
 /// By asking about every pair of faces in integers of any size: for tests.
@@ -618,7 +684,7 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
                  const std::string& doc) {
   const std::string keywords =
       ", *, contacts: str = 'first', relation: bool = False, counts: str = 'touching', "
-      "max_contacts: int | None = None, device: Device | None = None";
+      "max_contacts: int | None = None, device: Device | None = None, certificate: bool = False";
   const auto sig = [&](const std::string& what, const std::string& pair) {
     std::string result = found;
     result.replace(result.find('@'), 1, pair);
@@ -627,31 +693,32 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
   type.def(
       name,
       [call](PyScene& self, const std::string& contacts, bool relation, const std::string& counts,
-             std::optional<std::size_t> max_contacts, Device* device) {
-        const CollisionRequest request = to_request(contacts, relation, counts, max_contacts);
+             std::optional<std::size_t> max_contacts, Device* device, bool certificate) {
+        const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate);
         const auto answers = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), request); });
         return to_object(answers, self.scene());
       },
       nb::kw_only(), "contacts"_a = "first", "relation"_a = false, "counts"_a = "touching",
-      "max_contacts"_a = nb::none(), "device"_a = nb::none(), nb::sig(sig("", "tuple[int, int, Result]").c_str()),
-      doc.c_str());
+      "max_contacts"_a = nb::none(), "device"_a = nb::none(), "certificate"_a = false,
+      nb::sig(sig("", "tuple[int, int, Result]").c_str()), doc.c_str());
   type.def(
       name,
       [call](PyScene& self, Scene::Id id, const std::string& contacts, bool relation, const std::string& counts,
-             std::optional<std::size_t> max_contacts, Device* device) {
-        const CollisionRequest request = to_request(contacts, relation, counts, max_contacts);
+             std::optional<std::size_t> max_contacts, Device* device, bool certificate) {
+        const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate);
         const auto answers = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), id, request); });
         return to_object(answers, self.scene(), asked_for(self.scene(), id));
       },
       "id"_a, nb::kw_only(), "contacts"_a = "first", "relation"_a = false, "counts"_a = "touching",
-      "max_contacts"_a = nb::none(), "device"_a = nb::none(), nb::sig(sig(", id: int", "tuple[int, Result]").c_str()),
+      "max_contacts"_a = nb::none(), "device"_a = nb::none(), "certificate"_a = false,
+      nb::sig(sig(", id: int", "tuple[int, Result]").c_str()),
       "The same for one object of the scene, which is A in the results; tuples (id, result).");
   type.def(
       name,
       [call](PyScene& self, const Object& object, nb::handle pose, std::uint64_t groups, std::uint64_t mask,
              const std::string& contacts, bool relation, const std::string& counts,
-             std::optional<std::size_t> max_contacts, Device* device) {
-        const CollisionRequest request = to_request(contacts, relation, counts, max_contacts);
+             std::optional<std::size_t> max_contacts, Device* device, bool certificate) {
+        const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate);
         const Pose place = one_pose(pose, "pose");
         const cchip::CollisionGroups bits = {groups, mask};
         const auto answers =
@@ -660,6 +727,7 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
       },
       "object"_a, "pose"_a = nb::none(), "groups"_a = 1, "mask"_a = all_groups, nb::kw_only(), "contacts"_a = "first",
       "relation"_a = false, "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
+      "certificate"_a = false,
       nb::sig(sig(", object: Object, pose: numpy.typing.ArrayLike | None = None, groups: int = 1, mask: int = "
                   "0xffffffffffffffff",
                   "tuple[int, Result]")
@@ -794,6 +862,39 @@ neighbours: False leaves out all pairs with a common vertex.)")
                        std::to_string(x.mesh().faces.size()) + " faces>");
       });
 
+  nb::class_<Proof>(m, "Certificate", nb::is_weak_referenceable(),
+                    R"(An answer with its proof, which a short program can check (docs/cpp/certificates.md).)")
+      .def_prop_ro(
+          "lines", [](const Proof& x) { return nb::object(nb::cast(text_of(x)).attr("splitlines")()); },
+          nb::sig("def lines(self) -> list[str]"), "Lines of JSON: the claim, then a line for each step of the proof.")
+      .def(
+          "save",
+          [](const Proof& x, nb::handle path) {
+            const nb::object file =
+                nb::module_::import_("io").attr("open")(path, "w", "encoding"_a = "utf-8", "newline"_a = "");
+            const nb::object close = file.attr("close");
+            try {
+              file.attr("write")(text_of(x));
+            } catch (...) {
+              close();
+              throw;
+            }
+            close();
+          },
+          "path"_a, nb::sig("def save(self, path: str | os.PathLike[str]) -> None"),
+          "Writes the lines into a file, for `cchip check` and `python -m collisionchip.check`. Raises OSError: the "
+          "file "
+          "cannot be written.")
+      .def(
+          "check", &check_proof, nb::sig("def check(self) -> dict[str, typing.Any]"),
+          R"(Checks the proof by collisionchip.check, which is in Python and exact and shares no code with the answer. Slow for large meshes.
+
+Returns the claim, as the first of the lines has it. Raises collisionchip.check.Refused: it does not hold.)")
+      .def("__repr__", [](const Proof& x) {
+        return "<collisionchip.Certificate: " + std::to_string(x.certificate->contacts.size()) + " contacts, " +
+               std::to_string(x.certificate->cells.size()) + " cells>";
+      });
+
   nb::class_<Result>(m, "Result", nb::is_weak_referenceable(),
                      "The answer to a query. True in a condition if there is a contact.")
       .def_ro("hit", &Result::hit, "bool: there is a contact that counts.")
@@ -830,6 +931,14 @@ neighbours: False leaves out all pairs with a common vertex.)")
             return d;
           },
           nb::sig("def counts(self) -> dict[str, int]"), "What the query cost (docs/cpp/collide.md).")
+      .def_prop_ro(
+          "certificate",
+          [](const Result& x) -> std::optional<Proof> {
+            if (!x.certificate) return std::nullopt;
+            return Proof{x.certificate, x.places};
+          },
+          nb::sig("def certificate(self) -> Certificate | None"),
+          "The answer with its proof; None if it was not asked for.")
       .def(
           "show",
           [](const Result& x, nb::object path) {
@@ -877,9 +986,12 @@ Raises ValueError: no device or target of this name.)");
 
   m.def("collide", &collide, "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(), "contacts"_a = "first",
         "relation"_a = false, "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
-        nb::sig("def collide(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
-                "numpy.typing.ArrayLike | None, contacts: str = 'first', relation: bool = False, counts: str = "
-                "'touching', max_contacts: int | None = None, device: Device | None = None) -> Result"),
+        "certificate"_a = false,
+        nb::sig(
+            "def collide(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
+            "numpy.typing.ArrayLike | None, contacts: str = 'first', relation: bool = False, counts: str = "
+            "'touching', max_contacts: int | None = None, device: Device | None = None, certificate: bool = False) -> "
+            "Result"),
         R"(Do two placed objects touch, and where? Exact for the float64 numbers of meshes and poses.
 
 pose_a, pose_b: (4, 4) or (3, 4), converted to float64; None is the identity. Any affine map is allowed: a vertex v lies
@@ -888,15 +1000,17 @@ contacts: 'first', whether there is one, any of them is returned; or 'all' of th
 relation: tell touching from crossing; fills Result.relation and Result.crossing.
 counts: what counts as a contact: 'touching', faces that share a point; or 'crossing', only faces that cross.
 device: by default one thread of the CPU, one for each calling thread.
+certificate: prove the answer; fills Result.certificate. Takes far longer than the answer.
 
 Raises ValueError: a pose of another shape or with an entry that is not finite or beyond 2^500, an unknown word,
-max_contacts of 0. Raises RuntimeError: the device is in use.)");
+max_contacts of 0. Raises RuntimeError: the device is in use; or, with certificate=True, the answer is wrong.)");
   m.def("collide_many", &collide_many, "a"_a, "poses_a"_a.none(), "b"_a, "poses_b"_a.none(), "contacts"_a = false,
         "relation"_a = false, "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
+        "certificate"_a = false,
         nb::sig("def collide_many(a: Object, poses_a: numpy.typing.ArrayLike | None, b: Object, poses_b: "
                 "numpy.typing.ArrayLike | None, contacts: bool = False, relation: bool = False, counts: str = "
                 "'touching', max_contacts: int | "
-                "None = None, device: Device | None = None) -> typing.Any"),
+                "None = None, device: Device | None = None, certificate: bool = False) -> typing.Any"),
         R"(The same two objects in n pairs of poses, on all cores, with the GIL released.
 
 poses_a, poses_b: (n, 4, 4) or (n, 3, 4), as collide() takes them; or one pose, (4, 4), (3, 4) or None, for all.
@@ -904,10 +1018,12 @@ contacts: return all contacts as well, at most max_contacts a query.
 relation: tell touching from crossing, as collide().
 counts: as collide().
 device: by default the CPU with all cores, one for the process; while another thread uses it, one core.
+certificate: prove each answer, as collide().
 
 Returns hits, (n,) bool. With contacts=True a tuple of hits and contacts, (k, 3) uint32, in each row the number of the
 query, a face of A and a face of B, ascending. With relation=True the tuple continues with relations, (n,) str, as
 Result.relation with '' for None; with both there follows crossing, (k,) bool, as Result.crossing.
+With certificate=True the tuple ends with a list of certificates, one for each query.
 
 Raises as collide(), and ValueError if there are not as many poses of A as of B. Ctrl-C takes effect after the call.)");
   m.def("_exact", &exact, "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(),

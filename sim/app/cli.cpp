@@ -23,6 +23,7 @@
 #include <optional>
 #include <utility>
 
+#include "check.hpp"
 #include "collide.hpp"
 #include "demo.hpp"
 #include "engines.hpp"
@@ -202,8 +203,9 @@ std::string device_words() {
 }
 
 const std::string exit_codes =
-    "Exit codes: 0 done, 1 internal error or the output cannot be written, 2 wrong input or command line,\n"
-    "3 answers differ, 4 answered without faces that cannot be used, 5 a contact (collide --exit-code).\n";
+    "Exit codes: 0 done, 1 internal error or the output cannot be written (check: a certificate is refused),\n"
+    "2 wrong input or command line, 3 answers differ, 4 answered without faces that cannot be used,\n"
+    "5 a contact (collide --exit-code).\n";
 
 /// Two meshes, --lenient, and the option --pose, which is returned.
 template <class Options>
@@ -285,6 +287,8 @@ void add_collide(CLI::App& app, CollideOptions& options) {
   add_text(*command, "--html", options.html,
            "write a page for a browser: both meshes to turn, cut and click, with the list of their contacts")
       ->excludes(poses);
+  add_text(*command, "--certificate", options.certificate,
+           "write a proof of each answer into this file, for cchip check");
   command->footer(exit_codes +
                   "Examples:\n"
                   "  cchip collide a.obj b.stl --pose 0.5,0,0\n"
@@ -293,6 +297,26 @@ void add_collide(CLI::App& app, CollideOptions& options) {
                   "  cchip collide a.obj b.stl --poses poses.csv --expect touches\n"
                   "  cchip collide a.obj b.stl --poses poses.csv --counts crossing\n"
                   "  cchip collide a.obj b.stl --pose 0.5,0,0 --device sim --trace chip.fst");
+}
+
+void add_check(CLI::App& app, CheckOptions& options) {
+  CLI::App* command = app.add_subcommand(
+      "check",
+      "Do the proofs hold that collide --certificate wrote? By exact arithmetic, without the code of the answers");
+  auto* pose = add_meshes(*command, options);
+  add_text(*command, "FILE", options.certificates, "the certificates; - reads standard input")->required();
+  auto* matrix =
+      add_text(*command, "--pose-matrix", options.pose_matrix,
+               "twelve numbers, the 3x4 matrix [R|t] of any affine map row by row; or the sixteen of a 4x4 matrix");
+  auto* poses =
+      add_text(*command, "--poses", options.poses_file,
+               "CSV file with columns r00..r22, tx, ty, tz: a certificate for each row; - reads standard input");
+  pose->excludes(matrix)->excludes(poses);
+  matrix->excludes(poses);
+  command->footer(exit_codes +
+                  "Examples:\n"
+                  "  cchip collide a.obj b.stl --pose 0.5,0,0 --certificate proof.jsonl\n"
+                  "  cchip check a.obj b.stl proof.jsonl --pose 0.5,0,0");
 }
 
 void add_demo(CLI::App& app, DemoOptions& options) {
@@ -440,10 +464,12 @@ int dispatch(std::vector<std::string> arguments, const Streams& streams) {
              "  cchip meshpairs a.obj b.stl --pose 0.5,0,0\n"
              "\"cchip COMMAND --help\" lists the options of a command.");
   CollideOptions collide;
+  CheckOptions check;
   PairsOptions pairs;
   MeshPairsOptions meshpairs;
   DemoOptions demo;
   add_collide(app, collide);
+  add_check(app, check);
   add_pairs(app, pairs);
   add_meshpairs(app, meshpairs);
   add_demo(app, demo);
@@ -475,6 +501,7 @@ int dispatch(std::vector<std::string> arguments, const Streams& streams) {
     throw UsageError(unreadable(app, error));
   }
   if (app.got_subcommand("collide")) return run_collide(collide, streams);
+  if (app.got_subcommand("check")) return run_check(check, streams);
   if (app.got_subcommand("pairs")) return run_pairs(pairs, streams);
   if (app.got_subcommand("meshpairs")) return run_meshpairs(meshpairs, streams);
   if (app.got_subcommand("demo")) return run_demo(demo, streams.out);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cchip/certificate/certificate_file.hpp>
+#include <cchip/certificate/certify.hpp>
 #include <cchip/collide/face_pairs.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/machines/simulated_chip.hpp>
@@ -172,6 +174,21 @@ std::string to_word(const std::optional<Relation>& relation) {
   return *relation == Relation::apart ? "apart" : *relation == Relation::touching ? "touching" : "crossing";
 }
 
+/// The file of the proofs, a certificate for each query.
+class ProofFile {
+ public:
+  explicit ProofFile(const std::string& path) : file_(path) {}
+  void add(const Object& a, const Object& b, const Pose& pose, const CollisionRequest& request,
+           const CollisionResult& result) {
+    const Pose pose_a = Pose::Identity();
+    write_certificate(certify({&a, &pose_a, &b, &pose}, request, result), file_.stream());
+  }
+  void commit() { file_.commit(); }
+
+ private:
+  sim::OutputFile file_;
+};
+
 /// The answer in words.
 std::string to_words(const CollisionResult& result, const CollisionRequest& request) {
   if (!result.hit) return result.relation == Relation::touching ? "touch: no faces cross" : "apart";
@@ -238,9 +255,9 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
   if (!options.ply.empty()) picture.emplace(options.ply);
   std::optional<HtmlView> view;
   if (!options.html.empty()) view.emplace(options.html);
-  Pose pose = Pose::Identity();
-  if (!options.pose.empty()) pose = parse_pose(options.pose);
-  if (!options.pose_matrix.empty()) pose = parse_affine_matrix(options.pose_matrix);
+  std::optional<ProofFile> proofs;
+  if (!options.certificate.empty()) proofs.emplace(options.certificate);
+  const Pose pose = parse_pose_options(options.pose, options.pose_matrix);
   const CollisionRequest request = request_of(options);
   try {
     check_query(Pose::Identity(), pose, request);
@@ -253,6 +270,10 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
   Totals totals;
   const CollisionResult result =
       timed(totals.time, [&] { return collide(device, a, Pose::Identity(), b, pose, request); });
+  if (proofs) {
+    proofs->add(a, b, pose, request, result);
+    proofs->commit();
+  }
   if (options.format == Format::table) {
     const std::string answer = to_words(result, request);
     streams.out << (streams.colour ? coloured(answer) : answer) << '\n';
@@ -282,7 +303,9 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
 class PosesRunner {
  public:
   PosesRunner(const CollideOptions& options, Device& device, const Streams& streams)
-      : options_(options), device_(device), streams_(streams), request_(request_of(options)) {}
+      : options_(options), device_(device), streams_(streams), request_(request_of(options)) {
+    if (!options.certificate.empty()) proofs_.emplace(options.certificate);
+  }
 
   Totals run() {
     if (options_.poses_file == "-") return run(streams_.in);
@@ -321,6 +344,7 @@ class PosesRunner {
     }
     progress.clear();
     answer(a, b);
+    if (proofs_) proofs_->commit();
     if (options_.format == Format::table) {
       if (options_.only_crossing) {
         streams_.out << fmt::format("cross in {} of {} poses\n", totals_.hits, totals_.queries);
@@ -355,7 +379,10 @@ class PosesRunner {
   void answer(const Object& a, const Object& b) {
     const std::vector<CollisionResult> results =
         timed(totals_.time, [&] { return collide(device_, a, b, poses_, request_); });
-    for (std::size_t i = 0; i < rows_.size(); ++i) write(i, results[i]);
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (proofs_) proofs_->add(a, b, poses_[i].b, request_, results[i]);
+      write(i, results[i]);
+    }
     writer_->flush();
     rows_.clear();
     lines_.clear();
@@ -391,6 +418,7 @@ class PosesRunner {
   Device& device_;
   const Streams& streams_;
   CollisionRequest request_;
+  std::optional<ProofFile> proofs_;
   std::unique_ptr<RowWriter> writer_;
   std::vector<PoseColumns::Row> rows_;
   std::vector<std::uint64_t> lines_;
@@ -401,8 +429,11 @@ class PosesRunner {
 }  // namespace
 
 int run_collide(const CollideOptions& options, const Streams& streams) {
-  sim::check_outputs({{"A", options.file_a}, {"B", options.file_b}},
-                     {{"--ply", options.ply}, {"--html", options.html}, {"--trace", options.trace}});
+  sim::check_outputs({{"A", options.file_a}, {"B", options.file_b}, {"--poses", options.poses_file}},
+                     {{"--ply", options.ply},
+                      {"--html", options.html},
+                      {"--certificate", options.certificate},
+                      {"--trace", options.trace}});
   check_picture_name(options.ply);
   check_view_name(options.html);
   check_standard_input({options.file_a, options.file_b, options.poses_file});

@@ -32,6 +32,7 @@ struct CollideOptions {
   std::string expect;       ///< column of the file; empty: none
   std::string ply;          ///< path of the coloured picture; empty: none
   std::string html;         ///< path of the view for a browser; empty: none
+  std::string certificate;  ///< path of the proofs of the answers; empty: none
   std::uint64_t slots = 0;  ///< of device sim, with swaps; 0: a static chip
   std::string trace;        ///< path of the waveform of device sim; empty: none
 };

@@ -83,6 +83,12 @@ Eigen::Isometry3d parse_pose_matrix(const std::string& text) {
   return Eigen::Isometry3d(pose.matrix());
 }
 
+Pose parse_pose_options(const std::string& pose, const std::string& pose_matrix) {
+  if (!pose_matrix.empty()) return parse_affine_matrix(pose_matrix);
+  if (!pose.empty()) return Pose(parse_pose(pose));
+  return Pose::Identity();
+}
+
 PoseColumns::PoseColumns(const CsvRow& header, std::string file, const std::string& expect)
     : file_(std::move(file)), fields_(header.fields.size()) {
   for (std::size_t i = 0; i < entry_.size(); ++i) {

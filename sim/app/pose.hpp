@@ -26,6 +26,10 @@ Pose parse_affine_matrix(const std::string& text);
 /// \throws UsageError other numbers, or R is not a rotation within 1e-9
 Eigen::Isometry3d parse_pose_matrix(const std::string& text);
 
+/// The pose that one of the options --pose and --pose-matrix gives; the identity if both are empty.
+/// \throws UsageError as parse_pose() and parse_affine_matrix()
+Pose parse_pose_options(const std::string& pose, const std::string& pose_matrix);
+
 /// Columns r00..r22 and tx, ty, tz of a CSV file: x -> R x + t, row by row.
 class PoseColumns {
  public:

@@ -17,8 +17,8 @@ ROOMS["mesh_io"] = {"wire", "geometry", "mesh"}
 ROOMS["certificate"] = set(CORE)
 ROOMS["reference"] = {"wire", "geometry", "mesh", "exact", "bvh", "collide"}
 ROOMS["model"] = {"wire", "geometry", "mesh", "bvh"}
-ROOMS["cpu"] = set(CORE)  # the CPU's searches
-ROOMS["driver"] = set(CORE) | {"cpu"}  # what speaks to hardware; its host gives the CPU what the chip leaves
+ROOMS["cpu"] = set(CORE) | {"certificate"}  # the CPU's searches
+ROOMS["driver"] = set(CORE) | {"certificate", "cpu"}  # what speaks to hardware; its host gives the CPU what the chip leaves
 ROOMS["device"] = set(CORE) | {"cpu", "driver", "model"}  # what users open: any of the three by its name
 CPP_REF = set(ROOMS)
 ROOMS["cchip.hpp"] = CPP_REF  # the one header for users
@@ -36,11 +36,11 @@ FOLDERS = {"sim/harness": "sim", "sim/reconfig": "rc", "sim/waves": "waves", "si
 # CMake target: the targets of this project that it may link, directly.
 LINKS = {
     "cchip_core": set(), "cchip_mesh_io": {"core"}, "cchip_reference": {"core"}, "cchip_certificate": {"core"}, "cchip_model": {"core"},
-    "cchip_device": {"core", "model"}, "cchip_harness": {"verilated"}, "cchip_reconfig": set(), "cchip_waves": {"core"},
+    "cchip_device": {"certificate", "core", "model"}, "cchip_harness": {"verilated"}, "cchip_reconfig": set(), "cchip_waves": {"core"},
     "cchip_models": {"core", "model"},
     "cchip_stimulus": {"core", "model"}, "cchip_pair_vectors": {"stimulus"}, "cchip_query_vectors": {"stimulus"}, "cchip_rtl_ports": {"core", "harness"},
     "cchip_rtl_receiver": {"rtl_ports", "model"},
-    "cchip_rtl": {"device", "rtl_ports", "rtl_models", "waves"}, "cchip_app": {"device", "mesh_io", "stimulus",
+    "cchip_rtl": {"device", "rtl_ports", "rtl_models", "waves"}, "cchip_app": {"certificate", "device", "mesh_io", "stimulus",
                                                                                "reference", "rtl", "waves"},
     "cchip": {"app"}, "cchip_levels_core": {"reconfig", "core", "stimulus"},
     "cchip_levels_lib": {"levels_core", "reference", "rtl", "rtl_models", "waves", "levels_models"},

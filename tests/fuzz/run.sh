@@ -26,6 +26,7 @@ longest() {
     query) echo 64 ;;
     bitstream) echo 128 ;;
     image) echo 512 ;;
+    certificate) echo 4096 ;;
     *) echo 352 ;;
   esac
 }

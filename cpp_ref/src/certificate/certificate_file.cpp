@@ -38,6 +38,21 @@ std::string list(const std::vector<std::uint32_t>& numbers) {
   return text.empty() ? "[]" : text + ']';
 }
 
+/// Numbers, and [first, last] for three and more that ascend by one.
+std::string list_of_runs(const std::vector<std::uint32_t>& numbers) {
+  std::string text;
+  for (std::size_t i = 0; i < numbers.size();) {
+    std::size_t end = i + 1;
+    while (end < numbers.size() && numbers[end] == numbers[end - 1] + 1) ++end;
+    if (end - i < 3) end = i + 1;
+    text += text.empty() ? '[' : ',';
+    text += end == i + 1 ? std::to_string(numbers[i])
+                         : '[' + std::to_string(numbers[i]) + ',' + std::to_string(numbers[end - 1]) + ']';
+    i = end;
+  }
+  return text.empty() ? "[]" : text + ']';
+}
+
 }  // namespace
 
 void write_certificate(const Certificate& certificate, std::ostream& out) {
@@ -52,7 +67,7 @@ void write_certificate(const Certificate& certificate, std::ostream& out) {
             relation_text(contact.relation) + ']';
     comma = ",";
   }
-  out << text << "],\"order_a\":" << list(c.order_a) << ",\"order_b\":" << list(c.order_b) << "}\n";
+  out << text << "],\"order_a\":" << list_of_runs(c.order_a) << ",\"order_b\":" << list_of_runs(c.order_b) << "}\n";
   for (const CertificateCell& cell : c.cells) {
     text = std::string("{\"cell\":\"") + kind_names[static_cast<std::size_t>(cell.kind)] + '"';
     if (cell.kind <= CellKind::split_b) text += ",\"at\":" + std::to_string(cell.at);
@@ -114,6 +129,27 @@ std::vector<std::uint32_t> numbers(const json& value) {
   return result;
 }
 
+std::vector<Digits> integers(const json& value) {
+  std::vector<Digits> result = value.get<std::vector<Digits>>();
+  for (const Digits& text : result) require(is_integer(text), "not an integer of at most 20000 digits");
+  return result;
+}
+
+/// What list_of_runs() writes. A run is a few bytes for any number of faces, so that is limited.
+std::vector<std::uint32_t> numbers_of_runs(const json& value) {
+  constexpr std::uint64_t most = std::uint64_t{1} << 24U;
+  require(value.is_array(), "not a list");
+  std::vector<std::uint32_t> result;
+  for (const json& entry : value) {
+    require(!entry.is_array() || entry.size() == 2, "a run is the first and the last number");
+    const std::uint64_t first = number(entry.is_array() ? entry[0] : entry);
+    const std::uint64_t last = number(entry.is_array() ? entry[1] : entry);
+    require(first <= last && last - first + result.size() < most, "an order of more than 2^24 faces, or a run back");
+    for (std::uint64_t x = first; x <= last; ++x) result.push_back(static_cast<std::uint32_t>(x));
+  }
+  return result;
+}
+
 std::optional<Relation> relation(const json& value) {
   if (value.is_null()) return std::nullopt;
   return static_cast<Relation>(index_of(relation_names, value));
@@ -145,8 +181,8 @@ Certificate read_claim(const json& line) {
     require(contact.is_array() && contact.size() == 3, "a contact is two faces and a relation");
     c.contacts.push_back({number(contact[0]), number(contact[1]), relation(contact[2])});
   }
-  c.order_a = numbers(line.at("order_a"));
-  c.order_b = numbers(line.at("order_b"));
+  c.order_a = numbers_of_runs(line.at("order_a"));
+  c.order_b = numbers_of_runs(line.at("order_b"));
   return c;
 }
 
@@ -159,10 +195,10 @@ CertificateCell read_cell(const json& line) {
     require(faces.size() == 2, "a point needs two faces");
     cell.face_a = faces[0];
     cell.face_b = faces[1];
-    line.at("a").get_to(cell.weights_a);
-    line.at("b").get_to(cell.weights_b);
+    cell.weights_a = integers(line.at("a"));
+    cell.weights_b = integers(line.at("b"));
   }
-  if (cell.kind == CellKind::separated || cell.kind == CellKind::touch) line.at("direction").get_to(cell.direction);
+  if (cell.kind == CellKind::separated || cell.kind == CellKind::touch) cell.direction = integers(line.at("direction"));
   if (cell.kind == CellKind::cross) {
     const json& span = line.at("span");
     require(span.is_array() && span.size() == 3, "a span is three edges");
@@ -178,25 +214,41 @@ CertificateCell read_cell(const json& line) {
 
 }  // namespace
 
-Certificate read_certificate(std::istream& in) {
-  std::string text;
-  std::size_t count = 0;
+std::optional<Certificate> CertificateReader::next() {
+  const auto read_line = [this] {
+    ++number_;
+    ended_ = !std::getline(in_, line_);
+    if (in_.bad()) throw std::runtime_error("cannot be read");
+    return !ended_;
+  };
   try {
-    ++count;
-    require(static_cast<bool>(std::getline(in, text)), "the file is empty");
-    Certificate certificate = read_claim(parse(text));
-    while (++count, std::getline(in, text)) certificate.cells.push_back(read_cell(parse(text)));
+    if (number_ == 0) read_line();
+    if (ended_) return std::nullopt;
+    Certificate certificate = read_claim(parse(line_));
+    while (read_line()) {
+      const json line = parse(line_);
+      if (line.is_object() && line.contains("collisionchip_certificate")) break;  // of the next one
+      certificate.cells.push_back(read_cell(line));
+    }
     return certificate;
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {  // JSON's errors too
-    throw std::runtime_error("certificate, line " + std::to_string(count) + ": " + error.what());
+    throw std::runtime_error("certificate, line " + std::to_string(number_) + ": " + error.what());
   }
 }
 #else
-Certificate read_certificate(std::istream& /*in*/) {
+std::optional<Certificate> CertificateReader::next() {
   throw std::runtime_error("certificate: this library was built without nlohmann-json; build it with");
 }
 #endif
+
+Certificate read_certificate(std::istream& in) {
+  CertificateReader reader(in);
+  std::optional<Certificate> certificate = reader.next();
+  if (!certificate) throw std::runtime_error("certificate, line 1: the file is empty");
+  if (reader.next()) throw std::runtime_error("certificate: the file holds more than one; use CertificateReader");
+  return *std::move(certificate);
+}
 
 }  // namespace cchip

@@ -5,8 +5,10 @@
 #include <cchip/certificate/check.hpp>
 #include <cchip/collide/face_pairs.hpp>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
@@ -44,82 +46,91 @@ Directions directions_of(const std::array<const Pose*, 2>& poses) {
   return result;
 }
 
-/// The faces of one mesh, halved again and again at the median.
-struct Tree {
+/// The faces of one mesh, halved again and again at the median, as far as a search asks for.
+class Tree {
+ public:
   struct Node {
-    std::uint32_t begin = 0, end = 0;                     ///< in `order`
-    std::uint32_t first = 0, second = 0;                  ///< nodes, if there is more than one face
+    std::uint32_t begin = 0, end = 0;                     ///< in the order
+    std::uint32_t first = 0, second = 0;                  ///< nodes, after divide()
     std::array<double, direction_count> least, greatest;  ///< rounded
     double size = 0;
+    Eigen::Index longest = 0;  ///< axis of the box
   };
-  std::vector<std::uint32_t> order;
-  std::vector<Node> nodes;
-};
 
-class TreeBuilder {
- public:
-  TreeBuilder(const Mesh& mesh, const std::vector<Vec3d>& points, const Directions& directions)
-      : mesh_(mesh), points_(points), directions_(directions) {}
-  Tree build() {
-    tree_.order.resize(mesh_.faces.size());
-    std::iota(tree_.order.begin(), tree_.order.end(), 0U);
-    tree_.nodes.reserve(2 * tree_.order.size());
-    node(0, static_cast<std::uint32_t>(tree_.order.size()));
-    return std::move(tree_);
+  Tree() = default;
+  /// \param points of the vertices, rounded; kept
+  Tree(const Mesh& mesh, std::vector<Vec3d> points, const Directions& directions)
+      : order(mesh.faces.size()), mesh_(&mesh), points_(std::move(points)), taken_(points_.size()) {
+    std::iota(order.begin(), order.end(), 0U);
+    for (std::size_t d = 0; d < direction_count; ++d) {
+      for (std::size_t i = 0; i < 3; ++i) directions_[i][d] = directions[d][i];
+    }
+    add(0, static_cast<std::uint32_t>(order.size()));
+  }
+  /// Stays where it is.
+  const Node& node(std::uint32_t number) const { return nodes_[number]; }
+  /// Makes the halves of a node of more than one face, if it has none yet.
+  void divide(std::uint32_t number) {
+    if (nodes_[number].first != 0) return;
+    const std::uint32_t begin = nodes_[number].begin, end = nodes_[number].end;
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    const Eigen::Index axis = nodes_[number].longest;
+    const auto key = [&](std::uint32_t face) {
+      double sum = 0;
+      for (std::size_t k = 0; k < corners(face); ++k) sum += points_[vertex(face, k)][axis];
+      return sum / static_cast<double>(corners(face));
+    };
+    const auto at = [&](std::uint32_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t x, std::uint32_t y) {
+      const double kx = key(x), ky = key(y);
+      return kx < ky || (kx == ky && x < y);
+    });
+    const std::uint32_t first = add(begin, middle);
+    const std::uint32_t second = add(middle, end);
+    nodes_[number].first = first;
+    nodes_[number].second = second;
   }
 
- private:
-  const Vec3d& corner(std::uint32_t face, std::size_t k) const { return points_[mesh_.faces[face].vertex[k]]; }
-  std::size_t corners(std::uint32_t face) const { return static_cast<std::size_t>(mesh_.faces[face].kind); }
+  std::vector<std::uint32_t> order;
 
-  std::uint32_t node(std::uint32_t begin, std::uint32_t end) {
-    const auto number = static_cast<std::uint32_t>(tree_.nodes.size());
-    tree_.nodes.emplace_back();
-    Tree::Node n;
+ private:
+  std::size_t corners(std::uint32_t face) const { return static_cast<std::size_t>(mesh_->faces[face].kind); }
+  std::uint32_t vertex(std::uint32_t face, std::size_t k) const { return mesh_->faces[face].vertex[k]; }
+
+  std::uint32_t add(std::uint32_t begin, std::uint32_t end) {
+    Node n;
     n.begin = begin;
     n.end = end;
     n.least.fill(std::numeric_limits<double>::infinity());
     n.greatest.fill(-std::numeric_limits<double>::infinity());
     Vec3d low = Vec3d::Constant(std::numeric_limits<double>::infinity());
     Vec3d high = -low;
+    const auto number = static_cast<std::uint32_t>(nodes_.size());
     for (std::uint32_t i = begin; i < end; ++i) {
-      const std::uint32_t face = tree_.order[i];
-      for (std::size_t k = 0; k < corners(face); ++k) {
-        const Vec3d& p = corner(face, k);
+      for (std::size_t k = 0; k < corners(order[i]); ++k) {
+        const std::uint32_t v = vertex(order[i], k);
+        if (taken_[v] == number + 1) continue;
+        taken_[v] = number + 1;
+        const Vec3d& p = points_[v];
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
         for (std::size_t d = 0; d < direction_count; ++d) {
-          const double value = directions_[d][0] * p[0] + directions_[d][1] * p[1] + directions_[d][2] * p[2];
+          const double value = directions_[0][d] * p[0] + directions_[1][d] * p[1] + directions_[2][d] * p[2];
           n.least[d] = std::min(n.least[d], value);
           n.greatest[d] = std::max(n.greatest[d], value);
         }
       }
     }
-    Eigen::Index axis = 0;
-    n.size = (high - low).maxCoeff(&axis);
-    if (end - begin > 1) {
-      const std::uint32_t middle = begin + (end - begin) / 2;
-      const auto key = [&](std::uint32_t face) {
-        double sum = 0;
-        for (std::size_t k = 0; k < corners(face); ++k) sum += corner(face, k)[axis];
-        return sum / static_cast<double>(corners(face));
-      };
-      const auto at = [&](std::uint32_t i) { return tree_.order.begin() + static_cast<std::ptrdiff_t>(i); };
-      std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t x, std::uint32_t y) {
-        const double kx = key(x), ky = key(y);
-        return kx < ky || (kx == ky && x < y);
-      });
-      n.first = node(begin, middle);
-      n.second = node(middle, end);
-    }
-    tree_.nodes[number] = n;
+    n.size = (high - low).maxCoeff(&n.longest);
+    nodes_.push_back(n);
     return number;
   }
 
-  const Mesh& mesh_;
-  const std::vector<Vec3d>& points_;
-  const Directions& directions_;
-  Tree tree_;
+  const Mesh* mesh_ = nullptr;
+  std::vector<Vec3d> points_;
+  std::array<std::array<double, direction_count>, 3> directions_ = {};
+  std::vector<std::uint32_t> taken_;  ///< of each vertex: the last node that has seen it, from 1
+  std::deque<Node> nodes_;            ///< keeps their places
 };
 
 std::vector<Digits> digits(const std::array<int, 3>& d, int sign) {
@@ -150,11 +161,12 @@ class Maker {
 
   Certificate search() {
     const Directions directions = directions_of({query_.pose_a, query_.pose_b});
-    const std::array<std::vector<Vec3d>, 2> points = rounded_points();
-    trees_[0] = TreeBuilder(*checker_.mesh[0], points[0], directions).build();
-    trees_[1] = TreeBuilder(*checker_.mesh[1], points[1], directions).build();
+    std::array<std::vector<Vec3d>, 2> points = rounded_points();
+    trees_[0] = Tree(*checker_.mesh[0], std::move(points[0]), directions);
+    trees_[1] = Tree(*checker_.mesh[1], std::move(points[1]), directions);
     directions_ = directions;
     if (!descend(0, 0)) return one_contact(certificate_.cells.back());
+    sort_undivided();
     certificate_.order_a = trees_[0].order;
     certificate_.order_b = trees_[1].order;
     claim_all();
@@ -196,6 +208,23 @@ class Maker {
     if (cell.kind == CellKind::touch) result.relation = Relation::touching;
     return result;
   }
+  /// Sets that no cell divides are put in ascending order, which makes the file short.
+  void sort_undivided() {
+    for (const std::size_t side : {0U, 1U}) {
+      std::vector<std::uint32_t>& order = trees_[side].order;
+      std::vector<bool> begins(order.size());
+      for (const CertificateCell& cell : certificate_.cells) {
+        if (cell.kind == (side == 0 ? CellKind::split_a : CellKind::split_b)) begins[cell.at] = true;
+      }
+      auto from = order.begin();
+      for (auto i = from; i != order.end(); ++i) {
+        if (!begins[static_cast<std::size_t>(i - order.begin())]) continue;
+        std::sort(from, i);
+        from = i;
+      }
+      std::sort(from, order.end());
+    }
+  }
   void claim_all() {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::optional<Relation>> contacts;
     Relation relation = Relation::apart;
@@ -214,24 +243,25 @@ class Maker {
   /// Doubles close to the points, about a vertex of B, which candidates are chosen by; every one is checked exactly.
   std::array<std::vector<Vec3d>, 2> rounded_points() const {
     const Point& origin = checker_.corner(1, 0, 0);
-    const auto relative = [&](const Point& p) { return Point{p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]}; };
-    Int all = 1;
+    unsigned bits = 0;
+    std::array<std::vector<Point>, 2> relative;
     for (const std::size_t side : {0U, 1U}) {
-      for (const Mesh::Face& face : checker_.mesh[side]->faces) {
-        for (std::size_t k = 0; k < static_cast<std::size_t>(face.kind); ++k) {
-          for (const Int& x : relative(checker_.points[side][face.vertex[k]])) all |= abs(x);
+      relative[side] = checker_.points[side];
+      for (Point& p : relative[side]) {
+        for (std::size_t i = 0; i < 3; ++i) {
+          p[i] -= origin[i];
+          if (p[i] != 0) bits = std::max(bits, static_cast<unsigned>(msb(abs(p[i]))));
         }
       }
     }
-    const unsigned bits = msb(all);
     const unsigned shift = bits > 500 ? bits - 500 : 0;  // such coordinates are doubles
     std::array<std::vector<Vec3d>, 2> result;
     for (const std::size_t side : {0U, 1U}) {
-      for (const Point& p : checker_.points[side]) {
-        const Point q = relative(p);
-        const Int divisor = Int(1) << shift;
-        result[side].emplace_back(Int(q[0] / divisor).convert_to<double>(), Int(q[1] / divisor).convert_to<double>(),
-                                  Int(q[2] / divisor).convert_to<double>());
+      for (Point& p : relative[side]) {
+        for (Int& x : p) {
+          if (shift != 0) x = x < 0 ? Int(-(-x >> shift)) : Int(x >> shift);
+        }
+        result[side].emplace_back(p[0].convert_to<double>(), p[1].convert_to<double>(), p[2].convert_to<double>());
       }
     }
     return result;
@@ -262,8 +292,8 @@ class Maker {
 
   /// Appends the cells of two sets. \returns false if the search has ended at a contact, the last cell
   bool descend(std::uint32_t node_a, std::uint32_t node_b) {
-    const Tree::Node& a = trees_[0].nodes[node_a];
-    const Tree::Node& b = trees_[1].nodes[node_b];
+    const Tree::Node& a = trees_[0].node(node_a);
+    const Tree::Node& b = trees_[1].node(node_b);
     if (separate(a, b)) return true;
     const bool single_a = a.end - a.begin == 1;
     const bool single_b = b.end - b.begin == 1;
@@ -274,8 +304,10 @@ class Maker {
     CertificateCell split;
     const bool of_b = single_a || (!single_b && b.size > a.size);
     split.kind = of_b ? CellKind::split_b : CellKind::split_a;
+    Tree& tree = trees_[of_b ? 1 : 0];
+    tree.divide(of_b ? node_b : node_a);
     const Tree::Node& parent = of_b ? b : a;
-    split.at = trees_[of_b ? 1 : 0].nodes[parent.second].begin;
+    split.at = tree.node(parent.second).begin;
     certificate_.cells.push_back(split);
     for (const std::uint32_t child : {parent.first, parent.second}) {
       if (!(of_b ? descend(node_a, child) : descend(child, node_b))) return false;
@@ -332,6 +364,10 @@ Certificate certify(const CollisionQuery& query, const CollisionRequest& request
     refuse("it has another number of contacts than there are");
   }
   return certificate;
+}
+
+void add_certificate(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& answer) {
+  answer.certificate = std::make_shared<const Certificate>(certify(query, request, answer));
 }
 
 }  // namespace cchip

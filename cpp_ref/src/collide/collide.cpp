@@ -109,6 +109,7 @@ void Device::collide(const CollisionQuery& query, const CollisionRequest& reques
   const Use use(*this);
   check_float_mode();
   check_query(query, request);
+  if (result.certificate) result.certificate.reset();  // of another answer
   answer(query, request, result);
 }
 

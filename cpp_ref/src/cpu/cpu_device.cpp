@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cchip/certificate/certify.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <condition_variable>
 #include <exception>
@@ -72,6 +73,11 @@ class Batch {
     }
     CollisionQuery query(std::size_t number) override { return batch_.query_(number); }
     void done(std::size_t number, CollisionResult& result) override {
+      if (batch_.request_.certificate) {
+        add_certificate(batch_.query_(number), batch_.request_, result);
+      } else if (result.certificate) {  // of a batch that an exception has ended
+        result.certificate.reset();
+      }
       if (batch_.alone_) return give(number, result);
       CollisionResult& mine = kept_[kept_count_].second;
       kept_[kept_count_].first = number;
@@ -80,6 +86,7 @@ class Batch {
         mine.relation = result.relation;
         mine.contacts.clear();
         mine.counts = result.counts;
+        if (mine.certificate || result.certificate) mine.certificate = std::move(result.certificate);
       } else {
         std::swap(mine, result);
       }
@@ -101,6 +108,7 @@ class Batch {
    private:
     void give(std::size_t number, CollisionResult& result) {
       batch_.take_(number, result);
+      if (result.certificate) result.certificate.reset();
       if (result.contacts.capacity() > most_kept) std::vector<Contact>().swap(result.contacts);
     }
 
@@ -247,6 +255,7 @@ class CpuDevice final : public Device {
  private:
   void answer(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) override {
     workers_.front()->search().run(query, request, result);
+    if (request.certificate) add_certificate(query, request, result);
   }
 
   void answer_all(std::size_t count, const QuerySource& query, const CollisionRequest& request,

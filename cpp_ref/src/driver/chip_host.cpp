@@ -3,6 +3,7 @@
 #include <array>
 #include <cchip/bvh/image.hpp>
 #include <cchip/bvh/place.hpp>
+#include <cchip/certificate/certify.hpp>
 #include <cchip/collide/face_pairs.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/driver/chip_host.hpp>
@@ -232,12 +233,18 @@ class ChipHost final : public Device {
   void answer(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) override {
     serve(
         1, [&query](std::size_t) { return query; }, request, result, [](std::size_t, const CollisionResult&) {});
+    if (request.certificate && !result.certificate) add_certificate(query, request, result);
   }
 
   void answer_all(std::size_t count, const QuerySource& query, const CollisionRequest& request,
                   const ResultSink& take) override {
     CollisionResult result;
-    serve(count, query, request, result, take);
+    if (!request.certificate) return serve(count, query, request, result, take);
+    serve(count, query, request, result, [&](std::size_t number, const CollisionResult&) {
+      if (!result.certificate) add_certificate(query(number), request, result);  // the CPU's answers have theirs
+      take(number, result);
+      result.certificate.reset();
+    });
   }
 
   /// \param result where each result is made before `take` gets it

@@ -25,15 +25,16 @@ def require(holds, otherwise):
         raise Refused(otherwise)
 
 
-def fnv(data, value=0xcbf29ce484222325):
-    for byte in data:
-        value = (value ^ byte) * 0x100000001b3 & 0xffffffffffffffff
+def hash_words(data, value=0xcbf29ce484222325):
+    for (word,) in struct.iter_unpack("<Q", data):
+        value = (value ^ word) * 0x100000001b3 & 0xffffffffffffffff
+        value ^= value >> 32
     return format(value, "016x")
 
 
 def hash_mesh(vertices, faces, numbers):
     pack = lambda v: struct.pack("<3d", *(x + 0.0 for x in vertices[v]))
-    return fnv(b"".join(struct.pack("<II", n, len(f)) + b"".join(map(pack, f)) for f, n in zip(faces, numbers)))
+    return hash_words(b"".join(struct.pack("<II", n, len(f)) + b"".join(map(pack, f)) for f, n in zip(faces, numbers)))
 
 
 def placed(vertices, pose):
@@ -46,6 +47,15 @@ def integers(texts, count):
     require(all(isinstance(t, str) and len(t) <= 20000 and re.fullmatch("0|-?[1-9][0-9]*", t) for t in texts),
             "not an integer of at most 20000 digits")
     return [int(t) for t in texts]
+
+
+def expanded(order):
+    """Numbers, and runs [first, last] of numbers that ascend by one."""
+    result = []
+    for first, last in (x if isinstance(x, list) else (x, x) for x in order):
+        require(type(first) is type(last) is int and first <= last and last - first + len(result) < 2**24, "not an order of faces")
+        result += range(first, last + 1)
+    return result
 
 
 def overlap(direction, points):
@@ -94,10 +104,10 @@ def check(meshes, poses, lines):
         c, cells = json.loads(lines[0]), lines[1:]
         require(c["collisionchip_certificate"] == 1, "no certificate of version 1")
         require(type(c["all"]) is bool and c["least"] in ("touching", "crossing"), "an unknown claim")
-        hashes = [hash_mesh(*m) for m in meshes] + [fnv(struct.pack("<24d", *(x + 0.0 for x in poses)))]
+        hashes = [hash_mesh(*m) for m in meshes] + [hash_words(struct.pack("<24d", *(x + 0.0 for x in poses)))]
         require([c["mesh_a"], c["mesh_b"], c["poses"]] == hashes, "the certificate is of other meshes or poses")
-        points, found, orders = [placed(m[0], p) for m, p in zip(meshes, (poses[:12], poses[12:]))], {}, (c["order_a"], c["order_b"])
-        once = [all(type(x) is int for x in o) and sorted(o) == [*range(c["all"] * len(m[1]))] for o, m in zip(orders, meshes)]
+        points, found, orders = [placed(m[0], p) for m, p in zip(meshes, (poses[:12], poses[12:]))], {}, (expanded(c["order_a"]), expanded(c["order_b"]))
+        once = [sorted(o) == [*range(c["all"] * len(m[1]))] for o, m in zip(orders, meshes)]
         require(all(once), "an order does not hold each face once")
         require(all(orders) if c["all"] else len(cells) == 1, "no faces, or other than one cell for one contact")
         todo = [[(0, len(order)) for order in orders]]

@@ -19,6 +19,13 @@ namespace cchip {
 /// An integer in decimal digits: "0", or digits without a leading zero, after a "-" if it is negative.
 using Digits = std::string;
 
+/// Whether the text is such a number, of at most 20,000 digits.
+inline bool is_integer(const Digits& text) {
+  const std::size_t sign = !text.empty() && text[0] == '-';
+  return text.size() > sign && text.size() <= 20000 &&
+         text.find_first_not_of("0123456789", sign) == std::string::npos && (text[sign] != '0' || text.size() == 1);
+}
+
 /// A step of the proof. A cell stands for all pairs of a face of a set of A and a face of a set of B.
 struct CertificateCell {
   enum class Kind : std::uint8_t {
@@ -76,12 +83,13 @@ struct Certificate {
   std::vector<CertificateCell> cells;
 };
 
-/// FNV-1a with 64 bits. Tells data that were mistaken for others; a proof holds for the data it is checked with.
+/// Of words of 64 bits, by the numbers of FNV. Tells data that were mistaken for others; a proof holds for the data it
+/// is checked with.
 class CertificateHash {
  public:
-  /// Least significant byte first.
-  void add(std::uint64_t number, int bytes = 8) {
-    for (int i = 0; i < bytes; ++i) value_ = (value_ ^ (number >> (8 * i) & 0xffU)) * 0x100000001b3U;
+  void add(std::uint64_t word) {
+    value_ = (value_ ^ word) * 0x100000001b3U;
+    value_ ^= value_ >> 32U;
   }
   void add(double number) {
     number = number == 0 ? 0 : number;  // -0 is 0
@@ -101,8 +109,7 @@ inline std::uint64_t hash_mesh(const Mesh& mesh) {
   CertificateHash hash;
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
     const Mesh::Face& face = mesh.faces[i];
-    hash.add(mesh.number_in_file(static_cast<std::uint32_t>(i)), 4);
-    hash.add(static_cast<std::uint64_t>(face.kind), 4);
+    hash.add(static_cast<std::uint64_t>(face.kind) << 32U | mesh.number_in_file(static_cast<std::uint32_t>(i)));
     for (std::size_t k = 0; k < static_cast<std::size_t>(face.kind); ++k) {
       for (const double x : mesh.vertices[face.vertex[k]]) hash.add(x);
     }

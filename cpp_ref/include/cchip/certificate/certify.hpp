@@ -20,6 +20,10 @@ Certificate certify(const CollisionQuery& query, const CollisionRequest& request
 /// \throws std::runtime_error the answer is wrong
 Certificate certify(const CollisionQuery& query, const CollisionRequest& request, const CollisionResult& answer);
 
+/// What devices do with a result if the request is for a certificate: fills CollisionResult::certificate.
+/// \throws as certify()
+void add_certificate(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& answer);
+
 }  // namespace cchip
 
 #endif

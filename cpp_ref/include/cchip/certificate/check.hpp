@@ -9,6 +9,7 @@
 #include <cchip/certificate/certificate.hpp>
 #include <cchip/certificate/exact_points.hpp>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -37,14 +38,29 @@ struct Checker {
   Int overlap(const std::vector<Digits>& direction, const std::array<std::vector<std::uint32_t>, 2>& faces) const {
     const std::vector<Int> d = integers(direction, 3);
     require(d[0] != 0 || d[1] != 0 || d[2] != 0, "the direction is 0");
-    std::array<std::vector<Int>, 2> values;
+    std::array<std::optional<Int>, 2> end;  // the greatest of A, the least of B
     for (const std::size_t side : {0U, 1U}) {
-      for (const std::uint32_t face : faces[side]) {
-        for (std::size_t k = 0; k < corners(side, face); ++k) values[side].push_back(dot(d, corner(side, face, k)));
+      const auto take = [&, side](std::uint32_t vertex) {
+        Int value = dot(d, points[side][vertex]);
+        if (!end[side] || (side == 0 ? value > *end[side] : value < *end[side])) end[side] = std::move(value);
+      };
+      for_each_vertex(side, faces[side], take);
+    }
+    return *end[0] - *end[1];
+  }
+
+  /// Calls `take` for the vertices of the faces: for each once, if there are many faces.
+  template <class Take>
+  void for_each_vertex(std::size_t side, const std::vector<std::uint32_t>& faces, const Take& take) const {
+    std::vector<bool> taken(faces.size() < 64 ? 0 : points[side].size());
+    for (const std::uint32_t face : faces) {
+      for (std::size_t k = 0; k < corners(side, face); ++k) {
+        const std::uint32_t vertex = mesh[side]->faces[face].vertex[k];
+        if (!taken.empty() && taken[vertex]) continue;
+        if (!taken.empty()) taken[vertex] = true;
+        take(vertex);
       }
     }
-    return *std::max_element(values[0].begin(), values[0].end()) -
-           *std::min_element(values[1].begin(), values[1].end());
   }
 
   void check_point(const CertificateCell& cell) const {
@@ -104,11 +120,15 @@ inline CertificateVerdict check_certificate(const Mesh& a, const Pose& pose_a, c
     using Sets = std::array<std::array<std::size_t, 2>, 2>;  // of A and of B: begin and end in the order
     std::vector<Sets> open;                                  // cells that are to come
     if (c.all) {
-      for (auto [order, count] : {std::pair(c.order_a, a.faces.size()), std::pair(c.order_b, b.faces.size())}) {
-        std::sort(order.begin(), order.end());
-        const bool once = std::adjacent_find(order.begin(), order.end()) == order.end();
-        require(count > 0 && order.size() == count && once && order.back() < count,
-                "an order does not hold each face once");
+      for (const std::size_t side : {0U, 1U}) {
+        const std::vector<std::uint32_t>& order = side == 0 ? c.order_a : c.order_b;
+        std::vector<bool> seen(checker.mesh[side]->faces.size());
+        bool once = !seen.empty() && order.size() == seen.size();
+        for (std::size_t i = 0; once && i < order.size(); ++i) {
+          once = order[i] < seen.size() && !seen[order[i]];
+          if (once) seen[order[i]] = true;
+        }
+        require(once, "an order does not hold each face once");
       }
       open.push_back({{{0, a.faces.size()}, {0, b.faces.size()}}});
     }

@@ -17,12 +17,15 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace cchip {
+
+struct Certificate;  // <cchip/certificate/certificate.hpp>
 
 /// Which contacts a caller wants.
 struct CollisionRequest {
@@ -46,6 +49,8 @@ struct CollisionRequest {
   /// any case. With Contacts::first the search continues after a contact that only touches, until one crosses or none
   /// is left.
   bool relation = false;
+  /// Prove the answer: fills CollisionResult::certificate (docs/cpp/certificates.md). Takes far longer than the answer.
+  bool certificate = false;
 
   bool tells_relation() const { return relation || counts == Counts::crossing; }
 };
@@ -106,6 +111,9 @@ struct CollisionResult {
   /// In ascending order, without duplicates. With Contacts::first at most one.
   std::vector<Contact> contacts;
   CollisionCounts counts;
+  /// The answer with its proof, if the request asks for it and the device is one of this library; see
+  /// <cchip/certificate/certificate.hpp>.
+  std::shared_ptr<const Certificate> certificate;
 };
 
 /// Poses of the two objects of one query.
@@ -137,6 +145,7 @@ class Device {
   /// \throws std::invalid_argument check_query() refuses the query: a null pointer, an object that was moved from, an
   ///         entry of a pose that is not finite or beyond 2^500 in magnitude
   /// \throws std::logic_error the device is in use
+  /// \throws std::runtime_error as certify(), if the request is for a certificate and the answer is wrong
   void collide(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result);
 
   using QuerySource = std::function<CollisionQuery(std::size_t)>;
