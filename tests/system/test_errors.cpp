@@ -281,7 +281,15 @@ TEST_CASE("errors: values that look right", "[system][errors]") {
   check_error({"collide", part, cube}, "cchip: " + part +
                                            ": holds surfaces of CAD, not a mesh; mesh it first, for example with "
                                            "`gmsh -2 part.step -o part.stl` or with FreeCAD");
-  for (const std::string end : {"dae", "gltf", "3mf"}) {
+  for (const std::string end : {"gltf", "3mf"}) {
+    const std::string scene = folder.write("scene." + end, "<xml/>");
+    check_error({"collide", scene, cube},
+                "cchip: " + scene +
+                    ": meshes of this format are not read; in Python load it with trimesh, which keeps its numbers, and "
+                    "pass vertices and faces to collisionchip.Object, or convert it to OBJ, OFF, PLY or STL, for example "
+                    "with Blender, which rounds them");
+  }
+  for (const std::string end : {"dae"}) {
     const std::string scene = folder.write("scene." + end, "<xml/>");
     check_error({"collide", scene, cube},
                 "cchip: " + scene +
