@@ -104,7 +104,7 @@ Dop26 Realignment::operator()(const Dop26& dop) const {
   return result;
 }
 
-DopPairs::DopPairs(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b) {
+DopPairs::DopPairs(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b, double within) {
   const auto chosen = directions_that_become_own(pose_b.linear());
   const Realignment::Directions world = chosen ? *chosen : own_directions();
   const Realignment::Directions in_a = pose_a.linear().transpose() * world;
@@ -122,6 +122,11 @@ DopPairs::DopPairs(const Object& a, const Pose& pose_a, const Object& b, const P
   constexpr double lost = 0x1p-1060;  // more than what underflows
   Realignment::Row slack = 0x1p-48 * (size_a + size_b + size_shift);
   slack.array() += lost * (1 + extent_a + extent_b);
+  if (within > 0) {
+    const Realignment::Row greatest = world.cwiseAbs().colwise().maxCoeff();  // so that no square underflows
+    slack.array() += within * (1 + 0x1p-48) * greatest.array() *
+                     (world * greatest.cwiseInverse().asDiagonal()).colwise().norm().array();
+  }
   // Where a sum might overflow nothing is excluded.
   const auto moderate = (size_a + size_b + size_shift).array() < 0x1p1000;
   slack = moderate.select(slack.array(), std::numeric_limits<double>::infinity()).matrix().eval();

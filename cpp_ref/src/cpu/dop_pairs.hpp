@@ -44,7 +44,8 @@ class Realignment {
 /// docs/cpp/exactness.md.
 class DopPairs {
  public:
-  DopPairs(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b);
+  /// \param within by so much the volumes of A grow to all sides
+  DopPairs(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b, double within = 0);
   bvh::Dop26 volume_a(const bvh::Dop26& dop) const { return (*a_)(dop); }
   bvh::Dop26 volume_b(const bvh::Dop26& dop) const { return b_ ? (*b_)(dop) : dop; }
 

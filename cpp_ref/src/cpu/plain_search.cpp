@@ -25,7 +25,7 @@ class PlainSearch final : public Search {
  public:
   void run(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) override {
     faces_.start(query, request, result);
-    const DopPairs volumes(*query.a, *query.pose_a, *query.b, *query.pose_b);
+    const DopPairs volumes(*query.a, *query.pose_a, *query.b, *query.pose_b, request.within);
     const Side a = {query.a->mesh(), query.a->tree()};
     const Side b = {query.b->mesh(), query.b->tree()};
     stack_.clear();
