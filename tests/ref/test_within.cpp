@@ -234,3 +234,96 @@ TEST_CASE("within: requests that make no sense", "[ref][distance]") {
   request.counts = CollisionRequest::Counts::crossing;
   refuses(request, "faces at a distance neither touch nor cross");
 }
+
+TEST_CASE("distance: the interval is that of brute force", "[ref][distance]") {
+  std::mt19937_64 random(sim::seed_from_environment() + 42);
+  const std::vector<Mesh> meshes = meshes_of(random);
+  std::vector<Object> objects(meshes.begin(), meshes.end());
+  int apart = 0;
+  int exact = 0;
+  for (int round = 0; round < 6; ++round) {
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+      for (std::size_t k = 0; k < meshes.size(); ++k) {
+        const PoseClass c = cchip_test::pose_classes[random() % std::size(cchip_test::pose_classes)];
+        const Pose pose_a = random_pose(c, 4, random);
+        const Pose pose_b = random_pose(random() % 2 == 0 ? c : PoseClass::rigid, 4, random);
+        CAPTURE(round, i, k, sim::seed_from_environment());
+        const DistanceBounds expected = least_distance(meshes[i], pose_a, meshes[k], pose_b);
+        const DistanceResult found = distance(objects[i], pose_a, objects[k], pose_b);
+        REQUIRE(found.lower == expected.lower);
+        REQUIRE(found.upper == expected.upper);
+        REQUIRE((found.upper == 0) == collide(objects[i], pose_a, objects[k], pose_b).hit);
+        apart += found.upper > 0;
+        exact += found.upper > 0 && found.lower == found.upper;
+        // The points are as far apart, and lie on the faces; the coordinates of far objects round more.
+        const double size = found.point_a.cwiseAbs().maxCoeff() + found.upper + 4;
+        REQUIRE(std::abs((found.point_a - found.point_b).norm() - found.upper) < 1e-12 * size);
+        Mesh point;
+        add_face(point, {found.point_a, found.point_a, found.point_a});
+        Mesh face;
+        face.vertices = meshes[i].vertices;
+        face.faces = {meshes[i].faces[found.face_a]};
+        REQUIRE(least_distance(face, pose_a, point, Pose::Identity()).lower < 1e-12 * size);
+        // Swapped, and with an error that the caller allows.
+        const DistanceResult swapped = distance(objects[k], pose_b, objects[i], pose_a);
+        REQUIRE(swapped.lower == found.lower);
+        REQUIRE(swapped.upper == found.upper);
+        DistanceRequest rough;
+        rough.rel_error = 0.25;
+        const DistanceResult near = distance(objects[i], pose_a, objects[k], pose_b, rough);
+        REQUIRE(near.lower <= found.upper);
+        REQUIRE(near.upper >= found.lower);
+        REQUIRE(near.upper - near.lower <= 0.25 * near.upper);
+        // A limit below, at and above the distance.
+        for (const double limit : {0.5 * found.lower, std::nextafter(found.lower, 0.0), found.upper, 2 * found.upper}) {
+          DistanceRequest request;
+          request.stop_above = limit;
+          const DistanceResult stopped = distance(objects[i], pose_a, objects[k], pose_b, request);
+          if (found.lower > limit) {
+            REQUIRE(stopped.upper == infinity);
+            REQUIRE(stopped.lower == limit);
+          } else {
+            REQUIRE(stopped.lower == found.lower);
+            REQUIRE(stopped.upper == found.upper);
+          }
+        }
+      }
+    }
+  }
+  std::cout << "apart=" << apart << " exact=" << exact << '\n';
+  CHECK(apart > 150);
+}
+
+TEST_CASE("distance: what is known beforehand", "[ref][distance]") {
+  const Object box(make_box({0, 0, 0}, {1, 1, 1}));
+  const Object inner(make_box({0.25, 0.25, 0.25}, {0.5, 0.5, 0.5}));
+  CHECK(distance(box, Pose::Identity(), inner, Pose::Identity()).upper == 0.25);  // surfaces, not volumes
+  CHECK(distance(box, Pose::Identity(), inner, Pose::Identity()).lower == 0.25);
+  Pose pose = Pose::Identity();
+  pose.translation() = Vec3d(4, 5, 1.5);  // corners: 3, 4, 1/2
+  const DistanceResult far = distance(box, Pose::Identity(), box, pose);
+  const long double lower = far.lower;
+  const long double upper = far.upper;
+  CHECK(lower * lower < 25.25L);
+  CHECK(upper * upper > 25.25L);
+  CHECK(far.upper == std::nextafter(far.lower, infinity));
+  CHECK(far.point_a == Vec3d(1, 1, 1));
+  CHECK(far.point_b == Vec3d(4, 5, 1.5));
+  pose.translation() = Vec3d(4, 5, 0.5);  // edges: 3, 4
+  CHECK(distance(box, Pose::Identity(), box, pose).lower == 5);
+  CHECK(distance(box, Pose::Identity(), box, pose).upper == 5);
+  // Beyond the doubles.
+  Pose huge = Pose::Identity();
+  huge.linear() *= 0x1p500;
+  Mesh great;
+  add_face(great, {Vec3d(0x1p999, 0, 0), Vec3d(0x1p999, 1, 0), Vec3d(0x1p999, 0, 1)});
+  const DistanceResult beyond = distance(box, Pose::Identity(), Object(great), huge);
+  CHECK(beyond.upper == infinity);
+  CHECK(beyond.lower == std::numeric_limits<double>::max());
+  DistanceRequest request;
+  request.rel_error = 1;
+  CHECK_THROWS_WITH(distance(box, pose, box, pose, request), Catch::Contains("rel_error"));
+  request = {};
+  request.stop_above = -1;
+  CHECK_THROWS_WITH(distance(box, pose, box, pose, request), Catch::Contains("stop_above"));
+}

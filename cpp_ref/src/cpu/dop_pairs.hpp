@@ -51,10 +51,13 @@ class DopPairs {
 
   /// How deep the two overlap on the direction where they do so least, in a unit common to all; negative: disjoint.
   static double overlap(const bvh::Dop26& volume_a, const bvh::Dop26& volume_b);
+  /// At most the distance in the world of what the two contain; at least 0.
+  double gap(const bvh::Dop26& volume_a, const bvh::Dop26& volume_b) const;
 
  private:
   std::optional<Realignment> a_;
   std::optional<Realignment> b_;  ///< none: the volumes of B stay as they are
+  Realignment::Row length_;       ///< of the directions, at least
 };
 
 }  // namespace cchip
