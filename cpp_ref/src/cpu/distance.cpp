@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "axis_gap.hpp"
 #include "dop_pairs.hpp"
 #include "tree_side.hpp"
 
@@ -37,6 +38,7 @@ class DistanceSearch {
         a_{query.a->mesh(), query.a->tree()},
         b_{query.b->mesh(), query.b->tree()},
         volumes_(*query.a, *query.pose_a, *query.b, *query.pose_b),
+        along_(*query.a, *query.pose_a, *query.b, *query.pose_b),
         distances_(*query.pose_a, *query.pose_b) {}
 
   /// \pre the objects share no point
@@ -82,14 +84,22 @@ class DistanceSearch {
       }
       ++counts_.steps;
       counts_.box_tests += std::uint64_t{item.a.count()} * item.b.count();
+      std::array<Dop26, 4> own_b;
       std::array<Dop26, 4> volumes_b;
+      std::array<Vec3d, 4> centres_b;
       for (std::uint32_t k = 0; k < item.b.count(); ++k) {
-        volumes_b[k] = volumes_.volume_b(b_.volume(b_.tree.lines()[item.b.first() + k]));
+        own_b[k] = b_.volume(b_.tree.lines()[item.b.first() + k]);
+        volumes_b[k] = volumes_.volume_b(own_b[k]);
+        centres_b[k] = along_.centre_b(own_b[k]);
       }
       for (std::uint32_t i = item.a.first(); i < item.a.first() + item.a.count(); ++i) {
-        const Dop26 volume_a = volumes_.volume_a(a_.volume(a_.tree.lines()[i]));
+        const Dop26 own_a = a_.volume(a_.tree.lines()[i]);
+        const Dop26 volume_a = volumes_.volume_a(own_a);
+        const Vec3d centre_a = along_.centre_a(own_a);
         for (std::uint32_t k = 0; k < item.b.count(); ++k) {
-          const double gap = std::max(item.gap, volumes_.gap(volume_a, volumes_b[k]));
+          double gap = std::max(item.gap, volumes_.gap(volume_a, volumes_b[k]));
+          gap = std::max(gap, along_(own_a, own_b[k], centres_b[k] - centre_a));
+          gap = std::max(gap, along_(own_a, own_b[k], axis_));
           if (is_pruned(gap)) continue;
           const std::uint32_t line_b = item.b.first() + k;
           const bool leaf_a = a_.tree.lines()[i].ref().is_leaf();
@@ -109,7 +119,9 @@ class DistanceSearch {
         const DistanceBounds bounds = distances_.bounds(a_.mesh.primitive(face_a), b_.mesh.primitive(face_b));
         if (is_pruned(bounds.lower)) continue;
         found_.push_back({bounds, face_a, face_b});
-        upper_ = std::min(upper_, bounds.upper);
+        if (!(bounds.upper < upper_)) continue;
+        upper_ = bounds.upper;
+        axis_ = bounds.point_b - bounds.point_a;
       }
     }
   }
@@ -161,10 +173,12 @@ class DistanceSearch {
   const TreeSide a_;
   const TreeSide b_;
   const DopPairs volumes_;
+  const AxisGap along_;
   const PosedDistances distances_;
   CollisionCounts counts_;
-  double upper_ = infinity;   ///< the least of a pair of faces so far
-  double pruned_ = infinity;  ///< the least gap of what was left out since a pair of faces is as near
+  Vec3d axis_ = Vec3d::Zero();  ///< between the nearest points so far
+  double upper_ = infinity;     ///< the least of a pair of faces so far
+  double pruned_ = infinity;    ///< the least gap of what was left out since a pair of faces is as near
   std::vector<Faces> found_;
 };
 
