@@ -12,5 +12,5 @@ int main() {
   there.translation().x() = 2.25;
   std::puts(cchip::within(ring, here, ball, there, 0.5).hit ? "closer than 0.5" : "clear by more than 0.5");
   const cchip::DistanceResult far = cchip::distance(ring, here, ball, there);
-  std::printf("%.3f apart, face %u and face %u\n", far.upper, far.face_a, far.face_b);
+  std::printf("%.3f apart\n", far.upper);
 }
