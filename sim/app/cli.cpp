@@ -269,6 +269,8 @@ void add_collide(CLI::App& app, CollideOptions& options) {
              "the least that counts as a contact: touching (default) or crossing");
   command->add_flag("--relation", options.relation,
                     "tell touching from crossing (a single query for all contacts does in any case)");
+  add_text(*command, "--within", options.within,
+           "faces at most this far apart are contacts, too (default 0: they touch)");
   command->add_flag("--exit-code", options.exit_code, "end with exit code 5 if there is a contact");
   add_text(*command, "--device", options.device, "what answers: " + device_words() + " (default cpu)");
   add_choice(*command, "--format", options.format, formats, "output (default table)");
@@ -296,6 +298,7 @@ void add_collide(CLI::App& app, CollideOptions& options) {
                   "  cchip collide a.obj b.stl --pose 0.5,0,0 --html contacts.html && xdg-open contacts.html\n"
                   "  cchip collide a.obj b.stl --poses poses.csv --expect touches\n"
                   "  cchip collide a.obj b.stl --poses poses.csv --counts crossing\n"
+                  "  cchip collide a.obj b.stl --pose 2,0,0 --within 0.5\n"
                   "  cchip collide a.obj b.stl --pose 0.5,0,0 --device sim --trace chip.fst");
 }
 

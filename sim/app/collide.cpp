@@ -9,6 +9,7 @@
 #include <cchip/certificate/certify.hpp>
 #include <cchip/collide/face_pairs.hpp>
 #include <cchip/device/device.hpp>
+#include <cchip/geometry/decimal.hpp>
 #include <cchip/machines/simulated_chip.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/progress.hpp>
@@ -18,6 +19,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <set>
 #include <stdexcept>
 #include <system_error>
@@ -143,7 +145,17 @@ CollisionRequest request_of(const CollideOptions& options) {
   }
   if (options.max_contacts != 0) request.max_contacts = options.max_contacts;
   if (options.only_crossing) request.counts = CollisionRequest::Counts::crossing;
-  request.relation = options.relation || (all && options.poses_file.empty());
+  if (!options.within.empty()) {
+    const std::optional<double> distance = read_decimal(options.within);
+    if (!distance || !(*distance >= 0 && *distance <= std::numeric_limits<double>::max())) {
+      throw UsageError("--within: '" + options.within + "' is not a distance; give a number that is at least 0");
+    }
+    if (options.relation || options.only_crossing) {
+      throw UsageError("--within: faces at a distance neither touch nor cross; leave out --relation and --counts");
+    }
+    request.within = *distance;
+  }
+  request.relation = options.relation || (all && options.poses_file.empty() && options.within.empty());
   return request;
 }
 
@@ -190,23 +202,29 @@ class ProofFile {
 };
 
 /// The answer in words.
-std::string to_words(const CollisionResult& result, const CollisionRequest& request) {
+std::string to_words(const CollisionResult& result, const CollisionRequest& request, const std::string& within) {
+  if (!result.hit && !within.empty()) return "apart by more than " + within;
   if (!result.hit) return result.relation == Relation::touching ? "touch: no faces cross" : "apart";
-  const char* verb = std::any_of(result.contacts.begin(), result.contacts.end(), crosses) ? "cross" : "touch";
+  const char* touch = std::any_of(result.contacts.begin(), result.contacts.end(), crosses) ? "cross" : "touch";
+  const std::string verb = within.empty() ? touch : "within " + within;
   if (request.contacts == CollisionRequest::Contacts::first) {
-    return fmt::format("{}: face {} of A meets face {} of B", verb, result.contacts[0].face_a,
-                       result.contacts[0].face_b);
+    return fmt::format("{}: face {} of A {} face {} of B", verb, result.contacts[0].face_a,
+                       within.empty() ? "meets" : "and", result.contacts[0].face_b);
   }
   FacesHit hit;
   for (const Contact& contact : result.contacts) hit.add(contact);
   const bool more = result.contacts.size() == request.max_contacts;
+  if (!within.empty()) {
+    return fmt::format("{}: {}{} face{} of A and {} of B", verb, more ? "at least " : "", hit.a.size(),
+                       hit.a.size() == 1 ? "" : "s", hit.b.size());
+  }
   return fmt::format("{}: {}{} face{} of A meet{} {} of B", verb, more ? "at least " : "", hit.a.size(),
                      hit.a.size() == 1 ? "" : "s", hit.a.size() == 1 ? "s" : "", hit.b.size());
 }
 
 /// The answer in words for a terminal: red, yellow or green.
 std::string coloured(const std::string& answer) {
-  const char* const colour = answer.rfind("cross", 0) == 0 ? "31" : answer == "apart" ? "32" : "33";
+  const char* const colour = answer.rfind("cross", 0) == 0 ? "31" : answer.rfind("apart", 0) == 0 ? "32" : "33";
   return fmt::format("\x1b[1;{}m{}\x1b[0m", colour, answer);
 }
 
@@ -275,7 +293,7 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
     proofs->commit();
   }
   if (options.format == Format::table) {
-    const std::string answer = to_words(result, request);
+    const std::string answer = to_words(result, request, options.within);
     streams.out << (streams.colour ? coloured(answer) : answer) << '\n';
   }
   if (options.format != Format::table || request.contacts == CollisionRequest::Contacts::all) {
@@ -293,7 +311,8 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
     }
     picture->write(a.mesh(), transformed(b.mesh(), pose));
   }
-  if (view) view->write(a.mesh(), transformed(b.mesh(), pose), to_words(result, request), result.contacts);
+  if (view)
+    view->write(a.mesh(), transformed(b.mesh(), pose), to_words(result, request, options.within), result.contacts);
   totals.add(result, false);
   totals.left_out = reader.faces_left_out();
   return report(totals, options, streams);
@@ -346,7 +365,9 @@ class PosesRunner {
     answer(a, b);
     if (proofs_) proofs_->commit();
     if (options_.format == Format::table) {
-      if (options_.only_crossing) {
+      if (!options_.within.empty()) {
+        streams_.out << fmt::format("within {} in {} of {} poses\n", options_.within, totals_.hits, totals_.queries);
+      } else if (options_.only_crossing) {
         streams_.out << fmt::format("cross in {} of {} poses\n", totals_.hits, totals_.queries);
       } else {
         streams_.out << fmt::format("touch in {} of {} poses", totals_.hits, totals_.queries)

@@ -289,7 +289,7 @@ namespace {
 /// \returns whether the SIMD search takes the query
 bool relates(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b, RelativePose& relation) {
   const CollisionQuery query = {&a, &pose_a, &b, &pose_b};
-  return relate(query, centre_line(query), relation);
+  return relate(query, centre_line(query), 0, relation);
 }
 
 }  // namespace

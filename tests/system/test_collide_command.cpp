@@ -176,6 +176,23 @@ TEST_CASE("collide: poses of a file, expected answers", "[system][collide]") {
   CHECK(lines(csv.err).front() == "cchip: " + wrong + ":5: expected contacts 1, got 0");
 }
 
+TEST_CASE("collide: faces within a distance", "[system][collide]") {
+  const auto first_line = [](const Outcome& outcome) { return lines(outcome.out).front(); };
+  // Cubes with edges of 1, a quarter apart.
+  CHECK(first_line(collide_cubes({"--pose", "1.25,0,0"})) == "apart");
+  CHECK(first_line(collide_cubes({"--pose", "1.25,0,0", "--within", "0.2"})) == "apart by more than 0.2");
+  CHECK(first_line(collide_cubes({"--pose", "1.25,0,0", "--within", "0.25"})).rfind("within 0.25: ", 0) == 0);
+  CHECK(collide_cubes({"--pose", "1.25,0,0", "--within", "0.25", "--exit-code"}).code == exit_contact);
+  CHECK(collide_cubes({"--pose", "1.25,0,0", "--within", "0.2499999999999999", "--exit-code"}).code == exit_ok);
+  CHECK(collide_cubes({"--pose", "1.25,0,0", "--within", "0.2", "--format", "jsonl"}).out == "{\"hit\":0}\n");
+  CHECK(lines(collide_cubes({"--pose", "1.25,0,0", "--within", "0.25", "--format", "csv"}).out).front() ==
+        "face_a,face_b");
+  CHECK(collide_cubes({"--within", "-1"}).code == exit_usage);
+  CHECK(collide_cubes({"--within", "far"}).code == exit_usage);
+  CHECK(collide_cubes({"--within", "1", "--relation"}).code == exit_usage);
+  CHECK(collide_cubes({"--within", "1", "--counts", "crossing"}).code == exit_usage);
+}
+
 TEST_CASE("collide: touching is told from crossing", "[system][collide]") {
   const Outcome flush = collide_cubes({"--pose", "1,0,0"});
   CHECK(lines(flush.out).front() == "touch: 5 faces of A meet 5 of B");

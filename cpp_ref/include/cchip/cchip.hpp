@@ -8,6 +8,7 @@
 #include <cchip/collide/gradual_underflow.hpp>
 #include <cchip/collide/scene.hpp>
 #include <cchip/cpu/cpu_device.hpp>
+#include <cchip/cpu/distance.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/mesh/mesh.hpp>
 #include <cchip/mesh/shapes.hpp>

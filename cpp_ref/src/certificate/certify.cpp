@@ -331,15 +331,20 @@ std::string name(const Contact& contact) {
   return "faces " + std::to_string(contact.face_a) + " of A and " + std::to_string(contact.face_b) + " of B";
 }
 
+void check_request(const CollisionQuery& query, const CollisionRequest& request) {
+  check_query(query, request);
+  if (request.within > 0) refuse("there is none for a distance; ask with within = 0");
+}
+
 }  // namespace
 
 Certificate certify(const CollisionQuery& query, const CollisionRequest& request) {
-  check_query(query, request);
+  check_request(query, request);
   return Maker(query, request).search();
 }
 
 Certificate certify(const CollisionQuery& query, const CollisionRequest& request, const CollisionResult& answer) {
-  check_query(query, request);
+  check_request(query, request);
   Maker maker(query, request);
   const bool first = request.contacts == CollisionRequest::Contacts::first;
   if (first && answer.hit && !answer.contacts.empty() &&

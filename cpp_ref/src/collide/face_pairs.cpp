@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cchip/collide/face_pairs.hpp>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -43,6 +44,14 @@ void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest&
   if (request.max_contacts == 0) {
     throw std::invalid_argument("max_contacts is 0: ask for at least one contact");
   }
+  if (!(request.within >= 0 && request.within <= std::numeric_limits<double>::max())) {
+    throw std::invalid_argument("within is " + std::to_string(request.within) +
+                                ": ask for a distance that is finite and at least 0");
+  }
+  if (request.within > 0 && request.tells_relation()) {
+    throw std::invalid_argument(
+        "within: faces at a distance neither touch nor cross; leave out relation and counts, or within");
+  }
 }
 
 void check_query(const CollisionQuery& query, const CollisionRequest& request) {
@@ -62,6 +71,7 @@ void FacePairs::start(const CollisionQuery& query, const CollisionRequest& reque
   cut_ = !query.a->mesh().file_face.empty() || !query.b->mesh().file_face.empty();
   if (cut_) contacts_.clear();
   pairs_.reset();
+  distances_.reset();
 }
 
 void FacePairs::answer_apart(const CollisionRequest& request, CollisionResult& result) {
@@ -70,9 +80,16 @@ void FacePairs::answer_apart(const CollisionRequest& request, CollisionResult& r
 }
 
 Relation FacePairs::relate(std::uint32_t face_a, std::uint32_t face_b) {
-  if (!pairs_) pairs_.emplace(*query_.pose_a, *query_.pose_b);
   const Primitive a = query_.a->mesh().primitive(face_a);
   const Primitive b = query_.b->mesh().primitive(face_b);
+  if (request_.within > 0) {
+    if (!distances_) distances_.emplace(*query_.pose_a, *query_.pose_b);
+    const PosedDistances::Answer answer = distances_->within(a, b, request_.within);
+    ++result_->counts.pairs;
+    result_->counts.open += answer.open;
+    return answer.hit ? Relation::touching : Relation::apart;
+  }
+  if (!pairs_) pairs_.emplace(*query_.pose_a, *query_.pose_b);
   const PosedPairs::Answer answer = pairs_->decide(a, b, request_.tells_relation());
   ++result_->counts.pairs;
   result_->counts.open += answer.open;

@@ -53,6 +53,16 @@ WorldBox world_box(const Object& object, const Pose& pose) {
   return box;
 }
 
+/// The box and all that is at most `by` away from it, `by` rounded up to what the coordinates can tell.
+WorldBox grown(WorldBox box, double by) {
+  if (by == 0) return box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.least[axis] = std::nextafter(box.least[axis] - by, -std::numeric_limits<double>::infinity());
+    box.greatest[axis] = std::nextafter(box.greatest[axis] + by, std::numeric_limits<double>::infinity());
+  }
+  return box;
+}
+
 }  // namespace
 
 Scene::Id Scene::add(Object object, const Pose& pose, const CollisionGroups& groups) {
@@ -134,10 +144,11 @@ bool Scene::is_wanted(const Entry& x, const Entry& y) const {
   return !filter_ || filter_(pair.first, pair.second);
 }
 
-std::vector<Scene::Candidate> Scene::find_candidates() const {
+std::vector<Scene::Candidate> Scene::find_candidates(double within) const {
   std::vector<WorldBox> boxes;
   boxes.reserve(entries_.size());
-  for (const Entry& x : entries_) boxes.push_back(x.box);
+  const double half = within > 0 ? std::nextafter(within / 2, std::numeric_limits<double>::infinity()) : 0;
+  for (const Entry& x : entries_) boxes.push_back(grown(x.box, half));
   std::vector<Candidate> found;
   visit_box_pairs(boxes, [this, &found](std::uint32_t i, std::uint32_t k) {
     const Candidate pair = entries_[i].id < entries_[k].id ? Candidate{i, k} : Candidate{k, i};
@@ -146,25 +157,26 @@ std::vector<Scene::Candidate> Scene::find_candidates() const {
   return found;
 }
 
-std::vector<std::uint32_t> Scene::near(const Entry& one) const {
+std::vector<std::uint32_t> Scene::near(const Entry& one, double within) const {
+  const WorldBox box = grown(one.box, within);
   std::vector<std::uint32_t> found;
   for (std::uint32_t i = 0; i < entries_.size(); ++i) {
     const Entry& x = entries_[i];
-    if (x.id != one.id && overlap(x.box, one.box) && is_wanted(x, one)) found.push_back(i);
+    if (x.id != one.id && overlap(x.box, box) && is_wanted(x, one)) found.push_back(i);
   }
   return found;
 }
 
 std::vector<std::pair<Scene::Id, Scene::Id>> Scene::candidates() const {
   std::vector<std::pair<Id, Id>> pairs;
-  for (const auto& [a, b] : find_candidates()) pairs.emplace_back(entries_[a].id, entries_[b].id);
+  for (const auto& [a, b] : find_candidates(0)) pairs.emplace_back(entries_[a].id, entries_[b].id);
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 
 void Scene::for_each_touching(Device& device, const PairSink& take, const CollisionRequest& request) const {
   check_query(Pose::Identity(), Pose::Identity(), request);  // whether or not there are pairs
-  const std::vector<Candidate> pairs = find_candidates();
+  const std::vector<Candidate> pairs = find_candidates(request.within);
   device.collide(
       pairs.size(),
       [this, &pairs](std::size_t i) {
@@ -195,7 +207,7 @@ void Scene::ask(Device& device, const Object& object, const Pose& pose, const st
 
 void Scene::for_each_touching(Device& device, Id id, const HitSink& take, const CollisionRequest& request) const {
   const Entry& one = entry(id);
-  ask(device, one.object, one.pose, near(one), take, request);
+  ask(device, one.object, one.pose, near(one, request.within), take, request);
 }
 
 void Scene::for_each_touching(Device& device, const Object& object, const Pose& pose, const HitSink& take,
@@ -203,7 +215,7 @@ void Scene::for_each_touching(Device& device, const Object& object, const Pose& 
   check_float_mode();
   check_object(object);
   check_pose(pose, "the object");
-  ask(device, object, pose, near({0, object, pose, groups, world_box(object, pose)}), take, request);
+  ask(device, object, pose, near({0, object, pose, groups, world_box(object, pose)}, request.within), take, request);
 }
 
 namespace {

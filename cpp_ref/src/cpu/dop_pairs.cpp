@@ -104,7 +104,7 @@ Dop26 Realignment::operator()(const Dop26& dop) const {
   return result;
 }
 
-DopPairs::DopPairs(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b) {
+DopPairs::DopPairs(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b, double within) {
   const auto chosen = directions_that_become_own(pose_b.linear());
   const Realignment::Directions world = chosen ? *chosen : own_directions();
   const Realignment::Directions in_a = pose_a.linear().transpose() * world;
@@ -122,6 +122,9 @@ DopPairs::DopPairs(const Object& a, const Pose& pose_a, const Object& b, const P
   constexpr double lost = 0x1p-1060;  // more than what underflows
   Realignment::Row slack = 0x1p-48 * (size_a + size_b + size_shift);
   slack.array() += lost * (1 + extent_a + extent_b);
+  const Realignment::Row greatest = world.cwiseAbs().colwise().maxCoeff();  // so that no square underflows
+  length_ = (1 + 0x1p-48) * greatest.array() * (world * greatest.cwiseInverse().asDiagonal()).colwise().norm().array();
+  if (within > 0) slack += within * length_;
   // Where a sum might overflow nothing is excluded.
   const auto moderate = (size_a + size_b + size_shift).array() < 0x1p1000;
   slack = moderate.select(slack.array(), std::numeric_limits<double>::infinity()).matrix().eval();
@@ -142,6 +145,16 @@ double DopPairs::overlap(const Dop26& volume_a, const Dop26& volume_b) {
     if (on_this * length < depth) depth = on_this * length;
   }
   return depth;
+}
+
+double DopPairs::gap(const Dop26& volume_a, const Dop26& volume_b) const {
+  double most = 0;
+  for (std::size_t d = 0; d < count; ++d) {
+    const double on_this = std::max(volume_b.least[d] - volume_a.greatest[d], volume_a.least[d] - volume_b.greatest[d]);
+    const double length = length_[static_cast<Eigen::Index>(d)];
+    if (on_this > 0 && length > 0x1p-500 && length < 0x1p500) most = std::max(most, on_this / length);  // not for NaN
+  }
+  return most < std::numeric_limits<double>::infinity() ? std::max(0.0, most * (1 - 0x1p-50) - 0x1p-1070) : 0;
 }
 
 }  // namespace cchip

@@ -44,16 +44,20 @@ class Realignment {
 /// docs/cpp/exactness.md.
 class DopPairs {
  public:
-  DopPairs(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b);
+  /// \param within by so much the volumes of A grow to all sides
+  DopPairs(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b, double within = 0);
   bvh::Dop26 volume_a(const bvh::Dop26& dop) const { return (*a_)(dop); }
   bvh::Dop26 volume_b(const bvh::Dop26& dop) const { return b_ ? (*b_)(dop) : dop; }
 
   /// How deep the two overlap on the direction where they do so least, in a unit common to all; negative: disjoint.
   static double overlap(const bvh::Dop26& volume_a, const bvh::Dop26& volume_b);
+  /// At most the distance in the world of what the two contain; at least 0.
+  double gap(const bvh::Dop26& volume_a, const bvh::Dop26& volume_b) const;
 
  private:
   std::optional<Realignment> a_;
   std::optional<Realignment> b_;  ///< none: the volumes of B stay as they are
+  Realignment::Row length_;       ///< of the directions, at least
 };
 
 }  // namespace cchip

@@ -65,12 +65,14 @@ CentreLine centre_line(const CollisionQuery& query) {
   return line;
 }
 
-bool is_far(const CollisionQuery& query, const CentreLine& line, double margin) {
+bool is_far(const CollisionQuery& query, const CentreLine& line, double within, double margin) {
   const Vector& axis = line.between;
   const Vector of_a = to_object(*query.pose_a, axis);
   const Vector of_b = to_object(*query.pose_b, {-axis[0], -axis[1], -axis[2]});
   const double reach = reach_along(query.a->tree(), of_a) + reach_along(query.b->tree(), of_b);
-  const double gap = axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2] - reach;
+  const double square = axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2];
+  double gap = square - reach;
+  if (within > 0) gap -= within * std::sqrt(square) * (1 + 0x1p-48);
   const double longest = std::max({std::abs(axis[0]), std::abs(axis[1]), std::abs(axis[2])});
   return line.moderate && longest > far_axis_least && gap > margin * far_limit * (longest * line.size);
 }

@@ -27,9 +27,10 @@ inline constexpr double far_axis_least = 0x1p-100;
 
 CentreLine centre_line(const CollisionQuery& query);
 
-/// True only if the objects are apart: along the line of their centres, by the 26-DOP of each. Takes every map.
+/// True only if the objects are farther apart than `within`: along the line of their centres, by the 26-DOP of each.
+/// Takes every map.
 /// \param margin factor on the bound, 1 but in tests
-bool is_far(const CollisionQuery& query, const CentreLine& line, double margin);
+bool is_far(const CollisionQuery& query, const CentreLine& line, double within, double margin);
 
 }  // namespace cchip
 

@@ -5,6 +5,7 @@
 
 #include "dop_pairs.hpp"
 #include "search.hpp"
+#include "tree_side.hpp"
 
 namespace cchip {
 namespace {
@@ -25,9 +26,9 @@ class PlainSearch final : public Search {
  public:
   void run(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) override {
     faces_.start(query, request, result);
-    const DopPairs volumes(*query.a, *query.pose_a, *query.b, *query.pose_b);
-    const Side a = {query.a->mesh(), query.a->tree()};
-    const Side b = {query.b->mesh(), query.b->tree()};
+    const DopPairs volumes(*query.a, *query.pose_a, *query.b, *query.pose_b, request.within);
+    const TreeSide a = {query.a->mesh(), query.a->tree()};
+    const TreeSide b = {query.b->mesh(), query.b->tree()};
     stack_.clear();
     stack_.push_back({a.tree.root(), b.tree.root()});
     while (!stack_.empty() && !faces_.done()) {
@@ -52,29 +53,7 @@ class PlainSearch final : public Search {
  private:
   static constexpr std::size_t width = 4;  // children of a node
 
-  struct Side {
-    const Mesh& mesh;
-    const SupportTree& tree;
-
-    /// Volume of a line. That of a leaf is made from its faces: lines are too coarse for an object that is much larger
-    /// than its partner.
-    Dop26 volume(const SupportLine& line) const {
-      const NodeRef node = line.ref();
-      if (!node.is_leaf()) return dop_of(tree, line);
-      Dop26 dop = bvh::make_dop26(mesh.primitive(tree.faces()[node.first()]));
-      for (std::uint32_t i = 1; i < node.count(); ++i) {
-        dop = enclose(dop, bvh::make_dop26(mesh.primitive(tree.faces()[node.first() + i])));
-      }
-      return dop;
-    }
-    /// Line `number` as a node of its own, for a leaf that waits for the other object's nodes to come down.
-    NodeRef below(std::uint32_t number, bool other_is_leaf) const {
-      const NodeRef node = tree.lines()[number].ref();
-      return node.is_leaf() && !other_is_leaf ? NodeRef::inner(number, 1) : node;
-    }
-  };
-
-  void expand(const Side& a, NodeRef node_a, const Side& b, NodeRef node_b, const DopPairs& volumes) {
+  void expand(const TreeSide& a, NodeRef node_a, const TreeSide& b, NodeRef node_b, const DopPairs& volumes) {
     std::array<Dop26, width> volumes_b;
     for (std::uint32_t k = 0; k < node_b.count(); ++k) {
       volumes_b[k] = volumes.volume_b(b.volume(b.tree.lines()[node_b.first() + k]));

@@ -30,12 +30,22 @@ Vector cross(const Vector& p, const Vector& q) {
 /// Square of the Frobenius norm.
 double square(const Matrix& m) { return dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2]); }
 
+/// Bound on the spectral norm: its square is the greatest eigenvalue of w^T w, at most a sum of magnitudes in a row.
+/// For a rotation that is 1, where the Frobenius norm is sqrt(3). Covers that w is the inverse up to 2^-20 only.
+double greatest_stretch(const Matrix& w) {
+  double most = 0;
+  for (const Vector& p : w) {
+    most = std::max(most, std::abs(dot(p, w[0])) + std::abs(dot(p, w[1])) + std::abs(dot(p, w[2])));
+  }
+  return std::sqrt(most) * (1 + 0x1p-18);
+}
+
 /// Not for NaN.
 bool is_moderate(double square) { return square > 0x1p-400 && square < 0x1p400; }
 
 }  // namespace
 
-bool relate(const CollisionQuery& query, const CentreLine& line, RelativePose& r) {
+bool relate(const CollisionQuery& query, const CentreLine& line, double within, RelativePose& r) {
   const double unit_a = query.a->tree().unit();
   const double unit_b = query.b->tree().unit();
   const double square_a = square(linear_of(*query.pose_a));
@@ -99,8 +109,10 @@ bool relate(const CollisionQuery& query, const CentreLine& line, RelativePose& r
   // What may underflow is far below a unit: see the bounds on the numbers above.
   r.plane_error += 0x1p-100;
   r.vertex_error += 0x1p-100;
+  r.growth = within > 0 ? within * per_unit * greatest_stretch(w) : 0;
   // Within these limits no product of the search leaves single precision: docs/cpp/exactness.md derives them.
-  return r.norm < 0x1p26 && r.distance < 0x1p40 && r.plane_error < 0x1p36 && r.vertex_error < 0x1p36;
+  return r.norm < 0x1p26 && r.distance < 0x1p40 && r.plane_error + r.growth < 0x1p36 &&
+         r.vertex_error + r.growth < 0x1p36;
 }
 
 }  // namespace cchip

@@ -23,13 +23,15 @@ struct RelativePose {
   double distance = 0;     ///< |t|
   double plane_error = 0;  ///< units that the errors of m and t may add to a bound on a normalised direction
   double vertex_error =
-      0;  ///< bound on how far m y + t lies from the exact place in each coordinate, |y| <= support_most
+      0;              ///< bound on how far m y + t lies from the exact place in each coordinate, |y| <= support_most
+  double growth = 0;  ///< bound on the length of what a vector of the world as long as `within` becomes
 };
 
 /// \param line centre_line() of the query
+/// \param within the distance that is asked for
 /// \returns false if the relation cannot be computed well: a map that has no good inverse, or numbers that are so great
 ///          or small that products of three of them leave the range of doubles
-bool relate(const CollisionQuery& query, const CentreLine& line, RelativePose& relation);
+bool relate(const CollisionQuery& query, const CentreLine& line, double within, RelativePose& relation);
 
 }  // namespace cchip
 

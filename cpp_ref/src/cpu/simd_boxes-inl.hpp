@@ -296,7 +296,7 @@ HWY_INLINE void make_planes(const RelativePose& r, const Margins& margins, Plane
   }
   const auto distance = static_cast<float>(r.distance);
   const auto norm = static_cast<float>(r.norm);
-  const auto plane_error = static_cast<float>(margins.relation * r.plane_error) * 1.01F;
+  const auto plane_error = static_cast<float>(margins.relation * r.plane_error + r.growth) * 1.01F;
   // 26 of the 32 words have directions of length 1, so a sum of factors is at most sqrt(3) norm, nearly.
   const float sum = hn::GetLane(hn::MaxOfLanes(d, most_sum));
   const float factor = hn::GetLane(hn::MaxOfLanes(d, most_factor));

@@ -105,10 +105,10 @@ HWY_INLINE Sides sides_of(V nx, V ny, V nz, V size, V dx, V dy, V dz, float plan
 
 /// Primitive i of one leaf against both of the other: sides of the latter's points in the plane of i, and of the points
 /// of i in the latter's planes; four bits for each of the two.
-HWY_INLINE void compare(const LeafSide& p, std::size_t i, float error_p, const LeafSide& q, float error_q, Sides& of_q,
+HWY_INLINE void compare(const LeafSide& p, std::size_t i, const LeafSide& q, const Placement& place, Sides& of_q,
                         Sides& of_p) {
   const D8F d;
-  const float both = error_p + error_q;
+  const float both = place.both_errors();
   const std::size_t at_p = 4 * i;
   for (std::size_t at = 0; at < 8; at += lanes8) {
     const auto qx = hn::Load(d, q.x.data() + at);
@@ -116,11 +116,12 @@ HWY_INLINE void compare(const LeafSide& p, std::size_t i, float error_p, const L
     const auto qz = hn::Load(d, q.z.data() + at);
     const auto set = [&](const std::array<float, 8>& from) { return hn::Set(d, from[at_p]); };
     const Sides first = sides_of(set(p.nx), set(p.ny), set(p.nz), set(p.size), hn::Sub(qx, set(p.x)),
-                                 hn::Sub(qy, set(p.y)), hn::Sub(qz, set(p.z)), error_p, both);
+                                 hn::Sub(qy, set(p.y)), hn::Sub(qz, set(p.z)), place.moved_error, both);
     const auto own = [&](const std::array<float, 8>& from) { return hn::Broadcast<0>(hn::Load(d, from.data() + at)); };
     const auto points = [&](const std::array<float, 8>& from) { return hn::LoadDup128(d, from.data() + at_p); };
-    const Sides second = sides_of(own(q.nx), own(q.ny), own(q.nz), own(q.size), hn::Sub(points(p.x), own(q.x)),
-                                  hn::Sub(points(p.y), own(q.y)), hn::Sub(points(p.z), own(q.z)), error_q, both);
+    const Sides second =
+        sides_of(own(q.nx), own(q.ny), own(q.nz), own(q.size), hn::Sub(points(p.x), own(q.x)),
+                 hn::Sub(points(p.y), own(q.y)), hn::Sub(points(p.z), own(q.z)), place.fixed_error, both);
     of_q.positive |= first.positive << at;
     of_q.negative |= first.negative << at;
     of_p.positive |= second.positive << at;
@@ -168,7 +169,7 @@ HWY_INLINE Verdict cross_test(const LeafSide& p, std::size_t at_p, unsigned nega
   const auto size = [&](V x, V y, V z, float more) {
     return hn::Add(hn::Abs(x), hn::Add(hn::Abs(y), hn::Add(hn::Abs(z), hn::Set(d, more))));
   };
-  const float both_errors = place.moved_error + place.fixed_error;
+  const float both_errors = place.both_errors();
   const V size_e = size(ex, ey, ez, 8 * place.moved_error);
   const V size_f = size(fx, fy, fz, 8 * place.fixed_error);
   const V size_d = size(dx, dy, dz, 2 * both_errors);

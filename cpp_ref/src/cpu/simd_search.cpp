@@ -49,9 +49,9 @@ HWY_INLINE void prefetch(const Task& task, Item item) {
   }
 }
 
-/// True only if the boxes of the objects, in their own frames, are apart along an edge of one of them. As is_far(), it
-/// takes every map; edges are normals of faces only for rotations and scales.
-HWY_INLINE bool boxes_apart(const CollisionQuery& query, const CentreLine& line, double margin) {
+/// True only if the boxes of the objects, in their own frames, are farther apart than `within` along an edge of one. As
+/// is_far(), it takes every map; edges are normals of faces only for rotations and scales.
+HWY_INLINE bool boxes_apart(const CollisionQuery& query, const CentreLine& line, double within, double margin) {
   constexpr std::size_t axes = 6;
   using DD = hn::CappedTag<double, 8>;
   using VD = hn::Vec<DD>;
@@ -92,7 +92,11 @@ HWY_INLINE bool boxes_apart(const CollisionQuery& query, const CentreLine& line,
     const VD along = hn::MulAdd(x, hn::Set(d, line.between[0]),
                                 hn::MulAdd(y, hn::Set(d, line.between[1]), hn::Mul(z, hn::Set(d, line.between[2]))));
     const VD longest = hn::Max(hn::Abs(x), hn::Max(hn::Abs(y), hn::Abs(z)));
-    const VD gap = hn::Sub(hn::Abs(along), reach);
+    VD gap = hn::Sub(hn::Abs(along), reach);
+    if (within > 0) {
+      const VD square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+      gap = hn::NegMulAdd(hn::Sqrt(square), hn::Set(d, within * (1 + 0x1p-48)), gap);
+    }
     apart |= !hn::AllFalse(d, hn::And(hn::Gt(gap, hn::Mul(longest, limit)), hn::Gt(longest, least)));
   }
   return apart && line.moderate;
@@ -136,13 +140,13 @@ class SimdSearch final : public Search {
   /// \returns false if the result is complete
   bool start(Task& task, const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) {
     const CentreLine line = centre_line(query);
-    if (is_far(query, line, margins_.far) || boxes_apart(query, line, margins_.far)) {
+    if (is_far(query, line, request.within, margins_.far) || boxes_apart(query, line, request.within, margins_.far)) {
       FacePairs::answer_apart(request, result);
       result.counts.box_tests = 1;
       return false;
     }
     RelativePose relation;
-    if (!relate(query, line, relation)) {
+    if (!relate(query, line, request.within, relation)) {
       plain_->run(query, request, result);
       return false;
     }
@@ -159,8 +163,10 @@ class SimdSearch final : public Search {
     task.place.moved_error =
         static_cast<float>(own * (6 * radius * relation.row + 4 * relation.distance) + of_relation);
     task.place.fixed_error = static_cast<float>(own * radius);
+    task.place.growth = static_cast<float>(1.01 * relation.growth);
     const double of_plane = margins_.wide * ulp * (radius * (3 + 12 * relation.norm) + 5 * relation.distance);
-    task.planes.side_error = static_cast<float>(1.01 * of_plane + of_relation) + task.place.fixed_error;
+    task.planes.side_error =
+        static_cast<float>(1.01 * of_plane + of_relation) + task.place.fixed_error + task.place.growth;
     task.counts = {};
     task.counts.box_tests = 1;  // of the whole objects, above
     task.open_count = 0;
@@ -249,7 +255,7 @@ class SimdSearch final : public Search {
     if (HWY_UNLIKELY(item.moved.is_quad() || item.fixed.is_quad())) {
       for (std::size_t i = 0; i < count_p; ++i) {
         for (std::size_t k = 0; k < count_q; ++k) {
-          const AxisTest test(p, 4 * i, q, 4 * k, place.moved_error + place.fixed_error);
+          const AxisTest test(p, 4 * i, q, 4 * k, place.both_errors());
           if (test.normals_separate(p, 4 * i, q, 4 * k)) continue;
           if (quads_cross(p, 4 * i, item.moved.is_quad(), q, 4 * k, item.fixed.is_quad(), place)) {
             task.add(faces_p[i], faces_q[k]);
@@ -283,7 +289,7 @@ class SimdSearch final : public Search {
     std::array<Sides, 2> of_q;
     const auto all_three = [](unsigned bits) { return bits & bits >> 1U & bits >> 2U; };
     for (std::size_t i = 0; i < count_p; ++i) {
-      compare(p, i, place.moved_error, q, place.fixed_error, of_q[i], of_p[i]);
+      compare(p, i, q, place, of_q[i], of_p[i]);
       const unsigned apart = all_three(of_p[i].positive) | all_three(of_p[i].negative) | all_three(of_q[i].positive) |
                              all_three(of_q[i].negative);
       const unsigned known =

@@ -83,6 +83,10 @@ struct Placement {
   std::array<float, 3> t;
   float moved_error;
   float fixed_error;
+  float growth;  ///< how far the moved object as a whole may be from there, for a query within a distance
+
+  /// Bound on the error of the difference of a vertex of each.
+  float both_errors() const { return moved_error + fixed_error + growth; }
 };
 
 /// Two primitives of a leaf, in units of the fixed object; lane 4 i + v is vertex v of primitive i.

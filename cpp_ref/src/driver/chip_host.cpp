@@ -349,7 +349,7 @@ class ChipHost final : public Device {
 
   /// The query as the chip takes it; none if it does not.
   std::optional<Prepared> prepare(const CollisionQuery& placed, const CollisionRequest& request) {
-    if (chip_.is_dead()) return std::nullopt;
+    if (chip_.is_dead() || request.within > 0) return std::nullopt;
     Stored& a = images_.of(*placed.a);
     Stored& b = images_.of(*placed.b);
     const ChipCapabilities& chip = chip_.capabilities();

@@ -10,14 +10,18 @@
 
 #include "filter.hpp"
 #include "hulls.hpp"
+#include "posed_filter.hpp"
 #include "posed_ints.hpp"
 
 namespace cchip {
 namespace {
 
 using exact::Filter;
+using exact::filter_offset;
+using exact::filter_points;
 using exact::fits;
 using exact::Hull;
+using exact::Offset;
 using exact::PosedInts;
 using exact::Vec;
 
@@ -119,23 +123,7 @@ bool rounds(const Pose& pose) {
 }
 
 Hull<Filter> filter_hull(const Primitive& p, const Eigen::Matrix3d& linear, const Vec<Filter>& offset) {
-  std::array<Vec<Filter>, 4> points;
-  for (std::size_t i = 0; i < p.vertex_count(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      // Most poses of assemblies have zeros and ones, which spare a product.
-      points[i][k] = offset[k];
-      for (Eigen::Index c = 0; c < 3; ++c) {
-        const double entry = linear(static_cast<Eigen::Index>(k), c);
-        if (entry == 0) continue;
-        points[i][k] += entry == 1 ? Filter(p.v[i][c]) : Filter(entry) * Filter(p.v[i][c]);
-      }
-    }
-  }
-  return {points, p.vertex_count()};
-}
-
-Vec<Filter> filter_offset(const Vec3d& offset, const Vec3d& error) {
-  return {Filter(offset.x(), error.x()), Filter(offset.y(), error.y()), Filter(offset.z(), error.z())};
+  return {filter_points(p, linear, offset), p.vertex_count()};
 }
 
 /// True only if the map has an inverse. The product of the columns' sums of magnitudes bounds all that is added up for
@@ -160,13 +148,9 @@ PosedPairs::PosedPairs(const Pose& pose_a, const Pose& pose_b) : pose_a_(pose_a)
   rounds_ = rounds(pose_a_) || rounds(pose_b_);
   row_sum_a_ = pose_a_.linear().cwiseAbs().rowwise().sum().maxCoeff();
   row_sum_b_ = pose_b_.linear().cwiseAbs().rowwise().sum().maxCoeff();
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    const double to = pose_a_.translation()[k];
-    const double from = pose_b_.translation()[k];
-    offset_[k] = to - from;
-    const double part = offset_[k] - to;
-    offset_error_[k] = std::abs((to - (offset_[k] - part)) - (from + part));  // TwoSum
-  }
+  const Offset offset(pose_a_, pose_b_);
+  offset_ = offset.value;
+  offset_error_ = offset.error;
 }
 
 PosedPairs::Answer PosedPairs::decide(const Primitive& a, const Primitive& b, bool tell_crossing) const {

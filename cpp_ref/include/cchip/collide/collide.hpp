@@ -4,8 +4,8 @@
 ///
 /// The answer is exact: for closed faces with the double coordinates of the meshes, and both poses as given, in real
 /// arithmetic without rounding. Touching counts, unless the request asks for crossings. Objects are surfaces, not
-/// volumes: one wholly inside another does not touch it. A quad is the hull of its four vertices. There is no distance,
-/// no depth and no contact point.
+/// volumes: one wholly inside another does not touch it. A quad is the hull of its four vertices. There is no depth and
+/// no contact point; distance.hpp is about distances.
 #ifndef CCHIP_COLLIDE_COLLIDE_HPP
 #define CCHIP_COLLIDE_COLLIDE_HPP
 
@@ -51,6 +51,9 @@ struct CollisionRequest {
   bool relation = false;
   /// Prove the answer: fills CollisionResult::certificate (docs/cpp/certificates.md). Takes far longer than the answer.
   bool certificate = false;
+  /// Pairs of faces whose distance is at most this are contacts, in units of the world; exactly. With 0, those that
+  /// share a point. With more, touching and crossing are not told apart: leave `relation` and `counts` as they are.
+  double within = 0;
 
   bool tells_relation() const { return relation || counts == Counts::crossing; }
 };

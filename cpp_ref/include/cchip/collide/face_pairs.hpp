@@ -5,6 +5,7 @@
 #define CCHIP_COLLIDE_FACE_PAIRS_HPP
 
 #include <cchip/collide/collide.hpp>
+#include <cchip/exact/posed_distances.hpp>
 #include <cchip/exact/posed_pairs.hpp>
 #include <cstddef>
 #include <map>
@@ -49,13 +50,15 @@ class FacePairs {
   bool cut_ = false;                         ///< some faces of a file are several of a mesh, so contacts may repeat
   std::map<Contact, std::size_t> contacts_;  ///< places in the result; in use if cut_ and all contacts are wanted
   std::optional<PosedPairs> pairs_;          ///< made when it is needed first
+  std::optional<PosedDistances> distances_;  ///< the same, for requests within a distance
 };
 
 /// \param name of the object, for the message: "A"
 /// \throws std::invalid_argument an entry of the pose is not finite or beyond 2^500 in magnitude; one line
 void check_pose(const Pose& pose, const char* name);
 /// \throws std::invalid_argument an entry of a pose is not finite or beyond 2^500 in magnitude, or the request wants
-///         at most 0 contacts; one line
+///         at most 0 contacts, or those within a distance that is negative or not finite, or their relations as well;
+///         one line
 void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest& request);
 /// \throws std::invalid_argument as above, or a pointer of the query is null, or an object was moved from; one line
 void check_query(const CollisionQuery& query, const CollisionRequest& request);

@@ -144,8 +144,8 @@ class Scene {
   std::size_t place(Id id) const;
   const Entry& entry(Id id) const { return entries_[place(id)]; }
   bool is_wanted(const Entry& x, const Entry& y) const;
-  std::vector<Candidate> find_candidates() const;
-  std::vector<std::uint32_t> near(const Entry& one) const;
+  std::vector<Candidate> find_candidates(double within) const;
+  std::vector<std::uint32_t> near(const Entry& one, double within) const;
   void ask(Device& device, const Object& object, const Pose& pose, const std::vector<std::uint32_t>& others,
            const HitSink& take, const CollisionRequest& request) const;
 

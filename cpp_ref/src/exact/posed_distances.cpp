@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cchip/exact/posed_distances.hpp>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "feature_pairs.hpp"
+#include "posed_filter.hpp"
+#include "scaled_points.hpp"
+
+namespace cchip {
+namespace {
+
+using exact::BigInt;
+using exact::FeaturePair;
+using exact::Filter;
+using exact::Known;
+using exact::Vec;
+
+constexpr double unit = std::numeric_limits<double>::epsilon() / 2;  // greatest relative error of one operation
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double greatest_double = std::numeric_limits<double>::max();
+
+/// Vertices of both primitives relative to `base`, rounded.
+struct Rounded {
+  std::array<Vec3d, 4> a;
+  std::array<Vec3d, 4> b;
+  std::size_t count_a = 0;
+  std::size_t count_b = 0;
+  Vec3d base;             ///< in the world
+  double error = 0;       ///< bound on the error of each coordinate
+  double greatest = 0;    ///< magnitude of a coordinate relative to the base
+  bool moderate = false;  ///< no square overflows, and what underflows is far below the error
+};
+
+double greatest_component(const Primitive& p) {
+  double greatest = 0;
+  for (std::size_t i = 0; i < p.vertex_count(); ++i) {
+    if (!p.v[i].allFinite()) {
+      throw std::invalid_argument("primitive: a coordinate is not finite: replace NaN and infinities by numbers");
+    }
+    greatest = std::max(greatest, p.v[i].cwiseAbs().maxCoeff());
+  }
+  return greatest;
+}
+
+/// Points of the two hulls that are near each other, relative to the base; nearest up to rounding if the hulls have no
+/// point in common.
+struct NearPoints {
+  Vec3d a = Vec3d::Zero();
+  Vec3d b = Vec3d::Zero();
+  double square = infinity;
+  void offer(const Vec3d& p, const Vec3d& q) {
+    const double here = (p - q).squaredNorm();
+    if (!(here < square)) return;
+    square = here;
+    a = p;
+    b = q;
+  }
+};
+
+double clamped(double fraction) { return fraction > 0 ? std::min(fraction, 1.0) : 0; }  // NaN becomes 0
+
+/// The edges p + s u and q + t v.
+void offer_edges(const Vec3d& p, const Vec3d& u, const Vec3d& q, const Vec3d& v, NearPoints& best) {
+  const Vec3d w = q - p;
+  const double uu = u.squaredNorm();
+  const double vv = v.squaredNorm();
+  const double uv = u.dot(v);
+  const double uw = u.dot(w);
+  const double vw = v.dot(w);
+  const double determinant = uu * vv - uv * uv;
+  double s = determinant > 0 ? clamped((uw * vv - vw * uv) / determinant) : 0;
+  const double t = clamped((s * uv - vw) / vv);
+  s = clamped((t * uv + uw) / uu);
+  best.offer(p + s * u, q + t * v);
+}
+
+/// A point and the inside of a triangle. \returns whether the triangle's plane has one
+bool foot_in_face(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c, Vec3d& foot) {
+  const Vec3d u = b - a;
+  const Vec3d v = c - a;
+  const Vec3d w = p - a;
+  const Vec3d normal = u.cross(v);
+  const double square = normal.squaredNorm();
+  const double s = w.cross(v).dot(normal) / square;
+  const double t = u.cross(w).dot(normal) / square;
+  if (!(s >= 0 && t >= 0 && s + t <= 1)) return false;
+  foot = a + s * u + t * v;
+  return true;
+}
+
+NearPoints near_points(const Rounded& r) {
+  NearPoints best;
+  for (std::size_t i = 1; i < r.count_a; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Vec3d u = r.a[i] - r.a[j];
+      for (std::size_t k = 1; k < r.count_b; ++k) {
+        for (std::size_t l = 0; l < k; ++l) offer_edges(r.a[j], u, r.b[l], r.b[k] - r.b[l], best);
+      }
+    }
+  }
+  const auto faces = [](std::size_t count, const std::array<Vec3d, 4>& v, const auto& visit) {
+    const exact::FeatureRange range = exact::features_of(3, count);
+    for (std::size_t i = range.first; i < range.first + range.size; ++i) {
+      const auto& at = exact::features[i].at;
+      visit(v[at[0]], v[at[1]], v[at[2]]);
+    }
+  };
+  Vec3d foot;
+  faces(r.count_b, r.b, [&](const Vec3d& u, const Vec3d& v, const Vec3d& w) {
+    for (std::size_t i = 0; i < r.count_a; ++i) {
+      if (foot_in_face(r.a[i], u, v, w, foot)) best.offer(r.a[i], foot);
+    }
+  });
+  faces(r.count_a, r.a, [&](const Vec3d& u, const Vec3d& v, const Vec3d& w) {
+    for (std::size_t k = 0; k < r.count_b; ++k) {
+      if (foot_in_face(r.b[k], u, v, w, foot)) best.offer(foot, r.b[k]);
+    }
+  });
+  return best;
+}
+
+/// A point where the hulls meet, nearly, if they do: the best that an edge of one and a face of the other offer.
+Vec3d common_point(const Rounded& r, const NearPoints& best) {
+  Vec3d point = 0.5 * (best.a + best.b);
+  double least = best.square;
+  const auto pierce = [&](const std::array<Vec3d, 4>& e, std::size_t count_e, const std::array<Vec3d, 4>& f,
+                          std::size_t count_f) {
+    const exact::FeatureRange range = exact::features_of(3, count_f);
+    for (std::size_t i = range.first; i < range.first + range.size; ++i) {
+      const auto& at = exact::features[i].at;
+      const Vec3d& u = f[at[0]];
+      const Vec3d normal = (f[at[1]] - u).cross(f[at[2]] - u);
+      for (std::size_t k = 1; k < count_e; ++k) {
+        for (std::size_t l = 0; l < k; ++l) {
+          const double from = normal.dot(e[l] - u);
+          const double to = normal.dot(e[k] - u);
+          const Vec3d at_plane = e[l] + clamped(from / (from - to)) * (e[k] - e[l]);
+          Vec3d foot;
+          if (!foot_in_face(at_plane, u, f[at[1]], f[at[2]], foot)) continue;
+          const double here = (at_plane - foot).squaredNorm();
+          if (!(here < least)) continue;
+          least = here;
+          point = at_plane;
+        }
+      }
+    }
+  };
+  pierce(r.a, r.count_a, r.b, r.count_b);
+  pierce(r.b, r.count_b, r.a, r.count_a);
+  return point;
+}
+
+/// What the points prove. The exact points differ from the rounded vertices' by `error` in each coordinate, those of
+/// the hulls from their combinations by at most 24 units of the greatest coordinate; an axis proves a gap as in
+/// PosedPairs.
+void prove(const Rounded& r, const NearPoints& best, double& lower, double& upper) {
+  lower = 0;
+  upper = infinity;
+  if (!r.moderate || !(best.square < infinity)) return;
+  const Vec3d axis = best.a - best.b;
+  const double length = std::sqrt(axis.squaredNorm());
+  upper = length * (1 + 8 * unit) + 4 * (r.error + 24 * unit * r.greatest);
+  if (!(length > 0x1p-300)) return;
+  double from = infinity;
+  double to = -infinity;
+  for (std::size_t i = 0; i < r.count_a; ++i) from = std::min(from, axis.dot(r.a[i]));
+  for (std::size_t i = 0; i < r.count_b; ++i) to = std::max(to, axis.dot(r.b[i]));
+  const double size = axis.cwiseAbs().sum();
+  const double gap = (from - to) - size * (2.5 * r.error + 16 * unit * r.greatest);
+  if (gap > 0) lower = gap / length * (1 - 16 * unit);
+}
+
+/// The square of d in units of 2^(2 exponent).
+BigInt square_in_units(const exact::Scaled& d, int exponent) {
+  if (d.mantissa == 0) return 0;
+  const BigInt x = BigInt(d.mantissa) << (d.exponent - exponent);
+  return x * x;
+}
+
+/// Numerator and denominator, not below 0 and above it, in units of 2^(2 exponent).
+struct Fraction {
+  BigInt over;
+  BigInt under;
+  int exponent = 0;
+};
+
+/// value * 2^exponent, rounded down to a double. \pre value >= 0
+double rounded_down(BigInt value, int exponent) {
+  if (value == 0) return 0;
+  constexpr int digits = std::numeric_limits<double>::digits;
+  constexpr int least = std::numeric_limits<double>::min_exponent - digits;  // of a subnormal number
+  const int top = static_cast<int>(boost::multiprecision::msb(value));
+  if (top + exponent >= std::numeric_limits<double>::max_exponent) return greatest_double;
+  const int drop = std::max(top + 1 - digits, least - exponent);
+  if (drop > top) return 0;
+  if (drop > 0) value >>= drop;
+  return std::ldexp(static_cast<double>(static_cast<std::uint64_t>(value)), exponent + std::max(drop, 0));
+}
+
+/// The root, or the doubles beside it.
+void root_of(const Fraction& square, DistanceBounds& result) {
+  if (square.over == 0) {
+    result.lower = result.upper = 0;
+    return;
+  }
+  // 2^(2 shift) over / under has at least 128 bits, so its root has more than a double.
+  const int bits = static_cast<int>(boost::multiprecision::msb(square.over)) -
+                   static_cast<int>(boost::multiprecision::msb(square.under));
+  const int shift = std::max(0, 66 - bits / 2);
+  const BigInt scaled = square.over << (2 * shift);
+  const BigInt root = boost::multiprecision::sqrt(BigInt(scaled / square.under));
+  result.lower = rounded_down(root, square.exponent - shift);
+  // Exact if the double's square is the fraction.
+  result.upper = result.lower;
+  const exact::Scaled x(result.lower);
+  const int to = std::min(square.exponent, x.exponent);
+  if (result.lower != 0 && square_in_units(x, to) * square.under == square.over << (2 * (square.exponent - to))) {
+    return;
+  }
+  result.upper = std::nextafter(result.lower, infinity);
+}
+
+/// Pairs of features that may be nearer than d, in doubles with error bounds.
+struct OpenPairs {
+  bool certain = false;  ///< one is
+  std::size_t count = 0;
+  std::array<FeaturePair, exact::feature_pairs_most> pair;  ///< those of which it is not known, if none is
+};
+
+}  // namespace
+
+PosedDistances::PosedDistances(const Pose& pose_a, const Pose& pose_b)
+    : pairs_(pose_a, pose_b), pose_a_(pose_a), pose_b_(pose_b) {
+  const exact::Offset offset(pose_a, pose_b);
+  offset_ = offset.value;
+  offset_error_ = offset.error;
+  row_sum_a_ = pose_a.linear().cwiseAbs().rowwise().sum().maxCoeff();
+  row_sum_b_ = pose_b.linear().cwiseAbs().rowwise().sum().maxCoeff();
+}
+
+/// The steps of the members of PosedDistances for one pair.
+class PosedDistances::Pair {
+ public:
+  Pair(const PosedDistances& poses, const Primitive& a, const Primitive& b) : poses_(poses), a_(a), b_(b) {
+    r_.count_a = a.vertex_count();
+    r_.count_b = b.vertex_count();
+    // As in PosedPairs: both frames lose B's translation, then b's first vertex, rounded, is the origin.
+    r_.base = poses.pose_b_.linear() * b.v[0];
+    for (std::size_t i = 0; i < r_.count_a; ++i) {
+      r_.a[i] = (poses.pose_a_.linear() * a.v[i] + poses.offset_) - r_.base;
+      r_.greatest = std::max(r_.greatest, r_.a[i].cwiseAbs().maxCoeff());
+    }
+    for (std::size_t i = 0; i < r_.count_b; ++i) {
+      r_.b[i] = poses.pose_b_.linear() * b.v[i] - r_.base;
+      r_.greatest = std::max(r_.greatest, r_.b[i].cwiseAbs().maxCoeff());
+    }
+    const double magnitude = poses.row_sum_a_ * greatest_component(a) + poses.row_sum_b_ * greatest_component(b) +
+                             poses.offset_.cwiseAbs().maxCoeff();
+    r_.error = 8 * unit * magnitude + 0x1p-1070;
+    r_.moderate = magnitude < 0x1p400 && (r_.greatest == 0 || r_.greatest > 0x1p-400);
+    near_ = near_points(r_);
+    prove(r_, near_, lower_, upper_);
+  }
+
+  double lower() const { return lower_; }
+  double upper() const { return upper_; }
+  DistanceBounds bounds() const {
+    const Vec3d origin = r_.base + poses_.pose_b_.translation();
+    return {lower_, upper_, near_.a + origin, near_.b + origin};
+  }
+  Vec3d point_in_common() const { return common_point(r_, near_) + (r_.base + poses_.pose_b_.translation()); }
+
+  /// \pre the primitives share no point
+  OpenPairs open_pairs(double d, bool strictly, bool keep_certain) const {
+    const auto a =
+        exact::filter_points(a_, poses_.pose_a_.linear(), exact::filter_offset(poses_.offset_, poses_.offset_error_));
+    const auto b = exact::filter_points(b_, poses_.pose_b_.linear(), Vec<Filter>{});
+    const Filter square = Filter(d) * Filter(d);
+    OpenPairs open;
+    exact::for_each_feature_pair(r_.count_a, r_.count_b, [&](FeaturePair pair) {
+      const Known known = is_near(exact::square_of(a, b, pair), square, strictly);
+      if (known == Known::open || (known == Known::yes && keep_certain)) open.pair[open.count++] = pair;
+      open.certain = open.certain || known == Known::yes;
+      return !open.certain || keep_certain;
+    });
+    return open;
+  }
+
+  /// The vertices as integers in units of 2^exponent(), which is at most `exponent`.
+  struct Integers {
+    std::array<Vec<BigInt>, 4> a;
+    std::array<Vec<BigInt>, 4> b;
+    int exponent;
+  };
+  Integers integers(int exponent) const {
+    Pose pose_a = poses_.pose_a_;
+    Pose pose_b = poses_.pose_b_;
+    if (poses_.offset_error_.isZero(0)) {  // what is left of the translations has fewer bits
+      pose_a.translation() = poses_.offset_;
+      pose_b.translation().setZero();
+    }
+    const int common = exact::common_exponent(b_, pose_b, exact::common_exponent(a_, pose_a, exponent));
+    return {exact::scaled_points(a_, pose_a, common), exact::scaled_points(b_, pose_b, common), common};
+  }
+
+ private:
+  const PosedDistances& poses_;
+  const Primitive& a_;
+  const Primitive& b_;
+  Rounded r_;
+  NearPoints near_;
+  double lower_ = 0;
+  double upper_ = infinity;
+};
+
+PosedDistances::Answer PosedDistances::compare(const Primitive& a, const Primitive& b, double d, bool strictly) const {
+  if (d == 0) {
+    if (strictly) return {};
+    const PosedPairs::Answer met = pairs_.decide(a, b);
+    return {met.hit, met.open};
+  }
+  const Pair pair(*this, a, b);
+  if (strictly ? pair.upper() < d : pair.upper() <= d) return {true, false};
+  if (strictly ? pair.lower() >= d : pair.lower() > d) return {};
+  const PosedPairs::Answer met = pairs_.decide(a, b);
+  if (met.hit) return {true, met.open};
+  const OpenPairs open = pair.open_pairs(d, strictly, false);
+  if (open.certain) return {true, met.open};
+  if (open.count == 0) return {false, met.open};
+  const exact::Scaled scaled(d);
+  const Pair::Integers exact = pair.integers(scaled.exponent);
+  const BigInt square = square_in_units(scaled, exact.exponent);
+  for (std::size_t i = 0; i < open.count; ++i) {
+    if (is_near(exact::square_of(exact.a, exact.b, open.pair[i]), square, strictly) == Known::yes) return {true, true};
+  }
+  return {false, true};
+}
+
+DistanceBounds PosedDistances::bounds(const Primitive& a, const Primitive& b) const {
+  return Pair(*this, a, b).bounds();
+}
+
+DistanceBounds PosedDistances::tight_bounds(const Primitive& a, const Primitive& b) const {
+  const Pair pair(*this, a, b);
+  DistanceBounds result = pair.bounds();
+  if (!(result.lower > 0) && pairs_.decide(a, b).hit) {
+    result.lower = result.upper = 0;
+    result.point_a = result.point_b = pair.point_in_common();
+    return result;
+  }
+  // Those that are not certainly farther apart than is known already.
+  const OpenPairs left = pair.open_pairs(pair.upper(), false, true);
+  const Pair::Integers exact = pair.integers(0);
+  Fraction least;
+  least.exponent = exact.exponent;
+  bool found = false;
+  for (std::size_t i = 0; i < left.count; ++i) {
+    const exact::SquareOfPair<BigInt> s = exact::square_of(exact.a, exact.b, left.pair[i]);
+    bool inside = true;
+    for (std::size_t k = 0; k < s.inside_count; ++k) inside = inside && s.inside[k].sign() > 0;
+    if (!inside || (found && s.over * least.under >= least.over * s.under)) continue;
+    found = true;
+    least.over = s.over;
+    least.under = s.under;
+  }
+  if (!found) throw std::logic_error("distance: no pair of features is nearest; report this with both primitives");
+  root_of(least, result);
+  return result;
+}
+
+}  // namespace cchip
