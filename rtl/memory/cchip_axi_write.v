@@ -24,8 +24,8 @@
 //   order        one ID, so responses come in the order of addresses, and data go in that order.
 //                Addresses and data of a write are offered only when all its beats are here: no
 //                client can stall the bus
-//   latency      5 clocks from s_valid to awvalid, 6 to wvalid, 2 from a response to m_valid
-//   throughput   a beat and an address on every clock
+//   latency      5 clocks from s_valid to awvalid, 7 to wvalid, 2 from a response to m_valid
+//   throughput   a beat in 2 clocks, an address on every clock
 //   cuts         every path: each output is a flip-flop
 //   reset        must reset the bus too: after it no response to an earlier write may come
 module cchip_axi_write #(

@@ -4,14 +4,14 @@
 // cchip_axi_write_send: sends the writes of cchip_axi_write_collect, address and data, or refuses
 // them while the response to a write that was given up is outstanding.
 //   send         a write is sent if no response is owed, there is room and the address can leave;
-//                its beats follow, one per clock
+//                its beats follow, one in 2 clocks
 //   answered     once no client waits any more (awaited = 0), the beats that are left are taken
 //                from their queue at once, and what memory still has to be offered goes out
 //                without strobes
 //   refuse       while a response is owed and no client waits, the write is taken from its queues
 //                and refused, after its last beat
-//   latency      1 clock from s_write_valid to m_axi_awvalid, 2 to m_axi_wvalid
-//   throughput   a beat and an address on every clock
+//   latency      1 clock from s_write_valid to m_axi_awvalid, 3 to m_axi_wvalid
+//   throughput   a beat in 2 clocks, an address on every clock
 //   cuts         the AXI side: its outputs are flip-flops, and m_axi_awready and m_axi_wready end
 //                in one
 //   reset        nothing is sent
@@ -60,9 +60,15 @@ module cchip_axi_write_send #(
   reg [2:0] take_left_q, send_left_q;  // beats behind it
   reg refused_q;  // the write is refused
   reg [1:0] refused_client_q;
-  wire send = send_q & w_ready & (s_beat_valid | ~awaited);
-  assign s_beat_ready = take_q & (w_ready | ~awaited);
-  wire pop = s_beat_valid & s_beat_ready;  // a beat leaves its queue
+  // both are decided on one clock and done on the next: the queue of beats and what is sent are
+  // wide, and lie far from each other
+  reg send, pop;  // a beat is sent, leaves its queue
+  wire busy = send | pop;
+  assign s_beat_ready = pop;
+  always @(posedge clk) begin
+    send <= ~rst & ~busy & send_q & w_ready & (s_beat_valid | ~awaited);
+    pop  <= ~rst & ~busy & take_q & s_beat_valid & (w_ready | ~awaited);
+  end
   wire take_free = ~take_q | (pop & take_last_q);
   wire refuse = s_write_valid & take_free & owed & ~awaited;
   assign issue = s_write_valid & take_free & ~owed & room & aw_ready;

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cchip/models/axi_write.hpp>
+#include <utility>
 
 namespace cchip::model {
 
 void AxiWrite::clock(const Inputs& in) {
   const Decisions now = decide();
+  // what the next clock does with a beat
+  const bool pops = take_ && beats_.m_valid() && (data_.s_ready() || !now.awaited);
+  const bool sends = send_ && data_.s_ready() && (beats_.m_valid() || !now.awaited);
+  const bool busy = std::exchange(pops_, pops) || sends_;
+  sends_ = sends;
+  if (busy) pops_ = sends_ = false;
   clock_answer(now);
   clock_responses(now, in);
   clock_channels(now, in);
@@ -26,8 +33,8 @@ AxiWrite::Decisions AxiWrite::decide() const {
   now.answered = now.counts && dropped_ == 0;
   now.timeout = !now.answered && now.awaited && waiting_.front().ticks == 2;
 
-  now.pop = take_ && beats_.m_valid() && (data_.s_ready() || !now.awaited);
-  now.send = send_ && data_.s_ready() && (beats_.m_valid() || !now.awaited);
+  now.pop = pops_;
+  now.send = sends_;
   const bool free = !take_ || (now.pop && take_->left == 0);
   now.refuse = writes_.m_valid() && free && dropped_ != 0 && !now.awaited;
   now.issue = writes_.m_valid() && free && dropped_ == 0 && waiting_.size() < outstanding_ && addresses_.s_ready();

@@ -117,6 +117,7 @@ class AxiWrite {
   Fifo<Data> beats_{queue_depth};
   std::optional<Take> take_;         // whose beats leave the queue
   std::optional<std::size_t> send_;  // beats behind the one to send
+  bool pops_ = false, sends_ = false;  // decided on the last clock: a beat leaves its queue, is sent
   SkidBuffer<Address> addresses_;
   SkidBuffer<Data> data_;
   std::deque<Waiting> waiting_;
