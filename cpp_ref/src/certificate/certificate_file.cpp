@@ -100,6 +100,14 @@ void require(bool holds, const char* what) {
   if (!holds) throw std::runtime_error(what);
 }
 
+/// JSON's errors show what was read up to them, which may be megabytes.
+std::string shortened(const std::string& text) {
+  std::size_t end = 200;
+  if (text.size() <= end) return text;
+  while ((static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U && end > 0) --end;  // not within a letter
+  return text.substr(0, end) + "...";
+}
+
 /// A line of JSON; one that nests deeper than lines of certificates do is refused before it costs a stack.
 json parse(const std::string& line) {
   const auto flat = [](int depth, json::parse_event_t /*event*/, json& /*value*/) {
@@ -238,7 +246,7 @@ std::optional<Certificate> CertificateReader::next() {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {  // JSON's errors too
-    throw std::runtime_error("certificate, line " + std::to_string(number_) + ": " + error.what());
+    throw std::runtime_error("certificate, line " + std::to_string(number_) + ": " + shortened(error.what()));
   }
 }
 #else
