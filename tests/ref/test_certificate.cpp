@@ -735,6 +735,22 @@ TEST_CASE("certificate: a file keeps it, and a damaged one is refused or still t
   }
 }
 
+TEST_CASE("certificate: the message about a long damaged line is short", "[ref][certificate]") {
+  // The parser of JSON shows all that it read of a word: spaces before it, digits of a number that is too large.
+  for (const std::string& line :
+       {"{" + std::string(2000, '\t') + "n", "{\"collisionchip_certificate\":" + std::string(5000, '9') + "}",
+        "{\"" + std::string(3000, 'x')}) {
+    try {
+      read(line + "\n");
+      FAIL("accepted");
+    } catch (const std::runtime_error& error) {
+      const std::string text = error.what();
+      CHECK(text.rfind("certificate, line 1: ", 0) == 0);
+      CHECK(text.size() < 300);
+    }
+  }
+}
+
 TEST_CASE("certificate: readers refuse what is no number, and orders that do not end", "[ref][certificate]") {
   const std::array<Placed, 2> pair = boxes_of_the_page(0.5);
   const Object a(pair[0].mesh), b(pair[1].mesh);

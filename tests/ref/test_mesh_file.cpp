@@ -396,6 +396,9 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
   for (const char* const name : {"scene.glb", "scene.gltf", "part.3mf", "PART.3MF"}) {
     check(folder.write(name, "glTF"), ": meshes of this format are not read", "; in Python load it with trimesh");
   }
+  // 3MF is a folder packed by zip.
+  check(folder.write("real.3mf", "PK\3\4 and so on"), ": meshes of this format are not read",
+        "; in Python load it with trimesh");
   check(folder.write("notes.txt", "hello\n"), ": cannot be read as a mesh");
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const auto obj = [&](const std::string& text) { return folder.write("t.obj", text); };

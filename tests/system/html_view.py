@@ -55,11 +55,42 @@ window.addEventListener("load", () => {
 </script>
 """
 
+# Two faces in one plane: the smaller one, of B, covers the middle of the picture.
+UNDER = "v -4 -4 0\nv 4 -4 0\nv 4 4 0\nv -4 4 0\nf 1 2 3 4\n"
+OVER = "v -2.1 -1.9 0\nv 2.3 -2.2 0\nv 1.7 2.6 0\nv -2.4 1.8 0\nf 1 2 3 4\n"
+FLUSH = """
+<script>
+window.addEventListener("load", () => {
+  byId("show-edges").checked = false;
+  byId("show-edges").onchange({target: byId("show-edges")});
+  const canvas = renderer.domElement, frame = canvas.getBoundingClientRect(), copy = document.createElement("canvas");
+  copy.width = canvas.width;
+  copy.height = canvas.height;
+  copy.getContext("2d").drawImage(canvas, 0, 0);
+  const pixels = copy.getContext("2d").getImageData(copy.width / 2 - 40, copy.height / 2 - 40, 80, 80).data;
+  let blue = 0;
+  for (let i = 0; i < pixels.length; i += 4) blue += pixels[i + 2] > pixels[i] ? 1 : 0;
+  canvas.dispatchEvent(new MouseEvent("click", {clientX: frame.left + frame.width / 2, clientY: frame.top + frame.height / 2}));
+  const result = document.createElement("pre");
+  result.id = "result";
+  result.textContent = JSON.stringify({blue, all: pixels.length / 4, status: byId("status").textContent});
+  document.body.append(result);
+});
+</script>
+"""
+
 
 def browse(page, *options):
     command = [BROWSER, "--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
                "--hide-scrollbars", "--window-size=1200,800", "--virtual-time-budget=5000", *options, page.as_uri()]
     return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, timeout=120).stdout
+
+
+def run_steps(page, steps):
+    """What the steps leave behind in the page, None if its scripts stop before their end."""
+    page.write_text(page.read_text().replace("</body>", steps + "</body>"))
+    shown = re.search(r'<pre id="result">(.*?)</pre>', browse(page, "--dump-dom"))
+    return json.loads(shown[1]) if shown else None
 
 
 def check(name, good, seen):
@@ -83,12 +114,15 @@ def main():
         check("licence", "Permission is hereby granted" in text and "three.js authors" in text, "it is missing")
         if len(sys.argv) > 2:
             browse(page, f"--screenshot={sys.argv[2]}")
-        page.write_text(text.replace("</body>", STEPS + "</body>"))
-        shown = re.search(r'<pre id="result">(.*?)</pre>', browse(page, "--dump-dom"))
-        if not shown:
+        shown = run_steps(page, STEPS)
+        a.write_text(UNDER)
+        b.write_text(OVER)
+        subprocess.run([cchip, "collide", a, b, "--html", page], check=True, stdout=subprocess.DEVNULL)
+        flush = run_steps(page, FLUSH)
+        if not shown or not flush:
             print("FAILED: the page's scripts stop before their end")
             return 1
-        steps = {step["name"]: step for step in json.loads(shown[1])}
+        steps = {step["name"]: step for step in shown}
 
     def is_orange(step):
         red, green, blue = step["colour"]
@@ -108,6 +142,7 @@ def main():
     check("other side", steps["other side"]["status"] == face["status"], steps["other side"])
     contact = steps["contact"]
     check("contact", contact["status"] == "face 1 of A, face 0 of B: crossing" and contact["chosen"] == 1, contact)
+    check("faces in one plane", flush["blue"] == flush["all"] and flush["status"].startswith("face 0 of B"), flush)
     print(f"{len(steps)} steps, {len(FAILED)} failures")
     return 1 if FAILED else 0
 

@@ -2,6 +2,7 @@
 #include <cchip/certificate/certificate_file.hpp>
 #include <cstddef>
 #include <istream>
+#include <numeric>
 #include <ostream>
 #include <stdexcept>
 #ifdef CCHIP_WITH_JSON
@@ -99,6 +100,14 @@ void require(bool holds, const char* what) {
   if (!holds) throw std::runtime_error(what);
 }
 
+/// JSON's errors show what was read up to them, which may be megabytes.
+std::string shortened(const std::string& text) {
+  std::size_t end = 200;
+  if (text.size() <= end) return text;
+  while ((static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U && end > 0) --end;  // not within a letter
+  return text.substr(0, end) + "...";
+}
+
 /// A line of JSON; one that nests deeper than lines of certificates do is refused before it costs a stack.
 json parse(const std::string& line) {
   const auto flat = [](int depth, json::parse_event_t /*event*/, json& /*value*/) {
@@ -145,7 +154,10 @@ std::vector<std::uint32_t> numbers_of_runs(const json& value) {
     const std::uint64_t first = number(entry.is_array() ? entry[0] : entry);
     const std::uint64_t last = number(entry.is_array() ? entry[1] : entry);
     require(first <= last && last - first + result.size() < most, "an order of more than 2^24 faces, or a run back");
-    for (std::uint64_t x = first; x <= last; ++x) result.push_back(static_cast<std::uint32_t>(x));
+    // At once: a file of a few hundred bytes may name millions of faces.
+    result.resize(result.size() + (last - first + 1));
+    std::iota(result.end() - static_cast<std::ptrdiff_t>(last - first + 1), result.end(),
+              static_cast<std::uint32_t>(first));
   }
   return result;
 }
@@ -234,7 +246,7 @@ std::optional<Certificate> CertificateReader::next() {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {  // JSON's errors too
-    throw std::runtime_error("certificate, line " + std::to_string(number_) + ": " + error.what());
+    throw std::runtime_error("certificate, line " + std::to_string(number_) + ": " + shortened(error.what()));
   }
 }
 #else

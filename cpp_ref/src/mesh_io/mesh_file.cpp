@@ -104,7 +104,7 @@ std::string_view packer_of(std::string_view file) {
   return {};
 }
 
-/// What to do about a file whose format is not read, by its extension.
+/// What to do about a file of a known format that is not read, by its extension; empty for others.
 std::string not_read(const std::string& name) {
   std::string end = std::filesystem::path(name).extension().string();
   std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -128,7 +128,7 @@ std::string not_read(const std::string& name) {
              end + " mesh.obj` or with Blender";
     }
   }
-  return ": cannot be read as a mesh; give an OBJ, OFF, PLY or STL file";
+  return {};
 }
 
 /// What to do about an error.
@@ -262,12 +262,18 @@ namespace {
 Mesh parse_unpacked(std::string_view content, const std::string& name, const std::string& path,
                     const LoadOptions& options) {
   const std::string_view file = mesh_io::is_binary_stl(content) ? content : mesh_io::without_mark(content);
+  const std::string format_not_read = not_read(name);
   if (const std::string_view packer = packer_of(file); !packer.empty()) {
-    throw std::runtime_error(path + ": is packed with " + std::string(packer) + "; unpack it first");
+    // Some formats, such as 3MF, are packed folders: unpacking them would not help.
+    throw std::runtime_error(path + (format_not_read.empty()
+                                         ? ": is packed with " + std::string(packer) + "; unpack it first"
+                                         : format_not_read));
   }
   const Reader reader = reader_of(name, file);
   if (reader == nullptr) {
-    throw std::runtime_error(path + not_read(name));
+    throw std::runtime_error(path + (format_not_read.empty()
+                                         ? ": cannot be read as a mesh; give an OBJ, OFF, PLY or STL file"
+                                         : format_not_read));
   }
   try {
     Mesh mesh = Builder(reader(file), options).build();
