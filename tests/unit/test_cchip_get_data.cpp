@@ -501,7 +501,7 @@ class GetDataBench {
   std::vector<std::array<std::uint64_t, 2>> sizes_;  // by context: near what its headers say
   std::array<std::vector<std::size_t>, 2> asked_;    // places
   bool stays_ = false;
-  bool soon_ = false;  // the box test takes its pair on the next clock
+  bool soon_ = false;     // the box test takes its pair on the next clock
   int leaves_there_ = 0;  // with their receiver
   int clocks_ = 0, last_out_ = -1000;
   bool defined_ = false;

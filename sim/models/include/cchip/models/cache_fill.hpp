@@ -78,8 +78,8 @@ class CacheFill {
   std::size_t beats_;
   std::vector<Line> lines_;  // of each slot
   Pool free_;
-  Fifo<Fill> arrived_;      // the frame is that of its slot
-  Fifo<Fill> serve_queue_;  // lines whose waiters are to be served
+  Fifo<Fill> arrived_;          // the frame is that of its slot
+  Fifo<Fill> serve_queue_;      // lines whose waiters are to be served
   std::optional<Fill> filled_;  // on the last clock
   std::optional<Fill> serves_;
   bool collect_ = false, collected_ = false, serving_ = false;

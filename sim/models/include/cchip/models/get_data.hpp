@@ -239,10 +239,10 @@ class GetData {
   int leaf_room_, room_left_;
   std::array<Port, 2> ports_{Port(1, 1), Port(1, 1)};
   std::array<std::optional<std::size_t>, 2> came_;  // places of the lines of the last clock
-  std::vector<std::optional<Request>> requests_;  // by place
-  std::vector<std::optional<Nodes>> nodes_;       // by place
-  std::vector<bool> no_pose_;                     // by context
-  std::vector<std::optional<Sizes>> sizes_;       // by context
+  std::vector<std::optional<Request>> requests_;    // by place
+  std::vector<std::optional<Nodes>> nodes_;         // by place
+  std::vector<bool> no_pose_;                       // by context
+  std::vector<std::optional<Sizes>> sizes_;         // by context
   std::optional<Ask> ask_;
   std::optional<Fetch> fetch_;
   bool held_ = false;                  // the pair that is fetched waited for its pose a clock ago
