@@ -8,7 +8,8 @@
 //   throughput   a node pair in max(3, children that count) clocks; so long its lines stay
 //   latency      clocks from the first one of a node pair are in the names: x10 comes 10 after it
 //   memory       block RAM keeps the children until the lanes take them
-//   cuts         every path but s_valid to s_soon, and the context to row_context0, which a block RAM takes
+//   cuts         every path but s_valid to s_soon, and the context to row_context0, which a block
+//                RAM takes
 //   reset        drops the node pairs
 module cchip_bv_feed #(
     // queries at work, 2, 4, 8 or 16

@@ -487,7 +487,8 @@ module cchip_chip_core #(
   wire [31:0] face_a_d, face_b_d;
   wire first_d, last_d, swapped_d;
   wire [LEAF_W+1:0] name_d;
-  assign vertex_d = {first_d, last_d, a_d, b_d, err_d, kind_d, face_a_d, face_b_d, swapped_d, name_d};
+  assign vertex_d = {first_d, last_d, a_d, b_d, err_d, kind_d, face_a_d, face_b_d, swapped_d,
+                     name_d};
   cchip_transform #(
       .COORD_W(COORD_W),
       .PASSES (PASSES),

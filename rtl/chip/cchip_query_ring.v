@@ -105,8 +105,8 @@ module cchip_query_ring #(
   reg [DATA_W-1:0] beats[0:AHEAD*BEATS-1];
   reg [511:0] query_q;
   reg query_valid_q;
-  // from a flip-flop, because 512 others depend on it: a clock later, and not that of the slot which
-  // has just left
+  // from a flip-flop, because 512 others depend on it: a clock later, and not that of the slot
+  // which has just left
   reg head_good_q;
   always @(posedge clk) head_good_q <= ~rst & ~take & here_q[head] & ~bad_q[head];
   wire gather = head_good_q & ~query_valid_q;

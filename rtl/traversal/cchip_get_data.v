@@ -185,9 +185,9 @@ module cchip_get_data #(
   wire fetch_leaf = {{32 - PLACE_W{1'b0}}, fetch_q} >= FIRST_LEAF;
   reg fetch_leaf_q;
   reg pair_valid_q, leaf_valid_q, fresh_q;
-  // The box test tells a clock ahead that it takes the pair, so both of these are flip-flops: that it
-  // is taken on this clock, for what picks the next pair, and that there is room for lines, for more
-  // than a thousand flip-flops that lie far apart
+  // The box test tells a clock ahead that it takes the pair, so both of these are flip-flops: that
+  // it is taken on this clock, for what picks the next pair, and that there is room for lines, for
+  // more than a thousand flip-flops that lie far apart
   reg ready_q, room_q;
   wire load = fetch_valid_q & age_q[1] & ~no_pose_fetch_q & (~pair_valid_q | ready_q);
   wire pair_valid = (load & ~fetch_leaf_q) | (pair_valid_q & ~ready_q);  // on the next clock
