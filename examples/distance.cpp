@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cchip/cchip.hpp>
-#include <cstdio>
+#include <iostream>
 
 int main() {
   const cchip::Object ring(cchip::make_torus(1, 0.25, 48, 24)), ball(cchip::make_sphere(0.25, 6));
@@ -8,9 +8,9 @@ int main() {
   cchip::Pose there = here;
   there.translation().x() = 1.9;
   // A clearance of 0.5 is wanted.
-  std::puts(cchip::within(ring, here, ball, there, 0.5).hit ? "closer than 0.5" : "clear by more than 0.5");
+  std::cout << (cchip::within(ring, here, ball, there, 0.5).hit ? "closer than 0.5\n" : "clear by more than 0.5\n");
   there.translation().x() = 2.25;
-  std::puts(cchip::within(ring, here, ball, there, 0.5).hit ? "closer than 0.5" : "clear by more than 0.5");
+  std::cout << (cchip::within(ring, here, ball, there, 0.5).hit ? "closer than 0.5\n" : "clear by more than 0.5\n");
   const cchip::DistanceResult far = cchip::distance(ring, here, ball, there);
-  std::printf("%.3f apart\n", far.upper);
+  std::cout << far.upper << " apart\n";
 }
