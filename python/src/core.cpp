@@ -316,7 +316,7 @@ void set_state(Object& self, const State& state) {
 // Requests and results.
 
 CollisionRequest to_request(const std::string& contacts, bool relation, const std::string& counts,
-                            std::optional<std::size_t> max_contacts, bool certificate) {
+                            std::optional<std::size_t> max_contacts, bool certificate, double within) {
   CollisionRequest request;
   if (contacts == "all") {
     request.contacts = CollisionRequest::Contacts::all;
@@ -330,6 +330,7 @@ CollisionRequest to_request(const std::string& contacts, bool relation, const st
   }
   request.relation = relation;
   request.certificate = certificate;
+  request.within = within;
   if (max_contacts) request.max_contacts = *max_contacts;
   if (request.max_contacts == 0) throw std::invalid_argument("max_contacts is 0: ask for at least one contact");
   return request;
@@ -471,10 +472,10 @@ class DeviceUse {
 
 Result collide(const Object& a, nb::handle pose_a, const Object& b, nb::handle pose_b, const std::string& contacts,
                bool relation, const std::string& counts, std::optional<std::size_t> max_contacts, Device* device,
-               bool certificate) {
+               bool certificate, double within) {
   const Pose place_a = one_pose(pose_a, "pose_a");
   const Pose place_b = one_pose(pose_b, "pose_b");
-  const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate);
+  const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate, within);
   const nb::gil_scoped_release release;
   const GradualUnderflow mode;
   return Result(device != nullptr ? cchip::collide(*device, a, place_a, b, place_b, request)
@@ -513,7 +514,7 @@ nb::object to_words(std::vector<std::uint8_t>&& relations) {
 
 nb::object collide_many(const Object& a, nb::handle poses_a, const Object& b, nb::handle poses_b, bool contacts,
                         bool relation, const std::string& counts, std::optional<std::size_t> max_contacts,
-                        Device* device, bool certificate) {
+                        Device* device, bool certificate, double within) {
   const Poses places_a(poses_a, "poses_a", true);
   const Poses places_b(poses_b, "poses_b", true);
   if (places_a.many() && places_b.many() && places_a.size() != places_b.size()) {
@@ -522,7 +523,8 @@ nb::object collide_many(const Object& a, nb::handle poses_a, const Object& b, nb
   }
   const std::size_t count = places_a.many() ? places_a.size() : places_b.size();
   if (count > std::numeric_limits<std::uint32_t>::max()) throw std::invalid_argument("more than 2^32 - 1 poses");
-  const CollisionRequest request = to_request(contacts ? "all" : "first", relation, counts, max_contacts, certificate);
+  const CollisionRequest request =
+      to_request(contacts ? "all" : "first", relation, counts, max_contacts, certificate, within);
   std::vector<std::uint8_t> hits(count);
   std::vector<std::uint8_t> relations(relation ? count : 0);
   std::vector<std::vector<cchip::Contact>> found(contacts ? count : 0);
@@ -684,7 +686,7 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
                  const std::string& doc) {
   const std::string keywords =
       ", *, contacts: str = 'first', relation: bool = False, counts: str = 'touching', "
-      "max_contacts: int | None = None, device: Device | None = None, certificate: bool = False";
+      "max_contacts: int | None = None, device: Device | None = None, certificate: bool = False, within: float = 0";
   const auto sig = [&](const std::string& what, const std::string& pair) {
     std::string result = found;
     result.replace(result.find('@'), 1, pair);
@@ -693,32 +695,32 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
   type.def(
       name,
       [call](PyScene& self, const std::string& contacts, bool relation, const std::string& counts,
-             std::optional<std::size_t> max_contacts, Device* device, bool certificate) {
-        const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate);
+             std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
+        const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate, within);
         const auto answers = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), request); });
         return to_object(answers, self.scene());
       },
       nb::kw_only(), "contacts"_a = "first", "relation"_a = false, "counts"_a = "touching",
-      "max_contacts"_a = nb::none(), "device"_a = nb::none(), "certificate"_a = false,
+      "max_contacts"_a = nb::none(), "device"_a = nb::none(), "certificate"_a = false, "within"_a = 0.0,
       nb::sig(sig("", "tuple[int, int, Result]").c_str()), doc.c_str());
   type.def(
       name,
       [call](PyScene& self, Scene::Id id, const std::string& contacts, bool relation, const std::string& counts,
-             std::optional<std::size_t> max_contacts, Device* device, bool certificate) {
-        const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate);
+             std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
+        const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate, within);
         const auto answers = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), id, request); });
         return to_object(answers, self.scene(), asked_for(self.scene(), id));
       },
       "id"_a, nb::kw_only(), "contacts"_a = "first", "relation"_a = false, "counts"_a = "touching",
-      "max_contacts"_a = nb::none(), "device"_a = nb::none(), "certificate"_a = false,
+      "max_contacts"_a = nb::none(), "device"_a = nb::none(), "certificate"_a = false, "within"_a = 0.0,
       nb::sig(sig(", id: int", "tuple[int, Result]").c_str()),
       "The same for one object of the scene, which is A in the results; tuples (id, result).");
   type.def(
       name,
       [call](PyScene& self, const Object& object, nb::handle pose, std::uint64_t groups, std::uint64_t mask,
              const std::string& contacts, bool relation, const std::string& counts,
-             std::optional<std::size_t> max_contacts, Device* device, bool certificate) {
-        const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate);
+             std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
+        const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate, within);
         const Pose place = one_pose(pose, "pose");
         const cchip::CollisionGroups bits = {groups, mask};
         const auto answers =
@@ -727,7 +729,7 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
       },
       "object"_a, "pose"_a = nb::none(), "groups"_a = 1, "mask"_a = all_groups, nb::kw_only(), "contacts"_a = "first",
       "relation"_a = false, "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
-      "certificate"_a = false,
+      "certificate"_a = false, "within"_a = 0.0,
       nb::sig(sig(", object: Object, pose: numpy.typing.ArrayLike | None = None, groups: int = 1, mask: int = "
                   "0xffffffffffffffff",
                   "tuple[int, Result]")
@@ -986,12 +988,12 @@ Raises ValueError: no device or target of this name.)");
 
   m.def("collide", &collide, "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(), "contacts"_a = "first",
         "relation"_a = false, "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
-        "certificate"_a = false,
-        nb::sig(
-            "def collide(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
-            "numpy.typing.ArrayLike | None, contacts: str = 'first', relation: bool = False, counts: str = "
-            "'touching', max_contacts: int | None = None, device: Device | None = None, certificate: bool = False) -> "
-            "Result"),
+        "certificate"_a = false, "within"_a = 0.0,
+        nb::sig("def collide(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
+                "numpy.typing.ArrayLike | None, contacts: str = 'first', relation: bool = False, counts: str = "
+                "'touching', max_contacts: int | None = None, device: Device | None = None, certificate: bool = False, "
+                "within: float = 0) -> "
+                "Result"),
         R"(Do two placed objects touch, and where? Exact for the float64 numbers of meshes and poses.
 
 pose_a, pose_b: (4, 4) or (3, 4), converted to float64; None is the identity. Any affine map is allowed: a vertex v lies
@@ -1001,17 +1003,20 @@ relation: tell touching from crossing; fills Result.relation and Result.crossing
 counts: what counts as a contact: 'touching', faces that share a point; or 'crossing', only faces that cross.
 device: by default one thread of the CPU, one for each calling thread.
 certificate: prove the answer; fills Result.certificate. Takes far longer than the answer.
+within: faces at most so far apart, in units of the world, are contacts; exactly. Leave relation, counts and certificate
+then.
 
 Raises ValueError: a pose of another shape or with an entry that is not finite or beyond 2^500, an unknown word,
 max_contacts of 0. Raises RuntimeError: the device is in use; or, with certificate=True, the answer is wrong.)");
-  m.def("collide_many", &collide_many, "a"_a, "poses_a"_a.none(), "b"_a, "poses_b"_a.none(), "contacts"_a = false,
-        "relation"_a = false, "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
-        "certificate"_a = false,
-        nb::sig("def collide_many(a: Object, poses_a: numpy.typing.ArrayLike | None, b: Object, poses_b: "
-                "numpy.typing.ArrayLike | None, contacts: bool = False, relation: bool = False, counts: str = "
-                "'touching', max_contacts: int | "
-                "None = None, device: Device | None = None, certificate: bool = False) -> typing.Any"),
-        R"(The same two objects in n pairs of poses, on all cores, with the GIL released.
+  m.def(
+      "collide_many", &collide_many, "a"_a, "poses_a"_a.none(), "b"_a, "poses_b"_a.none(), "contacts"_a = false,
+      "relation"_a = false, "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
+      "certificate"_a = false, "within"_a = 0.0,
+      nb::sig("def collide_many(a: Object, poses_a: numpy.typing.ArrayLike | None, b: Object, poses_b: "
+              "numpy.typing.ArrayLike | None, contacts: bool = False, relation: bool = False, counts: str = "
+              "'touching', max_contacts: int | "
+              "None = None, device: Device | None = None, certificate: bool = False, within: float = 0) -> typing.Any"),
+      R"(The same two objects in n pairs of poses, on all cores, with the GIL released.
 
 poses_a, poses_b: (n, 4, 4) or (n, 3, 4), as collide() takes them; or one pose, (4, 4), (3, 4) or None, for all.
 contacts: return all contacts as well, at most max_contacts a query.
@@ -1019,6 +1024,7 @@ relation: tell touching from crossing, as collide().
 counts: as collide().
 device: by default the CPU with all cores, one for the process; while another thread uses it, one core.
 certificate: prove each answer, as collide().
+within: as collide().
 
 Returns hits, (n,) bool. With contacts=True a tuple of hits and contacts, (k, 3) uint32, in each row the number of the
 query, a face of A and a face of B, ascending. With relation=True the tuple continues with relations, (n,) str, as
@@ -1026,6 +1032,53 @@ Result.relation with '' for None; with both there follows crossing, (k,) bool, a
 With certificate=True the tuple ends with a list of certificates, one for each query.
 
 Raises as collide(), and ValueError if there are not as many poses of A as of B. Ctrl-C takes effect after the call.)");
+  nb::class_<cchip::DistanceResult>(m, "Distance", nb::is_weak_referenceable(),
+                                    "Bounds of a distance, proved, and the nearest points; distance() makes it.")
+      .def_ro("lower", &cchip::DistanceResult::lower, "The distance is at least this.")
+      .def_ro("upper", &cchip::DistanceResult::upper,
+              "The distance is at most this; inf if it is above stop_above, which is lower then.")
+      .def_prop_ro(
+          "points",
+          [](const cchip::DistanceResult& x) {
+            std::vector<double> rows(x.point_a.data(), x.point_a.data() + 3);
+            rows.insert(rows.end(), x.point_b.data(), x.point_b.data() + 3);
+            return nb::cast(owned<double>(std::move(rows), {2, 3}));
+          },
+          "Nearest points of A and of B in the world, rounded, (2, 3) float64; nan if upper is inf.")
+      .def_prop_ro(
+          "faces",
+          [](const cchip::DistanceResult& x) {
+            return nb::cast(owned<std::uint32_t>(std::vector<std::uint32_t>{x.face_a, x.face_b}, {2}));
+          },
+          "The faces on which they lie, (2,) uint32.")
+      .def("__repr__", [](const cchip::DistanceResult& x) {
+        return "<collisionchip.Distance: " + std::string(nb::repr(nb::float_(x.lower)).c_str()) + " to " +
+               nb::repr(nb::float_(x.upper)).c_str() + ">";
+      });
+  m.def(
+      "distance",
+      [](const Object& a, nb::handle pose_a, const Object& b, nb::handle pose_b, double rel_error, double stop_above) {
+        const Pose place_a = one_pose(pose_a, "pose_a");
+        const Pose place_b = one_pose(pose_b, "pose_b");
+        const nb::gil_scoped_release release;
+        const GradualUnderflow mode;
+        cchip::DistanceResult result = cchip::distance(a, place_a, b, place_b, {rel_error, stop_above});
+        if (std::isinf(result.upper)) {
+          result.point_a.setConstant(std::numeric_limits<double>::quiet_NaN());
+          result.point_b = result.point_a;
+        }
+        return result;
+      },
+      "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(), nb::kw_only(), "rel_error"_a = 0.0,
+      "stop_above"_a = std::numeric_limits<double>::infinity(),
+      nb::sig("def distance(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
+              "numpy.typing.ArrayLike | None, *, rel_error: float = 0, stop_above: float = float('inf')) -> Distance"),
+      R"(How far are two placed objects apart? 0 if they touch or cross; surfaces, so also inside each other.
+
+rel_error: upper - lower <= rel_error * upper is good enough; with 0 both are the distance, or the two doubles beside it.
+stop_above: of a distance above this nothing more is asked.
+
+Raises ValueError: a pose as in collide(); rel_error that is not in [0, 1), a stop_above that is negative or nan.)");
   m.def("_exact", &exact, "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(),
         nb::sig("def _exact(a: Object, pose_a: typing.Any, b: Object, pose_b: typing.Any) -> Result"),
         "For tests: all contacts by asking about every pair of faces in integers of any size. Slow.");

@@ -482,3 +482,37 @@ print(collide(cube, None, cube, None).hit, collide_many(cube, None, cube, [np.ey
 """.format(path=sys.path, library=str(library))
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert (done.stdout, done.stderr) == ("True True 1 0 6 True True\n", "")
+
+
+def test_within_and_distance():
+    box = Object(*cube())
+    for shape in (np.array([0.1, 0.25, 3.0]), np.array([1e-9, 7.0])):
+        for gap in shape:
+            place = shift(1 + gap)
+            real = place[0, 3] - 1  # exact: Sterbenz, or the gap is far above an ulp of 1
+            found = collisionchip.distance(box, None, box, place)
+            assert found.lower <= real <= found.upper and found.upper - found.lower <= np.spacing(real)
+            assert collide(box, None, box, place, within=found.upper).hit
+            assert not collide(box, None, box, place, within=np.nextafter(found.lower, 0)).hit
+    assert not collide(box, None, box, shift(1.5)).hit
+    corners, faces = cube()
+    alone = [Object(corners, faces[i:i + 1]) for i in range(len(faces))]
+    near = [[i, j] for i, a in enumerate(alone) for j, b in enumerate(alone)
+            if collisionchip.distance(a, None, b, shift(1.5)).upper <= 0.5]
+    assert collide(box, None, box, shift(1.5), contacts="all", within=0.5).contacts.tolist() == near and len(near) > 4
+    poses = np.array([shift(1.25), shift(1.5), shift(1.75)])
+    assert collide_many(box, None, box, poses, within=0.5).tolist() == [True, True, False]
+    scene = collisionchip.Scene()
+    scene.add(box)
+    scene.add(box, shift(1.5))
+    assert not scene.touching() and len(scene.touching(within=0.5)) == 1
+    far = collisionchip.distance(box, None, box, shift(9), stop_above=2)
+    assert (far.lower, far.upper) == (2, np.inf) and np.isnan(far.points).all()
+    near = collisionchip.distance(box, None, box, shift(4), rel_error=0.5)
+    assert near.lower <= 3 <= near.upper <= 2 * near.lower and near.faces.shape == (2,)
+    for wrong in ({"rel_error": 1.0}, {"rel_error": -0.1}, {"stop_above": -1.0}, {"stop_above": np.nan}):
+        with pytest.raises(ValueError):
+            collisionchip.distance(box, None, box, None, **wrong)
+    for d in (-1.0, np.inf, np.nan):
+        with pytest.raises(ValueError):
+            collide(box, None, box, None, within=d)

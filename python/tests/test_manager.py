@@ -63,12 +63,34 @@ def test_replace_and_remove():
     assert manager.in_collision_single(Mesh, shift(5))  # b is still there
 
 
+def test_distances():
+    manager = row(2)  # unit cubes that touch
+    assert manager.min_distance_internal() == 0
+    manager.set_transform("b", shift(2.5))
+    manager.add_object("c", Mesh, shift(10))
+    assert manager.min_distance_internal() == 1.5
+    distance, names, data = manager.min_distance_internal(return_names=True, return_data=True)
+    assert (distance, names, data.names, data.distance) == (1.5, ("a", "b"), {"a", "b"}, 1.5)
+    assert data.point("a")[0] == 0.5 and data.point("b")[0] == 2
+    assert np.array_equal(data.point("a")[1:], data.point("b")[1:]) and 0 <= data.index("b") < 12
+    assert manager.min_distance_internal(name="c", return_names=True) == (6.5, ("b", "c"))
+    manager.set_pair_ignored("a", "b")
+    assert manager.min_distance_internal() == 6.5
+    with pytest.raises(ValueError, match="d not in collision manager!"):
+        manager.min_distance_internal(name="d")
+
+    distance, name, data = manager.min_distance_single(Mesh, shift(5), return_name=True, return_data=True)
+    assert (distance, name, data.names) == (1.5, "b", {"__external", "b"}) and data.point("__external")[0] == 4.5
+    assert manager.min_distance_single(Mesh, shift(2)) == 0
+    other = row(2, "x")
+    other.set_transform("x", shift(4.25))
+    other.set_transform("y", shift(20))
+    assert manager.min_distance_other(other, return_names=True) == (0.75, ("b", "x"))
+    assert CollisionManager().min_distance_single(Mesh, return_name=True, return_data=True) == (np.inf, None, None)
+
+
 def test_what_is_not_offered():
     manager = row(1)
-    for call in (lambda: manager.min_distance_single(Mesh), manager.min_distance_internal,
-                 lambda: manager.min_distance_other(manager)):
-        with pytest.raises(NotImplementedError, match="no distances"):
-            call()
     contact = manager.in_collision_single(Mesh, return_data=True)[1][0]
     for name in ("normal", "point", "depth"):
         with pytest.raises(NotImplementedError):

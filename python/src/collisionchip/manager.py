@@ -2,15 +2,15 @@
 """The interface of trimesh.collision.CollisionManager over Scene. trimesh itself is not needed."""
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
-from ._core import Device, Object, Result, Scene
+from ._core import Device, Distance, Object, Result, Scene
+from ._core import distance as distance_of
 
 _EXTERNAL = "__external"  # trimesh's name for the object of in_collision_single()
-_NO_DISTANCE = ("collisionchip has no distances: it answers exactly whether surfaces touch. Use "
-                "trimesh.collision.CollisionManager for this call")
 
 
 class ContactData:
@@ -38,6 +38,24 @@ class ContactData:
     def depth(self) -> Any:
         """Not offered: raises NotImplementedError."""
         raise NotImplementedError("collisionchip has no penetration depth: it answers which faces touch")
+
+
+class DistanceData:
+    """The nearest points of two objects."""
+
+    def __init__(self, names: tuple[Any, Any], found: Distance) -> None:
+        self.names = set(names)
+        self.distance: float = found.upper
+        self._faces: dict[Any, int] = dict(zip(names, map(int, found.faces)))
+        self._points: dict[Any, Any] = dict(zip(names, found.points))
+
+    def index(self, name: Any) -> int:
+        """The number of the face of the object with this name on which its nearest point lies."""
+        return self._faces[name]
+
+    def point(self, name: Any) -> Any:
+        """The nearest point of the object with this name, in the world, (3,) float64."""
+        return self._points[name]
 
 
 class CollisionManager:
@@ -151,17 +169,45 @@ class CollisionManager:
 
     def min_distance_single(self, mesh: Any, transform: Any = None, return_name: bool = False,
                             return_data: bool = False) -> Any:
-        """Not offered: raises NotImplementedError."""
-        raise NotImplementedError(_NO_DISTANCE)
+        """How far is a mesh that is not in the manager from the nearest object of it?
+
+        Returns the distance, 0 if they touch or cross and inf if the manager is empty; with return_name the name of that
+        object; with return_data a DistanceData, in which the mesh has the name "__external". With one of the two a tuple
+        of two, with both a tuple of three; None for the name and the data of an empty manager.
+        """
+        made = _to_object(mesh)
+        pairs = (((_EXTERNAL, name), (made, transform, *self._place(number))) for number, name in self._names.items())
+        names, found = _nearest(pairs)
+        return _least(found, names and names[1], names, return_name, return_data)
 
     def min_distance_internal(self, name: Any = None, return_names: bool = False, return_data: bool = False) -> Any:
-        """Not offered: raises NotImplementedError."""
-        raise NotImplementedError(_NO_DISTANCE)
+        """How far are the two nearest objects of the manager apart? name: only pairs with this object.
+
+        Returns as min_distance_single(); the names are a pair, as in in_collision_internal(). Ignored pairs are left out.
+        """
+        if name is not None:
+            self._id(name)
+        ids = sorted(self._names)
+        pairs = (((self._names[a], self._names[b]), (*self._place(a), *self._place(b)))
+                 for k, a in enumerate(ids) for b in ids[k + 1:]
+                 if (name is None or name in (self._names[a], self._names[b]))
+                 and frozenset((self._names[a], self._names[b])) not in self._ignored)
+        names, found = _nearest(pairs)
+        return _least(found, names and _in_order(names), names, return_names, return_data)
 
     def min_distance_other(self, other_manager: CollisionManager, return_names: bool = False,
                            return_data: bool = False) -> Any:
-        """Not offered: raises NotImplementedError."""
-        raise NotImplementedError(_NO_DISTANCE)
+        """How far is the nearest object of this manager from the nearest one of another manager?
+
+        Returns as min_distance_single(); the names are a pair, the one of this manager first.
+        """
+        pairs = (((name, other), (*self._place(a), *other_manager._place(b)))
+                 for a, name in self._names.items() for b, other in other_manager._names.items())
+        names, found = _nearest(pairs)
+        return _least(found, names, names, return_names, return_data)
+
+    def _place(self, number: int) -> tuple[Object, Any]:
+        return self._scene.object(number), self._scene.pose(number)
 
     def _id(self, name: Any) -> int:
         if name not in self._ids:
@@ -195,6 +241,28 @@ def _in_order(names: tuple[Any, Any]) -> tuple[Any, Any]:
 
 def _to_object(mesh: Any) -> Object:
     return mesh if isinstance(mesh, Object) else Object(np.asarray(mesh.vertices), np.asarray(mesh.faces))
+
+
+def _nearest(pairs: Iterable[tuple[tuple[Any, Any], tuple[Object, Any, Object, Any]]]) -> tuple[Any, Distance | None]:
+    """The names and the distance of the nearest of pairs ((name, name), (object, pose, object, pose))."""
+    names: Any = None
+    least: Distance | None = None
+    for pair, places in pairs:
+        # of objects farther apart than the best pair so far nothing more is asked
+        found = distance_of(*places, stop_above=np.inf if least is None else least.upper)
+        if least is None or found.upper < least.upper:
+            names, least = pair, found
+    return names, least
+
+
+def _least(found: Distance | None, shown: Any, names: Any, return_names: bool, return_data: bool) -> Any:
+    """What trimesh returns: a distance, and what was asked for."""
+    answer: list[Any] = [np.inf if found is None else found.upper]
+    if return_names:
+        answer.append(shown)
+    if return_data:
+        answer.append(None if found is None else DistanceData(names, found))
+    return tuple(answer) if len(answer) > 1 else answer[0]
 
 
 def _wanted(return_data: bool) -> str:
