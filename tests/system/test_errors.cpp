@@ -283,11 +283,12 @@ TEST_CASE("errors: values that look right", "[system][errors]") {
                                            "`gmsh -2 part.step -o part.stl` or with FreeCAD");
   for (const std::string end : {"gltf", "3mf"}) {
     const std::string scene = folder.write("scene." + end, "<xml/>");
-    check_error({"collide", scene, cube},
-                "cchip: " + scene +
-                    ": meshes of this format are not read; in Python load it with trimesh, which keeps its numbers, and "
-                    "pass vertices and faces to collisionchip.Object, or convert it to OBJ, OFF, PLY or STL, for example "
-                    "with Blender, which rounds them");
+    check_error(
+        {"collide", scene, cube},
+        "cchip: " + scene +
+            ": meshes of this format are not read; in Python load it with trimesh, which keeps its numbers, and "
+            "pass vertices and faces to collisionchip.Object, or convert it to OBJ, OFF, PLY or STL, for example "
+            "with Blender, which rounds them");
   }
   for (const std::string end : {"dae"}) {
     const std::string scene = folder.write("scene." + end, "<xml/>");

@@ -115,8 +115,8 @@ class AxiWrite {
   std::size_t held_ = 0;  // beats taken that have not left their queue
   Fifo<Write> writes_{queue_depth};
   Fifo<Data> beats_{queue_depth};
-  std::optional<Take> take_;         // whose beats leave the queue
-  std::optional<std::size_t> send_;  // beats behind the one to send
+  std::optional<Take> take_;           // whose beats leave the queue
+  std::optional<std::size_t> send_;    // beats behind the one to send
   bool pops_ = false, sends_ = false;  // decided on the last clock: a beat leaves its queue, is sent
   SkidBuffer<Address> addresses_;
   SkidBuffer<Data> data_;
