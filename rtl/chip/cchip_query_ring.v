@@ -8,7 +8,7 @@
 //                host keeps producer - consumer <= 2^size_log2, and may write a line again when
 //                `consumer` has passed it
 //   throughput   AHEAD lines are in flight, so AHEAD queries per latency of memory; at most a read
-//                in 2 clocks and a query in 512 / DATA_W + 3
+//                in 2 clocks and a query in 512 / DATA_W + 2
 //   latency      2 clocks from producer to m_read_valid, 512 / DATA_W + 2 from a line's last beat
 //                to m_query_valid
 //   failure      a line that could not be read is not handed on, and none after it: failed = 1

@@ -6,7 +6,7 @@
 //   command      ready = 1 again when the last set has been changed, the reads that were in flight
 //                at that time have been answered, their requests served and 7 clocks have passed:
 //                answers from then on are of data that memory held after the command
-//   latency      8 clocks for each set of the range, at most 2^SET_W of them
+//   latency      9 clocks for each set of the range, at most 2^SET_W of them
 //   cuts         every path
 //   reset        clears the entries, one set per clock: running = 0 meanwhile
 module cchip_cache_invalidate #(
