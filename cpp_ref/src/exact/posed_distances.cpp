@@ -16,6 +16,7 @@ namespace {
 using exact::BigInt;
 using exact::FeaturePair;
 using exact::Filter;
+using exact::greatest_component;
 using exact::Known;
 using exact::Vec;
 
@@ -34,17 +35,6 @@ struct Rounded {
   double greatest = 0;    ///< magnitude of a coordinate relative to the base
   bool moderate = false;  ///< no square overflows, and what underflows is far below the error
 };
-
-double greatest_component(const Primitive& p) {
-  double greatest = 0;
-  for (std::size_t i = 0; i < p.vertex_count(); ++i) {
-    if (!p.v[i].allFinite()) {
-      throw std::invalid_argument("primitive: a coordinate is not finite: replace NaN and infinities by numbers");
-    }
-    greatest = std::max(greatest, p.v[i].cwiseAbs().maxCoeff());
-  }
-  return greatest;
-}
 
 /// Points of the two hulls that are near each other, relative to the base; nearest up to rounding if the hulls have no
 /// point in common.

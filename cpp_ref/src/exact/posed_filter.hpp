@@ -4,16 +4,31 @@
 #ifndef CCHIP_EXACT_POSED_FILTER_HPP
 #define CCHIP_EXACT_POSED_FILTER_HPP
 
+#include <algorithm>
 #include <array>
 #include <cchip/geometry/pose.hpp>
 #include <cchip/geometry/primitive.hpp>
 #include <cmath>
 #include <cstddef>
+#include <stdexcept>
 
 #include "filter.hpp"
 #include "hulls.hpp"
 
 namespace cchip::exact {
+
+/// Greatest magnitude of a coordinate.
+/// \throws std::invalid_argument one is not finite
+inline double greatest_component(const Primitive& p) {
+  double greatest = 0;
+  for (std::size_t i = 0; i < p.vertex_count(); ++i) {
+    if (!p.v[i].allFinite()) {
+      throw std::invalid_argument("primitive: a coordinate is not finite: replace NaN and infinities by numbers");
+    }
+    greatest = std::max(greatest, p.v[i].cwiseAbs().maxCoeff());
+  }
+  return greatest;
+}
 
 /// Translation of A relative to B.
 struct Offset {

@@ -20,6 +20,7 @@ using exact::Filter;
 using exact::filter_offset;
 using exact::filter_points;
 using exact::fits;
+using exact::greatest_component;
 using exact::Hull;
 using exact::Offset;
 using exact::PosedInts;
@@ -37,17 +38,6 @@ struct Rounded {
   double error = 0;     ///< bound on the error of each coordinate
   double greatest = 0;  ///< magnitude of a coordinate relative to the base
 };
-
-double greatest_component(const Primitive& p) {
-  double greatest = 0;
-  for (std::size_t i = 0; i < p.vertex_count(); ++i) {
-    if (!p.v[i].allFinite()) {
-      throw std::invalid_argument("primitive: a coordinate is not finite: replace NaN and infinities by numbers");
-    }
-    greatest = std::max(greatest, p.v[i].cwiseAbs().maxCoeff());
-  }
-  return greatest;
-}
 
 /// True only if the intervals on the axis are disjoint, by more than rounding can explain. The axis itself needs no
 /// error bound: any axis is valid.
