@@ -375,6 +375,108 @@ struct Result {
   Places places;
 };
 
+/// A query of the result's objects, for the time of a call.
+cchip::CollisionQuery query_of(const Places& x) { return {&x.a, &x.pose_a, &x.b, &x.pose_b}; }
+
+cchip::Contact contact_of(const Result& x, std::size_t number) {
+  if (number >= x.faces.size() / 2) throw std::out_of_range("the result has no such contact");
+  return {x.faces[2 * number], x.faces[2 * number + 1], std::nullopt};
+}
+
+std::vector<cchip::Contact> contacts_of(const Result& x) {
+  std::vector<cchip::Contact> contacts;
+  for (std::size_t i = 0; i < x.faces.size() / 2; ++i) contacts.push_back(contact_of(x, i));
+  return contacts;
+}
+
+nb::object to_rows(const std::vector<cchip::Vec3d>& points) {
+  std::vector<double> rows;
+  rows.reserve(3 * points.size());
+  for (const cchip::Vec3d& p : points) rows.insert(rows.end(), p.data(), p.data() + 3);
+  return nb::cast(owned<double>(std::move(rows), {points.size(), 3}));
+}
+
+const char* name_of(cchip::Intersection::Kind kind) {
+  switch (kind) {
+    case cchip::Intersection::Kind::point:
+      return "point";
+    case cchip::Intersection::Kind::segment:
+      return "segment";
+    case cchip::Intersection::Kind::polygon:
+      return "polygon";
+    default:
+      return "polyhedron";
+  }
+}
+
+nb::list intersections_of(const Result& x) {
+  std::vector<std::vector<cchip::Intersection>> found;
+  {
+    const nb::gil_scoped_release release;
+    const GradualUnderflow mode;
+    found = cchip::intersections(query_of(x.places), contacts_of(x));
+  }
+  nb::list all;
+  for (const auto& parts : found) {
+    nb::list one;
+    for (const cchip::Intersection& part : parts) one.append(nb::make_tuple(name_of(part.kind), to_rows(part.points)));
+    all.append(one);
+  }
+  return all;
+}
+
+nb::list curves_of(const Result& x) {
+  std::vector<cchip::IntersectionCurve> found;
+  {
+    const nb::gil_scoped_release release;
+    const GradualUnderflow mode;
+    found = cchip::intersection_curves(query_of(x.places), contacts_of(x));
+  }
+  nb::list all;
+  for (const cchip::IntersectionCurve& curve : found) {
+    all.append(nb::make_tuple(to_rows(curve.points), curve.closed));
+  }
+  return all;
+}
+
+nb::object normals_of(const Result& x) {
+  std::vector<double> rows;
+  {
+    const nb::gil_scoped_release release;
+    const GradualUnderflow mode;
+    for (const cchip::Contact& contact : contacts_of(x)) {
+      for (const cchip::Vec3d& n : {cchip::face_normal(x.places.a, x.places.pose_a, contact.face_a),
+                                    cchip::face_normal(x.places.b, x.places.pose_b, contact.face_b)}) {
+        rows.insert(rows.end(), n.data(), n.data() + 3);
+      }
+    }
+  }
+  return nb::cast(owned<double>(std::move(rows), {x.faces.size() / 2, 2, 3}));
+}
+
+/// The middle of the first part that the faces of a contact share, rounded.
+nb::object point_of(const Result& x, std::size_t number) {
+  const GradualUnderflow mode;
+  const std::vector<cchip::Intersection> parts = cchip::intersections(query_of(x.places), contact_of(x, number));
+  std::vector<double> middle(3, parts.empty() ? std::numeric_limits<double>::quiet_NaN() : 0.0);
+  if (!parts.empty()) {
+    const std::vector<cchip::Vec3d>& points = parts[0].points;
+    for (const cchip::Vec3d& p : points) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        middle[k] += p[static_cast<Eigen::Index>(k)] / static_cast<double>(points.size());
+      }
+    }
+  }
+  return nb::cast(owned<double>(std::move(middle), {3}));
+}
+
+/// Of A's face.
+nb::object normal_of(const Result& x, std::size_t number) {
+  const GradualUnderflow mode;
+  const cchip::Vec3d normal = cchip::face_normal(x.places.a, x.places.pose_a, contact_of(x, number).face_a);
+  return nb::cast(owned<double>(std::vector<double>(normal.begin(), normal.end()), {3}));
+}
+
 std::string text_of(const Proof& x) {
   std::ostringstream out;
   cchip::write_certificate(*x.certificate, out);
@@ -941,6 +1043,26 @@ Returns the claim, as the first of the lines has it. Raises collisionchip.check.
           },
           nb::sig("def certificate(self) -> Certificate | None"),
           "The answer with its proof; None if it was not asked for.")
+      .def("intersections", &intersections_of,
+           nb::sig("def intersections(self) -> list[list[tuple[str, numpy.typing.NDArray[numpy.float64]]]]"),
+           R"(What the faces of each contact share, exactly; each coordinate is the float64 nearest to the exact one.
+
+Returns a list for each contact, with a tuple of kind and points, (k, 3) float64. Kinds: 'point'; 'segment'; 'polygon', its
+corners once around; 'polyhedron', of two quads that are not flat. Of faces that were cut into triangles there is a tuple
+for each pair of triangles that share a point, of others one; none of faces that are apart, see within.)")
+      .def("curves", &curves_of, nb::sig("def curves(self) -> list[tuple[numpy.typing.NDArray[numpy.float64], bool]]"),
+           R"(The segments of intersections(), chained where their ends are the same exact point.
+
+Returns a tuple of points, (k, 3) float64, and whether the last is joined to the first, for each curve. Ask collide() with
+contacts='all'.)")
+      .def(
+          "normals", &normals_of, nb::sig("def normals(self) -> numpy.typing.NDArray[numpy.float64]"),
+          R"(Unit normals of the two faces of each contact in their poses, (k, 2, 3) float64; zero for a face without an area.
+
+They go by the order of a face's vertices; a pose that mirrors turns them about.)")
+      .def("_point", &point_of, "number"_a, nb::sig("def _point(self, number: int) -> typing.Any"), "For ContactData.")
+      .def("_normal", &normal_of, "number"_a, nb::sig("def _normal(self, number: int) -> typing.Any"),
+           "For ContactData.")
       .def(
           "show",
           [](const Result& x, nb::object path) {

@@ -516,3 +516,24 @@ def test_within_and_distance():
     for d in (-1.0, np.inf, np.nan):
         with pytest.raises(ValueError):
             collide(box, None, box, None, within=d)
+
+
+def test_intersections_curves_and_normals():
+    result = collide(CUBE, None, CUBE, shift(0.5, 0.5, 0.5), contacts="all")
+    parts = result.intersections()
+    assert len(parts) == len(result.contacts) > 0
+    for (kind, points), in parts:
+        assert kind in ("point", "segment") and points.shape == ({"point": 1, "segment": 2}[kind], 3)
+        assert points.dtype == np.float64 and (points >= 0).all() and (points <= 0.5).all()
+    (points, closed), = result.curves()
+    assert closed
+    assert {(0.5, 0, 0), (0.5, 0.5, 0), (0, 0.5, 0), (0, 0.5, 0.5), (0, 0, 0.5), (0.5, 0, 0.5)} <= set(map(tuple, points))
+    normals = result.normals()
+    assert normals.shape == (len(result.contacts), 2, 3)
+    assert (np.abs(normals).sum(axis=2) == 1).all()
+    flush = collide(CUBE, None, CUBE, shift(1), contacts="all")
+    assert {kind for part in flush.intersections() for kind, _ in part} >= {"segment", "polygon"}
+    apart = collide(CUBE, None, CUBE, shift(2), contacts="all")
+    assert apart.intersections() == [] and apart.curves() == [] and apart.normals().shape == (0, 2, 3)
+    near = collide(CUBE, None, CUBE, shift(2), contacts="all", within=1)
+    assert near.hit and set(map(len, near.intersections())) == {0}

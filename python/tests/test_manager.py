@@ -92,9 +92,24 @@ def test_distances():
 def test_what_is_not_offered():
     manager = row(1)
     contact = manager.in_collision_single(Mesh, return_data=True)[1][0]
-    for name in ("normal", "point", "depth"):
-        with pytest.raises(NotImplementedError):
-            getattr(contact, name)
+    with pytest.raises(NotImplementedError):
+        contact.depth
+
+
+def test_contact_data_has_a_common_point_and_a_normal():
+    # unit cubes: the second one begins at x = 0.5, where the first one ends
+    manager = CollisionManager()
+    manager.add_object("first", Mesh)
+    manager.add_object("second", Mesh, shift(1, 0.5))
+    contacts = manager.in_collision_internal(return_data=True)[1]
+    assert contacts
+    for contact in contacts:
+        x, y, z = contact.point
+        assert x == 0.5 and 0 <= y <= 0.5 and -0.5 <= z <= 0.5
+        assert contact.point.shape == contact.normal.shape == (3,)
+        assert np.abs(contact.normal).sum() == np.abs(contact.normal).max() == 1  # along an axis
+    flush = [c for c in contacts if abs(c.normal[0]) == 1]
+    assert flush and all(c.normal[0] == 1 for c in flush)  # outwards from the one that was added first
 
 
 def test_the_methods_are_those_of_trimesh():

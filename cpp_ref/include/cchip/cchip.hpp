@@ -6,6 +6,7 @@
 
 #include <cchip/collide/collide.hpp>
 #include <cchip/collide/gradual_underflow.hpp>
+#include <cchip/collide/intersection.hpp>
 #include <cchip/collide/scene.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/cpu/distance.hpp>

@@ -16,9 +16,10 @@ _EXTERNAL = "__external"  # trimesh's name for the object of in_collision_single
 class ContactData:
     """Two faces in contact."""
 
-    def __init__(self, names: tuple[Any, Any], faces: tuple[int, int]) -> None:
+    def __init__(self, names: tuple[Any, Any], result: Result, row: int) -> None:
         self.names = set(names)
-        self._faces: dict[Any, int] = dict(zip(names, faces))
+        self._faces: dict[Any, int] = dict(zip(names, map(int, result.contacts[row])))
+        self._result, self._row = result, row
 
     def index(self, name: Any) -> int:
         """The number of the face of the object with this name."""
@@ -26,13 +27,14 @@ class ContactData:
 
     @property
     def normal(self) -> Any:
-        """Not offered: raises NotImplementedError."""
-        raise NotImplementedError("collisionchip has no contact normals: it answers which faces touch")
+        """The unit normal of one of the two faces, (3,) float64: of the mesh that is not in the manager, of the object of
+        the manager that was asked, or of the object that was added first. Result.normals() has those of both faces."""
+        return self._result._normal(self._row)
 
     @property
     def point(self) -> Any:
-        """Not offered: raises NotImplementedError."""
-        raise NotImplementedError("collisionchip has no contact points: it answers which faces touch")
+        """A point that both faces share, (3,) float64, rounded: the middle of the corners of what they share."""
+        return self._result._point(self._row)
 
     @property
     def depth(self) -> Any:
@@ -275,5 +277,5 @@ def _answer(names: set[Any], found: list[tuple[tuple[Any, Any], Result]], return
     if return_names:
         answer.append(names)
     if return_data:
-        answer.append([ContactData(pair, (int(a), int(b))) for pair, result in found for a, b in result.contacts])
+        answer.append([ContactData(pair, result, row) for pair, result in found for row in range(len(result.contacts))])
     return tuple(answer) if len(answer) > 1 else answer[0]
