@@ -20,6 +20,8 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
   --estimate        only place, seed 1 (or as many as --seeds or the row says), and print what limits the clock before a wire is routed: the
                     estimate, the ends behind --goal, the registers where slow paths start, where each block lies. Minutes, where routing the
                     chip takes hours
+  --picture FILE    with --estimate: draw where the blocks of the first row lie, as SVG
+  --no-floorplan    place the chip's rows without scripts/floorplan.py, which gives block RAMs and multipliers their places
   --goal MHZ        clock that --estimate counts ends behind (default 100)
   --check           nothing but this: exit 1 if a short table of docs/hardware/fpga.md is not made of the lines of its CSV file
                     in docs/figures
@@ -51,6 +53,7 @@ import subprocess
 import sys
 
 import datasheet
+import floorplan
 import placed
 import progress
 
@@ -72,6 +75,7 @@ class Row:
     families: bool = False  # counted for other families, too
     shape: str = "tri-tri"  # as cchip_campaign names it
     label: str = ""  # in the last lines, if not the name
+    floorplan: bool = False  # scripts/floorplan.py is for it
     seeds: int = 99  # at most: of rows that only serve comparison
     placer: str = "static"  # of nextpnr: static, or heap where it is the better one
     block: bool = False  # has other ports than a primitive test
@@ -138,7 +142,7 @@ def rows():
     table += [Row(name.replace("cchip_", ""), name, parameters, shape="", seeds=3, placer="heap", block=True, synth=" -nowidelut")
               for name, parameters in CHIP_PARAMETERS.items()]
     # the whole chip: its bill by block, then flat; a third fewer multiplexers of LUTs without the device's wide ones
-    table += [Row(name, "cchip_chip", (("RM_ID", module),), shape="", seeds=3, block=True, synth=" -nowidelut", owners=CHIP_BLOCKS)
+    table += [Row(name, "cchip_chip", (("RM_ID", module),), shape="", seeds=3, block=True, synth=" -nowidelut", owners=CHIP_BLOCKS, floorplan=True)
               for name, module in (("chip_tri", 1), ("chip", 3))]
     return {row.name: row for row in table}
 
@@ -344,9 +348,19 @@ def mean_beats(shape, options):
     return dict(found)
 
 
+def to_place(row, synthesis, options):
+    """The netlist that nextpnr gets: of the chip, with the floorplan."""
+    netlist = synthesis / "netlist.json"
+    if not row.floorplan or options.no_floorplan:
+        return netlist
+    made = synthesis / "anchored.json"
+    made.write_text(floorplan.anchored(netlist.read_text()))
+    return made
+
+
 def place(row, synthesis, seed, options):
     """Place and route: the report of nextpnr."""
-    netlist = synthesis / "netlist.json"
+    netlist = to_place(row, synthesis, options)
     choices = [*DEVICE, "--placer", options.placer or row.placer, "--freq", str(options.freq), "--seed", str(seed),
                "--timing-allow-fail", "--detailed-timing-report"]
     command = [str(options.nextpnr), *choices, "--json", str(netlist.relative_to(ROOT)), "--report", "{}/report.json"]
@@ -359,7 +373,7 @@ def place(row, synthesis, seed, options):
 
 def estimate(row, synthesis, seed, options):
     """Place without routing: the timing of the placed design."""
-    netlist = synthesis / "netlist.json"
+    netlist = to_place(row, synthesis, options)
     choices = [*DEVICE, "--placer", options.placer or row.placer, "--freq", str(options.freq), "--seed", str(seed),
                "--timing-allow-fail", "--no-route"]
     command = [str(options.nextpnr), *choices, "--json", str(netlist.relative_to(ROOT)), "--write", "{}/placed.json", "--sdf", "{}/placed.sdf"]
@@ -804,7 +818,8 @@ def arguments():
     parser.add_argument("--campaign", type=os.path.abspath, default=ROOT / "build/release/bin/cchip_campaign")
     parser.add_argument("--pairs", type=int, default=20000)
     parser.add_argument("--goal", type=float, default=100)
-    for flag in ("--families", "--write", "--bill", "--estimate", "--check", "--list"):
+    parser.add_argument("--picture", type=pathlib.Path)
+    for flag in ("--families", "--write", "--bill", "--estimate", "--check", "--list", "--no-floorplan"):
         parser.add_argument(flag, action="store_true")
     options = parser.parse_args()
     try:
@@ -875,7 +890,11 @@ def show_estimates(chosen, options):
             found = pool.map(lambda seed: attempt(failures, estimate, row, synthesis, seed, options), range(1, count + 1))
             timings = {seed: timing for seed, timing in enumerate(found, 1) if timing}
         if timings:
-            print(estimate_tables(timings[min(timings)], options.goal))
+            timing = timings[min(timings)]
+            print(estimate_tables(timing, options.goal))
+            if options.picture and row == chosen[0]:
+                title = f"{row.name} on the LFE5U-85F, placed, {1e3 / timing.ends()[0][0]:.1f} MHz before routing"
+                options.picture.write_text(floorplan.picture(timing.at, timing.kind, block_in, title))
             lines.append(estimate_line(row.name, timings, options.goal))
     print("\n".join(lines))
     return 1 if failures else 0

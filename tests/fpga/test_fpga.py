@@ -143,6 +143,54 @@ class OwnFolder(unittest.TestCase):
         fpga.ROOT, fpga.BUILD = self.root, self.build
 
 
+class Floorplan(unittest.TestCase):
+    """Block RAMs and multipliers of a chip by the names that its instances have."""
+    @staticmethod
+    def chip(cache_blocks=56, test=36):
+        core = "u_dut.u_core."
+        broad = core + "u_broad_phase."
+        rams = [f"{broad}u_cache.u_data.gen_blocks.gen_block[{i}].u_block" for i in range(cache_blocks)] + \
+            [f"{broad}u_cache.u_fill.gen_beat[{b}].u_beats.gen_block[{i}].u_block" for b in range(4) for i in range(4)] + \
+            [f"{broad}u_cache.gen_port[{p}].u_port.u_entries.gen_block[{i}].u_block" for p in range(2) for i in range(4)] + \
+            [f"{broad}u_get_data.u_pairs.gen_port[{p}].u_lines.gen_block[{i}].u_block" for p in range(2) for i in range(14)] + \
+            [f"{broad}u_bv_unit.u_feed.u_{side}.gen_block[{i}].u_block" for side in "ab" for i in range(12)] + \
+            [f"{core}u_queues.u_memory.gen_block[0].u_block"]
+        multipliers = [f"{broad}u_bv_unit.u_lane_a.gen_direction[{i}].u_block" for i in range(77)] + \
+            [f"{core}u_transform.u_vertices.u_mul[{i}].u_block" for i in range(36)] + [f"{core}u_slots.u_mul[{i}].u_block" for i in range(test)]
+        return {**dict.fromkeys(rams, "DP16KD"), **dict.fromkeys(multipliers, "MULT18X18D"), "u_dut.u_core.x_LUT4_A": "TRELLIS_COMB"}
+
+    def test_each_has_a_place_of_its_own_and_its_kind(self):
+        for cache_blocks in (7, 28, 56, 120):
+            for test in (24, 36):
+                kinds = self.chip(cache_blocks, test)
+                found = fpga.floorplan.anchors(kinds)
+                self.assertEqual(set(found), {cell for cell, kind in kinds.items() if kind != "TRELLIS_COMB"})
+                self.assertEqual(len(set(found.values())), len(found))
+                for cell, bel in found.items():
+                    self.assertRegex(bel, r"/Y(22|46|70|82)/EBR[0-3]$" if kinds[cell] == "DP16KD" else r"/Y(10|34|58)/MULT18_[0145]$")
+
+    def test_rams_of_the_same_bits_lie_beside_each_other(self):
+        found = fpga.floorplan.anchors(self.chip())
+        column = lambda port, block: int(re.search(r"X(\d+)", found[f"u_dut.u_core.u_broad_phase.u_get_data.u_pairs.gen_port[{port}].u_lines.gen_block[{block}].u_block"])[1])
+        self.assertTrue(all(abs(column(0, block) - column(1, block)) <= 3 for block in range(14)))
+
+    def test_more_than_the_device_has_is_an_error(self):
+        with self.assertRaisesRegex(ValueError, "has 156 MULT18X18D, the design needs 163"):
+            fpga.floorplan.anchors(self.chip(test=50))
+
+    def test_the_netlist_keeps_everything_else(self):
+        text = json.dumps({"modules": {"top": {"cells": {"u_slots.a": {"type": "MULT18X18D", "attributes": {"src": "x"}}, "b": {"type": "LUT4"}}}}})
+        cells = json.loads(fpga.floorplan.anchored(text))["modules"]["top"]["cells"]
+        self.assertEqual(cells["u_slots.a"]["attributes"], {"src": "x", "BEL": "X69/Y10/MULT18_0"})
+        self.assertEqual(cells["b"], {"type": "LUT4"})
+
+    def test_the_picture_has_each_block_in_its_colour(self):
+        svg = fpga.floorplan.picture({"a": (1, 2), "b": (1, 2), "c": (9, 9)}, {"a": "TRELLIS_FF", "b": "TRELLIS_FF", "c": "DP16KD"},
+                                     lambda cell: "u_x" if cell in "ab" else "u_y", "title")
+        self.assertEqual((svg.count("<rect"), svg.count('stroke="#000"')), (1 + 2 + 1 + 3, 1))
+        self.assertIn(">u_x</text>", svg)
+
+
 class Placement(unittest.TestCase):
     """A register a, a LUT behind it, a register b; a block RAM that b addresses: placed by hand, delays made up."""
     NETLIST = {"modules": {"unused": {"cells": {}}, "top": {"cells": {

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Floorplan of cchip_chip on the Lattice LFE5U-85F, by stock means: a place for every block RAM and multiplier.
+
+nextpnr leaves a cell with an attribute BEL where it is and draws the logic to it; regions it takes from Python alone, which its
+build for WebAssembly does not have. The device has block RAMs in four rows and multipliers in three, 52 in each, in groups of
+four. What is chosen is which groups a block gets; inside a block the order is that of its data, so that the RAMs that hold the
+same bits of a line lie above each other.
+
+    y = 82    .  .  .  get data  C  C  C  C  C  C  C  C      C cache: data, in row 46 the beats that arrive, in row 70 tags
+    y = 70    get data           C  C  C  C  C  C  C  C
+    y = 58    box test                 transform   slot      multipliers
+    y = 46    box test           traversal   cache
+    y = 34    box test                 transform             multipliers
+    y = 22    box test                 operands, queues
+    y = 10    box test                 slot                  multipliers
+
+Memory and bus come to the cache at the upper edge; lines go left to get data and down to the box test, vertices to the right."""
+import json
+import re
+
+RAM, MULTIPLIER = "DP16KD", "MULT18X18D"
+GROUPS = 13
+WIDTH, HEIGHT = 126, 95  # tiles
+
+
+def natural(name):
+    """Key that sorts numbers in names as numbers."""
+    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
+
+
+def by_bits(name):
+    """First the number of the RAM inside its memory, which says which bits it holds, then everything else."""
+    found = re.search(r"gen_block\[(\d+)\]", name)
+    return int(found[1]) if found else 0, natural(name)
+
+
+# what, kind, order, [(y, groups)]; whoever comes first takes his cells
+PLAN = (
+    (r"u_cache\.u_data", RAM, by_bits, [(82, range(5, 13)), (70, range(5, 11))]),
+    (r"u_cache\.u_fill", RAM, natural, [(46, range(9, 13))]),
+    (r"u_cache\.gen_port", RAM, natural, [(70, range(11, 13))]),
+    (r"u_get_data", RAM, by_bits, [(70, range(0, 5)), (82, range(3, 5))]),
+    (r"u_bv_unit\.u_feed", RAM, by_bits, [(46, range(0, 6))]),
+    (r"u_bv_unit\.u_pose", RAM, natural, [(22, range(0, 3))]),
+    (r"u_traversal", RAM, natural, [(46, range(6, 8))]),
+    (r"", RAM, natural, [(22, range(8, 11))]),
+    (r"u_bv_unit", MULTIPLIER, natural, [(58, range(0, 7)), (34, range(0, 6)), (10, range(0, 7))]),
+    (r"u_transform", MULTIPLIER, natural, [(34, range(7, 13)), (58, range(7, 10))]),
+    (r"", MULTIPLIER, natural, [(10, range(7, 13)), (34, range(6, 7)), (58, range(10, 13))]),
+)
+
+
+def sites(kind, y, group):
+    """The four BELs of a group, from left to right: [(name, x)]."""
+    left = 4 + 9 * group + (2 if group > 6 else 0)  # the clock's column is in the middle
+    parts = [(0, "EBR0"), (2, "EBR1"), (4, "EBR2"), (6, "EBR3")] if kind == RAM else \
+        [(0, "MULT18_0"), (1, "MULT18_1"), (4, "MULT18_4"), (5, "MULT18_5")]
+    return [(f"X{left + x}/Y{y}/{name}", left + x) for x, name in parts]
+
+
+def anchors(kinds):
+    """{cell: BEL} of the block RAMs and multipliers in {cell: type}. A block that needs more than the plan gives it gets the
+    nearest free places of its kind. ValueError: the device has too few."""
+    rows = {RAM: (22, 46, 70, 82), MULTIPLIER: (10, 34, 58)}
+    free = {kind: {bel: (x, y) for y in rows[kind] for group in range(GROUPS) for bel, x in sites(kind, y, group)} for kind in rows}
+    found, over = {}, []
+    left = {cell: kind for cell, kind in kinds.items() if kind in rows}
+    for pattern, kind, order, where in PLAN:
+        cells = sorted((cell for cell, of in left.items() if of == kind and re.search(pattern, cell)), key=order)
+        places = [bel for y, groups in where for group in groups for bel, _ in sites(kind, y, group)]
+        found.update(zip(cells, places))
+        over += [(cell, kind, places[-1]) for cell in cells[len(places):]]
+        for cell in cells:
+            del left[cell]
+    at = {kind: dict(places) for kind, places in free.items()}
+    for cell, bel in found.items():
+        del free[kinds[cell]][bel]
+    for cell, kind, near in over:
+        if not free[kind]:
+            raise ValueError(f"the LFE5U-85F has {len(at[kind])} {kind}, the design needs {sum(of == kind for of in kinds.values())}")
+        x, y = at[kind][near]
+        found[cell] = min(free[kind], key=lambda bel: abs(free[kind][bel][0] - x) + abs(free[kind][bel][1] - y))
+        del free[kind][found[cell]]
+    return found
+
+
+def anchored(netlist):
+    """The text of Yosys' JSON with a place at every block RAM and multiplier."""
+    design = json.loads(netlist)
+    for module in design["modules"].values():
+        cells = module["cells"]
+        for cell, bel in anchors({name: cell["type"] for name, cell in cells.items()}).items():
+            cells[cell].setdefault("attributes", {})["BEL"] = bel
+    return json.dumps(design)
+
+
+# ---- picture
+
+COLOURS = ("#4c78a8", "#f58518", "#54a24b", "#e45756", "#72b7b2", "#b279a2", "#eeca3b", "#9d755d", "#ff9da6", "#79706e")
+TILE = 6  # px
+
+
+def picture(at, kinds, block_of, title):
+    """SVG of a placed design: each tile has the colour of the block with most cells there, the darker the fuller; frames are
+    block RAMs and multipliers. at: {cell: (x, y)}, kinds: {cell: type}, block_of: of a cell."""
+    tiles, sizes = {}, {}
+    for cell, place in at.items():
+        block = block_of(cell)
+        sizes[block] = sizes.get(block, 0) + 1
+        tiles.setdefault(place, {}).setdefault(block, 0)
+        tiles[place][block] += 1
+    large = sorted(sizes, key=lambda block: -sizes[block])[:len(COLOURS)]
+    colour = dict(zip(large, COLOURS))
+    height = TILE * HEIGHT
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {TILE * WIDTH + 190} {height + 30}" font-family="sans-serif" font-size="13">',
+             f"<!-- SPDX-License-Identifier: Apache-2.0 --><title>{title}</title>", f'<rect width="100%" height="100%" fill="#fff"/><text x="6" y="17">{title}</text>']
+    for (x, y), inside in sorted(tiles.items()):
+        block = max(inside, key=inside.get)
+        full = min(1.0, 0.25 + sum(inside.values()) / 21)
+        parts.append(f'<rect x="{TILE * x}" y="{24 + height - TILE * (y + 1)}" width="{TILE}" height="{TILE}" fill="{colour.get(block, "#bbb")}" '
+                     f'fill-opacity="{full:.2f}"/>')
+    for cell, (x, y) in sorted(at.items()):
+        if kinds[cell] in (RAM, MULTIPLIER):
+            wide = 2 if kinds[cell] == RAM else 1
+            parts.append(f'<rect x="{TILE * x}" y="{24 + height - TILE * (y + 1)}" width="{TILE * wide}" height="{TILE}" '
+                         f'fill="{colour.get(block_of(cell), "#bbb")}" stroke="#000" stroke-width="0.8"/>')
+    for number, block in enumerate([*large, "others"]):
+        parts.append(f'<rect x="{TILE * WIDTH + 12}" y="{34 + 22 * number}" width="14" height="14" fill="{colour.get(block, "#bbb")}"/>'
+                     f'<text x="{TILE * WIDTH + 32}" y="{46 + 22 * number}">{block}</text>')
+    return "\n".join([*parts, "</svg>"]) + "\n"
