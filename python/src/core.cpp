@@ -534,7 +534,11 @@ nb::bytes page_of(const Result& x) {
     cchip::Mesh b = cchip::transformed(x.places.b.mesh(), x.places.pose_b);
     if (a.name.empty()) a.name = "A";
     if (b.name.empty()) b.name = "B";
-    page = cchip::html_page(a, b, answer, contacts, scripts);
+    std::vector<cchip::PageCurve> curves;
+    for (cchip::IntersectionCurve& curve : cchip::intersection_curves(query_of(x.places), contacts_of(x))) {
+      curves.push_back({std::move(curve.points), curve.closed});
+    }
+    page = cchip::html_page(a, b, answer, contacts, scripts, curves);
   }
   return nb::bytes(page.data(), page.size());
 }

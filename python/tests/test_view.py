@@ -66,6 +66,18 @@ def test_page(three, tmp_path, opened):
     assert (np.concatenate(points).min(0) == -np.concatenate(points).max(0)).all()
 
 
+def test_curves(three, tmp_path):
+    cube = Object(CORNERS, FACES)
+    result = collide(cube, None, cube, at(0.5, 0.5, 0.5), contacts="all")
+    data = data_of(result.show(tmp_path / "view.html").page)
+    ends = np.array(data["curves"]).reshape(-1, 2, 3) + 0.75  # the middle of both
+    (points, closed), = result.curves()
+    assert closed and len(points) == 6
+    assert (ends[:, 0] == points).all() and (ends[:, 1] == np.roll(points, -1, axis=0)).all()
+    apart = collide(cube, None, cube, at(3))
+    assert data_of(apart.show(tmp_path / "view.html").page)["curves"] == []
+
+
 def test_browser(three, opened):
     cube = Object(CORNERS, FACES)
     view = collide(cube, None, cube, at(0.5)).show()

@@ -8,6 +8,7 @@
 #include <cchip/certificate/certificate_file.hpp>
 #include <cchip/certificate/certify.hpp>
 #include <cchip/collide/face_pairs.hpp>
+#include <cchip/collide/intersection.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/geometry/decimal.hpp>
 #include <cchip/machines/simulated_chip.hpp>
@@ -311,8 +312,11 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
     }
     picture->write(a.mesh(), transformed(b.mesh(), pose));
   }
-  if (view)
-    view->write(a.mesh(), transformed(b.mesh(), pose), to_words(result, request, options.within), result.contacts);
+  if (view) {
+    const Pose here = Pose::Identity();
+    view->write(a.mesh(), transformed(b.mesh(), pose), to_words(result, request, options.within), result.contacts,
+                intersection_curves({&a, &here, &b, &pose}, result.contacts));
+  }
   totals.add(result, false);
   totals.left_out = reader.faces_left_out();
   return report(totals, options, streams);

@@ -28,11 +28,15 @@ void check_view_name(const std::string& path) {
 
 HtmlView::HtmlView(const std::string& path) : scripts_(read_scripts()), file_(path) {}
 
-void HtmlView::write(const Mesh& a, const Mesh& b, const std::string& answer, const std::vector<Contact>& contacts) {
+void HtmlView::write(const Mesh& a, const Mesh& b, const std::string& answer, const std::vector<Contact>& contacts,
+                     const std::vector<IntersectionCurve>& curves) {
   std::vector<PageContact> rows;
   rows.reserve(contacts.size());
   for (const Contact& contact : contacts) rows.push_back({contact.face_a, contact.face_b, contact.relation});
-  file_.stream() << html_page(a, b, answer, rows, scripts_);
+  std::vector<PageCurve> lines;
+  lines.reserve(curves.size());
+  for (const IntersectionCurve& curve : curves) lines.push_back({curve.points, curve.closed});
+  file_.stream() << html_page(a, b, answer, rows, scripts_, lines);
   file_.commit();
 }
 

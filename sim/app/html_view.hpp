@@ -5,6 +5,7 @@
 #define CCHIP_APP_HTML_VIEW_HPP
 
 #include <cchip/collide/collide.hpp>
+#include <cchip/collide/intersection.hpp>
 #include <cchip/mesh/mesh.hpp>
 #include <cchip/mesh_io/html_page.hpp>
 #include <cchip/sim/output_file.hpp>
@@ -29,7 +30,8 @@ class HtmlView {
   /// \param b in its place
   /// \param answer in words, the heading
   /// \throws sim::OutputError as above
-  void write(const Mesh& a, const Mesh& b, const std::string& answer, const std::vector<Contact>& contacts);
+  void write(const Mesh& a, const Mesh& b, const std::string& answer, const std::vector<Contact>& contacts,
+             const std::vector<IntersectionCurve>& curves);
 
  private:
   PageScripts scripts_;

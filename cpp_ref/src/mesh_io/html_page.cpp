@@ -143,8 +143,25 @@ Vec3d centre_of(const Mesh& a, const Mesh& b) {
   return box.center();
 }
 
+/// The ends of all segments: x, y, z, x, y, z.
+void write_segments(const std::vector<PageCurve>& curves, const Vec3d& centre, std::ostream& out) {
+  List list(out);
+  for (const PageCurve& curve : curves) {
+    const std::size_t n = curve.points.size();
+    for (std::size_t i = 0; i + (curve.closed ? 0 : 1) < n; ++i) {
+      const Vec3d& from = curve.points[i];
+      const Vec3d& to = curve.points[(i + 1) % n];
+      if (!from.allFinite() || !to.allFinite()) continue;
+      for (const Vec3d& end : {from, to}) {
+        for (Eigen::Index k = 0; k < 3; ++k) list.add(end[k] - centre[k]);
+      }
+    }
+  }
+  list.end();
+}
+
 void write_data(const Mesh& a, const Mesh& b, const std::string& answer, const std::vector<PageContact>& contacts,
-                std::ostream& out) {
+                const std::vector<PageCurve>& curves, std::ostream& out) {
   const Vec3d centre = centre_of(a, b);
   out << "{\"answer\":" << quoted(answer) << ",\"meshes\":[";
   write_mesh(a, centre, out);
@@ -161,6 +178,8 @@ void write_data(const Mesh& a, const Mesh& b, const std::string& answer, const s
     row.end();
   }
   list.end();
+  out << ",\"curves\":";
+  write_segments(curves, centre, out);
   out << '}';
 }
 
@@ -173,7 +192,7 @@ PageScripts read_page_scripts(const std::string& folder) {
 }
 
 std::string html_page(const Mesh& a, const Mesh& b, const std::string& answer, const std::vector<PageContact>& contacts,
-                      const PageScripts& scripts) {
+                      const PageScripts& scripts, const std::vector<PageCurve>& curves) {
   std::ostringstream out;
   out.imbue(std::locale::classic());
   out.precision(9);
@@ -192,7 +211,7 @@ std::string html_page(const Mesh& a, const Mesh& b, const std::string& answer, c
     } else if (name == "@CONTROLS@") {
       out << scripts.controls;
     } else if (name == "@DATA@") {
-      write_data(a, b, answer, contacts, out);
+      write_data(a, b, answer, contacts, curves, out);
     } else {
       out << rest.substr(0, 1);
       rest.remove_prefix(std::min<std::size_t>(1, rest.size()));

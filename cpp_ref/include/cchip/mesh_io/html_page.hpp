@@ -31,12 +31,19 @@ struct PageContact {
   std::optional<Relation> relation;
 };
 
+/// A line where the meshes meet, as cchip::IntersectionCurve.
+struct PageCurve {
+  std::vector<Vec3d> points;
+  bool closed = false;
+};
+
 /// An HTML page with both meshes, to be turned, cut and clicked, and the list of their contacts. It needs nothing
 /// beside it.
 /// \param a, b in their places, in any length unit
 /// \param answer in words, the heading, UTF-8
+/// \param curves drawn over the faces; a point that is not finite interrupts them
 std::string html_page(const Mesh& a, const Mesh& b, const std::string& answer, const std::vector<PageContact>& contacts,
-                      const PageScripts& scripts);
+                      const PageScripts& scripts, const std::vector<PageCurve>& curves = {});
 
 }  // namespace cchip
 
