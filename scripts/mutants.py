@@ -21,7 +21,7 @@ without unit tests of their own are changed inside the module that uses them.
 
 A mutant that lives may be one that nobody can tell from the original. ABC compares both from the state in which all registers
 are 0, under any inputs: `proved` if no inputs of any length tell them apart, `bounded` if none of --depth clocks do (default 12).
-Alive is what can be told apart, or for which ABC needs more than two minutes.
+Alive is what can be told apart, or for which ABC needs more than a minute.
 
 Everything is kept below build/mutants; a second run goes on where the first one ended. The last line is
 `mutants=N equivalent=E killed=K alive=A`. Exit codes: 0 done, 1 a tool or a test without mutant failed, 2 bad arguments."""
@@ -243,16 +243,22 @@ class Module:
         try:
             (folder / "compare.ys").write_text(text)
             run(["yosys", "-q", "-l", folder / "log", "-s", folder / "compare.ys"], timeout=120)
-            said = run(["timeout", "60", "yosys-abc", "-c", f"read_aiger {aiger}; strash; dsat; print_status; scorr; dprove -r; print_status; pdr -T 20; print_status"])
-            if re.search(r"UNSATISFIABLE|Networks are equivalent|Property proved|proved", said) and not re.search(r"SATISFIABLE\b(?<!UNSATISFIABLE)|disproved|was asserted", said):
-                return "proved"
+            read = f"read_aiger {aiger}; strash;"
+            said = self.abc(read + " dsat; print_status; scorr; dprove -r; print_status; pdr -T 10; print_status")
             if re.search(r"disproved|was asserted|Output \d+ .* asserted", said):
                 return "differs"
-            said = run(["timeout", "60", "yosys-abc", "-c", f"read_aiger {aiger}; strash; scorr; bmc3 -F {depth} -T 50"])
+            if re.search(r"UNSATISFIABLE|Networks are equivalent|Property proved|proved", said) and not re.search(r"(?<!UN)SATISFIABLE\b", said):
+                return "proved"
+            said = self.abc(f"{read} scorr; bmc3 -F {depth} -T 30")
             return "differs" if "was asserted" in said else "bounded" if "No output" in said or "No counter" in said else "unknown"
         except (Failed, subprocess.TimeoutExpired) as what:
             (folder / "failed").write_text(str(what))
             return "unknown"
+
+    @staticmethod
+    def abc(commands):
+        """What it says; also if it does not end in time."""
+        return subprocess.run(["timeout", "40", "yosys-abc", "-c", commands], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace").stdout
 
     def judge(self, depth, pool):
         results = self.results()
@@ -321,6 +327,25 @@ def arguments():
     return options
 
 
+def attempt(failures, function, *arguments):
+    try:
+        function(*arguments)
+    except Failed as what:
+        failures.append(str(what))
+        print(f"mutants.py: {what}", file=sys.stderr, flush=True)
+
+
+def run_tests(module, at, modules_in_all, options, pool):
+    module.make(options.each, options.seed)
+    numbers = range(1, len(module.mutants()) + 1)
+    if options.sample:
+        share = options.sample // modules_in_all + (at < options.sample % modules_in_all)
+        numbers = sorted({1 + i * len(numbers) // share for i in range(share)}) if share else []
+    module.test(numbers, pool)
+    killed = sum("killed" in result for result in module.results().values())
+    print(f"{module.name}: mutants={len(module.results())} killed={killed}", flush=True)
+
+
 def main():
     if set(sys.argv) & {"-h", "--help"}:
         print(__doc__)
@@ -338,21 +363,13 @@ def main():
     if not options.table:
         print(f"seed {options.seed}")
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+            # tests first: what lives is judged when all have run
             for at, module in enumerate(chosen):
-                try:
-                    module.make(options.each, options.seed)
-                    count = len(module.mutants())
-                    numbers = range(1, count + 1)
-                    if options.sample:
-                        share = options.sample // len(chosen) + (at < options.sample % len(chosen))
-                        numbers = sorted({1 + (i * count) // share for i in range(share)}) if share else []
-                    module.test(numbers, pool)
-                    module.judge(options.depth, pool)
-                    row = summary([module])[0][1:] if module.results() else [module.name, 0]
-                    print("{}: mutants={} proved={} bounded={} killed={} alive={}".format(*row) if len(row) > 2 else f"{module.name}: none", flush=True)
-                except Failed as what:
-                    failures.append(str(what))
-                    print(f"mutants.py: {what}", file=sys.stderr, flush=True)
+                attempt(failures, run_tests, module, at, len(chosen), options, pool)
+            for module in chosen:
+                attempt(failures, module.judge, options.depth, pool)
+                for row in summary([module]):
+                    print("{}: mutants={} proved={} bounded={} killed={} alive={}".format(*row[1:]), flush=True)
     rows = summary(chosen)
     print(table(rows))
     if options.alive:
