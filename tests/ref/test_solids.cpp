@@ -120,9 +120,9 @@ SolidRelation truth(const Cells& a, const Cells& b) {
 
 /// Subset of a box of cells.
 Cells random_cells(std::mt19937_64& random) {
-  const std::array<unsigned, 3> size = {1 + static_cast<unsigned>(random() % 3),
-                                        1 + static_cast<unsigned>(random() % 3),
-                                        1 + static_cast<unsigned>(random() % 3)};
+  const unsigned most = random() % 16 == 0 ? 3 : 2;
+  const auto length = [&random, most] { return 1 + static_cast<unsigned>(random() % most); };
+  const std::array<unsigned, 3> size = {length(), length(), length()};
   const auto share = 1 + random() % 4;
   Cells cells;
   while (cells.empty()) {
@@ -144,7 +144,7 @@ Cells random_other(const Cells& a, std::mt19937_64& random) {
   if (kind == 0) return a;
   if (kind <= 3) {
     Cells others = random_cells(random);
-    const auto shift = [&random] { return static_cast<int>(random() % 5) - 2; };
+    const auto shift = [&random] { return static_cast<int>(random() % 3) - 1; };
     const Cell by = {shift(), shift(), shift()};
     for (const Cell& x : others) {
       const Cell moved = {x[0] + by[0], x[1] + by[1], x[2] + by[2]};
@@ -194,7 +194,49 @@ void check_cubes(int pairs) {
   for (const auto& [relation, times] : count) std::cout << relation << ' ' << times << ' ';
   std::cout << '\n';
   CHECK(count.size() == 6);
-  for (const auto& [relation, times] : count) CHECK(times > pairs / 50);
+  for (const auto& [relation, times] : count) CHECK(times > pairs / 100);
+}
+
+/// A tetrahedron: the hull of the four points of this primitive.
+using Tetrahedron = Primitive;
+
+Tetrahedron random_tetrahedron(int range, std::mt19937_64& random) {
+  std::uniform_int_distribution<int> coordinate(-range, range);
+  Tetrahedron t;
+  t.kind = Kind::quad;
+  do {
+    for (Vec3d& v : t.v) {
+      for (Eigen::Index i = 0; i < 3; ++i) v[i] = coordinate(random);
+    }
+  } while ((t.v[1] - t.v[0]).cross(t.v[2] - t.v[0]).dot(t.v[3] - t.v[0]) == 0);  // small whole numbers: exact
+  return t;
+}
+
+Mesh mesh_of(const Tetrahedron& t) {
+  Mesh mesh;
+  for (std::size_t i = 0; i < 4; ++i) add_face(mesh, {t.v[i], t.v[(i + 1) % 4], t.v[(i + 2) % 4]});
+  return mesh;
+}
+
+Primitive point(const Vec3d& p) {
+  Primitive result;
+  result.v = {p, p, p, p};
+  return result;
+}
+
+bool holds(const Tetrahedron& a, const Pose& pose_a, const Tetrahedron& b, const Pose& pose_b) {
+  return std::all_of(b.v.begin(), b.v.end(),
+                     [&](const Vec3d& v) { return exact_intersects(a, pose_a, point(v), pose_b); });
+}
+
+SolidRelation truth(const Tetrahedron& a, const Pose& pose_a, const Tetrahedron& b, const Pose& pose_b) {
+  const Relation relation = exact_relation(a, pose_a, b, pose_b);
+  if (relation == Relation::apart) return SolidRelation::disjoint;
+  if (relation == Relation::touching) return SolidRelation::touching;
+  const bool in_b = holds(b, pose_b, a, pose_a);
+  const bool in_a = holds(a, pose_a, b, pose_b);
+  if (in_a && in_b) return SolidRelation::equal;
+  return in_b ? SolidRelation::a_in_b : in_a ? SolidRelation::b_in_a : SolidRelation::overlapping;
 }
 
 }  // namespace
@@ -308,5 +350,87 @@ TEST_CASE("solids: quads that are not flat are two triangles", "[ref][solids]") 
   expect(roof, inside, SolidRelation::disjoint);  // in the hull of the quad, above the valley
 }
 
-TEST_CASE("solids: sets of cubes", "[ref][solids]") { check_cubes(10000); }
+TEST_CASE("solids: tetrahedra against the oracle of pairs", "[ref][solids]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  std::map<SolidRelation, int> count;
+  for (int i = 0; i < 4000; ++i) {
+    Tetrahedron a = random_tetrahedron(1 + static_cast<int>(random() % 4), random);
+    Tetrahedron b = i % 40 == 0 ? a : random_tetrahedron(1 + static_cast<int>(random() % 4), random);
+    std::shuffle(b.v.begin(), b.v.end(), random);
+    Pose pose_a = here;
+    Pose pose_b = here;
+    if (i % 5 == 1) pose_a = pose_b = random_pose(PoseClass::affine, 3, random);
+    if (i % 5 == 2) pose_b = random_pose(PoseClass::rigid, 1, random);
+    if (i % 5 == 3) {
+      pose_a = random_pose(PoseClass::affine, 1, random);
+      pose_b = random_pose(PoseClass::quarter_turns, 1, random);
+    }
+    if (i % 5 == 4) pose_b.linear() *= 3;
+    const SolidRelation expected = truth(a, pose_a, b, pose_b);
+    ++count[expected];
+    const SolidRelation found = solids(Object(mesh_of(a)), pose_a, Object(mesh_of(b)), pose_b);
+    if (found == expected) continue;
+    FAIL("pair " << i << ": " << found << ", not " << expected << ", seed " << sim::seed_from_environment());
+  }
+  for (const auto& [relation, times] : count) std::cout << relation << ' ' << times << ' ';
+  std::cout << '\n';
+  CHECK(count.size() == 6);
+}
+
+TEST_CASE("solids: points of tetrahedra that overlap, by parity", "[ref][solids]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  int told = 0;
+  for (int i = 0; i < 300; ++i) {
+    std::array<std::vector<Tetrahedron>, 2> parts;
+    std::array<Mesh, 2> mesh;
+    for (const std::size_t side : {0U, 1U}) {
+      for (std::size_t k = 0; k <= random() % 3; ++k) {
+        const bool taken = side == 1 && random() % 3 == 0;  // from A, so that surfaces coincide
+        parts[side].push_back(taken ? parts[0][random() % parts[0].size()] : random_tetrahedron(3, random));
+        append(mesh[side], mesh_of(parts[side].back()));
+      }
+    }
+    const SolidRelation found = solids(Object(mesh[0]), here, Object(mesh[1]), here);
+    std::array<std::array<bool, 2>, 2> seen = {};
+    std::uniform_int_distribution<int> coordinate(-3 * 64, 3 * 64);
+    for (int k = 0; k < 300; ++k) {
+      const Primitive p = point(Vec3d(coordinate(random), coordinate(random), coordinate(random)) / 64);
+      std::array<bool, 2> in = {};
+      bool on_surface = false;
+      for (const std::size_t side : {0U, 1U}) {
+        for (const Tetrahedron& t : parts[side]) {
+          const Relation relation = exact_relation(t, p);
+          on_surface = on_surface || relation == Relation::touching;
+          if (relation == Relation::crossing) in[side] = !in[side];
+        }
+      }
+      if (!on_surface) seen[in[0]][in[1]] = true;
+    }
+    INFO("pair " << i << ": " << found << ", seed " << sim::seed_from_environment());
+    const bool apart = found == SolidRelation::disjoint || found == SolidRelation::touching;
+    if (seen[1][1]) CHECK_FALSE(apart);
+    if (seen[1][0]) CHECK((apart || found == SolidRelation::overlapping || found == SolidRelation::b_in_a));
+    if (seen[0][1]) CHECK((apart || found == SolidRelation::overlapping || found == SolidRelation::a_in_b));
+    told += seen[1][1] && seen[1][0] && seen[0][1];
+    if (seen[1][1] && seen[1][0] && seen[0][1]) CHECK(found == SolidRelation::overlapping);
+  }
+  CHECK(told > 50);
+}
+
+TEST_CASE("solids: a scene, a device", "[ref][solids]") {
+  const Object cube(box(0, 0, 0, 1, 1, 1)), core(box(0.25, 0.25, 0.25, 0.5, 0.5, 0.5));
+  Scene scene;
+  scene.add(cube);
+  scene.add(cube, shifted(1, 0, 0));
+  scene.add(core);
+  scene.add(cube, shifted(5, 0, 0));
+  const auto device = open_cpu_device();
+  const std::vector<SolidPair> pairs = solids(*device, scene);
+  REQUIRE(pairs.size() == 2);
+  CHECK((pairs[0].a == 1 && pairs[0].b == 2 && pairs[0].relation == SolidRelation::touching));
+  CHECK((pairs[1].a == 1 && pairs[1].b == 3 && pairs[1].relation == SolidRelation::b_in_a));
+  CHECK(solids(*device, core, here, cube, here) == SolidRelation::a_in_b);
+}
+
+TEST_CASE("solids: sets of cubes", "[ref][solids]") { check_cubes(5000); }
 TEST_CASE("solids: more sets of cubes", "[.long]") { check_cubes(300000); }

@@ -74,6 +74,38 @@ Range range_of(const BigInt& x, const BigInt& w, int exponent) {
   return x.sign() > 0 ? Range{low, high} : Range{-high, -low};
 }
 
+/// The product of two doubles that are not 0, as mantissa * 2^exponent with an odd mantissa: small numbers for models
+/// in whole units.
+struct Product {
+  Product(exact::Scaled x, exact::Scaled y) : exponent(x.exponent + y.exponent) {
+    for (exact::Scaled* factor : {&x, &y}) {
+      for (; factor->mantissa % 2 == 0; ++exponent) factor->mantissa /= 2;
+    }
+    mantissa = BigInt(x.mantissa) * y.mantissa;
+  }
+  BigInt mantissa;
+  int exponent;
+};
+
+/// exact::common_exponent() and exact::scaled_points() for these.
+int common_exponent(const Primitive& p, const Pose& pose, int so_far) {
+  exact::for_each_product(p, pose, [&so_far](std::size_t, std::size_t, const exact::Scaled& x, const exact::Scaled& y) {
+    so_far = std::min(so_far, Product(x, y).exponent);
+  });
+  return so_far;
+}
+std::array<Vector, 4> scaled_points(const Primitive& p, const Pose& pose, int exponent) {
+  std::array<Vector, 4> points;
+  exact::for_each_product(p, pose, [&](std::size_t i, std::size_t k, const exact::Scaled& x, const exact::Scaled& y) {
+    const Product product(x, y);
+    points[i][k] += product.mantissa << (product.exponent - exponent);
+  });
+  return points;
+}
+
+/// More than these are looked for only if they do not tell everything.
+constexpr std::size_t some_contacts = 256;
+
 using Triangle = std::uint32_t;
 
 /// A placed object as triangles.
@@ -109,7 +141,7 @@ class Side {
   /// Greatest exponent such that all coordinates in the world are multiples of 2^exponent; `so_far` if that is less.
   int common_exponent(int so_far) const {
     for (std::uint32_t f = 0; f < face_count(); ++f) {
-      so_far = exact::common_exponent(object_.mesh().primitive(f), pose_, so_far);
+      so_far = cchip::common_exponent(object_.mesh().primitive(f), pose_, so_far);
     }
     return so_far;
   }
@@ -185,7 +217,7 @@ class Side {
     const auto [at, is_new] = placed_.try_emplace(t);
     Placed& result = at->second;
     if (!is_new) return result;
-    const std::array<exact::Vec<BigInt>, 4> points = exact::scaled_points(primitive(t), pose_, exponent_);
+    const std::array<Vector, 4> points = scaled_points(primitive(t), pose_, exponent_);
     for (std::size_t i = 0; i < 3; ++i) result.corner[i] = points[i];
     using exact::operator-;
     result.normal = exact::cross(points[1] - points[0], points[2] - points[0]);
@@ -230,26 +262,28 @@ class SolidSearch {
  public:
   SolidSearch(Device* device, const CollisionQuery& query)
       : device_(device), query_(query), sides_{Side(*query.a, *query.pose_a), Side(*query.b, *query.pose_b)} {
-    exponent_ = sides_[1].common_exponent(sides_[0].common_exponent(0));
+    exponent_ = sides_[1].common_exponent(sides_[0].common_exponent(std::numeric_limits<int>::max()));
     for (Side& side : sides_) side.set_exponent(exponent_);
   }
 
   SolidRelation run() {
-    CollisionRequest request;
+    CollisionRequest request = {CollisionRequest::Contacts::all, some_contacts};
     request.relation = true;
-    const CollisionResult first = collide(request);
-    if (!first.hit && sides_[0].is_clear_of(sides_[1])) return SolidRelation::disjoint;
+    CollisionResult found = collide(request);
+    if (!found.hit && sides_[0].is_clear_of(sides_[1])) return SolidRelation::disjoint;
     std::array<std::vector<bool>, 2> touched = {std::vector<bool>(sides_[0].face_count()),
                                                 std::vector<bool>(sides_[1].face_count())};
     bool touching = false;
-    if (first.hit) {
+    if (found.hit) {
       // Where faces cross, usually the pieces of one of them show everything.
-      if (first.relation == Relation::crossing && look_at_first(first.contacts.front())) return answer(true);
-      request.contacts = CollisionRequest::Contacts::all;
-      request.relation = false;
-      const CollisionResult all = collide(request);
+      for (const Contact& contact : found.contacts) {
+        if (contact.relation != Relation::crossing) continue;
+        if (look_at_first(contact)) return answer(true);
+        break;
+      }
+      if (found.contacts.size() == some_contacts) found = collide({CollisionRequest::Contacts::all});
       std::array<std::map<std::uint32_t, std::vector<Triangle>>, 2> others;
-      for (const Contact& contact : all.contacts) {
+      for (const Contact& contact : found.contacts) {
         touching = touching || triangles_touch(contact);
         for (const std::uint32_t a : query_.a->parts(contact.face_a)) {
           for (const std::uint32_t b : query_.b->parts(contact.face_b)) {
@@ -436,20 +470,26 @@ class SolidSearch {
     for (std::size_t k = 1; k < 3; ++k) {
       if (abs(n[k]) > abs(n[axis])) axis = k;
     }
-    if (cuts.empty()) {
-      const Vector edge = corner[1] - corner[0];
-      look(own, t, {{sum(sum(corner[0], corner[1]), corner[2]), 3}, exact::cross(n, edge), edge, axis});
-      return;
+    // The edges divide cuts that go on beyond them.
+    std::vector<Cut> dividers = cuts;
+    bool in_pieces = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector& to = corner[(i + 1) % 3];
+      dividers.push_back({{corner[i], 1}, {to, 1}, to - corner[i]});
     }
     for (const Cut& cut : cuts) {
       const Vector w = exact::cross(n, cut.along);
       const Vector minus_w = times(w, -1);
-      for (const Point& middle : middles(cut, cuts, w)) {
-        look(own, t, {middle, w, cut.along, axis});
-        look(own, t, {middle, minus_w, cut.along, axis});
+      for (const Point& middle : middles(cut, dividers, w)) {
+        if (look(own, t, {middle, w, cut.along, axis})) in_pieces = true;
+        if (look(own, t, {middle, minus_w, cut.along, axis})) in_pieces = true;
         if (is_decided()) return;
       }
     }
+    if (in_pieces) return;
+    // No cut passes the interior: it is one piece.
+    const Vector edge = corner[1] - corner[0];
+    look(own, t, {{sum(sum(corner[0], corner[1]), corner[2]), 3}, exact::cross(n, edge), edge, axis});
   }
 
   /// A fraction of the way along a segment. \pre whole > 0
@@ -460,16 +500,15 @@ class SolidSearch {
     friend bool operator==(const Fraction& x, const Fraction& y) { return x.part * y.whole == y.part * x.whole; }
   };
 
-  /// Middles of the parts into which others divide a segment. \param w at right angles to it, in the plane
-  static std::vector<Point> middles(const Cut& cut, const std::vector<Cut>& cuts, const Vector& w) {
+  /// Middles of the parts into which others, or itself, divide a segment. \param w at right angles to it, in the plane
+  static std::vector<Point> middles(const Cut& cut, const std::vector<Cut>& dividers, const Vector& w) {
     const std::size_t axis = exact::nonzero_component(cut.along);
     // Coordinate `axis` of all points, as a fraction of that of the end from that of the beginning.
     const BigInt begin = cut.from.x[axis] * cut.to.w;
     const BigInt length = cut.to.x[axis] * cut.from.w - begin;
     const BigInt unit = cut.from.w * cut.to.w;
     std::vector<Fraction> at = {{0, 1}, {1, 1}};
-    for (const Cut& other : cuts) {
-      if (&other == &cut) continue;
+    for (const Cut& other : dividers) {
       const BigInt limit = dot(w, cut.from.x);
       const BigInt from = dot(w, other.from.x) * cut.from.w - limit * other.from.w;
       const BigInt to = dot(w, other.to.x) * cut.from.w - limit * other.to.w;
@@ -498,9 +537,9 @@ class SolidSearch {
     return result;
   }
 
-  /// Looks at both sides of a point, if it is in the triangle.
-  void look(std::size_t own, Triangle t, const Sample& sample) {
-    if (!passes(sides_[own], t, sample)) return;
+  /// Looks at both sides of a point, if it is in the triangle. \returns whether it is
+  bool look(std::size_t own, Triangle t, const Sample& sample) {
+    if (!passes(sides_[own], t, sample)) return false;
     const Passed a = pass(sides_[0], sample);
     const Passed b = pass(sides_[1], sample);
     if ((a.below + a.here + a.above) % 2 != 0 || (b.below + b.here + b.above) % 2 != 0) {
@@ -511,6 +550,7 @@ class SolidSearch {
     const bool own_changes = (own == 0 ? a : b).changes();
     changes_ = changes_ || own_changes;
     all_plain_ = all_plain_ && own_changes && (own == 0 ? b : a).here == 0;
+    return true;
   }
 
   void add(bool in_a, bool in_b) {
@@ -589,7 +629,7 @@ void check_solid(const Object& object, const Pose& pose, const char* name) {
   Primitive columns;
   for (Eigen::Index i = 0; i < 3; ++i) columns.v[static_cast<std::size_t>(i)] = pose.linear().col(i);
   const Pose here = Pose::Identity();
-  const auto points = exact::scaled_points(columns, here, exact::common_exponent(columns, here, 0));
+  const std::array<Vector, 4> points = scaled_points(columns, here, common_exponent(columns, here, 0));
   if (!dot(points[0], exact::cross(points[1], points[2])).is_zero()) return;
   throw std::invalid_argument(std::string("solids: the pose of ") + name +
                               " flattens space (its determinant is 0), so that the object has no volume");
