@@ -903,6 +903,13 @@ Raises OSError: the file cannot be opened; FileNotFoundError, IsADirectoryError.
 vertices: (vertex_count, 3) float64, in the order of this object's.
 
 Raises ValueError: another shape, a vertex that is not finite or beyond 2^1000.)")
+      .def_prop_ro(
+          "is_closed",
+          [](const Object& x) {
+            const nb::gil_scoped_release release;
+            return x.is_closed();
+          },
+          "An even number of faces use each edge, so the mesh bounds a solid; vertices by their coordinates.")
       .def(
           "self_contacts",
           [](const Object& x, std::optional<std::size_t> max_contacts, bool relation, bool neighbours) -> nb::object {
@@ -1205,6 +1212,23 @@ rel_error: upper - lower <= rel_error * upper is good enough; with 0 both are th
 stop_above: of a distance above this nothing more is asked.
 
 Raises ValueError: a pose as in collide(); rel_error that is not in [0, 1), a stop_above that is negative or nan.)");
+  m.def(
+      "solids",
+      [](const Object& a, nb::handle pose_a, const Object& b, nb::handle pose_b) {
+        const Pose place_a = one_pose(pose_a, "pose_a");
+        const Pose place_b = one_pose(pose_b, "pose_b");
+        const nb::gil_scoped_release release;
+        const GradualUnderflow mode;
+        return cchip::name_of(cchip::solids(a, place_a, b, place_b));
+      },
+      "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(),
+      nb::sig("def solids(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
+              "numpy.typing.ArrayLike | None) -> str"),
+      R"(How do two closed meshes lie to each other as solids? Exactly.
+
+"disjoint"; "touching": surfaces share a point, no volume; "overlapping"; "a_in_b" and "b_in_a", surfaces may touch; "equal".
+
+Raises ValueError: a pose as in collide(), or one that flattens space; a mesh that is not closed (Object.is_closed).)");
   m.def("_exact", &exact, "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(),
         nb::sig("def _exact(a: Object, pose_a: typing.Any, b: Object, pose_b: typing.Any) -> Result"),
         "For tests: all contacts by asking about every pair of faces in integers of any size. Slow.");

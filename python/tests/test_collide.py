@@ -537,3 +537,18 @@ def test_intersections_curves_and_normals():
     assert apart.intersections() == [] and apart.curves() == [] and apart.normals().shape == (0, 2, 3)
     near = collide(CUBE, None, CUBE, shift(2), contacts="all", within=1)
     assert near.hit and set(map(len, near.intersections())) == {0}
+
+
+def test_solids():
+    box = Object(*cube())
+    small = np.diag([0.5, 0.5, 0.5, 1])
+    for pose, relation in ((shift(2), "disjoint"), (shift(1), "touching"), (shift(0.5), "overlapping"), (None, "equal"), (small, "b_in_a")):
+        assert collisionchip.solids(box, None, box, pose) == relation
+    assert collisionchip.solids(box, small, box, None) == "a_in_b"
+    corners, faces = cube()
+    lid = Object(corners, faces[1:])
+    assert box.is_closed and not lid.is_closed
+    with pytest.raises(ValueError, match="the surface of A is open at the edge from"):
+        collisionchip.solids(lid, None, box, None)
+    with pytest.raises(ValueError, match="flattens space"):
+        collisionchip.solids(box, None, box, np.diag([1.0, 1, 0, 1]))

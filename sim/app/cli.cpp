@@ -261,16 +261,19 @@ void add_collide(CLI::App& app, CollideOptions& options) {
                          "CSV file with columns r00..r22, tx, ty, tz: a query for each row; - reads standard input");
   pose->excludes(matrix)->excludes(poses);
   matrix->excludes(poses);
-  add_choice(*command, "--contacts", options.contacts, contact_choices,
-             "stop at the first contact or find all (default: all, with --poses first)");
-  add_whole(*command, "--most", options.max_contacts, "find at most N contacts of a query (default: no limit)",
-            at_least_1);
-  add_choice(*command, "--counts", options.only_crossing, count_choices,
-             "the least that counts as a contact: touching (default) or crossing");
-  command->add_flag("--relation", options.relation,
-                    "tell touching from crossing (a single query for all contacts does in any case)");
-  add_text(*command, "--within", options.within,
-           "faces at most this far apart are contacts, too (default 0: they touch)");
+  auto* contacts = add_choice(*command, "--contacts", options.contacts, contact_choices,
+                              "stop at the first contact or find all (default: all, with --poses first)");
+  auto* most = add_whole(*command, "--most", options.max_contacts,
+                         "find at most N contacts of a query (default: no limit)", at_least_1);
+  auto* counts = add_choice(*command, "--counts", options.only_crossing, count_choices,
+                            "the least that counts as a contact: touching (default) or crossing");
+  auto* relation = command->add_flag("--relation", options.relation,
+                                     "tell touching from crossing (a single query for all contacts does in any case)");
+  auto* within = add_text(*command, "--within", options.within,
+                          "faces at most this far apart are contacts, too (default 0: they touch)");
+  auto* solids = command->add_flag("--solids", options.solids,
+                                   "how closed meshes lie to each other as solids: is one inside the other?");
+  for (auto* other : {poses, contacts, most, counts, relation, within}) solids->excludes(other);
   command->add_flag("--exit-code", options.exit_code, "end with exit code 5 if there is a contact");
   add_text(*command, "--device", options.device, "what answers: " + device_words() + " (default cpu)");
   add_choice(*command, "--format", options.format, formats, "output (default table)");
@@ -285,12 +288,15 @@ void add_collide(CLI::App& app, CollideOptions& options) {
       *command, "--trace", options.trace,
       "with --device sim: write the waveform of the chip's first 30,000 clocks (FST) and a .gtkw layout beside it");
   add_text(*command, "--ply", options.ply, "write both meshes, the faces that cross and those that touch coloured")
-      ->excludes(poses);
+      ->excludes(poses)
+      ->excludes(solids);
   add_text(*command, "--html", options.html,
            "write a page for a browser: both meshes to turn, cut and click, with the list of their contacts")
-      ->excludes(poses);
+      ->excludes(poses)
+      ->excludes(solids);
   add_text(*command, "--certificate", options.certificate,
-           "write a proof of each answer into this file, for cchip check");
+           "write a proof of each answer into this file, for cchip check")
+      ->excludes(solids);
   command->footer(exit_codes +
                   "Examples:\n"
                   "  cchip collide a.obj b.stl --pose 0.5,0,0\n"
@@ -299,6 +305,7 @@ void add_collide(CLI::App& app, CollideOptions& options) {
                   "  cchip collide a.obj b.stl --poses poses.csv --expect touches\n"
                   "  cchip collide a.obj b.stl --poses poses.csv --counts crossing\n"
                   "  cchip collide a.obj b.stl --pose 2,0,0 --within 0.5\n"
+                  "  cchip collide a.obj b.stl --pose 0.5,0,0 --solids\n"
                   "  cchip collide a.obj b.stl --pose 0.5,0,0 --device sim --trace chip.fst");
 }
 

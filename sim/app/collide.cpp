@@ -9,6 +9,7 @@
 #include <cchip/certificate/certify.hpp>
 #include <cchip/collide/face_pairs.hpp>
 #include <cchip/collide/intersection.hpp>
+#include <cchip/cpu/solids.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/geometry/decimal.hpp>
 #include <cchip/machines/simulated_chip.hpp>
@@ -322,6 +323,29 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
   return report(totals, options, streams);
 }
 
+/// How the two solids lie to each other, in a line.
+int answer_solids(const CollideOptions& options, Device& device, const Streams& streams) {
+  const Pose pose = parse_pose_options(options.pose, options.pose_matrix);
+  MeshReader reader(streams, options.lenient);
+  const Object a = load_object(options.file_a, reader);
+  const Object b = load_object(options.file_b, reader);
+  SolidRelation relation = {};
+  try {
+    relation = solids(device, a, Pose::Identity(), b, pose);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+  if (options.format == Format::table) {
+    streams.out << name_of(relation) << '\n';
+  } else {
+    const auto writer = make_row_writer(options.format, streams.out, {"solids"});
+    writer->write({std::string(name_of(relation))});
+    writer->flush();
+  }
+  if (options.exit_code && relation != SolidRelation::disjoint) return exit_contact;
+  return reader.faces_left_out() > 0 ? exit_left_out : exit_ok;
+}
+
 /// Answers the poses of a file, a batch at a time, and writes a row for each.
 class PosesRunner {
  public:
@@ -466,6 +490,7 @@ int run_collide(const CollideOptions& options, const Streams& streams) {
     throw UsageError("--expect: there is no file of poses; name one with --poses");
   }
   const auto device = open_named_device(options);
+  if (options.solids) return answer_solids(options, *device, streams);
   if (options.poses_file.empty()) return answer_one(options, *device, streams);
   return report(PosesRunner(options, *device, streams).run(), options, streams);
 }

@@ -26,6 +26,7 @@ struct CollideOptions {
   bool only_crossing = false;    ///< contacts that only touch do not count
   bool relation = false;         ///< tell touching from crossing; a single query for all contacts does in any case
   std::string within;            ///< faces at most this far apart are contacts; empty: those that share a point
+  bool solids = false;           ///< how the solids lie to each other, in place of contacts
   bool exit_code = false;        ///< exit code 5 if a query found a contact
   bool lenient = false;          ///< faces that cannot be used are left out
   std::string device = "cpu";

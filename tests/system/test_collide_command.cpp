@@ -193,6 +193,27 @@ TEST_CASE("collide: faces within a distance", "[system][collide]") {
   CHECK(collide_cubes({"--within", "1", "--counts", "crossing"}).code == exit_usage);
 }
 
+TEST_CASE("collide: solids", "[system][collide]") {
+  // Cubes with edges of 1.
+  const auto of = [](std::vector<std::string> arguments) {
+    arguments.emplace_back("--solids");
+    return collide_cubes(arguments);
+  };
+  CHECK(of({"--pose", "1.25,0,0"}).out == "disjoint\n");
+  CHECK(of({"--pose", "1,0,0"}).out == "touching\n");
+  CHECK(of({"--pose", "0.5,0,0"}).out == "overlapping\n");
+  CHECK(of({}).out == "equal\n");
+  CHECK(of({"--pose-matrix", "0.5,0,0,0,0,0.5,0,0,0,0,0.5,0"}).out == "b_in_a\n");
+  CHECK(of({"--pose", "1,0,0", "--format", "csv"}).out == "solids\ntouching\n");
+  CHECK(of({"--pose", "1,0,0", "--format", "jsonl"}).out == "{\"solids\":\"touching\"}\n");
+  CHECK(of({"--pose", "1,0,0", "--exit-code"}).code == exit_contact);
+  CHECK(of({"--pose", "1.25,0,0", "--exit-code"}).code == exit_ok);
+  CHECK(of({"--relation"}).code == exit_usage);
+  const Outcome flat = of({"--pose-matrix", "1,0,0,0,0,1,0,0,0,0,0,0"});
+  CHECK(flat.code == exit_usage);
+  CHECK(flat.err.find("the pose of B flattens space") != std::string::npos);
+}
+
 TEST_CASE("collide: touching is told from crossing", "[system][collide]") {
   const Outcome flush = collide_cubes({"--pose", "1,0,0"});
   CHECK(lines(flush.out).front() == "touch: 5 faces of A meet 5 of B");

@@ -10,6 +10,7 @@
 #include <cchip/collide/scene.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/cpu/distance.hpp>
+#include <cchip/cpu/solids.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/mesh/mesh.hpp>
 #include <cchip/mesh/shapes.hpp>

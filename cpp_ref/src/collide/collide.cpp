@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "edges.hpp"
 #include "float_mode.hpp"
 
 namespace cchip {
@@ -44,13 +45,13 @@ Object::Object(Mesh mesh) {
   check_float_mode();
   bvh::SupportTree tree(mesh, bvh::build_tree(mesh));
   std::vector<std::uint32_t> by_file = faces_by_file(mesh);
-  data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(tree), std::move(by_file)});
+  data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(tree), std::move(by_file), std::make_shared<Edges>()});
 }
 
 Object::Object(Mesh mesh, const bvh::Tree& tree) {
   bvh::SupportTree support(mesh, tree);
   std::vector<std::uint32_t> by_file = faces_by_file(mesh);
-  data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(support), std::move(by_file)});
+  data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(support), std::move(by_file), std::make_shared<Edges>()});
 }
 
 void Object::refuse_moved_from() {

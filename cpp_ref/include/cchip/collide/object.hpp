@@ -8,9 +8,17 @@
 #include <cchip/mesh/mesh.hpp>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace cchip {
+
+/// An edge at which a surface is open: an odd number of its faces have both ends as neighbouring corners.
+struct OpenEdge {
+  Vec3d from;
+  Vec3d to;
+  std::uint32_t face;  ///< the first face that uses it; number as in Contact
+};
 
 /// A mesh with its tree, built once and shared by all copies of the object. One that was moved from has no mesh:
 /// calls that need it throw, devices refuse it, and id() is null. Immutable, so it may be used by any number of threads
@@ -43,13 +51,27 @@ class Object {
   /// \throws std::invalid_argument the object was moved from
   std::vector<std::uint32_t> parts(std::uint32_t number) const;
 
+  /// Is the surface closed? It is if an even number of faces use each edge; then it bounds a solid
+  /// (docs/cpp/solids.md). Which way round the faces are is of no account. Vertices are the same if their coordinates
+  /// are, whatever their numbers, so a mesh from an STL file may be closed. An edge whose ends coincide is none. The
+  /// first call of is_closed(), open_edge() or same_place() takes O(faces log(faces)) time; copies of the object share
+  /// its result. \throws std::invalid_argument the object was moved from; so do open_edge() and same_place()
+  bool is_closed() const { return !open_edge(); }
+  /// The first edge at which it is open, in the order of the faces; none if the surface is closed.
+  std::optional<OpenEdge> open_edge() const;
+  /// For each vertex, the least number of a vertex with the same coordinates. Those that no face uses have their own.
+  const std::vector<std::uint32_t>& same_place() const;
+
  private:
+  struct Edges;
   struct Data {
     Mesh mesh;
     bvh::SupportTree tree;
     /// Faces by their number in the file, if some were cut and file_face is not ascending; else empty.
     std::vector<std::uint32_t> by_file;
+    std::shared_ptr<Edges> edges;  ///< what is known of them; filled at the first question
   };
+  const Edges& edges() const;
   const Data& data() const {
     if (!data_) refuse_moved_from();
     return *data_;
