@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 // cchip_bv_pose: sets up the poses of the queries and keeps them for the box test.
-//   latency      20 clocks from an accepted pose to m_pose_valid, while all of it is in memory;
+//   latency      21 clocks from an accepted pose to m_pose_valid, while all of it is in memory;
 //                2 clocks from row_context to a row, 3 from lane_context to pose_select, and 4
 //                to pose_m, pose_magnitude and pose_factor
 //   throughput   a pose every 13 clocks; each port reads on every clock
@@ -80,8 +80,8 @@ module cchip_bv_pose #(
   // M and t are there one clock after the start, the directions from 7 clocks after it on, when the
   // next pose may already be at work
   wire start = s_pose_valid & s_pose_ready;
-  reg start_q, done_q;
-  reg [CONTEXT_W-1:0] set_context_q, write_context_q, done_context_q;
+  reg start_q, done_q, done_q2;
+  reg [CONTEXT_W-1:0] set_context_q, write_context_q, done_context_q, done_context_q2;
   reg [3:0] set_shift_q;
   wire last = set_valid && set_direction == LAST;
   always @(posedge clk) begin
@@ -90,12 +90,14 @@ module cchip_bv_pose #(
       set_shift_q   <= s_pose_shift;
     end
     if (last || !set_valid) write_context_q <= set_context_q;
-    done_context_q <= write_context_q;
-    start_q        <= start & ~rst;
-    done_q         <= last & ~rst;
+    done_context_q  <= write_context_q;
+    done_context_q2 <= done_context_q;
+    start_q         <= start & ~rst;
+    done_q          <= last & ~rst;
+    done_q2         <= done_q & ~rst;
   end
-  assign m_pose_valid   = done_q;
-  assign m_pose_context = done_context_q;
+  assign m_pose_valid   = done_q2;
+  assign m_pose_context = done_context_q2;
 
   // ---- rows
   wire [4*97-1:0] rows;
@@ -152,30 +154,42 @@ module cchip_bv_pose #(
       .read_addr (lane_addr_q2),
       .read_data (pose_m)
   );
+  // the memories of the directions lie along the whole lane: a clock for the way
+  reg [12:0] write_q;
+  reg [ADDR_W-1:0] write_addr_q;
+  reg [6:0] select_q;
+  reg [29:0] magnitude_q;
+  reg [13:0] factor_q;
+  always @(posedge clk) begin
+    write_addr_q <= write_addr;
+    select_q     <= set_select;
+    magnitude_q  <= set_magnitude;
+    factor_q     <= set_factor;
+  end
   generate
     for (d = 0; d < 13; d = d + 1) begin : gen_direction
       localparam [31:0] D = d;
-      wire write = set_valid && set_direction == D[3:0];
+      always @(posedge clk) write_q[d] <= set_valid && set_direction == D[3:0];
       // from a block to the multiplexers behind pose_select it is far
       wire [6:0] select;
       wire [7:0] high;  // of the factors
-      reg [6:0] select_q;
+      reg [6:0] read_select_q;
       reg [7:0] high_q, high_q2;
       always @(posedge clk) begin
-        select_q <= select;
-        high_q   <= high;
-        high_q2  <= high_q;
+        read_select_q <= select;
+        high_q        <= high;
+        high_q2       <= high_q;
       end
-      assign pose_select[7*d+:7]    = select_q;
+      assign pose_select[7*d+:7]    = read_select_q;
       assign pose_factor[14*d+6+:8] = high_q2;
       cchip_block_ram #(
           .WIDTH (15),
           .ADDR_W(ADDR_W)
       ) u_early (
           .clk       (clk),
-          .write     (write),
-          .write_addr(write_addr),
-          .write_data({set_factor[13:6], set_select}),
+          .write     (write_q[d]),
+          .write_addr(write_addr_q),
+          .write_data({factor_q[13:6], select_q}),
           .read_addr (lane_addr),
           .read_data ({high, select})
       );
@@ -184,9 +198,9 @@ module cchip_bv_pose #(
           .ADDR_W(ADDR_W)
       ) u_late (
           .clk       (clk),
-          .write     (write),
-          .write_addr(write_addr),
-          .write_data({set_factor[5:0], set_magnitude}),
+          .write     (write_q[d]),
+          .write_addr(write_addr_q),
+          .write_data({factor_q[5:0], magnitude_q}),
           .read_addr (lane_addr_q2),
           .read_data ({pose_factor[14*d+:6], pose_magnitude[30*d+:30]})
       );

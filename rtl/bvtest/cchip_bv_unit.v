@@ -2,7 +2,7 @@
 `default_nettype none
 // cchip_bv_unit: the whole box test: which children of a node of A may meet which children of a
 // node of B, which of these child pairs go on, and which is the best of them.
-//   latency      30 clocks from the clock of s_ready to the verdict; 20 clocks from a pose that is
+//   latency      30 clocks from the clock of s_ready to the verdict; 21 clocks from a pose that is
 //                accepted to m_pose_valid
 //   throughput   a node pair every max(3, children of A that count, those of B) clocks, back to
 //                back; a pose every 13 clocks, beside the node pairs

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 `include "cchip_defs.vh"
 // cchip_broad_phase: from queries to leaf pairs: cache, box test and traversal. Memory is read
 // as a client of cchip_axi_read.
@@ -252,19 +253,40 @@ module cchip_broad_phase #(
   assign count_box_busy = pair_valid;
   wire unused = &{1'b0, pair_ready};
 
+  // The box test's set-up of poses is far from the traversal. A clock for the way: the next query
+  // starts when this one has left the traversal's pipeline, and start_ready is 0 by then.
+  reg pose_valid_q;
+  reg [$clog2(QUERIES)-1:0] pose_context_q;
+  reg [287:0] pose_m_q;
+  reg [107:0] pose_t_q;
+  reg [3:0] pose_shift_q;
+  reg [11:0] pose_error_q;
+  always @(posedge clk) begin
+    pose_valid_q   <= m_start_valid & ~block_rst[2];
+    pose_context_q <= m_start_context;
+    pose_m_q       <= m_start_query[`CCHIP_QUERY_M];
+    pose_t_q       <= m_start_query[`CCHIP_QUERY_T];
+    pose_shift_q   <= m_start_query[`CCHIP_QUERY_SHIFT];
+    pose_error_q   <= m_start_query[`CCHIP_QUERY_ERROR];
+  end
+  always @(posedge clk)
+    if (!rst && !block_rst[2]) begin
+      `CCHIP_ASSERT(a_pose_room, !pose_valid_q || start_ready)
+    end
+
   cchip_bv_unit #(
       .QUERIES(QUERIES),
       .TAG_W  (PLACE_W)
   ) u_bv_unit (
       .clk           (clk),
       .rst           (block_rst[2]),
-      .s_pose_valid  (m_start_valid),
+      .s_pose_valid  (pose_valid_q),
       .s_pose_ready  (start_ready),
-      .s_pose_context(m_start_context),
-      .s_pose_m      (m_start_query[`CCHIP_QUERY_M]),
-      .s_pose_t      (m_start_query[`CCHIP_QUERY_T]),
-      .s_pose_shift  (m_start_query[`CCHIP_QUERY_SHIFT]),
-      .s_pose_error  (m_start_query[`CCHIP_QUERY_ERROR]),
+      .s_pose_context(pose_context_q),
+      .s_pose_m      (pose_m_q),
+      .s_pose_t      (pose_t_q),
+      .s_pose_shift  (pose_shift_q),
+      .s_pose_error  (pose_error_q),
       .m_pose_valid  (posed),
       .m_pose_context(posed_context),
       .s_valid       (pair_valid),

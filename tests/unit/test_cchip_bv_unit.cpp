@@ -13,7 +13,7 @@ using namespace cchip::test;
 namespace {
 
 constexpr int latency = 30;       // from the clock of s_ready to the verdict
-constexpr int pose_latency = 20;  // from an accepted pose to m_pose_valid
+constexpr int pose_latency = 21;  // from an accepted pose to m_pose_valid
 
 struct NodePair {
   bvh::InnerLine a;
