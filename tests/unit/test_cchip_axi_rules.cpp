@@ -1,55 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rules of the bus: legal traffic breaks none, and each fault of a master or of memory is reported under its name.
-#include <unistd.h>
-
-#include <cstdio>
 #include <deque>
 #include <functional>
 #include <models/cchip_axi_rules.hpp>
 #include <set>
 
 #include "bench.hpp"
+#include "reported.hpp"
 
 using namespace cchip;
 using namespace cchip::test;
 
 namespace {
 
-/// What the RTL prints while `body` runs, which may end by an assertion.
+/// Names of the rules that `body` breaks.
 template <class Body>
-std::string printed(Body&& body) {
-  std::fflush(stdout);
-  const int before = dup(1);
-  std::FILE* file = std::tmpfile();
-  REQUIRE(before >= 0);
-  REQUIRE(file != nullptr);
-  REQUIRE(dup2(fileno(file), 1) >= 0);
-  bool ended = false;
-  try {
-    body();
-  } catch (const sim::AssertionFailure&) {
-    ended = true;
-  }
-  std::fflush(stdout);
-  dup2(before, 1);
-  close(before);
-  std::string text(static_cast<std::size_t>(std::ftell(file)), ' ');
-  std::rewind(file);
-  REQUIRE(std::fread(text.data(), 1, text.size(), file) == text.size());
-  std::fclose(file);
-  REQUIRE(ended == (text.find("Assertion failed") != std::string::npos));
-  return text;
-}
-
-/// Names of the assertions in a text of the simulator: what stands between the last dot and the colon.
-std::set<std::string> names_in(const std::string& text) {
+std::set<std::string> broken(Body&& body) {
   std::set<std::string> names;
-  const std::string mark = "Assertion failed in ";
-  for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + 1)) {
-    const std::string path =
-        text.substr(at + mark.size(), text.find_first_of(":\n", at + mark.size()) - at - mark.size());
-    names.insert(path.substr(path.rfind('.') + 1));
-  }
+  for (const std::string& name : reported(body)) names.insert(name.substr(name.find('.') + 1));
   return names;
 }
 
@@ -354,7 +322,7 @@ TEST_CASE("cchip_axi_rules: each fault of a master is reported under the name of
     const bool at_reset = std::string(wrong.rule).find("reset") != std::string::npos;
     if (!at_reset) bus.step();
     CAPTURE(wrong.rule);
-    CHECK(names_in(printed([&] { wrong.run(bus); })) == std::set<std::string>{wrong.rule});
+    CHECK(broken([&] { wrong.run(bus); }) == std::set<std::string>{wrong.rule});
     CHECK(bus.ok);
   }
 }
@@ -364,7 +332,7 @@ TEST_CASE("cchip_axi_rules: each fault of memory is reported under the name of i
     Bus<All> bus;
     bus.step();
     CAPTURE(wrong.rule);
-    CHECK(names_in(printed([&] { wrong.run(bus); })) == std::set<std::string>{wrong.rule});
+    CHECK(broken([&] { wrong.run(bus); }) == std::set<std::string>{wrong.rule});
   }
 }
 
@@ -374,14 +342,14 @@ TEST_CASE("cchip_axi_rules: with MEMORY = 0 a fault of memory is memory_ok = 0 a
     Bus<Told> bus;
     bus.step();
     CAPTURE(wrong.rule);
-    CHECK(printed([&] { wrong.run(bus); }).empty());
+    CHECK(broken([&] { wrong.run(bus); }).empty());
     CHECK_FALSE(bus.ok);
   }
   for (const Wrong<Told>& wrong : wrong_masters<Told>()) {
     Bus<Told> bus;
     if (std::string(wrong.rule).find("reset") == std::string::npos) bus.step();
     CAPTURE(wrong.rule);
-    CHECK(names_in(printed([&] { wrong.run(bus); })) == std::set<std::string>{wrong.rule});
+    CHECK(broken([&] { wrong.run(bus); }) == std::set<std::string>{wrong.rule});
   }
 }
 
@@ -396,30 +364,30 @@ TEST_CASE("cchip_axi_rules: two reads of one ID end in their order, a third is o
   {
     Bus<Two> bus;
     begin(bus);
-    CHECK(names_in(printed([&] { bus.ar(0, 0, 0, false), bus.step(); })) == std::set<std::string>{"a_ar_id"});
+    CHECK(broken([&] { bus.ar(0, 0, 0, false), bus.step(); }) == std::set<std::string>{"a_ar_id"});
   }
   {
     Bus<Two> bus;
     begin(bus);
-    CHECK(names_in(printed([&] { bus.r(0, false), bus.step(), bus.r(0, false), bus.step(); })) ==
+    CHECK(broken([&] { bus.r(0, false), bus.step(), bus.r(0, false), bus.step(); }) ==
           std::set<std::string>{"m_r_last"});
   }
   {
     Bus<Two> bus;
     begin(bus);
     for (int i : {0, 1, 0, 0}) bus.r(0, i == 1), bus.step();
-    CHECK(names_in(printed([&] { bus.r(0, false), bus.step(); })) == std::set<std::string>{"m_r_last"});
+    CHECK(broken([&] { bus.r(0, false), bus.step(); }) == std::set<std::string>{"m_r_last"});
   }
   {
     Bus<Two> bus;
     begin(bus);
     for (int i : {0, 1, 0, 0, 1}) bus.r(0, i == 1), bus.step();
-    CHECK(names_in(printed([&] { bus.r(0, true), bus.step(); })) == std::set<std::string>{"m_r_owed"});
+    CHECK(broken([&] { bus.r(0, true), bus.step(); }) == std::set<std::string>{"m_r_owed"});
   }
   {
     Bus<Two> bus;
     bus.size = 2;
     bus.step();
-    CHECK(names_in(printed([&] { bus.ar(0, 60, 1), bus.step(); })) == std::set<std::string>{"a_ar_boundary"});
+    CHECK(broken([&] { bus.ar(0, 60, 1), bus.step(); }) == std::set<std::string>{"a_ar_boundary"});
   }
 }
