@@ -5,21 +5,21 @@
 // proofs: a checker beside the bus, which drives nothing of it. A rule that is broken is an
 // assertion of its name.
 //   master       a_<channel>_...: valid stays, and what it offers, until it is taken; no valid on
-//                the first clock after rst; INCR bursts of beats of the whole bus at an address that
-//                is a multiple of them, so any strobe is legal, within BOUNDARY bytes; no address
-//                under an ID that has READS reads in flight; at most WRITES writes in flight, all of
-//                ID 0; data of writes in the order of addresses, at most AHEAD whole bursts before
-//                their address, m_axi_wlast on the last beat of the length that the address says,
-//                and on no other
-//   memory       m_<channel>_...: valid stays, and what it offers, until it is taken; a beat only of
-//                a read whose address was taken on an earlier clock, as many as that says, rlast on
-//                the last one and no other, those of one ID in the order of addresses; a response
-//                only to a write whose address and data were all taken on earlier clocks, one each;
-//                no response of an exclusive access, which the masters never make
+//                the first clock after rst; INCR bursts of beats of the whole bus at a multiple of
+//                a beat, so any strobe is legal, within BOUNDARY bytes; no address under an ID
+//                that has READS reads in flight; at most WRITES writes in flight, all of ID 0; data
+//                of writes in the order of addresses, at most AHEAD whole bursts before their
+//                address, m_axi_wlast on the last beat of the length that the address says, and
+//                on no other
+//   memory       m_<channel>_...: valid stays, and what it offers, until it is taken; a beat only
+//                of a read whose address was taken on an earlier clock, as many as that says,
+//                rlast on the last one and no other, those of one ID in the order of addresses; a
+//                response only to a write whose address and data were all taken on earlier clocks,
+//                one each; no response of an exclusive access, which the masters never make
 //   memory_ok    0 on a clock on which memory breaks a rule, also with MEMORY = 0
 //   fault        after a fault of memory the master's rules count as the master does: rlast ends a
 //                read, and what comes unasked is none
-//   latency      a rule is judged on the clock on which it is broken
+//   latency      a rule is judged on the clock on which it is broken; 0 to memory_ok
 //   reset        nothing is in flight, rst is that of master and bus. Not checked: that memory
 //                answers at all
 module cchip_axi_rules #(
@@ -128,8 +128,8 @@ module cchip_axi_rules #(
       reg [AR_W-1:0] ar_q;
       reg [R_W-1:0] r_q;
 
-      // of each ID: a read is in flight, a second one behind it, a beat of the first has come; their
-      // lengths, and the beats that have come
+      // of each ID: a read is in flight, a second one behind it, a beat of the first has come;
+      // their lengths, and the beats that have come
       reg [IDS-1:0] owed_q, two_q, begun_q;
       reg [7:0] first_length[0:IDS-1];
       reg [7:0] second_length[0:IDS-1];

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
+// SPDX-License-Identifier: Apache-2.0
 // Rules of AXI4 beside the two masters of cchip_chip, for simulators that know bind; the RTL does
 // not. Verilator: verilator --assert ... -y sim/rtl_models sim/rtl_models/cchip_chip_rules.sv
 // verilator lint_off PINCONNECTEMPTY
