@@ -5,7 +5,8 @@
 #       headers of the runtime
 #   cchip_verilate(<library> <module> [SYSTEMC] [WAVES] [PREFIX <class>] [PARAMETERS NAME=VALUE ...] [SOURCES file ...])
 #       adds the module as C++ class <class> (default V<module>); without SOURCES Verilator finds it and what it uses by
-#       name in the folders of rtl/cchip.f and of the models for simulation only, and reads nothing else
+#       name in the folders of rtl/cchip.f and of the models for simulation only, and reads nothing else, but
+#       sim/rtl_models/<module>_rules.sv if there is one: checkers that it binds beside the module's ports
 # Waveforms are half of the generated code, so only models whose waves are looked at have them: those with WAVES, and those
 # that the setting CCHIP_WAVES names (make wave-of).
 # SYSTEMC, for a library and all that is in it: classes are SystemC modules, without waveforms. Such a library and one of
@@ -135,6 +136,10 @@ function(cchip_verilate library top)
     endif()
     set(files ${CCHIP_RTL_FOLDERS})
     list(TRANSFORM files PREPEND -y\;)
+    set(rules ${PROJECT_SOURCE_DIR}/sim/rtl_models/${top}_rules.sv)
+    if(EXISTS ${rules})
+      list(APPEND ARG_SOURCES ${rules})
+    endif()
     list(APPEND files ${ARG_SOURCES})
   endif()
   list(TRANSFORM ARG_PARAMETERS PREPEND -G)

@@ -161,6 +161,7 @@ STIMULI = {
     "cchip_traversal_events": ("running = 1; repeat (100) tick;", "s_result_valid = 1;", "m_valid"),
     "cchip_traversal_decision": ("tick;", "s_valid = 1; s_is_start = 1;", "m_start"),
     "cchip_broad_phase": ("pairs_each = 1; repeat (1200) tick;", "s_query_valid = 1;", "m_read_valid"),
+    "cchip_axi_rules": ("", "m_axi_bvalid = 1;", "memory_ok"),
     "cchip_broad_phase_axi": ("pairs_each = 1; repeat (1200) tick;", "s_query_valid = 1;", "m_axi_arvalid"),
     "cchip_bitstream_header": ("clear = 1; tick; tick; clear = 0; s_valid = 1; repeat (3) tick; s_valid = 0;", "s_valid = 1;",
                                "done"),

@@ -82,6 +82,34 @@ module cchip_axi_read_properties #(
       .m_axi_rlast  (m_axi_rlast)
   );
 
+  wire memory_ok;
+  cchip_axi_rules #(
+      .DATA_W  (DATA_W),
+      .ID_W    (ID_W),
+      .WRITES  (0),
+      .BOUNDARY(64),
+      .MEMORY  (0)
+  ) rules (
+      .clk          (clk),
+      .rst          (rst),
+      .memory_ok    (memory_ok),
+      .m_axi_arvalid(m_axi_arvalid),
+      .m_axi_arready(m_axi_arready),
+      .m_axi_arid   (m_axi_arid),
+      .m_axi_araddr (m_axi_araddr),
+      .m_axi_arlen  (m_axi_arlen),
+      .m_axi_arsize (m_axi_arsize),
+      .m_axi_arburst(m_axi_arburst),
+      .m_axi_arcache(m_axi_arcache),
+      .m_axi_arprot (m_axi_arprot),
+      .m_axi_rvalid (m_axi_rvalid),
+      .m_axi_rready (m_axi_rready),
+      .m_axi_rid    (m_axi_rid),
+      .m_axi_rdata  (m_axi_rdata),
+      .m_axi_rresp  (m_axi_rresp),
+      .m_axi_rlast  (m_axi_rlast)
+  );
+
   // ---- the rule of the clients: every place
   reg [CLIENTS*SLOTS-1:0] open_q;  // waits for its last beat
   wire [CLIENTS*SLOTS-1:0] asks, answered, answered_last;

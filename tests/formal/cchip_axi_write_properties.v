@@ -83,6 +83,37 @@ module cchip_axi_write_properties #(
       .m_axi_bresp  (m_axi_bresp)
   );
 
+  wire memory_ok;
+  cchip_axi_rules #(
+      .DATA_W  (DATA_W),
+      .READS   (0),
+      .WRITES  (OUTSTANDING),
+      .BOUNDARY(64),
+      .MEMORY  (0)
+  ) rules (
+      .clk          (clk),
+      .rst          (rst),
+      .memory_ok    (memory_ok),
+      .m_axi_awvalid(m_axi_awvalid),
+      .m_axi_awready(m_axi_awready),
+      .m_axi_awid   (m_axi_awid),
+      .m_axi_awaddr (m_axi_awaddr),
+      .m_axi_awlen  (m_axi_awlen),
+      .m_axi_awsize (m_axi_awsize),
+      .m_axi_awburst(m_axi_awburst),
+      .m_axi_awcache(m_axi_awcache),
+      .m_axi_awprot (m_axi_awprot),
+      .m_axi_wvalid (m_axi_wvalid),
+      .m_axi_wready (m_axi_wready),
+      .m_axi_wdata  (m_axi_wdata),
+      .m_axi_wstrb  (m_axi_wstrb),
+      .m_axi_wlast  (m_axi_wlast),
+      .m_axi_bvalid (m_axi_bvalid),
+      .m_axi_bready (m_axi_bready),
+      .m_axi_bid    (m_axi_bid),
+      .m_axi_bresp  (m_axi_bresp)
+  );
+
   reg started_q = 1'b0;
   reg rst_q = 1'b1;
   always @(posedge clk) begin

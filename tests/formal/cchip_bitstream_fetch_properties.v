@@ -55,6 +55,35 @@ module cchip_bitstream_fetch_properties (
       .m_axi_rlast  (m_axi_rlast)
   );
 
+  wire memory_ok;
+  cchip_axi_rules #(
+      .ADDRESS_W(32),
+      .DATA_W   (32),
+      .READS    (2),
+      .WRITES   (0),
+      .BOUNDARY (64),
+      .MEMORY   (0)
+  ) rules (
+      .clk          (clk),
+      .rst          (rst),
+      .memory_ok    (memory_ok),
+      .m_axi_arvalid(m_axi_arvalid),
+      .m_axi_arready(m_axi_arready),
+      .m_axi_arid   (1'b0),
+      .m_axi_araddr (m_axi_araddr),
+      .m_axi_arlen  (m_axi_arlen),
+      .m_axi_arsize (m_axi_arsize),
+      .m_axi_arburst(m_axi_arburst),
+      .m_axi_arcache(m_axi_arcache),
+      .m_axi_arprot (m_axi_arprot),
+      .m_axi_rvalid (m_axi_rvalid),
+      .m_axi_rready (m_axi_rready),
+      .m_axi_rid    (1'b0),
+      .m_axi_rdata  (m_axi_rdata),
+      .m_axi_rresp  (m_axi_rresp),
+      .m_axi_rlast  (m_axi_rlast)
+  );
+
   reg started_q = 1'b0;
   reg rst_q = 1'b1;
   reg run_q = 1'b0, run_q2 = 1'b0;

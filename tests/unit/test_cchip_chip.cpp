@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The chip through its registers: their values, events and interrupt, counters, invalidation, soft reset.
+#include <Vcchip_chip_swaps1.h>
+
 #include <cchip/wire/chip_registers.hpp>
 #include <map>
 #include <models/cchip_chip.hpp>
@@ -7,6 +9,7 @@
 #include "bench.hpp"
 #include "chip_objects.hpp"
 #include "port_bench.hpp"
+#include "reported.hpp"
 
 using namespace cchip;
 using namespace cchip::test;
@@ -380,4 +383,32 @@ TEST_CASE("chip driver: what it refuses", "[unit][chip_driver]") {
   CHECK(port->capabilities().lock_ranges == 1);
   CHECK(port->capabilities().queries_in_flight == 8);
   CHECK_THROWS_WITH(port->lock(1, 1, 2), Catch::Contains("no lock range 1"));
+}
+
+namespace {
+
+/// The rules that are broken when memory sets these pins on one clock, with nothing in flight.
+template <class Chip>
+std::set<std::string> reported_of(const std::function<void(Chip&)>& fault) {
+  sim::ChipMachine<Chip, 128> machine(sim::without_timeout(sim::seed_from_environment()));
+  cchip::test::Bench wrong(
+      [&](const sim::ClockInfo& now) {
+        if (now.clock == 20) fault(machine.simulation().top());
+      },
+      [](const sim::ClockInfo&) {});
+  machine.simulation().add(wrong);
+  return reported([&] { machine.simulation().steps(30); });
+}
+
+}  // namespace
+
+TEST_CASE("cchip_chip: a fault of memory on either bus is reported by the rules beside it", "[unit][cchip_chip]") {
+  using Names = std::set<std::string>;
+  using Swaps = Vcchip_chip_swaps1;
+  CHECK(reported_of<Model>([](Model&) {}) == Names{});
+  CHECK(reported_of<Model>([](Model& top) { top.m_axi_rvalid = 1; }) == Names{"u_axi_rules.m_r_owed"});
+  CHECK(reported_of<Model>([](Model& top) { top.m_axi_bvalid = 1; }) == Names{"u_axi_rules.m_b_owed"});
+  CHECK(reported_of<Swaps>([](Swaps&) {}) == Names{});
+  CHECK(reported_of<Swaps>([](Swaps& top) { top.m_axi_rvalid = 1; }) == Names{"u_axi_rules.m_r_owed"});
+  CHECK(reported_of<Swaps>([](Swaps& top) { top.m_axi_cfg_rvalid = 1; }) == Names{"u_axi_cfg_rules.m_r_owed"});
 }
