@@ -8,6 +8,7 @@
 #include <cchip/collide/gradual_underflow.hpp>
 #include <cchip/collide/intersection.hpp>
 #include <cchip/collide/scene.hpp>
+#include <cchip/cpu/along.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/cpu/distance.hpp>
 #include <cchip/cpu/solids.hpp>

@@ -107,6 +107,7 @@ Dop26 Realignment::operator()(const Dop26& dop) const {
 DopPairs::DopPairs(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b, double within) {
   const auto chosen = directions_that_become_own(pose_b.linear());
   const Realignment::Directions world = chosen ? *chosen : own_directions();
+  world_ = world;
   const Realignment::Directions in_a = pose_a.linear().transpose() * world;
   const Realignment::Directions in_b = pose_b.linear().transpose() * world;
   const Vec3d shift = pose_a.translation() - pose_b.translation();

@@ -49,12 +49,17 @@ class DopPairs {
   bvh::Dop26 volume_a(const bvh::Dop26& dop) const { return (*a_)(dop); }
   bvh::Dop26 volume_b(const bvh::Dop26& dop) const { return b_ ? (*b_)(dop) : dop; }
 
+  /// The directions: a column for each, in the world. Bounds of volumes are of the products with these, those of A and
+  /// of B relative to the translation of B's pose.
+  const Realignment::Directions& world() const { return world_; }
+
   /// How deep the two overlap on the direction where they do so least, in a unit common to all; negative: disjoint.
   static double overlap(const bvh::Dop26& volume_a, const bvh::Dop26& volume_b);
   /// At most the distance in the world of what the two contain; at least 0.
   double gap(const bvh::Dop26& volume_a, const bvh::Dop26& volume_b) const;
 
  private:
+  Realignment::Directions world_;
   std::optional<Realignment> a_;
   std::optional<Realignment> b_;  ///< none: the volumes of B stay as they are
   Realignment::Row length_;       ///< of the directions, at least
