@@ -342,7 +342,7 @@ def sources(name):
 def commit():
     """HEAD; with `+` if the sources of proofs have changes that are not committed."""
     git = lambda *command: subprocess.run(["git", "-C", str(ROOT), *command], stdout=subprocess.PIPE, text=True).stdout.strip()
-    return git("rev-parse", "--short=7", "HEAD") + ("+" if git("status", "--porcelain", "rtl", "tests/formal") else "")
+    return git("rev-parse", "--short=7", "HEAD") + ("+" if git("status", "--porcelain", "rtl", "sim/rtl_models", "tests/formal") else "")
 
 
 keeping = threading.Lock()
@@ -408,7 +408,7 @@ def mutate(index, build):
     name, task = target.split()
     tree = build / f"mutant_{index}"
     shutil.rmtree(tree, ignore_errors=True)
-    for folder in ("rtl", "tests/formal"):
+    for folder in ("rtl", "sim/rtl_models", "tests/formal"):
         shutil.copytree(ROOT / folder, tree / folder)
     (tree / file).write_text((ROOT / file).read_text().replace(old, new))
     status, text, seconds = sby(name, task, tree, tree / "out", build / "abc")
