@@ -7,10 +7,10 @@
 // are tetrahedra, a corner of their intersection lies on the boundary of one and in the other. It is a corner of the
 // part of a boundary triangle that lies in the other, too, so clipping the four triangles of each finds it. Of what
 // that finds, corners are the points at which three functions with independent normals are zero.
+#include "common_part.hpp"
+
 #include <algorithm>
 #include <limits>
-
-#include "common_part.hpp"
 
 namespace cchip {
 namespace {
