@@ -42,6 +42,7 @@ using cchip::GradualUnderflow;
 using cchip::Object;
 using cchip::Pose;
 using cchip::Scene;
+using cchip::Vec3d;
 
 // Arrays from Python.
 
@@ -134,6 +135,25 @@ class Poses {
 };
 
 Pose one_pose(nb::handle x, const char* name) { return Poses(x, name, false)[0]; }
+
+/// A direction of three numbers.
+Vec3d one_direction(nb::handle x) {
+  const auto array = to_array<double>(x, "float64", "direction");
+  if (array.ndim() != 1 || array.shape(0) != 3) {
+    throw std::invalid_argument("direction has the shape " + shape_of(array) + "; give three numbers, (3,)");
+  }
+  return {array.data()[0], array.data()[1], array.data()[2]};
+}
+
+template <auto query>
+cchip::AlongResult along(const Object& a, nb::handle pose_a, const Object& b, nb::handle pose_b, nb::handle direction) {
+  const Pose place_a = one_pose(pose_a, "pose_a");
+  const Pose place_b = one_pose(pose_b, "pose_b");
+  const Vec3d d = one_direction(direction);
+  const nb::gil_scoped_release release;
+  const GradualUnderflow mode;
+  return query(a, place_a, b, place_b, d);
+}
 
 // Arrays to Python.
 
@@ -1212,6 +1232,47 @@ rel_error: upper - lower <= rel_error * upper is good enough; with 0 both are th
 stop_above: of a distance above this nothing more is asked.
 
 Raises ValueError: a pose as in collide(); rel_error that is not in [0, 1), a stop_above that is negative or nan.)");
+  nb::class_<cchip::AlongResult>(m, "Along", nb::is_weak_referenceable(),
+                                 "A factor of a direction; clear_along() and first_contact() make it.")
+      .def_ro(
+          "touches", &cchip::AlongResult::touches,
+          "The objects touch there. If False they are apart as they are (clear_along) or never touch (first_contact).")
+      .def_ro("factor", &cchip::AlongResult::factor, "The double nearest to the exact number.")
+      .def_ro("lower", &cchip::AlongResult::lower, "The greatest double that is at most the exact number.")
+      .def_ro("upper", &cchip::AlongResult::upper, "The least double that is at least the exact number.")
+      .def_prop_ro(
+          "faces",
+          [](const cchip::AlongResult& x) {
+            return nb::cast(owned<std::uint32_t>(std::vector<std::uint32_t>{x.face_a, x.face_b}, {2}));
+          },
+          "Faces of A and of B that touch there and decide, (2,) uint32; meaningless unless touches.")
+      .def("__repr__", [](const cchip::AlongResult& x) {
+        return "<collisionchip.Along: " + std::string(nb::repr(nb::float_(x.factor)).c_str()) +
+               (x.touches ? ", touches>" : ">");
+      });
+  m.def("clear_along", &along<cchip::clear_along>, "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(), "direction"_a,
+        nb::sig("def clear_along(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
+                "numpy.typing.ArrayLike | None, direction: numpy.typing.ArrayLike) -> Along"),
+        R"(How far must B move along a direction until it is clear of A? Exactly.
+
+direction: (3,), in the world, not zero.
+
+Returns the least factor such that B, moved by any slightly greater multiple of the direction, is apart from A; 0 if they
+are apart as they are, then touches is False.
+
+Raises ValueError: a pose as in collide(); a direction that is zero, not finite or of another shape.)");
+  m.def("first_contact", &along<cchip::first_contact>, "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(),
+        "direction"_a,
+        nb::sig("def first_contact(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
+                "numpy.typing.ArrayLike | None, direction: numpy.typing.ArrayLike) -> Along"),
+        R"(How far may B move along a direction until it touches A? Exactly.
+
+direction: (3,), in the world, not zero.
+
+Returns the least factor for which B, moved by that multiple of the direction, touches A; 0 if they touch as they are,
+inf if they never touch, then touches is False.
+
+Raises as clear_along().)");
   m.def(
       "solids",
       [](const Object& a, nb::handle pose_a, const Object& b, nb::handle pose_b) {

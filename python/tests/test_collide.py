@@ -552,3 +552,26 @@ def test_solids():
         collisionchip.solids(lid, None, box, None)
     with pytest.raises(ValueError, match="flattens space"):
         collisionchip.solids(box, None, box, np.diag([1.0, 1, 0, 1]))
+
+
+def test_along():
+    box = Object(*cube())
+    for pose, direction, factor in ((shift(0.5), (1, 0, 0), 0.5), (shift(0.5), [-1, 0, 0], 1.5), (None, np.array([0, 0, 2]), 0.5),
+                                    (shift(1), (1, 0, 0), 0), (shift(1), (0, 1, 0), 1), (shift(0.75, 0.5), (1, 1, 0), 0.25)):
+        clear = collisionchip.clear_along(box, None, box, pose, direction)
+        assert (clear.touches, clear.factor, clear.lower, clear.upper) == (True, factor, factor, factor)
+        assert clear.faces.shape == (2,) and clear.faces.dtype == np.uint32
+        back = collisionchip.clear_along(box, pose, box, None, -np.array(direction))
+        assert back.factor == factor
+    third = collisionchip.clear_along(box, None, box, shift(0.5), (1.5, 0, 0))
+    assert (third.factor, third.lower, third.upper) == (1 / 3, 1 / 3, np.nextafter(1 / 3, 1))
+    apart = collisionchip.clear_along(box, None, box, shift(3), (1, 0, 0))
+    assert (apart.touches, apart.factor) == (False, 0) and "touches" not in repr(apart) and "touches" in repr(third)
+    contact = collisionchip.first_contact(box, None, box, shift(3), (-1, 0, 0))
+    assert (contact.touches, contact.factor) == (True, 2)
+    never = collisionchip.first_contact(box, None, box, shift(3), (1, 0, 0))
+    assert (never.touches, never.factor) == (False, np.inf)
+    for query in (collisionchip.clear_along, collisionchip.first_contact):
+        for wrong in ((0, 0, 0), (0, np.nan, 0), (1, 0), [[1, 0, 0]], 1.0):
+            with pytest.raises(ValueError, match="direction"):
+                query(box, None, box, None, wrong)
