@@ -114,11 +114,13 @@ def picture(at, kinds, block_of, title):
     height = TILE * HEIGHT
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {TILE * WIDTH + 190} {height + 30}" font-family="sans-serif" font-size="13">',
              f"<!-- SPDX-License-Identifier: Apache-2.0 --><title>{title}</title>", f'<rect width="100%" height="100%" fill="#fff"/><text x="6" y="17">{title}</text>']
+    squares = {}
     for (x, y), inside in sorted(tiles.items()):
         block = max(inside, key=inside.get)
-        full = min(1.0, 0.25 + sum(inside.values()) / 21)
-        parts.append(f'<rect x="{TILE * x}" y="{24 + height - TILE * (y + 1)}" width="{TILE}" height="{TILE}" fill="{colour.get(block, "#bbb")}" '
-                     f'fill-opacity="{full:.2f}"/>')
+        level = min(3, sum(inside.values()) // 6)  # up to 24 cells in a tile
+        squares.setdefault((colour.get(block, "#bbb"), level), []).append(f"M{TILE * x},{24 + height - TILE * (y + 1)}h{TILE}v{TILE}h-{TILE}z")
+    for (fill, level), paths in sorted(squares.items()):
+        parts.append(f'<path fill="{fill}" fill-opacity="{0.35 + 0.2 * level:.2f}" d="{"".join(paths)}"/>')
     for cell, (x, y) in sorted(at.items()):
         if kinds[cell] in (RAM, MULTIPLIER):
             wide = 2 if kinds[cell] == RAM else 1

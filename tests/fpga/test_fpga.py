@@ -187,7 +187,7 @@ class Floorplan(unittest.TestCase):
     def test_the_picture_has_each_block_in_its_colour(self):
         svg = fpga.floorplan.picture({"a": (1, 2), "b": (1, 2), "c": (9, 9)}, {"a": "TRELLIS_FF", "b": "TRELLIS_FF", "c": "DP16KD"},
                                      lambda cell: "u_x" if cell in "ab" else "u_y", "title")
-        self.assertEqual((svg.count("<rect"), svg.count('stroke="#000"')), (1 + 2 + 1 + 3, 1))
+        self.assertEqual((svg.count("<rect"), svg.count("<path"), svg.count('stroke="#000"')), (1 + 1 + 3, 2, 1))
         self.assertIn(">u_x</text>", svg)
 
 
