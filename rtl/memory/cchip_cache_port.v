@@ -271,7 +271,8 @@ module cchip_cache_port #(
   reg match_q6, both_q6, wait_q6, lacks_q6, prefer_q6, lock_q6;
   reg [1:0] may_q6, locked_q6, same_q6;
   reg [SLOT_W-1:0] wait_slot_q6;
-  reg is_oldest_q6;  // compared a clock before: the oldest does not change while it is alone
+  // Taken a clock before, for both come from far: the oldest does not change while it is alone.
+  reg alone_q6, is_oldest_q6;
   reg kill_q6, walk_hits_q6;
   always @(posedge clk) begin
     // the lookup of each port that is a clock ahead has the same set
@@ -288,6 +289,7 @@ module cchip_cache_port #(
     prefer_q6    <= &valid5 ? ^turn5 : valid5[0];
     locked_q6    <= locked5;
     lock_q6      <= lock5;
+    alone_q6     <= alone;
     is_oldest_q6 <= oldest_here && oldest_place == place5;
     kill_q6      <= ~rst & own_q[5] & (code5 != `CCHIP_READ_OK);
     walk_hits_q6 <= ~rst & own_q[5] & (|forget5);
@@ -302,7 +304,7 @@ module cchip_cache_port #(
   wire again = look_q[6] & (stale | (~match_q6 & ~grant & ~exhausted));
   // the way to replace is found beside the decision whether any is
   wire victim = &may_q6 ? prefer_q6 : may_q6[1];
-  assign want = lacks_q6 & ~stale & free_valid & (~alone | is_oldest_q6);
+  assign want = lacks_q6 & ~stale & free_valid & (~alone_q6 | is_oldest_q6);
   assign want_way = victim;
   assign want_locked = lock_q6 & ~(victim ? locked_q6[0] : locked_q6[1]);
   assign want_turn = ~victim ^ (victim ? turn6[0] : turn6[1]);
@@ -371,7 +373,8 @@ module cchip_cache_port #(
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_held, !serve_valid || held[collect_slot])
-      `CCHIP_ASSERT(a_alone, !grant || !alone || (oldest_here && oldest_place == place_q6))
+      `CCHIP_ASSERT(a_alone, !grant || !alone || !alone_q6 ||
+          (oldest_here && oldest_place == place_q6))
       `CCHIP_ASSERT(a_one, !fresh || !(match_q6 && both_q6))
       `CCHIP_ASSERT(a_place, !s_valid || !waiting[s_place])
     end

@@ -69,7 +69,7 @@ void Cache::reset() {
   counts_ = {};
   oldest_ = 0;
   age_ = 0;
-  alone_ = false;
+  alone_ = was_alone_ = false;
   retried_.assign(retried_.size(), false);
   favour_ = running_ = ready_ = walk_valid_ = false;
   look_ = seen_retried_ = was_running_ = walk_enters_ = served_ = false;
@@ -95,7 +95,7 @@ Cache::Decisions Cache::decide() {
     now.wait[p] = now.fresh[p] && step.wait;
     now.hit[p] = now.fresh[p] && step.match && !step.wait;
     want[p] = now.fresh[p] && !step.match && step.victim && fill_.free_slot() && !fill_.exhausted() &&
-              (!alone_ || oldest_ == p * shape_.places + step.place);
+              (!was_alone_ || was_oldest_ == p * shape_.places + step.place);
   }
   const Step& fill6 = ports_[0].steps[5];
   const Step& walk6 = ports_[1].steps[5];
@@ -112,6 +112,8 @@ Cache::Decisions Cache::decide() {
 
 /// Whose turn it is of those that are looked up again.
 void Cache::clock_turn() {
+  was_alone_ = alone_;  // stage 6 goes by what was so a clock before
+  was_oldest_ = oldest_;
   // a flag is read on one clock, and acted upon on the next
   const bool retried = std::exchange(seen_retried_, retried_[oldest_]);
   look_ = !look_;

@@ -160,6 +160,8 @@ class Cache {
   std::vector<bool> retried_;  // of each place, of port 0 first
   std::size_t oldest_ = 0;
   int age_ = 0;
+  std::size_t was_oldest_ = 0;
+  bool was_alone_ = false;
   bool alone_ = false;
   bool look_ = false, seen_retried_ = false;
   bool was_running_ = false, walk_enters_ = false, served_ = false;  // a clock later than what they follow
