@@ -11,6 +11,7 @@
 #include <cchip/cpu/along.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/cpu/distance.hpp>
+#include <cchip/cpu/point_cloud.hpp>
 #include <cchip/cpu/solids.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/mesh/mesh.hpp>
