@@ -17,5 +17,6 @@
 #include <cchip/mesh/mesh.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/mesh_io/mesh_file.hpp>
+#include <cchip/mesh_io/point_file.hpp>
 
 #endif
