@@ -138,6 +138,39 @@ class Axes {
     return most;
   }
 
+  /// The points of a block along all axes, and the reach of their spheres.
+  struct Block {
+    std::array<std::array<double, block>, count> at;
+    std::array<std::array<double, block>, count> reach;
+  };
+  void project(const PointTree& cloud, std::size_t first, Block& to) const {
+    for (std::size_t k = 0; k < count; ++k) {
+      const double x = cloud_[k][0];
+      const double y = cloud_[k][1];
+      const double z = cloud_[k][2];
+      for (std::size_t i = 0; i < block; ++i) {
+        to.at[k][i] = x * cloud.at[0][first + i] + y * cloud.at[1][first + i] + z * cloud.at[2][first + i];
+        to.reach[k][i] = length_[k] * cloud.radius[first + i];
+      }
+    }
+  }
+  /// The points of `mask` whose spheres may meet the node of the object.
+  std::uint32_t left(const Block& points, const Ranges& object, std::uint32_t mask) const {
+    std::array<double, block> most;
+    most.fill(-infinity);
+    for (std::size_t k = 0; k < count; ++k) {
+      const double centre = object.centre[k];
+      const double half = object.half[k];
+      for (std::size_t i = 0; i < block; ++i) {
+        const double gap = std::abs(points.at[k][i] - centre) - (points.reach[k][i] + half);
+        most[i] = gap > most[i] ? gap : most[i];  // not for NaN
+      }
+    }
+    std::uint32_t left = 0;
+    for (std::size_t i = 0; i < block; ++i) left |= static_cast<std::uint32_t>(!(most[i] > 0)) << i;
+    return left & mask;
+  }
+
  private:
   void box(const SupportLine& line, std::array<double, 3>& centre, std::array<double, 3>& half) const {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -273,7 +306,9 @@ class CloudSearch {
     std::uint32_t node;
     std::uint32_t lane;
     std::uint32_t line;
+    std::uint32_t mask;  ///< of a block: its points that are not clear of what is above the line
   };
+  static constexpr std::uint32_t all_points = (std::uint32_t{1} << block) - 1;
   // A step takes one item and leaves at most 8 of the cloud's, or 4 of the object's, in its place.
   static constexpr std::size_t stack_most =
       (lanes - 1) * PointTree::depth_most + 3 * static_cast<std::size_t>(bvh::tree_depth_max) + lanes;
@@ -283,7 +318,8 @@ class CloudSearch {
     std::size_t top = 0;
     const auto whole = static_cast<std::uint32_t>(tree_.size());
     ++result_.counts.box_tests;
-    if (!(axes_.gap(cloud_.nodes[0], 0, axes_.ranges(tree_.lines()[whole])) > 0)) stack[top++] = {0, 0, whole};
+    if (!(axes_.gap(cloud_.nodes[0], 0, axes_.ranges(tree_.lines()[whole])) > 0))
+      stack[top++] = {0, 0, whole, all_points};
     while (top > 0 && !done_) {
       const Item item = stack[--top];
       const PointTree::Node& node = cloud_.nodes[item.node];
@@ -291,7 +327,7 @@ class CloudSearch {
       const SupportLine& line = tree_.lines()[item.line];
       const NodeRef ref = line.ref();
       if (child.is_leaf() && ref.is_leaf()) {
-        test_leaves(child.number(), ref);
+        test_leaves(child.number(), ref, item.mask);
         continue;
       }
       ++result_.counts.steps;
@@ -311,15 +347,19 @@ class CloudSearch {
       if (child.is_leaf() || (!ref.is_leaf() && is_object_larger(node, item.lane, line))) {
         result_.counts.box_tests += ref.count();
         for (std::uint32_t i = ref.first(); i < ref.first() + ref.count(); ++i) {
-          const double here = axes_.gap(node, item.lane, axes_.ranges(tree_.lines()[i]));
-          if (!(here > 0)) add({item.node, item.lane, i}, here);
+          const Axes::Ranges ranges = axes_.ranges(tree_.lines()[i]);
+          const double here = axes_.gap(node, item.lane, ranges);
+          if (here > 0) continue;
+          const std::uint32_t mask =
+              child.is_leaf() ? axes_.left(placed(child.number()), ranges, item.mask) : all_points;
+          if (mask != 0) add({item.node, item.lane, i, mask}, here);
         }
       } else {
         const PointTree::Node& below = cloud_.nodes[child.number()];
         result_.counts.box_tests += below.count;
         const PointTree::Lanes gaps = axes_.gaps(below, axes_.ranges(line));
         for (std::uint32_t i = 0; i < below.count; ++i) {
-          if (!(gaps[i] > 0)) add({child.number(), i, item.line}, gaps[i]);
+          if (!(gaps[i] > 0)) add({child.number(), i, item.line, all_points}, gaps[i]);
         }
       }
       for (std::size_t i = 0; i < count; ++i) stack[top++] = next[i];
@@ -331,21 +371,26 @@ class CloudSearch {
     return scale_object_ * axes_.size(line) > scale_cloud_ * half;
   }
 
-  void test_leaves(std::uint32_t leaf, NodeRef faces) {
-    if (leaf != placed_) place(leaf);
+  void test_leaves(std::uint32_t leaf, NodeRef faces, std::uint32_t mask) {
+    placed(leaf);
     const std::size_t count = std::min(block, cloud_.points - leaf * block);
+    if (count < block) mask &= (std::uint32_t{1} << count) - 1;
     for (std::uint32_t i = faces.first(); i < faces.first() + faces.count() && !done_; ++i) {
       const std::uint32_t face = tree_.faces()[i];
-      result_.counts.pairs += count;
-      const Primitive primitive = mesh_.primitive(face);
-      test_face(leaf, count, face, primitive);
+      for (std::uint32_t left = mask; left != 0; left &= left - 1) ++result_.counts.pairs;
+      test_face(leaf, mask, face, mesh_.primitive(face));
     }
   }
 
-  /// The points of a block in the world, less the object's translation, rounded.
+  /// The points of a block along the axes, and in the world, less the object's translation, rounded.
+  const Axes::Block& placed(std::uint32_t leaf) {
+    if (leaf != placed_) place(leaf);
+    return along_;
+  }
   void place(std::uint32_t leaf) {
     placed_ = leaf;
     const std::size_t first = std::size_t{leaf} * block;
+    axes_.project(cloud_, first, along_);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto row = static_cast<Eigen::Index>(k);
       const double x = pose_cloud_(row, 0);
@@ -359,7 +404,7 @@ class CloudSearch {
     }
   }
 
-  void test_face(std::uint32_t leaf, std::size_t count, std::uint32_t face, const Primitive& primitive) {
+  void test_face(std::uint32_t leaf, std::uint32_t mask, std::uint32_t face, const Primitive& primitive) {
     WorldFace world(primitive, pose_object_);
     std::array<std::array<double, block>, 3> p;
     double greatest = world.greatest;
@@ -393,8 +438,8 @@ class CloudSearch {
         }
       }
     }
-    for (std::size_t i = 0; i < count && !done_; ++i) {
-      if (gap[i] > 0) continue;
+    for (std::size_t i = 0; i < block && !done_; ++i) {
+      if (gap[i] > 0 || (mask >> i & 1U) == 0) continue;
       if (meets(world, {p[0][i], p[1][i], p[2][i]}, radius[i], is_moderate, primitive, leaf * block + i)) {
         add_contact(cloud_.number[leaf * block + i], face);
       }
@@ -477,6 +522,7 @@ class CloudSearch {
   bool done_ = false;
   std::uint32_t placed_ = std::numeric_limits<std::uint32_t>::max();  ///< block that is in world_
   std::array<std::array<double, block>, 3> world_;
+  Axes::Block along_;
   std::optional<PosedDistances> distances_;  ///< made when it is needed first
 };
 
