@@ -11,10 +11,12 @@
 #include <cchip/cpu/along.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/cpu/distance.hpp>
+#include <cchip/cpu/point_cloud.hpp>
 #include <cchip/cpu/solids.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/mesh/mesh.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/mesh_io/mesh_file.hpp>
+#include <cchip/mesh_io/point_file.hpp>
 
 #endif

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "file_content.hpp"
 #include "mesh/cut_polygon.hpp"
 #include "polygon_soup.hpp"
 #include "text.hpp"
@@ -22,37 +23,6 @@ namespace {
 using mesh_io::FormatError;
 using mesh_io::PolygonSoup;
 using Reader = PolygonSoup (*)(std::string_view file);
-
-/// The content of a file or a pipe. Of a file no second copy is made.
-std::string read_file(const std::string& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw std::runtime_error(path + ": no such file; check the path");
-  if (std::filesystem::is_directory(status)) throw std::runtime_error(path + ": is a folder; name a file in it");
-  if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_fifo(status)) {
-    throw std::runtime_error(path + ": is a device, not a file or a pipe; name a mesh file");
-  }
-  constexpr std::size_t least_bytes = 65536;
-  const auto size = std::filesystem::is_fifo(status) ? 0 : std::filesystem::file_size(path, error);
-  std::string content(std::max<std::size_t>(error ? 0 : size + 1, least_bytes), '\0');  // one more, to meet the end
-  errno = 0;
-  std::ifstream in(std::filesystem::path(path), std::ios::binary);  // on Windows, too, a name is UTF-8 then
-  const auto unreadable = [&path] {
-    const std::string cause = errno == 0 ? "an error of the disk" : std::strerror(errno);
-    return std::runtime_error(path + ": the file cannot be read (" + cause + "); check its permissions");
-  };
-  if (!in) throw unreadable();
-  std::size_t used = 0;
-  while (in) {
-    if (used == content.size()) content.resize(2 * content.size());
-    in.read(&content[used], static_cast<std::streamsize>(content.size() - used));
-    used += static_cast<std::size_t>(in.gcount());
-  }
-  content.resize(used);
-  if (in.bad()) throw unreadable();
-  if (content.empty()) throw std::runtime_error(path + ": the file is empty (0 bytes); write the mesh again");
-  return content;
-}
 
 struct Format {
   std::string_view name;
@@ -249,7 +219,7 @@ LoadOptions options_for(FaceKinds kinds) {
 Mesh load_mesh(const std::string& path, FaceKinds kinds) { return load_mesh(path, options_for(kinds)); }
 
 Mesh load_mesh(const std::string& path, const LoadOptions& options) {
-  return parse_mesh(read_file(path), path, options);
+  return parse_mesh(mesh_io::read_file(path, "mesh"), path, options);
 }
 
 Mesh parse_mesh(std::string_view file, const std::string& name, FaceKinds kinds) {
@@ -285,14 +255,6 @@ Mesh parse_unpacked(std::string_view content, const std::string& name, const std
   }
 }
 
-/// The name without `.gz`.
-std::string name_inside(const std::string& name) {
-  const std::filesystem::path path(name);
-  std::string end = path.extension().string();
-  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
-  return end == ".gz" ? path.stem().string() : name;
-}
-
 }  // namespace
 
 Mesh parse_mesh(std::string_view file, const std::string& name, const LoadOptions& options) {
@@ -304,7 +266,7 @@ Mesh parse_mesh(std::string_view file, const std::string& name, const LoadOption
     throw std::runtime_error(name + ": " + error.what());
   }
   if (content.empty()) throw std::runtime_error(name + ": the gzip file holds nothing; pack a mesh file");
-  return parse_unpacked(content, name_inside(name), name, options);
+  return parse_unpacked(content, mesh_io::name_inside(name), name, options);
 }
 
 }  // namespace cchip

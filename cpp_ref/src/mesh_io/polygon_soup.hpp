@@ -61,6 +61,7 @@ struct PolygonSoup {
 
 PolygonSoup read_obj(std::string_view file);
 PolygonSoup read_off(std::string_view file);
+PolygonSoup read_pcd(std::string_view file);
 PolygonSoup read_ply(std::string_view file);
 PolygonSoup read_stl(std::string_view file);
 
