@@ -83,3 +83,42 @@ TEMPLATE_LIST_TEST_CASE("cchip_bv_compare: separation after 2 clocks, least over
     for (const std::size_t key : {0, 1, 2, 4, 8}) REQUIRE(keys[key] > 0);
   });
 }
+
+TEMPLATE_LIST_TEST_CASE("cchip_bv_compare: each bit of an overlap counts, and of each direction",
+                        "[unit][cchip_bv_compare]", cchip_bv_compare_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random&) {
+    auto& top = simulation.top();
+    // all intervals are as long as they can be, but for one end, which leaves an overlap of one bit, or one less
+    model::Planes longest{};
+    for (std::size_t d = 0; d < bvh::directions.size(); ++d) {
+      longest.upper[d] = (1 << (plane_width(d) - 1)) - 1;
+      longest.lower[d] = -(1 << (plane_width(d) - 1));
+    }
+    int told = 0;
+    for (std::size_t d = 0; d < bvh::directions.size(); ++d) {
+      for (int bit = 0; bit < plane_width(d); ++bit) {
+        for (const int over : {1 << bit, (1 << bit) - 1, -(1 << bit)}) {
+          for (const bool of_a : {true, false}) {
+            model::Planes a = longest;
+            model::Planes b = longest;
+            model::Planes& upper = of_a ? a : b;
+            model::Planes& lower = of_a ? b : a;
+            upper.upper[d] = over < 0 ? longest.lower[d] : longest.lower[d] + over;
+            lower.lower[d] = over < 0 ? longest.lower[d] - over : longest.lower[d];
+            if (lower.lower[d] > longest.upper[d]) continue;
+            set_planes(top.a, a);
+            set_planes(top.b, b);
+            for (int clock = 0; clock < 8; ++clock) simulation.rise();
+            simulation.settle();
+            const Expected expected = compare(a, b);
+            REQUIRE(expected.separated == (over < 0));
+            REQUIRE((top.separated != 0) == expected.separated);
+            if (!expected.separated) REQUIRE(top.key == expected.key);
+            ++told;
+          }
+        }
+      }
+    }
+    REQUIRE(told >= 2 * 3 * (3 * 11 + 10 * 12));
+  });
+}
