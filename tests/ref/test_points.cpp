@@ -311,6 +311,26 @@ TEST_CASE("points: tangent to a face, a side and a vertex", "[ref][points]") {
   CHECK(count.open > 100);
 }
 
+TEST_CASE("points: a small face at the origin, the cloud's frame far away", "[ref][points]") {
+  // The face's first vertex is the origin whatever the rotation, and a corner of its box; the cloud's translation takes
+  // its point there, too.
+  std::mt19937_64 random(seed() + 67);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Count count;
+  for (int i = 0; i < 500; ++i) {
+    const double size = std::ldexp(1.0, -static_cast<int>(random() % 30));
+    Primitive face;
+    face.v = {Vec3d(0, 0, 0), Vec3d(size, 0, 0), Vec3d(0, size, 0), Vec3d::Zero()};
+    const Pose pose_face = random_pose(PoseClass::rigid, 0, random);
+    Vec3d point;
+    for (double& x : point) x = std::ldexp(unit(random), static_cast<int>(random() % 40));
+    Pose pose_point = Pose::Identity();
+    pose_point.translation() = -point;
+    CAPTURE(i, size, point.transpose(), seed());
+    REQUIRE(meets(point, 0, pose_point, Object(mesh_of(face)), pose_face, count));
+  }
+}
+
 TEST_CASE("points: the radius is in units of the world", "[ref][points]") {
   Primitive face;
   face.v = {Vec3d(0, 0, 0), Vec3d(16, 0, 0), Vec3d(0, 16, 0), Vec3d::Zero()};
