@@ -3,14 +3,17 @@
 // against all pairs.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
 #include <cchip/cpu/point_cloud.hpp>
 #include <cchip/exact/posed_distances.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <limits>
+#include <new>
 #include <random>
 
 #include "bvh_meshes.hpp"
@@ -28,6 +31,21 @@ using cchip_test::PoseClass;
 using cchip_test::random_pose;
 using cchip_test::scaled;
 using cchip_test::seed;
+
+namespace {
+
+std::atomic<std::size_t> allocations = 0;
+
+}  // namespace
+
+// The other forms of new and delete call these. Inlined, GCC takes them for a mismatch.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace {
 
@@ -293,6 +311,26 @@ TEST_CASE("points: tangent to a face, a side and a vertex", "[ref][points]") {
   CHECK(count.open > 100);
 }
 
+TEST_CASE("points: a small face at the origin, the cloud's frame far away", "[ref][points]") {
+  // The face's first vertex is the origin whatever the rotation, and a corner of its box; the cloud's translation takes
+  // its point there, too.
+  std::mt19937_64 random(seed() + 67);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Count count;
+  for (int i = 0; i < 500; ++i) {
+    const double size = std::ldexp(1.0, -static_cast<int>(random() % 30));
+    Primitive face;
+    face.v = {Vec3d(0, 0, 0), Vec3d(size, 0, 0), Vec3d(0, size, 0), Vec3d::Zero()};
+    const Pose pose_face = random_pose(PoseClass::rigid, 0, random);
+    Vec3d point;
+    for (double& x : point) x = std::ldexp(unit(random), static_cast<int>(random() % 40));
+    Pose pose_point = Pose::Identity();
+    pose_point.translation() = -point;
+    CAPTURE(i, size, point.transpose(), seed());
+    REQUIRE(meets(point, 0, pose_point, Object(mesh_of(face)), pose_face, count));
+  }
+}
+
 TEST_CASE("points: the radius is in units of the world", "[ref][points]") {
   Primitive face;
   face.v = {Vec3d(0, 0, 0), Vec3d(16, 0, 0), Vec3d(0, 16, 0), Vec3d::Zero()};
@@ -508,6 +546,26 @@ TEST_CASE("points: at most so many contacts, faces of the file, several objects"
   CHECK(first_met(cloud, here, objects) == 1);
   objects.resize(1);
   CHECK(first_met(cloud, here, objects) == 1);
+}
+
+TEST_CASE("points: queries take no memory from the heap", "[ref][points]") {
+  std::mt19937_64 random(seed() + 66);
+  const PointCloud cloud(random_points(5000, 2, random), 0.05);
+  const Object ball(make_sphere(1, 8));
+  std::vector<Pose> poses;
+  for (int i = 0; i < 50; ++i) poses.push_back(random_pose(PoseClass::rigid, i % 2 == 0 ? 1 : 9, random));
+  for (const CloudRequest& request : {CloudRequest{}, all()}) {
+    CloudResult result;
+    std::size_t contacts = 0;
+    for (const Pose& pose : poses) collide(cloud, Pose::Identity(), ball, pose, request, result);
+    const std::size_t before = allocations;
+    for (const Pose& pose : poses) {
+      collide(cloud, Pose::Identity(), ball, pose, request, result);
+      contacts += result.contacts.size();
+    }
+    CHECK(allocations == before);
+    CHECK(contacts > 20);
+  }
 }
 
 TEST_CASE("points: what is refused", "[ref][points]") {

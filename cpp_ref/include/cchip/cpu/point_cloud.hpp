@@ -72,7 +72,8 @@ struct CloudResult {
 };
 
 /// Which spheres of the cloud meet which faces of the object? Takes no memory from the heap but for contacts that
-/// `result`, whose memory is used again, has no room for. Any number of threads may call it at a time.
+/// `result`, whose memory is used again, has no room for, and for integers of more than 512 bits where these decide.
+/// Any number of threads may call it at a time.
 /// \throws std::invalid_argument the cloud or the object was moved from, an entry of a pose is not finite or beyond
 ///         2^500 in magnitude, or `max_contacts` is 0
 /// \throws std::runtime_error the calling thread flushes small numbers to zero
