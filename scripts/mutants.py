@@ -11,6 +11,7 @@ usage: mutants.py [MODULE...] [options]     without MODULE every module that has
   --build DIR     where unit_tests has been built (default build/release; `make mutants` builds it)
   --table         only the table of what was run so far
   --write         put the table into docs/develop/mutants.md
+  --least N       exit code 1 if of the mutants that can be told from the original fewer than N % were killed (default 0)
   --alive         print the mutants that nothing killed
 
 Yosys changes a cell of the netlist of a module: an input or output inverted, at 0 or 1, or made to depend on another bit (its
@@ -24,7 +25,7 @@ are 0, under any inputs: `proved` if no inputs of any length tell them apart, `b
 Alive is what can be told apart, or for which ABC needs more than a minute.
 
 Everything is kept below build/mutants; a second run goes on where the first one ended. The last line is
-`mutants=N equivalent=E killed=K alive=A`. Exit codes: 0 done, 1 a tool or a test without mutant failed, 2 bad arguments."""
+`mutants=N equivalent=E killed=K alive=A`. Exit codes: 0 done, 1 a tool or a test without mutant failed or --least was missed, 2 bad arguments."""
 import argparse
 import collections
 import concurrent.futures
@@ -314,7 +315,7 @@ def table(rows):
 def arguments():
     parser = argparse.ArgumentParser(usage=argparse.SUPPRESS, add_help=False)
     parser.add_argument("modules", nargs="*")
-    for name, default in (("--each", 2), ("--sample", 0), ("--seed", 1), ("--jobs", 2), ("--depth", 12)):
+    for name, default in (("--each", 2), ("--sample", 0), ("--seed", 1), ("--jobs", 2), ("--depth", 12), ("--least", 0)):
         parser.add_argument(name, type=int, default=default)
     parser.add_argument("--shard", default="1/1")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "release")
@@ -371,7 +372,8 @@ def main():
                 for row in summary([module]):
                     print("{}: mutants={} proved={} bounded={} killed={} alive={}".format(*row[1:]), flush=True)
     rows = summary(chosen)
-    print(table(rows))
+    if rows:
+        print(table(rows))
     if options.alive:
         for module in chosen:
             for number, result in module.results().items():
@@ -381,6 +383,10 @@ def main():
         datasheet.rewrite(PAGE, "mutants", table(rows))
     sums = [sum(row[i] for row in rows) for i in range(2, 7)]
     print(f"mutants={sums[0]} equivalent={sums[1] + sums[2]} killed={sums[3]} alive={sums[4]}")
+    told = sums[3] + sums[4]
+    if told and 100 * sums[3] < options.least * told:
+        failures.append("too few")
+        print(f"mutants.py: {sums[3]} of {told} killed, less than {options.least} %", file=sys.stderr)
     return 1 if failures else 0
 
 
