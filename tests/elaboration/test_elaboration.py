@@ -64,6 +64,7 @@ CRC = "cchip_error_crc32_DATA_W_must_be_a_multiple_of_8"
 FETCH = "cchip_error_bitstream_fetch_FIFO_DEPTH_below_32"
 READ = "cchip_error_axi_read_"
 WRITE = "cchip_error_axi_write_"
+RULES = "cchip_error_axi_rules_"
 CACHE = "cchip_error_cache_"
 SLOT_LIMIT = "cchip_error_SLOT_LIMIT_below_16"
 POOL = "cchip_error_pool_COUNT_must_be_1_to_256_and_all_numbers_have_WIDTH_bit"
@@ -187,6 +188,10 @@ ILLEGAL = [
     *(("cchip_axi_write", {"CLIENTS": n}, WRITE + "CLIENTS_must_be_1_to_4") for n in (0, 5)),
     *(("cchip_axi_write", {"DATA_W": n}, WRITE + "DATA_W_must_be_64_128_256_or_512") for n in (32, 96, 1024)),
     *(("cchip_axi_write", {"OUTSTANDING": n}, WRITE + "OUTSTANDING_must_be_1_to_64") for n in (0, 65)),
+    *(("cchip_axi_rules", {"READS": n}, RULES + "READS_must_be_0_to_2") for n in (-1, 3)),
+    ("cchip_axi_rules", {"WRITES": -1}, RULES + "WRITES_or_AHEAD_too_small"),
+    ("cchip_axi_rules", {"AHEAD": 0}, RULES + "WRITES_or_AHEAD_too_small"),
+    *(("cchip_axi_rules", {"BOUNDARY": n}, RULES + "BOUNDARY_must_be_a_power_of_2_above_a_beat_to_4096") for n in (16, 96, 8192)),
     *(("cchip_axi_write", {"ID_W": n}, WRITE + "ID_W_must_be_1_to_16") for n in (0, 17)),
     *(("cchip_round_shift", case, "cchip_error_round_shift_D_W_must_be_2_to_64_and_BASE_below_it")
       for case in ({"D_W": 1, "BASE": 0, "Q_W": 1}, {"D_W": 65}, {"D_W": 29, "Q_W": 1})),

@@ -108,7 +108,10 @@ TEMPLATE_LIST_TEST_CASE("cchip_bv_compare: each bit of an overlap counts, and of
             if (lower.lower[d] > longest.upper[d]) continue;
             set_planes(top.a, a);
             set_planes(top.b, b);
-            for (int clock = 0; clock < 8; ++clock) simulation.rise();
+            for (int clock = 0; clock < 8; ++clock) {
+              simulation.settle();
+              simulation.rise();
+            }
             simulation.settle();
             const Expected expected = compare(a, b);
             REQUIRE(expected.separated == (over < 0));
