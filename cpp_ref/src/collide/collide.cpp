@@ -45,13 +45,15 @@ Object::Object(Mesh mesh) {
   check_float_mode();
   bvh::SupportTree tree(mesh, bvh::build_tree(mesh));
   std::vector<std::uint32_t> by_file = faces_by_file(mesh);
-  data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(tree), std::move(by_file), std::make_shared<Edges>()});
+  data_ = std::make_shared<const Data>(
+      Data{std::move(mesh), std::move(tree), std::move(by_file), std::make_shared<Edges>()});
 }
 
 Object::Object(Mesh mesh, const bvh::Tree& tree) {
   bvh::SupportTree support(mesh, tree);
   std::vector<std::uint32_t> by_file = faces_by_file(mesh);
-  data_ = std::make_shared<const Data>(Data{std::move(mesh), std::move(support), std::move(by_file), std::make_shared<Edges>()});
+  data_ = std::make_shared<const Data>(
+      Data{std::move(mesh), std::move(support), std::move(by_file), std::make_shared<Edges>()});
 }
 
 void Object::refuse_moved_from() {
