@@ -5,7 +5,8 @@
 /// The answer is exact: for closed faces with the double coordinates of the meshes, and both poses as given, in real
 /// arithmetic without rounding. Touching counts, unless the request asks for crossings. Objects are surfaces, not
 /// volumes: one wholly inside another does not touch it. A quad is the hull of its four vertices. There is no depth;
-/// distance.hpp is about distances, along.hpp about ways along a direction, intersection.hpp about the points that faces share.
+/// distance.hpp is about distances, along.hpp about ways along a direction, intersection.hpp about the points that
+/// faces share.
 #ifndef CCHIP_COLLIDE_COLLIDE_HPP
 #define CCHIP_COLLIDE_COLLIDE_HPP
 
