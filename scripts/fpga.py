@@ -52,6 +52,7 @@ import shutil
 import statistics
 import subprocess
 import sys
+import threading
 import zlib
 
 import datasheet
@@ -356,7 +357,9 @@ def to_place(row, synthesis, options):
     if not row.floorplan or options.no_floorplan:
         return netlist
     made = synthesis / "anchored.json"
-    made.write_text(floorplan.anchored(netlist.read_text()))
+    part = synthesis / f"anchored.json.{threading.get_ident()}"  # seeds run at the same time: nobody reads half a file
+    part.write_text(floorplan.anchored(netlist.read_text()))
+    part.replace(made)
     return made
 
 

@@ -48,7 +48,6 @@ PAGE = ROOT / "docs" / "develop" / "mutants.md"
 SELECTOR_W = 16
 SELECT = 'extern "C" int cchip_mutant();\n#include <cstdlib>\nint cchip_mutant() {\n  const char* chosen = std::getenv("CCHIP_MUTANT");\n' \
          "  return chosen ? std::atoi(chosen) : 0;\n}\n"
-ABC = "read_aiger {aiger}; strash; scorr; {method}; print_status"
 
 
 class Failed(Exception):

@@ -32,6 +32,7 @@ import sys
 import time
 
 import datasheet
+from mutants import Failed, run
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 OUT = ROOT / "build" / "mutants_cpp"
@@ -62,17 +63,6 @@ namespace { struct Reach { ~Reach() {
   }
 } } reach; }
 """
-
-
-class Failed(Exception):
-    pass
-
-
-def run(command, **more):
-    done = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", **more)
-    if done.returncode:
-        raise Failed(f"{' '.join(map(str, command))[:200]}: exit code {done.returncode}\n{done.stdout[-3000:]}")
-    return done.stdout
 
 
 def copy_sources():
