@@ -9,6 +9,7 @@
 #include <cchip/certificate/certify.hpp>
 #include <cchip/certificate/check.hpp>
 #include <cchip/device/device.hpp>
+#include <cchip/machines/simulated_chip.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/progress.hpp>
 #include <cstdio>
@@ -173,6 +174,7 @@ class Benchmark {
 
 int main(int argc, char** argv) try {
   using namespace cchip::testing;
+  cchip::add_simulated_chip();
   CLI::App app{
       "Answers for pairs of meshes with their proofs: each certificate is made and checked; medians of sizes and "
       "times.\n"
