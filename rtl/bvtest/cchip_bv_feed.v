@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_defs.vh"
 `include "cchip_assert.vh"
 // cchip_bv_feed: takes the lines of node pairs and hands their parts to the box test, each at its
 // clock: the pose's rows and the origins to cchip_bv_offset, then child after child to the lanes.
@@ -79,13 +80,15 @@ module cchip_bv_feed #(
   function [3:0] there(input [1:0] last);
     there = {last == 2'd3, last[1], last != 2'd0, 1'b1};
   endfunction
-  assign a_counts = s_a_children & there(s_a[92:91]);
-  assign b_counts = s_b_children & there(s_b[92:91]);
+  assign a_counts = s_a_children & there(s_a[`CCHIP_NODE_LINE_CHILDREN]);
+  assign b_counts = s_b_children & there(s_b[`CCHIP_NODE_LINE_CHILDREN]);
+  wire [7:0] kinds_a = s_a[`CCHIP_NODE_LINE_KINDS];
+  wire [7:0] kinds_b = s_b[`CCHIP_NODE_LINE_KINDS];
   genvar i, j;
   generate
     for (i = 0; i < 4; i = i + 1) begin : gen_child
-      assign a_inner[i]   = s_a[83+2*i+:2] == 2'd0;
-      assign a_inner[4+i] = s_b[83+2*i+:2] == 2'd0;
+      assign a_inner[i]   = kinds_a[2*i+:2] == 2'd0;
+      assign a_inner[4+i] = kinds_b[2*i+:2] == 2'd0;
     end
   endgenerate
 
@@ -112,8 +115,10 @@ module cchip_bv_feed #(
   reg [4:0] a_step_q2, b_step_q2;
   always @(posedge clk)
     if (first_q[1]) begin
-      {a_step_q2, a_origin_q2} <= s_a[58:0];
-      {b_step_q2, b_origin_q2} <= s_b[58:0];
+      a_step_q2   <= s_a[`CCHIP_NODE_LINE_STEP];
+      a_origin_q2 <= s_a[`CCHIP_NODE_LINE_ORIGIN];
+      b_step_q2   <= s_b[`CCHIP_NODE_LINE_STEP];
+      b_origin_q2 <= s_b[`CCHIP_NODE_LINE_ORIGIN];
     end
   assign a_origin2    = a_origin_q2;
   assign a_step2      = a_step_q2;
@@ -162,15 +167,25 @@ module cchip_bv_feed #(
   end
 
   localparam integer WORD_W = 107;
+  wire [407:0] children_a = s_a[`CCHIP_NODE_LINE_CHILD];
+  wire [407:0] children_b = s_b[`CCHIP_NODE_LINE_CHILD];
   wire [4*WORD_W-1:0] a_words, b_words;
   generate
     for (j = 0; j < 4; j = j + 1) begin : gen_word
       localparam [31:0] J = j;
       assign a_words[WORD_W*j+:WORD_W] = {
-        s_a[93], J[1:0], a_inner[j], a_counts[j], s_a[96+102*j+:102]
+        s_a[`CCHIP_NODE_LINE_CUT_EXPONENT],
+        J[1:0],
+        a_inner[j],
+        a_counts[j],
+        children_a[102*j+:102]
       };
       assign b_words[WORD_W*j+:WORD_W] = {
-        s_b[93], J[1:0], a_inner[4+j], b_counts[j], s_b[96+102*j+:102]
+        s_b[`CCHIP_NODE_LINE_CUT_EXPONENT],
+        J[1:0],
+        a_inner[4+j],
+        b_counts[j],
+        children_b[102*j+:102]
       };
     end
   endgenerate
@@ -240,7 +255,9 @@ module cchip_bv_feed #(
       .read_data ({tag30, tests30})
   );
 
-  wire unused = &{1'b0, s_a[82:59], s_a[95:94], s_a[511:504], s_b[82:59], s_b[95:94], s_b[511:504]};
+  wire unused = &{1'b0, s_a[`CCHIP_NODE_LINE_FIRST], s_a[`CCHIP_NODE_LINE_RESERVED],
+                  s_a[`CCHIP_NODE_LINE_RESERVED2], s_b[`CCHIP_NODE_LINE_FIRST],
+                  s_b[`CCHIP_NODE_LINE_RESERVED], s_b[`CCHIP_NODE_LINE_RESERVED2]};
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_stays, s_valid || count_q == 2'd0)

@@ -588,6 +588,82 @@
 // the word of these fields, also as the target of an assignment or an output
 `define CCHIP_INFO_TETRAHEDRON_OF(warped_a, warped_b) {warped_b, warped_a}
 
+// ---- line 0 of an image (docs/hardware/image.md): word[`CCHIP_HEADER_LINE_<field>]
+`define CCHIP_HEADER_LINE_W 512
+// 0x4D494343
+`define CCHIP_HEADER_LINE_MAGIC 0+:32
+// CRC-32 of the image from byte 8 on
+`define CCHIP_HEADER_LINE_CRC 32+:32
+// 1
+`define CCHIP_HEADER_LINE_VERSION 64+:16
+// of the object's unit, signed
+`define CCHIP_HEADER_LINE_EXPONENT 80+:16
+// of the image
+`define CCHIP_HEADER_LINE_LINES 96+:32
+// line of the root
+`define CCHIP_HEADER_LINE_ROOT 128+:24
+// levels
+`define CCHIP_HEADER_LINE_DEPTH 152+:6
+// bit 0: triangles, bit 1: quads
+`define CCHIP_HEADER_LINE_KINDS 158+:2
+// triangles, quads, inner nodes, leaves: 32 bit each
+`define CCHIP_HEADER_LINE_COUNTS 160+:128
+// 0
+`define CCHIP_HEADER_LINE_RESERVED 288+:32
+// three doubles
+`define CCHIP_HEADER_LINE_CENTRE 320+:192
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_HEADER_LINE_OF(magic, crc, version, exponent, lines, root, depth, kinds, counts, reserved, centre) \
+  {centre, reserved, counts, kinds, depth, root, lines, exponent, version, crc, magic}
+
+// ---- line of an inner node (docs/hardware/image.md): word[`CCHIP_NODE_LINE_<field>]
+`define CCHIP_NODE_LINE_W 512
+// three signed words of 18 bit, 2^-18
+`define CCHIP_NODE_LINE_ORIGIN 0+:54
+// s: a step is 2^(s - 24)
+`define CCHIP_NODE_LINE_STEP 54+:5
+// line of the first child
+`define CCHIP_NODE_LINE_FIRST 59+:24
+// 2 bit for each child
+`define CCHIP_NODE_LINE_KINDS 83+:8
+// their number - 1
+`define CCHIP_NODE_LINE_CHILDREN 91+:2
+// k - 2
+`define CCHIP_NODE_LINE_CUT_EXPONENT 93+:1
+// 0
+`define CCHIP_NODE_LINE_RESERVED 94+:2
+// volumes of the four children, 102 bit each
+`define CCHIP_NODE_LINE_CHILD 96+:408
+// 0
+`define CCHIP_NODE_LINE_RESERVED2 504+:8
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_NODE_LINE_OF(origin, step, first, kinds, children, cut_exponent, reserved, child, reserved2) \
+  {reserved2, child, reserved, cut_exponent, children, kinds, first, step, origin}
+
+// ---- line of a leaf (docs/hardware/image.md): word[`CCHIP_LEAF_LINE_<field>]
+`define CCHIP_LEAF_LINE_W 512
+// three signed words of 24 bit, 2^-24
+`define CCHIP_LEAF_LINE_ORIGIN 0+:72
+// q: a step is 2^(q - 43) for triangles, 2^(q - 47) for a quad
+`define CCHIP_LEAF_LINE_EXTENT 72+:5
+// 0: every vertex is the mesh's exactly
+`define CCHIP_LEAF_LINE_ROUNDED 77+:1
+// no answer for this quad is definite
+`define CCHIP_LEAF_LINE_OPEN 78+:1
+// 0
+`define CCHIP_LEAF_LINE_RESERVED 79+:1
+// number of the first face
+`define CCHIP_LEAF_LINE_ID0 80+:32
+// number of the second face
+`define CCHIP_LEAF_LINE_ID1 112+:32
+// 18 signed words of 20 bit, or 12 of 24 bit for a quad; x first
+`define CCHIP_LEAF_LINE_POINTS 144+:360
+// 0
+`define CCHIP_LEAF_LINE_RESERVED2 504+:8
+// the word of these fields, also as the target of an assignment or an output
+`define CCHIP_LEAF_LINE_OF(origin, extent, rounded, open, reserved, id0, id1, points, reserved2) \
+  {reserved2, points, id1, id0, reserved, open, rounded, extent, origin}
+
 // ---- a query's line in the ring (docs/hardware/image.md): word[`CCHIP_QUERY_<field>]
 `define CCHIP_QUERY_W 512
 // line of the header of A, the finer object

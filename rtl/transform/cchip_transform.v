@@ -141,8 +141,13 @@ module cchip_transform #(
   // ---- what is known of a pair, from its launch to its last vertex
   wire quad_a = s_kinds[1:0] == QUAD;
   wire quad_b = s_kinds[3:2] == QUAD;
-  wire [31:0] face_a = launch_pair[1] ? s_lines[112+:32] : s_lines[80+:32];
-  wire [31:0] face_b = launch_pair[0] ? s_lines[512+112+:32] : s_lines[512+80+:32];
+  wire [511:0] line_a = s_lines[511:0];
+  wire [511:0] line_b = s_lines[1023:512];
+  wire [31:0] face_a = launch_pair[1] ? line_a[`CCHIP_LEAF_LINE_ID1] :
+      line_a[`CCHIP_LEAF_LINE_ID0];
+  wire [31:0] face_b = launch_pair[0] ? line_b[`CCHIP_LEAF_LINE_ID1] :
+      line_b[`CCHIP_LEAF_LINE_ID0];
+  wire unused = &{1'b0, line_a, line_b};
   wire quad_a_now, quad_b_now;
   wire [31:0] face_a_now, face_b_now;
   wire [ ID_W-1:0] id_now;

@@ -65,8 +65,8 @@ module cchip_vertex_transform #(
 
   wire [511:0] line_a = s_lines[511:0];
   wire [511:0] line_b = s_lines[1023:512];
-  wire [4:0] extent_a = line_a[76:72];
-  wire [4:0] extent_b = line_b[76:72];
+  wire [4:0] extent_a = line_a[`CCHIP_LEAF_LINE_EXTENT];
+  wire [4:0] extent_b = line_b[`CCHIP_LEAF_LINE_EXTENT];
   wire [1:0] quads = {s_kinds[3:2] == QUAD, s_kinds[1:0] == QUAD};
 
   // ---- which vertex: origin of A's leaf, then pair by pair
@@ -81,9 +81,9 @@ module cchip_vertex_transform #(
       .s_ready    (s_ready),
       .s_kinds    (s_kinds),
       .s_illegal  (extent_a > EXTENT_MAX || extent_b > EXTENT_MAX),
-      .s_origin_a (line_a[71:0]),
-      .s_points_a (line_a[144+:360]),
-      .s_points_b (line_b[144+:360]),
+      .s_origin_a (line_a[`CCHIP_LEAF_LINE_ORIGIN]),
+      .s_points_a (line_a[`CCHIP_LEAF_LINE_POINTS]),
+      .s_points_b (line_b[`CCHIP_LEAF_LINE_POINTS]),
       .room       (room),
       .corrupt    (corrupt),
       .launch     (launch),
@@ -158,8 +158,8 @@ module cchip_vertex_transform #(
       .s_extent_a(extent_a),
       .s_extent_b(extent_b),
       .s_quads   (quads),
-      .s_rounded ({line_b[77], line_a[77]}),
-      .s_open    (line_a[78] | line_b[78]),
+      .s_rounded ({line_b[`CCHIP_LEAF_LINE_ROUNDED], line_a[`CCHIP_LEAF_LINE_ROUNDED]}),
+      .s_open    (line_a[`CCHIP_LEAF_LINE_OPEN] | line_b[`CCHIP_LEAF_LINE_OPEN]),
       .m_shift   (shift1),
       .m_cut_a   (cut_a4),
       .m_cut_b   (cut_b4),
@@ -177,7 +177,7 @@ module cchip_vertex_transform #(
       .rst       (rst),
       .s_origin  (origin1),
       .s_t       (s_t),
-      .s_origin_b(line_b[71:0]),
+      .s_origin_b(line_b[`CCHIP_LEAF_LINE_ORIGIN]),
       .s_shift   (shift1),
       .s_fine    (fine4),
       .s_moved   ({moved7[2], moved7[1], moved7[0]}),
@@ -275,7 +275,10 @@ module cchip_vertex_transform #(
       .q  ({m_last, m_first, m_valid})
   );
 
-  wire unused = &{1'b0, line_a[511:504], line_a[143:79], line_b[511:504], line_b[143:79], lost_q};
+  wire unused = &{1'b0, line_a[`CCHIP_LEAF_LINE_RESERVED], line_a[`CCHIP_LEAF_LINE_ID0],
+                  line_a[`CCHIP_LEAF_LINE_ID1], line_a[`CCHIP_LEAF_LINE_RESERVED2],
+                  line_b[`CCHIP_LEAF_LINE_RESERVED], line_b[`CCHIP_LEAF_LINE_ID0],
+                  line_b[`CCHIP_LEAF_LINE_ID1], line_b[`CCHIP_LEAF_LINE_RESERVED2], lost_q};
 
 endmodule
 `default_nettype wire

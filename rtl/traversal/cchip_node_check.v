@@ -39,7 +39,7 @@ module cchip_node_check #(
   localparam integer NODES_W = `CCHIP_NODES_W;
   localparam [31:0] MAGIC = 32'h4D494343;
   localparam [15:0] VERSION = 16'd1;
-  localparam [4:0] EXTENT_MAX = 5'd18;
+  localparam [4:0] STEP_MAX = 5'd18;
 
   // ---- the fields on the first clock, compared on the second, judged on the third
   (* ram_style = "distributed" *)
@@ -57,21 +57,22 @@ module cchip_node_check #(
   generate
     for (p = 0; p < 2; p = p + 1) begin : gen_line
       wire [511:0] line = s_lines[512*p+:512];
-      wire [4:0] extent = line[54+:5];
-      wire [23:0] first = line[59+:24];  // line of the first child
-      wire [7:0] kinds = line[83+:8];  // of the children
-      wire [1:0] others = line[91+:2];  // children behind the first
+      wire [4:0] step = line[`CCHIP_NODE_LINE_STEP];
+      wire [23:0] first = line[`CCHIP_NODE_LINE_FIRST];
+      wire [7:0] kinds = line[`CCHIP_NODE_LINE_KINDS];
+      wire [1:0] others = line[`CCHIP_NODE_LINE_CHILDREN];  // behind the first
+      wire [407:0] child = line[`CCHIP_NODE_LINE_CHILD];
       // of a header
-      wire [31:0] magic = line[0+:32];
-      wire [15:0] version = line[64+:16];
-      wire [31:0] size = line[96+:32];
-      wire [23:0] root = line[128+:24];
+      wire [31:0] magic = line[`CCHIP_HEADER_LINE_MAGIC];
+      wire [15:0] version = line[`CCHIP_HEADER_LINE_VERSION];
+      wire [31:0] size = line[`CCHIP_HEADER_LINE_LINES];
+      wire [23:0] root = line[`CCHIP_HEADER_LINE_ROOT];
 
       // greatest < least on an axis of a child. Children that are absent have boxes of 0.
       wire [11:0] inverted;
       for (i = 0; i < 12; i = i + 1) begin : gen_interval
-        wire signed [6:0] least = line[96+102*(i/3)+14*(i%3)+:7];
-        wire signed [6:0] greatest = line[103+102*(i/3)+14*(i%3)+:7];
+        wire signed [6:0] least = child[102*(i/3)+14*(i%3)+:7];
+        wire signed [6:0] greatest = child[102*(i/3)+14*(i%3)+7+:7];
         assign inverted[i] = greatest < least;
       end
 
@@ -90,7 +91,7 @@ module cchip_node_check #(
         last_q1        <= {1'b0, first} + {23'd0, others};
         kinds_q1       <= kinds;
         at_q1          <= s_numbers[24*p+:24];
-        steep_q1       <= extent > EXTENT_MAX;
+        steep_q1       <= step > STEP_MAX;
         inverted_q1    <= inverted;
         size_q1        <= |size[31:24] ? 25'h1000000 : {1'b0, size[23:0]};
         failed_q1      <= s_failed[p];
@@ -110,7 +111,7 @@ module cchip_node_check #(
             corrupt_q2 ? `CCHIP_END_CORRUPT :
             outside_q2 ? `CCHIP_END_OUTSIDE : `CCHIP_END_OK;
       end
-      wire unused = &{1'b0, line[511:152], line[95:93], line[53:32]};
+      wire unused = &{1'b0, line[511:152], line[95:93], line[53:32], child};
       assign size2[25*p+:25] = size_q2;
       assign node3[32*p+:32] = {kinds_q3, first_q3};
       assign end3[END_W*p+:END_W] = end_q3;

@@ -5,6 +5,7 @@
 #define CCHIP_BVH_IMAGE_FIELDS_HPP
 
 #include <array>
+#include <cchip/wire/definitions.hpp>
 #include <cchip/wire/line.hpp>
 
 namespace cchip::bvh {
@@ -62,6 +63,29 @@ inline constexpr std::array<Field, 7> all = {origin, extent, rounded, open, id, 
 
 static_assert(inner_field::child.end() == 504 && child_field::corner_cut.end() == inner_field::child.width);
 static_assert(leaf_field::triangle.end() == 504 && header_field::centre.end() == 512);
+
+/// The RTL reads a field where it is written: its names are made from scripts/definitions.json.
+constexpr bool is_where(const Field& field, const defs::Field& rtl) {
+  return field.lsb == static_cast<std::size_t>(rtl.lsb) && field.end() <= static_cast<std::size_t>(rtl.lsb + rtl.width);
+}
+static_assert(is_where(header_field::magic, defs::header_line_magic) &&
+              is_where(header_field::version, defs::header_line_version) &&
+              is_where(header_field::lines, defs::header_line_lines) &&
+              is_where(header_field::root, defs::header_line_root) &&
+              is_where(header_field::centre, defs::header_line_centre));
+static_assert(is_where(inner_field::origin, defs::node_line_origin) &&
+              is_where(inner_field::step, defs::node_line_step) &&
+              is_where(inner_field::first, defs::node_line_first) &&
+              is_where(inner_field::kind, defs::node_line_kinds) &&
+              is_where(inner_field::children, defs::node_line_children) &&
+              is_where(inner_field::cut_exponent, defs::node_line_cut_exponent) &&
+              is_where(inner_field::child, defs::node_line_child));
+static_assert(is_where(leaf_field::origin, defs::leaf_line_origin) &&
+              is_where(leaf_field::extent, defs::leaf_line_extent) &&
+              is_where(leaf_field::rounded, defs::leaf_line_rounded) &&
+              is_where(leaf_field::open, defs::leaf_line_open) && leaf_field::id.lsb == defs::leaf_line_id0.lsb &&
+              is_where(leaf_field::triangle, defs::leaf_line_points) &&
+              is_where(leaf_field::quad, defs::leaf_line_points));
 
 inline constexpr unsigned image_magic = 0x4D494343;  // "CCIM"
 inline constexpr unsigned image_version = 1;

@@ -487,6 +487,73 @@ constexpr Field info_tetrahedron_warped_a = {0, 1};
 /// quad B is warped
 constexpr Field info_tetrahedron_warped_b = {1, 1};
 
+/// line 0 of an image (docs/hardware/image.md) [bit]
+constexpr int header_line_w = 512;
+/// 0x4D494343
+constexpr Field header_line_magic = {0, 32};
+/// CRC-32 of the image from byte 8 on
+constexpr Field header_line_crc = {32, 32};
+/// 1
+constexpr Field header_line_version = {64, 16};
+/// of the object's unit, signed
+constexpr Field header_line_exponent = {80, 16};
+/// of the image
+constexpr Field header_line_lines = {96, 32};
+/// line of the root
+constexpr Field header_line_root = {128, 24};
+/// levels
+constexpr Field header_line_depth = {152, 6};
+/// bit 0: triangles, bit 1: quads
+constexpr Field header_line_kinds = {158, 2};
+/// triangles, quads, inner nodes, leaves: 32 bit each
+constexpr Field header_line_counts = {160, 128};
+/// 0
+constexpr Field header_line_reserved = {288, 32};
+/// three doubles
+constexpr Field header_line_centre = {320, 192};
+
+/// line of an inner node (docs/hardware/image.md) [bit]
+constexpr int node_line_w = 512;
+/// three signed words of 18 bit, 2^-18
+constexpr Field node_line_origin = {0, 54};
+/// s: a step is 2^(s - 24)
+constexpr Field node_line_step = {54, 5};
+/// line of the first child
+constexpr Field node_line_first = {59, 24};
+/// 2 bit for each child
+constexpr Field node_line_kinds = {83, 8};
+/// their number - 1
+constexpr Field node_line_children = {91, 2};
+/// k - 2
+constexpr Field node_line_cut_exponent = {93, 1};
+/// 0
+constexpr Field node_line_reserved = {94, 2};
+/// volumes of the four children, 102 bit each
+constexpr Field node_line_child = {96, 408};
+/// 0
+constexpr Field node_line_reserved2 = {504, 8};
+
+/// line of a leaf (docs/hardware/image.md) [bit]
+constexpr int leaf_line_w = 512;
+/// three signed words of 24 bit, 2^-24
+constexpr Field leaf_line_origin = {0, 72};
+/// q: a step is 2^(q - 43) for triangles, 2^(q - 47) for a quad
+constexpr Field leaf_line_extent = {72, 5};
+/// 0: every vertex is the mesh's exactly
+constexpr Field leaf_line_rounded = {77, 1};
+/// no answer for this quad is definite
+constexpr Field leaf_line_open = {78, 1};
+/// 0
+constexpr Field leaf_line_reserved = {79, 1};
+/// number of the first face
+constexpr Field leaf_line_id0 = {80, 32};
+/// number of the second face
+constexpr Field leaf_line_id1 = {112, 32};
+/// 18 signed words of 20 bit, or 12 of 24 bit for a quad; x first
+constexpr Field leaf_line_points = {144, 360};
+/// 0
+constexpr Field leaf_line_reserved2 = {504, 8};
+
 /// a query's line in the ring (docs/hardware/image.md) [bit]
 constexpr int query_w = 512;
 /// line of the header of A, the finer object
