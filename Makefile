@@ -360,6 +360,7 @@ build/dask/installed: wheel python/tests/dask_requirements.txt
 
 test-dask: build/dask/installed ## collisionchip.distributed over a Dask scheduler and two workers on loopback, with workers killed in the middle (CCHIP_SEED repeats a run)
 	build/dask/bin/python python/tests/over_dask.py
+	build/dask/bin/python -m pytest --quiet -p no:cacheprovider python/tests/test_clash_many.py
 
 # clock of the chip, MHz: row chip in docs/hardware/fpga.md
 CHIP_MHZ ?= 50

@@ -3,13 +3,17 @@
 """Which of very many parts clash? Like clash_check.py, over a Dask cluster.
 
 Every mesh file of FOLDER is a part, in the coordinates of the assembly. A sweep over their boxes finds the pairs that may
-touch, the workers test them. RESULT gets a line for each pair that touches: a, b, relation, face pairs in contact; as
-Parquet if its name ends in .parquet and pyarrow is there, as CSV otherwise. SCHEDULER is the address of a Dask
-scheduler; without it two workers are started here. Needs collisionchip, distributed and trimesh (which reads the files).
-Exit codes: 0 no two parts cross, 1 some do, 2 wrong arguments, fewer than two mesh files, no scheduler or no place for RESULT, 3 some files cannot be
+touch, the workers test them. RESULT gets a line for each pair that touches, lies one inside the other or is at most the
+clearance apart: a, b, relation and face pairs in contact of the surfaces, solids (how they lie to each other as solids;
+empty if one of them is not closed), distance of the surfaces (empty above the clearance). It is Parquet if its name ends in .parquet and pyarrow is
+there, CSV otherwise. SCHEDULER is the address of a Dask scheduler; without it two workers are started here. Needs
+collisionchip, distributed and trimesh (which reads the files).
+Exit codes: 0 no two parts cross or share volume, 1 some do, 2 wrong arguments, fewer than two mesh files, no scheduler or no place for RESULT, 3 some files cannot be
 used and were left out."""
 import argparse
 import csv
+import html
+import math
 import pathlib
 import sys
 
@@ -17,11 +21,15 @@ import numpy as np
 import trimesh
 from distributed import Client, LocalCluster
 
-from collisionchip.distributed import collide_pairs
+from collisionchip import Object, collide
+from collisionchip.distributed import relate_pairs
+
+COLUMNS = ("a", "b", "relation", "contacts", "solids", "distance")
 
 
-def box_pairs(least, greatest):
-    """Pairs of boxes that overlap or touch, by a sweep along x; least, greatest: (n, 3) corners."""
+def box_pairs(least, greatest, clearance=0.0):
+    """Pairs of boxes that overlap, touch or are at most so far apart along each axis, by a sweep along x; least, greatest: (n, 3) corners."""
+    greatest = np.nextafter(greatest + clearance, math.inf) if clearance else greatest
     order = np.argsort(least[:, 0], kind="stable")
     starts = least[order, 0]
     for k, i in enumerate(order):
@@ -40,10 +48,45 @@ def write(path, lines):
             path = path.with_suffix(".csv")
             print(f"no pyarrow, so the result is {path}", file=sys.stderr)
         else:
-            parquet.write_table(pyarrow.table(dict(zip(("a", "b", "relation", "contacts"), zip(*lines)))), path)
+            parquet.write_table(pyarrow.table(dict(zip(COLUMNS, zip(*lines)))), path)
             return
     with open(path, "w", newline="") as file:
-        csv.writer(file, lineterminator="\n").writerows([("a", "b", "relation", "contacts"), *lines])
+        csv.writer(file, lineterminator="\n").writerows([COLUMNS, *lines])
+
+
+def in_words(relation, solids, distance):
+    """What a pair is, for people."""
+    if solids in ("a_in_b", "b_in_a"):
+        return "a inside b" if solids == "a_in_b" else "b inside a"
+    if solids == "equal":
+        return "duplicate"
+    if relation == "apart":
+        return f"{distance:g} apart"
+    if not solids:
+        return f"surfaces {relation.replace('ing', '')}, not both closed: no solids"
+    return "overlap" if solids == "overlapping" else "touch"
+
+
+def report(path, lines, files, open_parts):
+    """A page with a table of the pairs; those whose faces meet lead to a page of their own, on which both parts can be turned and cut."""
+    pages = path.with_name(path.stem + "_pairs")
+    by_name = {file.name: file for file in files}
+    rows = []
+    for number, (a, b, relation, contacts, solids, distance) in enumerate(lines):
+        words = html.escape(in_words(relation, solids, distance))
+        if contacts:
+            pages.mkdir(exist_ok=True)
+            loaded = [trimesh.load_mesh(by_name[name], process=False) for name in (a, b)]
+            parts = [Object(part.vertices, part.faces) for part in loaded]
+            collide(parts[0], None, parts[1], None, contacts="all", relation=True).show(pages / f"{number}.html")
+            words = f'<a href="{html.escape(pages.name)}/{number}.html">{words}</a>'
+        far = "" if distance is None else f"{distance:g}"
+        rows.append(f"<tr><td>{html.escape(a)}<td>{html.escape(b)}<td>{words}<td>{contacts}<td>{far}")
+    notes = "".join(f"<li>{html.escape(name)}" for name in open_parts)
+    path.write_text('<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Clashes</title>'
+                    f"<h1>{len(files)} parts, {len(lines)} pairs</h1>"
+                    "<table border><tr><th>a<th>b<th>what<th>face pairs<th>distance" + "".join(rows) + "</table>"
+                    + (f"<h2>Not closed: surfaces, not solids</h2><ul>{notes}</ul>" if notes else "") + "</html>\n", encoding="utf-8")
 
 
 def load(files):
@@ -65,8 +108,13 @@ def main():
     parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path)
     parser.add_argument("result", metavar="RESULT", type=pathlib.Path)
     parser.add_argument("scheduler", metavar="SCHEDULER", nargs="?")
+    parser.add_argument("--clearance", type=float, default=0.0, help="list pairs at most so far apart, too (default 0)")
+    parser.add_argument("--report", metavar="PAGE.html", type=pathlib.Path,
+                        help="write a page with the pairs, too; beside it a folder with a page for each pair whose faces meet")
     options = parser.parse_args()
     folder, scheduler = options.folder, options.scheduler
+    if not (0 <= options.clearance < math.inf):
+        parser.error("--clearance: give a number that is at least 0")
     if not folder.is_dir():
         parser.error(f"{folder}: no such folder")
     found = sorted(path for path in folder.iterdir() if path.suffix.lower() in (".obj", ".off", ".ply", ".stl"))
@@ -74,25 +122,32 @@ def main():
     if len(files) < 2:
         print(f"{folder}: fewer than two mesh files that can be used", file=sys.stderr)
         return 2
+    open_parts = [path.name for path, part in zip(files, parts) if not Object(part.vertices, part.faces).is_closed]
+    for name in open_parts:
+        print(f"{name}: not closed, so it is a surface and no solid: nothing is inside it", file=sys.stderr)
     bounds = np.array([part.bounds for part in parts])
-    pairs = [(int(a), int(b)) for a, b in box_pairs(bounds[:, 0], bounds[:, 1])]
-    touching = []
+    pairs = [(int(a), int(b)) for a, b in box_pairs(bounds[:, 0], bounds[:, 1], options.clearance)]
+    listed = []
     with (Client(scheduler) if scheduler else Client(LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None))) as client:
         done = 0
-        for a, b, relation, contacts in collide_pairs(client, parts, pairs, contacts="all", relation=True):
+        for a, b, relation, contacts, solids, distance in relate_pairs(client, parts, pairs, clearance=options.clearance):
             done += 1
             if sys.stderr.isatty() or done % 1000 == 0 or done == len(pairs):
                 print(f"\r{done} of {len(pairs)} pairs", end="" if done < len(pairs) else "\n", file=sys.stderr, flush=True)
-            if relation != "apart":
-                touching.append((files[a].name, files[b].name, relation, contacts))
+            if relation != "apart" or solids not in (None, "disjoint") or distance <= options.clearance:
+                listed.append((files[a].name, files[b].name, relation, contacts, solids or "", distance if distance <= options.clearance else None))
         if not scheduler:
             client.cluster.close()
-    write(options.result, sorted(touching))
+    listed.sort()
+    write(options.result, listed)
+    if options.report:
+        report(options.report, listed, files, open_parts)
+    touching = [line for line in listed if line[2] != "apart"]
     crossing = sum(line[2] == "crossing" for line in touching)
     print(f"parts={len(parts)} box_pairs={len(pairs)} touching={len(touching)} crossing={crossing}")
     if len(files) < len(found):
         return 3
-    return 1 if crossing else 0
+    return 1 if any(line[2] == "crossing" or line[4] in ("overlapping", "a_in_b", "b_in_a", "equal") for line in listed) else 0
 
 
 if __name__ == "__main__":

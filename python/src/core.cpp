@@ -214,7 +214,9 @@ nb::object to_text(const std::string& bytes) {
   throw nb::python_error();
 }
 
-Object load(nb::handle path, bool quads, bool lenient) {
+/// What `read` makes of a file, whose name it is given. The GIL is released meanwhile.
+template <class Read>
+auto read_file(nb::handle path, const Read& read) {
   PyObject* converted = nullptr;
   if (PyUnicode_FSConverter(path.ptr(), &converted) == 0) throw nb::python_error();
   const nb::bytes bytes = nb::steal<nb::bytes>(converted);
@@ -228,10 +230,7 @@ Object load(nb::handle path, bool quads, bool lenient) {
     const nb::gil_scoped_release release;
     const GradualUnderflow mode;
     try {
-      cchip::LoadOptions options;
-      options.kinds = quads ? cchip::FaceKinds::triangles_and_quads : cchip::FaceKinds::triangles;
-      options.lenient = lenient;
-      return Object(cchip::load_mesh(name, options));
+      return read(name);
     } catch (const std::runtime_error& error) {
       wrong = error.what();
     } catch (const std::invalid_argument& error) {
@@ -240,6 +239,15 @@ Object load(nb::handle path, bool quads, bool lenient) {
   }
   PyErr_SetObject(PyExc_ValueError, to_text(wrong).ptr());
   throw nb::python_error();
+}
+
+Object load(nb::handle path, bool quads, bool lenient) {
+  return read_file(path, [&](const std::string& name) {
+    cchip::LoadOptions options;
+    options.kinds = quads ? cchip::FaceKinds::triangles_and_quads : cchip::FaceKinds::triangles;
+    options.lenient = lenient;
+    return Object(cchip::load_mesh(name, options));
+  });
 }
 
 // Parts of an object, also for pickle.
@@ -414,6 +422,19 @@ nb::object to_rows(const std::vector<cchip::Vec3d>& points) {
   rows.reserve(3 * points.size());
   for (const cchip::Vec3d& p : points) rows.insert(rows.end(), p.data(), p.data() + 3);
   return nb::cast(owned<double>(std::move(rows), {points.size(), 3}));
+}
+
+nb::dict to_dict(const cchip::CollisionCounts& counts) {
+  nb::dict d;
+  d["steps"] = counts.steps;
+  d["box_tests"] = counts.box_tests;
+  d["pairs"] = counts.pairs;
+  d["open"] = counts.open;
+  d["clocks"] = counts.clocks;
+  d["fallbacks"] = counts.fallbacks;
+  d["swaps"] = counts.swaps;
+  d["swap_clocks"] = counts.swap_clocks;
+  return d;
 }
 
 const char* name_of(cchip::Intersection::Kind kind) {
@@ -607,6 +628,75 @@ Result collide(const Object& a, nb::handle pose_a, const Object& b, nb::handle p
   return Result(device != nullptr ? cchip::collide(*device, a, place_a, b, place_b, request)
                                   : cchip::collide(a, place_a, b, place_b, request),
                 {a, place_a, b, place_b});
+}
+
+// Point clouds.
+
+std::vector<Vec3d> to_points(const Array<double>& array) {
+  if (array.ndim() == 1 && array.shape(0) == 0) return {};  // an empty list
+  if (array.ndim() != 2 || array.shape(1) != 3) {
+    throw std::invalid_argument("points have the shape " + shape_of(array) + "; give (n, 3)");
+  }
+  std::vector<Vec3d> points(array.shape(0));
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = Eigen::Map<const Vec3d>(array.data() + 3 * i);
+  return points;
+}
+
+void init_cloud(cchip::PointCloud* self, nb::handle points, nb::handle radius) {
+  const std::vector<Vec3d> centres = to_points(to_array<double>(points, "float64", "points"));
+  const auto radii = to_array<double>(radius, "float64", "radius");
+  if (radii.ndim() > 1) {
+    throw std::invalid_argument("radius has the shape " + shape_of(radii) + "; give a number, or (n,) for n points");
+  }
+  const std::vector<double> values(radii.data(), radii.data() + radii.size());
+  const bool for_all = radii.ndim() == 0;
+  const nb::gil_scoped_release release;
+  const GradualUnderflow mode;
+  if (for_all) {
+    new (self) cchip::PointCloud(centres, values[0]);
+  } else {
+    new (self) cchip::PointCloud(centres, values);
+  }
+}
+
+nb::object load_points(nb::handle path, bool leave_out_nan) {
+  return to_rows(read_file(path, [&](const std::string& name) {
+    cchip::LoadPointsOptions options;
+    options.leave_out_nan = leave_out_nan;
+    return cchip::load_points(name, options);
+  }));
+}
+
+cchip::CloudResult collide_cloud(const cchip::PointCloud& cloud, nb::handle pose_cloud, const Object& object,
+                                 nb::handle pose_object, const std::string& contacts,
+                                 std::optional<std::size_t> max_contacts) {
+  const Pose place_cloud = one_pose(pose_cloud, "pose_cloud");
+  const Pose place_object = one_pose(pose_object, "pose_object");
+  // checks the words, as for two objects
+  const CollisionRequest words = to_request(contacts, false, "touching", max_contacts, false, 0);
+  const nb::gil_scoped_release release;
+  const GradualUnderflow mode;
+  return cchip::collide(cloud, place_cloud, object, place_object, {words.contacts, words.max_contacts});
+}
+
+/// \param objects tuples of an Object and its pose
+std::optional<std::size_t> first_met(const cchip::PointCloud& cloud, nb::handle pose_cloud, const nb::list& objects) {
+  const Pose place_cloud = one_pose(pose_cloud, "pose_cloud");
+  std::vector<cchip::PlacedObject> placed;
+  placed.reserve(objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const std::string name = "objects[" + std::to_string(i) + "]";
+    nb::tuple pair;
+    const Object* object = nullptr;
+    if (!nb::try_cast(objects[i], pair) || pair.size() != 2 || !nb::try_cast(pair[0], object) || object == nullptr) {
+      throw std::invalid_argument(name + " is no tuple of an Object and its pose");
+    }
+    placed.push_back({object, one_pose(pair[1], name.c_str())});
+  }
+  const nb::gil_scoped_release release;
+  const GradualUnderflow mode;
+  const std::size_t found = cchip::first_met(cloud, place_cloud, placed);
+  return found < placed.size() ? std::optional(found) : std::nullopt;
 }
 
 /// Calls `each` for the result of every pose, with the GIL released.
@@ -1052,20 +1142,8 @@ Returns the claim, as the first of the lines has it. Raises collisionchip.check.
           nb::sig("def crossing(self) -> numpy.typing.NDArray[numpy.bool_] | None"),
           "(k,) bool, whether the faces of each contact cross; None if it was not asked for.")
       .def_prop_ro(
-          "counts",
-          [](const Result& x) {
-            nb::dict d;
-            d["steps"] = x.counts.steps;
-            d["box_tests"] = x.counts.box_tests;
-            d["pairs"] = x.counts.pairs;
-            d["open"] = x.counts.open;
-            d["clocks"] = x.counts.clocks;
-            d["fallbacks"] = x.counts.fallbacks;
-            d["swaps"] = x.counts.swaps;
-            d["swap_clocks"] = x.counts.swap_clocks;
-            return d;
-          },
-          nb::sig("def counts(self) -> dict[str, int]"), "What the query cost (docs/cpp/collide.md).")
+          "counts", [](const Result& x) { return to_dict(x.counts); }, nb::sig("def counts(self) -> dict[str, int]"),
+          "What the query cost (docs/cpp/collide.md).")
       .def_prop_ro(
           "certificate",
           [](const Result& x) -> std::optional<Proof> {
@@ -1161,6 +1239,74 @@ then.
 
 Raises ValueError: a pose of another shape or with an entry that is not finite or beyond 2^500, an unknown word,
 max_contacts of 0. Raises RuntimeError: the device is in use; or, with certificate=True, the answer is wrong.)");
+  nb::class_<cchip::PointCloud>(m, "PointCloud", nb::is_weak_referenceable(),
+                                R"(Points with a radius each, made ready for queries; immutable.
+
+A point meets a face if it is at most its radius away from it. Faces are surfaces: a sphere inside an object meets none.)")
+      .def("__init__", &init_cloud, "points"_a, "radius"_a = 0.0,
+           nb::sig("def __init__(self, points: numpy.typing.ArrayLike, radius: numpy.typing.ArrayLike = 0) -> None"),
+           R"(From arrays, which are copied. Takes O(n log n) time.
+
+points: (n, 3), x, y and z of each; n may be 0.
+radius: of all points, or (n,), one for each, in units of the world: poses move the points and leave it as it is.
+
+Raises ValueError: another shape; a coordinate that is not finite or beyond 2^1000 (leave out the NaN of sensors, as load_points()
+does); a radius that is negative, not finite or beyond 2^1000; a masked array, complex numbers.)")
+      .def("__len__", &cchip::PointCloud::size)
+      .def("__repr__", [](const cchip::PointCloud& x) {
+        return "<collisionchip.PointCloud: " + std::to_string(x.size()) + (x.size() == 1 ? " point>" : " points>");
+      });
+  m.def(
+      "load_points", &load_points, "path"_a, nb::kw_only(), "leave_out_nan"_a = true,
+      nb::sig(
+          "def load_points(path: str | bytes | os.PathLike[str] | os.PathLike[bytes], *, leave_out_nan: bool = True) "
+          "-> numpy.typing.NDArray[numpy.float64]"),
+      R"(Points of a file, (n, 3) float64: PLY (with or without faces), XYZ, PCD (ascii and binary), also packed with gzip.
+
+leave_out_nan: points with a coordinate that is not finite are left out, so the numbers of those behind them are other than in
+the file; with False they are an error.
+
+Raises OSError: the file cannot be opened. Raises ValueError: it holds no points; the message has file, line and reason.)");
+  nb::class_<cchip::CloudResult>(
+      m, "CloudResult", nb::is_weak_referenceable(),
+      "What collide() says about a PointCloud; in a condition it is true if there is a contact.")
+      .def_ro("hit", &cchip::CloudResult::hit, "Whether there is a contact.")
+      .def_prop_ro(
+          "contacts",
+          [](const cchip::CloudResult& x) {
+            std::vector<std::uint32_t> rows;
+            rows.reserve(2 * x.contacts.size());
+            for (const cchip::CloudContact& contact : x.contacts) {
+              rows.insert(rows.end(), {contact.point, contact.face});
+            }
+            return nb::cast(owned<std::uint32_t>(std::move(rows), {x.contacts.size(), 2}));
+          },
+          "(k, 2) uint32: number of a point and of a face in each row, ascending, none twice.")
+      .def_prop_ro(
+          "counts", [](const cchip::CloudResult& x) { return to_dict(x.counts); },
+          nb::sig("def counts(self) -> dict[str, int]"), "What the query cost (docs/cpp/points.md).")
+      .def("__bool__", [](const cchip::CloudResult& x) { return x.hit; })
+      .def("__repr__", [](const cchip::CloudResult& x) {
+        return "<collisionchip.CloudResult: " + std::string(x.hit ? "hit" : "no hit") + ", " +
+               std::to_string(x.contacts.size()) + " contacts>";
+      });
+  m.def(
+      "collide", &collide_cloud, "cloud"_a, "pose_cloud"_a.none(), "object"_a, "pose_object"_a.none(),
+      "contacts"_a = "first", "max_contacts"_a = nb::none(),
+      nb::sig(
+          "def collide(cloud: PointCloud, pose_cloud: numpy.typing.ArrayLike | None, object: Object, pose_object: "
+          "numpy.typing.ArrayLike | None, contacts: str = 'first', max_contacts: int | None = None) -> CloudResult"),
+      R"(Which points of a cloud meet which faces of an object? Exact for the float64 numbers of points, radii, mesh and poses.
+
+Poses and contacts as for two objects. Raises ValueError as for two objects.)");
+  m.def("first_met", &first_met, "cloud"_a, "pose_cloud"_a.none(), "objects"_a,
+        nb::sig("def first_met(cloud: PointCloud, pose_cloud: numpy.typing.ArrayLike | None, objects: "
+                "list[tuple[Object, numpy.typing.ArrayLike | None]]) -> int | None"),
+        R"(Does a point of the cloud meet any of several placed objects, such as the links of a robot?
+
+objects: tuples of an Object and its pose. Returns the number of the first one in the list that is met, or None.
+
+Raises ValueError: as collide(); an entry that is no such tuple.)");
   m.def(
       "collide_many", &collide_many, "a"_a, "poses_a"_a.none(), "b"_a, "poses_b"_a.none(), "contacts"_a = false,
       "relation"_a = false, "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),

@@ -26,6 +26,7 @@
 #include "check.hpp"
 #include "collide.hpp"
 #include "demo.hpp"
+#include "distance.hpp"
 #include "engines.hpp"
 #include "mesh_source.hpp"
 #include "pair_runner.hpp"
@@ -274,6 +275,10 @@ void add_collide(CLI::App& app, CollideOptions& options) {
   auto* solids = command->add_flag("--solids", options.solids,
                                    "how closed meshes lie to each other as solids: is one inside the other?");
   for (auto* other : {poses, contacts, most, counts, relation, within}) solids->excludes(other);
+  auto* points = command->add_flag("--points", options.points,
+                                   "A is a file of points (PLY, XYZ, PCD): which of them meet which faces of B?");
+  for (auto* other : {poses, counts, relation, within, solids}) points->excludes(other);
+  add_text(*command, "--radius", options.radius, "each point is a sphere with this radius (default 0)")->needs(points);
   command->add_flag("--exit-code", options.exit_code, "end with exit code 5 if there is a contact");
   add_text(*command, "--device", options.device, "what answers: " + device_words() + " (default cpu)");
   add_choice(*command, "--format", options.format, formats, "output (default table)");
@@ -287,16 +292,20 @@ void add_collide(CLI::App& app, CollideOptions& options) {
   add_text(
       *command, "--trace", options.trace,
       "with --device sim: write the waveform of the chip's first 30,000 clocks (FST) and a .gtkw layout beside it");
-  add_text(*command, "--ply", options.ply, "write both meshes, the faces that cross and those that touch coloured")
+  add_text(*command, "--ply", options.ply,
+           "write both meshes, the faces that cross and those that touch coloured, with the curves where they cross")
       ->excludes(poses)
-      ->excludes(solids);
+      ->excludes(solids)
+      ->excludes(points);
   add_text(*command, "--html", options.html,
            "write a page for a browser: both meshes to turn, cut and click, with the list of their contacts")
       ->excludes(poses)
-      ->excludes(solids);
+      ->excludes(solids)
+      ->excludes(points);
   add_text(*command, "--certificate", options.certificate,
            "write a proof of each answer into this file, for cchip check")
-      ->excludes(solids);
+      ->excludes(solids)
+      ->excludes(points);
   command->footer(exit_codes +
                   "Examples:\n"
                   "  cchip collide a.obj b.stl --pose 0.5,0,0\n"
@@ -306,7 +315,32 @@ void add_collide(CLI::App& app, CollideOptions& options) {
                   "  cchip collide a.obj b.stl --poses poses.csv --counts crossing\n"
                   "  cchip collide a.obj b.stl --pose 2,0,0 --within 0.5\n"
                   "  cchip collide a.obj b.stl --pose 0.5,0,0 --solids\n"
+                  "  cchip collide scan.ply b.stl --points --radius 0.01\n"
                   "  cchip collide a.obj b.stl --pose 0.5,0,0 --device sim --trace chip.fst");
+}
+
+void add_distance(CLI::App& app, DistanceOptions& options) {
+  CLI::App* command = app.add_subcommand(
+      "distance", "How far are two meshes apart, or how far along a direction until they touch or are clear?");
+  auto* pose = add_meshes(*command, options);
+  add_text(*command, "--pose-matrix", options.pose_matrix,
+           "twelve numbers, the 3x4 matrix [R|t] of any affine map row by row; or the sixteen of a 4x4 matrix")
+      ->excludes(pose);
+  auto* error = add_text(*command, "--relative-error", options.relative_error,
+                         "the bounds may differ by this part of the distance, 0.01 for 1 % (default 0)");
+  auto* stop = add_text(*command, "--stop-above", options.stop_above,
+                        "of a distance above this one say no more than that (default: no limit)");
+  add_text(*command, "--along", options.along,
+           "x,y,z: in place of the distance, how many times this vector B must be moved by until it meets A, or, if "
+           "they touch, until it is clear of A")
+      ->excludes(error)
+      ->excludes(stop);
+  add_choice(*command, "--format", options.format, formats, "output (default table)");
+  command->footer(exit_codes +
+                  "Examples:\n"
+                  "  cchip distance a.obj b.stl --pose 2,0,0\n"
+                  "  cchip distance a.obj b.stl --pose 2,0,0 --relative-error 0.01 --stop-above 0.5\n"
+                  "  cchip distance a.obj b.stl --pose 2,0,0 --along 0,0,1");
 }
 
 void add_check(CLI::App& app, CheckOptions& options) {
@@ -370,7 +404,7 @@ bool is_pose_in_words(const CLI::App& command, const std::string& word) {
 }
 
 /// Letters that have to be put in, left out or changed to make one word of the other.
-std::size_t distance(const std::string& a, const std::string& b) {
+std::size_t letters_between(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t k = 0; k <= b.size(); ++k) row[k] = k;
   for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -391,7 +425,7 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
   std::size_t least = most_letters_wrong + 1;
   std::string best;
   for (const std::string& name : names) {
-    const std::size_t wrong = distance(word, name);
+    const std::size_t wrong = letters_between(word, name);
     const std::size_t letters = name.size() - name.find_first_not_of('-');
     if (wrong < least && wrong < letters) {
       least = wrong;
@@ -474,11 +508,13 @@ int dispatch(std::vector<std::string> arguments, const Streams& streams) {
              "  cchip meshpairs a.obj b.stl --pose 0.5,0,0\n"
              "\"cchip COMMAND --help\" lists the options of a command.");
   CollideOptions collide;
+  DistanceOptions distance;
   CheckOptions check;
   PairsOptions pairs;
   MeshPairsOptions meshpairs;
   DemoOptions demo;
   add_collide(app, collide);
+  add_distance(app, distance);
   add_check(app, check);
   add_pairs(app, pairs);
   add_meshpairs(app, meshpairs);
@@ -511,6 +547,7 @@ int dispatch(std::vector<std::string> arguments, const Streams& streams) {
     throw UsageError(unreadable(app, error));
   }
   if (app.got_subcommand("collide")) return run_collide(collide, streams);
+  if (app.got_subcommand("distance")) return run_distance(distance, streams);
   if (app.got_subcommand("check")) return run_check(check, streams);
   if (app.got_subcommand("pairs")) return run_pairs(pairs, streams);
   if (app.got_subcommand("meshpairs")) return run_meshpairs(meshpairs, streams);

@@ -9,10 +9,12 @@
 #include <cchip/certificate/certify.hpp>
 #include <cchip/collide/face_pairs.hpp>
 #include <cchip/collide/intersection.hpp>
+#include <cchip/cpu/point_cloud.hpp>
 #include <cchip/cpu/solids.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/geometry/decimal.hpp>
 #include <cchip/machines/simulated_chip.hpp>
+#include <cchip/mesh_io/point_file.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>
@@ -50,10 +52,15 @@ struct Totals {
   std::chrono::duration<double> time{};  ///< of the queries alone, without files
 
   void add(const CollisionResult& result, bool differs) {
-    ++queries;
-    hits += result.hit;
+    add(result);
     crossing += result.relation == Relation::crossing;
     mismatches += differs;
+  }
+  /// A result of any kind.
+  template <class Result>
+  void add(const Result& result) {
+    ++queries;
+    hits += result.hit;
     contacts += result.contacts.size();
     counts += result.counts;
   }
@@ -106,15 +113,6 @@ int report(const Totals& totals, const CollideOptions& options, const Streams& s
   return totals.left_out > 0 ? exit_left_out : exit_ok;
 }
 
-Object load_object(const std::string& path, MeshReader& reader) {
-  Mesh mesh = reader.read(path);
-  try {
-    return Object(std::move(mesh));
-  } catch (const std::invalid_argument& error) {
-    throw UsageError(path + ": " + error.what());
-  }
-}
-
 std::unique_ptr<Device> open_named_device(const CollideOptions& options) {
   const auto needs_sim = [&options](bool is_set, const char* option, const char* what) {
     if (!is_set || options.device == "sim") return;
@@ -137,15 +135,22 @@ std::unique_ptr<Device> open_named_device(const CollideOptions& options) {
   }
 }
 
-CollisionRequest request_of(const CollideOptions& options) {
-  CollisionRequest request;
+/// How many contacts a query finds.
+/// \param request a CollisionRequest or a CloudRequest
+template <class Request>
+void set_contacts(const CollideOptions& options, Request& request) {
   using Contacts = CollisionRequest::Contacts;
   request.contacts = options.contacts.value_or(options.poses_file.empty() ? Contacts::all : Contacts::first);
-  const bool all = request.contacts == Contacts::all;
-  if (!all && options.max_contacts != 0) {
+  if (request.contacts == Contacts::first && options.max_contacts != 0) {
     throw UsageError("--most: each query stops at its first contact; add --contacts all, or leave --most out");
   }
   if (options.max_contacts != 0) request.max_contacts = options.max_contacts;
+}
+
+CollisionRequest request_of(const CollideOptions& options) {
+  CollisionRequest request;
+  set_contacts(options, request);
+  const bool all = request.contacts == CollisionRequest::Contacts::all;
   if (options.only_crossing) request.counts = CollisionRequest::Counts::crossing;
   if (!options.within.empty()) {
     const std::optional<double> distance = read_decimal(options.within);
@@ -239,22 +244,30 @@ auto timed(std::chrono::duration<double>& time, const Function& function) {
   return result;
 }
 
+/// Of the contacts a table shows the first ones only. \param what the contacts are called
+void write_rows(const std::vector<std::string>& names, const std::vector<std::vector<Cell>>& rows, const char* what,
+                Format format, std::ostream& out) {
+  if (rows.empty() && format == Format::table) return;
+  const auto writer = make_row_writer(format, out, names);
+  const std::size_t shown = format == Format::table ? std::min(rows.size(), contacts_shown) : rows.size();
+  for (std::size_t i = 0; i < shown; ++i) writer->write(rows[i]);
+  writer->flush();
+  if (shown < rows.size()) {
+    out << fmt::format("... and {} more {}; --format csv lists all\n", rows.size() - shown, what);
+  }
+}
+
 /// \param relation with a column for it
 void write_contacts(const std::vector<Contact>& contacts, bool relation, Format format, std::ostream& out) {
-  if (contacts.empty() && format == Format::table) return;
   std::vector<std::string> names = mesh_pair_names();
   if (relation) names.emplace_back("relation");
-  const auto writer = make_row_writer(format, out, names);
-  const std::size_t shown = format == Format::table ? std::min(contacts.size(), contacts_shown) : contacts.size();
-  for (std::size_t i = 0; i < shown; ++i) {
-    std::vector<Cell> cells = {std::uint64_t{contacts[i].face_a}, std::uint64_t{contacts[i].face_b}};
-    if (relation) cells.emplace_back(to_word(contacts[i].relation));
-    writer->write(cells);
+  std::vector<std::vector<Cell>> rows;
+  rows.reserve(contacts.size());
+  for (const Contact& contact : contacts) {
+    rows.push_back({std::uint64_t{contact.face_a}, std::uint64_t{contact.face_b}});
+    if (relation) rows.back().emplace_back(to_word(contact.relation));
   }
-  writer->flush();
-  if (shown < contacts.size()) {
-    out << fmt::format("... and {} more pairs of faces; --format csv lists all\n", contacts.size() - shown);
-  }
+  write_rows(names, rows, "pairs of faces", format, out);
 }
 
 /// In JSON lines an answer without contacts is a line, too.
@@ -285,8 +298,8 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
     throw UsageError(error.what());
   }
   MeshReader reader(streams, options.lenient);
-  const Object a = load_object(options.file_a, reader);
-  const Object b = load_object(options.file_b, reader);
+  const Object a = reader.read_object(options.file_a);
+  const Object b = reader.read_object(options.file_b);
   Totals totals;
   const CollisionResult result =
       timed(totals.time, [&] { return collide(device, a, Pose::Identity(), b, pose, request); });
@@ -302,6 +315,11 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
     write_contacts(result.contacts, request.tells_relation(), options.format, streams.out);
   }
   if (options.format == Format::jsonl && !result.hit) write_no_contact(result, request, streams.out);
+  std::vector<IntersectionCurve> curves;
+  if (picture || view) {
+    const Pose here = Pose::Identity();
+    curves = intersection_curves({&a, &here, &b, &pose}, result.contacts);
+  }
   if (picture) {
     // Without relations every contact counts as one that crosses.
     std::array<FacesHit, 2> hit;
@@ -311,12 +329,12 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
       for_each_face_of(a.mesh(), hit[cross].a, [&](std::size_t face) { picture->add_hit_a(face, cross); });
       for_each_face_of(b.mesh(), hit[cross].b, [&](std::size_t face) { picture->add_hit_b(face, cross); });
     }
+    for (const IntersectionCurve& curve : curves) picture->add_curve(curve.points, curve.closed);
     picture->write(a.mesh(), transformed(b.mesh(), pose));
   }
   if (view) {
-    const Pose here = Pose::Identity();
     view->write(a.mesh(), transformed(b.mesh(), pose), to_words(result, request, options.within), result.contacts,
-                intersection_curves({&a, &here, &b, &pose}, result.contacts));
+                curves);
   }
   totals.add(result, false);
   totals.left_out = reader.faces_left_out();
@@ -327,8 +345,8 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
 int answer_solids(const CollideOptions& options, Device& device, const Streams& streams) {
   const Pose pose = parse_pose_options(options.pose, options.pose_matrix);
   MeshReader reader(streams, options.lenient);
-  const Object a = load_object(options.file_a, reader);
-  const Object b = load_object(options.file_b, reader);
+  const Object a = reader.read_object(options.file_a);
+  const Object b = reader.read_object(options.file_b);
   SolidRelation relation = {};
   try {
     relation = solids(device, a, Pose::Identity(), b, pose);
@@ -344,6 +362,85 @@ int answer_solids(const CollideOptions& options, Device& device, const Streams& 
   }
   if (options.exit_code && relation != SolidRelation::disjoint) return exit_contact;
   return reader.faces_left_out() > 0 ? exit_left_out : exit_ok;
+}
+
+PointCloud load_cloud(const CollideOptions& options, const Streams& streams) {
+  const std::optional<double> radius = options.radius.empty() ? 0 : read_decimal(options.radius);
+  if (!radius || !(*radius >= 0 && *radius <= std::numeric_limits<double>::max())) {
+    throw UsageError("--radius: '" + options.radius + "' is not a radius; give a number that is at least 0");
+  }
+  std::size_t left_out = 0;
+  LoadPointsOptions load;
+  load.points_left_out = &left_out;
+  std::vector<Vec3d> points;
+  try {
+    points = options.file_a == "-" ? parse_points(read_all(streams.in), "-", load) : load_points(options.file_a, load);
+  } catch (const std::runtime_error& error) {
+    throw UsageError(error.what());
+  }
+  if (left_out > 0) {
+    streams.err << fmt::format("cchip: {}: {} without finite coordinates left out; the others are numbered from 0\n",
+                               options.file_a, counted(left_out, "point", "points"));
+  }
+  try {
+    return PointCloud(points, *radius);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(options.file_a + ": " + error.what());
+  }
+}
+
+/// The answer about a point cloud in words.
+std::string to_words(const CloudResult& result, const CloudRequest& request) {
+  if (!result.hit) return "apart";
+  if (request.contacts == CollisionRequest::Contacts::first) {
+    return fmt::format("touch: point {} of A meets face {} of B", result.contacts[0].point, result.contacts[0].face);
+  }
+  std::set<std::uint32_t> points;
+  std::set<std::uint32_t> faces;
+  for (const CloudContact& contact : result.contacts) {
+    points.insert(contact.point);
+    faces.insert(contact.face);
+  }
+  return fmt::format(
+      "touch: {}{} of A meet{} {} of B", result.contacts.size() == request.max_contacts ? "at least " : "",
+      counted(points.size(), "point", "points"), points.size() == 1 ? "s" : "", counted(faces.size(), "face", "faces"));
+}
+
+/// Which points of A meet which faces of B.
+int answer_points(const CollideOptions& options, const Streams& streams) {
+  if (options.device != "cpu") {
+    throw UsageError("--points: device " + options.device + " knows faces only; leave --device out");
+  }
+  const Pose pose = parse_pose_options(options.pose, options.pose_matrix);
+  CloudRequest request;
+  set_contacts(options, request);
+  const PointCloud cloud = load_cloud(options, streams);
+  MeshReader reader(streams, options.lenient);
+  const Object b = reader.read_object(options.file_b);
+  Totals totals;
+  CloudResult result;
+  try {
+    result = timed(totals.time, [&] { return collide(cloud, Pose::Identity(), b, pose, request); });
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+  const bool table = options.format == Format::table;
+  if (table) {
+    const std::string answer = to_words(result, request);
+    streams.out << (streams.colour ? coloured(answer) : answer) << '\n';
+  }
+  if (!table || request.contacts == CollisionRequest::Contacts::all) {
+    std::vector<std::vector<Cell>> rows;
+    rows.reserve(result.contacts.size());
+    for (const CloudContact& contact : result.contacts) {
+      rows.push_back({std::uint64_t{contact.point}, std::uint64_t{contact.face}});
+    }
+    write_rows({"point", "face"}, rows, "contacts", options.format, streams.out);
+  }
+  if (options.format == Format::jsonl && !result.hit) write_no_contact({}, {}, streams.out);
+  totals.add(result);
+  totals.left_out = reader.faces_left_out();
+  return report(totals, options, streams);
 }
 
 /// Answers the poses of a file, a batch at a time, and writes a row for each.
@@ -374,8 +471,8 @@ class PosesRunner {
     }
     const PoseColumns columns(row, options_.poses_file, options_.expect);
     MeshReader meshes(streams_, options_.lenient);
-    const Object a = load_object(options_.file_a, meshes);
-    const Object b = load_object(options_.file_b, meshes);
+    const Object a = meshes.read_object(options_.file_a);
+    const Object b = meshes.read_object(options_.file_b);
     totals_.left_out = meshes.faces_left_out();
     writer_ = make_row_writer(options_.format, streams_.out, names_behind(columns.passed_names(), names()));
     Progress progress(streams_.err, streams_.progress, "poses");
@@ -490,6 +587,7 @@ int run_collide(const CollideOptions& options, const Streams& streams) {
     throw UsageError("--expect: there is no file of poses; name one with --poses");
   }
   const auto device = open_named_device(options);
+  if (options.points) return answer_points(options, streams);
   if (options.solids) return answer_solids(options, *device, streams);
   if (options.poses_file.empty()) return answer_one(options, *device, streams);
   return report(PosesRunner(options, *device, streams).run(), options, streams);

@@ -26,13 +26,15 @@ struct CollideOptions {
   bool only_crossing = false;    ///< contacts that only touch do not count
   bool relation = false;         ///< tell touching from crossing; a single query for all contacts does in any case
   std::string within;            ///< faces at most this far apart are contacts; empty: those that share a point
+  bool points = false;           ///< A is a file of points, see load_points()
+  std::string radius;            ///< of each point's sphere; empty: 0
   bool solids = false;           ///< how the solids lie to each other, in place of contacts
   bool exit_code = false;        ///< exit code 5 if a query found a contact
   bool lenient = false;          ///< faces that cannot be used are left out
   std::string device = "cpu";
   Format format = Format::table;
   std::string expect;       ///< column of the file; empty: none
-  std::string ply;          ///< path of the coloured picture; empty: none
+  std::string ply;          ///< path of the coloured picture with the curves; empty: none
   std::string html;         ///< path of the view for a browser; empty: none
   std::string certificate;  ///< path of the proofs of the answers; empty: none
   std::uint64_t slots = 0;  ///< of device sim, with swaps; 0: a static chip

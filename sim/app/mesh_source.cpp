@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 
 namespace cchip::app {
 namespace {
@@ -19,6 +20,7 @@ constexpr Colour orange = {235, 94, 40};
 constexpr Colour blue = {30, 110, 210};
 constexpr Colour yellow = {245, 190, 50};
 constexpr Colour cyan = {110, 200, 225};
+constexpr Colour black = {20, 20, 20};
 
 /// Faces in colour: those that hit, and those that only touch.
 struct Coloured {
@@ -41,12 +43,14 @@ void append(const Mesh& mesh, const Coloured& x, Mesh& all, std::vector<Colour>&
 }
 
 Mesh read_standard_input(std::istream& in, const LoadOptions& options) {
-  const std::string text(std::istreambuf_iterator<char>(in), {});
+  const std::string text = read_all(in);
   if (text.empty()) throw UsageError("-: standard input is empty; send a mesh");
   return parse_mesh(text, "-", options);
 }
 
 }  // namespace
+
+std::string read_all(std::istream& in) { return {std::istreambuf_iterator<char>(in), {}}; }
 
 Mesh MeshReader::read(const std::string& path) {
   std::size_t left_out = 0;
@@ -65,6 +69,15 @@ Mesh MeshReader::read(const std::string& path) {
     return mesh;
   } catch (const std::runtime_error& error) {
     throw UsageError(error.what());
+  }
+}
+
+Object MeshReader::read_object(const std::string& path) {
+  Mesh mesh = read(path);
+  try {
+    return Object(std::move(mesh));
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(path + ": " + error.what());
   }
 }
 
@@ -109,12 +122,16 @@ void HitPicture::add_hit(const PairJob& job) {
   hits_b_.insert(std::stoull(job.passed.at(1)));
 }
 
+void HitPicture::add_curve(const std::vector<Vec3d>& points, bool closed) {
+  curves_.push_back({points, closed, black});
+}
+
 void HitPicture::write(const Mesh& a, const Mesh& b) {
   Mesh all;
   std::vector<Colour> colours;
   append(a, {hits_a_, orange, touches_a_, yellow, grey_a}, all, colours);
   append(b, {hits_b_, blue, touches_b_, cyan, grey_b}, all, colours);
-  write_ply(file_.stream(), all, colours);
+  write_ply(file_.stream(), all, colours, curves_);
   file_.commit();
 }
 

@@ -4,6 +4,7 @@
 #ifndef CCHIP_APP_MESH_SOURCE_HPP
 #define CCHIP_APP_MESH_SOURCE_HPP
 
+#include <cchip/collide/object.hpp>
 #include <cchip/mesh/mesh.hpp>
 #include <cchip/mesh_io/mesh_file.hpp>
 #include <cchip/sim/output_file.hpp>
@@ -26,6 +27,9 @@ class MeshReader {
   /// Triangles and quads of a file, "-": of standard input; a line on `err` if other faces had to be cut.
   /// \throws UsageError the file is missing, broken or has no faces
   Mesh read(const std::string& path);
+  /// The same, ready for queries.
+  /// \throws UsageError as read()
+  Object read_object(const std::string& path);
   /// Of all meshes so far.
   std::uint64_t faces_left_out() const { return faces_left_out_; }
   bool lenient() const { return lenient_; }
@@ -35,6 +39,9 @@ class MeshReader {
   bool lenient_;
   std::uint64_t faces_left_out_ = 0;
 };
+
+/// All that is left in a stream.
+std::string read_all(std::istream& in);
 
 /// \throws UsageError two of the paths are "-"
 void check_standard_input(const std::vector<std::string>& paths);
@@ -62,6 +69,8 @@ class HitPicture {
   /// The same by the faces' numbers in the meshes; those that only touch get a colour of their own.
   void add_hit_a(std::size_t face, bool crosses) { (crosses ? hits_a_ : touches_a_).insert(face); }
   void add_hit_b(std::size_t face, bool crosses) { (crosses ? hits_b_ : touches_b_).insert(face); }
+  /// A black line, where the surfaces cross.
+  void add_curve(const std::vector<Vec3d>& points, bool closed);
   /// \throws sim::OutputError as above
   void write(const Mesh& a, const Mesh& b);
 
@@ -71,6 +80,7 @@ class HitPicture {
   std::set<std::size_t> hits_b_;
   std::set<std::size_t> touches_a_;
   std::set<std::size_t> touches_b_;
+  std::vector<PlyCurve> curves_;
 };
 
 }  // namespace cchip::app

@@ -51,6 +51,14 @@ Eigen::Isometry3d parse_pose(const std::string& text) {
   throw UsageError(fmt::format("--pose: got {} numbers; write tx,ty,tz or tx,ty,tz,rx,ry,rz", n.size()));
 }
 
+Vec3d parse_direction(const std::string& text) {
+  const std::vector<double> n = parse_numbers("--along", text);
+  if (n.size() != 3) throw UsageError(fmt::format("--along: got {} numbers; write x,y,z", n.size()));
+  const Vec3d direction(n[0], n[1], n[2]);
+  if (direction == Vec3d::Zero()) throw UsageError("--along: the direction is 0; write another vector, like 0,0,1");
+  return direction;
+}
+
 Pose parse_affine_matrix(const std::string& text) {
   const std::vector<double> n = parse_numbers("--pose-matrix", text);
   if (n.size() != 12 && n.size() != 16) {

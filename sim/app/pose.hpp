@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cchip/geometry/pose.hpp>
+#include <cchip/geometry/primitive.hpp>
 #include <cchip/stimulus/csv_reader.hpp>
 #include <cstdint>
 #include <optional>
@@ -25,6 +26,10 @@ Pose parse_affine_matrix(const std::string& text);
 /// The same for a rigid pose.
 /// \throws UsageError other numbers, or R is not a rotation within 1e-9
 Eigen::Isometry3d parse_pose_matrix(const std::string& text);
+
+/// "x,y,z", a vector that is not 0, the value of --along.
+/// \throws UsageError
+Vec3d parse_direction(const std::string& text);
 
 /// The pose that one of the options --pose and --pose-matrix gives; the identity if both are empty.
 /// \throws UsageError as parse_pose() and parse_affine_matrix()

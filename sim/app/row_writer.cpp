@@ -12,6 +12,7 @@ namespace {
 
 std::string text_of(const Cell& cell) {
   if (const auto* number = std::get_if<std::uint64_t>(&cell)) return std::to_string(*number);
+  if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{}", *number);
   if (const auto* text = std::get_if<std::string>(&cell)) return *text;
   return {};
 }
@@ -57,6 +58,7 @@ class JsonlWriter final : public RowWriter {
  private:
   static nlohmann::ordered_json to_json(std::monostate) { return nullptr; }
   static nlohmann::ordered_json to_json(std::uint64_t number) { return number; }
+  static nlohmann::ordered_json to_json(double number) { return number; }  // null if it is not finite
   static nlohmann::ordered_json to_json(const std::string& text) { return text; }
 
   std::ostream& out_;

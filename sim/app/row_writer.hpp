@@ -15,8 +15,8 @@ namespace cchip::app {
 
 enum class Format { table, csv, jsonl };
 
-/// Empty, a number or a text.
-using Cell = std::variant<std::monostate, std::uint64_t, std::string>;
+/// Empty, a number or a text. Of a double all digits that tell it from others are written.
+using Cell = std::variant<std::monostate, std::uint64_t, double, std::string>;
 
 /// Writes rows of equal length. Memory is bounded by the rows between two calls of flush().
 class RowWriter {

@@ -972,6 +972,35 @@ TEST_CASE("mesh file: a written PLY holds the same faces and their colours", "[r
   CHECK_THROWS_AS(cchip::write_ply(out, mesh, {{1, 2, 3}}), std::invalid_argument);
 }
 
+TEST_CASE("mesh file: a written PLY holds curves as edges", "[ref][mesh_file]") {
+  const TemporaryFolder folder;
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.faces = {{cchip::Kind::tri, {0, 1, 2, 0}}};
+  const std::vector<cchip::PlyCurve> curves = {
+      {{{0, 0, 5}, {1, 0, 5}, {0, 1, 5}}, true, {1, 2, 3}}, {{{7, 0, 0}, {8, 0, 0}}, false, {4, 5, 6}}, {{}, true, {}}};
+  std::ostringstream out;
+  cchip::write_ply(out, mesh, {{9, 9, 9}}, curves);
+  CHECK(out.str().find("element vertex 8\n") != std::string::npos);
+  CHECK(out.str().find("element edge 4\nproperty uint vertex1\nproperty uint vertex2\n") != std::string::npos);
+  // What follows the face: a triangle of the vertices 3, 4, 5 and a line from 6 to 7, each with its colour.
+  std::string edges;
+  for (const char* const edge : {"\3\4\1\2\3", "\4\5\1\2\3", "\5\3\1\2\3", "\6\7\4\5\6"}) {
+    for (int k = 0; k < 2; ++k) edges += std::string(1, edge[k]) + std::string(3, '\0');
+    edges += edge + 2;
+  }
+  CHECK(out.str().substr(out.str().size() - edges.size()) == edges);
+  const Mesh read = load_mesh(folder.write("t.ply", out.str()), cchip::FaceKinds::triangles_and_quads);
+  REQUIRE(read.faces.size() == 1);
+  REQUIRE(read.vertices.size() == 8);
+  for (std::size_t k = 0; k < 3; ++k) CHECK(read.vertices[k] == mesh.vertices[k]);
+  CHECK(read.vertices[5] == curves[0].points[2]);
+  CHECK(read.vertices[7] == curves[1].points[1]);
+  std::ostringstream without;
+  cchip::write_ply(without, mesh, {{9, 9, 9}});
+  CHECK(without.str().find("edge") == std::string::npos);
+}
+
 TEST_CASE("mesh file: numbers are read and written the same in every locale", "[ref][mesh_file]") {
   const std::pair<const char*, double> words[] = {
       {"0.5", 0.5}, {"1.5e-400", 0}, {"-2.5e-330", -0.0}, {"1234.5", 1234.5}};

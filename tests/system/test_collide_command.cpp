@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -425,6 +426,123 @@ TEST_CASE("collide: picture", "[system][collide]") {
   REQUIRE(collide_cubes({"--pose", "1,1,1", "--contacts", "first", "--ply", one}).code == exit_ok);
   CHECK(folder.read("one.ply").size() == folder.read("hits.ply").size());
   CHECK(folder.read("one.ply") != folder.read("hits.ply"));
+}
+
+TEST_CASE("collide: the picture has the curves where the surfaces cross", "[system][collide]") {
+  const TemporaryFolder folder;
+  const auto edges_of = [&](const std::string& pose) {
+    const std::string ply = folder.path("hits.ply");
+    REQUIRE(collide_cubes({"--pose", pose, "--ply", ply}).code == exit_ok);
+    CHECK(load_mesh(ply, FaceKinds::triangles_and_quads).faces.size() == 12);
+    const std::string content = folder.read("hits.ply");
+    const auto end = content.find("end_header\n");
+    const auto at = content.find("element edge ");
+    if (at == std::string::npos) return std::vector<std::pair<Vec3d, Vec3d>>();
+    const std::size_t count = std::stoul(content.substr(at + 13));
+    // Vertices: three doubles and a colour; edges, at the end: two numbers and a colour.
+    const auto number = [&](std::size_t place) {
+      std::uint32_t value = 0;
+      std::memcpy(&value, content.data() + place, sizeof value);
+      return value;
+    };
+    std::vector<std::pair<Vec3d, Vec3d>> edges;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t edge = content.size() - 11 * (count - i);
+      const auto point = [&](std::uint32_t vertex) {
+        Vec3d p;
+        std::memcpy(p.data(), content.data() + end + 11 + 27 * std::size_t{vertex}, 24);
+        return p;
+      };
+      edges.emplace_back(point(number(edge)), point(number(edge + 4)));
+    }
+    return edges;
+  };
+  // Cubes that are moved along the diagonal: one closed curve of six sides around the common cube.
+  const auto sides = edges_of("0.25,0.25,0.25");
+  REQUIRE(sides.size() == 6);
+  for (std::size_t i = 0; i < 6; ++i) {
+    CHECK(sides[i].second == sides[(i + 1) % 6].first);
+    // A side of the common cube, from -0.25 to 0.5: not at its two corners that lie in a vertex of one of the cubes.
+    CHECK((sides[i].second - sides[i].first).norm() == 0.75);
+    const Vec3d p = sides[i].first;
+    for (const double x : p) CHECK((x == -0.25 || x == 0.5));
+    CHECK(p.sum() != -0.75);
+    CHECK(p.sum() != 1.5);
+  }
+  CHECK(edges_of("5,0,0").empty());
+  CHECK(edges_of("1,1,1").empty());  // they share a point
+}
+
+TEST_CASE("collide: the points of a scan", "[system][collide]") {
+  const TemporaryFolder folder;
+  // Distances from the cube: 0.25, 0 on a face, 0.5 inside, 0.25 from a corner.
+  const std::string xyz = folder.write("scan.xyz", "0.75 0 0\n0.25 0.5 0 99\n0 0 0\n# a corner\n0.5 0.5 0.75\n");
+  const auto points = [&](const std::string& file, std::vector<std::string> options, const std::string& input = "") {
+    options.insert(options.begin(), {"collide", file, cube_file, "--points"});
+    return run_cchip(options, input);
+  };
+  const Outcome none = points(xyz, {"--pose", "9,0,0"});
+  CHECK(none.code == exit_ok);
+  CHECK(none.out == "apart\n1 query, 0 contacts\n");
+  CHECK(none.err.empty());
+  const Outcome point = points(xyz, {"--exit-code"});
+  CHECK(point.code == exit_contact);
+  CHECK(lines(point.out).front() == "touch: 1 point of A meets 1 face of B");
+  CHECK(lines(point.out).at(1) == "point  face");
+  CHECK(lines(point.out).at(2).substr(0, 1) == "1");
+  CHECK(last_line(point.out) == "1 query, 1 contact");
+  const auto met = [&](const std::string& radius) {
+    const Outcome outcome = points(xyz, {"--radius", radius, "--format", "csv"});
+    CHECK(outcome.code == exit_ok);
+    std::map<std::string, int> count_of_point;
+    for (const std::string& line : lines(outcome.out)) ++count_of_point[line.substr(0, line.find(','))];
+    CHECK(count_of_point["point"] == 1);
+    count_of_point.erase("point");
+    CHECK(count(last_line(outcome.err), "hits") == 1);
+    return count_of_point;
+  };
+  using Counts = std::map<std::string, int>;
+  CHECK(met("0.2") == Counts{{"1", 1}});
+  CHECK(met("0.24999999999999997") == Counts{{"1", 1}});
+  CHECK(met("0.25") == Counts{{"0", 1}, {"1", 2}, {"3", 3}});  // point 1 is 0.25 from the face beside its own
+  CHECK(met("0.5")["2"] == 6);
+  CHECK(lines(points(xyz, {"--radius", "0.25", "--contacts", "first"}).out).front().rfind("touch: point ", 0) == 0);
+  CHECK(lines(points(xyz, {"--radius", "0.25", "--most", "2"}).out).front().rfind("touch: at least ", 0) == 0);
+  CHECK(points(xyz, {"--pose", "9,0,0", "--format", "jsonl"}).out == "{\"hit\":0}\n");
+  CHECK(points(xyz, {"--format", "jsonl"}).out.rfind("{\"point\":1,\"face\":", 0) == 0);
+  // What a sensor did not see, from standard input.
+  const Outcome nan = points("-", {"--format", "csv"}, "nan nan nan\n0.25 0.5 0\n");
+  CHECK(lines(nan.out).at(1).substr(0, 2) == "0,");
+  CHECK(lines(nan.err).front() ==
+        "cchip: -: 1 point without finite coordinates left out; the others are numbered from 0");
+  // A mesh for a scan: its corners.
+  CHECK(lines(points(std::string(CCHIP_TEST_MODELS) + "/PLY/cube.ply", {"--pose", "0.5,0.5,0.5"}).out)
+            .front()
+            .rfind("touch: ", 0) == 0);
+}
+
+TEST_CASE("collide: errors about points", "[system][collide]") {
+  const TemporaryFolder folder;
+  const std::string xyz = folder.write("scan.xyz", "0.75 0 0\n");
+  const auto error = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"collide", xyz, cube_file});
+    const Outcome outcome = run_cchip(options);
+    CHECK(outcome.code == exit_usage);
+    CHECK(outcome.out.empty());
+    return outcome.err;
+  };
+  for (const std::string radius : {"-1", "nan", "inf", "wide"}) {
+    CHECK(error({"--points", "--radius", radius}) ==
+          "cchip: --radius: '" + radius + "' is not a radius; give a number that is at least 0\n");
+  }
+  CHECK(error({"--radius", "1"}) == "cchip: --radius requires --points; see cchip collide --help\n");
+  CHECK(error({"--points", "--within", "1"}).find("excludes") != std::string::npos);
+  CHECK(error({"--points", "--ply", "x.ply"}).find("excludes") != std::string::npos);
+  CHECK(error({"--points", "--device", "model"}) ==
+        "cchip: --points: device model knows faces only; leave --device out\n");
+  CHECK(error({"--points", "--contacts", "first", "--most", "2"}).rfind("cchip: --most: ", 0) == 0);
+  folder.write("scan.xyz", "1 2\n");
+  CHECK(error({"--points"}).rfind("cchip: " + xyz + ":1: ", 0) == 0);
 }
 
 TEST_CASE("collide: the view for a browser", "[system][collide]") {

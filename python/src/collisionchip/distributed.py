@@ -11,7 +11,7 @@ import threading
 import numpy as np
 from distributed import as_completed
 
-from . import Object, collide, collide_many as _collide_many, open_device
+from . import Object, collide, collide_many as _collide_many, distance, open_device, solids
 
 KEPT = 1024  # objects that a worker keeps
 _objects = collections.OrderedDict()
@@ -53,6 +53,14 @@ def _many(a, b, poses_a, poses_b, options):
 def _pair(a, b, options):
     result = collide(a.object(), None, b.object(), None, device=_device(), **options)
     return result.relation if options.get("relation") else bool(result), len(result.contacts)
+
+
+def _relate(a, b, clearance):
+    x, y = a.object(), b.object()
+    result = collide(x, None, y, None, device=_device(), contacts="all", relation=True)
+    word = solids(x, None, y, None) if x.is_closed and y.is_closed else None
+    apart = 0.0 if result else distance(x, None, y, None, stop_above=clearance).upper
+    return result.relation, len(result.contacts), word, apart
 
 
 def _run(client, meshes, jobs, broadcast, retries):
@@ -114,4 +122,14 @@ def collide_pairs(client, meshes, pairs, *, retries=3, **options):
     options: as collide(). answer: whether they touch, or with relation=True the relation; contacts: how many. A mesh goes only to workers that need it."""
     pairs = list(pairs)
     for number, result in _run(client, meshes, [(_pair, pair, (options,)) for pair in pairs], False, retries):
+        yield (*pairs[number], *result)
+
+
+def relate_pairs(client, meshes, pairs, *, clearance=0.0, retries=3):
+    """Yields (a, b, relation, contacts, solids, distance) for pairs of meshes in place, as each is done; a and b are numbers of meshes.
+
+    relation and contacts as of collide_pairs(); solids: the word of collisionchip.solids(), None unless both meshes are closed; distance: of the
+    surfaces, inf if it is greater than clearance."""
+    pairs = list(pairs)
+    for number, result in _run(client, meshes, [(_relate, pair, (clearance,)) for pair in pairs], False, retries):
         yield (*pairs[number], *result)

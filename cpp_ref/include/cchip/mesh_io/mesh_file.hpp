@@ -64,10 +64,20 @@ Mesh parse_mesh(std::string_view file, const std::string& name, const LoadOption
 /// Red, green, blue.
 using Colour = std::array<std::uint8_t, 3>;
 
+/// A line through points in their order.
+struct PlyCurve {
+  std::vector<Vec3d> points;
+  bool closed = false;  ///< the last point is joined to the first, which is not repeated
+  Colour colour = {};
+};
+
 /// Writes a binary PLY (little endian, doubles). Each face has its own vertices. Its colour is written to the face and
 /// to these vertices, because MeshLab shows face colours and Blender vertex colours.
+/// The curves follow as edges between vertices of their own, behind those of the faces; without any the file has no
+/// edges.
 /// \throws std::invalid_argument unless there is one colour for each face
-void write_ply(std::ostream& out, const Mesh& mesh, const std::vector<Colour>& face_colours);
+void write_ply(std::ostream& out, const Mesh& mesh, const std::vector<Colour>& face_colours,
+               const std::vector<PlyCurve>& curves = {});
 
 }  // namespace cchip
 
