@@ -72,6 +72,13 @@ struct DistanceCount {
     wrong_points += fits && is_near(claim.point_a, a, tolerance) && is_near(claim.point_b, b, tolerance) ? 0U : 1U;
   }
 
+  /// A distance, and of objects that are apart the points.
+  void add_answer(const PeerDistance& claim, const TrueDistance& right, double tolerance, const Mesh& a, const Mesh& b,
+                  const PosePair& pose) {
+    add_distance(claim.distance, right, tolerance);
+    if (right.lower > tolerance) add_points(claim, PlacedFaces(a, pose.a), PlacedFaces(b, pose.b), tolerance);
+  }
+
   /// A wrong answer about a distance within the tolerance of d is none.
   void add_decision(bool claim, double d, const TrueDistance& right, double tolerance) {
     ++decisions;
@@ -92,11 +99,7 @@ inline DistanceCount count_answers(const PeerMesh& peer_a, const PeerMesh& peer_
   DistanceCount count;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const PosePair& pose = poses[i];
-    const PeerDistance claim = peer_a.distance(pose.a, peer_b, pose.b);
-    count.add_distance(claim.distance, right[i], tolerance);
-    if (right[i].lower > tolerance) {
-      count.add_points(claim, PlacedFaces(a, pose.a), PlacedFaces(b, pose.b), tolerance);
-    }
+    count.add_answer(peer_a.distance(pose.a, peer_b, pose.b), right[i], tolerance, a, b, pose);
     for (const double d : {half_distance(right[i]), twice_distance(right[i])}) {
       count.add_decision(peer_a.within(pose.a, peer_b, pose.b, d), d, right[i], tolerance);
     }
