@@ -35,20 +35,26 @@ inline bool is_proved(const Mesh& a, const Pose& pose_a, const Mesh& b, const Po
 struct DistanceCount {
   std::size_t answers = 0;
   std::size_t wrong = 0;      ///< off by more than the tolerance, or no number
+  std::size_t inexact = 0;    ///< off by anything: below `lower` or above `upper`
   double greatest_error = 0;  ///< of all answers; infinite: no number
   std::size_t points = 0;     ///< pairs of nearest points of objects that are apart
   std::size_t wrong_points = 0;
   std::size_t decisions = 0;  ///< answers of yes or no to: at most d?
   std::size_t wrong_decisions = 0;
+  std::size_t edges = 0;  ///< the same with d just below the distance, and at it, or within an ulp of it
+  std::size_t wrong_edges = 0;
 
   DistanceCount& operator+=(const DistanceCount& x) {
     answers += x.answers;
     wrong += x.wrong;
+    inexact += x.inexact;
     greatest_error = std::max(greatest_error, x.greatest_error);
     points += x.points;
     wrong_points += x.wrong_points;
     decisions += x.decisions;
     wrong_decisions += x.wrong_decisions;
+    edges += x.edges;
+    wrong_edges += x.wrong_edges;
     return *this;
   }
 
@@ -60,6 +66,7 @@ struct DistanceCount {
                                               : std::numeric_limits<double>::infinity();
     greatest_error = std::max(greatest_error, error);
     const bool is_wrong = error > tolerance;
+    inexact += error > 0 ? 1 : 0;
     wrong += is_wrong ? 1 : 0;
     return is_wrong;
   }
@@ -85,6 +92,16 @@ struct DistanceCount {
     const bool is_wrong = claim ? right.lower > d + tolerance : right.upper < d - tolerance;
     wrong_decisions += is_wrong ? 1 : 0;
   }
+
+  /// No tolerance here: yes at the upper bound of the distance, no below its lower one. `within` is asked with d.
+  template <class Within>
+  void add_edges(const Within& within, const TrueDistance& right) {
+    ++edges;
+    wrong_edges += within(right.upper) ? 0 : 1;
+    if (right.lower == 0) return;
+    ++edges;
+    wrong_edges += within(std::nextafter(right.lower, 0.0)) ? 1 : 0;
+  }
 };
 
 /// The d of a query that is asked: half the distance and twice it; of objects that meet 0, and a thousandth of their
@@ -103,6 +120,7 @@ inline DistanceCount count_answers(const PeerMesh& peer_a, const PeerMesh& peer_
     for (const double d : {half_distance(right[i]), twice_distance(right[i])}) {
       count.add_decision(peer_a.within(pose.a, peer_b, pose.b, d), d, right[i], tolerance);
     }
+    count.add_edges([&](double d) { return peer_a.within(pose.a, peer_b, pose.b, d); }, right[i]);
   }
   return count;
 }

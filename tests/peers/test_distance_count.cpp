@@ -74,6 +74,9 @@ TEST_CASE("distance count: who tells the truth has no wrong answer", "[ref][dist
   CHECK(count.wrong_points == 0);
   CHECK(count.decisions == 4);
   CHECK(count.wrong_decisions == 0);
+  CHECK(count.edges == 4);
+  CHECK(count.wrong_edges == 0);
+  CHECK(count.inexact == 0);
 }
 
 TEST_CASE("distance count: wrong distances are counted, either way", "[ref][distance_count]") {
@@ -89,6 +92,7 @@ TEST_CASE("distance count: wrong distances are counted, either way", "[ref][dist
   // within the tolerance: an error, but not a wrong answer
   CHECK(count_of({0.125 + 0x1p-21, 0.125 + 0x1p-21}).wrong == 0);
   CHECK(count_of({0.125 + 0x1p-21, 0.125 + 0x1p-21}).greatest_error == 0x1p-21);
+  CHECK(count_of({0.125 + 0x1p-21, 0.125 + 0x1p-21}).inexact == 2);
 }
 
 TEST_CASE("distance count: wrong points are counted", "[ref][distance_count]") {
@@ -103,6 +107,11 @@ TEST_CASE("distance count: wrong points are counted", "[ref][distance_count]") {
 TEST_CASE("distance count: wrong decisions are counted", "[ref][distance_count]") {
   CHECK(count_of({0.125, 0.125, 0.5, 1}).wrong_decisions == 2);     // no to twice the distance
   CHECK(count_of({0.125, 0.125, 0.5, -0.1}).wrong_decisions == 2);  // yes to half of it
+  for (const double error : {1e-9, -1e-9}) {                        // wrong at the distance alone
+    const DistanceCount count = count_of({0.125, 0.125, 0.5, error});
+    CHECK(count.wrong_decisions == 0);
+    CHECK(count.wrong_edges == 2);
+  }
 }
 
 TEST_CASE("distance count: objects that meet", "[ref][distance_count]") {
