@@ -4,9 +4,11 @@
 #include <catch2/catch.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cmath>
+#include <fstream>
 #include <limits>
 
 #include "distance_count.hpp"
+#include "distance_python.hpp"
 
 using namespace cchip;
 using namespace cchip::testing;
@@ -112,6 +114,39 @@ TEST_CASE("distance count: wrong decisions are counted", "[ref][distance_count]"
     CHECK(count.wrong_decisions == 0);
     CHECK(count.wrong_edges == 2);
   }
+}
+
+TEST_CASE("distance count: lies through the pipe of Python's libraries are counted", "[ref][distance_count]") {
+  const Mesh a = square(0);
+  const Mesh b = square(0.125);
+  const auto ask = [&](const std::string& line, int lines) {
+    // It reads vertices and triangles of both meshes and the two queries: 6 lines of 12, 6, 12, 6, 26 and 26 words.
+    std::ofstream script("distance_count_liar.py");
+    script << "import sys\n"
+              "words = [len(line.split()) for line in open(sys.argv[1])]\n"
+              "assert words == [12, 6, 12, 6, 26, 26], words\n"
+              "print('Liar', '1.0', (1e-6).hex())\n"
+           << "for _ in range(" << lines << "): print('" << line << "')\n";
+    script.close();
+    const auto answers = ask_python(CCHIP_PYTHON, "distance_count_liar.py", "distance_count_queries.txt", a, b,
+                                    {PosePair(), PosePair()}, {{0.125, 0.125}, {0.125, 0.125}});
+    REQUIRE(answers.size() == 1);
+    CHECK(answers[0].name == "Liar");
+    CHECK(answers[0].times[3] == 4);
+    return answers[0].count;
+  };
+  const DistanceCount honest = ask("0x1p-3  0x1p-1 0x1p-1 0  0x1p-1 0x1p-1 0x1p-3  0 1 0  1 2 3 4", 2);
+  CHECK(honest.answers == 2);
+  CHECK(honest.points == 2);
+  CHECK(honest.decisions == 6);
+  CHECK(honest.wrong + honest.wrong_points + honest.wrong_decisions == 0);
+  const DistanceCount lies = ask("0x1p-2  0x1p-1 0x1p-1 0  0x1p-1 0x1p-1 0x1p-3  1 0 1  1 2 3 4", 2);
+  CHECK(lies.wrong == 2);
+  CHECK(lies.wrong_points == 2);
+  CHECK(lies.wrong_decisions == 6);
+  CHECK(ask("nan  0x1p-1 0x1p-1 0  nan nan nan  0 1 0  1 2 3 4", 2).wrong == 2);
+  CHECK_THROWS_WITH(ask("0 0", 1), Catch::Contains("ended too early"));
+  CHECK_THROWS_WITH(ask("yes", 1), Catch::Contains("is no number"));
 }
 
 TEST_CASE("distance count: objects that meet", "[ref][distance_count]") {
