@@ -303,7 +303,7 @@ bench-collide: $(RELEASE)/build.ninja ## queries per second of collide(), FCL, C
 	cmake --build $(RELEASE) -j $(JOBS) --target collide_speed
 	$(RELEASE)/bin/collide_speed $(BENCH_ARGS)
 
-bench-distance: $(RELEASE)/build.ninja ## times and wrong answers of distance() and within(), FCL, Coal, trueform and MeshLib (the last three after make peers)
+bench-distance: $(RELEASE)/build.ninja ## times and wrong answers of distance() and within(), FCL, Coal, trueform and MeshLib (the last three after make peers; hours, BENCH_ARGS for less)
 	cmake --build $(RELEASE) -j $(JOBS) --target distance_speed
 	mkdir -p build/bench
 	$(RELEASE)/bin/distance_speed $(if $(wildcard build/touching/touching_requirements.txt),--python build/touching/bin/python) $(BENCH_ARGS)
