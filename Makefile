@@ -40,7 +40,7 @@ export JOBS
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal formal-all mutants test-gates test-debug \
   test-asan test-arm64 cross-windows fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-robot bench-scene bench-certificate bench-chip deb wheel sdist test-sdist test-python test-dask bench-python export fpga \
+  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot bench-scene bench-certificate bench-chip deb wheel sdist test-sdist test-python test-dask bench-python export fpga \
   fpga-quick fpga-sweep asic asic-quick install clean
 
 # Groups of make help: a heading, then its targets. A target may be followed by /minutes on two cores after the build, as far as a page
@@ -59,7 +59,7 @@ Check for long
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
   campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps
 Measure
-  bench-reconfig bench-collide/10_min bench-robot bench-scene/2_min bench-certificate bench-python/1_min bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
+  bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/2_min bench-certificate bench-python/1_min bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
 Tools
   bootstrap venv peers robots clean
 endef
@@ -96,7 +96,7 @@ build/docs-venv/docs_requirements.txt: scripts/docs_requirements.txt
 	build/docs-venv/bin/pip install --quiet --disable-pip-version-check --requirement $<
 	cp $< $@
 
-peers: build/peers/requirements.txt build/touching/touching_requirements.txt ## install Coal from PyPI below build/peers, for make bench-collide; trimesh and trueform below build/touching
+peers: build/peers/requirements.txt build/touching/touching_requirements.txt ## install Coal from PyPI below build/peers, for make bench-collide; trimesh, trueform and MeshLib below build/touching
 
 build/touching/touching_requirements.txt: bench/peers/touching_requirements.txt
 	python3 -m venv build/touching || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
@@ -302,6 +302,11 @@ bench-collide: $(RELEASE)/build.ninja ## queries per second of collide(), FCL, C
 	$(if $(NATIVE_FCL),cmake -D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))' $(RELEASE))
 	cmake --build $(RELEASE) -j $(JOBS) --target collide_speed
 	$(RELEASE)/bin/collide_speed $(BENCH_ARGS)
+
+bench-distance: $(RELEASE)/build.ninja ## times and wrong answers of distance() and within(), FCL, Coal, trueform and MeshLib (the last three after make peers; hours, BENCH_ARGS for less)
+	cmake --build $(RELEASE) -j $(JOBS) --target distance_speed
+	mkdir -p build/bench
+	$(RELEASE)/bin/distance_speed $(if $(wildcard build/touching/touching_requirements.txt),--python build/touching/bin/python) $(BENCH_ARGS)
 
 # cmake finds what scripts/bootstrap --dev has brought since: tinyxml2, which reads the robots, and ODE
 bench-robot: $(RELEASE)/build.ninja robots ## collision checks per second of robot arms in front of a shelf: collide(), FCL, Coal, CGAL and ODE in turns (a few minutes); build/bench/robot.csv

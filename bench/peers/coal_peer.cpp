@@ -2,6 +2,7 @@
 // Coal, formerly hpp-fcl: the same tree as FCL's, contact points switched off.
 #include <coal/BVH/BVH_model.h>
 #include <coal/collision.h>
+#include <coal/distance.h>
 
 #include <algorithm>
 #include <vector>
@@ -61,7 +62,35 @@ size_t contacts(void* a, const double* pose_a, void* b, const double* pose_b, si
   return count;
 }
 
-constexpr CchipPeer peer = {COAL_VERSION ", compiled for any x86-64 or other processor", make, destroy, hit, contacts};
+double distance(void* a, const double* pose_a, void* b, const double* pose_b, double rel_error, double* points) {
+  const coal::DistanceRequest request(true, false, rel_error, 0);  // no depth of penetration
+  coal::DistanceResult result;
+  coal::distance(static_cast<const Model*>(a), transform(pose_a), static_cast<const Model*>(b), transform(pose_b),
+                 request, result);
+  Eigen::Map<Eigen::Vector3d>(points + 0) = result.nearest_points[0];
+  Eigen::Map<Eigen::Vector3d>(points + 3) = result.nearest_points[1];
+  return result.min_distance;
+}
+
+int within(void* a, const double* pose_a, void* b, const double* pose_b, double d) {
+  coal::CollisionRequest request;
+  request.num_max_contacts = 1;
+  request.enable_contact = false;
+  request.break_distance = 0;
+  request.security_margin = d;
+  coal::CollisionResult result;
+  return coal::collide(static_cast<const Model*>(a), transform(pose_a), static_cast<const Model*>(b), transform(pose_b),
+                       request, result) > 0;
+}
+
+constexpr CchipPeer peer = {COAL_VERSION ", compiled for any x86-64 or other processor",
+                            make,
+                            destroy,
+                            hit,
+                            contacts,
+                            distance,
+                            within,
+                            1e-6};  // QueryRequest::gjk_tolerance
 
 }  // namespace
 

@@ -5,8 +5,13 @@
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/collision_request.h>
 #include <fcl/narrowphase/collision_result.h>
+#include <fcl/narrowphase/distance.h>
+#include <fcl/narrowphase/distance_request.h>
+#include <fcl/narrowphase/distance_result.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "peer.hpp"
@@ -59,6 +64,26 @@ size_t contacts(void* a, const double* pose_a, void* b, const double* pose_b, si
   return count;
 }
 
+double distance(void* a, const double* pose_a, void* b, const double* pose_b, double rel_error, double* points) {
+  const fcl::DistanceRequest<double> request(true, false, rel_error);
+  fcl::DistanceResult<double> result;
+  fcl::distance(static_cast<const Model*>(a), transform(pose_a), static_cast<const Model*>(b), transform(pose_b),
+                request, result);
+  Eigen::Map<Eigen::Vector3d>(points + 0) = result.nearest_points[0];
+  Eigen::Map<Eigen::Vector3d>(points + 3) = result.nearest_points[1];
+  return result.min_distance;
+}
+
+/// The search begins with a result just above d, so that it opens nothing farther away. FCL cannot end it at the first
+/// pair that is near enough.
+int within(void* a, const double* pose_a, void* b, const double* pose_b, double d) {
+  const fcl::DistanceRequest<double> request;
+  fcl::DistanceResult<double> result(std::nextafter(d, std::numeric_limits<double>::infinity()));
+  fcl::distance(static_cast<const Model*>(a), transform(pose_a), static_cast<const Model*>(b), transform(pose_b),
+                request, result);
+  return result.min_distance <= d;
+}
+
 constexpr CchipPeer peer = {
 #if defined(__AVX512F__)
     FCL_VERSION ", compiled with AVX-512",
@@ -67,7 +92,13 @@ constexpr CchipPeer peer = {
 #else
     FCL_VERSION ", compiled for any x86-64 or other processor",
 #endif
-    make, destroy, hit, contacts};
+    make,
+    destroy,
+    hit,
+    contacts,
+    distance,
+    within,
+    1e-6};  // DistanceRequest::distance_tolerance
 
 }  // namespace
 

@@ -23,6 +23,14 @@ struct CchipPeer {
   /// written to `pairs`. A library may report a pair twice. Null: the library has no such answer.
   std::size_t (*contacts)(void* a, const double* pose_a, void* b, const double* pose_b, std::size_t most,
                           std::uint32_t* pairs, std::size_t room);
+  /// The distance, with a relative error of at most `rel_error` as the library understands it; 0 or less: they meet.
+  /// The nearest points in the world, x, y, z of A's and then of B's, are written to `points`. Null: no such answer.
+  double (*distance)(void* a, const double* pose_a, void* b, const double* pose_b, double rel_error,
+                     double* points) = nullptr;
+  /// Is the distance at most d? Null: no such answer.
+  int (*within)(void* a, const double* pose_a, void* b, const double* pose_b, double d) = nullptr;
+  /// The error of a distance that the library's own default settings allow, in units of the world.
+  double distance_tolerance = 0;
 };
 
 /// The one exported function, `cchip_peer`.

@@ -16,11 +16,20 @@ namespace cchip::testing {
 
 class PeerMesh;
 
+/// What a library says of the distance of two meshes.
+struct PeerDistance {
+  double distance = 0;  ///< 0 or less: they meet
+  Vec3d point_a = Vec3d::Zero();
+  Vec3d point_b = Vec3d::Zero();
+};
+
 /// One library, loaded as a module. It must outlive its meshes.
 class PeerLibrary {
  public:
   /// \throws std::runtime_error the module cannot be loaded
   explicit PeerLibrary(const std::string& module_path);
+  /// One that is part of the program; it must not end before its meshes.
+  explicit PeerLibrary(const CchipPeer& peer) : peer_(&peer) {}
   /// FCL as Debian builds it.
   static PeerLibrary fcl_debian();
   /// The FCL below CCHIP_NATIVE_FCL; none if the build was not given one.
@@ -28,6 +37,8 @@ class PeerLibrary {
 
   std::string description() const { return peer_->description; }
   bool has_contacts() const { return peer_->contacts != nullptr; }
+  bool has_distance() const { return peer_->distance != nullptr && peer_->within != nullptr; }
+  double distance_tolerance() const { return peer_->distance_tolerance; }
   PeerMesh mesh(const Mesh& mesh) const;
 
  private:
@@ -50,6 +61,20 @@ class PeerMesh {
   /// has_contacts().
   std::vector<Contact> contacts(const Pose& pose, const PeerMesh& b, const Pose& pose_b,
                                 std::size_t most = max_contacts) const;
+  /// Only if the library has_distance().
+  PeerDistance distance(const Pose& pose, const PeerMesh& b, const Pose& pose_b, double rel_error = 0) const {
+    Eigen::Matrix<double, 3, 2> points;
+    PeerDistance result;
+    result.distance =
+        peer_->distance(model_.get(), pose.data(), b.model_.get(), pose_b.data(), rel_error, points.data());
+    result.point_a = points.col(0);
+    result.point_b = points.col(1);
+    return result;
+  }
+  /// Is the distance at most d? Only if the library has_distance().
+  bool within(const Pose& pose, const PeerMesh& b, const Pose& pose_b, double d) const {
+    return peer_->within(model_.get(), pose.data(), b.model_.get(), pose_b.data(), d) != 0;
+  }
 
  private:
   friend class PeerLibrary;

@@ -1,0 +1,189 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What the tests reach: lines, branches and toggles of the RTL, branches and lines of the C++ library.
+
+usage: coverage.py [options] BUILD
+  BUILD           build folder with CCHIP_COVERAGE in which tests ran with CCHIP_COVERAGE_FOLDER=BUILD/coverage (make coverage)
+  --missing       print every point that nothing reached
+  --write         put the tables into docs/develop/coverage.md
+
+Bins count the clocks on which situations of two blocks of the chip meet (sim/rtl_models/cchip_chip_bins.sv).
+
+RTL, by Verilator: a line is a block of statements, a branch one side of an if or a case, a toggle one direction of a signal of one bit, the control signals. Points of all instances and
+configurations of a module are one. C++, by gcov through gcovr (Debian's package): branches without those that only an exception takes.
+
+The last line is `rtl_lines=R% rtl_toggles=T% bins=K/N cpp_branches=B%`. Exit codes: 0 done, 1 nothing was counted or gcovr failed, 2 bad arguments."""
+import argparse
+import collections
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+import datasheet
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs" / "develop" / "coverage.md"
+CPP_ROOMS = ("exact", "cpu", "collide")
+# of cchip_chip_bins.sv, bit 0 first
+SITUATIONS = {"cache": ("hit", "miss", "waiter", "again", "locked", "invalidate"), "traversal": ("start", "pop", "spill", "end", "cancel"),
+              "record ring": ("room", "full", "wrapped"),
+              "swap": ("idle", "header", "shutdown", "decouple", "reset", "transfer", "check", "roc", "recouple", "report")}
+POINT = re.compile(r"C '(.*)' (\d+)$")
+# The one list of what is not asked for, with its reason: (file name, text of the source line or the signal).
+EXCLUDED = ROOT / "scripts" / "coverage_excluded.csv"
+
+
+class Failed(Exception):
+    """The message says what and where."""
+
+
+def rtl_points(folder):
+    """{(file, line, column, kind, what): count} of the modules of rtl/, {(i, j): count} of the bins."""
+    points, bins = collections.Counter(), collections.Counter()
+    for path in sorted(folder.glob("*.dat")):
+        for line in path.read_text().splitlines():
+            found = POINT.match(line)
+            if not found:
+                continue
+            fields = dict(field.split("\2", 1) for field in found[1].split("\1") if field)
+            name = pathlib.Path(fields["f"])
+            if name.name == "cchip_chip_bins.sv" and fields["page"].startswith("v_user"):
+                bins[tuple(int(number) for number in re.findall(r"gen_\w+?\[(\d+)\]", fields["h"]))] += int(found[2])
+            if ROOT / "rtl" not in name.parents:
+                continue
+            kind = fields["page"].split("/")[0].removeprefix("v_")
+            points[str(name.relative_to(ROOT)), int(fields["l"]), int(fields["n"]), kind, fields["o"]] += int(found[2])
+    if not points:
+        raise Failed(f"no counts in {folder}; run the tests with CCHIP_COVERAGE_FOLDER={folder}: make coverage")
+    return points, bins
+
+
+def bin_table(bins):
+    """The bins by the two groups whose situations meet."""
+    names = [(group, name) for group, all_names in SITUATIONS.items() for name in all_names]
+    rows, missing = collections.defaultdict(lambda: [0, 0]), []
+    for (i, j), count in sorted(bins.items()):
+        row = rows[f"{names[i][0]}, {names[j][0]}"]
+        row[0] += 1
+        row[1] += count > 0
+        if count == 0:
+            missing.append(f"bin {' '.join(names[i])}, {' '.join(names[j])}")
+    lines = ["| blocks | bins | reached | not reached |", "|---|---|---|---|"]
+    for groups, (count, reached) in rows.items():
+        prefixes = groups.split(", ")
+        lost = [text[4:] for text in missing if text[4:].startswith(prefixes[0]) and f", {prefixes[1]} " in text]
+        lines.append(f"| {groups} | {count} | {reached} | {'; '.join(text.replace(prefixes[0] + ' ', '', 1).replace(prefixes[1] + ' ', '', 1) for text in lost)} |")
+    total = [sum(row[k] for row in rows.values()) for k in (0, 1)]
+    lines.append(f"| all | {total[0]} | {total[1]} | |")
+    return "\n".join(lines) + "\n", missing, total
+
+
+def exclusions():
+    """[(file name, kind, pattern, reason)]"""
+    rows = [line.split(";", 3) for line in EXCLUDED.read_text().splitlines() if line and not line.startswith("#")]
+    return [(name, kind, re.compile(pattern), reason) for name, kind, pattern, reason in rows]
+
+
+def excluded(point, rules, texts):
+    name, line, _, kind, what = point
+    if name not in texts:
+        texts[name] = (ROOT / name).read_text().splitlines()
+    source = texts[name][line - 1]
+    return any(re.fullmatch(file, name.split("/")[-1]) and kind == of and pattern.search(what if kind == "toggle" else source)
+               for file, of, pattern, _ in rules)
+
+
+def rtl_table(points):
+    rules, texts = exclusions(), {}
+    rows = collections.defaultdict(collections.Counter)
+    missing, unused = [], set(range(len(rules)))
+    for point, count in sorted(points.items()):
+        name, kind = point[0], point[3]
+        if excluded(point, rules, texts):
+            for number, rule in enumerate(rules):
+                if excluded(point, [rule], texts):
+                    unused.discard(number)
+            for room in (name.split("/")[1], "all"):
+                rows[room]["excluded"] += 1
+            continue
+        for room in (name.split("/")[1], "all"):
+            rows[room][kind] += 1
+            rows[room][kind, "reached"] += count > 0
+        if count == 0:
+            missing.append(f"{name}:{point[1]}: {kind} {point[4]}: {texts[name][point[1] - 1].strip()}")
+    lines = ["| room of rtl/ | lines | reached | branches | reached | toggles | reached | left out |", "|---|---|---|---|---|---|---|---|"]
+    for room in [*sorted(set(rows) - {"all"}), "all"]:
+        row = rows[room]
+        cells = [f"{row[kind]} | {share(row[kind, 'reached'], row[kind])}" for kind in ("line", "branch", "toggle")]
+        lines.append(f"| {room} | {' | '.join(cells)} | {row['excluded']} |")
+    for number in sorted(unused):
+        missing.append(f"{EXCLUDED.name}: rule {number + 1} leaves nothing out")
+    return "\n".join(lines) + "\n", missing, rows["all"]
+
+
+def share(part, whole):
+    return f"{100 * part / whole:.1f} %" if whole else "-"
+
+
+def cpp_table(build):
+    command = ["gcovr", "--root", ROOT, "--object-directory", build, "--filter", f"{ROOT}/cpp_ref/src/({'|'.join(CPP_ROOMS)})/",
+               "--exclude-throw-branches", "--exclude-unreachable-branches", "--gcov-ignore-parse-errors", "--json", "-", build / "cpp_ref"]
+    try:
+        done = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError) as error:
+        raise Failed(f"gcovr (Debian's package gcovr): {error} {getattr(error, 'stderr', '') or ''}".strip()) from error
+    rows, missing = collections.defaultdict(collections.Counter), []
+    for file in json.loads(done.stdout)["files"]:
+        name = file["file"]
+        source = (ROOT / name).read_text().splitlines()
+        for line in file["lines"]:
+            branches = line["branches"]
+            for room in (f"src/{name.split('/')[2]}", "all"):
+                rows[room]["lines"] += 1
+                rows[room]["lines reached"] += line["count"] > 0
+                rows[room]["branches"] += len(branches)
+                rows[room]["branches reached"] += sum(branch["count"] > 0 for branch in branches)
+            lost = sum(branch["count"] == 0 for branch in branches)
+            if line["count"] == 0 or lost:
+                missing.append(f"{name}:{line['line_number']}: {'line' if line['count'] == 0 else f'{lost} of {len(branches)} branches'}: "
+                               f"{source[line['line_number'] - 1].strip()}")
+    lines = ["| room of cpp_ref/src | lines | reached | branches | reached |", "|---|---|---|---|---|"]
+    for room in [*sorted(set(rows) - {"all"}), "all"]:
+        row = rows[room]
+        lines.append(f"| {room} | {row['lines']} | {share(row['lines reached'], row['lines'])} | {row['branches']} | {share(row['branches reached'], row['branches'])} |")
+    return "\n".join(lines) + "\n", missing, rows["all"]
+
+
+def main():
+    if set(sys.argv) & {"-h", "--help"}:
+        print(__doc__)
+        return 0
+    parser = argparse.ArgumentParser(usage=argparse.SUPPRESS, add_help=False)
+    parser.add_argument("build", type=pathlib.Path)
+    for flag in ("--missing", "--write"):
+        parser.add_argument(flag, action="store_true")
+    options = parser.parse_args()
+    try:
+        points, bins = rtl_points(options.build.resolve() / "coverage")
+        rtl, rtl_missing, r = rtl_table(points)
+        met, bins_missing, b = bin_table(bins)
+        cpp, cpp_missing, c = cpp_table(options.build.resolve())
+    except Failed as what:
+        print(f"coverage.py: {what}", file=sys.stderr)
+        return 1
+    print(rtl + "\n" + met + "\n" + cpp)
+    if options.missing:
+        print("\n".join(rtl_missing + bins_missing + cpp_missing))
+    if options.write:
+        datasheet.rewrite(PAGE, "rtl", rtl)
+        datasheet.rewrite(PAGE, "bins", met)
+        datasheet.rewrite(PAGE, "cpp", cpp)
+    print(f"rtl_lines={share(r['line', 'reached'], r['line'])} rtl_toggles={share(r['toggle', 'reached'], r['toggle'])} "
+          f"bins={b[1]}/{b[0]} cpp_branches={share(c['branches reached'], c['branches'])}".replace(" %", "%"))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
