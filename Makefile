@@ -38,9 +38,9 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal formal-all mutants test-gates test-debug \
+.PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal formal-all mutants coverage test-gates test-debug \
   test-asan test-arm64 cross-windows fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot bench-scene bench-certificate bench-chip deb wheel sdist test-sdist test-python test-dask bench-python export fpga \
+  campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot bench-scene bench-certificate bench-chip deb wheel sdist test-sdist test-python test-dask bench-python export fpga \
   fpga-quick fpga-sweep asic asic-quick install clean
 
 # Groups of make help: a heading, then its targets. A target may be followed by /minutes on two cores after the build, as far as a page
@@ -55,9 +55,9 @@ Read
 Check a change
   test test-long wave-of test-python test-sdist test-dask test-debug test-asan test-arm64 cross-windows test-gates formal fuzz lint tidy format
 Check for long
-  formal-all/hours mutants/hours
+  formal-all/hours mutants/hours coverage/hours
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
-  campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps
+  campaign-geometry/hours campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps
 Measure
   bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/2_min bench-certificate bench-python/1_min bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
 Tools
@@ -233,6 +233,13 @@ CASES ?= 10000000
 campaign-boxes: campaign-build ## box test in RTL: CASES touching volumes with every rounding error at its worst (CCHIP_SEED repeats a run)
 	$(CAMPAIGN) boxes --pairs $(CASES) --threads $(JOBS)
 
+GEOMETRY := test_intersections test_distance test_points test_along test_solids
+RUNS ?= 10
+campaign-geometry: $(RELEASE)/build.ninja ## intersections, distances, points, ways and solids against their oracles in fractions, RUNS times 10^5 pairs each, seed 1, 2, ... (an hour)
+	cmake --build $(RELEASE) -j $(JOBS) --target $(GEOMETRY)
+	seq 1 $(RUNS) | xargs -P $(JOBS) -I SEED sh -c 'for test in $(GEOMETRY); do CCHIP_SEED=SEED $(RELEASE)/bin/$$test "[.long]" || exit 255; done'
+	@echo "runs=$(RUNS) of 10^5 pairs each, failed=0"
+
 SWAPS ?= 10000
 campaign-swaps: $(RELEASE)/build.ninja ## SWAPS exchanges of modules under random traffic with faults (CCHIP_SEED repeats a run)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_swaps
@@ -313,6 +320,15 @@ bench-robot: $(RELEASE)/build.ninja robots ## collision checks per second of rob
 	cmake $(if $(NATIVE_FCL),-D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))') $(RELEASE)
 	cmake --build $(RELEASE) -j $(JOBS) --target robot_speed
 	$(RELEASE)/bin/robot_speed $(BENCH_ARGS)
+
+COVERAGE := build/coverage
+coverage: ## lines, branches and toggles of the RTL, branches of the C++ library that the tests reach, into docs/develop/coverage.md (an hour; gcovr: scripts/bootstrap --dev)
+	cmake --preset coverage
+	cmake --build $(COVERAGE) -j $(JOBS) --target tests/ref/all tests/unit/all tests/chip/all tests/system/all bench/chip/all
+	rm -rf $(COVERAGE)/coverage && find $(COVERAGE)/cpp_ref -name '*.gcda' -delete
+	for part in tests/ref tests/unit tests/chip tests/system bench/chip; do CCHIP_COVERAGE_FOLDER=$(CURDIR)/$(COVERAGE)/coverage \
+	  ctest --test-dir $(COVERAGE)/$$part -LE '^long$$' -j $(JOBS) --timeout 3000 || exit 1; done
+	scripts/coverage.py $(COVERAGE) --write
 
 bench-certificate: $(RELEASE)/build.ninja ## certificates of answers for pairs of large meshes: all checked, their sizes and times; BENCH_ARGS="--poses 200" for more
 	cmake --build $(RELEASE) -j $(JOBS) --target bench_certificate

@@ -6,7 +6,8 @@
 #   cchip_verilate(<library> <module> [SYSTEMC] [WAVES] [PREFIX <class>] [PARAMETERS NAME=VALUE ...] [SOURCES file ...])
 #       adds the module as C++ class <class> (default V<module>); without SOURCES Verilator finds it and what it uses by
 #       name in the folders of rtl/cchip.f and of the models for simulation only, and reads nothing else, but
-#       sim/rtl_models/<module>_rules.sv if there is one: checkers that it binds beside the module's ports
+#       sim/rtl_models/<module>_rules.sv if there is one: checkers that it binds beside the module's ports, and with
+#       CCHIP_COVERAGE <module>_bins.sv: what it counts
 # Waveforms are half of the generated code, so only models whose waves are looked at have them: those with WAVES, and those
 # that the setting CCHIP_WAVES names (make wave-of).
 # SYSTEMC, for a library and all that is in it: classes are SystemC modules, without waveforms. Such a library and one of
@@ -55,11 +56,15 @@ endif()
 # -fno-const-bit-op-tree: 5.006 miscompiles some XOR/AND trees otherwise (upstream issue 4832).
 set(CCHIP_VERILATOR_COMMAND ${CCHIP_VERILATOR} --cc -Wall -fno-const-bit-op-tree --assert
     --x-assign unique --x-initial unique -I${CCHIP_RTL_DIR}/include)
+# Of one bit: of wider signals too, the chip's code would be ten times as long.
+if(CCHIP_COVERAGE)
+  list(APPEND CCHIP_VERILATOR_COMMAND --coverage --coverage-max-width 1 -Wno-fatal)  # its counters warn
+endif()
 set(CCHIP_VERILATOR_WAIVER ${CCHIP_RTL_DIR}/lint/verilator_waiver.vlt)
 
 # -w: generated code and runtime. -O2: also in debug builds, simulation is useless without.
 function(cchip_foreign_code library)
-  target_compile_options(${library} PRIVATE -w -O2)
+  target_compile_options(${library} PRIVATE -w $<IF:$<BOOL:${CCHIP_COVERAGE}>,-O1,-O2>)
   if(CCHIP_SANITIZE)  # the FST writer of the runtime stores to unaligned addresses
     target_compile_options(${library} PRIVATE -fno-sanitize=undefined)
   endif()
@@ -80,10 +85,11 @@ if(NOT TARGET cchip_verilated)
   message(STATUS "Verilator: ${CCHIP_VERILATOR_VERSION} (${CCHIP_VERILATOR}, runtime in ${CCHIP_VERILATOR_ROOT})")
   set(include ${CCHIP_VERILATOR_ROOT}/include)
   add_library(cchip_verilated STATIC ${include}/verilated.cpp ${include}/verilated_dpi.cpp
-    ${include}/verilated_fst_c.cpp ${include}/verilated_threads.cpp)
+    ${include}/verilated_fst_c.cpp ${include}/verilated_threads.cpp
+    $<$<BOOL:${CCHIP_COVERAGE}>:${include}/verilated_cov.cpp>)
   cchip_foreign_code(cchip_verilated)
   target_include_directories(cchip_verilated SYSTEM PUBLIC ${include} ${include}/vltstd)
-  target_compile_definitions(cchip_verilated PUBLIC VM_SC=0 VM_TRACE=1 VM_TRACE_FST=1 VM_TRACE_VCD=0 VM_COVERAGE=0)
+  target_compile_definitions(cchip_verilated PUBLIC VM_SC=0 VM_TRACE=1 VM_TRACE_FST=1 VM_TRACE_VCD=0 VM_COVERAGE=$<BOOL:${CCHIP_COVERAGE}>)
   find_package(ZLIB REQUIRED)
   target_link_libraries(cchip_verilated PUBLIC Threads::Threads ZLIB::ZLIB)
   if(EXISTS ${include}/fstcpp)  # the FST writer of newer Verilators; 5.006 brings its own LZ4
@@ -118,7 +124,7 @@ function(cchip_verilate library top)
   set(command ${CCHIP_VERILATOR_COMMAND})
   get_property(waves TARGET ${library} PROPERTY CCHIP_WAVES)
   if(ARG_SYSTEMC)
-    list(REMOVE_ITEM command --cc)
+    list(REMOVE_ITEM command --cc --coverage --coverage-max-width 1 -Wno-fatal)
     list(APPEND command --sc)
     find_package(PkgConfig REQUIRED)  # newer Verilators want to know where SystemC is
     pkg_get_variable(include systemc includedir)
@@ -136,10 +142,16 @@ function(cchip_verilate library top)
     endif()
     set(files ${CCHIP_RTL_FOLDERS})
     list(TRANSFORM files PREPEND -y\;)
-    set(rules ${PROJECT_SOURCE_DIR}/sim/rtl_models/${top}_rules.sv)
-    if(EXISTS ${rules})
-      list(APPEND ARG_SOURCES ${rules})
+    set(kinds rules)
+    if(CCHIP_COVERAGE)
+      list(APPEND kinds bins)
     endif()
+    foreach(kind IN LISTS kinds)
+      set(more ${PROJECT_SOURCE_DIR}/sim/rtl_models/${top}_${kind}.sv)
+      if(EXISTS ${more})
+        list(APPEND ARG_SOURCES ${more})
+      endif()
+    endforeach()
     list(APPEND files ${ARG_SOURCES})
   endif()
   list(TRANSFORM ARG_PARAMETERS PREPEND -G)

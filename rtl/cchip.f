@@ -100,6 +100,7 @@ reconfig/cchip_bitstream_table.v
 reconfig/cchip_swap_retry.v
 reconfig/cchip_swap_scheduler.v
 reconfig/cchip_subsystem_status.v
+reconfig/cchip_swaps.v
 dispatch/cchip_descriptor_queues.v
 dispatch/cchip_operand_memory.v
 dispatch/cchip_dispatch_sequencer.v

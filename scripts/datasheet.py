@@ -96,6 +96,7 @@ STIMULI = {
     "cchip_slots": ("repeat (20) tick; m_result_ready = 1;", "some = 1;", "m_result_valid"),
     "cchip_stream_merge": ("", "s_valid = 1;", "m_valid"),
     "cchip_subsystem_status": ("", "report_valid = 1;", "swap_events"),
+    "cchip_swaps": ("", "command_valid = 1;", "swap_events"),
     "cchip_swap_scheduler": ("", "command_valid = 1;", "m_report_valid"),
     "cchip_primtest_subsystem": ("m_result_ready = 1; s_pair_mode = 2; s_pair_kind = 1;", "s_pair_valid = 1;", "m_result_valid"),
     "cchip_pr_region": ("", RESERVED_PAIR, "m_result_valid"),

@@ -17,6 +17,8 @@ ANGLE = 26.0                 # degrees that the picture's width takes
 KEY_LIGHT = (-0.35, 0.5, 0.8)   # to the right, up, to the camera
 FILL_LIGHT = (0.5, -0.8, 0.5)
 CREASE = math.cos(math.radians(40))  # faces that meet at less look smooth
+LINE = 3.0            # half width of a line of the PLY, samples
+ABOVE = 1.004         # lines are this much nearer than they lie, so that the faces they lie on do not cover them
 EDGE = 0.05           # darkening of the faces' edges
 # --check: share of the bytes that may differ by more than this, because sines differ in the last bit between machines
 MOST_DIFFERENT, TOLERANCE = 0.00005, 12
@@ -39,13 +41,13 @@ def unit(a):
     return (a[0] / length, a[1] / length, a[2] / length)
 
 
-def normalised(faces):
-    """The same faces about the origin, with a box of side 1: lengths of any unit can be multiplied then."""
+def normalised(faces, edges):
+    """The same about the origin, the faces with a box of side 1: lengths of any unit can be multiplied then."""
     corners = [corner for corners, _ in faces for corner in corners]
     least, greatest = (tuple(f(axis) for axis in zip(*corners)) for f in (min, max))
     size = max(g / 2 - l / 2 for g, l in zip(greatest, least)) or 1.0   # of half the box: the whole may overflow
-    return [([tuple((x / 2 - g / 4 - l / 4) / size for x, l, g in zip(corner, least, greatest)) for corner in corners], colour)
-            for corners, colour in faces]
+    return tuple([([tuple((x / 2 - g / 4 - l / 4) / size for x, l, g in zip(corner, least, greatest)) for corner in corners], colour)
+                  for corners, colour in part] for part in (faces, edges))
 
 
 class NotOurs(Exception):
@@ -53,7 +55,7 @@ class NotOurs(Exception):
 
 
 def read_ply(path):
-    """Faces as (corners, colour) of the one layout that cchip writes."""
+    """Faces and edges as (corners, colour) of the one layout that cchip writes."""
     with open(path, "rb") as file:
         content = file.read()
     head, _, body = content.partition(b"end_header\n")
@@ -61,8 +63,9 @@ def read_ply(path):
     names = [line.split()[1:] for line in lines if line.startswith("element")]
     properties = [line.split()[-1] for line in lines if line.startswith("property")]
     colours = ["red", "green", "blue"]
-    if ("format binary_little_endian 1.0" not in lines or [name[0] for name in names] != ["vertex", "face"]
-            or properties != ["x", "y", "z", *colours, "vertex_indices", *colours]):
+    has_edges = len(names) == 3
+    if ("format binary_little_endian 1.0" not in lines or [name[0] for name in names] != ["vertex", "face", "edge"][:2 + has_edges]
+            or properties != ["x", "y", "z", *colours, "vertex_indices", *colours] + has_edges * ["vertex1", "vertex2", *colours]):
         raise NotOurs
     counts = [int(name[1]) for name in names]
     vertex = struct.Struct("<3d3B")
@@ -77,7 +80,9 @@ def read_ply(path):
         at += 3
     if not faces:
         raise NotOurs
-    return faces
+    edge = struct.Struct("<2I3B")
+    edges = [edge.unpack_from(body, at + i * edge.size) for i in range(int(names[2][1]) if has_edges else 0)]
+    return faces, [([points[first], points[second]], tuple(colour)) for first, second, *colour in edges]
 
 
 def corner_normals(faces):
@@ -168,7 +173,22 @@ def span(start, slope, least, greatest):
     return (least, greatest) if start >= 0 else (1, 0)
 
 
-def draw(faces, camera):
+def draw_line(ends, colour, camera, nearest, image):
+    """A line of the PLY with round ends over what is drawn, where nothing lies in front of it."""
+    width, height = WIDTH * SAMPLES, HEIGHT * SAMPLES
+    (x0, y0, z0), (x1, y1, z1) = map(camera.project, ends)
+    length = (x1 - x0) ** 2 + (y1 - y0) ** 2
+    if not math.isfinite(length):
+        return
+    for y in range(max(0, math.ceil(min(y0, y1) - LINE)), min(height - 1, math.floor(max(y0, y1) + LINE)) + 1):
+        for x in range(max(0, math.ceil(min(x0, x1) - LINE)), min(width - 1, math.floor(max(x0, x1) + LINE)) + 1):
+            t = min(1.0, max(0.0, ((x - x0) * (x1 - x0) + (y - y0) * (y1 - y0)) / length)) if length > 0 else 0.0
+            beside = math.hypot(x - x0 - t * (x1 - x0), y - y0 - t * (y1 - y0))
+            if beside <= LINE and (z0 + t * (z1 - z0)) * ABOVE >= nearest[y * width + x]:
+                image[y * width + x] = list(map(float, colour))
+
+
+def draw(faces, edges, camera):
     """Samples row by row, each None or a colour; the nearest surface wins."""
     width, height = WIDTH * SAMPLES, HEIGHT * SAMPLES
     nearest = [0.0] * (width * height)
@@ -199,7 +219,10 @@ def draw(faces, camera):
                 if z > nearest[y * width + x]:
                     nearest[y * width + x] = z
                     owner[y * width + x] = (triangle, heights, a, b)
-    return [sample and shade_sample(*sample, camera) for sample in owner]
+    image = [sample and shade_sample(*sample, camera) for sample in owner]
+    for ends, colour in edges:
+        draw_line(ends, colour, camera, nearest, image)
+    return image
 
 
 def shade_sample(triangle, heights, a, b, camera):
@@ -287,7 +310,7 @@ def main():
     if not 0 < math.hypot(*options.view) < math.inf:
         parser.error("--view: the direction has no length; write one like 1 -1.6 1.1")
     try:
-        faces = read_ply(options.meshes)
+        faces, edges = read_ply(options.meshes)
     except OSError as error:
         parser.error(f"{options.meshes}: cannot be read ({error.strerror}); check its name and permissions")
     except (NotOurs, struct.error, IndexError, ValueError):
@@ -295,9 +318,9 @@ def main():
     camera = DEMO
     if not options.demo:
         camera = Camera(options.view)
-        faces = normalised(faces)
+        faces, edges = normalised(faces, edges)
         camera.fit([corner for corners, _ in faces for corner in corners])
-    rows = to_pixels(draw(faces, camera))
+    rows = to_pixels(draw(faces, edges, camera))
     if not options.check:
         try:
             write_png(options.picture, rows)

@@ -612,9 +612,6 @@
 `define CCHIP_HEADER_LINE_RESERVED 288+:32
 // three doubles
 `define CCHIP_HEADER_LINE_CENTRE 320+:192
-// the word of these fields, also as the target of an assignment or an output
-`define CCHIP_HEADER_LINE_OF(magic, crc, version, exponent, lines, root, depth, kinds, counts, reserved, centre) \
-  {centre, reserved, counts, kinds, depth, root, lines, exponent, version, crc, magic}
 
 // ---- line of an inner node (docs/hardware/image.md): word[`CCHIP_NODE_LINE_<field>]
 `define CCHIP_NODE_LINE_W 512
@@ -636,9 +633,6 @@
 `define CCHIP_NODE_LINE_CHILD 96+:408
 // 0
 `define CCHIP_NODE_LINE_RESERVED2 504+:8
-// the word of these fields, also as the target of an assignment or an output
-`define CCHIP_NODE_LINE_OF(origin, step, first, kinds, children, cut_exponent, reserved, child, reserved2) \
-  {reserved2, child, reserved, cut_exponent, children, kinds, first, step, origin}
 
 // ---- line of a leaf (docs/hardware/image.md): word[`CCHIP_LEAF_LINE_<field>]
 `define CCHIP_LEAF_LINE_W 512
@@ -660,9 +654,6 @@
 `define CCHIP_LEAF_LINE_POINTS 144+:360
 // 0
 `define CCHIP_LEAF_LINE_RESERVED2 504+:8
-// the word of these fields, also as the target of an assignment or an output
-`define CCHIP_LEAF_LINE_OF(origin, extent, rounded, open, reserved, id0, id1, points, reserved2) \
-  {reserved2, points, id1, id0, reserved, open, rounded, extent, origin}
 
 // ---- a query's line in the ring (docs/hardware/image.md): word[`CCHIP_QUERY_<field>]
 `define CCHIP_QUERY_W 512

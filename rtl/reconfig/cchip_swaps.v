@@ -26,8 +26,8 @@ module cchip_swaps #(
     input  wire                                 rst,
     // queues of waiting pairs, of the kinds 1, 2, 3; a full one is worth a swap
     input  wire [                3*COUNT_W-1:0] waiting,
-    input  wire [                          3:1] full,
-    output wire [                          3:1] no_provider,     // no slot can get this kind's module
+    input  wire [                          2:0] full,
+    output wire [                          2:0] no_provider,     // no slot can get it
     // slots
     input  wire [       `CCHIP_KIND_W*SLOTS-1:0] slot_module,
     output wire [                    SLOTS-1:0] stop,

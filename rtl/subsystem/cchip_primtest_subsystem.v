@@ -16,7 +16,8 @@
 //                decoupled until a good swap
 //   errors       codes CCHIP_SWAP_* in the register report, interrupt; see
 //                docs/hardware/registers.md
-// Pairs: cchip_operand_memory, cchip_descriptor_queues; slots and their modules: cchip_slots.
+// Pairs: cchip_operand_memory, cchip_descriptor_queues; slots and their modules: cchip_slots,
+// cchip_swaps.
 module cchip_primtest_subsystem #(
     // width of a coordinate, bit, 4..20
     parameter integer COORD_W = 16,
@@ -285,6 +286,11 @@ module cchip_primtest_subsystem #(
   always @(posedge clk) irq_q <= ~rst & |(status & status_enable);
 
   // ---- slots and swaps
+  wire [SLOTS-1:0] stop, decouple, hold_reset, roc_start, quiet, roc_busy;
+  wire [KINDS-1:0] no_provider;  // of the kinds 1, 2, 3
+  wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module;
+  wire [`CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id;
+  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost;
   cchip_slots #(
       .COORD_W            (COORD_W),
       .SUBSTAGES          (SUBSTAGES),
@@ -293,9 +299,7 @@ module cchip_primtest_subsystem #(
       .WARPED_EXACT       (WARPED_EXACT),
       .SLOTS              (SLOTS),
       .SWAPS              (1),
-      .COUNT_W            (COUNT_W),
       .CFG_W              (CFG_W),
-      .CFG_DIVIDER        (CFG_DIVIDER),
       .ROC_CYCLES         (ROC_CYCLES),
       .SLOT0_RM_ID        (SLOT0_RM_ID),
       .SLOT1_RM_ID        (SLOT1_RM_ID),
@@ -308,8 +312,6 @@ module cchip_primtest_subsystem #(
       .rst             (rst),
       .core_rst        (1'b0),
       .some            (some),
-      .waiting         (waiting),
-      .full            (~queue_room[KINDS:1]),
       .kind            (kind),
       .look            (look),
       .pop             (pop),
@@ -329,50 +331,85 @@ module cchip_primtest_subsystem #(
       .outstanding     (outstanding),
       .rm_id           (rm_id),
       .decoupled       (decoupled),
-      .phase           (phase),
-      .clear           (clear),
-      .abort_swap      (abort_swap),
-      .enable          (enable),
-      .command_valid   (go),
-      .command_slot    (command_slot),
-      .command_module  (command_module),
-      .command_force   (force_swap),
-      .shutdown_limit  (shutdown_limit),
-      .memory_limit    (memory_limit),
-      .min_batch       (minimum_batch),
-      .max_age         (maximum_age),
-      .last_report     (last_report),
-      .swap_events     (swap_events),
-      .lost            (lost),
-      .write_table     (write_table),
-      .write_word      (write_word[5:0]),
-      .write_data      (write_data),
-      .write_bytes     (write_bytes),
-      .read_word       (read_word[5:0]),
-      .table_data      (table_data),
-      .phase_clocks    (phase_clocks),
-      .swapped         (swapped),
-      .rejected        (rejected),
-      .stall           (stall),
-      .m_axi_arvalid   (m_axi_arvalid),
-      .m_axi_arready   (m_axi_arready),
-      .m_axi_araddr    (m_axi_araddr),
-      .m_axi_arlen     (m_axi_arlen),
-      .m_axi_arsize    (m_axi_arsize),
-      .m_axi_arburst   (m_axi_arburst),
-      .m_axi_arcache   (m_axi_arcache),
-      .m_axi_arprot    (m_axi_arprot),
-      .m_axi_rvalid    (m_axi_rvalid),
-      .m_axi_rready    (m_axi_rready),
-      .m_axi_rdata     (m_axi_rdata),
-      .m_axi_rresp     (m_axi_rresp),
-      .m_axi_rlast     (m_axi_rlast),
+      .no_provider     (no_provider),
+      .slot_module     (slot_module),
+      .stop            (stop),
+      .decouple        (decouple),
+      .hold_reset      (hold_reset),
+      .roc_start       (roc_start),
+      .quiet           (quiet),
+      .roc_busy        (roc_busy),
+      .region_rm_id    (region_rm_id),
+      .slot_lost       (slot_lost),
       .cfg_valid       (cfg_valid),
-      .cfg_data        (cfg_data),
-      .cfg_error       (cfg_error)
+      .cfg_data        (cfg_data)
   );
 
-  wire unused = &{1'b0, read_word, write_word, queue_room[0]};
+  cchip_swaps #(
+      .SLOTS      (SLOTS),
+      .COUNT_W    (COUNT_W),
+      .CFG_W      (CFG_W),
+      .CFG_DIVIDER(CFG_DIVIDER)
+  ) u_swaps (
+      .clk           (clk),
+      .rst           (rst),
+      .waiting       (waiting[COUNT_W+:3*COUNT_W]),
+      .full          (~queue_room[KINDS:1]),
+      .no_provider   (no_provider),
+      .slot_module   (slot_module),
+      .stop          (stop),
+      .decouple      (decouple),
+      .hold_reset    (hold_reset),
+      .roc_start     (roc_start),
+      .quiet         (quiet),
+      .decoupled     (decoupled[SLOTS-1:0]),
+      .roc_busy      (roc_busy),
+      .region_rm_id  (region_rm_id),
+      .slot_lost     (slot_lost),
+      .phase         (phase),
+      .clear         (clear),
+      .abort_swap    (abort_swap),
+      .enable        (enable),
+      .command_valid (go),
+      .command_slot  (command_slot),
+      .command_module(command_module),
+      .command_force (force_swap),
+      .shutdown_limit(shutdown_limit),
+      .memory_limit  (memory_limit),
+      .min_batch     (minimum_batch),
+      .max_age       (maximum_age),
+      .last_report   (last_report),
+      .swap_events   (swap_events),
+      .lost          (lost),
+      .write_table   (write_table),
+      .write_word    (write_word[5:0]),
+      .write_data    (write_data),
+      .write_bytes   (write_bytes),
+      .read_word     (read_word[5:0]),
+      .table_data    (table_data),
+      .phase_clocks  (phase_clocks),
+      .swapped       (swapped),
+      .rejected      (rejected),
+      .stall         (stall),
+      .m_axi_arvalid (m_axi_arvalid),
+      .m_axi_arready (m_axi_arready),
+      .m_axi_araddr  (m_axi_araddr),
+      .m_axi_arlen   (m_axi_arlen),
+      .m_axi_arsize  (m_axi_arsize),
+      .m_axi_arburst (m_axi_arburst),
+      .m_axi_arcache (m_axi_arcache),
+      .m_axi_arprot  (m_axi_arprot),
+      .m_axi_rvalid  (m_axi_rvalid),
+      .m_axi_rready  (m_axi_rready),
+      .m_axi_rdata   (m_axi_rdata),
+      .m_axi_rresp   (m_axi_rresp),
+      .m_axi_rlast   (m_axi_rlast),
+      .cfg_valid     (cfg_valid),
+      .cfg_data      (cfg_data),
+      .cfg_error     (cfg_error)
+  );
+
+  wire unused = &{1'b0, read_word, write_word, queue_room[0], waiting[COUNT_W-1:0]};
 
 endmodule
 `default_nettype wire

@@ -334,7 +334,9 @@ void add_distance(CLI::App& app, DistanceOptions& options) {
            "x,y,z: in place of the distance, how many times this vector B must be moved by until it meets A, or, if "
            "they touch, until it is clear of A")
       ->excludes(error)
-      ->excludes(stop);
+      ->excludes(stop)
+      ->excludes(add_text(*command, "--ply", options.ply,
+                          "write both meshes with the line between their nearest points, for MeshLab or Blender"));
   add_choice(*command, "--format", options.format, formats, "output (default table)");
   command->footer(exit_codes +
                   "Examples:\n"

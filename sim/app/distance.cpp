@@ -53,7 +53,9 @@ void write_answer(const std::string& answer, const std::vector<std::string>& nam
   writer->flush();
 }
 
-void write_distance(const Scene& scene, const DistanceRequest& request, Format format, const Streams& streams) {
+/// \param picture gets both meshes with the line between the nearest points, if it is not null
+void write_distance(const Scene& scene, const DistanceRequest& request, Format format, const Streams& streams,
+                    HitPicture* picture) {
   const DistanceResult result = distance(scene.a, Pose::Identity(), scene.b, scene.pose_b, request);
   const bool stopped = std::isinf(result.upper) && result.lower == request.stop_above;
   const std::string answer = result.upper == 0          ? "distance 0: they touch or cross"
@@ -71,6 +73,10 @@ void write_distance(const Scene& scene, const DistanceRequest& request, Format f
     };
     add(result.face_a, result.point_a);
     add(result.face_b, result.point_b);
+  }
+  if (picture != nullptr) {
+    if (!stopped) picture->add_curve({result.point_a, result.point_b}, false);
+    picture->write(scene.a.mesh(), transformed(scene.b.mesh(), scene.pose_b));
   }
   write_answer(answer, {"lower", "upper", "face_a", "ax", "ay", "az", "face_b", "bx", "by", "bz"}, cells, format,
                streams);
@@ -100,6 +106,9 @@ void write_along(const Scene& scene, const Vec3d& direction, Format format, cons
 
 int run_distance(const DistanceOptions& options, const Streams& streams) {
   check_standard_input({options.file_a, options.file_b});
+  check_picture_name(options.ply);
+  std::optional<HitPicture> picture;
+  if (!options.ply.empty()) picture.emplace(options.ply);
   const DistanceRequest request = request_of(options);
   std::optional<Vec3d> direction;
   if (!options.along.empty()) direction = parse_direction(options.along);
@@ -110,7 +119,7 @@ int run_distance(const DistanceOptions& options, const Streams& streams) {
     if (direction) {
       write_along(scene, *direction, options.format, streams);
     } else {
-      write_distance(scene, request, options.format, streams);
+      write_distance(scene, request, options.format, streams, picture ? &*picture : nullptr);
     }
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());

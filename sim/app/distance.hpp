@@ -19,6 +19,7 @@ struct DistanceOptions {
   std::string relative_error;  ///< the distance may be so inexact; empty: as exact as doubles are
   std::string stop_above;      ///< of a greater distance nothing more is asked; empty: none
   std::string along;           ///< x,y,z: how far must B move in this direction, in place of the distance; empty: none
+  std::string ply;             ///< both meshes and the line between the nearest points; empty: none
   bool lenient = false;        ///< faces that cannot be used are left out
   Format format = Format::table;
 };

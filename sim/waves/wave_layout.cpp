@@ -235,7 +235,7 @@ Rows slot_layout(int number) {
 
 /// The reconfigurable subsystem with two slots.
 Rows subsystem_layout() {
-  const std::string swaps = "u_slots.gen_swaps.";
+  const std::string swaps = "u_swaps.gen_swaps.";
   Rows waiting;
   for (int kind = 1; kind < 4; ++kind) {
     waiting.push_back(field("waiting, kind " + std::to_string(kind), "waiting", 4 * queue_count_w, queue_count_w * kind,
@@ -520,8 +520,8 @@ Rows chip_layout(unsigned slot_count) {
 
 /// What the exchange of modules adds.
 Rows chip_swap_layout(unsigned slots) {
-  const std::string swaps = "u_slots.gen_swaps.";
-  Rows rows = {vector("waiting, all kinds", "waiting", 28, Radix::hexadecimal),
+  const std::string swaps = "u_swaps.gen_swaps.";
+  Rows rows = {vector("waiting, all kinds", "waiting", 21, Radix::hexadecimal),
                bit("request", swaps + "swap_valid"),
                field("slot", swaps + "swap_data", defs::swap_request_w, defs::swap_request_slot, Radix::decimal),
                field("module", swaps + "swap_data", defs::swap_request_w, defs::swap_request_module, module_names),
@@ -533,7 +533,7 @@ Rows chip_swap_layout(unsigned slots) {
                field("code", swaps + "report_data", defs::swap_report_w, defs::swap_report_code, swap_names)};
   for (unsigned slot = 0; slot < slots; ++slot) {
     const std::string number = std::to_string(slot);
-    const std::string scope = "u_slots.gen_slots[" + number + "].u_slot.";
+    const std::string scope = "u_core.u_slots.gen_slots[" + number + "].u_slot.";
     rows.push_back(vector("slot " + number + ": module", scope + "rm_id", module_names));
     rows.push_back(bit("slot " + number + ": decoupled", scope + "decoupled"));
   }
@@ -544,8 +544,11 @@ Rows chip_swap_layout(unsigned slots) {
 
 void write_chip_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to, unsigned swap_slots) {
   Rows rows = chip_layout(std::max(swap_slots, 1U));
+  for (Row& row : rows) {
+    if (!row.name.empty()) row.name = "u_core." + row.name;
+  }
   if (swap_slots != 0) rows = rows + chip_swap_layout(swap_slots);
-  write(fst_path, {"cchip_chip.u_core", "Queries through the whole chip", view_of(from, to), rows});
+  write(fst_path, {"cchip_chip", "Queries through the whole chip", view_of(from, to), rows});
 }
 
 void write_swap_gtkw(const std::string& fst_path, std::uint64_t from, std::uint64_t to) {

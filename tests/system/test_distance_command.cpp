@@ -112,6 +112,19 @@ TEST_CASE("distance: faces that cannot be used", "[system][distance]") {
   CHECK(lenient.err.find("bad.obj: line 5: face 1") != std::string::npos);
 }
 
+TEST_CASE("distance: a picture with the line between the nearest points", "[system][distance]") {
+  const TemporaryFolder folder;
+  const std::string ply = folder.path("far.ply");
+  CHECK(distance_of_cubes({"--pose", "3,0,0", "--ply", ply}).code == exit_ok);
+  const std::string text = folder.read("far.ply");
+  CHECK(text.find("element edge 1\n") != std::string::npos);
+  // Above the limit no points are known.
+  CHECK(distance_of_cubes({"--pose", "3,0,0", "--stop-above", "1", "--ply", ply}).code == exit_ok);
+  CHECK(folder.read("far.ply").find("element edge") == std::string::npos);
+  CHECK(distance_of_cubes({"--ply", folder.path("far.png")}).err.find("give a name that ends with .ply") !=
+        std::string::npos);
+}
+
 TEST_CASE("distance: standard input and errors", "[system][distance]") {
   const TemporaryFolder folder;
   CHECK(

@@ -8,6 +8,7 @@
 #include <verilated_fst_c.h>
 
 #include <cchip/sim/agent.hpp>
+#include <cchip/sim/coverage.hpp>
 #include <cchip/sim/errors.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/sim/seed.hpp>
@@ -98,6 +99,7 @@ class Simulation {
     Verilated::threadContextp(context_.get());
     model_->final();
     close_trace();
+    count_coverage(*context_);
     if (options_.clocks_run) *options_.clocks_run = total_;
   }
   Simulation(const Simulation&) = delete;

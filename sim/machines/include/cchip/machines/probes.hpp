@@ -36,11 +36,11 @@ auto& counter_words(Model& top) {
 
 // cchip_primtest_subsystem: the swap in progress and its report.
 #define CCHIP_SUBSYSTEM_PROBE(name, signal) CCHIP_PROBE(name, cchip_primtest_subsystem__DOT__##signal)
-CCHIP_SUBSYSTEM_PROBE(swap_phase, u_slots__DOT__gen_swaps__DOT__u_controller__DOT__u_sequencer__DOT__phase_q)
-CCHIP_SUBSYSTEM_PROBE(swap_slot, u_slots__DOT__gen_swaps__DOT__u_scheduler__DOT__slot_of_swap_q)
-CCHIP_SUBSYSTEM_PROBE(report_valid, u_slots__DOT__gen_swaps__DOT__u_scheduler__DOT__m_report_valid_q)
-CCHIP_SUBSYSTEM_PROBE(report_data, u_slots__DOT__gen_swaps__DOT__u_scheduler__DOT__m_report_data_q)
-CCHIP_SUBSYSTEM_PROBE(bitstreams_valid, u_slots__DOT__gen_swaps__DOT__u_table__DOT__valid_q)
+CCHIP_SUBSYSTEM_PROBE(swap_phase, u_swaps__DOT__gen_swaps__DOT__u_controller__DOT__u_sequencer__DOT__phase_q)
+CCHIP_SUBSYSTEM_PROBE(swap_slot, u_swaps__DOT__gen_swaps__DOT__u_scheduler__DOT__slot_of_swap_q)
+CCHIP_SUBSYSTEM_PROBE(report_valid, u_swaps__DOT__gen_swaps__DOT__u_scheduler__DOT__m_report_valid_q)
+CCHIP_SUBSYSTEM_PROBE(report_data, u_swaps__DOT__gen_swaps__DOT__u_scheduler__DOT__m_report_data_q)
+CCHIP_SUBSYSTEM_PROBE(bitstreams_valid, u_swaps__DOT__gen_swaps__DOT__u_table__DOT__valid_q)
 // A write to a register that takes effect on this clock: abort, clear, a swap by software.
 CCHIP_SUBSYSTEM_PROBE(abort_arrives, u_regs__DOT__control_abort_q)
 CCHIP_SUBSYSTEM_PROBE(clear_arrives, u_regs__DOT__control_clear_q)
@@ -49,7 +49,7 @@ CCHIP_SUBSYSTEM_PROBE(command_arrives, u_regs__DOT__command_go_q)
 // cchip_chip with swaps: the phase of the swap in progress; what is counted on this clock, bit 1 a clock of the box
 // test.
 CCHIP_PROBE(chip_swap_phase,
-            cchip_chip__DOT__u_core__DOT__u_slots__DOT__gen_swaps__DOT__u_controller__DOT__u_sequencer__DOT__phase_q)
+            cchip_chip__DOT__u_swaps__DOT__gen_swaps__DOT__u_controller__DOT__u_sequencer__DOT__phase_q)
 CCHIP_PROBE(chip_counts, cchip_chip__DOT__count_q)
 
 // cchip_chip: a node pair is at the box test; a vertex leaves the transform, bit 0; an axis leaves the controller of
