@@ -11,7 +11,7 @@ usage: export.py [--out FOLDER] [--programs FOLDER] [--pairs N] [--seed N] [--mh
   TOP                default: every primitive test of rtl/cchip.f, the array, the reconfigurable
                      subsystem, the blank module and the whole chip
 
-FOLDER/TOP holds TOP.v, with every list rtl/cchip_DEVICE.f a variant TOP_DEVICE.v with the multiplier leaf of that
+FOLDER/TOP holds TOP.v, whose ports have Vivado's interface attributes, with every list rtl/cchip_DEVICE.f a variant TOP_DEVICE.v with the multiplier leaf of that
 device, file lists, constraints, datasheets, licences, vectors, a self-checking bench and README.md. Modules are found
 by name: one module per file, named like it. Exit codes: 0 done, 1 something is missing."""
 import argparse
@@ -21,6 +21,8 @@ import re
 import shutil
 import subprocess
 import sys
+
+import interfaces
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RTL = ROOT / "rtl"
@@ -115,7 +117,7 @@ def one_file(top, files, list_name):
     for name in INCLUDES:
         text += f"\n// ---- rtl/include/{name}\n{body(RTL / 'include' / name)}"
     for name in names:
-        text += guarded(files[name])
+        text += guarded(files[name]) if name != top else interfaces.with_attributes(guarded(files[name]), top)
     return text + "/* verilator lint_on DECLFILENAME */\n"
 
 

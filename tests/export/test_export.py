@@ -5,6 +5,7 @@
 usage: test_export.py TOP PROGRAMS SCRATCH      PROGRAMS: folder of the programs that write vectors
 
 Environment: VERILATOR, IVERILOG, YOSYS = commands (default: found on PATH)."""
+import json
 import pathlib
 import re
 import shutil
@@ -82,6 +83,54 @@ class Export(unittest.TestCase):
 
     def test_yosys(self):
         self.yosys(self.file)
+
+    def test_interfaces_for_vivado(self):
+        """What Yosys reads of the attributes: every port of a bus is in it, under the name that AXI has for it."""
+        for file in self.folder.glob(f"{TOP}*.v"):
+            self.clean(tool("yosys"), "-q", "-p", f"read_verilog -lib +/ecp5/cells_bb.v +/ecp5/cells_sim.v; read_verilog {file.name}; "
+                       f"hierarchy -check -top {TOP}; delete =*/p:*; write_json {file.stem}.json")
+        # names and directions at a master, of AMBA AXI and ACE (IHI 0022), those that a read and a write need
+        address, masters = {"VALID", "ADDR", "PROT"}, {}
+        full = address | {"LEN", "SIZE", "BURST", "CACHE"}
+        lite = {*(f"AR{s}" for s in address), *(f"AW{s}" for s in address), "WVALID", "WDATA", "WSTRB", "BREADY", "RREADY",
+                "-ARREADY", "-AWREADY", "-WREADY", "-BVALID", "-BRESP", "-RVALID", "-RDATA", "-RRESP"}
+        read = {*(f"AR{s}" for s in full), "RREADY", "-ARREADY", "-RVALID", "-RDATA", "-RRESP", "-RLAST"}
+        whole = read | lite | {*(f"AW{s}" for s in full), "WLAST", "ARID", "AWID", "-RID", "-BID"}
+        if TOP == CHIP:
+            masters = {"s_axil": lite, "m_axi": whole, "m_axi_cfg": read}
+        elif TOP == SUBSYSTEM:
+            masters = {"s_axil": lite, "m_axi": read}
+        modes = {"s_axil": "PROTOCOL AXI4LITE, READ_WRITE_MODE READ_WRITE",
+                 "m_axi": f"PROTOCOL AXI4, READ_WRITE_MODE READ_{'WRITE' if TOP == CHIP else 'ONLY'}",
+                 "m_axi_cfg": "PROTOCOL AXI4, READ_WRITE_MODE READ_ONLY"}
+        for path in self.folder.glob(f"{TOP}*.json"):
+            module = json.loads(path.read_text())["modules"][TOP]
+            path.unlink()
+            found, parameters = {}, {}
+            for name, port in module["ports"].items():
+                attributes = module["netnames"][name]["attributes"]
+                if "X_INTERFACE_INFO" not in attributes:
+                    continue
+                vlnv, interface, signal = attributes["X_INTERFACE_INFO"].split()
+                if vlnv == "xilinx.com:interface:aximm:1.0":
+                    self.assertEqual(name, f"{interface}_{signal.lower()}")
+                    reads = (port["direction"] == "input") != (interface == "s_axil")
+                    found.setdefault(interface, set()).add(("-" if reads else "") + signal)
+                else:
+                    self.assertEqual((vlnv, interface, signal), {
+                        "clk": ("xilinx.com:signal:clock:1.0", "clk", "CLK"), "rst": ("xilinx.com:signal:reset:1.0", "rst", "RST"),
+                        "irq": ("xilinx.com:signal:interrupt:1.0", "irq", "INTERRUPT")}[name])
+                if "X_INTERFACE_PARAMETER" in attributes:
+                    own, _, rest = attributes["X_INTERFACE_PARAMETER"].partition(", ")
+                    self.assertEqual(own, f"XIL_INTERFACENAME {interface}")
+                    self.assertNotIn(interface, parameters)
+                    parameters[interface] = rest
+            self.assertEqual(found, masters)
+            associated = f"ASSOCIATED_BUSIF {':'.join(masters)}, " if masters else ""
+            self.assertEqual(parameters.pop("clk"), f"{associated}ASSOCIATED_RESET rst")
+            self.assertEqual(parameters.pop("rst"), "POLARITY ACTIVE_HIGH")
+            self.assertEqual(parameters, {**{bus: f"{modes[bus]}, SUPPORTS_NARROW_BURST 0" for bus in masters},
+                                          **({"irq": "SENSITIVITY LEVEL_HIGH"} if masters else {})})
 
     def test_only_what_the_top_needs(self):
         files = [self.file, *(["simulation_models.v"] if TOP in MORE else [])]
