@@ -11,9 +11,10 @@ usage: export.py [--out FOLDER] [--programs FOLDER] [--pairs N] [--seed N] [--mh
   TOP                default: every primitive test of rtl/cchip.f, the array, the reconfigurable
                      subsystem, the blank module and the whole chip
 
-FOLDER/TOP holds TOP.v, whose ports have Vivado's interface attributes, with every list rtl/cchip_DEVICE.f a variant TOP_DEVICE.v with the multiplier leaf of that
-device, file lists, constraints, datasheets, licences, vectors, a self-checking bench and README.md. Modules are found
-by name: one module per file, named like it. Exit codes: 0 done, 1 something is missing."""
+FOLDER/TOP holds TOP.v, whose ports have Vivado's interface attributes, with every list rtl/cchip_DEVICE.f a variant
+TOP_DEVICE.v with the multiplier leaf of that device, file lists, constraints, datasheets, licences, vectors, a
+self-checking bench, README.md and, of the chip after `make venv`, its IP-XACT component. Modules are found by name: one
+module per file, named like it. Exit codes: 0 done, 1 something is missing."""
 import argparse
 import os
 import pathlib
@@ -211,7 +212,7 @@ def blocks(suffix, text):
     return [name for name in CELLS.get(suffix, {}) if re.search(rf"\b{name}\b *#", without_comments(text))]
 
 
-def readme(top, files, pairs, mhz):
+def readme(top, files, pairs, mhz, described):
     def variant(suffix, text):
         cells = blocks(suffix, text)
         if not cells:
@@ -234,11 +235,12 @@ def readme(top, files, pairs, mhz):
     more = {SUBSYSTEM: """- [Registers](docs/hardware/registers.md), for C++ `registers.hpp`. `simulation_models.v` with parameter `SIMULATION` = 1: a slot holds all modules, bitstreams exchange them.
 """, CHIP: """- [Programmer's guide](docs/hardware/programmers-guide.md), [registers](docs/hardware/chip-registers.md), [images and records](docs/hardware/image.md); for C++ `chip_registers.hpp`, a driver in C `chip_poll.c`. `simulation_models.v` is for `SWAPS` = 1 with `SIMULATION` = 1.
 """}.get(top, "")
+    ip_xact = f"- `{top}.xml`: IP-XACT component, IEEE 1685-2014: buses, registers, ports, parameters.\n" if described else ""
     return f"""<!-- SPDX-License-Identifier: Apache-2.0 -->
 # {top}, collisionchip {version()}
 
 - `{top}.v`: the whole RTL in one file, no include folder, top `{top}`; `.f`: as a file list.
-{device}{more}- [Datasheet](docs/modules/{top}.md): ports, parameters, timing, area.
+{device}{more}{ip_xact}- [Datasheet](docs/modules/{top}.md): ports, parameters, timing, area.
 - `constraints/`: templates for ECP5 (LPF), Vivado (XDC), Quartus and others (SDC), clock {mhz:g} MHz; each says what to change.
 - Licence of the RTL: [Solderpad 2.1](LICENSES/SHL-2.1.txt), or take it as [Apache-2.0](LICENSES/Apache-2.0.txt) like all the rest.
 - Check with Icarus; other simulators take the same macro and plusargs, `{bench}.v` explains them. It must print {verdict}:
@@ -258,6 +260,17 @@ def write_vectors(program, *arguments):
         raise ExportError(f"{program} is missing: make export builds it")
     if result.returncode:
         raise ExportError(result.stdout.strip())
+
+
+def write_ip_xact(folder):
+    """The component of the chip, where the packages of `make venv` are; returns whether."""
+    result = subprocess.run([sys.executable, "-B", ROOT / "scripts" / "ip_xact.py", folder], stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, text=True)
+    if result.returncode == 77:
+        print("without IP-XACT: make venv installs what it needs")
+    elif result.returncode:
+        raise ExportError(result.stdout.strip())
+    return result.returncode == 0
 
 
 def export(top, options):
@@ -285,7 +298,8 @@ def export(top, options):
         write_vectors(programs / "cchip_query_vectors", folder / "memory.hex", folder / "records.hex")
     elif top != BLANK:
         write_vectors(programs / "cchip_pair_vectors", KINDS[top], folder / "vectors.hex", options.pairs, options.seed)
-    (folder / "README.md").write_text(readme(top, files, options.pairs, options.mhz))
+    described = top == CHIP and write_ip_xact(folder)
+    (folder / "README.md").write_text(readme(top, files, options.pairs, options.mhz, described))
     print(f"wrote {os.path.relpath(folder)}")
 
 
