@@ -3,7 +3,7 @@
 """The scripts for Vivado and Quartus against stand-ins of their commands, the ports of everything that takes turns in
 the partition, and the static side in simulation. Broken copies of the scripts must fail.
 
-usage: test_vendor.py [Ports|Static|Vivado|Package|Design|Quartus|Mutations]...
+usage: test_vendor.py [Ports|Static|Memories|Vivado|Package|Design|Quartus|Mutations]...
 
 Environment: TCLSH, VERILATOR, YOSYS, IVERILOG, VVP = commands (default: found on PATH)."""
 import fnmatch
@@ -179,6 +179,27 @@ class Static(unittest.TestCase):
                              f"read_verilog -DSYNTHESIS -DCCHIP_PR_BLACK_BOX -I{ROOT}/rtl/include {sources};"
                              " hierarchy -check -top cchip_pr_static; proc; check -assert; select -assert-none t:$dlatch;"
                              f" select -assert-count 1 t:{REGION}"), (0, ""))
+
+
+class Memories(unittest.TestCase):
+    def test_every_memory_names_its_kind_to_vivado_and_quartus(self):
+        # Quartus has no name for "a block of any size": it chooses one, and needs to hear that collisions do not matter
+        kinds = {"block": "no_rw_check", "distributed": "MLAB"}
+        found = 0
+        for path in files():
+            for attributes in re.findall(r"\(\* *(ram_?style.*?) *\*\)", path.read_text()):
+                values = dict(re.findall(r'(\w+) = "([^"]*)"', attributes))
+                self.assertEqual(values.get("ramstyle"), kinds[values["ram_style"]], f"{path.name}: {attributes}")
+                found += 1
+        self.assertGreater(found, 20)
+
+    def test_mixed_widths_can_be_switched_off(self):
+        for define, memories in (("", 1), ("-DCCHIP_MIXED_WIDTH=0", 4), ("-DCCHIP_MIXED_WIDTH=1", 1),
+                                 ("-DALTERA_RESERVED_QIS", 4)):
+            with self.subTest(define=define):
+                self.assertEqual(run(tool("yosys"), "-q", "-p", f"read_verilog {define} {ROOT}/rtl/common/cchip_block_ram.v; "
+                                     "hierarchy -check -top cchip_block_ram -chparam WORDS 4; proc; memory -nomap; "
+                                     f"select -assert-count {memories} t:$mem_v2"), (0, ""))
 
 
 class Vivado(unittest.TestCase):
