@@ -7,20 +7,24 @@ usage: export.py [--out FOLDER] [--programs FOLDER] [--pairs N] [--seed N] [--mh
   --programs FOLDER  of cchip_pair_vectors and cchip_query_vectors, default build/release/bin
   --pairs N          vectors of the bench of a primitive test, default 2000
   --seed N           of the vectors, default 1
-  --mhz F            clock of the constraint templates, default 150
+  --mhz F            clock of the constraint templates, default: what docs/hardware/fpga.md measured on ECP5, rounded down
   TOP                default: every primitive test of rtl/cchip.f, the array, the reconfigurable
                      subsystem, the blank module and the whole chip
 
-FOLDER/TOP holds TOP.v, with every list rtl/cchip_DEVICE.f a variant TOP_DEVICE.v with the multiplier leaf of that
-device, file lists, constraints, datasheets, licences, vectors, a self-checking bench and README.md. Modules are found
-by name: one module per file, named like it. Exit codes: 0 done, 1 something is missing."""
+FOLDER/TOP holds TOP.v, whose ports have Vivado's interface attributes, with every list rtl/cchip_DEVICE.f a variant
+TOP_DEVICE.v with the multiplier leaf of that device, file lists, constraints, datasheets, licences, vectors, a
+self-checking bench, README.md and, of the chip after `make venv`, its IP-XACT component. Modules are found by name: one
+module per file, named like it. Exit codes: 0 done, 1 something is missing."""
 import argparse
+import csv
 import os
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
+
+import interfaces
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RTL = ROOT / "rtl"
@@ -39,12 +43,15 @@ CELLS = {"_ecp5": {"MULT18X18D": "multiplier block", "DP16KD": "block RAM"}}
 PAGES = ("develop/architecture.md", "hardware/definitions.md")
 MORE_PAGES = {SUBSYSTEM: ("hardware/registers.md",),
               CHIP: tuple(f"hardware/{name}.md" for name in ("chip", "chip-registers", "image", "programmers-guide"))}
+# Clock of the constraints: medians of docs/hardware/fpga.md, rounded down; the chip's is an estimate after placement.
+MHZ = {"cchip_primtest_array": 145, SUBSYSTEM: 130, CHIP: 75}
 # Bench of a top, the first of its files, and what else is copied.
 BENCH = "tests/icarus/bench_primtest.v"
 WIRE = "cpp_ref/include/cchip/wire"
 FILES = {BLANK: ("tests/icarus/bench_blank.v",),
          SUBSYSTEM: (BENCH, "tests/icarus/bench_subsystem.v", f"{WIRE}/registers.hpp"),
-         CHIP: ("tests/icarus/bench_chip.v", f"{WIRE}/chip_registers.hpp", "examples/chip_poll.h", "examples/chip_poll.c")}
+         CHIP: ("tests/icarus/bench_chip.v", f"{WIRE}/chip_registers.hpp", "examples/chip_poll.h", "examples/chip_poll.c",
+                "examples/chip_instance.v")}
 
 
 class ExportError(Exception):
@@ -115,7 +122,7 @@ def one_file(top, files, list_name):
     for name in INCLUDES:
         text += f"\n// ---- rtl/include/{name}\n{body(RTL / 'include' / name)}"
     for name in names:
-        text += guarded(files[name])
+        text += guarded(files[name]) if name != top else interfaces.with_attributes(guarded(files[name]), top)
     return text + "/* verilator lint_on DECLFILENAME */\n"
 
 
@@ -150,10 +157,13 @@ def variants(top):
 
 def constraints(top, mhz):
     period = f"{1000 / mhz:.3f}"
+    # the device's configuration error comes from any clock, to two flip-flops
+    asynchronous = top in (SUBSYSTEM, CHIP)
+    false_path = "set_false_path -from [get_ports cfg_error]\n" if asynchronous else ""
     head = f"""# SPDX-License-Identifier: Apache-2.0
 # {top}: template. It constrains the one clock, {mhz:g} MHz: change that to yours.
-# All ports belong to this clock, rst included (synchronous): no path is false. Where the clock comes from your design
-# and is constrained there, leave this file out.
+# {'All ports but cfg_error' if asynchronous else 'All ports'} belong to this clock, rst included (synchronous). Where the clock comes from your design and is constrained
+# there, leave this file out.
 """
     lpf = head + f"""# Lattice ECP5 (Diamond, nextpnr-ecp5). The ports are more than a package has pins: build the module inside your design,
 # and replace "clk" by the name of the clock there. nextpnr: FREQUENCY PORT for a pin, FREQUENCY NET for a clock of a PLL.
@@ -163,7 +173,7 @@ FREQUENCY PORT "clk" {mhz:g} MHZ;
 """
     xdc = head + f"""# AMD (Vivado), for the module on its own: synth_design -mode out_of_context -top {top}.
 create_clock -name clk -period {period} [get_ports clk]
-# A clock buffer of your design, so that timing counts its delay:
+{false_path}# A clock buffer of your design, so that timing counts its delay:
 # set_property HD.CLK_SRC BUFGCTRL_X0Y0 [get_ports clk]
 # Ports that leave the device (out of context none do): values of your board.
 # set_input_delay -clock clk 0.000 [get_ports -filter {{DIRECTION == IN && NAME != clk}}]
@@ -172,7 +182,7 @@ create_clock -name clk -period {period} [get_ports clk]
     sdc = head + f"""# Intel (Quartus) and others that read SDC. On its own in Quartus make the ports virtual, they are more than a package has
 # pins: in the .qsf, set_instance_assignment -name VIRTUAL_PIN ON -to *, and OFF for clk.
 create_clock -name clk -period {period} [get_ports clk]
-# Quartus only:
+{false_path}# Quartus only:
 # derive_clock_uncertainty
 # Ports that leave the device: values of your board.
 # set_input_delay -clock clk 0.000 [remove_from_collection [all_inputs] [get_ports clk]]
@@ -209,7 +219,7 @@ def blocks(suffix, text):
     return [name for name in CELLS.get(suffix, {}) if re.search(rf"\b{name}\b *#", without_comments(text))]
 
 
-def readme(top, files, pairs, mhz):
+def readme(top, files, pairs, mhz, described):
     def variant(suffix, text):
         cells = blocks(suffix, text)
         if not cells:
@@ -232,17 +242,38 @@ def readme(top, files, pairs, mhz):
     more = {SUBSYSTEM: """- [Registers](docs/hardware/registers.md), for C++ `registers.hpp`. `simulation_models.v` with parameter `SIMULATION` = 1: a slot holds all modules, bitstreams exchange them.
 """, CHIP: """- [Programmer's guide](docs/hardware/programmers-guide.md), [registers](docs/hardware/chip-registers.md), [images and records](docs/hardware/image.md); for C++ `chip_registers.hpp`, a driver in C `chip_poll.c`. `simulation_models.v` is for `SWAPS` = 1 with `SIMULATION` = 1.
 """}.get(top, "")
+    integration = chip_notes(mhz) if top == CHIP else ""
+    ip_xact = f"- `{top}.xml`: IP-XACT component, IEEE 1685-2014: buses, registers, ports, parameters.\n" if described else ""
     return f"""<!-- SPDX-License-Identifier: Apache-2.0 -->
 # {top}, collisionchip {version()}
 
 - `{top}.v`: the whole RTL in one file, no include folder, top `{top}`; `.f`: as a file list.
-{device}{more}- [Datasheet](docs/modules/{top}.md): ports, parameters, timing, area.
+{device}{more}{ip_xact}- [Datasheet](docs/modules/{top}.md): ports, parameters, timing, area.
 - `constraints/`: templates for ECP5 (LPF), Vivado (XDC), Quartus and others (SDC), clock {mhz:g} MHz; each says what to change.
 - Licence of the RTL: [Solderpad 2.1](LICENSES/SHL-2.1.txt), or take it as [Apache-2.0](LICENSES/Apache-2.0.txt) like all the rest.
 - Check with Icarus; other simulators take the same macro and plusargs, `{bench}.v` explains them. It must print {verdict}:
 
       {compiled}
       {run}
+{integration}"""
+
+
+def chip_notes(mhz):
+    """What an integrator of the chip has to know, for its README.md."""
+    with open(ROOT / "docs" / "figures" / "fpga_chip_bill.csv", newline="") as file:
+        size = next(row for row in csv.DictReader(file) if (row["row"], row["block"]) == (CHIP.split("_")[1], "all"))
+    return f"""
+## In a design
+
+- **Instance**: `chip_instance.v`, default parameters, ports of swaps tied off. With `SWAPS` = 0 tie their inputs to 0.
+- **Reset**: `rst` is active high and synchronous to `clk`, for 2 clocks or more, also after power-up. It forgets what is outstanding on both buses: reset these with it.
+- **Reset while the bus lives on** (a processor's): clear `control.enable`, write `control.soft_reset`, wait until `status.resetting` is 0: then nothing is outstanding on `m_axi` (with `SWAPS`, wait for a swap's end, too). Hold all accesses to the registers, then `rst`. If
+  `resetting` stays 1, memory has lost a response: only a reset of chip and bus helps, or a firewall or shutdown manager between them that completes the rest.
+- **Coherency**: reads have `m_axi_arcache` 0011, writes `m_axi_awcache` 0010: normal memory, not cacheable; there is no `AxUSER`. Map images and rings uncached, or flush and invalidate as the programmer's guide says. A port
+  that snoops (ACP, HPC) needs `AxCACHE` and `AxUSER` set in your wrapper, as that port asks.
+- **Records** are 16 bytes in one beat and must arrive whole: no bus narrower than 128 bit between chip and memory.
+- **Size and clock**: default parameters after synthesis for ECP5: {size["sites"]} sites of LUT4, {size["FF"]} flip-flops, {size["DSP"]} multiplier blocks, {size["block RAM"]} block RAMs of 18 kbit. The constraints say {mhz:g} MHz, unless you chose
+  another clock: for ECP5 grade 6 with the triangle test that is what an estimate after placement allows; the chip was never routed, nor built for another family. Begin lower.
 """
 
 
@@ -258,11 +289,22 @@ def write_vectors(program, *arguments):
         raise ExportError(result.stdout.strip())
 
 
+def write_ip_xact(folder):
+    """The component of the chip, where the packages of `make venv` are; returns whether."""
+    result = subprocess.run([sys.executable, "-B", ROOT / "scripts" / "ip_xact.py", folder], stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, text=True)
+    if result.returncode == 77:
+        print("without IP-XACT: make venv installs what it needs")
+    elif result.returncode:
+        raise ExportError(result.stdout.strip())
+    return result.returncode == 0
+
+
 def export(top, options):
     folder = pathlib.Path(options.out) / top
     shutil.rmtree(folder, ignore_errors=True)
     (folder / "constraints").mkdir(parents=True)
-    files = variants(top)
+    files, mhz = variants(top), options.mhz or MHZ.get(top, 150)
     for suffix, text in files:
         (folder / f"{top}{suffix}.v").write_text(text)
         (folder / f"{top}{suffix}.f").write_text(
@@ -272,7 +314,7 @@ def export(top, options):
     models = simulation_models(top)
     if models:
         (folder / "simulation_models.v").write_text(models)
-    for kind, text in constraints(top, options.mhz).items():
+    for kind, text in constraints(top, mhz).items():
         (folder / "constraints" / f"{top}.{kind}").write_text(text)
     write_pages(folder, closure(top, read_list(RTL / "cchip.f") | (read_list(MODELS) if models else {})))
     shutil.copytree(ROOT / "LICENSES", folder / "LICENSES")
@@ -283,7 +325,8 @@ def export(top, options):
         write_vectors(programs / "cchip_query_vectors", folder / "memory.hex", folder / "records.hex")
     elif top != BLANK:
         write_vectors(programs / "cchip_pair_vectors", KINDS[top], folder / "vectors.hex", options.pairs, options.seed)
-    (folder / "README.md").write_text(readme(top, files, options.pairs, options.mhz))
+    described = top == CHIP and write_ip_xact(folder)
+    (folder / "README.md").write_text(readme(top, files, options.pairs, mhz, described))
     print(f"wrote {os.path.relpath(folder)}")
 
 
@@ -298,7 +341,7 @@ def main():
     parser.add_argument("--programs", default=ROOT / "build" / "release" / "bin")
     parser.add_argument("--pairs", default=2000, type=int)
     parser.add_argument("--seed", default=1, type=int)
-    parser.add_argument("--mhz", default=150.0, type=float)
+    parser.add_argument("--mhz", type=float)
     parser.add_argument("tops", nargs="*")
     options = parser.parse_args()
     try:

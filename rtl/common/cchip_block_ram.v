@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// Quartus, which defines this macro, infers no ports of different widths from Verilog.
+// 0 for a tool that infers no ports of different widths from Verilog; Quartus, which defines
+// ALTERA_RESERVED_QIS, is one.
+`ifndef CCHIP_MIXED_WIDTH
 `ifdef ALTERA_RESERVED_QIS
 `define CCHIP_MIXED_WIDTH 0
 `else
 `define CCHIP_MIXED_WIDTH 1
+`endif
 `endif
 // cchip_block_ram: block RAM with its output register, one port for writing and one for reading.
 // Without that register a block of an ECP5 takes 5.6 ns from clock to output.
@@ -46,7 +49,7 @@ module cchip_block_ram #(
     end
 
     if (WORDS == 1) begin : gen_single
-      (* ram_style = "block", no_rw_check *)
+      (* ram_style = "block", ramstyle = "no_rw_check", no_rw_check *)
       reg [WIDTH-1:0] mem [0:(1<<ADDR_W)-1];
       reg [WIDTH-1:0] word_q;
       always @(posedge clk) if (write) mem[write_addr] <= write_data;
@@ -56,7 +59,7 @@ module cchip_block_ram #(
       end
     end else if (MIXED_WIDTH != 0) begin : gen_mixed
       // the form that tools know as a port four words wide
-      (* ram_style = "block", no_rw_check *)
+      (* ram_style = "block", ramstyle = "no_rw_check", no_rw_check *)
       reg [WIDTH-1:0] mem [0:(1<<ADDR_W)-1];
       reg [WIDTH-1:0] word_q;
       integer i;
@@ -72,7 +75,7 @@ module cchip_block_ram #(
       reg [1:0] bank_q;
       genvar b;
       for (b = 0; b < 4; b = b + 1) begin : gen_bank
-        (* ram_style = "block", no_rw_check *)
+        (* ram_style = "block", ramstyle = "no_rw_check", no_rw_check *)
         reg [WIDTH-1:0] mem [0:(1<<(ADDR_W-2))-1];
         reg [WIDTH-1:0] word_q;
         always @(posedge clk) if (write) mem[write_addr] <= write_data[WIDTH*b+:WIDTH];

@@ -59,7 +59,7 @@ module cchip_counter_file (
       | fresh[20+:5] | fresh[25+:5] | fresh[30+:5] | fresh[35+:5];
 
   // ---- memory: read, add, write back on the next clock
-  (* ram_style = "distributed" *)
+  (* ram_style = "distributed", ramstyle = "MLAB" *)
   reg [31:0] mem [0:15];
   reg [31:0] word_q;
   reg [4:0] add_q;

@@ -30,7 +30,7 @@ module cchip_dual_ram #(
     end
   endgenerate
 
-  (* ram_style = "block", no_rw_check *)
+  (* ram_style = "block", ramstyle = "no_rw_check", no_rw_check *)
   reg [WIDTH-1:0] mem[0:(1<<ADDR_W)-1];
   reg [WIDTH-1:0] word_a_q, word_b_q, read_data_a_q, read_data_b_q;
   always @(posedge clk) begin

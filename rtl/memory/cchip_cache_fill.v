@@ -125,7 +125,7 @@ module cchip_cache_fill #(
       .m_ready(1'b1),
       .m_data ({fill_slot, fill_code})
   );
-  (* ram_style = "distributed" *)
+  (* ram_style = "distributed", ramstyle = "MLAB" *)
   reg [FRAME_W-1:0] frames[0:MISSES-1];
   always @(posedge clk) if (allocate) frames[allocate_slot] <= allocate_frame;
   assign fill_frame = frames[fill_slot];

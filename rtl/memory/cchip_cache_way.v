@@ -78,7 +78,7 @@ module cchip_cache_way #(
   wire [LINE_W-1:0] kept4 = {tag4, line4[SET_W-1:0]};  // the line in this way
   assign match4 = valid4 && kept4 == line4;
 
-  (* ram_style = "distributed" *)
+  (* ram_style = "distributed", ramstyle = "MLAB" *)
   reg [SET_W:0] frames[0:MISSES-1];
   reg match_q5, valid_q5, locked_q5, turn_q5, held_q5, filled_q5, forget_q5;
   reg [SLOT_W-1:0] slot_q5;

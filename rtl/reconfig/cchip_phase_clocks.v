@@ -20,7 +20,7 @@ module cchip_phase_clocks (
 
   localparam integer PHASES = 1 << `CCHIP_PHASE_W;
 
-  (* ram_style = "distributed" *)
+  (* ram_style = "distributed", ramstyle = "MLAB" *)
   reg [31:0] mem [0:PHASES-1];
   always @(posedge clk) mem[phase] <= elapsed;
 

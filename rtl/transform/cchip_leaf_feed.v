@@ -73,7 +73,7 @@ module cchip_leaf_feed #(
     end
   endgenerate
 
-  (* ram_style = "distributed" *)
+  (* ram_style = "distributed", ramstyle = "MLAB" *)
   reg [MAP_W-1:0] maps[0:QUERIES-1];
   always @(posedge clk)
     if (s_start_valid)

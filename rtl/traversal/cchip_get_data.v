@@ -101,7 +101,7 @@ module cchip_get_data #(
   wire header = s_record[`CCHIP_NODE_PAIR_HEADER];
   wire [QUERIES-1:0] asks_header = s_valid && header ? ONE_CONTEXT << s_context : {QUERIES{1'b0}};
   wire [QUERIES-1:0] posed = s_pose_valid ? ONE_CONTEXT << s_pose_context : {QUERIES{1'b0}};
-  (* ram_style = "distributed" *)
+  (* ram_style = "distributed", ramstyle = "MLAB" *)
   reg [CONTEXT_W+RECORD_W-1:0] records[0:PLACES-1];
   always @(posedge clk) begin
     if (s_valid) records[s_place] <= {s_context, s_record};

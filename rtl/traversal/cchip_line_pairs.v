@@ -107,7 +107,7 @@ module cchip_line_pairs #(
           .read_addr (read_place),
           .read_data (read_lines[512*p+:512])
       );
-      (* ram_style = "distributed" *)
+      (* ram_style = "distributed", ramstyle = "MLAB" *)
       reg [CODE_W-1:0] codes[0:PLACES-1];
       reg [CODE_W-1:0] code_q;
       always @(posedge clk) begin

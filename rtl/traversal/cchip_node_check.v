@@ -42,7 +42,7 @@ module cchip_node_check #(
   localparam [4:0] STEP_MAX = 5'd18;
 
   // ---- the fields on the first clock, compared on the second, judged on the third
-  (* ram_style = "distributed" *)
+  (* ram_style = "distributed", ramstyle = "MLAB" *)
   reg [49:0] sizes[0:QUERIES-1];  // lines of each image, {B's, A's}, at most 2^24
   reg [49:0] sizes_q1;
   reg valid_q1, valid_q2, valid_q3;
@@ -124,7 +124,7 @@ module cchip_node_check #(
       |no_header3 ? `CCHIP_END_BAD_DESCRIPTOR :
       end_a3 != `CCHIP_END_OK ? end_a3 : end_b3;
 
-  (* ram_style = "distributed" *)
+  (* ram_style = "distributed", ramstyle = "MLAB" *)
   reg [NODES_W-1:0] nodes[0:(1<<PLACE_W)-1];
   reg [NODES_W-1:0] nodes_q;
   always @(posedge clk) begin

@@ -73,11 +73,11 @@ module cchip_traversal_contexts #(
   assign running = running_q;
 
   // ---- stages 1 to 5: the query, the last entry of its stack, what its epoch has in flight
-  (* ram_style = "distributed" *)
+  (* ram_style = "distributed", ramstyle = "MLAB" *)
   reg [STATE_W-1:0] states[0:QUERIES-1];
-  (* ram_style = "distributed" *)
+  (* ram_style = "distributed", ramstyle = "MLAB" *)
   reg [`CCHIP_QUERY_LINES_W-1:0] constants[0:QUERIES-1];
-  (* ram_style = "distributed" *)
+  (* ram_style = "distributed", ramstyle = "MLAB" *)
   reg [WORK_W-1:0] works[0:4*QUERIES-1];  // of each epoch
   reg [STATE_W-1:0] state_q2, state_q3, state_q4, state_q5;
   reg [`CCHIP_QUERY_LINES_W-1:0] constants_q2, constants_q3, constants_q4, constants_q5;

@@ -3,7 +3,7 @@
 """The scripts for Vivado and Quartus against stand-ins of their commands, the ports of everything that takes turns in
 the partition, and the static side in simulation. Broken copies of the scripts must fail.
 
-usage: test_vendor.py [Ports|Static|Vivado|Quartus|Mutations]...
+usage: test_vendor.py [Ports|Static|Memories|Vivado|Package|Design|Quartus|Mutations]...
 
 Environment: TCLSH, VERILATOR, YOSYS, IVERILOG, VVP = commands (default: found on PATH)."""
 import fnmatch
@@ -18,7 +18,8 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests"))
+sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "scripts")]
+import export  # noqa: E402
 from tools import run, tool  # noqa: E402
 HERE = pathlib.Path(__file__).resolve().parent
 REGION = "cchip_pr_region"
@@ -26,6 +27,8 @@ CHIP = "cchip_chip"
 STATIC = "scripts/vendor/cchip_pr_static.v"
 VIVADO = "scripts/vivado/dfx.tcl"
 QUARTUS = "scripts/quartus/pr.tcl"
+PACKAGE = "scripts/vivado/package_ip.tcl"
+DESIGN = "scripts/vivado/example_bd.tcl"
 
 
 def files(root=ROOT):
@@ -178,6 +181,27 @@ class Static(unittest.TestCase):
                              f" select -assert-count 1 t:{REGION}"), (0, ""))
 
 
+class Memories(unittest.TestCase):
+    def test_every_memory_names_its_kind_to_vivado_and_quartus(self):
+        # Quartus has no name for "a block of any size": it chooses one, and needs to hear that collisions do not matter
+        kinds = {"block": "no_rw_check", "distributed": "MLAB"}
+        found = 0
+        for path in files():
+            for attributes in re.findall(r"\(\* *(ram_?style.*?) *\*\)", path.read_text()):
+                values = dict(re.findall(r'(\w+) = "([^"]*)"', attributes))
+                self.assertEqual(values.get("ramstyle"), kinds[values["ram_style"]], f"{path.name}: {attributes}")
+                found += 1
+        self.assertGreater(found, 20)
+
+    def test_mixed_widths_can_be_switched_off(self):
+        for define, memories in (("", 1), ("-DCCHIP_MIXED_WIDTH=0", 4), ("-DCCHIP_MIXED_WIDTH=1", 1),
+                                 ("-DALTERA_RESERVED_QIS", 4)):
+            with self.subTest(define=define):
+                self.assertEqual(run(tool("yosys"), "-q", "-p", f"read_verilog {define} {ROOT}/rtl/common/cchip_block_ram.v; "
+                                     "hierarchy -check -top cchip_block_ram -chparam WORDS 4; proc; memory -nomap; "
+                                     f"select -assert-count {memories} t:$mem_v2"), (0, ""))
+
+
 class Vivado(unittest.TestCase):
     def test_every_configuration_whatever_comes_first(self):
         for initial in personas():
@@ -222,6 +246,90 @@ class Vivado(unittest.TestCase):
         calls, written = tcl("vivado_stubs.tcl", "scripts/vivado/synth.tcl", f"top={CHIP}", "parameters=QUERIES=8")
         self.assertEqual(after(named(calls, "synth_design")[0], "-top"), CHIP)
         self.assertIn(f"{CHIP}_timing.rpt", written)
+
+
+@functools.lru_cache(None)
+def exported():
+    """Text of the exported chip."""
+    return dict(export.variants(CHIP))[""]
+
+
+def packaged(root, text=None):
+    """Packages the exported chip. Returns the calls, and what the stand-in writes as component.xml."""
+    with tempfile.TemporaryDirectory() as folder:
+        (pathlib.Path(folder) / f"{CHIP}.v").write_text(exported() if text is None else text)
+        calls, written = tcl("vivado_ip_stubs.tcl", PACKAGE, f"export={folder}", root=root)
+    return calls, written[f"{CHIP}/component.xml"]
+
+
+def check_package(root=ROOT):
+    calls, _ = packaged(root)
+    properties = [call[1:] for call in named(calls, "set_property")]
+    module = (root / "rtl/chip/cchip_chip.v").read_text()
+    defaults = dict(re.findall(r"parameter integer (\w+) = ([\w`]+)", module))
+    limited = {call[1]: [] for call in named(calls, "ipx::get_user_parameters")}
+    assert {"QUERIES", "CACHE_KB", "MISSES", "SLOTS", "SWAPS", "DATA_W"} <= set(limited) <= set(defaults), limited
+    for name, value, target in properties:
+        kind, _, name_of = target.partition(":")
+        if kind == "parameter" and name != "value_validation_type":
+            limited[name_of] += value.split()
+    table = (ROOT / "docs/modules/cchip_chip.md").read_text()
+    for name, values in limited.items():
+        # the datasheet: "2, 4, 8", "4, 8 ... 1024" or "1..4"
+        legal = re.search(rf"^\| `{name}` \|[^|]*\|[^|]*\| ([^|]*) \|", table, re.M)[1]
+        numbers = [int(number) for number in re.findall(r"\d+", legal)]
+        found = [int(value) for value in values]
+        assert defaults[name] in values or ".." in legal and found[0] <= int(defaults[name]) <= found[1], name
+        assert (min(found), max(found)) == (min(numbers), max(numbers)), f"{name}: {found}, datasheet: {legal}"
+        assert " ... " not in legal or found == [min(found) << i for i in range(len(found))], f"{name}: {found}"
+    for wanted in (["range", "4096", "block:registers"], ["range", str(1 << 38), "space:m_axi"],
+                   ["range", str(1 << 32), "space:m_axi_cfg"], ["width", "32", "block:registers"]):
+        assert wanted in properties, wanted
+    hidden = [target for name, _, target in properties if name == "enablement_dependency"]
+    assert sorted(hidden) == ["interface:m_axi_cfg", "port:cfg_data", "port:cfg_error", "port:cfg_valid"], hidden
+    driven = {target[5:] for name, value, target in properties if (name, value) == ("driver_value", "0")}
+    of_swaps = {name for name, direction, _ in ports(CHIP) if direction == "input" and re.match("cfg_|m_axi_cfg_", name)}
+    assert driven == of_swaps, driven ^ of_swaps
+
+
+def check_design(root=ROOT):
+    _, component = packaged(root)
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / CHIP / "component.xml"
+        path.parent.mkdir()
+        path.write_text(component)
+        calls, _ = tcl("vivado_ip_stubs.tcl", DESIGN, f"repository={folder}", "memory_kb=32", "synthesise=1", root=root)
+    pins = {tuple(call[1:]) for call in named(calls, "connect_bd_net")}
+    assert ("reset/peripheral_reset", "chip/rst") in pins and ("clock/clk_out1", "chip/clk") in pins, pins
+    # a processor that is not coherent would need more: here all see one memory at one address
+    spaces = [(after(call, "-target_address_space"), after(call, "-offset"), call[-1]) for call in named(calls, "assign_bd_address")]
+    assert sorted(spaces) == [("chip/m_axi", "0x00000000", "memory/S_AXI/Mem0"), ("host/Data", "0x00000000", "memory/S_AXI/Mem0"),
+                              ("host/Data", "0x44A00000", "chip/s_axil/registers")], spaces
+    order = [call[0] for call in calls]
+    assert order.index("validate_bd_design") < order.index("generate_target") < order.index("launch_runs")
+
+
+class Package(unittest.TestCase):
+    def test_chip_as_an_ip(self):
+        check_package()
+
+    def test_verilog_without_attributes_is_refused(self):
+        text = re.sub(r"\(\* X_INTERFACE.*\n", "", exported())
+        with self.assertRaisesRegex(AssertionError, "no interface s_axil: was it written by make export?"):
+            packaged(ROOT, text)
+
+    def test_nothing_exported(self):
+        with self.assertRaisesRegex(AssertionError, "cchip_chip.v is missing: make export EXPORT_ARGS=cchip_chip"):
+            tcl("vivado_ip_stubs.tcl", PACKAGE, "export=/nonexistent")
+
+
+class Design(unittest.TestCase):
+    def test_block_design(self):
+        check_design()
+
+    def test_nothing_packaged(self):
+        with self.assertRaisesRegex(AssertionError, "run scripts/vivado/package_ip.tcl"):
+            tcl("vivado_ip_stubs.tcl", DESIGN, "repository=/nonexistent")
 
 
 class Quartus(unittest.TestCase):
@@ -282,6 +390,28 @@ EDITS = [
     ("scripts/vendor/common.tcl", "", None),
     ("rtl/reconfig/cchip_pr_region.v", "", None),
     ("rtl/sat/cchip_sat_axis.v", "", None),
+    (PACKAGE, "  CACHE_KB {4 8 16 32", "  CACHE_KB {4 8 32"),
+    (PACKAGE, "  DATA_W {128 256 512}", "  DATA_W {64 128 256}"),
+    (PACKAGE, "  LOCKS {1 to 4}", "  LOCKS {0 to 4}"),
+    (PACKAGE, "describe_registers $core\n", ""),
+    (PACKAGE, "describe_space $core m_axi 38\n", ""),
+    (PACKAGE, "describe_space $core m_axi 38", "describe_space $core m_axi 32"),
+    (PACKAGE, "set_property range 4096 $block", "set_property range 65536 $block"),
+    (PACKAGE, "ipx::check_integrity $core\n", ""),
+    (PACKAGE, "-set_current true", "-set_currant true"),
+    (PACKAGE, "close_project\n", ""),
+    (PACKAGE, "{cfg_valid cfg_data cfg_error}", "{cfg_valid cfg_data}"),
+    (PACKAGE, "m_axi_cfg_rresp m_axi_cfg_rlast}", "m_axi_cfg_rresp}"),
+    (DESIGN, "update_ip_catalog\n", ""),
+    (DESIGN, "wire reset/peripheral_reset chip/rst", "wire reset/peripheral_aresetn chip/rst"),
+    (DESIGN, "bus chip/m_axi fabric/S01_AXI", "bus fabric/S01_AXI chip/m_axi"),
+    (DESIGN, "bus fabric/M01_AXI memory/S_AXI\n", ""),
+    (DESIGN, "CONFIG.NUM_SI 2", "CONFIG.NUM_SI 1"),
+    (DESIGN, "host/aclk fabric/aclk chip/clk memory/s_axi_aclk", "host/aclk fabric/aclk memory/s_axi_aclk"),
+    (DESIGN, "validate_bd_design\n", ""),
+    (DESIGN, "exclude_bd_addr_seg", "# exclude_bd_addr_seg"),
+    (DESIGN, "{host/Data chip/m_axi}", "{host/Data}"),
+    (DESIGN, "cell ram ip:blk_mem_gen", "cell ram ip:blk_mem_generator"),
     (QUARTUS, "compile $project\n", ""),
     (QUARTUS, "foreach name [dict keys $personas] {\n  compile", "foreach name {tri_tri} {\n  compile"),
     (QUARTUS, "  set_global_assignment -name REVISION_TYPE PR_IMPL\n", ""),
@@ -328,13 +458,16 @@ class Mutations(unittest.TestCase):
     def test_the_copy_passes(self):
         check_vivado(self.root)
         check_quartus(self.root)
+        check_package(self.root)
+        check_design(self.root)
         check_ports(self.root)
 
     def test_broken_flows_are_noticed(self):
         for name, old, new in EDITS:
             with self.subTest(file=name, old=old, new=new):
                 restore = self.edit(name, old, new)
-                checks = {VIVADO: [check_vivado], QUARTUS: [check_quartus]}.get(name)
+                checks = {VIVADO: [check_vivado], QUARTUS: [check_quartus], PACKAGE: [check_package],
+                          DESIGN: [check_design]}.get(name)
                 if not checks:
                     checks = [check for check, folder in ((check_vivado, "vivado"), (check_quartus, "quartus"))
                               if folder in name] or [check_vivado, check_quartus]
