@@ -9,7 +9,7 @@ usage: coverage.py [options] BUILD
 
 Bins count the clocks on which situations of two blocks of the chip meet (sim/rtl_models/cchip_chip_bins.sv).
 
-RTL, by Verilator: a line is a block of statements, a branch one side of an if or a case, a toggle one direction of a signal of one bit, the control signals. Points of all instances and
+RTL, by Verilator: a line is a block of statements, a branch one side of an if or a case, a toggle a signal of one bit (control) that changes after the first reset. Points of all instances and
 configurations of a module are one. C++, by gcov through gcovr (Debian's package): branches without those that only an exception takes.
 
 The last line is `rtl_lines=R% rtl_toggles=T% bins=K/N cpp_branches=B%`. Exit codes: 0 done, 1 nothing was counted or gcovr failed, 2 bad arguments."""
@@ -50,7 +50,7 @@ def rtl_points(folder):
             fields = dict(field.split("\2", 1) for field in found[1].split("\1") if field)
             name = pathlib.Path(fields["f"])
             if name.name == "cchip_chip_bins.sv" and fields["page"].startswith("v_user"):
-                bins[tuple(int(number) for number in re.findall(r"gen_\w+?\[(\d+)\]", fields["h"]))] += int(found[2])
+                bins[tuple(int(number) for number in re.findall(r"gen_(?:first|second)__BRA__(\d+)__KET__", fields["h"]))] += int(found[2])
             if ROOT / "rtl" not in name.parents:
                 continue
             kind = fields["page"].split("/")[0].removeprefix("v_")

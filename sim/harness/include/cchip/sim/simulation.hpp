@@ -122,6 +122,7 @@ class Simulation {
     set_reset(false);
     in_reset_ = false;
     clock_ = 0;
+    if (total_ == static_cast<std::uint64_t>(clocks)) forget_toggles(*context_);
   }
 
   /// One clock. \throws SimulationError or a class derived from it, with clock, seed and wave in the message
