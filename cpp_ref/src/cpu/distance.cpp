@@ -2,13 +2,15 @@
 #include <algorithm>
 #include <cchip/cpu/distance.hpp>
 #include <cchip/exact/posed_distances.hpp>
-#include <queue>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "axis_gap.hpp"
+#include "behind_plane.hpp"
 #include "dop_pairs.hpp"
+#include "exact/nearest_planes.hpp"
+#include "frame_gap.hpp"
 #include "tree_side.hpp"
 
 namespace cchip {
@@ -34,11 +36,11 @@ void check(const DistanceRequest& request) {
 class DistanceSearch {
  public:
   DistanceSearch(const CollisionQuery& query, const DistanceRequest& request)
-      : request_(request),
+      : query_(query),
+        request_(request),
         a_{query.a->mesh(), query.a->tree()},
         b_{query.b->mesh(), query.b->tree()},
-        volumes_(*query.a, *query.pose_a, *query.b, *query.pose_b),
-        along_(*query.a, *query.pose_a, *query.b, *query.pose_b),
+        frame_(*query.a, *query.pose_a, *query.b, *query.pose_b),
         distances_(*query.pose_a, *query.pose_b) {}
 
   /// \pre the objects share no point
@@ -54,6 +56,7 @@ class DistanceSearch {
     double gap;
     NodeRef a;
     NodeRef b;
+    bool is_leaf_pair() const { return a.is_leaf() && b.is_leaf(); }
     friend bool operator<(const Item& x, const Item& y) { return x.gap > y.gap; }  // the least on top
   };
   struct Faces {
@@ -72,86 +75,166 @@ class DistanceSearch {
   }
 
   void search() {
-    std::priority_queue<Item> queue;
-    queue.push({0, a_.tree.root(), b_.tree.root()});
+    if (!frame_.is_moderate()) volumes_.emplace(*query_.a, *query_.pose_a, *query_.b, *query_.pose_b);
+    std::vector<Item> queue = {{0, a_.tree.root(), b_.tree.root()}};
+    queue.reserve(256);
+    frame_.set_axis(frame_.middle_b(b_.tree.lines() + b_.tree.root().first(), b_.tree.root().count()) -
+                    frame_.middle_a(a_.tree.lines() + a_.tree.root().first(), a_.tree.root().count()));
     while (!queue.empty()) {
-      const Item item = queue.top();
-      queue.pop();
+      std::pop_heap(queue.begin(), queue.end());
+      Item item = queue.back();
+      queue.pop_back();
       if (is_pruned(item.gap)) break;  // and so are all the others
-      if (item.a.is_leaf() && item.b.is_leaf()) {
-        test_leaves(item.a, item.b);
-        continue;
-      }
-      ++counts_.steps;
-      counts_.box_tests += std::uint64_t{item.a.count()} * item.b.count();
-      std::array<Dop26, 4> own_b;
-      std::array<Dop26, 4> volumes_b;
-      std::array<Vec3d, 4> centres_b;
-      for (std::uint32_t k = 0; k < item.b.count(); ++k) {
-        own_b[k] = b_.volume(b_.tree.lines()[item.b.first() + k]);
-        volumes_b[k] = volumes_.volume_b(own_b[k]);
-        centres_b[k] = along_.centre_b(own_b[k]);
-      }
-      for (std::uint32_t i = item.a.first(); i < item.a.first() + item.a.count(); ++i) {
-        const Dop26 own_a = a_.volume(a_.tree.lines()[i]);
-        const Dop26 volume_a = volumes_.volume_a(own_a);
-        const Vec3d centre_a = along_.centre_a(own_a);
-        for (std::uint32_t k = 0; k < item.b.count(); ++k) {
-          double gap = std::max(item.gap, volumes_.gap(volume_a, volumes_b[k]));
-          gap = std::max(gap, along_(own_a, own_b[k], centres_b[k] - centre_a));
-          gap = std::max(gap, along_(own_a, own_b[k], axis_));
-          if (is_pruned(gap)) continue;
-          const std::uint32_t line_b = item.b.first() + k;
-          const bool leaf_a = a_.tree.lines()[i].ref().is_leaf();
-          const bool leaf_b = b_.tree.lines()[line_b].ref().is_leaf();
-          queue.push({gap, a_.below(i, leaf_b), b_.below(line_b, leaf_a)});
+      const bool is_behind = is_behind_planes(item);
+      if (all_behind_) break;
+      if (is_behind) continue;
+      // Down to a pair of leaves if none has bounded the distance yet, or while the gap hardly grows: between parallel
+      // faces all nodes are about as near, and the least gap alone would open them level by level.
+      while (!item.is_leaf_pair()) {
+        const std::size_t before = queue.size();
+        const double most = upper_ < infinity ? 1.25 * item.gap : infinity;
+        open(item, queue);
+        const auto first = queue.begin() + static_cast<std::ptrdiff_t>(before);
+        if (first != queue.end()) std::iter_swap(std::max_element(first, queue.end()), queue.end() - 1);
+        const bool deeper = first != queue.end() && queue.back().gap <= most;
+        if (deeper) {
+          item = queue.back();
+          queue.pop_back();
         }
+        for (std::size_t end = before + 1; end <= queue.size(); ++end) push(queue, end);
+        if (!deeper) break;
+      }
+      if (item.is_leaf_pair()) test_leaves(item.a, item.b);
+    }
+  }
+
+  /// True only if nothing below the item is nearer than the nearest faces so far. Of many pairs at the same distance,
+  /// as between parallel faces, the bounds in doubles leave each open; the planes through the nearest points do not.
+  bool is_behind_planes(const Item& item) {
+    if (upper_ == infinity) return false;
+    if (!(item.gap >= (1 - 0x1p-7) * upper_)) {
+      if (counts_.steps < next_look_) return false;
+      next_look_ = counts_.steps + 64;
+      if (!frame_.is_gap_nearly(upper_, a_, b_)) return false;
+    }
+    make_planes(found_[nearest_]);
+    return behind_a_->contains(item.a) && behind_b_->contains(item.b);
+  }
+
+  /// Those through the nearest points of these faces, which share no point.
+  void make_planes(const Faces& faces) {
+    if (planes_ && planes_of_ == std::array<std::uint32_t, 2>{faces.a, faces.b}) return;
+    ++counts_.open;
+    planes_of_ = {faces.a, faces.b};
+    planes_.emplace(distances_, a_.mesh.primitive(faces.a), b_.mesh.primitive(faces.b));
+    behind_a_.emplace(a_, planes_->a());
+    behind_b_.emplace(b_, planes_->b());
+    all_behind_ = behind_a_->contains(a_.tree.root()) && behind_b_->contains(b_.tree.root());
+  }
+
+  static void push(std::vector<Item>& queue, std::size_t end) {
+    std::push_heap(queue.begin(), queue.begin() + static_cast<std::ptrdiff_t>(end));
+  }
+
+  /// Appends the pairs of the nodes below that may be nearer than what is known.
+  void open(const Item& item, std::vector<Item>& queue) {
+    ++counts_.steps;
+    counts_.box_tests += std::uint64_t{item.a.count()} * item.b.count();
+    const bvh::SupportLine* const lines_a = a_.tree.lines() + item.a.first();
+    const bvh::SupportLine* const lines_b = b_.tree.lines() + item.b.first();
+    const FrameGap::Line line =
+        frame_.line(frame_.middle_b(lines_b, item.b.count()) - frame_.middle_a(lines_a, item.a.count()));
+    std::array<FrameGap::Reach, 4> reach_b;
+    std::array<double, 4> on_line_b;
+    std::array<Dop26, 4> volumes_b;
+    for (std::uint32_t k = 0; k < item.b.count(); ++k) {
+      reach_b[k] = frame_.reach_b(lines_b[k]);
+      on_line_b[k] = FrameGap::reach_b(line, lines_b[k]);
+      if (volumes_) volumes_b[k] = volumes_->volume_b(b_.volume(lines_b[k]));
+    }
+    // Lines are too coarse for an object that is much larger than its partner; leaves wait for the partner's.
+    if (item.b.count() == 1 && lines_b[0].ref().is_leaf()) reach_b[0] = reach_of_b(lines_b[0].ref());
+    for (std::uint32_t i = 0; i < item.a.count(); ++i) {
+      const bool leaf_a = lines_a[i].ref().is_leaf();
+      const FrameGap::Reach reach_a =
+          item.a.count() == 1 && leaf_a ? reach_of_a(lines_a[i].ref()) : frame_.reach_a(lines_a[i]);
+      const double on_line_a = FrameGap::reach_a(line, lines_a[i]);
+      Dop26 volume_a;
+      if (volumes_) volume_a = volumes_->volume_a(a_.volume(lines_a[i]));
+      for (std::uint32_t k = 0; k < item.b.count(); ++k) {
+        double gap = std::max(item.gap, frame_(reach_a, reach_b[k]));
+        gap = std::max(gap, FrameGap::gap(line, on_line_a, on_line_b[k]));
+        if (volumes_) gap = std::max(gap, volumes_->gap(volume_a, volumes_b[k]));
+        if (is_pruned(gap)) continue;
+        const bool leaf_b = lines_b[k].ref().is_leaf();
+        queue.push_back({gap, a_.below(item.a.first() + i, leaf_b), b_.below(item.b.first() + k, leaf_a)});
       }
     }
   }
 
+  FrameGap::Reach reach_of_a(NodeRef leaf) const {
+    FrameGap::Reach reach = frame_.reach_a(a_.mesh.primitive(a_.tree.faces()[leaf.first()]));
+    for (std::uint32_t i = 1; i < leaf.count(); ++i) {
+      reach = FrameGap::enclose(reach, frame_.reach_a(a_.mesh.primitive(a_.tree.faces()[leaf.first() + i])));
+    }
+    return reach;
+  }
+  FrameGap::Reach reach_of_b(NodeRef leaf) const {
+    FrameGap::Reach reach = frame_.reach_b(b_.mesh.primitive(b_.tree.faces()[leaf.first()]));
+    for (std::uint32_t i = 1; i < leaf.count(); ++i) {
+      reach = FrameGap::enclose(reach, frame_.reach_b(b_.mesh.primitive(b_.tree.faces()[leaf.first() + i])));
+    }
+    return reach;
+  }
+
   void test_leaves(NodeRef leaf_a, NodeRef leaf_b) {
-    for (std::uint32_t i = leaf_a.first(); i < leaf_a.first() + leaf_a.count(); ++i) {
-      for (std::uint32_t k = leaf_b.first(); k < leaf_b.first() + leaf_b.count(); ++k) {
+    for (std::uint32_t k = leaf_b.first(); k < leaf_b.first() + leaf_b.count(); ++k) {
+      const std::uint32_t face_b = b_.tree.faces()[k];
+      const Primitive b = b_.mesh.primitive(face_b);
+      FrameGap::Reach reach_b = frame_.reach_b(b);
+      for (std::uint32_t i = leaf_a.first(); i < leaf_a.first() + leaf_a.count(); ++i) {
         const std::uint32_t face_a = a_.tree.faces()[i];
-        const std::uint32_t face_b = b_.tree.faces()[k];
+        const Primitive a = a_.mesh.primitive(face_a);
+        if (is_pruned(frame_(frame_.reach_a(a), reach_b))) continue;
         ++counts_.pairs;
-        const DistanceBounds bounds = distances_.bounds(a_.mesh.primitive(face_a), b_.mesh.primitive(face_b));
+        const DistanceBounds bounds = distances_.bounds(a, b);
         if (is_pruned(bounds.lower)) continue;
         found_.push_back({bounds, face_a, face_b});
         if (!(bounds.upper < upper_)) continue;
         upper_ = bounds.upper;
-        axis_ = bounds.point_b - bounds.point_a;
+        nearest_ = found_.size() - 1;
+        next_look_ = counts_.steps + 4;
+        frame_.set_axis(bounds.point_b - bounds.point_a, &a);
+        reach_b = frame_.reach_b(b);
       }
     }
   }
 
-  DistanceBounds tight_bounds(const Faces& faces) {
-    ++counts_.open;
-    return distances_.tight_bounds(a_.mesh.primitive(faces.a), b_.mesh.primitive(faces.b));
-  }
-
   void answer(DistanceResult& result) {
     if (found_.empty()) return answer_above(result);
-    std::sort(found_.begin(), found_.end(), [](const Faces& x, const Faces& y) {
-      if (x.bounds.lower != y.bounds.lower) return x.bounds.lower < y.bounds.lower;
-      return x.a != y.a ? x.a < y.a : x.b < y.b;
-    });
-    Faces best = *std::min_element(found_.begin(), found_.end(),
-                                   [](const Faces& x, const Faces& y) { return x.bounds.upper < y.bounds.upper; });
-    double lower = std::min(pruned_, found_.front().bounds.lower);
+    Faces best = found_[nearest_];
+    double lower = pruned_;
+    for (const Faces& faces : found_) lower = std::min(lower, faces.bounds.lower);
     if (!(best.bounds.upper - lower <= request_.rel_error * best.bounds.upper)) {
-      best.bounds = tight_bounds(best);
+      std::sort(found_.begin(), found_.end(), [](const Faces& x, const Faces& y) {
+        if (x.bounds.lower != y.bounds.lower) return x.bounds.lower < y.bounds.lower;
+        return x.a != y.a ? x.a < y.a : x.b < y.b;
+      });
+      make_planes(best);
+      best.bounds = planes_->bounds();
       for (const Faces& faces : found_) {
         if (faces.bounds.lower >= best.bounds.lower) break;
         const Primitive a = a_.mesh.primitive(faces.a);
         const Primitive b = b_.mesh.primitive(faces.b);
+        if (planes_->a().contains(a) && planes_->b().contains(b)) continue;
         // Those between the same two doubles change nothing.
         const bool exact = best.bounds.lower == best.bounds.upper;
         const PosedDistances::Answer nearer =
             exact ? distances_.nearer(a, b, best.bounds.lower) : distances_.within(a, b, best.bounds.lower);
         counts_.open += nearer.open;
-        if (nearer.hit) best = {tight_bounds(faces), faces.a, faces.b};
+        if (!nearer.hit) continue;
+        make_planes(faces);
+        best = {planes_->bounds(), faces.a, faces.b};
       }
       lower = std::min(pruned_, best.bounds.lower);
     }
@@ -169,17 +252,24 @@ class DistanceSearch {
     result.upper = infinity;
   }
 
+  const CollisionQuery& query_;
   const DistanceRequest& request_;
   const TreeSide a_;
   const TreeSide b_;
-  const DopPairs volumes_;
-  const AxisGap along_;
+  FrameGap frame_;
+  std::optional<DopPairs> volumes_;  ///< where the numbers are too great or too small for the frame
   const PosedDistances distances_;
   CollisionCounts counts_;
-  Vec3d axis_ = Vec3d::Zero();  ///< between the nearest points so far
-  double upper_ = infinity;     ///< the least of a pair of faces so far
-  double pruned_ = infinity;    ///< the least gap of what was left out since a pair of faces is as near
+  double upper_ = infinity;   ///< the least of a pair of faces so far
+  double pruned_ = infinity;  ///< the least gap of what was left out since a pair of faces is as near
   std::vector<Faces> found_;
+  std::size_t nearest_ = 0;      ///< of these the one with the least upper bound
+  std::uint64_t next_look_ = 0;  ///< step at which the planes of the nearest faces so far may be tried
+  std::optional<exact::NearestPlanes> planes_;
+  bool all_behind_ = false;                      ///< nothing is nearer than the faces that planes_ is of
+  std::array<std::uint32_t, 2> planes_of_ = {};  ///< faces
+  std::optional<BehindPlane> behind_a_;
+  std::optional<BehindPlane> behind_b_;
 };
 
 /// Of objects that share a point: 0, and such a point.

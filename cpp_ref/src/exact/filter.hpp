@@ -25,6 +25,7 @@ class Filter {
   static bool gave_up() { return gave_up_; }
   static void reset() { gave_up_ = false; }
 
+  double value() const { return value_; }
   int sign() const {
     bool open = false;
     const int known = sign_if_known(*this, open);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "feature_pairs.hpp"
+#include "nearest_planes.hpp"
 #include "posed_filter.hpp"
 #include "scaled_points.hpp"
 
@@ -42,19 +43,30 @@ struct NearPoints {
   Vec3d a = Vec3d::Zero();
   Vec3d b = Vec3d::Zero();
   double square = infinity;
-  void offer(const Vec3d& p, const Vec3d& q) {
+  FeaturePair pair = {0, 0};  ///< on which they lie
+  void offer(const Vec3d& p, const Vec3d& q, std::size_t feature_a, std::size_t feature_b) {
     const double here = (p - q).squaredNorm();
     if (!(here < square)) return;
     square = here;
     a = p;
     b = q;
+    pair = {static_cast<std::uint8_t>(feature_a), static_cast<std::uint8_t>(feature_b)};
   }
 };
 
 double clamped(double fraction) { return fraction > 0 ? std::min(fraction, 1.0) : 0; }  // NaN becomes 0
 
+/// Number in exact::features of the edge between vertices `low` and `high`.
+std::size_t edge_number(std::size_t low, std::size_t high) { return 4 + high * (high - 1) / 2 + low; }
+
+/// The edge from vertex `low` to vertex `high`, or the end at which a point of it lies.
+std::size_t edge_or_end(double at, std::size_t low, std::size_t high) {
+  return at == 0 ? low : at == 1 ? high : edge_number(low, high);
+}
+
 /// The edges p + s u and q + t v.
-void offer_edges(const Vec3d& p, const Vec3d& u, const Vec3d& q, const Vec3d& v, NearPoints& best) {
+void offer_edges(const Vec3d& p, const Vec3d& u, std::array<std::size_t, 2> ends_a, const Vec3d& q, const Vec3d& v,
+                 std::array<std::size_t, 2> ends_b, NearPoints& best) {
   const Vec3d w = q - p;
   const double uu = u.squaredNorm();
   const double vv = v.squaredNorm();
@@ -65,7 +77,7 @@ void offer_edges(const Vec3d& p, const Vec3d& u, const Vec3d& q, const Vec3d& v,
   double s = determinant > 0 ? clamped((uw * vv - vw * uv) / determinant) : 0;
   const double t = clamped((s * uv - vw) / vv);
   s = clamped((t * uv + uw) / uu);
-  best.offer(p + s * u, q + t * v);
+  best.offer(p + s * u, q + t * v, edge_or_end(s, ends_a[0], ends_a[1]), edge_or_end(t, ends_b[0], ends_b[1]));
 }
 
 /// A point and the inside of a triangle. \returns whether the triangle's plane has one
@@ -88,7 +100,7 @@ NearPoints near_points(const Rounded& r) {
     for (std::size_t j = 0; j < i; ++j) {
       const Vec3d u = r.a[i] - r.a[j];
       for (std::size_t k = 1; k < r.count_b; ++k) {
-        for (std::size_t l = 0; l < k; ++l) offer_edges(r.a[j], u, r.b[l], r.b[k] - r.b[l], best);
+        for (std::size_t l = 0; l < k; ++l) offer_edges(r.a[j], u, {j, i}, r.b[l], r.b[k] - r.b[l], {l, k}, best);
       }
     }
   }
@@ -96,18 +108,18 @@ NearPoints near_points(const Rounded& r) {
     const exact::FeatureRange range = exact::features_of(3, count);
     for (std::size_t i = range.first; i < range.first + range.size; ++i) {
       const auto& at = exact::features[i].at;
-      visit(v[at[0]], v[at[1]], v[at[2]]);
+      visit(v[at[0]], v[at[1]], v[at[2]], i);
     }
   };
   Vec3d foot;
-  faces(r.count_b, r.b, [&](const Vec3d& u, const Vec3d& v, const Vec3d& w) {
+  faces(r.count_b, r.b, [&](const Vec3d& u, const Vec3d& v, const Vec3d& w, std::size_t face) {
     for (std::size_t i = 0; i < r.count_a; ++i) {
-      if (foot_in_face(r.a[i], u, v, w, foot)) best.offer(r.a[i], foot);
+      if (foot_in_face(r.a[i], u, v, w, foot)) best.offer(r.a[i], foot, i, face);
     }
   });
-  faces(r.count_a, r.a, [&](const Vec3d& u, const Vec3d& v, const Vec3d& w) {
+  faces(r.count_a, r.a, [&](const Vec3d& u, const Vec3d& v, const Vec3d& w, std::size_t face) {
     for (std::size_t k = 0; k < r.count_b; ++k) {
-      if (foot_in_face(r.b[k], u, v, w, foot)) best.offer(foot, r.b[k]);
+      if (foot_in_face(r.b[k], u, v, w, foot)) best.offer(foot, r.b[k], face, k);
     }
   });
   return best;
@@ -258,6 +270,8 @@ class PosedDistances::Pair {
 
   double lower() const { return lower_; }
   double upper() const { return upper_; }
+  /// Features on which the nearest points lie, up to rounding.
+  FeaturePair features() const { return near_.pair; }
   DistanceBounds bounds() const {
     const Vec3d origin = r_.base + poses_.pose_b_.translation();
     return {lower_, upper_, near_.a + origin, near_.b + origin};
@@ -342,24 +356,156 @@ DistanceBounds PosedDistances::tight_bounds(const Primitive& a, const Primitive&
     result.point_a = result.point_b = pair.point_in_common();
     return result;
   }
-  // Those that are not certainly farther apart than is known already.
-  const OpenPairs left = pair.open_pairs(pair.upper(), false, true);
-  const Pair::Integers exact = pair.integers(0);
+  return exact::NearestPlanes(*this, a, b).bounds();
+}
+
+namespace exact {
+namespace {
+
+/// A multiple, with a positive factor, of the vector from the nearest point of A's feature to that of B's.
+Vec<BigInt> between_features(const std::array<Vec<BigInt>, 4>& a, const std::array<Vec<BigInt>, 4>& b,
+                             FeaturePair pair) {
+  const Feature& f = features[pair.a];
+  const Feature& g = features[pair.b];
+  const Vec<BigInt> between = b[g.at[0]] - a[f.at[0]];
+  if (f.count == 1 && g.count == 1) return between;
+  if (f.count + g.count == 3) {  // what is left of it across the edge
+    const Vec<BigInt> edge = f.count == 2 ? a[f.at[1]] - a[f.at[0]] : b[g.at[1]] - b[g.at[0]];
+    const BigInt square = dot(edge, edge);
+    const BigInt along = dot(edge, between);
+    Vec<BigInt> across;
+    for (std::size_t k = 0; k < 3; ++k) across[k] = between[k] * square - edge[k] * along;
+    return across;
+  }
+  Vec<BigInt> normal = f.count == 3   ? cross(a[f.at[1]] - a[f.at[0]], a[f.at[2]] - a[f.at[0]])
+                       : g.count == 3 ? cross(b[g.at[1]] - b[g.at[0]], b[g.at[2]] - b[g.at[0]])
+                                      : cross(a[f.at[1]] - a[f.at[0]], b[g.at[1]] - b[g.at[0]]);
+  if (dot(normal, between).sign() < 0) {
+    for (BigInt& x : normal) x = -x;
+  }
+  return normal;
+}
+
+/// factor * the transpose of the linear part times n, in any unit.
+Vec<BigInt> in_frame(const Eigen::Matrix3d& linear, const Vec<BigInt>& n, int factor) {
+  int least = std::numeric_limits<int>::max();
+  for (const double entry : linear.reshaped()) {
+    if (entry != 0) least = std::min(least, Scaled(entry).exponent);
+  }
+  Vec<BigInt> m;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Scaled entry(linear(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
+      if (entry.mantissa != 0) m[k] += n[i] * BigInt(factor * entry.mantissa) << (entry.exponent - least);
+    }
+  }
+  return m;
+}
+
+/// x / 2^exponent, |x| at most that.
+Filter filter_of(const BigInt& x, int exponent) {
+  if (x == 0) return {};
+  const BigInt size = abs(x);
+  const int top = static_cast<int>(boost::multiprecision::msb(size));
+  const int drop = std::max(0, top - 63);
+  const auto bits = static_cast<std::uint64_t>(size >> drop);
+  const double value = std::ldexp(static_cast<double>(bits), drop - exponent);
+  constexpr int digits = std::numeric_limits<double>::digits;
+  const bool is_exact =
+      top - static_cast<int>(boost::multiprecision::lsb(size)) < digits && drop + 63 - exponent > -900;
+  return {x.sign() < 0 ? -value : value, is_exact ? 0 : value * 0x1p-51 + 0x1p-1070};
+}
+
+}  // namespace
+
+HalfSpace::HalfSpace(const Vec<BigInt>& normal, const Vec3d& through) : exact_(normal), through_(through) {
+  int exponent = 0;
+  for (const BigInt& x : normal) {
+    if (x != 0) exponent = std::max(exponent, static_cast<int>(boost::multiprecision::msb(abs(x))) + 1);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    normal_[k] = filter_of(normal[k], exponent);
+    rounded_[static_cast<Eigen::Index>(k)] = normal_[k].value();
+  }
+}
+
+bool HalfSpace::contains(const Vec3d& v) const {
+  if (v == through_) return true;
+  Filter height;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    if (rounded_[i] == 0 && exact_[k] == 0) continue;
+    height += normal_[k] * (Filter(v[i]) - Filter(through_[i]));
+  }
+  bool open = false;
+  const int sign = sign_if_known(height, open);
+  if (!open) return sign <= 0;
+  int least = std::numeric_limits<int>::max();
+  for (const double x : {v[0], v[1], v[2], through_[0], through_[1], through_[2]}) {
+    if (x != 0) least = std::min(least, Scaled(x).exponent);
+  }
+  const auto whole = [least](double x) {
+    const Scaled scaled(x);
+    return scaled.mantissa == 0 ? BigInt(0) : BigInt(scaled.mantissa) << (scaled.exponent - least);
+  };
+  BigInt exact = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    exact += exact_[k] * (whole(v[i]) - whole(through_[i]));
+  }
+  return exact.sign() <= 0;
+}
+
+bool HalfSpace::contains(const Primitive& p) const {
+  for (std::size_t i = 0; i < p.vertex_count(); ++i) {
+    if (!contains(p.v[i])) return false;
+  }
+  return true;
+}
+
+NearestPlanes::NearestPlanes(const PosedDistances& distances, const Primitive& a, const Primitive& b) {
+  const PosedDistances::Pair pair(distances, a, b);
+  bounds_ = pair.bounds();
+  const PosedDistances::Pair::Integers integers = pair.integers(0);
+  const auto make_planes = [&](FeaturePair features_of_both) {
+    const Vec<BigInt> normal = between_features(integers.a, integers.b, features_of_both);
+    a_ = HalfSpace(in_frame(distances.pose_a_.linear(), normal, 1), a.v[features[features_of_both.a].at[0]]);
+    b_ = HalfSpace(in_frame(distances.pose_b_.linear(), normal, -1), b.v[features[features_of_both.b].at[0]]);
+  };
+  const auto square_if_inside = [&](FeaturePair features_of_both, Fraction& square) {
+    const SquareOfPair<BigInt> s = square_of(integers.a, integers.b, features_of_both);
+    for (std::size_t k = 0; k < s.inside_count; ++k) {
+      if (s.inside[k].sign() <= 0) return false;
+    }
+    square = {s.over, s.under, integers.exponent};
+    return true;
+  };
+  // The features that doubles found are the nearest ones if the faces lie behind the planes.
   Fraction least;
-  least.exponent = exact.exponent;
+  if (square_if_inside(pair.features(), least)) {
+    make_planes(pair.features());
+    if (a_.contains(a) && b_.contains(b)) {
+      root_of(least, bounds_);
+      return;
+    }
+  }
+  // Otherwise all that are not certainly farther apart than is known already.
+  const OpenPairs left = pair.open_pairs(pair.upper(), false, true);
   bool found = false;
+  FeaturePair nearest = {0, 0};
   for (std::size_t i = 0; i < left.count; ++i) {
-    const exact::SquareOfPair<BigInt> s = exact::square_of(exact.a, exact.b, left.pair[i]);
-    bool inside = true;
-    for (std::size_t k = 0; k < s.inside_count; ++k) inside = inside && s.inside[k].sign() > 0;
-    if (!inside || (found && s.over * least.under >= least.over * s.under)) continue;
+    Fraction square;
+    if (!square_if_inside(left.pair[i], square)) continue;
+    if (found && square.over * least.under >= least.over * square.under) continue;
     found = true;
-    least.over = s.over;
-    least.under = s.under;
+    least = square;
+    nearest = left.pair[i];
   }
   if (!found) throw std::logic_error("distance: no pair of features is nearest; report this with both primitives");
-  root_of(least, result);
-  return result;
+  make_planes(nearest);
+  root_of(least, bounds_);
 }
+
+}  // namespace exact
 
 }  // namespace cchip

@@ -10,6 +10,10 @@
 
 namespace cchip {
 
+namespace exact {
+class NearestPlanes;
+}
+
 /// The distance of two closed primitives in the world, that of their nearest points, lies between `lower` and `upper`.
 struct DistanceBounds {
   double lower = 0;
@@ -49,6 +53,7 @@ class PosedDistances {
 
  private:
   class Pair;
+  friend class exact::NearestPlanes;
 
   Answer compare(const Primitive& a, const Primitive& b, double d, bool strictly) const;
 
