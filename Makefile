@@ -283,10 +283,15 @@ campaign-chip-swaps: $(RELEASE)/build.ninja ## batches of triangle and quad obje
 	for slots in 1 2; do $(CHIP_CAMPAIGN) resets --slots $$slots --resets 1000 || exit 1; done
 	$(CHIP_CAMPAIGN) curve
 
-picture: $(RELEASE)/build.ninja ## draw docs/pictures/demo.png: the demo's meshes, the faces that hit coloured
+PARTS := examples/meshes/bracket.obj examples/meshes/peg.stl
+picture: $(RELEASE)/build.ninja ## draw docs/pictures: demo.png, the faces that hit coloured; curve.png, where two parts cross; distance.png, their nearest points
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip
 	$(RELEASE)/bin/cchip demo --ply build/demo.ply
 	scripts/picture.py build/demo.ply docs/pictures/demo.png --demo
+	$(RELEASE)/bin/cchip collide $(PARTS) --pose 1.2,0.6,0.2,0,35,20 --ply build/curve.ply
+	scripts/picture.py build/curve.ply docs/pictures/curve.png --view 1.2 1.7 1.3
+	$(RELEASE)/bin/cchip distance $(PARTS) --pose 3,2.6,0.4,0,35,20 --ply build/distance.ply
+	scripts/picture.py build/distance.ply docs/pictures/distance.png --view 0.8 1.9 1.3
 
 TABLE1 := $(RELEASE)/bin/cchip_table1
 table1: $(RELEASE)/build.ninja ## Table 1 of the paper from a timed simulation, and the overhead of swaps against work per swap

@@ -27,7 +27,7 @@ def main():
     spec = importlib.util.spec_from_file_location("picture", script)
     picture = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(picture)
-    picture.WIDTH, picture.HEIGHT = 220, 150  # a quarter, which takes a sixteenth of the time
+    picture.WIDTH, picture.HEIGHT, picture.LINE = 220, 150, 0.75  # a quarter, which takes a sixteenth of the time
     failures = 0
 
     def check(name, good, seen):
