@@ -129,11 +129,6 @@ CHIP_PARAMETERS = {
 }
 
 
-# the chip with a quarter of the queries and of what they have in flight
-SMALL_CHIP = (("QUERIES", 4), ("PAIRS", 12), ("LEAVES", 4), ("LEAF_DEPTH", 16), ("CACHE_KB", 32), ("MISSES", 8), ("LOCKS", 1), ("QUEUE_DEPTH", 16),
-              ("LEAF_NUMBERS", 16))
-
-
 def rows():
     tri_tri = "cchip_primtest_tri_tri"
     table = [Row(name, f"cchip_primtest_{name}", families=True, shape=name.replace("_", "-"), placer=placer)
@@ -150,8 +145,8 @@ def rows():
     table += [Row(name.replace("cchip_", ""), name, parameters, shape="", seeds=3, placer="heap", block=True, synth=" -nowidelut")
               for name, parameters in CHIP_PARAMETERS.items()]
     # the whole chip: its bill by block, then flat; a third fewer multiplexers of LUTs without the device's wide ones
-    table += [Row(name, "cchip_chip", (("RM_ID", module), *sizes), shape="", seeds=3, block=True, synth=" -nowidelut", owners=CHIP_BLOCKS, floorplan=True)
-              for name, module, sizes in (("chip_tri", 1, ()), ("chip", 3, ()), ("chip_small", 1, SMALL_CHIP))]
+    table += [Row(name, "cchip_chip", (("RM_ID", module),), shape="", seeds=3, block=True, synth=" -nowidelut", owners=CHIP_BLOCKS, floorplan=True)
+              for name, module in (("chip_tri", 1), ("chip", 3))]
     return {row.name: row for row in table}
 
 
