@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <stdexcept>
@@ -34,6 +35,8 @@ inline std::vector<PythonAnswers> ask_python(const std::string& python, const st
                                              const std::vector<PosePair>& poses,
                                              const std::vector<TrueDistance>& right) {
   {
+    const std::filesystem::path folder = std::filesystem::path(queries).parent_path();
+    if (!folder.empty()) std::filesystem::create_directories(folder);
     std::ofstream file(queries);
     file << std::hexfloat;
     for (const Mesh* mesh : {&a, &b}) {

@@ -107,7 +107,7 @@ module cchip_slots #(
   localparam integer MOST_1 = SLOTS > 1 && SLOT1_RM_ID > MOST ? SLOT1_RM_ID : MOST;
   localparam integer MOST_2 = SLOTS > 2 && SLOT2_RM_ID > MOST_1 ? SLOT2_RM_ID : MOST_1;
   localparam integer MOST_3 = SLOTS > 3 && SLOT3_RM_ID > MOST_2 ? SLOT3_RM_ID : MOST_2;
-  localparam [SLOTS-1:0] EXCHANGED = {SLOTS{SWAPS[0]}};
+  wire [SLOTS-1:0] stopped, cut_off;  // by a swap
   wire [KINDS:1] unserved = SWAPS != 0 ? no_provider : {MOST_3 < 3, MOST_3 < 2, MOST_3 < 1};
 
   cchip_dispatcher #(
@@ -135,9 +135,9 @@ module cchip_slots #(
       .m_result_ready  (m_result_ready),
       .m_result_kind   (m_result_kind),
       .m_result_data   (m_result_data),
-      .stop            (stop & EXCHANGED),
+      .stop            (stopped),
       .quiet           (quiet),
-      .decouple        (decouple & EXCHANGED),
+      .decouple        (cut_off),
       .decoupled       (slots_decoupled),
       .outstanding     (slot_outstanding),
       .lost            (slot_lost),
@@ -152,6 +152,8 @@ module cchip_slots #(
   generate
     for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_slots
       wire [ID_W-1:0] module_id;
+      assign stopped[slot] = SWAPS != 0 && stop[slot];
+      assign cut_off[slot] = SWAPS != 0 && decouple[slot];
       // A slot that is decoupled for a swap has no pairs, and its reset is the controller's alone:
       // one that lasts over the end of a transfer would hide the new module's reset on
       // configuration, which has to begin once the module is whole
@@ -186,13 +188,13 @@ module cchip_slots #(
       ) u_slot (
           .clk           (clk),
           .rst           (slot_rst),
-          .decouple      (decouple[slot] & EXCHANGED[slot]),
+          .decouple      (cut_off[slot]),
           .decoupled     (region_decoupled[slot]),
-          .hold_reset    (hold_reset[slot] & EXCHANGED[slot]),
-          .roc_start     (roc_start[slot] & EXCHANGED[slot]),
+          .hold_reset    (SWAPS != 0 && hold_reset[slot]),
+          .roc_start     (SWAPS != 0 && roc_start[slot]),
           .roc_busy      (roc_busy[slot]),
           .region_rm_id  (region_rm_id[ID_W*slot+:ID_W]),
-          .cfg_valid     (cfg_valid & EXCHANGED[slot]),
+          .cfg_valid     (SWAPS != 0 && cfg_valid),
           .cfg_data      (cfg_data),
           .s_vertex_valid(vertex_valid[slot]),
           .s_vertex_data (vertex_data),
