@@ -86,13 +86,14 @@ def exclusions():
     return [(name, kind, re.compile(pattern), reason) for name, kind, pattern, reason in rows]
 
 
-def excluded(point, rules, texts):
+def excluding(point, rules, texts):
+    """The numbers of the rules that leave a point out."""
     name, line, _, kind, what = point
     if name not in texts:
         texts[name] = (ROOT / name).read_text().splitlines()
     source = texts[name][line - 1]
-    return any(re.fullmatch(file, name.split("/")[-1]) and kind == of and pattern.search(what if kind == "toggle" else source)
-               for file, of, pattern, _ in rules)
+    return {number for number, (file, of, pattern, _) in enumerate(rules)
+            if re.fullmatch(file, name.split("/")[-1]) and kind == of and pattern.search(what if kind == "toggle" else source)}
 
 
 def rtl_table(points):
@@ -101,10 +102,9 @@ def rtl_table(points):
     missing, unused = [], set(range(len(rules)))
     for point, count in sorted(points.items()):
         name, kind = point[0], point[3]
-        if excluded(point, rules, texts):
-            for number, rule in enumerate(rules):
-                if excluded(point, [rule], texts):
-                    unused.discard(number)
+        found = excluding(point, rules, texts)
+        if found:
+            unused -= found
             for room in (name.split("/")[1], "all"):
                 rows[room]["excluded"] += 1
             continue
