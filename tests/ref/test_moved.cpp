@@ -45,6 +45,59 @@ TEST_CASE("moved: the nodes of a tree come back from the object, and a refit res
   }
 }
 
+TEST_CASE("support tree: a leaf holds the vertices of its faces, two triangles with an edge in common four",
+          "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  std::array<std::size_t, 4> seen = {};  // triangle, two triangles, fan, quad
+  std::vector<Mesh> meshes = assorted_meshes(random);
+  for (Mesh& mesh : bodies(random)) meshes.push_back(std::move(mesh));
+  for (const Mesh& mesh : meshes) {
+    INFO(mesh.name);
+    const bvh::SupportTree tree(mesh, bvh::build_tree(mesh));
+    std::vector<std::uint32_t> faces;
+    std::vector<bvh::NodeRef> nodes = {tree.root()};
+    while (!nodes.empty()) {
+      const bvh::NodeRef node = nodes.back();
+      nodes.pop_back();
+      if (!node.is_leaf()) {
+        for (std::uint32_t i = 0; i < node.count(); ++i) nodes.push_back(tree.lines()[node.first() + i].ref());
+        continue;
+      }
+      REQUIRE(node.first() % 2 == 0);
+      ++seen[node.is_quad() ? 3 : node.is_fan() ? 2 : node.count() - 1];
+      const std::size_t stride = 4 * node.vertex_sets();
+      for (std::uint32_t i = 0; i < node.count(); ++i) {
+        const std::uint32_t face = tree.faces()[node.first() + i];
+        faces.push_back(face);
+        const Primitive p = mesh.primitive(face);
+        std::vector<std::array<float, 3>> wanted;
+        for (std::size_t v = 0; v < p.vertex_count(); ++v) {
+          const Vec3d at = (p.v[v] - tree.centre()) / tree.unit();
+          wanted.push_back({static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z())});
+        }
+        std::vector<std::array<float, 3>> held;
+        const std::vector<std::size_t> lanes = node.is_fan() ? std::vector<std::size_t>{0, 1U + i, 2U + i}
+                                               : node.is_quad()
+                                                   ? std::vector<std::size_t>{0, 1, 2, 3}
+                                                   : std::vector<std::size_t>{4U * i, 4U * i + 1, 4U * i + 2};
+        for (const std::size_t lane : lanes) {
+          const float* const v = tree.vertices(node.first()) + lane;
+          held.push_back({v[0], v[stride], v[2 * stride]});
+        }
+        if (!node.is_quad()) {  // the order of a triangle's vertices means nothing
+          std::sort(wanted.begin(), wanted.end());
+          std::sort(held.begin(), held.end());
+        }
+        REQUIRE(held == wanted);
+      }
+    }
+    std::sort(faces.begin(), faces.end());
+    REQUIRE(faces.size() == mesh.faces.size());
+    for (std::uint32_t i = 0; i < faces.size(); ++i) REQUIRE(faces[i] == i);
+  }
+  for (const std::size_t count : seen) CHECK(count > 0);
+}
+
 TEST_CASE("moved: an object with other vertices answers like brute force, and so does its image", "[ref][collide]") {
   std::mt19937_64 random(sim::seed_from_environment());
   const CollisionRequest all = {CollisionRequest::Contacts::all};

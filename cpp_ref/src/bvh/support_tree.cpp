@@ -85,10 +85,22 @@ class LineMaker {
   std::array<double, support_words> step_ = {};
 };
 
-NodeRef ref_of(const TreeNode& node) {
-  // The root has no line, so the children of node n begin at the line one before their number.
-  if (node.kind == NodeKind::inner) return NodeRef::inner(node.first - 1, node.count);
-  return NodeRef::leaf(node.first, node.count, node.kind == NodeKind::quad);
+/// Two triangles as the corners of a fan: three of the first one, then the one that only the second one has.
+/// \returns false if no edge of one is an edge of the other
+bool make_fan(const Primitive& one, const Primitive& two, std::array<Vec3d, 4>& corners) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Edge i, i + 1 against edge k, k + 1 in either direction: a fan needs no orientation.
+      const Vec3d& from = one.v[i];
+      const Vec3d& to = one.v[(i + 1) % 3];
+      const Vec3d& p = two.v[k];
+      const Vec3d& q = two.v[(k + 1) % 3];
+      if (!((from == q && to == p) || (from == p && to == q))) continue;
+      corners = {to, one.v[(i + 2) % 3], from, two.v[(k + 2) % 3]};
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -108,13 +120,13 @@ void* allocate_bytes(std::size_t bytes) {
 
 void free_bytes(void* memory) noexcept { ::operator delete (memory, std::align_val_t{cache_line}); }
 
-SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : depth_(tree.depth), faces_(tree.faces) {
+SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : depth_(tree.depth) {
   const Dop26& all = tree.nodes.front().dop;
   for (std::size_t k = 0; k < 3; ++k) {
     centre_[static_cast<Eigen::Index>(k)] = all.least[k] / 2 + all.greatest[k] / 2;
   }
   double radius = 0;
-  for (const std::uint32_t face : faces_) {
+  for (const std::uint32_t face : tree.faces) {
     const Primitive p = mesh.primitive(face);
     for (std::size_t i = 0; i < p.vertex_count(); ++i) {
       const Vec3d v = p.v[i] - centre_;
@@ -123,53 +135,93 @@ SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : depth_(tree.depth
   }
   unit_ = std::max(radius * (1 + 0x1p-40) / support_most, least_unit);  // up: hypot() and the difference are rounded
 
-  root_ = ref_of(tree.nodes.front());
+  const std::vector<NodeRef> refs = place_leaves(mesh, tree);
+  root_ = refs.front();
   size_ = tree.nodes.size() - 1;
   lines_.reserve(size_ + 4);
   const LineMaker maker(centre_, unit_);
-  for (std::size_t n = 1; n < tree.nodes.size(); ++n) {
-    lines_.push_back(maker.line(tree.nodes[n].dop, ref_of(tree.nodes[n])));
-  }
+  for (std::size_t n = 1; n < tree.nodes.size(); ++n) lines_.push_back(maker.line(tree.nodes[n].dop, refs[n]));
   lines_.push_back(maker.line(all, root_));
   whole_words_ = lines_.back().word;
   extent_ = centre_.cwiseAbs().maxCoeff() + support_most * unit_;
   for (std::size_t k = 0; k < 3; ++k) half_[k] = unit_ * std::max(whole_words_[2 * k], whole_words_[2 * k + 1]);
   lines_.resize(size_ + 4);
+}
 
-  vertices_.resize(12 * faces_.size() + 12);  // two primitives can always be read
-  for (const TreeNode& node : tree.nodes) {
-    if (node.kind == NodeKind::inner) continue;
-    float* const to = vertices_.data() + std::size_t{12} * node.first;
-    for (std::size_t i = 0; i < node.count; ++i) {
-      const Primitive p = mesh.primitive(faces_[node.first + i]);
-      for (std::size_t v = 0; v < 4; ++v) {
-        const Vec3d at = (p.v[v < p.vertex_count() ? v : 0] - centre_) / unit_;
-        for (std::size_t k = 0; k < 3; ++k) {
-          to[4 * (k * node.count + i) + v] = static_cast<float>(at[static_cast<Eigen::Index>(k)]);
+std::vector<NodeRef> SupportTree::place_leaves(const Mesh& mesh, const Tree& tree) {
+  std::vector<NodeRef> refs(tree.nodes.size());
+  std::vector<std::uint32_t> leaf_at(tree.faces.size());  // number of the node whose primitives begin there
+  for (std::uint32_t n = 0; n < tree.nodes.size(); ++n) {
+    const TreeNode& node = tree.nodes[n];
+    if (node.kind == NodeKind::inner) {
+      // The root has no line, so the children of a node begin at the line one before their number.
+      refs[n] = NodeRef::inner(node.first - 1, node.count);
+    } else {
+      leaf_at[node.first] = n;
+    }
+  }
+  faces_.reserve(tree.faces.size());
+  vertices_.reserve(6 * tree.faces.size());
+  const auto add_vertices = [&](const std::array<std::array<Vec3d, 4>, 2>& corners, std::size_t count) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      for (std::size_t i = 0; i < count; ++i) {
+        for (const Vec3d& v : corners[i]) {
+          vertices_.push_back(static_cast<float>((v[axis] - centre_[axis]) / unit_));
         }
       }
     }
+  };
+  for (std::size_t at = 0; at < tree.faces.size();) {
+    const std::uint32_t n = leaf_at[at];
+    const std::size_t count = tree.nodes[n].count;
+    const auto first = static_cast<std::uint32_t>(faces_.size());
+    std::array<std::array<Vec3d, 4>, 2> corners;
+    std::array<Primitive, 2> primitives;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Primitive p = primitives[i] = mesh.primitive(tree.faces[at + i]);
+      for (std::size_t v = 0; v < 4; ++v) corners[i][v] = p.v[v < p.vertex_count() ? v : 0];
+      faces_.push_back(tree.faces[at + i]);
+    }
+    const bool fan = count == 2 && make_fan(primitives[0], primitives[1], corners[0]);
+    const std::size_t sets = fan ? 1 : count;
+    add_vertices(corners, sets);
+    faces_.resize(first + 2 * sets, faces_.back());
+    refs[n] = NodeRef::leaf(first, static_cast<std::uint32_t>(count), fan || tree.nodes[n].kind == NodeKind::quad);
+    at += count;
   }
+  vertices_.resize(vertices_.size() + 24);  // two primitives can always be read
+  vertices_.shrink_to_fit();
+  faces_.shrink_to_fit();
+  return refs;
 }
 
 Tree SupportTree::topology() const {
   Tree tree;
-  tree.faces = faces_;
   tree.depth = depth_;
   tree.nodes.resize(size_ + 1);
-  const auto node_of = [](NodeRef ref) {
-    TreeNode node;
+  const auto ref_of = [this](std::size_t n) { return n == 0 ? root_ : lines_[n - 1].ref(); };
+  std::vector<std::uint8_t> used(faces_.size());  // places that hold a primitive of their own
+  for (std::size_t n = 0; n <= size_; ++n) {
+    const NodeRef ref = ref_of(n);
+    if (ref.is_leaf()) std::fill_n(used.begin() + ref.first(), ref.count(), std::uint8_t{1});
+  }
+  std::vector<std::uint32_t> number(faces_.size());  // of the primitive in a place, among those of the tree
+  for (std::size_t place = 0; place < faces_.size(); ++place) {
+    number[place] = static_cast<std::uint32_t>(tree.faces.size());
+    if (used[place] != 0) tree.faces.push_back(faces_[place]);
+  }
+  for (std::size_t n = 0; n <= size_; ++n) {
+    const NodeRef ref = ref_of(n);
+    TreeNode& node = tree.nodes[n];
     node.count = static_cast<std::uint8_t>(ref.count());
-    node.first = ref.first();
     if (ref.is_leaf()) {
+      node.first = number[ref.first()];
       node.kind = ref.is_quad() ? NodeKind::quad : ref.count() == 2 ? NodeKind::two_triangles : NodeKind::triangle;
     } else {
-      node.first += 1;  // see ref_of()
+      node.first = ref.first() + 1;  // see place_leaves()
     }
-    return node;
-  };
-  tree.nodes[0] = node_of(root_);
-  for (std::size_t n = 1; n < tree.nodes.size(); ++n) tree.nodes[n] = node_of(lines_[n - 1].ref());
+  }
   return tree;
 }
 

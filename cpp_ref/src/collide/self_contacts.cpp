@@ -485,7 +485,8 @@ class SelfSearch {
   void relate_all_parts() {
     if (mesh_.file_face.empty()) return;
     std::vector<std::uint32_t> place(mesh_.faces.size());  // in the tree
-    for (std::uint32_t p = 0; p < place.size(); ++p) place[tree_.faces()[p]] = p;
+    // Places of a leaf that it does not need repeat a face with equal numbers.
+    for (std::uint32_t p = 0; p < numbers_.size(); ++p) place[tree_.faces()[p]] = p;
     for (auto& [faces, relation] : found_) {
       const std::vector<std::uint32_t> others = object_.parts(faces.second);
       for (const std::uint32_t i : object_.parts(faces.first)) {

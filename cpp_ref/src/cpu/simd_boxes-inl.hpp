@@ -203,7 +203,7 @@ HWY_INLINE void planes_of_lines(const SupportLine* lines, WideNode& node) {
 /// Planes of a leaf from its vertices: finer than its line, which matters if the moved object is much smaller.
 HWY_INLINE void planes_of_leaf(const SupportTree& tree, NodeRef leaf, const Margins& margins, WideNode& node) {
   const float* const v = tree.vertices(leaf.first());
-  const std::size_t stride = 4 * leaf.count();
+  const std::size_t stride = 4 * leaf.vertex_sets();
   // Each term is off by 3 ulp of a coordinate, their sum by 2 more; normalised, so |x| + |y| + |z| <= sqrt(3) radius.
   const float error = static_cast<float>(margins.wide) * 12 * ulp * radius;
   for (std::size_t w = 0; w < words; ++w) {

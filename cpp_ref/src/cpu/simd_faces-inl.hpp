@@ -49,14 +49,30 @@ HWY_INLINE void finish_side(LeafSide& side, float error) {
   }
 }
 
-HWY_INLINE void load_moved(const SupportTree& tree, NodeRef leaf, const Placement& place, LeafSide& side) {
+/// Calls `store(at, x, y, z)` with the vertices of a leaf, for its lanes from `at` on; behind one primitive follows
+/// anything.
+template <class Store>
+HWY_INLINE void load_leaf(const SupportTree& tree, NodeRef leaf, const Store& store) {
   const D8F d;
   const float* const v = tree.vertices(leaf.first());
+  if (HWY_LIKELY(leaf.is_fan())) {
+    for (std::size_t at = 0; at < 8; at += lanes8) {
+      const auto order = hn::SetTableIndices(d, fan_corners.data() + at);
+      const auto take = [&](std::size_t k) { return hn::TableLookupLanes(hn::LoadDup128(d, v + 4 * k), order); };
+      store(at, take(0), take(1), take(2));
+    }
+    return;
+  }
   const std::size_t stride = 4 * leaf.count();
   for (std::size_t at = 0; at < 8; at += lanes8) {
-    const auto x = hn::LoadU(d, v + at);
-    const auto y = hn::LoadU(d, v + stride + at);
-    const auto z = hn::LoadU(d, v + 2 * stride + at);
+    store(at, hn::LoadU(d, v + at), hn::LoadU(d, v + stride + at), hn::LoadU(d, v + 2 * stride + at));
+  }
+}
+
+HWY_INLINE void load_moved(const SupportTree& tree, NodeRef leaf, const Placement& place, LeafSide& side) {
+  using V = hn::Vec<D8F>;
+  load_leaf(tree, leaf, [&](std::size_t at, V x, V y, V z) {
+    const D8F d;
     const auto row = [&](std::size_t i) {
       return hn::MulAdd(x, hn::Set(d, place.m[3 * i]),
                         hn::MulAdd(y, hn::Set(d, place.m[3 * i + 1]),
@@ -65,19 +81,18 @@ HWY_INLINE void load_moved(const SupportTree& tree, NodeRef leaf, const Placemen
     hn::Store(row(0), d, side.x.data() + at);
     hn::Store(row(1), d, side.y.data() + at);
     hn::Store(row(2), d, side.z.data() + at);
-  }
+  });
   finish_side(side, place.moved_error);
 }
 
 HWY_INLINE void load_fixed(const SupportTree& tree, NodeRef leaf, const Placement& place, LeafSide& side) {
-  const D8F d;
-  const float* const v = tree.vertices(leaf.first());
-  const std::size_t stride = 4 * leaf.count();
-  for (std::size_t at = 0; at < 8; at += lanes8) {
-    hn::Store(hn::LoadU(d, v + at), d, side.x.data() + at);
-    hn::Store(hn::LoadU(d, v + stride + at), d, side.y.data() + at);
-    hn::Store(hn::LoadU(d, v + 2 * stride + at), d, side.z.data() + at);
-  }
+  using V = hn::Vec<D8F>;
+  load_leaf(tree, leaf, [&](std::size_t at, V x, V y, V z) {
+    const D8F d;
+    hn::Store(x, d, side.x.data() + at);
+    hn::Store(y, d, side.y.data() + at);
+    hn::Store(z, d, side.z.data() + at);
+  });
   finish_side(side, place.fixed_error);
 }
 
@@ -274,10 +289,9 @@ class AxisTest {
 /// The two triangles 0 1 2 and 0 2 3 of a quad, as a leaf of their own.
 HWY_INLINE void halve(const LeafSide& quads, std::size_t at, float error, LeafSide& halves) {
   const D8F d;
-  alignas(32) static constexpr std::array<std::int32_t, 8> vertex = {0, 1, 2, 0, 0, 2, 3, 0};
   const auto take = [&](const std::array<float, 8>& from, std::array<float, 8>& to) {
     for (std::size_t k = 0; k < 8; k += lanes8) {
-      const auto order = hn::SetTableIndices(d, vertex.data() + k);
+      const auto order = hn::SetTableIndices(d, fan_corners.data() + k);
       hn::Store(hn::TableLookupLanes(hn::LoadDup128(d, from.data() + at), order), d, to.data() + k);
     }
   };

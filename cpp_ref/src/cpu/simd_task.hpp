@@ -96,6 +96,9 @@ struct LeafSide {
   alignas(32) std::array<float, 8> size;        ///< what its error grows with, in lane 4 i
 };
 
+/// Vertices of the two triangles 0 1 2 and 0 2 3 of a quad or a fan, each with its first one again.
+alignas(32) inline constexpr std::array<std::int32_t, 8> fan_corners = {0, 1, 2, 0, 0, 2, 3, 0};
+
 /// Bounds on rounding are strict, so that two primitives in certain contact cross.
 enum class Verdict { apart, cross, open };
 
@@ -192,11 +195,14 @@ inline float reach_along(const SupportLine& line, const std::array<float, 3>& m)
 /// volumes leave much room around a face that is askew, in which all of a small object may lie.
 inline bool beside_faces(const Task& task, const SupportLine& node, NodeRef leaf) {
   const float* const v = task.fixed->vertices(leaf.first());
-  const std::size_t stride = 4 * leaf.count();
+  const std::size_t stride = 4 * leaf.vertex_sets();
   const Placement& place = task.place;
-  for (std::size_t at = 0; at < stride; at += 4) {
+  for (std::size_t k = 0; k < leaf.count(); ++k) {
     Corners face;
-    for (std::size_t i = 0; i < 4; ++i) face.v[i] = {v[at + i], v[stride + at + i], v[2 * stride + at + i]};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto at = static_cast<std::size_t>(leaf.is_fan() ? fan_corners[4 * k + i] : 4 * k + i);
+      face.v[i] = {v[at], v[stride + at], v[2 * stride + at]};
+    }
     // Any axis is valid, so it needs no error bound.
     const std::array<float, 3> axis = cross_product(difference(face.v[2], face.v[0]), difference(face.v[3], face.v[1]));
     const auto along = [&axis](const std::array<float, 3>& p) {

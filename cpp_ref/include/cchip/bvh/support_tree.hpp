@@ -19,15 +19,20 @@ class NodeRef {
   NodeRef() = default;
   /// An inner node: its children are lines first..first + count - 1.
   static NodeRef inner(std::uint32_t first, std::uint32_t count) { return NodeRef(first << 5U | count << 1U); }
-  /// A leaf: its primitives are first..first + count - 1.
-  static NodeRef leaf(std::uint32_t first, std::uint32_t count, bool quad) {
-    return NodeRef(first << 5U | (quad ? 16U : 0U) | count << 1U | 1U);
+  /// A leaf of one or two primitives, in the places first..first + count - 1.
+  /// \param four_corners a quad, or two triangles that have an edge in common
+  static NodeRef leaf(std::uint32_t first, std::uint32_t count, bool four_corners) {
+    return NodeRef(first << 5U | (four_corners ? 16U : 0U) | count << 1U | 1U);
   }
   static NodeRef from_bits(std::uint32_t bits) { return NodeRef(bits); }
   bool is_leaf() const { return (bits_ & 1U) != 0; }
-  bool is_quad() const { return (bits_ & 16U) != 0; }
+  bool is_quad() const { return (bits_ & 0x1FU) == 0x13U; }
+  /// Two triangles with an edge in common, a fan: vertices 0 1 2 and 0 2 3 of four.
+  bool is_fan() const { return (bits_ & 0x1FU) == 0x15U; }
   std::uint32_t first() const { return bits_ >> 5U; }
   std::uint32_t count() const { return bits_ >> 1U & 7U; }
+  /// Of a leaf: sets of four vertices that it has.
+  std::uint32_t vertex_sets() const { return is_fan() ? 1 : count(); }
   std::uint32_t bits() const { return bits_; }
 
  private:
@@ -120,13 +125,19 @@ class SupportTree {
   /// Lines below the root. That of whole() follows, and three that nothing refers to, so that four can always be read.
   std::size_t size() const { return size_; }
   const SupportLine* lines() const { return lines_.data(); }
-  /// Number in the mesh of each primitive.
+  /// Number in the mesh of the primitive in each place. A leaf begins at an even place and has two of them, or four if
+  /// it is of two triangles that are no fan; places that it does not need repeat its last primitive.
   const std::vector<std::uint32_t>& faces() const { return faces_; }
-  /// Vertices of a leaf of n primitives from `first` on: x of the first one's four vertices, of the second one's, then
-  /// y, then z; (position - centre) / unit, rounded to nearest. Vertex 3 of a triangle is vertex 0.
-  const float* vertices(std::uint32_t first) const { return vertices_.data() + std::size_t{12} * first; }
+  /// Vertices of the leaf that begins at place `first`: x of the four vertices of its first primitive (of the fan), of
+  /// the second one, then y, then z; (position - centre) / unit, rounded to nearest. Vertex 3 of a triangle is vertex
+  /// 0.
+  const float* vertices(std::uint32_t first) const { return vertices_.data() + std::size_t{6} * first; }
 
  private:
+  /// Fills faces and vertices.
+  /// \returns what each node refers to
+  std::vector<NodeRef> place_leaves(const Mesh& mesh, const Tree& tree);
+
   Vec3d centre_;
   double unit_;
   double extent_;
