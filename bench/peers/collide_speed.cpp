@@ -30,6 +30,16 @@ constexpr double assumed_native_gain = 2.3;
 constexpr const char* table_classes[] = {"touch",     "near",     "deep",     "far", "graze",
                                          "touch all", "deep all", "coherent", "lone"};
 
+/// Paths by the length of their steps, times that of "coherent".
+struct Steps {
+  const char* name;
+  double step;
+  const char* about;  ///< turn and move
+};
+constexpr Steps path_steps[] = {{"coherent / 10", 0.1, "0.05 degrees, 0.0001 of the size"},
+                                {"coherent", 1, "0.5 degrees, 0.001"},
+                                {"coherent x 10", 10, "5 degrees, 0.01"}};
+
 bool is_flush(const std::string& class_name) { return class_name.rfind("flush", 0) == 0; }
 
 bool is_fcl(const std::string& variant) { return variant.rfind("FCL", 0) == 0; }
@@ -126,6 +136,7 @@ class Benchmark {
     print_targets();
     print_libraries();
     print_relation();
+    print_hints();
     print_flush();
     print_objects();
     return summary();
@@ -194,15 +205,18 @@ class Benchmark {
       };
       run_class(bodies, std::string(name_of(c)) + " all", all_contacts, poses, 4, false);
     }
-    const auto paths = [&](int) {
-      std::vector<PosePair> poses;
-      while (poses.size() < options_.poses) {
-        const std::vector<PosePair> more = maker.path(std::min<std::size_t>(100, options_.poses - poses.size()));
-        poses.insert(poses.end(), more.begin(), more.end());
-      }
-      return poses;
-    };
-    run_class(bodies, "coherent", CollisionRequest{}, paths, 8, false);
+    for (const Steps& steps : path_steps) {
+      const auto paths = [&](int) {
+        std::vector<PosePair> poses;
+        while (poses.size() < options_.poses) {
+          const std::size_t count = std::min<std::size_t>(100, options_.poses - poses.size());
+          const std::vector<PosePair> more = maker.path(count, steps.step);
+          poses.insert(poses.end(), more.begin(), more.end());
+        }
+        return poses;
+      };
+      run_class(bodies, steps.name, CollisionRequest{}, paths, 8, false);
+    }
     run_lone(bodies, maker, approaches);
   }
 
@@ -212,7 +226,7 @@ class Benchmark {
     const bool all = request.contacts == CollisionRequest::Contacts::all;
     std::vector<Variant> result;
     answers.clear();
-    answers.reserve(2 * targets_.size() + 2 + peers_.size());  // the variants refer to its elements
+    answers.reserve(2 * targets_.size() + 3 + peers_.size());  // the variants refer to its elements
     CollisionRequest telling = request;
     telling.relation = true;
     const auto ask = [&](const std::string& name, Clock clock, Device& device, bool batch,
@@ -257,6 +271,16 @@ class Benchmark {
     };
     ours("single", Clock::cpu, best(), false);
     theirs(peers_.front());
+    if (!all) {
+      Answers& mine = answers.emplace_back(poses.size());
+      result.push_back({"hint", Clock::cpu, [&, request](std::size_t first, std::size_t count) {
+                          result_.contacts.clear();
+                          for (std::size_t i = first; i < first + count; ++i) {
+                            best().collide({&bodies.a, &poses[i].a, &bodies.b, &poses[i].b, result_}, request, result_);
+                            mine.take(i, result_);
+                          }
+                        }});
+    }
     ask("relation", Clock::cpu, best(), false, telling);
     ours("batch", Clock::cpu, best(), true);
     for (std::size_t i = 1; i < peers_.size(); ++i) theirs(peers_[i]);
@@ -355,6 +379,7 @@ class Benchmark {
       differ_[class_name][name] += differ.at(name);
     }
     queries_[class_name] += queries;
+    hits_[class_name] += hits;
     if (is_flush(class_name)) flush_.push_back({meshes, class_name, queries, differ.at("FCL Debian"), 0, seconds});
     const double reference = native_seconds(seconds);
     const bool boolean = class_name == "touch" || class_name == "near" || class_name == "deep";
@@ -653,6 +678,21 @@ class Benchmark {
     }
   }
 
+  /// Queries in a row that take the contact of the one before as their hint.
+  void print_hints() {
+    fmt::print(
+        "\nhint: the contact of the query before, on paths; times FCL built natively, geometric means of the meshes\n"
+        "{:<16}{:<38}{:>8}{:>8}{:>8}\n",
+        "class", "most turn and move of a step", "hits", "single", "hint");
+    for (const Steps& steps : path_steps) {
+      auto& means = means_[steps.name];
+      const double queries = static_cast<double>(std::max<std::size_t>(1, queries_[steps.name]));
+      fmt::print("{:<16}{:<38}{:>7.0f}%{:>8.1f}{:>8.1f}\n", steps.name, steps.about,
+                 100 * static_cast<double>(hits_[steps.name]) / queries, means["single"].value(),
+                 means["hint"].value());
+    }
+  }
+
   int summary() {
     if (!options_.csv.empty()) {
       std::filesystem::create_directories(std::filesystem::path(options_.csv).parent_path());
@@ -692,6 +732,7 @@ class Benchmark {
   std::map<std::string, std::map<std::string, GeometricMean>> means_;  ///< class, variant
   std::map<std::string, std::map<std::string, std::size_t>> differ_;   ///< class, variant
   std::map<std::string, std::size_t> queries_;                         ///< class
+  std::map<std::string, std::size_t> hits_;                            ///< class
   GeometricMean native_gain_;
   std::size_t compared_ = 0;
   std::size_t fcl_errs_ = 0;

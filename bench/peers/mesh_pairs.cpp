@@ -265,16 +265,16 @@ PosePair PoseMaker::pose(const Approach& approach, PoseClass pose_class) {
   return approach.at(approach.distance + (uniform(0, 1) < 0.5 ? -off : off));
 }
 
-std::vector<PosePair> PoseMaker::path(std::size_t count) {
+std::vector<PosePair> PoseMaker::path(std::size_t count, double step) {
   const Approach start = approach();
   const Vec3d contact = start.distance * start.direction;
   Vec3d place = contact;
   std::vector<PosePair> poses;
   Pose turn = start.pose_b;
-  const double half_degree = 0.5 * 3.14159265358979 / 180;
+  const double most_turn = step * 0.5 * 3.14159265358979 / 180;
   while (poses.size() < count) {
-    place += (size_ * 1e-3) * direction() + 0.01 * (contact - place);  // wanders, but not away
-    turn.linear() = (Eigen::AngleAxisd(uniform(0, half_degree), direction()) * Eigen::Quaterniond(turn.linear()))
+    place += (step * size_ * 1e-3) * direction() + 0.01 * (contact - place);  // wanders, but not away
+    turn.linear() = (Eigen::AngleAxisd(uniform(0, most_turn), direction()) * Eigen::Quaterniond(turn.linear()))
                         .normalized()
                         .toRotationMatrix();
     poses.push_back({start.pose_a, turn});

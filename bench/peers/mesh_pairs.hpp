@@ -76,8 +76,8 @@ class PoseMaker {
   Approach approach();
   PosePair pose(const Approach& approach, PoseClass pose_class);
   /// Small steps from one pose to the next, `count` of them, around the outermost contact: turns of up to half a degree
-  /// and moves of up to a thousandth of the smaller mesh's size.
-  std::vector<PosePair> path(std::size_t count);
+  /// and moves of up to a thousandth of the smaller mesh's size, times `step`.
+  std::vector<PosePair> path(std::size_t count, double step = 1);
   /// Diagonal of the smaller mesh's bounding box.
   double size() const { return size_; }
 

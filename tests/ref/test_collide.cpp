@@ -786,3 +786,61 @@ TEST_CASE("collide: what the chip does not take is answered all the same", "[ref
   // Hundreds of open pairs, none of them certain: the chip gives a FIRST query to its host.
   same(gear, gear, Pose::Identity());
 }
+
+TEST_CASE("collide: a hint names the contact but never changes whether there is one", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  // Faces that were cut, too: a hint holds numbers of the file.
+  Mesh cut = make_torus(1, 0.4, 9, 7);
+  for (std::uint32_t i = 0; i < cut.faces.size(); ++i) cut.file_face.push_back(i / 2);
+  const std::vector<Object> objects = {Object(make_torus(1, 0.4, 9, 7)), Object(make_torus(1, 0.4, 8, 6, Kind::quad)),
+                                       Object(cut)};
+  const std::uint32_t none = CollisionHint::none;
+  std::size_t taken = 0;
+  std::size_t touched = 0;
+  std::size_t stale = 0;
+  for (const std::string& target : cpu_targets()) {
+    const auto device = open_cpu_device({1, target});
+    for (const Object& a : objects) {
+      for (const Object& b : objects) {
+        for (int i = 0; i < 12; ++i) {
+          const Pose pose_a = random_pose(PoseClass::rigid, 0.5, random);
+          const Pose pose_b = random_pose(PoseClass::rigid, i % 2 == 0 ? 0.5 : 2.5, random);
+          CollisionRequest all = {CollisionRequest::Contacts::all};
+          all.relation = true;
+          const CollisionResult wanted = collide(*device, a, pose_a, b, pose_b, all);
+          for (const bool relation : {false, true}) {
+            CollisionRequest first;
+            first.relation = relation;
+            std::vector<Contact> hints = {{0, 0}, {none, none}, {none - 1, 3}, {3, none - 1}, {none, 0}};
+            if (wanted.hit) hints.push_back(wanted.contacts[random() % wanted.contacts.size()]);
+            for (const Contact& hint : hints) {
+              // The result of the query before is the hint, and is replaced.
+              CollisionResult result;
+              result.contacts = {hint};
+              device->collide({&a, &pose_a, &b, &pose_b, result}, first, result);
+              REQUIRE(result.hit == wanted.hit);
+              if (relation) REQUIRE(result.relation == wanted.relation);
+              if (!result.hit) {
+                ++stale;
+                continue;
+              }
+              ++touched;
+              const auto named = std::find_if(wanted.contacts.begin(), wanted.contacts.end(),
+                                              [&](const Contact& x) { return same_faces(x, result.contacts.front()); });
+              REQUIRE(named != wanted.contacts.end());
+              const bool is_contact = std::any_of(wanted.contacts.begin(), wanted.contacts.end(),
+                                                  [&](const Contact& x) { return same_faces(x, hint); });
+              if (!is_contact || relation) continue;
+              ++taken;
+              CHECK(same_faces(result.contacts.front(), hint));
+              CHECK(result.counts.steps == 0);
+            }
+          }
+        }
+      }
+    }
+  }
+  CHECK(taken > 20);
+  CHECK(touched > 100);
+  CHECK(stale > 100);
+}

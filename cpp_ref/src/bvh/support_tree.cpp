@@ -135,20 +135,26 @@ SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : depth_(tree.depth
   }
   unit_ = std::max(radius * (1 + 0x1p-40) / support_most, least_unit);  // up: hypot() and the difference are rounded
 
-  const std::vector<NodeRef> refs = place_leaves(mesh, tree);
+  std::vector<float> vertices;
+  const std::vector<NodeRef> refs = place_leaves(mesh, tree, vertices);
   root_ = refs.front();
   size_ = tree.nodes.size() - 1;
-  lines_.reserve(size_ + 4);
+  vertices_at_ = (size_ + 4) * sizeof(SupportLine);
+  memory_.resize(vertices_at_ + vertices.size() * sizeof(float));
   const LineMaker maker(centre_, unit_);
-  for (std::size_t n = 1; n < tree.nodes.size(); ++n) lines_.push_back(maker.line(tree.nodes[n].dop, refs[n]));
-  lines_.push_back(maker.line(all, root_));
-  whole_words_ = lines_.back().word;
+  const auto put = [&](std::size_t at, const SupportLine& line) {
+    std::memcpy(memory_.data() + at * sizeof line, &line, sizeof line);
+  };
+  for (std::size_t n = 1; n < tree.nodes.size(); ++n) put(n - 1, maker.line(tree.nodes[n].dop, refs[n]));
+  const SupportLine whole_line = maker.line(all, root_);
+  put(size_, whole_line);
+  std::memcpy(memory_.data() + vertices_at_, vertices.data(), vertices.size() * sizeof(float));
+  whole_words_ = whole_line.word;
   extent_ = centre_.cwiseAbs().maxCoeff() + support_most * unit_;
   for (std::size_t k = 0; k < 3; ++k) half_[k] = unit_ * std::max(whole_words_[2 * k], whole_words_[2 * k + 1]);
-  lines_.resize(size_ + 4);
 }
 
-std::vector<NodeRef> SupportTree::place_leaves(const Mesh& mesh, const Tree& tree) {
+std::vector<NodeRef> SupportTree::place_leaves(const Mesh& mesh, const Tree& tree, std::vector<float>& vertices) {
   std::vector<NodeRef> refs(tree.nodes.size());
   std::vector<std::uint32_t> leaf_at(tree.faces.size());  // number of the node whose primitives begin there
   for (std::uint32_t n = 0; n < tree.nodes.size(); ++n) {
@@ -161,13 +167,13 @@ std::vector<NodeRef> SupportTree::place_leaves(const Mesh& mesh, const Tree& tre
     }
   }
   faces_.reserve(tree.faces.size());
-  vertices_.reserve(6 * tree.faces.size());
+  vertices.reserve(6 * tree.faces.size());
   const auto add_vertices = [&](const std::array<std::array<Vec3d, 4>, 2>& corners, std::size_t count) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
       for (std::size_t i = 0; i < count; ++i) {
         for (const Vec3d& v : corners[i]) {
-          vertices_.push_back(static_cast<float>((v[axis] - centre_[axis]) / unit_));
+          vertices.push_back(static_cast<float>((v[axis] - centre_[axis]) / unit_));
         }
       }
     }
@@ -190,17 +196,25 @@ std::vector<NodeRef> SupportTree::place_leaves(const Mesh& mesh, const Tree& tre
     refs[n] = NodeRef::leaf(first, static_cast<std::uint32_t>(count), fan || tree.nodes[n].kind == NodeKind::quad);
     at += count;
   }
-  vertices_.resize(vertices_.size() + 24);  // two primitives can always be read
-  vertices_.shrink_to_fit();
+  vertices.resize(vertices.size() + 24);  // two primitives can always be read
   faces_.shrink_to_fit();
   return refs;
+}
+
+std::array<float, 24> SupportTree::vertices_of(const Primitive& primitive) const {
+  std::array<float, 24> vertices = {};
+  for (std::size_t v = 0; v < 4; ++v) {
+    const Vec3d at = (primitive.v[v < primitive.vertex_count() ? v : 0] - centre_) / unit_;
+    for (std::size_t k = 0; k < 3; ++k) vertices[4 * k + v] = static_cast<float>(at[static_cast<Eigen::Index>(k)]);
+  }
+  return vertices;
 }
 
 Tree SupportTree::topology() const {
   Tree tree;
   tree.depth = depth_;
   tree.nodes.resize(size_ + 1);
-  const auto ref_of = [this](std::size_t n) { return n == 0 ? root_ : lines_[n - 1].ref(); };
+  const auto ref_of = [this](std::size_t n) { return n == 0 ? root_ : lines()[n - 1].ref(); };
   std::vector<std::uint8_t> used(faces_.size());  // places that hold a primitive of their own
   for (std::size_t n = 0; n <= size_; ++n) {
     const NodeRef ref = ref_of(n);

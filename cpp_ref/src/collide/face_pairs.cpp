@@ -101,6 +101,19 @@ void FacePairs::test(std::uint32_t face_a, std::uint32_t face_b) {
   if (relation != Relation::apart) add(face_a, face_b, relation);
 }
 
+FacePairs::Parts FacePairs::parts_of(const Object& object, std::uint32_t face) {
+  Parts parts = {};
+  if (object.mesh().file_face.empty()) {
+    parts.face[0] = face;
+    parts.count = face < object.mesh().faces.size() ? 1 : 0;
+    return parts;
+  }
+  const std::vector<std::uint32_t> all = object.parts(face);
+  parts.count = std::min(parts.face.size(), all.size());
+  std::copy_n(all.begin(), parts.count, parts.face.begin());
+  return parts;
+}
+
 void FacePairs::add(std::uint32_t face_a, std::uint32_t face_b, Relation relation) {
   const bool crosses = relation == Relation::crossing;
   seen_ = std::max(seen_, relation);

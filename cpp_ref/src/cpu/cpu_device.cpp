@@ -295,9 +295,9 @@ std::unique_ptr<Device> open_cpu_device(const CpuOptions& options) {
 }
 
 CollisionResult collide(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
-                        const CollisionRequest& request) {
+                        const CollisionRequest& request, const CollisionHint& hint) {
   thread_local const std::unique_ptr<Device> device = open_cpu_device({1, {}});
-  return collide(*device, a, pose_a, b, pose_b, request);
+  return collide(*device, a, pose_a, b, pose_b, request, hint);
 }
 
 }  // namespace cchip

@@ -26,6 +26,7 @@ class PlainSearch final : public Search {
  public:
   void run(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& result) override {
     faces_.start(query, request, result);
+    faces_.visit_hint([this](std::uint32_t face_a, std::uint32_t face_b) { faces_.test(face_a, face_b); });
     const DopPairs volumes(*query.a, *query.pose_a, *query.b, *query.pose_b, request.within);
     const TreeSide a = {query.a->mesh(), query.a->tree()};
     const TreeSide b = {query.b->mesh(), query.b->tree()};

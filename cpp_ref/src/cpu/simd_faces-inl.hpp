@@ -51,10 +51,10 @@ HWY_INLINE void finish_side(LeafSide& side, float error) {
 
 /// Calls `store(at, x, y, z)` with the vertices of a leaf, for its lanes from `at` on; behind one primitive follows
 /// anything.
+/// \param v SupportTree::vertices() of the leaf
 template <class Store>
-HWY_INLINE void load_leaf(const SupportTree& tree, NodeRef leaf, const Store& store) {
+HWY_INLINE void load_leaf(const float* v, NodeRef leaf, const Store& store) {
   const D8F d;
-  const float* const v = tree.vertices(leaf.first());
   if (HWY_LIKELY(leaf.is_fan())) {
     for (std::size_t at = 0; at < 8; at += lanes8) {
       const auto order = hn::SetTableIndices(d, fan_corners.data() + at);
@@ -69,9 +69,9 @@ HWY_INLINE void load_leaf(const SupportTree& tree, NodeRef leaf, const Store& st
   }
 }
 
-HWY_INLINE void load_moved(const SupportTree& tree, NodeRef leaf, const Placement& place, LeafSide& side) {
+HWY_INLINE void load_moved(const float* v, NodeRef leaf, const Placement& place, LeafSide& side) {
   using V = hn::Vec<D8F>;
-  load_leaf(tree, leaf, [&](std::size_t at, V x, V y, V z) {
+  load_leaf(v, leaf, [&](std::size_t at, V x, V y, V z) {
     const D8F d;
     const auto row = [&](std::size_t i) {
       return hn::MulAdd(x, hn::Set(d, place.m[3 * i]),
@@ -85,9 +85,9 @@ HWY_INLINE void load_moved(const SupportTree& tree, NodeRef leaf, const Placemen
   finish_side(side, place.moved_error);
 }
 
-HWY_INLINE void load_fixed(const SupportTree& tree, NodeRef leaf, const Placement& place, LeafSide& side) {
+HWY_INLINE void load_fixed(const float* v, NodeRef leaf, const Placement& place, LeafSide& side) {
   using V = hn::Vec<D8F>;
-  load_leaf(tree, leaf, [&](std::size_t at, V x, V y, V z) {
+  load_leaf(v, leaf, [&](std::size_t at, V x, V y, V z) {
     const D8F d;
     hn::Store(x, d, side.x.data() + at);
     hn::Store(y, d, side.y.data() + at);

@@ -151,10 +151,12 @@ class SimdSearch final : public Search {
       return false;
     }
     task.faces.start(query, request, result);
+    task.counts = {};
+    task.counts.box_tests = 1;  // of the whole objects, above
+    task.open_count = 0;
     task.swapped = relation.swapped;
     task.moved = &(relation.swapped ? query.b : query.a)->tree();
     task.fixed = &(relation.swapped ? query.a : query.b)->tree();
-    make_planes(relation, margins_, task.planes);
     for (std::size_t i = 0; i < 9; ++i) task.place.m[i] = static_cast<float>(relation.m[i]);
     for (std::size_t i = 0; i < 3; ++i) task.place.t[i] = static_cast<float>(relation.t[i]);
     // A coordinate of a moved vertex: 1 rounding each of vertex, matrix and three products, three sums; of the offset.
@@ -164,15 +166,40 @@ class SimdSearch final : public Search {
         static_cast<float>(own * (6 * radius * relation.row + 4 * relation.distance) + of_relation);
     task.place.fixed_error = static_cast<float>(own * radius);
     task.place.growth = static_cast<float>(1.01 * relation.growth);
+    task.faces.visit_hint([&](std::uint32_t face_a, std::uint32_t face_b) { test_hint(task, query, face_a, face_b); });
+    if (task.faces.done()) {
+      task.finish();
+      return false;
+    }
+    make_planes(relation, margins_, task.planes);
     const double of_plane = margins_.wide * ulp * (radius * (3 + 12 * relation.norm) + 5 * relation.distance);
     task.planes.side_error =
         static_cast<float>(1.01 * of_plane + of_relation) + task.place.fixed_error + task.place.growth;
-    task.counts = {};
-    task.counts.box_tests = 1;  // of the whole objects, above
-    task.open_count = 0;
     task.stack[0] = {task.planes.tiny ? task.moved->whole() : task.moved->root(), task.fixed->root()};
     task.size = 1;
     return true;
+  }
+
+  /// Tests two faces, by their numbers in the meshes: as test_leaves(), but that nothing is known of their leaves.
+  static void test_hint(Task& task, const CollisionQuery& query, std::uint32_t face_a, std::uint32_t face_b) {
+    ++task.counts.pairs;
+    const Primitive a = query.a->mesh().primitive(face_a);
+    const Primitive b = query.b->mesh().primitive(face_b);
+    if (a.kind == Kind::tri && b.kind == Kind::tri) {
+      const NodeRef alone = NodeRef::leaf(0, 1, false);
+      alignas(64) LeafSide p;
+      alignas(64) LeafSide q;
+      load_moved(task.moved->vertices_of(task.swapped ? b : a).data(), alone, task.place, p);
+      load_fixed(task.fixed->vertices_of(task.swapped ? a : b).data(), alone, task.place, q);
+      Verdict verdict = Verdict::apart;
+      visit_triangles(p, 1, q, 1, task.place, [&verdict](std::size_t, std::size_t, Verdict x) {
+        verdict = x;
+        return true;
+      });
+      if (verdict == Verdict::apart) return;
+      if (verdict == Verdict::cross) return task.faces.add(face_a, face_b);
+    }
+    task.faces.test(face_a, face_b);
   }
 
   /// Tests the nodes below an item.
@@ -245,8 +272,8 @@ class SimdSearch final : public Search {
     const Placement& place = task.place;
     alignas(64) LeafSide p;
     alignas(64) LeafSide q;
-    load_moved(*task.moved, item.moved, place, p);
-    load_fixed(*task.fixed, item.fixed, place, q);
+    load_moved(task.moved->vertices(item.moved.first()), item.moved, place, p);
+    load_fixed(task.fixed->vertices(item.fixed.first()), item.fixed, place, q);
     const std::size_t count_p = item.moved.count();
     const std::size_t count_q = item.fixed.count();
     task.counts.pairs += count_p * count_q;

@@ -124,19 +124,24 @@ class SupportTree {
   const std::array<std::int16_t, support_words>& whole_words() const { return whole_words_; }
   /// Lines below the root. That of whole() follows, and three that nothing refers to, so that four can always be read.
   std::size_t size() const { return size_; }
-  const SupportLine* lines() const { return lines_.data(); }
+  const SupportLine* lines() const { return reinterpret_cast<const SupportLine*>(memory_.data()); }
   /// Number in the mesh of the primitive in each place. A leaf begins at an even place and has two of them, or four if
   /// it is of two triangles that are no fan; places that it does not need repeat its last primitive.
   const std::vector<std::uint32_t>& faces() const { return faces_; }
   /// Vertices of the leaf that begins at place `first`: x of the four vertices of its first primitive (of the fan), of
   /// the second one, then y, then z; (position - centre) / unit, rounded to nearest. Vertex 3 of a triangle is vertex
   /// 0.
-  const float* vertices(std::uint32_t first) const { return vertices_.data() + std::size_t{6} * first; }
+  const float* vertices(std::uint32_t first) const {
+    return reinterpret_cast<const float*>(memory_.data() + vertices_at_) + std::size_t{6} * first;
+  }
+  /// What vertices() would refer to if the primitive were a leaf of this tree alone, and zeros behind it.
+  std::array<float, 24> vertices_of(const Primitive& primitive) const;
 
  private:
-  /// Fills faces and vertices.
+  /// Gives the leaves their places and fills faces().
+  /// \param vertices what vertices() refers to
   /// \returns what each node refers to
-  std::vector<NodeRef> place_leaves(const Mesh& mesh, const Tree& tree);
+  std::vector<NodeRef> place_leaves(const Mesh& mesh, const Tree& tree, std::vector<float>& vertices);
 
   Vec3d centre_;
   double unit_;
@@ -146,8 +151,9 @@ class SupportTree {
   NodeRef root_;
   int depth_;
   std::size_t size_;
-  std::vector<SupportLine, LargePages<SupportLine>> lines_;
-  std::vector<float, LargePages<float>> vertices_;
+  // Lines and vertices together: pages are large only where they lie wholly within one array.
+  std::vector<std::byte, LargePages<std::byte>> memory_;
+  std::size_t vertices_at_;
   std::vector<std::uint32_t> faces_;
 };
 

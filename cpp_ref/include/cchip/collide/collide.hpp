@@ -126,12 +126,29 @@ struct PosePair {
   Pose b = Pose::Identity();
 };
 
+/// A face of A and a face of B, by their numbers in the files, that touch in all likelihood: those of a contact of the
+/// same objects a moment before. The CPU device tests them first; if they touch, a request for the first contact is
+/// answered with them, several times faster than by a search. A hint that is wrong costs one test of two faces, and no
+/// hint changes whether there is a contact. Other devices, and requests for all contacts, ignore it.
+struct CollisionHint {
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t face_a = none;
+  std::uint32_t face_b = none;
+  CollisionHint() = default;
+  CollisionHint(const Contact& contact) : face_a(contact.face_a), face_b(contact.face_b) {}  // NOLINT: it is one
+  /// From the last result about these objects, with its first contact if it has one.
+  CollisionHint(const CollisionResult& last) {  // NOLINT: it is one
+    if (!last.contacts.empty()) *this = last.contacts.front();
+  }
+};
+
 /// Two placed objects. Refers to objects and poses of the caller, which must stay as they are during the call.
 struct CollisionQuery {
   const Object* a = nullptr;
   const Pose* pose_a = nullptr;
   const Object* b = nullptr;
   const Pose* pose_b = nullptr;
+  CollisionHint hint = {};
 };
 
 /// Answers queries. A device takes one call at a time, from any thread, and none from the functions that a call was
@@ -204,9 +221,9 @@ class Device {
 
 /// One query.
 inline CollisionResult collide(Device& device, const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
-                               const CollisionRequest& request = {}) {
+                               const CollisionRequest& request = {}, const CollisionHint& hint = {}) {
   CollisionResult result;
-  device.collide({&a, &pose_a, &b, &pose_b}, request, result);
+  device.collide({&a, &pose_a, &b, &pose_b, hint}, request, result);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #ifndef CCHIP_COLLIDE_FACE_PAIRS_HPP
 #define CCHIP_COLLIDE_FACE_PAIRS_HPP
 
+#include <array>
 #include <cchip/collide/collide.hpp>
 #include <cchip/exact/posed_distances.hpp>
 #include <cchip/exact/posed_pairs.hpp>
@@ -27,6 +28,17 @@ class FacePairs {
   void test(std::uint32_t face_a, std::uint32_t face_b);
   /// Records a face of A and a face of B that are known to cross; counts nothing.
   void add(std::uint32_t face_a, std::uint32_t face_b) { add(face_a, face_b, Relation::crossing); }
+  /// Calls `visit(face_a, face_b)` for the query's hint, with numbers in the meshes, until the request is fulfilled:
+  /// for no pair if there is no hint, all contacts are wanted, or the meshes have no such faces.
+  template <class Visit>
+  void visit_hint(const Visit& visit) {
+    if (query_.hint.face_a == CollisionHint::none || request_.contacts != CollisionRequest::Contacts::first) return;
+    const Parts a = parts_of(*query_.a, query_.hint.face_a);
+    const Parts b = parts_of(*query_.b, query_.hint.face_b);
+    for (std::size_t i = 0; i < a.count; ++i) {
+      for (std::size_t k = 0; k < b.count && !done_; ++k) visit(a.face[i], b.face[k]);
+    }
+  }
   /// True once the request is fulfilled: no pair needs to be tested any more.
   bool done() const { return done_; }
 
@@ -36,6 +48,14 @@ class FacePairs {
   void finish();
 
  private:
+  /// Faces of a mesh that a face of the file was cut into: the first few, as a test of all those of two large polygons
+  /// would cost more than a search.
+  struct Parts {
+    std::array<std::uint32_t, 4> face;
+    std::size_t count;
+  };
+  static Parts parts_of(const Object& object, std::uint32_t face);
+
   void add(std::uint32_t face_a, std::uint32_t face_b, Relation relation);
   /// Exactly, and counts it.
   Relation relate(std::uint32_t face_a, std::uint32_t face_b);

@@ -29,7 +29,7 @@ std::unique_ptr<Device> open_cpu_device(const CpuOptions& options = {});
 /// is as fast or a little faster without.
 /// \throws as Device::collide()
 CollisionResult collide(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
-                        const CollisionRequest& request = {});
+                        const CollisionRequest& request = {}, const CollisionHint& hint = {});
 
 }  // namespace cchip
 
