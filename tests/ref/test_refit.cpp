@@ -1,86 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The functional model of cchip_refit against images that are made from the moved mesh.
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/bvh/image.hpp>
-#include <cchip/collide/object.hpp>
-#include <cchip/models/refit.hpp>
-#include <cmath>
 #include <iostream>
 
-#include "bvh_meshes.hpp"
+#include "refit_frames.hpp"
 
 using namespace cchip;
 using namespace cchip::bvh;
 using namespace cchip::testing;
-
-namespace {
-
-/// The mesh around the origin, its vertices on a grid of 2^-bits of its size: every leaf then holds them exactly.
-Mesh snapped(Mesh mesh, int bits) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3d& v : mesh.vertices) box.extend(v);
-  const Vec3d centre = box.center();
-  const double size = box.sizes().maxCoeff();
-  const int exponent = size > 0 ? std::ilogb(size) - bits : 0;
-  for (Vec3d& v : mesh.vertices) {
-    for (double& c : v) c = std::ldexp(std::nearbyint(std::ldexp(c, -exponent)), exponent);
-    v -= Vec3d(std::ldexp(std::nearbyint(std::ldexp(centre.x(), -exponent)), exponent),
-               std::ldexp(std::nearbyint(std::ldexp(centre.y(), -exponent)), exponent),
-               std::ldexp(std::nearbyint(std::ldexp(centre.z(), -exponent)), exponent));
-  }
-  return mesh;
-}
-
-/// The mesh bent and shaken: faces change their size and place.
-Mesh bent(Mesh mesh, double amount, std::mt19937_64& random) {
-  double size = 0;
-  for (const Vec3d& v : mesh.vertices) size = std::max(size, v.lpNorm<Eigen::Infinity>());
-  for (Vec3d& v : mesh.vertices) {
-    const Vec3d turned(v.y(), v.z(), v.x());
-    v += amount * (turned.cwiseAbs() + size * random_vector(random, 0.25));
-  }
-  return mesh;
-}
-
-struct Frames {
-  Image old;    ///< before the motion
-  Image moved;  ///< what make_image() writes behind it
-  Tree tree;    ///< behind it
-};
-
-Frames frames_of(const Mesh& before, const Mesh& behind) {
-  Frames frames;
-  const Object object(before);
-  const Object moved = object.moved(behind.vertices);
-  Tree tree = object.tree().topology();
-  refit(tree, object.mesh());
-  frames.old = make_image(object.mesh(), tree);
-  refit(tree, moved.mesh());
-  frames.moved = make_image(moved.mesh(), tree);
-  frames.tree = tree;
-  return frames;
-}
-
-/// What the host hands over: the new header and leaves, the nodes of before. `choice`: with the cut exponents of
-/// `moved`.
-std::vector<Line> handed_over(const Frames& frames, bool choice) {
-  std::vector<Line> lines = frames.moved.lines;
-  for (std::size_t n = 1; n < lines.size(); ++n) {
-    if (frames.tree.nodes[n - 1].kind != NodeKind::inner) continue;
-    const auto exponent = get(lines[n], inner_field::cut_exponent);
-    lines[n] = frames.old.lines[n];
-    if (choice) put(lines[n], inner_field::cut_exponent, exponent);
-  }
-  return lines;
-}
-
-model::RefitCommand command_of(const Image& image) {
-  const HeaderLine header = image.header();
-  return {header.lines, header.root};
-}
-
-}  // namespace
 
 TEST_CASE("refit model: where leaves hold the mesh exactly, every line is the one of make_image", "[ref]") {
   std::mt19937_64 random(sim::seed_from_environment());
