@@ -340,12 +340,13 @@ TEST_CASE("cchip_refit: every fault ends the refit with its code, and the next o
     bench.memory = chain;
     bench.command(3, 1);
     expect_end(RefitCode::outside, 1);
+    // line 3 is a child of both nodes
     put(chain[1], bvh::inner_field::kind, 0, 0);
-    put(chain[1], bvh::inner_field::kind, 0, 1);
+    put(chain[2], bvh::inner_field::children, 0);
+    chain[3] = {};
     bench.memory = chain;
     bench.command(4, 1);
-    const End shared = bench.end(100000);
-    ++bins[shared.code];
+    expect_end(RefitCode::visits, 3);
     // vertices far outside the frame
     Line node{}, leaf{};
     put(node, bvh::inner_field::first, 2);
@@ -367,7 +368,7 @@ TEST_CASE("cchip_refit: every fault ends the refit with its code, and the next o
     std::cout << "\n";
     for (const RefitCode code :
          {RefitCode::ok, RefitCode::command, RefitCode::read, RefitCode::write, RefitCode::timeout, RefitCode::outside,
-          RefitCode::leaf, RefitCode::depth, RefitCode::abort, RefitCode::owed}) {
+          RefitCode::leaf, RefitCode::range, RefitCode::depth, RefitCode::visits, RefitCode::abort, RefitCode::owed}) {
       REQUIRE(bins[code] > 0);
     }
   });
