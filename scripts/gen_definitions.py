@@ -81,7 +81,7 @@ def verilog(data, names):
         one = define(c["name"], str(c["value"]).replace("0x", "32'h"))
         lines += [f"`ifndef CCHIP_{c['name']}", *one, "`endif"] if c["name"] in CHOSEN_BY_BUILD else one
     widths = {"MODE": "MODE_W", "AXIS": "CLASS_W", "RM": "RM_ID_W", "PROG": "PROG_W", "PHASE": "PHASE_W", "SWAP": "SWAP_W", "READ": "READ_CODE_W",
-              "WRITE": "WRITE_CODE_W", "END": "END_W", "QUERY_ANSWER": "QUERY_ANSWER_W"}
+              "WRITE": "WRITE_CODE_W", "REFIT": "REFIT_CODE_W", "END": "END_W", "QUERY_ANSWER": "QUERY_ANSWER_W"}
     size = sizes(data)
     for e in data["enums"]:
         lines += ["", f"// ---- {e['doc']}"]

@@ -61,6 +61,8 @@
 `define CCHIP_READ_CODE_W 2
 // width of the code of a write [bit]
 `define CCHIP_WRITE_CODE_W 2
+// width of the code of a refit [bit]
+`define CCHIP_REFIT_CODE_W 4
 // width of the code of a query's end [bit]
 `define CCHIP_END_W 3
 // width of a query's answer [bit]
@@ -236,6 +238,33 @@
 `define CCHIP_END_BAD_DESCRIPTOR 3'd6
 // a line could not be read: an error of the bus, or no answer in time
 `define CCHIP_END_MEMORY 3'd7
+
+// ---- how a refit ended; after any but OK and COMMAND the image is partly new: no query may use it
+// every node is new
+`define CCHIP_REFIT_OK 4'd0
+// a base beyond 0xFEFFFFFF, more than 2^24 lines, or a root that is line 0 or outside the image;
+// nothing was read
+`define CCHIP_REFIT_COMMAND 4'd1
+// a line could not be read: an error of the bus
+`define CCHIP_REFIT_READ 4'd2
+// a line could not be written: an error of the bus
+`define CCHIP_REFIT_WRITE 4'd3
+// no answer from memory in time
+`define CCHIP_REFIT_TIMEOUT 4'd4
+// children that do not lie behind their node, or lie outside the image
+`define CCHIP_REFIT_OUTSIDE 4'd5
+// a leaf's extent is over 24
+`define CCHIP_REFIT_LEAF 4'd6
+// vertices too far outside the object's frame for any step
+`define CCHIP_REFIT_RANGE 4'd7
+// more levels of nodes than the engine has room for
+`define CCHIP_REFIT_DEPTH 4'd8
+// more lines reached than the image has: some have two parents
+`define CCHIP_REFIT_VISITS 4'd9
+// the user aborted it
+`define CCHIP_REFIT_ABORT 4'd10
+// memory still owes an answer to a request that timed out
+`define CCHIP_REFIT_OWED 4'd11
 
 // ---- the answer of a query
 // the objects do not touch

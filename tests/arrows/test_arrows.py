@@ -50,7 +50,8 @@ LINKS = {
 # Folders of rtl/: each may instantiate from those before it in its line.
 RTL = [["common", "arith", "sat", "primtest", "regs", "reconfig", "dispatch", "subsystem"],
        ["common", "arith", "sat", "primtest", "regs", "reconfig", "dispatch", "chip"],
-       ["common", "arith", "memory", "bvtest", "traversal", "transform", "chip"]]
+       ["common", "arith", "memory", "bvtest", "traversal", "transform", "chip"],
+       ["common", "refit"]]
 
 
 def files(pattern):

@@ -191,6 +191,36 @@ constexpr const char* name_of(QueryCode code) {
   return nullptr;
 }
 
+constexpr const char* name_of(RefitCode code) {
+  switch (code) {
+    case RefitCode::ok:
+      return "ok";
+    case RefitCode::command:
+      return "command";
+    case RefitCode::read:
+      return "read";
+    case RefitCode::write:
+      return "write";
+    case RefitCode::timeout:
+      return "timeout";
+    case RefitCode::outside:
+      return "outside";
+    case RefitCode::leaf:
+      return "leaf";
+    case RefitCode::range:
+      return "range";
+    case RefitCode::depth:
+      return "depth";
+    case RefitCode::visits:
+      return "visits";
+    case RefitCode::abort:
+      return "abort";
+    case RefitCode::owed:
+      return "owed";
+  }
+  return nullptr;
+}
+
 constexpr const char* name_of(QueryAnswer code) {
   switch (code) {
     case QueryAnswer::no:

@@ -106,6 +106,22 @@ enum class QueryCode : std::uint8_t {
   memory = 7,  ///< a line could not be read: an error of the bus, or no answer in time
 };
 
+/// How a refit ended; after any but OK and COMMAND the image is partly new: no query may use it.
+enum class RefitCode : std::uint8_t {
+  ok = 0,  ///< every node is new
+  command = 1,  ///< a base beyond 0xFEFFFFFF, more than 2^24 lines, or a root that is line 0 or outside the image; nothing was read
+  read = 2,  ///< a line could not be read: an error of the bus
+  write = 3,  ///< a line could not be written: an error of the bus
+  timeout = 4,  ///< no answer from memory in time
+  outside = 5,  ///< children that do not lie behind their node, or lie outside the image
+  leaf = 6,  ///< a leaf's extent is over 24
+  range = 7,  ///< vertices too far outside the object's frame for any step
+  depth = 8,  ///< more levels of nodes than the engine has room for
+  visits = 9,  ///< more lines reached than the image has: some have two parents
+  abort = 10,  ///< the user aborted it
+  owed = 11,  ///< memory still owes an answer to a request that timed out
+};
+
 /// The answer of a query.
 enum class QueryAnswer : std::uint8_t {
   no = 0,  ///< the objects do not touch
@@ -171,6 +187,8 @@ constexpr int swap_w = 4;
 constexpr int read_code_w = 2;
 /// width of the code of a write [bit]
 constexpr int write_code_w = 2;
+/// width of the code of a refit [bit]
+constexpr int refit_code_w = 4;
 /// width of the code of a query's end [bit]
 constexpr int end_w = 3;
 /// width of a query's answer [bit]

@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iostream>
+#include <map>
+#include <models/cchip_refit.hpp>
+#include <optional>
+
+#include "../ref/refit_frames.hpp"
+#include "bench.hpp"
+
+using namespace cchip;
+using namespace cchip::test;
+using bvh::NodeKind;
+
+namespace {
+
+/// How memory behaves; chances in per cent.
+struct Behaviour {
+  int beat = 100;                          ///< of a beat of a read, an accepted beat of a write, an answer, on a clock
+  int latency = 0;                         ///< most clocks before the first beat
+  std::optional<std::uint32_t> bad_read;   ///< line whose read ends with an error
+  std::optional<std::uint32_t> bad_write;  ///< line whose write does
+  unsigned bad_code = 1;
+  std::optional<std::uint32_t> lost;  ///< line whose read or write is answered only when `found` is set
+};
+
+struct End {
+  RefitCode code{};
+  std::uint32_t line = 0;
+  std::uint32_t lines = 0;
+};
+
+template <class Config>
+class RefitBench {
+ public:
+  static constexpr int width = Config::DATA_W;
+  static constexpr std::size_t beats = 512 / Config::DATA_W;
+
+  RefitBench(sim::Simulation<typename Config::Model>& simulation, Random& random)
+      : simulation_(simulation), top_(simulation.top()), random_(random) {
+    top_.limit = 0;
+    idle();
+    reset();
+  }
+
+  void reset() {
+    idle();
+    top_.s_valid = 0;
+    top_.s_abort = 0;
+    top_.m_ready = 0;
+    read_.reset();
+    write_.clear();
+    answer_.reset();
+    simulation_.reset();
+  }
+
+  void command(std::uint32_t lines, std::uint32_t root) {
+    top_.s_valid = 1;
+    top_.s_base = base = static_cast<std::uint32_t>(random_() % 0xFF000000U);
+    top_.s_lines = lines;
+    top_.s_root = root;
+    for (int n = 0; top_.s_ready == 0; ++n) {
+      REQUIRE(n < 10);
+      step();
+    }
+    step();
+    top_.s_valid = 0;
+  }
+
+  End end(std::uint64_t most) {
+    std::uint64_t waited = 0;
+    while (top_.m_valid == 0) {
+      if (++waited > most) throw sim::SimulationError("a refit does not end");
+      step();
+    }
+    const End result{static_cast<RefitCode>(top_.m_code), top_.m_line, top_.m_lines};
+    for (int n = 0; n < 3; ++n) {  // it stays until it is taken
+      step();
+      REQUIRE(top_.m_valid == 1);
+      REQUIRE(top_.m_code == static_cast<unsigned>(result.code));
+    }
+    top_.m_ready = 1;
+    step();
+    top_.m_ready = 0;
+    return result;
+  }
+
+  void step() {
+    idle();
+    if (read_ && (how.lost != read_->line || found) && read_->wait-- <= 0 && chance(random_, how.beat)) {
+      const bool last = read_->beat + 1 == beats;
+      top_.s_read_valid = 1;
+      top_.s_read_last = last ? 1 : 0;
+      top_.s_read_code = static_cast<CData>(read_->line == how.bad_read ? how.bad_code : 0U);
+      const Line& line = memory.at(read_->line);
+      for (int byte = 0; byte < width / 8; ++byte) {
+        sim::set_bits(top_.s_read_data, 8 * byte, 8, line[read_->beat * width / 8 + static_cast<std::size_t>(byte)]);
+      }
+    }
+    if (answer_ && (how.lost != *answer_ || found) && chance(random_, how.beat)) {
+      top_.s_write_valid = 1;
+      top_.s_write_code = static_cast<CData>(*answer_ == how.bad_write ? how.bad_code : 0U);
+    }
+    top_.m_write_ready = chance(random_, how.beat) && !stuck ? 1 : 0;
+    simulation_.settle();
+    if (top_.s_read_valid != 0 && ++read_->beat == beats) read_.reset();
+    if (top_.m_read_valid != 0) {
+      REQUIRE(!read_);
+      ++reads;
+      read_ = Read{top_.m_read_line - base, 0,
+                   how.latency == 0 ? 0 : static_cast<int>(random_() % static_cast<unsigned>(how.latency))};
+      REQUIRE(read_->line < memory.size());
+    }
+    if (top_.s_write_valid != 0) {
+      if (top_.s_write_code == 0) memory.at(*answer_) = written_;
+      answer_.reset();
+    }
+    if (top_.m_write_valid != 0 && top_.m_write_ready != 0) {
+      const std::uint32_t line = top_.m_write_line - base;
+      REQUIRE(line < memory.size());
+      REQUIRE(top_.m_write_beat == write_.size());
+      REQUIRE((top_.m_write_last != 0) == (write_.size() + 1 == beats));
+      for (int byte = 0; byte < width / 8; ++byte) {
+        written_[write_.size() * width / 8 + static_cast<std::size_t>(byte)] =
+            static_cast<std::uint8_t>(sim::get_bits(top_.m_write_data, 8 * byte, 8));
+      }
+      write_.push_back(line);
+      if (write_.size() == beats) {
+        REQUIRE(!answer_);
+        answer_ = line;
+        write_.clear();
+        ++writes;
+      }
+    }
+    simulation_.rise();
+    ++clocks;
+  }
+
+  void abort(bool on) { top_.s_abort = on ? 1 : 0; }
+  void limit(std::uint32_t clocks_) { top_.limit = clocks_; }
+
+  std::vector<Line> memory;
+  Behaviour how;
+  std::uint32_t base = 0;
+  bool found = false;
+  bool stuck = false;
+  std::uint64_t clocks = 0, reads = 0, writes = 0;
+
+ private:
+  struct Read {
+    std::uint32_t line;
+    std::size_t beat;
+    int wait;
+  };
+
+  void idle() {
+    top_.s_read_valid = 0;
+    top_.s_read_last = 0;
+    top_.s_read_code = 0;
+    top_.s_write_valid = 0;
+    top_.s_write_code = static_cast<CData>(random_() % 4);
+    top_.m_write_ready = 0;
+    sim::set_random(top_.s_read_data, width, random_);
+  }
+
+  sim::Simulation<typename Config::Model>& simulation_;
+  typename Config::Model& top_;
+  Random& random_;
+  std::optional<Read> read_;
+  std::vector<std::uint32_t> write_;
+  std::optional<std::uint32_t> answer_;
+  Line written_{};
+};
+
+/// A moved object whose leaves hold the mesh exactly.
+testing::Frames exact_frames(const Mesh& any, Random& random) {
+  const Mesh mesh = testing::snapped(any, 18);
+  return testing::frames_of(mesh, testing::snapped(testing::bent(mesh, 0.1, random), 18));
+}
+
+}  // namespace
+
+TEMPLATE_LIST_TEST_CASE("cchip_refit: memory holds what make_image writes for the moved object", "[unit][cchip_refit]",
+                        cchip_refit_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
+    RefitBench<TestType> bench(simulation, random);
+    std::uint64_t lines = 0, leaves = 0, mismatches = 0, clocks = 0;
+    int slow = 0;
+    for (const Mesh& mesh : testing::assorted_meshes(random)) {
+      const testing::Frames frames = exact_frames(mesh, random);
+      const auto command = testing::command_of(frames.moved);
+      if (frames.moved.header().depth > TestType::LEVELS + 1) continue;
+      bench.memory = testing::handed_over(frames, true);
+      bench.how = {};
+      if (slow++ % 2 != 0) {
+        bench.how.beat = 40;
+        bench.how.latency = 50;
+      }
+      const std::uint64_t from = bench.clocks;
+      bench.reads = bench.writes = 0;
+      bench.command(command.lines, command.root);
+      const End end = bench.end(2000000);
+      REQUIRE(end.code == RefitCode::ok);
+      REQUIRE(end.lines == command.lines - 1);
+      REQUIRE(bench.reads == command.lines - 1);
+      REQUIRE(bench.writes == frames.moved.header().inner);
+      if (bench.how.beat == 100) {
+        lines += command.lines - 1;
+        leaves += frames.moved.header().leaves;
+        clocks += bench.clocks - from;
+      }
+      for (std::size_t n = 0; n < bench.memory.size(); ++n) {
+        mismatches += bench.memory[n] == frames.moved.lines[n] ? 0 : 1;
+      }
+    }
+    std::cout << "DATA_W=" << TestType::DATA_W << " lines=" << lines << " leaves=" << leaves
+              << " clocks_per_line=" << static_cast<double>(clocks) / static_cast<double>(lines)
+              << " mismatches=" << mismatches << "\n";
+    REQUIRE(mismatches == 0);
+  });
+}
+
+TEST_CASE("cchip_refit: every fault ends the refit with its code, and the next one is right", "[unit][cchip_refit]") {
+  using Config = refit_128;
+  for_two_power_ups<Config::Model>([](auto& simulation, Random& random) {
+    RefitBench<Config> bench(simulation, random);
+    std::map<RefitCode, int> bins;
+    int resets = 0;
+    const testing::Frames frames = exact_frames(testing::soup(16, false, random), random);
+    const std::vector<Line> start = testing::handed_over(frames, true);
+    const auto command = testing::command_of(frames.moved);
+    const auto line_count = static_cast<std::uint32_t>(start.size());
+    const auto is_inner = [&](std::uint32_t line) { return frames.tree.nodes[line - 1].kind == NodeKind::inner; };
+    // A refit as `how` says, then one without faults that must be right.
+    const auto good = [&] {
+      bench.how = {};
+      bench.how.beat = 70;
+      bench.memory = start;
+      bench.command(command.lines, command.root);
+      REQUIRE(bench.end(1000000).code == RefitCode::ok);
+      REQUIRE(bench.memory == frames.moved.lines);
+      ++bins[RefitCode::ok];
+    };
+    const auto expect_end = [&](RefitCode code, std::uint32_t line) {
+      const End end = bench.end(1000000);
+      REQUIRE(static_cast<int>(end.code) == static_cast<int>(code));
+      REQUIRE(end.line == line);
+      ++bins[code];
+    };
+    const std::array<RefitCode, 4> read_codes = {RefitCode::ok, RefitCode::read, RefitCode::timeout, RefitCode::owed};
+    const std::array<RefitCode, 4> write_codes = {RefitCode::ok, RefitCode::write, RefitCode::timeout, RefitCode::owed};
+    for (std::uint32_t line = 1; line < line_count; ++line) {
+      bench.memory = start;  // an error of the bus at every line
+      bench.how = {};
+      bench.how.bad_code = 1 + line % 3;
+      bench.how.bad_read = line;
+      bench.command(command.lines, command.root);
+      expect_end(read_codes[bench.how.bad_code], line);
+      if (is_inner(line)) {
+        bench.memory = start;
+        bench.how.bad_read.reset();
+        bench.how.bad_write = line;
+        bench.command(command.lines, command.root);
+        expect_end(write_codes[bench.how.bad_code], line);
+      }
+      good();
+      // a bad line: the model says what becomes of it
+      bench.how = {};
+      bench.memory = start;
+      Line& bad = bench.memory[line];
+      if (!is_inner(line)) {
+        put(bad, bvh::leaf_field::extent, 25 + static_cast<int>(random() % 7));
+      } else if (line % 3 == 0) {
+        put(bad, bvh::inner_field::first, line - random() % 2);
+      } else if (line % 3 == 1) {
+        put(bad, bvh::inner_field::first, line_count - get(bad, bvh::inner_field::children));
+      } else {
+        for (std::uint8_t& byte : bad) byte = static_cast<std::uint8_t>(random());
+        put(bad, bvh::inner_field::first, line + 1 + random() % 4);
+      }
+      std::vector<Line> expected = bench.memory;
+      const auto result = model::refit_image(expected, command, Config::LEVELS);
+      bench.command(command.lines, command.root);
+      const End end = bench.end(1000000);
+      REQUIRE(static_cast<int>(end.code) == static_cast<int>(result.code));
+      REQUIRE(end.line == result.line);
+      REQUIRE(end.lines == result.lines);
+      REQUIRE(bench.memory == expected);
+      ++bins[end.code];
+      // memory that does not answer: a timeout, then nothing until it has answered
+      bench.memory = start;
+      bench.limit(40);
+      bench.how.lost = line;
+      bench.command(command.lines, command.root);
+      expect_end(RefitCode::timeout, line);
+      bench.command(command.lines, command.root);
+      expect_end(RefitCode::owed, 0);
+      bench.found = true;
+      for (int n = 0; n < 20; ++n) bench.step();
+      bench.found = false;
+      bench.limit(0);
+      good();
+      // abort and reset at any clock
+      bench.how = {};
+      bench.memory = start;
+      bench.command(command.lines, command.root);
+      for (auto n = random() % 1200; n > 0; --n) bench.step();
+      bench.abort(true);
+      bench.step();
+      bench.abort(false);
+      const End aborted = bench.end(1000);
+      REQUIRE(aborted.code == RefitCode::abort);
+      ++bins[aborted.code];
+      bench.memory = start;
+      bench.command(command.lines, command.root);
+      for (auto n = random() % 1200; n > 0; --n) bench.step();
+      bench.reset();
+      ++resets;
+      good();
+    }
+    for (const auto& [lines, root] : {std::pair<std::uint32_t, std::uint32_t>{line_count, 0},
+                                      {line_count, line_count},
+                                      {(1U << 24U) + 1, 1},
+                                      {0, 1}}) {
+      bench.command(lines, root);
+      expect_end(RefitCode::command, 0);
+    }
+    // a chain of nodes that is too deep, and one line that all nodes have as their child
+    std::vector<Line> chain(Config::LEVELS + 3);
+    for (std::uint32_t n = 1; n < chain.size(); ++n) put(chain[n], bvh::inner_field::first, n + 1);
+    bench.how = {};
+    bench.memory = chain;
+    bench.command(static_cast<std::uint32_t>(chain.size()), 1);
+    expect_end(RefitCode::depth, Config::LEVELS + 1);
+    for (std::uint32_t n = 1; n < chain.size(); ++n) {
+      put(chain[n], bvh::inner_field::children, 1);
+      put(chain[n], bvh::inner_field::kind, 1, 0);
+      put(chain[n], bvh::inner_field::kind, 1, 1);
+    }
+    bench.memory = chain;
+    bench.command(3, 1);
+    expect_end(RefitCode::outside, 1);
+    // line 3 is a child of both nodes
+    put(chain[1], bvh::inner_field::kind, 0, 0);
+    put(chain[2], bvh::inner_field::children, 0);
+    chain[3] = {};
+    bench.memory = chain;
+    bench.command(4, 1);
+    expect_end(RefitCode::visits, 3);
+    // vertices far outside the frame
+    Line node{}, leaf{};
+    put(node, bvh::inner_field::first, 2);
+    put(node, bvh::inner_field::kind, 1, 0);
+    put(leaf, bvh::leaf_field::extent, 24);
+    put(leaf, bvh::leaf_field::triangle, (1 << 19) - 1, 0);
+    put(leaf, bvh::leaf_field::triangle, -(1 << 19), 3);
+    bench.memory = {Line{}, node, leaf};
+    bench.memory[2][63] = 0;
+    put(bench.memory[2], bvh::leaf_field::origin, (1 << 23) - 1, 1);
+    std::vector<Line> far = bench.memory;
+    const auto outcome = model::refit_image(far, {3, 1}, Config::LEVELS);
+    bench.command(3, 1);
+    expect_end(outcome.code, outcome.line);
+    REQUIRE(bench.memory == far);
+    good();
+    std::cout << "resets=" << resets;
+    for (const auto& [code, count] : bins) std::cout << " code" << static_cast<int>(code) << "=" << count;
+    std::cout << "\n";
+    for (const RefitCode code :
+         {RefitCode::ok, RefitCode::command, RefitCode::read, RefitCode::write, RefitCode::timeout, RefitCode::outside,
+          RefitCode::leaf, RefitCode::range, RefitCode::depth, RefitCode::visits, RefitCode::abort, RefitCode::owed}) {
+      REQUIRE(bins[code] > 0);
+    }
+  });
+}
