@@ -77,6 +77,7 @@ sat/cchip_sat_project.v
 sat/cchip_sat_compare.v
 sat/cchip_box_compare.v
 sat/cchip_sat_pipeline.v
+sat/cchip_point_axes.v
 sat/cchip_programme_plan.v
 sat/cchip_programme_exhaustive.v
 sat/cchip_axis_programme.v
@@ -85,6 +86,7 @@ primtest/cchip_primtest.v
 primtest/cchip_primtest_tri_tri.v
 primtest/cchip_primtest_tri_quad.v
 primtest/cchip_primtest_quad_quad.v
+primtest/cchip_primtest_point_tri.v
 primtest/cchip_primtest_array.v
 primtest/cchip_primtest_blank.v
 reconfig/cchip_vertex_collector.v

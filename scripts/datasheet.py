@@ -77,6 +77,8 @@ STIMULI = {
     "cchip_programme_exhaustive": ("", "s_valid = 1;", "m_valid"),
     "cchip_axis_programme": ("s_state = `CCHIP_PROG_ILLEGAL;", "s_valid = 1;", "m_outcome"),
     "cchip_sat_pipeline": ("", "s_beat_valid = 1;", "m_verdict_valid"),
+    "cchip_point_axes": ("", "s_pair_valid = 1;", "m_verdict_valid"),
+    "cchip_primtest_point_tri": ("", "s_pair_valid = 1;", "m_result_valid"),
     "cchip_axis_controller": ("", "s_pair_valid = 1;", "m_beat_valid"),
     "cchip_primtest_array": ("m_result_ready = 1; s_pair_mode = 2;", "s_pair_valid = 1;", "m_result_valid"),
     "cchip_onehot_mux": ("", "select = 1; s_data = 1;", "m_data"),
@@ -190,7 +192,7 @@ STATIC_SIDE = {"cchip_primtest_subsystem": "SLOTS 1"}
 
 # Modules that a design of its own instantiates: their ports are listed by interface, and they have an instance template.
 INSTANTIATED = ("cchip_primtest", "cchip_primtest_tri_tri", "cchip_primtest_tri_quad", "cchip_primtest_quad_quad",
-                "cchip_primtest_subsystem", "cchip_broad_phase", "cchip_chip", "cchip_cache", "cchip_axi_read", "cchip_axi_write",
+                "cchip_primtest_point_tri", "cchip_primtest_subsystem", "cchip_broad_phase", "cchip_chip", "cchip_cache", "cchip_axi_read", "cchip_axi_write",
                 "cchip_fifo", "cchip_skid_buffer")
 
 LATENCY_LIMIT = 1000  # clocks; a longer wait means a stimulus without effect

@@ -127,6 +127,8 @@
 `define CCHIP_RM_TRI_QUAD 8'd2
 // cchip_primtest_quad_quad
 `define CCHIP_RM_QUAD_QUAD 8'd3
+// cchip_primtest_point_tri
+`define CCHIP_RM_POINT_TRI 8'd4
 
 // ---- phase of a swap (cchip_config_controller)
 // no swap
@@ -304,6 +306,14 @@
 `define CCHIP_NORM_W(w) ((w) + 3)
 // |axis|_1: <= 6 (2^w - 1)^2 [bit]
 `define CCHIP_AXIS_NORM_W(w) (2 * (w) + 3)
+// dot product of two differences: |.| <= 3 (2^w - 1)^2 [bit]
+`define CCHIP_GRAM_W(w) (2 * (w) + 3)
+// cofactor of a Gram matrix of differences, sum of a row of them or of all: |.| <= 9 (2^w - 1)^4
+// [bit]
+`define CCHIP_COFACTOR_W(w) (4 * (w) + 5)
+// square of a determinant, less the square of a radius times that of a normal: |.| <= 16 (2^w -
+// 1)^6 [bit]
+`define CCHIP_FACE_W(w) (6 * (w) + 5)
 // error bounds of stage compare: at most 16 (|axis|_1 + (|e|_1 + |f|_1 + 32) 2^(w+3)) [bit]
 `define CCHIP_BOUND_W(w) (2 * (w) + 11)
 // points projected for each axis, relative projection; a, b = vertices of A and of B [point]
@@ -350,6 +360,16 @@
 `define CCHIP_BEAT_LATENCY(s) (`CCHIP_PIPE_LATENCY((s)) + `CCHIP_PROGRAMME_LATENCY + 3)
 // default CONTEXTS: round trip of a one-beat pair + 4 [pair]
 `define CCHIP_CONTEXTS_DEFAULT(s) (`CCHIP_PAIR_LATENCY((s), 1) + 4)
+// product in a dot product of two differences [clock]
+`define CCHIP_GRAM_LATENCY(w) (`CCHIP_MUL_LATENCY(`CCHIP_EDGE_W((w)) + 1, `CCHIP_EDGE_W((w))))
+// product of two entries of a Gram matrix [clock]
+`define CCHIP_COFACTOR_LATENCY(w) (`CCHIP_MUL_LATENCY(`CCHIP_GRAM_W((w)), `CCHIP_GRAM_W((w))))
+// cchip_point_axes: handshake of s_pair to m_verdict_valid [clock]
+`define CCHIP_POINT_AXES_LATENCY(w) \
+  (22 + `CCHIP_GRAM_LATENCY((w)) + 2 * `CCHIP_COFACTOR_LATENCY((w)))
+// cchip_primtest_point_tri, lone pair: handshake of s_pair to handshake of m_result with ready = 1
+// [clock]
+`define CCHIP_POINT_LATENCY(w) (`CCHIP_POINT_AXES_LATENCY((w)) + 5)
 // longest time from the last accepted pair to idle = 1 with m_result_ready = 1 [clock]
 `define CCHIP_DRAIN_BOUND(s, contexts) \
   (64 * ((contexts) > `CCHIP_PAIR_LATENCY((s), 1) ? (contexts) : `CCHIP_PAIR_LATENCY((s), 1)))

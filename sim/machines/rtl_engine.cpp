@@ -121,9 +121,11 @@ std::unique_ptr<PrimtestMachine> make_rtl_machine(ModuleId id, const RtlMachineO
     case ModuleId::quad_quad:
       return std::make_unique<RtlMachine<Vcchip_primtest_quad_quad>>(id, options);
     case ModuleId::blank:
+    case ModuleId::point_tri:
       break;
   }
-  throw std::invalid_argument("engine rtl: the blank module answers no pairs");
+  throw std::invalid_argument(
+      "engine rtl: only tri_tri, tri_quad and quad_quad answer pairs of faces; choose one of these");
 }
 
 std::unique_ptr<PairEngine> make_rtl_engine(const RtlEngineOptions& options) {

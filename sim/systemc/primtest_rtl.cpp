@@ -54,9 +54,10 @@ std::unique_ptr<PrimtestRtl> power_up_primtest(ModuleId id, std::uint64_t seed) 
     case ModuleId::quad_quad:
       return std::make_unique<Machine<Vcchip_primtest_quad_quad>>(seed);
     case ModuleId::blank:
+    case ModuleId::point_tri:
       break;
   }
-  throw std::invalid_argument("level 3: the blank module has no model; choose one of the three tests");
+  throw std::invalid_argument("level 3: no model of this module; choose one of the three tests of faces");
 }
 
 }  // namespace cchip::levels

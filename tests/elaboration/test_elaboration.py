@@ -21,6 +21,7 @@ FILES = [str(path.parent / line) for path in LISTS for line in path.read_text().
 PATHS = {pathlib.Path(name).stem: name for name in FILES}
 TOP = "cchip_primtest_tri_tri"
 ARRAY = "cchip_primtest_array"
+POINT = "cchip_primtest_point_tri"
 QUADS = ("cchip_primtest_tri_quad", "cchip_primtest_quad_quad")
 
 
@@ -104,6 +105,8 @@ ILLEGAL = [
     *(("cchip_sat_compare", {"POINTS": n}, COMPARE) for n in (2, 6)),
     *(("cchip_sat_compare", {"OWN": n}, COMPARE) for n in (0, 3)),
     ("cchip_sat_pipeline", {"COORD_W": 16, "SUBSTAGES": 5}, TOO_SHORT),
+    *((POINT, {"COORD_W": w}, COORD_W) for w in (3, 21)),
+    *((POINT, {"CONTEXTS": n}, CONTEXTS) for n in (0, 257)),
     ("cchip_sat_pipeline", {"ABSOLUTE_PROJECTION": 2}, PROJECTION),
     *(("cchip_mul_wide", {"A_W": a, "B_W": b}, MUL_WIDE) for a, b in ((1, 18), (18, 1), (53, 18), (18, 53))),
     ("cchip_mul_wide", {"PRODUCT_REGS": -1}, MUL_WIDE),
@@ -240,7 +243,8 @@ LEGAL = [
     (TOP, {"COORD_W": 20, "SUBSTAGES": 32}),
     (QUADS[1], {"COORD_W": 4, "SUBSTAGES": 32, "ABSOLUTE_PROJECTION": 1}),
     *((TOP, {"CONTEXTS": n}) for n in (1, 2, 5, 256)),
-    *((module, {}) for module in (TOP, *QUADS, "cchip_primtest_blank")),
+    *((module, {}) for module in (TOP, *QUADS, POINT, "cchip_primtest_blank")),
+    *((POINT, {"COORD_W": w, "CONTEXTS": n}) for w, n in ((4, 1), (17, 2), (20, 256))),
     *((ARRAY, {"LANES": lanes, "CONTEXTS": contexts, "COORD_W": 4, "SUBSTAGES": smallest_substages(4)})
       for lanes, contexts in ((1, 1), (2, 5), (16, 256))),
     (ARRAY, {"LANES": 3, "VERTS_A": 4, "VERTS_B": 4, "ABSOLUTE_PROJECTION": 1, "WARPED_EXACT": 0}),

@@ -53,6 +53,8 @@ constexpr const char* name_of(ModuleId code) {
       return "tri_quad";
     case ModuleId::quad_quad:
       return "quad_quad";
+    case ModuleId::point_tri:
+      return "point_tri";
   }
   return nullptr;
 }

@@ -31,6 +31,7 @@ enum class ModuleId : std::uint8_t {
   tri_tri = 1,  ///< cchip_primtest_tri_tri
   tri_quad = 2,  ///< cchip_primtest_tri_quad
   quad_quad = 3,  ///< cchip_primtest_quad_quad
+  point_tri = 4,  ///< cchip_primtest_point_tri
 };
 
 /// Phase of a swap (cchip_config_controller).
@@ -244,6 +245,12 @@ constexpr int proj_abs_w(int w) { return 3 * w + 2; }
 constexpr int norm_w(int w) { return w + 3; }
 /// |axis|_1: <= 6 (2^w - 1)^2 [bit]
 constexpr int axis_norm_w(int w) { return 2 * w + 3; }
+/// dot product of two differences: |.| <= 3 (2^w - 1)^2 [bit]
+constexpr int gram_w(int w) { return 2 * w + 3; }
+/// cofactor of a Gram matrix of differences, sum of a row of them or of all: |.| <= 9 (2^w - 1)^4 [bit]
+constexpr int cofactor_w(int w) { return 4 * w + 5; }
+/// square of a determinant, less the square of a radius times that of a normal: |.| <= 16 (2^w - 1)^6 [bit]
+constexpr int face_w(int w) { return 6 * w + 5; }
 /// error bounds of stage compare: at most 16 (|axis|_1 + (|e|_1 + |f|_1 + 32) 2^(w+3)) [bit]
 constexpr int bound_w(int w) { return 2 * w + 11; }
 /// points projected for each axis, relative projection; a, b = vertices of A and of B [point]
@@ -284,6 +291,14 @@ constexpr int pair_latency(int s, int beats) { return pipe_latency(s) + pair_ove
 constexpr int beat_latency(int s) { return pipe_latency(s) + programme_latency() + 3; }
 /// default CONTEXTS: round trip of a one-beat pair + 4 [pair]
 constexpr int contexts_default(int s) { return pair_latency(s, 1) + 4; }
+/// product in a dot product of two differences [clock]
+constexpr int gram_latency(int w) { return mul_latency(edge_w(w) + 1, edge_w(w)); }
+/// product of two entries of a Gram matrix [clock]
+constexpr int cofactor_latency(int w) { return mul_latency(gram_w(w), gram_w(w)); }
+/// cchip_point_axes: handshake of s_pair to m_verdict_valid [clock]
+constexpr int point_axes_latency(int w) { return 22 + gram_latency(w) + 2 * cofactor_latency(w); }
+/// cchip_primtest_point_tri, lone pair: handshake of s_pair to handshake of m_result with ready = 1 [clock]
+constexpr int point_latency(int w) { return point_axes_latency(w) + 5; }
 /// longest time from the last accepted pair to idle = 1 with m_result_ready = 1 [clock]
 constexpr int drain_bound(int s, int contexts) { return 64 * (contexts > pair_latency(s, 1) ? contexts : pair_latency(s, 1)); }
 /// cchip_primtest_array: added to the latency of a pair; two registers from lane to lane, one behind the lane [clock]

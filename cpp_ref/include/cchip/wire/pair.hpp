@@ -43,17 +43,18 @@ std::string to_text(const GridPair& pair);
 /// The module that answers a pair of these kinds; a quad and a triangle are answered with A and B exchanged.
 ModuleId module_of(Kind a, Kind b);
 inline ModuleId module_of(const GridPair& pair) { return module_of(pair.a.kind, pair.b.kind); }
-/// Kinds of A and of B that the module takes: a triangle and a quad for tri_quad. Not for blank.
+/// Kinds of A and of B that the module takes: a triangle and a quad for tri_quad. Not for blank and point_tri.
 constexpr std::array<Kind, 2> kinds_of(ModuleId id) {
   const int m = static_cast<int>(id);
   return {static_cast<Kind>(defs::rm_verts_a(m)), static_cast<Kind>(defs::rm_verts_b(m))};
 }
-/// Vertices of A and of B that the module takes: {3, 4} for tri_quad. {0, 0} for blank.
+/// Vertices of A and of B that the module takes: {3, 4} for tri_quad. {0, 0} for blank, {1, 3} for point_tri.
 constexpr std::array<std::size_t, 2> vertices_of(ModuleId id) {
   if (id == ModuleId::blank) return {0, 0};
+  if (id == ModuleId::point_tri) return {1, 3};
   return {static_cast<std::size_t>(kinds_of(id)[0]), static_cast<std::size_t>(kinds_of(id)[1])};
 }
-/// "tri_tri", "tri_quad", "quad_quad" or "blank".
+/// "tri_tri", "tri_quad", "quad_quad", "point_tri" or "blank".
 const char* to_name(ModuleId id);
 
 /// One beat of the stream s_pair.
