@@ -36,7 +36,7 @@ module cchip_refit_frame (
   wire signed [22:0] nearest = {sum_q1[52], sum_q1[52:31]} + {22'd0, up};
   wire fits_field = (&nearest[22:17]) | ~(|nearest[22:17]);
   reg signed [17:0] origin_q2, origin_q3;
-  wire signed [28:0] origin2 = {{5{origin_q2[17]}}, origin_q2, 6'd0};
+  wire [28:0] origin2 = {{5{origin_q2[17]}}, origin_q2, 6'd0};
   // ---- how far the box reaches to both sides, each as a negative number
   reg signed [28:0] low_q3, high_q3, low_q, high_q;
   wire new_box = axis_q3 == 2'd0;

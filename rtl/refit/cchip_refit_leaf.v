@@ -55,7 +55,7 @@ module cchip_refit_leaf (
       reg signed [48:0] shifted_q;
       reg signed [49:0] position_q;
       wire signed [48:0] offset = {{25{offset_q[23]}}, offset_q};
-      wire signed [49:0] from_centre = {{2{origin[24*i+23]}}, origin[24*i+:24], 24'd0};
+      wire [49:0] from_centre = {{2{origin[24*i+23]}}, origin[24*i+:24], 24'd0};
       wire signed [50:0] position = {position_q[49], position_q};
       always @(posedge clk) begin
         offset_q   <= s_quad ? corner[24*i+:24] : {triangle[20*i+:20], 4'd0};

@@ -66,12 +66,13 @@ module cchip_point_axes #(
   reg [COORD_W-1:0] radius_q;
   reg [USER_W-1:0] user_q;
 
-  function [3*D_W-1:0] from_point(input [3*COORD_W-1:0] vertex, input [3*COORD_W-1:0] point);
+  function [3*D_W-1:0] from_point(input [3*COORD_W-1:0] corner, input [3*COORD_W-1:0] point);
     integer i;
     reg [COORD_W-1:0] to, from;
     begin
+      from_point = {3 * D_W{1'b0}};
       for (i = 0; i < 3; i = i + 1) begin
-        to = vertex[COORD_W*i+:COORD_W];
+        to = corner[COORD_W*i+:COORD_W];
         from = point[COORD_W*i+:COORD_W];
         from_point[D_W*i+:D_W] = {to[COORD_W-1], to} - {from[COORD_W-1], from};
       end
