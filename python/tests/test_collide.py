@@ -226,6 +226,21 @@ def test_contacts_relation_and_counts():
     assert apart.relation == "apart" and apart.contacts.shape == (0, 2)
 
 
+def test_a_hint_is_tested_first_and_changes_no_answer():
+    every = collide(TORUS, None, TORUS, shift(1), contacts="all")
+    last = None
+    for step in np.linspace(0.9, 2.9, 41):
+        plain = collide(TORUS, None, TORUS, shift(step))
+        result = collide(TORUS, None, TORUS, shift(step), hint=last)
+        assert result.hit == plain.hit
+        last = result
+    assert not last.hit and collide(TORUS, None, TORUS, shift(1), hint=last).hit
+    again = collide(TORUS, None, TORUS, shift(1), hint=every)
+    assert again.contacts[0].tolist() == every.contacts[0].tolist() and again.counts["steps"] == 0
+    with pytest.raises(TypeError):
+        collide(TORUS, None, TORUS, shift(1), hint=(0, 0))
+
+
 def test_contacts_stay_valid_without_their_result():
     contacts = collide(TORUS, None, TORUS, shift(0.5), contacts="all").contacts
     assert contacts.max() < TORUS.face_count and not contacts.flags.writeable
