@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Objects whose vertices move, and faces of one object that touch each other.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cchip/bvh/image.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/exact/oracle.hpp>
 #include <cchip/reference/brute_force.hpp>
 #include <cchip/sim/seed.hpp>
+#include <cmath>
 #include <limits>
 
 #include "bvh_meshes.hpp"
@@ -22,6 +24,74 @@ std::vector<Mesh> bodies(std::mt19937_64& random) {
 }
 
 bool same(const bvh::Dop26& x, const bvh::Dop26& y) { return x.least == y.least && x.greatest == y.greatest; }
+
+/// The words of a node with this volume, one by one as SupportLine says, with the allowances for rounding.
+std::array<std::int16_t, bvh::support_words> plain_words(const bvh::Dop26& dop, const Vec3d& centre, double unit) {
+  std::array<std::int16_t, bvh::support_words> words = {};
+  const double slack = 0x1p-49 * (centre.cwiseAbs().sum() + 4.0 * bvh::support_most * unit) + 0x1p-1060;
+  for (std::size_t w = 0; w < words.size(); ++w) {
+    const std::array<int, 3> v = bvh::support_direction(w);
+    for (std::size_t d = 0; d < bvh::directions.size(); ++d) {
+      const std::array<int, 3>& u = bvh::directions[d];
+      const bool along = v == u;
+      if (!along && v != std::array<int, 3>{-u[0], -u[1], -u[2]}) continue;
+      const double at = u[0] * centre[0] + u[1] * centre[1] + u[2] * centre[2];
+      const double reach = (along ? dop.greatest[d] - at : at - dop.least[d]) + slack;
+      const double length = std::sqrt(static_cast<double>(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+      const double steps = std::ceil(reach / (length * unit) + 0x1p-30);
+      const double most = bvh::support_most;
+      words[w] = static_cast<std::int16_t>(std::max(-most, std::min(most, steps)));
+    }
+  }
+  return words;
+}
+
+/// \param tree of the mesh, with its volumes
+void require_plain(const bvh::SupportTree& got, const Mesh& mesh, const bvh::Tree& tree) {
+  const bvh::Dop26& all = tree.nodes.front().dop;
+  for (std::size_t k = 0; k < 3; ++k) {
+    REQUIRE(got.centre()[static_cast<Eigen::Index>(k)] == all.least[k] / 2 + all.greatest[k] / 2);
+  }
+  double radius = 0;
+  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+    const Primitive p = mesh.primitive(face);
+    for (std::size_t i = 0; i < p.vertex_count(); ++i) {
+      const Vec3d v = p.v[i] - got.centre();
+      radius = std::max(radius, std::hypot(v.x(), v.y(), v.z()));
+    }
+  }
+  REQUIRE(got.unit() == std::max(radius * (1 + 0x1p-40) / bvh::support_most, 0x1p-1000));
+  REQUIRE(got.extent() == got.centre().cwiseAbs().maxCoeff() + bvh::support_most * got.unit());
+  REQUIRE(got.size() + 1 == tree.nodes.size());
+  for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
+    auto words = plain_words(tree.nodes[n].dop, got.centre(), got.unit());
+    const bvh::SupportLine& line = got.lines()[n == 0 ? got.size() : n - 1];
+    words[6] = line.word[6];
+    words[7] = line.word[7];
+    REQUIRE(words == line.word);
+    REQUIRE(line.ref().is_leaf() == (tree.nodes[n].kind != bvh::NodeKind::inner));
+    REQUIRE(line.ref().count() == tree.nodes[n].count);
+    if (!line.ref().is_leaf()) REQUIRE(line.ref().first() + 1 == tree.nodes[n].first);
+  }
+  const bvh::SupportLine& whole = got.lines()[got.size()];
+  REQUIRE(got.whole_words() == whole.word);
+  REQUIRE(got.root().bits() == whole.ref().bits());
+  for (std::size_t k = 0; k < 3; ++k) {
+    REQUIRE(got.half(k) == got.unit() * std::max(whole.word[2 * k], whole.word[2 * k + 1]));
+  }
+  for (std::size_t i = 1; i < 4; ++i) REQUIRE(got.lines()[got.size() + i].word == bvh::SupportLine().word);
+}
+
+/// Word by word.
+void require_same(const bvh::SupportTree& x, const bvh::SupportTree& y) {
+  REQUIRE(x.centre() == y.centre());
+  REQUIRE(x.unit() == y.unit());
+  REQUIRE(x.size() == y.size());
+  REQUIRE(x.root().bits() == y.root().bits());
+  REQUIRE(x.faces() == y.faces());
+  for (std::size_t n = 0; n < x.size() + 4; ++n) REQUIRE(x.lines()[n].word == y.lines()[n].word);
+  for (std::size_t v = 0; v < 6 * x.faces().size() + 24; ++v) REQUIRE(x.vertices(0)[v] == y.vertices(0)[v]);
+}
 
 }  // namespace
 
@@ -43,6 +113,69 @@ TEST_CASE("moved: the nodes of a tree come back from the object, and a refit res
       REQUIRE(same(tree.nodes[n].dop, built.nodes[n].dop));
     }
   }
+}
+
+TEST_CASE("moved: the tree is, word by word, that of its volumes after a refit", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  std::vector<Mesh> meshes = assorted_meshes(random);
+  for (Mesh& mesh : bodies(random)) meshes.push_back(std::move(mesh));
+  for (Mesh& mesh : meshes) {  // a vertex that no face uses, in the first place, where it moves all others
+    if (random() % 2 == 0) continue;
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    mesh.vertices.insert(mesh.vertices.begin(), random() % 2 == 0 ? Vec3d(nan, 0, 0) : Vec3d(0, 0x1p1010, 1));
+    for (Mesh::Face& face : mesh.faces) {
+      for (std::uint32_t& v : face.vertex) ++v;
+    }
+  }
+  std::size_t fans_changed = 0;
+  for (const Mesh& mesh : meshes) {
+    INFO(mesh.name);
+    const bvh::Tree built = bvh::build_tree(mesh);
+    const Object rest(mesh);
+    require_plain(rest.tree(), mesh, built);
+    const auto scaled = [&mesh, &rest](int exponent) {  // to that size
+      Mesh next = mesh;
+      exponent -= std::ilogb(rest.tree().extent());
+      for (Vec3d& v : next.vertices) v = v.unaryExpr([exponent](double c) { return std::ldexp(c, exponent); });
+      return next;
+    };
+    const double size = rest.tree().extent();
+    Mesh rounded = mesh;  // vertices fall together, so that triangles share edges that did not
+    for (Vec3d& v : rounded.vertices) v = (3 / size * v).array().round().matrix();
+    Mesh flat = mesh;
+    for (Vec3d& v : flat.vertices) v.z() = -0.0;
+    Mesh mixed = mesh;
+    std::shuffle(mixed.vertices.begin() + 1, mixed.vertices.end(), random);
+    if (!(std::abs(mesh.vertices[0].sum()) < 0x1p1002)) mixed.vertices[0] = mesh.vertices[0];
+    Mesh far = mesh;
+    for (Vec3d& v : far.vertices) v += size * Vec3d(1e5, -3e7, 0.1);
+    const std::vector<Mesh> next = {mesh,
+                                    noisy(mesh, 0.01 * size, random),
+                                    noisy(mesh, size < 0x1p900 ? size : 0.02 * size, random),
+                                    rounded,
+                                    flat,
+                                    mixed,
+                                    size < 0x1p900 ? far : mesh,
+                                    scaled(900),
+                                    scaled(-900),
+                                    scaled(-1060),
+                                    scaled(-3000)};
+    Object object = rest;
+    for (const Mesh& to : next) {
+      for (const Object* from : {&rest, static_cast<const Object*>(&object)}) {
+        const Object moved = from->moved(to.vertices);
+        bvh::Tree tree = built;
+        bvh::refit(tree, to);
+        require_plain(moved.tree(), to, tree);
+        require_same(moved.tree(), bvh::SupportTree(to, tree));
+        fans_changed += moved.tree().faces() != rest.tree().faces() ? 1 : 0;
+        REQUIRE(moved.mesh().file_face == mesh.file_face);
+        REQUIRE(moved.mesh().name == mesh.name);
+      }
+      object = object.moved(to.vertices);
+    }
+  }
+  CHECK(fans_changed > 20);
 }
 
 TEST_CASE("support tree: a leaf holds the vertices of its faces, two triangles with an edge in common four",

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <cchip/bvh/support_tree.hpp>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <new>
+#include <utility>
 
 #if __has_include(<sys/mman.h>)
 #include <sys/mman.h>
@@ -51,56 +53,172 @@ double sum_slack(const Vec3d& centre, double unit) {
   return 0x1p-49 * (centre.cwiseAbs().sum() + 4.0 * support_most * unit) + 0x1p-1060;
 }
 
-/// Makes the lines of an object.
+/// sum_up() of two numbers that are at most 2^1002 in magnitude, in a form that compilers vectorise.
+double finite_sum_up(double a, double b) {
+  const double sum = a + b;
+  std::int64_t bits = 0;
+  std::memcpy(&bits, &sum, sizeof bits);
+  const std::int64_t away = sum > 0 ? 1 : -1;  // a sum of 0 has no error
+  bits += sum_error(a, b) > 0 ? away : 0;
+  double up = 0;
+  std::memcpy(&up, &bits, sizeof up);
+  return up;
+}
+
+/// Makes the lines of single vertices. A word is a monotone function of one bound of a volume. So the word of a node is
+/// the greatest word of its vertices, bit for bit what its volume would give, and each vertex is divided only once.
 class LineMaker {
  public:
   LineMaker(const Vec3d& centre, double unit) : slack_(sum_slack(centre, unit)) {
-    for (const Word& w : words()) {
-      centre_[w.word] = along(directions[w.direction], centre);
-      step_[w.word] = w.length * unit;
+    step_.fill(1);
+    for (std::size_t w = 0; w < support_words; ++w) {
+      const std::array<int, 3> v = support_direction(w);
+      if (v == std::array<int, 3>{0, 0, 0}) continue;
+      centre_[w] = along(v, centre);
+      step_[w] = std::sqrt(static_cast<double>(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])) * unit;
     }
   }
 
-  SupportLine line(const Dop26& dop, NodeRef ref) const {
-    SupportLine line;
-    for (const Word& w : words()) {
-      const double at = centre_[w.word];
-      const double reach = (w.negative ? at - dop.least[w.direction] : dop.greatest[w.direction] - at) + slack_;
-      // The division and its operands are off by a few units in the last place of a number below 2^16.
-      const double steps = reach / step_[w.word] + 0x1p-30;
-      // The object lies in the ball, so the bound may be cut off there. An overflow leaves the ball, too.
-      const double most = support_most;
-      const double cut = steps < most ? std::max(steps, -most) : most;
-      const int whole = static_cast<int>(cut);  // towards zero; ceil() would be a call
-      line.word[w.word] = static_cast<std::int16_t>(whole + (whole < cut ? 1 : 0));
+  /// \param vertex at most 2^1000 in magnitude
+  SupportLine line(const Vec3d& vertex) const {
+    const double x = vertex.x();
+    const double y = vertex.y();
+    const double z = vertex.z();
+    // How far it lies along the direction of each word, rounded up as in make_dop26(). Loops without branches, each
+    // over numbers of one type, because compilers vectorise these.
+    alignas(64) std::array<double, support_words> at;
+    const std::array<double, 8> axes = {x, -x, y, -y, z, -z, 0, 0};
+    std::copy(axes.begin(), axes.end(), at.begin());
+    alignas(64) const std::array<double, 16> u = {y, -y, y, -y, z, -z, z, -z, x, -x, x, -x, 0, 0, 0, 0};
+    alignas(64) const std::array<double, 16> v = {z, z, -z, -z, x, x, -x, -x, y, y, -y, -y, 0, 0, 0, 0};
+    for (std::size_t i = 0; i < u.size(); ++i) at[first_face_word + i] = finite_sum_up(u[i], v[i]);
+    const double* const xy = at.data() + first_face_word + 8;
+    for (std::size_t i = 0; i < 4; ++i) {
+      at[first_corner_word + i] = finite_sum_up(xy[i], z);
+      at[first_corner_word + 4 + i] = finite_sum_up(xy[i], -z);
     }
-    const std::uint32_t bits = ref.bits();
-    std::memcpy(&line.word[6], &bits, sizeof bits);
+    // The division and its operands are off by a few units in the last place of a number below 2^16. The object lies in
+    // the ball, so the bound may be cut off there. An overflow leaves the ball, too.
+    constexpr double most = support_most;
+    for (std::size_t w = 0; w < support_words; ++w) {
+      const double steps = (at[w] - centre_[w] + slack_) / step_[w] + 0x1p-30;
+      const double below = steps < most ? steps : most;
+      at[w] = below > -most ? below : -most;
+    }
+    // ceil() would be a call: towards zero, and one up from there.
+    alignas(64) std::array<std::int32_t, support_words> whole;
+    for (std::size_t w = 0; w < support_words; ++w) whole[w] = static_cast<std::int32_t>(at[w]);
+    for (std::size_t w = 0; w < support_words; ++w) {
+      const double cut = whole[w];
+      at[w] = cut + (cut < at[w] ? 1.0 : 0.0);
+    }
+    for (std::size_t w = 0; w < support_words; ++w) whole[w] = static_cast<std::int32_t>(at[w]);
+    SupportLine line;
+    for (std::size_t w = 0; w < support_words; ++w) line.word[w] = static_cast<std::int16_t>(whole[w]);
+    line.word[6] = line.word[7] = 0;
+    for (std::size_t w = first_face_word + 12; w < support_words; ++w) line.word[w] = 0;
     return line;
   }
 
  private:
   double slack_;
-  std::array<double, support_words> centre_ = {};
-  std::array<double, support_words> step_ = {};
+  alignas(64) std::array<double, support_words> centre_ = {};
+  alignas(64) std::array<double, support_words> step_;
 };
+
+void take_greatest(SupportLine& line, const SupportLine& other) {
+  for (std::size_t w = 0; w < support_words; ++w) {
+    line.word[w] = line.word[w] < other.word[w] ? other.word[w] : line.word[w];
+  }
+}
+
+void set_ref(SupportLine& line, NodeRef ref) {
+  const std::uint32_t bits = ref.bits();
+  std::memcpy(&line.word[6], &bits, sizeof bits);
+}
+
+bool same_place(const Mesh& mesh, std::uint32_t p, std::uint32_t q) {
+  if (p == q) return true;
+  const Vec3d& u = mesh.vertices[p];
+  const Vec3d& v = mesh.vertices[q];
+  return u.x() == v.x() && u.y() == v.y() && u.z() == v.z();
+}
+
+/// Numbers of four vertices.
+using Corners = std::array<std::uint32_t, 4>;
 
 /// Two triangles as the corners of a fan: three of the first one, then the one that only the second one has.
 /// \returns false if no edge of one is an edge of the other
-bool make_fan(const Primitive& one, const Primitive& two, std::array<Vec3d, 4>& corners) {
+bool make_fan(const Mesh& mesh, const Mesh::Face& one, const Mesh::Face& two, Corners& corners) {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       // Edge i, i + 1 against edge k, k + 1 in either direction: a fan needs no orientation.
-      const Vec3d& from = one.v[i];
-      const Vec3d& to = one.v[(i + 1) % 3];
-      const Vec3d& p = two.v[k];
-      const Vec3d& q = two.v[(k + 1) % 3];
-      if (!((from == q && to == p) || (from == p && to == q))) continue;
-      corners = {to, one.v[(i + 2) % 3], from, two.v[(k + 2) % 3]};
+      const std::uint32_t from = one.vertex[i];
+      const std::uint32_t to = one.vertex[(i + 1) % 3];
+      const std::uint32_t p = two.vertex[k];
+      const std::uint32_t q = two.vertex[(k + 1) % 3];
+      if (!((same_place(mesh, from, q) && same_place(mesh, to, p)) ||
+            (same_place(mesh, from, p) && same_place(mesh, to, q)))) {
+        continue;
+      }
+      corners = {to, one.vertex[(i + 2) % 3], from, two.vertex[(k + 2) % 3]};
       return true;
     }
   }
   return false;
+}
+
+/// For each vertex, whether a face uses it: others may be anything.
+std::vector<std::uint8_t> used_vertices(const Mesh& mesh) {
+  std::vector<std::uint8_t> used(mesh.vertices.size());
+  for (const Mesh::Face& face : mesh.faces) {
+    for (std::size_t v = 0; v < 3; ++v) used[face.vertex[v]] = 1;
+    if (face.kind == Kind::quad) used[face.vertex[3]] = 1;
+  }
+  return used;
+}
+
+/// A triangle has its vertex 0 twice.
+Corners four_corners(const Mesh::Face& face) {
+  return {face.vertex[0], face.vertex[1], face.vertex[2], face.vertex[face.kind == Kind::quad ? 3 : 0]};
+}
+
+Vec3d middle_of(const Mesh& mesh, const std::vector<std::uint8_t>& used) {
+  Vec3d least = Vec3d::Constant(std::numeric_limits<double>::infinity());
+  Vec3d greatest = -least;
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (used[v] == 0) continue;
+    least = least.cwiseMin(mesh.vertices[v]);
+    greatest = greatest.cwiseMax(mesh.vertices[v]);
+  }
+  return least / 2 + greatest / 2;
+}
+
+/// The greatest distance from the centre, as hypot() rounds it. It is called for few vertices: one that is closer by
+/// 2^-40 of the distance, computed without care, cannot be the farthest.
+double radius_of(const Mesh& mesh, const std::vector<std::uint8_t>& used, const Vec3d& centre) {
+  const auto square = [&](std::size_t v) {
+    const Vec3d& at = mesh.vertices[v];
+    const double x = at.x() - centre.x();
+    const double y = at.y() - centre.y();
+    const double z = at.z() - centre.z();
+    return x * x + y * y + z * z;
+  };
+  double greatest = 0;
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (used[v] == 0) continue;
+    const double size = square(v);
+    greatest = size > greatest ? size : greatest;
+  }
+  // Where squares underflow or overflow, all are candidates.
+  const double candidate = greatest > 0x1p-900 && greatest < 0x1p1000 ? greatest * (1 - 0x1p-40) : 0;
+  double radius = 0;
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (used[v] == 0 || square(v) < candidate) continue;
+    const Vec3d at = mesh.vertices[v] - centre;
+    radius = std::max(radius, std::hypot(at.x(), at.y(), at.z()));
+  }
+  return radius;
 }
 
 }  // namespace
@@ -121,40 +239,6 @@ void* allocate_bytes(std::size_t bytes) {
 void free_bytes(void* memory) noexcept { ::operator delete (memory, std::align_val_t{cache_line}); }
 
 SupportTree::SupportTree(const Mesh& mesh, const Tree& tree) : depth_(tree.depth) {
-  const Dop26& all = tree.nodes.front().dop;
-  for (std::size_t k = 0; k < 3; ++k) {
-    centre_[static_cast<Eigen::Index>(k)] = all.least[k] / 2 + all.greatest[k] / 2;
-  }
-  double radius = 0;
-  for (const std::uint32_t face : tree.faces) {
-    const Primitive p = mesh.primitive(face);
-    for (std::size_t i = 0; i < p.vertex_count(); ++i) {
-      const Vec3d v = p.v[i] - centre_;
-      radius = std::max(radius, std::hypot(v.x(), v.y(), v.z()));
-    }
-  }
-  unit_ = std::max(radius * (1 + 0x1p-40) / support_most, least_unit);  // up: hypot() and the difference are rounded
-
-  std::vector<float> vertices;
-  const std::vector<NodeRef> refs = place_leaves(mesh, tree, vertices);
-  root_ = refs.front();
-  size_ = tree.nodes.size() - 1;
-  vertices_at_ = (size_ + 4) * sizeof(SupportLine);
-  memory_.resize(vertices_at_ + vertices.size() * sizeof(float));
-  const LineMaker maker(centre_, unit_);
-  const auto put = [&](std::size_t at, const SupportLine& line) {
-    std::memcpy(memory_.data() + at * sizeof line, &line, sizeof line);
-  };
-  for (std::size_t n = 1; n < tree.nodes.size(); ++n) put(n - 1, maker.line(tree.nodes[n].dop, refs[n]));
-  const SupportLine whole_line = maker.line(all, root_);
-  put(size_, whole_line);
-  std::memcpy(memory_.data() + vertices_at_, vertices.data(), vertices.size() * sizeof(float));
-  whole_words_ = whole_line.word;
-  extent_ = centre_.cwiseAbs().maxCoeff() + support_most * unit_;
-  for (std::size_t k = 0; k < 3; ++k) half_[k] = unit_ * std::max(whole_words_[2 * k], whole_words_[2 * k + 1]);
-}
-
-std::vector<NodeRef> SupportTree::place_leaves(const Mesh& mesh, const Tree& tree, std::vector<float>& vertices) {
   std::vector<NodeRef> refs(tree.nodes.size());
   std::vector<std::uint32_t> leaf_at(tree.faces.size());  // number of the node whose primitives begin there
   for (std::uint32_t n = 0; n < tree.nodes.size(); ++n) {
@@ -166,39 +250,118 @@ std::vector<NodeRef> SupportTree::place_leaves(const Mesh& mesh, const Tree& tre
       leaf_at[node.first] = n;
     }
   }
-  faces_.reserve(tree.faces.size());
-  vertices.reserve(6 * tree.faces.size());
-  const auto add_vertices = [&](const std::array<std::array<Vec3d, 4>, 2>& corners, std::size_t count) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto axis = static_cast<Eigen::Index>(k);
-      for (std::size_t i = 0; i < count; ++i) {
-        for (const Vec3d& v : corners[i]) {
-          vertices.push_back(static_cast<float>((v[axis] - centre_[axis]) / unit_));
-        }
-      }
-    }
-  };
+  std::vector<Leaf> leaves;
+  leaves.reserve(tree.faces.size());
   for (std::size_t at = 0; at < tree.faces.size();) {
-    const std::uint32_t n = leaf_at[at];
-    const std::size_t count = tree.nodes[n].count;
-    const auto first = static_cast<std::uint32_t>(faces_.size());
-    std::array<std::array<Vec3d, 4>, 2> corners;
-    std::array<Primitive, 2> primitives;
-    for (std::size_t i = 0; i < count; ++i) {
-      const Primitive p = primitives[i] = mesh.primitive(tree.faces[at + i]);
-      for (std::size_t v = 0; v < 4; ++v) corners[i][v] = p.v[v < p.vertex_count() ? v : 0];
-      faces_.push_back(tree.faces[at + i]);
-    }
-    const bool fan = count == 2 && make_fan(primitives[0], primitives[1], corners[0]);
-    const std::size_t sets = fan ? 1 : count;
-    add_vertices(corners, sets);
-    faces_.resize(first + 2 * sets, faces_.back());
-    refs[n] = NodeRef::leaf(first, static_cast<std::uint32_t>(count), fan || tree.nodes[n].kind == NodeKind::quad);
+    const std::size_t count = tree.nodes[leaf_at[at]].count;
+    leaves.push_back({leaf_at[at], static_cast<std::uint32_t>(count), {tree.faces[at], tree.faces[at + count - 1]}});
     at += count;
   }
-  vertices.resize(vertices.size() + 24);  // two primitives can always be read
+  fill(mesh, std::move(refs), leaves);
+}
+
+SupportTree SupportTree::moved(const Mesh& mesh) const {
+  std::vector<NodeRef> refs(size_ + 1);
+  refs[0] = root_;
+  // A leaf begins at an even place. 0 where none begins: the root is no leaf.
+  std::vector<std::uint32_t> leaf_at(faces_.size() / 2);
+  for (std::uint32_t n = 1; n <= size_; ++n) {
+    const NodeRef ref = refs[n] = lines()[n - 1].ref();
+    if (ref.is_leaf()) leaf_at[ref.first() / 2] = n;
+  }
+  std::vector<Leaf> leaves;
+  leaves.reserve(leaf_at.size());
+  for (std::size_t i = 0; i < leaf_at.size(); ++i) {
+    if (leaf_at[i] == 0) continue;
+    const std::uint32_t count = refs[leaf_at[i]].count();
+    leaves.push_back({leaf_at[i], count, {faces_[2 * i], faces_[2 * i + count - 1]}});
+  }
+  SupportTree tree;
+  tree.depth_ = depth_;
+  tree.fill(mesh, std::move(refs), leaves);
+  return tree;
+}
+
+void SupportTree::fill(const Mesh& mesh, std::vector<NodeRef> refs, const std::vector<Leaf>& leaves) {
+  const std::vector<std::uint8_t> used = used_vertices(mesh);
+  centre_ = middle_of(mesh, used);
+  // Up: hypot() and the difference are rounded.
+  unit_ = std::max(radius_of(mesh, used, centre_) * (1 + 0x1p-40) / support_most, least_unit);
+  const LineMaker maker(centre_, unit_);
+  std::vector<SupportLine> vertex_lines;
+  std::vector<std::array<float, 3>> points;
+  vertex_lines.reserve(used.size());
+  points.reserve(used.size());
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (used[v] == 0) {
+      vertex_lines.emplace_back();
+      points.emplace_back();
+      continue;
+    }
+    vertex_lines.push_back(maker.line(mesh.vertices[v]));
+    const Vec3d at = (mesh.vertices[v] - centre_) / unit_;
+    points.push_back({static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z())});
+  }
+
+  std::vector<std::array<Corners, 2>> corners(leaves.size());
+  faces_.reserve(4 * leaves.size());
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const Leaf& leaf = leaves[i];
+    const Mesh::Face& one = mesh.faces[leaf.faces[0]];
+    const Mesh::Face& two = mesh.faces[leaf.faces[1]];
+    const bool fan = leaf.count == 2 && make_fan(mesh, one, two, corners[i][0]);
+    if (!fan) {
+      corners[i][0] = four_corners(one);
+      corners[i][1] = four_corners(two);
+    }
+    const auto first = static_cast<std::uint32_t>(faces_.size());
+    const bool quad = leaf.count == 1 && one.kind == Kind::quad;
+    refs[leaf.node] = NodeRef::leaf(first, leaf.count, fan || quad);
+    faces_.push_back(leaf.faces[0]);
+    faces_.push_back(leaf.faces[1]);
+    if (refs[leaf.node].vertex_sets() == 2) faces_.insert(faces_.end(), 2, leaf.faces[1]);
+  }
   faces_.shrink_to_fit();
-  return refs;
+
+  root_ = refs.front();
+  size_ = refs.size() - 1;
+  vertices_at_ = (size_ + 4) * sizeof(SupportLine);
+  constexpr std::size_t behind = 24;  // two primitives can always be read
+  memory_.resize(vertices_at_ + (6 * faces_.size() + behind) * sizeof(float));
+  std::byte* const lines = memory_.data();
+  const auto put = [lines](std::size_t at, const SupportLine& line) {
+    std::memcpy(lines + at * sizeof line, &line, sizeof line);
+  };
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const NodeRef ref = refs[leaves[i].node];
+    const std::size_t sets = ref.vertex_sets();
+    SupportLine line = vertex_lines[corners[i][0][0]];
+    alignas(64) std::array<float, 24> floats;
+    for (std::size_t s = 0; s < sets; ++s) {
+      for (std::size_t v = 0; v < 4; ++v) {
+        const std::uint32_t vertex = corners[i][s][v];
+        take_greatest(line, vertex_lines[vertex]);
+        for (std::size_t k = 0; k < 3; ++k) floats[4 * (sets * k + s) + v] = points[vertex][k];
+      }
+    }
+    set_ref(line, ref);
+    put(leaves[i].node - 1, line);
+    std::memcpy(lines + vertices_at_ + 6 * ref.first() * sizeof(float), floats.data(), 12 * sets * sizeof(float));
+  }
+  // Children come behind their parent, so one pass from the end sees them first.
+  for (std::size_t n = refs.size(); n-- > 0;) {
+    const NodeRef ref = refs[n];
+    if (ref.is_leaf()) continue;
+    SupportLine line = this->lines()[ref.first()];
+    for (std::uint32_t k = 1; k < ref.count(); ++k) take_greatest(line, this->lines()[ref.first() + k]);
+    set_ref(line, ref);
+    put(n == 0 ? size_ : n - 1, line);
+  }
+  for (std::size_t i = 1; i < 4; ++i) put(size_ + i, SupportLine());
+  std::memset(lines + vertices_at_ + 6 * faces_.size() * sizeof(float), 0, behind * sizeof(float));
+  whole_words_ = this->lines()[size_].word;
+  extent_ = centre_.cwiseAbs().maxCoeff() + support_most * unit_;
+  for (std::size_t k = 0; k < 3; ++k) half_[k] = unit_ * std::max(whole_words_[2 * k], whole_words_[2 * k + 1]);
 }
 
 std::array<float, 24> SupportTree::vertices_of(const Primitive& primitive) const {

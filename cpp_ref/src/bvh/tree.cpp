@@ -48,22 +48,6 @@ int ceil_log2(std::size_t n) {
   return bits;
 }
 
-/// Areas may become infinite within 2^1000; a split then falls back to the median.
-void check_vertices(const Mesh& mesh) {
-  // NaN is not at most 2^1000.
-  const auto is_good = [](const Vec3d& v) {
-    return std::abs(v[0]) <= 0x1p1000 && std::abs(v[1]) <= 0x1p1000 && std::abs(v[2]) <= 0x1p1000;
-  };
-  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
-    const Mesh::Face& face = mesh.faces[i];
-    for (std::size_t v = 0; v < static_cast<std::size_t>(face.kind); ++v) {
-      if (is_good(mesh.vertices[face.vertex[v]])) continue;
-      throw std::invalid_argument("face " + std::to_string(i) + ": vertex " + std::to_string(v) +
-                                  " is not finite or beyond 2^1000; scale the mesh");
-    }
-  }
-}
-
 Item make_item(const Mesh& mesh, std::size_t face) {
   const Primitive p = mesh.primitive(face);
   Item item;
@@ -276,7 +260,24 @@ void enclose_all(Tree& tree, const Mesh& mesh) {
 
 }  // namespace
 
-Tree build_tree(const Mesh& mesh, const TreeOptions& options) {
+/// Areas may become infinite within 2^1000; a split then falls back to the median.
+void check_vertices(const Mesh& mesh) {
+  // NaN is not at most 2^1000.
+  const auto is_good = [](const Vec3d& v) {
+    return std::abs(v[0]) <= 0x1p1000 && std::abs(v[1]) <= 0x1p1000 && std::abs(v[2]) <= 0x1p1000;
+  };
+  if (std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_good)) return;  // there are fewer of them than corners
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const Mesh::Face& face = mesh.faces[i];
+    for (std::size_t v = 0; v < static_cast<std::size_t>(face.kind); ++v) {
+      if (is_good(mesh.vertices[face.vertex[v]])) continue;
+      throw std::invalid_argument("face " + std::to_string(i) + ": vertex " + std::to_string(v) +
+                                  " is not finite or beyond 2^1000; scale the mesh");
+    }
+  }
+}
+
+Tree build_topology(const Mesh& mesh, const TreeOptions& options) {
   constexpr std::size_t most = (std::size_t{1} << 24U) - 2;
   if (mesh.faces.empty())
     throw std::invalid_argument("mesh" + (mesh.name.empty() ? "" : " " + mesh.name) + " has no faces");
@@ -286,7 +287,11 @@ Tree build_tree(const Mesh& mesh, const TreeOptions& options) {
   }
   check_faces(mesh);
   check_vertices(mesh);
-  Tree tree = Builder(mesh, options).collapse();
+  return Builder(mesh, options).collapse();
+}
+
+Tree build_tree(const Mesh& mesh, const TreeOptions& options) {
+  Tree tree = build_topology(mesh, options);
   enclose_all(tree, mesh);
   return tree;
 }

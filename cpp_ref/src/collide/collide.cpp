@@ -43,17 +43,10 @@ struct Enough {};
 
 Object::Object(Mesh mesh) {
   check_float_mode();
-  bvh::SupportTree tree(mesh, bvh::build_tree(mesh));
+  bvh::SupportTree tree(mesh, bvh::build_topology(mesh));
   std::vector<std::uint32_t> by_file = faces_by_file(mesh);
   data_ = std::make_shared<const Data>(
       Data{std::move(mesh), std::move(tree), std::move(by_file), std::make_shared<Edges>()});
-}
-
-Object::Object(Mesh mesh, const bvh::Tree& tree) {
-  bvh::SupportTree support(mesh, tree);
-  std::vector<std::uint32_t> by_file = faces_by_file(mesh);
-  data_ = std::make_shared<const Data>(
-      Data{std::move(mesh), std::move(support), std::move(by_file), std::make_shared<Edges>()});
 }
 
 void Object::refuse_moved_from() {
@@ -83,11 +76,14 @@ Object Object::moved(std::vector<Vec3d> vertices) const {
     throw std::invalid_argument("moved: " + std::to_string(vertices.size()) + " vertices, the object has " +
                                 std::to_string(this->mesh().vertices.size()));
   }
-  Mesh mesh = this->mesh();
-  mesh.vertices = std::move(vertices);
-  bvh::Tree tree = data_->tree.topology();
-  bvh::refit(tree, mesh);
-  return {std::move(mesh), tree};
+  const Mesh& old = this->mesh();
+  Mesh mesh = {old.name, std::move(vertices), old.faces, old.polygons_cut, old.file_face, old.notes};
+  bvh::check_vertices(mesh);
+  bvh::SupportTree tree = data().tree.moved(mesh);
+  Object object;
+  object.data_ =
+      std::make_shared<const Data>(Data{std::move(mesh), std::move(tree), data().by_file, std::make_shared<Edges>()});
+  return object;
 }
 
 Device::Device() { check_float_mode(); }

@@ -89,6 +89,11 @@ struct LargePages {
   LargePages(const LargePages<U>&) {}  // NOLINT: allocators convert
   T* allocate(std::size_t count) { return static_cast<T*>(allocate_bytes(count * sizeof(T))); }
   void deallocate(T* memory, std::size_t) { free_bytes(memory); }
+  /// Leaves bytes as they are: whoever asks for them writes all.
+  template <class U>
+  void construct(U* at) {
+    ::new (static_cast<void*>(at)) U;
+  }
   template <class U>
   bool operator==(const LargePages<U>&) const {
     return true;
@@ -102,8 +107,13 @@ struct LargePages {
 /// Lines and faces of an object. The object lies in a ball of support_most units around its centre.
 class SupportTree {
  public:
-  /// \param tree of this mesh
+  /// \param tree of this mesh; its volumes do not matter
   SupportTree(const Mesh& mesh, const Tree& tree);
+
+  /// The same nodes over a mesh with the same faces and other vertices: what the constructor makes of topology() and
+  /// that mesh. Takes O(faces) time.
+  /// \pre check_faces() and check_vertices() accept the mesh
+  SupportTree moved(const Mesh& mesh) const;
 
   /// The nodes that the tree was made from, without their volumes, which refit() computes from a mesh.
   Tree topology() const;
@@ -138,10 +148,17 @@ class SupportTree {
   std::array<float, 24> vertices_of(const Primitive& primitive) const;
 
  private:
-  /// Gives the leaves their places and fills faces().
-  /// \param vertices what vertices() refers to
-  /// \returns what each node refers to
-  std::vector<NodeRef> place_leaves(const Mesh& mesh, const Tree& tree, std::vector<float>& vertices);
+  struct Leaf {
+    std::uint32_t node;
+    std::uint32_t count;                 ///< of its faces
+    std::array<std::uint32_t, 2> faces;  ///< the same twice if there is one
+  };
+
+  SupportTree() = default;
+  /// Fills in all but depth_.
+  /// \param refs what each node refers to; those of leaves do not matter
+  /// \param leaves in the order of their places
+  void fill(const Mesh& mesh, std::vector<NodeRef> refs, const std::vector<Leaf>& leaves);
 
   Vec3d centre_;
   double unit_;

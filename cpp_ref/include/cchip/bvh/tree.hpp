@@ -49,6 +49,12 @@ struct TreeOptions {
 /// \throws std::invalid_argument the mesh has no faces, or more than 2^24 - 2, or a vertex of a face is not finite or
 ///         its coordinates exceed 2^1000 in magnitude
 Tree build_tree(const Mesh& mesh, const TreeOptions& options = {});
+/// The same without the volumes of the nodes, which SupportTree does not need.
+Tree build_topology(const Mesh& mesh, const TreeOptions& options = {});
+
+/// \pre check_faces() accepts the mesh
+/// \throws std::invalid_argument a vertex of a face is not finite or its coordinates exceed 2^1000 in magnitude
+void check_vertices(const Mesh& mesh);
 
 /// Gives the nodes of a tree the volumes of a mesh with the same faces and other vertices. Takes O(faces) time. A query
 /// stays exact and gets slower the further the faces have moved against each other.

@@ -77,7 +77,7 @@ class Object {
     return *data_;
   }
   [[noreturn]] static void refuse_moved_from();
-  Object(Mesh mesh, const bvh::Tree& tree);
+  Object() = default;
 
   std::shared_ptr<const Data> data_;
 };
