@@ -173,6 +173,62 @@ TEST_CASE("scene: the box of an object holds all its vertices, and little else",
   }
 }
 
+TEST_CASE("scene: candidates are all pairs of boxes that overlap, while objects come, move and go", "[ref][scene]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  const std::vector<Object> objects = {Object(box({1, 1, 1})), Object(box({0.5, 2, 0.01})),
+                                       Object(make_torus(1, 0.4, 6, 5)), Object(box({3, 3, 0}))};
+  std::size_t overlaps = 0;
+  std::size_t pairs = 0;
+  for (int kind = 0; kind < 6; ++kind) {
+    Scene scene;
+    const auto pose = [&] {
+      Vec3d place = random_vector(random, 8);
+      if (kind == 1) place = place.array().round().matrix();                          // flush boxes, equal middles
+      if (kind == 2) place *= std::ldexp(1.0, static_cast<int>(random() % 60) - 50);  // crowded, and strays
+      if (kind == 3) place = Vec3d(3 * place.x(), 0, 0);                              // in a line
+      if (kind == 4 && random() % 8 == 0) place *= 0x1p490;                           // far away
+      if (kind == 5) place = Vec3d(0.25, 0.25, 0.25);                                 // all in one place
+      Pose result = make_pose(place, kind == 1 ? Vec3d(0, 0, 0) : random_vector(random, 180));
+      if (kind == 2 && random() % 16 == 0) result.linear() *= 100;  // a box around many
+      return result;
+    };
+    std::vector<Id> ids;
+    for (int step = 0; step < 40; ++step) {
+      const std::size_t added = step == 0 ? 60 : random() % 12;
+      for (std::size_t i = 0; i < added; ++i) ids.push_back(scene.add(objects[random() % objects.size()], pose()));
+      for (std::size_t i = random() % 12; i > 0 && !ids.empty(); --i) {
+        const std::size_t k = random() % ids.size();
+        scene.remove(ids[k]);
+        ids.erase(ids.begin() + static_cast<std::ptrdiff_t>(k));
+      }
+      if (step == 20) {  // and all of them go
+        for (const Id id : ids) scene.remove(id);
+        ids.clear();
+      }
+      for (std::size_t i = random() % 20; i > 0 && !ids.empty(); --i)
+        scene.set_pose(ids[random() % ids.size()], pose());
+      Pairs expected;
+      for (std::size_t i = 0; i < ids.size(); ++i) {  // ids ascend
+        for (std::size_t k = i + 1; k < ids.size(); ++k) {
+          const WorldBox& p = scene.box(ids[i]);
+          const WorldBox& q = scene.box(ids[k]);
+          bool meet = true;
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (p.least[axis] > q.greatest[axis] || q.least[axis] > p.greatest[axis]) meet = false;
+          }
+          if (meet) expected.emplace_back(ids[i], ids[k]);
+          ++pairs;
+        }
+      }
+      overlaps += expected.size();
+      CAPTURE(kind, step);
+      REQUIRE(scene.candidates() == expected);
+    }
+  }
+  CHECK(overlaps > pairs / 20);
+  CHECK(overlaps < pairs / 2);
+}
+
 TEST_CASE("scene: boxes that touch exactly, and by a last bit do not", "[ref][scene]") {
   const auto device = open_device("cpu");
   const Object cube(box({1, 1, 1}));

@@ -6,7 +6,7 @@
 
 #include <cchip/collide/scene.hpp>
 #include <cstdint>
-#include <functional>
+#include <utility>
 #include <vector>
 
 namespace cchip {
@@ -21,11 +21,10 @@ inline bool overlap(const WorldBox& p, const WorldBox& q) {
   return !apart;
 }
 
-/// Calls `visit` once for each pair of boxes that overlap, by their numbers, either first. Builds a tree of boxes by
-/// halves along the axis of the greatest spread and descends it against itself: O(n log n), plus the pairs, for boxes
-/// that are small beside the space between them; O(n^2) if all overlap. The order depends on the boxes only.
-void visit_box_pairs(const std::vector<WorldBox>& boxes,
-                     const std::function<void(std::uint32_t, std::uint32_t)>& visit);
+/// Every pair of boxes that overlap, once, by their numbers, either first. Builds a tree of boxes by halves of the
+/// greatest spread of their middles and descends it against itself: O(n log n), plus the pairs, for boxes that are
+/// small beside the space between them; O(n^2) if all overlap. The order depends on the boxes only.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> box_pairs(const std::vector<WorldBox>& boxes);
 
 }  // namespace cchip
 

@@ -4,8 +4,10 @@
 #include <cchip/collide/scene.hpp>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "box_pairs.hpp"
 #include "bvh/reach.hpp"
@@ -150,10 +152,10 @@ std::vector<Scene::Candidate> Scene::find_candidates(double within) const {
   const double half = within > 0 ? std::nextafter(within / 2, std::numeric_limits<double>::infinity()) : 0;
   for (const Entry& x : entries_) boxes.push_back(grown(x.box, half));
   std::vector<Candidate> found;
-  visit_box_pairs(boxes, [this, &found](std::uint32_t i, std::uint32_t k) {
+  for (const auto& [i, k] : box_pairs(boxes)) {
     const Candidate pair = entries_[i].id < entries_[k].id ? Candidate{i, k} : Candidate{k, i};
     if (is_wanted(entries_[pair.first], entries_[pair.second])) found.push_back(pair);
-  });
+  }
   return found;
 }
 
@@ -167,10 +169,25 @@ std::vector<std::uint32_t> Scene::near(const Entry& one, double within) const {
   return found;
 }
 
+// The pairs are dealt out by their first object, and only the few of one object are sorted: O(pairs), about.
 std::vector<std::pair<Scene::Id, Scene::Id>> Scene::candidates() const {
-  std::vector<std::pair<Id, Id>> pairs;
-  for (const auto& [a, b] : find_candidates(0)) pairs.emplace_back(entries_[a].id, entries_[b].id);
-  std::sort(pairs.begin(), pairs.end());
+  std::vector<std::uint32_t> order(entries_.size());  // entries by their ids
+  std::iota(order.begin(), order.end(), 0U);
+  const auto id_less = [this](std::uint32_t i, std::uint32_t k) { return entries_[i].id < entries_[k].id; };
+  if (!std::is_sorted(order.begin(), order.end(), id_less)) std::sort(order.begin(), order.end(), id_less);
+  const std::vector<Candidate> found = find_candidates(0);
+  std::vector<std::size_t> next(entries_.size());  // where the next pair of an entry goes
+  for (const Candidate& pair : found) ++next[pair.first];
+  std::size_t sum = 0;
+  for (const std::uint32_t i : order) sum += std::exchange(next[i], sum);
+  std::vector<std::pair<Id, Id>> pairs(found.size());
+  for (const auto& [a, b] : found) pairs[next[a]++] = {entries_[a].id, entries_[b].id};
+  auto first = pairs.begin();
+  for (const std::uint32_t i : order) {  // next[] is where they end now
+    const auto end = pairs.begin() + static_cast<std::ptrdiff_t>(next[i]);
+    std::sort(first, end);
+    first = end;
+  }
   return pairs;
 }
 
