@@ -9,19 +9,23 @@
 //   answer       a line, or a code of cchip_axi_read without data, in any order. Lines in flight
 //                (MISSES of them) hold up only the requests for them; all of these get the
 //                line as it arrives, before its frame is given away
+//   beats        a line is two beats of 256 bits: the lower half with m_valid, the upper one on the
+//                next clock. m_place stays for both
 //   lock         lines in a lock range stay once they are loaded, at most one way of a set, until
 //                they are invalidated
 //   invalidate   lines first..last. invalidate_ready = 1 again: no later answer is of data that
 //                memory held before the command
-//   latency      7 clocks from s_valid to m_valid for a line that is there and a port that is free,
-//                7 from s_valid to m_read_valid, 21 from a line's last beat to m_valid
-//   throughput   a line per port and clock; an arriving line takes a clock of port 0, an
-//                invalidation one in 7 of port 1
+//   turns        a port begins something on every second clock, the same one of both ports
+//   latency      7 clocks from s_valid to m_valid for a line that is there, a port that is free and
+//                its turn, otherwise up to 3 more; 7 from s_valid to m_read_valid likewise, at most
+//                24 from a line's last beat to m_valid
+//   throughput   a line per port and two clocks; an arriving line takes a turn of port 0, an
+//                invalidation one in 5 of port 1
 //   collision    a request that meets a change of its set within 7 clocks, or both of whose ways
 //                are held, is looked up again. The places whose requests are have their turn: one
 //                that has had the turn for AGE clocks is the only one to get a frame. So a request
 //                that is looked up again has its line, or a code, after at most 2 PLACES turns of
-//                AGE + T + 8 PLACES + 16 MISSES clocks each, T the longest time of a read, not
+//                AGE + T + 16 PLACES + 32 MISSES clocks each, T the longest time of a read, not
 //                counting those of invalidations
 //   silence      a slot whose read ended with CCHIP_READ_TIMEOUT or CCHIP_READ_OWED is out of use
 //                while its response is outstanding. With all of them out of use a request whose
@@ -51,7 +55,7 @@ module cchip_cache #(
     output wire [                     1:0] m_valid,
     output wire [    2*$clog2(PLACES)-1:0] m_place,
     output wire [2*`CCHIP_READ_CODE_W-1:0] m_code,
-    output wire [                  1023:0] m_data,            // if m_code is CCHIP_READ_OK
+    output wire [                   511:0] m_data,            // if m_code is CCHIP_READ_OK: a beat
     // lines to lock; none if first > last
     input  wire [        LOCKS*LINE_W-1:0] lock_first,
     input  wire [        LOCKS*LINE_W-1:0] lock_last,
@@ -118,13 +122,18 @@ module cchip_cache #(
   wire [MISS_W-1:0] fill_slot;
   wire [CODE_W-1:0] fill_code;
   wire [SET_W:0] fill_frame;
-  wire [511:0] fill_data;
+  wire [255:0] fill_data;
   wire collect;  // who waits for collect_slot is to be served
   wire [MISS_W-1:0] collect_slot;
   wire [CODE_W-1:0] serve_code;
   wire [SET_W:0] serve_frame;
   wire [1:0] serving, serve_valid;
   wire exhausted;  // no slot will come back unless memory answers a read of long ago
+
+  // What a port does takes two clocks of the memory of lines. So it begins something only while
+  // turn_q = 1; stage 5 reads or writes a lower half while turn_q = 0, then the upper one.
+  reg turn_q;
+  always @(posedge clk) turn_q <= ~rst & ~turn_q;
 
   // Beats take a register: the read master lies where the bus is, the memories of lines where the
   // cache is.
@@ -148,6 +157,7 @@ module cchip_cache #(
   ) u_fill (
       .clk           (clk),
       .rst           (rst),
+      .turn          (turn_q),
       .free_valid    (free_valid),
       .free_slot     (free_slot),
       .free_take     (granted),
@@ -239,6 +249,7 @@ module cchip_cache #(
   ) u_invalidate (
       .clk       (clk),
       .rst       (rst),
+      .turn      (turn_q),
       .s_valid   (invalidate_valid),
       .s_ready   (invalidate_ready),
       .s_first   (invalidate_first),
@@ -305,6 +316,7 @@ module cchip_cache #(
       ) u_port (
           .clk             (clk),
           .rst             (rst),
+          .turn            (turn_q),
           .running         (running),
           .s_valid         (s_valid[p]),
           .s_place         (s_place[PLACE_W*p+:PLACE_W]),
@@ -367,16 +379,16 @@ module cchip_cache #(
 
   // ---- data
   cchip_dual_ram #(
-      .WIDTH (512),
-      .ADDR_W(SET_W + 1)
+      .WIDTH (256),
+      .ADDR_W(SET_W + 2)
   ) u_data (
       .clk        (clk),
       .write      (fill_write[0]),
-      .addr_a     (data_addr[0+:SET_W+1]),
+      .addr_a     ({data_addr[0+:SET_W+1], turn_q}),
       .write_data (fill_data),
-      .read_data_a(m_data[511:0]),
-      .addr_b     (data_addr[SET_W+1+:SET_W+1]),
-      .read_data_b(m_data[1023:512])
+      .read_data_a(m_data[255:0]),
+      .addr_b     ({data_addr[SET_W+1+:SET_W+1], turn_q}),
+      .read_data_b(m_data[511:256])
   );
 
   wire unused = &{1'b0, fill_write[1], kill6[1], walks6[0], walks_stale6[0], walk_hits6[0],
@@ -385,6 +397,7 @@ module cchip_cache #(
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_free, !(free_valid && exhausted))
+      `CCHIP_ASSERT(a_turn, turn_q || !(fill_valid || walk_valid_q))
     end
 
 endmodule
