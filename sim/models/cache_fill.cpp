@@ -7,7 +7,7 @@ CacheFill::CacheFill(std::size_t slots, std::size_t beats)
     : beats_(beats), lines_(slots), free_(slots), arrived_(slots), serve_queue_(slots) {}
 
 std::optional<CacheFill::Fill> CacheFill::fill() const {
-  if (!arrived_.m_valid()) return std::nullopt;
+  if (!arrived_.m_valid() || !turn_) return std::nullopt;
   Fill fill = arrived_.m_data();
   fill.frame = lines_[fill.slot].frame;
   return fill;
@@ -19,8 +19,9 @@ void CacheFill::clock(const Inputs& in) {
   const std::optional<std::size_t> back = next_free(release, lost, in.outstanding);
   clock_slots(in, release, lost);
   clock_serves(in, release);
-  arrived_.clock(in.beat && in.beat->last, in.beat ? Fill{in.beat->slot, in.beat->code, 0} : Fill{}, true);
+  arrived_.clock(in.beat && in.beat->last, in.beat ? Fill{in.beat->slot, in.beat->code, 0} : Fill{}, turn_);
   free_.clock(in.free_take, back);
+  turn_ = !turn_;
 }
 
 void CacheFill::reset() {
@@ -30,7 +31,7 @@ void CacheFill::reset() {
   serve_queue_.reset();
   serves_.reset();
   filled_.reset();
-  collect_ = collected_ = serving_ = exhausted_ = false;
+  collect_ = collected_ = serving_ = exhausted_ = turn_ = false;
   lost_.clear();
   back_.reset();
   scan_ = 0;

@@ -113,7 +113,7 @@ class GetDataBench {
         if ((!awaits_pose_[c] && random_() % 16 == 0) || (awaits_pose_[c] && chance(random_, how.pose))) in_.pose = c;
       }
       any_lines();
-      in_.pair_ready = std::exchange(soon_, chance(random_, how.ready));
+      in_.pair_ready = std::exchange(soon_, pair_clocks_ > 0 && chance(random_, how.ready));
       in_.leaf_taken = leaves_there_ > 0 && chance(random_, how.taken);
       if (chance(random_, 30)) in_.lookup = random_() % places;
       step(static_cast<int>(random_() % 1000) < how.reset);
@@ -126,7 +126,7 @@ class GetDataBench {
         if (awaits_pose_[c]) in_.pose = c;
       }
       any_lines();
-      in_.pair_ready = std::exchange(soon_, true);
+      in_.pair_ready = std::exchange(soon_, pair_clocks_ > 0);
       in_.leaf_taken = leaves_there_ > 0;
       step(false);
     }
@@ -196,7 +196,11 @@ class GetDataBench {
     asked_[1].clear();
     stays_ = false;
     soon_ = false;
+    pair_clocks_ = 0;
     leaves_there_ = 0;
+    second_ = {};
+    leaf_ = {};
+    lower_ = {};
   }
 
   // ---- who asks
@@ -238,6 +242,7 @@ class GetDataBench {
     const bool both = how_.together && chance(random_, how_.answer);
     for (std::size_t p = 0; p < 2; ++p) {
       auto& asked = asked_[p];
+      if (second_[p]) continue;
       if (asked.empty() || (how_.together ? !both : !chance(random_, how_.answer))) continue;
       const auto at = asked.begin() + static_cast<std::ptrdiff_t>(how_.oldest ? 0 : random_() % asked.size());
       Expected& one = expected_[*at];

@@ -55,8 +55,9 @@ class CacheFill {
   bool holds(std::size_t slot, std::size_t frame) const { return lines_[slot].held && lines_[slot].frame == frame; }
   bool filled(std::size_t slot) const { return lines_[slot].filled; }
   const LineData& data(std::size_t slot) const { return lines_[slot].data; }
-  /// A line goes into its frame.
+  /// A line goes into its frame: on every second clock, the second one after a reset first.
   std::optional<Fill> fill() const;
+  bool turn() const { return turn_; }
   /// Who waits for the line of serves() is to be served.
   bool collect() const { return collect_; }
   const std::optional<Fill>& serves() const { return serves_; }
@@ -87,6 +88,7 @@ class CacheFill {
   std::optional<std::size_t> back_;
   std::size_t scan_ = 0;
   bool exhausted_ = false;
+  bool turn_ = false;
 };
 
 }  // namespace cchip::model
