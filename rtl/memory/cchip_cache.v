@@ -15,12 +15,10 @@
 //                they are invalidated
 //   invalidate   lines first..last. invalidate_ready = 1 again: no later answer is of data that
 //                memory held before the command
-//   turns        a port begins something on every second clock, the same one of both ports
-//   latency      7 clocks from s_valid to m_valid for a line that is there, a port that is free and
-//                its turn, otherwise up to 3 more; 7 from s_valid to m_read_valid likewise, at most
-//                24 from a line's last beat to m_valid
-//   throughput   a line per port and two clocks; an arriving line takes a turn of port 0, an
-//                invalidation one in 5 of port 1
+//   latency      7 clocks from s_valid to m_valid for a line that is there and a port that is free,
+//                7 from s_valid to m_read_valid, 21 from a line's last beat to m_valid
+//   throughput   a line per port and two clocks; an arriving line takes two clocks of port 0, an
+//                invalidation three in 9 of port 1
 //   collision    a request that meets a change of its set within 7 clocks, or both of whose ways
 //                are held, is looked up again. The places whose requests are have their turn: one
 //                that has had the turn for AGE clocks is the only one to get a frame. So a request
@@ -130,10 +128,7 @@ module cchip_cache #(
   wire [1:0] serving, serve_valid;
   wire exhausted;  // no slot will come back unless memory answers a read of long ago
 
-  // What a port does takes two clocks of the memory of lines. So it begins something only while
-  // turn_q = 1; stage 5 reads or writes a lower half while turn_q = 0, then the upper one.
-  reg turn_q;
-  always @(posedge clk) turn_q <= ~rst & ~turn_q;
+  wire [1:0] free, beat5;  // of the ports: a fill may come; the half of a line in stage 5
 
   // Beats take a register: the read master lies where the bus is, the memories of lines where the
   // cache is.
@@ -157,7 +152,7 @@ module cchip_cache #(
   ) u_fill (
       .clk           (clk),
       .rst           (rst),
-      .turn          (turn_q),
+      .free          (free[0]),
       .free_valid    (free_valid),
       .free_slot     (free_slot),
       .free_take     (granted),
@@ -249,7 +244,6 @@ module cchip_cache #(
   ) u_invalidate (
       .clk       (clk),
       .rst       (rst),
-      .turn      (turn_q),
       .s_valid   (invalidate_valid),
       .s_ready   (invalidate_ready),
       .s_first   (invalidate_first),
@@ -316,7 +310,6 @@ module cchip_cache #(
       ) u_port (
           .clk             (clk),
           .rst             (rst),
-          .turn            (turn_q),
           .running         (running),
           .s_valid         (s_valid[p]),
           .s_place         (s_place[PLACE_W*p+:PLACE_W]),
@@ -327,6 +320,8 @@ module cchip_cache #(
           .count           ({count_again[p], count_wait[p], count_miss[p], count_hit[p]}),
           .lock_first      (lock_first),
           .lock_last       (lock_last),
+          .free            (free[p]),
+          .own_soon        (p == 0 ? 1'b0 : walk_valid),
           .own_valid       (p == 0 ? fill_valid : walk_valid_q),
           .own_set         (p == 0 ? fill_frame[SET_W:1] : walk_set_q),
           .fill_way        (fill_frame[0]),
@@ -357,6 +352,7 @@ module cchip_cache #(
           .oldest_here     (oldest_q[PLACE_W] == P[0]),
           .oldest_place    (oldest_q[PLACE_W-1:0]),
           .alone           (alone_q),
+          .beat5           (beat5[p]),
           .data_addr       (data_addr[(SET_W+1)*p+:SET_W+1]),
           .fill_write      (fill_write[p]),
           .want            (want[p]),
@@ -384,20 +380,19 @@ module cchip_cache #(
   ) u_data (
       .clk        (clk),
       .write      (fill_write[0]),
-      .addr_a     ({data_addr[0+:SET_W+1], turn_q}),
+      .addr_a     ({data_addr[0+:SET_W+1], beat5[0]}),
       .write_data (fill_data),
       .read_data_a(m_data[255:0]),
-      .addr_b     ({data_addr[SET_W+1+:SET_W+1], turn_q}),
+      .addr_b     ({data_addr[SET_W+1+:SET_W+1], beat5[1]}),
       .read_data_b(m_data[511:256])
   );
 
-  wire unused = &{1'b0, fill_write[1], kill6[1], walks6[0], walks_stale6[0], walk_hits6[0],
+  wire unused = &{1'b0, free[1], fill_write[1], kill6[1], walks6[0], walks_stale6[0], walk_hits6[0],
                   fill_slot6[MISS_W+:MISS_W], fill_way6[3:2], walk_ways6[1:0],
                   walk_keep6[0+:2*(MISS_W+1)]};
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_free, !(free_valid && exhausted))
-      `CCHIP_ASSERT(a_turn, turn_q || !(fill_valid || walk_valid_q))
     end
 
 endmodule

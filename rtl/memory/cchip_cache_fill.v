@@ -4,7 +4,8 @@
 `include "cchip_assert.vh"
 // cchip_cache_fill: the lines in flight of cchip_cache. A line has a slot, the one of its read,
 // from allocation until all who wait for it have been served.
-//   fill         lines leave in the order of their last beats, with turn = 1; the lower half on
+//   fill         lines leave in the order of their last beats, while free is 1, which it is not on
+//                the clock after fill_valid; the lower half on
 //                fill_data 5 clocks after fill_valid, the upper one on the next, on which filled is
 //                1 if the code is CCHIP_READ_OK
 //   serve        collect 8 clocks after fill_valid or later, one line after the other: a line is
@@ -12,7 +13,7 @@
 //                the clock after collect
 //   silence      a slot whose read ended with CCHIP_READ_TIMEOUT or CCHIP_READ_OWED is lost: it is
 //                lent again, within MISSES + 3 clocks, when nothing is outstanding under its ID
-//   latency      2 or 3 clocks from the last beat to fill_valid
+//   latency      2 clocks from the last beat to fill_valid, while free is 1
 //   throughput   a line every second clock into the frames, every fourth clock if one waits for each
 //   cuts         every path
 //   reset        every slot is free after MISSES clocks; memory must not answer reads from before
@@ -26,7 +27,6 @@ module cchip_cache_fill #(
 ) (
     input  wire                          clk,
     input  wire                          rst,
-    input  wire                          turn,            // 1 on every second clock
     // a free slot; it has a frame on the clock after free_take or later
     output wire                          free_valid,
     output wire [    $clog2(MISSES)-1:0] free_slot,
@@ -46,6 +46,7 @@ module cchip_cache_fill #(
     input  wire [            DATA_W-1:0] s_read_data,
     input  wire [            MISSES-1:0] s_read_outstanding,
     // a line goes into its frame; must be taken
+    input  wire                          free,
     output wire                          fill_valid,
     output wire [    $clog2(MISSES)-1:0] fill_slot,
     output wire [`CCHIP_READ_CODE_W-1:0] fill_code,
@@ -115,7 +116,7 @@ module cchip_cache_fill #(
 
   // ---- lines that have come
   wire arrived_valid, arrived_ready;
-  assign fill_valid = arrived_valid & turn;
+  assign fill_valid = arrived_valid & free;
   cchip_fifo #(
       .WIDTH     (MISS_W + CODE_W),
       .DEPTH     (MISSES),
@@ -127,7 +128,7 @@ module cchip_cache_fill #(
       .s_ready(arrived_ready),
       .s_data ({s_read_slot, s_read_code}),
       .m_valid(arrived_valid),
-      .m_ready(turn),
+      .m_ready(free),
       .m_data ({fill_slot, fill_code})
   );
   (* ram_style = "distributed", ramstyle = "MLAB" *)
@@ -160,13 +161,13 @@ module cchip_cache_fill #(
             .read_data (line[256*b+:256])
         );
       end
-      assign fill_data = turn ? line[511:256] : line[255:0];
+      assign fill_data = fill_q6 ? line[511:256] : line[255:0];
       wire unused = &{1'b0, row, write_row, s_read_beat};
     end else begin : gen_beats
       localparam integer INDEX_W = $clog2(BEATS);
       wire [31:0] index = {29'd0, s_read_beat} & (BEATS - 1);  // in its half
       wire [31:0] write_row = {{31 - MISS_W{1'b0}}, s_read_slot, s_read_beat[INDEX_W]};
-      wire [31:0] row = {{31 - MISS_W{1'b0}}, slot_q3, turn};
+      wire [31:0] row = {{31 - MISS_W{1'b0}}, slot_q3, fill_q4};
       for (b = 0; b < BEATS; b = b + 1) begin : gen_beat
         cchip_block_ram #(
             .WIDTH (DATA_W),
@@ -215,7 +216,7 @@ module cchip_cache_fill #(
     {slot_q1, code_q1, frame_q1} <= {fill_slot, fill_code, fill_frame};
     {slot_q2, code_q2, frame_q2} <= {slot_q1, code_q1, frame_q1};
     // the address of both halves
-    if (turn) {slot_q3, code_q3, frame_q3} <= {slot_q2, code_q2, frame_q2};
+    if (!fill_q3) {slot_q3, code_q3, frame_q3} <= {slot_q2, code_q2, frame_q2};
     {slot_q4, code_q4, frame_q4} <= {slot_q3, code_q3, frame_q3};
     {slot_q5, code_q5, frame_q5} <= {slot_q4, code_q4, frame_q4};
     {slot_q6, code_q6, frame_q6} <= {slot_q5, code_q5, frame_q5};

@@ -6,7 +6,7 @@
 //   command      ready = 1 again when the last set has been changed, the reads that were in flight
 //                at that time have been answered, their requests served and 7 clocks have passed:
 //                answers from then on are of data that memory held after the command
-//   latency      10 clocks for each set of the range, at most 2^SET_W of them
+//   latency      9 clocks for each set of the range, at most 2^SET_W of them
 //   cuts         every path
 //   reset        clears the entries, one set per clock: running = 0 meanwhile
 module cchip_cache_invalidate #(
@@ -19,13 +19,12 @@ module cchip_cache_invalidate #(
 ) (
     input  wire              clk,
     input  wire              rst,
-    input  wire              turn,        // a lookup may begin on this clock: every second one
     input  wire              s_valid,
     output wire              s_ready,
     input  wire [LINE_W-1:0] s_first,
     input  wire [LINE_W-1:0] s_last,
     output wire              running,     // 0: the entries are cleared, this set:
-    // a set to look up, a clock before its turn
+    // a set to look up
     output wire              walk_valid,
     output wire [ SET_W-1:0] walk_set,
     output wire [LINE_W-1:0] first,       // lines to invalidate
@@ -85,8 +84,7 @@ module cchip_cache_invalidate #(
           ready_q    <= ~s_valid;
           if (s_valid) state_q <= ASK;
         end
-        ASK:
-        if (turn) begin
+        ASK: begin
           walk_valid_q <= 1'b1;
           state_q      <= SEE;
         end
