@@ -6,8 +6,8 @@ namespace cchip::model {
 CacheFill::CacheFill(std::size_t slots, std::size_t beats)
     : beats_(beats), lines_(slots), free_(slots), arrived_(slots), serve_queue_(slots) {}
 
-std::optional<CacheFill::Fill> CacheFill::fill() const {
-  if (!arrived_.m_valid() || !turn_) return std::nullopt;
+std::optional<CacheFill::Fill> CacheFill::fill(bool free) const {
+  if (!arrived_.m_valid() || !free) return std::nullopt;
   Fill fill = arrived_.m_data();
   fill.frame = lines_[fill.slot].frame;
   return fill;
@@ -19,9 +19,8 @@ void CacheFill::clock(const Inputs& in) {
   const std::optional<std::size_t> back = next_free(release, lost, in.outstanding);
   clock_slots(in, release, lost);
   clock_serves(in, release);
-  arrived_.clock(in.beat && in.beat->last, in.beat ? Fill{in.beat->slot, in.beat->code, 0} : Fill{}, turn_);
+  arrived_.clock(in.beat && in.beat->last, in.beat ? Fill{in.beat->slot, in.beat->code, 0} : Fill{}, in.free);
   free_.clock(in.free_take, back);
-  turn_ = !turn_;
 }
 
 void CacheFill::reset() {
@@ -31,7 +30,7 @@ void CacheFill::reset() {
   serve_queue_.reset();
   serves_.reset();
   filled_.reset();
-  collect_ = collected_ = serving_ = exhausted_ = turn_ = false;
+  collect_ = collected_ = serving_ = exhausted_ = false;
   lost_.clear();
   back_.reset();
   scan_ = 0;

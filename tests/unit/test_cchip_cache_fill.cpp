@@ -35,7 +35,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
       std::optional<Line> taken;                 // on the clock before
       std::vector<Line> reads;                   // outstanding
       std::deque<std::pair<int, Line>> filling;  // clock of fill_valid
-      int last_fill = -2;
+      std::deque<std::pair<int, Line>> arrived;  // clock from which on it may leave
+      bool fills = false;                        // on the clock before
       model::Fifo<Line> queue(misses);
       std::optional<Line> served;
       bool collects = false, collected = false, serving = false;  // on this clock; on the one before
@@ -91,7 +92,12 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
         }
         const bool take = top.free_valid != 0 && chance(random, busy);
         top.free_take = take ? 1 : 0;
-        top.turn = static_cast<CData>(clock % 2);
+        top.free = !fills && chance(random, 70) ? 1 : 0;
+        fills = top.free != 0 && !arrived.empty() && arrived.front().first <= clock;
+        if (fills) {
+          filling.emplace_back(clock, arrived.front().second);
+          arrived.pop_front();
+        }
         simulation.settle();
 
         std::optional<Line> fill;
@@ -160,10 +166,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
         }
         queue.clock(queued.has_value(), queued.value_or(Line{}), next);
         while (!filling.empty() && filling.front().first + 6 <= clock) filling.pop_front();
-        if (comes) {  // two clocks later, or its turn
-          last_fill = std::max(last_fill + 2, clock + 2 + (clock + 1) % 2);
-          filling.emplace_back(last_fill, *comes);
-        }
+        if (comes) arrived.emplace_back(clock + 2, *comes);
         if (take) {
           taken = Line{top.free_slot};
           REQUIRE(used.insert(taken->slot).second);
