@@ -6,7 +6,9 @@
 // clock: the pose's rows and the origins to cchip_bv_offset, then child after child to the lanes.
 //   rule         position 0, 1, 2, ... of a node are its children that count, in their order; if
 //                there are less than four, one that does not count comes last
-//   throughput   a node pair in max(3, children that count) clocks; so long its lines stay
+//   beats        s_a and s_b are the lower halves of the lines on the first clock of a node pair,
+//                the upper ones on the second; all else of s_ stays until s_ready
+//   throughput   a node pair in max(3, children that count) clocks
 //   latency      clocks from the first one of a node pair are in the names: x10 comes 10 after it
 //   memory       block RAM keeps the children until the lanes take them
 //   cuts         every path but s_valid to s_soon, and the context to row_context0, which a block
@@ -20,14 +22,14 @@ module cchip_bv_feed #(
 ) (
     input  wire                       clk,
     input  wire                       rst,
-    // a node pair; its lines stay until s_ready, which s_soon tells a clock ahead
+    // a node pair; s_soon tells of s_ready a clock ahead
     input  wire                       s_valid,
     output wire                       s_ready,
     output wire                       s_soon,
     input  wire [          TAG_W-1:0] s_tag,
     input  wire [$clog2(QUERIES)-1:0] s_context,
-    input  wire [              511:0] s_a,
-    input  wire [              511:0] s_b,
+    input  wire [              255:0] s_a,
+    input  wire [              255:0] s_b,
     input  wire [                3:0] s_a_children,
     input  wire [                3:0] s_b_children,
     // for the pose and cchip_bv_offset
@@ -59,6 +61,7 @@ module cchip_bv_feed #(
 
   // ---- clocks of a node pair
   reg [1:0] count_q;  // 0, 1, 2, and 3 if there are four children that count
+  reg first_beat_q;  // count_q is 0
   reg ready_q, four_q;
   wire [3:0] a_counts, b_counts;
   wire [7:0] a_inner;  // and of B
@@ -68,22 +71,34 @@ module cchip_bv_feed #(
   always @(posedge clk) begin
     four_q <= &a_counts | &b_counts;
     if (rst) begin
-      count_q <= 2'd0;
-      ready_q <= 1'b0;
+      count_q      <= 2'd0;
+      first_beat_q <= 1'b1;
+      ready_q      <= 1'b0;
     end else begin
       if (s_valid) count_q <= ready_q ? 2'd0 : count_q + 2'd1;
+      if (s_valid) first_beat_q <= ready_q;
       ready_q <= s_soon;
     end
   end
 
+  // ---- the first beat, and what is known from it, for the other clocks
   // children of a node, from their number - 1
   function [3:0] there(input [1:0] last);
     there = {last == 2'd3, last[1], last != 2'd0, 1'b1};
   endfunction
   assign a_counts = s_a_children & there(s_a[`CCHIP_NODE_LINE_CHILDREN]);
   assign b_counts = s_b_children & there(s_b[`CCHIP_NODE_LINE_CHILDREN]);
-  wire [7:0] kinds_a = s_a[`CCHIP_NODE_LINE_KINDS];
-  wire [7:0] kinds_b = s_b[`CCHIP_NODE_LINE_KINDS];
+  reg [255:0] a_first_q, b_first_q;
+  reg [3:0] a_counts_q1, b_counts_q1;
+  always @(posedge clk)
+    if (first_beat_q) begin
+      a_first_q   <= s_a;
+      b_first_q   <= s_b;
+      a_counts_q1 <= a_counts;
+      b_counts_q1 <= b_counts;
+    end
+  wire [7:0] kinds_a = a_first_q[`CCHIP_NODE_LINE_KINDS];
+  wire [7:0] kinds_b = b_first_q[`CCHIP_NODE_LINE_KINDS];
   genvar i, j;
   generate
     for (i = 0; i < 4; i = i + 1) begin : gen_child
@@ -101,7 +116,7 @@ module cchip_bv_feed #(
       first_q <= {LATEST - 1{1'b0}};
       last_q  <= {LATEST{1'b0}};
     end else begin
-      first_q <= {first_q[LATEST-2:1], s_valid && count_q == 2'd0};
+      first_q <= {first_q[LATEST-2:1], s_valid & first_beat_q};
       last_q  <= {last_q[LATEST-1:1], taken};
     end
   end
@@ -115,10 +130,10 @@ module cchip_bv_feed #(
   reg [4:0] a_step_q2, b_step_q2;
   always @(posedge clk)
     if (first_q[1]) begin
-      a_step_q2   <= s_a[`CCHIP_NODE_LINE_STEP];
-      a_origin_q2 <= s_a[`CCHIP_NODE_LINE_ORIGIN];
-      b_step_q2   <= s_b[`CCHIP_NODE_LINE_STEP];
-      b_origin_q2 <= s_b[`CCHIP_NODE_LINE_ORIGIN];
+      a_step_q2   <= a_first_q[`CCHIP_NODE_LINE_STEP];
+      a_origin_q2 <= a_first_q[`CCHIP_NODE_LINE_ORIGIN];
+      b_step_q2   <= b_first_q[`CCHIP_NODE_LINE_STEP];
+      b_origin_q2 <= b_first_q[`CCHIP_NODE_LINE_ORIGIN];
     end
   assign a_origin2    = a_origin_q2;
   assign a_step2      = a_step_q2;
@@ -144,8 +159,8 @@ module cchip_bv_feed #(
   reg [17:0] b_number_q;  // to 10
   always @(posedge clk) begin
     place_q1   <= count_q;
-    a_hole_q1  <= hole_of(a_counts[2:0]);
-    b_hole_q1  <= hole_of(b_counts[2:0]);
+    if (first_beat_q) a_hole_q1 <= hole_of(a_counts[2:0]);
+    if (first_beat_q) b_hole_q1 <= hole_of(b_counts[2:0]);
     a_number_q <= {a_number_q[9:0], child_of(place_q1, a_hole_q1)};
     b_number_q <= {b_number_q[15:0], child_of(place_q1, b_hole_q1)};
   end
@@ -167,24 +182,26 @@ module cchip_bv_feed #(
   end
 
   localparam integer WORD_W = 107;
-  wire [407:0] children_a = s_a[`CCHIP_NODE_LINE_CHILD];
-  wire [407:0] children_b = s_b[`CCHIP_NODE_LINE_CHILD];
+  wire [511:0] line_a = {s_a, a_first_q};
+  wire [511:0] line_b = {s_b, b_first_q};
+  wire [407:0] children_a = line_a[`CCHIP_NODE_LINE_CHILD];
+  wire [407:0] children_b = line_b[`CCHIP_NODE_LINE_CHILD];
   wire [4*WORD_W-1:0] a_words, b_words;
   generate
     for (j = 0; j < 4; j = j + 1) begin : gen_word
       localparam [31:0] J = j;
       assign a_words[WORD_W*j+:WORD_W] = {
-        s_a[`CCHIP_NODE_LINE_CUT_EXPONENT],
+        a_first_q[`CCHIP_NODE_LINE_CUT_EXPONENT],
         J[1:0],
         a_inner[j],
-        a_counts[j],
+        a_counts_q1[j],
         children_a[102*j+:102]
       };
       assign b_words[WORD_W*j+:WORD_W] = {
-        s_b[`CCHIP_NODE_LINE_CUT_EXPONENT],
+        b_first_q[`CCHIP_NODE_LINE_CUT_EXPONENT],
         J[1:0],
         a_inner[4+j],
-        b_counts[j],
+        b_counts_q1[j],
         children_b[102*j+:102]
       };
     end
@@ -210,7 +227,7 @@ module cchip_bv_feed #(
       .ADDR_W(6)
   ) u_a (
       .clk       (clk),
-      .write     (s_valid),
+      .write     (first_q[1]),
       .write_addr(place_q),
       .write_data(a_words),
       .read_addr ({a_place_q7, a_number_q[11:10]}),
@@ -222,7 +239,7 @@ module cchip_bv_feed #(
       .ADDR_W(6)
   ) u_b (
       .clk       (clk),
-      .write     (s_valid),
+      .write     (first_q[1]),
       .write_addr(place_q),
       .write_data(b_words),
       .read_addr ({b_place_q10, b_number_q[17:16]}),
@@ -236,8 +253,8 @@ module cchip_bv_feed #(
   reg [2:0] a_number_of_q1, b_number_of_q1;
   reg [4:0] tests_q2;
   always @(posedge clk) begin
-    a_number_of_q1 <= number_of(a_counts);
-    b_number_of_q1 <= number_of(b_counts);
+    if (first_beat_q) a_number_of_q1 <= number_of(a_counts);
+    if (first_beat_q) b_number_of_q1 <= number_of(b_counts);
     // their product: as one it would take a multiplier block
     tests_q2       <= ({2'd0, a_number_of_q1} & {5{b_number_of_q1[0]}}) +
         ({1'd0, a_number_of_q1, 1'd0} & {5{b_number_of_q1[1]}}) +
@@ -255,9 +272,7 @@ module cchip_bv_feed #(
       .read_data ({tag30, tests30})
   );
 
-  wire unused = &{1'b0, s_a[`CCHIP_NODE_LINE_FIRST], s_a[`CCHIP_NODE_LINE_RESERVED],
-                  s_a[`CCHIP_NODE_LINE_RESERVED2], s_b[`CCHIP_NODE_LINE_FIRST],
-                  s_b[`CCHIP_NODE_LINE_RESERVED], s_b[`CCHIP_NODE_LINE_RESERVED2]};
+  wire unused = &{1'b0, line_a, line_b};
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_stays, s_valid || count_q == 2'd0)

@@ -28,15 +28,16 @@ module cchip_bv_unit #(
     input  wire [               11:0] s_pose_error,
     output wire                       m_pose_valid,    // node pairs of it may come from now on
     output wire [$clog2(QUERIES)-1:0] m_pose_context,
-    // a node pair: lines of inner nodes, and which children count; they stay until s_ready, which
-    // s_soon tells a clock ahead
+    // a node pair: lines of inner nodes, the lower halves on its first clock, the upper ones on the
+    // second; and which children count. All else stays until s_ready, which s_soon tells a clock
+    // ahead
     input  wire                       s_valid,
     output wire                       s_ready,
     output wire                       s_soon,
     input  wire [          TAG_W-1:0] s_tag,
     input  wire [$clog2(QUERIES)-1:0] s_context,
-    input  wire [              511:0] s_a,
-    input  wire [              511:0] s_b,
+    input  wire [              255:0] s_a,
+    input  wire [              255:0] s_b,
     input  wire [                3:0] s_a_children,
     input  wire [                3:0] s_b_children,
     // its verdict; bit 4 i + j is child i of A with child j of B

@@ -9,19 +9,21 @@
 //   answer       a line, or a code of cchip_axi_read without data, in any order. Lines in flight
 //                (MISSES of them) hold up only the requests for them; all of these get the
 //                line as it arrives, before its frame is given away
+//   beats        a line is two beats of 256 bits: the lower half with m_valid, the upper one on the
+//                next clock. m_place stays for both
 //   lock         lines in a lock range stay once they are loaded, at most one way of a set, until
 //                they are invalidated
 //   invalidate   lines first..last. invalidate_ready = 1 again: no later answer is of data that
 //                memory held before the command
 //   latency      7 clocks from s_valid to m_valid for a line that is there and a port that is free,
 //                7 from s_valid to m_read_valid, 21 from a line's last beat to m_valid
-//   throughput   a line per port and clock; an arriving line takes a clock of port 0, an
-//                invalidation one in 7 of port 1
+//   throughput   a line per port and two clocks; an arriving line takes two clocks of port 0, an
+//                invalidation three in 9 of port 1
 //   collision    a request that meets a change of its set within 7 clocks, or both of whose ways
 //                are held, is looked up again. The places whose requests are have their turn: one
 //                that has had the turn for AGE clocks is the only one to get a frame. So a request
 //                that is looked up again has its line, or a code, after at most 2 PLACES turns of
-//                AGE + T + 8 PLACES + 16 MISSES clocks each, T the longest time of a read, not
+//                AGE + T + 16 PLACES + 32 MISSES clocks each, T the longest time of a read, not
 //                counting those of invalidations
 //   silence      a slot whose read ended with CCHIP_READ_TIMEOUT or CCHIP_READ_OWED is out of use
 //                while its response is outstanding. With all of them out of use a request whose
@@ -51,7 +53,7 @@ module cchip_cache #(
     output wire [                     1:0] m_valid,
     output wire [    2*$clog2(PLACES)-1:0] m_place,
     output wire [2*`CCHIP_READ_CODE_W-1:0] m_code,
-    output wire [                  1023:0] m_data,            // if m_code is CCHIP_READ_OK
+    output wire [                   511:0] m_data,            // if m_code is CCHIP_READ_OK: a beat
     // lines to lock; none if first > last
     input  wire [        LOCKS*LINE_W-1:0] lock_first,
     input  wire [        LOCKS*LINE_W-1:0] lock_last,
@@ -118,13 +120,15 @@ module cchip_cache #(
   wire [MISS_W-1:0] fill_slot;
   wire [CODE_W-1:0] fill_code;
   wire [SET_W:0] fill_frame;
-  wire [511:0] fill_data;
+  wire [255:0] fill_data;
   wire collect;  // who waits for collect_slot is to be served
   wire [MISS_W-1:0] collect_slot;
   wire [CODE_W-1:0] serve_code;
   wire [SET_W:0] serve_frame;
   wire [1:0] serving, serve_valid;
   wire exhausted;  // no slot will come back unless memory answers a read of long ago
+
+  wire [1:0] free, beat5;  // of the ports: a fill may come; the half of a line in stage 5
 
   // Beats take a register: the read master lies where the bus is, the memories of lines where the
   // cache is.
@@ -148,6 +152,7 @@ module cchip_cache #(
   ) u_fill (
       .clk           (clk),
       .rst           (rst),
+      .free          (free[0]),
       .free_valid    (free_valid),
       .free_slot     (free_slot),
       .free_take     (granted),
@@ -315,6 +320,8 @@ module cchip_cache #(
           .count           ({count_again[p], count_wait[p], count_miss[p], count_hit[p]}),
           .lock_first      (lock_first),
           .lock_last       (lock_last),
+          .free            (free[p]),
+          .own_soon        (p == 0 ? 1'b0 : walk_valid),
           .own_valid       (p == 0 ? fill_valid : walk_valid_q),
           .own_set         (p == 0 ? fill_frame[SET_W:1] : walk_set_q),
           .fill_way        (fill_frame[0]),
@@ -345,6 +352,7 @@ module cchip_cache #(
           .oldest_here     (oldest_q[PLACE_W] == P[0]),
           .oldest_place    (oldest_q[PLACE_W-1:0]),
           .alone           (alone_q),
+          .beat5           (beat5[p]),
           .data_addr       (data_addr[(SET_W+1)*p+:SET_W+1]),
           .fill_write      (fill_write[p]),
           .want            (want[p]),
@@ -367,19 +375,19 @@ module cchip_cache #(
 
   // ---- data
   cchip_dual_ram #(
-      .WIDTH (512),
-      .ADDR_W(SET_W + 1)
+      .WIDTH (256),
+      .ADDR_W(SET_W + 2)
   ) u_data (
       .clk        (clk),
       .write      (fill_write[0]),
-      .addr_a     (data_addr[0+:SET_W+1]),
+      .addr_a     ({data_addr[0+:SET_W+1], beat5[0]}),
       .write_data (fill_data),
-      .read_data_a(m_data[511:0]),
-      .addr_b     (data_addr[SET_W+1+:SET_W+1]),
-      .read_data_b(m_data[1023:512])
+      .read_data_a(m_data[255:0]),
+      .addr_b     ({data_addr[SET_W+1+:SET_W+1], beat5[1]}),
+      .read_data_b(m_data[511:256])
   );
 
-  wire unused = &{1'b0, fill_write[1], kill6[1], walks6[0], walks_stale6[0], walk_hits6[0],
+  wire unused = &{1'b0, free[1], fill_write[1], kill6[1], walks6[0], walks_stale6[0], walk_hits6[0],
                   fill_slot6[MISS_W+:MISS_W], fill_way6[3:2], walk_ways6[1:0],
                   walk_keep6[0+:2*(MISS_W+1)]};
   always @(posedge clk)

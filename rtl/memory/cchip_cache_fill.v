@@ -4,15 +4,17 @@
 `include "cchip_assert.vh"
 // cchip_cache_fill: the lines in flight of cchip_cache. A line has a slot, the one of its read,
 // from allocation until all who wait for it have been served.
-//   fill         lines leave in the order of their last beats; fill_data 5 clocks after fill_valid,
-//                filled on the next clock if the code is CCHIP_READ_OK
+//   fill         lines leave in the order of their last beats, while free is 1, which it is not on
+//                the clock after fill_valid; the lower half on
+//                fill_data 5 clocks after fill_valid, the upper one on the next, on which filled is
+//                1 if the code is CCHIP_READ_OK
 //   serve        collect 8 clocks after fill_valid or later, one line after the other: a line is
 //                done, and its slot free, one clock after serving is 0 for the first time since
 //                the clock after collect
 //   silence      a slot whose read ended with CCHIP_READ_TIMEOUT or CCHIP_READ_OWED is lost: it is
 //                lent again, within MISSES + 3 clocks, when nothing is outstanding under its ID
-//   latency      2 clocks from the last beat to fill_valid
-//   throughput   a line every clock into the frames, every fourth clock if one waits for each
+//   latency      2 clocks from the last beat to fill_valid, while free is 1
+//   throughput   a line every second clock into the frames, every fourth clock if one waits for each
 //   cuts         every path
 //   reset        every slot is free after MISSES clocks; memory must not answer reads from before
 module cchip_cache_fill #(
@@ -44,11 +46,12 @@ module cchip_cache_fill #(
     input  wire [            DATA_W-1:0] s_read_data,
     input  wire [            MISSES-1:0] s_read_outstanding,
     // a line goes into its frame; must be taken
+    input  wire                          free,
     output wire                          fill_valid,
     output wire [    $clog2(MISSES)-1:0] fill_slot,
     output wire [`CCHIP_READ_CODE_W-1:0] fill_code,
     output wire [           FRAME_W-1:0] fill_frame,
-    output wire [                 511:0] fill_data,
+    output wire [                 255:0] fill_data,
     // who waits for a line
     output wire                          collect,
     output wire [    $clog2(MISSES)-1:0] collect_slot,
@@ -59,8 +62,10 @@ module cchip_cache_fill #(
 
   localparam integer MISS_W = $clog2(MISSES);
   localparam integer CODE_W = `CCHIP_READ_CODE_W;
-  localparam integer BEATS = 512 / DATA_W;
-  localparam integer ROW_W = MISS_W < 3 ? 3 : MISS_W;
+  // a memory of beats has a row for each half of a slot's line
+  localparam integer BEAT_W = DATA_W > 256 ? 256 : DATA_W;
+  localparam integer BEATS = 256 / BEAT_W;
+  localparam integer ROW_W = MISS_W < 2 ? 3 : MISS_W + 1;
 
   generate
     if (MISSES < 2 || MISSES > 32 || (1 << MISS_W) != MISSES || FRAME_W < 1)
@@ -110,7 +115,8 @@ module cchip_cache_fill #(
   );
 
   // ---- lines that have come
-  wire arrived_ready;
+  wire arrived_valid, arrived_ready;
+  assign fill_valid = arrived_valid & free;
   cchip_fifo #(
       .WIDTH     (MISS_W + CODE_W),
       .DEPTH     (MISSES),
@@ -121,8 +127,8 @@ module cchip_cache_fill #(
       .s_valid(s_read_valid & s_read_last),
       .s_ready(arrived_ready),
       .s_data ({s_read_slot, s_read_code}),
-      .m_valid(fill_valid),
-      .m_ready(1'b1),
+      .m_valid(arrived_valid),
+      .m_ready(free),
       .m_data ({fill_slot, fill_code})
   );
   (* ram_style = "distributed", ramstyle = "MLAB" *)
@@ -136,23 +142,46 @@ module cchip_cache_fill #(
   reg [MISS_W-1:0] slot_q1, slot_q2, slot_q3, slot_q4, slot_q5, slot_q6;
   reg [CODE_W-1:0] code_q1, code_q2, code_q3, code_q4, code_q5, code_q6;
   reg [FRAME_W-1:0] frame_q1, frame_q2, frame_q3, frame_q4, frame_q5, frame_q6;
-  wire [31:0] row = {{32 - MISS_W{1'b0}}, slot_q3};
-  wire [31:0] write_row = {{32 - MISS_W{1'b0}}, s_read_slot};
   genvar b;
   generate
-    for (b = 0; b < BEATS; b = b + 1) begin : gen_beat
-      localparam [31:0] B = b;
-      cchip_block_ram #(
-          .WIDTH (DATA_W),
-          .ADDR_W(ROW_W)
-      ) u_beats (
-          .clk       (clk),
-          .write     (s_read_valid && s_read_beat == B[2:0]),
-          .write_addr(write_row[ROW_W-1:0]),
-          .write_data(s_read_data),
-          .read_addr (row[ROW_W-1:0]),
-          .read_data (fill_data[DATA_W*b+:DATA_W])
-      );
+    if (DATA_W > 256) begin : gen_whole  // both halves come at once
+      wire [511:0] line;
+      wire [31:0] write_row = {{31 - MISS_W{1'b0}}, s_read_slot, 1'b0};
+      wire [31:0] row = {{31 - MISS_W{1'b0}}, slot_q3, 1'b0};
+      for (b = 0; b < 2; b = b + 1) begin : gen_half
+        cchip_block_ram #(
+            .WIDTH (256),
+            .ADDR_W(ROW_W)
+        ) u_beats (
+            .clk       (clk),
+            .write     (s_read_valid),
+            .write_addr(write_row[ROW_W-1:0]),
+            .write_data(s_read_data[256*b+:256]),
+            .read_addr (row[ROW_W-1:0]),
+            .read_data (line[256*b+:256])
+        );
+      end
+      assign fill_data = fill_q6 ? line[511:256] : line[255:0];
+      wire unused = &{1'b0, row, write_row, s_read_beat};
+    end else begin : gen_beats
+      localparam integer INDEX_W = $clog2(BEATS);
+      wire [31:0] index = {29'd0, s_read_beat} & (BEATS - 1);  // in its half
+      wire [31:0] write_row = {{31 - MISS_W{1'b0}}, s_read_slot, s_read_beat[INDEX_W]};
+      wire [31:0] row = {{31 - MISS_W{1'b0}}, slot_q3, fill_q4};
+      for (b = 0; b < BEATS; b = b + 1) begin : gen_beat
+        cchip_block_ram #(
+            .WIDTH (DATA_W),
+            .ADDR_W(ROW_W)
+        ) u_beats (
+            .clk       (clk),
+            .write     (s_read_valid && index == b),
+            .write_addr(write_row[ROW_W-1:0]),
+            .write_data(s_read_data),
+            .read_addr (row[ROW_W-1:0]),
+            .read_data (fill_data[DATA_W*b+:DATA_W])
+        );
+      end
+      wire unused = &{1'b0, row, write_row, index};
     end
   endgenerate
 
@@ -186,7 +215,8 @@ module cchip_cache_fill #(
   always @(posedge clk) begin
     {slot_q1, code_q1, frame_q1} <= {fill_slot, fill_code, fill_frame};
     {slot_q2, code_q2, frame_q2} <= {slot_q1, code_q1, frame_q1};
-    {slot_q3, code_q3, frame_q3} <= {slot_q2, code_q2, frame_q2};
+    // the address of both halves
+    if (!fill_q3) {slot_q3, code_q3, frame_q3} <= {slot_q2, code_q2, frame_q2};
     {slot_q4, code_q4, frame_q4} <= {slot_q3, code_q3, frame_q3};
     {slot_q5, code_q5, frame_q5} <= {slot_q4, code_q4, frame_q4};
     {slot_q6, code_q6, frame_q6} <= {slot_q5, code_q5, frame_q5};
@@ -236,7 +266,7 @@ module cchip_cache_fill #(
   assign serve_code   = serve_code_q;
   assign serve_frame  = serve_frame_q;
 
-  wire unused = &{1'b0, arrived_ready, serve_ready, row, write_row};
+  wire unused = &{1'b0, arrived_ready, serve_ready};
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_take, !free_take || free_valid)

@@ -5,6 +5,8 @@
 // cchip_cache_port: one port of cchip_cache, a pipeline of seven stages. 0 chooses who has the
 // clock, 1 to 4 read the entries of both ways and compare their tags, 5 addresses the data, 6
 // decides, 7 is the answer.
+//   beats        what is in stage 5 stays there for two clocks, with a half of a line each, the
+//                lower one first; so stage 0 takes nothing on the clock after it has taken something
 //   stage 0      in this order: a line that arrives or a set to invalidate (own), a request whose
 //                line has come, a deferred or new request, a request to be looked up again; the
 //                last two alternate if both wait
@@ -12,8 +14,8 @@
 //                is looked up again: if its set has changed since stage 1, if no frame may be
 //                given away, or if its wish is not granted
 //   answers      7 clocks after s_valid of an idle port, in any order; m_data comes from the memory
-//                that data_addr addresses in stage 5
-//   throughput   a lookup per clock
+//                that data_addr addresses in stage 5, m_place stays for two clocks
+//   throughput   a lookup every two clocks
 //   cuts         all but grant to what stage 6 does with it
 //   own          of port 0 a fill, of port 1 a set to invalidate: each port leaves the outputs of
 //                the other kind at values that mean nothing
@@ -43,7 +45,9 @@ module cchip_cache_port #(
     output wire [                              3:0] count,           // {again, wait, miss, hit}
     input  wire [                 LOCKS*LINE_W-1:0] lock_first,
     input  wire [                 LOCKS*LINE_W-1:0] lock_last,
-    // what the port has to do on its own: a fill, or a set to invalidate
+    // what the port has to do on its own: a fill, while free, or a set to invalidate, told ahead
+    output wire                                     free,
+    input  wire                                     own_soon,        // own_valid on the next clock
     input  wire                                     own_valid,
     input  wire [                        SET_W-1:0] own_set,
     input  wire                                     fill_way,
@@ -77,7 +81,8 @@ module cchip_cache_port #(
     input  wire                                     oldest_here,     // it is the turn of one here,
     input  wire [               $clog2(PLACES)-1:0] oldest_place,
     input  wire                                     alone,           // which alone gets a frame
-    // stage 5: the frame to read or to write
+    // stage 5: the half and the frame to read or to write
+    output wire                                     beat5,
     output wire [                          SET_W:0] data_addr,
     output wire                                     fill_write,
     // stage 6: a frame is wanted for line6
@@ -105,6 +110,13 @@ module cchip_cache_port #(
   localparam integer CODE_W = `CCHIP_READ_CODE_W;
   localparam integer ENTRY_W = 3 + SLOT_W + TAG_W;
 
+  // ---- what goes through the stages: bit i is that of stage i
+  reg [6:1] look_q, serve_q, own_q;
+  reg [7:1] some_q;  // one of these
+  wire turn = ~some_q[1] & ~own_soon;
+  assign free  = ~some_q[1];
+  assign beat5 = some_q[6];
+
   // ---- stage 0: who has this clock
   wire [PLACE_W-1:0] serve_place;
   wire [CODE_W-1:0] serve_code;
@@ -131,22 +143,22 @@ module cchip_cache_port #(
       .again      (again_q7),
       .again_place(place_q7),
       .again_line (line_q7),
-      .free       (running_q & ~own_valid & ~serve_valid),
+      .free       (turn & running_q & ~own_valid & ~serve_valid),
       .look       (look0),
       .look_place (look_place0),
       .look_line  (look_line0)
   );
 
-  // ---- what goes through the stages: bit i is that of stage i
-  reg [6:1] look_q, serve_q, own_q;
   always @(posedge clk)
     if (rst) begin
+      some_q  <= 7'd0;
       look_q  <= 6'd0;
       serve_q <= 6'd0;
       own_q   <= 6'd0;
     end else begin
+      some_q  <= {some_q[6:1], look0 | own_valid | (turn & serve_valid)};
       look_q  <= {look_q[5:1], look0};
-      serve_q <= {serve_q[5:1], serve_valid & ~own_valid};
+      serve_q <= {serve_q[5:1], turn & serve_valid & ~own_valid};
       own_q   <= {own_q[5:1], own_valid};
     end
 
@@ -188,14 +200,14 @@ module cchip_cache_port #(
     line_q2  <= line_q1;
     line_q3  <= line_q2;
     line_q4  <= line_q3;
-    line_q5  <= line_q4;
+    if (!some_q[5]) line_q5 <= line_q4;
     line_q6  <= line_q5;
     stale_q2 <= change && entry_set == line_q1[SET_W-1:0];
     stale_q3 <= stale_q2 | (change && entry_set == line_q2[SET_W-1:0]);
     stale_q4 <= stale_q3 | (change && entry_set == line_q3[SET_W-1:0]);
     stale_q5 <= stale_q4 | (change && entry_set == line_q4[SET_W-1:0]);
     stale_q6 <= stale_q5 | (change && entry_set == line_q5[SET_W-1:0]);
-    way_q5   <= look_q[4] ? match4[1] : way4;
+    if (!some_q[5]) way_q5 <= look_q[4] ? match4[1] : way4;
     way_q6   <= way_q5;
     place_q6 <= place5;
     code_q6  <= code5;
@@ -308,7 +320,7 @@ module cchip_cache_port #(
   assign want_way = victim;
   assign want_locked = lock_q6 & ~(victim ? locked_q6[0] : locked_q6[1]);
   assign want_turn = ~victim ^ (victim ? turn6[0] : turn6[1]);
-  assign fill_write = own_q[5] && code5 == `CCHIP_READ_OK;
+  assign fill_write = (own_q[5] && code5 == `CCHIP_READ_OK) || (own_q[6] && !kill_q6);
   assign kill6 = kill_q6;
   assign fill_slot6 = slot_q6;
   assign fill_way6 = {way_q6, ~way_q6};
@@ -322,7 +334,7 @@ module cchip_cache_port #(
   reg sleep_q7;
   reg [SLOT_W-1:0] sleep_slot_q7;
   always @(posedge clk) begin
-    place_q7      <= place_q6;
+    if (!some_q[7]) place_q7 <= place_q6;
     line_q7       <= line_q6;
     again_q7      <= ~rst & again;
     sleep_q7      <= ~rst & sleep;
@@ -348,7 +360,7 @@ module cchip_cache_port #(
       .collect_frame(collect_frame),
       .serving      (serving),
       .serve_valid  (serve_valid),
-      .serve_ready  (~own_valid),
+      .serve_ready  (turn & ~own_valid),
       .serve_place  (serve_place),
       .serve_code   (serve_code),
       .serve_frame  (serve_frame),
@@ -372,6 +384,7 @@ module cchip_cache_port #(
   wire unused = &{1'b0, waiting, both_q6, match4[0]};
   always @(posedge clk)
     if (!rst) begin
+      `CCHIP_ASSERT(a_free, free || !own_valid)
       `CCHIP_ASSERT(a_held, !serve_valid || held[collect_slot])
       `CCHIP_ASSERT(a_alone, !grant || !alone || !alone_q6 ||
           (oldest_here && oldest_place == place_q6))

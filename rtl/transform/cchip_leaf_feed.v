@@ -9,10 +9,12 @@
 //                one, and the traversal calls its results dead
 //   credit       s_leaf_valid has no ready: at most one leaf pair comes for which m_credit has not
 //                been 1; the others wait in cchip_get_data, which has memory for their lines
+//   beats        lines come in two halves, the lower one with s_leaf_valid, the upper one on the next
+//                clock
 //   end          a leaf pair whose line could not be read, or is illegal, ends without primitive
 //                pairs, with CCHIP_END_MEMORY or CCHIP_END_CORRUPT
-//   throughput   a leaf pair every 2 clocks
-//   latency      2 clocks from s_leaf_valid to m_valid
+//   throughput   a leaf pair every 3 clocks
+//   latency      3 clocks from s_leaf_valid to m_valid
 //   cuts         every path from s_leaf and s_start, and to m_credit
 //   reset        leaf pairs inside are forgotten
 module cchip_leaf_feed #(
@@ -33,7 +35,7 @@ module cchip_leaf_feed #(
     input  wire [                1:0] s_leaf_epoch,
     input  wire [                3:0] s_leaf_kinds,     // {B's, A's}
     input  wire                       s_leaf_failed,    // a line could not be read
-    input  wire [             1023:0] s_leaf_lines,     // {B's, A's}
+    input  wire [              511:0] s_leaf_lines,     // {B's, A's}: a beat
     output wire                       m_credit,
     // a number for a leaf pair; it ends without primitive pairs
     output wire                       m_begin_valid,
@@ -86,20 +88,24 @@ module cchip_leaf_feed #(
       };
 
   // ---- the leaf pair that waits. What is in its register counts only with its valid bit, so the
-  // condition of the thousand flip-flops is that bit alone
+  // condition of the thousand flip-flops is that bit alone, and for the first beat that of the
+  // second one
   reg wait_valid_q, wait_failed_q;
+  reg second_q;  // the second beat comes
   wire leaves;  // it goes to the transform, or ends
   reg credit_q;  // a clock later: who gives the next one is far
   reg [CONTEXT_W-1:0] wait_context_q;
   reg [1:0] wait_epoch_q;
   reg [3:0] wait_kinds_q;
-  reg [1023:0] wait_lines_q;
+  reg [511:0] wait_low_q, wait_high_q;
   always @(posedge clk) begin
-    if (!wait_valid_q)
-      {wait_context_q, wait_epoch_q, wait_failed_q, wait_kinds_q, wait_lines_q} <= {
+    if (!wait_valid_q && !second_q)
+      {wait_context_q, wait_epoch_q, wait_failed_q, wait_kinds_q, wait_low_q} <= {
         s_leaf_context, s_leaf_epoch, s_leaf_failed, s_leaf_kinds, s_leaf_lines
       };
-    wait_valid_q <= ~rst & (wait_valid_q ? ~leaves : s_leaf_valid);
+    if (!wait_valid_q) wait_high_q <= s_leaf_lines;
+    second_q     <= ~rst & s_leaf_valid;
+    wait_valid_q <= ~rst & (wait_valid_q ? ~leaves : second_q);
     credit_q     <= ~rst & leaves;
   end
   wire unused = &{1'b0, s_start_query};
@@ -125,7 +131,13 @@ module cchip_leaf_feed #(
   always @(posedge clk) begin
     if (state_q == EMPTY) begin  // whether there is one or not, as above
       {context_q, epoch_q, kinds_q, lines_q} <= {
-        wait_context_q, wait_epoch_q, wait_kinds_q, wait_lines_q
+        wait_context_q,
+        wait_epoch_q,
+        wait_kinds_q,
+        wait_high_q[511:256],
+        wait_low_q[511:256],
+        wait_high_q[255:0],
+        wait_low_q[255:0]
       };
       map_q    <= maps[wait_context_q];
       number_q <= s_number;
@@ -159,7 +171,7 @@ module cchip_leaf_feed #(
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_credit, !s_leaf_valid || !wait_valid_q)
+      `CCHIP_ASSERT(a_credit, !s_leaf_valid || !(wait_valid_q || second_q))
     end
 
 endmodule

@@ -7,7 +7,8 @@
 //   query        a line as docs/hardware/image.md describes it; its answer comes when every pair
 //                of leaves that the query still waited for has its result
 //   leaves       leaf pairs of which nothing is known but that their volumes overlap, with
-//                their lines. The receiver tests the primitives and answers each with one
+//                their lines in two beats of 256 bits, the lower halves first, the upper ones on
+//                the clock after m_leaf_valid. The receiver tests the primitives and answers each with one
 //                result; fewer than 1,900 are without one at any time
 //   errors       end one query with a code, and leave the others alone
 //   bound        every wait has one: a read by the limit of cchip_axi_read, a query by step_limit;
@@ -59,7 +60,7 @@ module cchip_broad_phase #(
     output wire [                     1:0] m_leaf_epoch,
     output wire [                     3:0] m_leaf_kinds,         // {B's, A's}
     output wire                            m_leaf_failed,        // a line could not be read
-    output wire [                  1023:0] m_leaf_lines,         // {B's, A's}
+    output wire [                   511:0] m_leaf_lines,         // {B's, A's}: a beat
     input  wire                            s_credit,
     // outcome of each
     input  wire                            s_result_valid,
@@ -125,7 +126,7 @@ module cchip_broad_phase #(
   wire [1:0] line_valid, came_valid;
   wire [2*PLACE_W-1:0] line_place, came_place;
   wire [2*`CCHIP_READ_CODE_W-1:0] came_code;
-  wire [1023:0] came_data, lines;
+  wire [511:0] came_data, lines;
   wire pair_valid, pair_ready, pair_soon, verdict_valid;
   wire [7:0] pair_children;
   wire [15:0] verdict_waiting, verdict_leaves, verdict_strong;
@@ -294,8 +295,8 @@ module cchip_broad_phase #(
       .s_soon        (pair_soon),
       .s_tag         (pair_place),
       .s_context     (pair_context),
-      .s_a           (lines[511:0]),
-      .s_b           (lines[1023:512]),
+      .s_a           (lines[255:0]),
+      .s_b           (lines[511:256]),
       .s_a_children  (pair_children[3:0]),
       .s_b_children  (pair_children[7:4]),
       .m_valid       (verdict_valid),

@@ -9,6 +9,10 @@
 //                turn; so do leaf pairs, which go first where there is room for them
 //   room         leaf pairs wait in their places: LEAF_ROOM of them at most leave for which
 //                s_leaf_taken has not been 1
+//   beats        a line is two beats of 256 bits, the lower half first: from the cache with
+//                s_line_valid and on the next clock, on which s_line_place stays; to the box test
+//                on the first clock of m_pair_valid and the next, to the receiver of leaf pairs with
+//                m_leaf_valid and on the next clock
 //   check        what a line says of its children, and of a header, leaves with `lookup` when the
 //                verdict of the box test comes: code, kinds and lines of the children
 //   latency      1 clock from s_valid to m_line_valid, 8 from the second line to m_pair_valid or
@@ -45,9 +49,9 @@ module cchip_get_data #(
     input  wire [                                          1:0] s_line_valid,
     input  wire [                   2*$clog2(PAIRS+LEAVES)-1:0] s_line_place,
     input  wire [                     2*`CCHIP_READ_CODE_W-1:0] s_line_code,
-    input  wire [                                       1023:0] s_line_data,
+    input  wire [                                        511:0] s_line_data,  // a beat of each
     // node pairs, with the children that count: none if these are headers; a pair that is taken
-    // on the next clock is told of on this one
+    // on the next clock is told of on this one. That is the third clock of the pair or later
     output wire                                                 m_pair_valid,
     input  wire                                                 m_pair_soon,   // on the next clock
     output wire [                     $clog2(PAIRS+LEAVES)-1:0] m_pair_place,
@@ -61,7 +65,7 @@ module cchip_get_data #(
     output wire [                                          1:0] m_leaf_epoch,
     output wire [                                          3:0] m_leaf_kinds,  // {B's, A's}
     output wire                                                 m_leaf_failed,  // lines not read
-    output wire [                                       1023:0] m_lines,  // {B's, A's} of either
+    output wire [                                        511:0] m_lines,  // {B's, A's}: a beat
     // of a node pair whose verdict has come; 1 clock later
     input  wire                                                 lookup,
     input  wire [                     $clog2(PAIRS+LEAVES)-1:0] lookup_place,
@@ -121,10 +125,11 @@ module cchip_get_data #(
 
   // ---- the lines as they come, and the pairs both of whose lines are here: a queue of node pairs
   // and one of leaf pairs for each port
-  wire [1023:0] read_lines;
+  wire [511:0] read_lines;
   wire [2*CODE_W-1:0] read_codes;
   reg fetch_valid_q;
   reg [PLACE_W-1:0] fetch_q;
+  reg beat_q;
   wire [1:0] queue_valid, queue_take, leaf_queue_valid, leaf_queue_take;
   wire [2*PLACE_W-1:0] queue_place, leaf_queue_place;
   cchip_line_pairs #(
@@ -145,6 +150,7 @@ module cchip_get_data #(
       .m_leaf_take (leaf_queue_take),
       .m_leaf_place(leaf_queue_place),
       .read_place  (fetch_q),
+      .read_beat   (beat_q),
       .read_lines  (read_lines),
       .read_codes  (read_codes)
   );
@@ -177,7 +183,9 @@ module cchip_get_data #(
       if (advance && pick_leaf) leaf_turn_q <= ~leaf_from1;
     end
 
-  // ---- the picked pair's lines: memory answers 2 clocks after fetch_q
+  // ---- the picked pair's lines: memory answers 2 clocks after fetch_q. The first beat is asked for
+  // on the first clock alone, and waits in lines_q; the second one waits in the memory's output.
+  // Those before have gone when they come: the pair was picked when the one before was loaded.
   reg [1:0] age_q;
   reg [CONTEXT_W+RECORD_W-1:0] record_q;
   reg no_pose_fetch_q;
@@ -186,15 +194,15 @@ module cchip_get_data #(
   reg fetch_leaf_q;
   reg pair_valid_q, leaf_valid_q, fresh_q;
   // The box test tells a clock ahead that it takes the pair, so both of these are flip-flops: that
-  // it is taken on this clock, for what picks the next pair, and that there is room for lines, for
-  // more than a thousand flip-flops that lie far apart
+  // it is taken on this clock, for what picks the next pair, and that there is room for it
   reg ready_q, room_q;
+  reg beat_comes_q;  // read_lines has a beat for lines_q
   wire load = fetch_valid_q & age_q[1] & ~no_pose_fetch_q & (~pair_valid_q | ready_q);
   wire pair_valid = (load & ~fetch_leaf_q) | (pair_valid_q & ~ready_q);  // on the next clock
   assign advance = (pick_leaf | pick_pair) & (~fetch_valid_q | load);
   reg [PLACE_W-1:0] place_q;
   reg [CONTEXT_W+RECORD_W-1:0] hold_record_q;
-  reg [1023:0] lines_q;
+  reg [511:0] lines_q;
   wire failed_a = read_codes[0+:CODE_W] != `CCHIP_READ_OK;
   wire failed_b = read_codes[CODE_W+:CODE_W] != `CCHIP_READ_OK;
   reg [1:0] failed_q;
@@ -204,12 +212,14 @@ module cchip_get_data #(
     record_q        <= records[fetch_q];
     fetch_leaf_q    <= fetch_leaf;
     no_pose_fetch_q <= record_q[`CCHIP_NODE_PAIR_HEADER] & no_pose_q[fetch_context];
+    beat_q          <= ~advance;
+    beat_comes_q    <= (age_q == 2'd1) | load;
+    if (beat_comes_q) lines_q <= read_lines;
     // A pair that is not complete may be loaded, too: what is loaded counts only with pair_valid_q
-    // or leaf_valid_q. So the condition of these thousand flip-flops is a short one.
+    // or leaf_valid_q. So the condition of these flip-flops is a short one.
     if (room_q) begin
       place_q       <= fetch_q;
       hold_record_q <= record_q;
-      lines_q       <= read_lines;
       failed_q      <= {failed_b, failed_a};
       leaf_failed_q <= failed_a | failed_b;
     end
@@ -272,6 +282,7 @@ module cchip_get_data #(
 
   always @(posedge clk)
     if (!rst) begin
+      `CCHIP_ASSERT(a_beats, !(pair_valid_q && fresh_q) || !ready_q)
       `CCHIP_ASSERT(a_room, {30'd0, room_left_q} <= ROOM_AT_FIRST)
       `CCHIP_ASSERT(a_place, !(s_valid && pair_valid_q && place_q == s_place))
     end

@@ -4,11 +4,13 @@
 `include "cchip_assert.vh"
 // cchip_line_pairs: lines that come in any order, and the pairs both of whose lines are here. Lines
 // of A come through port 0, those of B through port 1, each once; a pair has a place.
+//   beats        a line is two beats of 256 bits, the lower half with s_valid, the upper one on the
+//                next clock, on which s_place stays; read_beat says which one is read
 //   order        the port of the second line puts the pair in its queue; if both lines come on one
 //                clock, port 0 does. Node pairs and leaf pairs have queues of their own
 //   latency      4 clocks from the second line to m_pair_valid or m_leaf_valid; read_lines and
 //                read_codes 2 clocks after read_place
-//   throughput   a line per port and clock
+//   throughput   a line per port and two clocks
 //   credit       a place is used again only after its pair has left its queue
 //   cuts         every path: each output is a flip-flop
 //   reset        no line of before may come; the queues are empty
@@ -22,11 +24,11 @@ module cchip_line_pairs #(
 ) (
     input  wire                            clk,
     input  wire                            rst,
-    // lines, {B's, A's}
+    // lines, {B's, A's}; on the clock after 1, s_valid is 0
     input  wire [                     1:0] s_valid,
     input  wire [           2*PLACE_W-1:0] s_place,
     input  wire [2*`CCHIP_READ_CODE_W-1:0] s_code,
-    input  wire [                  1023:0] s_data,
+    input  wire [                   511:0] s_data,
     // pairs that are complete, in the queue of each port
     output wire [                     1:0] m_pair_valid,
     input  wire [                     1:0] m_pair_take,
@@ -34,9 +36,10 @@ module cchip_line_pairs #(
     output wire [                     1:0] m_leaf_valid,
     input  wire [                     1:0] m_leaf_take,
     output wire [           2*PLACE_W-1:0] m_leaf_place,
-    // the lines of a pair, {B's, A's}
+    // halves of the lines of a pair, {B's, A's}
     input  wire [             PLACE_W-1:0] read_place,
-    output wire [                  1023:0] read_lines,
+    input  wire                            read_beat,
+    output wire [                   511:0] read_lines,
     output wire [2*`CCHIP_READ_CODE_W-1:0] read_codes
 );
 
@@ -97,15 +100,15 @@ module cchip_line_pairs #(
           .m_data (m_leaf_place[PLACE_W*p+:PLACE_W])
       );
       cchip_block_ram #(
-          .WIDTH (512),
-          .ADDR_W(PLACE_W)
+          .WIDTH (256),
+          .ADDR_W(PLACE_W + 1)
       ) u_lines (
           .clk       (clk),
-          .write     (s_valid[p]),
-          .write_addr(s_place[PLACE_W*p+:PLACE_W]),
-          .write_data(s_data[512*p+:512]),
-          .read_addr (read_place),
-          .read_data (read_lines[512*p+:512])
+          .write     (s_valid[p] | valid_q[p]),
+          .write_addr({s_place[PLACE_W*p+:PLACE_W], valid_q[p]}),
+          .write_data(s_data[256*p+:256]),
+          .read_addr ({read_place, read_beat}),
+          .read_data (read_lines[256*p+:256])
       );
       (* ram_style = "distributed", ramstyle = "MLAB" *)
       reg [CODE_W-1:0] codes[0:PLACES-1];
@@ -128,6 +131,9 @@ module cchip_line_pairs #(
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_whole, no_room == 2'd0)
+      `CCHIP_ASSERT(a_beats, (s_valid & valid_q) == 2'd0)
+      `CCHIP_ASSERT(a_stays, (!valid_q[0] || place0 == s_place[0+:PLACE_W]) &&
+          (!valid_q[1] || place1 == s_place[PLACE_W+:PLACE_W]))
     end
 
 endmodule

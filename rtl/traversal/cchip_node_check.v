@@ -8,8 +8,10 @@
 //   header       magic and version must be right, and the root inside the image; the number of
 //                lines of both images is kept for the nodes of that context
 //   code         the first that holds: MEMORY of A, BAD_DESCRIPTOR, the end of A, the end of B
+//   beats        s_lines is the lower half of the lines with s_valid, the upper half on the next
+//                clock
 //   latency      4 clocks from s_valid until lookup finds it; 1 clock from lookup to lookup_nodes
-//   throughput   a pair per clock
+//   throughput   a pair every second clock
 //   cuts         every path: each output is a flip-flop
 //   reset        nothing inside; what is kept is unknown until it has been written
 module cchip_node_check #(
@@ -27,7 +29,7 @@ module cchip_node_check #(
     input  wire                       s_header,      // two headers, not two nodes
     input  wire [               47:0] s_numbers,     // numbers of the lines in their images
     input  wire [                1:0] s_failed,      // a line could not be read
-    input  wire [             1023:0] s_lines,
+    input  wire [              511:0] s_lines,       // a beat
     // record NODES of a pair
     input  wire                       lookup,
     input  wire [        PLACE_W-1:0] lookup_place,
@@ -37,6 +39,7 @@ module cchip_node_check #(
   localparam integer CONTEXT_W = $clog2(QUERIES);
   localparam integer END_W = `CCHIP_END_W;
   localparam integer NODES_W = `CCHIP_NODES_W;
+  localparam integer FIRST_CHILD = 96;  // bit of CCHIP_NODE_LINE_CHILD
   localparam [31:0] MAGIC = 32'h4D494343;
   localparam [15:0] VERSION = 16'd1;
   localparam [4:0] STEP_MAX = 5'd18;
@@ -56,27 +59,28 @@ module cchip_node_check #(
   genvar p, i;
   generate
     for (p = 0; p < 2; p = p + 1) begin : gen_line
-      wire [511:0] line = s_lines[512*p+:512];
+      wire [255:0] line = s_lines[256*p+:256];
       wire [4:0] step = line[`CCHIP_NODE_LINE_STEP];
       wire [23:0] first = line[`CCHIP_NODE_LINE_FIRST];
       wire [7:0] kinds = line[`CCHIP_NODE_LINE_KINDS];
       wire [1:0] others = line[`CCHIP_NODE_LINE_CHILDREN];  // behind the first
-      wire [407:0] child = line[`CCHIP_NODE_LINE_CHILD];
       // of a header
       wire [31:0] magic = line[`CCHIP_HEADER_LINE_MAGIC];
       wire [15:0] version = line[`CCHIP_HEADER_LINE_VERSION];
       wire [31:0] size = line[`CCHIP_HEADER_LINE_LINES];
       wire [23:0] root = line[`CCHIP_HEADER_LINE_ROOT];
 
-      // greatest < least on an axis of a child. Children that are absent have boxes of 0.
+      // greatest < least on an axis of a child: of the first two children in the first beat, of
+      // the others in the second. Children that are absent have boxes of 0.
       wire [11:0] inverted;
       for (i = 0; i < 12; i = i + 1) begin : gen_interval
-        wire signed [6:0] least = child[102*(i/3)+14*(i%3)+:7];
-        wire signed [6:0] greatest = child[102*(i/3)+14*(i%3)+7+:7];
+        localparam integer AT = (FIRST_CHILD + 102 * (i / 3) + 14 * (i % 3)) % 256;
+        wire signed [6:0] least = line[AT+:7];
+        wire signed [6:0] greatest = line[AT+7+:7];
         assign inverted[i] = greatest < least;
       end
 
-      reg [11:0] inverted_q1;
+      reg [5:0] inverted_q1, late_q2;
       reg [23:0] first_q1, root_q1, at_q1, first_q2, first_q3;
       reg [24:0] last_q1;  // line of the last child
       reg [7:0] kinds_q1, kinds_q2, kinds_q3;
@@ -92,7 +96,8 @@ module cchip_node_check #(
         kinds_q1       <= kinds;
         at_q1          <= s_numbers[24*p+:24];
         steep_q1       <= step > STEP_MAX;
-        inverted_q1    <= inverted;
+        inverted_q1    <= inverted[5:0];
+        late_q2        <= inverted[11:6];
         size_q1        <= |size[31:24] ? 25'h1000000 : {1'b0, size[23:0]};
         failed_q1      <= s_failed[p];
         header_here_q1 <= magic == MAGIC && version == VERSION;
@@ -108,10 +113,10 @@ module cchip_node_check #(
         kinds_q3       <= kinds_q2;
         no_header_q3   <= header_q2 & ~failed_q2 & ~header_here_q2;
         end_q3         <= failed_q2 ? `CCHIP_END_MEMORY :
-            corrupt_q2 ? `CCHIP_END_CORRUPT :
+            corrupt_q2 || (!header_q2 && |late_q2) ? `CCHIP_END_CORRUPT :
             outside_q2 ? `CCHIP_END_OUTSIDE : `CCHIP_END_OK;
       end
-      wire unused = &{1'b0, line[511:152], line[95:93], line[53:32], child};
+      wire unused = &{1'b0, line};
       assign size2[25*p+:25] = size_q2;
       assign node3[32*p+:32] = {kinds_q3, first_q3};
       assign end3[END_W*p+:END_W] = end_q3;

@@ -24,6 +24,7 @@ void Cache::clock(const Inputs& in) {
   if (read_) to_fill.allocate = CacheFill::Allocation{read_->place, allocate_frame_};
   to_fill.beat = std::exchange(beat_, in.beat);
   to_fill.outstanding = in.outstanding;
+  to_fill.free = rests(0);
 
   clock_turn();
   std::array<Step, 2> first;
@@ -80,8 +81,8 @@ void Cache::reset() {
 
 /// Ports that have not served all who wait.
 bool Cache::serving() const {
-  return !ports_[0].wake.empty() || !ports_[1].wake.empty() || (fill_.fill() && ports_[0].serve) ||
-         (walk_enters_ && ports_[1].serve);
+  return !ports_[0].wake.empty() || !ports_[1].wake.empty() ||
+         ((fill_.fill(rests(0)) || !takes(0)) && ports_[0].serve) || ((walk_enters_ || !takes(1)) && ports_[1].serve);
 }
 
 /// Stage 6.
@@ -149,9 +150,9 @@ bool Cache::answer(std::size_t p, const Decisions& now) {
 /// Stage 0: who has this clock.
 Cache::Step Cache::enter(std::size_t p, const std::optional<Request>& ask, bool again, const Request& again7) {
   Port& port = ports_[p];
-  const std::optional<CacheFill::Fill> fill = fill_.fill();
+  const std::optional<CacheFill::Fill> fill = fill_.fill(rests(0));
   const bool own = p == 0 ? fill.has_value() : walk_enters_;
-  const bool go = was_running_ && !own && !port.serve;
+  const bool go = takes(p) && was_running_ && !own && !port.serve;
   const bool late = port.late.m_valid();
   const bool use_again = port.again.m_valid() && (port.again_first || !late);
   const bool use_late = !use_again && late;
@@ -167,7 +168,7 @@ Cache::Step Cache::enter(std::size_t p, const std::optional<Request>& ask, bool 
       step.slot = fill->slot;
       step.code = fill->code;
     }
-  } else if (port.serve) {
+  } else if (port.serve && takes(p)) {
     step = *port.serve;
   } else if (go && (use_again || use_late || use_ask)) {
     const Request& request = use_again ? port.again.m_data() : use_late ? port.late.m_data() : *ask;

@@ -6,8 +6,8 @@ namespace cchip::model {
 CacheFill::CacheFill(std::size_t slots, std::size_t beats)
     : beats_(beats), lines_(slots), free_(slots), arrived_(slots), serve_queue_(slots) {}
 
-std::optional<CacheFill::Fill> CacheFill::fill() const {
-  if (!arrived_.m_valid()) return std::nullopt;
+std::optional<CacheFill::Fill> CacheFill::fill(bool free) const {
+  if (!arrived_.m_valid() || !free) return std::nullopt;
   Fill fill = arrived_.m_data();
   fill.frame = lines_[fill.slot].frame;
   return fill;
@@ -19,7 +19,7 @@ void CacheFill::clock(const Inputs& in) {
   const std::optional<std::size_t> back = next_free(release, lost, in.outstanding);
   clock_slots(in, release, lost);
   clock_serves(in, release);
-  arrived_.clock(in.beat && in.beat->last, in.beat ? Fill{in.beat->slot, in.beat->code, 0} : Fill{}, true);
+  arrived_.clock(in.beat && in.beat->last, in.beat ? Fill{in.beat->slot, in.beat->code, 0} : Fill{}, in.free);
   free_.clock(in.free_take, back);
 }
 

@@ -85,10 +85,11 @@ NodePair random_pair(Random& random, const model::PoseSetup& pose) {
   return pair;
 }
 
+/// The lower half of a line, or the upper one.
 template <class Port>
-void set_line(Port& port, const bvh::InnerLine& node) {
+void set_beat(Port& port, const bvh::InnerLine& node, std::size_t beat) {
   const Line line = encode(node);
-  for (std::size_t i = 0; i < line.size(); ++i) sim::set_bits(port, static_cast<int>(8 * i), 8, line[i]);
+  for (std::size_t i = 0; i < 32; ++i) sim::set_bits(port, static_cast<int>(8 * i), 8, line[32 * beat + i]);
 }
 
 int counting(const bvh::InnerLine& node, unsigned children) {
@@ -125,7 +126,9 @@ void run(Simulation& simulation, Random& random, const std::vector<bvh::Image>& 
   bool pose_offered = false;
   std::size_t pose_context = 0;
   std::optional<Verdict> offered;
-  int left = 0;  // clocks of the node pair after this one
+  NodePair lines;         // of the node pair that is offered
+  std::size_t beats = 0;  // of these that it has given
+  int left = 0;           // clocks of the node pair after this one
   int pairs_of_four = 0, waiting = 0, leaves = 0, strong = 0, far = 0, near = 0, done = 0, busy = 0;
   std::array<int, 17> tests{};
   top.s_valid = 0;
@@ -185,17 +188,23 @@ void run(Simulation& simulation, Random& random, const std::vector<bvh::Image>& 
         near += grid.near && !grid.far ? 1 : 0;
         top.s_tag = static_cast<CData>(offered->tag);
         top.s_context = static_cast<CData>(c);
-        set_line(top.s_a, pair.a);
-        set_line(top.s_b, pair.b);
+        lines = pair;
+        beats = 0;
         top.s_a_children = static_cast<CData>(pair.children_a);
         top.s_b_children = static_cast<CData>(pair.children_b);
         pairs_of_four += length == 4 ? 1 : 0;
       }
     }
     top.s_valid = offered ? 1 : 0;
+    if (offered && beats < 2) {
+      set_beat(top.s_a, lines.a, beats);
+      set_beat(top.s_b, lines.b, beats);
+      ++beats;
+    } else {
+      sim::set_random(top.s_a, 256, random);
+      sim::set_random(top.s_b, 256, random);
+    }
     if (!offered) {
-      sim::set_random(top.s_a, 512, random);
-      sim::set_random(top.s_b, 512, random);
       top.s_context = static_cast<CData>(random() % queries);
       top.s_a_children = static_cast<CData>(random() % 16);
       top.s_b_children = static_cast<CData>(random() % 16);

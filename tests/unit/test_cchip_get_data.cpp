@@ -113,7 +113,8 @@ class GetDataBench {
         if ((!awaits_pose_[c] && random_() % 16 == 0) || (awaits_pose_[c] && chance(random_, how.pose))) in_.pose = c;
       }
       any_lines();
-      in_.pair_ready = std::exchange(soon_, chance(random_, how.ready));
+      in_.pair_ready = soon_;
+      soon_ = !soon_ && pair_clocks_ > 0 && chance(random_, how.ready);
       in_.leaf_taken = leaves_there_ > 0 && chance(random_, how.taken);
       if (chance(random_, 30)) in_.lookup = random_() % places;
       step(static_cast<int>(random_() % 1000) < how.reset);
@@ -126,7 +127,8 @@ class GetDataBench {
         if (awaits_pose_[c]) in_.pose = c;
       }
       any_lines();
-      in_.pair_ready = std::exchange(soon_, true);
+      in_.pair_ready = soon_;
+      soon_ = !soon_ && pair_clocks_ > 0;
       in_.leaf_taken = leaves_there_ > 0;
       step(false);
     }
@@ -196,7 +198,11 @@ class GetDataBench {
     asked_[1].clear();
     stays_ = false;
     soon_ = false;
+    pair_clocks_ = 0;
     leaves_there_ = 0;
+    second_ = {};
+    model_second_.reset();
+    second_out_.reset();
   }
 
   // ---- who asks
@@ -238,6 +244,7 @@ class GetDataBench {
     const bool both = how_.together && chance(random_, how_.answer);
     for (std::size_t p = 0; p < 2; ++p) {
       auto& asked = asked_[p];
+      if (second_[p]) continue;
       if (asked.empty() || (how_.together ? !both : !chance(random_, how_.answer))) continue;
       const auto at = asked.begin() + static_cast<std::ptrdiff_t>(how_.oldest ? 0 : random_() % asked.size());
       Expected& one = expected_[*at];
@@ -320,7 +327,7 @@ class GetDataBench {
     sim::set_random(top_.s_pose_context, context_w, random_);
     sim::set_random(top_.s_line_place, 2 * place_w, random_);
     sim::set_random(top_.s_line_code, 4, random_);
-    sim::set_random(top_.s_line_data, 1024, random_);
+    sim::set_random(top_.s_line_data, 512, random_);
     sim::set_random(top_.lookup_place, place_w, random_);
     top_.s_valid = in_.request ? 1 : 0;
     if (in_.request) {
@@ -334,11 +341,14 @@ class GetDataBench {
     if (in_.pose) sim::set_bits(top_.s_pose_context, 0, context_w, *in_.pose);
     for (int p = 0; p < 2; ++p) {
       const auto& line = in_.lines[static_cast<std::size_t>(p)];
+      const auto& before = second_[static_cast<std::size_t>(p)];
       sim::set_bits(top_.s_line_valid, p, 1, line ? 1 : 0);
-      if (!line) continue;
-      sim::set_bits(top_.s_line_place, place_w * p, place_w, line->place);
-      sim::set_bits(top_.s_line_code, 2 * p, 2, static_cast<unsigned>(line->code));
-      for (std::size_t w = 0; w < 16; ++w) top_.s_line_data.at(16 * static_cast<std::size_t>(p) + w) = line->data[w];
+      if (!line && !before) continue;
+      const GetData::Line& shown = line ? *line : *before;
+      sim::set_bits(top_.s_line_place, place_w * p, place_w, shown.place);
+      if (line) sim::set_bits(top_.s_line_code, 2 * p, 2, static_cast<unsigned>(line->code));
+      for (std::size_t w = 0; w < 8; ++w)
+        top_.s_line_data.at(8 * static_cast<std::size_t>(p) + w) = shown.data[(line ? 0 : 8) + w];
     }
     top_.m_pair_soon = soon_ ? 1 : 0;
     top_.s_leaf_taken = in_.leaf_taken ? 1 : 0;
@@ -355,7 +365,12 @@ class GetDataBench {
     }
     REQUIRE((top_.m_pair_valid != 0) == model_.pair_valid());
     REQUIRE((top_.m_leaf_valid != 0) == model_.leaf_valid());
-    if (model_.pair_valid() || model_.leaf_valid()) require_lines(model_.pair().lines);
+    if (model_second_) require_beat(*model_second_, 1);
+    model_second_.reset();
+    if ((model_.pair_valid() && !stays_) || model_.leaf_valid()) {
+      require_beat(model_.pair().lines, 0);
+      model_second_ = model_.pair().lines;
+    }
     if (model_.pair_valid()) {
       const GetData::Pair& pair = model_.pair();
       REQUIRE(top_.m_pair_place == pair.place);
@@ -386,8 +401,8 @@ class GetDataBench {
       ++ends[known.nodes->end];
     }
   }
-  void require_lines(const std::array<GetData::Line, 2>& lines) {
-    for (std::size_t w = 0; w < 32; ++w) REQUIRE(top_.m_lines.at(w) == lines[w / 16].data[w % 16]);
+  void require_beat(const std::array<GetData::Line, 2>& lines, std::size_t beat) {
+    for (std::size_t w = 0; w < 16; ++w) REQUIRE(top_.m_lines.at(w) == lines[w / 8].data[8 * beat + w % 8]);
   }
 
   /// Independent of the model: every request is asked for once, and leaves once, with its lines, when both have come.
@@ -402,6 +417,16 @@ class GetDataBench {
         one.use = Use::free;
       }
     }
+    if (second_out_) require_beat(*second_out_, 1);
+    second_out_.reset();
+    if (top_.m_leaf_valid != 0 || (top_.m_pair_valid != 0 && !stays_)) {
+      const Expected& one = expected_[top_.m_leaf_valid != 0 ? top_.m_leaf_place : top_.m_pair_place];
+      REQUIRE(one.lines[0].has_value());
+      REQUIRE(one.lines[1].has_value());
+      second_out_ = {*one.lines[0], *one.lines[1]};
+      require_beat(*second_out_, 0);
+    }
+    second_ = in_.lines;
     if (top_.m_line_valid != 0) {
       const std::size_t place = sim::get_bits(top_.m_line_place, 0, place_w);
       REQUIRE(expected_[place].use == Use::wanted);
@@ -422,6 +447,7 @@ class GetDataBench {
       last_out_ = clocks_;
     }
     ++clocks_;
+    pair_clocks_ = top_.m_pair_valid != 0 && !in_.pair_ready ? pair_clocks_ + 1 : 0;
     stays_ = top_.m_pair_valid != 0 && !in_.pair_ready;
     stalled += stays_ ? 1 : 0;
     if (top_.m_pair_valid != 0 && in_.pair_ready) leave(top_.m_pair_place, Use::out);
@@ -438,7 +464,6 @@ class GetDataBench {
     REQUIRE((use == Use::free) == (place >= pairs));
     REQUIRE(one.lines[0].has_value());
     REQUIRE(one.lines[1].has_value());
-    require_lines({*one.lines[0], *one.lines[1]});
     const bool failed = one.lines[0]->code != ReadCode::ok || one.lines[1]->code != ReadCode::ok;
     if (use == Use::free) REQUIRE((top_.m_leaf_failed != 0) == failed);
     failed_out += failed ? 1 : 0;
@@ -463,7 +488,7 @@ class GetDataBench {
                                            top_.m_leaf_epoch,
                                            top_.m_leaf_kinds,
                                            top_.m_leaf_failed,
-                                           top_.m_lines.at(0) ^ top_.m_lines.at(31),
+                                           top_.m_lines.at(0) ^ top_.m_lines.at(15),
                                            top_.lookup_context,
                                            top_.lookup_record,
                                            sim::get_bits(top_.lookup_nodes, 0, 64),
@@ -501,8 +526,11 @@ class GetDataBench {
   std::vector<std::array<std::uint64_t, 2>> sizes_;  // by context: near what its headers say
   std::array<std::vector<std::size_t>, 2> asked_;    // places
   bool stays_ = false;
-  bool soon_ = false;     // the box test takes its pair on the next clock
-  int leaves_there_ = 0;  // with their receiver
+  bool soon_ = false;                                   // the box test takes its pair on the next clock
+  int pair_clocks_ = 0;                                 // for which the node pair has been offered
+  std::array<std::optional<GetData::Line>, 2> second_;  // lines whose upper halves come
+  std::optional<std::array<GetData::Line, 2>> model_second_, second_out_;  // whose upper halves leave
+  int leaves_there_ = 0;                                                   // with their receiver
   int clocks_ = 0, last_out_ = -1000;
   bool defined_ = false;
 };

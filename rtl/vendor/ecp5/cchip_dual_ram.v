@@ -2,7 +2,8 @@
 `default_nettype none
 // cchip_dual_ram for Lattice ECP5: blocks DP16KD with their own output registers. Takes the place
 // of common/cchip_dual_ram.v in rtl/cchip_ecp5.f.
-//   blocks       one for 9 bits of a word with ADDR_W = 11, for 18 bits with ADDR_W up to 10.
+//   blocks       one for 18 bits of a word with ADDR_W up to 10, for 9 bits with 11, for 4 bits with
+//                12, for 2 bits with 13, for 1 bit with 14.
 //                Larger memories are left to inference, their output registers to flip-flops
 //   latency, throughput, collision, cuts, reset   those of common/cchip_dual_ram.v
 module cchip_dual_ram #(
@@ -19,7 +20,9 @@ module cchip_dual_ram #(
     output wire [ WIDTH-1:0] read_data_b
 );
 
-  localparam integer BITS = ADDR_W == 11 ? 9 : 18;  // of a word in a block
+  // of a word in a block
+  localparam integer BITS = ADDR_W <= 10 ? 18 : ADDR_W == 11 ? 9 : ADDR_W == 12 ? 4 :
+      ADDR_W == 13 ? 2 : 1;
   localparam integer BLOCKS = (WIDTH + BITS - 1) / BITS;
 
   generate
@@ -27,13 +30,21 @@ module cchip_dual_ram #(
       cchip_error_dual_ram_WIDTH_below_1_or_ADDR_W_not_3_to_16 u_error ();
     end
 
-    if (ADDR_W <= 11) begin : gen_blocks
+    if (ADDR_W <= 14) begin : gen_blocks
       wire [13:0] bit_a, bit_b;
-      wire [10:0] word_a = {{11 - ADDR_W{1'b0}}, addr_a};
-      wire [10:0] word_b = {{11 - ADDR_W{1'b0}}, addr_b};
-      if (BITS == 9) begin : gen_byte
-        assign bit_a = {word_a, 3'b000};
-        assign bit_b = {word_b, 3'b000};
+      wire [13:0] word_a, word_b;
+      assign word_a[ADDR_W-1:0] = addr_a;
+      assign word_b[ADDR_W-1:0] = addr_b;
+      if (ADDR_W < 14) begin : gen_small
+        assign word_a[13:ADDR_W] = {14 - ADDR_W{1'b0}};
+        assign word_b[13:ADDR_W] = {14 - ADDR_W{1'b0}};
+      end
+      if (BITS == 1) begin : gen_bit
+        assign bit_a = word_a;
+        assign bit_b = word_b;
+      end else if (BITS < 18) begin : gen_part
+        assign bit_a = {word_a[ADDR_W-1:0], {14 - ADDR_W{1'b0}}};
+        assign bit_b = {word_b[ADDR_W-1:0], {14 - ADDR_W{1'b0}}};
       end else begin : gen_half
         assign bit_a = {word_a[9:0], 4'b0011};
         assign bit_b = {word_b[9:0], 4'b0000};

@@ -174,16 +174,28 @@ class SimulatedBroadPhase : private Agent {
       started_[{m.m_start_context, m.m_start_epoch}] = decode_query(text);
     }
     if (m.invalidate_valid != 0 && m.invalidate_ready != 0) invalidate_.reset();
-    if (m.m_leaf_valid != 0) take_leaves(now.clock);
+    if (leaves_) take_leaves(now.clock);
+    if (m.m_leaf_valid != 0) take_first_beat();
     if (m.s_result_valid != 0 && m.s_result_ready != 0) receiver_.taken();
     if (m.m_done_valid != 0 && m.m_done_ready != 0) take_done();
     count();
   }
 
-  void take_leaves(std::uint64_t now) {
+  /// A line has two beats of 256 bits, the lower half first, the upper one on the next clock.
+  void take_beat(std::size_t beat) {
+    constexpr std::size_t half = 32;
+    const auto* from = reinterpret_cast<const unsigned char*>(&top().m_leaf_lines);
+    auto* to = reinterpret_cast<unsigned char*>(leaves_->lines.data());
+    for (std::size_t p = 0; p < 2; ++p) std::memcpy(to + (2 * p + beat) * half, from + p * half, half);
+  }
+  void take_first_beat() {
     const Model& m = top();
-    LeafPair leaves{m.m_leaf_context, m.m_leaf_epoch, m.m_leaf_kinds, m.m_leaf_failed != 0, {}};
-    std::memcpy(leaves.lines.data(), &m.m_leaf_lines, sizeof(leaves.lines));
+    leaves_ = LeafPair{m.m_leaf_context, m.m_leaf_epoch, m.m_leaf_kinds, m.m_leaf_failed != 0, {}};
+    take_beat(0);
+  }
+  void take_leaves(std::uint64_t now) {
+    take_beat(1);
+    const LeafPair leaves = *std::exchange(leaves_, std::nullopt);
     const Query& query = started_.at({leaves.context, leaves.epoch});
     counters_.lane_busy += receiver_.take(leaves, query, now, answers_.at(query.tag));
   }
@@ -226,6 +238,7 @@ class SimulatedBroadPhase : private Agent {
   std::map<std::size_t, Line> raw_;
   std::vector<BroadPhaseAnswer> answers_;
   std::map<std::pair<unsigned, unsigned>, Query> started_;  // by context and epoch
+  std::optional<LeafPair> leaves_;                          // whose second beat comes
   std::optional<std::pair<std::uint32_t, std::uint32_t>> invalidate_;
   bool offering_ = false;
   std::size_t open_ = 0;

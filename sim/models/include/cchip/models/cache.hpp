@@ -126,6 +126,10 @@ class Cache {
   std::size_t set_of(const Step& step) const { return step.line % shape_.sets; }
   bool changes(const Step& step) const { return change_ && change_->set == set_of(step); }
 
+  /// A port took nothing on the clock before: what is in it has two clocks of the memory of lines.
+  bool rests(std::size_t p) const { return ports_[p].steps[0].kind == Kind::none; }
+  /// It takes a request. Port 1 rests before a set to invalidate, too.
+  bool takes(std::size_t p) const { return rests(p) && !(p == 1 && walk_valid_); }
   bool serving() const;
   Decisions decide();
   void clock_turn();

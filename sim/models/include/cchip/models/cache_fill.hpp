@@ -39,6 +39,7 @@ class CacheFill {
     bool free_take = false;              ///< free_slot() is taken
     std::optional<Allocation> allocate;  ///< this slot has this frame from the next clock on
     std::optional<Beat> beat;
+    bool free = true;               ///< what fill() was asked with
     std::optional<Fill> filled;     ///< the line of a fill five clocks ago: its data, if it has any, go into the frame
     bool serving = false;           ///< a port has not served all who wait
     std::vector<bool> outstanding;  ///< of each slot, as cchip_axi_read says
@@ -55,8 +56,8 @@ class CacheFill {
   bool holds(std::size_t slot, std::size_t frame) const { return lines_[slot].held && lines_[slot].frame == frame; }
   bool filled(std::size_t slot) const { return lines_[slot].filled; }
   const LineData& data(std::size_t slot) const { return lines_[slot].data; }
-  /// A line goes into its frame.
-  std::optional<Fill> fill() const;
+  /// A line goes into its frame, if port 0 is free.
+  std::optional<Fill> fill(bool free) const;
   /// Who waits for the line of serves() is to be served.
   bool collect() const { return collect_; }
   const std::optional<Fill>& serves() const { return serves_; }
