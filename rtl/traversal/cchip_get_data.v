@@ -184,8 +184,9 @@ module cchip_get_data #(
     end
 
   // ---- the picked pair's lines: memory answers 2 clocks after fetch_q. The first beat is asked
-  // for on the first clock alone, and waits in lines_q; the second one waits in the memory's output.
-  // Those before have gone when they come: the pair was picked when the one before was loaded.
+  // for on the first clock alone, and waits in lines_q; the second one waits in the memory's
+  // output. Those before have gone when they come: the pair was picked when the one before was
+  // loaded.
   reg [1:0] age_q;
   reg [CONTEXT_W+RECORD_W-1:0] record_q;
   reg no_pose_fetch_q;
