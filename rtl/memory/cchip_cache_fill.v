@@ -14,7 +14,7 @@
 //   silence      a slot whose read ended with CCHIP_READ_TIMEOUT or CCHIP_READ_OWED is lost: it is
 //                lent again, within MISSES + 3 clocks, when nothing is outstanding under its ID
 //   latency      2 clocks from the last beat to fill_valid, while free is 1
-//   throughput   a line every second clock into the frames, every fourth clock if one waits for each
+//   throughput   a line every second clock into the frames, every fourth if one waits for each
 //   cuts         every path
 //   reset        every slot is free after MISSES clocks; memory must not answer reads from before
 module cchip_cache_fill #(

@@ -6,7 +6,7 @@
 // clock, 1 to 4 read the entries of both ways and compare their tags, 5 addresses the data, 6
 // decides, 7 is the answer.
 //   beats        what is in stage 5 stays there for two clocks, with a half of a line each, the
-//                lower one first; so stage 0 takes nothing on the clock after it has taken something
+//                lower one first; so stage 0 takes nothing on the clock after it took something
 //   stage 0      in this order: a line that arrives or a set to invalidate (own), a request whose
 //                line has come, a deferred or new request, a request to be looked up again; the
 //                last two alternate if both wait

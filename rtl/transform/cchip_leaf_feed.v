@@ -9,7 +9,7 @@
 //                one, and the traversal calls its results dead
 //   credit       s_leaf_valid has no ready: at most one leaf pair comes for which m_credit has not
 //                been 1; the others wait in cchip_get_data, which has memory for their lines
-//   beats        lines come in two halves, the lower one with s_leaf_valid, the upper one on the next
+//   beats        lines come in halves, the lower one with s_leaf_valid, the upper one on the next
 //                clock
 //   end          a leaf pair whose line could not be read, or is illegal, ends without primitive
 //                pairs, with CCHIP_END_MEMORY or CCHIP_END_CORRUPT

@@ -8,8 +8,8 @@
 //                of leaves that the query still waited for has its result
 //   leaves       leaf pairs of which nothing is known but that their volumes overlap, with
 //                their lines in two beats of 256 bits, the lower halves first, the upper ones on
-//                the clock after m_leaf_valid. The receiver tests the primitives and answers each with one
-//                result; fewer than 1,900 are without one at any time
+//                the clock after m_leaf_valid. The receiver tests the primitives and answers each
+//                with one result; fewer than 1,900 are without one at any time
 //   errors       end one query with a code, and leave the others alone
 //   bound        every wait has one: a read by the limit of cchip_axi_read, a query by step_limit;
 //                results and the receiver of answers are waited for

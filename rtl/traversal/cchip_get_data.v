@@ -11,7 +11,7 @@
 //                s_leaf_taken has not been 1
 //   beats        a line is two beats of 256 bits, the lower half first: from the cache with
 //                s_line_valid and on the next clock, on which s_line_place stays; to the box test
-//                on the first clock of m_pair_valid and the next, to the receiver of leaf pairs with
+//                on the first clock of m_pair_valid and the next, to who takes leaf pairs with
 //                m_leaf_valid and on the next clock
 //   check        what a line says of its children, and of a header, leaves with `lookup` when the
 //                verdict of the box test comes: code, kinds and lines of the children
@@ -183,9 +183,10 @@ module cchip_get_data #(
       if (advance && pick_leaf) leaf_turn_q <= ~leaf_from1;
     end
 
-  // ---- the picked pair's lines: memory answers 2 clocks after fetch_q. The first beat is asked for
-  // on the first clock alone, and waits in lines_q; the second one waits in the memory's output.
-  // Those before have gone when they come: the pair was picked when the one before was loaded.
+  // ---- the picked pair's lines: memory answers 2 clocks after fetch_q. The first beat is asked
+  // for on the first clock alone, and waits in lines_q; the second one waits in the memory's
+  // output. Those before have gone when they come: the pair was picked when the one before was
+  // loaded.
   reg [1:0] age_q;
   reg [CONTEXT_W+RECORD_W-1:0] record_q;
   reg no_pose_fetch_q;

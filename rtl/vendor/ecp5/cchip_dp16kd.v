@@ -2,8 +2,8 @@
 `default_nettype none
 // cchip_dp16kd: one block RAM of Lattice ECP5 with its output registers, its pins as vectors. Yosys
 // does not pack the registers, so the leaves for ECP5 take the block itself.
-//   width        of a port 1, 2, 4, 9 or 18 bits. 36 bits: port A writes {d_b, d_a} and is not read, port B
-//                reads {q_b, q_a}
+//   width        of a port 1, 2, 4, 9 or 18 bits. 36 bits: port A writes {d_b, d_a} and is not
+//                read, port B reads {q_b, q_a}
 //   address      that of a bit of 16 KiBit: word i of 1, 2, 4, 9, 18, 36 bits at i, 2 i, 4 i, 8 i,
 //                16 i, 32 i; of 18 and 36 bits the lowest bits of port A's address enable the bytes
 //   latency      q belongs to the address of 2 clocks before

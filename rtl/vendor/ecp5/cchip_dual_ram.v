@@ -2,8 +2,8 @@
 `default_nettype none
 // cchip_dual_ram for Lattice ECP5: blocks DP16KD with their own output registers. Takes the place
 // of common/cchip_dual_ram.v in rtl/cchip_ecp5.f.
-//   blocks       one for 18 bits of a word with ADDR_W up to 10, for 9 bits with 11, for 4 bits with
-//                12, for 2 bits with 13, for 1 bit with 14.
+//   blocks       one for 18 bits of a word with ADDR_W up to 10, for 9 bits with 11, for 4 bits
+//                with 12, for 2 bits with 13, for 1 bit with 14.
 //                Larger memories are left to inference, their output registers to flip-flops
 //   latency, throughput, collision, cuts, reset   those of common/cchip_dual_ram.v
 module cchip_dual_ram #(
