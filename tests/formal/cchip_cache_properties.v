@@ -72,7 +72,7 @@ module cchip_cache_properties #(
   wire [1:0] m_valid;
   wire [2*PLACE_W-1:0] m_place;
   wire [2*CODE_W-1:0] m_code;
-  wire [1023:0] m_data;
+  wire [511:0] m_data;
   wire m_read_valid, invalidate_ready;
   wire [SLOT_W-1:0] m_read_slot;
   wire [57:0] m_read_line;
@@ -109,7 +109,7 @@ module cchip_cache_properties #(
       .s_read_beat       (3'd0),
       .s_read_last       (1'b1),
       .s_read_code       (s_read_code),
-      .s_read_data       ({511'd0, s_read_data}),
+      .s_read_data       ({255'd0, s_read_data, 255'd0, s_read_data}),  // bit 0 of each half
       .s_read_outstanding(open_read_q | owed_q),
       .count_hit         (count_hit),
       .count_miss        (count_miss),
@@ -204,18 +204,34 @@ module cchip_cache_properties #(
     for (p = 0; p < 2; p = p + 1) begin : gen_answer
       wire [CODE_W-1:0] code = m_code[CODE_W*p+:CODE_W];
       wire of_followed = wants_followed_q[{p[0], m_place[PLACE_W*p+:PLACE_W]}];
-      always @(posedge clk)
+      reg upper_q, upper_of_followed_q, upper_promised_q;  // the upper half comes, of such an answer
+`ifdef STALE
+      wire is_promised = promised;
+`else
+      wire is_promised = 1'b0;
+`endif
+      always @(posedge clk) begin
+        upper_q <= ~rst & m_valid[p] & (code == `CCHIP_READ_OK);
+        upper_of_followed_q <= of_followed;
+        upper_promised_q <= is_promised;
         if (!rst) begin
           if (m_valid[p]) begin
             assert (open_q[{p[0], m_place[PLACE_W*p+:PLACE_W]}]);
             assert (code == `CCHIP_READ_OK || failed_q);
+            assert (!upper_q);
 `ifdef STALE
-            assert (code != `CCHIP_READ_OK || !of_followed || !promised || m_data[512*p]);
+            assert (code != `CCHIP_READ_OK || !of_followed || !promised || m_data[256*p]);
 `else
-            assert (code != `CCHIP_READ_OK || m_data[512*p] == of_followed);
+            assert (code != `CCHIP_READ_OK || m_data[256*p] == of_followed);
 `endif
           end
+`ifdef STALE
+          if (upper_q) assert (!upper_of_followed_q || !upper_promised_q || m_data[256*p]);
+`else
+          if (upper_q) assert (m_data[256*p] == upper_of_followed_q);
+`endif
         end
+      end
     end
   endgenerate
   wire reads_followed = m_read_valid && m_read_line[LINE_W-1:0] == followed;
@@ -249,7 +265,7 @@ module cchip_cache_properties #(
         // a request of each port has waited, and both ports answer with the line; a locked line is hit; the line is evicted,
         // read again and answered; every slot is lost and a request is refused; an answer after an invalidation; two lines that
         // come keep an answer from its clock; the third line that is read is answered
-        0: assert (!(&m_valid && m_code == 0 && &waited_q && m_data[0] && m_data[512]));
+        0: assert (!(&m_valid && m_code == 0 && &waited_q && m_data[0] && m_data[256]));
         1: assert (!(count_hit[0] && locked && loaded_q && !invalidated_q));
         2: assert (!(followed_0 && evicted_q));
         3: assert (!(m_valid[0] && m_code[0+:CODE_W] == `CCHIP_READ_OWED && &owed_q));

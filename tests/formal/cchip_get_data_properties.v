@@ -9,9 +9,11 @@
 // no pair waits for a pose, and neither the box test nor the receiver of leaves has anything, a pair that is whole brings about a pair within BOUND clocks.
 // Assumed, what cchip_traversal and cchip_cache keep:
 //   free      a place is asked for again only after its pair has left
-//   asked     the cache answers each line that was asked for once, on a later clock
+//   asked     the cache answers each line that was asked for once, on a later clock; on the clock after, the place stays for the
+//             upper half, and no other line comes on this port
+//   beats     the box test takes a pair on its third clock or later
 //   taken     the receiver of leaves takes no more than it was given; it never has more than it has room for
-// One place, any: the solver chooses it; in the task `code`, which is of codes only, it is PLACE. Bit 0 of a line stands for all of it.
+// One place, any: the solver chooses it; in the task `code`, which is of codes only, it is PLACE. Bit 0 of each half of a line stands for all of it.
 module cchip_get_data_properties #(
     parameter integer QUERIES = 2,
     parameter integer PAIRS   = 5,
@@ -30,7 +32,7 @@ module cchip_get_data_properties #(
     input wire [                            1:0] s_line_valid,
     input wire [     2*$clog2(PAIRS+LEAVES)-1:0] s_line_place,
     input wire [       2*`CCHIP_READ_CODE_W-1:0] s_line_code,
-    input wire [                         1023:0] s_line_data,
+    input wire [                          511:0] s_line_data,
     input wire                                   m_pair_soon,
     input wire                                   s_leaf_taken,
     input wire                                   lookup,
@@ -51,7 +53,7 @@ module cchip_get_data_properties #(
   wire [7:0] m_pair_children;
   wire [1:0] m_leaf_epoch;
   wire [3:0] m_leaf_kinds;
-  wire [1023:0] m_lines;
+  wire [511:0] m_lines;
   wire [58:0] lookup_record;
   wire [66:0] lookup_nodes;
   cchip_get_data #(
@@ -145,8 +147,12 @@ module cchip_get_data_properties #(
   reg known_q, looked_q;  // it has been offered and its place not asked for again; it was looked up on the last clock
   reg known_a_q, known_b_q;  // then: the line could not be read
   reg stays_q;
-  reg [PLACE_W+CONTEXT_W+9:0] was_q;
-  wire [PLACE_W+CONTEXT_W+9:0] is = {m_pair_place, m_pair_context, m_pair_children, m_lines[512], m_lines[0]};
+  reg [PLACE_W+CONTEXT_W+7:0] was_q;
+  wire [PLACE_W+CONTEXT_W+7:0] is = {m_pair_place, m_pair_context, m_pair_children};
+  reg upper_a_q, upper_b_q, high_a_q, high_b_q;  // the upper half of its line comes; what it was
+  reg [1:0] upper_q;  // each port: the upper half of any line comes
+  reg [2*PLACE_W-1:0] upper_place_q;
+  reg shown_q;  // its lower halves left on the last clock
   reg [3:0] waits_q;
   wire is_pair = m_pair_valid && m_pair_place == place;
   wire is_leaf = m_leaf_valid && m_leaf_place == place;
@@ -160,7 +166,13 @@ module cchip_get_data_properties #(
     was_q   <= is;
     if (mine) {context_q, record_q} <= {s_context, s_record};
     if (mine_a) {data_a_q, failed_a_q} <= {s_line_data[0], s_line_code[0+:CODE_W] != `CCHIP_READ_OK};
-    if (mine_b) {data_b_q, failed_b_q} <= {s_line_data[512], s_line_code[CODE_W+:CODE_W] != `CCHIP_READ_OK};
+    if (mine_b) {data_b_q, failed_b_q} <= {s_line_data[256], s_line_code[CODE_W+:CODE_W] != `CCHIP_READ_OK};
+    if (upper_a_q) high_a_q <= s_line_data[0];
+    if (upper_b_q) high_b_q <= s_line_data[256];
+    upper_q <= s_line_valid & {2{~rst}};
+    upper_place_q <= s_line_place;
+    {upper_a_q, upper_b_q} <= {mine_a, mine_b} & {2{~rst}};
+    shown_q <= ~rst & ((is_pair & ~stays_q) | is_leaf);
     if (is_pair) {known_a_q, known_b_q} <= {failed_a_q, failed_b_q};
     if (rst) begin
       {asked_q, wanted_q, came_a_q, came_b_q, known_q, looked_q} <= 6'd0;
@@ -183,6 +195,9 @@ module cchip_get_data_properties #(
     if (s_valid) free: assume (!busy_q[s_place]);
     if (s_line_valid[0]) asked_a: assume (open_a_q[place_a]);
     if (s_line_valid[1]) asked_b: assume (open_b_q[place_b]);
+    if (upper_q[0]) half_a: assume (!s_line_valid[0] && place_a == upper_place_q[0+:PLACE_W]);
+    if (upper_q[1]) half_b: assume (!s_line_valid[1] && place_b == upper_place_q[PLACE_W+:PLACE_W]);
+    if (m_pair_soon) beats: assume (m_pair_valid && stays_q && !m_pair_ready);
     if (s_leaf_taken) taken: assume (there_q != 2'd0);
   end
 `ifdef COVER
@@ -210,7 +225,8 @@ module cchip_get_data_properties #(
       kind: assert (!(is_pair && place >= PAIRS) && !(is_leaf && place < PAIRS));
       whole: assert (!(is_pair || is_leaf) || (wanted_q && came_a_q && came_b_q));
       posed: assert (!(is_pair && !stays_q && record_q[58]) || posed_q);
-      own_lines: assert (!(is_pair || is_leaf) || (m_lines[0] == data_a_q && m_lines[512] == data_b_q));
+      own_lines: assert (!((is_pair && !stays_q) || is_leaf) || (m_lines[0] == data_a_q && m_lines[256] == data_b_q));
+      own_upper: assert (!shown_q || (m_lines[0] == high_a_q && m_lines[256] == high_b_q));
       own_pair: assert (!is_pair || (m_pair_context == context_q && m_pair_children == {record_q[55:52], record_q[27:24]}));
       own_leaf: assert (!is_leaf || (m_leaf_context == context_q && m_leaf_epoch == record_q[57:56] &&
           m_leaf_kinds == {record_q[29:28], record_q[1:0]}));
