@@ -58,6 +58,10 @@ traversal/cchip_traversal_contexts.v
 traversal/cchip_traversal_fetch.v
 traversal/cchip_traversal.v
 traversal/cchip_broad_phase.v
+refit/cchip_refit_leaf.v
+refit/cchip_refit_frame.v
+refit/cchip_refit_volume.v
+refit/cchip_refit.v
 transform/cchip_leaf_sequencer.v
 transform/cchip_leaf_unit.v
 transform/cchip_leaf_origin.v

@@ -104,10 +104,12 @@ module DP16KD #(
                 DOB14, DOB15, DOB16, DOB17
 );
 
+  // words of 1, 2 or 4 bits have no parity bits: parts of the bytes
+  localparam integer PART = DATA_WIDTH_B == 1 || DATA_WIDTH_B == 2 || DATA_WIDTH_B == 4 ? DATA_WIDTH_B : 0;
   generate
     if (REGMODE_B == "NOREG" ? DATA_WIDTH_A != 36 || DATA_WIDTH_B != 36
         : !(DATA_WIDTH_A == 36 && (DATA_WIDTH_B == 9 || DATA_WIDTH_B == 36)
-            || DATA_WIDTH_A == DATA_WIDTH_B && DATA_WIDTH_B <= 18 && DATA_WIDTH_B % 9 == 0)) begin : gen_width
+            || DATA_WIDTH_A == DATA_WIDTH_B && DATA_WIDTH_B <= 18 && (DATA_WIDTH_B % 9 == 0 || PART != 0))) begin : gen_width
       dp16kd_model_does_not_know_these_widths u_error ();
     end
     if (REGMODE_A != REGMODE_B || CSDECODE_A != "0b000" || CSDECODE_B != "0b000" || CLKAMUX != "CLKA" || CLKBMUX != "CLKB")
@@ -140,7 +142,7 @@ module DP16KD #(
   wire [1:0] read_byte = READ == 4 ? 2'd0 : READ == 2 ? {read_bit[4], 1'b0} : read_bit[4:3];
   wire [3:0] bytes_read = (READ == 4 ? 4'd15 : READ == 2 ? 4'd3 : 4'd1) << read_byte;
   wire [3:0] enabled = WRITTEN == 4 ? write_bit[3:0] : WRITTEN == 2 ? {2'd0, write_bit[1:0]} : 4'd1;
-  wire [3:0] bytes = CEA & WEA ? enabled << write_byte : 4'd0;  // the address may be unknown otherwise
+  wire [3:0] bytes = CEA & WEA & (PART == 0) ? enabled << write_byte : 4'd0;  // the address may be unknown otherwise
   wire [35:0] placed = write_data << 9 * write_byte;
 
   reg [35:0] mem[0:511];
@@ -149,6 +151,10 @@ module DP16KD #(
   integer i;
   initial for (i = 0; i < 512; i = i + 1) mem[i] = 36'd0;
 
+  localparam integer PART_SHIFT = PART == 4 ? 2 : PART == 2 ? 1 : 0;
+  wire [13:0] write_part = write_bit >> PART_SHIFT, read_part = read_bit >> PART_SHIFT;
+  reg [3:0] parts[0:(PART == 0 ? 1 : 16384 >> PART_SHIFT)-1];
+  always @(posedge CLKA) if (PART != 0 && CEA && WEA) parts[write_part] <= write_data[3:0];
   always @(posedge CLKA) begin
     if (bytes[0]) mem[write_word][8:0] <= placed[8:0];
     if (bytes[1]) mem[write_word][17:9] <= placed[17:9];
@@ -157,11 +163,12 @@ module DP16KD #(
   end
   // a port of 36 bits is not read
   always @(posedge CLKA) begin
-    if (CEA) word_a <= WEA ? 36'bx : mem[write_word] >> 9 * write_byte;
+    if (CEA) word_a <= WEA ? 36'bx : PART != 0 ? {32'd0, parts[write_part]} : mem[write_word] >> 9 * write_byte;
     if (OCEA) registered_a <= word_a;
   end
   always @(posedge CLKB) begin
-    if (CEB) word <= |(bytes & bytes_read) && write_word == read_word ? 36'bx : mem[read_word] >> 9 * read_byte;
+    if (CEB && PART != 0) word <= CEA && WEA && write_part == read_part ? 36'bx : {32'd0, parts[read_part]};
+    else if (CEB) word <= |(bytes & bytes_read) && write_word == read_word ? 36'bx : mem[read_word] >> 9 * read_byte;
     if (OCEB) registered <= word;
   end
   wire [35:0] outputs = REGMODE_B == "OUTREG" ? registered : word;

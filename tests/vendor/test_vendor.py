@@ -37,10 +37,10 @@ def files(root=ROOT):
 
 
 def personas(root=ROOT):
-    """Name -> RM_ID, from the shared definitions."""
+    """Name -> RM_ID of the modules that cchip_pr_region holds, from the shared definitions."""
     values = json.loads((root / "scripts/definitions.json").read_text())["enums"]
     found = next(e["values"] for e in values if e["prefix"] == "RM")
-    return {v["name"].lower(): v["value"] for v in found}
+    return {v["name"].lower(): v["value"] for v in found if v["value"] <= 3}
 
 
 def ports(top, root=ROOT, parameters=(), define=""):
