@@ -162,10 +162,11 @@ module cchip_cache_fill #(
         );
       end
       assign fill_data = fill_q6 ? line[511:256] : line[255:0];
-      wire unused = &{1'b0, row, write_row, s_read_beat};
+      wire unused_rows = &{1'b0, row, write_row, s_read_beat};
     end else begin : gen_beats
       localparam integer INDEX_W = $clog2(BEATS);
-      wire [31:0] index = {29'd0, s_read_beat} & (BEATS - 1);  // in its half
+      localparam [31:0] IN_HALF = BEATS - 1;
+      wire [31:0] index = {29'd0, s_read_beat} & IN_HALF;
       wire [31:0] write_row = {{31 - MISS_W{1'b0}}, s_read_slot, s_read_beat[INDEX_W]};
       wire [31:0] row = {{31 - MISS_W{1'b0}}, slot_q3, fill_q4};
       for (b = 0; b < BEATS; b = b + 1) begin : gen_beat
@@ -181,7 +182,7 @@ module cchip_cache_fill #(
             .read_data (fill_data[DATA_W*b+:DATA_W])
         );
       end
-      wire unused = &{1'b0, row, write_row, index};
+      wire unused_rows = &{1'b0, row, write_row, index};
     end
   endgenerate
 

@@ -131,6 +131,8 @@ ILLEGAL = [
     *(("cchip_mul18", {"SIGNED": n}, "cchip_error_mul18_SIGNED_must_be_0_or_1") for n in (-1, 2)),
     ("cchip_block_ram", {"WORDS": 2}, "cchip_error_block_ram_WORDS_must_be_1_or_4"),
     *(("cchip_bv_unit", {"QUERIES": n}, QUERIES) for n in (3, 32)),
+    *(("cchip_refit", {"LEVELS": n}, "cchip_error_refit_LEVELS_must_be_2_to_64") for n in (1, 65)),
+    *(("cchip_refit", {"DATA_W": n}, "cchip_error_refit_DATA_W_must_be_64_128_256_or_512") for n in (32, 96, 1024)),
     *(("cchip_get_data", {"QUERIES": n}, "cchip_error_get_data_QUERIES_must_be_2_4_8_or_16") for n in (3, 32)),
     *(("cchip_get_data", {"PAIRS": n}, "cchip_error_get_data_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together")
       for n in (0, 20, 120)),
