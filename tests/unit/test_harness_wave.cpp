@@ -201,6 +201,7 @@ TEST_CASE("harness: files of names hold every code", "[unit][harness]") {
     std::size_t named = 0;
     for (unsigned value = 0; value < 512; ++value) {
       if (row.ending != "axis" && value > 255) break;  // a code of eight bits at most
+      if (row.ending == "kind" && value >> defs::kind_w != 0) break;
       const std::string name = name_of_code(row.ending, value);
       if (name.empty()) continue;
       ++named;
