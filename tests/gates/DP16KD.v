@@ -151,9 +151,9 @@ module DP16KD #(
   integer i;
   initial for (i = 0; i < 512; i = i + 1) mem[i] = 36'd0;
 
-  localparam integer PART_SHIFT = PART == 4 ? 2 : PART == 2 ? 1 : 0;
-  wire [13:0] write_part = write_bit >> PART_SHIFT, read_part = read_bit >> PART_SHIFT;
-  reg [3:0] parts[0:(PART == 0 ? 1 : 16384 >> PART_SHIFT)-1];
+  localparam integer PART_W = PART == 0 ? 1 : PART == 4 ? 12 : PART == 2 ? 13 : 14;  // bits of a part's number
+  wire [PART_W-1:0] write_part = write_bit[13-:PART_W], read_part = read_bit[13-:PART_W];
+  reg [3:0] parts[0:(1 << PART_W)-1];
   always @(posedge CLKA) if (PART != 0 && CEA && WEA) parts[write_part] <= write_data[3:0];
   always @(posedge CLKA) begin
     if (bytes[0]) mem[write_word][8:0] <= placed[8:0];
