@@ -12,6 +12,7 @@
 #include <limits>
 #include <random>
 #include <stdexcept>
+#include <thread>
 
 #include "bvh/rounding.hpp"
 #include "bvh_meshes.hpp"
@@ -83,6 +84,24 @@ void check_scene(const Scene& scene, Device& device) {
     CHECK(ids_of(scene.touching(device, id)) == others);
     CHECK(scene.find_touching(device, id).has_value() == !others.empty());
   }
+}
+
+/// Every pair whose boxes overlap, one by one.
+Pairs all_overlaps(const Scene& scene) {
+  Pairs pairs;
+  const std::vector<Id> ids = scene.ids();
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    for (std::size_t k = i + 1; k < ids.size(); ++k) {
+      const WorldBox& p = scene.box(ids[i]);
+      const WorldBox& q = scene.box(ids[k]);
+      bool meet = true;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (p.least[axis] > q.greatest[axis] || q.least[axis] > p.greatest[axis]) meet = false;
+      }
+      if (meet) pairs.emplace_back(ids[i], ids[k]);
+    }
+  }
+  return pairs;
 }
 
 }  // namespace
@@ -207,19 +226,9 @@ TEST_CASE("scene: candidates are all pairs of boxes that overlap, while objects 
       }
       for (std::size_t i = random() % 20; i > 0 && !ids.empty(); --i)
         scene.set_pose(ids[random() % ids.size()], pose());
-      Pairs expected;
-      for (std::size_t i = 0; i < ids.size(); ++i) {  // ids ascend
-        for (std::size_t k = i + 1; k < ids.size(); ++k) {
-          const WorldBox& p = scene.box(ids[i]);
-          const WorldBox& q = scene.box(ids[k]);
-          bool meet = true;
-          for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (p.least[axis] > q.greatest[axis] || q.least[axis] > p.greatest[axis]) meet = false;
-          }
-          if (meet) expected.emplace_back(ids[i], ids[k]);
-          ++pairs;
-        }
-      }
+      REQUIRE(scene.ids() == ids);
+      const Pairs expected = all_overlaps(scene);
+      pairs += ids.size() * (ids.size() - std::min<std::size_t>(1, ids.size())) / 2;
       overlaps += expected.size();
       CAPTURE(kind, step);
       REQUIRE(scene.candidates() == expected);
@@ -227,6 +236,188 @@ TEST_CASE("scene: candidates are all pairs of boxes that overlap, while objects 
   }
   CHECK(overlaps > pairs / 20);
   CHECK(overlaps < pairs / 2);
+}
+
+TEST_CASE("scene: candidates after steps of any length of any share of the objects", "[ref][scene]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  Mesh huge = make_box(-Vec3d::Ones(), Vec3d::Ones());
+  for (Vec3d& v : huge.vertices) v *= 0x1p900;
+  const std::vector<Object> objects = {Object(box({1, 1, 1})),           Object(box({0.5, 2, 0})),
+                                       Object(make_torus(1, 0.4, 6, 5)), Object(box({1e-6, 1e-6, 1e-6})),
+                                       Object(box({30, 30, 0.1})),       Object(huge)};
+  std::size_t unbounded = 0;
+  std::size_t appeared = 0;
+  std::size_t vanished = 0;
+  for (int round = 0; round < 60; ++round) {
+    Scene scene;
+    CHECK(scene.candidates().empty());
+    // The last two, which meet many, are rare; with a scale the last one has no bounds.
+    const auto any_object = [&] { return objects[random() % 16 == 0 ? 4 + random() % 2 : random() % 4]; };
+    const std::size_t count = 1 + random() % 120;
+    for (std::size_t i = 0; i < count; ++i) {
+      scene.add(any_object(), make_pose(random_vector(random, 5), random_vector(random, 180)));
+    }
+    const std::size_t one_in = std::size_t{1} << (random() % 8);
+    const double length = std::ldexp(1.0, -static_cast<int>(random() % 12));
+    Pairs before = all_overlaps(scene);
+    for (int step = 0; step < 30; ++step) {
+      for (const Id id : scene.ids()) {
+        if (random() % one_in != 0) continue;
+        Pose pose = scene.pose(id);
+        switch (random() % 16) {
+          case 0:
+            pose.translation() = random_vector(random, 5);
+            break;
+          case 1:
+            pose.linear() *= 2;
+            break;
+          case 2:
+            pose.linear() *= pose.linear().norm() < 0x1p400 ? 0x1p100 : 0x1p-450;
+            break;
+          case 3:
+            pose = scene.pose(scene.ids().front());
+            break;  // equal boxes
+          default:
+            pose.translation() += random_vector(random, length);
+        }
+        scene.set_pose(id, pose);
+        if (random() % 32 == 0) scene.remove(id);
+        if (random() % 32 == 0) scene.add(any_object(), pose);
+      }
+      if (step % 4 == 3) continue;  // changes pile up
+      const Pairs expected = all_overlaps(scene);
+      CAPTURE(round, step, one_in, length);
+      REQUIRE(scene.candidates() == expected);
+      REQUIRE(scene.candidates() == expected);
+      Pairs difference;
+      std::set_difference(expected.begin(), expected.end(), before.begin(), before.end(),
+                          std::back_inserter(difference));
+      appeared += difference.size();
+      difference.clear();
+      std::set_difference(before.begin(), before.end(), expected.begin(), expected.end(),
+                          std::back_inserter(difference));
+      vanished += difference.size();
+      before = expected;
+    }
+    for (const Id id : scene.ids()) unbounded += std::isinf(scene.box(id).least[0]) ? 1 : 0;
+    while (scene.size() > 0) {  // one by one, and what is left is as before
+      const std::vector<Id> ids = scene.ids();
+      scene.remove(ids[random() % ids.size()]);
+      if (scene.size() % 8 == 0) REQUIRE(scene.candidates() == all_overlaps(scene));
+    }
+  }
+  CHECK(unbounded > 0);
+  CHECK(appeared > 1000);
+  CHECK(vanished > 1000);
+}
+
+TEST_CASE("scene: queries with a distance and without one, while objects move", "[ref][scene]") {
+  std::mt19937_64 random(17);
+  const auto device = open_device("cpu");
+  const Object torus(make_torus(1, 0.4, 5, 4));
+  Scene scene;
+  for (int i = 0; i < 30; ++i) scene.add(torus, random_pose(cchip_test::PoseClass::rigid, 4, random));
+  std::size_t near = 0;
+  std::size_t touching = 0;
+  for (int step = 0; step < 40; ++step) {
+    for (const Id id : scene.ids()) {
+      if (random() % 4 != 0) continue;
+      Pose pose = scene.pose(id);
+      pose.translation() += random_vector(random, 0.3);
+      scene.set_pose(id, pose);
+    }
+    CollisionRequest request;
+    if (step % 8 < 5) request.within = step % 2 == 0 ? 0.5 : 0.01;
+    const Pairs expected = ids_of(all_pairs(scene, *device, request));
+    CAPTURE(step, request.within);
+    REQUIRE(ids_of(scene.touching(*device, request)) == expected);
+    REQUIRE(scene.candidates() == all_overlaps(scene));
+    (request.within > 0 ? near : touching) += expected.size();
+  }
+  CHECK(touching > 50);
+  CHECK(near > touching);
+}
+
+TEST_CASE("scene: groups, filter and ignored pairs count that a query finds, not those of the one before",
+          "[ref][scene]") {
+  const Object cube(box({1, 1, 1}));
+  Scene scene;
+  for (int i = 0; i < 3; ++i) scene.add(cube, at(0.25 * i, 0, 0));
+  CHECK(scene.candidates() == Pairs{{1, 2}, {1, 3}, {2, 3}});
+  scene.set_groups(1, {2, 2});
+  CHECK(scene.candidates() == Pairs{{2, 3}});
+  scene.set_ignored(2, 3);
+  CHECK(scene.candidates().empty());
+  scene.set_groups(1, {});
+  scene.set_ignored(2, 3, false);
+  CHECK(scene.candidates() == Pairs{{1, 2}, {1, 3}, {2, 3}});
+  // A filter may ask the scene.
+  const Scene copy = scene;
+  scene.set_filter(
+      [&copy, &scene](Id, Id b) { return copy.candidates().size() == 3 && b == 3 && scene.box(b).least[0] > 0; });
+  CHECK(scene.candidates() == Pairs{{1, 3}, {2, 3}});
+  std::size_t depth = 0;
+  scene.set_filter([&](Id, Id) { return ++depth > 3 || scene.candidates().size() <= 3; });
+  CHECK(scene.candidates() == Pairs{{1, 2}, {1, 3}, {2, 3}});
+}
+
+TEST_CASE("scene: copies and what was moved from have lives of their own", "[ref][scene]") {
+  const Object cube(box({1, 1, 1}));
+  Scene scene;
+  for (int i = 0; i < 6; ++i) scene.add(cube, at(0.6 * i, 0, 0));
+  const Pairs chain = {{1, 2}, {2, 3}, {3, 4}, {4, 5}, {5, 6}};
+  Scene early = scene;  // before the first query
+  CHECK(scene.candidates() == chain);
+  Scene late = scene;
+  scene.remove(3);
+  scene.set_pose(6, at(0, 0, 0));
+  CHECK(scene.candidates() == Pairs{{1, 2}, {1, 6}, {2, 6}, {4, 5}});
+  CHECK(early.candidates() == chain);
+  CHECK(late.candidates() == chain);
+  late = scene;
+  CHECK(late.candidates() == scene.candidates());
+  late.set_pose(5, at(20, 0, 0));
+  CHECK(late.candidates() == Pairs{{1, 2}, {1, 6}, {2, 6}});
+  Scene moved = std::move(early);
+  CHECK(moved.candidates() == chain);
+  early = Scene();
+  CHECK(early.candidates().empty());
+  Scene other = std::move(moved);
+  moved.add(cube);  // NOLINT: that is the test
+  moved.add(cube);
+  CHECK(moved.candidates().size() == 1);
+  const Scene copy_of_empty = Scene();
+  CHECK(copy_of_empty.candidates().empty());
+  CHECK(other.candidates() == chain);
+}
+
+TEST_CASE("scene: several threads ask for what has just moved", "[ref][scene]") {
+  std::mt19937_64 random(19);
+  const Object torus(make_torus(1, 0.4, 5, 4));
+  Scene scene;
+  for (int i = 0; i < 80; ++i) scene.add(torus, random_pose(cchip_test::PoseClass::rigid, 4, random));
+  const auto one = open_cpu_device({1, {}});
+  CollisionRequest near;
+  near.within = 0.2;
+  for (int step = 0; step < 10; ++step) {
+    for (const Id id : scene.ids()) {
+      if (random() % 3 == 0) scene.set_pose(id, random_pose(cchip_test::PoseClass::rigid, 4, random));
+    }
+    const Pairs boxes = all_overlaps(scene);
+    const Pairs close = ids_of(all_pairs(scene, *one, near));
+    std::atomic<int> right = 0;
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 4; ++i) {
+      threads.emplace_back([&, i] {
+        const auto device = open_cpu_device({1, {}});
+        const bool same = i % 2 == 0 ? scene.candidates() == boxes : ids_of(scene.touching(*device, near)) == close;
+        const Scene copy = scene;
+        right += same && copy.candidates() == boxes ? 1 : 0;
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    CHECK(right == 4);
+  }
 }
 
 TEST_CASE("scene: boxes that touch exactly, and by a last bit do not", "[ref][scene]") {

@@ -9,14 +9,28 @@ namespace cchip {
 namespace {
 
 constexpr std::uint32_t most_in_leaf = 4;  // at least 2
+/// A cover of a box that moves is larger by this part of its longest side, on each side: more room makes more pairs of
+/// covers, less makes more covers.
+constexpr double room = 0.125;
+/// All covers are made anew if more than 1 / whole_share of them must be.
+constexpr std::size_t whole_share = 4;
 
+using Numbers = std::pair<std::uint32_t, std::uint32_t>;
+
+/// A tree of some of the boxes, by halves of the greatest spread of their middles.
 class BoxTree {
  public:
-  explicit BoxTree(const std::vector<WorldBox>& boxes) {
-    if (boxes.empty()) return;
-    places_.reserve(boxes.size());
-    for (const WorldBox& box : boxes) {
-      Place& place = places_.emplace_back(Place{{}, static_cast<std::uint32_t>(places_.size())});
+  struct Item {
+    WorldBox box;
+    std::uint32_t number;
+  };
+
+  BoxTree(const std::vector<WorldBox>& boxes, const std::vector<std::uint32_t>& numbers) {
+    if (numbers.empty()) return;
+    places_.reserve(numbers.size());
+    for (const std::uint32_t number : numbers) {
+      const WorldBox& box = boxes[number];
+      Place& place = places_.emplace_back(Place{{}, number});
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double middle = box.least[axis] / 2 + box.greatest[axis] / 2;
         constexpr double most = std::numeric_limits<float>::max();
@@ -24,25 +38,32 @@ class BoxTree {
         place.middle[axis] = std::isnan(middle) ? 0 : static_cast<float>(std::max(-most, std::min(most, middle)));
       }
     }
-    others_.resize(boxes.size());
-    items_.reserve(boxes.size());
-    nodes_.reserve(boxes.size());
-    build(boxes, 0, static_cast<std::uint32_t>(boxes.size()));
+    others_.resize(numbers.size());
+    items_.reserve(numbers.size());
+    nodes_.reserve(numbers.size());
+    build(boxes, 0, static_cast<std::uint32_t>(numbers.size()));
   }
 
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs() {
+  /// Finds the pairs of the tree's boxes that overlap: descends the tree against itself.
+  void find_pairs() {
     if (!nodes_.empty()) inside(0);
-    return std::move(pairs_);
   }
+  /// Finds the pairs of a box that is not in the tree.
+  void find_pairs(const Item& item) {
+    for (std::uint32_t at = 0; at < nodes_.size();) {
+      const Node& node = nodes_[at];
+      const bool meets = overlap(item.box, node.box);
+      if (meets && node.second_child == 0) meet(item, node.first, node.end);
+      at = meets ? at + 1 : node.next;
+    }
+  }
+  /// What was found, the lower number first.
+  const std::vector<Numbers>& pairs() const { return pairs_; }
 
  private:
   /// What the boxes are sorted by, small because it is moved about. Rounding changes the tree, not the answer.
   struct Place {
     std::array<float, 3> middle;
-    std::uint32_t number;
-  };
-  struct Item {
-    WorldBox box;
     std::uint32_t number;
   };
   /// Items first..end - 1. The first child follows its parent.
@@ -51,6 +72,7 @@ class BoxTree {
     std::uint32_t first;
     std::uint32_t end;
     std::uint32_t second_child;  ///< 0 for a leaf
+    std::uint32_t next;          ///< the node after all that are below this one
   };
 
   static void add(WorldBox& box, const WorldBox& other) {
@@ -84,7 +106,7 @@ class BoxTree {
   /// Leaves come in the order of their items, which are complete below a node when its box is made.
   std::uint32_t build(const std::vector<WorldBox>& boxes, std::uint32_t first, std::uint32_t end) {
     const auto at = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.push_back({{}, first, end, 0});
+    nodes_.push_back({{}, first, end, 0, at + 1});
     if (end - first <= most_in_leaf) {
       for (std::uint32_t i = first; i < end; ++i) {
         items_.push_back({boxes[places_[i].number], places_[i].number});
@@ -111,6 +133,7 @@ class BoxTree {
     const std::uint32_t second = build(boxes, half, end);
     nodes_[at].second_child = second;
     nodes_[at].box = nodes_[at + 1].box;
+    nodes_[at].next = nodes_[second].next;
     add(nodes_[at].box, nodes_[second].box);
     return at;
   }
@@ -145,7 +168,7 @@ class BoxTree {
 
   void meet(const Item& item, std::uint32_t first, std::uint32_t end) {
     for (std::uint32_t i = first; i < end; ++i) {
-      if (overlap(item.box, items_[i].box)) pairs_.emplace_back(item.number, items_[i].number);
+      if (overlap(item.box, items_[i].box)) pairs_.push_back(std::minmax(item.number, items_[i].number));
     }
   }
 
@@ -153,13 +176,173 @@ class BoxTree {
   std::vector<Place> others_;  ///< of divide()
   std::vector<Item> items_;
   std::vector<Node> nodes_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;
+  std::vector<Numbers> pairs_;
 };
+
+/// Sorts pairs of numbers below `count`. They are dealt out by their lower number, and only the few of one number are
+/// sorted: O(count + pairs), about.
+std::vector<Numbers> sorted(const std::vector<Numbers>& pairs, std::size_t count) {
+  std::vector<std::size_t> next(count);  // where the next pair of a number goes
+  for (const Numbers& pair : pairs) ++next[pair.first];
+  std::size_t sum = 0;
+  for (std::size_t& place : next) sum += std::exchange(place, sum);
+  std::vector<Numbers> result(pairs.size());
+  for (const Numbers& pair : pairs) result[next[pair.first]++] = pair;
+  auto first = result.begin();
+  for (const std::size_t place : next) {  // where they end now
+    const auto end = result.begin() + static_cast<std::ptrdiff_t>(place);
+    std::sort(first, end);
+    first = end;
+  }
+  return result;
+}
+
+bool holds(const WorldBox& outer, const WorldBox& inner) {
+  bool out = false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    out |= inner.least[axis] < outer.least[axis];
+    out |= inner.greatest[axis] > outer.greatest[axis];
+  }
+  return !out;
+}
+
+/// The cover of a box that moves: it leaves room on all sides for the next steps.
+WorldBox roomy(WorldBox box) {
+  double side = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double length = box.greatest[axis] - box.least[axis];
+    if (std::isfinite(length)) side = std::max(side, length);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.least[axis] -= room * side;
+    box.greatest[axis] += room * side;
+  }
+  return box;
+}
 
 }  // namespace
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> box_pairs(const std::vector<WorldBox>& boxes) {
-  return BoxTree(boxes).pairs();
+WorldBox grown(WorldBox box, double by) {
+  if (by == 0) return box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.least[axis] = std::nextafter(box.least[axis] - by, -std::numeric_limits<double>::infinity());
+    box.greatest[axis] = std::nextafter(box.greatest[axis] + by, std::numeric_limits<double>::infinity());
+  }
+  return box;
+}
+
+BoxPairs::BoxPairs(const BoxPairs& other) {
+  const std::lock_guard<std::mutex> lock(other.mutex_);
+  state_ = other.state_;
+}
+
+void BoxPairs::add(const WorldBox& box) {
+  state_.boxes.push_back(box);
+  try {
+    state_.changes.push_back(Change::added);
+  } catch (...) {
+    state_.boxes.pop_back();
+    throw;
+  }
+  state_.changed = true;
+}
+
+void BoxPairs::move(std::size_t number, const WorldBox& box) {
+  state_.boxes[number] = box;
+  if (state_.changes[number] == Change::none) state_.changes[number] = Change::moved;
+  state_.changed = true;
+}
+
+void BoxPairs::remove(std::size_t number) {
+  state_.changes[number] = Change::absent;
+  state_.changed = true;
+}
+
+void BoxPairs::renumber() {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < numbers(); ++i) {
+    if (!contains(i)) continue;
+    state_.boxes[count] = state_.boxes[i];
+    state_.changes[count++] = Change::added;
+  }
+  state_.boxes.resize(count);
+  state_.changes.resize(count);
+  state_.pairs.clear();
+  state_.changed = true;
+}
+
+std::vector<Numbers> BoxPairs::pairs(double by) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  update(by);
+  std::vector<Numbers> result;
+  result.reserve(state_.pairs.size());
+  for (const Pair& pair : state_.pairs) {
+    if (pair.overlap) result.emplace_back(pair.a, pair.b);
+  }
+  return result;
+}
+
+void BoxPairs::update(double by) {
+  State& s = state_;
+  bool whole = !(by == s.by);
+  if (!whole && !s.changed) return;
+  s.by = std::numeric_limits<double>::quiet_NaN();  // all anew next time if something throws
+  const std::size_t count = numbers();
+  s.grown.resize(count);
+  s.covers.resize(count);
+  enum : std::uint8_t { keep, test, drop };  // what to do with the old pairs of a box
+  std::vector<std::uint8_t> actions(count, keep);
+  std::vector<std::uint32_t> present;
+  std::vector<std::uint32_t> fresh;  // those that get a new cover
+  present.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (s.changes[i] == Change::absent) {
+      actions[i] = drop;
+      continue;
+    }
+    present.push_back(i);
+    if (s.changes[i] == Change::none && !whole) continue;
+    actions[i] = test;
+    s.grown[i] = grown(s.boxes[i], by);
+    if (s.changes[i] == Change::moved && holds(s.covers[i], s.grown[i])) continue;
+    actions[i] = drop;
+    fresh.push_back(i);
+  }
+  if (whole || fresh.size() > present.size() / whole_share) {  // one descent of a tree of all takes less
+    whole = true;
+    fresh = present;
+    s.pairs.clear();
+  }
+
+  for (const std::uint32_t i : fresh) s.covers[i] = s.changes[i] == Change::moved ? roomy(s.grown[i]) : s.grown[i];
+  BoxTree tree(s.covers, fresh);
+  tree.find_pairs();
+  if (!whole && !fresh.empty()) {
+    for (const std::uint32_t i : present) {
+      if (actions[i] != drop) tree.find_pairs({s.covers[i], i});
+    }
+  }
+  const std::vector<Numbers> found = sorted(tree.pairs(), count);
+
+  const auto overlapping = [&s](std::uint32_t a, std::uint32_t b) { return overlap(s.grown[a], s.grown[b]); };
+  std::size_t kept = 0;
+  for (Pair pair : s.pairs) {
+    const std::uint8_t action = std::max(actions[pair.a], actions[pair.b]);
+    if (action == drop) continue;
+    if (action == test) pair.overlap = overlapping(pair.a, pair.b);
+    s.pairs[kept++] = pair;
+  }
+  s.pairs.resize(kept + found.size());
+  std::size_t place = s.pairs.size();
+  for (auto next = found.rbegin(); next != found.rend();) {  // merges from the back
+    const bool old_is_later = kept > 0 && *next < Numbers(s.pairs[kept - 1].a, s.pairs[kept - 1].b);
+    s.pairs[--place] =
+        old_is_later ? s.pairs[--kept] : Pair{next->first, next->second, overlapping(next->first, next->second)};
+    if (!old_is_later) ++next;
+  }
+  for (const std::uint32_t i : present) s.changes[i] = Change::none;
+  s.changed = false;
+  s.by = by;
 }
 
 }  // namespace cchip

@@ -4,7 +4,6 @@
 #include <cchip/collide/scene.hpp>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -55,17 +54,16 @@ WorldBox world_box(const Object& object, const Pose& pose) {
   return box;
 }
 
-/// The box and all that is at most `by` away from it, `by` rounded up to what the coordinates can tell.
-WorldBox grown(WorldBox box, double by) {
-  if (by == 0) return box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.least[axis] = std::nextafter(box.least[axis] - by, -std::numeric_limits<double>::infinity());
-    box.greatest[axis] = std::nextafter(box.greatest[axis] + by, std::numeric_limits<double>::infinity());
-  }
-  return box;
-}
-
 }  // namespace
+
+Scene::Boxes::Boxes() : held(std::make_unique<BoxPairs>()) {}
+Scene::Boxes::Boxes(const Boxes& other) : held(other.held ? std::make_unique<BoxPairs>(*other.held) : nullptr) {}
+Scene::Boxes::Boxes(Boxes&& other) noexcept = default;
+Scene::Boxes& Scene::Boxes::operator=(Boxes other) noexcept {
+  held.swap(other.held);
+  return *this;
+}
+Scene::Boxes::~Boxes() = default;
 
 Scene::Id Scene::add(Object object, const Pose& pose, const CollisionGroups& groups) {
   check_float_mode();
@@ -74,11 +72,14 @@ Scene::Id Scene::add(Object object, const Pose& pose, const CollisionGroups& gro
   if (entries_.size() == std::numeric_limits<std::uint32_t>::max()) {
     throw std::length_error("scene: it holds at most 2^32 - 1 objects; use several scenes");
   }
+  if (!boxes_.held) boxes_ = Boxes();  // the scene was moved from
   const WorldBox box = world_box(object, pose);
-  entries_.push_back({next_, std::move(object), pose, groups, box});
+  entries_.push_back({next_, groups, std::move(object), pose});
   try {
     places_.emplace(next_, entries_.size() - 1);
+    boxes_.held->add(box);
   } catch (...) {
+    places_.erase(next_);
     entries_.pop_back();
     throw;
   }
@@ -86,10 +87,11 @@ Scene::Id Scene::add(Object object, const Pose& pose, const CollisionGroups& gro
 }
 
 void Scene::set_pose(Id id, const Pose& pose) {
-  Entry& moved = entries_[place(id)];
+  const std::size_t at = place(id);
+  Entry& moved = entries_[at];
   check_float_mode();
   check_pose(pose, ("object " + std::to_string(id)).c_str());
-  moved.box = world_box(moved.object, pose);
+  boxes_.held->move(at, world_box(moved.object, pose));
   moved.pose = pose;
 }
 
@@ -100,19 +102,23 @@ void Scene::remove(Id id) {
   for (auto pair = ignored_.begin(); pair != ignored_.end();) {
     pair = pair->first == id || pair->second == id ? ignored_.erase(pair) : std::next(pair);
   }
-  if (at + 1 != entries_.size()) {
-    entries_[at] = std::move(entries_.back());
-    places_.find(entries_[at].id)->second = at;
-  }
-  entries_.pop_back();
+  const Object gone = std::move(entries_[at].object);  // and what it holds is released
+  entries_[at].id = 0;
   places_.erase(id);
+  boxes_.held->remove(at);
+  if (2 * places_.size() >= entries_.size()) return;
+  entries_.erase(std::remove_if(entries_.begin(), entries_.end(), [](const Entry& x) { return x.id == 0; }),
+                 entries_.end());
+  for (std::size_t i = 0; i < entries_.size(); ++i) places_.find(entries_[i].id)->second = i;
+  boxes_.held->renumber();
 }
 
 std::vector<Scene::Id> Scene::ids() const {
   std::vector<Id> all;
-  all.reserve(entries_.size());
-  for (const Entry& x : entries_) all.push_back(x.id);
-  std::sort(all.begin(), all.end());
+  all.reserve(size());
+  for (const Entry& x : entries_) {
+    if (x.id != 0) all.push_back(x.id);
+  }
   return all;
 }
 
@@ -138,6 +144,8 @@ std::size_t Scene::place(Id id) const {
                               (id != 0 && id < next_ ? "it was removed" : "add() has not returned it"));
 }
 
+const WorldBox& Scene::box(Id id) const { return boxes_.held->box(place(id)); }
+
 bool Scene::is_wanted(const Entry& x, const Entry& y) const {
   if ((x.groups.groups & y.groups.mask) == 0 || (y.groups.groups & x.groups.mask) == 0) return false;
   if (x.id == 0 || y.id == 0) return true;  // one is not in the scene
@@ -147,47 +155,31 @@ bool Scene::is_wanted(const Entry& x, const Entry& y) const {
 }
 
 std::vector<Scene::Candidate> Scene::find_candidates(double within) const {
-  std::vector<WorldBox> boxes;
-  boxes.reserve(entries_.size());
+  if (entries_.empty()) return {};
   const double half = within > 0 ? std::nextafter(within / 2, std::numeric_limits<double>::infinity()) : 0;
-  for (const Entry& x : entries_) boxes.push_back(grown(x.box, half));
-  std::vector<Candidate> found;
-  for (const auto& [i, k] : box_pairs(boxes)) {
-    const Candidate pair = entries_[i].id < entries_[k].id ? Candidate{i, k} : Candidate{k, i};
-    if (is_wanted(entries_[pair.first], entries_[pair.second])) found.push_back(pair);
-  }
+  std::vector<Candidate> found = boxes_.held->pairs(half);
+  const auto unwanted = [this](const Candidate& pair) {
+    return !is_wanted(entries_[pair.first], entries_[pair.second]);
+  };
+  found.erase(std::remove_if(found.begin(), found.end(), unwanted), found.end());
   return found;
 }
 
-std::vector<std::uint32_t> Scene::near(const Entry& one, double within) const {
-  const WorldBox box = grown(one.box, within);
+std::vector<std::uint32_t> Scene::near(const Entry& one, const WorldBox& box, double within) const {
+  const WorldBox around = grown(box, within);
   std::vector<std::uint32_t> found;
   for (std::uint32_t i = 0; i < entries_.size(); ++i) {
     const Entry& x = entries_[i];
-    if (x.id != one.id && overlap(x.box, box) && is_wanted(x, one)) found.push_back(i);
+    if (x.id != 0 && x.id != one.id && overlap(boxes_.held->box(i), around) && is_wanted(x, one)) found.push_back(i);
   }
   return found;
 }
 
-// The pairs are dealt out by their first object, and only the few of one object are sorted: O(pairs), about.
 std::vector<std::pair<Scene::Id, Scene::Id>> Scene::candidates() const {
-  std::vector<std::uint32_t> order(entries_.size());  // entries by their ids
-  std::iota(order.begin(), order.end(), 0U);
-  const auto id_less = [this](std::uint32_t i, std::uint32_t k) { return entries_[i].id < entries_[k].id; };
-  if (!std::is_sorted(order.begin(), order.end(), id_less)) std::sort(order.begin(), order.end(), id_less);
+  std::vector<std::pair<Id, Id>> pairs;
   const std::vector<Candidate> found = find_candidates(0);
-  std::vector<std::size_t> next(entries_.size());  // where the next pair of an entry goes
-  for (const Candidate& pair : found) ++next[pair.first];
-  std::size_t sum = 0;
-  for (const std::uint32_t i : order) sum += std::exchange(next[i], sum);
-  std::vector<std::pair<Id, Id>> pairs(found.size());
-  for (const auto& [a, b] : found) pairs[next[a]++] = {entries_[a].id, entries_[b].id};
-  auto first = pairs.begin();
-  for (const std::uint32_t i : order) {  // next[] is where they end now
-    const auto end = pairs.begin() + static_cast<std::ptrdiff_t>(next[i]);
-    std::sort(first, end);
-    first = end;
-  }
+  pairs.reserve(found.size());
+  for (const auto& [a, b] : found) pairs.emplace_back(entries_[a].id, entries_[b].id);
   return pairs;
 }
 
@@ -224,7 +216,7 @@ void Scene::ask(Device& device, const Object& object, const Pose& pose, const st
 
 void Scene::for_each_touching(Device& device, Id id, const HitSink& take, const CollisionRequest& request) const {
   const Entry& one = entry(id);
-  ask(device, one.object, one.pose, near(one, request.within), take, request);
+  ask(device, one.object, one.pose, near(one, box(id), request.within), take, request);
 }
 
 void Scene::for_each_touching(Device& device, const Object& object, const Pose& pose, const HitSink& take,
@@ -232,7 +224,7 @@ void Scene::for_each_touching(Device& device, const Object& object, const Pose& 
   check_float_mode();
   check_object(object);
   check_pose(pose, "the object");
-  ask(device, object, pose, near({0, object, pose, groups, world_box(object, pose)}, request.within), take, request);
+  ask(device, object, pose, near({0, groups, object, pose}, world_box(object, pose), request.within), take, request);
 }
 
 namespace {

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <set>
 #include <unordered_map>
@@ -29,6 +30,8 @@ struct WorldBox {
   std::array<double, 3> least;
   std::array<double, 3> greatest;
 };
+
+class BoxPairs;
 
 /// Objects with poses, and a broad phase over their boxes, so that a device is asked only about pairs that are close.
 ///
@@ -71,12 +74,12 @@ class Scene {
   void set_pose(Id id, const Pose& pose);
   /// \throws std::invalid_argument no object has this id
   void set_groups(Id id, const CollisionGroups& groups);
-  /// Takes an object out, and what set_ignored() noted about it. Takes constant time but for a look at all ignored
-  /// pairs.
+  /// Takes an object out, and what set_ignored() noted about it. Takes constant time on average but for a look at all
+  /// ignored pairs.
   /// \throws std::invalid_argument no object has this id
   void remove(Id id);
 
-  std::size_t size() const { return entries_.size(); }
+  std::size_t size() const { return places_.size(); }
   bool contains(Id id) const { return places_.count(id) != 0; }
   /// All ids, ascending.
   std::vector<Id> ids() const;
@@ -86,7 +89,7 @@ class Scene {
   const Pose& pose(Id id) const { return entry(id).pose; }
   const CollisionGroups& groups(Id id) const { return entry(id).groups; }
   /// A box that contains the object in its pose in spite of rounding; not always the least one.
-  const WorldBox& box(Id id) const { return entry(id).box; }
+  const WorldBox& box(Id id) const;
 
   /// Leaves a pair out, such as two links of a robot that a joint connects; or takes it in again.
   /// \throws std::invalid_argument no object has one of the ids, or both are the same
@@ -96,8 +99,9 @@ class Scene {
   void set_filter(Filter filter) { filter_ = std::move(filter); }
 
   /// The pairs that a device would be asked about, ascending, the lower id first: those whose boxes overlap and that
-  /// groups, ignored pairs and filter let through. Builds a tree of the boxes and descends it against itself:
-  /// O(n log n) for n objects that are spread out, plus the pairs that overlap.
+  /// groups, ignored pairs and filter let through. The pairs of boxes are kept for the next query, which looks for
+  /// those of the objects that were added or have moved since: O(c log c + n log c) for c of n objects that are spread
+  /// out, plus the pairs that overlap.
   /// \throws as the filter
   std::vector<std::pair<Id, Id>> candidates() const;
 
@@ -132,11 +136,19 @@ class Scene {
 
  private:
   struct Entry {
-    Id id;
+    Id id;  ///< 0 if it was removed, or is not of the scene
+    CollisionGroups groups;
     Object object;
     Pose pose;
-    CollisionGroups groups;
-    WorldBox box;
+  };
+  /// The boxes of the entries, by their numbers. A copy is deep.
+  struct Boxes {
+    Boxes();
+    Boxes(const Boxes& other);
+    Boxes(Boxes&& other) noexcept;  ///< leaves none
+    Boxes& operator=(Boxes other) noexcept;
+    ~Boxes();
+    std::unique_ptr<BoxPairs> held;
   };
   /// Numbers in entries_ of two objects, the lower id first.
   using Candidate = std::pair<std::uint32_t, std::uint32_t>;
@@ -145,11 +157,12 @@ class Scene {
   const Entry& entry(Id id) const { return entries_[place(id)]; }
   bool is_wanted(const Entry& x, const Entry& y) const;
   std::vector<Candidate> find_candidates(double within) const;
-  std::vector<std::uint32_t> near(const Entry& one, double within) const;
+  std::vector<std::uint32_t> near(const Entry& one, const WorldBox& box, double within) const;
   void ask(Device& device, const Object& object, const Pose& pose, const std::vector<std::uint32_t>& others,
            const HitSink& take, const CollisionRequest& request) const;
 
-  std::vector<Entry> entries_;
+  std::vector<Entry> entries_;  ///< by ascending ids, with gaps where objects were removed
+  Boxes boxes_;
   std::unordered_map<Id, std::size_t> places_;  ///< in entries_
   std::set<std::pair<Id, Id>> ignored_;         ///< the lower id first
   Filter filter_;
