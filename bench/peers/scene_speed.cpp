@@ -11,8 +11,10 @@
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/reference/brute_force.hpp>
 #include <cchip/sim/seed.hpp>
+#include <numeric>
 #include <random>
 
+#include "broad_peers.hpp"
 #include "fcl_model.hpp"
 #include "machine.hpp"
 #include "measure.hpp"
@@ -20,10 +22,17 @@
 namespace cchip::testing {
 namespace {
 
+#ifdef CCHIP_HAS_BULLET
+constexpr bool has_bullet = true;
+#else
+constexpr bool has_bullet = false;
+#endif
+
 struct Options {
   std::vector<std::size_t> sizes = {10, 100, 1000, 10000};
   double contacts = 6;
   int passes = 3;
+  bool broad = false;  ///< only the table of broad phases
   std::uint64_t seed = sim::seed_from_environment();
 };
 
@@ -45,8 +54,20 @@ struct Bodies {
   std::vector<std::shared_ptr<FclModel>> models;
 };
 
-/// Objects that swing and turn in a cube so large that an object is near `contacts` others.
-Frames make_frames(std::size_t objects, std::size_t frames, double contacts, std::mt19937_64& random) {
+/// An object that swings and turns.
+struct Motion {
+  Vec3d place;
+  Vec3d swing;
+  double phase;
+  Vec3d angles;
+  Vec3d turn;
+  RigidPose pose(double time) const {
+    return make_pose(place + std::sin(phase + 0.1 * time) * swing, angles + time * turn);
+  }
+};
+
+/// In a cube so large that an object is near `contacts` of `objects`.
+Motion make_motion(std::size_t objects, double contacts, std::mt19937_64& random) {
   std::uniform_real_distribution<double> unit(-1, 1);
   const auto vector = [&] {
     const double x = unit(random);
@@ -55,17 +76,20 @@ Frames make_frames(std::size_t objects, std::size_t frames, double contacts, std
   };
   // Bodies of diagonal 1 mostly touch if their middles are closer than 0.7.
   const double side = std::cbrt(static_cast<double>(objects) * 4.19 * 0.343 / contacts);
+  Motion motion = {};
+  motion.place = side / 2 * vector();
+  motion.swing = 0.3 * vector();
+  motion.phase = 3 * unit(random);
+  motion.angles = 180 * vector();
+  motion.turn = 3 * vector();
+  return motion;
+}
+
+Frames make_frames(std::size_t objects, std::size_t frames, double contacts, std::mt19937_64& random) {
   Frames result(frames);
   for (std::size_t i = 0; i < objects; ++i) {
-    const Vec3d place = side / 2 * vector();
-    const Vec3d swing = 0.3 * vector();
-    const double phase = 3 * unit(random);
-    const Vec3d angles = 180 * vector();
-    const Vec3d turn = 3 * vector();
-    for (std::size_t k = 0; k < frames; ++k) {
-      const auto time = static_cast<double>(k);
-      result[k].push_back(make_pose(place + std::sin(phase + 0.1 * time) * swing, angles + time * turn));
-    }
+    const Motion motion = make_motion(objects, contacts, random);
+    for (std::size_t k = 0; k < frames; ++k) result[k].push_back(motion.pose(static_cast<double>(k)));
   }
   return result;
 }
@@ -168,10 +192,19 @@ class Benchmark {
   int run() {
     fmt::print("{}; load {}; {}; FCL {} of Debian; seed {}\n", machine_description(), load_description(), compiler,
                FCL_VERSION, options_.seed);
-    fmt::print("milliseconds a frame: every object moved, then all pairs in contact\n");
-    fmt::print(
-        "objects  contacts each  FCL pairs  our pairs  FCL      ours     times  all cores  times  broad: FCL  ours\n");
-    for (const std::size_t objects : options_.sizes) run(objects);
+    if (!options_.broad) {
+      fmt::print("milliseconds a frame: every object moved, then all pairs in contact\n");
+      fmt::print("objects  contacts each  FCL pairs  our pairs  FCL      ours     times  all cores  times\n");
+      for (const std::size_t objects : options_.sizes) run(objects);
+    }
+    fmt::print("milliseconds a step of the broad phase: some objects changed, then all pairs of boxes that overlap\n");
+    fmt::print("objects  step                    pairs  ours    FCL     times  Bullet  times\n");
+    for (const std::size_t objects : options_.sizes) {
+      run_broad(objects, Step::all_move);
+      run_broad(objects, Step::some_move);
+      run_broad(objects, Step::some_are_replaced);
+    }
+    if (!has_bullet) fmt::print("without Bullet: scripts/bootstrap --dev brings it\n");
     fmt::print("frames={} contacts={} fcl_differences={} differences={}\n", frames_, contacts_, fcl_differences_,
                differences_);
     return differences_ == 0 ? 0 : 3;
@@ -181,7 +214,7 @@ class Benchmark {
   void run(std::size_t objects) {
     std::mt19937_64 random(options_.seed);
     const std::size_t frames = std::clamp<std::size_t>(40000 / objects, 8, 400);
-    std::vector<std::vector<double>> seconds(5);
+    std::vector<std::vector<double>> seconds(3);
     std::size_t contacts = 0;
     std::size_t fcl_candidates = 0;
     std::size_t candidates = 0;
@@ -209,14 +242,6 @@ class Benchmark {
                                    {"cores", Clock::wall, each([&](std::size_t k) {
                                       ours_cores.move(poses[k]);
                                       cores_pairs[k] = ours_cores.touching(*cores_);
-                                    })},
-                                   {"FCL broad", Clock::cpu, each([&](std::size_t k) {
-                                      theirs.move(poses[k]);
-                                      fcl_candidates += theirs.count_candidates();
-                                    })},
-                                   {"ours broad", Clock::cpu, each([&](std::size_t k) {
-                                      ours.move(poses[k]);
-                                      candidates += ours.scene.candidates().size();
                                     })}};
       measure_pass(ways, frames, 4, [](std::size_t) {});
       for (std::size_t i = 0; i < ways.size(); ++i) seconds[i].push_back(ways[i].passes.front());
@@ -224,6 +249,9 @@ class Benchmark {
         contacts += our_pairs[k].size();
         std::sort(their_pairs[k].begin(), their_pairs[k].end());
         ours.move(poses[k]);
+        theirs.move(poses[k]);
+        fcl_candidates += theirs.count_candidates();
+        candidates += ours.scene.candidates().size();
         compare(ours.scene, our_pairs[k], their_pairs[k]);
         differences_ += difference(our_pairs[k], cores_pairs[k]).size();
         if (objects <= 100) differences_ += difference(our_pairs[k], every_pair(ours.scene, *one_)).size();
@@ -234,9 +262,97 @@ class Benchmark {
     std::vector<double> ms;
     for (const std::vector<double>& all : seconds) ms.push_back(1e3 * median(all));
     const double each = static_cast<double>(frames) * options_.passes * static_cast<double>(objects);
-    fmt::print("{:7}  {:13.1f}  {:9.1f}  {:9.1f}  {:7.3f}  {:7.3f}  {:5.1f}  {:9.3f}  {:5.1f}  {:10.3f}  {:.3f}\n",
-               objects, 2 * static_cast<double>(contacts) / each, static_cast<double>(fcl_candidates) / each,
-               static_cast<double>(candidates) / each, ms[0], ms[1], ms[0] / ms[1], ms[2], ms[0] / ms[2], ms[3], ms[4]);
+    fmt::print("{:7}  {:13.1f}  {:9.1f}  {:9.1f}  {:7.3f}  {:7.3f}  {:5.1f}  {:9.3f}  {:5.1f}\n", objects,
+               2 * static_cast<double>(contacts) / each, static_cast<double>(fcl_candidates) / each,
+               static_cast<double>(candidates) / each, ms[0], ms[1], ms[0] / ms[1], ms[2], ms[0] / ms[2]);
+    std::fflush(stdout);
+  }
+
+  enum class Step { all_move, some_move, some_are_replaced };
+
+  /// The same steps for all in turns. The others are given our boxes, ours computes them from the poses.
+  void run_broad(std::size_t objects, Step step) {
+    std::mt19937_64 random(options_.seed);
+    const std::size_t steps = std::clamp<std::size_t>(400000 / objects, 40, 400);
+    const std::size_t count = step == Step::all_move ? objects : std::max<std::size_t>(1, objects / 100);
+    std::vector<std::vector<double>> seconds(3);
+    std::size_t pairs = 0;
+    for (int pass = 0; pass < options_.passes; ++pass) {
+      std::vector<Motion> motions;
+      std::vector<RigidPose> poses;
+      std::vector<double> times(objects);
+      std::vector<Scene::Id> ids;
+      for (std::size_t i = 0; i < objects; ++i) {
+        motions.push_back(make_motion(objects, options_.contacts, random));
+        poses.push_back(motions.back().pose(0));
+        ids.push_back(i + 1);
+      }
+      OurScene ours(bodies_, poses);
+      OurScene boxes_of(bodies_, poses);  // for the others
+      std::vector<WorldBox> boxes;
+      for (std::size_t i = 0; i < objects; ++i) boxes.push_back(boxes_of.scene.box(i + 1));
+      std::vector<std::unique_ptr<BroadPeer>> peers;
+      peers.push_back(std::make_unique<FclBroad>());
+#ifdef CCHIP_HAS_BULLET
+      peers.push_back(std::make_unique<BulletBroad>());
+#endif
+      for (const auto& peer : peers) peer->begin(boxes);
+      std::vector<double> total(3);
+      std::vector<std::size_t> numbers(objects);
+      std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+      const std::size_t unmeasured = 2;  // what begins is not a step
+      for (std::size_t k = 0; k < steps + unmeasured; ++k) {
+        std::vector<std::size_t> changed = numbers;
+        if (count < objects) {
+          changed.clear();
+          std::sample(numbers.begin(), numbers.end(), std::back_inserter(changed), count, random);
+        }
+        poses.clear();
+        boxes.clear();
+        for (const std::size_t i : changed) {
+          if (step == Step::some_are_replaced) motions[i] = make_motion(objects, options_.contacts, random);
+          poses.push_back(motions[i].pose(++times[i]));
+          boxes_of.scene.set_pose(i + 1, poses.back());
+          boxes.push_back(boxes_of.scene.box(i + 1));
+        }
+        std::vector<std::size_t> found(1 + peers.size());
+        for (std::size_t turn = 0; turn < found.size(); ++turn) {
+          const std::size_t who = (turn + k) % found.size();
+          const double start = cchip::testing::seconds(Clock::cpu);
+          if (who > 0) {
+            BroadPeer& peer = *peers[who - 1];
+            if (step == Step::some_are_replaced) {
+              peer.replace(changed, boxes);
+            } else {
+              peer.move(changed, boxes);
+            }
+            found[who] = peer.count();
+          } else {
+            for (std::size_t i = 0; i < changed.size(); ++i) {
+              Scene::Id& id = ids[changed[i]];
+              if (step == Step::some_are_replaced) {
+                ours.scene.remove(id);
+                id = ours.scene.add(bodies_.objects[changed[i] % bodies_.objects.size()], poses[i]);
+              } else {
+                ours.scene.set_pose(id, poses[i]);
+              }
+            }
+            found[who] = ours.scene.candidates().size();
+          }
+          if (k >= unmeasured) total[who] += cchip::testing::seconds(Clock::cpu) - start;
+        }
+        for (const std::size_t x : found) differences_ += x == found[0] ? 0 : 1;
+        if (k >= unmeasured) pairs += found[0];
+      }
+      for (std::size_t i = 0; i < total.size(); ++i) seconds[i].push_back(total[i] / static_cast<double>(steps));
+    }
+    const double ours = 1e3 * median(seconds[0]);
+    const double fcl = 1e3 * median(seconds[1]);
+    const double bullet = 1e3 * median(seconds[2]);
+    const char* names[] = {"all move", "1 % moves", "1 % out, 1 % in"};
+    fmt::print("{:7}  {:16}  {:11.1f}  {:6.3f}  {:6.3f}  {:5.2f}", objects, names[static_cast<int>(step)],
+               static_cast<double>(pairs) / static_cast<double>(steps) / options_.passes, ours, fcl, fcl / ours);
+    fmt::print(has_bullet ? "  {:6.3f}  {:5.2f}\n" : "\n", bullet, bullet / ours);
     std::fflush(stdout);
   }
 
@@ -268,10 +384,11 @@ int main(int argc, char** argv) try {
   cchip::testing::Options o;
   CLI::App app{
       "Frames of scenes of moving objects: cchip::Scene on the CPU device and FCL's DynamicAABBTreeCollisionManager, "
-      "the "
-      "same frames in turns.\n"
+      "the same frames in turns. Then broad phases alone, Bullet's btDbvtBroadphase included.\n"
       "The last line: frames, pairs in contact, those in which FCL is not exact, those in which we are not: exact "
-      "integers decide where FCL says otherwise, and up to 100 objects every pair is asked.\n"
+      "integers decide where FCL says otherwise, up to 100 objects every pair is asked, and all broad phases must "
+      "count "
+      "as many pairs.\n"
       "Exit codes: 0 done, 3 an answer of ours is not the exact one, 2 the run could not be made."};
   app.add_option("--objects", o.sizes, "numbers of objects, one scene after the other")
       ->delimiter(',')
@@ -284,6 +401,7 @@ int main(int argc, char** argv) try {
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   app.add_option("--seed", o.seed, "repeats the scenes (or CCHIP_SEED)")->capture_default_str();
+  app.add_flag("--broad", o.broad, "only the table of broad phases");
   auto* quick = app.add_flag("--quick", "up to 1,000 objects in one pass, for a first look; its ratios are rough");
   CLI11_PARSE(app, argc, argv);
   if (*quick) {

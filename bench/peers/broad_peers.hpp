@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Broad phases of other libraries, which are given the boxes of our scene.
+#ifndef CCHIP_BENCH_BROAD_PEERS_HPP
+#define CCHIP_BENCH_BROAD_PEERS_HPP
+
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+
+#include <cchip/collide/scene.hpp>
+#include <limits>
+#include <memory>
+#include <vector>
+#ifdef CCHIP_HAS_BULLET
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+
+#include <cmath>
+#endif
+
+namespace cchip::testing {
+
+/// Boxes by numbers from 0.
+class BroadPeer {
+ public:
+  BroadPeer() = default;
+  BroadPeer(const BroadPeer&) = delete;
+  BroadPeer& operator=(const BroadPeer&) = delete;
+  virtual ~BroadPeer() = default;
+  virtual void begin(const std::vector<WorldBox>& boxes) = 0;
+  virtual void move(const std::vector<std::size_t>& numbers, const std::vector<WorldBox>& boxes) = 0;
+  /// Takes boxes out and puts others with the same numbers in.
+  virtual void replace(const std::vector<std::size_t>& numbers, const std::vector<WorldBox>& boxes) = 0;
+  /// How many pairs overlap. Whatever boxes the peer has, those that it was given decide.
+  virtual std::size_t count() = 0;
+};
+
+inline bool boxes_meet(const WorldBox& p, const WorldBox& q) {
+  bool apart = false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    apart |= p.least[axis] > q.greatest[axis];
+    apart |= q.least[axis] > p.greatest[axis];
+  }
+  return !apart;
+}
+
+/// DynamicAABBTreeCollisionManager.
+class FclBroad : public BroadPeer {
+ public:
+  void begin(const std::vector<WorldBox>& boxes) override {
+    const auto shape = std::make_shared<fcl::Sphere<double>>(1);
+    std::vector<fcl::CollisionObject<double>*> pointers;
+    for (const WorldBox& box : boxes) {
+      objects_.push_back(std::make_unique<Boxed>(shape));
+      objects_.back()->set(box);
+      pointers.push_back(objects_.back().get());
+    }
+    manager_.registerObjects(pointers);
+    manager_.setup();
+  }
+  void move(const std::vector<std::size_t>& numbers, const std::vector<WorldBox>& boxes) override {
+    std::vector<fcl::CollisionObject<double>*> moved;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      objects_[numbers[i]]->set(boxes[i]);
+      moved.push_back(objects_[numbers[i]].get());
+    }
+    if (numbers.size() == objects_.size()) {
+      manager_.update();
+    } else {
+      manager_.update(moved);
+    }
+  }
+  void replace(const std::vector<std::size_t>& numbers, const std::vector<WorldBox>& boxes) override {
+    for (const std::size_t number : numbers) manager_.unregisterObject(objects_[number].get());
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      objects_[numbers[i]]->set(boxes[i]);
+      manager_.registerObject(objects_[numbers[i]].get());
+    }
+    manager_.setup();
+  }
+  std::size_t count() override {
+    std::size_t count = 0;
+    manager_.collide(&count, [](fcl::CollisionObject<double>* a, fcl::CollisionObject<double>* b, void* to) {
+      const auto& p = static_cast<const Boxed*>(a)->box;
+      const auto& q = static_cast<const Boxed*>(b)->box;
+      *static_cast<std::size_t*>(to) += boxes_meet(p, q) ? 1 : 0;
+      return false;
+    });
+    return count;
+  }
+
+ private:
+  struct Boxed : fcl::CollisionObject<double> {
+    explicit Boxed(const std::shared_ptr<fcl::CollisionGeometry<double>>& shape) : CollisionObject(shape) {}
+    void set(const WorldBox& given) {
+      box = given;
+      aabb.min_ = Eigen::Map<const Eigen::Vector3d>(given.least.data());
+      aabb.max_ = Eigen::Map<const Eigen::Vector3d>(given.greatest.data());
+    }
+    WorldBox box = {};
+  };
+  fcl::DynamicAABBTreeCollisionManager<double> manager_;
+  std::vector<std::unique_ptr<Boxed>> objects_;
+};
+
+#ifdef CCHIP_HAS_BULLET
+/// btDbvtBroadphase, with its cache of pairs. Its floats are rounded outwards.
+class BulletBroad : public BroadPeer {
+ public:
+  void begin(const std::vector<WorldBox>& boxes) override {
+    boxes_ = boxes;
+    for (std::size_t i = 0; i < boxes.size(); ++i) proxies_.push_back(proxy(i));
+  }
+  void move(const std::vector<std::size_t>& numbers, const std::vector<WorldBox>& boxes) override {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      WorldBox& box = boxes_[numbers[i]];
+      box = boxes[i];
+      broad_.setAabb(proxies_[numbers[i]], least(box), greatest(box), nullptr);
+    }
+  }
+  void replace(const std::vector<std::size_t>& numbers, const std::vector<WorldBox>& boxes) override {
+    for (const std::size_t number : numbers) broad_.destroyProxy(proxies_[number], nullptr);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      boxes_[numbers[i]] = boxes[i];
+      proxies_[numbers[i]] = proxy(numbers[i]);
+    }
+  }
+  std::size_t count() override {
+    broad_.calculateOverlappingPairs(nullptr);
+    const btBroadphasePairArray& pairs = broad_.getOverlappingPairCache()->getOverlappingPairArray();
+    std::size_t count = 0;
+    for (int i = 0; i < pairs.size(); ++i)
+      count += boxes_meet(box(pairs[i].m_pProxy0), box(pairs[i].m_pProxy1)) ? 1 : 0;
+    return count;
+  }
+
+ private:
+  static btVector3 least(const WorldBox& box) {
+    const auto down = [](double x) {
+      return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity());
+    };
+    return {down(box.least[0]), down(box.least[1]), down(box.least[2])};
+  }
+  static btVector3 greatest(const WorldBox& box) {
+    const auto up = [](double x) {
+      return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
+    };
+    return {up(box.greatest[0]), up(box.greatest[1]), up(box.greatest[2])};
+  }
+  btBroadphaseProxy* proxy(std::size_t number) {
+    WorldBox& box = boxes_[number];
+    return broad_.createProxy(least(box), greatest(box), 0, &box, 1, 1, nullptr);
+  }
+  static const WorldBox& box(const btBroadphaseProxy* proxy) {
+    return *static_cast<const WorldBox*>(proxy->m_clientObject);
+  }
+  std::vector<WorldBox> boxes_;
+  btDbvtBroadphase broad_;
+  std::vector<btBroadphaseProxy*> proxies_;
+};
+#endif
+
+}  // namespace cchip::testing
+
+#endif
