@@ -74,13 +74,15 @@ Scene::Id Scene::add(Object object, const Pose& pose, const CollisionGroups& gro
   }
   if (!boxes_.held) boxes_ = Boxes();  // the scene was moved from
   const WorldBox box = world_box(object, pose);
-  entries_.push_back({next_, groups, std::move(object), pose});
+  entries_.push_back({std::move(object), pose});
   try {
+    labels_.push_back({next_, groups});
     places_.emplace(next_, entries_.size() - 1);
     boxes_.held->add(box);
   } catch (...) {
     places_.erase(next_);
     entries_.pop_back();
+    labels_.resize(entries_.size());
     throw;
   }
   return next_++;
@@ -95,7 +97,7 @@ void Scene::set_pose(Id id, const Pose& pose) {
   moved.pose = pose;
 }
 
-void Scene::set_groups(Id id, const CollisionGroups& groups) { entries_[place(id)].groups = groups; }
+void Scene::set_groups(Id id, const CollisionGroups& groups) { labels_[place(id)].groups = groups; }
 
 void Scene::remove(Id id) {
   const std::size_t at = place(id);
@@ -103,20 +105,26 @@ void Scene::remove(Id id) {
     pair = pair->first == id || pair->second == id ? ignored_.erase(pair) : std::next(pair);
   }
   const Object gone = std::move(entries_[at].object);  // and what it holds is released
-  entries_[at].id = 0;
+  labels_[at].id = 0;
   places_.erase(id);
   boxes_.held->remove(at);
   if (2 * places_.size() >= entries_.size()) return;
-  entries_.erase(std::remove_if(entries_.begin(), entries_.end(), [](const Entry& x) { return x.id == 0; }),
-                 entries_.end());
-  for (std::size_t i = 0; i < entries_.size(); ++i) places_.find(entries_[i].id)->second = i;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (labels_[i].id == 0) continue;
+    if (count != i) entries_[count] = std::move(entries_[i]);
+    labels_[count] = labels_[i];
+    places_.find(labels_[i].id)->second = count++;
+  }
+  entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(count), entries_.end());
+  labels_.resize(count);
   boxes_.held->renumber();
 }
 
 std::vector<Scene::Id> Scene::ids() const {
   std::vector<Id> all;
   all.reserve(size());
-  for (const Entry& x : entries_) {
+  for (const Label& x : labels_) {
     if (x.id != 0) all.push_back(x.id);
   }
   return all;
@@ -146,7 +154,7 @@ std::size_t Scene::place(Id id) const {
 
 const WorldBox& Scene::box(Id id) const { return boxes_.held->box(place(id)); }
 
-bool Scene::is_wanted(const Entry& x, const Entry& y) const {
+bool Scene::is_wanted(const Label& x, const Label& y) const {
   if ((x.groups.groups & y.groups.mask) == 0 || (y.groups.groups & x.groups.mask) == 0) return false;
   if (x.id == 0 || y.id == 0) return true;  // one is not in the scene
   const auto pair = std::minmax(x.id, y.id);
@@ -158,18 +166,16 @@ std::vector<Scene::Candidate> Scene::find_candidates(double within) const {
   if (entries_.empty()) return {};
   const double half = within > 0 ? std::nextafter(within / 2, std::numeric_limits<double>::infinity()) : 0;
   std::vector<Candidate> found = boxes_.held->pairs(half);
-  const auto unwanted = [this](const Candidate& pair) {
-    return !is_wanted(entries_[pair.first], entries_[pair.second]);
-  };
+  const auto unwanted = [this](const Candidate& pair) { return !is_wanted(labels_[pair.first], labels_[pair.second]); };
   found.erase(std::remove_if(found.begin(), found.end(), unwanted), found.end());
   return found;
 }
 
-std::vector<std::uint32_t> Scene::near(const Entry& one, const WorldBox& box, double within) const {
+std::vector<std::uint32_t> Scene::near(const Label& one, const WorldBox& box, double within) const {
   const WorldBox around = grown(box, within);
   std::vector<std::uint32_t> found;
   for (std::uint32_t i = 0; i < entries_.size(); ++i) {
-    const Entry& x = entries_[i];
+    const Label& x = labels_[i];
     if (x.id != 0 && x.id != one.id && overlap(boxes_.held->box(i), around) && is_wanted(x, one)) found.push_back(i);
   }
   return found;
@@ -179,7 +185,7 @@ std::vector<std::pair<Scene::Id, Scene::Id>> Scene::candidates() const {
   std::vector<std::pair<Id, Id>> pairs;
   const std::vector<Candidate> found = find_candidates(0);
   pairs.reserve(found.size());
-  for (const auto& [a, b] : found) pairs.emplace_back(entries_[a].id, entries_[b].id);
+  for (const auto& [a, b] : found) pairs.emplace_back(labels_[a].id, labels_[b].id);
   return pairs;
 }
 
@@ -195,7 +201,7 @@ void Scene::for_each_touching(Device& device, const PairSink& take, const Collis
       },
       request,
       [this, &pairs, &take](std::size_t i, const CollisionResult& result) {
-        return !result.hit || take({entries_[pairs[i].first].id, entries_[pairs[i].second].id, result});
+        return !result.hit || take({labels_[pairs[i].first].id, labels_[pairs[i].second].id, result});
       });
 }
 
@@ -210,13 +216,14 @@ void Scene::ask(Device& device, const Object& object, const Pose& pose, const st
       },
       request,
       [&](std::size_t i, const CollisionResult& result) {
-        return !result.hit || take({entries_[others[i]].id, result});
+        return !result.hit || take({labels_[others[i]].id, result});
       });
 }
 
 void Scene::for_each_touching(Device& device, Id id, const HitSink& take, const CollisionRequest& request) const {
-  const Entry& one = entry(id);
-  ask(device, one.object, one.pose, near(one, box(id), request.within), take, request);
+  const std::size_t at = place(id);
+  const Entry& one = entries_[at];
+  ask(device, one.object, one.pose, near(labels_[at], box(id), request.within), take, request);
 }
 
 void Scene::for_each_touching(Device& device, const Object& object, const Pose& pose, const HitSink& take,
@@ -224,7 +231,7 @@ void Scene::for_each_touching(Device& device, const Object& object, const Pose& 
   check_float_mode();
   check_object(object);
   check_pose(pose, "the object");
-  ask(device, object, pose, near({0, groups, object, pose}, world_box(object, pose), request.within), take, request);
+  ask(device, object, pose, near({0, groups}, world_box(object, pose), request.within), take, request);
 }
 
 namespace {

@@ -87,7 +87,7 @@ class Scene {
   /// \throws std::invalid_argument no object has this id
   const Object& object(Id id) const { return entry(id).object; }
   const Pose& pose(Id id) const { return entry(id).pose; }
-  const CollisionGroups& groups(Id id) const { return entry(id).groups; }
+  const CollisionGroups& groups(Id id) const { return labels_[place(id)].groups; }
   /// A box that contains the object in its pose in spite of rounding; not always the least one.
   const WorldBox& box(Id id) const;
 
@@ -135,9 +135,12 @@ class Scene {
                          const CollisionRequest& request = {}, const CollisionGroups& groups = {}) const;
 
  private:
-  struct Entry {
+  /// What decides whether a pair is wanted: a few bytes an object, since every query reads those of all pairs.
+  struct Label {
     Id id;  ///< 0 if it was removed, or is not of the scene
     CollisionGroups groups;
+  };
+  struct Entry {
     Object object;
     Pose pose;
   };
@@ -155,13 +158,14 @@ class Scene {
 
   std::size_t place(Id id) const;
   const Entry& entry(Id id) const { return entries_[place(id)]; }
-  bool is_wanted(const Entry& x, const Entry& y) const;
+  bool is_wanted(const Label& x, const Label& y) const;
   std::vector<Candidate> find_candidates(double within) const;
-  std::vector<std::uint32_t> near(const Entry& one, const WorldBox& box, double within) const;
+  std::vector<std::uint32_t> near(const Label& one, const WorldBox& box, double within) const;
   void ask(Device& device, const Object& object, const Pose& pose, const std::vector<std::uint32_t>& others,
            const HitSink& take, const CollisionRequest& request) const;
 
   std::vector<Entry> entries_;  ///< by ascending ids, with gaps where objects were removed
+  std::vector<Label> labels_;   ///< of the entries
   Boxes boxes_;
   std::unordered_map<Id, std::size_t> places_;  ///< in entries_
   std::set<std::pair<Id, Id>> ignored_;         ///< the lower id first
