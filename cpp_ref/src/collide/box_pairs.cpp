@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t most_in_leaf = 4;  // at least 2
 /// A cover of a box that moves is larger by this part of its longest side, on each side: more room makes more pairs of
 /// covers, less makes more covers.
-constexpr double room = 0.125;
+constexpr double room = 0.0625;
 /// All covers are made anew if more than 1 / whole_share of them must be.
 constexpr std::size_t whole_share = 4;
 
