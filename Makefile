@@ -59,7 +59,7 @@ Check for long
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
   campaign-geometry/hours campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps
 Measure
-  bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/2_min bench-certificate bench-python/1_min bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
+  bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/3_min bench-certificate bench-python/1_min bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
 Tools
   bootstrap venv peers robots clean
 endef
@@ -339,7 +339,7 @@ bench-certificate: $(RELEASE)/build.ninja ## certificates of answers for pairs o
 	cmake --build $(RELEASE) -j $(JOBS) --target bench_certificate
 	$(RELEASE)/bin/bench_certificate $(BENCH_ARGS)
 
-bench-scene: $(RELEASE)/build.ninja ## frames of scenes of 10 to 10,000 moving objects: cchip::Scene and FCL's manager in turns (two minutes)
+bench-scene: $(RELEASE)/build.ninja ## frames of scenes of 10 to 10,000 moving objects: cchip::Scene and FCL in turns, broad phases with Bullet (three minutes)
 	cmake --build $(RELEASE) -j $(JOBS) --target scene_speed
 	$(RELEASE)/bin/scene_speed $(BENCH_ARGS)
 
