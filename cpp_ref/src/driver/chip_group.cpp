@@ -82,29 +82,19 @@ class ChipGroup final : public QueryPort {
       if (!taken || member.dead) continue;
       member.flights.insert(query.tag);
       last_ = i;
-      clocks_known_ = false;
       return true;
     }
     require_alive();
     return false;
   }
 
+  /// Takes what all chips have before it hands over the first: so their doorbells and the clock cost the host one
+  /// access for several short queries, not for each.
   std::optional<QueryOutcome> collect() override {
-    for (std::size_t i = 0; i < members_.size(); ++i) {
-      Member& member = members_[(next_ + i) % members_.size()];
-      std::optional<QueryOutcome> outcome;
-      call(member, [&](QueryPort& port) { outcome = port.collect(); });
-      // a tag that this chip was not given belongs to another one's query, or to none
-      if (!outcome || member.flights.erase(outcome->done.tag) == 0) continue;
-      next_ = (next_ + i) % members_.size();
-      return outcome;
-    }
-    next_ = (next_ + 1) % members_.size();
-    if (lost_.empty()) return std::nullopt;
-    QueryOutcome outcome;
-    outcome.done.tag = lost_.front();
-    outcome.done.code = QueryCode::memory;
-    lost_.pop_front();
+    if (ended_.empty()) collect_all();
+    if (ended_.empty()) return std::nullopt;
+    QueryOutcome outcome = std::move(ended_.front());
+    ended_.pop_front();
     return outcome;
   }
 
@@ -118,14 +108,14 @@ class ChipGroup final : public QueryPort {
       if (!good && !member.dead && !member.flights.empty()) restart(member);
     }
     require_alive();
-    return goes_on || !lost_.empty();
+    return goes_on || !ended_.empty();
   }
 
   bool recover() override {
     for (Member& member : members_) {
       restart(member);
     }
-    lost_.clear();
+    ended_.clear();
     clocks_known_ = false;
     return std::any_of(members_.begin(), members_.end(), [](const Member& x) { return !x.dead; });
   }
@@ -144,8 +134,7 @@ class ChipGroup final : public QueryPort {
     return sum;
   }
 
-  /// All chips have one clock. It is read once for the outcomes that are there together, for reading a counter takes
-  /// the host longer than a chip's share of a short query.
+  /// All chips have one clock. It is read once for the outcomes that came together.
   std::uint64_t clocks() const override {
     for (const Member& member : members_) {
       if (clocks_known_) break;
@@ -184,8 +173,26 @@ class ChipGroup final : public QueryPort {
     lose(member);
   }
   void lose(Member& member) {
-    lost_.insert(lost_.end(), member.flights.begin(), member.flights.end());
+    for (const std::uint32_t tag : member.flights) {
+      QueryOutcome outcome;
+      outcome.done.tag = tag;
+      outcome.done.code = QueryCode::memory;
+      ended_.push_back(std::move(outcome));
+    }
     member.flights.clear();
+  }
+
+  void collect_all() {
+    clocks_known_ = false;
+    for (Member& member : members_) {
+      for (bool more = true; more && !member.dead;) {
+        std::optional<QueryOutcome> outcome;
+        call(member, [&](QueryPort& port) { outcome = port.collect(); });
+        more = outcome.has_value();
+        // a tag that this chip was not given belongs to another one's query, or to none
+        if (more && member.flights.erase(outcome->done.tag) != 0) ended_.push_back(std::move(*outcome));
+      }
+    }
   }
 
   /// Its queries are lost; memory, and with it the images, stays as it is.
@@ -202,15 +209,14 @@ class ChipGroup final : public QueryPort {
 
   void require_alive() const {
     const bool alive = std::any_of(members_.begin(), members_.end(), [](const Member& x) { return !x.dead; });
-    if (!alive && lost_.empty()) throw std::runtime_error("chips: none of them works; reset chips and bus");
+    if (!alive && ended_.empty()) throw std::runtime_error("chips: none of them works; reset chips and bus");
   }
 
   std::vector<Member> members_;
   ChipCapabilities all_;
   std::map<unsigned, std::pair<std::uint32_t, std::uint32_t>> locks_;  // by range: lines
-  std::deque<std::uint32_t> lost_;                                     // tags of queries whose end is not told yet
+  std::deque<QueryOutcome> ended_;                                     // not handed over yet
   std::size_t last_ = 0;                                               // member that got the last query
-  std::size_t next_ = 0;                                               // member that is asked first for an outcome
   mutable std::uint64_t clocks_ = 0;
   mutable bool clocks_known_ = false;
 };
