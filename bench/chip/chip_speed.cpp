@@ -19,6 +19,7 @@
 #include <sstream>
 
 #include "ask.hpp"
+#include "chip_scaling.hpp"
 #include "machine.hpp"
 #include "measure.hpp"
 #include "other_libraries.hpp"
@@ -372,8 +373,19 @@ int main(int argc, char** argv) try {
       ->delimiter(',')
       ->check(CLI::IsMember(cchip::testing::mesh_pair_names()))
       ->capture_default_str();
+  std::vector<unsigned> chips;
+  std::vector<int> widths = {128, 256, 512};
+  app.add_option("--chips", chips,
+                 "another table: numbers of chips that share one memory (1..8), without the other libraries")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 8));
+  app.add_option("--widths", widths, "with --chips: widths of the memory's bus, bit")
+      ->delimiter(',')
+      ->check(CLI::IsMember({128, 256, 512}))
+      ->capture_default_str();
   app.add_option("--csv", o.csv, "the same figures as a file; empty: none")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
+  if (!chips.empty()) return cchip::testing::run_scaling({chips, widths, o.poses, o.chip_mhz, o.seed, o.pairs});
   return cchip::testing::Benchmark(o).run();
 } catch (const std::exception& error) {
   std::fprintf(stderr, "chip_speed: %s\n", error.what());

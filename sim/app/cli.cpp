@@ -289,6 +289,9 @@ void add_collide(CLI::App& app, CollideOptions& options) {
       *command, "--slots", options.slots,
       "with --device sim: 1 or 2 slots whose modules are exchanged for the objects at hand (default 0: a static chip)",
       WholeRange{0, 2});
+  add_whole(*command, "--chips", options.chips,
+            "with --device sim: 1 to 8 chips that share one memory and the queries of --poses (default 1)",
+            WholeRange{1, most_simulated_chips});
   add_text(
       *command, "--trace", options.trace,
       "with --device sim: write the waveform of the chip's first 30,000 clocks (FST) and a .gtkw layout beside it");

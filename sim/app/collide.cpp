@@ -121,11 +121,13 @@ std::unique_ptr<Device> open_named_device(const CollideOptions& options) {
   };
   needs_sim(!options.trace.empty(), "--trace", "waveform");
   needs_sim(options.slots != 0, "--slots", "slots");
+  needs_sim(options.chips != 1, "--chips", "chips");
   if (options.device == "sim") {
     if (!options.trace.empty()) check_wave_name(options.trace);
     SimulatedChipOptions chip;
     chip.trace_path = options.trace;
     chip.slots = static_cast<unsigned>(options.slots);
+    chip.chips = static_cast<unsigned>(options.chips);
     return open_simulated_chip(chip);
   }
   try {

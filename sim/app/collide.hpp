@@ -38,6 +38,7 @@ struct CollideOptions {
   std::string html;         ///< path of the view for a browser; empty: none
   std::string certificate;  ///< path of the proofs of the answers; empty: none
   std::uint64_t slots = 0;  ///< of device sim, with swaps; 0: a static chip
+  std::uint64_t chips = 1;  ///< of device sim
   std::string trace;        ///< path of the waveform of device sim; empty: none
 };
 

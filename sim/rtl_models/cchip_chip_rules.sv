@@ -8,7 +8,7 @@ bind cchip_chip cchip_axi_rules #(
     .ID_W     ($clog2(MISSES) + 1),
     .READS    (1),
     .WRITES   (16),
-    .BOUNDARY (64)
+    .BOUNDARY (DATA_W == 512 ? 128 : 64)  // a line; a boundary is above a beat
 ) u_axi_rules (
     .clk          (clk),
     .rst          (rst),

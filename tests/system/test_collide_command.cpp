@@ -693,6 +693,9 @@ TEST_CASE("collide: device sim answers face for face like device cpu", "[system]
       CHECK(columns_of(many_cpu.out, {"hit", "contacts"}) == columns_of(many_sim.out, {"hit", "contacts"}));
       CHECK(last_line(many_sim.err).find(" fallbacks=1 ") != std::string::npos);
     }
+    const Outcome three = run("sim", {"--poses", poses, "--contacts", contacts, "--chips", "3"});
+    CHECK(columns_of(many_cpu.out, {"hit", "contacts"}) == columns_of(three.out, {"hit", "contacts"}));
+    CHECK(last_line(three.err).find(" fallbacks=1 ") != std::string::npos);
   }
 }
 
@@ -710,4 +713,13 @@ TEST_CASE("collide: the waveform of device sim", "[system][collide][chip]") {
   CHECK(collide_cubes({"--slots", "1"}).err ==
         "cchip: --slots: device cpu has no slots; add --device sim, or leave --slots out\n");
   CHECK(collide_cubes({"--device", "sim", "--slots", "3"}).code == exit_usage);
+  CHECK(collide_cubes({"--chips", "2"}).err ==
+        "cchip: --chips: device cpu has no chips; add --device sim, or leave --chips out\n");
+  for (const std::string count : {"0", "9", "two", "-1", "2.5", ""}) {
+    CAPTURE(count);
+    const Outcome wrong = collide_cubes({"--device", "sim", "--chips", count});
+    CHECK(wrong.code == exit_usage);
+    CHECK(wrong.err.rfind("cchip: --chips: ", 0) == 0);
+    CHECK(lines(wrong.err).size() == 1);
+  }
 }

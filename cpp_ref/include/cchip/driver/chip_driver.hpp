@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <vector>
 
 namespace cchip {
 
@@ -43,6 +44,15 @@ struct ChipDriverOptions {
 /// \throws std::invalid_argument the memory is misplaced or too small for the rings, an option is out of range
 /// \throws std::runtime_error no cchip_chip of a known version answers, or its reset does not end
 std::unique_ptr<QueryPort> open_chip(std::unique_ptr<Machine> machine, const ChipDriverOptions& options = {});
+
+/// Several chips as one: the next query goes to the chip with the fewest in flight. The machines share memory and
+/// clock, and each has registers of its own. Rings (and bitstreams) of the chips come one behind the other from
+/// memory_base on, images once behind them all. A chip that stops ends its own queries with QueryCode::memory; the
+/// others continue, as long as one of them works.
+/// \throws std::invalid_argument no machines; they differ in their slots; as open_chip()
+/// \throws std::runtime_error as open_chip()
+std::unique_ptr<QueryPort> open_chips(std::vector<std::unique_ptr<Machine>> machines,
+                                      const ChipDriverOptions& options = {});
 
 }  // namespace cchip
 

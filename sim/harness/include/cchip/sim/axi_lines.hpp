@@ -99,7 +99,7 @@ class AxiLines : public Agent {
     if (bursting_ && !offered_ && may_offer) offered_ = chance(options.valid_percent);
     model_.m_axi_rvalid = offered_ ? 1 : 0;
     if (offered_) {
-      model_.m_axi_rid = static_cast<CData>(burst_.id);
+      model_.m_axi_rid = static_cast<std::decay_t<decltype(model_.m_axi_rid)>>(burst_.id);
       model_.m_axi_rlast = beat_ + 1 == beats ? 1 : 0;
       model_.m_axi_rresp = burst_.okay ? 0 : 2;
       for (std::size_t i = 0; i < beat_bytes; ++i)
@@ -161,7 +161,7 @@ class AxiLines : public Agent {
   void drive_responses(std::uint64_t now) {
     if (!answering_ && !responses_.empty() && responses_.front().due <= now) answering_ = chance(options.valid_percent);
     model_.m_axi_bvalid = answering_ ? 1 : 0;
-    model_.m_axi_bid = answering_ ? static_cast<CData>(responses_.front().id) : 0;
+    model_.m_axi_bid = static_cast<std::decay_t<decltype(model_.m_axi_bid)>>(answering_ ? responses_.front().id : 0);
     model_.m_axi_bresp = answering_ && !responses_.front().okay ? 2 : 0;
   }
   void sample_writes(const ClockInfo& now) {

@@ -40,6 +40,41 @@ struct BitstreamPins {
   CData &m_axi_rresp, &m_axi_rlast;
 };
 
+/// Bytes of an AxiLines, as a Machine writes and reads them.
+template <class Memory>
+void write_bytes(Memory& memory, std::uint64_t address, const Bytes& bytes) {
+  for (std::size_t done = 0; done < bytes.size();) {
+    const std::size_t at = (address + done) % 64;
+    const std::size_t count = std::min(bytes.size() - done, 64 - at);
+    std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(done), count,
+                memory.line((address + done) / 64).begin() + static_cast<std::ptrdiff_t>(at));
+    done += count;
+  }
+}
+template <class Memory>
+Bytes read_bytes(const Memory& memory, std::uint64_t address, std::size_t size) {
+  Bytes bytes(size);
+  for (std::size_t done = 0; done < size;) {
+    const std::size_t at = (address + done) % 64;
+    const std::size_t count = std::min(size - done, 64 - at);
+    if (const typename Memory::Line* line = memory.find((address + done) / 64)) {
+      std::copy_n(line->begin() + static_cast<std::ptrdiff_t>(at), count,
+                  bytes.begin() + static_cast<std::ptrdiff_t>(done));
+    }
+    done += count;
+  }
+  return bytes;
+}
+/// The word that a bitstream has there; none: nothing wrote it.
+template <class Memory>
+std::optional<std::uint32_t> read_word(const Memory& memory, std::uint32_t address) {
+  const typename Memory::Line* line = memory.find(address / 64);
+  if (line == nullptr) return std::nullopt;
+  std::uint32_t word = 0;
+  for (std::size_t i = 4; i-- > 0;) word = word << 8U | (*line)[address % 64 + i];
+  return word;
+}
+
 /// Host and chip see the same memory at once; memory that nothing wrote reads as 0 for the host, and is a bus error for
 /// the chip. A register takes some clocks, memory takes the host none.
 /// \tparam DATA_W width of the model's data buses, bit
@@ -55,13 +90,7 @@ class ChipMachine : public Machine {
         bitstream_pins_(simulation_.top()),
         bitstreams_(bitstream_pins_) {
     simulation_->cfg_error = 0;
-    bitstreams_.backing = [this](std::uint32_t address) -> std::optional<std::uint32_t> {
-      const typename Memory::Line* line = memory_.find(address / 64);
-      if (line == nullptr) return std::nullopt;
-      std::uint32_t word = 0;
-      for (std::size_t i = 4; i-- > 0;) word = word << 8U | (*line)[address % 64 + i];
-      return word;
-    };
+    bitstreams_.backing = [this](std::uint32_t address) { return read_word(memory_, address); };
     simulation_.add(memory_);
     simulation_.add(bitstreams_);
     simulation_.add(registers_);
@@ -85,28 +114,8 @@ class ChipMachine : public Machine {
       throw std::runtime_error("chip: register " + std::to_string(offset) + " refuses a write");
   }
 
-  void write_memory(std::uint64_t address, const Bytes& bytes) override {
-    for (std::size_t done = 0; done < bytes.size();) {
-      const std::size_t at = (address + done) % 64;
-      const std::size_t count = std::min(bytes.size() - done, 64 - at);
-      std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(done), count,
-                  memory_.line((address + done) / 64).begin() + static_cast<std::ptrdiff_t>(at));
-      done += count;
-    }
-  }
-  Bytes read_memory(std::uint64_t address, std::size_t size) override {
-    Bytes bytes(size);
-    for (std::size_t done = 0; done < size;) {
-      const std::size_t at = (address + done) % 64;
-      const std::size_t count = std::min(size - done, 64 - at);
-      if (const typename Memory::Line* line = memory_.find((address + done) / 64)) {
-        std::copy_n(line->begin() + static_cast<std::ptrdiff_t>(at), count,
-                    bytes.begin() + static_cast<std::ptrdiff_t>(done));
-      }
-      done += count;
-    }
-    return bytes;
-  }
+  void write_memory(std::uint64_t address, const Bytes& bytes) override { write_bytes(memory_, address, bytes); }
+  Bytes read_memory(std::uint64_t address, std::size_t size) override { return read_bytes(memory_, address, size); }
 
   bool interrupt() override { return simulation_->irq != 0; }
   void proceed() override { simulation_.step(); }
