@@ -145,8 +145,9 @@ def rows():
     table += [Row(name.replace("cchip_", ""), name, parameters, shape="", seeds=3, placer="heap", block=True, synth=" -nowidelut")
               for name, parameters in CHIP_PARAMETERS.items()]
     # the whole chip: its bill by block, then flat; a third fewer multiplexers of LUTs without the device's wide ones
-    table += [Row(name, "cchip_chip", (("RM_ID", module),), shape="", seeds=3, block=True, synth=" -nowidelut", owners=CHIP_BLOCKS, floorplan=True)
-              for name, module in (("chip_tri", 1), ("chip", 3))]
+    small = (("QUERIES", 8), ("PAIRS", 24), ("LEAVES", 8), ("LEAF_DEPTH", 40), ("LEAF_NUMBERS", 32), ("CACHE_KB", 64), ("MISSES", 16), ("PASSES", 2))
+    table += [Row(name, "cchip_chip", (("RM_ID", module), *more), shape="", seeds=3, block=True, synth=" -nowidelut", owners=CHIP_BLOCKS, floorplan=True)
+              for name, module, more in (("chip_tri", 1, ()), ("chip", 3, ()), ("chip_small", 1, small))]
     return {row.name: row for row in table}
 
 

@@ -297,7 +297,7 @@ module cchip_chip_core #(
   wire [1:0] start_epoch, leaf_epoch;
   wire [`CCHIP_QUERY_W-1:0] start_query;
   wire [3:0] leaf_kinds;
-  wire [511:0] leaf_lines;
+  wire [127:0] leaf_lines;
   wire leaf_result_valid, leaf_result_ready;
   wire [LEAF_RESULT_W-1:0] leaf_result;
   wire judged_valid, judged_live, done_valid, done_ready;

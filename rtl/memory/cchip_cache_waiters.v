@@ -94,11 +94,10 @@ module cchip_cache_waiters #(
   reg [CODE_W-1:0] serve_code_q;
   reg [FRAME_W-1:0] serve_frame_q;
   always @(posedge clk) begin
-    if (load) begin
-      serve_place_q <= next_place[PLACE_W-1:0];
-      serve_code_q  <= collect_code;
-      serve_frame_q <= collect_frame;
-    end
+    if (load) serve_place_q <= next_place[PLACE_W-1:0];
+    // these stay until all that wait for the line are served: no condition that comes from far
+    serve_code_q  <= collect_code;
+    serve_frame_q <= collect_frame;
     if (rst) serve_q <= 1'b0;
     else if (load) serve_q <= |awake_q;
   end
@@ -138,7 +137,7 @@ module cchip_cache_waiters #(
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_collect, !collect || awake_q == {PLACES{1'b0}})
-      `CCHIP_ASSERT(a_serve, !serve_q || serve_frame_q == collect_frame)
+      `CCHIP_ASSERT(a_serve, !serve_q || (serve_frame_q == collect_frame && serve_code_q == collect_code))
     end
 
 endmodule

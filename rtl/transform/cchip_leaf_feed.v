@@ -9,12 +9,12 @@
 //                one, and the traversal calls its results dead
 //   credit       s_leaf_valid has no ready: at most one leaf pair comes for which m_credit has not
 //                been 1; the others wait in cchip_get_data, which has memory for their lines
-//   beats        lines come in halves, the lower one with s_leaf_valid, the upper one on the next
-//                clock
+//   beats        lines come in eight beats of 128 bits, the first with s_leaf_valid, the others on
+//                the clocks after it: the lower halves of A's line and B's, then the upper ones
 //   end          a leaf pair whose line could not be read, or is illegal, ends without primitive
 //                pairs, with CCHIP_END_MEMORY or CCHIP_END_CORRUPT
-//   throughput   a leaf pair every 3 clocks
-//   latency      3 clocks from s_leaf_valid to m_valid
+//   throughput   a leaf pair every 9 clocks
+//   latency      9 clocks from s_leaf_valid to m_valid
 //   cuts         every path from s_leaf and s_start, and to m_credit
 //   reset        leaf pairs inside are forgotten
 module cchip_leaf_feed #(
@@ -35,7 +35,7 @@ module cchip_leaf_feed #(
     input  wire [                1:0] s_leaf_epoch,
     input  wire [                3:0] s_leaf_kinds,     // {B's, A's}
     input  wire                       s_leaf_failed,    // a line could not be read
-    input  wire [              511:0] s_leaf_lines,     // {B's, A's}: a beat
+    input  wire [              127:0] s_leaf_lines,     // a beat
     output wire                       m_credit,
     // a number for a leaf pair; it ends without primitive pairs
     output wire                       m_begin_valid,
@@ -88,24 +88,24 @@ module cchip_leaf_feed #(
       };
 
   // ---- the leaf pair that waits. What is in its register counts only with its valid bit, so the
-  // condition of the thousand flip-flops is that bit alone, and for the first beat that of the
-  // second one
+  // condition of the thousand flip-flops is that bit alone: the beats shift through them, whether
+  // one comes or not
   reg wait_valid_q, wait_failed_q;
-  reg second_q;  // the second beat comes
+  reg [6:0] comes_q;  // which of the other beats comes: one-hot
   wire leaves;  // it goes to the transform, or ends
   reg credit_q;  // a clock later: who gives the next one is far
   reg [CONTEXT_W-1:0] wait_context_q;
   reg [1:0] wait_epoch_q;
   reg [3:0] wait_kinds_q;
-  reg [511:0] wait_low_q, wait_high_q;
+  reg [1023:0] wait_lines_q;
   always @(posedge clk) begin
-    if (!wait_valid_q && !second_q)
-      {wait_context_q, wait_epoch_q, wait_failed_q, wait_kinds_q, wait_low_q} <= {
-        s_leaf_context, s_leaf_epoch, s_leaf_failed, s_leaf_kinds, s_leaf_lines
+    if (s_leaf_valid)
+      {wait_context_q, wait_epoch_q, wait_failed_q, wait_kinds_q} <= {
+        s_leaf_context, s_leaf_epoch, s_leaf_failed, s_leaf_kinds
       };
-    if (!wait_valid_q) wait_high_q <= s_leaf_lines;
-    second_q     <= ~rst & s_leaf_valid;
-    wait_valid_q <= ~rst & (wait_valid_q ? ~leaves : second_q);
+    if (!wait_valid_q) wait_lines_q <= {s_leaf_lines, wait_lines_q[1023:128]};
+    comes_q      <= {7{~rst}} & {comes_q[5:0], s_leaf_valid};
+    wait_valid_q <= ~rst & (wait_valid_q ? ~leaves : comes_q[6]);
     credit_q     <= ~rst & leaves;
   end
   wire unused = &{1'b0, s_start_query};
@@ -134,10 +134,10 @@ module cchip_leaf_feed #(
         wait_context_q,
         wait_epoch_q,
         wait_kinds_q,
-        wait_high_q[511:256],
-        wait_low_q[511:256],
-        wait_high_q[255:0],
-        wait_low_q[255:0]
+        wait_lines_q[1023:768],
+        wait_lines_q[511:256],
+        wait_lines_q[767:512],
+        wait_lines_q[255:0]
       };
       map_q    <= maps[wait_context_q];
       number_q <= s_number;
@@ -171,7 +171,7 @@ module cchip_leaf_feed #(
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_credit, !s_leaf_valid || !(wait_valid_q || second_q))
+      `CCHIP_ASSERT(a_credit, !s_leaf_valid || !wait_valid_q && comes_q == 7'd0)
     end
 
 endmodule

@@ -60,7 +60,7 @@ module cchip_broad_phase #(
     output wire [                     1:0] m_leaf_epoch,
     output wire [                     3:0] m_leaf_kinds,         // {B's, A's}
     output wire                            m_leaf_failed,        // a line could not be read
-    output wire [                   511:0] m_leaf_lines,         // {B's, A's}: a beat
+    output wire [                   127:0] m_leaf_lines,         // one of eight beats
     input  wire                            s_credit,
     // outcome of each
     input  wire                            s_result_valid,
@@ -242,6 +242,7 @@ module cchip_broad_phase #(
       .m_leaf_epoch   (m_leaf_epoch),
       .m_leaf_kinds   (m_leaf_kinds),
       .m_leaf_failed  (m_leaf_failed),
+      .m_leaf_lines   (m_leaf_lines),
       .m_lines        (lines),
       .lookup         (lookup),
       .lookup_place   (lookup_place),
@@ -250,7 +251,6 @@ module cchip_broad_phase #(
       .lookup_nodes   (lookup_nodes)
   );
 
-  assign m_leaf_lines   = lines;
   assign count_box_busy = pair_valid;
   wire unused = &{1'b0, pair_ready};
 

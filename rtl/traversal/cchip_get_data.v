@@ -11,13 +11,15 @@
 //                s_leaf_taken has not been 1
 //   beats        a line is two beats of 256 bits, the lower half first: from the cache with
 //                s_line_valid and on the next clock, on which s_line_place stays; to the box test
-//                on the first clock of m_pair_valid and the next, to who takes leaf pairs with
-//                m_leaf_valid and on the next clock
+//                on the first clock of m_pair_valid and the next. To who takes leaf pairs it is
+//                eight of 128 bits, with m_leaf_valid and on the seven clocks after it: the lower
+//                halves of A's line and B's, then the upper ones. So many wires less go there, and
+//                a leaf pair is at work for longer than that
 //   check        what a line says of its children, and of a header, leaves with `lookup` when the
 //                verdict of the box test comes: code, kinds and lines of the children
 //   latency      1 clock from s_valid to m_line_valid, 8 from the second line to m_pair_valid or
 //                m_leaf_valid
-//   throughput   a request per clock, a pair every third clock
+//   throughput   a request per clock, a node pair every third clock, a leaf pair takes eight
 //   credit       a place is used again only after m_leaf_valid or the verdict
 //   cuts         every path: each output is a flip-flop
 //   reset        drops all pairs; no line of an earlier request may come
@@ -65,6 +67,7 @@ module cchip_get_data #(
     output wire [                                          1:0] m_leaf_epoch,
     output wire [                                          3:0] m_leaf_kinds,  // {B's, A's}
     output wire                                                 m_leaf_failed,  // lines not read
+    output wire [                                        127:0] m_leaf_lines,
     output wire [                                        511:0] m_lines,  // {B's, A's}: a beat
     // of a node pair whose verdict has come; 1 clock later
     input  wire                                                 lookup,
@@ -186,7 +189,8 @@ module cchip_get_data #(
   // ---- the picked pair's lines: memory answers 2 clocks after fetch_q. The first beat is asked
   // for on the first clock alone, and waits in lines_q; the second one waits in the memory's
   // output. Those before have gone when they come: the pair was picked when the one before was
-  // loaded.
+  // loaded. A leaf pair's beats leave lines_q in four parts each, and the next pair is picked so
+  // late that its first beat comes when the last part leaves.
   reg [1:0] age_q;
   reg [CONTEXT_W+RECORD_W-1:0] record_q;
   reg no_pose_fetch_q;
@@ -198,9 +202,11 @@ module cchip_get_data #(
   // it is taken on this clock, for what picks the next pair, and that there is room for it
   reg ready_q, room_q;
   reg beat_comes_q;  // read_lines has a beat for lines_q
+  reg [2:0] parts_q;  // parts of a leaf pair's beats that follow
   wire load = fetch_valid_q & age_q[1] & ~no_pose_fetch_q & (~pair_valid_q | ready_q);
   wire pair_valid = (load & ~fetch_leaf_q) | (pair_valid_q & ~ready_q);  // on the next clock
-  assign advance = (pick_leaf | pick_pair) & (~fetch_valid_q | load);
+  assign advance = (pick_leaf | pick_pair) &
+      (fetch_valid_q ? load & ~fetch_leaf_q : ~parts_q[2]);
   reg [PLACE_W-1:0] place_q;
   reg [CONTEXT_W+RECORD_W-1:0] hold_record_q;
   reg [511:0] lines_q;
@@ -214,8 +220,10 @@ module cchip_get_data #(
     fetch_leaf_q    <= fetch_leaf;
     no_pose_fetch_q <= record_q[`CCHIP_NODE_PAIR_HEADER] & no_pose_q[fetch_context];
     beat_q          <= ~advance;
-    beat_comes_q    <= (age_q == 2'd1) | load;
+    beat_comes_q    <= (age_q == 2'd1) | (load & ~fetch_leaf_q) | parts_q == 3'd5;
     if (beat_comes_q) lines_q <= read_lines;
+    else if (parts_q != 3'd0) lines_q[383:0] <= lines_q[511:128];
+    parts_q <= rst ? 3'd0 : load & fetch_leaf_q ? 3'd7 : parts_q - {2'd0, parts_q != 3'd0};
     // A pair that is not complete may be loaded, too: what is loaded counts only with pair_valid_q
     // or leaf_valid_q. So the condition of these flip-flops is a short one.
     if (room_q) begin
@@ -257,6 +265,7 @@ module cchip_get_data #(
   assign m_leaf_epoch    = hold_record_q[`CCHIP_NODE_PAIR_EPOCH];
   assign m_leaf_kinds    = {line_b[1:0], line_a[1:0]};
   assign m_leaf_failed   = leaf_failed_q;
+  assign m_leaf_lines    = lines_q[127:0];
   assign m_lines         = lines_q;
 
   // ---- what the lines say, and the record of the pair whose verdict has come
@@ -284,6 +293,7 @@ module cchip_get_data #(
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_beats, !(pair_valid_q && fresh_q) || !ready_q)
+      `CCHIP_ASSERT(a_parts, parts_q == 3'd0 || !(load || pair_valid_q))
       `CCHIP_ASSERT(a_room, {30'd0, room_left_q} <= ROOM_AT_FIRST)
       `CCHIP_ASSERT(a_place, !(s_valid && pair_valid_q && place_q == s_place))
     end

@@ -49,7 +49,7 @@ module cchip_broad_phase_axi #(
     output wire [                     1:0] m_leaf_epoch,
     output wire [                     3:0] m_leaf_kinds,         // {B's, A's}
     output wire                            m_leaf_failed,        // a line could not be read
-    output wire [                   511:0] m_leaf_lines,         // {B's, A's}: a beat
+    output wire [                   127:0] m_leaf_lines,         // one of eight beats
     input  wire                            s_credit,
     // outcome of each
     input  wire                            s_result_valid,

@@ -3,7 +3,8 @@
 `include "cchip_defs.vh"
 // Proved of cchip_get_data: every line of a request is asked for once, on the next clock; a pair is offered once, only when both
 // of its lines have come, as a node pair or as leaves by its place, with its query, its record and its own lines, and not before
-// the pose of its query if it is a pair of headers; a node pair stays as it is until it is taken, leaves are there for one clock;
+// the pose of its query if it is a pair of headers; a node pair stays as it is until it is taken, leaves are there for one clock, and their lines
+// leave in eight beats, in which nothing else is offered;
 // leaves of which a line could not be read say so, and the code of such a node pair, looked up 4 clocks or more after it was offered,
 // is never 0, END_MEMORY if it is A's; if
 // no pair waits for a pose, and neither the box test nor the receiver of leaves has anything, a pair that is whole brings about a pair within BOUND clocks.
@@ -13,7 +14,7 @@
 //             upper half, and no other line comes on this port
 //   beats     the box test takes a pair on its third clock or later
 //   taken     the receiver of leaves takes no more than it was given; it never has more than it has room for
-// One place, any: the solver chooses it; in the task `code`, which is of codes only, it is PLACE. Bit 0 of each half of a line stands for all of it.
+// One place, any: the solver chooses it; in the tasks `code` and `beats`, which are of codes and of the beats of leaves only, it is PLACE. Bit 0 of each half of a line stands for all of it.
 module cchip_get_data_properties #(
     parameter integer QUERIES = 2,
     parameter integer PAIRS   = 5,
@@ -53,6 +54,7 @@ module cchip_get_data_properties #(
   wire [7:0] m_pair_children;
   wire [1:0] m_leaf_epoch;
   wire [3:0] m_leaf_kinds;
+  wire [127:0] m_leaf_lines;
   wire [511:0] m_lines;
   wire [58:0] lookup_record;
   wire [66:0] lookup_nodes;
@@ -90,6 +92,7 @@ module cchip_get_data_properties #(
       .m_leaf_epoch   (m_leaf_epoch),
       .m_leaf_kinds   (m_leaf_kinds),
       .m_leaf_failed  (m_leaf_failed),
+      .m_leaf_lines   (m_leaf_lines),
       .m_lines        (m_lines),
       .lookup         (lookup),
       .lookup_place   (lookup_place),
@@ -153,6 +156,8 @@ module cchip_get_data_properties #(
   reg [1:0] upper_q;  // each port: the upper half of any line comes
   reg [2*PLACE_W-1:0] upper_place_q;
   reg shown_q;  // its lower halves left on the last clock
+  reg [6:0] left_q, sends_q;  // clocks since its leaf pair left, and any: one-hot
+  reg [2:0] sent_q;  // of its leaf pair: the upper half of B's line, of A's, the lower one of B's
   reg [3:0] waits_q;
   wire is_pair = m_pair_valid && m_pair_place == place;
   wire is_leaf = m_leaf_valid && m_leaf_place == place;
@@ -172,7 +177,10 @@ module cchip_get_data_properties #(
     upper_q <= s_line_valid & {2{~rst}};
     upper_place_q <= s_line_place;
     {upper_a_q, upper_b_q} <= {mine_a, mine_b} & {2{~rst}};
-    shown_q <= ~rst & ((is_pair & ~stays_q) | is_leaf);
+    shown_q <= ~rst & is_pair & ~stays_q;
+    left_q  <= {7{~rst}} & {left_q[5:0], is_leaf};
+    sends_q <= {7{~rst}} & {sends_q[5:0], m_leaf_valid};
+    if (is_leaf) sent_q <= {high_b_q, high_a_q, data_b_q};
     if (is_pair) {known_a_q, known_b_q} <= {failed_a_q, failed_b_q};
     if (rst) begin
       {asked_q, wanted_q, came_a_q, came_b_q, known_q, looked_q} <= 6'd0;
@@ -186,7 +194,7 @@ module cchip_get_data_properties #(
       known_q  <= ~mine & (known_q | is_pair);
       age_q    <= mine ? 3'd0 : age_q[2] | ~(known_q | is_pair) ? age_q : age_q + 3'd1;
       looked_q <= lookup && lookup_place == place && age_q[2] && !mine;
-      waits_q  <= ~(came_a_q & came_b_q) | m_pair_valid | m_leaf_valid | |no_pose_q | there_q != 2'd0 ? 4'd0 : waits_q + 4'd1;
+      waits_q  <= ~(came_a_q & came_b_q) | m_pair_valid | m_leaf_valid | |sends_q | |no_pose_q | there_q != 2'd0 ? 4'd0 : waits_q + 4'd1;
     end
   end
 
@@ -225,7 +233,7 @@ module cchip_get_data_properties #(
       kind: assert (!(is_pair && place >= PAIRS) && !(is_leaf && place < PAIRS));
       whole: assert (!(is_pair || is_leaf) || (wanted_q && came_a_q && came_b_q));
       posed: assert (!(is_pair && !stays_q && record_q[58]) || posed_q);
-      own_lines: assert (!((is_pair && !stays_q) || is_leaf) || (m_lines[0] == data_a_q && m_lines[256] == data_b_q));
+      own_lines: assert (!(is_pair && !stays_q) || (m_lines[0] == data_a_q && m_lines[256] == data_b_q));
       own_upper: assert (!shown_q || (m_lines[0] == high_a_q && m_lines[256] == high_b_q));
       own_pair: assert (!is_pair || (m_pair_context == context_q && m_pair_children == {record_q[55:52], record_q[27:24]}));
       own_leaf: assert (!is_leaf || (m_leaf_context == context_q && m_leaf_epoch == record_q[57:56] &&
@@ -235,6 +243,12 @@ module cchip_get_data_properties #(
       stable: assert (!stays_q || (m_pair_valid && is == was_q));
       in_time: assert (waits_q != BOUND);
 `endif
+      own_beat0: assert (!is_leaf || m_leaf_lines[0] == data_a_q);
+      own_beat2: assert (!left_q[1] || m_leaf_lines[0] == sent_q[0]);
+      own_beat4: assert (!left_q[3] || m_leaf_lines[0] == sent_q[1]);
+      own_beat6: assert (!left_q[5] || m_leaf_lines[0] == sent_q[2]);
+      one_leaf: assert (!m_leaf_valid || sends_q == 7'd0);
+      no_pair: assert (!m_pair_valid || sends_q == 7'd0);
       reported: assert (!(looked_q && (known_a_q || known_b_q)) || lookup_nodes[66:64] != END_OK);
       reported_a: assert (!(looked_q && known_a_q) || lookup_nodes[66:64] == END_MEMORY);
     end

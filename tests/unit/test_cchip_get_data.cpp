@@ -173,7 +173,8 @@ class GetDataBench {
   std::map<GetData::End, int> ends;  ///< of those
   int stalled = 0;
   int fullest = 0;     ///< leaves with their receiver, at most
-  int closest = 1000;  ///< clocks from pair to pair, at least
+  int closest = 1000;  ///< clocks from a node pair to the next pair, at least
+  int closest_after_leaf = 1000;
 
  private:
   enum class Use { free, wanted, out, done };  // done: its verdict has not come
@@ -203,6 +204,8 @@ class GetDataBench {
     second_ = {};
     model_second_.reset();
     second_out_.reset();
+    model_leaf_.reset();
+    leaf_out_.reset();
   }
 
   // ---- who asks
@@ -367,10 +370,12 @@ class GetDataBench {
     REQUIRE((top_.m_leaf_valid != 0) == model_.leaf_valid());
     if (model_second_) require_beat(*model_second_, 1);
     model_second_.reset();
-    if ((model_.pair_valid() && !stays_) || model_.leaf_valid()) {
+    if (model_.pair_valid() && !stays_) {
       require_beat(model_.pair().lines, 0);
       model_second_ = model_.pair().lines;
     }
+    if (model_.leaf_valid()) model_leaf_ = Leaving{model_.pair().lines};
+    require_part(model_leaf_);
     if (model_.pair_valid()) {
       const GetData::Pair& pair = model_.pair();
       REQUIRE(top_.m_pair_place == pair.place);
@@ -405,6 +410,19 @@ class GetDataBench {
     for (std::size_t w = 0; w < 16; ++w) REQUIRE(top_.m_lines.at(w) == lines[w / 8].data[8 * beat + w % 8]);
   }
 
+  /// A leaf pair whose beats leave.
+  struct Leaving {
+    std::array<GetData::Line, 2> lines;
+    std::size_t beat = 0;
+  };
+  void require_part(std::optional<Leaving>& leaving) {
+    if (!leaving) return;
+    const std::size_t object = leaving->beat / 2 % 2;
+    const std::size_t first = 8 * (leaving->beat / 4) + 4 * (leaving->beat % 2);
+    for (std::size_t w = 0; w < 4; ++w) REQUIRE(top_.m_leaf_lines.at(w) == leaving->lines[object].data[first + w]);
+    if (++leaving->beat == 8) leaving.reset();
+  }
+
   /// Independent of the model: every request is asked for once, and leaves once, with its lines, when both have come.
   void follow() {
     for (Expected& one : expected_) {
@@ -423,9 +441,16 @@ class GetDataBench {
       const Expected& one = expected_[top_.m_leaf_valid != 0 ? top_.m_leaf_place : top_.m_pair_place];
       REQUIRE(one.lines[0].has_value());
       REQUIRE(one.lines[1].has_value());
-      second_out_ = {*one.lines[0], *one.lines[1]};
-      require_beat(*second_out_, 0);
+      if (top_.m_leaf_valid != 0) {
+        REQUIRE(!leaf_out_);  // the beats of the one before have left
+        leaf_out_ = Leaving{{*one.lines[0], *one.lines[1]}};
+      } else {
+        REQUIRE(!leaf_out_);
+        second_out_ = {*one.lines[0], *one.lines[1]};
+        require_beat(*second_out_, 0);
+      }
     }
+    require_part(leaf_out_);
     second_ = in_.lines;
     if (top_.m_line_valid != 0) {
       const std::size_t place = sim::get_bits(top_.m_line_place, 0, place_w);
@@ -443,7 +468,9 @@ class GetDataBench {
     if (in_.pose) awaits_pose_[*in_.pose] = false;
     if (in_.request && (in_.request->record >> 58 & 1) != 0) awaits_pose_[in_.request->context] = true;
     if (top_.m_leaf_valid != 0 || (top_.m_pair_valid != 0 && !stays_)) {
-      closest = std::min(closest, clocks_ - last_out_);
+      int& least = last_is_leaf_ ? closest_after_leaf : closest;
+      least = std::min(least, clocks_ - last_out_);
+      last_is_leaf_ = top_.m_leaf_valid != 0;
       last_out_ = clocks_;
     }
     ++clocks_;
@@ -488,7 +515,7 @@ class GetDataBench {
                                            top_.m_leaf_epoch,
                                            top_.m_leaf_kinds,
                                            top_.m_leaf_failed,
-                                           top_.m_lines.at(0) ^ top_.m_lines.at(15),
+                                           top_.m_lines.at(0) ^ top_.m_lines.at(15) ^ top_.m_leaf_lines.at(0),
                                            top_.lookup_context,
                                            top_.lookup_record,
                                            sim::get_bits(top_.lookup_nodes, 0, 64),
@@ -530,7 +557,9 @@ class GetDataBench {
   int pair_clocks_ = 0;                                 // for which the node pair has been offered
   std::array<std::optional<GetData::Line>, 2> second_;  // lines whose upper halves come
   std::optional<std::array<GetData::Line, 2>> model_second_, second_out_;  // whose upper halves leave
-  int leaves_there_ = 0;                                                   // with their receiver
+  std::optional<Leaving> model_leaf_, leaf_out_;
+  bool last_is_leaf_ = false;
+  int leaves_there_ = 0;  // with their receiver
   int clocks_ = 0, last_out_ = -1000;
   bool defined_ = false;
 };
@@ -558,6 +587,7 @@ TEMPLATE_LIST_TEST_CASE(
           REQUIRE(bench.ends[end] > 0);
       }
       REQUIRE(bench.closest == 3);
+      REQUIRE(bench.closest_after_leaf == 8);
       if (how.ready <= 10) REQUIRE(bench.stalled > 500);
     }
   });

@@ -174,27 +174,28 @@ class SimulatedBroadPhase : private Agent {
       started_[{m.m_start_context, m.m_start_epoch}] = decode_query(text);
     }
     if (m.invalidate_valid != 0 && m.invalidate_ready != 0) invalidate_.reset();
-    if (leaves_) take_leaves(now.clock);
-    if (m.m_leaf_valid != 0) take_first_beat();
+    if (leaves_) take_beat(now.clock);
+    if (m.m_leaf_valid != 0) take_first_beat(now.clock);
     if (m.s_result_valid != 0 && m.s_result_ready != 0) receiver_.taken();
     if (m.m_done_valid != 0 && m.m_done_ready != 0) take_done();
     count();
   }
 
-  /// A line has two beats of 256 bits, the lower half first, the upper one on the next clock.
-  void take_beat(std::size_t beat) {
-    constexpr std::size_t half = 32;
-    const auto* from = reinterpret_cast<const unsigned char*>(&top().m_leaf_lines);
-    auto* to = reinterpret_cast<unsigned char*>(leaves_->lines.data());
-    for (std::size_t p = 0; p < 2; ++p) std::memcpy(to + (2 * p + beat) * half, from + p * half, half);
-  }
-  void take_first_beat() {
+  void take_first_beat(std::uint64_t now) {
     const Model& m = top();
     leaves_ = LeafPair{m.m_leaf_context, m.m_leaf_epoch, m.m_leaf_kinds, m.m_leaf_failed != 0, {}};
-    take_beat(0);
+    beats_ = 0;
+    take_beat(now);
+  }
+  /// Eight beats of 128 bits on clocks behind each other: two of A's lower half and two of B's, then of the upper ones.
+  void take_beat(std::uint64_t now) {
+    constexpr std::size_t size = 16;
+    auto* to = reinterpret_cast<unsigned char*>(leaves_->lines.data());
+    const std::size_t half = beats_ / 4, object = beats_ / 2 % 2;
+    std::memcpy(to + (4 * object + 2 * half + beats_ % 2) * size, &top().m_leaf_lines, size);
+    if (++beats_ == 8) take_leaves(now);
   }
   void take_leaves(std::uint64_t now) {
-    take_beat(1);
     const LeafPair leaves = *std::exchange(leaves_, std::nullopt);
     const Query& query = started_.at({leaves.context, leaves.epoch});
     counters_.lane_busy += receiver_.take(leaves, query, now, answers_.at(query.tag));
@@ -238,7 +239,8 @@ class SimulatedBroadPhase : private Agent {
   std::map<std::size_t, Line> raw_;
   std::vector<BroadPhaseAnswer> answers_;
   std::map<std::pair<unsigned, unsigned>, Query> started_;  // by context and epoch
-  std::optional<LeafPair> leaves_;                          // whose second beat comes
+  std::optional<LeafPair> leaves_;                          // whose beats come
+  std::size_t beats_ = 0;                                   // of them that have come
   std::optional<std::pair<std::uint32_t, std::uint32_t>> invalidate_;
   bool offering_ = false;
   std::size_t open_ = 0;

@@ -88,7 +88,8 @@ class GetData {
     const bool go = fetch_ && fetch_->age == 2 && !held_ && (!pair_valid_ || in.pair_ready);
     const auto waits = [&](Kind kind, std::size_t p) { return ports_[p].whole[kind].m_valid(); };
     const Kind kind = room_left_ > 0 && (waits(leaves_of, 0) || waits(leaves_of, 1)) ? leaves_of : nodes_of;
-    const bool pick = (!fetch_ || go) && (waits(kind, 0) || waits(kind, 1));
+    const bool leaf_goes = go && fetch_->place >= pairs_;
+    const bool pick = (fetch_ ? go && !leaf_goes : parts_ < 4) && (waits(kind, 0) || waits(kind, 1));
     const std::size_t from = waits(kind, 1) && (turn_[kind] == 1 || !waits(kind, 0)) ? 1 : 0;
     const bool held = fetch_ && is_header(*requests_[fetch_->place]) && no_pose_[requests_[fetch_->place]->context];
 
@@ -103,7 +104,8 @@ class GetData {
 
     // a pair leaves
     fresh_ = go && fetch_->place < pairs_;
-    leaf_valid_ = go && fetch_->place >= pairs_;
+    leaf_valid_ = leaf_goes;
+    parts_ = leaf_goes ? 7 : std::max(parts_ - 1, 0);
     pair_valid_ = fresh_ || (pair_valid_ && !in.pair_ready);
     if (go) {
       const Request& request = *requests_[fetch_->place];
@@ -245,6 +247,7 @@ class GetData {
   std::vector<std::optional<Sizes>> sizes_;         // by context
   std::optional<Ask> ask_;
   std::optional<Fetch> fetch_;
+  int parts_ = 0;                      // beats of a leaf pair that follow
   bool held_ = false;                  // the pair that is fetched waited for its pose a clock ago
   std::array<std::size_t, 2> turn_{};  // by kind
   bool pair_valid_ = false, leaf_valid_ = false, fresh_ = false;
