@@ -4,8 +4,8 @@
 // cchip_pose_setup: what the box test needs of a query's pose: M rounded, and of each direction d
 // of B, seen from A as m = M^T d, the coefficients of m = (a - b) axis + (b - c) face + c corner,
 // with |m_j| sorted a >= b >= c.
-//   latency      1 clock from start to pose_m, pose_t and epsilon, which stay until the next start;
-//                7 clocks to the first direction
+//   latency      1 clock from start to pose_m, pose_t and epsilon, which stay until the clock on
+//                which s_ready is 1 again; 7 clocks to the first direction
 //   throughput   a direction on every clock, a query every 13 clocks
 //   numbers      |m| up to 9 fraction bits; b - c and c down to 6 and 7, at most 127
 //   cuts         every path
@@ -60,6 +60,8 @@ module cchip_pose_setup (
   reg [77:0] left_q;  // the directions from this one on
   wire last = direction_q == LAST;
   wire start = s_valid & s_ready;
+  // What is taken counts only with busy_q. So the condition of the pose's registers is this one
+  // alone, whether a query comes or not.
   reg ready_q;
   assign s_ready = ready_q;
   wire [20:0] of_m = 21'h180000 >> s_shift;
@@ -68,19 +70,19 @@ module cchip_pose_setup (
   generate
     for (i = 0; i < 9; i = i + 1) begin : gen_m
       wire [31:0] sum = s_m[32*i+:32] + 32'd4096;
-      always @(posedge clk) if (start) pose_m_q[19*i+:19] <= sum[31:13];
+      always @(posedge clk) if (ready_q) pose_m_q[19*i+:19] <= sum[31:13];
       wire unused_low = &{1'b0, sum[12:0]};
     end
     for (i = 0; i < 3; i = i + 1) begin : gen_t
       wire [36:0] sum = {s_t[36*i+35], s_t[36*i+:36]} + 37'd128;
-      always @(posedge clk) if (start) pose_t_q[29*i+:29] <= sum[36:8];
+      always @(posedge clk) if (ready_q) pose_t_q[29*i+:29] <= sum[36:8];
       wire unused_low = &{1'b0, sum[7:0]};
     end
   endgenerate
   always @(posedge clk) begin
-    if (start) epsilon_q <= error[20:14];
-    direction_q <= start ? 4'd0 : direction_q + 4'd1;
-    left_q <= start ? DIRECTIONS : left_q >> 6;
+    if (ready_q) epsilon_q <= error[20:14];
+    direction_q <= ready_q ? 4'd0 : direction_q + 4'd1;
+    left_q <= ready_q ? DIRECTIONS : left_q >> 6;
     if (rst) begin
       busy_q  <= 1'b0;
       ready_q <= 1'b0;

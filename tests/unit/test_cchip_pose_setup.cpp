@@ -17,7 +17,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pose_setup: poses are the functional model's, a d
         model::PoseSetup pose;
       };
       std::deque<Expected> expected;
-      std::optional<model::PoseSetup> shown;  // of the query that was started last
+      std::optional<model::PoseSetup> shown;  // of the query at work, its last clock included
       std::size_t next = 0;                   // direction
       int queries = 0;
       top.s_valid = 0;
@@ -64,6 +64,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pose_setup: poses are the functional model's, a d
             expected.pop_front();
           }
         }
+        if (top.s_ready != 0) shown.reset();
         if (valid && top.s_ready != 0) {
           shown = model::set_up(query);
           expected.push_back({clock + 7, *shown});
