@@ -8,7 +8,8 @@
 //                go on in the order in which their second lines come to a port, the two ports in
 //                turn; so do leaf pairs, which go first where there is room for them
 //   room         leaf pairs wait in their places: LEAF_ROOM of them at most leave for which
-//                s_leaf_taken has not been 1
+//                s_leaf_taken has not been 1. Node pairs go on while there is no room: a receiver
+//                that takes each on its last beat or later leaves them a turn
 //   beats        a line is two beats of 256 bits, the lower half first: from the cache with
 //                s_line_valid and on the next clock, on which s_line_place stays; to the box test
 //                on the first clock of m_pair_valid and the next. To who takes leaf pairs it is

@@ -34,6 +34,7 @@ struct Behaviour {
 using B = Behaviour;
 const std::vector<B> behaviours = {
     changed<B>("fast", {{&B::request, 100},
+                        {&B::leaf, 3},
                         {&B::answer, 100},
                         {&B::oldest, 1},
                         {&B::together, 1},
@@ -57,7 +58,7 @@ const std::vector<B> behaviours = {
                           {&B::leaf, 90},
                           {&B::answer, 100},
                           {&B::ready, 100},
-                          {&B::taken, 100},
+                          {&B::taken, 8},
                           {&B::pose, 50},
                           {&B::error, 30},
                           {&B::reset, 0}}),

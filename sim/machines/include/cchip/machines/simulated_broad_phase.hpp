@@ -111,6 +111,7 @@ class SimulatedBroadPhase : private Agent {
     invalidate_.reset();
     receiver_.clear();
     started_.clear();
+    leaves_.reset();
     open_ = 0;
     simulation_.reset(3);
   }
