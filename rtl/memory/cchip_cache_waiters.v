@@ -55,6 +55,12 @@ module cchip_cache_waiters #(
   reg [PLACES-1:0] asleep_q, awake_q, retried_q;
   reg serve_q;
   wire load = ~serve_q | serve_ready;
+  // That a place is to be served comes from far, so awake_q is told of it a clock later, by the
+  // number that is served then.
+  reg [PLACE_W-1:0] serve_place_q;
+  reg loaded_q;
+  localparam [PLACES-1:0] ONE = 1;
+  wire [PLACES-1:0] wakes = awake_q & ~(loaded_q ? ONE << serve_place_q : {PLACES{1'b0}});
 
   // ---- the lowest place that is awake, by groups of four: the first group with one, and the first
   // in each group
@@ -65,8 +71,7 @@ module cchip_cache_waiters #(
       for (k = 1; k < 16; k = k + 1) if (|(of & ((16'd1 << k) - 16'd1))) lowest[k] = 1'b0;
     end
   endfunction
-  wire [63:0] awake = {{64 - PLACES{1'b0}}, awake_q};
-  wire [63:0] first;  // one-hot
+  wire [63:0] awake = {{64 - PLACES{1'b0}}, wakes};
   wire [15:0] group;  // has one
   wire [15:0] group_first = lowest(group);
   wire [31:0] in_group;  // number of the first in each group, of the first group alone
@@ -75,9 +80,6 @@ module cchip_cache_waiters #(
     for (i = 0; i < 16; i = i + 1) begin : gen_group
       wire [3:0] four = awake[4*i+:4];
       assign group[i] = |four;
-      assign first[4*i+:4] = {
-        four[3] & ~(|four[2:0]), four[2] & ~(|four[1:0]), four[1] & ~four[0], four[0]
-      } & {4{group_first[i]}};
       assign in_group[2*i+:2] = {~(|four[1:0]), ~four[0] & (four[1] | ~four[2])} &
           {2{group_first[i]}};
     end
@@ -90,7 +92,6 @@ module cchip_cache_waiters #(
       next_place = next_place | {j[3:0] & {4{group_first[j]}}, in_group[2*j+:2]};
   end
 
-  reg [PLACE_W-1:0] serve_place_q;
   reg [CODE_W-1:0] serve_code_q;
   reg [FRAME_W-1:0] serve_frame_q;
   always @(posedge clk) begin
@@ -99,9 +100,10 @@ module cchip_cache_waiters #(
     serve_code_q  <= collect_code;
     serve_frame_q <= collect_frame;
     if (rst) serve_q <= 1'b0;
-    else if (load) serve_q <= |awake_q;
+    else if (load) serve_q <= |wakes;
+    loaded_q <= ~rst & load & (|wakes);
   end
-  assign serving     = (|awake_q) | (serve_q & ~serve_ready);
+  assign serving     = (|wakes) | (serve_q & ~serve_ready);
   assign serve_valid = serve_q;
   assign serve_place = serve_place_q;
   assign serve_code  = serve_code_q;
@@ -125,18 +127,18 @@ module cchip_cache_waiters #(
         end else begin
           if (here_q) retried_q[i] <= retry;
           asleep_q[i] <= (sleep & here_q) | (asleep_q[i] & ~comes);
-          awake_q[i]  <= collect ? asleep_q[i] & comes : awake_q[i] & ~(load & first[i]);
+          awake_q[i]  <= collect ? asleep_q[i] & comes : wakes[i];
         end
       end
     end
   endgenerate
   assign retried = retried_q;
-  assign waiting = asleep_q | awake_q;
+  assign waiting = asleep_q | wakes;
 
-  wire unused = &{1'b0, next_place, first};
+  wire unused = &{1'b0, next_place};
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_collect, !collect || awake_q == {PLACES{1'b0}})
+      `CCHIP_ASSERT(a_collect, !collect || wakes == {PLACES{1'b0}})
       `CCHIP_ASSERT(a_serve, !serve_q || (serve_frame_q == collect_frame && serve_code_q == collect_code))
     end
 
