@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // One query of two small objects and the records that the functional model expects, for bench_chip.v: files for
 // $readmemh, 16 bytes a line.
-//   cchip_query_vectors MEMORY RECORDS      MEMORY: the query, then both images, from address 0 on
+//   cchip_query_vectors MEMORY RECORDS [triangle]   MEMORY: the query, then both images, from address 0 on; triangle:
+//   of
+//                                                   triangles alone, for a chip with their test alone (default: and
+//                                                   quads)
 #include <algorithm>
 #include <cchip/bvh/image.hpp>
 #include <cchip/bvh/place.hpp>
@@ -32,10 +35,10 @@ void write_hex(std::ostream& out, const Bytes& bytes) {
   }
 }
 
-void write_vectors(const std::string& memory_path, const std::string& records_path) {
+void write_vectors(const std::string& memory_path, const std::string& records_path, Kind kind) {
   // triangles through quads: pairs of both kinds of leaves, certain ones and apart ones
   const bvh::Image a = image_of(make_sphere(1, 1));
-  const bvh::Image b = image_of(make_torus(1, 0.4, 6, 4, Kind::quad));
+  const bvh::Image b = image_of(make_torus(1, 0.4, 6, 4, kind));
   std::optional<Query> query =
       bvh::make_query(a.header(), Pose(Eigen::Translation3d(1.75, 0.1, 0.2)), b.header(), Pose::Identity());
   if (!query) throw std::runtime_error("a pose that the chip does not take");
@@ -63,8 +66,9 @@ void write_vectors(const std::string& memory_path, const std::string& records_pa
 
 int main(int argc, char** argv) {
   try {
-    if (argc != 3) throw std::invalid_argument("usage: cchip_query_vectors MEMORY RECORDS");
-    write_vectors(argv[1], argv[2]);
+    const bool triangles = argc == 4 && std::string(argv[3]) == "triangle";
+    if (argc != 3 && !triangles) throw std::invalid_argument("usage: cchip_query_vectors MEMORY RECORDS [triangle]");
+    write_vectors(argv[1], argv[2], triangles ? Kind::tri : Kind::quad);
   } catch (const std::exception& error) {
     std::cerr << "cchip_query_vectors: " << error.what() << '\n';
     return 1;

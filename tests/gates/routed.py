@@ -1,0 +1,216 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The routed chip answers a query: what nextpnr wrote after routing, cell by cell as Verilog, in the place of the RTL.
+
+usage: routed.py ROW SYNTHESIS ROUTED --queries PROGRAM [--build FOLDER]
+  ROW                one of the chip in scripts/fpga.py: chip_tri, chip, chip_small
+  SYNTHESIS, ROUTED  folders below build/fpga: with netlist.json of Yosys, with routed.json of nextpnr
+  --queries PROGRAM  cchip_query_vectors, a target of CMake
+  --build FOLDER     for outputs (default build/gates)
+
+The registers of the harness around the chip (scripts/fpga.py) are left out, so that the chip's ports are those of the RTL;
+tests/icarus/bench_chip.v asks one query, and compares the records with the model's. Block RAM and multipliers are the models of
+this folder, flip-flops begin as the device configures them. The RTL goes first, with the same parameters and the same bench.
+Lines: `ROW rtl query=1 records=N wrong=0 clocks=C`, `ROW routed cells=M query=1 records=N wrong=0 clocks=C`.
+Exit codes: 0 as many clocks and records in both, none wrong; 1 not so, or a tool failed; 2 bad arguments."""
+import argparse
+import json
+import pathlib
+import re
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+sys.path[:0] = [str(ROOT / "scripts"), str(HERE)]
+import datasheet  # noqa: E402
+import fpga  # noqa: E402
+from gates import Failure, run  # noqa: E402
+
+BENCH = ROOT / "tests/icarus/bench_chip.v"
+CONTROL = re.compile(r"(?:CLK|RST|WE|CE|OCE)[AB]|CS[AB][0-2]")  # inputs of a block RAM that are 1 if nothing is connected
+
+
+def choose(bits, inputs):
+    """The value that the inputs, the lowest bit of the number first, choose of bits: nested conditions, as few as it takes."""
+    if len(set(bits)) == 1:
+        return f"1'b{bits[0]}"
+    half = len(bits) // 2
+    low, high = choose(bits[:half], inputs[:-1]), choose(bits[half:], inputs[:-1])
+    if low == high:
+        return low
+    if (low, high) == ("1'b0", "1'b1"):
+        return inputs[-1]
+    return f"({inputs[-1]} ? {high} : {low})"
+
+
+class Netlist:
+    """The cells of nextpnr's JSON as lines of Verilog; a net is n and its number."""
+
+    def __init__(self, module):
+        self.cells = module["cells"]
+        self.numbers = {name: net["bits"][0] for name, net in module["netnames"].items()}
+        self.models = {kind: (HERE / f"{kind}.v").read_text() for kind in ("DP16KD", "MULT18X18D")}
+
+    def lines(self, clock):
+        """clock: net of the clock behind its buffer."""
+        for name, cell in self.cells.items():
+            kind, pins = cell["type"], {pin: f"n{bits[0]}" for pin, bits in cell["connections"].items() if bits}
+            parameters = {key: value.strip() for key, value in cell["parameters"].items()}
+            if kind in ("TRELLIS_IO", "DCCA"):
+                continue
+            if not hasattr(self, kind.lower()) and kind not in self.models:
+                raise Failure(f"no model of the cell {kind}, {name}")
+            if any(pins.get(pin, clock) != clock for pin in ("CLK", "WCK", "CLKA", "CLKB", "CLK0")):
+                raise Failure(f"{name} has another clock")
+            yield from getattr(self, kind.lower())(pins, parameters) if kind not in self.models else [self.block(kind, pins, parameters)]
+
+    def trellis_ff(self, pins, parameters):
+        data = pins["DI" if parameters["SD"] == "1" else "M"]
+        start = int(parameters["REGSET"] == "SET")
+        enable = {"1": "1'b1", "CE": pins.get("CE", "1'b1"), "INV": "!" + pins.get("CE", "1'b0")}[parameters["CEMUX"]]
+        value = data if enable == "1'b1" else f"{enable} ? {data} : {pins['Q']}"
+        if "LSR" in pins:
+            if parameters["LSRMUX"] != "LSR" or parameters.get("SRMODE", "LSR_OVER_CE") != "LSR_OVER_CE":
+                raise Failure("a flip-flop with a reset that no model has")
+            value = f"{pins['LSR']} ? 1'b{start} : {value}"
+        yield f"reg {pins['Q']} = 1'b{start}; always @(posedge clk) {pins['Q']} <= {value};"
+
+    def trellis_comb(self, pins, parameters):
+        mode = parameters.get("MODE", "LOGIC")
+        if mode == "RAMW_BLOCK":
+            return
+        inputs = [pins.get(pin, "1'b1") for pin in "ABCD"]
+        table = parameters["INITVAL"][::-1]
+        if mode == "LOGIC":
+            if set(pins) - set("ABCDF"):
+                raise Failure("a LUT with a wide multiplexer: synthesise with -nowidelut")
+            yield f"assign {pins['F']} = {choose(table, inputs)};"
+        elif mode == "CCU2":
+            takes = parameters["CCU2_INJECT1"] == "NO"
+            sum_, carry = choose(table, inputs), pins.get("FCI", "1'b0")
+            if "F" in pins:
+                yield f"assign {pins['F']} = {sum_}{' ^ ' + carry if takes else ''};"
+            if "FCO" in pins:
+                yield f"assign {pins['FCO']} = {sum_} ? {carry} : {choose(table[:4], inputs[:2]) if takes else '1' + chr(39) + 'b0'};"
+        elif mode == "DPRAM":
+            ram = pins["F"].replace("n", "ram")
+            address = ", ".join(pins[f"WAD{i}"] for i in (3, 2, 1, 0))
+            yield (f"reg [15:0] {ram} = 16'b{parameters['INITVAL']}; assign {pins['F']} = {ram}[{{{', '.join(inputs[::-1])}}}];"
+                   f" always @(posedge clk) if ({pins.get('WRE', chr(49))}) {ram}[{{{address}}}] <= {pins['WD']};")
+        else:
+            raise Failure(f"no model of the mode {mode}")
+
+    def trellis_ramw(self, pins, _):
+        for output, pin in (("WDO0", "C1"), ("WDO1", "A1"), ("WDO2", "D1"), ("WDO3", "B1"), ("WADO0", "D0"), ("WADO1", "B0"), ("WADO2", "C0"), ("WADO3", "A0")):
+            if output in pins:
+                yield f"assign {pins[output]} = {pins.get(pin, chr(49) + chr(39) + 'b1')};"
+
+    def block(self, kind, pins, parameters):
+        text = self.models[kind]
+        known = set(re.findall(r"^ *parameter (?:\[\d+:0\] |integer )?(\w+) =", text, re.M))
+        given = {}
+        for name, value in parameters.items():
+            if name in known and not name.startswith("INITVAL"):
+                given[name] = str(int(value, 2)) if re.fullmatch("[01]+", value) else f'"{value}"'
+            elif name.startswith("INITVAL") and "1" in value:
+                raise Failure("a block RAM with initial contents")
+        for pin in re.findall(r"\w+", " ".join(re.findall(r"^ *input +wire ([\w, \n]+?)(?=,\n *output|,\n *input|\n\))", text, re.M))):
+            choice = parameters.get(pin + "MUX", "")
+            if pin in pins:
+                pins[pin] = "!" * (choice == "INV") + pins[pin]
+            else:
+                one = choice != "INV" if kind == "DP16KD" and CONTROL.fullmatch(pin) else choice == "1"
+                pins[pin] = f"1'b{int(one)}"
+        return (f"{kind} #({', '.join(f'.{name}({value})' for name, value in sorted(given.items()))}) u{pins.get('DOB0', pins.get('P0', 'none'))} "
+                f"({', '.join(f'.{pin}({net})' for pin, net in sorted(pins.items()))});")
+
+
+def chip(row, before, after):
+    """Module cchip_chip around the netlist. before: of Yosys, whose nets `in` and `out` are the chip's ports; after: of nextpnr."""
+    netlist = Netlist(after)
+    names = {}
+    for name, net in before["netnames"].items():
+        for i, bit in enumerate(net["bits"]):
+            names.setdefault(bit, []).append(name if len(net["bits"]) == 1 else f"{name}[{i + net.get('offset', 0)}]")
+
+    def number(bit):
+        return next((netlist.numbers[name] for name in names.get(bit, ()) if name in netlist.numbers), None)
+    for name, cell in list(netlist.cells.items()):
+        if name.startswith(("in_TRELLIS_FF", "shift", "out_r", "fold", "q_TRELLIS", "q$", "d$", "clk$")):
+            del netlist.cells[name]
+    clock = next(cell["connections"]["CLKO"][0] for cell in netlist.cells.values() if cell["type"] == "DCCA")
+    lines = list(netlist.lines(f"n{clock}"))
+    driven, used = set(re.findall(r"(?:assign|reg) (n\d+)\b", "\n".join(lines))), set(re.findall(r"\bn\d+\b", "\n".join(lines)))
+    parameters, ports = datasheet.parse(row.top)
+    value = lambda text: re.sub(r"\bCCHIP_\w+", r"`\g<0>", str(text))
+    head = [f"  localparam integer {name} = {value(dict(row.parameters).get(name, default))};" for name, default in parameters]
+    body, at = [], {"input": [], "output": []}
+    for name, direction, width in ports:
+        if name != "clk":
+            at[direction].append((name, width))
+    vectors = {"input": "in", "output": "out"}
+    for direction, found in at.items():
+        total = " + ".join(width for _, width in found)
+        body.append(f"  wire [{total} - 1:0] port_{vectors[direction]};")
+        joined = ", ".join(name for name, _ in reversed(found))
+        body.append(f"  assign port_in = {{{joined}}};" if direction == "input" else f"  assign {{{joined}}} = port_out;")
+    for direction, vector in vectors.items():
+        for i, bit in enumerate(before["netnames"][vector]["bits"]):
+            net = number(bit)
+            if direction == "input" and net is not None and f"n{net}" in used - driven:
+                body.append(f"  wire n{net} = port_in[{i}];")
+            elif direction == "output":
+                body.append(f"  assign port_out[{i}] = {f'n{net}' if net is not None else chr(49) + chr(39) + 'b' + (bit if bit in ('0', '1') else 'x')};")
+    declared = "\n".join(f"    {direction} wire [{width} - 1:0] {name}," for name, direction, width in ports)
+    settings = "\n".join(head).replace("  localparam integer", "    parameter integer").replace(";", ",")
+    return (f'`include "cchip_defs.vh"\nmodule cchip_chip #(\n{settings[:-1]}\n) (\n{declared[:-1]}\n);\n' + "\n".join(body) + f"\n  wire n{clock} = clk;\n"
+            + "\n".join(sorted(lines, key=lambda line: not line.startswith("reg"))) + "\nendmodule\n", len(netlist.cells))
+
+
+def ask(name, sources, folder, queries):
+    run(folder / f"{name}.iverilog.log", "iverilog", "-g2005", f"-I{ROOT / 'rtl/include'}", "-s", "bench_chip", "-o", folder / f"{name}.vvp", BENCH, *sources)
+    text = run(folder / f"{name}.log", "vvp", "-n", folder / f"{name}.vvp", f"+memory={folder}/memory.hex", f"+records={folder}/records.hex")
+    return re.findall(r"^query=.*$", text, re.M)[-1]
+
+
+def main():
+    if {"-h", "--help"} & set(sys.argv):
+        print(__doc__)
+        return 0
+    parser = argparse.ArgumentParser(usage=__doc__, add_help=False)
+    parser.add_argument("row")
+    parser.add_argument("synthesis", type=pathlib.Path)
+    parser.add_argument("routed", type=pathlib.Path)
+    parser.add_argument("--queries", type=pathlib.Path, required=True)
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/gates")
+    options = parser.parse_args()
+    row = fpga.rows().get(options.row)
+    if not row or row.top != "cchip_chip":
+        parser.error(f"unknown row {options.row}")
+    folder = options.build / f"routed_{row.name}"
+    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        run(folder / "vectors.log", options.queries, folder / "memory.hex", folder / "records.hex",
+            *(() if dict(row.parameters)["RM_ID"] == 3 else ("triangle",)))
+        sources = [ROOT / "rtl" / name for name in (ROOT / "rtl/cchip.f").read_text().split() if name.endswith(".v")]
+        chip_file = next(path for path in sources if path.name == "cchip_chip.v")
+        text = chip_file.read_text()
+        for name, value in row.parameters:
+            text = re.sub(rf"(parameter integer {name} = )[^,\n]+", rf"\g<1>{value}", text, count=1)
+        (folder / "rtl_chip.v").write_text(text)
+        rtl = ask("rtl", [folder / "rtl_chip.v", *(path for path in sources if path != chip_file)], folder, options.queries)
+        print(f"{row.name} rtl {rtl}", flush=True)
+        before = json.loads((options.synthesis / "netlist.json").read_text())["modules"]["fpga_harness"]
+        after = json.loads((options.routed / "routed.json").read_text())["modules"]["top"]
+        text, cells = chip(row, before, after)
+        (folder / "routed_chip.v").write_text(text)
+        routed = ask("routed", [folder / "routed_chip.v", HERE / "DP16KD.v", HERE / "MULT18X18D.v"], folder, options.queries)
+        print(f"{row.name} routed cells={cells} {routed}", flush=True)
+    except (Failure, OSError) as failure:
+        print(f"routed.py: {failure}", file=sys.stderr)
+        return 1
+    return 0 if routed == rtl and "wrong=0" in rtl else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
