@@ -84,10 +84,11 @@ def anchors(kinds):
     return found
 
 
-def anchored(netlist):
-    """The text of Yosys' JSON with a place at every block RAM and multiplier."""
+def anchored(netlist, settings):
+    """The text of Yosys' JSON with a place at every block RAM and multiplier, and with settings of nextpnr that have no option."""
     design = json.loads(netlist)
     for module in design["modules"].values():
+        module["settings"] = settings
         cells = module["cells"]
         for cell, bel in anchors({name: cell["type"] for name, cell in cells.items()}).items():
             cells[cell].setdefault("attributes", {})["BEL"] = bel

