@@ -52,7 +52,8 @@ const std::vector<B> behaviours = {
                             {&B::taken, 80},
                             {&B::pose, 30},
                             {&B::wrong, 20}}),
-    changed<B>("slow cache", {{&B::request, 60}, {&B::answer, 10}, {&B::taken, 30}, {&B::pose, 30}, {&B::wrong, 20}}),
+    changed<B>("slow cache",
+               {{&B::request, 60}, {&B::leaf, 14}, {&B::answer, 10}, {&B::taken, 30}, {&B::pose, 30}, {&B::wrong, 20}}),
     changed<B>("poses late", {{&B::request, 50}, {&B::ready, 70}, {&B::pose, 2}, {&B::error, 0}, {&B::wrong, 5}}),
     changed<B>("leaves", {{&B::request, 100},
                           {&B::leaf, 90},
@@ -73,9 +74,13 @@ const std::vector<B> behaviours = {
                         {&B::error, 10},
                         {&B::reset, 3}}),
     changed<B>("errors", {{&B::pose, 40}, {&B::error, 20}, {&B::wrong, 25}}),
-    changed<B>(
-        "resets",
-        {{&B::request, 50}, {&B::together, 1}, {&B::pose, 40}, {&B::error, 10}, {&B::wrong, 20}, {&B::reset, 25}}),
+    changed<B>("resets", {{&B::request, 50},
+                          {&B::leaf, 10},
+                          {&B::together, 1},
+                          {&B::pose, 40},
+                          {&B::error, 10},
+                          {&B::wrong, 20},
+                          {&B::reset, 25}}),
 };
 
 void set_field(LineData& data, std::size_t lsb, std::size_t width, std::uint64_t value) {
