@@ -82,7 +82,7 @@ RESULT = "rtl/chip/cchip_calc_result.v"
 SLOW = {("cchip_bv_lane_b", "bounded"), ("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"), ("cchip_slot_ledger", "prove"),
         ("cchip_dispatcher", "bounded"), ("cchip_dispatcher", "bounded_2"), ("cchip_descriptor_queues", "bounded"),
         ("cchip_swap_retry", "prove"), ("cchip_axi_read", "bounded"), ("cchip_axi_write", "bounded_1"),
-        ("cchip_traversal_events", "bounded"), ("cchip_get_data", "bounded"), ("cchip_get_data", "code"),
+        ("cchip_traversal_events", "bounded"), ("cchip_get_data", "bounded"), ("cchip_get_data", "code"), ("cchip_get_data", "beats"),
         ("cchip_bitstream_fetch", "room"), ("cchip_cache", "bounded"), ("cchip_cache", "frames"), ("cchip_cache", "stale"),
         ("cchip_cache", "evict"), ("cchip_cache", "again"), ("cchip_cache", "live"), ("cchip_cache", "cover_wait"),
         ("cchip_cache", "cover_locked"), ("cchip_cache", "cover_evicted"), ("cchip_cache", "cover_refused"),
@@ -140,7 +140,7 @@ MUTANTS = [
     # the frame of a line is given away while its last waiter is kept from its clock; what a lookup saw has changed since; a frame
     # in flight, a locked one is given away; an invalidation does not wait for the reads before it; with all slots lost no
     # request is answered; a slot is used again while its response is outstanding; two ports get one slot
-    ("cchip_cache frames", CACHE_WAITERS, "(|awake_q) | (serve_q & ~serve_ready);", "|awake_q;"),
+    ("cchip_cache frames", CACHE_WAITERS, "(|wakes) | (serve_q & ~serve_ready);", "|awake_q;"),
     ("cchip_cache bounded", CACHE_PORT, "wire fresh = look_q[6] & ~stale;", "wire fresh = look_q[6];"),
     ("cchip_cache evict", CACHE_PORT, "wire [1:0] may5 = ~hold5 & ~locked5;", "wire [1:0] may5 = ~locked5;"),
     ("cchip_cache bounded", CACHE_PORT, "wire [1:0] may5 = ~hold5 & ~locked5;", "wire [1:0] may5 = ~hold5;"),
