@@ -7,10 +7,12 @@ usage: routed.py ROW SYNTHESIS ROUTED --queries PROGRAM [--build FOLDER]
   SYNTHESIS, ROUTED  folders below build/fpga: with netlist.json of Yosys, with routed.json of nextpnr
   --queries PROGRAM  cchip_query_vectors, a target of CMake
   --build FOLDER     for outputs (default build/gates)
+  --jobs N           tools at the same time (default 2)
 
 The registers of the harness around the chip (scripts/fpga.py) are left out, so that the chip's ports are those of the RTL;
 tests/icarus/bench_chip.v asks one query, and compares the records with the model's. Block RAM and multipliers are the models of
-this folder, flip-flops begin as the device configures them. The RTL goes first, with the same parameters and the same bench.
+this folder, flip-flops begin as the device configures them. The RTL goes first, with the same parameters and the same bench, in
+Icarus; the netlist in Verilator 5.
 Lines: `ROW rtl query=1 records=N wrong=0 clocks=C`, `ROW routed cells=M query=1 records=N wrong=0 clocks=C`.
 Exit codes: 0 as many clocks and records in both, none wrong; 1 not so, or a tool failed; 2 bad arguments."""
 import argparse
@@ -167,10 +169,24 @@ def chip(row, before, after):
             + "\n".join(sorted(lines, key=lambda line: not line.startswith("reg"))) + "\nendmodule\n", len(netlist.cells))
 
 
-def ask(name, sources, folder, queries):
-    run(folder / f"{name}.iverilog.log", "iverilog", "-g2005", f"-I{ROOT / 'rtl/include'}", "-s", "bench_chip", "-o", folder / f"{name}.vvp", BENCH, *sources)
-    text = run(folder / f"{name}.log", "vvp", "-n", folder / f"{name}.vvp", f"+memory={folder}/memory.hex", f"+records={folder}/records.hex")
-    return re.findall(r"^query=.*$", text, re.M)[-1]
+def icarus(sources, folder):
+    run(folder / "rtl.iverilog.log", "iverilog", "-g2005", f"-I{ROOT / 'rtl/include'}", "-s", "bench_chip", "-o", folder / "rtl.vvp", BENCH, *sources)
+    return ["vvp", "-n", folder / "rtl.vvp"]
+
+
+def verilator(sources, folder, jobs):
+    """Without optimisation of C++: compiling would cost more than it saves."""
+    out = folder / "routed.dir"
+    run(folder / "routed.verilator.log", "verilator", "--cc", "--exe", "--main", "--timing", "-Wno-fatal", "-Wno-lint", "-Wno-style", "-O3",
+        "-fno-const-bit-op-tree", "--x-assign", "unique", "--x-initial", "unique", "--output-split", "20000", "--output-split-cfuncs", "2000",
+        "--top-module", "bench_chip", "--Mdir", out, f"-I{ROOT / 'rtl/include'}", BENCH, *sources)
+    run(folder / "routed.make.log", "make", "-C", out, "-j", jobs, "-f", "Vbench_chip.mk", "OPT_FAST=-O0", "OPT_SLOW=-O0", "VM_PARALLEL_BUILDS=1")
+    return [out / "Vbench_chip"]
+
+
+def ask(name, program, folder):
+    """The last line of the bench: no mistake of it is hidden, the exit code of Verilator's is 0 always."""
+    return re.findall(r"^query=.*$", run(folder / f"{name}.log", *program, f"+memory={folder}/memory.hex", f"+records={folder}/records.hex"), re.M)[-1]
 
 
 def main():
@@ -183,6 +199,7 @@ def main():
     parser.add_argument("routed", type=pathlib.Path)
     parser.add_argument("--queries", type=pathlib.Path, required=True)
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/gates")
+    parser.add_argument("--jobs", default="2")
     options = parser.parse_args()
     row = fpga.rows().get(options.row)
     if not row or row.top != "cchip_chip":
@@ -198,13 +215,13 @@ def main():
         for name, value in row.parameters:
             text = re.sub(rf"(parameter integer {name} = )[^,\n]+", rf"\g<1>{value}", text, count=1)
         (folder / "rtl_chip.v").write_text(text)
-        rtl = ask("rtl", [folder / "rtl_chip.v", *(path for path in sources if path != chip_file)], folder, options.queries)
+        rtl = ask("rtl", icarus([folder / "rtl_chip.v", *(path for path in sources if path != chip_file)], folder), folder)
         print(f"{row.name} rtl {rtl}", flush=True)
         before = json.loads((options.synthesis / "netlist.json").read_text())["modules"]["fpga_harness"]
         after = json.loads((options.routed / "routed.json").read_text())["modules"]["top"]
         text, cells = chip(row, before, after)
         (folder / "routed_chip.v").write_text(text)
-        routed = ask("routed", [folder / "routed_chip.v", HERE / "DP16KD.v", HERE / "MULT18X18D.v"], folder, options.queries)
+        routed = ask("routed", verilator([folder / "routed_chip.v", HERE / "DP16KD.v", HERE / "MULT18X18D.v"], folder, options.jobs), folder)
         print(f"{row.name} routed cells={cells} {routed}", flush=True)
     except (Failure, OSError) as failure:
         print(f"routed.py: {failure}", file=sys.stderr)

@@ -138,11 +138,14 @@ module bench_chip;
   // ---- memory
   reg [DATA_W-1:0] memory[0:WORDS-1];
   integer random = 1;
-  always @(posedge clk) begin
-    random = random ^ (random << 13);
-    random = random ^ ((random >> 17) & 32'h7FFF);
-    random = random ^ (random << 5);
-  end
+  function [31:0] next(input [31:0] state);
+    begin
+      next = state ^ (state << 13);
+      next = next ^ (next >> 17);
+      next = next ^ (next << 5);
+    end
+  endfunction
+  always @(posedge clk) random <= next(random);
 
   // reads, in order: a queue of addresses, one beat at a time
   reg [ID_W-1:0] read_id[0:READS-1];
@@ -212,40 +215,44 @@ module bench_chip;
     end
   end
 
-  // ---- registers
+  // ---- registers: inputs change a unit of time after the edge, on which outputs are looked at. (An
+  // assignment by <= here would be one by = in Verilator.)
   integer waited;
+  reg aw, w, b_or_r, ok;
   task set(input [11:0] address, input [31:0] value);
     begin
-      s_axil_awvalid <= 1'b1;
-      s_axil_wvalid <= 1'b1;
-      s_axil_addr <= address;
-      s_axil_wdata <= value;
-      waited = 0;
-      @(posedge clk);
-      while (s_axil_bvalid !== 1'b1 && waited < PATIENCE) begin
-        if (s_axil_awready) s_axil_awvalid <= 1'b0;
-        if (s_axil_wready) s_axil_wvalid <= 1'b0;
-        waited = waited + 1;
+      s_axil_awvalid = 1'b1;
+      s_axil_wvalid = 1'b1;
+      s_axil_addr = address;
+      s_axil_wdata = value;
+      b_or_r = 1'b0;
+      for (waited = 0; !b_or_r && waited < PATIENCE; waited = waited + 1) begin
         @(posedge clk);
+        {aw, w, b_or_r} = {s_axil_awready, s_axil_wready, s_axil_bvalid === 1'b1};
+        ok = s_axil_bresp === 2'd0;
+        #1;
+        if (aw) s_axil_awvalid = 1'b0;
+        if (w) s_axil_wvalid = 1'b0;
       end
-      if (s_axil_bvalid !== 1'b1 || s_axil_bresp !== 2'd0) fail("a register cannot be written");
+      if (!b_or_r || !ok) fail("a register cannot be written");
     end
   endtask
 
   reg [31:0] value;
   task get(input [11:0] address);
     begin
-      s_axil_arvalid <= 1'b1;
-      s_axil_addr <= address;
-      waited = 0;
-      @(posedge clk);
-      while (s_axil_rvalid !== 1'b1 && waited < PATIENCE) begin
-        if (s_axil_arready) s_axil_arvalid <= 1'b0;
-        waited = waited + 1;
+      s_axil_arvalid = 1'b1;
+      s_axil_addr = address;
+      b_or_r = 1'b0;
+      for (waited = 0; !b_or_r && waited < PATIENCE; waited = waited + 1) begin
         @(posedge clk);
+        {aw, b_or_r} = {s_axil_arready, s_axil_rvalid === 1'b1};
+        ok = s_axil_rresp === 2'd0;
+        value = s_axil_rdata;
+        #1;
+        if (aw) s_axil_arvalid = 1'b0;
       end
-      value = s_axil_rdata;
-      if (s_axil_rvalid !== 1'b1 || s_axil_rresp !== 2'd0) fail("a register cannot be read");
+      if (!b_or_r || !ok) fail("a register cannot be read");
     end
   endtask
 
@@ -289,8 +296,9 @@ module bench_chip;
     end
     if (wrong == 0) begin
       repeat (8) @(posedge clk);
-      rst <= 1'b0;
+      #1 rst = 1'b0;
       repeat (2) @(posedge clk);
+      #1;
       get(REG_ID);
       if (value !== 32'h43484343) fail("not the chip");
       set(REG_CONTROL, CONTROL_SOFT_RESET);
@@ -308,7 +316,7 @@ module bench_chip;
       doorbell = clock;
       while (!done && records < RECORDS && clock - doorbell < PATIENCE) begin
         @(posedge clk);
-        if (memory[RECORD_WORD+records][63]) take;
+        #1 if (memory[RECORD_WORD+records][63]) take;
       end
       if (!done) fail("no done record");
       if (records != expectations) fail("records are missing");
