@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A C program on a soft processor asks the chip one query, in a LiteX system that Icarus simulates: it prints the answer of the model.
+"""A C program on a soft processor asks the chip one query, in a LiteX system that Verilator simulates: it prints the answer of the model.
 
 Runs in the Python of build/venv (make venv); without LiteX, VexRiscv or a C compiler for RISC-V ends with code 77 (skipped)."""
 import pathlib
