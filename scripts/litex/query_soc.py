@@ -6,7 +6,8 @@ examples/chip_poll.c and prints the answer.
 usage: query_soc.py MEMORY FOLDER      MEMORY: what cchip_query_vectors writes; FOLDER: for program, Verilog and simulation
 
 Runs in the Python of build/venv (make venv). Needs a C compiler for RISC-V, Debian's gcc-riscv64-unknown-elf, Verilator 5 and make.
-Environment: RISCV_GCC, VERILATOR = commands (default: found on PATH); without the compiler the exit code is 77. Ends with 1 if the program does not."""
+Environment: RISCV_GCC, VERILATOR = commands (default: found on PATH). Exit codes: 77 without the compiler, 1 if
+the program does not end."""
 import os
 import pathlib
 import shutil
@@ -87,8 +88,8 @@ def system(words, memory):
         def __init__(self, platform):
             SoCCore.__init__(self, platform, clk_freq=100e6, cpu_type="vexriscv", cpu_variant="minimal", bus_standard="wishbone",
                              bus_data_width=WIDTH, bus_address_width=32, integrated_rom_size=ROM_SIZE, integrated_rom_init=words,
-                             integrated_sram_size=RAM_SIZE, integrated_main_ram_size=MEMORY_SIZE, integrated_main_ram_init=memory, with_uart=False, with_timer=False,
-                             with_ctrl=False, ident="")
+                             integrated_sram_size=RAM_SIZE, integrated_main_ram_size=MEMORY_SIZE, integrated_main_ram_init=memory,
+                             with_uart=False, with_timer=False, with_ctrl=False, ident="")
             self.console = Console(platform.request("console"))
             self.csr.add("console", n=0)
             self.chip = CollisionChip(platform, **PARAMETERS)

@@ -145,10 +145,11 @@ class Registers(unittest.TestCase):
             # of the chip its registers alone: the whole takes a minute to compile
             top = re.search(r"(?s)^module cchip_chip .*?^\);\n", (ROOT / "rtl/chip/cchip_chip.v").read_text(), re.M)[0]
             ports = ["clk", "rst", *re.findall(r"^    (?:in|out)put +wire .*\b(s_axil_\w+)", top, re.M)]
-            (folder / "chip.v").write_text(f"`include \"cchip_defs.vh\"\n{top}  cchip_chip_regs u_regs ({', '.join(f'.{port}({port})' for port in ports)});\n"
-                                           "endmodule\n")
-            code, log = run(tool("verilator"), "--cc", "--exe", "--main", "--timing", "-Wno-fatal", "-Wno-lint", "-Wno-style", f"-I{ROOT}/rtl/include",
-                            "--top-module", "bench", "--Mdir", folder / "obj", *(folder / f"{name}.v" for name in ("bench", "registers", "chip")),
+            connections = ", ".join(f".{port}({port})" for port in ports)
+            (folder / "chip.v").write_text(f'`include "cchip_defs.vh"\n{top}  cchip_chip_regs u_regs ({connections});\nendmodule\n')
+            code, log = run(tool("verilator"), "--cc", "--exe", "--main", "--timing", "-Wno-fatal", "-Wno-lint", "-Wno-style",
+                            f"-I{ROOT}/rtl/include", "--top-module", "bench", "--Mdir", folder / "obj",
+                            *(folder / f"{name}.v" for name in ("bench", "registers", "chip")),
                             ROOT / "rtl/regs/cchip_chip_regs.v")
             self.assertEqual(code, 0, log)
             code, log = run("make", "-C", folder / "obj", "-f", "Vbench.mk", "OPT_FAST=-O0", "OPT_SLOW=-O0", "OPT_GLOBAL=-O0")
