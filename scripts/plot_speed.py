@@ -27,7 +27,7 @@ BOOLEAN = ("touch", "near", "deep", "far", "graze")
 MEANS = [((name,), name) for name in BOOLEAN] + [
     (("touch", "near", "deep"), "**touch, near and deep**"), (("touch all",), "touch, all contacts"),
     (("deep all",), "deep, all contacts"), (("touch all", "deep all"), "**all contacts**"),
-    (("coherent",), "coherent"), (("lone",), "lone")]
+    (("coherent",), "coherent"), (("lone",), "lone"), (("touch warm",), "touch, warm"), (("touch cold",), "touch, cold")]
 LIBRARIES = ("FCL Debian", "FCL native", "Coal", "CGAL", "ODE")  # one that is not in the run has no column
 
 
@@ -78,13 +78,14 @@ def times(value):
 def tables(run):
     """The generated part of the page."""
     out = []
+    means_of_run = [(names, title) for names, title in MEANS if run.answers(names)]
     for key, value in run.notes.items():
         out.append(f"- {key}: {value}")
     out += ["", "The rows of every pair of meshes, with counts of nodes, boxes and pairs of faces, are in",
             "[collide_speed.csv](../figures/collide_speed.csv)."]
     out += ["", "### Geometric means of the six pairs", "", "Times FCL built natively; in brackets what this project aims at.", "",
             "| class | single | batch | all cores |", "|---|---|---|---|"]
-    for names, title in MEANS:
+    for names, title in means_of_run:
         aims = AIMS.get(names, {})
         cells = [times(run.mean(names, variant)) + (f" (aim {aims[variant]})" if variant in aims else "")
                  for variant in ("single", "batch", "cores")]
@@ -94,7 +95,7 @@ def tables(run):
             "How many times faster our single query is, geometric means of the six pairs; in brackets how many of the answers, which",
             "include those about *body-tiny*, are not the exact ones.", "",
             "| class | answers | " + " | ".join(libraries) + " |", "|---" * (len(libraries) + 2) + "|"]
-    for names, title in MEANS:
+    for names, title in means_of_run:
         ours = run.mean(names, "single")
         means = [(run.mean(names, library), run.differ(names, library)) for library in libraries]
         cells = [f"{times(ours / mean)} ({differ:,})" if mean else "-" for mean, differ in means]

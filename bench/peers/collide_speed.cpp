@@ -27,8 +27,15 @@ namespace {
 /// a native FCL where there is none.
 constexpr double assumed_native_gain = 2.3;
 
-constexpr const char* table_classes[] = {"touch",     "near",     "deep",     "far", "graze",
-                                         "touch all", "deep all", "coherent", "lone"};
+constexpr const char* table_classes[] = {"touch",    "near",     "deep", "far",        "graze",     "touch all",
+                                         "deep all", "coherent", "lone", "touch warm", "touch cold"};
+
+/// What the caches hold when a variant begins a chunk.
+enum class Caches {
+  as_left,  ///< what the variants before it have read
+  warm,     ///< what the chunk's queries need
+  cold      ///< something else
+};
 
 /// Paths by the length of their steps, times that of "coherent".
 struct Steps {
@@ -217,6 +224,18 @@ class Benchmark {
       };
       run_class(bodies, steps.name, CollisionRequest{}, paths, 8, false);
     }
+    for (const Caches caches : {Caches::warm, Caches::cold}) {
+      const auto poses = [&](int pass) {
+        std::vector<PosePair> result;
+        for (const Approach& approach : approaches[static_cast<std::size_t>(pass)]) {
+          result.push_back(maker.pose(approach, PoseClass::touch));
+        }
+        return result;
+      };
+      const std::size_t chunks = std::max<std::size_t>(1, options_.poses / 125);
+      run_class(bodies, caches == Caches::warm ? "touch warm" : "touch cold", CollisionRequest{}, poses, chunks, false,
+                caches);
+    }
     run_lone(bodies, maker, approaches);
   }
 
@@ -293,7 +312,8 @@ class Benchmark {
   }
 
   void run_class(const Bodies& bodies, const std::string& class_name, const CollisionRequest& request,
-                 const std::function<std::vector<PosePair>(int)>& make_poses, std::size_t chunks, bool all_targets) {
+                 const std::function<std::vector<PosePair>(int)>& make_poses, std::size_t chunks, bool all_targets,
+                 Caches caches = Caches::as_left) {
     std::vector<std::vector<double>> passes;
     std::vector<std::string> names;
     std::size_t queries = 0;
@@ -304,7 +324,16 @@ class Benchmark {
       const std::vector<PosePair> poses = make_poses(pass);
       std::vector<Answers> answers;
       std::vector<Variant> ways = variants(bodies, request, poses, answers, all_targets);
-      measure_pass(ways, poses.size(), chunks, tick());
+      measure_pass(ways, poses.size(), chunks, tick(), [&](std::size_t number, std::size_t first, std::size_t count) {
+        if (caches == Caches::cold) fill_caches();
+        if (caches != Caches::warm) return;
+        Answers& mine = answers[number];
+        const CollisionCounts before = mine.counts;
+        const std::size_t contacts = mine.contacts;
+        ways[number].answer(first, count);
+        mine.counts = before;
+        mine.contacts = contacts;
+      });
       passes.resize(ways.size());
       names.clear();
       for (std::size_t i = 0; i < ways.size(); ++i) {
@@ -380,6 +409,9 @@ class Benchmark {
     }
     queries_[class_name] += queries;
     hits_[class_name] += hits;
+    if (is_flush(class_name)) {
+      for (const auto& [name, time] : seconds) means_["flush"][name].add(native_seconds(seconds) / time);
+    }
     if (is_flush(class_name)) flush_.push_back({meshes, class_name, queries, differ.at("FCL Debian"), 0, seconds});
     const double reference = native_seconds(seconds);
     const bool boolean = class_name == "touch" || class_name == "near" || class_name == "deep";
@@ -433,6 +465,12 @@ class Benchmark {
     }
   }
 
+  /// Fills the caches with something that no query needs.
+  void fill_caches() {
+    unrelated_.resize(std::size_t{96} << 20U);
+    for (std::size_t byte = 0; byte < unrelated_.size(); byte += 64) ++unrelated_[byte];
+  }
+
   /// One query alone, after the caches were filled with something else.
   void run_lone(const Bodies& bodies, PoseMaker& maker, const std::vector<std::vector<Approach>>& approaches) {
     const std::size_t count = std::clamp<std::size_t>(options_.poses / 30, 5, 60);
@@ -440,12 +478,11 @@ class Benchmark {
     for (std::size_t i = 0; i < count; ++i) poses.push_back(maker.pose(approaches[0][i], PoseClass::touch));
     std::vector<Answers> answers;
     std::vector<Variant> ways = variants(bodies, {}, poses, answers, false);
-    std::vector<unsigned char> unrelated(std::size_t{96} << 20U);
     std::vector<std::vector<double>> times(ways.size());
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t k = 0; k < ways.size(); ++k) {
         if (ways[k].name == "batch" || ways[k].name == "cores") continue;
-        for (std::size_t byte = 0; byte < unrelated.size(); byte += 64) ++unrelated[byte];
+        fill_caches();
         const double start = seconds(Clock::wall);
         ways[k].answer(i, 1);
         times[k].push_back(seconds(Clock::wall) - start);
@@ -693,6 +730,24 @@ class Benchmark {
     }
   }
 
+  /// What to read first.
+  void print_short() {
+    fmt::print("\nin short, geometric means, times FCL built natively:\n{:<46}{:>8}{:>8}\n", "", "single", "batch");
+    const std::pair<const char*, const char*> rows[] = {{"booleans", "do they touch (touch, near, deep)"},
+                                                        {"touch warm", "touch, trees in the caches"},
+                                                        {"touch cold", "touch, 125 in a row after other work"},
+                                                        {"lone", "touch, one query after other work"},
+                                                        {"contacts", "all contacts"},
+                                                        {"far", "far apart"},
+                                                        {"flush", "flush faces, where FCL is often wrong"}};
+    for (const auto& [name, about] : rows) {
+      auto& means = means_[name];
+      const bool batch = means.count("batch") != 0;
+      fmt::print("{:<46}{:>8.1f}{:>8}\n", about, means["single"].value(),
+                 batch ? fmt::format("{:.1f}", means["batch"].value()) : "-");
+    }
+  }
+
   int summary() {
     if (!options_.csv.empty()) {
       std::filesystem::create_directories(std::filesystem::path(options_.csv).parent_path());
@@ -711,6 +766,7 @@ class Benchmark {
       }
     }
     fmt::print("\n");
+    print_short();
     if (find("FCL native") != nullptr)
       fmt::print("FCL built natively is {:.2f} times as fast as Debian's here\n", native_gain_.value());
     fmt::print("answers and sets of contacts compared: {}; pairs of faces in which FCL errs by exact integers: {}\n",
@@ -738,6 +794,7 @@ class Benchmark {
   std::size_t fcl_errs_ = 0;
   std::size_t differences_ = 0;
   std::size_t done_ = 0;
+  std::vector<unsigned char> unrelated_;
   Progress progress_;
 };
 

@@ -56,8 +56,11 @@ struct Variant {
 /// Lets every variant answer `queries` queries once. They are cut into chunks. After a variant the next one gets
 /// another chunk, so that none finds in the caches what the one before it has just read, and in every round another
 /// variant begins. \param between called between chunks, its time is not measured
-inline void measure_pass(std::vector<Variant>& variants, std::size_t queries, std::size_t chunks,
-                         const std::function<void(std::size_t)>& between) {
+/// \param before called before variant `number` answers the `count` queries from `first` on, its time is not measured
+inline void measure_pass(
+    std::vector<Variant>& variants, std::size_t queries, std::size_t chunks,
+    const std::function<void(std::size_t)>& between,
+    const std::function<void(std::size_t number, std::size_t first, std::size_t count)>& before = nullptr) {
   chunks = std::min(chunks, queries);
   const auto start_of = [&](std::size_t chunk) { return queries * chunk / chunks; };
   std::vector<double> total(variants.size());
@@ -68,6 +71,7 @@ inline void measure_pass(std::vector<Variant>& variants, std::size_t queries, st
       const std::size_t first = start_of(chunk);
       const std::size_t count = start_of(chunk + 1) - first;
       Variant& variant = variants[number];
+      if (before) before(number, first, count);
       const double start = seconds(variant.clock);
       variant.answer(first, count);
       total[number] += seconds(variant.clock) - start;

@@ -3,6 +3,7 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cchip/cpu/cpu_device.hpp>
@@ -11,8 +12,11 @@
 #include <condition_variable>
 #include <limits>
 #include <mutex>
+#include <random>
 #include <set>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "cpu/search.hpp"
 
@@ -38,15 +42,15 @@ TEST_CASE("CPU device: a batch has a part for every thread", "[ref][collide]") {
 TEST_CASE("CPU device: a search begins no more queries at once than it may", "[ref][collide]") {
   class Feed final : public QueryFeed {
    public:
-    Feed(const CollisionQuery& query, std::size_t most) : query_(query), most_(most) {}
+    Feed(const Device::QuerySource& source, std::size_t most) : QueryFeed(source), most_(most) {}
     std::size_t at_once() const override { return most_; }
-    bool next(std::size_t& number) override {
+    bool next_share(std::size_t& first, std::size_t& end) override {
       if (begun == 40) return false;
-      number = begun++;
+      first = begun++;
+      end = begun;
       greatest = std::max(greatest, begun - ended);
       return true;
     }
-    CollisionQuery query(std::size_t) override { return query_; }
     void done(std::size_t, CollisionResult& result) override {
       ++ended;
       hits += result.hit;
@@ -57,7 +61,6 @@ TEST_CASE("CPU device: a search begins no more queries at once than it may", "[r
     std::size_t hits = 0;
 
    private:
-    CollisionQuery query_;
     std::size_t most_;
   };
   const Object torus(make_torus(1, 0.25, 24, 12));
@@ -66,7 +69,8 @@ TEST_CASE("CPU device: a search begins no more queries at once than it may", "[r
   for (const std::string& target : simd_targets()) {
     const auto search = make_simd_search(target);
     for (const std::size_t most : {std::size_t{1}, std::size_t{3}, std::size_t{1000}}) {
-      Feed feed({&torus, &here, &torus, &there}, most);
+      const Device::QuerySource source = [&](std::size_t) { return CollisionQuery{&torus, &here, &torus, &there}; };
+      Feed feed(source, most);
       search->run(feed, {});
       CAPTURE(target, most);
       CHECK(feed.ended == 40);
@@ -136,6 +140,89 @@ TEST_CASE("CPU device: a batch fetches each query once", "[ref][collide]") {
       }
     }
   }
+}
+
+namespace {
+
+/// Three objects and a few places, of which some touch; queries about their pairs in any order, some of them twice.
+struct Mixed {
+  Mixed(const Mixed&) = delete;  // queries refer to its own objects
+  Mixed& operator=(const Mixed&) = delete;
+  Mixed() {
+    std::mt19937_64 random(5);
+    std::uniform_int_distribution<std::size_t> any(0, 2);
+    std::uniform_real_distribution<double> move(-1.5, 1.5);
+    for (int i = 0; i < 40; ++i) poses.push_back(make_pose({move(random), move(random), move(random)}, {20, 10, 0}));
+    for (std::size_t i = 0; i < 300; ++i) {
+      if (i % 7 == 6) {
+        queries.push_back(queries[i / 2]);
+      } else {
+        queries.push_back({&objects[any(random)], &here, &objects[any(random)], &poses[i % poses.size()]});
+      }
+    }
+  }
+  std::array<Object, 3> objects = {Object(make_torus(1, 0.25, 24, 12)), Object(make_sphere(0.7, 6)),
+                                   Object(make_torus(0.8, 0.3, 20, 10))};
+  Pose here = Pose::Identity();
+  std::vector<Pose> poses;
+  std::vector<CollisionQuery> queries;
+};
+
+}  // namespace
+
+TEST_CASE("collide: a batch of several pairs of objects gives what single queries give", "[ref][collide]") {
+  std::mt19937_64 random(6);
+  for (const CollisionRequest& request : {CollisionRequest{}, CollisionRequest{CollisionRequest::Contacts::all}}) {
+    for (const unsigned threads : {1U, 3U}) {
+      const auto device = open_cpu_device({threads, {}});
+      Mixed mixed;
+      CHECK(collide(*device, std::vector<CollisionQuery>(), request).empty());
+      for (int round = 0; round < 4; ++round) {
+        // The last rounds are short: one query, and the same one twice.
+        if (round > 1) mixed.queries.resize(round == 2 ? 1 : 2, mixed.queries.front());
+        const std::vector<CollisionResult> results = collide(*device, mixed.queries, request);
+        REQUIRE(results.size() == mixed.queries.size());
+        std::size_t hits = 0;
+        for (std::size_t i = 0; i < results.size(); ++i) {
+          CollisionResult single;
+          device->collide(mixed.queries[i], request, single);
+          CAPTURE(round, threads, i);
+          CHECK(results[i].hit == single.hit);
+          CHECK(results[i].contacts == single.contacts);
+          CHECK(results[i].counts.box_tests == single.counts.box_tests);
+          hits += single.hit;
+        }
+        if (round < 2) CHECK((hits > 30 && hits < 270));  // otherwise the order of the results is not tested
+        std::shuffle(mixed.queries.begin(), mixed.queries.end(), random);
+      }
+    }
+  }
+}
+
+TEST_CASE("collide: a batch asks about the same two objects one query behind the other", "[ref][collide]") {
+  class Recorder final : public Device {
+   public:
+    const char* name() const override { return "recorder"; }
+    std::vector<CollisionQuery> asked;
+
+   private:
+    void answer(const CollisionQuery& query, const CollisionRequest&, CollisionResult&) override {
+      asked.push_back(query);
+    }
+  };
+  const Mixed mixed;
+  Recorder recorder;
+  CHECK(collide(recorder, mixed.queries).size() == mixed.queries.size());
+  REQUIRE(recorder.asked.size() == mixed.queries.size());
+  std::set<std::pair<const Object*, const Object*>> seen;
+  std::size_t changes = 0;
+  for (std::size_t i = 0; i < recorder.asked.size(); ++i) {
+    const CollisionQuery& query = recorder.asked[i];
+    seen.emplace(query.a, query.b);
+    changes += i == 0 || query.a != recorder.asked[i - 1].a || query.b != recorder.asked[i - 1].b;
+  }
+  CHECK(seen.size() == 9);
+  CHECK(changes == 9);
 }
 
 TEST_CASE("CPU device: the first query of a batch that is refused ends it", "[ref][collide]") {

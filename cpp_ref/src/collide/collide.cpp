@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cchip/collide/collide.hpp>
 #include <cchip/collide/face_pairs.hpp>
+#include <cstdint>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -19,6 +21,50 @@ std::vector<CollisionResult> gather(Device& device, std::size_t count, const Dev
   device.collide(count, query, request,
                  [&results](std::size_t i, const CollisionResult& result) { results[i] = result; });
   return results;
+}
+
+/// The numbers of the queries, those about the same two objects behind each other: what one of them has read into the
+/// caches serves the next. Pairs of objects come in the order of their first queries. Empty: the queries are in this
+/// order already.
+std::vector<std::size_t> by_objects(const std::vector<CollisionQuery>& queries) {
+  const auto same = [&queries](std::size_t i, std::size_t k) {
+    return queries[i].a == queries[k].a && queries[i].b == queries[k].b;
+  };
+  // The first query of each pair of objects, by a hash of the objects or in the next empty place. A standard map takes
+  // memory for each pair, which costs as much as a query whose objects are far apart.
+  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  std::size_t places = 1;
+  while (places < 2 * queries.size()) places *= 2;
+  std::vector<std::size_t> table(places, none);
+  const auto place_of = [&](std::size_t i) {
+    const auto number = [](const Object* object) { return reinterpret_cast<std::uintptr_t>(object); };  // NOLINT
+    const std::uint64_t mixed = (number(queries[i].a) * 31 + number(queries[i].b)) * 0x9e3779b97f4a7c15U;
+    std::size_t place = static_cast<std::size_t>(mixed >> 32U) & (places - 1);
+    while (table[place] != none && !same(table[place], i)) place = (place + 1) & (places - 1);
+    return place;
+  };
+  std::vector<std::size_t> pair_of(queries.size());
+  std::vector<std::size_t> starts;  // of each pair, first the number of its queries
+  bool in_order = true;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    if (i > 0 && same(i, i - 1)) {
+      pair_of[i] = pair_of[i - 1];
+    } else if (std::size_t& first = table[place_of(i)]; first == none) {
+      first = i;
+      pair_of[i] = starts.size();
+      starts.push_back(0);
+    } else {
+      pair_of[i] = pair_of[first];
+      in_order = false;
+    }
+    ++starts[pair_of[i]];
+  }
+  if (in_order) return {};
+  std::size_t start = 0;
+  for (std::size_t& of_pair : starts) start += std::exchange(of_pair, start);
+  std::vector<std::size_t> order(queries.size());
+  for (std::size_t i = 0; i < queries.size(); ++i) order[starts[pair_of[i]]++] = i;
+  return order;
 }
 
 Device::QuerySource in_poses(const Object& a, const Object& b, const std::vector<PosePair>& poses) {
@@ -153,8 +199,16 @@ std::vector<CollisionResult> collide(Device& device, const Object& a, const Obje
 
 std::vector<CollisionResult> collide(Device& device, const std::vector<CollisionQuery>& queries,
                                      const CollisionRequest& request) {
-  return gather(
-      device, queries.size(), [&queries](std::size_t i) { return queries[i]; }, request);
+  const std::vector<std::size_t> order = by_objects(queries);
+  if (order.empty()) {
+    return gather(
+        device, queries.size(), [&queries](std::size_t i) { return queries[i]; }, request);
+  }
+  std::vector<CollisionResult> results(queries.size());
+  device.collide(
+      queries.size(), [&](std::size_t i) { return queries[order[i]]; }, request,
+      [&](std::size_t i, const CollisionResult& result) { results[order[i]] = result; });
+  return results;
 }
 
 }  // namespace cchip

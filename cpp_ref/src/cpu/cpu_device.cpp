@@ -58,20 +58,11 @@ class Batch {
 
   class Feed final : public QueryFeed {
    public:
-    Feed(Batch& batch, std::vector<std::pair<std::size_t, CollisionResult>>& kept) : batch_(batch), kept_(kept) {
+    Feed(Batch& batch, std::vector<std::pair<std::size_t, CollisionResult>>& kept)
+        : QueryFeed(batch.query_), batch_(batch), kept_(kept) {
       if (!batch_.alone_ && kept_.size() < share_) kept_.resize(share_);
     }
     std::size_t at_once() const override { return batch_.partition_.at_once; }
-    bool next(std::size_t& number) override {
-      if (at_ == end_) {
-        at_ = std::min(batch_.next_.fetch_add(share_), batch_.count_);
-        end_ = std::min(at_ + share_, batch_.count_);
-        if (at_ == end_) return false;
-      }
-      number = at_++;
-      return true;
-    }
-    CollisionQuery query(std::size_t number) override { return batch_.query_(number); }
     void done(std::size_t number, CollisionResult& result) override {
       if (batch_.request_.certificate) {
         add_certificate(batch_.query_(number), batch_.request_, result);
@@ -106,6 +97,11 @@ class Batch {
     }
 
    private:
+    bool next_share(std::size_t& first, std::size_t& end) override {
+      first = std::min(batch_.next_.fetch_add(share_), batch_.count_);
+      end = std::min(first + share_, batch_.count_);
+      return first != end;
+    }
     void give(std::size_t number, CollisionResult& result) {
       batch_.take_(number, result);
       if (result.certificate) result.certificate.reset();
@@ -116,8 +112,6 @@ class Batch {
     const std::size_t share_ = batch_.partition_.share;
     std::vector<std::pair<std::size_t, CollisionResult>>& kept_;
     std::size_t kept_count_ = 0;
-    std::size_t at_ = 0;
-    std::size_t end_ = 0;
   };
 
   void stop(std::exception_ptr error) {

@@ -26,18 +26,32 @@ inline Partition partition_of(std::size_t count, std::size_t threads) {
   return {share, count / threads / share * share};
 }
 
-/// Gives a search its queries and takes the results.
+/// Gives a search its queries and takes the results. A query that is far apart costs as much as some dozen indirect
+/// calls, so there is one to fetch it and one to hand its result over.
 class QueryFeed {
  public:
+  explicit QueryFeed(const Device::QuerySource& source) : source_(source) {}
   virtual ~QueryFeed() = default;
   /// Queries that the search may have begun at a time; it may do with fewer.
   virtual std::size_t at_once() const { return std::numeric_limits<std::size_t>::max(); }
   /// The number of the next query; false: no more.
-  virtual bool next(std::size_t& number) = 0;
+  bool next(std::size_t& number) {
+    if (at_ == end_ && !next_share(at_, end_)) return false;
+    number = at_++;
+    return true;
+  }
   /// The query. Returned where it is used: a copy of what was just written number by number stalls the processor.
-  virtual CollisionQuery query(std::size_t number) = 0;
+  CollisionQuery query(std::size_t number) const { return source_(number); }
   /// The result may be changed, for instance swapped with another one whose memory the search shall use.
   virtual void done(std::size_t number, CollisionResult& result) = 0;
+
+ private:
+  /// The next queries are those from `first` up to `end`, without it; false: no more.
+  virtual bool next_share(std::size_t& first, std::size_t& end) = 0;
+
+  const Device::QuerySource& source_;
+  std::size_t at_ = 0;
+  std::size_t end_ = 0;
 };
 
 /// Keeps its memory from query to query. For one thread at a time.

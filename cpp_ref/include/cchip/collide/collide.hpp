@@ -233,7 +233,8 @@ void collide(Device& device, const Object& a, const Object& b, const std::vector
 /// The same; results in the order of the poses.
 std::vector<CollisionResult> collide(Device& device, const Object& a, const Object& b,
                                      const std::vector<PosePair>& poses, const CollisionRequest& request = {});
-/// Any queries, such as one object against each of a scene; results in their order.
+/// Any queries, such as one object against each of a scene; results in their order. The device gets those about the
+/// same two objects one behind the other, as their trees are in the caches then.
 std::vector<CollisionResult> collide(Device& device, const std::vector<CollisionQuery>& queries,
                                      const CollisionRequest& request = {});
 
