@@ -14,9 +14,13 @@ same bits of a line lie above each other.
     y = 22    box test                 operands, queues
     y = 10    box test                 slot                  multipliers
 
+usage: floorplan.py heat FILE.svg TITLE=TABLE...     TABLE: congestion_by_coordinate of nextpnr's router2 (fpga.py --heat), side by side
+
 Memory and bus come to the cache at the upper edge; lines go left to get data and down to the box test, vertices to the right."""
+import csv
 import json
 import re
+import sys
 
 RAM, MULTIPLIER = "DP16KD", "MULT18X18D"
 GROUPS = 13
@@ -131,3 +135,41 @@ def picture(at, kinds, block_of, title):
         parts.append(f'<rect x="{TILE * WIDTH + 12}" y="{34 + 22 * number}" width="14" height="14" fill="{colour.get(block, "#bbb")}"/>'
                      f'<text x="{TILE * WIDTH + 32}" y="{46 + 22 * number}">{block}</text>')
     return "\n".join([*parts, "</svg>"]) + "\n"
+
+
+def heat(tables):
+    """SVG of where wires are overused, the tables of {title: rows}, a row for each column of tiles, side by side in one scale."""
+    most = max((int(count) for rows in tables.values() for row in rows for count in row if count), default=1)
+    side, height = 3 * WIDTH, 3 * HEIGHT
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {(side + 12) * len(tables)} {height + 48}" font-family="sans-serif" font-size="13">',
+             '<!-- SPDX-License-Identifier: Apache-2.0 --><title>Overused wires</title><rect width="100%" height="100%" fill="#fff"/>']
+    for number, (title, rows) in enumerate(tables.items()):
+        left, total, squares = number * (side + 12), 0, {}
+        for x, row in enumerate(rows):
+            for y, count in enumerate(row):
+                if count and int(count) > 0:
+                    total += int(count)
+                    level = min(5, 1 + 5 * int(count) // (most + 1))
+                    squares.setdefault(level, []).append(f"M{left + 3 * x},{24 + height - 3 * (y + 1)}h3v3h-3z")
+        parts += [f'<rect x="{left}" y="24" width="{side}" height="{height}" fill="#f4f4f4"/>', f'<text x="{left}" y="16">{title}</text>',
+                  f'<text x="{left}" y="{height + 42}">overused wires: {total}, darkest {most} in a tile</text>']
+        parts += [f'<path fill="#b00" fill-opacity="{0.2 * level:.1f}" d="{"".join(paths)}"/>' for level, paths in sorted(squares.items())]
+    return "\n".join([*parts, "</svg>"]) + "\n"
+
+
+def main():
+    if len(sys.argv) < 4 or sys.argv[1] != "heat" or not all("=" in word for word in sys.argv[3:]):
+        print(__doc__)
+        return 2
+    tables = {}
+    for word in sys.argv[3:]:
+        title, path = word.split("=", 1)
+        with open(path, newline="") as file:
+            tables[title] = [[count.strip() for count in row] for row in csv.reader(file)]
+    with open(sys.argv[2], "w") as file:
+        file.write(heat(tables))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
