@@ -43,8 +43,8 @@ CELLS = {"_ecp5": {"MULT18X18D": "multiplier block", "DP16KD": "block RAM"}}
 PAGES = ("develop/architecture.md", "hardware/definitions.md")
 MORE_PAGES = {SUBSYSTEM: ("hardware/registers.md",),
               CHIP: tuple(f"hardware/{name}.md" for name in ("chip", "chip-registers", "image", "programmers-guide"))}
-# Clock of the constraints: medians of docs/hardware/fpga.md, rounded down; the chip's is an estimate after placement.
-MHZ = {"cchip_primtest_array": 145, SUBSYSTEM: 130, CHIP: 75}
+# Clock of the constraints: medians of docs/hardware/fpga.md, rounded down; the chip's is that of the triangle test with one seed.
+MHZ = {"cchip_primtest_array": 145, SUBSYSTEM: 130, CHIP: 62}
 # Bench of a top, the first of its files, and what else is copied.
 BENCH = "tests/icarus/bench_primtest.v"
 WIRE = "cpp_ref/include/cchip/wire"
@@ -273,7 +273,7 @@ def chip_notes(mhz):
   that snoops (ACP, HPC) needs `AxCACHE` and `AxUSER` set in your wrapper, as that port asks.
 - **Records** are 16 bytes in one beat and must arrive whole: no bus narrower than 128 bit between chip and memory.
 - **Size and clock**: default parameters after synthesis for ECP5: {size["sites"]} sites of LUT4, {size["FF"]} flip-flops, {size["DSP"]} multiplier blocks, {size["block RAM"]} block RAMs of 18 kbit. The constraints say {mhz:g} MHz, unless you chose
-  another clock: for ECP5 grade 6 with the triangle test that is what an estimate after placement allows; the chip was never routed, nor built for another family. Begin lower.
+  another clock: it is that of the chip with the triangle test, routed for ECP5 grade 6 with one seed; with the quad test, or for another family, it was never routed. Begin lower.
 """
 
 

@@ -150,7 +150,7 @@ def rows():
     small = (("QUERIES", 8), ("PAIRS", 24), ("LEAVES", 8), ("LEAF_DEPTH", 40), ("LEAF_NUMBERS", 32), ("CACHE_KB", 64), ("MISSES", 16), ("PASSES", 2))
     table += [Row(name, "cchip_chip", (("RM_ID", module), *more), shape="", seeds=3, block=True, synth=" -nowidelut", owners=CHIP_BLOCKS, floorplan=True,
                   router="router2")
-              for name, module, more in (("chip_tri", 1, ()), ("chip", 3, ()), ("chip_small", 1, small))]
+              for name, module, more in (("chip_small", 1, small), ("chip_tri", 1, ()), ("chip", 3, ()))]
     return {row.name: row for row in table}
 
 
