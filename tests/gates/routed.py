@@ -97,7 +97,10 @@ class Netlist:
         elif mode == "DPRAM":
             ram = pins["F"].replace("n", "ram")
             address = ", ".join(pins[f"WAD{i}"] for i in (3, 2, 1, 0))
-            yield (f"reg [15:0] {ram} = 16'b{parameters['INITVAL']}; assign {pins['F']} = {ram}[{{{', '.join(inputs[::-1])}}}];"
+            a, b, c, d = inputs  # bits 3, 1, 2 and 0 of the address, as those of the port for writing: see trellis_ramw
+            if "1" in parameters["INITVAL"]:
+                raise Failure("a distributed RAM with initial contents")
+            yield (f"reg [15:0] {ram} = 16'd0; assign {pins['F']} = {ram}[{{{a}, {c}, {b}, {d}}}];"
                    f" always @(posedge clk) if ({pins.get('WRE', chr(49))}) {ram}[{{{address}}}] <= {pins['WD']};")
         else:
             raise Failure(f"no model of the mode {mode}")
