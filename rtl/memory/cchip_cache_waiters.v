@@ -139,7 +139,8 @@ module cchip_cache_waiters #(
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_collect, !collect || wakes == {PLACES{1'b0}})
-      `CCHIP_ASSERT(a_serve, !serve_q || (serve_frame_q == collect_frame && serve_code_q == collect_code))
+      `CCHIP_ASSERT(a_serve, !serve_q ||
+          (serve_frame_q == collect_frame && serve_code_q == collect_code))
     end
 
 endmodule

@@ -171,7 +171,7 @@ module cchip_leaf_feed #(
 
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_credit, !s_leaf_valid || !wait_valid_q && comes_q == 7'd0)
+      `CCHIP_ASSERT(a_credit, !s_leaf_valid || (!wait_valid_q && comes_q == 7'd0))
     end
 
 endmodule
