@@ -83,6 +83,7 @@ SLOW = {("cchip_bv_lane_b", "bounded"), ("cchip_swap_sequencer", "prove"), ("cch
         ("cchip_dispatcher", "bounded"), ("cchip_dispatcher", "bounded_2"), ("cchip_descriptor_queues", "bounded"),
         ("cchip_swap_retry", "prove"), ("cchip_axi_read", "bounded"), ("cchip_axi_write", "bounded_1"),
         ("cchip_traversal_events", "bounded"), ("cchip_get_data", "bounded"), ("cchip_get_data", "code"), ("cchip_get_data", "beats"),
+        ("cchip_get_data", "cover_again"),
         ("cchip_bitstream_fetch", "room"), ("cchip_cache", "bounded"), ("cchip_cache", "frames"), ("cchip_cache", "stale"),
         ("cchip_cache", "evict"), ("cchip_cache", "again"), ("cchip_cache", "live"), ("cchip_cache", "cover_wait"),
         ("cchip_cache", "cover_locked"), ("cchip_cache", "cover_evicted"), ("cchip_cache", "cover_refused"),
