@@ -236,10 +236,14 @@ def needed(top, files, more=None):
                                                                 "rtl/include/cchip_assert.vh")}
 
 
+def macro(value):
+    """A default of the datasheet as the RTL has it, with the sign of a macro."""
+    return re.sub(r"\bCCHIP_\w+", r"`\g<0>", str(value))
+
+
 def block_harness(row):
     """scripts/fpga_harness.v for a block with any ports: each input and each output is at a register of its own."""
     parameters, ports = datasheet.parse(row.top)
-    macro = lambda value: re.sub(r"\bCCHIP_\w+", r"`\g<0>", str(value))  # as the RTL has it, the datasheet does not
     values = "".join(f"  localparam integer {name} = {macro(dict(row.parameters).get(name, value))};\n" for name, value in parameters)
     widths, pins = {"input": "0", "output": "0"}, ["    .clk(clk)"]
     for name, direction, width in ports:
@@ -360,8 +364,9 @@ def to_place(row, synthesis, options):
     netlist = synthesis / "netlist.json"
     if not row.floorplan or options.no_floorplan:
         return netlist
-    made = synthesis / "anchored.json"  # router2 finds a way round only where a net may leave the box around its ends by more than three tiles
+    made = synthesis / "anchored.json"
     part = synthesis / f"anchored.json.{threading.get_ident()}"  # seeds run at the same time: nobody reads half a file
+    # router2 finds a way round where the chip is dense only if a net may leave the box around its ends by more than three tiles
     part.write_text(floorplan.anchored(netlist.read_text(), {f"router2/bbMargin/{axis}": "14" for axis in "xy"}))
     part.replace(made)
     return made

@@ -29,6 +29,7 @@ import fpga  # noqa: E402
 from gates import Failure, run  # noqa: E402
 
 BENCH = ROOT / "tests/icarus/bench_chip.v"
+ZERO, ONE = "1'b0", "1'b1"
 CONTROL = re.compile(r"(?:CLK|RST|WE|CE|OCE)[AB]|CS[AB][0-2]")  # inputs of a block RAM that are 1 if nothing is connected
 
 
@@ -40,7 +41,7 @@ def choose(bits, inputs):
     low, high = choose(bits[:half], inputs[:-1]), choose(bits[half:], inputs[:-1])
     if low == high:
         return low
-    if (low, high) == ("1'b0", "1'b1"):
+    if (low, high) == (ZERO, ONE):
         return inputs[-1]
     return f"({inputs[-1]} ? {high} : {low})"
 
@@ -69,8 +70,8 @@ class Netlist:
     def trellis_ff(self, pins, parameters):
         data = pins["DI" if parameters["SD"] == "1" else "M"]
         start = int(parameters["REGSET"] == "SET")
-        enable = {"1": "1'b1", "CE": pins.get("CE", "1'b1"), "INV": "!" + pins.get("CE", "1'b0")}[parameters["CEMUX"]]
-        value = data if enable == "1'b1" else f"{enable} ? {data} : {pins['Q']}"
+        enable = {"1": ONE, "CE": pins.get("CE", ONE), "INV": "!" + pins.get("CE", ZERO)}[parameters["CEMUX"]]
+        value = data if enable == ONE else f"{enable} ? {data} : {pins['Q']}"
         if "LSR" in pins:
             if parameters["LSRMUX"] != "LSR" or parameters.get("SRMODE", "LSR_OVER_CE") != "LSR_OVER_CE":
                 raise Failure("a flip-flop with a reset that no model has")
@@ -81,7 +82,7 @@ class Netlist:
         mode = parameters.get("MODE", "LOGIC")
         if mode == "RAMW_BLOCK":
             return
-        inputs = [pins.get(pin, "1'b1") for pin in "ABCD"]
+        inputs = [pins.get(pin, ONE) for pin in "ABCD"]
         table = parameters["INITVAL"][::-1]
         if mode == "LOGIC":
             if set(pins) - set("ABCDF"):
@@ -89,11 +90,11 @@ class Netlist:
             yield f"assign {pins['F']} = {choose(table, inputs)};"
         elif mode == "CCU2":
             takes = parameters["CCU2_INJECT1"] == "NO"
-            sum_, carry = choose(table, inputs), pins.get("FCI", "1'b0")
+            sum_, carry = choose(table, inputs), pins.get("FCI", ZERO)
             if "F" in pins:
                 yield f"assign {pins['F']} = {sum_}{' ^ ' + carry if takes else ''};"
             if "FCO" in pins:
-                yield f"assign {pins['FCO']} = {sum_} ? {carry} : {choose(table[:4], inputs[:2]) if takes else '1' + chr(39) + 'b0'};"
+                yield f"assign {pins['FCO']} = {sum_} ? {carry} : {choose(table[:4], inputs[:2]) if takes else ZERO};"
         elif mode == "DPRAM":
             ram = pins["F"].replace("n", "ram")
             address = ", ".join(pins[f"WAD{i}"] for i in (3, 2, 1, 0))
@@ -101,14 +102,14 @@ class Netlist:
             if "1" in parameters["INITVAL"]:
                 raise Failure("a distributed RAM with initial contents")
             yield (f"reg [15:0] {ram} = 16'd0; assign {pins['F']} = {ram}[{{{a}, {c}, {b}, {d}}}];"
-                   f" always @(posedge clk) if ({pins.get('WRE', chr(49))}) {ram}[{{{address}}}] <= {pins['WD']};")
+                   f" always @(posedge clk) if ({pins.get('WRE', ONE)}) {ram}[{{{address}}}] <= {pins['WD']};")
         else:
             raise Failure(f"no model of the mode {mode}")
 
     def trellis_ramw(self, pins, _):
         for output, pin in (("WDO0", "C1"), ("WDO1", "A1"), ("WDO2", "D1"), ("WDO3", "B1"), ("WADO0", "D0"), ("WADO1", "B0"), ("WADO2", "C0"), ("WADO3", "A0")):
             if output in pins:
-                yield f"assign {pins[output]} = {pins.get(pin, chr(49) + chr(39) + 'b1')};"
+                yield f"assign {pins[output]} = {pins.get(pin, ONE)};"
 
     def block(self, kind, pins, parameters):
         text = self.models[kind]
@@ -125,7 +126,7 @@ class Netlist:
                 pins[pin] = "!" * (choice == "INV") + pins[pin]
             else:
                 one = choice != "INV" if kind == "DP16KD" and CONTROL.fullmatch(pin) else choice == "1"
-                pins[pin] = f"1'b{int(one)}"
+                pins[pin] = ONE if one else ZERO
         return (f"{kind} #({', '.join(f'.{name}({value})' for name, value in sorted(given.items()))}) u{pins.get('DOB0', pins.get('P0', 'none'))} "
                 f"({', '.join(f'.{pin}({net})' for pin, net in sorted(pins.items()))});")
 
@@ -147,8 +148,7 @@ def chip(row, before, after):
     lines = list(netlist.lines(f"n{clock}"))
     driven, used = set(re.findall(r"(?:assign|reg) (n\d+)\b", "\n".join(lines))), set(re.findall(r"\bn\d+\b", "\n".join(lines)))
     parameters, ports = datasheet.parse(row.top)
-    value = lambda text: re.sub(r"\bCCHIP_\w+", r"`\g<0>", str(text))
-    head = [f"  localparam integer {name} = {value(dict(row.parameters).get(name, default))};" for name, default in parameters]
+    settings = ",\n".join(f"    parameter integer {name} = {fpga.macro(dict(row.parameters).get(name, default))}" for name, default in parameters)
     body, at = [], {"input": [], "output": []}
     for name, direction, width in ports:
         if name != "clk":
@@ -165,10 +165,9 @@ def chip(row, before, after):
             if direction == "input" and net is not None and f"n{net}" in used - driven:
                 body.append(f"  wire n{net} = port_in[{i}];")
             elif direction == "output":
-                body.append(f"  assign port_out[{i}] = {f'n{net}' if net is not None else chr(49) + chr(39) + 'b' + (bit if bit in ('0', '1') else 'x')};")
+                body.append(f"  assign port_out[{i}] = {f'n{net}' if net is not None else {'0': ZERO, '1': ONE}[bit]};")
     declared = "\n".join(f"    {direction} wire [{width} - 1:0] {name}," for name, direction, width in ports)
-    settings = "\n".join(head).replace("  localparam integer", "    parameter integer").replace(";", ",")
-    return (f'`include "cchip_defs.vh"\nmodule cchip_chip #(\n{settings[:-1]}\n) (\n{declared[:-1]}\n);\n' + "\n".join(body) + f"\n  wire n{clock} = clk;\n"
+    return (f'`include "cchip_defs.vh"\nmodule cchip_chip #(\n{settings}\n) (\n{declared[:-1]}\n);\n' + "\n".join(body) + f"\n  wire n{clock} = clk;\n"
             + "\n".join(sorted(lines, key=lambda line: not line.startswith("reg"))) + "\nendmodule\n", len(netlist.cells))
 
 
