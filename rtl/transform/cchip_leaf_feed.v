@@ -9,8 +9,8 @@
 //                one, and the traversal calls its results dead
 //   credit       s_leaf_valid has no ready: at most one leaf pair comes for which m_credit has not
 //                been 1; the others wait in cchip_get_data, which has memory for their lines
-//   beats        lines come in eight beats of 128 bits, the first with s_leaf_valid, the others on
-//                the clocks after it: the lower halves of A's line and B's, then the upper ones
+//   beats        lines come in eight beats of 64 bits each, the lowest first, with s_leaf_valid and
+//                on the seven clocks after it
 //   end          a leaf pair whose line could not be read, or is illegal, ends without primitive
 //                pairs, with CCHIP_END_MEMORY or CCHIP_END_CORRUPT
 //   throughput   a leaf pair every 9 clocks
@@ -35,7 +35,7 @@ module cchip_leaf_feed #(
     input  wire [                1:0] s_leaf_epoch,
     input  wire [                3:0] s_leaf_kinds,     // {B's, A's}
     input  wire                       s_leaf_failed,    // a line could not be read
-    input  wire [              127:0] s_leaf_lines,     // a beat
+    input  wire [              127:0] s_leaf_lines,     // {B's, A's}: a beat
     output wire                       m_credit,
     // a number for a leaf pair; it ends without primitive pairs
     output wire                       m_begin_valid,
@@ -97,7 +97,15 @@ module cchip_leaf_feed #(
   reg [CONTEXT_W-1:0] wait_context_q;
   reg [1:0] wait_epoch_q;
   reg [3:0] wait_kinds_q;
-  reg [1023:0] wait_lines_q;
+  reg [1023:0] wait_lines_q;  // beats
+  wire [1023:0] wait_lines;  // {B's, A's}
+  genvar b;
+  generate
+    for (b = 0; b < 8; b = b + 1) begin : gen_beat
+      assign wait_lines[64*b+:64]     = wait_lines_q[128*b+:64];
+      assign wait_lines[512+64*b+:64] = wait_lines_q[128*b+64+:64];
+    end
+  endgenerate
   always @(posedge clk) begin
     if (s_leaf_valid)
       {wait_context_q, wait_epoch_q, wait_failed_q, wait_kinds_q} <= {
@@ -131,13 +139,7 @@ module cchip_leaf_feed #(
   always @(posedge clk) begin
     if (state_q == EMPTY) begin  // whether there is one or not, as above
       {context_q, epoch_q, kinds_q, lines_q} <= {
-        wait_context_q,
-        wait_epoch_q,
-        wait_kinds_q,
-        wait_lines_q[1023:768],
-        wait_lines_q[511:256],
-        wait_lines_q[767:512],
-        wait_lines_q[255:0]
+        wait_context_q, wait_epoch_q, wait_kinds_q, wait_lines
       };
       map_q    <= maps[wait_context_q];
       number_q <= s_number;

@@ -7,8 +7,8 @@
 //   query        a line as docs/hardware/image.md describes it; its answer comes when every pair
 //                of leaves that the query still waited for has its result
 //   leaves       leaf pairs of which nothing is known but that their volumes overlap, with
-//                their lines in two beats of 256 bits, the lower halves first, the upper ones on
-//                the clock after m_leaf_valid. The receiver tests the primitives and answers each
+//                their lines in eight beats of 64 bits each, the lowest first, with m_leaf_valid and
+//                on the seven clocks after it. The receiver tests the primitives and answers each
 //                with one result; fewer than 1,900 are without one at any time
 //   errors       end one query with a code, and leave the others alone
 //   bound        every wait has one: a read by the limit of cchip_axi_read, a query by step_limit;
@@ -119,6 +119,7 @@ module cchip_broad_phase #(
 
   wire start_ready, get_valid, lookup, posed;
   wire [PLACE_W-1:0] get_place, lookup_place, leaf_place, pair_place, verdict_place;
+  wire leaf_left;
   wire [CONTEXT_W-1:0] get_context, lookup_context, posed_context, pair_context;
   wire [RECORD_W-1:0] get_record, lookup_record;
   wire [63:0] get_lines, line;
@@ -172,7 +173,7 @@ module cchip_broad_phase #(
       .m_context        (get_context),
       .m_record         (get_record),
       .m_lines          (get_lines),
-      .s_leaf_valid     (m_leaf_valid),
+      .s_leaf_valid     (leaf_left),
       .s_leaf_place     (leaf_place),
       .s_verdict_valid  (verdict_valid),
       .s_verdict_place  (verdict_place),
@@ -243,6 +244,7 @@ module cchip_broad_phase #(
       .m_leaf_kinds   (m_leaf_kinds),
       .m_leaf_failed  (m_leaf_failed),
       .m_leaf_lines   (m_leaf_lines),
+      .m_leaf_left    (leaf_left),
       .m_lines        (lines),
       .lookup         (lookup),
       .lookup_place   (lookup_place),

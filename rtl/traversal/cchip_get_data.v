@@ -4,24 +4,23 @@
 `include "cchip_assert.vh"
 // cchip_get_data: fetches the two lines of a node pair or of a leaf pair through the cache,
 // waits for both, and hands them on: node pairs to the box test, leaves to the primitive tests.
-//   rule         a pair has a place, given by who asks; its lines arrive in any order. Node pairs
-//                go on in the order in which their second lines come to a port, the two ports in
-//                turn; so do leaf pairs, which go first where there is room for them
+//   rule         a pair has a place, given by who asks; its lines arrive in any order. Pairs go on
+//                in the order in which their second lines come to a port, the two ports in turn;
+//                node pairs and leaf pairs have queues and ways out of their own
 //   room         leaf pairs wait in their places: LEAF_ROOM of them at most leave for which
-//                s_leaf_taken has not been 1. Node pairs go on while there is no room: a receiver
-//                that takes each on its last beat or later leaves them a turn
+//                s_leaf_taken has not been 1
 //   beats        a line is two beats of 256 bits, the lower half first: from the cache with
 //                s_line_valid and on the next clock, on which s_line_place stays; to the box test
 //                on the first clock of m_pair_valid and the next. To who takes leaf pairs it is
-//                eight of 128 bits, with m_leaf_valid and on the seven clocks after it: the lower
-//                halves of A's line and B's, then the upper ones. So many wires less go there, and
-//                a leaf pair is at work for longer than that
+//                eight of 64 bits, with m_leaf_valid and on the seven clocks after it; on the last
+//                of them m_leaf_left is 1. So many wires less go there, and a leaf pair is at work
+//                for longer than that
 //   check        what a line says of its children, and of a header, leaves with `lookup` when the
 //                verdict of the box test comes: code, kinds and lines of the children
-//   latency      1 clock from s_valid to m_line_valid, 8 from the second line to m_pair_valid or
+//   latency      1 clock from s_valid to m_line_valid, 8 from the second line to m_pair_valid, 7 to
 //                m_leaf_valid
-//   throughput   a request per clock, a node pair every third clock, a leaf pair takes eight
-//   credit       a place is used again only after m_leaf_valid or the verdict
+//   throughput   a request per clock, a node pair every third clock, a leaf pair every eighth
+//   credit       a place is used again only after m_leaf_left or the verdict
 //   cuts         every path: each output is a flip-flop
 //   reset        drops all pairs; no line of an earlier request may come
 module cchip_get_data #(
@@ -68,7 +67,8 @@ module cchip_get_data #(
     output wire [                                          1:0] m_leaf_epoch,
     output wire [                                          3:0] m_leaf_kinds,  // {B's, A's}
     output wire                                                 m_leaf_failed,  // lines not read
-    output wire [                                        127:0] m_leaf_lines,
+    output wire [                                        127:0] m_leaf_lines,  // {B's, A's}: a beat
+    output wire                                                 m_leaf_left,  // m_leaf_place is free
     output wire [                                        511:0] m_lines,  // {B's, A's}: a beat
     // of a node pair whose verdict has come; 1 clock later
     input  wire                                                 lookup,
@@ -83,6 +83,7 @@ module cchip_get_data #(
   localparam integer CONTEXT_W = $clog2(QUERIES);
   localparam integer RECORD_W = `CCHIP_NODE_PAIR_W;
   localparam integer CODE_W = `CCHIP_READ_CODE_W;
+  localparam integer LEAF_W = LEAVES > 1 ? $clog2(LEAVES) : 1;  // as in cchip_line_pairs
   localparam [31:0] FIRST_LEAF = PAIRS;
   localparam [31:0] ROOM_AT_FIRST = LEAF_ROOM;
 
@@ -130,10 +131,10 @@ module cchip_get_data #(
   // ---- the lines as they come, and the pairs both of whose lines are here: a queue of node pairs
   // and one of leaf pairs for each port
   wire [511:0] read_lines;
-  wire [2*CODE_W-1:0] read_codes;
-  reg fetch_valid_q;
-  reg [PLACE_W-1:0] fetch_q;
+  wire [2*CODE_W-1:0] read_codes, leaf_codes;
+  reg [PLACE_W-1:0] fetch_q, leaf_fetch_q;
   reg beat_q;
+  reg [2:0] leaf_beat_q;
   wire [1:0] queue_valid, queue_take, leaf_queue_valid, leaf_queue_take;
   wire [2*PLACE_W-1:0] queue_place, leaf_queue_place;
   cchip_line_pairs #(
@@ -156,82 +157,52 @@ module cchip_get_data #(
       .read_place  (fetch_q),
       .read_beat   (beat_q),
       .read_lines  (read_lines),
-      .read_codes  (read_codes)
+      .read_codes  (read_codes),
+      .leaf_place  (leaf_fetch_q),
+      .leaf_beat   (leaf_beat_q),
+      .leaf_lines  (m_leaf_lines),
+      .leaf_codes  (leaf_codes)
   );
 
-  // ---- which pair is next: leaves first, while there is room for them; of each kind the two
-  // queues in turn
-  reg turn_q, leaf_turn_q;
-  reg [1:0] room_left_q;  // leaf pairs that may be picked
-  reg some_room_q;  // it is not 0
-  wire advance;
-  wire pick_leaf = |leaf_queue_valid & some_room_q;
-  wire pick_pair = |queue_valid & ~pick_leaf;
+  // ---- node pairs: which is next, of the two queues in turn. Memory answers 2 clocks after
+  // fetch_q. The first beat is asked for on the first clock alone, and waits in lines_q; the second
+  // one waits in the memory's output. Those before have gone when they come: the pair was picked
+  // when the one before was loaded.
+  reg turn_q;
   wire from1 = queue_valid[1] & (turn_q | ~queue_valid[0]);
-  wire leaf_from1 = leaf_queue_valid[1] & (leaf_turn_q | ~leaf_queue_valid[0]);
-  assign queue_take = {from1, queue_valid[0] & ~from1} & {2{advance & pick_pair}};
-  assign leaf_queue_take = {leaf_from1, leaf_queue_valid[0] & ~leaf_from1} &
-      {2{advance & pick_leaf}};
-  wire [1:0] room_left = room_left_q + {1'b0, s_leaf_taken} - {1'b0, advance & pick_leaf};
-  wire [PLACE_W-1:0] pair_picked = from1 ? queue_place[PLACE_W+:PLACE_W] : queue_place[0+:PLACE_W];
-  wire [PLACE_W-1:0] leaf_picked =
-      leaf_from1 ? leaf_queue_place[PLACE_W+:PLACE_W] : leaf_queue_place[0+:PLACE_W];
-  always @(posedge clk)
-    if (rst) begin
-      room_left_q <= ROOM_AT_FIRST[1:0];
-      some_room_q <= 1'b1;
-      leaf_turn_q <= 1'b0;
-    end else begin
-      room_left_q <= room_left;
-      some_room_q <= room_left != 2'd0;
-      if (advance && pick_leaf) leaf_turn_q <= ~leaf_from1;
-    end
-
-  // ---- the picked pair's lines: memory answers 2 clocks after fetch_q. The first beat is asked
-  // for on the first clock alone, and waits in lines_q; the second one waits in the memory's
-  // output. Those before have gone when they come: the pair was picked when the one before was
-  // loaded. A leaf pair's beats leave lines_q in four parts each, and the next pair is picked so
-  // late that its first beat comes when the last part leaves.
+  reg fetch_valid_q;
   reg [1:0] age_q;
   reg [CONTEXT_W+RECORD_W-1:0] record_q;
   reg no_pose_fetch_q;
   wire [CONTEXT_W-1:0] fetch_context = record_q[RECORD_W+:CONTEXT_W];
-  wire fetch_leaf = {{32 - PLACE_W{1'b0}}, fetch_q} >= FIRST_LEAF;
-  reg fetch_leaf_q;
-  reg pair_valid_q, leaf_valid_q, fresh_q;
+  reg pair_valid_q, fresh_q;
   // The box test tells a clock ahead that it takes the pair, so both of these are flip-flops: that
   // it is taken on this clock, for what picks the next pair, and that there is room for it
   reg ready_q, room_q;
   reg beat_comes_q;  // read_lines has a beat for lines_q
-  reg [2:0] parts_q;  // parts of a leaf pair's beats that follow
   wire load = fetch_valid_q & age_q[1] & ~no_pose_fetch_q & (~pair_valid_q | ready_q);
-  wire pair_valid = (load & ~fetch_leaf_q) | (pair_valid_q & ~ready_q);  // on the next clock
-  assign advance = (pick_leaf | pick_pair) &
-      (fetch_valid_q ? load & ~fetch_leaf_q : ~parts_q[2]);
+  wire pair_valid = load | (pair_valid_q & ~ready_q);  // on the next clock
+  wire advance = |queue_valid & (~fetch_valid_q | load);
+  assign queue_take = {from1, queue_valid[0] & ~from1} & {2{advance}};
   reg [PLACE_W-1:0] place_q;
   reg [CONTEXT_W+RECORD_W-1:0] hold_record_q;
   reg [511:0] lines_q;
-  wire failed_a = read_codes[0+:CODE_W] != `CCHIP_READ_OK;
-  wire failed_b = read_codes[CODE_W+:CODE_W] != `CCHIP_READ_OK;
   reg [1:0] failed_q;
-  reg leaf_failed_q;
   always @(posedge clk) begin
-    if (advance) fetch_q <= pick_leaf ? leaf_picked : pair_picked;
+    if (advance) fetch_q <= from1 ? queue_place[PLACE_W+:PLACE_W] : queue_place[0+:PLACE_W];
     record_q        <= records[fetch_q];
-    fetch_leaf_q    <= fetch_leaf;
     no_pose_fetch_q <= record_q[`CCHIP_NODE_PAIR_HEADER] & no_pose_q[fetch_context];
     beat_q          <= ~advance;
-    beat_comes_q    <= (age_q == 2'd1) | (load & ~fetch_leaf_q) | parts_q == 3'd5;
+    beat_comes_q    <= age_q == 2'd1 | load;
     if (beat_comes_q) lines_q <= read_lines;
-    else if (parts_q != 3'd0) lines_q[383:0] <= lines_q[511:128];
-    parts_q <= rst ? 3'd0 : load & fetch_leaf_q ? 3'd7 : parts_q - {2'd0, parts_q != 3'd0};
-    // A pair that is not complete may be loaded, too: what is loaded counts only with pair_valid_q
-    // or leaf_valid_q. So the condition of these flip-flops is a short one.
+    // A pair that is not complete may be loaded, too: what is loaded counts only with pair_valid_q.
+    // So the condition of these flip-flops is a short one.
     if (room_q) begin
       place_q       <= fetch_q;
       hold_record_q <= record_q;
-      failed_q      <= {failed_b, failed_a};
-      leaf_failed_q <= failed_a | failed_b;
+      failed_q      <= {
+        read_codes[CODE_W+:CODE_W] != `CCHIP_READ_OK, read_codes[0+:CODE_W] != `CCHIP_READ_OK
+      };
     end
     age_q <= advance ? 2'd0 : age_q[1] ? age_q : age_q + 2'd1;
     if (rst) begin
@@ -240,15 +211,13 @@ module cchip_get_data #(
       pair_valid_q  <= 1'b0;
       ready_q       <= 1'b0;
       room_q        <= 1'b1;
-      leaf_valid_q  <= 1'b0;
       fresh_q       <= 1'b0;
     end else begin
-      if (advance && pick_pair) turn_q <= ~from1;
+      if (advance) turn_q <= ~from1;
       fetch_valid_q <= advance | (fetch_valid_q & ~load);
       pair_valid_q  <= pair_valid;
       ready_q       <= m_pair_soon;
       room_q        <= ~pair_valid | m_pair_soon;
-      leaf_valid_q  <= load & fetch_leaf_q;
       fresh_q       <= load;
     end
   end
@@ -260,14 +229,67 @@ module cchip_get_data #(
   assign m_pair_children = {
     hold_record_q[`CCHIP_NODE_PAIR_CHILDREN_B], hold_record_q[`CCHIP_NODE_PAIR_CHILDREN_A]
   };
-  assign m_leaf_valid    = leaf_valid_q;
-  assign m_leaf_place    = place_q;
-  assign m_leaf_context  = hold_record_q[RECORD_W+:CONTEXT_W];
-  assign m_leaf_epoch    = hold_record_q[`CCHIP_NODE_PAIR_EPOCH];
-  assign m_leaf_kinds    = {line_b[1:0], line_a[1:0]};
-  assign m_leaf_failed   = leaf_failed_q;
-  assign m_leaf_lines    = lines_q[127:0];
   assign m_lines         = lines_q;
+
+  // ---- leaf pairs: which is next, while there is room for it; its beats are read one after the
+  // other, and what is said of it leaves with the first
+  reg leaf_turn_q;
+  reg [1:0] room_left_q;  // leaf pairs that may be picked
+  reg some_room_q;  // it is not 0
+  reg reads_q;  // leaf_beat_q is read
+  wire last = &leaf_beat_q;
+  wire pick = |leaf_queue_valid & some_room_q & (~reads_q | last);
+  wire leaf_from1 = leaf_queue_valid[1] & (leaf_turn_q | ~leaf_queue_valid[0]);
+  assign leaf_queue_take = {leaf_from1, leaf_queue_valid[0] & ~leaf_from1} & {2{pick}};
+  wire [1:0] room_left = room_left_q + {1'b0, s_leaf_taken} - {1'b0, pick};
+  wire asks_leaf = {{32 - PLACE_W{1'b0}}, s_place} >= FIRST_LEAF;
+  wire [23:0] asked_a = s_record[`CCHIP_NODE_PAIR_LINE_A];
+  wire [23:0] asked_b = s_record[`CCHIP_NODE_PAIR_LINE_B];
+  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  reg [CONTEXT_W+5:0] leaf_records[0:(1<<LEAF_W)-1];
+  reg [CONTEXT_W+5:0] leaf_record_q, leaf_hold_q;
+  reg [PLACE_W-1:0] leaf_place_q;
+  reg leaf_failed_q;
+  reg [2:0] first_q;  // the first beat is read, comes into the memory's output, leaves
+  reg [1:0] last_q;  // the last one, as above
+  always @(posedge clk) begin
+    if (s_valid && asks_leaf)
+      leaf_records[s_place[LEAF_W-1:0]] <= {
+        s_context, s_record[`CCHIP_NODE_PAIR_EPOCH], asked_b[1:0], asked_a[1:0]
+      };
+    if (pick)
+      leaf_fetch_q <=
+          leaf_from1 ? leaf_queue_place[PLACE_W+:PLACE_W] : leaf_queue_place[0+:PLACE_W];
+    leaf_record_q <= leaf_records[leaf_fetch_q[LEAF_W-1:0]];
+    if (first_q[1]) begin
+      leaf_place_q  <= leaf_fetch_q;
+      leaf_hold_q   <= leaf_record_q;
+      leaf_failed_q <= leaf_codes != {2{`CCHIP_READ_OK}};
+    end
+    if (rst) begin
+      leaf_turn_q <= 1'b0;
+      room_left_q <= ROOM_AT_FIRST[1:0];
+      some_room_q <= 1'b1;
+      reads_q     <= 1'b0;
+      leaf_beat_q <= 3'd0;
+      first_q     <= 3'd0;
+      last_q      <= 2'd0;
+    end else begin
+      if (pick) leaf_turn_q <= ~leaf_from1;
+      room_left_q <= room_left;
+      some_room_q <= room_left != 2'd0;
+      reads_q     <= pick | (reads_q & ~last);
+      leaf_beat_q <= leaf_beat_q + {2'd0, reads_q};
+      first_q     <= {first_q[1:0], pick};
+      last_q      <= {last_q[0], reads_q & last};
+    end
+  end
+  assign m_leaf_valid  = first_q[2];
+  assign m_leaf_place  = leaf_place_q;
+  assign {m_leaf_context, m_leaf_epoch, m_leaf_kinds} = leaf_hold_q;
+  assign m_leaf_failed = leaf_failed_q;
+  assign m_leaf_left   = last_q[1];
+  wire unused = &{1'b0, asked_a, asked_b, hold_record_q};
 
   // ---- what the lines say, and the record of the pair whose verdict has come
   cchip_node_check #(
@@ -294,7 +316,7 @@ module cchip_get_data #(
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_beats, !(pair_valid_q && fresh_q) || !ready_q)
-      `CCHIP_ASSERT(a_parts, parts_q == 3'd0 || !(load || pair_valid_q))
+      `CCHIP_ASSERT(a_beat, reads_q || leaf_beat_q == 3'd0)
       `CCHIP_ASSERT(a_room, {30'd0, room_left_q} <= ROOM_AT_FIRST)
       `CCHIP_ASSERT(a_place, !(s_valid && pair_valid_q && place_q == s_place))
     end

@@ -6,10 +6,12 @@
 // of A come through port 0, those of B through port 1, each once; a pair has a place.
 //   beats        a line is two beats of 256 bits, the lower half with s_valid, the upper one on the
 //                next clock, on which s_place stays; read_beat says which one is read
+//   leaves       have a memory of their own, written as above and read in eight beats of 64 bits,
+//                so that the lines of node pairs need not wait for theirs
 //   order        the port of the second line puts the pair in its queue; if both lines come on one
 //                clock, port 0 does. Node pairs and leaf pairs have queues of their own
 //   latency      4 clocks from the second line to m_pair_valid or m_leaf_valid; read_lines and
-//                read_codes 2 clocks after read_place
+//                read_codes 2 clocks after read_place, leaf_lines and leaf_codes after leaf_place
 //   throughput   a line per port and two clocks
 //   credit       a place is used again only after its pair has left its queue
 //   cuts         every path: each output is a flip-flop
@@ -36,17 +38,24 @@ module cchip_line_pairs #(
     output wire [                     1:0] m_leaf_valid,
     input  wire [                     1:0] m_leaf_take,
     output wire [           2*PLACE_W-1:0] m_leaf_place,
-    // halves of the lines of a pair, {B's, A's}
+    // halves of the lines of a node pair, {B's, A's}
     input  wire [             PLACE_W-1:0] read_place,
     input  wire                            read_beat,
     output wire [                   511:0] read_lines,
-    output wire [2*`CCHIP_READ_CODE_W-1:0] read_codes
+    output wire [2*`CCHIP_READ_CODE_W-1:0] read_codes,
+    // eighths of the lines of a leaf pair, {B's, A's}
+    input  wire [             PLACE_W-1:0] leaf_place,
+    input  wire [                     2:0] leaf_beat,
+    output wire [                   127:0] leaf_lines,
+    output wire [2*`CCHIP_READ_CODE_W-1:0] leaf_codes
 );
 
   localparam integer PLACES = 1 << PLACE_W;
   localparam integer CODE_W = `CCHIP_READ_CODE_W;
   localparam [31:0] FIRST_LEAF = PAIRS;
   localparam [PLACES-1:0] ONE_PLACE = 1;
+  // the lower bits of a leaf pair's place are its number in the memory: no two have the same
+  localparam integer LEAF_W = LEAVES > 1 ? $clog2(LEAVES) : 1;
 
   // Places one of whose lines has come. Each line comes once, so the next one is the second. A line
   // inverts the bit of its place: no bit depends on what the others are.
@@ -99,27 +108,43 @@ module cchip_line_pairs #(
           .m_ready(m_leaf_take[p]),
           .m_data (m_leaf_place[PLACE_W*p+:PLACE_W])
       );
+      wire [PLACE_W-1:0] comes_place = s_place[PLACE_W*p+:PLACE_W];
+      wire comes_leaf = {{32 - PLACE_W{1'b0}}, comes_place} >= FIRST_LEAF;
       cchip_block_ram #(
           .WIDTH (256),
           .ADDR_W(PLACE_W + 1)
       ) u_lines (
           .clk       (clk),
           .write     (s_valid[p] | valid_q[p]),
-          .write_addr({s_place[PLACE_W*p+:PLACE_W], valid_q[p]}),
+          .write_addr({comes_place, valid_q[p]}),
           .write_data(s_data[256*p+:256]),
           .read_addr ({read_place, read_beat}),
           .read_data (read_lines[256*p+:256])
       );
+      cchip_block_ram #(
+          .WIDTH (64),
+          .WORDS (4),
+          .ADDR_W(LEAF_W + 3)
+      ) u_leaf_lines (
+          .clk       (clk),
+          .write     ((s_valid[p] | valid_q[p]) & comes_leaf),
+          .write_addr({comes_place[LEAF_W-1:0], valid_q[p]}),
+          .write_data(s_data[256*p+:256]),
+          .read_addr ({leaf_place[LEAF_W-1:0], leaf_beat}),
+          .read_data (leaf_lines[64*p+:64])
+      );
       (* ram_style = "distributed", ramstyle = "MLAB" *)
       reg [CODE_W-1:0] codes[0:PLACES-1];
-      reg [CODE_W-1:0] code_q;
+      reg [CODE_W-1:0] code_q, leaf_code_q;
       always @(posedge clk) begin
-        if (s_valid[p]) codes[s_place[PLACE_W*p+:PLACE_W]] <= s_code[CODE_W*p+:CODE_W];
+        if (s_valid[p]) codes[comes_place] <= s_code[CODE_W*p+:CODE_W];
         code_q        <= codes[read_place];
+        leaf_code_q   <= codes[leaf_place];
         whole_place_q <= place;
         whole_q       <= ~rst & valid_q[p] & (came_q[place] | (both & (p == 0)));
       end
       assign read_codes[CODE_W*p+:CODE_W] = code_q;
+      assign leaf_codes[CODE_W*p+:CODE_W] = leaf_code_q;
       assign no_room[p] = whole_q & ~(whole_leaf ? leaf_ready : pair_ready);
     end
   endgenerate

@@ -179,8 +179,8 @@ class GetDataBench {
   std::map<GetData::End, int> ends;  ///< of those
   int stalled = 0;
   int fullest = 0;     ///< leaves with their receiver, at most
-  int closest = 1000;  ///< clocks from a node pair to the next pair, at least
-  int closest_after_leaf = 1000;
+  int closest = 1000;  ///< clocks from a node pair to the next, at least
+  int closest_leaves = 1000;
 
  private:
   enum class Use { free, wanted, out, done };  // done: its verdict has not come
@@ -380,7 +380,8 @@ class GetDataBench {
       require_beat(model_.pair().lines, 0);
       model_second_ = model_.pair().lines;
     }
-    if (model_.leaf_valid()) model_leaf_ = Leaving{model_.pair().lines};
+    REQUIRE((top_.m_leaf_left != 0) == model_.leaf_left());
+    if (model_.leaf_valid()) model_leaf_ = Leaving{model_.leaf().lines};
     require_part(model_leaf_);
     if (model_.pair_valid()) {
       const GetData::Pair& pair = model_.pair();
@@ -389,7 +390,7 @@ class GetDataBench {
       REQUIRE(top_.m_pair_children == ((pair.record >> 52 & 15) << 4 | (pair.record >> 24 & 15)));
     }
     if (model_.leaf_valid()) {
-      const GetData::Pair& pair = model_.pair();
+      const GetData::Pair& pair = model_.leaf();
       REQUIRE(top_.m_leaf_place == pair.place);
       REQUIRE(top_.m_leaf_context == pair.context);
       REQUIRE(top_.m_leaf_epoch == (pair.record >> 56 & 3));
@@ -423,9 +424,8 @@ class GetDataBench {
   };
   void require_part(std::optional<Leaving>& leaving) {
     if (!leaving) return;
-    const std::size_t object = leaving->beat / 2 % 2;
-    const std::size_t first = 8 * (leaving->beat / 4) + 4 * (leaving->beat % 2);
-    for (std::size_t w = 0; w < 4; ++w) REQUIRE(top_.m_leaf_lines.at(w) == leaving->lines[object].data[first + w]);
+    for (std::size_t w = 0; w < 4; ++w)
+      REQUIRE(top_.m_leaf_lines.at(w) == leaving->lines[w / 2].data[2 * leaving->beat + w % 2]);
     if (++leaving->beat == 8) leaving.reset();
   }
 
@@ -443,20 +443,16 @@ class GetDataBench {
     }
     if (second_out_) require_beat(*second_out_, 1);
     second_out_.reset();
-    if (top_.m_leaf_valid != 0 || (top_.m_pair_valid != 0 && !stays_)) {
-      const Expected& one = expected_[top_.m_leaf_valid != 0 ? top_.m_leaf_place : top_.m_pair_place];
-      REQUIRE(one.lines[0].has_value());
-      REQUIRE(one.lines[1].has_value());
-      if (top_.m_leaf_valid != 0) {
-        REQUIRE(!leaf_out_);  // the beats of the one before have left
-        leaf_out_ = Leaving{{*one.lines[0], *one.lines[1]}};
-      } else {
-        REQUIRE(!leaf_out_);
-        second_out_ = {*one.lines[0], *one.lines[1]};
-        require_beat(*second_out_, 0);
-      }
+    if (top_.m_leaf_valid != 0) {
+      REQUIRE(!leaf_out_);  // the beats of the one before have left
+      leaf_out_ = Leaving{lines_of(top_.m_leaf_place)};
     }
+    REQUIRE((top_.m_leaf_left != 0) == (leaf_out_ && leaf_out_->beat == 7));
     require_part(leaf_out_);
+    if (top_.m_pair_valid != 0 && !stays_) {
+      second_out_ = lines_of(top_.m_pair_place);
+      require_beat(*second_out_, 0);
+    }
     second_ = in_.lines;
     if (top_.m_line_valid != 0) {
       const std::size_t place = sim::get_bits(top_.m_line_place, 0, place_w);
@@ -473,23 +469,30 @@ class GetDataBench {
     }
     if (in_.pose) awaits_pose_[*in_.pose] = false;
     if (in_.request && (in_.request->record >> 58 & 1) != 0) awaits_pose_[in_.request->context] = true;
-    if (top_.m_leaf_valid != 0 || (top_.m_pair_valid != 0 && !stays_)) {
-      int& least = last_is_leaf_ ? closest_after_leaf : closest;
-      least = std::min(least, clocks_ - last_out_);
-      last_is_leaf_ = top_.m_leaf_valid != 0;
-      last_out_ = clocks_;
-    }
+    const auto comes = [this](bool now, int& last, int& least) {
+      if (!now) return;
+      least = std::min(least, clocks_ - last);
+      last = clocks_;
+    };
+    comes(top_.m_pair_valid != 0 && !stays_, last_pair_, closest);
+    comes(top_.m_leaf_valid != 0, last_leaf_, closest_leaves);
     ++clocks_;
     pair_clocks_ = top_.m_pair_valid != 0 && !in_.pair_ready ? pair_clocks_ + 1 : 0;
     stays_ = top_.m_pair_valid != 0 && !in_.pair_ready;
     stalled += stays_ ? 1 : 0;
     if (top_.m_pair_valid != 0 && in_.pair_ready) leave(top_.m_pair_place, Use::out);
     leaves_there_ -= in_.leaf_taken ? 1 : 0;
+    if (top_.m_leaf_left != 0) leave(top_.m_leaf_place, Use::free);
     if (top_.m_leaf_valid != 0) {
-      leave(top_.m_leaf_place, Use::free);
       REQUIRE(++leaves_there_ <= leaf_room);
       fullest = std::max(fullest, leaves_there_);
     }
+  }
+  std::array<GetData::Line, 2> lines_of(std::size_t place) const {
+    const Expected& one = expected_[place];
+    REQUIRE(one.lines[0].has_value());
+    REQUIRE(one.lines[1].has_value());
+    return {*one.lines[0], *one.lines[1]};
   }
   void leave(std::size_t place, Use use) {
     Expected& one = expected_[place];
@@ -508,7 +511,7 @@ class GetDataBench {
   /// No output follows an input before the rising edge.
   void require_registers() {
     const auto outputs = [&] {
-      return std::array<std::uint64_t, 18>{top_.m_line_valid,
+      return std::array<std::uint64_t, 19>{top_.m_line_valid,
                                            top_.m_line_place,
                                            top_.m_line,
                                            top_.m_pair_valid,
@@ -521,6 +524,7 @@ class GetDataBench {
                                            top_.m_leaf_epoch,
                                            top_.m_leaf_kinds,
                                            top_.m_leaf_failed,
+                                           top_.m_leaf_left,
                                            top_.m_lines.at(0) ^ top_.m_lines.at(15) ^ top_.m_leaf_lines.at(0),
                                            top_.lookup_context,
                                            top_.lookup_record,
@@ -564,9 +568,8 @@ class GetDataBench {
   std::array<std::optional<GetData::Line>, 2> second_;  // lines whose upper halves come
   std::optional<std::array<GetData::Line, 2>> model_second_, second_out_;  // whose upper halves leave
   std::optional<Leaving> model_leaf_, leaf_out_;
-  bool last_is_leaf_ = false;
   int leaves_there_ = 0;  // with their receiver
-  int clocks_ = 0, last_out_ = -1000;
+  int clocks_ = 0, last_pair_ = -1000, last_leaf_ = -1000;
   bool defined_ = false;
 };
 
@@ -593,7 +596,8 @@ TEMPLATE_LIST_TEST_CASE(
           REQUIRE(bench.ends[end] > 0);
       }
       REQUIRE(bench.closest == 3);
-      REQUIRE(bench.closest_after_leaf == 8);
+      REQUIRE(bench.closest_leaves >= 8);
+      if (how.taken == 100 && TestType::LEAVES > 1) REQUIRE(bench.closest_leaves == 8);
       if (how.ready <= 10) REQUIRE(bench.stalled > 500);
     }
   });
@@ -604,7 +608,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_get_data: latency", "[unit][cchip_get_data]", cch
     GetDataBench<TestType> bench(simulation, random);
     for (const bool leaf : {false, true}) {
       for (const int a : {2, 3, 9}) {
-        for (const int b : {2, 3, 8, 12}) REQUIRE(bench.latency(leaf, a, b) == 8);
+        for (const int b : {2, 3, 8, 12}) REQUIRE(bench.latency(leaf, a, b) == (leaf ? 7 : 8));
       }
     }
   });

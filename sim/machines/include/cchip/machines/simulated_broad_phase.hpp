@@ -188,12 +188,13 @@ class SimulatedBroadPhase : private Agent {
     beats_ = 0;
     take_beat(now);
   }
-  /// Eight beats of 128 bits on clocks behind each other: two of A's lower half and two of B's, then of the upper ones.
+  /// Eight beats on clocks behind each other, 64 bits of A's line and 64 of B's each, the lowest first.
   void take_beat(std::uint64_t now) {
-    constexpr std::size_t size = 16;
+    constexpr std::size_t size = 8;
     auto* to = reinterpret_cast<unsigned char*>(leaves_->lines.data());
-    const std::size_t half = beats_ / 4, object = beats_ / 2 % 2;
-    std::memcpy(to + (4 * object + 2 * half + beats_ % 2) * size, &top().m_leaf_lines, size);
+    const auto* from = reinterpret_cast<const unsigned char*>(&top().m_leaf_lines);
+    for (std::size_t object = 0; object < 2; ++object)
+      std::memcpy(to + (8 * object + beats_) * size, from + object * size, size);
     if (++beats_ == 8) take_leaves(now);
   }
   void take_leaves(std::uint64_t now) {

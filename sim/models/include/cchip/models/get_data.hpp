@@ -79,18 +79,24 @@ class GetData {
 
   const std::optional<Ask>& ask() const { return ask_; }
   bool pair_valid() const { return pair_valid_; }
-  bool leaf_valid() const { return leaf_valid_; }
-  /// Defined while pair_valid() or leaf_valid().
+  /// Defined while pair_valid().
   const Pair& pair() const { return pair_; }
+  /// The first of eight beats of a leaf pair.
+  bool leaf_valid() const { return leaf_age_ == 2; }
+  /// Defined with leaf_valid() and the seven clocks after it.
+  const Pair& leaf() const { return leaf_; }
+  bool leaf_left() const { return leaf_left_ == 1; }
   const Known& known() const { return known_; }
 
   void clock(const Inputs& in) {
     const bool go = fetch_ && fetch_->age == 2 && !held_ && (!pair_valid_ || in.pair_ready);
     const auto waits = [&](Kind kind, std::size_t p) { return ports_[p].whole[kind].m_valid(); };
-    const Kind kind = room_left_ > 0 && (waits(leaves_of, 0) || waits(leaves_of, 1)) ? leaves_of : nodes_of;
-    const bool leaf_goes = go && fetch_->place >= pairs_;
-    const bool pick = (fetch_ ? go && !leaf_goes : parts_ < 4) && (waits(kind, 0) || waits(kind, 1));
-    const std::size_t from = waits(kind, 1) && (turn_[kind] == 1 || !waits(kind, 0)) ? 1 : 0;
+    const std::array<bool, 2> may{!fetch_ || go, room_left_ > 0 && beats_left_ <= 1};
+    std::array<std::optional<std::size_t>, 2> pick;  // of each kind: from this port
+    for (const Kind kind : {nodes_of, leaves_of}) {
+      if (may[kind] && (waits(kind, 0) || waits(kind, 1)))
+        pick[kind] = waits(kind, 1) && (turn_[kind] == 1 || !waits(kind, 0)) ? 1 : 0;
+    }
     const bool held = fetch_ && is_header(*requests_[fetch_->place]) && no_pose_[requests_[fetch_->place]->context];
 
     if (in.lookup) known_ = Known{requests_[*in.lookup], nodes_[*in.lookup]};
@@ -102,26 +108,32 @@ class GetData {
     checks_[1] = checks_[0];
     checks_[0] = fresh_ ? check(pair_) : std::nullopt;
 
-    // a pair leaves
-    fresh_ = go && fetch_->place < pairs_;
-    leaf_valid_ = leaf_goes;
-    parts_ = leaf_goes ? 7 : std::max(parts_ - 1, 0);
-    pair_valid_ = fresh_ || (pair_valid_ && !in.pair_ready);
+    // a node pair leaves
+    fresh_ = go;
+    pair_valid_ = go || (pair_valid_ && !in.pair_ready);
     if (go) {
-      const Request& request = *requests_[fetch_->place];
-      pair_ = Pair{request.place,
-                   request.context,
-                   request.record,
-                   {*ports_[0].lines[request.place], *ports_[1].lines[request.place]}};
+      pair_ = pair_of(fetch_->place);
       fetch_.reset();
     }
     if (fetch_) fetch_->age = std::min(fetch_->age + 1, 2);
-    if (pick) {
-      fetch_ = Fetch{ports_[from].whole[kind].m_data(), 0};
-      turn_[kind] = 1 - from;
-    }
-    room_left_ += (in.leaf_taken ? 1 : 0) - (pick && kind == leaves_of ? 1 : 0);
+    if (pick[nodes_of]) fetch_ = Fetch{ports_[*pick[nodes_of]].whole[nodes_of].m_data(), 0};
     held_ = held;
+
+    // a leaf pair leaves: two clocks to its first beat
+    leaf_left_ = std::max(leaf_left_ - 1, 0);
+    if (beats_left_ == 1) leaf_left_ = 2;
+    beats_left_ = std::max(beats_left_ - 1, 0);
+    leaf_age_ = std::min(leaf_age_ + 1, 3);
+    if (leaf_age_ == 2) leaf_ = pair_of(leaf_fetch_);
+    if (pick[leaves_of]) {
+      leaf_fetch_ = ports_[*pick[leaves_of]].whole[leaves_of].m_data();
+      leaf_age_ = 0;
+      beats_left_ = 8;
+    }
+    room_left_ += (in.leaf_taken ? 1 : 0) - (pick[leaves_of] ? 1 : 0);
+    for (const Kind kind : {nodes_of, leaves_of}) {
+      if (pick[kind]) turn_[kind] = 1 - *pick[kind];
+    }
 
     // lines come: the port of the second one has the pair, found a clock later
     std::array<std::optional<std::size_t>, 2> second;
@@ -135,7 +147,7 @@ class GetData {
       Port& port = ports_[p];
       for (const Kind k : {nodes_of, leaves_of}) {
         const bool push = port.second && (*port.second >= pairs_) == (k == leaves_of);
-        port.whole[k].clock(push, port.second.value_or(0), pick && kind == k && from == p);
+        port.whole[k].clock(push, port.second.value_or(0), pick[k] == p);
       }
       port.second = second[p];
       if (came_[p]) port.came[*came_[p]] = true;
@@ -204,6 +216,11 @@ class GetData {
     return false;
   }
 
+  Pair pair_of(std::size_t place) const {
+    const Request& request = *requests_[place];
+    return {request.place, request.context, request.record, {*ports_[0].lines[place], *ports_[1].lines[place]}};
+  }
+
   std::optional<Check> check(const Pair& pair) const {
     Check check{pair.place, pair.context, (pair.record >> 58 & 1) != 0, {}, {}};
     const auto& sizes = sizes_[pair.context];
@@ -247,11 +264,14 @@ class GetData {
   std::vector<std::optional<Sizes>> sizes_;         // by context
   std::optional<Ask> ask_;
   std::optional<Fetch> fetch_;
-  int parts_ = 0;                      // beats of a leaf pair that follow
   bool held_ = false;                  // the pair that is fetched waited for its pose a clock ago
   std::array<std::size_t, 2> turn_{};  // by kind
-  bool pair_valid_ = false, leaf_valid_ = false, fresh_ = false;
-  Pair pair_;
+  bool pair_valid_ = false, fresh_ = false;
+  Pair pair_, leaf_;
+  std::size_t leaf_fetch_ = 0;  // place of the leaf pair whose beats are read
+  int leaf_age_ = 3;            // clocks since it was picked, at most 3
+  int beats_left_ = 0;          // of it, to be read
+  int leaf_left_ = 0;           // clocks to its last one, 1 on that clock
   std::array<std::optional<Check>, 3> checks_;
   Known known_;
 };
