@@ -8,18 +8,20 @@ module cchip_block_ram #(
     parameter integer ADDR_W = 9,
     parameter integer MIXED_WIDTH = 0
 ) (
-    input  wire              clk,
-    input  wire              write,
-    input  wire [ADDR_W-1:0] write_addr,
-    input  wire [ WIDTH-1:0] write_data,
-    input  wire [ADDR_W-1:0] read_addr,
-    output wire [ WIDTH-1:0] read_data
+    input  wire                                   clk,
+    input  wire                                   write,
+    input  wire [ADDR_W-(WORDS==4 ? 2 : 0)-1:0] write_addr,
+    input  wire [                WORDS*WIDTH-1:0] write_data,
+    input  wire [                     ADDR_W-1:0] read_addr,
+    output wire [                      WIDTH-1:0] read_data
 );
   (* anyseq *) wire [WIDTH-1:0] others;
   reg [(1<<ADDR_W)-1:0] bits_q;
   reg word_q, read_q;
+  integer w;
   always @(posedge clk) begin
-    if (write) bits_q[write_addr] <= write_data[0];
+    for (w = 0; w < WORDS; w = w + 1)
+      if (write) bits_q[WORDS*write_addr+w] <= write_data[WIDTH*w];
     word_q <= bits_q[read_addr];
     read_q <= word_q;
   end

@@ -4,7 +4,7 @@
 // Proved of cchip_get_data: every line of a request is asked for once, on the next clock; a pair is offered once, only when both
 // of its lines have come, as a node pair or as leaves by its place, with its query, its record and its own lines, and not before
 // the pose of its query if it is a pair of headers; a node pair stays as it is until it is taken, leaves are there for one clock, and their lines
-// leave in eight beats, in which nothing else is offered;
+// leave in eight beats, in which no other leaves are offered, and on the last of which it is told that they have left;
 // leaves of which a line could not be read say so, and the code of such a node pair, looked up 4 clocks or more after it was offered,
 // is never 0, END_MEMORY if it is A's; if
 // no pair waits for a pose, and neither the box test nor the receiver of leaves has anything, a pair that is whole brings about a pair within BOUND clocks.
@@ -55,6 +55,7 @@ module cchip_get_data_properties #(
   wire [1:0] m_leaf_epoch;
   wire [3:0] m_leaf_kinds;
   wire [127:0] m_leaf_lines;
+  wire m_leaf_left;
   wire [511:0] m_lines;
   wire [58:0] lookup_record;
   wire [66:0] lookup_nodes;
@@ -93,6 +94,7 @@ module cchip_get_data_properties #(
       .m_leaf_kinds   (m_leaf_kinds),
       .m_leaf_failed  (m_leaf_failed),
       .m_leaf_lines   (m_leaf_lines),
+      .m_leaf_left    (m_leaf_left),
       .m_lines        (m_lines),
       .lookup         (lookup),
       .lookup_place   (lookup_place),
@@ -118,7 +120,7 @@ module cchip_get_data_properties #(
   wire [PLACE_W-1:0] place_b = s_line_place[PLACE_W+:PLACE_W];
   always @(posedge clk) begin
     busy_q   <= (busy_q | (s_valid ? one << s_place : 0)) & ~(pair_taken ? one << m_pair_place : 0) &
-        ~(m_leaf_valid ? one << m_leaf_place : 0);
+        ~(m_leaf_left ? one << m_leaf_place : 0);
     open_a_q <= (open_a_q | (m_line_valid[0] ? one << m_line_place[0+:PLACE_W] : 0)) & ~(s_line_valid[0] ? one << place_a : 0);
     open_b_q <= (open_b_q | (m_line_valid[1] ? one << m_line_place[PLACE_W+:PLACE_W] : 0)) &
         ~(s_line_valid[1] ? one << place_b : 0);
@@ -157,11 +159,11 @@ module cchip_get_data_properties #(
   reg [2*PLACE_W-1:0] upper_place_q;
   reg shown_q;  // its lower halves left on the last clock
   reg [6:0] left_q, sends_q;  // clocks since its leaf pair left, and any: one-hot
-  reg [2:0] sent_q;  // of its leaf pair: the upper half of B's line, of A's, the lower one of B's
+  reg [1:0] sent_q;  // of its leaf pair: the upper half of B's line, of A's
   reg [3:0] waits_q;
   wire is_pair = m_pair_valid && m_pair_place == place;
   wire is_leaf = m_leaf_valid && m_leaf_place == place;
-  wire gone = (is_pair & m_pair_ready) | is_leaf;
+  wire gone = (is_pair & m_pair_ready) | (m_leaf_left && m_leaf_place == place);
   wire mine = s_valid && s_place == place;
   wire mine_a = s_line_valid[0] && place_a == place;
   wire mine_b = s_line_valid[1] && place_b == place;
@@ -180,7 +182,7 @@ module cchip_get_data_properties #(
     shown_q <= ~rst & is_pair & ~stays_q;
     left_q  <= {7{~rst}} & {left_q[5:0], is_leaf};
     sends_q <= {7{~rst}} & {sends_q[5:0], m_leaf_valid};
-    if (is_leaf) sent_q <= {high_b_q, high_a_q, data_b_q};
+    if (is_leaf) sent_q <= {high_b_q, high_a_q};
     if (is_pair) {known_a_q, known_b_q} <= {failed_a_q, failed_b_q};
     if (rst) begin
       {asked_q, wanted_q, came_a_q, came_b_q, known_q, looked_q} <= 6'd0;
@@ -229,7 +231,6 @@ module cchip_get_data_properties #(
 `ifndef PLACE
       ask: assert (m_line_valid == {2{asked_q}});
       ask_place: assert (!asked_q || ({m_line[32], m_line[0], m_line_place} == {ask_q, ask_q[PLACE_W-1:0]}));
-      one_of_two: assert (!(m_pair_valid && m_leaf_valid));
       kind: assert (!(is_pair && place >= PAIRS) && !(is_leaf && place < PAIRS));
       whole: assert (!(is_pair || is_leaf) || (wanted_q && came_a_q && came_b_q));
       posed: assert (!(is_pair && !stays_q && record_q[58]) || posed_q);
@@ -243,12 +244,10 @@ module cchip_get_data_properties #(
       stable: assert (!stays_q || (m_pair_valid && is == was_q));
       in_time: assert (waits_q != BOUND);
 `endif
-      own_beat0: assert (!is_leaf || m_leaf_lines[0] == data_a_q);
-      own_beat2: assert (!left_q[1] || m_leaf_lines[0] == sent_q[0]);
-      own_beat4: assert (!left_q[3] || m_leaf_lines[0] == sent_q[1]);
-      own_beat6: assert (!left_q[5] || m_leaf_lines[0] == sent_q[2]);
+      own_beat0: assert (!is_leaf || (m_leaf_lines[0] == data_a_q && m_leaf_lines[64] == data_b_q));
+      own_beat4: assert (!left_q[3] || (m_leaf_lines[0] == sent_q[0] && m_leaf_lines[64] == sent_q[1]));
       one_leaf: assert (!m_leaf_valid || sends_q == 7'd0);
-      no_pair: assert (!m_pair_valid || sends_q == 7'd0);
+      left: assert (m_leaf_left == sends_q[6]);
       reported: assert (!(looked_q && (known_a_q || known_b_q)) || lookup_nodes[66:64] != END_OK);
       reported_a: assert (!(looked_q && known_a_q) || lookup_nodes[66:64] == END_MEMORY);
     end
