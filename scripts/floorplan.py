@@ -6,8 +6,8 @@ build for WebAssembly does not have. The device has block RAMs in four rows and 
 four. What is chosen is which groups a block gets; inside a block the order is that of its data, so that the RAMs that hold the
 same bits of a line lie above each other.
 
-    y = 82    .  .  .  .      C  C  C  C  C  C  C  C  C      C cache: data, in row 46 the beats that arrive, in row 70 tags
-    y = 70    get data        C  C  C  C  C  C  C  C  C
+    y = 82    get data: leaves   C  C  C  C  C  C  C  C  C      C cache: data, in row 46 the beats that arrive, in row 70 tags
+    y = 70    get data: nodes    C  C  C  C  C  C  C  C  C
     y = 58    box test                 transform   slot      multipliers
     y = 46    box test           traversal   cache
     y = 34    box test                 transform             multipliers
@@ -43,6 +43,7 @@ PLAN = (
     (r"u_cache\.u_data", RAM, by_bits, [(82, range(4, 13)), (70, range(4, 11))]),
     (r"u_cache\.u_fill", RAM, natural, [(46, range(8, 10))]),
     (r"u_cache\.gen_port", RAM, natural, [(70, range(11, 13))]),
+    (r"u_get_data.*u_leaf_lines", RAM, by_bits, [(82, range(0, 4))]),
     (r"u_get_data", RAM, by_bits, [(70, range(0, 4))]),
     (r"u_bv_unit\.u_feed", RAM, by_bits, [(46, range(0, 6))]),
     (r"u_bv_unit\.u_pose", RAM, natural, [(22, range(0, 3))]),

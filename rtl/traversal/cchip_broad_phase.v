@@ -7,9 +7,9 @@
 //   query        a line as docs/hardware/image.md describes it; its answer comes when every pair
 //                of leaves that the query still waited for has its result
 //   leaves       leaf pairs of which nothing is known but that their volumes overlap, with
-//                their lines in eight beats of 64 bits each, the lowest first, with m_leaf_valid and
-//                on the seven clocks after it. The receiver tests the primitives and answers each
-//                with one result; fewer than 1,900 are without one at any time
+//                their lines in eight beats of 64 bits of each, the lowest first, on the clock of
+//                m_leaf_valid and the seven after it. The receiver tests the primitives and answers
+//                each with one result; fewer than 1,900 are without one at any time
 //   errors       end one query with a code, and leave the others alone
 //   bound        every wait has one: a read by the limit of cchip_axi_read, a query by step_limit;
 //                results and the receiver of answers are waited for

@@ -68,7 +68,7 @@ module cchip_get_data #(
     output wire [                                          3:0] m_leaf_kinds,  // {B's, A's}
     output wire                                                 m_leaf_failed,  // lines not read
     output wire [                                        127:0] m_leaf_lines,  // {B's, A's}: a beat
-    output wire                                                 m_leaf_left,  // m_leaf_place is free
+    output wire                                                 m_leaf_left,  // its place is free
     output wire [                                        511:0] m_lines,  // {B's, A's}: a beat
     // of a node pair whose verdict has come; 1 clock later
     input  wire                                                 lookup,
@@ -231,17 +231,19 @@ module cchip_get_data #(
   };
   assign m_lines         = lines_q;
 
-  // ---- leaf pairs: which is next, while there is room for it; its beats are read one after the
-  // other, and what is said of it leaves with the first
+  // ---- leaf pairs: which is next; its first beat is read until there is room for it, then the
+  // others one after the other, and what is said of it leaves with the first. So a leaf pair leaves
+  // 2 clocks after s_leaf_taken.
   reg leaf_turn_q;
-  reg [1:0] room_left_q;  // leaf pairs that may be picked
+  reg [1:0] room_left_q;  // leaf pairs that may leave
   reg some_room_q;  // it is not 0
   reg reads_q;  // leaf_beat_q is read
   wire last = &leaf_beat_q;
-  wire pick = |leaf_queue_valid & some_room_q & (~reads_q | last);
+  wire pick = |leaf_queue_valid & (~reads_q | last);
+  wire first = reads_q && leaf_beat_q == 3'd0 && (some_room_q || s_leaf_taken);
   wire leaf_from1 = leaf_queue_valid[1] & (leaf_turn_q | ~leaf_queue_valid[0]);
   assign leaf_queue_take = {leaf_from1, leaf_queue_valid[0] & ~leaf_from1} & {2{pick}};
-  wire [1:0] room_left = room_left_q + {1'b0, s_leaf_taken} - {1'b0, pick};
+  wire [1:0] room_left = room_left_q + {1'b0, s_leaf_taken} - {1'b0, first};
   wire asks_leaf = {{32 - PLACE_W{1'b0}}, s_place} >= FIRST_LEAF;
   wire [23:0] asked_a = s_record[`CCHIP_NODE_PAIR_LINE_A];
   wire [23:0] asked_b = s_record[`CCHIP_NODE_PAIR_LINE_B];
@@ -250,7 +252,7 @@ module cchip_get_data #(
   reg [CONTEXT_W+5:0] leaf_record_q, leaf_hold_q;
   reg [PLACE_W-1:0] leaf_place_q;
   reg leaf_failed_q;
-  reg [2:0] first_q;  // the first beat is read, comes into the memory's output, leaves
+  reg [1:0] first_q;  // the first beat comes into the memory's output, leaves
   reg [1:0] last_q;  // the last one, as above
   always @(posedge clk) begin
     if (s_valid && asks_leaf)
@@ -261,7 +263,7 @@ module cchip_get_data #(
       leaf_fetch_q <=
           leaf_from1 ? leaf_queue_place[PLACE_W+:PLACE_W] : leaf_queue_place[0+:PLACE_W];
     leaf_record_q <= leaf_records[leaf_fetch_q[LEAF_W-1:0]];
-    if (first_q[1]) begin
+    if (first_q[0]) begin
       leaf_place_q  <= leaf_fetch_q;
       leaf_hold_q   <= leaf_record_q;
       leaf_failed_q <= leaf_codes != {2{`CCHIP_READ_OK}};
@@ -272,19 +274,19 @@ module cchip_get_data #(
       some_room_q <= 1'b1;
       reads_q     <= 1'b0;
       leaf_beat_q <= 3'd0;
-      first_q     <= 3'd0;
+      first_q     <= 2'd0;
       last_q      <= 2'd0;
     end else begin
       if (pick) leaf_turn_q <= ~leaf_from1;
       room_left_q <= room_left;
       some_room_q <= room_left != 2'd0;
       reads_q     <= pick | (reads_q & ~last);
-      leaf_beat_q <= leaf_beat_q + {2'd0, reads_q};
-      first_q     <= {first_q[1:0], pick};
+      leaf_beat_q <= leaf_beat_q + {2'd0, first || leaf_beat_q != 3'd0};
+      first_q     <= {first_q[0], first};
       last_q      <= {last_q[0], reads_q & last};
     end
   end
-  assign m_leaf_valid  = first_q[2];
+  assign m_leaf_valid  = first_q[1];
   assign m_leaf_place  = leaf_place_q;
   assign {m_leaf_context, m_leaf_epoch, m_leaf_kinds} = leaf_hold_q;
   assign m_leaf_failed = leaf_failed_q;

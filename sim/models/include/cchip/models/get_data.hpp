@@ -82,7 +82,7 @@ class GetData {
   /// Defined while pair_valid().
   const Pair& pair() const { return pair_; }
   /// The first of eight beats of a leaf pair.
-  bool leaf_valid() const { return leaf_age_ == 2; }
+  bool leaf_valid() const { return leaf_age_ == 1; }
   /// Defined with leaf_valid() and the seven clocks after it.
   const Pair& leaf() const { return leaf_; }
   bool leaf_left() const { return leaf_left_ == 1; }
@@ -91,7 +91,8 @@ class GetData {
   void clock(const Inputs& in) {
     const bool go = fetch_ && fetch_->age == 2 && !held_ && (!pair_valid_ || in.pair_ready);
     const auto waits = [&](Kind kind, std::size_t p) { return ports_[p].whole[kind].m_valid(); };
-    const std::array<bool, 2> may{!fetch_ || go, room_left_ > 0 && beats_left_ <= 1};
+    const std::array<bool, 2> may{!fetch_ || go, beats_left_ <= 1};
+    const bool leaf_goes = beats_left_ == 8 && (room_left_ > 0 || in.leaf_taken);
     std::array<std::optional<std::size_t>, 2> pick;  // of each kind: from this port
     for (const Kind kind : {nodes_of, leaves_of}) {
       if (may[kind] && (waits(kind, 0) || waits(kind, 1)))
@@ -119,18 +120,17 @@ class GetData {
     if (pick[nodes_of]) fetch_ = Fetch{ports_[*pick[nodes_of]].whole[nodes_of].m_data(), 0};
     held_ = held;
 
-    // a leaf pair leaves: two clocks to its first beat
+    // a leaf pair leaves: its first beat waits for room, and takes two clocks
     leaf_left_ = std::max(leaf_left_ - 1, 0);
     if (beats_left_ == 1) leaf_left_ = 2;
-    beats_left_ = std::max(beats_left_ - 1, 0);
-    leaf_age_ = std::min(leaf_age_ + 1, 3);
-    if (leaf_age_ == 2) leaf_ = pair_of(leaf_fetch_);
+    if (beats_left_ < 8 || leaf_goes) beats_left_ = std::max(beats_left_ - 1, 0);
+    leaf_age_ = leaf_goes ? 0 : std::min(leaf_age_ + 1, 2);
+    if (leaf_age_ == 1) leaf_ = pair_of(leaf_fetch_);
     if (pick[leaves_of]) {
       leaf_fetch_ = ports_[*pick[leaves_of]].whole[leaves_of].m_data();
-      leaf_age_ = 0;
       beats_left_ = 8;
     }
-    room_left_ += (in.leaf_taken ? 1 : 0) - (pick[leaves_of] ? 1 : 0);
+    room_left_ += (in.leaf_taken ? 1 : 0) - (leaf_goes ? 1 : 0);
     for (const Kind kind : {nodes_of, leaves_of}) {
       if (pick[kind]) turn_[kind] = 1 - *pick[kind];
     }
@@ -269,7 +269,7 @@ class GetData {
   bool pair_valid_ = false, fresh_ = false;
   Pair pair_, leaf_;
   std::size_t leaf_fetch_ = 0;  // place of the leaf pair whose beats are read
-  int leaf_age_ = 3;            // clocks since it was picked, at most 3
+  int leaf_age_ = 2;            // clocks since it went, at most 2
   int beats_left_ = 0;          // of it, to be read
   int leaf_left_ = 0;           // clocks to its last one, 1 on that clock
   std::array<std::optional<Check>, 3> checks_;
