@@ -419,7 +419,7 @@ tidy: build ## clang-tidy over our own C++ (slow)
 	run-clang-tidy -quiet -j $(JOBS) -p $(RELEASE) '^$(CURDIR)/(cpp_ref|sim|bench|tests)/'
 
 format: ## format our own C++
-	git ls-files -z --cached --others --exclude-standard '*.cpp' '*.hpp' ':!cpp_ref/include/cchip/wire/definitions.hpp' | xargs -0 -r clang-format -i
+	git ls-files -z --cached --others --exclude-standard '*.cpp' '*.hpp' ':!cpp_ref/include/cchip/internal/wire/definitions.hpp' | xargs -0 -r clang-format -i
 
 deb: ## a Debian package of the library alone, shared, in build/deb
 	cmake -S . -B build/deb -G Ninja -D CMAKE_BUILD_TYPE=Release -D CCHIP_SIMULATION=OFF -D BUILD_SHARED_LIBS=ON -D CMAKE_INSTALL_PREFIX=/usr

@@ -2,7 +2,7 @@
 /*
  * A polling driver of cchip_chip in C11, without an operating system: registers and memory are two pointers. It shows
  * the order of events; docs/hardware/programmers-guide.md explains it. Images and queries come from the host library
- * (cchip/bvh/image.hpp, cchip/bvh/place.hpp).
+ * (cchip/internal/bvh/image.hpp, cchip/internal/bvh/place.hpp).
  */
 #include "chip_poll.h"
 

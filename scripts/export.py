@@ -47,7 +47,7 @@ MORE_PAGES = {SUBSYSTEM: ("hardware/registers.md",),
 MHZ = {"cchip_primtest_array": 145, SUBSYSTEM: 130, CHIP: 62}
 # Bench of a top, the first of its files, and what else is copied.
 BENCH = "tests/icarus/bench_primtest.v"
-WIRE = "cpp_ref/include/cchip/wire"
+WIRE = "cpp_ref/include/cchip/internal/wire"
 FILES = {BLANK: ("tests/icarus/bench_blank.v",),
          SUBSYSTEM: (BENCH, "tests/icarus/bench_subsystem.v", f"{WIRE}/registers.hpp"),
          CHIP: ("tests/icarus/bench_chip.v", f"{WIRE}/chip_registers.hpp", "examples/chip_poll.h", "examples/chip_poll.c",

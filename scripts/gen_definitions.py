@@ -114,7 +114,7 @@ def constant(kind, name, args, value):
 
 
 def cpp(data, names):
-    lines = ["// SPDX-License-Identifier: Apache-2.0", f"// {NOTE}", "#ifndef CCHIP_WIRE_DEFINITIONS_HPP", "#define CCHIP_WIRE_DEFINITIONS_HPP", "",
+    lines = ["// SPDX-License-Identifier: Apache-2.0", f"// {NOTE}", "#ifndef CCHIP_INTERNAL_WIRE_DEFINITIONS_HPP", "#define CCHIP_INTERNAL_WIRE_DEFINITIONS_HPP", "",
              "#include <cstdint>", "", "namespace cchip {", ""]
     for e in data["enums"]:
         lines += [f"/// {e['doc'][0].upper() + e['doc'][1:]}.", f"enum class {e['name']} : std::uint8_t {{"]
@@ -144,7 +144,7 @@ def cpp(data, names):
 
 def code_names(data):
     lines = ["// SPDX-License-Identifier: Apache-2.0", f"// {NOTE}", "/// \\file", "/// Codes of the hardware as text, by their names in definitions.hpp.",
-             "#ifndef CCHIP_WIRE_CODE_NAMES_HPP", "#define CCHIP_WIRE_CODE_NAMES_HPP", "", "#include <cchip/wire/definitions.hpp>", "", "namespace cchip {", "",
+             "#ifndef CCHIP_INTERNAL_WIRE_CODE_NAMES_HPP", "#define CCHIP_INTERNAL_WIRE_CODE_NAMES_HPP", "", "#include <cchip/internal/wire/definitions.hpp>", "", "namespace cchip {", "",
              "// nullptr: there is no such code."]
     for e in data["enums"]:
         lines += ["", f"constexpr const char* name_of({e['name']} code) {{", "  switch (code) {"]
@@ -161,7 +161,7 @@ def row(*cells):
 
 def page(data, names):
     lines = ["<!-- SPDX-License-Identifier: Apache-2.0 -->", f"<!-- {NOTE} -->", "# Shared definitions", "",
-             "Verilog: `` `CCHIP_<NAME> `` of `rtl/include/cchip_defs.vh`. C++: `cchip::defs::<name>` of `<cchip/wire/definitions.hpp>`.", "",
+             "Verilog: `` `CCHIP_<NAME> `` of `rtl/include/cchip_defs.vh`. C++: `cchip::defs::<name>` of `<cchip/internal/wire/definitions.hpp>`.", "",
              "## Constants", "", "| name | value | unit | meaning |", "|---|---|---|---|"]
     lines += [row(f"`{c['name']}`", c["value"], c["unit"], c["doc"]) for c in data["constants"]]
     for e in data["enums"]:
@@ -196,8 +196,8 @@ def main():
         names[f"{r['name']}_W"] = "function" if r["args"] else "constant"
     return generated.finish({
         "rtl/include/cchip_defs.vh": verilog(data, names),
-        "cpp_ref/include/cchip/wire/definitions.hpp": cpp(data, names),
-        "cpp_ref/include/cchip/wire/code_names.hpp": code_names(data),
+        "cpp_ref/include/cchip/internal/wire/definitions.hpp": cpp(data, names),
+        "cpp_ref/include/cchip/internal/wire/code_names.hpp": code_names(data),
         "docs/hardware/definitions.md": page(data, names),
     }, "gen_definitions.py")
 

@@ -452,7 +452,7 @@ def verilog(name_of_map, registers):
 
 def cpp(name, registers):
     module, namespace, _, page_name = MAPS[name]
-    guard = f"CCHIP_WIRE_{namespace.upper()}_HPP"
+    guard = f"CCHIP_INTERNAL_WIRE_{namespace.upper()}_HPP"
     lines = ["// SPDX-License-Identifier: Apache-2.0", f"// {note(name)}", "/// \\file",
              f"/// Byte offsets, masks and shifts of the registers of {module}; see docs/{page_name}.",
              f"#ifndef {guard}", f"#define {guard}", "", "#include <cstdint>", "", f"namespace cchip::{namespace} {{", ""]
@@ -484,7 +484,7 @@ ACCESS = {"constant": "ro", "input": "ro", "plain": "rw", "pulse": "wo, reads 0"
 def page(name, title, registers):
     _, namespace, header, _ = MAPS[name]
     lines = ["<!-- SPDX-License-Identifier: Apache-2.0 -->", f"<!-- {note(name)} -->", f"# {title}", "",
-             f"AXI4-Lite, 32-bit words, little endian. C++: `cchip::{namespace}` of `<cchip/wire/{header}>`. RTL: "
+             f"AXI4-Lite, 32-bit words, little endian. C++: `cchip::{namespace}` of `<cchip/internal/wire/{header}>`. RTL: "
              f"[{name}_regs](../modules/{name}_regs.md). A read where no register is and a write where nothing can "
              "be written are answered `SLVERR`. Bits that are not listed read 0; writing them does nothing.", "",
              "| offset | register | what |", "|---|---|---|"]
@@ -510,7 +510,7 @@ def main():
         except Invalid as error:
             raise SystemExit(f"{name}.rdl: {error}") from error
         outputs[f"rtl/regs/{name}_regs.v"] = verilog(name, registers)
-        outputs[f"cpp_ref/include/cchip/wire/{header}"] = cpp(name, registers)
+        outputs[f"cpp_ref/include/cchip/internal/wire/{header}"] = cpp(name, registers)
         outputs[f"docs/{page_name}"] = page(name, title, registers)
     return generated.finish(outputs, "gen_registers.py")
 

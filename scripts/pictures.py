@@ -327,7 +327,7 @@ def graph(picture, uses, names, left, top, width, height):
             column.sort(key=lambda node: sum(spot[n] for n in near[node]) / len(near[node]) if near[node] else spot[node])
             spot.update({node: (i + 0.5) / len(column) for i, node in enumerate(column)})
     pitch = width / len(columns)
-    box = min(80, pitch - 22)
+    box = min(80, pitch - 14)
     middle = {node: (left + pitch * (i + 0.5), top + height * (k + 0.5) / len(column))
               for i, column in enumerate(columns) for k, node in enumerate(column)}
     for node, sources in before.items():
@@ -347,7 +347,7 @@ def graph(picture, uses, names, left, top, width, height):
 def rooms():
     rtl, cpp = arrows()
     spec_folders = {"sim": "sim/harness", "rc": "sim/reconfig", "levels": "sim/systemc"}
-    library = {path.name for path in (ROOT / "cpp_ref" / "include" / "cchip").iterdir() if path.is_dir()}
+    library = {path.name for path in (ROOT / "cpp_ref" / "src").iterdir() if path.is_dir()}
     picture = Picture("Rooms of the house and which may use which", 1000, 620)
     picture.text(20, 28, "rtl/: a module may instantiate modules of its own folder and of all folders from which arrows lead to it",
                  12, INK, "bold", "start")
@@ -358,7 +358,7 @@ def rooms():
     picture.text(20, 246, but, 12, GREY, anchor="start")
     graph(picture, cpp, lambda node: DONE if node in library else PARTLY, 10, 256, 980, 320)
     other = ", ".join(f"{room} is {folder}" for room, folder in spec_folders.items())
-    picture.key(20, 594, [(BLUE, "rtl/<room>", 110), (DONE, "cpp_ref/include/cchip/<room>", 220),
+    picture.key(20, 594, [(BLUE, "rtl/<room>", 110), (DONE, "cpp_ref/src/<room>", 220),
                           (PARTLY, f"sim/<room>; {other}", 300)])
     return picture.svg()
 

@@ -3,7 +3,7 @@
 // the promise itself: volumes that share a point are never separated.
 #include <Vbox_unit.h>
 
-#include <cchip/model/box_test.hpp>
+#include <cchip/internal/model/box_test.hpp>
 #include <cchip/sim/bits.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cchip/stimulus/touching_volumes.hpp>

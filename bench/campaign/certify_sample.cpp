@@ -4,7 +4,7 @@
 #include <cchip/certificate/certify.hpp>
 #include <cchip/certificate/check.hpp>
 #include <cchip/cpu/cpu_device.hpp>
-#include <cchip/exact/oracle.hpp>
+#include <cchip/internal/exact/oracle.hpp>
 #include <stdexcept>
 
 namespace cchip::campaign {

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cchip/wire/pair.hpp>
+#include <cchip/internal/wire/pair.hpp>
 #include <cstdint>
 
 namespace cchip::campaign {

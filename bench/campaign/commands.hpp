@@ -5,8 +5,8 @@
 #ifndef CCHIP_CAMPAIGN_COMMANDS_HPP
 #define CCHIP_CAMPAIGN_COMMANDS_HPP
 
+#include <cchip/internal/wire/definitions.hpp>
 #include <cchip/stimulus/campaign.hpp>
-#include <cchip/wire/definitions.hpp>
 
 namespace cchip::campaign {
 

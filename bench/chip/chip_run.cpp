@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cchip/bvh/place.hpp>
 #include <cchip/cpu/cpu_device.hpp>
+#include <cchip/internal/bvh/place.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/progress.hpp>
 #include <cchip/waves/wave_layout.hpp>

@@ -8,11 +8,11 @@
 #include <CLI/CLI.hpp>
 #include <cchip/driver/chip_driver.hpp>
 #include <cchip/driver/chip_host.hpp>
+#include <cchip/internal/wire/chip_registers.hpp>
 #include <cchip/machines/chip_machine.hpp>
 #include <cchip/machines/probes.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/sim/seed.hpp>
-#include <cchip/wire/chip_registers.hpp>
 #include <filesystem>
 #include <map>
 #include <optional>

@@ -4,11 +4,11 @@
 #ifndef CCHIP_BENCH_PORT_BENCH_HPP
 #define CCHIP_BENCH_PORT_BENCH_HPP
 
-#include <cchip/bvh/image.hpp>
 #include <cchip/driver/chip_driver.hpp>
+#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/wire/chip_registers.hpp>
 #include <cchip/machines/chip_answer.hpp>
 #include <cchip/machines/chip_machine.hpp>
-#include <cchip/wire/chip_registers.hpp>
 #include <functional>
 #include <map>
 #include <memory>

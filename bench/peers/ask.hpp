@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cchip/cpu/cpu_device.hpp>
-#include <cchip/exact/oracle.hpp>
+#include <cchip/internal/exact/oracle.hpp>
 #include <iterator>
 #include <memory>
 #include <string>

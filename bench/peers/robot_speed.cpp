@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cchip/cpu/cpu_device.hpp>
-#include <cchip/exact/oracle.hpp>
+#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/sim/seed.hpp>

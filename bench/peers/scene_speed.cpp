@@ -8,8 +8,8 @@
 #include <CLI/CLI.hpp>
 #include <cchip/collide/scene.hpp>
 #include <cchip/cpu/cpu_device.hpp>
+#include <cchip/internal/reference/brute_force.hpp>
 #include <cchip/mesh/shapes.hpp>
-#include <cchip/reference/brute_force.hpp>
 #include <cchip/sim/seed.hpp>
 #include <numeric>
 #include <random>

@@ -9,19 +9,19 @@
 #include <verilated.h>
 
 #include <array>
-#include <cchip/driver/primtest_engine.hpp>
-#include <cchip/exact/oracle.hpp>
+#include <cchip/internal/driver/primtest_engine.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/model/programme.hpp>
+#include <cchip/internal/wire/bitstream.hpp>
+#include <cchip/internal/wire/registers.hpp>
+#include <cchip/internal/wire/swap.hpp>
 #include <cchip/machines/pair_port.hpp>
 #include <cchip/machines/probes.hpp>
 #include <cchip/machines/swap_port.hpp>
-#include <cchip/model/programme.hpp>
 #include <cchip/sim/axi_lite.hpp>
 #include <cchip/sim/axi_memory.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cchip/stimulus/pair_source.hpp>
-#include <cchip/wire/bitstream.hpp>
-#include <cchip/wire/registers.hpp>
-#include <cchip/wire/swap.hpp>
 #include <map>
 #include <memory>
 #include <optional>

@@ -7,8 +7,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cchip/bvh/dop26.hpp>
 #include <cchip/cpu/distance.hpp>
+#include <cchip/internal/bvh/dop26.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cmath>
 #include <ctime>

@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cchip/bvh/place.hpp>
 #include <cchip/cpu/cpu_device.hpp>
+#include <cchip/internal/bvh/place.hpp>
+#include <cchip/internal/model/broad_phase.hpp>
 #include <cchip/machines/simulated_broad_phase.hpp>
-#include <cchip/model/broad_phase.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <set>

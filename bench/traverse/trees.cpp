@@ -5,10 +5,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cchip/bvh/image.hpp>
-#include <cchip/bvh/place.hpp>
 #include <cchip/cpu/cpu_device.hpp>
-#include <cchip/model/broad_phase.hpp>
+#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/bvh/place.hpp>
+#include <cchip/internal/model/broad_phase.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cmath>
 #include <limits>

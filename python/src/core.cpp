@@ -13,8 +13,8 @@
 #include <atomic>
 #include <cchip/cchip.hpp>
 #include <cchip/certificate/certificate_file.hpp>
+#include <cchip/internal/reference/brute_force.hpp>
 #include <cchip/mesh_io/html_page.hpp>
-#include <cchip/reference/brute_force.hpp>
 #include <cerrno>
 #include <cmath>
 #include <cstdint>

@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cchip/device/device.hpp>
-#include <cchip/geometry/decimal.hpp>
+#include <cchip/internal/geometry/decimal.hpp>
 #include <cchip/machines/simulated_chip.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/command_line.hpp>

@@ -7,12 +7,12 @@
 #include <array>
 #include <cchip/certificate/certificate_file.hpp>
 #include <cchip/certificate/certify.hpp>
-#include <cchip/collide/face_pairs.hpp>
 #include <cchip/collide/intersection.hpp>
 #include <cchip/cpu/point_cloud.hpp>
 #include <cchip/cpu/solids.hpp>
 #include <cchip/device/device.hpp>
-#include <cchip/geometry/decimal.hpp>
+#include <cchip/internal/collide/face_pairs.hpp>
+#include <cchip/internal/geometry/decimal.hpp>
 #include <cchip/machines/simulated_chip.hpp>
 #include <cchip/mesh_io/point_file.hpp>
 #include <cchip/sim/output_file.hpp>

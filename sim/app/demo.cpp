@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cchip/collide/collide.hpp>
 #include <cchip/device/device.hpp>
-#include <cchip/exact/oracle.hpp>
-#include <cchip/geometry/grid.hpp>
 #include <cchip/geometry/pose.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/local_grid.hpp>
+#include <cchip/internal/reference/eigen_sat.hpp>
 #include <cchip/machines/simulated_chip.hpp>
 #include <cchip/mesh/shapes.hpp>
-#include <cchip/reference/eigen_sat.hpp>
 #include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <chrono>

@@ -5,6 +5,7 @@
 #define CCHIP_APP_DEMO_HPP
 
 #include <Eigen/Geometry>
+#include <cchip/internal/wire/pair.hpp>
 #include <cchip/mesh/mesh.hpp>
 #include <functional>
 #include <ostream>

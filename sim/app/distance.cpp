@@ -5,7 +5,7 @@
 
 #include <cchip/cpu/along.hpp>
 #include <cchip/cpu/distance.hpp>
-#include <cchip/geometry/decimal.hpp>
+#include <cchip/internal/geometry/decimal.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <cmath>
 #include <optional>

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <cchip/device/model_engine.hpp>
+#include <cchip/internal/device/model_engine.hpp>
+#include <cchip/internal/reference/eigen_sat.hpp>
 #include <cchip/machines/rtl_engine.hpp>
-#include <cchip/reference/eigen_sat.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <filesystem>

@@ -4,7 +4,7 @@
 #ifndef CCHIP_APP_ENGINES_HPP
 #define CCHIP_APP_ENGINES_HPP
 
-#include <cchip/driver/pair_engine.hpp>
+#include <cchip/internal/driver/pair_engine.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cstdint>
 #include <memory>

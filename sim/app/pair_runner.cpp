@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cchip/exact/resolve.hpp>
-#include <cchip/geometry/grid.hpp>
+#include <cchip/internal/exact/resolve.hpp>
+#include <cchip/internal/grid/local_grid.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 
 namespace cchip::app {

@@ -4,7 +4,7 @@
 #ifndef CCHIP_APP_PAIR_RUNNER_HPP
 #define CCHIP_APP_PAIR_RUNNER_HPP
 
-#include <cchip/driver/pair_engine.hpp>
+#include <cchip/internal/driver/pair_engine.hpp>
 #include <cchip/stimulus/pair_job.hpp>
 #include <cstddef>
 #include <cstdint>

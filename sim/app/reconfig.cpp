@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <cchip/driver/reconfig_driver.hpp>
-#include <cchip/exact/oracle.hpp>
-#include <cchip/geometry/canonical.hpp>
-#include <cchip/geometry/grid.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/canonical.hpp>
+#include <cchip/internal/grid/local_grid.hpp>
 #include <cchip/machines/simulated_subsystem.hpp>
 #include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>

@@ -4,7 +4,7 @@
 #ifndef CCHIP_APP_RECONFIG_HPP
 #define CCHIP_APP_RECONFIG_HPP
 
-#include <cchip/wire/definitions.hpp>
+#include <cchip/internal/wire/definitions.hpp>
 #include <cstdint>
 #include <ostream>
 #include <string>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/bvh/image_line.hpp>
+#include <cchip/internal/bvh/image_line.hpp>
+#include <cchip/internal/model/leaf_pair.hpp>
+#include <cchip/internal/model/programme.hpp>
 #include <cchip/machines/leaf_receiver.hpp>
-#include <cchip/model/leaf_pair.hpp>
-#include <cchip/model/programme.hpp>
 
 namespace cchip::sim {
 

@@ -3,6 +3,7 @@
 #include <Vcchip_primtest_subsystem___024root.h>
 
 #include <algorithm>
+#include <cchip/internal/wire/registers.hpp>
 #include <cchip/machines/pair_streams.hpp>
 #include <cchip/machines/probes.hpp>
 #include <cchip/machines/simulated_subsystem.hpp>
@@ -10,7 +11,6 @@
 #include <cchip/sim/axi_memory.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cchip/waves/wave_layout.hpp>
-#include <cchip/wire/registers.hpp>
 #include <deque>
 #include <stdexcept>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <cchip/geometry/decimal.hpp>
+#include <cchip/internal/geometry/decimal.hpp>
 #include <cchip/stimulus/pair_columns.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <cmath>

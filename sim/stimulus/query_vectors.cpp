@@ -6,11 +6,11 @@
 //                                                   triangles alone, for a chip with their test alone (default: and
 //                                                   quads)
 #include <algorithm>
-#include <cchip/bvh/image.hpp>
-#include <cchip/bvh/place.hpp>
-#include <cchip/bvh/tree.hpp>
+#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/bvh/place.hpp>
+#include <cchip/internal/bvh/tree.hpp>
+#include <cchip/internal/model/broad_phase.hpp>
 #include <cchip/mesh/shapes.hpp>
-#include <cchip/model/broad_phase.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <iostream>
 #include <optional>

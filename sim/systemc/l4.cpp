@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cchip/internal/wire/bitstream.hpp>
 #include <cchip/levels/bitstream_length.hpp>
 #include <cchip/levels/level.hpp>
 #include <cchip/levels/platform.hpp>
 #include <cchip/levels/simulate.hpp>
 #include <cchip/levels/software_c3.hpp>
-#include <cchip/wire/bitstream.hpp>
 
 namespace cchip::levels {
 namespace {

@@ -2,6 +2,7 @@
 // cchip_levels: the refinement levels on one stimulus, compared pair by pair.
 #include <CLI/CLI.hpp>
 #include <array>
+#include <cchip/internal/wire/definitions.hpp>
 #include <cchip/levels/added_deltas.hpp>
 #include <cchip/levels/generator.hpp>
 #include <cchip/levels/level.hpp>
@@ -12,7 +13,6 @@
 #include <cchip/stimulus/command_line.hpp>
 #include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>
-#include <cchip/wire/definitions.hpp>
 #include <fstream>
 #include <iostream>
 #include <systemc>

@@ -6,7 +6,7 @@
 #define CCHIP_LEVELS_PRIMTEST_RTL_HPP
 
 #include <array>
-#include <cchip/wire/definitions.hpp>
+#include <cchip/internal/wire/definitions.hpp>
 #include <cstdint>
 #include <memory>
 

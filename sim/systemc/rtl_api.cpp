@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/geometry/canonical.hpp>
+#include <cchip/internal/grid/canonical.hpp>
 #include <cchip/levels/rtl_api.hpp>
 #include <stdexcept>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <cchip/internal/wire/registers.hpp>
 #include <cchip/levels/software_c3.hpp>
-#include <cchip/wire/registers.hpp>
 #include <stdexcept>
 
 namespace cchip::levels {

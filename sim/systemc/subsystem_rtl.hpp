@@ -5,7 +5,7 @@
 #ifndef CCHIP_LEVELS_SUBSYSTEM_RTL_HPP
 #define CCHIP_LEVELS_SUBSYSTEM_RTL_HPP
 
-#include <cchip/driver/primtest_engine.hpp>
+#include <cchip/internal/driver/primtest_engine.hpp>
 #include <cstdint>
 #include <memory>
 #include <optional>

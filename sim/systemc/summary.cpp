@@ -2,8 +2,8 @@
 #include <fmt/ostream.h>
 
 #include <algorithm>
+#include <cchip/internal/reference/eigen_sat.hpp>
 #include <cchip/levels/summary.hpp>
-#include <cchip/reference/eigen_sat.hpp>
 
 namespace cchip::levels {
 

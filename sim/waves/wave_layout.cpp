@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cchip/internal/wire/axis.hpp>
+#include <cchip/internal/wire/code_names.hpp>
+#include <cchip/internal/wire/pair.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/waves/wave_layout.hpp>
-#include <cchip/wire/axis.hpp>
-#include <cchip/wire/code_names.hpp>
-#include <cchip/wire/pair.hpp>
 #include <charconv>
 #include <cmath>
 #include <filesystem>

@@ -10,13 +10,15 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# Room of C++: the rooms that it may include from. <cchip/<room>/...> of cpp_ref and of sim share one list of names.
-CORE = ["wire", "geometry", "mesh", "exact", "bvh", "collide"]  # each may use those before it
+# Room of C++: the rooms that it may include from. <cchip/<room>/...> and <cchip/internal/<room>/...> of cpp_ref and
+# <cchip/<room>/...> of sim share one list of names.
+CORE = ["geometry", "wire", "grid", "mesh", "exact", "bvh", "collide"]  # each may use those before it
 ROOMS = {room: set(CORE[:i]) for i, room in enumerate(CORE)}
-ROOMS["mesh_io"] = {"wire", "geometry", "mesh"}
+ROOMS["mesh"] = {"geometry"}  # nothing of the hardware
+ROOMS["mesh_io"] = {"geometry", "mesh"}
 ROOMS["certificate"] = set(CORE)
-ROOMS["reference"] = {"wire", "geometry", "mesh", "exact", "bvh", "collide"}
-ROOMS["model"] = {"wire", "geometry", "mesh", "bvh"}
+ROOMS["reference"] = set(CORE)
+ROOMS["model"] = {"geometry", "wire", "grid", "mesh", "bvh"}
 ROOMS["cpu"] = set(CORE) | {"certificate"}  # the CPU's searches
 ROOMS["driver"] = set(CORE) | {"certificate", "cpu"}  # what speaks to hardware; its host gives the CPU what the chip leaves
 ROOMS["device"] = set(CORE) | {"cpu", "driver", "model"}  # what users open: any of the three by its name
@@ -24,7 +26,7 @@ CPP_REF = set(ROOMS)
 ROOMS["cchip.hpp"] = CPP_REF  # the one header for users
 ROOMS["sim"] = set()  # sim/harness
 ROOMS["rc"] = set()  # sim/reconfig
-ROOMS["waves"] = {"wire", "sim"}
+ROOMS["waves"] = {"geometry", "wire", "sim"}
 ROOMS["stimulus"] = CPP_REF - {"cpu", "driver", "device", "reference", "mesh_io"} | {"sim"}
 ROOMS["models"] = ROOMS["model"] | {"model"}  # the RTL's blocks clock by clock, for tests
 ROOMS["machines"] = CPP_REF | {"sim", "waves"}
@@ -62,7 +64,7 @@ def files(pattern):
 
 def room_of(name):
     """Room of a C++ file, None if it has none."""
-    found = re.match(r"cpp_ref/(?:include/cchip|src)/(?:(\w+)/|cchip\.hpp$)", name)
+    found = re.match(r"cpp_ref/(?:include/cchip(?:/internal)?|src)/(?:(\w+)/|cchip\.hpp$)", name)
     if found:
         return found.group(1) or "cchip.hpp"
     return next((room for folder, room in FOLDERS.items() if name.startswith(folder + "/")), None)
@@ -81,7 +83,7 @@ class Arrows(unittest.TestCase):
             for include in re.findall(r'^#include [<"]([^>"]+)[>"]', (ROOT / name).read_text(), re.M):
                 if include.startswith("..") or "tests/" in include:
                     wrong.append(f"{name} includes {include}")
-                found = re.match(r"cchip/(\w+)/", include)
+                found = re.match(r"cchip/(?:internal/)?(\w+)/", include)
                 if found and found.group(1) != room and found.group(1) not in ROOMS[room]:
                     wrong.append(f"{name} includes {include}: {room} may not use {found.group(1)}")
         self.assertEqual(wrong, [])

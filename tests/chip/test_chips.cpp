@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/bvh/image.hpp>
-#include <cchip/bvh/tree.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/driver/chip_driver.hpp>
 #include <cchip/driver/chip_host.hpp>
+#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/bvh/tree.hpp>
 #include <cchip/machines/chips_machine.hpp>
 #include <cchip/machines/simulated_chip.hpp>
 #include <cchip/mesh/shapes.hpp>

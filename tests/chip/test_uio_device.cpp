@@ -9,11 +9,11 @@
 #include <cchip/device/device.hpp>
 #include <cchip/driver/chip_host.hpp>
 #include <cchip/driver/uio_device.hpp>
+#include <cchip/internal/wire/chip_registers.hpp>
 #include <cchip/machines/chip_answer.hpp>
 #include <cchip/machines/chip_machine.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/seed.hpp>
-#include <cchip/wire/chip_registers.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>

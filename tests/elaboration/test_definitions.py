@@ -12,8 +12,8 @@ import staleness
 class Staleness(staleness.StalenessTests, staleness.GeneratorCopy):
     generator = "scripts/gen_definitions.py"
     source = "scripts/definitions.json"
-    numbers = ["rtl/include/cchip_defs.vh", "cpp_ref/include/cchip/wire/definitions.hpp"]
-    names = "cpp_ref/include/cchip/wire/code_names.hpp"
+    numbers = ["rtl/include/cchip_defs.vh", "cpp_ref/include/cchip/internal/wire/definitions.hpp"]
+    names = "cpp_ref/include/cchip/internal/wire/code_names.hpp"
     page = "docs/hardware/definitions.md"
     generated = [*numbers, names, page]
 

@@ -17,8 +17,8 @@ class Copy(staleness.GeneratorCopy):
     common = "rtl/regs/cchip_common.rdl"
     chip = "rtl/regs/cchip_chip.rdl"
     more = [common, chip]
-    of_subsystem = ["rtl/regs/cchip_subsystem_regs.v", "cpp_ref/include/cchip/wire/registers.hpp", "docs/hardware/registers.md"]
-    of_chip = ["rtl/regs/cchip_chip_regs.v", "cpp_ref/include/cchip/wire/chip_registers.hpp", "docs/hardware/chip-registers.md"]
+    of_subsystem = ["rtl/regs/cchip_subsystem_regs.v", "cpp_ref/include/cchip/internal/wire/registers.hpp", "docs/hardware/registers.md"]
+    of_chip = ["rtl/regs/cchip_chip_regs.v", "cpp_ref/include/cchip/internal/wire/chip_registers.hpp", "docs/hardware/chip-registers.md"]
     generated = of_subsystem + of_chip
 
 

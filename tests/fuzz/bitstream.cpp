@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a bitstream, with the right CRC: a header that makes the same bytes again, or an error of one line.
-#include <cchip/wire/bitstream.hpp>
+#include <cchip/internal/wire/bitstream.hpp>
 
 #include "require.hpp"
 

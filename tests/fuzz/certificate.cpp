@@ -4,7 +4,7 @@
 #include <array>
 #include <cchip/certificate/certificate_file.hpp>
 #include <cchip/certificate/check.hpp>
-#include <cchip/reference/brute_force.hpp>
+#include <cchip/internal/reference/brute_force.hpp>
 #include <optional>
 #include <sstream>
 #include <stdexcept>

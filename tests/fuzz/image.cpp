@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as an image of an object, with the right CRC. What passes the check is used: queries of the image against
 // itself end.
-#include <cchip/bvh/image.hpp>
-#include <cchip/bvh/place.hpp>
-#include <cchip/model/broad_phase.hpp>
+#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/bvh/place.hpp>
+#include <cchip/internal/model/broad_phase.hpp>
 
 #include "require.hpp"
 

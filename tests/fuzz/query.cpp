@@ -2,8 +2,8 @@
 // Any 64 bytes as the descriptor of a query: it keeps its bits, and the query ends. The objects are as small as the
 // kinds of leaves allow, so that the time goes into descriptors; the target of images descends into trees.
 #include <algorithm>
-#include <cchip/bvh/image.hpp>
-#include <cchip/model/broad_phase.hpp>
+#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/model/broad_phase.hpp>
 #include <vector>
 
 #include "require.hpp"

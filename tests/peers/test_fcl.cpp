@@ -3,7 +3,7 @@
 // decide about the faces in question, and the pose is listed.
 #include <catch2/catch.hpp>
 #include <cchip/device/device.hpp>
-#include <cchip/exact/oracle.hpp>
+#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/seed.hpp>
 #include <iostream>

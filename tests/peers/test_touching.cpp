@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cchip/device/device.hpp>
-#include <cchip/reference/brute_force.hpp>
+#include <cchip/internal/reference/brute_force.hpp>
 
 #include "touching_cases.hpp"
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cchip/geometry/primitive.hpp>
+#include <cchip/internal/wire/pair.hpp>
 #include <cstdint>
 #include <optional>
 

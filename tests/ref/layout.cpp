@@ -4,8 +4,9 @@
 #include "layout.hpp"
 
 #include <cchip/collide/collide.hpp>
-#include <cchip/exact/posed_pairs.hpp>
-#include <cchip/wire/pair.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
+#include <cchip/internal/exact/posed_pairs.hpp>
+#include <cchip/internal/wire/pair.hpp>
 
 namespace cchip_test {
 

@@ -5,6 +5,7 @@
 #define CCHIP_TESTS_REF_LINEAR_PROGRAMME_HPP
 
 #include <cchip/geometry/primitive.hpp>
+#include <cchip/internal/wire/pair.hpp>
 
 namespace cchip_test {
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cchip/geometry/primitive.hpp>
+#include <cchip/internal/wire/pair.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cmath>
 #include <cstdlib>

@@ -6,8 +6,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cchip/bvh/image.hpp>
 #include <cchip/collide/object.hpp>
+#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
 #include <cchip/models/refit.hpp>
 #include <cmath>
 #include <random>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eigen reference = exact oracle = exact linear programming, on pairs of every class.
 #include <catch2/catch.hpp>
-#include <cchip/exact/oracle.hpp>
-#include <cchip/reference/eigen_sat.hpp>
-#include <cchip/wire/definitions.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/reference/eigen_sat.hpp>
+#include <cchip/internal/wire/definitions.hpp>
 
 #include "linear_programme.hpp"
 #include "random_pairs.hpp"

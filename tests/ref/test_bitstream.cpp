@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/wire/bitstream.hpp>
+#include <cchip/internal/wire/bitstream.hpp>
 #include <initializer_list>
 #include <stdexcept>
 #include <string>

@@ -2,7 +2,7 @@
 // The box test never separates volumes that share a point. Cases are made so that two volumes touch in one point, at
 // the very end of their intervals on one direction: then every rounding counts. CCHIP_BOX_CASES sets their number.
 #include <catch2/catch.hpp>
-#include <cchip/model/box_test.hpp>
+#include <cchip/internal/model/box_test.hpp>
 #include <cchip/stimulus/touching_volumes.hpp>
 #include <cmath>
 #include <cstdlib>

@@ -3,11 +3,11 @@
 #include <Eigen/Geometry>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
-#include <cchip/bvh/image.hpp>
-#include <cchip/bvh/place.hpp>
-#include <cchip/exact/oracle.hpp>
-#include <cchip/model/broad_phase.hpp>
-#include <cchip/model/leaf_pair.hpp>
+#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/bvh/place.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/model/broad_phase.hpp>
+#include <cchip/internal/model/leaf_pair.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <functional>

@@ -9,7 +9,7 @@
 #include <cchip/collide/scene.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/device/device.hpp>
-#include <cchip/exact/oracle.hpp>
+#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/sim/seed.hpp>
 #include <fstream>
 #include <iostream>

@@ -2,7 +2,7 @@
 // What the driver of a chip makes of registers that no chip has.
 #include <catch2/catch.hpp>
 #include <cchip/driver/chip_driver.hpp>
-#include <cchip/wire/chip_registers.hpp>
+#include <cchip/internal/wire/chip_registers.hpp>
 
 using namespace cchip;
 namespace regs = cchip::chip_registers;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
-#include <cchip/bvh/image.hpp>
 #include <cchip/device/device.hpp>
 #include <cchip/driver/chip_host.hpp>
-#include <cchip/model/broad_phase.hpp>
+#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/model/broad_phase.hpp>
 #include <cchip/sim/seed.hpp>
 #include <functional>
 #include <map>

@@ -8,13 +8,13 @@
 
 #include <atomic>
 #include <catch2/catch.hpp>
-#include <cchip/bvh/image.hpp>
-#include <cchip/bvh/place.hpp>
 #include <cchip/collide/gradual_underflow.hpp>
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/device/device.hpp>
-#include <cchip/model/broad_phase.hpp>
-#include <cchip/reference/brute_force.hpp>
+#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/bvh/place.hpp>
+#include <cchip/internal/model/broad_phase.hpp>
+#include <cchip/internal/reference/brute_force.hpp>
 #include <cchip/sim/seed.hpp>
 #include <chrono>
 #include <iostream>

@@ -8,6 +8,7 @@
 // margin: spindles for the line of the centres, a corner of a cube in a face of the other one for the edges of boxes.
 #include <array>
 #include <catch2/catch.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Decimal texts at and beyond the ends of a double's range.
 #include <catch2/catch.hpp>
-#include <cchip/geometry/decimal.hpp>
+#include <cchip/internal/geometry/decimal.hpp>
 #include <cmath>
 #include <string>
 #include <vector>

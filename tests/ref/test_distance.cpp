@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Distances of faces against brute force in integers.
 #include <catch2/catch.hpp>
-#include <cchip/exact/oracle.hpp>
-#include <cchip/exact/posed_distances.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/exact/posed_distances.hpp>
 #include <cmath>
 #include <iostream>
 #include <limits>

@@ -2,6 +2,7 @@
 // Bounds of the search for the distance against integers of any size.
 #include <catch2/catch.hpp>
 #include <cchip/cpu/distance.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
 #include <cmath>
 #include <functional>
 #include <iostream>

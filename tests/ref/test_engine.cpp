@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/driver/pair_engine.hpp>
-#include <cchip/exact/oracle.hpp>
-#include <cchip/reference/eigen_sat.hpp>
-#include <cchip/wire/axis.hpp>
+#include <cchip/internal/driver/pair_engine.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/reference/eigen_sat.hpp>
+#include <cchip/internal/wire/axis.hpp>
 #include <map>
 #include <set>
 #include <string>

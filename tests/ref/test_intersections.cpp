@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Intersections of faces against brute force in fractions.
 #include <catch2/catch.hpp>
-#include <cchip/exact/intersection.hpp>
-#include <cchip/exact/oracle.hpp>
+#include <cchip/internal/exact/intersection.hpp>
+#include <cchip/internal/exact/oracle.hpp>
 #include <iostream>
 #include <limits>
 #include <map>

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
-#include <cchip/model/leaf_pair.hpp>
+#include <cchip/internal/model/leaf_pair.hpp>
 #include <cchip/sim/int128.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cmath>

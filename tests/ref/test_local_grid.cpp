@@ -2,8 +2,8 @@
 // quantise() against the definition, in big integers: all coordinates are taken as multiples of 2^-1200.
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
-#include <cchip/geometry/grid.hpp>
-#include <cchip/wire/definitions.hpp>
+#include <cchip/internal/grid/local_grid.hpp>
+#include <cchip/internal/wire/definitions.hpp>
 #include <cmath>
 #include <limits>
 #include <optional>

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/exact/oracle.hpp>
+#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/mesh_io/mesh_file.hpp>
 #include <clocale>
 #include <cmath>

@@ -2,10 +2,11 @@
 // Objects whose vertices move, and faces of one object that touch each other.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/bvh/image.hpp>
 #include <cchip/device/device.hpp>
-#include <cchip/exact/oracle.hpp>
-#include <cchip/reference/brute_force.hpp>
+#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/reference/brute_force.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cmath>
 #include <limits>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an outline means, from files and from arrays: docs/cpp/mesh_files.md has the rule.
 #include <catch2/catch.hpp>
-#include <cchip/exact/oracle.hpp>
+#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/sim/seed.hpp>
 #include <string>
 #include <vector>

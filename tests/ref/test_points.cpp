@@ -7,7 +7,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
 #include <cchip/cpu/point_cloud.hpp>
-#include <cchip/exact/posed_distances.hpp>
+#include <cchip/internal/exact/posed_distances.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cmath>
 #include <cstdlib>

@@ -2,8 +2,8 @@
 // Filtered answers against integers of any size.
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
-#include <cchip/exact/oracle.hpp>
-#include <cchip/exact/posed_pairs.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/exact/posed_pairs.hpp>
 #include <cmath>
 #include <iostream>
 #include <limits>

@@ -2,7 +2,7 @@
 // What the driver of the reconfigurable subsystem hands to a machine before the first pair.
 #include <catch2/catch.hpp>
 #include <cchip/driver/reconfig_driver.hpp>
-#include <cchip/wire/registers.hpp>
+#include <cchip/internal/wire/registers.hpp>
 #include <map>
 #include <string>
 

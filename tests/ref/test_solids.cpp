@@ -3,7 +3,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cchip/cpu/solids.hpp>
-#include <cchip/exact/oracle.hpp>
+#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/seed.hpp>
 #include <iostream>

@@ -4,7 +4,7 @@
 #include <cchip/collide/scene.hpp>
 #include <cchip/cpu/distance.hpp>
 #include <cchip/device/device.hpp>
-#include <cchip/exact/posed_distances.hpp>
+#include <cchip/internal/exact/posed_distances.hpp>
 #include <cmath>
 #include <iostream>
 #include <limits>

@@ -6,7 +6,7 @@
 
 #include <unistd.h>
 
-#include <cchip/driver/pair_engine.hpp>
+#include <cchip/internal/driver/pair_engine.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cchip/internal/reference/brute_force.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/mesh_io/mesh_file.hpp>
-#include <cchip/reference/brute_force.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <cmath>

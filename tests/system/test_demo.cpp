@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/reference/eigen_sat.hpp>
+#include <cchip/internal/reference/eigen_sat.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 
 #include "demo.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The dispatcher over the three modules, with the model and the RTL behind it.
 #include <catch2/catch.hpp>
-#include <cchip/exact/oracle.hpp>
-#include <cchip/geometry/canonical.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/canonical.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/witness.hpp>
 #include <map>

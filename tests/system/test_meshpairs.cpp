@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/exact/oracle.hpp>
-#include <cchip/geometry/grid.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/local_grid.hpp>
 #include <cchip/mesh_io/mesh_file.hpp>
 #include <cchip/stimulus/csv_reader.hpp>
 #include <cchip/stimulus/usage_error.hpp>

@@ -4,9 +4,9 @@
 // and exact arithmetic on the doubles judge it.
 #include <fmt/format.h>
 
-#include <cchip/exact/oracle.hpp>
-#include <cchip/model/programme.hpp>
-#include <cchip/wire/axis.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/model/programme.hpp>
+#include <cchip/internal/wire/axis.hpp>
 #include <cstring>
 #include <random>
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/exact/oracle.hpp>
+#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/levels/functional_api.hpp>
 #include <cchip/levels/generator.hpp>
 #include <cchip/levels/simulate.hpp>

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+#include <cchip/internal/grid/coplanar.hpp>
+#include <cchip/internal/reference/eigen_sat.hpp>
 #include <cchip/levels/functional_test.hpp>
 #include <cchip/levels/generator.hpp>
 #include <cchip/levels/stimulus_file.hpp>
-#include <cchip/reference/eigen_sat.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <functional>

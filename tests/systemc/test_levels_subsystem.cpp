@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #define SC_INCLUDE_DYNAMIC_PROCESSES
 #include <catch2/catch.hpp>
+#include <cchip/internal/wire/registers.hpp>
 #include <cchip/levels/platform.hpp>
 #include <cchip/levels/software_c3.hpp>
 #include <cchip/sim/seed.hpp>
-#include <cchip/wire/registers.hpp>
 #include <functional>
 
 using namespace cchip;

@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cchip/internal/reference/eigen_sat.hpp>
 #include <cchip/levels/c3.hpp>
 #include <cchip/levels/generator.hpp>
 #include <cchip/levels/simulate.hpp>
 #include <cchip/levels/static_side.hpp>
-#include <cchip/reference/eigen_sat.hpp>
 #include <cchip/sim/seed.hpp>
 
 using namespace cchip;

@@ -5,9 +5,9 @@
 #define CCHIP_TESTS_UNIT_BENCH_HPP
 
 #include <catch2/catch.hpp>
+#include <cchip/internal/model/sat.hpp>
+#include <cchip/internal/model/stream.hpp>
 #include <cchip/machines/pair_port.hpp>
-#include <cchip/model/sat.hpp>
-#include <cchip/model/stream.hpp>
 #include <cchip/sim/bits.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cchip/sim/wave_on_failure.hpp>

@@ -6,8 +6,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cchip/bvh/image_fields.hpp>
-#include <cchip/model/box_test.hpp>
+#include <cchip/internal/bvh/image_fields.hpp>
+#include <cchip/internal/model/box_test.hpp>
 #include <cchip/stimulus/boundary.hpp>
 #include <cmath>
 

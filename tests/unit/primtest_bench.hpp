@@ -5,8 +5,8 @@
 #ifndef CCHIP_TESTS_UNIT_PRIMTEST_BENCH_HPP
 #define CCHIP_TESTS_UNIT_PRIMTEST_BENCH_HPP
 
+#include <cchip/internal/model/primtest.hpp>
 #include <cchip/machines/probes.hpp>
-#include <cchip/model/primtest.hpp>
 #include <functional>
 #include <memory>
 

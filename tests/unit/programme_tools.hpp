@@ -4,7 +4,7 @@
 #ifndef CCHIP_TESTS_UNIT_PROGRAMME_TOOLS_HPP
 #define CCHIP_TESTS_UNIT_PROGRAMME_TOOLS_HPP
 
-#include <cchip/model/programme.hpp>
+#include <cchip/internal/model/programme.hpp>
 
 #include "bench.hpp"
 

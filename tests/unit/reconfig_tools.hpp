@@ -6,7 +6,7 @@
 
 #include <zlib.h>
 
-#include <cchip/wire/definitions.hpp>
+#include <cchip/internal/wire/definitions.hpp>
 #include <cstdint>
 #include <optional>
 #include <vector>

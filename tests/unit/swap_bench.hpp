@@ -4,10 +4,10 @@
 #ifndef CCHIP_TESTS_UNIT_SWAP_BENCH_HPP
 #define CCHIP_TESTS_UNIT_SWAP_BENCH_HPP
 
+#include <cchip/internal/wire/bitstream.hpp>
+#include <cchip/internal/wire/swap.hpp>
 #include <cchip/machines/swap_port.hpp>
 #include <cchip/sim/axi_memory.hpp>
-#include <cchip/wire/bitstream.hpp>
-#include <cchip/wire/swap.hpp>
 #include <deque>
 
 #include "bench.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/model/primtest.hpp>
+#include <cchip/internal/model/primtest.hpp>
 #include <deque>
 #include <map>
 #include <models/cchip_axis_controller.hpp>

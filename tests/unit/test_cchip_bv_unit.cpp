@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/bvh/image.hpp>
-#include <cchip/bvh/place.hpp>
+#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/bvh/place.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <deque>
 #include <models/cchip_bv_unit.hpp>

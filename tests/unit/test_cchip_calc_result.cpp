@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // cchip_calc_result against a scoreboard of queries, leaf pairs and records; the traversal is played by the test.
 
-#include <cchip/wire/definitions.hpp>
-#include <cchip/wire/query.hpp>
+#include <cchip/internal/wire/definitions.hpp>
+#include <cchip/internal/wire/query.hpp>
 #include <deque>
 #include <map>
 #include <models/cchip_calc_result.hpp>

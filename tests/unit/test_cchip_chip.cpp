@@ -2,7 +2,7 @@
 // The chip through its registers: their values, events and interrupt, counters, invalidation, soft reset.
 #include <Vcchip_chip_swaps1.h>
 
-#include <cchip/wire/chip_registers.hpp>
+#include <cchip/internal/wire/chip_registers.hpp>
 #include <map>
 #include <models/cchip_chip.hpp>
 

@@ -6,10 +6,10 @@
 #include <Vpa_l3___024root.h>
 
 #include <algorithm>
-#include <cchip/driver/primtest_engine.hpp>
-#include <cchip/exact/oracle.hpp>
+#include <cchip/internal/driver/primtest_engine.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/model/primtest.hpp>
 #include <cchip/machines/probes.hpp>
-#include <cchip/model/primtest.hpp>
 #include <cchip/sim/scoreboard.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cchip/stimulus/witness.hpp>

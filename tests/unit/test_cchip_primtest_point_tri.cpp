@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sphere of a point and a triangle: RTL = model on every clock = exact distance; the rules of
 // docs/modules/cchip_primtest_point_tri.md by counting, without the model's clocks.
-#include <cchip/model/point_tri.hpp>
+#include <cchip/internal/model/point_tri.hpp>
 #include <deque>
 #include <iostream>
 #include <map>

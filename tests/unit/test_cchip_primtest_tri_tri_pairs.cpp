@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random pairs of all shapes through the default configurations, and relations between the answers of related pairs.
-#include <cchip/exact/oracle.hpp>
-#include <cchip/geometry/canonical.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/canonical.hpp>
+#include <cchip/internal/model/programme.hpp>
+#include <cchip/internal/reference/eigen_sat.hpp>
 #include <cchip/machines/rtl_engine.hpp>
-#include <cchip/model/programme.hpp>
-#include <cchip/reference/eigen_sat.hpp>
 #include <cchip/stimulus/judge.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cchip/stimulus/witness.hpp>

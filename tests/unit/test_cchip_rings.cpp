@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Both rings of the chip against scoreboards: what memory holds, what the host may rely on.
-#include <cchip/wire/query.hpp>
+#include <cchip/internal/wire/query.hpp>
 #include <deque>
 #include <map>
 #include <models/cchip_query_ring.hpp>

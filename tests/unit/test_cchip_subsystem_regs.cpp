@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
+#include <cchip/internal/wire/registers.hpp>
 #include <cchip/sim/axi_lite.hpp>
-#include <cchip/wire/registers.hpp>
 #include <map>
 #include <models/cchip_subsystem_regs.hpp>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scheduler with slots, queues, table and controller played by the test.
+#include <cchip/internal/wire/definitions.hpp>
+#include <cchip/internal/wire/swap.hpp>
 #include <cchip/machines/swap_port.hpp>
-#include <cchip/wire/definitions.hpp>
-#include <cchip/wire/swap.hpp>
 #include <models/cchip_swap_scheduler.hpp>
 
 #include "bench.hpp"

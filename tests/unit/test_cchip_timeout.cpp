@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/model/stream.hpp>
+#include <cchip/internal/model/stream.hpp>
 #include <models/cchip_timeout.hpp>
 
 #include "bench.hpp"

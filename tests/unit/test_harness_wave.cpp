@@ -3,12 +3,12 @@
 #include <gtkwave/fstapi.h>
 
 #include <catch2/catch.hpp>
-#include <cchip/driver/primtest_engine.hpp>
+#include <cchip/internal/driver/primtest_engine.hpp>
+#include <cchip/internal/wire/axis.hpp>
+#include <cchip/internal/wire/code_names.hpp>
 #include <cchip/machines/rtl_engine.hpp>
 #include <cchip/sim/wave_on_failure.hpp>
 #include <cchip/waves/wave_layout.hpp>
-#include <cchip/wire/axis.hpp>
-#include <cchip/wire/code_names.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>

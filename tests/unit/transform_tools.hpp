@@ -4,7 +4,7 @@
 #ifndef CCHIP_TESTS_UNIT_TRANSFORM_TOOLS_HPP
 #define CCHIP_TESTS_UNIT_TRANSFORM_TOOLS_HPP
 
-#include <cchip/bvh/image_line.hpp>
+#include <cchip/internal/bvh/image_line.hpp>
 #include <cchip/models/transform.hpp>
 
 #include "bv_tools.hpp"

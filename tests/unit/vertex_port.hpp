@@ -5,8 +5,8 @@
 #ifndef CCHIP_TESTS_UNIT_VERTEX_PORT_HPP
 #define CCHIP_TESTS_UNIT_VERTEX_PORT_HPP
 
-#include <cchip/exact/oracle.hpp>
-#include <cchip/model/programme.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/model/programme.hpp>
 #include <cchip/sim/scoreboard.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <deque>

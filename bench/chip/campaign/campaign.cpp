@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cchip/exact/posed_pairs.hpp>
+#include <cchip/internal/exact/posed_pairs.hpp>
 
 namespace cchip::testing {
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cchip/wire/bitstream.hpp>
+#include <cchip/internal/wire/bitstream.hpp>
 
 #include "swap_chip.hpp"
 

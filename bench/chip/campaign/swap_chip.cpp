@@ -6,9 +6,9 @@
 #include <Vcchip_chip_swaps2.h>
 #include <Vcchip_chip_swaps2___024root.h>
 
+#include <cchip/internal/wire/swap.hpp>
 #include <cchip/machines/chip_machine.hpp>
 #include <cchip/machines/probes.hpp>
-#include <cchip/wire/swap.hpp>
 
 namespace cchip::testing {
 namespace {

@@ -8,9 +8,9 @@
 #include <cchip/cpu/cpu_device.hpp>
 #include <cchip/driver/chip_host.hpp>
 #include <cchip/driver/machine.hpp>
+#include <cchip/internal/wire/chip_registers.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/axi_memory.hpp>
-#include <cchip/wire/chip_registers.hpp>
 #include <functional>
 #include <memory>
 #include <vector>

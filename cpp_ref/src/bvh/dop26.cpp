@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/bvh/dop26.hpp>
+#include <cchip/internal/bvh/dop26.hpp>
 
 #include "rounding.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/bvh/image.hpp>
+#include <cchip/internal/bvh/image.hpp>
 #include <cmath>
 #include <string>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/bvh/image_line.hpp>
+#include <cchip/internal/bvh/image_line.hpp>
 #include <cstring>
 #include <functional>
 

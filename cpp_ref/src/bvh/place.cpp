@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/bvh/dop26.hpp>
-#include <cchip/bvh/place.hpp>
+#include <cchip/internal/bvh/dop26.hpp>
+#include <cchip/internal/bvh/place.hpp>
 #include <cmath>
 
 #include "rounding.hpp"

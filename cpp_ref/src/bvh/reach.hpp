@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cchip/bvh/support_tree.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
 #include <cmath>
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/bvh/support_tree.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
 #include <cmath>
 #include <limits>
 #include <memory>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/bvh/dop26.hpp>
 #include <cchip/certificate/certify.hpp>
 #include <cchip/certificate/check.hpp>
-#include <cchip/collide/face_pairs.hpp>
+#include <cchip/internal/bvh/dop26.hpp>
+#include <cchip/internal/collide/face_pairs.hpp>
 #include <cmath>
 #include <deque>
 #include <limits>

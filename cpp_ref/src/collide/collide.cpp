@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cchip/collide/collide.hpp>
-#include <cchip/collide/face_pairs.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
+#include <cchip/internal/collide/face_pairs.hpp>
 #include <cstdint>
 #include <limits>
 #include <numeric>
@@ -89,7 +90,7 @@ struct Enough {};
 
 Object::Object(Mesh mesh) {
   check_float_mode();
-  bvh::SupportTree tree(mesh, bvh::build_topology(mesh));
+  auto tree = std::make_shared<const bvh::SupportTree>(mesh, bvh::build_topology(mesh));
   std::vector<std::uint32_t> by_file = faces_by_file(mesh);
   data_ = std::make_shared<const Data>(
       Data{std::move(mesh), std::move(tree), std::move(by_file), std::make_shared<Edges>()});
@@ -125,7 +126,7 @@ Object Object::moved(std::vector<Vec3d> vertices) const {
   const Mesh& old = this->mesh();
   Mesh mesh = {old.name, std::move(vertices), old.faces, old.polygons_cut, old.file_face, old.notes};
   bvh::check_vertices(mesh);
-  bvh::SupportTree tree = data().tree.moved(mesh);
+  auto tree = std::make_shared<const bvh::SupportTree>(data().tree->moved(mesh));
   Object object;
   object.data_ =
       std::make_shared<const Data>(Data{std::move(mesh), std::move(tree), data().by_file, std::make_shared<Edges>()});

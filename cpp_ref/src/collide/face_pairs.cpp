@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/collide/face_pairs.hpp>
+#include <cchip/internal/collide/face_pairs.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>

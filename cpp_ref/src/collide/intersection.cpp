@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/collide/face_pairs.hpp>
 #include <cchip/collide/intersection.hpp>
+#include <cchip/internal/collide/face_pairs.hpp>
 #include <cmath>
 #include <limits>
 #include <map>

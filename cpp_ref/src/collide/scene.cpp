@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/collide/face_pairs.hpp>
 #include <cchip/collide/scene.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
+#include <cchip/internal/collide/face_pairs.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>

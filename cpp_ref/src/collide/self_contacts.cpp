@@ -14,7 +14,8 @@
 #include <algorithm>
 #include <array>
 #include <cchip/collide/collide.hpp>
-#include <cchip/exact/posed_pairs.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
+#include <cchip/internal/exact/posed_pairs.hpp>
 #include <cmath>
 #include <cstring>
 #include <initializer_list>

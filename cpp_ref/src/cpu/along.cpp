@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cchip/cpu/along.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
 #include <cmath>
 #include <limits>
 #include <optional>

@@ -4,7 +4,7 @@
 #ifndef CCHIP_CPU_BEHIND_PLANE_HPP
 #define CCHIP_CPU_BEHIND_PLANE_HPP
 
-#include <cchip/bvh/support_tree.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
 #include <cstdint>
 #include <unordered_map>
 

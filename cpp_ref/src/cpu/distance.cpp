@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cchip/cpu/distance.hpp>
-#include <cchip/exact/posed_distances.hpp>
+#include <cchip/internal/exact/posed_distances.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>

@@ -2,6 +2,7 @@
 #include "dop_pairs.hpp"
 
 #include <algorithm>
+#include <cchip/internal/bvh/support_tree.hpp>
 #include <cmath>
 #include <limits>
 

@@ -5,9 +5,9 @@
 #define CCHIP_CPU_DOP_PAIRS_HPP
 
 #include <array>
-#include <cchip/bvh/dop26.hpp>
 #include <cchip/collide/object.hpp>
 #include <cchip/geometry/pose.hpp>
+#include <cchip/internal/bvh/dop26.hpp>
 #include <cstdint>
 #include <optional>
 

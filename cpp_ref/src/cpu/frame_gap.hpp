@@ -5,10 +5,10 @@
 #define CCHIP_CPU_FRAME_GAP_HPP
 
 #include <array>
-#include <cchip/bvh/support_tree.hpp>
 #include <cchip/collide/object.hpp>
 #include <cchip/geometry/pose.hpp>
 #include <cchip/geometry/primitive.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
 #include <cmath>
 #include <cstdint>
 

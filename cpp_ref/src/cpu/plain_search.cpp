@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <cchip/collide/face_pairs.hpp>
+#include <cchip/internal/collide/face_pairs.hpp>
 
 #include "dop_pairs.hpp"
 #include "search.hpp"

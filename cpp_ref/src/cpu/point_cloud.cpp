@@ -3,9 +3,10 @@
 // ranges along n are farther apart than |n| r; so every vector may leave out pairs of nodes, whatever map the poses
 // are. Those of nodes are the normals of both frames' boxes. Bounds on the rounding: docs/cpp/exactness.md, "Points".
 #include <algorithm>
-#include <cchip/collide/face_pairs.hpp>
 #include <cchip/cpu/point_cloud.hpp>
-#include <cchip/exact/posed_distances.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
+#include <cchip/internal/collide/face_pairs.hpp>
+#include <cchip/internal/exact/posed_distances.hpp>
 #include <cmath>
 #include <optional>
 #include <stdexcept>

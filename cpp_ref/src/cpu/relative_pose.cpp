@@ -2,6 +2,7 @@
 #include "relative_pose.hpp"
 
 #include <algorithm>
+#include <cchip/internal/bvh/support_tree.hpp>
 #include <cmath>
 
 #include "exact/ieee.hpp"

@@ -17,7 +17,7 @@
 #include <hwy/highway.h>
 
 #include <array>
-#include <cchip/collide/face_pairs.hpp>
+#include <cchip/internal/collide/face_pairs.hpp>
 #include <cmath>
 #include <cstdint>
 #include <iterator>

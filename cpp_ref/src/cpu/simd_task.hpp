@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cchip/bvh/support_tree.hpp>
-#include <cchip/collide/face_pairs.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
+#include <cchip/internal/collide/face_pairs.hpp>
 #include <cmath>
 #include <cstdint>
 

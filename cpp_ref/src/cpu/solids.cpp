@@ -21,9 +21,9 @@
 // All numbers are integers: vertices in units of 2^exponent, points with a denominator.
 #include <algorithm>
 #include <array>
-#include <cchip/collide/face_pairs.hpp>
 #include <cchip/cpu/solids.hpp>
-#include <cchip/exact/posed_pairs.hpp>
+#include <cchip/internal/collide/face_pairs.hpp>
+#include <cchip/internal/exact/posed_pairs.hpp>
 #include <cmath>
 #include <limits>
 #include <map>

@@ -4,7 +4,7 @@
 #ifndef CCHIP_CPU_TREE_SIDE_HPP
 #define CCHIP_CPU_TREE_SIDE_HPP
 
-#include <cchip/bvh/support_tree.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
 #include <cchip/mesh/mesh.hpp>
 #include <cstdint>
 

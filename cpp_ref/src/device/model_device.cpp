@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model_device.hpp"
 
-#include <cchip/bvh/image.hpp>
 #include <cchip/driver/chip_host.hpp>
-#include <cchip/model/broad_phase.hpp>
+#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/model/broad_phase.hpp>
 #include <deque>
 #include <iterator>
 #include <map>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/device/model_engine.hpp>
-#include <cchip/driver/primtest_engine.hpp>
-#include <cchip/model/primtest.hpp>
+#include <cchip/internal/device/model_engine.hpp>
+#include <cchip/internal/driver/primtest_engine.hpp>
+#include <cchip/internal/model/primtest.hpp>
 
 namespace cchip {
 namespace {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cchip/driver/chip_driver.hpp>
-#include <cchip/wire/chip_registers.hpp>
-#include <cchip/wire/query.hpp>
+#include <cchip/internal/wire/chip_registers.hpp>
+#include <cchip/internal/wire/query.hpp>
 #include <deque>
 #include <stdexcept>
 #include <string>

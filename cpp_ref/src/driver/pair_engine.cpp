@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/driver/pair_engine.hpp>
-#include <cchip/exact/oracle.hpp>
+#include <cchip/internal/driver/pair_engine.hpp>
+#include <cchip/internal/exact/oracle.hpp>
 #include <stdexcept>
 #include <utility>
 

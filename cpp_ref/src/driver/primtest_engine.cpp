@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/driver/primtest_engine.hpp>
-#include <cchip/geometry/canonical.hpp>
+#include <cchip/internal/driver/primtest_engine.hpp>
+#include <cchip/internal/grid/canonical.hpp>
 #include <map>
 #include <stdexcept>
 #include <unordered_map>

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cchip/driver/reconfig_driver.hpp>
-#include <cchip/wire/registers.hpp>
+#include <cchip/internal/wire/registers.hpp>
 #include <stdexcept>
 #include <string>
 

@@ -8,7 +8,7 @@
 #include <atomic>
 #include <cchip/driver/chip_host.hpp>
 #include <cchip/driver/uio_device.hpp>
-#include <cchip/wire/chip_registers.hpp>
+#include <cchip/internal/wire/chip_registers.hpp>
 #include <cerrno>
 #include <filesystem>
 #include <limits>

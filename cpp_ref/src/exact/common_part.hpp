@@ -4,7 +4,7 @@
 #ifndef CCHIP_SRC_EXACT_COMMON_PART_HPP
 #define CCHIP_SRC_EXACT_COMMON_PART_HPP
 
-#include <cchip/exact/intersection.hpp>
+#include <cchip/internal/exact/intersection.hpp>
 #include <optional>
 #include <vector>
 

@@ -5,7 +5,7 @@
 #define CCHIP_EXACT_NEAREST_PLANES_HPP
 
 #include <array>
-#include <cchip/exact/posed_distances.hpp>
+#include <cchip/internal/exact/posed_distances.hpp>
 
 #include "filter.hpp"
 #include "scaled_points.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <boost/multiprecision/cpp_int.hpp>
-#include <cchip/exact/oracle.hpp>
+#include <cchip/internal/exact/oracle.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/exact/posed_distances.hpp>
+#include <cchip/internal/exact/posed_distances.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/exact/oracle.hpp>
-#include <cchip/exact/posed_pairs.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/exact/posed_pairs.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/exact/oracle.hpp>
-#include <cchip/exact/resolve.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/exact/resolve.hpp>
 
 namespace cchip {
 

@@ -2,7 +2,7 @@
 #include "text.hpp"
 
 #include <algorithm>
-#include <cchip/geometry/decimal.hpp>
+#include <cchip/internal/geometry/decimal.hpp>
 #include <charconv>
 #include <optional>
 

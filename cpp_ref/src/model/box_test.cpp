@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/model/box_test.hpp>
-#include <cchip/model/sat.hpp>
+#include <cchip/internal/model/box_test.hpp>
+#include <cchip/internal/model/sat.hpp>
 
 namespace cchip::model {
 namespace {

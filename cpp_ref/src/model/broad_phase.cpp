@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/model/box_test.hpp>
-#include <cchip/model/broad_phase.hpp>
-#include <cchip/model/leaf_pair.hpp>
-#include <cchip/model/programme.hpp>
+#include <cchip/internal/model/box_test.hpp>
+#include <cchip/internal/model/broad_phase.hpp>
+#include <cchip/internal/model/leaf_pair.hpp>
+#include <cchip/internal/model/programme.hpp>
 #include <optional>
 
 namespace cchip::model {

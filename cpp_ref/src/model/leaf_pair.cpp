@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/model/leaf_pair.hpp>
+#include <cchip/internal/model/leaf_pair.hpp>
 
 namespace cchip::model {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
-#include <cchip/model/point_tri.hpp>
+#include <cchip/internal/model/point_tri.hpp>
 #include <stdexcept>
 #include <string>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/model/pose_setup.hpp>
+#include <cchip/internal/model/pose_setup.hpp>
 
 namespace cchip::model {
 namespace {

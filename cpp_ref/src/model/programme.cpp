@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/model/programme.hpp>
+#include <cchip/internal/model/programme.hpp>
 #include <stdexcept>
 
 namespace cchip::model {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/model/sat.hpp>
+#include <cchip/internal/model/sat.hpp>
 #include <cstdlib>
 
 namespace cchip::model {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/exact/oracle.hpp>
-#include <cchip/reference/brute_force.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/reference/brute_force.hpp>
 
 namespace cchip {
 

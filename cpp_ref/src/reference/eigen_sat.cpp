@@ -8,8 +8,8 @@
 //   1: a vector orthogonal to the line (the e x u_d span these), or along it: some u_d;
 //   0: some u_d.
 #include <Eigen/Geometry>
-#include <cchip/reference/eigen_sat.hpp>
-#include <cchip/wire/definitions.hpp>
+#include <cchip/internal/reference/eigen_sat.hpp>
+#include <cchip/internal/wire/definitions.hpp>
 #include <limits>
 #include <stdexcept>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/wire/axis.hpp>
+#include <cchip/internal/wire/axis.hpp>
 #include <stdexcept>
 
 namespace cchip {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <boost/crc.hpp>
-#include <cchip/wire/bitstream.hpp>
-#include <cchip/wire/pair.hpp>
+#include <cchip/internal/wire/bitstream.hpp>
+#include <cchip/internal/wire/pair.hpp>
 #include <cstdio>
 #include <random>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/wire/line.hpp>
+#include <cchip/internal/wire/line.hpp>
 
 namespace cchip {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/wire/code_names.hpp>
-#include <cchip/wire/pair.hpp>
+#include <cchip/internal/wire/code_names.hpp>
+#include <cchip/internal/wire/pair.hpp>
 
 namespace cchip {
 

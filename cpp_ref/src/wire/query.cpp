@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/wire/query.hpp>
+#include <cchip/internal/wire/query.hpp>
 
 namespace cchip {
 namespace {

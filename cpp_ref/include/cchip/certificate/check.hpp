@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <cchip/certificate/certificate.hpp>
-#include <cchip/certificate/exact_points.hpp>
+#include <cchip/internal/certificate/exact_points.hpp>
 #include <map>
 #include <optional>
 #include <set>

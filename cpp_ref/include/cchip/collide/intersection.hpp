@@ -8,7 +8,7 @@
 #define CCHIP_COLLIDE_INTERSECTION_HPP
 
 #include <cchip/collide/collide.hpp>
-#include <cchip/exact/intersection.hpp>
+#include <cchip/internal/exact/intersection.hpp>
 #include <cstdint>
 #include <vector>
 

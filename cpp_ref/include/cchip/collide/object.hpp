@@ -4,7 +4,6 @@
 #ifndef CCHIP_COLLIDE_OBJECT_HPP
 #define CCHIP_COLLIDE_OBJECT_HPP
 
-#include <cchip/bvh/support_tree.hpp>
 #include <cchip/mesh/mesh.hpp>
 #include <cstdint>
 #include <memory>
@@ -12,6 +11,10 @@
 #include <vector>
 
 namespace cchip {
+
+namespace bvh {
+class SupportTree;
+}
 
 /// An edge at which a surface is open: an odd number of its faces have both ends as neighbouring corners.
 struct OpenEdge {
@@ -43,8 +46,9 @@ class Object {
 
   /// \throws std::invalid_argument the object was moved from; so does tree()
   const Mesh& mesh() const { return data().mesh; }
-  /// What a CPU traverses. The chip's image is made from the same nodes: bvh::refit(tree().topology(), mesh()).
-  const bvh::SupportTree& tree() const { return data().tree; }
+  /// What a CPU traverses, of <cchip/internal/bvh/support_tree.hpp>. The chip's image is made from the same nodes:
+  /// bvh::refit(tree().topology(), mesh()).
+  const bvh::SupportTree& tree() const { return *data().tree; }
   /// Identity: equal only for copies of one object. Devices use it as the key of what they derive from an object.
   const void* id() const { return data_.get(); }
   /// Faces of the mesh that are face `number` of the file or were cut from it; none if it has no such face.
@@ -66,7 +70,7 @@ class Object {
   struct Edges;
   struct Data {
     Mesh mesh;
-    bvh::SupportTree tree;
+    std::shared_ptr<const bvh::SupportTree> tree;
     /// Faces by their number in the file, if some were cut and file_face is not ascending; else empty.
     std::vector<std::uint32_t> by_file;
     std::shared_ptr<Edges> edges;  ///< what is known of them; filled at the first question

@@ -6,7 +6,7 @@
 
 #include <cchip/driver/machine.hpp>
 #include <cchip/driver/query_port.hpp>
-#include <cchip/wire/bitstream.hpp>
+#include <cchip/internal/wire/bitstream.hpp>
 #include <cstdint>
 #include <functional>
 #include <memory>

@@ -5,8 +5,8 @@
 #ifndef CCHIP_DRIVER_MACHINE_HPP
 #define CCHIP_DRIVER_MACHINE_HPP
 
-#include <cchip/wire/bitstream.hpp>
-#include <cchip/wire/pair.hpp>
+#include <cchip/internal/wire/bitstream.hpp>
+#include <cchip/internal/wire/pair.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <optional>

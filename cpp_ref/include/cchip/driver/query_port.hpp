@@ -5,9 +5,9 @@
 #ifndef CCHIP_DRIVER_QUERY_PORT_HPP
 #define CCHIP_DRIVER_QUERY_PORT_HPP
 
-#include <cchip/wire/definitions.hpp>
-#include <cchip/wire/line.hpp>
-#include <cchip/wire/query.hpp>
+#include <cchip/internal/wire/definitions.hpp>
+#include <cchip/internal/wire/line.hpp>
+#include <cchip/internal/wire/query.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <optional>

@@ -6,7 +6,7 @@
 
 #include <array>
 #include <cchip/driver/machine.hpp>
-#include <cchip/wire/bitstream.hpp>
+#include <cchip/internal/wire/bitstream.hpp>
 #include <cstdint>
 #include <functional>
 #include <vector>

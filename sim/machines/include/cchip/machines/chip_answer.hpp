@@ -4,8 +4,8 @@
 #ifndef CCHIP_MACHINES_CHIP_ANSWER_HPP
 #define CCHIP_MACHINES_CHIP_ANSWER_HPP
 
-#include <cchip/model/broad_phase.hpp>
-#include <cchip/wire/query.hpp>
+#include <cchip/internal/model/broad_phase.hpp>
+#include <cchip/internal/wire/query.hpp>
 #include <cstdint>
 #include <optional>
 #include <set>

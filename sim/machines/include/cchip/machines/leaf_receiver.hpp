@@ -6,7 +6,7 @@
 #define CCHIP_MACHINES_LEAF_RECEIVER_HPP
 
 #include <array>
-#include <cchip/wire/query.hpp>
+#include <cchip/internal/wire/query.hpp>
 #include <cstdint>
 #include <deque>
 #include <optional>

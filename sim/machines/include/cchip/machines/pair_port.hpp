@@ -4,9 +4,9 @@
 #ifndef CCHIP_MACHINES_PAIR_PORT_HPP
 #define CCHIP_MACHINES_PAIR_PORT_HPP
 
+#include <cchip/internal/wire/pair.hpp>
 #include <cchip/sim/bits.hpp>
 #include <cchip/sim/stream.hpp>
-#include <cchip/wire/pair.hpp>
 #include <random>
 #include <type_traits>
 #include <utility>

@@ -4,9 +4,9 @@
 #ifndef CCHIP_MACHINES_PAIR_STREAMS_HPP
 #define CCHIP_MACHINES_PAIR_STREAMS_HPP
 
+#include <cchip/internal/wire/pair.hpp>
 #include <cchip/machines/pair_port.hpp>
 #include <cchip/sim/agent.hpp>
-#include <cchip/wire/pair.hpp>
 #include <deque>
 
 namespace cchip::sim {

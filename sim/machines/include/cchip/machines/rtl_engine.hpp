@@ -4,7 +4,7 @@
 #ifndef CCHIP_MACHINES_RTL_ENGINE_HPP
 #define CCHIP_MACHINES_RTL_ENGINE_HPP
 
-#include <cchip/driver/primtest_engine.hpp>
+#include <cchip/internal/driver/primtest_engine.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>

@@ -4,8 +4,8 @@
 #ifndef CCHIP_MACHINES_SWAP_PORT_HPP
 #define CCHIP_MACHINES_SWAP_PORT_HPP
 
+#include <cchip/internal/wire/swap.hpp>
 #include <cchip/sim/bits.hpp>
-#include <cchip/wire/swap.hpp>
 
 namespace cchip::sim {
 

@@ -4,9 +4,9 @@
 #ifndef CCHIP_MODELS_AXI_READ_HPP
 #define CCHIP_MODELS_AXI_READ_HPP
 
-#include <cchip/model/stream.hpp>
+#include <cchip/internal/model/stream.hpp>
+#include <cchip/internal/wire/definitions.hpp>
 #include <cchip/models/line_data.hpp>
-#include <cchip/wire/definitions.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <optional>

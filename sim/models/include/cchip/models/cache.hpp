@@ -5,10 +5,10 @@
 #define CCHIP_MODELS_CACHE_HPP
 
 #include <array>
-#include <cchip/model/stream.hpp>
+#include <cchip/internal/model/stream.hpp>
+#include <cchip/internal/wire/definitions.hpp>
 #include <cchip/models/cache_fill.hpp>
 #include <cchip/models/line_data.hpp>
-#include <cchip/wire/definitions.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <map>

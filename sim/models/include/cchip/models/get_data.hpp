@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cchip/model/stream.hpp>
+#include <cchip/internal/model/stream.hpp>
+#include <cchip/internal/wire/definitions.hpp>
 #include <cchip/models/line_data.hpp>
-#include <cchip/wire/definitions.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <optional>

@@ -5,7 +5,7 @@
 #define CCHIP_MODELS_LEAF_QUEUE_HPP
 
 #include <array>
-#include <cchip/model/stream.hpp>
+#include <cchip/internal/model/stream.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <deque>

@@ -4,8 +4,8 @@
 #ifndef CCHIP_MODELS_REFIT_HPP
 #define CCHIP_MODELS_REFIT_HPP
 
-#include <cchip/bvh/image_line.hpp>
-#include <cchip/wire/definitions.hpp>
+#include <cchip/internal/bvh/image_line.hpp>
+#include <cchip/internal/wire/definitions.hpp>
 #include <cstdint>
 #include <vector>
 

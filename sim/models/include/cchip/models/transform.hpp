@@ -6,13 +6,13 @@
 #define CCHIP_MODELS_TRANSFORM_HPP
 
 #include <array>
-#include <cchip/bvh/tree.hpp>
-#include <cchip/model/leaf_pair.hpp>
+#include <cchip/internal/bvh/tree.hpp>
+#include <cchip/internal/model/leaf_pair.hpp>
+#include <cchip/internal/wire/definitions.hpp>
+#include <cchip/internal/wire/line.hpp>
+#include <cchip/internal/wire/pair.hpp>
+#include <cchip/internal/wire/query.hpp>
 #include <cchip/models/tie.hpp>
-#include <cchip/wire/definitions.hpp>
-#include <cchip/wire/line.hpp>
-#include <cchip/wire/pair.hpp>
-#include <cchip/wire/query.hpp>
 #include <cstdint>
 #include <deque>
 #include <optional>

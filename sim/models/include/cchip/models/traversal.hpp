@@ -5,7 +5,7 @@
 #define CCHIP_MODELS_TRAVERSAL_HPP
 
 #include <array>
-#include <cchip/model/stream.hpp>
+#include <cchip/internal/model/stream.hpp>
 #include <cchip/models/leaf_queue.hpp>
 #include <cchip/models/traversal_events.hpp>
 #include <cstddef>

@@ -4,8 +4,8 @@
 #ifndef CCHIP_MODELS_TRAVERSAL_DECISION_HPP
 #define CCHIP_MODELS_TRAVERSAL_DECISION_HPP
 
+#include <cchip/internal/wire/query.hpp>
 #include <cchip/models/tie.hpp>
-#include <cchip/wire/query.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <optional>

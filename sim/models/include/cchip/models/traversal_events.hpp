@@ -5,7 +5,7 @@
 #define CCHIP_MODELS_TRAVERSAL_EVENTS_HPP
 
 #include <array>
-#include <cchip/model/stream.hpp>
+#include <cchip/internal/model/stream.hpp>
 #include <cchip/models/traversal_decision.hpp>
 #include <cstddef>
 #include <cstdint>

@@ -10,7 +10,8 @@
 #include <array>
 #include <atomic>
 #include <cchip/geometry/primitive.hpp>
-#include <cchip/model/programme.hpp>
+#include <cchip/internal/model/programme.hpp>
+#include <cchip/internal/wire/pair.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cchip/stimulus/progress.hpp>
 #include <chrono>

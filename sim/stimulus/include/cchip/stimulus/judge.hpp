@@ -4,7 +4,8 @@
 #ifndef CCHIP_STIMULUS_JUDGE_HPP
 #define CCHIP_STIMULUS_JUDGE_HPP
 
-#include <cchip/exact/oracle.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/coplanar.hpp>
 #include <cchip/stimulus/campaign.hpp>
 #include <cchip/stimulus/quads.hpp>
 

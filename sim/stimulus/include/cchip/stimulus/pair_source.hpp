@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cchip/geometry/canonical.hpp>
+#include <cchip/internal/grid/canonical.hpp>
 #include <cchip/stimulus/quads.hpp>
 #include <cstdint>
 #include <random>

@@ -6,7 +6,8 @@
 
 #include <bitset>
 #include <cchip/geometry/primitive.hpp>
-#include <cchip/wire/definitions.hpp>
+#include <cchip/internal/wire/definitions.hpp>
+#include <cchip/internal/wire/pair.hpp>
 #include <cstdint>
 #include <fstream>
 #include <stdexcept>

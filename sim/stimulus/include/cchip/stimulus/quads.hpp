@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <cchip/geometry/primitive.hpp>
+#include <cchip/internal/wire/pair.hpp>
 #include <cstdint>
 
 namespace cchip::stimulus {

@@ -8,9 +8,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cchip/bvh/image_line.hpp>
+#include <cchip/internal/bvh/image_line.hpp>
+#include <cchip/internal/wire/query.hpp>
 #include <cchip/stimulus/boundary.hpp>
-#include <cchip/wire/query.hpp>
 #include <cmath>
 #include <cstdint>
 #include <random>

@@ -7,9 +7,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cchip/geometry/canonical.hpp>
+#include <cchip/internal/grid/canonical.hpp>
+#include <cchip/internal/wire/pair.hpp>
 #include <cchip/sim/int128.hpp>
-#include <cchip/wire/pair.hpp>
 #include <stdexcept>
 
 namespace cchip::stimulus {

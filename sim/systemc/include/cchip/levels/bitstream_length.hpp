@@ -5,8 +5,8 @@
 #define CCHIP_LEVELS_BITSTREAM_LENGTH_HPP
 
 #include <algorithm>
+#include <cchip/internal/wire/bitstream.hpp>
 #include <cchip/levels/level.hpp>
-#include <cchip/wire/bitstream.hpp>
 
 namespace cchip::levels {
 

@@ -6,7 +6,7 @@
 
 #include <tlm_utils/simple_target_socket.h>
 
-#include <cchip/wire/bitstream.hpp>
+#include <cchip/internal/wire/bitstream.hpp>
 #include <cstdint>
 #include <systemc>
 

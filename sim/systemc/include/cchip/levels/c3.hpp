@@ -5,8 +5,8 @@
 #define CCHIP_LEVELS_C3_HPP
 
 #include <array>
+#include <cchip/internal/wire/definitions.hpp>
 #include <cchip/rc/rc.hpp>
-#include <cchip/wire/definitions.hpp>
 #include <cstdint>
 
 namespace cchip::levels {

@@ -4,8 +4,8 @@
 #ifndef CCHIP_LEVELS_RTL_API_HPP
 #define CCHIP_LEVELS_RTL_API_HPP
 
+#include <cchip/internal/wire/pair.hpp>
 #include <cchip/levels/api.hpp>
-#include <cchip/wire/pair.hpp>
 #include <ostream>
 
 namespace cchip::levels {

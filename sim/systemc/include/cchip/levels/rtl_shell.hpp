@@ -4,7 +4,7 @@
 #ifndef CCHIP_LEVELS_RTL_SHELL_HPP
 #define CCHIP_LEVELS_RTL_SHELL_HPP
 
-#include <cchip/wire/definitions.hpp>
+#include <cchip/internal/wire/definitions.hpp>
 #include <cstdint>
 #include <memory>
 #include <systemc>

@@ -6,7 +6,7 @@
 
 #include <tlm_utils/simple_initiator_socket.h>
 
-#include <cchip/wire/definitions.hpp>
+#include <cchip/internal/wire/definitions.hpp>
 #include <cstdint>
 #include <systemc>
 

@@ -7,7 +7,8 @@
 
 #include <array>
 #include <cchip/geometry/primitive.hpp>
-#include <cchip/wire/definitions.hpp>
+#include <cchip/internal/wire/definitions.hpp>
+#include <cchip/internal/wire/pair.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <ostream>

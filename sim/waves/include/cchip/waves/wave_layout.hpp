@@ -4,7 +4,7 @@
 #ifndef CCHIP_WAVES_WAVE_LAYOUT_HPP
 #define CCHIP_WAVES_WAVE_LAYOUT_HPP
 
-#include <cchip/wire/definitions.hpp>
+#include <cchip/internal/wire/definitions.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
