@@ -7,6 +7,7 @@ usage: mutants_cpp.py [options]
   --seed N        of the choice (default 1)
   --jobs N        programs at the same time (default 2)
   --slowest S     leave out test cases that take longer than S seconds (default 2); a larger S later asks only what is new
+  --only WORDS    ask only test cases whose names contain WORDS, such as a slow one with a larger S
   --again         bring changed tests into the copy and ask them about the mutants that live
   --table         only the table of what was run so far
   --write         put the table into docs/develop/mutants.md
@@ -251,7 +252,7 @@ def start(case, mutant, limit, reach=None):
     return code, time.monotonic() - began
 
 
-def measure(slowest):
+def measure(slowest, only):
     """[[program, test case, seconds, places that it comes by]] of the cases that end in so many seconds, the quickest first; seconds is None of the others, which were given `tried`."""
     path = OUT / "cases.json"
     known = {tuple(case[:2]): case for case in (json.loads(path.read_text()) if path.exists() else [])}
@@ -260,24 +261,24 @@ def measure(slowest):
         listed = subprocess.run([OUT / "build" / "bin" / program, "--list-test-names-only"], stdout=subprocess.PIPE, text=True).stdout
         for name in filter(None, (line.strip() for line in listed.splitlines())):
             old = known.get((program, name))
-            if old and (old[2] is not None or old[3] >= slowest):
+            if only not in name or (old and (old[2] is not None or old[3] >= slowest)):
                 continue
             code, seconds = start((program, name), 0, slowest, reach)
             if code:
                 raise Failed(f"{program} fails without a mutant (exit code {code}): {OUT}/build/bin/{program} '{name}'")
             known[program, name] = [program, name, None, slowest] if code is None else [program, name, seconds, reach.read_text().split()]
             path.write_text(json.dumps(list(known.values()), indent=0))
-    return sorted((case for case in known.values() if case[2] is not None and case[2] <= slowest), key=lambda case: case[2])
+    return sorted((case for case in known.values() if case[2] is not None and case[2] <= slowest and only in case[1]), key=lambda case: case[2])
 
 
-def test(jobs, slowest, again):
+def test(jobs, slowest, only, again):
     mutants = json.loads((OUT / "mutants.json").read_text())
     path = OUT / "results.json"
     results = json.loads(path.read_text()) if path.exists() else {}
     if again:
         (OUT / "cases.json").unlink(missing_ok=True)
         results = {number: result for number, result in results.items() if "killed" in result}
-    cases = [(program, name, seconds, set(places)) for program, name, seconds, places in measure(slowest)]
+    cases = [(program, name, seconds, set(places)) for program, name, seconds, places in measure(slowest, only)]
 
     def judge(number):
         asked = set(map(tuple, results.get(number, {}).get("asked", [])))
@@ -318,6 +319,7 @@ def main():
     for name, default in (("--most", 600), ("--seed", 1), ("--jobs", 2)):
         parser.add_argument(name, type=int, default=default)
     parser.add_argument("--slowest", type=float, default=2)
+    parser.add_argument("--only", default="")
     for flag in ("--again", "--table", "--write", "--alive"):
         parser.add_argument(flag, action="store_true")
     options = parser.parse_args()
@@ -328,7 +330,7 @@ def main():
             if options.again:
                 copy_sources(rooms=False)
                 run(["cmake", "--build", OUT / "build", "-j", options.jobs, "--target", *TESTS])
-            test(options.jobs, options.slowest, options.again)
+            test(options.jobs, options.slowest, options.only, options.again)
     except (Failed, ImportError) as what:
         print(f"mutants_cpp.py: {what}" + ("; install python3-clang and run with /usr/bin/python3" if isinstance(what, ImportError) else ""), file=sys.stderr)
         return 1
