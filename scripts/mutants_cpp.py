@@ -6,13 +6,17 @@ usage: mutants_cpp.py [options]
   --most N        mutants (default 600), spread over the files by the number of places in each
   --seed N        of the choice (default 1)
   --jobs N        programs at the same time (default 2)
+  --slowest S     leave out test cases that take longer than S seconds (default 2); a larger S later asks only what is new
+  --only WORDS    ask only test cases whose names contain WORDS, such as a slow one with a larger S
+  --again         bring changed tests into the copy and ask them about the mutants that live
   --table         only the table of what was run so far
   --write         put the table into docs/develop/mutants.md
   --alive         print the mutants that nothing killed
 
 A mutant changes one place: a comparison gets or loses its equality, + and -, && and || are exchanged, a whole number is one more, a sign is lost, a statement is left out. Places are found in
 clang's syntax tree (python3-clang); constant expressions are left alone. All mutants are in one copy of the sources, each behind a test of a global number, so that everything is compiled
-once: below build/mutants_cpp. A first run of each test program notes which places it comes by; a mutant runs only there. Killed: a test fails, crashes, or takes ten times as long.
+once: below build/mutants_cpp. A first run of each test case notes which places it comes by; a mutant runs only there, the quickest cases first. Killed: a test case fails, crashes, needs more
+than 4 GB, or takes ten times as long. A run that was stopped goes on where it was; after a change of the sources, or with another seed, it begins again.
 
 Not every mutant that lives is a gap: an error bound that is wider than needed, or a search that prunes less, gives the same answers more slowly.
 
@@ -20,6 +24,7 @@ The last line is `mutants=N reached=R killed=K alive=A`. Exit codes: 0 done, 1 a
 import argparse
 import collections
 import concurrent.futures
+import hashlib
 import json
 import os
 import pathlib
@@ -39,8 +44,8 @@ OUT = ROOT / "build" / "mutants_cpp"
 TREE = OUT / "tree"
 PAGE = ROOT / "docs" / "develop" / "mutants.md"
 ROOMS = ("exact", "cpu", "collide")
-# the fastest first; test cases that time nothing and write nothing
-TESTS = ("test_touching", "test_collide", "test_intersections", "test_self_contacts", "test_certificate", "test_solids", "test_distance")
+# test cases that time nothing and write nothing
+TESTS = ("test_touching", "test_intersections", "test_self_contacts", "test_points", "test_along", "test_certificate", "test_solids", "test_collide", "test_distance")
 SWAPS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "==", "+": "-", "-": "+", "&&": "||", "||": "&&"}
 HEADER = """#ifndef CCHIP_MUTANT_HPP
 #define CCHIP_MUTANT_HPP
@@ -65,13 +70,31 @@ namespace { struct Reach { ~Reach() {
 """
 
 
-def copy_sources():
-    shutil.rmtree(TREE, ignore_errors=True)
-    for name in run(["git", "-C", ROOT, "ls-files"]).splitlines():
-        target = TREE / name
+def mine(path):
+    return path.parent.name in ROOMS and path.parent.parent == TREE / "cpp_ref" / "src"
+
+
+def tracked():
+    return [name for name in run(["git", "-C", ROOT, "ls-files"]).splitlines() if (ROOT / name).is_file()]
+
+
+def copy_sources(rooms=True):
+    """Copies what differs; without the rooms, the mutants stay."""
+    for name in tracked():
+        source, target = ROOT / name, TREE / name
+        if (mine(target) and not rooms) or (target.is_file() and target.read_bytes() == source.read_bytes()):
+            continue
         target.parent.mkdir(parents=True, exist_ok=True)
-        if (ROOT / name).is_file():
-            shutil.copy2(ROOT / name, target)
+        shutil.copyfile(source, target)
+
+
+def digest(most, seed):
+    """Of all that decides which mutants there are."""
+    total = hashlib.sha256(f"{most} {seed}".encode())
+    for name in tracked():
+        if mine(TREE / name):
+            total.update(name.encode() + (ROOT / name).read_bytes())
+    return total.hexdigest()
 
 
 def configure():
@@ -98,10 +121,6 @@ def commands():
                     keep.append(part)
             found[path] = keep
     return found
-
-
-def mine(path):
-    return path.parent.name in ROOMS and path.parent.parent == TREE / "cpp_ref" / "src"
 
 
 def places(index, source, arguments):
@@ -189,10 +208,12 @@ def apply(chosen, found):
 
 
 def make(most, seed, jobs):
-    if (OUT / "mutants.json").exists():
+    if (OUT / "mutants.json").exists() and (OUT / "digest").read_text() == digest(most, seed):
         return
     import clang.cindex
     OUT.mkdir(parents=True, exist_ok=True)
+    for name in ("mutants.json", "results.json", "cases.json"):
+        (OUT / name).unlink(missing_ok=True)
     copy_sources()
     configure()
     units = commands()
@@ -215,42 +236,64 @@ def make(most, seed, jobs):
     run(["cmake", "--build", OUT / "build", "-j", jobs, "--target", *TESTS])
     (OUT / "mutants.json").write_text(json.dumps({number: [str(place[0].relative_to(TREE)), (ROOT / place[0].relative_to(TREE)).read_bytes()[:place[1]].count(b"\n") + 1,
                                                            place[3]] for number, place in chosen.items()}, indent=0))
+    (OUT / "digest").write_text(digest(most, seed))
 
 
-def start(test, mutant, limit, reach=None):
-    """(exit code or None after limit s, seconds)"""
+def start(case, mutant, limit, reach=None):
+    """(exit code or None after limit s, seconds) of a test case: its program and name"""
     began = time.monotonic()
     environment = {**os.environ, "CCHIP_MUTANT": str(mutant), **({"CCHIP_MUTANT_REACH": str(reach)} if reach else {})}
+    name = re.sub(r'([\\\\,\[\]"*~])', r"\\\1", case[1])
     try:
-        code = subprocess.run([OUT / "build" / "bin" / test, "-a"], env=environment, timeout=limit, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                              cwd=OUT / "build").returncode
+        code = subprocess.run(["prlimit", "--as=4294967296", "--core=0", OUT / "build" / "bin" / case[0], "-a", "-w", "NoTests", name], env=environment, timeout=limit,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=OUT / "build").returncode
     except subprocess.TimeoutExpired:
         code = None
     return code, time.monotonic() - began
 
 
-def test(jobs):
+def measure(slowest, only):
+    """[[program, test case, seconds, places that it comes by]] of the cases that end in so many seconds, the quickest first; seconds is None of the others, which were given `tried`."""
+    path = OUT / "cases.json"
+    known = {tuple(case[:2]): case for case in (json.loads(path.read_text()) if path.exists() else [])}
+    reach = OUT / "case.reach"
+    for program in TESTS:
+        listed = subprocess.run([OUT / "build" / "bin" / program, "--list-test-names-only"], stdout=subprocess.PIPE, text=True).stdout
+        for name in filter(None, (line.strip() for line in listed.splitlines())):
+            old = known.get((program, name))
+            if only not in name or (old and (old[2] is not None or old[3] >= slowest)):
+                continue
+            code, seconds = start((program, name), 0, slowest, reach)
+            if code:
+                raise Failed(f"{program} fails without a mutant (exit code {code}): {OUT}/build/bin/{program} '{name}'")
+            known[program, name] = [program, name, None, slowest] if code is None else [program, name, seconds, reach.read_text().split()]
+            path.write_text(json.dumps(list(known.values()), indent=0))
+    return sorted((case for case in known.values() if case[2] is not None and case[2] <= slowest and only in case[1]), key=lambda case: case[2])
+
+
+def test(jobs, slowest, only, again):
     mutants = json.loads((OUT / "mutants.json").read_text())
     path = OUT / "results.json"
     results = json.loads(path.read_text()) if path.exists() else {}
-    reached, limits = {}, {}
-    for name in TESTS:
-        code, seconds = start(name, 0, 900, OUT / f"{name}.reach")
-        if code != 0:
-            raise Failed(f"{name} fails without a mutant (exit code {code}): {OUT}/build/bin/{name}")
-        reached[name], limits[name] = set((OUT / f"{name}.reach").read_text().split()), 10 * seconds + 5
+    if again:
+        (OUT / "cases.json").unlink(missing_ok=True)
+        results = {number: result for number, result in results.items() if "killed" in result}
+    cases = [(program, name, seconds, set(places)) for program, name, seconds, places in measure(slowest, only)]
 
     def judge(number):
-        for name in TESTS:
-            if number in reached[name] and start(name, number, limits[name])[0] != 0:
-                return {"killed": name}
-        return {"reached": any(number in numbers for numbers in reached.values())}
+        asked = set(map(tuple, results.get(number, {}).get("asked", [])))
+        reaching = [case for case in cases if number in case[3]]
+        for case in reaching:
+            if case[:2] not in asked and start(case, number, 10 * case[2] + 2)[0] != 0:
+                return {"killed": f"{case[0]}: {case[1]}"}
+        return {"asked": sorted(asked | {case[:2] for case in reaching})}
 
-    waits = [number for number in mutants if number not in results]
+    waits = [number for number in mutants if "killed" not in results.get(number, {})]
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         for number, result in zip(waits, pool.map(judge, waits)):
             results[number] = result
             path.write_text(json.dumps(results, indent=0))
+            print(f"{number} {':'.join(map(str, mutants[number][:2]))} {mutants[number][2]}: {result.get('killed', 'alive')}", flush=True)
 
 
 def table():
@@ -259,7 +302,7 @@ def table():
     for number, result in results.items():
         for room in (f"src/{mutants[number][0].split('/')[2]}", "all"):
             rows[room][0] += 1
-            rows[room][1] += "killed" in result or result.get("reached", False)
+            rows[room][1] += "killed" in result or bool(result.get("asked"))
             rows[room][2] += "killed" in result
     lines = ["| room | mutants | reached by a test | killed | alive | killed of those reached |", "|---|---|---|---|---|---|"]
     for room in [*sorted(set(rows) - {"all"}), "all"]:
@@ -275,14 +318,19 @@ def main():
     parser = argparse.ArgumentParser(usage=argparse.SUPPRESS, add_help=False)
     for name, default in (("--most", 600), ("--seed", 1), ("--jobs", 2)):
         parser.add_argument(name, type=int, default=default)
-    for flag in ("--table", "--write", "--alive"):
+    parser.add_argument("--slowest", type=float, default=2)
+    parser.add_argument("--only", default="")
+    for flag in ("--again", "--table", "--write", "--alive"):
         parser.add_argument(flag, action="store_true")
     options = parser.parse_args()
     try:
         if not options.table:
             print(f"seed {options.seed}", flush=True)
             make(options.most, options.seed, options.jobs)
-            test(options.jobs)
+            if options.again:
+                copy_sources(rooms=False)
+                run(["cmake", "--build", OUT / "build", "-j", options.jobs, "--target", *TESTS])
+            test(options.jobs, options.slowest, options.only, options.again)
     except (Failed, ImportError) as what:
         print(f"mutants_cpp.py: {what}" + ("; install python3-clang and run with /usr/bin/python3" if isinstance(what, ImportError) else ""), file=sys.stderr)
         return 1
@@ -292,7 +340,7 @@ def main():
         mutants, results = json.loads((OUT / "mutants.json").read_text()), json.loads((OUT / "results.json").read_text())
         for number, result in results.items():
             if "killed" not in result:
-                print(f"{number} {':'.join(map(str, mutants[number][:2]))} {mutants[number][2]}{'' if result['reached'] else ', not reached'}")
+                print(f"{number} {':'.join(map(str, mutants[number][:2]))} {mutants[number][2]}{'' if result['asked'] else ', not reached'}")
     if options.write:
         datasheet.rewrite(PAGE, "mutants_cpp", text)
     print(f"mutants={count} reached={reached} killed={killed} alive={count - killed}")

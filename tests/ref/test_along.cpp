@@ -465,6 +465,21 @@ TEST_CASE("along: balls of a thousand faces", "[ref][along]") {
   }
 }
 
+TEST_CASE("along: the faces that meet first are named, each of its own object", "[ref][along]") {
+  Mesh one;
+  add_face(one, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  Mesh three;
+  for (const double z : {9.0, 5.0, 2.0}) add_face(three, {{0.25, 0.25, z}, {3, 3, z + 1}, {3, 4, z + 1}});
+  const AlongResult down = first_contact(Object(one), here, Object(three), here, {0, 0, -1});
+  CHECK(down.factor == 2);
+  CHECK(down.face_a == 0);
+  CHECK(down.face_b == 2);
+  const AlongResult up = first_contact(Object(three), here, Object(one), here, {0, 0, 1});
+  CHECK(up.factor == 2);
+  CHECK(up.face_a == 2);
+  CHECK(up.face_b == 0);
+}
+
 TEST_CASE("along: arguments that make no sense", "[ref][along]") {
   const Object box(make_box({0, 0, 0}, {1, 1, 1}));
   for (const auto& query : {clear_along, first_contact}) {

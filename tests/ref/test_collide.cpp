@@ -691,6 +691,8 @@ TEST_CASE("collide: a thread that flushes small numbers to zero is refused", "[r
     refused([] { open_cpu_device({1, {}}); });
     refused([] { open_device("model"); });
     refused([&] { Object{mesh}; });
+    refused([&] { a.moved(mesh.vertices); });
+    refused([&] { self_contacts(a); });
     refused([&] { collide(*device, a, Pose::Identity(), a, Pose::Identity()); });
     refused([&] { collide(*device, a, a, std::vector<PosePair>(3)); });
     CHECK(collide(*device, a, Pose::Identity(), a, Pose::Identity()).hit);

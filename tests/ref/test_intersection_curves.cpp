@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Intersections of the faces of contacts, the curves they form, normals.
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
 #include <catch2/catch.hpp>
 #include <cchip/cchip.hpp>
 #include <cchip/sim/seed.hpp>
@@ -259,3 +263,20 @@ TEST_CASE("face normals", "[ref][intersection]") {
   pose.linear() *= 0x1p-400;
   CHECK(face_normal(thin, pose, 0) == Vec3d(0, 0, 1));
 }
+
+#if defined(__SSE2__)
+TEST_CASE("intersections: a thread that flushes small numbers to zero is refused", "[ref][intersections]") {
+  const Object box(make_box({0, 0, 0}, {1, 1, 1}, Kind::tri));
+  const Pose pose = Pose::Identity();
+  const unsigned before = _mm_getcsr();
+  std::string said = "nothing";
+  _mm_setcsr(before | 0x8040U);
+  try {
+    intersections({&box, &pose, &box, &pose}, Contact{0, 0, std::nullopt});
+  } catch (const std::runtime_error& error) {
+    said = error.what();
+  }
+  _mm_setcsr(before);
+  CHECK_THAT(said, Catch::StartsWith("this thread flushes small numbers to zero"));
+}
+#endif

@@ -358,6 +358,30 @@ TEST_CASE("posed pairs: common translations do not matter", "[ref][posed_pairs]"
   CHECK(open < 20);
 }
 
+TEST_CASE("posed pairs: what lies within the hull of four points meets it, whichever comes first",
+          "[ref][posed_pairs]") {
+  Primitive great;
+  great.kind = Kind::quad;
+  great.v = {Vec3d(0, 0, 0), Vec3d(8, 0, 0), Vec3d(0, 8, 0), Vec3d(0, 0, 8)};
+  Pose turned = Pose::Identity();
+  turned.linear() = Eigen::AngleAxisd(0.7, Vec3d(1, 2, 3).normalized()).toRotationMatrix();
+  turned.translation() = Vec3d(0.1, -7, 1.0 / 3);
+  for (const Kind kind : {Kind::tri, Kind::quad}) {
+    Primitive within;
+    within.kind = kind;
+    within.v = {Vec3d(1, 1, 1), Vec3d(2, 1, 1), Vec3d(1, 2, 1), Vec3d(1, 1, 2)};
+    Primitive beside = within;  // beyond the face that is not along an axis
+    for (Vec3d& v : beside.v) v += Vec3d(2, 2, 2);
+    for (const Pose& pose : {Pose(Pose::Identity()), turned}) {
+      const PosedPairs pairs(pose, pose);
+      CHECK(pairs.decide(great, within).hit);
+      CHECK(pairs.decide(within, great).hit);
+      CHECK_FALSE(pairs.decide(great, beside).hit);
+      CHECK_FALSE(pairs.decide(beside, great).hit);
+    }
+  }
+}
+
 TEST_CASE("posed pairs: refuse what is not finite", "[ref][posed_pairs]") {
   Pose pose = Pose::Identity();
   pose.translation().y() = std::numeric_limits<double>::quiet_NaN();

@@ -519,6 +519,21 @@ TEST_CASE("scene: filter, groups and ignored pairs", "[ref][scene]") {
   CHECK(ids_of(scene.touching(*device, cube, pose, {}, {3, 3})) == std::vector<Id>{1, 2, 3, 4});
 }
 
+TEST_CASE("scene: an object that is removed takes its own ignored pairs along and no others", "[ref][scene]") {
+  const auto device = open_device("cpu");
+  const Object cube(box({1, 1, 1}));
+  Scene scene;
+  for (int i = 0; i < 4; ++i) scene.add(cube, at(0.25 * i, 0, 0));
+  scene.set_ignored(1, 2);
+  scene.set_ignored(3, 4);
+  CHECK(ids_of(scene.touching(*device)) == Pairs{{1, 3}, {1, 4}, {2, 3}, {2, 4}});
+  scene.remove(1);
+  CHECK(scene.candidates() == Pairs{{2, 3}, {2, 4}});  // nothing but the removal has changed since the query before
+  CHECK(ids_of(scene.touching(*device)) == Pairs{{2, 3}, {2, 4}});
+  scene.remove(2);
+  CHECK(scene.candidates().empty());
+}
+
 TEST_CASE("scene: the object asked about is A", "[ref][scene]") {
   const auto device = open_device("cpu");
   const Object torus(make_torus(1, 0.4, 9, 7));

@@ -294,6 +294,30 @@ TEST_CASE("distance: the interval is that of brute force", "[ref][distance]") {
   CHECK(apart > 150);
 }
 
+TEST_CASE("distance: faces and points are those of each object, not of the other", "[ref][distance]") {
+  // Of the second object the last of three faces is the nearest, of the first the only one.
+  Mesh one;
+  add_face(one, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  for (const double z : {2.0, 0.0}) {
+    Mesh three;
+    for (const double at : {9.0, 5.0, z}) add_face(three, {{0.25, 0.25, at}, {3, 3, at + 1}, {3, 4, at + 1}});
+    const DistanceResult to = distance(Object(one), Pose::Identity(), Object(three), Pose::Identity());
+    CAPTURE(z);
+    CHECK(to.lower == z);
+    CHECK(to.upper == z);
+    CHECK(to.face_a == 0);
+    CHECK(to.face_b == 2);
+    CHECK(to.point_a == Vec3d(0.25, 0.25, 0));
+    CHECK(to.point_b == Vec3d(0.25, 0.25, z));
+    const DistanceResult back = distance(Object(three), Pose::Identity(), Object(one), Pose::Identity());
+    CHECK(back.lower == z);
+    CHECK(back.face_a == 2);
+    CHECK(back.face_b == 0);
+    CHECK(back.point_a == Vec3d(0.25, 0.25, z));
+    CHECK(back.point_b == Vec3d(0.25, 0.25, 0));
+  }
+}
+
 TEST_CASE("distance: what is known beforehand", "[ref][distance]") {
   const Object box(make_box({0, 0, 0}, {1, 1, 1}));
   const Object inner(make_box({0.25, 0.25, 0.25}, {0.5, 0.5, 0.5}));
