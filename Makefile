@@ -401,7 +401,7 @@ fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEE
 ROWS ?= tri_tri_substages6 tri_tri_substages8 tri_tri tri_tri_substages12
 PARAMETER ?= SUBSTAGES
 fpga-sweep: bootstrap venv build/workflow/requirements.txt ## clock of ROWS of scripts/fpga.py over SEEDS, a job for each place and route, PROFILE=local or slurm; table and plot against PARAMETER in build/sweep (hours)
-	$(SNAKEMAKE) --snakefile workflow/fpga.smk --config rows='$(ROWS)' seeds=$(SEEDS) parameter=$(PARAMETER)
+	$(SNAKEMAKE) --snakefile workflow/fpga.smk --config rows='$(ROWS)' seeds=$(SEEDS) parameter=$(PARAMETER) options='$(SWEEP_OPTIONS)'
 
 fpga-quick: bootstrap venv ## area and clock of the triangle test, one place and route
 	scripts/fpga.py tri_tri --seeds 1 --jobs $(JOBS) --campaign $(CAMPAIGN)

@@ -835,7 +835,8 @@ def measure(chosen, options):
     return found, failures
 
 
-def arguments():
+def arguments(words=None):
+    """The options of a command line, by default this program's."""
     parser = argparse.ArgumentParser(usage=argparse.SUPPRESS, add_help=False)
     parser.add_argument("rows", nargs="*")
     parser.add_argument("--seeds", type=int, default=5)
@@ -852,7 +853,7 @@ def arguments():
     parser.add_argument("--heat", type=os.path.abspath)
     for flag in ("--families", "--write", "--bill", "--estimate", "--check", "--list", "--no-floorplan"):
         parser.add_argument(flag, action="store_true")
-    options = parser.parse_args()
+    options = parser.parse_args(words)
     try:
         options.rows = {name: int(n or options.seeds) for name, _, n in (row.partition(":") for row in options.rows)}
     except ValueError:

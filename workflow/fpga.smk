@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Place and route of rows of scripts/fpga.py over seeds, a job for each: make fpga-sweep, docs/develop/scaling.md.
-# Settings: --config rows="tri_tri tri_tri_substages8" seeds=5 parameter=SUBSTAGES nextpnr=PATH python=PYTHON_WITH_MATPLOTLIB
+# Settings: --config rows="tri_tri tri_tri_substages8" seeds=5 parameter=SUBSTAGES options="--freq=125 --nextpnr=PATH" python=PYTHON_WITH_MATPLOTLIB
 import pathlib
 
 ROWS = config.get("rows", "tri_tri").split()
@@ -9,7 +9,7 @@ PARAMETER = config.get("parameter", "")
 NAME = "-".join([*ROWS, f"{SEEDS}seeds"])
 FOLDER = "build/sweep"
 CALL = f"python3 -B {workflow.basedir}/fpga_sweep.py"
-NEXTPNR = f"--nextpnr {config['nextpnr']}" if config.get("nextpnr") else ""
+OPTIONS = config.get("options", "")
 # a change of the RTL or of the script means a new synthesis; one with the same netlist costs no new place and route
 SOURCES = [str(path) for path in sorted(pathlib.Path("rtl").rglob("*.v*"))] + ["scripts/fpga.py", "scripts/fpga_harness.v", "scripts/fpga_subsystem.v"]
 
@@ -35,7 +35,7 @@ rule synth:
     resources:
         mem_mb=2000,
     shell:
-        "{CALL} synth {wildcards.row} {output} {NEXTPNR}"
+        "{CALL} synth {wildcards.row} {output} {OPTIONS}"
 
 
 rule place:
@@ -46,7 +46,7 @@ rule place:
     resources:
         mem_mb=2000,
     shell:
-        "{CALL} place {wildcards.row} {wildcards.seed} {input} {output} {NEXTPNR}"
+        "{CALL} place {wildcards.row} {wildcards.seed} {input} {output} {OPTIONS}"
 
 
 rule merge:

