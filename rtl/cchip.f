@@ -62,6 +62,7 @@ refit/cchip_refit_leaf.v
 refit/cchip_refit_frame.v
 refit/cchip_refit_volume.v
 refit/cchip_refit.v
+refit/cchip_refit_axi.v
 transform/cchip_leaf_sequencer.v
 transform/cchip_leaf_unit.v
 transform/cchip_leaf_origin.v

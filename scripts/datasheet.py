@@ -144,6 +144,7 @@ STIMULI = {
     "cchip_transform": ("s_kinds = 5; repeat (4) tick;", "s_valid = 1;", "m_valid"),
     "cchip_leaf_feed": ("m_begin_ready = 1;", "s_leaf_valid = 1; s_leaf_valid <= #2 0;", "m_valid"),  # room for two
     "cchip_refit": ("s_lines = 4; s_root = 1;", "s_valid = 1; s_valid <= #2 0;", "m_read_valid"),
+    "cchip_refit_axi": ("s_lines = 4; s_root = 1;", "s_valid = 1; s_valid <= #2 0;", "m_axi_arvalid"),
     "cchip_refit_leaf": ("s_line = {1024{1'b1}};", "s_axes = 1;", "m_least"),
     "cchip_refit_frame": ("", "search = 1; search <= #2 0;", "m_done"),
     "cchip_refit_volume": ("", "s_valid = 1;", "m_valid"),

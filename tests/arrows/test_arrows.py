@@ -53,7 +53,7 @@ LINKS = {
 RTL = [["common", "arith", "sat", "primtest", "regs", "reconfig", "dispatch", "subsystem"],
        ["common", "arith", "sat", "primtest", "regs", "reconfig", "dispatch", "chip"],
        ["common", "arith", "memory", "bvtest", "traversal", "transform", "chip"],
-       ["common", "refit"]]
+       ["common", "memory", "refit"]]
 
 
 def files(pattern):

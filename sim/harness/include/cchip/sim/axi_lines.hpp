@@ -46,8 +46,9 @@ struct HasWrites<Model, std::void_t<decltype(std::declval<Model&>().m_axi_awvali
 }  // namespace detail
 
 /// Reads: one burst of a whole line each, as cchip_axi_read sends them; a line's beats stay together, lines are
-/// answered in the order of their addresses unless reorder is set. Writes: one beat each, answered in order. Lines that
-/// were never written read as an error. Reset drops what is in flight. \tparam DATA_W width of the data bus, bit
+/// answered in the order of their addresses unless reorder is set. Writes: bursts of one beat or more within a line,
+/// answered in order. Lines that were never written read as an error. Reset drops what is in flight. \tparam DATA_W
+/// width of the data bus, bit
 template <class Model, int DATA_W>
 class AxiLines : public Agent {
  public:
@@ -141,10 +142,12 @@ class AxiLines : public Agent {
   struct Address {
     std::uint64_t address = 0;
     unsigned id = 0;
+    std::size_t count = 1;  ///< beats
   };
   struct Data {
     std::array<std::uint8_t, beat_bytes> bytes{};
     std::uint64_t strobe = 0;
+    bool last = true;
   };
   struct Response {
     std::uint64_t due = 0;
@@ -171,7 +174,7 @@ class AxiLines : public Agent {
     }
     if (model_.m_axi_awvalid != 0 && model_.m_axi_awready != 0) take_address();
     if (model_.m_axi_wvalid != 0 && model_.m_axi_wready != 0) take_data();
-    while (!addresses_.empty() && !data_.empty()) finish_write(now);
+    while (!addresses_.empty() && data_.size() >= addresses_.front().count) finish_write(now);
   }
 
   void drop() {
@@ -215,31 +218,36 @@ class AxiLines : public Agent {
   }
 
   void take_address() {
-    require(model_.m_axi_awlen == 0 && model_.m_axi_awburst == 1 && (1U << model_.m_axi_awsize) == beat_bytes,
-            "m_axi_aw: not one beat");
-    addresses_.push_back({model_.m_axi_awaddr, model_.m_axi_awid});
-    require(addresses_.back().address % beat_bytes == 0, "m_axi_awaddr is not a multiple of the beat");
+    const std::uint64_t address = model_.m_axi_awaddr;
+    const std::size_t count = model_.m_axi_awlen + std::size_t{1};
+    require(model_.m_axi_awburst == 1 && (1U << model_.m_axi_awsize) == beat_bytes,
+            "m_axi_aw: not an INCR burst of whole beats");
+    require(address % beat_bytes == 0, "m_axi_awaddr is not a multiple of the beat");
+    require(address % 64 + count * beat_bytes <= 64, "m_axi_aw: a burst beyond its line");
+    addresses_.push_back({address, model_.m_axi_awid, count});
   }
 
   void take_data() {
-    require(model_.m_axi_wlast != 0, "m_axi_wlast is 0");
     Data data;
     for (std::size_t i = 0; i < beat_bytes; ++i)
       data.bytes[i] = static_cast<std::uint8_t>(get_bits(model_.m_axi_wdata, static_cast<int>(8 * i), 8));
     data.strobe = get_bits(model_.m_axi_wstrb, 0, static_cast<int>(beat_bytes));
+    data.last = model_.m_axi_wlast != 0;
     data_.push_back(data);
   }
 
   void finish_write(const ClockInfo& now) {
     const Address address = addresses_.front();
-    const Data data = data_.front();
     addresses_.pop_front();
-    data_.pop_front();
     const AxiFault fault = write_fault(address.address / 64);
-    if (fault == AxiFault::none) {
+    for (std::size_t beat = 0; beat < address.count; ++beat) {
+      const Data data = data_.front();
+      data_.pop_front();
+      require(data.last == (beat + 1 == address.count), "m_axi_wlast is not that of its burst");
+      if (fault != AxiFault::none) continue;
       Line& to = line(address.address / 64);
       for (std::size_t i = 0; i < beat_bytes; ++i) {
-        if ((data.strobe >> i & 1) != 0) to[address.address % 64 + i] = data.bytes[i];
+        if ((data.strobe >> i & 1) != 0) to[address.address % 64 + beat * beat_bytes + i] = data.bytes[i];
       }
     }
     if (fault == AxiFault::silence) return;
