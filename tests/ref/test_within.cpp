@@ -231,7 +231,7 @@ TEST_CASE("within: requests that make no sense", "[ref][distance]") {
   request.relation = true;
   refuses(request, "faces at a distance neither touch nor cross");
   request.relation = false;
-  request.counts = CollisionRequest::Counts::crossing;
+  request.least = Relation::crossing;
   refuses(request, "faces at a distance neither touch nor cross");
 }
 
