@@ -584,14 +584,14 @@ TEST_CASE("certificate: of the pairs of a scene", "[ref][certificate]") {
   CollisionRequest r = request(Contacts::all, true);
   r.certificate = true;
   const auto device = open_cpu_device({2, ""});
-  const std::vector<Scene::Pair> touching = scene.touching(*device, r);
+  const std::vector<Scene::Pair> touching = scene.contacts(*device, r);
   REQUIRE_FALSE(touching.empty());
   for (const Scene::Pair& pair : touching) {
     REQUIRE(pair.result.certificate);
     CHECK(pair.result.certificate->contacts.size() == pair.result.contacts.size());
     CHECK(check({placed[pair.a], placed[pair.b]}, *pair.result.certificate).accepted);
   }
-  const std::optional<Scene::Pair> one = scene.find_touching(*device, r);
+  const std::optional<Scene::Pair> one = scene.find_contact(*device, r);
   REQUIRE(one);
   CHECK(check({placed[one->a], placed[one->b]}, *one->result.certificate).accepted);
 }
