@@ -904,10 +904,14 @@ nb::object to_object(const std::optional<Found>& found, const Args&... args) {
 
 constexpr std::uint64_t all_groups = ~std::uint64_t{0};
 
-/// touching() and find_touching() of a scene: all pairs, those of one object, those of an object outside.
+/// contacts() and find_contact() of a scene: all pairs, those of one object, those of an object outside.
+/// \param instead of an old name: what to use; else null
 template <class Call>
 void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, const std::string& found,
-                 const std::string& doc) {
+                 const std::string& doc, const char* instead = nullptr) {
+  const auto warn = [name, instead] {
+    if (instead != nullptr) old_name(name, instead);
+  };
   const std::string keywords =
       ", *, contacts: str = 'first', relation: bool = False, least: str = 'touching', "
       "max_contacts: int | None = None, device: Device | None = None, certificate: bool = False, within: float = 0";
@@ -918,8 +922,9 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
   };
   type.def(
       name,
-      [call](PyScene& self, const std::string& contacts, bool relation, const std::string& least,
-             std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
+      [call, warn](PyScene& self, const std::string& contacts, bool relation, const std::string& least,
+                   std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
+        warn();
         const CollisionRequest request = to_request(contacts, relation, least, max_contacts, certificate, within);
         const auto answers = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), request); });
         return to_object(answers, self.scene());
@@ -929,8 +934,9 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
       nb::sig(sig("", "tuple[int, int, Result]").c_str()), doc.c_str());
   type.def(
       name,
-      [call](PyScene& self, Scene::Id id, const std::string& contacts, bool relation, const std::string& least,
-             std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
+      [call, warn](PyScene& self, Scene::Id id, const std::string& contacts, bool relation, const std::string& least,
+                   std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
+        warn();
         const CollisionRequest request = to_request(contacts, relation, least, max_contacts, certificate, within);
         const auto answers = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), id, request); });
         return to_object(answers, self.scene(), asked_for(self.scene(), id));
@@ -941,14 +947,15 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
       "The same for one object of the scene, which is A in the results; tuples (id, result).");
   type.def(
       name,
-      [call](PyScene& self, const Object& object, nb::handle pose, std::uint64_t groups, std::uint64_t mask,
-             const std::string& contacts, bool relation, const std::string& least,
-             std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
+      [call, warn](PyScene& self, const Object& object, nb::handle pose, std::uint64_t groups, std::uint64_t mask,
+                   const std::string& contacts, bool relation, const std::string& least,
+                   std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
+        warn();
         const CollisionRequest request = to_request(contacts, relation, least, max_contacts, certificate, within);
         const Pose place = one_pose(pose, "pose");
         const cchip::CollisionGroups bits = {groups, mask};
-        const auto answers =
-            self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), object, place, request, bits); });
+        const auto answers = self.ask(
+            [&](const Scene& s) { return call(s, *DeviceUse(device), Scene::Target(object, place, bits), request); });
         return to_object(answers, self.scene(), Asked{object, place});
       },
       "object"_a, "pose"_a = nb::none(), "groups"_a = 1, "mask"_a = all_groups, nb::kw_only(), "contacts"_a = "first",
@@ -1545,13 +1552,15 @@ groups, mask: 64 bits each. Two objects are tested if the mask of each has a gro
             return owned<Scene::Id>(std::move(ids), {n, 2});
           },
           "(k, 2) uint64: ids of the pairs whose boxes overlap and that groups, ignored pairs and filter let through.");
-  def_queries(
-      scene, "touching", [](const Scene& s, auto&... what) { return s.touching(what...); }, "list[@]",
-      R"(All pairs in contact, tuples (id of A, id of B, result), ascending.
+  const auto contacts = [](const Scene& s, auto&&... what) { return s.contacts(what...); };
+  const auto find_contact = [](const Scene& s, auto&&... what) { return s.find_contact(what...); };
+  def_queries(scene, "contacts", contacts, "list[@]",
+              R"(All pairs in contact, tuples (id of A, id of B, result), ascending.
 
 The other parameters are those of collide(); the device is by default the CPU with all cores. Raises as collide() and as
 the filter.)");
-  def_queries(
-      scene, "find_touching", [](const Scene& s, auto&... what) { return s.find_touching(what...); }, "@ | None",
-      "One of the tuples that touching() would return, any of them, or None if nothing touches.");
+  def_queries(scene, "find_contact", find_contact, "@ | None",
+              "One of the tuples that contacts() would return, any of them, or None if there is no contact.");
+  def_queries(scene, "touching", contacts, "list[@]", "Deprecated: use contacts().", "contacts()");
+  def_queries(scene, "find_touching", find_contact, "@ | None", "Deprecated: use find_contact().", "find_contact()");
 }

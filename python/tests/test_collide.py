@@ -497,7 +497,7 @@ scene = Scene()
 ids = [scene.add(cube), scene.add(cube)]
 scene.set_pose(ids[0], None)
 print(collide(cube, None, cube, None).hit, collide_many(cube, None, cube, [np.eye(4)] * 100).all(),
-      len(scene.touching()), len(cube.self_contacts()), cube.moved(vertices).face_count,
+      len(scene.contacts()), len(cube.self_contacts()), cube.moved(vertices).face_count,
       collide(cube, None, cube, None, device=open_device("cpu", threads=2)).hit, library.flushes() == 0x8040)
 """.format(path=sys.path, library=str(library))
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
@@ -525,7 +525,7 @@ def test_within_and_distance():
     scene = collisionchip.Scene()
     scene.add(box)
     scene.add(box, shift(1.5))
-    assert not scene.touching() and len(scene.touching(within=0.5)) == 1
+    assert not scene.contacts() and len(scene.contacts(within=0.5)) == 1
     far = collisionchip.distance(box, None, box, shift(9), stop_above=2)
     assert (far.lower, far.upper) == (2, np.inf) and np.isnan(far.points).all()
     near = collisionchip.distance(box, None, box, shift(4), rel_error=0.5)
