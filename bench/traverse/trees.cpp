@@ -290,7 +290,7 @@ class Study {
         std::optional<Query> query = bvh::make_query(image_a.header(), poses.a, image_b.header(), poses.b);
         if (!query) throw std::runtime_error("a pose that the chip does not take");
         const model::BroadPhaseResult result = model::run_query(*query, image_a, image_b);
-        mean.*sum += static_cast<double>(result.stats.steps) / static_cast<double>(settings_.poses);
+        mean.*sum += static_cast<double>(result.counts.steps) / static_cast<double>(settings_.poses);
         ++queries_;
         // An open answer is the host's to decide; a definite one is the CPU device's.
         const bool hit = collide(*device_, object_a, poses.a, object_b, poses.b).hit;

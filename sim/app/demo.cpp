@@ -161,7 +161,7 @@ std::uint64_t run_chip(const std::string& trace_path, std::ostream& out) {
     progress.update_of(++queries, 3);
     progress.clear();
     fmt::print(out, "{:<10}{:>10}{:>12}{:>8}{:>9}{:>12}\n", run.pose, got.contacts.size(), got.stats.steps,
-               got.stats.open, got.counts.clocks, differs ? 1 : 0);
+               got.stats.open, got.stats.clocks, differs ? 1 : 0);
     hits += got.hit ? 1 : 0;
     contacts += got.contacts.size();
     mismatches += differs ? 1 : 0;
