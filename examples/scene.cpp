@@ -27,12 +27,12 @@ int main() {
       scene.set_pose(id, joint);
       joint = joint * Eigen::Translation3d(1, 0, 0);
     }
-    std::cout << "joints at " << angle << " degrees: " << (scene.find_touching(*device) ? "touches" : "free");
-    for (const auto& pair : scene.touching(*device)) std::cout << "; " << pair.a << " and " << pair.b;
+    std::cout << "joints at " << angle << " degrees: " << (scene.find_contact(*device) ? "touches" : "free");
+    for (const auto& pair : scene.contacts(*device)) std::cout << "; " << pair.a << " and " << pair.b;
     std::cout << '\n';
   }
 
   // A part that is not in the scene: would it fit there?
   const auto there = make_pose({2, -1, 0}, {0, 0, 0});
-  std::cout << "a ball at (2, -1, 0) touches " << scene.touching(*device, ball, there).size() << " of them\n";
+  std::cout << "a ball at (2, -1, 0) touches " << scene.contacts(*device, {ball, there}).size() << " of them\n";
 }

@@ -49,8 +49,8 @@ int main() {
       const auto clear = [&] { return clear_along(a, here, b, c.pose, d); };
       const auto contact = [&] { return first_contact(a, here, b, away, -d); };
       std::cout << "| " << c.name << " | " << c.a.faces.size() << " | " << d[0] << ' ' << d[1] << ' ' << d[2] << " | "
-                << time_of(clear) << " | " << clear().counts.open << " | " << time_of(contact) << " | "
-                << contact().counts.open << " |\n";
+                << time_of(clear) << " | " << clear().stats.open << " | " << time_of(contact) << " | "
+                << contact().stats.open << " |\n";
     }
   }
 }

@@ -69,7 +69,7 @@ class Rows {
   }
   void add(const std::string& table, const std::string& meshes, const std::string& pose_class,
            const std::string& variant, std::size_t queries, std::size_t hits, double seconds_each,
-           const CollisionCounts& counts = {}, double bytes = 0, std::size_t differ = 0) {
+           const CollisionStats& counts = {}, double bytes = 0, std::size_t differ = 0) {
     const double n = std::max(1.0, static_cast<double>(queries));
     text_ << fmt::format("{},{},{},{},{},{},{:.4g},{:.5g},{:.5g},{:.5g},{:.5g},{:.4g},{}\n", table, meshes, pose_class,
                          variant, queries, hits, seconds_each, static_cast<double>(counts.steps) / n,
@@ -88,13 +88,13 @@ struct Answers {
   std::vector<char> hit;
   std::vector<Contact> witness;
   std::size_t contacts = 0;
-  CollisionCounts counts;
+  CollisionStats stats;
   explicit Answers(std::size_t queries) : hit(queries), witness(queries) {}
   void take(std::size_t i, const CollisionResult& result) {
     hit[i] = static_cast<char>(result.hit);
     if (result.hit) witness[i] = result.contacts.front();
     contacts += result.contacts.size();
-    counts += result.counts;
+    stats += result.stats;
   }
   std::size_t differ_from(const Answers& ours) const {
     std::size_t count = 0;
@@ -319,7 +319,7 @@ class Benchmark {
     std::size_t queries = 0;
     std::size_t hits = 0;
     std::map<std::string, std::size_t> differ;
-    CollisionCounts counts;
+    CollisionStats counts;
     for (int pass = 0; pass < options_.passes; ++pass) {
       const std::vector<PosePair> poses = make_poses(pass);
       std::vector<Answers> answers;
@@ -328,10 +328,10 @@ class Benchmark {
         if (caches == Caches::cold) fill_caches();
         if (caches != Caches::warm) return;
         Answers& mine = answers[number];
-        const CollisionCounts before = mine.counts;
+        const CollisionStats before = mine.stats;
         const std::size_t contacts = mine.contacts;
         ways[number].answer(first, count);
-        mine.counts = before;
+        mine.stats = before;
         mine.contacts = contacts;
       });
       passes.resize(ways.size());
@@ -342,7 +342,7 @@ class Benchmark {
         differ[ways[i].name] += answers[i].differ_from(answers.front());
       }
       queries += poses.size();
-      counts += answers.front().counts;
+      counts += answers.front().stats;
       hits += static_cast<std::size_t>(std::count(answers.front().hit.begin(), answers.front().hit.end(), 1));
       compare(bodies, class_name, request, poses, ways, answers);
     }
@@ -400,7 +400,7 @@ class Benchmark {
   /// \param differ answers of each variant that are not ours
   void report(const std::string& meshes, const std::string& class_name, std::size_t queries, std::size_t hits,
               const std::vector<std::string>& names, const std::map<std::string, double>& seconds,
-              const std::map<std::string, std::size_t>& differ, const CollisionCounts& counts, bool in_means) {
+              const std::map<std::string, std::size_t>& differ, const CollisionStats& counts, bool in_means) {
     for (const std::string& name : names) {
       // A table of its own keeps what is never in the means apart.
       rows_.add(is_flush(class_name) ? "flush" : "query", meshes, class_name, name, queries, hits, seconds.at(name),
@@ -499,7 +499,7 @@ class Benchmark {
       differ[ways[k].name] = answers[k].differ_from(answers.front());
     }
     const auto hits = static_cast<std::size_t>(std::count(answers[0].hit.begin(), answers[0].hit.end(), 1));
-    report(bodies.name, "lone", count, hits, names, each, differ, answers[0].counts, bodies.counts);
+    report(bodies.name, "lone", count, hits, names, each, differ, answers[0].stats, bodies.counts);
   }
 
   /// One object that moves against a scene of several: a batch of one query with each of them.
@@ -539,7 +539,7 @@ class Benchmark {
     std::vector<std::string> names;
     std::size_t hits = 0;
     std::map<std::string, std::size_t> differ;
-    CollisionCounts counts;
+    CollisionStats counts;
     for (int pass = 0; pass < options_.passes; ++pass) {
       std::vector<Pose> moves;
       for (std::size_t i = 0; i < poses; ++i) moves.emplace_back(make_pose(vector(0.4), vector(180)));
@@ -588,7 +588,7 @@ class Benchmark {
         passes[i].push_back(ways[i].passes.front() / static_cast<double>(n));
         differ[ways[i].name] += answers[i].differ_from(answers.front());
       }
-      counts += answers.front().counts;
+      counts += answers.front().stats;
       hits += static_cast<std::size_t>(std::count(answers.front().hit.begin(), answers.front().hit.end(), 1));
     }
     std::map<std::string, double> seconds;

@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
       for (const Kind kind : {clear, near_by, hit}) {
         CloudResult result;
         double time[2] = {0, 0};
-        CollisionCounts counts;
+        CollisionStats counts;
         std::size_t contacts = 0;
         for (const bool all : {false, true}) {
           CloudRequest request;
@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
             const double begin = microseconds();
             for (const Pose& pose : of[kind]) {
               collide(cloud, Pose::Identity(), link, pose, request, result);
-              if (pass == 0 && !all) counts += result.counts;
+              if (pass == 0 && !all) counts += result.stats;
               if (pass == 0 && all) contacts += result.contacts.size();
             }
             const double mean = (microseconds() - begin) / static_cast<double>(of[kind].size());

@@ -160,7 +160,7 @@ struct OurScene {
   }
   Pairs touching(Device& device) const {
     Pairs pairs;
-    for (const Scene::Pair& pair : scene.touching(device)) pairs.emplace_back(pair.a - 1, pair.b - 1);
+    for (const Scene::Pair& pair : scene.contacts(device)) pairs.emplace_back(pair.a - 1, pair.b - 1);
     return pairs;
   }
   Scene scene;

@@ -373,7 +373,7 @@ int run(const Settings& settings) {
         apart += answer.apart ? 1 : 0;
         pairs += answer.pairs;
         stack = std::max(stack, answer.stack);
-        steps += result.counts.steps;
+        steps += result.stats.steps;
         // The meshes' distance differs from the surfaces' by at most twice the error.
         const DistanceResult d = distance(mesh_a, poses.a, mesh_b, poses.b, {0.001});
         if (!answer.apart && d.lower > tolerance + 2 * error + 1e-9) ++wrong;

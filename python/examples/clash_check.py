@@ -30,7 +30,7 @@ def main():
         except (OSError, ValueError) as error:
             print(f"left out: {error}", file=sys.stderr)
     crossing = 0
-    for a, b, result in scene.touching(contacts="all", relation=True):
+    for a, b, result in scene.contacts(contacts="all", relation=True):
         print(f"{parts[a]} {parts[b]} {result.relation} {len(result.contacts)}")
         crossing += result.relation == "crossing"
     print(f"parts={len(parts)} crossing={crossing}")

@@ -38,7 +38,7 @@ def main():
     posts = [scene.add(POST, [[1, 0, 0, x], [0, 1, 0, y], [0, 0, 1, 0]], groups=2, mask=1) for x, y in ((0.7, 2), (2.5, 1))]
     for degrees in range(0, 41, 10):
         place(scene, links, degrees)
-        hits = [f"link {a} and post {b - posts[0] + 1}" for a, b, _ in scene.touching()]
+        hits = [f"link {a} and post {b - posts[0] + 1}" for a, b, _ in scene.contacts()]
         print(f"joints at {degrees} degrees: {', '.join(hits) or 'free'}")
 
     # One object along a path: all its poses in one call.

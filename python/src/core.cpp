@@ -343,7 +343,7 @@ void set_state(Object& self, const State& state) {
 
 // Requests and results.
 
-CollisionRequest to_request(const std::string& contacts, bool relation, const std::string& counts,
+CollisionRequest to_request(const std::string& contacts, bool relation, const std::string& least,
                             std::optional<std::size_t> max_contacts, bool certificate, double within) {
   CollisionRequest request;
   if (contacts == "all") {
@@ -351,10 +351,10 @@ CollisionRequest to_request(const std::string& contacts, bool relation, const st
   } else if (contacts != "first") {
     throw std::invalid_argument("contacts is '" + contacts + "'; give 'first' or 'all'");
   }
-  if (counts == "crossing") {
-    request.counts = CollisionRequest::Counts::crossing;
-  } else if (counts != "touching") {
-    throw std::invalid_argument("counts is '" + counts + "'; give 'touching' or 'crossing'");
+  if (least == "crossing") {
+    request.least = cchip::Relation::crossing;
+  } else if (least != "touching") {
+    throw std::invalid_argument("least is '" + least + "'; give 'touching' or 'crossing'");
   }
   request.relation = relation;
   request.certificate = certificate;
@@ -385,7 +385,7 @@ struct Proof {
 
 struct Result {
   Result(const CollisionResult& x, Places asked)
-      : hit(x.hit), counts(x.counts), certificate(x.certificate), places(std::move(asked)) {
+      : hit(x.hit), stats(x.stats), certificate(x.certificate), places(std::move(asked)) {
     if (x.relation) relation = name_of(*x.relation);
     for (const cchip::Contact& contact : x.contacts) {
       faces.insert(faces.end(), {contact.face_a, contact.face_b});
@@ -398,7 +398,7 @@ struct Result {
   std::vector<std::uint32_t> faces;
   std::vector<std::uint8_t> crossing;
   bool tells_crossing;
-  cchip::CollisionCounts counts;
+  cchip::CollisionStats stats;
   std::shared_ptr<const cchip::Certificate> certificate;  ///< null: not asked for
   Places places;
 };
@@ -424,16 +424,22 @@ nb::object to_rows(const std::vector<cchip::Vec3d>& points) {
   return nb::cast(owned<double>(std::move(rows), {points.size(), 3}));
 }
 
-nb::dict to_dict(const cchip::CollisionCounts& counts) {
+/// \throws nb::python_error if the user has made such warnings errors
+void old_name(const char* name, const char* use) {
+  const std::string text = std::string(name) + " is deprecated: use " + use;
+  if (PyErr_WarnEx(PyExc_DeprecationWarning, text.c_str(), 1) != 0) throw nb::python_error();
+}
+
+nb::dict to_dict(const cchip::CollisionStats& stats) {
   nb::dict d;
-  d["steps"] = counts.steps;
-  d["box_tests"] = counts.box_tests;
-  d["pairs"] = counts.pairs;
-  d["open"] = counts.open;
-  d["clocks"] = counts.clocks;
-  d["fallbacks"] = counts.fallbacks;
-  d["swaps"] = counts.swaps;
-  d["swap_clocks"] = counts.swap_clocks;
+  d["steps"] = stats.steps;
+  d["box_tests"] = stats.box_tests;
+  d["pairs"] = stats.pairs;
+  d["open"] = stats.open;
+  d["clocks"] = stats.clocks;
+  d["fallbacks"] = stats.fallbacks;
+  d["swaps"] = stats.swaps;
+  d["swap_clocks"] = stats.swap_clocks;
   return d;
 }
 
@@ -618,11 +624,11 @@ class DeviceUse {
 };
 
 Result collide(const Object& a, nb::handle pose_a, const Object& b, nb::handle pose_b, const std::string& contacts,
-               bool relation, const std::string& counts, std::optional<std::size_t> max_contacts, Device* device,
+               bool relation, const std::string& least, std::optional<std::size_t> max_contacts, Device* device,
                bool certificate, double within, const Result* last) {
   const Pose place_a = one_pose(pose_a, "pose_a");
   const Pose place_b = one_pose(pose_b, "pose_b");
-  const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate, within);
+  const CollisionRequest request = to_request(contacts, relation, least, max_contacts, certificate, within);
   cchip::CollisionHint hint;
   if (last != nullptr && !last->faces.empty()) hint = cchip::Contact{last->faces[0], last->faces[1]};
   const nb::gil_scoped_release release;
@@ -731,7 +737,7 @@ nb::object to_words(std::vector<std::uint8_t>&& relations) {
 }
 
 nb::object collide_many(const Object& a, nb::handle poses_a, const Object& b, nb::handle poses_b, bool contacts,
-                        bool relation, const std::string& counts, std::optional<std::size_t> max_contacts,
+                        bool relation, const std::string& least, std::optional<std::size_t> max_contacts,
                         Device* device, bool certificate, double within) {
   const Poses places_a(poses_a, "poses_a", true);
   const Poses places_b(poses_b, "poses_b", true);
@@ -742,7 +748,7 @@ nb::object collide_many(const Object& a, nb::handle poses_a, const Object& b, nb
   const std::size_t count = places_a.many() ? places_a.size() : places_b.size();
   if (count > std::numeric_limits<std::uint32_t>::max()) throw std::invalid_argument("more than 2^32 - 1 poses");
   const CollisionRequest request =
-      to_request(contacts ? "all" : "first", relation, counts, max_contacts, certificate, within);
+      to_request(contacts ? "all" : "first", relation, least, max_contacts, certificate, within);
   std::vector<std::uint8_t> hits(count);
   std::vector<std::uint8_t> relations(relation ? count : 0);
   std::vector<std::vector<cchip::Contact>> found(contacts ? count : 0);
@@ -898,12 +904,16 @@ nb::object to_object(const std::optional<Found>& found, const Args&... args) {
 
 constexpr std::uint64_t all_groups = ~std::uint64_t{0};
 
-/// touching() and find_touching() of a scene: all pairs, those of one object, those of an object outside.
+/// contacts() and find_contact() of a scene: all pairs, those of one object, those of an object outside.
+/// \param instead of an old name: what to use; else null
 template <class Call>
 void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, const std::string& found,
-                 const std::string& doc) {
+                 const std::string& doc, const char* instead = nullptr) {
+  const auto warn = [name, instead] {
+    if (instead != nullptr) old_name(name, instead);
+  };
   const std::string keywords =
-      ", *, contacts: str = 'first', relation: bool = False, counts: str = 'touching', "
+      ", *, contacts: str = 'first', relation: bool = False, least: str = 'touching', "
       "max_contacts: int | None = None, device: Device | None = None, certificate: bool = False, within: float = 0";
   const auto sig = [&](const std::string& what, const std::string& pair) {
     std::string result = found;
@@ -912,41 +922,44 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
   };
   type.def(
       name,
-      [call](PyScene& self, const std::string& contacts, bool relation, const std::string& counts,
-             std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
-        const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate, within);
+      [call, warn](PyScene& self, const std::string& contacts, bool relation, const std::string& least,
+                   std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
+        warn();
+        const CollisionRequest request = to_request(contacts, relation, least, max_contacts, certificate, within);
         const auto answers = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), request); });
         return to_object(answers, self.scene());
       },
-      nb::kw_only(), "contacts"_a = "first", "relation"_a = false, "counts"_a = "touching",
+      nb::kw_only(), "contacts"_a = "first", "relation"_a = false, "least"_a = "touching",
       "max_contacts"_a = nb::none(), "device"_a = nb::none(), "certificate"_a = false, "within"_a = 0.0,
       nb::sig(sig("", "tuple[int, int, Result]").c_str()), doc.c_str());
   type.def(
       name,
-      [call](PyScene& self, Scene::Id id, const std::string& contacts, bool relation, const std::string& counts,
-             std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
-        const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate, within);
+      [call, warn](PyScene& self, Scene::Id id, const std::string& contacts, bool relation, const std::string& least,
+                   std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
+        warn();
+        const CollisionRequest request = to_request(contacts, relation, least, max_contacts, certificate, within);
         const auto answers = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), id, request); });
         return to_object(answers, self.scene(), asked_for(self.scene(), id));
       },
-      "id"_a, nb::kw_only(), "contacts"_a = "first", "relation"_a = false, "counts"_a = "touching",
+      "id"_a, nb::kw_only(), "contacts"_a = "first", "relation"_a = false, "least"_a = "touching",
       "max_contacts"_a = nb::none(), "device"_a = nb::none(), "certificate"_a = false, "within"_a = 0.0,
       nb::sig(sig(", id: int", "tuple[int, Result]").c_str()),
       "The same for one object of the scene, which is A in the results; tuples (id, result).");
   type.def(
       name,
-      [call](PyScene& self, const Object& object, nb::handle pose, std::uint64_t groups, std::uint64_t mask,
-             const std::string& contacts, bool relation, const std::string& counts,
-             std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
-        const CollisionRequest request = to_request(contacts, relation, counts, max_contacts, certificate, within);
+      [call, warn](PyScene& self, const Object& object, nb::handle pose, std::uint64_t groups, std::uint64_t mask,
+                   const std::string& contacts, bool relation, const std::string& least,
+                   std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
+        warn();
+        const CollisionRequest request = to_request(contacts, relation, least, max_contacts, certificate, within);
         const Pose place = one_pose(pose, "pose");
         const cchip::CollisionGroups bits = {groups, mask};
-        const auto answers =
-            self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), object, place, request, bits); });
+        const auto answers = self.ask(
+            [&](const Scene& s) { return call(s, *DeviceUse(device), Scene::Target(object, place, bits), request); });
         return to_object(answers, self.scene(), Asked{object, place});
       },
       "object"_a, "pose"_a = nb::none(), "groups"_a = 1, "mask"_a = all_groups, nb::kw_only(), "contacts"_a = "first",
-      "relation"_a = false, "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
+      "relation"_a = false, "least"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
       "certificate"_a = false, "within"_a = 0.0,
       nb::sig(sig(", object: Object, pose: numpy.typing.ArrayLike | None = None, groups: int = 1, mask: int = "
                   "0xffffffffffffffff",
@@ -1124,7 +1137,7 @@ Returns the claim, as the first of the lines has it. Raises collisionchip.check.
 
   nb::class_<Result>(m, "Result", nb::is_weak_referenceable(),
                      "The answer to a query. True in a condition if there is a contact.")
-      .def_ro("hit", &Result::hit, "bool: there is a contact that counts.")
+      .def_ro("hit", &Result::hit, "bool: there is a contact.")
       .def_ro("relation", &Result::relation,
               "'apart', 'touching' or 'crossing'; None if it was not asked for, or if max_contacts ended the search "
               "before a pair crossed.")
@@ -1144,8 +1157,15 @@ Returns the claim, as the first of the lines has it. Raises collisionchip.check.
           nb::sig("def crossing(self) -> numpy.typing.NDArray[numpy.bool_] | None"),
           "(k,) bool, whether the faces of each contact cross; None if it was not asked for.")
       .def_prop_ro(
-          "counts", [](const Result& x) { return to_dict(x.counts); }, nb::sig("def counts(self) -> dict[str, int]"),
+          "stats", [](const Result& x) { return to_dict(x.stats); }, nb::sig("def stats(self) -> dict[str, int]"),
           "What the query cost (docs/cpp/collide.md).")
+      .def_prop_ro(
+          "counts",
+          [](const Result& x) {
+            old_name("Result.counts", "stats");
+            return to_dict(x.stats);
+          },
+          nb::sig("def counts(self) -> dict[str, int]"), "Deprecated: use stats.")
       .def_prop_ro(
           "certificate",
           [](const Result& x) -> std::optional<Proof> {
@@ -1220,10 +1240,10 @@ Raises ValueError: no device or target of this name.)");
   m.def("cpu_targets", &cchip::cpu_targets, "Instruction sets that open_device('cpu', target=...) takes, best first.");
 
   m.def("collide", &collide, "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(), "contacts"_a = "first",
-        "relation"_a = false, "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
+        "relation"_a = false, "least"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
         "certificate"_a = false, "within"_a = 0.0, "hint"_a = nb::none(),
         nb::sig("def collide(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
-                "numpy.typing.ArrayLike | None, contacts: str = 'first', relation: bool = False, counts: str = "
+                "numpy.typing.ArrayLike | None, contacts: str = 'first', relation: bool = False, least: str = "
                 "'touching', max_contacts: int | None = None, device: Device | None = None, certificate: bool = False, "
                 "within: float = 0, hint: Result | None = None) -> "
                 "Result"),
@@ -1233,10 +1253,10 @@ pose_a, pose_b: (4, 4) or (3, 4), converted to float64; None is the identity. An
 at pose[:3, :3] @ v + pose[:3, 3]. The last row of a (4, 4) pose must be 0 0 0 1.
 contacts: 'first', whether there is one, any of them is returned; or 'all' of them, at most max_contacts.
 relation: tell touching from crossing; fills Result.relation and Result.crossing.
-counts: what counts as a contact: 'touching', faces that share a point; or 'crossing', only faces that cross.
+least: what faces must do at least to be a contact: 'touching', share a point; or 'crossing', cross.
 device: by default one thread of the CPU, one for each calling thread.
 certificate: prove the answer; fills Result.certificate. Takes far longer than the answer.
-within: faces at most so far apart, in units of the world, are contacts; exactly. Leave relation, counts and certificate
+within: faces at most so far apart, in units of the world, are contacts; exactly. Leave relation, least and certificate
 then.
 hint: the Result of the query before, about the same objects a moment earlier: the CPU tests the faces of its first
 contact first, and is done if they touch. It never changes whether there is a contact.
@@ -1287,8 +1307,15 @@ Raises OSError: the file cannot be opened. Raises ValueError: it holds no points
           },
           "(k, 2) uint32: number of a point and of a face in each row, ascending, none twice.")
       .def_prop_ro(
-          "counts", [](const cchip::CloudResult& x) { return to_dict(x.counts); },
-          nb::sig("def counts(self) -> dict[str, int]"), "What the query cost (docs/cpp/points.md).")
+          "stats", [](const cchip::CloudResult& x) { return to_dict(x.stats); },
+          nb::sig("def stats(self) -> dict[str, int]"), "What the query cost (docs/cpp/points.md).")
+      .def_prop_ro(
+          "counts",
+          [](const cchip::CloudResult& x) {
+            old_name("CloudResult.counts", "stats");
+            return to_dict(x.stats);
+          },
+          nb::sig("def counts(self) -> dict[str, int]"), "Deprecated: use stats.")
       .def("__bool__", [](const cchip::CloudResult& x) { return x.hit; })
       .def("__repr__", [](const cchip::CloudResult& x) {
         return "<collisionchip.CloudResult: " + std::string(x.hit ? "hit" : "no hit") + ", " +
@@ -1313,10 +1340,10 @@ objects: tuples of an Object and its pose. Returns the number of the first one i
 Raises ValueError: as collide(); an entry that is no such tuple.)");
   m.def(
       "collide_many", &collide_many, "a"_a, "poses_a"_a.none(), "b"_a, "poses_b"_a.none(), "contacts"_a = false,
-      "relation"_a = false, "counts"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
+      "relation"_a = false, "least"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
       "certificate"_a = false, "within"_a = 0.0,
       nb::sig("def collide_many(a: Object, poses_a: numpy.typing.ArrayLike | None, b: Object, poses_b: "
-              "numpy.typing.ArrayLike | None, contacts: bool = False, relation: bool = False, counts: str = "
+              "numpy.typing.ArrayLike | None, contacts: bool = False, relation: bool = False, least: str = "
               "'touching', max_contacts: int | "
               "None = None, device: Device | None = None, certificate: bool = False, within: float = 0) -> typing.Any"),
       R"(The same two objects in n pairs of poses, on all cores, with the GIL released.
@@ -1324,7 +1351,7 @@ Raises ValueError: as collide(); an entry that is no such tuple.)");
 poses_a, poses_b: (n, 4, 4) or (n, 3, 4), as collide() takes them; or one pose, (4, 4), (3, 4) or None, for all.
 contacts: return all contacts as well, at most max_contacts a query.
 relation: tell touching from crossing, as collide().
-counts: as collide().
+least: as collide().
 device: by default the CPU with all cores, one for the process; while another thread uses it, one core.
 certificate: prove each answer, as collide().
 within: as collide().
@@ -1525,13 +1552,15 @@ groups, mask: 64 bits each. Two objects are tested if the mask of each has a gro
             return owned<Scene::Id>(std::move(ids), {n, 2});
           },
           "(k, 2) uint64: ids of the pairs whose boxes overlap and that groups, ignored pairs and filter let through.");
-  def_queries(
-      scene, "touching", [](const Scene& s, auto&... what) { return s.touching(what...); }, "list[@]",
-      R"(All pairs in contact, tuples (id of A, id of B, result), ascending.
+  const auto contacts = [](const Scene& s, auto&&... what) { return s.contacts(what...); };
+  const auto find_contact = [](const Scene& s, auto&&... what) { return s.find_contact(what...); };
+  def_queries(scene, "contacts", contacts, "list[@]",
+              R"(All pairs in contact, tuples (id of A, id of B, result), ascending.
 
 The other parameters are those of collide(); the device is by default the CPU with all cores. Raises as collide() and as
 the filter.)");
-  def_queries(
-      scene, "find_touching", [](const Scene& s, auto&... what) { return s.find_touching(what...); }, "@ | None",
-      "One of the tuples that touching() would return, any of them, or None if nothing touches.");
+  def_queries(scene, "find_contact", find_contact, "@ | None",
+              "One of the tuples that contacts() would return, any of them, or None if there is no contact.");
+  def_queries(scene, "touching", contacts, "list[@]", "Deprecated: use contacts().", "contacts()");
+  def_queries(scene, "find_touching", find_contact, "@ | None", "Deprecated: use find_contact().", "find_contact()");
 }

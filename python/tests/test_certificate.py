@@ -82,9 +82,9 @@ def test_many(cube):
 def test_scene(cube):
     scene = Scene()
     ids = [scene.add(cube, moved(x)) for x in (0, 0.5, 2)]
-    (a, b, result), = scene.touching(contacts="all", certificate=True)
+    (a, b, result), = scene.contacts(contacts="all", certificate=True)
     assert (a, b) == (ids[0], ids[1])
     assert len(result.certificate.check()["contacts"]) == len(result.contacts)
-    assert scene.touching()[0][2].certificate is None
-    assert scene.find_touching(ids[1], certificate=True)[1].certificate.check()["contacts"]
-    assert scene.touching(cube, moved(2.5), certificate=True)[0][1].certificate.check()["contacts"]
+    assert scene.contacts()[0][2].certificate is None
+    assert scene.find_contact(ids[1], certificate=True)[1].certificate.check()["contacts"]
+    assert scene.contacts(cube, moved(2.5), certificate=True)[0][1].certificate.check()["contacts"]

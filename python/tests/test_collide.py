@@ -197,7 +197,7 @@ def test_poses_of_three_rows():
 
 
 def test_words_that_are_refused():
-    for arguments in ({"contacts": "some"}, {"counts": "near"}, {"contacts": "all", "max_contacts": 0}, {"max_contacts": 0}):
+    for arguments in ({"contacts": "some"}, {"least": "near"}, {"contacts": "all", "max_contacts": 0}, {"max_contacts": 0}):
         with pytest.raises(ValueError):
             collide(CUBE, None, CUBE, None, **arguments)
     with pytest.raises(ValueError, match="cpu"):
@@ -208,7 +208,7 @@ def test_words_that_are_refused():
         collide("cube", None, CUBE, None)
 
 
-def test_contacts_relation_and_counts():
+def test_contacts_relation_and_stats():
     first = collide(TORUS, None, TORUS, shift(0.5))
     assert first.hit and first.relation is None and first.crossing is None and len(first.contacts) == 1
     everything = collide(TORUS, None, TORUS, shift(0.5), contacts="all", relation=True)
@@ -217,11 +217,11 @@ def test_contacts_relation_and_counts():
     exact = _exact(TORUS, None, TORUS, shift(0.5))
     assert everything.contacts.tolist() == exact.contacts.tolist() == sorted(exact.contacts.tolist())
     assert everything.crossing.tolist() == exact.crossing.tolist()
-    assert everything.counts["pairs"] >= len(everything.contacts)
+    assert everything.stats["pairs"] >= len(everything.contacts)
     assert len(collide(TORUS, None, TORUS, shift(0.5), contacts="all", max_contacts=3).contacts) == 3
     flush = collide(CUBE, None, CUBE, shift(1), relation=True)
     assert flush.relation == "touching" and flush.crossing.tolist() == [False]
-    assert not collide(CUBE, None, CUBE, shift(1), counts="crossing")
+    assert not collide(CUBE, None, CUBE, shift(1), least="crossing")
     apart = collide(CUBE, None, CUBE, shift(3), contacts="all", relation=True)
     assert apart.relation == "apart" and apart.contacts.shape == (0, 2)
 
@@ -236,7 +236,7 @@ def test_a_hint_is_tested_first_and_changes_no_answer():
         last = result
     assert not last.hit and collide(TORUS, None, TORUS, shift(1), hint=last).hit
     again = collide(TORUS, None, TORUS, shift(1), hint=every)
-    assert again.contacts[0].tolist() == every.contacts[0].tolist() and again.counts["steps"] == 0
+    assert again.contacts[0].tolist() == every.contacts[0].tolist() and again.stats["steps"] == 0
     with pytest.raises(TypeError):
         collide(TORUS, None, TORUS, shift(1), hint=(0, 0))
 
@@ -438,9 +438,14 @@ def test_batches_without_poses():
         collide_many(CUBE, None, CUBE, [np.eye(4), shift(np.nan)])
 
 
-def test_all_counts():
-    counts = collide(CUBE, None, CUBE, None).counts
-    assert {"steps", "box_tests", "pairs", "open", "clocks", "fallbacks", "swaps", "swap_clocks"} == set(counts)
+def test_all_stats():
+    stats = collide(CUBE, None, CUBE, None).stats
+    assert {"steps", "box_tests", "pairs", "open", "clocks", "fallbacks", "swaps", "swap_clocks"} == set(stats)
+
+
+def test_old_names():
+    with pytest.warns(DeprecationWarning, match="use stats"):
+        assert collide(CUBE, None, CUBE, None).counts["pairs"] > 0
 
 
 @pytest.mark.skipif(not os.path.isdir("/proc/self/task"), reason="counts threads as Linux shows them")
@@ -492,7 +497,7 @@ scene = Scene()
 ids = [scene.add(cube), scene.add(cube)]
 scene.set_pose(ids[0], None)
 print(collide(cube, None, cube, None).hit, collide_many(cube, None, cube, [np.eye(4)] * 100).all(),
-      len(scene.touching()), len(cube.self_contacts()), cube.moved(vertices).face_count,
+      len(scene.contacts()), len(cube.self_contacts()), cube.moved(vertices).face_count,
       collide(cube, None, cube, None, device=open_device("cpu", threads=2)).hit, library.flushes() == 0x8040)
 """.format(path=sys.path, library=str(library))
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
@@ -520,7 +525,7 @@ def test_within_and_distance():
     scene = collisionchip.Scene()
     scene.add(box)
     scene.add(box, shift(1.5))
-    assert not scene.touching() and len(scene.touching(within=0.5)) == 1
+    assert not scene.contacts() and len(scene.contacts(within=0.5)) == 1
     far = collisionchip.distance(box, None, box, shift(9), stop_above=2)
     assert (far.lower, far.upper) == (2, np.inf) and np.isnan(far.points).all()
     near = collisionchip.distance(box, None, box, shift(4), rel_error=0.5)

@@ -45,7 +45,7 @@ def test_poses_move_points_and_leave_the_radius():
 def test_result():
     found = collide(PointCloud([[0.5, 0, 0]]), None, CUBE, None)
     assert isinstance(found, CloudResult) and found and found.hit
-    assert found.contacts.dtype == np.uint32 and found.contacts.tolist() == [[0, 1]] and found.counts["pairs"] >= 1
+    assert found.contacts.dtype == np.uint32 and found.contacts.tolist() == [[0, 1]] and found.stats["pairs"] >= 1
     assert repr(found) == "<collisionchip.CloudResult: hit, 1 contacts>"
     none = collide(PointCloud([[7, 0, 0]]), None, CUBE, None, contacts="all")
     assert not none and none.contacts.shape == (0, 2)

@@ -29,44 +29,52 @@ def test_a_scene_answers_as_all_pairs_in_order():
                 if collide(placed[i], where[i], placed[j], where[j])]
     assert len(expected) > 10
     for device in (None, open_device("cpu", threads=3), open_device("model")):
-        assert [(a, b) for a, b, _ in scene.touching(device=device)] == expected
+        assert [(a, b) for a, b, _ in scene.contacts(device=device)] == expected
     assert set(expected) <= {tuple(row) for row in scene.candidates().tolist()}
-    assert scene.find_touching()[:2] in expected
-    for a, b, result in scene.touching(contacts="all"):
+    assert scene.find_contact()[:2] in expected
+    for a, b, result in scene.contacts(contacts="all"):
         single = collide(placed[a - 1], where[a - 1], placed[b - 1], where[b - 1], contacts="all")
         assert result.contacts.tolist() == single.contacts.tolist()
     one = [b if a == 7 else a for a, b in expected if 7 in (a, b)]
-    assert [other for other, _ in scene.touching(7)] == one
+    assert [other for other, _ in scene.contacts(7)] == one
     scene.remove(7)
-    assert [other for other, _ in scene.touching(placed[6], where[6])] == one
+    assert [other for other, _ in scene.contacts(placed[6], where[6])] == one
     assert 7 not in scene and 8 in scene and scene.add(CUBE) == 41
+
+
+def test_old_names():
+    scene, _ = row_of_cubes(2)
+    with pytest.warns(DeprecationWarning, match=r"use contacts\(\)"):
+        assert [(a, b) for a, b, _ in scene.touching()] == [(1, 2)]
+    with pytest.warns(DeprecationWarning, match=r"use find_contact\(\)"):
+        assert scene.find_touching(1)[0] == 2
 
 
 def test_poses_and_objects():
     scene, ids = row_of_cubes(3)
-    assert [(a, b) for a, b, _ in scene.touching()] == [(1, 2), (2, 3)]
+    assert [(a, b) for a, b, _ in scene.contacts()] == [(1, 2), (2, 3)]
     scene.set_pose(ids[1], shift(10))
     assert scene.pose(ids[1]).tolist() == shift(10).tolist()
-    assert scene.find_touching() is None and scene.find_touching(1) is None
+    assert scene.find_contact() is None and scene.find_contact(1) is None
     scene.set_pose(ids[1], None)
     assert collide(scene.object(1), None, TORUS, shift(1))
-    assert scene.touching(relation=True)[0][2].relation == "touching"  # the same cube twice: no faces that cross
+    assert scene.contacts(relation=True)[0][2].relation == "touching"  # the same cube twice: no faces that cross
 
 
 def test_ignored_groups_filter():
     scene, _ = row_of_cubes(4)
     scene.set_ignored(1, 2)
-    assert [(a, b) for a, b, _ in scene.touching()] == [(2, 3), (3, 4)]
+    assert [(a, b) for a, b, _ in scene.contacts()] == [(2, 3), (3, 4)]
     scene.set_ignored(1, 2, False)
     scene.set_groups(3, 2, 2)
     assert scene.groups(3) == (2, 2) and scene.groups(1) == (1, 2**64 - 1)
-    assert [(a, b) for a, b, _ in scene.touching()] == [(1, 2)]
-    assert [other for other, _ in scene.touching(CUBE, shift(2), groups=2)] == [2, 3, 4]
+    assert [(a, b) for a, b, _ in scene.contacts()] == [(1, 2)]
+    assert [other for other, _ in scene.contacts(CUBE, shift(2), groups=2)] == [2, 3, 4]
     asked = []
     scene.set_filter(lambda a, b: asked.append((a, b)))  # None is false
-    assert scene.touching() == [] and asked == [(1, 2)]
+    assert scene.contacts() == [] and asked == [(1, 2)]
     scene.set_filter(None)
-    assert len(scene.touching()) == 1
+    assert len(scene.contacts()) == 1
 
 
 def test_errors():
@@ -78,7 +86,7 @@ def test_errors():
     with pytest.raises(ValueError, match="0 0 0 1"):
         scene.add(CUBE, np.ones((4, 4)))
     with pytest.raises(ValueError):
-        scene.touching(contacts="some")
+        scene.contacts(contacts="some")
     with pytest.raises(TypeError):
         scene.set_filter(1)
     assert len(scene) == 3
@@ -92,15 +100,15 @@ def test_exceptions_of_the_filter_and_changes_in_it():
 
     scene.set_filter(refuse)
     with pytest.raises(KeyError):
-        scene.touching()
+        scene.contacts()
     scene.set_filter(lambda a, b: scene.remove(a))
     with pytest.raises(RuntimeError, match="in use"):
-        scene.touching()
+        scene.contacts()
     scene.set_filter(lambda a, b: scene.set_filter(None))
     with pytest.raises(RuntimeError, match="in use"):
-        scene.find_touching()
+        scene.find_contact()
     scene.set_filter(None)
-    assert len(scene.touching()) == 2
+    assert len(scene.contacts()) == 2
 
 
 def test_a_change_during_a_query_of_another_thread():
@@ -113,7 +121,7 @@ def test_a_change_during_a_query_of_another_thread():
 
     scene.set_filter(wait)
     found = []
-    thread = threading.Thread(target=lambda: found.extend(scene.touching()))
+    thread = threading.Thread(target=lambda: found.extend(scene.contacts()))
     thread.start()
     assert inside.wait(10)
     with pytest.raises(RuntimeError, match="in use"):
@@ -134,7 +142,7 @@ def test_a_filter_that_refers_to_its_scene_is_collected():
     function = Filter()
     function.scene = scene
     scene.set_filter(function)
-    assert len(scene.touching()) == 1
+    assert len(scene.contacts()) == 1
     alive = weakref.ref(function)
     del scene, function
     gc.collect()

@@ -101,9 +101,9 @@ def test_scene(three, opened):
     cube = Object(CORNERS, FACES)
     scene = Scene()
     ids = [scene.add(cube, at(x)) for x in (0, 1)]
-    (_, _, pair), = scene.touching(contacts="all")
-    (_, hit), = scene.touching(ids[1])
-    (_, outside), = scene.touching(cube, at(1.5))
+    (_, _, pair), = scene.contacts(contacts="all")
+    (_, hit), = scene.contacts(ids[1])
+    (_, outside), = scene.contacts(cube, at(1.5))
     steps = []
     for result in (pair, hit, outside):
         points = [np.array(mesh["vertices"]) for mesh in data_of(result.show().page)["meshes"]]

@@ -47,7 +47,7 @@ struct Totals {
   std::uint64_t mismatches = 0;
   std::uint64_t contacts = 0;
   std::uint64_t crossing = 0;  ///< queries whose objects cross, if that was asked for
-  CollisionCounts counts;
+  CollisionStats stats;
   std::uint64_t left_out = 0;            ///< faces that could not be used
   std::chrono::duration<double> time{};  ///< of the queries alone, without files
 
@@ -62,7 +62,7 @@ struct Totals {
     ++queries;
     hits += result.hit;
     contacts += result.contacts.size();
-    counts += result.counts;
+    stats += result.stats;
   }
 };
 
@@ -73,11 +73,11 @@ std::string to_line(const Totals& t, const CollideOptions& options) {
   std::string line = fmt::format("queries={} hits={}", t.queries, t.hits);
   if (!options.expect.empty()) line += fmt::format(" mismatches={}", t.mismatches);
   line += fmt::format(" contacts={} open={} steps_mean={:.1f} box_tests_mean={:.1f} pairs_mean={:.1f}", t.contacts,
-                      t.counts.open, mean(t.counts.steps), mean(t.counts.box_tests), mean(t.counts.pairs));
+                      t.stats.open, mean(t.stats.steps), mean(t.stats.box_tests), mean(t.stats.pairs));
   if (options.lenient) line += fmt::format(" left_out={}", t.left_out);
   if (options.device == "cpu") return line;
-  return line + fmt::format(" fallbacks={} swaps={} swap_clocks={} clocks_mean={:.1f}", t.counts.fallbacks,
-                            t.counts.swaps, t.counts.swap_clocks, mean(t.counts.clocks));
+  return line + fmt::format(" fallbacks={} swaps={} swap_clocks={} clocks_mean={:.1f}", t.stats.fallbacks,
+                            t.stats.swaps, t.stats.swap_clocks, mean(t.stats.clocks));
 }
 
 std::string counted(std::uint64_t count, const char* one, const char* many) {
@@ -91,9 +91,9 @@ std::string to_sentence(const Totals& t, const CollideOptions& options, bool wit
     line += fmt::format(", {} differ{} from column {}", t.mismatches, t.mismatches == 1 ? "s" : "", options.expect);
   }
   if (t.left_out > 0) line += ", " + counted(t.left_out, "face", "faces") + " left out";
-  if (t.counts.clocks > 0) line += ", " + counted(t.counts.clocks, "clock", "clocks");
-  if (t.counts.swaps > 0) line += ", " + counted(t.counts.swaps, "swap", "swaps");
-  if (t.counts.fallbacks > 0) line += ", " + counted(t.counts.fallbacks, "query", "queries") + " left to the CPU";
+  if (t.stats.clocks > 0) line += ", " + counted(t.stats.clocks, "clock", "clocks");
+  if (t.stats.swaps > 0) line += ", " + counted(t.stats.swaps, "swap", "swaps");
+  if (t.stats.fallbacks > 0) line += ", " + counted(t.stats.fallbacks, "query", "queries") + " left to the CPU";
   if (with_time) {
     const double seconds = t.time.count();
     line += seconds < 1 ? fmt::format(", {:.3g} ms", 1000 * seconds) : fmt::format(", {:.3g} s", seconds);
@@ -153,7 +153,7 @@ CollisionRequest request_of(const CollideOptions& options) {
   CollisionRequest request;
   set_contacts(options, request);
   const bool all = request.contacts == CollisionRequest::Contacts::all;
-  if (options.only_crossing) request.counts = CollisionRequest::Counts::crossing;
+  if (options.only_crossing) request.least = Relation::crossing;
   if (!options.within.empty()) {
     const std::optional<double> distance = read_decimal(options.within);
     if (!distance || !(*distance >= 0 && *distance <= std::numeric_limits<double>::max())) {
@@ -553,7 +553,7 @@ class PosesRunner {
       cells.emplace_back(lines_[i]);
       cells.emplace_back(*row.expected);
     }
-    const CollisionCounts& counts = result.counts;
+    const CollisionStats& counts = result.stats;
     for (const std::uint64_t number : {std::uint64_t{result.hit}, std::uint64_t{result.contacts.size()}, counts.steps,
                                        counts.box_tests, counts.pairs, counts.open}) {
       cells.emplace_back(number);

@@ -160,13 +160,13 @@ std::uint64_t run_chip(const std::string& trace_path, std::ostream& out) {
     const bool differs = got.hit != expected.hit || got.contacts != expected.contacts;
     progress.update_of(++queries, 3);
     progress.clear();
-    fmt::print(out, "{:<10}{:>10}{:>12}{:>8}{:>9}{:>12}\n", run.pose, got.contacts.size(), got.counts.steps,
-               got.counts.open, got.counts.clocks, differs ? 1 : 0);
+    fmt::print(out, "{:<10}{:>10}{:>12}{:>8}{:>9}{:>12}\n", run.pose, got.contacts.size(), got.stats.steps,
+               got.stats.open, got.stats.clocks, differs ? 1 : 0);
     hits += got.hit ? 1 : 0;
     contacts += got.contacts.size();
     mismatches += differs ? 1 : 0;
-    open += got.counts.open;
-    clocks += got.counts.clocks;
+    open += got.stats.open;
+    clocks += got.stats.clocks;
   }
   fmt::print(out, "queries={} hits={} contacts={} mismatches={} open={} clocks={}\n", queries, hits, contacts,
              mismatches, open, clocks);

@@ -79,9 +79,9 @@ struct Scene {
   std::vector<std::vector<Contact>> expected;
 };
 
-CollisionCounts sum_of(const std::vector<CollisionResult>& results) {
-  CollisionCounts sum;
-  for (const CollisionResult& x : results) sum += x.counts;
+CollisionStats sum_of(const std::vector<CollisionResult>& results) {
+  CollisionStats sum;
+  for (const CollisionResult& x : results) sum += x.stats;
   return sum;
 }
 
@@ -151,7 +151,7 @@ TEST_CASE("chips: with slots whose modules are exchanged", "[system][chips]") {
   options.chips = 2;
   options.slots = 1;
   const auto device = open_simulated_chip(options);
-  const CollisionCounts counts = sum_of(scene.check(*device, all));
+  const CollisionStats counts = sum_of(scene.check(*device, all));
   CHECK(counts.fallbacks == 0);
   CHECK(counts.swaps >= 2);  // each chip begins with the triangle test, and there are quads
 }
@@ -208,7 +208,7 @@ TEST_CASE("chips: counts of clocks repeat", "[system][chips]") {
     options.memory.jitter = 50;
     const auto device = open_simulated_chip(options);
     std::vector<std::uint64_t> each;
-    for (const CollisionResult& x : scene.check(*device, first)) each.push_back(x.counts.clocks);
+    for (const CollisionResult& x : scene.check(*device, first)) each.push_back(x.stats.clocks);
     clocks.push_back(each);
   }
   CHECK(clocks[0] == clocks[1]);
@@ -223,7 +223,7 @@ TEST_CASE("chips: a chip that stops loses its own queries alone, and comes back"
     const bool is_ring = line >= ring_lines && line < ring_lines + 8;  // of chip 1
     return fails && is_ring ? sim::AxiFault::slave_error : sim::AxiFault::none;
   };
-  const CollisionCounts counts = sum_of(scene.check(*bench.device, all));
+  const CollisionStats counts = sum_of(scene.check(*bench.device, all));
   CHECK(counts.fallbacks > 0);
   CHECK(counts.fallbacks < 30);
   fails = false;
@@ -241,7 +241,7 @@ TEST_CASE("chips: errors of the bus in an image, for any chip", "[system][chips]
     const bool fails = line >= 2 * ring_lines && ++reads % 97 == 0;
     return fails ? sim::AxiFault::slave_error : sim::AxiFault::none;
   };
-  const CollisionCounts counts = sum_of(scene.check(*bench.device, all));
+  const CollisionStats counts = sum_of(scene.check(*bench.device, all));
   CHECK(counts.fallbacks > 0);
   bench.chips->memory().read_fault = [](std::uint64_t) { return sim::AxiFault::none; };
   CHECK(sum_of(scene.check(*bench.device, all)).fallbacks == 0);

@@ -140,7 +140,7 @@ struct Scene {
 void compare(const CollisionResult& result, const CollisionResult& first_of_cpu, const CollisionResult& all_of_cpu,
              Contacts contacts) {
   CHECK(result.hit == first_of_cpu.hit);
-  CHECK(result.counts.fallbacks == 0);
+  CHECK(result.stats.fallbacks == 0);
   if (contacts == Contacts::all) {
     CHECK(result.contacts == all_of_cpu.contacts);
   } else {
@@ -165,7 +165,7 @@ void check(Device& device, const Scene& scene) {
       const CollisionResult single = collide(device, scene.a, pose.a, scene.b, pose.b, {contacts});
       compare(single, first[i], all[i], contacts);
       compare(batch[i], first[i], all[i], contacts);
-      CHECK(single.counts.clocks > 0);
+      CHECK(single.stats.clocks > 0);
       hits += single.hit ? 1 : 0;
       contacts_seen += single.contacts.size();
     }
@@ -208,7 +208,7 @@ TEST_CASE("uio device: a chip that lost its setup is set up again", "[system][ui
   const std::unique_ptr<RegisterTrap> trap = board.serve();
   const Scene scene(Kind::tri);
   const CollisionResult lost = collide(*device, scene.a, scene.poses[0].a, scene.b, scene.poses[0].b);
-  CHECK(lost.counts.fallbacks == 1);
+  CHECK(lost.stats.fallbacks == 1);
   check(*device, scene);
 }
 

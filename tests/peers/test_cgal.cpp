@@ -97,7 +97,7 @@ void compare(const std::vector<std::pair<Mesh, Mesh>>& pairs, int poses) {
   int done = 0;
   int hits = 0;
   std::size_t contacts = 0;
-  CollisionCounts total;
+  CollisionStats total;
   for (int i = 0; i < poses; ++i) {
     const auto& [a, b] = pairs[static_cast<std::size_t>(i) % pairs.size()];
     const Object object_a(a);
@@ -113,7 +113,7 @@ void compare(const std::vector<std::pair<Mesh, Mesh>>& pairs, int poses) {
     ++done;
     hits += ours.hit;
     contacts += theirs.size();
-    total += ours.counts;
+    total += ours.stats;
     CAPTURE(i, a.name, b.name, ours.contacts.size(), theirs.size());
     CHECK((ours.contacts == theirs));
   }

@@ -38,7 +38,7 @@ void expect(Device& device, const Object& a, const Pose& pose_a, const Object& b
   CHECK(all.relation == relation);
   CHECK(std::equal(all.contacts.begin(), all.contacts.end(), contacts.begin(), contacts.end()));
   request = {};
-  request.counts = CollisionRequest::Counts::crossing;
+  request.least = Relation::crossing;
   CHECK(collide(device, a, pose_a, b, pose_b, request).hit == (relation == Relation::crossing));
 }
 

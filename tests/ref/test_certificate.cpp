@@ -24,7 +24,6 @@ using namespace cchip_test;
 using cchip::testing::make_box;
 using cchip::testing::soup;
 using Contacts = CollisionRequest::Contacts;
-using Counts = CollisionRequest::Counts;
 using CellKind = CertificateCell::Kind;
 using boost::multiprecision::cpp_int;
 using boost::multiprecision::cpp_rational;
@@ -36,11 +35,11 @@ struct Placed {
   Pose pose = Pose::Identity();
 };
 
-CollisionRequest request(Contacts contacts, bool relation, Counts counts = Counts::touching) {
+CollisionRequest request(Contacts contacts, bool relation, Relation least = Relation::touching) {
   CollisionRequest result;
   result.contacts = contacts;
   result.relation = relation;
-  result.counts = counts;
+  result.least = least;
   return result;
 }
 
@@ -48,8 +47,8 @@ const std::vector<CollisionRequest> requests = {request(Contacts::first, false),
                                                 request(Contacts::all, false),
                                                 request(Contacts::first, true),
                                                 request(Contacts::all, true),
-                                                request(Contacts::first, false, Counts::crossing),
-                                                request(Contacts::all, false, Counts::crossing)};
+                                                request(Contacts::first, false, Relation::crossing),
+                                                request(Contacts::all, false, Relation::crossing)};
 
 /// Does the certificate hold? Looks at every pair of faces by itself, in rationals, and at the claim by the exact
 /// oracle.
@@ -585,14 +584,14 @@ TEST_CASE("certificate: of the pairs of a scene", "[ref][certificate]") {
   CollisionRequest r = request(Contacts::all, true);
   r.certificate = true;
   const auto device = open_cpu_device({2, ""});
-  const std::vector<Scene::Pair> touching = scene.touching(*device, r);
+  const std::vector<Scene::Pair> touching = scene.contacts(*device, r);
   REQUIRE_FALSE(touching.empty());
   for (const Scene::Pair& pair : touching) {
     REQUIRE(pair.result.certificate);
     CHECK(pair.result.certificate->contacts.size() == pair.result.contacts.size());
     CHECK(check({placed[pair.a], placed[pair.b]}, *pair.result.certificate).accepted);
   }
-  const std::optional<Scene::Pair> one = scene.find_touching(*device, r);
+  const std::optional<Scene::Pair> one = scene.find_contact(*device, r);
   REQUIRE(one);
   CHECK(check({placed[one->a], placed[one->b]}, *one->result.certificate).accepted);
 }

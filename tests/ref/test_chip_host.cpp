@@ -265,8 +265,8 @@ class Scene {
 };
 
 std::uint64_t fallbacks(const std::vector<CollisionResult>& results) {
-  CollisionCounts sum;
-  for (const CollisionResult& result : results) sum += result.counts;
+  CollisionStats sum;
+  for (const CollisionResult& result : results) sum += result.stats;
   return sum.fallbacks;
 }
 
@@ -399,7 +399,7 @@ TEST_CASE("chip host: queries that a chip cannot take", "[ref][chip_host]") {
     bench.chip.quads = false;
     const auto device = open_fake(bench);
     const std::vector<CollisionResult> results = scene.ask(*device, all, batch);
-    for (std::size_t i = 0; i < results.size(); ++i) CHECK(results[i].counts.fallbacks == (i < 10 ? 0 : 1));
+    for (std::size_t i = 0; i < results.size(); ++i) CHECK(results[i].stats.fallbacks == (i < 10 ? 0 : 1));
     CHECK(bench.submitted == 10);
     check_obeyed(bench);
   }
@@ -412,9 +412,9 @@ TEST_CASE("chip host: queries that a chip cannot take", "[ref][chip_host]") {
     const auto cpu = open_device("cpu");
     const CollisionResult expected = collide(*cpu, quads, Pose::Identity(), quads, small, all);
     CHECK(found.contacts == expected.contacts);
-    CHECK(found.counts.fallbacks == 1);
-    CHECK(found.counts.steps == expected.counts.steps);
-    CHECK(expected.counts.fallbacks == 0);
+    CHECK(found.stats.fallbacks == 1);
+    CHECK(found.stats.steps == expected.stats.steps);
+    CHECK(expected.stats.fallbacks == 0);
     CHECK(bench.submitted == 0);
   }
 }
@@ -436,7 +436,7 @@ TEST_CASE("chip host: error codes and records that make no sense", "[ref][chip_h
     const std::vector<CollisionResult> results = scene.ask(*device, request, batch);
     CHECK(fallbacks(results) == changed);
     CHECK(changed > 0);
-    for (const CollisionResult& result : results) CHECK(result.counts.steps > 0);
+    for (const CollisionResult& result : results) CHECK(result.stats.steps > 0);
     check_obeyed(bench);
   };
   for (const int code : {2, 3, 4, 5, 6, 7, 200}) {
@@ -469,7 +469,7 @@ TEST_CASE("chip host: open pairs are decided by the host", "[ref][chip_host]") {
   const auto device = open_fake(bench);
   const std::vector<CollisionResult> results = scene.ask(*device, request, true);
   CHECK(fallbacks(results) == 0);
-  for (const CollisionResult& result : results) CHECK((result.counts.open > 0) == result.hit);
+  for (const CollisionResult& result : results) CHECK((result.stats.open > 0) == result.hit);
 }
 
 TEST_CASE("chip host: a chip that stops", "[ref][chip_host]") {
@@ -590,8 +590,8 @@ TEST_CASE("chip host: clocks are those between submission and end", "[ref][chip_
   bench.clock = 1000;
   const auto device = open_fake(bench);
   const auto sum_of = [](const std::vector<CollisionResult>& results) {
-    CollisionCounts sum;
-    for (const CollisionResult& result : results) sum += result.counts;
+    CollisionStats sum;
+    for (const CollisionResult& result : results) sum += result.stats;
     return sum.clocks;
   };
   const std::uint64_t first = sum_of(scene.ask(*device, all, batch));

@@ -132,13 +132,13 @@ namespace {
 struct Tally {
   std::uint64_t queries = 0;
   std::uint64_t hits = 0;
-  CollisionCounts counts;         ///< of the queries for all contacts
+  CollisionStats stats;           ///< of the queries for all contacts
   std::uint64_t first_pairs = 0;  ///< tested by the queries for the first one
   std::array<std::uint64_t, 3> relations = {};
 
   void print(const Device& device) const {
-    std::cout << device.name() << ": queries=" << queries << " hits=" << hits << " pairs=" << counts.pairs
-              << " open=" << counts.open << '\n';
+    std::cout << device.name() << ": queries=" << queries << " hits=" << hits << " pairs=" << stats.pairs
+              << " open=" << stats.open << '\n';
   }
 };
 
@@ -153,11 +153,10 @@ void check_relations(Device& device, const Object& a, const Object& b, const Pos
                             : !expected.empty() ? Relation::touching
                                                 : Relation::apart;
   ++tally.relations[static_cast<std::size_t>(relation)];
-  for (const CollisionRequest::Counts counts :
-       {CollisionRequest::Counts::touching, CollisionRequest::Counts::crossing}) {
+  for (const Relation least : {Relation::touching, Relation::crossing}) {
     CollisionRequest request;
-    request.counts = counts;
-    request.relation = counts == CollisionRequest::Counts::touching;
+    request.least = least;
+    request.relation = least == Relation::touching;
     const std::vector<Contact>& wanted = request.relation ? expected : crossing;
     const CollisionResult first = collide(device, a, poses.a, b, poses.b, request);
     request.contacts = CollisionRequest::Contacts::all;
@@ -172,7 +171,7 @@ void check_relations(Device& device, const Object& a, const Object& b, const Pos
     FAIL(device.name() << ": relation " << static_cast<int>(found.relation.value_or(Relation::apart)) << " and "
                        << static_cast<int>(first.relation.value_or(Relation::apart)) << " instead of "
                        << static_cast<int>(relation) << ", " << found.contacts.size() << " contacts instead of "
-                       << wanted.size() << ", counts " << static_cast<int>(counts) << '\n'
+                       << wanted.size() << ", least " << static_cast<int>(least) << '\n'
                        << describe(poses));
   }
 }
@@ -184,8 +183,8 @@ void check_answers(Device& device, const Object& a, const Object& b, const PoseP
   const CollisionResult first = collide(device, a, poses.a, b, poses.b);
   ++tally.queries;
   tally.hits += found.hit;
-  tally.counts += found.counts;
-  tally.first_pairs += first.counts.pairs;
+  tally.stats += found.stats;
+  tally.first_pairs += first.stats.pairs;
   if (!same_faces(found.contacts, expected) || found.hit != !expected.empty() || first.hit != found.hit ||
       first.contacts.size() != (found.hit ? 1 : 0) ||
       (found.hit && !std::binary_search(expected.begin(), expected.end(), first.contacts[0]))) {
@@ -228,8 +227,8 @@ TEST_CASE("collide: first and all contacts are those of brute force", "[ref][col
     CHECK(tally.queries >= 10000);
     CHECK(tally.hits > tally.queries / 4);
     CHECK(tally.hits < tally.queries * 9 / 10);
-    CHECK(tally.counts.open > 0);
-    CHECK(tally.first_pairs < tally.counts.pairs);
+    CHECK(tally.stats.open > 0);
+    CHECK(tally.first_pairs < tally.stats.pairs);
     for (const std::uint64_t queries : tally.relations) CHECK(queries > 500);
   }
 }
@@ -309,7 +308,7 @@ TEST_CASE("collide: faces that were cut count once, by their number in the file"
   const CollisionResult result = collide(*device, a, Pose::Identity(), b, Pose::Identity(), all);
   CHECK(result.contacts == std::vector<Contact>{{3, 0}, {7, 0}});
   CHECK(same_faces(brute_force_contacts(cut, Pose::Identity(), wall, Pose::Identity()), result.contacts));
-  CHECK(result.counts.pairs == 4);
+  CHECK(result.stats.pairs == 4);
   CollisionRequest one = all;
   one.max_contacts = 1;
   CHECK(collide(*device, b, Pose::Identity(), a, Pose::Identity(), one).contacts.size() == 1);
@@ -385,12 +384,12 @@ TEST_CASE("collide: pairs whose crossing took exact arithmetic are counted as op
   const Object b(one_face({{0.25, 0.25, -1}, {0.25, 0.25, 1}, {1.25, 0.25, -1}}));
   const auto device = open_cpu_device({1, "plain"});
   request.relation = false;
-  CHECK(collide(*device, a, pose_a, b, pose_b, request).counts.open == 0);
+  CHECK(collide(*device, a, pose_a, b, pose_b, request).stats.open == 0);
   request.relation = true;
   const CollisionResult found = collide(*device, a, pose_a, b, pose_b, request);
   CHECK(found.relation == Relation::crossing);
-  CHECK(found.counts.open == 1);
-  CHECK(found.counts.pairs == 1);
+  CHECK(found.stats.open == 1);
+  CHECK(found.stats.pairs == 1);
 }
 
 TEST_CASE("collide: without a device, from any number of threads", "[ref][collide]") {
@@ -448,10 +447,10 @@ TEST_CASE("collide: a batch gives what single queries give", "[ref][collide]") {
       hits += single.hit;
       CHECK(batch[i].hit == single.hit);
       CHECK(batch[i].contacts == single.contacts);
-      CHECK(batch[i].counts.steps == single.counts.steps);
-      CHECK(batch[i].counts.box_tests == single.counts.box_tests);
-      CHECK(batch[i].counts.pairs == single.counts.pairs);
-      CHECK(batch[i].counts.open == single.counts.open);
+      CHECK(batch[i].stats.steps == single.stats.steps);
+      CHECK(batch[i].stats.box_tests == single.stats.box_tests);
+      CHECK(batch[i].stats.pairs == single.stats.pairs);
+      CHECK(batch[i].stats.open == single.stats.open);
     }
     CHECK(hits > 0);
     CHECK(hits < poses.size());
@@ -529,6 +528,10 @@ TEST_CASE("collide: input that makes no sense is refused in one line", "[ref][co
   none = {};
   none.max_contacts = 0;
   CHECK_THROWS_AS(collide(*device, a, Pose::Identity(), a, Pose::Identity(), none), std::invalid_argument);
+  none = {};
+  none.least = Relation::apart;
+  CHECK_THROWS_WITH(collide(*device, a, Pose::Identity(), a, Pose::Identity(), none),
+                    "least is apart, and faces that are apart are no contact: give touching or crossing");
   CHECK_THROWS_WITH(Object(Mesh{}), "mesh has no faces");
   CHECK_THROWS_WITH(Object(one_face({{0, 0, 0}, {1, 0, std::numeric_limits<double>::infinity()}, {0, 1, 0}})),
                     Catch::Contains("vertex 1 is not finite"));
@@ -760,11 +763,11 @@ TEST_CASE("collide: counts of the model are those of the chip's query", "[ref][c
         query->swapped ? model::run_query(*query, image_b, image_a) : model::run_query(*query, image_a, image_b);
     const CollisionResult found = collide(*device, a, Pose::Identity(), b, pose, all);
     CHECK(found.hit == (x < 5));
-    CHECK(found.counts.steps == expected.counts.steps);
-    CHECK(found.counts.box_tests == expected.counts.box_tests);
-    CHECK(found.counts.pairs == expected.counts.primitive_pairs);
-    CHECK(found.counts.open == expected.counts.open_pairs);
-    CHECK(found.counts.clocks == 0);
+    CHECK(found.stats.steps == expected.counts.steps);
+    CHECK(found.stats.box_tests == expected.counts.box_tests);
+    CHECK(found.stats.pairs == expected.counts.primitive_pairs);
+    CHECK(found.stats.open == expected.counts.open_pairs);
+    CHECK(found.stats.clocks == 0);
   }
 }
 
@@ -835,7 +838,7 @@ TEST_CASE("collide: a hint names the contact but never changes whether there is 
               if (!is_contact || relation) continue;
               ++taken;
               CHECK(same_faces(result.contacts.front(), hint));
-              CHECK(result.counts.steps == 0);
+              CHECK(result.stats.steps == 0);
             }
           }
         }

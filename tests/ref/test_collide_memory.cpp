@@ -107,7 +107,7 @@ TEST_CASE("memory: a query into a result that is used again allocates nothing", 
         for (std::size_t i = 0; i < queries.poses.size(); ++i) {
           device->collide(queries.at(i), request, result);
           hits += result.hit;
-          open += result.counts.open;
+          open += result.stats.open;
         }
       };
       all();

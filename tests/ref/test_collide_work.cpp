@@ -112,11 +112,11 @@ Cost check(const std::string& what, const Object& a, const Object& b, const Pose
     const auto device = open_cpu_device({1, target});
     const Cost cost = {collide(*device, a, poses.a, b, poses.b, all), collide(*device, a, poses.a, b, poses.b)};
     const std::size_t overlaps = candidates.size();
-    const CollisionCounts& counts = cost.everything.counts;
+    const CollisionStats& counts = cost.everything.stats;
     INFO(what << ", " << target << ": overlapping=" << overlaps << " contacts=" << expected.size()
               << " found=" << cost.everything.contacts.size() << " pairs=" << counts.pairs << " steps=" << counts.steps
               << " box_tests=" << counts.box_tests << " open=" << counts.open
-              << " first_pairs=" << cost.first.counts.pairs << " first_steps=" << cost.first.counts.steps);
+              << " first_pairs=" << cost.first.stats.pairs << " first_steps=" << cost.first.stats.steps);
     CHECK(same_faces(cost.everything.contacts, expected));
     CHECK(cost.everything.hit == !expected.empty());
     CHECK(cost.first.hit == !expected.empty());
@@ -126,12 +126,12 @@ Cost check(const std::string& what, const Object& a, const Object& b, const Pose
     }
     // A leaf holds up to two faces; the volumes of A are those of B's directions by way of A's own; and planes of 16
     // bits are coarse for an object 10^6 times smaller than the other.
-    for (const CollisionCounts& c : {counts, cost.first.counts}) {
+    for (const CollisionStats& c : {counts, cost.first.stats}) {
       CHECK(c.pairs <= 8 * overlaps + 64);
       CHECK(c.steps <= 2 * overlaps + a.mesh().faces.size() + b.mesh().faces.size() + 64);
       CHECK(c.box_tests <= 16 * c.steps + 1);
     }
-    CHECK(cost.first.counts.pairs <= counts.pairs);
+    CHECK(cost.first.stats.pairs <= counts.pairs);
     CHECK(counts.pairs >= expected.size());
     if (target == targets.front()) best = cost;
   }
@@ -192,7 +192,7 @@ TEST_CASE("work: coincident meshes", "[ref][collide][work]") {
     const Pose pose = random_pose(c, 1, random);
     const Cost cost = check("coincident " + object.mesh().name, object, object, {pose, pose});
     CHECK(cost.everything.contacts.size() > object.mesh().faces.size());
-    CHECK(cost.first.counts.pairs <= 64);
+    CHECK(cost.first.stats.pairs <= 64);
   };
   both(body, PoseClass::rigid);
   both(quads, PoseClass::quarter_turns);
@@ -238,7 +238,7 @@ TEST_CASE("work: all faces in one point", "[ref][collide][work]") {
   const Object points(point);
   const Object torus(make_torus(1, 0.4, 24, 12));
   const Object plate(plane(20, Kind::quad));
-  CHECK(check("points on themselves", points, points, {}).first.counts.pairs <= 64);
+  CHECK(check("points on themselves", points, points, {}).first.stats.pairs <= 64);
   check("points apart", points, points, at({0x1p-40, 0, 0}));
   const Vec3d vertex = torus.mesh().vertices[17];
   for (const Vec3d& off : {Vec3d(0, 0, 0), Vec3d(0x1p-45, 0, 0), Vec3d(0.1, 0.1, 0.1)}) {

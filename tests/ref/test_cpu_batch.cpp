@@ -130,8 +130,8 @@ TEST_CASE("CPU device: a batch fetches each query once", "[ref][collide]") {
         device->collide(count, query, request, [&](std::size_t i, const CollisionResult& result) {
           ++taken[i];
           const bool touches = i % 3 == 0;
-          wrong += result.hit != touches || result.contacts.empty() == touches || result.counts.box_tests == 0 ||
-                   (!touches && result.counts.pairs != 0);
+          wrong += result.hit != touches || result.contacts.empty() == touches || result.stats.box_tests == 0 ||
+                   (!touches && result.stats.pairs != 0);
         });
         CAPTURE(target, threads, static_cast<int>(request.contacts));
         CHECK(wrong == 0);
@@ -189,7 +189,7 @@ TEST_CASE("collide: a batch of several pairs of objects gives what single querie
           CAPTURE(round, threads, i);
           CHECK(results[i].hit == single.hit);
           CHECK(results[i].contacts == single.contacts);
-          CHECK(results[i].counts.box_tests == single.counts.box_tests);
+          CHECK(results[i].stats.box_tests == single.stats.box_tests);
           hits += single.hit;
         }
         if (round < 2) CHECK((hits > 30 && hits < 270));  // otherwise the order of the results is not tested

@@ -233,7 +233,7 @@ TEST_CASE("CPU device: no map or size of objects that only just touch passes for
         CollisionResult result;
         search->run({&a, &pose_a, &b, &outside}, {}, result);
         wrong += result.hit ? 1U : 0U;
-        at_a_look += result.counts.steps == 0 ? 1U : 0U;
+        at_a_look += result.stats.steps == 0 ? 1U : 0U;
         ++asked;
       }
     }

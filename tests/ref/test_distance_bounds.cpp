@@ -231,9 +231,9 @@ TEST_CASE("distance bounds: many pairs at the same distance take few tests", "[r
         CHECK(d.upper == 0.125);
       }
       CHECK(d.upper == Approx(0.125).epsilon(1e-14));
-      CHECK(d.counts.pairs < 400);  // of the last plates about 10,000 pairs are as near
-      CHECK(d.counts.steps < 2000);
-      CHECK(d.counts.open < 10);
+      CHECK(d.stats.pairs < 400);  // of the last plates about 10,000 pairs are as near
+      CHECK(d.stats.steps < 2000);
+      CHECK(d.stats.open < 10);
     }
   }
 }

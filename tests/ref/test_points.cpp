@@ -152,7 +152,7 @@ bool meets(const Vec3d& point, double radius, const Pose& pose_point, const Obje
            Count& count) {
   const CloudResult result = collide(PointCloud({point}, radius), pose_point, face, pose_face);
   REQUIRE(result.contacts.size() == (result.hit ? 1U : 0U));
-  count.open += result.counts.open;
+  count.open += result.stats.open;
   return result.hit;
 }
 

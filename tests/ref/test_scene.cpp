@@ -67,12 +67,12 @@ std::vector<Scene::Pair> all_pairs(const Scene& scene, Device& device, const Col
 void check_scene(const Scene& scene, Device& device) {
   const CollisionRequest all = {CollisionRequest::Contacts::all};
   const std::vector<Scene::Pair> expected = all_pairs(scene, device, all);
-  const std::vector<Scene::Pair> found = scene.touching(device, all);
+  const std::vector<Scene::Pair> found = scene.contacts(device, all);
   CHECK(ids_of(found) == ids_of(expected));
   if (found.size() != expected.size()) return;
   for (std::size_t i = 0; i < found.size(); ++i) check_same(found[i].result, expected[i].result);
 
-  const std::optional<Scene::Pair> one = scene.find_touching(device);
+  const std::optional<Scene::Pair> one = scene.find_contact(device);
   CHECK(one.has_value() == !expected.empty());
   for (const Id id : scene.ids()) {
     std::vector<Id> others;
@@ -81,8 +81,8 @@ void check_scene(const Scene& scene, Device& device) {
       if (pair.b == id) others.push_back(pair.a);
     }
     std::sort(others.begin(), others.end());
-    CHECK(ids_of(scene.touching(device, id)) == others);
-    CHECK(scene.find_touching(device, id).has_value() == !others.empty());
+    CHECK(ids_of(scene.contacts(device, id)) == others);
+    CHECK(scene.find_contact(device, id).has_value() == !others.empty());
   }
 }
 
@@ -126,7 +126,7 @@ TEST_CASE("scene: what all pairs give, in poses of every class", "[ref][scene]")
       scene.add(objects[random() % objects.size()], random_pose(pose_class, range, random));
     }
     check_scene(scene, *device);
-    contacts += scene.touching(*device).size();
+    contacts += scene.contacts(*device).size();
     candidates += scene.candidates().size();
     // Moved and removed, at random.
     for (const Id id : scene.ids()) {
@@ -330,7 +330,7 @@ TEST_CASE("scene: queries with a distance and without one, while objects move", 
     if (step % 8 < 5) request.within = step % 2 == 0 ? 0.5 : 0.01;
     const Pairs expected = ids_of(all_pairs(scene, *device, request));
     CAPTURE(step, request.within);
-    REQUIRE(ids_of(scene.touching(*device, request)) == expected);
+    REQUIRE(ids_of(scene.contacts(*device, request)) == expected);
     REQUIRE(scene.candidates() == all_overlaps(scene));
     (request.within > 0 ? near : touching) += expected.size();
   }
@@ -410,7 +410,7 @@ TEST_CASE("scene: several threads ask for what has just moved", "[ref][scene]") 
     for (int i = 0; i < 4; ++i) {
       threads.emplace_back([&, i] {
         const auto device = open_cpu_device({1, {}});
-        const bool same = i % 2 == 0 ? scene.candidates() == boxes : ids_of(scene.touching(*device, near)) == close;
+        const bool same = i % 2 == 0 ? scene.candidates() == boxes : ids_of(scene.contacts(*device, near)) == close;
         const Scene copy = scene;
         right += same && copy.candidates() == boxes ? 1 : 0;
       });
@@ -430,10 +430,10 @@ TEST_CASE("scene: boxes that touch exactly, and by a last bit do not", "[ref][sc
     }
   }
   // Each cube touches those beside it, along edges and corners too.
-  CHECK(scene.touching(*device).size() == 158);
+  CHECK(scene.contacts(*device).size() == 158);
   CollisionRequest relation;
   relation.relation = true;
-  for (const Scene::Pair& pair : scene.touching(*device, relation)) {
+  for (const Scene::Pair& pair : scene.contacts(*device, relation)) {
     CHECK(pair.result.relation == Relation::touching);
   }
   Scene two;
@@ -448,10 +448,10 @@ TEST_CASE("scene: boxes that touch exactly, and by a last bit do not", "[ref][sc
         pose.translation()[axis] = sign * scale;
         two.set_pose(moved, pose);
         CAPTURE(scale, axis, sign);
-        CHECK(two.touching(*device).size() == 1);
+        CHECK(two.contacts(*device).size() == 1);
         pose.translation()[axis] = std::nextafter(sign * scale, sign * std::numeric_limits<double>::infinity());
         two.set_pose(moved, pose);
-        CHECK(two.touching(*device).empty());
+        CHECK(two.contacts(*device).empty());
       }
     }
   }
@@ -464,7 +464,7 @@ TEST_CASE("scene: the answer is in the order of ids with any number of threads",
   for (int i = 0; i < 200; ++i) scene.add(torus, random_pose(cchip_test::PoseClass::rigid, 5, random));
   const CollisionRequest all = {CollisionRequest::Contacts::all};
   const auto one = open_cpu_device({1, {}});
-  const std::vector<Scene::Pair> expected = scene.touching(*one, all);
+  const std::vector<Scene::Pair> expected = scene.contacts(*one, all);
   CHECK(expected.size() > 100);
   CHECK(std::is_sorted(expected.begin(), expected.end(), [](const Scene::Pair& x, const Scene::Pair& y) {
     return std::make_pair(x.a, x.b) < std::make_pair(y.a, y.b);
@@ -472,7 +472,7 @@ TEST_CASE("scene: the answer is in the order of ids with any number of threads",
   for (const unsigned threads : {2U, 5U}) {
     const auto many = open_cpu_device({threads, {}});
     for (int i = 0; i < 3; ++i) {
-      const std::vector<Scene::Pair> found = scene.touching(*many, all);
+      const std::vector<Scene::Pair> found = scene.contacts(*many, all);
       REQUIRE(ids_of(found) == ids_of(expected));
       for (std::size_t k = 0; k < found.size(); ++k) check_same(found[k].result, expected[k].result);
     }
@@ -486,37 +486,37 @@ TEST_CASE("scene: filter, groups and ignored pairs", "[ref][scene]") {
   std::vector<Id> ids;
   for (int i = 0; i < 4; ++i) ids.push_back(scene.add(cube, at(0.25 * i, 0.25 * i, 0.25 * i)));
   REQUIRE(ids == std::vector<Id>{1, 2, 3, 4});
-  CHECK(ids_of(scene.touching(*device)) == Pairs{{1, 2}, {1, 3}, {1, 4}, {2, 3}, {2, 4}, {3, 4}});
+  CHECK(ids_of(scene.contacts(*device)) == Pairs{{1, 2}, {1, 3}, {1, 4}, {2, 3}, {2, 4}, {3, 4}});
 
   scene.set_ignored(2, 1);
   scene.set_ignored(3, 4);
-  CHECK(ids_of(scene.touching(*device)) == Pairs{{1, 3}, {1, 4}, {2, 3}, {2, 4}});
-  CHECK(ids_of(scene.touching(*device, 2)) == std::vector<Id>{3, 4});
+  CHECK(ids_of(scene.contacts(*device)) == Pairs{{1, 3}, {1, 4}, {2, 3}, {2, 4}});
+  CHECK(ids_of(scene.contacts(*device, 2)) == std::vector<Id>{3, 4});
   scene.set_ignored(4, 3, false);
-  CHECK(ids_of(scene.touching(*device)) == Pairs{{1, 3}, {1, 4}, {2, 3}, {2, 4}, {3, 4}});
+  CHECK(ids_of(scene.contacts(*device)) == Pairs{{1, 3}, {1, 4}, {2, 3}, {2, 4}, {3, 4}});
 
   scene.set_filter([](Id a, Id b) {
     CHECK(a < b);
     return b != 4;
   });
-  CHECK(ids_of(scene.touching(*device)) == Pairs{{1, 3}, {2, 3}});
+  CHECK(ids_of(scene.contacts(*device)) == Pairs{{1, 3}, {2, 3}});
   CHECK(scene.candidates() == Pairs{{1, 3}, {2, 3}});
-  CHECK(scene.touching(*device, 4).empty());
+  CHECK(scene.contacts(*device, 4).empty());
   scene.set_filter({});
 
   // Both masks must agree.
   scene.set_groups(1, {2, 2});
-  CHECK(scene.touching(*device, 1).empty());
+  CHECK(scene.contacts(*device, 1).empty());
   scene.set_groups(3, {3, 2});
-  CHECK(ids_of(scene.touching(*device)) == Pairs{{1, 3}, {2, 4}});
+  CHECK(ids_of(scene.contacts(*device)) == Pairs{{1, 3}, {2, 4}});
   scene.set_groups(3, {1, 3});
-  CHECK(ids_of(scene.touching(*device)) == Pairs{{2, 3}, {2, 4}, {3, 4}});
+  CHECK(ids_of(scene.contacts(*device)) == Pairs{{2, 3}, {2, 4}, {3, 4}});
   CHECK(scene.groups(3).mask == 3);
 
   const Pose pose = at(0.1, 0.1, 0.1);
-  CHECK(ids_of(scene.touching(*device, cube, pose)) == std::vector<Id>{2, 3, 4});
-  CHECK(ids_of(scene.touching(*device, cube, pose, {}, {2, 2})) == std::vector<Id>{1});
-  CHECK(ids_of(scene.touching(*device, cube, pose, {}, {3, 3})) == std::vector<Id>{1, 2, 3, 4});
+  CHECK(ids_of(scene.contacts(*device, {cube, pose})) == std::vector<Id>{2, 3, 4});
+  CHECK(ids_of(scene.contacts(*device, {cube, pose, {2, 2}})) == std::vector<Id>{1});
+  CHECK(ids_of(scene.contacts(*device, {cube, pose, {3, 3}})) == std::vector<Id>{1, 2, 3, 4});
 }
 
 TEST_CASE("scene: an object that is removed takes its own ignored pairs along and no others", "[ref][scene]") {
@@ -526,10 +526,10 @@ TEST_CASE("scene: an object that is removed takes its own ignored pairs along an
   for (int i = 0; i < 4; ++i) scene.add(cube, at(0.25 * i, 0, 0));
   scene.set_ignored(1, 2);
   scene.set_ignored(3, 4);
-  CHECK(ids_of(scene.touching(*device)) == Pairs{{1, 3}, {1, 4}, {2, 3}, {2, 4}});
+  CHECK(ids_of(scene.contacts(*device)) == Pairs{{1, 3}, {1, 4}, {2, 3}, {2, 4}});
   scene.remove(1);
   CHECK(scene.candidates() == Pairs{{2, 3}, {2, 4}});  // nothing but the removal has changed since the query before
-  CHECK(ids_of(scene.touching(*device)) == Pairs{{2, 3}, {2, 4}});
+  CHECK(ids_of(scene.contacts(*device)) == Pairs{{2, 3}, {2, 4}});
   scene.remove(2);
   CHECK(scene.candidates().empty());
 }
@@ -542,16 +542,16 @@ TEST_CASE("scene: the object asked about is A", "[ref][scene]") {
   Scene scene;
   const Id a = scene.add(torus);
   const Id b = scene.add(cube);
-  check_same(scene.touching(*device, all).at(0).result,
+  check_same(scene.contacts(*device, all).at(0).result,
              collide(*device, torus, Pose::Identity(), cube, Pose::Identity(), all));
-  for (const Scene::Hit& hit : {scene.touching(*device, b, all).at(0), *scene.find_touching(*device, b, all)}) {
+  for (const Scene::Hit& hit : {scene.contacts(*device, b, all).at(0), *scene.find_contact(*device, b, all)}) {
     CHECK(hit.id == a);
     check_same(hit.result, collide(*device, cube, Pose::Identity(), torus, Pose::Identity(), all));
   }
-  const auto hits = scene.touching(*device, cube, Pose::Identity(), all);
+  const auto hits = scene.contacts(*device, {cube, Pose::Identity()}, all);
   CHECK(ids_of(hits) == std::vector<Id>{a, b});
   check_same(hits[0].result, collide(*device, cube, Pose::Identity(), torus, Pose::Identity(), all));
-  CHECK(scene.find_touching(*device, cube, at(9, 9, 9)) == std::nullopt);
+  CHECK(scene.find_contact(*device, {cube, at(9, 9, 9)}) == std::nullopt);
 }
 
 TEST_CASE("scene: ids are never used again", "[ref][scene]") {
@@ -565,20 +565,88 @@ TEST_CASE("scene: ids are never used again", "[ref][scene]") {
   scene.remove(b);
   CHECK(scene.size() == 2);
   CHECK_FALSE(scene.contains(b));
-  CHECK(ids_of(scene.touching(*device)) == Pairs{{a, c}});
+  CHECK(ids_of(scene.contacts(*device)) == Pairs{{a, c}});
   const Id d = scene.add(cube, at(0.5, 0, 0));
   CHECK(d > c);
   CHECK(scene.ids() == std::vector<Id>{a, c, d});
-  CHECK(ids_of(scene.touching(*device)) == Pairs{{a, c}, {a, d}, {c, d}});
+  CHECK(ids_of(scene.contacts(*device)) == Pairs{{a, c}, {a, d}, {c, d}});
   const Scene copy = scene;
   scene.remove(a);
   scene.remove(c);
   scene.remove(d);
   CHECK(scene.size() == 0);
-  CHECK(scene.touching(*device).empty());
-  CHECK(copy.touching(*device).size() == 3);
+  CHECK(scene.contacts(*device).empty());
+  CHECK(copy.contacts(*device).size() == 3);
   CHECK(scene.add(cube) > d);
 }
+
+TEST_CASE("scene: targets of many poses and of another scene", "[ref][scene]") {
+  // Unit cubes in a row with gaps of 1, and others that reach from 0.5 into the gap: each pair by hand.
+  const Object cube(box({1, 1, 1}));
+  Scene row;
+  for (int i = 0; i < 4; ++i) row.add(cube, at(2 * i, 0, 0), {i == 3 ? 2U : 1U, ~std::uint64_t{0}});
+  row.set_filter([](Id, Id) -> bool { throw std::logic_error("not about these"); });
+  const std::vector<Pose> poses = {at(9, 9, 9), at(1, 0, 0), at(2.5, 0, 0), at(6, 0, 0)};
+  Scene others;
+  const Id gone = others.add(cube);
+  for (const Pose& pose : poses) others.add(cube, pose);
+  others.remove(gone);
+  using Of = std::vector<std::pair<Id, std::uint64_t>>;
+  const auto both = [](const std::vector<Scene::Hit>& hits) {
+    Of all;
+    for (const Scene::Hit& hit : hits) all.emplace_back(hit.id, hit.of);
+    return all;
+  };
+  CollisionRequest all;
+  all.contacts = CollisionRequest::Contacts::all;
+  for (const char* name : {"cpu", "model"}) {
+    const auto device = open_device(name);
+    // Flush at x = 1 and x = 2, across the second, on the fourth; none for the first.
+    const std::vector<Scene::Hit> hits = row.contacts(*device, {cube, poses}, all);
+    CHECK(both(hits) == Of{{1, 1}, {2, 1}, {2, 2}, {4, 3}});
+    for (const Scene::Hit& hit : hits) {
+      check_same(hit.result, collide(*device, cube, poses[hit.of], cube, row.pose(hit.id), all));
+    }
+    CHECK(both(row.contacts(*device, {cube, poses, {1, 1}})) == Of{{1, 1}, {2, 1}, {2, 2}});
+    CHECK(row.contacts(*device, {cube, std::vector<Pose>{}}).empty());
+    // The ids of the other scene are 2, 3, 4 and 5: one was removed.
+    CHECK(both(row.contacts(*device, others, all)) == Of{{1, 3}, {2, 3}, {2, 4}, {4, 5}});
+    CHECK(both(others.contacts(*device, row, all)) == Of{{3, 1}, {3, 2}, {4, 2}, {5, 4}});
+    check_same(others.contacts(*device, row, all).at(0).result,
+               collide(*device, cube, row.pose(1), cube, others.pose(3), all));
+    others.set_groups(5, {1, 1});
+    CHECK(both(row.contacts(*device, others)) == Of{{1, 3}, {2, 3}, {2, 4}});
+    others.set_groups(5, {});
+    CHECK(row.find_contact(*device, others).has_value());
+    CHECK(row.find_contact(*device, {cube, {at(9, 0, 0), at(0, 9, 0)}}) == std::nullopt);
+    CHECK_THROWS_WITH(row.contacts(*device, row),
+                      "scene: the target is the scene itself; leave it out, which asks for the pairs of the scene");
+    CHECK_THROWS_WITH(row.contacts(*device, {cube, {at(0, 0, 0), at(std::nan(""), 0, 0)}}),
+                      Catch::StartsWith("pose of the object: number 1: row 0, column 3 is not finite"));
+  }
+}
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
+TEST_CASE("scene: the old names of contacts()", "[ref][scene]") {
+  const auto device = open_device("cpu");
+  const Object cube(box({1, 1, 1}));
+  Scene scene;
+  scene.add(cube);
+  scene.add(cube, at(1, 0, 0), {2, ~std::uint64_t{0}});
+  CHECK(ids_of(scene.touching(*device)) == Pairs{{1, 2}});
+  CHECK(ids_of(scene.touching(*device, 1)) == std::vector<Id>{2});
+  CHECK(ids_of(scene.touching(*device, cube, at(1, 0, 0), {}, {1, 2})) == std::vector<Id>{2});
+  CHECK(scene.find_touching(*device));
+  CHECK(scene.find_touching(*device, 2)->id == 1);
+  CHECK_FALSE(scene.find_touching(*device, cube, at(5, 0, 0)));
+  std::size_t taken = 0;
+  scene.for_each_touching(*device, [&](const Scene::Pair&) { return ++taken != 0; });
+  scene.for_each_touching(*device, 1, [&](const Scene::Hit&) { return ++taken != 0; });
+  scene.for_each_touching(*device, cube, at(1, 0, 0), [&](const Scene::Hit&) { return ++taken != 0; });
+  CHECK(taken == 4);
+}
+#pragma GCC diagnostic pop
 
 TEST_CASE("scene: stops when it is told to", "[ref][scene]") {
   const auto device = open_cpu_device({3, {}});
@@ -587,24 +655,24 @@ TEST_CASE("scene: stops when it is told to", "[ref][scene]") {
   for (int i = 0; i < 60; ++i) scene.add(cube, at(0.01 * i, 0.01 * i, 0.01 * i));
   for (const std::size_t most : {std::size_t{1}, std::size_t{5}}) {
     std::size_t taken = 0;
-    scene.for_each_touching(*device, [&](const Scene::Pair& pair) {
+    scene.for_each_contact(*device, [&](const Scene::Pair& pair) {
       CHECK(pair.a < pair.b);
       return ++taken < most;
     });
     CHECK(taken == most);
     taken = 0;
-    scene.for_each_touching(*device, 7, [&](const Scene::Hit&) { return ++taken < most; });
+    scene.for_each_contact(*device, 7, [&](const Scene::Hit&) { return ++taken < most; });
     CHECK(taken == most);
     taken = 0;
-    scene.for_each_touching(*device, cube, Pose::Identity(), [&](const Scene::Hit&) { return ++taken < most; });
+    scene.for_each_contact(*device, {cube, Pose::Identity()}, [&](const Scene::Hit&) { return ++taken < most; });
     CHECK(taken == most);
   }
   struct Mine {};
-  CHECK_THROWS_AS(scene.for_each_touching(*device, [](const Scene::Pair&) -> bool { throw Mine(); }), Mine);
+  CHECK_THROWS_AS(scene.for_each_contact(*device, [](const Scene::Pair&) -> bool { throw Mine(); }), Mine);
   scene.set_filter([](Id, Id) -> bool { throw Mine(); });
-  CHECK_THROWS_AS(scene.touching(*device), Mine);
+  CHECK_THROWS_AS(scene.contacts(*device), Mine);
   scene.set_filter({});
-  CHECK(scene.touching(*device).size() == 60 * 59 / 2);
+  CHECK(scene.contacts(*device).size() == 60 * 59 / 2);
 }
 
 TEST_CASE("scene: what makes no sense is refused in one line, and changes nothing", "[ref][scene]") {
@@ -616,7 +684,7 @@ TEST_CASE("scene: what makes no sense is refused in one line, and changes nothin
   const auto refuses = [&](const std::string& message, const auto& action) {
     CHECK_THROWS_MATCHES(action(), std::invalid_argument, Catch::Message(message));
     CHECK(scene.ids() == std::vector<Id>{a, b});
-    CHECK(ids_of(scene.touching(*device)) == Pairs{{a, b}});
+    CHECK(ids_of(scene.contacts(*device)) == Pairs{{a, b}});
   };
   const Pose pose = at(0.5, 0, 0);
   const std::string unknown = "scene: no object has the id 3: add() has not returned it";
@@ -626,7 +694,7 @@ TEST_CASE("scene: what makes no sense is refused in one line, and changes nothin
   refuses(unknown, [&] { scene.set_ignored(1, 3); });
   refuses(unknown, [&] { scene.object(3); });
   refuses(unknown, [&] { scene.pose(3); });
-  refuses(unknown, [&] { scene.touching(*device, 3); });
+  refuses(unknown, [&] { scene.contacts(*device, 3); });
   refuses("scene: no object has the id 0: add() has not returned it", [&] { scene.remove(0); });
   refuses("scene: object 2 is never tested against itself; give the ids of two objects",
           [&] { scene.set_ignored(2, 2); });
@@ -635,21 +703,21 @@ TEST_CASE("scene: what makes no sense is refused in one line, and changes nothin
   const std::string where = "row 1, column 3 is not finite or beyond 2^500; check it or scale it";
   refuses("pose of object 2: " + where, [&] { scene.set_pose(b, bad); });
   refuses("pose of the object: " + where, [&] { scene.add(cube, bad); });
-  refuses("pose of the object: " + where, [&] { scene.touching(*device, cube, bad); });
+  refuses("pose of the object: " + where, [&] { scene.contacts(*device, {cube, bad}); });
   refuses("max_contacts is 0: ask for at least one contact", [&] {
-    scene.touching(*device, {CollisionRequest::Contacts::all, 0});
+    scene.contacts(*device, {CollisionRequest::Contacts::all, 0});
   });
   const Object moved = std::move(cube);
   const std::string gone = "scene: the object was moved from; use the one that it was moved to";
-  refuses(gone, [&] { scene.add(cube); });                      // NOLINT: that is the test
-  refuses(gone, [&] { scene.touching(*device, cube, pose); });  // NOLINT
+  refuses(gone, [&] { scene.add(cube); });                        // NOLINT: that is the test
+  refuses(gone, [&] { scene.contacts(*device, {cube, pose}); });  // NOLINT
   CHECK(scene.add(moved) == 3);
   scene.remove(3);
   refuses("scene: no object has the id 3: it was removed", [&] { scene.remove(3); });
 
   // A device in use says so; the scene is as it was.
-  scene.for_each_touching(*device, [&](const Scene::Pair&) {
-    CHECK_THROWS_AS(scene.touching(*device), std::logic_error);
+  scene.for_each_contact(*device, [&](const Scene::Pair&) {
+    CHECK_THROWS_AS(scene.contacts(*device), std::logic_error);
     return true;
   });
 }

@@ -202,15 +202,15 @@ TEST_CASE("within: scenes and batches", "[ref][distance]") {
     ids.push_back(scene.add(box, pose));
   }
   CollisionRequest request;
-  CHECK(scene.touching(*device, request).empty());
+  CHECK(scene.contacts(*device, request).empty());
   request.within = std::nextafter(0.5, 0.0);
-  CHECK(scene.touching(*device, request).empty());
+  CHECK(scene.contacts(*device, request).empty());
   request.within = 0.5;
-  CHECK(scene.touching(*device, request).size() == 4);
-  CHECK(scene.touching(*device, ids[1], request).size() == 2);
-  CHECK(scene.touching(*device, box, Pose(Eigen::Translation3d(-1.5, 0, 0)), request).size() == 1);
+  CHECK(scene.contacts(*device, request).size() == 4);
+  CHECK(scene.contacts(*device, ids[1], request).size() == 2);
+  CHECK(scene.contacts(*device, {box, Pose(Eigen::Translation3d(-1.5, 0, 0))}, request).size() == 1);
   request.within = 2;
-  CHECK(scene.touching(*device, request).size() == 4 + 3);
+  CHECK(scene.contacts(*device, request).size() == 4 + 3);
   std::vector<PosePair> poses(100);
   for (std::size_t i = 0; i < poses.size(); ++i) poses[i].b.translation().y() = 1 + 0x1p-5 * static_cast<double>(i);
   const std::vector<CollisionResult> results = collide(*device, box, box, poses, request);
@@ -231,7 +231,7 @@ TEST_CASE("within: requests that make no sense", "[ref][distance]") {
   request.relation = true;
   refuses(request, "faces at a distance neither touch nor cross");
   request.relation = false;
-  request.counts = CollisionRequest::Counts::crossing;
+  request.least = Relation::crossing;
   refuses(request, "faces at a distance neither touch nor cross");
 }
 

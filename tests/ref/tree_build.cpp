@@ -72,8 +72,8 @@ bool measure_open(int faces, int poses) {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> share(c.least, c.greatest);
     std::size_t hits = 0;
-    CollisionCounts first;
-    CollisionCounts every;
+    CollisionStats first;
+    CollisionStats every;
     for (int i = 0; i < poses; ++i) {
       const Vec3d direction = testing::random_vector(random, 1).normalized();
       const Vec3d turn = testing::random_vector(random, 180);
@@ -84,13 +84,13 @@ bool measure_open(int faces, int poses) {
         (collide(*cpu, a, Pose::Identity(), b, Pose(make_pose(middle * direction, turn))).hit ? near : far) = middle;
       }
       const Pose pose(make_pose(share(random) * far * direction, turn));
-      first += collide(*chip, a, Pose::Identity(), b, pose).counts;
+      first += collide(*chip, a, Pose::Identity(), b, pose).stats;
       const CollisionResult result = collide(*chip, a, Pose::Identity(), b, pose, all);
-      every += result.counts;
+      every += result.stats;
       hits += result.hit ? 1 : 0;
       mismatches += result.contacts == collide(*cpu, a, Pose::Identity(), b, pose, all).contacts ? 0 : 1;
     }
-    const auto percent = [](const CollisionCounts& x) {
+    const auto percent = [](const CollisionStats& x) {
       return x.pairs == 0 ? 0 : 100 * static_cast<double>(x.open) / static_cast<double>(x.pairs);
     };
     std::printf(

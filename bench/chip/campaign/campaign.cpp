@@ -72,9 +72,9 @@ void compare(Device& right, Device& tried, const Object& a, const Object& b, con
     ++totals.queries;
     totals.hits += x.hit ? 1 : 0;
     totals.contacts += x.contacts.size();
-    totals.open += x.counts.open;
-    totals.fallbacks += x.counts.fallbacks;
-    totals.clocks += x.counts.clocks;
+    totals.open += x.stats.open;
+    totals.fallbacks += x.stats.fallbacks;
+    totals.clocks += x.stats.clocks;
     const bool same = all ? x.hit == expected[i].hit && x.contacts == expected[i].contacts
                           : x.hit == expected[i].hit && named_contact_holds(a, b, poses[i], x);
     if (same) continue;

@@ -37,8 +37,8 @@ class MixedRun {
     fmt::print(
         "queries={} hits={} mismatches={} contacts={} open={} lost={} duplicated={} swaps={} clocks_mean={:.1f} "
         "fallbacks={} failed_swaps={} given_up={} bins={}\n",
-        queries_, hits_, mismatches_, contacts_, counts_.open, lost_, duplicated_, counts_.swaps,
-        static_cast<double>(counts_.clocks) / std::max(1.0, static_cast<double>(queries_)), counts_.fallbacks,
+        queries_, hits_, mismatches_, contacts_, stats_.open, lost_, duplicated_, stats_.swaps,
+        static_cast<double>(stats_.clocks) / std::max(1.0, static_cast<double>(queries_)), stats_.fallbacks,
         failed_swaps(), chip_.machine->read_register(regs::swap_lost::offset), bins);
     for (const auto& [name, count] : bins_) fmt::print("  {}: {}\n", name, count);
     return mismatches_ == 0 && lost_ == 0 && duplicated_ == 0 && queries_ > 0 ? 0 : 3;
@@ -77,7 +77,7 @@ class MixedRun {
           }
           hits_ += x.hit ? 1 : 0;
           contacts_ += x.contacts.size();
-          counts_ += x.counts;
+          stats_ += x.stats;
         });
     for (const std::size_t times : taken) {
       lost_ += times == 0 ? 1 : 0;
@@ -152,7 +152,7 @@ class MixedRun {
   MixedObjects objects_;
   std::size_t queries_ = 0, hits_ = 0, mismatches_ = 0, lost_ = 0, duplicated_ = 0;
   std::uint64_t contacts_ = 0;
-  CollisionCounts counts_;
+  CollisionStats stats_;
   std::map<std::string, std::size_t> bins_;
 };
 

@@ -145,7 +145,7 @@ class Maker {
     certificate_.hash_a = hash_mesh(*checker_.mesh[0]);
     certificate_.hash_b = hash_mesh(*checker_.mesh[1]);
     certificate_.hash_poses = hash_poses(*query.pose_a, *query.pose_b);
-    if (request.counts == CollisionRequest::Counts::crossing) certificate_.least = Relation::crossing;
+    if (request.least == Relation::crossing) certificate_.least = Relation::crossing;
   }
 
   /// The proof of one contact, if a pair of parts of the two faces proves it; else nothing.

@@ -23,7 +23,7 @@ void clear(CollisionResult& result) {
   result.hit = false;
   result.relation.reset();
   result.contacts.clear();
-  result.counts = {};
+  result.stats = {};
 }
 
 }  // namespace
@@ -44,13 +44,16 @@ void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest&
   if (request.max_contacts == 0) {
     throw std::invalid_argument("max_contacts is 0: ask for at least one contact");
   }
+  if (request.least != Relation::touching && request.least != Relation::crossing) {
+    throw std::invalid_argument("least is apart, and faces that are apart are no contact: give touching or crossing");
+  }
   if (!(request.within >= 0 && request.within <= std::numeric_limits<double>::max())) {
     throw std::invalid_argument("within is " + std::to_string(request.within) +
                                 ": ask for a distance that is finite and at least 0");
   }
   if (request.within > 0 && request.tells_relation()) {
     throw std::invalid_argument(
-        "within: faces at a distance neither touch nor cross; leave out relation and counts, or within");
+        "within: faces at a distance neither touch nor cross; leave out relation and least, or within");
   }
 }
 
@@ -85,14 +88,14 @@ Relation FacePairs::relate(std::uint32_t face_a, std::uint32_t face_b) {
   if (request_.within > 0) {
     if (!distances_) distances_.emplace(*query_.pose_a, *query_.pose_b);
     const PosedDistances::Answer answer = distances_->within(a, b, request_.within);
-    ++result_->counts.pairs;
-    result_->counts.open += answer.open;
+    ++result_->stats.pairs;
+    result_->stats.open += answer.open;
     return answer.hit ? Relation::touching : Relation::apart;
   }
   if (!pairs_) pairs_.emplace(*query_.pose_a, *query_.pose_b);
   const PosedPairs::Answer answer = pairs_->decide(a, b, request_.tells_relation());
-  ++result_->counts.pairs;
-  result_->counts.open += answer.open;
+  ++result_->stats.pairs;
+  result_->stats.open += answer.open;
   return answer.crosses ? Relation::crossing : answer.hit ? Relation::touching : Relation::apart;
 }
 
@@ -117,7 +120,7 @@ FacePairs::Parts FacePairs::parts_of(const Object& object, std::uint32_t face) {
 void FacePairs::add(std::uint32_t face_a, std::uint32_t face_b, Relation relation) {
   const bool crosses = relation == Relation::crossing;
   seen_ = std::max(seen_, relation);
-  if (!crosses && request_.counts == CollisionRequest::Counts::crossing) return;
+  if (!crosses && request_.least == Relation::crossing) return;
   Contact contact = {query_.a->mesh().number_in_file(face_a), query_.b->mesh().number_in_file(face_b), std::nullopt};
   if (request_.tells_relation()) contact.relation = relation;
   std::vector<Contact>& contacts = result_->contacts;

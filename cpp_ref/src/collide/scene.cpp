@@ -190,7 +190,7 @@ std::vector<std::pair<Scene::Id, Scene::Id>> Scene::candidates() const {
   return pairs;
 }
 
-void Scene::for_each_touching(Device& device, const PairSink& take, const CollisionRequest& request) const {
+void Scene::for_each_contact(Device& device, const PairSink& take, const CollisionRequest& request) const {
   check_query(Pose::Identity(), Pose::Identity(), request);  // whether or not there are pairs
   const std::vector<Candidate> pairs = find_candidates(request.within);
   device.collide(
@@ -206,38 +206,70 @@ void Scene::for_each_touching(Device& device, const PairSink& take, const Collis
       });
 }
 
-void Scene::ask(Device& device, const Object& object, const Pose& pose, const std::vector<std::uint32_t>& others,
-                const HitSink& take, const CollisionRequest& request) const {
+struct Scene::Near {
+  const Object* object;
+  const Pose* pose;
+  std::uint64_t of;
+  std::vector<std::uint32_t> others;
+};
+
+std::vector<Scene::Near> Scene::near(const Target& target, double within) const {
+  std::vector<Near> all;
+  const auto add = [&](const Object& object, const Pose& pose, std::uint64_t of, const Label& label,
+                       const WorldBox& box) {
+    std::vector<std::uint32_t> others = near(label, box, within);
+    if (!others.empty()) all.push_back({&object, &pose, of, std::move(others)});
+  };
+  if (target.scene_ == this) {
+    throw std::invalid_argument(
+        "scene: the target is the scene itself; leave it out, which asks for the pairs of the scene");
+  }
+  if (target.scene_ != nullptr) {
+    const Scene& other = *target.scene_;
+    for (std::size_t i = 0; i < other.entries_.size(); ++i) {
+      const Label& label = other.labels_[i];
+      const Entry& entry = other.entries_[i];
+      if (label.id != 0) add(entry.object, entry.pose, label.id, {0, label.groups}, other.boxes_.held->box(i));
+    }
+  } else if (target.object_ != nullptr) {
+    check_float_mode();
+    check_object(*target.object_);
+    for (std::size_t i = 0; i < target.count_; ++i) {
+      const Pose& pose = target.poses_[i];
+      check_pose(pose, target.count_ == 1 ? "the object" : ("the object: number " + std::to_string(i)).c_str());
+      add(*target.object_, pose, i, {0, target.groups_}, world_box(*target.object_, pose));
+    }
+  } else {
+    const std::size_t at = place(target.id_);
+    add(entries_[at].object, entries_[at].pose, 0, labels_[at], box(target.id_));
+  }
+  return all;
+}
+
+void Scene::for_each_contact(Device& device, const Target& target, const HitSink& take,
+                             const CollisionRequest& request) const {
   check_query(Pose::Identity(), Pose::Identity(), request);  // whether or not there are others
+  const std::vector<Near> all = near(target, request.within);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> queries;  // numbers in `all` and in entries_
+  for (std::uint32_t i = 0; i < all.size(); ++i) {
+    for (const std::uint32_t other : all[i].others) queries.emplace_back(i, other);
+  }
   device.collide(
-      others.size(),
+      queries.size(),
       [&](std::size_t i) {
-        const Entry& b = entries_[others[i]];
-        return CollisionQuery{&object, &pose, &b.object, &b.pose};
+        const Near& a = all[queries[i].first];
+        const Entry& b = entries_[queries[i].second];
+        return CollisionQuery{a.object, a.pose, &b.object, &b.pose};
       },
       request,
       [&](std::size_t i, const CollisionResult& result) {
-        return !result.hit || take({labels_[others[i]].id, result});
+        return !result.hit || take({labels_[queries[i].second].id, result, all[queries[i].first].of});
       });
-}
-
-void Scene::for_each_touching(Device& device, Id id, const HitSink& take, const CollisionRequest& request) const {
-  const std::size_t at = place(id);
-  const Entry& one = entries_[at];
-  ask(device, one.object, one.pose, near(labels_[at], box(id), request.within), take, request);
-}
-
-void Scene::for_each_touching(Device& device, const Object& object, const Pose& pose, const HitSink& take,
-                              const CollisionRequest& request, const CollisionGroups& groups) const {
-  check_float_mode();
-  check_object(object);
-  check_pose(pose, "the object");
-  ask(device, object, pose, near({0, groups}, world_box(object, pose), request.within), take, request);
 }
 
 namespace {
 
-/// Everything that a call of for_each_touching() finds, in the order of `less`.
+/// Everything that a call of for_each_contact() finds, in the order of `less`.
 template <class Found, class Less, class Call>
 std::vector<Found> gather(const Less& less, const Call& call) {
   std::vector<Found> all;
@@ -261,35 +293,25 @@ std::optional<Found> first(const Call& call) {
 }
 
 bool pair_less(const Scene::Pair& x, const Scene::Pair& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; }
-bool hit_less(const Scene::Hit& x, const Scene::Hit& y) { return x.id < y.id; }
+bool hit_less(const Scene::Hit& x, const Scene::Hit& y) { return x.id != y.id ? x.id < y.id : x.of < y.of; }
 
 }  // namespace
 
-std::vector<Scene::Pair> Scene::touching(Device& device, const CollisionRequest& request) const {
-  return gather<Pair>(pair_less, [&](const PairSink& take) { for_each_touching(device, take, request); });
+std::vector<Scene::Pair> Scene::contacts(Device& device, const CollisionRequest& request) const {
+  return gather<Pair>(pair_less, [&](const PairSink& take) { for_each_contact(device, take, request); });
 }
 
-std::vector<Scene::Hit> Scene::touching(Device& device, Id id, const CollisionRequest& request) const {
-  return gather<Hit>(hit_less, [&](const HitSink& take) { for_each_touching(device, id, take, request); });
+std::vector<Scene::Hit> Scene::contacts(Device& device, const Target& target, const CollisionRequest& request) const {
+  return gather<Hit>(hit_less, [&](const HitSink& take) { for_each_contact(device, target, take, request); });
 }
 
-std::vector<Scene::Hit> Scene::touching(Device& device, const Object& object, const Pose& pose,
-                                        const CollisionRequest& request, const CollisionGroups& groups) const {
-  return gather<Hit>(hit_less,
-                     [&](const HitSink& take) { for_each_touching(device, object, pose, take, request, groups); });
+std::optional<Scene::Pair> Scene::find_contact(Device& device, const CollisionRequest& request) const {
+  return first<Pair>([&](const PairSink& take) { for_each_contact(device, take, request); });
 }
 
-std::optional<Scene::Pair> Scene::find_touching(Device& device, const CollisionRequest& request) const {
-  return first<Pair>([&](const PairSink& take) { for_each_touching(device, take, request); });
-}
-
-std::optional<Scene::Hit> Scene::find_touching(Device& device, Id id, const CollisionRequest& request) const {
-  return first<Hit>([&](const HitSink& take) { for_each_touching(device, id, take, request); });
-}
-
-std::optional<Scene::Hit> Scene::find_touching(Device& device, const Object& object, const Pose& pose,
-                                               const CollisionRequest& request, const CollisionGroups& groups) const {
-  return first<Hit>([&](const HitSink& take) { for_each_touching(device, object, pose, take, request, groups); });
+std::optional<Scene::Hit> Scene::find_contact(Device& device, const Target& target,
+                                              const CollisionRequest& request) const {
+  return first<Hit>([&](const HitSink& take) { for_each_contact(device, target, take, request); });
 }
 
 }  // namespace cchip

@@ -211,8 +211,8 @@ class Search {
   template <class Take>
   void expand(const Item& item, const Take& take) {
     if (item.a.is_leaf() && item.b.is_leaf()) return expand_leaves(item, take);
-    ++counts_.steps;
-    counts_.box_tests += std::uint64_t{item.a.count()} * item.b.count();
+    ++stats_.steps;
+    stats_.box_tests += std::uint64_t{item.a.count()} * item.b.count();
     std::array<Dop26, 4> volumes_b;
     for (std::uint32_t k = 0; k < item.b.count(); ++k) {
       volumes_b[k] = volumes_.volume_b(b_.volume(b_.tree.lines()[item.b.first() + k]));
@@ -234,7 +234,7 @@ class Search {
 
   /// Of a pair of faces.
   std::optional<Met> meeting(const Item& item) {
-    ++counts_.open;
+    ++stats_.open;
     const std::uint32_t face_a = item.a.first();
     const std::uint32_t face_b = item.b.first();
     const auto when = exact::meeting(a_.mesh.primitive(face_a), *query_.pose_a, b_.mesh.primitive(face_b),
@@ -251,7 +251,7 @@ class Search {
     result.factor = own.nearest;
     result.lower = own.low;
     result.upper = own.high;
-    result.counts += counts_;
+    result.stats += stats_;
   }
 
  private:
@@ -268,7 +268,7 @@ class Search {
       for (std::uint32_t k = item.b.first(); k < item.b.first() + item.b.count(); ++k) {
         const std::uint32_t face_a = a_.tree.faces()[i];
         const std::uint32_t face_b = b_.tree.faces()[k];
-        ++counts_.pairs;
+        ++stats_.pairs;
         Item below = {item.span, NodeRef::leaf(face_a, 1, false), NodeRef::leaf(face_b, 1, false), true};
         faces_.narrow(below.span, a_.mesh.primitive(face_a), b_.mesh.primitive(face_b));
         if (!below.span.is_empty()) take(below);
@@ -283,7 +283,7 @@ class Search {
   const int exponent_;
   const VolumeSpans volumes_;
   const FaceSpans faces_;
-  CollisionCounts counts_;
+  CollisionStats stats_;
 };
 
 /// Smallest key first.
@@ -395,7 +395,7 @@ AlongResult at_once(const CollisionQuery& query) {
   const CollisionResult now = collide(*query.a, *query.pose_a, *query.b, *query.pose_b);
   AlongResult result;
   result.touches = now.hit;
-  result.counts = now.counts;
+  result.stats = now.stats;
   if (now.hit) {
     result.face_a = now.contacts.front().face_a;
     result.face_b = now.contacts.front().face_b;

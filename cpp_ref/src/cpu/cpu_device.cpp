@@ -76,7 +76,7 @@ class Batch {
         mine.hit = result.hit;
         mine.relation = result.relation;
         mine.contacts.clear();
-        mine.counts = result.counts;
+        mine.stats = result.stats;
         if (mine.certificate || result.certificate) mine.certificate = std::move(result.certificate);
       } else {
         std::swap(mine, result);

@@ -45,10 +45,10 @@ class DistanceSearch {
 
   /// \pre the objects share no point
   void run(DistanceResult& result) {
-    counts_ = result.counts;
+    stats_ = result.stats;
     search();
     answer(result);
-    result.counts = counts_;
+    result.stats = stats_;
   }
 
  private:
@@ -113,8 +113,8 @@ class DistanceSearch {
   bool is_behind_planes(const Item& item) {
     if (upper_ == infinity) return false;
     if (!(item.gap >= (1 - 0x1p-7) * upper_)) {
-      if (counts_.steps < next_look_) return false;
-      next_look_ = counts_.steps + 64;
+      if (stats_.steps < next_look_) return false;
+      next_look_ = stats_.steps + 64;
       if (!frame_.is_gap_nearly(upper_, a_, b_)) return false;
     }
     make_planes(found_[nearest_]);
@@ -124,7 +124,7 @@ class DistanceSearch {
   /// Those through the nearest points of these faces, which share no point.
   void make_planes(const Faces& faces) {
     if (planes_ && planes_of_ == std::array<std::uint32_t, 2>{faces.a, faces.b}) return;
-    ++counts_.open;
+    ++stats_.open;
     planes_of_ = {faces.a, faces.b};
     planes_.emplace(distances_, a_.mesh.primitive(faces.a), b_.mesh.primitive(faces.b));
     behind_a_.emplace(a_, planes_->a());
@@ -138,8 +138,8 @@ class DistanceSearch {
 
   /// Appends the pairs of the nodes below that may be nearer than what is known.
   void open(const Item& item, std::vector<Item>& queue) {
-    ++counts_.steps;
-    counts_.box_tests += std::uint64_t{item.a.count()} * item.b.count();
+    ++stats_.steps;
+    stats_.box_tests += std::uint64_t{item.a.count()} * item.b.count();
     const bvh::SupportLine* const lines_a = a_.tree.lines() + item.a.first();
     const bvh::SupportLine* const lines_b = b_.tree.lines() + item.b.first();
     const FrameGap::Line line =
@@ -196,14 +196,14 @@ class DistanceSearch {
         const std::uint32_t face_a = a_.tree.faces()[i];
         const Primitive a = a_.mesh.primitive(face_a);
         if (is_pruned(frame_(frame_.reach_a(a), reach_b))) continue;
-        ++counts_.pairs;
+        ++stats_.pairs;
         const DistanceBounds bounds = distances_.bounds(a, b);
         if (is_pruned(bounds.lower)) continue;
         found_.push_back({bounds, face_a, face_b});
         if (!(bounds.upper < upper_)) continue;
         upper_ = bounds.upper;
         nearest_ = found_.size() - 1;
-        next_look_ = counts_.steps + 4;
+        next_look_ = stats_.steps + 4;
         frame_.set_axis(bounds.point_b - bounds.point_a, &a);
         reach_b = frame_.reach_b(b);
       }
@@ -231,7 +231,7 @@ class DistanceSearch {
         const bool exact = best.bounds.lower == best.bounds.upper;
         const PosedDistances::Answer nearer =
             exact ? distances_.nearer(a, b, best.bounds.lower) : distances_.within(a, b, best.bounds.lower);
-        counts_.open += nearer.open;
+        stats_.open += nearer.open;
         if (!nearer.hit) continue;
         make_planes(faces);
         best = {planes_->bounds(), faces.a, faces.b};
@@ -259,7 +259,7 @@ class DistanceSearch {
   FrameGap frame_;
   std::optional<DopPairs> volumes_;  ///< where the numbers are too great or too small for the frame
   const PosedDistances distances_;
-  CollisionCounts counts_;
+  CollisionStats stats_;
   double upper_ = infinity;   ///< the least of a pair of faces so far
   double pruned_ = infinity;  ///< the least gap of what was left out since a pair of faces is as near
   std::vector<Faces> found_;
@@ -298,7 +298,7 @@ DistanceResult distance(const Object& a, const Pose& pose_a, const Object& b, co
   DistanceResult result;
   const CollisionQuery query = {&a, &pose_a, &b, &pose_b};
   const CollisionResult touching = collide(a, pose_a, b, pose_b);
-  result.counts = touching.counts;
+  result.stats = touching.stats;
   if (touching.hit) {
     answer_contact(query, touching.contacts.front(), result);
   } else {

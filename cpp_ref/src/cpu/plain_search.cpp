@@ -73,8 +73,8 @@ class PlainSearch final : public Search {
         if (depth >= 0) found[count++] = {depth, i, node_b.first() + k};
       }
     }
-    ++faces_.counts().steps;
-    faces_.counts().box_tests += std::uint64_t{node_a.count()} * node_b.count();
+    ++faces_.stats().steps;
+    faces_.stats().box_tests += std::uint64_t{node_a.count()} * node_b.count();
     // The deepest comes last, on top of the stack; among equals the first.
     std::sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count),
               [](const Candidate& p, const Candidate& q) {

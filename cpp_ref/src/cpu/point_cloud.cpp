@@ -318,7 +318,7 @@ class CloudSearch {
     std::array<Item, stack_most> stack;
     std::size_t top = 0;
     const auto whole = static_cast<std::uint32_t>(tree_.size());
-    ++result_.counts.box_tests;
+    ++result_.stats.box_tests;
     if (!(axes_.gap(cloud_.nodes[0], 0, axes_.ranges(tree_.lines()[whole])) > 0))
       stack[top++] = {0, 0, whole, all_points};
     while (top > 0 && !done_) {
@@ -331,7 +331,7 @@ class CloudSearch {
         test_leaves(child.number(), ref, item.mask);
         continue;
       }
-      ++result_.counts.steps;
+      ++result_.stats.steps;
       std::array<Item, lanes> next;
       std::array<double, lanes> gap;
       std::size_t count = 0;
@@ -346,7 +346,7 @@ class CloudSearch {
         next[i] = x;
       };
       if (child.is_leaf() || (!ref.is_leaf() && is_object_larger(node, item.lane, line))) {
-        result_.counts.box_tests += ref.count();
+        result_.stats.box_tests += ref.count();
         for (std::uint32_t i = ref.first(); i < ref.first() + ref.count(); ++i) {
           const Axes::Ranges ranges = axes_.ranges(tree_.lines()[i]);
           const double here = axes_.gap(node, item.lane, ranges);
@@ -357,7 +357,7 @@ class CloudSearch {
         }
       } else {
         const PointTree::Node& below = cloud_.nodes[child.number()];
-        result_.counts.box_tests += below.count;
+        result_.stats.box_tests += below.count;
         const PointTree::Lanes gaps = axes_.gaps(below, axes_.ranges(line));
         for (std::uint32_t i = 0; i < below.count; ++i) {
           if (!(gaps[i] > 0)) add({child.number(), i, item.line, all_points}, gaps[i]);
@@ -378,7 +378,7 @@ class CloudSearch {
     if (count < block) mask &= (std::uint32_t{1} << count) - 1;
     for (std::uint32_t i = faces.first(); i < faces.first() + faces.count() && !done_; ++i) {
       const std::uint32_t face = tree_.faces()[i];
-      for (std::uint32_t left = mask; left != 0; left &= left - 1) ++result_.counts.pairs;
+      for (std::uint32_t left = mask; left != 0; left &= left - 1) ++result_.stats.pairs;
       test_face(leaf, mask, face, mesh_.primitive(face));
     }
   }
@@ -475,7 +475,7 @@ class CloudSearch {
         if (gap > 0 && gap / length * (1 - 16 * unit) > radius) return false;
       }
     }
-    ++result_.counts.open;
+    ++result_.stats.open;
     if (!distances_) distances_.emplace(pose_cloud_, pose_object_);
     const Vec3d centre(cloud_.at[0][place], cloud_.at[1][place], cloud_.at[2][place]);
     Primitive point;
@@ -580,7 +580,7 @@ void collide(const PointCloud& cloud, const Pose& pose_cloud, const Object& obje
   if (request.max_contacts == 0) throw std::invalid_argument("max_contacts is 0: ask for at least one contact");
   result.hit = false;
   result.contacts.clear();
-  result.counts = {};
+  result.stats = {};
   CloudSearch(cloud.tree(), pose_cloud, object, pose_object, request, result).run();
 }
 

@@ -142,7 +142,7 @@ class SimdSearch final : public Search {
     const CentreLine line = centre_line(query);
     if (is_far(query, line, request.within, margins_.far) || boxes_apart(query, line, request.within, margins_.far)) {
       FacePairs::answer_apart(request, result);
-      result.counts.box_tests = 1;
+      result.stats.box_tests = 1;
       return false;
     }
     RelativePose relation;
@@ -151,8 +151,8 @@ class SimdSearch final : public Search {
       return false;
     }
     task.faces.start(query, request, result);
-    task.counts = {};
-    task.counts.box_tests = 1;  // of the whole objects, above
+    task.stats = {};
+    task.stats.box_tests = 1;  // of the whole objects, above
     task.open_count = 0;
     task.swapped = relation.swapped;
     task.moved = &(relation.swapped ? query.b : query.a)->tree();
@@ -182,7 +182,7 @@ class SimdSearch final : public Search {
 
   /// Tests two faces, by their numbers in the meshes: as test_leaves(), but that nothing is known of their leaves.
   static void test_hint(Task& task, const CollisionQuery& query, std::uint32_t face_a, std::uint32_t face_b) {
-    ++task.counts.pairs;
+    ++task.stats.pairs;
     const Primitive a = query.a->mesh().primitive(face_a);
     const Primitive b = query.b->mesh().primitive(face_b);
     if (a.kind == Kind::tri && b.kind == Kind::tri) {
@@ -233,8 +233,8 @@ class SimdSearch final : public Search {
   static HWY_INLINE std::size_t push(Task& task, Item item, unsigned hits, const std::int16_t* keys, Item* stack) {
     const std::uint32_t moved_count = item.moved.count();
     const std::uint32_t fixed_count = item.fixed.count();
-    ++task.counts.steps;
-    task.counts.box_tests += moved_count * fixed_count;
+    ++task.stats.steps;
+    task.stats.box_tests += moved_count * fixed_count;
     hits &= (0x1111U * ((1U << fixed_count) - 1)) & ((1U << 4 * moved_count) - 1);
     if (hits == 0) return 0;
     const SupportLine* const moved = task.moved->lines() + item.moved.first();
@@ -276,7 +276,7 @@ class SimdSearch final : public Search {
     load_fixed(task.fixed->vertices(item.fixed.first()), item.fixed, place, q);
     const std::size_t count_p = item.moved.count();
     const std::size_t count_q = item.fixed.count();
-    task.counts.pairs += count_p * count_q;
+    task.stats.pairs += count_p * count_q;
     const std::uint32_t* const faces_p = task.moved->faces().data() + item.moved.first();
     const std::uint32_t* const faces_q = task.fixed->faces().data() + item.fixed.first();
     if (HWY_UNLIKELY(item.moved.is_quad() || item.fixed.is_quad())) {

@@ -146,7 +146,7 @@ struct Task {
   std::size_t number;
   FacePairs faces;
   CollisionResult own_result;  ///< of batches
-  CollisionCounts counts;
+  CollisionStats stats;
   std::array<std::array<std::uint32_t, 2>, open_most> open;  ///< faces of the moved and of the fixed object
   std::size_t open_count;
   std::size_t size;  ///< of the stack
@@ -167,8 +167,8 @@ struct Task {
   }
   void finish() {
     resolve();
-    counts.open = faces.counts().open;
-    faces.counts() = counts;
+    stats.open = faces.stats().open;
+    faces.stats() = stats;
     faces.finish();
   }
 };

@@ -280,10 +280,10 @@ class ChipHost final : public Device {
             lost.push_back({order[next++], waiting->placed, waiting->a, waiting->b, false});
             waiting.reset();
           }
-          CollisionCounts counts;
-          counts.clocks = std::exchange(lost_clocks_, 0);
+          CollisionStats stats;
+          stats.clocks = std::exchange(lost_clocks_, 0);
           for (const Flight& flight : lost) {
-            fall_back(flight.placed, request, std::exchange(counts, {}), result);
+            fall_back(flight.placed, request, std::exchange(stats, {}), result);
             take(flight.number, result);
           }
         }
@@ -396,26 +396,26 @@ class ChipHost final : public Device {
   /// Makes the result of a query that has ended.
   void finish(const Flight& flight, const QueryOutcome& outcome, const CollisionRequest& request,
               CollisionResult& result) {
-    CollisionCounts counts;
-    counts.steps = outcome.done.steps;
-    counts.box_tests = outcome.box_tests;
-    counts.pairs = outcome.primitive_pairs;
-    counts.clocks = clocks_since_mark();
+    CollisionStats stats;
+    stats.steps = outcome.done.steps;
+    stats.box_tests = outcome.box_tests;
+    stats.pairs = outcome.primitive_pairs;
+    stats.clocks = clocks_since_mark();
     const SwapCounts swaps = chip_.swaps();
-    counts.swaps = swaps.swaps - swaps_.swaps;
-    counts.swap_clocks = swaps.clocks - swaps_.clocks;
+    stats.swaps = swaps.swaps - swaps_.swaps;
+    stats.swap_clocks = swaps.clocks - swaps_.clocks;
     swaps_ = swaps;
     const QueryCode code = outcome.done.code;
     if ((code == QueryCode::ok || code == QueryCode::host) && is_well_formed(flight, outcome)) {
       faces_.start(flight.placed, request, result);
-      counts.open = resolve(outcome.pairs, request.tells_relation() && flight.exact, faces_);
+      stats.open = resolve(outcome.pairs, request.tells_relation() && flight.exact, faces_);
       if (code == QueryCode::ok || faces_.done()) {
         faces_.finish();
-        result.counts = counts;
+        result.stats = stats;
         return;
       }
     }
-    fall_back(flight.placed, request, counts, result);
+    fall_back(flight.placed, request, stats, result);
   }
 
   static bool is_well_formed(const Flight& flight, const QueryOutcome& outcome) {
@@ -443,12 +443,12 @@ class ChipHost final : public Device {
     return open;
   }
 
-  /// Answers by the CPU. \param counts what the chip has spent on the query
-  void fall_back(const CollisionQuery& placed, const CollisionRequest& request, const CollisionCounts& counts,
+  /// Answers by the CPU. \param stats what the chip has spent on the query
+  void fall_back(const CollisionQuery& placed, const CollisionRequest& request, const CollisionStats& stats,
                  CollisionResult& result) {
     cpu_->collide(placed, request, result);
-    result.counts += counts;
-    ++result.counts.fallbacks;
+    result.stats += stats;
+    ++result.stats.fallbacks;
   }
 
   /// Ends all flights without their outcomes, and resets the chip.

@@ -134,8 +134,8 @@ class CollisionManager:
         """
         made = _to_object(mesh)
         if not (return_names or return_data):
-            return self._scene.find_touching(made, transform, device=self._device) is not None
-        found = self._scene.touching(made, transform, contacts=_wanted(return_data), device=self._device)
+            return self._scene.find_contact(made, transform, device=self._device) is not None
+        found = self._scene.contacts(made, transform, contacts=_wanted(return_data), device=self._device)
         named = [((_EXTERNAL, self._names[number]), result) for number, result in found]
         return _answer({names[1] for names, _ in named}, named, return_names, return_data)
 
@@ -146,8 +146,8 @@ class CollisionManager:
         add_object() if Python cannot order them.
         """
         if not (return_names or return_data):
-            return self._scene.find_touching(device=self._device) is not None
-        found = self._scene.touching(contacts=_wanted(return_data), device=self._device)
+            return self._scene.find_contact(device=self._device) is not None
+        found = self._scene.contacts(contacts=_wanted(return_data), device=self._device)
         named = [((self._names[a], self._names[b]), result) for a, b, result in found]
         return _answer({_in_order(names) for names, _ in named}, named, return_names, return_data)
 
@@ -162,10 +162,10 @@ class CollisionManager:
         for number, name in self._names.items():
             place = (self._scene.object(number), self._scene.pose(number))
             if not (return_names or return_data):
-                if other_manager._scene.find_touching(*place, device=self._device):
+                if other_manager._scene.find_contact(*place, device=self._device):
                     return True
                 continue
-            found = other_manager._scene.touching(*place, contacts=_wanted(return_data), device=self._device)
+            found = other_manager._scene.contacts(*place, contacts=_wanted(return_data), device=self._device)
             named += [((name, other_manager._names[other]), result) for other, result in found]
         return _answer({names for names, _ in named}, named, return_names, return_data)
 

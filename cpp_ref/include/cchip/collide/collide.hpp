@@ -37,26 +37,23 @@ struct CollisionRequest {
   Contacts contacts = Contacts::first;
   /// With Contacts::all: the search ends when it meets one contact more than this many. At least 1.
   std::size_t max_contacts = std::numeric_limits<std::size_t>::max();
-  /// The least relation of two faces that counts as a contact.
-  enum class Counts {
-    touching,  ///< every pair of faces that share a point
-    /// Only pairs that cross: flush and grazing faces are no contacts. Faces are judged pair by pair, so solids that
-    /// overlap can do without: two bars of one section, one pushed into the other, have no faces that cross
-    /// (docs/cpp/touching.md).
-    crossing
-  };
-  Counts counts = Counts::touching;
-  /// Tell touching from crossing: fills CollisionResult::relation and Contact::relation, which Counts::crossing does in
-  /// any case. With Contacts::first the search continues after a contact that only touches, until one crosses or none
-  /// is left.
+  /// The least that two faces must do to be a contact. Relation::touching: share a point. Relation::crossing: cross;
+  /// flush and grazing faces are then no contacts. Faces are judged pair by pair, so solids that overlap can do
+  /// without: two bars of one section, one pushed into the other, have no faces that cross (docs/cpp/touching.md).
+  /// Relation::apart is refused.
+  Relation least = Relation::touching;
+  using Counts [[deprecated("use Relation")]] = Relation;
+  /// Tell touching from crossing: fills CollisionResult::relation and Contact::relation, which `least` does in any case
+  /// if it is Relation::crossing. With Contacts::first the search continues after a contact that only touches, until
+  /// one crosses or none is left.
   bool relation = false;
   /// Prove the answer: fills CollisionResult::certificate (docs/cpp/certificates.md). Takes far longer than the answer.
   bool certificate = false;
   /// Pairs of faces whose distance is at most this are contacts, in units of the world; exactly. With 0, those that
-  /// share a point. With more, touching and crossing are not told apart: leave `relation` and `counts` as they are.
+  /// share a point. With more, touching and crossing are not told apart: leave `relation` and `least` as they are.
   double within = 0;
 
-  bool tells_relation() const { return relation || counts == Counts::crossing; }
+  bool tells_relation() const { return relation || least == Relation::crossing; }
 };
 
 /// A face of A and a face of B in contact, by their numbers in the files (Mesh::file_face). A polygon that was cut into
@@ -85,7 +82,7 @@ inline bool same_faces(const std::vector<Contact>& x, const std::vector<Contact>
 }
 
 /// What a query cost.
-struct CollisionCounts {
+struct CollisionStats {
   std::uint64_t steps = 0;      ///< pairs of tree nodes that were expanded
   std::uint64_t box_tests = 0;  ///< pairs of bounding volumes that were compared
   std::uint64_t pairs = 0;      ///< pairs of primitives that were tested
@@ -93,12 +90,12 @@ struct CollisionCounts {
   /// arithmetic did.
   std::uint64_t open = 0;
   std::uint64_t clocks = 0;  ///< clocks of the device; 0 for devices without a clock
-  /// 1: the CPU answered instead of the device (driver/chip_host.hpp says when); the other counts are those of both.
+  /// 1: the CPU answered instead of the device (driver/chip_host.hpp says when); the other numbers are those of both.
   std::uint64_t fallbacks = 0;
   std::uint64_t swaps = 0;        ///< exchanges of the device's modules since the result before it
   std::uint64_t swap_clocks = 0;  ///< their clocks
-  CollisionCounts& operator+=(const CollisionCounts& x) {
-    using C = CollisionCounts;
+  CollisionStats& operator+=(const CollisionStats& x) {
+    using C = CollisionStats;
     for (const auto count :
          {&C::steps, &C::box_tests, &C::pairs, &C::open, &C::clocks, &C::fallbacks, &C::swaps, &C::swap_clocks}) {
       this->*count += x.*count;
@@ -106,15 +103,16 @@ struct CollisionCounts {
     return *this;
   }
 };
+using CollisionCounts [[deprecated("use CollisionStats")]] = CollisionStats;
 
 struct CollisionResult {
-  bool hit = false;  ///< there is a contact that counts
+  bool hit = false;  ///< there is a contact
   /// Of the two objects. Empty if the request does not tell touching from crossing, or if there are more contacts than
   /// CollisionRequest::max_contacts and the search ended before a pair crossed.
   std::optional<Relation> relation;
   /// In ascending order, without duplicates. With Contacts::first at most one.
   std::vector<Contact> contacts;
-  CollisionCounts counts;
+  CollisionStats stats;
   /// The answer with its proof, if the request asks for it and the device is one of this library; see
   /// <cchip/certificate/certificate.hpp>.
   std::shared_ptr<const Certificate> certificate;

@@ -33,8 +33,9 @@ struct IntersectionCurve {
 /// The segments that the faces of the contacts share, chained where their ends are the same exact point. A segment that
 /// several pairs of faces share, such as those beside an edge, counts once. Curves end where one segment ends alone,
 /// and where more than two meet. Points and polygons that faces share are left out; a polygon is commonly framed by
-/// segments of the faces around it. Does not depend on the order of the contacts. \param contacts of collide() with
-/// Contacts::all \throws as intersections()
+/// segments of the faces around it. Does not depend on the order of the contacts.
+/// \param contacts of collide() with Contacts::all
+/// \throws as intersections()
 std::vector<IntersectionCurve> intersection_curves(const CollisionQuery& query, const std::vector<Contact>& contacts);
 
 /// Unit normal of a face under a pose, by the order of its vertices: counter-clockwise as seen from where it points to.

@@ -59,7 +59,8 @@ class Object {
   /// (docs/cpp/solids.md). Which way round the faces are is of no account. Vertices are the same if their coordinates
   /// are, whatever their numbers, so a mesh from an STL file may be closed. An edge whose ends coincide is none. The
   /// first call of is_closed(), open_edge() or same_place() takes O(faces log(faces)) time; copies of the object share
-  /// its result. \throws std::invalid_argument the object was moved from; so do open_edge() and same_place()
+  /// its result.
+  /// \throws std::invalid_argument the object was moved from; so do open_edge() and same_place()
   bool is_closed() const { return !open_edge(); }
   /// The first edge at which it is open, in the order of the faces; none if the surface is closed.
   std::optional<OpenEdge> open_edge() const;

@@ -54,10 +54,37 @@ class Scene {
     Id b = 0;
     CollisionResult result;
   };
-  /// An object in contact with the one that was asked about. In the result that one is A, this one B.
+  /// What is held against the objects of a scene. Refers to objects, poses and scenes of the caller, which must stay as
+  /// they are during the call: `scene.contacts(device, {object, pose})`.
+  class Target {
+   public:
+    /// An object of the scene: against the others.
+    Target(Id id) : id_(id) {}  // NOLINT: an id is one
+    /// An object that is not in the scene. The filter, which takes ids, is not asked.
+    Target(const Object& object, const Pose& pose, const CollisionGroups& groups = {})
+        : object_(&object), poses_(&pose), count_(1), groups_(groups) {}
+    /// The same in many poses, such as the states that a planner looks at.
+    Target(const Object& object, const std::vector<Pose>& poses, const CollisionGroups& groups = {})
+        : object_(&object), poses_(poses.data()), count_(poses.size()), groups_(groups) {}
+    /// All objects of another scene, with their groups. Neither filter is asked, and no pair is ignored, since each
+    /// scene has ids of its own.
+    Target(const Scene& other) : scene_(&other) {}  // NOLINT: a scene is one
+
+   private:
+    friend class Scene;
+    Id id_ = 0;  ///< unless one of the two is set
+    const Object* object_ = nullptr;
+    const Scene* scene_ = nullptr;
+    const Pose* poses_ = nullptr;
+    std::size_t count_ = 0;  ///< of the poses
+    CollisionGroups groups_;
+  };
+  /// An object of the scene in contact with a target. In the result the target is A, this one B.
   struct Hit {
     Id id = 0;
     CollisionResult result;
+    /// Of a target with many poses: which of them, from 0. Of a scene: the id of its object. Else 0.
+    std::uint64_t of = 0;
   };
   /// Takes a pair in contact and returns whether to go on.
   using PairSink = std::function<bool(const Pair&)>;
@@ -110,29 +137,65 @@ class Scene {
   /// \throws std::logic_error the device is in use
   /// \throws std::runtime_error the calling thread flushes small numbers to zero
   /// \throws as the filter
-  std::vector<Pair> touching(Device& device, const CollisionRequest& request = {}) const;
-  /// All objects in contact with one of them, ascending. Looks at the boxes of all.
-  /// \throws as above, and std::invalid_argument: no object has this id
-  std::vector<Hit> touching(Device& device, Id id, const CollisionRequest& request = {}) const;
-  /// All objects in contact with one that is not in the scene, ascending. The filter, which takes ids, is not asked.
-  /// \throws as above, and std::invalid_argument as add()
-  std::vector<Hit> touching(Device& device, const Object& object, const Pose& pose,
-                            const CollisionRequest& request = {}, const CollisionGroups& groups = {}) const;
+  std::vector<Pair> contacts(Device& device, const CollisionRequest& request = {}) const;
+  /// What is in contact with the target, ascending by Hit::id, then Hit::of. Looks at the boxes of all objects for each
+  /// of the target's, and asks the device in one batch.
+  /// \throws as above; std::invalid_argument: no object has the target's id, the target is this scene, or as add()
+  std::vector<Hit> contacts(Device& device, const Target& target, const CollisionRequest& request = {}) const;
 
-  /// Stops at a contact and returns it; none if nothing touches. Of several contacts any may be returned.
-  /// \throws as touching()
-  std::optional<Pair> find_touching(Device& device, const CollisionRequest& request = {}) const;
-  std::optional<Hit> find_touching(Device& device, Id id, const CollisionRequest& request = {}) const;
-  std::optional<Hit> find_touching(Device& device, const Object& object, const Pose& pose,
-                                   const CollisionRequest& request = {}, const CollisionGroups& groups = {}) const;
+  /// Stops at a contact and returns it; none if there is none. Of several contacts any may be returned.
+  /// \throws as contacts()
+  std::optional<Pair> find_contact(Device& device, const CollisionRequest& request = {}) const;
+  std::optional<Hit> find_contact(Device& device, const Target& target, const CollisionRequest& request = {}) const;
 
-  /// Calls `take` for the contacts of touching() until it returns false: one call at a time, in any order, by any
-  /// thread. It must neither change the scene nor use the device.
-  /// \throws as touching(), and as `take`
-  void for_each_touching(Device& device, const PairSink& take, const CollisionRequest& request = {}) const;
-  void for_each_touching(Device& device, Id id, const HitSink& take, const CollisionRequest& request = {}) const;
-  void for_each_touching(Device& device, const Object& object, const Pose& pose, const HitSink& take,
-                         const CollisionRequest& request = {}, const CollisionGroups& groups = {}) const;
+  /// Calls `take` for what contacts() finds until it returns false: one call at a time, in any order, by any thread. It
+  /// must neither change the scene nor use the device.
+  /// \throws as contacts(), and as `take`
+  void for_each_contact(Device& device, const PairSink& take, const CollisionRequest& request = {}) const;
+  void for_each_contact(Device& device, const Target& target, const HitSink& take,
+                        const CollisionRequest& request = {}) const;
+
+  // Names of version 0.1, for one release.
+
+  [[deprecated("use contacts()")]] std::vector<Pair> touching(Device& device,
+                                                              const CollisionRequest& request = {}) const {
+    return contacts(device, request);
+  }
+  [[deprecated("use contacts()")]] std::vector<Hit> touching(Device& device, Id id,
+                                                             const CollisionRequest& request = {}) const {
+    return contacts(device, id, request);
+  }
+  [[deprecated("use contacts(device, {object, pose})")]] std::vector<Hit> touching(
+      Device& device, const Object& object, const Pose& pose, const CollisionRequest& request = {},
+      const CollisionGroups& groups = {}) const {
+    return contacts(device, {object, pose, groups}, request);
+  }
+  [[deprecated("use find_contact()")]] std::optional<Pair> find_touching(Device& device,
+                                                                         const CollisionRequest& request = {}) const {
+    return find_contact(device, request);
+  }
+  [[deprecated("use find_contact()")]] std::optional<Hit> find_touching(Device& device, Id id,
+                                                                        const CollisionRequest& request = {}) const {
+    return find_contact(device, id, request);
+  }
+  [[deprecated("use find_contact(device, {object, pose})")]] std::optional<Hit> find_touching(
+      Device& device, const Object& object, const Pose& pose, const CollisionRequest& request = {},
+      const CollisionGroups& groups = {}) const {
+    return find_contact(device, {object, pose, groups}, request);
+  }
+  [[deprecated("use for_each_contact()")]] void for_each_touching(Device& device, const PairSink& take,
+                                                                  const CollisionRequest& request = {}) const {
+    for_each_contact(device, take, request);
+  }
+  [[deprecated("use for_each_contact()")]] void for_each_touching(Device& device, Id id, const HitSink& take,
+                                                                  const CollisionRequest& request = {}) const {
+    for_each_contact(device, id, take, request);
+  }
+  [[deprecated("use for_each_contact(device, {object, pose}, take)")]] void for_each_touching(
+      Device& device, const Object& object, const Pose& pose, const HitSink& take, const CollisionRequest& request = {},
+      const CollisionGroups& groups = {}) const {
+    for_each_contact(device, {object, pose, groups}, take, request);
+  }
 
  private:
   /// What decides whether a pair is wanted: a few bytes an object, since every query reads those of all pairs.
@@ -161,8 +224,9 @@ class Scene {
   bool is_wanted(const Label& x, const Label& y) const;
   std::vector<Candidate> find_candidates(double within) const;
   std::vector<std::uint32_t> near(const Label& one, const WorldBox& box, double within) const;
-  void ask(Device& device, const Object& object, const Pose& pose, const std::vector<std::uint32_t>& others,
-           const HitSink& take, const CollisionRequest& request) const;
+  /// An object of a target and, by their numbers, those of the scene whose boxes are near to it.
+  struct Near;
+  std::vector<Near> near(const Target& target, double within) const;
 
   std::vector<Entry> entries_;  ///< by ascending ids, with gaps where objects were removed
   std::vector<Label> labels_;   ///< of the entries

@@ -25,7 +25,7 @@ struct AlongResult {
   double upper = 0;          ///< the least double that is at least the exact number; the factor if that is a double
   std::uint32_t face_a = 0;  ///< two faces that touch there, numbers as in Contact; of several the search names any
   std::uint32_t face_b = 0;  ///< they mean nothing if `touches` is false
-  CollisionCounts counts;
+  CollisionStats stats;
 };
 
 /// The least s >= 0 such that B, moved by any slightly greater multiple of the direction, is clear of A: objects that

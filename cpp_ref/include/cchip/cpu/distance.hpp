@@ -48,7 +48,7 @@ struct DistanceResult {
   Vec3d point_b = Vec3d::Zero();
   std::uint32_t face_a = 0;  ///< faces on which they lie, numbers as in Contact
   std::uint32_t face_b = 0;
-  CollisionCounts counts;
+  CollisionStats stats;
 };
 
 /// The distance of two placed objects. Any number of threads may call it at a time.

@@ -68,7 +68,7 @@ struct CloudResult {
   bool hit = false;
   /// In ascending order, without duplicates. With Contacts::first at most one.
   std::vector<CloudContact> contacts;
-  CollisionCounts counts;  ///< `pairs`: points and faces; `open`: those of them that plain doubles left open
+  CollisionStats stats;  ///< `pairs`: points and faces; `open`: those of them that plain doubles left open
 };
 
 /// Which spheres of the cloud meet which faces of the object? Takes no memory from the heap but for contacts that

@@ -23,7 +23,7 @@ struct ChipHostOptions {
 };
 
 /// A device that asks the chip and answers exactly, face for face as the CPU does: it decides the pairs that the chip
-/// leaves open, and the CPU answers what the chip does not (CollisionCounts::fallbacks). That is: an object without an
+/// leaves open, and the CPU answers what the chip does not (CollisionStats::fallbacks). That is: an object without an
 /// image or with one that is too large for the chip's memory; quads, if the chip has no test for them; poses that
 /// make_query() refuses; a query that ends with an error code or with malformed records; all queries in flight when
 /// the chip stops; and everything once it is dead.

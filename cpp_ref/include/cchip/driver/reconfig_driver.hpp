@@ -56,9 +56,10 @@ struct ReconfigResult {
 /// Checks all bitstreams, writes them and their table, sends the pairs, exchanges modules as `batch` says and returns
 /// when all are answered. Pairs must be as the stream takes them: triangle before quad, quads canonical,
 /// coordinates in range; their tags are replaced. Swaps that end within the time of some twenty register accesses may
-/// be missed in `swaps`. \throws std::invalid_argument a coordinate does not fit the machine's width, the payload is
-/// too short \throws BitstreamError a bitstream is damaged, or not the one asked for; nothing was written then \throws
-/// std::runtime_error no answer in time, a register that refuses, a batch's module that cannot be loaded
+/// be missed in `swaps`.
+/// \throws std::invalid_argument a coordinate does not fit the machine's width, the payload is too short
+/// \throws BitstreamError a bitstream is damaged, or not the one asked for; nothing was written then
+/// \throws std::runtime_error no answer in time, a register that refuses, a batch's module that cannot be loaded
 ReconfigResult run_reconfig(PairMachine& machine, const std::vector<PairRequest>& pairs,
                             const ReconfigOptions& options);
 

@@ -38,8 +38,9 @@ struct UioOptions {
 
 /// Maps both files; touches no register, but arms the interrupt of a UIO file. interrupt() asks that file, and reads
 /// the registers of events only if it has fired. It reads these every time if the file is not UIO's or has no
-/// interrupt. \throws std::invalid_argument an option is out of range \throws std::runtime_error a file cannot be
-/// opened or mapped
+/// interrupt.
+/// \throws std::invalid_argument an option is out of range
+/// \throws std::runtime_error a file cannot be opened or mapped
 std::unique_ptr<Machine> open_uio_machine(const UioOptions& options);
 
 /// Driver and host over open_uio_machine().

@@ -24,8 +24,8 @@ Mesh make_gear(double root_radius, double tip_radius, double bore_radius, double
 Mesh make_sphere(double radius, int cuts, double noise = 0, std::uint64_t seed = 1);
 /// Body like a scanned figure: make_sphere(1, cuts), each vertex v moved to v exp(relief w(v)). w is a sum of waves in
 /// random directions by the seed, from a few bumps around the body to folds of a few faces; |w| is mostly below 1. The
-/// same on every machine up to the rounding of sin and exp. It has no self-intersections. \throws std::invalid_argument
-/// unless 1 <= cuts <= 1000, 0 <= relief <= 1
+/// same on every machine up to the rounding of sin and exp. It has no self-intersections.
+/// \throws std::invalid_argument unless 1 <= cuts <= 1000, 0 <= relief <= 1
 Mesh make_body(int cuts, double relief, std::uint64_t seed = 1);
 /// Each triangle and each quad cut into four at the middles of its edges, and a quad at the mean of its vertices: the
 /// same surface if the quads are flat. Faces that share both vertices of an edge share its middle.

@@ -43,7 +43,7 @@ class FacePairs {
   bool done() const { return done_; }
 
   /// What the search cost; test() counts `pairs` and `open`.
-  CollisionCounts& counts() { return result_->counts; }
+  CollisionStats& stats() { return result_->stats; }
   /// Completes the result. Call it once, at the end.
   void finish();
 
