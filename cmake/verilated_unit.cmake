@@ -2,7 +2,8 @@
 # cmake -D FRESH=<folder> -D UNIT=<folder>/<name>.cpp -D PREFIX=<class> -P verilated_unit.cmake
 # Takes what Verilator generated in FRESH over into UNIT's folder, where it differs from what is there; deletes what is no
 # longer generated, and FRESH. Writes UNIT, which includes every source, and UNIT.d, which says what they were generated
-# from.
+# from. UNIT ends with a hash of all that it includes: a build looks at the times of included files before this runs, so
+# what tells it that one has changed is UNIT.
 get_filename_component(dir ${UNIT} DIRECTORY)
 file(GLOB sources RELATIVE ${FRESH} ${FRESH}/*.cpp)
 file(GLOB headers RELATIVE ${FRESH} ${FRESH}/*.h)
@@ -11,7 +12,10 @@ list(REMOVE_ITEM old ${sources} ${headers})
 foreach(file IN LISTS old)
   file(REMOVE ${dir}/${file})
 endforeach()
+set(hashes "")
 foreach(file IN LISTS sources headers)
+  file(SHA256 ${FRESH}/${file} hash)
+  string(APPEND hashes ${hash})
   file(COPY_FILE ${FRESH}/${file} ${dir}/${file} ONLY_IF_DIFFERENT)
 endforeach()
 
@@ -25,6 +29,8 @@ foreach(file IN LISTS sources)
     string(APPEND text "#include \"${file}\"\n")
   endif()
 endforeach()
+string(SHA256 hash "${hashes}")
+string(APPEND text "// ${hash}\n")
 file(CONFIGURE OUTPUT ${UNIT} CONTENT "${text}" @ONLY)  # leaves a file alone that has this text
 
 file(READ ${FRESH}/${PREFIX}__ver.d text)
