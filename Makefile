@@ -38,7 +38,7 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal formal-all mutants coverage test-gates test-debug \
+.PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal formal-all mutants coverage coverage-cpp test-gates test-debug \
   test-asan test-arm64 cross-windows fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot bench-scene bench-certificate bench-chip deb wheel sdist test-sdist test-python test-dask bench-python export fpga \
   fpga-quick fpga-sweep asic asic-quick install clean
@@ -55,7 +55,7 @@ Read
 Check a change
   test test-long wave-of test-python test-sdist test-dask test-debug test-asan test-arm64 cross-windows test-gates formal fuzz lint tidy format
 Check for long
-  formal-all/hours mutants/hours coverage/hours
+  formal-all/hours mutants/hours coverage/hours coverage-cpp
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
   campaign-geometry/hours campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps
 Measure
@@ -334,6 +334,13 @@ coverage: ## lines, branches and toggles of the RTL, branches of the C++ library
 	for part in tests/ref tests/unit tests/chip tests/system bench/chip; do CCHIP_COVERAGE_FOLDER=$(CURDIR)/$(COVERAGE)/coverage \
 	  ctest --test-dir $(COVERAGE)/$$part -LE '^long$$' -j $(JOBS) --timeout 3000 || exit 1; done
 	scripts/coverage.py $(COVERAGE) --write
+
+coverage-cpp: ## branches of the C++ library that its own tests reach, into docs/develop/coverage.md (half an hour; gcovr: scripts/bootstrap --dev)
+	cmake --preset coverage
+	cmake --build $(COVERAGE) -j $(JOBS) --target tests/ref/all
+	find $(COVERAGE)/cpp_ref -name '*.gcda' -delete
+	ctest --test-dir $(COVERAGE)/tests/ref -LE '^long$$' -j $(JOBS) --timeout 3000
+	scripts/coverage.py $(COVERAGE) --cpp --write
 
 bench-certificate: $(RELEASE)/build.ninja ## certificates of answers for pairs of large meshes: all checked, their sizes and times; BENCH_ARGS="--poses 200" for more
 	cmake --build $(RELEASE) -j $(JOBS) --target bench_certificate

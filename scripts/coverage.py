@@ -6,13 +6,14 @@ usage: coverage.py [options] BUILD
   BUILD           build folder with CCHIP_COVERAGE in which tests ran with CCHIP_COVERAGE_FOLDER=BUILD/coverage (make coverage)
   --missing       print every point that nothing reached
   --write         put the tables into docs/develop/coverage.md
+  --cpp           the library alone: its table, whatever ran of the RTL (make coverage-cpp)
 
 Bins count the clocks on which situations of two blocks of the chip meet (sim/rtl_models/cchip_chip_bins.sv).
 
 RTL, by Verilator: a line is a block of statements, a branch one side of an if or a case, a toggle a signal of one bit (control) that changes after the first reset. Points of all instances and
 configurations of a module are one. C++, by gcov through gcovr (Debian's package): branches without those that only an exception takes.
 
-The last line is `rtl_lines=R% rtl_toggles=T% bins=K/N cpp_branches=B%`. Exit codes: 0 done, 1 nothing was counted or gcovr failed, 2 bad arguments."""
+The last line is `rtl_lines=R% rtl_toggles=T% bins=K/N cpp_branches=B%`, with --cpp only the last of these. Exit codes: 0 done, 1 nothing was counted or gcovr failed, 2 bad arguments."""
 import argparse
 import collections
 import json
@@ -162,26 +163,28 @@ def main():
         return 0
     parser = argparse.ArgumentParser(usage=argparse.SUPPRESS, add_help=False)
     parser.add_argument("build", type=pathlib.Path)
-    for flag in ("--missing", "--write"):
+    for flag in ("--missing", "--write", "--cpp"):
         parser.add_argument(flag, action="store_true")
     options = parser.parse_args()
     try:
-        points, bins = rtl_points(options.build.resolve() / "coverage")
-        rtl, rtl_missing, r = rtl_table(points)
-        met, bins_missing, b = bin_table(bins)
-        cpp, cpp_missing, c = cpp_table(options.build.resolve())
+        tables, missing, shares = {}, [], ""
+        if not options.cpp:
+            points, bins = rtl_points(options.build.resolve() / "coverage")
+            tables["rtl"], rtl_missing, r = rtl_table(points)
+            tables["bins"], bins_missing, b = bin_table(bins)
+            missing = rtl_missing + bins_missing
+            shares = f"rtl_lines={share(r['line', 'reached'], r['line'])} rtl_toggles={share(r['toggle', 'reached'], r['toggle'])} bins={b[1]}/{b[0]} "
+        tables["cpp"], cpp_missing, c = cpp_table(options.build.resolve())
+        missing += cpp_missing
     except Failed as what:
         print(f"coverage.py: {what}", file=sys.stderr)
         return 1
-    print(rtl + "\n" + met + "\n" + cpp)
+    print("\n".join(tables.values()))
     if options.missing:
-        print("\n".join(rtl_missing + bins_missing + cpp_missing))
-    if options.write:
-        datasheet.rewrite(PAGE, "rtl", rtl)
-        datasheet.rewrite(PAGE, "bins", met)
-        datasheet.rewrite(PAGE, "cpp", cpp)
-    print(f"rtl_lines={share(r['line', 'reached'], r['line'])} rtl_toggles={share(r['toggle', 'reached'], r['toggle'])} "
-          f"bins={b[1]}/{b[0]} cpp_branches={share(c['branches reached'], c['branches'])}".replace(" %", "%"))
+        print("\n".join(missing))
+    for name in tables if options.write else ():
+        datasheet.rewrite(PAGE, name, tables[name])
+    print(f"{shares}cpp_branches={share(c['branches reached'], c['branches'])}".replace(" %", "%"))
     return 0
 
 
