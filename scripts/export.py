@@ -44,7 +44,7 @@ PAGES = ("develop/architecture.md", "hardware/definitions.md")
 MORE_PAGES = {SUBSYSTEM: ("hardware/registers.md",),
               CHIP: tuple(f"hardware/{name}.md" for name in ("chip", "chip-registers", "image", "programmers-guide"))}
 # Clock of the constraints: medians of docs/hardware/fpga.md, rounded down; the chip's is that of the triangle test with one seed.
-MHZ = {"cchip_primtest_array": 145, SUBSYSTEM: 130, CHIP: 62}
+MHZ = {"cchip_primtest_array": 145, SUBSYSTEM: 130, CHIP: 68}
 # Bench of a top, the first of its files, and what else is copied.
 BENCH = "tests/icarus/bench_primtest.v"
 WIRE = "cpp_ref/include/cchip/internal/wire"
