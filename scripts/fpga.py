@@ -128,6 +128,8 @@ CHIP_PARAMETERS = {
     "cchip_dispatcher": (("SLOTS", 1),),
     "cchip_chip_regs": (),
     "cchip_bv_unit": (("TAG_W", 6),),
+    # beside the chip: the engine for objects that deform, the test of points against triangles
+    "cchip_refit_axi": (), "cchip_primtest_point_tri": (),
 }
 
 
