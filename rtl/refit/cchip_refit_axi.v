@@ -70,6 +70,12 @@ module cchip_refit_axi #(
     input  wire [                    1:0] m_axi_bresp
 );
 
+  generate
+    if (DATA_W != 64 && DATA_W != 128 && DATA_W != 256 && DATA_W != 512) begin : gen_illegal
+      cchip_error_refit_axi_DATA_W_must_be_64_128_256_or_512 u_error ();
+    end
+  endgenerate
+
   localparam integer BEAT_W = 6 - $clog2(DATA_W / 8);  // of the number of a beat in its line
   localparam integer ADDRESS_W = 58 + BEAT_W;
 

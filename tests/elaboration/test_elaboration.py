@@ -134,7 +134,7 @@ ILLEGAL = [
     *(("cchip_refit", {"LEVELS": n}, "cchip_error_refit_LEVELS_must_be_2_to_64") for n in (1, 65)),
     *(("cchip_refit", {"DATA_W": n}, "cchip_error_refit_DATA_W_must_be_64_128_256_or_512") for n in (32, 96, 1024)),
     ("cchip_refit_axi", {"LEVELS": 1}, "cchip_error_refit_LEVELS_must_be_2_to_64"),
-    *(("cchip_refit_axi", {"DATA_W": n}, READ + "DATA_W_must_be_64_128_256_or_512") for n in (96, 1024)),
+    *(("cchip_refit_axi", {"DATA_W": n}, "cchip_error_refit_axi_DATA_W_must_be_64_128_256_or_512") for n in (96, 1024)),
     *(("cchip_get_data", {"QUERIES": n}, "cchip_error_get_data_QUERIES_must_be_2_4_8_or_16") for n in (3, 32)),
     *(("cchip_get_data", {"PAIRS": n}, "cchip_error_get_data_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together")
       for n in (0, 20, 120)),
