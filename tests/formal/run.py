@@ -70,6 +70,8 @@ EVENTS = "rtl/traversal/cchip_traversal_events.v"
 POOL = "rtl/common/cchip_pool.v"
 DECISION = "rtl/traversal/cchip_traversal_decision.v"
 LEAVES = "rtl/traversal/cchip_leaf_queue.v"
+GET_DATA = "rtl/traversal/cchip_get_data.v"
+LINE_PAIRS = "rtl/traversal/cchip_line_pairs.v"
 FIRST = "rtl/traversal/cchip_first_pair.v"
 CACHE_PORT = "rtl/memory/cchip_cache_port.v"
 CACHE_WAITERS = "rtl/memory/cchip_cache_waiters.v"
@@ -149,6 +151,10 @@ MUTANTS = [
     ("cchip_cache live", CACHE_PORT, "wire refuse = fresh & ~match_q6 & exhausted;", "wire refuse = 1'b0;"),
     ("cchip_cache bounded", FILL, "wire loses = serve_code_q == `CCHIP_READ_TIMEOUT || serve_code_q == `CCHIP_READ_OWED;",
      "wire loses = 1'b0;"),
+    # the place of a leaf pair is free before its last beat has left; its line is another one; the upper half of a line of leaves is not kept
+    ("cchip_get_data beats", GET_DATA, "assign m_leaf_left   = last_q[1];", "assign m_leaf_left   = last_q[0];"),
+    ("cchip_get_data beats", GET_DATA, "if (first_q[0]) begin", "if (first_q[1]) begin"),
+    ("cchip_get_data beats", LINE_PAIRS, "(s_valid[p] | valid_q[p]) & comes_leaf", "s_valid[p] & comes_leaf"),
     # a line that was not written is read; more of them than there are slots; a line that could not be read continues
     ("cchip_query_ring bounded", QUERY_RING, "asked_q != producer && in_flight", "in_flight"),
     ("cchip_query_ring bounded", QUERY_RING, "in_flight < LIMIT[AHEAD_W:0];", "in_flight <= LIMIT[AHEAD_W:0];"),
