@@ -208,7 +208,7 @@ def apply(chosen, found):
 
 
 def make(most, seed, jobs):
-    if (OUT / "mutants.json").exists() and (OUT / "digest").read_text() == digest(most, seed):
+    if all((OUT / name).exists() for name in ("mutants.json", "digest")) and (OUT / "digest").read_text() == digest(most, seed):
         return
     import clang.cindex
     OUT.mkdir(parents=True, exist_ok=True)
