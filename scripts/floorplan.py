@@ -145,15 +145,16 @@ def heat(tables):
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {(side + 12) * len(tables)} {height + 48}" font-family="sans-serif" font-size="13">',
              '<!-- SPDX-License-Identifier: Apache-2.0 --><title>Overused wires</title><rect width="100%" height="100%" fill="#fff"/>']
     for number, (title, rows) in enumerate(tables.items()):
-        left, total, squares = number * (side + 12), 0, {}
+        left, total, own, squares = number * (side + 12), 0, 0, {}
         for x, row in enumerate(rows):
             for y, count in enumerate(row):
                 if count and int(count) > 0:
                     total += int(count)
+                    own = max(own, int(count))
                     level = min(5, 1 + 5 * int(count) // (most + 1))
                     squares.setdefault(level, []).append(f"M{left + 3 * x},{24 + height - 3 * (y + 1)}h3v3h-3z")
         parts += [f'<rect x="{left}" y="24" width="{side}" height="{height}" fill="#f4f4f4"/>', f'<text x="{left}" y="16">{title}</text>',
-                  f'<text x="{left}" y="{height + 42}">overused wires: {total}, darkest {most} in a tile</text>']
+                  f'<text x="{left}" y="{height + 42}">overused wires: {total}, at most {own} in a tile</text>']
         parts += [f'<path fill="#b00" fill-opacity="{0.2 * level:.1f}" d="{"".join(paths)}"/>' for level, paths in sorted(squares.items())]
     return "\n".join([*parts, "</svg>"]) + "\n"
 

@@ -196,8 +196,8 @@ class Floorplan(unittest.TestCase):
     def test_heat_is_drawn_where_it_is_in_one_scale(self):
         svg = fpga.floorplan.heat({"a": [["0", "4"], ["", "1"]], "b": [["9"]]})
         self.assertEqual((svg.count("<path"), svg.count("M0,")), (3, 1))
-        self.assertIn("overused wires: 5, darkest 9 in a tile", svg)
-        self.assertIn("overused wires: 9, darkest 9 in a tile", svg)
+        self.assertIn("overused wires: 5, at most 4 in a tile", svg)
+        self.assertIn("overused wires: 9, at most 9 in a tile", svg)
 
 
 class Placement(unittest.TestCase):
