@@ -176,10 +176,11 @@ class Sweep(Case):
         tool.write_text("#!/bin/sh\n[ $# = 1 ] && echo 1 && exit\necho \"$@\" > %s/asked\n"
                         "while [ $# -gt 1 ]; do [ \"$1\" = --report ] && echo '{\"fmax\": {\"clk\": {\"achieved\": 101.5}}}' > \"$2\"; shift; done\n" % self.folder)
         tool.chmod(0o755)
-        made = tempfile.TemporaryDirectory(dir=ROOT / "build", prefix="sweep-")
+        (ROOT / "build/fpga").mkdir(parents=True, exist_ok=True)
+        made = tempfile.TemporaryDirectory(dir=ROOT / "build/fpga", prefix="sweep-")
         self.addCleanup(made.cleanup)
         (pathlib.Path(made.name) / "netlist.json").write_text("{}")
-        (self.folder / "synth.json").write_text(json.dumps({"row": "tri_tri", "synthesis": f"../{pathlib.Path(made.name).name}"}))
+        (self.folder / "synth.json").write_text(json.dumps({"row": "tri_tri", "synthesis": pathlib.Path(made.name).name}))
         before = set(ROOT.glob("build/fpga/tri_tri.seed3-*"))
         self.addCleanup(lambda: [shutil.rmtree(left) for left in set(ROOT.glob("build/fpga/tri_tri.seed3-*")) - before])
         done = subprocess.run([sys.executable, "-B", ROOT / "workflow/fpga_sweep.py", "place", "tri_tri", "3", self.folder / "synth.json", self.folder / "placed.json",
