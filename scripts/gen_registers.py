@@ -234,20 +234,49 @@ def update(r, f, i, strobe):
             yield f"else {q} <= {q} & ~{hardware}{index};"
 
 
+def word_of(low, address):
+    """Condition on the low bits of a word address for a group of eight words: those in low; "" for all."""
+    bits = 2 if [x for x in range(8) if x % 4 in low] == low else 3
+    inside = [x for x in low if x < 1 << bits]
+    outside = [x for x in range(1 << bits) if x not in inside]
+    if not outside:
+        return ""
+    few, sign, glue = (inside, "==", " || ") if len(inside) <= len(outside) else (outside, "!=", " && ")
+    text = glue.join(f"{address}[{bits - 1}:0] {sign} {bits}'d{x}" for x in few)
+    return text if len(few) == 1 else f"({text})"
+
+
+def blocks(groups):
+    """Aligned blocks of 2^n numbers that cover a sorted list: pairs of the first number and n."""
+    while groups:
+        first, n = groups[0], 0
+        while first % (2 << n) == 0 and all(first + x in groups for x in range(2 << n)):
+            n += 1
+        yield first, n
+        groups = groups[1 << n:]
+
+
 def chosen(targets, name, address, enable):
-    """Assignments of a vector whose bit k is 1 if enable is 1 and the address is in targets[k], by groups of eight words. (No
-    case statement: synthesis makes a ROM of a large one.)"""
-    groups = sorted({a // 32 for addresses in targets for a in addresses})
-    lines = [f"  wire {name}_in_{g} = {enable} && {address}[{ADDR_W - 3}:3] == {ADDR_W - 5}'d{g};" for g in groups]
+    """Assignments of a vector whose bit k is 1 if enable is 1 and the address is in targets[k], by blocks of groups of eight
+    words. (No case statement: synthesis makes a ROM of a large one.)"""
+    lines, found = [], {}
+    assigns = []
     for k, addresses in enumerate(targets):
-        terms = []
+        alike = {}  # which words of a group: groups
         for g in sorted({a // 32 for a in addresses}):
-            low = [a // 4 % 8 for a in addresses if a // 32 == g]
-            one_of = " || ".join(f"{address}[2:0] == 3'd{x}" for x in low)
-            one_of = one_of if len(low) == 1 else f"({one_of})"
-            terms.append(f"{name}_in_{g}" if len(low) == 8 else f"({name}_in_{g} && {one_of})")
-        lines.append(f"  assign {name}[{k}] = " + " || ".join(terms) + ";")
-    return "\n".join(lines)
+            alike.setdefault(tuple(a // 4 % 8 for a in addresses if a // 32 == g), []).append(g)
+        terms = []
+        for low, groups in alike.items():
+            for first, n in blocks(groups):
+                wire = f"{name}_in_{first}" + (f"_to_{first + (1 << n) - 1}" if n else "")
+                if wire not in found:
+                    top = ADDR_W - 3
+                    found[wire] = (first, f"  wire {wire} = {enable} && {address}[{top}:{3 + n}] == {top - 2 - n}'d{first >> n};")
+                word = word_of(list(low), address)
+                terms.append(f"({wire} && {word})" if word else wire)
+        assigns.append(f"  assign {name}[{k}] = " + " || ".join(terms) + ";")
+    lines += [line for _, line in sorted(found.values())]
+    return "\n".join(lines + assigns)
 
 
 FRAME = """\

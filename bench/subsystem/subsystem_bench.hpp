@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// cchip_primtest_subsystem with its surroundings: pairs of three kinds, a sink, memory with bitstreams, registers.
+/// cchip_primtest_subsystem with its surroundings: pairs of every kind, a sink, memory with bitstreams, registers.
 /// Tests, campaign and command share the account of the pairs: every tag once, with the right answer, or as open where
 /// a report says so.
 #ifndef CCHIP_BENCH_SUBSYSTEM_BENCH_HPP
@@ -11,6 +11,7 @@
 #include <array>
 #include <cchip/internal/driver/primtest_engine.hpp>
 #include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/model/point_tri.hpp>
 #include <cchip/internal/model/programme.hpp>
 #include <cchip/internal/wire/bitstream.hpp>
 #include <cchip/internal/wire/registers.hpp>
@@ -28,6 +29,7 @@
 #include <random>
 #include <set>
 
+#include "point_triangle_source.hpp"  // of tests/ref
 #include "subsystem_models.hpp"
 
 namespace cchip::subsystem {
@@ -36,6 +38,7 @@ namespace regs = cchip::registers;
 using Random = std::mt19937_64;
 inline bool chance(Random& random, int percent) { return static_cast<int>(random() % 100) < percent; }
 
+constexpr int points_kind = static_cast<int>(ModuleId::point_tri);
 constexpr std::array<Kind, 4> kind_a = {Kind::tri, Kind::tri, Kind::tri, Kind::quad};
 constexpr std::array<Kind, 4> kind_b = {Kind::tri, Kind::tri, Kind::quad, Kind::quad};
 
@@ -48,6 +51,17 @@ inline KindResult refused_answer(const KindRequest& r) {
 /// answer is the exact oracle's.
 inline KindResult tested_answer(const KindRequest& r, int coord_w, int module_id) {
   if (r.kind == 0 || r.request.mode > PairMode::directed) return refused_answer(r);
+  if (r.kind == points_kind) {
+    const GridPair& pair = r.request.pair;
+    const auto from_point = [&](std::size_t i) {
+      const Vec3i v = pair.b.v[i] - pair.a.v[0];
+      return std::array<std::int64_t, 3>{v.x(), v.y(), v.z()};
+    };
+    const auto square = cchip_test::nearest<cchip_test::Int256>({from_point(0), from_point(1), from_point(2)}).square;
+    const PairResult answer = model::point_tri_answer(r.request, coord_w);
+    sim::require(answer.grid == (compare(square, model::radius_of(pair.a, coord_w)) <= 0), "the model is wrong");
+    return {answer, r.kind};
+  }
   const auto m = static_cast<std::size_t>(module_id);
   GridPair pair = r.request.pair;
   const auto widen = [](GridPrimitive& p, Kind kind) {
@@ -66,18 +80,22 @@ inline KindResult tested_answer(const KindRequest& r, int coord_w, int module_id
 /// Pairs of every kind and class.
 class KindSource {
  public:
-  KindSource(int coord_w, std::uint64_t seed) : coord_w_(coord_w), random_(seed) {
+  KindSource(int coord_w, std::uint64_t seed) : coord_w_(coord_w), random_(seed), points_(coord_w, seed) {
     for (std::size_t kind = 1; kind < 4; ++kind) {
       sources_.emplace_back(coord_w, seed + kind, kind_a[kind], kind_b[kind]);
     }
   }
   /// \param kind 0: illegal, the content of the payload does not matter
   KindRequest draw(int kind) {
-    const std::size_t shape = kind == 0 ? 1 : static_cast<std::size_t>(kind);
-    stimulus::PairSource& source = sources_[shape - 1];
     KindRequest r;
     r.kind = kind;
-    r.request.pair = source.draw(stimulus::classes_of(kind_a[shape], kind_b[shape])[source.draw_class()].value);
+    if (kind == points_kind) {
+      r.request.pair = draw_point();
+    } else {
+      const std::size_t shape = kind == 0 ? 1 : static_cast<std::size_t>(kind);
+      stimulus::PairSource& source = sources_[shape - 1];
+      r.request.pair = source.draw(stimulus::classes_of(kind_a[shape], kind_b[shape])[source.draw_class()].value);
+    }
     const int half = 1 << (coord_w_ - 1);
     for (GridPrimitive* p : {&r.request.pair.a, &r.request.pair.b}) {  // slot 3 of a triangle must not matter
       if (p->kind == Kind::tri) p->v[3].setConstant(static_cast<int>(random_() % static_cast<unsigned>(half)));
@@ -88,9 +106,21 @@ class KindSource {
   }
 
  private:
+  GridPair draw_point() {
+    const cchip_test::PointTriangle drawn = points_.draw();
+    const auto to_vec = [](const std::array<std::int64_t, 3>& v) {
+      return Vec3i(static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]));
+    };
+    GridPair pair;
+    pair.a = model::point_operand(to_vec(drawn.point), static_cast<int>(drawn.radius), coord_w_);
+    for (std::size_t i = 0; i < 3; ++i) pair.b.v[i] = to_vec(drawn.triangle[i]);
+    return pair;
+  }
+
   int coord_w_;
   Random random_;
   std::vector<stimulus::PairSource> sources_;
+  cchip_test::PointTriangleSource points_;
 };
 
 /// Ways to corrupt a bitstream.
@@ -113,9 +143,12 @@ enum class Spoilt {
 constexpr std::size_t name_end = 8;
 
 /// Bytes of a bitstream for this slot and module, corrupted in this way.
-inline Bytes spoilt_bitstream(Spoilt how, int slot, int module_id, std::size_t payload_bytes, Random& random) {
+/// \param kinds of the subsystem: its modules are 0..kinds
+inline Bytes spoilt_bitstream(Spoilt how, int slot, int module_id, std::size_t payload_bytes, Random& random,
+                              int kinds = 3) {
   const auto id = static_cast<ModuleId>(module_id);
-  const auto other = static_cast<ModuleId>((module_id + 1 + static_cast<int>(random() % 3)) % 4);
+  const int step = 1 + static_cast<int>(random() % static_cast<unsigned>(kinds));
+  const auto other = static_cast<ModuleId>((module_id + step) % (kinds + 1));
   const auto place = static_cast<std::uint8_t>(slot);
   const auto seed = static_cast<std::uint32_t>(random());
   Bytes payload = make_payload(place, how == Spoilt::other_module ? other : id, payload_bytes, seed);
@@ -139,14 +172,27 @@ template <class Model>
 SwapReport report_of(const Model& top) {
   return sim::get_swap_report(probes::report_data(top));
 }
-/// Module of slot n in bits [2n +: 2].
+/// Module of slot n in bits [4n +: 4].
 template <int slots, class Model>
 unsigned modules_of(const Model& top) {
-  unsigned modules = probes::slot0_module_id(top) & 3U;
-  if constexpr (slots > 1) modules |= (probes::slot1_module_id(top) & 3U) << 2;
-  if constexpr (slots > 2) modules |= (probes::slot2_module_id(top) & 3U) << 4;
-  if constexpr (slots > 3) modules |= (probes::slot3_module_id(top) & 3U) << 6;
+  unsigned modules = probes::slot0_module_id(top) & 7U;
+  if constexpr (slots > 1) modules |= (probes::slot1_module_id(top) & 7U) << 4;
+  if constexpr (slots > 2) modules |= (probes::slot2_module_id(top) & 7U) << 8;
+  if constexpr (slots > 3) modules |= (probes::slot3_module_id(top) & 7U) << 12;
   return modules;
+}
+/// Bit e: the table of bitstreams has a valid entry e, numbered as its registers.
+template <class Config, class Model>
+unsigned announced_of(const Model& top) {
+  const auto valid = static_cast<unsigned>(probes::bitstreams_valid(top));
+  unsigned announced = 0;
+  for (int slot = 0; slot < Config::SLOTS; ++slot) {
+    for (int m = 0; m <= Config::KINDS; ++m) {
+      const unsigned bit = valid >> ((slot << defs::kind_bits(Config::KINDS)) + m) & 1U;
+      announced |= bit << (defs::table_modules * slot + m);
+    }
+  }
+  return announced;
 }
 /// Bit n: slot n is decoupled.
 template <int slots, class Model>
@@ -176,6 +222,7 @@ class SubsystemBench {
  public:
   using Model = typename Config::Model;
   static constexpr int slots = Config::SLOTS;
+  static constexpr int kinds = Config::KINDS;
   static constexpr std::uint32_t stride = 0x1000;  ///< of the bitstreams in memory
 
   explicit SubsystemBench(sim::SimulationOptions options)
@@ -190,7 +237,7 @@ class SubsystemBench {
     driver.on_accept([this](const KindRequest& r, std::uint64_t) { accept(r); });
     driver.when_idle([this] {
       port_.scramble(random_);
-      top().s_pair_kind = static_cast<CData>(random_() & 3U);
+      top().s_pair_kind = static_cast<CData>(random_() & 7U);
     });
     sink.on_item([this](const KindResult& r, std::uint64_t) { take(r); });
     master_ = std::make_unique<sim::AxiLiteMaster<Model>>(top());
@@ -245,7 +292,9 @@ class SubsystemBench {
     master_->push_write(offset, value);
     ++posted_;
   }
-  static std::uint32_t entry(int slot, int module_id) { return static_cast<std::uint32_t>(4 * slot + module_id); }
+  static std::uint32_t entry(int slot, int module_id) {
+    return static_cast<std::uint32_t>(defs::table_modules * slot + module_id);
+  }
   /// Is this address below name_end of a payload?
   static bool in_name(std::uint32_t byte) { return byte % stride < defs::bitstream_header + name_end; }
   static std::uint32_t address(int slot, int module_id) { return stride * (1 + entry(slot, module_id)); }
@@ -259,12 +308,12 @@ class SubsystemBench {
     post_write(regs::bitstream_valid::offset(e), 1);
   }
   Bytes good(int slot, int module_id, std::size_t payload_bytes = 32) {
-    return spoilt_bitstream(Spoilt::no, slot, module_id, payload_bytes, random_);
+    return spoilt_bitstream(Spoilt::no, slot, module_id, payload_bytes, random_, kinds);
   }
   /// Registers of a working system: good bitstreams for all slots and modules, scheduler on.
   void set_up(std::uint32_t batch = 4, std::uint32_t age = 500) {
     for (int slot = 0; slot < slots; ++slot) {
-      for (int m = 0; m < 4; ++m) provide(slot, m, good(slot, m));
+      for (int m = 0; m <= kinds; ++m) provide(slot, m, good(slot, m));
     }
     post_write(regs::minimum_batch::offset, batch);
     post_write(regs::maximum_age::offset, age);
@@ -318,7 +367,8 @@ class SubsystemBench {
   }
 
   // ---- swaps
-  std::vector<SwapReport> reports;  ///< since construction
+  std::vector<SwapReport> reports;          ///< since construction
+  std::set<std::pair<int, int>> exchanges;  ///< module before, after a swap that ended well
   std::size_t count(SwapCode code) const {
     return static_cast<std::size_t>(
         std::count_if(reports.begin(), reports.end(), [&](const SwapReport& r) { return r.code == code; }));
@@ -330,7 +380,7 @@ class SubsystemBench {
     return reports.back();
   }
   SwapPhase phase() { return static_cast<SwapPhase>(probes::swap_phase(top())); }
-  int module_in(int slot) { return static_cast<int>(modules_of<Config::SLOTS>(top()) >> (2 * slot) & 3U); }
+  int module_in(int slot) { return static_cast<int>(modules_of<Config::SLOTS>(top()) >> (4 * slot) & 7U); }
   bool decoupled(int slot) { return (decoupled_of<Config::SLOTS>(top()) >> slot & 1U) != 0; }
   std::uint64_t last_progress() const { return progress_; }
 
@@ -420,7 +470,8 @@ class SubsystemBench {
   }
   /// The answer of a module that was in a slot since the pair was accepted.
   bool is_tested(const Open& open, const KindResult& got) const {
-    for (int m = open.request.kind; m < 4; ++m) {
+    for (int m = 0; m <= kinds; ++m) {
+      if (open.request.kind != 0 && defs::rm_serves(m, open.request.kind) == 0) continue;
       if (m > 0 && loaded_[static_cast<std::size_t>(m)] < open.clock) continue;
       if (got == tested_answer(open.request, Config::COORD_W, m)) return true;
     }
@@ -428,14 +479,14 @@ class SubsystemBench {
   }
   /// Bitstreams that have failed on their way and not ended well since, and how often any did since there were none.
   void note_failures(const SwapReport& r) {
-    const unsigned entry = r.slot < slots && r.module_id < 4 ? 1U << (4 * r.slot + r.module_id) : 0U;
+    const unsigned bit = r.slot < slots && r.module_id <= kinds ? 1U << entry(r.slot, r.module_id) : 0U;
     if (defs::swap_put_off(static_cast<int>(r.code)) != 0) {
-      failed_ |= entry;
+      failed_ |= bit;
       ++failures_;
     } else if (r.code == SwapCode::ok) {
-      failed_ &= ~entry;
+      failed_ &= ~bit;
     }
-    failed_ &= static_cast<unsigned>(probes::bitstreams_valid(top()));
+    failed_ &= announced_of<Config>(top());
     if (failed_ == 0) failures_ = 0;
   }
   void watch(const sim::ClockInfo& now) {
@@ -446,21 +497,30 @@ class SubsystemBench {
       note_failures(r);
       given_up_ += r.lost;
       account.given_up += r.lost;
+      if (r.code == SwapCode::ok && r.slot < slots) {
+        const int before = before_[static_cast<std::size_t>(r.slot)];
+        if (before != r.module_id) exchanges.insert({before, r.module_id});
+      }
       reports.push_back(r);
     }
     const unsigned modules = modules_of<Config::SLOTS>(top());
-    const auto announced = static_cast<unsigned>(probes::bitstreams_valid(top()));
+    const unsigned announced = announced_of<Config>(top());
     // there is no need to wait for bitstreams that have failed on their way often enough
     const unsigned valid = failures_ >= defs::retry_doublings ? announced & ~failed_ : announced;
-    std::array<bool, 4> provided{};
-    for (unsigned slot = 0; slot < static_cast<unsigned>(slots); ++slot) {
-      const unsigned has = modules >> (2 * slot) & 3U;
+    std::array<bool, kinds + 1> provided{};
+    for (int slot = 0; slot < slots; ++slot) {
+      const unsigned has = modules >> (4 * slot) & 7U;
       loaded_[has] = simulation.total_clocks();
-      for (unsigned kind = 1; kind < 4; ++kind) {
-        provided[kind] = provided[kind] || has >= kind || (valid >> (4 * slot + kind) & (15U >> kind)) != 0;
+      if (!decoupled(slot) && phase() == SwapPhase::idle)
+        before_[static_cast<std::size_t>(slot)] = static_cast<int>(has);
+      for (int m = 0; m <= kinds; ++m) {
+        if (static_cast<int>(has) != m && (valid >> entry(slot, m) & 1U) == 0) continue;
+        for (std::size_t kind = 1; kind < provided.size(); ++kind) {
+          provided[kind] = provided[kind] || defs::rm_serves(m, static_cast<int>(kind)) != 0;
+        }
       }
     }
-    for (unsigned kind = 1; kind < 4; ++kind) {
+    for (std::size_t kind = 1; kind < provided.size(); ++kind) {
       if (!provided[kind]) absent_[kind] = simulation.total_clocks();
     }
   }
@@ -472,8 +532,9 @@ class SubsystemBench {
   int failures_ = 0;
   std::uint64_t given_up_ = 0;             // reported
   std::uint64_t answered_open_ = 0;        // answered as open for that reason
-  std::array<std::uint64_t, 4> absent_{};  // last clock without a provider
-  std::array<std::uint64_t, 4> loaded_{};  // last clock on which a slot had the module
+  std::array<int, slots> before_{};        // module at work before the swap in progress
+  std::array<std::uint64_t, 8> absent_{};  // last clock without a provider
+  std::array<std::uint64_t, 8> loaded_{};  // last clock on which a slot had the module
   std::uint64_t progress_ = 0;
   std::unique_ptr<sim::AxiLiteMaster<Model>> master_;
   Registers registers_{master_};

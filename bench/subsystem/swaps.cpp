@@ -12,6 +12,8 @@
 #include <cchip/sim/wave_on_failure.hpp>
 #include <cchip/stimulus/campaign.hpp>
 #include <cstdio>
+#include <set>
+#include <utility>
 
 #include "subsystem_bench.hpp"
 
@@ -121,6 +123,7 @@ struct Options {
   unsigned threads = 2;
   std::uint64_t per_part = 50;
   int slots = 0;
+  bool points = false;
   std::uint64_t part = every_part;
 };
 
@@ -128,6 +131,7 @@ struct Totals {
   std::uint64_t swaps = 0, hangs = 0, faults = 0, clocks = 0, resets = 0;
   std::array<std::uint64_t, 16> codes{};
   Coverage coverage;
+  std::set<std::pair<int, int>> exchanges;  // module before, after
   Account account;
   std::map<std::uint64_t, std::string> first;  // part, what
   Totals& operator+=(const Totals& x) {
@@ -138,6 +142,7 @@ struct Totals {
     resets += x.resets;
     for (std::size_t i = 0; i < codes.size(); ++i) codes[i] += x.codes[i];
     coverage += x.coverage;
+    exchanges.insert(x.exchanges.begin(), x.exchanges.end());
     account.pairs += x.account.pairs;
     account.refused += x.account.refused;
     account.open += x.account.open;
@@ -176,6 +181,7 @@ class Part {
     total_.swaps = bench_.count(SwapCode::ok);
     for (const SwapReport& r : bench_.reports) ++total_.codes[static_cast<std::size_t>(r.code)];
     total_.account = bench_.account;
+    total_.exchanges = bench_.exchanges;
     total_.clocks = bench_.simulation.total_clocks();
     return total_;
   }
@@ -340,7 +346,7 @@ class Part {
         bench_.post_write(regs::control::offset, regs::control::clear_mask | regs::control::scheduler_enable_mask);
         break;
       case Fault::command:
-        bench_.command(pick(Config::SLOTS), pick(4), chance(random_, 40));
+        bench_.command(pick(Config::SLOTS), pick(Config::KINDS + 1), chance(random_, 40));
         break;
       case Fault::bus_error:
       case Fault::wrong_bit:
@@ -381,7 +387,7 @@ class Part {
   // ---- what the valid bits must be: from what the campaign did, not from what the hardware says of itself
   void provide(int slot, int module_id, Spoilt how) {
     const std::uint32_t e = SubsystemBench<Config>::entry(slot, module_id);
-    bench_.provide(slot, module_id, spoilt_bitstream(how, slot, module_id, payload_bytes(), random_));
+    bench_.provide(slot, module_id, spoilt_bitstream(how, slot, module_id, payload_bytes(), random_, Config::KINDS));
     announced_ |= 1U << e;
     good_ = how == Spoilt::no ? good_ | 1U << e : good_ & ~(1U << e);
     changed_at_.at(e) = now();
@@ -393,7 +399,7 @@ class Part {
   /// An entry may lose its valid bit only by a report about it that says so, and only if it is bad, was changed during
   /// the swap, or a bit was wrong on the way.
   void check_entries() {
-    const auto valid = static_cast<unsigned>(probes::bitstreams_valid(bench_.top()));
+    const unsigned valid = announced_of<Config>(bench_.top());
     const unsigned fallen = valid_ & ~valid & announced_;
     valid_ = valid;
     const bool swaps = bench_.phase() != SwapPhase::idle;
@@ -402,7 +408,7 @@ class Part {
     if (fallen == 0) return;
     for (std::size_t i = bench_.reports.size(); i > 0 && i + 3 > bench_.reports.size(); --i) {
       const SwapReport& r = bench_.reports[i - 1];
-      const auto entry = static_cast<std::size_t>(4 * r.slot + r.module_id);
+      const auto entry = static_cast<std::size_t>(defs::table_modules * r.slot + r.module_id);
       if (entry >= changed_at_.size() || fallen != 1U << entry) continue;
       const bool bad = (good_ & fallen) == 0 || changed_at_.at(entry) + 100 >= swap_at_ || spoilt_at_ >= swap_at_;
       if (bad && defs::swap_spoilt(static_cast<int>(r.code)) != 0) return;
@@ -419,7 +425,7 @@ class Part {
     if (bench_.driver.waiting() > 3) return;
     if (burst_ == 0) {
       burst_ = 1 + pick(30);
-      kind_ = 1 + pick(3);
+      kind_ = 1 + pick(Config::KINDS);
       pause_ = chance_in(4) ? pick(400) : 0;
     }
     if (pause_ > 0) {
@@ -427,12 +433,12 @@ class Part {
       return;
     }
     --burst_;
-    bench_.push(chance_in(60) ? 0 : chance_in(5) ? 1 + pick(3) : kind_);
+    bench_.push(chance_in(60) ? 0 : chance_in(5) ? 1 + pick(Config::KINDS) : kind_);
   }
 
   void software() {
     const int slot = pick(Config::SLOTS);
-    const int module_id = pick(4);
+    const int module_id = pick(Config::KINDS + 1);
     const std::uint32_t entry = SubsystemBench<Config>::entry(slot, module_id);
     switch (pick(40)) {
       case 0:  // a corrupt bitstream
@@ -546,7 +552,7 @@ class Part {
   // entries of the table: bit per entry, clocks
   static constexpr std::uint64_t never = ~std::uint64_t{0};
   unsigned announced_ = 0, good_ = 0, valid_ = 0;
-  std::array<std::uint64_t, 4 * Config::SLOTS> changed_at_{};
+  std::array<std::uint64_t, std::size_t{defs::table_modules} * Config::SLOTS> changed_at_{};
   bool swapped_ = false;
   std::uint64_t swap_at_ = 0;
   std::uint64_t spoilt_at_ = 0;  // never: a wrong bit is on its way
@@ -585,10 +591,12 @@ int run(const Options& o) {
   const Totals t = stimulus::sum_of_parts<Totals>(parts, o.threads, [&](std::uint64_t part) {
     if (o.part != every_part && part != o.part) return Totals{};
     const std::uint64_t seed = o.seed * 0x9e3779b97f4a7c15U + part;
-    constexpr std::array<int, 3> in_turn = {2, 1, 4};
-    switch (o.slots != 0 ? o.slots : in_turn[part % in_turn.size()]) {
+    constexpr std::array<int, 4> in_turn = {2, 1, 4, 1};
+    const bool in_all = o.slots == 0;
+    switch (in_all ? in_turn[part % in_turn.size()] : o.slots) {
       case 1:
-        return run_part<OneSlot>(part, seed, o.per_part);
+        return (in_all ? part % in_turn.size() == 3 : o.points) ? run_part<OneSlotPoints>(part, seed, o.per_part)
+                                                                : run_part<OneSlot>(part, seed, o.per_part);
       case 2:
         return run_part<TwoSlots>(part, seed, o.per_part);
       default:
@@ -607,6 +615,9 @@ int run(const Options& o) {
   fmt::print("bins of fault, phase, latency, register, two at a time: {} of {} hit, each {} times or more\n",
              t.coverage.hit(), Coverage::all(), t.coverage.least());
   const bool whole = o.part == every_part;  // one part alone need not fill the bins
+  // every module of 0..KINDS_MAX for every other one
+  constexpr std::size_t exchanges = std::size_t{defs::kinds_max} * (defs::kinds_max + 1);
+  const bool exchanged = t.exchanges.size() == exchanges || !whole || o.slots != 0;
   if (whole) {
     for (const std::string& name : empty) fmt::print("never met: {}\n", name);
   }
@@ -614,10 +625,10 @@ int run(const Options& o) {
   for (const auto& [part, what] : t.first) {
     if (++shown <= 10) fmt::print("part {}: {}\n", part, what);
   }
-  fmt::print("swaps={} pairs={} lost={} duplicated={} wrong={} hangs={} faults={} bins={}/{}\n", t.swaps,
-             t.account.pairs, t.account.lost, t.account.duplicated, t.account.wrong, t.hangs, t.faults,
-             t.coverage.hit(), Coverage::all());
-  return t.account.clean() && t.hangs == 0 && (empty.empty() || !whole) ? 0 : wrong_result;
+  fmt::print("swaps={} pairs={} lost={} duplicated={} wrong={} hangs={} faults={} exchanges={}/{} bins={}/{}\n",
+             t.swaps, t.account.pairs, t.account.lost, t.account.duplicated, t.account.wrong, t.hangs, t.faults,
+             t.exchanges.size(), exchanges, t.coverage.hit(), Coverage::all());
+  return t.account.clean() && t.hangs == 0 && exchanged && (empty.empty() || !whole) ? 0 : wrong_result;
 }
 
 }  // namespace
@@ -638,9 +649,10 @@ int main(int argc, char** argv) try {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--part", o.part, "only this one of the parts: the one that a longer run named");
-  app.add_option("--slots", o.slots, "slots; 0: systems with two, one and four in turn")
+  app.add_option("--slots", o.slots, "slots; 0: systems with two, one, four, and one with points, in turn")
       ->check(CLI::IsMember({0, 1, 2, 4}))
       ->capture_default_str();
+  app.add_flag("--points", o.points, "with --slots 1: points, too; four slots always have them");
   CLI11_PARSE(app, argc, argv);
   return cchip::subsystem::run(o);
 } catch (const std::exception& error) {

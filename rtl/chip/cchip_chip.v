@@ -404,16 +404,18 @@ module cchip_chip #(
       wire unused_counts = &{1'b0, answered, answered_module, count_swap, count_rejected,
           count_stall};
     end else begin : gen_swap_counters
-      // words 0x140 on are four of 64 bits, words 0x120 on three of 32
-      wire [3:0] answered_by = answered ? 4'd1 << answered_module : 4'd0;
-      cchip_counter_file u_counters (
+      // words 0x140 on are five of 64 bits, words 0x120 on three of 32
+      wire [4:0] answered_by = answered ? 5'd1 << answered_module : 5'd0;
+      cchip_counter_file #(
+          .WIDE(5)
+      ) u_counters (
           .clk         (clk),
           .rst         (rst),
           .clear       (clear),
-          .count       ({1'b0, count_stall, count_rejected, count_swap, answered_by}),
+          .count       ({count_stall, count_rejected, count_swap, answered_by}),
           .read        (read_swap_counter),
           .read_high   (read_pairs & read_word[0]),
-          .read_counter(read_word[6] ? {1'b0, read_word[2:1]} : {1'b1, read_word[1:0]}),
+          .read_counter(read_word[6] ? read_word[3:1] : 3'd5 + {1'b0, read_word[1:0]}),
           .ack         (swap_ack),
           .read_data   (swap_data)
       );
@@ -466,10 +468,10 @@ module cchip_chip #(
       .swap_events   (swap_events),
       .lost          (swap_lost),
       .write_table   (write_table),
-      .write_word    (write_word[5:0]),
+      .write_word    (write_word[6:0]),
       .write_data    (write_data),
       .write_bytes   (write_bytes),
-      .read_word     (read_word[5:0]),
+      .read_word     (read_word[6:0]),
       .table_data    (table_data),
       .phase_clocks  (phase_clocks),
       .swapped       (count_swap),

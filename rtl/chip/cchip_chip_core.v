@@ -180,7 +180,7 @@ module cchip_chip_core #(
   localparam integer SLOT_W = $clog2(MISSES);
   localparam integer KINDS = 3;
   localparam integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES);
-  localparam integer PLACE_W = `CCHIP_KIND_W + $clog2(QUEUE_DEPTH);
+  localparam integer PLACE_W = `CCHIP_KIND_BITS(KINDS) + $clog2(QUEUE_DEPTH);
   localparam integer BEAT_ADDRESS_W = 64 - $clog2(DATA_W / 8);
   localparam integer LEAF_RESULT_W = `CCHIP_LEAF_RESULT_W(CONTEXT_W);
 

@@ -2,7 +2,7 @@
 `default_nettype none
 `include "cchip_assert.vh"
 // cchip_counter_file: eight counters of events in one distributed RAM, with a third of the
-// flip-flops of plain counters. Counters 0..3 have 64 bits, counters 4..7 have 32; they wrap.
+// flip-flops of plain counters. Counters below WIDE have 64 bits, the others 32; they wrap.
 //   counting     the RAM is walked through, a word per clock. Beside it each counter has the number
 //                of its events since its turn, at most 16, which is added when its turn comes.
 //   read         `ack` is 1 for one clock, 2 to 18 clocks after `read`, 16 more after each clear,
@@ -14,7 +14,10 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        rst or clear: all counters 0. The RAM is not reset: in the first 16 clocks after
 //                it the walk writes each word without adding what it held.
-module cchip_counter_file (
+module cchip_counter_file #(
+    // counters of 64 bits, 0..8
+    parameter integer WIDE = 4
+) (
     input  wire        clk,
     input  wire        rst,
     input  wire        clear,
@@ -25,6 +28,14 @@ module cchip_counter_file (
     output wire        ack,
     output wire [31:0] read_data      // 0 unless ack
 );
+
+  localparam [31:0] WIDE_COUNT = WIDE;
+
+  generate
+    if (WIDE < 0 || WIDE > 8) begin : gen_illegal
+      cchip_error_WIDE_must_be_0_to_8 u_error ();
+    end
+  endgenerate
 
   // ---- the walk: the low word of a counter, then its high word
   reg clearing_q;
@@ -81,7 +92,7 @@ module cchip_counter_file (
   always @(posedge clk) begin
     waiting_q      <= ~rst & ((read & ~read_high) | (waiting_q & ~answers));
     ack_q          <= ~rst & (answers | (read & read_high));
-    high_follows_q <= answers & ~read_counter[2];
+    high_follows_q <= answers && {29'd0, read_counter} < WIDE_COUNT;
     if (high_follows_q) high_q <= sum[31:0];
     // on the clock of ack the high word is on its way to high_q
     read_data_q <= (sum[31:0] & {32{answers | (read & read_high & high_follows_q)}}) |

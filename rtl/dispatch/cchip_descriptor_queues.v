@@ -3,7 +3,8 @@
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
 // cchip_descriptor_queues: a queue of descriptors for each kind of pair, and one for the illegal
-// kind 0, all of them in one block RAM. A place is the address in it, {kind, pointer of the kind}.
+// kind 0, which takes those above KINDS, too, all of them in one block RAM. A place is the address
+// in it, {kind, pointer of the kind}.
 //   latency      1 clock from a push to `some`; the descriptor at the head of a kind is on m_data 3
 //                clocks after `look`, its place 1 clock after; the place stays until 1 clock after
 //                the next `look`, m_data no longer than until 3 clocks after the pop
@@ -14,7 +15,7 @@
 module cchip_descriptor_queues #(
     // width of a descriptor, bit, 1..80
     parameter integer WIDTH = `CCHIP_DESCRIPTOR_W,
-    // kinds of pairs, 1..3
+    // kinds of pairs, 1..4
     parameter integer KINDS = 3,
     // descriptors in each queue, a power of two, 16..1024
     parameter integer DEPTH = 128
@@ -25,7 +26,7 @@ module cchip_descriptor_queues #(
     output wire                                  s_ready,  // the queue of s_kind has room
     input  wire [              `CCHIP_KIND_W-1:0] s_kind,
     input  wire [                     WIDTH-1:0] s_data,
-    output wire [`CCHIP_KIND_W+$clog2(DEPTH)-1:0] s_place,  // where the next of s_kind goes
+    output wire [`CCHIP_KIND_BITS(KINDS)+$clog2(DEPTH)-1:0] s_place,  // of the next of s_kind
     // queue k at bit and word k
     output wire [                       KINDS:0] some,     // it is not empty
     output wire [(KINDS+1)*$clog2(DEPTH+1)-1:0]  waiting,  // descriptors in it
@@ -33,22 +34,24 @@ module cchip_descriptor_queues #(
     input  wire [                       KINDS:0] kind,     // one-hot: the kind looked at, popped
     input  wire                                  look,
     input  wire                                  pop,      // the descriptor at its head leaves
-    output wire [`CCHIP_KIND_W+$clog2(DEPTH)-1:0] m_place,
+    output wire [`CCHIP_KIND_BITS(KINDS)+$clog2(DEPTH)-1:0] m_place,
     output wire [                     WIDTH-1:0] m_data
 );
 
   localparam integer KIND_W = `CCHIP_KIND_W;
+  localparam integer QUEUE_W = `CCHIP_KIND_BITS(KINDS);
   localparam integer PTR_W = $clog2(DEPTH);
-  localparam integer PLACE_W = KIND_W + PTR_W;
+  localparam integer PLACE_W = QUEUE_W + PTR_W;
   localparam integer COUNT_W = $clog2(DEPTH + 1);
   localparam integer QUEUES = KINDS + 1;
+  localparam [31:0] LAST = KINDS;
 
   generate
     if (WIDTH < 1 || WIDTH > 80) begin : gen_illegal_width
       cchip_error_descriptor_WIDTH_must_be_1_to_80 u_error ();
     end
-    if (KINDS < 1 || KINDS > 3) begin : gen_illegal_kinds
-      cchip_error_KINDS_must_be_1_to_3 u_error ();
+    if (KINDS < 1 || KINDS > `CCHIP_KINDS_MAX) begin : gen_illegal_kinds
+      cchip_error_KINDS_must_be_1_to_4 u_error ();
     end
     if (DEPTH < 16 || DEPTH > 1024 || (1 << PTR_W) != DEPTH) begin : gen_illegal_depth
       cchip_error_QUEUE_DEPTH_must_be_a_power_of_two_16_to_1024 u_error ();
@@ -64,7 +67,7 @@ module cchip_descriptor_queues #(
     for (k = 0; k < QUEUES; k = k + 1) begin : gen_queues
       localparam [31:0] KIND = k;
       reg [PTR_W-1:0] write_q, read_q;
-      assign kind_of_push[k] = s_kind == KIND[KIND_W-1:0];
+      assign kind_of_push[k] = s_kind == KIND[KIND_W-1:0] || (k == 0 && s_kind > LAST[KIND_W-1:0]);
       wire push_here = push & kind_of_push[k];
       wire pop_here = pop & kind[k];
       always @(posedge clk)
@@ -93,7 +96,7 @@ module cchip_descriptor_queues #(
   endgenerate
 
   wire [PTR_W-1:0] write_pointer, read_pointer;  // of the kind that comes, of the kind that leaves
-  wire [KIND_W-1:0] read_kind;
+  wire [QUEUE_W-1:0] write_kind, read_kind;
   cchip_onehot_mux #(
       .N    (QUEUES),
       .WIDTH(PTR_W)
@@ -112,13 +115,14 @@ module cchip_descriptor_queues #(
   );
   cchip_onehot_index #(
       .N    (QUEUES),
-      .WIDTH(KIND_W)
+      .WIDTH(QUEUE_W)
   ) u_kind (
       .select(kind),
       .index (read_kind)
   );
   assign s_ready = |(room & kind_of_push);
-  assign s_place = {s_kind, write_pointer};
+  assign write_kind = s_kind > LAST[KIND_W-1:0] ? {QUEUE_W{1'b0}} : s_kind[QUEUE_W-1:0];
+  assign s_place = {write_kind, write_pointer};
 
   // ---- memory
   reg [PLACE_W-1:0] place_q;

@@ -19,7 +19,7 @@
 module cchip_dispatch_sequencer #(
     // takers, 2..5
     parameter integer TAKERS = 2,
-    // kinds of pairs, 1..3
+    // kinds of pairs, 1..4
     parameter integer KINDS = 3
 ) (
     input  wire                        clk,
@@ -47,8 +47,8 @@ module cchip_dispatch_sequencer #(
     if (TAKERS < 2 || TAKERS > 5) begin : gen_illegal_takers
       cchip_error_TAKERS_must_be_2_to_5 u_error ();
     end
-    if (KINDS < 1 || KINDS > 3) begin : gen_illegal_kinds
-      cchip_error_KINDS_must_be_1_to_3 u_error ();
+    if (KINDS < 1 || KINDS > `CCHIP_KINDS_MAX) begin : gen_illegal_kinds
+      cchip_error_KINDS_must_be_1_to_4 u_error ();
     end
   endgenerate
 
@@ -110,9 +110,11 @@ module cchip_dispatch_sequencer #(
   reg [TAKERS-1:0] grant_q;
   wire four;  // kind_q has four vertices
   generate
-    if (KINDS > 1) begin : gen_four
-      assign four = |kind_q[QUEUES-1:2];
-    end else begin : gen_three
+    if (KINDS > 2) begin : gen_four
+      assign four = |kind_q[3:2];
+    end else if (KINDS > 1) begin : gen_four
+      assign four = kind_q[2];
+    end else begin : gen_four
       assign four = 1'b0;
     end
   endgenerate

@@ -6,7 +6,8 @@
 // can answer for their kind, and collects the answers. A pair of the illegal kind 0, or of a kind
 // that no slot provides, is answered as an open pair (see cchip_slot_ledger), and so is a pair that
 // a swap by force gives up: every pair that enters the queues is answered exactly once.
-//   serves       module m answers for the kinds 1..m: a test of quads takes a triangle as a quad
+//   serves       CCHIP_RM_SERVES: a test of quads takes a triangle as a quad, that of points takes
+//                points alone
 //   latency      6 clocks from `some` to m_vertex_valid of an idle dispatcher; 6 clocks from a
 //                slot's result to m_result
 //   throughput   a pair every 3 clocks, of a kind with quads every 4; an answer every clock
@@ -18,7 +19,7 @@
 module cchip_dispatcher #(
     // slots, 1..4
     parameter integer SLOTS = 2,
-    // kinds of pairs, 1..3
+    // kinds of pairs, 1..4
     parameter integer KINDS = 3,
     // most pairs between dispatch and answer for each slot, 1..256, at most CONTEXTS of each module
     parameter integer CREDIT = 42
@@ -83,7 +84,9 @@ module cchip_dispatcher #(
       localparam [31:0] KIND = k;
       wire [SLOTS-1:0] able;
       for (s = 0; s < SLOTS; s = s + 1) begin : gen_slots
-        assign able[s] = k > 0 && slot_module[KIND_W*s+:KIND_W] >= KIND[KIND_W-1:0];
+        wire [`CCHIP_RM_ID_W-1:0] holds =
+            {{`CCHIP_RM_ID_W - KIND_W{1'b0}}, slot_module[KIND_W*s+:KIND_W]};
+        assign able[s] = k > 0 && `CCHIP_RM_SERVES(holds, KIND[`CCHIP_RM_ID_W-1:0]);
         always @(posedge clk) serves_q[QUEUES*s+k] <= able[s] & open[s] & ~stop[s];
       end
       if (k == 0) begin : gen_illegal_kind

@@ -9,7 +9,8 @@
 //                earliest 1 clock after it is offered: a pair every 2 clocks, and one for each pair
 //                that is read meanwhile
 //   triangles    A of a tri-quad pair is written with its third vertex twice, so that a test of
-//                quads takes it as a quad
+//                quads takes it as a quad; of a kind with triangles or points alone the fourth
+//                vertex is not read
 //   read         m_a, m_b: vertex m_vertex of the pair at m_place, 2 clocks later
 //   collision    the pair at m_place has left its queue when its vertex 0 is read, and its place
 //                may be the next one. A new pair is accepted only behind a clock with m_vertex = 0,
@@ -87,7 +88,7 @@ module cchip_operand_memory #(
       `CCHIP_ASSERT(a_read, !write || m_vertex == 2'd0 || m_place != place)
     end
 
-  wire unused = &{1'b0, s_pair_kind[1]};
+  wire unused = &{1'b0, s_pair_kind[`CCHIP_KIND_W-1:1]};
 
 endmodule
 `default_nettype wire

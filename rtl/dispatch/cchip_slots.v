@@ -4,7 +4,7 @@
 // cchip_slots: primitive tests in 1 to 4 slots behind the queues of waiting pairs, each pair
 // answered exactly once. With SWAPS = 1 cchip_swaps exchanges their modules at run time; with
 // SWAPS = 0 they are what SLOTn_RM_ID says, and the inputs of swaps have no effect.
-//   pairs        cchip_dispatcher: module m answers for the kinds 1..m; a pair of the illegal kind
+//   pairs        cchip_dispatcher: which module answers for which kinds; a pair of the illegal kind
 //                0, of a kind that no slot provides, or that a swap by force gives up, is answered
 //                as open: hit 1, grid 1, definite 0
 //   latency      6 clocks from `some` to the slot, that of the test, 6 to m_result
@@ -21,6 +21,8 @@ module cchip_slots #(
     parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
     parameter integer ABSOLUTE_PROJECTION = 0,
     parameter integer WARPED_EXACT = 1,
+    // kinds of pairs, 3, or 4 with points
+    parameter integer KINDS = 3,
     // slots, 1..4
     parameter integer SLOTS = 1,
     // 1: modules are exchanged at run time
@@ -29,7 +31,7 @@ module cchip_slots #(
     parameter integer CFG_W = 8,
     // reset on configuration, clocks
     parameter integer ROC_CYCLES = `CCHIP_ROC_CLOCKS_DEFAULT,
-    // modules at power-up, CCHIP_RM_BLANK .. CCHIP_RM_QUAD_QUAD, 0..3; without swaps 1..3
+    // modules at power-up, CCHIP_RM_BLANK .. , 0..KINDS; without swaps 1..KINDS
     parameter integer SLOT0_RM_ID = 1,
     parameter integer SLOT1_RM_ID = 3,
     parameter integer SLOT2_RM_ID = 2,
@@ -43,8 +45,8 @@ module cchip_slots #(
     input  wire                              rst,
     input  wire                              core_rst,
     // queues, kind k at bit k (cchip_descriptor_queues)
-    input  wire [                       3:0] some,
-    output wire [                       3:0] kind,
+    input  wire [                   KINDS:0] some,
+    output wire [                   KINDS:0] kind,
     output wire                              look,
     output wire                              pop,
     output wire [                       1:0] vertex,
@@ -67,7 +69,7 @@ module cchip_slots #(
     output wire [                       3:0] decoupled,
     // swaps (cchip_swaps): which kinds no slot can serve, the module that a slot shows, what a swap
     // asks of it and what it answers, words for the configuration port
-    input  wire [                       2:0] no_provider,
+    input  wire [                   KINDS:1] no_provider,
     output wire [   `CCHIP_KIND_W*SLOTS-1:0] slot_module,
     input  wire [                 SLOTS-1:0] stop,
     input  wire [                 SLOTS-1:0] decouple,
@@ -81,15 +83,19 @@ module cchip_slots #(
     input  wire [                 CFG_W-1:0] cfg_data
 );
 
-  localparam integer KINDS = 3;
   localparam integer RESULT_W = `CCHIP_SLOT_RESULT_W;
   localparam integer COUNT_OF_PAIRS_W = `CCHIP_PAIR_COUNT_W;
   localparam integer ID_W = `CCHIP_RM_ID_W;
+  localparam integer KIND_W = `CCHIP_KIND_W;
+  localparam [31:0] MODULES = KINDS;
   wire reset = rst | core_rst;
 
   generate
     if (SWAPS != 0 && SWAPS != 1) begin : gen_illegal
       cchip_error_slots_SWAPS_must_be_0_or_1 u_error ();
+    end
+    if (KINDS != 3 && KINDS != 4) begin : gen_illegal_kinds
+      cchip_error_slots_KINDS_must_be_3_or_4 u_error ();
     end
   endgenerate
 
@@ -102,13 +108,24 @@ module cchip_slots #(
   wire [SLOTS-1:0] region_decoupled;  // slots_decoupled: when all its pairs are answered, too
   wire [ID_W*SLOTS-1:0] slot_rm_id;
   wire [COUNT_OF_PAIRS_W*SLOTS-1:0] slot_outstanding;
-  // without swaps: what the modules that were built do not serve
-  localparam integer MOST = SLOT0_RM_ID;
-  localparam integer MOST_1 = SLOTS > 1 && SLOT1_RM_ID > MOST ? SLOT1_RM_ID : MOST;
-  localparam integer MOST_2 = SLOTS > 2 && SLOT2_RM_ID > MOST_1 ? SLOT2_RM_ID : MOST_1;
-  localparam integer MOST_3 = SLOTS > 3 && SLOT3_RM_ID > MOST_2 ? SLOT3_RM_ID : MOST_2;
   wire [SLOTS-1:0] stopped, cut_off;  // by a swap
-  wire [KINDS:1] unserved = SWAPS != 0 ? no_provider : {MOST_3 < 3, MOST_3 < 2, MOST_3 < 1};
+  wire [KINDS:1] unserved;
+  localparam [31:0] BUILT_0 = SLOT0_RM_ID;
+  localparam [31:0] BUILT_1 = SLOTS > 1 ? SLOT1_RM_ID : 0;
+  localparam [31:0] BUILT_2 = SLOTS > 2 ? SLOT2_RM_ID : 0;
+  localparam [31:0] BUILT_3 = SLOTS > 3 ? SLOT3_RM_ID : 0;
+  genvar k;
+  generate
+    for (k = 1; k <= KINDS; k = k + 1) begin : gen_unserved
+      localparam [31:0] KIND = k;
+      // without swaps: what the modules that were built do not serve
+      assign unserved[k] = SWAPS != 0 ? no_provider[k] :
+          !(`CCHIP_RM_SERVES(BUILT_0[ID_W-1:0], KIND[ID_W-1:0])
+          || `CCHIP_RM_SERVES(BUILT_1[ID_W-1:0], KIND[ID_W-1:0])
+          || `CCHIP_RM_SERVES(BUILT_2[ID_W-1:0], KIND[ID_W-1:0])
+          || `CCHIP_RM_SERVES(BUILT_3[ID_W-1:0], KIND[ID_W-1:0]));
+    end
+  endgenerate
 
   cchip_dispatcher #(
       .SLOTS (SLOTS),
@@ -178,6 +195,7 @@ module cchip_slots #(
           .CONTEXTS           (CONTEXTS),
           .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
           .WARPED_EXACT       (WARPED_EXACT),
+          .KINDS              (KINDS),
           .SLOT_ID            (slot),
           .RM_ID              (slot == 0 ? SLOT0_RM_ID : slot == 1 ? SLOT1_RM_ID
                                : slot == 2 ? SLOT2_RM_ID : SLOT3_RM_ID),
@@ -203,7 +221,8 @@ module cchip_slots #(
           .rm_id         (module_id),
           .idle          (idle[slot])
       );
-      assign slot_module[2*slot+:2] = module_id[7:2] == 6'd0 ? module_id[1:0] : 2'd0;
+      assign slot_module[KIND_W*slot+:KIND_W] =
+          module_id <= MODULES[ID_W-1:0] ? module_id[KIND_W-1:0] : {KIND_W{1'b0}};
     end
     if (SLOTS == 4) begin : gen_state
       assign outstanding = slot_outstanding;

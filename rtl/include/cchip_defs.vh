@@ -35,8 +35,13 @@
 `define CCHIP_BEATS_W 6
 // width of rm_id [bit]
 `define CCHIP_RM_ID_W 8
-// width of s_pair_kind: the low bits of the ModuleId that tests the pair [bit]
-`define CCHIP_KIND_W 2
+// width of s_pair_kind: the ModuleId that tests the pair [bit]
+`define CCHIP_KIND_W 3
+// kinds of pairs that there are, 1..4 [kind]
+`define CCHIP_KINDS_MAX 4
+// entries of a slot in the table of bitstreams: that of module m of slot s has index TABLE_MODULES
+// s + m [entry]
+`define CCHIP_TABLE_MODULES 8
 // width of a slot's number [bit]
 `define CCHIP_SLOT_ID_W 8
 // width of a pair's number inside a slot: less than CONTEXTS_MAX [bit]
@@ -287,6 +292,12 @@
 `define CCHIP_RM_VERTS_A(m) ((m) <= 2 ? 3 : 4)
 // vertices of B of that module, m = 1..3 [vertex]
 `define CCHIP_RM_VERTS_B(m) ((m) <= 1 ? 3 : 4)
+// 1: module m = 0..4 tests pairs of the kind k = 1..4: a test of quads takes a triangle as a quad,
+// that of points takes points alone
+`define CCHIP_RM_SERVES(m, k) \
+  ((m) == `CCHIP_RM_POINT_TRI || (k) == `CCHIP_RM_POINT_TRI ? (m) == (k) : (m) >= (k))
+// bits of a kind 0..kinds, and of the module of that number [bit]
+`define CCHIP_KIND_BITS(kinds) ((kinds) > 3 ? 3 : 2)
 // 1: the code of this SwapCode says that the bitstream or its entry in the table is bad (REQUEST,
 // MAGIC, SLOT, MODULE, LENGTH, CRC, WRONG_MODULE); another attempt would end like this one
 `define CCHIP_SWAP_SPOILT(c) \
@@ -496,13 +507,13 @@
   {beats, axis, definite, grid, hit, id}
 
 // ---- an answer on its way out of the dispatcher: word[`CCHIP_ANSWER_<field>]
-`define CCHIP_ANSWER_W 38
+`define CCHIP_ANSWER_W 40
 // record RESULT
 `define CCHIP_ANSWER_RESULT 0+:34
 // kind of the pair
-`define CCHIP_ANSWER_KIND 34+:2
+`define CCHIP_ANSWER_KIND 34+:3
 // module that gave it, 0: none, the pair is left open
-`define CCHIP_ANSWER_MODULE 36+:2
+`define CCHIP_ANSWER_MODULE 37+:3
 // the word of these fields, also as the target of an assignment or an output
 `define CCHIP_ANSWER_OF(result, kind, module) {module, kind, result}
 

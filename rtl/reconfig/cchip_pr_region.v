@@ -2,12 +2,13 @@
 `default_nettype none
 `include "cchip_defs.vh"
 // cchip_pr_region: the reconfigurable partition: one cell, one module name, the same ports for any
-// module in it. RM_ID chooses the persona: blank, which never answers, or the test of two
-// triangles, of a triangle and a quad, or of two quads behind a cchip_vertex_collector. Vendor
-// flows synthesise this module out of context once per RM_ID and exchange the results in the static
-// design. The streams are records VERTEX and SLOT_RESULT.
+// module in it. RM_ID chooses the persona: blank, which never answers, or, behind a
+// cchip_vertex_collector, the test of two triangles, of a triangle and a quad, of two quads, or of
+// a point and a triangle. Vendor flows synthesise this module out of context once per RM_ID and
+// exchange the results in the static design. The streams are records VERTEX and SLOT_RESULT; of a
+// point A's vertex 0 is the centre, x of vertex 1 the radius.
 //   latency      from the last vertex: that of the test + 1 clock
-//   throughput   that of the test, a pair per 3 or 4 clocks at most
+//   throughput   that of the test, a pair per 3 or 4 clocks at most, of points per 7
 //   credit       no ready: at most CONTEXTS pairs may lie between their first vertex and their
 //                result
 //   cuts         every path: each output is a flip-flop, or a constant of the blank persona
@@ -18,7 +19,7 @@
 (* black_box *)
 `endif
 module cchip_pr_region #(
-    // persona, CCHIP_RM_BLANK .. CCHIP_RM_QUAD_QUAD, 0..3
+    // persona, CCHIP_RM_BLANK .. CCHIP_RM_POINT_TRI, 0..4
     parameter integer RM_ID = 1,
     // width of a coordinate, bit, 4..20
     parameter integer COORD_W = 16,
@@ -49,7 +50,7 @@ module cchip_pr_region #(
       assign rm_id          = `CCHIP_RM_BLANK;
       assign idle           = 1'b1;
       wire unused = &{1'b0, clk, rst, s_vertex_valid, s_vertex_data};
-    end else if (RM_ID >= 1 && RM_ID <= 3) begin : gen_test
+    end else if (RM_ID >= 1 && RM_ID <= `CCHIP_KINDS_MAX) begin : gen_test
       wire pair_valid, pair_ready, busy, test_idle;
       wire [`CCHIP_REQUEST_W(COORD_W)-1:0] pair;
       wire [`CCHIP_RESULT_W-1:0] result;
@@ -67,33 +68,65 @@ module cchip_pr_region #(
           .busy          (busy)
       );
 
-      cchip_primtest #(
-          .COORD_W            (COORD_W),
-          .SUBSTAGES          (SUBSTAGES),
-          .CONTEXTS           (CONTEXTS),
-          .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
-          .WARPED_EXACT       (WARPED_EXACT),
-          .VERTS_A            (`CCHIP_RM_VERTS_A(RM_ID)),
-          .VERTS_B            (`CCHIP_RM_VERTS_B(RM_ID))
-      ) u_test (
-          .clk           (clk),
-          .rst           (rst),
-          .s_pair_valid  (pair_valid),
-          .s_pair_ready  (pair_ready),
-          .s_pair_data   (pair),
-          .m_result_valid(m_result_valid),
-          .m_result_ready(1'b1),
-          .m_result_data (result),
-          .rm_id         (rm_id),
-          .idle          (test_idle)
-      );
+      if (RM_ID <= 3) begin : gen_sat
+        cchip_primtest #(
+            .COORD_W            (COORD_W),
+            .SUBSTAGES          (SUBSTAGES),
+            .CONTEXTS           (CONTEXTS),
+            .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
+            .WARPED_EXACT       (WARPED_EXACT),
+            .VERTS_A            (`CCHIP_RM_VERTS_A(RM_ID)),
+            .VERTS_B            (`CCHIP_RM_VERTS_B(RM_ID))
+        ) u_test (
+            .clk           (clk),
+            .rst           (rst),
+            .s_pair_valid  (pair_valid),
+            .s_pair_ready  (pair_ready),
+            .s_pair_data   (pair),
+            .m_result_valid(m_result_valid),
+            .m_result_ready(1'b1),
+            .m_result_data (result),
+            .rm_id         (rm_id),
+            .idle          (test_idle)
+        );
+      end else begin : gen_point
+        wire [`CCHIP_TAG_W-1:0] tag;
+        wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] a, b;
+        wire [`CCHIP_ERR_W-1:0] err;
+        wire [`CCHIP_MODE_W-1:0] mode;
+        assign `CCHIP_REQUEST_OF(tag, a, b, err, mode) = pair;
+        cchip_primtest_point_tri #(
+            .COORD_W (COORD_W),
+            .CONTEXTS(CONTEXTS)
+        ) u_test (
+            .clk              (clk),
+            .rst              (rst),
+            .s_pair_valid     (pair_valid),
+            .s_pair_ready     (pair_ready),
+            .s_pair_tag       (tag),
+            .s_pair_mode      (mode),
+            .s_pair_a         (a),
+            .s_pair_b         (b),
+            .s_pair_err       (err),
+            .m_result_valid   (m_result_valid),
+            .m_result_ready   (1'b1),
+            .m_result_tag     (result[`CCHIP_RESULT_TAG]),
+            .m_result_hit     (result[`CCHIP_RESULT_HIT]),
+            .m_result_grid    (result[`CCHIP_RESULT_GRID]),
+            .m_result_definite(result[`CCHIP_RESULT_DEFINITE]),
+            .m_result_axis    (result[`CCHIP_RESULT_AXIS]),
+            .m_result_beats   (result[`CCHIP_RESULT_BEATS]),
+            .rm_id            (rm_id),
+            .idle             (test_idle)
+        );
+      end
       assign m_result_data = {result[`CCHIP_RESULT_W-1:`CCHIP_TAG_W], result[`CCHIP_PAIR_ID_W-1:0]};
       always @(posedge clk) idle_q <= rst | (test_idle & ~busy & ~s_vertex_valid);
       assign idle = idle_q;
 
       wire unused = &{1'b0, pair_ready, result[`CCHIP_TAG_W-1:`CCHIP_PAIR_ID_W]};
     end else begin : gen_error
-      cchip_error_RM_ID_must_be_0_to_3 u_error ();
+      cchip_error_RM_ID_must_be_0_to_4 u_error ();
     end
   endgenerate
 `endif

@@ -13,8 +13,8 @@
 //                reset. Only a decoupled module may be reset
 //   reset        resets streams and module (for ROC_CYCLES clocks more); nothing old comes out. The
 //                configuration stays
-// SIMULATION = 0: one cchip_pr_region, the partition of FPGA tools. SIMULATION = 1: all four
-// modules, exchanged by the words that pass the configuration port (cchip_pr_virtual).
+// SIMULATION = 0: one cchip_pr_region, the partition of FPGA tools. SIMULATION = 1: all modules
+// 0..KINDS, exchanged by the words that pass the configuration port (cchip_pr_virtual).
 module cchip_pr_slot #(
     // see cchip_pr_region
     parameter integer COORD_W = 16,
@@ -22,9 +22,11 @@ module cchip_pr_slot #(
     parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
     parameter integer ABSOLUTE_PROJECTION = 0,
     parameter integer WARPED_EXACT = 1,
+    // kinds of pairs, 3, or 4 with points
+    parameter integer KINDS = 3,
     // number of this slot, 0..255
     parameter integer SLOT_ID = 0,
-    // module at power-up, CCHIP_RM_BLANK .. CCHIP_RM_QUAD_QUAD, 0..3
+    // module at power-up, CCHIP_RM_BLANK .. , 0..KINDS
     parameter integer RM_ID = 1,
     // reset on configuration, clocks, 1..32
     parameter integer ROC_CYCLES = `CCHIP_ROC_CLOCKS_DEFAULT,
@@ -131,6 +133,7 @@ module cchip_pr_slot #(
       wire unused = &{1'b0, cfg_valid, cfg_data, SEED};
     end else if (SIMULATION == 1) begin : gen_simulation
       cchip_pr_virtual #(
+          .KINDS              (KINDS),
           .SLOT_ID            (SLOT_ID),
           .RM_ID              (RM_ID),
           .CFG_W              (CFG_W),
@@ -157,6 +160,9 @@ module cchip_pr_slot #(
     end
     if (CFG_W != 8 && CFG_W != 32) begin : gen_illegal_port
       cchip_error_CFG_W_must_be_8_or_32 u_error ();
+    end
+    if (RM_ID > KINDS) begin : gen_illegal_module
+      cchip_error_slot_RM_ID_must_be_0_to_KINDS u_error ();
     end
     if (SLOT_ID < 0 || SLOT_ID > 255) begin : gen_illegal_slot
       cchip_error_SLOT_ID_must_be_0_to_255 u_error ();

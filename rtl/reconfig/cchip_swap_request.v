@@ -110,7 +110,7 @@ module cchip_swap_request #(
     same_q      <= ~decoupled_q & match_q;
     over_q      <= past[32];
     rest_q      <= {|past[31:24], |past[23:16], |past[15:8], |past[7:0]};
-    illegal_q   <= mine_q == {SLOTS{1'b0}} || module_q > `CCHIP_RM_QUAD_QUAD ||
+    illegal_q   <= mine_q == {SLOTS{1'b0}} || module_q > `CCHIP_RM_POINT_TRI ||
         address_q[5:0] != 6'd0 || size_q == 32'd0 || (over_q && rest_q != 4'd0);
   end
   assign is_quiet     = quiet_q;

@@ -14,18 +14,22 @@
 //   reset        nothing rests, level 0
 module cchip_swap_retry #(
     // slots, 1..4
-    parameter integer SLOTS = 1
+    parameter integer SLOTS = 1,
+    // kinds of pairs, 3, or 4 with points: the modules are 0..KINDS
+    parameter integer KINDS = 3
 ) (
     input  wire                            clk,
     input  wire                            rst,
     input  wire                            report_valid,  // one clock
     input  wire [`CCHIP_SWAP_REPORT_W-1:0] report_data,
-    // entry 4 * slot + module
-    input  wire [             4*SLOTS-1:0] valid,         // there is a bitstream
-    output wire [             4*SLOTS-1:0] resting,
-    output wire [             4*SLOTS-1:0] hopeless
+    // entries of cchip_bitstream_table
+    input  wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] valid,  // there is a bitstream
+    output wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] resting,
+    output wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] hopeless
 );
 
+  localparam integer MODULE_W = `CCHIP_KIND_BITS(KINDS);
+  localparam integer ENTRIES = SLOTS << MODULE_W;
   localparam integer TIMER_W = $clog2(`CCHIP_RETRY_CLOCKS + 1) + `CCHIP_RETRY_DOUBLINGS;
   localparam [TIMER_W-1:0] FIRST = `CCHIP_RETRY_CLOCKS;
   localparam [TIMER_W-1:0] ONE = 1;
@@ -44,35 +48,36 @@ module cchip_swap_retry #(
   wire [`CCHIP_SWAP_W-1:0] code = report_data[`CCHIP_SWAP_REPORT_CODE];
   wire ended_well = report_valid && code == `CCHIP_SWAP_OK;
   wire put_off = report_valid && `CCHIP_SWAP_PUT_OFF(code);
-  reg [4*SLOTS-1:0] entry;  // one-hot; 0 if there is no such entry
+  reg [ENTRIES-1:0] entry;  // one-hot; 0 if there is no such entry
   integer i;
   always @(*)
-    for (i = 0; i < 4 * SLOTS; i = i + 1) entry[i] = {slot, module_id} == {i[9:2], 6'd0, i[1:0]};
+    for (i = 0; i < ENTRIES; i = i + 1)
+      entry[i] = {slot, module_id} == {i[MODULE_W+:8], {8 - MODULE_W{1'b0}}, i[MODULE_W-1:0]};
 
   // ---- entries that failed, and their rest
-  reg [4*SLOTS-1:0] failed_q;
+  reg [ENTRIES-1:0] failed_q;
   reg rests_q;
   reg [3:0] level_q;
   reg [TIMER_W-1:0] timer_q;  // clocks since the latest failure
   wire [TIMER_W-1:0] limit = FIRST << level_q;
-  assign resting = failed_q & {4 * SLOTS{rests_q}};
-  assign hopeless = resting & {4 * SLOTS{level_q >= LEVEL_HOPELESS}};
+  assign resting = failed_q & {ENTRIES{rests_q}};
+  assign hopeless = resting & {ENTRIES{level_q >= LEVEL_HOPELESS}};
 
   always @(posedge clk) begin
     timer_q <= put_off ? ONE : timer_q + ONE;
     if (rst) begin
-      failed_q <= {4 * SLOTS{1'b0}};
+      failed_q <= {ENTRIES{1'b0}};
       rests_q  <= 1'b0;
       level_q  <= 4'd0;
     end else begin
-      failed_q <= valid & ((failed_q | (put_off ? entry : {4 * SLOTS{1'b0}}))
-          & ~(ended_well ? entry : {4 * SLOTS{1'b0}}));
+      failed_q <= valid & ((failed_q | (put_off ? entry : {ENTRIES{1'b0}}))
+          & ~(ended_well ? entry : {ENTRIES{1'b0}}));
       if (put_off) rests_q <= 1'b1;
       else if (rests_q && timer_q == limit) begin
         rests_q <= 1'b0;
         if (level_q != LEVEL_MAX) level_q <= level_q + 4'd1;
       end
-      if (failed_q == {4 * SLOTS{1'b0}} && !put_off) level_q <= 4'd0;
+      if (failed_q == {ENTRIES{1'b0}} && !put_off) level_q <= 4'd0;
     end
   end
 

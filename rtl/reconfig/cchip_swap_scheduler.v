@@ -4,13 +4,15 @@
 `include "cchip_assert.vh"
 // cchip_swap_scheduler: which slot gets which module when. One swap at a time; every request of the
 // configuration controller comes from here, those of software too.
-//   serves       module m answers for the kinds 1..m
+//   serves       CCHIP_RM_SERVES
 //   rule         a swap is due for a kind that no slot serves and of which pairs wait: `min_batch`
 //                of them, a full queue, or any once some kind has waited unserved for `max_age`
 //                clocks. Kinds are served in turn. The module is the kind's own, else the next
-//                larger one with a valid bitstream; the slot is the one that holds least: it had
-//                served nothing that the new module does not, so a swap never takes a kind from the
-//                pairs
+//                larger one that serves it, with a valid bitstream; the slot is the one that holds
+//                least by its ModuleId. Without points it had served nothing that the new module
+//                does not, so a swap never takes a kind from the pairs. A test of points serves
+//                nothing else: the slot that alone serves a kind of which pairs wait is exchanged
+//                with points only once `max_age` has passed, so that neither waits for ever
 //   age          clocks since pairs of some unserved kind wait; starts again after every report
 //   faults       only a bad bitstream or entry (CCHIP_SWAP_SPOILT) loses its valid bit
 //                (`table_invalidate`). An entry that rests (cchip_swap_retry) is not chosen here,
@@ -20,7 +22,8 @@
 //   command      refused with BUSY while a swap is in progress, with REQUEST where the table has no
 //                valid bitstream; commands are two clocks apart at least, because a refusal that
 //                meets another report waits for a clock
-//   latency      a kind is looked at for 4 clocks, and for 9 * SLOTS + 1 more if a swap is due; a
+//   latency      a kind is looked at for 4 clocks, and for 9 * SLOTS + 1 more if a swap is due, with
+//                points 15 * SLOTS + 1; a
 //                command's request leaves 3 clocks after it; 15 clocks of rest after a report
 //   cuts         every path but rst: all outputs are flip-flops, address and size of m_swap_data
 //                those of the table
@@ -28,6 +31,8 @@
 module cchip_swap_scheduler #(
     // slots, 1..4
     parameter integer SLOTS = 2,
+    // kinds of pairs, 3, or 4 with points: the modules are 0..KINDS
+    parameter integer KINDS = 3,
     // width of the number of waiting pairs, bit, 1..16
     parameter integer COUNT_W = 9
 ) (
@@ -37,20 +42,20 @@ module cchip_swap_scheduler #(
     input  wire                             enable,
     input  wire [                     31:0] min_batch,
     input  wire [                     31:0] max_age,
-    // bitstreams: entry 4 * slot + module
-    input  wire [              4*SLOTS-1:0] table_valid,
-    output wire [              4*SLOTS-1:0] table_invalidate,
-    input  wire [              4*SLOTS-1:0] table_resting,
-    input  wire [              4*SLOTS-1:0] table_hopeless,
+    // bitstreams: entries of cchip_bitstream_table
+    input  wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] table_valid,
+    output wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] table_invalidate,
+    input  wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] table_resting,
+    input  wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] table_hopeless,
     // the entry of the swap; its address and size come 2 clocks after table_look and stay
     output wire                             table_look,
-    output wire [                      3:0] table_entry,
+    output wire [                      4:0] table_entry,  // {slot, module (3 bits)}
     input  wire [                     31:0] table_address,
     input  wire [                     31:0] table_size,
     // queues, kind k at place k - 1
-    input  wire [            3*COUNT_W-1:0] waiting,
-    input  wire [                      2:0] full,
-    output wire [                      2:0] no_provider,
+    input  wire [        KINDS*COUNT_W-1:0] waiting,
+    input  wire [                KINDS-1:0] full,
+    output wire [                KINDS-1:0] no_provider,
     // slots: module that works (ModuleId, 0: none or decoupled)
     input  wire [  `CCHIP_KIND_W*SLOTS-1:0] slot_module,
     // software's swap, one clock
@@ -70,8 +75,21 @@ module cchip_swap_scheduler #(
     output wire [ `CCHIP_SWAP_REPORT_W-1:0] m_report_data
 );
 
-  reg [4*SLOTS-1:0] table_invalidate_q;
-  reg [2:0] no_provider_q;
+  localparam integer KIND_W = `CCHIP_KIND_W;
+  localparam integer ID_W = `CCHIP_RM_ID_W;
+  localparam integer MODULE_W = `CCHIP_KIND_BITS(KINDS);
+  localparam integer TABLE = SLOTS << MODULE_W;
+  localparam [31:0] LAST_KIND = KINDS;
+  localparam [KIND_W-1:0] ONE = 1;
+  localparam [ID_W-1:0] QUADS_ID = `CCHIP_RM_QUAD_QUAD;
+  localparam [ID_W-1:0] POINTS_ID = `CCHIP_RM_POINT_TRI;
+  localparam [KIND_W-1:0] QUADS = QUADS_ID[KIND_W-1:0];
+  localparam [KIND_W-1:0] POINTS = POINTS_ID[KIND_W-1:0];
+  // what a slot can hold while it does not serve a kind that another module of its own serves
+  localparam [31:0] MOST_HELD = KINDS > 3 ? KINDS : 2;
+
+  reg [TABLE-1:0] table_invalidate_q;
+  reg [KINDS-1:0] no_provider_q;
   reg m_swap_valid_q;
   reg [`CCHIP_RM_ID_W-1:0] m_swap_module_q;
   reg m_swap_force_q;
@@ -88,7 +106,7 @@ module cchip_swap_scheduler #(
   wire [`CCHIP_SWAP_W-1:0] s_report_code = s_report_data[`CCHIP_SWAP_REPORT_CODE];
 
   localparam integer SLOT_W = SLOTS > 1 ? $clog2(SLOTS) : 1;
-  localparam integer ENTRY_W = SLOT_W + 2;
+  localparam integer ENTRY_W = SLOT_W + MODULE_W;
   localparam integer ENTRIES = 1 << ENTRY_W;
   localparam [31:0] SLOT_COUNT = SLOTS;
   localparam [31:0] LAST_SLOT = SLOTS - 1;
@@ -100,30 +118,37 @@ module cchip_swap_scheduler #(
     if (COUNT_W < 1 || COUNT_W > 16) begin : gen_illegal_count
       cchip_error_COUNT_W_must_be_1_to_16 u_error ();
     end
+    if (KINDS != 3 && KINDS != 4) begin : gen_illegal_kinds
+      cchip_error_KINDS_must_be_3_or_4 u_error ();
+    end
   endgenerate
 
   // ---- the tables are extended to a power of two; slots that do not exist have no bitstream
-  wire [ENTRIES-1:0] valid_of = {{ENTRIES - 4 * SLOTS{1'b0}}, table_valid};
-  wire [ENTRIES-1:0] ready_of = {{ENTRIES - 4 * SLOTS{1'b0}}, table_valid & ~table_resting};
+  wire [ENTRIES-1:0] valid_of = {{ENTRIES - TABLE{1'b0}}, table_valid};
+  wire [ENTRIES-1:0] ready_of = {{ENTRIES - TABLE{1'b0}}, table_valid & ~table_resting};
 
   // ---- swap in progress: chosen, requested, or accepted by the controller
   reg swapping_q, chosen_q, chosen_q2;
   wire asked = swapping_q | m_swap_valid_q | chosen_q | chosen_q2;
 
   // ---- kinds
-  reg [2:0] unserved_q;  // pairs wait, no slot serves the kind
-  reg [2:0] enough_q;  // a full queue, or as many as are worth a swap
+  reg [KINDS-1:0] unserved_q;  // pairs wait, no slot serves the kind
+  reg [KINDS-1:0] enough_q;  // a full queue, or as many as are worth a swap
+  wire [KINDS*SLOTS-1:0] alone;  // pairs of the kind wait that this slot alone serves
   genvar kind, slot;
   generate
-    for (kind = 0; kind < 3; kind = kind + 1) begin : gen_kinds
+    for (kind = 0; kind < KINDS; kind = kind + 1) begin : gen_kinds
       localparam [31:0] KIND = kind + 1;
       wire [SLOTS-1:0] holds, brings;
       for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_holds
-        assign holds[slot]  = slot_module[2*slot+:2] >= KIND[1:0];
-        assign brings[slot] = |(table_valid[4*slot+3:4*slot+kind+1] &
-            ~table_hopeless[4*slot+3:4*slot+kind+1]);
+        wire [ID_W-1:0] module_id = {{ID_W - KIND_W{1'b0}}, slot_module[KIND_W*slot+:KIND_W]};
+        assign holds[slot]  = `CCHIP_RM_SERVES(module_id, KIND[ID_W-1:0]);
+        assign brings[slot] = |(table_valid[(slot<<MODULE_W)+kind+1+:(kind>2?1:3-kind)] &
+            ~table_hopeless[(slot<<MODULE_W)+kind+1+:(kind>2?1:3-kind)]);
       end
       reg some_q, served_q;
+      assign alone[SLOTS*kind+:SLOTS] =
+          holds & {SLOTS{some_q && (holds & (holds - 1'b1)) == {SLOTS{1'b0}}}};
       always @(posedge clk) begin
         some_q           <= |waiting[COUNT_W*kind+:COUNT_W];
         served_q         <= |holds;
@@ -134,7 +159,8 @@ module cchip_swap_scheduler #(
 
       // table and slots show a change some clocks late: a kind must be absent for 16 clocks
       reg [3:0] absent_clocks_q;
-      wire absent = !(|holds) && !(|brings) && !(asked && m_swap_module_q >= KIND[7:0]);
+      wire absent = !(|holds) && !(|brings) && !(asked
+          && `CCHIP_RM_SERVES(m_swap_module_q, KIND[ID_W-1:0]));
       always @(posedge clk)
         if (rst || !absent) begin
           absent_clocks_q     <= 4'd0;
@@ -150,7 +176,7 @@ module cchip_swap_scheduler #(
   reg [31:0] age_q;
   reg old_q;
   always @(posedge clk) begin
-    if (rst || s_report_valid || unserved_q == 3'd0) age_q <= 32'd0;
+    if (rst || s_report_valid || unserved_q == {KINDS{1'b0}}) age_q <= 32'd0;
     else if (~&age_q) age_q <= age_q + 32'd1;
     old_q <= age_q >= max_age;
   end
@@ -160,52 +186,74 @@ module cchip_swap_scheduler #(
   reg [3:0] pause_q;  // clocks of rest after a report, until slots and table show its effect
   reg pausing_q;  // pause_q != 0
   wire searching = enable & ~asked & ~command_valid & ~pausing_q;
-  reg [1:0] kind_q;  // 1..3
+  reg [KIND_W-1:0] kind_q;  // 1..KINDS
   reg [1:0] wait_q;  // clocks until what is known about the kind is new
   reg due_q, trying_q;
-  reg [1:0] module_q;
-  reg [1:0] holds_q;
+  reg [KIND_W-1:0] module_q;
+  reg [KIND_W-1:0] holds_q;
   reg [SLOT_W-1:0] slot_q;
   wire last_slot = slot_q == LAST_SLOT[SLOT_W-1:0];
-  wire last_holds = holds_q == 2'd2;
+  wire last_holds = holds_q == MOST_HELD[KIND_W-1:0];
   reg found_q;
   reg [SLOT_W-1:0] found_slot_q;
-  reg [1:0] found_module_q;
-  wire [2*(1<<SLOT_W)-1:0] module_of = {{2 * (1 << SLOT_W) - 2 * SLOTS{1'b0}}, slot_module};
-  wire [2:0] kind_bit = {kind_q == 2'd3, kind_q == 2'd2, kind_q == 2'd1};
+  reg [MODULE_W-1:0] found_module_q;
+  wire [KINDS-1:0] kind_bit = {{KINDS - 1{1'b0}}, 1'b1} << (kind_q - ONE);
+  wire last_kind = kind_q == LAST_KIND[KIND_W-1:0];
+  wire [KIND_W-1:0] next_kind = last_kind ? ONE : kind_q + ONE;
+  // the last module that serves the kind: that of quads, or the kind's own
+  wire last_module = module_q == QUADS || module_q == POINTS;
+  // an exchange with points takes a kind from its pairs
+  reg [SLOTS-1:0] needed_q;
+  wire [4*(1<<SLOT_W)-1:0] held;
+  wire [(1<<SLOT_W)-1:0] needed = {{(1 << SLOT_W) - SLOTS{1'b0}}, needed_q};
+  generate
+    for (slot = 0; slot < SLOTS; slot = slot + 1) begin : gen_needed
+      wire [KINDS-1:0] kinds_alone;
+      for (kind = 0; kind < KINDS; kind = kind + 1) begin : gen_alone
+        assign kinds_alone[kind] = alone[SLOTS*kind+slot];
+      end
+      always @(posedge clk) needed_q[slot] <= KINDS > 3 && kinds_alone != {KINDS{1'b0}} && !old_q;
+    end
+    // what a slot holds, in 4 bits
+    for (slot = 0; slot < (1 << SLOT_W); slot = slot + 1) begin : gen_held
+      if (slot < SLOTS) assign held[4*slot+:4] = {1'b0, slot_module[KIND_W*slot+:KIND_W]};
+      else assign held[4*slot+:4] = 4'd0;
+    end
+  endgenerate
 
   always @(posedge clk) begin
-    due_q          <= |(kind_bit & unserved_q & (enough_q | {3{old_q}}));
+    due_q          <= |(kind_bit & unserved_q & (enough_q | {KINDS{old_q}}));
     found_slot_q   <= slot_q;
-    found_module_q <= module_q;
+    found_module_q <= module_q[MODULE_W-1:0];
     pause_q        <= rst || s_report_valid ? 4'd15 : pause_q - {3'd0, pausing_q};
     pausing_q      <= rst || s_report_valid || pause_q[3:1] != 3'd0;
     if (rst || !searching || found_q) begin
-      if (rst) kind_q <= 2'd1;
-      else if (found_q) kind_q <= kind_q == 2'd3 ? 2'd1 : kind_q + 2'd1;
+      if (rst) kind_q <= ONE;
+      else if (found_q) kind_q <= next_kind;
       wait_q   <= 2'd3;
       trying_q <= 1'b0;
       found_q  <= 1'b0;
     end else if (!trying_q) begin
       wait_q   <= wait_q - {1'b0, wait_q != 2'd0};
       module_q <= kind_q;
-      holds_q  <= 2'd0;
+      holds_q  <= {KIND_W{1'b0}};
       slot_q   <= {SLOT_W{1'b0}};
       if (wait_q == 2'd0) begin
         trying_q <= due_q;
         wait_q   <= 2'd3;
-        if (!due_q) kind_q <= kind_q == 2'd3 ? 2'd1 : kind_q + 2'd1;
+        if (!due_q) kind_q <= next_kind;
       end
     end else begin
-      found_q <= ready_of[{slot_q, module_q}]
-          && module_of[{slot_q, 1'b0}+:2] == holds_q;
+      found_q <= ready_of[{slot_q, module_q[MODULE_W-1:0]}] 
+          && held[{slot_q, 2'b00}+:KIND_W] == holds_q
+          && !(needed[slot_q] && (kind_q == POINTS) != (holds_q == POINTS));
       slot_q  <= last_slot ? {SLOT_W{1'b0}} : slot_q + {{SLOT_W - 1{1'b0}}, 1'b1};
-      if (last_slot) holds_q <= last_holds ? 2'd0 : holds_q + 2'd1;
+      if (last_slot) holds_q <= last_holds ? {KIND_W{1'b0}} : holds_q + ONE;
       if (last_slot && last_holds) begin
-        module_q <= module_q + 2'd1;
-        if (module_q == 2'd3) begin
+        module_q <= module_q + ONE;
+        if (last_module) begin
           trying_q <= 1'b0;
-          kind_q   <= kind_q == 2'd3 ? 2'd1 : kind_q + 2'd1;
+          kind_q   <= next_kind;
         end
       end
     end
@@ -215,19 +263,19 @@ module cchip_swap_scheduler #(
   reg [SLOT_W-1:0] slot_of_swap_q;
   assign m_swap_data = `CCHIP_SWAP_REQUEST_OF({{`CCHIP_SLOT_ID_W - SLOT_W{1'b0}}, slot_of_swap_q},
       m_swap_module_q, table_address, table_size, m_swap_force_q);
-  wire command_known = {24'd0, command_slot} < SLOT_COUNT && command_module[7:2] == 6'd0;
-  wire [ENTRY_W-1:0] command_entry = {command_slot[SLOT_W-1:0], command_module[1:0]};
+  wire command_known = {24'd0, command_slot} < SLOT_COUNT && command_module <= LAST_KIND[ID_W-1:0];
+  wire [ENTRY_W-1:0] command_entry = {command_slot[SLOT_W-1:0], command_module[MODULE_W-1:0]};
   wire command_ok = command_known & valid_of[command_entry];
   wire take_command = command_valid & ~asked & command_ok;
   wire take_found = searching & found_q;
   wire [ENTRY_W-1:0] entry = take_command ? command_entry : {found_slot_q, found_module_q};
   assign table_look  = chosen_q;
-  assign table_entry = {{2 - SLOT_W{1'b0}}, slot_of_swap_q, m_swap_module_q[1:0]};
+  assign table_entry = {{2 - SLOT_W{1'b0}}, slot_of_swap_q, m_swap_module_q[2:0]};
 
   always @(posedge clk) begin
     if (take_command || take_found) begin
-      slot_of_swap_q  <= entry[2+:SLOT_W];
-      m_swap_module_q <= {6'd0, entry[1:0]};
+      slot_of_swap_q  <= entry[MODULE_W+:SLOT_W];
+      m_swap_module_q <= {{ID_W - MODULE_W{1'b0}}, entry[MODULE_W-1:0]};
       m_swap_force_q  <= take_command & command_force;
     end
     if (rst) begin
@@ -261,9 +309,9 @@ module cchip_swap_scheduler #(
         : `CCHIP_SWAP_REPORT_OF(refused_slot_q, refused_module_q, refused_code_q, 16'd0);
     refused_q       <= ~rst & (refuse | (refused_q & s_report_valid));
     m_report_valid_q  <= ~rst & (s_report_valid | refused_q);
-    for (i = 0; i < 4 * SLOTS; i = i + 1)
-      table_invalidate_q[i] <= !rst && s_report_valid && reject && s_report_module[7:2] == 6'd0
-          && {s_report_slot, s_report_module[1:0]} == i[9:0];
+    for (i = 0; i < TABLE; i = i + 1)
+      table_invalidate_q[i] <= !rst && s_report_valid && reject && {s_report_slot, s_report_module}
+          == {i[MODULE_W+:8], {ID_W - MODULE_W{1'b0}}, i[MODULE_W-1:0]};
   end
 
   wire unused = &{1'b0, table_hopeless};  // those of module 0 bring no kind

@@ -11,6 +11,8 @@
 //   cuts         every path but the reads of table_data and phase_clocks
 //   reset        no swap; a slot whose rewriting was cut off stays decoupled until a good swap
 module cchip_swaps #(
+    // kinds of pairs, 3, or 4 with points: the modules are 0..KINDS
+    parameter integer KINDS = 3,
     // slots, 1..4
     parameter integer SLOTS = 1,
     // 1: modules are exchanged at run time
@@ -24,10 +26,10 @@ module cchip_swaps #(
 ) (
     input  wire                                 clk,
     input  wire                                 rst,
-    // queues of waiting pairs, of the kinds 1, 2, 3; a full one is worth a swap
-    input  wire [                3*COUNT_W-1:0] waiting,
-    input  wire [                          2:0] full,
-    output wire [                          2:0] no_provider,     // no slot can get it
+    // queues of waiting pairs, of the kinds from 1 on; a full one is worth a swap
+    input  wire [            KINDS*COUNT_W-1:0] waiting,
+    input  wire [                    KINDS-1:0] full,
+    output wire [                    KINDS-1:0] no_provider,     // no slot can get it
     // slots
     input  wire [       `CCHIP_KIND_W*SLOTS-1:0] slot_module,
     output wire [                    SLOTS-1:0] stop,
@@ -57,10 +59,10 @@ module cchip_swaps #(
     output wire [                         31:0] lost,
     // table of bitstreams and clocks of phases, read within the clock
     input  wire                                 write_table,
-    input  wire [                          5:0] write_word,
+    input  wire [                          6:0] write_word,
     input  wire [                         31:0] write_data,
     input  wire [                          3:0] write_bytes,
-    input  wire [                          5:0] read_word,
+    input  wire [                          6:0] read_word,
     output wire [                         31:0] table_data,
     output wire [                         31:0] phase_clocks,    // of phase read_word
     // to be counted, one clock each
@@ -95,7 +97,7 @@ module cchip_swaps #(
       cchip_error_swaps_SWAPS_must_be_0_or_1 u_error ();
     end
     if (SWAPS == 0) begin : gen_swaps
-      assign no_provider  = 3'd0;
+      assign no_provider  = {KINDS{1'b0}};
       assign stop         = {SLOTS{1'b0}};
       assign decouple     = {SLOTS{1'b0}};
       assign hold_reset   = {SLOTS{1'b0}};
@@ -123,8 +125,8 @@ module cchip_swaps #(
           write_data, write_bytes, read_word, m_axi_arready, m_axi_rvalid, m_axi_rdata,
           m_axi_rresp, m_axi_rlast, cfg_error, clk, rst};
     end else begin : gen_swaps
-      wire [4*SLOTS-1:0] table_valid, invalidate, resting, hopeless;
-      wire [3:0] table_entry;
+      wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] table_valid, invalidate, resting, hopeless;
+      wire [4:0] table_entry;
       wire [31:0] table_address, table_size;
       wire table_look, report_valid;
       wire [`CCHIP_SWAP_REPORT_W-1:0] report_data;
@@ -149,7 +151,8 @@ module cchip_swaps #(
       );
 
       cchip_bitstream_table #(
-          .SLOTS(SLOTS)
+          .SLOTS(SLOTS),
+          .KINDS(KINDS)
       ) u_table (
           .clk        (clk),
           .rst        (rst),
@@ -172,7 +175,8 @@ module cchip_swaps #(
       wire [`CCHIP_SWAP_REQUEST_W-1:0] swap_data;
       wire [`CCHIP_SWAP_REPORT_W-1:0] swap_report_data;
       cchip_swap_retry #(
-          .SLOTS(SLOTS)
+          .SLOTS(SLOTS),
+          .KINDS(KINDS)
       ) u_retry (
           .clk         (clk),
           .rst         (rst),
@@ -185,6 +189,7 @@ module cchip_swaps #(
 
       cchip_swap_scheduler #(
           .SLOTS  (SLOTS),
+          .KINDS  (KINDS),
           .COUNT_W(COUNT_W)
       ) u_scheduler (
           .clk             (clk),

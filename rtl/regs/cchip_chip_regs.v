@@ -163,14 +163,7 @@ module cchip_chip_regs (
   wire written_in_5 = decode && waddr_q[9:3] == 7'd5;
   wire written_in_32 = decode && waddr_q[9:3] == 7'd32;
   wire written_in_33 = decode && waddr_q[9:3] == 7'd33;
-  wire written_in_48 = decode && waddr_q[9:3] == 7'd48;
-  wire written_in_49 = decode && waddr_q[9:3] == 7'd49;
-  wire written_in_50 = decode && waddr_q[9:3] == 7'd50;
-  wire written_in_51 = decode && waddr_q[9:3] == 7'd51;
-  wire written_in_52 = decode && waddr_q[9:3] == 7'd52;
-  wire written_in_53 = decode && waddr_q[9:3] == 7'd53;
-  wire written_in_54 = decode && waddr_q[9:3] == 7'd54;
-  wire written_in_55 = decode && waddr_q[9:3] == 7'd55;
+  wire written_in_48_to_63 = decode && waddr_q[9:7] == 3'd3;
   assign written[0] = (written_in_0 && waddr_q[2:0] == 3'd4);
   assign written[1] = (written_in_1 && waddr_q[2:0] == 3'd0);
   assign written[2] = (written_in_1 && waddr_q[2:0] == 3'd1);
@@ -203,21 +196,7 @@ module cchip_chip_regs (
   assign written[29] = (written_in_33 && waddr_q[2:0] == 3'd5);
   assign written[30] = (written_in_33 && waddr_q[2:0] == 3'd6);
   assign written[31] = (written_in_33 && waddr_q[2:0] == 3'd7);
-  assign written[32] = (written_in_48 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 ||
-      waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6))
-      || (written_in_49 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 ||
-      waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6)) || (written_in_50 &&
-      (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4
-      || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6)) || (written_in_51 && (waddr_q[2:0] == 3'd0
-      || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4 || waddr_q[2:0] ==
-      3'd5 || waddr_q[2:0] == 3'd6)) || (written_in_52 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] ==
-      3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0]
-      == 3'd6)) || (written_in_53 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0]
-      == 3'd2 || waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6)) ||
-      (written_in_54 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 ||
-      waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6)) || (written_in_55 &&
-      (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4
-      || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6));
+  assign written[32] = (written_in_48_to_63 && waddr_q[1:0] != 2'd3);
 
   assign s_axil_awready = awready_q;
   assign s_axil_wready = wready_q;
@@ -552,8 +531,7 @@ module cchip_chip_regs (
   wire selected_in_3 = read_q && raddr_q[9:3] == 7'd3;
   wire selected_in_4 = read_q && raddr_q[9:3] == 7'd4;
   wire selected_in_5 = read_q && raddr_q[9:3] == 7'd5;
-  wire selected_in_8 = read_q && raddr_q[9:3] == 7'd8;
-  wire selected_in_9 = read_q && raddr_q[9:3] == 7'd9;
+  wire selected_in_8_to_9 = read_q && raddr_q[9:4] == 6'd4;
   wire selected_in_10 = read_q && raddr_q[9:3] == 7'd10;
   wire selected_in_32 = read_q && raddr_q[9:3] == 7'd32;
   wire selected_in_33 = read_q && raddr_q[9:3] == 7'd33;
@@ -562,14 +540,8 @@ module cchip_chip_regs (
   wire selected_in_38 = read_q && raddr_q[9:3] == 7'd38;
   wire selected_in_39 = read_q && raddr_q[9:3] == 7'd39;
   wire selected_in_40 = read_q && raddr_q[9:3] == 7'd40;
-  wire selected_in_48 = read_q && raddr_q[9:3] == 7'd48;
-  wire selected_in_49 = read_q && raddr_q[9:3] == 7'd49;
-  wire selected_in_50 = read_q && raddr_q[9:3] == 7'd50;
-  wire selected_in_51 = read_q && raddr_q[9:3] == 7'd51;
-  wire selected_in_52 = read_q && raddr_q[9:3] == 7'd52;
-  wire selected_in_53 = read_q && raddr_q[9:3] == 7'd53;
-  wire selected_in_54 = read_q && raddr_q[9:3] == 7'd54;
-  wire selected_in_55 = read_q && raddr_q[9:3] == 7'd55;
+  wire selected_in_41 = read_q && raddr_q[9:3] == 7'd41;
+  wire selected_in_48_to_63 = read_q && raddr_q[9:7] == 3'd3;
   assign selected[0] = (selected_in_0 && raddr_q[2:0] == 3'd0);
   assign selected[1] = (selected_in_0 && raddr_q[2:0] == 3'd1);
   assign selected[2] = (selected_in_0 && raddr_q[2:0] == 3'd2);
@@ -616,32 +588,16 @@ module cchip_chip_regs (
   assign selected[43] = (selected_in_34 && raddr_q[2:0] == 3'd2);
   assign selected[44] = (selected_in_34 && raddr_q[2:0] == 3'd3);
   assign selected[45] = (selected_in_36 && raddr_q[2:0] == 3'd3);
-  assign selected[46] = selected_in_8 || selected_in_9 || (selected_in_10 && (raddr_q[2:0] == 3'd0
-      || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd3 || raddr_q[2:0] ==
-      3'd4 || raddr_q[2:0] == 3'd5));
+  assign selected[46] = selected_in_8_to_9 || (selected_in_10 && (raddr_q[2:0] != 3'd6 &&
+      raddr_q[2:0] != 3'd7));
   assign selected[47] = (selected_in_36 && raddr_q[2:0] == 3'd0);
   assign selected[48] = (selected_in_36 && raddr_q[2:0] == 3'd1);
   assign selected[49] = (selected_in_36 && raddr_q[2:0] == 3'd2);
-  assign selected[50] = (selected_in_38 && (raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 ||
-      raddr_q[2:0] == 3'd3 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6
-      || raddr_q[2:0] == 3'd7)) || (selected_in_39 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] ==
-      3'd1));
-  assign selected[51] = selected_in_40;
-  assign selected[52] = (selected_in_48 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 ||
-      raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6))
-      || (selected_in_49 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 ||
-      raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_50 &&
-      (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4
-      || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_51 && (raddr_q[2:0] == 3'd0
-      || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] ==
-      3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_52 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] ==
-      3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0]
-      == 3'd6)) || (selected_in_53 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0]
-      == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) ||
-      (selected_in_54 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 ||
-      raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_55 &&
-      (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4
-      || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6));
+  assign selected[50] = (selected_in_38 && raddr_q[2:0] != 3'd0) || (selected_in_39 && (raddr_q[2:0]
+      == 3'd0 || raddr_q[2:0] == 3'd1));
+  assign selected[51] = selected_in_40 || (selected_in_41 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0]
+      == 3'd1));
+  assign selected[52] = (selected_in_48_to_63 && raddr_q[1:0] != 2'd3);
 
   wire ar = s_axil_arvalid & arready_q;
   wire ar_d = (ar_q | ar) & ~(rvalid_q & s_axil_rready);
@@ -654,7 +610,7 @@ module cchip_chip_regs (
 
   wire [31:0] word =
       (32'h43484343 & {32{select_q[0]}}) |
-      ({16'd0, 8'h1, 8'h0} & {32{select_q[1]}}) |
+      ({16'd0, 8'h2, 8'h0} & {32{select_q[1]}}) |
       ({1'd0, hwif_in_capabilities_locks, 1'd0, hwif_in_capabilities_slots, 7'd0,
           hwif_in_capabilities_swaps, 5'd0, hwif_in_capabilities_kinds,
           hwif_in_capabilities_coord_w} & {32{select_q[2]}}) |

@@ -45,6 +45,7 @@ module cchip_subsystem_regs (
     output wire [9:0] hwif_out_external_waddr,
     output wire [31:0] hwif_out_external_wdata,
     output wire [3:0] hwif_out_external_wstrb,
+    input  wire [2:0] hwif_in_capabilities_kinds,
     input  wire [7:0] hwif_in_capabilities_coord_w,
     input  wire [7:0] hwif_in_capabilities_cfg_w,
     input  wire [7:0] hwif_in_capabilities_slots,
@@ -109,14 +110,7 @@ module cchip_subsystem_regs (
   wire [8:0] written;
   wire written_in_0 = decode && waddr_q[9:3] == 7'd0;
   wire written_in_1 = decode && waddr_q[9:3] == 7'd1;
-  wire written_in_16 = decode && waddr_q[9:3] == 7'd16;
-  wire written_in_17 = decode && waddr_q[9:3] == 7'd17;
-  wire written_in_18 = decode && waddr_q[9:3] == 7'd18;
-  wire written_in_19 = decode && waddr_q[9:3] == 7'd19;
-  wire written_in_20 = decode && waddr_q[9:3] == 7'd20;
-  wire written_in_21 = decode && waddr_q[9:3] == 7'd21;
-  wire written_in_22 = decode && waddr_q[9:3] == 7'd22;
-  wire written_in_23 = decode && waddr_q[9:3] == 7'd23;
+  wire written_in_16_to_31 = decode && waddr_q[9:7] == 3'd1;
   assign written[0] = (written_in_0 && waddr_q[2:0] == 3'd4);
   assign written[1] = (written_in_0 && waddr_q[2:0] == 3'd5);
   assign written[2] = (written_in_1 && waddr_q[2:0] == 3'd0);
@@ -125,21 +119,7 @@ module cchip_subsystem_regs (
   assign written[5] = (written_in_1 && waddr_q[2:0] == 3'd5);
   assign written[6] = (written_in_1 && waddr_q[2:0] == 3'd6);
   assign written[7] = (written_in_1 && waddr_q[2:0] == 3'd7);
-  assign written[8] = (written_in_16 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 ||
-      waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6))
-      || (written_in_17 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 ||
-      waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6)) || (written_in_18 &&
-      (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4
-      || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6)) || (written_in_19 && (waddr_q[2:0] == 3'd0
-      || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4 || waddr_q[2:0] ==
-      3'd5 || waddr_q[2:0] == 3'd6)) || (written_in_20 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] ==
-      3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0]
-      == 3'd6)) || (written_in_21 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0]
-      == 3'd2 || waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6)) ||
-      (written_in_22 && (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 ||
-      waddr_q[2:0] == 3'd4 || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6)) || (written_in_23 &&
-      (waddr_q[2:0] == 3'd0 || waddr_q[2:0] == 3'd1 || waddr_q[2:0] == 3'd2 || waddr_q[2:0] == 3'd4
-      || waddr_q[2:0] == 3'd5 || waddr_q[2:0] == 3'd6));
+  assign written[8] = (written_in_16_to_31 && waddr_q[1:0] != 2'd3);
 
   assign s_axil_awready = awready_q;
   assign s_axil_wready = wready_q;
@@ -292,14 +272,8 @@ module cchip_subsystem_regs (
   wire selected_in_6 = read_q && raddr_q[9:3] == 7'd6;
   wire selected_in_7 = read_q && raddr_q[9:3] == 7'd7;
   wire selected_in_8 = read_q && raddr_q[9:3] == 7'd8;
-  wire selected_in_16 = read_q && raddr_q[9:3] == 7'd16;
-  wire selected_in_17 = read_q && raddr_q[9:3] == 7'd17;
-  wire selected_in_18 = read_q && raddr_q[9:3] == 7'd18;
-  wire selected_in_19 = read_q && raddr_q[9:3] == 7'd19;
-  wire selected_in_20 = read_q && raddr_q[9:3] == 7'd20;
-  wire selected_in_21 = read_q && raddr_q[9:3] == 7'd21;
-  wire selected_in_22 = read_q && raddr_q[9:3] == 7'd22;
-  wire selected_in_23 = read_q && raddr_q[9:3] == 7'd23;
+  wire selected_in_9 = read_q && raddr_q[9:3] == 7'd9;
+  wire selected_in_16_to_31 = read_q && raddr_q[9:7] == 3'd1;
   assign selected[0] = (selected_in_0 && raddr_q[2:0] == 3'd0);
   assign selected[1] = (selected_in_0 && raddr_q[2:0] == 3'd1);
   assign selected[2] = (selected_in_0 && raddr_q[2:0] == 3'd2);
@@ -322,26 +296,11 @@ module cchip_subsystem_regs (
   assign selected[19] = (selected_in_4 && raddr_q[2:0] == 3'd0);
   assign selected[20] = (selected_in_4 && raddr_q[2:0] == 3'd1);
   assign selected[21] = (selected_in_4 && raddr_q[2:0] == 3'd2);
-  assign selected[22] = (selected_in_6 && (raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 ||
-      raddr_q[2:0] == 3'd3 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6
-      || raddr_q[2:0] == 3'd7)) || (selected_in_7 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] ==
+  assign selected[22] = (selected_in_6 && raddr_q[2:0] != 3'd0) || (selected_in_7 && (raddr_q[2:0]
+      == 3'd0 || raddr_q[2:0] == 3'd1));
+  assign selected[23] = selected_in_8 || (selected_in_9 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] ==
       3'd1));
-  assign selected[23] = selected_in_8;
-  assign selected[24] = (selected_in_16 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 ||
-      raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6))
-      || (selected_in_17 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 ||
-      raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_18 &&
-      (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4
-      || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_19 && (raddr_q[2:0] == 3'd0
-      || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] ==
-      3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_20 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] ==
-      3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0]
-      == 3'd6)) || (selected_in_21 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0]
-      == 3'd2 || raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) ||
-      (selected_in_22 && (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 ||
-      raddr_q[2:0] == 3'd4 || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6)) || (selected_in_23 &&
-      (raddr_q[2:0] == 3'd0 || raddr_q[2:0] == 3'd1 || raddr_q[2:0] == 3'd2 || raddr_q[2:0] == 3'd4
-      || raddr_q[2:0] == 3'd5 || raddr_q[2:0] == 3'd6));
+  assign selected[24] = (selected_in_16_to_31 && raddr_q[1:0] != 2'd3);
 
   wire ar = s_axil_arvalid & arready_q;
   wire ar_d = (ar_q | ar) & ~(rvalid_q & s_axil_rready);
@@ -354,9 +313,9 @@ module cchip_subsystem_regs (
 
   wire [31:0] word =
       (32'h50484343 & {32{select_q[0]}}) |
-      ({16'd0, 8'h1, 8'h0} & {32{select_q[1]}}) |
-      ({8'd0, hwif_in_capabilities_coord_w, hwif_in_capabilities_cfg_w, hwif_in_capabilities_slots}
-          & {32{select_q[2]}}) |
+      ({16'd0, 8'h2, 8'h0} & {32{select_q[1]}}) |
+      ({5'd0, hwif_in_capabilities_kinds, hwif_in_capabilities_coord_w, hwif_in_capabilities_cfg_w,
+          hwif_in_capabilities_slots} & {32{select_q[2]}}) |
       (hwif_in_queue_depth_pairs & {32{select_q[3]}}) |
       ({29'd0, 1'd0, 1'd0, control_scheduler_enable_q} & {32{select_q[4]}}) |
       ({1'd0, 14'd0, command_force_q, command_module_id_q, command_slot_q} & {32{select_q[5]}}) |

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// cchip_primtest_subsystem: primitive tests of three kinds in 1 to 4 slots that are exchanged at
-// run time. Pairs of any kind in, answers out, the exchange of modules done by itself or by
+// cchip_primtest_subsystem: primitive tests of three or four kinds in 1 to 4 slots that are
+// exchanged at run time. Pairs of any kind in, answers out, the exchange of modules done by itself or by
 // software.
 //   latency      that of the test + 18 clocks while a slot serves its kind; a swap longer otherwise
 //   throughput   in: a pair every 2 clocks; to the slots: every 3, with quads every 4; that of the
-//                tests
+//                tests, of points a pair every 7
 //   in flight    QUEUE_DEPTH pairs of each kind in the queues, CONTEXTS for each slot
 //   order        answers in any order; tag and kind of the pair come back with each exactly once. A
 //                pair that a swap by force gave up, or that no slot can test, is answered as open:
@@ -26,9 +26,11 @@ module cchip_primtest_subsystem #(
     parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
     parameter integer ABSOLUTE_PROJECTION = 0,
     parameter integer WARPED_EXACT = 1,
+    // kinds of pairs: 3, or 4 with points against triangles
+    parameter integer KINDS = 3,
     // slots, 1..4
     parameter integer SLOTS = 2,
-    // pairs in each of the three queues, a power of two, 16..1024
+    // pairs in the queue of each kind, a power of two, 16..1024
     parameter integer QUEUE_DEPTH = 128,
     // width of the configuration port, bit, 8 or 32
     parameter integer CFG_W = 8,
@@ -36,7 +38,7 @@ module cchip_primtest_subsystem #(
     parameter integer CFG_DIVIDER = 2,
     // reset on configuration, clocks
     parameter integer ROC_CYCLES = `CCHIP_ROC_CLOCKS_DEFAULT,
-    // modules at power-up, CCHIP_RM_BLANK .. CCHIP_RM_QUAD_QUAD, 0..3
+    // modules at power-up, CCHIP_RM_BLANK .. , 0..KINDS
     parameter integer SLOT0_RM_ID = 1,
     parameter integer SLOT1_RM_ID = 3,
     parameter integer SLOT2_RM_ID = 2,
@@ -48,7 +50,8 @@ module cchip_primtest_subsystem #(
 ) (
     input  wire                                   clk,
     input  wire                                   rst,
-    // pairs; kind = ModuleId of the test: 1 tri-tri, 2 tri-quad, 3 quad-quad
+    // pairs; kind = ModuleId of the test: 1 tri-tri, 2 tri-quad, 3 quad-quad, 4 point-tri
+    // (cchip_primtest_point_tri says what s_pair_a is then); a kind above KINDS counts as illegal
     input  wire                                   s_pair_valid,
     output wire                                   s_pair_ready,
     input  wire [              `CCHIP_KIND_W-1:0] s_pair_kind,
@@ -110,11 +113,11 @@ module cchip_primtest_subsystem #(
   reg irq_q;
   assign irq = irq_q;
 
-  localparam integer KINDS = 3;
   localparam integer POINT_W = `CCHIP_POINT_W(COORD_W);
   localparam integer COUNT_W = $clog2(QUEUE_DEPTH + 1);
-  localparam integer PLACE_W = `CCHIP_KIND_W + $clog2(QUEUE_DEPTH);
+  localparam integer PLACE_W = `CCHIP_KIND_BITS(KINDS) + $clog2(QUEUE_DEPTH);
   localparam [31:0] SLOT_COUNT = SLOTS;
+  localparam [31:0] KIND_COUNT = KINDS;
   localparam [31:0] PORT_W = CFG_W;
   localparam [31:0] GRID_W = COORD_W;
   localparam [31:0] DEPTH = QUEUE_DEPTH;
@@ -192,16 +195,18 @@ module cchip_primtest_subsystem #(
   wire [3:0] write_bytes;
   wire read_swaps, read_rejected, read_stalls, read_pairs, read_phases, read_table, write_table;
   wire swapped, rejected, stall, counter_ack;
-  wire [3:0] answered_by = answered ? 4'd1 << answered_module : 4'd0;
+  wire [4:0] answered_by = answered ? 5'd1 << answered_module : 5'd0;
 
-  cchip_counter_file u_counters (
+  cchip_counter_file #(
+      .WIDE(5)
+  ) u_counters (
       .clk         (clk),
       .rst         (rst),
       .clear       (clear),
-      .count       ({1'b0, stall, rejected, swapped, answered_by}),
+      .count       ({stall, rejected, swapped, answered_by}),
       .read        (read_pairs | read_swaps | read_rejected | read_stalls),
       .read_high   (read_pairs & read_word[0]),
-      .read_counter(read_word[6] ? {1'b0, read_word[2:1]} : {1'b1, read_word[1:0]}),
+      .read_counter(read_word[6] ? read_word[3:1] : 3'd5 + {1'b0, read_word[1:0]}),
       .ack         (counter_ack),
       .read_data   (counter_data)
   );
@@ -235,6 +240,7 @@ module cchip_primtest_subsystem #(
       .hwif_out_external_waddr                     (write_word),
       .hwif_out_external_wdata                     (write_data),
       .hwif_out_external_wstrb                     (write_bytes),
+      .hwif_in_capabilities_kinds                  (KIND_COUNT[2:0]),
       .hwif_in_capabilities_coord_w                (GRID_W[7:0]),
       .hwif_in_capabilities_cfg_w                  (PORT_W[7:0]),
       .hwif_in_capabilities_slots                  (SLOT_COUNT[7:0]),
@@ -287,7 +293,7 @@ module cchip_primtest_subsystem #(
 
   // ---- slots and swaps
   wire [SLOTS-1:0] stop, decouple, hold_reset, roc_start, quiet, roc_busy;
-  wire [KINDS-1:0] no_provider;  // of the kinds 1, 2, 3
+  wire [KINDS-1:0] no_provider;  // of the kinds from 1 on
   wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module;
   wire [`CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id;
   wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost;
@@ -297,6 +303,7 @@ module cchip_primtest_subsystem #(
       .CONTEXTS           (CONTEXTS),
       .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
       .WARPED_EXACT       (WARPED_EXACT),
+      .KINDS              (KINDS),
       .SLOTS              (SLOTS),
       .SWAPS              (1),
       .CFG_W              (CFG_W),
@@ -346,6 +353,7 @@ module cchip_primtest_subsystem #(
   );
 
   cchip_swaps #(
+      .KINDS      (KINDS),
       .SLOTS      (SLOTS),
       .COUNT_W    (COUNT_W),
       .CFG_W      (CFG_W),
@@ -353,7 +361,7 @@ module cchip_primtest_subsystem #(
   ) u_swaps (
       .clk           (clk),
       .rst           (rst),
-      .waiting       (waiting[COUNT_W+:3*COUNT_W]),
+      .waiting       (waiting[COUNT_W+:KINDS*COUNT_W]),
       .full          (~queue_room[KINDS:1]),
       .no_provider   (no_provider),
       .slot_module   (slot_module),
@@ -382,10 +390,10 @@ module cchip_primtest_subsystem #(
       .swap_events   (swap_events),
       .lost          (lost),
       .write_table   (write_table),
-      .write_word    (write_word[5:0]),
+      .write_word    (write_word[6:0]),
       .write_data    (write_data),
       .write_bytes   (write_bytes),
-      .read_word     (read_word[5:0]),
+      .read_word     (read_word[6:0]),
       .table_data    (table_data),
       .phase_clocks  (phase_clocks),
       .swapped       (swapped),

@@ -179,7 +179,7 @@ module cchip_transform #(
       known_q <= {pair_now, id_now, face_b_now, face_a_now, quad_b_now, quad_a_now};
   wire m_quad_a, m_quad_b;
   assign {m_pair, m_id, m_face_b, m_face_a, m_quad_b, m_quad_a} = known_q;
-  assign m_kind = 2'd1 + {1'b0, m_quad_a} + {1'b0, m_quad_b};
+  assign m_kind = 3'd1 + {2'd0, m_quad_a} + {2'd0, m_quad_b};
   wire exchange = m_quad_a & ~m_quad_b;
   assign m_a = exchange ? b : a;
   assign m_b = exchange ? a : b;

@@ -14,9 +14,11 @@
 //   latency      1 clock from a word of the port to garbage and select
 //   reset        none: a configuration survives a reset; RM_ID is the module at power-up
 module cchip_pr_config_memory #(
+    // kinds of pairs, 3, or 4 with points: the modules are 0..KINDS
+    parameter integer KINDS = 3,
     // number of this slot, 0..255
     parameter integer SLOT_ID = 0,
-    // module in the slot at power-up, CCHIP_RM_BLANK .. CCHIP_RM_QUAD_QUAD, 0..3
+    // module in the slot at power-up, CCHIP_RM_BLANK .. , 0..KINDS
     parameter integer RM_ID = 1,
     // width of the configuration port, bit, 8 or 32
     parameter integer CFG_W = 8
@@ -30,6 +32,7 @@ module cchip_pr_config_memory #(
 
   localparam [31:0] SLOT = SLOT_ID;
   localparam [31:0] RM = RM_ID;
+  localparam [31:0] LAST = KINDS;
   localparam [31:0] CFG_BYTES = CFG_W / 8;
   localparam [31:0] SYNC = `CCHIP_BITSTREAM_SYNC;
   localparam [31:0] RESIDUE = 32'hDEBB20E3;  // CRC-32 register after a message and its CRC
@@ -89,8 +92,11 @@ module cchip_pr_config_memory #(
     if (SLOT_ID < 0 || SLOT_ID > 255) begin : gen_illegal_slot
       cchip_error_SLOT_ID_must_be_0_to_255 u_error ();
     end
-    if (RM_ID < 0 || RM_ID > 3) begin : gen_illegal_module
-      cchip_error_RM_ID_must_be_0_to_3 u_error ();
+    if (KINDS != 3 && KINDS != 4) begin : gen_illegal_kinds
+      cchip_error_memory_KINDS_must_be_3_or_4 u_error ();
+    end
+    if (RM_ID < 0 || RM_ID > KINDS) begin : gen_illegal_module
+      cchip_error_RM_ID_must_be_0_to_KINDS u_error ();
     end
   endgenerate
 
@@ -110,7 +116,7 @@ module cchip_pr_config_memory #(
       end else if (named) begin
         ours_q   <= here;
         module_q <= word[15:8];
-        legal_q  <= word[31:16] == 16'd0 && word[15:8] <= `CCHIP_RM_QUAD_QUAD;
+        legal_q  <= word[31:16] == 16'd0 && word[15:8] <= LAST[7:0];
         if (here) garbage_q <= 1'b1;
       end else if (ours_q) begin
         garbage_q <= ~complete & (garbage_q | ~next);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
-// cchip_pr_virtual: a reconfigurable region for simulations: all four modules and a selector that
+// cchip_pr_virtual: a reconfigurable region for simulations: all modules and a selector that
 // the words of the configuration port move (cchip_pr_config_memory). Same ports as cchip_pr_region
 // and the configuration port.
 //   garbage      from the word of a payload that names the slot to its last one, and for ever after
@@ -18,7 +18,9 @@
 module cchip_pr_virtual #(
     // number of this slot, 0..255
     parameter integer SLOT_ID = 0,
-    // module in the slot at power-up, CCHIP_RM_BLANK .. CCHIP_RM_QUAD_QUAD, 0..3
+    // kinds of pairs, 3, or 4 with points: the modules are 0..KINDS
+    parameter integer KINDS = 3,
+    // module in the slot at power-up, CCHIP_RM_BLANK .. , 0..KINDS
     parameter integer RM_ID = 1,
     // width of the configuration port, bit, 8 or 32
     parameter integer CFG_W = 8,
@@ -54,6 +56,7 @@ module cchip_pr_virtual #(
   wire garbage;
   wire [`CCHIP_RM_ID_W-1:0] select;
   cchip_pr_config_memory #(
+      .KINDS  (KINDS),
       .SLOT_ID(SLOT_ID),
       .RM_ID  (RM_ID),
       .CFG_W  (CFG_W)
@@ -97,10 +100,10 @@ module cchip_pr_virtual #(
 
   // ---- the modules
   wire [VERTEX_W-1:0] vertex = dirty ? vertex_q[VERTEX_W-1:0] : s_vertex_data;
-  wire [4*OUT_W-1:0] outs;
+  wire [(KINDS+1)*OUT_W-1:0] outs;
   genvar i;
   generate
-    for (i = 0; i < 4; i = i + 1) begin : gen_module
+    for (i = 0; i <= KINDS; i = i + 1) begin : gen_module
       localparam [7:0] ID = i;
       wire here = select == ID;
       wire valid, quiet;
@@ -132,9 +135,9 @@ module cchip_pr_virtual #(
   endgenerate
 
   assign {m_result_valid, m_result_data, rm_id, idle} =
-      garbage ? random_q[OUT_W-1:0] : outs[STEP*{30'd0, select[1:0]}+:OUT_W];
+      garbage ? random_q[OUT_W-1:0] : outs[STEP*{29'd0, select[2:0]}+:OUT_W];
 
-  wire unused = &{1'b0, select[7:2], vertex_q[VERTEX_W+63:VERTEX_W]};
+  wire unused = &{1'b0, select[7:3], vertex_q[VERTEX_W+63:VERTEX_W]};
 
 endmodule
 `default_nettype wire

@@ -75,7 +75,8 @@ TEST_CASE("bitstream: the paper's sizes and eq. (4)", "[ref][bitstream]") {
 
 TEST_CASE("bitstream: what is made is read again", "[ref][bitstream]") {
   for (const std::uint8_t slot : std::initializer_list<std::uint8_t>{0, 1, 255}) {
-    for (const ModuleId id : {ModuleId::blank, ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad}) {
+    for (const ModuleId id : {ModuleId::blank, ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad,
+                              ModuleId::point_tri}) {
       for (const std::size_t size : {16, 17, 20, 100}) {
         const Bytes payload = make_payload(slot, id, size);
         const Bytes bytes = make_bitstream(slot, id, payload);
@@ -124,8 +125,8 @@ TEST_CASE("bitstream: errors say where, what and what to do", "[ref][bitstream]"
                   "bitstream");
   require_refused(with_byte(bytes, 7, 1), SwapCode::magic,
                   "bitstream byte 6, reserved: two bytes are not 0; generate or copy the file again");
-  require_refused(with_byte(bytes, 4, 4), SwapCode::module,
-                  "bitstream byte 4, module: there is no module 4; generate or copy the file again");
+  require_refused(with_byte(bytes, 4, 5), SwapCode::module,
+                  "bitstream byte 4, module: there is no module 5; generate or copy the file again");
   require_refused(
       with_byte(bytes, 8, 20), SwapCode::length,
       "bitstream byte 8, length: 20 bytes announced, 21 follow the header; generate or copy the file again");

@@ -15,7 +15,7 @@ class Registers final : public Machine {
   explicit Registers(std::uint32_t slots) : slots_(slots) {}
   std::uint32_t read_register(std::uint32_t offset) override {
     if (offset == regs::id::offset) return regs::id::value_reset;
-    if (offset == regs::version::offset) return 1U << regs::version::major_number_shift;
+    if (offset == regs::version::offset) return 2U << regs::version::major_number_shift;
     if (offset != regs::capabilities::offset) return 0;
     return regs::capabilities::swaps_mask | 7U << regs::capabilities::kinds_shift |
            slots_ << regs::capabilities::slots_shift;

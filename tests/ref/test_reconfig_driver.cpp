@@ -49,7 +49,7 @@ TEST_CASE("reconfig driver: a user's bitstreams reach the machine with their tab
   REQUIRE(machine.memory.size() == 6);
   for (std::uint8_t slot = 0; slot < 2; ++slot) {
     for (const ModuleId id : {ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad}) {
-      const std::uint32_t index = 4U * slot + static_cast<std::uint32_t>(id);
+      const std::uint32_t index = std::uint32_t{defs::table_modules} * slot + static_cast<std::uint32_t>(id);
       const std::uint32_t address = machine.written.at(registers::bitstream_address::offset(index));
       CHECK(address % defs::bitstream_align == 0);
       CHECK(machine.memory.at(address) == users_bitstream(slot, id));

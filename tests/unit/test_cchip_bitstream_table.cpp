@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <models/cchip_bitstream_table.hpp>
+#include <vector>
 
 #include "bench.hpp"
 
@@ -11,14 +12,26 @@ using namespace cchip::test;
 TEMPLATE_LIST_TEST_CASE("cchip_bitstream_table: writes byte by byte, reads, look-ups, valid bits",
                         "[unit][cchip_bitstream_table]", cchip_bitstream_table_configs) {
   using Model = typename TestType::Model;
-  constexpr unsigned there = 4 * TestType::SLOTS;  // entries
+  // entries as the registers number them; those of slots and modules that are not there stay 0
+  constexpr unsigned numbers = 4 * defs::table_modules;
+  const auto is_there = [](unsigned entry) {
+    return entry / defs::table_modules < TestType::SLOTS && entry % defs::table_modules <= TestType::KINDS;
+  };
+  const auto bit = [](unsigned entry) {  // of `valid` and `invalidate`
+    return std::uint64_t{1} << (((entry / defs::table_modules) << defs::kind_bits(TestType::KINDS)) +
+                                entry % defs::table_modules);
+  };
+  std::vector<unsigned> there;
+  for (unsigned e = 0; e < numbers; ++e) {
+    if (is_there(e)) there.push_back(e);
+  }
   for_two_power_ups<Model>([](auto& simulation, Random& random) {
     auto& top = simulation.top();
     struct Entry {
       std::array<std::uint32_t, 2> words{};  // address, size
       bool valid = false;
     };
-    std::array<Entry, 16> entries{};  // those of slots that are not there stay 0
+    std::array<Entry, numbers> entries{};
     top.write = 0;
     top.look = 0;
     top.invalidate = 0;
@@ -28,7 +41,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_table: writes byte by byte, reads, look
       top.write_data = data;
       top.write_bytes = static_cast<CData>(bytes);
       top.write = 1;
-      if (entry >= there) return;
+      if (!is_there(entry)) return;
       if (word == 2) {
         if ((bytes & 1U) != 0) entries[entry].valid = (data & 1U) != 0;
         return;
@@ -39,7 +52,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_table: writes byte by byte, reads, look
       stored = (stored & ~mask) | (data & mask);
     };
     REQUIRE(top.valid == 0);
-    for (unsigned entry = 0; entry < 16; ++entry) {
+    for (unsigned entry = 0; entry < numbers; ++entry) {
       for (unsigned word = 0; word < 2; ++word) {
         write(entry, word, static_cast<std::uint32_t>(random()), 15);
         simulation.step();
@@ -52,7 +65,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_table: writes byte by byte, reads, look
       // what is looked up is read before this clock's write
       if (looking == 0 && chance(random, 30)) {
         top.look = 1;
-        top.look_entry = static_cast<CData>(random() % there);
+        top.look_entry = static_cast<CData>(there[random() % there.size()]);
         looking = 1;
         looked[0] = entries[top.look_entry].words[0];
       } else if (looking == 1) {
@@ -62,13 +75,15 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_table: writes byte by byte, reads, look
       } else {
         looking = 0;
       }
-      top.invalidate = chance(random, 5) ? 1U << random() % there : 0;
-      for (unsigned e = 0; e < there; ++e) {
-        if ((top.invalidate >> e & 1U) != 0) entries[e].valid = false;
+      top.invalidate = 0;
+      if (chance(random, 5)) {
+        const unsigned e = there[random() % there.size()];
+        top.invalidate = static_cast<decltype(top.invalidate)>(bit(e));
+        entries[e].valid = false;
       }
       top.write = 0;
       if (chance(random, 40)) {
-        write(static_cast<unsigned>(random() % 16), static_cast<unsigned>(random() % 3),
+        write(static_cast<unsigned>(random() % numbers), static_cast<unsigned>(random() % 3),
               static_cast<std::uint32_t>(random()), static_cast<unsigned>(random() % 16));
       }
       simulation.step();
@@ -77,8 +92,10 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_table: writes byte by byte, reads, look
         REQUIRE(top.address == looked[0]);
         REQUIRE(top.size == looked[1]);
       }
-      for (unsigned e = 0; e < there; ++e) REQUIRE((top.valid >> e & 1U) == (entries[e].valid ? 1U : 0U));
-      const auto entry = static_cast<unsigned>(random() % 16);
+      std::uint64_t valid = 0;
+      for (const unsigned e : there) valid |= entries[e].valid ? bit(e) : 0;
+      REQUIRE(top.valid == valid);
+      const auto entry = static_cast<unsigned>(random() % numbers);
       const auto word = static_cast<unsigned>(random() % 3);
       top.write = 0;
       top.read_word = static_cast<CData>(4 * entry + word);

@@ -644,7 +644,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: random memories, slots and fau
       bench.memory().set_options(options);
       bench.memory().set_fault({});
       const int slot = static_cast<int>(random()) & (TestType::SLOTS - 1);
-      const auto module_id = static_cast<ModuleId>(random() % 4);
+      const auto module_id = static_cast<ModuleId>(random() % (defs::kinds_max + 1));
       bench.behaviour(slot) = SlotBehaviour{};
       bench.behaviour(slot).drain = static_cast<int>(random() % 50) + 2;
       const std::size_t bytes = (16 + random() % 300) / step * step;

@@ -37,7 +37,7 @@ TEMPLATE_LIST_TEST_CASE(
     simulation.reset();
     // a clock with random pushes: returns after the rising edge
     const auto clock = [&](int fill) {
-      put(static_cast<int>(random() % queues), chance(random, fill));
+      put(static_cast<int>(random() % (1U << defs::kind_w)), chance(random, fill));
       simulation.settle();
       for (int k = 0; k < queues; ++k) {
         const auto& queue = waiting[static_cast<std::size_t>(k)];
@@ -46,7 +46,7 @@ TEMPLATE_LIST_TEST_CASE(
         REQUIRE(sim::get_bits(top.waiting, count_w * k, count_w) == queue.size());
         full += queue.size() == TestType::DEPTH ? 1 : 0;
       }
-      const int kind = top.s_kind;
+      const int kind = top.s_kind < queues ? top.s_kind : 0;  // no such kind: as the illegal one
       REQUIRE((top.s_ready != 0) == (waiting[static_cast<std::size_t>(kind)].size() < TestType::DEPTH));
       if (top.s_valid != 0 && top.s_ready != 0) {
         const int place = static_cast<int>(top.s_place);

@@ -90,13 +90,14 @@ struct SequencerBench {
     return launch;
   }
   bool served_before_ = false;
+  static int vertices(int of_kind) { return of_kind == 2 || of_kind == 3 ? 4 : 3; }
 
  private:
   struct Vertex {
     bool valid = false, first = false, last = false;
     int kind = 0, taker = 0;
   };
-  int vertices() const { return kind >= 2 ? 4 : 3; }
+  int vertices() const { return vertices(kind); }
   std::array<Vertex, 2> read_{};  ///< vertices read 2 clocks ago, 1 clock ago
 };
 
@@ -148,7 +149,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_dispatch_sequencer: a pair every 3 clocks, with q
       int clocks = 0;
       constexpr int pairs = 200;
       for (int n = 0; n < pairs; ++clocks) n += bench.clock() ? 1 : 0;
-      if (kind < Bench::queues) REQUIRE(clocks == pairs * (kind >= 2 ? 4 : 3));
+      if (kind < Bench::queues) REQUIRE(clocks == pairs * Bench::vertices(kind));
       for (int t = 0; t < Bench::takers; ++t) {
         int of_taker = 0;
         for (const auto& of_kind : bench.launched) of_taker += of_kind[static_cast<std::size_t>(t)];

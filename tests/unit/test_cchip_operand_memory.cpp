@@ -20,7 +20,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_operand_memory: what was written at a place is re
     };
     const auto draw = [&] {
       Pair p;
-      p.kind = static_cast<int>(random() % 4);
+      p.kind = static_cast<int>(random() % (defs::kinds_max + 1));
       for (Vertices* v : {&p.a, &p.b}) {
         for (auto& x : *v) x = random_word3(random, w);
       }

@@ -26,7 +26,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_config_memory: every clock like a judge of the
     std::vector<int> modules(4);
     for (int transfer = 0; transfer < 600; ++transfer) {
       const auto fault = static_cast<Fault>(chance(random, 40) ? 0 : random() % faults);
-      const int module = static_cast<int>(random() % 4);
+      const int module = static_cast<int>(random() % (TestType::KINDS + 1));
       const std::size_t length = 16 + 4 * (random() % 12);
       Bytes bytes = spoil(make_payload(TestType::SLOT_ID, module, length, random), fault, TestType::SLOT_ID, random);
       const bool before = model.garbage();

@@ -32,7 +32,8 @@ void check_persona() {
       simulation.steps(4);
       REQUIRE(int{top.rm_id} == Config::RM_ID);
       REQUIRE(top.idle == 1);
-      for (int i = 0; i < 300; ++i) port.push(requests.draw(static_cast<ModuleId>(1 + i % Config::RM_ID)));
+      const std::vector<ModuleId> kinds = kinds_served(id);
+      for (std::size_t i = 0; i < 300; ++i) port.push(requests.draw(kinds[i % kinds.size()]));
       simulation.steps(10);
       std::uint64_t clocks = 0;
       while (port.waiting() != 0 || scoreboard.open() != 0) {
@@ -59,6 +60,10 @@ TEST_CASE("cchip_pr_region: RM_ID 2 is the triangle-quad test", "[unit][cchip_pr
 
 TEST_CASE("cchip_pr_region: RM_ID 3 is the quad-quad test", "[unit][cchip_pr_region]") {
   check_persona<region_quad_quad>();
+}
+
+TEST_CASE("cchip_pr_region: RM_ID 4 is the test of a point and a triangle", "[unit][cchip_pr_region]") {
+  check_persona<region_point_tri>();
 }
 
 TEST_CASE("cchip_pr_region: RM_ID 0 is blank: it never answers", "[unit][cchip_pr_region]") {

@@ -62,7 +62,7 @@ TEST_CASE("cchip_pr_virtual: every output is random from the name of the slot to
   for_two_power_ups([](const sim::SimulationOptions& options) {
     using Config = virtual_8;
     Region<Config> region(options);
-    for (const int module : {3, 0, 2, 1, 1}) {
+    for (const int module : {3, 0, 4, 2, 1, 1}) {
       const auto before = region.top.rm_id;
       const Bytes bytes = make_payload(Config::SLOT_ID, module, 1000, region.random);
       std::vector<std::uint64_t> garbage;
@@ -92,7 +92,7 @@ TEST_CASE(
     "[unit][cchip_pr_virtual]") {
   for_two_power_ups([](const sim::SimulationOptions& options) {
     using Config = virtual_8;
-    for (const int module : {1, 2, 3}) {
+    for (const int module : {1, 2, 3, 4}) {
       for (const bool reset_after : {false, true}) {  // of its own
         Region<Config> region(options);
         region.top.rst = 1;

@@ -11,7 +11,7 @@ using namespace cchip::subsystem;
 
 namespace {
 
-using Configs = std::tuple<OneSlot, TwoSlots, FourSlots>;
+using Configs = std::tuple<OneSlot, TwoSlots, FourSlots, OneSlotPoints>;
 #define CCHIP_CASE(name) \
   TEMPLATE_LIST_TEST_CASE("cchip_primtest_subsystem: " name, "[unit][cchip_primtest_subsystem]", Configs)
 
@@ -35,7 +35,7 @@ struct System : SubsystemBench<Config> {
     this->write(regs::memory_limit::offset, 100);
   }
   void push_some(int pairs) {
-    for (int i = 0; i < pairs; ++i) this->push(1 + static_cast<int>(this->random()() % 3));
+    for (int i = 0; i < pairs; ++i) this->push(1 + static_cast<int>(this->random()() % Config::KINDS));
   }
   /// A swap by software.
   SwapReport swap(int slot, int module_id, bool force = false) {
@@ -57,18 +57,25 @@ struct System : SubsystemBench<Config> {
     this->sink.set_pattern(sim::Pattern::always());
     this->set_up();
     const std::uint64_t refused = this->account.refused;
-    for (int kind = 1; kind < 4; ++kind) {
+    for (int kind = 1; kind <= Config::KINDS; ++kind) {
       for (int i = 0; i < 3; ++i) this->push(kind);
     }
     this->finish();
     REQUIRE(this->account.refused == refused);
   }
   bool irq() { return this->top().irq != 0; }
-  static constexpr std::uint32_t all_entries = (1U << (4 * Config::SLOTS)) - 1;
+  static constexpr std::uint32_t all_entries() {
+    std::uint32_t all = 0;
+    for (int slot = 0; slot < Config::SLOTS; ++slot) {
+      all |= ((2U << Config::KINDS) - 1) << (defs::table_modules * slot);
+    }
+    return all;
+  }
   /// Bit per entry: its bitstream is announced.
   std::uint32_t announced() {
     std::uint32_t valid = 0;
-    for (std::uint32_t e = 0; e < 4 * Config::SLOTS; ++e) valid |= this->read(regs::bitstream_valid::offset(e)) << e;
+    for (std::uint32_t e = 0; e < defs::table_modules * Config::SLOTS; ++e)
+      valid |= this->read(regs::bitstream_valid::offset(e)) << e;
     return valid;
   }
 };
@@ -80,13 +87,14 @@ CCHIP_CASE("mixed kinds by real swaps, counters and interrupt") {
     System<TestType> s(options, true);
     REQUIRE(s.read(regs::id::offset) == regs::id::value_reset);
     REQUIRE(s.read(regs::capabilities::offset) ==
-            static_cast<std::uint32_t>(TestType::COORD_W << 16 | TestType::CFG_W << 8 | TestType::SLOTS));
+            static_cast<std::uint32_t>(TestType::KINDS << 24 | TestType::COORD_W << 16 | TestType::CFG_W << 8 |
+                                       TestType::SLOTS));
     REQUIRE(s.read(regs::queue_depth::offset) == TestType::QUEUE_DEPTH);
-    std::array<std::uint32_t, 4> sent{};
+    std::array<std::uint32_t, 5> sent{};
     for (int round = 0; round < 4; ++round) {
       s.only_triangles();
       for (int i = 0; i < 100; ++i) {
-        const int kind = static_cast<int>(s.random()() % 4);
+        const int kind = static_cast<int>(s.random()() % (TestType::KINDS + 1));
         ++sent[static_cast<std::size_t>(kind)];
         s.push(kind);
       }
@@ -96,7 +104,7 @@ CCHIP_CASE("mixed kinds by real swaps, counters and interrupt") {
     REQUIRE(s.account.refused == 0);
     REQUIRE(s.account.open == 0);
     std::uint32_t counted = 0;
-    for (std::uint32_t m = 0; m < 4; ++m) {
+    for (std::uint32_t m = 0; m < 5; ++m) {
       counted += s.read(regs::pairs::offset(m));
       REQUIRE(s.read(regs::pairs::offset(m) + 4) == 0);
     }
@@ -104,6 +112,7 @@ CCHIP_CASE("mixed kinds by real swaps, counters and interrupt") {
     REQUIRE(s.read(regs::pairs::offset(0)) == sent[0]);
     REQUIRE(s.read(regs::pairs::offset(1)) <= sent[1]);
     REQUIRE(s.read(regs::pairs::offset(3)) >= sent[3]);
+    REQUIRE(s.read(regs::pairs::offset(4)) == sent[4]);
     for (const SwapReport& r : s.reports) {
       CAPTURE(r.clock, r.slot, r.module_id, static_cast<int>(r.code), r.lost);
       REQUIRE(r.code == SwapCode::ok);
@@ -162,7 +171,7 @@ CCHIP_CASE("spoilt bitstreams: code, slot at work or decoupled, valid bit gone, 
         const int before = s.module_in(slot);
         const int module_id = before == 2 ? 3 : 2;
         s.push(before == 0 ? 1 : before);
-        s.provide(slot, module_id, spoilt_bitstream(how, slot, module_id, 48, s.random()));
+        s.provide(slot, module_id, spoilt_bitstream(how, slot, module_id, 48, s.random(), TestType::KINDS));
         s.settle_bus();
         s.write(regs::interrupt_status::offset, 0x1F);
         const SwapReport r = s.swap(slot, module_id);
@@ -238,7 +247,7 @@ CCHIP_CASE("an abort while a slow memory brings the header: the bitstream stays,
       REQUIRE(s.count(SwapCode::aborted) == 1);
       REQUIRE(s.account.pairs == 6);
       REQUIRE(s.account.refused == 0);
-      REQUIRE(s.announced() == s.all_entries);
+      REQUIRE(s.announced() == s.all_entries());
       s.works();
     }
   });
@@ -258,7 +267,7 @@ CCHIP_CASE("a read that comes too late costs time, not the bitstreams: header ne
     s.finish();
     REQUIRE(s.account.pairs == 12);
     REQUIRE(s.account.refused == 0);
-    REQUIRE(s.announced() == s.all_entries);
+    REQUIRE(s.announced() == s.all_entries());
     s.works();
   });
 }
@@ -267,7 +276,7 @@ CCHIP_CASE("faults on the way leave the entry, the scheduler tries again, later 
   with_wave([](const sim::SimulationOptions& options) {
     System<TestType> s(options, true);
     s.only_triangles();
-    std::uint32_t entries = s.all_entries;
+    std::uint32_t entries = s.all_entries();
     for (int slot = 0; slot < TestType::SLOTS; ++slot) {  // one entry alone brings the kind
       for (const int module_id : {2, 3}) {
         if (slot == 0 && module_id == 2) continue;
@@ -357,7 +366,7 @@ CCHIP_CASE("busy, the same module again, no such slot or module") {
     REQUIRE(s.swap(0, 2).code == SwapCode::same);
     REQUIRE(s.read(regs::bitstream_valid::offset(2)) == 1);
     REQUIRE(s.swap(TestType::SLOTS, 2).code == SwapCode::request);
-    REQUIRE(s.swap(0, 4).code == SwapCode::request);
+    REQUIRE(s.swap(0, TestType::KINDS + 1).code == SwapCode::request);
     REQUIRE(s.read(regs::swaps::offset) == 1);
     s.works();
   });
@@ -408,7 +417,7 @@ CCHIP_CASE("a receiver that is gone does not stop a swap: the answers wait outsi
     REQUIRE(r.code == SwapCode::ok);
     REQUIRE(r.lost == 0);
     s.works();
-    REQUIRE(s.account.pairs == 12 + 9);
+    REQUIRE(s.account.pairs == 12 + 3 * TestType::KINDS);
     REQUIRE(s.account.open == 0);
   });
 }
@@ -444,7 +453,7 @@ CCHIP_CASE("pairs inside for longer than the limit: the slot continues, by force
       REQUIRE(s.account.given_up == r.lost);
       REQUIRE(s.account.open == r.lost);
       REQUIRE(s.account.refused == 0);
-      REQUIRE(s.account.pairs == sent + 9);
+      REQUIRE(s.account.pairs == sent + 3 * TestType::KINDS);
     }
   });
 }
@@ -456,7 +465,7 @@ CCHIP_CASE("a test of quads answers for every kind") {
     for (int slot = 1; slot < TestType::SLOTS; ++slot) REQUIRE(s.swap(slot, 0).code == SwapCode::ok);
     const std::size_t swaps = s.reports.size();
     s.write(regs::control::offset, regs::control::scheduler_enable_mask);
-    s.push_some(200);
+    for (int i = 0; i < 200; ++i) s.push(1 + i % 3);  // a test of points is another matter
     s.finish();
     REQUIRE(s.account.pairs == 200);
     REQUIRE(s.account.refused + s.account.open == 0);
@@ -475,7 +484,7 @@ CCHIP_CASE("blank slots asked to work: pairs wait for a bitstream, or are answer
     s.steps(2000);
     REQUIRE(s.account.pairs == 0);  // the scheduler is off, bitstreams are loaded
     for (int slot = 0; slot < TestType::SLOTS; ++slot) {
-      for (int m = 1; m < 4; ++m) s.write(regs::bitstream_valid::offset(s.entry(slot, m)), 0);
+      for (int m = 1; m <= TestType::KINDS; ++m) s.write(regs::bitstream_valid::offset(s.entry(slot, m)), 0);
     }
     s.finish();
     REQUIRE(s.account.pairs == 10);
@@ -585,5 +594,67 @@ CCHIP_CASE("reset at every clock of a swap") {
     }
     REQUIRE(length > 60);
     REQUIRE(cut_off > 10);
+  });
+}
+
+CCHIP_CASE("a slot exchanges all its modules, each for each other, and every kind is tested") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<TestType> s(options);
+    for (int from = 0; from <= TestType::KINDS; ++from) {
+      for (int to = 0; to <= TestType::KINDS; ++to) {
+        if (from == to) continue;
+        if (s.module_in(0) != from) REQUIRE(s.swap(0, from).code == SwapCode::ok);
+        REQUIRE(s.swap(0, to).code == SwapCode::ok);
+        if (to == 0) continue;
+        std::uint64_t pushed = s.account.pairs;
+        for (int kind = 1; kind <= TestType::KINDS; ++kind) {
+          for (int i = 0; i < 4 && defs::rm_serves(to, kind) != 0; ++i, ++pushed) s.push(kind);
+        }
+        s.finish();
+        REQUIRE(s.account.pairs == pushed);
+        REQUIRE(s.account.refused + s.account.open == 0);
+      }
+    }
+    s.works();
+  });
+}
+
+TEST_CASE("cchip_primtest_subsystem: triangles and points share a slot, by batches, and neither waits for ever",
+          "[unit][cchip_primtest_subsystem]") {
+  with_wave([](const sim::SimulationOptions& options) {
+    System<OneSlotPoints> s(options, true);
+    constexpr std::uint32_t age = 3000;
+    s.write(regs::minimum_batch::offset, 1);
+    s.write(regs::maximum_age::offset, age);
+    s.only_triangles();
+    // as many of both: a kind goes only when no more of it wait, so every swap is worth a queue of pairs
+    const std::size_t before = s.reports.size();
+    std::uint64_t pushed = 0;
+    for (; pushed < 1000; ++pushed) s.push(pushed % 2 == 0 ? 1 : 4);
+    s.finish();
+    const std::size_t swaps = s.reports.size() - before;
+    REQUIRE(swaps >= 4);
+    REQUIRE(pushed / swaps >= 16);
+    for (std::size_t i = before; i < s.reports.size(); ++i) REQUIRE(s.reports[i].code == SwapCode::ok);
+    // triangles without end and one point: it gets the slot after its age, and they get it back
+    if (s.module_in(0) != 1) REQUIRE(s.swap(0, 1).code == SwapCode::ok);
+    s.write(regs::minimum_batch::offset, 1);
+    s.push(4);
+    ++pushed;
+    const std::uint64_t start = s.simulation.total_clocks();
+    const std::size_t then = s.reports.size();
+    while (s.simulation.total_clocks() < start + 3 * age && s.reports.size() < then + 2) {
+      for (; s.driver.waiting() < 4; ++pushed) s.push(1);
+      s.step();
+      if (s.simulation.total_clocks() < start + age) REQUIRE(s.module_in(0) == 1);
+    }
+    REQUIRE(s.reports.size() == then + 2);
+    REQUIRE(s.reports[then].module_id == 4);
+    REQUIRE(s.reports[then + 1].module_id == 1);
+    REQUIRE(s.reports[then + 1].clock - s.reports[then].clock < 1500);  // the point was the only one
+    s.finish();
+    REQUIRE(s.account.refused + s.account.open == 0);
+    REQUIRE(s.account.pairs == pushed);
+    REQUIRE(s.read(regs::pairs::offset(1)) + s.read(regs::pairs::offset(4)) == pushed);
   });
 }

@@ -37,7 +37,7 @@ class LedgerBench {
       top.s_kind = static_cast<CData>(granted_.kind);
     } else {
       top.s_tag = static_cast<SData>(random());
-      top.s_kind = static_cast<CData>(random() & 3U);
+      top.s_kind = static_cast<CData>(random() & 7U);
     }
     // a result of a pair that has been inside for a while, or one without a request
     top.s_result_valid = 0;
@@ -69,7 +69,7 @@ class LedgerBench {
     }
     if (top.m_valid != 0 && top.m_ready != 0) take();
     if (grant) {
-      granted_ = {static_cast<std::uint16_t>(random()), static_cast<int>(random() % 3) + 1};
+      granted_ = {static_cast<std::uint16_t>(random()), static_cast<int>(random() % 4) + 1};
       ++granted;
     }
     if (answered >= 0) {

@@ -13,15 +13,16 @@ namespace {
 /// What the datasheet says.
 class RetryModel {
  public:
-  explicit RetryModel(int entries) : entries_(entries) {}
+  RetryModel(int slots, int kinds) : slots_(slots), kinds_(kinds) {}
   unsigned resting() const { return left_ > 0 ? failed_ : 0; }
   unsigned hopeless() const { return level_ >= defs::retry_doublings - 1 ? resting() : 0; }
   void clock(const std::optional<SwapReport>& report, unsigned valid) {
     const int code = report ? static_cast<int>(report->code) : 0;
     const bool put_off = report && defs::swap_put_off(code) != 0;
-    const int number = report ? 4 * report->slot + report->module_id : 0;
-    const bool exists = report && report->module_id < 4 && number < entries_;
-    const unsigned entry = exists ? 1U << number : 0U;
+    // the entries of a slot are a power of two, so that some have no module
+    const int bits = defs::kind_bits(kinds_);
+    const bool exists = report && report->module_id < 1 << bits && report->slot < slots_;
+    const unsigned entry = exists ? 1U << ((report->slot << bits) + report->module_id) : 0U;
     const bool forgotten = failed_ == 0;
     if (put_off) {
       left_ = std::uint64_t{defs::retry_clocks} << level_;
@@ -36,7 +37,8 @@ class RetryModel {
   int level() const { return level_; }
 
  private:
-  int entries_;
+  int slots_;
+  int kinds_;
   unsigned failed_ = 0;
   std::uint64_t left_ = 0;
   int level_ = 0;
@@ -46,8 +48,8 @@ template <class Config, class Body>
 void with_model(Body&& body) {
   for_two_power_ups<typename Config::Model>([&](auto& simulation, Random& random) {
     auto& top = simulation.top();
-    constexpr int entries = 4 * Config::SLOTS;
-    RetryModel model(entries);
+    constexpr int entries = Config::SLOTS << defs::kind_bits(Config::KINDS);
+    RetryModel model(Config::SLOTS, Config::KINDS);
     top.report_valid = 0;
     sim::put_swap_report(top.report_data, SwapReport{});
     top.valid = (1U << entries) - 1;
@@ -75,13 +77,14 @@ TEMPLATE_LIST_TEST_CASE("cchip_swap_retry: entries that rest after random report
       std::optional<SwapReport> report;
       if (random() % 300 == 0) {
         const bool well = chance(random, 8);
-        report = SwapReport{static_cast<int>(random() % (TestType::SLOTS + 1)), static_cast<int>(random() % 5),
+        report = SwapReport{static_cast<int>(random() % (TestType::SLOTS + 1)), static_cast<int>(random() % 9),
                             well ? SwapCode::ok : static_cast<SwapCode>(1 + random() % 15), 3};
         if (random() % 8 == 0) report->slot += 128;
       }
-      const std::uint64_t all = (1U << (4 * TestType::SLOTS)) - 1;
-      if (random() % 20000 == 0) sim::set_bits(top.valid, 0, 4 * TestType::SLOTS, random() & all);
-      if (random() % 5000 == 0) sim::set_bits(top.valid, 0, 4 * TestType::SLOTS, all);
+      constexpr int entries = TestType::SLOTS << defs::kind_bits(TestType::KINDS);
+      const std::uint64_t all = (std::uint64_t{1} << entries) - 1;
+      if (random() % 20000 == 0) sim::set_bits(top.valid, 0, entries, random() & all);
+      if (random() % 5000 == 0) sim::set_bits(top.valid, 0, entries, all);
       step(report);
       highest = std::max(highest, model.level());
       rested += model.resting() != 0 ? 1 : 0;

@@ -17,7 +17,9 @@ template <class Config>
 class SchedulerBench {
  public:
   static constexpr std::size_t slots = Config::SLOTS;
-  static constexpr std::size_t entries = 4 * slots;
+  static constexpr int kinds = Config::KINDS;
+  static constexpr std::size_t stride = std::size_t{1} << defs::kind_bits(kinds);  ///< entries of a slot
+  static constexpr std::size_t entries = stride * slots;
 
   explicit SchedulerBench(const sim::SimulationOptions& options)
       : simulation(long_run(options)),
@@ -48,19 +50,33 @@ class SchedulerBench {
   bool enable = false;
   bool ready = true;
   std::uint32_t batch = 1, age = 1000;
-  unsigned valid = (1U << entries) - 1;
+  unsigned valid = all();
   unsigned resting = 0;
   unsigned hopeless = 0;
   std::array<std::uint32_t, entries> address{};
-  std::array<int, 4> waiting{};       // by kind
-  std::array<int, slots> modules{};   // 0: none
-  unsigned full = 0;                  // bit kind - 1
-  std::vector<SwapRequest> requests;  // accepted
+  std::array<int, defs::kinds_max + 1> waiting{};  // by kind
+  std::array<int, slots> modules{};                // 0: none
+  unsigned full = 0;                               // bit kind - 1
+  std::vector<SwapRequest> requests;               // accepted
   std::vector<SwapReport> told;
   unsigned cleared = 0;  // entries invalidated so far
   unsigned no_provider = 0;
   std::function<void()> on_clock = [] {};
   sim::Simulation<typename Config::Model> simulation;
+
+  /// All bitstreams that there can be.
+  static unsigned all() {
+    unsigned bits = 0;
+    for (std::size_t s = 0; s < slots; ++s) bits |= ((2U << kinds) - 1) << (stride * s);
+    return bits;
+  }
+  /// Those of these modules, bit m for module m, of every slot.
+  static unsigned of_modules(unsigned modules) {
+    unsigned bits = 0;
+    for (std::size_t s = 0; s < slots; ++s) bits |= modules << (stride * s);
+    return bits;
+  }
+  static bool serves(int module_id, int kind) { return defs::rm_serves(module_id, kind) != 0; }
 
  private:
   static sim::SimulationOptions long_run(sim::SimulationOptions options) {
@@ -81,12 +97,13 @@ class SchedulerBench {
       top.table_address = address.at(entry_);
       top.table_size = address.at(entry_) + 7;
     }
-    for (int k = 1; k < 4; ++k) {
+    for (int k = 1; k <= kinds; ++k) {
       sim::set_bits(top.waiting, Config::COUNT_W * (k - 1), Config::COUNT_W,
                     static_cast<std::uint64_t>(waiting[static_cast<std::size_t>(k)]));
     }
     for (std::size_t s = 0; s < slots; ++s) {
-      sim::set_bits(top.slot_module, static_cast<int>(2 * s), 2, static_cast<std::uint64_t>(modules[s]));
+      sim::set_bits(top.slot_module, defs::kind_w * static_cast<int>(s), defs::kind_w,
+                    static_cast<std::uint64_t>(modules[s]));
     }
     top.full = static_cast<CData>(full);
     top.m_swap_ready = ready;
@@ -104,7 +121,7 @@ class SchedulerBench {
     auto& top = simulation.top();
     if (now.in_reset) return;
     if (top.table_look != 0) {
-      entry_ = top.table_entry;
+      entry_ = (static_cast<std::size_t>(top.table_entry >> 3U) * stride) + (top.table_entry & 7U);
       looks_ = 2;
     }
     if (top.m_swap_valid != 0 && ready) requests.push_back(sim::get_swap_request(top.m_swap_data));
@@ -139,23 +156,25 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
     Random random(options.seed);
     SchedulerBench<TestType> bench(options);
     constexpr std::size_t slots = TestType::SLOTS;
-    int chosen = 0, none = 0, old = 0, full = 0, larger = 0;
+    int chosen = 0, none = 0, old = 0, full = 0, larger = 0, kept = 0;
     for (int picture = 0; picture < 1500; ++picture) {
       bench.enable = false;
       bench.waiting.fill(0);
       bench.full = 0;
       bench.batch = chance(random, 30) ? 0x10000 : static_cast<std::uint32_t>(random() % 20);
       bench.age = chance(random, 50) ? 0x7FFFFFFF : static_cast<std::uint32_t>(random() % 250);
-      bench.valid = static_cast<unsigned>(random() & ((1U << (4 * slots)) - 1));
-      for (int& m : bench.modules) m = static_cast<int>(random() % (chance(random, 30) ? 4 : 2));
+      bench.valid = static_cast<unsigned>(random()) & bench.all();
+      for (int& m : bench.modules) m = static_cast<int>(random() % (chance(random, 40) ? TestType::KINDS + 1U : 2U));
       bench.reset();
       std::optional<std::uint64_t> since;  // pairs of an unserved kind wait
-      const int largest = *std::max_element(bench.modules.begin(), bench.modules.end());
-      for (int kind = 1; kind < 4; ++kind) {
+      const auto is_served = [&](int kind) {
+        return std::any_of(bench.modules.begin(), bench.modules.end(), [&](int m) { return bench.serves(m, kind); });
+      };
+      for (int kind = 1; kind <= TestType::KINDS; ++kind) {
         if (chance(random, 50)) continue;
         bench.waiting[static_cast<std::size_t>(kind)] = 1 + static_cast<int>(random() % 40);
         if (chance(random, 30)) bench.full |= 1U << (kind - 1);
-        if (kind > largest && !since) since = bench.simulation.clock();
+        if (!is_served(kind) && !since) since = bench.simulation.clock();
         bench.steps(random() % 150);
       }
       bench.steps(6);  // until it has seen all of this
@@ -164,16 +183,31 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
       const bool too_old = since && its_age >= bench.age;
       // what the rules allow: for each kind that is due, one slot and module
       std::vector<std::pair<int, int>> legal;
-      for (int kind = 1; kind < 4; ++kind) {
+      // would the exchange of slot s for module m take a kind of which pairs wait from its last slot?
+      const auto is_needed = [&](std::size_t s, int m) {
+        for (int kind = 1; kind <= TestType::KINDS; ++kind) {
+          if (bench.waiting[static_cast<std::size_t>(kind)] == 0 || !bench.serves(bench.modules[s], kind)) continue;
+          bool another = bench.serves(m, kind);
+          for (std::size_t other = 0; other < slots; ++other) {
+            another = another || (other != s && bench.serves(bench.modules[other], kind));
+          }
+          if (!another) return true;
+        }
+        return false;
+      };
+      for (int kind = 1; kind <= TestType::KINDS; ++kind) {
         const int waits = bench.waiting[static_cast<std::size_t>(kind)];
         const bool is_full = (bench.full >> (kind - 1) & 1U) != 0;
-        if (kind <= largest || waits == 0) continue;
+        if (is_served(kind) || waits == 0) continue;
         if (!too_old && !is_full && waits < static_cast<int>(bench.batch)) continue;
         std::vector<std::tuple<int, int, int>> order;  // module, what the slot holds, slot
         for (std::size_t s = 0; s < slots; ++s) {
-          for (int m = kind; m < 4; ++m) {
-            if ((bench.valid >> (4 * s + static_cast<std::size_t>(m)) & 1U) != 0)
-              order.emplace_back(m, bench.modules[s], static_cast<int>(s));
+          for (int m = 1; m <= TestType::KINDS; ++m) {
+            if (!bench.serves(m, kind)) continue;
+            if ((bench.valid >> (bench.stride * s + static_cast<std::size_t>(m)) & 1U) == 0) continue;
+            const bool keeps = !too_old && is_needed(s, m);
+            kept += keeps ? 1 : 0;
+            if (!keeps) order.emplace_back(m, bench.modules[s], static_cast<int>(s));
           }
         }
         if (order.empty()) continue;
@@ -184,7 +218,8 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
         larger += std::get<0>(best) > kind ? 1 : 0;
       }
       bench.enable = true;
-      bench.steps(3 * (4 + 9 * slots + 1) + 10);
+      constexpr std::size_t search = TestType::KINDS > 3 ? 15 : 9;
+      bench.steps(TestType::KINDS * (4 + search * slots + 1) + 10);
       INFO("picture " << picture);
       REQUIRE(bench.requests.size() == (legal.empty() ? 0U : 1U));
       none += legal.empty() ? 1 : 0;
@@ -192,8 +227,9 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
       ++chosen;
       const SwapRequest& got = bench.requests.front();
       REQUIRE(std::count(legal.begin(), legal.end(), std::pair(got.slot, got.module_id)) != 0);
-      REQUIRE(got.address ==
-              bench.address[4 * static_cast<std::size_t>(got.slot) + static_cast<std::size_t>(got.module_id)]);
+      REQUIRE(
+          got.address ==
+          bench.address[bench.stride * static_cast<std::size_t>(got.slot) + static_cast<std::size_t>(got.module_id)]);
       REQUIRE(got.size == got.address + 7);
       REQUIRE(!got.force);
     }
@@ -202,6 +238,7 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
     REQUIRE(old > 20);
     REQUIRE(full > 10);
     REQUIRE(larger > 20);
+    REQUIRE((kept > 20) == (TestType::KINDS > 3));
   });
 }
 
@@ -210,7 +247,7 @@ CCHIP_CASE("one swap at a time, a rejected bitstream is forgotten, an interrupte
     for (unsigned code = 0; code < 16; ++code) {
       SchedulerBench<TestType> bench(options);
       bench.modules.fill(1);
-      bench.waiting = {0, 0, 5, 0};
+      bench.waiting = {0, 0, 5};
       bench.enable = true;
       bench.steps(60);
       REQUIRE(bench.requests.size() == 1);
@@ -229,7 +266,7 @@ CCHIP_CASE("one swap at a time, a rejected bitstream is forgotten, an interrupte
                           c == SwapCode::module || c == SwapCode::length || c == SwapCode::crc ||
                           c == SwapCode::wrong_module;  // the others say nothing about the bitstream
       REQUIRE((defs::swap_spoilt(static_cast<int>(code)) != 0) == spoilt);
-      REQUIRE(bench.cleared == (spoilt ? 1U << (4 * slot + 2) : 0));
+      REQUIRE(bench.cleared == (spoilt ? 1U << (bench.stride * static_cast<std::size_t>(slot) + 2) : 0));
     }
   });
 }
@@ -237,9 +274,9 @@ CCHIP_CASE("one swap at a time, a rejected bitstream is forgotten, an interrupte
 CCHIP_CASE("an entry that rests is not chosen, but a command takes it, and its kind keeps its provider") {
   with_bench<TestType>([](SchedulerBench<TestType>& bench) {
     bench.modules.fill(1);
-    bench.waiting = {0, 0, 5, 0};
+    bench.waiting = {0, 0, 5};
     bench.enable = true;
-    for (std::size_t s = 0; s < TestType::SLOTS; ++s) bench.resting |= 12U << (4 * s);  // kinds 2 and 3
+    bench.resting = bench.of_modules(12);  // kinds 2 and 3
     bench.steps(2000);
     REQUIRE(bench.requests.empty());
     REQUIRE(bench.no_provider == 0);
@@ -249,8 +286,7 @@ CCHIP_CASE("an entry that rests is not chosen, but a command takes it, and its k
     bench.report({0, 2, SwapCode::memory, 0});
     bench.steps(200);
     REQUIRE(bench.requests.size() == 1);
-    for (std::size_t s = 0; s < TestType::SLOTS; ++s)
-      bench.resting &= ~(4U << (4 * s));  // those of module 2 rest no more
+    bench.resting &= ~bench.of_modules(4);  // those of module 2 rest no more
     bench.steps(60);
     REQUIRE(bench.requests.size() == 2);
     REQUIRE(bench.requests[1].module_id == 2);
@@ -260,9 +296,9 @@ CCHIP_CASE("an entry that rests is not chosen, but a command takes it, and its k
 CCHIP_CASE("a kind whose bitstreams are hopeless has no provider until one is tried again") {
   with_bench<TestType>([](SchedulerBench<TestType>& bench) {
     bench.modules.fill(1);
-    bench.waiting = {0, 0, 5, 0};
+    bench.waiting = {0, 0, 5};
     bench.enable = true;
-    for (std::size_t s = 0; s < TestType::SLOTS; ++s) bench.resting |= 12U << (4 * s);  // kinds 2 and 3
+    bench.resting = bench.of_modules(12);  // kinds 2 and 3
     bench.steps(100);
     REQUIRE(bench.no_provider == 0);
     const unsigned one = 4U;  // module 2 of slot 0
@@ -293,7 +329,7 @@ CCHIP_CASE("commands: passed on, busy, no such bitstream") {
     REQUIRE(bench.requests.size() == 1);
     REQUIRE(bench.requests[0].slot == slots - 1);
     REQUIRE(bench.requests[0].module_id == 3);
-    REQUIRE(bench.requests[0].address == bench.address[4 * (slots - 1) + 3]);
+    REQUIRE(bench.requests[0].address == bench.address[bench.stride * (slots - 1) + 3]);
     REQUIRE(bench.requests[0].force);
     bench.command(0, 2, false);
     bench.steps(3);
@@ -310,7 +346,7 @@ CCHIP_CASE("commands: passed on, busy, no such bitstream") {
     REQUIRE(bench.told[2].code == SwapCode::busy);
     bench.command(slots, 1, false);  // no such slot
     bench.steps(3);
-    bench.command(0, 4, false);  // no such module
+    bench.command(0, TestType::KINDS + 1, false);  // no such module
     bench.steps(3);
     bench.valid &= ~2U;
     bench.command(0, 1, false);  // no bitstream
@@ -332,12 +368,12 @@ CCHIP_CASE("a kind has no provider after 16 clocks without slot, bitstream and s
     bench.ready = false;
     bench.steps(40);
     REQUIRE(bench.no_provider == 0);
-    for (std::size_t s = 0; s < TestType::SLOTS; ++s) bench.valid &= ~(1U << (4 * s + 3));
+    bench.valid &= ~bench.of_modules(8);
     bench.steps(15);
     REQUIRE(bench.no_provider == 0);
     bench.steps(3);
     REQUIRE(bench.no_provider == 4);
-    for (std::size_t s = 0; s < TestType::SLOTS; ++s) bench.valid &= ~(1U << (4 * s + 2));
+    bench.valid &= ~bench.of_modules(4);
     bench.steps(20);
     REQUIRE(bench.no_provider == 6);
     bench.valid |= 8;  // the largest module serves both
@@ -389,4 +425,32 @@ CCHIP_CASE("a swap never takes a kind away: from blank slots to the largest modu
       REQUIRE(swaps <= 3);
     }
   });
+}
+
+CCHIP_CASE("points take the slot that alone serves waiting triangles after the age only, a free one at once") {
+  if constexpr (TestType::KINDS > 3) {
+    with_bench<TestType>([](SchedulerBench<TestType>& bench) {
+      bench.modules.fill(0);
+      bench.modules[0] = 1;
+      bench.valid = 16;  // points, of slot 0 alone
+      bench.batch = 1;
+      bench.age = 400;
+      bench.waiting = {0, 7, 0, 0, 3};
+      bench.enable = true;
+      bench.steps(380);
+      REQUIRE(bench.requests.empty());
+      bench.steps(120);
+      REQUIRE(bench.requests.size() == 1);
+      REQUIRE(bench.requests[0].module_id == 4);
+      bench.modules[0] = 4;
+      bench.report({0, 4, SwapCode::ok, 0});
+      bench.valid = bench.all() & 31U;
+      bench.steps(300);
+      REQUIRE(bench.requests.size() == 1);  // points wait for it now
+      bench.waiting[4] = 0;
+      bench.steps(60);
+      REQUIRE(bench.requests.size() == 2);
+      REQUIRE(bench.requests[1].module_id == 1);
+    });
+  }
 }

@@ -6,30 +6,46 @@
 #define CCHIP_TESTS_UNIT_VERTEX_PORT_HPP
 
 #include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/model/point_tri.hpp>
 #include <cchip/internal/model/programme.hpp>
 #include <cchip/sim/scoreboard.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <deque>
 #include <map>
 
+#include "../ref/point_triangle_source.hpp"
 #include "bench.hpp"
 
 namespace cchip::test {
 
+/// The kinds that this module serves.
+inline std::vector<ModuleId> kinds_served(ModuleId id) {
+  std::vector<ModuleId> kinds;
+  for (int kind = 1; kind <= defs::kinds_max; ++kind) {
+    if (defs::rm_serves(static_cast<int>(id), kind) != 0) kinds.push_back(static_cast<ModuleId>(kind));
+  }
+  return kinds;
+}
+
 /// Pairs for one of the modules, every class, both programmes, tags that do not repeat.
 class SlotRequests {
  public:
-  SlotRequests(int coord_w, std::uint64_t seed) : coord_w_(coord_w), random_(seed) {
+  SlotRequests(int coord_w, std::uint64_t seed) : coord_w_(coord_w), random_(seed), points_(coord_w, seed) {
     for (const ModuleId id : {ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad}) {
       sources_.emplace_back(coord_w, seed + static_cast<std::uint64_t>(id), kinds_of(id)[0], kinds_of(id)[1]);
     }
   }
 
+  /// A pair of the kind of this module.
   PairRequest draw(ModuleId id) {
-    stimulus::PairSource& source = sources_.at(static_cast<std::size_t>(id) - 1);
-    const auto classes = stimulus::classes_of(kinds_of(id)[0], kinds_of(id)[1]);
     PairRequest request;
-    request.pair = source.draw(classes.at(source.draw_class()).value);
+    if (id == ModuleId::point_tri) {
+      request.pair = draw_point();
+    } else {
+      stimulus::PairSource& source = sources_.at(static_cast<std::size_t>(id) - 1);
+      const auto classes = stimulus::classes_of(kinds_of(id)[0], kinds_of(id)[1]);
+      request.pair = source.draw(classes.at(source.draw_class()).value);
+    }
     request.mode = static_cast<PairMode>(random_() & 1);
     request.tag = tag_++;
     return request;
@@ -37,6 +53,7 @@ class SlotRequests {
   /// The answer of the functional model of this module, which takes triangles as quads if it tests quads; the exact
   /// oracle confirms it.
   PairResult answer(const PairRequest& request, ModuleId id) const {
+    if (id == ModuleId::point_tri) return point_answer(request);
     GridPair pair = request.pair;
     const auto widen = [](GridPrimitive& p, Kind kind) {
       if (kind == Kind::quad && p.kind == Kind::tri) p.v[3] = p.v[2];
@@ -53,8 +70,33 @@ class SlotRequests {
   }
 
  private:
+  GridPair draw_point() {
+    const cchip_test::PointTriangle drawn = points_.draw();
+    const auto to_vec = [](const std::array<std::int64_t, 3>& v) {
+      return Vec3i(static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]));
+    };
+    GridPair pair;
+    pair.a = model::point_operand(to_vec(drawn.point), static_cast<int>(drawn.radius), coord_w_);
+    for (std::size_t i = 0; i < 3; ++i) pair.b.v[i] = to_vec(drawn.triangle[i]);
+    return pair;
+  }
+  PairResult point_answer(const PairRequest& request) const {
+    const GridPair& pair = request.pair;
+    cchip_test::IntTriangle triangle;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3i v = pair.b.v[i] - pair.a.v[0];
+      triangle[i] = {v.x(), v.y(), v.z()};
+    }
+    const auto square = cchip_test::nearest<cchip_test::Int256>(triangle).square;
+    const PairResult found = model::point_tri_answer(request, coord_w_);
+    sim::require(found.grid == (compare(square, model::radius_of(pair.a, coord_w_)) <= 0),
+                 "the model contradicts the exact distance, tag " + std::to_string(request.tag));
+    return found;
+  }
+
   int coord_w_;
   Random random_;
+  cchip_test::PointTriangleSource points_;
   std::vector<stimulus::PairSource> sources_;
   std::uint16_t tag_ = 1;
 };

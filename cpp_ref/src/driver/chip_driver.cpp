@@ -18,7 +18,7 @@ namespace regs = chip_registers;
 constexpr std::uint64_t line_bytes = 64;
 constexpr std::uint64_t record_bytes = 16;
 constexpr std::uint64_t memory_end = std::uint64_t{1} << 38U;
-constexpr std::uint32_t map_major = 1;
+constexpr std::uint32_t map_major = 2;
 // proceed() from one look at the status to the next
 constexpr std::uint64_t status_every = 4096;
 // and to the next attempt at a swap
@@ -166,7 +166,7 @@ class ChipDriver final : public QueryPort {
                                 : make_bitstream(place, id, make_payload(place, id, options_.payload_bytes, 1));
         constexpr std::uint64_t align = std::max<std::uint64_t>(defs::bitstream_align, line_bytes);
         at = (at + align - 1) / align * align;
-        bitstreams_.push_back({4 * slot + static_cast<unsigned>(id), at, bytes});
+        bitstreams_.push_back({unsigned{defs::table_modules} * slot + static_cast<unsigned>(id), at, bytes});
         at = (at + bytes.size() + align - 1) / align * align;
       }
     }

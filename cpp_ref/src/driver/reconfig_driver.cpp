@@ -78,7 +78,7 @@ class Run {
       for (unsigned m = 1; m < 4; ++m) {
         const auto id = static_cast<ModuleId>(m);
         const auto place = static_cast<std::uint8_t>(slot);
-        all.push_back({4 * slot + m, bitstream_of(place, id)});
+        all.push_back({unsigned{defs::table_modules} * slot + m, bitstream_of(place, id)});
         try {
           check_bitstream(all.back().bytes, place, id, port_w_);
         } catch (const BitstreamError& error) {

@@ -106,7 +106,7 @@ BitstreamHeader decode_bitstream(const Bytes& bytes, int port_w) {
   if (names >> 16U != 0) refuse(SwapCode::magic, 6, "reserved", std::string("two bytes are not 0") + again);
   header.slot = static_cast<std::uint8_t>(names >> 8U);
   const std::uint32_t module = names & 0xFFU;
-  if (module > static_cast<std::uint32_t>(ModuleId::quad_quad)) {
+  if (module > static_cast<std::uint32_t>(defs::kinds_max)) {
     refuse(SwapCode::module, 4, "module", "there is no module " + std::to_string(module) + again);
   }
   header.module_id = static_cast<ModuleId>(module);

@@ -28,7 +28,7 @@ constexpr std::uint32_t minor_number_reset = 0x0;
 /// counts changes that break software
 constexpr std::uint32_t major_number_mask = 0x0000FF00;
 constexpr int major_number_shift = 8;
-constexpr std::uint32_t major_number_reset = 0x1;
+constexpr std::uint32_t major_number_reset = 0x2;
 }  // namespace version
 
 /// Parameters of the hardware.
@@ -632,16 +632,17 @@ constexpr int value_shift = 0;
 
 /// Pairs answered per module; index = `ModuleId`, 0: without a test. A high word is that of the low word read last.
 namespace pairs {
-constexpr std::uint32_t count = 4;
+constexpr std::uint32_t count = 5;
 constexpr std::uint32_t offset(std::uint32_t index) { return 0x500 + 0x8 * index; }
 /// pairs (the high word follows)
 constexpr std::uint32_t value_mask = 0xFFFFFFFF;
 constexpr int value_shift = 0;
 }  // namespace pairs
 
-/// Address of a bitstream; index = 4 slot + `ModuleId`. Of a slot that is not there all three read as 0 and stay so.
+/// Address of a bitstream; index = `TABLE_MODULES` slot + `ModuleId`. Of a slot or module that is not there all three
+/// read as 0 and stay so.
 namespace bitstream_address {
-constexpr std::uint32_t count = 16;
+constexpr std::uint32_t count = 32;
 constexpr std::uint32_t offset(std::uint32_t index) { return 0x600 + 0x10 * index; }
 /// multiple of `BITSTREAM_ALIGN`; undefined until written
 constexpr std::uint32_t value_mask = 0xFFFFFFFF;
@@ -650,7 +651,7 @@ constexpr int value_shift = 0;
 
 /// Size of a bitstream, header included.
 namespace bitstream_size {
-constexpr std::uint32_t count = 16;
+constexpr std::uint32_t count = 32;
 constexpr std::uint32_t offset(std::uint32_t index) { return 0x604 + 0x10 * index; }
 /// byte; undefined until written
 constexpr std::uint32_t value_mask = 0xFFFFFFFF;
@@ -659,7 +660,7 @@ constexpr int value_shift = 0;
 
 /// Is there a bitstream? Hardware clears it when a swap rejects it.
 namespace bitstream_valid {
-constexpr std::uint32_t count = 16;
+constexpr std::uint32_t count = 32;
 constexpr std::uint32_t offset(std::uint32_t index) { return 0x608 + 0x10 * index; }
 /// 1: yes
 constexpr std::uint32_t value_mask = 0x00000001;

@@ -164,8 +164,12 @@ constexpr int index_w = 3;
 constexpr int beats_w = 6;
 /// width of rm_id [bit]
 constexpr int rm_id_w = 8;
-/// width of s_pair_kind: the low bits of the ModuleId that tests the pair [bit]
-constexpr int kind_w = 2;
+/// width of s_pair_kind: the ModuleId that tests the pair [bit]
+constexpr int kind_w = 3;
+/// kinds of pairs that there are, 1..4 [kind]
+constexpr int kinds_max = 4;
+/// entries of a slot in the table of bitstreams: that of module m of slot s has index TABLE_MODULES s + m [entry]
+constexpr int table_modules = 8;
 /// width of a slot's number [bit]
 constexpr int slot_id_w = 8;
 /// width of a pair's number inside a slot: less than CONTEXTS_MAX [bit]
@@ -229,6 +233,10 @@ constexpr int rm_of(int a, int b) { return a + b - 5; }
 constexpr int rm_verts_a(int m) { return m <= 2 ? 3 : 4; }
 /// vertices of B of that module, m = 1..3 [vertex]
 constexpr int rm_verts_b(int m) { return m <= 1 ? 3 : 4; }
+/// 1: module m = 0..4 tests pairs of the kind k = 1..4: a test of quads takes a triangle as a quad, that of points takes points alone []
+constexpr int rm_serves(int m, int k) { return m == static_cast<int>(ModuleId::point_tri) || k == static_cast<int>(ModuleId::point_tri) ? m == k : m >= k; }
+/// bits of a kind 0..kinds, and of the module of that number [bit]
+constexpr int kind_bits(int kinds) { return kinds > 3 ? 3 : 2; }
 /// 1: the code of this SwapCode says that the bitstream or its entry in the table is bad (REQUEST, MAGIC, SLOT, MODULE, LENGTH, CRC, WRONG_MODULE); another attempt would end like this one []
 constexpr int swap_spoilt(int c) { return (c >= static_cast<int>(SwapCode::request) && c <= static_cast<int>(SwapCode::crc)) || c == static_cast<int>(SwapCode::wrong_module); }
 /// 1: the code of this SwapCode says that the swap failed on its way (DEVICE, BUS, MEMORY, SHUTDOWN, ABORTED, OWED); the bitstream may be good, another attempt may succeed []
@@ -405,13 +413,13 @@ constexpr Field slot_result_axis = {11, 9};
 constexpr Field slot_result_beats = {20, 6};
 
 /// an answer on its way out of the dispatcher [bit]
-constexpr int answer_w = 38;
+constexpr int answer_w = 40;
 /// record RESULT
 constexpr Field answer_result = {0, 34};
 /// kind of the pair
-constexpr Field answer_kind = {34, 2};
+constexpr Field answer_kind = {34, 3};
 /// module that gave it, 0: none, the pair is left open
-constexpr Field answer_module = {36, 2};
+constexpr Field answer_module = {37, 3};
 
 /// beat of s_swap and m_swap: put this module into this slot [bit]
 constexpr int swap_request_w = 81;
