@@ -31,11 +31,7 @@ module cchip_bv_lane_a (
 );
 
   // The clocks below are counted for a leaf of two.
-  generate
-    if (`CCHIP_MUL18_LATENCY != 2) begin : gen_illegal_latency
-      cchip_error_bv_lane_a_needs_CCHIP_MUL18_LATENCY_2 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(`CCHIP_MUL18_LATENCY != 2, cchip_error_bv_lane_a_needs_CCHIP_MUL18_LATENCY_2)
 
   // ---- clock 0: sum and difference of opposite corners are centre and half size in half steps
   wire [41:0] box = child[41:0];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_bv_pose: sets up the poses of the queries and keeps them for the box test.
 //   latency      21 clocks from an accepted pose to m_pose_valid, while all of it is in memory;
 //                2 clocks from row_context to a row, 3 from lane_context to pose_select, and 4
@@ -43,11 +44,8 @@ module cchip_bv_pose #(
 
   localparam integer CONTEXT_W = $clog2(QUERIES);
   localparam [3:0] LAST = 4'd12;
-  generate
-    if (QUERIES != 2 && QUERIES != 4 && QUERIES != 8 && QUERIES != 16) begin : gen_illegal
-      cchip_error_bv_QUERIES_must_be_2_4_8_or_16 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(QUERIES != 2 && QUERIES != 4 && QUERIES != 8 && QUERIES != 16,
+                cchip_error_bv_QUERIES_must_be_2_4_8_or_16)
 
   // ---- set-up
   wire set_valid;

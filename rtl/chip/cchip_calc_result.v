@@ -73,14 +73,10 @@ module cchip_calc_result #(
 
   localparam integer LEAF_W = $clog2(LEAVES);
 
-  generate
-    if (LEAVES < 4 || LEAVES > 256 || (1 << LEAF_W) != LEAVES) begin : gen_illegal_leaves
-      cchip_error_calc_result_LEAVES_must_be_a_power_of_two_4_to_256 u_error ();
-    end
-    if (JUDGED < 2 || JUDGED > 64 || CONTEXT_W < 1) begin : gen_illegal_judged
-      cchip_error_calc_result_JUDGED_must_be_2_to_64_and_CONTEXT_W_positive u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(LEAVES < 4 || LEAVES > 256 || (1 << LEAF_W) != LEAVES,
+                cchip_error_calc_result_LEAVES_must_be_a_power_of_two_4_to_256)
+  `CCHIP_REFUSE(JUDGED < 2 || JUDGED > 64 || CONTEXT_W < 1,
+                cchip_error_calc_result_JUDGED_must_be_2_to_64_and_CONTEXT_W_positive)
 
   // ---- numbers
   wire number_valid;

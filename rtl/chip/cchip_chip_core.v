@@ -184,18 +184,11 @@ module cchip_chip_core #(
   localparam integer BEAT_ADDRESS_W = 64 - $clog2(DATA_W / 8);
   localparam integer LEAF_RESULT_W = `CCHIP_LEAF_RESULT_W(CONTEXT_W);
 
-  generate
-    if (MISSES < 4) begin : gen_illegal_misses
-      cchip_error_chip_core_MISSES_must_be_4_8_16_or_32 u_error ();
-    end
-    if (RM_ID < 0 || RM_ID > 3 || (SWAPS == 0 && RM_ID == 0)) begin : gen_illegal_module
-      cchip_error_chip_core_RM_ID_must_be_1_to_3 u_error ();
-    end
-    if (QUEUE_DEPTH < 16 || QUEUE_DEPTH > 256 || (1 << $clog2(QUEUE_DEPTH)) != QUEUE_DEPTH)
-    begin : gen_illegal_depth
-      cchip_error_chip_core_QUEUE_DEPTH_must_be_a_power_of_two_16_to_256 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(MISSES < 4, cchip_error_chip_core_MISSES_must_be_4_8_16_or_32)
+  `CCHIP_REFUSE(RM_ID < 0 || RM_ID > 3 || (SWAPS == 0 && RM_ID == 0),
+                cchip_error_chip_core_RM_ID_must_be_1_to_3)
+  `CCHIP_REFUSE(QUEUE_DEPTH < 16 || QUEUE_DEPTH > 256 || (1 << $clog2(QUEUE_DEPTH)) != QUEUE_DEPTH,
+                cchip_error_chip_core_QUEUE_DEPTH_must_be_a_power_of_two_16_to_256)
 
   // ---- resets: a flip-flop for each block, because one net would have thousands of pins. All
   // blocks leave their reset on the same clock; cchip_broad_phase has flip-flops of its own

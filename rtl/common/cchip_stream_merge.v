@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_stream_merge: several streams into one, in turn.
 //   latency      1 clock
 //   throughput   one beat per clock
@@ -24,11 +25,8 @@ module cchip_stream_merge #(
     output wire [        WIDTH-1:0] m_data
 );
 
-  generate
-    if (SOURCES < 1 || SOURCES > 8 || WIDTH < 1) begin : gen_illegal
-      cchip_error_stream_merge_SOURCES_not_1_to_8_or_WIDTH_below_1 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SOURCES < 1 || SOURCES > 8 || WIDTH < 1,
+                cchip_error_stream_merge_SOURCES_not_1_to_8_or_WIDTH_below_1)
 
   wire [SOURCES-1:0] next;
   wire ready;

@@ -79,20 +79,12 @@ module cchip_axi_write #(
   localparam integer COUNT_W = OUTSTANDING < 1 ? 1 : $clog2(OUTSTANDING + 1);
   localparam [31:0] SIZE = BYTES_LOG2;
 
-  generate
-    if (CLIENTS < 1 || CLIENTS > 4) begin : gen_illegal_clients
-      cchip_error_axi_write_CLIENTS_must_be_1_to_4 u_error ();
-    end
-    if (DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W) begin : gen_illegal_width
-      cchip_error_axi_write_DATA_W_must_be_64_128_256_or_512 u_error ();
-    end
-    if (OUTSTANDING < 1 || OUTSTANDING > 64) begin : gen_illegal_outstanding
-      cchip_error_axi_write_OUTSTANDING_must_be_1_to_64 u_error ();
-    end
-    if (ID_W < 1 || ID_W > 16) begin : gen_illegal_id
-      cchip_error_axi_write_ID_W_must_be_1_to_16 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(CLIENTS < 1 || CLIENTS > 4, cchip_error_axi_write_CLIENTS_must_be_1_to_4)
+  `CCHIP_REFUSE(DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W,
+                cchip_error_axi_write_DATA_W_must_be_64_128_256_or_512)
+  `CCHIP_REFUSE(OUTSTANDING < 1 || OUTSTANDING > 64,
+                cchip_error_axi_write_OUTSTANDING_must_be_1_to_64)
+  `CCHIP_REFUSE(ID_W < 1 || ID_W > 16, cchip_error_axi_write_ID_W_must_be_1_to_16)
 
   // ---- beats of the clients, and for each write whose beats are all there its client, length and
   // address

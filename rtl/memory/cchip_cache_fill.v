@@ -67,15 +67,10 @@ module cchip_cache_fill #(
   localparam integer BEATS = 256 / BEAT_W;
   localparam integer ROW_W = MISS_W < 2 ? 3 : MISS_W + 1;
 
-  generate
-    if (MISSES < 2 || MISSES > 32 || (1 << MISS_W) != MISSES || FRAME_W < 1)
-    begin : gen_illegal_misses
-      cchip_error_cache_fill_MISSES_must_be_2_4_8_16_or_32_and_FRAME_W_positive u_error ();
-    end
-    if (DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W) begin : gen_illegal_width
-      cchip_error_cache_fill_DATA_W_must_be_64_128_256_or_512 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(MISSES < 2 || MISSES > 32 || (1 << MISS_W) != MISSES || FRAME_W < 1,
+                cchip_error_cache_fill_MISSES_must_be_2_4_8_16_or_32_and_FRAME_W_positive)
+  `CCHIP_REFUSE(DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W,
+                cchip_error_cache_fill_DATA_W_must_be_64_128_256_or_512)
 
   // ---- the slots
   reg [MISSES-1:0] held_q, filled_q;

@@ -71,11 +71,7 @@ module cchip_primtest_array #(
   localparam [31:0] MODULE = `CCHIP_RM_OF(VERTS_A, VERTS_B);
   localparam [`CCHIP_RM_ID_W-1:0] RM = MODULE[`CCHIP_RM_ID_W-1:0];
 
-  generate
-    if (LANES < 1 || LANES > `CCHIP_LANES_MAX) begin : gen_illegal_lanes
-      cchip_error_LANES_must_be_1_to_16 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(LANES < 1 || LANES > `CCHIP_LANES_MAX, cchip_error_LANES_must_be_1_to_16)
 
   assign rm_id = RM;
 

@@ -82,15 +82,9 @@ module cchip_axis_controller #(
   localparam [31:0] LAST_K = VERTS_A - 1;
   localparam [31:0] LAST_L = VERTS_B - 1;
 
-  generate
-    if (CONTEXTS < 1 || CONTEXTS > `CCHIP_CONTEXTS_MAX || (1 << CONTEXT_W) < CONTEXTS)
-    begin : gen_illegal
-      cchip_error_CONTEXTS_must_be_1_to_256 u_error ();
-    end
-    if (WARPED_EXACT != 0 && WARPED_EXACT != 1) begin : gen_illegal_warped
-      cchip_error_WARPED_EXACT_must_be_0_or_1 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(CONTEXTS < 1 || CONTEXTS > `CCHIP_CONTEXTS_MAX || (1 << CONTEXT_W) < CONTEXTS,
+                cchip_error_CONTEXTS_must_be_1_to_256)
+  `CCHIP_REFUSE(WARPED_EXACT != 0 && WARPED_EXACT != 1, cchip_error_WARPED_EXACT_must_be_0_or_1)
 
   // ---- contexts: after reset every number is handed out once in order; after that, numbers come
   // from the list of those that pairs have given back

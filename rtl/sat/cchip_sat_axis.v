@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_sat_axis: macro stage 2 of the SAT pipeline (paper, figure 7): axis = e x f (eq. 1).
 //   latency      SUBSTAGES clocks
 //   throughput   one axis per clock, never stalls
@@ -34,11 +35,7 @@ module cchip_sat_axis #(
   // edges, norms, their sum
   localparam integer NORM_FILL = SUBSTAGES - 2 - `CCHIP_NORM1_LATENCY;
 
-  generate
-    if (SPARE < 0 || NORM_FILL < 0) begin : gen_illegal
-      cchip_error_SUBSTAGES_below_minimum_for_COORD_W u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SPARE < 0 || NORM_FILL < 0, cchip_error_SUBSTAGES_below_minimum_for_COORD_W)
 
   reg [3*EDGE_W-1:0] e_q, f_q;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_sat_bound: how far the projections of the unrounded vertices can lie from those of the
 // grid.
 // Part of macro stage 3; shifts and adds, no multiplier. a, b are the edges whose cross product is
@@ -47,11 +48,7 @@ module cchip_sat_bound #(
   localparam integer GROUP_REGS = SPARE >= 3 ? 1 : 0;
   localparam integer LOG_REGS = SPARE - SHIFT_REGS - GROUP_REGS;
 
-  generate
-    if (SPARE < 0) begin : gen_illegal
-      cchip_error_SUBSTAGES_below_minimum_for_COORD_W u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SPARE < 0, cchip_error_SUBSTAGES_below_minimum_for_COORD_W)
 
   // ---- gap bound; gap_q is one clock ahead of the output, because the sign bound is a sum with it
   wire [`CCHIP_ERROR_SHIFT_W-1:0] shift_norm;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_sat_project: macro stage 3 of the SAT pipeline (paper, figure 7): projections of the points
 // onto the axis (eq. 2), relative to the projection of the reference point, and what the certainty
 // of their signs needs. m_projection[i] = (p_i - reference) . axis.
@@ -57,17 +58,11 @@ module cchip_sat_project #(
   localparam integer OPERAND_REGS = SPARE >= 2 ? 1 : 0;
   localparam integer RESULT_REGS = SPARE - OPERAND_REGS - PRODUCT_REGS;
 
-  generate
-    if (SUBSTAGES < `CCHIP_PROJECT_SUBSTAGES_MIN(COORD_W)) begin : gen_illegal
-      cchip_error_SUBSTAGES_below_minimum_for_COORD_W u_error ();
-    end
-    if (SIGN < 0 || SIGN >= POINTS) begin : gen_illegal_sign
-      cchip_error_SIGN_must_be_below_POINTS u_error ();
-    end
-    if (ABSOLUTE_PROJECTION != 0 && ABSOLUTE_PROJECTION != 1) begin : gen_illegal_projection
-      cchip_error_ABSOLUTE_PROJECTION_must_be_0_or_1 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SUBSTAGES < `CCHIP_PROJECT_SUBSTAGES_MIN(COORD_W),
+                cchip_error_SUBSTAGES_below_minimum_for_COORD_W)
+  `CCHIP_REFUSE(SIGN < 0 || SIGN >= POINTS, cchip_error_SIGN_must_be_below_POINTS)
+  `CCHIP_REFUSE(ABSOLUTE_PROJECTION != 0 && ABSOLUTE_PROJECTION != 1,
+                cchip_error_ABSOLUTE_PROJECTION_must_be_0_or_1)
 
   // ---- points relative to the reference
   reg [3*EDGE_W*POINTS-1:0] difference_q;

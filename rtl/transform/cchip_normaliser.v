@@ -53,14 +53,9 @@ module cchip_normaliser #(
   // Clocks from a vertex to its subtraction: those of the last of four vertices, and 10 of the span
   localparam integer WAIT = 3 * PASSES + 10;
 
-  generate
-    if (COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX) begin : gen_illegal_coord_w
-      cchip_error_COORD_W_must_be_4_to_20 u_error ();
-    end
-    if (PASSES < 1 || PASSES > 2) begin : gen_illegal
-      cchip_error_PASSES_must_be_1_or_2 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX,
+                cchip_error_COORD_W_must_be_4_to_20)
+  `CCHIP_REFUSE(PASSES < 1 || PASSES > 2, cchip_error_PASSES_must_be_1_or_2)
 
   // ---- clocks 1 to 3: least and greatest coordinate on each axis, and the bits in which any
   // coordinate differs from the first one of its axis

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_vertex_transform: the vertices of a leaf pair relative to the origin of B's leaf:
 // those of A moved by the map of the query, M o_A + t - o_B and M times the offset of a vertex,
 // each exact and rounded once; those of B in the same unit.
@@ -53,15 +54,9 @@ module cchip_vertex_transform #(
   // Clocks from the last pass of a vertex to its output
   localparam integer OUT = PASSES == 1 ? 15 : 14;
 
-  generate
-    if (PASSES < 1 || PASSES > 2) begin : gen_illegal
-      cchip_error_PASSES_must_be_1_or_2 u_error ();
-    end
-    // the clocks below are counted for a leaf of two
-    if (`CCHIP_MUL18_LATENCY != 2) begin : gen_illegal_latency
-      cchip_error_vertex_transform_needs_CCHIP_MUL18_LATENCY_2 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(PASSES < 1 || PASSES > 2, cchip_error_PASSES_must_be_1_or_2)
+  // the clocks below are counted for a leaf of two
+  `CCHIP_REFUSE(`CCHIP_MUL18_LATENCY != 2, cchip_error_vertex_transform_needs_CCHIP_MUL18_LATENCY_2)
 
   wire [511:0] line_a = s_lines[511:0];
   wire [511:0] line_b = s_lines[1023:512];

@@ -49,17 +49,10 @@ module cchip_leaf_queue #(
   localparam integer EPOCH_W = 2;
   localparam integer ENTRY_W = CONTEXT_W + EPOCH_W + 96;
 
-  generate
-    if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES) begin : gen_illegal_queries
-      cchip_error_leaf_queue_QUERIES_must_be_2_4_8_or_16 u_error ();
-    end
-    if (DEPTH < 1 || DEPTH > 1024) begin : gen_illegal_depth
-      cchip_error_leaf_queue_DEPTH_must_be_1_to_1024 u_error ();
-    end
-    if (CREDIT < 1 || CREDIT > 65535) begin : gen_illegal_credit
-      cchip_error_leaf_queue_CREDIT_must_be_1_to_65535 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES,
+                cchip_error_leaf_queue_QUERIES_must_be_2_4_8_or_16)
+  `CCHIP_REFUSE(DEPTH < 1 || DEPTH > 1024, cchip_error_leaf_queue_DEPTH_must_be_1_to_1024)
+  `CCHIP_REFUSE(CREDIT < 1 || CREDIT > 65535, cchip_error_leaf_queue_CREDIT_must_be_1_to_65535)
 
   wire ready, queue_valid, load;
   wire [ENTRY_W-1:0] queue_entry;

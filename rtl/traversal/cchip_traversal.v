@@ -116,21 +116,15 @@ module cchip_traversal #(
   localparam integer WORK_W = 12;
   localparam integer ANSWERS = 2 * QUERIES;
 
-  generate
-    if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES) begin : gen_illegal_queries
-      cchip_error_traversal_QUERIES_must_be_2_4_8_or_16 u_error ();
-    end
-    if (PAIRS < 1 || LEAVES < 1 || PAIRS + LEAVES < 8 || PAIRS + LEAVES > 64 ||
-        (1 << PLACE_W) != PAIRS + LEAVES) begin : gen_illegal_places
-      cchip_error_traversal_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together u_error ();
-    end
-    if (LEAF_DEPTH <= PAIRS || LEAF_DEPTH > 128) begin : gen_illegal_depth
-      cchip_error_traversal_LEAF_DEPTH_must_be_over_PAIRS_to_128 u_error ();
-    end
-    if (STACK < 8 || STACK > 64 || (1 << STACK_W) != STACK) begin : gen_illegal_stack
-      cchip_error_traversal_STACK_must_be_8_16_32_or_64 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES,
+                cchip_error_traversal_QUERIES_must_be_2_4_8_or_16)
+  `CCHIP_REFUSE(PAIRS < 1 || LEAVES < 1 || PAIRS + LEAVES < 8 || PAIRS + LEAVES > 64 ||
+                (1 << PLACE_W) != PAIRS + LEAVES,
+                cchip_error_traversal_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together)
+  `CCHIP_REFUSE(LEAF_DEPTH <= PAIRS || LEAF_DEPTH > 128,
+                cchip_error_traversal_LEAF_DEPTH_must_be_over_PAIRS_to_128)
+  `CCHIP_REFUSE(STACK < 8 || STACK > 64 || (1 << STACK_W) != STACK,
+                cchip_error_traversal_STACK_must_be_8_16_32_or_64)
 
   // ---- stage 1: an event
   wire valid1, valid5;
