@@ -62,16 +62,8 @@ module cchip_mul_wide #(
         end else begin : gen_low_b
           assign y = {1'b0, bx[LIMB*j+:LIMB]};
         end
-        cchip_mul18 u_mul (
-            .clk(clk),
-            .a  (x),
-            .b  (y),
-            .p  (leaf)
-        );
-        cchip_delay #(
-            .WIDTH(36),
-            .DEPTH(PRODUCT_REGS)
-        ) u_product (
+        cchip_mul18 u_mul (.clk(clk), .a(x), .b(y), .p(leaf));
+        cchip_delay #(.WIDTH(36), .DEPTH(PRODUCT_REGS)) u_product (
             .clk(clk),
             .rst(1'b0),
             .d  (leaf),

@@ -149,12 +149,7 @@ module cchip_bv_offset (
         again_q2  <= origin_q1 & {18{one_q1}};
       end
       assign again2[j] = again_q2;
-      cchip_mul18 u_mul (
-          .clk(clk),
-          .a  (m[17:0]),
-          .b  (a_origin[18*j+:18]),
-          .p  (p)
-      );
+      cchip_mul18 u_mul (.clk(clk), .a(m[17:0]), .b(a_origin[18*j+:18]), .p(p));
       assign term2[j] = {p[35], p};
     end
   endgenerate

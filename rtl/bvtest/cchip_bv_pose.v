@@ -109,11 +109,7 @@ module cchip_bv_pose #(
       end
     end
   endgenerate
-  cchip_block_ram #(
-      .WIDTH (97),
-      .WORDS (4),
-      .ADDR_W(CONTEXT_W + 2)
-  ) u_rows (
+  cchip_block_ram #(.WIDTH(97), .WORDS(4), .ADDR_W(CONTEXT_W + 2)) u_rows (
       .clk       (clk),
       .write     (start_q),
       .write_addr(set_context_q),
@@ -141,10 +137,7 @@ module cchip_bv_pose #(
     lane_addr_q  <= lane_addr;
     lane_addr_q2 <= lane_addr_q;
   end
-  cchip_block_ram #(
-      .WIDTH (171),
-      .ADDR_W(ADDR_W)
-  ) u_m (
+  cchip_block_ram #(.WIDTH(171), .ADDR_W(ADDR_W)) u_m (
       .clk       (clk),
       .write     (start_q),
       .write_addr(set_addr),
@@ -180,10 +173,7 @@ module cchip_bv_pose #(
       end
       assign pose_select[7*d+:7]    = read_select_q;
       assign pose_factor[14*d+6+:8] = high_q2;
-      cchip_block_ram #(
-          .WIDTH (15),
-          .ADDR_W(ADDR_W)
-      ) u_early (
+      cchip_block_ram #(.WIDTH(15), .ADDR_W(ADDR_W)) u_early (
           .clk       (clk),
           .write     (write_q[d]),
           .write_addr(write_addr_q),
@@ -191,10 +181,7 @@ module cchip_bv_pose #(
           .read_addr (lane_addr),
           .read_data ({high, select})
       );
-      cchip_block_ram #(
-          .WIDTH (36),
-          .ADDR_W(ADDR_W)
-      ) u_late (
+      cchip_block_ram #(.WIDTH(36), .ADDR_W(ADDR_W)) u_late (
           .clk       (clk),
           .write     (write_q[d]),
           .write_addr(write_addr_q),

@@ -63,10 +63,7 @@ module cchip_bv_unit #(
   wire [101:0] a_child10, b_child13;
   wire [3:0] a_about10, b_about13;
   wire a_coarse11, b_coarse13;
-  cchip_bv_feed #(
-      .QUERIES(QUERIES),
-      .TAG_W  (TAG_W)
-  ) u_feed (
+  cchip_bv_feed #(.QUERIES(QUERIES), .TAG_W(TAG_W)) u_feed (
       .clk          (clk),
       .rst          (rst),
       .s_valid      (s_valid),
@@ -108,9 +105,7 @@ module cchip_bv_unit #(
   wire [170:0] pose_m12;
   wire [389:0] pose_magnitude12;
   wire [181:0] pose_factor12;
-  cchip_bv_pose #(
-      .QUERIES(QUERIES)
-  ) u_pose (
+  cchip_bv_pose #(.QUERIES(QUERIES)) u_pose (
       .clk           (clk),
       .rst           (rst),
       .s_pose_valid  (s_pose_valid),

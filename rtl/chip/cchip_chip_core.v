@@ -217,11 +217,7 @@ module cchip_chip_core #(
   wire [`CCHIP_READ_CODE_W-1:0] beat_code;
   wire [DATA_W-1:0] beat_data;
   wire [2*MISSES-1:0] outstanding_reads;
-  cchip_axi_read #(
-      .CLIENTS(2),
-      .SLOTS  (MISSES),
-      .DATA_W (DATA_W)
-  ) u_read (
+  cchip_axi_read #(.CLIENTS(2), .SLOTS(MISSES), .DATA_W(DATA_W)) u_read (
       .clk          (clk),
       .rst          (block_rst[READ]),
       .limit        (memory_limit),
@@ -256,11 +252,7 @@ module cchip_chip_core #(
   // ---- queries
   wire query_valid, query_ready, queries_idle;
   wire [`CCHIP_QUERY_W-1:0] query;
-  cchip_query_ring #(
-      .SLOTS (MISSES),
-      .AHEAD (4),
-      .DATA_W(DATA_W)
-  ) u_queries (
+  cchip_query_ring #(.SLOTS(MISSES), .AHEAD(4), .DATA_W(DATA_W)) u_queries (
       .clk          (clk),
       .rst          (block_rst[QUERY_RING]),
       .enable       (enable),
@@ -384,10 +376,7 @@ module cchip_chip_core #(
   wire [11:0] map_error;
   wire [1023:0] feed_lines;
   wire [LEAF_W:0] feed_id;
-  cchip_leaf_feed #(
-      .QUERIES(QUERIES),
-      .LEAF_W (LEAF_W)
-  ) u_feed (
+  cchip_leaf_feed #(.QUERIES(QUERIES), .LEAF_W(LEAF_W)) u_feed (
       .clk            (clk),
       .rst            (block_rst[FEED]),
       .s_start_valid  (start_valid),
@@ -520,10 +509,7 @@ module cchip_chip_core #(
       .m_place(read_place),
       .m_data (descriptor)
   );
-  cchip_block_ram #(
-      .WIDTH (2 * POINT_W),
-      .ADDR_W(PLACE_W + 2)
-  ) u_operands (
+  cchip_block_ram #(.WIDTH(2 * POINT_W), .ADDR_W(PLACE_W + 2)) u_operands (
       .clk       (clk),
       .write     (vertex_valid),
       .write_addr({write_place, vertex_q}),
@@ -606,11 +592,7 @@ module cchip_chip_core #(
   wire [DATA_W-1:0] write_data;
   wire [DATA_W/8-1:0] write_strb;
   wire [`CCHIP_WRITE_CODE_W-1:0] write_code;
-  cchip_calc_result #(
-      .LEAVES   (LEAF_NUMBERS),
-      .CONTEXT_W(CONTEXT_W),
-      .JUDGED   (16)
-  ) u_calc_result (
+  cchip_calc_result #(.LEAVES(LEAF_NUMBERS), .CONTEXT_W(CONTEXT_W), .JUDGED(16)) u_calc_result (
       .clk              (clk),
       .rst              (block_rst[RESULTS]),
       .s_begin_valid    (begin_valid),
@@ -647,9 +629,7 @@ module cchip_chip_core #(
       .m_record_ready   (record_ready),
       .m_record_data    (record)
   );
-  cchip_record_ring #(
-      .DATA_W(DATA_W)
-  ) u_records (
+  cchip_record_ring #(.DATA_W(DATA_W)) u_records (
       .clk          (clk),
       .rst          (block_rst[RECORDS]),
       .base         (record_base),

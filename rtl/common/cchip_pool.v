@@ -37,11 +37,7 @@ module cchip_pool #(
   reg [WIDTH-1:0] next_q;
   wire room;
   wire fill = filling_q & room & ~back_valid;
-  cchip_fifo #(
-      .WIDTH     (WIDTH),
-      .DEPTH     (COUNT),
-      .ROOM_KNOWN(1)
-  ) u_free (
+  cchip_fifo #(.WIDTH(WIDTH), .DEPTH(COUNT), .ROOM_KNOWN(1)) u_free (
       .clk    (clk),
       .rst    (rst),
       .s_valid(fill | back_valid),

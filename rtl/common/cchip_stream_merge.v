@@ -30,9 +30,7 @@ module cchip_stream_merge #(
 
   wire [SOURCES-1:0] next;
   wire ready;
-  cchip_arbiter #(
-      .N(SOURCES)
-  ) u_arbiter (
+  cchip_arbiter #(.N(SOURCES)) u_arbiter (
       .clk    (clk),
       .rst    (rst),
       .request(s_valid),
@@ -43,17 +41,12 @@ module cchip_stream_merge #(
   assign s_ready = next & {SOURCES{ready}};
 
   wire [WIDTH-1:0] data;
-  cchip_onehot_mux #(
-      .N    (SOURCES),
-      .WIDTH(WIDTH)
-  ) u_choose (
+  cchip_onehot_mux #(.N(SOURCES), .WIDTH(WIDTH)) u_choose (
       .select(next),
       .s_data(s_data),
       .m_data(data)
   );
-  cchip_skid_buffer #(
-      .WIDTH(WIDTH)
-  ) u_out (
+  cchip_skid_buffer #(.WIDTH(WIDTH)) u_out (
       .clk    (clk),
       .rst    (rst),
       .s_valid(|s_valid),

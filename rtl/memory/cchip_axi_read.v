@@ -100,11 +100,7 @@ module cchip_axi_read #(
   reg [ID_W-1:0] place_id_q, place_id_q2;
   reg failing_q;  // an answer without data is on its way to the read channel's stage
   wire found;  // there is a late read, found_id
-  cchip_axi_read_address #(
-      .CLIENTS(CLIENTS),
-      .SLOTS  (SLOTS),
-      .DATA_W (DATA_W)
-  ) u_address (
+  cchip_axi_read_address #(.CLIENTS(CLIENTS), .SLOTS(SLOTS), .DATA_W(DATA_W)) u_address (
       .clk          (clk),
       .rst          (rst),
       .s_valid      (s_valid),
@@ -133,10 +129,7 @@ module cchip_axi_read #(
 
   // ---- time: one late read after the other takes the read channel's stage for a clock
   wire [ID_W-1:0] found_id;
-  cchip_axi_read_late #(
-      .IDS (IDS),
-      .ID_W(ID_W)
-  ) u_late (
+  cchip_axi_read_late #(.IDS(IDS), .ID_W(ID_W)) u_late (
       .clk     (clk),
       .rst     (rst),
       .limit   (limit),

@@ -95,10 +95,7 @@ module cchip_axi_write #(
   wire beat_valid, beat_ready;
   wire [STRB_W-1:0] beat_strb;
   wire [DATA_W-1:0] beat_data;
-  cchip_axi_write_collect #(
-      .CLIENTS(CLIENTS),
-      .DATA_W (DATA_W)
-  ) u_collect (
+  cchip_axi_write_collect #(.CLIENTS(CLIENTS), .DATA_W(DATA_W)) u_collect (
       .clk            (clk),
       .rst            (rst),
       .s_valid        (s_valid),
@@ -124,9 +121,7 @@ module cchip_axi_write #(
   wire [COUNT_W-1:0] waiting, dropped;
   wire issue, timeout;  // the first write that is waited for is given up
   wire answered, stale;  // a response comes: to that write; to one that was given up
-  cchip_count #(
-      .LIMIT(OUTSTANDING)
-  ) u_waiting (
+  cchip_count #(.LIMIT(OUTSTANDING)) u_waiting (
       .clk  (clk),
       .rst  (rst),
       .up   (issue),
@@ -135,9 +130,7 @@ module cchip_axi_write #(
       .some (waiting_some),
       .room (waiting_room)
   );
-  cchip_count #(
-      .LIMIT(OUTSTANDING)
-  ) u_dropped (
+  cchip_count #(.LIMIT(OUTSTANDING)) u_dropped (
       .clk  (clk),
       .rst  (rst),
       .up   (timeout),
@@ -150,9 +143,7 @@ module cchip_axi_write #(
   // ---- the first write is sent, or refused while a response is outstanding that was given up
   wire refused;
   wire [1:0] refused_client;
-  cchip_axi_write_send #(
-      .DATA_W(DATA_W)
-  ) u_send (
+  cchip_axi_write_send #(.DATA_W(DATA_W)) u_send (
       .clk            (clk),
       .rst            (rst),
       .s_write_valid  (write_valid),
@@ -193,9 +184,7 @@ module cchip_axi_write #(
   wire address_some, address_room, data_some, data_room;
   wire [COUNT_W-1:0] addresses, bursts;
   wire b_counts = b_valid_q & address_some & data_some;
-  cchip_count #(
-      .LIMIT(OUTSTANDING)
-  ) u_addresses (
+  cchip_count #(.LIMIT(OUTSTANDING)) u_addresses (
       .clk  (clk),
       .rst  (rst),
       .up   (aw_taken_q),
@@ -204,9 +193,7 @@ module cchip_axi_write #(
       .some (address_some),
       .room (address_room)
   );
-  cchip_count #(
-      .LIMIT(OUTSTANDING)
-  ) u_bursts (
+  cchip_count #(.LIMIT(OUTSTANDING)) u_bursts (
       .clk  (clk),
       .rst  (rst),
       .up   (w_taken_q),
@@ -235,9 +222,7 @@ module cchip_axi_write #(
 
   // ---- time: the first write that is waited for is given up when it is late
   wire gone = answered | timeout;
-  cchip_axi_write_late #(
-      .COUNT_W(COUNT_W)
-  ) u_late (
+  cchip_axi_write_late #(.COUNT_W(COUNT_W)) u_late (
       .clk     (clk),
       .rst     (rst),
       .limit   (limit),

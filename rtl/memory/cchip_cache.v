@@ -139,11 +139,7 @@ module cchip_cache #(
     beat_code_q  <= s_read_code;
     beat_data_q  <= s_read_data;
   end
-  cchip_cache_fill #(
-      .MISSES (MISSES),
-      .FRAME_W(SET_W + 1),
-      .DATA_W (DATA_W)
-  ) u_fill (
+  cchip_cache_fill #(.MISSES(MISSES), .FRAME_W(SET_W + 1), .DATA_W(DATA_W)) u_fill (
       .clk           (clk),
       .rst           (rst),
       .free          (free[0]),
@@ -189,11 +185,7 @@ module cchip_cache #(
   wire [SET_W-1:0] entry_set;
   wire [1:0] change_by;  // ports whose stage 6 made the change
   wire [2*ENTRY_W-1:0] entry_data;
-  cchip_cache_change #(
-      .MISSES(MISSES),
-      .SET_W (SET_W),
-      .LINE_W(LINE_W)
-  ) u_change (
+  cchip_cache_change #(.MISSES(MISSES), .SET_W(SET_W), .LINE_W(LINE_W)) u_change (
       .clk           (clk),
       .rst           (rst),
       .running       (running),
@@ -231,11 +223,7 @@ module cchip_cache #(
   // ---- invalidation: one set after the other, each in a clock of port 1
   wire walk_valid;
   wire [LINE_W-1:0] first, last;
-  cchip_cache_invalidate #(
-      .SET_W (SET_W),
-      .LINE_W(LINE_W),
-      .MISSES(MISSES)
-  ) u_invalidate (
+  cchip_cache_invalidate #(.SET_W(SET_W), .LINE_W(LINE_W), .MISSES(MISSES)) u_invalidate (
       .clk       (clk),
       .rst       (rst),
       .s_valid   (invalidate_valid),
@@ -368,10 +356,7 @@ module cchip_cache #(
   endgenerate
 
   // ---- data
-  cchip_dual_ram #(
-      .WIDTH (256),
-      .ADDR_W(SET_W + 2)
-  ) u_data (
+  cchip_dual_ram #(.WIDTH(256), .ADDR_W(SET_W + 2)) u_data (
       .clk        (clk),
       .write      (fill_write[0]),
       .addr_a     ({data_addr[0+:SET_W+1], beat5[0]}),

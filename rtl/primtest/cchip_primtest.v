@@ -132,11 +132,7 @@ module cchip_primtest #(
   wire [      B_W-1:0] operand_b;
   wire [`CCHIP_ERROR_SHIFT_W-1:0] operand_shift;
 
-  cchip_ram #(
-      .WIDTH (3 + A_W + B_W),
-      .DEPTH (CONTEXTS),
-      .ADDR_W(CONTEXT_W)
-  ) u_operands (
+  cchip_ram #(.WIDTH(3 + A_W + B_W), .DEPTH(CONTEXTS), .ADDR_W(CONTEXT_W)) u_operands (
       .clk       (clk),
       .write     (accept),
       .write_addr(load_context),
@@ -238,11 +234,7 @@ module cchip_primtest #(
   // ---- results: the FIFO has room for every pair in flight, so no verdict ever waits
   wire queue_space;
 
-  cchip_fifo #(
-      .WIDTH     (RESULT_W),
-      .DEPTH     (CONTEXTS),
-      .ROOM_KNOWN(1)
-  ) u_results (
+  cchip_fifo #(.WIDTH(RESULT_W), .DEPTH(CONTEXTS), .ROOM_KNOWN(1)) u_results (
       .clk    (clk),
       .rst    (rst),
       .s_valid(outcome_valid),

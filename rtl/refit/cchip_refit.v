@@ -227,11 +227,7 @@ module cchip_refit #(
   reg [1:0] store_child_q;
   reg [3:0] store_place_q;
   reg [51:0] least_q, greatest_q;
-  cchip_block_ram #(
-      .WIDTH (104),
-      .WORDS (1),
-      .ADDR_W(LEVEL_W + 6)
-  ) u_bounds (
+  cchip_block_ram #(.WIDTH(104), .WORDS(1), .ADDR_W(LEVEL_W + 6)) u_bounds (
       .clk       (clk),
       .write     (store_q),
       .write_addr({store_level_q, store_child_q, store_place_q}),
@@ -341,9 +337,7 @@ module cchip_refit #(
   wire expired;
   wire [31:0] elapsed;
   wire waits = state_q == READ || state_q == WRITE || state_q == ANSWER;
-  cchip_timeout #(
-      .DEFAULT(4 * `CCHIP_MEMORY_LIMIT_DEFAULT)
-  ) u_timeout (
+  cchip_timeout #(.DEFAULT(4 * `CCHIP_MEMORY_LIMIT_DEFAULT)) u_timeout (
       .clk    (clk),
       .restart(rst | ~waits),
       .limit  (limit),

@@ -91,10 +91,7 @@ module cchip_refit_axi #(
   wire [DATA_W-1:0] write_data;
   wire [`CCHIP_WRITE_CODE_W-1:0] answer_code;
   wire [2:0] write_beat;
-  cchip_refit #(
-      .LEVELS(LEVELS),
-      .DATA_W(DATA_W)
-  ) u_refit (
+  cchip_refit #(.LEVELS(LEVELS), .DATA_W(DATA_W)) u_refit (
       .clk          (clk),
       .rst          (rst),
       .limit        (refit_limit_q),
@@ -129,11 +126,7 @@ module cchip_refit_axi #(
   wire beat_slot;
   wire [2:0] beat;
   wire [1:0] slots_outstanding;
-  cchip_axi_read #(
-      .CLIENTS(1),
-      .SLOTS  (2),
-      .DATA_W (DATA_W)
-  ) u_read (
+  cchip_axi_read #(.CLIENTS(1), .SLOTS(2), .DATA_W(DATA_W)) u_read (
       .clk            (clk),
       .rst            (rst),
       .limit          (limit),

@@ -66,26 +66,11 @@ module cchip_sat_axis #(
   );
 
   wire [EDGE_W:0] e_norm, f_norm;
-  cchip_norm1 #(
-      .V_W(EDGE_W)
-  ) u_e_norm (
-      .clk(clk),
-      .v  (e_q),
-      .q  (e_norm)
-  );
-  cchip_norm1 #(
-      .V_W(EDGE_W)
-  ) u_f_norm (
-      .clk(clk),
-      .v  (f_q),
-      .q  (f_norm)
-  );
+  cchip_norm1 #(.V_W(EDGE_W)) u_e_norm (.clk(clk), .v(e_q), .q(e_norm));
+  cchip_norm1 #(.V_W(EDGE_W)) u_f_norm (.clk(clk), .v(f_q), .q(f_norm));
   reg [EDGE_W+1:0] edge_norm_q;
   always @(posedge clk) edge_norm_q <= {1'b0, e_norm} + {1'b0, f_norm};
-  cchip_delay #(
-      .WIDTH(EDGE_W + 2),
-      .DEPTH(NORM_FILL)
-  ) u_edge_norm (
+  cchip_delay #(.WIDTH(EDGE_W + 2), .DEPTH(NORM_FILL)) u_edge_norm (
       .clk(clk),
       .rst(1'b0),
       .d  (edge_norm_q),

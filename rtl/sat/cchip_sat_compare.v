@@ -83,10 +83,7 @@ module cchip_sat_compare #(
   // ---- clocks 1 and 2 beside the values
   wire [1:0] own;
   wire allow_above, allow_below;
-  cchip_delay #(
-      .WIDTH(4),
-      .DEPTH(2)
-  ) u_flags (
+  cchip_delay #(.WIDTH(4), .DEPTH(2)) u_flags (
       .clk(clk),
       .rst(1'b0),
       .d  ({s_own, s_allow_above, s_allow_below}),

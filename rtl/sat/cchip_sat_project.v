@@ -132,10 +132,7 @@ module cchip_sat_project #(
   endgenerate
 
   // ---- error bounds
-  cchip_sat_bound #(
-      .COORD_W  (COORD_W),
-      .SUBSTAGES(SUBSTAGES)
-  ) u_bound (
+  cchip_sat_bound #(.COORD_W(COORD_W), .SUBSTAGES(SUBSTAGES)) u_bound (
       .clk          (clk),
       .s_axis       (s_axis),
       .s_edge_norm  (s_edge_norm),
@@ -185,29 +182,16 @@ module cchip_sat_project #(
     z_over_x_q3 <= less(absolute_q2[0+:AXIS_W], absolute_q2[2*AXIS_W+:AXIS_W]);
     z_over_y_q3 <= less(absolute_q2[AXIS_W+:AXIS_W], absolute_q2[2*AXIS_W+:AXIS_W]);
   end
-  cchip_delay #(
-      .WIDTH(3),
-      .DEPTH(2)
-  ) u_negative (
+  cchip_delay #(.WIDTH(3), .DEPTH(2)) u_negative (
       .clk(clk),
       .rst(1'b0),
       .d  (negative_q),
       .q  (negative_q3)
   );
-  cchip_delay #(
-      .WIDTH(3)
-  ) u_zero (
-      .clk(clk),
-      .rst(1'b0),
-      .d  (zero_q2),
-      .q  (zero_q3)
-  );
+  cchip_delay #(.WIDTH(3)) u_zero (.clk(clk), .rst(1'b0), .d(zero_q2), .q(zero_q3));
 
   wire [1:0] largest = y_over_x_q3 ? (z_over_y_q3 ? 2'd2 : 2'd1) : (z_over_x_q3 ? 2'd2 : 2'd0);
-  cchip_delay #(
-      .WIDTH(8),
-      .DEPTH(SUBSTAGES - 3)
-  ) u_axis (
+  cchip_delay #(.WIDTH(8), .DEPTH(SUBSTAGES - 3)) u_axis (
       .clk(clk),
       .rst(1'b0),
       .d  ({negative_q3, zero_q3, largest}),

@@ -130,11 +130,7 @@ module cchip_get_data #(
   reg [2:0] leaf_beat_q;
   wire [1:0] queue_valid, queue_take, leaf_queue_valid, leaf_queue_take;
   wire [2*PLACE_W-1:0] queue_place, leaf_queue_place;
-  cchip_line_pairs #(
-      .PAIRS  (PAIRS),
-      .LEAVES (LEAVES),
-      .PLACE_W(PLACE_W)
-  ) u_pairs (
+  cchip_line_pairs #(.PAIRS(PAIRS), .LEAVES(LEAVES), .PLACE_W(PLACE_W)) u_pairs (
       .clk         (clk),
       .rst         (rst),
       .s_valid     (s_line_valid),
@@ -287,10 +283,7 @@ module cchip_get_data #(
   wire unused = &{1'b0, asked_a, asked_b, hold_record_q};
 
   // ---- what the lines say, and the record of the pair whose verdict has come
-  cchip_node_check #(
-      .QUERIES(QUERIES),
-      .PLACE_W(PLACE_W)
-  ) u_check (
+  cchip_node_check #(.QUERIES(QUERIES), .PLACE_W(PLACE_W)) u_check (
       .clk         (clk),
       .rst         (rst),
       .s_valid     (fresh_q & pair_valid_q),

@@ -56,11 +56,7 @@ module cchip_leaf_queue #(
 
   wire ready, queue_valid, load;
   wire [ENTRY_W-1:0] queue_entry;
-  cchip_fifo #(
-      .WIDTH     (ENTRY_W),
-      .DEPTH     (DEPTH),
-      .ROOM_KNOWN(1)
-  ) u_fifo (
+  cchip_fifo #(.WIDTH(ENTRY_W), .DEPTH(DEPTH), .ROOM_KNOWN(1)) u_fifo (
       .clk    (clk),
       .rst    (rst),
       .s_valid(s_valid),
@@ -87,12 +83,7 @@ module cchip_leaf_queue #(
   wire [15:0] rest;  // without its first pair
   wire [3:0] number;  // of that
   wire more;  // there are others
-  cchip_first_pair u_first (
-      .pairs  (left_q),
-      .first  (number),
-      .rest   (rest),
-      .several(more)
-  );
+  cchip_first_pair u_first (.pairs(left_q), .first(number), .rest(rest), .several(more));
   wire taken = (valid_q & m_ready) | (drop_q & m_drop_ready);
   assign load = ~work_q;
 
@@ -103,9 +94,7 @@ module cchip_leaf_queue #(
   wire credit, unused_outside;
   wire [$clog2(CREDIT+1)-1:0] unused_count;
   wire spend = judge & live & credit;
-  cchip_count #(
-      .LIMIT(CREDIT)
-  ) u_credit (
+  cchip_count #(.LIMIT(CREDIT)) u_credit (
       .clk  (clk),
       .rst  (rst),
       .up   (spend),

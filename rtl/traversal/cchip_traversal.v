@@ -222,20 +222,13 @@ module cchip_traversal #(
   // ---- stages 2 to 5: it passes on
   wire [RECORD_W-1:0] record5;
   wire [NODES_W-1:0] nodes4;
-  cchip_delay #(
-      .WIDTH(1),
-      .DEPTH(4),
-      .RESET(1)
-  ) u_valid (
+  cchip_delay #(.WIDTH(1), .DEPTH(4), .RESET(1)) u_valid (
       .clk(clk),
       .rst(rst),
       .d  (valid1),
       .q  (valid5)
   );
-  cchip_delay #(
-      .WIDTH(5 + CONTEXT_W + PLACE_W + 9),
-      .DEPTH(4)
-  ) u_event (
+  cchip_delay #(.WIDTH(5 + CONTEXT_W + PLACE_W + 9), .DEPTH(4)) u_event (
       .clk(clk),
       .rst(1'b0),
       .d  ({judge1, is1, context1, place1, result1}),
@@ -257,19 +250,13 @@ module cchip_traversal #(
       .m_room       (room5)
   );
   // a clock later than what is looked up
-  cchip_delay #(
-      .WIDTH(RECORD_W),
-      .DEPTH(5)
-  ) u_record (
+  cchip_delay #(.WIDTH(RECORD_W), .DEPTH(5)) u_record (
       .clk(clk),
       .rst(1'b0),
       .d  (lookup_record),
       .q  (record5)
   );
-  cchip_delay #(
-      .WIDTH(NODES_W),
-      .DEPTH(4)
-  ) u_nodes (
+  cchip_delay #(.WIDTH(NODES_W), .DEPTH(4)) u_nodes (
       .clk(clk),
       .rst(1'b0),
       .d  (lookup_nodes),
@@ -292,11 +279,7 @@ module cchip_traversal #(
   wire epoch_write;
   wire [CONTEXT_W-1:0] epoch_context;
   wire [EPOCH_W-1:0] epoch;
-  cchip_traversal_contexts #(
-      .QUERIES(QUERIES),
-      .STACK  (STACK),
-      .WORK_W (WORK_W)
-  ) u_contexts (
+  cchip_traversal_contexts #(.QUERIES(QUERIES), .STACK(STACK), .WORK_W(WORK_W)) u_contexts (
       .clk          (clk),
       .rst          (rst),
       .running      (running),
@@ -327,10 +310,7 @@ module cchip_traversal #(
   );
 
   // ---- stages 5 to 7: what happens
-  cchip_traversal_decision #(
-      .STACK (STACK),
-      .WORK_W(WORK_W)
-  ) u_decision (
+  cchip_traversal_decision #(.STACK(STACK), .WORK_W(WORK_W)) u_decision (
       .clk            (clk),
       .rst            (rst),
       .pairs_each     (pairs_each),
@@ -409,11 +389,7 @@ module cchip_traversal #(
   assign m_start_query   = query;
 
   wire done_ready;
-  cchip_fifo #(
-      .WIDTH     (32 + `CCHIP_QUERY_END_W),
-      .DEPTH     (ANSWERS),
-      .ROOM_KNOWN(1)
-  ) u_done (
+  cchip_fifo #(.WIDTH(32 + `CCHIP_QUERY_END_W), .DEPTH(ANSWERS), .ROOM_KNOWN(1)) u_done (
       .clk    (clk),
       .rst    (rst),
       .s_valid(ends8),

@@ -80,10 +80,7 @@ module cchip_block_ram #(
         end else begin : gen_port_b
           assign found[BITS*b+:BITS] = q[18+:BITS];
         end
-        cchip_dp16kd #(
-            .WIDTH_A(WRITTEN),
-            .WIDTH_B(BITS)
-        ) u_block (
+        cchip_dp16kd #(.WIDTH_A(WRITTEN), .WIDTH_B(BITS)) u_block (
             .clk   (clk),
             .write (write),
             .addr_a(write_bit),

@@ -65,10 +65,7 @@ module cchip_dual_ram #(
         end
         assign found_a[BITS*b+:BITS] = q_a[BITS-1:0];
         assign found_b[BITS*b+:BITS] = q_b[BITS-1:0];
-        cchip_dp16kd #(
-            .WIDTH_A(BITS),
-            .WIDTH_B(BITS)
-        ) u_block (
+        cchip_dp16kd #(.WIDTH_A(BITS), .WIDTH_B(BITS)) u_block (
             .clk   (clk),
             .write (write),
             .addr_a(bit_a),
