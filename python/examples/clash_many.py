@@ -7,7 +7,7 @@ touch, the workers test them. RESULT gets a line for each pair that touches, lie
 clearance apart: a, b, relation and face pairs in contact of the surfaces, solids (how they lie to each other as solids;
 empty if one of them is not closed), distance of the surfaces (empty above the clearance). It is Parquet if its name ends in .parquet and pyarrow is
 there, CSV otherwise. SCHEDULER is the address of a Dask scheduler; without it two workers are started here. Needs
-collisionchip, distributed and trimesh (which reads the files).
+collide_dask.py beside it, collisionchip, distributed and trimesh (which reads the files).
 Exit codes: 0 no two parts cross or share volume, 1 some do, 2 wrong arguments, fewer than two mesh files, no scheduler or no place for RESULT, 3 some files cannot be
 used and were left out."""
 import argparse
@@ -22,7 +22,7 @@ import trimesh
 from distributed import Client, LocalCluster
 
 from collisionchip import Object, collide
-from collisionchip.distributed import relate_pairs
+from collide_dask import relate_pairs
 
 COLUMNS = ("a", "b", "relation", "contacts", "solids", "distance")
 

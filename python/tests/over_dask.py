@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""collisionchip.distributed over a scheduler and two worker processes on loopback, workers killed in the middle.
+"""examples/collide_dask.py over a scheduler and two worker processes on loopback, workers killed in the middle.
 
 usage: over_dask.py [QUERIES] [--speed]      (default 200000; CCHIP_SEED repeats a run)
 
@@ -8,6 +8,7 @@ Compares collide_many() over Dask with collide_many() here: hits, and every cont
 workers are killed; then clash_many.py with all pairs here. --speed only measures, with all contacts: one thread here, one worker and two in turns. The last line is
 `queries=N differing=N lost=N`. Exit code 1 if an answer differs or is missing, or no worker was killed."""
 import csv
+import importlib.util
 import os
 import pathlib
 import signal
@@ -23,10 +24,17 @@ import trimesh
 from distributed import Client, LocalCluster
 
 import collisionchip
-from collisionchip import distributed
 from shapes import SEED, poses, torus
 
-EXAMPLE = pathlib.Path(__file__).parents[1] / "examples/clash_many.py"
+EXAMPLES = pathlib.Path(__file__).parents[1] / "examples"
+
+
+def load_example():
+    """collide_dask.py, without its folder in sys.path: workers have the same path, and would find the file though nobody sent it."""
+    spec = importlib.util.spec_from_file_location("collide_dask", EXAMPLES / "collide_dask.py")
+    sys.modules[spec.name] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(sys.modules[spec.name])
+    return sys.modules[spec.name]
 
 
 def cluster(workers):
@@ -53,7 +61,7 @@ def over_dask(client, count, *arguments, **options):
     running.set()
     killer = threading.Thread(target=lambda: killed.append(kill(client, running, count)))
     killer.start()
-    found = distributed.collide_many(client, *arguments, **options)
+    found = collide_dask.collide_many(client, *arguments, **options)
     running.clear()
     killer.join()
     return found, killed[0]
@@ -66,7 +74,7 @@ def clashes(client, random):
         mesh = trimesh.Trimesh(*torus(1, 0.3, 16, 6), process=False)
         for i, pose in enumerate(poses(random, 30, 3)):
             mesh.copy().apply_transform(pose).export(folder / f"part{i:02}.stl")
-        done = subprocess.run([sys.executable, EXAMPLE, folder, folder / "clashes.csv", client.scheduler.address],
+        done = subprocess.run([sys.executable, EXAMPLES / "clash_many.py", folder, folder / "clashes.csv", client.scheduler.address],
                               stdout=subprocess.PIPE, text=True)
         print(done.stdout, end="")
         with open(folder / "clashes.csv", newline="") as file:
@@ -92,7 +100,7 @@ def speed(mesh, where_a, where_b):
         if client is None:
             collisionchip.collide_many(here, where_a, here, where_b, contacts=True, device=device)
         else:
-            distributed.collide_many(client, mesh, where_a, mesh, where_b, contacts=True, chunk=-(-len(where_a) // 20))
+            collide_dask.collide_many(client, mesh, where_a, mesh, where_b, contacts=True, chunk=-(-len(where_a) // 20))
         times[workers].append(time.perf_counter() - start)
 
     with cluster(1) as one, cluster(2) as two, Client(one) as client1, Client(two) as client2:
@@ -100,7 +108,7 @@ def speed(mesh, where_a, where_b):
             for workers, client in ((0, None), (1, client1), (2, client2)):
                 run(workers, client)
         start = time.perf_counter()
-        distributed.collide_many(client2, mesh, None, mesh, where_b[:2000], chunk=1)
+        collide_dask.collide_many(client2, mesh, None, mesh, where_b[:2000], chunk=1)
         tasks = 2000 / (time.perf_counter() - start)
     none, one, two = (statistics.median(times[workers][1:]) for workers in (0, 1, 2))  # the first builds the objects
     print(f"queries={len(where_a)} us_per_query={none / len(where_a) * 1e6:.1f} one_thread={none:.2f}s one_worker={one:.2f}s two_workers={two:.2f}s "
@@ -141,8 +149,8 @@ def main():
         # both: the meshes are nowhere any more and are sent again
         again, all_killed = over_dask(client, 2, mesh, where_a[part], mesh, where_b[part], contacts=True, chunk=chunk)
         print(f"seed={SEED} hits={int(again[0].sum())} killed_workers={len(all_killed)}", flush=True)
-        hits = distributed.collide_many(client, mesh, where_a, mesh, where_b)
-        one = distributed.collide_many(client, mesh, None, mesh, where_b[:10], chunk=3)
+        hits = collide_dask.collide_many(client, mesh, where_a, mesh, where_b)
+        one = collide_dask.collide_many(client, mesh, None, mesh, where_b[:10], chunk=3)
         unlike, pairs = clashes(client, random)
     lost = abs(len(hits) - count) + sum(abs(len(x[0]) - count // 4) for x in (found, again))
     differing = unlike
@@ -159,4 +167,5 @@ def main():
 
 
 if __name__ == "__main__":
+    collide_dask = load_example()  # here: what is above is run on the workers, too
     sys.exit(main())

@@ -27,10 +27,7 @@ module cchip_cross3 #(
   wire [3*E_W-1:0] a_in, b_in;
   reg  [3*P_W-1:0] difference_q;
 
-  cchip_delay #(
-      .WIDTH(6 * E_W),
-      .DEPTH(OPERAND_REGS)
-  ) u_operand (
+  cchip_delay #(.WIDTH(6 * E_W), .DEPTH(OPERAND_REGS)) u_operand (
       .clk(clk),
       .rst(1'b0),
       .d  ({a, b}),
@@ -43,21 +40,13 @@ module cchip_cross3 #(
       localparam integer U = (d + 1) % 3;
       localparam integer V = (d + 2) % 3;
       wire [P_W-1:0] uv, vu;
-      cchip_mul_wide #(
-          .A_W(E_W),
-          .B_W(E_W),
-          .PRODUCT_REGS(PRODUCT_REGS)
-      ) u_uv (
+      cchip_mul_wide #(.A_W(E_W), .B_W(E_W), .PRODUCT_REGS(PRODUCT_REGS)) u_uv (
           .clk(clk),
           .a  (a_in[E_W*U+:E_W]),
           .b  (b_in[E_W*V+:E_W]),
           .p  (uv)
       );
-      cchip_mul_wide #(
-          .A_W(E_W),
-          .B_W(E_W),
-          .PRODUCT_REGS(PRODUCT_REGS)
-      ) u_vu (
+      cchip_mul_wide #(.A_W(E_W), .B_W(E_W), .PRODUCT_REGS(PRODUCT_REGS)) u_vu (
           .clk(clk),
           .a  (a_in[E_W*V+:E_W]),
           .b  (b_in[E_W*U+:E_W]),
@@ -67,10 +56,7 @@ module cchip_cross3 #(
     end
   endgenerate
 
-  cchip_delay #(
-      .WIDTH(3 * P_W),
-      .DEPTH(RESULT_REGS)
-  ) u_result (
+  cchip_delay #(.WIDTH(3 * P_W), .DEPTH(RESULT_REGS)) u_result (
       .clk(clk),
       .rst(1'b0),
       .d  (difference_q),

@@ -28,10 +28,7 @@ module cchip_dot3 #(
   wire [3*B_W-1:0] b_in;
   wire [3*P_W-1:0] product;
 
-  cchip_delay #(
-      .WIDTH(3 * (A_W + B_W)),
-      .DEPTH(OPERAND_REGS)
-  ) u_operand (
+  cchip_delay #(.WIDTH(3 * (A_W + B_W)), .DEPTH(OPERAND_REGS)) u_operand (
       .clk(clk),
       .rst(1'b0),
       .d  ({a, b}),
@@ -41,11 +38,7 @@ module cchip_dot3 #(
   genvar d;
   generate
     for (d = 0; d < 3; d = d + 1) begin : gen_component
-      cchip_mul_wide #(
-          .A_W(A_W),
-          .B_W(B_W),
-          .PRODUCT_REGS(PRODUCT_REGS)
-      ) u_mul (
+      cchip_mul_wide #(.A_W(A_W), .B_W(B_W), .PRODUCT_REGS(PRODUCT_REGS)) u_mul (
           .clk(clk),
           .a  (a_in[A_W*d+:A_W]),
           .b  (b_in[B_W*d+:B_W]),
@@ -61,10 +54,7 @@ module cchip_dot3 #(
     sum_q <= xy_q + z_q;
   end
 
-  cchip_delay #(
-      .WIDTH(P_W),
-      .DEPTH(RESULT_REGS)
-  ) u_result (
+  cchip_delay #(.WIDTH(P_W), .DEPTH(RESULT_REGS)) u_result (
       .clk(clk),
       .rst(1'b0),
       .d  (sum_q),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_mul18: 18x18 multiplier leaf, one multiplier block. p = a * b.
 //   latency      2 clocks (input register, output register)
 //   throughput   one product per clock, never stalls
@@ -19,14 +20,8 @@ module cchip_mul18 #(
     output wire signed [35:0] p
 );
 
-  generate
-    if (SIGNED != 0 && SIGNED != 1) begin : gen_illegal
-      cchip_error_mul18_SIGNED_must_be_0_or_1 u_error ();
-    end
-    if (`CCHIP_MUL18_LATENCY != 2) begin : gen_illegal_latency
-      cchip_error_mul18_needs_CCHIP_MUL18_LATENCY_2 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SIGNED != 0 && SIGNED != 1, cchip_error_mul18_SIGNED_must_be_0_or_1)
+  `CCHIP_REFUSE(`CCHIP_MUL18_LATENCY != 2, cchip_error_mul18_needs_CCHIP_MUL18_LATENCY_2)
 
   reg signed [17:0] a_q, b_q;
   (* use_dsp = "yes" *)

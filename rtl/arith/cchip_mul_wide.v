@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_mul_wide: signed A_W x B_W multiplier from 18x18 leaves. p = a * b.
 //   latency      CCHIP_MUL_LATENCY(A_W, B_W) + PRODUCT_REGS clocks
 //   throughput   one product per clock, never stalls
@@ -35,11 +36,8 @@ module cchip_mul_wide #(
   localparam integer AX_W = LIMB * (LA - 1) + 18;
   localparam integer BX_W = LIMB * (LB - 1) + 18;
 
-  generate
-    if (A_W < 2 || A_W > 52 || B_W < 2 || B_W > 52 || PRODUCT_REGS < 0) begin : gen_illegal
-      cchip_error_mul_wide_A_W_and_B_W_must_be_2_to_52 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(A_W < 2 || A_W > 52 || B_W < 2 || B_W > 52 || PRODUCT_REGS < 0,
+                cchip_error_mul_wide_A_W_and_B_W_must_be_2_to_52)
 
   wire [AX_W-1:0] ax = {{AX_W - A_W + 1{a[A_W-1]}}, a[A_W-2:0]};
   wire [BX_W-1:0] bx = {{BX_W - B_W + 1{b[B_W-1]}}, b[B_W-2:0]};
@@ -64,16 +62,8 @@ module cchip_mul_wide #(
         end else begin : gen_low_b
           assign y = {1'b0, bx[LIMB*j+:LIMB]};
         end
-        cchip_mul18 u_mul (
-            .clk(clk),
-            .a  (x),
-            .b  (y),
-            .p  (leaf)
-        );
-        cchip_delay #(
-            .WIDTH(36),
-            .DEPTH(PRODUCT_REGS)
-        ) u_product (
+        cchip_mul18 u_mul (.clk(clk), .a(x), .b(y), .p(leaf));
+        cchip_delay #(.WIDTH(36), .DEPTH(PRODUCT_REGS)) u_product (
             .clk(clk),
             .rst(1'b0),
             .d  (leaf),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_round_shift: division by a power of two, rounded to nearest, halves up.
 // q = floor(d 2^-(BASE + s) + 1/2), q = d if BASE + s is 0.
 //   latency      3 clocks
@@ -29,17 +30,11 @@ module cchip_round_shift #(
   localparam integer HALF = SHIFT_W / 2;  // bits of s for the second clock
   localparam integer V_W = D_W - BASE + 1;  // with one bit below the point
 
-  generate
-    if (D_W < 2 || D_W > 64 || BASE < 0 || BASE > D_W - 1) begin : gen_illegal_d
-      cchip_error_round_shift_D_W_must_be_2_to_64_and_BASE_below_it u_error ();
-    end
-    if (SHIFT_MAX < 2 || SHIFT_MAX > 63) begin : gen_illegal_shift
-      cchip_error_round_shift_SHIFT_MAX_must_be_2_to_63 u_error ();
-    end
-    if (Q_W < 1 || Q_W > V_W) begin : gen_illegal_q
-      cchip_error_round_shift_Q_W_must_be_1_to_D_W_minus_BASE_plus_1 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(D_W < 2 || D_W > 64 || BASE < 0 || BASE > D_W - 1,
+                cchip_error_round_shift_D_W_must_be_2_to_64_and_BASE_below_it)
+  `CCHIP_REFUSE(SHIFT_MAX < 2 || SHIFT_MAX > 63, cchip_error_round_shift_SHIFT_MAX_must_be_2_to_63)
+  `CCHIP_REFUSE(Q_W < 1 || Q_W > V_W,
+                cchip_error_round_shift_Q_W_must_be_1_to_D_W_minus_BASE_plus_1)
 
   wire signed [V_W-1:0] start;
   wire start_lost;

@@ -221,11 +221,7 @@ module cchip_bv_feed #(
   assign b_child13  = b_word_q13[101:0];
   assign b_about13  = b_word_q13[105:102];
   assign b_coarse13 = b_word_q13[106];
-  cchip_block_ram #(
-      .WIDTH (WORD_W),
-      .WORDS (4),
-      .ADDR_W(6)
-  ) u_a (
+  cchip_block_ram #(.WIDTH(WORD_W), .WORDS(4), .ADDR_W(6)) u_a (
       .clk       (clk),
       .write     (first_q[1]),
       .write_addr(place_q),
@@ -233,11 +229,7 @@ module cchip_bv_feed #(
       .read_addr ({a_place_q7, a_number_q[11:10]}),
       .read_data (a_word9)
   );
-  cchip_block_ram #(
-      .WIDTH (WORD_W),
-      .WORDS (4),
-      .ADDR_W(6)
-  ) u_b (
+  cchip_block_ram #(.WIDTH(WORD_W), .WORDS(4), .ADDR_W(6)) u_b (
       .clk       (clk),
       .write     (first_q[1]),
       .write_addr(place_q),
@@ -260,10 +252,7 @@ module cchip_bv_feed #(
         ({1'd0, a_number_of_q1, 1'd0} & {5{b_number_of_q1[1]}}) +
         ({a_number_of_q1, 2'd0} & {5{b_number_of_q1[2]}});
   end
-  cchip_block_ram #(
-      .WIDTH (TAG_W + 5),
-      .ADDR_W(4)
-  ) u_about (
+  cchip_block_ram #(.WIDTH(TAG_W + 5), .ADDR_W(4)) u_about (
       .clk       (clk),
       .write     (s_valid),
       .write_addr(place_q),

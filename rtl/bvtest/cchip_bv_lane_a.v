@@ -31,11 +31,7 @@ module cchip_bv_lane_a (
 );
 
   // The clocks below are counted for a leaf of two.
-  generate
-    if (`CCHIP_MUL18_LATENCY != 2) begin : gen_illegal_latency
-      cchip_error_bv_lane_a_needs_CCHIP_MUL18_LATENCY_2 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(`CCHIP_MUL18_LATENCY != 2, cchip_error_bv_lane_a_needs_CCHIP_MUL18_LATENCY_2)
 
   // ---- clock 0: sum and difference of opposite corners are centre and half size in half steps
   wire [41:0] box = child[41:0];
@@ -110,12 +106,7 @@ module cchip_bv_lane_a (
           one_q3 <= ~m[18] & m[17];
           one_q4 <= one_q3;
         end
-        cchip_mul18 u_mul (
-            .clk(clk),
-            .a  (m[17:0]),
-            .b  (centre2[j]),
-            .p  (p)
-        );
+        cchip_mul18 u_mul (.clk(clk), .a(m[17:0]), .b(centre2[j]), .p(p));
         assign term4[j] = one_q4 ? {centre4[j][12], centre4[j], 1'b0} : p[30:16];
         wire unused = &{1'b0, p[35:31], p[15:0]};
 `ifndef SYNTHESIS
@@ -232,9 +223,7 @@ module cchip_bv_lane_a (
         reg [10:0] cut_q5, cut_q6;
         reg signed [17:0] extent_q7;
         wire signed [35:0] p;
-        cchip_mul18 #(
-            .SIGNED(0)
-        ) u_mul (
+        cchip_mul18 #(.SIGNED(0)) u_mul (
             .clk(clk),
             .a  ({factor[13:7], 4'd0, factor[6:0]}),
             .b  ({3'd0, face_q2, 7'd0, corner_q2}),

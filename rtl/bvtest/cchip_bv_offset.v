@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_bv_offset: places a node pair on its grid: where A's node lies from B's, and how the steps
 // of the two relate.
 //   rule         the grid's step is A's unless B's is much coarser; one slack covers all roundings
@@ -31,11 +32,7 @@ module cchip_bv_offset (
 );
 
   // The clocks below are counted for a leaf of two.
-  generate
-    if (`CCHIP_MUL18_LATENCY != 2) begin : gen_illegal_latency
-      cchip_error_bv_offset_needs_CCHIP_MUL18_LATENCY_2 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(`CCHIP_MUL18_LATENCY != 2, cchip_error_bv_offset_needs_CCHIP_MUL18_LATENCY_2)
 
   // ---- clocks 0 to 4: e = log2 (B's step / A's), scales, and the grid's step, -1..18
   reg start_q1, start_q2, start_q3;
@@ -152,12 +149,7 @@ module cchip_bv_offset (
         again_q2  <= origin_q1 & {18{one_q1}};
       end
       assign again2[j] = again_q2;
-      cchip_mul18 u_mul (
-          .clk(clk),
-          .a  (m[17:0]),
-          .b  (a_origin[18*j+:18]),
-          .p  (p)
-      );
+      cchip_mul18 u_mul (.clk(clk), .a(m[17:0]), .b(a_origin[18*j+:18]), .p(p));
       assign term2[j] = {p[35], p};
     end
   endgenerate

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_bv_pose: sets up the poses of the queries and keeps them for the box test.
 //   latency      21 clocks from an accepted pose to m_pose_valid, while all of it is in memory;
 //                2 clocks from row_context to a row, 3 from lane_context to pose_select, and 4
@@ -43,11 +44,8 @@ module cchip_bv_pose #(
 
   localparam integer CONTEXT_W = $clog2(QUERIES);
   localparam [3:0] LAST = 4'd12;
-  generate
-    if (QUERIES != 2 && QUERIES != 4 && QUERIES != 8 && QUERIES != 16) begin : gen_illegal
-      cchip_error_bv_QUERIES_must_be_2_4_8_or_16 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(QUERIES != 2 && QUERIES != 4 && QUERIES != 8 && QUERIES != 16,
+                cchip_error_bv_QUERIES_must_be_2_4_8_or_16)
 
   // ---- set-up
   wire set_valid;
@@ -111,11 +109,7 @@ module cchip_bv_pose #(
       end
     end
   endgenerate
-  cchip_block_ram #(
-      .WIDTH (97),
-      .WORDS (4),
-      .ADDR_W(CONTEXT_W + 2)
-  ) u_rows (
+  cchip_block_ram #(.WIDTH(97), .WORDS(4), .ADDR_W(CONTEXT_W + 2)) u_rows (
       .clk       (clk),
       .write     (start_q),
       .write_addr(set_context_q),
@@ -143,10 +137,7 @@ module cchip_bv_pose #(
     lane_addr_q  <= lane_addr;
     lane_addr_q2 <= lane_addr_q;
   end
-  cchip_block_ram #(
-      .WIDTH (171),
-      .ADDR_W(ADDR_W)
-  ) u_m (
+  cchip_block_ram #(.WIDTH(171), .ADDR_W(ADDR_W)) u_m (
       .clk       (clk),
       .write     (start_q),
       .write_addr(set_addr),
@@ -182,10 +173,7 @@ module cchip_bv_pose #(
       end
       assign pose_select[7*d+:7]    = read_select_q;
       assign pose_factor[14*d+6+:8] = high_q2;
-      cchip_block_ram #(
-          .WIDTH (15),
-          .ADDR_W(ADDR_W)
-      ) u_early (
+      cchip_block_ram #(.WIDTH(15), .ADDR_W(ADDR_W)) u_early (
           .clk       (clk),
           .write     (write_q[d]),
           .write_addr(write_addr_q),
@@ -193,10 +181,7 @@ module cchip_bv_pose #(
           .read_addr (lane_addr),
           .read_data ({high, select})
       );
-      cchip_block_ram #(
-          .WIDTH (36),
-          .ADDR_W(ADDR_W)
-      ) u_late (
+      cchip_block_ram #(.WIDTH(36), .ADDR_W(ADDR_W)) u_late (
           .clk       (clk),
           .write     (write_q[d]),
           .write_addr(write_addr_q),

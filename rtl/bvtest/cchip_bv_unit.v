@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_bv_unit: the whole box test: which children of a node of A may meet which children of a
 // node of B, which of these child pairs go on, and which is the best of them.
 //   latency      30 clocks from the clock of s_ready to the verdict; 21 clocks from a pose that is
@@ -51,11 +52,7 @@ module cchip_bv_unit #(
 );
 
   localparam integer CONTEXT_W = $clog2(QUERIES);
-  generate
-    if (TAG_W < 1) begin : gen_illegal
-      cchip_error_bv_unit_TAG_W_below_1 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(TAG_W < 1, cchip_error_bv_unit_TAG_W_below_1)
 
   // ---- numbers in names: clocks from the first one of a node pair
   wire [CONTEXT_W-1:0] row_context0, lane_context8;
@@ -66,10 +63,7 @@ module cchip_bv_unit #(
   wire [101:0] a_child10, b_child13;
   wire [3:0] a_about10, b_about13;
   wire a_coarse11, b_coarse13;
-  cchip_bv_feed #(
-      .QUERIES(QUERIES),
-      .TAG_W  (TAG_W)
-  ) u_feed (
+  cchip_bv_feed #(.QUERIES(QUERIES), .TAG_W(TAG_W)) u_feed (
       .clk          (clk),
       .rst          (rst),
       .s_valid      (s_valid),
@@ -111,9 +105,7 @@ module cchip_bv_unit #(
   wire [170:0] pose_m12;
   wire [389:0] pose_magnitude12;
   wire [181:0] pose_factor12;
-  cchip_bv_pose #(
-      .QUERIES(QUERIES)
-  ) u_pose (
+  cchip_bv_pose #(.QUERIES(QUERIES)) u_pose (
       .clk           (clk),
       .rst           (rst),
       .s_pose_valid  (s_pose_valid),

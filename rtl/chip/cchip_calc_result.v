@@ -73,24 +73,17 @@ module cchip_calc_result #(
 
   localparam integer LEAF_W = $clog2(LEAVES);
 
-  generate
-    if (LEAVES < 4 || LEAVES > 256 || (1 << LEAF_W) != LEAVES) begin : gen_illegal_leaves
-      cchip_error_calc_result_LEAVES_must_be_a_power_of_two_4_to_256 u_error ();
-    end
-    if (JUDGED < 2 || JUDGED > 64 || CONTEXT_W < 1) begin : gen_illegal_judged
-      cchip_error_calc_result_JUDGED_must_be_2_to_64_and_CONTEXT_W_positive u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(LEAVES < 4 || LEAVES > 256 || (1 << LEAF_W) != LEAVES,
+                cchip_error_calc_result_LEAVES_must_be_a_power_of_two_4_to_256)
+  `CCHIP_REFUSE(JUDGED < 2 || JUDGED > 64 || CONTEXT_W < 1,
+                cchip_error_calc_result_JUDGED_must_be_2_to_64_and_CONTEXT_W_positive)
 
   // ---- numbers
   wire number_valid;
   wire take = s_begin_valid & s_begin_ready;
   reg back_valid_q;
   reg [LEAF_W-1:0] back_number_q;
-  cchip_pool #(
-      .COUNT(LEAVES),
-      .WIDTH(LEAF_W)
-  ) u_numbers (
+  cchip_pool #(.COUNT(LEAVES), .WIDTH(LEAF_W)) u_numbers (
       .clk        (clk),
       .rst        (rst),
       .m_valid    (number_valid),
@@ -150,11 +143,7 @@ module cchip_calc_result #(
   wire [CONTEXT_W-1:0] whole_context;
   wire [3:0] whole_definite, whole_hits;
   wire room, sent;
-  cchip_fifo #(
-      .WIDTH     (WHOLE_W),
-      .DEPTH     (LEAVES),
-      .ROOM_KNOWN(1)
-  ) u_whole (
+  cchip_fifo #(.WIDTH(WHOLE_W), .DEPTH(LEAVES), .ROOM_KNOWN(1)) u_whole (
       .clk    (clk),
       .rst    (rst),
       .s_valid(push_q),
@@ -181,9 +170,7 @@ module cchip_calc_result #(
   wire [LEAF_W-1:0] sent_number;
   wire [3:0] sent_definite, sent_hits;
   wire [31:0] tag;
-  cchip_count #(
-      .LIMIT(JUDGED)
-  ) u_room (
+  cchip_count #(.LIMIT(JUDGED)) u_room (
       .clk  (clk),
       .rst  (rst),
       .up   (sent),
@@ -192,11 +179,7 @@ module cchip_calc_result #(
       .some (judged_some),
       .room (room)
   );
-  cchip_fifo #(
-      .WIDTH     (LEAF_W + 8),
-      .DEPTH     (JUDGED),
-      .ROOM_KNOWN(1)
-  ) u_sent (
+  cchip_fifo #(.WIDTH(LEAF_W + 8), .DEPTH(JUDGED), .ROOM_KNOWN(1)) u_sent (
       .clk    (clk),
       .rst    (rst),
       .s_valid(sent),
@@ -206,11 +189,7 @@ module cchip_calc_result #(
       .m_ready(emitted),
       .m_data ({sent_number, sent_definite, sent_hits})
   );
-  cchip_fifo #(
-      .WIDTH     (33),
-      .DEPTH     (JUDGED),
-      .ROOM_KNOWN(1)
-  ) u_judged (
+  cchip_fifo #(.WIDTH(33), .DEPTH(JUDGED), .ROOM_KNOWN(1)) u_judged (
       .clk    (clk),
       .rst    (rst),
       .s_valid(s_judged_valid),
@@ -229,10 +208,7 @@ module cchip_calc_result #(
   reg [LEAF_W+1:0] face_q;
   reg [`CCHIP_PAIR_RECORD_W-1:0] record_q;
   wire [63:0] faces;
-  cchip_block_ram #(
-      .WIDTH (64),
-      .ADDR_W(LEAF_W + 2)
-  ) u_faces (
+  cchip_block_ram #(.WIDTH(64), .ADDR_W(LEAF_W + 2)) u_faces (
       .clk       (clk),
       .write     (s_faces_valid),
       .write_addr(s_faces_pair),

@@ -197,11 +197,7 @@ module cchip_chip #(
   // it is a command: after a reset the cache clears itself, which ends without an event
   reg commanded_q;
   wire regs_rst;  // a clock later, as those of the other blocks
-  cchip_reset_copy u_regs_reset (
-      .clk     (clk),
-      .rst     (rst),
-      .rst_copy(regs_rst)
-  );
+  cchip_reset_copy u_regs_reset (.clk(clk), .rst(rst), .rst_copy(regs_rst));
   cchip_chip_regs u_regs (
       .clk                                 (clk),
       .rst                                 (regs_rst),

@@ -184,18 +184,11 @@ module cchip_chip_core #(
   localparam integer BEAT_ADDRESS_W = 64 - $clog2(DATA_W / 8);
   localparam integer LEAF_RESULT_W = `CCHIP_LEAF_RESULT_W(CONTEXT_W);
 
-  generate
-    if (MISSES < 4) begin : gen_illegal_misses
-      cchip_error_chip_core_MISSES_must_be_4_8_16_or_32 u_error ();
-    end
-    if (RM_ID < 0 || RM_ID > 3 || (SWAPS == 0 && RM_ID == 0)) begin : gen_illegal_module
-      cchip_error_chip_core_RM_ID_must_be_1_to_3 u_error ();
-    end
-    if (QUEUE_DEPTH < 16 || QUEUE_DEPTH > 256 || (1 << $clog2(QUEUE_DEPTH)) != QUEUE_DEPTH)
-    begin : gen_illegal_depth
-      cchip_error_chip_core_QUEUE_DEPTH_must_be_a_power_of_two_16_to_256 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(MISSES < 4, cchip_error_chip_core_MISSES_must_be_4_8_16_or_32)
+  `CCHIP_REFUSE(RM_ID < 0 || RM_ID > 3 || (SWAPS == 0 && RM_ID == 0),
+                cchip_error_chip_core_RM_ID_must_be_1_to_3)
+  `CCHIP_REFUSE(QUEUE_DEPTH < 16 || QUEUE_DEPTH > 256 || (1 << $clog2(QUEUE_DEPTH)) != QUEUE_DEPTH,
+                cchip_error_chip_core_QUEUE_DEPTH_must_be_a_power_of_two_16_to_256)
 
   // ---- resets: a flip-flop for each block, because one net would have thousands of pins. All
   // blocks leave their reset on the same clock; cchip_broad_phase has flip-flops of its own
@@ -224,11 +217,7 @@ module cchip_chip_core #(
   wire [`CCHIP_READ_CODE_W-1:0] beat_code;
   wire [DATA_W-1:0] beat_data;
   wire [2*MISSES-1:0] outstanding_reads;
-  cchip_axi_read #(
-      .CLIENTS(2),
-      .SLOTS  (MISSES),
-      .DATA_W (DATA_W)
-  ) u_read (
+  cchip_axi_read #(.CLIENTS(2), .SLOTS(MISSES), .DATA_W(DATA_W)) u_read (
       .clk          (clk),
       .rst          (block_rst[READ]),
       .limit        (memory_limit),
@@ -263,11 +252,7 @@ module cchip_chip_core #(
   // ---- queries
   wire query_valid, query_ready, queries_idle;
   wire [`CCHIP_QUERY_W-1:0] query;
-  cchip_query_ring #(
-      .SLOTS (MISSES),
-      .AHEAD (4),
-      .DATA_W(DATA_W)
-  ) u_queries (
+  cchip_query_ring #(.SLOTS(MISSES), .AHEAD(4), .DATA_W(DATA_W)) u_queries (
       .clk          (clk),
       .rst          (block_rst[QUERY_RING]),
       .enable       (enable),
@@ -391,10 +376,7 @@ module cchip_chip_core #(
   wire [11:0] map_error;
   wire [1023:0] feed_lines;
   wire [LEAF_W:0] feed_id;
-  cchip_leaf_feed #(
-      .QUERIES(QUERIES),
-      .LEAF_W (LEAF_W)
-  ) u_feed (
+  cchip_leaf_feed #(.QUERIES(QUERIES), .LEAF_W(LEAF_W)) u_feed (
       .clk            (clk),
       .rst            (block_rst[FEED]),
       .s_start_valid  (start_valid),
@@ -527,10 +509,7 @@ module cchip_chip_core #(
       .m_place(read_place),
       .m_data (descriptor)
   );
-  cchip_block_ram #(
-      .WIDTH (2 * POINT_W),
-      .ADDR_W(PLACE_W + 2)
-  ) u_operands (
+  cchip_block_ram #(.WIDTH(2 * POINT_W), .ADDR_W(PLACE_W + 2)) u_operands (
       .clk       (clk),
       .write     (vertex_valid),
       .write_addr({write_place, vertex_q}),
@@ -613,11 +592,7 @@ module cchip_chip_core #(
   wire [DATA_W-1:0] write_data;
   wire [DATA_W/8-1:0] write_strb;
   wire [`CCHIP_WRITE_CODE_W-1:0] write_code;
-  cchip_calc_result #(
-      .LEAVES   (LEAF_NUMBERS),
-      .CONTEXT_W(CONTEXT_W),
-      .JUDGED   (16)
-  ) u_calc_result (
+  cchip_calc_result #(.LEAVES(LEAF_NUMBERS), .CONTEXT_W(CONTEXT_W), .JUDGED(16)) u_calc_result (
       .clk              (clk),
       .rst              (block_rst[RESULTS]),
       .s_begin_valid    (begin_valid),
@@ -654,9 +629,7 @@ module cchip_chip_core #(
       .m_record_ready   (record_ready),
       .m_record_data    (record)
   );
-  cchip_record_ring #(
-      .DATA_W(DATA_W)
-  ) u_records (
+  cchip_record_ring #(.DATA_W(DATA_W)) u_records (
       .clk          (clk),
       .rst          (block_rst[RECORDS]),
       .base         (record_base),

@@ -54,16 +54,11 @@ module cchip_query_ring #(
   localparam integer BEATS = 512 / DATA_W;
   localparam [31:0] LIMIT = AHEAD;
 
-  generate
-    if (AHEAD < 2 || AHEAD > 8 || (1 << AHEAD_W) != AHEAD || SLOTS < AHEAD || SLOTS > 32 ||
-        (1 << SLOT_W) != SLOTS)
-    begin : gen_illegal_ahead
-      cchip_error_query_ring_AHEAD_must_be_2_4_or_8_and_SLOTS_a_power_of_two_AHEAD_to_32 u_error ();
-    end
-    if (DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W) begin : gen_illegal_width
-      cchip_error_query_ring_DATA_W_must_be_64_128_256_or_512 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(AHEAD < 2 || AHEAD > 8 || (1 << AHEAD_W) != AHEAD || SLOTS < AHEAD || SLOTS > 32 ||
+                (1 << SLOT_W) != SLOTS,
+                cchip_error_query_ring_AHEAD_must_be_2_4_or_8_and_SLOTS_a_power_of_two_AHEAD_to_32)
+  `CCHIP_REFUSE(DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W,
+                cchip_error_query_ring_DATA_W_must_be_64_128_256_or_512)
 
   reg [15:0] asked_q, given_q;  // queries whose line was asked for, that have left
   reg due_q, read_valid_q, failed_q;

@@ -44,11 +44,8 @@ module cchip_record_ring #(
   localparam integer RECORDS = DATA_W / 128;  // of a beat
   localparam integer LANE_W = RECORDS < 2 ? 1 : $clog2(RECORDS);
 
-  generate
-    if (DATA_W != 128 && DATA_W != 256 && DATA_W != 512) begin : gen_illegal
-      cchip_error_record_ring_DATA_W_must_be_128_256_or_512 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(DATA_W != 128 && DATA_W != 256 && DATA_W != 512,
+                cchip_error_record_ring_DATA_W_must_be_128_256_or_512)
 
   reg [31:0] written_q, held_q;  // records given to memory, confirmed by it
   reg failed_q;

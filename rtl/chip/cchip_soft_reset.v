@@ -24,11 +24,7 @@ module cchip_soft_reset #(
   localparam integer COUNT_W = $clog2(CLOCKS);
   localparam [31:0] LAST = CLOCKS - 1;
 
-  generate
-    if (CLOCKS < 2 || CLOCKS > 256) begin : gen_illegal
-      cchip_error_soft_reset_CLOCKS_must_be_2_to_256 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(CLOCKS < 2 || CLOCKS > 256, cchip_error_soft_reset_CLOCKS_must_be_2_to_256)
 
   reg resetting_q, done_q;
   reg [COUNT_W-1:0] quiet_q;  // clocks in a row on which memory owed nothing

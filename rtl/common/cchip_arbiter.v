@@ -19,11 +19,7 @@ module cchip_arbiter #(
     input  wire         take      // the source of grant, if any, is served on this clock
 );
 
-  generate
-    if (N < 1 || N > 32) begin : gen_illegal
-      cchip_error_arbiter_N_must_be_1_to_32 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(N < 1 || N > 32, cchip_error_arbiter_N_must_be_1_to_32)
 
   reg [N-1:0] behind_q;  // sources behind the one served last
 

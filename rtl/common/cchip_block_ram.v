@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // 0 for a tool that infers no ports of different widths from Verilog; Quartus, which defines
 // ALTERA_RESERVED_QIS, is one.
 `ifndef CCHIP_MIXED_WIDTH
@@ -40,14 +41,11 @@ module cchip_block_ram #(
   reg [WIDTH-1:0] read_data_q;
   assign read_data = read_data_q;
 
-  generate
-    if (WIDTH < 1 || ADDR_W < 3 || ADDR_W > 16) begin : gen_illegal
-      cchip_error_block_ram_WIDTH_below_1_or_ADDR_W_not_3_to_16 u_error ();
-    end
-    if (WORDS != 1 && WORDS != 4) begin : gen_illegal_words
-      cchip_error_block_ram_WORDS_must_be_1_or_4 u_error ();
-    end
+  `CCHIP_REFUSE(WIDTH < 1 || ADDR_W < 3 || ADDR_W > 16,
+                cchip_error_block_ram_WIDTH_below_1_or_ADDR_W_not_3_to_16)
+  `CCHIP_REFUSE(WORDS != 1 && WORDS != 4, cchip_error_block_ram_WORDS_must_be_1_or_4)
 
+  generate
     if (WORDS == 1) begin : gen_single
       (* ram_style = "block", ramstyle = "no_rw_check", no_rw_check *)
       reg [WIDTH-1:0] mem [0:(1<<ADDR_W)-1];

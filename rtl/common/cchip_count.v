@@ -26,11 +26,7 @@ module cchip_count #(
   localparam [31:0] LAST = LIMIT - 1;
   localparam [31:0] ONE = 1;
 
-  generate
-    if (LIMIT < 1 || LIMIT > 65535) begin : gen_illegal
-      cchip_error_count_LIMIT_must_be_1_to_65535 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(LIMIT < 1 || LIMIT > 65535, cchip_error_count_LIMIT_must_be_1_to_65535)
 
   reg [COUNT_W-1:0] count_q;
   reg some_q, room_q;

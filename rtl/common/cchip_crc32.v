@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_crc32: CRC-32 of IEEE 802.3 (as in zlib) over a sequence of words, first byte lowest.
 //   latency      1 clock from a word to the CRC of all words up to it
 //   throughput   one word per clock
@@ -17,11 +18,7 @@ module cchip_crc32 #(
     output wire [      31:0] crc
 );
 
-  generate
-    if (DATA_W < 8 || DATA_W % 8 != 0) begin : gen_illegal
-      cchip_error_crc32_DATA_W_must_be_a_multiple_of_8 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(DATA_W < 8 || DATA_W % 8 != 0, cchip_error_crc32_DATA_W_must_be_a_multiple_of_8)
 
   reg [31:0] crc_q;
   assign crc = ~crc_q;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_delay: q is d, DEPTH clocks later.
 //   latency      DEPTH clocks (0 = wire)
 //   throughput   one value per clock, never stalls
@@ -23,14 +24,11 @@ module cchip_delay #(
     output wire [WIDTH-1:0] q
 );
 
+  `CCHIP_REFUSE(WIDTH < 1 || DEPTH < 0 || RESET < 0 || RESET > 1,
+                cchip_error_delay_WIDTH_below_1_or_DEPTH_below_0_or_RESET_not_0_or_1)
+  `CCHIP_REFUSE(MEMORY < 0 || MEMORY > 1 || (MEMORY == 1 && (DEPTH < 3 || RESET == 1)),
+                cchip_error_delay_MEMORY_needs_DEPTH_3_and_RESET_0)
   generate
-    if (WIDTH < 1 || DEPTH < 0 || RESET < 0 || RESET > 1) begin : gen_illegal
-      cchip_error_delay_WIDTH_below_1_or_DEPTH_below_0_or_RESET_not_0_or_1 u_error ();
-    end
-    if (MEMORY < 0 || MEMORY > 1 || (MEMORY == 1 && (DEPTH < 3 || RESET == 1)))
-    begin : gen_illegal_memory
-      cchip_error_delay_MEMORY_needs_DEPTH_3_and_RESET_0 u_error ();
-    end
     if (DEPTH == 0) begin : gen_wire
       assign q = d;
       wire unused = &{1'b0, clk, rst};

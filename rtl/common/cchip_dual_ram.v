@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_dual_ram: block RAM with its output registers and two ports; the first one writes or reads,
 // the second one reads.
 //   latency      read_data belongs to the address of 2 clocks before
@@ -24,11 +25,8 @@ module cchip_dual_ram #(
     output wire [ WIDTH-1:0] read_data_b
 );
 
-  generate
-    if (WIDTH < 1 || ADDR_W < 3 || ADDR_W > 16) begin : gen_illegal
-      cchip_error_dual_ram_WIDTH_below_1_or_ADDR_W_not_3_to_16 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(WIDTH < 1 || ADDR_W < 3 || ADDR_W > 16,
+                cchip_error_dual_ram_WIDTH_below_1_or_ADDR_W_not_3_to_16)
 
   (* ram_style = "block", ramstyle = "no_rw_check", no_rw_check *)
   reg [WIDTH-1:0] mem[0:(1<<ADDR_W)-1];

@@ -37,11 +37,7 @@ module cchip_fifo #(
   localparam [BANKS-1:0] FIRST_BANK = {{BANKS - 1{1'b0}}, 1'b1};
   localparam [31:0] TWO = 2;
 
-  generate
-    if (WIDTH < 1 || DEPTH < 1) begin : gen_illegal
-      cchip_error_fifo_WIDTH_or_DEPTH_below_1 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(WIDTH < 1 || DEPTH < 1, cchip_error_fifo_WIDTH_or_DEPTH_below_1)
 
   reg [BANKS-1:0] write_bank_q, read_bank_q;  // one-hot
   reg [3:0] write_q;  // write pointer, the same for all banks

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_onehot_index: number of the bit that is 1 in a one-hot vector.
 //   rule         index is i for select[i] = 1, and 0 if select is 0; two bits of select must not be
 //                1 at once
@@ -15,11 +16,8 @@ module cchip_onehot_index #(
     output wire [WIDTH-1:0] index
 );
 
-  generate
-    if (N < 1 || N > 64 || WIDTH < 1 || WIDTH > 30 || (1 << WIDTH) < N) begin : gen_illegal
-      cchip_error_onehot_index_N_must_be_1_to_64_and_fit_in_WIDTH_bit u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(N < 1 || N > 64 || WIDTH < 1 || WIDTH > 30 || (1 << WIDTH) < N,
+                cchip_error_onehot_index_N_must_be_1_to_64_and_fit_in_WIDTH_bit)
 
   function [WIDTH-1:0] number(input [N-1:0] one);
     integer i;

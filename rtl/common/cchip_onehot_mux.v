@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_onehot_mux: the word of the source that a one-hot vector selects, as an AND-OR tree.
 //   rule         m_data is the word i with select[i] = 1, and 0 if select is 0; two bits of select
 //                must not be 1 at once
@@ -16,11 +17,8 @@ module cchip_onehot_mux #(
     output wire [  WIDTH-1:0] m_data
 );
 
-  generate
-    if (N < 1 || N > 32 || WIDTH < 1) begin : gen_illegal
-      cchip_error_onehot_mux_N_must_be_1_to_32_and_WIDTH_at_least_1 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(N < 1 || N > 32 || WIDTH < 1,
+                cchip_error_onehot_mux_N_must_be_1_to_32_and_WIDTH_at_least_1)
 
   function [WIDTH-1:0] choose(input [N*WIDTH-1:0] words, input [N-1:0] one);
     integer i;

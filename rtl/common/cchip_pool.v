@@ -29,23 +29,15 @@ module cchip_pool #(
   localparam [31:0] LAST = FIRST + COUNT - 1;
   localparam [31:0] ONE = 1;
 
-  generate
-    if (COUNT < 1 || COUNT > 256 || FIRST < 0 || WIDTH < 1 || WIDTH > 30 ||
-        FIRST + COUNT > (1 << WIDTH))
-    begin : gen_illegal
-      cchip_error_pool_COUNT_must_be_1_to_256_and_all_numbers_have_WIDTH_bit u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(COUNT < 1 || COUNT > 256 || FIRST < 0 || WIDTH < 1 || WIDTH > 30 ||
+                FIRST + COUNT > (1 << WIDTH),
+                cchip_error_pool_COUNT_must_be_1_to_256_and_all_numbers_have_WIDTH_bit)
 
   reg filling_q;  // numbers are put into the queue for the first time
   reg [WIDTH-1:0] next_q;
   wire room;
   wire fill = filling_q & room & ~back_valid;
-  cchip_fifo #(
-      .WIDTH     (WIDTH),
-      .DEPTH     (COUNT),
-      .ROOM_KNOWN(1)
-  ) u_free (
+  cchip_fifo #(.WIDTH(WIDTH), .DEPTH(COUNT), .ROOM_KNOWN(1)) u_free (
       .clk    (clk),
       .rst    (rst),
       .s_valid(fill | back_valid),

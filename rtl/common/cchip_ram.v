@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_ram: memory with one write port and one registered read port.
 //   latency      read data CCHIP_RAM_LATENCY = 3 clocks after the address. The sender presents the
 //                write data one clock after write and write_addr, so that the decoded address,
@@ -27,14 +28,10 @@ module cchip_ram #(
   reg [WIDTH-1:0] read_data_q;
   assign read_data = read_data_q;
 
-  generate
-    if (WIDTH < 1 || DEPTH < 1 || (1 << ADDR_W) < DEPTH) begin : gen_illegal
-      cchip_error_ram_WIDTH_or_DEPTH_below_1_or_ADDR_W_too_small u_error ();
-    end
-    if (ADDR_W > 4 && (1 << (ADDR_W - 1)) >= DEPTH) begin : gen_too_wide
-      cchip_error_ram_ADDR_W_wider_than_needed u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(WIDTH < 1 || DEPTH < 1 || (1 << ADDR_W) < DEPTH,
+                cchip_error_ram_WIDTH_or_DEPTH_below_1_or_ADDR_W_too_small)
+  `CCHIP_REFUSE(ADDR_W > 4 && (1 << (ADDR_W - 1)) >= DEPTH,
+                cchip_error_ram_ADDR_W_wider_than_needed)
 
   // The memory is made of banks of 16 words, the smallest memory that LUTs form. There is a
   // register before and behind the banks; the word of the right bank is selected after the second

@@ -22,11 +22,7 @@ module cchip_skid_buffer #(
     output wire [WIDTH-1:0] m_data
 );
 
-  generate
-    if (WIDTH < 1) begin : gen_illegal
-      cchip_error_skid_buffer_WIDTH_below_1 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(WIDTH < 1, cchip_error_skid_buffer_WIDTH_below_1)
 
   reg              ready_q;
   reg              skid_valid_q;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_stream_merge: several streams into one, in turn.
 //   latency      1 clock
 //   throughput   one beat per clock
@@ -24,17 +25,12 @@ module cchip_stream_merge #(
     output wire [        WIDTH-1:0] m_data
 );
 
-  generate
-    if (SOURCES < 1 || SOURCES > 8 || WIDTH < 1) begin : gen_illegal
-      cchip_error_stream_merge_SOURCES_not_1_to_8_or_WIDTH_below_1 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SOURCES < 1 || SOURCES > 8 || WIDTH < 1,
+                cchip_error_stream_merge_SOURCES_not_1_to_8_or_WIDTH_below_1)
 
   wire [SOURCES-1:0] next;
   wire ready;
-  cchip_arbiter #(
-      .N(SOURCES)
-  ) u_arbiter (
+  cchip_arbiter #(.N(SOURCES)) u_arbiter (
       .clk    (clk),
       .rst    (rst),
       .request(s_valid),
@@ -45,17 +41,12 @@ module cchip_stream_merge #(
   assign s_ready = next & {SOURCES{ready}};
 
   wire [WIDTH-1:0] data;
-  cchip_onehot_mux #(
-      .N    (SOURCES),
-      .WIDTH(WIDTH)
-  ) u_choose (
+  cchip_onehot_mux #(.N(SOURCES), .WIDTH(WIDTH)) u_choose (
       .select(next),
       .s_data(s_data),
       .m_data(data)
   );
-  cchip_skid_buffer #(
-      .WIDTH(WIDTH)
-  ) u_out (
+  cchip_skid_buffer #(.WIDTH(WIDTH)) u_out (
       .clk    (clk),
       .rst    (rst),
       .s_valid(|s_valid),

@@ -28,11 +28,7 @@ module cchip_timeout #(
 
   localparam [31:0] BOUND = DEFAULT;
 
-  generate
-    if (DEFAULT < 1) begin : gen_illegal
-      cchip_error_timeout_DEFAULT_below_1 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(DEFAULT < 1, cchip_error_timeout_DEFAULT_below_1)
 
   // the bound is chosen and registered as a whole: between two limits it is never a third one
   reg [31:0] bound_q;

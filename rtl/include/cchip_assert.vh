@@ -9,8 +9,13 @@
 // CCHIP_NARROW_UNSIGNED(label, bits): those that are left out of an unsigned number, all 0.
 // Both are statements like CCHIP_ASSERT. Where only legal inputs keep the promise, a condition in
 // front of them says so. scripts/widths.py bounds every narrowing, with and without an assertion.
+//
+// CCHIP_REFUSE(condition, error) refuses parameters. It belongs in the body of a module: where the
+// condition holds, it instantiates a module that does not exist, named after the mistake, so that
+// every tool stops at elaboration. Otherwise it is nothing.
 `ifndef CCHIP_ASSERT_VH
 `define CCHIP_ASSERT_VH
+`define CCHIP_REFUSE(condition, error) if (condition) begin : error error u_error (); end
 `define CCHIP_NARROW(label, bits) `CCHIP_ASSERT(label, (&(bits)) || !(|(bits)))
 `define CCHIP_NARROW_UNSIGNED(label, bits) `CCHIP_ASSERT(label, !(|(bits)))
 `ifdef VERILATOR

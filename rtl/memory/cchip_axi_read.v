@@ -78,17 +78,11 @@ module cchip_axi_read #(
   localparam [31:0] LAST_BEAT = 512 / DATA_W - 1;
   localparam [31:0] NUMBER = IDS;
 
-  generate
-    if (CLIENTS < 1 || CLIENTS > 8) begin : gen_illegal_clients
-      cchip_error_axi_read_CLIENTS_must_be_1_to_8 u_error ();
-    end
-    if (SLOTS < 2 || SLOTS > 32 || (1 << SLOT_W) != SLOTS) begin : gen_illegal_slots
-      cchip_error_axi_read_SLOTS_must_be_2_4_8_16_or_32 u_error ();
-    end
-    if (DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W) begin : gen_illegal_width
-      cchip_error_axi_read_DATA_W_must_be_64_128_256_or_512 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(CLIENTS < 1 || CLIENTS > 8, cchip_error_axi_read_CLIENTS_must_be_1_to_8)
+  `CCHIP_REFUSE(SLOTS < 2 || SLOTS > 32 || (1 << SLOT_W) != SLOTS,
+                cchip_error_axi_read_SLOTS_must_be_2_4_8_16_or_32)
+  `CCHIP_REFUSE(DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W,
+                cchip_error_axi_read_DATA_W_must_be_64_128_256_or_512)
 
   // ---- what is in flight. Life of an ID: free, offered (live), taken (live and owed), free behind
   // its last beat. A read that is given up is not live any more; its ID is free after the last beat
@@ -106,11 +100,7 @@ module cchip_axi_read #(
   reg [ID_W-1:0] place_id_q, place_id_q2;
   reg failing_q;  // an answer without data is on its way to the read channel's stage
   wire found;  // there is a late read, found_id
-  cchip_axi_read_address #(
-      .CLIENTS(CLIENTS),
-      .SLOTS  (SLOTS),
-      .DATA_W (DATA_W)
-  ) u_address (
+  cchip_axi_read_address #(.CLIENTS(CLIENTS), .SLOTS(SLOTS), .DATA_W(DATA_W)) u_address (
       .clk          (clk),
       .rst          (rst),
       .s_valid      (s_valid),
@@ -139,10 +129,7 @@ module cchip_axi_read #(
 
   // ---- time: one late read after the other takes the read channel's stage for a clock
   wire [ID_W-1:0] found_id;
-  cchip_axi_read_late #(
-      .IDS (IDS),
-      .ID_W(ID_W)
-  ) u_late (
+  cchip_axi_read_late #(.IDS(IDS), .ID_W(ID_W)) u_late (
       .clk     (clk),
       .rst     (rst),
       .limit   (limit),

@@ -66,11 +66,7 @@ module cchip_axi_read_address #(
       localparam [31:0] FIRST_ID = c * SLOTS;
       wire [SLOT_W-1:0] slot;
       wire [57:0] line;
-      cchip_fifo #(
-          .WIDTH     (SLOT_W + 58),
-          .DEPTH     (SLOTS),
-          .ROOM_KNOWN(1)
-      ) u_queue (
+      cchip_fifo #(.WIDTH(SLOT_W + 58), .DEPTH(SLOTS), .ROOM_KNOWN(1)) u_queue (
           .clk    (clk),
           .rst    (rst),
           .s_valid(s_valid[c]),
@@ -84,10 +80,7 @@ module cchip_axi_read_address #(
       assign waiting_data[(ID_W+58)*c+:ID_W+58] = {id, line};
     end
   endgenerate
-  cchip_stream_merge #(
-      .SOURCES(CLIENTS),
-      .WIDTH  (ID_W + 58)
-  ) u_next (
+  cchip_stream_merge #(.SOURCES(CLIENTS), .WIDTH(ID_W + 58)) u_next (
       .clk    (clk),
       .rst    (rst),
       .s_valid(waiting),

@@ -79,20 +79,12 @@ module cchip_axi_write #(
   localparam integer COUNT_W = OUTSTANDING < 1 ? 1 : $clog2(OUTSTANDING + 1);
   localparam [31:0] SIZE = BYTES_LOG2;
 
-  generate
-    if (CLIENTS < 1 || CLIENTS > 4) begin : gen_illegal_clients
-      cchip_error_axi_write_CLIENTS_must_be_1_to_4 u_error ();
-    end
-    if (DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W) begin : gen_illegal_width
-      cchip_error_axi_write_DATA_W_must_be_64_128_256_or_512 u_error ();
-    end
-    if (OUTSTANDING < 1 || OUTSTANDING > 64) begin : gen_illegal_outstanding
-      cchip_error_axi_write_OUTSTANDING_must_be_1_to_64 u_error ();
-    end
-    if (ID_W < 1 || ID_W > 16) begin : gen_illegal_id
-      cchip_error_axi_write_ID_W_must_be_1_to_16 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(CLIENTS < 1 || CLIENTS > 4, cchip_error_axi_write_CLIENTS_must_be_1_to_4)
+  `CCHIP_REFUSE(DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W,
+                cchip_error_axi_write_DATA_W_must_be_64_128_256_or_512)
+  `CCHIP_REFUSE(OUTSTANDING < 1 || OUTSTANDING > 64,
+                cchip_error_axi_write_OUTSTANDING_must_be_1_to_64)
+  `CCHIP_REFUSE(ID_W < 1 || ID_W > 16, cchip_error_axi_write_ID_W_must_be_1_to_16)
 
   // ---- beats of the clients, and for each write whose beats are all there its client, length and
   // address
@@ -103,10 +95,7 @@ module cchip_axi_write #(
   wire beat_valid, beat_ready;
   wire [STRB_W-1:0] beat_strb;
   wire [DATA_W-1:0] beat_data;
-  cchip_axi_write_collect #(
-      .CLIENTS(CLIENTS),
-      .DATA_W (DATA_W)
-  ) u_collect (
+  cchip_axi_write_collect #(.CLIENTS(CLIENTS), .DATA_W(DATA_W)) u_collect (
       .clk            (clk),
       .rst            (rst),
       .s_valid        (s_valid),
@@ -132,9 +121,7 @@ module cchip_axi_write #(
   wire [COUNT_W-1:0] waiting, dropped;
   wire issue, timeout;  // the first write that is waited for is given up
   wire answered, stale;  // a response comes: to that write; to one that was given up
-  cchip_count #(
-      .LIMIT(OUTSTANDING)
-  ) u_waiting (
+  cchip_count #(.LIMIT(OUTSTANDING)) u_waiting (
       .clk  (clk),
       .rst  (rst),
       .up   (issue),
@@ -143,9 +130,7 @@ module cchip_axi_write #(
       .some (waiting_some),
       .room (waiting_room)
   );
-  cchip_count #(
-      .LIMIT(OUTSTANDING)
-  ) u_dropped (
+  cchip_count #(.LIMIT(OUTSTANDING)) u_dropped (
       .clk  (clk),
       .rst  (rst),
       .up   (timeout),
@@ -158,9 +143,7 @@ module cchip_axi_write #(
   // ---- the first write is sent, or refused while a response is outstanding that was given up
   wire refused;
   wire [1:0] refused_client;
-  cchip_axi_write_send #(
-      .DATA_W(DATA_W)
-  ) u_send (
+  cchip_axi_write_send #(.DATA_W(DATA_W)) u_send (
       .clk            (clk),
       .rst            (rst),
       .s_write_valid  (write_valid),
@@ -201,9 +184,7 @@ module cchip_axi_write #(
   wire address_some, address_room, data_some, data_room;
   wire [COUNT_W-1:0] addresses, bursts;
   wire b_counts = b_valid_q & address_some & data_some;
-  cchip_count #(
-      .LIMIT(OUTSTANDING)
-  ) u_addresses (
+  cchip_count #(.LIMIT(OUTSTANDING)) u_addresses (
       .clk  (clk),
       .rst  (rst),
       .up   (aw_taken_q),
@@ -212,9 +193,7 @@ module cchip_axi_write #(
       .some (address_some),
       .room (address_room)
   );
-  cchip_count #(
-      .LIMIT(OUTSTANDING)
-  ) u_bursts (
+  cchip_count #(.LIMIT(OUTSTANDING)) u_bursts (
       .clk  (clk),
       .rst  (rst),
       .up   (w_taken_q),
@@ -243,9 +222,7 @@ module cchip_axi_write #(
 
   // ---- time: the first write that is waited for is given up when it is late
   wire gone = answered | timeout;
-  cchip_axi_write_late #(
-      .COUNT_W(COUNT_W)
-  ) u_late (
+  cchip_axi_write_late #(.COUNT_W(COUNT_W)) u_late (
       .clk     (clk),
       .rst     (rst),
       .limit   (limit),

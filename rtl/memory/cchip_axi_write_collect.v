@@ -71,22 +71,13 @@ module cchip_axi_write_collect #(
   wire [ADDRESS_W-1:0] address;
   wire [STRB_W-1:0] strb;
   wire [DATA_W-1:0] data;
-  cchip_onehot_mux #(
-      .N    (CLIENTS),
-      .WIDTH(BEAT_W)
-  ) u_choose (
+  cchip_onehot_mux #(.N(CLIENTS), .WIDTH(BEAT_W)) u_choose (
       .select(ready_q),
       .s_data(offered),
       .m_data({last, address, strb, data})
   );
   wire [1:0] client;
-  cchip_onehot_index #(
-      .N    (CLIENTS),
-      .WIDTH(2)
-  ) u_client (
-      .select(turn_q),
-      .index (client)
-  );
+  cchip_onehot_index #(.N(CLIENTS), .WIDTH(2)) u_client (.select(turn_q), .index(client));
 
   reg in_valid_q, in_end_q;  // a beat that was taken; it ends its write
   reg [1:0] in_client_q;
@@ -99,9 +90,7 @@ module cchip_axi_write_collect #(
   wire begun_d = taken ? ~ends : begun_q;
   wire room = ~(held_q[4] | (&held_q[3:1]));  // at most 13: two more may be on their way
   wire [CLIENTS-1:0] turn_d = begun_d ? turn_q : grant;
-  cchip_arbiter #(
-      .N(CLIENTS)
-  ) u_turn (
+  cchip_arbiter #(.N(CLIENTS)) u_turn (
       .clk    (clk),
       .rst    (rst),
       .request(s_valid),
@@ -135,11 +124,7 @@ module cchip_axi_write_collect #(
   // ---- what waits
   localparam integer WRITE_W = 2 + 3 + ADDRESS_W;
   wire write_room, beat_room;
-  cchip_fifo #(
-      .WIDTH     (WRITE_W),
-      .DEPTH     (QUEUE_DEPTH),
-      .ROOM_KNOWN(1)
-  ) u_writes (
+  cchip_fifo #(.WIDTH(WRITE_W), .DEPTH(QUEUE_DEPTH), .ROOM_KNOWN(1)) u_writes (
       .clk    (clk),
       .rst    (rst),
       .s_valid(in_valid_q & in_end_q),
@@ -149,11 +134,7 @@ module cchip_axi_write_collect #(
       .m_ready(m_write_ready),
       .m_data ({m_write_client, m_write_length, m_write_address})
   );
-  cchip_fifo #(
-      .WIDTH     (STRB_W + DATA_W),
-      .DEPTH     (QUEUE_DEPTH),
-      .ROOM_KNOWN(1)
-  ) u_beats (
+  cchip_fifo #(.WIDTH(STRB_W + DATA_W), .DEPTH(QUEUE_DEPTH), .ROOM_KNOWN(1)) u_beats (
       .clk    (clk),
       .rst    (rst),
       .s_valid(in_valid_q),

@@ -25,9 +25,7 @@ module cchip_axi_write_late #(
 
   wire tick;
   wire [31:0] elapsed;
-  cchip_timeout #(
-      .DEFAULT(`CCHIP_MEMORY_LIMIT_DEFAULT)
-  ) u_tick (
+  cchip_timeout #(.DEFAULT(`CCHIP_MEMORY_LIMIT_DEFAULT)) u_tick (
       .clk    (clk),
       .restart(rst | tick),
       .limit  (limit),

@@ -102,9 +102,7 @@ module cchip_axi_write_send #(
 
   wire [2:0] m_length;
   wire [ADDRESS_W-1:0] m_address;
-  cchip_skid_buffer #(
-      .WIDTH(3 + ADDRESS_W)
-  ) u_address (
+  cchip_skid_buffer #(.WIDTH(3 + ADDRESS_W)) u_address (
       .clk    (clk),
       .rst    (rst),
       .s_valid(issue),
@@ -114,9 +112,7 @@ module cchip_axi_write_send #(
       .m_ready(m_axi_awready),
       .m_data ({m_length, m_address})
   );
-  cchip_skid_buffer #(
-      .WIDTH(1 + STRB_W + DATA_W)
-  ) u_data (
+  cchip_skid_buffer #(.WIDTH(1 + STRB_W + DATA_W)) u_data (
       .clk    (clk),
       .rst    (rst),
       .s_valid(send),

@@ -87,20 +87,14 @@ module cchip_cache #(
   localparam integer CODE_W = `CCHIP_READ_CODE_W;
   localparam [4:0] AGE = 5'd31;
 
-  generate
-    if (CACHE_KB < 1 || CACHE_KB > 1024 || (1 << SET_W) != SETS) begin : gen_illegal_size
-      cchip_error_cache_CACHE_KB_must_be_a_power_of_two_1_to_1024 u_error ();
-    end
-    if (PLACES < 2 || PLACES > 64 || (1 << PLACE_W) != PLACES) begin : gen_illegal_places
-      cchip_error_cache_PLACES_must_be_a_power_of_two_2_to_64 u_error ();
-    end
-    if (MISSES < 2 || MISSES > 32 || (1 << MISS_W) != MISSES) begin : gen_illegal_misses
-      cchip_error_cache_MISSES_must_be_2_4_8_16_or_32 u_error ();
-    end
-    if (LINE_W <= SET_W || LINE_W > 58 || LOCKS < 1 || LOCKS > 4) begin : gen_illegal_line
-      cchip_error_cache_LINE_W_must_be_over_SET_W_to_58_and_LOCKS_1_to_4 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(CACHE_KB < 1 || CACHE_KB > 1024 || (1 << SET_W) != SETS,
+                cchip_error_cache_CACHE_KB_must_be_a_power_of_two_1_to_1024)
+  `CCHIP_REFUSE(PLACES < 2 || PLACES > 64 || (1 << PLACE_W) != PLACES,
+                cchip_error_cache_PLACES_must_be_a_power_of_two_2_to_64)
+  `CCHIP_REFUSE(MISSES < 2 || MISSES > 32 || (1 << MISS_W) != MISSES,
+                cchip_error_cache_MISSES_must_be_2_4_8_16_or_32)
+  `CCHIP_REFUSE(LINE_W <= SET_W || LINE_W > 58 || LOCKS < 1 || LOCKS > 4,
+                cchip_error_cache_LINE_W_must_be_over_SET_W_to_58_and_LOCKS_1_to_4)
 
   // An entry of a way: {valid, locked, turn, the slot of the read that filled it or will, tag}. The
   // two turns of a set, combined by exclusive or, are the way to replace next.
@@ -145,11 +139,7 @@ module cchip_cache #(
     beat_code_q  <= s_read_code;
     beat_data_q  <= s_read_data;
   end
-  cchip_cache_fill #(
-      .MISSES (MISSES),
-      .FRAME_W(SET_W + 1),
-      .DATA_W (DATA_W)
-  ) u_fill (
+  cchip_cache_fill #(.MISSES(MISSES), .FRAME_W(SET_W + 1), .DATA_W(DATA_W)) u_fill (
       .clk           (clk),
       .rst           (rst),
       .free          (free[0]),
@@ -195,11 +185,7 @@ module cchip_cache #(
   wire [SET_W-1:0] entry_set;
   wire [1:0] change_by;  // ports whose stage 6 made the change
   wire [2*ENTRY_W-1:0] entry_data;
-  cchip_cache_change #(
-      .MISSES(MISSES),
-      .SET_W (SET_W),
-      .LINE_W(LINE_W)
-  ) u_change (
+  cchip_cache_change #(.MISSES(MISSES), .SET_W(SET_W), .LINE_W(LINE_W)) u_change (
       .clk           (clk),
       .rst           (rst),
       .running       (running),
@@ -237,11 +223,7 @@ module cchip_cache #(
   // ---- invalidation: one set after the other, each in a clock of port 1
   wire walk_valid;
   wire [LINE_W-1:0] first, last;
-  cchip_cache_invalidate #(
-      .SET_W (SET_W),
-      .LINE_W(LINE_W),
-      .MISSES(MISSES)
-  ) u_invalidate (
+  cchip_cache_invalidate #(.SET_W(SET_W), .LINE_W(LINE_W), .MISSES(MISSES)) u_invalidate (
       .clk       (clk),
       .rst       (rst),
       .s_valid   (invalidate_valid),
@@ -374,10 +356,7 @@ module cchip_cache #(
   endgenerate
 
   // ---- data
-  cchip_dual_ram #(
-      .WIDTH (256),
-      .ADDR_W(SET_W + 2)
-  ) u_data (
+  cchip_dual_ram #(.WIDTH(256), .ADDR_W(SET_W + 2)) u_data (
       .clk        (clk),
       .write      (fill_write[0]),
       .addr_a     ({data_addr[0+:SET_W+1], beat5[0]}),

@@ -67,15 +67,10 @@ module cchip_cache_fill #(
   localparam integer BEATS = 256 / BEAT_W;
   localparam integer ROW_W = MISS_W < 2 ? 3 : MISS_W + 1;
 
-  generate
-    if (MISSES < 2 || MISSES > 32 || (1 << MISS_W) != MISSES || FRAME_W < 1)
-    begin : gen_illegal_misses
-      cchip_error_cache_fill_MISSES_must_be_2_4_8_16_or_32_and_FRAME_W_positive u_error ();
-    end
-    if (DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W) begin : gen_illegal_width
-      cchip_error_cache_fill_DATA_W_must_be_64_128_256_or_512 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(MISSES < 2 || MISSES > 32 || (1 << MISS_W) != MISSES || FRAME_W < 1,
+                cchip_error_cache_fill_MISSES_must_be_2_4_8_16_or_32_and_FRAME_W_positive)
+  `CCHIP_REFUSE(DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W,
+                cchip_error_cache_fill_DATA_W_must_be_64_128_256_or_512)
 
   // ---- the slots
   reg [MISSES-1:0] held_q, filled_q;
@@ -101,10 +96,7 @@ module cchip_cache_fill #(
       if (!back_q) scan_q <= scan_q + {{MISS_W - 1{1'b0}}, 1'b1};
     end
   end
-  cchip_pool #(
-      .COUNT(MISSES),
-      .WIDTH(MISS_W)
-  ) u_free (
+  cchip_pool #(.COUNT(MISSES), .WIDTH(MISS_W)) u_free (
       .clk        (clk),
       .rst        (rst),
       .m_valid    (free_valid),
@@ -117,11 +109,7 @@ module cchip_cache_fill #(
   // ---- lines that have come
   wire arrived_valid, arrived_ready;
   assign fill_valid = arrived_valid & free;
-  cchip_fifo #(
-      .WIDTH     (MISS_W + CODE_W),
-      .DEPTH     (MISSES),
-      .ROOM_KNOWN(1)
-  ) u_arrived (
+  cchip_fifo #(.WIDTH(MISS_W + CODE_W), .DEPTH(MISSES), .ROOM_KNOWN(1)) u_arrived (
       .clk    (clk),
       .rst    (rst),
       .s_valid(s_read_valid & s_read_last),
@@ -149,10 +137,7 @@ module cchip_cache_fill #(
       wire [31:0] write_row = {{31 - MISS_W{1'b0}}, s_read_slot, 1'b0};
       wire [31:0] row = {{31 - MISS_W{1'b0}}, slot_q3, 1'b0};
       for (b = 0; b < 2; b = b + 1) begin : gen_half
-        cchip_block_ram #(
-            .WIDTH (256),
-            .ADDR_W(ROW_W)
-        ) u_beats (
+        cchip_block_ram #(.WIDTH(256), .ADDR_W(ROW_W)) u_beats (
             .clk       (clk),
             .write     (s_read_valid),
             .write_addr(write_row[ROW_W-1:0]),
@@ -170,10 +155,7 @@ module cchip_cache_fill #(
       wire [31:0] write_row = {{31 - MISS_W{1'b0}}, s_read_slot, s_read_beat[INDEX_W]};
       wire [31:0] row = {{31 - MISS_W{1'b0}}, slot_q3, fill_q4};
       for (b = 0; b < BEATS; b = b + 1) begin : gen_beat
-        cchip_block_ram #(
-            .WIDTH (DATA_W),
-            .ADDR_W(ROW_W)
-        ) u_beats (
+        cchip_block_ram #(.WIDTH(DATA_W), .ADDR_W(ROW_W)) u_beats (
             .clk       (clk),
             .write     (s_read_valid && index == b),
             .write_addr(write_row[ROW_W-1:0]),
@@ -195,11 +177,7 @@ module cchip_cache_fill #(
   reg collect_q, collect_q2, serving_q;
   reg [CODE_W-1:0] serve_code_q;
   reg [FRAME_W-1:0] serve_frame_q;
-  cchip_fifo #(
-      .WIDTH     (MISS_W + CODE_W + FRAME_W),
-      .DEPTH     (MISSES),
-      .ROOM_KNOWN(1)
-  ) u_serve (
+  cchip_fifo #(.WIDTH(MISS_W + CODE_W + FRAME_W), .DEPTH(MISSES), .ROOM_KNOWN(1)) u_serve (
       .clk    (clk),
       .rst    (rst),
       .s_valid(fill_q6),

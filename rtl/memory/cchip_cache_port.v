@@ -131,10 +131,7 @@ module cchip_cache_port #(
   reg again_q7;
   reg [PLACE_W-1:0] place_q7;
   reg [LINE_W-1:0] line_q7;
-  cchip_cache_requests #(
-      .PLACES(PLACES),
-      .LINE_W(LINE_W)
-  ) u_requests (
+  cchip_cache_requests #(.PLACES(PLACES), .LINE_W(LINE_W)) u_requests (
       .clk        (clk),
       .rst        (rst),
       .s_valid    (s_valid),
@@ -170,19 +167,14 @@ module cchip_cache_port #(
   reg [CODE_W-1:0] code_q6;
   reg [SLOT_W-1:0] slot_q6;
   reg way_q5, way_q6;
-  cchip_delay #(
-      .WIDTH(PLACE_W + CODE_W + SLOT_W),
-      .DEPTH(5)
-  ) u_to_5 (
+  cchip_delay #(.WIDTH(PLACE_W + CODE_W + SLOT_W), .DEPTH(5)) u_to_5 (
       .clk(clk),
       .rst(rst),
       .d  ({serve_valid | own_valid ? serve_place : look_place0,
             own_valid ? fill_code : serve_code, fill_slot}),
       .q  ({place5, code5, slot5})
   );
-  cchip_delay #(
-      .DEPTH(4)
-  ) u_way_to_4 (
+  cchip_delay #(.DEPTH(4)) u_way_to_4 (
       .clk(clk),
       .rst(rst),
       .d  (own_valid ? fill_way : serve_frame[0]),
@@ -268,14 +260,7 @@ module cchip_cache_port #(
     end
   endgenerate
   wire lock5;
-  cchip_delay #(
-      .DEPTH(4)
-  ) u_lock (
-      .clk(clk),
-      .rst(rst),
-      .d  (|in_range),
-      .q  (lock5)
-  );
+  cchip_delay #(.DEPTH(4)) u_lock (.clk(clk), .rst(rst), .d(|in_range), .q(lock5));
 
   // ---- stage 5 to 6: what the decision needs
   wire [1:0] wait5 = match5 & hold5 & ~full5;  // the line is in flight
@@ -341,11 +326,7 @@ module cchip_cache_port #(
     sleep_slot_q7 <= wait_q6 ? wait_slot_q6 : free_slot;
   end
   wire [PLACES-1:0] waiting;
-  cchip_cache_waiters #(
-      .PLACES (PLACES),
-      .MISSES (MISSES),
-      .FRAME_W(SET_W + 1)
-  ) u_waiters (
+  cchip_cache_waiters #(.PLACES(PLACES), .MISSES(MISSES), .FRAME_W(SET_W + 1)) u_waiters (
       .clk          (clk),
       .rst          (rst),
       .look         (look_q[6]),

@@ -40,11 +40,7 @@ module cchip_cache_requests #(
   // request that comes on this clock, which would cross the chip to its flip-flops.
   reg again_first_q;
   wire use_again = again_valid & (again_first_q | ~deferred_valid);
-  cchip_fifo #(
-      .WIDTH     (WIDTH),
-      .DEPTH     (PLACES),
-      .ROOM_KNOWN(1)
-  ) u_deferred (
+  cchip_fifo #(.WIDTH(WIDTH), .DEPTH(PLACES), .ROOM_KNOWN(1)) u_deferred (
       .clk    (clk),
       .rst    (rst),
       .s_valid(s_valid & (~free | deferred_valid | again_valid)),
@@ -54,11 +50,7 @@ module cchip_cache_requests #(
       .m_ready(free & ~use_again),
       .m_data (deferred_data)
   );
-  cchip_fifo #(
-      .WIDTH     (WIDTH),
-      .DEPTH     (PLACES),
-      .ROOM_KNOWN(1)
-  ) u_again (
+  cchip_fifo #(.WIDTH(WIDTH), .DEPTH(PLACES), .ROOM_KNOWN(1)) u_again (
       .clk    (clk),
       .rst    (rst),
       .s_valid(again),

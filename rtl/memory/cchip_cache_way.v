@@ -58,10 +58,7 @@ module cchip_cache_way #(
   localparam [31:0] NUMBER = WAY;
 
   wire [ENTRY_W-1:0] entry3;
-  cchip_block_ram #(
-      .WIDTH (ENTRY_W),
-      .ADDR_W(SET_W)
-  ) u_entries (
+  cchip_block_ram #(.WIDTH(ENTRY_W), .ADDR_W(SET_W)) u_entries (
       .clk       (clk),
       .write     (write),
       .write_addr(write_set),

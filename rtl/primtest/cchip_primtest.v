@@ -50,20 +50,13 @@ module cchip_primtest #(
   localparam [31:0] ONE = 1;
   localparam integer RESULT_W = `CCHIP_RESULT_W;
 
-  generate
-    if (COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX) begin : gen_illegal_coord_w
-      cchip_error_COORD_W_must_be_4_to_20 u_error ();
-    end
-    if (SUBSTAGES < `CCHIP_SUBSTAGES_MIN(COORD_W)) begin : gen_illegal_substages
-      cchip_error_SUBSTAGES_below_minimum_for_COORD_W u_error ();
-    end
-    if (SUBSTAGES > `CCHIP_SUBSTAGES_MAX) begin : gen_illegal_substages_max
-      cchip_error_SUBSTAGES_above_32 u_error ();
-    end
-    if (CONTEXTS < 1 || CONTEXTS > `CCHIP_CONTEXTS_MAX) begin : gen_illegal_contexts
-      cchip_error_CONTEXTS_must_be_1_to_256 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX,
+                cchip_error_COORD_W_must_be_4_to_20)
+  `CCHIP_REFUSE(SUBSTAGES < `CCHIP_SUBSTAGES_MIN(COORD_W),
+                cchip_error_SUBSTAGES_below_minimum_for_COORD_W)
+  `CCHIP_REFUSE(SUBSTAGES > `CCHIP_SUBSTAGES_MAX, cchip_error_SUBSTAGES_above_32)
+  `CCHIP_REFUSE(CONTEXTS < 1 || CONTEXTS > `CCHIP_CONTEXTS_MAX,
+                cchip_error_CONTEXTS_must_be_1_to_256)
 
   assign rm_id = RM[`CCHIP_RM_ID_W-1:0];
 
@@ -139,11 +132,7 @@ module cchip_primtest #(
   wire [      B_W-1:0] operand_b;
   wire [`CCHIP_ERROR_SHIFT_W-1:0] operand_shift;
 
-  cchip_ram #(
-      .WIDTH (3 + A_W + B_W),
-      .DEPTH (CONTEXTS),
-      .ADDR_W(CONTEXT_W)
-  ) u_operands (
+  cchip_ram #(.WIDTH(3 + A_W + B_W), .DEPTH(CONTEXTS), .ADDR_W(CONTEXT_W)) u_operands (
       .clk       (clk),
       .write     (accept),
       .write_addr(load_context),
@@ -245,11 +234,7 @@ module cchip_primtest #(
   // ---- results: the FIFO has room for every pair in flight, so no verdict ever waits
   wire queue_space;
 
-  cchip_fifo #(
-      .WIDTH     (RESULT_W),
-      .DEPTH     (CONTEXTS),
-      .ROOM_KNOWN(1)
-  ) u_results (
+  cchip_fifo #(.WIDTH(RESULT_W), .DEPTH(CONTEXTS), .ROOM_KNOWN(1)) u_results (
       .clk    (clk),
       .rst    (rst),
       .s_valid(outcome_valid),

@@ -71,11 +71,7 @@ module cchip_primtest_array #(
   localparam [31:0] MODULE = `CCHIP_RM_OF(VERTS_A, VERTS_B);
   localparam [`CCHIP_RM_ID_W-1:0] RM = MODULE[`CCHIP_RM_ID_W-1:0];
 
-  generate
-    if (LANES < 1 || LANES > `CCHIP_LANES_MAX) begin : gen_illegal_lanes
-      cchip_error_LANES_must_be_1_to_16 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(LANES < 1 || LANES > `CCHIP_LANES_MAX, cchip_error_LANES_must_be_1_to_16)
 
   assign rm_id = RM;
 
@@ -192,10 +188,7 @@ module cchip_primtest_array #(
       // two registers for the way: one beside the lane, one half way to it
       wire              lane_rst = rst_q[2*lane+1];
       wire [PAIR_W-1:0] pair;
-      cchip_delay #(
-          .WIDTH(PAIR_W),
-          .DEPTH(2)
-      ) u_way (
+      cchip_delay #(.WIDTH(PAIR_W), .DEPTH(2)) u_way (
           .clk(clk),
           .rst(rst),
           .d  (way[PAIR_W*lane+:PAIR_W]),
@@ -232,9 +225,7 @@ module cchip_primtest_array #(
       wire unused_lane = &{1'b0, pair_ready, lane_rm_id, lane_idle};
 
       // a register between the lane's FIFO and the merge of this station
-      cchip_skid_buffer #(
-          .WIDTH(ANSWER_W)
-      ) u_own (
+      cchip_skid_buffer #(.WIDTH(ANSWER_W)) u_own (
           .clk    (clk),
           .rst    (lane_rst),
           .s_valid(lane_valid),
@@ -259,9 +250,7 @@ module cchip_primtest_array #(
       // two registers from station to station
       wire                half_valid, half_ready;
       wire [RESULT_W-1:0] half;
-      cchip_skid_buffer #(
-          .WIDTH(RESULT_W)
-      ) u_merged (
+      cchip_skid_buffer #(.WIDTH(RESULT_W)) u_merged (
           .clk    (clk),
           .rst    (lane_rst),
           .s_valid(own_valid[lane] | back_valid[lane]),
@@ -271,9 +260,7 @@ module cchip_primtest_array #(
           .m_ready(half_ready),
           .m_data (half)
       );
-      cchip_skid_buffer #(
-          .WIDTH(RESULT_W)
-      ) u_back (
+      cchip_skid_buffer #(.WIDTH(RESULT_W)) u_back (
           .clk    (clk),
           .rst    (lane == LANES - 1 ? shut : lane_rst),
           .s_valid(half_valid),

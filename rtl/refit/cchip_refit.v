@@ -67,14 +67,9 @@ module cchip_refit #(
   localparam integer FRAME_W = 24 + 24 + 8 + 2 + 1 + 2;
   localparam [4:0] EXTENT_MAX = 5'd24;
 
-  generate
-    if (LEVELS < 2 || LEVELS > 64) begin : gen_illegal_levels
-      cchip_error_refit_LEVELS_must_be_2_to_64 u_error ();
-    end
-    if (DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W) begin : gen_illegal_width
-      cchip_error_refit_DATA_W_must_be_64_128_256_or_512 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(LEVELS < 2 || LEVELS > 64, cchip_error_refit_LEVELS_must_be_2_to_64)
+  `CCHIP_REFUSE(DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W,
+                cchip_error_refit_DATA_W_must_be_64_128_256_or_512)
 
   localparam [3:0] IDLE = 4'd0;
   localparam [3:0] LINE = 4'd1;  // the line at work is requested
@@ -232,11 +227,7 @@ module cchip_refit #(
   reg [1:0] store_child_q;
   reg [3:0] store_place_q;
   reg [51:0] least_q, greatest_q;
-  cchip_block_ram #(
-      .WIDTH (104),
-      .WORDS (1),
-      .ADDR_W(LEVEL_W + 6)
-  ) u_bounds (
+  cchip_block_ram #(.WIDTH(104), .WORDS(1), .ADDR_W(LEVEL_W + 6)) u_bounds (
       .clk       (clk),
       .write     (store_q),
       .write_addr({store_level_q, store_child_q, store_place_q}),
@@ -346,9 +337,7 @@ module cchip_refit #(
   wire expired;
   wire [31:0] elapsed;
   wire waits = state_q == READ || state_q == WRITE || state_q == ANSWER;
-  cchip_timeout #(
-      .DEFAULT(4 * `CCHIP_MEMORY_LIMIT_DEFAULT)
-  ) u_timeout (
+  cchip_timeout #(.DEFAULT(4 * `CCHIP_MEMORY_LIMIT_DEFAULT)) u_timeout (
       .clk    (clk),
       .restart(rst | ~waits),
       .limit  (limit),

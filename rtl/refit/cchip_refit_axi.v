@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_refit_axi: cchip_refit with a cchip_axi_read and a cchip_axi_write of its own, for an AXI4
 // memory. Commands, codes and rules are those of cchip_refit.
 //   traffic      one line at a time: a read or a write, each a burst of a whole line, aligned
@@ -70,11 +71,8 @@ module cchip_refit_axi #(
     input  wire [                    1:0] m_axi_bresp
 );
 
-  generate
-    if (DATA_W != 64 && DATA_W != 128 && DATA_W != 256 && DATA_W != 512) begin : gen_illegal
-      cchip_error_refit_axi_DATA_W_must_be_64_128_256_or_512 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(DATA_W != 64 && DATA_W != 128 && DATA_W != 256 && DATA_W != 512,
+                cchip_error_refit_axi_DATA_W_must_be_64_128_256_or_512)
 
   localparam integer BEAT_W = 6 - $clog2(DATA_W / 8);  // of the number of a beat in its line
   localparam integer ADDRESS_W = 58 + BEAT_W;
@@ -93,10 +91,7 @@ module cchip_refit_axi #(
   wire [DATA_W-1:0] write_data;
   wire [`CCHIP_WRITE_CODE_W-1:0] answer_code;
   wire [2:0] write_beat;
-  cchip_refit #(
-      .LEVELS(LEVELS),
-      .DATA_W(DATA_W)
-  ) u_refit (
+  cchip_refit #(.LEVELS(LEVELS), .DATA_W(DATA_W)) u_refit (
       .clk          (clk),
       .rst          (rst),
       .limit        (refit_limit_q),
@@ -131,11 +126,7 @@ module cchip_refit_axi #(
   wire beat_slot;
   wire [2:0] beat;
   wire [1:0] slots_outstanding;
-  cchip_axi_read #(
-      .CLIENTS(1),
-      .SLOTS  (2),
-      .DATA_W (DATA_W)
-  ) u_read (
+  cchip_axi_read #(.CLIENTS(1), .SLOTS(2), .DATA_W(DATA_W)) u_read (
       .clk            (clk),
       .rst            (rst),
       .limit          (limit),

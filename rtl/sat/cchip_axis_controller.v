@@ -82,15 +82,9 @@ module cchip_axis_controller #(
   localparam [31:0] LAST_K = VERTS_A - 1;
   localparam [31:0] LAST_L = VERTS_B - 1;
 
-  generate
-    if (CONTEXTS < 1 || CONTEXTS > `CCHIP_CONTEXTS_MAX || (1 << CONTEXT_W) < CONTEXTS)
-    begin : gen_illegal
-      cchip_error_CONTEXTS_must_be_1_to_256 u_error ();
-    end
-    if (WARPED_EXACT != 0 && WARPED_EXACT != 1) begin : gen_illegal_warped
-      cchip_error_WARPED_EXACT_must_be_0_or_1 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(CONTEXTS < 1 || CONTEXTS > `CCHIP_CONTEXTS_MAX || (1 << CONTEXT_W) < CONTEXTS,
+                cchip_error_CONTEXTS_must_be_1_to_256)
+  `CCHIP_REFUSE(WARPED_EXACT != 0 && WARPED_EXACT != 1, cchip_error_WARPED_EXACT_must_be_0_or_1)
 
   // ---- contexts: after reset every number is handed out once in order; after that, numbers come
   // from the list of those that pairs have given back
@@ -107,10 +101,7 @@ module cchip_axis_controller #(
       .d  (verdict_context),
       .q  (side_context)
   );
-  cchip_delay #(
-      .WIDTH(CONTEXT_W),
-      .DEPTH(`CCHIP_RAM_LATENCY)
-  ) u_outcome_context (
+  cchip_delay #(.WIDTH(CONTEXT_W), .DEPTH(`CCHIP_RAM_LATENCY)) u_outcome_context (
       .clk(clk),
       .rst(1'b0),
       .d  (side_context),
@@ -130,11 +121,7 @@ module cchip_axis_controller #(
       fresh_left_q <= fresh_q != CONTEXT_LAST[CONTEXT_W-1:0];
     end
 
-  cchip_fifo #(
-      .WIDTH     (CONTEXT_W),
-      .DEPTH     (CONTEXTS),
-      .ROOM_KNOWN(1)
-  ) u_free (
+  cchip_fifo #(.WIDTH(CONTEXT_W), .DEPTH(CONTEXTS), .ROOM_KNOWN(1)) u_free (
       .clk    (clk),
       .rst    (rst),
       .s_valid(outcome),
@@ -146,9 +133,7 @@ module cchip_axis_controller #(
   );
   // holds the next context to hand out; s_pair_valid reaches only this buffer
   wire hand_valid;
-  cchip_skid_buffer #(
-      .WIDTH(CONTEXT_W)
-  ) u_hand_out (
+  cchip_skid_buffer #(.WIDTH(CONTEXT_W)) u_hand_out (
       .clk    (clk),
       .rst    (rst),
       .s_valid(fresh_left_q | free_valid),
@@ -176,11 +161,7 @@ module cchip_axis_controller #(
   wire start_deep;
   wire load_deep = s_pair_err != 4'd0 && s_pair_err != `CCHIP_ERR_UNKNOWN;
 
-  cchip_fifo #(
-      .WIDTH     (CONTEXT_W + `CCHIP_MODE_W + 1),
-      .DEPTH     (CONTEXTS),
-      .ROOM_KNOWN(1)
-  ) u_start (
+  cchip_fifo #(.WIDTH(CONTEXT_W + `CCHIP_MODE_W + 1), .DEPTH(CONTEXTS), .ROOM_KNOWN(1)) u_start (
       .clk    (clk),
       .rst    (rst),
       .s_valid(load_valid_q),
@@ -205,11 +186,7 @@ module cchip_axis_controller #(
   wire                         ready_valid, ready_space, ready_ready;
   wire [CONTEXT_W+STATE_W-1:0] ready_state;
 
-  cchip_fifo #(
-      .WIDTH     (CONTEXT_W + STATE_W),
-      .DEPTH     (CONTEXTS),
-      .ROOM_KNOWN(1)
-  ) u_ready (
+  cchip_fifo #(.WIDTH(CONTEXT_W + STATE_W), .DEPTH(CONTEXTS), .ROOM_KNOWN(1)) u_ready (
       .clk    (clk),
       .rst    (rst),
       .s_valid(proceed),
@@ -331,11 +308,7 @@ module cchip_axis_controller #(
 
   // ---- result: the tag, eta = 0 and eta unknown are read from memory on the clock of the outcome
   wire [`CCHIP_TAG_W+1:0] side;
-  cchip_ram #(
-      .WIDTH (`CCHIP_TAG_W + 2),
-      .DEPTH (CONTEXTS),
-      .ADDR_W(CONTEXT_W)
-  ) u_side (
+  cchip_ram #(.WIDTH(`CCHIP_TAG_W + 2), .DEPTH(CONTEXTS), .ADDR_W(CONTEXT_W)) u_side (
       .clk       (clk),
       .write     (s_pair_valid),
       .write_addr(m_load_context),

@@ -173,11 +173,7 @@ module cchip_axis_programme #(
   wire [`CCHIP_INFO_W-1:0] normal_a_info;
   wire normal_clear, certain_sides;
   wire [`CCHIP_PLAN_W-1:0] plan;
-  cchip_programme_plan #(
-      .VERTS_A     (VERTS_A),
-      .VERTS_B     (VERTS_B),
-      .WARPED_EXACT(WARPED_EXACT)
-  ) u_plan (
+  cchip_programme_plan #(.VERTS_A(VERTS_A), .VERTS_B(VERTS_B), .WARPED_EXACT(WARPED_EXACT)) u_plan (
       .clk            (clk),
       .s_state        (s_state),
       .s_negative     (s_negative),
@@ -280,9 +276,7 @@ module cchip_axis_programme #(
       found_deep;
   wire [`CCHIP_AXIS_CODE_W-1:0] found_witness;
   wire [`CCHIP_PLAN_W-1:0] found_plan;
-  cchip_programme_exhaustive #(
-      .TETRAHEDRON(TETRA)
-  ) u_exhaustive (
+  cchip_programme_exhaustive #(.TETRAHEDRON(TETRA)) u_exhaustive (
       .clk             (clk),
       .rst             (rst),
       .s_valid         (valid_q & exhaustive_q),

@@ -113,10 +113,7 @@ module cchip_box_compare #(
 
   // ---- clock 7: gap - 1 - 2^shift
   wire [`CCHIP_ERROR_SHIFT_W-1:0] error_shift;
-  cchip_delay #(
-      .WIDTH(3),
-      .DEPTH(5)
-  ) u_error_shift (
+  cchip_delay #(.WIDTH(3), .DEPTH(5)) u_error_shift (
       .clk(clk),
       .rst(1'b0),
       .d  (s_error_shift),

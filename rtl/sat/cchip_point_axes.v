@@ -99,10 +99,7 @@ module cchip_point_axes #(
 
   // ---- stage project, part 1: G. A sum of three products has one bit more than a product.
   wire [G_W-1:0] dot;
-  cchip_dot3 #(
-      .A_W(D_W + 1),
-      .B_W(D_W)
-  ) u_dot (
+  cchip_dot3 #(.A_W(D_W + 1), .B_W(D_W)) u_dot (
       .clk(clk),
       .a  ({left_q[3*D_W-1], left_q[2*D_W+:D_W], left_q[2*D_W-1], left_q[D_W+:D_W],
             left_q[D_W-1], left_q[0+:D_W]}),
@@ -114,11 +111,7 @@ module cchip_point_axes #(
   reg [G_W-1:0] rr_q, g00_q, g01_q, g02_q, g11_q, g12_q, g22_q;
   reg [USER_W-1:0] g_user_q;
   wire [USER_W-1:0] user_at_g;
-  cchip_delay #(
-      .WIDTH (USER_W),
-      .DEPTH (AT_G - 8),
-      .MEMORY(1)
-  ) u_user (
+  cchip_delay #(.WIDTH(USER_W), .DEPTH(AT_G - 8), .MEMORY(1)) u_user (
       .clk(clk),
       .rst(1'b0),
       .d  (user_q),
@@ -170,24 +163,8 @@ module cchip_point_axes #(
         : c_slot[4] ? g22_q : g11_q;
   end
   wire [2*G_W-1:0] pq, st;
-  cchip_mul_wide #(
-      .A_W(G_W),
-      .B_W(G_W)
-  ) u_pq (
-      .clk(clk),
-      .a  (p_q),
-      .b  (q_q),
-      .p  (pq)
-  );
-  cchip_mul_wide #(
-      .A_W(G_W),
-      .B_W(G_W)
-  ) u_st (
-      .clk(clk),
-      .a  (s_q),
-      .b  (t_q),
-      .p  (st)
-  );
+  cchip_mul_wide #(.A_W(G_W), .B_W(G_W)) u_pq (.clk(clk), .a(p_q), .b(q_q), .p(pq));
+  cchip_mul_wide #(.A_W(G_W), .B_W(G_W)) u_st (.clk(clk), .a(s_q), .b(t_q), .p(st));
   reg [C_W-1:0] c_q;
   always @(posedge clk) c_q <= pq[C_W-1:0] - st[C_W-1:0];
   wire unused_top = &{1'b0, pq[2*G_W-1:C_W], st[2*G_W-1:C_W]};
@@ -213,10 +190,7 @@ module cchip_point_axes #(
   reg [G_W-1:0] h_rr_q, h_e01_q, h_e12_q, h_e20_q, h_g00_q, h_g01_q, h_g02_q;
   reg [2:0] h_vertex_q;
   reg [USER_W-1:0] h_user_q;
-  cchip_delay #(
-      .WIDTH(HELD_W),
-      .DEPTH(MUL > 5 ? MUL - 5 : 0)
-  ) u_held (
+  cchip_delay #(.WIDTH(HELD_W), .DEPTH(MUL > 5 ? MUL - 5 : 0)) u_held (
       .clk(clk),
       .rst(1'b0),
       .d  ({g_user_q, vertex_q, rr_q, e01_q, e12_q, e20_q, g00_q, g01_q, g02_q}),
@@ -238,19 +212,13 @@ module cchip_point_axes #(
         : {{C_W - G_W{edge_square[G_W-1]}}, edge_square};
   end
   wire [2*G_W-1:0] low, high;
-  cchip_mul_wide #(
-      .A_W(G_W),
-      .B_W(G_W)
-  ) u_low (
+  cchip_mul_wide #(.A_W(G_W), .B_W(G_W)) u_low (
       .clk(clk),
       .a  (x_q),
       .b  ({1'b0, y_q[LOW_W-1:0]}),
       .p  (low)
   );
-  cchip_mul_wide #(
-      .A_W(G_W),
-      .B_W(G_W)
-  ) u_high (
+  cchip_mul_wide #(.A_W(G_W), .B_W(G_W)) u_high (
       .clk(clk),
       .a  (x_q),
       .b  (y_q[C_W-1:LOW_W]),
@@ -263,11 +231,7 @@ module cchip_point_axes #(
 
   // ---- part 2: x > y is x - y - 1 >= 0, and - y - 1 is the complement of y
   wire [C_W-1:0] cofactor;
-  cchip_delay #(
-      .WIDTH (C_W),
-      .DEPTH (MUL + 1),
-      .MEMORY(1)
-  ) u_cofactor (
+  cchip_delay #(.WIDTH(C_W), .DEPTH(MUL + 1), .MEMORY(1)) u_cofactor (
       .clk(clk),
       .rst(1'b0),
       .d  (c_q),
@@ -288,11 +252,7 @@ module cchip_point_axes #(
 
   // ---- the rest waits for the face
   wire [2:0] vertex, side;
-  cchip_delay #(
-      .WIDTH (USER_W + 6),
-      .DEPTH (MUL + 3),
-      .MEMORY(1)
-  ) u_rest (
+  cchip_delay #(.WIDTH(USER_W + 6), .DEPTH(MUL + 3), .MEMORY(1)) u_rest (
       .clk(clk),
       .rst(1'b0),
       .d  ({h_user_q, h_vertex_q, row2_q[C_W-1], row1_q[C_W-1], row0_q[C_W-1]}),

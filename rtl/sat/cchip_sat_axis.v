@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_sat_axis: macro stage 2 of the SAT pipeline (paper, figure 7): axis = e x f (eq. 1).
 //   latency      SUBSTAGES clocks
 //   throughput   one axis per clock, never stalls
@@ -34,11 +35,7 @@ module cchip_sat_axis #(
   // edges, norms, their sum
   localparam integer NORM_FILL = SUBSTAGES - 2 - `CCHIP_NORM1_LATENCY;
 
-  generate
-    if (SPARE < 0 || NORM_FILL < 0) begin : gen_illegal
-      cchip_error_SUBSTAGES_below_minimum_for_COORD_W u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SPARE < 0 || NORM_FILL < 0, cchip_error_SUBSTAGES_below_minimum_for_COORD_W)
 
   reg [3*EDGE_W-1:0] e_q, f_q;
 
@@ -69,26 +66,11 @@ module cchip_sat_axis #(
   );
 
   wire [EDGE_W:0] e_norm, f_norm;
-  cchip_norm1 #(
-      .V_W(EDGE_W)
-  ) u_e_norm (
-      .clk(clk),
-      .v  (e_q),
-      .q  (e_norm)
-  );
-  cchip_norm1 #(
-      .V_W(EDGE_W)
-  ) u_f_norm (
-      .clk(clk),
-      .v  (f_q),
-      .q  (f_norm)
-  );
+  cchip_norm1 #(.V_W(EDGE_W)) u_e_norm (.clk(clk), .v(e_q), .q(e_norm));
+  cchip_norm1 #(.V_W(EDGE_W)) u_f_norm (.clk(clk), .v(f_q), .q(f_norm));
   reg [EDGE_W+1:0] edge_norm_q;
   always @(posedge clk) edge_norm_q <= {1'b0, e_norm} + {1'b0, f_norm};
-  cchip_delay #(
-      .WIDTH(EDGE_W + 2),
-      .DEPTH(NORM_FILL)
-  ) u_edge_norm (
+  cchip_delay #(.WIDTH(EDGE_W + 2), .DEPTH(NORM_FILL)) u_edge_norm (
       .clk(clk),
       .rst(1'b0),
       .d  (edge_norm_q),

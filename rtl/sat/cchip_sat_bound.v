@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_sat_bound: how far the projections of the unrounded vertices can lie from those of the
 // grid.
 // Part of macro stage 3; shifts and adds, no multiplier. a, b are the edges whose cross product is
@@ -47,28 +48,18 @@ module cchip_sat_bound #(
   localparam integer GROUP_REGS = SPARE >= 3 ? 1 : 0;
   localparam integer LOG_REGS = SPARE - SHIFT_REGS - GROUP_REGS;
 
-  generate
-    if (SPARE < 0) begin : gen_illegal
-      cchip_error_SUBSTAGES_below_minimum_for_COORD_W u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SPARE < 0, cchip_error_SUBSTAGES_below_minimum_for_COORD_W)
 
   // ---- gap bound; gap_q is one clock ahead of the output, because the sign bound is a sum with it
   wire [`CCHIP_ERROR_SHIFT_W-1:0] shift_norm;
   wire four_gap;
-  cchip_delay #(
-      .WIDTH(3),
-      .DEPTH(`CCHIP_NORM1_LATENCY)
-  ) u_shift_norm (
+  cchip_delay #(.WIDTH(3), .DEPTH(`CCHIP_NORM1_LATENCY)) u_shift_norm (
       .clk(clk),
       .rst(1'b0),
       .d  (s_error_shift),
       .q  (shift_norm)
   );
-  cchip_delay #(
-      .WIDTH(1),
-      .DEPTH(LATENCY - 2 - `CCHIP_NORM1_LATENCY)
-  ) u_four_gap (
+  cchip_delay #(.WIDTH(1), .DEPTH(LATENCY - 2 - `CCHIP_NORM1_LATENCY)) u_four_gap (
       .clk(clk),
       .rst(1'b0),
       .d  (shift_norm[2]),
@@ -77,13 +68,7 @@ module cchip_sat_bound #(
   wire [AXIS_NORM_W-1:0] axis_norm;
   reg [AXIS_NORM_W+2:0] gap_low_q;  // shifted by 0..3
   wire [AXIS_NORM_W+2:0] gap_low;
-  cchip_norm1 #(
-      .V_W(AXIS_W)
-  ) u_axis_norm (
-      .clk(clk),
-      .v  (s_axis),
-      .q  (axis_norm)
-  );
+  cchip_norm1 #(.V_W(AXIS_W)) u_axis_norm (.clk(clk), .v(s_axis), .q(axis_norm));
   always @(posedge clk) gap_low_q <= {3'd0, axis_norm} << shift_norm[1:0];
   cchip_delay #(
       .WIDTH (AXIS_NORM_W + 3),
@@ -139,13 +124,7 @@ module cchip_sat_bound #(
 
   // ---- n = 1 + position of the highest bit that is 1 in |c|_1 + 2 E - 1
   wire [EDGE_W:0] norm;
-  cchip_norm1 #(
-      .V_W(EDGE_W)
-  ) u_norm (
-      .clk(clk),
-      .v  (s_difference),
-      .q  (norm)
-  );
+  cchip_norm1 #(.V_W(EDGE_W)) u_norm (.clk(clk), .v(s_difference), .q(norm));
   reg [4:0] twice_error_less_1_q;
   reg [U_W-1:0] sum_q;
   always @(posedge clk) begin
@@ -164,10 +143,7 @@ module cchip_sat_bound #(
       assign found[3*g+:3] = {|u[4*g+:4], |u[4*g+2+:2], u[4*g+3] | (u[4*g+1] & ~u[4*g+2])};
     end
   endgenerate
-  cchip_delay #(
-      .WIDTH(3 * GROUPS),
-      .DEPTH(GROUP_REGS)
-  ) u_group (
+  cchip_delay #(.WIDTH(3 * GROUPS), .DEPTH(GROUP_REGS)) u_group (
       .clk(clk),
       .rst(1'b0),
       .d  (found),
@@ -181,10 +157,7 @@ module cchip_sat_bound #(
     end
   endfunction
   wire [4:0] log;  // n - 1
-  cchip_delay #(
-      .WIDTH(5),
-      .DEPTH(LOG_REGS)
-  ) u_log (
+  cchip_delay #(.WIDTH(5), .DEPTH(LOG_REGS)) u_log (
       .clk(clk),
       .rst(1'b0),
       .d  (highest(group)),
@@ -194,10 +167,7 @@ module cchip_sat_bound #(
   // ---- product and bound: shifts by 1..4, then by multiples of four
   wire [FACTOR_W+3:0] product_low;
   wire [GROUPS-1:0] log_high;  // one-hot
-  cchip_delay #(
-      .WIDTH(FACTOR_W + 4 + GROUPS),
-      .DEPTH(SHIFT_REGS)
-  ) u_shift (
+  cchip_delay #(.WIDTH(FACTOR_W + 4 + GROUPS), .DEPTH(SHIFT_REGS)) u_shift (
       .clk(clk),
       .rst(1'b0),
       .d  ({{3'd0, factor, 1'b0} << log[1:0], {{GROUPS - 1{1'b0}}, 1'b1} << log[4:2]}),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_sat_compare: macro stage 4 of the SAT pipeline (paper, figure 7): are the projection
 // intervals (eq. 3) disjoint, and are they for the unrounded primitives too?
 //   latency      CCHIP_COMPARE_LATENCY = 4 clocks; from the bounds CCHIP_BOUND_LAG = 2 less
@@ -59,11 +60,8 @@ module cchip_sat_compare #(
   assign m_clear = m_clear_q;
   assign m_deep = m_deep_q;
 
-  generate
-    if (POINTS < 3 || POINTS > 5 || OWN < 1 || OWN > 2) begin : gen_illegal
-      cchip_error_compare_POINTS_must_be_3_to_5_and_OWN_1_or_2 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(POINTS < 3 || POINTS > 5 || OWN < 1 || OWN > 2,
+                cchip_error_compare_POINTS_must_be_3_to_5_and_OWN_1_or_2)
 
   // size of a value: |v|, or |v| - 1 of a negative one
   localparam integer SIZE_W = PROJ_W - 1;
@@ -85,10 +83,7 @@ module cchip_sat_compare #(
   // ---- clocks 1 and 2 beside the values
   wire [1:0] own;
   wire allow_above, allow_below;
-  cchip_delay #(
-      .WIDTH(4),
-      .DEPTH(2)
-  ) u_flags (
+  cchip_delay #(.WIDTH(4), .DEPTH(2)) u_flags (
       .clk(clk),
       .rst(1'b0),
       .d  ({s_own, s_allow_above, s_allow_below}),

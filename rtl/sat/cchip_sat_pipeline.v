@@ -63,21 +63,13 @@ module cchip_sat_pipeline #(
   localparam integer BOUND_W = `CCHIP_BOUND_W(COORD_W);
 
   // ---- control beside the data
-  cchip_delay #(
-      .WIDTH(1),
-      .DEPTH(`CCHIP_PIPE_LATENCY(SUBSTAGES)),
-      .RESET(1)
-  ) u_valid (
+  cchip_delay #(.WIDTH(1), .DEPTH(`CCHIP_PIPE_LATENCY(SUBSTAGES)), .RESET(1)) u_valid (
       .clk(clk),
       .rst(rst),
       .d  (s_beat_valid),
       .q  (m_verdict_valid)
   );
-  cchip_delay #(
-      .WIDTH (USER_W),
-      .DEPTH (`CCHIP_PIPE_LATENCY(SUBSTAGES)),
-      .MEMORY(1)
-  ) u_user (
+  cchip_delay #(.WIDTH(USER_W), .DEPTH(`CCHIP_PIPE_LATENCY(SUBSTAGES)), .MEMORY(1)) u_user (
       .clk(clk),
       .rst(rst),
       .d  (s_beat_user),
@@ -86,11 +78,7 @@ module cchip_sat_pipeline #(
   reg [1:0] allow_q;
   always @(posedge clk) allow_q <= {s_beat_allow_above, s_beat_allow_below};
   wire project_allow_above, project_allow_below;
-  cchip_delay #(
-      .WIDTH (2),
-      .DEPTH (`CCHIP_SELECT_LATENCY - 2 + 2 * SUBSTAGES),
-      .MEMORY(1)
-  ) u_allow (
+  cchip_delay #(.WIDTH(2), .DEPTH(`CCHIP_SELECT_LATENCY - 2 + 2 * SUBSTAGES), .MEMORY(1)) u_allow (
       .clk(clk),
       .rst(rst),
       .d  (allow_q),
@@ -111,20 +99,13 @@ module cchip_sat_pipeline #(
   // ---- box comparison
   wire box_separated, box_certain;
   wire [1:0] box_component;
-  cchip_delay #(
-      .WIDTH(2),
-      .DEPTH(`CCHIP_RAM_LATENCY)
-  ) u_box_component (
+  cchip_delay #(.WIDTH(2), .DEPTH(`CCHIP_RAM_LATENCY)) u_box_component (
       .clk(clk),
       .rst(1'b0),
       .d  (s_beat_code[1:0]),
       .q  (box_component)
   );
-  cchip_box_compare #(
-      .COORD_W(COORD_W),
-      .VERTS_A(VERTS_A),
-      .VERTS_B(VERTS_B)
-  ) u_box (
+  cchip_box_compare #(.COORD_W(COORD_W), .VERTS_A(VERTS_A), .VERTS_B(VERTS_B)) u_box (
       .clk          (clk),
       .s_a          (s_operand_a),
       .s_b          (s_operand_b),
@@ -148,11 +129,7 @@ module cchip_sat_pipeline #(
   wire [POINT_W-1:0] select_e_from, select_e_to, select_f_from, select_f_to;
   wire [POINTS*POINT_W-1:0] select_points;
   wire [1:0] select_own;
-  cchip_sat_select #(
-      .COORD_W(COORD_W),
-      .VERTS_A(VERTS_A),
-      .VERTS_B(VERTS_B)
-  ) u_select (
+  cchip_sat_select #(.COORD_W(COORD_W), .VERTS_A(VERTS_A), .VERTS_B(VERTS_B)) u_select (
       .clk     (clk),
       .s_code  (s_beat_code),
       .s_a     (s_operand_a),
@@ -165,11 +142,7 @@ module cchip_sat_pipeline #(
       .m_own   (select_own)
   );
   wire [1:0] project_own;
-  cchip_delay #(
-      .WIDTH (2),
-      .DEPTH (2 * SUBSTAGES),
-      .MEMORY(1)
-  ) u_own (
+  cchip_delay #(.WIDTH(2), .DEPTH(2 * SUBSTAGES), .MEMORY(1)) u_own (
       .clk(clk),
       .rst(rst),
       .d  (select_own),
@@ -181,10 +154,7 @@ module cchip_sat_pipeline #(
   wire [          NORM_W-1:0] axis_edge_norm;
   wire [         POINT_W-1:0] axis_reference;
   wire [  POINTS*POINT_W-1:0] axis_points;
-  cchip_sat_axis #(
-      .COORD_W  (COORD_W),
-      .SUBSTAGES(SUBSTAGES)
-  ) u_axis (
+  cchip_sat_axis #(.COORD_W(COORD_W), .SUBSTAGES(SUBSTAGES)) u_axis (
       .clk        (clk),
       .s_e_from   (select_e_from),
       .s_e_to     (select_e_to),
@@ -193,11 +163,7 @@ module cchip_sat_pipeline #(
       .m_axis     (axis),
       .m_edge_norm(axis_edge_norm)
   );
-  cchip_delay #(
-      .WIDTH ((POINTS + 1) * POINT_W),
-      .DEPTH (SUBSTAGES),
-      .MEMORY(1)
-  ) u_points (
+  cchip_delay #(.WIDTH((POINTS + 1) * POINT_W), .DEPTH(SUBSTAGES), .MEMORY(1)) u_points (
       .clk(clk),
       .rst(rst),
       .d  ({select_e_from, select_points}),
@@ -252,10 +218,7 @@ module cchip_sat_pipeline #(
       .m_clear      (m_verdict_clear),
       .m_deep       (m_verdict_deep)
   );
-  cchip_delay #(
-      .WIDTH(8),
-      .DEPTH(`CCHIP_COMPARE_LATENCY)
-  ) u_axis_signs (
+  cchip_delay #(.WIDTH(8), .DEPTH(`CCHIP_COMPARE_LATENCY)) u_axis_signs (
       .clk(clk),
       .rst(1'b0),
       .d  ({project_axis_negative, project_axis_zero, project_axis_largest}),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_sat_project: macro stage 3 of the SAT pipeline (paper, figure 7): projections of the points
 // onto the axis (eq. 2), relative to the projection of the reference point, and what the certainty
 // of their signs needs. m_projection[i] = (p_i - reference) . axis.
@@ -57,17 +58,11 @@ module cchip_sat_project #(
   localparam integer OPERAND_REGS = SPARE >= 2 ? 1 : 0;
   localparam integer RESULT_REGS = SPARE - OPERAND_REGS - PRODUCT_REGS;
 
-  generate
-    if (SUBSTAGES < `CCHIP_PROJECT_SUBSTAGES_MIN(COORD_W)) begin : gen_illegal
-      cchip_error_SUBSTAGES_below_minimum_for_COORD_W u_error ();
-    end
-    if (SIGN < 0 || SIGN >= POINTS) begin : gen_illegal_sign
-      cchip_error_SIGN_must_be_below_POINTS u_error ();
-    end
-    if (ABSOLUTE_PROJECTION != 0 && ABSOLUTE_PROJECTION != 1) begin : gen_illegal_projection
-      cchip_error_ABSOLUTE_PROJECTION_must_be_0_or_1 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SUBSTAGES < `CCHIP_PROJECT_SUBSTAGES_MIN(COORD_W),
+                cchip_error_SUBSTAGES_below_minimum_for_COORD_W)
+  `CCHIP_REFUSE(SIGN < 0 || SIGN >= POINTS, cchip_error_SIGN_must_be_below_POINTS)
+  `CCHIP_REFUSE(ABSOLUTE_PROJECTION != 0 && ABSOLUTE_PROJECTION != 1,
+                cchip_error_ABSOLUTE_PROJECTION_must_be_0_or_1)
 
   // ---- points relative to the reference
   reg [3*EDGE_W*POINTS-1:0] difference_q;
@@ -137,10 +132,7 @@ module cchip_sat_project #(
   endgenerate
 
   // ---- error bounds
-  cchip_sat_bound #(
-      .COORD_W  (COORD_W),
-      .SUBSTAGES(SUBSTAGES)
-  ) u_bound (
+  cchip_sat_bound #(.COORD_W(COORD_W), .SUBSTAGES(SUBSTAGES)) u_bound (
       .clk          (clk),
       .s_axis       (s_axis),
       .s_edge_norm  (s_edge_norm),
@@ -190,29 +182,16 @@ module cchip_sat_project #(
     z_over_x_q3 <= less(absolute_q2[0+:AXIS_W], absolute_q2[2*AXIS_W+:AXIS_W]);
     z_over_y_q3 <= less(absolute_q2[AXIS_W+:AXIS_W], absolute_q2[2*AXIS_W+:AXIS_W]);
   end
-  cchip_delay #(
-      .WIDTH(3),
-      .DEPTH(2)
-  ) u_negative (
+  cchip_delay #(.WIDTH(3), .DEPTH(2)) u_negative (
       .clk(clk),
       .rst(1'b0),
       .d  (negative_q),
       .q  (negative_q3)
   );
-  cchip_delay #(
-      .WIDTH(3)
-  ) u_zero (
-      .clk(clk),
-      .rst(1'b0),
-      .d  (zero_q2),
-      .q  (zero_q3)
-  );
+  cchip_delay #(.WIDTH(3)) u_zero (.clk(clk), .rst(1'b0), .d(zero_q2), .q(zero_q3));
 
   wire [1:0] largest = y_over_x_q3 ? (z_over_y_q3 ? 2'd2 : 2'd1) : (z_over_x_q3 ? 2'd2 : 2'd0);
-  cchip_delay #(
-      .WIDTH(8),
-      .DEPTH(SUBSTAGES - 3)
-  ) u_axis (
+  cchip_delay #(.WIDTH(8), .DEPTH(SUBSTAGES - 3)) u_axis (
       .clk(clk),
       .rst(1'b0),
       .d  ({negative_q3, zero_q3, largest}),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_sat_select: macro stage 1 of the SAT pipeline (paper, figure 7). Chooses the two edges e, f
 // whose cross product is the axis (or a constant unit vector for f), and the points to project.
 //   latency      CCHIP_SELECT_LATENCY clocks from s_code, 1 from s_a and s_b, which come
@@ -56,11 +57,8 @@ module cchip_sat_select #(
   localparam integer POINT_W = 3 * COORD_W;
   localparam integer POINTS = `CCHIP_POINTS(VERTS_A, VERTS_B);
 
-  generate
-    if (VERTS_A < 3 || VERTS_A > VERTS_B || VERTS_B > 4) begin : gen_illegal
-      cchip_error_VERTS_must_be_3_3_or_3_4_or_4_4 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(VERTS_A < 3 || VERTS_A > VERTS_B || VERTS_B > 4,
+                cchip_error_VERTS_must_be_3_3_or_3_4_or_4_4)
 
   // ---- clock 1: what the code says
   wire [`CCHIP_CLASS_W-1:0] axis_class = s_code[`CCHIP_AXIS_CODE_CLASS];

@@ -67,13 +67,8 @@ module cchip_leaf_feed #(
   localparam integer MAP_W = 1 + 12 + 4 + 108 + 288;
   localparam [1:0] TWO_TRIANGLES = 2'd2;
 
-  generate
-    if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES ||
-        LEAF_W < 1)
-    begin : gen_illegal
-      cchip_error_leaf_feed_QUERIES_must_be_2_4_8_or_16_and_LEAF_W_positive u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES || LEAF_W < 1,
+                cchip_error_leaf_feed_QUERIES_must_be_2_4_8_or_16_and_LEAF_W_positive)
 
   (* ram_style = "distributed", ramstyle = "MLAB" *)
   reg [MAP_W-1:0] maps[0:QUERIES-1];

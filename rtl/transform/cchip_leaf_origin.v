@@ -21,11 +21,7 @@ module cchip_leaf_origin (
 );
 
   wire [14:7] row;  // row[k]: the origin is at clock k, its row r at k + r
-  cchip_delay #(
-      .WIDTH(1),
-      .DEPTH(6),
-      .RESET(1)
-  ) u_row (
+  cchip_delay #(.WIDTH(1), .DEPTH(6), .RESET(1)) u_row (
       .clk(clk),
       .rst(rst),
       .d  (s_origin),
@@ -43,31 +39,19 @@ module cchip_leaf_origin (
   wire [36:0] difference8;  // t - o_B, 2^-32
   wire [ 3:0] shift7;
   wire [ 4:0] fine9;
-  cchip_delay #(
-      .WIDTH (37),
-      .DEPTH (6),
-      .MEMORY(1)
-  ) u_difference (
+  cchip_delay #(.WIDTH(37), .DEPTH(6), .MEMORY(1)) u_difference (
       .clk(clk),
       .rst(1'b0),
       .d  (difference_q2),
       .q  (difference8)
   );
-  cchip_delay #(
-      .WIDTH (4),
-      .DEPTH (6),
-      .MEMORY(1)
-  ) u_shift (
+  cchip_delay #(.WIDTH(4), .DEPTH(6), .MEMORY(1)) u_shift (
       .clk(clk),
       .rst(1'b0),
       .d  (s_shift),
       .q  (shift7)
   );
-  cchip_delay #(
-      .WIDTH (5),
-      .DEPTH (5),
-      .MEMORY(1)
-  ) u_fine (
+  cchip_delay #(.WIDTH(5), .DEPTH(5), .MEMORY(1)) u_fine (
       .clk(clk),
       .rst(1'b0),
       .d  (s_fine),

@@ -90,31 +90,19 @@ module cchip_leaf_unit #(
     error_a_q7    <= {1'b0, query_q6} + {9'd0, step_a_q6} + {15'd0, query_rest_q6};
     open_q        <= {open_q[2:0], s_open};
   end
-  cchip_delay #(
-      .WIDTH (16),
-      .DEPTH (OUT - 7),
-      .MEMORY(1)
-  ) u_error_a (
+  cchip_delay #(.WIDTH(16), .DEPTH(OUT - 7), .MEMORY(1)) u_error_a (
       .clk(clk),
       .rst(1'b0),
       .d  (error_a_q7),
       .q  (m_error_a)
   );
-  cchip_delay #(
-      .WIDTH (6),
-      .DEPTH (OUT - 5),
-      .MEMORY(1)
-  ) u_error_b (
+  cchip_delay #(.WIDTH(6), .DEPTH(OUT - 5), .MEMORY(1)) u_error_b (
       .clk(clk),
       .rst(1'b0),
       .d  (step_b_q5),
       .q  (m_error_b)
   );
-  cchip_delay #(
-      .WIDTH (1),
-      .DEPTH (OUT - 4),
-      .MEMORY(1)
-  ) u_open (
+  cchip_delay #(.WIDTH(1), .DEPTH(OUT - 4), .MEMORY(1)) u_open (
       .clk(clk),
       .rst(1'b0),
       .d  (open_q[3]),

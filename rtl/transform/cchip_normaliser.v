@@ -53,14 +53,9 @@ module cchip_normaliser #(
   // Clocks from a vertex to its subtraction: those of the last of four vertices, and 10 of the span
   localparam integer WAIT = 3 * PASSES + 10;
 
-  generate
-    if (COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX) begin : gen_illegal_coord_w
-      cchip_error_COORD_W_must_be_4_to_20 u_error ();
-    end
-    if (PASSES < 1 || PASSES > 2) begin : gen_illegal
-      cchip_error_PASSES_must_be_1_or_2 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX,
+                cchip_error_COORD_W_must_be_4_to_20)
+  `CCHIP_REFUSE(PASSES < 1 || PASSES > 2, cchip_error_PASSES_must_be_1_or_2)
 
   // ---- clocks 1 to 3: least and greatest coordinate on each axis, and the bits in which any
   // coordinate differs from the first one of its axis
@@ -118,10 +113,7 @@ module cchip_normaliser #(
   reg [ERROR_W-1:0] error_a_q4, error_q5;
   reg [6:0] error_b_q4;
   wire [ERROR_W-1:0] error_b4 = {{ERROR_W - 7{1'b0}}, error_b_q4};
-  cchip_delay #(
-      .WIDTH(ERROR_W + 7),
-      .DEPTH(3)
-  ) u_error (
+  cchip_delay #(.WIDTH(ERROR_W + 7), .DEPTH(3)) u_error (
       .clk(clk),
       .rst(1'b0),
       .d  ({s_open, s_error_b, s_error_a}),
@@ -172,30 +164,19 @@ module cchip_normaliser #(
   wire [ERROR_W-1:0] error8;
   wire last8, open8;
   reg [KNOWN_W-1:0] known_q9, known_q;
-  cchip_delay #(
-      .WIDTH (3 * A_W + SPANS + 1),
-      .DEPTH (5),
-      .MEMORY(1)
-  ) u_least (
+  cchip_delay #(.WIDTH(3 * A_W + SPANS + 1), .DEPTH(5), .MEMORY(1)) u_least (
       .clk(clk),
       .rst(1'b0),
       .d  ({least3, differs_q3, open3}),
       .q  ({least8, differs8, open8})
   );
-  cchip_delay #(
-      .WIDTH(ERROR_W),
-      .DEPTH(3)
-  ) u_error_5 (
+  cchip_delay #(.WIDTH(ERROR_W), .DEPTH(3)) u_error_5 (
       .clk(clk),
       .rst(1'b0),
       .d  (error_q5),
       .q  (error8)
   );
-  cchip_delay #(
-      .WIDTH(1),
-      .DEPTH(5),
-      .RESET(1)
-  ) u_last (
+  cchip_delay #(.WIDTH(1), .DEPTH(5), .RESET(1)) u_last (
       .clk(clk),
       .rst(rst),
       .d  (valid_q[3] & last_q[3]),
@@ -217,31 +198,19 @@ module cchip_normaliser #(
   wire [3*A_W-1:0] out_a;
   wire [3*B_W-1:0] out_b;
   wire exits_last;
-  cchip_delay #(
-      .WIDTH (3 * A_W + 3 * B_W),
-      .DEPTH (WAIT),
-      .MEMORY(1)
-  ) u_vertices (
+  cchip_delay #(.WIDTH(3 * A_W + 3 * B_W), .DEPTH(WAIT), .MEMORY(1)) u_vertices (
       .clk(clk),
       .rst(1'b0),
       .d  ({s_b, s_a}),
       .q  ({out_b, out_a})
   );
-  cchip_delay #(
-      .WIDTH(3),
-      .DEPTH(WAIT - 1),
-      .RESET(1)
-  ) u_exits (
+  cchip_delay #(.WIDTH(3), .DEPTH(WAIT - 1), .RESET(1)) u_exits (
       .clk(clk),
       .rst(rst),
       .d  ({s_last, s_first, s_valid}),
       .q  ({exits_last, exits_first, exits})
   );
-  cchip_delay #(
-      .WIDTH(3),
-      .DEPTH(5),
-      .RESET(1)
-  ) u_valid (
+  cchip_delay #(.WIDTH(3), .DEPTH(5), .RESET(1)) u_valid (
       .clk(clk),
       .rst(rst),
       .d  ({exits_last, exits_first, exits}),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_vertex_transform: the vertices of a leaf pair relative to the origin of B's leaf:
 // those of A moved by the map of the query, M o_A + t - o_B and M times the offset of a vertex,
 // each exact and rounded once; those of B in the same unit.
@@ -53,15 +54,9 @@ module cchip_vertex_transform #(
   // Clocks from the last pass of a vertex to its output
   localparam integer OUT = PASSES == 1 ? 15 : 14;
 
-  generate
-    if (PASSES < 1 || PASSES > 2) begin : gen_illegal
-      cchip_error_PASSES_must_be_1_or_2 u_error ();
-    end
-    // the clocks below are counted for a leaf of two
-    if (`CCHIP_MUL18_LATENCY != 2) begin : gen_illegal_latency
-      cchip_error_vertex_transform_needs_CCHIP_MUL18_LATENCY_2 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(PASSES < 1 || PASSES > 2, cchip_error_PASSES_must_be_1_or_2)
+  // the clocks below are counted for a leaf of two
+  `CCHIP_REFUSE(`CCHIP_MUL18_LATENCY != 2, cchip_error_vertex_transform_needs_CCHIP_MUL18_LATENCY_2)
 
   wire [511:0] line_a = s_lines[511:0];
   wire [511:0] line_b = s_lines[1023:512];
@@ -72,9 +67,7 @@ module cchip_vertex_transform #(
   // ---- which vertex: origin of A's leaf, then pair by pair
   wire [71:0] factor, offset_b1;
   wire pass, origin1, valid1, first1, last1;
-  cchip_leaf_sequencer #(
-      .PASSES(PASSES)
-  ) u_sequencer (
+  cchip_leaf_sequencer #(.PASSES(PASSES)) u_sequencer (
       .clk        (clk),
       .rst        (rst),
       .s_valid    (s_valid),
@@ -103,11 +96,7 @@ module cchip_vertex_transform #(
   generate
     for (i = 0; i < 3; i = i + 1) begin : gen_row
       if (PASSES == 1) begin : gen_whole
-        cchip_dot3 #(
-            .A_W         (32),
-            .B_W         (24),
-            .OPERAND_REGS(1)
-        ) u_dot (
+        cchip_dot3 #(.A_W(32), .B_W(24), .OPERAND_REGS(1)) u_dot (
             .clk(clk),
             .a  (s_m[96*i+:96]),
             .b  (factor),
@@ -126,11 +115,7 @@ module cchip_vertex_transform #(
         wire [42:0] sum;
         reg  [42:0] low_q;
         reg  [55:0] both_q;
-        cchip_dot3 #(
-            .A_W         (18),
-            .B_W         (25),
-            .OPERAND_REGS(1)
-        ) u_dot (
+        cchip_dot3 #(.A_W(18), .B_W(25), .OPERAND_REGS(1)) u_dot (
             .clk(clk),
             .a  (half),
             .b  (wider),
@@ -149,9 +134,7 @@ module cchip_vertex_transform #(
   // ---- the unit, how far each leaf is above it, and the bounds on the errors
   wire [3:0] shift1;
   wire [4:0] cut_a4, cut_b4, fine4;
-  cchip_leaf_unit #(
-      .OUT(OUT)
-  ) u_unit (
+  cchip_leaf_unit #(.OUT(OUT)) u_unit (
       .clk       (clk),
       .s_shift   (s_shift),
       .s_error   (s_error),
@@ -188,30 +171,14 @@ module cchip_vertex_transform #(
   // ---- clocks 8 to OUT: offsets in the unit, and the sum
   wire [4:0] cut_a7, cut_b;
   wire [71:0] offset_b;
-  cchip_delay #(
-      .WIDTH(5),
-      .DEPTH(3)
-  ) u_cut_a (
-      .clk(clk),
-      .rst(1'b0),
-      .d  (cut_a4),
-      .q  (cut_a7)
-  );
-  cchip_delay #(
-      .WIDTH (5),
-      .DEPTH (OUT - 7),
-      .MEMORY(1)
-  ) u_cut_b (
+  cchip_delay #(.WIDTH(5), .DEPTH(3)) u_cut_a (.clk(clk), .rst(1'b0), .d(cut_a4), .q(cut_a7));
+  cchip_delay #(.WIDTH(5), .DEPTH(OUT - 7), .MEMORY(1)) u_cut_b (
       .clk(clk),
       .rst(1'b0),
       .d  (cut_b4),
       .q  (cut_b)
   );
-  cchip_delay #(
-      .WIDTH (72),
-      .DEPTH (OUT - 4),
-      .MEMORY(1)
-  ) u_offset_b (
+  cchip_delay #(.WIDTH(72), .DEPTH(OUT - 4), .MEMORY(1)) u_offset_b (
       .clk(clk),
       .rst(1'b0),
       .d  (offset_b1),
@@ -235,11 +202,7 @@ module cchip_vertex_transform #(
           .q   (rounded),
           .lost(lost)
       );
-      cchip_delay #(
-          .WIDTH (29),
-          .DEPTH (OUT - 11),
-          .MEMORY(1)
-      ) u_offset_a (
+      cchip_delay #(.WIDTH(29), .DEPTH(OUT - 11), .MEMORY(1)) u_offset_a (
           .clk(clk),
           .rst(1'b0),
           .d  ({lost, rounded}),
@@ -264,11 +227,7 @@ module cchip_vertex_transform #(
   always @(posedge clk) lost_q <= {|lost_a, origin_lost15};
   assign m_a = a_q;
   assign m_lost = {|lost_b, lost_q};
-  cchip_delay #(
-      .WIDTH(3),
-      .DEPTH(OUT - 1),
-      .RESET(1)
-  ) u_valid (
+  cchip_delay #(.WIDTH(3), .DEPTH(OUT - 1), .RESET(1)) u_valid (
       .clk(clk),
       .rst(rst),
       .d  ({last1, first1, valid1}),

@@ -139,11 +139,7 @@ module cchip_broad_phase #(
   genvar n;
   generate
     for (n = 0; n < 4; n = n + 1) begin : gen_reset
-      cchip_reset_copy u_reset (
-          .clk     (clk),
-          .rst     (rst),
-          .rst_copy(block_rst[n])
-      );
+      cchip_reset_copy u_reset (.clk(clk), .rst(rst), .rst_copy(block_rst[n]));
     end
   endgenerate
 
@@ -210,11 +206,7 @@ module cchip_broad_phase #(
       .count_leaf_pair  (count_leaf_pair)
   );
 
-  cchip_get_data #(
-      .QUERIES(QUERIES),
-      .PAIRS  (PAIRS),
-      .LEAVES (LEAVES)
-  ) u_get_data (
+  cchip_get_data #(.QUERIES(QUERIES), .PAIRS(PAIRS), .LEAVES(LEAVES)) u_get_data (
       .clk            (clk),
       .rst            (block_rst[1]),
       .s_valid        (get_valid),
@@ -277,10 +269,7 @@ module cchip_broad_phase #(
       `CCHIP_ASSERT(a_pose_room, !pose_valid_q || start_ready)
     end
 
-  cchip_bv_unit #(
-      .QUERIES(QUERIES),
-      .TAG_W  (PLACE_W)
-  ) u_bv_unit (
+  cchip_bv_unit #(.QUERIES(QUERIES), .TAG_W(PLACE_W)) u_bv_unit (
       .clk           (clk),
       .rst           (block_rst[2]),
       .s_pose_valid  (pose_valid_q),

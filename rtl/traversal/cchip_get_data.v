@@ -87,18 +87,11 @@ module cchip_get_data #(
   localparam [31:0] FIRST_LEAF = PAIRS;
   localparam [31:0] ROOM_AT_FIRST = LEAF_ROOM;
 
-  generate
-    if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES) begin : gen_illegal_queries
-      cchip_error_get_data_QUERIES_must_be_2_4_8_or_16 u_error ();
-    end
-    if (PAIRS < 1 || LEAVES < 1 || PLACES < 8 || PLACES > 64 || (1 << PLACE_W) != PLACES)
-    begin : gen_illegal_places
-      cchip_error_get_data_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together u_error ();
-    end
-    if (LEAF_ROOM < 1 || LEAF_ROOM > 3) begin : gen_illegal_room
-      cchip_error_get_data_LEAF_ROOM_must_be_1_2_or_3 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES,
+                cchip_error_get_data_QUERIES_must_be_2_4_8_or_16)
+  `CCHIP_REFUSE(PAIRS < 1 || LEAVES < 1 || PLACES < 8 || PLACES > 64 || (1 << PLACE_W) != PLACES,
+                cchip_error_get_data_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together)
+  `CCHIP_REFUSE(LEAF_ROOM < 1 || LEAF_ROOM > 3, cchip_error_get_data_LEAF_ROOM_must_be_1_2_or_3)
 
   // ---- requests
   reg ask_q;
@@ -137,11 +130,7 @@ module cchip_get_data #(
   reg [2:0] leaf_beat_q;
   wire [1:0] queue_valid, queue_take, leaf_queue_valid, leaf_queue_take;
   wire [2*PLACE_W-1:0] queue_place, leaf_queue_place;
-  cchip_line_pairs #(
-      .PAIRS  (PAIRS),
-      .LEAVES (LEAVES),
-      .PLACE_W(PLACE_W)
-  ) u_pairs (
+  cchip_line_pairs #(.PAIRS(PAIRS), .LEAVES(LEAVES), .PLACE_W(PLACE_W)) u_pairs (
       .clk         (clk),
       .rst         (rst),
       .s_valid     (s_line_valid),
@@ -294,10 +283,7 @@ module cchip_get_data #(
   wire unused = &{1'b0, asked_a, asked_b, hold_record_q};
 
   // ---- what the lines say, and the record of the pair whose verdict has come
-  cchip_node_check #(
-      .QUERIES(QUERIES),
-      .PLACE_W(PLACE_W)
-  ) u_check (
+  cchip_node_check #(.QUERIES(QUERIES), .PLACE_W(PLACE_W)) u_check (
       .clk         (clk),
       .rst         (rst),
       .s_valid     (fresh_q & pair_valid_q),

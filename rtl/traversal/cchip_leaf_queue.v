@@ -49,25 +49,14 @@ module cchip_leaf_queue #(
   localparam integer EPOCH_W = 2;
   localparam integer ENTRY_W = CONTEXT_W + EPOCH_W + 96;
 
-  generate
-    if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES) begin : gen_illegal_queries
-      cchip_error_leaf_queue_QUERIES_must_be_2_4_8_or_16 u_error ();
-    end
-    if (DEPTH < 1 || DEPTH > 1024) begin : gen_illegal_depth
-      cchip_error_leaf_queue_DEPTH_must_be_1_to_1024 u_error ();
-    end
-    if (CREDIT < 1 || CREDIT > 65535) begin : gen_illegal_credit
-      cchip_error_leaf_queue_CREDIT_must_be_1_to_65535 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES,
+                cchip_error_leaf_queue_QUERIES_must_be_2_4_8_or_16)
+  `CCHIP_REFUSE(DEPTH < 1 || DEPTH > 1024, cchip_error_leaf_queue_DEPTH_must_be_1_to_1024)
+  `CCHIP_REFUSE(CREDIT < 1 || CREDIT > 65535, cchip_error_leaf_queue_CREDIT_must_be_1_to_65535)
 
   wire ready, queue_valid, load;
   wire [ENTRY_W-1:0] queue_entry;
-  cchip_fifo #(
-      .WIDTH     (ENTRY_W),
-      .DEPTH     (DEPTH),
-      .ROOM_KNOWN(1)
-  ) u_fifo (
+  cchip_fifo #(.WIDTH(ENTRY_W), .DEPTH(DEPTH), .ROOM_KNOWN(1)) u_fifo (
       .clk    (clk),
       .rst    (rst),
       .s_valid(s_valid),
@@ -94,12 +83,7 @@ module cchip_leaf_queue #(
   wire [15:0] rest;  // without its first pair
   wire [3:0] number;  // of that
   wire more;  // there are others
-  cchip_first_pair u_first (
-      .pairs  (left_q),
-      .first  (number),
-      .rest   (rest),
-      .several(more)
-  );
+  cchip_first_pair u_first (.pairs(left_q), .first(number), .rest(rest), .several(more));
   wire taken = (valid_q & m_ready) | (drop_q & m_drop_ready);
   assign load = ~work_q;
 
@@ -110,9 +94,7 @@ module cchip_leaf_queue #(
   wire credit, unused_outside;
   wire [$clog2(CREDIT+1)-1:0] unused_count;
   wire spend = judge & live & credit;
-  cchip_count #(
-      .LIMIT(CREDIT)
-  ) u_credit (
+  cchip_count #(.LIMIT(CREDIT)) u_credit (
       .clk  (clk),
       .rst  (rst),
       .up   (spend),

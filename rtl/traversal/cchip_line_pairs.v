@@ -80,11 +80,7 @@ module cchip_line_pairs #(
       reg [PLACE_W-1:0] whole_place_q;
       wire whole_leaf = {{32 - PLACE_W{1'b0}}, whole_place_q} >= FIRST_LEAF;
       wire pair_ready, leaf_ready;
-      cchip_fifo #(
-          .WIDTH     (PLACE_W),
-          .DEPTH     (PAIRS),
-          .ROOM_KNOWN(1)
-      ) u_pairs (
+      cchip_fifo #(.WIDTH(PLACE_W), .DEPTH(PAIRS), .ROOM_KNOWN(1)) u_pairs (
           .clk    (clk),
           .rst    (rst),
           .s_valid(whole_q & ~whole_leaf),
@@ -94,11 +90,7 @@ module cchip_line_pairs #(
           .m_ready(m_pair_take[p]),
           .m_data (m_pair_place[PLACE_W*p+:PLACE_W])
       );
-      cchip_fifo #(
-          .WIDTH     (PLACE_W),
-          .DEPTH     (LEAVES),
-          .ROOM_KNOWN(1)
-      ) u_leaves (
+      cchip_fifo #(.WIDTH(PLACE_W), .DEPTH(LEAVES), .ROOM_KNOWN(1)) u_leaves (
           .clk    (clk),
           .rst    (rst),
           .s_valid(whole_q & whole_leaf),
@@ -110,10 +102,7 @@ module cchip_line_pairs #(
       );
       wire [PLACE_W-1:0] comes_place = s_place[PLACE_W*p+:PLACE_W];
       wire comes_leaf = {{32 - PLACE_W{1'b0}}, comes_place} >= FIRST_LEAF;
-      cchip_block_ram #(
-          .WIDTH (256),
-          .ADDR_W(PLACE_W + 1)
-      ) u_lines (
+      cchip_block_ram #(.WIDTH(256), .ADDR_W(PLACE_W + 1)) u_lines (
           .clk       (clk),
           .write     (s_valid[p] | valid_q[p]),
           .write_addr({comes_place, valid_q[p]}),
@@ -121,11 +110,7 @@ module cchip_line_pairs #(
           .read_addr ({read_place, read_beat}),
           .read_data (read_lines[256*p+:256])
       );
-      cchip_block_ram #(
-          .WIDTH (64),
-          .WORDS (4),
-          .ADDR_W(LEAF_W + 3)
-      ) u_leaf_lines (
+      cchip_block_ram #(.WIDTH(64), .WORDS(4), .ADDR_W(LEAF_W + 3)) u_leaf_lines (
           .clk       (clk),
           .write     ((s_valid[p] | valid_q[p]) & comes_leaf),
           .write_addr({comes_place[LEAF_W-1:0], valid_q[p]}),

@@ -116,21 +116,15 @@ module cchip_traversal #(
   localparam integer WORK_W = 12;
   localparam integer ANSWERS = 2 * QUERIES;
 
-  generate
-    if (QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES) begin : gen_illegal_queries
-      cchip_error_traversal_QUERIES_must_be_2_4_8_or_16 u_error ();
-    end
-    if (PAIRS < 1 || LEAVES < 1 || PAIRS + LEAVES < 8 || PAIRS + LEAVES > 64 ||
-        (1 << PLACE_W) != PAIRS + LEAVES) begin : gen_illegal_places
-      cchip_error_traversal_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together u_error ();
-    end
-    if (LEAF_DEPTH <= PAIRS || LEAF_DEPTH > 128) begin : gen_illegal_depth
-      cchip_error_traversal_LEAF_DEPTH_must_be_over_PAIRS_to_128 u_error ();
-    end
-    if (STACK < 8 || STACK > 64 || (1 << STACK_W) != STACK) begin : gen_illegal_stack
-      cchip_error_traversal_STACK_must_be_8_16_32_or_64 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES,
+                cchip_error_traversal_QUERIES_must_be_2_4_8_or_16)
+  `CCHIP_REFUSE(PAIRS < 1 || LEAVES < 1 || PAIRS + LEAVES < 8 || PAIRS + LEAVES > 64 ||
+                (1 << PLACE_W) != PAIRS + LEAVES,
+                cchip_error_traversal_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together)
+  `CCHIP_REFUSE(LEAF_DEPTH <= PAIRS || LEAF_DEPTH > 128,
+                cchip_error_traversal_LEAF_DEPTH_must_be_over_PAIRS_to_128)
+  `CCHIP_REFUSE(STACK < 8 || STACK > 64 || (1 << STACK_W) != STACK,
+                cchip_error_traversal_STACK_must_be_8_16_32_or_64)
 
   // ---- stage 1: an event
   wire valid1, valid5;
@@ -228,20 +222,13 @@ module cchip_traversal #(
   // ---- stages 2 to 5: it passes on
   wire [RECORD_W-1:0] record5;
   wire [NODES_W-1:0] nodes4;
-  cchip_delay #(
-      .WIDTH(1),
-      .DEPTH(4),
-      .RESET(1)
-  ) u_valid (
+  cchip_delay #(.WIDTH(1), .DEPTH(4), .RESET(1)) u_valid (
       .clk(clk),
       .rst(rst),
       .d  (valid1),
       .q  (valid5)
   );
-  cchip_delay #(
-      .WIDTH(5 + CONTEXT_W + PLACE_W + 9),
-      .DEPTH(4)
-  ) u_event (
+  cchip_delay #(.WIDTH(5 + CONTEXT_W + PLACE_W + 9), .DEPTH(4)) u_event (
       .clk(clk),
       .rst(1'b0),
       .d  ({judge1, is1, context1, place1, result1}),
@@ -263,19 +250,13 @@ module cchip_traversal #(
       .m_room       (room5)
   );
   // a clock later than what is looked up
-  cchip_delay #(
-      .WIDTH(RECORD_W),
-      .DEPTH(5)
-  ) u_record (
+  cchip_delay #(.WIDTH(RECORD_W), .DEPTH(5)) u_record (
       .clk(clk),
       .rst(1'b0),
       .d  (lookup_record),
       .q  (record5)
   );
-  cchip_delay #(
-      .WIDTH(NODES_W),
-      .DEPTH(4)
-  ) u_nodes (
+  cchip_delay #(.WIDTH(NODES_W), .DEPTH(4)) u_nodes (
       .clk(clk),
       .rst(1'b0),
       .d  (lookup_nodes),
@@ -298,11 +279,7 @@ module cchip_traversal #(
   wire epoch_write;
   wire [CONTEXT_W-1:0] epoch_context;
   wire [EPOCH_W-1:0] epoch;
-  cchip_traversal_contexts #(
-      .QUERIES(QUERIES),
-      .STACK  (STACK),
-      .WORK_W (WORK_W)
-  ) u_contexts (
+  cchip_traversal_contexts #(.QUERIES(QUERIES), .STACK(STACK), .WORK_W(WORK_W)) u_contexts (
       .clk          (clk),
       .rst          (rst),
       .running      (running),
@@ -333,10 +310,7 @@ module cchip_traversal #(
   );
 
   // ---- stages 5 to 7: what happens
-  cchip_traversal_decision #(
-      .STACK (STACK),
-      .WORK_W(WORK_W)
-  ) u_decision (
+  cchip_traversal_decision #(.STACK(STACK), .WORK_W(WORK_W)) u_decision (
       .clk            (clk),
       .rst            (rst),
       .pairs_each     (pairs_each),
@@ -415,11 +389,7 @@ module cchip_traversal #(
   assign m_start_query   = query;
 
   wire done_ready;
-  cchip_fifo #(
-      .WIDTH     (32 + `CCHIP_QUERY_END_W),
-      .DEPTH     (ANSWERS),
-      .ROOM_KNOWN(1)
-  ) u_done (
+  cchip_fifo #(.WIDTH(32 + `CCHIP_QUERY_END_W), .DEPTH(ANSWERS), .ROOM_KNOWN(1)) u_done (
       .clk    (clk),
       .rst    (rst),
       .s_valid(ends8),

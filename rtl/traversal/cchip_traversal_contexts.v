@@ -117,10 +117,7 @@ module cchip_traversal_contexts #(
   assign over5      = over_q5;
   assign full5      = full_q5;
 
-  cchip_block_ram #(
-      .WIDTH (`CCHIP_STACK_ENTRY_W),
-      .ADDR_W(CONTEXT_W + STACK_W)
-  ) u_stack (
+  cchip_block_ram #(.WIDTH(`CCHIP_STACK_ENTRY_W), .ADDR_W(CONTEXT_W + STACK_W)) u_stack (
       .clk       (clk),
       .write     (push8),
       .write_addr({context8, at8}),

@@ -105,11 +105,7 @@ module cchip_traversal_events #(
   reg [PLACE_W+56:0] verdict_q;
   wire verdict_take, queue_valid, queue_ready;
   wire [PLACE_W+56:0] queue_verdict;
-  cchip_fifo #(
-      .WIDTH     (PLACE_W + 57),
-      .DEPTH     (PAIRS),
-      .ROOM_KNOWN(1)
-  ) u_verdicts (
+  cchip_fifo #(.WIDTH(PLACE_W + 57), .DEPTH(PAIRS), .ROOM_KNOWN(1)) u_verdicts (
       .clk    (clk),
       .rst    (rst),
       .s_valid(s_verdict_valid),
@@ -132,9 +128,7 @@ module cchip_traversal_events #(
   wire [CONTEXT_W-1:0] result_context;
   wire [1:0] result_epoch;
   wire [8:0] result;
-  cchip_skid_buffer #(
-      .WIDTH(CONTEXT_W + 11)
-  ) u_result (
+  cchip_skid_buffer #(.WIDTH(CONTEXT_W + 11)) u_result (
       .clk    (clk),
       .rst    (rst),
       .s_valid(s_result_valid),
@@ -156,18 +150,14 @@ module cchip_traversal_events #(
   reg idle_valid_q;
   wire idle_load = ~idle_valid_q & running & ~starting_q;
   reg [QUERIES-1:0] idle_one_q, want_one_q;  // one-hot
-  cchip_arbiter #(
-      .N(QUERIES)
-  ) u_idle (
+  cchip_arbiter #(.N(QUERIES)) u_idle (
       .clk    (clk),
       .rst    (rst),
       .request(idle_free_q),
       .grant  (idle_grant),
       .take   (idle_load)
   );
-  cchip_arbiter #(
-      .N(QUERIES)
-  ) u_want (
+  cchip_arbiter #(.N(QUERIES)) u_want (
       .clk    (clk),
       .rst    (rst),
       .request(want_free_q),
@@ -175,17 +165,11 @@ module cchip_traversal_events #(
       .take   (choose_q)
   );
   wire [CONTEXT_W-1:0] idle_context, want_context;
-  cchip_onehot_index #(
-      .N    (QUERIES),
-      .WIDTH(CONTEXT_W)
-  ) u_idle_context (
+  cchip_onehot_index #(.N(QUERIES), .WIDTH(CONTEXT_W)) u_idle_context (
       .select(idle_one_q),
       .index (idle_context)
   );
-  cchip_onehot_index #(
-      .N    (QUERIES),
-      .WIDTH(CONTEXT_W)
-  ) u_want_context (
+  cchip_onehot_index #(.N(QUERIES), .WIDTH(CONTEXT_W)) u_want_context (
       .select(want_one_q),
       .index (want_context)
   );
@@ -222,10 +206,7 @@ module cchip_traversal_events #(
   // ---- a place, room in the leaf queue, room for the answer
   wire place_valid, place_take;
   wire [PLACE_W-1:0] place;
-  cchip_pool #(
-      .COUNT(PAIRS),
-      .WIDTH(PLACE_W)
-  ) u_places (
+  cchip_pool #(.COUNT(PAIRS), .WIDTH(PLACE_W)) u_places (
       .clk        (clk),
       .rst        (rst),
       .m_valid    (place_valid),
@@ -251,9 +232,7 @@ module cchip_traversal_events #(
   end
   wire answer_room, unused_some;
   wire [$clog2(ANSWERS+1)-1:0] unused_answers;
-  cchip_count #(
-      .LIMIT(ANSWERS)
-  ) u_answers (
+  cchip_count #(.LIMIT(ANSWERS)) u_answers (
       .clk  (clk),
       .rst  (rst),
       .up   (start_ends),

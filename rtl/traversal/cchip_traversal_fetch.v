@@ -71,11 +71,7 @@ module cchip_traversal_fetch #(
   wire [63:0] fetch_lines;
   wire fetch_ready = leaf_place_valid & ~s_goes;
   wire fetch = fetch_valid & fetch_ready;
-  cchip_leaf_queue #(
-      .QUERIES(QUERIES),
-      .DEPTH  (LEAF_DEPTH),
-      .CREDIT (CREDIT)
-  ) u_leaves (
+  cchip_leaf_queue #(.QUERIES(QUERIES), .DEPTH(LEAF_DEPTH), .CREDIT(CREDIT)) u_leaves (
       .clk          (clk),
       .rst          (rst),
       .s_valid      (s_leaf),
@@ -98,11 +94,7 @@ module cchip_traversal_fetch #(
       .m_kinds      (fetch_kinds),
       .m_lines      (fetch_lines)
   );
-  cchip_pool #(
-      .FIRST(PAIRS),
-      .COUNT(LEAVES),
-      .WIDTH(PLACE_W)
-  ) u_leaf_places (
+  cchip_pool #(.FIRST(PAIRS), .COUNT(LEAVES), .WIDTH(PLACE_W)) u_leaf_places (
       .clk        (clk),
       .rst        (rst),
       .m_valid    (leaf_place_valid),

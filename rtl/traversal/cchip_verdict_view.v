@@ -22,10 +22,7 @@ module cchip_verdict_view (
 
   wire [`CCHIP_BOX_VERDICT_W-1:0] verdict3;
   wire extra3;
-  cchip_delay #(
-      .WIDTH(`CCHIP_BOX_VERDICT_W + 1),
-      .DEPTH(2)
-  ) u_delay (
+  cchip_delay #(.WIDTH(`CCHIP_BOX_VERDICT_W + 1), .DEPTH(2)) u_delay (
       .clk(clk),
       .rst(1'b0),
       .d  ({s_extra, s_verdict}),

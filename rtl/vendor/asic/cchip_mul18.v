@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_mul18 for standard cells: the multiplier leaf as partial products, a carry-save tree of six
 // levels and one adder, with registers between them. Takes the place of arith/cchip_mul18.v in
 // rtl/cchip_asic.f.
@@ -20,14 +21,9 @@ module cchip_mul18 #(
 
   localparam integer STAGES = `CCHIP_MUL18_LATENCY;
 
-  generate
-    if (SIGNED != 0 && SIGNED != 1) begin : gen_illegal
-      cchip_error_mul18_SIGNED_must_be_0_or_1 u_error ();
-    end
-    if (STAGES < 2 || STAGES > 4) begin : gen_illegal_latency
-      cchip_error_mul18_for_standard_cells_has_CCHIP_MUL18_LATENCY_2_to_4 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SIGNED != 0 && SIGNED != 1, cchip_error_mul18_SIGNED_must_be_0_or_1)
+  `CCHIP_REFUSE(STAGES < 2 || STAGES > 4,
+                cchip_error_mul18_for_standard_cells_has_CCHIP_MUL18_LATENCY_2_to_4)
 
   reg [17:0] a_q, b_q;
   always @(posedge clk) begin

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_block_ram for Lattice ECP5: blocks DP16KD with their own output registers, which Yosys does
 // not pack. Takes the place of common/cchip_block_ram.v in rtl/cchip_ecp5.f.
 //   LUTs         WORDS = 1 and ADDR_W up to 4: distributed RAM, of which a block would hold 3 %
@@ -28,14 +29,11 @@ module cchip_block_ram #(
   localparam integer FITS = BITS == 9 ? 11 : BITS == 36 ? 9 : 10;  // address bits of a block
   localparam integer WRITTEN = BITS == 18 ? 18 : 36;  // bits of a block that are written at once
 
-  generate
-    if (WIDTH < 1 || ADDR_W < 3 || ADDR_W > 16) begin : gen_illegal
-      cchip_error_block_ram_WIDTH_below_1_or_ADDR_W_not_3_to_16 u_error ();
-    end
-    if (WORDS != 1 && WORDS != 4) begin : gen_illegal_words
-      cchip_error_block_ram_WORDS_must_be_1_or_4 u_error ();
-    end
+  `CCHIP_REFUSE(WIDTH < 1 || ADDR_W < 3 || ADDR_W > 16,
+                cchip_error_block_ram_WIDTH_below_1_or_ADDR_W_not_3_to_16)
+  `CCHIP_REFUSE(WORDS != 1 && WORDS != 4, cchip_error_block_ram_WORDS_must_be_1_or_4)
 
+  generate
     if (WORDS == 1 && ADDR_W <= 4) begin : gen_distributed
       // the first register holds the address, which is narrower than the word
       (* ram_style = "distributed" *)
@@ -82,10 +80,7 @@ module cchip_block_ram #(
         end else begin : gen_port_b
           assign found[BITS*b+:BITS] = q[18+:BITS];
         end
-        cchip_dp16kd #(
-            .WIDTH_A(WRITTEN),
-            .WIDTH_B(BITS)
-        ) u_block (
+        cchip_dp16kd #(.WIDTH_A(WRITTEN), .WIDTH_B(BITS)) u_block (
             .clk   (clk),
             .write (write),
             .addr_a(write_bit),

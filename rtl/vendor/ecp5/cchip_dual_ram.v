@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_dual_ram for Lattice ECP5: blocks DP16KD with their own output registers. Takes the place
 // of common/cchip_dual_ram.v in rtl/cchip_ecp5.f.
 //   blocks       one for 18 bits of a word with ADDR_W up to 10, for 9 bits with 11, for 4 bits
@@ -25,11 +26,10 @@ module cchip_dual_ram #(
       ADDR_W == 13 ? 2 : 1;
   localparam integer BLOCKS = (WIDTH + BITS - 1) / BITS;
 
-  generate
-    if (WIDTH < 1 || ADDR_W < 3 || ADDR_W > 16) begin : gen_illegal
-      cchip_error_dual_ram_WIDTH_below_1_or_ADDR_W_not_3_to_16 u_error ();
-    end
+  `CCHIP_REFUSE(WIDTH < 1 || ADDR_W < 3 || ADDR_W > 16,
+                cchip_error_dual_ram_WIDTH_below_1_or_ADDR_W_not_3_to_16)
 
+  generate
     if (ADDR_W <= 14) begin : gen_blocks
       wire [13:0] bit_a, bit_b;
       wire [13:0] word_a, word_b;
@@ -65,10 +65,7 @@ module cchip_dual_ram #(
         end
         assign found_a[BITS*b+:BITS] = q_a[BITS-1:0];
         assign found_b[BITS*b+:BITS] = q_b[BITS-1:0];
-        cchip_dp16kd #(
-            .WIDTH_A(BITS),
-            .WIDTH_B(BITS)
-        ) u_block (
+        cchip_dp16kd #(.WIDTH_A(BITS), .WIDTH_B(BITS)) u_block (
             .clk   (clk),
             .write (write),
             .addr_a(bit_a),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_mul18 for Lattice ECP5: the multiplier leaf as one MULT18X18D with its own input and output
 // registers, which Yosys does not pack. Takes the place of arith/cchip_mul18.v in rtl/cchip_ecp5.f.
 //   latency, throughput, numbers, reset   those of arith/cchip_mul18.v
@@ -14,14 +15,8 @@ module cchip_mul18 #(
     output wire signed [35:0] p
 );
 
-  generate
-    if (SIGNED != 0 && SIGNED != 1) begin : gen_illegal
-      cchip_error_mul18_SIGNED_must_be_0_or_1 u_error ();
-    end
-    if (`CCHIP_MUL18_LATENCY != 2) begin : gen_illegal_latency
-      cchip_error_mul18_needs_CCHIP_MUL18_LATENCY_2 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SIGNED != 0 && SIGNED != 1, cchip_error_mul18_SIGNED_must_be_0_or_1)
+  `CCHIP_REFUSE(`CCHIP_MUL18_LATENCY != 2, cchip_error_mul18_needs_CCHIP_MUL18_LATENCY_2)
 
   localparam [0:0] IS_SIGNED = SIGNED != 0;
   MULT18X18D #(

@@ -1,19 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""collide_many() and collide() over a Dask cluster: pip install distributed, then pass a distributed.Client.
+"""collide_many() and relations of pairs over a Dask cluster: copy this file beside your program, import it, pass a distributed.Client.
 
-Meshes are (vertices, faces). They are sent once to each worker that needs them; the worker builds the Object once and
+Scheduler and workers need collisionchip and distributed, but not this file: it is sent to them, once to each cluster. Meshes are
+(vertices, faces). They are sent once to each worker that needs them; the worker builds the Object once and
 keeps the most recent ones. Chunks of a worker that dies are computed again by the others, the results are the same.
 docs/develop/scaling.md says when this is the right tool."""
 import collections
 import hashlib
+import pathlib
 import threading
 
 import numpy as np
 from distributed import as_completed
+from distributed.diagnostics.plugin import SchedulerUploadFile, UploadFile
 
-from . import Object, collide, collide_many as _collide_many, distance, open_device, solids
+from collisionchip import Object, collide, collide_many as _collide_many, distance, open_device, solids
 
 KEPT = 1024  # objects that a worker keeps
+# __file__ changes: a scheduler in this process loads its copy of this file in its place, and deletes the copy when it ends.
+FILE = globals().get("FILE", pathlib.Path(__file__).resolve())
 _objects = collections.OrderedDict()
 _lock = threading.Lock()
 _thread = threading.local()
@@ -50,11 +55,6 @@ def _many(a, b, poses_a, poses_b, options):
     return _collide_many(a.object(), poses_a, b.object(), poses_b, device=_device(), **options)
 
 
-def _pair(a, b, options):
-    result = collide(a.object(), None, b.object(), None, device=_device(), **options)
-    return result.relation if options.get("relation") else bool(result), len(result.contacts)
-
-
 def _relate(a, b, clearance):
     x, y = a.object(), b.object()
     result = collide(x, None, y, None, device=_device(), contacts="all", relation=True)
@@ -63,8 +63,19 @@ def _relate(a, b, clearance):
     return result.relation, len(result.contacts), word, apart
 
 
+def _send_this_file(client):
+    """To the scheduler and to all workers, also those that start later, which import it by name.
+
+    Client.upload_file() would load it again with each call, and with that a worker would lose its objects."""
+    name = f"collide_dask {hashlib.sha256(FILE.read_bytes()).hexdigest()}"
+    for plugin in (SchedulerUploadFile(FILE), UploadFile(FILE)):
+        plugin.idempotent = True  # a cluster that has a plugin of this name keeps it
+        client.register_plugin(plugin, name=name)
+
+
 def _run(client, meshes, jobs, broadcast, retries):
     """Yields (number of the job, result) as jobs end; jobs: (function, numbers of its meshes, other arguments)."""
+    _send_this_file(client)
     meshes = [_Mesh(mesh) for mesh in meshes]
     left = dict(enumerate(jobs))
     for _ in range(retries + 1):
@@ -98,7 +109,7 @@ def collide_many(client, a, poses_a, b, poses_b, *, contacts=False, chunk=16384,
 
     chunk: queries of one task. retries: attempts after all workers with a chunk's meshes have died."""
     if options.get("relation"):
-        raise ValueError("relation: collide_many() over Dask tells hits and contacts only; use collide_pairs()")
+        raise ValueError("relation: collide_many() over Dask tells hits and contacts only; use relate_pairs()")
     poses_a, poses_b = (None if poses is None else np.asarray(poses, float) for poses in (poses_a, poses_b))
     counts = {len(poses) for poses in (poses_a, poses_b) if poses is not None and poses.ndim == 3}
     if len(counts) > 1:
@@ -116,20 +127,11 @@ def collide_many(client, a, poses_a, b, poses_b, *, contacts=False, chunk=16384,
     return np.concatenate([np.zeros(0, bool), *hits]), np.concatenate([np.zeros((0, 3), np.uint32), *pairs])
 
 
-def collide_pairs(client, meshes, pairs, *, retries=3, **options):
-    """Yields (a, b, answer, contacts) for pairs of meshes in place, as each is done; a and b are numbers of meshes.
-
-    options: as collide(). answer: whether they touch, or with relation=True the relation; contacts: how many. A mesh goes only to workers that need it."""
-    pairs = list(pairs)
-    for number, result in _run(client, meshes, [(_pair, pair, (options,)) for pair in pairs], False, retries):
-        yield (*pairs[number], *result)
-
-
 def relate_pairs(client, meshes, pairs, *, clearance=0.0, retries=3):
     """Yields (a, b, relation, contacts, solids, distance) for pairs of meshes in place, as each is done; a and b are numbers of meshes.
 
-    relation and contacts as of collide_pairs(); solids: the word of collisionchip.solids(), None unless both meshes are closed; distance: of the
-    surfaces, inf if it is greater than clearance."""
+    relation: of the surfaces; contacts: how many face pairs touch; solids: the word of collisionchip.solids(), None unless both meshes are
+    closed; distance: of the surfaces, inf if it is greater than clearance. A mesh goes only to workers that need it."""
     pairs = list(pairs)
     for number, result in _run(client, meshes, [(_relate, pair, (clearance,)) for pair in pairs], False, retries):
         yield (*pairs[number], *result)
