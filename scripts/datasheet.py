@@ -285,7 +285,7 @@ def plain(text):
         return f"({text}+{summand})" if summand else text
 
     text = re.sub(r"`?CCHIP_(\w+)\(COORD_W\)", function, text)
-    text = re.sub(r"`?CCHIP_(\w+)", lambda m: str(constants[m[1]]), text)
+    text = re.sub(r"`?CCHIP_(\w+)", lambda m: str(constants.get(m[1], m[1])), text)
     alone = re.fullmatch(r"\(([^()]*)\)-1", text)
     text = f"{alone[1]}-1" if alone else text
     sums = re.fullmatch(r"(.*?)((?:[+-]\d+)+)", text)

@@ -31,11 +31,7 @@ module cchip_counter_file #(
 
   localparam [31:0] WIDE_COUNT = WIDE;
 
-  generate
-    if (WIDE < 0 || WIDE > 8) begin : gen_illegal
-      cchip_error_WIDE_must_be_0_to_8 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(WIDE < 0 || WIDE > 8, cchip_error_WIDE_must_be_0_to_8)
 
   // ---- the walk: the low word of a counter, then its high word
   reg clearing_q;

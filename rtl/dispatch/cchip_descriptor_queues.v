@@ -46,17 +46,10 @@ module cchip_descriptor_queues #(
   localparam integer QUEUES = KINDS + 1;
   localparam [31:0] LAST = KINDS;
 
-  generate
-    if (WIDTH < 1 || WIDTH > 80) begin : gen_illegal_width
-      cchip_error_descriptor_WIDTH_must_be_1_to_80 u_error ();
-    end
-    if (KINDS < 1 || KINDS > `CCHIP_KINDS_MAX) begin : gen_illegal_kinds
-      cchip_error_KINDS_must_be_1_to_4 u_error ();
-    end
-    if (DEPTH < 16 || DEPTH > 1024 || (1 << PTR_W) != DEPTH) begin : gen_illegal_depth
-      cchip_error_QUEUE_DEPTH_must_be_a_power_of_two_16_to_1024 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(WIDTH < 1 || WIDTH > 80, cchip_error_descriptor_WIDTH_must_be_1_to_80)
+  `CCHIP_REFUSE(KINDS < 1 || KINDS > `CCHIP_KINDS_MAX, cchip_error_KINDS_must_be_1_to_4)
+  `CCHIP_REFUSE(DEPTH < 16 || DEPTH > 1024 || (1 << PTR_W) != DEPTH,
+                cchip_error_QUEUE_DEPTH_must_be_a_power_of_two_16_to_1024)
 
   // ---- pointers and counts
   wire push = s_valid & s_ready;

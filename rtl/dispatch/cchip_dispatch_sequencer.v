@@ -43,14 +43,8 @@ module cchip_dispatch_sequencer #(
 
   localparam integer QUEUES = KINDS + 1;
 
-  generate
-    if (TAKERS < 2 || TAKERS > 5) begin : gen_illegal_takers
-      cchip_error_TAKERS_must_be_2_to_5 u_error ();
-    end
-    if (KINDS < 1 || KINDS > `CCHIP_KINDS_MAX) begin : gen_illegal_kinds
-      cchip_error_KINDS_must_be_1_to_4 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(TAKERS < 2 || TAKERS > 5, cchip_error_TAKERS_must_be_2_to_5)
+  `CCHIP_REFUSE(KINDS < 1 || KINDS > `CCHIP_KINDS_MAX, cchip_error_KINDS_must_be_1_to_4)
 
   localparam [1:0] CHOOSE = 2'd0;  // a kind
   localparam [1:0] TAKER = 2'd1;  // one of its takers

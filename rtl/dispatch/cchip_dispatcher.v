@@ -68,11 +68,7 @@ module cchip_dispatcher #(
   localparam integer TAKERS = SLOTS + 1;  // the last one answers at once
   localparam integer ANSWER_W = `CCHIP_ANSWER_W;
 
-  generate
-    if (SLOTS < 1 || SLOTS > 4) begin : gen_illegal
-      cchip_error_SLOTS_must_be_1_to_4 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SLOTS < 1 || SLOTS > 4, cchip_error_SLOTS_must_be_1_to_4)
 
   // ---- who serves what
   reg [TAKERS*QUEUES-1:0] serves_q;

@@ -41,14 +41,9 @@ module cchip_operand_memory #(
 
   localparam integer POINT_W = `CCHIP_POINT_W(COORD_W);
 
-  generate
-    if (COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX) begin : gen_illegal_coord_w
-      cchip_error_COORD_W_must_be_4_to_20 u_error ();
-    end
-    if (PLACE_W < 3 || PLACE_W > 12) begin : gen_illegal
-      cchip_error_PLACE_W_must_be_3_to_12 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX,
+                cchip_error_COORD_W_must_be_4_to_20)
+  `CCHIP_REFUSE(PLACE_W < 3 || PLACE_W > 12, cchip_error_PLACE_W_must_be_3_to_12)
 
   // ---- accept: a pair that holds still is accepted one clock after there is room for it
   // and no vertex behind the first is read

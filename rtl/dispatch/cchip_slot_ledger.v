@@ -54,11 +54,7 @@ module cchip_slot_ledger #(
   // Longer than a grant takes after stop, and than a result takes after decouple.
   localparam [ID_W+3:0] SETTLE_CLOCKS = 15;
 
-  generate
-    if (CREDIT < 1 || CREDIT > `CCHIP_CONTEXTS_MAX) begin : gen_illegal
-      cchip_error_CREDIT_must_be_1_to_256 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(CREDIT < 1 || CREDIT > `CCHIP_CONTEXTS_MAX, cchip_error_CREDIT_must_be_1_to_256)
 
   // ---- sequence
   localparam [2:0] CLEAR = 3'd0;  // every number is made free

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_slots: primitive tests in 1 to 4 slots behind the queues of waiting pairs, each pair
 // answered exactly once. With SWAPS = 1 cchip_swaps exchanges their modules at run time; with
 // SWAPS = 0 they are what SLOTn_RM_ID says, and the inputs of swaps have no effect.
@@ -90,14 +91,8 @@ module cchip_slots #(
   localparam [31:0] MODULES = KINDS;
   wire reset = rst | core_rst;
 
-  generate
-    if (SWAPS != 0 && SWAPS != 1) begin : gen_illegal
-      cchip_error_slots_SWAPS_must_be_0_or_1 u_error ();
-    end
-    if (KINDS != 3 && KINDS != 4) begin : gen_illegal_kinds
-      cchip_error_slots_KINDS_must_be_3_or_4 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SWAPS != 0 && SWAPS != 1, cchip_error_slots_SWAPS_must_be_0_or_1)
+  `CCHIP_REFUSE(KINDS != 3 && KINDS != 4, cchip_error_slots_KINDS_must_be_3_or_4)
 
   // ---- dispatch
   wire [SLOTS-1:0] vertex_valid, result_valid;

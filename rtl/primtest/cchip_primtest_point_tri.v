@@ -56,14 +56,10 @@ module cchip_primtest_point_tri #(
   localparam integer HEAD_W = `CCHIP_TAG_W + 2;
   localparam integer INPUT_W = HEAD_W + COORD_W + 4 * POINT_W;
 
-  generate
-    if (COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX) begin : gen_illegal_coord_w
-      cchip_error_COORD_W_must_be_4_to_20 u_error ();
-    end
-    if (CONTEXTS < 1 || CONTEXTS > `CCHIP_CONTEXTS_MAX) begin : gen_illegal_contexts
-      cchip_error_CONTEXTS_must_be_1_to_256 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX,
+                cchip_error_COORD_W_must_be_4_to_20)
+  `CCHIP_REFUSE(CONTEXTS < 1 || CONTEXTS > `CCHIP_CONTEXTS_MAX,
+                cchip_error_CONTEXTS_must_be_1_to_256)
 
   assign rm_id = `CCHIP_RM_POINT_TRI;
 

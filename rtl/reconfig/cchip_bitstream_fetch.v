@@ -55,11 +55,7 @@ module cchip_bitstream_fetch #(
   localparam integer COUNT_W = $clog2(FIFO_DEPTH + 1);
   localparam [31:0] ROOM = FIFO_DEPTH - 16;
 
-  generate
-    if (FIFO_DEPTH < 32) begin : gen_illegal
-      cchip_error_bitstream_fetch_FIFO_DEPTH_below_32 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(FIFO_DEPTH < 32, cchip_error_bitstream_fetch_FIFO_DEPTH_below_32)
 
   reg run_q;
   reg error_q, timeout_q;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_bitstream_table: where the bitstreams are: address, size and a valid bit of each entry,
 // entry M * slot + module, M = 1 << CCHIP_KIND_BITS(KINDS). Addresses and sizes are in distributed
 // RAM.
@@ -40,14 +41,8 @@ module cchip_bitstream_table #(
   localparam [31:0] SLOTS_HERE = (32'd1 << SLOTS) - 32'd1;
   localparam [31:0] LAST_MODULE = KINDS;
 
-  generate
-    if (SLOTS < 1 || SLOTS > 4) begin : gen_illegal
-      cchip_error_SLOTS_must_be_1_to_4 u_error ();
-    end
-    if (KINDS != 3 && KINDS != 4) begin : gen_illegal_kinds
-      cchip_error_KINDS_must_be_3_or_4 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SLOTS < 1 || SLOTS > 4, cchip_error_SLOTS_must_be_1_to_4)
+  `CCHIP_REFUSE(KINDS != 3 && KINDS != 4, cchip_error_KINDS_must_be_3_or_4)
 
   reg look_q;
   reg [31:0] address_q, size_q;

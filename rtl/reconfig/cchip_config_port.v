@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_config_port: payload of a bitstream from a stream of 32-bit words to the configuration
 // port, low byte first, with its CRC-32. The port takes one word in CFG_DIVIDER clocks, called a
 // slot; the first slot begins when the first word is there.
@@ -37,11 +38,8 @@ module cchip_config_port #(
   localparam [31:0] SLOT = CFG_DIVIDER - 1;
   localparam [SLOT_W-1:0] ONE = 1;
 
-  generate
-    if ((CFG_W != 8 && CFG_W != 32) || CFG_DIVIDER < 1) begin : gen_illegal
-      cchip_error_config_port_CFG_W_must_be_8_or_32_and_CFG_DIVIDER_above_0 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE((CFG_W != 8 && CFG_W != 32) || CFG_DIVIDER < 1,
+                cchip_error_config_port_CFG_W_must_be_8_or_32_and_CFG_DIVIDER_above_0)
 
   reg ticking_q, done_q, stall_q;
   reg [SLOT_W-1:0] slot_q;  // clocks left in this slot

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_roc_generator: reset on configuration (paper, listing 3.3 and figure 8) for a module that
 // has none of its own.
 //   rule         roc = 1 on the CYCLES clocks after every clock on which configured or rst is 1,
@@ -18,11 +19,7 @@ module cchip_roc_generator #(
     output wire roc
 );
 
-  generate
-    if (CYCLES < 1 || CYCLES > 32) begin : gen_illegal
-      cchip_error_ROC_CYCLES_must_be_1_to_32 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(CYCLES < 1 || CYCLES > 32, cchip_error_ROC_CYCLES_must_be_1_to_32)
 
   reg [CYCLES-1:0] left_q;  // ones: clocks to come
   initial left_q = {CYCLES{1'b1}};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_swap_retry: back-off. After a swap that failed on its way (CCHIP_SWAP_PUT_OFF) the
 // bitstream may be good, but the scheduler must not try it again at once.
 //   resting      entries that have failed and not ended well since rest together, for
@@ -36,11 +37,7 @@ module cchip_swap_retry #(
   localparam [3:0] LEVEL_MAX = `CCHIP_RETRY_DOUBLINGS;
   localparam [3:0] LEVEL_HOPELESS = LEVEL_MAX - 4'd1;  // the first failure comes at level 0
 
-  generate
-    if (SLOTS < 1 || SLOTS > 4) begin : gen_illegal
-      cchip_error_SLOTS_must_be_1_to_4 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SLOTS < 1 || SLOTS > 4, cchip_error_SLOTS_must_be_1_to_4)
 
   // ---- the report
   wire [`CCHIP_SLOT_ID_W-1:0] slot = report_data[`CCHIP_SWAP_REPORT_SLOT];

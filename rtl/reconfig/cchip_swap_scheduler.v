@@ -111,17 +111,9 @@ module cchip_swap_scheduler #(
   localparam [31:0] SLOT_COUNT = SLOTS;
   localparam [31:0] LAST_SLOT = SLOTS - 1;
 
-  generate
-    if (SLOTS < 1 || SLOTS > 4) begin : gen_illegal
-      cchip_error_SLOTS_must_be_1_to_4 u_error ();
-    end
-    if (COUNT_W < 1 || COUNT_W > 16) begin : gen_illegal_count
-      cchip_error_COUNT_W_must_be_1_to_16 u_error ();
-    end
-    if (KINDS != 3 && KINDS != 4) begin : gen_illegal_kinds
-      cchip_error_KINDS_must_be_3_or_4 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SLOTS < 1 || SLOTS > 4, cchip_error_SLOTS_must_be_1_to_4)
+  `CCHIP_REFUSE(COUNT_W < 1 || COUNT_W > 16, cchip_error_COUNT_W_must_be_1_to_16)
+  `CCHIP_REFUSE(KINDS != 3 && KINDS != 4, cchip_error_KINDS_must_be_3_or_4)
 
   // ---- the tables are extended to a power of two; slots that do not exist have no bitstream
   wire [ENTRIES-1:0] valid_of = {{ENTRIES - TABLE{1'b0}}, table_valid};

@@ -93,14 +93,8 @@ module cchip_swap_sequencer #(
   localparam [4:0] MATCH_LAST = `CCHIP_RM_SETTLE_CLOCKS - 1;
   localparam [31:0] LIMIT = SLOT_LIMIT;
 
-  generate
-    if (SLOTS < 1 || SLOTS > 4) begin : gen_illegal
-      cchip_error_SLOTS_must_be_1_to_4 u_error ();
-    end
-    if (SLOT_LIMIT < 16) begin : gen_illegal_limit
-      cchip_error_SLOT_LIMIT_below_16 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(SLOTS < 1 || SLOTS > 4, cchip_error_SLOTS_must_be_1_to_4)
+  `CCHIP_REFUSE(SLOT_LIMIT < 16, cchip_error_SLOT_LIMIT_below_16)
 
   reg [`CCHIP_PHASE_W-1:0] phase_q;
   reg [3:0] state_q;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_vertex_collector: the vertices of a pair, one of A and one of B per clock, into a request.
 //   latency      1 clock from the last vertex to m_pair_valid
 //   throughput   a vertex on every clock: the next pair may follow at once
@@ -27,11 +28,8 @@ module cchip_vertex_collector #(
   localparam integer POINT_W = `CCHIP_POINT_W(COORD_W);
   localparam integer VERTICES = `CCHIP_VERTICES;
 
-  generate
-    if (COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX) begin : gen_illegal_coord_w
-      cchip_error_COORD_W_must_be_4_to_20 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(COORD_W < `CCHIP_COORD_W_MIN || COORD_W > `CCHIP_COORD_W_MAX,
+                cchip_error_COORD_W_must_be_4_to_20)
 
   wire first, last;
   wire [`CCHIP_PAIR_ID_W-1:0] id;

@@ -59,14 +59,8 @@ module cchip_transform #(
   localparam [31:0] ROOM = CREDIT - 4;
   localparam [31:0] ONE = 1;
 
-  generate
-    if (CREDIT < 4 || CREDIT > 4096) begin : gen_illegal
-      cchip_error_transform_CREDIT_must_be_4_to_4096 u_error ();
-    end
-    if (ID_W < 1) begin : gen_illegal_id
-      cchip_error_transform_ID_W_below_1 u_error ();
-    end
-  endgenerate
+  `CCHIP_REFUSE(CREDIT < 4 || CREDIT > 4096, cchip_error_transform_CREDIT_must_be_4_to_4096)
+  `CCHIP_REFUSE(ID_W < 1, cchip_error_transform_ID_W_below_1)
 
   // ---- credit: a leaf pair is up to four pairs of primitives
   reg [COUNT_W-1:0] used_q;

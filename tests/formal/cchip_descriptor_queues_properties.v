@@ -3,7 +3,7 @@
 `include "cchip_defs.vh"
 // Proved of cchip_descriptor_queues, for each kind:
 //   counts    waiting is the number of pushes less pops, never above DEPTH; some and room are what it says; s_ready is the room of
-//             s_kind
+//             s_kind; a kind above KINDS counts as kind 0
 //   order     one descriptor, any, is followed: when all that came before it in its kind have left, a look finds its place a clock
 //             later and its data two clocks later, until two clocks after its pop
 //   place     while it waits no push gets its place
@@ -22,7 +22,7 @@ module cchip_descriptor_queues_properties #(
     input wire [`CCHIP_KIND_W-1:0] choice,
     input wire                     want_pop
 );
-  localparam integer PLACE_W = `CCHIP_KIND_W + $clog2(DEPTH);
+  localparam integer PLACE_W = `CCHIP_KIND_BITS(KINDS) + $clog2(DEPTH);
   localparam integer COUNT_W = $clog2(DEPTH + 1);
   wire s_ready, m_data;
   wire [PLACE_W-1:0] s_place, m_place;
@@ -72,7 +72,8 @@ module cchip_descriptor_queues_properties #(
   reg [COUNT_W-1:0] ahead_q;  // in front of it
   reg data_q;
   reg [PLACE_W-1:0] place_q;
-  wire push_here = s_valid & s_ready & (s_kind == mine);
+  wire [`CCHIP_KIND_W-1:0] queue = s_kind > KINDS ? 0 : s_kind;
+  wire push_here = s_valid & s_ready & (queue == mine);
   wire pop_here = pop & (kind_q == mine);
   wire mark = push_here & follow & ~waits_q & ~done_q;
   reg found_q;  // the last look was at it
@@ -121,7 +122,7 @@ module cchip_descriptor_queues_properties #(
   always @(*)
     if (started_q) begin
       count: assert (waits_here == count_q && count_q <= DEPTH && some_here == (count_q != 0) && room_here == (count_q != DEPTH));
-      ready: assert (s_kind != mine || s_ready == room_here);
+      ready: assert (queue != mine || s_ready == room_here);
       own_place: assert (!push_here || !waits_q || s_place != place_q);
       place: assert (!found_q || rst || look_q || m_place == place_q);
       order: assert (!found_q || rst || look_q || since_look_q < 2'd2 || since_pop_q > 3'd3 || m_data == data_q);

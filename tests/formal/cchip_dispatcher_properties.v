@@ -69,7 +69,7 @@ module cchip_dispatcher_properties #(
       wire [`CCHIP_RM_ID_W-1:0] rm_id, region_rm_id;
       assign stop[s] = swap_q != WORK || want_stop[s];
       assign decouple[s] = swap_q != WORK;
-      assign slot_module[`CCHIP_KIND_W*s+:`CCHIP_KIND_W] = rm_id[7:2] == 6'd0 ? rm_id[1:0] : 2'd0;
+      assign slot_module[`CCHIP_KIND_W*s+:`CCHIP_KIND_W] = rm_id <= `CCHIP_KINDS_MAX ? rm_id[2:0] : 3'd0;
       always @(posedge clk) begin
         roc_start_q  <= !rst && swap_q == RESET && go_on[s];
         roc_clocks_q <= swap_q != ROC ? 2'd0 : roc_clocks_q + {1'b0, ~&roc_clocks_q};
@@ -170,8 +170,8 @@ module cchip_dispatcher_properties #(
   reg [7:0] inside_q;  // pairs taken, answers not left
   reg [2:0] silent_q;  // clocks without a pair taken, inside or answered
   reg offered_q;
-  reg [4:0] offer_q;
-  wire [4:0] offer = {ours, by_module, m_data[`CCHIP_RESULT_HIT], m_kind};
+  reg [5:0] offer_q;
+  wire [5:0] offer = {ours, by_module, m_data[`CCHIP_RESULT_HIT], m_kind};
   always @(posedge clk) begin
     started_q  <= 1'b1;
     some_q     <= rst ? 2'b00 : (some_q & ~(kind & {2{pop}})) | arrive;
@@ -205,7 +205,7 @@ module cchip_dispatcher_properties #(
     if (started_q) begin
       once: assert (!m_valid || !ours || pair_q == TAKEN);
       tag_known: assert (!m_valid || m_data[`CCHIP_RESULT_TAG] <= 16'd1);
-      own_kind: assert (!m_valid || !ours || m_kind == {1'b0, ~illegal_q});
+      own_kind: assert (!m_valid || !ours || m_kind == {2'b00, ~illegal_q});
       not_lost: assert (silent_q < 3'd7 || (inside_q == 8'd0 && pair_q != TAKEN));
       reason: assert (!m_valid || !ours || by_module || illegal_q || excused_q);
       illegal: assert (!m_valid || !ours || !by_module || !illegal_q);

@@ -107,7 +107,7 @@ module cchip_slot_ledger_properties #(
   reg answer_q;  // an answer was offered a clock ago
   reg offered_q;
   reg [7:0] offer_q;
-  wire [7:0] offer = {ours, by_module, hit_of_answer, module_of_answer, kind_of_answer, 1'b0};
+  wire [9:0] offer = {ours, by_module, hit_of_answer, module_of_answer, kind_of_answer, 1'b0};
 
   always @(posedge clk) begin
     started_q  <= 1'b1;

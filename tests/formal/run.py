@@ -256,10 +256,10 @@ MUTANTS = [
     # a full queue is offered room of another; a pop moves all queues; a push goes to the head
     ("cchip_descriptor_queues bounded", QUEUES, "assign s_ready = |(room & kind_of_push);", "assign s_ready = |room;"),
     ("cchip_descriptor_queues bounded", QUEUES, "wire pop_here = pop & kind[k];", "wire pop_here = pop;"),
-    ("cchip_descriptor_queues bounded", QUEUES, "{s_kind, write_pointer};", "{s_kind, read_pointer};"),
+    ("cchip_descriptor_queues bounded", QUEUES, "{write_kind, write_pointer};", "{write_kind, read_pointer};"),
     # an entry of another slot; an entry that ended well; an entry that is no longer valid; a new failure does not begin anew
-    ("cchip_swap_retry prove", RETRY, "entry[i] = {slot, module_id} == {i[9:2], 6'd0, i[1:0]};", "entry[i] = module_id == {6'd0, i[1:0]};"),
-    ("cchip_swap_retry prove", RETRY, "& ~(ended_well ? entry : {4 * SLOTS{1'b0}}));", ");"),
+    ("cchip_swap_retry prove", RETRY, "entry[i] = {slot, module_id} == {i[MODULE_W+:8], {8 - MODULE_W{1'b0}}, i[MODULE_W-1:0]};", "entry[i] = module_id == {{8 - MODULE_W{1'b0}}, i[MODULE_W-1:0]};"),
+    ("cchip_swap_retry prove", RETRY, "& ~(ended_well ? entry : {ENTRIES{1'b0}}));", ");"),
     ("cchip_swap_retry prove", RETRY, "failed_q <= valid & (", "failed_q <= ("),
     ("cchip_swap_retry prove", RETRY, "timer_q <= put_off ? ONE", "timer_q <= put_off & ~rests_q ? ONE"),
     # answered twice, soon after and later; quiet too early, twice; the answer does not use the credit; no pair is open;
