@@ -249,7 +249,7 @@ class Placement(unittest.TestCase):
         chip.update(PLACES=int(chip["PAIRS"]) + int(chip["LEAVES"]), LEAF_W=6, CONTEXT_W=4, KINDS=3, PLACE_W=6)
         compared = 0
         for name, parameters in fpga.CHIP_PARAMETERS.items():
-            instance = re.search(rf"{name} #\((.*?)\n\s*\) u_", text, re.S)
+            instance = re.search(rf"{name} #\((.*?)\)\s*u_\w+ \(", text, re.S)
             if not instance:
                 continue
             own = dict(datasheet.parse(name)[0]) | dict(parameters)
