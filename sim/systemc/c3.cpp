@@ -3,7 +3,7 @@
 
 namespace cchip::levels {
 
-C3::C3(rc::control& control, std::array<rc::context*, 3> tests) : control_(control), tests_(tests) {
+C3::C3(rc::control& control, std::array<rc::context*, defs::kinds_max> tests) : control_(control), tests_(tests) {
   for (rc::context* test : tests_) control_.add(*test);
 }
 

@@ -6,6 +6,9 @@
 namespace cchip::levels {
 namespace {
 
+// __extension__ (no warning about a type outside ISO C++) needs typedef. The longest product here has 110 bits.
+__extension__ typedef __int128 Wide;  // NOLINT(modernize-use-using)
+
 constexpr std::array<Integers, 3> units = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
 Integers minus(const Integers& x, const Integers& y) { return {x[0] - y[0], x[1] - y[1], x[2] - y[2]}; }
@@ -60,6 +63,30 @@ bool sat_intersects(const SatPrimitive& a, const SatPrimitive& b) {
   };
   return !(one_separates(a.normals) || one_separates(b.normals) || product_separates(a.edges, b.edges) ||
            product_separates(a.edges, units) || product_separates(b.edges, units) || one_separates(units));
+}
+
+bool sphere_intersects(const Integers& centre, std::int64_t radius, std::vector<Integers> triangle) {
+  for (Integers& v : triangle) v = minus(v, centre);
+  const std::int64_t square = radius * radius;
+  const Wide wide_square = square;
+  const Integers normal = cross(minus(triangle[1], triangle[0]), minus(triangle[2], triangle[0]));
+  const Wide height = dot(normal, triangle[0]);  // times the normal's length
+  Wide normal_square = 0;
+  for (const std::int64_t x : normal) normal_square += Wide{x} * x;
+  if (height * height > wide_square * normal_square) return false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Integers& v = triangle[i];
+    const Integers to_next = minus(triangle[(i + 1) % 3], v);
+    const Integers to_last = minus(triangle[(i + 2) % 3], v);
+    // the vertex is beyond the sphere, the others are not nearer on this axis
+    if (dot(v, v) > square && dot(v, to_next) >= 0 && dot(v, to_last) >= 0) return false;
+    // so is the line of the side, and the third vertex; all times the square of its length
+    const Wide length = dot(to_next, to_next);
+    const Wide along = dot(v, to_next);
+    const bool beyond = length * dot(v, v) - along * along > wide_square * length;
+    if (beyond && length * dot(v, to_last) - along * dot(to_next, to_last) >= 0) return false;
+  }
+  return true;
 }
 
 }  // namespace cchip::levels

@@ -4,9 +4,9 @@
 namespace cchip::levels {
 namespace {
 
-Vertices to_vertices(const GridPrimitive& p) {
+Vertices to_vertices(const GridPrimitive& p, std::size_t count) {
   Vertices result;
-  for (std::size_t i = 0; i < p.vertex_count(); ++i) result.v.at(i) = {p.v.at(i)[0], p.v.at(i)[1], p.v.at(i)[2]};
+  for (std::size_t i = 0; i < count; ++i) result.v.at(i) = {p.v.at(i)[0], p.v.at(i)[1], p.v.at(i)[2]};
   return result;
 }
 
@@ -25,8 +25,10 @@ void FunctionalApi::send(std::size_t index) {
   const StimulusPair& pair = stimulus()[index];
   const std::size_t set = set_of(index);
   m[set].write(pair.m);
-  a[set].write(to_vertices(pair.a));
-  b[set].write(to_vertices(pair.b));
+  Vertices of_a = to_vertices(pair.a, vertex_count_a(pair));
+  if (pair.radius) of_a.v[1][0] = *pair.radius;
+  a[set].write(of_a);
+  b[set].write(to_vertices(pair.b, pair.b.vertex_count()));
 }
 
 std::pair<std::size_t, bool> FunctionalApi::receive() {

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cchip/levels/generator.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace cchip::levels {
 namespace {
@@ -57,7 +60,7 @@ StimulusPair with_matrix(const GridPair& pair, Random& random) {
   result.a = pair.a;
   result.b = pair.b;
   const Eigen::Matrix3d back = left.inverse();
-  for (std::size_t i = 0; i < pair.a.vertex_count(); ++i) {
+  for (std::size_t i = 0; i < pair.a.vertex_count(); ++i) {  // of a point the first alone counts
     result.a.v[i] = (back * (pair.a.v[i].cast<double>() - right)).array().round().cast<std::int32_t>();
   }
   result.mode = integer(random, 0, 1) == 0 ? PairMode::exhaustive : PairMode::directed;
@@ -76,19 +79,32 @@ bool is_legal(const StimulusPair& pair) {
 /// Endless source of pairs of one kind.
 class Source {
  public:
-  Source(Kind a, Kind b, std::uint64_t seed)
-      : pairs_(coord_w, seed, a, b), classes_(stimulus::classes_of(a, b)), random_(seed) {}
+  /// \param points of A the first vertex alone counts, as the centre of a sphere that just reaches B, or just does not
+  Source(Kind a, Kind b, std::uint64_t seed, bool points = false)
+      : pairs_(coord_w, seed, a, b), classes_(stimulus::classes_of(a, b)), random_(seed), points_(points) {}
   StimulusPair draw() {
     while (true) {  // a rotation can move a vertex over the rim of the grid
-      const StimulusPair pair = with_matrix(pairs_.draw(classes_[pairs_.draw_class()].value), random_);
+      const GridPair drawn = pairs_.draw(classes_[pairs_.draw_class()].value);
+      StimulusPair pair = with_matrix(drawn, random_);
+      if (points_) pair.radius = std::max(0, nearest_vertex(drawn) - integer(random_, 0, 2) * integer(random_, 0, 99));
       if (is_legal(pair)) return pair;
     }
   }
 
  private:
+  /// Grid steps from A's first vertex to the nearest vertex of B, rounded.
+  static std::int32_t nearest_vertex(const GridPair& pair) {
+    double least = std::numeric_limits<double>::max();
+    for (std::size_t i = 0; i < pair.b.vertex_count(); ++i) {
+      least = std::min(least, (pair.b.v[i] - pair.a.v[0]).cast<double>().norm());
+    }
+    return static_cast<std::int32_t>(std::lround(least));
+  }
+
   stimulus::PairSource pairs_;
   std::vector<stimulus::PairClassInfo> classes_;
   Random random_;
+  bool points_;
 };
 
 }  // namespace
@@ -99,20 +115,22 @@ Stimulus generate(const GeneratorOptions& options) {
                                 std::to_string(options.pairs) + " primitive pairs; ask for 1 or more, none empty");
   }
   Random random(options.seed);
-  std::array<Source, 3> sources = {Source{Kind::tri, Kind::tri, random()}, Source{Kind::tri, Kind::quad, random()},
-                                   Source{Kind::quad, Kind::quad, random()}};
+  std::vector<Source> sources = {Source{Kind::tri, Kind::tri, random()}, Source{Kind::tri, Kind::quad, random()},
+                                 Source{Kind::quad, Kind::quad, random()}};
+  if (options.points) sources.push_back(Source{Kind::tri, Kind::tri, random(), true});
+  const int kinds = static_cast<int>(sources.size());
   Stimulus stimulus;
   stimulus.reserve(options.pairs);
-  int kind = integer(random, 0, 2);
-  int step = integer(random, 1, 2);
+  int kind = integer(random, 0, kinds - 1);
+  int step = integer(random, 0, 1) == 0 ? 1 : kinds - 1;  // either way through all kinds
   for (std::size_t object = 0; object < options.object_pairs; ++object) {
     const std::size_t end = options.pairs * (object + 1) / options.object_pairs;
     while (stimulus.size() < end) {
       stimulus.push_back(sources.at(static_cast<std::size_t>(kind)).draw());
       stimulus.back().object_pair = object;
     }
-    kind = (kind + step) % 3;
-    if (object > 0) step = integer(random, 1, 2);
+    kind = (kind + step) % kinds;
+    if (object + 2 >= sources.size()) step = integer(random, 1, kinds - 1);
   }
   return stimulus;
 }

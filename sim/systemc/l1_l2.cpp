@@ -43,7 +43,8 @@ class TimedApi : public ReconfiguringApi {
  private:
   void transmit(const ObjectPair& objects) override {
     const StimulusPair& pair = stimulus()[objects.first];
-    const std::size_t coordinates = 3 * (pair.a.vertex_count() + pair.b.vertex_count());
+    // a radius counts as a coordinate
+    const std::size_t coordinates = 3 * (vertex_count_a(pair) + pair.b.vertex_count()) + (pair.radius ? 1 : 0);
     const std::size_t bits = 32 * pair.m.entry.size() + static_cast<std::size_t>(coord_w) * coordinates;
     wait(timing_.transmission(bits * objects.count));
   }
@@ -56,6 +57,7 @@ struct Tests {
   rc::reconfigurable<FunctionalTriTri> tri_tri{"tri_tri"};
   rc::reconfigurable<FunctionalTriQuad> tri_quad{"tri_quad"};
   rc::reconfigurable<FunctionalQuadQuad> quad_quad{"quad_quad"};
+  rc::reconfigurable<FunctionalPointTri> point_tri{"point_tri"};
   rc::portal_group<decltype(ports_of(tri_tri))> portals{"portals", {"m", "a", "b", "hit"}};
   FunctionalChannels channels{"channel"};
 
@@ -64,8 +66,9 @@ struct Tests {
     portals.bind_dynamic(ports_of(tri_tri));
     portals.bind_dynamic(ports_of(tri_quad));
     portals.bind_dynamic(ports_of(quad_quad));
+    portals.bind_dynamic(ports_of(point_tri));
   }
-  std::array<rc::context*, 3> all() { return {&tri_tri, &tri_quad, &quad_quad}; }
+  std::array<rc::context*, defs::kinds_max> all() { return {&tri_tri, &tri_quad, &quad_quad, &point_tri}; }
 };
 
 LevelResult run(FunctionalApi& api, Tests& tests, const C3& c3) {
@@ -91,6 +94,7 @@ LevelResult run_l2(const Stimulus& stimulus, const LevelOptions& options) {
   const rc::bitfile_size tri_tri(tests.tri_tri, bits(ModuleId::tri_tri));
   const rc::bitfile_size tri_quad(tests.tri_quad, bits(ModuleId::tri_quad));
   const rc::bitfile_size quad_quad(tests.quad_quad, bits(ModuleId::quad_quad));
+  const rc::bitfile_size point_tri(tests.point_tri, bits(ModuleId::point_tri));
   rc::timed_control control("control");
   C3 c3(control, tests.all());
   const sc_time patience =

@@ -39,26 +39,28 @@ class ReconfigurableRtl : public rc::reconfigurable<RtlShell> {
   std::mt19937 seeds_;
 };
 
-/// The three tests behind one group of portals.
+/// The tests behind one group of portals.
 struct Tests {
   explicit Tests(const LevelOptions& options)
       : tri_tri("tri_tri", ModuleId::tri_tri, options),
         tri_quad("tri_quad", ModuleId::tri_quad, options),
-        quad_quad("quad_quad", ModuleId::quad_quad, options) {
+        quad_quad("quad_quad", ModuleId::quad_quad, options),
+        point_tri("point_tri", ModuleId::point_tri, options) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       portals.bind_dynamic(pins_of(*all.at(i)));
       all.at(i)->roc_out(roc.at(i));
       all.at(i)->rst(roc.at(i));
     }
   }
-  std::array<rc::context*, 3> contexts() { return {&tri_tri, &tri_quad, &quad_quad}; }
+  std::array<rc::context*, defs::kinds_max> contexts() { return {&tri_tri, &tri_quad, &quad_quad, &point_tri}; }
   ReconfigurableRtl& test(ModuleId id) { return *all.at(static_cast<std::size_t>(id) - 1); }
 
   ReconfigurableRtl tri_tri;
   ReconfigurableRtl tri_quad;
   ReconfigurableRtl quad_quad;
-  std::array<ReconfigurableRtl*, 3> all = {&tri_tri, &tri_quad, &quad_quad};
-  std::array<sc_core::sc_signal<bool>, 3> roc;
+  ReconfigurableRtl point_tri;
+  std::array<ReconfigurableRtl*, defs::kinds_max> all = {&tri_tri, &tri_quad, &quad_quad, &point_tri};
+  std::array<sc_core::sc_signal<bool>, defs::kinds_max> roc;
   PinPortals portals{"portals"};
 };
 

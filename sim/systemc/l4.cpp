@@ -31,7 +31,7 @@ class Api4 : public RtlApi {
   }
 
   void announce_all() {
-    for (const ModuleId id : {ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad}) {
+    for (const ModuleId id : {ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad, ModuleId::point_tri}) {
       const Bytes payload = make_payload(0, id, payload_bytes(options_, id), static_cast<std::uint32_t>(options_.seed));
       const Bytes bitstream = make_bitstream(0, id, payload);
       c3_.announce(id, memory_.append(bitstream), bitstream.size());

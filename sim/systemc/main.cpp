@@ -104,6 +104,7 @@ int run_with_arguments(int argc, char** argv) {
                options.level.payload_bytes);
   command.add_flag("!--without-roc", options.level.reset_on_configuration,
                    "L3 without reset on configuration, to see what happens");
+  command.add_flag("--points", options.generator.points, "object pairs of points with a radius and triangles, too");
   add_text(command, "--read", options.read_from, "CSV file with the stimulus instead of a random one");
   add_text(command, "--write", options.write_to, "CSV file that gets the stimulus");
   try {

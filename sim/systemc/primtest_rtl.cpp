@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "primtest_rtl.hpp"
 
+#include <Vcchip_primtest_point_tri.h>
 #include <Vcchip_primtest_quad_quad.h>
 #include <Vcchip_primtest_tri_quad.h>
 #include <Vcchip_primtest_tri_tri.h>
@@ -53,11 +54,12 @@ std::unique_ptr<PrimtestRtl> power_up_primtest(ModuleId id, std::uint64_t seed) 
       return std::make_unique<Machine<Vcchip_primtest_tri_quad>>(seed);
     case ModuleId::quad_quad:
       return std::make_unique<Machine<Vcchip_primtest_quad_quad>>(seed);
-    case ModuleId::blank:
     case ModuleId::point_tri:
+      return std::make_unique<Machine<Vcchip_primtest_point_tri>>(seed);
+    case ModuleId::blank:
       break;
   }
-  throw std::invalid_argument("level 3: no model of this module; choose one of the three tests of faces");
+  throw std::invalid_argument("level 3: no model of this module; choose one of the tests");
 }
 
 }  // namespace cchip::levels

@@ -21,6 +21,7 @@ void RtlApi::send(std::size_t index) {
   const GridPair pair = placed(stimulus()[index]);
   RtlRequest request;
   request.pair = {canonical_quad(pair.a), canonical_quad(pair.b), 0};
+  request.test = test_of(stimulus()[index]);
   request.tag = tag_of(index);
   request.mode = stimulus()[index].mode;
   under_way_[request.tag] = index;  // far fewer than `tags` are in flight

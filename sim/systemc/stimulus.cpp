@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cchip/internal/model/point_tri.hpp>
 #include <cchip/levels/stimulus.hpp>
 #include <cmath>
 #include <stdexcept>
@@ -26,8 +27,8 @@ void check_matrix(const Matrix& m) {
 }
 
 template <class InRange>
-void check_vertices(const GridPrimitive& p, const char* what, InRange in_range) {
-  for (std::size_t i = 0; i < p.vertex_count(); ++i) {
+void check_vertices(const GridPrimitive& p, std::size_t count, const char* what, InRange in_range) {
+  for (std::size_t i = 0; i < count; ++i) {
     if (in_range(p.v[i])) continue;
     throw std::invalid_argument("vertex " + std::to_string(i) + " of " + what + "; move or scale the primitive");
   }
@@ -35,7 +36,11 @@ void check_vertices(const GridPrimitive& p, const char* what, InRange in_range) 
 
 bool on_grid(const Vec3i& v) { return v.minCoeff() >= -limit && v.maxCoeff() < limit; }
 
-const char* name_of(Kind kind) { return kind == Kind::tri ? "tri" : "quad"; }
+/// "tri-quad", "point-tri".
+std::string kinds_of_pair(const StimulusPair& pair) {
+  const auto name = [](Kind kind) { return std::string(kind == Kind::tri ? "tri" : "quad"); };
+  return (pair.radius ? "point" : name(pair.a.kind)) + "-" + name(pair.b.kind);
+}
 
 }  // namespace
 
@@ -45,6 +50,7 @@ std::ostream& operator<<(std::ostream& out, const Matrix& m) {
 }
 
 ModuleId test_of(const StimulusPair& pair) {
+  if (pair.radius) return ModuleId::point_tri;
   if (pair.a.kind == Kind::quad) return ModuleId::quad_quad;
   return pair.b.kind == Kind::quad ? ModuleId::tri_quad : ModuleId::tri_tri;
 }
@@ -72,17 +78,30 @@ GridPrimitive place(const Matrix& m, const GridPrimitive& p) {
   return result;
 }
 
-GridPair placed(const StimulusPair& pair) { return {place(pair.m, pair.a), pair.b, 0}; }
+std::size_t vertex_count_a(const StimulusPair& pair) { return pair.radius ? 1 : pair.a.vertex_count(); }
+
+GridPair placed(const StimulusPair& pair) {
+  const GridPrimitive a = place(pair.m, pair.a);
+  return {pair.radius ? model::point_operand(a.v[0], *pair.radius, coord_w) : a, pair.b, 0};
+}
 
 void check_pair(const StimulusPair& pair) {
+  if (pair.radius && (pair.a.kind != Kind::tri || pair.b.kind != Kind::tri)) {
+    throw std::invalid_argument("a point and a quad; split the quad into triangles");
+  }
+  if (pair.radius && (*pair.radius < 0 || *pair.radius >= 2 * limit)) {
+    throw std::invalid_argument("a radius of " + std::to_string(*pair.radius) + "; make it 0 to " +
+                                std::to_string(2 * limit - 1));
+  }
   if (pair.a.kind == Kind::quad && pair.b.kind == Kind::tri) {
     throw std::invalid_argument("a quad and a triangle; make the triangle a and the quad b");
   }
   check_matrix(pair.m);
-  check_vertices(pair.a, "a is beyond 2^19",
+  const std::size_t of_a = vertex_count_a(pair);
+  check_vertices(pair.a, of_a, "a is beyond 2^19",
                  [](const Vec3i& v) { return v.minCoeff() >= -unplaced_max && v.maxCoeff() <= unplaced_max; });
-  check_vertices(place(pair.m, pair.a), "m a is off the grid of 16 bits", on_grid);
-  check_vertices(pair.b, "b is off the grid of 16 bits", on_grid);
+  check_vertices(place(pair.m, pair.a), of_a, "m a is off the grid of 16 bits", on_grid);
+  check_vertices(pair.b, pair.b.vertex_count(), "b is off the grid of 16 bits", on_grid);
 }
 
 void check_order(const StimulusPair& last, const StimulusPair& next) {
@@ -90,10 +109,9 @@ void check_order(const StimulusPair& last, const StimulusPair& next) {
     throw std::invalid_argument("object_pair " + std::to_string(next.object_pair) + " follows " +
                                 std::to_string(last.object_pair) + "; sort the rows by object_pair");
   }
-  if (next.object_pair == last.object_pair && (next.a.kind != last.a.kind || next.b.kind != last.b.kind)) {
-    throw std::invalid_argument("object_pair " + std::to_string(next.object_pair) + " has " + name_of(last.a.kind) +
-                                "-" + name_of(last.b.kind) + " and " + name_of(next.a.kind) + "-" +
-                                name_of(next.b.kind) + "; give each kind an object_pair of its own");
+  if (next.object_pair == last.object_pair && test_of(next) != test_of(last)) {
+    throw std::invalid_argument("object_pair " + std::to_string(next.object_pair) + " has " + kinds_of_pair(last) +
+                                " and " + kinds_of_pair(next) + "; give each kind an object_pair of its own");
   }
 }
 

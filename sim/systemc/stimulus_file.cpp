@@ -63,12 +63,15 @@ class Row {
   GridPrimitive primitive(char letter) const {
     GridPrimitive p;
     p.kind = choice(kind_name(letter), "quad", "tri") ? Kind::quad : Kind::tri;
-    for (std::size_t i = 0; i < p.vertex_count(); ++i) {
+    read_vertices(p, letter, p.vertex_count());
+    return p;
+  }
+  void read_vertices(GridPrimitive& p, char letter, std::size_t count) const {
+    for (std::size_t i = 0; i < count; ++i) {
       for (int d = 0; d < 3; ++d) {
         p.v.at(i)[d] = static_cast<std::int32_t>(whole(vertex_name(letter, i, d), -unplaced_max, unplaced_max));
       }
     }
-    return p;
   }
   StimulusPair pair() const {
     StimulusPair result;
@@ -76,7 +79,12 @@ class Row {
     result.object_pair = static_cast<std::uint64_t>(whole("object_pair", 0, exact_max));
     result.mode = choice("mode", "directed", "exhaustive") ? PairMode::directed : PairMode::exhaustive;
     for (std::size_t i = 0; i < result.m.entry.size(); ++i) result.m.entry.at(i) = number(entry_name(i));
-    result.a = primitive('a');
+    if (text(kind_name('a')) == "point") {
+      read_vertices(result.a, 'a', 1);
+      result.radius = static_cast<std::int32_t>(whole(vertex_name('a', 1, 0), 0, unplaced_max));
+    } else {
+      result.a = primitive('a');
+    }
     result.b = primitive('b');
     check_pair(result);
     return result;
@@ -97,6 +105,10 @@ std::map<std::string, std::size_t> find_columns(const CsvRow& header, const std:
   return columns;
 }
 
+void write_point(std::ostream& out, const Vec3i& centre, std::int32_t radius) {
+  fmt::print(out, ",point,{},{},{},{},,,,,,,,", centre.x(), centre.y(), centre.z(), radius);
+}
+
 void write_primitive(std::ostream& out, const GridPrimitive& p) {
   fmt::print(out, ",{}", p.kind == Kind::tri ? "tri" : "quad");
   for (std::size_t i = 0; i < 4; ++i) {
@@ -112,7 +124,7 @@ void write_stimulus(std::ostream& out, const Stimulus& stimulus) {
   for (const StimulusPair& pair : stimulus) {
     fmt::print(out, "{},{}", pair.object_pair, pair.mode == PairMode::directed ? "directed" : "exhaustive");
     for (const double entry : pair.m.entry) fmt::print(out, ",{}", entry);  // shortest text that reads back the same
-    write_primitive(out, pair.a);
+    pair.radius ? write_point(out, pair.a.v[0], *pair.radius) : write_primitive(out, pair.a);
     write_primitive(out, pair.b);
     out << '\n';
   }

@@ -23,7 +23,7 @@ Subsystem::~Subsystem() = default;
 void Subsystem::clock() {
   rtl_->set_result_ready(results.num_free() > 0);
   RtlRequest request;
-  if (rtl_->wants_pair() && requests.nb_read(request)) rtl_->offer(request);
+  if (rtl_->wants_pair() && requests.nb_read(request)) rtl_->offer(request, request.test);
   rtl_->clock();
   if (const auto result = rtl_->result()) results.nb_write(RtlResult{*result});
   if (const auto answer = rtl_->register_answer()) {

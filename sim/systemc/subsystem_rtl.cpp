@@ -38,8 +38,8 @@ SubsystemRtl::~SubsystemRtl() = default;
 void SubsystemRtl::clock() { parts_->simulation.step(); }
 
 bool SubsystemRtl::wants_pair() const { return !parts_->pairs.offers(); }
-void SubsystemRtl::offer(const PairRequest& request) {
-  parts_->pairs.send({request, static_cast<int>(module_of(request.pair))});
+void SubsystemRtl::offer(const PairRequest& request, ModuleId test) {
+  parts_->pairs.send({request, static_cast<int>(test)});
 }
 void SubsystemRtl::set_result_ready(bool ready) { parts_->pairs.ready = ready; }
 std::optional<PairResult> SubsystemRtl::result() {

@@ -37,7 +37,8 @@ class SubsystemRtl {
 
   /// s_pair: true if the pair offered last was accepted.
   bool wants_pair() const;
-  void offer(const PairRequest& request);
+  /// \param test module that tests the pair
+  void offer(const PairRequest& request, ModuleId test);
   /// m_result_ready of the next clock.
   void set_result_ready(bool ready);
   /// Oldest answer not yet taken.

@@ -1,16 +1,50 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/ostream.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cchip/internal/reference/eigen_sat.hpp>
 #include <cchip/levels/summary.hpp>
 
 namespace cchip::levels {
+namespace {
+
+// __extension__ (no warning about a type outside ISO C++) needs typedef.
+__extension__ typedef __int128 Wide;  // NOLINT(modernize-use-using)
+using Vec3l = Eigen::Matrix<std::int64_t, 3, 1>;
+
+Wide dot(const Vec3l& x, const Vec3l& y) { return Wide{x[0]} * y[0] + Wide{x[1]} * y[1] + Wide{x[2]} * y[2]; }
+
+/// True if the nearest point of the triangle is no farther from the point than the radius: a vertex, a point inside a
+/// side, or one inside the face.
+bool reaches(std::int64_t radius, const GridPair& pair) {
+  std::array<Vec3l, 3> v;
+  for (std::size_t i = 0; i < 3; ++i) v[i] = (pair.b.v[i] - pair.a.v[0]).cast<std::int64_t>();
+  const Wide square = Wide{radius} * radius;
+  const Vec3l normal = (v[1] - v[0]).cross(v[2] - v[0]);
+  bool over_face = !normal.isZero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3l side = v[(i + 1) % 3] - v[i];
+    if (dot(v[i], v[i]) <= square) return true;
+    const Wide along = -dot(v[i], side);  // of the point's foot, from v[i], times the side's length
+    const Wide length = dot(side, side);
+    if (along > 0 && along < length && dot(v[i], v[i]) * length - along * along <= square * length) return true;
+    over_face = over_face && dot(normal, side.cross(v[i])) < 0;
+  }
+  const Wide height = dot(normal, v[0]);
+  return over_face && height * height <= square * dot(normal, normal);
+}
+
+}  // namespace
 
 std::vector<std::uint8_t> reference_answers(const Stimulus& stimulus) {
   std::vector<std::uint8_t> answers;
   answers.reserve(stimulus.size());
-  for (const StimulusPair& pair : stimulus) answers.push_back(eigen_intersects(placed(pair), coord_w) ? 1 : 0);
+  for (const StimulusPair& pair : stimulus) {
+    const bool hit = pair.radius ? reaches(*pair.radius, placed(pair)) : eigen_intersects(placed(pair), coord_w);
+    answers.push_back(hit ? 1 : 0);
+  }
   return answers;
 }
 

@@ -75,6 +75,9 @@ TEST_CASE("table1: one configuration per object pair adds eq. (4) for any amount
     CHECK(ps(row.counted) == expected_answers(row.platform, job).back());
     job.first_loaded = true;
     CHECK(ps(row.loaded) == expected_answers(row.platform, job).back());
+    job.first_loaded = false;
+    job.pairs.push_back({3, figures.tests, data_bits});  // points
+    CHECK(ps(row.three) == expected_answers(row.platform, job).back());
   }
 }
 
@@ -114,7 +117,7 @@ TEST_CASE("table1: random platforms and object pairs answer when the equations s
       job.first_loaded = below(2) == 0;
       for (std::uint64_t i = 1 + below(8); i > 0; --i) {
         const sc_time tests = rc::from_picoseconds(below(1'000'000'000) * (1 + below(100)));
-        job.pairs.push_back({below(3), tests, below(3) == 0 ? 0 : below(10'000'000)});
+        job.pairs.push_back({below(table1::test_kinds.size()), tests, below(3) == 0 ? 0 : below(10'000'000)});
       }
       series.jobs.push_back(job);
     }

@@ -27,14 +27,15 @@ std::vector<sc_time> sweep() {
 
 std::vector<Row> rows() {
   const rc::bitstream_timing paper;
-  std::vector<Row> list = {{"Two static primitive tests", {0, true, paper}, {}, {}},
-                           {"Reconfiguration using a single bus", {1, true, paper}, {}, {}},
-                           {"  configuration path of its own", {1, false, paper}, {}, {}},
-                           {"  two slots, single bus", {2, true, paper}, {}, {}},
-                           {"  two slots, configuration path of its own", {2, false, paper}, {}, {}}};
+  std::vector<Row> list = {{"Two static primitive tests", {0, true, paper}, {}, {}, {}},
+                           {"Reconfiguration using a single bus", {1, true, paper}, {}, {}, {}},
+                           {"  configuration path of its own", {1, false, paper}, {}, {}, {}},
+                           {"  two slots, single bus", {2, true, paper}, {}, {}, {}},
+                           {"  two slots, configuration path of its own", {2, false, paper}, {}, {}, {}}};
   for (const rc::bit_path& port : {ports[1], ports[2]}) {
     list.push_back({fmt::format("  single bus, port {} bit at {} MHz", port.width, port.clock / 1'000'000),
                     {1, true, rc::bitstream_timing(port)},
+                    {},
                     {},
                     {}});
   }
@@ -43,10 +44,12 @@ std::vector<Row> rows() {
 
 /// A pair whose test is loaded already, then a swap for each pair.
 constexpr unsigned sweep_swaps = 6;
+constexpr unsigned sweep_kinds = 3;  // triangles, quads, both
+constexpr std::size_t points = 3;    // in test_kinds
 
 Job sweep_job(const sc_time& work) {
   Job job;
-  for (unsigned i = 0; i <= sweep_swaps; ++i) job.pairs.push_back({i % test_kinds.size(), work, 0});
+  for (unsigned i = 0; i <= sweep_swaps; ++i) job.pairs.push_back({i % sweep_kinds, work, 0});
   job.first_loaded = true;
   return job;
 }
@@ -75,8 +78,12 @@ Figures run_experiments(std::uint64_t data_bits) {
   figures.tests = share - figures.transmission;
 
   const std::vector<ObjectPair> pairs = {{0, figures.tests, data_bits}, {1, figures.tests, data_bits}};
+  std::vector<ObjectPair> three = pairs;
+  three.push_back({points, figures.tests, data_bits});
   std::vector<Series> series;
-  for (const Row& row : figures.rows) series.push_back({row.platform, {{pairs, false}, {pairs, true}}});
+  for (const Row& row : figures.rows) {
+    series.push_back({row.platform, {{pairs, false}, {pairs, true}, {three, false}}});
+  }
   Series static_sweep{{0, true, rc::bitstream_timing()}, {}};
   for (const sc_time& work : sweep()) static_sweep.jobs.push_back(sweep_job(work));
   series.push_back(static_sweep);
@@ -94,6 +101,8 @@ Figures run_experiments(std::uint64_t data_bits) {
     expect_loads(results[r][1], loads == 0 ? 0 : loads - 1, row.name);
     row.counted = results[r][0].answers.back();
     row.loaded = results[r][1].answers.back();
+    expect_loads(results[r][2], loads == 0 ? 0 : loads + 1, row.name);
+    row.three = results[r][2].answers.back();
   }
   const std::size_t first = figures.rows.size();
   for (std::size_t s = first + 1; s < series.size(); ++s) {

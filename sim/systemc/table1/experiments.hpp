@@ -22,6 +22,7 @@ struct Row {
   Platform platform;
   sc_core::sc_time counted;  ///< run time with the first configuration
   sc_core::sc_time loaded;   ///< run time without it: the triangle test is loaded from the beginning
+  sc_core::sc_time three;    ///< as counted, with a third object pair: points against triangles
 };
 
 /// One point of the curves: object pairs of three kinds in turn, a swap each; data are not transmitted.

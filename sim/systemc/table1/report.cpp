@@ -112,6 +112,21 @@ void print_variants(const Figures& figures, std::ostream& out) {
       "works.\n\n");
 }
 
+void print_three(const Figures& figures, std::ostream& out) {
+  const sc_time& reference = figures.rows[0].three;
+  fmt::print(out, "Three kinds: two triangle objects, two quad objects, then points against triangles\n\n");
+  fmt::print(out, "{:<44}{:>15}{:>15}{:>12}\n", "Simulation", "run [ns]", "longer [ns]", "longer [%]");
+  for (const Row& row : figures.rows) {
+    const std::string name = &row == &figures.rows.front() ? "Three static primitive tests" : row.name;
+    fmt::print(out, "{:<44}{:>15}{:>15}{:>12.3f}\n", name, ns(row.three), ns(row.three - reference),
+               percent_longer(row.three, reference));
+  }
+  fmt::print(out,
+             "\nThe third object pair has as much data and work as the others, and its bitfile {} bit, the mean of the "
+             "two.\n\n",
+             grouped(test_kinds[3].bitfile_bits));
+}
+
 void print_sensitivity(const Figures& figures, std::ostream& out) {
   fmt::print(out, "Overhead in percent of the run time without reconfiguration, by work per swap\n\n");
   fmt::print(out, "{:>12}", "");
@@ -147,6 +162,7 @@ void print_report(const Figures& figures, std::ostream& out) {
   print_table(figures, out);
   print_contradictions(figures, out);
   print_variants(figures, out);
+  print_three(figures, out);
   print_sensitivity(figures, out);
   const sc_time& reference = figures.rows[0].counted;
   const sc_time& run = figures.rows[1].counted;

@@ -15,10 +15,10 @@ inline std::size_t payload_bytes(const LevelOptions& options, ModuleId id) {
   return options.payload_bytes != 0 ? options.payload_bytes : default_payload_bytes(id);
 }
 
-/// Longest payload of the three tests, bytes.
+/// Longest payload of the tests, bytes.
 inline std::size_t longest_payload_bytes(const LevelOptions& options) {
   return std::max({payload_bytes(options, ModuleId::tri_tri), payload_bytes(options, ModuleId::tri_quad),
-                   payload_bytes(options, ModuleId::quad_quad)});
+                   payload_bytes(options, ModuleId::quad_quad), payload_bytes(options, ModuleId::point_tri)});
 }
 
 }  // namespace cchip::levels

@@ -14,8 +14,8 @@ namespace cchip::levels {
 /// The paper's custom configuration controller (C3): replaces the present test with the one that the API asks for.
 class C3 {
  public:
-  /// \param tests in the order tri-tri, tri-quad, quad-quad; added to the control, one may be active
-  C3(rc::control& control, std::array<rc::context*, 3> tests);
+  /// \param tests in the order of ModuleId from tri_tri on; added to the control, one may be active
+  C3(rc::control& control, std::array<rc::context*, defs::kinds_max> tests);
 
   /// Returns when the test is active. Call it from a thread.
   void configure(ModuleId test);
@@ -23,7 +23,7 @@ class C3 {
 
  private:
   rc::control& control_;
-  std::array<rc::context*, 3> tests_;
+  std::array<rc::context*, defs::kinds_max> tests_;
   std::uint64_t swaps_ = 0;
 };
 

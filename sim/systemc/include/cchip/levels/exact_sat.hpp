@@ -29,6 +29,12 @@ SatPrimitive make_sat_primitive(std::vector<Integers> vertices);
 /// primitives, where these may all be zero or parallel, e x u as well, u a unit vector, and u itself.
 bool sat_intersects(const SatPrimitive& a, const SatPrimitive& b);
 
+/// True if a point of the triangle is no farther than `radius` from the centre. The axes are those to the three
+/// vertices, those perpendicular to the three sides, and the triangle's normal.
+/// \param triangle three vertices of 16 signed bits, as the centre; it may be degenerate
+/// \param radius 0..2^16 - 1, grid steps
+bool sphere_intersects(const Integers& centre, std::int64_t radius, std::vector<Integers> triangle);
+
 }  // namespace cchip::levels
 
 #endif

@@ -17,7 +17,7 @@ class FunctionalApi : public Api {
   sc_core::sc_vector<sc_core::sc_fifo_out<Vertices>> b;
   sc_core::sc_vector<sc_core::sc_fifo_in<bool>> hit;
 
-  /// \param sets of ports: 3 in the order tri-tri, tri-quad, quad-quad, or 1
+  /// \param sets of ports: 4 in the order of ModuleId from tri_tri on, or 1
   FunctionalApi(const sc_core::sc_module_name& name, const Stimulus& stimulus, sc_core::sc_time patience,
                 std::size_t sets);
 

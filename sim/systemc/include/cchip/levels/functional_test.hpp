@@ -49,6 +49,29 @@ class FunctionalTest : public sc_core::sc_module {
   }
 };
 
+/// The same for a point and a triangle: of a vertex 0 is the centre of a sphere, x of vertex 1 its radius, which m does
+/// not change.
+class FunctionalPointTri : public sc_core::sc_module {
+ public:
+  sc_core::sc_fifo_in<Matrix> m{"m"};
+  sc_core::sc_fifo_in<Vertices> a{"a"};
+  sc_core::sc_fifo_in<Vertices> b{"b"};
+  sc_core::sc_fifo_out<bool> hit{"hit"};
+
+  SC_HAS_PROCESS(FunctionalPointTri);
+  explicit FunctionalPointTri(const sc_core::sc_module_name&) { SC_THREAD(run); }
+
+ private:
+  void run() {
+    while (true) {
+      const Matrix matrix = m.read();
+      const Vertices point = a.read();
+      const Integers centre = placed_vertices_of(point, 1, matrix).front();
+      hit.write(sphere_intersects(centre, point.v[1][0], vertices_of(b.read(), 3)));
+    }
+  }
+};
+
 using FunctionalTriTri = FunctionalTest<3, 3>;
 using FunctionalTriQuad = FunctionalTest<3, 4>;
 using FunctionalQuadQuad = FunctionalTest<4, 4>;

@@ -31,7 +31,7 @@ struct LevelResult {
   std::uint64_t deltas = 0;
 };
 
-/// L0: the three functional modules side by side, with FIFOs, without time (paper, figure 3).
+/// L0: the functional modules side by side, with FIFOs, without time (paper, figure 3).
 /// All: \throws std::runtime_error not every primitive pair is answered; says why
 LevelResult run_l0(const Stimulus& stimulus, const LevelOptions& options);
 /// L1: the same modules made reconfigurable, behind one set of portals, C3 in the API (figures 4 and 5).

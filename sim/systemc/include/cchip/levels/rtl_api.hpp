@@ -12,6 +12,7 @@ namespace cchip::levels {
 
 /// A beat of s_pair in a FIFO.
 struct RtlRequest : PairRequest {
+  ModuleId test = ModuleId::tri_tri;  ///< module that tests it
   friend std::ostream& operator<<(std::ostream& out, const RtlRequest& x) { return out << "{tag " << x.tag << '}'; }
 };
 

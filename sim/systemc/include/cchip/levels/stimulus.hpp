@@ -11,6 +11,7 @@
 #include <cchip/internal/wire/pair.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <ostream>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct StimulusPair {
   Matrix m;                              ///< places a
   GridPrimitive a;
   GridPrimitive b;
+  /// Without a value a is a triangle or quad. Else a is a point, `v[0]`, and this the radius of the sphere around it
+  /// where it is placed, grid steps, 0..2^16 - 1; b is a triangle then.
+  std::optional<std::int32_t> radius;
 };
 
 using Stimulus = std::vector<StimulusPair>;
@@ -56,13 +60,17 @@ ModuleId test_of(const StimulusPair& pair);
 /// The object pairs of a stimulus in their order.
 std::vector<ObjectPair> object_pairs(const Stimulus& stimulus);
 
+/// Vertices of a, 1 for a point.
+std::size_t vertex_count_a(const StimulusPair& pair);
+
 /// Vertices of `p` times `m`, rounded to the grid by floor(x + 1/2). Exact for pairs that pass check_pair().
 GridPrimitive place(const Matrix& m, const GridPrimitive& p);
 
-/// The pair on the grid, with a placed: the answer refers to it.
+/// The pair on the grid, with a placed: the answer refers to it. A point is an operand of cchip_primtest_point_tri.
 GridPair placed(const StimulusPair& pair);
 
-/// \throws std::invalid_argument quad before triangle; an entry of the matrix is too large or no multiple of 1 /
+/// \throws std::invalid_argument quad before triangle; a point with a quad or a radius out of range; an entry of the
+/// matrix is too large or no multiple of 1 /
 ///         matrix_unit; a vertex is off the grid (for a: after it was placed)
 void check_pair(const StimulusPair& pair);
 

@@ -6,8 +6,10 @@
 ///     object_pair   whole number that does not decrease; rows with the same number are one pair of objects
 ///     mode          exhaustive or directed
 ///     m00 .. m23    the matrix: row, column; multiples of 1/1024
-///     kind_a, kind_b          tri or quad; a triangle before a quad
-///     a0x, a0y, a0z .. b3z    vertices, whole numbers; those of index 3 are ignored for triangles
+///     kind_a, kind_b          tri or quad; a triangle before a quad; kind_a may be point, kind_b is tri then
+///     a0x, a0y, a0z .. b3z    vertices, whole numbers; those of index 3 are ignored for triangles. Of a point a0 is
+///     the
+///                             centre, a1x the radius, and the others of a are ignored
 #ifndef CCHIP_LEVELS_STIMULUS_FILE_HPP
 #define CCHIP_LEVELS_STIMULUS_FILE_HPP
 

@@ -22,7 +22,7 @@ struct LevelRun {
   std::string error;  ///< why it ended before all was answered; then its answers do not count
 };
 
-/// Answers of the Eigen reference for the pairs on the grid.
+/// Answers of the Eigen reference for the pairs on the grid; of points those of the nearest point of the triangle.
 std::vector<std::uint8_t> reference_answers(const Stimulus& stimulus);
 
 /// Indices of answers that differ from the expected ones, missing answers included.
