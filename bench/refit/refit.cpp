@@ -55,7 +55,7 @@ class Engine {
     if (model::refit_image(expected, command).code != RefitCode::ok)
       throw std::runtime_error("the model refuses an image");
     machine_.place(base, image);
-    const sim::RefitEnd end = machine_.refit(base, command.lines, command.root, most_clocks);
+    const RefitEnd end = machine_.refit(base, command.lines, command.root, most_clocks);
     if (end.code != RefitCode::ok)
       throw std::runtime_error(
           fmt::format("the engine ends with code {} at line {}", static_cast<int>(end.code), end.line));

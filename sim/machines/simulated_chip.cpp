@@ -2,6 +2,7 @@
 #include <Vcchip_chip.h>
 #include <Vcchip_chip_swaps1.h>
 #include <Vcchip_chip_swaps2.h>
+#include <Vcchip_refit_axi.h>
 
 #include <algorithm>
 #include <cchip/device/device.hpp>
@@ -10,7 +11,9 @@
 #include <cchip/machines/chip_machine.hpp>
 #include <cchip/machines/chips_machine.hpp>
 #include <cchip/machines/simulated_chip.hpp>
+#include <cchip/machines/simulated_refit.hpp>
 #include <cchip/waves/wave_layout.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -30,6 +33,13 @@ void write_layout(const SimulatedChipOptions& options) {
                               " slots with swaps; 1 or 2, or 0 for a static chip");
 }
 
+struct RefitConfig {
+  using Model = Vcchip_refit_axi;
+  static constexpr int DATA_W = bus_w;
+};
+
+/// With a refit engine on the same memory. The engine works while the chip's clock stands still: the host waits for it,
+/// and whether queries of other images would have gone on meanwhile cannot be seen.
 template <class Model>
 class SimulatedChip final : public sim::ChipMachine<Model, bus_w> {
  public:
@@ -38,6 +48,22 @@ class SimulatedChip final : public sim::ChipMachine<Model, bus_w> {
     this->memory().options = options.memory;
     write_layout(options);
   }
+
+  bool has_refit() const override { return true; }
+  RefitEnd refit(std::uint32_t base, std::uint32_t lines, std::uint32_t root) override {
+    constexpr std::uint64_t clocks_a_line = 4000;  // some 110, and what memory takes
+    if (!engine_) engine_.emplace(sim::without_timeout(this->simulation().seed()));
+    engine_->memory().options = this->memory().options;
+    std::vector<Line> image;
+    for (std::uint32_t n = 0; n < lines; ++n) image.push_back(this->memory().line(std::uint64_t{base} + n));
+    engine_->place(base, image);
+    const RefitEnd end = engine_->refit(base, lines, root, clocks_a_line * (lines + 100));
+    this->memory().write(base, engine_->lines(base, lines));
+    return end;
+  }
+
+ private:
+  std::optional<sim::SimulatedRefit<RefitConfig>> engine_;
 };
 
 /// Queries of each of several chips in flight: twice as many as it works on at once, so that it has the next ones, and

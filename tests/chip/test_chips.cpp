@@ -8,10 +8,12 @@
 #include <cchip/driver/chip_driver.hpp>
 #include <cchip/driver/chip_host.hpp>
 #include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
 #include <cchip/internal/bvh/tree.hpp>
 #include <cchip/machines/chips_machine.hpp>
 #include <cchip/machines/simulated_chip.hpp>
 #include <cchip/mesh/shapes.hpp>
+#include <cchip/models/refit.hpp>
 #include <cchip/sim/seed.hpp>
 #include <random>
 #include <set>
@@ -280,4 +282,71 @@ TEST_CASE("chips: numbers of chips that cannot be", "[system][chips]") {
   options.slots = 3;
   CHECK_THROWS_WITH(open_simulated_chip(options), "simulated chip: 3 slots with swaps; 1 or 2, or 0 for a static chip");
   CHECK_THROWS_WITH(open_chips({}), "open_chips: no machines; give one for each chip");
+}
+
+namespace {
+
+/// The simulated chip, whose refits are compared with the functional model line by line.
+class WithRefitChecked final : public Machine {
+ public:
+  explicit WithRefitChecked(std::size_t& lines)
+      : machine_(make_simulated_chip({sim::seed_from_environment(), "", 0, {}, 0, 0, 1})), lines_(lines) {}
+
+  std::uint32_t read_register(std::uint32_t offset) override { return machine_->read_register(offset); }
+  void write_register(std::uint32_t offset, std::uint32_t value) override { machine_->write_register(offset, value); }
+  void write_memory(std::uint64_t address, const Bytes& bytes) override { machine_->write_memory(address, bytes); }
+  Bytes read_memory(std::uint64_t address, std::size_t size) override { return machine_->read_memory(address, size); }
+  bool interrupt() override { return machine_->interrupt(); }
+  void proceed() override { machine_->proceed(); }
+  bool has_refit() const override { return machine_->has_refit(); }
+  RefitEnd refit(std::uint32_t base, std::uint32_t lines, std::uint32_t root) override {
+    std::vector<Line> expected = image(base, lines);
+    CHECK(model::refit_image(expected, {lines, root}).code == RefitCode::ok);
+    const RefitEnd end = machine_->refit(base, lines, root);
+    CHECK(end.code == RefitCode::ok);
+    CHECK(end.clocks > lines);
+    CHECK(image(base, lines) == expected);
+    lines_ += lines;
+    return end;
+  }
+
+ private:
+  std::vector<Line> image(std::uint32_t base, std::uint32_t lines) {
+    const Bytes bytes = machine_->read_memory(std::uint64_t{base} * 64, std::size_t{lines} * 64);
+    std::vector<Line> image(lines);
+    for (std::size_t n = 0; n < lines; ++n)
+      std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(64 * n), 64, image[n].begin());
+    return image;
+  }
+
+  std::unique_ptr<Machine> machine_;
+  std::size_t& lines_;
+};
+
+}  // namespace
+
+TEST_CASE("simulated chip: the refit engine makes the images of a body that bends", "[system][chips]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  std::size_t lines = 0;
+  const auto chip = make_chip_device(open_chip(std::make_unique<WithRefitChecked>(lines), small_rings()));
+  const auto cpu = open_cpu_device({1, {}});
+  const Object ring(make_torus(1, 0.3, 12, 8, Kind::quad));
+  Object body(make_body(5, 0.3, 3));
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::size_t hits = 0;
+  for (int step = 0; step < 6; ++step) {
+    std::vector<Vec3d> vertices = body.mesh().vertices;
+    for (Vec3d& v : vertices) v += 0.05 * Vec3d(v.y() * v.z(), std::sin(v.x()), 0.1 * unit(random));
+    body = body.moved(std::move(vertices));
+    const PosePair pose = {Pose::Identity(), Pose(Eigen::Translation3d(unit(random), unit(random), unit(random)))};
+    const CollisionQuery query = {&body, &pose.a, &ring, &pose.b};
+    CollisionResult expected, result;
+    cpu->collide(query, all, expected);
+    chip->collide(query, all, result);
+    CHECK(result.stats.fallbacks == 0);
+    CHECK(result.contacts == expected.contacts);
+    hits += expected.hit ? 1 : 0;
+  }
+  CHECK(hits > 0);
+  CHECK(lines > 6 * 100);
 }

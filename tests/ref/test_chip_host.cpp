@@ -40,6 +40,7 @@ struct Bench {
   std::string dies_in;                         ///< name of a call that throws ...
   std::uint64_t dies_at = 0;                   ///< ... when it comes for the time of this number, from 1 on
   bool recovers = true;
+  std::function<bool(std::vector<Line>&)> refit;  ///< what the engine makes of the lines of an image
 
   std::map<std::string, std::uint64_t> calls;
   std::uint64_t submitted = 0;
@@ -77,6 +78,17 @@ class FakePort final : public QueryPort {
             "store: locked lines");
     }
     std::copy(lines.begin(), lines.end(), memory_.begin() + static_cast<std::ptrdiff_t>(at));
+  }
+
+  bool refit(std::uint32_t first_line, std::uint32_t lines, std::uint32_t root) override {
+    called("refit");
+    check(bench_.chip.refits, "refit: no engine");
+    const auto at = memory_.begin() + (first_line - bench_.chip.image_first);
+    check(bvh::decode_header(*at).lines == lines && bvh::decode_header(*at).root == root, "refit: no image");
+    std::vector<Line> image(at, at + lines);
+    const bool good = bench_.refit(image);
+    std::copy(image.begin(), image.end(), at);
+    return good;
   }
 
   void lock(unsigned range, std::uint32_t first, std::uint32_t last) override {
@@ -639,6 +651,45 @@ TEST_CASE("chip host: the tops of the two trees are locked", "[ref][chip_host]")
   ask(a, a);
   CHECK(bench.calls["lock"] == 4);
   CHECK(lines(1) <= 0);
+  check_obeyed(bench);
+}
+
+TEST_CASE("chip host: an engine makes the nodes of objects that were moved; the CPU does if it gives up",
+          "[ref][chip_host]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  Scene scene(0);
+  std::vector<Object> bent;
+  std::vector<std::vector<Line>> leaves;
+  std::vector<std::vector<Line>> images;
+  for (const Object& object : scene.objects) {
+    bent.push_back(object.moved(noisy(object.mesh(), 0.05, random).vertices));
+    REQUIRE(bent.back().was_moved());
+    REQUIRE(!object.was_moved());
+    bvh::Tree tree = bent.back().tree().topology();
+    leaves.push_back(bvh::make_leaves(bent.back().mesh(), tree).lines);
+    bvh::refit(tree, bent.back().mesh());
+    images.push_back(bvh::make_image(bent.back().mesh(), tree).lines);
+  }
+  for (std::size_t i = 0; i < 60; ++i) {
+    const Object& other = i % 3 == 0 ? bent[random() % bent.size()] : scene.objects[random() % scene.objects.size()];
+    scene.add(bent[i % bent.size()], other);
+  }
+  const bool engine = GENERATE(true, false);
+  const bool works = GENERATE(true, false);
+  Bench bench = roomy(scene);
+  bench.chip.image_lines *= 2;
+  bench.chip.refits = engine;
+  bench.refit = [&](std::vector<Line>& image) {
+    const auto found = std::find(leaves.begin(), leaves.end(), image);
+    CHECK(found != leaves.end());
+    if (found == leaves.end()) return false;
+    image = works ? images[static_cast<std::size_t>(found - leaves.begin())] : std::vector<Line>(image.size());
+    return works;
+  };
+  const auto device = open_fake(bench);
+  CHECK(fallbacks(scene.ask(*device, all, GENERATE(true, false))) == 0);
+  CHECK(bench.calls["refit"] == (engine ? bent.size() : 0));
+  CHECK(bench.calls["store"] == scene.objects.size() + (engine && !works ? 2 : 1) * bent.size());
   check_obeyed(bench);
 }
 

@@ -69,3 +69,51 @@ TEST_CASE("refit model: where leaves are rounded, the image is valid, and few no
   std::cout << "nodes=" << nodes << " differ=" << differ << "\n";
   REQUIRE(differ * 20 < nodes);
 }
+
+TEST_CASE("refit model: of the leaves alone it makes nodes that hold what the whole image holds", "[ref]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  std::size_t nodes = 0;
+  std::size_t alike = 0;
+  for (const Mesh& any : assorted_meshes(random)) {
+    const Mesh mesh = snapped(any, 18);
+    const Object moved = Object(mesh).moved(snapped(bent(mesh, 0.2, random), 18).vertices);
+    Tree tree = moved.tree().topology();
+    std::vector<Line> image = make_leaves(moved.mesh(), tree).lines;
+    refit(tree, moved.mesh());
+    const Image whole = make_image(moved.mesh(), tree);
+    INFO(any.name);
+    REQUIRE(image.size() == whole.lines.size());
+    HeaderLine header = decode_header(image[0]);
+    header.crc = whole.header().crc;
+    CHECK(encode(header) == whole.lines[0]);
+    for (std::size_t n = 1; n < image.size(); ++n) {
+      const TreeNode& node = tree.nodes[n - 1];
+      if (node.kind != NodeKind::inner) {
+        CHECK(image[n] == whole.lines[n]);
+        continue;
+      }
+      const InnerLine structure = decode_inner(image[n]);
+      const InnerLine full = decode_inner(whole.lines[n]);
+      CHECK(structure.first == full.first);
+      CHECK(structure.children == full.children);
+      CHECK(structure.kind == full.kind);
+    }
+    CHECK(model::refit_image(image, command_of(whole)).code == RefitCode::ok);
+    for (std::size_t n = 1; n < image.size(); ++n) {
+      if (tree.nodes[n - 1].kind != NodeKind::inner) continue;
+      ++nodes;
+      const InnerLine full = decode_inner(whole.lines[n]);
+      InnerLine made = decode_inner(image[n]);
+      alike += image[n] == whole.lines[n] ? 1 : 0;
+      // all but the cuts, whose unit is the engine's
+      CHECK(made.origin == full.origin);
+      CHECK(made.step == full.step);
+      for (std::size_t i = 0; i < 4; ++i) {
+        CHECK(made.child[i].least == full.child[i].least);
+        CHECK(made.child[i].greatest == full.child[i].greatest);
+      }
+    }
+  }
+  CHECK(nodes > 100);
+  CHECK(alike > nodes / 4);
+}

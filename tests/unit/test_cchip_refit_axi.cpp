@@ -41,7 +41,7 @@ struct Refit : sim::SimulatedRefit<Config> {
   using Base = sim::SimulatedRefit<Config>;
   using Base::Base;
 
-  sim::RefitEnd run(const Task& task) { return this->refit(base, task.command.lines, task.command.root, most_clocks); }
+  RefitEnd run(const Task& task) { return this->refit(base, task.command.lines, task.command.root, most_clocks); }
   void start_of(const Task& task) { this->start(base, task.command.lines, task.command.root); }
   void no_faults() {
     this->memory().options = {5, 5, 0, false, 100, 100, 1};
@@ -51,7 +51,7 @@ struct Refit : sim::SimulatedRefit<Config> {
   /// A refit without faults: every line is the model's.
   void good(const Task& task) {
     no_faults();
-    const sim::RefitEnd end = run(task);
+    const RefitEnd end = run(task);
     REQUIRE(static_cast<int>(end.code) == static_cast<int>(RefitCode::ok));
     REQUIRE(end.lines == task.command.lines - 1);
     REQUIRE(this->lines(base, task.expected.size()) == task.expected);
@@ -89,7 +89,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_refit_axi: memory is the model's in every line, f
                                     1 + random() % 3};
         }
         bench.place(base, task.image);
-        const sim::RefitEnd end = bench.run(task);
+        const RefitEnd end = bench.run(task);
         same_code(end.code, RefitCode::ok);
         REQUIRE(end.lines == task.command.lines - 1);
         const std::vector<Line> got = bench.lines(base, task.expected.size());
@@ -146,7 +146,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_refit_axi: every fault of memory has its code, an
       };
     };
     const auto ends = [&](RefitCode code, std::uint32_t line) {
-      const sim::RefitEnd end = bench.run(task);
+      const RefitEnd end = bench.run(task);
       same_code(end.code, code);
       REQUIRE(end.line == line);
       ++bins[code];
@@ -170,7 +170,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_refit_axi: every fault of memory has its code, an
         ends(RefitCode::timeout, line);
         REQUIRE(bench.top().outstanding == 1);
         bench.no_faults();
-        const sim::RefitEnd refused = bench.run(task);
+        const RefitEnd refused = bench.run(task);
         same_code(refused.code, RefitCode::owed);
         REQUIRE(refused.line != 0);  // the masters said so, not the engine, which waits longer than they do
         ++bins[RefitCode::owed];
@@ -200,7 +200,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_refit_axi: every fault of memory has its code, an
       bench.start_of(task);
       bench.steps(1 + random() % (clocks - 100));
       bench.memory().options.ready_percent = 0;
-      const sim::RefitEnd end = bench.finish(most_clocks);
+      const RefitEnd end = bench.finish(most_clocks);
       same_code(end.code, RefitCode::timeout);
       REQUIRE(end.clocks < clocks + 10 * limit);
       REQUIRE(bench.top().outstanding == 1);
@@ -233,7 +233,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_refit_axi: abort and reset at any clock, and a re
       bench.top().s_abort = 1;
       bench.step();
       bench.top().s_abort = 0;
-      const sim::RefitEnd end = bench.finish(3000);
+      const RefitEnd end = bench.finish(3000);
       if (end.code != RefitCode::ok) same_code(end.code, RefitCode::abort);
       aborted += end.code == RefitCode::abort ? 1 : 0;
       bench.one_of_both(task);

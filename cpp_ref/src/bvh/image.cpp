@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cchip/internal/bvh/image.hpp>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "rounding.hpp"
@@ -114,10 +115,17 @@ double loss(const Cuts& cuts, int cut_exponent) {
   return whole > 0 ? lost / whole : 0;
 }
 
-InnerLine inner_line(const Tree& tree, const TreeNode& parent, const Frame& frame) {
+/// What a node says of its children, without their volumes.
+InnerLine structure_line(const Tree& tree, const TreeNode& parent) {
   InnerLine node;
   node.first = parent.first + 1;
   node.children = parent.count;
+  for (std::size_t i = 0; i < parent.count; ++i) node.kind[i] = tree.nodes[parent.first + i].kind;
+  return node;
+}
+
+InnerLine inner_line(const Tree& tree, const TreeNode& parent, const Frame& frame) {
+  InnerLine node = structure_line(tree, parent);
   const auto count = static_cast<std::size_t>(parent.count);
   const Dop26 whole = in_frame(parent.dop, frame);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -125,7 +133,6 @@ InnerLine inner_line(const Tree& tree, const TreeNode& parent, const Frame& fram
   }
   std::array<Dop26, 4> dops;
   for (std::size_t i = 0; i < count; ++i) {
-    node.kind[i] = tree.nodes[parent.first + i].kind;
     dops[i] = in_frame(tree.nodes[parent.first + i].dop, frame);
   }
   const auto fits = [&] {
@@ -210,7 +217,8 @@ bool clearly_convex(const Primitive& quad) {
   return true;
 }
 
-LeafLine leaf_line(const Mesh& mesh, const Tree& tree, const TreeNode& node, const Frame& frame) {
+/// \param bounds of the leaf; those on the axes count
+LeafLine leaf_line(const Mesh& mesh, const Tree& tree, const TreeNode& node, const Dop26& bounds, const Frame& frame) {
   LeafLine leaf;
   std::array<Vec3d, 6> vertices;
   std::size_t n = 0;
@@ -220,7 +228,7 @@ LeafLine leaf_line(const Mesh& mesh, const Tree& tree, const TreeNode& node, con
     for (std::size_t v = 0; v < p.vertex_count(); ++v) vertices[n++] = p.v[v];
     leaf.open = p.kind == Kind::quad && !clearly_convex(p);
   }
-  const Dop26 whole = in_frame(node.dop, frame);
+  const Dop26 whole = in_frame(bounds, frame);
   double size = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     leaf.origin[i] = origin_of(whole.least[i], whole.greatest[i], 0, leaf_field::origin);
@@ -231,20 +239,27 @@ LeafLine leaf_line(const Mesh& mesh, const Tree& tree, const TreeNode& node, con
   return leaf;
 }
 
-}  // namespace
-
-std::uint32_t image_crc(const Image& image) {
-  constexpr std::size_t from = header_field::crc.end() / 8;
-  return crc32(image.lines.front().data() + from, image.lines.size() * line_bytes - from);
+/// Bounds of a leaf on the three axes; 0 on the other directions.
+Dop26 box_of(const Mesh& mesh, const Tree& tree, const TreeNode& leaf) {
+  Dop26 box;
+  for (std::size_t i = 0; i < leaf.count; ++i) {
+    const Primitive p = mesh.primitive(tree.faces[leaf.first + i]);
+    for (std::size_t v = 0; v < p.vertex_count(); ++v) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double x = p.v[v][static_cast<Eigen::Index>(k)];
+        const bool is_first = i == 0 && v == 0;
+        box.least[k] = is_first ? x : std::min(box.least[k], x);
+        box.greatest[k] = is_first ? x : std::max(box.greatest[k], x);
+      }
+    }
+  }
+  return box;
 }
 
-Image make_image(const Mesh& mesh, const Tree& tree) {
-  constexpr std::size_t most = std::size_t{1} << inner_field::first.width;
-  if (tree.nodes.size() + 1 > most) {
-    throw std::invalid_argument("mesh " + mesh.name + ": its image has " + std::to_string(tree.nodes.size() + 1) +
-                                " lines, " + std::to_string(most) + " are possible; cut it into objects");
-  }
-  const Frame frame = frame_of(tree.nodes.front().dop);
+/// The image of a mesh.
+/// \param inner, leaf  make the line of a node
+template <class Inner, class Leaf>
+Image make_lines(const Mesh& mesh, const Tree& tree, const Frame& frame, const Inner& inner, const Leaf& leaf) {
   HeaderLine header;
   header.exponent = frame.exponent;
   header.centre = frame.centre;
@@ -256,12 +271,12 @@ Image make_image(const Mesh& mesh, const Tree& tree) {
   for (const TreeNode& node : tree.nodes) {
     if (node.kind == NodeKind::inner) {
       ++header.inner;
-      image.lines.push_back(encode(inner_line(tree, node, frame)));
+      image.lines.push_back(encode(inner(node)));
       continue;
     }
     ++header.leaves;
     (node.kind == NodeKind::quad ? header.quads : header.triangles) += node.count;
-    image.lines.push_back(encode(leaf_line(mesh, tree, node, frame), node.kind));
+    image.lines.push_back(encode(leaf(node), node.kind));
   }
   header.has_triangles = header.triangles > 0;
   header.has_quads = header.quads > 0;
@@ -269,6 +284,42 @@ Image make_image(const Mesh& mesh, const Tree& tree) {
   header.crc = image_crc(image);
   image.lines.front() = encode(header);
   return image;
+}
+
+void check_lines(const Mesh& mesh, const Tree& tree) {
+  constexpr std::size_t most = std::size_t{1} << inner_field::first.width;
+  if (tree.nodes.size() + 1 <= most) return;
+  throw std::invalid_argument("mesh " + mesh.name + ": its image has " + std::to_string(tree.nodes.size() + 1) +
+                              " lines, " + std::to_string(most) + " are possible; cut it into objects");
+}
+
+}  // namespace
+
+std::uint32_t image_crc(const Image& image) {
+  constexpr std::size_t from = header_field::crc.end() / 8;
+  return crc32(image.lines.front().data() + from, image.lines.size() * line_bytes - from);
+}
+
+Image make_image(const Mesh& mesh, const Tree& tree) {
+  check_lines(mesh, tree);
+  const Frame frame = frame_of(tree.nodes.front().dop);
+  return make_lines(
+      mesh, tree, frame, [&](const TreeNode& node) { return inner_line(tree, node, frame); },
+      [&](const TreeNode& node) { return leaf_line(mesh, tree, node, node.dop, frame); });
+}
+
+Image make_leaves(const Mesh& mesh, const Tree& topology) {
+  check_lines(mesh, topology);
+  std::optional<Dop26> whole;
+  for (const TreeNode& node : topology.nodes) {
+    if (node.kind == NodeKind::inner) continue;
+    const Dop26 box = box_of(mesh, topology, node);
+    whole = whole ? enclose(*whole, box) : box;
+  }
+  const Frame frame = frame_of(*whole);
+  return make_lines(
+      mesh, topology, frame, [&](const TreeNode& node) { return structure_line(topology, node); },
+      [&](const TreeNode& node) { return leaf_line(mesh, topology, node, box_of(mesh, topology, node), frame); });
 }
 
 Bytes to_bytes(const Image& image) {

@@ -93,7 +93,7 @@ Object::Object(Mesh mesh) {
   auto tree = std::make_shared<const bvh::SupportTree>(mesh, bvh::build_topology(mesh));
   std::vector<std::uint32_t> by_file = faces_by_file(mesh);
   data_ = std::make_shared<const Data>(
-      Data{std::move(mesh), std::move(tree), std::move(by_file), std::make_shared<Edges>()});
+      Data{std::move(mesh), std::move(tree), std::move(by_file), std::make_shared<Edges>(), false});
 }
 
 void Object::refuse_moved_from() {
@@ -128,8 +128,8 @@ Object Object::moved(std::vector<Vec3d> vertices) const {
   bvh::check_vertices(mesh);
   auto tree = std::make_shared<const bvh::SupportTree>(data().tree->moved(mesh));
   Object object;
-  object.data_ =
-      std::make_shared<const Data>(Data{std::move(mesh), std::move(tree), data().by_file, std::make_shared<Edges>()});
+  object.data_ = std::make_shared<const Data>(
+      Data{std::move(mesh), std::move(tree), data().by_file, std::make_shared<Edges>(), true});
   return object;
 }
 

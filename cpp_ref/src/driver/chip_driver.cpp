@@ -46,11 +46,14 @@ class ChipDriver final : public QueryPort {
     bytes.reserve(lines.size() * line_bytes);
     for (const Line& line : lines) bytes.insert(bytes.end(), line.begin(), line.end());
     machine_->write_memory(first_line * line_bytes, bytes);
-    if (lines.empty()) return;
-    machine_->write_register(regs::invalidate_first::offset, first_line);
-    machine_->write_register(regs::invalidate_last::offset, first_line + static_cast<std::uint32_t>(lines.size()) - 1);
-    machine_->write_register(regs::invalidate::offset, regs::invalidate::go_mask);
-    if (!wait(regs::status::invalidating_mask)) throw std::runtime_error("chip driver: an invalidation does not end");
+    if (!lines.empty()) invalidate(first_line, static_cast<std::uint32_t>(lines.size()));
+  }
+
+  bool refit(std::uint32_t first_line, std::uint32_t lines, std::uint32_t root) override {
+    const RefitEnd end = machine_->refit(first_line, lines, root);
+    refit_clocks_ += end.clocks;
+    invalidate(first_line, lines);
+    return end.code == RefitCode::ok;
   }
 
   void lock(unsigned range, std::uint32_t first, std::uint32_t last) override {
@@ -125,10 +128,18 @@ class ChipDriver final : public QueryPort {
 
   std::uint64_t clocks() const override {
     const std::uint64_t low = machine_->read_register(regs::counter_clocks::offset);
-    return std::uint64_t{machine_->read_register(regs::counter_clocks::offset + 4)} << 32U | low;
+    const std::uint64_t high = machine_->read_register(regs::counter_clocks::offset + 4);
+    return (high << 32U | low) + refit_clocks_;
   }
 
  private:
+  void invalidate(std::uint32_t first_line, std::uint32_t lines) {
+    machine_->write_register(regs::invalidate_first::offset, first_line);
+    machine_->write_register(regs::invalidate_last::offset, first_line + lines - 1);
+    machine_->write_register(regs::invalidate::offset, regs::invalidate::go_mask);
+    if (!wait(regs::status::invalidating_mask)) throw std::runtime_error("chip driver: an invalidation does not end");
+  }
+
   /// Rings first, both at multiples of their lines, then images.
   void place() {
     const ChipDriverOptions& o = options_;
@@ -187,6 +198,7 @@ class ChipDriver final : public QueryPort {
     const std::uint32_t has = machine_->read_register(regs::capabilities::offset);
     const std::uint32_t kinds = (has & regs::capabilities::kinds_mask) >> regs::capabilities::kinds_shift;
     capabilities_.quads = kinds == 7;
+    capabilities_.refits = machine_->has_refit();
     if ((has & regs::capabilities::swaps_mask) != 0)
       capabilities_.swap_slots = (has & regs::capabilities::slots_mask) >> regs::capabilities::slots_shift;
     if (capabilities_.swap_slots > regs::slot_status::count) {
@@ -338,6 +350,7 @@ class ChipDriver final : public QueryPort {
   bool doorbell_ = false;                           // queries were written that the chip does not know of
   std::uint64_t in_flight_ = 0;                     // queries
   std::uint64_t quiet_ = 0;                         // proceed() since the last record, or since there was a query
+  std::uint64_t refit_clocks_ = 0;                  // of the refit engine, while the chip waited
   std::unordered_map<std::uint32_t, std::vector<PairRecord>> open_;  // by tag, of queries that have not ended
 };
 

@@ -35,6 +35,7 @@ class ChipGroup final : public QueryPort {
       if (std::exchange(is_first, false)) {
         all_ = one;
         all_.queries_in_flight = members_.back().room;
+        all_.refits = false;  // the engine would be that of one of them
         continue;
       }
       if (one.swap_slots != all_.swap_slots)

@@ -35,6 +35,9 @@ class Chip {
   void store(std::uint32_t first, const std::vector<Line>& lines) {
     call(false, [&] { return port_->store(first, lines), true; });
   }
+  bool refit(std::uint32_t first, std::uint32_t lines, std::uint32_t root) {
+    return call(false, [&] { return port_->refit(first, lines, root); });
+  }
   void lock(unsigned range, std::uint32_t first, std::uint32_t last) {
     call(false, [&] { return port_->lock(range, first, last), true; });
   }
@@ -79,14 +82,25 @@ class Chip {
 
 /// The image of an object, and where it is in the chip's memory.
 struct Stored {
-  explicit Stored(const Object& of) : object(of) {
+  /// \param by_engine an engine is to make the nodes
+  Stored(const Object& of, bool by_engine) : object(of), needs_refit(by_engine) {
     try {
-      bvh::Tree tree = of.tree().topology();
-      bvh::refit(tree, of.mesh());
-      image = bvh::make_image(of.mesh(), tree);
-      header = image->header();
+      if (by_engine) {
+        image = bvh::make_leaves(of.mesh(), of.tree().topology());
+        header = image->header();
+      } else {
+        make();
+      }
     } catch (const std::invalid_argument&) {  // more lines than an image holds
     }
+  }
+  /// The whole image.
+  void make() {
+    bvh::Tree tree = object.tree().topology();
+    bvh::refit(tree, object.mesh());
+    image = bvh::make_image(object.mesh(), tree);
+    header = image->header();
+    needs_refit = false;
   }
   /// How much of the limit on lines it takes.
   std::uint64_t weight() const { return image ? image->lines.size() : most_image_lines; }
@@ -94,6 +108,7 @@ struct Stored {
   Object object;  // keeps id() from being given to another object
   std::optional<bvh::Image> image;
   bvh::HeaderLine header;
+  bool needs_refit = false;            ///< the nodes of `image` have no volumes
   std::optional<std::uint32_t> first;  ///< line in the chip's memory
   std::size_t in_flight = 0;           ///< queries that use it
 };
@@ -112,7 +127,7 @@ class ImageStore {
     if (found != items_.end()) {
       items_.splice(items_.begin(), items_, found);
     } else {
-      items_.emplace_front(object);
+      items_.emplace_front(object, chip_.capabilities().refits && object.was_moved());
       lines_ += items_.front().weight();
     }
     trim();
@@ -179,6 +194,10 @@ class ImageStore {
       remove(*least);
     }
     chip_.store(*x.first, lines);
+    if (x.needs_refit && !chip_.refit(*x.first, x.header.lines, x.header.root)) {
+      x.make();  // the engine gave up
+      chip_.store(*x.first, x.image->lines);
+    }
     return true;
   }
 

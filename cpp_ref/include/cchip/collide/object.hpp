@@ -51,6 +51,9 @@ class Object {
   const bvh::SupportTree& tree() const { return *data().tree; }
   /// Identity: equal only for copies of one object. Devices use it as the key of what they derive from an object.
   const void* id() const { return data_.get(); }
+  /// moved() made it. A chip with a refit engine makes its image anew by that engine.
+  /// \throws std::invalid_argument the object was moved from
+  bool was_moved() const { return data().was_moved; }
   /// Faces of the mesh that are face `number` of the file or were cut from it; none if it has no such face.
   /// \throws std::invalid_argument the object was moved from
   std::vector<std::uint32_t> parts(std::uint32_t number) const;
@@ -75,6 +78,7 @@ class Object {
     /// Faces by their number in the file, if some were cut and file_face is not ascending; else empty.
     std::vector<std::uint32_t> by_file;
     std::shared_ptr<Edges> edges;  ///< what is known of them; filled at the first question
+    bool was_moved;
   };
   const Edges& edges() const;
   const Data& data() const {

@@ -6,12 +6,21 @@
 #define CCHIP_DRIVER_MACHINE_HPP
 
 #include <cchip/internal/wire/bitstream.hpp>
+#include <cchip/internal/wire/definitions.hpp>
 #include <cchip/internal/wire/pair.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 
 namespace cchip {
+
+/// How a refit ended.
+struct RefitEnd {
+  RefitCode code = RefitCode::ok;
+  std::uint32_t line = 0;    ///< of the image, at work then; 0: none
+  std::uint32_t lines = 0;   ///< lines read
+  std::uint64_t clocks = 0;  ///< from the command to the end
+};
 
 /// Accesses to registers and memory take effect in the order of the calls: what was written to memory before a register
 /// is there when the machine sees the register, and a read returns what memory held after every earlier call returned.
@@ -33,6 +42,14 @@ class Machine {
   /// may hold anything.
   /// \throws std::runtime_error as above
   virtual Bytes read_memory(std::uint64_t address, std::size_t size) = 0;
+
+  /// True if a cchip_refit_axi works on the same memory.
+  virtual bool has_refit() const { return false; }
+  /// Runs it on an image and waits for its end. A query that uses these lines meanwhile finds anything.
+  /// \param base, root  lines of 64 bytes: address of the header / 64; number within the image
+  virtual RefitEnd refit(std::uint32_t /*base*/, std::uint32_t /*lines*/, std::uint32_t /*root*/) {
+    return {RefitCode::command, 0, 0, 0};
+  }
 
   /// Level of the interrupt line.
   virtual bool interrupt() = 0;

@@ -26,6 +26,8 @@ struct ChipCapabilities {
   std::uint32_t image_lines = 0;
   /// Ranges of lines that can be kept in the chip's cache.
   unsigned lock_ranges = 0;
+  /// An engine beside it makes the nodes of an image from its leaves: refit().
+  bool refits = false;
   /// Slots whose modules can be exchanged; 0: none.
   unsigned swap_slots = 0;
 };
@@ -63,6 +65,12 @@ class QueryPort {
   /// the chip still holds of lines with these numbers is invalidated, locked or not.
   /// \pre the lines are among those of capabilities(), and no query in flight uses them
   virtual void store(std::uint32_t first_line, const std::vector<Line>& lines) = 0;
+  /// Makes the nodes of an image in memory from its leaves, as the model of cchip_refit does; when it returns, the chip
+  /// reads the new ones. Takes what bvh::make_leaves() writes.
+  /// \param root line of the image
+  /// \pre as store(); capabilities().refits
+  /// \return false: the engine gave up, and the nodes hold anything
+  virtual bool refit(std::uint32_t /*first_line*/, std::uint32_t /*lines*/, std::uint32_t /*root*/) { return false; }
   /// Lines first..last stay in the chip's cache once it has read them; first > last: none. Replaces what this range
   /// was. Changes speed only, so it may be called while queries are in flight.
   /// \pre range < capabilities().lock_ranges

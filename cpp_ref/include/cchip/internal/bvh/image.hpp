@@ -32,6 +32,13 @@ struct Image {
 /// \throws std::invalid_argument more than 2^24 lines
 Image make_image(const Mesh& mesh, const Tree& tree);
 
+/// Header and leaves of make_image(), and of the nodes what does not depend on the vertices: their children. A refit
+/// engine makes an image of it (docs/modules/cchip_refit.md), whose CRC-32 is not that of the header; a chip does not
+/// read it. Takes less time than refit() and make_image(): no volume of a node is computed.
+/// \param topology a tree over the mesh's faces; its volumes do not matter
+/// \throws std::invalid_argument as make_image()
+Image make_leaves(const Mesh& mesh, const Tree& topology);
+
 Bytes to_bytes(const Image& image);
 
 /// Parses the image in these bytes and checks it: sizes, magic, version, CRC-32, every field of every line, the counts,

@@ -4,6 +4,7 @@
 #ifndef CCHIP_MACHINES_SIMULATED_REFIT_HPP
 #define CCHIP_MACHINES_SIMULATED_REFIT_HPP
 
+#include <cchip/driver/machine.hpp>
 #include <cchip/internal/bvh/image_line.hpp>
 #include <cchip/internal/wire/definitions.hpp>
 #include <cchip/sim/axi_lines.hpp>
@@ -16,14 +17,7 @@
 
 namespace cchip::sim {
 
-/// How a refit ended.
-struct RefitEnd {
-  RefitCode code = RefitCode::ok;
-  std::uint32_t line = 0;    ///< of the image, at work then; 0: none
-  std::uint32_t lines = 0;   ///< lines read
-  std::uint64_t clocks = 0;  ///< from the clock that took the command to the one that offered the end
-};
-
+/// Clocks of a refit: from the one that took the command to the one that offered the end.
 /// \tparam Config names the Verilated class `Model` and DATA_W
 template <class Config>
 class SimulatedRefit : private Agent {
