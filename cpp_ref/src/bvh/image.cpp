@@ -256,10 +256,10 @@ Dop26 box_of(const Mesh& mesh, const Tree& tree, const TreeNode& leaf) {
   return box;
 }
 
-/// The image of a mesh.
+/// An image.
 /// \param inner, leaf  make the line of a node
 template <class Inner, class Leaf>
-Image make_lines(const Mesh& mesh, const Tree& tree, const Frame& frame, const Inner& inner, const Leaf& leaf) {
+Image make_lines(const Tree& tree, const Frame& frame, const Inner& inner, const Leaf& leaf) {
   HeaderLine header;
   header.exponent = frame.exponent;
   header.centre = frame.centre;
@@ -304,7 +304,7 @@ Image make_image(const Mesh& mesh, const Tree& tree) {
   check_lines(mesh, tree);
   const Frame frame = frame_of(tree.nodes.front().dop);
   return make_lines(
-      mesh, tree, frame, [&](const TreeNode& node) { return inner_line(tree, node, frame); },
+      tree, frame, [&](const TreeNode& node) { return inner_line(tree, node, frame); },
       [&](const TreeNode& node) { return leaf_line(mesh, tree, node, node.dop, frame); });
 }
 
@@ -318,7 +318,7 @@ Image make_leaves(const Mesh& mesh, const Tree& topology) {
   }
   const Frame frame = frame_of(*whole);
   return make_lines(
-      mesh, topology, frame, [&](const TreeNode& node) { return structure_line(topology, node); },
+      topology, frame, [&](const TreeNode& node) { return structure_line(topology, node); },
       [&](const TreeNode& node) { return leaf_line(mesh, topology, node, box_of(mesh, topology, node), frame); });
 }
 
