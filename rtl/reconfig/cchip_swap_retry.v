@@ -38,6 +38,7 @@ module cchip_swap_retry #(
   localparam [3:0] LEVEL_HOPELESS = LEVEL_MAX - 4'd1;  // the first failure comes at level 0
 
   `CCHIP_REFUSE(SLOTS < 1 || SLOTS > 4, cchip_error_SLOTS_must_be_1_to_4)
+  `CCHIP_REFUSE(KINDS != 3 && KINDS != 4, cchip_error_KINDS_must_be_3_or_4)
 
   // ---- the report
   wire [`CCHIP_SLOT_ID_W-1:0] slot = report_data[`CCHIP_SWAP_REPORT_SLOT];

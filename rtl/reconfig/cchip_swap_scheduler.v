@@ -204,7 +204,10 @@ module cchip_swap_scheduler #(
       for (kind = 0; kind < KINDS; kind = kind + 1) begin : gen_alone
         assign kinds_alone[kind] = alone[SLOTS*kind+slot];
       end
-      always @(posedge clk) needed_q[slot] <= KINDS > 3 && kinds_alone != {KINDS{1'b0}} && !old_q;
+      // what it was when the search for a kind began: its own module is not passed over for a larger
+      // one because the slot becomes free meanwhile
+      always @(posedge clk)
+        if (!trying_q) needed_q[slot] <= KINDS > 3 && kinds_alone != {KINDS{1'b0}} && !old_q;
     end
     // what a slot holds, in 4 bits
     for (slot = 0; slot < (1 << SLOT_W); slot = slot + 1) begin : gen_held

@@ -48,10 +48,11 @@ ROC = "cchip_error_ROC_CYCLES_must_be_1_to_32"
 CFG_W = "cchip_error_CFG_W_must_be_8_or_32"
 SLOT_ID = "cchip_error_SLOT_ID_must_be_0_to_255"
 SIMULATION = "cchip_error_SIMULATION_must_be_0_or_1"
-RM_ID = "cchip_error_RM_ID_must_be_0_to_3"
+RM_ID = "cchip_error_RM_ID_must_be_0_to_4"
 QUEUE = "cchip_error_QUEUE_DEPTH_must_be_a_power_of_two_16_to_1024"
 DESCRIPTOR = "cchip_error_descriptor_WIDTH_must_be_1_to_80"
-KINDS = "cchip_error_KINDS_must_be_1_to_3"
+KINDS = "cchip_error_KINDS_must_be_1_to_4"
+KINDS_3_4 = "cchip_error_KINDS_must_be_3_or_4"
 PLACE = "cchip_error_PLACE_W_must_be_3_to_12"
 TAKERS = "cchip_error_TAKERS_must_be_2_to_5"
 CREDIT = "cchip_error_CREDIT_must_be_1_to_256"
@@ -151,11 +152,12 @@ ILLEGAL = [
       for case in ({"LEAF_DEPTH": 48}, {"LEAF_DEPTH": 129})),
     *(("cchip_traversal", {"STACK": n}, "cchip_error_traversal_STACK_must_be_8_16_32_or_64") for n in (4, 12, 128)),
     ("cchip_bv_unit", {"TAG_W": 0}, "cchip_error_bv_unit_TAG_W_below_1"),
-    *(("cchip_pr_region", {"RM_ID": n}, RM_ID) for n in (-1, 4)),
+    *(("cchip_pr_region", {"RM_ID": n}, RM_ID) for n in (-1, 5)),
     *(("cchip_roc_generator", {"CYCLES": n}, ROC) for n in (0, 33)),
     *(("cchip_pr_config_memory", {"CFG_W": n}, CFG_W) for n in (16, 0)),
     *(("cchip_pr_config_memory", {"SLOT_ID": n}, SLOT_ID) for n in (-1, 256)),
-    ("cchip_pr_config_memory", {"RM_ID": 4}, RM_ID),
+    ("cchip_pr_config_memory", {"RM_ID": 4}, "cchip_error_RM_ID_must_be_0_to_KINDS"),
+    ("cchip_pr_config_memory", {"KINDS": 5}, "cchip_error_memory_KINDS_must_be_3_or_4"),
     ("cchip_pr_slot", {"CFG_W": 16}, CFG_W),
     ("cchip_pr_slot", {"SLOT_ID": 256}, SLOT_ID),
     ("cchip_pr_slot", {"SIMULATION": 2}, SIMULATION),
@@ -170,11 +172,15 @@ ILLEGAL = [
     *(("cchip_vertex_collector", {"COORD_W": n}, COORD_W) for n in (3, 21)),
     *(("cchip_descriptor_queues", {"DEPTH": n}, QUEUE) for n in (8, 24, 2048)),
     *(("cchip_descriptor_queues", {"WIDTH": n}, DESCRIPTOR) for n in (0, 81)),
-    *(("cchip_descriptor_queues", {"KINDS": n}, KINDS) for n in (0, 4)),
+    *(("cchip_descriptor_queues", {"KINDS": n}, KINDS) for n in (0, 5)),
     ("cchip_operand_memory", {"COORD_W": 3}, COORD_W),
     *(("cchip_operand_memory", {"PLACE_W": n}, PLACE) for n in (2, 13)),
     *(("cchip_dispatch_sequencer", {"TAKERS": n}, TAKERS) for n in (1, 6)),
-    *(("cchip_dispatch_sequencer", {"KINDS": n}, KINDS) for n in (0, 4)),
+    *(("cchip_dispatch_sequencer", {"KINDS": n}, KINDS) for n in (0, 5)),
+    *((module, {"KINDS": n}, KINDS_3_4) for module in ("cchip_swap_scheduler", "cchip_swap_retry", "cchip_bitstream_table") for n in (2, 5)),
+    *(("cchip_slots", {"KINDS": n}, "cchip_error_slots_KINDS_must_be_3_or_4") for n in (2, 5)),
+    ("cchip_pr_slot", {"RM_ID": 4}, "cchip_error_slot_RM_ID_must_be_0_to_KINDS"),
+    *(("cchip_counter_file", {"WIDE": n}, "cchip_error_WIDE_must_be_0_to_8") for n in (-1, 9)),
     *(("cchip_slot_ledger", {"CREDIT": n}, CREDIT) for n in (0, 257)),
     *((module, {"SLOTS": n}, SLOTS) for module in ("cchip_dispatcher", "cchip_swap_scheduler") for n in (0, 5)),
     *(("cchip_primtest_subsystem", {"SLOTS": n}, SLOTS) for n in (0, 5)),
@@ -278,9 +284,9 @@ LEGAL = [
     *(("cchip_soft_reset", {"CLOCKS": n}) for n in (2, 19, 256)),
     *(("cchip_pool", {"FIRST": f, "COUNT": n, "WIDTH": w}) for f, n, w in ((0, 1, 1), (0, 256, 8), (48, 16, 6))),
     *(("cchip_vertex_collector", {"COORD_W": n}) for n in (4, 20)),
-    *(("cchip_descriptor_queues", {"DEPTH": d, "KINDS": k, "WIDTH": w}) for d, k, w in ((16, 1, 1), (1024, 3, 80))),
+    *(("cchip_descriptor_queues", {"DEPTH": d, "KINDS": k, "WIDTH": w}) for d, k, w in ((16, 1, 1), (1024, 3, 80), (32, 4, 22))),
     *(("cchip_operand_memory", {"COORD_W": w, "PLACE_W": p}) for w, p in ((4, 3), (20, 12))),
-    *(("cchip_dispatch_sequencer", {"TAKERS": t, "KINDS": k}) for t, k in ((2, 1), (5, 3))),
+    *(("cchip_dispatch_sequencer", {"TAKERS": t, "KINDS": k}) for t, k in ((2, 1), (5, 3), (5, 4))),
     *(("cchip_slot_ledger", {"CREDIT": n}) for n in (1, 256)),
     *(("cchip_dispatcher", {"SLOTS": s, "KINDS": k, "CREDIT": c}) for s, k, c in ((1, 1, 1), (4, 3, 256))),
     *((module, {"SLOTS": n}) for module in ("cchip_swap_scheduler", "cchip_bitstream_table") for n in (1, 4)),
@@ -302,7 +308,7 @@ LEGAL = [
     *(("cchip_normaliser", {"COORD_W": w, "PASSES": p}) for w, p in ((4, 2), (20, 1))),
     *(("cchip_transform", {"PASSES": p, "CREDIT": c, "ID_W": i}) for p, c, i in ((1, 4096, 40), (2, 4, 1))),
     ("cchip_skid_buffer", {"WIDTH": 1}),
-    *(("cchip_pr_region", {"RM_ID": n, "COORD_W": 4, "SUBSTAGES": smallest_substages(4)}) for n in range(4)),
+    *(("cchip_pr_region", {"RM_ID": n, "COORD_W": 4, "SUBSTAGES": smallest_substages(4)}) for n in range(5)),
     *(("cchip_roc_generator", {"CYCLES": n}) for n in (1, 32)),
     *(("cchip_pr_config_memory", {"CFG_W": w, "SLOT_ID": n}) for w, n in ((8, 0), (32, 255))),
     *(("cchip_pr_decoupler", {"COORD_W": w}) for w in (4, 20)),

@@ -6,6 +6,7 @@
 #include <cchip/device/device.hpp>
 #include <cchip/driver/chip_host.hpp>
 #include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/bvh/support_tree.hpp>
 #include <cchip/internal/model/broad_phase.hpp>
 #include <cchip/sim/seed.hpp>
 #include <functional>
@@ -654,7 +655,7 @@ TEST_CASE("chip host: the tops of the two trees are locked", "[ref][chip_host]")
   check_obeyed(bench);
 }
 
-TEST_CASE("chip host: an engine makes the nodes of objects that were moved; the CPU does if it gives up",
+TEST_CASE("chip host: an engine makes the nodes of objects that were moved, the CPU does if it gives up",
           "[ref][chip_host]") {
   std::mt19937_64 random(sim::seed_from_environment());
   Scene scene(0);

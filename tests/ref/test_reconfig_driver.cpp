@@ -65,7 +65,7 @@ TEST_CASE("reconfig driver: without a user's bitstreams the simulated device get
   options.payload_bytes = 77;
   options.seed = 5;
   run_reconfig(machine, {}, options);
-  const std::uint32_t address = machine.written.at(registers::bitstream_address::offset(4 + 3));
+  const std::uint32_t address = machine.written.at(registers::bitstream_address::offset(defs::table_modules + 3));
   CHECK(machine.memory.at(address) ==
         make_bitstream(1, ModuleId::quad_quad, make_payload(1, ModuleId::quad_quad, 77, 5)));
 }

@@ -151,7 +151,7 @@ TEST_CASE("table1: platforms and jobs that there are not are refused", "[systemc
   const table1::Job good{{{0, sc_core::SC_ZERO_TIME, 0}}, false};
   CHECK_THROWS_WITH(table1::simulate({{{3, true, rc::bitstream_timing()}, {good}}}), Catch::Contains("3 slots"));
   CHECK_THROWS_WITH(table1::simulate({{{1, true, rc::bitstream_timing()}, {{}}}}), Catch::Contains("0 pairs"));
-  const table1::Job foreign{{{3, sc_core::SC_ZERO_TIME, 0}}, false};
+  const table1::Job foreign{{{4, sc_core::SC_ZERO_TIME, 0}}, false};
   CHECK_THROWS_WITH(table1::simulate({{{1, true, rc::bitstream_timing()}, {foreign}}}),
-                    Catch::Contains("kind below 3"));
+                    Catch::Contains("kind below 4"));
 }

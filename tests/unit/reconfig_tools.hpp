@@ -60,7 +60,9 @@ inline void repair_crc(Bytes& bytes) {
 /// cchip_pr_config_memory: keeps the bytes since the last synchronisation word and judges all of them after each word.
 class ConfigMemoryModel {
  public:
-  ConfigMemoryModel(int slot, int module, int port_bytes) : slot_(slot), select_(module), port_bytes_(port_bytes) {}
+  /// \param kinds the modules are 0..kinds
+  ConfigMemoryModel(int slot, int module, int port_bytes, int kinds)
+      : slot_(slot), select_(module), port_bytes_(port_bytes), kinds_(kinds) {}
   bool garbage() const { return garbage_; }
   /// Defined while !garbage().
   int select() const { return select_; }
@@ -90,13 +92,14 @@ class ConfigMemoryModel {
     return true;
   }
   bool complete(std::size_t n) const {
-    return n >= static_cast<std::size_t>(defs::bitstream_payload_min) && bytes_[5] <= 3 && bytes_[6] == 0 &&
+    return n >= static_cast<std::size_t>(defs::bitstream_payload_min) && bytes_[5] <= kinds_ && bytes_[6] == 0 &&
            bytes_[7] == 0 && word_at(bytes_, n - 4) == zlib_crc(bytes_, n - 4);
   }
 
   int slot_;
   int select_;
   int port_bytes_;
+  int kinds_;
   bool garbage_ = false;
   Bytes bytes_;
 };

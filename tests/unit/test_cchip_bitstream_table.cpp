@@ -25,7 +25,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_table: writes byte by byte, reads, look
   for (unsigned e = 0; e < numbers; ++e) {
     if (is_there(e)) there.push_back(e);
   }
-  for_two_power_ups<Model>([](auto& simulation, Random& random) {
+  for_two_power_ups<Model>([&](auto& simulation, Random& random) {
     auto& top = simulation.top();
     struct Entry {
       std::array<std::uint32_t, 2> words{};  // address, size
@@ -78,7 +78,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_table: writes byte by byte, reads, look
       top.invalidate = 0;
       if (chance(random, 5)) {
         const unsigned e = there[random() % there.size()];
-        top.invalidate = static_cast<decltype(top.invalidate)>(bit(e));
+        sim::set_bits(top.invalidate, 0, TestType::SLOTS << defs::kind_bits(TestType::KINDS), bit(e));
         entries[e].valid = false;
       }
       top.write = 0;

@@ -91,7 +91,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_operand_memory: what was written at a place is re
       auto it = stored.begin();
       std::advance(it, static_cast<std::ptrdiff_t>(random() % stored.size()));
       sim::set_bits(top.m_place, 0, TestType::PLACE_W, static_cast<std::uint64_t>(it->first));
-      const int vertices = it->second.kind < 2 ? 3 : 4;
+      const int vertices = it->second.kind == 2 || it->second.kind == 3 ? 4 : 3;
       for (int i = 0; i <= vertices + 1; ++i) {
         top.m_vertex = static_cast<CData>(i & 3);
         simulation.settle();

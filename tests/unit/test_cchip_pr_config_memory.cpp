@@ -11,7 +11,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_config_memory: every clock like a judge of the
   constexpr int port_bytes = TestType::CFG_W / 8;
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
     auto& top = simulation.top();
-    ConfigMemoryModel model(TestType::SLOT_ID, TestType::RM_ID, port_bytes);
+    ConfigMemoryModel model(TestType::SLOT_ID, TestType::RM_ID, port_bytes, TestType::KINDS);
     const auto clock = [&](bool valid, std::uint32_t word) {
       top.cfg_valid = valid ? 1 : 0;
       sim::set_bits(top.cfg_data, 0, TestType::CFG_W, word);

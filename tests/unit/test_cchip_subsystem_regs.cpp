@@ -170,10 +170,11 @@ TEST_CASE("cchip_subsystem_regs: what hardware writes is read, and nothing is wh
     for (int round = 0; round < 30; ++round) {
       scramble(top, random);
       REQUIRE(read(r::id::offset) == 0x50484343);
-      REQUIRE(read(r::version::offset) == 0x100);
+      REQUIRE(read(r::version::offset) == 0x200);
       REQUIRE(read(r::capabilities::offset) ==
               (top.hwif_in_capabilities_slots | std::uint32_t{top.hwif_in_capabilities_cfg_w} << 8 |
-               std::uint32_t{top.hwif_in_capabilities_coord_w} << 16));
+               std::uint32_t{top.hwif_in_capabilities_coord_w} << 16 |
+               std::uint32_t{top.hwif_in_capabilities_kinds} << 24));
       REQUIRE(read(r::queue_depth::offset) == top.hwif_in_queue_depth_pairs);
       REQUIRE(read(r::report::offset) == (top.hwif_in_report_code | std::uint32_t{top.hwif_in_report_slot} << 8 |
                                           std::uint32_t{top.hwif_in_report_module_id} << 16));

@@ -179,7 +179,7 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
       }
       bench.steps(6);  // until it has seen all of this
       const std::uint64_t its_age = since ? bench.simulation.clock() - *since : 0;
-      if (since && bench.age + 6 > its_age && bench.age < its_age + 120) continue;  // it passes the limit meanwhile
+      if (since && bench.age + 6 > its_age && bench.age < its_age + 260) continue;  // it passes the limit meanwhile
       const bool too_old = since && its_age >= bench.age;
       // what the rules allow: for each kind that is due, one slot and module
       std::vector<std::pair<int, int>> legal;
