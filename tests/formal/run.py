@@ -10,6 +10,8 @@ usage: run.py [options] [NAME...]     NAME: a module, as in NAME.sby (default: a
   --write      put what ran into docs/figures/formal.csv and the table of docs/develop/formal.md; without names, rows of tasks
                that are gone leave
   --table      run nothing: write the table from docs/figures/formal.csv, as after a change of the RTL
+  --carry      prove nothing: where the RTL's text has changed since the proof, elaborate what the proof reads as it was at its
+               commit and as it is, and take a row over to today's text if both netlists and the task are the same
   --check      run nothing: exit 1 unless the table is what --table would write and has every task
   --jobs N     proofs at the same time (default: JOBS of the environment, or all processors)
   --build DIR  folder for outputs (default build/formal), one folder per proof
@@ -30,6 +32,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 
@@ -338,13 +341,74 @@ def meaning(name, task, text):
     return f"bounded: {depth[0] if depth else max(steps)} clocks"
 
 
-def sources(name):
+def files_of(text):
+    """The files that the tasks of a *.sby read."""
+    return text[text.index("[files]\n"):].split()[1:]
+
+
+def sources(name, root=ROOT):
     """What a proof rests on: its tasks and the files that they read, as a hash. Comments, blanks and the attribute that is for Quartus alone do not count."""
-    text = (HERE / f"{name}.sby").read_text()
-    files = text[text.index("[files]\n"):].split()[1:]
-    parts = [text] + [(ROOT / file).read_text() for file in files]
+    text = (root / "tests/formal" / f"{name}.sby").read_text()
+    parts = [text] + [(root / file).read_text() for file in files_of(text)]
     code = "\0".join(re.sub(r"(,\s*)?\bramstyle = \"[^\"]*\"", "", re.sub(r"//.*", "", part)) for part in parts)
     return hashlib.sha256("".join(code.split()).encode()).hexdigest()[:16]
+
+
+def of_task(text, section, task):
+    """The lines of a section of a *.sby that count for a task: those without a tag, and those with its name or group."""
+    tasks = re.search(r"^\[tasks\]\n(.*?)\n\n", text, re.S | re.M)[1].splitlines()
+    known = {word for line in tasks for word in line.split()}
+    tags = next(line.split() for line in tasks if line.split()[0] == task)
+    lines = []
+    for line in re.search(rf"^\[{section}\]\n(.*?)(?=^\[|\Z)", text, re.S | re.M)[1].splitlines():
+        tagged = re.match(r"(\w+): *(.*)", line)
+        if not tagged or tagged[1] not in known:
+            lines.append(line)
+        elif tagged[1] in tags:
+            lines.append(tagged[2])
+    return [line for line in lines if line.strip()]
+
+
+def netlist(name, task, root):
+    """What the task's script makes of the sources below root: the text of the netlist, less what only says where a thing is in
+    a file. None if Yosys refuses it."""
+    text = (root / "tests/formal" / f"{name}.sby").read_text()
+    with tempfile.TemporaryDirectory() as folder:
+        for file in files_of(text):  # names sort by their lines' numbers, which get as many digits in both
+            (pathlib.Path(folder) / pathlib.Path(file).name).write_text("\n" * 5000 + (root / file).read_text())
+        script = "\n".join(of_task(text, "script", task)) + "\nwrite_rtlil netlist.il\n"
+        (pathlib.Path(folder) / "script.ys").write_text(script)
+        if subprocess.run(["yosys", "-q", "-s", "script.ys"], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode:
+            return None
+        lines = (pathlib.Path(folder) / "netlist.il").read_text().splitlines()
+    numbers = {}  # of names that Yosys made from a place in a file or from a counter, in the order in which they come
+    rename = lambda match: f"name#{numbers.setdefault(match[0], len(numbers))}"
+    return [re.sub(r"\S*\.v:\d\S*|\$\w+\$\d+\S*|\$\d+\b", rename, line.strip()) for line in lines
+            if not line.strip().startswith(("attribute \\src", "attribute \\ramstyle", "autoidx", "#"))]
+
+
+def carry(names):
+    """Takes over rows whose netlist is what it was when they were proved. Returns how many, and how many were not."""
+    taken, left = {}, 0
+    for (name, task), row in recorded().items():
+        if name not in names or (name, task) not in all_tasks() or row["sources"] == sources(name):
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            archive = subprocess.run(["git", "-C", str(ROOT), "archive", row["commit"].rstrip("+"), "rtl", "sim/rtl_models", "tests/formal"], stdout=subprocess.PIPE)
+            old = archive.returncode == 0 and not subprocess.run(["tar", "-x", "-C", folder], input=archive.stdout).returncode
+            same = bool(old) and sources(name, root) == row["sources"]
+            if same:
+                before, now = ((root / "tests/formal" / f"{name}.sby").read_text(), (HERE / f"{name}.sby").read_text())
+                same = all(of_task(before, section, task) == of_task(now, section, task) for section in ("options", "engines"))
+                was = netlist(name, task, root) if same else None
+                same = was is not None and was == netlist(name, task, ROOT)
+        bar.say(f"{name} {task}: {'the same netlist as at ' + row['commit'] if same else 'another netlist, or the sources of its proof are not at ' + row['commit']}")
+        left += not same
+        if same:
+            taken[name, task] = {**row, "sources": sources(name)}
+    write(taken, False)
+    return len(taken), left
 
 
 def commit():
@@ -441,7 +505,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=int(os.environ.get("JOBS") or os.cpu_count()))
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/formal")
     parser.add_argument("--shard", default="1/1")
-    for flag in ("--write", "--table", "--check"):
+    for flag in ("--write", "--table", "--carry", "--check"):
         parser.add_argument(flag, action="store_true")
     parser.add_argument("names", nargs="*")
     options = parser.parse_args()
@@ -459,6 +523,10 @@ def main():
         print(f"run.py: no proof of '{unknown[0]}', one of: {' '.join(known)}", file=sys.stderr)
         return 2
     names = options.names or known
+    if options.carry:
+        taken, left = carry(names)
+        print(f"taken={taken} left={left}")
+        return 0
     tasks = [(name, task) for name in names for task in tasks_of(name) if not options.quick or (name, task) not in SLOW]
     mutants = [index for index, mutant in enumerate(MUTANTS) if mutant[0].split()[0] in names]
     part, of = map(int, options.shard.split("/"))
