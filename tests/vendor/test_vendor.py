@@ -197,7 +197,7 @@ class Memories(unittest.TestCase):
         for define, memories in (("", 1), ("-DCCHIP_MIXED_WIDTH=0", 4), ("-DCCHIP_MIXED_WIDTH=1", 1),
                                  ("-DALTERA_RESERVED_QIS", 4)):
             with self.subTest(define=define):
-                self.assertEqual(run(tool("yosys"), "-q", "-p", f"read_verilog {define} {ROOT}/rtl/common/cchip_block_ram.v; "
+                self.assertEqual(run(tool("yosys"), "-q", "-p", f"read_verilog {define} -I{ROOT}/rtl/include {ROOT}/rtl/common/cchip_block_ram.v; "
                                      "hierarchy -check -top cchip_block_ram -chparam WORDS 4; proc; memory -nomap; "
                                      f"select -assert-count {memories} t:$mem_v2"), (0, ""))
 
