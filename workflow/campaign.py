@@ -56,7 +56,7 @@ KINDS = {"random": ("cchip_campaign", PART_PAIRS, JUDGED + [None] * 3, "pairs"),
          "chip": ("cchip_chip_campaign", 1, CHIP, "queries"),
          "faults": ("cchip_chip_campaign", 1, None, "queries")}
 BY_SEED = ("chip", "faults")
-NO_COUNTS = {"seconds", "seed", "bins", "clocks_mean"}  # of a last line
+NO_COUNTS = {"seconds", "seed", "bins", "exchanges", "clocks_mean"}  # of a last line
 GOOD = {"pairs", "hits", "queries", "swaps", "contacts", "open", "fallbacks", "rounds", "resets", "bus_resets",
         "damaged_images", "faults", "near", "points", "with_cuts", "apart", "touching", "crossing", "bound_cases", "rtl_results"}  # may be over 0
 

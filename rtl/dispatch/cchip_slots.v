@@ -70,7 +70,7 @@ module cchip_slots #(
     output wire [                       3:0] decoupled,
     // swaps (cchip_swaps): which kinds no slot can serve, the module that a slot shows, what a swap
     // asks of it and what it answers, words for the configuration port
-    input  wire [                   KINDS:1] no_provider,
+    input  wire [                 KINDS-1:0] no_provider,
     output wire [   `CCHIP_KIND_W*SLOTS-1:0] slot_module,
     input  wire [                 SLOTS-1:0] stop,
     input  wire [                 SLOTS-1:0] decouple,
@@ -114,7 +114,7 @@ module cchip_slots #(
     for (k = 1; k <= KINDS; k = k + 1) begin : gen_unserved
       localparam [31:0] KIND = k;
       // without swaps: what the modules that were built do not serve
-      assign unserved[k] = SWAPS != 0 ? no_provider[k] :
+      assign unserved[k] = SWAPS != 0 ? no_provider[k-1] :
           !(`CCHIP_RM_SERVES(BUILT_0[ID_W-1:0], KIND[ID_W-1:0])
           || `CCHIP_RM_SERVES(BUILT_1[ID_W-1:0], KIND[ID_W-1:0])
           || `CCHIP_RM_SERVES(BUILT_2[ID_W-1:0], KIND[ID_W-1:0])

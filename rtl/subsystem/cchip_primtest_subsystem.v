@@ -51,7 +51,7 @@ module cchip_primtest_subsystem #(
     input  wire                                   clk,
     input  wire                                   rst,
     // pairs; kind = ModuleId of the test: 1 tri-tri, 2 tri-quad, 3 quad-quad, 4 point-tri
-    // (cchip_primtest_point_tri says what s_pair_a is then); a kind above KINDS counts as illegal
+    // with s_pair_a as cchip_primtest_point_tri has it; a kind above KINDS counts as illegal
     input  wire                                   s_pair_valid,
     output wire                                   s_pair_ready,
     input  wire [              `CCHIP_KIND_W-1:0] s_pair_kind,

@@ -32,7 +32,7 @@ class Staleness(staleness.StalenessTests, Copy):
         self.assert_stale(self.of_chip)
 
     def test_changed_common_part(self):
-        self.change("major_number[15:8] = 1", "major_number[15:8] = 2", self.common)
+        self.change("major_number[15:8] = 2", "major_number[15:8] = 3", self.common)
         self.assert_stale(self.generated)
 
 

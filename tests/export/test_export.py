@@ -27,7 +27,7 @@ PASS_CHIP = r"\Aquery=1 records=[1-9]\d* wrong=0 clocks=[1-9]\d*\n\Z"
 FAIL = r"(?m)^FAIL clock "
 FAIL_CHIP = r"(?m)^CCHIP_ASSERT failed: |^clock \d+: a record that is not expected$(.*\n)*^query=1 records=\d+ wrong=[1-9]\d* clocks=\d+$"
 # Parameters of more elaborations: together they use every module below the top.
-MORE = {SUBSYSTEM: ("-chparam SIMULATION 1",),
+MORE = {SUBSYSTEM: ("-chparam SIMULATION 1", "-chparam SIMULATION 1 -chparam KINDS 4"),
         CHIP: ("-chparam SWAPS 1", "-chparam SWAPS 1 -chparam SIMULATION 1")}
 
 

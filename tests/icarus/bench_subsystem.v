@@ -24,8 +24,8 @@ module bench_subsystem (
     output wire         idle
 );
 
-  wire [1:0] kind;
-  assign rm_id = {6'd0, m_result_valid ? kind : 2'd1};
+  wire [2:0] kind;
+  assign rm_id = {5'd0, m_result_valid ? kind : 3'd1};
 
   // pairs between their two handshakes
   reg [15:0] pairs_q;
@@ -43,7 +43,7 @@ module bench_subsystem (
       .rst              (rst),
       .s_pair_valid     (s_pair_valid),
       .s_pair_ready     (s_pair_ready),
-      .s_pair_kind      (2'd1),
+      .s_pair_kind      (3'd1),
       .s_pair_tag       (s_pair_tag),
       .s_pair_mode      (s_pair_mode),
       .s_pair_a         (s_pair_a),
