@@ -35,7 +35,7 @@ static int wait_for(struct chip* chip, uint32_t status) {
 /* Resets the chip, makes both rings empty, enables it. Also the way back after CHIP_STOPPED. */
 int chip_start(struct chip* chip) {
   const uint64_t records = chip->address + (64 << CHIP_QUERY_LOG2);
-  if (get(chip, CHIP_ID) != CHIP_ID_VALUE || get(chip, CHIP_VERSION) >> 8 != 1) return CHIP_NO_CHIP;
+  if (get(chip, CHIP_ID) != CHIP_ID_VALUE || get(chip, CHIP_VERSION) >> 8 != 2) return CHIP_NO_CHIP;
   set(chip, CHIP_CONTROL, CHIP_CONTROL_SOFT_RESET);
   if (wait_for(chip, CHIP_STATUS_RESETTING) != CHIP_OK) return CHIP_TIMEOUT; /* memory has lost a response */
   chip->written = chip->read = 0;
