@@ -129,7 +129,7 @@ inline Bytes spoil(Bytes bytes, Fault fault, int slot, Random& random) {
       bytes.resize(1 + random() % 3);
       break;
     case Fault::module:
-      bytes.at(5) = static_cast<std::uint8_t>(4 + random() % 252);
+      bytes.at(5) = static_cast<std::uint8_t>(defs::kinds_max + 1 + static_cast<int>(random() % 251));
       repair_crc(bytes);
       break;
     case Fault::unused_bits:

@@ -102,7 +102,7 @@ TEST_CASE("cchip_chip: registers after reset, what can be written, what is refus
     SmallChip machine(options);
     Random random(options.seed);
     CHECK(machine.read_register(0x000) == 0x43484343);  // CCHC
-    CHECK(machine.read_register(0x004) == 0x100);
+    CHECK(machine.read_register(0x004) == 0x200);
     CHECK(machine.read_register(0x008) == (1U << 28 | 1U << 24 | 0U << 16 | 7U << 8 | 16U));
     CHECK(machine.read_register(0x00C) == (16U << 24 | 4U << 8 | 4U));
     CHECK(machine.read_register(0x010) == 0);

@@ -23,7 +23,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_config_memory: every clock like a judge of the
     };
     std::vector<int> seen(faults);
     std::vector<int> garbage_after(faults);
-    std::vector<int> modules(4);
+    std::vector<int> modules(TestType::KINDS + 1);
     for (int transfer = 0; transfer < 600; ++transfer) {
       const auto fault = static_cast<Fault>(chance(random, 40) ? 0 : random() % faults);
       const int module = static_cast<int>(random() % (TestType::KINDS + 1));

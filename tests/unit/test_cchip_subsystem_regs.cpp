@@ -203,7 +203,7 @@ TEST_CASE("cchip_subsystem_regs: what hardware writes is read, and nothing is wh
       REQUIRE(!master.write(simulation, offset, 1));
       REQUIRE(master.read(simulation, offset).ok);
     }
-    for (const std::uint32_t offset : {0x028U, 0x060U, 0x0C0U, 0x120U, 0x20CU, 0x300U, 0xFFCU}) {
+    for (const std::uint32_t offset : {0x028U, 0x060U, 0x0C0U, 0x128U, 0x20CU, 0x3FCU, 0x400U, 0xFFCU}) {
       REQUIRE(!master.write(simulation, offset, 1));
       REQUIRE(!master.read(simulation, offset).ok);
     }
