@@ -42,7 +42,7 @@ LINKS = {
     "cchip_models": {"core", "model"},
     "cchip_stimulus": {"core", "model"}, "cchip_pair_vectors": {"stimulus"}, "cchip_query_vectors": {"stimulus"}, "cchip_rtl_ports": {"core", "harness"},
     "cchip_rtl_receiver": {"rtl_ports", "model"},
-    "cchip_rtl": {"device", "rtl_ports", "rtl_models", "waves"}, "cchip_app": {"certificate", "device", "mesh_io", "stimulus",
+    "cchip_rtl_models": {"swap_models"}, "cchip_rtl": {"device", "rtl_ports", "rtl_models", "waves"}, "cchip_app": {"certificate", "device", "mesh_io", "stimulus",
                                                                                "reference", "rtl", "waves"},
     "cchip": {"app"}, "cchip_levels_core": {"reconfig", "core", "stimulus"},
     "cchip_levels_lib": {"levels_core", "reference", "rtl", "rtl_models", "waves", "levels_models"},
