@@ -5,8 +5,8 @@
 // cchip_bitstream_table: where the bitstreams are: address, size and a valid bit of each entry,
 // entry M * slot + module, M = 1 << CCHIP_KIND_BITS(KINDS). Addresses and sizes are in distributed
 // RAM.
-//   registers    word {slot, module (3 bits), 0} is the address, {.., 1} the size, {.., 2} the valid
-//                bit; of a slot or module that is not there they read as 0 and stay so
+//   registers    word {slot, module (3 bits), 0} is the address, {.., 1} the size, {.., 2} the
+//                valid bit; of a slot or module that is not there they are 0 and stay so
 //   latency      look-up: 2 clocks from look to address and size, which stay until the next one
 //   throughput   a write and a read on every clock, a look-up every 2 clocks
 //   collision    a write counts from the next clock on; of a write and invalidate on one clock the

@@ -22,9 +22,9 @@
 //   command      refused with BUSY while a swap is in progress, with REQUEST where the table has no
 //                valid bitstream; commands are two clocks apart at least, because a refusal that
 //                meets another report waits for a clock
-//   latency      a kind is looked at for 4 clocks, and for 9 * SLOTS + 1 more if a swap is due, with
-//                points 15 * SLOTS + 1; a
-//                command's request leaves 3 clocks after it; 15 clocks of rest after a report
+//   latency      a kind is looked at for 4 clocks, and for 9 * SLOTS + 1 more if a swap is due (15 *
+//                SLOTS + 1 with points); a command's request leaves 3 clocks after it; 15 clocks of
+//                rest after a report
 //   cuts         every path but rst: all outputs are flip-flops, address and size of m_swap_data
 //                those of the table
 //   reset        no request, no report, age 0
@@ -204,8 +204,8 @@ module cchip_swap_scheduler #(
       for (kind = 0; kind < KINDS; kind = kind + 1) begin : gen_alone
         assign kinds_alone[kind] = alone[SLOTS*kind+slot];
       end
-      // what it was when the search for a kind began: its own module is not passed over for a larger
-      // one because the slot becomes free meanwhile
+      // what it was when the search for a kind began: its own module is not passed over for a
+      // larger one because the slot becomes free meanwhile
       always @(posedge clk)
         if (!trying_q) needed_q[slot] <= KINDS > 3 && kinds_alone != {KINDS{1'b0}} && !old_q;
     end
@@ -239,7 +239,7 @@ module cchip_swap_scheduler #(
         if (!due_q) kind_q <= next_kind;
       end
     end else begin
-      found_q <= ready_of[{slot_q, module_q[MODULE_W-1:0]}] 
+      found_q <= ready_of[{slot_q, module_q[MODULE_W-1:0]}]
           && held[{slot_q, 2'b00}+:KIND_W] == holds_q
           && !(needed[slot_q] && (kind_q == POINTS) != (holds_q == POINTS));
       slot_q  <= last_slot ? {SLOT_W{1'b0}} : slot_q + {{SLOT_W - 1{1'b0}}, 1'b1};

@@ -2,8 +2,8 @@
 `default_nettype none
 `include "cchip_defs.vh"
 // cchip_primtest_subsystem: primitive tests of three or four kinds in 1 to 4 slots that are
-// exchanged at run time. Pairs of any kind in, answers out, the exchange of modules done by itself or by
-// software.
+// exchanged at run time. Pairs of any kind in, answers out, the exchange of modules done by itself
+// or by software.
 //   latency      that of the test + 18 clocks while a slot serves its kind; a swap longer otherwise
 //   throughput   in: a pair every 2 clocks; to the slots: every 3, with quads every 4; that of the
 //                tests, of points a pair every 7

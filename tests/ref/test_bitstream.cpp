@@ -75,8 +75,8 @@ TEST_CASE("bitstream: the paper's sizes and eq. (4)", "[ref][bitstream]") {
 
 TEST_CASE("bitstream: what is made is read again", "[ref][bitstream]") {
   for (const std::uint8_t slot : std::initializer_list<std::uint8_t>{0, 1, 255}) {
-    for (const ModuleId id : {ModuleId::blank, ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad,
-                              ModuleId::point_tri}) {
+    for (const ModuleId id :
+         {ModuleId::blank, ModuleId::tri_tri, ModuleId::tri_quad, ModuleId::quad_quad, ModuleId::point_tri}) {
       for (const std::size_t size : {16, 17, 20, 100}) {
         const Bytes payload = make_payload(slot, id, size);
         const Bytes bytes = make_bitstream(slot, id, payload);
