@@ -22,8 +22,8 @@
 //   command      refused with BUSY while a swap is in progress, with REQUEST where the table has no
 //                valid bitstream; commands are two clocks apart at least, because a refusal that
 //                meets another report waits for a clock
-//   latency      a kind is looked at for 4 clocks, and for 9 * SLOTS + 1 more if a swap is due (15 *
-//                SLOTS + 1 with points); a command's request leaves 3 clocks after it; 15 clocks of
+//   latency      a kind is looked at for 4 clocks, and for 9 * SLOTS + 1 more if a swap is due (with
+//                points 15 * SLOTS + 1); a command's request leaves 3 clocks after it; 15 clocks of
 //                rest after a report
 //   cuts         every path but rst: all outputs are flip-flops, address and size of m_swap_data
 //                those of the table
