@@ -22,9 +22,9 @@
 //   command      refused with BUSY while a swap is in progress, with REQUEST where the table has no
 //                valid bitstream; commands are two clocks apart at least, because a refusal that
 //                meets another report waits for a clock
-//   latency      a kind is looked at for 4 clocks, and for 9 * SLOTS + 1 more if a swap is due (with
-//                points 15 * SLOTS + 1); a command's request leaves 3 clocks after it; 15 clocks of
-//                rest after a report
+//   latency      a kind is looked at for 4 clocks, and for 9 * SLOTS + 1 more if a swap is due
+//                (with points 15 * SLOTS + 1); a command's request leaves 3 clocks after it; 15
+//                clocks of rest after a report
 //   cuts         every path but rst: all outputs are flip-flops, address and size of m_swap_data
 //                those of the table
 //   reset        no request, no report, age 0
@@ -211,8 +211,11 @@ module cchip_swap_scheduler #(
     end
     // what a slot holds, in 4 bits
     for (slot = 0; slot < (1 << SLOT_W); slot = slot + 1) begin : gen_held
-      if (slot < SLOTS) assign held[4*slot+:4] = {1'b0, slot_module[KIND_W*slot+:KIND_W]};
-      else assign held[4*slot+:4] = 4'd0;
+      if (slot < SLOTS) begin : gen_slot
+        assign held[4*slot+:4] = {1'b0, slot_module[KIND_W*slot+:KIND_W]};
+      end else begin : gen_none
+        assign held[4*slot+:4] = 4'd0;
+      end
     end
   endgenerate
 
