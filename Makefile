@@ -346,7 +346,8 @@ bench-certificate: $(RELEASE)/build.ninja ## certificates of answers for pairs o
 	cmake --build $(RELEASE) -j $(JOBS) --target bench_certificate
 	$(RELEASE)/bin/bench_certificate $(BENCH_ARGS)
 
-bench-scene: $(RELEASE)/build.ninja ## frames of scenes of 10 to 10,000 moving objects: cchip::Scene and FCL in turns, broad phases with Bullet (three minutes)
+bench-scene: $(RELEASE)/build.ninja ## frames of scenes of 10 to 10,000 moving objects: cchip::Scene, FCL and Coal in turns, broad phases with Bullet (three minutes)
+	$(if $(NATIVE_FCL),cmake -D CCHIP_NATIVE_FCL:PATH='$(abspath $(NATIVE_FCL))' $(RELEASE))
 	cmake --build $(RELEASE) -j $(JOBS) --target scene_speed
 	$(RELEASE)/bin/scene_speed $(BENCH_ARGS)
 

@@ -10,7 +10,8 @@ usage: mutants.py [MODULE...] [options]     without MODULE every module that has
   --shard I/N     only every N-th module, counted from I = 1: for several machines; results of all are put together by --table
   --build DIR     where unit_tests has been built (default build/release; `make mutants` builds it)
   --table         only the table of what was run so far
-  --write         put the table into docs/develop/mutants.md
+  --write         put the modules that have run into docs/figures/mutants.csv, and the table of its rows into docs/develop/mutants.md
+  --again         run those that live once more, with the unit tests of today
   --least N       exit code 1 if of the mutants that can be told from the original fewer than N % were killed (default 0)
   --alive         print the mutants that nothing killed
 
@@ -29,6 +30,7 @@ Everything is kept below build/mutants; a second run goes on where the first one
 import argparse
 import collections
 import concurrent.futures
+import csv
 import hashlib
 import json
 import os
@@ -45,6 +47,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 RTL = ROOT / "rtl"
 OUT = ROOT / "build" / "mutants"
 PAGE = ROOT / "docs" / "develop" / "mutants.md"
+RECORD = ROOT / "docs" / "figures" / "mutants.csv"
+COLUMNS = ("module", "mutants", "proved", "bounded", "killed", "differs", "undecided", "commit")
 SELECTOR_W = 16
 SELECT = 'extern "C" int cchip_mutant();\n#include <cstdlib>\nint cchip_mutant() {\n  const char* chosen = std::getenv("CCHIP_MUTANT");\n' \
          "  return chosen ? std::atoi(chosen) : 0;\n}\n"
@@ -166,7 +170,7 @@ class Module:
         def outside(path):
             text = re.sub(r"//.*|\n\s*\n", "\n", path.read_text())
             return re.findall(r"VL_(?:IN|OUT)\w*\([^)]*\)", text), re.findall(r"\w+\* const \w+;", text)
-        return outside(self.folder / "model" / f"{self.model}.h") == outside(self.build / "tests/unit/cchip_test_models.models" / f"{self.model}.h")
+        return outside(self.folder / "model" / f"{self.model}.h") == outside(next((self.build / "tests/unit").glob(f"*.models/{self.model}.h")))
 
     def compiled(self, part):
         """The test against the class of the netlist."""
@@ -260,6 +264,11 @@ class Module:
         """What it says; also if it does not end in time."""
         return subprocess.run(["timeout", "40", "yosys-abc", "-c", commands], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace").stdout
 
+    def again(self):
+        """Those that live have not run."""
+        self.link()
+        self.save({number: result for number, result in self.results().items() if "killed" in result or result.get("same") in ("proved", "bounded")})
+
     def judge(self, depth, pool):
         results = self.results()
         waits = [number for number, result in results.items() if not result]
@@ -286,28 +295,56 @@ def modules(build):
 
 
 def summary(chosen):
-    """[[room, module, mutants, proved, bounded, killed, alive]]"""
+    """A row of RECORD for each that has run: {column: value}."""
     rows = []
     for module in chosen:
         results = list(module.results().values())
         if results:
-            count = lambda *kinds: sum(result.get("same") in kinds for result in results)
-            killed = sum("killed" in result for result in results)
-            proved, bounded = count("proved"), count("bounded")
-            rows.append([FILES[module.name].parent.name, module.name, len(results), proved, bounded, killed, len(results) - killed - proved - bounded])
+            row = {kind: sum(result.get("same") == kind for result in results) for kind in ("proved", "bounded", "differs")}
+            row.update(module=module.name, mutants=len(results), killed=sum("killed" in result for result in results), commit=commit())
+            row["undecided"] = len(results) - row["killed"] - row["proved"] - row["bounded"] - row["differs"]
+            rows.append(row)
     return rows
 
 
+def commit():
+    def git(*words):
+        return run(["git", *words], cwd=ROOT).strip()
+    return git("rev-parse", "--short=7", "HEAD") + ("+" if git("status", "--porcelain", "rtl", "sim", "tests") else "")
+
+
+def recorded():
+    if not RECORD.exists():
+        return []
+    with RECORD.open() as file:
+        return [{column: row[column] if column in ("module", "commit") else int(row[column]) for column in COLUMNS} for row in csv.DictReader(file)]
+
+
+def record(rows):
+    """RECORD with these rows, in the order of FILES, those of modules that are gone left out."""
+    all_rows = {row["module"]: row for row in [*recorded(), *rows]}
+    with RECORD.open("w", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(all_rows[name] for name in FILES if name in all_rows)
+
+
+def sums(rows):
+    """mutants, equivalent by proof and within a bound, killed, alive: told apart and undecided"""
+    return [sum(row[column] for row in rows) for column in COLUMNS[1:-1]]
+
+
 def table(rows):
-    lines = ["| room | modules | mutants | equivalent, proved | equivalent, bounded | killed | alive | killed of those that are not equivalent |", "|---|---|---|---|---|---|---|---|"]
+    lines = ["| room | modules | mutants | equivalent, proved | equivalent, bounded | killed | alive, told apart by ABC | alive, undecided | killed of those that are not equivalent |",
+             "|---|---|---|---|---|---|---|---|---|"]
     rooms = collections.defaultdict(list)
     for row in rows:
-        rooms[row[0]].append(row)
+        rooms[FILES[row["module"]].parent.name].append(row)
     rooms["all"] = rows
     for room, inside in rooms.items():
-        sums = [sum(row[i] for row in inside) for i in range(2, 7)]
-        told = sums[3] + sums[4]
-        lines.append(f"| {room} | {len(inside)} | " + " | ".join(map(str, sums)) + f" | {100 * sums[3] / told if told else 100:.1f} % |")
+        all_sums = sums(inside)
+        told = sum(all_sums[3:])
+        lines.append(f"| {room} | {len(inside)} | " + " | ".join(map(str, all_sums)) + f" | {100 * all_sums[3] / told if told else 100:.1f} % |")
     return "\n".join(lines) + "\n"
 
 
@@ -318,7 +355,7 @@ def arguments():
         parser.add_argument(name, type=int, default=default)
     parser.add_argument("--shard", default="1/1")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "release")
-    for flag in ("--table", "--write", "--alive"):
+    for flag in ("--table", "--write", "--alive", "--again"):
         parser.add_argument(flag, action="store_true")
     options = parser.parse_args()
     if not re.fullmatch(r"[1-9]\d*/[1-9]\d*", options.shard):
@@ -337,6 +374,8 @@ def attempt(failures, function, *arguments):
 
 def run_tests(module, at, modules_in_all, options, pool):
     module.make(options.each, options.seed)
+    if options.again:
+        module.again()
     numbers = range(1, len(module.mutants()) + 1)
     if options.sample:
         share = options.sample // modules_in_all + (at < options.sample % modules_in_all)
@@ -369,7 +408,7 @@ def main():
             for module in chosen:
                 attempt(failures, module.judge, options.depth, pool)
                 for row in summary([module]):
-                    print("{}: mutants={} proved={} bounded={} killed={} alive={}".format(*row[1:]), flush=True)
+                    print(f"{module.name}: " + " ".join(f"{column}={row[column]}" for column in COLUMNS[1:-1]), flush=True)
     rows = summary(chosen)
     if rows:
         print(table(rows))
@@ -379,13 +418,14 @@ def main():
                 if result.get("same") in ("differs", "unknown"):
                     print(f"{module.name} {number} {result['same']}: {module.mutants()[int(number) - 1]}")
     if options.write:
-        datasheet.rewrite(PAGE, "mutants", table(rows))
-    sums = [sum(row[i] for row in rows) for i in range(2, 7)]
-    print(f"mutants={sums[0]} equivalent={sums[1] + sums[2]} killed={sums[3]} alive={sums[4]}")
-    told = sums[3] + sums[4]
-    if told and 100 * sums[3] < options.least * told:
+        record(rows)
+        datasheet.rewrite(PAGE, "mutants", table(recorded()))
+    all_sums = sums(rows)
+    killed, told = all_sums[3], sum(all_sums[3:])
+    print(f"mutants={all_sums[0]} equivalent={all_sums[1] + all_sums[2]} killed={killed} alive={told - killed}")
+    if told and 100 * killed < options.least * told:
         failures.append("too few")
-        print(f"mutants.py: {sums[3]} of {told} killed, less than {options.least} %", file=sys.stderr)
+        print(f"mutants.py: {killed} of {told} killed, less than {options.least} %", file=sys.stderr)
     return 1 if failures else 0
 
 

@@ -4,12 +4,12 @@
 #ifndef CCHIP_BENCH_BROAD_PEERS_HPP
 #define CCHIP_BENCH_BROAD_PEERS_HPP
 
-#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
-
 #include <cchip/collide/scene.hpp>
 #include <limits>
 #include <memory>
 #include <vector>
+
+#include "peer_library.hpp"
 #ifdef CCHIP_HAS_BULLET
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
@@ -33,6 +33,30 @@ class BroadPeer {
   virtual std::size_t count() = 0;
 };
 
+/// That of a library behind a C interface.
+class LibraryBroad : public BroadPeer {
+ public:
+  /// \pre library.broad() is not null
+  explicit LibraryBroad(const PeerLibrary& library) : peer_(*library.broad()), broad_(nullptr, peer_.destroy) {}
+  void begin(const std::vector<WorldBox>& boxes) override { broad_.reset(peer_.make(numbers_of(boxes), boxes.size())); }
+  void move(const std::vector<std::size_t>& numbers, const std::vector<WorldBox>& boxes) override {
+    peer_.move(broad_.get(), numbers.data(), numbers_of(boxes), numbers.size());
+  }
+  void replace(const std::vector<std::size_t>& numbers, const std::vector<WorldBox>& boxes) override {
+    peer_.replace(broad_.get(), numbers.data(), numbers_of(boxes), numbers.size());
+  }
+  std::size_t count() override { return peer_.count(broad_.get()); }
+
+ private:
+  static const double* numbers_of(const std::vector<WorldBox>& boxes) {
+    static_assert(sizeof(WorldBox) == 6 * sizeof(double));
+    return boxes.front().least.data();
+  }
+  const CchipBroadPeer& peer_;
+  std::unique_ptr<void, void (*)(void*)> broad_;
+};
+
+#ifdef CCHIP_HAS_BULLET
 inline bool boxes_meet(const WorldBox& p, const WorldBox& q) {
   bool apart = false;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -42,66 +66,6 @@ inline bool boxes_meet(const WorldBox& p, const WorldBox& q) {
   return !apart;
 }
 
-/// DynamicAABBTreeCollisionManager.
-class FclBroad : public BroadPeer {
- public:
-  void begin(const std::vector<WorldBox>& boxes) override {
-    const auto shape = std::make_shared<fcl::Sphere<double>>(1);
-    std::vector<fcl::CollisionObject<double>*> pointers;
-    for (const WorldBox& box : boxes) {
-      objects_.push_back(std::make_unique<Boxed>(shape));
-      objects_.back()->set(box);
-      pointers.push_back(objects_.back().get());
-    }
-    manager_.registerObjects(pointers);
-    manager_.setup();
-  }
-  void move(const std::vector<std::size_t>& numbers, const std::vector<WorldBox>& boxes) override {
-    std::vector<fcl::CollisionObject<double>*> moved;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      objects_[numbers[i]]->set(boxes[i]);
-      moved.push_back(objects_[numbers[i]].get());
-    }
-    if (numbers.size() == objects_.size()) {
-      manager_.update();
-    } else {
-      manager_.update(moved);
-    }
-  }
-  void replace(const std::vector<std::size_t>& numbers, const std::vector<WorldBox>& boxes) override {
-    for (const std::size_t number : numbers) manager_.unregisterObject(objects_[number].get());
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      objects_[numbers[i]]->set(boxes[i]);
-      manager_.registerObject(objects_[numbers[i]].get());
-    }
-    manager_.setup();
-  }
-  std::size_t count() override {
-    std::size_t count = 0;
-    manager_.collide(&count, [](fcl::CollisionObject<double>* a, fcl::CollisionObject<double>* b, void* to) {
-      const auto& p = static_cast<const Boxed*>(a)->box;
-      const auto& q = static_cast<const Boxed*>(b)->box;
-      *static_cast<std::size_t*>(to) += boxes_meet(p, q) ? 1 : 0;
-      return false;
-    });
-    return count;
-  }
-
- private:
-  struct Boxed : fcl::CollisionObject<double> {
-    explicit Boxed(const std::shared_ptr<fcl::CollisionGeometry<double>>& shape) : CollisionObject(shape) {}
-    void set(const WorldBox& given) {
-      box = given;
-      aabb.min_ = Eigen::Map<const Eigen::Vector3d>(given.least.data());
-      aabb.max_ = Eigen::Map<const Eigen::Vector3d>(given.greatest.data());
-    }
-    WorldBox box = {};
-  };
-  fcl::DynamicAABBTreeCollisionManager<double> manager_;
-  std::vector<std::unique_ptr<Boxed>> objects_;
-};
-
-#ifdef CCHIP_HAS_BULLET
 /// btDbvtBroadphase, with its cache of pairs. Its floats are rounded outwards.
 class BulletBroad : public BroadPeer {
  public:

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Coal, formerly hpp-fcl: the same tree as FCL's, contact points switched off.
 #include <coal/BVH/BVH_model.h>
+#include <coal/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <coal/collision.h>
 #include <coal/distance.h>
+#include <coal/shape/geometric_shapes.h>
 
 #include <algorithm>
 #include <vector>
 
+#include "manager.hpp"
 #include "peer.hpp"
 
 namespace {
@@ -83,6 +86,39 @@ int within(void* a, const double* pose_a, void* b, const double* pose_b, double 
                        request, result) > 0;
 }
 
+struct Coal {
+  using Manager = coal::DynamicAABBTreeCollisionManager;
+  using Object = coal::CollisionObject;
+  using Geometry = coal::CollisionGeometry;
+  using Model = ::Model;
+  using Sphere = coal::Sphere;
+  static coal::Transform3s transform(const double* pose) { return ::transform(pose); }
+  static bool hit(const Object* x, const Object* y) {
+    coal::CollisionRequest request;
+    request.num_max_contacts = 1;
+    request.enable_contact = false;
+    request.break_distance = 0;
+    coal::CollisionResult result;
+    return coal::collide(x, y, request, result) > 0;
+  }
+  template <class Visit>
+  static void visit(Manager& manager, Visit f) {
+    struct Callback : coal::CollisionCallBackBase {
+      explicit Callback(Visit& g) : visit(g) {}
+      bool collide(Object* x, Object* y) override {
+        visit(x, y);
+        return false;
+      }
+      Visit& visit;
+    };
+    Callback callback(f);
+    manager.collide(&callback);
+  }
+};
+
+const CchipBroadPeer broad = broad_functions<Coal>();
+const CchipScenePeer scene = scene_functions<Coal>();
+
 constexpr CchipPeer peer = {COAL_VERSION ", compiled for any x86-64 or other processor",
                             make,
                             destroy,
@@ -90,7 +126,9 @@ constexpr CchipPeer peer = {COAL_VERSION ", compiled for any x86-64 or other pro
                             contacts,
                             distance,
                             within,
-                            1e-6};  // QueryRequest::gjk_tolerance
+                            1e-6,  // QueryRequest::gjk_tolerance
+                            &broad,
+                            &scene};
 
 }  // namespace
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/config.h>
 #include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/shape/sphere.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/collision_request.h>
@@ -14,6 +16,7 @@
 #include <limits>
 #include <vector>
 
+#include "manager.hpp"
 #include "peer.hpp"
 
 namespace {
@@ -84,6 +87,30 @@ int within(void* a, const double* pose_a, void* b, const double* pose_b, double 
   return result.min_distance <= d;
 }
 
+struct Fcl {
+  using Manager = fcl::DynamicAABBTreeCollisionManager<double>;
+  using Object = fcl::CollisionObject<double>;
+  using Geometry = fcl::CollisionGeometry<double>;
+  using Model = ::Model;
+  using Sphere = fcl::Sphere<double>;
+  static fcl::Transform3<double> transform(const double* pose) { return ::transform(pose); }
+  static bool hit(const Object* x, const Object* y) {
+    const fcl::CollisionRequest<double> request(1, false);
+    fcl::CollisionResult<double> result;
+    return fcl::collide(x, y, request, result) > 0;
+  }
+  template <class Visit>
+  static void visit(Manager& manager, Visit f) {
+    manager.collide(&f, [](Object* x, Object* y, void* to) {
+      (*static_cast<Visit*>(to))(x, y);
+      return false;
+    });
+  }
+};
+
+const CchipBroadPeer broad = broad_functions<Fcl>();
+const CchipScenePeer scene = scene_functions<Fcl>();
+
 constexpr CchipPeer peer = {
 #if defined(__AVX512F__)
     FCL_VERSION ", compiled with AVX-512",
@@ -98,7 +125,9 @@ constexpr CchipPeer peer = {
     contacts,
     distance,
     within,
-    1e-6};  // DistanceRequest::distance_tolerance
+    1e-6,  // DistanceRequest::distance_tolerance
+    &broad,
+    &scene};
 
 }  // namespace
 

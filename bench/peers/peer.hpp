@@ -9,6 +9,30 @@
 #include <cstddef>
 #include <cstdint>
 
+/// A broad phase: boxes by numbers from 0, six numbers each: least x, y, z, greatest x, y, z.
+struct CchipBroadPeer {
+  void* (*make)(const double* boxes, std::size_t count);
+  void (*destroy)(void* broad);
+  void (*move)(void* broad, const std::size_t* numbers, const double* boxes, std::size_t count);
+  /// Takes boxes out and puts others with the same numbers in.
+  void (*replace)(void* broad, const std::size_t* numbers, const double* boxes, std::size_t count);
+  /// How many pairs overlap. Whatever boxes the library keeps, those that it was given decide.
+  std::size_t (*count)(void* broad);
+};
+
+/// Meshes with poses, and the pairs of them in contact.
+struct CchipScenePeer {
+  /// Object i is mesh i, which CchipPeer::make made and which outlives the scene, under pose i.
+  void* (*make)(void* const* meshes, const double* poses, std::size_t count);
+  void (*destroy)(void* scene);
+  /// Gives all objects new poses.
+  void (*move)(void* scene, const double* poses);
+  /// How many pairs are in contact. The first `room` of them, the lesser number first, are written to `pairs`.
+  std::size_t (*contacts)(void* scene, std::uint32_t* pairs, std::size_t room);
+  /// How many pairs the broad phase leaves.
+  std::size_t (*candidates)(void* scene);
+};
+
 struct CchipPeer {
   /// Version, how the module was compiled and which of the library's ways it uses, for example "0.7.0, compiled with
   /// AVX2".
@@ -31,6 +55,9 @@ struct CchipPeer {
   int (*within)(void* a, const double* pose_a, void* b, const double* pose_b, double d) = nullptr;
   /// The error of a distance that the library's own default settings allow, in units of the world.
   double distance_tolerance = 0;
+  /// Null: none that the benchmarks ask.
+  const CchipBroadPeer* broad = nullptr;
+  const CchipScenePeer* scene = nullptr;
 };
 
 /// The one exported function, `cchip_peer`.

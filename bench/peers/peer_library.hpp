@@ -40,6 +40,9 @@ class PeerLibrary {
   bool has_distance() const { return peer_->distance != nullptr && peer_->within != nullptr; }
   double distance_tolerance() const { return peer_->distance_tolerance; }
   PeerMesh mesh(const Mesh& mesh) const;
+  /// Null: the library has none that is asked.
+  const CchipBroadPeer* broad() const { return peer_->broad; }
+  const CchipScenePeer* scene() const { return peer_->scene; }
 
  private:
   const CchipPeer* peer_;
@@ -71,6 +74,8 @@ class PeerMesh {
     result.point_b = points.col(1);
     return result;
   }
+  /// As the library's scene takes it.
+  void* model() const { return model_.get(); }
   /// Is the distance at most d? Only if the library has_distance().
   bool within(const Pose& pose, const PeerMesh& b, const Pose& pose_b, double d) const {
     return peer_->within(model_.get(), pose.data(), b.model_.get(), pose_b.data(), d) != 0;

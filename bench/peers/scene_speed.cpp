@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes of moving objects: cchip::Scene and FCL's DynamicAABBTreeCollisionManager, the same frames in turns:
-// docs/cpp/scenes.md.
-#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
-#include <fcl/config.h>
+// Scenes of moving objects: cchip::Scene and the DynamicAABBTreeCollisionManager of FCL and of Coal, the same frames in
+// turns: docs/cpp/scenes.md.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -11,22 +9,17 @@
 #include <cchip/internal/reference/brute_force.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/seed.hpp>
+#include <functional>
 #include <numeric>
 #include <random>
 
 #include "broad_peers.hpp"
-#include "fcl_model.hpp"
 #include "machine.hpp"
 #include "measure.hpp"
+#include "other_libraries.hpp"
 
 namespace cchip::testing {
 namespace {
-
-#ifdef CCHIP_HAS_BULLET
-constexpr bool has_bullet = true;
-#else
-constexpr bool has_bullet = false;
-#endif
 
 struct Options {
   std::vector<std::size_t> sizes = {10, 100, 1000, 10000};
@@ -45,13 +38,9 @@ struct Bodies {
   Bodies() {
     const Mesh meshes[] = {make_sphere(0.5, 4), make_torus(0.35, 0.15, 20, 12), make_gear(0.4, 0.5, 0.15, 0.3, 10, 1),
                            make_body(4, 0.2)};
-    for (const Mesh& mesh : meshes) {
-      objects.emplace_back(normalised(mesh));
-      models.push_back(fcl_model(objects.back().mesh()));
-    }
+    for (const Mesh& mesh : meshes) objects.emplace_back(normalised(mesh));
   }
   std::vector<Object> objects;
-  std::vector<std::shared_ptr<FclModel>> models;
 };
 
 /// An object that swings and turns.
@@ -94,60 +83,49 @@ Frames make_frames(std::size_t objects, std::size_t frames, double contacts, std
   return result;
 }
 
-/// FCL's manager.
-class FclScene {
- public:
-  FclScene(const Bodies& bodies, const std::vector<RigidPose>& poses) {
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      objects_.push_back(std::make_unique<fcl::CollisionObject<double>>(bodies.models[i % bodies.models.size()],
-                                                                        Eigen::Isometry3d(poses[i].matrix())));
-      numbers_.push_back(i);
-    }
-    std::vector<fcl::CollisionObject<double>*> pointers;
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      objects_[i]->setUserData(&numbers_[i]);
-      pointers.push_back(objects_[i].get());
-    }
-    manager_.registerObjects(pointers);
-    manager_.setup();
+/// One library's bodies.
+struct TheirBodies {
+  TheirBodies(const NamedLibrary& named, const Bodies& bodies) : name(named.name), functions(*named.library.scene()) {
+    for (const Object& object : bodies.objects) meshes.push_back(named.library.mesh(object.mesh()));
   }
+  std::string name;
+  const CchipScenePeer& functions;
+  std::vector<PeerMesh> meshes;
+};
 
-  void move(const std::vector<RigidPose>& poses) {
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      objects_[i]->setTransform(Eigen::Isometry3d(poses[i].matrix()));
-      objects_[i]->computeAABB();
-    }
-    manager_.update();
+/// The manager of a library behind a C interface.
+class TheirScene {
+ public:
+  TheirScene(const TheirBodies& bodies, const std::vector<RigidPose>& poses)
+      : peer_(bodies.functions), scene_(nullptr, peer_.destroy) {
+    std::vector<void*> models;
+    for (std::size_t i = 0; i < poses.size(); ++i) models.push_back(bodies.meshes[i % bodies.meshes.size()].model());
+    scene_.reset(peer_.make(models.data(), numbers_of(poses), poses.size()));
   }
+  void move(const std::vector<RigidPose>& poses) { peer_.move(scene_.get(), numbers_of(poses)); }
   /// Not sorted.
   Pairs touching() {
+    std::size_t count = peer_.contacts(scene_.get(), found_.data(), found_.size() / 2);
+    if (2 * count > found_.size()) {
+      found_.resize(4 * count);
+      count = peer_.contacts(scene_.get(), found_.data(), found_.size() / 2);
+    }
     Pairs pairs;
-    manager_.collide(&pairs, [](fcl::CollisionObject<double>* a, fcl::CollisionObject<double>* b, void* to) {
-      const fcl::CollisionRequest<double> request(1, false);
-      fcl::CollisionResult<double> result;
-      if (fcl::collide(a, b, request, result) > 0) {
-        static_cast<Pairs*>(to)->push_back(std::minmax(number(*a), number(*b)));
-      }
-      return false;
-    });
+    for (std::size_t i = 0; i < count; ++i) pairs.emplace_back(found_[2 * i], found_[2 * i + 1]);
     return pairs;
   }
-  std::size_t count_candidates() {
-    std::size_t count = 0;
-    manager_.collide(&count, [](fcl::CollisionObject<double>*, fcl::CollisionObject<double>*, void* to) {
-      ++*static_cast<std::size_t*>(to);
-      return false;
-    });
-    return count;
-  }
+  std::size_t count_candidates() { return peer_.candidates(scene_.get()); }
 
  private:
-  static std::size_t number(const fcl::CollisionObject<double>& object) {
-    return *static_cast<std::size_t*>(object.getUserData());
+  const double* numbers_of(const std::vector<RigidPose>& poses) {
+    matrices_.clear();
+    for (const RigidPose& pose : poses) matrices_.emplace_back(pose.matrix());
+    return matrices_.front().data();
   }
-  fcl::DynamicAABBTreeCollisionManager<double> manager_;
-  std::vector<std::unique_ptr<fcl::CollisionObject<double>>> objects_;
-  std::vector<std::size_t> numbers_;
+  const CchipScenePeer& peer_;
+  std::unique_ptr<void, void (*)(void*)> scene_;
+  std::vector<Eigen::Matrix4d> matrices_;
+  std::vector<std::uint32_t> found_;
 };
 
 /// Ours. An object's id is its number + 1.
@@ -187,25 +165,44 @@ Pairs difference(const Pairs& x, const Pairs& y) {
 class Benchmark {
  public:
   explicit Benchmark(const Options& options)
-      : options_(options), one_(open_cpu_device({1, {}})), cores_(open_cpu_device()) {}
+      : options_(options), one_(open_cpu_device({1, {}})), cores_(open_cpu_device()) {
+    for (const NamedLibrary& named : open_libraries()) {
+      if (named.library.broad() != nullptr) {
+        broad_.push_back({named.name, [library = named.library] { return std::make_unique<LibraryBroad>(library); }});
+      }
+      if (named.library.scene() != nullptr) others_.emplace_back(named, bodies_);
+    }
+#ifdef CCHIP_HAS_BULLET
+    broad_.push_back({"Bullet", [] { return std::make_unique<BulletBroad>(); }});
+#endif
+  }
 
   int run() {
-    fmt::print("{}; load {}; {}; FCL {} of Debian; seed {}\n", machine_description(), load_description(), compiler,
-               FCL_VERSION, options_.seed);
+    fmt::print("{}; load {}; {}; seed {}\n", machine_description(), load_description(), compiler, options_.seed);
+    for (const auto& [name, library] : open_libraries()) {
+      if (library.scene() != nullptr) fmt::print("{}: {}\n", name, library.description());
+    }
     if (!options_.broad) {
       fmt::print("milliseconds a frame: every object moved, then all pairs in contact\n");
-      fmt::print("objects  contacts each  FCL pairs  our pairs  FCL      ours     times  all cores  times\n");
+      fmt::print("objects  contacts each  FCL pairs  our pairs     ours  all cores");
+      for (const TheirBodies& other : others_) fmt::print("  {:>10}  times", other.name);
+      fmt::print("\n");
       for (const std::size_t objects : options_.sizes) run(objects);
     }
     fmt::print("milliseconds a step of the broad phase: some objects changed, then all pairs of boxes that overlap\n");
-    fmt::print("objects  step                    pairs  ours    FCL     times  Bullet  times\n");
+    fmt::print("objects  step                    pairs  ours  ");
+    for (const auto& [name, make] : broad_) fmt::print("  {:>10}  times", name);
+    fmt::print("\n");
     for (const std::size_t objects : options_.sizes) {
       run_broad(objects, Step::all_move);
       run_broad(objects, Step::some_move);
       run_broad(objects, Step::some_are_replaced);
     }
-    if (!has_bullet) fmt::print("without Bullet: scripts/bootstrap --dev brings it\n");
-    fmt::print("frames={} contacts={} fcl_differences={} differences={}\n", frames_, contacts_, fcl_differences_,
+#ifndef CCHIP_HAS_BULLET
+    fmt::print("without Bullet: scripts/bootstrap --dev brings it\n");
+#endif
+    if (*CCHIP_COAL_MODULE == 0) fmt::print("without Coal: make peers brings it\n");
+    fmt::print("frames={} contacts={} their_differences={} differences={}\n", frames_, contacts_, their_differences_,
                differences_);
     return differences_ == 0 ? 0 : 3;
   }
@@ -214,16 +211,17 @@ class Benchmark {
   void run(std::size_t objects) {
     std::mt19937_64 random(options_.seed);
     const std::size_t frames = std::clamp<std::size_t>(40000 / objects, 8, 400);
-    std::vector<std::vector<double>> seconds(3);
+    std::vector<std::vector<double>> seconds(2 + others_.size());
     std::size_t contacts = 0;
     std::size_t fcl_candidates = 0;
     std::size_t candidates = 0;
     for (int pass = 0; pass < options_.passes; ++pass) {
       const Frames poses = make_frames(objects, frames, options_.contacts, random);
-      FclScene theirs(bodies_, poses.front());
+      std::vector<TheirScene> theirs;
+      for (const TheirBodies& other : others_) theirs.emplace_back(other, poses.front());
       OurScene ours(bodies_, poses.front());
       OurScene ours_cores = ours;
-      std::vector<Pairs> their_pairs(frames);
+      std::vector<std::vector<Pairs>> their_pairs(others_.size(), std::vector<Pairs>(frames));
       std::vector<Pairs> our_pairs(frames);
       std::vector<Pairs> cores_pairs(frames);
       const auto each = [](const auto& action) {
@@ -231,11 +229,7 @@ class Benchmark {
           for (std::size_t k = first; k < first + count; ++k) action(k);
         };
       };
-      std::vector<Variant> ways = {{"FCL", Clock::cpu, each([&](std::size_t k) {
-                                      theirs.move(poses[k]);
-                                      their_pairs[k] = theirs.touching();
-                                    })},
-                                   {"ours", Clock::cpu, each([&](std::size_t k) {
+      std::vector<Variant> ways = {{"ours", Clock::cpu, each([&](std::size_t k) {
                                       ours.move(poses[k]);
                                       our_pairs[k] = ours.touching(*one_);
                                     })},
@@ -243,16 +237,24 @@ class Benchmark {
                                       ours_cores.move(poses[k]);
                                       cores_pairs[k] = ours_cores.touching(*cores_);
                                     })}};
+      for (std::size_t i = 0; i < others_.size(); ++i) {
+        ways.push_back({others_[i].name, Clock::cpu, each([&, i](std::size_t k) {
+                          theirs[i].move(poses[k]);
+                          their_pairs[i][k] = theirs[i].touching();
+                        })});
+      }
       measure_pass(ways, frames, 4, [](std::size_t) {});
       for (std::size_t i = 0; i < ways.size(); ++i) seconds[i].push_back(ways[i].passes.front());
       for (std::size_t k = 0; k < frames; ++k) {
         contacts += our_pairs[k].size();
-        std::sort(their_pairs[k].begin(), their_pairs[k].end());
         ours.move(poses[k]);
-        theirs.move(poses[k]);
-        fcl_candidates += theirs.count_candidates();
+        theirs[0].move(poses[k]);
+        fcl_candidates += theirs[0].count_candidates();
         candidates += ours.scene.candidates().size();
-        compare(ours.scene, our_pairs[k], their_pairs[k]);
+        for (std::vector<Pairs>& pairs : their_pairs) {
+          std::sort(pairs[k].begin(), pairs[k].end());
+          compare(ours.scene, our_pairs[k], pairs[k]);
+        }
         differences_ += difference(our_pairs[k], cores_pairs[k]).size();
         if (objects <= 100) differences_ += difference(our_pairs[k], every_pair(ours.scene, *one_)).size();
       }
@@ -262,9 +264,10 @@ class Benchmark {
     std::vector<double> ms;
     for (const std::vector<double>& all : seconds) ms.push_back(1e3 * median(all));
     const double each = static_cast<double>(frames) * options_.passes * static_cast<double>(objects);
-    fmt::print("{:7}  {:13.1f}  {:9.1f}  {:9.1f}  {:7.3f}  {:7.3f}  {:5.1f}  {:9.3f}  {:5.1f}\n", objects,
-               2 * static_cast<double>(contacts) / each, static_cast<double>(fcl_candidates) / each,
-               static_cast<double>(candidates) / each, ms[0], ms[1], ms[0] / ms[1], ms[2], ms[0] / ms[2]);
+    fmt::print("{:7}  {:13.1f}  {:9.1f}  {:9.1f}  {:7.3f}  {:9.3f}", objects, 2 * static_cast<double>(contacts) / each,
+               static_cast<double>(fcl_candidates) / each, static_cast<double>(candidates) / each, ms[0], ms[1]);
+    for (std::size_t i = 2; i < ms.size(); ++i) fmt::print("  {:10.3f}  {:5.1f}", ms[i], ms[i] / ms[0]);
+    fmt::print("\n");
     std::fflush(stdout);
   }
 
@@ -275,7 +278,7 @@ class Benchmark {
     std::mt19937_64 random(options_.seed);
     const std::size_t steps = std::clamp<std::size_t>(400000 / objects, 40, 400);
     const std::size_t count = step == Step::all_move ? objects : std::max<std::size_t>(1, objects / 100);
-    std::vector<std::vector<double>> seconds(3);
+    std::vector<std::vector<double>> seconds(1 + broad_.size());
     std::size_t pairs = 0;
     for (int pass = 0; pass < options_.passes; ++pass) {
       std::vector<Motion> motions;
@@ -292,12 +295,9 @@ class Benchmark {
       std::vector<WorldBox> boxes;
       for (std::size_t i = 0; i < objects; ++i) boxes.push_back(boxes_of.scene.box(i + 1));
       std::vector<std::unique_ptr<BroadPeer>> peers;
-      peers.push_back(std::make_unique<FclBroad>());
-#ifdef CCHIP_HAS_BULLET
-      peers.push_back(std::make_unique<BulletBroad>());
-#endif
+      for (const auto& [name, make] : broad_) peers.push_back(make());
       for (const auto& peer : peers) peer->begin(boxes);
-      std::vector<double> total(3);
+      std::vector<double> total(1 + peers.size());
       std::vector<std::size_t> numbers(objects);
       std::iota(numbers.begin(), numbers.end(), std::size_t{0});
       const std::size_t unmeasured = 2;  // what begins is not a step
@@ -347,33 +347,41 @@ class Benchmark {
       for (std::size_t i = 0; i < total.size(); ++i) seconds[i].push_back(total[i] / static_cast<double>(steps));
     }
     const double ours = 1e3 * median(seconds[0]);
-    const double fcl = 1e3 * median(seconds[1]);
-    const double bullet = 1e3 * median(seconds[2]);
     const char* names[] = {"all move", "1 % moves", "1 % out, 1 % in"};
-    fmt::print("{:7}  {:16}  {:11.1f}  {:6.3f}  {:6.3f}  {:5.2f}", objects, names[static_cast<int>(step)],
-               static_cast<double>(pairs) / static_cast<double>(steps) / options_.passes, ours, fcl, fcl / ours);
-    fmt::print(has_bullet ? "  {:6.3f}  {:5.2f}\n" : "\n", bullet, bullet / ours);
+    fmt::print("{:7}  {:16}  {:11.1f}  {:6.3f}", objects, names[static_cast<int>(step)],
+               static_cast<double>(pairs) / static_cast<double>(steps) / options_.passes, ours);
+    for (std::size_t i = 1; i < seconds.size(); ++i) {
+      const double theirs = 1e3 * median(seconds[i]);
+      fmt::print("  {:10.3f}  {:5.2f}", theirs, theirs / ours);
+    }
+    fmt::print("\n");
     std::fflush(stdout);
   }
 
-  /// Where FCL says otherwise, integers of any size decide over all pairs of faces.
+  /// Where another library says otherwise, integers of any size decide over all pairs of faces.
   void compare(const Scene& scene, const Pairs& ours, const Pairs& theirs) {
     for (const auto& [a, b] : difference(ours, theirs)) {
       const bool touch = !brute_force_contacts(scene.object(a + 1).mesh(), scene.pose(a + 1),
                                                scene.object(b + 1).mesh(), scene.pose(b + 1))
                               .empty();
       const bool we_say = std::binary_search(ours.begin(), ours.end(), std::make_pair(a, b));
-      ++(touch == we_say ? fcl_differences_ : differences_);
+      ++(touch == we_say ? their_differences_ : differences_);
     }
   }
 
   Options options_;
   Bodies bodies_;
-  std::unique_ptr<Device> one_;  ///< one thread
+  std::vector<TheirBodies> others_;  ///< FCL of Debian first
+  std::unique_ptr<Device> one_;      ///< one thread
   std::unique_ptr<Device> cores_;
+  struct Broad {
+    std::string name;
+    std::function<std::unique_ptr<BroadPeer>()> make;
+  };
+  std::vector<Broad> broad_;  ///< of other libraries
   std::size_t frames_ = 0;
   std::size_t contacts_ = 0;
-  std::size_t fcl_differences_ = 0;
+  std::size_t their_differences_ = 0;
   std::size_t differences_ = 0;  ///< pairs of ours that are not the exact ones
 };
 
@@ -383,12 +391,13 @@ class Benchmark {
 int main(int argc, char** argv) try {
   cchip::testing::Options o;
   CLI::App app{
-      "Frames of scenes of moving objects: cchip::Scene on the CPU device and FCL's DynamicAABBTreeCollisionManager, "
-      "the same frames in turns. Then broad phases alone, Bullet's btDbvtBroadphase included.\n"
-      "The last line: frames, pairs in contact, those in which FCL is not exact, those in which we are not: exact "
-      "integers decide where FCL says otherwise, up to 100 objects every pair is asked, and all broad phases must "
-      "count "
-      "as many pairs.\n"
+      "Frames of scenes of moving objects: cchip::Scene on the CPU device and the DynamicAABBTreeCollisionManager of "
+      "FCL "
+      "and of Coal, the same frames in turns. Then broad phases alone, Bullet's btDbvtBroadphase included.\n"
+      "The last line: frames, pairs in contact, those in which another library is not exact, those in which we are "
+      "not: exact integers decide where one says otherwise, up to 100 objects every pair is asked, and all broad "
+      "phases "
+      "must count as many pairs.\n"
       "Exit codes: 0 done, 3 an answer of ours is not the exact one, 2 the run could not be made."};
   app.add_option("--objects", o.sizes, "numbers of objects, one scene after the other")
       ->delimiter(',')

@@ -29,7 +29,7 @@
 #include <random>
 #include <set>
 
-#include "point_triangle_source.hpp"  // of tests/ref
+#include "point_pair.hpp"  // of tests/ref
 #include "subsystem_models.hpp"
 
 namespace cchip::subsystem {
@@ -51,17 +51,7 @@ inline KindResult refused_answer(const KindRequest& r) {
 /// answer is the exact oracle's.
 inline KindResult tested_answer(const KindRequest& r, int coord_w, int module_id) {
   if (r.kind == 0 || r.request.mode > PairMode::directed) return refused_answer(r);
-  if (r.kind == points_kind) {
-    const GridPair& pair = r.request.pair;
-    const auto from_point = [&](std::size_t i) {
-      const Vec3i v = pair.b.v[i] - pair.a.v[0];
-      return std::array<std::int64_t, 3>{v.x(), v.y(), v.z()};
-    };
-    const auto square = cchip_test::nearest<cchip_test::Int256>({from_point(0), from_point(1), from_point(2)}).square;
-    const PairResult answer = model::point_tri_answer(r.request, coord_w);
-    sim::require(answer.grid == (compare(square, model::radius_of(pair.a, coord_w)) <= 0), "the model is wrong");
-    return {answer, r.kind};
-  }
+  if (r.kind == points_kind) return {cchip_test::confirmed_point_answer(r.request, coord_w), r.kind};
   const auto m = static_cast<std::size_t>(module_id);
   GridPair pair = r.request.pair;
   const auto widen = [](GridPrimitive& p, Kind kind) {
@@ -90,7 +80,7 @@ class KindSource {
     KindRequest r;
     r.kind = kind;
     if (kind == points_kind) {
-      r.request.pair = draw_point();
+      r.request.pair = cchip_test::grid_pair(points_.draw(), coord_w_);
     } else {
       const std::size_t shape = kind == 0 ? 1 : static_cast<std::size_t>(kind);
       stimulus::PairSource& source = sources_[shape - 1];
@@ -106,17 +96,6 @@ class KindSource {
   }
 
  private:
-  GridPair draw_point() {
-    const cchip_test::PointTriangle drawn = points_.draw();
-    const auto to_vec = [](const std::array<std::int64_t, 3>& v) {
-      return Vec3i(static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]));
-    };
-    GridPair pair;
-    pair.a = model::point_operand(to_vec(drawn.point), static_cast<int>(drawn.radius), coord_w_);
-    for (std::size_t i = 0; i < 3; ++i) pair.b.v[i] = to_vec(drawn.triangle[i]);
-    return pair;
-  }
-
   int coord_w_;
   Random random_;
   std::vector<stimulus::PairSource> sources_;

@@ -8,7 +8,7 @@
 #include <models/cchip_primtest_point_tri.hpp>
 #include <set>
 
-#include "../ref/point_triangle_source.hpp"
+#include "../ref/point_pair.hpp"
 #include "bench.hpp"
 
 using namespace cchip;
@@ -22,19 +22,14 @@ namespace {
 
 constexpr std::uint64_t axes = 7;
 
-Vec3i to_vec(const std::array<std::int64_t, 3>& v) {
-  return {static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2])};
-}
-
 /// A pair on the wires; what the module ignores is garbage.
 PairRequest request_of(const PointTriangle& pair, std::uint16_t tag, int coord_w, Random& random) {
   PairRequest request;
-  request.pair.a = model::point_operand(to_vec(pair.point), static_cast<int>(pair.radius), coord_w);
+  request.pair = cchip_test::grid_pair(pair, coord_w);
   for (int i = 0; i < 8; ++i) {
     const int slot = 1 + (i + 1) / 3;
     request.pair.a.v[static_cast<std::size_t>(slot)][(i + 1) % 3] = random_point(random, coord_w).x();
   }
-  for (std::size_t i = 0; i < 3; ++i) request.pair.b.v[i] = to_vec(pair.triangle[i]);
   request.pair.b.v[3] = random_point(random, coord_w);
   request.tag = tag;
   request.mode = chance(random, 50) ? PairMode::exhaustive : PairMode::directed;

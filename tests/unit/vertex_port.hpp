@@ -6,14 +6,13 @@
 #define CCHIP_TESTS_UNIT_VERTEX_PORT_HPP
 
 #include <cchip/internal/exact/oracle.hpp>
-#include <cchip/internal/model/point_tri.hpp>
 #include <cchip/internal/model/programme.hpp>
 #include <cchip/sim/scoreboard.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <deque>
 #include <map>
 
-#include "../ref/point_triangle_source.hpp"
+#include "../ref/point_pair.hpp"
 #include "bench.hpp"
 
 namespace cchip::test {
@@ -40,7 +39,7 @@ class SlotRequests {
   PairRequest draw(ModuleId id) {
     PairRequest request;
     if (id == ModuleId::point_tri) {
-      request.pair = draw_point();
+      request.pair = cchip_test::grid_pair(points_.draw(), coord_w_);
     } else {
       stimulus::PairSource& source = sources_.at(static_cast<std::size_t>(id) - 1);
       const auto classes = stimulus::classes_of(kinds_of(id)[0], kinds_of(id)[1]);
@@ -53,7 +52,7 @@ class SlotRequests {
   /// The answer of the functional model of this module, which takes triangles as quads if it tests quads; the exact
   /// oracle confirms it.
   PairResult answer(const PairRequest& request, ModuleId id) const {
-    if (id == ModuleId::point_tri) return point_answer(request);
+    if (id == ModuleId::point_tri) return cchip_test::confirmed_point_answer(request, coord_w_);
     GridPair pair = request.pair;
     const auto widen = [](GridPrimitive& p, Kind kind) {
       if (kind == Kind::quad && p.kind == Kind::tri) p.v[3] = p.v[2];
@@ -70,30 +69,6 @@ class SlotRequests {
   }
 
  private:
-  GridPair draw_point() {
-    const cchip_test::PointTriangle drawn = points_.draw();
-    const auto to_vec = [](const std::array<std::int64_t, 3>& v) {
-      return Vec3i(static_cast<int>(v[0]), static_cast<int>(v[1]), static_cast<int>(v[2]));
-    };
-    GridPair pair;
-    pair.a = model::point_operand(to_vec(drawn.point), static_cast<int>(drawn.radius), coord_w_);
-    for (std::size_t i = 0; i < 3; ++i) pair.b.v[i] = to_vec(drawn.triangle[i]);
-    return pair;
-  }
-  PairResult point_answer(const PairRequest& request) const {
-    const GridPair& pair = request.pair;
-    cchip_test::IntTriangle triangle;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3i v = pair.b.v[i] - pair.a.v[0];
-      triangle[i] = {v.x(), v.y(), v.z()};
-    }
-    const auto square = cchip_test::nearest<cchip_test::Int256>(triangle).square;
-    const PairResult found = model::point_tri_answer(request, coord_w_);
-    sim::require(found.grid == (compare(square, model::radius_of(pair.a, coord_w_)) <= 0),
-                 "the model contradicts the exact distance, tag " + std::to_string(request.tag));
-    return found;
-  }
-
   int coord_w_;
   Random random_;
   cchip_test::PointTriangleSource points_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches of triangle and quad objects through a chip with swaps, without and with faults of swaps.
+// Batches of triangle and quad objects through a chip with swaps, without and with faults of swaps. Rings are large or
+// so small that they are full; meanwhile the host stops, and the cache is invalidated.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,12 +27,14 @@ class MixedRun {
 
   int run() {
     fmt::print("seed={} slots={}\n", settings_.seed, settings_.slots);
-    ChipDriverOptions driver;
-    driver.memory_bytes = std::uint64_t{1} << 25U;
-    driver.patience = 3000000;
-    driver.reset_patience = 100000;
-    chip_ = make_swap_chip(settings_.slots, any_memory(random_), driver, settings_.seed);
-    while (queries_ < settings_.queries) batch();
+    for (std::size_t batches = 0; queries_ < settings_.queries; ++batches) {
+      if (batches % batches_each == 0) {
+        end_chip();
+        begin_chip();
+      }
+      batch();
+    }
+    end_chip();
     std::size_t bins = 0;
     for (const auto& [name, count] : bins_) bins += count > 0 ? 1U : 0U;
     fmt::print(
@@ -39,14 +42,29 @@ class MixedRun {
         "fallbacks={} failed_swaps={} given_up={} bins={}\n",
         queries_, hits_, mismatches_, contacts_, stats_.open, lost_, duplicated_, stats_.swaps,
         static_cast<double>(stats_.clocks) / std::max(1.0, static_cast<double>(queries_)), stats_.fallbacks,
-        failed_swaps(), chip_.machine->read_register(regs::swap_lost::offset), bins);
+        failed_swaps_, given_up_, bins);
     for (const auto& [name, count] : bins_) fmt::print("  {}: {}\n", name, count);
     return mismatches_ == 0 && lost_ == 0 && duplicated_ == 0 && queries_ > 0 ? 0 : 3;
   }
 
  private:
+  static constexpr std::size_t batches_each = 4;  // of a chip
+
   void set(std::uint32_t offset, std::uint32_t value) { chip_.machine->write_register(offset, value); }
-  std::uint32_t failed_swaps() { return chip_.machine->read_register(regs::rejected::offset); }
+
+  void begin_chip() {
+    small_ = random_() % 2 == 0;
+    ChipDriverOptions driver = small_ ? small_rings() : ChipDriverOptions();
+    driver.memory_bytes = std::uint64_t{1} << 25U;
+    driver.patience = 3000000;
+    driver.reset_patience = 100000;
+    chip_ = make_swap_chip(settings_.slots, any_memory(random_), driver, random_());
+  }
+  void end_chip() {
+    if (!chip_.device) return;
+    failed_swaps_ += chip_.machine->read_register(regs::rejected::offset);
+    given_up_ += chip_.machine->read_register(regs::swap_lost::offset);
+  }
 
   void batch() {
     const std::size_t count = 1 + random_() % 60;
@@ -84,7 +102,7 @@ class MixedRun {
       duplicated_ += times > 1 ? times - 1 : 0;
     }
     queries_ += count;
-    ++bins_[fmt::format("{} {}", fault.empty() ? "none" : fault,
+    ++bins_[fmt::format("{} {} {}", small_ ? "small" : "large", fault.empty() ? "none" : fault,
                         request.contacts == CollisionRequest::Contacts::all ? "all" : "first")];
     end_fault();
   }
@@ -114,15 +132,30 @@ class MixedRun {
 
   /// While results come.
   void meddle(const std::string& fault, std::size_t ended) {
+    // Of lines that stay as they are: the answers must, too.
+    if (percent(random_, 20)) {
+      auto first = static_cast<std::uint32_t>(random_());
+      auto last = static_cast<std::uint32_t>(random_());
+      if (last < first || percent(random_, 50)) first = 0;
+      set(regs::invalidate_first::offset, first);
+      set(regs::invalidate_last::offset, last);
+      set(regs::invalidate::offset, regs::invalidate::go_mask);
+    }
+    // Records wait for the host.
+    if (percent(random_, 10)) proceed(random_() % 5000);
     if (fault == "forced" && random_() % 4 == 0) command(true);
     if (fault == "commands" && random_() % 4 == 0) command(false);
     if (fault == "abort" && random_() % 3 == 0) {
       command(false);
-      for (std::uint64_t i = random_() % 3000; i-- > 0;) chip_.machine->proceed();
+      proceed(random_() % 3000);
       chip_.machine->write_register(regs::swap_control::offset,
                                     regs::swap_control::abort_mask | regs::swap_control::scheduler_enable_mask);
     }
     if ((fault == "silent" || fault == "bus_error") && ended > 4 && random_() % 40 == 0) end_fault();
+  }
+
+  void proceed(std::uint64_t times) {
+    for (; times > 0; --times) chip_.machine->proceed();
   }
 
   void command(bool force) {
@@ -151,7 +184,8 @@ class MixedRun {
   SwapChip chip_;
   MixedObjects objects_;
   std::size_t queries_ = 0, hits_ = 0, mismatches_ = 0, lost_ = 0, duplicated_ = 0;
-  std::uint64_t contacts_ = 0;
+  std::uint64_t contacts_ = 0, failed_swaps_ = 0, given_up_ = 0;
+  bool small_ = false;  ///< rings of the present chip
   CollisionStats stats_;
   std::map<std::string, std::size_t> bins_;
 };
