@@ -52,8 +52,8 @@ expect(far and f"far apart: {far[1]};" in readme, "far apart: not the ratio of d
 robot = re.search(r"^\| FCL native \|(.*)$", speed.split("begin robot")[1], re.M)
 ratios = sorted(re.findall(r"\(([\d.]+)\)", robot[1]), key=float) if robot else []
 expect(ratios and f": {ratios[0]} to {ratios[-1]}. " in readme, f"robot cell: not {' '.join(ratios)}, as docs/cpp/speed.md has it")
-compared = re.search(r"answers compared with FCL's: (\d+), FCL errs in: 0, differences: 0$", speed, re.M)
-expect(compared and f"{int(compared[1]):,} answers compared, no difference" in readme, "not the answers of docs/cpp/speed.md")
+compared = re.search(r"answers compared with FCL's: (\d+), FCL errs in: \d+, differences: 0$", speed, re.M)
+expect(compared and f"{int(compared[1]):,} answers compared, none of ours wrong" in readme, "not the answers of docs/cpp/speed.md")
 
 # The two cases in which FCL errs, and the number of all, against docs/cpp/touching.md.
 cases = re.findall(r"^\| (.*?) \| (apart|touching|crossing) \|.*\| (no hit|hit) \|$", (root / "docs/cpp/touching.md").read_text(), re.M)
