@@ -165,12 +165,15 @@ def main():
         return 0
     parser = argparse.ArgumentParser(usage=argparse.SUPPRESS, add_help=False)
     parser.add_argument("build", type=pathlib.Path)
-    for flag in ("--missing", "--write", "--cpp"):
+    for flag in ("--missing", "--write", "--cpp", "--bins"):
         parser.add_argument(flag, action="store_true")
     options = parser.parse_args()
     try:
         tables, missing, shares = {}, [], ""
-        if not options.cpp:
+        if options.bins:
+            tables["bins"], missing, b = bin_table(rtl_points(options.build.resolve() / "coverage")[1])
+            shares = f"bins={b[1]}/{b[0]}"
+        elif not options.cpp:
             points, bins = rtl_points(options.build.resolve() / "coverage")
             tables["rtl"], rtl_missing, r = rtl_table(points)
             tables["bins"], bins_missing, b = bin_table(bins)

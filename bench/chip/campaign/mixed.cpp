@@ -53,8 +53,12 @@ class MixedRun {
   void set(std::uint32_t offset, std::uint32_t value) { chip_.machine->write_register(offset, value); }
 
   void begin_chip() {
-    small_ = random_() % 2 == 0;
-    ChipDriverOptions driver = small_ ? small_rings() : ChipDriverOptions();
+    small_ = !small_;
+    ChipDriverOptions driver;
+    if (small_) {
+      driver.query_log2 = small_rings().query_log2;
+      driver.record_log2 = small_rings().record_log2;
+    }
     driver.memory_bytes = std::uint64_t{1} << 25U;
     driver.patience = 3000000;
     driver.reset_patience = 100000;
@@ -142,7 +146,7 @@ class MixedRun {
       set(regs::invalidate::offset, regs::invalidate::go_mask);
     }
     // Records wait for the host.
-    if (percent(random_, 10)) proceed(random_() % 5000);
+    if (percent(random_, 10)) proceed(random_() % 2000);
     if (fault == "forced" && random_() % 4 == 0) command(true);
     if (fault == "commands" && random_() % 4 == 0) command(false);
     if (fault == "abort" && random_() % 3 == 0) {
