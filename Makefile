@@ -3,6 +3,7 @@
 
 # Settings, as in: make test JOBS=4
 JOBS ?= $(shell nproc)
+BIN_QUERIES ?= 3000
 PREFIX ?= /usr/local
 DESTDIR ?=
 PAIRS ?= 100000000
@@ -38,7 +39,7 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal formal-all mutants coverage coverage-cpp test-gates test-debug \
+.PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal formal-all mutants coverage coverage-bins coverage-cpp test-gates test-debug \
   test-asan test-arm64 cross-windows fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot bench-scene bench-certificate bench-chip deb wheel sdist test-sdist test-python test-dask bench-python export fpga \
   fpga-quick fpga-sweep asic asic-quick install clean
@@ -55,7 +56,7 @@ Read
 Check a change
   test test-long wave-of test-python test-sdist test-dask test-debug test-asan test-arm64 cross-windows test-gates formal fuzz lint tidy format
 Check for long
-  formal-all/hours mutants/hours coverage/hours coverage-cpp
+  formal-all/hours mutants/hours coverage/hours coverage-bins coverage-cpp
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
   campaign-geometry/hours campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps
 Measure
@@ -191,7 +192,7 @@ RUNS ?= 10000000
 fuzz-tools:
 	@command -v clang++ > /dev/null || { echo "install Debian's clang and libclang-rt-14-dev: scripts/bootstrap --dev" >&2; exit 1; }
 
-fuzz: fuzz-tools build/fuzz$(OTHER)/build.ninja ## try RUNS inputs on everything that reads users' bytes (libFuzzer; CCHIP_SEED repeats a run)
+fuzz: fuzz-tools build/fuzz$(OTHER)/build.ninja ## try RUNS inputs on everything that reads users' bytes (libFuzzer; CCHIP_SEED repeats a run, CCHIP_RECORD=1 adds it to docs/figures/fuzz.csv)
 	cmake --build build/fuzz$(OTHER) -j $(JOBS) --target fuzz_targets
 	tests/fuzz/run.sh build/fuzz$(OTHER) $(RUNS)
 
@@ -334,6 +335,17 @@ coverage: ## lines, branches and toggles of the RTL, branches of the C++ library
 	for part in tests/ref tests/unit tests/chip tests/system bench/chip; do CCHIP_COVERAGE_FOLDER=$(CURDIR)/$(COVERAGE)/coverage \
 	  ctest --test-dir $(COVERAGE)/$$part -LE '^long$$' -j $(JOBS) --timeout 3000 || exit 1; done
 	scripts/coverage.py $(COVERAGE) --write
+
+# The chip's tests, then campaigns in which its blocks meet: small rings, swaps and faults, invalidations, resets.
+coverage-bins: ## which situations of two blocks of the chip have met, into docs/develop/coverage.md (an hour)
+	cmake --preset coverage
+	cmake --build $(COVERAGE) -j $(JOBS) --target tests/chip/all bench/chip/all
+	rm -rf $(COVERAGE)/coverage
+	for part in tests/chip bench/chip; do CCHIP_COVERAGE_FOLDER=$(CURDIR)/$(COVERAGE)/coverage \
+	  ctest --test-dir $(COVERAGE)/$$part -LE '^long$$' -j $(JOBS) --timeout 3000 || exit 1; done
+	for slots in 1 2; do for faults in "" "--faults all"; do CCHIP_COVERAGE_FOLDER=$(CURDIR)/$(COVERAGE)/coverage \
+	  $(COVERAGE)/bin/cchip_chip_campaign mixed --slots $$slots --queries $(BIN_QUERIES) $$faults || exit 1; done; done
+	scripts/coverage.py $(COVERAGE) --bins --write
 
 coverage-cpp: ## branches of the C++ library that its own tests reach, into docs/develop/coverage.md (half an hour; gcovr: scripts/bootstrap --dev)
 	cmake --preset coverage

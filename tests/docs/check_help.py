@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""make help shows every target of the Makefile that has a text, once, with that text; make install builds all that CMake installs.
+"""make help shows every target of the Makefile that has a text, once, with that text; the scripts that it starts are executable; make install builds all that CMake installs.
 
 usage: check_help.py ROOT"""
 import collections
@@ -23,5 +23,7 @@ wrong += [f"make help, {name}: '{text}'" for name, text in listed if name in tar
 installed = re.findall(r"install\(TARGETS ((?:cchip\w* )+)", (root / "cmake/CchipInstall.cmake").read_text())
 built = re.search(r"^install:.*\n\tcmake --build .* --target (.*)$", (root / "Makefile").read_text(), re.M)[1].split()
 wrong += [f"make install does not build {name}, which CMake installs" for names in installed for name in names.split() if name not in built]
+wrong += [f"{name}, which the Makefile starts, is not executable" for name in set(re.findall(r"^\t([\w/]+\.(?:py|sh)) ", (root / "Makefile").read_text(), re.M))
+          if not (root / name).stat().st_mode & 0o100]
 print("\n".join(wrong) if wrong else f"{len(targets)} targets")
 sys.exit(bool(wrong) or len(targets) < 40)

@@ -4,7 +4,8 @@
 # each target and a last line with the totals. The folder <build>/fuzz keeps the log of each target and the inputs that it found:
 # copy one that fails to tests/fuzz/corpus/<target>, where the regression replays it, and repair what it shows.
 #
-# usage: tests/fuzz/run.sh BUILD RUNS [TARGET...]     CCHIP_SEED repeats a run; the log names the seed
+# usage: tests/fuzz/run.sh BUILD RUNS [TARGET...]     CCHIP_SEED repeats a run; the log names the seed. CCHIP_RECORD=1 adds the run to
+# docs/figures/fuzz.csv (ledger.py), which sums up all of them; a run begins with the inputs that earlier ones of the folder found
 # Exit codes: 0 nothing found, 1 a crash, a leak, an input that takes too long or too much memory, or less than RUNS inputs
 set -euo pipefail
 
@@ -34,6 +35,8 @@ longest() {
 count() { grep -c -E "^SUMMARY: $1" "$2" || true; }
 
 mkdir -p "$build/fuzz"
+lines=$build/fuzz/lines
+: > "$lines"
 cd "$build/fuzz"
 total=0 failed=0 start=$SECONDS
 declare -A sum=([crashes]=0 [hangs]=0 [leaks]=0)
@@ -50,7 +53,7 @@ for target in "${targets[@]}"; do
   leaks=$(count 'AddressSanitizer: .* leaked' "$log")
   crashes=0
   if ((code != 0 && hangs + leaks == 0)); then crashes=1; fi
-  echo "target=$target runs=${done:=0} crashes=$crashes hangs=$hangs leaks=$leaks seconds=$((SECONDS - from))"
+  echo "target=$target runs=${done:=0} crashes=$crashes hangs=$hangs leaks=$leaks seconds=$((SECONDS - from))" | tee -a "$lines"
   if ((code != 0 || done < runs)); then
     failed=1
     grep -E -A 20 'ERROR|runtime error|not so|SUMMARY' "$log" | cut -c 1-300 | head -n 40 || tail -n 5 "$log"
@@ -60,4 +63,5 @@ for target in "${targets[@]}"; do
   sum[crashes]=$((sum[crashes] + crashes)) sum[hangs]=$((sum[hangs] + hangs)) sum[leaks]=$((sum[leaks] + leaks))
 done
 echo "targets=${#targets[@]} runs=$total crashes=${sum[crashes]} hangs=${sum[hangs]} leaks=${sum[leaks]} seconds=$((SECONDS - start))"
+if [[ ${CCHIP_RECORD:-0} != 0 ]]; then "$here/ledger.py" --add "$lines"; fi
 exit $failed
