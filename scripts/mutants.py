@@ -153,8 +153,8 @@ class Module:
         text = re.sub(r"(module [^;]*?)(, mutant\b|\bmutant, )", r"\1", text)
         text = re.sub(r"    \.mutant\(mutant\),?\n", "", text)
         text = re.sub(r",\n  \);", "\n  );", text)
-        text = re.sub(rf"  input \[{SELECTOR_W - 1}:0\] mutant;\n", "  import \"DPI-C\" function int cchip_mutant();\n  integer chosen = cchip_mutant();\n", text)
-        text = re.sub(rf"  wire \[{SELECTOR_W - 1}:0\] mutant;\n", f"  wire [{SELECTOR_W - 1}:0] mutant = chosen[{SELECTOR_W - 1}:0];\n", text)
+        text = re.sub(rf"  input \[{SELECTOR_W - 1}:0\] mutant;\n", "  import \"DPI-C\" function int cchip_mutant();\n  integer chosen_mutant = cchip_mutant();\n", text)
+        text = re.sub(rf"  wire \[{SELECTOR_W - 1}:0\] mutant;\n", f"  wire [{SELECTOR_W - 1}:0] mutant = chosen_mutant[{SELECTOR_W - 1}:0];\n", text)
         (self.folder / "netlist.v").write_text(text)
         (self.folder / "select.cpp").write_text(SELECT)
         run(["verilator", "--cc", "-Wno-fatal", "-Wno-lint", "-fno-const-bit-op-tree", "--x-assign", "unique", "--x-initial", "unique", "--prefix", self.model,
