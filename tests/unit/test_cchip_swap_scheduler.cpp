@@ -161,9 +161,11 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
       bench.enable = false;
       bench.waiting.fill(0);
       bench.full = 0;
-      bench.batch = chance(random, 30) ? 0x10000 : static_cast<std::uint32_t>(random() % 20);
-      bench.age = chance(random, 50) ? 0x7FFFFFFF : static_cast<std::uint32_t>(random() % 250);
+      // what is never reached, one bit of it at a time; or what is
+      bench.batch = chance(random, 30) ? 1U << (6 + random() % 26) : static_cast<std::uint32_t>(random() % 20);
+      bench.age = chance(random, 50) ? 1U << (11 + random() % 21) : static_cast<std::uint32_t>(random() % 250);
       bench.valid = static_cast<unsigned>(random()) & bench.all();
+      bench.resting = chance(random, 50) ? 0 : static_cast<unsigned>(random() & random()) & bench.all();
       for (int& m : bench.modules) m = static_cast<int>(random() % (chance(random, 40) ? TestType::KINDS + 1U : 2U));
       bench.reset();
       std::optional<std::uint64_t> since;  // pairs of an unserved kind wait
@@ -199,12 +201,13 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
         const int waits = bench.waiting[static_cast<std::size_t>(kind)];
         const bool is_full = (bench.full >> (kind - 1) & 1U) != 0;
         if (is_served(kind) || waits == 0) continue;
-        if (!too_old && !is_full && waits < static_cast<int>(bench.batch)) continue;
+        if (!too_old && !is_full && static_cast<unsigned>(waits) < bench.batch) continue;
         std::vector<std::tuple<int, int, int>> order;  // module, what the slot holds, slot
         for (std::size_t s = 0; s < slots; ++s) {
           for (int m = 1; m <= TestType::KINDS; ++m) {
             if (!bench.serves(m, kind)) continue;
-            if ((bench.valid >> (bench.stride * s + static_cast<std::size_t>(m)) & 1U) == 0) continue;
+            if (((bench.valid & ~bench.resting) >> (bench.stride * s + static_cast<std::size_t>(m)) & 1U) == 0)
+              continue;
             const bool keeps = !too_old && is_needed(s, m);
             kept += keeps ? 1 : 0;
             if (!keeps) order.emplace_back(m, bench.modules[s], static_cast<int>(s));
@@ -213,8 +216,9 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
         if (order.empty()) continue;
         const auto best = *std::min_element(order.begin(), order.end());
         legal.emplace_back(std::get<2>(best), std::get<0>(best));
-        old += too_old && !is_full && waits < static_cast<int>(bench.batch) ? 1 : 0;
-        full += is_full && waits < static_cast<int>(bench.batch) && !too_old ? 1 : 0;
+        const bool enough = static_cast<unsigned>(waits) >= bench.batch;
+        old += too_old && !is_full && !enough ? 1 : 0;
+        full += is_full && !enough && !too_old ? 1 : 0;
         larger += std::get<0>(best) > kind ? 1 : 0;
       }
       bench.enable = true;
@@ -362,6 +366,70 @@ CCHIP_CASE("commands: passed on, busy, no such bitstream") {
   });
 }
 
+CCHIP_CASE("commands of any numbers are passed on or refused, and reports told, bit by bit") {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    constexpr int slots = TestType::SLOTS;
+    Random random(options.seed);
+    SchedulerBench<TestType> bench(options);
+    bench.modules.fill(1);
+    bench.valid = static_cast<unsigned>(random()) & bench.all();
+    const auto number = [&random](int most) {  // one that there is, that one with a bit too many, any
+      const int small = static_cast<int>(random() % (static_cast<unsigned>(most) + 1));
+      return chance(random, 70)   ? small
+             : chance(random, 50) ? small | 1 << random() % 8
+                                  : static_cast<int>(random() % 256);
+    };
+    int passed = 0, refused = 0;
+    for (int i = 0; i < 600; ++i) {
+      const int slot = number(slots - 1);
+      const int module_id = number(TestType::KINDS);
+      const bool force = chance(random, 50);
+      const std::size_t entry = bench.stride * static_cast<std::size_t>(slot) + static_cast<std::size_t>(module_id);
+      const bool is_known = slot < slots && module_id <= TestType::KINDS && (bench.valid >> entry & 1U) != 0;
+      CAPTURE(i, slot, module_id);
+      bench.requests.clear();
+      bench.told.clear();
+      bench.cleared = 0;
+      bench.command(slot, module_id, force);
+      bench.steps(5);
+      REQUIRE(bench.requests.size() == (is_known ? 1U : 0U));
+      REQUIRE(bench.told.size() == (is_known ? 0U : 1U));
+      SwapReport expected = {slot, module_id, SwapCode::request, 0};
+      if (is_known) {
+        const SwapRequest& got = bench.requests[0];
+        REQUIRE((got.slot == slot && got.module_id == module_id && got.force == force));
+        REQUIRE((got.address == bench.address[entry] && got.size == got.address + 7));
+        // refused meanwhile: told on its own clock, or one after that of the swap
+        const int other_slot = static_cast<int>(random() % 256);
+        const int other_module = static_cast<int>(random() % 256);
+        const bool together = chance(random, 50);
+        expected.code = static_cast<SwapCode>(random() % 14);
+        expected.lost = static_cast<std::uint16_t>(random());
+        if (together) bench.report_now(expected);
+        bench.command(other_slot, other_module, false);
+        bench.steps(3);
+        if (!together) bench.report(expected);
+        bench.steps(3);
+        REQUIRE(bench.told.size() == 2);
+        const SwapReport& busy = bench.told[together ? 1 : 0];
+        REQUIRE((busy.slot == other_slot && busy.module_id == other_module && busy.code == SwapCode::busy &&
+                 busy.lost == 0));
+        if (!together) bench.told.erase(bench.told.begin());
+        ++passed;
+      } else {
+        ++refused;
+      }
+      const SwapReport& told = bench.told[0];
+      REQUIRE((told.slot == expected.slot && told.module_id == expected.module_id && told.code == expected.code &&
+               told.lost == expected.lost));
+      const bool spoilt = is_known && defs::swap_spoilt(static_cast<int>(expected.code)) != 0;
+      REQUIRE(bench.cleared == (spoilt ? 1U << entry : 0U));
+    }
+    REQUIRE(passed > 50);
+    REQUIRE(refused > 50);
+  });
+}
+
 CCHIP_CASE("a kind has no provider after 16 clocks without slot, bitstream and swap, and at once one again") {
   with_bench<TestType>([](SchedulerBench<TestType>& bench) {
     bench.modules.fill(1);
@@ -392,6 +460,52 @@ CCHIP_CASE("a kind has no provider after 16 clocks without slot, bitstream and s
     bench.modules[0] = 3;
     bench.steps(2);
     REQUIRE(bench.no_provider == 0);
+  });
+}
+
+CCHIP_CASE("each kind has a provider exactly if a slot, a bitstream with hope or a swap in progress serves it") {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    Random random(options.seed);
+    SchedulerBench<TestType> bench(options);
+    constexpr std::size_t slots = TestType::SLOTS;
+    std::array<std::array<int, 2>, defs::kinds_max + 1> seen{};
+    for (int picture = 0; picture < 600; ++picture) {
+      for (int& m : bench.modules) m = chance(random, 70) ? 0 : static_cast<int>(random() % (TestType::KINDS + 1U));
+      bench.valid = static_cast<unsigned>(random() & random()) & bench.all();
+      if (chance(random, 40)) bench.valid &= static_cast<unsigned>(random());
+      bench.hopeless = chance(random, 50) ? 0 : static_cast<unsigned>(random()) & bench.all();
+      int swapping = -1;
+      if (chance(random, 30) && bench.valid != 0) {
+        std::size_t entry = 0;
+        do entry = random() % (slots * bench.stride);
+        while ((bench.valid >> entry & 1U) == 0);
+        swapping = static_cast<int>(entry % bench.stride);
+        bench.ready = chance(random, 50);  // before the controller takes it, or while it works
+        bench.command(static_cast<int>(entry / bench.stride), swapping, false);
+      }
+      bench.steps(30);
+      for (int kind = 1; kind <= TestType::KINDS; ++kind) {
+        bool provided = swapping >= 0 && bench.serves(swapping, kind);
+        for (std::size_t s = 0; s < slots; ++s) {
+          provided = provided || bench.serves(bench.modules[s], kind);
+          for (int m = 1; m <= TestType::KINDS; ++m) {
+            const unsigned hope = (bench.valid & ~bench.hopeless) >> (bench.stride * s + static_cast<std::size_t>(m));
+            provided = provided || (bench.serves(m, kind) && (hope & 1U) != 0);
+          }
+        }
+        CAPTURE(picture, kind, swapping);
+        REQUIRE((bench.no_provider >> (kind - 1) & 1U) == (provided ? 0U : 1U));
+        ++seen[static_cast<std::size_t>(kind)][provided ? 1 : 0];
+      }
+      if (swapping >= 0) {
+        bench.ready = true;
+        bench.steps(3);
+        bench.report({bench.requests.back().slot, swapping, SwapCode::memory, 0});
+      }
+    }
+    for (int kind = 1; kind <= TestType::KINDS; ++kind) {
+      for (const int count : seen[static_cast<std::size_t>(kind)]) REQUIRE(count > 20);
+    }
   });
 }
 
