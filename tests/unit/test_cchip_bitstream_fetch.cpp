@@ -120,3 +120,66 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_fetch: a limit counts from the clock on
     REQUIRE(clocks_to_timeout(40, 0, 20, 5000) == defs::memory_limit_default + latency);
   });
 }
+
+TEMPLATE_LIST_TEST_CASE(
+    "cchip_bitstream_fetch: any number of words, bit by bit, and a beat with an error ends the words",
+    "[unit][cchip_bitstream_fetch]", cchip_bitstream_fetch_configs) {
+  using Model = typename TestType::Model;
+  for_two_power_ups<Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
+    top.run = 0;
+    top.limit = 1000;
+    sim::AxiMemory<Model> memory(top);
+    std::size_t got = 0;
+    sim::StreamSink<std::uint32_t> sink(
+        "m", top.m_valid, top.m_ready, [&] { return top.m_data; }, sim::Pattern::always(),
+        [&](std::uint32_t, std::uint64_t) { ++got; });
+    simulation.add(memory);
+    simulation.add(sink);
+    simulation.reset();
+    memory.write(0x1000, std::vector<std::uint8_t>(16384, 7));
+    const auto begin = [&](std::uint32_t words) {
+      got = 0;
+      top.address = 0x1000 + 4 * static_cast<IData>(random() % 1000);
+      top.words = words;
+      top.run = 1;
+    };
+    const auto end = [&] {
+      top.run = 0;
+      simulation.run_until([&] { return top.outstanding == 0; }, 2000, "late beats");
+      simulation.steps(3);
+    };
+    for (unsigned bit = 0; bit < 30; ++bit) {
+      const std::uint32_t words = 1U << bit;
+      begin(words);
+      simulation.run_until([&] { return got >= std::min(words, 50U); }, 2000, "the words");
+      simulation.steps(40);
+      REQUIRE(top.bus_error == 0);
+      REQUIRE((bit < 6 ? got == words : got > 60));
+      end();
+    }
+    for (int round = 0; round < 60; ++round) {
+      const auto code = static_cast<sim::AxiResponse>(1 + round % 3);
+      const std::size_t bad = random() % 40;  // the beat with the error
+      std::size_t beats = 0;
+      memory.set_fault([&](std::vector<sim::AxiBeat>& burst) {
+        for (sim::AxiBeat& beat : burst) {
+          if (beats++ == bad) beat.response = code;
+        }
+      });
+      begin(200);
+      simulation.run_until([&] { return top.bus_error != 0; }, 2000, "the error");
+      simulation.steps(60);  // what was asked for before still comes
+      CAPTURE(round, bad);
+      REQUIRE(got == bad);
+      REQUIRE(top.bus_error == 1);
+      REQUIRE(top.timeout == 0);
+      memory.set_fault({});
+      end();
+      REQUIRE(top.bus_error == 0);
+    }
+    begin(5);
+    simulation.run_until([&] { return got == 5; }, 2000, "words after errors");
+    end();
+  });
+}
