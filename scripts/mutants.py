@@ -48,7 +48,8 @@ RTL = ROOT / "rtl"
 OUT = ROOT / "build" / "mutants"
 PAGE = ROOT / "docs" / "develop" / "mutants.md"
 RECORD = ROOT / "docs" / "figures" / "mutants.csv"
-COLUMNS = ("module", "mutants", "proved", "bounded", "killed", "differs", "undecided", "commit")
+COUNTS = ("mutants", "proved", "bounded", "killed", "differs", "undecided")
+COLUMNS = ("module", *COUNTS, "commit")  # module `ROOM/N`: N modules of a room together, until one of the room is recorded
 SELECTOR_W = 16
 SELECT = 'extern "C" int cchip_mutant();\n#include <cstdlib>\nint cchip_mutant() {\n  const char* chosen = std::getenv("CCHIP_MUTANT");\n' \
          "  return chosen ? std::atoi(chosen) : 0;\n}\n"
@@ -76,6 +77,7 @@ def rtl_files():
 
 
 FILES = rtl_files()
+ROOMS = list(dict.fromkeys(path.parent.name for path in FILES.values()))
 
 
 def uses(module):
@@ -323,15 +325,23 @@ def recorded():
 def record(rows):
     """RECORD with these rows, in the order of FILES, those of modules that are gone left out."""
     all_rows = {row["module"]: row for row in [*recorded(), *rows]}
+    rooms = {room_of(row)[0] for row in all_rows.values() if "/" not in row["module"]}
+    together = [row for row in all_rows.values() if "/" in row["module"] and room_of(row)[0] not in rooms]
     with RECORD.open("w", newline="") as file:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
-        writer.writerows(all_rows[name] for name in FILES if name in all_rows)
+        writer.writerows([*together, *(all_rows[name] for name in FILES if name in all_rows)])
+
+
+def room_of(row):
+    """(room, number of modules)"""
+    room, _, number = row["module"].partition("/")
+    return (room, int(number)) if number else (FILES[room].parent.name, 1)
 
 
 def sums(rows):
     """mutants, equivalent by proof and within a bound, killed, alive: told apart and undecided"""
-    return [sum(row[column] for row in rows) for column in COLUMNS[1:-1]]
+    return [sum(row[column] for row in rows) for column in COUNTS]
 
 
 def table(rows):
@@ -339,12 +349,13 @@ def table(rows):
              "|---|---|---|---|---|---|---|---|---|"]
     rooms = collections.defaultdict(list)
     for row in rows:
-        rooms[FILES[row["module"]].parent.name].append(row)
+        rooms[room_of(row)[0]].append(row)
+    rooms = {room: rooms[room] for room in ROOMS if room in rooms}
     rooms["all"] = rows
     for room, inside in rooms.items():
         all_sums = sums(inside)
         told = sum(all_sums[3:])
-        lines.append(f"| {room} | {len(inside)} | " + " | ".join(map(str, all_sums)) + f" | {100 * all_sums[3] / told if told else 100:.1f} % |")
+        lines.append(f"| {room} | {sum(room_of(row)[1] for row in inside)} | " + " | ".join(map(str, all_sums)) + f" | {100 * all_sums[3] / told if told else 100:.1f} % |")
     return "\n".join(lines) + "\n"
 
 
@@ -408,7 +419,7 @@ def main():
             for module in chosen:
                 attempt(failures, module.judge, options.depth, pool)
                 for row in summary([module]):
-                    print(f"{module.name}: " + " ".join(f"{column}={row[column]}" for column in COLUMNS[1:-1]), flush=True)
+                    print(f"{module.name}: " + " ".join(f"{column}={row[column]}" for column in COUNTS), flush=True)
     rows = summary(chosen)
     if rows:
         print(table(rows))
