@@ -145,8 +145,11 @@ class MixedRun {
       set(regs::invalidate_last::offset, last);
       set(regs::invalidate::offset, regs::invalidate::go_mask);
     }
-    // Records wait for the host.
-    if (percent(random_, 10)) proceed(random_() % 2000);
+    // Records wait for the host, which may have asked for a swap.
+    if (percent(random_, 10)) {
+      if (percent(random_, 50)) command(false);
+      proceed(random_() % 3000);
+    }
     if (fault == "forced" && random_() % 4 == 0) command(true);
     if (fault == "commands" && random_() % 4 == 0) command(false);
     if (fault == "abort" && random_() % 3 == 0) {
