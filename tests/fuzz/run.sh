@@ -49,11 +49,12 @@ for target in "${targets[@]}"; do
   from=$SECONDS code=0
   "$build/bin/fuzz_$target" "${options[@]}" "$target" "$here/corpus/$target" > "$log" 2>&1 || code=$?
   done=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
+  : "${done:=0}"
   hangs=$(count 'libFuzzer: timeout' "$log")
   leaks=$(count 'AddressSanitizer: .* leaked' "$log")
   crashes=0
   if ((code != 0 && hangs + leaks == 0)); then crashes=1; fi
-  echo "target=$target runs=${done:=0} crashes=$crashes hangs=$hangs leaks=$leaks seconds=$((SECONDS - from))" | tee -a "$lines"
+  echo "target=$target runs=$done crashes=$crashes hangs=$hangs leaks=$leaks seconds=$((SECONDS - from))" | tee -a "$lines"
   if ((code != 0 || done < runs)); then
     failed=1
     grep -E -A 20 'ERROR|runtime error|not so|SUMMARY' "$log" | cut -c 1-300 | head -n 40 || tail -n 5 "$log"
