@@ -276,7 +276,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_dispatcher: every pair is answered once, with any
 }
 
 TEMPLATE_LIST_TEST_CASE(
-    "cchip_dispatcher: each slot alone, with each module, tests what the module serves; the rest is refused when "
+    "cchip_dispatcher: each slot alone, with each module, tests what the module serves, the rest is refused when "
     "nobody provides it",
     "[unit][cchip_dispatcher]", cchip_dispatcher_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
