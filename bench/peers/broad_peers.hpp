@@ -57,15 +57,6 @@ class LibraryBroad : public BroadPeer {
 };
 
 #ifdef CCHIP_HAS_BULLET
-inline bool boxes_meet(const WorldBox& p, const WorldBox& q) {
-  bool apart = false;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    apart |= p.least[axis] > q.greatest[axis];
-    apart |= q.least[axis] > p.greatest[axis];
-  }
-  return !apart;
-}
-
 /// btDbvtBroadphase, with its cache of pairs. Its floats are rounded outwards.
 class BulletBroad : public BroadPeer {
  public:
@@ -91,8 +82,11 @@ class BulletBroad : public BroadPeer {
     broad_.calculateOverlappingPairs(nullptr);
     const btBroadphasePairArray& pairs = broad_.getOverlappingPairCache()->getOverlappingPairArray();
     std::size_t count = 0;
-    for (int i = 0; i < pairs.size(); ++i)
-      count += boxes_meet(box(pairs[i].m_pProxy0), box(pairs[i].m_pProxy1)) ? 1 : 0;
+    for (int i = 0; i < pairs.size(); ++i) {
+      const WorldBox& p = box(pairs[i].m_pProxy0);
+      const WorldBox& q = box(pairs[i].m_pProxy1);
+      count += cchip_boxes_meet(p.least.data(), q.least.data()) ? 1 : 0;
+    }
     return count;
   }
 

@@ -16,9 +16,8 @@
 namespace {
 
 /// Objects of a manager, by numbers from 0.
-/// \tparam Library names the types Manager, Object, Geometry and Transform; visit(manager, f) calls f(x, y) for each
-/// pair
-///         of objects that the manager finds
+/// \tparam Library names the types Manager, Object, Geometry and Sphere; visit(manager, f) calls f(x, y) for each pair
+/// of objects that the manager finds
 /// \tparam Object made of a Geometry
 template <class Library, class Object>
 class Managed {
@@ -91,14 +90,9 @@ CchipBroadPeer broad_functions() {
   functions.count = [](void* of) {
     size_t found = 0;
     Library::visit(static_cast<Broad*>(of)->manager, [&found](const auto* x, const auto* y) {
-      const double* const p = static_cast<const Boxed<Library>*>(x)->box;
-      const double* const q = static_cast<const Boxed<Library>*>(y)->box;
-      bool apart = false;
-      for (size_t axis = 0; axis < 3; ++axis) {
-        apart |= p[axis] > q[3 + axis];
-        apart |= q[axis] > p[3 + axis];
-      }
-      found += apart ? 0 : 1;
+      const auto* const p = static_cast<const Boxed<Library>*>(x);
+      const auto* const q = static_cast<const Boxed<Library>*>(y);
+      found += cchip_boxes_meet(p->box, q->box) ? 1 : 0;
     });
     return found;
   };

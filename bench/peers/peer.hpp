@@ -9,7 +9,17 @@
 #include <cstddef>
 #include <cstdint>
 
-/// A broad phase: boxes by numbers from 0, six numbers each: least x, y, z, greatest x, y, z.
+/// Do two boxes overlap or touch? Six numbers each: least x, y, z, greatest x, y, z.
+inline bool cchip_boxes_meet(const double* p, const double* q) {
+  bool apart = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    apart |= p[axis] > q[3 + axis];
+    apart |= q[axis] > p[3 + axis];
+  }
+  return !apart;
+}
+
+/// A broad phase: boxes by numbers from 0, as above.
 struct CchipBroadPeer {
   void* (*make)(const double* boxes, std::size_t count);
   void (*destroy)(void* broad);

@@ -36,11 +36,10 @@ class DispatcherBench {
     top.some = 0;
     top.s_result_valid = 0;
     simulation.reset();
+    open_.clear();
     for (const auto& queue : queues) {
-      for (const WaitingPair& pair : queue) waiting_.emplace(pair.tag, pair.kind);
+      for (const WaitingPair& pair : queue) open_.emplace(pair.tag, pair.kind);
     }
-    open_.swap(waiting_);
-    waiting_.clear();
     said_.clear();
     for (Slot& slot : slots_) slot.pairs.clear();
     popped_clocks_ = 3;
@@ -57,14 +56,12 @@ class DispatcherBench {
   }
   /// Nothing comes and goes but answers: the counts are exact then.
   void check_outstanding() {
-    const auto all = top.some;
     for (int clock = 0; clock < 40; ++clock) this->clock(0, 100, false);
     for (int s = 0; s < slots; ++s) {
       const auto count = sim::get_bits(top.outstanding, defs::pair_count_w * s, defs::pair_count_w);
       REQUIRE(count == slots_[static_cast<std::size_t>(s)].pairs.size());
       most_outstanding = std::max(most_outstanding, count);
     }
-    top.some = all;
   }
   /// \param results percent of the clocks on which each slot answers
   void clock(int results, int ready, bool pairs = true) {
@@ -198,9 +195,9 @@ class DispatcherBench {
   };
   static constexpr std::uint64_t content_mask = (std::uint64_t{1} << (defs::slot_result_w - 8)) - 1;
   std::array<Slot, 4> slots_{};
-  std::map<std::uint16_t, int> open_, waiting_;  // kind by tag
-  std::map<std::uint16_t, Said> said_;           // by tag
-  std::optional<int> left_;                      // module of the answer that left a clock ago
+  std::map<std::uint16_t, int> open_;   // kind by tag
+  std::map<std::uint16_t, Said> said_;  // by tag
+  std::optional<int> left_;             // module of the answer that left a clock ago
   bool looked_ = false;
   WaitingPair popped_{};
   int popped_clocks_ = 3;

@@ -19,12 +19,16 @@ sim::AxiLinesOptions any_memory(Random& random) {
   return options;
 }
 
+void make_rings_small(ChipDriverOptions& driver) {
+  driver.query_log2 = 3;
+  driver.record_log2 = 6;
+}
+
 ChipDriverOptions small_rings() {
   ChipDriverOptions options;
   options.memory_base = std::uint64_t{3} << 32U;
   options.memory_bytes = std::uint64_t{1} << 24U;
-  options.query_log2 = 3;
-  options.record_log2 = 6;
+  make_rings_small(options);
   options.patience = 200000;
   options.reset_patience = 4000;
   return options;

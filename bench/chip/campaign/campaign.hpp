@@ -25,6 +25,8 @@ inline bool percent(Random& random, unsigned p) { return random() % 100 < p; }
 /// Any memory that AXI allows, from an idle one to a crowded one.
 sim::AxiLinesOptions any_memory(Random& random);
 /// Rings so small that they are full all the time.
+void make_rings_small(ChipDriverOptions& driver);
+/// A driver with such rings and little memory at a high address.
 ChipDriverOptions small_rings();
 
 /// What a campaign has compared.

@@ -55,10 +55,7 @@ class MixedRun {
   void begin_chip() {
     small_ = !small_;
     ChipDriverOptions driver;
-    if (small_) {
-      driver.query_log2 = small_rings().query_log2;
-      driver.record_log2 = small_rings().record_log2;
-    }
+    if (small_) make_rings_small(driver);
     driver.memory_bytes = std::uint64_t{1} << 25U;
     driver.patience = 3000000;
     driver.reset_patience = 100000;
