@@ -24,10 +24,10 @@ module cchip_arbiter_properties #(
 
   // the circle from the source behind the one served last: bit i of turned_* is source start_q + i
   reg [7:0] start_q;
-  wire [2*N-1:0] two = {request, request};
-  wire [2*N-1:0] two_grants = {grant, grant};
-  wire [N-1:0] turned_request = two >> start_q;
-  wire [N-1:0] turned_grant = two_grants >> start_q;
+  wire [2*N-1:0] two = {request, request} >> start_q;
+  wire [2*N-1:0] two_grants = {grant, grant} >> start_q;
+  wire [N-1:0] turned_request = two[N-1:0];
+  wire [N-1:0] turned_grant = two_grants[N-1:0];
 
   // one source, any
   (* anyconst *) wire [$clog2(N)-1:0] mine;
@@ -39,7 +39,7 @@ module cchip_arbiter_properties #(
   always @(posedge clk) begin
     started_q <= 1'b1;
     if (rst) start_q <= 8'd0;
-    else if (take) for (i = 0; i < N; i = i + 1) if (grant[i]) start_q <= i == N - 1 ? 8'd0 : i + 1;
+    else if (take) for (i = 0; i < N; i = i + 1) if (grant[i]) start_q <= i == N - 1 ? 8'd0 : i[7:0] + 8'd1;
     others_q <= rst || !request[mine] || (take && grant[mine]) ? 8'd0 : others_q + {7'd0, served};
   end
 

@@ -81,9 +81,9 @@ module cchip_descriptor_queues_properties #(
   reg [2:0] since_pop_q;  // clocks, at most 7
   wire finds = look_q & (kind_q == mine) & waits_q & (ahead_q == 0);
   reg started_q = 1'b0;
-  wire [COUNT_W-1:0] waits_here = waiting >> (COUNT_W * mine);
-  wire room_here = room >> mine;
-  wire some_here = some >> mine;
+  wire [COUNT_W-1:0] waits_here = waiting[COUNT_W*mine+:COUNT_W];
+  wire room_here = room[mine];
+  wire some_here = some[mine];
   always @(posedge clk) begin
     started_q <= 1'b1;
     if (rst) begin

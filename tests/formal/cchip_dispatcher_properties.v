@@ -110,9 +110,9 @@ module cchip_dispatcher_properties #(
           .idle          (idle)
       );
 
-      wire [`CCHIP_PAIR_COUNT_W-1:0] inside = outstanding[`CCHIP_PAIR_COUNT_W*s+:`CCHIP_PAIR_COUNT_W];
-      assign in_credit[s] = inside <= CREDIT;
-      assign empty[s] = inside == 0;
+      wire [`CCHIP_PAIR_COUNT_W-1:0] pairs_inside = outstanding[`CCHIP_PAIR_COUNT_W*s+:`CCHIP_PAIR_COUNT_W];
+      assign in_credit[s] = pairs_inside <= CREDIT;
+      assign empty[s] = pairs_inside == 0;
       assign in_step[s] = !vertex_valid[s] || (vertex_first == (vertex_q == 2'd0) && vertex_last == (vertex_q == 2'd2));
     end
   endgenerate

@@ -106,8 +106,9 @@ module cchip_slot_ledger_properties #(
   reg [1:0] silent_q;  // clocks without answer and with no pair inside
   reg answer_q;  // an answer was offered a clock ago
   reg offered_q;
-  reg [7:0] offer_q;
-  wire [9:0] offer = {ours, by_module, hit_of_answer, module_of_answer, kind_of_answer, 1'b0};
+  localparam integer OFFER_W = 3 + 2 * `CCHIP_KIND_W;
+  reg [OFFER_W-1:0] offer_q;
+  wire [OFFER_W-1:0] offer = {ours, by_module, hit_of_answer, module_of_answer, kind_of_answer};
 
   always @(posedge clk) begin
     started_q  <= 1'b1;

@@ -58,7 +58,7 @@ module cchip_traversal_decision_properties #(
   assign {now, active, mode, entries, under, steps, pairs, opens, hit} = s_state;
   wire [15:0] waiting = s_verdict[15:0];
   wire [15:0] leaves = s_verdict[31:16];
-  wire [15:0] strong = s_verdict[47:32];
+  wire [15:0] strong_set = s_verdict[47:32];
   wire [3:0] best = s_verdict[51:48];
   wire [15:0] entry_waiting = stack_entry[119:104];
   wire [15:0] entry_strong = stack_entry[135:120];
@@ -158,7 +158,7 @@ module cchip_traversal_decision_properties #(
     if (verdict || result) assume (s_work != 0);
     if (verdict && s_live) assume (under != 0);
     if (s_live) assume (s_epoch == now && s_work >= {9'd0, under} && (!result || s_work > {9'd0, under}));
-    assume ((strong & ~waiting) == 0 && (entry_strong & ~entry_waiting) == 0);
+    assume ((strong_set & ~waiting) == 0 && (entry_strong & ~entry_waiting) == 0);
     if (waiting != 0) assume (((waiting >> best) & 16'd1) != 0);
   end
 
