@@ -81,9 +81,13 @@ module cchip_descriptor_queues_properties #(
   reg [2:0] since_pop_q;  // clocks, at most 7
   wire finds = look_q & (kind_q == mine) & waits_q & (ahead_q == 0);
   reg started_q = 1'b0;
-  wire [COUNT_W-1:0] waits_here = waiting[COUNT_W*mine+:COUNT_W];
-  wire room_here = room[mine];
-  wire some_here = some[mine];
+  // shifted, not selected: a part beyond the end would be x, and the solver takes none
+  wire [(KINDS+1)*COUNT_W-1:0] waiting_from_mine = waiting >> (COUNT_W * mine);
+  wire [COUNT_W-1:0] waits_here = waiting_from_mine[COUNT_W-1:0];
+  wire [KINDS:0] room_from_mine = room >> mine;
+  wire [KINDS:0] some_from_mine = some >> mine;
+  wire room_here = room_from_mine[0];
+  wire some_here = some_from_mine[0];
   always @(posedge clk) begin
     started_q <= 1'b1;
     if (rst) begin
