@@ -181,3 +181,85 @@ TEMPLATE_LIST_TEST_CASE("cchip_cache_fill: lines leave whole, in the order of th
     }
   });
 }
+
+TEMPLATE_LIST_TEST_CASE(
+    "cchip_cache_fill: each slot is lost alone and comes back alone, exhausted only if all are lost",
+    "[unit][cchip_cache_fill]", cchip_cache_fill_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
+    constexpr int misses = TestType::MISSES;
+    constexpr unsigned all = misses == 32 ? ~0U : (1U << misses) - 1;
+    auto& top = simulation.top();
+    top.free_take = top.allocate = top.s_read_valid = top.serving = 0;
+    top.free = 1;
+    unsigned outstanding = all;
+    const auto step = [&] {
+      sim::set_bits(top.s_read_outstanding, 0, misses, outstanding);
+      simulation.step();
+      top.free_take = top.allocate = top.s_read_valid = 0;
+    };
+    simulation.reset();
+    /// Takes the slot that is offered and ends its read with a code.
+    const auto use = [&](ReadCode code) {
+      simulation.run_until([&] { return top.free_valid != 0; }, 2 * misses, "a slot");
+      const unsigned slot = top.free_slot;
+      top.free_take = 1;
+      step();
+      top.allocate = 1;
+      top.allocate_slot = static_cast<CData>(slot);
+      sim::set_random(top.allocate_frame, TestType::FRAME_W, random);
+      step();
+      REQUIRE((top.held >> slot & 1) == 1);
+      top.s_read_valid = top.s_read_last = 1;
+      top.s_read_slot = static_cast<CData>(slot);
+      top.s_read_code = static_cast<CData>(code);
+      step();
+      for (int clock = 0; (top.held >> slot & 1) != 0; ++clock) {
+        REQUIRE(clock < 20);
+        step();
+      }
+      return slot;
+    };
+    /// What is lent within the bound that the header gives, one slot after the other.
+    const auto lent = [&] {
+      unsigned slots = 0;
+      for (int clock = 0; clock < 2 * misses + 8; ++clock) {
+        if (top.free_valid != 0) {
+          REQUIRE((slots >> top.free_slot & 1) == 0);
+          slots |= 1U << top.free_slot;
+          top.free_take = 1;
+        }
+        step();
+      }
+      return slots;
+    };
+    for (int round = 0; round < 4; ++round) {
+      unsigned lost = 0;
+      for (int i = 0; i < misses; ++i) {
+        REQUIRE(top.exhausted == 0);
+        lost |= 1U << use(random() % 2 == 0 ? ReadCode::timeout : ReadCode::owed);
+        simulation.steps(2);
+      }
+      REQUIRE(lost == all);
+      for (int i = 0; i < misses; ++i) {
+        REQUIRE(top.exhausted == 1);
+        REQUIRE(lent() == 0);
+        const unsigned slot = round == 0 ? static_cast<unsigned>(i) : static_cast<unsigned>(random() % misses);
+        outstanding = all & ~(1U << slot);
+        for (int clock = 0; top.free_valid == 0; ++clock) {
+          REQUIRE(clock <= misses + 3);
+          step();
+        }
+        REQUIRE(top.exhausted == 0);
+        outstanding = all;
+        REQUIRE(use(ReadCode::timeout) == slot);
+        simulation.steps(2);
+      }
+      const unsigned some = static_cast<unsigned>(random()) & all;
+      outstanding = all & ~some;
+      REQUIRE(lent() == some);
+      simulation.reset();
+      outstanding = all;
+      simulation.steps(misses);
+    }
+  });
+}
