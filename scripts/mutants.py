@@ -116,6 +116,10 @@ class Module:
                           *([f"chparam {parameters} {self.name}"] if parameters else []),
                           f"hierarchy -check -top {self.name}", "proc", "opt_clean"]) + "\n"
 
+    def prepared(self):
+        """The same, with a top that has its name also where Yosys has named it after its parameters."""
+        return self.script() + f"rename -top {self.name}\n"
+
     def needed(self):
         found, open_ = {self.name}, [self.name]
         while open_:
@@ -140,17 +144,17 @@ class Module:
         self.folder.mkdir(parents=True, exist_ok=True)
         for old in self.folder.glob("results.json"):
             old.unlink()
-        self.yosys(self.script() + f"select -set own {self.selection()}\ntee -o {self.folder}/cells stat @own\n", "count.ys")
+        self.yosys(self.prepared() + f"select -set own {self.selection()}\ntee -o {self.folder}/cells stat @own\n", "count.ys")
         cells = sum(map(int, re.findall(r"Number of cells: +(\d+)", (self.folder / "cells").read_text())))
         count = max(16, min(96, cells // each))
         own = f"select -set own {self.selection()}\n"
-        self.yosys(self.script() + own + f"mutate -list {2 * count} -seed {seed} -o {self.folder}/list @own\n", "list.ys")
+        self.yosys(self.prepared() + own + f"mutate -list {2 * count} -seed {seed} -o {self.folder}/list @own\n", "list.ys")
         # not the clock (of another clock a netlist's simulation says nothing), and no output of registers that begin with a value, which a mutant would lose
         begin = any(re.search(r"\breg\b[^;]*=|\binitial\b", FILES[name].read_text()) for name in (self.name, *self.inside))
         lines = [line for line in self.mutants() if not re.search(r"-port (\w+_)?CLK ", line) and not (begin and "-port Q " in line)]
         lines = [lines[i * len(lines) // min(count, len(lines))] for i in range(min(count, len(lines)))]
         (self.folder / "list").write_text("".join(line.replace("mutate ", f"mutate -ctrl mutant {SELECTOR_W} {number} ", 1) + "\n" for number, line in enumerate(lines, 1)))
-        self.yosys(self.script() + f"script {self.folder}/list\nwrite_verilog -noattr {self.folder}/netlist.v\n", "mutate.ys")
+        self.yosys(self.prepared() + f"script {self.folder}/list\nwrite_verilog -noattr {self.folder}/netlist.v\n", "mutate.ys")
         text = (self.folder / "netlist.v").read_text()
         text = re.sub(r"(module [^;]*?)(, mutant\b|\bmutant, )", r"\1", text)
         text = re.sub(r"    \.mutant\(mutant\),?\n", "", text)
@@ -159,7 +163,7 @@ class Module:
         text = re.sub(rf"  wire \[{SELECTOR_W - 1}:0\] mutant;\n", f"  wire [{SELECTOR_W - 1}:0] mutant = chosen_mutant[{SELECTOR_W - 1}:0];\n", text)
         (self.folder / "netlist.v").write_text(text)
         (self.folder / "select.cpp").write_text(SELECT)
-        run(["verilator", "--cc", "-Wno-fatal", "-Wno-lint", "-fno-const-bit-op-tree", "--x-assign", "unique", "--x-initial", "unique", "--prefix", self.model,
+        run(["verilator", "--cc", "-Wno-fatal", "-Wno-lint", "-fno-const-bit-op-tree", "-fno-dfg", "--x-assign", "unique", "--x-initial", "unique", "--prefix", self.model,
              "--top-module", self.name, "--Mdir", self.folder / "model", "--output-split", "20000", self.folder / "netlist.v"])
         ccache = os.environ.get("CMAKE_CXX_COMPILER_LAUNCHER", "")
         run(["make", "-s", "-C", self.folder / "model", "-f", f"{self.model}.mk", f"{self.model}__ALL.a", f"CXX={ccache} c++ -w", "OPT_FAST=-O1", "OPT_SLOW=-O0"])
@@ -242,7 +246,7 @@ class Module:
         folder = self.folder / f"same{number}"
         folder.mkdir(exist_ok=True)
         aiger = folder / "miter.aig"
-        text = (self.script() + "design -save base\nflatten\nrename -top gold\ndesign -stash gold\ndesign -load base\n" + line + "\nflatten\nrename -top gate\n"
+        text = (self.prepared() + "design -save base\nflatten\nrename -top gold\ndesign -stash gold\ndesign -load base\n" + line + "\nflatten\nrename -top gate\n"
                 "design -copy-from gold -as gold gold\nmiter -equiv -flatten gold gate miter\nhierarchy -top miter\n"
                 "chformal -remove\nmemory -nordff\nopt -full\ntechmap\nopt -fast\nabc -g AND\ndffunmap\nopt_clean\nsetundef -undriven -zero\nsetundef -init -zero\n"
                 f"aigmap\nwrite_aiger -zinit {aiger}\n")
