@@ -240,14 +240,16 @@ class Module:
 
     # ---- what lives
 
-    def compare(self, number, depth):
-        """Is mutant `number` the same as the original? proved, bounded, differs or unknown."""
-        line = re.sub(r"-ctrl \S+ \d+ \d+ ", "", self.mutants()[number - 1])
+    def change(self, number):
+        """(what Yosys does for mutant `number`, folder for it)"""
         folder = self.folder / f"same{number}"
         folder.mkdir(exist_ok=True)
+        return re.sub(r"-ctrl \S+ \d+ \d+ ", "", self.mutants()[number - 1]), folder
+
+    def compare(self, number, depth):
+        """Is mutant `number` the same as the original? proved, bounded, differs or unknown."""
+        line, folder = self.change(number)
         aiger = folder / "miter.aig"
-        if self.same_text(line, folder):
-            return "proved"
         text = (self.prepared() + "design -save base\nflatten\nrename -top gold\ndesign -stash gold\ndesign -load base\n" + line + "\nflatten\nrename -top gate\n"
                 "design -copy-from gold -as gold gold\nmiter -equiv -flatten gold gate miter\nhierarchy -top miter\n"
                 "chformal -remove\nmemory -nordff\nopt -full\ntechmap\nopt -fast\nabc -g AND\ndffunmap\nopt_clean\nsetundef -undriven -zero\nsetundef -init -zero\n"
@@ -267,18 +269,19 @@ class Module:
             (folder / "failed").write_text(str(what))
             return "unknown"
 
-    def same_text(self, line, folder):
-        """Is what Yosys leaves of the mutant, without what nothing reads, the text of the original? So for an output that is not used."""
+    def same_text(self, number):
+        """proved if what Yosys leaves of the mutant, without what nothing reads, is the text of the original: a change of what is not used. Else None."""
+        line, folder = self.change(number)
         texts = []
         for name, change in (("gold", ""), ("gate", line)):
             (folder / f"{name}.ys").write_text(f"{self.prepared()}{change}\nflatten\nopt_expr\nopt_clean -purge\nwrite_rtlil {folder}/{name}.il\n")
             try:
                 run(["yosys", "-q", "-s", folder / f"{name}.ys"], timeout=120)
             except (Failed, subprocess.TimeoutExpired):
-                return False
+                return None
             texts.append((folder / f"{name}.il").read_text().partition("\nmodule")[2])
             (folder / f"{name}.il").unlink()
-        return texts[0] == texts[1]
+        return "proved" if texts[0] == texts[1] else None
 
     @staticmethod
     def abc(commands):
@@ -290,11 +293,12 @@ class Module:
         self.link()
         self.save({number: result for number, result in self.results().items() if "killed" in result or result.get("same") in ("proved", "bounded")})
 
-    def judge(self, depth, pool):
+    def judge(self, way, pool):
+        """Asks way(number) about those that live and are not judged."""
         results = self.results()
         waits = [number for number, result in results.items() if not result]
-        for number, found in zip(waits, pool.map(lambda number: self.compare(int(number), depth), waits)):
-            results[number] = {"same": found}
+        for number, found in zip(waits, pool.map(lambda number: way(int(number)), waits)):
+            results[number] = {"same": found} if found else {}
         if waits:
             self.save(results)
 
@@ -435,8 +439,11 @@ def main():
             # tests first: what lives is judged when all have run
             for at, module in enumerate(chosen):
                 attempt(failures, run_tests, module, at, len(chosen), options, pool)
+            # seconds each, then minutes
             for module in chosen:
-                attempt(failures, module.judge, options.depth, pool)
+                attempt(failures, module.judge, module.same_text, pool)
+            for module in chosen:
+                attempt(failures, module.judge, lambda number: module.compare(number, options.depth), pool)
                 for row in summary([module]):
                     print(f"{module.name}: " + " ".join(f"{column}={row[column]}" for column in COUNTS), flush=True)
     rows = summary(chosen)
