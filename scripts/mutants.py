@@ -176,7 +176,11 @@ class Module:
         def outside(path):
             text = re.sub(r"//.*|\n\s*\n", "\n", path.read_text())
             return re.findall(r"VL_(?:IN|OUT)\w*\([^)]*\)", text), re.findall(r"\w+\* const \w+;", text)
-        return outside(self.folder / "model" / f"{self.model}.h") == outside(next((self.build / "tests/unit").glob(f"*.models/{self.model}.h")))
+        return outside(self.folder / "model" / f"{self.model}.h") == outside(self.compiled_model())
+
+    def compiled_model(self):
+        """Header of the model in unit_tests; None for a module that a program of its own tests."""
+        return next((self.build / "tests/unit").glob(f"*.models/{self.model}.h"), None)
 
     def compiled(self, part):
         """The test against the class of the netlist."""
@@ -307,6 +311,7 @@ def modules(build):
     """Those with unit tests, and in each what has none."""
     found = {name: Module(name, build) for name in FILES if (build / "tests/unit/include/models" / f"{name}.hpp").exists()
              and (ROOT / "tests/unit" / f"test_{name}.cpp").exists()}
+    found = {name: module for name, module in found.items() if module.compiled_model()}
     for name in FILES:
         if name in found:
             continue

@@ -24,7 +24,13 @@ std::vector<model::MovedVertex> random_pair(Random& random) {
   };
   const bool open = chance(random, 5);
   const bool origin_lost = chance(random, 50);
-  const std::int64_t error_a = chance(random, 30) ? 0 : static_cast<std::int64_t>(random() & 0xFFFF) >> random() % 16;
+  // Any number; or a few steps of 2^k with one bit below them, so that each bit decides alone whether one more is
+  // needed.
+  const auto some_steps = [&] { return std::int64_t{number(random, 1, 16)} << number(random, 0, 11); };
+  const auto one_bit = [&] { return chance(random, 30) ? 0 : std::int64_t{1} << number(random, 0, 15); };
+  const std::int64_t error_a = chance(random, 30)   ? 0
+                               : chance(random, 40) ? some_steps() | one_bit()
+                                                    : static_cast<std::int64_t>(random() & 0xFFFF) >> random() % 16;
   const std::int64_t error_b = chance(random, 30) ? 0 : static_cast<std::int64_t>(random() % 33);
   const int lossy = chance(random, 50) ? 0 : 40;
   for (model::MovedVertex& v : pair) {
@@ -47,6 +53,16 @@ std::vector<model::MovedVertex> random_pair(Random& random) {
     }
     pair[0].a[0] = 0;
     pair[1].a[0] = std::max<std::int64_t>(span, 0);
+  }
+  // One bit of one coordinate alone.
+  if (chance(random, 30)) {
+    model::MovedVertex& v = pair[random() % pair.size()];
+    const std::size_t axis = random() % 3;
+    if (chance(random, 50)) {
+      v.a[axis] ^= std::int64_t{1} << number(random, 0, std::min(bits, 43));
+    } else {
+      v.b[axis] ^= std::int64_t{1} << number(random, 0, std::min(bits, 23));
+    }
   }
   pair.front().first = true;
   pair.back().last = true;
