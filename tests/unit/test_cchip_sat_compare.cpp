@@ -123,6 +123,22 @@ std::vector<Task> tasks(Random& random, int proj_w, int bound_w, int points, uns
     if (chance(random, 20)) task.in.sign_bound = static_cast<std::int64_t>(random()) & bound_max;
     list.push_back(task);
   }
+  // Values and bounds of one bit, or beside one: each bit of each difference decides alone.
+  const auto power = [&](int most) {
+    return (std::int64_t{1} << random() % static_cast<unsigned>(most)) - (chance(random, 30) ? 1 : 0);
+  };
+  for (int c = 0; c < 20000; ++c) {
+    Task task;
+    flags(task);
+    const std::int64_t sign = chance(random, 50) ? 1 : -1;
+    task.in.gap_bound = chance(random, 40) ? 0 : power(bound_w);
+    task.in.sign_bound = power(bound_w);
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::int64_t base = i > 0 && chance(random, 70) ? task.in.p[0] : 0;
+      task.in.p[i] = base + (i > 0 && chance(random, 20) ? 0 : sign * power(proj_w - 3));
+    }
+    list.push_back(task);
+  }
   return list;
 }
 
