@@ -311,9 +311,10 @@ def modules(build):
     """Those with unit tests, and in each what has none."""
     found = {name: Module(name, build) for name in FILES if (build / "tests/unit/include/models" / f"{name}.hpp").exists()
              and (ROOT / "tests/unit" / f"test_{name}.cpp").exists()}
-    found = {name: module for name, module in found.items() if module.compiled_model()}
+    elsewhere = {name for name, module in found.items() if not module.compiled_model()}
+    found = {name: module for name, module in found.items() if name not in elsewhere}
     for name in FILES:
-        if name in found:
+        if name in found or name in elsewhere:
             continue
         users = [user for user in FILES if name in uses(user)]
         while users and not any(user in found for user in users):
