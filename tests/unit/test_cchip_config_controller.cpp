@@ -167,6 +167,67 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: requests refused", "[unit][cch
   });
 }
 
+TEMPLATE_LIST_TEST_CASE("cchip_config_controller: each bit of a number, an end of file, a count of lost pairs",
+                        "[unit][cchip_config_controller]", cchip_config_controller_configs) {
+  with_bench<TestType>([](SwapBench<TestType>& bench) {
+    for (int slot = 0; slot < TestType::SLOTS; ++slot) bench.require_good_swap(slot, tri);
+    const SwapRequest good = bench.load(0, quad, 64);
+    const auto refused = [&](const SwapRequest& request) {
+      CAPTURE(request.slot, request.module_id, request.address, request.size);
+      const SwapReport report = bench.swap(request);
+      REQUIRE(report.code == SwapCode::request);
+      REQUIRE(report.slot == request.slot);
+      REQUIRE(report.module_id == request.module_id);
+      REQUIRE(report.lost == 0);
+    };
+    for (int bit = 0; bit < 8; ++bit) {
+      SwapRequest r = good;
+      r.slot = 1 << bit;
+      if (r.slot >= TestType::SLOTS) refused(r);
+      r.slot |= TestType::SLOTS;
+      refused(r);
+      r = good;
+      r.module_id = 1 << bit | (defs::kinds_max + 1);
+      refused(r);
+    }
+    for (int bit = 0; bit < 32; ++bit) {
+      SwapRequest r = good;
+      r.address = 0xFFFFFFC0;
+      r.size = 64 + (1U << bit);  // ends at 2^32 + 2^bit
+      refused(r);
+      if (bit < 6) {
+        r = good;
+        r.address += 1U << bit;
+        refused(r);
+      }
+    }
+    bench.top().shutdown_limit = 20;
+    for (int slot = 0; slot < TestType::SLOTS; ++slot) {
+      for (int bit = 0; bit < 16; ++bit) {
+        CAPTURE(slot, bit);
+        for (int other = 0; other < TestType::SLOTS; ++other) bench.behaviour(other).inside = other * 37;
+        SwapRequest request = bench.load(slot, bit % 2 == 0 ? quad : tri, 16);
+        bench.behaviour(slot).inside = 1 << bit;
+        bench.behaviour(slot).drain = -1;
+        request.force = true;
+        const SwapReport report = bench.swap(request);
+        REQUIRE(report.code == SwapCode::ok);
+        REQUIRE(report.slot == slot);
+        REQUIRE(report.lost == 1U << bit);
+        bench.behaviour(slot) = SlotBehaviour{};
+      }
+      for (int bit = 0; bit < 8; ++bit) {  // a region that shows another number
+        CAPTURE(slot, bit);
+        bench.behaviour(slot).becomes = static_cast<int>(quad) ^ 1 << bit;
+        REQUIRE(bench.swap(bench.load(slot, quad, 16)).code == SwapCode::wrong_module);
+        bench.require_shut(slot);
+        bench.require_good_swap(slot, quad);
+        bench.require_good_swap(slot, tri);
+      }
+    }
+  });
+}
+
 TEMPLATE_LIST_TEST_CASE("cchip_config_controller: a request during a swap is answered BUSY on any clock",
                         "[unit][cchip_config_controller]", cchip_config_controller_configs) {
   with_bench<TestType>([](SwapBench<TestType>& bench) {
