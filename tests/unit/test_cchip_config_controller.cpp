@@ -201,6 +201,12 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: each bit of a number, an end o
         refused(r);
       }
     }
+    for (std::size_t bytes = 2048; bytes <= 32768; bytes *= 2) {
+      bench.start(bench.load(0, bytes % 3 == 2 ? quad : ModuleId::tri_quad, bytes));
+      REQUIRE(bench.finish(400000).code == SwapCode::ok);
+      REQUIRE(bench.passed() == bench.payload());
+    }
+    bench.require_good_swap(0, tri);
     bench.top().shutdown_limit = 20;
     for (int slot = 0; slot < TestType::SLOTS; ++slot) {
       for (int bit = 0; bit < 16; ++bit) {
@@ -240,19 +246,20 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: a request during a swap is ans
       if (ended) break;
       const std::size_t before = bench.reports().size();
       SwapRequest other = good;
-      other.module_id = 77;
-      other.slot = 99;
+      other.module_id = static_cast<int>(wait * 91 % 256);
+      other.slot = static_cast<int>(4 + wait * 37 % 252);
+      other.address ^= static_cast<std::uint32_t>(wait * 0x9E3779B9U);
       bench.start(other);
       bench.simulation().run_until([&] { return bench.phase() == SwapPhase::idle; }, 500, "the end of the swap");
       bench.simulation().steps(5);
       const auto& reports = bench.reports();
       REQUIRE(reports.size() == before + 2);
       const SwapReport& last = reports.back();
-      const SwapReport& busy = last.slot == 99 ? last : reports[before];
-      const SwapReport& swap = last.slot == 99 ? reports[before] : last;
+      const SwapReport& busy = last.slot == other.slot ? last : reports[before];
+      const SwapReport& swap = last.slot == other.slot ? reports[before] : last;
       REQUIRE(busy.code == SwapCode::busy);
-      REQUIRE(busy.slot == 99);
-      REQUIRE(busy.module_id == 77);
+      REQUIRE(busy.slot == other.slot);
+      REQUIRE(busy.module_id == other.module_id);
       REQUIRE(swap.code == SwapCode::ok);
       REQUIRE(swap.slot == 0);
       REQUIRE(bench.passed() == bench.payload());
