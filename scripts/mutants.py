@@ -149,9 +149,9 @@ class Module:
         count = max(16, min(96, cells // each))
         own = f"select -set own {self.selection()}\n"
         self.yosys(self.prepared() + own + f"mutate -list {2 * count} -seed {seed} -o {self.folder}/list @own\n", "list.ys")
-        # not the clock (of another clock a netlist's simulation says nothing), and no output of registers that begin with a value, which a mutant would lose
+        # not the clock (of another clock a netlist's simulation says nothing), not where a memory begins (Yosys writes constants only), and no output of registers that begin with a value, which a mutant would lose
         begin = any(re.search(r"\breg\b[^;]*=|\binitial\b", FILES[name].read_text()) for name in (self.name, *self.inside))
-        lines = [line for line in self.mutants() if not re.search(r"-port (\w+_)?CLK ", line) and not (begin and "-port Q " in line)]
+        lines = [line for line in self.mutants() if not re.search(r"-port (\w+_)?CLK |-cell \$auto\$mem\.cc:\d+:emit", line) and not (begin and "-port Q " in line)]
         lines = [lines[i * len(lines) // min(count, len(lines))] for i in range(min(count, len(lines)))]
         (self.folder / "list").write_text("".join(line.replace("mutate ", f"mutate -ctrl mutant {SELECTOR_W} {number} ", 1) + "\n" for number, line in enumerate(lines, 1)))
         self.yosys(self.prepared() + f"script {self.folder}/list\nwrite_verilog -noattr {self.folder}/netlist.v\n", "mutate.ys")
