@@ -92,7 +92,7 @@ class RefitBench {
       top_.s_read_valid = 1;
       top_.s_read_last = last ? 1 : 0;
       top_.s_read_code = static_cast<CData>(read_->line == how.bad_read ? how.bad_code : 0U);
-      const Line& line = memory.at(read_->line);
+      const Line& line = memory.at(index_of(read_->line));
       for (int byte = 0; byte < width / 8; ++byte) {
         sim::set_bits(top_.s_read_data, 8 * byte, 8, line[read_->beat * width / 8 + static_cast<std::size_t>(byte)]);
       }
@@ -109,15 +109,15 @@ class RefitBench {
       ++reads;
       read_ = Read{top_.m_read_line - base, 0,
                    how.latency == 0 ? 0 : static_cast<int>(random_() % static_cast<unsigned>(how.latency))};
-      REQUIRE(read_->line < memory.size());
+      REQUIRE(index_of(read_->line) < memory.size());
     }
     if (top_.s_write_valid != 0) {
-      if (top_.s_write_code == 0) memory.at(*answer_) = written_;
+      if (top_.s_write_code == 0) memory.at(index_of(*answer_)) = written_;
       answer_.reset();
     }
     if (top_.m_write_valid != 0 && top_.m_write_ready != 0) {
       const std::uint32_t line = top_.m_write_line - base;
-      REQUIRE(line < memory.size());
+      REQUIRE(index_of(line) < memory.size());
       REQUIRE(top_.m_write_beat == write_.size());
       REQUIRE((top_.m_write_last != 0) == (write_.size() + 1 == beats));
       for (int byte = 0; byte < width / 8; ++byte) {
@@ -140,6 +140,7 @@ class RefitBench {
   void limit(std::uint32_t clocks_) { top_.limit = clocks_; }
 
   std::vector<Line> memory;
+  std::map<std::uint32_t, std::size_t> places;  ///< of lines in `memory`, if their numbers are not these
   Behaviour how;
   std::uint32_t base = 0;
   bool found = false;
@@ -152,6 +153,12 @@ class RefitBench {
     std::size_t beat;
     int wait;
   };
+
+  std::size_t index_of(std::uint32_t line) const {
+    if (places.empty()) return line;
+    const auto place = places.find(line);
+    return place == places.end() ? memory.size() : place->second;
+  }
 
   void idle() {
     top_.s_read_valid = 0;
@@ -178,7 +185,153 @@ testing::Frames exact_frames(const Mesh& any, Random& random) {
   return testing::frames_of(mesh, testing::snapped(testing::bent(mesh, 0.1, random), 18));
 }
 
+/// A number of `bits` bits: any, of any size, or at an end of the range.
+std::int32_t any_signed(unsigned bits, Random& random) {
+  const auto most = static_cast<std::int32_t>((1U << (bits - 1)) - 1);
+  const auto any = static_cast<std::int32_t>(random() & (2U * static_cast<std::uint32_t>(most) + 1)) - most - 1;
+  switch (random() % 6) {
+    case 0:
+      return any;
+    case 1:
+      return random() % 2 == 0 ? most : -most - 1;
+    case 2:
+      return static_cast<std::int32_t>(random() % 3) - 1;
+    default:
+      return any / (1 << (random() % bits));
+  }
+}
+
+/// A tree whose lines have numbers up to 2^24 and whose leaves have any origins, steps and corners.
+struct AnyTree {
+  std::vector<Line> lines;             ///< without gaps between the numbers, as the model takes them
+  std::vector<std::uint32_t> numbers;  ///< those that the chip meets
+  std::vector<bool> inner;
+  model::RefitCommand command;  ///< with these
+
+  AnyTree(int levels, Random& random) : lines(2), inner(2, true) {
+    const unsigned spread = 1 + static_cast<unsigned>(random() % 24);  // bits of the distances between leaves
+    std::array<std::int32_t, 3> centre{};
+    for (std::int32_t& x : centre) x = any_signed(24, random);
+    const std::size_t most = random() % 3 == 0 ? 90 : 20;
+    const bool chain = random() % 8 == 0;  // as deep as there are levels
+    std::vector<int> level(2, 1);
+    std::vector<std::size_t> groups = {0, 1, 2};  // where children of one node begin
+    for (std::size_t n = 1; n < lines.size(); ++n) {
+      for (std::uint8_t& byte : lines[n]) byte = static_cast<std::uint8_t>(random());
+      if (!inner[n]) continue;
+      const std::size_t children = lines.size() >= most ? 1 : 1 + random() % 4;
+      put(lines[n], bvh::inner_field::children, children - 1);
+      put(lines[n], bvh::inner_field::first, lines.size());
+      for (std::size_t i = 0; i < children; ++i) {
+        const bool more = chain ? i == 0 : lines.size() < most && (i == 0 || random() % 3 == 0);
+        const bool node = level[n] < levels && more;
+        const auto kind = static_cast<NodeKind>(node ? 0 : 1 + random() % 3);
+        put(lines[n], bvh::inner_field::kind, static_cast<int>(kind), i);
+        lines.emplace_back();
+        inner.push_back(node);
+        level.push_back(level[n] + 1);
+        kinds_.resize(lines.size());
+        kinds_.back() = kind;
+      }
+      groups.push_back(lines.size());
+    }
+    for (std::size_t n = 1; n < lines.size(); ++n) {
+      if (!inner[n]) make_leaf(lines[n], kinds_[n], centre, spread, random);
+    }
+    // gaps in front of the root and of the children of each node
+    const auto count = static_cast<std::uint32_t>(lines.size());
+    const std::uint32_t room = ((1U << 24U) - count) >> (random() % 24);
+    std::vector<std::uint32_t> gaps;
+    for (std::size_t n = 0; n < groups.size(); ++n) gaps.push_back(static_cast<std::uint32_t>(random() % (room + 1)));
+    std::sort(gaps.begin(), gaps.end());
+    gaps.front() = 0;
+    numbers.push_back(0);
+    for (std::size_t n = 1, group = 0; n < lines.size(); ++n) {
+      while (group + 1 < groups.size() && n >= groups[group + 1]) ++group;
+      numbers.push_back(static_cast<std::uint32_t>(n) + gaps[group]);
+    }
+    command = {numbers.back() + 1, numbers[1]};
+  }
+
+  /// Nodes name their children by the numbers of the chip.
+  std::vector<Line> renumbered(std::vector<Line> image) const {
+    for (std::size_t n = 1; n < image.size(); ++n) {
+      if (inner[n]) put(image[n], bvh::inner_field::first, numbers[get(image[n], bvh::inner_field::first)]);
+    }
+    return image;
+  }
+
+ private:
+  static void make_leaf(Line& line, NodeKind kind, const std::array<std::int32_t, 3>& centre, unsigned spread,
+                        Random& random) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      put(line, bvh::leaf_field::origin, std::clamp(centre[i] + any_signed(spread, random), -(1 << 23), (1 << 23) - 1),
+          i);
+    }
+    // one in 50 may reach beyond what a node holds
+    put(line, bvh::leaf_field::extent, random() % 50 == 0 ? 24 : random() % (spread + 1) * 23 / 24);
+    put(line, bvh::leaf_field::rounded, random() % 2);
+    const Field& field = kind == NodeKind::quad ? bvh::leaf_field::quad : bvh::leaf_field::triangle;
+    for (std::size_t i = 0; i < field.count; ++i) {
+      put(line, field, any_signed(static_cast<unsigned>(field.width), random), i);
+    }
+  }
+
+  std::vector<NodeKind> kinds_;
+};
+
 }  // namespace
+
+TEMPLATE_LIST_TEST_CASE("cchip_refit: numbers of all sizes, of lines, origins, steps and corners",
+                        "[unit][cchip_refit]", cchip_refit_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
+    RefitBench<TestType> bench(simulation, random);
+    std::array<int, bvh::step_max + 1> steps{};
+    std::array<int, 25> bits{};  // of the number of a line
+    std::map<RefitCode, int> codes;
+    std::size_t deepest = 0;
+    for (int n = 0; n < 150; ++n) {
+      const AnyTree tree(TestType::LEVELS, random);
+      std::vector<Line> expected = tree.lines;
+      const auto count = static_cast<std::uint32_t>(expected.size());
+      const auto result = model::refit_image(expected, {count, 1}, TestType::LEVELS);
+      bench.memory = tree.renumbered(tree.lines);
+      bench.places.clear();
+      for (std::size_t i = 0; i < tree.numbers.size(); ++i) bench.places[tree.numbers[i]] = i;
+      bench.how = {};
+      bench.how.beat = n % 2 == 0 ? 100 : 60;
+      bench.command(tree.command.lines, tree.command.root);
+      const End end = bench.end(1000000);
+      REQUIRE(static_cast<int>(end.code) == static_cast<int>(result.code));
+      REQUIRE(end.line == tree.numbers[result.line]);
+      REQUIRE(end.lines == result.lines);
+      REQUIRE(bench.memory == tree.renumbered(expected));
+      ++codes[end.code];
+      std::vector<std::size_t> depth(tree.lines.size(), 1);
+      for (std::uint32_t i = 1; i < count; ++i) {
+        unsigned width = 0;
+        while (width < 24 && tree.numbers[i] >> width != 0) ++width;
+        ++bits[width];
+        if (!tree.inner[i] || end.code != RefitCode::ok) continue;
+        ++steps[static_cast<std::size_t>(get(expected[i], bvh::inner_field::step))];
+        deepest = std::max(deepest, depth[i]);
+        const auto first = static_cast<std::size_t>(get(expected[i], bvh::inner_field::first));
+        for (std::size_t k = 0; k <= static_cast<std::size_t>(get(expected[i], bvh::inner_field::children)); ++k) {
+          depth[first + k] = depth[i] + 1;
+        }
+      }
+    }
+    std::cout << "steps";
+    for (const int times : steps) std::cout << " " << times;
+    std::cout << " deepest=" << deepest << " ok=" << codes[RefitCode::ok] << " range=" << codes[RefitCode::range]
+              << "\n";
+    for (const int times : steps) CHECK(times > 0);
+    for (std::size_t n = 1; n < bits.size(); ++n) CHECK(bits[n] > 0);
+    CHECK(codes[RefitCode::range] > 0);
+    CHECK(codes[RefitCode::ok] > 100);
+    CHECK(deepest == static_cast<std::size_t>(TestType::LEVELS));
+  });
+}
 
 TEMPLATE_LIST_TEST_CASE("cchip_refit: memory holds what make_image writes for the moved object", "[unit][cchip_refit]",
                         cchip_refit_configs) {
