@@ -310,9 +310,9 @@ class Module:
         results = self.results()
         waits = [number for number, result in results.items() if not result]
         for number, found in zip(waits, pool.map(lambda number: way(int(number)), waits)):
-            results[number] = {"same": found} if found else {}
-        if waits:
-            self.save(results)
+            if found:  # kept at once: a minute each may have gone into it
+                results[number] = {"same": found}
+                self.save(results)
 
 
 def modules(build):

@@ -36,6 +36,13 @@ struct RelationOptions : CommonOptions {
 /// Whether primitives are apart, touch or cross: exact predicates against the definition.
 int run_relation(const RelationOptions& options);
 
+struct CollideOptions : CommonOptions {
+  std::uint64_t pairs = 1000000;  ///< of faces, in all
+  int coord_w = defs::coord_w_default;
+};
+/// collide() of meshes of a few faces under any poses against exact predicates.
+int run_collide(const CollideOptions& options);
+
 struct BoxesOptions : CommonOptions {
   std::uint64_t pairs = 10000000;  ///< of volumes that touch
 };

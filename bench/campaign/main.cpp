@@ -65,6 +65,13 @@ void add_commands(CLI::App& app, std::function<int()>& chosen) {
   add_certify(*relation, n->certify);
   relation->add_flag("--random", n->random, "random pairs of all classes instead of the grid -1..1");
   add_coord_w(*relation, n->coord_w);
+  const auto [collide, d] =
+      add("collide",
+          "collide() under singular, sheared, mirrored, huge, tiny and nearly touching poses, against exact "
+          "predicates",
+          CollideOptions{}, run_collide);
+  add_pairs(*collide, d->pairs, "pairs of faces in all");
+  add_coord_w(*collide, d->coord_w);
   const auto [boxes, b] = add("boxes", "box test in RTL: volumes that touch in a point, every rounding at its worst",
                               BoxesOptions{}, run_boxes);
   add_pairs(*boxes, b->pairs, "pairs of volumes");
