@@ -40,7 +40,7 @@ export JOBS
 
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal formal-all mutants coverage coverage-bins coverage-cpp test-gates test-debug \
-  test-asan test-arm64 cross-windows fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-classes campaign-certainty \
+  test-asan test-arm64 cross-windows fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot bench-scene bench-certificate bench-chip deb wheel sdist test-sdist test-python test-dask bench-python export fpga \
   fpga-quick fpga-sweep asic asic-quick install clean
 
@@ -57,7 +57,7 @@ Check a change
   test test-long wave-of test-python test-sdist test-dask test-debug test-asan test-arm64 cross-windows test-gates formal fuzz lint tidy format
 Check for long
   formal-all/hours mutants/hours coverage/hours coverage-bins coverage-cpp
-  campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
+  campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-collide campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
   campaign-geometry/hours campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps
 Measure
   bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/3_min bench-certificate bench-python/1_min bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
@@ -192,9 +192,11 @@ RUNS ?= 10000000
 fuzz-tools:
 	@command -v clang++ > /dev/null || { echo "install Debian's clang and libclang-rt-14-dev: scripts/bootstrap --dev" >&2; exit 1; }
 
-fuzz: fuzz-tools build/fuzz$(OTHER)/build.ninja ## try RUNS inputs on everything that reads users' bytes (libFuzzer; CCHIP_SEED repeats a run, CCHIP_RECORD=1 adds it to docs/figures/fuzz.csv)
-	cmake --build build/fuzz$(OTHER) -j $(JOBS) --target fuzz_targets
-	tests/fuzz/run.sh build/fuzz$(OTHER) $(RUNS)
+# first many inputs with checks that cost little, then those that were kept, and some more, with AddressSanitizer
+fuzz: fuzz-tools build/fuzz$(OTHER)/build.ninja build/fuzz-fast$(OTHER)/build.ninja ## try RUNS inputs on everything that reads users' bytes, a hundredth of them with AddressSanitizer (libFuzzer; CCHIP_SEED repeats a run, CCHIP_RECORD=1 adds it to docs/figures/fuzz.csv)
+	for build in fuzz-fast fuzz; do cmake --build build/$$build$(OTHER) -j $(JOBS) --target fuzz_targets || exit 1; done
+	tests/fuzz/run.sh build/fuzz-fast$(OTHER) $(RUNS)
+	tests/fuzz/run.sh build/fuzz$(OTHER) $$(($(RUNS) / 100 + 1))
 
 CAMPAIGN := $(RELEASE)/bin/cchip_campaign
 campaign-build: $(RELEASE)/build.ninja
@@ -211,6 +213,9 @@ campaign-grid: campaign-build ## all triangle pairs of the grid -1..1, 10^7 with
 campaign-relation: campaign-build ## apart, touching, crossing: all triangle pairs of the grid -1..1, 10^7 random ones of each shape
 	$(CAMPAIGN) relation --shape tri-tri
 	$(CAMPAIGN) relation --random --pairs 10000000
+
+campaign-collide: campaign-build ## collide() under singular, sheared, mirrored, huge, tiny and nearly touching poses against exact predicates, PAIRS pairs of faces (CCHIP_SEED repeats a run)
+	$(CAMPAIGN) collide --pairs $(PAIRS) --threads $(JOBS)
 
 campaign-classes: campaign-build ## RTL against model and exact oracle, 10^5 pairs per class, with beats and throughput
 	$(CAMPAIGN) classes
@@ -235,11 +240,11 @@ campaign-boxes: campaign-build ## box test in RTL: CASES touching volumes with e
 	$(CAMPAIGN) boxes --pairs $(CASES) --threads $(JOBS)
 
 GEOMETRY := test_intersections test_distance test_points test_along test_solids
-RUNS ?= 10
-campaign-geometry: $(RELEASE)/build.ninja ## intersections, distances, points, ways and solids against their oracles in fractions, RUNS times 10^5 pairs each, seed 1, 2, ... (an hour)
+SEEDS ?= 10
+campaign-geometry: $(RELEASE)/build.ninja ## intersections, distances, points, ways and solids against their oracles in fractions, 10^5 pairs each, for seeds 1..SEEDS (an hour)
 	cmake --build $(RELEASE) -j $(JOBS) --target $(GEOMETRY)
-	seq 1 $(RUNS) | xargs -P $(JOBS) -I SEED sh -c 'for test in $(GEOMETRY); do CCHIP_SEED=SEED $(RELEASE)/bin/$$test "[.long]" || exit 255; done'
-	@echo "runs=$(RUNS) of 10^5 pairs each, failed=0"
+	seq 1 $(SEEDS) | xargs -P $(JOBS) -I SEED sh -c 'for test in $(GEOMETRY); do CCHIP_SEED=SEED $(RELEASE)/bin/$$test "[.long]" || exit 255; done'
+	@echo "seeds=$(SEEDS) of 10^5 pairs each, failed=0"
 
 SWAPS ?= 10000
 campaign-swaps: $(RELEASE)/build.ninja ## SWAPS exchanges of modules under random traffic with faults (CCHIP_SEED repeats a run)

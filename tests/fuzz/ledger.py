@@ -21,18 +21,19 @@ import datasheet  # noqa: E402
 RECORD = ROOT / "docs" / "figures" / "fuzz.csv"
 PAGE = ROOT / "docs" / "develop" / "verification.md"
 COUNTS = ("runs", "crashes", "hangs", "leaks", "seconds")
-COLUMNS = ("target", *COUNTS, "commit")
+COLUMNS = ("target", "build", *COUNTS, "commit")
+TEXTS = ("target", "build", "commit")
 
 
 def rows():
     with RECORD.open() as file:
-        return [{column: row[column] if column in ("target", "commit") else int(row[column]) for column in COLUMNS} for row in csv.DictReader(file)]
+        return [{column: row[column] if column in TEXTS else int(row[column]) for column in COLUMNS} for row in csv.DictReader(file)]
 
 
 def add(path):
     commit = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short=7", "HEAD"], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
     lines = [dict(re.findall(r"(\w+)=(\S+)", line)) for line in pathlib.Path(path).read_text().splitlines() if line.startswith("target=")]
-    if not lines or any(set(line) < {"target", *COUNTS} for line in lines):
+    if not lines or any(not set(line) >= {"target", "build", *COUNTS} for line in lines):
         print(f"ledger.py: {path}: no lines `target=...` as run.sh prints them", file=sys.stderr)
         return 1
     new = not RECORD.exists()
@@ -45,17 +46,18 @@ def add(path):
 
 
 def table():
-    sums = collections.defaultdict(lambda: [0, 0, 0, ""])
+    sums = collections.defaultdict(lambda: [0, 0, 0, 0, ""])
     for row in rows():
         for name in (row["target"], "all"):
             found = sums[name]
             found[0] += row["runs"]
-            found[1] += row["crashes"] + row["hangs"] + row["leaks"]
-            found[2] += row["seconds"]
-            found[3] = row["commit"]
+            found[1] += row["runs"] * (not row["build"].startswith("fuzz-fast"))
+            found[2] += row["crashes"] + row["hangs"] + row["leaks"]
+            found[3] += row["seconds"]
+            found[4] = row["commit"]
     names = sorted(set(sums) - {"all"}) + ["all"]
-    lines = ["| target | inputs tried | findings | hours of one core | last at |", "|---|---|---|---|---|"]
-    lines += [f"| {f'`{name}`' if name != 'all' else name} | {sums[name][0]:,} | {sums[name][1]} | {sums[name][2] / 3600:.1f} | {sums[name][3]} |" for name in names]
+    lines = ["| target | inputs tried | of them with AddressSanitizer | findings | hours of one core | last at |", "|---|---|---|---|---|---|"]
+    lines += [f"| {f'`{name}`' if name != 'all' else name} | {sums[name][0]:,} | {sums[name][1]:,} | {sums[name][2]} | {sums[name][3] / 3600:.1f} | {sums[name][4]} |" for name in names]
     return "\n".join(lines) + "\n", sums["all"]
 
 
@@ -73,7 +75,7 @@ def main():
             return 1
     else:
         datasheet.rewrite(PAGE, "fuzz", text)
-    print(f"executions={total[0]} findings={total[1]}")
+    print(f"executions={total[0]} findings={total[2]}")
     return 0
 
 

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Runs every fuzz target of a build folder until it has tried RUNS inputs; an input may take 10 s and 2 GB. Printed are a line for
-# each target and a last line with the totals. The folder <build>/fuzz keeps the log of each target and the inputs that it found:
-# copy one that fails to tests/fuzz/corpus/<target>, where the regression replays it, and repair what it shows.
+# each target and a last line with the totals. The folder <build>/fuzz keeps the log of each target and the inputs that fail:
+# copy one to tests/fuzz/corpus/<target>, where the regression replays it, and repair what it shows. Inputs that reach something
+# new are kept in build/fuzz-found, where runs of all builds begin: what the fast one finds, AddressSanitizer sees too.
 #
 # usage: tests/fuzz/run.sh BUILD RUNS [TARGET...]     CCHIP_SEED repeats a run; the log names the seed. CCHIP_RECORD=1 adds the run to
-# docs/figures/fuzz.csv (ledger.py), which sums up all of them; a run begins with the inputs that earlier ones of the folder found
+# docs/figures/fuzz.csv (ledger.py), which sums up all of them
 # Exit codes: 0 nothing found, 1 a crash, a leak, an input that takes too long or too much memory, or less than RUNS inputs
 set -euo pipefail
 
@@ -35,6 +36,7 @@ longest() {
 
 count() { grep -c -E "^SUMMARY: $1" "$2" || true; }
 
+found=$(dirname "$build")/fuzz-found
 mkdir -p "$build/fuzz"
 lines=$build/fuzz/lines
 : > "$lines"
@@ -42,13 +44,13 @@ cd "$build/fuzz"
 total=0 failed=0 start=$SECONDS
 declare -A sum=([crashes]=0 [hangs]=0 [leaks]=0)
 for target in "${targets[@]}"; do
-  mkdir -p "$target"
+  mkdir -p "$found/$target"
   log=$target.log
   options=(-runs="$runs" -seed="${CCHIP_SEED:-0}" -max_len="$(longest "$target")" -timeout=10 -rss_limit_mb=2048
     -artifact_prefix="$target-" -print_final_stats=1 -entropic=0)
   [[ -f $here/words/$target ]] && options+=(-dict="$here/words/$target")
   from=$SECONDS code=0
-  "$build/bin/fuzz_$target" "${options[@]}" "$target" "$here/corpus/$target" > "$log" 2>&1 || code=$?
+  "$build/bin/fuzz_$target" "${options[@]}" "$found/$target" "$here/corpus/$target" > "$log" 2>&1 || code=$?
   done=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   : "${done:=0}"
   hangs=$(count 'libFuzzer: timeout' "$log")
