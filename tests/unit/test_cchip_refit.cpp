@@ -212,6 +212,11 @@ struct AnyTree {
     const unsigned spread = 1 + static_cast<unsigned>(random() % 24);  // bits of the distances between leaves
     std::array<std::int32_t, 3> centre{};
     for (std::int32_t& x : centre) x = any_signed(24, random);
+    std::optional<int> edge;
+    if (random() % 3 == 0) {
+      edge = static_cast<int>(random() % 17);
+      for (std::int32_t& x : centre) x = x / 4 / 64 * 64 + (random() % 4 == 0 ? static_cast<int>(random() % 64) : 0);
+    }
     const std::size_t most = random() % 3 == 0 ? 90 : 20;
     const bool chain = random() % 8 == 0;  // as deep as there are levels
     std::vector<int> level(2, 1);
@@ -236,7 +241,7 @@ struct AnyTree {
       groups.push_back(lines.size());
     }
     for (std::size_t n = 1; n < lines.size(); ++n) {
-      if (!inner[n]) make_leaf(lines[n], kinds_[n], centre, spread, random);
+      if (!inner[n]) make_leaf(lines[n], kinds_[n], centre, spread, edge, random);
     }
     // gaps in front of the root and of the children of each node
     const auto count = static_cast<std::uint32_t>(lines.size());
@@ -262,18 +267,30 @@ struct AnyTree {
   }
 
  private:
+  /// With `edge` boxes are as wide as a node holds with a step of 2^edge, give or take little: at -64 and 63 steps
+  /// decides one unit.
   static void make_leaf(Line& line, NodeKind kind, const std::array<std::int32_t, 3>& centre, unsigned spread,
-                        Random& random) {
+                        std::optional<int> edge, Random& random) {
+    const auto few = [&](int most) {
+      return static_cast<std::int32_t>(random() % (2U * static_cast<unsigned>(most) + 1)) - most;
+    };
     for (std::size_t i = 0; i < 3; ++i) {
-      put(line, bvh::leaf_field::origin, std::clamp(centre[i] + any_signed(spread, random), -(1 << 23), (1 << 23) - 1),
-          i);
+      std::int32_t from_centre = any_signed(spread, random);
+      if (edge) {
+        from_centre = (64 << *edge) + (random() % 2 == 0 ? few(3) : few(2) * (1 << *edge));
+        if (random() % 2 == 0) from_centre = -from_centre;
+      }
+      put(line, bvh::leaf_field::origin, std::clamp(centre[i] + from_centre, -(1 << 23), (1 << 23) - 1), i);
     }
     // one in 50 may reach beyond what a node holds
-    put(line, bvh::leaf_field::extent, random() % 50 == 0 ? 24 : random() % (spread + 1) * 23 / 24);
+    put(line, bvh::leaf_field::extent,
+        edge                 ? random() % 3
+        : random() % 50 == 0 ? 24
+                             : random() % (spread + 1) * 23 / 24);
     put(line, bvh::leaf_field::rounded, random() % 2);
     const Field& field = kind == NodeKind::quad ? bvh::leaf_field::quad : bvh::leaf_field::triangle;
     for (std::size_t i = 0; i < field.count; ++i) {
-      put(line, field, any_signed(static_cast<unsigned>(field.width), random), i);
+      put(line, field, edge ? few(1) : any_signed(static_cast<unsigned>(field.width), random), i);
     }
   }
 
@@ -290,7 +307,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_refit: numbers of all sizes, of lines, origins, s
     std::array<int, 25> bits{};  // of the number of a line
     std::map<RefitCode, int> codes;
     std::size_t deepest = 0;
-    for (int n = 0; n < 150; ++n) {
+    for (int n = 0; n < 250; ++n) {
       const AnyTree tree(TestType::LEVELS, random);
       std::vector<Line> expected = tree.lines;
       const auto count = static_cast<std::uint32_t>(expected.size());
