@@ -17,8 +17,8 @@
 //                those of the masters. What is outstanding then is waited for in the background: a
 //                command that comes before it ends is answered with OWED
 //   abort        ends the refit before the next request; what is outstanding is awaited first
-//   time         about 13 vertices + 20 clocks a leaf, 30 children + step + 50 a node; added to
-//                that are the answers of memory
+//   time         13 vertices + beats + 20 clocks a leaf, 27 children + step + 2 beats + 42 a node,
+//                with beats of 512 / DATA_W and memory that answers at once
 //   cuts         every path: each output is a flip-flop or decoded from the state
 //   reset        must reset the masters too; memory may hold a part of the new nodes
 module cchip_refit #(
