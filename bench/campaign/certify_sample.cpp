@@ -7,24 +7,14 @@
 #include <cchip/internal/exact/oracle.hpp>
 #include <stdexcept>
 
+#include "grid_mesh.hpp"
+
 namespace cchip::campaign {
 namespace {
 
-Mesh mesh_of(const GridPrimitive& primitive) {
-  Mesh mesh;
-  Mesh::Face face;
-  face.kind = primitive.kind;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(primitive.kind); ++k) {
-    face.vertex[k] = static_cast<std::uint32_t>(k);
-    mesh.vertices.emplace_back(primitive.v[k].cast<double>());
-  }
-  mesh.faces.push_back(face);
-  return mesh;
-}
-
 bool holds(const GridPair& pair) {
-  const Object a(mesh_of(pair.a));
-  const Object b(mesh_of(pair.b));
+  const Object a(mesh_of({pair.a}));
+  const Object b(mesh_of({pair.b}));
   const Pose here = Pose::Identity();
   CollisionRequest request;
   request.contacts = CollisionRequest::Contacts::all;

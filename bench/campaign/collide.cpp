@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "commands.hpp"
+#include "grid_mesh.hpp"
 #include "ref/random_poses.hpp"
 
 namespace cchip::campaign {
@@ -42,24 +43,10 @@ struct Counted {
   }
 };
 
-/// A mesh of the grid's primitives, and the power of two of its coordinates.
+/// Primitives of the grid, and the power of two of a step.
 struct Body {
   std::vector<GridPrimitive> faces;
   int exponent = 0;
-  Mesh mesh;
-  void make_mesh() {
-    mesh = {};
-    for (const GridPrimitive& primitive : faces) {
-      Mesh::Face face;
-      face.kind = primitive.kind;
-      for (std::size_t k = 0; k < primitive.vertex_count(); ++k) {
-        face.vertex[k] = static_cast<std::uint32_t>(mesh.vertices.size());
-        const Vec3d v = primitive.v[k].cast<double>();
-        mesh.vertices.push_back(v.unaryExpr([this](double x) { return std::ldexp(x, exponent); }));
-      }
-      mesh.faces.push_back(face);
-    }
-  }
 };
 
 /// x -> linear x + translation in integers.
@@ -128,16 +115,15 @@ class Scene {
     const int world = exponent(scale);
     a.exponent = exponent_of_body(scale, world);
     b.exponent = exponent_of_body(scale, world);
-    a.make_mesh();
-    b.make_mesh();
-    const Object object_a(a.mesh), object_b(b.mesh);
+    const Mesh mesh_a = mesh_of(a.faces, a.exponent), mesh_b = mesh_of(b.faces, b.exponent);
+    const Object object_a(mesh_a), object_b(mesh_b);
     std::vector<PosePair> poses;
     std::vector<std::vector<Contact>> truths;
     Counted& row = table.rows[static_cast<std::size_t>(map) * scale_count + static_cast<std::size_t>(scale)];
     for (int n = 0; n < 8; ++n) {
       if (map == doubles) {
-        poses.push_back(any_doubles(a.mesh, b.mesh));
-        truths.push_back(brute_force_contacts(object_a.mesh(), poses.back().a, object_b.mesh(), poses.back().b));
+        poses.push_back(any_doubles(mesh_a, mesh_b));
+        truths.push_back(brute_force_contacts(mesh_a, poses.back().a, mesh_b, poses.back().b));
         row.pairs += count * count;
         for (const Contact& contact : truths.back()) ++row.relations[static_cast<std::size_t>(*contact.relation)];
         row.relations[0] += count * count - truths.back().size();
@@ -163,7 +149,7 @@ class Scene {
       const CollisionResult plain = collide(*plain_, object_a, poses[n].a, object_b, poses[n].b, request_);
       if (is(answer, truths[n]) && is(batch[n], truths[n]) && is(plain, truths[n])) continue;
       ++row.wrong;
-      table.examples.add(part, example(a.mesh, b.mesh, poses[n], truths[n], answer));
+      table.examples.add(part, example(mesh_a, mesh_b, poses[n], truths[n], answer));
     }
   }
 

@@ -7,6 +7,7 @@
 
 #include "../ref/refit_frames.hpp"
 #include "bench.hpp"
+#include "bv_tools.hpp"
 
 using namespace cchip;
 using namespace cchip::test;
@@ -185,20 +186,10 @@ testing::Frames exact_frames(const Mesh& any, Random& random) {
   return testing::frames_of(mesh, testing::snapped(testing::bent(mesh, 0.1, random), 18));
 }
 
-/// A number of `bits` bits: any, of any size, or at an end of the range.
-std::int32_t any_signed(unsigned bits, Random& random) {
-  const auto most = static_cast<std::int32_t>((1U << (bits - 1)) - 1);
-  const auto any = static_cast<std::int32_t>(random() & (2U * static_cast<std::uint32_t>(most) + 1)) - most - 1;
-  switch (random() % 6) {
-    case 0:
-      return any;
-    case 1:
-      return random() % 2 == 0 ? most : -most - 1;
-    case 2:
-      return static_cast<std::int32_t>(random() % 3) - 1;
-    default:
-      return any / (1 << (random() % bits));
-  }
+/// A number of `bits` bits, often at a boundary, and of any size.
+int any_signed(unsigned bits, Random& random) {
+  const int half = 1 << (bits - 1);
+  return edge(random, -half, half - 1) / (chance(random, 50) ? 1 : 1 << (random() % bits));
 }
 
 /// A tree whose lines have numbers up to 2^24 and whose leaves have any origins, steps and corners.
@@ -206,9 +197,10 @@ struct AnyTree {
   std::vector<Line> lines;             ///< without gaps between the numbers, as the model takes them
   std::vector<std::uint32_t> numbers;  ///< those that the chip meets
   std::vector<bool> inner;
+  std::vector<int> level;       ///< 1: the root
   model::RefitCommand command;  ///< with these
 
-  AnyTree(int levels, Random& random) : lines(2), inner(2, true) {
+  AnyTree(int levels, Random& random) : lines(2), inner(2, true), level(2, 1) {
     const unsigned spread = 1 + static_cast<unsigned>(random() % 24);  // bits of the distances between leaves
     std::array<std::int32_t, 3> centre{};
     for (std::int32_t& x : centre) x = any_signed(24, random);
@@ -219,8 +211,7 @@ struct AnyTree {
       for (std::int32_t& x : centre) x = x / 4 / 64 * 64 + (random() % 4 == 0 ? static_cast<int>(random() % 64) : 0);
     }
     const std::size_t most = random() % 3 == 0 ? 90 : 20;
-    const bool chain = random() % 8 == 0;  // as deep as there are levels
-    std::vector<int> level(2, 1);
+    const bool chain = random() % 8 == 0;         // as deep as there are levels
     std::vector<std::size_t> groups = {0, 1, 2};  // where children of one node begin
     for (std::size_t n = 1; n < lines.size(); ++n) {
       for (std::uint8_t& byte : lines[n]) byte = static_cast<std::uint8_t>(random());
@@ -289,9 +280,7 @@ struct AnyTree {
   /// decides one unit.
   static void make_leaf(Line& line, NodeKind kind, const std::array<std::int32_t, 3>& centre, unsigned spread,
                         std::optional<int> edge, std::size_t axis, Random& random) {
-    const auto few = [&](int most) {
-      return static_cast<std::int32_t>(random() % (2U * static_cast<unsigned>(most) + 1)) - most;
-    };
+    const auto few = [&](int most) { return number(random, -most, most); };
     for (std::size_t i = 0; i < 3; ++i) {
       std::int32_t from_centre = any_signed(spread, random);
       if (edge && i != axis) {
@@ -326,7 +315,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_refit: numbers of all sizes, of lines, origins, s
     std::array<int, bvh::step_max + 1> steps{};
     std::array<int, 25> bits{};  // of the number of a line
     std::map<RefitCode, int> codes;
-    std::size_t deepest = 0;
+    int deepest = 0;
     for (int n = 0; n < 250; ++n) {
       const AnyTree tree(TestType::LEVELS, random);
       std::vector<Line> expected = tree.lines;
@@ -346,18 +335,13 @@ TEMPLATE_LIST_TEST_CASE("cchip_refit: numbers of all sizes, of lines, origins, s
       REQUIRE(end.lines == result.lines);
       REQUIRE(bench.memory == tree.renumbered(expected));
       ++codes[end.code];
-      std::vector<std::size_t> depth(tree.lines.size(), 1);
       for (std::uint32_t i = 1; i < count; ++i) {
         unsigned width = 0;
         while (width < 24 && tree.numbers[i] >> width != 0) ++width;
         ++bits[width];
         if (!tree.inner[i] || end.code != RefitCode::ok) continue;
         ++steps[static_cast<std::size_t>(get(expected[i], bvh::inner_field::step))];
-        deepest = std::max(deepest, depth[i]);
-        const auto first = static_cast<std::size_t>(get(expected[i], bvh::inner_field::first));
-        for (std::size_t k = 0; k <= static_cast<std::size_t>(get(expected[i], bvh::inner_field::children)); ++k) {
-          depth[first + k] = depth[i] + 1;
-        }
+        deepest = std::max(deepest, tree.level[i]);
       }
     }
     std::cout << "steps";
@@ -368,7 +352,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_refit: numbers of all sizes, of lines, origins, s
     for (std::size_t n = 1; n < bits.size(); ++n) CHECK(bits[n] > 0);
     CHECK(codes[RefitCode::range] > 0);
     CHECK(codes[RefitCode::ok] > 100);
-    CHECK(deepest == static_cast<std::size_t>(TestType::LEVELS));
+    CHECK(deepest == TestType::LEVELS);
   });
 }
 
