@@ -25,8 +25,12 @@ A mutant that lives may be one that nobody can tell from the original. ABC compa
 are 0, under any inputs: `proved` if no inputs of any length tell them apart, `bounded` if none of --depth clocks do (default 12).
 Alive is what can be told apart, or for which ABC needs more than a minute.
 
+Of one that lives docs/figures/mutants_alive.csv may say in a sentence why it cannot matter: by reading, not by proof. It counts as
+alive, and as explained. A row whose mutant is another one by now, or does not live, is an error.
+
 Everything is kept below build/mutants; a second run goes on where the first one ended. The last line is
-`mutants=N equivalent=E killed=K alive=A`. Exit codes: 0 done, 1 a tool or a test without mutant failed or --least was missed, 2 bad arguments."""
+`mutants=N equivalent=E killed=K alive=A explained=X`. Exit codes: 0 done, 1 a tool or a test without mutant failed, a row of
+mutants_alive.csv is out of date or --least was missed, 2 bad arguments."""
 import argparse
 import collections
 import concurrent.futures
@@ -49,6 +53,8 @@ RTL = ROOT / "rtl"
 OUT = ROOT / "build" / "mutants"
 PAGE = ROOT / "docs" / "develop" / "mutants.md"
 RECORD = ROOT / "docs" / "figures" / "mutants.csv"
+ALIVE = ROOT / "docs" / "figures" / "mutants_alive.csv"
+KINDS = ("illegal", "unreachable", "same", "speed")  # why a mutant that lives cannot matter; docs/develop/mutants.md has what they mean
 COUNTS = ("mutants", "proved", "bounded", "killed", "differs", "undecided")
 COLUMNS = ("module", *COUNTS, "commit")  # module `ROOM/N`: N modules of a room together, until one of the room is recorded
 SELECTOR_W = 16
@@ -107,6 +113,15 @@ class Module:
 
     def mutants(self):
         return [line for line in (self.folder / "list").read_text().splitlines() if line]
+
+    def place(self, number):
+        """Where mutant `number` is and what it does, for a reader: `$and cchip_x.v:85 A[3] cnot1 5`, of an instance its name."""
+        line = self.mutants()[number - 1]
+        word = lambda option: (re.search(rf" -{option} (\S+)", line) or ["", ""])[1]
+        cell = re.sub(r"^(\$\w+?)\$.*/(\w+\.v:\d+)\$\d+$", r"\1 \2", word("cell"))
+        if ":" not in cell:
+            cell = re.sub(r"[$]\d+(?=_|$)", "", cell) + " " + re.sub(r"^.*/(.*:\d+)[.].*", r"\1", word("src"))
+        return f"{cell} {word('port')}[{word('portbit')}] {word('mode')} {word('ctrlbit')}".rstrip()
 
     # ---- making the program
 
@@ -346,6 +361,32 @@ def summary(chosen):
     return rows
 
 
+def explained():
+    """{module: {mutant: row}} of ALIVE."""
+    found = collections.defaultdict(dict)
+    if ALIVE.exists():
+        with ALIVE.open() as file:
+            for row in csv.DictReader(file):
+                if row["kind"] not in KINDS or not row["why"] or row["mutant"] in found[row["module"]]:
+                    raise Failed(f"{ALIVE.name}: {row['module']} {row['mutant']}: twice, without a reason, or of a kind that is none of {', '.join(KINDS)}")
+                found[row["module"]][row["mutant"]] = row
+    return found
+
+
+def out_of_date(chosen):
+    """What ALIVE says of mutants that are others by now, or do not live."""
+    wrong = []
+    for module in chosen:
+        results = module.results()
+        for number, row in explained()[module.name].items() if results else []:
+            place = module.place(int(number)) if number in results else "none"
+            if place != row["place"]:
+                wrong.append(f"{ALIVE.name}: {module.name} {number} is {place}, not {row['place']}")
+            elif "killed" in results[number] or results[number].get("same") in ("proved", "bounded"):
+                wrong.append(f"{ALIVE.name}: {module.name} {number} does not live; take the row away")
+    return wrong
+
+
 def commit():
     def git(*words):
         return run(["git", *words], cwd=ROOT).strip()
@@ -381,9 +422,15 @@ def sums(rows):
     return [sum(row[column] for row in rows) for column in COUNTS]
 
 
+def explained_of(rows):
+    """Mutants of these rows that live and are explained."""
+    found = explained()
+    return sum(len(found[row["module"]]) for row in rows)
+
+
 def table(rows):
-    lines = ["| room | modules | mutants | equivalent, proved | equivalent, bounded | killed | alive, told apart by ABC | alive, undecided | killed of those that are not equivalent |",
-             "|---|---|---|---|---|---|---|---|---|"]
+    lines = ["| room | modules | mutants | equivalent, proved | equivalent, bounded | killed | alive, told apart by ABC | alive, undecided | of these explained | killed of those that are not equivalent |",
+             "|---|---|---|---|---|---|---|---|---|---|"]
     rooms = collections.defaultdict(list)
     for row in rows:
         rooms[room_of(row)[0]].append(row)
@@ -392,7 +439,7 @@ def table(rows):
     for room, inside in rooms.items():
         all_sums = sums(inside)
         told = sum(all_sums[3:])
-        lines.append(f"| {room} | {sum(room_of(row)[1] for row in inside)} | " + " | ".join(map(str, all_sums)) + f" | {100 * all_sums[3] / told if told else 100:.1f} % |")
+        lines.append(f"| {room} | {sum(room_of(row)[1] for row in inside)} | " + " | ".join(map(str, [*all_sums, explained_of(inside)])) + f" | {100 * all_sums[3] / told if told else 100:.1f} % |")
     return "\n".join(lines) + "\n"
 
 
@@ -463,17 +510,21 @@ def main():
     rows = summary(chosen)
     if rows:
         print(table(rows))
+    for what in out_of_date(chosen):
+        failures.append(what)
+        print(f"mutants.py: {what}", file=sys.stderr)
     if options.alive:
+        known = explained()
         for module in chosen:
             for number, result in module.results().items():
                 if result.get("same") in ("differs", "unknown"):
-                    print(f"{module.name} {number} {result['same']}: {module.mutants()[int(number) - 1]}")
+                    print(f"{module.name} {number} {result['same']}: {module.place(int(number))}: {known[module.name].get(number, {}).get('why', 'not explained')}")
     if options.write:
         record(rows)
         datasheet.rewrite(PAGE, "mutants", table(recorded()))
     all_sums = sums(rows)
     killed, told = all_sums[3], sum(all_sums[3:])
-    print(f"mutants={all_sums[0]} equivalent={all_sums[1] + all_sums[2]} killed={killed} alive={told - killed}")
+    print(f"mutants={all_sums[0]} equivalent={all_sums[1] + all_sums[2]} killed={killed} alive={told - killed} explained={explained_of(rows)}")
     if told and 100 * killed < options.least * told:
         failures.append("too few")
         print(f"mutants.py: {killed} of {told} killed, less than {options.least} %", file=sys.stderr)

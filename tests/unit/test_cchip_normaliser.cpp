@@ -8,19 +8,26 @@ using namespace cchip::test;
 
 namespace {
 
-/// Coordinates of a pair: within `bits` bits of each other, on a grid of 2^zeros.
+/// Coordinates of a pair: within `bits` bits of each other, on a grid of 2^zeros that need not hold 0.
 std::vector<model::MovedVertex> random_pair(Random& random) {
   std::vector<model::MovedVertex> pair(chance(random, 50) ? 3 : 4);
   const int bits = number(random, 1, 44);
   const int zeros = chance(random, 50) ? 0 : number(random, 0, bits);
-  const std::int64_t range = std::int64_t{1} << bits;
-  const auto coordinate = [&](int width) {
+  const std::array<std::int64_t, 3> offset = [&] {
+    std::array<std::int64_t, 3> made = {};
+    if (chance(random, 50)) {
+      for (auto& x : made) x = static_cast<std::int64_t>(random() % (std::uint64_t{1} << std::min(zeros, 24)));
+    }
+    return made;
+  }();
+  const auto coordinate = [&](int width, std::size_t axis) {
+    const std::int64_t range = std::int64_t{1} << std::min(bits, width);
     const std::int64_t most = (std::int64_t{1} << (width - 1)) - 1;
     std::int64_t x = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(range + 1)) - range / 2;
     if (chance(random, 20)) x = chance(random, 50) ? -range / 2 : range / 2 - (chance(random, 50) ? 1 : 0);
     if (chance(random, 5)) x = chance(random, 50) ? most : -most - 1;
-    x = x >> zeros << zeros;
-    return std::clamp(x, -most - 1, most);
+    x = (x >> zeros << zeros) + offset[axis];
+    return x < -most - 1 || x > most ? offset[axis] : x;
   };
   const bool open = chance(random, 5);
   const bool origin_lost = chance(random, 50);
@@ -34,8 +41,10 @@ std::vector<model::MovedVertex> random_pair(Random& random) {
   const std::int64_t error_b = chance(random, 30) ? 0 : static_cast<std::int64_t>(random() % 33);
   const int lossy = chance(random, 50) ? 0 : 40;
   for (model::MovedVertex& v : pair) {
-    for (auto& x : v.a) x = coordinate(45);
-    for (auto& x : v.b) x = coordinate(25);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      v.a[axis] = coordinate(45, axis);
+      v.b[axis] = coordinate(25, axis);
+    }
     v.origin_lost = origin_lost && lossy > 0;
     v.lost_a = chance(random, lossy);
     v.lost_b = chance(random, lossy);

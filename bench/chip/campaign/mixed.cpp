@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Batches of triangle and quad objects through a chip with swaps, without and with faults of swaps. Rings are large or
-// so small that they are full; meanwhile the host stops, and the cache is invalidated.
+// so small that they are full; meanwhile the host stops, and the cache is invalidated. In a quarter of the batches most
+// queries end early, apart or at their first hit, while the host asks for one swap after another: queries begin and
+// end, and records come, in phases of a swap that take a clock.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -68,14 +70,18 @@ class MixedRun {
   }
 
   void batch() {
-    const std::size_t count = 1 + random_() % 60;
+    busy_ = percent(random_, 25);
+    const std::size_t count = 1 + random_() % (busy_ ? 120 : 60);
     std::vector<MixedObjects::Placed> placed;
     std::vector<CollisionQuery> queries;
-    for (std::size_t i = 0; i < count; ++i) placed.push_back(objects_.draw(random_));
+    for (std::size_t i = 0; i < count; ++i) {
+      placed.push_back(objects_.draw(random_));
+      if (busy_) placed.back().pose.b.translation() *= percent(random_, 70) ? 10 : 0.1;
+    }
     for (const auto& x : placed)
       queries.push_back({&objects_.objects[x.a], &x.pose.a, &objects_.objects[x.b], &x.pose.b});
     CollisionRequest request;
-    if (random_() % 2 == 0) request.contacts = CollisionRequest::Contacts::all;
+    if (random_() % (busy_ ? 8 : 2) == 0) request.contacts = CollisionRequest::Contacts::all;
     const std::vector<CollisionResult> right = collide(*cpu_, queries, request);
     const std::string fault = begin_fault();
     std::vector<std::size_t> taken(count);
@@ -103,7 +109,8 @@ class MixedRun {
       duplicated_ += times > 1 ? times - 1 : 0;
     }
     queries_ += count;
-    ++bins_[fmt::format("{} {} {}", small_ ? "small" : "large", fault.empty() ? "none" : fault,
+    ++bins_[fmt::format("{} {} {} {}", small_ ? "small" : "large", busy_ ? "busy" : "calm",
+                        fault.empty() ? "none" : fault,
                         request.contacts == CollisionRequest::Contacts::all ? "all" : "first")];
     end_fault();
   }
@@ -142,11 +149,12 @@ class MixedRun {
       set(regs::invalidate_last::offset, last);
       set(regs::invalidate::offset, regs::invalidate::go_mask);
     }
-    // Records wait for the host, which may have asked for a swap.
-    if (percent(random_, 10)) {
-      if (percent(random_, 50)) command(false);
+    // Records wait for the host, which may have asked for a swap, one that does not wait for them, too.
+    if (percent(random_, busy_ ? 3 : 10)) {
+      if (percent(random_, 50)) command(fault == "forced");
       proceed(random_() % 3000);
     }
+    if (busy_) command(fault == "forced" && percent(random_, 10));
     if (fault == "forced" && random_() % 4 == 0) command(true);
     if (fault == "commands" && random_() % 4 == 0) command(false);
     if (fault == "abort" && random_() % 3 == 0) {
@@ -190,6 +198,7 @@ class MixedRun {
   std::size_t queries_ = 0, hits_ = 0, mismatches_ = 0, lost_ = 0, duplicated_ = 0;
   std::uint64_t contacts_ = 0, failed_swaps_ = 0, given_up_ = 0;
   bool small_ = false;  ///< rings of the present chip
+  bool busy_ = false;   ///< queries of the present batch end early, and swaps follow each other
   CollisionStats stats_;
   std::map<std::string, std::size_t> bins_;
 };
