@@ -94,6 +94,11 @@ class SwapBench : public sim::Agent {
     requests_.push_back(request);
     simulation_.run_until([&] { return requests_.empty(); }, 10, "a request to be taken");
   }
+  /// Sends requests one after the other, each as soon as the one before was taken.
+  void start_all(const std::vector<SwapRequest>& requests) {
+    requests_.insert(requests_.end(), requests.begin(), requests.end());
+    simulation_.run_until([&] { return requests_.empty(); }, 10 * requests.size(), "requests to be taken");
+  }
   /// Waits for its report.
   SwapReport finish(std::uint64_t max_clocks = 5000) {
     const std::size_t before = reports_.size();
@@ -162,6 +167,11 @@ class SwapBench : public sim::Agent {
     if (m.m_report_valid != 0 && !now.in_reset) reports_.push_back(sim::get_swap_report(m.m_report_data, clock_));
     if (m.cfg_valid != 0) pass(m);
     if (!now.in_reset) {
+      // an event comes with the report that it counts
+      const bool reported = m.m_report_valid != 0;
+      const SwapCode code = reported ? reports_.back().code : SwapCode::same;
+      expect("swapped", m.swapped != 0, reported && code == SwapCode::ok);
+      expect("rejected", m.rejected != 0, reported && code != SwapCode::ok && code != SwapCode::same);
       swaps_ += m.swapped;
       rejected_ += m.rejected;
       stalls_ += m.stall;

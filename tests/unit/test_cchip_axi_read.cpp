@@ -101,16 +101,12 @@ class ReadBench {
 
   void run(const Behaviour& how, int percent, int clocks) {
     how_ = how;
-    top_.limit = how.limit;
-    top_.s_valid = 0;
-    top_.m_axi_arready = 0;
-    top_.m_axi_rvalid = 0;
-    simulation_.reset();
-    model_.reset(how.limit);
-    owed_.clear();
-    asked_.assign(clients * slots, std::nullopt);
-    silent_ = 0;
-    for (int clock = 0; clock < clocks; ++clock) step(clock == 0 ? 0 : percent);
+    reset(2);
+    for (int clock = 0; clock < clocks; ++clock) {
+      const bool again = clock == clocks / 3;  // of memory, too; while reads are under way one clock is enough
+      if (again) reset(1);
+      step(clock == 0 || again ? 0 : percent);
+    }
     for (Owed& read : owed_) read.lost = false;
     how_.silence = how_.lost = how_.unasked = 0;
     how_.changes = false;
@@ -128,6 +124,20 @@ class ReadBench {
   std::uint64_t most_open = 0;
 
  private:
+  void reset(int clocks) {
+    top_.limit = how_.limit;
+    top_.s_valid = 0;
+    top_.m_axi_arready = 0;
+    top_.m_axi_rvalid = 0;
+    simulation_.reset(clocks);
+    model_.reset(how_.limit);
+    owed_.clear();
+    offered_.reset();
+    asked_.assign(clients * slots, std::nullopt);
+    for (auto& words_of : got_) words_of.clear();
+    silent_ = 0;
+  }
+
   std::size_t open() const {
     return static_cast<std::size_t>(
         std::count_if(asked_.begin(), asked_.end(), [](const auto& line) { return line.has_value(); }));

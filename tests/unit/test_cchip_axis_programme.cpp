@@ -71,6 +71,10 @@ class Walk {
       REQUIRE(get(bits, defs::state_code) == to_bits(state.code));
       REQUIRE(get(bits, defs::state_beats) == static_cast<std::uint64_t>(state.beats));
       REQUIRE((get(bits, defs::state_deep) != 0) == state.deep);
+      // what the programme remembers; what NORMALS knows of nA alone shows in the plan that follows nB
+      if (state.programme != Programme::normals)
+        REQUIRE(get(bits, defs::state_info) ==
+                (plan_bits(options_, state) & mask(defs::plan_info)) >> defs::plan_info.lsb);
       idle();
     }
   }

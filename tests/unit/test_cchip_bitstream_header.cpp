@@ -23,9 +23,11 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_header: verdict on headers with any of 
       top.size = payload + 16;
       const bool fits = length == payload && length >= 16 && (TestType::CFG_W == 8 || length % 4 == 0);
       const auto crc = static_cast<std::uint32_t>(random());
+      const bool reserved = chance(random, 15);  // a bit that must be 0 is not
       const std::uint32_t words[4] = {magic ? 0x43434250U : 0x43434250U ^ 1U << random() % 32,
                                       static_cast<std::uint32_t>(top.module_id ^ (module_id ? 0 : 1)) |
-                                          static_cast<std::uint32_t>(top.slot ^ (slot ? 0 : 4)) << 8U,
+                                          static_cast<std::uint32_t>(top.slot ^ (slot ? 0 : 4)) << 8U |
+                                          (reserved ? 1U << (16 + random() % 16) : 0U),
                                       length, crc};
       top.clear = 1;
       top.s_valid = 0;
@@ -43,12 +45,12 @@ TEMPLATE_LIST_TEST_CASE("cchip_bitstream_header: verdict on headers with any of 
       REQUIRE(top.done == 0);
       simulation.step();
       REQUIRE(top.done == 1);
-      REQUIRE((top.ok != 0) == (magic && slot && module_id && fits));
+      REQUIRE((top.ok != 0) == (magic && !reserved && slot && module_id && fits));
       if (top.ok == 0) {
-        const SwapCode code = !magic       ? SwapCode::magic
-                              : !slot      ? SwapCode::slot
-                              : !module_id ? SwapCode::module
-                                           : SwapCode::length;
+        const SwapCode code = !magic || reserved ? SwapCode::magic
+                              : !slot            ? SwapCode::slot
+                              : !module_id       ? SwapCode::module
+                                                 : SwapCode::length;
         REQUIRE(static_cast<SwapCode>(top.code) == code);
       }
       REQUIRE(top.payload_length == length);

@@ -36,6 +36,9 @@ TEMPLATE_LIST_TEST_CASE("cchip_bv_offset: grids are the functional model's, a no
         bvh::InnerLine a = random_node(random);
         bvh::InnerLine b = random_node(random);
         if (chance(random, 70)) b.step = std::clamp(a.step - pose.shift + number(random, -8, 8), 0, bvh::step_max);
+        // any bound on the error, also with the finest grid, where the slack is about as large as it can be
+        if (chance(random, 30)) pose.epsilon = number(random, 1, 127);
+        if (chance(random, 15)) a.step = b.step = 0;
         if (chance(random, 50)) {  // near each other
           for (std::size_t i = 0; i < 3; ++i) b.origin[i] = std::clamp(pose.t[i] / 64, -131072, 131071);
         }

@@ -66,6 +66,23 @@ Scene traverse(Random& random, const bvh::Image& first, const bvh::Image& second
   return scene;
 }
 
+/// Any query; in some of them a single bit of the pose decides.
+Query decisive_query(Random& random) {
+  Query query = random_query(random);
+  const int kind = number(random, 0, 9);
+  if (kind < 3) {  // along the axes, with nodes that lie on one grid: planes that meet exactly
+    query.m = {};
+    for (std::size_t i = 0; i < 3; ++i) query.m[i][i] = chance(random, 50) ? 1 << 30 : -(1 << 30);
+    for (auto& t : query.t) t = t >> 14 << 14;
+    query.shift = 0;
+    query.error = 0;
+  } else if (kind == 3) {  // the bound on the error decides how the pose's one is rounded
+    query.shift = 8;
+    query.error = static_cast<std::uint32_t>(number(random, 0, 4095));
+  }
+  return query;
+}
+
 /// Any two nodes, mostly near each other and of steps up to 24 powers of two apart.
 NodePair random_pair(Random& random, const model::PoseSetup& pose) {
   NodePair pair{random_node(random), random_node(random), 15, 15};
@@ -77,7 +94,8 @@ NodePair random_pair(Random& random, const model::PoseSetup& pose) {
   const bool fine = chance(random, 20);  // the slack may not fit
   if (fine) pair.a.step = pair.b.step = 0;
   if (fine || chance(random, 80)) {
-    for (auto& o : pair.a.origin) o = fine ? 0 : number(random, -32, 32);
+    const bool exact = fine || chance(random, 30);  // the offset is that of the grid
+    for (auto& o : pair.a.origin) o = exact ? 0 : number(random, -32, 32);
     for (std::size_t i = 0; i < 3; ++i) pair.b.origin[i] = std::clamp(pose.t[i] / 64, -131072, 131071);
   }
   if (chance(random, 50)) pair.children_a = static_cast<unsigned>(number(random, 0, 15));
@@ -148,7 +166,7 @@ void run(Simulation& simulation, Random& random, const std::vector<bvh::Image>& 
         pose_context = c;
         contexts[c].next = 0;
         contexts[c].scene = chance(random, 50)
-                                ? Scene{random_query(random), {}}
+                                ? Scene{decisive_query(random), {}}
                                 : traverse(random, images[random() % images.size()], images[random() % images.size()]);
         const Query& query = contexts[c].scene.query;
         contexts[c].pose = model::set_up(query);

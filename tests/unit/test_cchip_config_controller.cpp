@@ -209,6 +209,14 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: each bit of a number, an end o
     bench.require_good_swap(0, tri);
     bench.top().shutdown_limit = 20;
     for (int slot = 0; slot < TestType::SLOTS; ++slot) {
+      for (int other = 0; other < TestType::SLOTS; ++other) {  // what another slot lost is not counted here
+        if (other == slot) continue;
+        SwapRequest request = bench.load(other, ModuleId::tri_quad, 16);
+        bench.behaviour(other).inside = 0xFFFF;
+        bench.behaviour(other).drain = -1;
+        request.force = true;
+        REQUIRE(bench.swap(request).lost == 0xFFFF);
+      }
       for (int bit = 0; bit < 16; ++bit) {
         CAPTURE(slot, bit);
         for (int other = 0; other < TestType::SLOTS; ++other) bench.behaviour(other).inside = other * 37;
@@ -219,6 +227,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: each bit of a number, an end o
         const SwapReport report = bench.swap(request);
         REQUIRE(report.code == SwapCode::ok);
         REQUIRE(report.slot == slot);
+        REQUIRE(report.module_id == request.module_id);
         REQUIRE(report.lost == 1U << bit);
         bench.behaviour(slot) = SlotBehaviour{};
       }
@@ -265,6 +274,100 @@ TEMPLATE_LIST_TEST_CASE("cchip_config_controller: a request during a swap is ans
       REQUIRE(bench.passed() == bench.payload());
     }
   });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_config_controller: requests on clock after clock during a swap are each answered BUSY",
+                        "[unit][cchip_config_controller]", cchip_config_controller_configs) {
+  with_bench<TestType>([](SwapBench<TestType>& bench) {
+    for (std::uint64_t wait = 0; wait < 40; ++wait) {
+      const SwapRequest good = bench.load(0, wait % 2 != 0 ? tri : quad, 16);
+      const std::size_t before = bench.reports().size();
+      bench.start(good);
+      bench.simulation().steps(wait);
+      std::vector<SwapRequest> others(4, good);
+      for (std::size_t i = 0; i < others.size(); ++i) others[i].module_id = static_cast<int>(100 + 10 * wait % 97 + i);
+      bench.start_all(others);
+      bench.simulation().run_until([&] { return bench.phase() == SwapPhase::idle; }, 500, "the end of the swap");
+      bench.simulation().steps(5);
+      CAPTURE(wait);
+      REQUIRE(bench.reports().size() == before + 1 + others.size());
+      std::vector<int> busy;
+      for (std::size_t i = before; i < bench.reports().size(); ++i) {
+        const SwapReport& report = bench.reports()[i];
+        REQUIRE(report.code == (report.module_id == good.module_id ? SwapCode::ok : SwapCode::busy));
+        if (report.code == SwapCode::busy) busy.push_back(report.module_id);
+      }
+      REQUIRE(busy.size() == others.size());
+      for (std::size_t i = 0; i < busy.size(); ++i) REQUIRE(busy[i] == others[i].module_id);
+    }
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_config_controller: a file of any size passes its header, each bit of the size alone",
+                        "[unit][cchip_config_controller]", cchip_config_controller_configs) {
+  with_bench<TestType>([](SwapBench<TestType>& bench) {
+    const Bytes payload = make_payload(0, quad, 64);
+    for (int bit = 6; bit < 32; ++bit) {
+      CAPTURE(bit);
+      const std::uint32_t length = (1U << bit) + 48;
+      SwapRequest request =
+          bench.load(join_bitstream({defs::bitstream_magic, 0, quad, length, 0}, payload), 0, quad, 0x1000);
+      request.size = length + 16;
+      bench.start(request);
+      bench.simulation().run_until(
+          [&] { return bench.phase() == SwapPhase::transfer || bench.phase() == SwapPhase::report; }, 500, "a verdict");
+      REQUIRE(bench.phase() == SwapPhase::transfer);
+      bench.top().abort_swap = 1;
+      REQUIRE(bench.finish().code == SwapCode::aborted);
+      bench.top().abort_swap = 0;
+      bench.simulation().steps(100);  // words that are still owed
+      bench.require_good_swap(0, tri);
+    }
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_config_controller: each bit of the limit of a shutdown alone gives its time",
+                        "[unit][cchip_config_controller]", cchip_config_controller_configs) {
+  with_bench<TestType>([](SwapBench<TestType>& bench) {
+    for (int bit = 8; bit < 32; ++bit) {
+      CAPTURE(bit);
+      bench.top().shutdown_limit = (1U << bit) + 16;
+      const SwapRequest request = bench.load(0, bit % 2 == 0 ? quad : tri, 16);
+      bench.behaviour(0).drain = 200;
+      REQUIRE(bench.swap(request).code == SwapCode::ok);
+    }
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_config_controller: a slot that is shut stays so, whatever becomes of the other",
+                        "[unit][cchip_config_controller]", cchip_config_controller_configs) {
+  if constexpr (TestType::SLOTS > 1) {
+    with_bench<TestType>([](SwapBench<TestType>& bench) {
+      for (const int shut : {0, 1}) {
+        const int other = 1 - shut;
+        bench.require_good_swap(shut, tri);
+        bench.require_good_swap(other, tri);
+        bench.behaviour(shut).spoilt = true;
+        REQUIRE(bench.swap(bench.load(shut, quad, 16)).code == SwapCode::wrong_module);
+        bench.require_shut(shut);
+        // it shows any numbers meanwhile
+        for (int i = 0; i < 5; ++i) bench.require_good_swap(other, i % 2 == 0 ? quad : tri);
+        bench.require_shut(shut);
+        SwapRequest request = bench.load(other, tri, 16);
+        request.size += 4;
+        REQUIRE(bench.swap(request).code == SwapCode::length);
+        bench.require_shut(shut);
+        bench.require_at_work(other, quad);
+        bench.behaviour(other).spoilt = true;
+        REQUIRE(bench.swap(bench.load(other, tri, 16)).code == SwapCode::wrong_module);
+        bench.require_shut(shut);
+        bench.require_shut(other);
+        bench.require_good_swap(shut, quad);
+        bench.require_shut(other);
+        bench.require_good_swap(other, quad);
+      }
+    });
+  }
 }
 
 TEMPLATE_LIST_TEST_CASE("cchip_config_controller: wrong CRC", "[unit][cchip_config_controller]",

@@ -130,6 +130,31 @@ TEMPLATE_LIST_TEST_CASE("cchip_dispatch_sequencer: a pair only from a queue that
   });
 }
 
+TEMPLATE_LIST_TEST_CASE(
+    "cchip_dispatch_sequencer: a reset of one clock in mid traffic leaves no look, launch or vertex behind",
+    "[unit][cchip_dispatch_sequencer]", cchip_dispatch_sequencer_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
+    using Bench = SequencerBench<TestType>;
+    auto& top = simulation.top();
+    for (int round = 0; round < 100; ++round) {
+      Bench bench(simulation);
+      bench.serves = (std::uint64_t{1} << (Bench::queues * Bench::takers)) - 1;
+      bench.room.fill(1000);
+      bench.waiting.fill(1000);
+      for (int clock = static_cast<int>(random() % 40); clock > 0; --clock) bench.clock();
+      top.rst = 1;
+      top.some = 0;  // as of queues that are empty
+      simulation.step();
+      top.rst = 0;
+      for (int clock = 0; clock < 4; ++clock) {
+        simulation.settle();
+        REQUIRE((top.look == 0 && top.launch == 0 && top.grant == 0 && top.m_valid == 0));
+        simulation.rise();
+      }
+    }
+  });
+}
+
 TEMPLATE_LIST_TEST_CASE("cchip_dispatch_sequencer: a pair every 3 clocks, with quads every 4, kinds and takers in turn",
                         "[unit][cchip_dispatch_sequencer]", cchip_dispatch_sequencer_configs) {
   for_two_power_ups<typename TestType::Model>([](auto& simulation, Random&) {

@@ -31,11 +31,14 @@ class DispatcherBench {
     put_modules();
     reset();
   }
-  /// Also in mid traffic: all that is inside is forgotten.
+  /// Also in mid traffic: all that is inside is forgotten. One clock of reset is enough, also on that of a grant.
   void reset() {
     top.some = 0;
     top.s_result_valid = 0;
-    simulation.reset();
+    simulation.reset(1 + static_cast<int>(random() % 2));
+    simulation.settle();
+    REQUIRE(top.m_result_valid == 0);
+    REQUIRE((top.answered == 0 && top.refused_kind == 0 && top.refused_provider == 0));
     open_.clear();
     for (const auto& queue : queues) {
       for (const WaitingPair& pair : queue) open_.emplace(pair.tag, pair.kind);
@@ -45,7 +48,8 @@ class DispatcherBench {
     popped_clocks_ = 3;
     left_.reset();
     looked_ = false;
-    for (int i = 0; i < Config::CREDIT + 10; ++i) simulation.step();
+    // pairs may also wait from the first clock on, before the slots are open for them
+    if (chance(random, 50)) simulation.steps(Config::CREDIT + 10);
   }
   void push(int kind) {
     std::uint16_t tag = 0;
@@ -216,7 +220,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_dispatcher: every pair is answered once, with any
     auto& top = bench.top;
     std::uint64_t pushed = 0, given_up = 0;
     for (int s = 0; s < slots; ++s) bench.load(s, 1 + s % TestType::KINDS);
-    for (int round = 0; round < 60; ++round) {
+    for (int round = 0; round < 90; ++round) {
       for (int clock = static_cast<int>(random() % 300); clock > 0; --clock) {
         if (chance(random, 30)) {
           bench.push(static_cast<int>(random() % (TestType::KINDS + 1)));

@@ -20,6 +20,14 @@ TEMPLATE_LIST_TEST_CASE("cchip_pose_setup: poses are the functional model's, a d
       std::optional<model::PoseSetup> shown;  // of the query at work, its last clock included
       std::size_t next = 0;                   // direction
       int queries = 0;
+      // in reset, however long it lasts, no query is taken: on its first clock only one of before may leave
+      top.rst = 1;
+      top.s_valid = 1;
+      for (int clock = 0; clock < 4; ++clock) {
+        simulation.settle();
+        if (clock > 0) REQUIRE(top.s_ready == 0);
+        simulation.rise();
+      }
       top.s_valid = 0;
       simulation.reset();
       for (int clock = 0; clock < 40000; ++clock) {

@@ -27,6 +27,7 @@ void check_persona() {
         sim::require(known, "a result without a request");
         scoreboard.got(r.tag, r, simulation.clock());
       };
+      port.set_numbers(256);  // any number, whatever the credit
       simulation.add(port);
       simulation.reset();
       simulation.steps(4);
@@ -44,6 +45,17 @@ void check_persona() {
       scoreboard.finish();
       simulation.steps(4);
       REQUIRE(top.idle == 1);
+      // a pair alone, also while it waits for its next vertex
+      for (int i = 0; i < 20; ++i) {
+        port.push(requests.draw(id));
+        while (port.waiting() != 0 || port.inside() != 0) {
+          const bool begun = port.begun();
+          simulation.step();
+          if (begun) REQUIRE(top.idle == 0);
+        }
+        simulation.steps(6);
+        REQUIRE(top.idle == 1);
+      }
     }
   });
 }

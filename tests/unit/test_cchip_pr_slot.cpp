@@ -12,6 +12,7 @@ using namespace cchip::test;
 namespace {
 
 using Simulated = std::tuple<slot_8, slot_32>;
+using All = std::tuple<slot_8, slot_32, slot_partition>;
 
 /// The modules of a slot from this one on.
 template <class Config>
@@ -57,6 +58,8 @@ TEST_CASE("cchip_pr_slot: the partition answers pairs like the model, two clocks
       SlotBench<slot_partition> bench(options, sim::Pattern::random(percent / 100.0, options.seed));
       bench.power_up();
       REQUIRE(int{bench.top.region_rm_id} == slot_partition::RM_ID);
+      bench.steps(4);
+      REQUIRE(bench.top.idle == 1);
       bench.work(ModuleId::tri_quad, 200);
       bench.work(ModuleId::tri_tri, 100);  // B as the quad V3 = V2
       REQUIRE(int{bench.top.rm_id} == slot_partition::RM_ID);
@@ -76,10 +79,42 @@ TEST_CASE("cchip_pr_slot: the partition answers pairs like the model, two clocks
     bench.port.on_sent = [&](const PairRequest&) { sent = bench.simulation.clock(); };
     request.mode = static_cast<PairMode>(2);  // reserved: answered at once
     bench.port.push(request);
+    bench.steps(8);
+    REQUIRE(bench.top.idle == 0);
     bench.steps(200);
+    REQUIRE(bench.top.idle == 1);
     REQUIRE(beats == 0);
     // a register each way, one for the complete pair
     REQUIRE(latency == static_cast<std::uint64_t>(defs::pair_latency(slot_partition::SUBSTAGES, 1)) + 3);
+  });
+}
+
+TEST_CASE("cchip_pr_slot: pairs inside the partition are gone after either reset of its module",
+          "[unit][cchip_pr_slot]") {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    SlotBench<slot_partition> bench(options);
+    bench.power_up();
+    std::size_t lost = 0;
+    for (int i = 0; i < 40; ++i) {
+      for (int n = 0; n < 8; ++n) bench.port.push(bench.requests.draw(ModuleId::tri_quad));
+      bench.steps(5 + 3 * (i / 2));
+      bench.decouple();  // at any vertex
+      lost += bench.port.inside();
+      bench.port.clear();
+      bench.scoreboard.clear();
+      if (i % 2 == 0) {
+        bench.hold_reset();
+        bench.steps(4);
+        bench.top.hold_reset = 0;
+        bench.steps(4);
+      } else {
+        bench.reset_on_configuration();
+      }
+      bench.recouple();
+      bench.steps(500);  // a result would be one without a request
+      bench.work(ModuleId::tri_quad, 3);
+    }
+    REQUIRE(lost > 40);
   });
 }
 
@@ -270,7 +305,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_pr_slot: a reset neither couples nor configures, 
 
 TEMPLATE_LIST_TEST_CASE(
     "cchip_pr_slot: the module's reset lasts ROC_CYCLES clocks after the start and covers hold_reset",
-    "[unit][cchip_pr_slot]", Simulated) {
+    "[unit][cchip_pr_slot]", All) {
   for_two_power_ups([](const sim::SimulationOptions& options) {
     SlotBench<TestType> bench(options);
     auto& top = bench.top;

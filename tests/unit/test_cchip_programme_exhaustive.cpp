@@ -17,6 +17,10 @@ TEMPLATE_LIST_TEST_CASE("cchip_programme_exhaustive: what the verdicts of a pair
     top.s_valid = 0;
     simulation.reset(1);
     REQUIRE(top.m_valid == 0);
+    top.s_valid = 1;  // a verdict on the clock of a reset does not count
+    simulation.reset(1);
+    REQUIRE(top.m_valid == 0);
+    top.s_valid = 0;
     int hits = 0, gaps = 0, plans = 0, tetrahedra = 0, deep_hits = 0;
     for (int i = 0; i < 5000; ++i) {
       const int separated_percent = chance(random, 50) ? 1 : 10;

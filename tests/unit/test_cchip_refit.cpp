@@ -22,7 +22,8 @@ struct Behaviour {
   std::optional<std::uint32_t> bad_read;   ///< line whose read ends with an error
   std::optional<std::uint32_t> bad_write;  ///< line whose write does
   unsigned bad_code = 1;
-  std::optional<std::uint32_t> lost;  ///< line whose read or write is answered only when `found` is set
+  std::optional<std::uint32_t> lost;        ///< line whose read is answered only when `found` is set
+  std::optional<std::uint32_t> lost_write;  ///< line whose write is
 };
 
 struct End {
@@ -98,7 +99,7 @@ class RefitBench {
         sim::set_bits(top_.s_read_data, 8 * byte, 8, line[read_->beat * width / 8 + static_cast<std::size_t>(byte)]);
       }
     }
-    if (answer_ && (how.lost != *answer_ || found) && chance(random_, how.beat)) {
+    if (answer_ && (how.lost_write != *answer_ || found) && chance(random_, how.beat)) {
       top_.s_write_valid = 1;
       top_.s_write_code = static_cast<CData>(*answer_ == how.bad_write ? how.bad_code : 0U);
     }
@@ -464,18 +465,22 @@ TEST_CASE("cchip_refit: every fault ends the refit with its code, and the next o
       REQUIRE(bench.memory == expected);
       ++bins[end.code];
       // memory that does not answer: a timeout, then nothing until it has answered
-      bench.memory = start;
-      bench.limit(40);
-      bench.how.lost = line;
-      bench.command(command.lines, command.root);
-      expect_end(RefitCode::timeout, line);
-      bench.command(command.lines, command.root);
-      expect_end(RefitCode::owed, 0);
-      bench.found = true;
-      for (int n = 0; n < 20; ++n) bench.step();
-      bench.found = false;
-      bench.limit(0);
-      good();
+      for (const bool reads : {true, false}) {
+        if (!reads && !is_inner(line)) continue;
+        bench.how = {};
+        bench.memory = start;
+        bench.limit(40);
+        (reads ? bench.how.lost : bench.how.lost_write) = line;
+        bench.command(command.lines, command.root);
+        expect_end(RefitCode::timeout, line);
+        bench.command(command.lines, command.root);
+        expect_end(RefitCode::owed, 0);
+        bench.found = true;
+        for (int n = 0; n < 20; ++n) bench.step();
+        bench.found = false;
+        bench.limit(0);
+        good();
+      }
       // abort and reset at any clock
       bench.how = {};
       bench.memory = start;

@@ -236,6 +236,56 @@ TEMPLATE_LIST_TEST_CASE("cchip_sat_pipeline: every verdict on its clock, through
   });
 }
 
+// The bound grows with the normal, which has two bits here, so each bit of the bound decides.
+TEMPLATE_LIST_TEST_CASE("cchip_sat_pipeline: planes as far apart as the error bound are not certain, one unit more is",
+                        "[unit][cchip_sat_pipeline]", cchip_sat_pipeline_configs) {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    constexpr int most = TestType::COORD_W - 1;  // bits of a coordinate that is not negative
+    PipelineBench<TestType> bench(options);
+    Random random(options.seed);
+    std::vector<BeatIn> beats;
+    for (int high = 1; high < 2 * most; ++high) {
+      for (int low = std::max(0, high - most + 1); low < high; ++low) {
+        const int bit = std::clamp(high - most + 1, 0, low);  // x y is 2^high + 2^low
+        const int x = 1 << bit;
+        const int y = (1 << (high - bit)) + (1 << (low - bit));
+        if (bit >= most || y >= 1 << most) continue;
+        for (const int beside : {-1, 0, 1}) {
+          BeatIn in;
+          in.beat.code = axis_code(AxisClass::normal_a, 0, 0);
+          in.beat.allow_above = in.beat.allow_below = true;
+          in.beat.err = static_cast<int>(random() % defs::err_unknown);
+          const int z = ((1 << model::error_shift(in.beat.err)) + beside) * (chance(random, 50) ? 1 : -1);
+          const auto d = static_cast<Eigen::Index>(random() % 3);
+          const auto rectangle = [&](GridPrimitive& p, std::size_t vertices, int height) {
+            p.kind = kind_of(vertices);
+            const std::array<std::array<int, 2>, 4> corners = {{{0, 0}, {x, 0}, {x, y}, {0, y}}};
+            for (std::size_t i = 0; i < vertices; ++i) {
+              p.v[i][d] = corners[i][0];
+              p.v[i][(d + 1) % 3] = corners[i][1];
+              p.v[i][(d + 2) % 3] = height;
+            }
+          };
+          rectangle(in.pair.a, TestType::VERTS_A, 0);
+          rectangle(in.pair.b, TestType::VERTS_B, z);
+          beats.push_back(in);
+        }
+      }
+    }
+    std::size_t next = 0;
+    std::size_t certain = 0;
+    bench.source = [&]() -> std::optional<BeatIn> {
+      if (next == beats.size()) return std::nullopt;
+      return beats[next++];
+    };
+    bench.on_verdict = [&](const BeatIn&, const model::Verdict& v) { certain += v.compare.certain_gap ? 1 : 0; };
+    bench.simulation().reset();
+    next = 0;
+    bench.simulation().steps(beats.size() + static_cast<std::size_t>(defs::pipe_latency(TestType::SUBSTAGES)));
+    REQUIRE(certain == beats.size() / 3);
+  });
+}
+
 TEMPLATE_LIST_TEST_CASE("cchip_sat_pipeline: each axis of the paper is the only one that separates some pair",
                         "[unit][cchip_sat_pipeline]", cchip_sat_pipeline_configs) {
   const model::Shape shape{TestType::VERTS_A, TestType::VERTS_B};

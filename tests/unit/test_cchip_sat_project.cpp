@@ -32,6 +32,13 @@ Task draw_task(Random& random, int coord_w, int points) {
     s.f_to = Vec3i::Unit(static_cast<Eigen::Index>(random() % 3));
   }
   if (chance(random, 5)) s.f_to = s.f_from;  // zero axis
+  if (chance(random, 15)) {                  // one component of a single bit
+    const auto d = static_cast<Eigen::Index>(random() % 3);
+    const auto bit = [&] { return 1 << random() % static_cast<unsigned>(coord_w - 1); };
+    s.e_from = s.f_from = Vec3i::Zero();
+    s.e_to = Vec3i::Unit(d) * bit();
+    s.f_to = Vec3i::Unit((d + 1 + static_cast<Eigen::Index>(random() % 2)) % 3) * bit();
+  }
   task.axis = model::sat_axis(s, coord_w);
   task.error_shift = static_cast<int>(random() % 5);
   return task;

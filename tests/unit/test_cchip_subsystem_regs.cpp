@@ -187,6 +187,7 @@ TEST_CASE("cchip_subsystem_regs: what hardware writes is read, and nothing is wh
         REQUIRE((word & r::slot_status::phase_mask) >> r::slot_status::phase_shift ==
                 (top.hwif_in_slot_status_phase >> 4 * i & 15U));
         REQUIRE((word >> r::slot_status::decoupled_shift & 1U) == (top.hwif_in_slot_status_decoupled >> i & 1U));
+        REQUIRE((word & 0xE000U) == 0);  // no field
         REQUIRE(word >> r::slot_status::outstanding_shift == (top.hwif_in_slot_status_outstanding >> 16 * i & 0xFFFFU));
       }
       REQUIRE(read(r::lost::offset) == top.hwif_in_lost_value);
@@ -237,6 +238,30 @@ TEST_CASE("cchip_subsystem_regs: every address that is no register, or read-only
       REQUIRE(master.read(simulation, offset).data == value);
     }
     REQUIRE(external.words == words);
+  });
+}
+
+TEST_CASE("cchip_subsystem_regs: a refusal stays on the bus until it is taken, and the next access is judged anew",
+          "[unit][cchip_subsystem_regs]") {
+  for_two_power_ups([](const sim::SimulationOptions& options) {
+    namespace r = registers;
+    Random random(options.seed);
+    for (int round = 0; round < 20; ++round) {
+      sim::Simulation<Model> simulation(options);
+      const auto pattern = [&] { return sim::standard_patterns(random())[random() % 7]; };
+      Master master(simulation.top(), {pattern(), pattern(), pattern(), pattern(), pattern()});
+      External external(simulation.top(), random);
+      simulation.add(master);
+      simulation.add(external);
+      scramble(simulation.top(), random);
+      simulation.reset();
+      for (int i = 0; i < 20; ++i) {
+        const bool good = chance(random, 50);
+        const std::uint32_t none = chance(random, 50) ? r::report::offset : 0xFFC;  // read-only, or nothing there
+        REQUIRE(master.write(simulation, good ? r::minimum_batch::offset : none, 7) == good);
+        REQUIRE(master.read(simulation, good ? r::minimum_batch::offset : 0xFFC).ok == good);
+      }
+    }
   });
 }
 

@@ -246,6 +246,52 @@ CCHIP_CASE("the choice in a still picture is that of the rules") {
   });
 }
 
+CCHIP_CASE("kinds are looked at in turn for 4 clocks each, and for no others") {
+  with_bench<TestType>([](SchedulerBench<TestType>& bench) {
+    bench.modules.fill(0);
+    bench.enable = true;
+    for (int kind = 1; kind <= TestType::KINDS; ++kind) {
+      // pairs that come at any moment of a turn, twice: the wait differs by a turn less one clock
+      int least = 1000, most = 0;
+      for (int moment = 0; moment < 8 * TestType::KINDS; ++moment) {
+        bench.waiting.fill(0);
+        bench.reset();
+        bench.steps(static_cast<std::uint64_t>(20 + moment));
+        bench.waiting[static_cast<std::size_t>(kind)] = 5;
+        int clocks = 0;
+        for (; bench.requests.empty(); ++clocks) {
+          REQUIRE(clocks < 200);
+          bench.steps(1);
+        }
+        least = std::min(least, clocks);
+        most = std::max(most, clocks);
+      }
+      CAPTURE(kind, least, most);
+      REQUIRE(most - least == 4 * TestType::KINDS - 1);
+    }
+  });
+}
+
+CCHIP_CASE("after a report it rests until the slot shows the new module, which the next kind needs no more") {
+  with_bench<TestType>([](SchedulerBench<TestType>& bench) {
+    bench.modules.fill(1);
+    bench.valid = bench.of_modules(8);  // that of quads, for kinds 2 and 3
+    bench.waiting = {0, 0, 5, 5};
+    bench.enable = true;
+    bench.steps(100);
+    REQUIRE(bench.requests.size() == 1);
+    REQUIRE(bench.requests[0].module_id == 3);
+    auto& changed = bench.modules[static_cast<std::size_t>(bench.requests[0].slot)];
+    changed = 0;
+    bench.steps(100);
+    bench.report({bench.requests[0].slot, 3, SwapCode::ok, 0});
+    bench.steps(12);
+    changed = 3;
+    bench.steps(300);
+    REQUIRE(bench.requests.size() == 1);
+  });
+}
+
 CCHIP_CASE("one swap at a time, a rejected bitstream is forgotten, an interrupted one is not") {
   for_two_power_ups([](const sim::SimulationOptions& options) {
     for (unsigned code = 0; code < 16; ++code) {
@@ -381,6 +427,7 @@ CCHIP_CASE("commands of any numbers are passed on or refused, and reports told, 
     };
     int passed = 0, refused = 0;
     for (int i = 0; i < 600; ++i) {
+      if (chance(random, 10)) bench.valid = static_cast<unsigned>(random()) & bench.all();  // so that each is met
       const int slot = number(slots - 1);
       const int module_id = number(TestType::KINDS);
       const bool force = chance(random, 50);

@@ -390,3 +390,78 @@ TEST_CASE("cchip_traversal: as many leaf pairs in flight as the rules allow", "[
     REQUIRE(results > most + 16 * Config::LEAF_DEPTH);
   });
 }
+
+TEST_CASE("cchip_traversal: a query's count of pairs that meet beyond 2^17", "[unit][cchip_traversal]") {
+  using Config = traversal_leaves;
+  for_two_power_ups<Config::Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
+    constexpr int most_inner = 156;  // node pairs whose child pairs are all inner ones
+    constexpr unsigned hits = 4;     // of each leaf pair: that is what two leaves of two triangles can have
+    Traversal::Inputs in;
+    in.start_ready = in.done_ready = true;
+    in.limits.pairs_each = 7;
+    drive<Config>(top, in);
+    simulation.reset();
+    in.query.emplace();
+    (*in.query)[14] = 1U << 28;  // mode ALL
+    std::vector<std::size_t> nodes, leaves;
+    std::map<std::size_t, bool> header;
+    int inner = 0, open = 0;  // child pairs that have not been sent; few, so that the stack never fills
+    std::size_t behind = 0;
+    std::uint32_t results = 0;
+    bool done = false;
+    for (int clock = 0; clock < 1000000 && !done; ++clock) {
+      in.verdict.reset();
+      if (!nodes.empty()) {
+        in.verdict.emplace();
+        in.verdict->place = nodes.back();
+        if (!header.at(nodes.back())) {
+          const bool more = inner < most_inner && open < 40;
+          if (more) {
+            in.verdict->waiting = 0xffff;
+          } else {  // an odd number of results as well as an even one
+            in.verdict->leaves = static_cast<std::uint16_t>(0xffffU >> random() % 3);
+          }
+          inner += more ? 1 : 0;
+          open += more ? 16 : 0;
+        }
+        nodes.pop_back();
+      }
+      in.leaf_left.reset();
+      in.credit = !leaves.empty();
+      if (in.credit) {
+        in.leaf_left = leaves.back();
+        leaves.pop_back();
+        ++behind;
+      }
+      in.result.reset();
+      if (behind > 0) {
+        in.result.emplace();
+        in.result->hits = hits;
+      }
+      drive<Config>(top, in);
+      simulation.settle();
+      if (top.s_query_ready != 0 && in.query) in.query.reset();
+      if (in.result && top.s_result_ready != 0) {
+        --behind;
+        ++results;
+      }
+      if (top.m_valid != 0 && top.count_leaf_pair != 0) {
+        leaves.push_back(top.m_place);
+      } else if (top.m_valid != 0) {
+        nodes.push_back(top.m_place);
+        header[top.m_place] = get_pair(top.m_record).header;
+        open -= open > 0 ? 1 : 0;
+      }
+      if (top.lookup != 0 && header.count(top.lookup_place) != 0) in.lookup_pair.header = header[top.lookup_place];
+      if (top.m_done_valid != 0) {
+        done = true;
+        REQUIRE(unsigned{top.m_done_code} == static_cast<unsigned>(QueryCode::ok));
+        REQUIRE(top.m_done_pairs == hits * results);
+      }
+      simulation.rise();
+    }
+    REQUIRE(done);
+    REQUIRE(results > (1U << 17U) / hits);
+  });
+}

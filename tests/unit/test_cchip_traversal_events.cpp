@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <deque>
 #include <map>
@@ -22,13 +23,22 @@ unsigned below(Random& random, std::size_t n) { return static_cast<unsigned>(ran
 class Surroundings {
  public:
   Surroundings(std::size_t queries, Random& random) : active_(queries), random_(random) {}
-  int busy = 50;  ///< chance of any event that may happen on a clock, per cent
+  int busy = 50;                                       ///< chance of any event that may happen on a clock, per cent
+  std::uint64_t running = 6;                           ///< clock from which on the contexts may be used
+  std::deque<TraversalEvents::QueryWords> before_any;  ///< queries that come first
 
   TraversalEvents::Inputs next() {
     TraversalEvents::Inputs in;
-    in.running = clock_ > 5;
+    in.running = clock_ >= running;
     in.start_ready = chance(random_, 90);
-    if (!query_ && chance(random_, busy)) query_ = words();
+    if (!query_ && chance(random_, busy)) {
+      if (before_any.empty()) {
+        query_ = words();
+      } else {
+        query_ = before_any.front();
+        before_any.pop_front();
+      }
+    }
     in.query = query_;
     if (!under_way_.empty() && chance(random_, busy)) {
       std::swap(under_way_[below(random_, under_way_.size())], under_way_.back());
@@ -247,6 +257,7 @@ TEMPLATE_LIST_TEST_CASE(
     for (int run = 0; run < 40; ++run) {
       Surroundings around(queries, random);
       around.busy = run % 3 == 0 ? 90 : run % 3 == 1 ? 40 : 8;
+      around.running = 6 + below(random, 4);
       drive(top, {}, log2(TestType::QUERIES), TestType::PLACE_W);
       simulation.reset();
       model.reset();
@@ -266,6 +277,47 @@ TEMPLATE_LIST_TEST_CASE(
       CAPTURE(static_cast<int>(event), n);
       REQUIRE(n > 200);
     }
+  });
+}
+
+TEMPLATE_LIST_TEST_CASE("cchip_traversal_events: each bit alone that makes a query illegal, and the legal ones beside",
+                        "[unit][cchip_traversal_events]", cchip_traversal_events_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random& random) {
+    auto& top = simulation.top();
+    std::deque<TraversalEvents::QueryWords> queries;
+    const auto query = [&](std::size_t word, std::uint32_t value) {
+      TraversalEvents::QueryWords words{};
+      words[word] = value;
+      queries.push_back(words);
+    };
+    for (std::size_t entry = 2; entry < 11; ++entry) {
+      for (const std::uint32_t value : {0x40000000U, 0xc0000000U, 0x80000000U, 0xbfffffffU, 0x3fffffffU})
+        query(entry, value);
+      for (int bit = 0; bit < 30; ++bit) query(entry, 0x40000000U | 1U << bit);  // more than 1 by this bit
+    }
+    for (std::size_t base = 0; base < 2; ++base) {
+      query(base, 0xff000000U);
+      for (int bit = 24; bit < 32; ++bit) query(base, ~(1U << bit));
+    }
+    for (int bit = 0; bit < 32; ++bit) query(14, 1U << bit);
+    std::shuffle(queries.begin(), queries.end(), random);
+    TraversalEvents model({TestType::QUERIES, TestType::PAIRS, TestType::LEAF_DEPTH, TestType::ANSWERS});
+    Surroundings around(TestType::QUERIES, random);
+    around.busy = 90;
+    around.before_any = queries;
+    drive(top, {}, log2(TestType::QUERIES), TestType::PLACE_W);
+    simulation.reset();
+    model.reset();
+    for (int clock = 0; clock < 200 * static_cast<int>(queries.size()) && !around.before_any.empty(); ++clock) {
+      const TraversalEvents::Inputs in = around.next();
+      drive(top, in, log2(TestType::QUERIES), TestType::PLACE_W);
+      simulation.settle();
+      check(top, model);
+      around.clock(model, in);
+      model.clock(in);
+      simulation.rise();
+    }
+    REQUIRE(around.before_any.empty());
   });
 }
 

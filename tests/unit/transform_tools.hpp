@@ -52,7 +52,15 @@ inline model::LeafJob random_job(Random& random, int corrupt) {
                            : extent();
   job.line_a = random_leaf(random, job.kind_a, extent_a);
   job.line_b = random_leaf(random, job.kind_b, extent_b);
-  if (chance(random, 50)) {
+  if (chance(random, 15)) {
+    // M moves the origin of A's leaf by one bit alone, anywhere near or below the last one that survives the shift.
+    bvh::LeafLine a = bvh::decode_leaf(job.line_a, job.kind_a);
+    a.origin = {1, 1, 1};
+    job.line_a = encode(a, job.kind_a);
+    job.query.m = {};
+    job.query.m[random() % 3][random() % 3] = 1 << number(random, 0, 15);
+    for (auto& t : job.query.t) t = t >> 28 << 28;
+  } else if (chance(random, 50)) {
     // The leaves lie at each other.
     const bvh::LeafLine a = bvh::decode_leaf(job.line_a, job.kind_a);
     const bvh::LeafLine b = bvh::decode_leaf(job.line_b, job.kind_b);

@@ -82,12 +82,21 @@ class VertexPort : public sim::Agent {
  public:
   /// \param credit most pairs inside
   VertexPort(Model& model, int coord_w, std::size_t credit, std::uint64_t seed, sim::Pattern pattern)
-      : model_(model), coord_w_(coord_w), credit_(credit), random_(seed), pattern_(std::move(pattern)) {
+      : model_(model),
+        coord_w_(coord_w),
+        credit_(credit),
+        numbers_(credit),
+        random_(seed),
+        pattern_(std::move(pattern)) {
     model_.s_vertex_valid = 0;
   }
   void push(const PairRequest& request) { waiting_.push_back(request); }
   std::size_t waiting() const { return waiting_.size() + (sending_ ? 1 : 0); }
   std::size_t inside() const { return inside_.size(); }
+  /// Numbers of pairs are below this, at first the credit.
+  void set_numbers(std::size_t numbers) { numbers_ = numbers; }
+  /// A pair has begun: some of its vertices have been sent.
+  bool begun() const { return sending_ && next_ > 0; }
   /// No further pair is begun.
   void stop(bool yes) { stopped_ = yes; }
   /// Drops the pairs inside and outside.
@@ -112,7 +121,7 @@ class VertexPort : public sim::Agent {
       waiting_.pop_front();
       next_ = 0;
       do {
-        id_ = static_cast<int>(random_() % credit_);
+        id_ = static_cast<int>(random_() % numbers_);
       } while (inside_.count(id_) != 0);
     }
     if (!sending_ || !pattern_.next()) return;
@@ -163,6 +172,7 @@ class VertexPort : public sim::Agent {
   Model& model_;
   int coord_w_;
   std::size_t credit_;
+  std::size_t numbers_;
   Random random_;
   sim::Pattern pattern_;
   std::deque<PairRequest> waiting_;

@@ -88,6 +88,7 @@ struct MixedSettings {
   unsigned slots = 1;
   std::size_t queries = 2000;
   std::string faults;  ///< empty: none; all, or one that --help names
+  int busy = 25;       ///< percent of batches whose queries end early while swaps follow each other
   std::uint64_t seed = sim::seed_from_environment();
 };
 

@@ -49,6 +49,10 @@ int main(int argc, char** argv) {
   mixed_command->add_option("--faults", mixed.faults,
                             "of bitstreams and swaps: all, or one of silent, bus_error, "
                             "damaged, forced, abort, slow, commands");
+  mixed_command
+      ->add_option("--busy", mixed.busy, "percent of batches whose queries end early while swaps follow each other")
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str();
   mixed_command->add_option("--seed", mixed.seed, "of everything")->capture_default_str();
   CurveSettings curve;
   auto* curve_command = app.add_subcommand("curve", "triangles and quads in turn: overhead against queries per swap");
