@@ -22,7 +22,7 @@ these have; number 0, no mutant, must pass. A mutant is killed if the tests fail
 without unit tests of their own are changed inside the module that uses them.
 
 A mutant that lives may be one that nobody can tell from the original. ABC compares both from the state in which all registers
-are 0, under any inputs: `proved` if no inputs of any length tell them apart, `bounded` if none of --depth clocks do (default 12).
+are 0, under any inputs: `proved` if no inputs of any length tell them apart, `bounded` if none of --depth clocks do (default 200).
 Alive is what can be told apart, or for which ABC needs more than a minute.
 
 Of one that lives docs/figures/mutants_alive.csv may say in a sentence why it cannot matter: by reading, not by proof. It counts as
@@ -284,7 +284,10 @@ class Module:
             if re.search(r"UNSATISFIABLE|Networks are equivalent|Property proved|proved", said) and not re.search(r"(?<!UN)SATISFIABLE\b", said):
                 return "proved"
             said = self.abc(f"{read} scorr; bmc3 -F {depth} -T 30")
-            return "differs" if "was asserted" in said else "bounded" if "No output" in said or "No counter" in said else "unknown"
+            if "was asserted" in said:
+                return "differs"
+            clocks = re.search(r"No output asserted in (\d+) frames", said)  # fewer than asked for if time has run out
+            return "bounded" if clocks and int(clocks[1]) >= depth else "unknown"
         except (Failed, subprocess.TimeoutExpired) as what:
             (folder / "failed").write_text(str(what))
             return "unknown"
@@ -446,7 +449,7 @@ def table(rows):
 def arguments():
     parser = argparse.ArgumentParser(usage=argparse.SUPPRESS, add_help=False)
     parser.add_argument("modules", nargs="*")
-    for name, default in (("--each", 2), ("--sample", 0), ("--seed", 1), ("--jobs", 2), ("--depth", 12), ("--least", 0)):
+    for name, default in (("--each", 2), ("--sample", 0), ("--seed", 1), ("--jobs", 2), ("--depth", 200), ("--least", 0)):
         parser.add_argument(name, type=int, default=default)
     parser.add_argument("--shard", default="1/1")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "release")

@@ -37,6 +37,7 @@ std::vector<model::MovedVertex> random_pair(Random& random) {
   const auto one_bit = [&] { return chance(random, 30) ? 0 : std::int64_t{1} << number(random, 0, 15); };
   const std::int64_t error_a = chance(random, 30)   ? 0
                                : chance(random, 40) ? some_steps() | one_bit()
+                               : chance(random, 20) ? 32768 + number(random, 0, 1) * number(random, 0, 64)  // the most
                                                     : static_cast<std::int64_t>(random() & 0xFFFF) >> random() % 16;
   const std::int64_t error_b = chance(random, 30) ? 0 : static_cast<std::int64_t>(random() % 33);
   const int lossy = chance(random, 50) ? 0 : 40;

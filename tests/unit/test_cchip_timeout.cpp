@@ -71,3 +71,22 @@ TEMPLATE_LIST_TEST_CASE("cchip_timeout: a lower limit counts at once, a higher o
     }
   });
 }
+
+TEMPLATE_LIST_TEST_CASE("cchip_timeout: each bit of a limit alone gives its time", "[unit][cchip_timeout]",
+                        cchip_timeout_configs) {
+  for_two_power_ups<typename TestType::Model>([](auto& simulation, Random&) {
+    auto& top = simulation.top();
+    for (int bit = 0; bit < 16; ++bit) {
+      CAPTURE(bit);
+      top.restart = 1;
+      top.limit = 1U << bit;
+      simulation.steps(2);
+      top.restart = 0;
+      for (std::uint32_t clock = 1; clock <= top.limit; ++clock) {
+        REQUIRE((top.expired == 0 && top.elapsed == clock));
+        simulation.step();
+      }
+      REQUIRE(top.expired == 1);
+    }
+  });
+}
