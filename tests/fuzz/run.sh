@@ -7,7 +7,7 @@
 #
 # usage: tests/fuzz/run.sh BUILD RUNS [TARGET...]     CCHIP_SEED repeats a run; the log names the seed. CCHIP_RECORD=1 adds the run to
 # docs/figures/fuzz.csv (ledger.py), which sums up all of them
-# Exit codes: 0 nothing found, 1 a crash, a leak, an input that takes too long or too much memory, or less than RUNS inputs
+# Exit codes: 0 nothing found, 1 a crash, a leak, an input that takes too long or too much memory, less than RUNS inputs, or stopped by a signal
 set -euo pipefail
 
 build=$(realpath "$1")
@@ -56,6 +56,10 @@ for target in "${targets[@]}"; do
   hangs=$(count 'libFuzzer: timeout' "$log")
   leaks=$(count 'AddressSanitizer: .* leaked' "$log")
   crashes=0
+  if grep -q 'libFuzzer: run interrupted' "$log" || ((code == 130 || code == 143)); then
+    echo "target=$target was stopped by a signal: nothing of this run counts" >&2
+    exit 1
+  fi
   if ((code != 0 && hangs + leaks == 0)); then crashes=1; fi
   echo "target=$target build=$(basename "$build") runs=$done crashes=$crashes hangs=$hangs leaks=$leaks seconds=$((SECONDS - from))" | tee -a "$lines"
   if ((code != 0 || done < runs)); then
