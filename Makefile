@@ -3,7 +3,7 @@
 
 # Settings, as in: make test JOBS=4
 JOBS ?= $(shell nproc)
-BIN_QUERIES ?= 3000
+BIN_QUERIES ?= 1000
 PREFIX ?= /usr/local
 DESTDIR ?=
 PAIRS ?= 100000000
@@ -341,7 +341,8 @@ coverage: ## lines, branches and toggles of the RTL, branches of the C++ library
 	  ctest --test-dir $(COVERAGE)/$$part -LE '^long$$' -j $(JOBS) --timeout 3000 || exit 1; done
 	scripts/coverage.py $(COVERAGE) --write
 
-# The chip's tests, then campaigns in which its blocks meet: small rings, swaps and faults, invalidations, resets.
+# The chip's tests, then campaigns in which its blocks meet: small rings, swaps and faults, invalidations, resets; then one
+# swap after another while queries end early, for what meets in the few clocks of a phase.
 coverage-bins: ## which situations of two blocks of the chip have met, into docs/develop/coverage.md (an hour)
 	cmake --preset coverage
 	cmake --build $(COVERAGE) -j $(JOBS) --target tests/chip/all bench/chip/all
@@ -350,6 +351,8 @@ coverage-bins: ## which situations of two blocks of the chip have met, into docs
 	  ctest --test-dir $(COVERAGE)/$$part -LE '^long$$' -j $(JOBS) --timeout 3000 || exit 1; done
 	for slots in 1 2; do for faults in "" "--faults all"; do CCHIP_COVERAGE_FOLDER=$(CURDIR)/$(COVERAGE)/coverage \
 	  $(COVERAGE)/bin/cchip_chip_campaign mixed --slots $$slots --queries $(BIN_QUERIES) $$faults || exit 1; done; done
+	for slots in 1 2; do for faults in "" "--faults forced"; do CCHIP_COVERAGE_FOLDER=$(CURDIR)/$(COVERAGE)/coverage \
+	  $(COVERAGE)/bin/cchip_chip_campaign mixed --slots $$slots --busy 100 --queries $$((4 * $(BIN_QUERIES))) $$faults || exit 1; done; done
 	scripts/coverage.py $(COVERAGE) --bins --write
 
 coverage-cpp: ## branches of the C++ library that its own tests reach, into docs/develop/coverage.md (half an hour; gcovr: scripts/bootstrap --dev)

@@ -78,6 +78,7 @@ class MixedRun {
     const std::size_t count = 1 + random_() % (busy_ ? 120 : 60);
     // Few that meet: the others go through all contexts while pairs of a query that has ended wait for their module.
     const int near = percent(random_, 50) ? 30 : 4;
+    modules_ = busy_ && percent(random_, 50) ? 2 : 3;  // pairs of two quads wait longer then, for the scheduler
     std::vector<MixedObjects::Placed> placed;
     std::vector<CollisionQuery> queries;
     for (std::size_t i = 0; i < count; ++i) {
@@ -178,7 +179,7 @@ class MixedRun {
 
   void command(bool force) {
     const auto slot = static_cast<std::uint32_t>(random_() % settings_.slots);
-    const auto module_id = static_cast<std::uint32_t>(1 + random_() % 3);
+    const auto module_id = static_cast<std::uint32_t>(1 + random_() % modules_);
     chip_.machine->write_register(regs::swap_command::offset, regs::swap_command::go_mask |
                                                                   (force ? regs::swap_command::force_mask : 0U) |
                                                                   module_id << regs::swap_command::module_id_shift |
@@ -203,8 +204,9 @@ class MixedRun {
   MixedObjects objects_;
   std::size_t queries_ = 0, hits_ = 0, mismatches_ = 0, lost_ = 0, duplicated_ = 0;
   std::uint64_t contacts_ = 0, failed_swaps_ = 0, given_up_ = 0;
-  bool small_ = false;  ///< rings of the present chip
-  bool busy_ = false;   ///< queries of the present batch end early, and swaps follow each other
+  bool small_ = false;    ///< rings of the present chip
+  unsigned modules_ = 3;  ///< that commands ask for, from 1 on
+  bool busy_ = false;     ///< queries of the present batch end early, and swaps follow each other
   CollisionStats stats_;
   std::map<std::string, std::size_t> bins_;
 };
