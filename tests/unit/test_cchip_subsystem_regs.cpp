@@ -93,6 +93,25 @@ void with_registers(Body&& body) {
   });
 }
 
+/// The same 20 times, with any delays on each channel of the bus.
+template <class Body>
+void with_any_delays(Body body) {
+  for_two_power_ups([&](const sim::SimulationOptions& options) {
+    Random random(options.seed);
+    for (int round = 0; round < 20; ++round) {
+      sim::Simulation<Model> simulation(options);
+      const auto pattern = [&] { return sim::standard_patterns(random())[random() % 7]; };
+      Master master(simulation.top(), {pattern(), pattern(), pattern(), pattern(), pattern()});
+      External external(simulation.top(), random);
+      simulation.add(master);
+      simulation.add(external);
+      scramble(simulation.top(), random);
+      simulation.reset();
+      body(simulation, master, random, external);
+    }
+  });
+}
+
 /// Registers that software writes and reads back: offset, bits that exist, value after reset.
 std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>> plain_registers() {
   namespace r = registers;
@@ -111,51 +130,39 @@ std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>> plain_registers
 
 TEST_CASE("cchip_subsystem_regs: what software writes it reads back, byte by byte, with any delays",
           "[unit][cchip_subsystem_regs]") {
-  for_two_power_ups([](const sim::SimulationOptions& options) {
-    Random random(options.seed);
-    for (int round = 0; round < 20; ++round) {
-      sim::Simulation<Model> simulation(options);
-      const auto pattern = [&] { return sim::standard_patterns(random())[random() % 7]; };
-      Master master(simulation.top(), {pattern(), pattern(), pattern(), pattern(), pattern()});
-      External external(simulation.top(), random);
-      simulation.add(master);
-      simulation.add(external);
-      scramble(simulation.top(), random);
-      simulation.reset();
-      auto expected = plain_registers();
-      for (std::uint32_t i = 0; i < registers::bitstream_address::count; ++i) {
-        for (const std::uint32_t offset :
-             {registers::bitstream_address::offset(i), registers::bitstream_size::offset(i),
-              registers::bitstream_valid::offset(i)}) {
-          expected[offset] = {~0U, external.words[offset / 4]};
-        }
+  with_any_delays([](auto& simulation, Master& master, Random& random, External& external) {
+    auto expected = plain_registers();
+    for (std::uint32_t i = 0; i < registers::bitstream_address::count; ++i) {
+      for (const std::uint32_t offset : {registers::bitstream_address::offset(i), registers::bitstream_size::offset(i),
+                                         registers::bitstream_valid::offset(i)}) {
+        expected[offset] = {~0U, external.words[offset / 4]};
       }
-      for (const auto& [offset, bits] : expected) {
-        const sim::AxiLiteWord word = master.read(simulation, offset);
-        REQUIRE(word.ok);
-        REQUIRE(word.data == bits.second);
-      }
-      for (int i = 0; i < 100; ++i) {
-        auto entry = expected.begin();
-        std::advance(entry, static_cast<std::ptrdiff_t>(random() % expected.size()));
-        const auto data = static_cast<std::uint32_t>(random());
-        const auto lanes = static_cast<unsigned>(random() % 16);
-        REQUIRE(master.write(simulation, entry->first, data, lanes));
-        for (unsigned lane = 0; lane < 4; ++lane) {
-          const std::uint32_t mask = (lanes >> lane & 1U) != 0 ? 0xFFU << 8 * lane & entry->second.first : 0;
-          entry->second.second = (entry->second.second & ~mask) | (data & mask);
-        }
-        entry = expected.begin();
-        std::advance(entry, static_cast<std::ptrdiff_t>(random() % expected.size()));
-        REQUIRE(master.read(simulation, entry->first).data == entry->second.second);
-      }
-      for (const auto& [offset, bits] : expected) REQUIRE(master.read(simulation, offset).data == bits.second);
-      const Model& top = simulation.top();
-      namespace r = registers;
-      REQUIRE(top.hwif_out_maximum_age_clocks == expected[r::maximum_age::offset].second);
-      REQUIRE(top.hwif_out_command_module_id ==
-              (expected[r::command::offset].second >> r::command::module_id_shift & 255));
     }
+    for (const auto& [offset, bits] : expected) {
+      const sim::AxiLiteWord word = master.read(simulation, offset);
+      REQUIRE(word.ok);
+      REQUIRE(word.data == bits.second);
+    }
+    for (int i = 0; i < 100; ++i) {
+      auto entry = expected.begin();
+      std::advance(entry, static_cast<std::ptrdiff_t>(random() % expected.size()));
+      const auto data = static_cast<std::uint32_t>(random());
+      const auto lanes = static_cast<unsigned>(random() % 16);
+      REQUIRE(master.write(simulation, entry->first, data, lanes));
+      for (unsigned lane = 0; lane < 4; ++lane) {
+        const std::uint32_t mask = (lanes >> lane & 1U) != 0 ? 0xFFU << 8 * lane & entry->second.first : 0;
+        entry->second.second = (entry->second.second & ~mask) | (data & mask);
+      }
+      entry = expected.begin();
+      std::advance(entry, static_cast<std::ptrdiff_t>(random() % expected.size()));
+      REQUIRE(master.read(simulation, entry->first).data == entry->second.second);
+    }
+    for (const auto& [offset, bits] : expected) REQUIRE(master.read(simulation, offset).data == bits.second);
+    const Model& top = simulation.top();
+    namespace r = registers;
+    REQUIRE(top.hwif_out_maximum_age_clocks == expected[r::maximum_age::offset].second);
+    REQUIRE(top.hwif_out_command_module_id ==
+            (expected[r::command::offset].second >> r::command::module_id_shift & 255));
   });
 }
 
@@ -243,24 +250,13 @@ TEST_CASE("cchip_subsystem_regs: every address that is no register, or read-only
 
 TEST_CASE("cchip_subsystem_regs: a refusal stays on the bus until it is taken, and the next access is judged anew",
           "[unit][cchip_subsystem_regs]") {
-  for_two_power_ups([](const sim::SimulationOptions& options) {
+  with_any_delays([](auto& simulation, Master& master, Random& random, External&) {
     namespace r = registers;
-    Random random(options.seed);
-    for (int round = 0; round < 20; ++round) {
-      sim::Simulation<Model> simulation(options);
-      const auto pattern = [&] { return sim::standard_patterns(random())[random() % 7]; };
-      Master master(simulation.top(), {pattern(), pattern(), pattern(), pattern(), pattern()});
-      External external(simulation.top(), random);
-      simulation.add(master);
-      simulation.add(external);
-      scramble(simulation.top(), random);
-      simulation.reset();
-      for (int i = 0; i < 20; ++i) {
-        const bool good = chance(random, 50);
-        const std::uint32_t none = chance(random, 50) ? r::report::offset : 0xFFC;  // read-only, or nothing there
-        REQUIRE(master.write(simulation, good ? r::minimum_batch::offset : none, 7) == good);
-        REQUIRE(master.read(simulation, good ? r::minimum_batch::offset : 0xFFC).ok == good);
-      }
+    for (int i = 0; i < 20; ++i) {
+      const bool good = chance(random, 50);
+      const std::uint32_t none = chance(random, 50) ? r::report::offset : 0xFFC;  // read-only, or nothing there
+      REQUIRE(master.write(simulation, good ? r::minimum_batch::offset : none, 7) == good);
+      REQUIRE(master.read(simulation, good ? r::minimum_batch::offset : 0xFFC).ok == good);
     }
   });
 }
