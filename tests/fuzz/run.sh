@@ -19,7 +19,8 @@ if (($# == 0)); then
 else
   targets=("$@")
 fi
-# libFuzzer's choice by entropy costs a quarter of the time of such short inputs: -entropic=0.
+# libFuzzer's choice by entropy costs a quarter of the time of such short inputs: -entropic=0; its search for shorter inputs of the
+# same reach costs a sixth (bitstream 2.6 s -> 2.1 s of 200,000 inputs): -reduce_inputs=0. The corpus is minimised by a merge anyway.
 # Freed memory and stacks of allocations cost most of the time; 4 MB and one frame still find what an input does.
 export ASAN_OPTIONS=quarantine_size_mb=4:malloc_context_size=1
 
@@ -47,7 +48,7 @@ for target in "${targets[@]}"; do
   mkdir -p "$found/$target"
   log=$target.log
   options=(-runs="$runs" -seed="${CCHIP_SEED:-0}" -max_len="$(longest "$target")" -timeout=10 -rss_limit_mb=2048
-    -artifact_prefix="$target-" -print_final_stats=1 -entropic=0)
+    -artifact_prefix="$target-" -print_final_stats=1 -entropic=0 -reduce_inputs=0)
   [[ -f $here/words/$target ]] && options+=(-dict="$here/words/$target")
   from=$SECONDS code=0
   "$build/bin/fuzz_$target" "${options[@]}" "$found/$target" "$here/corpus/$target" > "$log" 2>&1 || code=$?
