@@ -249,7 +249,7 @@ module cchip_cache_properties #(
   reg read_once_q, evicted_q;
   reg [1:0] waited_q, reads_q;
   reg third_q;  // the followed line was the third that was read
-  reg [21:0] came_q, came_followed_q;  // lines that came, 1 clock ago and more
+  reg [24:0] came_q, came_followed_q;  // lines that came, 1 clock ago and more
   wire comes = s_read_valid && s_read_code == `CCHIP_READ_OK;
   wire followed_0 = m_valid[0] && m_code[0+:CODE_W] == `CCHIP_READ_OK && wants_followed_q[m_place[0+:PLACE_W]];
   always @(posedge clk) begin
@@ -258,19 +258,19 @@ module cchip_cache_properties #(
     waited_q <= rst ? 2'd0 : waited_q | count_wait;
     reads_q <= rst ? 2'd0 : reads_q + {1'b0, m_read_valid & ~&reads_q};
     third_q <= ~rst & (third_q | (reads_followed && reads_q == 2'd2));
-    came_q <= rst ? 22'd0 : {came_q[20:0], comes};
-    came_followed_q <= rst ? 22'd0 : {came_followed_q[20:0], comes && comes_followed};
+    came_q <= rst ? 25'd0 : {came_q[23:0], comes};
+    came_followed_q <= rst ? 25'd0 : {came_followed_q[23:0], comes && comes_followed};
     if (!rst && clock_q > 9)
       case (`COVER)
         // a request of each port has waited, and both ports answer with the line; a locked line is hit; the line is evicted,
-        // read again and answered; every slot is lost and a request is refused; an answer after an invalidation; two lines that
-        // come keep an answer from its clock; the third line that is read is answered
+        // read again and answered; every slot is lost and a request is refused; an answer after an invalidation; an answer
+        // that waits for its turn, 20 clocks after its line at the earliest, is kept for two clocks by each of two lines that come; the third line that is read is answered
         0: assert (!(&m_valid && m_code == 0 && &waited_q && m_data[0] && m_data[256]));
         1: assert (!(count_hit[0] && locked && loaded_q && !invalidated_q));
         2: assert (!(followed_0 && evicted_q));
         3: assert (!(m_valid[0] && m_code[0+:CODE_W] == `CCHIP_READ_OWED && &owed_q));
         4: assert (!(m_valid[1] && invalidated_q && invalidate_ready && commanded_q && m_code[CODE_W+:CODE_W] == `CCHIP_READ_OK));
-        5: assert (!(followed_0 && came_followed_q[20] && came_q[10] && came_q[9] && count_hit == 0));
+        5: assert (!(followed_0 && came_followed_q[24] && came_q[13] && came_q[11] && count_hit == 0));
         6: assert (!(followed_0 && third_q));
       endcase
   end
