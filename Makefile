@@ -333,10 +333,10 @@ bench-robot: $(RELEASE)/build.ninja robots ## collision checks per second of rob
 	$(RELEASE)/bin/robot_speed $(BENCH_ARGS)
 
 COVERAGE := build/coverage
-coverage: ## lines, branches and toggles of the RTL, branches of the C++ library that the tests reach, into docs/develop/coverage.md (an hour; gcovr: scripts/bootstrap --dev)
+coverage: coverage-cpp ## lines, branches and toggles of the RTL, branches of the C++ library that the tests reach, into docs/develop/coverage.md (an hour)
 	cmake --preset coverage
 	cmake --build $(COVERAGE) -j $(JOBS) --target tests/ref/all tests/unit/all tests/chip/all tests/system/all bench/chip/all
-	rm -rf $(COVERAGE)/coverage && find $(COVERAGE)/cpp_ref -name '*.gcda' -delete
+	rm -rf $(COVERAGE)/coverage
 	for part in tests/ref tests/unit tests/chip tests/system bench/chip; do CCHIP_COVERAGE_FOLDER=$(CURDIR)/$(COVERAGE)/coverage \
 	  ctest --test-dir $(COVERAGE)/$$part -LE '^long$$' -j $(JOBS) --timeout 3000 || exit 1; done
 	scripts/coverage.py $(COVERAGE) --write
@@ -355,12 +355,12 @@ coverage-bins: ## which situations of two blocks of the chip have met, into docs
 	  $(COVERAGE)/bin/cchip_chip_campaign mixed --slots $$slots --busy 100 --queries $$((4 * $(BIN_QUERIES))) $$faults || exit 1; done; done
 	scripts/coverage.py $(COVERAGE) --bins --write
 
-coverage-cpp: ## branches of the C++ library that its own tests reach, into docs/develop/coverage.md (half an hour; gcovr: scripts/bootstrap --dev)
-	cmake --preset coverage
-	cmake --build $(COVERAGE) -j $(JOBS) --target tests/ref/all
-	find $(COVERAGE)/cpp_ref -name '*.gcda' -delete
-	ctest --test-dir $(COVERAGE)/tests/ref -LE '^long$$' -j $(JOBS) --timeout 3000
-	scripts/coverage.py $(COVERAGE) --cpp --write
+coverage-cpp: ## branches of the C++ library that its own tests reach, into docs/develop/coverage.md (half an hour; llvm: scripts/bootstrap --dev)
+	cmake --preset coverage-cpp
+	cmake --build $(COVERAGE)-cpp -j $(JOBS) --target tests/ref/all
+	rm -rf $(COVERAGE)-cpp/coverage
+	LLVM_PROFILE_FILE=$(CURDIR)/$(COVERAGE)-cpp/coverage/%m.profraw ctest --test-dir $(COVERAGE)-cpp/tests/ref -LE '^long$$' -j $(JOBS) --timeout 3000
+	scripts/coverage.py $(COVERAGE)-cpp --cpp --write
 
 bench-certificate: $(RELEASE)/build.ninja ## certificates of answers for pairs of large meshes: all checked, their sizes and times; BENCH_ARGS="--poses 200" for more
 	cmake --build $(RELEASE) -j $(JOBS) --target bench_certificate

@@ -6,18 +6,17 @@ usage: coverage.py [options] BUILD
   BUILD           build folder with CCHIP_COVERAGE in which tests ran with CCHIP_COVERAGE_FOLDER=BUILD/coverage (make coverage)
   --missing       print every point that nothing reached
   --write         put the tables into docs/develop/coverage.md
-  --cpp           the library alone: its table, whatever ran of the RTL (make coverage-cpp)
+  --cpp           the library: BUILD is one by clang (make coverage-cpp)
   --bins          the table of bins alone, after tests and campaigns of the chip (make coverage-bins)
 
 Bins count the clocks on which situations of two blocks of the chip meet (sim/rtl_models/cchip_chip_bins.sv).
 
 RTL, by Verilator: a line is a block of statements, a branch one side of an if or a case, a toggle a signal of one bit (control) that changes after the first reset. Points of all instances and
-configurations of a module are one. C++, by gcov through gcovr (Debian's package): branches without those that only an exception takes.
+configurations of a module are one. C++, by clang and llvm-cov (Debian's package llvm): a branch is one side of a condition as it is written, of all instantiations together.
 
-The last line is `rtl_lines=R% rtl_toggles=T% bins=K/N cpp_branches=B%`, with --cpp only the last of these, with --bins only the third. Exit codes: 0 done, 1 nothing was counted or gcovr failed, 2 bad arguments."""
+The last line is `rtl_lines=R% rtl_toggles=T% bins=K/N`, with --bins only the last of these, with --cpp `cpp_branches=B%`. Exit codes: 0 done, 1 nothing was counted or llvm-cov failed, 2 bad arguments."""
 import argparse
 import collections
-import json
 import pathlib
 import re
 import subprocess
@@ -129,30 +128,52 @@ def share(part, whole):
     return f"{100 * part / whole:.1f} %" if whole else "-"
 
 
-def cpp_table(build):
-    command = ["gcovr", "--root", ROOT, "--object-directory", build, "--filter", f"{ROOT}/cpp_ref/src/({'|'.join(CPP_ROOMS)})/",
-               "--exclude-throw-branches", "--exclude-unreachable-branches", "--gcov-ignore-parse-errors", "--json", "-", build / "cpp_ref"]
+def shown(build):
+    """llvm-cov's text about the sources of the rooms, of all programs that were compiled with counters."""
+    profile, folder = build / "coverage" / "cpp.profdata", build / "coverage"
+    programs = [path for path in sorted((build / "bin").iterdir()) if path.is_file() and b"__llvm_covmap" in path.read_bytes()]
+    if not programs or not any(folder.glob("*.profraw")):
+        raise Failed(f"no counts of the library in {folder}; run make coverage-cpp")
     try:
-        done = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=True)
+        subprocess.run(["llvm-profdata", "merge", "-sparse", "-o", profile, *sorted(folder.glob("*.profraw"))], check=True, stderr=subprocess.PIPE, text=True)
+        return subprocess.run(["llvm-cov", "show", "--show-branches=count", "--show-instantiations=false", f"--instr-profile={profile}", programs[0],
+                               *(f"--object={path}" for path in programs[1:]), *(ROOT / "cpp_ref" / "src" / room for room in CPP_ROOMS)],
+                              check=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True).stdout
     except (OSError, subprocess.CalledProcessError) as error:
-        raise Failed(f"gcovr (Debian's package gcovr): {error} {getattr(error, 'stderr', '') or ''}".strip()) from error
+        raise Failed(f"llvm-cov (Debian's package llvm): {error} {getattr(error, 'stderr', '') or ''}".strip()) from error
+
+
+def cpp_points(text):
+    """{(file, line): [count, source]} and {(file, line, column): [count of true, count of false]}, of all instantiations together; conditions that the compiler knows are none."""
+    lines, branches, name = {}, {}, ""
+    for line in text.splitlines():
+        if line.startswith(f"{ROOT}/") and line.endswith(":"):
+            name = line[len(f"{ROOT}/"):-1]
+        elif found := re.match(r" *(\d+)\| *([\d.]+[kMGTPEZY]?)\|(.*)", line):
+            lines[name, int(found[1])] = [float(found[2].rstrip("kMGTPEZY")), found[3]]
+        elif found := re.match(r" *\|  Branch \((\d+):(\d+)\): \[True: (\S+), False: (\S+)\]", line):
+            sides = branches.setdefault((name, int(found[1]), int(found[2])), [0, 0])
+            for k in (0, 1):
+                sides[k] += float(found[3 + k].rstrip("kMGTPEZY"))
+    return lines, branches
+
+
+def cpp_table(build):
+    lines_of, branches_of = cpp_points(shown(build))
     rows, missing = collections.defaultdict(collections.Counter), []
-    for file in json.loads(done.stdout)["files"]:
-        name = file["file"]
-        source = (ROOT / name).read_text().splitlines()
-        for line in file["lines"]:
-            if line.get("gcovr/noncode"):  # comments, and what the compiler made no code of
-                continue
-            branches = line["branches"]
-            for room in (f"src/{name.split('/')[2]}", "all"):
-                rows[room]["lines"] += 1
-                rows[room]["lines reached"] += line["count"] > 0
-                rows[room]["branches"] += len(branches)
-                rows[room]["branches reached"] += sum(branch["count"] > 0 for branch in branches)
-            lost = sum(branch["count"] == 0 for branch in branches)
-            if line["count"] == 0 or lost:
-                missing.append(f"{name}:{line['line_number']}: {'line' if line['count'] == 0 else f'{lost} of {len(branches)} branches'}: "
-                               f"{source[line['line_number'] - 1].strip()}")
+    for (name, line), (count, source) in lines_of.items():
+        for room in (f"src/{name.split('/')[2]}", "all"):
+            rows[room]["lines"] += 1
+            rows[room]["lines reached"] += count > 0
+        if count == 0:
+            missing.append(f"{name}:{line}: line: {source.strip()}")
+    for (name, line, column), sides in branches_of.items():
+        for room in (f"src/{name.split('/')[2]}", "all"):
+            rows[room]["branches"] += 2
+            rows[room]["branches reached"] += sum(side > 0 for side in sides)
+        if 0 in sides:
+            never = "neither" if sides == [0, 0] else "never false" if sides[0] else "never true"
+            missing.append(f"{name}:{line}:{column}: branch {never}: {lines_of.get((name, line), [0, ''])[1].strip()}")
     lines = ["| room of cpp_ref/src | lines | reached | branches | reached |", "|---|---|---|---|---|"]
     for room in [*sorted(set(rows) - {"all"}), "all"]:
         row = rows[room]
@@ -170,20 +191,17 @@ def main():
         parser.add_argument(flag, action="store_true")
     options = parser.parse_args()
     try:
-        tables, missing, shares = {}, [], ""
-        if options.bins:
-            tables["bins"], missing, b = bin_table(rtl_points(options.build.resolve() / "coverage")[1])
-            shares = f"bins={b[1]}/{b[0]}"
-        elif not options.cpp:
+        if options.cpp:
+            text, missing, c = cpp_table(options.build.resolve())
+            tables, shares = {"cpp": text}, f"cpp_branches={share(c['branches reached'], c['branches'])}"
+        else:
             points, bins = rtl_points(options.build.resolve() / "coverage")
-            tables["rtl"], rtl_missing, r = rtl_table(points)
-            tables["bins"], bins_missing, b = bin_table(bins)
-            missing = rtl_missing + bins_missing
-            shares = f"rtl_lines={share(r['line', 'reached'], r['line'])} rtl_toggles={share(r['toggle', 'reached'], r['toggle'])} bins={b[1]}/{b[0]} "
-        if not options.bins:
-            tables["cpp"], cpp_missing, c = cpp_table(options.build.resolve())
-            missing += cpp_missing
-            shares += f"cpp_branches={share(c['branches reached'], c['branches'])}"
+            text, missing, b = bin_table(bins)
+            tables, shares = {"bins": text}, f"bins={b[1]}/{b[0]}"
+            if not options.bins:
+                text, rtl_missing, r = rtl_table(points)
+                tables, missing = {"rtl": text, **tables}, rtl_missing + missing
+                shares = f"rtl_lines={share(r['line', 'reached'], r['line'])} rtl_toggles={share(r['toggle', 'reached'], r['toggle'])} {shares}"
     except Failed as what:
         print(f"coverage.py: {what}", file=sys.stderr)
         return 1

@@ -188,7 +188,7 @@ void Cache::clock_waiters(std::size_t p, const Decisions& now, bool served) {
   if (!port.serve || served) {
     port.serve.reset();
     if (!port.wake.empty()) {
-      port.serve.emplace();
+      port.serve = Step();  // clang 14 knows no emplace() without arguments inside the class
       port.serve->kind = Kind::serve;
       port.serve->place = *port.wake.begin();
       port.serve->line = line->frame / 2;

@@ -105,7 +105,7 @@ class Judge {
 
   const Truth& relations() {
     if (truth_) return *truth_;
-    truth_.emplace();
+    truth_ = Truth();  // clang 14 knows no emplace() without arguments inside the class
     for (std::uint32_t f = 0; f < side_[0].mesh.faces.size(); ++f) {
       for (std::uint32_t g = 0; g < side_[1].mesh.faces.size(); ++g) {
         const Relation relation =
