@@ -205,6 +205,38 @@ TEST_CASE("distance bounds: nodes behind a plane", "[ref][distance]") {
   CHECK(outside > 1000);
 }
 
+// Vertices and translations are 10^6 times as large as what they leave: the bound on rounding is theirs.
+TEST_CASE("distance bounds: faces whose large coordinates cancel", "[ref][distance]") {
+  std::mt19937_64 random(sim::seed_from_environment() + 65);
+  int open = 0;
+  for (int i = 0; i < 20; ++i) {
+    std::array<Primitive, 2> face;
+    std::array<Pose, 2> pose;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Vec3d far = 0x1p20 * vector(random);
+      pose[k] = random_pose(PoseClass::rigid, 1, random);
+      pose[k].translation() = 4.0 * static_cast<double>(k) * vector(random) - pose[k].linear() * far;
+      for (std::size_t v = 0; v < 3; ++v) face[k].v[v] = far + vector(random);
+    }
+    const IntSquare<BigInt> square =
+        square_of_distance(posed_points(face[0], pose[0], unit_bits), posed_points(face[1], pose[1], unit_bits));
+    const PosedDistances distances(pose[0], pose[1]);
+    CAPTURE(i, sim::seed_from_environment());
+    for (const DistanceBounds& bounds :
+         {distances.bounds(face[0], face[1]), distances.tight_bounds(face[0], face[1])}) {
+      REQUIRE(compare(square, bounds.lower, unit_bits) >= 0);
+      REQUIRE(compare(square, bounds.upper, unit_bits) <= 0);
+      if (bounds.lower == 0) continue;
+      for (const double d : {bounds.lower, std::nextafter(bounds.lower, 0.0), bounds.upper}) {
+        const PosedDistances::Answer near = distances.within(face[0], face[1], d);
+        REQUIRE(near.hit == (compare(square, d, unit_bits) <= 0));
+        open += near.open;
+      }
+    }
+  }
+  CHECK(open > 10);
+}
+
 TEST_CASE("distance bounds: many pairs at the same distance take few tests", "[ref][distance]") {
   const auto plate = [](const Vec3d& corner, int n) {
     Mesh mesh;

@@ -382,6 +382,37 @@ TEST_CASE("posed pairs: what lies within the hull of four points meets it, which
   }
 }
 
+// Vertices and translation are 10^6 times as large as what they leave, so what counts is how far their sum is rounded.
+TEST_CASE("posed pairs: a vertex at a plane, where large numbers cancel", "[ref][posed_pairs]") {
+  std::mt19937_64 random(seed() + 78);
+  Count count;
+  const auto vector = [&random] {
+    std::uniform_real_distribution<double> range(-1, 1);
+    const double x = range(random);
+    const double y = range(random);
+    return Vec3d(x, y, range(random));
+  };
+  for (int i = 0; i < 60; ++i) {
+    const Vec3d far = Vec3d(0x1p20, 0, 0) + vector();
+    Pose pose = Pose::Identity();
+    pose.linear() = Eigen::AngleAxisd(0x1p-10, vector().normalized()).toRotationMatrix();
+    pose.translation() = vector() - pose.linear() * far;
+    Primitive a;
+    for (std::size_t k = 0; k < 3; ++k) a.v[k] = far + vector();
+    std::array<double, 3> height = {};
+    for (std::size_t k = 0; k < 3; ++k) height[k] = (pose * a.v[k]).x();
+    const double lowest = *std::min_element(height.begin(), height.end());
+    for (int step = -3; step <= 3; ++step) {
+      Primitive plane;
+      const double x = lowest + step * 0x1p-35;
+      plane.v = {Vec3d(x, -64, -64), Vec3d(x, 64, -64), Vec3d(x, 0, 64)};
+      check(a, pose, plane, Pose::Identity(), "cancelled", count);
+      check(plane, Pose::Identity(), a, pose, "cancelled", count);
+    }
+  }
+  check_counts(count, 0.3, 0.7);
+}
+
 TEST_CASE("posed pairs: refuse what is not finite", "[ref][posed_pairs]") {
   Pose pose = Pose::Identity();
   pose.translation().y() = std::numeric_limits<double>::quiet_NaN();

@@ -318,6 +318,49 @@ TEST_CASE("distance: faces and points are those of each object, not of the other
   }
 }
 
+TEST_CASE("distance: exact at any size, subnormal numbers too, and far below the rounding of coordinates",
+          "[ref][distance]") {
+  Mesh corner;
+  add_face(corner, {{0, 0, 0}, {-4, 0, 0}, {0, -4, 0}});
+  Mesh across;
+  add_face(across, {{3, 4, 0}, {8, 4, 0}, {3, 8, 1}});
+  for (const int exponent : {-1071, -1040, -700, -520, -340, 0, 340, 500, 700, 996}) {
+    Mesh a = corner;
+    Mesh b = across;
+    for (Mesh* mesh : {&a, &b}) {
+      for (Vec3d& v : mesh->vertices) v = v.unaryExpr([&](double x) { return std::ldexp(x, exponent); });
+    }
+    CAPTURE(exponent);
+    const DistanceResult found = distance(Object(a), Pose::Identity(), Object(b), Pose::Identity());
+    CHECK(found.lower == std::ldexp(5, exponent));
+    CHECK(found.upper == std::ldexp(5, exponent));
+    CHECK(within(Object(a), Pose::Identity(), Object(b), Pose::Identity(), found.upper).hit);
+    CHECK_FALSE(within(Object(a), Pose::Identity(), Object(b), Pose::Identity(), std::nextafter(found.upper, 0.0)).hit);
+  }
+  // A gap of one unit in the last place, so that no sum of doubles sees it.
+  for (const double x : {0x1p52, 0x1p53 - 1}) {
+    Mesh a;
+    Mesh b;
+    add_face(a, {{x, 0, 0}, {x, 1, 0}, {x, 0, 1}});
+    add_face(b, {{x + 1, 0, 0}, {x + 1, 1, 0}, {x + 1, 0, 1}});
+    CAPTURE(x);
+    CHECK(distance(Object(a), Pose::Identity(), Object(b), Pose::Identity()).lower == 1);
+    CHECK(distance(Object(a), Pose::Identity(), Object(b), Pose::Identity()).upper == 1);
+    CHECK_FALSE(within(Object(a), Pose::Identity(), Object(b), Pose::Identity(), 0.5).hit);
+    const PosedDistances distances(Pose::Identity(), Pose::Identity());
+    CHECK(distances.tight_bounds(a.primitive(0), b.primitive(0)).lower == 1);
+    CHECK(distances.tight_bounds(a.primitive(0), a.primitive(0)).upper == 0);
+  }
+  // Translations whose difference no double holds.
+  Mesh point;
+  add_face(point, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+  const Pose far(Eigen::Translation3d(0x1p53, 0, 0));
+  const Pose back(Eigen::Translation3d(-1, 0, 0));
+  CHECK_FALSE(within(Object(point), far, Object(point), back, 0x1p53).hit);
+  CHECK(distance(Object(point), far, Object(point), back).lower == 0x1p53);
+  CHECK(distance(Object(point), far, Object(point), back).upper == 0x1p53 + 2);
+}
+
 TEST_CASE("distance: what is known beforehand", "[ref][distance]") {
   const Object box(make_box({0, 0, 0}, {1, 1, 1}));
   const Object inner(make_box({0.25, 0.25, 0.25}, {0.5, 0.5, 0.5}));
