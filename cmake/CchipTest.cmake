@@ -21,6 +21,9 @@ function(cchip_add_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE cchip_catch_main ${ARG_LIBS} cchip_warnings)
   cchip_test_options(${name} ${ARG_SOURCES})
+  if(CCHIP_COVERAGE)  # counters take their time
+    math(EXPR ARG_TIMEOUT "10 * ${ARG_TIMEOUT}")
+  endif()
   catch_discover_tests(${name} TEST_PREFIX "${name}: " EXTRA_ARGS -w NoTests PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT})
 endfunction()
 
