@@ -11,19 +11,21 @@ usage: mutants_cpp.py [options]
   --again         bring changed tests into the copy and ask them about the mutants that live
   --table         only the table of what was run so far
   --write         put the table into docs/develop/mutants.md
-  --alive         print the mutants that nothing killed
+  --alive         print the mutants that nothing killed, and what docs/figures/mutants_cpp_alive.csv says of them
 
 A mutant changes one place: a comparison gets or loses its equality, + and -, && and || are exchanged, a whole number is one more, a sign is lost, a statement is left out. Places are found in
 clang's syntax tree (python3-clang); constant expressions are left alone. All mutants are in one copy of the sources, each behind a test of a global number, so that everything is compiled
 once: below build/mutants_cpp. A first run of each test case notes which places it comes by; a mutant runs only there, the quickest cases first. Killed: a test case fails, crashes, needs more
 than 4 GB, or takes ten times as long. A run that was stopped goes on where it was; after a change of the sources, or with another seed, it begins again.
 
-Not every mutant that lives is a gap: an error bound that is wider than needed, or a search that prunes less, gives the same answers more slowly.
+Not every mutant that lives is a gap: an error bound that is wider than needed, or a search that prunes less, gives the same answers more slowly. docs/figures/mutants_cpp_alive.csv
+may say in a sentence why one cannot matter: by reading, not by proof. It counts as alive, and as explained. A row whose mutant is another one by now, or does not live, is an error.
 
-The last line is `mutants=N reached=R killed=K alive=A`. Exit codes: 0 done, 1 a tool or a test without mutant failed, 2 bad arguments."""
+The last line is `mutants=N reached=R killed=K alive=A explained=X`. Exit codes: 0 done, 1 a tool or a test without mutant failed, or a row is out of date, 2 bad arguments."""
 import argparse
 import collections
 import concurrent.futures
+import csv
 import hashlib
 import json
 import os
@@ -43,6 +45,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 OUT = ROOT / "build" / "mutants_cpp"
 TREE = OUT / "tree"
 PAGE = ROOT / "docs" / "develop" / "mutants.md"
+ALIVE = ROOT / "docs" / "figures" / "mutants_cpp_alive.csv"
+KINDS = ("same", "speed", "unreachable")
 ROOMS = ("exact", "cpu", "collide")
 # test cases that time nothing and write nothing
 TESTS = ("test_touching", "test_intersections", "test_self_contacts", "test_points", "test_along", "test_certificate", "test_solids", "test_collide", "test_distance")
@@ -296,18 +300,47 @@ def test(jobs, slowest, only, again):
             print(f"{number} {':'.join(map(str, mutants[number][:2]))} {mutants[number][2]}: {result.get('killed', 'alive')}", flush=True)
 
 
+def recorded():
+    """(mutants, results) of what was run so far."""
+    return json.loads((OUT / "mutants.json").read_text()), json.loads((OUT / "results.json").read_text())
+
+
+def explained():
+    """{mutant: sentence} of ALIVE; all rows are of mutants that live."""
+    mutants, results = recorded()
+    found, wrong = {}, []
+    with ALIVE.open() as file:
+        for row in csv.DictReader(file):
+            number = row["mutant"]
+            path, line, change = mutants.get(number, ("", 0, "none"))
+            place = f"{path.removeprefix('cpp_ref/')}:{line} {change}"
+            if place != row["place"]:
+                wrong.append(f"{number} is {place}, not {row['place']}")
+            elif "killed" in results.get(number, {}):
+                wrong.append(f"{number} does not live; take the row away")
+            elif number in found or row["kind"] not in KINDS or not row["why"]:
+                wrong.append(f"{number}: twice, without a reason, or of a kind that is none of {', '.join(KINDS)}")
+            found[number] = row["why"]
+    if wrong:
+        raise Failed("\n".join(f"{ALIVE.name}: {what}" for what in wrong))
+    return found
+
+
 def table():
-    mutants, results = json.loads((OUT / "mutants.json").read_text()), json.loads((OUT / "results.json").read_text())
-    rows = collections.defaultdict(lambda: [0, 0, 0])
+    mutants, results = recorded()
+    why = explained()
+    rows = collections.defaultdict(lambda: [0, 0, 0, 0])
     for number, result in results.items():
         for room in (f"src/{mutants[number][0].split('/')[2]}", "all"):
             rows[room][0] += 1
             rows[room][1] += "killed" in result or bool(result.get("asked"))
             rows[room][2] += "killed" in result
-    lines = ["| room | mutants | reached by a test | killed | alive | killed of those reached |", "|---|---|---|---|---|---|"]
+            rows[room][3] += number in why
+    lines = ["| room | mutants | reached by a test | killed | alive | of these explained | killed of those reached | killed of those not explained |", "|---|---|---|---|---|---|---|---|"]
     for room in [*sorted(set(rows) - {"all"}), "all"]:
-        count, reached, killed = rows[room]
-        lines.append(f"| {room} | {count} | {reached} | {killed} | {count - killed} | {100 * killed / reached if reached else 100:.1f} % |")
+        count, reached, killed, reasons = rows[room]
+        lines.append(f"| {room} | {count} | {reached} | {killed} | {count - killed} | {reasons} | {100 * killed / reached if reached else 100:.1f} % | "
+                     f"{100 * killed / (count - reasons) if count > reasons else 100:.1f} % |")
     return "\n".join(lines) + "\n", rows["all"]
 
 
@@ -331,19 +364,20 @@ def main():
                 copy_sources(rooms=False)
                 run(["cmake", "--build", OUT / "build", "-j", options.jobs, "--target", *TESTS])
             test(options.jobs, options.slowest, options.only, options.again)
+        text, (count, reached, killed, reasons) = table()
     except (Failed, ImportError) as what:
         print(f"mutants_cpp.py: {what}" + ("; install python3-clang and run with /usr/bin/python3" if isinstance(what, ImportError) else ""), file=sys.stderr)
         return 1
-    text, (count, reached, killed) = table()
     print(text)
     if options.alive:
-        mutants, results = json.loads((OUT / "mutants.json").read_text()), json.loads((OUT / "results.json").read_text())
+        mutants, results = recorded()
+        why = explained()
         for number, result in results.items():
             if "killed" not in result:
-                print(f"{number} {':'.join(map(str, mutants[number][:2]))} {mutants[number][2]}{'' if result['asked'] else ', not reached'}")
+                print(f"{number} {':'.join(map(str, mutants[number][:2]))} {mutants[number][2]}{'' if result['asked'] else ', not reached'}: {why.get(number, 'not explained')}")
     if options.write:
         datasheet.rewrite(PAGE, "mutants_cpp", text)
-    print(f"mutants={count} reached={reached} killed={killed} alive={count - killed}")
+    print(f"mutants={count} reached={reached} killed={killed} alive={count - killed} explained={reasons}")
     return 0
 
 

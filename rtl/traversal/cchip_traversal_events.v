@@ -341,9 +341,14 @@ module cchip_traversal_events #(
   assign m_result = of_result_q;
   wire unused = &{1'b0, unused_answers, unused_some};
 
-  // clocks for which the first result, and the first verdict, have waited
+  // clocks for which the first result, and the first verdict, have waited; whether the other went
+  // before it though it might have entered
   reg [4:0] result_waits_q, verdict_waits_q;
+  reg result_passed_q, verdict_passed_q;
+  wire both = may_result_q & may_verdict_q;
   always @(posedge clk) begin
+    result_passed_q  <= ~rst & ~result_take & (result_passed_q | (both & verdict_take));
+    verdict_passed_q <= ~rst & ~verdict_take & (verdict_passed_q | (both & result_take));
     result_waits_q  <= rst | ~result_valid | result_take ? 5'd0 : result_waits_q + 5'd1;
     verdict_waits_q <= rst | ~verdict_valid_q | verdict_take ? 5'd0 : verdict_waits_q + 5'd1;
   end
@@ -357,6 +362,8 @@ module cchip_traversal_events #(
       `CCHIP_ASSERT(a_inside, !(start_take || pop_take) || !inside_q[taken])
       `CCHIP_ASSERT(a_wants, !pop_take || want_q[taken])
       `CCHIP_ASSERT(a_idle, !start_take || idle_q[taken])
+      `CCHIP_ASSERT(a_result_turn, !(both && verdict_take && result_passed_q))
+      `CCHIP_ASSERT(a_verdict_turn, !(both && result_take && verdict_passed_q))
       `CCHIP_ASSERT(a_result_waits, result_waits_q <= 5'd16)
       `CCHIP_ASSERT(a_verdict_waits, verdict_waits_q <= 5'd16)
     end

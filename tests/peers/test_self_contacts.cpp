@@ -10,6 +10,8 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cchip/collide/collide.hpp>
+#include <cchip/internal/exact/intersection.hpp>
+#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/seed.hpp>
 #include <cmath>
@@ -55,6 +57,51 @@ Pairs ours(const Mesh& mesh) {
   Pairs pairs;
   for (const Contact& contact : self_contacts(Object(mesh))) pairs.emplace_back(contact.face_a, contact.face_b);
   return pairs;
+}
+
+Mesh mesh_of(const std::vector<Primitive>& faces) {
+  Mesh mesh;
+  for (const Primitive& face : faces) {
+    mesh.faces.emplace_back().kind = face.kind;
+    for (std::size_t i = 0; i < face.vertex_count(); ++i) {
+      mesh.faces.back().vertex[i] = static_cast<std::uint32_t>(mesh.vertices.size());
+      mesh.vertices.push_back(face.v[i]);
+    }
+  }
+  return mesh;
+}
+
+Primitive triangle(const Vec3d& u, const Vec3d& v, const Vec3d& w) {
+  Primitive p;
+  p.v = {u, v, w, u};
+  return p;
+}
+
+Primitive quad(const Vec3d& u, const Vec3d& v, const Vec3d& w, const Vec3d& x) {
+  Primitive p;
+  p.kind = Kind::quad;
+  p.v = {u, v, w, x};
+  return p;
+}
+
+/// More than the one vertex or the one edge that they have in common? Of any faces with small whole numbers: all
+/// corners of what two hulls share lie on the edge, or do not by far more than they were rounded.
+bool hulls_share_more(const Primitive& a, const Primitive& b) {
+  std::vector<Vec3d> common;
+  for (std::size_t i = 0; i < a.vertex_count(); ++i) {
+    const bool known = std::find(common.begin(), common.end(), a.v[i]) != common.end();
+    const auto end = b.v.begin() + static_cast<int>(b.vertex_count());
+    if (!known && std::find(b.v.begin(), end, a.v[i]) != end) common.push_back(a.v[i]);
+  }
+  if (common.size() > 2) return true;
+  const auto shared = exact_intersection(a, Pose::Identity(), b, Pose::Identity());
+  if (!shared) return false;
+  if (common.empty()) return true;
+  const Vec3d edge = common.back() - common.front();
+  return std::any_of(shared->points.begin(), shared->points.end(), [&](const Vec3d& p) {
+    const double along = common.size() == 1 ? 0 : (p - common[0]).dot(edge) / edge.squaredNorm();
+    return (p - common[0] - std::clamp(along, 0.0, 1.0) * edge).norm() > 1e-6;
+  });
 }
 
 /// Triangles between a few points of a small grid: many share vertices and edges, lie in one plane or coincide.
@@ -150,4 +197,67 @@ TEST_CASE("self-contacts: those of CGAL's self_intersections", "[ref][cgal]") {
   }
   CHECK(meshes >= 40);
   CHECK(pairs >= 500);
+}
+
+TEST_CASE("self-contacts: quads and collapsed faces against what their hulls share", "[ref][cgal]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  std::array<std::array<int, 2>, 3> seen = {};  // by vertices in common, by the answer
+  for (int round = 0; round < 70; ++round) {
+    std::vector<Vec3d> points(7);  // of a small grid, so that faces are flat, collapsed or tetrahedra
+    for (Vec3d& p : points) {
+      for (double& x : p) x = static_cast<double>(random() % 3);
+    }
+    std::vector<Primitive> faces(5);
+    for (Primitive& face : faces) {
+      face.kind = random() % 4 == 0 ? Kind::tri : Kind::quad;
+      for (Vec3d& v : face.v) v = points[random() % points.size()];
+    }
+    std::vector<Contact> expected;
+    for (std::uint32_t i = 0; i < faces.size(); ++i) {
+      for (std::uint32_t k = i + 1; k < faces.size(); ++k) {
+        const bool more = hulls_share_more(faces[i], faces[k]);
+        if (more) {
+          expected.push_back({i, k, exact_relation(faces[i], Pose::Identity(), faces[k], Pose::Identity())});
+        }
+        std::set<std::array<double, 3>> common;
+        for (std::size_t v = 0; v < 16; ++v) {
+          const Vec3d& p = faces[i].v[v / 4];
+          if (v / 4 < faces[i].vertex_count() && v % 4 < faces[k].vertex_count() && p == faces[k].v[v % 4]) {
+            common.insert({p.x(), p.y(), p.z()});
+          }
+        }
+        if (common.size() < 3) ++seen[common.size()][more ? 1 : 0];
+      }
+    }
+    CAPTURE(round);
+    REQUIRE(self_contacts(Object(mesh_of(faces))) == expected);
+  }
+  for (const auto& [no, yes] : seen) {
+    CHECK(no >= 3);
+    CHECK(yes >= 3);
+  }
+}
+
+TEST_CASE("self-contacts: a face through a quad near their common vertex", "[ref][cgal]") {
+  const Primitive floor = quad({0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0});
+  const auto found = [](const Primitive& a, const Primitive& b) { return self_contacts(Object(mesh_of({a, b}))); };
+  const std::vector<Contact> crossing = {{0, 1, Relation::crossing}};
+  const std::vector<Contact> none;
+  CHECK(found(floor, triangle({0, 0, 0}, {1, 1, -1}, {1, 1, 1})) == crossing);
+  CHECK(found(floor, triangle({0, 0, 0}, {1, 1, 1}, {1, 1, 2})) == none);
+  // Into a tetrahedron from one of its edges, and away from it.
+  const Primitive solid = quad({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4});
+  CHECK(found(solid, triangle({0, 0, 0}, {4, 0, 0}, {1, 1, 1})) == crossing);
+  CHECK(found(solid, triangle({0, 0, 0}, {4, 0, 0}, {1, 5, 5})) == crossing);
+  CHECK(found(solid, triangle({0, 0, 0}, {4, 0, 0}, {1, -1, 1})) == none);
+}
+
+TEST_CASE("self-contacts: neighbours whose products no double holds", "[ref][cgal]") {
+  // Over one edge, in one plane and on one side: the second contains the first, 2^700 times as large.
+  const Vec3d u(0, 0, 0), v(0, 0x1p-600, 0), w(1, 0, 0x1p-600);
+  const Mesh mesh = mesh_of({triangle(u, v, w), triangle(u, v, 0x1p700 * w)});
+  CHECK(self_contacts(Object(mesh)) == std::vector<Contact>{{0, 1, Relation::touching}});
+  // On the other side they share the edge alone.
+  const Mesh apart = mesh_of({triangle(u, v, w), triangle(u, v, -0x1p700 * w)});
+  CHECK(self_contacts(Object(apart)).empty());
 }

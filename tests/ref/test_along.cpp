@@ -480,6 +480,94 @@ TEST_CASE("along: the faces that meet first are named, each of its own object", 
   CHECK(up.face_b == 0);
 }
 
+TEST_CASE("along: objects that touch now name the faces that touch", "[ref][along]") {
+  Mesh one;
+  add_face(one, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  Mesh three;
+  for (const double z : {9.0, 5.0, 0.0}) add_face(three, {{0.25, 0.25, z}, {3, 3, z + 1}, {3, 4, z + 1}});
+  for (const auto& query : {clear_along, first_contact}) {
+    const AlongResult up = query(Object(one), here, Object(three), here, {0, 0, 1});
+    CHECK(up.touches);
+    CHECK(up.factor == 0);
+    CHECK(up.face_a == 0);
+    CHECK(up.face_b == 2);
+  }
+}
+
+TEST_CASE("along: faces that are certain never to meet are not decided exactly", "[ref][along]") {
+  // In two parallel planes, moved along them: their volumes are too thick to tell. In the plane's own coordinates one
+  // begins at 0, the other a step above.
+  const auto oblique = [](double step) {
+    Mesh mesh;
+    const Vec3d p = step * Vec3d(0.25, 0.25, 0.25);
+    add_face(mesh, {p, p + Vec3d(5, -1, -1), p + Vec3d(-1, 5, -3)});
+    return mesh;
+  };
+  const Object a(oblique(0)), b(oblique(1));
+  const Pose place = shifted(10, -2, -2);
+  const AlongResult result = first_contact(a, here, b, place, {-5, 1, 1});
+  CHECK_FALSE(result.touches);
+  CHECK(result.stats.pairs == 1);
+  CHECK(result.stats.open == 0);
+  // In one plane they meet, which takes exact numbers.
+  const AlongResult meets = first_contact(a, here, a, place, {-5, 1, 1});
+  CHECK(meets.touches);
+  CHECK(meets.stats.pairs == 1);
+  CHECK(meets.stats.open == 1);
+}
+
+TEST_CASE("along: the search counts its own work beside that of the first look", "[ref][along]") {
+  Mesh mesh = make_sphere(1, 4);
+  const Object ball(mesh);
+  const Pose place = shifted(3, 0.25, 0.125);
+  const CollisionStats now = collide(ball, here, ball, place).stats;
+  const CollisionStats all = first_contact(ball, here, ball, place, {-1, 0, 0}).stats;
+  CHECK(all.steps > now.steps);
+  CHECK(all.box_tests >= now.box_tests + (all.steps - now.steps));  // at least one for each node
+  CHECK(all.pairs > now.pairs);
+  CHECK(all.open > now.open);
+}
+
+TEST_CASE("along: many faces that meet at one moment that is no double", "[ref][along]") {
+  // Steps of 2^-5 and 2^9, so that neither numerators nor denominators are in whole units.
+  for (const double unit : {0x1p-5, 1.0, 0x1p9}) {
+    const Object box(make_box({0, 0, 0}, unit * Vec3d(1, 1, 1)));
+    const Vec3d d = Vec3d(-3, 0, 0) * unit;
+    for (const double y : {0.0, 0.25, 1.0}) {
+      const AlongResult first = first_contact(box, here, box, shifted(2 * unit, y * unit, 0), d);
+      CHECK(first.touches);
+      CHECK(first.factor == 1.0 / 3);
+      CHECK(first.lower == 1.0 / 3);
+      CHECK(first.upper == std::nextafter(1.0 / 3, 1));
+      const AlongResult clear = clear_along(box, here, box, shifted(0, y * unit, 0), -d);
+      CHECK(clear.touches);
+      CHECK(clear.factor == 1.0 / 3);
+      CHECK(clear.upper == std::nextafter(1.0 / 3, 1));
+    }
+  }
+}
+
+TEST_CASE("along: moments below the least double above 0", "[ref][along]") {
+  // A cube of 2^-1100 in the world, moved by its length: between 0 and the least double.
+  const Object box(make_box({0, 0, 0}, 0x1p-600 * Vec3d(1, 1, 1)));
+  Pose tiny = here;
+  tiny.linear() *= 0x1p-500;
+  constexpr double least = std::numeric_limits<double>::denorm_min();
+  const AlongResult clear = clear_along(box, tiny, box, tiny, {1, 0, 0});
+  CHECK(clear.touches);
+  CHECK(clear.factor == 0);
+  CHECK(clear.lower == 0);
+  CHECK(clear.upper == least);
+  // The least double away, it reaches the other one that much less its length later.
+  Pose away = tiny;
+  away.translation().x() = least;
+  const AlongResult first = first_contact(box, tiny, box, away, {-1, 0, 0});
+  CHECK(first.touches);
+  CHECK(first.factor == least);
+  CHECK(first.lower == 0);
+  CHECK(first.upper == least);
+}
+
 TEST_CASE("along: arguments that make no sense", "[ref][along]") {
   const Object box(make_box({0, 0, 0}, {1, 1, 1}));
   for (const auto& query : {clear_along, first_contact}) {

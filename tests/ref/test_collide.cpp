@@ -13,6 +13,7 @@
 #include <cchip/device/device.hpp>
 #include <cchip/internal/bvh/image.hpp>
 #include <cchip/internal/bvh/place.hpp>
+#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/internal/model/broad_phase.hpp>
 #include <cchip/internal/reference/brute_force.hpp>
 #include <cchip/sim/seed.hpp>
@@ -848,4 +849,110 @@ TEST_CASE("collide: a hint names the contact but never changes whether there is 
   CHECK(taken > 20);
   CHECK(touched > 100);
   CHECK(stale > 100);
+}
+
+TEST_CASE("collide: of a few faces in a row each is found", "[ref][collide]") {
+  // Triangles, quads, and pairs of triangles with a common side; a large face cuts one of them, or goes between two.
+  const auto row = [](std::size_t count, int kind) {
+    Mesh mesh;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto x = 4 * static_cast<double>(i);
+      if (kind == 1) {
+        add_face(mesh, {{x, 0, 0}, {x + 2, 0, 0}, {x + 2, 1, 0}, {x, 1, 0}});
+      } else {
+        add_face(mesh, {{x, 0, 0}, {x + 2, 0, 0}, {x, 1, 0}});
+        if (kind == 2) add_face(mesh, {{x + 2, 0, 0}, {x + 2, 1, 0}, {x, 1, 0}});
+      }
+    }
+    return mesh;
+  };
+  for (const std::string& target : cpu_targets()) {
+    const auto device = open_cpu_device({1, target});
+    for (int kind = 0; kind < 3; ++kind) {
+      for (std::size_t count = 1; count <= 5; ++count) {
+        const Object faces(row(count, kind));
+        for (const bool is_quad : {false, true}) {
+          std::vector<Vec3d> cut = {{0, -60, -60}, {0, 60, -60}, {0, 0, 60}};
+          if (is_quad) cut = {{0, -60, -60}, {0, 60, -60}, {0, 60, 60}, {0, -60, 60}};
+          const Object wall(one_face(cut));
+          for (std::size_t i = 0; i < count; ++i) {
+            for (const double aside : {1.0, 2.0, 3.0}) {
+              const Pose there = make_pose({4 * static_cast<double>(i) + aside, 0, 0}, {0, 0, 0});
+              std::vector<Contact> expected;
+              const auto number = static_cast<std::uint32_t>(kind == 2 ? 2 * i : i);
+              if (aside < 3) expected.push_back({number, 0});
+              if (aside < 3 && kind == 2) expected.push_back({number + 1, 0});
+              CAPTURE(target, kind, count, is_quad, i, aside);
+              CHECK(same_faces(collide(*device, faces, Pose::Identity(), wall, there, all).contacts, expected));
+              const CollisionResult first = collide(*device, faces, Pose::Identity(), wall, there);
+              CHECK(first.hit == !expected.empty());
+              for (Contact& contact : expected) std::swap(contact.face_a, contact.face_b);
+              CHECK(same_faces(collide(*device, wall, there, faces, Pose::Identity(), all).contacts, expected));
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("collide: only what nearly touches is counted as open", "[ref][collide]") {
+  std::mt19937_64 random(7);
+  const auto face = [&random](bool is_quad) {
+    const Vec3d p = random_vector(random, 1);
+    const Vec3d u = random_vector(random, 1);
+    const Vec3d v = random_vector(random, 1);
+    if (is_quad) return one_face({p, p + u, p + u + v, p + v});
+    return one_face({p, p + u, p + v});
+  };
+  std::vector<std::unique_ptr<Device>> devices;
+  for (const std::string& target : cpu_targets()) devices.push_back(open_cpu_device({1, target}));
+  std::array<std::size_t, 2> tested = {0, 0};
+  for (std::size_t i = 0; i < 120; ++i) {
+    const Object a(face(i % 2 == 0));
+    const Object b(face(i / 2 % 2 == 0));
+    const Pose pose = random_pose(PoseClass::rigid, 0.5, random);
+    const bool hit = exact_intersects(a.mesh().primitive(0), Pose::Identity(), b.mesh().primitive(0), pose);
+    for (const auto& device : devices) {
+      for (const bool everything : {false, true}) {
+        const CollisionResult result =
+            collide(*device, a, Pose::Identity(), b, pose, everything ? all : CollisionRequest{});
+        CAPTURE(i, everything);
+        CHECK(result.hit == hit);
+        CHECK(result.stats.open == 0);
+        CHECK(result.stats.pairs <= 1);
+        tested[hit ? 1 : 0] += result.stats.pairs;
+      }
+    }
+  }
+  CHECK(tested[0] > 50);
+  CHECK(tested[1] > 50);
+  // A corner so near to the face that only exact arithmetic tells on which side it is.
+  const Object plate(one_face({{-1, -1, 0}, {2, -1, 0}, {-1, 2, 0}}));
+  const Object corner(one_face({{0, 0, 0}, {0, 0.4, 1}, {0.4, 0, 1}}));
+  const Object torus(make_torus(1, 0.4, 6, 4));
+  const Pose pose_a = make_pose({0.1, 0.2, 0.3}, {10, 20, 30});
+  Pose pose_b = make_pose({0, 0, 0}, {11, 21, 31});
+  pose_b.translation() = pose_a * Vec3d(0.1, 0.1, 0);
+  for (const auto& device : devices) {
+    for (const CollisionRequest& request : {CollisionRequest{}, all}) {
+      const CollisionStats one = collide(*device, plate, pose_a, corner, pose_b, request).stats;
+      CHECK(one.pairs == 1);
+      CHECK(one.open == 1);
+      const CollisionStats many = collide(*device, torus, pose_a, torus, pose_b, request).stats;
+      CHECK(many.steps > 0);
+      CHECK(many.box_tests >= many.steps);
+    }
+  }
+}
+
+TEST_CASE("collide: the same place is the least number, whatever comes behind it", "[ref][collide]") {
+  for (const double behind : {-1.0, 1.0}) {
+    // The first and the third vertex are one, and so are the others; what follows them differs.
+    Mesh mesh;
+    mesh.vertices = {{0, 0, 0}, {5, 0, 0},           {0, 0, 0}, {behind, 0, 0},
+                     {5, 0, 0}, {-5 * behind, 1, 0}, {5, 0, 0}, {0, 0, 0}};
+    mesh.faces = {{Kind::tri, {0, 1, 3, 0}}, {Kind::tri, {2, 4, 5, 0}}, {Kind::tri, {7, 6, 5, 0}}};
+    CHECK(Object(mesh).same_place() == std::vector<std::uint32_t>{0, 1, 0, 3, 1, 5, 1, 0});
+  }
 }

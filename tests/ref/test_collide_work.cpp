@@ -321,3 +321,41 @@ TEST_CASE("work: poses with shear, mirror and singular maps", "[ref][collide][wo
     }
   }
 }
+
+TEST_CASE("work: small objects beside a face askew cost no test of faces", "[ref][collide][work]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  // A triangle, a quad, a fan of two triangles, and two triangles in one plane, which are a leaf, too.
+  const Vec3d p(0, 0, 0);
+  const Vec3d u(8, 1, -3);
+  const Vec3d v(-2, 7, 4);
+  std::array<Mesh, 4> faces;
+  add_face(faces[0], {p, u, v});
+  add_face(faces[1], {p, u, u + v, v});
+  add_face(faces[2], {p, u, v});
+  add_face(faces[2], {u, u + v, v});
+  add_face(faces[3], {p, u, v});
+  add_face(faces[3], {u + v, 0.875 * u + v, u + 0.875 * v});
+  const Vec3d normal = u.cross(v).normalized();
+  for (const Mesh& mesh : faces) {
+    for (int mirror = 0; mirror < 8; ++mirror) {
+      Mesh turned = mesh;
+      const Vec3d signs((mirror & 1) != 0 ? -1 : 1, (mirror & 2) != 0 ? -1 : 1, (mirror & 4) != 0 ? -1 : 1);
+      for (Vec3d& vertex : turned.vertices) vertex = vertex.cwiseProduct(signs);
+      const Object great(turned);
+      const Object small(make_body(1, 0.3));
+      for (const std::string& target : cpu_targets()) {
+        if (target == "plain") continue;  // its volumes are those of the nodes alone
+        const auto device = open_cpu_device({1, target});
+        for (int i = 0; i < 8; ++i) {
+          Pose pose = random_pose(PoseClass::rigid, 1, random);
+          pose.linear() *= 0x1p-7;
+          const Vec3d beside = 0.25 * u + 0.25 * v + (i % 2 == 0 ? 0.0625 : -0.0625) * normal;
+          pose.translation() = beside.cwiseProduct(signs);
+          CAPTURE(target, mirror, i);
+          CHECK(collide(*device, great, Pose::Identity(), small, pose).stats.pairs == 0);
+          CHECK(collide(*device, small, pose, great, Pose::Identity()).stats.pairs == 0);
+        }
+      }
+    }
+  }
+}

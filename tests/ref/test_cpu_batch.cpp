@@ -142,6 +142,63 @@ TEST_CASE("CPU device: a batch fetches each query once", "[ref][collide]") {
   }
 }
 
+TEST_CASE("CPU device: every answer of a batch has its proof", "[ref][collide]") {
+  constexpr std::size_t count = 12;
+  const Object face([] {
+    Mesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.faces = {{Kind::tri, {0, 1, 2, 0}}};
+    return mesh;
+  }());
+  const Pose here = Pose::Identity();
+  const Pose far = make_pose({5, 0, 0}, {20, 10, 0});
+  const Pose there = make_pose({0.1, 0.1, 0}, {20, 10, 0});
+  for (const unsigned threads : {1U, 2U, 3U}) {
+    const auto device = open_cpu_device({threads, {}});
+    const auto query = [&](std::size_t i) { return CollisionQuery{&face, &here, &face, i % 4 == 0 ? &there : &far}; };
+    // The second time without, so that nothing of the first is left.
+    for (const bool wanted : {true, false}) {
+      CollisionRequest request;
+      request.certificate = wanted;
+      std::size_t proofs = 0;
+      device->collide(count, query, request, [&proofs](std::size_t, const CollisionResult& result) {
+        proofs += result.certificate ? 1U : 0U;
+      });
+      CAPTURE(threads, wanted);
+      CHECK(proofs == (wanted ? count : 0));
+    }
+  }
+}
+
+TEST_CASE("CPU device: keeps its threads from batch to batch", "[ref][collide]") {
+  constexpr std::size_t threads = 3;
+  const Object torus(make_torus(1, 0.25, 24, 12));
+  const Pose here = Pose::Identity();
+  const Pose there = make_pose({0.3, 0.1, 0.05}, {20, 10, 0});
+  const auto device = open_cpu_device({threads, {}});
+  std::set<std::thread::id> seen;
+  for (int batch = 0; batch < 4; ++batch) {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::set<std::thread::id> present;
+    bool timed_out = false;
+    // A thread that has a query waits until each of the others has one.
+    const auto query = [&](std::size_t) {
+      std::unique_lock<std::mutex> lock(mutex);
+      present.insert(std::this_thread::get_id());
+      changed.notify_all();
+      timed_out = timed_out || !changed.wait_for(lock, std::chrono::seconds(20),
+                                                 [&] { return timed_out || present.size() == threads; });
+      if (timed_out) changed.notify_all();
+      return CollisionQuery{&torus, &here, &torus, &there};
+    };
+    device->collide(threads, query, {}, [](std::size_t, const CollisionResult&) {});
+    CHECK(present.size() == threads);
+    seen.insert(present.begin(), present.end());
+  }
+  CHECK(seen.size() == threads);
+}
+
 namespace {
 
 /// Three objects and a few places, of which some touch; queries about their pairs in any order, some of them twice.

@@ -6,8 +6,10 @@
 // that point at each other touch where bounding planes are as tight as they can be: their tips lie on a direction of
 // the volumes of both. Bounds of whole objects in doubles are so fine that only what is far from the origin needs their
 // margin: spindles for the line of the centres, a corner of a cube in a face of the other one for the edges of boxes.
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <cchip/cpu/cpu_device.hpp>
 #include <cchip/internal/bvh/support_tree.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/sim/seed.hpp>
@@ -397,4 +399,264 @@ TEST_CASE("CPU device: answers are exact on both sides of the bound on maps", "[
     if (exponent < 26) CHECK(2 * taken > asked);
     if (exponent > 28) CHECK(taken == 0);
   }
+}
+
+namespace {
+
+/// One to four faces with whole coordinates up to `most`; two triangles with a common side make a leaf of their own
+/// kind.
+Mesh whole_faces(std::size_t kind, int least, int most, std::mt19937_64& random) {
+  const auto whole = [&] { return least + static_cast<double>(random() % static_cast<unsigned>(most - least + 1)); };
+  const auto point = [&] {
+    const double x = whole();
+    const double y = whole();
+    return Vec3d(x, y, whole());
+  };
+  Mesh mesh;
+  if (kind < 4) {
+    for (std::size_t i = 0; i <= kind; ++i) testing::add_face(mesh, {point(), point(), point()});
+    return mesh;
+  }
+  for (int i = 0; i < 4; ++i) mesh.vertices.push_back(point());
+  mesh.vertices[3] = mesh.vertices[0] + mesh.vertices[2] - mesh.vertices[1];
+  if (kind == 4) mesh.faces = {{Kind::quad, {0, 1, 2, 3}}};
+  if (kind == 5) mesh.faces = {{Kind::tri, {0, 1, 2, 0}}, {Kind::tri, {0, 2, 3, 0}}};
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("CPU device: small objects at the faces of great ones, whole numbers", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  const auto plain = make_plain_search();
+  std::vector<std::unique_ptr<Search>> searches;
+  for (const std::string& name : simd_targets()) searches.push_back(make_simd_search(name));
+  std::array<std::size_t, 2> seen = {0, 0};
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < 720; ++i) {
+    const Mesh great_mesh = whole_faces(i % 6, -2, 2, random);
+    const Object great(great_mesh);
+    const Object small(whole_faces(i / 6 % 6, 0, 3, random));  // most of them to one side of where they are placed
+    const double size = std::ldexp(1, -6 - static_cast<int>(random() % 4));
+    Pose pose = Pose::Identity();
+    if (i % 2 == 1) pose.linear() = make_pose(Vec3d::Zero(), 360 * random_vector(random)).linear();
+    pose.linear() *= size;
+    // At a corner, on a side or within a face, and a little beside it.
+    const Primitive face = great_mesh.primitive(random() % great_mesh.faces.size());
+    const Vec3d in = (2 * face.v[0] + face.v[random() % 3] + face.v[random() % 3]) / 4;
+    pose.translation() = in + size * whole_faces(0, -2, 2, random).vertices[0];
+    if (i % 3 == 0) pose.translation() = in - pose.linear() * small.mesh().vertices[0];
+    const bool hit = hits(*plain, great, Pose::Identity(), small, pose);
+    ++seen[hit ? 1 : 0];
+    for (const auto& search : searches) {
+      wrong += hits(*search, great, Pose::Identity(), small, pose) == hit ? 0U : 1U;
+      wrong += hits(*search, small, pose, great, Pose::Identity()) == hit ? 0U : 1U;
+    }
+  }
+  CAPTURE(sim::seed_from_environment());
+  CHECK(wrong == 0);
+  CHECK(seen[0] > 100);
+  CHECK(seen[1] > 100);
+}
+
+TEST_CASE("CPU device: flat bricks that touch, aside of each other by whole numbers", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  std::vector<std::unique_ptr<Search>> searches;
+  for (const std::string& name : simd_targets()) searches.push_back(make_simd_search(name));
+  const std::array<Vec3d, 6> halves = {Vec3d(1, 4, 1), Vec3d(4, 1, 1), Vec3d(1, 1, 4),
+                                       Vec3d(1, 4, 4), Vec3d(4, 4, 1), Vec3d(1, 2, 4)};
+  std::vector<Object> bricks;
+  for (const Vec3d& half : halves) bricks.emplace_back(testing::make_box(-half, half));
+  const Pose here = Pose::Identity();
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < bricks.size(); ++i) {
+    for (std::size_t k = 0; k < bricks.size(); ++k) {
+      const Vec3d sum = halves[i] + halves[k];
+      for (int n = 0; n < 9; ++n) {
+        // Face against face along one axis; at most to the edges or corners along the others.
+        const auto axis = static_cast<Eigen::Index>(n % 3);
+        Pose there = Pose::Identity();
+        for (Eigen::Index c = 0; c < 3; ++c) {
+          there(c, 3) = static_cast<double>(random() % static_cast<unsigned>(2 * sum[c] + 1)) - sum[c];
+        }
+        there(axis, 3) = n % 2 == 0 ? sum[axis] : -sum[axis];
+        Pose beyond = there;
+        beyond(axis, 3) *= 1 + 0x1p-40;
+        for (const auto& search : searches) {
+          wrong += hits(*search, bricks[i], here, bricks[k], there) ? 0U : 1U;
+          wrong += hits(*search, bricks[i], here, bricks[k], beyond) ? 1U : 0U;
+        }
+      }
+    }
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("CPU device: small cubes on a plate whose plane is as tight as can be", "[ref][collide]") {
+  // The unit is 1 + 2^-40 here, so that the plate lies hardly below 4000 units from the middle.
+  Mesh mesh;
+  testing::add_face(mesh, {{-9, -9, 4000}, {30, -9, 4000}, {-9, 30, 4000}});
+  testing::add_face(mesh, {{-9, -9, -4000}, {-30, -9, -4000}, {-9, -30, -4000}});
+  for (const double x : {-1, 1}) {
+    testing::add_face(mesh, {{x * 29000, 0, 0}, {x * 28000, 0, 100}, {x * 28000, 100, 0}});
+    testing::add_face(mesh, {{0, x * 28000, 0}, {0, x * 27000, 100}, {100, x * 27000, 0}});
+  }
+  const Object great(mesh);
+  const Object cube(make_cube(1));
+  for (const std::string& name : simd_targets()) {
+    const auto search = make_simd_search(name);
+    for (int exponent = -8; exponent <= 8; ++exponent) {
+      Pose on = Pose::Identity();
+      on.linear() *= std::ldexp(1, exponent);
+      on(2, 3) = 4000 + std::ldexp(1, exponent);
+      Pose over = on;
+      over(2, 3) += std::ldexp(1, exponent - 4);
+      CAPTURE(name, exponent);
+      CHECK(hits(*search, great, Pose::Identity(), cube, on));
+      CHECK(hits(*search, cube, on, great, Pose::Identity()));
+      CHECK_FALSE(hits(*search, cube, over, great, Pose::Identity()));
+    }
+  }
+}
+
+TEST_CASE("CPU device: meshes far from their origin, flattened, touch as exactly", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  std::vector<std::unique_ptr<Search>> searches;
+  for (const std::string& name : simd_targets()) searches.push_back(make_simd_search(name));
+  // Along (1, -1, 0) the map leaves next to nothing of the objects, but not of what placing them costs in doubles. The
+  // last column is about as long as the others together.
+  constexpr double thin = 1.5 * 0x1p-8;
+  Pose map = Pose::Identity();
+  map.linear() << (1 + thin) / 2, (1 - thin) / 2, 0, (1 - thin) / 2, (1 + thin) / 2, 0, 0, 0, 2 - 0x1p-5;
+  const auto around = [](const Vec3d& c) {
+    Mesh mesh;
+    const std::array<Vec3d, 2> sides = {Vec3d(0.25, 0.25, 0), Vec3d(0, 0, 0.25)};
+    for (const double tip : {-1, 1}) {
+      for (const double x : {-1, 1}) {
+        testing::add_face(mesh, {c + tip * Vec3d(1, -1, 0), c + x * sides[0], c + sides[1]});
+        testing::add_face(mesh, {c + tip * Vec3d(1, -1, 0), c + x * sides[0], c - sides[1]});
+      }
+    }
+    return mesh;
+  };
+  std::size_t missed = 0;
+  for (int i = 0; i < 60; ++i) {
+    const auto whole = [&random](double most) { return std::round(most * random_vector(random)[0]); };
+    Vec3d centre;
+    Vec3d other;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      centre[k] = std::ldexp(whole(0x1p50), -6);
+      other[k] = centre[k] + whole(8);
+    }
+    Pose pose_b = map;
+    pose_b.translation() = map.linear() * (centre - other) + 2 * thin * Vec3d(1, -1, 0);  // whole numbers: exact
+    const Object a(around(centre));
+    const Object b(around(other));
+    for (const auto& search : searches) missed += hits(*search, a, map, b, pose_b) ? 0U : 1U;
+  }
+  CHECK(missed == 0);
+}
+
+TEST_CASE("CPU device: a corner in the plane of a plate, far off, is not lost", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  std::vector<std::unique_ptr<Search>> searches;
+  for (const std::string& name : simd_targets()) searches.push_back(make_simd_search(name));
+  const auto on_grid = [](const Vec3d& v) { return Vec3d((v * 1024).array().round() / 1024); };
+  for (const bool concentric : {true, false}) {  // or the other object is small
+    std::size_t missed = 0;
+    for (int asked = 0; asked < 150;) {
+      Pose map = make_pose(Vec3d::Zero(), 360 * random_vector(random));
+      for (Eigen::Index i = 0; i < 3; ++i) map.linear().col(i) = on_grid(map.linear().col(i));
+      const Vec3d corner = on_grid(random_vector(random).normalized());
+      const Vec3d p = on_grid(corner + 0.1 * random_vector(random));
+      const Vec3d q = on_grid(corner + 0.1 * random_vector(random));
+      Vec3d at = map.linear() * corner;
+      const double least = at.z() + 0.01;
+      if (at.z() < 0.5 || (map.linear() * p).z() < least || (map.linear() * q).z() < least) continue;
+      ++asked;
+      Mesh corners;
+      testing::add_face(corners, {corner, p, q});
+      if (concentric) {
+        testing::add_face(corners, {-0.99 * corner, -0.99 * p, -0.99 * q});  // beyond the plate there
+      } else {
+        const Vec3d place = on_grid(random_vector(random).normalized());
+        map.linear() *= 0x1p-8;
+        map.translation() = place;
+        at = place + 0x1p-8 * at;
+      }
+      // A plate along the axes; the corner is near one of its own, which makes the bounds as small as they can be.
+      Mesh plate;
+      const Vec3d from = at - Vec3d(0x1p-14, 0x1p-14, 0);
+      for (const double side : {1.0, -0.97}) {
+        testing::add_face(plate,
+                          {side * from, side * (from + Vec3d(0.0625, 0, 0)), side * (from + Vec3d(0, 0.0625, 0))});
+      }
+      const Object a(plate);
+      const Object b(corners);
+      for (const auto& search : searches) {
+        missed += hits(*search, a, Pose::Identity(), b, map) ? 0U : 1U;
+        missed += hits(*search, b, map, a, Pose::Identity()) ? 0U : 1U;
+      }
+    }
+    CAPTURE(concentric);
+    CHECK(missed == 0);
+  }
+}
+
+TEST_CASE("CPU device: cubes of the greatest coordinates under the least maps touch", "[ref][collide]") {
+  // The products of the map with a direction of the world are 0 in doubles.
+  const Object great(make_cube(0x1p1000));
+  const Object cube(make_cube(1));
+  Pose least = Pose::Identity();
+  least.linear() *= 0x1p-1074;
+  Pose small = Pose::Identity();
+  small.linear() *= 0x1p-74;
+  for (const std::string& name : simd_targets()) {
+    const auto search = make_simd_search(name);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      Pose there = small;
+      there(axis, 3) = 0x1p-73;
+      CAPTURE(name, axis);
+      CHECK(hits(*search, cube, there, great, least));
+      CHECK(hits(*search, great, least, cube, there));
+      there(axis, 3) = 0x1.0001p-73;
+      CHECK_FALSE(hits(*search, cube, there, great, least));
+      CHECK_FALSE(hits(*search, great, least, cube, there));
+    }
+  }
+}
+
+TEST_CASE("CPU device: faces that lie in no double, so small they are", "[ref][collide]") {
+  // The centres of the objects in the world underflow, but one map for both changes nothing.
+  std::mt19937_64 random(sim::seed_from_environment());
+  const auto plain = make_plain_search();
+  std::vector<std::unique_ptr<Search>> searches;
+  for (const std::string& name : simd_targets()) searches.push_back(make_simd_search(name));
+  std::array<std::size_t, 2> seen = {0, 0};
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < 200; ++i) {
+    Mesh a = whole_faces(i % 6, 0, 3, random);
+    Mesh b = whole_faces(i / 6 % 6, 0, 3, random);
+    const bool hit = hits(*plain, Object(a), Pose::Identity(), Object(b), Pose::Identity());
+    ++seen[hit ? 1 : 0];
+    for (Mesh* mesh : {&a, &b}) {
+      for (Vec3d& v : mesh->vertices) v *= 0x1p-980;
+    }
+    Pose small = Pose::Identity();
+    small.linear() *= std::ldexp(1, -20 * static_cast<int>(1 + random() % 9));
+    const Object object_a(a);
+    const Object object_b(b);
+    wrong += hits(*plain, object_a, small, object_b, small) == hit ? 0U : 1U;
+    for (const auto& search : searches) wrong += hits(*search, object_a, small, object_b, small) == hit ? 0U : 1U;
+  }
+  CHECK(wrong == 0);
+  CHECK(seen[0] > 20);
+  CHECK(seen[1] > 20);
+}
+
+TEST_CASE("CPU device: each instruction set has its own name", "[ref][collide]") {
+  std::vector<std::string> names = cpu_targets();
+  CHECK(names.back() == "plain");
+  std::sort(names.begin(), names.end());
+  CHECK(std::adjacent_find(names.begin(), names.end()) == names.end());
 }

@@ -100,6 +100,66 @@ TEST_CASE("distance bounds: gaps along a frame and a line", "[ref][distance]") {
   CHECK(tight > 1000);  // a bound that is never near the distance would prove little
 }
 
+TEST_CASE("distance bounds: gaps of near objects, far from their origins", "[ref][distance]") {
+  // What is added up nearly cancels: sizes of A and B, or of a centre and what lies around it. The length of the normal
+  // is 7 and all coordinates are exact, so that the distance is known.
+  std::mt19937_64 random(sim::seed_from_environment() + 65);
+  const Vec3d normal(2, 3, 6);
+  const Vec3d u(3, -2, 0);
+  const Vec3d v(0, 2, -1);
+  const Pose here = Pose::Identity();
+  int tight = 0;
+  for (int i = 0; i < 1200; ++i) {
+    const auto part = [&random](int bits) {
+      return std::ldexp(static_cast<double>(random() % (1U << 20U)), bits - 20);
+    };
+    const double side = 1 + part(0);
+    const double distance = std::ldexp(7.0, -24 - static_cast<int>(random() % 8));
+    const double stretch = 1 + 0x1p-9 * part(0);
+    const Vec3d p(part(3), part(3), part(3));
+    const Vec3d over = p + 0.25 * side * (u + v) + distance / 7 * normal;
+    Mesh mesh_a;
+    Mesh mesh_b;
+    add_face(mesh_a, {p, p + side * u, p + side * v});
+    add_face(mesh_b, {over, over + stretch * u + 0x1p-10 * normal, over + stretch * v + 0x1p-10 * normal});
+    const bool is_swapped = i % 2 != 0;
+    const Object a(is_swapped ? mesh_b : mesh_a);
+    const Object b(is_swapped ? mesh_a : mesh_b);
+    FrameGap frame(a, here, b, here);
+    frame.set_axis(normal);
+    const auto gap = [&] { return frame(frame.reach_a(a.mesh().primitive(0)), frame.reach_b(b.mesh().primitive(0))); };
+    const double bound = gap();
+    CAPTURE(i, bound, distance, sim::seed_from_environment());
+    REQUIRE(bound <= distance);
+    tight += bound > 0.5 * distance ? 1 : 0;
+    // A zero vector is refused, and the axes stay.
+    frame.set_axis(Vec3d::Zero());
+    REQUIRE(gap() == bound);
+  }
+  CHECK(tight > 800);
+}
+
+TEST_CASE("distance bounds: gaps on a line, for any length of the axis", "[ref][distance]") {
+  Mesh mesh;
+  add_face(mesh, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  const Object face(mesh);
+  const Pose here = Pose::Identity();
+  Pose there = here;
+  there.translation().z() = 2;
+  const FrameGap frame(face, here, face, there);
+  const bvh::SupportLine& node = face.tree().lines()[face.tree().root().first()];
+  for (int exponent = -1074; exponent <= 1020; ++exponent) {
+    const FrameGap::Line line = frame.line(std::ldexp(1, exponent) * Vec3d(0, 0, 1));
+    const double gap = FrameGap::gap(line, FrameGap::reach_a(line, node), FrameGap::reach_b(line, node));
+    CAPTURE(exponent, gap);
+    CHECK(gap >= 0);
+    CHECK(gap <= 2);
+    if (std::abs(exponent) < 200) CHECK(gap > 1.99);
+  }
+  const FrameGap::Line none = frame.line(Vec3d::Zero());
+  CHECK(FrameGap::gap(none, FrameGap::reach_a(none, node), FrameGap::reach_b(none, node)) == 0);
+}
+
 TEST_CASE("distance bounds: half spaces are exact", "[ref][distance]") {
   std::mt19937_64 random(sim::seed_from_environment() + 61);
   int on = 0;

@@ -451,6 +451,61 @@ TEST_CASE("points: a cloud of many blocks leaves no point out", "[ref][points]")
   }
 }
 
+TEST_CASE("points: few blocks above one large face", "[ref][points]") {
+  // A cloud of several nodes, an object of one leaf, whichever of them is larger.
+  for (const double size : {0.25, 8.0}) {
+    Primitive plate;
+    plate.kind = Kind::quad;
+    plate.v = {Vec3d(-size, -size, 0), Vec3d(size, -size, 0), Vec3d(size, size, 0), Vec3d(-size, size, 0)};
+    const Object object(mesh_of(plate));
+    std::vector<Vec3d> points;
+    std::vector<CloudContact> expected;
+    for (int i = 0; i < 300; ++i) {
+      const bool low = i % 7 == 3;
+      points.emplace_back(i % 20 - 9.5, (i / 20) - 7.0, low ? 0.25 : 0.5);
+      const double beyond = std::max(std::max(std::abs(points.back().x()), std::abs(points.back().y())) - size, 0.0);
+      // Beside the plate's corner, 0.25 away in both directions, is too far; no other point is that near.
+      if (low && beyond == 0) expected.push_back({static_cast<std::uint32_t>(i), 0});
+    }
+    const CloudResult found = collide(PointCloud(points, 0.25), Pose::Identity(), object, Pose::Identity(), all());
+    CHECK(found.contacts == expected);
+    CHECK(found.stats.steps > 0);
+    CHECK(found.stats.box_tests > found.stats.steps);
+    CHECK(collide(PointCloud(points, 0.25), Pose::Identity(), object, Pose::Identity()).hit == !expected.empty());
+  }
+}
+
+TEST_CASE("points: an object far from its own origin, brought back by its pose", "[ref][points]") {
+  // On a grid of 1/16, which 2^36 more do not change.
+  std::mt19937_64 random(seed() + 68);
+  std::size_t contacts = 0;
+  for (int round = 0; round < 12; ++round) {
+    Mesh mesh = make_torus(1, 0.4, 6, 4, round % 2 == 0 ? Kind::quad : Kind::tri);
+    for (Vec3d& v : mesh.vertices) v = (16 * v).array().round() / 16;
+    std::vector<Vec3d> points = random_points(60, 1.5, random);
+    for (Vec3d& p : points) p = (16 * p).array().round() / 16;
+    // Some on the object's sides and vertices.
+    for (std::size_t i = 0; i < 20; ++i) points[i] = mesh.vertices[random() % mesh.vertices.size()];
+    std::vector<double> radii(points.size(), 0.0);
+    for (std::size_t i = 10; i < radii.size(); ++i) radii[i] = static_cast<double>(random() % 5) / 16;
+    const PointCloud cloud(points, radii);
+    const std::vector<CloudContact> expected =
+        collide(cloud, Pose::Identity(), Object(mesh), Pose::Identity(), all()).contacts;
+    contacts += expected.size();
+    Vec3d offset = Vec3d::Zero();
+    offset[round % 3] = round % 4 < 2 ? 0x1p36 : -0x1p36;
+    for (Vec3d& v : mesh.vertices) v += offset;
+    Pose back = Pose::Identity();
+    back.translation() = -offset;
+    CHECK(collide(cloud, Pose::Identity(), Object(mesh), back, all()).contacts == expected);
+    // And the cloud's frame there, too.
+    Pose there = Pose::Identity();
+    there.translation() = offset;
+    CHECK(collide(cloud, there, Object(mesh), Pose::Identity(), all()).contacts == expected);
+  }
+  CHECK(contacts > 500);
+}
+
 TEST_CASE("points: outliers, equal points, points in a line and an empty cloud", "[ref][points]") {
   const Object ball(make_sphere(1, 3));
   const Pose here = Pose::Identity();
@@ -580,6 +635,7 @@ TEST_CASE("points: what is refused", "[ref][points]") {
   refused([] { PointCloud({{0, 0, 0}}, std::vector<double>{0, 1}); }, "2 radii for 1 points");
   for (const double bad : {nan, infinity, -infinity, 0x1.1p1000}) {
     refused([&] { PointCloud({{0, 0, 0}, {1, bad, 1}}, 1.0); }, "point 1 has a coordinate");
+    refused([&] { PointCloud({{0, 0, 0}, {1, 1, bad}}, std::vector<double>{1, 1}); }, "point 1 has a coordinate");
   }
   PointCloud cloud({{0, 0, 0}}, 1.0);
   Object ball(make_sphere(1, 2));

@@ -13,6 +13,9 @@
 #include <random>
 #include <stdexcept>
 #include <thread>
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
 
 #include "bvh/rounding.hpp"
 #include "bvh_meshes.hpp"
@@ -720,4 +723,52 @@ TEST_CASE("scene: what makes no sense is refused in one line, and changes nothin
     CHECK_THROWS_AS(scene.contacts(*device), std::logic_error);
     return true;
   });
+}
+
+#if defined(__SSE2__)
+TEST_CASE("scene: a thread that flushes small numbers to zero changes nothing", "[ref][scene]") {
+  const Object cube(box({1, 1, 1}));
+  Scene scene;
+  const Id a = scene.add(cube);
+  const Id b = scene.add(cube, at(5, 0, 0));
+  const unsigned before = _mm_getcsr();
+  for (const unsigned bit : {0x8000U, 0x0040U}) {
+    _mm_setcsr(before | bit);
+    CHECK_THROWS_AS(scene.set_pose(b, at(0.5, 0, 0)), std::runtime_error);
+    CHECK_THROWS_AS(scene.add(cube), std::runtime_error);
+    _mm_setcsr(before);
+    CHECK(scene.ids() == std::vector<Id>{a, b});
+    CHECK(scene.pose(b).translation() == Vec3d(5, 0, 0));
+    CHECK(scene.candidates().empty());
+  }
+}
+#endif
+
+TEST_CASE("scene: queries about many pairs of objects, in any order, each once more", "[ref][scene]") {
+  const auto device = open_device("cpu");
+  std::vector<Object> objects;
+  std::vector<Pose> poses;
+  for (int i = 0; i < 24; ++i) {
+    objects.emplace_back(box({1 + 0.5 * (i % 3), 1, 1}));
+    poses.push_back(at(0.75 * i, 0, 0));
+  }
+  std::vector<CollisionQuery> queries;
+  std::vector<bool> expected;
+  for (int twice = 0; twice < 2; ++twice) {
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      for (std::size_t k = 0; k < objects.size(); ++k) {
+        queries.push_back({&objects[i], &poses[i], &objects[k], &poses[k]});
+        const std::size_t less = std::min(i, k);
+        const double length = 1 + 0.5 * static_cast<double>(less % 3);
+        // Surfaces: boxes of one section meet while their intervals do.
+        expected.push_back(0.75 * static_cast<double>(std::max(i, k) - less) <= length);
+      }
+    }
+  }
+  const std::vector<CollisionResult> results = collide(*device, queries);
+  REQUIRE(results.size() == queries.size());
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    CAPTURE(i);
+    REQUIRE(results[i].hit == expected[i]);
+  }
 }

@@ -239,6 +239,108 @@ SolidRelation truth(const Tetrahedron& a, const Pose& pose_a, const Tetrahedron&
   return in_b ? SolidRelation::a_in_b : in_a ? SolidRelation::b_in_a : SolidRelation::overlapping;
 }
 
+/// A box from a corner of small whole numbers to another.
+using Corners = std::array<Cell, 2>;
+
+/// The cells in an odd number of boxes.
+Cells parity(const std::vector<Corners>& boxes) {
+  Cells cells;
+  for (const Corners& c : boxes) {
+    for (int x = c[0][0]; x < c[1][0]; ++x) {
+      for (int y = c[0][1]; y < c[1][1]; ++y) {
+        for (int z = c[0][2]; z < c[1][2]; ++z) {
+          if (!cells.insert({x, y, z}).second) cells.erase({x, y, z});
+        }
+      }
+    }
+  }
+  return cells;
+}
+
+/// The surface of a box is where one coordinate is that of a corner.
+bool surfaces_meet(const Corners& p, const Corners& q) {
+  for (int i = 0; i < 36; ++i) {
+    Corners a = p, b = q;
+    const auto flatten = [](Corners& x, int side) {
+      const auto axis = static_cast<std::size_t>(side / 2);
+      x[static_cast<std::size_t>(side % 2)][axis] = x[static_cast<std::size_t>(1 - side % 2)][axis];
+    };
+    flatten(a, i / 6);
+    flatten(b, i % 6);
+    bool meet = true;
+    for (std::size_t k = 0; k < 3; ++k) meet = meet && a[0][k] <= b[1][k] && b[0][k] <= a[1][k];
+    if (meet) return true;
+  }
+  return false;
+}
+
+SolidRelation truth(const std::vector<Corners>& a, const std::vector<Corners>& b) {
+  const Cells cells_a = parity(a), cells_b = parity(b);
+  std::size_t common = 0;
+  for (const Cell& x : cells_a) common += cells_b.count(x);
+  if (common != 0) {
+    if (common == cells_a.size()) return common == cells_b.size() ? SolidRelation::equal : SolidRelation::a_in_b;
+    return common == cells_b.size() ? SolidRelation::b_in_a : SolidRelation::overlapping;
+  }
+  for (const Corners& p : a) {
+    for (const Corners& q : b) {
+      if (surfaces_meet(p, q)) return SolidRelation::touching;
+    }
+  }
+  return SolidRelation::disjoint;
+}
+
+/// Rectangles cut along any diagonal, from any vertex, or whole.
+Mesh mesh_of(const std::vector<Corners>& boxes, std::mt19937_64& random) {
+  Mesh mesh;
+  const bool whole = random() % 2 == 0;
+  for (const Corners& c : boxes) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (const std::size_t side : {0U, 1U}) {
+        std::vector<Vec3d> corners;
+        for (const auto& [u, v] : {std::pair<std::size_t, std::size_t>{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+          Cell p = {};
+          p[axis] = c[side][axis];
+          p[(axis + 1) % 3] = c[u][(axis + 1) % 3];
+          p[(axis + 2) % 3] = c[v][(axis + 2) % 3];
+          corners.emplace_back(p[0], p[1], p[2]);
+        }
+        std::rotate(corners.begin(), corners.begin() + static_cast<int>(random() % 4), corners.end());
+        if (whole) {
+          add_face(mesh, corners);
+        } else {
+          add_face(mesh, {corners[0], corners[1], corners[2]});
+          add_face(mesh, {corners[0], corners[2], corners[3]});
+        }
+      }
+    }
+  }
+  return mesh;
+}
+
+std::vector<Corners> random_boxes(std::mt19937_64& random) {
+  std::vector<Corners> boxes(1 + random() % 2);
+  for (Corners& c : boxes) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int from = static_cast<int>(random() % 3);
+      c[0][k] = from;
+      c[1][k] = from + 1 + static_cast<int>(random() % static_cast<unsigned>(3 - from));
+    }
+  }
+  return boxes;
+}
+
+void check_parity(std::uint64_t seed, std::map<SolidRelation, int>& count) {
+  std::mt19937_64 random(seed);
+  const std::vector<Corners> a = random_boxes(random);
+  const std::vector<Corners> b = random_boxes(random);
+  const Object object_a(mesh_of(a, random)), object_b(mesh_of(b, random));
+  const SolidRelation expected = truth(a, b);
+  ++count[expected];
+  CAPTURE(seed);
+  REQUIRE(solids(object_a, here, object_b, here) == expected);
+}
+
 }  // namespace
 
 TEST_CASE("solids: boxes by hand", "[ref][solids]") {
@@ -434,3 +536,66 @@ TEST_CASE("solids: a scene, a device", "[ref][solids]") {
 
 TEST_CASE("solids: sets of cubes", "[ref][solids]") { check_cubes(5000); }
 TEST_CASE("solids: more sets of cubes", "[.long]") { check_cubes(300000); }
+
+TEST_CASE("solids: boxes that overlap, by parity", "[ref][solids]") {
+  std::map<SolidRelation, int> count;
+  for (std::uint64_t i = 0; i < 50; ++i) check_parity(sim::seed_from_environment() + 59 + i, count);
+  CHECK(count[SolidRelation::touching] >= 5);
+  CHECK(count[SolidRelation::overlapping] >= 5);
+}
+
+TEST_CASE("solids: tetrahedra of which only one piece of a face shows the overlap", "[ref][solids]") {
+  const auto tetrahedron = [](const Vec3d& p, const Vec3d& q, const Vec3d& r, const Vec3d& s) {
+    Tetrahedron t;
+    t.kind = Kind::quad;
+    t.v = {p, q, r, s};
+    return t;
+  };
+  const std::array<Tetrahedron, 2> pairs[] = {
+      {tetrahedron({-1, 0, -1}, {-2, 2, 2}, {-1, 2, 1}, {0, -2, 2}),
+       tetrahedron({-1, 1, 0}, {0, 2, 1}, {-1, 2, -2}, {-1, 1, 1})},
+      {tetrahedron({-2, 2, -2}, {2, -2, -2}, {1, 1, -2}, {-2, 0, -1}),
+       tetrahedron({-1, -1, -2}, {0, 2, 1}, {0, -2, 1}, {-2, -1, 2})},
+      {tetrahedron({0, -1, -2}, {2, 2, -1}, {1, 1, -1}, {1, -1, 2}),
+       tetrahedron({0, 0, -2}, {0, 0, 1}, {-2, 2, -2}, {1, -2, 1})},
+  };
+  for (const auto& [a, b] : pairs) {
+    REQUIRE(truth(a, here, b, here) == SolidRelation::overlapping);
+    // With any vertex first: faces and the cuts in them begin elsewhere.
+    for (int turn = 0; turn < 4; ++turn) {
+      Tetrahedron turned = b;
+      std::rotate(turned.v.begin(), turned.v.begin() + turn, turned.v.end());
+      expect(mesh_of(a), mesh_of(turned), SolidRelation::overlapping);
+    }
+  }
+}
+
+TEST_CASE("solids: a fold that bounds nothing and hangs on to a box inside another", "[ref][solids]") {
+  // The first faces of the inner surface lie in one place, so neither is a boundary; the box is.
+  Mesh fin;
+  add_face(fin, {{0, 0, 0}, {1, 0, 0}, {0, -1, -1}});
+  add_face(fin, {{0, 0, 0}, {0, -1, -1}, {1, 0, 0}});
+  expect(box(-9, -9, -9, 9, 9, 9), both(fin, box(0, 0, 0, 1, 1, 1)), SolidRelation::b_in_a);
+  expect(box(-9, -9, -9, 9, 9, 9), fin, SolidRelation::disjoint);
+}
+
+TEST_CASE("solids: coordinates in the world beyond the doubles", "[ref][solids]") {
+  Pose pose = here;
+  pose.linear() *= 0x1p500;
+  const auto big = [](double x0, double y0, double z0, double x1, double y1, double z1) {
+    return make_box(0x1p600 * Vec3d(x0, y0, z0), 0x1p600 * Vec3d(x1, y1, z1));
+  };
+  const auto relation = [&](const Mesh& a, const Mesh& b) { return solids(Object(a), pose, Object(b), pose); };
+  for (const double at : {-9.0, -2.0, 0.0, 5.0}) {  // all below 0, some, none
+    const auto cube = [&](double from, double to) {
+      return big(at + from, at + from, at + from, at + to, at + to, at + to);
+    };
+    CAPTURE(at);
+    CHECK(relation(cube(0, 4), cube(0, 4)) == SolidRelation::equal);
+    CHECK(relation(cube(1, 2), cube(0, 4)) == SolidRelation::a_in_b);
+    CHECK(relation(cube(0, 4), cube(0, 2)) == SolidRelation::b_in_a);
+    CHECK(relation(cube(0, 4), cube(2, 6)) == SolidRelation::overlapping);
+    CHECK(relation(cube(0, 4), cube(4, 6)) == SolidRelation::touching);
+    CHECK(relation(cube(0, 4), cube(5, 6)) == SolidRelation::disjoint);
+  }
+}

@@ -309,6 +309,7 @@ TEST_CASE("distance: faces and points are those of each object, not of the other
     CHECK(to.face_b == 2);
     CHECK(to.point_a == Vec3d(0.25, 0.25, 0));
     CHECK(to.point_b == Vec3d(0.25, 0.25, z));
+    CHECK(to.stats.pairs == 1);
     const DistanceResult back = distance(Object(three), Pose::Identity(), Object(one), Pose::Identity());
     CHECK(back.lower == z);
     CHECK(back.face_a == 2);
@@ -359,6 +360,18 @@ TEST_CASE("distance: exact at any size, subnormal numbers too, and far below the
   CHECK_FALSE(within(Object(point), far, Object(point), back, 0x1p53).hit);
   CHECK(distance(Object(point), far, Object(point), back).lower == 0x1p53);
   CHECK(distance(Object(point), far, Object(point), back).upper == 0x1p53 + 2);
+}
+
+TEST_CASE("distance: its numbers count the question before it, too, whether the objects touch", "[ref][distance]") {
+  Mesh a;
+  Mesh b;  // beside the long edge of a: no direction of the bounding volumes tells them apart
+  add_face(a, {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}});
+  add_face(b, {{1, 0.625, -1}, {1, 0.625, 1}, {1.125, 0.625, 0}});
+  const CollisionStats touch = collide(Object(a), Pose::Identity(), Object(b), Pose::Identity()).stats;
+  CHECK(touch.pairs == 1);
+  const CollisionStats both = distance(Object(a), Pose::Identity(), Object(b), Pose::Identity()).stats;
+  CHECK(both.pairs == 2);
+  CHECK(both.steps == touch.steps + 1);
 }
 
 TEST_CASE("distance: what is known beforehand", "[ref][distance]") {
