@@ -357,9 +357,9 @@ coverage-bins: ## which situations of two blocks of the chip have met, into docs
 
 coverage-cpp: ## branches of the C++ library that its own tests reach, into docs/develop/coverage.md (half an hour; llvm: scripts/bootstrap --dev)
 	cmake --preset coverage-cpp
-	cmake --build $(COVERAGE)-cpp -j $(JOBS) --target tests/ref/all
+	cmake --build $(COVERAGE)-cpp -j $(JOBS) --target tests/ref/all test_self_contacts test_touching
 	rm -rf $(COVERAGE)-cpp/coverage
-	LLVM_PROFILE_FILE=$(CURDIR)/$(COVERAGE)-cpp/coverage/%m.profraw ctest --test-dir $(COVERAGE)-cpp/tests/ref -LE '^long$$' -j $(JOBS) --timeout 3000
+	LLVM_PROFILE_FILE=$(CURDIR)/$(COVERAGE)-cpp/coverage/%m.profraw ctest --test-dir $(COVERAGE)-cpp -L '^ref$$' -R '^test_' -j $(JOBS) --timeout 3000
 	scripts/coverage.py $(COVERAGE)-cpp --cpp --write
 
 bench-certificate: $(RELEASE)/build.ninja ## certificates of answers for pairs of large meshes: all checked, their sizes and times; BENCH_ARGS="--poses 200" for more
