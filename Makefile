@@ -335,9 +335,9 @@ bench-robot: $(RELEASE)/build.ninja robots ## collision checks per second of rob
 COVERAGE := build/coverage
 coverage: coverage-cpp ## lines, branches and toggles of the RTL, branches of the C++ library that the tests reach, into docs/develop/coverage.md (an hour)
 	cmake --preset coverage
-	cmake --build $(COVERAGE) -j $(JOBS) --target tests/ref/all tests/unit/all tests/chip/all tests/system/all bench/chip/all
+	cmake --build $(COVERAGE) -j $(JOBS) --target tests/unit/all tests/chip/all tests/system/all bench/chip/all
 	rm -rf $(COVERAGE)/coverage
-	for part in tests/ref tests/unit tests/chip tests/system bench/chip; do CCHIP_COVERAGE_FOLDER=$(CURDIR)/$(COVERAGE)/coverage \
+	for part in tests/unit tests/chip tests/system bench/chip; do CCHIP_COVERAGE_FOLDER=$(CURDIR)/$(COVERAGE)/coverage \
 	  ctest --test-dir $(COVERAGE)/$$part -LE '^long$$' -j $(JOBS) --timeout 3000 || exit 1; done
 	scripts/coverage.py $(COVERAGE) --write
 

@@ -26,7 +26,6 @@ import datasheet
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "develop" / "coverage.md"
-CPP_ROOMS = ("exact", "cpu", "collide")
 # of cchip_chip_bins.sv, bit 0 first
 SITUATIONS = {"cache": ("hit", "miss", "waiter", "again", "locked", "invalidate"), "traversal": ("start", "pop", "spill", "end", "cancel"),
               "record ring": ("room", "full", "wrapped"),
@@ -34,6 +33,8 @@ SITUATIONS = {"cache": ("hit", "miss", "waiter", "again", "locked", "invalidate"
 POINT = re.compile(r"C '(.*)' (\d+)$")
 # The one list of what is not asked for, with its reason: (file name, text of the source line or the signal).
 EXCLUDED = ROOT / "scripts" / "coverage_excluded.csv"
+# What clang counts in.
+CPP_ROOMS = ROOT / "scripts" / "coverage_rooms.txt"
 
 
 class Failed(Exception):
@@ -137,43 +138,43 @@ def shown(build):
     try:
         subprocess.run(["llvm-profdata", "merge", "-sparse", "-o", profile, *sorted(folder.glob("*.profraw"))], check=True, stderr=subprocess.PIPE, text=True)
         return subprocess.run(["llvm-cov", "show", "--show-branches=count", "--show-instantiations=false", f"--instr-profile={profile}", programs[0],
-                               *(f"--object={path}" for path in programs[1:]), *(ROOT / "cpp_ref" / "src" / room for room in CPP_ROOMS)],
+                               *(f"--object={path}" for path in programs[1:]), *(ROOT / room for room in re.findall(r"^src:\*/(\S+)/\*$", CPP_ROOMS.read_text(), re.M))],
                               check=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True).stdout
     except (OSError, subprocess.CalledProcessError) as error:
         raise Failed(f"llvm-cov (Debian's package llvm): {error} {getattr(error, 'stderr', '') or ''}".strip()) from error
 
 
 def cpp_points(text):
-    """{(file, line): [count, source]} and {(file, line, column): [count of true, count of false]}, of all instantiations together; conditions that the compiler knows are none."""
+    """{(file, line): (whether reached, source)} and {(file, line, column): [whether true, whether false]}, of all instantiations together; conditions that the compiler knows are none."""
     lines, branches, name = {}, {}, ""
     for line in text.splitlines():
         if line.startswith(f"{ROOT}/") and line.endswith(":"):
             name = line[len(f"{ROOT}/"):-1]
         elif found := re.match(r" *(\d+)\| *([\d.]+[kMGTPEZY]?)\|(.*)", line):
-            lines[name, int(found[1])] = [float(found[2].rstrip("kMGTPEZY")), found[3]]
+            lines[name, int(found[1])] = (found[2] != "0", found[3].strip())
         elif found := re.match(r" *\|  Branch \((\d+):(\d+)\): \[True: (\S+), False: (\S+)\]", line):
-            sides = branches.setdefault((name, int(found[1]), int(found[2])), [0, 0])
+            sides = branches.setdefault((name, int(found[1]), int(found[2])), [False, False])
             for k in (0, 1):
-                sides[k] += float(found[3 + k].rstrip("kMGTPEZY"))
+                sides[k] |= found[3 + k] != "0"
     return lines, branches
 
 
 def cpp_table(build):
     lines_of, branches_of = cpp_points(shown(build))
     rows, missing = collections.defaultdict(collections.Counter), []
-    for (name, line), (count, source) in lines_of.items():
+    for (name, line), (reached, source) in lines_of.items():
         for room in (f"src/{name.split('/')[2]}", "all"):
             rows[room]["lines"] += 1
-            rows[room]["lines reached"] += count > 0
-        if count == 0:
-            missing.append(f"{name}:{line}: line: {source.strip()}")
+            rows[room]["lines reached"] += reached
+        if not reached:
+            missing.append(f"{name}:{line}: line: {source}")
     for (name, line, column), sides in branches_of.items():
         for room in (f"src/{name.split('/')[2]}", "all"):
             rows[room]["branches"] += 2
-            rows[room]["branches reached"] += sum(side > 0 for side in sides)
-        if 0 in sides:
-            never = "neither" if sides == [0, 0] else "never false" if sides[0] else "never true"
-            missing.append(f"{name}:{line}:{column}: branch {never}: {lines_of.get((name, line), [0, ''])[1].strip()}")
+            rows[room]["branches reached"] += sum(sides)
+        if not all(sides):
+            never = "never false" if sides[0] else "never true" if sides[1] else "neither"
+            missing.append(f"{name}:{line}:{column}: branch {never}: {lines_of[name, line][1]}")
     lines = ["| room of cpp_ref/src | lines | reached | branches | reached |", "|---|---|---|---|---|"]
     for room in [*sorted(set(rows) - {"all"}), "all"]:
         row = rows[room]

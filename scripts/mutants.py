@@ -364,16 +364,30 @@ def summary(chosen):
     return rows
 
 
+def sentences(path):
+    """{module, or "" of a table without: {mutant: row}}: why mutants that live cannot matter."""
+    found = collections.defaultdict(dict)
+    if path.exists():
+        with path.open() as file:
+            for row in csv.DictReader(file):
+                module = row.get("module", "")
+                if row["kind"] not in KINDS or not row["why"] or row["mutant"] in found[module]:
+                    raise Failed(f"{path.name}: {module} {row['mutant']}: twice, without a reason, or of a kind that is none of {', '.join(KINDS)}")
+                found[module][row["mutant"]] = row
+    return found
+
+
+def wrong_sentence(path, row, place, lives):
+    """What is wrong with a row whose mutant is at `place` now; "" if nothing."""
+    name = " ".join([f"{path.name}:", *([row["module"]] if "module" in row else []), row["mutant"]])
+    if place != row["place"]:
+        return f"{name} is {place}, not {row['place']}"
+    return "" if lives else f"{name} does not live; take the row away"
+
+
 def explained():
     """{module: {mutant: row}} of ALIVE."""
-    found = collections.defaultdict(dict)
-    if ALIVE.exists():
-        with ALIVE.open() as file:
-            for row in csv.DictReader(file):
-                if row["kind"] not in KINDS or not row["why"] or row["mutant"] in found[row["module"]]:
-                    raise Failed(f"{ALIVE.name}: {row['module']} {row['mutant']}: twice, without a reason, or of a kind that is none of {', '.join(KINDS)}")
-                found[row["module"]][row["mutant"]] = row
-    return found
+    return sentences(ALIVE)
 
 
 def out_of_date(chosen):
@@ -382,12 +396,10 @@ def out_of_date(chosen):
     for module in chosen:
         results = module.results()
         for number, row in explained()[module.name].items() if results else []:
-            place = module.place(int(number)) if number in results else "none"
-            if place != row["place"]:
-                wrong.append(f"{ALIVE.name}: {module.name} {number} is {place}, not {row['place']}")
-            elif "killed" in results[number] or results[number].get("same") in ("proved", "bounded"):
-                wrong.append(f"{ALIVE.name}: {module.name} {number} does not live; take the row away")
-    return wrong
+            result = results[number] if number in results else {}
+            wrong.append(wrong_sentence(ALIVE, row, module.place(int(number)) if result else "none",
+                                        "killed" not in result and result.get("same") not in ("proved", "bounded")))
+    return [what for what in wrong if what]
 
 
 def commit():

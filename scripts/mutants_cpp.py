@@ -39,14 +39,13 @@ import sys
 import time
 
 import datasheet
-from mutants import Failed, run
+from mutants import Failed, run, sentences, wrong_sentence
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 OUT = ROOT / "build" / "mutants_cpp"
 TREE = OUT / "tree"
 PAGE = ROOT / "docs" / "develop" / "mutants.md"
 ALIVE = ROOT / "docs" / "figures" / "mutants_cpp_alive.csv"
-KINDS = ("same", "speed", "unreachable")
 ROOMS = ("exact", "cpu", "collide")
 # test cases that time nothing and write nothing
 TESTS = ("test_touching", "test_intersections", "test_self_contacts", "test_points", "test_along", "test_certificate", "test_solids", "test_collide", "test_distance")
@@ -305,30 +304,19 @@ def recorded():
     return json.loads((OUT / "mutants.json").read_text()), json.loads((OUT / "results.json").read_text())
 
 
-def explained():
-    """{mutant: sentence} of ALIVE; all rows are of mutants that live."""
-    mutants, results = recorded()
-    found, wrong = {}, []
-    with ALIVE.open() as file:
-        for row in csv.DictReader(file):
-            number = row["mutant"]
-            path, line, change = mutants.get(number, ("", 0, "none"))
-            place = f"{path.removeprefix('cpp_ref/')}:{line} {change}"
-            if place != row["place"]:
-                wrong.append(f"{number} is {place}, not {row['place']}")
-            elif "killed" in results.get(number, {}):
-                wrong.append(f"{number} does not live; take the row away")
-            elif number in found or row["kind"] not in KINDS or not row["why"]:
-                wrong.append(f"{number}: twice, without a reason, or of a kind that is none of {', '.join(KINDS)}")
-            found[number] = row["why"]
-    if wrong:
-        raise Failed("\n".join(f"{ALIVE.name}: {what}" for what in wrong))
+def explained(mutants, results):
+    """{mutant: row} of ALIVE; all rows are of mutants that live."""
+    found = sentences(ALIVE)[""]
+    wrong = []
+    for number, row in found.items():
+        path, line, change = mutants.get(number, ("", 0, "none"))
+        wrong.append(wrong_sentence(ALIVE, row, f"{path.removeprefix('cpp_ref/')}:{line} {change}", "killed" not in results.get(number, {})))
+    if any(wrong):
+        raise Failed("\n".join(filter(None, wrong)))
     return found
 
 
-def table():
-    mutants, results = recorded()
-    why = explained()
+def table(mutants, results, why):
     rows = collections.defaultdict(lambda: [0, 0, 0, 0])
     for number, result in results.items():
         for room in (f"src/{mutants[number][0].split('/')[2]}", "all"):
@@ -364,17 +352,17 @@ def main():
                 copy_sources(rooms=False)
                 run(["cmake", "--build", OUT / "build", "-j", options.jobs, "--target", *TESTS])
             test(options.jobs, options.slowest, options.only, options.again)
-        text, (count, reached, killed, reasons) = table()
+        mutants, results = recorded()
+        why = explained(mutants, results)
     except (Failed, ImportError) as what:
         print(f"mutants_cpp.py: {what}" + ("; install python3-clang and run with /usr/bin/python3" if isinstance(what, ImportError) else ""), file=sys.stderr)
         return 1
+    text, (count, reached, killed, reasons) = table(mutants, results, why)
     print(text)
     if options.alive:
-        mutants, results = recorded()
-        why = explained()
         for number, result in results.items():
             if "killed" not in result:
-                print(f"{number} {':'.join(map(str, mutants[number][:2]))} {mutants[number][2]}{'' if result['asked'] else ', not reached'}: {why.get(number, 'not explained')}")
+                print(f"{number} {':'.join(map(str, mutants[number][:2]))} {mutants[number][2]}{'' if result['asked'] else ', not reached'}: {why[number]['why'] if number in why else 'not explained'}")
     if options.write:
         datasheet.rewrite(PAGE, "mutants_cpp", text)
     print(f"mutants={count} reached={reached} killed={killed} alive={count - killed} explained={reasons}")
