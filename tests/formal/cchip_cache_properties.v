@@ -264,7 +264,8 @@ module cchip_cache_properties #(
       case (`COVER)
         // a request of each port has waited, and both ports answer with the line; a locked line is hit; the line is evicted,
         // read again and answered; every slot is lost and a request is refused; an answer after an invalidation; an answer
-        // that waits for its turn, 20 clocks after its line at the earliest, is kept for two clocks by each of two lines that come; the third line that is read is answered
+        // that waits for its turn, 20 clocks after its line at the earliest, is kept for two clocks by each of two lines that
+        // come; the third line that is read is answered
         0: assert (!(&m_valid && m_code == 0 && &waited_q && m_data[0] && m_data[256]));
         1: assert (!(count_hit[0] && locked && loaded_q && !invalidated_q));
         2: assert (!(followed_0 && evicted_q));

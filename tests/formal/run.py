@@ -207,8 +207,8 @@ MUTANTS = [
      "wire refuse = s_write_valid & take_free & owed;"),
     # a verdict, a stack, do not wait for the query's event inside, at two places; further room that there is not; the
     # same room twice; a result is lost behind a verdict; results are never next, or always; a context that has a query gets
-    # another; the next context is chosen while a start is on its way (two starts at once: that ~starting_q is asked before a start, too,
-    # changes nothing, no context is chosen then); a place that came back is not the one that is lent
+    # another; the next context is chosen while a start is on its way; a place that came back is not the one that is lent.
+    # No mutant: "query_waits & ~starting_q", as a context is never chosen while a start is on its way
     ("cchip_traversal_events bounded", EVENTS, "verdict_valid_q & ~lock_q[lookup_context];", "verdict_valid_q;"),
     ("cchip_traversal_events bounded", EVENTS, "|(want_one_q & ~inside_q);", "|want_one_q;"),
     ("cchip_traversal_events bounded", EVENTS, "want_free_q <= (want_q & ~inside_q) |", "want_free_q <= inside_q |"),

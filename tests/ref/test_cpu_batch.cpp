@@ -22,6 +22,33 @@
 
 using namespace cchip;
 
+namespace {
+
+/// A thread that comes waits until all have come.
+class Meeting {
+ public:
+  explicit Meeting(std::size_t threads) : threads_(threads) {}
+  void wait() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    present_.insert(std::this_thread::get_id());
+    changed_.notify_all();
+    timed_out_ = timed_out_ || !changed_.wait_for(lock, std::chrono::seconds(20),
+                                                  [this] { return timed_out_ || present_.size() == threads_; });
+    if (timed_out_) changed_.notify_all();
+  }
+  /// Those that have come. \pre none is about to
+  const std::set<std::thread::id>& present() const { return present_; }
+
+ private:
+  const std::size_t threads_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::set<std::thread::id> present_;
+  bool timed_out_ = false;
+};
+
+}  // namespace
+
 TEST_CASE("CPU device: a batch has a part for every thread", "[ref][collide]") {
   for (const std::size_t threads : {1U, 2U, 3U, 4U, 16U, 64U}) {
     for (std::size_t count = threads; count < 300 * threads; ++count) {
@@ -89,23 +116,14 @@ TEST_CASE("CPU device: all threads answer a batch of few queries", "[ref][collid
   for (const CollisionRequest& request : {CollisionRequest{}, CollisionRequest{CollisionRequest::Contacts::all}}) {
     for (const std::size_t count : {4U, 8U, 32U, 64U}) {
       const auto device = open_cpu_device({threads, {}});
-      std::mutex mutex;
-      std::condition_variable changed;
-      std::set<std::thread::id> seen;
-      bool timed_out = false;
-      // A thread that has a query waits until each of the others has one.
+      Meeting meeting(threads);
       const auto query = [&](std::size_t) {
-        std::unique_lock<std::mutex> lock(mutex);
-        seen.insert(std::this_thread::get_id());
-        changed.notify_all();
-        timed_out = timed_out || !changed.wait_for(lock, std::chrono::seconds(20),
-                                                   [&] { return timed_out || seen.size() == threads; });
-        if (timed_out) changed.notify_all();
+        meeting.wait();
         return CollisionQuery{&torus, &here, &torus, &there};
       };
       device->collide(count, query, request, [](std::size_t, const CollisionResult&) {});
       CAPTURE(count, static_cast<int>(request.contacts));
-      CHECK(seen.size() == threads);
+      CHECK(meeting.present().size() == threads);
     }
   }
 }
@@ -178,23 +196,14 @@ TEST_CASE("CPU device: keeps its threads from batch to batch", "[ref][collide]")
   const auto device = open_cpu_device({threads, {}});
   std::set<std::thread::id> seen;
   for (int batch = 0; batch < 4; ++batch) {
-    std::mutex mutex;
-    std::condition_variable changed;
-    std::set<std::thread::id> present;
-    bool timed_out = false;
-    // A thread that has a query waits until each of the others has one.
+    Meeting meeting(threads);
     const auto query = [&](std::size_t) {
-      std::unique_lock<std::mutex> lock(mutex);
-      present.insert(std::this_thread::get_id());
-      changed.notify_all();
-      timed_out = timed_out || !changed.wait_for(lock, std::chrono::seconds(20),
-                                                 [&] { return timed_out || present.size() == threads; });
-      if (timed_out) changed.notify_all();
+      meeting.wait();
       return CollisionQuery{&torus, &here, &torus, &there};
     };
     device->collide(threads, query, {}, [](std::size_t, const CollisionResult&) {});
-    CHECK(present.size() == threads);
-    seen.insert(present.begin(), present.end());
+    CHECK(meeting.present().size() == threads);
+    seen.insert(meeting.present().begin(), meeting.present().end());
   }
   CHECK(seen.size() == threads);
 }

@@ -83,6 +83,13 @@ struct Touching {
   Pose b;
 };
 
+/// One of each instruction set.
+std::vector<std::unique_ptr<Search>> all_simd_searches() {
+  std::vector<std::unique_ptr<Search>> searches;
+  for (const std::string& name : simd_targets()) searches.push_back(make_simd_search(name));
+  return searches;
+}
+
 bool hits(Search& search, const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b) {
   CollisionResult result;
   search.run({&a, &pose_a, &b, &pose_b}, {}, result);
@@ -330,8 +337,7 @@ TEST_CASE("CPU device: answers are exact on both sides of the bound on maps", "[
   const std::vector<Object> objects = {Object(make_spindle({1, 1, 0}, 1)), Object(make_cube(1)),
                                        Object(shifted(make_sphere(1, 4, 0.1, 1), {0.5, -0.3, 0.2}))};
   const auto plain = make_plain_search();
-  std::vector<std::unique_ptr<Search>> searches;
-  for (const std::string& name : simd_targets()) searches.push_back(make_simd_search(name));
+  const auto searches = all_simd_searches();
   const auto turn = [&random] {
     return Eigen::AngleAxisd(random_vector(random).norm(), random_vector(random).normalized()).toRotationMatrix();
   };
@@ -429,8 +435,7 @@ Mesh whole_faces(std::size_t kind, int least, int most, std::mt19937_64& random)
 TEST_CASE("CPU device: small objects at the faces of great ones, whole numbers", "[ref][collide]") {
   std::mt19937_64 random(sim::seed_from_environment());
   const auto plain = make_plain_search();
-  std::vector<std::unique_ptr<Search>> searches;
-  for (const std::string& name : simd_targets()) searches.push_back(make_simd_search(name));
+  const auto searches = all_simd_searches();
   std::array<std::size_t, 2> seen = {0, 0};
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < 720; ++i) {
@@ -461,8 +466,7 @@ TEST_CASE("CPU device: small objects at the faces of great ones, whole numbers",
 
 TEST_CASE("CPU device: flat bricks that touch, aside of each other by whole numbers", "[ref][collide]") {
   std::mt19937_64 random(sim::seed_from_environment());
-  std::vector<std::unique_ptr<Search>> searches;
-  for (const std::string& name : simd_targets()) searches.push_back(make_simd_search(name));
+  const auto searches = all_simd_searches();
   const std::array<Vec3d, 6> halves = {Vec3d(1, 4, 1), Vec3d(4, 1, 1), Vec3d(1, 1, 4),
                                        Vec3d(1, 4, 4), Vec3d(4, 4, 1), Vec3d(1, 2, 4)};
   std::vector<Object> bricks;
@@ -521,8 +525,7 @@ TEST_CASE("CPU device: small cubes on a plate whose plane is as tight as can be"
 
 TEST_CASE("CPU device: meshes far from their origin, flattened, touch as exactly", "[ref][collide]") {
   std::mt19937_64 random(sim::seed_from_environment());
-  std::vector<std::unique_ptr<Search>> searches;
-  for (const std::string& name : simd_targets()) searches.push_back(make_simd_search(name));
+  const auto searches = all_simd_searches();
   // Along (1, -1, 0) the map leaves next to nothing of the objects, but not of what placing them costs in doubles. The
   // last column is about as long as the others together.
   constexpr double thin = 1.5 * 0x1p-8;
@@ -559,8 +562,7 @@ TEST_CASE("CPU device: meshes far from their origin, flattened, touch as exactly
 
 TEST_CASE("CPU device: a corner in the plane of a plate, far off, is not lost", "[ref][collide]") {
   std::mt19937_64 random(sim::seed_from_environment());
-  std::vector<std::unique_ptr<Search>> searches;
-  for (const std::string& name : simd_targets()) searches.push_back(make_simd_search(name));
+  const auto searches = all_simd_searches();
   const auto on_grid = [](const Vec3d& v) { return Vec3d((v * 1024).array().round() / 1024); };
   for (const bool concentric : {true, false}) {  // or the other object is small
     std::size_t missed = 0;
@@ -630,8 +632,7 @@ TEST_CASE("CPU device: faces that lie in no double, so small they are", "[ref][c
   // The centres of the objects in the world underflow, but one map for both changes nothing.
   std::mt19937_64 random(sim::seed_from_environment());
   const auto plain = make_plain_search();
-  std::vector<std::unique_ptr<Search>> searches;
-  for (const std::string& name : simd_targets()) searches.push_back(make_simd_search(name));
+  const auto searches = all_simd_searches();
   std::array<std::size_t, 2> seen = {0, 0};
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < 200; ++i) {

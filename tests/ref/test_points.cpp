@@ -348,6 +348,11 @@ namespace {
 
 CloudRequest all() { return {CollisionRequest::Contacts::all}; }
 
+/// To a grid on which quarter turns, powers of two and shifts of moderate size are exact.
+void to_sixteenths(std::vector<Vec3d>& points) {
+  for (Vec3d& p : points) p = (16 * p).array().round() / 16;
+}
+
 std::vector<Vec3d> random_points(std::size_t count, double range, std::mt19937_64& random) {
   std::uniform_real_distribution<double> place(-range, range);
   std::vector<Vec3d> points(count);
@@ -481,9 +486,9 @@ TEST_CASE("points: an object far from its own origin, brought back by its pose",
   std::size_t contacts = 0;
   for (int round = 0; round < 12; ++round) {
     Mesh mesh = make_torus(1, 0.4, 6, 4, round % 2 == 0 ? Kind::quad : Kind::tri);
-    for (Vec3d& v : mesh.vertices) v = (16 * v).array().round() / 16;
+    to_sixteenths(mesh.vertices);
     std::vector<Vec3d> points = random_points(60, 1.5, random);
-    for (Vec3d& p : points) p = (16 * p).array().round() / 16;
+    to_sixteenths(points);
     // Some on the object's sides and vertices.
     for (std::size_t i = 0; i < 20; ++i) points[i] = mesh.vertices[random() % mesh.vertices.size()];
     std::vector<double> radii(points.size(), 0.0);
@@ -532,9 +537,9 @@ TEST_CASE("points: common motions, scales and mirrors change nothing", "[ref][po
   for (int round = 0; round < 60; ++round) {
     // On a grid of 1/16, so that quarter turns, shifts and powers of two are exact.
     Mesh mesh = make_torus(1, 0.4, 8, 5, round % 2 == 0 ? Kind::quad : Kind::tri);
-    for (Vec3d& v : mesh.vertices) v = (16 * v).array().round() / 16;
+    to_sixteenths(mesh.vertices);
     std::vector<Vec3d> points = random_points(200, 1.5, random);
-    for (Vec3d& p : points) p = (16 * p).array().round() / 16;
+    to_sixteenths(points);
     std::vector<double> radii(points.size());
     for (double& r : radii) r = static_cast<double>(random() % 5) / 16;
     const Pose pose_a = random_pose(PoseClass::quarter_turns, 0, random);

@@ -321,6 +321,7 @@ TEST_CASE("distance: faces and points are those of each object, not of the other
 
 TEST_CASE("distance: exact at any size, subnormal numbers too, and far below the rounding of coordinates",
           "[ref][distance]") {
+  const Pose here = Pose::Identity();
   Mesh corner;
   add_face(corner, {{0, 0, 0}, {-4, 0, 0}, {0, -4, 0}});
   Mesh across;
@@ -332,11 +333,13 @@ TEST_CASE("distance: exact at any size, subnormal numbers too, and far below the
       for (Vec3d& v : mesh->vertices) v = v.unaryExpr([&](double x) { return std::ldexp(x, exponent); });
     }
     CAPTURE(exponent);
-    const DistanceResult found = distance(Object(a), Pose::Identity(), Object(b), Pose::Identity());
+    const Object first(a);
+    const Object second(b);
+    const DistanceResult found = distance(first, here, second, here);
     CHECK(found.lower == std::ldexp(5, exponent));
     CHECK(found.upper == std::ldexp(5, exponent));
-    CHECK(within(Object(a), Pose::Identity(), Object(b), Pose::Identity(), found.upper).hit);
-    CHECK_FALSE(within(Object(a), Pose::Identity(), Object(b), Pose::Identity(), std::nextafter(found.upper, 0.0)).hit);
+    CHECK(within(first, here, second, here, found.upper).hit);
+    CHECK_FALSE(within(first, here, second, here, std::nextafter(found.upper, 0.0)).hit);
   }
   // A gap of one unit in the last place, so that no sum of doubles sees it.
   for (const double x : {0x1p52, 0x1p53 - 1}) {
@@ -345,21 +348,26 @@ TEST_CASE("distance: exact at any size, subnormal numbers too, and far below the
     add_face(a, {{x, 0, 0}, {x, 1, 0}, {x, 0, 1}});
     add_face(b, {{x + 1, 0, 0}, {x + 1, 1, 0}, {x + 1, 0, 1}});
     CAPTURE(x);
-    CHECK(distance(Object(a), Pose::Identity(), Object(b), Pose::Identity()).lower == 1);
-    CHECK(distance(Object(a), Pose::Identity(), Object(b), Pose::Identity()).upper == 1);
-    CHECK_FALSE(within(Object(a), Pose::Identity(), Object(b), Pose::Identity(), 0.5).hit);
-    const PosedDistances distances(Pose::Identity(), Pose::Identity());
+    const Object first(a);
+    const Object second(b);
+    const DistanceResult found = distance(first, here, second, here);
+    CHECK(found.lower == 1);
+    CHECK(found.upper == 1);
+    CHECK_FALSE(within(first, here, second, here, 0.5).hit);
+    const PosedDistances distances(here, here);
     CHECK(distances.tight_bounds(a.primitive(0), b.primitive(0)).lower == 1);
     CHECK(distances.tight_bounds(a.primitive(0), a.primitive(0)).upper == 0);
   }
   // Translations whose difference no double holds.
-  Mesh point;
-  add_face(point, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+  Mesh one;
+  add_face(one, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+  const Object point(one);
   const Pose far(Eigen::Translation3d(0x1p53, 0, 0));
   const Pose back(Eigen::Translation3d(-1, 0, 0));
-  CHECK_FALSE(within(Object(point), far, Object(point), back, 0x1p53).hit);
-  CHECK(distance(Object(point), far, Object(point), back).lower == 0x1p53);
-  CHECK(distance(Object(point), far, Object(point), back).upper == 0x1p53 + 2);
+  const DistanceResult found = distance(point, far, point, back);
+  CHECK_FALSE(within(point, far, point, back, 0x1p53).hit);
+  CHECK(found.lower == 0x1p53);
+  CHECK(found.upper == 0x1p53 + 2);
 }
 
 TEST_CASE("distance: its numbers count the question before it, too, whether the objects touch", "[ref][distance]") {

@@ -79,17 +79,22 @@ class External : public sim::Agent {
 };
 
 template <class Body>
-void with_registers(Body&& body) {
+void run(const sim::SimulationOptions& options, Random& random, const sim::AxiLitePatterns& patterns, Body& body) {
+  sim::Simulation<Model> simulation(options);
+  Master master(simulation.top(), patterns);
+  External external(simulation.top(), random);
+  simulation.add(master);
+  simulation.add(external);
+  scramble(simulation.top(), random);
+  simulation.reset();
+  body(simulation, master, random, external);
+}
+
+template <class Body>
+void with_registers(Body body) {
   for_two_power_ups([&](const sim::SimulationOptions& options) {
     Random random(options.seed);
-    sim::Simulation<Model> simulation(options);
-    Master master(simulation.top());
-    External external(simulation.top(), random);
-    simulation.add(master);
-    simulation.add(external);
-    scramble(simulation.top(), random);
-    simulation.reset();
-    body(simulation, master, random, external);
+    run(options, random, {}, body);
   });
 }
 
@@ -98,16 +103,9 @@ template <class Body>
 void with_any_delays(Body body) {
   for_two_power_ups([&](const sim::SimulationOptions& options) {
     Random random(options.seed);
+    const auto pattern = [&] { return sim::standard_patterns(random())[random() % 7]; };
     for (int round = 0; round < 20; ++round) {
-      sim::Simulation<Model> simulation(options);
-      const auto pattern = [&] { return sim::standard_patterns(random())[random() % 7]; };
-      Master master(simulation.top(), {pattern(), pattern(), pattern(), pattern(), pattern()});
-      External external(simulation.top(), random);
-      simulation.add(master);
-      simulation.add(external);
-      scramble(simulation.top(), random);
-      simulation.reset();
-      body(simulation, master, random, external);
+      run(options, random, {pattern(), pattern(), pattern(), pattern(), pattern()}, body);
     }
   });
 }
