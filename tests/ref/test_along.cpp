@@ -568,6 +568,18 @@ TEST_CASE("along: moments below the least double above 0", "[ref][along]") {
   CHECK(first.upper == least);
 }
 
+TEST_CASE("along: objects whose coordinates in the world no double holds", "[ref][along]") {
+  Pose huge = here;
+  huge.linear() *= 0x1p500;
+  const Object box(make_box({0, 0, 0}, 0x1p600 * Vec3d(1, 1, 1)));
+  const Object away(make_box(0x1p600 * Vec3d(3, 0, 0), 0x1p600 * Vec3d(4, 1, 1)));
+  const AlongResult first = first_contact(box, huge, away, huge, {-0x1p999, 0, 0});
+  CHECK(first.touches);
+  CHECK(first.factor == 0x1p102);
+  CHECK_FALSE(first_contact(box, huge, away, huge, {0x1p999, 0, 0}).touches);
+  CHECK(clear_along(box, huge, box, huge, {0, 0x1p999, 0}).factor == 0x1p101);
+}
+
 TEST_CASE("along: arguments that make no sense", "[ref][along]") {
   const Object box(make_box({0, 0, 0}, {1, 1, 1}));
   for (const auto& query : {clear_along, first_contact}) {

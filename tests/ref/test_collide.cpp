@@ -293,6 +293,19 @@ TEST_CASE("collide: objects of any magnitude", "[ref][collide]") {
     };
     CHECK(both(small_torus, small_gear) == both(Object(torus), Object(gear)));
   }
+  // Poses that enlarge one object more than the other, to the same magnitude.
+  constexpr int world = 145;
+  for (const auto& [a, b] : {std::array{205, 45}, std::array{45, 205}, std::array{-255, 145}, std::array{145, -255}}) {
+    CAPTURE(a, b);
+    Pose pose_a = Pose::Identity();
+    Pose pose_b = pose;
+    pose_a.linear() *= std::ldexp(1.0, a);
+    pose_b.linear() *= std::ldexp(1.0, b);
+    pose_b.translation() *= std::ldexp(1.0, world);
+    const Object torus_a(scaled(torus, std::ldexp(1.0, world - a)));
+    const Object gear_b(scaled(gear, std::ldexp(1.0, world - b)));
+    CHECK(collide(*device, torus_a, pose_a, gear_b, pose_b, all).contacts == expected.contacts);
+  }
 }
 
 TEST_CASE("collide: faces that were cut count once, by their number in the file", "[ref][collide]") {
@@ -349,6 +362,51 @@ TEST_CASE("collide: at most contacts, a face that was cut crosses if one of its 
       }
     }
   }
+}
+
+TEST_CASE("collide: of polygons in many parts, the contacts that a query ends with are some of all", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  const auto polygons = [&random](double x) {
+    Mesh mesh;
+    const auto whole = [&random] { return static_cast<double>(random() % 4); };
+    for (std::uint32_t i = 0; i < 6; ++i) {
+      std::vector<Vec3d> face;
+      for (int k = 0; k < 3; ++k) face.emplace_back(x + whole(), whole(), whole());
+      add_face(mesh, face);
+      mesh.file_face.push_back(i / 3);
+    }
+    return mesh;
+  };
+  CollisionRequest request = all;
+  request.relation = true;
+  std::array<int, 3> first = {};
+  for (int round = 0; round < 200; ++round) {
+    const Object a(polygons(0));
+    const Object b(polygons(round % 5));
+    for (const std::string& target : cpu_targets()) {
+      const auto device = open_cpu_device({1, target});
+      const auto ask = [&](CollisionRequest::Contacts contacts, std::size_t most) {
+        request.contacts = contacts;
+        request.max_contacts = most;
+        return collide(*device, a, Pose::Identity(), b, Pose::Identity(), request);
+      };
+      const CollisionResult expected = ask(CollisionRequest::Contacts::all, 100);
+      for (std::size_t most = 0; most <= expected.contacts.size(); ++most) {  // 0: the first one
+        const CollisionResult found =
+            most == 0 ? ask(CollisionRequest::Contacts::first, 1) : ask(CollisionRequest::Contacts::all, most);
+        CAPTURE(round, target, most);
+        REQUIRE(found.contacts.size() == std::min(std::max<std::size_t>(most, 1), expected.contacts.size()));
+        if (most == 0) {
+          REQUIRE(found.relation == expected.relation);  // one that touches is kept only until one crosses
+          ++first[static_cast<std::size_t>(found.relation.value())];
+        }
+        for (const Contact& contact : found.contacts) {
+          REQUIRE(std::find(expected.contacts.begin(), expected.contacts.end(), contact) != expected.contacts.end());
+        }
+      }
+    }
+  }
+  for (const int count : first) CHECK(count > 50);
 }
 
 TEST_CASE("collide: the relation is known if there are no more contacts than were wanted", "[ref][collide]") {
@@ -537,6 +595,9 @@ TEST_CASE("collide: input that makes no sense is refused in one line", "[ref][co
   CHECK_THROWS_WITH(Object(one_face({{0, 0, 0}, {1, 0, std::numeric_limits<double>::infinity()}, {0, 1, 0}})),
                     Catch::Contains("vertex 1 is not finite"));
   CHECK_THROWS_WITH(open_device("gpu"), Catch::Contains("device gpu is not known: the devices are cpu, model"));
+  CHECK_THROWS_WITH(open_cpu_device({1, "wide"}),
+                    Catch::StartsWith("instruction set wide is not known on this computer: there are ") &&
+                        Catch::EndsWith(cpu_targets().back()));
   CHECK(device_names().front() == "cpu");
   for (const std::string& name : device_names()) CHECK(open_device(name)->name() == name);
 }

@@ -296,6 +296,12 @@ TEST_CASE("intersection: faces by hand", "[ref][intersection]") {
   CHECK(part.points == Points{{1, 0, 0}});
   part = part_of(triangle({0, 0, 0}, {2, 0, 0}, {1, 0, 0}), triangle({1, 0, 0}, {3, 0, 0}, {3, 0, 0}));
   CHECK(part.points == Points{{1, 0, 0}, {2, 0, 0}});
+  const Primitive origin = triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0});
+  part = part_of(origin, origin);
+  CHECK(part.kind == Kinds::point);
+  CHECK(part.points == Points{{0, 0, 0}});
+  CHECK_THROWS_WITH(part_of(floor, triangle({0, 0, 0}, {1, 0, std::nan("")}, {0, 1, 0})),
+                    Catch::Contains("a coordinate is not finite"));
   part = part_of(triangle({1, 1, 0}, {1, 1, 0}, {1, 1, 0}), floor);
   CHECK(part.points == Points{{1, 1, 0}});
   CHECK_FALSE(exact_intersection(floor, Pose::Identity(), triangle({1, 1, 1}, {1, 1, 1}, {1, 1, 1}), Pose::Identity()));

@@ -340,6 +340,35 @@ TEST_CASE("self-contacts: at most contacts, a face that was cut crosses if one o
   }
 }
 
+TEST_CASE("self-contacts: of polygons in many parts, at most contacts are some of all", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment());
+  std::array<int, 3> relations = {};
+  const std::size_t no_limit = std::numeric_limits<std::size_t>::max();
+  for (int round = 0; round < 500; ++round) {
+    Mesh mesh;
+    const auto whole = [&random] { return static_cast<double>(random() % 4); };
+    for (std::uint32_t i = 0; i < 12; ++i) {
+      std::vector<Vec3d> face;
+      for (int k = 0; k < 3; ++k) face.emplace_back(whole(), whole(), whole());
+      add_face(mesh, face);
+      mesh.file_face.push_back(i / 3);
+    }
+    const Object object(mesh);
+    const std::vector<Contact> all = self_contacts(object, no_limit);
+    for (std::size_t most = 1; most <= all.size(); ++most) {
+      const std::vector<Contact> some = self_contacts(object, most);
+      REQUIRE(some.size() == most);
+      for (const Contact& contact : some) {
+        CAPTURE(round, most, contact.face_a, contact.face_b);
+        REQUIRE(std::find(all.begin(), all.end(), contact) != all.end());
+        ++relations[static_cast<std::size_t>(contact.relation.value())];
+      }
+    }
+  }
+  CHECK(relations[static_cast<std::size_t>(Relation::touching)] > 100);
+  CHECK(relations[static_cast<std::size_t>(Relation::crossing)] > 1000);
+}
+
 TEST_CASE("self-contacts: vertices that no face uses do not matter", "[ref][collide]") {
   std::mt19937_64 random(sim::seed_from_environment());
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -398,15 +427,24 @@ TEST_CASE("object: parts of a face that was cut", "[ref][collide]") {
 }
 
 TEST_CASE("self-contacts: neighbours that share more than a vertex or an edge", "[ref][collide]") {
-  const auto found = [](const std::vector<std::vector<Vec3d>>& faces) {
+  // The sizes are beyond what the first look in doubles takes on: exact arithmetic alone answers there.
+  const double size = GENERATE(1.0, 0x1p300, 0x1p-350);
+  CAPTURE(size);
+  const std::size_t no_limit = std::numeric_limits<std::size_t>::max();
+  const auto object_of = [size](const std::vector<std::vector<Vec3d>>& faces) {
     Mesh mesh;
     for (const std::vector<Vec3d>& face : faces) add_face(mesh, face);
-    const Object object(mesh);
-    const std::size_t no_limit = std::numeric_limits<std::size_t>::max();
-    CHECK(self_contacts(object, no_limit, Neighbours::left_out).empty());
-    const std::vector<Contact> contacts = self_contacts(object);
+    for (Vec3d& vertex : mesh.vertices) vertex *= size;
+    return Object(mesh);
+  };
+  const auto relation_of = [](const std::vector<Contact>& contacts) {
     REQUIRE(contacts.size() <= 1);
     return contacts.empty() ? Relation::apart : contacts.front().relation.value();
+  };
+  const auto found = [&](const std::vector<std::vector<Vec3d>>& faces) {
+    const Object object = object_of(faces);
+    CHECK(self_contacts(object, no_limit, Neighbours::left_out).empty());
+    return relation_of(self_contacts(object));
   };
   // Triangles: u, v and one above in the plane.
   const Vec3d u(0, 0, 0);
@@ -443,6 +481,30 @@ TEST_CASE("self-contacts: neighbours that share more than a vertex or an edge", 
   CHECK(found({quad, {u, {3, 2, 0}, {1, 1, 5}, {0, 0, 5}}}) == Relation::apart);      // stands on its diagonal
   CHECK(found({quad, {u, {3, 2, 0}, {1, 1, 5}, {1, 1, -5}}}) == Relation::crossing);  // through its diagonal
   CHECK(found({{u, v, {3, 2, 1}, {0, 2, -1}}, {u, v, {3, 1, 0}, {0, 1, 0}}}) == Relation::crossing);  // warped
+  // One goes on beyond u, the other one beyond v.
+  const std::vector<Vec3d> beyond_u = {u, v, {-3, 1, 0}, {-3, -1, 0}};
+  CHECK(found({beyond_u, {u, v, {6, 1, 0}, {6, -1, 0}}}) == Relation::touching);  // in one plane
+  CHECK(found({beyond_u, {u, v, {6, 0, 1}, {6, 0, -1}}}) == Relation::apart);
+  CHECK(found({beyond_u, {u, v, {-6, 0, 1}, {-6, 0, -1}}}) == Relation::crossing);
+  CHECK(found({beyond_u, {u, v, {-6, 0, 1}, {-5, 0, 2}}}) == Relation::apart);
+  // Magnitudes that have nothing in common.
+  const double far = size < 1 ? 0x1p600 : 0x1p300;
+  CHECK(found({{u, far * v, {1, 2, 0}}, {u, far * v, {1, -2, 1}}}) == Relation::apart);  // a long edge
+  CHECK(found({{u, far * v, {1, 2, 0}}, {u, far * v, {1, 1, 0}}}) == Relation::touching);
+  CHECK(found({base, {u, {1, 1, far}, {1, 1, -far}}}) == Relation::crossing);
+  CHECK(found({base, {u, {-1, 1, far}, {1, -1, -far}}}) == Relation::apart);
+  // Without a common vertex.
+  const auto beside_base = [&](const std::vector<Vec3d>& face) {
+    const Object object = object_of({base, face});
+    const std::vector<Contact> contacts = self_contacts(object);
+    CHECK(self_contacts(object, no_limit, Neighbours::left_out) == contacts);
+    return relation_of(contacts);
+  };
+  CHECK(beside_base({{1, 1, 1}, {1, 1, -1}, {1, 3, 0}}) == Relation::crossing);
+  CHECK(beside_base({{1, 1, 1}, {1, 1, 0}, {1, 3, 1}}) == Relation::touching);
+  CHECK(beside_base({{0.75, 1, 1}, {0, 1, -1}, {0, 1, 1}}) == Relation::apart);
+  CHECK(beside_base({{1, 1, far}, {1, 1, -far}, {1, 3, 0}}) == Relation::crossing);
+  CHECK(beside_base({{1, 1, 1}, {far, 1, 1}, {0, 3, -0.25}}) == Relation::apart);
 }
 
 TEST_CASE("self-contacts: a flat quad has those of its two triangles, in any order", "[ref][collide]") {

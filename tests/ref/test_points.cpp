@@ -558,11 +558,15 @@ TEST_CASE("points: common motions, scales and mirrors change nothing", "[ref][po
     Pose mirror = Pose::Identity();
     mirror.linear()(1, 1) = -1;
     CHECK(collide(cloud, mirror * pose_a, object, mirror * pose_b, all()).contacts == expected);
-    Pose twice = Pose::Identity();
-    twice.linear() *= 2;
-    std::vector<double> doubled = radii;
-    for (double& r : doubled) r *= 2;
-    CHECK(collide(PointCloud(points, doubled), twice * pose_a, object, twice * pose_b, all()).contacts == expected);
+    for (const double scale : {2.0, 0x1p-480, 0x1p495}) {
+      Pose larger = Pose::Identity();
+      larger.linear() *= scale;
+      std::vector<double> larger_radii = radii;
+      for (double& r : larger_radii) r *= scale;
+      CAPTURE(scale);
+      const PointCloud larger_cloud(points, larger_radii);
+      CHECK(collide(larger_cloud, larger * pose_a, object, larger * pose_b, all()).contacts == expected);
+    }
     // Another order of the points.
     std::vector<Vec3d> turned(points.rbegin(), points.rend());
     const std::vector<double> turned_radii(radii.rbegin(), radii.rend());

@@ -535,6 +535,9 @@ TEST_CASE("scene: an object that is removed takes its own ignored pairs along an
   CHECK(ids_of(scene.contacts(*device)) == Pairs{{2, 3}, {2, 4}});
   scene.remove(2);
   CHECK(scene.candidates().empty());
+  scene.remove(4);  // the second one of its pair
+  CHECK(scene.add(cube) == 5);
+  CHECK(scene.candidates() == Pairs{{3, 5}});
 }
 
 TEST_CASE("scene: the object asked about is A", "[ref][scene]") {

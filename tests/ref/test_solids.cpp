@@ -403,6 +403,17 @@ TEST_CASE("solids: open surfaces and flat poses are refused in one line", "[ref]
   REQUIRE(lid.open_edge());
   CHECK(lid.open_edge()->face == 0);
   CHECK_FALSE(lid.is_closed());
+  // Of several open edges one of the first face, though its vertices are the last.
+  Mesh islands = box(0, 0, 0, 1, 1, 1);
+  const auto boxes = static_cast<std::uint32_t>(islands.faces.size());
+  islands.vertices.insert(islands.vertices.end(), {{5, 5, 5}, {6, 5, 5}, {5, 6, 5}, {0, 0, 5}, {1, 0, 5}, {0, 1, 5}});
+  islands.faces.push_back({Kind::tri, {11, 12, 13, 0}});
+  islands.faces.push_back({Kind::tri, {8, 9, 10, 0}});
+  const std::optional<OpenEdge> edge = Object(islands).open_edge();
+  REQUIRE(edge);
+  CHECK(edge->face == boxes);
+  CHECK(edge->from == Vec3d(0, 0, 5));
+  CHECK(edge->to == Vec3d(1, 0, 5));
   CHECK_THROWS_WITH(
       solids(cube, here, lid, here),
       "solids: the surface of B is open at the edge from (1, 0, 0) to (1, 1, 0) of face 0: an odd number of "
@@ -439,6 +450,28 @@ TEST_CASE("closed surfaces: vertices by coordinates, edges by parity", "[ref][so
   torn.vertices.emplace_back(0.5, 0, 0);
   torn.faces.pop_back();
   CHECK_FALSE(Object(torn).is_closed());
+}
+
+TEST_CASE("solids: faces without an area change nothing", "[ref][solids]") {
+  const Mesh cube = box(0, 0, 0, 4, 4, 4);
+  Mesh spiked = cube;
+  add_face(spiked, {{0, 0, 0}, {4, 0, 0}, {4, 0, 0}});  // an edge of the cube
+  add_face(spiked, {{4, 4, 4}, {4, 4, 4}, {4, 4, 4}});
+  add_face(spiked, {{2, 2, 4}, {2, 2, 6}, {2, 2, 6}});  // stands on the cube
+  add_face(spiked, {{2, 2, 2}, {2, 2, 3}, {2, 2, 3}});  // in the cube
+  CHECK(Object(spiked).is_closed());
+  expect(spiked, cube, SolidRelation::equal);
+  expect(spiked, spiked, SolidRelation::equal);
+  expect(spiked, box(1, 1, 1, 3, 3, 3), SolidRelation::b_in_a);
+  expect(spiked, box(-1, -1, -1, 9, 9, 9), SolidRelation::a_in_b);
+  expect(spiked, box(3, 3, 3, 5, 5, 5), SolidRelation::overlapping);
+  expect(spiked, box(4, 0, 0, 8, 4, 4), SolidRelation::touching);
+  expect(spiked, box(5, 5, 5, 6, 6, 6), SolidRelation::disjoint);
+}
+
+TEST_CASE("solids: more contacts than the first question asks for", "[ref][solids]") {
+  const Mesh torus = make_torus(2, 1, 16, 12);
+  expect(torus, torus, SolidRelation::equal);
 }
 
 TEST_CASE("solids: quads that are not flat are two triangles", "[ref][solids]") {
@@ -520,12 +553,17 @@ TEST_CASE("solids: points of tetrahedra that overlap, by parity", "[ref][solids]
 }
 
 TEST_CASE("solids: a scene, a device", "[ref][solids]") {
+  Tetrahedron corner;  // beyond a corner of the last cube, though their boxes overlap
+  corner.kind = Kind::quad;
+  corner.v = {Vec3d(5.75, 1.5, 1), Vec3d(6.5, 0.75, 1), Vec3d(6.25, 1.25, 0.75), Vec3d(6.5, 1.5, 1.5)};
   const Object cube(box(0, 0, 0, 1, 1, 1)), core(box(0.25, 0.25, 0.25, 0.5, 0.5, 0.5));
   Scene scene;
   scene.add(cube);
   scene.add(cube, shifted(1, 0, 0));
   scene.add(core);
   scene.add(cube, shifted(5, 0, 0));
+  scene.add(Object(mesh_of(corner)));
+  CHECK(scene.candidates().back() == std::pair<Scene::Id, Scene::Id>{4, 5});
   const auto device = open_cpu_device();
   const std::vector<SolidPair> pairs = solids(*device, scene);
   REQUIRE(pairs.size() == 2);

@@ -340,6 +340,20 @@ TEST_CASE("distance: exact at any size, subnormal numbers too, and far below the
     CHECK(found.upper == std::ldexp(5, exponent));
     CHECK(within(first, here, second, here, found.upper).hit);
     CHECK_FALSE(within(first, here, second, here, std::nextafter(found.upper, 0.0)).hit);
+    // The same in the world, from poses that enlarge or reduce as far as they may.
+    for (const int pose : {500, -510}) {
+      if (exponent - pose > 996 || exponent - pose < -1071) continue;
+      Pose placed = here;
+      placed.linear() *= std::ldexp(1.0, pose);
+      for (Mesh* mesh : {&a, &b}) {
+        *mesh = mesh == &a ? corner : across;
+        for (Vec3d& v : mesh->vertices) v = v.unaryExpr([&](double x) { return std::ldexp(x, exponent - pose); });
+      }
+      CAPTURE(pose);
+      const DistanceResult same = distance(Object(a), placed, Object(b), placed);
+      CHECK(same.lower == found.lower);
+      CHECK(same.upper == found.upper);
+    }
   }
   // A gap of one unit in the last place, so that no sum of doubles sees it.
   for (const double x : {0x1p52, 0x1p53 - 1}) {
@@ -368,6 +382,25 @@ TEST_CASE("distance: exact at any size, subnormal numbers too, and far below the
   CHECK_FALSE(within(point, far, point, back, 0x1p53).hit);
   CHECK(found.lower == 0x1p53);
   CHECK(found.upper == 0x1p53 + 2);
+}
+
+TEST_CASE("distance: of polygons that were cut, the point is one of the parts that meet", "[ref][distance]") {
+  Mesh square;
+  add_face(square, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}});
+  add_face(square, {{0, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  square.file_face = {7, 7};
+  Mesh needle;
+  add_face(needle, {{0.25, 0.5, 0}, {0.25, 0.5, 1}, {0.25, 0.75, 1}});
+  const Object a(square);
+  const Object b(needle);
+  for (const bool swapped : {false, true}) {
+    const DistanceResult found = swapped ? distance(b, Pose::Identity(), a, Pose::Identity())
+                                         : distance(a, Pose::Identity(), b, Pose::Identity());
+    CHECK(found.upper == 0);
+    CHECK((swapped ? found.face_b : found.face_a) == 7);
+    CHECK(found.point_a == Vec3d(0.25, 0.5, 0));
+    CHECK(found.point_b == Vec3d(0.25, 0.5, 0));
+  }
 }
 
 TEST_CASE("distance: its numbers count the question before it, too, whether the objects touch", "[ref][distance]") {
@@ -409,8 +442,10 @@ TEST_CASE("distance: what is known beforehand", "[ref][distance]") {
   CHECK(beyond.upper == infinity);
   CHECK(beyond.lower == std::numeric_limits<double>::max());
   DistanceRequest request;
-  request.rel_error = 1;
-  CHECK_THROWS_WITH(distance(box, pose, box, pose, request), Catch::Contains("rel_error"));
+  for (const double error : {1.0, -0.25, std::nan("")}) {
+    request.rel_error = error;
+    CHECK_THROWS_WITH(distance(box, pose, box, pose, request), Catch::Contains("rel_error"));
+  }
   request = {};
   request.stop_above = -1;
   CHECK_THROWS_WITH(distance(box, pose, box, pose, request), Catch::Contains("stop_above"));
