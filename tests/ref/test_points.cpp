@@ -340,6 +340,12 @@ TEST_CASE("points: the radius is in units of the world", "[ref][points]") {
   const Vec3d point(4, 4, 1);  // at a height of 2 in the world
   CHECK(collide(PointCloud({point}, 2.0), twice, object, twice).hit);
   CHECK_FALSE(collide(PointCloud({point}, 1.99), twice, object, twice).hit);
+  // A radius of another magnitude than everything else, against one that just reaches the face.
+  Pose above = twice;
+  above.translation().z() = 0x1p300;
+  CHECK(collide(PointCloud({point}, 0x1p300), twice, object, twice).hit);
+  CHECK(collide(PointCloud({Vec3d(4, 4, 0)}, 0x1p300), above, object, twice).hit);
+  CHECK_FALSE(collide(PointCloud({Vec3d(4, 4, 0)}, std::nextafter(0x1p300, 0.0)), above, object, twice).hit);
 }
 
 // --- clouds
@@ -558,7 +564,7 @@ TEST_CASE("points: common motions, scales and mirrors change nothing", "[ref][po
     Pose mirror = Pose::Identity();
     mirror.linear()(1, 1) = -1;
     CHECK(collide(cloud, mirror * pose_a, object, mirror * pose_b, all()).contacts == expected);
-    for (const double scale : {2.0, 0x1p-480, 0x1p495}) {
+    for (const double scale : {2.0, 0x1p-480, 0x1p500}) {
       Pose larger = Pose::Identity();
       larger.linear() *= scale;
       std::vector<double> larger_radii = radii;
