@@ -352,7 +352,7 @@ coverage-bins: ## which situations of two blocks of the chip have met, into docs
 	for slots in 1 2; do for faults in "" "--faults all"; do CCHIP_COVERAGE_FOLDER=$(CURDIR)/$(COVERAGE)/coverage \
 	  $(COVERAGE)/bin/cchip_chip_campaign mixed --slots $$slots --queries $(BIN_QUERIES) $$faults || exit 1; done; done
 	for slots in 1 2; do for faults in "" "--faults forced"; do CCHIP_COVERAGE_FOLDER=$(CURDIR)/$(COVERAGE)/coverage \
-	  $(COVERAGE)/bin/cchip_chip_campaign mixed --slots $$slots --busy 100 --queries $$((4 * $(BIN_QUERIES))) $$faults || exit 1; done; done
+	  $(COVERAGE)/bin/cchip_chip_campaign mixed --slots $$slots --busy 100 --queries $$((8 * $(BIN_QUERIES))) $$faults || exit 1; done; done
 	scripts/coverage.py $(COVERAGE) --bins --write
 
 coverage-cpp: ## branches of the C++ library that its own tests reach, into docs/develop/coverage.md (half an hour; llvm: scripts/bootstrap --dev)

@@ -61,7 +61,13 @@ class MixedRun {
       make_rings_small(driver);
       driver.record_log2 = static_cast<unsigned>(1 + random_() % 6);  // fewer records than queries, too
     }
-    if (percent(random_, 50)) driver.payload_bytes = 16U << random_() % 4;  // phases follow each other
+    const bool patient = percent(random_, 50);
+    if (patient) {  // pairs wait long for their module: other queries begin and end meanwhile
+      driver.minimum_batch = 400;
+      driver.maximum_age = 1000U << random_() % 5;
+    }
+    // Phases follow each other.
+    if (patient || percent(random_, 50)) driver.payload_bytes = 16U << random_() % 4;
     driver.memory_bytes = std::uint64_t{1} << 25U;
     driver.patience = 3000000;
     driver.reset_patience = 100000;
@@ -75,15 +81,22 @@ class MixedRun {
 
   void batch() {
     busy_ = percent(random_, settings_.busy);
-    const std::size_t count = 1 + random_() % (busy_ ? 120 : 60);
+    // Pairs of two quads of queries that have ended stay behind when a command takes their module, while the others go
+    // through all contexts until each holds such pairs: then each start comes too early, in all phases of the swap that
+    // brings the module back.
+    left_behind_ = busy_ && percent(random_, 50);
+    const std::size_t count = left_behind_ ? 200 : 1 + random_() % (busy_ ? 120 : 60);
     // Few that meet: the others go through all contexts while pairs of a query that has ended wait for their module.
     const int near = percent(random_, 50) ? 30 : 4;
-    modules_ = busy_ && percent(random_, 50) ? 2 : 3;  // pairs of two quads wait longer then, for the scheduler
+    // Without commands for the last one, pairs of two quads wait longer, for the scheduler.
+    modules_ = left_behind_ || (busy_ && percent(random_, 50)) ? 2 : 3;
     std::vector<MixedObjects::Placed> placed;
     std::vector<CollisionQuery> queries;
     for (std::size_t i = 0; i < count; ++i) {
       placed.push_back(objects_.draw(random_));
-      if (busy_) placed.back().pose.b.translation() *= percent(random_, near) ? 0.1 : 10;
+      const bool quads = left_behind_ && i < 50;
+      while (quads && (placed.back().a < 2 || placed.back().b < 2)) placed.back() = objects_.draw(random_);
+      if (busy_) placed.back().pose.b.translation() *= quads || (!left_behind_ && percent(random_, near)) ? 0.1 : 10;
     }
     for (const auto& x : placed)
       queries.push_back({&objects_.objects[x.a], &x.pose.a, &objects_.objects[x.b], &x.pose.b});
@@ -157,7 +170,7 @@ class MixedRun {
       set(regs::invalidate::offset, regs::invalidate::go_mask);
     }
     // Records wait for the host, which may have asked for a swap, one that does not wait for them, too.
-    if (percent(random_, busy_ ? 3 : 10)) {
+    if (percent(random_, left_behind_ ? 20 : busy_ ? 3 : 10)) {
       if (percent(random_, 50)) command(fault == "forced");
       proceed(random_() % 3000);
     }
@@ -204,9 +217,10 @@ class MixedRun {
   MixedObjects objects_;
   std::size_t queries_ = 0, hits_ = 0, mismatches_ = 0, lost_ = 0, duplicated_ = 0;
   std::uint64_t contacts_ = 0, failed_swaps_ = 0, given_up_ = 0;
-  bool small_ = false;    ///< rings of the present chip
-  unsigned modules_ = 3;  ///< that commands ask for, from 1 on
-  bool busy_ = false;     ///< queries of the present batch end early, and swaps follow each other
+  bool small_ = false;        ///< rings of the present chip
+  unsigned modules_ = 3;      ///< that commands ask for, from 1 on
+  bool left_behind_ = false;  ///< pairs of queries of the present batch that have ended wait for their module
+  bool busy_ = false;         ///< queries of the present batch end early, and swaps follow each other
   CollisionStats stats_;
   std::map<std::string, std::size_t> bins_;
 };
