@@ -58,6 +58,24 @@ inline Mesh noisy(Mesh mesh, double range, std::mt19937_64& random) {
   return mesh;
 }
 
+inline Mesh scaled(Mesh mesh, double factor) {
+  for (Vec3d& v : mesh.vertices) v *= factor;
+  return mesh;
+}
+
+/// Polygons of three triangles each, with whole coordinates of 0 to 3, moved by x along the first axis.
+inline Mesh polygons_in_parts(std::uint32_t triangles, double x, std::mt19937_64& random) {
+  Mesh mesh;
+  const auto whole = [&random] { return static_cast<double>(random() % 4); };
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    std::vector<Vec3d> face;
+    for (int k = 0; k < 3; ++k) face.emplace_back(x + whole(), whole(), whole());
+    add_face(mesh, face);
+    mesh.file_face.push_back(i / 3);
+  }
+  return mesh;
+}
+
 /// Triangles and quads of random size anywhere; integer coordinates make some of them degenerate.
 inline Mesh soup(std::size_t faces, bool integers, std::mt19937_64& random) {
   Mesh mesh;

@@ -43,11 +43,6 @@ Mesh one_face(const std::vector<Vec3d>& vertices) {
   return mesh;
 }
 
-Mesh scaled(Mesh mesh, double factor) {
-  for (Vec3d& v : mesh.vertices) v *= factor;
-  return mesh;
-}
-
 /// Small, so that every pair of faces can be tested by the oracle.
 std::vector<Mesh> small_meshes(std::mt19937_64& random) {
   std::vector<Mesh> meshes = {
@@ -366,23 +361,12 @@ TEST_CASE("collide: at most contacts, a face that was cut crosses if one of its 
 
 TEST_CASE("collide: of polygons in many parts, the contacts that a query ends with are some of all", "[ref][collide]") {
   std::mt19937_64 random(sim::seed_from_environment());
-  const auto polygons = [&random](double x) {
-    Mesh mesh;
-    const auto whole = [&random] { return static_cast<double>(random() % 4); };
-    for (std::uint32_t i = 0; i < 6; ++i) {
-      std::vector<Vec3d> face;
-      for (int k = 0; k < 3; ++k) face.emplace_back(x + whole(), whole(), whole());
-      add_face(mesh, face);
-      mesh.file_face.push_back(i / 3);
-    }
-    return mesh;
-  };
   CollisionRequest request = all;
   request.relation = true;
   std::array<int, 3> first = {};
   for (int round = 0; round < 200; ++round) {
-    const Object a(polygons(0));
-    const Object b(polygons(round % 5));
+    const Object a(polygons_in_parts(6, 0, random));
+    const Object b(polygons_in_parts(6, round % 5, random));
     for (const std::string& target : cpu_targets()) {
       const auto device = open_cpu_device({1, target});
       const auto ask = [&](CollisionRequest::Contacts contacts, std::size_t most) {

@@ -138,11 +138,6 @@ Cost check(const std::string& what, const Object& a, const Object& b, const Pose
   return best;
 }
 
-Mesh scaled(Mesh mesh, double factor) {
-  for (Vec3d& v : mesh.vertices) v *= factor;
-  return mesh;
-}
-
 PosePair at(const Vec3d& translation) { return {Pose::Identity(), Pose(make_pose(translation, {0, 0, 0}))}; }
 
 /// A plane of n x n squares of two triangles each, or of quads, of size 1.

@@ -345,15 +345,7 @@ TEST_CASE("self-contacts: of polygons in many parts, at most contacts are some o
   std::array<int, 3> relations = {};
   const std::size_t no_limit = std::numeric_limits<std::size_t>::max();
   for (int round = 0; round < 500; ++round) {
-    Mesh mesh;
-    const auto whole = [&random] { return static_cast<double>(random() % 4); };
-    for (std::uint32_t i = 0; i < 12; ++i) {
-      std::vector<Vec3d> face;
-      for (int k = 0; k < 3; ++k) face.emplace_back(whole(), whole(), whole());
-      add_face(mesh, face);
-      mesh.file_face.push_back(i / 3);
-    }
-    const Object object(mesh);
+    const Object object(polygons_in_parts(12, 0, random));
     const std::vector<Contact> all = self_contacts(object, no_limit);
     for (std::size_t most = 1; most <= all.size(); ++most) {
       const std::vector<Contact> some = self_contacts(object, most);
@@ -434,8 +426,7 @@ TEST_CASE("self-contacts: neighbours that share more than a vertex or an edge", 
   const auto object_of = [size](const std::vector<std::vector<Vec3d>>& faces) {
     Mesh mesh;
     for (const std::vector<Vec3d>& face : faces) add_face(mesh, face);
-    for (Vec3d& vertex : mesh.vertices) vertex *= size;
-    return Object(mesh);
+    return Object(scaled(mesh, size));
   };
   const auto relation_of = [](const std::vector<Contact>& contacts) {
     REQUIRE(contacts.size() <= 1);

@@ -327,14 +327,9 @@ TEST_CASE("distance: exact at any size, subnormal numbers too, and far below the
   Mesh across;
   add_face(across, {{3, 4, 0}, {8, 4, 0}, {3, 8, 1}});
   for (const int exponent : {-1071, -1040, -700, -520, -340, 0, 340, 500, 700, 996}) {
-    Mesh a = corner;
-    Mesh b = across;
-    for (Mesh* mesh : {&a, &b}) {
-      for (Vec3d& v : mesh->vertices) v = v.unaryExpr([&](double x) { return std::ldexp(x, exponent); });
-    }
     CAPTURE(exponent);
-    const Object first(a);
-    const Object second(b);
+    const Object first(scaled(corner, std::ldexp(1, exponent)));
+    const Object second(scaled(across, std::ldexp(1, exponent)));
     const DistanceResult found = distance(first, here, second, here);
     CHECK(found.lower == std::ldexp(5, exponent));
     CHECK(found.upper == std::ldexp(5, exponent));
@@ -343,14 +338,11 @@ TEST_CASE("distance: exact at any size, subnormal numbers too, and far below the
     // The same in the world, from poses that enlarge or reduce as far as they may.
     for (const int pose : {500, -510}) {
       if (exponent - pose > 996 || exponent - pose < -1071) continue;
-      Pose placed = here;
-      placed.linear() *= std::ldexp(1.0, pose);
-      for (Mesh* mesh : {&a, &b}) {
-        *mesh = mesh == &a ? corner : across;
-        for (Vec3d& v : mesh->vertices) v = v.unaryExpr([&](double x) { return std::ldexp(x, exponent - pose); });
-      }
       CAPTURE(pose);
-      const DistanceResult same = distance(Object(a), placed, Object(b), placed);
+      Pose placed = here;
+      placed.linear() *= std::ldexp(1, pose);
+      const double own = std::ldexp(1, exponent - pose);
+      const DistanceResult same = distance(Object(scaled(corner, own)), placed, Object(scaled(across, own)), placed);
       CHECK(same.lower == found.lower);
       CHECK(same.upper == found.upper);
     }
