@@ -52,6 +52,7 @@ constexpr WholeRange bitstream_bits = {8 * defs::bitstream_payload_min, 8 << 24}
 
 using Contacts = CollisionRequest::Contacts;
 const Choices<std::optional<Contacts>> contact_choices = {{"first", Contacts::first}, {"all", Contacts::all}};
+const Choices<InsideRule> inside_choices = {{"odd", InsideRule::odd}, {"nonzero", InsideRule::nonzero}};
 const Choices<bool> count_choices = {{"touching", false}, {"crossing", true}};
 
 struct PairsOptions {
@@ -275,6 +276,9 @@ void add_collide(CLI::App& app, CollideOptions& options) {
   auto* solids = command->add_flag("--solids", options.solids,
                                    "how closed meshes lie to each other as solids: is one inside the other?");
   for (auto* other : {poses, contacts, most, counts, relation, within}) solids->excludes(other);
+  add_choice(*command, "--inside", options.inside, inside_choices,
+             "inside is what a surface encloses an odd number of times (default), or a number that is not 0: nonzero")
+      ->needs(solids);
   auto* points = command->add_flag("--points", options.points,
                                    "A is a file of points (PLY, XYZ, PCD): which of them meet which faces of B?");
   for (auto* other : {poses, counts, relation, within, solids}) points->excludes(other);

@@ -38,7 +38,8 @@ namespace cchip::app {
 namespace {
 
 constexpr std::size_t batch = 1024;
-constexpr std::size_t contacts_shown = 10;  // in a table
+constexpr std::size_t contacts_shown = 10;   // in a table
+constexpr std::size_t curves_from = 100000;  // contacts of which a picture shows the curves
 
 /// Totals of a run, the last line.
 struct Totals {
@@ -246,16 +247,18 @@ auto timed(std::chrono::duration<double>& time, const Function& function) {
   return result;
 }
 
-/// Of the contacts a table shows the first ones only. \param what the contacts are called
-void write_rows(const std::vector<std::string>& names, const std::vector<std::vector<Cell>>& rows, const char* what,
-                Format format, std::ostream& out) {
-  if (rows.empty() && format == Format::table) return;
+/// A row for each contact, made as it is written; a table shows the first ones only. \param what the contacts are
+/// called
+template <class Contacts, class MakeRow>
+void write_rows(const std::vector<std::string>& names, const Contacts& contacts, const MakeRow& make_row,
+                const char* what, Format format, std::ostream& out) {
+  if (contacts.empty() && format == Format::table) return;
   const auto writer = make_row_writer(format, out, names);
-  const std::size_t shown = format == Format::table ? std::min(rows.size(), contacts_shown) : rows.size();
-  for (std::size_t i = 0; i < shown; ++i) writer->write(rows[i]);
+  const std::size_t shown = format == Format::table ? std::min(contacts.size(), contacts_shown) : contacts.size();
+  for (std::size_t i = 0; i < shown; ++i) writer->write(make_row(contacts[i]));
   writer->flush();
-  if (shown < rows.size()) {
-    out << fmt::format("... and {} more {}; --format csv lists all\n", rows.size() - shown, what);
+  if (shown < contacts.size()) {
+    out << fmt::format("... and {} more {}; --format csv lists all\n", contacts.size() - shown, what);
   }
 }
 
@@ -263,13 +266,12 @@ void write_rows(const std::vector<std::string>& names, const std::vector<std::ve
 void write_contacts(const std::vector<Contact>& contacts, bool relation, Format format, std::ostream& out) {
   std::vector<std::string> names = mesh_pair_names();
   if (relation) names.emplace_back("relation");
-  std::vector<std::vector<Cell>> rows;
-  rows.reserve(contacts.size());
-  for (const Contact& contact : contacts) {
-    rows.push_back({std::uint64_t{contact.face_a}, std::uint64_t{contact.face_b}});
-    if (relation) rows.back().emplace_back(to_word(contact.relation));
-  }
-  write_rows(names, rows, "pairs of faces", format, out);
+  const auto row = [relation](const Contact& contact) {
+    std::vector<Cell> cells = {std::uint64_t{contact.face_a}, std::uint64_t{contact.face_b}};
+    if (relation) cells.emplace_back(to_word(contact.relation));
+    return cells;
+  };
+  write_rows(names, contacts, row, "pairs of faces", format, out);
 }
 
 /// In JSON lines an answer without contacts is a line, too.
@@ -320,7 +322,12 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
   std::vector<IntersectionCurve> curves;
   if (picture || view) {
     const Pose here = Pose::Identity();
-    curves = intersection_curves({&a, &here, &b, &pose}, result.contacts);
+    if (result.contacts.size() <= curves_from) {
+      curves = intersection_curves({&a, &here, &b, &pose}, result.contacts);
+    } else {
+      streams.err << fmt::format("{} pairs of faces: the picture shows no curves of more than {}\n",
+                                 result.contacts.size(), curves_from);
+    }
   }
   if (picture) {
     // Without relations every contact counts as one that crosses.
@@ -343,15 +350,28 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
   return report(totals, options, streams);
 }
 
+/// Says that shells of a mesh overlap. \returns whether the answer is in doubt for it
+bool note_shells(const CollideOptions& options, const char* name, const std::string& file,
+                 const std::optional<Contact>& overlap, const Streams& streams) {
+  if (!overlap) return false;
+  const bool odd = options.inside == InsideRule::odd;
+  streams.err
+      << file << ": faces " << overlap->face_a << " and " << overlap->face_b << " of " << name
+      << (overlap->relation == Relation::crossing ? " cross" : " lie on each other")
+      << ": its shells overlap, are there twice or have a wall in common. Space that two of them share counts as "
+      << (odd ? "outside; --inside nonzero counts it as inside\n" : "inside\n");
+  return odd;
+}
+
 /// How the two solids lie to each other, in a line.
 int answer_solids(const CollideOptions& options, Device& device, const Streams& streams) {
   const Pose pose = parse_pose_options(options.pose, options.pose_matrix);
   MeshReader reader(streams, options.lenient);
   const Object a = reader.read_object(options.file_a);
   const Object b = reader.read_object(options.file_b);
-  SolidRelation relation = {};
+  SolidResult relation;
   try {
-    relation = solids(device, a, Pose::Identity(), b, pose);
+    relation = solids(device, a, Pose::Identity(), b, pose, {options.inside});
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
@@ -362,8 +382,10 @@ int answer_solids(const CollideOptions& options, Device& device, const Streams& 
     writer->write({std::string(name_of(relation))});
     writer->flush();
   }
+  const bool in_doubt = note_shells(options, "A", options.file_a, relation.overlap_a, streams) |
+                        note_shells(options, "B", options.file_b, relation.overlap_b, streams);
   if (options.exit_code && relation != SolidRelation::disjoint) return exit_contact;
-  return reader.faces_left_out() > 0 ? exit_left_out : exit_ok;
+  return reader.faces_left_out() > 0 || in_doubt ? exit_left_out : exit_ok;
 }
 
 PointCloud load_cloud(const CollideOptions& options, const Streams& streams) {
@@ -432,12 +454,10 @@ int answer_points(const CollideOptions& options, const Streams& streams) {
     streams.out << (streams.colour ? coloured(answer) : answer) << '\n';
   }
   if (!table || request.contacts == CollisionRequest::Contacts::all) {
-    std::vector<std::vector<Cell>> rows;
-    rows.reserve(result.contacts.size());
-    for (const CloudContact& contact : result.contacts) {
-      rows.push_back({std::uint64_t{contact.point}, std::uint64_t{contact.face}});
-    }
-    write_rows({"point", "face"}, rows, "contacts", options.format, streams.out);
+    const auto row = [](const CloudContact& contact) {
+      return std::vector<Cell>{std::uint64_t{contact.point}, std::uint64_t{contact.face}};
+    };
+    write_rows({"point", "face"}, result.contacts, row, "contacts", options.format, streams.out);
   }
   if (options.format == Format::jsonl && !result.hit) write_no_contact({}, {}, streams.out);
   totals.add(result);

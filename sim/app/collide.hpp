@@ -5,6 +5,7 @@
 #define CCHIP_APP_COLLIDE_HPP
 
 #include <cchip/collide/collide.hpp>
+#include <cchip/cpu/solids.hpp>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -29,6 +30,7 @@ struct CollideOptions {
   bool points = false;           ///< A is a file of points, see load_points()
   std::string radius;            ///< of each point's sphere; empty: 0
   bool solids = false;           ///< how the solids lie to each other, in place of contacts
+  InsideRule inside = InsideRule::odd;
   bool exit_code = false;        ///< exit code 5 if a query found a contact
   bool lenient = false;          ///< faces that cannot be used are left out
   std::string device = "cpu";

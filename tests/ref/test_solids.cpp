@@ -242,14 +242,14 @@ SolidRelation truth(const Tetrahedron& a, const Pose& pose_a, const Tetrahedron&
 /// A box from a corner of small whole numbers to another.
 using Corners = std::array<Cell, 2>;
 
-/// The cells in an odd number of boxes.
-Cells parity(const std::vector<Corners>& boxes) {
+/// The cells in an odd number of boxes, or in any.
+Cells cells_of(const std::vector<Corners>& boxes, InsideRule rule) {
   Cells cells;
   for (const Corners& c : boxes) {
     for (int x = c[0][0]; x < c[1][0]; ++x) {
       for (int y = c[0][1]; y < c[1][1]; ++y) {
         for (int z = c[0][2]; z < c[1][2]; ++z) {
-          if (!cells.insert({x, y, z}).second) cells.erase({x, y, z});
+          if (!cells.insert({x, y, z}).second && rule == InsideRule::odd) cells.erase({x, y, z});
         }
       }
     }
@@ -274,8 +274,8 @@ bool surfaces_meet(const Corners& p, const Corners& q) {
   return false;
 }
 
-SolidRelation truth(const std::vector<Corners>& a, const std::vector<Corners>& b) {
-  const Cells cells_a = parity(a), cells_b = parity(b);
+SolidRelation truth(const std::vector<Corners>& a, const std::vector<Corners>& b, InsideRule rule) {
+  const Cells cells_a = cells_of(a, rule), cells_b = cells_of(b, rule);
   std::size_t common = 0;
   for (const Cell& x : cells_a) common += cells_b.count(x);
   if (common != 0) {
@@ -290,7 +290,7 @@ SolidRelation truth(const std::vector<Corners>& a, const std::vector<Corners>& b
   return SolidRelation::disjoint;
 }
 
-/// Rectangles cut along any diagonal, from any vertex, or whole.
+/// Rectangles cut along any diagonal, from any vertex, or whole; with their normals outward.
 Mesh mesh_of(const std::vector<Corners>& boxes, std::mt19937_64& random) {
   Mesh mesh;
   const bool whole = random() % 2 == 0;
@@ -305,6 +305,7 @@ Mesh mesh_of(const std::vector<Corners>& boxes, std::mt19937_64& random) {
           p[(axis + 2) % 3] = c[v][(axis + 2) % 3];
           corners.emplace_back(p[0], p[1], p[2]);
         }
+        if (side == 0) std::reverse(corners.begin(), corners.end());
         std::rotate(corners.begin(), corners.begin() + static_cast<int>(random() % 4), corners.end());
         if (whole) {
           add_face(mesh, corners);
@@ -335,10 +336,12 @@ void check_parity(std::uint64_t seed, std::map<SolidRelation, int>& count) {
   const std::vector<Corners> a = random_boxes(random);
   const std::vector<Corners> b = random_boxes(random);
   const Object object_a(mesh_of(a, random)), object_b(mesh_of(b, random));
-  const SolidRelation expected = truth(a, b);
-  ++count[expected];
   CAPTURE(seed);
-  REQUIRE(solids(object_a, here, object_b, here) == expected);
+  for (const InsideRule rule : {InsideRule::odd, InsideRule::nonzero}) {
+    const SolidRelation expected = truth(a, b, rule);
+    ++count[expected];
+    REQUIRE(solids(object_a, here, object_b, here, {rule}) == expected);
+  }
 }
 
 }  // namespace
@@ -428,6 +431,57 @@ TEST_CASE("solids: open surfaces and flat poses are refused in one line", "[ref]
   CHECK_THROWS_AS(gone.is_closed(), std::invalid_argument);
 }
 
+TEST_CASE("solids: shells that overlap or are there twice are never silently apart", "[ref][solids]") {
+  const Mesh cube = box(0, 0, 0, 4, 4, 4);
+  const auto ask = [](const Mesh& a, const Mesh& b, InsideRule rule) {
+    return solids(Object(a), here, Object(b), here, {rule});
+  };
+  const Mesh two = both(cube, box(2, 1, 1, 6, 3, 3));
+  const Mesh common = box(2.5, 1.5, 1.5, 3, 2, 2);  // in the space that the shells share
+  const SolidResult odd = ask(two, common, InsideRule::odd);
+  CHECK(odd.relation == SolidRelation::disjoint);
+  REQUIRE(odd.overlap_a);
+  CHECK(odd.overlap_a->relation == Relation::crossing);
+  CHECK_FALSE(odd.overlap_b);
+  CHECK(ask(common, two, InsideRule::odd).overlap_b);
+  CHECK(ask(two, common, InsideRule::nonzero) == SolidRelation::b_in_a);
+  CHECK(ask(two, cube, InsideRule::nonzero) == SolidRelation::b_in_a);
+  CHECK(ask(two, box(4, 1, 1, 6, 3, 3), InsideRule::nonzero) == SolidRelation::b_in_a);
+  const Mesh twice = both(cube, cube);
+  CHECK(ask(twice, common, InsideRule::odd).relation == SolidRelation::disjoint);
+  CHECK(ask(twice, common, InsideRule::odd).overlap_a);
+  CHECK(ask(twice, common, InsideRule::nonzero) == SolidRelation::b_in_a);
+  CHECK(ask(twice, cube, InsideRule::nonzero) == SolidRelation::equal);
+  // One of them the other way round: nothing winds round any point, and the answer still says that they overlap.
+  Mesh turned = twice;
+  for (std::size_t f = cube.faces.size(); f < turned.faces.size(); ++f) {
+    auto& vertex = turned.faces[f].vertex;
+    std::reverse(vertex.begin(), vertex.begin() + static_cast<int>(turned.faces[f].kind));
+  }
+  CHECK(ask(turned, common, InsideRule::nonzero).relation == SolidRelation::disjoint);
+  CHECK(ask(turned, common, InsideRule::nonzero).overlap_a);
+  // A wall in common is an area in common; what meets at edges alone is none.
+  CHECK(ask(both(cube, box(4, 0, 0, 6, 4, 4)), common, InsideRule::odd).overlap_a);
+  CHECK_FALSE(ask(both(cube, box(4, 4, 0, 6, 6, 4)), common, InsideRule::odd).overlap_a);
+  CHECK_FALSE(ask(both(cube, box(4, 1, 4, 6, 2, 6)), common, InsideRule::odd).overlap_a);
+  CHECK_FALSE(ask(both(cube, box(1, 1, 1, 2, 2, 2)), common, InsideRule::odd).overlap_a);
+  // A shell inside another the same way round is a cavity by one rule alone.
+  const Mesh nested = both(cube, box(1, 1, 1, 3, 3, 3));
+  CHECK(ask(nested, box(1.5, 1.5, 1.5, 2, 2, 2), InsideRule::odd) == SolidRelation::disjoint);
+  CHECK(ask(nested, box(1.5, 1.5, 1.5, 2, 2, 2), InsideRule::nonzero) == SolidRelation::b_in_a);
+  CHECK(ask(nested, cube, InsideRule::nonzero) == SolidRelation::equal);
+  // Faces that are not all the same way round wind round nothing.
+  Tetrahedron corner;
+  corner.kind = Kind::quad;
+  corner.v = {Vec3d(0, 0, 0), Vec3d(4, 0, 0), Vec3d(0, 4, 0), Vec3d(0, 0, 4)};
+  const Mesh mixed = mesh_of(corner);  // cyclic corners: every other face is the other way round
+  CHECK(ask(mixed, cube, InsideRule::odd) != SolidRelation::disjoint);
+  CHECK_THROWS_WITH(ask(mixed, cube, InsideRule::nonzero),
+                    Catch::Contains("the faces of A are not the same way round"));
+  CHECK_THROWS_WITH(ask(cube, mixed, InsideRule::nonzero),
+                    Catch::Contains("the faces of B are not the same way round"));
+}
+
 TEST_CASE("closed surfaces: vertices by coordinates, edges by parity", "[ref][solids]") {
   std::mt19937_64 random(sim::seed_from_environment());
   // Faces with vertices of their own, as from STL, with both zeros.
@@ -445,10 +499,33 @@ TEST_CASE("closed surfaces: vertices by coordinates, edges by parity", "[ref][so
   CHECK(Object(fin).is_closed());
   expect(fin, box(0, 0, 0, 1, 1, 1), SolidRelation::equal);
   expect(fin, box(0, -2, -2, 1, -0.5, -0.5), SolidRelation::touching);  // meets the fin
-  // Half of an edge against the whole one.
-  Mesh torn = box(0, 0, 0, 1, 1, 1);
-  torn.vertices.emplace_back(0.5, 0, 0);
-  torn.faces.pop_back();
+  // An edge that one face uses whole and others in parts, at any place and in any direction.
+  const auto tetrahedron = [](const Vec3d& split, double bulge) {
+    const std::array<Vec3d, 4> v = {Vec3d(0, 0, 0), Vec3d(3, 0.75, 1.5), Vec3d(0, 2, 0), Vec3d(1, 1, 5)};
+    const Vec3d m = v[0] + split.x() * (v[1] - v[0]) + Vec3d(0, bulge, 0);
+    Mesh mesh;
+    add_face(mesh, {v[0], m, v[2]});
+    add_face(mesh, {m, v[1], v[2]});
+    add_face(mesh, {v[0], v[3], v[1]});  // whole
+    add_face(mesh, {v[1], v[3], v[2]});
+    add_face(mesh, {v[2], v[3], v[0]});
+    return mesh;
+  };
+  for (const double at : {0.25, 0.5, 0.75}) {
+    const Object closed(tetrahedron({at, 0, 0}, 0));
+    CHECK(closed.is_closed());
+    CHECK(closed.twisted_edge() == std::nullopt);
+    const Object open(tetrahedron({at, 0, 0}, 0x1p-50));
+    CHECK_FALSE(open.is_closed());
+    CHECK(open.open_edge()->face == 0);
+    Pose inside = here;
+    inside.translation() = Vec3d(1, 1, 1);
+    inside.linear() *= 0x1p-6;
+    CHECK(solids(closed, here, Object(box(0, 0, 0, 1, 1, 1)), inside) == SolidRelation::b_in_a);
+  }
+  // Two pieces of one line that do not make up the third.
+  Mesh torn = tetrahedron({0.5, 0, 0}, 0);
+  torn.faces.erase(torn.faces.begin());
   CHECK_FALSE(Object(torn).is_closed());
 }
 

@@ -376,6 +376,44 @@ TEST_CASE("distance: exact at any size, subnormal numbers too, and far below the
   CHECK(found.upper == 0x1p53 + 2);
 }
 
+TEST_CASE("distance: approximate, stopped and in contact at any size", "[ref][distance]") {
+  const Object ball(make_sphere(1, 1));
+  DistanceRequest request;
+  const auto ask = [&](double scale, double shift) {
+    Pose at = Pose::Identity();
+    Pose beside = at;
+    at.linear() *= scale;
+    beside.linear() *= scale;
+    beside.translation() = Vec3d(shift, shift / 4, 0) * scale;
+    return distance(ball, at, ball, beside, request);
+  };
+  for (const double error : {0.0, 0.01, 0.5}) {
+    request.rel_error = error;
+    for (const double shift : {1.0, 3.0}) {
+      request.stop_above = infinity;
+      const DistanceResult one = ask(1, shift);
+      for (const int exponent : {-500, -405, -399, -201, -101, 101, 201, 399, 401, 498}) {
+        CAPTURE(error, shift, exponent);
+        const double scale = std::ldexp(1, exponent);
+        request.stop_above = infinity;
+        const DistanceResult found = ask(scale, shift);
+        // Lengths of the same query in another unit, so the numbers are the same.
+        CHECK(found.lower == one.lower * scale);
+        CHECK(found.upper == one.upper * scale);
+        CHECK(found.point_a == one.point_a * scale);
+        CHECK(found.point_b == one.point_b * scale);
+        if (found.upper == 0) continue;
+        request.stop_above = one.upper * scale;
+        CHECK(ask(scale, shift).upper == found.upper);
+        request.stop_above = one.lower * 0.9 * scale;
+        const DistanceResult above = ask(scale, shift);
+        CHECK(above.upper == infinity);
+        CHECK(above.lower == request.stop_above);
+      }
+    }
+  }
+}
+
 TEST_CASE("distance: of polygons that were cut, the point is one of the parts that meet", "[ref][distance]") {
   Mesh square;
   add_face(square, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}});

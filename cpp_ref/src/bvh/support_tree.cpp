@@ -27,22 +27,26 @@ struct Word {
   double length;
 };
 
-std::vector<Word> make_words() {
-  std::vector<Word> words;
+using Words = std::array<Word, 2 * directions.size()>;
+
+Words make_words() {
+  Words words = {};
+  std::size_t count = 0;
   for (std::size_t w = 0; w < support_words; ++w) {
     const std::array<int, 3> v = support_direction(w);
     const double length = std::sqrt(static_cast<double>(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
     for (std::size_t d = 0; d < directions.size(); ++d) {
       const std::array<int, 3>& u = directions[d];
-      if (v == u) words.push_back({w, d, false, length});
-      if (v[0] == -u[0] && v[1] == -u[1] && v[2] == -u[2]) words.push_back({w, d, true, length});
+      const bool negative = v[0] == -u[0] && v[1] == -u[1] && v[2] == -u[2];
+      if (v == u || negative) words[count++] = {w, d, negative, length};
     }
   }
   return words;
 }
 
-const std::vector<Word>& words() {
-  static const std::vector<Word> all = make_words();
+/// Trivial to destroy: the destructors of static objects may ask for it.
+const Words& words() {
+  static const Words all = make_words();
   return all;
 }
 

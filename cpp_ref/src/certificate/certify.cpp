@@ -4,6 +4,8 @@
 #include <cchip/certificate/check.hpp>
 #include <cchip/internal/bvh/dop26.hpp>
 #include <cchip/internal/collide/face_pairs.hpp>
+#include <cchip/internal/collide/near_parts.hpp>
+#include <cchip/internal/exact/posed_pairs.hpp>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -12,6 +14,7 @@
 #include <numeric>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "certificate/pair_proof.hpp"
 
@@ -150,13 +153,18 @@ class Maker {
 
   /// The proof of one contact, if a pair of parts of the two faces proves it; else nothing.
   std::optional<Certificate> prove_contact(const Contact& contact) {
-    for (const std::uint32_t face_a : query_.a->parts(contact.face_a)) {
-      for (const std::uint32_t face_b : query_.b->parts(contact.face_b)) {
-        const CertificateCell cell = pair(face_a, face_b);
-        if (ends_search(cell)) return one_contact(cell);
-      }
-    }
-    return std::nullopt;
+    const PosedPairs pairs(*query_.pose_a, *query_.pose_b);
+    std::optional<Certificate> proof;
+    any_near_parts(query_, contact, [&](std::uint32_t face_a, std::uint32_t face_b) {
+      const Primitive a = query_.a->mesh().primitive(face_a);
+      const Primitive b = query_.b->mesh().primitive(face_b);
+      const PosedPairs::Answer met = pairs.decide(a, b, request_.tells_relation());
+      if (request_.tells_relation() ? !met.crosses : !met.hit) return false;
+      const CertificateCell cell = pair(face_a, face_b);
+      if (ends_search(cell)) proof = one_contact(cell);
+      return proof.has_value();
+    });
+    return proof;
   }
 
   Certificate search() {
@@ -332,8 +340,9 @@ std::string name(const Contact& contact) {
 }
 
 void check_request(const CollisionQuery& query, const CollisionRequest& request) {
-  check_query(query, request);
-  if (request.within > 0) refuse("there is none for a distance; ask with within = 0");
+  CollisionRequest proved = request;
+  proved.certificate = true;
+  check_query(query, proved);
 }
 
 }  // namespace
@@ -356,12 +365,11 @@ Certificate certify(const CollisionQuery& query, const CollisionRequest& request
   Certificate certificate = maker.search();
   if (answer.hit != !certificate.contacts.empty()) refuse(answer.hit ? "there is no contact" : "there is a contact");
   if (answer.relation && answer.relation != certificate.relation) refuse("the relation is another one");
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::optional<Relation>> proved;
+  for (const Certificate::Contact& c : certificate.contacts) proved.emplace(std::pair(c.face_a, c.face_b), c.relation);
   for (const Contact& contact : answer.contacts) {
-    const auto same = [&](const Certificate::Contact& c) {
-      return c.face_a == contact.face_a && c.face_b == contact.face_b &&
-             (!contact.relation || contact.relation == c.relation);
-    };
-    if (std::none_of(certificate.contacts.begin(), certificate.contacts.end(), same)) {
+    const auto found = proved.find({contact.face_a, contact.face_b});
+    if (found == proved.end() || (contact.relation && contact.relation != found->second)) {
       refuse(name(contact) + " are no such contact");
     }
   }

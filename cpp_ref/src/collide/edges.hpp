@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What an object finds out about its edges when it is asked.
+/// What an object finds out about its surface when it is asked.
 #ifndef CCHIP_COLLIDE_EDGES_HPP
 #define CCHIP_COLLIDE_EDGES_HPP
 
 #include <cchip/collide/object.hpp>
+#include <cchip/internal/collide/shells.hpp>
 #include <cstdint>
 #include <mutex>
 #include <optional>
@@ -17,6 +18,9 @@ struct Object::Edges {
   bool known = false;
   std::vector<std::uint32_t> same_place;
   std::optional<OpenEdge> open;
+  std::optional<OpenEdge> twisted;
+  std::mutex shells_mutex;  ///< of a call that fills this in
+  std::optional<Shells> shells;
 };
 
 }  // namespace cchip

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cchip/internal/collide/face_pairs.hpp>
+#include <cchip/internal/collide/near_parts.hpp>
+#include <cchip/internal/geometry/decimal.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -48,12 +50,15 @@ void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest&
     throw std::invalid_argument("least is apart, and faces that are apart are no contact: give touching or crossing");
   }
   if (!(request.within >= 0 && request.within <= std::numeric_limits<double>::max())) {
-    throw std::invalid_argument("within is " + std::to_string(request.within) +
+    throw std::invalid_argument("within is " + decimal_text(request.within) +
                                 ": ask for a distance that is finite and at least 0");
   }
   if (request.within > 0 && request.tells_relation()) {
     throw std::invalid_argument(
         "within: faces at a distance neither touch nor cross; leave out relation and least, or within");
+  }
+  if (request.within > 0 && request.certificate) {
+    throw std::invalid_argument("certificate: there is none for faces at a distance; leave out certificate, or within");
   }
 }
 
@@ -72,7 +77,7 @@ void FacePairs::start(const CollisionQuery& query, const CollisionRequest& reque
   seen_ = Relation::apart;
   most_ = request.contacts == CollisionRequest::Contacts::first ? 1 : request.max_contacts;
   cut_ = !query.a->mesh().file_face.empty() || !query.b->mesh().file_face.empty();
-  if (cut_) contacts_.clear();
+  if (cut_) table_.clear();
   pairs_.reset();
   distances_.reset();
 }
@@ -129,9 +134,9 @@ void FacePairs::add(std::uint32_t face_a, std::uint32_t face_b, Relation relatio
     done_ = crosses || !request_.tells_relation();
     return;
   }
-  if (cut_) {
-    if (const auto found = contacts_.find(contact); found != contacts_.end()) {
-      if (crosses && request_.tells_relation()) contacts[found->second].relation = relation;
+  if (cut_ && !table_.empty()) {
+    if (const std::uint32_t place = entry_of(contact); place != 0) {
+      if (crosses && request_.tells_relation()) contacts[place - 1].relation = relation;
       return;
     }
   }
@@ -140,20 +145,42 @@ void FacePairs::add(std::uint32_t face_a, std::uint32_t face_b, Relation relatio
     done_ = true;
     return;
   }
-  if (cut_) contacts_.emplace(contact, contacts.size());
   contacts.push_back(contact);
+  if (!cut_) return;
+  if (2 * contacts.size() > table_.size()) {
+    grow_table();
+  } else {
+    entry_of(contact) = static_cast<std::uint32_t>(contacts.size());
+  }
+}
+
+std::uint32_t& FacePairs::entry_of(const Contact& contact) {
+  const std::vector<Contact>& contacts = result_->contacts;
+  const std::uint64_t mixed = (std::uint64_t{contact.face_a} << 32U | contact.face_b) * 0x9e3779b97f4a7c15U;
+  std::size_t at = static_cast<std::size_t>(mixed >> 16U) & (table_.size() - 1);
+  while (table_[at] != 0 && !same_faces(contacts[table_[at] - 1], contact)) at = (at + 1) & (table_.size() - 1);
+  return table_[at];
+}
+
+/// To at least twice as many entries as contacts, each of four bytes.
+void FacePairs::grow_table() {
+  const std::vector<Contact>& contacts = result_->contacts;
+  if (contacts.size() >= std::numeric_limits<std::uint32_t>::max() / 2) {
+    throw std::runtime_error("collide: more than 2^31 contacts of polygons; ask for fewer by max_contacts");
+  }
+  std::size_t size = std::max<std::size_t>(64, 2 * table_.size());
+  while (size < 2 * contacts.size()) size *= 2;
+  std::vector<std::uint32_t>().swap(table_);
+  table_.resize(size);
+  for (std::size_t i = 0; i < contacts.size(); ++i) entry_of(contacts[i]) = static_cast<std::uint32_t>(i + 1);
 }
 
 /// The search ended before it met all parts of two faces that were cut, and those that it met only touch.
 void FacePairs::relate_all_parts(Contact& contact) {
-  const std::vector<std::uint32_t> parts_b = query_.b->parts(contact.face_b);
-  for (const std::uint32_t face_a : query_.a->parts(contact.face_a)) {
-    for (const std::uint32_t face_b : parts_b) {
-      if (relate(face_a, face_b) != Relation::crossing) continue;
-      contact.relation = seen_ = Relation::crossing;
-      return;
-    }
-  }
+  const bool crosses = any_near_parts(query_, contact, [this](std::uint32_t face_a, std::uint32_t face_b) {
+    return relate(face_a, face_b) == Relation::crossing;
+  });
+  if (crosses) contact.relation = seen_ = Relation::crossing;
 }
 
 void FacePairs::finish() {

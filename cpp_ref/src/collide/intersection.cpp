@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cchip/collide/intersection.hpp>
 #include <cchip/internal/collide/face_pairs.hpp>
+#include <cchip/internal/collide/near_parts.hpp>
+#include <cchip/internal/exact/posed_pairs.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -22,9 +24,8 @@ using exact::FractionPoint;
 using exact::operator-;
 using exact::Vec;
 
-std::vector<std::uint32_t> parts_of(const Object& object, std::uint32_t face, const char* name) {
-  std::vector<std::uint32_t> parts = object.parts(face);
-  if (!parts.empty()) return parts;
+void check_face(const Object& object, std::uint32_t face, const char* name) {
+  if (!object.parts(face).empty()) return;
   throw std::invalid_argument(std::string("contact: ") + name + " has no face " + std::to_string(face) +
                               "; take contacts of a query of the same objects");
 }
@@ -32,15 +33,17 @@ std::vector<std::uint32_t> parts_of(const Object& object, std::uint32_t face, co
 /// Calls take(CommonPart) for each pair of parts of the faces that share a point.
 template <class Take>
 void for_each_part(const CollisionQuery& query, const Contact& contact, const Take& take) {
-  const std::vector<std::uint32_t> parts_b = parts_of(*query.b, contact.face_b, "B");
-  for (const std::uint32_t face_a : parts_of(*query.a, contact.face_a, "A")) {
+  check_face(*query.a, contact.face_a, "A");
+  check_face(*query.b, contact.face_b, "B");
+  const PosedPairs pairs(*query.pose_a, *query.pose_b);
+  any_near_parts(query, contact, [&](std::uint32_t face_a, std::uint32_t face_b) {
     const Primitive a = query.a->mesh().primitive(face_a);
-    for (const std::uint32_t face_b : parts_b) {
-      std::optional<CommonPart> part =
-          exact::common_part(a, *query.pose_a, query.b->mesh().primitive(face_b), *query.pose_b);
-      if (part) take(std::move(*part));
-    }
-  }
+    const Primitive b = query.b->mesh().primitive(face_b);
+    if (!pairs.decide(a, b).hit) return false;
+    std::optional<CommonPart> part = exact::common_part(a, *query.pose_a, b, *query.pose_b);
+    if (part) take(std::move(*part));
+    return false;
+  });
 }
 
 void check(const CollisionQuery& query) {
@@ -164,7 +167,8 @@ std::vector<IntersectionCurve> intersection_curves(const CollisionQuery& query, 
 
 Vec3d face_normal(const Object& object, const Pose& pose, std::uint32_t face) {
   check({&object, &pose, &object, &pose});
-  const std::vector<std::uint32_t> parts = parts_of(object, face, "the object");
+  check_face(object, face, "the object");
+  const std::vector<std::uint32_t> parts = object.parts(face);
   int exponent = std::numeric_limits<int>::max();
   for (const std::uint32_t part : parts) {
     exponent = exact::common_exponent(object.mesh().primitive(part), pose, exponent);

@@ -15,6 +15,7 @@
 #include <array>
 #include <cchip/collide/collide.hpp>
 #include <cchip/internal/bvh/support_tree.hpp>
+#include <cchip/internal/collide/near_parts.hpp>
 #include <cchip/internal/exact/posed_pairs.hpp>
 #include <cmath>
 #include <cstring>
@@ -489,13 +490,12 @@ class SelfSearch {
     // Places of a leaf that it does not need repeat a face with equal numbers.
     for (std::uint32_t p = 0; p < numbers_.size(); ++p) place[tree_.faces()[p]] = p;
     for (auto& [faces, relation] : found_) {
-      const std::vector<std::uint32_t> others = object_.parts(faces.second);
-      for (const std::uint32_t i : object_.parts(faces.first)) {
-        for (const std::uint32_t k : others) {
-          if (relation == Relation::crossing) continue;
-          relation = std::max(relation, relate(i, k, numbers_[place[i]], numbers_[place[k]]));
-        }
-      }
+      const Pose here = Pose::Identity();
+      const CollisionQuery query = {&object_, &here, &object_, &here};
+      any_near_parts(query, {faces.first, faces.second}, [&](std::uint32_t i, std::uint32_t k) {
+        relation = std::max(relation, relate(i, k, numbers_[place[i]], numbers_[place[k]]));
+        return relation == Relation::crossing;
+      });
     }
   }
 

@@ -290,8 +290,15 @@ std::unique_ptr<Device> open_cpu_device(const CpuOptions& options) {
 
 CollisionResult collide(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
                         const CollisionRequest& request, const CollisionHint& hint) {
-  thread_local const std::unique_ptr<Device> device = open_cpu_device({1, {}});
-  return collide(*device, a, pose_a, b, pose_b, request, hint);
+  // Destructors of static objects run after those of their thread's own: they get a device for the one call.
+  thread_local bool is_gone = false;
+  struct Own {
+    ~Own() { is_gone = true; }
+    const std::unique_ptr<Device> device = open_cpu_device({1, {}});
+  };
+  if (is_gone) return collide(*open_cpu_device({1, {}}), a, pose_a, b, pose_b, request, hint);
+  thread_local const Own own;
+  return collide(*own.device, a, pose_a, b, pose_b, request, hint);
 }
 
 }  // namespace cchip

@@ -1,43 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cchip/cpu/distance.hpp>
+#include <cchip/internal/collide/near_parts.hpp>
 #include <cchip/internal/exact/posed_distances.hpp>
+#include <cchip/internal/geometry/decimal.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "behind_plane.hpp"
-#include "dop_pairs.hpp"
 #include "exact/nearest_planes.hpp"
 #include "frame_gap.hpp"
+#include "query_scale.hpp"
 #include "tree_side.hpp"
 
 namespace cchip {
 namespace {
 
-using bvh::Dop26;
 using bvh::NodeRef;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check(const DistanceRequest& request) {
   if (!(request.rel_error >= 0 && request.rel_error < 1)) {
-    throw std::invalid_argument("rel_error is " + std::to_string(request.rel_error) +
+    throw std::invalid_argument("rel_error is " + decimal_text(request.rel_error) +
                                 ": ask for one that is at least 0 and less than 1");
   }
   if (!(request.stop_above >= 0)) {
-    throw std::invalid_argument("stop_above is " + std::to_string(request.stop_above) + ": it must be at least 0");
+    throw std::invalid_argument("stop_above is " + decimal_text(request.stop_above) + ": it must be at least 0");
   }
 }
 
 /// Branch and bound over pairs of nodes, the one with the least gap first. Faces that may be the nearest ones are kept
-/// with their bounds in doubles; integers decide between them at the end.
+/// with their bounds in doubles; integers decide between them at the end. All in the unit that QueryScale has chosen.
 class DistanceSearch {
  public:
-  DistanceSearch(const CollisionQuery& query, const DistanceRequest& request)
-      : query_(query),
+  DistanceSearch(const CollisionQuery& query, const QueryScale& scale, const DistanceRequest& request)
+      : scale_(scale),
         request_(request),
+        stop_above_(scale.rounded_up(request.stop_above)),
         a_{query.a->mesh(), query.a->tree()},
         b_{query.b->mesh(), query.b->tree()},
         frame_(*query.a, *query.pose_a, *query.b, *query.pose_b),
@@ -67,7 +69,7 @@ class DistanceSearch {
 
   /// Nothing this far apart matters any more.
   bool is_pruned(double gap) {
-    if (gap > request_.stop_above) return true;
+    if (gap > stop_above_) return true;
     // A little less than what is allowed, for the rounding of this line.
     if (gap < upper_ * (1 - (1 - 0x1p-20) * request_.rel_error)) return false;
     pruned_ = std::min(pruned_, gap);
@@ -75,7 +77,6 @@ class DistanceSearch {
   }
 
   void search() {
-    if (!frame_.is_moderate()) volumes_.emplace(*query_.a, *query_.pose_a, *query_.b, *query_.pose_b);
     std::vector<Item> queue = {{0, a_.tree.root(), b_.tree.root()}};
     queue.reserve(256);
     frame_.set_axis(frame_.middle_b(b_.tree.lines() + b_.tree.root().first(), b_.tree.root().count()) -
@@ -146,11 +147,9 @@ class DistanceSearch {
         frame_.line(frame_.middle_b(lines_b, item.b.count()) - frame_.middle_a(lines_a, item.a.count()));
     std::array<FrameGap::Reach, 4> reach_b;
     std::array<double, 4> on_line_b;
-    std::array<Dop26, 4> volumes_b;
     for (std::uint32_t k = 0; k < item.b.count(); ++k) {
       reach_b[k] = frame_.reach_b(lines_b[k]);
       on_line_b[k] = FrameGap::reach_b(line, lines_b[k]);
-      if (volumes_) volumes_b[k] = volumes_->volume_b(b_.volume(lines_b[k]));
     }
     // Lines are too coarse for an object that is much larger than its partner; leaves wait for the partner's.
     if (item.b.count() == 1 && lines_b[0].ref().is_leaf()) reach_b[0] = reach_of_b(lines_b[0].ref());
@@ -159,12 +158,9 @@ class DistanceSearch {
       const FrameGap::Reach reach_a =
           item.a.count() == 1 && leaf_a ? reach_of_a(lines_a[i].ref()) : frame_.reach_a(lines_a[i]);
       const double on_line_a = FrameGap::reach_a(line, lines_a[i]);
-      Dop26 volume_a;
-      if (volumes_) volume_a = volumes_->volume_a(a_.volume(lines_a[i]));
       for (std::uint32_t k = 0; k < item.b.count(); ++k) {
         double gap = std::max(item.gap, frame_(reach_a, reach_b[k]));
         gap = std::max(gap, FrameGap::gap(line, on_line_a, on_line_b[k]));
-        if (volumes_) gap = std::max(gap, volumes_->gap(volume_a, volumes_b[k]));
         if (is_pruned(gap)) continue;
         const bool leaf_b = lines_b[k].ref().is_leaf();
         queue.push_back({gap, a_.below(item.a.first() + i, leaf_b), b_.below(item.b.first() + k, leaf_a)});
@@ -215,7 +211,9 @@ class DistanceSearch {
     Faces best = found_[nearest_];
     double lower = pruned_;
     for (const Faces& faces : found_) lower = std::min(lower, faces.bounds.lower);
-    if (!(best.bounds.upper - lower <= request_.rel_error * best.bounds.upper)) {
+    const bool is_near_enough =
+        best.bounds.upper < infinity && best.bounds.upper - lower <= request_.rel_error * best.bounds.upper;
+    if (!is_near_enough) {
       std::sort(found_.begin(), found_.end(), [](const Faces& x, const Faces& y) {
         if (x.bounds.lower != y.bounds.lower) return x.bounds.lower < y.bounds.lower;
         return x.a != y.a ? x.a < y.a : x.b < y.b;
@@ -238,11 +236,11 @@ class DistanceSearch {
       }
       lower = std::min(pruned_, best.bounds.lower);
     }
-    if (lower > request_.stop_above) return answer_above(result);
-    result.lower = lower;
-    result.upper = best.bounds.upper;
-    result.point_a = best.bounds.point_a;
-    result.point_b = best.bounds.point_b;
+    result.lower = scale_.lower(lower);
+    if (result.lower > request_.stop_above) return answer_above(result);
+    result.upper = scale_.upper(best.bounds.upper);
+    result.point_a = scale_.point(best.bounds.point_a);
+    result.point_b = scale_.point(best.bounds.point_b);
     result.face_a = a_.mesh.number_in_file(best.a);
     result.face_b = b_.mesh.number_in_file(best.b);
   }
@@ -252,12 +250,12 @@ class DistanceSearch {
     result.upper = infinity;
   }
 
-  const CollisionQuery& query_;
+  const QueryScale& scale_;
   const DistanceRequest& request_;
+  const double stop_above_;  ///< DistanceRequest::stop_above in the unit of the search, at least
   const TreeSide a_;
   const TreeSide b_;
   FrameGap frame_;
-  std::optional<DopPairs> volumes_;  ///< where the numbers are too great or too small for the frame
   const PosedDistances distances_;
   CollisionStats stats_;
   double upper_ = infinity;   ///< the least of a pair of faces so far
@@ -273,21 +271,21 @@ class DistanceSearch {
 };
 
 /// Of objects that share a point: 0, and such a point.
-void answer_contact(const CollisionQuery& query, const Contact& contact, DistanceResult& result) {
+void answer_contact(const CollisionQuery& query, const QueryScale& scale, const Contact& contact,
+                    DistanceResult& result) {
   const PosedDistances distances(*query.pose_a, *query.pose_b);
   result.face_a = contact.face_a;
   result.face_b = contact.face_b;
-  const std::vector<std::uint32_t> parts_b = query.b->parts(contact.face_b);
-  for (const std::uint32_t part_a : query.a->parts(contact.face_a)) {
-    for (const std::uint32_t part_b : parts_b) {
-      const DistanceBounds bounds =
-          distances.tight_bounds(query.a->mesh().primitive(part_a), query.b->mesh().primitive(part_b));
-      if (bounds.upper != 0) continue;
-      result.point_a = bounds.point_a;
-      result.point_b = bounds.point_b;
-      return;
-    }
-  }
+  const PosedPairs pairs(*query.pose_a, *query.pose_b);
+  any_near_parts(query, contact, [&](std::uint32_t part_a, std::uint32_t part_b) {
+    const Primitive a = query.a->mesh().primitive(part_a);
+    const Primitive b = query.b->mesh().primitive(part_b);
+    if (!pairs.decide(a, b).hit) return false;
+    const DistanceBounds bounds = distances.tight_bounds(a, b);
+    result.point_a = scale.point(bounds.point_a);
+    result.point_b = scale.point(bounds.point_b);
+    return true;
+  });
 }
 
 }  // namespace
@@ -296,13 +294,16 @@ DistanceResult distance(const Object& a, const Pose& pose_a, const Object& b, co
                         const DistanceRequest& request) {
   check(request);
   DistanceResult result;
-  const CollisionQuery query = {&a, &pose_a, &b, &pose_b};
   const CollisionResult touching = collide(a, pose_a, b, pose_b);
   result.stats = touching.stats;
+  const QueryScale scale({&a, &pose_a, &b, &pose_b});
+  const Pose scaled_a = scale(pose_a);
+  const Pose scaled_b = scale(pose_b);
+  const CollisionQuery query = {&a, &scaled_a, &b, &scaled_b};
   if (touching.hit) {
-    answer_contact(query, touching.contacts.front(), result);
+    answer_contact(query, scale, touching.contacts.front(), result);
   } else {
-    DistanceSearch(query, request).run(result);
+    DistanceSearch(query, scale, request).run(result);
   }
   return result;
 }

@@ -7,6 +7,7 @@
 #include <cchip/internal/bvh/support_tree.hpp>
 #include <cchip/internal/collide/face_pairs.hpp>
 #include <cchip/internal/exact/posed_distances.hpp>
+#include <cchip/internal/geometry/decimal.hpp>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -542,7 +543,7 @@ void check_points(const std::vector<Vec3d>& points) {
 
 void check_radius(double radius, const std::string& of) {
   if (radius >= 0 && radius <= 0x1p1000) return;
-  throw std::invalid_argument("point cloud: the radius" + of + " is " + std::to_string(radius) +
+  throw std::invalid_argument("point cloud: the radius" + of + " is " + decimal_text(radius) +
                               "; it must be at least 0 and at most 2^1000");
 }
 

@@ -10,6 +10,13 @@
 //   changes, one side is in A and one is not, so all such points say the same: one is enough.
 // - A face that touches some is cut by them. Where B's surface does not lie in it and A changes, faces of A that cut it
 //   make no difference, for the same reason. Otherwise it is cut by A's as well.
+// - If B's surface is simple (shells.hpp) and all pieces of A have been looked at, one point of each shell of B is
+//   enough. For let R be one of the combinations, and no piece of A bound it, but a piece P of a shell S of B. Follow S
+//   from P over edges, past vertices, until A's surface is met first. Either A's inside changes along S there, or A's
+//   surface runs on within S. On the side of S on which B's inside is as in R, a surface of A then leaves S, and a
+//   piece of it bounds R; or A's surface within S does. So none is met, and all of S lies to A as P does.
+// - If A is simple, too, a shell of A with a face that touches B needs no other point: the pieces of this face reach
+//   its neighbours. Of a shell without one, one point is enough.
 //
 // A point of a piece and its sides: the piece is bounded by a part of a cut, unless the face is not cut at all. The
 // point is the middle of the part, moved by e along w, into the piece, and by e^2 along the cut, for an e above 0 that
@@ -23,232 +30,53 @@
 #include <array>
 #include <cchip/cpu/solids.hpp>
 #include <cchip/internal/collide/face_pairs.hpp>
+#include <cchip/internal/collide/near_parts.hpp>
 #include <cchip/internal/exact/posed_pairs.hpp>
-#include <cmath>
-#include <limits>
+#include <cchip/internal/geometry/decimal.hpp>
 #include <map>
 #include <numeric>
-#include <sstream>
+#include <optional>
 #include <stdexcept>
 #include <string>
-#include <unordered_map>
 #include <utility>
 
-#include "exact/scaled_points.hpp"
+#include "query_scale.hpp"
+#include "solid_side.hpp"
 
 namespace cchip {
 namespace {
 
 using exact::BigInt;
 using Vector = exact::Vec<BigInt>;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using Point = SolidPoint;
+using Sample = SolidSample;
+using Triangle = SolidSide::Triangle;
 
 int sign(const BigInt& x) { return x.sign(); }
 BigInt dot(const Vector& p, const Vector& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; }
 Vector times(const Vector& p, const BigInt& x) { return {p[0] * x, p[1] * x, p[2] * x}; }
 Vector sum(const Vector& p, const Vector& q) { return {p[0] + q[0], p[1] + q[1], p[2] + q[2]}; }
 
-/// The point x / w. \pre w > 0
-struct Point {
-  Vector x;
-  BigInt w;
-  friend bool operator==(const Point& p, const Point& q) { return times(p.x, q.w) == times(q.x, p.w); }
-};
-
-/// Lower and upper bound of a number.
-struct Range {
-  double low;
-  double high;
-};
-
-/// Bounds of x / w * 2^exponent.
-Range range_of(const BigInt& x, const BigInt& w, int exponent) {
-  if (x.is_zero()) return {0, 0};
-  const BigInt size = abs(x);
-  const int shift = 64 + static_cast<int>(msb(w)) - static_cast<int>(msb(size));  // the quotient has 64 or 65 bits
-  const BigInt quotient = shift >= 0 ? BigInt((size << shift) / w) : BigInt(size / (w << -shift));
-  const double value = std::ldexp(quotient.convert_to<double>(), exponent - shift);
-  const double low = value * (1 - 0x1p-50) - 0x1p-1070;
-  const double high = value * (1 + 0x1p-50) + 0x1p-1070;
-  return x.sign() > 0 ? Range{low, high} : Range{-high, -low};
+/// The same point with the least denominator.
+Point reduced(Point p) {
+  const BigInt factor = gcd(gcd(p.x[0], p.x[1]), gcd(p.x[2], p.w));
+  for (BigInt& x : p.x) x /= factor;
+  p.w /= factor;
+  return p;
 }
 
-/// The product of two doubles that are not 0, as mantissa * 2^exponent with an odd mantissa: small numbers for models
-/// in whole units.
-struct Product {
-  Product(exact::Scaled x, exact::Scaled y) : exponent(x.exponent + y.exponent) {
-    for (exact::Scaled* factor : {&x, &y}) {
-      for (; factor->mantissa % 2 == 0; ++exponent) factor->mantissa /= 2;
-    }
-    mantissa = BigInt(x.mantissa) * y.mantissa;
-  }
-  BigInt mantissa;
-  int exponent;
-};
-
-/// exact::common_exponent() and exact::scaled_points() for these.
-int common_exponent(const Primitive& p, const Pose& pose, int so_far) {
-  exact::for_each_product(p, pose, [&so_far](std::size_t, std::size_t, const exact::Scaled& x, const exact::Scaled& y) {
-    so_far = std::min(so_far, Product(x, y).exponent);
-  });
-  return so_far;
-}
-std::array<Vector, 4> scaled_points(const Primitive& p, const Pose& pose, int exponent) {
-  std::array<Vector, 4> points;
-  exact::for_each_product(p, pose, [&](std::size_t i, std::size_t k, const exact::Scaled& x, const exact::Scaled& y) {
-    const Product product(x, y);
-    points[i][k] += product.mantissa << (product.exponent - exponent);
-  });
-  return points;
-}
+/// Any order. \pre both are reduced
+bool comes_before(const Point& p, const Point& q) { return p.x != q.x ? p.x < q.x : p.w < q.w; }
 
 /// More than these are looked for only if they do not tell everything.
 constexpr std::size_t some_contacts = 256;
 
-using Triangle = std::uint32_t;
-
-/// A placed object as triangles.
-class Side {
- public:
-  Side(const Object& object, const Pose& pose) : object_(object), pose_(pose) {
-    const Mesh& mesh = object.mesh();
-    first_.reserve(mesh.faces.size() + 1);
-    for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
-      first_.push_back(static_cast<Triangle>(triangles_.size()));
-      const auto& v = mesh.faces[f].vertex;
-      triangles_.push_back({{v[0], v[1], v[2]}, f});
-      if (mesh.faces[f].kind == Kind::quad) triangles_.push_back({{v[0], v[2], v[3]}, f});
-    }
-    first_.push_back(static_cast<Triangle>(triangles_.size()));
-    make_boxes();
-  }
-
-  const Object& object() const { return object_; }
-  const Pose& pose() const { return pose_; }
-  std::uint32_t face_count() const { return static_cast<std::uint32_t>(first_.size() - 1); }
-  Triangle first(std::uint32_t face) const { return first_[face]; }
-  Triangle count() const { return static_cast<Triangle>(triangles_.size()); }
-  std::uint32_t face(Triangle t) const { return triangles_[t].face; }
-  std::uint32_t vertex(Triangle t, std::size_t i) const { return triangles_[t].vertex[i]; }
-  /// In object coordinates.
-  Primitive primitive(Triangle t) const {
-    Primitive p;
-    for (std::size_t i = 0; i < 3; ++i) p.v[i] = object_.mesh().vertices[vertex(t, i)];
-    return p;
-  }
-
-  /// Greatest exponent such that all coordinates in the world are multiples of 2^exponent; `so_far` if that is less.
-  int common_exponent(int so_far) const {
-    for (std::uint32_t f = 0; f < face_count(); ++f) {
-      so_far = cchip::common_exponent(object_.mesh().primitive(f), pose_, so_far);
-    }
-    return so_far;
-  }
-  void set_exponent(int exponent) { exponent_ = exponent; }
-
-  const std::array<Vector, 3>& corners(Triangle t) { return placed(t).corner; }
-  /// Zero if the triangle is collapsed.
-  const Vector& normal(Triangle t) { return placed(t).normal; }
-
-  /// Could a line along axis k through these ranges of the others pass the triangle?
-  bool may_pass(Triangle t, std::size_t u, const Range& at_u, std::size_t v, const Range& at_v) const {
-    const Box& box = boxes_[t];
-    return box.low[u] <= at_u.high && at_u.low <= box.high[u] && box.low[v] <= at_v.high && at_v.low <= box.high[v];
-  }
-  bool is_clear_of(const Side& other) const {
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (all_.high[i] < other.all_.low[i] || other.all_.high[i] < all_.low[i]) return true;
-    }
-    return false;
-  }
-
- private:
-  struct Corners {
-    std::array<std::uint32_t, 3> vertex;
-    std::uint32_t face;
-  };
-  struct Box {
-    std::array<double, 3> low = {infinity, infinity, infinity};
-    std::array<double, 3> high = {-infinity, -infinity, -infinity};
-    void add(const Box& x) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        low[i] = std::min(low[i], x.low[i]);
-        high[i] = std::max(high[i], x.high[i]);
-      }
-    }
-  };
-  struct Placed {
-    std::array<Vector, 3> corner;
-    Vector normal;
-  };
-
-  Box box_of(const Vec3d& p) const {
-    Box box;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto row = static_cast<Eigen::Index>(k);
-      double value = pose_(row, 3);
-      double size = std::abs(value);
-      for (Eigen::Index i = 0; i < 3; ++i) {
-        value += pose_(row, i) * p[i];
-        size += std::abs(pose_(row, i) * p[i]);
-      }
-      // Six roundings, each of at most 2^-53 size, and what underflows.
-      const double slack = size * 0x1p-49 + 0x1p-1060;
-      const bool finite = size < 0x1p1000;
-      box.low[k] = finite ? value - slack : -infinity;
-      box.high[k] = finite ? value + slack : infinity;
-    }
-    return box;
-  }
-
-  void make_boxes() {
-    std::vector<Box> points;
-    points.reserve(object_.mesh().vertices.size());
-    for (const Vec3d& p : object_.mesh().vertices) points.push_back(box_of(p));
-    boxes_.resize(triangles_.size());
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-      for (const std::uint32_t v : triangles_[t].vertex) boxes_[t].add(points[v]);
-      all_.add(boxes_[t]);
-    }
-  }
-
-  const Placed& placed(Triangle t) {
-    const auto [at, is_new] = placed_.try_emplace(t);
-    Placed& result = at->second;
-    if (!is_new) return result;
-    const std::array<Vector, 4> points = scaled_points(primitive(t), pose_, exponent_);
-    for (std::size_t i = 0; i < 3; ++i) result.corner[i] = points[i];
-    using exact::operator-;
-    result.normal = exact::cross(points[1] - points[0], points[2] - points[0]);
-    return result;
-  }
-
-  const Object& object_;
-  const Pose& pose_;
-  std::vector<Corners> triangles_;
-  std::vector<Triangle> first_;  ///< of each face, and the end
-  std::vector<Box> boxes_;
-  Box all_;
-  int exponent_ = 0;
-  std::unordered_map<Triangle, Placed> placed_;
-};
-
-/// A point on a face, moved by e along w and by e^2 along t.
-struct Sample {
-  Point at;
-  Vector w;
-  Vector t;
-  std::size_t axis;  ///< of the rays
-};
-
-/// How many triangles of a surface a line passes: before the point, at it and behind it.
-struct Passed {
-  unsigned below = 0;
-  unsigned here = 0;
-  unsigned above = 0;
-  /// The surface lies here, and its inside on one side alone.
-  bool changes() const { return (below + above) % 2 != 0; }
+/// Where the inside of an object is at a point of a face.
+struct Inside {
+  bool below = false;
+  bool above = false;
+  bool here = false;  ///< the object's surface lies at the point itself
+  bool changes() const { return below != above; }
 };
 
 /// A segment in the plane of a face.
@@ -258,58 +86,118 @@ struct Cut {
   Vector along;  ///< from `from` to `to`, any length
 };
 
-class SolidSearch {
+/// Where a triangle meets others in segments, each once.
+class Cuts {
  public:
-  SolidSearch(Device* device, const CollisionQuery& query)
-      : device_(device), query_(query), sides_{Side(*query.a, *query.pose_a), Side(*query.b, *query.pose_b)} {
-    exponent_ = sides_[1].common_exponent(sides_[0].common_exponent(std::numeric_limits<int>::max()));
-    for (Side& side : sides_) side.set_exponent(exponent_);
+  Cuts(const std::array<Vector, 3>& corner, const Vector& normal) : corner_(corner), normal_(normal) {
+    using exact::operator-;
+    for (std::size_t i = 0; i < 3; ++i) inwards_[i] = exact::cross(normal, corner[(i + 1) % 3] - corner[i]);
   }
 
-  SolidRelation run() {
-    CollisionRequest request = {CollisionRequest::Contacts::all, some_contacts};
-    request.relation = true;
-    CollisionResult found = collide(request);
-    if (!found.hit && sides_[0].is_clear_of(sides_[1])) return SolidRelation::disjoint;
-    std::array<std::vector<bool>, 2> touched = {std::vector<bool>(sides_[0].face_count()),
-                                                std::vector<bool>(sides_[1].face_count())};
-    bool touching = false;
-    if (found.hit) {
-      // Where faces cross, usually the pieces of one of them show everything.
-      for (const Contact& contact : found.contacts) {
-        if (contact.relation != Relation::crossing) continue;
-        if (look_at_first(contact)) return answer(true);
-        break;
+  /// The segments of another triangle that is not collapsed.
+  void add(const std::array<Vector, 3>& corner, const Vector& normal) {
+    using exact::operator-;
+    std::array<BigInt, 3> height;
+    for (std::size_t i = 0; i < 3; ++i) height[i] = dot(normal_, corner[i] - corner_[0]);
+    if (height[0].is_zero() && height[1].is_zero() && height[2].is_zero()) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t k = (i + 1) % 3;
+        add({{corner[i], 1}, {corner[k], 1}, corner[k] - corner[i]});
       }
-      if (found.contacts.size() == some_contacts) found = collide({CollisionRequest::Contacts::all});
-      std::array<std::map<std::uint32_t, std::vector<Triangle>>, 2> others;
-      for (const Contact& contact : found.contacts) {
-        touching = touching || triangles_touch(contact);
-        for (const std::uint32_t a : query_.a->parts(contact.face_a)) {
-          for (const std::uint32_t b : query_.b->parts(contact.face_b)) {
-            touched[0][a] = touched[1][b] = true;
-            add_triangles(sides_[1], b, others[0][a]);
-            add_triangles(sides_[0], a, others[1][b]);
-          }
-        }
-      }
-      for (const std::size_t own : {0U, 1U}) {
-        for (const auto& [face, cutters] : others[own]) {
-          for (Triangle t = sides_[own].first(face); t < sides_[own].first(face + 1); ++t) {
-            look_at(own, t, cutters);
-            if (is_decided()) return answer(touching);
-          }
-        }
-      }
+      return;
     }
-    for (const std::size_t own : {0U, 1U}) {
-      look_at_untouched(own, touched[own]);
-      if (is_decided()) break;
+    std::vector<Point> ends;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t k = (i + 1) % 3;
+      if (height[i].is_zero()) ends.push_back({corner[i], 1});
+      if (sign(height[i]) * sign(height[k]) >= 0) continue;
+      const BigInt at_i = abs(height[k]);
+      const BigInt at_k = abs(height[i]);
+      ends.push_back(reduced({sum(times(corner[i], at_i), times(corner[k], at_k)), at_i + at_k}));
     }
-    return answer(touching);
+    if (ends.size() == 2) add({ends[0], ends[1], exact::cross(normal_, normal)});
+  }
+
+  std::size_t size() const { return cuts_.size(); }
+  const std::vector<Cut>& all() const { return cuts_; }
+
+ private:
+  using Ends = std::pair<Point, Point>;
+  struct Before {
+    bool operator()(const Ends& x, const Ends& y) const {
+      if (comes_before(x.first, y.first)) return true;
+      return !comes_before(y.first, x.first) && comes_before(x.second, y.second);
+    }
+  };
+
+  /// Unless it passes the interior of the triangle nowhere, or is there already.
+  void add(Cut cut) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const BigInt limit = dot(inwards_[i], corner_[i]);
+      if (dot(inwards_[i], cut.from.x) <= limit * cut.from.w && dot(inwards_[i], cut.to.x) <= limit * cut.to.w) return;
+    }
+    const bool ascends = comes_before(cut.from, cut.to);
+    Ends ends = ascends ? Ends(cut.from, cut.to) : Ends(cut.to, cut.from);
+    if (known_.emplace(std::move(ends), true).second) cuts_.push_back(std::move(cut));
+  }
+
+  const std::array<Vector, 3>& corner_;
+  const Vector& normal_;
+  std::array<Vector, 3> inwards_;  ///< at right angles to the edges
+  std::vector<Cut> cuts_;
+  std::map<Ends, bool, Before> known_;
+};
+
+class SolidSearch {
+ public:
+  SolidSearch(Device* device, const CollisionQuery& query, const SolidRequest& request)
+      : device_(device),
+        query_(query),
+        inside_(request.inside),
+        scale_(query),
+        poses_{scale_(*query.pose_a), scale_(*query.pose_b)},
+        sides_{SolidSide(*query.a, poses_[0]), SolidSide(*query.b, poses_[1])} {}
+
+  SolidResult run() {
+    SolidResult result;
+    if (sides_[0].is_clear_of(sides_[1])) return result;
+    const int exponent = std::min(sides_[0].exponent(), sides_[1].exponent());
+    for (SolidSide& side : sides_) side.set_exponent(exponent);
+    result.relation = search();
+    result.overlap_a = sides_[0].shells().overlap;
+    result.overlap_b = sides_[1].shells().overlap;
+    return result;
   }
 
  private:
+  /// Triangles of the other object that may cut each face.
+  using Cutters = std::map<std::uint32_t, std::vector<Triangle>>;
+
+  SolidRelation search() {
+    CollisionRequest request = {CollisionRequest::Contacts::all, some_contacts};
+    request.relation = true;
+    CollisionResult found = collide(request);
+    std::array<Cutters, 2> cutters;
+    bool touching = false;
+    if (found.hit) {
+      // Where faces cross, usually the pieces of one of them show everything.
+      const auto crossing = std::find_if(found.contacts.begin(), found.contacts.end(),
+                                         [](const Contact& c) { return c.relation == Relation::crossing; });
+      if (crossing != found.contacts.end() && look_at_first(*crossing)) return answer(true);
+      if (found.contacts.size() == some_contacts) found = collide({CollisionRequest::Contacts::all});
+      for (const Contact& contact : found.contacts) {
+        touching = touching || triangles_touch(contact);
+        any_near_parts(query_, contact, [&](std::uint32_t a, std::uint32_t b) {
+          sides_[1].for_each_triangle(b, [&](Triangle t) { cutters[0][a].push_back(t); });
+          sides_[0].for_each_triangle(a, [&](Triangle t) { cutters[1][b].push_back(t); });
+          return false;
+        });
+      }
+    }
+    look_at_all(cutters);
+    return answer(touching);
+  }
+
   CollisionResult collide(const CollisionRequest& request) const {
     if (device_ == nullptr) return cchip::collide(*query_.a, *query_.pose_a, *query_.b, *query_.pose_b, request);
     return cchip::collide(*device_, *query_.a, *query_.pose_a, *query_.b, *query_.pose_b, request);
@@ -323,22 +211,18 @@ class SolidSearch {
     return in_b_ ? SolidRelation::a_in_b : SolidRelation::equal;
   }
 
-  static void add_triangles(const Side& side, std::uint32_t face, std::vector<Triangle>& to) {
-    for (Triangle t = side.first(face); t < side.first(face + 1); ++t) to.push_back(t);
-  }
-
   /// Do the triangles of two faces in contact touch? Those of quads that are not flat need not.
   bool triangles_touch(const Contact& contact) const {
     const PosedPairs pairs(*query_.pose_a, *query_.pose_b);
-    std::array<std::vector<Triangle>, 2> of;
-    for (const std::uint32_t f : query_.a->parts(contact.face_a)) add_triangles(sides_[0], f, of[0]);
-    for (const std::uint32_t f : query_.b->parts(contact.face_b)) add_triangles(sides_[1], f, of[1]);
-    for (const Triangle a : of[0]) {
-      for (const Triangle b : of[1]) {
-        if (pairs.decide(sides_[0].primitive(a), sides_[1].primitive(b)).hit) return true;
-      }
-    }
-    return false;
+    return any_near_parts(query_, contact, [&](std::uint32_t face_a, std::uint32_t face_b) {
+      bool touch = false;
+      sides_[0].for_each_triangle(face_a, [&](Triangle a) {
+        sides_[1].for_each_triangle(face_b, [&](Triangle b) {
+          touch = touch || pairs.decide(sides_[0].primitive(a), sides_[1].primitive(b)).hit;
+        });
+      });
+      return touch;
+    });
   }
 
   /// Triangles of faces of an object that touch a face of one of them.
@@ -355,32 +239,76 @@ class SolidSearch {
     const Pose here = Pose::Identity();
     CollisionRequest request;
     request.contacts = CollisionRequest::Contacts::all;
-    const CollisionResult found =
-        cchip::collide(Object(one), own == other ? here : sides_[own].pose(), sides_[other].object(),
-                       own == other ? here : sides_[other].pose(), request);
+    const Object single(std::move(one));
+    const bool within = own == other;
+    const Pose& pose_own = within ? here : own == 0 ? *query_.pose_a : *query_.pose_b;
+    const Pose& pose_other = within ? here : other == 0 ? *query_.pose_a : *query_.pose_b;
+    const CollisionResult found = cchip::collide(single, pose_own, sides_[other].object(), pose_other, request);
     std::vector<Triangle> triangles;
+    const CollisionQuery query = {&single, &pose_own, &sides_[other].object(), &pose_other};
     for (const Contact& contact : found.contacts) {
-      for (const std::uint32_t f : sides_[other].object().parts(contact.face_b)) {
-        add_triangles(sides_[other], f, triangles);
-      }
+      any_near_parts(query, contact, [&](std::uint32_t, std::uint32_t f) {
+        sides_[other].for_each_triangle(f, [&](Triangle t) { triangles.push_back(t); });
+        return false;
+      });
     }
     return triangles;
   }
 
   bool look_at_first(const Contact& contact) {
-    for (const std::uint32_t face : query_.a->parts(contact.face_a)) {
-      const std::vector<Triangle> cutters = find_cutters(0, face, 1);
-      for (Triangle t = sides_[0].first(face); t < sides_[0].first(face + 1); ++t) {
-        look_at(0, t, cutters);
-        if (is_decided()) return true;
-      }
+    constexpr std::size_t most = 4;  // parts of a polygon
+    const std::vector<std::uint32_t> parts = query_.a->parts(contact.face_a);
+    for (std::size_t i = 0; i < std::min(most, parts.size()) && !is_decided(); ++i) {
+      look_at_face(0, parts[i], find_cutters(0, parts[i], 1));
     }
-    return false;
+    return is_decided();
   }
 
-  /// One point of each set of faces that hang together.
-  void look_at_untouched(std::size_t own, const std::vector<bool>& touched) {
-    Side& side = sides_[own];
+  /// The faces that others cut, then what hangs together elsewhere.
+  void look_at_all(const std::array<Cutters, 2>& cutters) {
+    const std::array<bool, 2> simple = {sides_[0].shells().simple, sides_[1].shells().simple};
+    const auto cost = [](const Cutters& of_side) {
+      double sum = 0;
+      for (const auto& [face, triangles] : of_side) {
+        sum += static_cast<double>(triangles.size()) * static_cast<double>(triangles.size());
+      }
+      return sum;
+    };
+    const std::size_t first = simple[0] != simple[1]                 ? (simple[1] ? 0 : 1)
+                              : cost(cutters[0]) <= cost(cutters[1]) ? 0
+                                                                     : 1;
+    const bool shells_tell = simple[1 - first];  // of the other side
+    for (const std::size_t own : {first, 1 - first}) {
+      if (own != first && shells_tell) {
+        look_at_shells(own, {});
+        return;
+      }
+      for (const auto& [face, triangles] : cutters[own]) {
+        look_at_face(own, face, triangles);
+        if (is_decided()) return;
+      }
+      if (simple[own] && shells_tell) {
+        look_at_shells(own, cutters[own]);
+      } else {
+        look_at_untouched(own, cutters[own]);
+      }
+      if (is_decided()) return;
+    }
+  }
+
+  /// One point of each shell none of whose faces is cut. \pre the surface is simple
+  void look_at_shells(std::size_t own, const Cutters& cutters) {
+    const Shells& shells = sides_[own].shells();
+    std::vector<bool> done(shells.first_face.size());
+    for (const auto& of_face : cutters) done[shells.of_face[of_face.first]] = true;
+    for (std::size_t shell = 0; shell < done.size() && !is_decided(); ++shell) {
+      if (!done[shell]) look_at(own, 2 * shells.first_face[shell], {});
+    }
+  }
+
+  /// One point of each set of faces that are not cut and hang together.
+  void look_at_untouched(std::size_t own, const Cutters& cutters) {
+    SolidSide& side = sides_[own];
     const std::vector<std::uint32_t>& place = side.object().same_place();
     std::vector<std::uint32_t> root(place.size());
     std::iota(root.begin(), root.end(), 0U);
@@ -388,102 +316,83 @@ class SolidSearch {
       while (root[v] != v) v = root[v] = root[root[v]];
       return v;
     };
-    for (Triangle t = 0; t < side.count(); ++t) {
-      if (touched[side.face(t)]) continue;
-      for (const std::size_t i : {1U, 2U}) root[find(place[side.vertex(t, i)])] = find(place[side.vertex(t, 0)]);
-    }
+    const auto for_each_untouched = [&](const auto& visit) {
+      for (std::uint32_t face = 0; face < side.face_count(); ++face) {
+        if (cutters.count(face) == 0) side.for_each_triangle(face, visit);
+      }
+    };
+    for_each_untouched([&](Triangle t) {
+      const std::array<std::uint32_t, 3> v = side.vertices(t);
+      for (const std::size_t i : {1U, 2U}) root[find(place[v[i]])] = find(place[v[0]]);
+    });
     std::vector<bool> done(place.size());
-    for (Triangle t = 0; t < side.count() && !is_decided(); ++t) {
-      if (touched[side.face(t)]) continue;
-      const std::uint32_t set = find(place[side.vertex(t, 0)]);
+    for_each_untouched([&](Triangle t) {
+      if (is_decided()) return;
+      const std::uint32_t set = find(place[side.vertices(t)[0]]);
       if (!done[set]) done[set] = look_at(own, t, {});
-    }
+    });
+  }
+
+  void look_at_face(std::size_t own, std::uint32_t face, const std::vector<Triangle>& cutters) {
+    sides_[own].for_each_triangle(face, [&](Triangle t) {
+      if (!is_decided()) look_at(own, t, cutters);
+    });
   }
 
   /// Looks at the pieces of a triangle. \returns whether its own surface changes at one of them
   bool look_at(std::size_t own, Triangle t, const std::vector<Triangle>& cutters) {
-    if (exact::is_zero(sides_[own].normal(t))) return false;
+    SolidSide& side = sides_[own];
+    if (exact::is_zero(side.normal(t))) return false;
     changes_ = false;
     all_plain_ = true;
-    std::vector<Cut> cuts;
-    for (const Triangle cutter : cutters) add_cuts(own, t, 1 - own, cutter, cuts);
-    look_at_pieces(own, t, cuts);
-    if (all_plain_ || is_decided()) return changes_;
+    Cuts cuts(side.corners(t), side.normal(t));
+    const auto add = [&cuts](SolidSide& of, Triangle cutter) {
+      if (!exact::is_zero(of.normal(cutter))) cuts.add(of.corners(cutter), of.normal(cutter));
+    };
+    for (const Triangle cutter : cutters) add(sides_[1 - own], cutter);
+    look_at_pieces(own, t, cuts.all());
+    if (all_plain_ || side.shells().simple || is_decided()) return changes_;
     const std::size_t before = cuts.size();
-    for (const Triangle cutter : find_cutters(own, sides_[own].face(t), own)) {
-      if (cutter != t) add_cuts(own, t, own, cutter, cuts);
+    for (const Triangle cutter : find_cutters(own, SolidSide::face(t), own)) {
+      if (cutter != t) add(side, cutter);
     }
-    if (cuts.size() != before) look_at_pieces(own, t, cuts);
+    if (cuts.size() != before) look_at_pieces(own, t, cuts.all());
     return changes_;
-  }
-
-  /// Adds where a triangle meets another in segments.
-  void add_cuts(std::size_t own, Triangle t, std::size_t other, Triangle cutter, std::vector<Cut>& cuts) {
-    using exact::operator-;
-    const Vector& n = sides_[own].normal(t);
-    const std::array<Vector, 3>& own_corner = sides_[own].corners(t);
-    const std::array<Vector, 3>& corner = sides_[other].corners(cutter);
-    const Vector& normal = sides_[other].normal(cutter);
-    if (exact::is_zero(normal)) return;
-    std::array<BigInt, 3> height;
-    for (std::size_t i = 0; i < 3; ++i) height[i] = dot(n, corner[i] - own_corner[0]);
-    if (height[0].is_zero() && height[1].is_zero() && height[2].is_zero()) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t k = (i + 1) % 3;
-        add_cut(own, t, {{corner[i], 1}, {corner[k], 1}, corner[k] - corner[i]}, cuts);
-      }
-      return;
-    }
-    std::vector<Point> ends;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t k = (i + 1) % 3;
-      if (height[i].is_zero()) ends.push_back({corner[i], 1});
-      if (sign(height[i]) * sign(height[k]) >= 0) continue;
-      const BigInt at_i = abs(height[k]);
-      const BigInt at_k = abs(height[i]);
-      ends.push_back({sum(times(corner[i], at_i), times(corner[k], at_k)), at_i + at_k});
-    }
-    if (ends.size() == 2) add_cut(own, t, {ends[0], ends[1], exact::cross(n, normal)}, cuts);
-  }
-
-  /// Adds a segment unless it passes the interior of the triangle nowhere, or is there already.
-  void add_cut(std::size_t own, Triangle t, Cut cut, std::vector<Cut>& cuts) {
-    using exact::operator-;
-    const Vector& n = sides_[own].normal(t);
-    const std::array<Vector, 3>& corner = sides_[own].corners(t);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vector inwards = exact::cross(n, corner[(i + 1) % 3] - corner[i]);
-      const BigInt limit = dot(inwards, corner[i]);
-      if (dot(inwards, cut.from.x) <= limit * cut.from.w && dot(inwards, cut.to.x) <= limit * cut.to.w) return;
-    }
-    for (const Cut& x : cuts) {
-      if ((x.from == cut.from && x.to == cut.to) || (x.from == cut.to && x.to == cut.from)) return;
-    }
-    cuts.push_back(std::move(cut));
   }
 
   void look_at_pieces(std::size_t own, Triangle t, const std::vector<Cut>& cuts) {
     using exact::operator-;
-    const Vector& n = sides_[own].normal(t);
-    const std::array<Vector, 3>& corner = sides_[own].corners(t);
+    SolidSide& side = sides_[own];
+    const Vector& n = side.normal(t);
+    const std::array<Vector, 3>& corner = side.corners(t);
     std::size_t axis = 0;
     for (std::size_t k = 1; k < 3; ++k) {
       if (abs(n[k]) > abs(n[axis])) axis = k;
     }
-    // The edges divide cuts that go on beyond them.
-    std::vector<Cut> dividers = cuts;
     bool in_pieces = false;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vector& to = corner[(i + 1) % 3];
-      dividers.push_back({{corner[i], 1}, {to, 1}, to - corner[i]});
-    }
-    for (const Cut& cut : cuts) {
-      const Vector w = exact::cross(n, cut.along);
-      const Vector minus_w = times(w, -1);
-      for (const Point& middle : middles(cut, dividers, w)) {
-        if (look(own, t, {middle, w, cut.along, axis})) in_pieces = true;
-        if (look(own, t, {middle, minus_w, cut.along, axis})) in_pieces = true;
-        if (is_decided()) return;
+    if (!cuts.empty()) {
+      // The edges divide cuts that go on beyond them.
+      std::vector<Cut> dividers = cuts;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Vector& to = corner[(i + 1) % 3];
+        dividers.push_back({{corner[i], 1}, {to, 1}, to - corner[i]});
+      }
+      std::vector<AxisBox<3>> boxes;
+      boxes.reserve(dividers.size());
+      for (const Cut& cut : dividers) {
+        boxes.push_back(side.box_of(cut.from));
+        boxes.back().add(side.box_of(cut.to));
+      }
+      const BoxTree<3> tree(std::move(boxes));
+      for (std::size_t i = 0; i < cuts.size(); ++i) {
+        const Cut& cut = cuts[i];
+        const Vector w = exact::cross(n, cut.along);
+        const Vector minus_w = times(w, -1);
+        for (const Point& middle : middles(cut, i, dividers, tree, w)) {
+          if (look(own, t, {middle, w, cut.along, axis})) in_pieces = true;
+          if (look(own, t, {middle, minus_w, cut.along, axis})) in_pieces = true;
+          if (is_decided()) return;
+        }
       }
     }
     if (in_pieces) return;
@@ -500,19 +409,23 @@ class SolidSearch {
     friend bool operator==(const Fraction& x, const Fraction& y) { return x.part * y.whole == y.part * x.whole; }
   };
 
-  /// Middles of the parts into which others, or itself, divide a segment. \param w at right angles to it, in the plane
-  static std::vector<Point> middles(const Cut& cut, const std::vector<Cut>& dividers, const Vector& w) {
+  /// Middles of the parts into which others, or itself, divide a segment.
+  /// \param number of the cut among the dividers, which `tree` is of
+  /// \param w at right angles to it, in the plane
+  static std::vector<Point> middles(const Cut& cut, std::size_t number, const std::vector<Cut>& dividers,
+                                    const BoxTree<3>& tree, const Vector& w) {
     const std::size_t axis = exact::nonzero_component(cut.along);
     // Coordinate `axis` of all points, as a fraction of that of the end from that of the beginning.
     const BigInt begin = cut.from.x[axis] * cut.to.w;
     const BigInt length = cut.to.x[axis] * cut.from.w - begin;
     const BigInt unit = cut.from.w * cut.to.w;
+    const BigInt limit = dot(w, cut.from.x);
     std::vector<Fraction> at = {{0, 1}, {1, 1}};
-    for (const Cut& other : dividers) {
-      const BigInt limit = dot(w, cut.from.x);
+    tree.for_each_overlap(tree.box(number), [&](std::uint32_t k) {
+      const Cut& other = dividers[k];
       const BigInt from = dot(w, other.from.x) * cut.from.w - limit * other.from.w;
       const BigInt to = dot(w, other.to.x) * cut.from.w - limit * other.to.w;
-      if (sign(from) * sign(to) > 0 || (from.is_zero() && to.is_zero())) continue;
+      if (sign(from) * sign(to) > 0 || (from.is_zero() && to.is_zero())) return;
       const BigInt size_from = abs(from);
       const BigInt size_to = abs(to);
       const BigInt x = other.from.x[axis] * size_to + other.to.x[axis] * size_from;
@@ -523,7 +436,7 @@ class SolidSearch {
         fraction.whole = -fraction.whole;
       }
       if (fraction.part.sign() > 0 && fraction.part < fraction.whole) at.push_back(std::move(fraction));
-    }
+    });
     std::sort(at.begin(), at.end());
     at.erase(std::unique(at.begin(), at.end()), at.end());
     std::vector<Point> result;
@@ -539,17 +452,15 @@ class SolidSearch {
 
   /// Looks at both sides of a point, if it is in the triangle. \returns whether it is
   bool look(std::size_t own, Triangle t, const Sample& sample) {
-    if (!passes(sides_[own], t, sample)) return false;
-    const Passed a = pass(sides_[0], sample);
-    const Passed b = pass(sides_[1], sample);
-    if ((a.below + a.here + a.above) % 2 != 0 || (b.below + b.here + b.above) % 2 != 0) {
-      throw std::logic_error("solids: a line passes a closed surface an odd number of times; please report this");
-    }
-    add(a.below % 2 != 0, b.below % 2 != 0);
-    add(a.above % 2 != 0, b.above % 2 != 0);
-    const bool own_changes = (own == 0 ? a : b).changes();
-    changes_ = changes_ || own_changes;
-    all_plain_ = all_plain_ && own_changes && (own == 0 ? b : a).here == 0;
+    if (!sides_[own].is_passed(t, sample)) return false;
+    const Inside other = inside(1 - own, sample);
+    const Inside mine = own_inside(own, t, sample);
+    const Inside& a = own == 0 ? mine : other;
+    const Inside& b = own == 0 ? other : mine;
+    add(a.below, b.below);
+    add(a.above, b.above);
+    changes_ = changes_ || mine.changes();
+    all_plain_ = all_plain_ && mine.changes() && !other.here;
     return true;
   }
 
@@ -559,87 +470,94 @@ class SolidSearch {
     in_b_ = in_b_ || (in_b && !in_a);
   }
 
-  /// Does a line through the sample along its axis pass the triangle?
-  static bool passes(Side& side, Triangle t, const Sample& sample) {
-    const std::size_t u = (sample.axis + 1) % 3;
-    const std::size_t v = (sample.axis + 2) % 3;
-    const std::array<Vector, 3>& corner = side.corners(t);
-    int seen = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vector& from = corner[i];
-      const Vector& to = corner[(i + 1) % 3];
-      const BigInt along_u = to[u] - from[u];
-      const BigInt along_v = to[v] - from[v];
-      int s =
-          sign(along_u * (sample.at.x[v] - from[v] * sample.at.w) - along_v * (sample.at.x[u] - from[u] * sample.at.w));
-      if (s == 0) s = sign(along_u * sample.w[v] - along_v * sample.w[u]);
-      if (s == 0) s = sign(along_u * sample.t[v] - along_v * sample.t[u]);
-      if (s == 0 || s == -seen) return false;
-      seen = s;
+  /// Where the inside of an object is at a sample.
+  Inside inside(std::size_t of, const Sample& sample) {
+    const PassedTriangles p = sides_[of].passed(sample);
+    const bool odd = inside_ == InsideRule::odd;
+    if (odd ? (p.below.all + p.here.all + p.above.all) % 2 != 0 : p.below.net + p.here.net + p.above.net != 0) {
+      throw std::logic_error("solids: a line leaves a closed surface less often than it enters; please report this");
     }
-    return true;
+    const auto in = [odd](const PassedTriangles::Count& count) { return odd ? count.all % 2 != 0 : count.net != 0; };
+    return {in(p.below), in(p.above), p.here.all != 0};
   }
 
-  Passed pass(Side& side, const Sample& sample) const {
-    using exact::operator-;
-    const std::size_t u = (sample.axis + 1) % 3;
-    const std::size_t v = (sample.axis + 2) % 3;
-    const Range at_u = range_of(sample.at.x[u], sample.at.w, exponent_);
-    const Range at_v = range_of(sample.at.x[v], sample.at.w, exponent_);
-    Passed passed;
-    for (Triangle t = 0; t < side.count(); ++t) {
-      if (!side.may_pass(t, u, at_u, v, at_v) || !passes(side, t, sample)) continue;
-      const Vector& n = side.normal(t);
-      int s = sign(dot(n, sample.at.x) - dot(n, side.corners(t)[0]) * sample.at.w);
-      if (s == 0) s = sign(dot(n, sample.w));
-      if (s == 0) s = sign(dot(n, sample.t));
-      s *= sign(n[sample.axis]);
-      ++(s == 0 ? passed.here : s > 0 ? passed.below : passed.above);
-    }
-    return passed;
+  /// The same of the object that the triangle belongs to. All faces of a shell of a simple surface have the inside on
+  /// the same side, if they are the same way round.
+  Inside own_inside(std::size_t own, Triangle t, const Sample& sample) {
+    SolidSide& side = sides_[own];
+    if (!side.shells().simple || side.object().twisted_edge()) return inside(own, sample);
+    std::vector<std::optional<Inside>>& known = of_shell_[own];
+    known.resize(side.shells().first_face.size());
+    std::optional<Inside>& shell = known[side.shells().of_face[SolidSide::face(t)]];
+    const bool is_up = side.normal(t)[sample.axis].sign() > 0;
+    const auto turned = [is_up](Inside x) {
+      if (!is_up) std::swap(x.below, x.above);
+      return x;
+    };
+    if (!shell) shell = turned(inside(own, sample));
+    return turned(*shell);
   }
 
   Device* device_;
   CollisionQuery query_;
-  std::array<Side, 2> sides_;
-  int exponent_ = 0;
+  InsideRule inside_;
+  QueryScale scale_;
+  std::array<Pose, 2> poses_;  ///< in the unit of the search
+  std::array<SolidSide, 2> sides_;
   bool in_both_ = false;  ///< some space is in both
   bool in_a_ = false;     ///< some space is in A alone
   bool in_b_ = false;
   bool changes_ = false;    ///< of the present face: at a point one side alone was inside its object
   bool all_plain_ = false;  ///< that at all points, and the other surface did not lie there
+  std::array<std::vector<std::optional<Inside>>, 2> of_shell_;  ///< behind (below) and in front of its faces
 };
 
 std::string text_of(const Vec3d& p) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text.precision(17);
-  text << '(' << p.x() << ", " << p.y() << ", " << p.z() << ')';
-  return text.str();
+  return '(' + decimal_text(p.x()) + ", " + decimal_text(p.y()) + ", " + decimal_text(p.z()) + ')';
 }
 
-void check_solid(const Object& object, const Pose& pose, const char* name) {
-  if (const std::optional<OpenEdge> edge = object.open_edge()) {
-    throw std::invalid_argument(std::string("solids: the surface of ") + name + " is open at the edge from " +
-                                text_of(edge->from) + " to " + text_of(edge->to) + " of face " +
-                                std::to_string(edge->face) +
-                                ": an odd number of faces use it; close the mesh, or ask collide() about the surface");
+std::string text_of(const OpenEdge& edge) {
+  return "at the edge from " + text_of(edge.from) + " to " + text_of(edge.to) + " of face " + std::to_string(edge.face);
+}
+
+bool is_flat(const Eigen::Matrix3d& linear) {
+  // In doubles where they are certain: the terms of a determinant have two roundings each, and five of sums.
+  const double scale = linear.cwiseAbs().maxCoeff();
+  if (scale > 0) {
+    const Eigen::Matrix3d unit = linear / scale;
+    if (std::abs(unit.determinant()) > 0x1p-40) return false;
   }
   // The normal of the triangle of the columns' ends, seen from the origin, in integers.
   Primitive columns;
-  for (Eigen::Index i = 0; i < 3; ++i) columns.v[static_cast<std::size_t>(i)] = pose.linear().col(i);
+  for (Eigen::Index i = 0; i < 3; ++i) columns.v[static_cast<std::size_t>(i)] = linear.col(i);
   const Pose here = Pose::Identity();
-  const std::array<Vector, 4> points = scaled_points(columns, here, common_exponent(columns, here, 0));
-  if (!dot(points[0], exact::cross(points[1], points[2])).is_zero()) return;
+  const std::array<Vector, 4> points = exact::scaled_points(columns, here, exact::common_exponent(columns, here, 0));
+  return dot(points[0], exact::cross(points[1], points[2])).is_zero();
+}
+
+void check_solid(const Object& object, const Pose& pose, const SolidRequest& request, const char* name) {
+  if (const std::optional<OpenEdge> edge = object.open_edge()) {
+    throw std::invalid_argument(std::string("solids: the surface of ") + name + " is open " + text_of(*edge) +
+                                ": an odd number of faces use it; close the mesh, or ask collide() about the surface");
+  }
+  if (request.inside == InsideRule::nonzero) {
+    if (const std::optional<OpenEdge> edge = object.twisted_edge()) {
+      throw std::invalid_argument(std::string("solids: the faces of ") + name + " are not the same way round " +
+                                  text_of(*edge) +
+                                  ", so nothing winds around a point a certain number of times; turn faces of the "
+                                  "mesh round, or ask with the rule odd");
+    }
+  }
+  if (!is_flat(pose.linear())) return;
   throw std::invalid_argument(std::string("solids: the pose of ") + name +
                               " flattens space (its determinant is 0), so that the object has no volume");
 }
 
-SolidRelation relate(Device* device, const CollisionQuery& query) {
+SolidResult relate(Device* device, const CollisionQuery& query, const SolidRequest& request) {
   check_query(query, {});
-  check_solid(*query.a, *query.pose_a, "A");
-  check_solid(*query.b, *query.pose_b, "B");
-  return SolidSearch(device, query).run();
+  check_solid(*query.a, *query.pose_a, request, "A");
+  check_solid(*query.b, *query.pose_b, request, "B");
+  return SolidSearch(device, query, request).run();
 }
 
 }  // namespace
@@ -662,19 +580,21 @@ const char* name_of(SolidRelation relation) {
   return "";
 }
 
-SolidRelation solids(Device& device, const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b) {
-  return relate(&device, {&a, &pose_a, &b, &pose_b});
+SolidResult solids(Device& device, const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
+                   const SolidRequest& request) {
+  return relate(&device, {&a, &pose_a, &b, &pose_b}, request);
 }
 
-SolidRelation solids(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b) {
-  return relate(nullptr, {&a, &pose_a, &b, &pose_b});
+SolidResult solids(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
+                   const SolidRequest& request) {
+  return relate(nullptr, {&a, &pose_a, &b, &pose_b}, request);
 }
 
-std::vector<SolidPair> solids(Device& device, const Scene& scene) {
+std::vector<SolidPair> solids(Device& device, const Scene& scene, const SolidRequest& request) {
   std::vector<SolidPair> result;
   for (const auto& [a, b] : scene.candidates()) {
-    const SolidRelation relation = solids(device, scene.object(a), scene.pose(a), scene.object(b), scene.pose(b));
-    if (relation != SolidRelation::disjoint) result.push_back({a, b, relation});
+    const SolidResult pair = solids(device, scene.object(a), scene.pose(a), scene.object(b), scene.pose(b), request);
+    if (pair.relation != SolidRelation::disjoint || pair.overlap_a || pair.overlap_b) result.push_back({pair, a, b});
   }
   return result;
 }

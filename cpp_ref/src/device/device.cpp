@@ -38,10 +38,10 @@ class Registry {
   std::vector<NamedDevice> devices_ = {{"cpu", [] { return open_cpu_device(); }}, {"model", make_model_device}};
 };
 
-/// Made by its first use, which may come before main().
+/// Made by its first use, which may come before main(), and never destroyed: destructors of static objects use it, too.
 Registry& registry() {
-  static Registry devices;
-  return devices;
+  static Registry* const devices = new Registry;  // NOLINT: reachable to the end
+  return *devices;
 }
 
 }  // namespace

@@ -38,6 +38,14 @@ struct Scaled {
   int exponent = 0;
 };
 
+/// Exponent of the number as an odd integer times a power of two. \pre finite and not 0
+inline int odd_exponent(double value) {
+  const Scaled x(value);
+  int zeros = 0;
+  for (auto bits = static_cast<std::uint64_t>(x.mantissa); bits % 2 == 0; bits /= 2) ++zeros;
+  return x.exponent + zeros;
+}
+
 /// A primitive under a pose: component k of vertex i is the sum of four products, the last one translation times 1.
 /// Calls take(i, k, factor, factor) for each of them that is not zero.
 template <class Take>

@@ -253,6 +253,12 @@ std::vector<Contact> self_contacts(const Object& object,
                                    std::size_t max_contacts = std::numeric_limits<std::size_t>::max(),
                                    Neighbours neighbours = Neighbours::tested);
 
+/// The first two faces of an object, in ascending order, that cross each other or share an area, if there are any: of
+/// shells that overlap, were written twice or have a wall in common. There solids() depends on its rule for the inside
+/// (docs/cpp/solids.md). The first call takes as long as self_contacts(); copies of the object share its result.
+/// \throws as self_contacts()
+std::optional<Contact> shell_overlap(const Object& object);
+
 }  // namespace cchip
 
 #endif

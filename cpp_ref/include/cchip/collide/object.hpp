@@ -12,6 +12,9 @@
 
 namespace cchip {
 
+struct Contact;
+struct Shells;
+
 namespace bvh {
 class SupportTree;
 }
@@ -58,8 +61,9 @@ class Object {
   /// \throws std::invalid_argument the object was moved from
   std::vector<std::uint32_t> parts(std::uint32_t number) const;
 
-  /// Is the surface closed? It is if an even number of faces use each edge; then it bounds a solid
-  /// (docs/cpp/solids.md). Which way round the faces are is of no account. Vertices are the same if their coordinates
+  /// Is the surface closed? It is if an even number of faces use each piece of each edge; then it bounds a
+  /// solid (docs/cpp/solids.md). Which way round the faces are is of no account, and an edge that one face uses whole
+  /// may be used in parts by others. Vertices are the same if their coordinates
   /// are, whatever their numbers, so a mesh from an STL file may be closed. An edge whose ends coincide is none. The
   /// first call of is_closed(), open_edge() or same_place() takes O(faces log(faces)) time; copies of the object share
   /// its result.
@@ -67,10 +71,15 @@ class Object {
   bool is_closed() const { return !open_edge(); }
   /// The first edge at which it is open, in the order of the faces; none if the surface is closed.
   std::optional<OpenEdge> open_edge() const;
+  /// The first edge, in the order of the faces, that faces run along more often one way than the other; none if their
+  /// sides are consistent, so that a winding number is the same whichever way it is counted.
+  std::optional<OpenEdge> twisted_edge() const;
   /// For each vertex, the least number of a vertex with the same coordinates. Those that no face uses have their own.
   const std::vector<std::uint32_t>& same_place() const;
 
  private:
+  friend const Shells& shells_of(const Object& object);
+  friend std::optional<Contact> shell_overlap(const Object& object);
   struct Edges;
   struct Data {
     Mesh mesh;
@@ -81,6 +90,7 @@ class Object {
     bool was_moved;
   };
   const Edges& edges() const;
+  const Shells& shells() const;
   const Data& data() const {
     if (!data_) refuse_moved_from();
     return *data_;

@@ -9,8 +9,8 @@
 #include <cchip/internal/exact/posed_distances.hpp>
 #include <cchip/internal/exact/posed_pairs.hpp>
 #include <cstddef>
-#include <map>
 #include <optional>
+#include <vector>
 
 namespace cchip {
 
@@ -60,16 +60,19 @@ class FacePairs {
   /// Exactly, and counts it.
   Relation relate(std::uint32_t face_a, std::uint32_t face_b);
   void relate_all_parts(Contact& contact);
+  /// Where the table has the contact's place, or none yet.
+  std::uint32_t& entry_of(const Contact& contact);
+  void grow_table();
 
   CollisionQuery query_;
   CollisionRequest request_;
   CollisionResult* result_ = nullptr;
   std::size_t most_ = 1;
   bool done_ = false;
-  Relation seen_ = Relation::apart;          ///< the greatest of a pair so far
-  bool cut_ = false;                         ///< some faces of a file are several of a mesh, so contacts may repeat
-  std::map<Contact, std::size_t> contacts_;  ///< places in the result; in use if cut_ and all contacts are wanted
-  std::optional<PosedPairs> pairs_;          ///< made when it is needed first
+  Relation seen_ = Relation::apart;   ///< the greatest of a pair so far
+  bool cut_ = false;                  ///< some faces of a file are several of a mesh, so contacts may repeat
+  std::vector<std::uint32_t> table_;  ///< of contacts by their faces, open addressing: place in the result and 1, or 0
+  std::optional<PosedPairs> pairs_;   ///< made when it is needed first
   std::optional<PosedDistances> distances_;  ///< the same, for requests within a distance
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Doubles from decimal text.
+/// Doubles from decimal text and to it.
 #ifndef CCHIP_INTERNAL_GEOMETRY_DECIMAL_HPP
 #define CCHIP_INTERNAL_GEOMETRY_DECIMAL_HPP
 
@@ -8,7 +8,9 @@
 #include <charconv>
 #include <cstdint>
 #include <limits>
+#include <locale>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -87,6 +89,15 @@ inline std::optional<double> read_decimal(std::string_view text) {
   // from_chars does not say whether the number is too large or too small, and strtod obeys the locale
   value = detail::is_too_large(text) ? std::numeric_limits<double>::infinity() : 0.0;
   return text[0] == '-' ? -value : value;
+}
+
+/// The number with 17 digits, in any locale: another double has another text.
+inline std::string decimal_text(double value) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(17);
+  text << value;
+  return text.str();
 }
 
 /// True if the text would be a number with a point in the place of its comma.
