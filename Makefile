@@ -415,8 +415,8 @@ build/dask/installed: wheel python/tests/dask_requirements.txt
 	build/dask/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement python/tests/dask_requirements.txt dist/*.whl
 	touch $@
 
-test-dask: build/dask/installed ## python/examples/collide_dask.py over a Dask scheduler and two workers on loopback, with workers killed in the middle (CCHIP_SEED repeats a run)
-	build/dask/bin/python python/tests/over_dask.py
+test-dask: build/dask/installed ## python/examples/collide_dask.py over a Dask scheduler and two workers on loopback, with workers killed in the middle (CCHIP_SEED repeats a run, DASK_QUERIES=N shortens it)
+	build/dask/bin/python python/tests/over_dask.py $(DASK_QUERIES)
 	build/dask/bin/python -m pytest --quiet -p no:cacheprovider python/tests/test_clash_many.py
 
 # clock of the chip, MHz: row chip in docs/hardware/fpga.md

@@ -40,7 +40,7 @@ class PointCloud {
   std::size_t size() const;
   std::vector<Vec3d> points() const;  ///< what the cloud was made from
   std::vector<double> radii() const;  ///< of each point
-  const PointTree& tree() const;  ///< what searches traverse; internal
+  const PointTree& tree() const;      ///< what searches traverse; internal
 
  private:
   std::shared_ptr<const PointTree> tree_;
