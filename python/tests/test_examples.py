@@ -7,6 +7,8 @@ import re
 import subprocess
 import sys
 
+import pytest
+
 ROOT = pathlib.Path(__file__).parents[2]
 EXAMPLES = ROOT / "python/examples"
 
@@ -16,25 +18,57 @@ def run(*command):
     return done.returncode, done.stdout
 
 
-def write_box(path, x):
-    corners = [(x + i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]
-    faces = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
-    path.write_text("".join(f"v {a} {b} {c}\n" for a, b, c in corners) + "".join("f %d %d %d %d\n" % face for face in faces))
+def write_box(path, least, greatest=None, faces=6):
+    """A box, of fewer than six faces open; by default with sides of 1."""
+    greatest = greatest or [x + 1 for x in least]
+    corners = [(x, y, z) for x in (least[0], greatest[0]) for y in (least[1], greatest[1]) for z in (least[2], greatest[2])]
+    quads = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)][:faces]
+    path.write_text("".join(f"v {a} {b} {c}\n" for a, b, c in corners) + "".join("f %d %d %d %d\n" % quad for quad in quads))
+
+
+def check(folder):
+    return run(EXAMPLES / "clash_check.py", folder)
 
 
 def test_clash_check(tmp_path):
     for name, x in (("a", 0), ("b", 1), ("c", 5)):
-        write_box(tmp_path / f"{name}.obj", x)
+        write_box(tmp_path / f"{name}.obj", (x, 0, 0))
     (tmp_path / "notes.txt").write_text("no part\n")
-    code, text = run(EXAMPLES / "clash_check.py", tmp_path)
-    assert code == 0 and re.fullmatch(r"a\.obj b\.obj touching \d+\nparts=3 crossing=0\n", text)
+    assert check(tmp_path) == (0, "a.obj b.obj touching\nparts=3 clashes=0\n")
     (tmp_path / "d.obj").write_text("v 0.5 0.5 -1\nv 0.5 0.6 -1\nv 0.5 0.5 2\nf 1 2 3\n")
-    code, text = run(EXAMPLES / "clash_check.py", tmp_path)
+    code, text = check(tmp_path)
     assert code == 1 and "a.obj d.obj crossing" in text
     (tmp_path / "e.obj").write_text("v 0 0 0\nf 1 2 3\n")
-    code, text = run(EXAMPLES / "clash_check.py", tmp_path)
-    assert code == 3 and f"left out: {tmp_path / 'e.obj'}:2: " in text and "parts=4 crossing=1\n" in text
-    assert run(EXAMPLES / "clash_check.py", tmp_path / "..")[0] == 2
+    code, text = check(tmp_path)
+    assert code == 3 and f"left out: {tmp_path / 'e.obj'}:2: " in text and "parts=4 clashes=1\n" in text
+    assert check(tmp_path / "..")[0] == 2
+
+
+@pytest.mark.parametrize("word, box", [
+    ("b_in_a", ((1, 1, 1), (2, 2, 2))),       # wholly inside
+    ("b_in_a", ((0, 0, 0), (2, 2, 2))),       # inside, flush in a corner
+    ("equal", ((0, 0, 0), (4, 4, 4))),        # the same part twice
+    ("overlapping", ((2, 0, 0), (6, 4, 4))),  # bars of one section pushed into each other
+    ("a_in_b", ((-1, 0, 0), (5, 4, 4))),
+])
+def test_clash_check_judges_solids(tmp_path, word, box):
+    write_box(tmp_path / "a.obj", (0, 0, 0), (4, 4, 4))
+    write_box(tmp_path / "b.obj", *box)
+    assert check(tmp_path) == (1, f"a.obj b.obj {word}\nparts=2 clashes=1\n")
+
+
+def test_clash_check_says_what_it_cannot_judge(tmp_path):
+    write_box(tmp_path / "a.obj", (0, 0, 0), (4, 4, 4))
+    write_box(tmp_path / "b.obj", (1, 1, 1), faces=5)
+    code, text = check(tmp_path)
+    assert code == 3 and "a.obj b.obj cannot be judged: one is not closed" in text and "clashes=0" in text
+    write_box(tmp_path / "b.obj", (9, 1, 1), faces=5)
+    assert check(tmp_path) == (0, "parts=2 clashes=0\n")
+    write_box(tmp_path / "b.obj", (1, 1, 1))
+    box = (tmp_path / "a.obj").read_text()  # twice in one file: the shells leave no volume
+    (tmp_path / "a.obj").write_text(box + "".join(line + "\n" for line in box.splitlines() if line.startswith("f")))
+    code, text = check(tmp_path)
+    assert code != 0 and "a.obj b.obj" in text
 
 
 def test_clash_check_command_line(tmp_path):

@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """CollisionManager: names, arguments and return values of trimesh's."""
+import copy
 import inspect
+import pickle
+import subprocess
+import sys
+import time
 
 import numpy as np
 import pytest
 
 import collisionchip
-from collisionchip import CollisionManager, Object
-from shapes import cube, shift, torus
+from collisionchip import CollisionManager, Object, distance
+from shapes import SEED, cube, poses, shift, torus
 
 
 class Mesh:
@@ -160,3 +165,89 @@ def test_a_scene_of_trimesh():
     assert set(objects) == set(scene.graph.nodes_geometry)
     touching = {("box 0", "box 1"), ("box 1", "box 2")}
     assert manager.in_collision_internal(return_names=True) == (True, touching)
+
+
+def test_least_distances_against_all_pairs():
+    random = np.random.default_rng(SEED)
+    parts = [Object(*torus(1, 0.3, 12, 8)), Object(*cube(0.5)), Object(*cube(3))]
+    for reach in (1, 4, 20):
+        managers, placed = [CollisionManager(), CollisionManager()], [{}, {}]
+        for which, count in ((0, 14), (1, 5)):
+            for i, pose in enumerate(poses(random, count, reach)):
+                managers[which].add_object(f"{which}.{i:02}", parts[i % 3], pose)
+                placed[which][f"{which}.{i:02}"] = (parts[i % 3], pose)
+        managers[0].remove_object("0.03")
+        del placed[0]["0.03"]
+        managers[0].set_pair_ignored("0.00", "0.01")
+        names = sorted(placed[0])
+        inside = {(a, b): distance(*placed[0][a], *placed[0][b]).upper for i, a in enumerate(names) for b in names[i + 1:] if (a, b) != ("0.00", "0.01")}
+        found, pair, data = managers[0].min_distance_internal(return_names=True, return_data=True)
+        assert found == min(inside.values()) == inside[pair] and data.names == set(pair)
+        for name in names:
+            of_one = {pair: far for pair, far in inside.items() if name in pair}
+            found, pair = managers[0].min_distance_internal(name=name, return_names=True)
+            assert found == min(of_one.values()) == of_one[pair]
+        across = {(a, b): distance(*placed[0][a], *placed[1][b]).upper for a in placed[0] for b in placed[1]}
+        found, pair, data = managers[0].min_distance_other(managers[1], return_names=True, return_data=True)
+        assert found == min(across.values()) == across[pair]
+        for name, part in zip(pair, (placed[0][pair[0]], placed[1][pair[1]])):
+            assert distance(Object([data.point(name)] * 3, [(0, 1, 2)]), None, *part).upper < 1e-12
+        mesh, pose = parts[0], poses(random, 1, reach)[0]
+        single = {a: distance(mesh, pose, *place).upper for a, place in placed[0].items()}
+        found, name = managers[0].min_distance_single(mesh, pose, return_name=True)
+        assert found == min(single.values()) == single[name]
+        assert managers[0].min_distance_other(managers[0]) == 0 and managers[0].in_collision_other(managers[0])
+
+
+def test_least_distance_of_many_asks_about_few():
+    """A thousand parts in a grid: all pairs are half a million."""
+    part, manager = Object(*torus(1, 0.3, 12, 8)), CollisionManager()
+    for i, pose in enumerate(poses(np.random.default_rng(SEED), 1000, 0)):
+        pose[:3, 3] = 4 * (i % 10), 4 * (i // 10 % 10), 4 * (i // 100)
+        manager.add_object(i, part, pose)
+    start = time.process_time()
+    for i in range(1, 1000):
+        distance(part, None, part, shift(60), stop_above=1)
+    one = (time.process_time() - start) / 999
+    start = time.process_time()
+    assert 1 < manager.min_distance_internal() < 2
+    assert time.process_time() - start < 499500 * one  # what asking about each pair takes, even if each is far
+
+
+def test_names_of_many_take_little_memory():
+    code = """
+import resource, sys
+from collisionchip import CollisionManager, Object
+part = Object([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+managers = CollisionManager(), CollisionManager()
+for manager in managers:
+    for i in range(700):
+        manager.add_object(i, part)
+before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+assert len(managers[0].in_collision_internal(return_names=True)[1]) == 700 * 699 // 2
+print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) * 1024 / (700 * 699 // 2))
+assert len(managers[0].in_collision_other(managers[1], return_names=True)[1]) == 700 * 700
+print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) * 1024 / (700 * 700))
+assert len(managers[0].in_collision_single(part, return_names=True)[1]) == 700
+"""
+    done = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, check=True)
+    assert all(float(bytes_a_pair) < 400 for bytes_a_pair in done.stdout.split()), done.stdout
+
+
+def test_pickle_and_copies():
+    manager = row(4)
+    manager.set_pair_ignored("a", "b")
+    manager.remove_object("c")
+    for made in (pickle.loads(pickle.dumps(manager)), copy.deepcopy(manager), copy.copy(manager)):
+        assert made.in_collision_internal(return_names=True) == (False, set())
+        made.set_pair_ignored("a", "b", False)
+        assert made.in_collision_internal(return_names=True) == (True, {("a", "b")})
+        made.set_transform("d", shift(0.5))
+        made.remove_object("a")
+        assert made.in_collision_internal(return_names=True) == (True, {("b", "d")})
+        assert manager.in_collision_internal(return_names=True) == (False, set())  # as it was
+    own = CollisionManager(collisionchip.open_device("cpu", threads=1))
+    own.add_object("a", Mesh)
+    assert copy.deepcopy(own).in_collision_single(Mesh)
+    with pytest.raises(TypeError, match="device"):
+        pickle.dumps(own)

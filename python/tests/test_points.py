@@ -138,3 +138,37 @@ def test_against_distances_in_numpy():
     for radius in (0, 0.125, 0.25):
         found = collide(PointCloud(points, radius), None, Object(vertices, faces), None, contacts="all").contacts
         assert np.unique(found[:, 0]).tolist() == np.flatnonzero(squared <= radius**2).tolist()
+
+
+def test_numbers_of_points_are_those_of_the_file(tmp_path):
+    path = tmp_path / "scan.xyz"
+    rows = [(0.5, 0, 0), (np.nan, 0, 0), (9, 9, 9), (0, np.inf, 0), (0, 0.5, 0), (np.nan,) * 3, (-0.5, 0, 0)]
+    path.write_text("".join(" ".join(map(repr, map(float, row))) + "\n" for row in rows))
+    points, numbers = load_points(path, numbers=True)
+    assert numbers.dtype == np.uint32 and numbers.tolist() == [0, 2, 4, 6] and points.tolist() == [list(rows[i]) for i in numbers]
+    assert load_points(path).tolist() == points.tolist()
+    for cloud in (PointCloud.load(path), PointCloud(points, 0, numbers), PointCloud(points, [0] * 4, numbers.tolist())):
+        assert len(cloud) == 4
+        assert np.unique(collide(cloud, None, CUBE, None, contacts="all").contacts[:, 0]).tolist() == [0, 4, 6]
+        assert collide(cloud, None, CUBE, shift(8.5, 9, 9)).contacts[0, 0] == 2
+    assert np.unique(collide(PointCloud(points), None, CUBE, None, contacts="all").contacts[:, 0]).tolist() == [0, 2, 3]
+    turned = collide(PointCloud(points, 0, numbers[::-1]), None, CUBE, None, contacts="all").contacts.tolist()
+    assert turned == sorted(turned) and {row[0] for row in turned} == {0, 2, 6}
+    assert len(collide(PointCloud.load(path, 100), None, CUBE, None, contacts="all").contacts) == 4 * 6
+    for wrong in ([0, 1, 2], [0, 1, 2, -1], [0, 1, 2, 0.5], [0, 1, 2, 2**32], [[0, 1, 2, 3]]):
+        with pytest.raises(ValueError, match="numbers"):
+            PointCloud(points, 0, wrong)
+    with pytest.raises(ValueError, match="radius"):
+        PointCloud.load(path, -1)
+
+
+def test_first_met_takes_any_iterable():
+    cloud = PointCloud([(0.5, 0, 0)])
+    pairs = [(CUBE, shift(5)), (CUBE, None)]
+    for objects in (pairs, tuple(pairs), iter(pairs), (pair for pair in pairs), dict(enumerate(pairs)).values(), [list(pair) for pair in pairs]):
+        assert first_met(cloud, None, objects) == 1
+    for wrong in (None, 3, CUBE):
+        with pytest.raises(TypeError, match="objects cannot be iterated over"):
+            first_met(cloud, None, wrong)
+    with pytest.raises(ValueError, match=r"objects\[0\] is no tuple"):
+        first_met(cloud, None, (CUBE, None))

@@ -147,3 +147,18 @@ def test_a_filter_that_refers_to_its_scene_is_collected():
     del scene, function
     gc.collect()
     assert alive() is None
+
+
+def test_solids():
+    scene = Scene()
+    big, inside, flush, across, copy = (scene.add(Object(*cube(side)), shift(x)) for side, x in ((4, 0), (1, 0), (1, 1.5), (1, 2), (4, 0)))
+    found = dict(((a, b), word) for a, b, word in scene.solids())
+    assert found[big, inside] == "b_in_a" and found[big, flush] == "b_in_a" and found[big, across] == "overlapping"
+    assert found[big, copy] == "equal" and found[inside, copy] == "a_in_b" and (inside, across) not in found
+    scene.set_ignored(big, copy)
+    scene.set_filter(lambda a, b: across not in (a, b))
+    assert {(a, b) for a, b, _ in scene.solids(device=open_device("cpu", threads=1))} == {
+        (big, inside), (big, flush), (inside, copy), (flush, copy)} | ({(inside, flush)} if (inside, flush) in found else set())
+    scene.add(Object([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]))
+    with pytest.raises(ValueError, match="closed|open"):
+        scene.solids()

@@ -259,8 +259,10 @@ void add_collide(CLI::App& app, CollideOptions& options) {
   auto* matrix =
       add_text(*command, "--pose-matrix", options.pose_matrix,
                "twelve numbers, the 3x4 matrix [R|t] of any affine map row by row; or the sixteen of a 4x4 matrix");
-  auto* poses = add_text(*command, "--poses", options.poses_file,
-                         "CSV file with columns r00..r22, tx, ty, tz: a query for each row; - reads standard input");
+  auto* poses =
+      add_text(*command, "--poses", options.poses_file,
+               "CSV file with columns tx, ty, tz and r00..r22, rx..rz, roll..yaw or qx..qw: a query for each row; - "
+               "reads standard input");
   pose->excludes(matrix)->excludes(poses);
   matrix->excludes(poses);
   auto* contacts = add_choice(*command, "--contacts", options.contacts, contact_choices,

@@ -8,6 +8,7 @@
 #include <cchip/stimulus/pair_columns.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <charconv>
+#include <cmath>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
@@ -15,8 +16,44 @@
 namespace cchip::app {
 namespace {
 
-constexpr std::array<const char*, 12> pose_columns = {"r00", "r01", "r02", "r10", "r11", "r12",
-                                                      "r20", "r21", "r22", "tx",  "ty",  "tz"};
+/// Columns of rotations, in the order of PoseColumns::Rotation.
+const std::array<std::vector<const char*>, 5> rotation_columns = {
+    {{},
+     {"r00", "r01", "r02", "r10", "r11", "r12", "r20", "r21", "r22"},
+     {"rx", "ry", "rz"},
+     {"roll", "pitch", "yaw"},
+     {"qx", "qy", "qz", "qw"}}};
+/// What rounding leaves of a quarter turn.
+constexpr double near = 0x1p-48;
+
+/// Exactly the quarter turns that a rotation is within rounding of, or else the rotation.
+Eigen::Matrix3d snapped(const Eigen::Matrix3d& rotation) {
+  const Eigen::Matrix3d turns = rotation.array().round();
+  const bool is_near = (rotation - turns).cwiseAbs().maxCoeff() <= near;
+  return is_near && (turns * turns.transpose()).isIdentity(0) ? Eigen::Matrix3d(turns.array() + 0.0) : rotation;
+}
+
+double to_degrees(double radians) {
+  const double quarter = std::acos(0.0);
+  const double turns = std::round(radians / quarter);
+  if (std::abs(radians - turns * quarter) <= near * std::abs(radians)) return 90 * turns;
+  return radians * (180 / std::acos(-1.0));
+}
+
+/// Divided by the square of the length at the end: equal components give exact zeros and ones.
+Eigen::Matrix3d of_quaternion(Eigen::Vector4d q) {
+  const double greatest = q.cwiseAbs().maxCoeff();
+  if (greatest == 0) throw std::invalid_argument("the quaternion is 0; write one that is not, of any length");
+  int exponent = 0;
+  std::frexp(greatest, &exponent);
+  for (double& part : q) part = std::ldexp(part, -exponent);  // no square over- or underflows
+  const double x = q[0], y = q[1], z = q[2], w = q[3];
+  Eigen::Matrix3d matrix;
+  matrix << w * w + x * x - (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),  //
+      2 * (x * y + w * z), w * w + y * y - (x * x + z * z), 2 * (y * z - w * x),        //
+      2 * (x * z - w * y), 2 * (y * z + w * x), w * w + z * z - (x * x + y * y);
+  return matrix / (x * x + y * y + z * z + w * w);
+}
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
@@ -99,13 +136,28 @@ Pose parse_pose_options(const std::string& pose, const std::string& pose_matrix)
 
 PoseColumns::PoseColumns(const CsvRow& header, std::string file, const std::string& expect)
     : file_(std::move(file)), fields_(header.fields.size()) {
-  for (std::size_t i = 0; i < entry_.size(); ++i) {
-    const auto column = find(header, pose_columns[i]);
-    if (!column) {
-      throw missing_column(file_, header, pose_columns[i],
-                           "the first row must name the columns r00,r01,r02 to r22 and tx,ty,tz");
+  for (std::size_t kind = 1; kind < rotation_columns.size(); ++kind) {
+    const std::vector<const char*>& names = rotation_columns[kind];
+    if (std::none_of(names.begin(), names.end(), [&](const char* name) { return find(header, name).has_value(); }))
+      continue;
+    if (rotation_ == Rotation::matrix) break;  // beside it other columns are passed through
+    if (rotation_ != Rotation::none) {
+      throw row_error(file_, header.line,
+                      fmt::format("columns {} and {} are there; keep those of one rotation, and rename the others",
+                                  names_[0], names[0]));
     }
-    entry_[i] = *column;
+    rotation_ = static_cast<Rotation>(kind);
+    names_ = names;
+  }
+  for (const char* const name : {"tx", "ty", "tz"}) names_.push_back(name);
+  for (const char* const name : names_) {
+    const auto column = find(header, name);
+    if (!column) {
+      throw missing_column(file_, header, name,
+                           "the first row must name the columns tx,ty,tz and, for a rotation, r00,r01,r02 to r22 or "
+                           "rx,ry,rz or roll,pitch,yaw or qx,qy,qz,qw");
+    }
+    entry_.push_back(*column);
   }
   if (!expect.empty()) {
     expect_ = find(header, expect);
@@ -140,19 +192,36 @@ PoseColumns::Row PoseColumns::parse(const CsvRow& row) const {
                                 row.fields.size(), fields_));
   }
   Row result;
+  std::array<double, 12> n = {};
   for (std::size_t i = 0; i < entry_.size(); ++i) {
     try {
-      const double value = parse_coordinate(row.fields[entry_[i]]);
-      const auto k = static_cast<Eigen::Index>(i);
-      if (i < 9) {
-        result.pose.linear()(k / 3, k % 3) = value;
-      } else {
-        result.pose.translation()[k - 9] = value;
-      }
+      n[i] = parse_coordinate(row.fields[entry_[i]]);
     } catch (const std::invalid_argument& error) {
-      throw row_error(file_, row.line, fmt::format("column {}: {}", pose_columns[i], error.what()));
+      throw row_error(file_, row.line, fmt::format("column {}: {}", names_[i], error.what()));
     }
   }
+  switch (rotation_) {
+    case Rotation::none:
+      break;
+    case Rotation::matrix:
+      result.pose.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(n.data());
+      break;
+    case Rotation::degrees:
+      result.pose.linear() = make_pose(Vec3d::Zero(), {n[0], n[1], n[2]}).linear();
+      break;
+    case Rotation::radians:
+      result.pose.linear() =
+          snapped(make_pose(Vec3d::Zero(), {to_degrees(n[0]), to_degrees(n[1]), to_degrees(n[2])}).linear());
+      break;
+    case Rotation::quaternion:
+      try {
+        result.pose.linear() = snapped(of_quaternion({n[0], n[1], n[2], n[3]}));
+      } catch (const std::invalid_argument& error) {
+        throw row_error(file_, row.line, fmt::format("columns qx to qw: {}", error.what()));
+      }
+      break;
+  }
+  result.pose.translation() = Eigen::Map<const Vec3d>(n.data() + entry_.size() - 3);
   for (const std::size_t i : passed_) result.passed.push_back(row.fields[i]);
   if (expect_) {
     const std::string_view text = trimmed(row.fields[*expect_]);

@@ -35,11 +35,13 @@ Vec3d parse_direction(const std::string& text);
 /// \throws UsageError as parse_pose() and parse_affine_matrix()
 Pose parse_pose_options(const std::string& pose, const std::string& pose_matrix);
 
-/// Columns r00..r22 and tx, ty, tz of a CSV file: x -> R x + t, row by row.
+/// Columns tx, ty, tz of a CSV file and, for the rotation, one of: r00..r22, a matrix row by row, any; rx, ry, rz,
+/// degrees as parse_pose() takes them; roll, pitch, yaw, the same in radians; qx, qy, qz, qw, a quaternion of any
+/// length; none. Quarter turns are exact: what is within rounding of them becomes them, but for a matrix.
 class PoseColumns {
  public:
   /// Reads the header record. \param expect column with the expected answers; empty: none
-  /// \throws UsageError a column is missing or occurs twice
+  /// \throws UsageError a column is missing or occurs twice, or two rotations without a matrix are there
   PoseColumns(const CsvRow& header, std::string file, const std::string& expect);
 
   struct Row {
@@ -57,7 +59,10 @@ class PoseColumns {
 
   std::string file_;
   std::size_t fields_;
-  std::array<std::size_t, 12> entry_ = {};
+  enum class Rotation { none, matrix, degrees, radians, quaternion };
+  Rotation rotation_ = Rotation::none;
+  std::vector<const char*> names_;  ///< of the columns of a pose
+  std::vector<std::size_t> entry_;  ///< where they are
   std::optional<std::size_t> expect_;
   std::vector<std::size_t> passed_;
   std::vector<std::string> passed_names_;

@@ -59,3 +59,43 @@ TEST_CASE("pose: matrix row by row, rigid only", "[system][pose]") {
     CHECK_THROWS_AS(parse_pose(text), UsageError);
   }
 }
+
+namespace {
+
+Pose row_of(const std::vector<std::string>& names, const std::vector<std::string>& values) {
+  return PoseColumns({1, names}, "poses.csv", "").parse({2, values}).pose;
+}
+
+}  // namespace
+
+TEST_CASE("pose: columns of a translation alone and of each rotation", "[system][pose]") {
+  const Pose quarter(parse_pose("1,2,3,0,0,90"));
+  const std::string half = "0.70710678118654757";
+  const std::string below = "0.70710678118654746";
+  CHECK(row_of({"tx", "ty", "tz"}, {"1", "2", "3"}).isApprox(Pose(parse_pose("1,2,3")), 0));
+  CHECK(row_of({"tz", "ty", "tx", "rz", "ry", "rx"}, {"3", "2", "1", "90", "0", "0"}).isApprox(quarter, 0));
+  CHECK(row_of({"tx", "ty", "tz", "roll", "pitch", "yaw"}, {"1", "2", "3", "0", "0", "1.5707963267948966"})
+            .isApprox(quarter, 0));
+  for (const std::string& qz : {half, below}) {
+    CHECK(row_of({"tx", "ty", "tz", "qx", "qy", "qz", "qw"}, {"1", "2", "3", "0", "0", qz, half}).isApprox(quarter, 0));
+  }
+  // one that is no quarter turn: about z by 60 degrees, with other columns in between
+  const Pose third = row_of({"qw", "note", "qx", "qy", "qz", "tx", "ty", "tz"},
+                            {"0.8660254037844386", "x", "0", "0", "0.5", "0", "0", "0"});
+  CHECK(third.isApprox(Pose(parse_pose("0,0,0,0,0,60")), 1e-15));
+  CHECK(third(2, 2) == 1);
+  // beside a matrix they are passed through
+  const std::vector<std::string> matrix = {"r00", "r01", "r02", "r10", "r11", "r12", "r20",
+                                           "r21", "r22", "tx",  "ty",  "tz",  "yaw"};
+  CHECK(row_of(matrix, {"2", "0", "0", "0", "1", "0", "0", "0", "1", "1", "2", "3", "?"})(0, 0) == 2);
+}
+
+TEST_CASE("pose: columns that are no pose", "[system][pose]") {
+  using Catch::Contains;
+  CHECK_THROWS_WITH(row_of({"tx", "ty"}, {"1", "2"}), Contains("column tz is missing") && Contains("rx,ry,rz"));
+  CHECK_THROWS_WITH(row_of({"tx", "ty", "tz", "rx", "rz"}, {}), Contains("column ry is missing"));
+  CHECK_THROWS_WITH(row_of({"tx", "ty", "tz", "rx", "ry", "rz", "yaw"}, {}), Contains("columns rx and roll are there"));
+  CHECK_THROWS_WITH(row_of({"tx", "ty", "tz", "qx", "qy", "qz", "qw"}, {"0", "0", "0", "0", "0", "0", "0"}),
+                    Contains("poses.csv:2") && Contains("the quaternion is 0"));
+  CHECK_THROWS_WITH(row_of({"tx", "ty", "tz"}, {"0", "0", "x"}), Contains("column tz: 'x' is not a number"));
+}

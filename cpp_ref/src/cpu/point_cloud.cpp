@@ -573,6 +573,20 @@ const PointTree& PointCloud::tree() const {
 
 std::size_t PointCloud::size() const { return tree().points; }
 
+std::vector<Vec3d> PointCloud::points() const {
+  const PointTree& t = tree();
+  std::vector<Vec3d> points(t.points);
+  for (std::size_t i = 0; i < t.points; ++i) points[t.number[i]] = {t.at[0][i], t.at[1][i], t.at[2][i]};
+  return points;
+}
+
+std::vector<double> PointCloud::radii() const {
+  const PointTree& t = tree();
+  std::vector<double> radii(t.points);
+  for (std::size_t i = 0; i < t.points; ++i) radii[t.number[i]] = t.radius[i];
+  return radii;
+}
+
 void collide(const PointCloud& cloud, const Pose& pose_cloud, const Object& object, const Pose& pose_object,
              const CloudRequest& request, CloudResult& result) {
   check_float_mode();

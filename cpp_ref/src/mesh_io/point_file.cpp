@@ -43,6 +43,12 @@ PolygonSoup read_points(std::string_view file, const std::string& name) {
 
 std::vector<Vec3d> usable_points(PolygonSoup soup, const LoadPointsOptions& options) {
   if (options.points_left_out != nullptr) *options.points_left_out = soup.unusable.size();
+  if (options.numbers != nullptr) {
+    options.numbers->clear();
+    for (std::size_t i = 0; i < soup.points.size(); ++i) {
+      if (soup.points[i].allFinite()) options.numbers->push_back(static_cast<std::uint32_t>(i));
+    }
+  }
   if (!soup.unusable.empty()) {
     if (!options.leave_out_nan) {
       const auto& [point, why] = *soup.unusable.begin();

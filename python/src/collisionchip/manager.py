@@ -2,13 +2,12 @@
 """The interface of trimesh.collision.CollisionManager over Scene. trimesh itself is not needed."""
 from __future__ import annotations
 
-from collections.abc import Iterable
+import copy
 from typing import Any
 
 import numpy as np
 
-from ._core import Device, Distance, Object, Result, Scene
-from ._core import distance as distance_of
+from ._core import Device, Distance, Object, Result, Scene, _to_object
 
 _EXTERNAL = "__external"  # trimesh's name for the object of in_collision_single()
 
@@ -63,8 +62,8 @@ class DistanceData:
 class CollisionManager:
     """Named objects with transforms, and which of them collide: the interface of trimesh.collision.CollisionManager.
 
-    A mesh is an Object, or anything with `vertices`, (n, 3) float, and `faces`, (m, 3) or (m, 4) integers, such as a
-    trimesh.Trimesh. All meshes are surfaces, while trimesh makes a solid of one that is convex: here an object wholly
+    A mesh is an Object, a mesh of trimesh, PyVista or Open3D, or anything else with `vertices`, (n, 3) float, and `faces`,
+    (m, 3) or (m, 4) integers. All meshes are surfaces, while trimesh makes a solid of one that is convex: here an object wholly
     inside another does not collide with it. Transforms are float64, (4, 4) or (3, 4), and any affine map.
 
     device: who answers, see open_device(); by default the CPU with all cores.
@@ -77,6 +76,21 @@ class CollisionManager:
         self._ignored: set[frozenset[Any]] = set()
         self._device = device
 
+    def __deepcopy__(self, memo: Any) -> CollisionManager:
+        """A manager of its own with the same objects and device."""
+        made = CollisionManager(self._device)
+        made._scene = copy.copy(self._scene)
+        made._ids, made._names, made._ignored = dict(self._ids), dict(self._names), set(self._ignored)
+        return made
+
+    def __copy__(self) -> CollisionManager:
+        return self.__deepcopy__({})
+
+    def __getstate__(self) -> dict[str, Any]:
+        if self._device is not None:
+            raise TypeError("a manager with a device of its own cannot be pickled; make one without, and give the device where it is loaded")
+        return self.__dict__
+
     def add_object(self, name: Any, mesh: Any, transform: Any = None) -> Object:
         """Adds a mesh, or replaces the one of this name. Returns the Object that was made of the mesh; to add one mesh
         many times, pass this Object.
@@ -84,9 +98,9 @@ class CollisionManager:
         name: anything hashable.
         transform: (4, 4) float; None is the identity.
 
-        Raises ValueError: as Object and collide().
+        Raises ValueError and TypeError: as Object and collide().
         """
-        made = _to_object(mesh)
+        made = _to_object(mesh, "mesh")
         number = self._scene.add(made, transform)
         if name in self._ids:
             before = self._ids[name]
@@ -132,12 +146,13 @@ class CollisionManager:
         of ContactData, in which the mesh has the name "__external". With one of the two a tuple of two, with both a
         tuple of three.
         """
-        made = _to_object(mesh)
-        if not (return_names or return_data):
-            return self._scene.find_contact(made, transform, device=self._device) is not None
-        found = self._scene.contacts(made, transform, contacts=_wanted(return_data), device=self._device)
+        scene, made = _alone(mesh, transform)
+        if not return_data:
+            pairs = self._scene._pairs(scene, first=not return_names, device=self._device)
+            return _answer({self._names[number] for number in pairs[:, 1].tolist()}, len(pairs), return_names)
+        found = self._scene.contacts(made, transform, contacts="all", device=self._device)
         named = [((_EXTERNAL, self._names[number]), result) for number, result in found]
-        return _answer({names[1] for names, _ in named}, named, return_names, return_data)
+        return _answer({names[1] for names, _ in named}, len(named), return_names, _data(named))
 
     def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
         """Does any object of the manager collide with another one?
@@ -145,11 +160,12 @@ class CollisionManager:
         Returns as in_collision_single(); the names are pairs, each in alphabetical order, or in the order of
         add_object() if Python cannot order them.
         """
-        if not (return_names or return_data):
-            return self._scene.find_contact(device=self._device) is not None
-        found = self._scene.contacts(contacts=_wanted(return_data), device=self._device)
+        if not return_data:
+            pairs = self._scene._pairs(first=not return_names, device=self._device)
+            return _answer({_in_order((self._names[a], self._names[b])) for a, b in pairs.tolist()}, len(pairs), return_names)
+        found = self._scene.contacts(contacts="all", device=self._device)
         named = [((self._names[a], self._names[b]), result) for a, b, result in found]
-        return _answer({_in_order(names) for names, _ in named}, named, return_names, return_data)
+        return _answer({_in_order(names) for names, _ in named}, len(named), return_names, _data(named))
 
     def in_collision_other(self, other_manager: CollisionManager, return_names: bool = False,
                            return_data: bool = False) -> Any:
@@ -158,16 +174,17 @@ class CollisionManager:
         Returns as in_collision_single(); the names are pairs, the one of this manager first. If both managers use a
         name, ContactData.index() of that name is the face of the other manager's object, as in trimesh.
         """
+        theirs = other_manager._names
+        if not return_data:
+            other = copy.copy(self._scene) if other_manager is self else other_manager._scene
+            pairs = other._pairs(self._scene, first=not return_names, device=self._device)
+            return _answer({(self._names[a], theirs[b]) for a, b in pairs.tolist()}, len(pairs), return_names)
         named = []
         for number, name in self._names.items():
             place = (self._scene.object(number), self._scene.pose(number))
-            if not (return_names or return_data):
-                if other_manager._scene.find_contact(*place, device=self._device):
-                    return True
-                continue
-            found = other_manager._scene.contacts(*place, contacts=_wanted(return_data), device=self._device)
-            named += [((name, other_manager._names[other]), result) for other, result in found]
-        return _answer({names for names, _ in named}, named, return_names, return_data)
+            found = other_manager._scene.contacts(*place, contacts="all", device=self._device)
+            named += [((name, theirs[other]), result) for other, result in found]
+        return _answer({names for names, _ in named}, len(named), return_names, _data(named))
 
     def min_distance_single(self, mesh: Any, transform: Any = None, return_name: bool = False,
                             return_data: bool = False) -> Any:
@@ -177,9 +194,8 @@ class CollisionManager:
         object; with return_data a DistanceData, in which the mesh has the name "__external". With one of the two a tuple
         of two, with both a tuple of three; None for the name and the data of an empty manager.
         """
-        made = _to_object(mesh)
-        pairs = (((_EXTERNAL, name), (made, transform, *self._place(number))) for number, name in self._names.items())
-        names, found = _nearest(pairs)
+        found = _alone(mesh, transform)[0]._nearest(self._scene)
+        names = found and (_EXTERNAL, self._names[found[1]])
         return _least(found, names and names[1], names, return_name, return_data)
 
     def min_distance_internal(self, name: Any = None, return_names: bool = False, return_data: bool = False) -> Any:
@@ -187,14 +203,10 @@ class CollisionManager:
 
         Returns as min_distance_single(); the names are a pair, as in in_collision_internal(). Ignored pairs are left out.
         """
-        if name is not None:
-            self._id(name)
-        ids = sorted(self._names)
-        pairs = (((self._names[a], self._names[b]), (*self._place(a), *self._place(b)))
-                 for k, a in enumerate(ids) for b in ids[k + 1:]
-                 if (name is None or name in (self._names[a], self._names[b]))
-                 and frozenset((self._names[a], self._names[b])) not in self._ignored)
-        names, found = _nearest(pairs)
+        found = self._scene._nearest(id=0 if name is None else self._id(name))
+        names = found and tuple(self._names[number] for number in sorted(found[:2]))
+        if found and found[0] > found[1]:
+            names = names[::-1]
         return _least(found, names and _in_order(names), names, return_names, return_data)
 
     def min_distance_other(self, other_manager: CollisionManager, return_names: bool = False,
@@ -203,13 +215,9 @@ class CollisionManager:
 
         Returns as min_distance_single(); the names are a pair, the one of this manager first.
         """
-        pairs = (((name, other), (*self._place(a), *other_manager._place(b)))
-                 for a, name in self._names.items() for b, other in other_manager._names.items())
-        names, found = _nearest(pairs)
+        found = self._scene._nearest(other_manager._scene)
+        names = found and (self._names[found[0]], other_manager._names[found[1]])
         return _least(found, names, names, return_names, return_data)
-
-    def _place(self, number: int) -> tuple[Object, Any]:
-        return self._scene.object(number), self._scene.pose(number)
 
     def _id(self, name: Any) -> int:
         if name not in self._ids:
@@ -223,15 +231,27 @@ def scene_to_collision(scene: Any, device: Device | None = None) -> tuple[Collis
 
     device: as CollisionManager.
     """
+    if not (hasattr(scene, "graph") and hasattr(scene, "geometry")):
+        raise TypeError(f"scene is a {type(scene).__name__}; give a trimesh.Scene, or a mesh to CollisionManager.add_object()")
     manager = CollisionManager(device)
     made: dict[Any, Object] = {}
     objects: dict[Any, Object] = {}
     for node in scene.graph.nodes_geometry:
         transform, geometry = scene.graph[node]
         if geometry not in made:
-            made[geometry] = _to_object(scene.geometry[geometry])
+            try:
+                made[geometry] = _to_object(scene.geometry[geometry], "its geometry")
+            except (TypeError, ValueError) as error:
+                raise type(error)(f"node {node!r}: {error}; or take it out: scene.delete_geometry({geometry!r})") from None
         objects[node] = manager.add_object(node, made[geometry], transform)
     return manager, objects
+
+
+def _alone(mesh: Any, transform: Any) -> tuple[Scene, Object]:
+    """A scene with this mesh only, and its Object."""
+    scene, made = Scene(), _to_object(mesh, "mesh")
+    scene.add(made, transform)
+    return scene, made
 
 
 def _in_order(names: tuple[Any, Any]) -> tuple[Any, Any]:
@@ -241,41 +261,25 @@ def _in_order(names: tuple[Any, Any]) -> tuple[Any, Any]:
         return names
 
 
-def _to_object(mesh: Any) -> Object:
-    return mesh if isinstance(mesh, Object) else Object(np.asarray(mesh.vertices), np.asarray(mesh.faces))
-
-
-def _nearest(pairs: Iterable[tuple[tuple[Any, Any], tuple[Object, Any, Object, Any]]]) -> tuple[Any, Distance | None]:
-    """The names and the distance of the nearest of pairs ((name, name), (object, pose, object, pose))."""
-    names: Any = None
-    least: Distance | None = None
-    for pair, places in pairs:
-        # of objects farther apart than the best pair so far nothing more is asked
-        found = distance_of(*places, stop_above=np.inf if least is None else least.upper)
-        if least is None or found.upper < least.upper:
-            names, least = pair, found
-    return names, least
-
-
-def _least(found: Distance | None, shown: Any, names: Any, return_names: bool, return_data: bool) -> Any:
+def _least(found: tuple[int, int, Distance] | None, shown: Any, names: Any, return_names: bool, return_data: bool) -> Any:
     """What trimesh returns: a distance, and what was asked for."""
-    answer: list[Any] = [np.inf if found is None else found.upper]
+    answer: list[Any] = [np.inf if found is None else found[2].upper]
     if return_names:
         answer.append(shown)
     if return_data:
-        answer.append(None if found is None else DistanceData(names, found))
+        answer.append(None if found is None else DistanceData(names, found[2]))
     return tuple(answer) if len(answer) > 1 else answer[0]
 
 
-def _wanted(return_data: bool) -> str:
-    return "all" if return_data else "first"
+def _data(found: list[tuple[tuple[Any, Any], Result]]) -> list[ContactData]:
+    return [ContactData(pair, result, row) for pair, result in found for row in range(len(result.contacts))]
 
 
-def _answer(names: set[Any], found: list[tuple[tuple[Any, Any], Result]], return_names: bool, return_data: bool) -> Any:
+def _answer(names: set[Any], count: int, return_names: bool, data: list[ContactData] | None = None) -> Any:
     """What trimesh returns: a bool, and what was asked for."""
-    answer: list[Any] = [bool(found)]
+    answer: list[Any] = [count > 0]
     if return_names:
         answer.append(names)
-    if return_data:
-        answer.append([ContactData(pair, result, row) for pair, result in found for row in range(len(result.contacts))])
+    if data is not None:
+        answer.append(data)
     return tuple(answer) if len(answer) > 1 else answer[0]

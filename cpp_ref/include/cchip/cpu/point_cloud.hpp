@@ -36,9 +36,11 @@ class PointCloud {
   /// \throws std::invalid_argument as above; another number of radii than points
   PointCloud(const std::vector<Vec3d>& points, const std::vector<double>& radii);
 
-  /// \throws std::invalid_argument the cloud was moved from; so does tree()
+  /// \throws std::invalid_argument the cloud was moved from; so do points(), radii() and tree()
   std::size_t size() const;
-  const PointTree& tree() const;  ///< what searches traverse; internal
+  std::vector<Vec3d> points() const;  ///< what the cloud was made from
+  std::vector<double> radii() const;  ///< of each point
+  const PointTree& tree() const;      ///< what searches traverse; internal
 
  private:
   std::shared_ptr<const PointTree> tree_;

@@ -14,11 +14,13 @@
 namespace cchip {
 
 struct LoadPointsOptions {
-  /// Points with a coordinate that is not finite are left out: sensors write NaN where they saw nothing. Numbers of
-  /// points are those of what is left. If false, such a point is an error.
+  /// Points with a coordinate that is not finite are left out: sensors write NaN where they saw nothing. The points
+  /// behind them move up, see `numbers`. If false, such a point is an error.
   bool leave_out_nan = true;
   /// If not null, set to the number of points that were left out.
   std::size_t* points_left_out = nullptr;
+  /// If not null, set to the number in the file, from 0, of each point that is returned.
+  std::vector<std::uint32_t>* numbers = nullptr;
   /// Bytes that the content of a packed file may have.
   std::uint64_t most_unpacked_bytes = std::uint64_t{1} << 32;
 };
