@@ -28,7 +28,7 @@ EXACT = {
     "plyfile": "import plyfile; m = plyfile.PlyData.read(P); a = m['vertex']; v = [[a[k][i] for k in 'xyz'] for i in range(len(a.data))]; "
                "faces = m['face']['vertex_indices']; c = [[int(a[k][i]) for k in ('red', 'green', 'blue')] for i in range(len(v))]; "
                "e = len(m['edge'].data) if 'edge' in m else 0",
-    "pymeshlab": "import pymeshlab; s = pymeshlab.MeshSet(); s.load_new_mesh(P); m = s.current_mesh(); v, faces = m.vertex_matrix(), m.polygonal_face_list(); "
+    "pymeshlab": "import pymeshlab; s = pymeshlab.MeshSet(); s.load_new_mesh(P); m = s.current_mesh(); v, faces = m.vertex_matrix(), m.face_matrix(); "
                  "c = [[round(255 * x) for x in r[:3]] for r in m.vertex_color_matrix().tolist()]; e = m.edge_number()",
     "open3d": "import ctypes, libusb_package; ctypes.CDLL(str(libusb_package.get_library_path()), mode=ctypes.RTLD_GLOBAL); import open3d, numpy; "
               "m = open3d.io.read_triangle_mesh(P); v, faces = numpy.asarray(m.vertices), numpy.asarray(m.triangles); "
@@ -59,11 +59,6 @@ def our_ply(path):
 
 def single(points):
     return [list(struct.unpack("<3f", struct.pack("<3f", *p))) for p in points]
-
-
-def pieces(faces):
-    """Triangles with the corners of each face: some programs cut quads."""
-    return sorted(sorted(set(f)) for f in faces)
 
 
 def same(read, expected, exact):
@@ -124,12 +119,13 @@ def check_readers(cchip, folder):
 
 
 # Files in formats that cchip does not read, made by other programs: a box from 0.1 0 0 to 1.1 1 1 (or its corners).
+BOX = "import pyvista; b = pyvista.Box((0.1, 1.1, 0, 1, 0, 1)); b.points = b.points.astype(float).round(6); "
 MAKE = {
     "box.glb": "import trimesh; s = trimesh.Scene(); b = trimesh.creation.box(); t = [[1, 0, 0, 0.5], [0, 1, 0, 0.5], [0, 0, 1, 0.5], [0, 0, 0, 1]]; "
                "s.add_geometry(b, transform=t); s.export('box.glb')",
     "box.3mf": "import trimesh; trimesh.Scene(trimesh.creation.box(bounds=[[0.1, 0, 0], [1.1, 1, 1]])).export('box.3mf')",
-    "box.vtp": "import pyvista; pyvista.Box((0.1, 1.1, 0, 1, 0, 1)).save('box.vtp')",
-    "box.vtk": "import pyvista; pyvista.Box((0.1, 1.1, 0, 1, 0, 1)).cast_to_unstructured_grid().save('box.vtk')",
+    "box.vtp": BOX + "b.save('box.vtp')",
+    "box.vtk": BOX + "b.cast_to_unstructured_grid().save('box.vtk')",
     "box.msh": "import meshio, trimesh; b = trimesh.creation.box(bounds=[[0.1, 0, 0], [1.1, 1, 1]]); "
                "meshio.Mesh(b.vertices, [('triangle', b.faces)]).write('box.msh', file_format='gmsh')",
     "box.step": "import gmsh; gmsh.initialize(); gmsh.model.occ.addBox(0.1, 0, 0, 1, 1, 1); gmsh.model.occ.synchronize(); gmsh.write('box.step')",

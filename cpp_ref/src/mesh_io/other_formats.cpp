@@ -27,7 +27,7 @@ constexpr std::string_view by_trimesh =
 constexpr std::string_view by_meshlab =
     "convert it to PLY with MeshLab, which keeps axes and units: File, Import Mesh, then File, Export Mesh As "
     "(Debian's "
-    "assimp turns or scales some files of this format)";
+    "assimp turns, scales or refuses some of them)";
 constexpr std::string_view by_assimp =
     "convert it with `assimp export % part.obj`, which rounds to single precision and may turn axes and change the "
     "unit: compare the size";
