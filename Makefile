@@ -43,7 +43,7 @@ export JOBS
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal formal-all mutants coverage coverage-bins coverage-cpp test-gates test-debug \
   test-asan test-arm64 cross-windows fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty \
-  campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot bench-scene bench-certificate bench-chip deb wheel sdist test-sdist test-python test-dask bench-python export fpga \
+  campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot bench-scene bench-certificate bench-chip deb wheel sdist test-sdist test-python test-dask test-ply bench-python export fpga \
   fpga-quick fpga-sweep asic asic-quick install clean
 
 # Groups of make help: a heading, then its targets. A target may be followed by /minutes on two cores after the build, as far as a page
@@ -56,7 +56,7 @@ Use the library
 Read
   help docs docs-layout/3_min
 Check a change
-  test test-long wave-of test-python test-sdist test-dask test-debug test-asan test-arm64 cross-windows test-gates formal fuzz lint tidy format
+  test test-long wave-of test-python test-sdist test-dask test-ply test-debug test-asan test-arm64 cross-windows test-gates formal fuzz lint tidy format
 Check for long
   formal-all/hours mutants/hours coverage/hours coverage-bins coverage-cpp
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-collide campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
@@ -418,6 +418,15 @@ build/dask/installed: wheel python/tests/dask_requirements.txt
 test-dask: build/dask/installed ## python/examples/collide_dask.py over a Dask scheduler and two workers on loopback, with workers killed in the middle (CCHIP_SEED repeats a run, DASK_QUERIES=N shortens it)
 	build/dask/bin/python python/tests/over_dask.py $(DASK_QUERIES)
 	build/dask/bin/python -m pytest --quiet -p no:cacheprovider python/tests/test_clash_many.py
+
+build/readers/requirements.txt: tests/readers/requirements.txt
+	python3 -m venv --clear build/readers || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	build/readers/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement $<
+	cp $< $@
+
+test-ply: $(RELEASE)/build.ninja build/readers/requirements.txt ## trimesh, meshio, MeshLab, Blender, Open3D, VTK and plyfile read the PLY of cchip, and the commands in its messages convert files (2 GB from PyPI below build/readers)
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip
+	build/readers/bin/python tests/readers/ply_readers.py $(RELEASE)/bin/cchip
 
 # clock of the chip, MHz: row chip in docs/hardware/fpga.md
 CHIP_MHZ ?= 50

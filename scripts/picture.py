@@ -65,24 +65,25 @@ def read_ply(path):
     colours = ["red", "green", "blue"]
     has_edges = len(names) == 3
     if ("format binary_little_endian 1.0" not in lines or [name[0] for name in names] != ["vertex", "face", "edge"][:2 + has_edges]
-            or properties != ["x", "y", "z", *colours, "vertex_indices", *colours] + has_edges * ["vertex1", "vertex2", *colours]):
+            or properties != ["x", "y", "z", *colours, "vertex_indices"] + has_edges * ["vertex1", "vertex2"]):
         raise NotOurs
     counts = [int(name[1]) for name in names]
     vertex = struct.Struct("<3d3B")
-    points = [vertex.unpack_from(body, i * vertex.size)[:3] for i in range(counts[0])]
+    vertices = [vertex.unpack_from(body, i * vertex.size) for i in range(counts[0])]
     at = counts[0] * vertex.size
-    faces = []
+    outlines = []
     for _ in range(counts[1]):
         corners = body[at]
-        numbers = struct.unpack_from(f"<{corners}I", body, at + 1)
+        numbers = struct.unpack_from(f"<{corners}i", body, at + 1)
         at += 1 + 4 * corners
-        faces.append(([points[i] for i in numbers], tuple(body[at:at + 3])))
-        at += 3
-    if not faces:
+        if outlines and numbers[:2] == (outlines[-1][0], outlines[-1][-1]):   # the second half of a quad: faces share no vertices
+            outlines[-1] += numbers[2:]
+        else:
+            outlines.append(numbers)
+    if not outlines:
         raise NotOurs
-    edge = struct.Struct("<2I3B")
-    edges = [edge.unpack_from(body, at + i * edge.size) for i in range(int(names[2][1]) if has_edges else 0)]
-    return faces, [([points[first], points[second]], tuple(colour)) for first, second, *colour in edges]
+    edges = [struct.unpack_from("<2i", body, at + 8 * i) for i in range(counts[2] if has_edges else 0)]
+    return tuple([([vertices[i][:3] for i in numbers], vertices[numbers[0]][3:]) for numbers in part] for part in (outlines, edges))
 
 
 def corner_normals(faces):

@@ -73,7 +73,7 @@ class Checking {
 
  private:
   void read_meshes() {
-    MeshReader reader(streams_, options_.lenient);
+    MeshReader reader(streams_, options_.lenient, options_.single);
     a_ = reader.read(options_.file_a);
     b_ = reader.read(options_.file_b);
     left_out_ = reader.faces_left_out();

@@ -18,6 +18,7 @@ struct CheckOptions {
   std::string pose_matrix;
   std::string poses_file;  ///< CSV; empty: one certificate
   bool lenient = false;    ///< faces that cannot be used are left out, as they were for `collide`
+  bool single = false;     ///< coordinates are rounded to single precision
 };
 
 /// Runs it and returns the exit code: exit_refused if a certificate does not hold.

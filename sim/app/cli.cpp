@@ -70,6 +70,7 @@ struct MeshPairsOptions {
   std::uint64_t limit = 0;
   std::string ply;       ///< path of the coloured picture; empty: none
   bool lenient = false;  ///< faces that cannot be used are left out
+  bool single = false;   ///< coordinates are rounded to single precision
   EngineOptions engine;
   Format format = Format::table;
 };
@@ -140,7 +141,7 @@ Summary answer_meshes(const MeshPairsOptions& options, const Streams& streams) {
   check_picture_name(options.ply);
   check_standard_input({options.file_a, options.file_b});
   const Eigen::Isometry3d pose = pose_of(options);
-  MeshReader reader(streams, options.lenient);
+  MeshReader reader(streams, options.lenient, options.single);
   const Mesh a = reader.read(options.file_a);
   const Mesh b = transformed(reader.read(options.file_b), pose);
   std::optional<HitPicture> picture;
@@ -216,6 +217,9 @@ CLI::Option* add_meshes(CLI::App& command, Options& options) {
   add_text(command, "B", options.file_b, "mesh that is placed")->required();
   command.add_flag("--lenient", options.lenient,
                    "leave out faces that cannot be used, name them on standard error, and end with exit code 4");
+  command.add_flag("--single", options.single,
+                   "round the coordinates of both files to single precision, so that parts from programs that round "
+                   "and from others meet");
   return add_text(command, "--pose", options.pose,
                   "tx,ty,tz[,rx,ry,rz]: rotate B by degrees about x, then y, then z, then move it");
 }

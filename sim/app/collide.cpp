@@ -301,7 +301,7 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
-  MeshReader reader(streams, options.lenient);
+  MeshReader reader(streams, options.lenient, options.single);
   const Object a = reader.read_object(options.file_a);
   const Object b = reader.read_object(options.file_b);
   Totals totals;
@@ -366,7 +366,7 @@ bool note_shells(const CollideOptions& options, const char* name, const std::str
 /// How the two solids lie to each other, in a line.
 int answer_solids(const CollideOptions& options, Device& device, const Streams& streams) {
   const Pose pose = parse_pose_options(options.pose, options.pose_matrix);
-  MeshReader reader(streams, options.lenient);
+  MeshReader reader(streams, options.lenient, options.single);
   const Object a = reader.read_object(options.file_a);
   const Object b = reader.read_object(options.file_b);
   SolidResult relation;
@@ -396,6 +396,7 @@ PointCloud load_cloud(const CollideOptions& options, const Streams& streams) {
   std::size_t left_out = 0;
   LoadPointsOptions load;
   load.points_left_out = &left_out;
+  load.single_precision = options.single;
   std::vector<Vec3d> points;
   try {
     points = options.file_a == "-" ? parse_points(read_all(streams.in), "-", load) : load_points(options.file_a, load);
@@ -439,7 +440,7 @@ int answer_points(const CollideOptions& options, const Streams& streams) {
   CloudRequest request;
   set_contacts(options, request);
   const PointCloud cloud = load_cloud(options, streams);
-  MeshReader reader(streams, options.lenient);
+  MeshReader reader(streams, options.lenient, options.single);
   const Object b = reader.read_object(options.file_b);
   Totals totals;
   CloudResult result;
@@ -492,7 +493,7 @@ class PosesRunner {
                       "the file is empty; write a first row with the column names r00 to r22, tx, ty, tz");
     }
     const PoseColumns columns(row, options_.poses_file, options_.expect);
-    MeshReader meshes(streams_, options_.lenient);
+    MeshReader meshes(streams_, options_.lenient, options_.single);
     const Object a = meshes.read_object(options_.file_a);
     const Object b = meshes.read_object(options_.file_b);
     totals_.left_out = meshes.faces_left_out();

@@ -33,6 +33,7 @@ struct CollideOptions {
   InsideRule inside = InsideRule::odd;
   bool exit_code = false;        ///< exit code 5 if a query found a contact
   bool lenient = false;          ///< faces that cannot be used are left out
+  bool single = false;           ///< coordinates are rounded to single precision
   std::string device = "cpu";
   Format format = Format::table;
   std::string expect;       ///< column of the file; empty: none

@@ -113,7 +113,7 @@ int run_distance(const DistanceOptions& options, const Streams& streams) {
   std::optional<Vec3d> direction;
   if (!options.along.empty()) direction = parse_direction(options.along);
   const Pose pose = parse_pose_options(options.pose, options.pose_matrix);
-  MeshReader reader(streams, options.lenient);
+  MeshReader reader(streams, options.lenient, options.single);
   const Scene scene = {reader.read_object(options.file_a), reader.read_object(options.file_b), pose};
   try {
     if (direction) {

@@ -21,6 +21,7 @@ struct DistanceOptions {
   std::string along;           ///< x,y,z: how far must B move in this direction, in place of the distance; empty: none
   std::string ply;             ///< both meshes and the line between the nearest points; empty: none
   bool lenient = false;        ///< faces that cannot be used are left out
+  bool single = false;         ///< coordinates are rounded to single precision
   Format format = Format::table;
 };
 

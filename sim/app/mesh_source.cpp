@@ -57,6 +57,7 @@ Mesh MeshReader::read(const std::string& path) {
   LoadOptions options;
   options.kinds = FaceKinds::triangles_and_quads;
   options.lenient = lenient_;
+  options.single_precision = single_;
   options.faces_left_out = &left_out;
   try {
     Mesh mesh = path == "-" ? read_standard_input(streams_.in, options) : load_mesh(path, options);

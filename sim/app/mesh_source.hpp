@@ -23,7 +23,9 @@ namespace cchip::app {
 class MeshReader {
  public:
   /// \param lenient faces that cannot be used are left out, with a line on `err` for each
-  MeshReader(const Streams& streams, bool lenient) : streams_(streams), lenient_(lenient) {}
+  /// \param single coordinates are rounded to single precision
+  MeshReader(const Streams& streams, bool lenient, bool single)
+      : streams_(streams), lenient_(lenient), single_(single) {}
   /// Triangles and quads of a file, "-": of standard input; a line on `err` if other faces had to be cut.
   /// \throws UsageError the file is missing, broken or has no faces
   Mesh read(const std::string& path);
@@ -37,6 +39,7 @@ class MeshReader {
  private:
   const Streams& streams_;
   bool lenient_;
+  bool single_;
   std::uint64_t faces_left_out_ = 0;
 };
 

@@ -391,18 +391,20 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
   check(folder.file(""), ": is a folder");
   check("/dev/null", ": is a device, not a file or a pipe");
   check(folder.write("empty.obj", ""), ": the file is empty (0 bytes)");
-  check(folder.write("part.step", "ISO-10303-21;"), ": holds surfaces of CAD, not a mesh", "; mesh it first");
-  check(folder.write("scene.dae", "<COLLADA>"), ": meshes of this format are not read", "; convert it");
-  for (const char* const name : {"scene.glb", "scene.gltf", "part.3mf", "PART.3MF"}) {
-    check(folder.write(name, "glTF"), ": meshes of this format are not read", "; in Python load it with trimesh");
+  check(folder.write("part.step", "ISO-10303-21;"), ": is STEP (surfaces of CAD, not a mesh), which is not read",
+        "; mesh it first, for example with `gmsh -2 part.step -o part.stl`");
+  check(folder.write("scene.dae", "<COLLADA>"), ": is COLLADA, which is not read", "; convert it to PLY with MeshLab");
+  for (const char* const name : {"scene.glb", "scene.gltf", "no_end"}) {
+    check(folder.write(name, "glTF"), ": is glTF, which is not read", "; convert it with trimesh");
   }
   // 3MF is a folder packed by zip.
-  check(folder.write("real.3mf", "PK\3\4 and so on"), ": meshes of this format are not read",
-        "; in Python load it with trimesh");
+  for (const char* const name : {"real.3mf", "REAL.3MF"}) {
+    check(folder.write(name, "PK\3\4 and so on"), ": is 3MF, which is not read", "; convert it with trimesh");
+  }
   check(folder.write("notes.txt", "hello\n"), ": cannot be read as a mesh");
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const auto obj = [&](const std::string& text) { return folder.write("t.obj", text); };
-  check(obj("v 0 0 0\nv 1 0 0\nl 1 2\np 1\n"), ": the file holds no faces");
+  check(obj("v 0 0 0\nv 1 0 0\nl 1 2\np 1\n"), ": the file holds no faces, only 2 vertices");
   check(obj(three + "f 1 2 4\n"), ":4: face 0: vertex index 4 is out of range (the mesh has 3 vertices)");
   check(obj(three + "f 1 2 3\nf 1 2 0\n"),
         ":5: face 1: vertex index 0 is out of range (the mesh has 3 vertices so far)");
@@ -421,8 +423,8 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
   check(obj(fourth + "0 0 -inf\nf 1 2 4\n"), ":5: vertex 3 is not finite, and face 1 uses it");
   check(obj(fourth + "0 0 1e400\nf 1 2 4\n"), ":5: vertex 3 is not finite, and face 1 uses it");
   check(obj(fourth + "0 0 0 2\nf 1 2 4\n"), ":5: vertex 3 has a weight other than 1, and face 1 uses it");
-  check(obj(three + "surf 0 1 0 1\n"),
-        ":4: the line is no statement of OBJ, or one of free-form surfaces, which are not read");
+  check(obj(three + "surf 0 1 0 1\n"), ":4: 'surf' is a statement of free-form surfaces, which are not read");
+  check(obj(three + "vc 1 0 0\n"), ":4: 'vc' is no statement of OBJ", "; check the name of the file, or leave such");
   const auto off = [&](const std::string& text) { return folder.write("t.off", text); };
   const std::string square = "0 0 0\n1 0 0\n0 1 0\n";
   check(off("OFT\n3 1 0\n"), ":1: the file does not begin with OFF");
@@ -469,10 +471,11 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
   check(stl("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendloop\n"), ":5: 'vertex' is missing");
   check(stl("solid x\nendsolid x\n"), ": the file holds no faces");
   // formats under the names of others
-  const char* const no_obj = ":1: the line is no statement of OBJ, or one of free-form surfaces, which are not read";
-  check(obj(binary_stl(2, 2)), no_obj, "; this looks like binary STL: let the name end with .stl");
-  check(obj("solid x\nendsolid x\n"), no_obj, "; this looks like STL: let the name end with .stl");
-  check(obj("OFF\n3 1 0\n"), no_obj, "; this looks like OFF: let the name end with .off");
+  const char* const no_obj = " is no statement of OBJ; this looks like ";
+  CHECK_THAT(message_of(obj(binary_stl(2, 2))),
+             Catch::Contains(no_obj + std::string("binary STL: let the name end with .stl")));
+  check(obj("solid x\nendsolid x\n"), ":1: 'solid'", (no_obj + std::string("STL: let the name end with .stl")).c_str());
+  check(obj("OFF\n3 1 0\n"), ":1: 'OFF'", (no_obj + std::string("OFF: let the name end with .off")).c_str());
   check(stl(ply_header("ascii", 3, 1)), ": the", " header announces ");
   CHECK(message_of(folder.file("t.stl")).find("; this looks like PLY: let the name end with .ply") !=
         std::string::npos);
@@ -756,6 +759,149 @@ TEST_CASE("mesh file: faces that cannot be used are left out if asked for", "[re
   CHECK_THROWS_WITH(cchip::parse_mesh(text + "f 1 x 2\n", "t.obj", options), Catch::Contains("'x' is not a number"));
 }
 
+TEST_CASE("mesh file: lines of an OBJ with unknown words are left out if asked for", "[ref][mesh_file]") {
+  const std::string text = "v 0 0 0\nv 4 0 0\nv 0 4 0\nvc 1 0 0\nvc 0 1 0\nf 1 2 3\n";
+  cchip::LoadOptions options;
+  options.lenient = true;
+  std::size_t left_out = 99;
+  options.faces_left_out = &left_out;
+  const Mesh mesh = cchip::parse_mesh(text, "t.obj", options);
+  CHECK(mesh.faces.size() == 1);
+  CHECK(mesh.notes ==
+        std::vector<std::string>{"2 statements that are not of OBJ were left out, the first 'vc' in line 4"});
+  CHECK(left_out == 0);
+  for (const char* const word : {"surf", "bzp", "res"}) {
+    CHECK_THROWS_WITH(cchip::parse_mesh(text + word + " 0 1\n", "t.obj", options),
+                      Catch::Contains("t.obj:7: '" + std::string(word) + "' is a statement of free-form surfaces"));
+  }
+}
+
+TEST_CASE("mesh file: an OBJ without an end of its name", "[ref][mesh_file]") {
+  for (const char* const begin : {"", "# made by hand\n\n", "mtllib a.mtl\n", "o part\n", "g\n", "s off\n"}) {
+    CHECK(cchip::parse_mesh(begin + std::string("v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n"), "-").faces.size() == 1);
+  }
+  CHECK_THROWS_WITH(cchip::parse_mesh("velocity 1\n", "-"), Catch::Contains("cannot be read as a mesh"));
+}
+
+TEST_CASE("mesh file: a binary STL with more triangles than its header says", "[ref][mesh_file]") {
+  const auto with_count = [](std::uint8_t count, std::size_t triangles) {
+    std::string file = binary_stl(static_cast<std::uint32_t>(triangles), triangles);
+    file[80] = static_cast<char>(count);
+    return file;
+  };
+  const auto note_of = [](const std::string& file) {
+    const Mesh mesh = cchip::parse_mesh(file, "t.stl");
+    return std::to_string(mesh.faces.size()) + ": " + (mesh.notes.empty() ? "" : mesh.notes.at(0));
+  };
+  CHECK(note_of(with_count(3, 3)) == "3: ");
+  for (const std::uint8_t count : {std::uint8_t{0}, std::uint8_t{1}, std::uint8_t{2}}) {
+    const std::string expected =
+        "3: the header announces " + std::to_string(count) + " triangles, the file holds 3: all of them were read";
+    CHECK(note_of(with_count(count, 3)) == expected);
+    std::string solid = with_count(count, 3);
+    solid.replace(0, 6, std::string("solid\0", 6));
+    CHECK(note_of(solid) == expected);
+  }
+  // Padding is none, other bytes are noted, and without a single triangle they are an error.
+  CHECK(note_of(with_count(2, 2) + std::string(50, '\0')) == "2: ");
+  CHECK(note_of(with_count(2, 2) + std::string(7, 'c')) ==
+        "2: 7 bytes behind the 2 triangles that the header announces were left out; they are no triangles");
+  CHECK(note_of(with_count(2, 2) + std::string(50, '\xff')) ==
+        "2: 50 bytes behind the 2 triangles that the header announces were left out; they are no triangles");
+  CHECK_THROWS_WITH(
+      cchip::parse_mesh(with_count(0, 2) + "abc", "t.stl"),
+      "t.stl: the header announces 0 triangles, and the 103 bytes behind it are none; write the file again");
+  CHECK_THROWS_WITH(cchip::parse_mesh(with_count(3, 2), "t.stl"),
+                    Catch::Contains("the header announces 234 bytes, the file has 184"));
+}
+
+TEST_CASE("mesh file: OFF with vertices on the line of counts", "[ref][mesh_file]") {
+  const std::string points = "0 0 0 4 0 0 0 4 0 0 0 2 4 0 2 0 4 2";
+  const std::string faces = "3 0 1 2 3 3 4 5";
+  for (const std::string& text : std::vector<std::string>{
+           "OFF 6 2 0 " + points + "\n" + faces, "OFF 6 2 0 " + points + " " + faces,
+           "OFF\n6 2 0 " + points + "\n" + faces, "OFF 6\n2 0 0 0 0 4 0 0 0 4 0\n0 0 2 4 0 2 0 4 2 3 0 1 2\n3 3 4 5",
+           "6 2 0 " + points + "\n" + faces, "OFF 6 2 0 " + points + "\n3 0 1 2 255 0 0\n3 3 4 5 0 255 0",
+           "OFF 6 2\n" + points + "\n" + faces, "OFF 6 2\n" + points + "\n3 0 1 2 255 0 0\n3 3 4 5 0 255 0",
+           "OFF 6 2 0.0 0 0 4 0 0 0 4 0 0 0 2 4 0 2 0 4 2\n" + faces}) {
+    INFO(text);
+    const Mesh mesh = cchip::parse_mesh(text, "t.off");
+    REQUIRE(mesh.faces.size() == 2);
+    CHECK(mesh.vertices.at(1) == Vec3d(4, 0, 0));
+    CHECK(mesh.vertices.at(5) == Vec3d(0, 4, 2));
+    CHECK(mesh.faces[1].vertex == std::array<std::uint32_t, 4>{3, 4, 5, 0});
+  }
+  CHECK_THROWS_WITH(cchip::parse_mesh("OFF 6 2 0 " + points + "\n3 0 1 2", "t.off"), Catch::Contains("t.off:"));
+}
+
+TEST_CASE("mesh file: coordinates are rounded to single precision if asked for", "[ref][mesh_file]") {
+  const std::string text = "v 0.1 0 0\nv 4 1e-60 0\nv 0 5000.7 0\nf 1 2 3\n";
+  cchip::LoadOptions options;
+  options.single_precision = true;
+  const Mesh read = cchip::parse_mesh(text, "t.obj", options);
+  Mesh rounded = cchip::parse_mesh(text, "t.obj");
+  CHECK(rounded.vertices != read.vertices);
+  cchip::round_to_single(rounded);
+  CHECK(rounded.vertices == read.vertices);
+  CHECK(read.vertices ==
+        std::vector<Vec3d>{{static_cast<double>(0.1F), 0, 0}, {4, 0, 0}, {0, static_cast<double>(5000.7F), 0}});
+  // Before faces are cut: this dent is smaller than the rounding.
+  const std::string dent = "v 1000 0 0\nv 1001 0 0\nv 1000.49999999 0.49999999 0\nv 1000 1 0\nf 1 2 3 4\n";
+  options.kinds = cchip::FaceKinds::triangles_and_quads;
+  CHECK(cchip::parse_mesh(dent, "t.obj", options).faces.size() == 1);
+  CHECK(cchip::parse_mesh(dent, "t.obj", options.kinds).faces.size() == 2);
+  CHECK_THROWS_WITH(cchip::parse_mesh("v 1 2 3\nv 4e38 0 0\nv 0 1 0\nf 1 2 3\n", "t.obj", options),
+                    "t.obj: vertex 1 is beyond the range of single precision; leave out --single (single_precision)");
+  rounded.vertices[2][0] = -1e300;
+  CHECK_THROWS_AS(cchip::round_to_single(rounded), std::invalid_argument);
+}
+
+TEST_CASE("mesh file: what is no mesh is named, with what to do", "[ref][mesh_file]") {
+  const auto message = [](const std::string& file, const std::string& name) -> std::string {
+    try {
+      cchip::parse_mesh(file, name);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string long_text(300, 'x');
+  const auto check = [&](const std::string& file, const std::string& name, const std::string& begin) {
+    const std::string text = message(file + long_text, name);
+    INFO(text);
+    CHECK(text.rfind(name + ": " + begin, 0) == 0);
+    CHECK(text.find('\n') == std::string::npos);
+    CHECK(text.find('%') == (name == "a.las" ? text.find("%.17g") : std::string::npos));
+  };
+  for (const char* const name : {"a.stl", "a.obj", "a.ply", "a.off", "a.dat", "a"}) {
+    check("version https://git-lfs.github.com/spec/v1\noid sha256:12\n", name,
+          "is a Git LFS pointer, not the file itself; run");
+    check("<!DOCTYPE html>\n<html>", name, "is a web page (HTML), not a mesh; download");
+    check("\n <HTML lang=en>", name, "is a web page (HTML)");
+    check("ISO-10303-21;\nHEADER;FILE_SCHEMA(('IFC4'));", name, "is IFC, which is not read; write");
+    check("ISO-10303-21;\nHEADER;FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));", name, "is STEP (surfaces");
+  }
+  check("# vtk DataFile Version 3.0\n", "a.vtk", "is VTK, which is not read; convert it with PyVista");
+  check("<?xml version=\"1.0\"?><VTKFile>", "a.vtp", "is VTK, which is not read; convert it with PyVista");
+  check("$MeshFormat\n", "a.msh", "is Gmsh, which is not read; convert it with `meshio convert a.msh part.obj`");
+  check("#usda 1.0\n", "a.usd", "is USD, which is not read; open it in Blender");
+  check("LASF", "a.las", "is LAS, which is not read; write its points as text");
+  check("#VRML V2.0 utf8\n", "folder/part.wrl", "is VRML, which is not read; convert it to PLY with MeshLab");
+  check("0 0 0\n1 1 1\n", "a.xyz",
+        "holds points, no faces; to ask about a point cloud, name it first, as A, and give --points");
+  check("0 0 0\n1 1 1\n", "scan.dat", "holds points, no faces");
+  check("# .PCD v0.7\n", "scan", "holds points, no faces");
+}
+
+TEST_CASE("mesh file: a PLY with an element of no faces", "[ref][mesh_file]") {
+  const std::string cloud =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face "
+      "0\nend_header\n1 2 3\n";
+  CHECK_THROWS_WITH(cchip::parse_mesh(cloud, "t.ply"),
+                    "t.ply: the file holds no faces, only 1 vertices; to ask about a point cloud, name it first, as A, "
+                    "and give --points (load_points())");
+}
+
 TEST_CASE("mesh file: gzip is unpacked", "[ref][mesh_file]") {
   // Python's gzip.compress() of "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n".
   const char bytes[] =
@@ -795,7 +941,7 @@ TEST_CASE("mesh file: gzip is unpacked", "[ref][mesh_file]") {
                     Catch::StartsWith("t.obj.gz: the gzip file holds more than 31 bytes, which is the limit; "));
   // A message about the content names the packed file and the line inside; the extension before .gz counts.
   CHECK_THROWS_WITH(cchip::parse_mesh(packed, "t.off.gz"), Catch::StartsWith("t.off.gz:1: "));
-  CHECK_THROWS_WITH(cchip::parse_mesh(packed, "t.gz"), Catch::Contains("cannot be read as a mesh"));
+  CHECK(cchip::parse_mesh(packed, "t.gz").faces.size() == 1);
 }
 
 TEST_CASE("mesh file: packed files are named", "[ref][mesh_file]") {
@@ -959,16 +1105,39 @@ TEST_CASE("mesh file: a written PLY holds the same faces and their colours", "[r
   const TemporaryFolder folder;
   Mesh mesh;
   mesh.vertices = {{0, 0, 0.1}, {1, 0, 1e-300}, {1, 1.000000001, 0}, {0, 1, 0}};
-  mesh.faces = {{cchip::Kind::tri, {2, 1, 0, 0}}, {cchip::Kind::quad, {0, 1, 2, 3}}};
-  std::ostringstream out;
-  cchip::write_ply(out, mesh, {{1, 2, 3}, {250, 251, 252}});
-  const Mesh read = load_mesh(folder.write("t.ply", out.str()), cchip::FaceKinds::triangles_and_quads);
-  REQUIRE(read.faces.size() == 2);
-  for (std::size_t i = 0; i < 2; ++i) {
-    CHECK(read.faces[i].kind == mesh.faces[i].kind);
-    for (std::size_t k = 0; k < 3 + i; ++k) CHECK(read.primitive(i).v[k] == mesh.primitive(i).v[k]);
+  const auto written = [&](const std::vector<Mesh::Face>& faces, const std::vector<cchip::Colour>& colours) {
+    mesh.faces = faces;
+    std::ostringstream out;
+    cchip::write_ply(out, mesh, colours);
+    return out.str();
+  };
+  const auto read = [&](const std::string& ply) {
+    return load_mesh(folder.write("t.ply", ply), cchip::FaceKinds::triangles_and_quads);
+  };
+  const Mesh::Face triangle = {cchip::Kind::tri, {2, 1, 0, 0}};
+  const Mesh::Face quad = {cchip::Kind::quad, {0, 1, 2, 3}};
+  for (const Mesh::Face& face : {triangle, quad}) {
+    const Mesh same = read(written({face, face}, {{1, 2, 3}, {4, 5, 6}}));
+    REQUIRE(same.faces.size() == 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CHECK(same.faces[i].kind == face.kind);
+      for (std::size_t k = 0; k < mesh.primitive(i).vertex_count(); ++k) {
+        CHECK(same.primitive(i).v[k] == mesh.primitive(i).v[k]);
+      }
+    }
   }
-  CHECK(out.str().substr(out.str().size() - 3) == "\xfa\xfb\xfc");
+  // Lists of one length only: a quad beside a triangle is cut.
+  const std::string mixed = written({triangle, quad}, {{1, 2, 3}, {250, 251, 252}});
+  const Mesh cut = read(mixed);
+  REQUIRE(cut.faces.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) CHECK(cut.faces[i].kind == cchip::Kind::tri);
+  CHECK(cut.faces[1].vertex == std::array<std::uint32_t, 4>{3, 4, 5, 0});
+  CHECK(cut.faces[2].vertex == std::array<std::uint32_t, 4>{3, 5, 6, 0});
+  const std::size_t vertices = mixed.find("end_header\n") + 11;
+  for (std::size_t i = 0; i < 7; ++i) {
+    CHECK(mixed.substr(vertices + 27 * i + 24, 3) == (i < 3 ? "\1\2\3" : "\xfa\xfb\xfc"));
+  }
+  std::ostringstream out;
   CHECK_THROWS_AS(cchip::write_ply(out, mesh, {{1, 2, 3}}), std::invalid_argument);
 }
 
@@ -982,12 +1151,12 @@ TEST_CASE("mesh file: a written PLY holds curves as edges", "[ref][mesh_file]") 
   std::ostringstream out;
   cchip::write_ply(out, mesh, {{9, 9, 9}}, curves);
   CHECK(out.str().find("element vertex 8\n") != std::string::npos);
-  CHECK(out.str().find("element edge 4\nproperty uint vertex1\nproperty uint vertex2\n") != std::string::npos);
-  // What follows the face: a triangle of the vertices 3, 4, 5 and a line from 6 to 7, each with its colour.
+  CHECK(out.str().find("element edge 4\nproperty int vertex1\nproperty int vertex2\nend_header\n") !=
+        std::string::npos);
+  // What follows the face: a triangle of the vertices 3, 4, 5 and a line from 6 to 7. Their vertices have the colours.
   std::string edges;
-  for (const char* const edge : {"\3\4\1\2\3", "\4\5\1\2\3", "\5\3\1\2\3", "\6\7\4\5\6"}) {
+  for (const char* const edge : {"\3\4", "\4\5", "\5\3", "\6\7"}) {
     for (int k = 0; k < 2; ++k) edges += std::string(1, edge[k]) + std::string(3, '\0');
-    edges += edge + 2;
   }
   CHECK(out.str().substr(out.str().size() - edges.size()) == edges);
   const Mesh read = load_mesh(folder.write("t.ply", out.str()), cchip::FaceKinds::triangles_and_quads);

@@ -439,7 +439,7 @@ TEST_CASE("collide: the picture has the curves where the surfaces cross", "[syst
     const auto at = content.find("element edge ");
     if (at == std::string::npos) return std::vector<std::pair<Vec3d, Vec3d>>();
     const std::size_t count = std::stoul(content.substr(at + 13));
-    // Vertices: three doubles and a colour; edges, at the end: two numbers and a colour.
+    // Vertices: three doubles and a colour; edges, at the end: two numbers.
     const auto number = [&](std::size_t place) {
       std::uint32_t value = 0;
       std::memcpy(&value, content.data() + place, sizeof value);
@@ -447,7 +447,7 @@ TEST_CASE("collide: the picture has the curves where the surfaces cross", "[syst
     };
     std::vector<std::pair<Vec3d, Vec3d>> edges;
     for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t edge = content.size() - 11 * (count - i);
+      const std::size_t edge = content.size() - 8 * (count - i);
       const auto point = [&](std::uint32_t vertex) {
         Vec3d p;
         std::memcpy(p.data(), content.data() + end + 11 + 27 * std::size_t{vertex}, 24);

@@ -139,23 +139,23 @@ TEST_CASE("meshpairs: a PLY shows the faces that hit", "[system][meshpairs]") {
   const Mesh a = load_mesh(file_a, FaceKinds::triangles_and_quads);
   const Mesh b = transformed(load_mesh(file_b), parse_pose(pose));
   const Mesh picture = load_mesh(ply, FaceKinds::triangles_and_quads);
-  REQUIRE(picture.faces.size() == a.faces.size() + b.faces.size());
-  // The colours of the faces end the file: per face a count, its vertices and three bytes.
+  REQUIRE(picture.faces.size() == 2 * a.faces.size() + b.faces.size());  // quads beside triangles are cut in two
+  // Each face has its own vertices: three doubles and three bytes of colour.
   const std::string content = folder.read("hits.ply");
-  std::size_t at = content.size();
+  std::size_t at = content.find("end_header\n") + 11;
+  std::size_t vertex = 0;
   std::map<std::string, std::size_t> colours_a;
   std::map<std::string, std::size_t> colours_b;
-  for (std::size_t i = picture.faces.size(); i > 0; --i) {
-    const bool of_a = i <= a.faces.size();
-    const Primitive face = picture.primitive(i - 1);
-    const Primitive expected = of_a ? a.primitive(i - 1) : b.primitive(i - 1 - a.faces.size());
-    REQUIRE(face.kind == expected.kind);
-    for (std::size_t k = 0; k < face.vertex_count(); ++k) REQUIRE(face.v[k] == expected.v[k]);
+  for (std::size_t i = 0; i < a.faces.size() + b.faces.size(); ++i) {
+    const bool of_a = i < a.faces.size();
+    const Primitive face = of_a ? a.primitive(i) : b.primitive(i - a.faces.size());
+    for (std::size_t k = 0; k < face.vertex_count(); ++k) REQUIRE(face.v[k] == picture.vertices[vertex++]);
     bool hit = false;
     const Mesh& other = of_a ? b : a;
     for (std::size_t k = 0; k < other.faces.size() && !hit; ++k) hit = exact_intersects(face, other.primitive(k));
-    ++(of_a ? colours_a : colours_b)[content.substr(at - 3, 3) + (hit ? " hit" : "")];
-    at -= 1 + 4 * face.vertex_count() + 3;
+    for (std::size_t k = 0; k < face.vertex_count(); ++k, at += 27) {
+      ++(of_a ? colours_a : colours_b)[content.substr(at + 24, 3) + (hit ? " hit" : "")];
+    }
   }
   for (const auto& colours : {colours_a, colours_b}) {
     REQUIRE(colours.size() == 2);  // one colour for all that hit, another for all others

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cchip/mesh_io/mesh_file.hpp>
 #include <cctype>
 #include <cerrno>
@@ -13,6 +14,7 @@
 
 #include "file_content.hpp"
 #include "mesh/cut_polygon.hpp"
+#include "other_formats.hpp"
 #include "polygon_soup.hpp"
 #include "text.hpp"
 #include "unpack.hpp"
@@ -22,17 +24,23 @@ namespace {
 
 using mesh_io::FormatError;
 using mesh_io::PolygonSoup;
-using Reader = PolygonSoup (*)(std::string_view file);
+using Reader = PolygonSoup (*)(std::string_view file, bool lenient);
+
+/// A reader to which lenient makes no difference.
+template <PolygonSoup (*read)(std::string_view file)>
+PolygonSoup always(std::string_view file, bool) {
+  return read(file);
+}
 
 struct Format {
   std::string_view name;
   std::string_view end;  ///< of a file's name
   Reader reader;
 };
-constexpr Format stl = {"STL", ".stl", mesh_io::read_stl};
-constexpr Format binary_stl = {"binary STL", ".stl", mesh_io::read_stl};
-constexpr Format ply = {"PLY", ".ply", mesh_io::read_ply};
-constexpr Format off = {"OFF", ".off", mesh_io::read_off};
+constexpr Format stl = {"STL", ".stl", always<mesh_io::read_stl>};
+constexpr Format binary_stl = {"binary STL", ".stl", always<mesh_io::read_stl>};
+constexpr Format ply = {"PLY", ".ply", always<mesh_io::read_ply>};
+constexpr Format off = {"OFF", ".off", always<mesh_io::read_off>};
 
 /// The format that the beginning of a file shows, regardless of its name; nothing for OBJ and for what is not known.
 const Format* format_shown_by(std::string_view file) {
@@ -44,16 +52,24 @@ const Format* format_shown_by(std::string_view file) {
   return nullptr;
 }
 
+/// True if the first line that is no comment is one with which an OBJ begins.
+bool begins_as_obj(std::string_view file) {
+  mesh_io::Lines lines(file.substr(0, std::size_t{1} << 16), {true, false});
+  if (!lines.next()) return false;
+  constexpr std::array<std::string_view, 8> words = {"v", "vn", "vt", "o", "g", "s", "mtllib", "usemtl"};
+  return std::find(words.begin(), words.end(), lines.words()[0]) != words.end();
+}
+
 /// The reader for the extension of a name, or else the one whose first word begins the file, or else nothing.
 Reader reader_of(const std::string& path, std::string_view file) {
-  std::string end = std::filesystem::path(path).extension().string();
-  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string end = mesh_io::extension_of(path);
   if (end == ".obj") return mesh_io::read_obj;
-  if (end == ".off") return mesh_io::read_off;
-  if (end == ".ply") return mesh_io::read_ply;
-  if (end == ".stl") return mesh_io::read_stl;
+  if (end == ".off") return always<mesh_io::read_off>;
+  if (end == ".ply") return always<mesh_io::read_ply>;
+  if (end == ".stl") return always<mesh_io::read_stl>;
   const Format* shown = format_shown_by(file);
-  return shown == nullptr ? nullptr : shown->reader;
+  if (shown != nullptr) return shown->reader;
+  return begins_as_obj(file) ? mesh_io::read_obj : nullptr;
 }
 
 constexpr std::string_view gzip = "gzip";
@@ -74,39 +90,13 @@ std::string_view packer_of(std::string_view file) {
   return {};
 }
 
-/// What to do about a file of a known format that is not read, by its extension; empty for others.
-std::string not_read(const std::string& name) {
-  std::string end = std::filesystem::path(name).extension().string();
-  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
-  for (const char* const cad : {".step", ".stp", ".iges", ".igs", ".brep"}) {
-    if (end == cad) {
-      return ": holds surfaces of CAD, not a mesh; mesh it first, for example with `gmsh -2 part" + end +
-             " -o part.stl` or with FreeCAD";
-    }
-  }
-  for (const char* const tree : {".3mf", ".gltf", ".glb"}) {
-    if (end == tree) {
-      return ": meshes of this format are not read; in Python load it with trimesh, which keeps its numbers, and pass "
-             "vertices and faces to collisionchip.Object, or convert it to OBJ, OFF, PLY or STL, for example with "
-             "Blender, which rounds them";
-    }
-  }
-  for (const char* const other : {".dae", ".fbx", ".3ds", ".amf", ".blend", ".wrl", ".x3d", ".ifc", ".x"}) {
-    if (end == other) {
-      return ": meshes of this format are not read; convert it to OBJ, OFF, PLY or STL, for example with `assimp "
-             "export mesh" +
-             end + " mesh.obj` or with Blender";
-    }
-  }
-  return {};
-}
-
 /// What to do about an error.
 std::string remedy(const FormatError& error, Reader reader, std::string_view file) {
   const Format* shown = format_shown_by(file);
   if (shown != nullptr && shown->reader != reader) {
     return "; this looks like " + std::string(shown->name) + ": let the name end with " + std::string(shown->end);
   }
+  if (!error.remedy.empty()) return "; " + std::string(error.remedy);
   return std::string_view(error.what()).find("; ") == std::string_view::npos ? "; repair the file or write it again"
                                                                              : "";
 }
@@ -117,6 +107,7 @@ class Builder {
   Builder(PolygonSoup soup, const LoadOptions& options) : soup_(std::move(soup)), options_(options) {}
 
   Mesh build() {
+    if (options_.single_precision) soup_.round_to_single();
     if (std::max(soup_.points.size(), soup_.polygons.size()) > std::numeric_limits<std::uint32_t>::max()) {
       throw FormatError("more than 2^32 vertices or faces are not read");
     }
@@ -137,7 +128,7 @@ class Builder {
     if (faces_left_out_ > 0) {
       soup_.notes.push_back(std::to_string(faces_left_out_) + " faces were left out because they cannot be used");
     }
-    if (mesh_.faces.empty()) throw FormatError("the file holds no faces");
+    if (mesh_.faces.empty()) refuse_empty();
     if (mesh_.polygons_cut == 0 && !left_out_) mesh_.file_face.clear();
     mesh_.vertices = std::move(soup_.points);
     for (const auto& [point, why] : soup_.unusable) {
@@ -148,6 +139,13 @@ class Builder {
   }
 
  private:
+  [[noreturn]] void refuse_empty() const {
+    const std::string vertices = std::to_string(soup_.points.size());
+    const bool cloud = soup_.polygons.empty() && !soup_.points.empty();
+    throw FormatError("the file holds no faces" +
+                      (cloud ? ", only " + vertices + " vertices; " + std::string(mesh_io::points_come_first) : ""));
+  }
+
   void add_polygon(std::size_t number) {
     const auto bad = soup_.bad_polygons.find(number);
     if (bad != soup_.bad_polygons.end()) throw FormatError(bad->second, soup_.polygons[number].line);
@@ -216,6 +214,13 @@ LoadOptions options_for(FaceKinds kinds) {
 
 }  // namespace
 
+void round_to_single(Mesh& mesh) {
+  const std::size_t bad = mesh_io::round_to_single(mesh.vertices);
+  if (bad == mesh.vertices.size()) return;
+  throw std::invalid_argument("round_to_single: vertex " + std::to_string(bad) +
+                              " is beyond the range of single precision; keep its doubles");
+}
+
 Mesh load_mesh(const std::string& path, FaceKinds kinds) { return load_mesh(path, options_for(kinds)); }
 
 Mesh load_mesh(const std::string& path, const LoadOptions& options) {
@@ -228,25 +233,31 @@ Mesh parse_mesh(std::string_view file, const std::string& name, FaceKinds kinds)
 
 namespace {
 
+/// About a file that no reader takes.
+std::string why_no_mesh(std::string_view file, const std::string& name) {
+  std::string why = mesh_io::not_read_by_name(name);
+  if (why.empty()) why = mesh_io::points_not_mesh(file, name);
+  return why.empty() ? "cannot be read as a mesh; give an OBJ, OFF, PLY or STL file" : why;
+}
+
 /// \param name of the file; its extension says the format, messages begin with `path`
 Mesh parse_unpacked(std::string_view content, const std::string& name, const std::string& path,
                     const LoadOptions& options) {
   const std::string_view file = mesh_io::is_binary_stl(content) ? content : mesh_io::without_mark(content);
-  const std::string format_not_read = not_read(name);
+  if (const std::string why = mesh_io::not_read_by_content(file, name); !why.empty()) {
+    throw std::runtime_error(path + ": " + why);
+  }
+  const std::string format_not_read = mesh_io::not_read_by_name(name);
   if (const std::string_view packer = packer_of(file); !packer.empty()) {
     // Some formats, such as 3MF, are packed folders: unpacking them would not help.
-    throw std::runtime_error(path + (format_not_read.empty()
-                                         ? ": is packed with " + std::string(packer) + "; unpack it first"
-                                         : format_not_read));
+    throw std::runtime_error(
+        path + ": " +
+        (format_not_read.empty() ? "is packed with " + std::string(packer) + "; unpack it first" : format_not_read));
   }
   const Reader reader = reader_of(name, file);
-  if (reader == nullptr) {
-    throw std::runtime_error(path + (format_not_read.empty()
-                                         ? ": cannot be read as a mesh; give an OBJ, OFF, PLY or STL file"
-                                         : format_not_read));
-  }
+  if (reader == nullptr) throw std::runtime_error(path + ": " + why_no_mesh(file, name));
   try {
-    Mesh mesh = Builder(reader(file), options).build();
+    Mesh mesh = Builder(reader(file, options.lenient), options).build();
     mesh.name = path;
     return mesh;
   } catch (const FormatError& error) {

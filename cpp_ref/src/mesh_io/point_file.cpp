@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <cchip/mesh_io/point_file.hpp>
-#include <cctype>
-#include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "file_content.hpp"
+#include "other_formats.hpp"
 #include "polygon_soup.hpp"
 #include "text.hpp"
 #include "unpack.hpp"
@@ -16,29 +15,23 @@ namespace {
 using mesh_io::FormatError;
 using mesh_io::PolygonSoup;
 
-PolygonSoup read_xyz(std::string_view file) {
-  PolygonSoup soup;
-  mesh_io::Lines lines(file, {true, false});
-  while (lines.next())
-    soup.add_point(Vec3d(lines.to_number(0), lines.to_number(1), lines.to_number(2)), lines.number());
-  return soup;
+/// OBJ and OFF hold points only if they have no faces.
+PolygonSoup vertices_of(PolygonSoup soup, const std::string& format) {
+  if (soup.polygons.empty()) return soup;
+  throw FormatError("is a mesh (" + format + " with faces); name the file of points first and the mesh behind it");
 }
 
 PolygonSoup read_points(std::string_view file, const std::string& name) {
-  std::string end = std::filesystem::path(name).extension().string();
-  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
-  for (const char* const other : {".las", ".laz", ".e57", ".obj", ".off", ".stl"}) {
-    if (end == other) {
-      throw FormatError(
-          "points of this format are not read; write them as PLY, PCD or XYZ, for example with "
-          "CloudCompare");
-    }
-  }
+  if (const std::string why = mesh_io::not_read_by_content(file, name); !why.empty()) throw FormatError(why);
+  if (const std::string why = mesh_io::no_points_by_name(name); !why.empty()) throw FormatError(why);
+  const std::string end = mesh_io::extension_of(name);
+  if (end == ".obj") return vertices_of(mesh_io::read_obj(file), "OBJ");
+  if (end == ".off") return vertices_of(mesh_io::read_off(file), "OFF");
   if (end == ".ply" || file.substr(0, 4) == "ply\n" || file.substr(0, 4) == "ply\r") return mesh_io::read_ply(file);
   // A PCD begins with a comment, or with its version.
   if (end == ".pcd" || file.substr(0, 8) == "VERSION " || file.substr(0, 7) == "# .PCD ")
     return mesh_io::read_pcd(file);
-  return read_xyz(file);
+  return mesh_io::read_xyz(file);
 }
 
 std::vector<Vec3d> usable_points(PolygonSoup soup, const LoadPointsOptions& options) {
@@ -60,6 +53,7 @@ std::vector<Vec3d> usable_points(PolygonSoup soup, const LoadPointsOptions& opti
     }
     soup.points.resize(kept);
   }
+  if (options.single_precision) soup.round_to_single();
   if (soup.points.empty()) throw FormatError("the file holds no points");
   return std::move(soup.points);
 }

@@ -21,6 +21,24 @@ void PolygonSoup::add_point(const Vec3d& point, std::size_t line) {
   points.push_back(point);
 }
 
+std::size_t round_to_single(std::vector<Vec3d>& points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (double& x : points[i]) {
+      const bool finite = std::isfinite(x);
+      if (finite && std::abs(x) > static_cast<double>(std::numeric_limits<float>::max())) return i;
+      if (finite) x = static_cast<double>(static_cast<float>(x));
+    }
+  }
+  return points.size();
+}
+
+void PolygonSoup::round_to_single() {
+  const std::size_t bad = mesh_io::round_to_single(points);
+  if (bad == points.size()) return;
+  throw FormatError("vertex " + std::to_string(bad) +
+                    " is beyond the range of single precision; leave out --single (single_precision)");
+}
+
 void PolygonSoup::add_corner(double index, std::size_t line) {
   const bool back = counting == Counting::from_1_or_back && index < 0;
   const double number = index + (back ? static_cast<double>(points.size()) : -static_cast<double>(first_index()));

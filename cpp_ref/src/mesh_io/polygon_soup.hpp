@@ -20,8 +20,13 @@ class FormatError : public std::runtime_error {
  public:
   explicit FormatError(const std::string& what, std::size_t line_number = 0)
       : std::runtime_error(what), line(line_number) {}
-  std::size_t line;  ///< counted from 1; 0: none
+  std::size_t line;         ///< counted from 1; 0: none
+  std::string_view remedy;  ///< what to do, if the message does not say it and no other format shows
 };
+
+/// Rounds points to single precision; the number of the first one with a finite coordinate beyond its range, or else
+/// the count of points.
+std::size_t round_to_single(std::vector<Vec3d>& points);
 
 struct PolygonSoup {
   /// How the file counts vertices: from 0, or from 1 with negative numbers that count back from the last one so far.
@@ -45,6 +50,8 @@ struct PolygonSoup {
 
   /// A point that is not finite is unusable.
   void add_point(const Vec3d& point, std::size_t line);
+  /// Rounds the points to single precision. \throws FormatError a finite coordinate is beyond its range
+  void round_to_single();
   /// If the index leads to a number below 0 or beyond 32 bits, the polygon is bad. \param index as the file counts
   /// \throws FormatError it is no whole number
   void add_corner(double index, std::size_t line);
@@ -59,11 +66,13 @@ struct PolygonSoup {
 // time and memory are at most proportional to its size. \throws FormatError the text is not of the format, or ends too
 // early
 
-PolygonSoup read_obj(std::string_view file);
+/// \param lenient statements that are not of OBJ are left out with a note; otherwise they are an error
+PolygonSoup read_obj(std::string_view file, bool lenient = false);
 PolygonSoup read_off(std::string_view file);
 PolygonSoup read_pcd(std::string_view file);
 PolygonSoup read_ply(std::string_view file);
 PolygonSoup read_stl(std::string_view file);
+PolygonSoup read_xyz(std::string_view file);
 
 /// True for OFF with any of its prefixes, and if the first count follows without a blank.
 bool is_off_keyword(std::string_view word);

@@ -27,6 +27,24 @@ void add_point(const Lines& lines, PolygonSoup& soup) {
   if (weighted) soup.unusable[soup.points.size() - 1] = {"has a weight other than 1", lines.number()};
 }
 
+/// Surfaces of free form, also in words of older versions.
+bool is_of_surfaces(std::string_view statement) {
+  constexpr std::array<std::string_view, 6> words = {"surf", "bzp", "bsp", "cdp", "cdc", "res"};
+  return std::find(words.begin(), words.end(), statement) != words.end();
+}
+
+[[noreturn]] void refuse_statement(const Lines& lines) {
+  const std::string_view statement = lines.words()[0];
+  const std::string word = quoted(statement);
+  if (is_of_surfaces(statement)) {
+    throw FormatError(word + " is a statement of free-form surfaces, which are not read; write the file as polygons",
+                      lines.number());
+  }
+  FormatError error(word + " is no statement of OBJ", lines.number());
+  error.remedy = "check the name of the file, or leave such lines out with --lenient (LoadOptions::lenient)";
+  throw error;
+}
+
 /// The vertex index of "v", "v/vt", "v//vn" or "v/vt/vn".
 double vertex_of(std::string_view corner, const Lines& lines) {
   const auto end = std::min(corner.find('/'), corner.size());
@@ -41,12 +59,14 @@ double vertex_of(std::string_view corner, const Lines& lines) {
 
 }  // namespace
 
-PolygonSoup read_obj(std::string_view file) {
+PolygonSoup read_obj(std::string_view file, bool lenient) {
   PolygonSoup soup;
   soup.counting = PolygonSoup::Counting::from_1_or_back;
   Lines lines(file, {true, true});
   std::size_t curves = 0;
   std::size_t first_curve = 0;
+  std::size_t unknown = 0;
+  std::string first_unknown;
   while (lines.next()) {
     const std::string_view statement = lines.words()[0];
     if (statement == "v") {
@@ -64,9 +84,13 @@ PolygonSoup read_obj(std::string_view file) {
       const bool is_curve = statement == "curv" || statement == "curv2";
       if (is_curve && curves++ == 0) first_curve = lines.number();
     } else if (std::find(without_faces.begin(), without_faces.end(), statement) == without_faces.end()) {
-      throw FormatError("the line is no statement of OBJ, or one of free-form surfaces, which are not read",
-                        lines.number());
+      if (!lenient || is_of_surfaces(statement)) refuse_statement(lines);
+      if (unknown++ == 0)
+        first_unknown = "the first " + quoted(statement) + " in line " + std::to_string(lines.number());
     }
+  }
+  if (unknown > 0) {
+    soup.notes.push_back(std::to_string(unknown) + " statements that are not of OBJ were left out, " + first_unknown);
   }
   if (curves > 0) {
     soup.notes.push_back(std::to_string(curves) + " curves were left out, the first in line " +

@@ -2,6 +2,7 @@
 // Geomview OFF as text: a vertex or a face on each line, or numbers in lines of any length.
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "polygon_soup.hpp"
 #include "text.hpp"
@@ -51,9 +52,11 @@ struct Header {
   Keyword keyword;
   std::size_t points = 0;
   std::size_t polygons = 0;
+  bool edges = false;                    ///< the count of edges, which means nothing, follows
+  std::vector<std::string_view> behind;  ///< words behind them in their line: the count of edges, even the vertices
 };
 
-/// Reads to the end of the line on which the counts end.
+/// Reads to the end of the line on which the count of faces is.
 Header read_header(Lines& lines) {
   lines.require_next("its first word");
   Header header;
@@ -80,14 +83,15 @@ Header read_header(Lines& lines) {
   if (words.size() < 2) throw FormatError("the counts of vertices and faces are missing", line);
   header.points = to_count(words[0], line);
   header.polygons = to_count(words[1], line);
-  Lines ahead = lines;
-  // the count of edges, which means nothing, may be missing or follow in a line of its own
-  if (words.size() == 2 && ahead.next() && ahead.words().size() == 1) lines = ahead;
+  header.behind.assign(words.begin() + 2, words.end());
+  Lines ahead = lines;  // the count of edges may also have a line of its own
+  header.edges = header.behind.empty() ? ahead.next() && ahead.words().size() == 1 : is_digits(header.behind[0]);
   return header;
 }
 
 PolygonSoup read_by_lines(Lines lines, const Header& header) {
   PolygonSoup soup;
+  if (header.behind.empty() && header.edges) lines.next();
   while (soup.points.size() < header.points) {
     lines.require_next("vertex " + std::to_string(soup.points.size()) + " of " + std::to_string(header.points));
     soup.add_point({lines.to_number(0), lines.to_number(1), lines.to_number(2)}, lines.number());
@@ -102,35 +106,42 @@ PolygonSoup read_by_lines(Lines lines, const Header& header) {
   return soup;
 }
 
-/// Each vertex has so many numbers, wherever lines end; behind a face its colour ends the line, or there are no
-/// colours. \throws FormatError the numbers do not end with the last face
-PolygonSoup read_by_numbers(Lines lines, const Header& header, std::size_t numbers, bool face_colours) {
+/// How a file without a line for each vertex and each face can be arranged.
+struct Arrangement {
+  std::size_t numbers;  ///< of each vertex
+  bool face_colours;    ///< each face begins a line, and behind it its colour ends the line
+};
+
+/// Numbers wherever lines end. \throws FormatError they do not end with the last face
+PolygonSoup read_by_numbers(Lines lines, const Header& header, const Arrangement& as) {
   PolygonSoup soup;
+  std::vector<std::string_view> words = header.behind;
   std::size_t at = 0;
-  bool begun = false;
   const auto next = [&] {
-    if (!begun || at == lines.words().size()) {
+    if (at == words.size()) {
       lines.require_next("the last face");
-      begun = true;
+      words = lines.words();
       at = 0;
     }
-    return lines.words()[at++];
+    return words[at++];
   };
+  if (header.edges) to_count(next(), lines.number());
   while (soup.points.size() < header.points) {
     Vec3d point;
-    for (std::size_t i = 0; i < numbers; ++i) {
+    for (std::size_t i = 0; i < as.numbers; ++i) {
       const double value = to_number(next(), lines.number());
       if (i < 3) point[static_cast<Eigen::Index>(i)] = value;
     }
     soup.add_point(point, lines.number());
   }
   while (soup.polygons.size() < header.polygons) {
+    if (as.face_colours && at < words.size()) throw FormatError("the face begins no line", lines.number());
     const std::size_t corners = to_count(next(), lines.number());
     for (std::size_t i = 0; i < corners; ++i) soup.add_corner(to_number(next(), lines.number()), lines.number());
     soup.end_polygon(lines.number());
-    if (face_colours) at = lines.words().size();
+    if (as.face_colours) at = words.size();
   }
-  if (at < lines.words().size() || lines.next()) throw FormatError("the file continues", lines.number());
+  if (at < words.size() || lines.next()) throw FormatError("the file continues", lines.number());
   return soup;
 }
 
@@ -138,25 +149,39 @@ PolygonSoup read_by_numbers(Lines lines, const Header& header, std::size_t numbe
 
 bool is_off_keyword(std::string_view word) { return to_keyword(word).has_value(); }
 
+namespace {
+
+/// The one arrangement that uses up all numbers; nothing if there is none.
+std::optional<PolygonSoup> read_by_some_numbers(const Lines& lines, const Header& header) {
+  const std::size_t least = 3 + header.keyword.normal + header.keyword.texture;
+  for (const std::size_t colour : {std::size_t{4}, std::size_t{3}}) {
+    for (const bool face_colours : {false, true}) {
+      try {
+        return read_by_numbers(lines, header, {least + (header.keyword.colour ? colour : 0), face_colours});
+      } catch (const FormatError&) {
+        continue;
+      }
+    }
+    if (!header.keyword.colour) break;
+  }
+  return {};
+}
+
+}  // namespace
+
 PolygonSoup read_off(std::string_view file) {
   Lines lines(file, {true, false});
   const Header header = read_header(lines);
+  const bool vertices_on_line_of_counts = header.behind.size() > 1;
+  std::optional<PolygonSoup> soup;
+  if (vertices_on_line_of_counts) soup = read_by_some_numbers(lines, header);
+  if (soup) return std::move(*soup);
   try {
     return read_by_lines(lines, header);
   } catch (const FormatError&) {
-    // Not a line for each. Only an arrangement that uses up all numbers is taken.
-    const std::size_t least = 3 + header.keyword.normal + header.keyword.texture;
-    for (const std::size_t colour : {std::size_t{4}, std::size_t{3}}) {
-      for (const bool face_colours : {false, true}) {
-        try {
-          return read_by_numbers(lines, header, least + (header.keyword.colour ? colour : 0), face_colours);
-        } catch (const FormatError&) {
-          continue;
-        }
-      }
-      if (!header.keyword.colour) break;
-    }
-    throw;
+    soup = read_by_some_numbers(lines, header);
+    if (!soup) throw;
+    return std::move(*soup);
   }
 }
 

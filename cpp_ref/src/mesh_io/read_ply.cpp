@@ -229,11 +229,13 @@ void read_strips(const Element& element, Values& values, PolygonSoup& soup) {
   });
 }
 
+/// An element without items needs no properties: PCL writes `element face 0` without any behind a point cloud.
 void require_properties(const Element& element) {
+  if (element.items == 0) return;
   const auto count_if = [&](auto is) {
     return std::count_if(element.properties.begin(), element.properties.end(), is);
   };
-  if (element.items > 0 && element.properties.empty()) {
+  if (element.properties.empty()) {
     throw FormatError("element '" + element.name + "' has no properties");
   }
   for (const char* const name : {"x", "y", "z"}) {

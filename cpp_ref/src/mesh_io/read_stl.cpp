@@ -2,6 +2,7 @@
 // STL as text (doubles as they are written) and binary (single precision).
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 
 #include "polygon_soup.hpp"
@@ -38,6 +39,45 @@ void add_triangle(PolygonSoup& soup, const std::array<Vec3d, 3>& vertices, std::
   soup.end_polygon(line);
 }
 
+void add_triangles(std::string_view bytes, PolygonSoup& soup) {
+  for (; !bytes.empty(); bytes.remove_prefix(triangle_bytes)) {
+    std::array<Vec3d, 3> vertices;
+    for (std::size_t i = 0; i < 9; ++i) {
+      vertices[i / 3][static_cast<Eigen::Index>(i % 3)] = to_float(bytes.substr(12 + 4 * i));
+    }
+    add_triangle(soup, vertices, 0);
+  }
+}
+
+/// Triangles are made of numbers of some size; text or colours behind the triangles hardly ever are.
+bool holds_triangles(std::string_view bytes) {
+  if (bytes.size() % triangle_bytes != 0) return false;
+  for (std::size_t i = 0; i < bytes.size() / triangle_bytes * 12; ++i) {
+    const double x = std::abs(to_float(bytes.substr(i / 12 * triangle_bytes + i % 12 * 4)));
+    if (x != 0 && !(x > 1e-30 && x < 1e30)) return false;
+  }
+  return true;
+}
+
+/// What follows the triangles that the header announces: more of them, if the writer stopped counting or never began,
+/// or something else, such as colours. Nothing is left out without a note, but for padding.
+void add_rest(std::string_view rest, PolygonSoup& soup) {
+  if (without_padding(rest).empty()) return;
+  const std::string announced = std::to_string(soup.polygons.size());
+  if (holds_triangles(rest)) {
+    add_triangles(rest, soup);
+    soup.notes.push_back("the header announces " + announced + " triangles, the file holds " +
+                         std::to_string(soup.polygons.size()) + ": all of them were read");
+    return;
+  }
+  if (soup.polygons.empty()) {
+    throw FormatError("the header announces 0 triangles, and the " + std::to_string(rest.size()) +
+                      " bytes behind it are none; write the file again");
+  }
+  soup.notes.push_back(std::to_string(rest.size()) + " bytes behind the " + announced +
+                       " triangles that the header announces were left out; they are no triangles");
+}
+
 PolygonSoup read_binary(std::string_view file) {
   if (file.size() < header_bytes) throw FormatError("the file ends within the header of a binary STL");
   if (bytes_announced(file) > file.size()) {
@@ -45,14 +85,8 @@ PolygonSoup read_binary(std::string_view file) {
                       std::to_string(file.size()));
   }
   PolygonSoup soup;
-  file = file.substr(0, bytes_announced(file));  // some programs write colours or other data behind the triangles
-  for (file.remove_prefix(header_bytes); !file.empty(); file.remove_prefix(triangle_bytes)) {
-    std::array<Vec3d, 3> vertices;
-    for (std::size_t i = 0; i < 9; ++i) {
-      vertices[i / 3][static_cast<Eigen::Index>(i % 3)] = to_float(file.substr(12 + 4 * i));
-    }
-    add_triangle(soup, vertices, 0);
-  }
+  add_triangles(file.substr(header_bytes, bytes_announced(file) - header_bytes), soup);
+  add_rest(file.substr(bytes_announced(file)), soup);
   return soup;
 }
 
@@ -126,8 +160,8 @@ PolygonSoup read_stl(std::string_view file) {
   if (is_binary_stl(file) || !is_keyword(file.substr(first, 5), "solid")) return read_binary(file);
   // Many binary files begin with "solid", too. Text holds no NUL bytes, and the header of one with triangles would have
   // to announce more bytes than there are.
-  const bool has_room =
-      file.size() > header_bytes && bytes_announced(file) > header_bytes && bytes_announced(file) <= file.size();
+  const bool has_room = file.size() > header_bytes && bytes_announced(file) <= file.size() &&
+                        (bytes_announced(file) > header_bytes || (file.size() - header_bytes) % triangle_bytes == 0);
   const bool has_nul = file.substr(0, header_bytes + triangle_bytes).find('\0') != std::string_view::npos;
   return has_room && has_nul ? read_binary(file) : read_text(file);
 }

@@ -21,14 +21,13 @@ void append_words(std::string_view line, std::vector<std::string_view>& words) {
   }
 }
 
-/// A word of the file for a message: short, and without bytes that a terminal would obey.
+}  // namespace
+
 std::string quoted(std::string_view word) {
   std::string text = "'";
   for (const char c : word.substr(0, 40)) text += c >= ' ' && c <= '~' ? c : '?';
   return text + (word.size() > 40 ? "...'" : "'");
 }
-
-}  // namespace
 
 std::string_view without_mark(std::string_view file) {
   constexpr std::string_view mark = "\xef\xbb\xbf";

@@ -17,6 +17,9 @@ std::string_view without_mark(std::string_view file);
 /// The text without what editors and downloads leave behind its end: blanks, line ends, NUL and Ctrl-Z.
 std::string_view without_padding(std::string_view text);
 
+/// A word of the file for a message: short, and without bytes that a terminal would obey.
+std::string quoted(std::string_view word);
+
 /// Takes a line off the front of a text that is not empty, and its end: LF, CR LF or CR. The last line needs none.
 std::string_view take_line(std::string_view& text);
 

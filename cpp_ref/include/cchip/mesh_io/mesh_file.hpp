@@ -26,8 +26,12 @@ struct LoadOptions {
   FaceKinds kinds = FaceKinds::triangles;
   /// Faces that cannot be used are left out and not an error: with vertices that are not there or not finite, with
   /// sides that cross. Mesh::notes names the first hundred, with their lines, and says how many there are. A file that
-  /// is truncated or no mesh is an error all the same, and so is one without any face that can be used.
+  /// is truncated or no mesh is an error all the same, and so is one without any face that can be used. Lines of an OBJ
+  /// that begin with no word of OBJ are left out, too, with a note, but for free-form surfaces.
   bool lenient = false;
+  /// Coordinates are rounded to the nearest number of single precision, before faces are cut: parts from programs that
+  /// round and from others meet again (docs/cpp/mesh_files.md). One beyond its range is an error.
+  bool single_precision = false;
   /// If not null, set to the number of faces that were left out because they cannot be used.
   std::size_t* faces_left_out = nullptr;
   /// Bytes that the content of a packed file may have: a small file may hold one that exhausts the memory.
@@ -61,6 +65,10 @@ Mesh parse_mesh(std::string_view file, const std::string& name, FaceKinds kinds 
 
 Mesh parse_mesh(std::string_view file, const std::string& name, const LoadOptions& options);
 
+/// Rounds the vertices as LoadOptions::single_precision does.
+/// \throws std::invalid_argument a coordinate is beyond its range; one line with the number of the vertex
+void round_to_single(Mesh& mesh);
+
 /// Red, green, blue.
 using Colour = std::array<std::uint8_t, 3>;
 
@@ -71,10 +79,10 @@ struct PlyCurve {
   Colour colour = {};
 };
 
-/// Writes a binary PLY (little endian, doubles). Each face has its own vertices. Its colour is written to the face and
-/// to these vertices, because MeshLab shows face colours and Blender vertex colours.
-/// The curves follow as edges between vertices of their own, behind those of the faces; without any the file has no
-/// edges.
+/// Writes a binary PLY (little endian, doubles). Each face has its own vertices, which have its colour. Quads are cut
+/// in two if there are triangles, too. The curves follow as edges between vertices of their own, behind those of the
+/// faces; without any the file has no edges. `make test-ply` reads such files with other programs
+/// (docs/cpp/mesh_files.md).
 /// \throws std::invalid_argument unless there is one colour for each face
 void write_ply(std::ostream& out, const Mesh& mesh, const std::vector<Colour>& face_colours,
                const std::vector<PlyCurve>& curves = {});

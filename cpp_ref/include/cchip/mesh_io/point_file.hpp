@@ -21,15 +21,17 @@ struct LoadPointsOptions {
   std::size_t* points_left_out = nullptr;
   /// If not null, set to the number in the file, from 0, of each point that is returned.
   std::vector<std::uint32_t>* numbers = nullptr;
+  /// As LoadOptions::single_precision.
+  bool single_precision = false;
   /// Bytes that the content of a packed file may have.
   std::uint64_t most_unpacked_bytes = std::uint64_t{1} << 32;
 };
 
 /// Reads points in the file's order and unit: the vertices of a Stanford PLY (text, binary of both byte orders; faces
-/// may be there or not), XYZ (text: x, y and z in the first three words of each line, `#` begins a comment), PCD
-/// (`DATA ascii` and `DATA binary`). The extension of the name decides the format, or else the beginning of the file;
-/// what is neither PLY nor PCD is read as XYZ. A file packed with gzip is unpacked first, if the library was built with
-/// zlib.
+/// may be there or not) or of an OBJ or OFF without faces, PCD (`DATA ascii`, `binary` and `binary_compressed`), and
+/// text: XYZ, ASC, CSV, PTS, PTX (docs/cpp/points.md). The extension of the name decides the format, or else the
+/// beginning of the file; what is no other format is read as text. A file packed with gzip is unpacked first, if the
+/// library was built with zlib.
 /// \throws std::runtime_error one line: file, line number if it has one, what is wrong, what to do
 std::vector<Vec3d> load_points(const std::string& path, const LoadPointsOptions& options = {});
 
