@@ -310,6 +310,35 @@ TEST_CASE("self-contacts: those of brute force, without neighbours", "[ref][coll
   for (const std::size_t count : relations) CHECK(count > 100);
 }
 
+TEST_CASE("self-contacts: of many faces round one vertex, those of each two faces alone", "[ref][collide]") {
+  std::mt19937_64 random(sim::seed_from_environment() + 5);
+  std::size_t some = 0;
+  for (const double noise : {0.0, 0.002, 0.05}) {
+    Mesh fan;
+    const Vec3d hub(0.5, -1, 2);
+    constexpr std::uint32_t faces = 150;
+    for (std::uint32_t i = 0; i < faces; ++i) {
+      const auto at = [&](std::uint32_t k) {
+        const double angle = 2 * 3.14159265358979 * (k % faces) / faces;
+        return hub + Vec3d(std::cos(angle), std::sin(angle), 0.25);
+      };
+      add_face(fan, {hub, at(i) + random_vector(random, noise), at(i + 1)});
+    }
+    std::vector<Contact> expected;
+    for (std::uint32_t i = 0; i < faces; ++i) {
+      for (std::uint32_t k = i + 1; k < faces; ++k) {
+        Mesh two = {"", fan.vertices, {fan.faces[i], fan.faces[k]}};
+        const std::vector<Contact> found = self_contacts(Object(std::move(two)));
+        if (!found.empty()) expected.push_back({i, k, found.front().relation});
+      }
+    }
+    CAPTURE(noise);
+    CHECK(self_contacts(Object(fan)) == expected);
+    some += expected.size();
+  }
+  CHECK(some > 100);
+}
+
 TEST_CASE("self-contacts: parts of a cut polygon are neighbours, closed shapes have none", "[ref][collide]") {
   REQUIRE(self_contacts(Object(make_torus(1, 0.4, 16, 12))).empty());
   Mesh cut;  // a pentagon in two parts that share no vertex, and a face across both

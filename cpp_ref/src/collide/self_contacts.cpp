@@ -309,6 +309,36 @@ void enclose(Box& box, const Box& other) {
   box.greatest = box.greatest.cwiseMax(other.greatest);
 }
 
+/// Vectors from one vertex, each times some factor above 0, in a box; empty if there are none, without a bound if one
+/// has no certain direction.
+struct Directions {
+  Box box = {Vec3d::Constant(std::numeric_limits<double>::infinity()),
+             Vec3d::Constant(-std::numeric_limits<double>::infinity())};
+  void add(const Vec3d& from, const Vec3d& to) {
+    const Vec3d v = to - from;  // off by at most 2^-53 of itself
+    const double size = v.cwiseAbs().maxCoeff();
+    if (!(size > 0x1p-500 && size < 0x1p500)) {
+      box = {Vec3d::Constant(-2), Vec3d::Constant(2)};
+    } else {
+      enclose(box, {v / size, v / size});
+    }
+  }
+};
+
+/// True only if a plane through the common vertex certainly separates the vectors of p from those of q.
+bool separates(const Directions& p, const Directions& q) {
+  const Vec3d axis = (p.box.least + p.box.greatest) - (q.box.least + q.box.greatest);
+  double least_p = 0;
+  double most_q = 0;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    least_p += std::min(axis[k] * p.box.least[k], axis[k] * p.box.greatest[k]);
+    most_q += std::max(axis[k] * q.box.least[k], axis[k] * q.box.greatest[k]);
+  }
+  // Components are at most 2 and exact up to 2^-51; three products and their sums.
+  const double slack = 0x1p-46 * axis.cwiseAbs().sum();
+  return least_p > slack && most_q < -slack;
+}
+
 /// Ends the search.
 struct Enough {};
 
@@ -335,6 +365,7 @@ class SelfSearch {
       boxes_[line] = parts[node.first()];
       for (std::uint32_t i = 1; i < node.count(); ++i) enclose(boxes_[line], parts[node.first() + i]);
     }
+    find_hubs();
   }
 
   std::vector<Contact> run() {
@@ -362,7 +393,6 @@ class SelfSearch {
 
   /// Gives the vertices of all faces numbers: one vertex for each position.
   void number_positions() {
-    constexpr std::uint32_t none = ~std::uint32_t{0};
     std::size_t size = 16;  // of a table with open addressing
     while (size < 2 * mesh_.vertices.size()) size *= 2;
     std::vector<std::uint32_t> table(size, none);
@@ -390,6 +420,51 @@ class SelfSearch {
     }
   }
 
+  /// Where very many faces meet in one vertex, the hub, their boxes all overlap. Lines below which all faces have it
+  /// get the directions of their other vertices from there.
+  void find_hubs() {
+    std::vector<std::uint32_t> uses(mesh_.vertices.size());
+    std::uint32_t most = 0;
+    for (const Corners& corners : numbers_) {
+      for (std::size_t a = 0; a < 4; ++a) {
+        if (is_first(corners, a)) most = std::max(most, ++uses[corners[a]]);
+      }
+    }
+    if (most < hub_uses) return;
+    hubs_.resize(boxes_.size(), none);
+    directions_.resize(boxes_.size());
+    for (std::size_t line = boxes_.size(); line-- > 0;) {
+      const bvh::NodeRef node = tree_.lines()[line].ref();
+      std::uint32_t hub = none;
+      if (node.is_leaf()) {
+        for (const std::uint32_t corner : numbers_[node.first()]) {
+          if (uses[corner] >= hub_uses && (hub == none || uses[corner] > uses[hub])) hub = corner;
+        }
+      } else {
+        hub = hubs_[node.first()];
+      }
+      for (std::uint32_t i = node.first(); i < node.first() + node.count() && hub != none; ++i) {
+        if (!(node.is_leaf() ? has(numbers_[i], hub) : hubs_[i] == hub)) hub = none;
+      }
+      hubs_[line] = hub;
+      if (hub == none) continue;
+      for (std::uint32_t i = node.first(); i < node.first() + node.count(); ++i) {
+        if (!node.is_leaf()) {
+          enclose(directions_[line].box, directions_[i].box);
+          continue;
+        }
+        for (const std::uint32_t corner : numbers_[i]) {
+          if (corner != hub) directions_[line].add(mesh_.vertices[hub], mesh_.vertices[corner]);
+        }
+      }
+    }
+  }
+
+  /// True only if the faces below the two lines have a vertex in common and certainly nothing else.
+  bool meet_in_hub_alone(std::uint32_t p, std::uint32_t q) const {
+    return !hubs_.empty() && hubs_[p] != none && hubs_[p] == hubs_[q] && separates(directions_[p], directions_[q]);
+  }
+
   /// Pairs of faces below one node.
   void inside(bvh::NodeRef node) {
     const std::uint32_t end = node.first() + node.count();
@@ -401,7 +476,7 @@ class SelfSearch {
 
   /// Pairs of a face below one line and a face below another.
   void between(std::uint32_t p, std::uint32_t q) {
-    if (!overlap(boxes_[p], boxes_[q])) return;
+    if (!overlap(boxes_[p], boxes_[q]) || meet_in_hub_alone(p, q)) return;
     const bvh::NodeRef p_node = tree_.lines()[p].ref();
     const bvh::NodeRef q_node = tree_.lines()[q].ref();
     const bool open_p = !p_node.is_leaf();
@@ -499,15 +574,20 @@ class SelfSearch {
     }
   }
 
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+  static constexpr std::uint32_t hub_uses = 64;  ///< faces at a vertex from which it is a hub
+
   const Object& object_;
   const Mesh& mesh_;
   const bvh::SupportTree& tree_;
   std::size_t most_;
   Neighbours neighbours_;
   Hulls hulls_;
-  std::vector<Corners> numbers_;  ///< in the order of the tree
-  std::vector<Box> face_boxes_;   ///< in the order of the tree
-  std::vector<Box> boxes_;        ///< of each line
+  std::vector<Corners> numbers_;        ///< in the order of the tree
+  std::vector<Box> face_boxes_;         ///< in the order of the tree
+  std::vector<Box> boxes_;              ///< of each line
+  std::vector<std::uint32_t> hubs_;     ///< of each line; empty: there are none
+  std::vector<Directions> directions_;  ///< of each line with a hub
   std::map<std::pair<std::uint32_t, std::uint32_t>, Relation> found_;
 };
 

@@ -22,7 +22,7 @@ int exponent_of(const Mesh& mesh) {
     for (std::size_t i = 0; i < p.vertex_count(); ++i) {
       for (const double x : p.v[i]) {
         if (x != 0 && std::ilogb(x) - std::numeric_limits<double>::digits < least) {
-          least = std::min(least, exact::odd_exponent(x));
+          least = std::min(least, exact::odd(exact::Scaled(x)).exponent);
         }
       }
     }

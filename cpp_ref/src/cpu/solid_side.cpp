@@ -15,19 +15,6 @@ using exact::BigInt;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The product of two doubles that are not 0, as mantissa * 2^exponent with an odd mantissa: small numbers for models
-/// in whole units.
-struct Product {
-  Product(exact::Scaled x, exact::Scaled y) : exponent(x.exponent + y.exponent) {
-    for (exact::Scaled* factor : {&x, &y}) {
-      for (; factor->mantissa % 2 == 0; ++exponent) factor->mantissa /= 2;
-    }
-    mantissa = BigInt(x.mantissa) * y.mantissa;
-  }
-  BigInt mantissa;
-  int exponent;
-};
-
 /// Lower and upper bound of x / w * 2^exponent.
 std::pair<double, double> range_of(const BigInt& x, const BigInt& w, int exponent) {
   if (x.is_zero()) return {0, 0};
@@ -79,7 +66,7 @@ int SolidSide::exponent() const {
     for (Eigen::Index column = 0; column < 4; ++column) {
       if (pose_(row, column) == 0) continue;
       int& least = column < 3 ? linear : all;
-      least = std::min(least, exact::odd_exponent(pose_(row, column)));
+      least = std::min(least, exact::odd(exact::Scaled(pose_(row, column))).exponent);
     }
   }
   return linear == std::numeric_limits<int>::max() ? all : std::min(all, linear + shells().exponent);
@@ -89,11 +76,13 @@ const SolidSide::Placed& SolidSide::placed(Triangle t) {
   const auto [at, is_new] = placed_.try_emplace(t);
   Placed& result = at->second;
   if (!is_new) return result;
-  exact::for_each_product(primitive(t), pose_,
-                          [&](std::size_t i, std::size_t k, const exact::Scaled& x, const exact::Scaled& y) {
-                            const Product product(x, y);
-                            result.corner[i][k] += product.mantissa << (product.exponent - exponent_);
-                          });
+  exact::for_each_product(
+      primitive(t), pose_, [&](std::size_t i, std::size_t k, const exact::Scaled& x, const exact::Scaled& y) {
+        // Odd mantissas: small numbers for models in whole units.
+        const exact::Scaled p = exact::odd(x);
+        const exact::Scaled q = exact::odd(y);
+        result.corner[i][k] += (BigInt(p.mantissa) * q.mantissa) << (p.exponent + q.exponent - exponent_);
+      });
   using exact::operator-;
   result.normal = exact::cross(result.corner[1] - result.corner[0], result.corner[2] - result.corner[0]);
   return result;

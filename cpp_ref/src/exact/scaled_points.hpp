@@ -38,12 +38,15 @@ struct Scaled {
   int exponent = 0;
 };
 
-/// Exponent of the number as an odd integer times a power of two. \pre finite and not 0
-inline int odd_exponent(double value) {
-  const Scaled x(value);
-  int zeros = 0;
-  for (auto bits = static_cast<std::uint64_t>(x.mantissa); bits % 2 == 0; bits /= 2) ++zeros;
-  return x.exponent + zeros;
+/// The same number with an odd mantissa. \pre it is not 0
+inline Scaled odd(Scaled x) {
+  for (const int step : {32, 16, 8, 4, 2, 1}) {
+    const std::int64_t unit = std::int64_t{1} << step;
+    if (x.mantissa % unit != 0) continue;
+    x.mantissa /= unit;
+    x.exponent += step;
+  }
+  return x;
 }
 
 /// A primitive under a pose: component k of vertex i is the sum of four products, the last one translation times 1.
