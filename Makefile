@@ -41,7 +41,7 @@ CTEST := ctest --no-tests=error --output-on-failure -j $(JOBS)
 export JOBS
 
 .DEFAULT_GOAL := help
-.PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-long formal formal-all mutants coverage coverage-bins coverage-cpp test-gates test-debug \
+.PHONY: help bootstrap venv docs docs-layout peers robots build sim sim-reconfig sim-levels sim-traverse sim-chip wave wave-of test test-lib test-long formal formal-all mutants coverage coverage-bins coverage-cpp test-gates test-debug \
   test-asan test-arm64 cross-windows fuzz fuzz-tools lint tidy format campaign campaign-build campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty \
   campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-chip campaign-chip-faults campaign-chip-swaps campaign-cluster picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot bench-scene bench-certificate bench-chip deb wheel sdist test-sdist test-python test-dask test-ply bench-python export fpga \
   fpga-quick fpga-sweep asic asic-quick install clean
@@ -56,7 +56,7 @@ Use the library
 Read
   help docs docs-layout/3_min
 Check a change
-  test test-long wave-of test-python test-sdist test-dask test-ply test-debug test-asan test-arm64 cross-windows test-gates formal fuzz lint tidy format
+  test test-lib/3_min test-long wave-of test-python test-sdist test-dask test-ply test-debug test-asan test-arm64 cross-windows test-gates formal fuzz lint tidy format
 Check for long
   formal-all/hours mutants/hours coverage/hours coverage-bins coverage-cpp
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-collide campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
@@ -148,6 +148,13 @@ wave: ## open the waveform of the last `make sim`
 
 test: build ## run the regression
 	$(CTEST) --test-dir $(RELEASE) -LE '^long$$'
+
+TESTS ?= test_collide test_solids
+test-lib: ## the C++ library, its command and some of its tests, without Verilator and SystemC; TESTS="test_distance ..." for others
+	@$(BOOTSTRAP)
+	cmake --preset library
+	cmake --build build/library -j $(JOBS) --target cchip $(TESTS)
+	for test in $(TESTS); do build/library/bin/$$test || exit 1; done
 
 # as in: make wave-of MODEL=Vcchip_fifo_d5 TEST=cchip_fifo
 wave-of: $(RELEASE)/build.ninja ## waveform of a failing unit test: build its MODEL with waveforms, run the tests that match TEST again

@@ -31,7 +31,7 @@ configure_file(${CMAKE_CURRENT_LIST_DIR}/collisionchip.pc.in ${PROJECT_BINARY_DI
 install(FILES ${PROJECT_BINARY_DIR}/collisionchip.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/cpp_ref/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.hpp")
-if(CCHIP_SIMULATION)
+if(CCHIP_COMMAND)
   file(RELATIVE_PATH libdir_from_bindir /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
   if(NOT DEFINED CMAKE_INSTALL_RPATH)  # as cpp_ref/CMakeLists.txt for the libraries
     set(here "$ORIGIN")
@@ -44,6 +44,8 @@ if(CCHIP_SIMULATION)
   install(DIRECTORY ${PROJECT_BINARY_DIR}/shell/completion/
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
   install(DIRECTORY ${PROJECT_BINARY_DIR}/shell/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)
+endif()
+if(CCHIP_SIMULATION)
   set_target_properties(cchip_reconfig PROPERTIES EXPORT_NAME reconfig)
   install(TARGETS cchip_reconfig EXPORT collisionchipReconfig ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/sim/reconfig/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cchip/device/device.hpp>
 #include <cchip/internal/geometry/decimal.hpp>
-#include <cchip/machines/simulated_chip.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/command_line.hpp>
 #include <cchip/stimulus/csv_reader.hpp>
@@ -28,6 +27,7 @@
 #include "demo.hpp"
 #include "distance.hpp"
 #include "engines.hpp"
+#include "hardware.hpp"
 #include "mesh_source.hpp"
 #include "pair_runner.hpp"
 #include "pose.hpp"
@@ -301,7 +301,7 @@ void add_collide(CLI::App& app, CollideOptions& options) {
       WholeRange{0, 2});
   add_whole(*command, "--chips", options.chips,
             "with --device sim: 1 to 8 chips that share one memory and the queries of --poses (default 1)",
-            WholeRange{1, most_simulated_chips});
+            WholeRange{1, most_chips});
   add_text(
       *command, "--trace", options.trace,
       "with --device sim: write the waveform of the chip's first 30,000 clocks (FST) and a .gtkw layout beside it");
@@ -580,7 +580,7 @@ std::string one_line(std::string text) {
 }  // namespace
 
 int run_cli(std::vector<std::string> arguments, const Streams& streams) {
-  add_simulated_chip();
+  add_chip_device();
   try {
     const int code = dispatch(std::move(arguments), streams);
     streams.out.flush();

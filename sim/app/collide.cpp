@@ -13,7 +13,6 @@
 #include <cchip/device/device.hpp>
 #include <cchip/internal/collide/face_pairs.hpp>
 #include <cchip/internal/geometry/decimal.hpp>
-#include <cchip/machines/simulated_chip.hpp>
 #include <cchip/mesh_io/point_file.hpp>
 #include <cchip/sim/output_file.hpp>
 #include <cchip/stimulus/progress.hpp>
@@ -30,6 +29,7 @@
 #include <utility>
 
 #include "engines.hpp"
+#include "hardware.hpp"
 #include "html_view.hpp"
 #include "mesh_source.hpp"
 #include "pose.hpp"
@@ -125,11 +125,11 @@ std::unique_ptr<Device> open_named_device(const CollideOptions& options) {
   needs_sim(options.chips != 1, "--chips", "chips");
   if (options.device == "sim") {
     if (!options.trace.empty()) check_wave_name(options.trace);
-    SimulatedChipOptions chip;
+    ChipOptions chip;
     chip.trace_path = options.trace;
     chip.slots = static_cast<unsigned>(options.slots);
     chip.chips = static_cast<unsigned>(options.chips);
-    return open_simulated_chip(chip);
+    return open_chip(chip);
   }
   try {
     return open_device(options.device);

@@ -31,9 +31,9 @@ struct CollideOptions {
   std::string radius;            ///< of each point's sphere; empty: 0
   bool solids = false;           ///< how the solids lie to each other, in place of contacts
   InsideRule inside = InsideRule::odd;
-  bool exit_code = false;        ///< exit code 5 if a query found a contact
-  bool lenient = false;          ///< faces that cannot be used are left out
-  bool single = false;           ///< coordinates are rounded to single precision
+  bool exit_code = false;  ///< exit code 5 if a query found a contact
+  bool lenient = false;    ///< faces that cannot be used are left out
+  bool single = false;     ///< coordinates are rounded to single precision
   std::string device = "cpu";
   Format format = Format::table;
   std::string expect;       ///< column of the file; empty: none

@@ -11,13 +11,13 @@
 #include <cchip/internal/exact/oracle.hpp>
 #include <cchip/internal/grid/local_grid.hpp>
 #include <cchip/internal/reference/eigen_sat.hpp>
-#include <cchip/machines/simulated_chip.hpp>
 #include <cchip/mesh/shapes.hpp>
 #include <cchip/stimulus/progress.hpp>
 #include <cchip/stimulus/usage_error.hpp>
 #include <chrono>
 #include <filesystem>
 
+#include "hardware.hpp"
 #include "mesh_source.hpp"
 #include "pair_runner.hpp"
 
@@ -142,9 +142,9 @@ std::uint64_t run_chip(const std::string& trace_path, std::ostream& out) {
       "All contacts; what the chip leaves open the host decides; compared with the CPU device, face for face.\n\n"
       "{:<10}{:>10}{:>12}{:>8}{:>9}{:>12}\n",
       "pose", "contacts", "node pairs", "open", "clocks", "mismatches");
-  SimulatedChipOptions options;
+  ChipOptions options;
   options.trace_path = trace_path;
-  const auto chip = open_simulated_chip(options);
+  const auto chip = open_chip(options);
   const auto cpu = open_device("cpu");
   CollisionRequest request;
   request.contacts = CollisionRequest::Contacts::all;

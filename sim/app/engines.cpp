@@ -5,20 +5,13 @@
 
 #include <cchip/internal/device/model_engine.hpp>
 #include <cchip/internal/reference/eigen_sat.hpp>
-#include <cchip/machines/rtl_engine.hpp>
 #include <cchip/stimulus/usage_error.hpp>
-#include <cchip/waves/wave_layout.hpp>
 #include <filesystem>
+
+#include "hardware.hpp"
 
 namespace cchip::app {
 namespace {
-
-/// A waveform and the files of its layout.
-std::vector<std::string> files_of_wave(const std::string& fst_path) {
-  std::vector<std::string> files = gtkw_files(fst_path, ModuleId::tri_tri);  // all modules have the same
-  files.insert(files.begin(), fst_path);
-  return files;
-}
 
 void check(const EngineOptions& options) {
   if (options.trace_path.empty()) return;
@@ -29,15 +22,9 @@ void check(const EngineOptions& options) {
   for (const std::string& file : files_of_wave(options.trace_path)) sim::check_writable(file);
 }
 
-std::unique_ptr<PairEngine> make_rtl(const EngineOptions& options) {
-  RtlEngineOptions rtl;
-  rtl.seed = options.seed;
-  rtl.trace_path = options.trace_path;
-  rtl.trace_clocks = options.trace_clocks;
-  return make_rtl_engine(rtl);
-}
-
 }  // namespace
+
+EngineKind default_engine() { return has_hardware() ? EngineKind::rtl : EngineKind::model; }
 
 const char* to_name(EngineKind kind) {
   switch (kind) {

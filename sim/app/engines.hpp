@@ -15,8 +15,11 @@ namespace cchip::app {
 
 enum class EngineKind { rtl, model, eigen, exact };
 
+/// The RTL; of a cchip without it, its model.
+EngineKind default_engine();
+
 struct EngineOptions {
-  EngineKind kind = EngineKind::rtl;
+  EngineKind kind = default_engine();
   PairMode mode = PairMode::exhaustive;
   /// Seed of what the RTL simulation leaves undefined at power-up.
   std::uint64_t seed = 1;
