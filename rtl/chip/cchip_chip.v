@@ -7,7 +7,8 @@
 //   way          of a query: cchip_chip_core. This module adds cchip_chip_regs, counters,
 //                cchip_soft_reset and the interrupt
 //   latency      registers: 3 clocks, counters up to 21; a query by its tree
-//   interrupt    level: an event of interrupt_status that is enabled
+//   interrupt    level: an event of interrupt_status that is enabled; 0 for a clock after each
+//                write of interrupt_status, so that an event that stays or comes makes an edge
 //   soft reset   drops all queries and lines, clears enable, query_producer and record_consumer;
 //                the bus masters await what is outstanding (cchip_soft_reset). A swap continues
 //   counters     at most 1 a clock each, two banks of cchip_counter_file, with SWAPS a third
@@ -157,6 +158,7 @@ module cchip_chip #(
   wire clear, enable, reset_request, resetting, reset_done, idle;
   wire read_outstanding, write_outstanding;
   wire [8:0] status, status_enable;
+  wire status_write;
   wire [31:0] step_limit, memory_limit;
   wire [7:0] open_limit;
   wire [2:0] pairs_each;
@@ -247,6 +249,7 @@ module cchip_chip #(
       .hwif_in_status_query_failed         (query_failed),
       .hwif_in_status_idle                 (idle),
       .hwif_in_status_resetting            (resetting),
+      .hwif_out_interrupt_status_write     (status_write),
       .hwif_out_interrupt_status_no_provider(status[8]),
       .hwif_in_interrupt_status_no_provider_hwset(events[8]),
       .hwif_out_interrupt_status_swap_lost (status[7]),
@@ -335,7 +338,7 @@ module cchip_chip #(
       chip_event_q <= 5'd0;
       record_producer_q <= 32'd0;
     end else begin
-      irq_q             <= |(status & status_enable);
+      irq_q             <= |(status & status_enable) & ~status_write;
       invalidate_q      <= ~resetting & (invalidate_go | (invalidate_q & ~invalidate_ready));
       invalidating_q    <= ~resetting & invalidating;
       commanded_q       <= ~resetting & (invalidate_q | (commanded_q & invalidating_q));
