@@ -62,7 +62,11 @@ module cchip_chip #(
     parameter integer SIMULATION = 0,
     parameter integer SEED = 1,
     // width of the data buses, bit: 128, 256 or 512
-    parameter integer DATA_W = 128
+    parameter integer DATA_W = 128,
+    // AxCACHE of reads and of writes, 0..15, AxPROT of both, 0..7
+    parameter integer AXI_ARCACHE = 3,
+    parameter integer AXI_AWCACHE = 2,
+    parameter integer AXI_PROT = 0
 ) (
     input  wire                          clk,
     input  wire                          rst,
@@ -434,7 +438,9 @@ module cchip_chip #(
       .SWAPS      (SWAPS),
       .COUNT_W    (COUNT_W),
       .CFG_W      (CFG_W),
-      .CFG_DIVIDER(CFG_DIVIDER)
+      .CFG_DIVIDER(CFG_DIVIDER),
+      .AXI_ARCACHE(AXI_ARCACHE),
+      .AXI_PROT   (AXI_PROT)
   ) u_swaps (
       .clk           (clk),
       .rst           (regs_rst),
@@ -518,7 +524,10 @@ module cchip_chip #(
       .ROC_CYCLES  (ROC_CYCLES),
       .SIMULATION  (SIMULATION),
       .SEED        (SEED),
-      .DATA_W      (DATA_W)
+      .DATA_W      (DATA_W),
+      .AXI_ARCACHE (AXI_ARCACHE),
+      .AXI_AWCACHE (AXI_AWCACHE),
+      .AXI_PROT    (AXI_PROT)
   ) u_core (
       .clk                 (clk),
       .rst                 (rst),

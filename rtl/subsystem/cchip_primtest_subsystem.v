@@ -46,7 +46,10 @@ module cchip_primtest_subsystem #(
     // 0: partitions of an FPGA; 1: simulated reconfiguration (see cchip_pr_slot)
     parameter integer SIMULATION = 0,
     // start of the random numbers of a simulated reconfiguration, any
-    parameter integer SEED = 1
+    parameter integer SEED = 1,
+    // AxCACHE of reads, 0..15, and AxPROT, 0..7
+    parameter integer AXI_ARCACHE = 3,
+    parameter integer AXI_PROT = 0
 ) (
     input  wire                                   clk,
     input  wire                                   rst,
@@ -359,7 +362,9 @@ module cchip_primtest_subsystem #(
       .SLOTS      (SLOTS),
       .COUNT_W    (COUNT_W),
       .CFG_W      (CFG_W),
-      .CFG_DIVIDER(CFG_DIVIDER)
+      .CFG_DIVIDER(CFG_DIVIDER),
+      .AXI_ARCACHE(AXI_ARCACHE),
+      .AXI_PROT   (AXI_PROT)
   ) u_swaps (
       .clk           (clk),
       .rst           (rst),
