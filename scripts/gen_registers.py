@@ -61,7 +61,7 @@ def register(node, top, name, count, stride, offset):
     """top: the register itself, or the register file that it is in."""
     return {"name": name, "count": count, "stride": stride, "address": offset + node.raw_address_offset,
             "external": top.inst_name if top.external else None,
-            "desc": node.get_property("desc") or "", "regwidth": node.get_property("regwidth"),
+            "desc": node.get_property("desc") or "", "regwidth": node.get_property("regwidth"), "accesswidth": node.get_property("accesswidth"),
             "fields": [field(f) for f in sorted(node.fields(), key=lambda f: -f.lsb)]}
 
 
@@ -105,6 +105,8 @@ def check(registers):
     for r in registers:
         if r["regwidth"] not in (32, 64):
             fail(f"{r['name']}: regwidth must be 32 or 64")
+        if r["accesswidth"] != 32:
+            fail(f"{r['name']}: accesswidth must be 32, that of the bus")
         for f in r["fields"]:
             where = f"{r['name']}.{f['name']}"
             kind(f, where)
