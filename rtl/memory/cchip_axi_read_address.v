@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_axi_read_address: requests and read addresses of cchip_axi_read: a queue per client, one
 // stream of all of them in turn, and the address that is on offer. A request whose ID memory may
 // still answer for an earlier read is refused instead.
