@@ -93,3 +93,11 @@ int chip_next(struct chip* chip, struct chip_record* record) {
   set(chip, CHIP_RECORD_CONSUMER, chip->read); /* room for the next one; a host may do this less often */
   return CHIP_OK;
 }
+
+/* Of an interrupt's handler, for a controller of levels and of edges alike: clears the event "one more record" and says
+ * whether it was there. Read all records each time it was, until it is not. */
+int chip_event(struct chip* chip) {
+  if ((get(chip, CHIP_INTERRUPT_STATUS) & CHIP_INTERRUPT_RECORD) == 0) return 0;
+  set(chip, CHIP_INTERRUPT_STATUS, CHIP_INTERRUPT_RECORD);
+  return 1;
+}

@@ -16,6 +16,8 @@ enum {
   CHIP_CAPABILITIES = 0x008,
   CHIP_CONTROL = 0x010,
   CHIP_STATUS = 0x014,
+  CHIP_INTERRUPT_STATUS = 0x020,
+  CHIP_INTERRUPT_ENABLE = 0x024,
   CHIP_MEMORY_LIMIT = 0x034,
   CHIP_QUERY_BASE_LOW = 0x040,
   CHIP_QUERY_BASE_HIGH = 0x044,
@@ -35,6 +37,7 @@ enum {
   CHIP_ID_VALUE = 0x43484343,
   CHIP_CONTROL_ENABLE = 1,
   CHIP_CONTROL_SOFT_RESET = 2,
+  CHIP_INTERRUPT_RECORD = 1,
   CHIP_STATUS_RESETTING = 1,
   CHIP_STATUS_QUERY_FAILED = 4,
   CHIP_STATUS_RECORD_FAILED = 8,
@@ -72,6 +75,7 @@ int chip_start(struct chip *chip);
 int chip_store(struct chip *chip, uint32_t offset, const void *image, uint32_t bytes);
 int chip_submit(struct chip *chip, const void *query);
 int chip_next(struct chip *chip, struct chip_record *record);
+int chip_event(struct chip *chip);
 
 #ifdef __cplusplus
 }

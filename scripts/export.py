@@ -271,7 +271,7 @@ def chip_notes(mhz):
 - **Reset**: `rst` is active high and synchronous to `clk`, for 2 clocks or more, also after power-up. It forgets what is outstanding on both buses: reset these with it.
 - **Reset while the bus lives on** (a processor's): clear `control.enable`, write `control.soft_reset`, wait until `status.resetting` is 0: then nothing is outstanding on `m_axi` (with `SWAPS`, wait for a swap's end, too). Hold all accesses to the registers, then `rst`. If
   `resetting` stays 1, memory has lost a response: only a reset of chip and bus helps, or a firewall or shutdown manager between them that completes the rest.
-- **Coherency**: reads have `m_axi_arcache` 0011, writes `m_axi_awcache` 0010: normal memory, not cacheable; there is no `AxUSER`. Map images and rings uncached, or flush and invalidate as the programmer's guide says. A port
+- **Coherency**: `AXI_ARCACHE` = 3, `AXI_AWCACHE` = 2: normal memory, not cacheable; `AXI_PROT` = 0: secure. A coherent port wants others, see docs/hardware/uio.md; there is no `AxUSER`. Map images and rings uncached, or flush and invalidate as the programmer's guide says. A port
   that snoops (ACP, HPC) needs `AxCACHE` and `AxUSER` set in your wrapper, as that port asks.
 - **Records** are 16 bytes in one beat and must arrive whole: no bus narrower than 128 bit between chip and memory.
 - **Size and clock**: default parameters after synthesis for ECP5: {size["sites"]} sites of LUT4, {size["FF"]} flip-flops, {size["DSP"]} multiplier blocks, {size["block RAM"]} block RAMs of 18 kbit. The constraints say {mhz:g} MHz, unless you chose

@@ -61,7 +61,7 @@ def register(node, top, name, count, stride, offset):
     """top: the register itself, or the register file that it is in."""
     return {"name": name, "count": count, "stride": stride, "address": offset + node.raw_address_offset,
             "external": top.inst_name if top.external else None,
-            "desc": node.get_property("desc") or "", "regwidth": node.get_property("regwidth"),
+            "desc": node.get_property("desc") or "", "regwidth": node.get_property("regwidth"), "accesswidth": node.get_property("accesswidth"),
             "fields": [field(f) for f in sorted(node.fields(), key=lambda f: -f.lsb)]}
 
 
@@ -105,11 +105,15 @@ def check(registers):
     for r in registers:
         if r["regwidth"] not in (32, 64):
             fail(f"{r['name']}: regwidth must be 32 or 64")
+        if r["accesswidth"] != 32:
+            fail(f"{r['name']}: accesswidth must be 32, that of the bus")
         for f in r["fields"]:
             where = f"{r['name']}.{f['name']}"
             kind(f, where)
             if stored(f) and not r["external"] and not isinstance(f["reset"], int):
                 fail(f"{where}: needs a reset value")
+            if kind(f) == "event" and r["count"] != 1:
+                fail(f"{where}: no arrays of events")
         if r["regwidth"] == 64 and not r["external"]:
             fail(f"{r['name']}: 64 bits only where external")
         for address, _, _ in words(r):
@@ -162,10 +166,16 @@ def ports(registers):
                 yield "input", f["width"], r["count"], f"hwif_in_{name}_hwset"
             if kind(f) == "cleared":
                 yield "input", f["width"], r["count"], f"hwif_in_{name}_hwclr"
+        if clears_events(r):
+            yield "output", 1, 1, f"hwif_out_{r['name']}_write"
     for name in externals(registers):
         yield "output", 1, 1, f"hwif_out_{name}_read"
     for name in externals(filter(writable, registers)):
         yield "output", 1, 1, f"hwif_out_{name}_write"
+
+
+def clears_events(r):
+    return not r["external"] and any(kind(f) == "event" for f in r["fields"])
 
 
 def externals(registers):
@@ -293,7 +303,7 @@ FRAME = """\
 //                does anything
 // hwif_in_<register>_<field> is what hardware writes, hwif_out_<register>_<field> what it reads;
 // element i of an array of w bits is [w*i +: w]. _hwset: an event, 1 for a clock; _hwclr: clears
-// the field.
+// the field. hwif_out_<register>_write of a register of events: 1 on the clock of a write to it.
 // External registers live in other modules. hwif_out_<name>_read, 1 for a clock, asks for the word
 // at word address hwif_out_external_raddr; hwif_in_external_ack answers it on the same clock or
 // later with the word on hwif_in_external_rdata, which is 0 otherwise. hwif_out_<name>_write, 1 for
@@ -454,6 +464,8 @@ def verilog(name_of_map, registers):
             outputs.append(f"  assign hwif_out_{signal(r, f)} = {signal(r, f)}_q;")
         for address, i, _ in words(r) if writable(r) else []:
             updates += ["      " + line for f in r["fields"] for line in update(r, f, i, len(strobes))]
+            if clears_events(r):
+                outputs.append(f"  assign hwif_out_{r['name']}_write = strobe_q[{len(strobes)}];")
             strobes.append([address])
     selects = [[address] for r in inside for address, _, _ in words(r)]
     read_words = [read_word(r, i) for r in inside for _, i, _ in words(r)]

@@ -65,6 +65,7 @@ class Run {
   }
 
  private:
+  static_assert(sim::detail::HasTrace<Model>::value, "--wave of this model would write nothing: make it with WAVES");
   static constexpr std::uint64_t traced = 30000;    // clocks of the waveform
   static constexpr std::uint64_t viewed = 5000;     // of these at first sight
   static constexpr std::uint64_t nanoseconds = 10;  // of a clock

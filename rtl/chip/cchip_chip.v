@@ -7,7 +7,8 @@
 //   way          of a query: cchip_chip_core. This module adds cchip_chip_regs, counters,
 //                cchip_soft_reset and the interrupt
 //   latency      registers: 3 clocks, counters up to 21; a query by its tree
-//   interrupt    level: an event of interrupt_status that is enabled
+//   interrupt    level: an event of interrupt_status that is enabled; 0 for a clock after each
+//                write of interrupt_status, so that an event that stays or comes makes an edge
 //   soft reset   drops all queries and lines, clears enable, query_producer and record_consumer;
 //                the bus masters await what is outstanding (cchip_soft_reset). A swap continues
 //   counters     at most 1 a clock each, two banks of cchip_counter_file, with SWAPS a third
@@ -61,7 +62,11 @@ module cchip_chip #(
     parameter integer SIMULATION = 0,
     parameter integer SEED = 1,
     // width of the data buses, bit: 128, 256 or 512
-    parameter integer DATA_W = 128
+    parameter integer DATA_W = 128,
+    // AxCACHE of reads and of writes, 0..15, AxPROT of both, 0..7
+    parameter integer AXI_ARCACHE = 3,
+    parameter integer AXI_AWCACHE = 2,
+    parameter integer AXI_PROT = 0
 ) (
     input  wire                          clk,
     input  wire                          rst,
@@ -157,6 +162,7 @@ module cchip_chip #(
   wire clear, enable, reset_request, resetting, reset_done, idle;
   wire read_outstanding, write_outstanding;
   wire [8:0] status, status_enable;
+  wire status_write;
   wire [31:0] step_limit, memory_limit;
   wire [7:0] open_limit;
   wire [2:0] pairs_each;
@@ -247,6 +253,7 @@ module cchip_chip #(
       .hwif_in_status_query_failed         (query_failed),
       .hwif_in_status_idle                 (idle),
       .hwif_in_status_resetting            (resetting),
+      .hwif_out_interrupt_status_write     (status_write),
       .hwif_out_interrupt_status_no_provider(status[8]),
       .hwif_in_interrupt_status_no_provider_hwset(events[8]),
       .hwif_out_interrupt_status_swap_lost (status[7]),
@@ -335,7 +342,7 @@ module cchip_chip #(
       chip_event_q <= 5'd0;
       record_producer_q <= 32'd0;
     end else begin
-      irq_q             <= |(status & status_enable);
+      irq_q             <= |(status & status_enable) & ~status_write;
       invalidate_q      <= ~resetting & (invalidate_go | (invalidate_q & ~invalidate_ready));
       invalidating_q    <= ~resetting & invalidating;
       commanded_q       <= ~resetting & (invalidate_q | (commanded_q & invalidating_q));
@@ -431,7 +438,9 @@ module cchip_chip #(
       .SWAPS      (SWAPS),
       .COUNT_W    (COUNT_W),
       .CFG_W      (CFG_W),
-      .CFG_DIVIDER(CFG_DIVIDER)
+      .CFG_DIVIDER(CFG_DIVIDER),
+      .AXI_ARCACHE(AXI_ARCACHE),
+      .AXI_PROT   (AXI_PROT)
   ) u_swaps (
       .clk           (clk),
       .rst           (regs_rst),
@@ -515,7 +524,10 @@ module cchip_chip #(
       .ROC_CYCLES  (ROC_CYCLES),
       .SIMULATION  (SIMULATION),
       .SEED        (SEED),
-      .DATA_W      (DATA_W)
+      .DATA_W      (DATA_W),
+      .AXI_ARCACHE (AXI_ARCACHE),
+      .AXI_AWCACHE (AXI_AWCACHE),
+      .AXI_PROT    (AXI_PROT)
   ) u_core (
       .clk                 (clk),
       .rst                 (rst),

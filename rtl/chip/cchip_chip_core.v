@@ -72,7 +72,11 @@ module cchip_chip_core #(
     parameter integer SIMULATION = 0,
     parameter integer SEED = 1,
     // width of the data buses, bit: 128, 256 or 512
-    parameter integer DATA_W = 128
+    parameter integer DATA_W = 128,
+    // AxCACHE of reads and of writes, 0..15, AxPROT of both, 0..7
+    parameter integer AXI_ARCACHE = 3,
+    parameter integer AXI_AWCACHE = 2,
+    parameter integer AXI_PROT = 0
 ) (
     input  wire                           clk,
     input  wire                           rst,
@@ -217,7 +221,13 @@ module cchip_chip_core #(
   wire [`CCHIP_READ_CODE_W-1:0] beat_code;
   wire [DATA_W-1:0] beat_data;
   wire [2*MISSES-1:0] outstanding_reads;
-  cchip_axi_read #(.CLIENTS(2), .SLOTS(MISSES), .DATA_W(DATA_W)) u_read (
+  cchip_axi_read #(
+      .CLIENTS    (2),
+      .SLOTS      (MISSES),
+      .DATA_W     (DATA_W),
+      .AXI_ARCACHE(AXI_ARCACHE),
+      .AXI_PROT   (AXI_PROT)
+  ) u_read (
       .clk          (clk),
       .rst          (block_rst[READ]),
       .limit        (memory_limit),
@@ -653,7 +663,9 @@ module cchip_chip_core #(
       .CLIENTS    (1),
       .DATA_W     (DATA_W),
       .OUTSTANDING(16),
-      .ID_W       (1)
+      .ID_W       (1),
+      .AXI_AWCACHE(AXI_AWCACHE),
+      .AXI_PROT   (AXI_PROT)
   ) u_write (
       .clk          (clk),
       .rst          (block_rst[WRITE]),

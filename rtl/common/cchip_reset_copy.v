@@ -16,7 +16,8 @@ module cchip_reset_copy (
     output wire rst_copy
 );
 
-  reg rst_q = 1'b1;
+  reg rst_q;
+  initial rst_q = 1'b1;
   always @(posedge clk) rst_q <= rst;
   assign rst_copy = rst_q;
 

@@ -36,7 +36,10 @@ module cchip_axi_read #(
     // lines that a client may be waiting for: 2, 4, 8, 16 or 32
     parameter integer SLOTS = 16,
     // width of the data bus, bit: 64, 128, 256 or 512
-    parameter integer DATA_W = 128
+    parameter integer DATA_W = 128,
+    // AxCACHE of reads, 0..15, and AxPROT, 0..7
+    parameter integer AXI_ARCACHE = 3,
+    parameter integer AXI_PROT = 0
 ) (
     input  wire                                      clk,
     input  wire                                      rst,
@@ -100,7 +103,13 @@ module cchip_axi_read #(
   reg [ID_W-1:0] place_id_q, place_id_q2;
   reg failing_q;  // an answer without data is on its way to the read channel's stage
   wire found;  // there is a late read, found_id
-  cchip_axi_read_address #(.CLIENTS(CLIENTS), .SLOTS(SLOTS), .DATA_W(DATA_W)) u_address (
+  cchip_axi_read_address #(
+      .CLIENTS    (CLIENTS),
+      .SLOTS      (SLOTS),
+      .DATA_W     (DATA_W),
+      .AXI_ARCACHE(AXI_ARCACHE),
+      .AXI_PROT   (AXI_PROT)
+  ) u_address (
       .clk          (clk),
       .rst          (rst),
       .s_valid      (s_valid),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_axi_read_address: requests and read addresses of cchip_axi_read: a queue per client, one
 // stream of all of them in turn, and the address that is on offer. A request whose ID memory may
 // still answer for an earlier read is refused instead.
@@ -19,7 +20,10 @@ module cchip_axi_read_address #(
     // lines that a client may be waiting for: 2, 4, 8, 16 or 32
     parameter integer SLOTS = 16,
     // width of the data bus, bit: 64, 128, 256 or 512
-    parameter integer DATA_W = 128
+    parameter integer DATA_W = 128,
+    // AxCACHE of reads, 0..15, and AxPROT, 0..7
+    parameter integer AXI_ARCACHE = 3,
+    parameter integer AXI_PROT = 0
 ) (
     input  wire                                      clk,
     input  wire                                      rst,
@@ -47,6 +51,11 @@ module cchip_axi_read_address #(
     output wire [                               3:0] m_axi_arcache,
     output wire [                               2:0] m_axi_arprot
 );
+
+  localparam [31:0] CACHE = AXI_ARCACHE;
+  localparam [31:0] PROT = AXI_PROT;
+  `CCHIP_REFUSE(AXI_ARCACHE < 0 || AXI_ARCACHE > 15, cchip_error_AXI_ARCACHE_must_be_0_to_15)
+  `CCHIP_REFUSE(AXI_PROT < 0 || AXI_PROT > 7, cchip_error_AXI_PROT_must_be_0_to_7)
 
   localparam integer SLOT_W = $clog2(SLOTS);
   localparam integer ID_W = $clog2(CLIENTS) + SLOT_W;
@@ -142,8 +151,8 @@ module cchip_axi_read_address #(
   assign m_axi_arlen   = LAST_BEAT[7:0];
   assign m_axi_arsize  = BYTES_LOG2[2:0];
   assign m_axi_arburst = 2'b01;
-  assign m_axi_arcache = 4'b0011;
-  assign m_axi_arprot  = 3'b000;
+  assign m_axi_arcache = CACHE[3:0];
+  assign m_axi_arprot  = PROT[2:0];
 
   wire unused = &{1'b0, queue_ready};
 

@@ -36,7 +36,10 @@ module cchip_axi_write #(
     // most writes that memory has to answer, 1..64
     parameter integer OUTSTANDING = 16,
     // width of the ID, which is 0: 1..16
-    parameter integer ID_W = 1
+    parameter integer ID_W = 1,
+    // AxCACHE of writes, 0..15, and AxPROT, 0..7
+    parameter integer AXI_AWCACHE = 2,
+    parameter integer AXI_PROT = 0
 ) (
     input  wire                                       clk,
     input  wire                                       rst,
@@ -72,6 +75,11 @@ module cchip_axi_write #(
     input  wire [                           ID_W-1:0] m_axi_bid,
     input  wire [                                1:0] m_axi_bresp
 );
+
+  localparam [31:0] CACHE = AXI_AWCACHE;
+  localparam [31:0] PROT = AXI_PROT;
+  `CCHIP_REFUSE(AXI_AWCACHE < 0 || AXI_AWCACHE > 15, cchip_error_AXI_AWCACHE_must_be_0_to_15)
+  `CCHIP_REFUSE(AXI_PROT < 0 || AXI_PROT > 7, cchip_error_AXI_PROT_must_be_0_to_7)
 
   localparam integer STRB_W = DATA_W / 8;
   localparam integer BYTES_LOG2 = $clog2(STRB_W);
@@ -175,8 +183,8 @@ module cchip_axi_write #(
   assign m_axi_awsize  = SIZE[2:0];
   assign m_axi_awburst = 2'b01;
   // not bufferable: the response comes from where the data are seen by all
-  assign m_axi_awcache = 4'b0010;
-  assign m_axi_awprot  = 3'b000;
+  assign m_axi_awcache = CACHE[3:0];
+  assign m_axi_awprot  = PROT[2:0];
 
   // ---- responses. One counts only if there is a write whose address and data were taken
   reg aw_taken_q, w_taken_q;

@@ -23,7 +23,10 @@
 //   reset        must reset the bus too: after it no beat of an earlier read may come
 module cchip_bitstream_fetch #(
     // capacity of the FIFO, words, >= 32
-    parameter integer FIFO_DEPTH = 32
+    parameter integer FIFO_DEPTH = 32,
+    // AxCACHE of reads, 0..15, and AxPROT, 0..7
+    parameter integer AXI_ARCACHE = 3,
+    parameter integer AXI_PROT = 0
 ) (
     input  wire        clk,
     input  wire        rst,
@@ -51,6 +54,11 @@ module cchip_bitstream_fetch #(
     input  wire [ 1:0] m_axi_rresp,
     input  wire        m_axi_rlast
 );
+
+  localparam [31:0] CACHE = AXI_ARCACHE;
+  localparam [31:0] PROT = AXI_PROT;
+  `CCHIP_REFUSE(AXI_ARCACHE < 0 || AXI_ARCACHE > 15, cchip_error_AXI_ARCACHE_must_be_0_to_15)
+  `CCHIP_REFUSE(AXI_PROT < 0 || AXI_PROT > 7, cchip_error_AXI_PROT_must_be_0_to_7)
 
   localparam integer COUNT_W = $clog2(FIFO_DEPTH + 1);
   localparam [31:0] ROOM = FIFO_DEPTH - 16;
@@ -111,8 +119,8 @@ module cchip_bitstream_fetch #(
   assign m_axi_arlen   = {3'd0, beats_q} - 8'd1;
   assign m_axi_arsize  = 3'b010;
   assign m_axi_arburst = 2'b01;
-  assign m_axi_arcache = 4'b0011;
-  assign m_axi_arprot  = 3'b000;
+  assign m_axi_arcache = CACHE[3:0];
+  assign m_axi_arprot  = PROT[2:0];
 
   // ---- beats: RLAST ends a burst, the count only checks it
   reg rready_q;

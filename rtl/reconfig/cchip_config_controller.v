@@ -32,7 +32,10 @@ module cchip_config_controller #(
     // clocks per word of the port, >= 1; at 100 MHz: 2 for 8 bit at 50 MHz, 1 for 32 bit at 100 MHz
     parameter integer CFG_DIVIDER = 2,
     // longest wait for a slot to decouple, to end its ROC, to recouple, clocks, >= 16
-    parameter integer SLOT_LIMIT = 4096
+    parameter integer SLOT_LIMIT = 4096,
+    // AxCACHE of reads, 0..15, and AxPROT, 0..7
+    parameter integer AXI_ARCACHE = 3,
+    parameter integer AXI_PROT = 0
 ) (
     input  wire                                 clk,
     input  wire                                 rst,
@@ -149,7 +152,7 @@ module cchip_config_controller #(
     fetch_words_q   <= in_header ? 30'd4 : length[31:2] + {29'd0, length[1:0] != 2'd0};
   end
 
-  cchip_bitstream_fetch u_fetch (
+  cchip_bitstream_fetch #(.AXI_ARCACHE(AXI_ARCACHE), .AXI_PROT(AXI_PROT)) u_fetch (
       .clk          (clk),
       .rst          (rst),
       .run          (run),

@@ -22,7 +22,10 @@ module cchip_swaps #(
     // width of the configuration port, bit, 8 or 32
     parameter integer CFG_W = 8,
     // clocks per word of the port
-    parameter integer CFG_DIVIDER = 2
+    parameter integer CFG_DIVIDER = 2,
+    // AxCACHE of reads, 0..15, and AxPROT, 0..7
+    parameter integer AXI_ARCACHE = 3,
+    parameter integer AXI_PROT = 0
 ) (
     input  wire                                 clk,
     input  wire                                 rst,
@@ -225,7 +228,9 @@ module cchip_swaps #(
       cchip_config_controller #(
           .SLOTS      (SLOTS),
           .CFG_W      (CFG_W),
-          .CFG_DIVIDER(CFG_DIVIDER)
+          .CFG_DIVIDER(CFG_DIVIDER),
+          .AXI_ARCACHE(AXI_ARCACHE),
+          .AXI_PROT   (AXI_PROT)
       ) u_controller (
           .clk           (clk),
           .rst           (rst),

@@ -16,7 +16,11 @@ module cchip_refit_axi #(
     // levels of nodes, leaves not included: 2..64; a tree of the library has 47 at most
     parameter integer LEVELS = 48,
     // width of the data bus, bit: 64, 128, 256 or 512
-    parameter integer DATA_W = 128
+    parameter integer DATA_W = 128,
+    // AxCACHE of reads and of writes, 0..15, AxPROT of both, 0..7
+    parameter integer AXI_ARCACHE = 3,
+    parameter integer AXI_AWCACHE = 2,
+    parameter integer AXI_PROT = 0
 ) (
     input  wire                           clk,
     input  wire                           rst,
@@ -126,7 +130,13 @@ module cchip_refit_axi #(
   wire beat_slot;
   wire [2:0] beat;
   wire [1:0] slots_outstanding;
-  cchip_axi_read #(.CLIENTS(1), .SLOTS(2), .DATA_W(DATA_W)) u_read (
+  cchip_axi_read #(
+      .CLIENTS    (1),
+      .SLOTS      (2),
+      .DATA_W     (DATA_W),
+      .AXI_ARCACHE(AXI_ARCACHE),
+      .AXI_PROT   (AXI_PROT)
+  ) u_read (
       .clk            (clk),
       .rst            (rst),
       .limit          (limit),
@@ -164,7 +174,9 @@ module cchip_refit_axi #(
       .CLIENTS    (1),
       .DATA_W     (DATA_W),
       .OUTSTANDING(1),
-      .ID_W       (1)
+      .ID_W       (1),
+      .AXI_AWCACHE(AXI_AWCACHE),
+      .AXI_PROT   (AXI_PROT)
   ) u_write (
       .clk            (clk),
       .rst            (rst),

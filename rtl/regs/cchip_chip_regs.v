@@ -12,7 +12,7 @@
 //                does anything
 // hwif_in_<register>_<field> is what hardware writes, hwif_out_<register>_<field> what it reads;
 // element i of an array of w bits is [w*i +: w]. _hwset: an event, 1 for a clock; _hwclr: clears
-// the field.
+// the field. hwif_out_<register>_write of a register of events: 1 on the clock of a write to it.
 // External registers live in other modules. hwif_out_<name>_read, 1 for a clock, asks for the word
 // at word address hwif_out_external_raddr; hwif_in_external_ack answers it on the same clock or
 // later with the word on hwif_in_external_rdata, which is 0 otherwise. hwif_out_<name>_write, 1 for
@@ -82,6 +82,7 @@ module cchip_chip_regs (
     input  wire hwif_in_interrupt_status_query_failed_hwset,
     output wire hwif_out_interrupt_status_record,
     input  wire hwif_in_interrupt_status_record_hwset,
+    output wire hwif_out_interrupt_status_write,
     output wire hwif_out_interrupt_enable_no_provider,
     output wire hwif_out_interrupt_enable_swap_lost,
     output wire hwif_out_interrupt_enable_swap_error,
@@ -482,6 +483,7 @@ module cchip_chip_regs (
   assign hwif_out_interrupt_status_record_failed = interrupt_status_record_failed_q;
   assign hwif_out_interrupt_status_query_failed = interrupt_status_query_failed_q;
   assign hwif_out_interrupt_status_record = interrupt_status_record_q;
+  assign hwif_out_interrupt_status_write = strobe_q[1];
   assign hwif_out_interrupt_enable_no_provider = interrupt_enable_no_provider_q;
   assign hwif_out_interrupt_enable_swap_lost = interrupt_enable_swap_lost_q;
   assign hwif_out_interrupt_enable_swap_error = interrupt_enable_swap_error_q;

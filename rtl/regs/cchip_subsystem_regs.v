@@ -12,7 +12,7 @@
 //                does anything
 // hwif_in_<register>_<field> is what hardware writes, hwif_out_<register>_<field> what it reads;
 // element i of an array of w bits is [w*i +: w]. _hwset: an event, 1 for a clock; _hwclr: clears
-// the field.
+// the field. hwif_out_<register>_write of a register of events: 1 on the clock of a write to it.
 // External registers live in other modules. hwif_out_<name>_read, 1 for a clock, asks for the word
 // at word address hwif_out_external_raddr; hwif_in_external_ack answers it on the same clock or
 // later with the word on hwif_in_external_rdata, which is 0 otherwise. hwif_out_<name>_write, 1 for
@@ -71,6 +71,7 @@ module cchip_subsystem_regs (
     input  wire hwif_in_interrupt_status_error_hwset,
     output wire hwif_out_interrupt_status_done,
     input  wire hwif_in_interrupt_status_done_hwset,
+    output wire hwif_out_interrupt_status_write,
     output wire hwif_out_interrupt_enable_illegal_kind,
     output wire hwif_out_interrupt_enable_no_provider,
     output wire hwif_out_interrupt_enable_lost,
@@ -249,6 +250,7 @@ module cchip_subsystem_regs (
   assign hwif_out_interrupt_status_lost = interrupt_status_lost_q;
   assign hwif_out_interrupt_status_error = interrupt_status_error_q;
   assign hwif_out_interrupt_status_done = interrupt_status_done_q;
+  assign hwif_out_interrupt_status_write = strobe_q[2];
   assign hwif_out_interrupt_enable_illegal_kind = interrupt_enable_illegal_kind_q;
   assign hwif_out_interrupt_enable_no_provider = interrupt_enable_no_provider_q;
   assign hwif_out_interrupt_enable_lost = interrupt_enable_lost_q;

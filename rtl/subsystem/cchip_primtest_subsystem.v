@@ -14,8 +14,8 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        drops all pairs and clears registers; a slot whose rewriting was cut off stays
 //                decoupled until a good swap
-//   errors       codes CCHIP_SWAP_* in the register report, interrupt; see
-//                docs/hardware/registers.md
+//   errors       codes CCHIP_SWAP_* in the register report, interrupt (0 for a clock after a write
+//                of its status); see docs/hardware/registers.md
 // Pairs: cchip_operand_memory, cchip_descriptor_queues; slots and their modules: cchip_slots,
 // cchip_swaps.
 module cchip_primtest_subsystem #(
@@ -46,7 +46,10 @@ module cchip_primtest_subsystem #(
     // 0: partitions of an FPGA; 1: simulated reconfiguration (see cchip_pr_slot)
     parameter integer SIMULATION = 0,
     // start of the random numbers of a simulated reconfiguration, any
-    parameter integer SEED = 1
+    parameter integer SEED = 1,
+    // AxCACHE of reads, 0..15, and AxPROT, 0..7
+    parameter integer AXI_ARCACHE = 3,
+    parameter integer AXI_PROT = 0
 ) (
     input  wire                                   clk,
     input  wire                                   rst,
@@ -179,6 +182,7 @@ module cchip_primtest_subsystem #(
   wire [31:0] shutdown_limit, memory_limit, minimum_batch, maximum_age;
   wire [`CCHIP_SWAP_REPORT_W-1:0] last_report;
   wire [4:0] status, status_enable;
+  wire status_write;
   wire [31:0] lost;
   wire [2:0] swap_events;  // {lost, error, done}
   wire [4*`CCHIP_PAIR_COUNT_W-1:0] outstanding  /* verilator public_flat_rd */;
@@ -256,6 +260,7 @@ module cchip_primtest_subsystem #(
       .hwif_in_report_slot                         (last_report[`CCHIP_SWAP_REPORT_SLOT]),
       .hwif_in_report_code                         (last_report[`CCHIP_SWAP_REPORT_CODE]),
       .hwif_in_report_lost_pairs                   (last_report[`CCHIP_SWAP_REPORT_LOST]),
+      .hwif_out_interrupt_status_write             (status_write),
       .hwif_out_interrupt_status_illegal_kind      (status[4]),
       .hwif_in_interrupt_status_illegal_kind_hwset (refused_kind),
       .hwif_out_interrupt_status_no_provider       (status[3]),
@@ -289,7 +294,7 @@ module cchip_primtest_subsystem #(
       .hwif_out_bitstream_write                    (write_table)
   );
 
-  always @(posedge clk) irq_q <= ~rst & |(status & status_enable);
+  always @(posedge clk) irq_q <= ~rst & ~status_write & |(status & status_enable);
 
   // ---- slots and swaps
   wire [SLOTS-1:0] stop, decouple, hold_reset, roc_start, quiet, roc_busy;
@@ -357,7 +362,9 @@ module cchip_primtest_subsystem #(
       .SLOTS      (SLOTS),
       .COUNT_W    (COUNT_W),
       .CFG_W      (CFG_W),
-      .CFG_DIVIDER(CFG_DIVIDER)
+      .CFG_DIVIDER(CFG_DIVIDER),
+      .AXI_ARCACHE(AXI_ARCACHE),
+      .AXI_PROT   (AXI_PROT)
   ) u_swaps (
       .clk           (clk),
       .rst           (rst),

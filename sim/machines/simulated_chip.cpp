@@ -57,7 +57,10 @@ class SimulatedChip final : public sim::ChipMachine<Model, bus_w> {
     std::vector<Line> image;
     for (std::uint32_t n = 0; n < lines; ++n) image.push_back(this->memory().line(std::uint64_t{base} + n));
     engine_->place(base, image);
-    const RefitEnd end = engine_->refit(base, lines, root, clocks_a_line * (lines + 100));
+    const std::uint64_t most_clocks = clocks_a_line * (lines + 100);
+    RefitEnd end = engine_->refit(base, lines, root, most_clocks);
+    for (std::uint64_t n = 0; engine_->top().outstanding != 0 && n < most_clocks; ++n) engine_->step();
+    end.outstanding = engine_->top().outstanding != 0;
     this->memory().write(base, engine_->lines(base, lines));
     return end;
   }

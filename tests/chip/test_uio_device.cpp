@@ -321,6 +321,18 @@ TEST_CASE("driver in C: the example of the programmer's guide", "[system][chip_p
   text += print("answer %u, code %u%s\n", chip_answer(&record), chip_code(&record));
   INFO(text);
   CHECK(text == "faces 0 and 0\nfaces 1 and 0\nanswer 1, code 0\n");
+  int looks = 0;  // the event of a record follows it
+  while (chip_event(&chip) == 0 && looks < 1000) ++looks;
+  CHECK(looks < 1000);
+  while (chip_event(&chip) != 0) REQUIRE(++looks < 1000);
+  REQUIRE(chip_submit(&chip, query.data()) == CHIP_OK);
+  int dones = 0;
+  for (looks = 0; dones == 0; REQUIRE(++looks < 10000)) {
+    while (chip_event(&chip) != 0) {
+      while (dones == 0 && chip_next(&chip, &record) == CHIP_OK) dones += chip_is_done(&record);
+    }
+  }
+  CHECK(chip_code(&record) == 0);
 }
 
 TEST_CASE("driver in C: every record is the model's, round after round of its rings", "[system][chip_poll]") {
@@ -376,6 +388,9 @@ TEST_CASE("driver in C: offsets and bits are those of the register map", "[syste
   CHECK(CHIP_CONTROL_ENABLE == regs::control::enable_mask);
   CHECK(CHIP_CONTROL_SOFT_RESET == regs::control::soft_reset_mask);
   CHECK(CHIP_STATUS == regs::status::offset);
+  CHECK(CHIP_INTERRUPT_STATUS == regs::interrupt_status::offset);
+  CHECK(CHIP_INTERRUPT_ENABLE == regs::interrupt_enable::offset);
+  CHECK(CHIP_INTERRUPT_RECORD == regs::interrupt_status::record_mask);
   CHECK(CHIP_STATUS_RESETTING == regs::status::resetting_mask);
   CHECK(CHIP_STATUS_QUERY_FAILED == regs::status::query_failed_mask);
   CHECK(CHIP_STATUS_RECORD_FAILED == regs::status::record_failed_mask);

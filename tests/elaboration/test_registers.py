@@ -58,6 +58,9 @@ class Errors(Copy):
     def test_reset_value_too_large(self):
         self.refused("minor_number[7:0] = 0", "minor_number[7:0] = 256", "reset value", self.common)
 
+    def test_accesses_wider_than_the_bus(self):
+        self.refused("accesswidth = 32;", "accesswidth = 64;", "accesswidth must be 32", self.common)
+
     def test_name_that_is_not_that_of_the_file(self):
         self.refused("addrmap cchip_chip {", "addrmap chip {", "must be called cchip_chip", self.chip)
 

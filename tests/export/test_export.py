@@ -203,9 +203,9 @@ class Export(unittest.TestCase):
         text = (self.folder / "README.md").read_text()
         bill = re.search(r"^\| all \|.* (\d+) \| (\d+) \| (\d+) \| (\d+) \|$", (ROOT / "docs/hardware/fpga.md").read_text(), re.M)
         self.assertIn("{} sites of LUT4, {} flip-flops, {} multiplier blocks, {} block RAMs".format(*bill.groups()), text)
-        for port, file in (("m_axi_arcache", "cchip_axi_read_address"), ("m_axi_awcache", "cchip_axi_write")):
-            value = re.search(rf"assign {port} *= 4'b(\d+);", (ROOT / f"rtl/memory/{file}.v").read_text())[1]
-            self.assertIn(f"`{port}` {value}", text)
+        for name in ("AXI_ARCACHE", "AXI_AWCACHE", "AXI_PROT"):
+            value = re.search(rf"parameter integer {name} = (\d+)", (ROOT / "rtl/chip/cchip_chip.v").read_text())[1]
+            self.assertIn(f"`{name}` = {value}", text)
         for name in set(re.findall(r"`(?:control|status)\.(\w+)`", text)):
             self.assertIn(f"| `{name}` |", (self.folder / "docs/hardware/chip-registers.md").read_text())
         self.assertIn("docs/hardware/chip-registers.md", text)

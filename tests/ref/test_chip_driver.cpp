@@ -23,8 +23,12 @@ class Registers final : public Machine {
   void write_register(std::uint32_t, std::uint32_t) override {}
   void write_memory(std::uint64_t, const Bytes&) override {}
   Bytes read_memory(std::uint64_t, std::size_t count) override { return Bytes(count); }
+  bool has_refit() const override { return true; }
+  RefitEnd refit(std::uint32_t, std::uint32_t, std::uint32_t) override { return end; }
   bool interrupt() override { return false; }
   void proceed() override {}
+
+  RefitEnd end;
 
  private:
   std::uint32_t slots_;
@@ -43,4 +47,15 @@ TEST_CASE("chip driver: more slots than a chip can have are refused", "[ref][chi
                       "chip driver: the register capabilities says " + std::to_string(slots) +
                           " slots, a chip has at most 4; check the bus and the chip's release");
   }
+}
+
+TEST_CASE("chip driver: a refit whose writes may still arrive is no refit that gave up", "[ref][chip_driver]") {
+  auto machine = std::make_unique<Registers>(1);
+  RefitEnd& end = machine->end;
+  const auto port = open_chip(std::move(machine));
+  CHECK(port->refit(100, 3, 1));
+  end.code = RefitCode::timeout;
+  CHECK_FALSE(port->refit(100, 3, 1));  // the host makes the nodes and stores them at once
+  end.outstanding = true;
+  CHECK_THROWS_AS(port->refit(100, 3, 1), std::runtime_error);
 }

@@ -57,8 +57,11 @@ class RefitBench {
   }
 
   void command(std::uint32_t lines, std::uint32_t root) {
+    command(static_cast<std::uint32_t>(random_() % 0xFF000000U), lines, root);
+  }
+  void command(std::uint32_t at, std::uint32_t lines, std::uint32_t root) {
     top_.s_valid = 1;
-    top_.s_base = base = static_cast<std::uint32_t>(random_() % 0xFF000000U);
+    top_.s_base = base = at;
     top_.s_lines = lines;
     top_.s_root = root;
     for (int n = 0; top_.s_ready == 0; ++n) {
@@ -492,6 +495,13 @@ TEST_CASE("cchip_refit: every fault ends the refit with its code, and the next o
       const End aborted = bench.end(1000);
       REQUIRE(aborted.code == RefitCode::abort);
       ++bins[aborted.code];
+      // neither it nor one that comes while no refit is at work ends the next one
+      good();
+      bench.abort(true);
+      for (int n = 0; n < 3; ++n) bench.step();
+      bench.abort(false);
+      bench.step();
+      good();
       bench.memory = start;
       bench.command(command.lines, command.root);
       for (auto n = random() % 1200; n > 0; --n) bench.step();
@@ -506,6 +516,16 @@ TEST_CASE("cchip_refit: every fault ends the refit with its code, and the next o
       bench.command(lines, root);
       expect_end(RefitCode::command, 0);
     }
+    // the highest base whose image ends within 32 bits of lines, and the one above
+    for (const std::uint32_t above : {0x00FFFFFFU, 0x00800000U, 0U}) {
+      bench.command(0xFF000000U + above, command.lines, command.root);
+      expect_end(RefitCode::command, 0);
+    }
+    bench.how = {};
+    bench.memory = start;
+    bench.command(0xFEFFFFFFU, command.lines, command.root);
+    REQUIRE(bench.end(1000000).code == RefitCode::ok);
+    REQUIRE(bench.memory == frames.moved.lines);
     // a chain of nodes that is too deep, and one line that all nodes have as their child
     std::vector<Line> chain(Config::LEVELS + 3);
     for (std::uint32_t n = 1; n < chain.size(); ++n) put(chain[n], bvh::inner_field::first, n + 1);

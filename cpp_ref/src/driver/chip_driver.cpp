@@ -52,6 +52,9 @@ class ChipDriver final : public QueryPort {
   bool refit(std::uint32_t first_line, std::uint32_t lines, std::uint32_t root) override {
     const RefitEnd end = machine_->refit(first_line, lines, root);
     refit_clocks_ += end.clocks;
+    // Parts of a write could overwrite what the host stores there next.
+    if (end.outstanding)
+      throw std::runtime_error("chip driver: memory owes the refit engine an answer; reset engine, chip and bus");
     invalidate(first_line, lines);
     return end.code == RefitCode::ok;
   }

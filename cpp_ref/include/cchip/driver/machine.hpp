@@ -20,6 +20,8 @@ struct RefitEnd {
   std::uint32_t line = 0;    ///< of the image, at work then; 0: none
   std::uint32_t lines = 0;   ///< lines read
   std::uint64_t clocks = 0;  ///< from the command to the end
+  /// Memory still owes answers (`outstanding` of cchip_refit_axi): beats of a write may reach the image at any time
+  bool outstanding = false;
 };
 
 /// Accesses to registers and memory take effect in the order of the calls: what was written to memory before a register
@@ -45,7 +47,8 @@ class Machine {
 
   /// True if a cchip_refit_axi works on the same memory.
   virtual bool has_refit() const { return false; }
-  /// Runs it on an image and waits for its end. A query that uses these lines meanwhile finds anything.
+  /// Runs it on an image and waits for its end, then, not without a bound, until memory owes no answer. A query that
+  /// uses these lines meanwhile finds anything.
   /// \param base, root  lines of 64 bytes: address of the header / 64; number within the image
   virtual RefitEnd refit(std::uint32_t /*base*/, std::uint32_t /*lines*/, std::uint32_t /*root*/) {
     return {RefitCode::command, 0, 0, 0};

@@ -69,7 +69,8 @@ class QueryPort {
   /// reads the new ones. Takes what bvh::make_leaves() writes.
   /// \param root line of the image
   /// \pre as store(); capabilities().refits
-  /// \return false: the engine gave up, and the nodes hold anything
+  /// \return false: the engine gave up, and the nodes hold anything; nothing that it wrote is still on its way
+  /// \throws std::runtime_error memory owes the engine an answer: what it wrote may come after a store()
   virtual bool refit(std::uint32_t /*first_line*/, std::uint32_t /*lines*/, std::uint32_t /*root*/) { return false; }
   /// Lines first..last stay in the chip's cache once it has read them; first > last: none. Replaces what this range
   /// was. Changes speed only, so it may be called while queries are in flight.

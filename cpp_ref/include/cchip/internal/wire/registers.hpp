@@ -141,7 +141,8 @@ constexpr int illegal_kind_shift = 4;
 constexpr std::uint32_t illegal_kind_reset = 0x0;
 }  // namespace interrupt_status
 
-/// Interrupt enable: the line is 1 while a status bit and its enable bit are 1.
+/// Interrupt enable: the line is 1 while a status bit and its enable bit are 1, but 0 for a clock after each write of
+/// `interrupt_status`.
 namespace interrupt_enable {
 constexpr std::uint32_t offset = 0x024;
 /// see interrupt_status
