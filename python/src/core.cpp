@@ -1848,7 +1848,8 @@ It takes one call at a time, from any thread: a device in use raises RuntimeErro
       R"(Opens a device, one of device_names().
 
 threads: of a batch on the CPU; 0 means as many as there are cores.
-target: one of cpu_targets(), instruction sets of the CPU; by default the best. Answers are the same on all of them.
+target: one of cpu_targets(), instruction sets of the CPU; by default the best. Which contact contacts="first" names, and stats, may differ
+between them; all else is equal.
 
 Raises ValueError: no device or target of this name.)");
   m.def("device_names", &cchip::device_names, "Names that open_device() takes, 'cpu' first.");
