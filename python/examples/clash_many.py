@@ -9,7 +9,7 @@ empty if one of them is not closed), distance of the surfaces (empty above the c
 there, CSV otherwise. SCHEDULER is the address of a Dask scheduler; without it two workers are started here. Needs
 collide_dask.py beside it, collisionchip, distributed and trimesh (which reads the files).
 Exit codes: 0 no two parts cross or share volume, 1 some do, 2 wrong arguments, fewer than two mesh files, no scheduler or no place for RESULT, 3 some files cannot be
-used and were left out."""
+used and were left out, or no two parts clash but shells of one overlap, so that its solid may not be the one that was meant."""
 import argparse
 import csv
 import html
@@ -67,7 +67,7 @@ def in_words(relation, solids, distance):
     return "overlap" if solids == "overlapping" else "touch"
 
 
-def report(path, lines, files, open_parts):
+def report(path, lines, files, open_parts, overlaps):
     """A page with a table of the pairs; those whose faces meet lead to a page of their own, on which both parts can be turned and cut."""
     pages = path.with_name(path.stem + "_pairs")
     by_name = {file.name: file for file in files}
@@ -83,10 +83,12 @@ def report(path, lines, files, open_parts):
         far = "" if distance is None else f"{distance:g}"
         rows.append(f"<tr><td>{html.escape(a)}<td>{html.escape(b)}<td>{words}<td>{contacts}<td>{far}")
     notes = "".join(f"<li>{html.escape(name)}" for name in open_parts)
+    doubts = "".join(f"<li>{html.escape(name)}: faces {i} and {j}" for name, (i, j) in overlaps.items())
     path.write_text('<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Clashes</title>'
                     f"<h1>{len(files)} parts, {len(lines)} pairs</h1>"
                     "<table border><tr><th>a<th>b<th>what<th>face pairs<th>distance" + "".join(rows) + "</table>"
-                    + (f"<h2>Not closed: surfaces, not solids</h2><ul>{notes}</ul>" if notes else "") + "</html>\n", encoding="utf-8")
+                    + (f"<h2>Not closed: surfaces, not solids</h2><ul>{notes}</ul>" if notes else "")
+                    + (f"<h2>Shells overlap: try --inside nonzero</h2><ul>{doubts}</ul>" if doubts else "") + "</html>\n", encoding="utf-8")
 
 
 def load(files):
@@ -109,6 +111,7 @@ def main():
     parser.add_argument("result", metavar="RESULT", type=pathlib.Path)
     parser.add_argument("scheduler", metavar="SCHEDULER", nargs="?")
     parser.add_argument("--clearance", type=float, default=0.0, help="list pairs at most so far apart, too (default 0)")
+    parser.add_argument("--inside", choices=("odd", "nonzero"), default="odd", help="inside is what a part encloses an odd number of times (default), or winds around")
     parser.add_argument("--report", metavar="PAGE.html", type=pathlib.Path,
                         help="write a page with the pairs, too; beside it a folder with a page for each pair whose faces meet")
     options = parser.parse_args()
@@ -127,27 +130,31 @@ def main():
         print(f"{name}: not closed, so it is a surface and no solid: nothing is inside it", file=sys.stderr)
     bounds = np.array([part.bounds for part in parts])
     pairs = [(int(a), int(b)) for a, b in box_pairs(bounds[:, 0], bounds[:, 1], options.clearance)]
-    listed = []
+    listed, overlaps = [], {}
     with (Client(scheduler) if scheduler else Client(LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None))) as client:
         done = 0
-        for a, b, relation, contacts, solids, distance in relate_pairs(client, parts, pairs, clearance=options.clearance):
+        for a, b, relation, contacts, solids, distance, found in relate_pairs(client, parts, pairs, clearance=options.clearance, inside=options.inside):
             done += 1
+            overlaps.update((files[part].name, overlap) for part, overlap in zip((a, b), found) if overlap)
             if sys.stderr.isatty() or done % 1000 == 0 or done == len(pairs):
                 print(f"\r{done} of {len(pairs)} pairs", end="" if done < len(pairs) else "\n", file=sys.stderr, flush=True)
             if relation != "apart" or solids not in (None, "disjoint") or distance <= options.clearance:
                 listed.append((files[a].name, files[b].name, relation, contacts, solids or "", distance if distance <= options.clearance else None))
         if not scheduler:
             client.cluster.close()
+    for name, (i, j) in sorted(overlaps.items()):
+        print(f"{name}: faces {i} and {j} cross or lie on each other, so its shells overlap: try --inside nonzero", file=sys.stderr)
     listed.sort()
     write(options.result, listed)
     if options.report:
-        report(options.report, listed, files, open_parts)
+        report(options.report, listed, files, open_parts, dict(sorted(overlaps.items())))
     touching = [line for line in listed if line[2] != "apart"]
     crossing = sum(line[2] == "crossing" for line in touching)
     print(f"parts={len(parts)} box_pairs={len(pairs)} touching={len(touching)} crossing={crossing}")
     if len(files) < len(found):
         return 3
-    return 1 if any(line[2] == "crossing" or line[4] in ("overlapping", "a_in_b", "b_in_a", "equal") for line in listed) else 0
+    clash = any(line[2] == "crossing" or line[4] in ("overlapping", "a_in_b", "b_in_a", "equal") for line in listed)
+    return 1 if clash else 3 if overlaps else 0
 
 
 if __name__ == "__main__":

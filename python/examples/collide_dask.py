@@ -54,12 +54,15 @@ def _many(a, b, poses_a, poses_b, options):
     return _collide_many(a.object(), poses_a, b.object(), poses_b, device=_device(), **options)
 
 
-def _relate(a, b, clearance):
+def _relate(a, b, clearance, inside):
     x, y = a.object(), b.object()
     result = collide(x, None, y, None, device=_device(), contacts="all", relation=True)
-    word = solids(x, None, y, None) if x.is_closed and y.is_closed else None
+    word = None
+    if all(part.is_closed and (inside == "odd" or not part.twisted_edge) for part in (x, y)):
+        word = solids(x, None, y, None, inside=inside)  # where shells overlap it warns, in the worker's log
     apart = 0.0 if result else distance(x, None, y, None, stop_above=clearance).upper
-    return result.relation, len(result.contacts), word, apart
+    in_doubt = word is not None and inside == "odd"
+    return result.relation, len(result.contacts), word, apart, tuple(part.shell_overlap if in_doubt else None for part in (x, y))
 
 
 def _send_this_file(client):
@@ -126,13 +129,14 @@ def collide_many(client, a, poses_a, b, poses_b, *, contacts=False, chunk=16384,
     return np.concatenate([np.zeros(0, bool), *hits]), np.concatenate([np.zeros((0, 3), np.uint32), *pairs])
 
 
-def relate_pairs(client, meshes, pairs, *, clearance=0.0, retries=3):
-    """Yields (a, b, relation, contacts, solids, distance) for pairs of meshes in place, as each is done; a and b are numbers of meshes.
+def relate_pairs(client, meshes, pairs, *, clearance=0.0, inside="odd", retries=3):
+    """Yields (a, b, relation, contacts, solids, distance, overlaps) for pairs of meshes in place, as each is done; a and b are numbers of meshes.
 
     relation: of the surfaces; contacts: how many face pairs touch; solids: the word of collisionchip.solids(), None unless both meshes are
-    closed; distance: of the surfaces, inf if it is greater than clearance. A mesh goes only to workers that need it."""
+    closed and, with inside="nonzero", their faces all the same way round; distance: of the surfaces, inf if it is greater than clearance;
+    overlaps: Object.shell_overlap of both, None if the word does not depend on it. A mesh goes only to workers that need it."""
     pairs = list(pairs)
-    for number, result in _run(client, meshes, [(_relate, pair, (clearance,)) for pair in pairs], False, retries):
+    for number, result in _run(client, meshes, [(_relate, pair, (clearance, inside)) for pair in pairs], False, retries):
         yield (*pairs[number], *result)
 
 

@@ -559,6 +559,58 @@ const char* name_of(cchip::Intersection::Kind kind) {
   }
 }
 
+cchip::SolidRequest to_solid_request(const std::string& inside) {
+  if (inside == "odd") return {cchip::InsideRule::odd};
+  if (inside == "nonzero") return {cchip::InsideRule::nonzero};
+  throw std::invalid_argument("inside is '" + inside + "'; give 'odd' or 'nonzero'");
+}
+
+/// Warns that an answer about solids rests on a rule that its caller may not have meant.
+/// \param object how the caller calls it
+/// \throws nb::python_error if the user has made such warnings errors
+void warn_of_overlap(const std::string& object, const std::optional<cchip::Contact>& overlap,
+                     const cchip::SolidRequest& request) {
+  if (!overlap || request.inside != cchip::InsideRule::odd) return;
+  const bool cross = overlap->relation == cchip::Relation::crossing;
+  const nb::object text = to_text("solids: faces " + std::to_string(overlap->face_a) + " and " +
+                                  std::to_string(overlap->face_b) + " of " + object +
+                                  (cross ? " cross" : " lie on each other") +
+                                  ": its shells overlap, are there twice or have a wall in common, and space that two "
+                                  "of them share counts as outside; inside='nonzero' counts it as inside");
+  if (PyErr_WarnFormat(PyExc_UserWarning, 1, "%U", text.ptr()) != 0) throw nb::python_error();
+}
+
+/// "A", with the file if it came from one.
+std::string call_it(const char* name, const Object& object) {
+  const std::string& file = object.mesh().name;
+  return file.empty() ? name : name + (" (" + file + ")");
+}
+
+const char* solids_of_two(nb::handle object_a, nb::handle pose_a, nb::handle object_b, nb::handle pose_b,
+                          const std::string& inside) {
+  const Object a = to_object(object_a, "a");
+  const Object b = to_object(object_b, "b");
+  const Pose place_a = one_pose(pose_a, "pose_a");
+  const Pose place_b = one_pose(pose_b, "pose_b");
+  const cchip::SolidRequest request = to_solid_request(inside);
+  cchip::SolidResult result;
+  {
+    const nb::gil_scoped_release release;
+    const GradualUnderflow mode;
+    result = cchip::solids(a, place_a, b, place_b, request);
+  }
+  warn_of_overlap(call_it("A", a), result.overlap_a, request);
+  if (a.id() != b.id()) warn_of_overlap(call_it("B", b), result.overlap_b, request);
+  return cchip::name_of(result.relation);
+}
+
+/// Its ends and a face, or None.
+nb::object to_tuple(const std::optional<cchip::OpenEdge>& edge) {
+  if (!edge) return nb::none();
+  const auto point = [](const Vec3d& x) { return nb::make_tuple(x[0], x[1], x[2]); };
+  return nb::make_tuple(point(edge->from), point(edge->to), edge->face);
+}
+
 nb::list intersections_of(const Result& x) {
   std::vector<std::vector<cchip::Intersection>> found;
   {
@@ -1219,11 +1271,19 @@ nb::object to_object(const std::optional<Found>& found, const Args&... args) {
 
 constexpr std::uint64_t all_groups = ~std::uint64_t{0};
 
-nb::list solids_of(PyScene& self, Device* device) {
+nb::list solids_of(PyScene& self, Device* device, const std::string& inside) {
+  const cchip::SolidRequest request = to_solid_request(inside);
+  const std::vector<cchip::SolidPair> found =
+      self.ask([&](const Scene& s) { return cchip::solids(*DeviceUse(device), s, request); });
   nb::list pairs;
-  for (const cchip::SolidPair& pair : self.ask([&](const Scene& s) { return cchip::solids(*DeviceUse(device), s); })) {
+  std::map<Scene::Id, std::optional<cchip::Contact>> overlaps;  // each object once
+  for (const cchip::SolidPair& pair : found) {
+    overlaps.emplace(pair.a, pair.overlap_a);
+    overlaps.emplace(pair.b, pair.overlap_b);
+    if (pair.relation == cchip::SolidRelation::disjoint) continue;
     pairs.append(nb::make_tuple(pair.a, pair.b, cchip::name_of(pair.relation)));
   }
+  for (const auto& [id, overlap] : overlaps) warn_of_overlap("object " + std::to_string(id), overlap, request);
   return pairs;
 }
 
@@ -1561,6 +1621,32 @@ Raises ValueError: another shape, a vertex that is not finite or beyond 2^1000.)
             return x.is_closed();
           },
           "An even number of faces use each edge, so the mesh bounds a solid; vertices by their coordinates.")
+      .def_prop_ro(
+          "twisted_edge",
+          [](const Object& x) {
+            std::optional<cchip::OpenEdge> edge;
+            {
+              const nb::gil_scoped_release release;
+              edge = x.twisted_edge();
+            }
+            return to_tuple(edge);
+          },
+          nb::sig("def twisted_edge(self) -> tuple[tuple[float, float, float], tuple[float, float, float], int] | None"),
+          "The first edge that faces run along more often one way than the other: its ends and a face that uses it. "
+          "None if the sides of all faces are consistent, as solids(inside='nonzero') needs.")
+      .def_prop_ro(
+          "shell_overlap",
+          [](const Object& x) -> std::optional<std::pair<std::uint32_t, std::uint32_t>> {
+            const nb::gil_scoped_release release;
+            const GradualUnderflow mode;
+            const std::optional<cchip::Contact> overlap = cchip::shell_overlap(x);
+            if (!overlap) return std::nullopt;
+            return std::pair(overlap->face_a, overlap->face_b);
+          },
+          nb::sig("def shell_overlap(self) -> tuple[int, int] | None"),
+          "The first two faces that cross or share an area, where shells overlap, are there twice or have a wall in "
+          "common; None if there are none. There solids() depends on its rule for the inside. The first use takes as "
+          "long as self_contacts().")
       .def(
           "self_contacts",
           [](const Object& x, std::optional<std::size_t> max_contacts, bool relation, bool neighbours) -> nb::object {
@@ -1762,7 +1848,8 @@ It takes one call at a time, from any thread: a device in use raises RuntimeErro
       R"(Opens a device, one of device_names().
 
 threads: of a batch on the CPU; 0 means as many as there are cores.
-target: one of cpu_targets(), instruction sets of the CPU; by default the best. Answers are the same on all of them.
+target: one of cpu_targets(), instruction sets of the CPU; by default the best. Which contact contacts="first" names, and stats, may differ
+between them; all else is equal.
 
 Raises ValueError: no device or target of this name.)");
   m.def("device_names", &cchip::device_names, "Names that open_device() takes, 'cpu' first.");
@@ -2000,25 +2087,19 @@ Returns the least factor for which B, moved by that multiple of the direction, t
 inf if they never touch, then touches is False.
 
 Raises as clear_along().)");
-  m.def(
-      "solids",
-      [](nb::handle object_a, nb::handle pose_a, nb::handle object_b, nb::handle pose_b) {
-        const Object a = to_object(object_a, "a");
-        const Object b = to_object(object_b, "b");
-        const Pose place_a = one_pose(pose_a, "pose_a");
-        const Pose place_b = one_pose(pose_b, "pose_b");
-        const nb::gil_scoped_release release;
-        const GradualUnderflow mode;
-        return cchip::name_of(cchip::solids(a, place_a, b, place_b));
-      },
-      "a"_a.none(), "pose_a"_a.none(), "b"_a.none(), "pose_b"_a.none(),
-      nb::sig("def solids(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
-              "numpy.typing.ArrayLike | None) -> str"),
-      R"(How do two closed meshes lie to each other as solids? Exactly.
+  m.def("solids", &solids_of_two, "a"_a.none(), "pose_a"_a.none(), "b"_a.none(), "pose_b"_a.none(), nb::kw_only(),
+        "inside"_a = "odd",
+        nb::sig("def solids(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "
+                "numpy.typing.ArrayLike | None, *, inside: str = 'odd') -> str"),
+        R"(How do two closed meshes lie to each other as solids? Exactly.
 
 "disjoint"; "touching": surfaces share a point, no volume; "overlapping"; "a_in_b" and "b_in_a", surfaces may touch; "equal".
 
-Raises ValueError: a pose as in collide(), or one that flattens space; a mesh that is not closed (Object.is_closed).)");
+inside: 'odd', what a surface encloses an odd number of times; 'nonzero', what it winds around, so that space two shells share is
+inside. They differ where shells of a mesh overlap or are there twice (Object.shell_overlap): with 'odd' a UserWarning says so.
+
+Raises ValueError: a pose as in collide(), or one that flattens space; a mesh that is not closed (Object.is_closed), or, with
+'nonzero', with faces that are not all the same way round (Object.twisted_edge).)");
   m.def(
       "_to_object", [](nb::handle mesh, const std::string& name) { return to_object(mesh, name.c_str()); },
       "mesh"_a.none(), "name"_a, nb::sig("def _to_object(mesh: typing.Any, name: str) -> Object"),
@@ -2103,11 +2184,11 @@ groups, mask: 64 bits each. Two objects are tested if the mask of each has a gro
             return owned<double>(std::vector<double>(rows.data(), rows.data() + rows.size()), {4, 4});
           },
           "id"_a, "The pose of an object, (4, 4) float64.")
-      .def("solids", &solids_of, nb::kw_only(), "device"_a = nb::none(),
-           nb::sig("def solids(self, *, device: Device | None = None) -> list[tuple[int, int, str]]"),
+      .def("solids", &solids_of, nb::kw_only(), "device"_a = nb::none(), "inside"_a = "odd",
+           nb::sig("def solids(self, *, device: Device | None = None, inside: str = 'odd') -> list[tuple[int, int, str]]"),
            R"(All pairs that are not disjoint as solids, tuples (id of A, id of B, word of solids()), ascending.
 
-Raises as solids() for a pair of candidates(): both must be closed.)")
+Raises and warns as solids() for pairs of candidates(): both must be closed.)")
       .def("_pairs", &pairs_of, "other"_a = nb::none(), "first"_a = false, "device"_a = nb::none(),
            nb::sig("def _pairs(self, other: Scene | None = None, first: bool = False, device: Device | None = None) -> "
                    "typing.Any"),

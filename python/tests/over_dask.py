@@ -57,6 +57,7 @@ def kill(client, running, count):
 
 def over_dask(client, count, *arguments, **options):
     """The answer, and the processes that were killed meanwhile, `count` of them."""
+    client.wait_for_workers(2)  # nannies may not have started those that were killed before
     running, killed = threading.Event(), []
     running.set()
     killer = threading.Thread(target=lambda: killed.append(kill(client, running, count)))

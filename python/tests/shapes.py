@@ -14,6 +14,12 @@ def cube(side=1.0):
     return corners, np.array([face for a, b, c, d in quads for face in ((a, b, c), (a, c, d))])
 
 
+def joined(*meshes):
+    """One mesh of several, whose surfaces are its shells; each is (vertices, faces)."""
+    starts = np.cumsum([0] + [len(vertices) for vertices, _ in meshes])
+    return np.concatenate([vertices for vertices, _ in meshes]), np.concatenate([faces + start for (_, faces), start in zip(meshes, starts)])
+
+
 def torus(major=1.0, minor=0.3, around=24, across=12):
     """2 x around x across triangles around the z axis."""
     u = np.repeat(np.arange(around), across) * (2 * np.pi / around)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Answers with their proof, checked by collisionchip.check."""
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -88,3 +90,26 @@ def test_scene(cube):
     assert scene.contacts()[0][2].certificate is None
     assert scene.find_contact(ids[1], certificate=True)[1].certificate.check()["contacts"]
     assert scene.contacts(cube, moved(2.5), certificate=True)[0][1].certificate.check()["contacts"]
+
+
+def test_a_file_of_several(cube, tmp_path):
+    (tmp_path / "cube.off").write_text("OFF\n8 6 0\n" + "".join("%g %g %g\n" % tuple(v) for v in VERTICES)
+                                       + "".join("4 %d %d %d %d\n" % tuple(q) for q in QUADS))
+    lines, poses = "", ""
+    for x in (0.5, 7):
+        lines += "\n".join(collide(cube, None, cube, moved(x), contacts="all", certificate=True).certificate.lines) + "\n"
+        poses += " ".join(str(v) for pose in (np.eye(4), moved(x)) for v in pose[:3].ravel()) + "\n"
+
+    def run(poses, lines):
+        (tmp_path / "poses").write_text(poses)
+        (tmp_path / "proofs").write_text(lines, newline="")
+        done = subprocess.run([sys.executable, check.__file__, *(tmp_path / name for name in ("cube.off", "cube.off", "poses", "proofs"))],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
+        return done.returncode, done.stdout
+
+    code, text = run(poses, lines)
+    assert code == 0 and text.count("accepted: ") == 2 and "accepted: 0 contacts" in text
+    assert run(poses, lines.replace("\n", "\r"))[0] != 0
+    assert run(poses.replace("7", "8"), lines)[0] == 1
+    code, text = run(poses.splitlines()[0], lines)
+    assert code == 2 and "24 numbers in POSES, but 2 certificates" in text

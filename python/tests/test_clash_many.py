@@ -68,3 +68,19 @@ def test_clearance_and_exit_code(tmp_path):
     assert run(tmp_path, tmp_path / "clashes.csv", "--clearance", "0.5").returncode == 0
     assert (tmp_path / "clashes.csv").read_text().splitlines()[1:] == ["a.obj,b.obj,apart,0,disjoint,0.5"]
     assert run(tmp_path, tmp_path / "clashes.csv", "--clearance", "nan").returncode == 2
+
+
+def test_shells_that_overlap(tmp_path):
+    folder = tmp_path / "parts"
+    folder.mkdir()
+    write_box(folder / "a.obj", (0, 0, 0), (4, 4, 4))
+    write_box(folder / "b.obj", (1, 1, 1), (2, 2, 2))
+    box = (folder / "a.obj").read_text()  # its faces twice
+    (folder / "a.obj").write_text(box + "".join(line + "\n" for line in box.splitlines() if line.startswith("f")))
+    page = tmp_path / "clashes.html"
+    done = run(folder, tmp_path / "clashes.csv", "--report", page)
+    assert done.returncode == 3 and "a.obj: faces 0 and 6 cross or lie on each other" in done.stderr and "b.obj: faces" not in done.stderr
+    assert "<li>a.obj: faces 0 and 6<" in page.read_text()
+    done = run(folder, tmp_path / "clashes.csv", "--inside", "nonzero")
+    assert done.returncode == 1 and "faces 0" not in done.stderr
+    assert (tmp_path / "clashes.csv").read_text().splitlines()[1:] == ["a.obj,b.obj,apart,0,b_in_a,"]

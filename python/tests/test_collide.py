@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 import weakref
 
 import numpy as np
@@ -18,7 +19,7 @@ import pytest
 import collisionchip
 from collisionchip import Object, collide, collide_many, open_device
 from collisionchip._core import _exact
-from shapes import SEED, cube, poses, shift, torus
+from shapes import SEED, cube, joined, poses, shift, torus
 
 CUBE = Object(*cube())
 TORUS = Object(*torus())
@@ -572,6 +573,52 @@ def test_solids():
         collisionchip.solids(lid, None, box, None)
     with pytest.raises(ValueError, match="flattens space"):
         collisionchip.solids(box, None, box, np.diag([1.0, 1, 0, 1]))
+
+
+def bar(x=0.0):
+    corners, faces = cube()
+    return corners + (x, x / 4, x / 8), faces
+
+
+def test_shells_that_overlap():
+    two = Object(*joined(bar(), bar(0.5)))  # share x from 0 to 0.5
+    twice = Object(*joined(bar(), bar()))
+    assert two.is_closed and two.twisted_edge is None
+    a, b = two.shell_overlap
+    assert a < 12 <= b and type(a) is int
+    assert twice.shell_overlap is not None
+    assert Object(*joined(bar(), bar(2))).shell_overlap is None and Object(*joined(bar(), bar(1.25))).shell_overlap is None
+    assert Object(*cube()).shell_overlap is None and Object(*cube()).twisted_edge is None
+    corners, faces = cube()
+    twisted = Object(corners, np.concatenate([faces[:1, ::-1], faces[1:]]))
+    start, end, face = twisted.twisted_edge
+    assert twisted.is_closed and face in (0, 1) and {start, end} <= {tuple(x) for x in corners.tolist()}
+
+
+def test_solids_of_shells_that_overlap_warn():
+    two, small = Object(*joined(bar(), bar(0.5))), Object(*cube(0.25))
+    inside = shift(0.25)  # in the space that both share
+    a, b = two.shell_overlap
+    with pytest.warns(UserWarning) as said:
+        assert collisionchip.solids(two, None, small, inside) == "disjoint"
+    assert len(said) == 1 and said[0].filename == __file__
+    text = str(said[0].message)
+    assert f"faces {a} and {b} of A cross" in text and "inside='nonzero'" in text and "\n" not in text
+    with pytest.warns(UserWarning, match="of B cross"):
+        assert collisionchip.solids(small, inside, two, None, inside="odd") == "disjoint"
+    with pytest.warns(UserWarning, match="of A lie on each other"):
+        collisionchip.solids(Object(*joined(bar(), bar())), None, small, None)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert collisionchip.solids(two, None, small, inside, inside="nonzero") == "b_in_a"
+        assert collisionchip.solids(two, None, small, shift(9)) == "disjoint"  # boxes tell that, whatever is inside
+        with pytest.raises(UserWarning):
+            collisionchip.solids(two, None, small, inside)
+    with pytest.raises(ValueError, match="inside is 'even'; give 'odd' or 'nonzero'"):
+        collisionchip.solids(two, None, small, None, inside="even")
+    corners, faces = cube()
+    with pytest.raises(ValueError, match="B"):
+        collisionchip.solids(small, None, Object(corners, np.concatenate([faces[:1, ::-1], faces[1:]])), None, inside="nonzero")
 
 
 def test_along():

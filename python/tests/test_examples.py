@@ -26,8 +26,8 @@ def write_box(path, least, greatest=None, faces=6):
     path.write_text("".join(f"v {a} {b} {c}\n" for a, b, c in corners) + "".join("f %d %d %d %d\n" % quad for quad in quads))
 
 
-def check(folder):
-    return run(EXAMPLES / "clash_check.py", folder)
+def check(folder, *options):
+    return run(EXAMPLES / "clash_check.py", folder, *options)
 
 
 def test_clash_check(tmp_path):
@@ -69,6 +69,24 @@ def test_clash_check_says_what_it_cannot_judge(tmp_path):
     (tmp_path / "a.obj").write_text(box + "".join(line + "\n" for line in box.splitlines() if line.startswith("f")))
     code, text = check(tmp_path)
     assert code != 0 and "a.obj b.obj" in text
+
+
+def test_clash_check_of_shells_that_overlap(tmp_path):
+    write_box(tmp_path / "a.obj", (0, 0, 0), (4, 4, 4))
+    write_box(tmp_path / "more.obj", (2, 1, 1), (6, 5, 5))
+    more = re.sub(r"(?<= )\d+(?= |$)", lambda number: str(int(number[0]) + 8), "".join((tmp_path / "more.obj").read_text().partition("f ")[1:]), flags=re.M)
+    vertices = (tmp_path / "more.obj").read_text().partition("f ")[0]
+    (tmp_path / "more.obj").unlink()
+    (tmp_path / "a.obj").write_text((tmp_path / "a.obj").read_text() + vertices + more)
+    write_box(tmp_path / "b.obj", (2.5, 2, 2), (3.5, 3, 3))  # in the space that both shells of a share
+    code, text = check(tmp_path)
+    assert code == 3 and "a.obj b.obj cannot be judged: faces " in text and "clashes=0" in text
+    assert "a.obj cross or lie on each other; try --inside nonzero\n" in text and "Warning" not in text
+    assert check(tmp_path, "--inside", "nonzero") == (1, "a.obj b.obj b_in_a\nparts=2 clashes=1\n")
+    lines = (tmp_path / "b.obj").read_text().splitlines()
+    (tmp_path / "b.obj").write_text("\n".join(lines[:-1] + ["f " + " ".join(lines[-1].split()[:0:-1])]) + "\n")  # one face the other way round
+    code, text = check(tmp_path, "--inside", "nonzero")
+    assert code == 3 and "a.obj b.obj cannot be judged: faces of " in text and "b.obj are not all" in text and "clashes=0" in text
 
 
 def test_clash_check_command_line(tmp_path):

@@ -2,13 +2,14 @@
 """Scenes."""
 import gc
 import threading
+import warnings
 import weakref
 
 import numpy as np
 import pytest
 
 from collisionchip import Object, Scene, collide, open_device
-from shapes import SEED, cube, poses, shift, torus
+from shapes import SEED, cube, joined, poses, shift, torus
 
 CUBE = Object(*cube())
 TORUS = Object(*torus())
@@ -162,3 +163,18 @@ def test_solids():
     scene.add(Object([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]))
     with pytest.raises(ValueError, match="closed|open"):
         scene.solids()
+
+
+def test_solids_of_shells_that_overlap():
+    corners, faces = cube()
+    two = Object(*joined((corners, faces), (corners + (0.5, 0.125, 0.0625), faces)))
+    scene = Scene()
+    part, one, other = scene.add(two), scene.add(Object(*cube(0.25)), shift(0.25)), scene.add(Object(*cube(0.25)), shift(-0.25))
+    with pytest.warns(UserWarning) as said:
+        assert scene.solids() == [(part, other, "b_in_a")]
+    assert len(said) == 1 and f"of object {part} cross" in str(said[0].message)  # not once for each pair
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert scene.solids(inside="nonzero") == [(part, one, "b_in_a"), (part, other, "b_in_a")]
+    with pytest.raises(ValueError, match="inside is 'even'"):
+        scene.solids(inside="even")

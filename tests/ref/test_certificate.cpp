@@ -794,7 +794,75 @@ TEST_CASE("certificate: the page prints those of two boxes", "[ref][certificate]
   }
 }
 
-// For check_agrees.py: a line of JSON for each case.
+namespace {
+
+/// For check_agrees.py: a line of JSON with meshes, poses, the verdict of this checker, and more fields.
+void print_case(const std::array<Placed, 2>& pair, bool accepted, const std::string& fields) {
+  std::cout << "{\"meshes\":[";
+  for (const std::size_t s : {0U, 1U}) {
+    const Mesh& mesh = pair[s].mesh;
+    std::cout << (s == 0 ? "[[" : ",[[");
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+      const Vec3d& v = mesh.vertices[i];
+      std::cout << (i == 0 ? "[" : ",[") << v[0] << ',' << v[1] << ',' << v[2] << ']';
+    }
+    std::cout << "],[";
+    for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+      std::cout << (i == 0 ? "[" : ",[") << mesh.faces[i].vertex[0];
+      for (std::size_t k = 1; k < std::size_t(mesh.faces[i].kind); ++k) std::cout << ',' << mesh.faces[i].vertex[k];
+      std::cout << ']';
+    }
+    std::cout << "],[";
+    for (std::uint32_t i = 0; i < mesh.faces.size(); ++i) std::cout << (i == 0 ? "" : ",") << mesh.number_in_file(i);
+    std::cout << "]]";
+  }
+  std::cout << "],\"poses\":[";
+  const char* comma = "";
+  for (const Placed& p : pair) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 4; ++column) {
+        std::cout << comma << p.pose(row, column);
+        comma = ",";
+      }
+    }
+  }
+  std::cout << "],\"accepted\":" << (accepted ? "true" : "false") << ',' << fields << "}\n";
+}
+
+/// A string of JSON.
+std::string in_quotes(const std::string& text) {
+  std::string result = "\"";
+  for (const char x : text) {
+    const std::size_t control = std::string("\n\r\f\t").find(x);
+    if (x == '"' || x == '\\') {
+      result += {'\\', x};
+    } else if (control != std::string::npos) {
+      result += {'\\', "nrft"[control]};
+    } else {
+      result += x;
+    }
+  }
+  return result + '"';
+}
+
+/// Does a file hold certificates of the pair, all of which are accepted?
+bool accepts_file(const std::array<Placed, 2>& pair, const std::string& text) {
+  std::istringstream in(text);
+  CertificateReader reader(in);
+  bool accepted = false;
+  try {
+    while (const std::optional<Certificate> certificate = reader.next()) {
+      if (!check(pair, *certificate).accepted) return false;
+      accepted = true;
+    }
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+  return accepted;
+}
+
+}  // namespace
+
 TEST_CASE("certificate: cases for the checker in Python", "[.cases]") {
   std::mt19937_64 random = generator(5);
   std::cout.precision(17);
@@ -805,44 +873,128 @@ TEST_CASE("certificate: cases for the checker in Python", "[.cases]") {
     for (int m = 0; m < 10; ++m) {
       Certificate c = truth;
       if (m > 0) mutate(c, random);
-      std::cout << "{\"meshes\":[";
-      for (const std::size_t s : {0U, 1U}) {
-        const Mesh& mesh = pair[s].mesh;
-        std::cout << (s == 0 ? "[[" : ",[[");
-        for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-          const Vec3d& v = mesh.vertices[i];
-          std::cout << (i == 0 ? "[" : ",[") << v[0] << ',' << v[1] << ',' << v[2] << ']';
-        }
-        std::cout << "],[";
-        for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
-          std::cout << (i == 0 ? "[" : ",[") << mesh.faces[i].vertex[0];
-          for (std::size_t k = 1; k < std::size_t(mesh.faces[i].kind); ++k) std::cout << ',' << mesh.faces[i].vertex[k];
-          std::cout << ']';
-        }
-        std::cout << "],[";
-        for (std::uint32_t i = 0; i < mesh.faces.size(); ++i)
-          std::cout << (i == 0 ? "" : ",") << mesh.number_in_file(i);
-        std::cout << "]]";
-      }
-      std::cout << "],\"poses\":[";
-      const char* comma = "";
-      for (const Placed& p : pair) {
-        for (int row = 0; row < 3; ++row) {
-          for (int column = 0; column < 4; ++column) {
-            std::cout << comma << p.pose(row, column);
-            comma = ",";
-          }
-        }
-      }
-      std::cout << "],\"accepted\":" << (check(pair, c).accepted ? "true" : "false") << ",\"lines\":[";
-      std::istringstream lines(written(c));
-      comma = "";
-      for (std::string line; std::getline(lines, line); comma = ",") {
-        std::cout << comma << '"';
-        for (const char x : line) std::cout << (x == '"' ? "\\\"" : std::string(1, x));
-        std::cout << '"';
-      }
-      std::cout << "]}\n";
+      std::string lines;
+      std::istringstream text(written(c));
+      for (std::string line; std::getline(text, line);) lines += (lines.empty() ? "" : ",") + in_quotes(line);
+      print_case(pair, check(pair, c).accepted, "\"lines\":[" + lines + ']');
     }
   }
+}
+
+namespace {
+
+struct FileCase {
+  bool accepted;
+  std::string text;
+};
+
+/// Files with what readers of JSON, of lines and of lists differ about.
+/// \param all no contacts; \param one a contact; of different poses
+std::array<std::vector<FileCase>, 2> file_cases(const std::string& all, const std::string& one) {
+  const auto with = [](std::string text, const std::string& what, const std::string& by) {
+    REQUIRE(text.find(what) != std::string::npos);
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+      text.replace(at, what.size(), by);
+    }
+    return text;
+  };
+  const auto extra = [&](const std::string& value) {
+    return with(all, ",\"order_b\"", ",\"x\":" + value + ",\"order_b\"");
+  };
+  const std::string version = "\"collisionchip_certificate\":1";
+  const std::string faces = "\"faces\":[0,4]", contacts = "\"contacts\":[[0,4,null]]";
+  const std::vector<FileCase> of_all = {
+      {true, all},
+      {true, all + all},
+      {false, all + one},
+      {false, all + with(all, "\"1\"", "\"-1\"")},
+      {false, ""},
+      {false, "\n" + all},
+      {false, all + "\n"},
+      {true, all.substr(0, all.size() - 1)},
+      {true, with(all, "\n", "\r\n")},
+      {false, with(all, "\n", "\r")},
+      {false, with(all, "\n", "\f")},
+      {false, "\xef\xbb\xbf" + all},
+      {false, with(all, "\n", "\n\xef\xbb\xbf")},
+      {false, with(all, version, "\"collisionchip_certificate\":true")},
+      {false, with(all, version, "\"collisionchip_certificate\":1.0")},
+      {false, with(all, version, "\"collisionchip_certificate\":\"1\"")},
+      {false, with(all, version, "\"collisionchip_certificate\":2")},
+      {false, with(all, "{\"cell\"", "{" + version + ",\"cell\"")},
+      {false, with(all, "{\"cell\"", "{\"collisionchip\\u005fcertificate\":1,\"cell\"")},
+      {true, with(all, version, "\"collisionchip\\u005fcertificate\":1")},
+      {true, extra("\"\xe2\x80\xa8\"")},
+      {true, extra("\"\xc2\x85\"")},
+      {true, extra("\"\\u2028\"")},
+      {true, extra("\"\\ud83d\\ude00\"")},
+      {false, extra("\"\\ud800\"")},
+      {false, extra("{\"\\udc00\":1}")},
+      {false, extra("NaN")},
+      {false, extra("-Infinity")},
+      {false, extra("1e999")},
+      {true, extra("1e308")},
+      {false, extra("1" + std::string(400, '0'))},
+      {true, extra("1" + std::string(300, '0'))},
+      {true, extra("-0")},
+      {true, extra("[[[[]]]]")},
+      {false, extra("[[[[1]]]]")},
+      {false, extra("[[[[[]]]]]")},
+      {false, extra("[[[{\"y\":1}]]]")},
+      {true, extra("[[[{}]]]")},
+      {false, extra("01")},
+      {false, extra("'x'")},
+      {false, extra("\"\t\"")},
+      {false, with(all, "\"contacts\":[]", "\"contacts\":null")},
+      {false, with(all, "\"contacts\":[]", "\"contacts\":{}")},
+      {false, with(all, "\"contacts\":[]", "\"contacts\":\"\"")},
+  };
+  const std::vector<FileCase> of_one = {
+      {true, one},
+      {true, one + one + one},
+      {false, with(one, "\"order_a\":[]", "\"order_a\":{}")},
+      {false, with(one, "\"order_a\":[]", "\"order_a\":\"\"")},
+      {false, with(one, contacts, "\"contacts\":[[0.0,4,null]]")},
+      {false, with(one, contacts, "\"contacts\":[[false,4,null]]")},
+      {false, with(one, contacts, "\"contacts\":[[-0,4,null]]")},
+      {false, with(one, contacts, "\"contacts\":[[0,4]]")},
+      {false, with(one, faces, "\"faces\":[0,4,1]")},
+      {false, with(one, faces, "\"faces\":[0]")},
+      {false, with(one, faces, "\"faces\":[-0,4]")},
+      {false, with(one, faces, "\"faces\":[false,4]")},
+      {false, with(one, faces, "\"faces\":[0.0,4]")},
+  };
+  return {of_all, of_one};
+}
+
+/// Calls `each` for each pair and case.
+template <class Each>
+void for_file_cases(const Each& each) {
+  const std::array<std::array<Placed, 2>, 2> pairs = {boxes_of_the_page(0.5), boxes_of_the_page(-0.5)};
+  std::array<std::string, 2> text;
+  for (const std::size_t i : {0U, 1U}) {
+    const Object a(pairs[i][0].mesh), b(pairs[i][1].mesh);
+    text[i] = written(certify({&a, &pairs[i][0].pose, &b, &pairs[i][1].pose},
+                              request(i == 0 ? Contacts::all : Contacts::first, false)));
+  }
+  const auto cases = file_cases(text[0], text[1]);
+  for (const std::size_t i : {0U, 1U}) {
+    for (const FileCase& one : cases[i]) each(pairs[i], one);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("certificate: files that readers may differ about", "[ref][certificate]") {
+  for_file_cases([](const std::array<Placed, 2>& pair, const FileCase& one) {
+    INFO(one.text);
+    CHECK(accepts_file(pair, one.text) == one.accepted);
+  });
+}
+
+TEST_CASE("certificate: files for the checker in Python", "[.cases]") {
+  std::cout.precision(17);
+  for_file_cases([](const std::array<Placed, 2>& pair, const FileCase& one) {
+    print_case(pair, one.accepted, "\"file\":" + in_quotes(one.text));
+  });
 }

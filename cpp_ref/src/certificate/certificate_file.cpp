@@ -110,6 +110,7 @@ std::string shortened(const std::string& text) {
 
 /// A line of JSON; one that nests deeper than lines of certificates do is refused before it costs a stack.
 json parse(const std::string& line) {
+  require(line.rfind("\xef\xbb\xbf", 0) != 0, "a byte order mark");  // which JSON's reader skips
   const auto flat = [](int depth, json::parse_event_t /*event*/, json& /*value*/) {
     require(depth <= 4, "too deep");
     return true;
@@ -181,7 +182,8 @@ std::uint64_t hash(const json& value) {
 
 Certificate read_claim(const json& line) {
   Certificate c;
-  require(line.at("collisionchip_certificate") == Certificate::current_version,
+  const json& version = line.at("collisionchip_certificate");
+  require(version.is_number_unsigned() && version == Certificate::current_version,
           "no certificate, or another version of it");
   c.hash_a = hash(line.at("mesh_a"));
   c.hash_b = hash(line.at("mesh_b"));
@@ -189,6 +191,7 @@ Certificate read_claim(const json& line) {
   c.all = line.at("all").get<bool>();
   c.least = static_cast<Relation>(index_of(relation_names, line.at("least")));
   c.relation = relation(line.at("relation"));
+  require(line.at("contacts").is_array(), "contacts are no list");
   for (const json& contact : line.at("contacts")) {
     require(contact.is_array() && contact.size() == 3, "a contact is two faces and a relation");
     c.contacts.push_back({number(contact[0]), number(contact[1]), relation(contact[2])});

@@ -4,9 +4,11 @@
 
     python check.py A B POSES CERTIFICATE
 
-A, B: OFF or OBJ files of triangles and quads. POSES: 24 numbers, the matrix [R | t] of A row by row, then that of B.
+A, B: OFF or OBJ files of triangles and quads. POSES: for each certificate of the file 24 numbers, the matrix [R | t] of A
+row by row, then that of B.
 Exit code 0: accepted, and the claim is printed; 1: refused, with the first cell that fails; 2: a file cannot be read."""
 import json
+import math
 import re
 import struct
 import sys
@@ -23,6 +25,48 @@ class Refused(Exception): ...
 def require(holds, otherwise):
     if not holds:
         raise Refused(otherwise)
+
+
+def finite(text):
+    require(math.isfinite(float(text)), "not a number that a double can hold")
+    return text
+
+
+def check_depth(value, depth=0):
+    require(depth <= 4, "too deep")
+    if isinstance(value, str):
+        value.encode()  # raises for half a surrogate pair
+    elif isinstance(value, (list, dict)):
+        for x in [*value, *value.values()] if isinstance(value, dict) else value:
+            check_depth(x, depth + 1)
+
+
+def parse(line):
+    """A line of JSON, without what Python takes beyond it; -0 is no integer."""
+    whole = lambda text: -0.0 if text == "-0" else int(finite(text))
+    value = json.loads(line, parse_constant=finite, parse_float=lambda text: float(finite(text)), parse_int=whole)
+    check_depth(value)
+    return value
+
+
+def split(text):
+    """The lines of each certificate of a file. Only a line feed ends a line, unlike in str.splitlines()."""
+    lines, certificates = text.split("\n"), []
+    for line in lines[:-1] if lines[-1] == "" else lines:
+        if not certificates or begins(line):
+            certificates.append([])
+        certificates[-1].append(line)
+    return certificates
+
+
+def begins(line):
+    if "\\" not in line and "collisionchip_certificate" not in line:
+        return False
+    try:
+        value = json.loads(line)
+    except (ValueError, RecursionError):
+        return False  # check() refuses it
+    return isinstance(value, dict) and "collisionchip_certificate" in value
 
 
 def hash_words(data, value=0xcbf29ce484222325):
@@ -51,6 +95,7 @@ def integers(texts, count):
 
 def expanded(order):
     """Numbers, and runs [first, last] of numbers that ascend by one."""
+    require(isinstance(order, list), "not a list")
     result = []
     for first, last in (x if isinstance(x, list) else (x, x) for x in order):
         require(type(first) is type(last) is int and first <= last and last - first + len(result) < 2**24, "not an order of faces")
@@ -76,6 +121,7 @@ def check_point(cell, corners):
         require(overlap(cell["direction"], corners) <= 0, "A is not below B")
     if kind == "cross":
         edges = {s + str(k): [p - q for p, q in zip(f[k], f[0])] for s, f in zip("ab", corners) for k in range(1, len(f))}
+        require(isinstance(cell["span"], list), "a span is three edges")
         x, y, z = (edges[name] for name in cell["span"])
         normal = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]]
         require(dot(normal, z) != 0, "the edges do not span space")
@@ -101,8 +147,10 @@ def check(meshes, poses, lines):
     """meshes: of A and B (vertices, faces, number in the file of each face). Returns the claim or raises Refused."""
     number = "claim"
     try:
-        c, cells = json.loads(lines[0]), lines[1:]
-        require(c["collisionchip_certificate"] == 1, "no certificate of version 1")
+        c, cells = parse(lines[0]), lines[1:]
+        version, claimed = c["collisionchip_certificate"], c["contacts"]
+        require(type(version) is int and version == 1, "no certificate of version 1")
+        require(isinstance(claimed, list) and all(type(f) is int for x in claimed for f in x[:2]), "no list of contacts")
         require(type(c["all"]) is bool and c["least"] in ("touching", "crossing"), "an unknown claim")
         hashes = [hash_mesh(*m) for m in meshes] + [hash_words(struct.pack("<24d", *(x + 0.0 for x in poses)))]
         require([c["mesh_a"], c["mesh_b"], c["poses"]] == hashes, "the certificate is of other meshes or poses")
@@ -113,8 +161,8 @@ def check(meshes, poses, lines):
         todo = [[(0, len(order)) for order in orders]]
         corners = lambda side, face: [points[side][v] for v in meshes[side][1][face]]
         for number, line in enumerate(cells):
-            cell = json.loads(line)
-            require(todo, "a cell too many")
+            cell = parse(line)
+            require(todo and "collisionchip_certificate" not in cell, "a cell too many")
             sets, kind = todo.pop(), cell["cell"]
             if kind in ("split_a", "split_b"):
                 side = kind == "split_b"
@@ -126,6 +174,7 @@ def check(meshes, poses, lines):
                 require(overlap(cell["direction"], sides) < 0, "A is not strictly below B")
             else:
                 require(kind in ("meet", "touch", "cross"), "unknown kind of cell")
+                require(len(cell["faces"]) == 2, "a point needs two faces")
                 require(all(type(f) is int and 0 <= f < len(m[1]) for f, m in zip(cell["faces"], meshes)), "no such face")
                 require(not c["all"] or all([f] == o[slice(*x)] for f, o, x in zip(cell["faces"], orders, sets)), "other faces")
                 check_point(cell, [corners(s, cell["faces"][s]) for s in (0, 1)])
@@ -154,14 +203,17 @@ def read_mesh(text):
 def main(arguments):
     try:
         require(len(arguments) == 4, "usage:" + __doc__)
-        texts = [open(path, encoding="utf-8").read() for path in arguments]
-        meshes, poses = [read_mesh(text) for text in texts[:2]], [float(x) for x in texts[2].split()]
-        c = check(meshes, poses, texts[3].splitlines())
+        texts = [open(path, encoding="utf-8", newline="\n" if n == 3 else None).read() for n, path in enumerate(arguments)]
+        meshes, poses, certificates = [read_mesh(text) for text in texts[:2]], [float(x) for x in texts[2].split()], split(texts[3])
+        if not certificates or len(poses) != 24 * len(certificates):
+            raise ValueError(f"{len(poses)} numbers in POSES, but {len(certificates)} certificates; give 24 for each")
+        claims = [check(meshes, poses[24 * n:24 * n + 24], lines) for n, lines in enumerate(certificates)]
     except Refused as error:
         sys.exit(print(f"refused, {error}") or 1)
     except (OSError, ValueError, IndexError) as error:
         sys.exit(print(f"check.py: {error}", file=sys.stderr) or 2)
-    print("accepted:", f"{len(c['contacts'])} contacts" if c["all"] else "a contact", "and no others" if c["all"] else "")
+    for c in claims:
+        print("accepted:", f"{len(c['contacts'])} contacts" if c["all"] else "a contact", "and no others" if c["all"] else "")
 
 
 if __name__ == "__main__":

@@ -17,7 +17,8 @@ struct CpuOptions {
 };
 
 /// Instruction sets that this computer has and the device uses, best first. The last, "plain", is no instruction set:
-/// bounding volumes in doubles, without SIMD. Answers are the same with all of them.
+/// bounding volumes in doubles, without SIMD. Which contact
+/// Contacts::first names, and stats, may differ between them; all else is equal.
 std::vector<std::string> cpu_targets();
 
 /// \throws std::invalid_argument no target of this name; the message lists the names
